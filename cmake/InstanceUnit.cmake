@@ -1,0 +1,12 @@
+# Makes rc10d@.service, for several robots on one computer, out of rc10d.service: they differ in the robot's file.
+#   cmake -DRC10_INSTANCE_UNIT=FILE -P cmake/InstanceUnit.cmake, or by include()
+set(rc10_unit "${CMAKE_CURRENT_LIST_DIR}/../systemd/rc10d.service")
+if(NOT CMAKE_SCRIPT_MODE_FILE)
+  set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS "${rc10_unit}")
+endif()
+file(READ "${rc10_unit}" rc10_unit_text)
+string(REGEX REPLACE "^#[^\n]*\n" "" rc10_unit_text "${rc10_unit_text}")
+string(REPLACE "real-time motor daemon" "real-time motor daemon of %i" rc10_unit_text "${rc10_unit_text}")
+string(REPLACE "/etc/rc10d/robot.yaml" "/etc/rc10d/%i.yaml" rc10_unit_text "${rc10_unit_text}")
+string(REPLACE "as rc10d.service.d/" "as rc10d@.service.d/" rc10_unit_text "${rc10_unit_text}")
+file(WRITE "${RC10_INSTANCE_UNIT}" "${rc10_unit_text}")

@@ -1,0 +1,12 @@
+# Sanitizers and coverage apply to everything that is compiled here.
+if(RC10_SANITIZE)
+  add_compile_options(-fsanitize=${RC10_SANITIZE} -fno-omit-frame-pointer -fno-sanitize-recover=all)
+  add_link_options(-fsanitize=${RC10_SANITIZE})
+endif()
+if(RC10_BUILD_FUZZ)
+  add_compile_options(-fsanitize=fuzzer-no-link)
+endif()
+if(RC10_COVERAGE)
+  add_compile_options(--coverage -O0)
+  add_link_options(--coverage)
+endif()

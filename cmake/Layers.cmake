@@ -1,0 +1,45 @@
+# One static library per folder of src/. A layer's headers are reachable only through its own include
+# root, <build>/layers/<layer>/, which holds one link named after the layer: `#include "motor/x.hpp"`
+# resolves only in targets that use the layer `motor`.
+
+# rc10_layer(<name> [USES <layer>...] [LIBRARIES <target>...])
+function(rc10_layer layer)
+  cmake_parse_arguments(ARG "" "" "USES;LIBRARIES" ${ARGN})
+  set(include_root "${PROJECT_BINARY_DIR}/layers/${layer}")
+  file(MAKE_DIRECTORY "${include_root}")
+  file(CREATE_LINK "${PROJECT_SOURCE_DIR}/src/${layer}" "${include_root}/${layer}" SYMBOLIC)
+
+  # A layer is its folder: a new family of motors is two files and no build rule.
+  file(GLOB sources CONFIGURE_DEPENDS "${PROJECT_SOURCE_DIR}/src/${layer}/*.cpp")
+  list(FILTER sources EXCLUDE REGEX "/main\\.cpp$")
+  set(target rc10_${layer})
+  if(sources)
+    add_library(${target} STATIC ${sources})
+    set(scope PUBLIC)
+    target_link_libraries(${target} PRIVATE rc10_warnings)
+  else()
+    add_library(${target} INTERFACE)
+    set(scope INTERFACE)
+  endif()
+  target_include_directories(${target} ${scope} "${include_root}")
+  list(TRANSFORM ARG_USES PREPEND rc10_)
+  target_link_libraries(${target} ${scope} ${ARG_USES} ${ARG_LIBRARIES})
+  if(layer STREQUAL "app")
+    target_link_libraries(${target} ${scope} tl::expected)
+    configure_file("${PROJECT_SOURCE_DIR}/cmake/version.hpp.in" "${PROJECT_BINARY_DIR}/generated/rc10_version.hpp")
+    target_include_directories(${target} ${scope} "${PROJECT_BINARY_DIR}/generated")
+  endif()
+endfunction()
+
+# rc10_program(<name> MAIN <source file, or folder of sources> [USES <layer>...] [LIBRARIES <target>...])
+# All programs land in <build>/bin.
+function(rc10_program name)
+  cmake_parse_arguments(ARG "" "MAIN" "USES;LIBRARIES" ${ARGN})
+  if(IS_DIRECTORY "${PROJECT_SOURCE_DIR}/${ARG_MAIN}")
+    file(GLOB ARG_MAIN CONFIGURE_DEPENDS "${PROJECT_SOURCE_DIR}/${ARG_MAIN}/*.cpp")
+  endif()
+  add_executable(${name} ${ARG_MAIN})
+  list(TRANSFORM ARG_USES PREPEND rc10_)
+  target_link_libraries(${name} PRIVATE rc10_warnings ${ARG_USES} ${ARG_LIBRARIES})
+  set_target_properties(${name} PROPERTIES RUNTIME_OUTPUT_DIRECTORY "${PROJECT_BINARY_DIR}/bin")
+endfunction()

@@ -1,0 +1,136 @@
+// Enables one motor, turns it for a second and prints its state; Ctrl-C lets go of it. C++17, with nothing
+// but LCM; robot programs in C++ are shorter with librc10-client (docs/robot-programs.md).
+//   hello_motor ROBOT MOTOR RPM
+#include <chrono>
+#include <cmath>
+#include <csignal>
+#include <cstdint>
+#include <cstdlib>
+#include <iostream>
+#include <lcm/lcm-cpp.hpp>
+#include <optional>
+#include <random>
+#include <string>
+
+#include "rc10/command_t.hpp"
+#include "rc10/request_t.hpp"
+#include "rc10/response_t.hpp"
+#include "rc10/robot_state_t.hpp"
+
+using namespace std::chrono_literals;
+using Clock = std::chrono::steady_clock;
+
+volatile std::sig_atomic_t interrupted = 0;
+
+class Program {
+ public:
+  Program(std::string robot, std::string motor) : robot_(std::move(robot)), motor_(std::move(motor)) {
+    std::random_device random;
+    session_ = static_cast<std::int64_t>((static_cast<std::uint64_t>(random()) << 31U) ^ random());
+    lcm_.subscribe(channel("state"), &Program::onState, this);
+    lcm_.subscribe(channel("response"), &Program::onResponse, this);
+  }
+
+  bool good() { return lcm_.good(); }
+
+  // Sends a request under one number until it is answered: rc10d carries it out once.
+  bool request(const std::string& operation) {
+    rc10::request_t message{};
+    message.client = kClient;
+    message.session = session_;
+    message.seq = awaited_ = ++seq_;
+    message.operation = operation;
+    message.target = motor_;
+    answer_.reset();
+    for (int i = 0; i < 50 && !answer_; ++i) {
+      lcm_.publish(channel("request"), &message);
+      const auto end = Clock::now() + 100ms;
+      while (!answer_ && Clock::now() < end) lcm_.handleTimeout(10);
+    }
+    if (!answer_) std::cerr << "hello_motor: no answer to '" << operation << "': is rc10d running?\n";
+    return answer_ && *answer_ == rc10::response_t::STATUS_OK;
+  }
+
+  void command(std::int8_t mode, double value) {
+    rc10::setpoint_t setpoint{};
+    setpoint.motor = motor_;
+    setpoint.mode = mode;
+    setpoint.value = value;
+    setpoint.stiffness_nm_per_rad = setpoint.damping_nms_per_rad = NAN;
+    rc10::command_t message{};
+    message.client = kClient;
+    message.session = session_;
+    message.seq = ++seq_;
+    message.validity_ms = 100;
+    message.setpoint_count = 1;
+    message.setpoints = {setpoint};
+    lcm_.publish(channel("command"), &message);
+  }
+
+  void receiveFor(Clock::duration time) {
+    const auto end = Clock::now() + time;
+    while (Clock::now() < end) lcm_.handleTimeout(5);
+  }
+
+ private:
+  static constexpr const char* kClient = "hello-cpp";
+
+  [[nodiscard]] std::string channel(const std::string& kind) const { return robot_ + ".v1." + kind; }
+
+  void onState(const lcm::ReceiveBuffer*, const std::string&, const rc10::robot_state_t* state) {
+    if (state->mono_us < printed_us_ + 100'000) return;
+    for (const auto& motor : state->motors) {
+      if (motor.name != motor_) continue;
+      printed_us_ = state->mono_us;
+      std::cout << motor.name << " status " << int{motor.status} << " owner '" << motor.owner << "' target "
+                << motor.target << " measured " << motor.velocity_rpm << " rpm " << motor.current_a << " A"
+                << std::endl;
+    }
+  }
+
+  void onResponse(const lcm::ReceiveBuffer*, const std::string&, const rc10::response_t* response) {
+    // All clients hear all answers.
+    if (response->session != session_ || response->seq != awaited_) return;
+    answer_ = response->status;
+    if (*answer_ != rc10::response_t::STATUS_OK) std::cerr << "hello_motor: " << response->message << '\n';
+  }
+
+  lcm::LCM lcm_;
+  std::string robot_, motor_;
+  std::int64_t session_ = 0;  // of this run; a later run has another
+  std::int64_t seq_ = 0;      // grows with every message of ours
+  std::int64_t awaited_ = 0;
+  std::optional<std::int8_t> answer_;
+  std::int64_t printed_us_ = 0;
+};
+
+int main(int count, char** words) {
+  if (count != 4) {
+    std::cerr << "usage: hello_motor ROBOT MOTOR RPM\n";
+    return 2;
+  }
+  const double rpm = std::strtod(words[3], nullptr);  // before anything is enabled
+  Program program(words[1], words[2]);
+  if (!program.good()) {
+    std::cerr
+        << "hello_motor: LCM could not start: sudo ip route add 239.255.76.67/32 dev lo src 127.0.0.1\n";
+    return 1;
+  }
+  // Ctrl-C ends the loop below, and the motor is disabled as ever; a second one ends at once.
+  const auto interrupt = [](int number) {
+    interrupted = 1;
+    std::signal(number, SIG_DFL);
+  };
+  std::signal(SIGINT, interrupt);
+  std::signal(SIGTERM, interrupt);
+  const bool enabled = program.request("enable");
+  // The loop is what keeps the motor going: a command acts for 100 ms.
+  for (int i = 0; enabled && interrupted == 0 && i < 50; ++i) {
+    program.command(rc10::setpoint_t::MODE_VELOCITY, rpm);
+    program.receiveFor(20ms);
+  }
+  program.command(rc10::setpoint_t::MODE_COAST, 0.0);
+  const bool disabled = program.request("disable");
+  if (interrupted != 0) return 130;
+  return enabled && disabled ? 0 : 1;
+}

@@ -1,0 +1,43 @@
+"""Faults and changes of state as they happen, `<robot>.v1.event`."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from enum import IntEnum
+
+from rc10.lcm_types.event_t import event_t
+
+
+class Severity(IntEnum):
+    """How bad an event is."""
+
+    INFO = event_t.SEVERITY_INFO
+    WARNING = event_t.SEVERITY_WARNING
+    ERROR = event_t.SEVERITY_ERROR
+
+
+@dataclass(frozen=True)
+class Event:
+    """One fault or change of state."""
+
+    utime: int
+    """Wall clock in microseconds since 1970."""
+    mono_us: int
+    """CLOCK_MONOTONIC of the tick in which it happened, in microseconds."""
+    severity: Severity
+    code: int
+    source: str
+    """Name of a motor or bus, or "robot", "link", "lcm"."""
+    text: str
+
+    @classmethod
+    def from_lcm(cls, message: event_t) -> Event:
+        """Makes the typed view of a decoded message."""
+        return cls(
+            utime=message.utime,
+            mono_us=message.mono_us,
+            severity=Severity(message.severity),
+            code=message.code,
+            source=message.source,
+            text=message.text,
+        )

@@ -1,0 +1,42 @@
+"""Tells how old a state is that carries the daemon's time."""
+
+from __future__ import annotations
+
+# Two crystals differ by less than this; without the allowance a slower host clock would make
+# every later state look older than it is.
+_DRIFT = 100e-6
+
+# A host's clock that went back this far belongs to another boot or another host.
+_RESTART_S = 1.0
+
+
+class HostClock:
+    """Places the daemon's CLOCK_MONOTONIC on this program's clock.
+
+    The time at which a message is handled says little about its age, since it may have waited
+    in LCM's queue while the program was busy. The quickest message seen so far gives the
+    distance between the two clocks, and then every message tells its own age. It makes no
+    difference whether the daemon runs on this computer or on another.
+    """
+
+    def __init__(self) -> None:
+        self._distance_s: float | None = None
+        self._last_host_s = 0.0
+        self._last_local_s = 0.0
+
+    def observe(self, host_s: float, local_s: float) -> float:
+        """Takes in a message stamped `host_s` and handled at `local_s`.
+
+        Returns:
+            The message's time on the local clock, in seconds.
+        """
+        distance_s = local_s - host_s
+        restarted = host_s < self._last_host_s - _RESTART_S
+        if self._distance_s is None or restarted:
+            self._distance_s = distance_s
+        else:
+            drift_s = _DRIFT * (local_s - self._last_local_s)
+            self._distance_s = min(distance_s, self._distance_s + drift_s)
+        self._last_host_s = host_s
+        self._last_local_s = local_s
+        return host_s + self._distance_s

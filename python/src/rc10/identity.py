@@ -1,0 +1,25 @@
+"""Who a run of a program is to the daemon."""
+
+from __future__ import annotations
+
+import secrets
+
+
+class Identity:
+    """A client's name, the random session of this run, and its growing sequence number.
+
+    Commands and requests share the number; that it grows is all that the daemon asks of it.
+    """
+
+    def __init__(self, client: str) -> None:
+        if not client:
+            raise ValueError("the client needs a name")
+        self.client = client
+        # From 1: zero is what a program that forgets about sessions sends.
+        self.session = secrets.randbelow(2**63 - 1) + 1
+        self._seq = 0
+
+    def next_seq(self) -> int:
+        """Returns a number greater than all before."""
+        self._seq += 1
+        return self._seq

@@ -1,0 +1,128 @@
+"""The way to the daemon: LCM, pumped by hand."""
+
+from __future__ import annotations
+
+import os
+import re
+import select
+import time
+from typing import Callable, Protocol
+
+import lcm
+
+from rc10.errors import LinkError
+
+MULTICAST_GROUP = "239.255.76.67"
+ROUTE_COMMAND = f"sudo ip route add {MULTICAST_GROUP}/32 dev lo src 127.0.0.1"
+
+# A pump ends although more is waiting: a flooded channel must not hold the caller's loop.
+_MAX_PER_PUMP = 4096
+
+# A signal that comes just before a sleep, or to LCM's thread, does not end it; Ctrl-C has to.
+_LONGEST_SLEEP_S = 0.2
+
+
+class Link(Protocol):
+    """What a client needs of its transport. Not thread-safe."""
+
+    def publish(self, channel: str, data: bytes) -> None:
+        """Sends a message, without waiting."""
+
+    def subscribe(self, channel: str, handler: Callable[[bytes], None], capacity: int) -> None:
+        """Has pump() call `handler`; at most about `capacity` messages wait for it."""
+
+    def pump(self, timeout_s: float) -> int:
+        """Waits at most `timeout_s` for a message, then handles all that wait.
+
+        Returns:
+            How many were handled.
+        """
+
+    def fileno(self) -> int:
+        """A descriptor that is readable while a message waits."""
+
+    def now(self) -> float:
+        """Monotonic time in seconds."""
+
+    def close(self) -> None:
+        """Frees the transport."""
+
+
+class LcmLink:
+    """A Link over LCM.
+
+    Args:
+        url: an LCM provider; None for $LCM_DEFAULT_URL or LCM's default.
+
+    Raises:
+        LinkError: LCM could not start; the message says what to do.
+    """
+
+    def __init__(self, url: str | None = None) -> None:
+        try:
+            self._lcm: lcm.LCM | None = lcm.LCM(url)
+        except RuntimeError as error:
+            raise LinkError(_start_failure(url)) from error
+
+    @property
+    def lcm(self) -> lcm.LCM:
+        """The LCM object itself, for messages of the caller's own."""
+        if self._lcm is None:
+            raise LinkError("the link is closed")
+        return self._lcm
+
+    def publish(self, channel: str, data: bytes) -> None:
+        """Sends a message, without waiting."""
+        self.lcm.publish(channel, data)
+
+    def subscribe(self, channel: str, handler: Callable[[bytes], None], capacity: int) -> None:
+        """Has pump() call `handler`; at most about `capacity` messages wait for it."""
+        # LCM takes a regular expression, and the dots of a channel name would match anything.
+        subscription = self.lcm.subscribe(re.escape(channel), lambda _, data: handler(data))
+        subscription.set_queue_capacity(capacity)
+
+    def pump(self, timeout_s: float) -> int:
+        """Waits at most `timeout_s` for a message, then handles all that wait."""
+        handled = 0
+        ready = self._wait(max(0.0, timeout_s))
+        while ready and handled < _MAX_PER_PUMP:
+            self.lcm.handle()
+            handled += 1
+            ready = self._readable(0.0)
+        return handled
+
+    def fileno(self) -> int:
+        """A descriptor that is readable while a message waits."""
+        return self.lcm.fileno()
+
+    def now(self) -> float:
+        """Monotonic time in seconds."""
+        return time.monotonic()
+
+    def close(self) -> None:
+        """Frees the sockets and ends LCM's receiving thread."""
+        self._lcm = None
+
+    def _wait(self, timeout_s: float) -> bool:
+        end_s = time.monotonic() + timeout_s
+        while not (ready := self._readable(min(timeout_s, _LONGEST_SLEEP_S))):
+            timeout_s = end_s - time.monotonic()
+            if timeout_s <= 0.0:
+                break
+        return ready
+
+    def _readable(self, timeout_s: float) -> bool:
+        # Not LCM's own handle_timeout: a signal makes that fail with an IOError, and a Ctrl-C
+        # would not arrive as KeyboardInterrupt. It also counts in whole milliseconds.
+        return bool(select.select([self.fileno()], [], [], timeout_s)[0])
+
+
+def _start_failure(url: str | None) -> str:
+    effective = url or os.environ.get("LCM_DEFAULT_URL") or ""
+    if effective and not effective.startswith("udpm://"):
+        return f"LCM could not start with '{effective}'"
+    return (
+        f"LCM could not start{f' with {effective!r}' if effective else ''}. Usually there is no "
+        f"route for its multicast. Run: {ROUTE_COMMAND} (and only if that is not enough: "
+        "sudo ip link set lo multicast on)"
+    )

@@ -1,0 +1,150 @@
+"""Modules of the robot: chassis, gimbal, joint. They take inputs and give outputs."""
+
+from __future__ import annotations
+
+import math
+import time
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Callable
+
+from rc10.errors import NotReceived, Timeout
+from rc10.lcm_types.signals_t import signals_t
+from rc10.topics import Publisher, Subscriber
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from rc10.identity import Identity
+    from rc10.link import Link
+
+_MAX_SIGNALS = 32
+
+
+@dataclass(frozen=True)
+class ModuleState:
+    """The outputs of a module; NaN is what means nothing now."""
+
+    outputs: Mapping[str, float]
+    owner: str
+    """Who gives its inputs; empty: nobody."""
+    received_s: float
+    """On this program's clock."""
+    _now: Callable[[], float] = field(repr=False, compare=False)
+
+    @property
+    def age_s(self) -> float:
+        """Seconds since it was received."""
+        return self._now() - self.received_s
+
+    def __getitem__(self, name: str) -> float:
+        """The output `name`.
+
+        Raises:
+            KeyError: the module has no such output; the message says what it has.
+        """
+        if name not in self.outputs:
+            raise KeyError(f"no output {name!r}; there are {', '.join(self.outputs)}")
+        return self.outputs[name]
+
+
+# The name of the robot and of the module, the transport, who sends, with which priority.
+ModuleParts = tuple[str, str, "Link", "Identity", int]
+
+
+class Module:
+    """One module of a robot; Robot.module() makes it. Belongs to the robot's thread."""
+
+    def __init__(
+        self, robot: str, name: str, link: Link, identity: Identity, priority: int
+    ) -> None:
+        self.name = name
+        self._identity = identity
+        self._priority = priority
+        self._now = link.now
+        self._publisher = Publisher(link, f"{robot}.v1.{name}", signals_t)
+        self._subscriber = Subscriber(link, f"{robot}.v1.{name}.state", signals_t)
+
+    def send(self, *, validity_ms: int = 0, priority: int | None = None, **inputs: float) -> None:
+        """Gives the module these inputs; what is not named is not given.
+
+        They hold for `validity_ms` only. Call this again before that, from your own loop.
+
+        Args:
+            validity_ms: how long they hold, from when the host receives them; 0: its default, 50.
+            priority: against other clients of the module; None: that of the robot.
+            inputs: by name: `base.send(vx_m_s=0.5, wz_deg_s=30)`.
+
+        Raises:
+            ValueError: no inputs, too many, one that is not finite, or a validity out of range;
+                nothing was sent.
+        """
+        if not 0 < len(inputs) <= _MAX_SIGNALS:
+            raise ValueError(f"a module takes 1 to {_MAX_SIGNALS} inputs, not {len(inputs)}")
+        if not 0 <= validity_ms < 2**31:
+            raise ValueError(f"validity_ms = {validity_ms} is out of range")
+        for name, value in inputs.items():
+            if not math.isfinite(value):
+                raise ValueError(f"{name} = {value} is not finite: leave it out, or give a number")
+        message = signals_t()
+        message.utime = time.time_ns() // 1000
+        message.client = self._identity.client
+        message.session = self._identity.session
+        message.seq = self._identity.next_seq()
+        message.priority = self._priority if priority is None else priority
+        message.validity_ms = validity_ms
+        message.count = len(inputs)
+        message.names = list(inputs)
+        message.values = [float(value) for value in inputs.values()]
+        self._publisher.publish(message)
+
+    @property
+    def state(self) -> ModuleState:
+        """The newest outputs received; see age_s.
+
+        Raises:
+            NotReceived: none yet; there may be no module of this name.
+        """
+        latest = self._subscriber.latest
+        if latest is None:
+            raise NotReceived(
+                f"nothing of module '{self.name}' yet: call wait_for_state() first; "
+                "`rc10ctl modules` shows which there are"
+            )
+        message = latest.message
+        outputs = dict(zip(message.names, message.values))
+        return ModuleState(outputs, message.client, latest.received_s, self._now)
+
+    def _newer(self, known: int) -> ModuleState | None:
+        """The outputs, when more than `known` messages of them have come."""
+        return self.state if self._subscriber.count > known else None
+
+    def _nothing(self, timeout_s: float) -> Timeout:
+        return Timeout(
+            f"nothing of module '{self.name}' within {timeout_s:g} s: "
+            "`rc10ctl modules` shows which there are, and whether rc10d runs"
+        )
+
+
+class WaitingModule(Module):
+    """A module of rc10.Robot."""
+
+    def __init__(self, parts: ModuleParts, spin: Callable[[float], int]) -> None:
+        super().__init__(*parts)
+        self._spin = spin
+
+    def wait_for_state(self, timeout_s: float = 5.0) -> ModuleState:
+        """Receives until outputs arrive that are newer than those known, and returns them.
+
+        Raises:
+            Timeout: none came; the message says what to check.
+        """
+        known = self._subscriber.count
+        deadline_s = self._now() + timeout_s
+        while True:
+            left_s = deadline_s - self._now()
+            self._spin(max(0.0, left_s))
+            state = self._newer(known)
+            if state is not None:
+                return state
+            if left_s <= 0:
+                raise self._nothing(timeout_s)

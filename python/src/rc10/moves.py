@@ -1,0 +1,155 @@
+"""Going to an angle, and knowing how it ended."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from enum import Enum
+from typing import TYPE_CHECKING, Callable
+
+from rc10.orders import Order, obstacle, without_reference
+from rc10.setpoints import Mode
+
+if TYPE_CHECKING:
+    from rc10.events import Event
+    from rc10.setpoints import Setpoint
+    from rc10.state import RobotState
+
+# For the target on its way to the motor; after that a state has to show it.
+_ON_ITS_WAY_S = 0.3
+# Passing through the tolerance is not arriving.
+_SETTLED_US = 60_000
+_SILENCE_S = 1.0
+
+
+class MoveOutcome(Enum):
+    """How a move ended."""
+
+    DONE = "done"
+    """It stands within the tolerance."""
+    FAILED = "failed"
+    """It cannot get there: the reason says why. The target is not sent any more."""
+    TIMEOUT = "timeout"
+    """It is not there yet. The target is still sent: give another, or coast()."""
+
+
+@dataclass(frozen=True)
+class MoveResult:
+    """How a move ended; true when it is done."""
+
+    outcome: MoveOutcome
+    reason: str
+    """Empty when done."""
+    angle_deg: float
+    """The last known, of the kind that was asked for; NaN: unknown."""
+
+    def __bool__(self) -> bool:
+        """Whether the motor is there."""
+        return self.outcome is MoveOutcome.DONE
+
+
+class Move:
+    """One move_to(). It goes on while the program receives: in spin(), rate(), or result().
+
+    Attributes:
+        motor: its name.
+        setpoint: what is sent.
+    """
+
+    def __init__(
+        self,
+        motor: str,
+        setpoint: Setpoint,
+        tolerance_deg: float,
+        timeout_s: float,
+        client: str,
+        now: Callable[[], float],
+        spin: Callable[[float], object],
+    ) -> None:
+        self.motor = motor
+        self.setpoint = setpoint
+        self._order = Order(motor, setpoint, client)
+        self._tolerance_deg = tolerance_deg
+        self._timeout_s = timeout_s
+        self._now = now
+        self._spin = spin
+        self._started_s = self._heard_s = now()
+        self._within_since_us: int | None = None
+        self._angle_deg = math.nan
+        self._result: MoveResult | None = None
+
+    def done(self) -> bool:
+        """Whether it has ended, well or not. Does not receive."""
+        return self._result is not None
+
+    def result(self) -> MoveResult:
+        """Receives until it has ended; the move's own time-out bounds that."""
+        while self._result is None:
+            self._spin(0.05)
+        return self._result
+
+    # ---- for the Robot -----------------------------------------------------------------------
+
+    def on_event(self, event: Event) -> None:
+        """Keeps what rc10d says about a setpoint that it skipped or refused."""
+        self._order.on_event(event)
+
+    def on_state(self, state: RobotState) -> None:
+        """Takes in a new state."""
+        self._heard_s = self._now()
+        if self._result is not None or state.taken_at_s < self._started_s:
+            return
+        motor = state.motors.get(self.motor)
+        if motor is None:
+            self.fail(f"the robot has no motor '{self.motor}'")
+            return
+        on_circle = self.setpoint.mode is Mode.ANGLE
+        self._angle_deg = motor.angle_deg if on_circle else motor.total_angle_deg
+        hindrance = obstacle(state, motor) or without_reference(motor)
+        not_obeyed = self._order.not_obeyed(motor)
+        if hindrance:
+            self.fail(hindrance)
+        elif not_obeyed and state.taken_at_s > self._started_s + _ON_ITS_WAY_S:
+            self.fail(not_obeyed)
+        elif math.isnan(self._angle_deg):
+            self.fail(f"{self.motor}: the drive reports no angle")
+        elif not_obeyed or self._distance_deg() > self._tolerance_deg:
+            self._within_since_us = None
+        else:
+            if self._within_since_us is None:
+                self._within_since_us = state.mono_us
+            if state.mono_us - self._within_since_us >= _SETTLED_US:
+                self._end(MoveOutcome.DONE, "")
+
+    def on_time(self) -> None:
+        """Ends it when its time is over, or no state has come for a second."""
+        now_s = self._now()
+        if now_s >= self._started_s + self._timeout_s:
+            self._end(
+                MoveOutcome.TIMEOUT,
+                f"{self.motor} is at {self._angle_deg:g} deg and not at {self.setpoint.value:g} "
+                f"after {self._timeout_s:g} s",
+            )
+        elif now_s >= self._heard_s + _SILENCE_S:
+            self.fail("no state of the robot for a second: did rc10d or rc10-lcm end?")
+
+    def fail(self, reason: str) -> None:
+        """Ends it without success, if it has not ended."""
+        self._end(MoveOutcome.FAILED, reason)
+
+    @property
+    def failed(self) -> bool:
+        """Whether its target must not be sent any more."""
+        return self._result is not None and self._result.outcome is MoveOutcome.FAILED
+
+    # ---- within ------------------------------------------------------------------------------
+
+    def _end(self, outcome: MoveOutcome, reason: str) -> None:
+        if self._result is None:
+            self._result = MoveResult(outcome, reason, self._angle_deg)
+
+    def _distance_deg(self) -> float:
+        distance_deg = self.setpoint.value - self._angle_deg
+        if self.setpoint.mode is Mode.ANGLE:
+            distance_deg = (distance_deg + 180.0) % 360.0 - 180.0
+        return abs(distance_deg)

@@ -1,0 +1,383 @@
+"""What the client and the asyncio client of a robot share: all that does not wait."""
+
+from __future__ import annotations
+
+import re
+import time
+from contextlib import contextmanager
+from typing import TYPE_CHECKING, Union
+
+from rc10.decoder import Decoder
+from rc10.errors import LinkError, NotReceived, RequestRefused, UnknownMotor
+from rc10.identity import Identity
+from rc10.inbox import Inbox
+from rc10.lcm_types.command_t import command_t
+from rc10.lcm_types.setpoint_t import setpoint_t
+from rc10.link import MULTICAST_GROUP, ROUTE_COMMAND, Link
+from rc10.moves import Move
+from rc10.orders import obstacle, without_reference
+from rc10.recorder import Recorder
+from rc10.requests import Requests
+from rc10.setpoints import Setpoint, angle_deg, coast, total_angle_deg
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Iterator, Mapping
+    from typing import Callable
+
+    from rc10.diagnostics import Diagnostics
+    from rc10.events import Event
+    from rc10.modules import ModuleParts
+    from rc10.state import MotorState, RobotState
+
+Names = Union[str, "Iterable[str]"]
+
+# A request or its answer can be lost: LCM is UDP. The daemon knows a repeated one again.
+REPEAT_REQUEST_S = 0.1
+# An emergency stop is worth the traffic.
+REPEAT_ESTOP_S = 0.02
+# How long leaving may take: the lease of a client that is gone lapses by itself.
+RELEASE_TIMEOUT_S = 0.5
+# While the program receives, the target of a move is sent so often, and acts for so long.
+RESEND_S = 0.02
+_MOVE_VALIDITY_MS = 100
+# A state younger than this proves that the daemon runs and is heard.
+_LIVE_S = 1.0
+
+# Among names of motors; no motor's name is empty.
+_ALL = ""
+
+# LCM allows 63 characters for a channel, and ".v1.diagnostics" takes 15 of them.
+_MAX_NAME = 48
+
+
+class RobotClient:
+    """One robot, seen from one client program. Nothing in here waits.
+
+    Args:
+        name: the name of the robot.
+        link: the transport.
+        client: who commands.
+        priority: a client with a higher one takes motors over from a lower one.
+    """
+
+    def __init__(self, name: str, link: Link, client: str, priority: int = 0) -> None:
+        if not re.fullmatch(rf"[\w.-]{{1,{_MAX_NAME}}}", name, re.ASCII):
+            raise ValueError(
+                f"{name!r} is no robot's name: that has letters, digits, '_', '-' and '.', "
+                f"{_MAX_NAME} at most"
+            )
+        self._name = name
+        self._link = link
+        self._priority = priority
+        self._identity = Identity(client)
+        self._decoder = Decoder()
+        self._inbox = Inbox(name, link, self._decoder)
+        self._requests = Requests(name, link, self._decoder, self._identity)
+        self._command_channel = f"{name}.v1.command"
+        self._closed = False
+        self._moves: dict[str, Move] = {}
+        self._resend_s = 0.0
+        self._judged: RobotState | None = None
+        self._inbox.on_event = self._on_event
+        # What has to be undone on leaving.
+        self._commanded: set[str] = set()
+        self._enabled: set[str] = set()
+
+    # ---- what is known -----------------------------------------------------------------------
+
+    @property
+    def name(self) -> str:
+        """The name of the robot."""
+        return self._name
+
+    @property
+    def link(self) -> Link:
+        """The link, for publishers, subscribers and services of the program's own."""
+        return self._link
+
+    @property
+    def client(self) -> str:
+        """The name under which this program commands."""
+        return self._identity.client
+
+    @property
+    def state(self) -> RobotState:
+        """The newest state received; see its age_s.
+
+        Raises:
+            NotReceived: none yet.
+        """
+        if self._inbox.state is None:
+            raise NotReceived("no state yet: call wait_for_state() first")
+        return self._inbox.state
+
+    def motor(self, name: str) -> MotorState:
+        """Returns the motor `name` of the newest state.
+
+        Raises:
+            NotReceived: no state yet.
+            UnknownMotor: the robot has none of this name.
+        """
+        return self.state.motor(name)
+
+    @property
+    def diagnostics(self) -> Diagnostics:
+        """The newest diagnostics received; the daemon sends them twice a second.
+
+        Raises:
+            NotReceived: none yet.
+        """
+        if self._inbox.diagnostics is None:
+            raise NotReceived("no diagnostics yet: they come twice a second; call spin()")
+        return self._inbox.diagnostics
+
+    def recorder(self, motors: Iterable[str] | None = None) -> Recorder:
+        """Returns a recorder of every state, for a `with` statement around your own loop.
+
+        Args:
+            motors: their names; None for all.
+        """
+        return Recorder(self._name, self._inbox, motors)
+
+    @contextmanager
+    def states_to(self, listener: Callable[[RobotState], None]) -> Iterator[None]:
+        """Has each state given to `listener`, not only the newest, in a `with` block.
+
+        It is called while the program receives. Receive at least twice a second: LCM queues
+        about half a second of states.
+        """
+        self._inbox.on_state.append(listener)
+        try:
+            yield
+        finally:
+            self._inbox.on_state.remove(listener)
+
+    # ---- commanding --------------------------------------------------------------------------
+
+    def command(
+        self,
+        setpoints: Mapping[str, Setpoint] | None = None,
+        /,
+        *,
+        validity_ms: int = 0,
+        **by_name: Setpoint,
+    ) -> None:
+        """Sends one message with a setpoint for each motor; they act in the same tick.
+
+        `robot.command(wheel=rc10.velocity_rpm(120))`, or with a mapping for names that are not
+        Python identifiers: `robot.command({"wheel-1": rc10.velocity_rpm(120)})`.
+
+        The setpoints act for `validity_ms` only. Call this again before that, from your own
+        loop: nothing repeats it for you, so that a program that hangs lets go of the motors.
+
+        Args:
+            setpoints: setpoints by name of motor.
+            validity_ms: how long they act, from when the host receives them; 0: its default, 50.
+            by_name: more setpoints by name of motor.
+
+        Raises:
+            UnknownMotor: a state is known, and it has no such motor; nothing was sent.
+            TypeError: a value is not a setpoint; nothing was sent.
+            ValueError: no setpoints, a motor twice, or a validity out of range; nothing was sent.
+        """
+        self._check_open()
+        orders = dict(setpoints or {})
+        twice = orders.keys() & by_name.keys()
+        if twice:
+            raise ValueError(f"two setpoints for {', '.join(sorted(twice))}")
+        orders.update(by_name)
+        if not orders:
+            raise ValueError("a command needs at least one setpoint")
+        if not 0 <= validity_ms < 2**31:
+            raise ValueError(f"validity_ms = {validity_ms} is out of range")
+        for name, setpoint in orders.items():
+            if not isinstance(setpoint, Setpoint):
+                raise TypeError(
+                    f"{name}: {setpoint!r} is not a setpoint: say what it is, "
+                    f"for example rc10.velocity_rpm({setpoint!r})"
+                )
+        self._check_known(orders)
+        for name in orders.keys() & self._moves.keys():
+            self._moves.pop(name).fail(f"{name} was given another target")
+        self._commanded.update(orders)
+        self._publish_command(orders, validity_ms)
+
+    # ---- for the clients ---------------------------------------------------------------------
+
+    def _begin_move(
+        self,
+        name: str,
+        angle: float,
+        tolerance_deg: float,
+        timeout_s: float,
+        shortest_way: bool,
+        spin: Callable[[float], object],
+    ) -> Move:
+        setpoint = angle_deg(angle) if shortest_way else total_angle_deg(angle)
+        state = self.state
+        move = Move(name, setpoint, tolerance_deg, timeout_s, self.client, self._link.now, spin)
+        motor = state.motor(name)
+        if hindrance := _hindered(state, motor):
+            move.fail(hindrance)
+            return move
+        self.command({name: setpoint}, validity_ms=_MOVE_VALIDITY_MS)
+        self._moves[name] = move
+        self._resend_s = self._link.now() + RESEND_S
+        return move
+
+    @contextmanager
+    def _enabling(self, names: Names | None) -> Iterator[str]:
+        """Gives the target of an enable request, and notes what has to be undone on leaving."""
+        chosen = self._choose(names)
+        before = set(self._enabled)
+        # Noted before it is known to have worked: on leaving, one motor too many to disable
+        # does no harm, and one too few does.
+        self._enabled.update(chosen or [_ALL])
+        try:
+            yield ",".join(chosen)
+        except RequestRefused:
+            self._enabled = before
+            raise
+
+    @contextmanager
+    def _disabling(self, names: Names | None) -> Iterator[str]:
+        """Gives the target of a disable request, and notes that it was carried out."""
+        chosen = self._choose(names)
+        yield ",".join(chosen)
+        if chosen:
+            self._enabled.difference_update(chosen)
+        else:
+            self._enabled.clear()
+
+    def _target(self, names: Names | None) -> str:
+        return ",".join(self._choose(names))
+
+    def _let_go(self) -> str | None:
+        """Takes the torque away, and returns the target of the disable request that is due."""
+        for move in self._moves.values():
+            move.fail("the program has let go of the robot")
+        self._moves.clear()
+        # The daemon refuses a whole message for one motor that it no longer has.
+        state = self._inbox.state
+        gone = set() if state is None else (self._commanded | self._enabled) - {*state.motors, _ALL}
+        # Torque first: that needs no answer.
+        motors = sorted(self._commanded - gone)
+        if motors:
+            self._publish_command({name: coast() for name in motors}, validity_ms=0)
+        if _ALL in self._enabled:
+            return ""
+        return ",".join(sorted(self._enabled - gone)) or None
+
+    def _no_state(self, timeout_s: float) -> str:
+        return f"no state of robot '{self._name}' within {timeout_s:g} s. {self._what_to_check()}"
+
+    def _no_answer(self, operation: str, timeout_s: float) -> str:
+        return (
+            f"no answer to '{operation}' from robot '{self._name}' within {timeout_s:g} s. "
+            f"{self._what_to_check()}"
+        )
+
+    def _no_estop(self, timeout_s: float) -> str:
+        return (
+            f"the state of robot '{self._name}' does not show ESTOP after {timeout_s:g} s:"
+            f" use the hardware emergency stop. {self._what_to_check()}"
+        )
+
+    # ---- within ------------------------------------------------------------------------------
+
+    def _on_event(self, event: Event) -> None:
+        for move in self._moves.values():
+            move.on_event(event)
+
+    def _advance_moves(self) -> None:
+        state = self._inbox.state
+        fresh = state is not self._judged
+        self._judged = state
+        for name, move in list(self._moves.items()):
+            if fresh and state is not None:
+                move.on_state(state)
+                # Also after it is done: a held target never comes back to life by itself.
+                motor = state.motors.get(name)
+                taken = motor is not None and motor.owner not in ("", self.client)
+                if motor is None or _hindered(state, motor) or (move.done() and taken):
+                    self._moves.pop(name)
+                    move.fail(f"{name} cannot be moved any more")
+                    continue
+            move.on_time()
+            if move.failed:
+                self._moves.pop(name)
+        now_s = self._link.now()
+        if self._moves and now_s >= self._resend_s:
+            self._resend_s = now_s + RESEND_S
+            for name, move in self._moves.items():
+                self._publish_command({name: move.setpoint}, _MOVE_VALIDITY_MS)
+
+    def _publish_command(self, orders: Mapping[str, Setpoint], validity_ms: int) -> None:
+        message = command_t()
+        message.utime = time.time_ns() // 1000
+        message.client = self._identity.client
+        message.session = self._identity.session
+        message.seq = self._identity.next_seq()
+        message.priority = self._priority
+        message.validity_ms = validity_ms
+        message.setpoint_count = len(orders)
+        for name, order in orders.items():
+            setpoint = setpoint_t()
+            setpoint.motor = name
+            setpoint.mode = order.mode
+            setpoint.value = order.value
+            setpoint.velocity_ff_rpm = order.velocity_ff_rpm
+            setpoint.torque_ff_nm = order.torque_ff_nm
+            setpoint.stiffness_nm_per_rad = order.stiffness_nm_per_rad
+            setpoint.damping_nms_per_rad = order.damping_nms_per_rad
+            message.setpoints.append(setpoint)
+        self._link.publish(self._command_channel, message.encode())
+
+    def _choose(self, names: Names | None) -> list[str]:
+        """Returns the names for a request; an empty list means all, and only None does."""
+        if names is None:
+            return []
+        chosen = [names] if isinstance(names, str) else list(names)
+        if not chosen:
+            raise ValueError("no motors named: give at least one name, or None for all")
+        for name in chosen:
+            # An empty name would be understood as "all", a comma as two names.
+            if not name or "," in name:
+                raise ValueError(f"{name!r} is no motor's name; several are given as a list")
+        self._check_known(chosen)
+        return chosen
+
+    def _check_known(self, names: Iterable[str]) -> None:
+        state = self._inbox.state
+        unknown = [name for name in names if state is not None and name not in state.motors]
+        if state is not None and unknown:
+            raise UnknownMotor(
+                f"robot '{self._name}' has no motor {', '.join(map(repr, unknown))}; "
+                f"it has: {', '.join(state.motors) or 'none'}"
+            )
+
+    def _module_parts(self, module: str) -> ModuleParts:
+        return self._name, module, self._link, self._identity, self._priority
+
+    def _check_open(self) -> None:
+        if self._closed:
+            raise LinkError(f"the link to robot '{self._name}' is closed")
+
+    def _what_to_check(self) -> str:
+        if self._decoder.foreign:
+            return (
+                f"Messages with other definitions arrive on {', '.join(self._decoder.foreign)}: "
+                "install the rc10 package that belongs to this rc10d."
+            )
+        state = self._inbox.state
+        if state is not None and state.age_s < _LIVE_S:
+            return "Its state arrives, so rc10d runs and is heard: see rc10d's log for the reason."
+        return (
+            "Check: is rc10d running? Is its robot called "
+            f"'{self._name}' (robot: in its configuration)? Does multicast stay on this computer:"
+            f" 'ip route get {MULTICAST_GROUP}' must say 'dev lo', else run: {ROUTE_COMMAND}"
+        )
+
+
+def _hindered(state: RobotState, motor: MotorState) -> str:
+    return obstacle(state, motor) or without_reference(motor)

@@ -1,0 +1,182 @@
+"""What a robot tells about itself and its motors, `<robot>.v1.state`."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from enum import IntEnum, IntFlag
+from types import MappingProxyType
+from typing import TYPE_CHECKING, Callable
+
+from rc10.errors import UnknownMotor
+from rc10.lcm_types.motor_state_t import motor_state_t
+from rc10.lcm_types.robot_state_t import robot_state_t
+from rc10.setpoints import Mode
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+
+class RobotStatus(IntEnum):
+    """State of the whole robot."""
+
+    RUN = robot_state_t.STATE_RUN
+    ESTOP = robot_state_t.STATE_ESTOP
+    """Latched until cleared."""
+    STOPPING = robot_state_t.STATE_STOPPING
+
+
+class MotorStatus(IntEnum):
+    """State of one motor."""
+
+    OFFLINE = motor_state_t.STATUS_OFFLINE
+    """No fresh feedback."""
+    READY = motor_state_t.STATUS_READY
+    """Feedback, no torque, waits to be enabled."""
+    ENABLING = motor_state_t.STATUS_ENABLING
+    ACTIVE = motor_state_t.STATUS_ACTIVE
+    """Obeys setpoints."""
+    FAULT = motor_state_t.STATUS_FAULT
+    """Latched until cleared."""
+
+
+class Limit(IntFlag):
+    """Limits that act right now; they are not faults."""
+
+    CURRENT = motor_state_t.LIMIT_CURRENT
+    VELOCITY = motor_state_t.LIMIT_VELOCITY
+    ANGLE = motor_state_t.LIMIT_ANGLE
+    TEMPERATURE = motor_state_t.LIMIT_TEMPERATURE
+    SLEW = motor_state_t.LIMIT_SLEW
+    STALL = motor_state_t.LIMIT_STALL
+
+
+class CommandUnit(IntEnum):
+    """Unit of MotorState.command_value."""
+
+    NONE = motor_state_t.UNIT_NONE
+    AMPERE = motor_state_t.UNIT_AMPERE
+    VOLT = motor_state_t.UNIT_VOLT
+    NATIVE = motor_state_t.UNIT_NATIVE
+    """The drive closes the loop: the unit of the mode."""
+
+
+@dataclass(frozen=True)
+class MotorState:
+    """One motor, at the output shaft, counter-clockwise positive.
+
+    NaN stands for a quantity that this drive does not report.
+    """
+
+    name: str
+    status: MotorStatus
+    fault: int
+    """0, or the code of the latched fault."""
+    fault_text: str
+    limits: Limit
+    mode: Mode
+    """The mode in force; COAST when there is no valid target."""
+    target: float
+    """In the unit of the mode."""
+    owner: str
+    """The client whose target is in force, empty without one."""
+    zeroed: bool
+    """The angle has a known reference."""
+    angle_deg: float
+    """From 0 to below 360."""
+    total_angle_deg: float
+    """Multi-turn."""
+    velocity_rpm: float
+    current_a: float
+    torque_nm: float
+    voltage_v: float
+    temperature_c: float
+    command_value: float
+    """What the host last sent to the drive, in command_unit."""
+    command_unit: CommandUnit
+    feedback_age_us: int
+    """Since the last feedback frame; -1: none yet."""
+    feedback_hz: float
+
+    @classmethod
+    def from_lcm(cls, message: motor_state_t) -> MotorState:
+        """Makes the typed view of a decoded message."""
+        return cls(
+            name=message.name,
+            status=MotorStatus(message.status),
+            fault=message.fault,
+            fault_text=message.fault_text,
+            limits=Limit(message.limits),
+            mode=Mode(message.mode),
+            target=message.target,
+            owner=message.owner,
+            zeroed=message.zeroed,
+            angle_deg=message.angle_deg,
+            total_angle_deg=message.total_angle_deg,
+            velocity_rpm=message.velocity_rpm,
+            current_a=message.current_a,
+            torque_nm=message.torque_nm,
+            voltage_v=message.voltage_v,
+            temperature_c=message.temperature_c,
+            command_value=message.command_value,
+            command_unit=CommandUnit(message.command_unit),
+            feedback_age_us=message.feedback_age_us,
+            feedback_hz=message.feedback_hz,
+        )
+
+
+@dataclass(frozen=True)
+class RobotState:
+    """All motors at one tick of the daemon."""
+
+    utime: int
+    """Wall clock of the host in microseconds since 1970; may step."""
+    mono_us: int
+    """CLOCK_MONOTONIC of the host at this tick, in microseconds."""
+    tick: int
+    """Ticks since start."""
+    status: RobotStatus
+    realtime: bool
+    """The real-time set-up is complete; if not, Diagnostics.notices says why."""
+    motors: Mapping[str, MotorState]
+    taken_at_s: float = field(compare=False)
+    """When the daemon took this state, on this program's clock."""
+    _now: Callable[[], float] = field(repr=False, compare=False)
+
+    @property
+    def age_s(self) -> float:
+        """Seconds since the daemon took this state."""
+        return self._now() - self.taken_at_s
+
+    @property
+    def estopped(self) -> bool:
+        """Whether the latched emergency stop is in force."""
+        return self.status is RobotStatus.ESTOP
+
+    def motor(self, name: str) -> MotorState:
+        """Returns the motor `name`.
+
+        Raises:
+            UnknownMotor: the robot has none of this name.
+        """
+        try:
+            return self.motors[name]
+        except KeyError:
+            raise UnknownMotor(
+                f"the robot has no motor '{name}'; it has: {', '.join(self.motors) or 'none'}"
+            ) from None
+
+    @classmethod
+    def from_lcm(
+        cls, message: robot_state_t, taken_at_s: float, now: Callable[[], float]
+    ) -> RobotState:
+        """Makes the typed view of a decoded message."""
+        return cls(
+            utime=message.utime,
+            mono_us=message.mono_us,
+            tick=message.tick,
+            status=RobotStatus(message.state),
+            realtime=message.realtime,
+            motors=MappingProxyType({m.name: MotorState.from_lcm(m) for m in message.motors}),
+            taken_at_s=taken_at_s,
+            _now=now,
+        )

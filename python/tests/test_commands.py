@@ -1,0 +1,111 @@
+from __future__ import annotations
+
+import math
+
+import pytest
+
+import rc10
+from fake_daemon import FakeDaemon, setpoints
+from rc10.lcm_types import command_t, request_t
+
+
+def known(robot: rc10.Robot, daemon: FakeDaemon) -> None:
+    daemon.publish_state()
+    robot.wait_for_state()
+
+
+def test_one_call_sends_one_message_with_all_setpoints(
+    robot: rc10.Robot, daemon: FakeDaemon
+) -> None:
+    robot.command(wheel=rc10.velocity_rpm(120), yaw=rc10.angle_deg(90), validity_ms=30)
+    robot.spin()
+    (message,) = daemon.commands
+    assert setpoints(message) == {
+        "wheel": (rc10.Mode.VELOCITY, 120.0),
+        "yaw": (rc10.Mode.ANGLE, 90.0),
+    }
+    assert message.client == "tester"
+    assert message.priority == 7
+    assert message.validity_ms == 30
+    assert message.utime > 0
+
+
+def test_the_default_validity_is_the_hosts(robot: rc10.Robot, daemon: FakeDaemon) -> None:
+    robot.command(wheel=rc10.brake())
+    robot.spin()
+    assert daemon.commands[0].validity_ms == 0
+
+
+def test_names_that_are_no_identifiers_come_in_a_mapping(
+    robot: rc10.Robot, daemon: FakeDaemon
+) -> None:
+    robot.command({"left-arm": rc10.current_a(1)}, yaw=rc10.coast())
+    robot.spin()
+    assert set(setpoints(daemon.commands[0])) == {"left-arm", "yaw"}
+
+
+def test_fields_that_are_not_given_are_not_sent(robot: rc10.Robot, daemon: FakeDaemon) -> None:
+    robot.command(wheel=rc10.velocity_rpm(1))
+    robot.spin()
+    (setpoint,) = daemon.commands[0].setpoints
+    assert (setpoint.velocity_ff_rpm, setpoint.torque_ff_nm) == (0.0, 0.0)
+    assert math.isnan(setpoint.stiffness_nm_per_rad)
+    assert math.isnan(setpoint.damping_nms_per_rad)
+
+
+def test_the_session_stays_and_the_number_grows(robot: rc10.Robot, daemon: FakeDaemon) -> None:
+    for rpm in range(5):
+        robot.command(wheel=rc10.velocity_rpm(rpm))
+        robot.clear()
+    robot.spin()
+    sent: list[command_t | request_t] = [*daemon.commands, *daemon.executed]
+    assert len({message.session for message in sent}) == 1
+    assert 0 < sent[0].session < 2**63
+    numbers = [message.seq for message in daemon.commands]
+    assert numbers == sorted(set(numbers))
+    assert len({message.seq for message in sent}) == len(sent)
+
+
+def test_two_runs_of_a_program_have_different_sessions(daemon: FakeDaemon) -> None:
+    robots = [rc10.Robot("demo", daemon.link, client="tester") for _ in range(2)]
+    for robot in robots:
+        robot.command(wheel=rc10.coast())
+    robots[0].spin()
+    assert daemon.commands[0].session != daemon.commands[1].session
+
+
+def test_nothing_repeats_a_command(robot: rc10.Robot, daemon: FakeDaemon) -> None:
+    daemon.publish_states()
+    robot.command(wheel=rc10.velocity_rpm(1))
+    for _ in range(50):
+        robot.wait_for_state()
+    assert len(daemon.commands) == 1
+
+
+def test_an_unknown_motor_is_refused_once_the_robot_is_known(
+    robot: rc10.Robot, daemon: FakeDaemon
+) -> None:
+    robot.command(wheeel=rc10.coast())
+    robot.spin()
+    assert len(daemon.commands) == 1
+    known(robot, daemon)
+    with pytest.raises(rc10.UnknownMotor, match=r"no motor 'wheeel'; it has: wheel, yaw"):
+        robot.command(wheel=rc10.coast(), wheeel=rc10.coast())
+    robot.spin()
+    assert len(daemon.commands) == 1
+
+
+def test_a_bare_number_is_refused(robot: rc10.Robot, daemon: FakeDaemon) -> None:
+    with pytest.raises(TypeError, match=r"wheel: 120 is not a setpoint.*velocity_rpm\(120\)"):
+        robot.command(wheel=120)  # type: ignore[arg-type]
+    robot.spin()
+    assert not daemon.commands
+
+
+def test_a_command_must_say_something(robot: rc10.Robot) -> None:
+    with pytest.raises(ValueError, match="at least one"):
+        robot.command()
+    with pytest.raises(ValueError, match="two setpoints for yaw"):
+        robot.command({"yaw": rc10.coast()}, yaw=rc10.brake())
+    with pytest.raises(ValueError, match="validity_ms = -1"):
+        robot.command(yaw=rc10.brake(), validity_ms=-1)

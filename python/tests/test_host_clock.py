@@ -1,0 +1,33 @@
+from __future__ import annotations
+
+import pytest
+
+from rc10.host_clock import HostClock
+
+
+def test_the_quickest_message_sets_the_distance() -> None:
+    clock = HostClock()
+    assert clock.observe(100.0, 7.002) == pytest.approx(7.002)
+    assert clock.observe(101.0, 8.001) == pytest.approx(8.001)
+    # This one was half a second on its way.
+    assert clock.observe(102.0, 9.5) == pytest.approx(9.001, abs=1e-3)
+
+
+def test_a_slower_host_clock_does_not_add_up() -> None:
+    clock = HostClock()
+    for second in range(3600):
+        taken_s = clock.observe(second * (1 - 50e-6), float(second))
+    assert taken_s == pytest.approx(3599.0, abs=1e-6)
+
+
+def test_a_faster_host_clock_does_not_add_up() -> None:
+    clock = HostClock()
+    for second in range(3600):
+        taken_s = clock.observe(second * (1 + 50e-6), float(second))
+    assert taken_s == pytest.approx(3599.0, abs=1e-6)
+
+
+def test_a_restarted_host_begins_anew() -> None:
+    clock = HostClock()
+    clock.observe(5000.0, 10.0)
+    assert clock.observe(3.0, 20.0) == pytest.approx(20.0)

@@ -1,0 +1,144 @@
+from __future__ import annotations
+
+import pytest
+
+import rc10
+from fake_daemon import FakeDaemon, setpoints
+from rc10.lcm_types import response_t
+from virtual_link import VirtualLink
+
+COAST = (rc10.Mode.COAST, 0.0)
+
+
+class Client(rc10.Robot):
+    """Leaves its link open, so that the daemon on it can be asked afterwards."""
+
+    def __init__(self, link: VirtualLink) -> None:
+        link.close = lambda: None  # type: ignore[method-assign]
+        super().__init__("demo", link, client="tester")
+
+
+@pytest.fixture
+def client(link: VirtualLink) -> Client:
+    return Client(link)
+
+
+def drain(link: VirtualLink) -> None:
+    link.pump(0.0)
+
+
+def test_leaving_lets_go_of_what_was_taken(
+    client: Client, daemon: FakeDaemon, link: VirtualLink
+) -> None:
+    with client as robot:
+        robot.enable(["wheel", "yaw"])
+        robot.command(wheel=rc10.velocity_rpm(120), yaw=rc10.angle_deg(3))
+    drain(link)
+    assert setpoints(daemon.commands[-1]) == {"wheel": COAST, "yaw": COAST}
+    assert daemon.operations() == ["enable wheel,yaw", "disable wheel,yaw"]
+    assert daemon.commands[-1].seq > daemon.commands[-2].seq
+
+
+@pytest.mark.parametrize("error", [RuntimeError("bug"), KeyboardInterrupt(), SystemExit(3)])
+def test_leaving_by_an_exception_lets_go_too(
+    client: Client, daemon: FakeDaemon, link: VirtualLink, error: BaseException
+) -> None:
+    def use() -> None:
+        with client as robot:
+            robot.enable("wheel")
+            robot.command(wheel=rc10.velocity_rpm(120))
+            raise error
+
+    with pytest.raises(type(error)) as caught:
+        use()
+    assert caught.value is error
+    drain(link)
+    assert setpoints(daemon.commands[-1]) == {"wheel": COAST}
+    assert daemon.operations()[-1] == "disable wheel"
+
+
+def test_enabling_all_disables_all(client: Client, daemon: FakeDaemon) -> None:
+    with client as robot:
+        robot.enable("wheel")
+        robot.enable()
+    assert daemon.operations() == ["enable wheel", "enable", "disable"]
+
+
+def test_a_mere_observer_leaves_without_a_word(
+    client: Client, daemon: FakeDaemon, link: VirtualLink
+) -> None:
+    daemon.publish_state()
+    with client as robot:
+        robot.wait_for_state()
+    drain(link)
+    assert not daemon.commands
+    assert not daemon.received
+
+
+def test_what_was_disabled_by_hand_is_not_disabled_again(
+    client: Client, daemon: FakeDaemon
+) -> None:
+    with client as robot:
+        robot.enable(["wheel", "yaw"])
+        robot.disable("wheel")
+    assert daemon.operations()[-1] == "disable yaw"
+
+
+def test_a_refused_enable_took_nothing(client: Client, daemon: FakeDaemon) -> None:
+    daemon.verdicts["enable"] = (response_t.STATUS_REFUSED, "robot is in ESTOP")
+    with pytest.raises(rc10.RequestRefused), client as robot:
+        robot.enable("wheel")
+    assert daemon.operations() == ["enable wheel"]
+
+
+def test_a_failed_enable_may_have_taken_some(client: Client, daemon: FakeDaemon) -> None:
+    daemon.verdicts["enable"] = (response_t.STATUS_FAILED, "yaw: OFFLINE")
+    with pytest.raises(rc10.RequestFailed), client as robot:
+        robot.enable(["wheel", "yaw"])
+    assert daemon.operations() == ["enable wheel,yaw", "disable wheel,yaw"]
+
+
+def test_an_unanswered_enable_may_have_worked(client: Client, daemon: FakeDaemon) -> None:
+    daemon.lost_answers = 20
+    with pytest.raises(rc10.Timeout), client as robot:
+        robot.enable("wheel")
+    assert daemon.operations() == ["enable wheel", "disable wheel"]
+
+
+def test_motors_that_are_gone_do_not_spoil_the_release_of_the_others(
+    client: Client, daemon: FakeDaemon, link: VirtualLink
+) -> None:
+    with client as robot:
+        robot.enable(["wheel", "yaw"])
+        robot.command(wheel=rc10.velocity_rpm(1), yaw=rc10.velocity_rpm(1))
+        daemon.motors = ("wheel",)
+        daemon.publish_state()
+        robot.wait_for_state()
+    drain(link)
+    assert setpoints(daemon.commands[-1]) == {"wheel": COAST}
+    assert daemon.operations()[-1] == "disable wheel"
+
+
+def test_leaving_a_dead_daemon_is_short_and_logged(
+    client: Client, daemon: FakeDaemon, link: VirtualLink, caplog: pytest.LogCaptureFixture
+) -> None:
+    with client as robot:
+        robot.enable("wheel")
+        daemon.deaf_to_requests = 1000
+        before_s = link.now()
+    assert link.now() - before_s == pytest.approx(0.5)
+    (record,) = caplog.records
+    assert "leaving demo: motors may still be enabled: no answer to 'disable'" in record.message
+
+
+def test_a_closed_robot_says_so(client: Client) -> None:
+    client.close()
+    client.close()
+    for use in (
+        client.spin,
+        client.estop,
+        client.enable,
+        lambda: client.command(wheel=rc10.coast()),
+    ):
+        with pytest.raises(rc10.LinkError, match="'demo' is closed"):
+            use()

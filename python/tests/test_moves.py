@@ -1,0 +1,171 @@
+from __future__ import annotations
+
+import pytest
+
+import rc10
+from fake_daemon import FakeDaemon, setpoints
+from rc10 import MoveOutcome
+from rc10.lcm_types import motor_state_t, robot_state_t, setpoint_t
+from virtual_link import VirtualLink
+
+
+class MovingDaemon(FakeDaemon):
+    """Its wheel has an angle, and takes targets."""
+
+    angle_deg = 0.0
+    zeroed = True
+    status = motor_state_t.STATUS_ACTIVE
+    owner: str | None = None
+
+    def state(self) -> robot_state_t:
+        message = super().state()
+        wheel = message.motors[0]
+        wheel.total_angle_deg = self.angle_deg
+        wheel.angle_deg = self.angle_deg % 360
+        wheel.zeroed = self.zeroed
+        wheel.status = self.status
+        if self.commands:
+            wheel.mode, wheel.target = setpoints(self.commands[-1]).get("wheel", (0, 0.0))
+            wheel.owner = self.owner if self.owner is not None else self.commands[-1].client
+        return message
+
+
+@pytest.fixture
+def daemon(link: VirtualLink) -> MovingDaemon:
+    daemon = MovingDaemon("demo", link)
+    daemon.publish_states()
+    return daemon
+
+
+def test_a_move_is_done_when_the_motor_stands_there(
+    robot: rc10.Robot, daemon: MovingDaemon, link: VirtualLink
+) -> None:
+    robot.wait_for_state()
+    before_s = link.now()
+    move = robot.move_to("wheel", 720, tolerance_deg=2)
+    link.after(1.0, lambda: setattr(daemon, "angle_deg", 719.0))
+    assert not move.done()
+    result = move.result()
+    assert result
+    assert result.outcome is MoveOutcome.DONE
+    assert result.angle_deg == 719.0
+    assert link.now() - before_s == pytest.approx(1.06, abs=0.02)
+
+
+def test_its_target_is_sent_again_while_the_program_receives(
+    robot: rc10.Robot, daemon: MovingDaemon
+) -> None:
+    robot.wait_for_state()
+    robot.move_to("wheel", 720)
+    for t_s in robot.rate(10):
+        if t_s > 0.95:
+            break
+    assert 40 <= len(daemon.commands) <= 52
+    assert {c.validity_ms for c in daemon.commands} == {100}
+    assert all(setpoints(c)["wheel"] == (setpoint_t.MODE_TOTAL_ANGLE, 720) for c in daemon.commands)
+
+
+def test_the_shortest_way_round(robot: rc10.Robot, daemon: MovingDaemon) -> None:
+    robot.wait_for_state()
+    daemon.angle_deg = 0.5
+    assert robot.move_to("wheel", 359.5, tolerance_deg=2, shortest_way=True).result()
+    assert setpoints(daemon.commands[0])["wheel"] == (setpoint_t.MODE_ANGLE, 359.5)
+
+
+def test_a_move_times_out(robot: rc10.Robot, daemon: MovingDaemon) -> None:
+    robot.wait_for_state()
+    daemon.angle_deg = 300
+    result = robot.move_to("wheel", 720, timeout_s=2).result()
+    assert result.outcome is MoveOutcome.TIMEOUT
+    assert result.reason == "wheel is at 300 deg and not at 720 after 2 s"
+    assert not result
+
+
+@pytest.mark.parametrize(
+    ("attribute", "value", "reason"),
+    [
+        ("status", motor_state_t.STATUS_FAULT, "in FAULT"),
+        ("status", motor_state_t.STATUS_OFFLINE, "OFFLINE"),
+        ("zeroed", False, "no reference"),
+        ("estopped", True, "ESTOP"),
+        ("owner", "remote", "held by the client 'remote'"),
+        ("owner", "", "did not take the target"),
+    ],
+)
+def test_a_move_fails_with_the_reason(
+    robot: rc10.Robot,
+    daemon: MovingDaemon,
+    link: VirtualLink,
+    attribute: str,
+    value: object,
+    reason: str,
+) -> None:
+    robot.wait_for_state()
+    move = robot.move_to("wheel", 720)
+    link.after(0.1, lambda: setattr(daemon, attribute, value))
+    result = move.result()
+    assert result.outcome is MoveOutcome.FAILED
+    assert reason in result.reason
+    # And nothing is sent any more.
+    sent = len(daemon.commands)
+    robot.spin(1.0)
+    assert len(daemon.commands) == sent
+
+
+def test_a_move_that_cannot_begin_has_failed(robot: rc10.Robot, daemon: MovingDaemon) -> None:
+    daemon.status = motor_state_t.STATUS_READY
+    robot.wait_for_state()
+    move = robot.move_to("wheel", 720)
+    assert move.done()
+    assert move.result().reason == "wheel is READY: enable it first"
+    assert not daemon.commands
+
+
+def test_another_target_ends_it(robot: rc10.Robot, daemon: MovingDaemon) -> None:
+    robot.wait_for_state()
+    move = robot.move_to("wheel", 720)
+    robot.command(wheel=rc10.brake())
+    assert move.result().reason == "wheel was given another target"
+    robot.spin(0.5)
+    assert setpoints(daemon.commands[-1])["wheel"][0] == setpoint_t.MODE_BRAKE
+
+
+@pytest.mark.usefixtures("daemon")
+def test_leaving_ends_it(link: VirtualLink) -> None:
+    with rc10.Robot("demo", link, client="tester") as robot:
+        robot.wait_for_state()
+        move = robot.move_to("wheel", 720)
+    assert move.result().reason == "the program has let go of the robot"
+
+
+def test_a_motor_that_was_lost_after_the_move_is_not_driven_when_it_is_back(
+    robot: rc10.Robot, daemon: MovingDaemon
+) -> None:
+    robot.wait_for_state()
+    daemon.angle_deg = 720
+    assert robot.move_to("wheel", 720).result()
+    daemon.status = motor_state_t.STATUS_OFFLINE
+    robot.wait_for_state()
+    robot.wait_for_state()
+    daemon.status = motor_state_t.STATUS_ACTIVE
+    sent = len(daemon.commands)
+    for _ in range(50):
+        robot.wait_for_state()
+    assert len(daemon.commands) == sent
+
+
+def test_a_motor_that_another_client_takes_after_the_move_is_let_go(
+    robot: rc10.Robot, daemon: MovingDaemon
+) -> None:
+    robot.wait_for_state()
+    daemon.angle_deg = 720
+    assert robot.move_to("wheel", 720).result()
+    daemon.owner = "remote"
+    robot.wait_for_state()
+    robot.wait_for_state()
+    daemon.owner = None
+    sent = len(daemon.commands)
+    robot.spin(1.0)
+    for _ in range(50):
+        robot.wait_for_state()
+    assert len(daemon.commands) == sent

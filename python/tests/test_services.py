@@ -1,0 +1,123 @@
+from __future__ import annotations
+
+import pytest
+
+import rc10
+from rc10.lcm_types import counter_t, named_value_t, service_request_t
+from virtual_link import VirtualLink
+
+
+def counter(count: int) -> counter_t:
+    message = counter_t()
+    message.count = count
+    return message
+
+
+class Doubler:
+    """The service of the tests."""
+
+    def __init__(self, link: VirtualLink) -> None:
+        self.calls = 0
+        self.server = rc10.ServiceServer(link, "double", counter_t, named_value_t, self.handle)
+
+    def handle(self, request: counter_t) -> named_value_t:
+        self.calls += 1
+        if request.count < 0:
+            raise ValueError("it is negative")
+        answer = named_value_t()
+        answer.value = 2.0 * request.count
+        return answer
+
+
+@pytest.fixture
+def doubler(link: VirtualLink) -> Doubler:
+    return Doubler(link)
+
+
+@pytest.fixture
+def client(link: VirtualLink) -> rc10.ServiceClient[counter_t, named_value_t]:
+    return rc10.ServiceClient(link, "double", counter_t, named_value_t, client="tester")
+
+
+def test_a_service_answers(
+    doubler: Doubler, client: rc10.ServiceClient[counter_t, named_value_t]
+) -> None:
+    assert [client.call(counter(n)).value for n in (1, 2, 3)] == [2.0, 4.0, 6.0]
+    assert doubler.calls == 3
+
+
+@pytest.mark.usefixtures("doubler")
+def test_a_failure_has_the_words_of_the_server(
+    client: rc10.ServiceClient[counter_t, named_value_t],
+) -> None:
+    with pytest.raises(rc10.ServiceFailed, match="service 'double' failed: it is negative"):
+        client.call(counter(-1))
+
+
+def test_no_answer_says_what_to_check(
+    client: rc10.ServiceClient[counter_t, named_value_t], link: VirtualLink
+) -> None:
+    before_s = link.now()
+    with pytest.raises(rc10.ServiceTimeout, match=r"within 0\.5 s: is the program"):
+        client.call(counter(1), timeout_s=0.5)
+    assert link.now() - before_s == pytest.approx(0.5)
+
+
+def test_a_call_is_repeated_and_carried_out_once(
+    doubler: Doubler, client: rc10.ServiceClient[counter_t, named_value_t], link: VirtualLink
+) -> None:
+    heard: list[bytes] = []
+    link.subscribe("double.request", heard.append, 100)
+    client.call(counter(4))
+    link.publish("double.request", heard[0])
+    answers: list[bytes] = []
+    link.subscribe("double.response", answers.append, 100)
+    link.pump(0.0)
+    assert len(answers) == 1
+    assert doubler.calls == 1
+
+
+def test_a_lost_call_is_sent_again(
+    client: rc10.ServiceClient[counter_t, named_value_t], link: VirtualLink
+) -> None:
+    late: list[Doubler] = []
+    link.after(0.25, lambda: late.append(Doubler(link)))
+    assert client.call(counter(4)).value == 8.0
+
+
+@pytest.mark.usefixtures("doubler")
+def test_other_types_are_refused_in_words(link: VirtualLink) -> None:
+    other = rc10.ServiceClient(link, "double", named_value_t, named_value_t)
+    with pytest.raises(rc10.ServiceRefused, match="other definitions of the types of 'double'"):
+        other.call(named_value_t())
+
+
+def test_the_answer_to_another_client_is_not_ours(
+    doubler: Doubler, client: rc10.ServiceClient[counter_t, named_value_t], link: VirtualLink
+) -> None:
+    other = rc10.ServiceClient(link, "double", counter_t, named_value_t, client="other")
+    assert other.call(counter(1)).value == 2.0
+    assert client.call(counter(2)).value == 4.0
+    assert doubler.calls == 2
+
+
+def test_garbage_is_ignored(
+    doubler: Doubler, client: rc10.ServiceClient[counter_t, named_value_t], link: VirtualLink
+) -> None:
+    link.publish("double.request", b"garbage")
+    link.publish("double.request", service_request_t().encode()[:-3])
+    assert client.call(counter(2)).value == 4.0
+    assert doubler.calls == 1
+
+
+def test_an_envelope_carries_the_fingerprints_of_the_types(
+    client: rc10.ServiceClient[counter_t, named_value_t], link: VirtualLink
+) -> None:
+    heard: list[service_request_t] = []
+    rc10.Subscriber(link, "double.request", service_request_t, heard.append)
+    with pytest.raises(rc10.ServiceTimeout):
+        client.call(counter(1), timeout_s=0.05)
+    first = heard[0].payload[:8]
+    assert (
+        heard[0].request_type.to_bytes(8, "big", signed=True) == first == counter_t().encode()[:8]
+    )

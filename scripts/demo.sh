@@ -1,0 +1,224 @@
+#!/bin/bash
+# Drives a simulated robot, without CAN and without rights: rc10d with the motors of config/demo.yaml, and
+# a program in a process of its own that commands them through LCM.
+#   scripts/demo.sh [--seconds N]       until Ctrl-C, or for N seconds
+# RC10_BUILD: a build tree to use as it is, instead of making build/release.
+set -euo pipefail
+
+here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
+# shellcheck source=scripts/lib/project.sh
+. "$here/lib/project.sh"
+
+usage() {
+    echo "usage: scripts/demo.sh [--seconds N]"
+}
+
+die() {
+    echo "demo: $*" >&2
+    exit 1
+}
+
+seconds=0
+lcm=${RC10_DEMO_LCM:-}
+while [ $# -gt 0 ]; do
+    case $1 in
+        --seconds) seconds=${2:-} && shift ;;
+        -h | --help) usage && exit ;;
+        *) usage >&2 && exit 2 ;;
+    esac
+    [[ $seconds =~ ^[0-9]+$ ]] || { usage >&2 && exit 2; }
+    shift
+done
+
+build_tree=${RC10_BUILD:-$repo/build/release}
+
+# Once, outside the namespace: everything it takes.
+prepare() {
+    if [ -z "${RC10_BUILD:-}" ]; then
+        need build
+        configure_options=(-DRC10_BUILD_BENCH=OFF)
+        build release rc10d rc10-lcm rc10ctl rc10-sim || die "the build failed"
+    fi
+    [ -x "$build_tree/bin/rc10d" ] || die "no rc10d in $build_tree/bin"
+    need_python
+}
+
+# LCM's multicast goes to a loopback of our own and reaches no network.
+enter_namespace() {
+    local ways=("unshare --net --map-root-user") way refused=
+    [ "$(id -u)" -ne 0 ] || ways=("unshare --net" "${ways[@]}")
+    for way in "${ways[@]}"; do
+        # shellcheck disable=SC2086  # words
+        refused=$($way ip link set lo up 2>&1) && RC10_DEMO_LCM=yes exec $way "$here/demo.sh" --seconds "$seconds"
+    done
+    echo "demo: this system refuses network namespaces ($refused):" >&2
+    echo "demo: without LCM, then; rc10ctl drives the robot through rc10d's own socket" >&2
+    lcm=no
+}
+
+if [ -z "$lcm" ]; then
+    prepare
+    export RC10_PYTHON RC10_BUILD=$build_tree
+    enter_namespace
+fi
+
+# ---- from here on in the namespace, if there is one
+
+bin=$build_tree/bin
+RC10_RUN_DIR=$(mktemp -d /tmp/rc10-demo.XXXX)
+export RC10_RUN_DIR RC10_STATE_DIR=$RC10_RUN_DIR
+log=$RC10_RUN_DIR/rc10d.log
+rc10d='' clients=() ended=
+
+# Ctrl-C is for this script, which then ends the others in order; without it they end too.
+start() {
+    setsid setpriv --pdeathsig TERM "$@" &
+}
+
+alive() {
+    kill -0 "$1" 2>/dev/null
+}
+
+end() {
+    kill -TERM "$@" 2>/dev/null || true
+    wait "$@"
+}
+
+# shellcheck disable=SC2317  # called by the trap
+clean_up() {
+    local pid
+    for pid in "${clients[@]}" $rc10d; do
+        end "$pid" || true
+    done 2>/dev/null
+    rm -rf "$RC10_RUN_DIR"
+}
+trap clean_up EXIT
+trap 'ended=yes' INT TERM HUP
+
+broken() {
+    echo "demo: $*" >&2
+    tail -n 20 "$RC10_RUN_DIR"/*.log >&2
+    exit 1
+}
+
+start_rc10d() {
+    local config=$repo/config/demo.yaml deadline=$((SECONDS + 20))
+    if [ "$lcm" = yes ]; then
+        ip link set lo up
+        ip route add 239.255.76.67/32 dev lo src 127.0.0.1
+    else
+        config=$RC10_RUN_DIR/demo.yaml
+        sed 's/^lcm:.*/lcm: {enabled: false}/' "$repo/config/demo.yaml" >"$config"
+    fi
+    start "$bin/rc10d" -c "$config" >"$log" 2>&1
+    rc10d=$!
+    until "$bin/rc10ctl" list >/dev/null 2>&1; do
+        [ -z "$ended" ] || exit 0
+        alive "$rc10d" || broken "rc10d did not start"
+        [ "$SECONDS" -lt "$deadline" ] || broken "rc10d does not answer"
+        sleep 0.05 || true
+    done
+}
+
+start_setting() {
+    start "$bin/rc10ctl" set "$@" --for 1440min >"$RC10_RUN_DIR/set-$1.log" 2>&1
+    clients+=($!)
+}
+
+start_clients() {
+    local out=$RC10_RUN_DIR/drive.log
+    if [ "$lcm" = yes ]; then
+        start "$RC10_PYTHON" "$repo/python/examples/demo_drive.py" >"$out" 2>&1
+        clients=($!)
+        # Its first line says that the motors are enabled.
+        until grep -q enabled "$out"; do
+            [ -z "$ended" ] || exit 0
+            alive "${clients[0]}" || broken "the program that drives could not"
+            sleep 0.05 || true
+        done
+    else
+        "$bin/rc10ctl" enable >"$out" 2>&1 || broken "the motors could not be enabled"
+        start_setting front_left velocity 120
+        start_setting front_right velocity -120
+        start_setting rear_left velocity -120
+        start_setting rear_right velocity 120
+        start_setting yaw angle 90
+        start_setting pitch angle 15
+        start_setting feeder velocity 20
+    fi
+}
+
+hints() {
+    local ctl="RC10_RUN_DIR=$RC10_RUN_DIR $bin/rc10ctl"
+    cat <<END
+A robot with seven simulated motors runs. In a second terminal:
+  $ctl watch
+  $ctl estop      (go on: clear, then enable)
+END
+    [ "$seconds" -gt 0 ] || echo "Ctrl-C ends it."
+    echo
+}
+
+# Draws each table over the one before it.
+overdraw() {
+    local line rows=0
+    trap '' INT
+    printf '\e[?7l'
+    while IFS= read -r line; do
+        if [ -n "$line" ]; then
+            printf '%s\e[K\n' "$line"
+            rows=$((rows + 1))
+        else
+            printf '\e[%dA' "$rows"
+            rows=0
+        fi
+    done
+    printf '\e[?7h'
+}
+
+all_alive() {
+    local pid
+    for pid in "$@"; do
+        alive "$pid" || return
+    done
+}
+
+# Until the time is over, Ctrl-C, or something breaks.
+show() {
+    local hz=1 count=() draw=cat watch
+    if [ -t 1 ]; then
+        hz=5
+        draw=overdraw
+    fi
+    [ "$seconds" -eq 0 ] || count=(--count $((seconds * hz)))
+    "$bin/rc10ctl" watch --hz "$hz" "${count[@]}" > >("$draw") &
+    watch=$!
+    # `wait -n` would miss one that has ended just before it.
+    while [ -z "$ended" ] && all_alive "$watch" "$rc10d" "${clients[@]}"; do
+        sleep 0.1 || true
+    done
+    if [ -n "$ended" ]; then
+        end "$watch" || true
+        return
+    fi
+    alive "$rc10d" || broken "rc10d ended by itself"
+    all_alive "${clients[@]}" || broken "a program that drives ended by itself"
+    wait "$watch" || broken "rc10ctl watch failed"
+}
+
+# The clients let go of the motors, then rc10d stops; each says how it was.
+finish() {
+    end "${clients[@]}" || broken "a program that drives did not end well"
+    clients=()
+    end "$rc10d" || broken "rc10d did not end well"
+    rc10d=
+    echo
+    sed -n '/^followed/,$p' "$RC10_RUN_DIR/drive.log"
+    sed -n 's/^.* info \([0-9]* ticks,.*\)/rc10d: \1/p' "$log"
+}
+
+start_rc10d
+start_clients
+hints
+show
+finish

@@ -1,0 +1,80 @@
+#!/bin/bash
+# Installs the Debian packages that parts of this project need.
+#   scripts/install-deps.sh [build] [test] [languages] [lint] [kernel] [vm] [package]      default: all
+set -euo pipefail
+
+declare -A packages=(
+    [build]="g++ cmake ninja-build pkg-config ccache git python3 python3-venv iproute2
+        libyaml-cpp-dev libspdlog-dev libfmt-dev liblcm-dev liblcm-bin libexpected-dev
+        libcli11-dev libboost-dev libseccomp-dev libgpiod-dev libsocketcan-dev libmnl-dev
+        nlohmann-json3-dev libeigen3-dev"
+    [test]="libgtest-dev libgmock-dev libbenchmark-dev strace procps util-linux groff-base"
+    [languages]="make liblcm-java default-jdk-headless"
+    [lint]="clang-16 clang-tidy-16 clang-format-16 libclang-rt-16-dev shellcheck systemd"
+    [kernel]="linux-source-6.1 gcc make flex bison bc libelf-dev xz-utils can-utils"
+    [vm]="qemu-system-x86 linux-image-rt-amd64 linux-headers-rt-amd64 linux-source-6.1 make xz-utils busybox-static kmod
+        can-utils"
+    [package]="dpkg-dev file fakeroot mmdebstrap lintian"
+)
+groups=(build test languages lint kernel vm package)
+
+usage() {
+    echo "usage: scripts/install-deps.sh [${groups[*]}]  (default: all)"
+}
+
+die() {
+    echo "install-deps: $*" >&2
+    exit 1
+}
+
+installed() {
+    dpkg-query -W -f '${binary:Package} ${db:Status-Status}\n' "$@" 2>/dev/null \
+        | sed -n 's/^\([^: ]*\)[^ ]* installed$/\1/p'
+}
+
+missing() {
+    grep -vxFf <(installed "$@") < <(printf '%s\n' "$@") || true
+}
+
+as_root() {
+    local sudo=(sudo)
+    # Without a terminal nobody can type a password: fail rather than wait.
+    [ -t 0 ] || sudo+=(-n)
+    if [ "$(id -u)" -eq 0 ]; then
+        "$@"
+    else
+        "${sudo[@]}" "$@"
+    fi
+}
+
+apt() {
+    as_root env DEBIAN_FRONTEND=noninteractive apt-get -qq -o DPkg::Lock::Timeout=300 "$@"
+}
+
+[ $# -gt 0 ] || set -- "${groups[@]}"
+wanted=()
+for group in "$@"; do
+    case $group in -h | --help) usage && exit ;; esac
+    if [ -z "${packages[$group]:-}" ]; then
+        echo "install-deps: no group '$group'" >&2
+        usage >&2
+        exit 2
+    fi
+    read -r -d '' -a names <<<"${packages[$group]}" || true
+    wanted+=("${names[@]}")
+done
+
+command -v dpkg-query >/dev/null || die "this is no Debian or Ubuntu; what is needed there: ${wanted[*]}"
+mapfile -t absent < <(missing "${wanted[@]}" | sort -u)
+[ ${#absent[@]} -gt 0 ] || exit 0
+# Modules that are built with the headers must fit the kernel: both of one version.
+[[ " ${absent[*]} " != *" linux-headers-rt-amd64 "* ]] || absent+=(linux-image-rt-amd64)
+
+if [ "$(id -u)" -ne 0 ] && ! command -v sudo >/dev/null; then
+    die "missing packages, and neither root nor sudo to install them: apt-get install ${absent[*]}"
+fi
+echo "install-deps: installing ${absent[*]}" >&2
+install=(install --no-install-recommends --yes "${absent[@]}")
+# The package lists may be missing or name versions that the archive no longer has.
+apt "${install[@]}" >&2 || { apt update >&2 && apt "${install[@]}" >&2; } \
+    || die "apt-get could not install ${absent[*]}"

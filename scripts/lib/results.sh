@@ -1,0 +1,74 @@
+# Sourced by the parts of the tests: counts what passed, failed and was skipped.
+# shellcheck shell=bash
+
+# shellcheck source=scripts/lib/project.sh
+. "$(dirname "${BASH_SOURCE[0]}")/project.sh"
+
+# All that is wrong, not only the first of it.
+build_options=(-- -k 0)
+
+passed=0 failed=0 skipped=0
+counts='^([0-9]+) passed, ([0-9]+) failed, ([0-9]+) skipped$'
+scratch=$(mktemp -d "${TMPDIR:-/tmp}/rc10-test.XXXXXX")
+trap 'rm -rf "$scratch"' EXIT
+
+fail() {
+    echo "FAILED $*"
+    failed=$((failed + 1))
+}
+
+# step NAME COMMAND...: one test, which passes when the command does.
+step() {
+    echo "-- $1"
+    if "${@:2}"; then
+        passed=$((passed + 1))
+    else
+        fail "$1"
+    fi
+}
+
+# must_build PRESET [TARGET...]: a broken build is one failed test.
+must_build() {
+    build "$@" && return
+    fail "build of $1"
+    return 1
+}
+
+# suite NAME COMMAND...: a test runner whose last line is "N passed, N failed, N skipped".
+suite() {
+    local status=0 last
+    echo "-- $1"
+    "${@:2}" 2>&1 | tee "$scratch/output" || status=$?
+    last=$(tail -n 1 "$scratch/output")
+    if ! [[ $last =~ $counts ]]; then
+        fail "$1: it ended without a result"
+        return
+    fi
+    passed=$((passed + BASH_REMATCH[1]))
+    failed=$((failed + BASH_REMATCH[2]))
+    skipped=$((skipped + BASH_REMATCH[3]))
+    # What is skipped makes some unhappy in CI; that is for test.sh to judge.
+    [ "$status" -eq 0 ] || [ $((BASH_REMATCH[2] + BASH_REMATCH[3])) -gt 0 ] || fail "$1: status $status"
+}
+
+# junit NAME COMMAND...: a test runner that takes, as one more argument, where to write JUnit's XML.
+junit() {
+    suite "$1" "$repo/scripts/lib/junit.py" "$scratch/report.xml" "${@:2}"
+}
+
+# ctest_in PRESET: every C++ test of a build.
+ctest_in() {
+    junit "ctest, $1" ctest --test-dir "$repo/build/$1" --parallel "$(nproc)" --output-on-failure \
+        --no-tests=error --output-junit
+}
+
+# pytest_in FOLDER [OPTION...]
+pytest_in() {
+    junit "pytest, $1" env --chdir="$repo/$1" "$RC10_PYTHON" -m pytest -q -p no:cacheprovider \
+        "${@:2}" --junitxml
+}
+
+finish() {
+    echo "$passed passed, $failed failed, $skipped skipped"
+    [ "$failed" -eq 0 ]
+}

@@ -1,0 +1,12 @@
+#!/bin/bash
+# the whole daemon on real SocketCAN, in a User-Mode Linux guest in virtual time
+set -euo pipefail
+# shellcheck source=scripts/lib/results.sh
+. "$(dirname "${BASH_SOURCE[0]}")/../lib/results.sh"
+
+need build test kernel
+need_python
+export RC10_BUILD=$repo/build/dev
+
+if must_build dev; then suite tests/kernel "$repo/tests/kernel/run"; fi
+finish

@@ -1,0 +1,63 @@
+#!/bin/bash
+# formatting, shellcheck, ruff and mypy, the order of the layers, what pages refer to, clang's warnings and clang-tidy
+set -euo pipefail
+# shellcheck source=scripts/lib/results.sh
+. "$(dirname "${BASH_SOURCE[0]}")/../lib/results.sh"
+
+need build test lint
+need_python
+cd "$repo"
+
+python() {
+    "$RC10_PYTHON" -m "$@"
+}
+
+format_cpp() {
+    local wrong
+    wrong=$(find src tests bench examples -name '*.[ch]pp' -print0 \
+        | xargs -0 clang-format-16 --dry-run -ferror-limit=1 -Werror 2>&1 | sed -nE 's/^([^ :]+):[0-9]+:.*/\1/p')
+    [ -z "$wrong" ] || { echo "to be formatted:" && sort -u <<<"$wrong" && return 1; }
+}
+
+# Whatever begins like a shell script, with or without an extension.
+shell_scripts() {
+    find scripts .ci tests -type f -not -path '*/.*_cache/*' -print0 \
+        | xargs -0 awk 'FNR == 1 && /^#!.*\/(ba)?sh|^# Sourced by/ {print FILENAME}'
+}
+
+shell() {
+    local scripts
+    mapfile -t scripts < <(shell_scripts)
+    shellcheck -x "${scripts[@]}"
+}
+
+# Each folder by itself: several have a conftest.py.
+types_in() {
+    (cd "$1" && MYPYPATH="$repo/tests/kernel" python mypy --strict "${@:2}")
+}
+
+layers() {
+    tests/layers/check_layers.py src
+}
+
+step clang-format format_cpp
+step shellcheck shell
+# Its scripts have no extension, and are not found by themselves.
+bench_scripts=(path_latency table)
+step "ruff check" python ruff check python tests scripts examples bench "${bench_scripts[@]/#/bench/}"
+step "ruff format" python ruff format --check --quiet python tests scripts examples bench "${bench_scripts[@]/#/bench/}"
+step "mypy, python" types_in python
+for folder in tests/*/; do
+    ! compgen -G "$folder*.py" >/dev/null || step "mypy, $folder" types_in "$folder" .
+done
+step "mypy, scripts" types_in scripts/lib .
+step "mypy, bench" types_in bench --scripts-are-modules . "${bench_scripts[@]}"
+step "mypy, examples" types_in examples/small_robot .
+step "order of the layers" layers
+pytest_in tests/layers
+pytest_in tests/docs
+suite tests/systemd tests/systemd/run
+# Everything compiles without a warning, for clang too; the headers made in the build are there then.
+if must_build tidy; then passed=$((passed + 1)); fi
+step clang-tidy scripts/lib/tidy.py build/tidy
+finish

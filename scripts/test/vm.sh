@@ -1,0 +1,12 @@
+#!/bin/bash
+# a real CAN controller driver on a PREEMPT_RT kernel, in QEMU
+set -euo pipefail
+# shellcheck source=scripts/lib/results.sh
+. "$(dirname "${BASH_SOURCE[0]}")/../lib/results.sh"
+
+need build test vm
+need_python
+export RC10_BUILD=$repo/build/dev
+
+if must_build dev; then suite tests/vm "$repo/tests/vm/run"; fi
+finish

@@ -1,0 +1,17 @@
+#pragma once
+
+#include <cstddef>
+
+#include "app/time.hpp"
+
+/// What a message may have, for who sends it (the client library, which links nothing of the daemon) and for
+/// who refuses it.
+namespace rc10 {
+
+/// Inputs of a module in one message.
+inline constexpr std::size_t kMaxMessageSignals = 32;
+/// Bytes of a name: of a client, a module's input, a motor.
+inline constexpr std::size_t kMaxNameBytes = 31;
+inline constexpr Duration kMaxValidity = std::chrono::milliseconds{1000};
+
+}  // namespace rc10

@@ -1,0 +1,113 @@
+#include "app/pid_position.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "app/angle.hpp"
+
+namespace rc10 {
+
+float PID_Position::errorOf(float target, float measured) const noexcept {
+  if (config_.circular_period > 0.0F) {
+    return saturate(shortestWay(measured, target, config_.circular_period));
+  }
+  return saturate(target - measured);
+}
+
+float PID_Position::afterDeadband(float error) const noexcept {
+  return std::abs(error) < config_.deadband ? 0.0F : error;
+}
+
+float PID_Position::proportionalAndDerivative() const noexcept {
+  return saturate(config_.kp * state_.error) - saturate(config_.kd * derivative_.value());
+}
+
+float PID_Position::step(float target, float measured, float dt_s, OutputRange range) noexcept {
+  if (!std::isfinite(target) || !std::isfinite(measured)) {
+    reset();
+    return 0.0F;
+  }
+  if (!(dt_s > 0.0F)) return state_.output;
+  const float change = errorOf(measured, state_.measured);  // circular as well: no jump at the wrap
+  state_.measured = measured;
+  return stepError(errorOf(target, measured), change, dt_s, range);
+}
+
+float PID_Position::stepError(float error, float measured_change, float dt_s, OutputRange range) noexcept {
+  if (!std::isfinite(error) || !std::isfinite(measured_change)) {
+    reset();
+    return 0.0F;
+  }
+  if (!(dt_s > 0.0F)) return state_.output;
+  const float dt = std::min(dt_s, kMaxStepSeconds);
+
+  const float fade = kStartGlideSeconds / (kStartGlideSeconds + dt);
+  state_.glide *= fade;
+  state_.output_offset *= fade;
+  state_.whole_error = saturate(error + state_.glide);
+  const float e = afterDeadband(state_.whole_error);
+  if (!state_.running) {
+    state_.error = e;
+    measured_change = 0.0F;
+  }
+  range = range.within(config_.output_limit);
+
+  derivative_.step(saturate(measured_change / dt), dt);
+  const float mean = 0.5F * (e + state_.error);
+  state_.error = e;
+  const float others = proportionalAndDerivative() + state_.output_offset;
+
+  const bool separated = config_.integral_separation > 0.0F && std::abs(e) > config_.integral_separation;
+  float gain = separated ? 0.0F : saturate(config_.ki * mean * dt);
+  // Anti-windup: what would push beyond the limit is not accumulated, and after the limit has come
+  // down the integral alone never holds the output beyond it.
+  const float sum = others + state_.integral;
+  if (gain > 0.0F) gain = std::clamp(range.high - sum, 0.0F, gain);
+  if (gain < 0.0F) gain = std::clamp(range.low - sum, gain, 0.0F);
+  state_.integral += gain;
+  const OutputRange hold{std::min(range.low, 0.0F), std::max(range.high, 0.0F)};
+  state_.integral = hold.within(config_.integral_limit).clamp(saturate(state_.integral));
+
+  state_.output = range.clamp(saturate(others + state_.integral));
+  state_.running = true;
+  return state_.output;
+}
+
+void PID_Position::start(float output_in_force, float measured, float target) noexcept {
+  reset();
+  if (!std::isfinite(output_in_force) || !std::isfinite(measured) || !std::isfinite(target)) return;
+  const OutputRange carried = OutputRange{}.within(config_.integral_limit);
+  state_.integral = config_.ki > 0.0F ? carried.clamp(output_in_force) : 0.0F;
+  state_.output_offset = saturate(output_in_force - state_.integral);
+  state_.glide = -errorOf(target, measured);
+  state_.measured = measured;
+  state_.output = output_in_force;
+  state_.running = true;
+}
+
+void PID_Position::retune(const Config& config) noexcept {
+  const float asked = proportionalAndDerivative() + state_.output_offset + state_.integral;
+  config_ = config;
+  derivative_.setBandwidth(config.derivative_filter_hz);
+  if (!state_.running) return;
+  const OutputRange carried = OutputRange{}.within(config.integral_limit);
+  state_.integral = config.ki > 0.0F ? carried.clamp(state_.integral) : 0.0F;
+  state_.error = afterDeadband(state_.whole_error);
+  // What acted is carried over, not what was asked for beyond the limit: that would go on pushing after the
+  // error has changed its sign.
+  const float gap = saturate(state_.output - (proportionalAndDerivative() + state_.integral));
+  if (asked > state_.output) {
+    state_.output_offset = std::max(gap, 0.0F);
+  } else if (asked < state_.output) {
+    state_.output_offset = std::min(gap, 0.0F);
+  } else {
+    state_.output_offset = gap;
+  }
+}
+
+void PID_Position::reset() noexcept {
+  state_ = State{};
+  derivative_.reset(0.0F);
+}
+
+}  // namespace rc10

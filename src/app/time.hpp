@@ -1,0 +1,25 @@
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+
+namespace rc10 {
+
+using Duration = std::chrono::nanoseconds;
+
+/// A point on CLOCK_MONOTONIC, the only clock of the process. Nothing below the daemon asks a clock:
+/// time is an argument.
+using MonotonicTime = std::chrono::time_point<std::chrono::steady_clock, Duration>;
+
+/// What every motor, packer and module is told about the present tick.
+struct Tick {
+  std::uint64_t index = 0;  ///< Ticks executed since start.
+  MonotonicTime now;        ///< When this tick started.
+  float dt_s = 0.001F;      ///< Distance on the grid since the last executed tick, at most 5 periods.
+};
+
+[[nodiscard]] constexpr float seconds(Duration duration) noexcept {
+  return static_cast<float>(std::chrono::duration<double>(duration).count());
+}
+
+}  // namespace rc10

@@ -1,0 +1,86 @@
+#include "blackbox/box_file.hpp"
+
+#include <fcntl.h>
+#include <linux/magic.h>
+#include <sys/mman.h>
+#include <sys/statfs.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <atomic>
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
+#include <new>
+
+#include "blackbox/file_bytes.hpp"
+
+namespace rc10::blackbox {
+namespace {
+
+// Four seconds of eight motors at 1 kHz: so long the io thread may be kept from running.
+constexpr std::uint64_t kRingBytes = std::uint64_t{1} << 20U;
+
+[[nodiscard]] Error trouble(const std::string& path, const char* why) { return {path + ": " + why}; }
+
+[[nodiscard]] bool inMemory(int fd) noexcept {
+  struct statfs info {};
+  if (::fstatfs(fd, &info) != 0) return false;
+  return info.f_type == TMPFS_MAGIC || info.f_type == RAMFS_MAGIC;
+}
+
+}  // namespace
+
+Result<std::unique_ptr<BoxFile>> BoxFile::create(const std::string& path, Header header,
+                                                 std::uint64_t bytes) {
+  header.file_bytes = bytes;
+  header.ring_offset = kRingOffset;
+  header.ring_bytes = std::min(kRingBytes, bytes / 4);
+  header.history_offset = header.ring_offset + header.ring_bytes;
+  header.history_bytes = header.file_bytes - header.history_offset;
+
+  const std::string temporary = path + ".new";
+  UniqueFd fd{::open(temporary.c_str(), O_RDWR | O_CREAT | O_TRUNC | O_CLOEXEC, 0640)};
+  if (!fd) return tl::unexpected(trouble(temporary, std::strerror(errno)));
+  const auto give_up = [&](const char* why) {
+    (void)::unlink(temporary.c_str());
+    return tl::unexpected(trouble(temporary, why));
+  };
+  // Now, so that nothing can lack room later. Not ftruncate(): a hole in a mapped file ends in SIGBUS.
+  if (const int error = ::posix_fallocate(fd.get(), 0, static_cast<off_t>(bytes)); error != 0) {
+    return give_up(std::strerror(error));
+  }
+  const std::size_t mapped = header.history_offset;
+  const bool shared = inMemory(fd.get());
+  void* const memory =
+      shared ? ::mmap(nullptr, mapped, PROT_READ | PROT_WRITE, MAP_SHARED, fd.get(), 0)
+             : ::mmap(nullptr, mapped, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
+  if (memory == MAP_FAILED) return give_up(std::strerror(errno));
+  std::memset(memory, 0, mapped);  // every page is there before the first tick
+  auto* const head = ::new (memory) FileHead{header, {}};
+  std::unique_ptr<BoxFile> box(new BoxFile(path, std::move(fd), head, mapped, shared));
+  if (auto written =
+          writeAll(box->descriptor(), 0, {reinterpret_cast<const std::byte*>(box->head_), sizeof(FileHead)});
+      !written) {
+    return give_up(written.error().message.c_str());
+  }
+  if (::rename(temporary.c_str(), path.c_str()) != 0) return give_up(std::strerror(errno));
+  return box;
+}
+
+BoxFile::~BoxFile() { (void)::munmap(head_, mapped_); }
+
+std::span<std::byte> BoxFile::ring() noexcept {
+  return {reinterpret_cast<std::byte*>(head_) + head_->header.ring_offset, head_->header.ring_bytes};
+}
+
+Result<void> BoxFile::publish() {
+  if (shared_) return {};
+  Control control = head_->control;
+  control.head = control.tail;  // what is in the ring is not in the file
+  control.dropped = std::atomic_ref(head_->control.dropped).load(std::memory_order_relaxed);
+  return writeAll(fd_.get(), offsetof(FileHead, control),
+                  {reinterpret_cast<const std::byte*>(&control), sizeof control});
+}
+
+}  // namespace rc10::blackbox

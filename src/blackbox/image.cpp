@@ -1,0 +1,116 @@
+#include "blackbox/image.hpp"
+
+#include <fcntl.h>
+#include <sys/stat.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cstddef>
+#include <cstring>
+
+#include "app/unique_fd.hpp"
+#include "blackbox/file_bytes.hpp"
+
+namespace rc10::blackbox {
+namespace {
+
+constexpr std::size_t kChunk = std::size_t{64} * 1024;
+// The largest file that `blackbox_mib` allows.
+constexpr std::uint64_t kMaxFileBytes = std::uint64_t{256} << 20U;
+
+template <typename T>
+[[nodiscard]] Result<void> readObject(int fd, std::uint64_t offset, T& out) {
+  return readAll(fd, offset, {reinterpret_cast<std::byte*>(&out), sizeof out});
+}
+
+// A word that another process may be writing. pread() does not promise to read eight bytes at once: two
+// equal readings do.
+[[nodiscard]] Result<std::uint64_t> readWord(int fd, std::size_t offset_in_control) {
+  const std::uint64_t offset = offsetof(FileHead, control) + offset_in_control;
+  std::uint64_t word = 0;
+  std::uint64_t again = 0;
+  do {
+    if (auto read = readObject(fd, offset, word); !read) return tl::unexpected(read.error());
+    if (auto read = readObject(fd, offset, again); !read) return tl::unexpected(read.error());
+  } while (word != again);
+  return word;
+}
+
+[[nodiscard]] Result<void> copyRegion(int fd, std::uint64_t offset, std::uint64_t bytes, const Sink& sink) {
+  std::vector<std::byte> buffer(kChunk);
+  for (const std::uint64_t end = offset + bytes; offset < end;) {
+    const auto piece = std::span(buffer).first(std::min<std::uint64_t>(kChunk, end - offset));
+    if (auto read = readAll(fd, offset, piece); !read) return read;
+    if (auto taken = sink(offset, piece); !taken) return taken;
+    offset += piece.size();
+  }
+  return {};
+}
+
+}  // namespace
+
+Result<void> checkHeader(const Header& header) {
+  if (header.magic != kMagic) return fail("this is no black box of rc10d");
+  if (header.version != kFormatVersion) {
+    return fail("it was written by another version of rc10d (format " + std::to_string(header.version) +
+                ", this program reads " + std::to_string(kFormatVersion) + ")");
+  }
+  const bool power_of_two = header.ring_bytes != 0 && (header.ring_bytes & (header.ring_bytes - 1)) == 0;
+  const bool fits = header.file_bytes <= kMaxFileBytes && header.ring_offset >= sizeof(FileHead) &&
+                    header.ring_offset <= kMaxFileBytes && header.ring_bytes <= kMaxFileBytes &&
+                    header.history_offset == header.ring_offset + header.ring_bytes &&
+                    header.history_bytes <= kMaxFileBytes && header.history_bytes > 0 &&
+                    header.history_offset + header.history_bytes == header.file_bytes &&
+                    header.bus_count <= header.buses.size() && header.motor_count <= header.motors.size() &&
+                    header.module_count <= header.modules.size();
+  if (!power_of_two || !fits) return fail("its header is damaged");
+  return {};
+}
+
+// The order makes it whole. The scheduler can overwrite of the ring only what was before `tail`, so what was
+// read of it before `tail` is good from `tail` on. The io thread moves `oldest` before it overwrites, so what
+// was read of the history before `oldest` is good from `oldest` on.
+Result<void> takeImage(int fd, const Sink& sink, const std::function<void(Header&)>& amend) {
+  FileHead head;
+  if (auto read = readObject(fd, 0, head); !read) return fail("this is no black box of rc10d");
+  auto& header = head.header;
+  if (auto checked = checkHeader(header); !checked) return checked;
+  struct stat info {};
+  if (::fstat(fd, &info) != 0) return fail(std::strerror(errno));
+  if (static_cast<std::uint64_t>(info.st_size) < header.file_bytes) {
+    return fail("it is cut off: it has " + std::to_string(info.st_size) + " of " +
+                std::to_string(header.file_bytes) + " bytes");
+  }
+  const auto end = readWord(fd, offsetof(Control, head));
+  if (!end) return tl::unexpected(end.error());
+  if (auto copied = copyRegion(fd, header.ring_offset, header.ring_bytes, sink); !copied) return copied;
+  const auto tail = readWord(fd, offsetof(Control, tail));
+  if (!tail) return tl::unexpected(tail.error());
+  if (auto copied = copyRegion(fd, header.history_offset, header.history_bytes, sink); !copied) return copied;
+  Control now;
+  if (auto read = readObject(fd, offsetof(FileHead, control), now); !read) return read;
+  const auto oldest = readWord(fd, offsetof(Control, oldest));
+  if (!oldest) return tl::unexpected(oldest.error());
+  head.control = now;
+  head.control.head = std::max(*end, *tail);
+  head.control.tail = *tail;
+  // Ahead of the end: it took so long that all of it was overwritten.
+  head.control.oldest = std::min(*oldest, head.control.head);
+  if (amend) amend(header);
+  return sink(0, {reinterpret_cast<const std::byte*>(&head), sizeof head});
+}
+
+Result<std::vector<std::byte>> readImage(const std::string& path) {
+  const UniqueFd fd{::open(path.c_str(), O_RDONLY | O_CLOEXEC)};
+  if (!fd) return fail(path + ": " + std::strerror(errno));
+  std::vector<std::byte> image;
+  const auto keep = [&image](std::uint64_t offset, std::span<const std::byte> bytes) -> Result<void> {
+    if (image.size() < offset + bytes.size()) image.resize(offset + bytes.size());
+    std::memcpy(image.data() + offset, bytes.data(), bytes.size());
+    return {};
+  };
+  if (auto taken = takeImage(fd.get(), keep); !taken) return fail(path + ": " + taken.error().message);
+  return image;
+}
+
+}  // namespace rc10::blackbox

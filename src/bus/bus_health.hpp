@@ -1,0 +1,87 @@
+#pragma once
+
+#include <cstdint>
+
+#include "app/time.hpp"
+#include "bus/can_frame.hpp"
+
+namespace rc10 {
+
+/// The numbers are those of bus_state_t.lcm.
+enum class BusState : std::uint8_t {
+  kActive = 0,
+  kWarning = 1,
+  kPassive = 2,
+  kBusOff = 3,
+  kDown = 4,     ///< The interface is down.
+  kGone = 5,     ///< The interface does not exist.
+  kSilent = 6,   ///< No frame received for a while although motors are expected to talk.
+  kStalled = 7,  ///< No echo of our own frames: they do not reach the wire.
+};
+
+/// Whether frames may leave in this state. Where they do not, what is handed to the kernel is lost or, worse,
+/// sent when it is no longer meant.
+[[nodiscard]] constexpr bool carriesFrames(BusState state) noexcept {
+  return state != BusState::kBusOff && state != BusState::kDown && state != BusState::kGone &&
+         state != BusState::kStalled;
+}
+
+/// What the RX thread saw of the interface itself.
+enum class LinkState : std::uint8_t { kUp, kDown, kGone };
+
+/// Turns error frames, link states, silence and missing echoes into one state. Scheduler thread only.
+class BusHealth {
+ public:
+  struct Config {
+    Duration silent_after{std::chrono::milliseconds{100}};
+    Duration stalled_after{std::chrono::milliseconds{5}};
+    /// DESIGN: no echo for 5 ticks. Ticks that ran: after a pause of the whole computer the echo is there,
+    /// only nobody has read it yet.
+    int stalled_ticks = 5;
+  };
+
+  /// What happened since the last update(), counted by the threads that saw it.
+  struct Traffic {
+    std::uint64_t rx_frames = 0;     ///< Since start.
+    std::uint64_t tx_watched = 0;    ///< Frames of the watched ids handed to the kernel, since start.
+    std::uint64_t tx_confirmed = 0;  ///< Their echoes, since start.
+    bool echo_available = false;     ///< There is an echo socket; else stalled is never reported.
+    bool feedback_expected = true;   ///< Motors on this bus talk without being asked.
+  };
+
+  BusHealth() = default;
+  explicit BusHealth(const Config& config) : config_(config) {}
+
+  void onErrorFrame(const CanFrame& frame) noexcept;
+  void onLink(LinkState link) noexcept;
+  /// The driver says that the controller is not bus-off: the message about its restart was lost.
+  void onControllerRunning() noexcept;
+  void update(MonotonicTime now, const Traffic& traffic) noexcept;
+
+  /// The most serious of what is true: gone, down, bus-off, stalled, silent, passive, warning, active.
+  [[nodiscard]] BusState state() const noexcept;
+  [[nodiscard]] int transmitErrors() const noexcept { return tec_; }  ///< TEC, -1: unknown.
+  [[nodiscard]] int receiveErrors() const noexcept { return rec_; }   ///< REC, -1: unknown.
+  [[nodiscard]] std::uint64_t errorFrames() const noexcept { return error_frames_; }
+  /// Times the bus came back from bus-off, down or gone.
+  [[nodiscard]] std::uint64_t restarts() const noexcept { return restarts_; }
+
+ private:
+  Config config_{};
+  BusState controller_ = BusState::kActive;  // from error frames only
+  LinkState link_ = LinkState::kUp;
+  bool silent_ = false;
+  bool stalled_ = false;
+  int tec_ = -1;
+  int rec_ = -1;
+  std::uint64_t error_frames_ = 0;
+  std::uint64_t restarts_ = 0;
+  Traffic seen_{};
+  MonotonicTime last_rx_{};
+  bool echo_pending_ = false;  // a watched frame was sent and no echo has come since
+  MonotonicTime echo_pending_since_{};
+  int echo_pending_ticks_ = 0;
+  bool started_ = false;
+};
+
+}  // namespace rc10

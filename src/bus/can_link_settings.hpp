@@ -1,0 +1,41 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+#include "bus/can_link_state.hpp"
+
+namespace rc10 {
+
+/// How the configuration wants a CAN controller.
+struct CanLinkSettings {
+  int bitrate = 0;                 ///< bit/s
+  int data_bitrate = 0;            ///< bit/s of CAN FD's data phase; 0: a classic bus.
+  double sample_point = 0.0;       ///< Share of the bit, 0 to 1; 0: what the kernel chooses.
+  double data_sample_point = 0.0;  ///< The same of the data phase.
+};
+
+/// "1000000 bit/s", for FD "1000000 bit/s, data 5000000 bit/s".
+[[nodiscard]] std::string bitrates(const CanLinkSettings& wanted);
+
+/// What a driver makes of a bit rate may differ from it by a rounding.
+[[nodiscard]] bool sameBitrate(std::uint32_t seen, int wanted) noexcept;
+
+/// No time quanta may lie exactly there. 0 is as good as any.
+[[nodiscard]] bool sameSamplePoint(double seen, double wanted) noexcept;
+
+/// The first thing that is not as wanted, in words that name the interface; empty: nothing, or there is no
+/// controller that could be set up.
+[[nodiscard]] std::string wrongSetting(const std::string& interface, const CanLink& link,
+                                       const CanLinkSettings& wanted);
+
+/// What a person types to get there from the state that was read, for instance
+/// "ip link set can0 up type can bitrate 1000000 restart-ms 0".
+[[nodiscard]] std::string upCommand(const std::string& interface, const CanLink& link,
+                                    const CanLinkSettings& wanted);
+
+/// The same for an interface that is up: nothing can be set while it is. `prefix` goes before each command.
+[[nodiscard]] std::string restartCommand(const std::string& interface, const CanLink& link,
+                                         const CanLinkSettings& wanted, const std::string& prefix = {});
+
+}  // namespace rc10

@@ -1,0 +1,84 @@
+#include "bus/can_receiver.hpp"
+
+#include <sys/socket.h>
+
+#include <algorithm>
+#include <array>
+#include <cerrno>
+
+#include "bus/control_messages.hpp"
+#include "bus/wire_frame.hpp"
+
+namespace rc10 {
+namespace {
+
+// Set on frames that were sent on this computer and looped back once transmitted: MSG_CONFIRM if by this
+// very socket, MSG_DONTROUTE if by any (net/can/raw.c). recvmmsg reports them as received flags.
+constexpr int kSentHere = MSG_CONFIRM | MSG_DONTROUTE;
+
+}  // namespace
+
+struct CanReceiver::Buffers {
+  struct Slot {
+    canfd_frame frame{};
+    alignas(cmsghdr) std::array<std::byte, kControlBytes> control{};
+    iovec content{};
+  };
+
+  Buffers() noexcept {
+    for (std::size_t i = 0; i < kBatch; ++i) {
+      slots[i].content = {&slots[i].frame, sizeof(slots[i].frame)};
+      msghdr& header = headers[i].msg_hdr;
+      header.msg_iov = &slots[i].content;
+      header.msg_iovlen = 1;
+      header.msg_control = slots[i].control.data();
+    }
+  }
+
+  std::array<Slot, kBatch> slots{};
+  std::array<mmsghdr, kBatch> headers{};
+  std::uint32_t kernel_dropped = 0;
+};
+
+CanReceiver::CanReceiver(int fd) : fd_(fd), buffers_(std::make_unique<Buffers>()) {}
+CanReceiver::CanReceiver(CanReceiver&&) noexcept = default;
+CanReceiver& CanReceiver::operator=(CanReceiver&&) noexcept = default;
+CanReceiver::~CanReceiver() = default;
+
+Reception CanReceiver::receive(const WakeUp& wake, std::span<CanFrame> out) noexcept {
+  Reception reception;
+  reception.kernel_dropped = buffers_->kernel_dropped;
+  const std::size_t room = std::min(kBatch, out.size());
+  // The kernel shortens this one at every call; the rest of the headers stays as it was set up.
+  for (mmsghdr& header : std::span(buffers_->headers).first(room)) {
+    header.msg_hdr.msg_controllen = kControlBytes;
+  }
+  const int count =
+      ::recvmmsg(fd_, buffers_->headers.data(), static_cast<unsigned>(room), MSG_DONTWAIT, nullptr);
+  if (count < 0) {
+    if (errno != EAGAIN && errno != EWOULDBLOCK && errno != EINTR) reception.error = errno;
+    return reception;
+  }
+  for (std::size_t i = 0; i < static_cast<std::size_t>(count); ++i) {
+    const auto& [header, size] = buffers_->headers[i];
+    if (size == 0) {  // SOCK_SEQPACKET: the other end was closed. CAN_RAW has no empty message.
+      reception.error = ENODEV;
+      break;
+    }
+    const ControlMessages control = readControlMessages(header);
+    if (control.kernel_dropped) buffers_->kernel_dropped = *control.kernel_dropped;
+    CanFrame& frame = out[reception.frame_count];
+    if ((header.msg_flags & MSG_TRUNC) != 0 || !decodeFrame(buffers_->slots[i].frame, size, frame)) {
+      ++reception.malformed_count;
+      continue;
+    }
+    frame.received = control.realtime_stamp ? toMonotonic(*control.realtime_stamp, wake) : wake.now;
+    frame.sent_here = (header.msg_flags & kSentHere) != 0;
+    if (frame.sent_here) ++reception.confirmed_count;
+    ++reception.frame_count;
+  }
+  reception.kernel_dropped = buffers_->kernel_dropped;
+  return reception;
+}
+
+}  // namespace rc10

@@ -1,0 +1,46 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <span>
+
+#include "app/receive_clock.hpp"
+#include "bus/can_frame.hpp"
+
+namespace rc10 {
+
+/// What one recvmmsg brought.
+struct Reception {
+  std::size_t frame_count = 0;  ///< Frames written to the output.
+  /// Of these, frames that this computer sent and its controller has put on the wire. On the echo socket:
+  /// our own. On a bus's main socket, which does not see its own frames: another program commands too.
+  std::size_t confirmed_count = 0;
+  std::size_t malformed_count = 0;   ///< Messages of a size that is no frame; skipped.
+  std::uint32_t kernel_dropped = 0;  ///< SO_RXQ_OVFL: frames the kernel dropped since the socket exists.
+  /// errno or 0, never EAGAIN. ENETDOWN and ENODEV are link states; ENODEV also stands for the end of a
+  /// simulated bus, whose other end was closed.
+  int error = 0;
+};
+
+/// Receives frames from a descriptor that somebody else owns. RX thread only. No allocation after
+/// construction, one system call per receive().
+class CanReceiver {
+ public:
+  static constexpr std::size_t kBatch = 64;
+
+  explicit CanReceiver(int fd);
+  CanReceiver(CanReceiver&&) noexcept;
+  CanReceiver& operator=(CanReceiver&&) noexcept;
+  ~CanReceiver();
+
+  /// Never blocks. Writes at most min(kBatch, out.size()) frames.
+  [[nodiscard]] Reception receive(const WakeUp& wake, std::span<CanFrame> out) noexcept;
+
+ private:
+  struct Buffers;  // mmsghdr, iovec and control buffers: set up once, they point into each other
+  int fd_;
+  std::unique_ptr<Buffers> buffers_;
+};
+
+}  // namespace rc10

@@ -1,0 +1,160 @@
+#include "bus/can_socket.hpp"
+
+#include <linux/can.h>
+#include <linux/can/error.h>
+#include <linux/can/raw.h>
+#include <net/if.h>
+#include <sys/ioctl.h>
+#include <sys/socket.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <iterator>
+#include <system_error>
+#include <type_traits>
+#include <utility>
+#include <vector>
+
+namespace rc10 {
+namespace {
+
+// State changes and lost frames. Not the errors of single frames (PROT, ACK, BUSERROR, LOSTARB): with bus
+// error reporting on they come as often as frames do, and a lone node floods. And not CNT: the kernel
+// delivers a message that has any bit of the filter, and those carry counters too; state changes bring
+// theirs along unasked.
+constexpr can_err_mask_t kErrorClasses =
+    CAN_ERR_TX_TIMEOUT | CAN_ERR_CRTL | CAN_ERR_TRX | CAN_ERR_BUSOFF | CAN_ERR_RESTARTED;
+
+// What the kernel charges for a frame in flight: struct sk_buff, skb_shared_info and a small buffer, 640 to
+// 1000 bytes on 64-bit kernels from 5.15 to 6.18, classic or FD. Too high a figure allows half a tick more
+// in flight; too low a one would refuse the last frame of every tick on an idle bus.
+constexpr int kBytesPerFrameInFlight = 1024;
+
+// About 60 ms of a full 1 Mbit/s bus, so that a late RX thread loses nothing.
+constexpr int kReceiveBufferBytes = 512 * 1024;
+
+struct Interface {
+  int index = 0;
+  int mtu = 0;
+};
+
+std::string reason(int error) { return std::generic_category().message(error); }
+
+Result<UniqueFd> createSocket(const std::string& interface) {
+  if (interface.empty() || interface.size() >= IFNAMSIZ) {
+    return fail("'" + interface + "' is no interface name: it has 1 to " + std::to_string(IFNAMSIZ - 1) +
+                " characters");
+  }
+  UniqueFd fd{::socket(PF_CAN, SOCK_RAW | SOCK_NONBLOCK | SOCK_CLOEXEC, CAN_RAW)};
+  if (fd) return fd;
+  const std::string place = "CAN interface '" + interface + "': ";
+  if (errno == EAFNOSUPPORT || errno == EPROTONOSUPPORT) {
+    return fail(place + "this kernel has no SocketCAN, or the service may not use it (" + reason(errno) +
+                "); use `type: sim`, or load it with `modprobe can-raw`, or allow AF_CAN in the unit's "
+                "RestrictAddressFamilies=");
+  }
+  return fail(place + "cannot open a CAN socket: " + reason(errno));
+}
+
+Result<Interface> findInterface(int fd, const std::string& name) {
+  ifreq request{};
+  std::copy(name.begin(), name.end(), std::begin(request.ifr_name));
+  Interface found;
+  if (::ioctl(fd, SIOCGIFINDEX, &request) != 0) {
+    return fail("CAN interface '" + name + "': " + reason(errno) +
+                "; `ip link` lists what there is. A HAT needs its device tree overlay; a virtual interface " +
+                "is made with `ip link add dev " + name + " type vcan && ip link set up " + name + "`");
+  }
+  found.index = request.ifr_ifindex;
+  if (::ioctl(fd, SIOCGIFMTU, &request) != 0) {
+    return fail("CAN interface '" + name + "': cannot read its MTU: " + reason(errno));
+  }
+  found.mtu = request.ifr_mtu;
+  return found;
+}
+
+template <typename T>
+bool setOption(int fd, int level, int option, const T& value) noexcept {
+  static_assert(std::is_trivially_copyable_v<T>);
+  return ::setsockopt(fd, level, option, &value, sizeof(value)) == 0;
+}
+
+Result<void> bindTo(int fd, const std::string& name, const Interface& interface) {
+  sockaddr_can address{};
+  address.can_family = AF_CAN;
+  address.can_ifindex = interface.index;
+  if (::bind(fd, reinterpret_cast<const sockaddr*>(&address), sizeof(address)) == 0) return {};
+  if (errno == ENODEV) return fail("'" + name + "' is not a CAN interface");
+  return fail("CAN interface '" + name + "': cannot bind: " + reason(errno));
+}
+
+// What both sockets need: FD frames where the interface has them, receive stamps, the count of drops.
+Result<void> setReceiveOptions(int fd, const std::string& name, bool fd_frames) {
+  const int on = 1;
+  if ((fd_frames && !setOption(fd, SOL_CAN_RAW, CAN_RAW_FD_FRAMES, on)) ||
+      !setOption(fd, SOL_SOCKET, SO_TIMESTAMPNS, on) || !setOption(fd, SOL_SOCKET, SO_RXQ_OVFL, on)) {
+    return fail("CAN interface '" + name + "': cannot set a socket option: " + reason(errno));
+  }
+  // FORCE passes net.core.rmem_max but needs CAP_NET_ADMIN. A smaller buffer than asked is no error: what
+  // it loses is counted.
+  if (!setOption(fd, SOL_SOCKET, SO_RCVBUFFORCE, kReceiveBufferBytes)) {
+    (void)setOption(fd, SOL_SOCKET, SO_RCVBUF, kReceiveBufferBytes);
+  }
+  return {};
+}
+
+Result<int> setSendBuffer(int fd, const std::string& name, int frames_per_tick) {
+  int effective = 0;
+  socklen_t size = sizeof(effective);
+  if (!setOption(fd, SOL_SOCKET, SO_SNDBUF, sendBufferRequest(frames_per_tick)) ||
+      ::getsockopt(fd, SOL_SOCKET, SO_SNDBUF, &effective, &size) != 0) {
+    return fail("CAN interface '" + name + "': cannot set the send buffer: " + reason(errno));
+  }
+  return effective;
+}
+
+}  // namespace
+
+int sendBufferRequest(int frames_per_tick) noexcept {
+  // The kernel doubles what is asked, and has a minimum of about 4600 bytes: 6 or 7 frames.
+  return std::clamp(frames_per_tick, 1, 256) * kBytesPerFrameInFlight / 2;
+}
+
+Result<CanSocket> openCanSocket(const std::string& interface, const CanSocketOptions& options) {
+  auto fd = createSocket(interface);
+  if (!fd) return tl::unexpected(fd.error());
+  const auto found = findInterface(fd->get(), interface);
+  if (!found) return tl::unexpected(found.error());
+  const bool fd_frames = found->mtu >= static_cast<int>(CANFD_MTU);
+  if (auto ok = setReceiveOptions(fd->get(), interface, fd_frames); !ok) return tl::unexpected(ok.error());
+  if (!setOption(fd->get(), SOL_CAN_RAW, CAN_RAW_ERR_FILTER, kErrorClasses)) {
+    return fail("CAN interface '" + interface + "': cannot ask for error messages: " + reason(errno));
+  }
+  const auto send_buffer_bytes = setSendBuffer(fd->get(), interface, options.frames_per_tick);
+  if (!send_buffer_bytes) return tl::unexpected(send_buffer_bytes.error());
+  if (auto ok = bindTo(fd->get(), interface, *found); !ok) return tl::unexpected(ok.error());
+  return CanSocket{std::move(*fd), fd_frames, *send_buffer_bytes};
+}
+
+Result<UniqueFd> openEchoSocket(const std::string& interface, std::span<const CanId> command_ids) {
+  auto fd = createSocket(interface);
+  if (!fd) return tl::unexpected(fd.error());
+  const auto found = findInterface(fd->get(), interface);
+  if (!found) return tl::unexpected(found.error());
+  const bool fd_frames = found->mtu >= static_cast<int>(CANFD_MTU);
+  if (auto ok = setReceiveOptions(fd->get(), interface, fd_frames); !ok) return tl::unexpected(ok.error());
+  // With exactly this mask the kernel finds the socket by direct index or hash, not in a list.
+  std::vector<can_filter> filters;
+  for (const CanId id : command_ids) {
+    filters.push_back(
+        {id.value | (id.extended ? CAN_EFF_FLAG : 0U), CAN_EFF_FLAG | CAN_RTR_FLAG | idMask(id.extended)});
+  }
+  const auto size = static_cast<socklen_t>(filters.size() * sizeof(can_filter));
+  if (::setsockopt(fd->get(), SOL_CAN_RAW, CAN_RAW_FILTER, filters.data(), size) != 0) {
+    return fail("CAN interface '" + interface + "': cannot set the echo filter: " + reason(errno));
+  }
+  if (auto ok = bindTo(fd->get(), interface, *found); !ok) return tl::unexpected(ok.error());
+  return fd;
+}
+
+}  // namespace rc10

@@ -1,0 +1,160 @@
+#include "bus/fdcan_bus.hpp"
+
+#include <algorithm>
+#include <array>
+#include <span>
+#include <utility>
+
+#include "bus/frame_bits.hpp"
+#include "bus/send_batch.hpp"
+
+namespace rc10 {
+
+static_assert(SendBatch::kCapacity == fdCANbus::kMaxFramesPerTick);
+
+fdCANbus::fdCANbus(std::string name, CanSocket socket)
+    : name_(std::move(name)), socket_(std::move(socket)), batch_(std::make_unique<SendBatch>()) {
+  packers_.reserve(kMaxDevices);
+}
+
+fdCANbus::~fdCANbus() = default;
+
+Result<std::unique_ptr<fdCANbus>> fdCANbus::open(std::string name, const std::string& interface,
+                                                 const CanSocketOptions& options) {
+  auto socket = openCanSocket(interface, options);
+  if (!socket) return fail("bus '" + name + "': " + socket.error().message);
+  return std::unique_ptr<fdCANbus>(new fdCANbus(std::move(name), std::move(*socket)));
+}
+
+std::unique_ptr<fdCANbus> fdCANbus::adopt(std::string name, UniqueFd fd, bool fd_frames) {
+  return std::unique_ptr<fdCANbus>(new fdCANbus(std::move(name), CanSocket{std::move(fd), fd_frames, 0}));
+}
+
+Result<void> fdCANbus::registerMotor(FrameListener& device) {
+  if (auto ok = table_.add(device); !ok) return fail("bus '" + name_ + "': " + ok.error().message);
+  return {};
+}
+
+Result<void> fdCANbus::registerMotor(CommandPacker& packer) {
+  const auto refuse = [&](const std::string& why) {
+    return fail("bus '" + name_ + "': '" + std::string(packer.packerName()) + "' " + why);
+  };
+  if (packers_.size() >= kMaxDevices) {
+    return refuse("is one too many: a bus holds at most " + std::to_string(kMaxDevices) + " senders");
+  }
+  for (const CommandPacker* other : packers_) {
+    if (other == &packer) return refuse("is registered twice");
+    const auto taken = other->commandIds();
+    for (const CanId id : packer.commandIds()) {
+      if (std::find(taken.begin(), taken.end(), id) == taken.end()) continue;
+      return refuse("and '" + std::string(other->packerName()) + "' would both send " + describe(id) +
+                    ": give one of them another id, or move it to another bus");
+    }
+  }
+  packers_.push_back(&packer);
+  return {};
+}
+
+void fdCANbus::dispatch(const CanFrame& frame) noexcept {
+  if (tap_ != nullptr) tap_->onReceived(frame);
+  if (frame.type == FrameType::kError) {
+    health_.onErrorFrame(frame);
+    return;
+  }
+  ++counters_.rx_frames;
+  const FrameBits bits = unstuffedBits(shapeOf(frame));
+  counters_.rx_bits += bits.nominal;
+  counters_.rx_data_bits += bits.data;
+  FrameListener* const device = table_.find(frame);
+  if (device == nullptr) {
+    ++counters_.rx_unmatched;
+    // The socket does not receive what it sends itself.
+    if (frame.type == FrameType::kData && isCommandId(frame.id)) {
+      ++counters_.rx_foreign;
+      last_foreign_ = {frame.id, frame.sent_here};
+    }
+  } else if (device->updateFeedback(frame) == FrameVerdict::kMalformed) {
+    ++counters_.rx_malformed;
+  }
+}
+
+// Asked for frames that no device claims: there are few of them, and few packers.
+bool fdCANbus::isCommandId(CanId id) const noexcept {
+  return std::any_of(packers_.begin(), packers_.end(), [id](const CommandPacker* packer) {
+    const auto ids = packer->commandIds();
+    return std::find(ids.begin(), ids.end(), id) != ids.end();
+  });
+}
+
+bool fdCANbus::sendFrame(const CanFrame& frame) noexcept { return append(frame, std::nullopt); }
+
+bool fdCANbus::append(const CanFrame& frame, std::optional<std::size_t> packer) noexcept {
+  const bool possible = frame.type != FrameType::kError && (!frame.fd || fdFrames());
+  if (possible && batch_->add(frame, packer)) return true;
+  ++counters_.tx_dropped;
+  return false;
+}
+
+void fdCANbus::packCommands(const Tick& tick) noexcept {
+  packAll([&tick](CommandPacker& packer, std::span<CanFrame> out) { return packer.packCommand(tick, out); });
+}
+
+void fdCANbus::packRest() noexcept {
+  packAll([](const CommandPacker& packer, std::span<CanFrame> out) { return packer.packRest(out); });
+}
+
+template <typename Pack>
+void fdCANbus::packAll(Pack pack) noexcept {
+  for (std::size_t i = 0; i < packers_.size(); ++i) {
+    const std::size_t packer = (first_packer_ + i) % packers_.size();
+    std::array<CanFrame, kMaxFramesPerPacker> frames{};
+    const std::size_t count = std::min(pack(*packers_[packer], std::span<CanFrame>(frames)), frames.size());
+    if (count > batch_->room()) {  // half a sequence is worse than none
+      counters_.tx_dropped += count;
+      if (!first_crowded_out_) first_crowded_out_ = packer;
+      continue;
+    }
+    for (const CanFrame& frame : std::span(frames).first(count)) append(frame, packer);
+  }
+}
+
+void fdCANbus::flush() noexcept {
+  const std::size_t stopped_at = batch_->send(descriptor());
+  countSent();
+  std::optional<std::size_t> first_refused = first_crowded_out_;
+  for (const SendBatch::Entry& entry : batch_->entries().subspan(stopped_at)) {
+    if (!entry.packer) continue;
+    first_refused = entry.packer;
+    break;
+  }
+  first_packer_ = first_refused.value_or(first_packer_);
+  first_crowded_out_.reset();
+  batch_->clear();
+}
+
+void fdCANbus::holdBack() noexcept {
+  counters_.tx_held += batch_->entries().size();
+  first_crowded_out_.reset();
+  batch_->clear();
+}
+
+int fdCANbus::sendError() const noexcept { return batch_->error(); }
+
+void fdCANbus::countSent() noexcept {
+  const auto entries = batch_->entries();
+  for (std::size_t i = 0; i < entries.size(); ++i) {
+    const SendBatch::Entry& entry = entries[i];
+    if (tap_ != nullptr) tap_->onSent(batch_->frame(i), entry.sent);
+    // Refused ones too: a queue that stays full is a bus that does not carry frames either.
+    if (std::find(watched_.begin(), watched_.end(), entry.id) != watched_.end()) ++counters_.tx_watched;
+    if (!entry.sent) {
+      ++counters_.tx_dropped;
+      continue;
+    }
+    ++counters_.tx_frames;
+    counters_.tx_bits += entry.bits.nominal;
+    counters_.tx_data_bits += entry.bits.data;
+  }
+}
+
+}  // namespace rc10

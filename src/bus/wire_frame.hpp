@@ -1,0 +1,25 @@
+#pragma once
+
+#include <linux/can.h>
+
+#include <cstddef>
+
+#include "bus/can_frame.hpp"
+
+namespace rc10 {
+
+/// How SocketCAN writes a frame: a struct can_frame (16 bytes) or a struct canfd_frame (72 bytes). The
+/// first is a prefix of the second, so one buffer serves for both and the size tells them apart.
+static_assert(offsetof(can_frame, data) == offsetof(canfd_frame, data));
+static_assert(offsetof(can_frame, len) == offsetof(canfd_frame, len));
+static_assert(sizeof(can_frame) == CAN_MTU && sizeof(canfd_frame) == CANFD_MTU);
+
+/// Writes `frame` to `out`, every byte of it, and returns how many bytes to send: 16 or 72, or 0 if no
+/// such frame exists (id out of range, invalid length, remote FD frame).
+[[nodiscard]] std::size_t encodeFrame(const CanFrame& frame, canfd_frame& out) noexcept;
+
+/// Reads a message of `size` bytes. False, with `out` untouched, if it is no frame. Leaves `received` at
+/// its default.
+[[nodiscard]] bool decodeFrame(const canfd_frame& wire, std::size_t size, CanFrame& out) noexcept;
+
+}  // namespace rc10

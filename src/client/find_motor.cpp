@@ -1,0 +1,31 @@
+#include "client/find_motor.hpp"
+
+#include <algorithm>
+
+#include "client/text_table.hpp"
+
+namespace rc10::client {
+namespace {
+
+// It came over the link: not to be believed.
+std::size_t motorCount(const link::Welcome& welcome) {
+  return std::min<std::size_t>(welcome.motor_count, link::kMaxMotors);
+}
+
+}  // namespace
+
+Result<std::size_t> findMotor(const link::Welcome& welcome, std::string_view name) {
+  for (std::size_t i = 0; i < motorCount(welcome); ++i) {
+    if (welcome.motors[i].name.view() == name) return i;
+  }
+  return fail("there is no motor '" + printable(name) + "'; the motors are: " + motorNames(welcome));
+}
+
+std::string motorNames(const link::Welcome& welcome) {
+  std::string names;
+  for (std::size_t i = 0; i < motorCount(welcome); ++i)
+    names += (names.empty() ? "" : ", ") + printable(welcome.motors[i].name.view());
+  return names;
+}
+
+}  // namespace rc10::client

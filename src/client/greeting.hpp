@@ -1,0 +1,31 @@
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <string_view>
+
+#include "app/result.hpp"
+#include "app/unique_fd.hpp"
+#include "link/link_protocol.hpp"
+
+/// How a connection to rc10d begins, and what to tell a user for whom it does not.
+namespace rc10::client {
+
+using Deadline = std::chrono::steady_clock::time_point;
+
+/// "hero" for ".../hero.sock".
+[[nodiscard]] std::string robotOf(const std::string& socket_path);
+
+/// connect() failed with `error`: why, and what to do.
+[[nodiscard]] std::string connectFailure(const std::string& socket_path, int error);
+
+[[nodiscard]] Result<UniqueFd> openSocket(const std::string& socket_path, Deadline deadline);
+
+/// Says Hello on a connected socket and waits for the Welcome.
+[[nodiscard]] Result<std::unique_ptr<link::Welcome>> greet(int socket, const std::string& socket_path,
+                                                           std::string_view client,
+                                                           std::uint32_t subscriptions, Deadline deadline);
+
+}  // namespace rc10::client

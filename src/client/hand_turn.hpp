@@ -1,0 +1,31 @@
+#pragma once
+
+#include <cstddef>
+#include <string>
+
+#include "link/link_protocol.hpp"
+
+namespace rc10::client {
+
+/// What turning a motor's output by hand, one whole turn counter-clockwise, says about the configuration.
+struct HandTurn {
+  enum class Outcome : unsigned char {
+    kGood,
+    kNotTurned,   ///< Nothing moved.
+    kOtherMotor,  ///< Another one moved: the names or ids are swapped.
+    kWrongSign,
+    kWrongRatio,
+  };
+  Outcome outcome = Outcome::kGood;
+  std::size_t moved = 0;      ///< The motor that moved most, its place in Welcome.
+  double turned_deg = 0.0;    ///< How far it says it turned.
+  double ratio_factor = 1.0;  ///< kWrongRatio: what the configured gear ratio has to be multiplied by.
+};
+
+/// `before` and `after`: the states at both ends of the turn; `motor`: the one that was meant.
+[[nodiscard]] HandTurn judgeHandTurn(const link::State& before, const link::State& after, std::size_t motor);
+
+/// What it means and what to change, in words.
+[[nodiscard]] std::string text(const HandTurn& turn, const link::Welcome& welcome, std::size_t motor);
+
+}  // namespace rc10::client

@@ -1,0 +1,69 @@
+#include "client/motor_signal.hpp"
+
+#include <algorithm>
+#include <array>
+#include <limits>
+
+#include "client/find_motor.hpp"
+#include "client/text_table.hpp"
+
+namespace rc10::client {
+namespace {
+
+using link::MotorState;
+
+struct Readable {
+  std::string_view name;
+  double (*read)(const MotorState& motor);
+};
+
+constexpr std::array kSignals{
+    Readable{"target", [](const MotorState& m) { return m.target; }},
+    Readable{"angle_deg", [](const MotorState& m) { return static_cast<double>(m.angle_deg); }},
+    Readable{"total_angle_deg", [](const MotorState& m) { return m.total_angle_deg; }},
+    Readable{"velocity_rpm", [](const MotorState& m) { return static_cast<double>(m.velocity_rpm); }},
+    Readable{"current_a", [](const MotorState& m) { return static_cast<double>(m.current_a); }},
+    Readable{"torque_nm", [](const MotorState& m) { return static_cast<double>(m.torque_nm); }},
+    Readable{"voltage_v", [](const MotorState& m) { return static_cast<double>(m.voltage_v); }},
+    Readable{"temperature_c", [](const MotorState& m) { return static_cast<double>(m.temperature_c); }},
+    Readable{"command_value", [](const MotorState& m) { return static_cast<double>(m.command_value); }},
+    Readable{"feedback_age_us", [](const MotorState& m) { return static_cast<double>(m.feedback_age_us); }},
+    Readable{"feedback_hz", [](const MotorState& m) { return static_cast<double>(m.feedback_hz); }},
+};
+
+// The name as it is, or without what follows its last underscore.
+bool means(std::string_view name, std::string_view text) {
+  return name == text || name.substr(0, name.rfind('_')) == text;
+}
+
+std::string signalNames() {
+  std::string names;
+  for (const auto& signal : kSignals) names += (names.empty() ? "" : ", ") + std::string(signal.name);
+  return names;
+}
+
+}  // namespace
+
+double MotorSignal::of(const link::State& state) const {
+  if (motor >= std::min<std::size_t>(state.motor_count, link::kMaxMotors))
+    return std::numeric_limits<double>::quiet_NaN();
+  return read(state.motors[motor]);
+}
+
+Result<MotorSignal> findSignal(const link::Welcome& welcome, std::string_view text) {
+  const auto dot = text.rfind('.');
+  if (dot == std::string_view::npos)
+    return fail("'" + std::string(text) + "': give MOTOR.SIGNAL, such as " +
+                motorNames(welcome).substr(0, motorNames(welcome).find(',')) + ".velocity");
+  const auto motor_name = text.substr(0, dot);
+  const auto signal_name = text.substr(dot + 1);
+  const auto signal = std::find_if(kSignals.begin(), kSignals.end(),
+                                   [&](const auto& s) { return means(s.name, signal_name); });
+  if (signal == kSignals.end())
+    return fail("there is no signal '" + printable(signal_name) + "'; a motor has " + signalNames());
+  const auto motor = findMotor(welcome, motor_name);
+  if (!motor) return tl::unexpected(motor.error());
+  return MotorSignal{*motor, printable(motor_name) + "." + std::string(signal->name), signal->read};
+}
+
+}  // namespace rc10::client

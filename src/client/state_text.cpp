@@ -1,0 +1,146 @@
+#include "client/state_text.hpp"
+
+#include <algorithm>
+
+#include "client/quantity_text.hpp"
+#include "client/style.hpp"
+#include "client/text_table.hpp"
+#include "link/words.hpp"
+
+namespace rc10::client {
+namespace {
+
+using Align = TextTable::Align;
+
+constexpr std::uint8_t kModeCurrent = 1;
+constexpr std::uint8_t kModeAngle = 3;
+constexpr std::uint8_t kModeTotalAngle = 4;
+
+std::string note(const link::MotorState& motor) {
+  std::string text = link::faultText(motor.fault);
+  const std::string limits = link::limitWords(motor.limits);
+  if (!limits.empty()) text += (text.empty() ? "limit: " : "; limit: ") + limits;
+  return text;
+}
+
+std::string target(const link::MotorState& motor) {
+  if (motor.mode == link::kModeCoast || motor.mode == link::kModeBrake) return "-";
+  return quantity(motor.target, motor.mode == kModeCurrent ? 2 : 1, link::modeUnit(motor.mode));
+}
+
+std::string headline(const link::Welcome& welcome, const link::State& state,
+                     const link::Diagnostics* diagnostics) {
+  std::string text = printable(welcome.robot.view());
+  text += std::string("  ") + link::robotStateWord(state.robot_state);
+  text += state.realtime != 0 ? "" : "  NOT REAL-TIME";
+  text += "  tick " + std::to_string(state.tick);
+  if (diagnostics != nullptr) {
+    text += "  wake-up p99 " + quantity(static_cast<double>(diagnostics->wake_latency.p99_us), 0, "us");
+    text += ", max " + quantity(static_cast<double>(diagnostics->wake_latency.max_us), 0, "us");
+    text += "  missed ticks " + std::to_string(diagnostics->missed_ticks);
+  }
+  return text + '\n';
+}
+
+std::string busLine(const link::BusStatus& bus) {
+  std::string text = "bus " + printable(bus.name.view());
+  if (!bus.interface.view().empty()) text += " (" + printable(bus.interface.view()) + ")";
+  text += std::string("  ") + link::busStateWord(bus.state);
+  text += "  load " + percent(static_cast<double>(bus.measured_load));
+  text += " of predicted " + percent(static_cast<double>(bus.predicted_load));
+  const auto dropped = bus.rx_dropped + bus.tx_dropped;
+  if (dropped != 0) text += "  dropped " + std::to_string(dropped);
+  if (bus.error_frames != 0) text += "  error frames " + std::to_string(bus.error_frames);
+  return text + '\n';
+}
+
+std::string_view styleOf(const link::MotorState& motor) {
+  if (motor.status == link::kMotorFault) return kBad;
+  if (motor.status == link::kMotorOffline || motor.limits != 0) return kDoubtful;
+  return motor.status == link::kMotorActive ? kGood : std::string_view{};
+}
+
+std::string_view styleOf(const link::State& state) {
+  if (state.robot_state != link::kRobotRun) return kBad;
+  return state.realtime == 0 ? kDoubtful : std::string_view{};
+}
+
+// The first state is that of a healthy bus.
+std::string_view styleOf(const link::BusStatus& bus) {
+  if (bus.state != 0) return bus.state == 1 ? kDoubtful : kBad;
+  return bus.rx_dropped + bus.tx_dropped != 0 ? kDoubtful : std::string_view{};
+}
+
+}  // namespace
+
+double measured(const link::MotorState& motor, std::uint8_t mode) noexcept {
+  switch (mode) {
+    case kModeCurrent: return static_cast<double>(motor.current_a);
+    case kModeAngle:
+    case link::kModeImpedance: return static_cast<double>(motor.angle_deg);
+    case kModeTotalAngle: return motor.total_angle_deg;
+    default: return static_cast<double>(motor.velocity_rpm);
+  }
+}
+
+const char* measuredUnit(std::uint8_t mode) noexcept {
+  const char* unit = link::modeUnit(mode);
+  const bool own =
+      mode == kModeCurrent || mode == kModeAngle || mode == link::kModeImpedance || mode == kModeTotalAngle;
+  return own ? unit : "rpm";
+}
+
+std::string listText(const link::Welcome& welcome) {
+  std::string text = "robot " + printable(welcome.robot.view()) + "  rc10d " +
+                     printable(welcome.version.view()) + ", pid " + std::to_string(welcome.pid) + ", " +
+                     std::to_string(welcome.rate_hz) + " Hz\n";
+  if (!welcome.lcm_url.view().empty()) {
+    text +=
+        "LCM " + printable(welcome.lcm_url.view()) + ", state " + std::to_string(welcome.state_hz) + " Hz\n";
+  }
+  TextTable table({{"MOTOR"}, {"MODEL"}, {"BUS"}, {"ID", Align::kRight}, {"MODES"}});
+  for (std::size_t i = 0; i < std::min<std::size_t>(welcome.motor_count, link::kMaxMotors); ++i) {
+    const auto& motor = welcome.motors[i];
+    table.add({printable(motor.name.view()), printable(motor.model.view()), printable(motor.bus.view()),
+               std::to_string(motor.id), link::modeWords(motor.modes)});
+  }
+  return text + table.text();
+}
+
+std::string stateText(const link::Welcome& welcome, const link::State& state,
+                      const link::Diagnostics* diagnostics, bool colour) {
+  const auto style = [colour](const auto& what) { return colour ? styleOf(what) : std::string_view{}; };
+  std::string text = styled(headline(welcome, state, diagnostics), style(state));
+  if (diagnostics != nullptr) {
+    for (std::size_t i = 0; i < std::min<std::size_t>(diagnostics->bus_count, link::kMaxBuses); ++i) {
+      text += styled(busLine(diagnostics->buses[i]), style(diagnostics->buses[i]));
+    }
+  }
+  TextTable table({{"MOTOR"},
+                   {"STATUS"},
+                   {"MODE"},
+                   {"TARGET", Align::kRight},
+                   {"MEASURED", Align::kRight},
+                   {"ANGLE", Align::kRight},
+                   {"CURRENT", Align::kRight},
+                   {"TEMP", Align::kRight},
+                   {"AGE", Align::kRight},
+                   {"ZEROED"},
+                   {"OWNER"},
+                   {"NOTE"}});
+  for (std::size_t i = 0; i < std::min<std::size_t>(state.motor_count, welcome.motor_count); ++i) {
+    const auto& motor = state.motors[i];
+    table.add(
+        {printable(welcome.motors[i].name.view()), link::motorStatusWord(motor.status),
+         link::modeWord(motor.mode), target(motor),
+         quantity(measured(motor, motor.mode), motor.mode == kModeCurrent ? 2 : 1, measuredUnit(motor.mode)),
+         quantity(static_cast<double>(motor.angle_deg), 1, "deg"),
+         quantity(static_cast<double>(motor.current_a), 2, "A"),
+         quantity(static_cast<double>(motor.temperature_c), 0, "C"), age(motor.feedback_age_us),
+         motor.zeroed != 0 ? "yes" : "no", printable(motor.owner.view()), note(motor)},
+        style(motor));
+  }
+  return text + table.text();
+}
+
+}  // namespace rc10::client

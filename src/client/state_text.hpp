@@ -1,0 +1,27 @@
+#pragma once
+
+#include <string>
+
+#include "link/link_protocol.hpp"
+
+/// What rc10d tells, as text for people.
+namespace rc10::client {
+
+/// The robot and its motors, with a line for each.
+[[nodiscard]] std::string listText(const link::Welcome& welcome);
+
+/// What every motor does. `diagnostics` may be null: none received yet. `colour`: what acts, what is doubtful
+/// and what is wrong stand out on a terminal.
+[[nodiscard]] std::string stateText(const link::Welcome& welcome, const link::State& state,
+                                    const link::Diagnostics* diagnostics, bool colour = false);
+
+/// How late and how loaded the robot is.
+[[nodiscard]] std::string diagnosticsText(const link::Welcome& welcome, const link::Diagnostics& diagnostics);
+
+/// The measured counterpart of a mode's target: the current for CURRENT, an angle for the angle modes, the
+/// velocity for all others. NaN: not reported.
+[[nodiscard]] double measured(const link::MotorState& motor, std::uint8_t mode) noexcept;
+/// The unit of measured().
+[[nodiscard]] const char* measuredUnit(std::uint8_t mode) noexcept;
+
+}  // namespace rc10::client

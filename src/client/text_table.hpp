@@ -1,0 +1,39 @@
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace rc10::client {
+
+/// Text without what would move the cursor of a terminal: names come from strangers.
+[[nodiscard]] std::string printable(std::string_view text);
+
+/// Columns of plain text, as wide as their widest cell, two spaces apart. Columns in which every cell is
+/// empty are left out.
+class TextTable {
+ public:
+  enum class Align : unsigned char { kLeft, kRight };
+  struct Column {
+    std::string title;
+    Align align = Align::kLeft;
+  };
+
+  explicit TextTable(std::vector<Column> columns) : columns_(std::move(columns)) {}
+
+  /// `style` goes before the line and a reset behind it, of no width: a terminal's colour.
+  void add(std::vector<std::string> cells, std::string_view style = {});
+  [[nodiscard]] std::string text() const;
+
+ private:
+  [[nodiscard]] std::size_t width(std::size_t column) const;
+  [[nodiscard]] std::string line(const std::vector<std::size_t>& widths,
+                                 const std::vector<std::string>& cells) const;
+
+  std::vector<Column> columns_;
+  std::vector<std::vector<std::string>> rows_;
+  std::vector<std::string> styles_;  // of each row; mostly empty
+};
+
+}  // namespace rc10::client

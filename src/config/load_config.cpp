@@ -1,0 +1,88 @@
+#include "config/load_config.hpp"
+
+#include <exception>
+#include <utility>
+
+#include "config/key_check.hpp"
+#include "config/module_builder.hpp"
+#include "config/robot_builder.hpp"
+#include "config/source_text.hpp"
+#include "config/yaml_reader.hpp"
+#include "config/yaml_rules.hpp"
+
+namespace rc10 {
+namespace {
+
+std::string listed(const std::vector<ConfigProblem>& problems) {
+  std::string text;
+  for (const auto& problem : problems) text += toString(problem) + "\n";
+  return text;
+}
+
+/// What the motor layer itself demands. The checks before it say where; this one makes sure that no
+/// configuration passes which a motor would refuse.
+void checkMotors(const RobotConfig& robot, Problems& problems) {
+  for (const auto& bus : robot.buses) {
+    // On a bus of its own, without a wire: the ids are held against each other as they will be.
+    const auto wireless = fdCANbus::adopt(bus.name, UniqueFd{}, bus.data_bitrate > 0);
+    BusParts parts{*wireless};
+    std::vector<std::unique_ptr<Motor_Base>> built;
+    for (const auto& motor : bus.motors) {
+      auto made = motor.family->build(motor.settings, parts);
+      if (made) {
+        built.push_back(std::move(*made));
+      } else {
+        problems.error(motor.place, "", made.error().message);
+      }
+    }
+  }
+}
+
+std::optional<RobotConfig> parse(std::string_view text, const std::string& file, Problems& problems) {
+  if (!checkSource(text, problems)) return std::nullopt;
+  auto root = readYaml(text, problems);
+  if (!root) return std::nullopt;
+  checkYamlRules(*root, problems);
+  checkKeys(*root, kRobotSection, "", problems);
+  RobotConfig robot = buildRobot(*root, problems);
+  robot.file = file;
+  if (!problems.hasErrors()) checkMotors(robot, problems);
+  if (!problems.hasErrors()) checkModules(robot, problems);
+  return robot;
+}
+
+/// yaml-cpp and the standard library may throw (memory); nothing above this file has to know.
+template <typename Work>
+ConfigOutcome collect(std::string file, Work work) noexcept {
+  Problems problems{std::move(file)};
+  ConfigOutcome outcome;
+  try {
+    outcome.config = work(problems);
+  } catch (const std::exception& thrown) {
+    problems.error({}, "", std::string{"cannot be read: "} + thrown.what());
+  }
+  if (problems.hasErrors()) outcome.config.reset();
+  outcome.errors = problems.errors();
+  outcome.warnings = problems.warnings();
+  return outcome;
+}
+
+}  // namespace
+
+std::string ConfigOutcome::errorText() const { return listed(errors); }
+
+std::string ConfigOutcome::warningText() const { return listed(warnings); }
+
+ConfigOutcome loadRobotConfig(const std::string& path) {
+  return collect(path, [&](Problems& problems) -> std::optional<RobotConfig> {
+    const auto text = readSource(path, problems);
+    return text ? parse(*text, path, problems) : std::nullopt;
+  });
+}
+
+ConfigOutcome parseRobotConfig(std::string_view text, std::string file_name) {
+  const std::string file = file_name;
+  return collect(std::move(file_name), [&](Problems& problems) { return parse(text, file, problems); });
+}
+
+}  // namespace rc10

@@ -1,0 +1,12 @@
+#pragma once
+
+#include <string_view>
+#include <vector>
+
+namespace rc10 {
+
+/// The candidate a typist most likely meant; empty: none is near.
+[[nodiscard]] std::string_view nearest(std::string_view typed,
+                                       const std::vector<std::string_view>& candidates);
+
+}  // namespace rc10

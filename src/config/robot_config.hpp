@@ -1,0 +1,114 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "app/time.hpp"
+#include "bus/can_link_settings.hpp"
+#include "config/gpio_config.hpp"
+#include "module/module_type.hpp"
+#include "motor/fallback.hpp"
+#include "motor/motor_family.hpp"
+#include "motor/motor_guard.hpp"
+#include "motor/target_shaper.hpp"
+#include "sim/sim_config.hpp"
+
+namespace rc10 {
+
+/// Where something stands in the configuration file. Lines and columns count from 1.
+struct SourcePlace {
+  int line = 0;
+  int column = 0;
+};
+
+struct MotorConfig {
+  SourcePlace place;
+  const MotorFamily* family = nullptr;
+  MotorSettings settings;
+  Duration feedback_timeout{std::chrono::milliseconds{20}};
+  GuardConfig guard{};
+  ShapingConfig shaping{};
+  FallbackConfig fallback{};
+  float standstill_rpm = 10.0F;  ///< Slower than this it stands still.
+  bool optional = false;
+  sim::MotorLoad simulated;  ///< Used on a simulated bus and by rc10-sim.
+
+  [[nodiscard]] MotorTraits traits() const { return family->traits(settings.model, settings.own); }
+  [[nodiscard]] const std::string& name() const noexcept { return settings.name; }
+};
+
+enum class BusType : std::uint8_t { kSocketCan, kSimulated };
+
+struct BusConfig {
+  SourcePlace place;
+  std::string name;
+  BusType type = BusType::kSocketCan;
+  std::string interface;  ///< SocketCAN only.
+  int bitrate = 1'000'000;
+  int data_bitrate = 0;       ///< Of the data phase of CAN FD frames; 0: a classic bus.
+  double sample_point = 0.0;  ///< Share of the bit, 0 to 1; 0: what the kernel chooses.
+  double data_sample_point = 0.0;
+  bool manage_link = false;    ///< rc10d sets the bit rate and takes the interface down and up.
+  std::uint64_t sim_seed = 1;  ///< Simulated buses and rc10-sim.
+  std::vector<MotorConfig> motors;
+
+  [[nodiscard]] CanLinkSettings linkSettings() const noexcept {
+    return {.bitrate = bitrate,
+            .data_bitrate = data_bitrate,
+            .sample_point = sample_point,
+            .data_sample_point = data_sample_point};
+  }
+};
+
+/// Motors that stop together.
+struct GroupConfig {
+  enum class Return : std::uint8_t {
+    kRequest,      ///< Each member must be enabled again.
+    kRearmAtRest,  ///< Enabled again by itself once every member is there and stands still.
+  };
+  SourcePlace place;
+  std::string name;
+  std::vector<std::size_t> motors;  ///< Their places among all motors of the robot, in the file's order.
+  Return on_return = Return::kRequest;
+};
+
+/// A chassis, a gimbal, a remote: see module_base.hpp.
+struct ModuleConfig {
+  SourcePlace place;
+  const ModuleType* type = nullptr;
+  ModuleSettings settings;
+};
+
+enum class RealtimePolicy : std::uint8_t { kRequired, kPreferred };
+
+struct ThreadConfig {
+  int priority = 0;        ///< SCHED_FIFO
+  std::optional<int> cpu;  ///< Pinned to this CPU.
+};
+
+struct LcmConfig {
+  bool enabled = true;
+  std::string url = "udpm://239.255.76.67:7667?ttl=0";
+  int state_hz = 200;
+};
+
+struct RobotConfig {
+  std::string file;
+  std::string robot;
+  RealtimePolicy realtime = RealtimePolicy::kRequired;
+  int rate_hz = 1000;
+  ThreadConfig scheduler{.priority = 60, .cpu = std::nullopt};
+  ThreadConfig rx{.priority = 65, .cpu = std::nullopt};
+  LcmConfig lcm;
+  std::optional<EstopGpioConfig> estop_gpio;
+  std::optional<HeartbeatGpioConfig> heartbeat_gpio;
+  int blackbox_mib = 16;  ///< 0: none.
+  std::vector<BusConfig> buses;
+  std::vector<GroupConfig> groups;
+  std::vector<ModuleConfig> modules;
+
+  [[nodiscard]] Duration period() const noexcept { return std::chrono::nanoseconds{1'000'000'000 / rate_hz}; }
+};
+
+}  // namespace rc10

@@ -1,0 +1,129 @@
+#include "config/stm32_gains.hpp"
+
+#include <cmath>
+
+#include "config/number_text.hpp"
+
+namespace rc10 {
+namespace {
+
+constexpr double kMilliamperesPerAmpere = 1000.0;
+
+[[nodiscard]] std::string line(const char* key, float value, const char* comment = "") {
+  return std::string("  ") + key + ": " + numberText(value) + (*comment == '\0' ? "" : "  # ") + comment +
+         "\n";
+}
+
+[[nodiscard]] std::string comments(const std::vector<std::string>& notes) {
+  std::string text;
+  for (const auto& note : notes) text += "# " + note + "\n";
+  return text;
+}
+
+[[nodiscard]] Result<double> numberOf(const std::string& text) {
+  // As C++ writes them: 18.0f.
+  const bool suffixed = text.size() > 1 && (text.back() == 'f' || text.back() == 'F');
+  auto number = suffixed ? text.substr(0, text.size() - 1) : text;
+  if (!number.empty() && number.back() == '.') number += '0';
+  const auto value = parseNumber(number);
+  if (!value || *value < 0.0) return fail("'" + text + "' is no number from 0 on");
+  return *value;
+}
+
+}  // namespace
+
+Result<Stm32Pid> stm32Pid(std::span<const std::string> numbers) {
+  if (numbers.size() < 3 || numbers.size() > 7) {
+    return fail(
+        "3 to 7 numbers are needed, in the order kp ki kd I_Outlimit isIOutlimit output_limit deadband");
+  }
+  Stm32Pid pid;
+  double limits_integral = 0.0;
+  double* const fields[] = {&pid.kp,          &pid.ki,           &pid.kd,      &pid.integral_limit,
+                            &limits_integral, &pid.output_limit, &pid.deadband};
+  for (std::size_t i = 0; i < numbers.size(); ++i) {
+    const auto text = numbers[i] == "true" ? "1" : numbers[i] == "false" ? "0" : numbers[i];
+    const auto value = numberOf(text);
+    if (!value) return tl::unexpected(value.error());
+    *fields[i] = *value;
+  }
+  pid.limits_integral = limits_integral != 0.0;
+  return pid;
+}
+
+Converted<PID_Incremental::Config> convertSpeedGains(const Stm32Pid& pid, double td_ratio, double tick_s) {
+  Converted<PID_Incremental::Config> out;
+  // Per tick it adds kp (e - e1) + ki e + kd (e - 2 e1 + e2) mA, without a dt. Here the second is
+  // ki e dt, and the third -kd (rate - rate1), where the rate is a change divided by dt.
+  out.config.kp = static_cast<float>(pid.kp / kMilliamperesPerAmpere);
+  out.config.ki = static_cast<float>(pid.ki / tick_s / kMilliamperesPerAmpere);
+  out.config.kd = static_cast<float>(pid.kd * tick_s / kMilliamperesPerAmpere);
+  out.config.deadband = static_cast<float>(pid.deadband);
+  out.config.tracking_rad_s = static_cast<float>(td_ratio);
+  out.config.output_limit = static_cast<float>(pid.output_limit / kMilliamperesPerAmpere);
+  if (pid.kd > 0.0) {
+    out.notes.emplace_back(
+        "The derivative acts on the measurement only: a step of the target gives no kick any more.");
+  }
+  if (pid.limits_integral) {
+    out.notes.emplace_back("I_Outlimit is left out: the library's PID_Incremental does not use it either.");
+  }
+  if (pid.output_limit == 0.0) {
+    out.notes.emplace_back(
+        "output_limit is 0 or not given: set current_limit_a, low at first (in the library 0 means no "
+        "output).");
+  }
+  return out;
+}
+
+Converted<PID_Position::Config> convertAngleGains(const Stm32Pid& pid, double separation_deg) {
+  Converted<PID_Position::Config> out;
+  out.config.kp = static_cast<float>(pid.kp);
+  out.config.kd = static_cast<float>(pid.kd);
+  out.config.deadband = static_cast<float>(pid.deadband);
+  out.config.output_limit = static_cast<float>(pid.output_limit);
+  // Its integral acts below the threshold only, and so never with threshold 0, nor when it is bounded to 0.
+  const bool integrates = separation_deg > 0.0 && !(pid.limits_integral && pid.integral_limit == 0.0);
+  if (integrates) {
+    out.config.ki = static_cast<float>(pid.ki);
+    out.config.integral_separation = static_cast<float>(separation_deg);
+    if (pid.limits_integral) out.config.integral_limit = static_cast<float>(pid.integral_limit);
+    if (pid.ki > 0.0) {
+      out.notes.emplace_back(
+          "Beyond integral_separation_deg the integral stands still; the library cleared it.");
+    }
+  } else if (pid.ki > 0.0) {
+    out.notes.emplace_back(
+        separation_deg > 0.0 ? "ki is 0 here: with I_Outlimit 0 the library's integral never acted."
+                             : "ki is 0 here: with I_SeparaThreshold 0 the library's integral never acted.");
+  }
+  if (pid.output_limit == 0.0) {
+    out.notes.emplace_back(
+        "output_limit is 0 or not given: set velocity_limit_rpm (in the library 0 means no output).");
+  }
+  return out;
+}
+
+std::string yamlLines(const Converted<PID_Incremental::Config>& speed) {
+  const auto& config = speed.config;
+  std::string text = comments(speed.notes);
+  if (config.output_limit > 0.0F) text += "current_limit_a: " + numberText(config.output_limit) + "\n";
+  text += "velocity_pid:\n  type: incremental\n";
+  text += line("kp_a_per_rpm", config.kp) + line("ki_a_per_rpm_s", config.ki, "per second");
+  text += line("kd_a_s_per_rpm", config.kd) + line("deadband_rpm", config.deadband);
+  if (config.tracking_rad_s > 0.0F) text += line("target_bandwidth_rad_s", config.tracking_rad_s, "td_ratio");
+  return text;
+}
+
+std::string yamlLines(const Converted<PID_Position::Config>& angle) {
+  const auto& config = angle.config;
+  std::string text = comments(angle.notes) + "angle_pid:\n";
+  text += line("kp_rpm_per_deg", config.kp) + line("ki_rpm_per_deg_s", config.ki);
+  text += line("kd_rpm_s_per_deg", config.kd) + line("deadband_deg", config.deadband);
+  if (config.output_limit > 0.0F) text += line("velocity_limit_rpm", config.output_limit);
+  if (config.integral_limit > 0.0F) text += line("integral_limit_rpm", config.integral_limit);
+  if (config.integral_separation > 0.0F) text += line("integral_separation_deg", config.integral_separation);
+  return text;
+}
+
+}  // namespace rc10

@@ -1,0 +1,14 @@
+#pragma once
+
+#include "app/receive_clock.hpp"
+
+namespace rc10 {
+
+/// CLOCK_MONOTONIC, now.
+[[nodiscard]] MonotonicTime monotonicNow() noexcept;
+/// CLOCK_REALTIME in microseconds since 1970, for `utime` fields only.
+[[nodiscard]] std::int64_t wallClockUs() noexcept;
+/// CLOCK_REALTIME - CLOCK_MONOTONIC, now.
+[[nodiscard]] Duration realtimeOffset() noexcept;
+
+}  // namespace rc10

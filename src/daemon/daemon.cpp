@@ -1,0 +1,299 @@
+#include "daemon/daemon.hpp"
+
+#include <poll.h>
+
+#include <thread>
+
+#include <fmt/format.h>
+
+#include "blackbox/places.hpp"
+#include "config/bus_load.hpp"
+#include "daemon/clock.hpp"
+#include "daemon/log.hpp"
+#include "daemon/rest_frames.hpp"
+#include "daemon/rt_process.hpp"
+#include "daemon/service_notify.hpp"
+#include "link/run_dir.hpp"
+
+namespace rc10 {
+namespace {
+
+constexpr int kSuperviseMs = 50;
+// Below the scheduler: to the daemon the simulated drives are the outside world.
+constexpr int kSimPriority = 50;
+
+}  // namespace
+
+Daemon::Daemon(RobotConfig config, std::shared_ptr<spdlog::logger> log)
+    : config_(std::move(config)), log_(std::move(log)) {}
+
+Daemon::~Daemon() { stop(); }
+
+// A shortcoming of the real-time set-up: an error where real time is required, else a notice.
+Result<void> Daemon::tolerate(const Result<void>& outcome) {
+  if (outcome) return {};
+  if (config_.realtime == RealtimePolicy::kRequired) {
+    return fail(outcome.error().message +
+                ". (`realtime: preferred` in the configuration starts without it.)");
+  }
+  description_.realtime = false;
+  description_.notices.push_back("not real-time: " + outcome.error().message);
+  log_->warn("{}", description_.notices.back());
+  return {};
+}
+
+Result<void> Daemon::start() {
+  if (auto built = build(); !built) return built;
+  cpu_latency_ = holdCpuDmaLatency();
+  if (auto locked = tolerate(lockMemory()); !locked) return locked;
+  if (auto started = startThreads(); !started) {
+    stop();
+    return started;
+  }
+  log_->info("robot '{}' runs: {} motors on {} buses at {} Hz{}; link {}", config_.robot,
+             robot_->motors().size(), robot_->buses().size(), config_.rate_hz,
+             description_.realtime ? "" : ", not real-time", link::socketPath(config_.robot));
+  notifyService("READY=1");
+  return {};
+}
+
+Result<void> Daemon::build() {
+  // First what makes this the only rc10d of its robot and of its interfaces: another one must not notice.
+  auto socket = LinkSocket::listen(link::runDir(), config_.robot);
+  if (!socket) return tl::unexpected(socket.error());
+  if (auto locked = lockInterfaces(); !locked) return locked;
+  if (auto prepared = prepareLinks(); !prepared) return prepared;
+  auto robot = Robot::build(config_);
+  if (!robot) return tl::unexpected(robot.error());
+  robot_ = std::move(*robot);
+  if (auto written = writeRestFrames(*robot_, link::runDir(), config_.robot); !written) return written;
+  describeRobot();
+  openBlackBox();  // the file is ours: no other daemon of this robot runs
+  scheduler_ = std::make_unique<Scheduler>(*robot_, inboxes_, exchange_, config_.period(),
+                                           black_box_ ? &black_box_->recorder() : nullptr);
+  auto sched_loop = SchedLoop::create(*scheduler_, config_.period());
+  if (!sched_loop) return tl::unexpected(sched_loop.error());
+  sched_loop_ = std::move(*sched_loop);
+  auto rx_loop = RxLoop::create(*robot_, inboxes_, robot_->serialLines());
+  if (!rx_loop) return tl::unexpected(rx_loop.error());
+  rx_loop_ = std::move(*rx_loop);
+  auto sim_loop = SimLoop::create(*robot_);
+  if (!sim_loop) return tl::unexpected(sim_loop.error());
+  sim_loop_ = std::move(*sim_loop);
+  auto gpio_loop = GpioLoop::create(config_, exchange_);
+  if (!gpio_loop) return tl::unexpected(gpio_loop.error());
+  gpio_loop_ = std::move(*gpio_loop);
+  // After the e-stop input and the heartbeat: a line that is also theirs stays theirs.
+  if (auto* banks = robot_->lineBanks())
+    line_loop_ = std::make_unique<LineLoop>(*banks, kernelGpio(), exchange_);
+  io_loop_ = std::make_unique<IoLoop>(BusReviver{*robot_, inboxes_, *rx_loop_},
+                                      LinkKeeper{*robot_, inboxes_, exchange_}, black_box_.get(), serialIo(),
+                                      spiIo());
+  if (config_.lcm.enabled) {
+    gateway_ = std::make_unique<GatewayProcess>(
+        siblingProgram("rc10-lcm"), std::vector<std::string>{"--socket", socket->path(), "--robot",
+                                                             config_.robot, "--url", config_.lcm.url});
+  }
+  auto link =
+      LinkServer::create(std::move(*socket), {.exchange = exchange_,
+                                              .inboxes = inboxes_,
+                                              .timing = sched_loop_->timing(),
+                                              .robot = description_,
+                                              .page_faults = [this] { return newPageFaults(); },
+                                              .log = [this](const link::Event& e) { logEvent(*log_, e); },
+                                              .housekeeping = [this] { feedWatchdog(); }});
+  if (!link) return tl::unexpected(link.error());
+  link_ = std::move(*link);
+  return {};
+}
+
+std::unique_ptr<SerialIo> Daemon::serialIo() {
+  auto* lines = robot_->serialLines();
+  if (lines == nullptr) return nullptr;
+  auto serial =
+      std::make_unique<SerialIo>(SerialIo{SerialReviver{*lines, *rx_loop_, exchange_}, SerialWriter{*lines}});
+  serial->reviver.check(monotonicNow());  // what is there is open before the first tick
+  return serial;
+}
+
+std::unique_ptr<SpiKeeper> Daemon::spiIo() {
+  auto& lines = robot_->spiLines();
+  if (lines.empty()) return nullptr;
+  return std::make_unique<SpiKeeper>(lines, exchange_, [](const std::string& path, std::uint32_t speed_hz) {
+    return openSpiPort(path, speed_hz);
+  });
+}
+
+Result<void> Daemon::lockInterfaces() {
+  for (const auto& bus : config_.buses) {
+    if (bus.type != BusType::kSocketCan) continue;
+    auto lock = link::InterfaceLock::take(link::runDir(), bus.interface, config_.robot);
+    if (!lock) return tl::unexpected(lock.error());
+    interface_locks_.push_back(std::move(*lock));
+  }
+  return {};
+}
+
+// Before the sockets are opened. What is missing or no CAN interface at all, opening will tell.
+Result<void> Daemon::prepareLinks() {
+  for (const auto& bus : config_.buses) {
+    if (bus.type != BusType::kSocketCan) continue;
+    if (bus.manage_link) {
+      if (auto restarted = restartCanLink(bus.interface, bus.linkSettings()); !restarted) {
+        return fail("bus '" + bus.name + "': " + restarted.error().message);
+      }
+      log_->info("{}: {} brought up at {}", bus.name, bus.interface, bitrates(bus.linkSettings()));
+      continue;
+    }
+    const auto link = readCanLink(bus.interface);
+    const auto advice = link ? settingsAdvice(bus.interface, *link, bus.linkSettings()) : std::string{};
+    if (advice.empty()) continue;
+    description_.notices.push_back("at start: " + advice);
+    log_->warn("{}: {}", bus.name, advice);
+  }
+  return {};
+}
+
+void Daemon::describeRobot() {
+  description_.robot = config_.robot;
+  description_.lcm_url = config_.lcm.enabled ? config_.lcm.url : "";
+  description_.rate_hz = config_.rate_hz;
+  description_.state_hz = config_.lcm.state_hz;
+  if (config_.estop_gpio) description_.estop_input = config_.estop_gpio->pin.name();
+  for (const auto& bus : config_.buses) {
+    const auto load = predictLoad(bus, config_.rate_hz);
+    description_.buses.push_back({bus.name, bus.interface, static_cast<double>(bus.bitrate),
+                                  static_cast<float>(load.unstuffed), static_cast<float>(load.worst_case),
+                                  static_cast<double>(bus.data_bitrate)});
+  }
+  std::size_t index = 0;
+  for (std::size_t bus = 0; bus < config_.buses.size(); ++bus) {
+    for (const auto& motor : config_.buses[bus].motors) {
+      const auto& built = *robot_->motors()[index++].motor;
+      const auto traits = motor.traits();
+      description_.motors.push_back({motor.name(), std::string(built.modelName()), bus, motor.settings.id,
+                                     built.modes(), motor.optional, traits.setup,
+                                     MotorLoops{motor.settings.model, traits, motor.settings.loops}});
+    }
+  }
+  describeModules();
+}
+
+void Daemon::describeModules() {
+  for (std::size_t i = 0; i < config_.modules.size(); ++i) {
+    const auto& module = robot_->modules()[i];
+    description_.modules.push_back(
+        {module.name, std::string{config_.modules[i].type->name()}, module.module->signals()});
+  }
+}
+
+void Daemon::openBlackBox() {
+  if (config_.blackbox_mib == 0) return;
+  auto opened = BlackBox::create(
+      {.run_dir = link::runDir(), .state_dir = blackbox::stateDir(), .mib = config_.blackbox_mib},
+      description_, log_);
+  if (opened) {
+    black_box_ = std::move(*opened);
+    return;
+  }
+  description_.notices.push_back("no black box: " + opened.error().message);
+  log_->warn("{}", description_.notices.back());
+}
+
+Result<void> Daemon::startThread(RtThread& thread, RtSettings settings,
+                                 std::function<void(std::stop_token)> body) {
+  auto started = thread.start(std::move(settings), std::move(body));
+  if (started) return {};
+  if (!thread.joinable()) return started;  // there is no thread at all
+  return tolerate(started);
+}
+
+Result<void> Daemon::startThreads() {
+  const auto rx = RtSettings{"rx", config_.rx.priority, config_.rx.cpu};
+  const auto sched = RtSettings{"sched", config_.scheduler.priority, config_.scheduler.cpu};
+  auto started =
+      startThread(io_thread_, {"io", 0, {}}, [this](const std::stop_token& stop) { io_loop_->run(stop); });
+  if (started && black_box_) {
+    started = startThread(copy_thread_, {"copy", 0, {}},
+                          [this](const std::stop_token& stop) { black_box_->runCopies(stop); });
+  }
+  if (started) {
+    started = startThread(rx_thread_, rx, [this](const std::stop_token& stop) { rx_loop_->run(stop); });
+  }
+  if (started && gpio_loop_) {
+    // Above the scheduler: the input is seen in the tick that follows.
+    started = startThread(gpio_thread_, {"gpio", config_.scheduler.priority + 1, {}},
+                          [this](const std::stop_token& stop) { gpio_loop_->run(stop, *scheduler_); });
+  }
+  if (started && line_loop_) {
+    // Below the scheduler, which must not wait for a slow chip; above all that is not real-time, for an
+    // output must go to its safe value on a busy computer too.
+    started = startThread(line_thread_, {"lines", config_.scheduler.priority - 1, {}},
+                          [this](const std::stop_token& stop) { line_loop_->run(stop, *scheduler_); });
+  }
+  if (started && !robot_->simPorts().empty()) {
+    started = startThread(sim_thread_, {"sim", kSimPriority, {}},
+                          [this](const std::stop_token& stop) { sim_loop_->run(stop); });
+  }
+  if (started) {
+    started =
+        startThread(sched_thread_, sched, [this](const std::stop_token& stop) { sched_loop_->run(stop); });
+  }
+  if (!started) return started;
+  page_faults_at_start_ = pageFaults(rx_thread_.tid()) + pageFaults(sched_thread_.tid());
+  return startThread(link_thread_, {"link", 0, {}},
+                     [this](const std::stop_token& stop) { link_->run(stop); });
+}
+
+std::uint64_t Daemon::newPageFaults() const {
+  return pageFaults(rx_thread_.tid()) + pageFaults(sched_thread_.tid()) - page_faults_at_start_;
+}
+
+void Daemon::feedWatchdog() {
+  if (watchdog_.progressed(scheduler_->ticks(), rx_loop_->wakeUps())) notifyService("WATCHDOG=1");
+}
+
+void Daemon::waitForSignal(SignalInbox& signals) {
+  for (;;) {
+    if (gateway_) {
+      if (const auto news = gateway_->supervise(monotonicNow()); !news.empty()) log_->warn("{}", news);
+    }
+    if (gpio_loop_ && gpio_loop_->takeHeartbeatFailure()) {
+      log_->error("heartbeat_gpio: {} cannot be set: the relay behind it cuts the motors' power",
+                  config_.heartbeat_gpio->pin.name());
+    }
+    pollfd wait_for{.fd = signals.descriptor(), .events = POLLIN, .revents = 0};
+    (void)::poll(&wait_for, 1, kSuperviseMs);
+    while (const int signal = signals.take()) {
+      if (signal == SIGCHLD) continue;
+      log_->info("{}: stopping", signal == SIGINT ? "SIGINT" : "SIGTERM");
+      return;
+    }
+  }
+}
+
+void Daemon::stop() {
+  notifyService("STOPPING=1");
+  sched_thread_.join();  // goes on until rest frames are on the wire
+  line_thread_.join();   // leaves its outputs safe
+  if (gateway_) gateway_->stop();
+  link_thread_.join();
+  rx_thread_.join();
+  gpio_thread_.join();
+  sim_thread_.join();
+  copy_thread_.join();
+  io_thread_.join();
+  if (black_box_) black_box_->end();
+  if (!sched_loop_ || scheduler_->ticks() == 0) return;
+  const auto us = [](Duration d) { return std::chrono::duration<double, std::micro>(d).count(); };
+  const auto& timing = sched_loop_->timing();
+  log_->info(
+      "{} ticks, {} missed; wake latency p50 {:.0f} p99 {:.0f} max {:.0f} us; tick p50 {:.1f} p99 {:.1f} max "
+      "{:.1f} us",
+      scheduler_->ticks(), scheduler_->missedTicks(), us(timing.wake_latency.percentile(0.5)),
+      us(timing.wake_latency.percentile(0.99)), us(timing.wake_latency.max()),
+      us(timing.duration.percentile(0.5)), us(timing.duration.percentile(0.99)), us(timing.duration.max()));
+  sched_loop_.reset();
+}
+
+}  // namespace rc10

@@ -1,0 +1,89 @@
+#include "daemon/daemon_main.hpp"
+
+#include <iostream>
+#include <optional>
+#include <string>
+
+#include <CLI/CLI.hpp>
+
+#include "config/load_config.hpp"
+#include "config/report.hpp"
+#include "config/schema.hpp"
+#include "daemon/daemon.hpp"
+#include "daemon/log.hpp"
+#include "daemon/rt_process.hpp"
+#include "daemon/signal_inbox.hpp"
+#include "rc10_version.hpp"
+
+namespace rc10 {
+namespace {
+
+// sysexits-like, documented in `rc10d --help`.
+constexpr int kOk = 0;
+constexpr int kStartFailed = 1;
+constexpr int kBadUsageOrConfig = 2;
+
+/// Loads a configuration and prints everything that is wrong with it.
+std::optional<RobotConfig> load(const std::string& file) {
+  auto outcome = loadRobotConfig(file);
+  std::cerr << outcome.errorText() << outcome.warningText();
+  if (!outcome.config) std::cerr << file << ": " << outcome.errors.size() << " errors\n";
+  return std::move(outcome.config);
+}
+
+int run(RobotConfig config) {
+  SignalInbox signals;  // before the log, which starts a thread
+  const auto log = makeLog();
+  Daemon daemon(std::move(config), log);
+  if (const auto started = daemon.start(); !started) {
+    std::cerr << "rc10d: " << started.error().message << '\n';
+    return kStartFailed;
+  }
+  daemon.waitForSignal(signals);
+  daemon.stop();
+  return kOk;
+}
+
+}  // namespace
+
+int daemonMain(int argc, char** argv) {
+  configureMemory();
+  CLI::App app{
+      "Real-time motor daemon: drives the motors of one robot over CAN, commanded through LCM.\n"
+      "Exit status: 0 stopped by a signal, 1 could not start, 2 bad usage or configuration."};
+  std::string config_file;
+  std::string check_file;
+  bool schema = false;
+  auto* run_option =
+      app.add_option("-c,--config", config_file, "run the robot that FILE describes")->type_name("FILE");
+  auto* check_option =
+      app.add_option("--check", check_file, "check FILE, print what the robot would be, and exit")
+          ->type_name("FILE")
+          ->excludes(run_option);
+  auto* schema_option =
+      app.add_flag("--schema", schema, "print the JSON schema of the configuration, and exit");
+  app.set_version_flag("--version", std::string("rc10d ") + kVersion);
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    return app.exit(error) == 0 ? kOk : kBadUsageOrConfig;
+  }
+
+  if (*schema_option) {
+    std::cout << configSchema();
+    return kOk;
+  }
+  if (config_file.empty() && check_file.empty()) {
+    std::cerr << "rc10d: nothing to do: give -c FILE to run a robot or --check FILE to check one\n";
+    return kBadUsageOrConfig;
+  }
+  auto config = load(*check_option ? check_file : config_file);
+  if (!config) return kBadUsageOrConfig;
+  if (*check_option) {
+    std::cout << describe(*config);
+    return kOk;
+  }
+  return run(std::move(*config));
+}
+
+}  // namespace rc10

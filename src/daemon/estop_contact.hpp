@@ -1,0 +1,53 @@
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <optional>
+
+namespace rc10 {
+
+/// What the e-stop input says.
+enum class ContactState : std::uint8_t {
+  kAbsent,      ///< None is configured.
+  kClosed,      ///< All is well.
+  kOpen,        ///< Pressed, or a wire is off.
+  kUnreadable,  ///< The chip is gone, or nobody looks any more.
+};
+
+/// The e-stop input on its way from the thread that watches it to the scheduler. Neither side waits. An
+/// opening is never missed, however short; and silence of the watcher counts as unreadable.
+class EstopContact {
+ public:
+  /// The watcher looks far more often; in ticks that were executed, so that a computer that stood still
+  /// as a whole is no silence.
+  static constexpr float kMaxSilenceSeconds = 0.2F;
+
+  /// What the input says now. Watching thread only.
+  void show(ContactState state) noexcept {
+    state_.store(state, std::memory_order_relaxed);
+    if (state != ContactState::kClosed) openings_.fetch_add(1, std::memory_order_relaxed);
+    sightings_.fetch_add(1, std::memory_order_release);
+  }
+
+  struct View {
+    bool stop = false;                 ///< Open now, or since the last look.
+    std::optional<ContactState> news;  ///< What has changed, for the event.
+  };
+  /// Once in each tick. Scheduler thread only.
+  [[nodiscard]] View look(float dt_s) noexcept;
+  /// As of the last look: `clear` must wait. Scheduler thread only.
+  [[nodiscard]] bool open() const noexcept { return open_; }
+
+ private:
+  std::atomic<ContactState> state_{ContactState::kAbsent};
+  std::atomic<std::uint32_t> openings_{0};
+  std::atomic<std::uint32_t> sightings_{0};
+  // Of the scheduler.
+  std::uint32_t seen_openings_ = 0;
+  std::uint32_t seen_sightings_ = 0;
+  float silence_s_ = 0.0F;
+  bool open_ = false;
+  ContactState told_ = ContactState::kClosed;
+};
+
+}  // namespace rc10

@@ -1,0 +1,28 @@
+#pragma once
+
+#include <string>
+#include <string_view>
+
+#include "app/result.hpp"
+#include "config/loop_gains.hpp"
+#include "link/link_protocol.hpp"
+
+namespace rc10 {
+
+/// The operation that changes gains while the motor runs, and the one that tells those in force.
+inline constexpr std::string_view kSetGainsOperation = "set_gains";
+inline constexpr std::string_view kGetConfigOperation = "get_config";
+
+/// The named values of a request, all of them or the first error.
+[[nodiscard]] Result<GainChanges> parseGains(const link::Request& request, const MotorLoops& loops);
+
+/// "velocity_pid.kp_a_per_rpm 0.25 -> 0.8, …": what the changes do to these loops, and makes it so.
+[[nodiscard]] std::string applyGains(const GainChanges& changes, MotorLoops& loops);
+
+/// Every gain in force under its key.
+void tellGains(const MotorLoops& loops, link::Response& response);
+
+/// Why no gain of such a motor can be set or told; an error if rc10d closes no loop of it.
+[[nodiscard]] Result<void> checkHasGains(std::string_view motor, const MotorLoops& loops);
+
+}  // namespace rc10

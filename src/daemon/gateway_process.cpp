@@ -1,0 +1,102 @@
+#include "daemon/gateway_process.hpp"
+
+#include <poll.h>
+#include <signal.h>
+#include <spawn.h>
+#include <sys/syscall.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <cerrno>
+#include <cstring>
+
+#include <fmt/format.h>
+
+#include "app/unique_fd.hpp"
+
+// NOLINTNEXTLINE(readability-redundant-declaration): POSIX declares it nowhere
+extern char** environ;
+
+namespace rc10 {
+namespace {
+
+constexpr Duration kFirstBackoff = std::chrono::milliseconds{100};
+constexpr Duration kLongestBackoff = std::chrono::seconds{5};
+// One that ran this long was well: the next start is quick again.
+constexpr Duration kHealthyAfter = std::chrono::seconds{10};
+constexpr int kStopTimeoutMs = 500;
+
+[[nodiscard]] std::string howItEnded(int status) {
+  if (WIFSIGNALED(status)) return fmt::format("killed by signal {}", WTERMSIG(status));
+  return fmt::format("exit status {}", WEXITSTATUS(status));
+}
+
+}  // namespace
+
+GatewayProcess::GatewayProcess(std::string program, std::vector<std::string> arguments)
+    : program_(std::move(program)), arguments_(std::move(arguments)), backoff_(kFirstBackoff) {}
+
+Result<void> GatewayProcess::spawn() {
+  std::vector<char*> argv{program_.data()};
+  for (auto& argument : arguments_) argv.push_back(argument.data());
+  argv.push_back(nullptr);
+  posix_spawnattr_t attributes;
+  posix_spawnattr_init(&attributes);
+  // Signals as a fresh process has them: ours are blocked for signalfd, or ignored.
+  sigset_t none;
+  sigemptyset(&none);
+  posix_spawnattr_setsigmask(&attributes, &none);
+  sigset_t ignored_here;
+  sigemptyset(&ignored_here);
+  sigaddset(&ignored_here, SIGPIPE);
+  posix_spawnattr_setsigdefault(&attributes, &ignored_here);
+  posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETSIGMASK | POSIX_SPAWN_SETSIGDEF);
+  const int error = posix_spawn(&pid_, program_.c_str(), nullptr, &attributes, argv.data(), environ);
+  posix_spawnattr_destroy(&attributes);
+  if (error == 0) return {};
+  pid_ = 0;
+  return fail(fmt::format("{} could not be started: {}", program_, std::strerror(error)));
+}
+
+std::string GatewayProcess::supervise(MonotonicTime now) {
+  std::string message;
+  int status = 0;
+  if (pid_ != 0 && waitpid(pid_, &status, WNOHANG) == pid_) {
+    if (now - started_ >= kHealthyAfter) backoff_ = kFirstBackoff;
+    next_start_ = now + backoff_;
+    message = fmt::format("rc10-lcm ended ({}); starting it again in {} ms", howItEnded(status),
+                          std::chrono::duration_cast<std::chrono::milliseconds>(backoff_).count());
+    backoff_ = std::min(backoff_ * 2, kLongestBackoff);
+    pid_ = 0;
+  }
+  if (pid_ == 0 && now >= next_start_) {
+    started_ = now;
+    if (const auto started = spawn(); !started) {
+      next_start_ = now + kLongestBackoff;
+      message = started.error().message;
+    }
+  }
+  return message;
+}
+
+void GatewayProcess::stop() noexcept {
+  if (pid_ == 0) return;
+  const UniqueFd pidfd{static_cast<int>(syscall(SYS_pidfd_open, pid_, 0))};
+  kill(pid_, SIGTERM);
+  pollfd poll_for{.fd = pidfd.get(), .events = POLLIN, .revents = 0};
+  if (::poll(&poll_for, 1, kStopTimeoutMs) != 1) kill(pid_, SIGKILL);
+  waitpid(pid_, nullptr, 0);
+  pid_ = 0;
+}
+
+std::string siblingProgram(const std::string& name) {
+  std::array<char, 4096> path{};
+  const auto size = ::readlink("/proc/self/exe", path.data(), path.size() - 1);
+  const std::string self(path.data(), size > 0 ? static_cast<std::size_t>(size) : 0);
+  const auto slash = self.rfind('/');
+  return slash == std::string::npos ? "/usr/bin/" + name : self.substr(0, slash + 1) + name;
+}
+
+}  // namespace rc10

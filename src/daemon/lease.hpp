@@ -1,0 +1,43 @@
+#pragma once
+
+#include <cstdint>
+
+#include "app/time.hpp"
+#include "link/link_protocol.hpp"
+
+namespace rc10 {
+
+/// Who commands a motor: the client whose setpoint it obeys, for as long as that is valid. Others of the
+/// same or a lower priority have to wait; a higher one takes over. Scheduler thread only.
+class Lease {
+ public:
+  struct Holder {
+    link::Name client;
+    std::uint64_t session = 0;
+    std::int32_t priority = 0;
+  };
+
+  /// Somebody has taken it, though it may have lapsed since.
+  [[nodiscard]] bool taken() const noexcept { return until_ != MonotonicTime{}; }
+  [[nodiscard]] bool held(MonotonicTime now) const noexcept { return now < until_; }
+
+  [[nodiscard]] bool allows(const Holder& other, MonotonicTime now) const noexcept {
+    const bool same = other.session == holder_.session && other.client.view() == holder_.client.view();
+    return !held(now) || same || other.priority > holder_.priority;
+  }
+
+  void take(const Holder& holder, MonotonicTime until) noexcept {
+    holder_ = holder;
+    until_ = until;
+  }
+  void release() noexcept { *this = Lease{}; }
+
+  /// Empty when nobody has it.
+  [[nodiscard]] const link::Name& client() const noexcept { return holder_.client; }
+
+ private:
+  Holder holder_;
+  MonotonicTime until_{};
+};
+
+}  // namespace rc10

@@ -1,0 +1,19 @@
+#pragma once
+
+#include <memory>
+
+#include <spdlog/logger.h>
+
+#include "link/link_protocol.hpp"
+
+namespace rc10 {
+
+/// The daemon's log: to standard error, written by spdlog's own thread (the io thread of DESIGN.md), so
+/// that a blocked terminal blocks nobody else. Under systemd the journal adds time and name itself.
+/// Never from real-time threads: they report events.
+[[nodiscard]] std::shared_ptr<spdlog::logger> makeLog();
+
+/// Writes an event as one line, at the level of its severity.
+void logEvent(spdlog::logger& log, const link::Event& event);
+
+}  // namespace rc10

@@ -1,0 +1,90 @@
+#pragma once
+
+#include <array>
+#include <bitset>
+#include <cstddef>
+#include <cstdint>
+
+#include "app/time.hpp"
+#include "link/link_protocol.hpp"
+#include "module/module_base.hpp"
+#include "module/robot_status.hpp"
+#include "motor/drive_setup.hpp"
+#include "motor/loop_gain.hpp"
+#include "motor/target.hpp"
+
+namespace rc10 {
+
+inline constexpr std::size_t kMaxMotors = link::kMaxMotors;
+static_assert(kMaxSignals == link::kMaxSignals);
+using MotorSet = std::bitset<kMaxMotors>;
+
+/// A command message that passed admission, with motors as indices. All setpoints act in one tick.
+struct Command {
+  struct Setpoint {
+    std::uint16_t motor = 0;
+    Target target;
+  };
+  link::Name client;
+  std::uint64_t session = 0;
+  std::int32_t priority = 0;
+  MonotonicTime deadline;  ///< Receive time of the message plus its validity.
+  std::size_t count = 0;
+  std::array<Setpoint, kMaxMotors> setpoints;
+};
+
+enum class Operation : std::uint8_t { kEnable, kDisable, kEstop, kClear, kZero, kConfigure, kSetGains };
+
+/// A request that passed the link thread, for the supervisor.
+struct Order {
+  static constexpr std::uint64_t kFromModule = 0;  ///< The id of all that modules ask: they get no result.
+
+  std::uint64_t id = kFromModule;  ///< Chosen by the link thread; comes back in the result.
+  Operation operation{};
+  MotorSet motors;
+  double value = 0.0;   ///< kZero: what the present angle becomes, deg.
+  DriveWrite drive{};   ///< kConfigure: what is written to the drive of the one motor.
+  GainChanges gains{};  ///< kSetGains: of the one motor.
+  link::Name client{};  ///< kSetGains: who asked.
+
+  [[nodiscard]] bool fromModule() const noexcept { return id == kFromModule; }
+};
+
+/// A message for a module that passed the link thread: what its inputs become.
+struct SignalMessage {
+  link::Name client;
+  std::uint64_t session = 0;
+  std::int32_t priority = 0;
+  MonotonicTime deadline;
+  std::uint16_t module = 0;
+  std::array<double, kMaxSignals> values{};  ///< By input; NaN: not given.
+};
+
+/// Why an order did not reach a motor.
+enum class Refusal : std::uint8_t {
+  kNone,
+  kOffline,  ///< No feedback.
+  kFaulted,  ///< Clear the fault first.
+  kEstop,    ///< The robot is in ESTOP.
+  kStopping,
+  kActive,        ///< Not while the motor is ACTIVE.
+  kNoPosition,    ///< No feedback to set a zero from.
+  kDriveRefused,  ///< The drive did not confirm.
+  kGroup,         ///< A motor that it is coupled with is offline or in fault.
+  kMoving,        ///< Not before the motor stands still.
+  kEstopInput,    ///< The e-stop input is open.
+  kConfiguring,   ///< A drive is being configured.
+  kNotConfirmed,  ///< The drive did not tell a setting as it was written.
+  kNotSaved,      ///< The drive did not tell that its settings are stored.
+  kNoGains,       ///< Its drive closes its loops.
+  kStillActs,     ///< It is still being damped, braked or held.
+};
+
+struct OrderResult {
+  std::uint64_t id = 0;
+  bool refused = false;         ///< Not tried at all.
+  std::size_t drive_value = 0;  ///< kConfigure: at which of the values it ended.
+  std::array<Refusal, kMaxMotors> motors{};
+};
+
+}  // namespace rc10

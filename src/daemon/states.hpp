@@ -1,0 +1,55 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+#include "module/robot_status.hpp"
+
+namespace rc10 {
+
+/// What can happen to a motor.
+enum class MotorEvent : std::uint8_t {
+  kFeedbackFresh,  ///< Feedback is there and young enough.
+  kFeedbackLost,
+  kEnable,      ///< Somebody asked for it.
+  kEnableDone,  ///< The drive has answered the enable sequence.
+  kEnableFailed,
+  kDisable,
+  kEstop,  ///< Robot-wide stop, or the process is about to end.
+  kFault,
+  kClear,
+  kGroupStop,  ///< A motor that it is coupled with is lost.
+};
+inline constexpr int kMotorEventCount = 10;
+
+namespace detail {
+inline constexpr auto kMotorTransitions = [] {
+  using enum MotorStatus;
+  // Rows: status. Columns: fresh, lost, enable, done, failed, disable, estop, fault, clear, group stop.
+  return std::array<std::array<MotorStatus, kMotorEventCount>, kMotorStatusCount>{{
+      /* offline  */ {kReady, kOffline, kOffline, kOffline, kOffline, kOffline, kOffline, kFault, kOffline,
+                      kOffline},
+      /* ready    */ {kReady, kOffline, kEnabling, kReady, kReady, kReady, kReady, kFault, kReady, kReady},
+      /* enabling */
+      {kEnabling, kOffline, kEnabling, kActive, kReady, kReady, kReady, kFault, kEnabling, kReady},
+      /* active   */ {kActive, kOffline, kActive, kActive, kReady, kReady, kReady, kFault, kActive, kReady},
+      /* fault    */ {kFault, kFault, kFault, kFault, kFault, kFault, kFault, kFault, kOffline, kFault},
+  }};
+}();
+}  // namespace detail
+
+/// The motor state machine: the whole of it. Only an enable request that the drive has answered leads
+/// to kActive, and only `clear` leaves kFault, by way of kOffline so that fresh feedback is seen first.
+[[nodiscard]] constexpr MotorStatus next(MotorStatus status, MotorEvent event) noexcept {
+  const auto row = static_cast<std::size_t>(status);
+  const auto column = static_cast<std::size_t>(event);
+  // Rest is the answer to everything unknown.
+  if (row >= kMotorStatusCount || column >= kMotorEventCount) return MotorStatus::kFault;
+  return detail::kMotorTransitions[row][column];
+}
+
+/// "OFFLINE", "READY", ...
+[[nodiscard]] const char* toString(MotorStatus status) noexcept;
+[[nodiscard]] const char* toString(RobotState state) noexcept;
+
+}  // namespace rc10

@@ -1,0 +1,44 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+
+#include "bus/can_link_settings.hpp"
+#include "doctor/finding.hpp"
+
+namespace rc10::doctor {
+
+/// When a driver tells the CPU that frames have come: `ethtool -c`.
+struct Coalescing {
+  std::uint32_t rx_delay_us = 0;  ///< rx-usecs-irq; 0: no such timer.
+  std::uint32_t rx_frames = 0;    ///< rx-frames-irq; 0 or 1: at each frame.
+};
+
+/// A CAN interface as it is, and as the configuration wants it.
+struct LinkFacts {
+  std::string interface;
+  std::optional<CanLink> link;  ///< Empty: there is none of this name.
+  std::string driver;           ///< "mcp251xfd"; empty: virtual.
+  std::optional<Coalescing> coalescing;
+  CanLinkSettings wanted;  ///< A bit rate of 0: no configuration was given.
+  bool managed = false;    ///< rc10d brings it up itself.
+};
+
+/// The commands that set the interface up as wanted; without a configuration, as it is.
+[[nodiscard]] std::string setupCommand(const LinkFacts& facts);
+
+/// Everything about one interface.
+[[nodiscard]] Findings checkLink(const LinkFacts& facts);
+
+// Its parts, for an interface that is there.
+[[nodiscard]] Finding checkUp(const LinkFacts& facts);
+[[nodiscard]] Finding checkBitrate(const LinkFacts& facts);
+[[nodiscard]] Finding checkSamplePoint(const LinkFacts& facts);
+[[nodiscard]] Finding checkFdMode(const LinkFacts& facts);
+[[nodiscard]] Finding checkRestart(const LinkFacts& facts);
+[[nodiscard]] Finding checkQueue(const LinkFacts& facts);
+[[nodiscard]] Finding checkErrors(const LinkFacts& facts);
+[[nodiscard]] Finding checkCoalescing(const LinkFacts& facts);
+
+}  // namespace rc10::doctor

@@ -1,0 +1,83 @@
+#include "gateway/convert.hpp"
+#include "rc10/command_t.hpp"
+#include "rc10/request_t.hpp"
+#include "rc10/signals_t.hpp"
+
+namespace rc10::gateway {
+namespace {
+
+template <std::size_t N>
+void readText(WireReader& reader, link::Text<N>& text) noexcept {
+  // A name that is cut off could be that of another motor.
+  text = reader.text(N - 1);
+}
+
+WireReader open(std::span<const std::byte> bytes, std::int64_t fingerprint) noexcept {
+  WireReader reader(bytes);
+  if (bytes.size() > kMaxIncoming) reader.spoil(Defect::kTooLarge);
+  const auto received = reader.number<std::int64_t>();
+  if (received != fingerprint) reader.spoil(Defect::kOtherDefinitions);
+  return reader;
+}
+
+void read(WireReader& reader, link::Setpoint& setpoint) noexcept {
+  readText(reader, setpoint.motor);
+  setpoint.mode = reader.number<std::uint8_t>();  // a negative int8_t is a mode that does not exist
+  setpoint.value = reader.number<double>();
+  setpoint.velocity_ff_rpm = reader.number<float>();
+  setpoint.torque_ff_nm = reader.number<float>();
+  setpoint.stiffness_nm_per_rad = reader.number<float>();
+  setpoint.damping_nms_per_rad = reader.number<float>();
+}
+
+}  // namespace
+
+Defect decode(std::span<const std::byte> bytes, link::Command& command) noexcept {
+  WireReader reader = open(bytes, command_t::getHash());
+  (void)reader.number<std::int64_t>();  // utime
+  readText(reader, command.client);
+  command.session = reader.number<std::uint64_t>();
+  command.seq = reader.number<std::int64_t>();
+  command.priority = reader.number<std::int32_t>();
+  command.validity_ms = reader.number<std::int32_t>();
+  command.setpoint_count = reader.count(link::kMaxMotors);
+  for (auto& setpoint : std::span{command.setpoints}.first(command.setpoint_count)) read(reader, setpoint);
+  reader.end();
+  return reader.defect();
+}
+
+Defect decode(std::span<const std::byte> bytes, link::Signals& signals) noexcept {
+  WireReader reader = open(bytes, signals_t::getHash());
+  (void)reader.number<std::int64_t>();  // utime
+  readText(reader, signals.client);
+  signals.session = reader.number<std::uint64_t>();
+  signals.seq = reader.number<std::int64_t>();
+  signals.priority = reader.number<std::int32_t>();
+  signals.validity_ms = reader.number<std::int32_t>();
+  signals.value_count = reader.count(link::kMaxSignals);
+  const auto values = std::span{signals.values}.first(signals.value_count);
+  for (auto& value : values) readText(reader, value.name);
+  for (auto& value : values) value.value = reader.number<double>();
+  reader.end();
+  return reader.defect();
+}
+
+RequestDecoding decode(std::span<const std::byte> bytes, link::Request& request) noexcept {
+  WireReader reader = open(bytes, request_t::getHash());
+  (void)reader.number<std::int64_t>();  // utime
+  readText(reader, request.client);
+  request.session = reader.number<std::uint64_t>();
+  request.seq = reader.number<std::int64_t>();
+  const bool identified = reader.defect() == Defect::kNone;
+  readText(reader, request.operation);
+  readText(reader, request.target);
+  request.value_count = reader.count(link::kMaxValues);
+  for (auto& value : std::span{request.values}.first(request.value_count)) {
+    readText(reader, value.name);
+    value.value = reader.number<double>();
+  }
+  reader.end();
+  return {reader.defect(), identified};
+}
+
+}  // namespace rc10::gateway

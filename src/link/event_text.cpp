@@ -1,0 +1,134 @@
+#include "link/event_text.hpp"
+
+#include <array>
+#include <bit>
+#include <charconv>
+#include <cstdio>
+
+#include "link/words.hpp"
+
+namespace rc10::link {
+namespace {
+
+[[nodiscard]] std::uint8_t small(std::int32_t value) noexcept {
+  return value >= 0 && value < 0xFF ? static_cast<std::uint8_t>(value) : std::uint8_t{0xFF};
+}
+
+[[nodiscard]] std::string busStateText(std::int32_t state) {
+  switch (state) {
+    case 0: return "active";
+    case 1: return "error-warning";
+    case 2: return "error-passive";
+    case 3: return "bus-off";
+    case 4: return "interface down";
+    case 5: return "interface gone";
+    case 6: return "silent: no frame received; check power, wiring, termination and bit rate";
+    case 7: return "stalled: our frames do not reach the wire";
+    default: return "unknown";
+  }
+}
+
+// `reason`: SkipReason; `extra`: the mode, plus 256 times the status of the motor.
+[[nodiscard]] std::string skipped(std::int32_t reason, std::int32_t extra) {
+  const auto text = "setpoint " + std::string(modeWord(small(extra % 256))) + " skipped: ";
+  switch (reason) {
+    case 0: return text + "the motor is " + motorStatusWord(small(extra / 256)) + ", not ACTIVE";
+    case 1: return text + "the angle has no reference; set it with `zero` or `zero: power_on`";
+    case 2:
+      return text + "farther from where the motor is than max_first_step_deg; begin near the measured angle";
+    case 3: return text + "not a target for this motor";
+    default: return text + "unknown reason";
+  }
+}
+
+[[nodiscard]] const char* fallbackWord(std::int32_t action) noexcept {
+  switch (action) {
+    case 0: return "coasting";
+    case 1: return "damping";
+    case 2: return "braking";
+    case 3: return "holding";
+    default: return "at rest";
+  }
+}
+
+[[nodiscard]] const char* estopInputText(std::int32_t state) noexcept {
+  switch (state) {
+    case 1: return "the e-stop input is closed again: `clear` ends the e-stop";
+    case 2: return "e-stop: the input is open: pressed, or a wire is off";
+    case 3: return "e-stop: the input cannot be read: the chip is gone or does not answer";
+    default: return "e-stop input unknown";
+  }
+}
+
+// `extra`: the id, plus 2^29 if it is extended, plus 2^30 if it was sent on this computer.
+[[nodiscard]] std::string foreignSender(std::int32_t frames, std::int32_t extra) {
+  const auto bits = static_cast<std::uint32_t>(extra);
+  const bool extended = (bits & (1U << 29U)) != 0;
+  std::array<char, 16> id{};
+  (void)std::snprintf(id.data(), id.size(), extended ? "0x%08X" : "0x%03X", bits & 0x1FFFFFFFU);
+  const bool sent_here = (bits & (1U << 30U)) != 0;
+  return std::to_string(frames) + " frames with our command id (" + id.data() + ") from " +
+         (sent_here ? "another program on this computer" : "another node on the bus") +
+         ": two controllers command these motors; stop one";
+}
+
+// What the drive itself calls it, for its manual.
+[[nodiscard]] std::string nativeCode(std::int32_t code) {
+  if (code == 0) return {};
+  std::array<char, 32> text{};
+  (void)std::snprintf(text.data(), text.size(), " (its code 0x%X)", static_cast<unsigned>(code));
+  return text.data();
+}
+
+// In the order of CommandRefusal in daemon/admission.hpp.
+[[nodiscard]] std::string refused(std::int32_t reason, std::string_view client) {
+  constexpr std::array kReasons{"accepted",     "malformed",        "unknown motor",
+                                "unknown mode", "unsupported mode", "not finite",
+                                "expired",      "old sequence",     "too many commands"};
+  const auto index = static_cast<std::size_t>(reason);
+  const bool known = reason > 0 && index < kReasons.size();
+  return "command of '" + std::string(client) + "' refused: " + (known ? kReasons[index] : "unknown reason");
+}
+
+// `bits`: of the float.
+[[nodiscard]] std::string gainChanged(std::int32_t gain, std::int32_t bits, std::string_view client) {
+  std::array<char, 32> number{};
+  const auto end =
+      std::to_chars(number.data(), number.data() + number.size(), std::bit_cast<float>(bits)).ptr;
+  return std::string(gainWord(gain)) + " is " + std::string(number.data(), end) + " now, set by '" +
+         std::string(client) + "'";
+}
+
+[[nodiscard]] std::string change(const char* from, const char* to) { return std::string(from) + " -> " + to; }
+
+}  // namespace
+
+std::string eventText(std::int32_t code, std::int32_t value, std::int32_t extra, std::string_view client) {
+  switch (code) {  // the numbers of EventCode in daemon/events.hpp
+    case 100: return change(motorStatusWord(small(extra)), motorStatusWord(small(value)));
+    case 101: return std::string("no valid command any more: ") + fallbackWord(value);
+    case 102: return "multi-turn angle lost: angle targets are refused until it is set again";
+    case 103: return skipped(value, extra);
+    case 104:
+      return "command of '" + std::string(client) +
+             "' refused: a client of the same or a higher priority holds the motor";
+    case 105: return faultText(value) + nativeCode(extra);
+    case 106: return "its group stops with it";
+    case 107: return "its group is enabled again";
+    case 108: return "reported event " + std::to_string(value);
+    case 109: return "its targets are refused: another client commands one of its motors";
+    case 110: return gainChanged(value, extra, client);
+    case 200: return change(robotStateWord(small(extra)), robotStateWord(small(value)));
+    case 201: return std::to_string(value) + " ticks missed";
+    case 202: return refused(value, client);
+    case 203: return estopInputText(value);
+    case 300: return "bus " + busStateText(value) + " (was " + busStateText(extra) + ")";
+    case 301: return "bus restarted, or in need of help";
+    case 302: return foreignSender(value, extra);
+    case 310: return "a serial port came, went or cannot be opened";
+    case 311: return "an SPI device or GPIO lines came, went or cannot be opened";
+    default: return "event " + std::to_string(code);
+  }
+}
+
+}  // namespace rc10::link

@@ -1,0 +1,68 @@
+#include "link/link_message.hpp"
+
+#include <algorithm>
+
+namespace rc10::link {
+namespace {
+
+// Size of a struct whose array member starts at `offset` and uses `used` of its `room` elements. The
+// array is the last member of every message of variable size but Diagnostics, Request and Response,
+// whose arrays are short and travel whole.
+template <typename Element>
+std::size_t upTo(std::size_t offset, std::size_t used, std::size_t room) noexcept {
+  return offset + std::min(used, room) * sizeof(Element);
+}
+
+}  // namespace
+
+std::size_t wireSize(const Hello&) noexcept { return sizeof(Hello); }
+std::size_t wireSize(const Welcome& message) noexcept {
+  return upTo<MotorInfo>(offsetof(Welcome, motors), message.motor_count, kMaxMotors);
+}
+std::size_t wireSize(const Command& message) noexcept {
+  return upTo<Setpoint>(offsetof(Command, setpoints), message.setpoint_count, kMaxMotors);
+}
+std::size_t wireSize(const Request&) noexcept { return sizeof(Request); }
+std::size_t wireSize(const Response&) noexcept { return sizeof(Response); }
+std::size_t wireSize(const State& message) noexcept {
+  return upTo<MotorState>(offsetof(State, motors), message.motor_count, kMaxMotors);
+}
+std::size_t wireSize(const Diagnostics&) noexcept { return sizeof(Diagnostics); }
+std::size_t wireSize(const Event&) noexcept { return sizeof(Event); }
+std::size_t wireSize(const Signals& message) noexcept {
+  return upTo<NamedValue>(offsetof(Signals, values), message.value_count, kMaxSignals);
+}
+std::size_t wireSize(const ModuleInfo&) noexcept { return sizeof(ModuleInfo); }
+std::size_t wireSize(const ModuleState& message) noexcept {
+  return upTo<double>(offsetof(ModuleState, values), message.value_count, kMaxSignals);
+}
+
+bool countsFit(const Hello&) noexcept { return true; }
+bool countsFit(const Welcome& message) noexcept {
+  return message.motor_count <= kMaxMotors && message.module_count <= kMaxModules;
+}
+bool countsFit(const Command& message) noexcept { return message.setpoint_count <= kMaxMotors; }
+bool countsFit(const Request& message) noexcept { return message.value_count <= kMaxValues; }
+bool countsFit(const Response& message) noexcept { return message.value_count <= kMaxValues; }
+bool countsFit(const State& message) noexcept { return message.motor_count <= kMaxMotors; }
+bool countsFit(const Diagnostics& message) noexcept {
+  return message.refusal_count <= kMaxRefusalReasons && message.notice_count <= kMaxNotices &&
+         message.bus_count <= kMaxBuses;
+}
+bool countsFit(const Event&) noexcept { return true; }
+bool countsFit(const Signals& message) noexcept { return message.value_count <= kMaxSignals; }
+bool countsFit(const ModuleInfo& message) noexcept {
+  return message.module < kMaxModules && message.input_count <= kMaxSignals &&
+         message.output_count <= kMaxSignals;
+}
+bool countsFit(const ModuleState& message) noexcept {
+  return message.module < kMaxModules && message.value_count <= kMaxSignals;
+}
+
+bool readHeader(std::span<const std::byte> datagram, Header& header) noexcept {
+  if (datagram.size() < sizeof(Header)) return false;
+  std::memcpy(&header, datagram.data(), sizeof(Header));
+  return header.size == datagram.size();
+}
+
+}  // namespace rc10::link

@@ -1,0 +1,316 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <cstring>
+#include <string_view>
+#include <type_traits>
+
+/// The messages on rc10d's link socket (SOCK_SEQPACKET): fixed structs, one per datagram, in the
+/// host's byte order. Both ends are of the same build; Hello refuses others.
+namespace rc10::link {
+
+inline constexpr std::uint32_t kProtocolVersion = 2;
+inline constexpr std::size_t kMaxMotors = 128;
+inline constexpr std::size_t kMaxBuses = 4;
+inline constexpr std::size_t kMaxModules = 16;
+inline constexpr std::size_t kMaxSignals = 32;  ///< Inputs of a module, and outputs.
+inline constexpr std::size_t kMaxRefusalReasons = 16;
+
+/// Text of fixed room, always terminated. What is too long is cut off, between two UTF-8 characters.
+template <std::size_t N>
+struct Text {
+  std::array<char, N> chars{};
+
+  Text() = default;
+  Text(std::string_view text) noexcept { *this = text; }  // NOLINT(google-explicit-constructor)
+  Text& operator=(std::string_view text) noexcept {
+    chars.fill('\0');
+    std::size_t size = text.size() < N ? text.size() : N - 1;
+    while (size > 0 && size < text.size() && isContinuation(text[size])) --size;
+    if (size > 0) std::memcpy(chars.data(), text.data(), size);
+    return *this;
+  }
+  /// Safe on bytes from a stranger: never reads past the room.
+  [[nodiscard]] std::string_view view() const noexcept { return {chars.data(), ::strnlen(chars.data(), N)}; }
+
+ private:
+  static constexpr bool isContinuation(char c) noexcept {
+    return (static_cast<unsigned char>(c) & 0xC0U) == 0x80U;
+  }
+};
+
+using Name = Text<32>;
+
+enum class MessageType : std::uint32_t {
+  // client to rc10d
+  kHello = 1,
+  kCommand,
+  kRequest,
+  kSignals,
+  // rc10d to client
+  kWelcome = 100,
+  kState,
+  kDiagnostics,
+  kEvent,
+  kResponse,
+  kModuleInfo,
+  kModuleState,
+};
+
+struct Header {
+  MessageType type{};
+  std::uint32_t size = 0;  ///< Of the whole message, which is also the datagram's.
+};
+
+/// What a client wants to be sent besides the answers to its requests.
+enum Subscription : std::uint32_t {
+  kStates = 1U << 0U,
+  kDiagnosticsFeed = 1U << 1U,
+  kEvents = 1U << 2U,
+  kModules = 1U << 3U,  ///< A ModuleInfo of each after Welcome, then their states.
+};
+
+/// First message of a client. rc10d answers with Welcome, or closes.
+struct Hello {
+  static constexpr auto kType = MessageType::kHello;
+  Header header;
+  std::uint32_t protocol_version = kProtocolVersion;
+  std::uint32_t subscriptions = 0;
+  Name client;
+};
+
+struct MotorInfo {
+  Name name;
+  Name model;
+  Name bus;
+  std::int32_t id = 0;
+  std::uint32_t modes = 0;  ///< Bit set by ControlMode.
+};
+
+struct Welcome {
+  static constexpr auto kType = MessageType::kWelcome;
+  Header header;
+  std::uint32_t protocol_version = kProtocolVersion;
+  std::int32_t pid = 0;
+  Name robot;
+  Text<32> version;
+  Text<256> lcm_url;
+  std::int32_t rate_hz = 0;
+  std::int32_t state_hz = 0;
+  std::uint32_t module_count = 0;
+  std::array<Name, kMaxModules> modules;
+  std::uint32_t motor_count = 0;
+  std::array<MotorInfo, kMaxMotors> motors;
+};
+
+/// As setpoint_t.lcm.
+struct Setpoint {
+  Name motor;
+  std::uint8_t mode = 0;
+  double value = 0.0;
+  float velocity_ff_rpm = 0.0F;
+  float torque_ff_nm = 0.0F;
+  float stiffness_nm_per_rad = 0.0F;
+  float damping_nms_per_rad = 0.0F;
+};
+
+/// As command_t.lcm, with the time at which this host received it.
+struct Command {
+  static constexpr auto kType = MessageType::kCommand;
+  Header header;
+  Name client;
+  std::uint64_t session = 0;
+  std::int64_t seq = 0;
+  std::int32_t priority = 0;
+  std::int32_t validity_ms = 0;  ///< 0: default.
+  std::int64_t received_ns = 0;  ///< CLOCK_MONOTONIC; one in the future counts as now.
+  std::uint32_t setpoint_count = 0;
+  std::array<Setpoint, kMaxMotors> setpoints;
+};
+
+struct NamedValue {
+  Text<48> name;
+  double value = 0.0;
+};
+inline constexpr std::size_t kMaxValues = 16;
+
+struct Request {
+  static constexpr auto kType = MessageType::kRequest;
+  Header header;
+  Name client;
+  std::uint64_t session = 0;
+  std::int64_t seq = 0;
+  std::int64_t received_ns = 0;  ///< CLOCK_MONOTONIC at which this host received it; 0: not known.
+  Text<32> operation;
+  Text<1024> target;  ///< Motor names separated by commas; empty: all.
+  std::uint32_t value_count = 0;
+  std::array<NamedValue, kMaxValues> values;
+};
+
+/// As signals_t.lcm, for one module.
+struct Signals {
+  static constexpr auto kType = MessageType::kSignals;
+  Header header;
+  Name client;
+  std::uint64_t session = 0;
+  std::int64_t seq = 0;
+  std::int32_t priority = 0;
+  std::int32_t validity_ms = 0;  ///< 0: default.
+  std::int64_t received_ns = 0;  ///< CLOCK_MONOTONIC; one in the future counts as now.
+  Name module;
+  std::uint32_t value_count = 0;
+  std::array<NamedValue, kMaxSignals> values;
+};
+
+/// What a module takes and gives. Sent once, before its first state.
+struct ModuleInfo {
+  static constexpr auto kType = MessageType::kModuleInfo;
+  Header header;
+  std::uint32_t module = 0;  ///< Its place in Welcome::modules.
+  Name type;
+  std::uint32_t input_count = 0;
+  std::uint32_t output_count = 0;
+  std::array<Name, 2 * kMaxSignals> names;  ///< The inputs, then the outputs.
+};
+
+struct ModuleState {
+  static constexpr auto kType = MessageType::kModuleState;
+  Header header;
+  std::int64_t utime = 0;
+  std::int64_t mono_us = 0;
+  std::int64_t tick = 0;
+  std::uint32_t module = 0;
+  Name owner;  ///< Who gives its inputs; empty: nobody.
+  std::uint32_t value_count = 0;
+  std::array<double, kMaxSignals> values;  ///< Its outputs; NaN: without meaning now.
+};
+
+enum class ResponseStatus : std::uint32_t { kOk = 0, kFailed = 1, kRefused = 2 };
+
+struct Response {
+  static constexpr auto kType = MessageType::kResponse;
+  Header header;
+  Name client;
+  std::uint64_t session = 0;
+  std::int64_t seq = 0;
+  ResponseStatus status{};
+  Text<1024> message;
+  std::uint32_t value_count = 0;
+  std::array<NamedValue, kMaxValues> values;
+};
+
+/// As motor_state_t.lcm; the names are in Welcome, in the same order.
+struct MotorState {
+  std::uint8_t status = 0;
+  std::uint8_t mode = 0;
+  std::uint8_t command_unit = 0;
+  std::uint8_t zeroed = 0;
+  std::int32_t fault = 0;
+  std::uint32_t limits = 0;
+  std::int32_t feedback_age_us = -1;
+  double target = 0.0;
+  double total_angle_deg = 0.0;
+  float angle_deg = 0.0F;
+  float velocity_rpm = 0.0F;
+  float current_a = 0.0F;
+  float torque_nm = 0.0F;
+  float voltage_v = 0.0F;
+  float temperature_c = 0.0F;
+  float command_value = 0.0F;
+  float feedback_hz = 0.0F;
+  Name owner;
+};
+
+struct State {
+  static constexpr auto kType = MessageType::kState;
+  Header header;
+  std::int64_t utime = 0;
+  std::int64_t mono_us = 0;
+  std::int64_t tick = 0;
+  std::uint8_t robot_state = 0;
+  std::uint8_t realtime = 0;
+  std::uint32_t motor_count = 0;
+  std::array<MotorState, kMaxMotors> motors;
+};
+
+/// As bus_state_t.lcm.
+struct BusStatus {
+  Name name;
+  Name interface;
+  std::uint8_t state = 0;
+  std::int16_t tec = -1;
+  std::int16_t rec = -1;
+  float predicted_load = 0.0F;
+  float predicted_load_worst = 0.0F;
+  float measured_load = 0.0F;
+  std::int64_t rx_frames = 0;
+  std::int64_t rx_unmatched = 0;
+  std::int64_t rx_malformed = 0;
+  std::int64_t rx_foreign = 0;  ///< Not in bus_state_t.lcm.
+  std::int64_t rx_dropped = 0;
+  std::int64_t tx_frames = 0;
+  std::int64_t tx_confirmed = 0;
+  std::int64_t tx_dropped = 0;
+  std::int64_t tx_held = 0;  ///< Not in bus_state_t.lcm.
+  std::int64_t error_frames = 0;
+  std::int64_t restarts = 0;
+};
+
+struct Percentiles {
+  float p50_us = 0.0F;
+  float p99_us = 0.0F;
+  float p999_us = 0.0F;
+  float max_us = 0.0F;
+};
+
+struct Counter {
+  Text<48> name;
+  std::int64_t count = 0;
+};
+
+inline constexpr std::size_t kMaxNotices = 4;
+
+/// As diagnostics_t.lcm.
+struct Diagnostics {
+  static constexpr auto kType = MessageType::kDiagnostics;
+  Header header;
+  std::int64_t utime = 0;
+  std::int64_t mono_us = 0;
+  std::int64_t tick = 0;
+  std::int32_t tick_period_us = 0;
+  Percentiles wake_latency;
+  Percentiles tick_duration;
+  std::int64_t missed_ticks = 0;
+  std::int64_t page_faults = 0;
+  std::int64_t events_dropped = 0;
+  std::uint32_t refusal_count = 0;
+  std::array<Counter, kMaxRefusalReasons> refusals;
+  std::uint32_t notice_count = 0;
+  std::array<Text<256>, kMaxNotices> notices;
+  std::uint32_t bus_count = 0;
+  std::array<BusStatus, kMaxBuses> buses;
+};
+
+/// As event_t.lcm.
+struct Event {
+  static constexpr auto kType = MessageType::kEvent;
+  Header header;
+  std::int64_t utime = 0;
+  std::int64_t mono_us = 0;
+  std::uint8_t severity = 0;
+  std::int32_t code = 0;
+  Name source;
+  Text<256> text;
+};
+
+/// Bytes go in and out of these by memcpy.
+template <typename Message>
+inline constexpr bool kIsMessage =
+    std::is_trivially_copyable_v<Message> && std::is_standard_layout_v<Message>;
+static_assert(kIsMessage<Hello> && kIsMessage<Welcome> && kIsMessage<Command> && kIsMessage<Request>);
+static_assert(kIsMessage<Signals> && kIsMessage<ModuleInfo> && kIsMessage<ModuleState>);
+static_assert(kIsMessage<Response> && kIsMessage<State> && kIsMessage<Diagnostics> && kIsMessage<Event>);
+
+}  // namespace rc10::link

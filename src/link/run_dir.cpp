@@ -1,0 +1,18 @@
+#include "link/run_dir.hpp"
+
+#include <cstdlib>
+
+namespace rc10::link {
+
+std::string runDir() {
+  const char* dir = std::getenv("RC10_RUN_DIR");
+  return dir != nullptr && *dir != '\0' ? dir : "/run/rc10d";
+}
+
+std::string socketPath(const std::string& robot) { return runDir() + "/" + robot + ".sock"; }
+
+std::string restFramesPath(const std::string& run_dir, const std::string& robot) {
+  return run_dir + "/" + robot + "/rest-frames";
+}
+
+}  // namespace rc10::link

@@ -1,0 +1,17 @@
+#pragma once
+
+#include <string>
+
+namespace rc10::link {
+
+/// Folder of sockets and of what others need to know about a running rc10d: $RC10_RUN_DIR, else
+/// /run/rc10d. Not for real-time threads.
+[[nodiscard]] std::string runDir();
+
+/// The link socket of a robot: <runDir>/<robot>.sock.
+[[nodiscard]] std::string socketPath(const std::string& robot);
+
+/// Where rc10d leaves the rest frames of a robot's drives for rc10-stop: <run_dir>/<robot>/rest-frames.
+[[nodiscard]] std::string restFramesPath(const std::string& run_dir, const std::string& robot);
+
+}  // namespace rc10::link

@@ -1,0 +1,214 @@
+#include "module/chassis_base.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+
+#include "module/module_type.hpp"
+
+namespace rc10 {
+namespace {
+
+using enum FamilyKey::Kind;
+
+// Wheels whose feedback is older say nothing about the motion.
+constexpr Duration kFresh = std::chrono::milliseconds{100};
+
+constexpr std::array kKeys{
+    FamilyKey{.name = "max_speed_m_s",
+              .kind = kNumber,
+              .unit = "m/s",
+              .max = 100,
+              .above_min = true,
+              .required = true,
+              .about = "Bound of the velocity, in every direction."},
+    FamilyKey{.name = "max_turn_deg_s",
+              .kind = kNumber,
+              .unit = "deg/s",
+              .max = 100'000,
+              .above_min = true,
+              .required = true,
+              .about = "Bound of the turn rate."},
+    FamilyKey{.name = "max_acceleration_m_s2",
+              .kind = kNumber,
+              .unit = "m/s^2",
+              .max = 1000,
+              .above_min = true,
+              .required = true,
+              .about = "How fast the velocity that the wheels are told may change; as a vector, so that the "
+                       "path is not bent."},
+    FamilyKey{.name = "max_turn_acceleration_deg_s2",
+              .kind = kNumber,
+              .unit = "deg/s^2",
+              .max = 1'000'000,
+              .above_min = true,
+              .required = true,
+              .about = "How fast the turn rate may change."},
+    FamilyKey{
+        .name = "heading",
+        .kind = kText,
+        .about = "The output of another module that is the robot's heading in deg: for twists in the world's "
+                 "frame and for odometry. Default: the odometry's own.",
+        .pattern = kSignalPattern,
+        .words = kSignalWords},
+    FamilyKey{
+        .name = "follow",
+        .kind = kText,
+        .about =
+            "The output of another module that is the angle of a gimbal to the front of the chassis, deg: "
+            "for twists in the gimbal's frame, and for turning after it.",
+        .pattern = kSignalPattern,
+        .words = kSignalWords},
+    FamilyKey{.name = "follow_gain_per_s",
+              .kind = kNumber,
+              .unit = "1/s",
+              .max = 100,
+              .default_text = "5",
+              .about = "How fast it turns after the gimbal: deg/s for each degree."},
+    FamilyKey{.name = "power_limit_w",
+              .kind = kNumber,
+              .unit = "W",
+              .max = 100'000,
+              .default_text = "0",
+              .about = "The motion is slowed while the wheels take more: torque times speed, plus "
+                       "loss_w_per_nm2. 0: no limit."},
+    FamilyKey{.name = "loss_w_per_nm2",
+              .kind = kNumber,
+              .unit = "W/Nm^2",
+              .max = 1000,
+              .default_text = "0",
+              .about = "Heat in the windings, for power_limit_w: W for each Nm squared of each wheel."}};
+
+enum Input : std::size_t { kVx, kVy, kWz, kFrame, kTurnAfter, kX, kY, kHeading };
+enum Output : std::size_t { kOutX, kOutY, kOutHeading, kOutVx, kOutVy, kOutWz, kOutPower, kOutFactor };
+
+ModuleSignals chassisSignals() {
+  return {.inputs = {"vx_m_s", "vy_m_s", "wz_deg_s", "frame", "follow", "x_m", "y_m", "heading_deg"},
+          .outputs = {"x_m", "y_m", "heading_deg", "vx_m_s", "vy_m_s", "wz_deg_s", "power_w", "power_factor"},
+          .events = {}};
+}
+
+[[nodiscard]] double orZero(double value) noexcept { return std::isfinite(value) ? value : 0.0; }
+
+Result<void> find(std::optional<SignalPlace>& place, const std::string& name, const char* key,
+                  const ModuleDirectory& others) {
+  if (name.empty()) return {};
+  auto found = others.findOutput(name);
+  if (!found) return fail(std::string{key} + ": " + found.error().message);
+  place = *found;
+  return {};
+}
+
+}  // namespace
+
+std::span<const FamilyKey> Chassis_Base::commonKeys() noexcept { return kKeys; }
+
+Chassis_Base::Chassis_Base(const OwnValues& own, std::vector<std::size_t> motors)
+    : Module_Base(chassisSignals()),
+      motors_(std::move(motors)),
+      max_speed_m_s_(own.number("max_speed_m_s")),
+      max_turn_deg_s_(own.number("max_turn_deg_s")),
+      follow_gain_per_s_(own.number("follow_gain_per_s")),
+      loss_w_per_nm2_(own.number("loss_w_per_nm2")),
+      heading_name_(own.text("heading")),
+      follow_name_(own.text("follow")),
+      slew_({.linear_m_s2 = own.number("max_acceleration_m_s2"),
+             .angular_deg_s2 = own.number("max_turn_acceleration_deg_s2")}),
+      power_(own.number("power_limit_w")) {}
+
+Result<void> Chassis_Base::connect(const ModuleDirectory& others) {
+  if (auto found = find(heading_, heading_name_, "heading", others); !found) return found;
+  return find(follow_, follow_name_, "follow", others);
+}
+
+void Chassis_Base::update(const Tick& tick, ModuleRobot& robot) noexcept {
+  updateOdometry(tick, robot);
+  const bool fresh = allFresh(tick, robot);
+  const Twist2D now = fresh ? measured(robot) : Twist2D{};
+  const double power_w = fresh ? power(robot) : kNoSignal;
+  const double factor = power_.step(power_w, tick.dt_s);
+  setOutput(kOutVx, fresh ? now.vx_m_s : kNoSignal);
+  setOutput(kOutVy, fresh ? now.vy_m_s : kNoSignal);
+  setOutput(kOutWz, fresh ? now.wz_deg_s : kNoSignal);
+  setOutput(kOutPower, power_w);
+  setOutput(kOutFactor, factor);
+  if (!commanded() || !allObey(robot) || !ready(robot)) {
+    // From where it is when it is commanded again: what rolls is not told to stand at once.
+    slew_.reset(finiteOrRest(now));
+    return;
+  }
+  const Twist2D twist = bounded(wanted(robot));
+  drive(slew_.step({.vx_m_s = twist.vx_m_s * factor,
+                    .vy_m_s = twist.vy_m_s * factor,
+                    .wz_deg_s = twist.wz_deg_s * factor},
+                   tick.dt_s),
+        robot);
+}
+
+Twist2D Chassis_Base::wanted(const ModuleRobot& robot) const noexcept {
+  Twist2D twist{.vx_m_s = orZero(input(kVx)), .vy_m_s = orZero(input(kVy)), .wz_deg_s = orZero(input(kWz))};
+  const double gimbal_deg = follow_ ? robot.read(*follow_) : kNoSignal;
+  const auto frame = static_cast<int>(orZero(input(kFrame)));
+  if (frame == 1) {
+    twist = worldToBody(twist, odometry_.pose().heading_deg);
+  } else if (frame == 2) {
+    // A gimbal that nobody knows: no direction is better than a wrong one.
+    if (!std::isfinite(gimbal_deg)) return {};
+    twist = seenFrom(-gimbal_deg, twist);
+  }
+  if (orZero(input(kTurnAfter)) >= 0.5 && std::isfinite(gimbal_deg))
+    twist.wz_deg_s += follow_gain_per_s_ * std::remainder(gimbal_deg, 360.0);
+  return twist;
+}
+
+Twist2D Chassis_Base::bounded(Twist2D twist) const noexcept {
+  const double speed_m_s = std::hypot(twist.vx_m_s, twist.vy_m_s);
+  if (speed_m_s > max_speed_m_s_) {
+    twist.vx_m_s *= max_speed_m_s_ / speed_m_s;
+    twist.vy_m_s *= max_speed_m_s_ / speed_m_s;
+  }
+  twist.wz_deg_s = std::clamp(twist.wz_deg_s, -max_turn_deg_s_, max_turn_deg_s_);
+  return twist;
+}
+
+void Chassis_Base::updateOdometry(const Tick& tick, const ModuleRobot& robot) noexcept {
+  const Twist2D way = travelled(robot, tick.dt_s);
+  const double heading_deg = heading_ ? robot.read(*heading_) : kNoSignal;
+  if (allFresh(tick, robot)) odometry_.step(way, heading_deg, tick.dt_s);
+  if (commanded()) {
+    Pose2D pose = odometry_.pose();
+    if (std::isfinite(input(kX))) pose.x_m = input(kX);
+    if (std::isfinite(input(kY))) pose.y_m = input(kY);
+    if (std::isfinite(input(kHeading))) pose.heading_deg = input(kHeading);
+    if (pose != odometry_.pose()) odometry_.reset(pose);
+  }
+  setOutput(kOutX, odometry_.pose().x_m);
+  setOutput(kOutY, odometry_.pose().y_m);
+  setOutput(kOutHeading, odometry_.pose().heading_deg);
+}
+
+bool Chassis_Base::allObey(const ModuleRobot& robot) const noexcept {
+  return std::all_of(motors_.begin(), motors_.end(), [&](std::size_t motor) { return robot.obeys(motor); });
+}
+
+bool Chassis_Base::allFresh(const Tick& tick, const ModuleRobot& robot) const noexcept {
+  return std::all_of(motors_.begin(), motors_.end(), [&](std::size_t motor) {
+    const auto& feedback = robot.feedback(motor);
+    return feedback.samples > 0 && tick.now - feedback.received <= kFresh;
+  });
+}
+
+// Mechanical power that the wheels take, and what heats their windings. Braking gives nothing back.
+double Chassis_Base::power(const ModuleRobot& robot) const noexcept {
+  double power_w = 0.0;
+  for (const auto motor : motors_) {
+    const auto& feedback = robot.feedback(motor);
+    const double torque_nm = static_cast<double>(feedback.torque_nm);
+    const double speed_rad_s = static_cast<double>(feedback.velocity_rpm) * 2.0 * std::numbers::pi / 60.0;
+    power_w += std::max(0.0, torque_nm * speed_rad_s) + loss_w_per_nm2_ * torque_nm * torque_nm;
+  }
+  return power_w;
+}
+
+}  // namespace rc10

@@ -1,0 +1,68 @@
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "app/planar_motion.hpp"
+#include "app/planar_odometry.hpp"
+#include "app/slew_limiter.hpp"
+#include "module/module_base.hpp"
+#include "module/power_limiter.hpp"
+#include "motor/family_key.hpp"
+#include "motor/motor_settings.hpp"
+
+namespace rc10 {
+
+/// What every chassis does, whatever its wheels: takes a twist in one of three frames, keeps it within speed,
+/// acceleration and power, hands it to the wheels, and says where the robot has got to. A user's chassis of
+/// another kind is a subclass. All wheels drive or none: while one of them is not there, the others fall
+/// back.
+class Chassis_Base : public Module_Base {
+ public:
+  /// The keys that every chassis has; a type's own come behind them.
+  [[nodiscard]] static std::span<const FamilyKey> commonKeys() noexcept;
+
+  /// `own` has the values of commonKeys(); `motors` are all that it drives.
+  Chassis_Base(const OwnValues& own, std::vector<std::size_t> motors);
+
+  [[nodiscard]] Result<void> connect(const ModuleDirectory& others) override;
+  void update(const Tick& tick, ModuleRobot& robot) noexcept final;
+
+ protected:
+  /// Whether it can be driven now, beside all its motors obeying.
+  [[nodiscard]] virtual bool ready(const ModuleRobot&) const noexcept { return true; }
+  /// Sets the targets of all motors for a motion in the robot's frame. No wheel may get more than it can do:
+  /// the direction of the motion is kept.
+  virtual void drive(const Twist2D& body, ModuleRobot& robot) noexcept = 0;
+  /// The motion by the wheels' velocities.
+  [[nodiscard]] virtual Twist2D measured(const ModuleRobot& robot) const noexcept = 0;
+  /// The mean motion since the last call, by the wheels' multi-turn angles; called in every tick. NaN where
+  /// it is not known.
+  [[nodiscard]] virtual Twist2D travelled(const ModuleRobot& robot, float dt_s) noexcept = 0;
+
+ private:
+  [[nodiscard]] bool allObey(const ModuleRobot& robot) const noexcept;
+  [[nodiscard]] bool allFresh(const Tick& tick, const ModuleRobot& robot) const noexcept;
+  [[nodiscard]] Twist2D wanted(const ModuleRobot& robot) const noexcept;
+  [[nodiscard]] Twist2D bounded(Twist2D twist) const noexcept;
+  void updateOdometry(const Tick& tick, const ModuleRobot& robot) noexcept;
+  [[nodiscard]] double power(const ModuleRobot& robot) const noexcept;
+
+  std::vector<std::size_t> motors_;
+  double max_speed_m_s_;
+  double max_turn_deg_s_;
+  double follow_gain_per_s_;
+  double loss_w_per_nm2_;
+  std::string heading_name_;
+  std::string follow_name_;
+  std::optional<SignalPlace> heading_;
+  std::optional<SignalPlace> follow_;
+  TwistSlewLimiter slew_;
+  PlanarOdometry odometry_;
+  PowerLimiter power_;
+};
+
+}  // namespace rc10

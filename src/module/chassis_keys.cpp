@@ -1,0 +1,46 @@
+#include "module/chassis_keys.hpp"
+
+#include <algorithm>
+#include <limits>
+#include <string>
+
+#include "module/chassis_base.hpp"
+
+namespace rc10 {
+
+std::vector<FamilyKey> withCommonKeys(std::initializer_list<FamilyKey> own) {
+  std::vector<FamilyKey> all{own};
+  const auto common = Chassis_Base::commonKeys();
+  all.insert(all.end(), common.begin(), common.end());
+  return all;
+}
+
+Result<std::vector<std::size_t>> motorsOf(const OwnValues& own, std::string_view key,
+                                          std::span<const FamilyKey> names, ControlMode mode,
+                                          const RobotOutline& robot) {
+  const auto& section = own.section(key);
+  std::vector<std::size_t> motors;
+  for (const auto& name : names) {
+    const std::string path = std::string{key} + "." + std::string{name.name};
+    const auto motor = section.motor(name.name);
+    if (auto able = robot.require(mode, motor, path); !able) return tl::unexpected(able.error());
+    if (std::find(motors.begin(), motors.end(), motor) != motors.end())
+      return fail(path + ": motor '" + robot.motors[motor].name + "' is given twice");
+    motors.push_back(motor);
+  }
+  return motors;
+}
+
+Result<double> wheelLimit(const OwnValues& own, const std::vector<std::size_t>& motors,
+                          const RobotOutline& robot) {
+  if (own.given("wheel_limit_rpm")) return own.number("wheel_limit_rpm");
+  double limit_rpm = std::numeric_limits<double>::infinity();
+  for (const auto motor : motors) {
+    const auto own_limit_rpm = static_cast<double>(robot.motors[motor].velocity_limit_rpm);
+    if (own_limit_rpm > 0.0) limit_rpm = std::min(limit_rpm, own_limit_rpm);
+  }
+  if (limit_rpm < std::numeric_limits<double>::infinity()) return limit_rpm;
+  return fail("wheel_limit_rpm: is missing, and no motor of it has a velocity_limit_rpm; add one of them");
+}
+
+}  // namespace rc10

@@ -1,0 +1,226 @@
+#include "module/feeder.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace rc10 {
+namespace {
+
+using enum FamilyKey::Kind;
+
+// Of the velocity that is asked for: slower than this it does not move.
+constexpr double kMoves = 0.2;
+
+constexpr std::array kKeys{
+    FamilyKey{
+        .name = "motor", .kind = kMotor, .required = true, .about = "The motor; it needs velocity targets."},
+    FamilyKey{.name = "velocity_limit_rpm",
+              .kind = kNumber,
+              .unit = "rpm",
+              .max = 100'000,
+              .above_min = true,
+              .required = true,
+              .about = "No velocity target is higher; single shots are fed at this velocity."},
+    FamilyKey{.name = "deg_per_shot",
+              .kind = kNumber,
+              .unit = "deg",
+              .max = 3600,
+              .above_min = true,
+              .default_text = "45",
+              .about = "Turn of the output shaft for one shot: 360 by the number of pockets."},
+    FamilyKey{
+        .name = "jam_ms",
+        .kind = kInteger,
+        .unit = "ms",
+        .min = 10,
+        .max = 5000,
+        .default_text = "200",
+        .about =
+            "Not moving for so long while it should is a jam. Must be shorter than the motor's stall_ms."},
+    FamilyKey{.name = "reverse_rpm",
+              .kind = kNumber,
+              .unit = "rpm",
+              .max = 100'000,
+              .above_min = true,
+              .default_text = "30",
+              .about = "Velocity of the way back."},
+    FamilyKey{.name = "reverse_ms",
+              .kind = kInteger,
+              .unit = "ms",
+              .min = 10,
+              .max = 5000,
+              .default_text = "200",
+              .about = "How long it goes back."},
+    FamilyKey{
+        .name = "retries",
+        .kind = kInteger,
+        .max = 100,
+        .default_text = "3",
+        .about = "So many times in a row it tries again; then it gives up until nobody asks any more."}};
+
+enum Input : std::size_t { kVelocityRpm, kShots };
+enum Output : std::size_t { kState, kShotsLeft, kJams };
+enum EventPlace : std::size_t { kJammed, kFreed, kGaveUp };
+
+ModuleSignals feederSignals() {
+  return {.inputs = {"velocity_rpm", "shots"},
+          .outputs = {"state", "shots_left", "jams"},
+          .events = {{.text = "jammed: goes back and tries again"},
+                     {.text = "free again", .expected = true},
+                     {.text = "jammed, and no way back frees it: it rests until nobody asks any more"}}};
+}
+
+class Feeder : public Module_Base {
+ public:
+  explicit Feeder(const OwnValues& own)
+      : Module_Base(feederSignals()),
+        motor_(own.motor("motor")),
+        limit_rpm_(own.number("velocity_limit_rpm")),
+        deg_per_shot_(own.number("deg_per_shot")),
+        jam_time_(std::chrono::milliseconds{own.integer("jam_ms")}),
+        reverse_rpm_(std::min(own.number("reverse_rpm"), limit_rpm_)),
+        reverse_time_(std::chrono::milliseconds{own.integer("reverse_ms")}),
+        retries_(own.integer("retries")) {
+    show();
+  }
+
+  void update(const Tick& tick, ModuleRobot& robot) noexcept override {
+    const auto& feedback = robot.feedback(motor_);
+    countShots(feedback);
+    const double wanted_rpm = wanted(robot);
+    if (wanted_rpm == 0.0) {
+      // Nobody asks: what was wrong is over, and is found anew if it is not.
+      state_ = State::kIdle;
+      in_a_row_ = 0;
+      if (robot.obeys(motor_) && commanded()) turn(robot, 0.0);
+    } else {
+      feed(wanted_rpm, static_cast<double>(feedback.velocity_rpm), tick, robot);
+    }
+    show();
+  }
+
+ private:
+  enum class State { kIdle, kFeeding, kReversing, kGivenUp };
+
+  /// 0: nothing is asked, or nothing can be done.
+  [[nodiscard]] double wanted(ModuleRobot& robot) noexcept {
+    if (!commanded() || !robot.obeys(motor_)) {
+      // Shots that nobody can fire now must not be fired later.
+      shots_left_deg_ = 0.0;
+      return 0.0;
+    }
+    if (shots_left_deg_ > 0.0) return limit_rpm_;
+    const double velocity_rpm = input(kVelocityRpm);
+    return std::isfinite(velocity_rpm) ? std::clamp(velocity_rpm, -limit_rpm_, limit_rpm_) : 0.0;
+  }
+
+  // `shots` counts up: each step of it is one more. Where the count begins, nothing is fired.
+  void countShots(const MotorFeedback& feedback) noexcept {
+    const double turned_deg = feedback.total_angle_deg - last_deg_;
+    if (std::isfinite(turned_deg) && shots_left_deg_ > 0.0)
+      shots_left_deg_ = std::max(0.0, shots_left_deg_ - turned_deg);
+    last_deg_ = feedback.total_angle_deg;
+    const double shots = commanded() ? input(kShots) : kNoSignal;
+    if (std::isfinite(shots) && std::isfinite(last_shots_) && shots > last_shots_)
+      shots_left_deg_ += (shots - last_shots_) * deg_per_shot_;
+    last_shots_ = shots;
+  }
+
+  void feed(double wanted_rpm, double measured_rpm, const Tick& tick, ModuleRobot& robot) noexcept {
+    switch (state_) {
+      case State::kIdle:
+        state_ = State::kFeeding;
+        moved_ = tick.now;
+        [[fallthrough]];
+      case State::kFeeding: watchJam(wanted_rpm, measured_rpm, tick, robot); break;
+      case State::kReversing:
+        if (tick.now < reverse_until_) break;
+        state_ = State::kFeeding;
+        moved_ = tick.now;
+        break;
+      case State::kGivenUp: break;
+    }
+    switch (state_) {
+      case State::kReversing: return turn(robot, std::copysign(reverse_rpm_, -wanted_rpm));
+      case State::kGivenUp: return turn(robot, 0.0);
+      default: return turn(robot, wanted_rpm);
+    }
+  }
+
+  void watchJam(double wanted_rpm, double measured_rpm, const Tick& tick, ModuleRobot& robot) noexcept {
+    if (measured_rpm * std::copysign(1.0, wanted_rpm) >= kMoves * std::fabs(wanted_rpm)) {
+      // It has to go on for as long as a jam lasts before it counts as freed: a ball gives a little.
+      if (in_a_row_ > 0 && tick.now - freed_ >= 2 * jam_time_) {
+        in_a_row_ = 0;
+        robot.report(kFreed);
+      }
+      moved_ = tick.now;
+      return;
+    }
+    if (tick.now - moved_ < jam_time_) return;
+    ++jams_;
+    if (++in_a_row_ > retries_) {
+      state_ = State::kGivenUp;
+      robot.report(kGaveUp);
+      return;
+    }
+    if (in_a_row_ == 1) robot.report(kJammed);
+    state_ = State::kReversing;
+    reverse_until_ = tick.now + reverse_time_;
+    freed_ = reverse_until_;
+  }
+
+  void turn(ModuleRobot& robot, double velocity_rpm) const noexcept {
+    robot.setTarget(motor_, {.mode = ControlMode::kVelocity, .value = velocity_rpm});
+  }
+
+  void show() noexcept {
+    setOutput(kState, static_cast<double>(state_));
+    setOutput(kShotsLeft, std::ceil(shots_left_deg_ / deg_per_shot_));
+    setOutput(kJams, static_cast<double>(jams_));
+  }
+
+  std::size_t motor_;
+  double limit_rpm_;
+  double deg_per_shot_;
+  Duration jam_time_;
+  double reverse_rpm_;
+  Duration reverse_time_;
+  int retries_;
+
+  State state_ = State::kIdle;
+  double shots_left_deg_ = 0.0;
+  double last_shots_ = kNoSignal;
+  double last_deg_ = kNoSignal;
+  int in_a_row_ = 0;  ///< Jams without a success between them.
+  long jams_ = 0;
+  MonotonicTime moved_{};
+  MonotonicTime reverse_until_{};
+  MonotonicTime freed_{};
+};
+
+class FeederType : public ModuleType {
+ public:
+  [[nodiscard]] std::string_view name() const noexcept override { return "feeder"; }
+  [[nodiscard]] std::string_view about() const noexcept override {
+    return "Pushes balls or discs forward; frees itself when it is jammed.";
+  }
+  [[nodiscard]] std::span<const FamilyKey> keys() const noexcept override { return kKeys; }
+
+  [[nodiscard]] Result<std::unique_ptr<Module_Base>> build(const ModuleSettings& settings,
+                                                           const RobotOutline& robot) const override {
+    if (auto able = robot.require(ControlMode::kVelocity, settings.own.motor("motor"), "motor"); !able)
+      return tl::unexpected(able.error());
+    return std::make_unique<Feeder>(settings.own);
+  }
+};
+
+}  // namespace
+
+const ModuleType& feederType() noexcept {
+  static const FeederType kType;
+  return kType;
+}
+
+}  // namespace rc10

@@ -1,0 +1,49 @@
+#pragma once
+
+#include <cmath>
+
+namespace rc10 {
+
+/// One axis that is to look at an angle of the world: which velocity its motor gets. The angle, its rate and
+/// the motor's velocity come in; so it is known how fast the axis is carried round, and that is taken off.
+class GimbalAxis {
+ public:
+  struct Config {
+    double gain_per_s = 10.0;  ///< deg/s for each degree that is missing.
+    double velocity_limit_rpm = 0.0;
+    bool circular = true;  ///< The shortest way round.
+  };
+  struct Measured {
+    double angle_deg = 0.0;   ///< Of the world, or of the chassis.
+    double rate_deg_s = 0.0;  ///< Of the world; NaN: not known, nothing is taken off.
+    double motor_rpm = 0.0;
+  };
+
+  explicit GimbalAxis(const Config& config) noexcept : config_(config) {}
+
+  /// Looks where it looks now.
+  void hold(double angle_deg) noexcept { target_deg_ = angle_deg; }
+  void aim(double angle_deg) noexcept { target_deg_ = angle_deg; }
+  void turn(double rate_deg_s, float dt_s) noexcept { target_deg_ += rate_deg_s * static_cast<double>(dt_s); }
+  [[nodiscard]] double target() const noexcept { return target_deg_; }
+
+  /// `rate_deg_s`: how fast the target itself moves.
+  [[nodiscard]] double velocityRpm(const Measured& measured, double rate_deg_s) const noexcept {
+    double missing_deg = target_deg_ - measured.angle_deg;
+    if (config_.circular) missing_deg = std::remainder(missing_deg, 360.0);
+    const double wanted_deg_s = rate_deg_s + config_.gain_per_s * missing_deg;
+    const double carried_deg_s =
+        std::isfinite(measured.rate_deg_s) ? measured.rate_deg_s - measured.motor_rpm * kDegPerSPerRpm : 0.0;
+    const double rpm = (wanted_deg_s - carried_deg_s) / kDegPerSPerRpm;
+    if (!std::isfinite(rpm)) return 0.0;
+    return std::fmax(-config_.velocity_limit_rpm, std::fmin(config_.velocity_limit_rpm, rpm));
+  }
+
+ private:
+  static constexpr double kDegPerSPerRpm = 6.0;
+
+  Config config_;
+  double target_deg_ = 0.0;
+};
+
+}  // namespace rc10

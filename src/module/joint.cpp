@@ -1,0 +1,395 @@
+#include "module/joint.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <optional>
+#include <string>
+
+#include "app/s_curve_profile.hpp"
+#include "app/trapezoid_profile.hpp"
+#include "module/joint_homing.hpp"
+
+namespace rc10 {
+namespace {
+
+using enum FamilyKey::Kind;
+
+constexpr double kDegPerSPerRpm = 6.0;
+
+constexpr std::array<std::string_view, 3> kHomings{"none", "stop", "switch"};
+constexpr std::array<std::string_view, 2> kOnSilence{"hold", "let_go"};
+
+constexpr std::array kKeys{
+    FamilyKey{.name = "motor",
+              .kind = kMotor,
+              .required = true,
+              .about = "The motor; it needs total_angle targets, and current targets if it homes. Its soft "
+                       "limits (angle_min_deg, angle_max_deg) bound the moves."},
+    FamilyKey{.name = "max_velocity_deg_s",
+              .kind = kNumber,
+              .unit = "deg/s",
+              .max = 1e6,
+              .above_min = true,
+              .required = true,
+              .about = "No move is faster."},
+    FamilyKey{.name = "max_acceleration_deg_s2",
+              .kind = kNumber,
+              .unit = "deg/s^2",
+              .max = 1e7,
+              .above_min = true,
+              .required = true,
+              .about = "Nor gets faster or slower than this."},
+    FamilyKey{.name = "max_jerk_deg_s3",
+              .kind = kNumber,
+              .unit = "deg/s^3",
+              .max = 1e9,
+              .default_text = "0",
+              .about = "How fast the acceleration may change: the move becomes an S-curve. 0: not limited."},
+    FamilyKey{.name = "tolerance_deg",
+              .kind = kNumber,
+              .unit = "deg",
+              .max = 360,
+              .above_min = true,
+              .default_text = "1",
+              .about = "A move is done when the motor stands this close to its target."},
+    FamilyKey{.name = "settle_ms",
+              .kind = kInteger,
+              .unit = "ms",
+              .min = 1,
+              .max = 60'000,
+              .default_text = "1000",
+              .about = "A move that is not done so long after its profile has ended has failed."},
+    FamilyKey{.name = "homing",
+              .kind = kChoice,
+              .choices = kHomings,
+              .default_text = "none",
+              .about =
+                  "How it finds its reference when the input `home` rises: against a stop, or at a switch. "
+                  "none: the motor has one."},
+    FamilyKey{.name = "home_angle_deg",
+              .kind = kNumber,
+              .unit = "deg",
+              .min = -1e6,
+              .max = 1e6,
+              .default_text = "0",
+              .about = "The angle of the stop or of the switch."},
+    FamilyKey{.name = "homing_velocity_rpm",
+              .kind = kNumber,
+              .unit = "rpm",
+              .min = -10'000,
+              .max = 10'000,
+              .default_text = "-5",
+              .about = "Velocity towards the stop or switch; its sign says where that is."},
+    FamilyKey{.name = "homing_current_a",
+              .kind = kNumber,
+              .unit = "A",
+              .max = 1000,
+              .above_min = true,
+              .default_text = "1",
+              .about = "The most that pushes while it homes; near the homing velocity it goes to 0."},
+    FamilyKey{.name = "homing_away_deg",
+              .kind = kNumber,
+              .unit = "deg",
+              .max = 3600,
+              .above_min = true,
+              .default_text = "5",
+              .about = "So far it goes away from the end first, which shows that it moves at all."},
+    FamilyKey{.name = "homing_stopped_ms",
+              .kind = kInteger,
+              .unit = "ms",
+              .min = 20,
+              .max = 10'000,
+              .default_text = "200",
+              .about = "Standing still for so long is the stop."},
+    FamilyKey{.name = "homing_timeout_s",
+              .kind = kNumber,
+              .unit = "s",
+              .max = 600,
+              .above_min = true,
+              .default_text = "10",
+              .about = "A homing that takes longer has failed."},
+    FamilyKey{.name = "switch",
+              .kind = kText,
+              .about = "For homing: switch: the output of another module that is 1 while the switch is "
+                       "closed, such as limit.closed. While that is NaN, homing fails.",
+              .pattern = kSignalPattern,
+              .words = kSignalWords},
+    FamilyKey{
+        .name = "on_silence",
+        .kind = kChoice,
+        .choices = kOnSilence,
+        .default_text = "hold",
+        .about =
+            "When nobody commands it any more: hold brakes within the limits and holds while the motor is "
+            "ACTIVE; let_go leaves it to the motor's on_timeout."}};
+
+enum Input : std::size_t { kAngleDeg, kHome };
+enum Output : std::size_t { kState, kMove, kMeasured, kReference, kHomed };
+enum EventPlace : std::size_t { kIsHomed, kNotHomed, kNotReached, kBeyond, kNoSwitch };
+
+ModuleSignals jointSignals() {
+  return {
+      .inputs = {"angle_deg", "home"},
+      .outputs = {"state", "move", "angle_deg", "reference_deg", "homed"},
+      .events = {{.text = "homed", .expected = true},
+                 {.text = "homing failed: it did not move away from the end, or did not find it in time; see "
+                          "homing_current_a, the sign of homing_velocity_rpm and homing_timeout_s"},
+                 {.text = "a move failed: it does not reach its target; see what is in its way, the motor's "
+                          "limits, tolerance_deg and settle_ms"},
+                 {.text = "a target lies beyond the motor's soft limits: it goes to the limit"},
+                 {.text = "homing failed: the switch is not heard; see the module that reads it"}}};
+}
+
+/// The reference that runs ahead of the motor: with or without limited jerk.
+class Reference {
+ public:
+  explicit Reference(const OwnValues& own)
+      : trapezoid_({own.number("max_velocity_deg_s"), own.number("max_acceleration_deg_s2")}) {
+    if (own.number("max_jerk_deg_s3") <= 0.0) return;
+    s_curve_.emplace(SCurveProfile::Limits{own.number("max_velocity_deg_s"),
+                                           own.number("max_acceleration_deg_s2"),
+                                           own.number("max_jerk_deg_s3")});
+  }
+
+  void reset(double deg) noexcept { s_curve_ ? s_curve_->reset(deg) : trapezoid_.reset(deg); }
+  void step(double target_deg, float dt_s) noexcept {
+    s_curve_ ? s_curve_->step(target_deg, dt_s) : trapezoid_.step(target_deg, dt_s);
+  }
+  void brake(float dt_s) noexcept { s_curve_ ? s_curve_->brake(dt_s) : trapezoid_.brake(dt_s); }
+  [[nodiscard]] const ProfileState& state() const noexcept {
+    return s_curve_ ? s_curve_->state() : trapezoid_.state();
+  }
+  [[nodiscard]] bool restsAt(double target_deg) const noexcept {
+    return s_curve_ ? s_curve_->restsAt(target_deg) : trapezoid_.restsAt(target_deg);
+  }
+
+ private:
+  TrapezoidProfile trapezoid_;
+  std::optional<SCurveProfile> s_curve_;
+};
+
+JointHoming::Config homingConfig(const OwnValues& own) {
+  return {.way = own.text("homing") == "switch" ? JointHoming::Way::kSwitch : JointHoming::Way::kStop,
+          .velocity_rpm = own.number("homing_velocity_rpm"),
+          .current_a = own.number("homing_current_a"),
+          .away_deg = own.number("homing_away_deg"),
+          .stopped = std::chrono::milliseconds{own.integer("homing_stopped_ms")},
+          .timeout = std::chrono::milliseconds{static_cast<int>(own.number("homing_timeout_s") * 1000.0)}};
+}
+
+class Joint : public Module_Base {
+ public:
+  Joint(const OwnValues& own, const RobotOutline::Motor& motor)
+      : Module_Base(jointSignals()),
+        motor_(own.motor("motor")),
+        min_deg_(motor.angle_min_deg),
+        max_deg_(motor.angle_max_deg),
+        tolerance_deg_(own.number("tolerance_deg")),
+        settle_(std::chrono::milliseconds{own.integer("settle_ms")}),
+        homes_(own.text("homing") != "none"),
+        home_angle_deg_(own.number("home_angle_deg")),
+        holds_(own.text("on_silence") == "hold"),
+        switch_name_(own.text("switch")),
+        reference_(own),
+        homing_(homingConfig(own)) {}
+
+  [[nodiscard]] Result<void> connect(const ModuleDirectory& others) override {
+    if (switch_name_.empty()) return {};
+    auto place = others.findOutput(switch_name_);
+    if (!place) return fail("switch: " + place.error().message);
+    switch_ = *place;
+    return {};
+  }
+
+  void update(const Tick& tick, ModuleRobot& robot) noexcept override {
+    const auto& feedback = robot.feedback(motor_);
+    const double home = commanded() ? input(kHome) : 0.0;
+    const bool home_asked = home >= 0.5 && !home_was_asked_;
+    home_was_asked_ = home >= 0.5;
+    if (!robot.obeys(motor_)) {
+      state_ = State::kIdle;
+      move_ = Move::kNone;
+    } else {
+      if (home_asked && homes_) beginHoming(feedback, tick, robot);
+      if (state_ == State::kHoming) {
+        stepHoming(feedback, tick, robot);
+      } else {
+        follow(feedback, tick, robot);
+      }
+    }
+    setOutput(kState, static_cast<double>(state_));
+    setOutput(kMove, static_cast<double>(move_));
+    setOutput(kMeasured, feedback.total_angle_deg);
+    setOutput(kReference, state_ == State::kFollowing ? reference_.state().position : kNoSignal);
+    setOutput(kHomed, feedback.zeroed ? 1.0 : 0.0);
+  }
+
+ private:
+  enum class State { kIdle, kHoming, kFollowing, kHomingFailed };
+  enum class Move { kNone, kUnderWay, kDone, kFailed };
+
+  [[nodiscard]] JointHoming::Measured measured(const MotorFeedback& feedback, const Tick& tick,
+                                               const ModuleRobot& robot) const noexcept {
+    const double closed = switch_ ? robot.read(*switch_) : 0.0;
+    return {.total_angle_deg = feedback.total_angle_deg,
+            .velocity_rpm = static_cast<double>(feedback.velocity_rpm),
+            .at_switch = closed >= 0.5,
+            .switch_heard = std::isfinite(closed),
+            .now = tick.now};
+  }
+
+  void beginHoming(const MotorFeedback& feedback, const Tick& tick, const ModuleRobot& robot) noexcept {
+    homing_.start(measured(feedback, tick, robot));
+    state_ = State::kHoming;
+    move_ = Move::kNone;
+    zero_asked_ = false;
+  }
+
+  void stepHoming(const MotorFeedback& feedback, const Tick& tick, ModuleRobot& robot) noexcept {
+    // The client that asked has to stay: a homing nobody watches does not go on.
+    if (!commanded()) {
+      state_ = State::kIdle;
+      return;
+    }
+    if (zero_asked_) {
+      // The zero of the tick before is in force: from here the angle means something.
+      robot.report(kIsHomed);
+      beginFollowing(feedback);
+      follow(feedback, tick, robot);
+      return;
+    }
+    const auto now = measured(feedback, tick, robot);
+    switch (homing_.step(now)) {
+      case JointHoming::Progress::kUnderWay: break;
+      case JointHoming::Progress::kFound:
+        robot.ask(RobotRequest::kZero, motor_, home_angle_deg_);
+        zero_asked_ = true;
+        break;
+      case JointHoming::Progress::kFailed:
+        robot.report(now.switch_heard ? kNotHomed : kNoSwitch);
+        state_ = State::kHomingFailed;
+        return;
+    }
+    robot.setTarget(motor_, {.mode = ControlMode::kCurrent, .value = homing_.current()});
+  }
+
+  void beginFollowing(const MotorFeedback& feedback) noexcept {
+    reference_.reset(feedback.total_angle_deg);
+    target_deg_ = feedback.total_angle_deg;
+    state_ = State::kFollowing;
+    move_ = Move::kNone;
+  }
+
+  void follow(const MotorFeedback& feedback, const Tick& tick, ModuleRobot& robot) noexcept {
+    const bool wanted = commanded() && std::isfinite(input(kAngleDeg));
+    if (!feedback.zeroed || state_ == State::kHomingFailed) {
+      if (state_ == State::kFollowing) state_ = State::kIdle;
+      return;
+    }
+    if (state_ != State::kFollowing) {
+      if (!wanted) return;
+      beginFollowing(feedback);
+    }
+    if (wanted) {
+      aim(robot, tick);
+      reference_.step(target_deg_, tick.dt_s);
+    } else if (holds_) {
+      reference_.brake(tick.dt_s);
+    } else {
+      state_ = State::kIdle;
+      return;
+    }
+    judge(feedback, tick, robot, wanted);
+    const auto& reference = reference_.state();
+    robot.setTarget(motor_, {.mode = ControlMode::kTotalAngle,
+                             .value = reference.position,
+                             .velocity_ff_rpm = static_cast<float>(reference.velocity / kDegPerSPerRpm)});
+  }
+
+  void aim(ModuleRobot& robot, const Tick& tick) noexcept {
+    const double asked_deg = input(kAngleDeg);
+    const double target_deg = std::clamp(asked_deg, min_deg_, max_deg_);
+    if (target_deg != asked_deg && asked_deg != beyond_deg_) {
+      beyond_deg_ = asked_deg;
+      robot.report(kBeyond);
+    }
+    if (target_deg == target_deg_ && move_ != Move::kNone) return;
+    target_deg_ = target_deg;
+    move_ = Move::kUnderWay;
+    arrived_ = tick.now;
+  }
+
+  void judge(const MotorFeedback& feedback, const Tick& tick, ModuleRobot& robot, bool wanted) noexcept {
+    if (move_ != Move::kUnderWay || !wanted) return;
+    if (!reference_.restsAt(target_deg_)) {
+      arrived_ = tick.now;
+      return;
+    }
+    if (std::fabs(feedback.total_angle_deg - target_deg_) <= tolerance_deg_) {
+      move_ = Move::kDone;
+    } else if (tick.now - arrived_ >= settle_) {
+      move_ = Move::kFailed;
+      robot.report(kNotReached);
+    }
+  }
+
+  std::size_t motor_;
+  double min_deg_;
+  double max_deg_;
+  double tolerance_deg_;
+  Duration settle_;
+  bool homes_;
+  double home_angle_deg_;
+  bool holds_;
+  std::string switch_name_;
+  std::optional<SignalPlace> switch_;
+  Reference reference_;
+  JointHoming homing_;
+
+  State state_ = State::kIdle;
+  Move move_ = Move::kNone;
+  bool home_was_asked_ = false;
+  bool zero_asked_ = false;
+  double target_deg_ = 0.0;
+  double beyond_deg_ = kNoSignal;  ///< The last target that was out of reach: told once.
+  MonotonicTime arrived_{};
+};
+
+class JointType : public ModuleType {
+ public:
+  [[nodiscard]] std::string_view name() const noexcept override { return "joint"; }
+  [[nodiscard]] std::string_view about() const noexcept override {
+    return "One axis that homes and moves between positions.";
+  }
+  [[nodiscard]] std::span<const FamilyKey> keys() const noexcept override { return kKeys; }
+
+  [[nodiscard]] Result<std::unique_ptr<Module_Base>> build(const ModuleSettings& settings,
+                                                           const RobotOutline& robot) const override {
+    const auto& own = settings.own;
+    const auto motor = own.motor("motor");
+    if (auto able = robot.require(ControlMode::kTotalAngle, motor, "motor"); !able)
+      return tl::unexpected(able.error());
+    const auto homing = own.text("homing");
+    if (homing != "none") {
+      if (auto able = robot.require(ControlMode::kCurrent, motor, "homing"); !able)
+        return tl::unexpected(able.error());
+      if (own.number("homing_velocity_rpm") == 0.0)
+        return fail("homing_velocity_rpm: 0 finds nothing; its sign says where the end is");
+    }
+    if ((homing == "switch") != own.given("switch"))
+      return fail(homing == "switch"
+                      ? "switch: is missing; name the output that is 1 while the switch is closed"
+                      : "switch: means nothing without homing: switch; remove it or change homing");
+    return std::make_unique<Joint>(own, robot.motors[motor]);
+  }
+};
+
+}  // namespace
+
+const ModuleType& jointType() noexcept {
+  static const JointType kType;
+  return kType;
+}
+
+}  // namespace rc10

@@ -1,0 +1,55 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+
+#include "module/robot_status.hpp"
+#include "motor/motor_base.hpp"
+#include "motor/target.hpp"
+
+namespace rc10 {
+
+/// An input or an output of a module.
+struct SignalPlace {
+  std::size_t module = 0;
+  std::size_t signal = 0;
+};
+
+/// What a module sees of the robot, and asks of it. Motors are places in the robot's list: what a key of kind
+/// kMotor gives. Scheduler thread only.
+class ModuleRobot {
+ public:
+  ModuleRobot() = default;
+  ModuleRobot(const ModuleRobot&) = delete;
+  ModuleRobot& operator=(const ModuleRobot&) = delete;
+  virtual ~ModuleRobot() = default;
+
+  [[nodiscard]] virtual RobotState state() const noexcept = 0;
+  [[nodiscard]] virtual std::size_t motorCount() const noexcept = 0;
+  /// At the output shaft; its age is tick.now - feedback.received.
+  [[nodiscard]] virtual const MotorFeedback& feedback(std::size_t motor) const noexcept = 0;
+  [[nodiscard]] virtual MotorStatus status(std::size_t motor) const noexcept = 0;
+  /// Whether a target of this module would be obeyed now: the motor is ACTIVE and nobody else commands it.
+  [[nodiscard]] virtual bool obeys(std::size_t motor) const noexcept = 0;
+
+  /// For this tick. All targets of one update() act together, or, if one of the motors is commanded by
+  /// somebody of the same or a higher priority, none does. A motor without a target for some ticks falls
+  /// back as configured by on_timeout.
+  virtual void setTarget(std::size_t motor, const Target& target) noexcept = 0;
+  /// A request, as a person would make it, with all its rules; the outcome is seen in status(). For kZero
+  /// `angle_deg` is what the present angle becomes; a module may zero a motor that is ACTIVE, as long as no
+  /// target in force refers to the angle.
+  virtual void ask(RobotRequest request, std::size_t motor, double angle_deg = 0.0) noexcept = 0;
+  /// The same for all motors. kEstop and the clearing of an e-stop are always for all.
+  virtual void askAll(RobotRequest request) noexcept = 0;
+
+  /// An output of another module, as its last update() left it. NaN: without meaning now.
+  [[nodiscard]] virtual double read(SignalPlace output) const noexcept = 0;
+  /// Gives another module an input, as a client with this module's name and priority, for some ticks. All of
+  /// one update() that go to one module are one message.
+  virtual void send(SignalPlace input, double value) noexcept = 0;
+  /// Reports an event: its place in ModuleSignals::events. Once for each happening, not in every tick.
+  virtual void report(std::size_t event) noexcept = 0;
+};
+
+}  // namespace rc10

@@ -1,0 +1,64 @@
+#pragma once
+
+#include <memory>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "app/result.hpp"
+#include "module/module_base.hpp"
+#include "motor/family_key.hpp"
+#include "motor/motor_settings.hpp"
+#include "motor/target.hpp"
+
+namespace rc10 {
+
+/// Of keys that name an input or an output of another module.
+inline constexpr std::string_view kSignalPattern = "[a-z0-9_]{1,31}\\.[a-z0-9_]{1,31}";
+inline constexpr std::string_view kSignalWords = "MODULE.SIGNAL, for example imu.yaw_deg";
+
+/// What a module may know of the robot before it runs.
+struct RobotOutline {
+  struct Motor {
+    std::string name;
+    ModeSet modes;
+    float velocity_limit_rpm = 0.0F;  ///< What it can be told, or reaches without load; 0: not known.
+    double angle_min_deg = 0.0;       ///< Its soft limits; infinite: none.
+    double angle_max_deg = 0.0;
+  };
+  std::vector<Motor> motors;
+  int tick_hz = 1000;
+
+  /// An error that begins with `key` unless the motor can be told such targets.
+  [[nodiscard]] Result<void> require(ControlMode mode, std::size_t motor, std::string_view key) const;
+};
+
+/// One module as configured.
+struct ModuleSettings {
+  std::string name;
+  int priority = 0;  ///< Of its targets and of what it sends.
+  OwnValues own;     ///< Of the type's keys; motors and modules as their places.
+};
+
+/// A type of module, as written under `type`: all that the rest of the program needs to know of it.
+/// Stateless, and constant after start. Start-up only: it allocates.
+class ModuleType {
+ public:
+  ModuleType() = default;
+  ModuleType(const ModuleType&) = delete;
+  ModuleType& operator=(const ModuleType&) = delete;
+  virtual ~ModuleType() = default;
+
+  /// "mecanum_chassis"
+  [[nodiscard]] virtual std::string_view name() const noexcept = 0;
+  /// One sentence, for people.
+  [[nodiscard]] virtual std::string_view about() const noexcept = 0;
+  [[nodiscard]] virtual std::span<const FamilyKey> keys() const noexcept = 0;
+  /// `settings.own` has all of keys(), each in its range. The error begins with the key that is wrong:
+  /// "wheel_radius_m: ...".
+  [[nodiscard]] virtual Result<std::unique_ptr<Module_Base>> build(const ModuleSettings& settings,
+                                                                   const RobotOutline& robot) const = 0;
+};
+
+}  // namespace rc10

@@ -1,0 +1,322 @@
+#include "module/remote.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "module/remote_channels.hpp"
+#include "module/serial_keys.hpp"
+
+namespace rc10 {
+namespace {
+
+using enum FamilyKey::Kind;
+
+// So long after the arm switch motors are cleared and enabled as they become ready; what fails later stays
+// down until the driver uses the switch again.
+constexpr Duration kArming = std::chrono::seconds{3};
+// A motor that could not be enabled is tried again.
+constexpr Duration kArmingRetry = std::chrono::milliseconds{200};
+
+constexpr std::string_view kChannelPattern = "[a-z0-9_]{1,31}";
+constexpr std::array<std::string_view, 2> kProtocols{"dbus", "sbus"};
+
+constexpr std::array kStickKeys{
+    FamilyKey{.name = "channel",
+              .kind = kText,
+              .required = true,
+              .about = "The channel: see docs/modules.md for the names.",
+              .pattern = kChannelPattern,
+              .words = "the name of a channel"},
+    FamilyKey{.name = "to",
+              .kind = kText,
+              .required = true,
+              .about = "The input of another module.",
+              .pattern = kSignalPattern,
+              .words = kSignalWords},
+    FamilyKey{.name = "scale",
+              .kind = kNumber,
+              .min = -1e6,
+              .max = 1e6,
+              .default_text = "1",
+              .about = "Value of the input at full deflection."},
+    FamilyKey{.name = "deadband",
+              .kind = kNumber,
+              .max = 0.9,
+              .default_text = "0.05",
+              .about = "A smaller deflection is 0; beyond it the value begins at 0."}};
+
+constexpr std::array kConstantKeys{FamilyKey{.name = "to",
+                                             .kind = kText,
+                                             .required = true,
+                                             .about = "The input of another module.",
+                                             .pattern = kSignalPattern,
+                                             .words = kSignalWords},
+                                   FamilyKey{.name = "value",
+                                             .kind = kNumber,
+                                             .min = -1e6,
+                                             .max = 1e6,
+                                             .required = true,
+                                             .about = "Its value while the remote commands."}};
+
+constexpr std::array kKeys{
+    kPortKey,
+    FamilyKey{.name = "protocol",
+              .kind = kChoice,
+              .choices = kProtocols,
+              .required = true,
+              .about = "Of the receiver: dbus (DJI DR16, 100000 8E1) or sbus (100000 8E2). Both need an "
+                       "inverter before an ordinary UART."},
+    FamilyKey{.name = "lost_ms",
+              .kind = kInteger,
+              .unit = "ms",
+              .min = 20,
+              .max = 5000,
+              .default_text = "100",
+              .about = "Without a frame for so long, or when the receiver says so, the remote is lost: it "
+                       "commands nothing."},
+    FamilyKey{.name = "disable_s",
+              .kind = kNumber,
+              .unit = "s",
+              .max = 3600,
+              .default_text = "1",
+              .about = "Lost for so long, every motor is disabled."},
+    FamilyKey{.name = "arm_channel",
+              .kind = kText,
+              .about = "The switch that enables the robot when it goes up, and disables it when it goes "
+                       "down. Default: none; it commands whenever it is heard.",
+              .pattern = kChannelPattern,
+              .words = "the name of a channel"},
+    FamilyKey{.name = "arm_above",
+              .kind = kNumber,
+              .min = -1,
+              .max = 1,
+              .default_text = "0.5",
+              .about = "Above this the switch is up."},
+    FamilyKey{.name = "sticks",
+              .kind = kRows,
+              .max = 30,
+              .about = "What the channels command.",
+              .keys = kStickKeys},
+    FamilyKey{.name = "constants",
+              .kind = kRows,
+              .max = 30,
+              .about = "What it gives beside its channels while it commands.",
+              .keys = kConstantKeys}};
+
+enum Output : std::size_t { kConnected, kArmed, kAgeMs, kFirstChannel };
+enum EventPlace : std::size_t { kLost, kBack, kDisabled, kEnables };
+
+ModuleSignals remoteSignals(const RemoteChannels& channels) {
+  ModuleSignals signals;
+  signals.outputs = {"connected", "armed", "age_ms"};
+  signals.outputs.insert(signals.outputs.end(), channels.names().begin(), channels.names().end());
+  signals.events = {{.text = "the remote is lost: it commands nothing"},
+                    {.text = "the remote is back", .expected = true},
+                    {.text = "the remote has been lost for too long: every motor is disabled"},
+                    {.text = "the arm switch went up: motors are enabled", .expected = true}};
+  return signals;
+}
+
+/// One channel on its way to one input.
+struct Stick {
+  std::size_t channel = 0;
+  std::string to;
+  double scale = 1.0;
+  double deadband = 0.0;
+  SignalPlace place{};
+
+  [[nodiscard]] double value(double deflection) const noexcept {
+    const double beyond = std::max(0.0, std::fabs(deflection) - deadband) / (1.0 - deadband);
+    return std::copysign(beyond, deflection) * scale;
+  }
+};
+
+struct Constant {
+  std::string to;
+  double value = 0.0;
+  SignalPlace place{};
+};
+
+class Remote : public Module_Base {
+ public:
+  Remote(const OwnValues& own, std::unique_ptr<RemoteChannels> channels, std::vector<Stick> sticks,
+         std::optional<std::size_t> arm_channel, std::size_t motor_count)
+      : Module_Base(remoteSignals(*channels)),
+        path_(own.text("port")),
+        lost_(std::chrono::milliseconds{own.integer("lost_ms")}),
+        disable_(std::chrono::milliseconds{static_cast<int>(own.number("disable_s") * 1000.0)}),
+        arm_channel_(arm_channel),
+        arm_above_(own.number("arm_above")),
+        sticks_(std::move(sticks)),
+        channels_(std::move(channels)),
+        values_(channels_->names().size(), 0.0),
+        was_active_(motor_count, false) {
+    for (const auto& row : own.rows("constants"))
+      constants_.push_back({row.text("to"), row.number("value"), {}});
+  }
+
+  [[nodiscard]] std::optional<SerialNeed> takeSerialNeed() override {
+    return SerialNeed{.path = path_, .format = channels_->format(), .protocol = channels_->takeProtocol()};
+  }
+
+  [[nodiscard]] Result<void> connect(const ModuleDirectory& others) override {
+    for (auto& stick : sticks_) {
+      auto place = others.findInput(stick.to);
+      if (!place) return fail("sticks: " + place.error().message);
+      stick.place = *place;
+    }
+    for (auto& constant : constants_) {
+      auto place = others.findInput(constant.to);
+      if (!place) return fail("constants: " + place.error().message);
+      constant.place = *place;
+    }
+    return {};
+  }
+
+  void update(const Tick& tick, ModuleRobot& robot) noexcept override {
+    const Duration age = channels_->age(tick.now);
+    const bool heard = age < lost_ && !channels_->saysLost();
+    if (heard) channels_->read(values_);
+    watchLink(heard, tick, robot);
+    if (heard) watchArm(tick, robot);
+    arm(tick, robot);
+    if (heard && (armed_ || !arm_channel_)) command(robot);
+    show(heard, age);
+  }
+
+ private:
+  void watchLink(bool heard, const Tick& tick, ModuleRobot& robot) noexcept {
+    if (heard) {
+      if (was_heard_ == 0) robot.report(kBack);
+      was_heard_ = 1;
+      lost_since_ = tick.now;
+      told_to_disable_ = false;
+      return;
+    }
+    // One that was never heard is not lost.
+    if (was_heard_ < 0) return;
+    if (was_heard_ == 1) robot.report(kLost);
+    was_heard_ = 0;
+    if (told_to_disable_ || tick.now - lost_since_ < disable_) return;
+    told_to_disable_ = true;
+    armed_ = false;
+    switch_known_ = false;  // it must go down and up once more
+    robot.askAll(RobotRequest::kDisable);
+    robot.report(kDisabled);
+  }
+
+  // Only a switch that was seen down can go up: one that is up when the robot starts enables nothing.
+  void watchArm(const Tick& tick, ModuleRobot& robot) noexcept {
+    if (!arm_channel_) return;
+    const bool up = values_[*arm_channel_] > arm_above_;
+    if (!up) {
+      if (armed_) robot.askAll(RobotRequest::kDisable);
+      armed_ = false;
+      switch_known_ = true;
+    } else if (switch_known_ && !armed_) {
+      armed_ = true;
+      arming_until_ = tick.now + kArming;
+      std::fill(was_active_.begin(), was_active_.end(), false);
+      next_try_ = tick.now;
+      robot.report(kEnables);
+    }
+  }
+
+  // Clears faults and enables, for a while: after a power cut drives come back one after the other. An e-stop
+  // stays: clearing it is another decision.
+  void arm(const Tick& tick, ModuleRobot& robot) noexcept {
+    if (!armed_ || tick.now >= arming_until_) return;
+    for (std::size_t motor = 0; motor < was_active_.size(); ++motor)
+      was_active_[motor] = was_active_[motor] || robot.status(motor) == MotorStatus::kActive;
+    if (tick.now < next_try_ || robot.state() != RobotState::kRun) return;
+    next_try_ = tick.now + kArmingRetry;
+    for (std::size_t motor = 0; motor < was_active_.size(); ++motor) {
+      if (was_active_[motor]) continue;
+      if (robot.status(motor) == MotorStatus::kFault) robot.ask(RobotRequest::kClear, motor);
+      if (robot.status(motor) == MotorStatus::kReady) robot.ask(RobotRequest::kEnable, motor);
+    }
+  }
+
+  void command(ModuleRobot& robot) const noexcept {
+    for (const auto& stick : sticks_) robot.send(stick.place, stick.value(values_[stick.channel]));
+    for (const auto& constant : constants_) robot.send(constant.place, constant.value);
+  }
+
+  void show(bool heard, Duration age) noexcept {
+    setOutput(kConnected, heard ? 1.0 : 0.0);
+    setOutput(kArmed, armed_ ? 1.0 : 0.0);
+    setOutput(kAgeMs,
+              age == Duration::max() ? kNoSignal : std::chrono::duration<double, std::milli>(age).count());
+    for (std::size_t i = 0; i < values_.size(); ++i)
+      setOutput(kFirstChannel + i, heard ? values_[i] : kNoSignal);
+  }
+
+  std::string path_;
+  Duration lost_;
+  Duration disable_;
+  std::optional<std::size_t> arm_channel_;
+  double arm_above_;
+  std::vector<Stick> sticks_;
+  std::vector<Constant> constants_;
+  std::unique_ptr<RemoteChannels> channels_;
+  std::vector<double> values_;
+  std::vector<bool> was_active_;  ///< Of each motor, since the switch went up.
+
+  int was_heard_ = -1;  ///< -1: never.
+  bool armed_ = false;
+  bool switch_known_ = false;  ///< It was seen down since the remote was heard again.
+  bool told_to_disable_ = false;
+  MonotonicTime lost_since_{};
+  MonotonicTime arming_until_{};
+  MonotonicTime next_try_{};
+};
+
+Result<std::size_t> findChannel(const RemoteChannels& channels, const std::string& name, const char* key) {
+  const auto& names = channels.names();
+  const auto found = std::find(names.begin(), names.end(), name);
+  if (found != names.end()) return static_cast<std::size_t>(found - names.begin());
+  std::string known;
+  for (const auto& word : names) known += (known.empty() ? "" : ", ") + word;
+  return fail(std::string{key} + ": there is no channel '" + name + "'; there are " + known);
+}
+
+class RemoteType : public ModuleType {
+ public:
+  [[nodiscard]] std::string_view name() const noexcept override { return "remote"; }
+  [[nodiscard]] std::string_view about() const noexcept override {
+    return "The driver's remote control: commands other modules and enables the robot.";
+  }
+  [[nodiscard]] std::span<const FamilyKey> keys() const noexcept override { return kKeys; }
+
+  [[nodiscard]] Result<std::unique_ptr<Module_Base>> build(const ModuleSettings& settings,
+                                                           const RobotOutline& robot) const override {
+    const auto& own = settings.own;
+    auto channels = RemoteChannels::make(own.text("protocol"));
+    std::optional<std::size_t> arm_channel;
+    if (own.given("arm_channel")) {
+      const auto channel = findChannel(*channels, own.text("arm_channel"), "arm_channel");
+      if (!channel) return tl::unexpected(channel.error());
+      arm_channel = *channel;
+    }
+    std::vector<Stick> sticks;
+    for (const auto& row : own.rows("sticks")) {
+      const auto channel = findChannel(*channels, row.text("channel"), "sticks");
+      if (!channel) return tl::unexpected(channel.error());
+      sticks.push_back({*channel, row.text("to"), row.number("scale"), row.number("deadband"), {}});
+    }
+    return std::make_unique<Remote>(own, std::move(channels), std::move(sticks), arm_channel,
+                                    robot.motors.size());
+  }
+};
+
+}  // namespace
+
+const ModuleType& remoteType() noexcept {
+  static const RemoteType kType;
+  return kType;
+}
+
+}  // namespace rc10

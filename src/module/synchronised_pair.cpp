@@ -1,0 +1,130 @@
+#include "module/synchronised_pair.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace rc10 {
+namespace {
+
+using enum FamilyKey::Kind;
+
+constexpr std::array kKeys{
+    FamilyKey{.name = "left",
+              .kind = kMotor,
+              .required = true,
+              .about = "One of the two motors; both need velocity and total_angle targets, and a reference."},
+    FamilyKey{.name = "right", .kind = kMotor, .required = true, .about = "The other."},
+    FamilyKey{
+        .name = "max_difference_deg",
+        .kind = kNumber,
+        .unit = "deg",
+        .max = 3600,
+        .above_min = true,
+        .default_text = "10",
+        .about = "Farther apart than this the pair rests, until both were disabled and are enabled again."},
+    FamilyKey{.name = "correction_rpm_per_deg",
+              .kind = kNumber,
+              .unit = "rpm/deg",
+              .max = 1000,
+              .default_text = "0.5",
+              .about = "Velocity by which each motor is drawn to the middle of both, for each degree that it "
+                       "is away from it."},
+    FamilyKey{.name = "velocity_limit_rpm",
+              .kind = kNumber,
+              .unit = "rpm",
+              .max = 100'000,
+              .above_min = true,
+              .required = true,
+              .about = "No velocity target is higher."}};
+
+enum Input : std::size_t { kVelocityRpm, kTotalAngleDeg };
+enum Output : std::size_t { kAngleOut, kDifference, kApart };
+enum EventPlace : std::size_t { kCameApart };
+
+ModuleSignals pairSignals() {
+  return {
+      .inputs = {"velocity_rpm", "total_angle_deg"},
+      .outputs = {"total_angle_deg", "difference_deg", "apart"},
+      .events = {{.text = "its motors have come too far apart: they rest; disable both, bring them together "
+                          "and enable them again"}}};
+}
+
+class SynchronisedPair : public Module_Base {
+ public:
+  explicit SynchronisedPair(const OwnValues& own)
+      : Module_Base(pairSignals()),
+        motors_{own.motor("left"), own.motor("right")},
+        max_difference_deg_(own.number("max_difference_deg")),
+        correction_rpm_per_deg_(own.number("correction_rpm_per_deg")),
+        velocity_limit_rpm_(own.number("velocity_limit_rpm")) {}
+
+  void update(const Tick&, ModuleRobot& robot) noexcept override {
+    const double left_deg = robot.feedback(motors_[0]).total_angle_deg;
+    const double right_deg = robot.feedback(motors_[1]).total_angle_deg;
+    const double difference_deg = left_deg - right_deg;
+    const bool referenced = robot.feedback(motors_[0]).zeroed && robot.feedback(motors_[1]).zeroed;
+    const bool active =
+        robot.status(motors_[0]) == MotorStatus::kActive && robot.status(motors_[1]) == MotorStatus::kActive;
+    if (!active) apart_ = false;
+    if (active && referenced && !apart_ && !(std::fabs(difference_deg) <= max_difference_deg_)) {
+      apart_ = true;
+      robot.report(kCameApart);
+    }
+    setOutput(kAngleOut, (left_deg + right_deg) / 2.0);
+    setOutput(kDifference, referenced ? difference_deg : kNoSignal);
+    setOutput(kApart, apart_ ? 1.0 : 0.0);
+    if (!active || !referenced || apart_ || !commanded()) return;
+    if (std::isfinite(input(kTotalAngleDeg))) {
+      for (const auto motor : motors_)
+        robot.setTarget(motor, {.mode = ControlMode::kTotalAngle, .value = input(kTotalAngleDeg)});
+    } else if (std::isfinite(input(kVelocityRpm))) {
+      const double pull_rpm = correction_rpm_per_deg_ * difference_deg / 2.0;
+      turn(robot, motors_[0], input(kVelocityRpm) - pull_rpm);
+      turn(robot, motors_[1], input(kVelocityRpm) + pull_rpm);
+    }
+  }
+
+ private:
+  void turn(ModuleRobot& robot, std::size_t motor, double velocity_rpm) const noexcept {
+    robot.setTarget(motor, {.mode = ControlMode::kVelocity,
+                            .value = std::clamp(velocity_rpm, -velocity_limit_rpm_, velocity_limit_rpm_)});
+  }
+
+  std::array<std::size_t, 2> motors_;
+  double max_difference_deg_;
+  double correction_rpm_per_deg_;
+  double velocity_limit_rpm_;
+  bool apart_ = false;
+};
+
+class SynchronisedPairType : public ModuleType {
+ public:
+  [[nodiscard]] std::string_view name() const noexcept override { return "synchronised_pair"; }
+  [[nodiscard]] std::string_view about() const noexcept override {
+    return "Two motors that move one thing and must stay together.";
+  }
+  [[nodiscard]] std::span<const FamilyKey> keys() const noexcept override { return kKeys; }
+
+  [[nodiscard]] Result<std::unique_ptr<Module_Base>> build(const ModuleSettings& settings,
+                                                           const RobotOutline& robot) const override {
+    const auto& own = settings.own;
+    if (own.motor("left") == own.motor("right"))
+      return fail("right: is the same motor as left; name another");
+    for (const std::string_view key : {"left", "right"}) {
+      for (const auto mode : {ControlMode::kVelocity, ControlMode::kTotalAngle}) {
+        if (auto able = robot.require(mode, own.motor(key), key); !able) return tl::unexpected(able.error());
+      }
+    }
+    return std::make_unique<SynchronisedPair>(own);
+  }
+};
+
+}  // namespace
+
+const ModuleType& synchronisedPairType() noexcept {
+  static const SynchronisedPairType kType;
+  return kType;
+}
+
+}  // namespace rc10

@@ -1,0 +1,39 @@
+#pragma once
+
+namespace rc10 {
+
+/// Where a motor's angle is 0. Fed with the drive's position as an output-shaft angle that goes on over
+/// turns and starts anywhere; total angle = that + offset. Scheduler thread only.
+class AngleReference {
+ public:
+  struct Config {
+    bool absolute = false;          ///< The drive's position means the same after every power-up.
+    double zero_deg = 0.0;          ///< Absolute only: the position that is to read 0.
+    bool zero_at_power_on = false;  ///< The first position is 0, and known.
+  };
+
+  explicit AngleReference(const Config& config) noexcept : config_(config) {}
+
+  void update(double position_deg) noexcept;
+  /// The present position reads `angle_deg` from now on. False before the first update().
+  bool setZero(double angle_deg) noexcept;
+  /// The drive may have lost turns: the angle goes on, but without a known reference. An absolute drive
+  /// starts again as at power-up.
+  void lose() noexcept;
+
+  [[nodiscard]] bool known() const noexcept { return known_; }
+  [[nodiscard]] double totalAngleDeg() const noexcept { return position_deg_ + offset_deg_; }
+  /// The drive's position at this total angle: for targets.
+  [[nodiscard]] double positionFor(double total_angle_deg) const noexcept {
+    return total_angle_deg - offset_deg_;
+  }
+
+ private:
+  Config config_;
+  bool begun_ = false;
+  bool known_ = false;
+  double position_deg_ = 0.0;
+  double offset_deg_ = 0.0;
+};
+
+}  // namespace rc10

@@ -1,0 +1,105 @@
+#include "motor/cascade.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "app/angle.hpp"
+
+namespace rc10 {
+namespace {
+
+std::variant<PID_Incremental, PID_Position> makeVelocityLoop(const CascadeConfig& config) {
+  if (const auto* incremental = std::get_if<PID_Incremental::Config>(&config.velocity)) {
+    return PID_Incremental{*incremental};
+  }
+  return PID_Position{std::get<PID_Position::Config>(config.velocity)};
+}
+
+bool closesLoop(ControlMode mode) noexcept {
+  return mode == ControlMode::kVelocity || mode == ControlMode::kAngle || mode == ControlMode::kTotalAngle;
+}
+
+bool allFinite(const Target& target, const Cascade::Measured& measured) noexcept {
+  return std::isfinite(target.value) && std::isfinite(target.velocity_ff_rpm) &&
+         std::isfinite(measured.angle_deg) && std::isfinite(measured.total_angle_deg) &&
+         std::isfinite(measured.velocity_rpm);
+}
+
+/// A float near a double of any size.
+float toFloat(double value) noexcept {
+  constexpr auto kBound = static_cast<double>(kHugeTerm);
+  return static_cast<float>(std::clamp(value, -kBound, kBound));
+}
+
+}  // namespace
+
+Cascade::Cascade(const CascadeConfig& config)
+    : config_(config), velocity_(makeVelocityLoop(config)), angle_(config.angle) {}
+
+void Cascade::retune(const CascadeConfig& config) noexcept {
+  if (config.velocity.index() != config_.velocity.index()) return;
+  config_ = config;
+  angle_.retune(config.angle);
+  auto* incremental = std::get_if<PID_Incremental>(&velocity_);
+  if (incremental != nullptr) {
+    incremental->retune(*std::get_if<PID_Incremental::Config>(&config.velocity));
+  } else {
+    std::get_if<PID_Position>(&velocity_)->retune(*std::get_if<PID_Position::Config>(&config.velocity));
+  }
+}
+
+void Cascade::reset() noexcept {
+  active_mode_ = ControlMode::kCoast;
+  velocity_limited_ = false;
+  effort_limited_ = false;
+}
+
+float Cascade::velocityTarget(const Target& target, const Measured& measured, float dt_s) noexcept {
+  const OutputRange range = OutputRange{}.within(config_.velocity_limit_rpm);
+  float wanted = 0.0F;
+  if (target.mode == ControlMode::kVelocity) {
+    wanted = toFloat(target.value);
+  } else {
+    const double error = target.mode == ControlMode::kAngle
+                             ? shortestAngle(static_cast<double>(measured.angle_deg), target.value)
+                             : target.value - measured.total_angle_deg;
+    const float moved = toFloat(measured.total_angle_deg - last_total_angle_deg_);
+    const float ff = saturate(target.velocity_ff_rpm);
+    wanted = ff + angle_.stepError(toFloat(error), moved, dt_s, range.shifted(-ff));
+  }
+  const float limited = range.clamp(wanted);
+  // The angle loop knows the limit and stops there; a velocity target may lie beyond it.
+  velocity_limited_ = limited != wanted || (target.mode != ControlMode::kVelocity &&
+                                            (limited <= range.low || limited >= range.high));
+  return limited;
+}
+
+float Cascade::step(const Target& target, const Measured& measured, float dt_s, float effort_limit,
+                    float effort_in_force, float effort_ff) noexcept {
+  if (!closesLoop(target.mode) || !allFinite(target, measured) || !std::isfinite(effort_ff)) {
+    reset();
+    return 0.0F;
+  }
+  const bool fresh = active_mode_ != target.mode;
+  if (fresh) {
+    angle_.reset();
+    last_total_angle_deg_ = measured.total_angle_deg;
+    active_mode_ = target.mode;
+  }
+  const float velocity_target = velocityTarget(target, measured, dt_s);
+  last_total_angle_deg_ = measured.total_angle_deg;
+
+  const OutputRange range = OutputRange::symmetric(effort_limit);
+  const auto advance = [&](auto& loop) noexcept {
+    if (fresh) loop.start(effort_in_force - effort_ff, measured.velocity_rpm, velocity_target);
+    return loop.step(velocity_target, measured.velocity_rpm, dt_s, range.shifted(-effort_ff));
+  };
+  auto* incremental = std::get_if<PID_Incremental>(&velocity_);
+  const float effort =
+      incremental != nullptr ? advance(*incremental) : advance(*std::get_if<PID_Position>(&velocity_));
+  const float limited = range.clamp(effort + effort_ff);
+  effort_limited_ = limited <= range.low || limited >= range.high;
+  return limited;
+}
+
+}  // namespace rc10

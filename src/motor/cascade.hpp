@@ -1,0 +1,64 @@
+#pragma once
+
+#include <cstdint>
+#include <variant>
+
+#include "app/pid_incremental.hpp"
+#include "app/pid_position.hpp"
+#include "motor/target.hpp"
+
+namespace rc10 {
+
+/// The loops of a motor whose drive only obeys an effort: current in A, or voltage in V.
+struct CascadeConfig {
+  std::variant<PID_Incremental::Config, PID_Position::Config> velocity;  ///< rpm in, effort out.
+  PID_Position::Config angle;                                            ///< deg in, rpm out.
+  float velocity_limit_rpm = 0.0F;  ///< Bounds every velocity target, also the angle loop's output. 0: none.
+};
+
+/// Angle -> velocity -> effort, shared by all motors whose loops run on the host.
+/// Gains are per second and per unit, independent of the rate.
+class Cascade {
+ public:
+  /// What a new sample says, at the output shaft.
+  struct Measured {
+    float angle_deg = 0.0F;
+    double total_angle_deg = 0.0;
+    float velocity_rpm = 0.0F;
+  };
+
+  explicit Cascade(const CascadeConfig& config);
+
+  /// One step on a new sample. `dt_s` is the samples' own spacing; `effort_limit` the limit in force,
+  /// which the anti-windup respects; `effort_in_force` what the drive was told last, from which a
+  /// change of mode starts without a bump; `effort_ff` is added after the loops, inside the limit.
+  /// Modes: velocity, angle, total angle; any other one, or an input that is not finite, gives 0.
+  [[nodiscard]] float step(const Target& target, const Measured& measured, float dt_s, float effort_limit,
+                           float effort_in_force, float effort_ff = 0.0F) noexcept;
+
+  /// Other gains from the next step on, without a bump. The type of the velocity loop stays: a config of
+  /// another one is ignored.
+  void retune(const CascadeConfig& config) noexcept;
+
+  /// Forget everything: the next step starts anew.
+  void reset() noexcept;
+
+  /// Whether the last step ran into the velocity or effort limit.
+  [[nodiscard]] bool velocityLimited() const noexcept { return velocity_limited_; }
+  [[nodiscard]] bool effortLimited() const noexcept { return effort_limited_; }
+
+  [[nodiscard]] const CascadeConfig& config() const noexcept { return config_; }
+
+ private:
+  [[nodiscard]] float velocityTarget(const Target& target, const Measured& measured, float dt_s) noexcept;
+
+  CascadeConfig config_;
+  std::variant<PID_Incremental, PID_Position> velocity_;
+  PID_Position angle_;
+  double last_total_angle_deg_ = 0.0;
+  ControlMode active_mode_ = ControlMode::kCoast;
+  bool velocity_limited_ = false;
+  bool effort_limited_ = false;
+};
+
+}  // namespace rc10

@@ -1,0 +1,10 @@
+#pragma once
+
+#include "motor/motor_family.hpp"
+
+namespace rc10 {
+
+/// The family "CubeMars": AK drives in servo mode, MIT mode, and MIT mode of V3 drives.
+[[nodiscard]] const MotorFamily& cubemarsFamily() noexcept;
+
+}  // namespace rc10

@@ -1,0 +1,314 @@
+#include "motor/cubemars_mit.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace rc10 {
+namespace {
+
+using cubemars::MitOrder;
+using cubemars::ServoCommand;
+
+constexpr double kMostAmperes = 1e6;  // of a target: no sum overflows
+constexpr double kRadPerDeg = std::numbers::pi / 180.0;
+constexpr double kRadPerSPerRpm = std::numbers::pi / 30.0;
+
+constexpr Duration kStepPatience = std::chrono::milliseconds{50};
+constexpr int kMaxAttempts = 6;  // the first, and five more
+// The answers to "no torque" and "enter", and one that was under way before them.
+constexpr std::uint64_t kAnswersToEnter = 3;
+constexpr double kDampShare = 0.25;  // damp is that much of the brake
+// Two samples at the very end of the field: it does not go round, it is cut off.
+constexpr int kSamplesAtEnd = 2;
+
+[[nodiscard]] double finiteOr0(double value) noexcept { return std::isfinite(value) ? value : 0.0; }
+
+}  // namespace
+
+CubeMarsMit::CubeMarsMit(const MotorSettings& settings, const CubeMarsSetup& setup)
+    : CubeMars_Motor(settings, setup),
+      v3_(setup.protocol == CubeMarsProtocol::kMitV3),
+      angle_stiffness_(settings.own.number("angle_stiffness_nm_per_rad")),
+      angle_damping_(settings.own.number("angle_damping_nms_per_rad")),
+      velocity_gain_(settings.own.number("velocity_gain_nms_per_rad")) {
+  const auto id = static_cast<std::uint8_t>(settings.id);
+  if (v3_) {
+    filters_.fill(FrameFilter{.id = cubemars::servoFeedbackId(settings.id)});
+    command_ids_ = {cubemars::servoId(ServoCommand::kMit, settings.id),
+                    cubemars::servoId(ServoCommand::kCurrent, settings.id)};
+  } else {
+    // Which of the two ids answers come from depends on the firmware (cubemars_driver_node). The first
+    // byte tells whose they are.
+    const PayloadDiscriminator own{.byte_index = 0, .mask = 0xFF, .value = id};
+    filters_ = {
+        FrameFilter{.id = {0, false}, .mask = kStandardIdMask, .discriminator = own},
+        FrameFilter{.id = cubemars::mitId(settings.id), .mask = kStandardIdMask, .discriminator = own}};
+    command_ids_.fill(cubemars::mitId(settings.id));
+  }
+}
+
+std::span<const FrameFilter> CubeMarsMit::filters() const noexcept {
+  return std::span{filters_}.first(v3_ ? 1 : 2);
+}
+
+std::span<const CanId> CubeMarsMit::commandIds() const noexcept {
+  return std::span{command_ids_}.first(v3_ ? 2 : 1);
+}
+
+bool CubeMarsMit::matchesFrame(const CanFrame& frame) const noexcept {
+  if (v3_) return isFrom(frame, filters_[0].id);
+  // On the drive's own id also what another program here tells it.
+  const bool addressed = isFrom(frame, filters_[0].id) || (isFrom(frame, filters_[1].id) && !frame.sent_here);
+  return addressed && frame.length > 0 && frame.data[0] == static_cast<std::uint8_t>(driveId());
+}
+
+FrameVerdict CubeMarsMit::updateFeedback(const CanFrame& frame) noexcept {
+  if (!v3_) return takeMitReport(frame);
+  const FrameVerdict verdict = takeServoReport(frame);
+  if (verdict == FrameVerdict::kAccepted) {
+    position_rad_ = lastDriveDeg() * kRadPerDeg;
+    velocity_rad_s_ = driveRadS(static_cast<double>(feedback_.velocity_rpm));
+    // Its feedback goes farther than its commands.
+    turns_ = std::fabs(position_rad_) > setup().ranges.position_rad ? 1 : 0;
+  }
+  return verdict;
+}
+
+FrameVerdict CubeMarsMit::takeMitReport(const CanFrame& frame) noexcept {
+  const auto report = cubemars::readMitReport(frame, setup().ranges);
+  if (!report) return FrameVerdict::kMalformed;
+  const bool anew = feedback_.samples == 0 || noticeRestart(frame.received);
+  velocity_rad_s_ = report->velocity_rad_s;
+  takePosition(frame.received, unwrapped(report->position_rad, anew) / kRadPerDeg);
+  samples_at_end_ = report->at_end ? std::min(samples_at_end_ + 1, kSamplesAtEnd) : 0;
+  if (samples_at_end_ == kSamplesAtEnd) loseReference();
+  feedback_.velocity_rpm = static_cast<float>(toOutput(velocity_rad_s_ / kRadPerSPerRpm));
+  feedback_.torque_nm = static_cast<float>(torqueToOutput(report->torque_nm));
+  feedback_.current_a = feedback_.torque_nm / torqueNmPerA();
+  if (report->temperature_c) feedback_.temperature_c = static_cast<float>(*report->temperature_c);
+  takeError(report->error);
+  return FrameVerdict::kAccepted;
+}
+
+// The field goes round at its ends (TMotorCANControl and others count its turns). Half of it is far more
+// than an output shaft turns between two answers.
+double CubeMarsMit::unwrapped(double position_rad, bool anew) noexcept {
+  const double span_rad = 2.0 * setup().ranges.position_rad;
+  if (anew) {
+    turns_ = 0;
+  } else {
+    const double step_rad = position_rad - position_rad_;
+    if (step_rad > span_rad / 2.0) --turns_;
+    if (step_rad < -span_rad / 2.0) ++turns_;
+  }
+  position_rad_ = position_rad;
+  return position_rad + turns_ * span_rad;
+}
+
+SequenceProgress CubeMarsMit::sequenceProgress() const noexcept {
+  if (v3_) return SequenceProgress::kDone;
+  return ordered() == FrameKind::kEnable ? enabling_ : SequenceProgress::kDone;
+}
+
+void CubeMarsMit::clearComplaint() noexcept {
+  forgetStop();
+  clear_now_ = !v3_ && !isToObey();
+}
+
+// Nothing in an answer says whether the drive has entered the mode; that it answers, and without an error,
+// is all there is to see.
+void CubeMarsMit::stepEnabling(const Tick& tick) noexcept {
+  if (!begun_) {
+    begun_ = true;
+    attempts_ = 0;
+    enabling_ = SequenceProgress::kPending;
+    forgetStop();
+  }
+  if (enabling_ != SequenceProgress::kPending) return;
+  const bool answered = attempts_ > 0 && feedback_.samples >= samples_before_ + kAnswersToEnter;
+  if (answered && error() == 0) {
+    enabling_ = SequenceProgress::kDone;
+  } else if (attempts_ == 0 || tick.now - entered_ >= kStepPatience) {
+    if (attempts_ == kMaxAttempts) {
+      enabling_ = SequenceProgress::kFailed;
+      return;
+    }
+    if (attempts_ == 0) samples_before_ = feedback_.samples;
+    ++attempts_;
+    enter_now_ = true;
+    entered_ = tick.now;
+  }
+}
+
+// The bounds of a command are computed from the feedback: it must not be old.
+bool CubeMarsMit::silent(const Tick& tick) const noexcept {
+  return feedback_.samples == 0 || tick.now - feedback_.received > longestGap();
+}
+
+void CubeMarsMit::update(const Tick& tick) noexcept {
+  limits_ = 0;
+  enter_now_ = false;
+  if (!v3_ && ordered() == FrameKind::kEnable) {
+    stepEnabling(tick);
+  } else {
+    begun_ = false;
+    enabling_ = SequenceProgress::kPending;
+  }
+  const Target target = wanted();
+  const bool damps = ordered() == FrameKind::kDamp;
+  const bool coasts = target.mode == ControlMode::kCoast && !damps;
+  if (coasts || silent(tick) || !std::isfinite(target.value)) {
+    release();
+  } else {
+    send(damps ? velocityLaw(0.0, 0.0, kDampShare * velocity_gain_) : lawOf(target));
+  }
+}
+
+double CubeMarsMit::driveRadS(double output_rpm) const noexcept {
+  return toDrive(output_rpm) * kRadPerSPerRpm;
+}
+
+double CubeMarsMit::boundRpm(double wanted_rpm) noexcept {
+  const auto own_limit = static_cast<double>(velocityLimitRpm());
+  const double drive_limit = setup().ranges.velocity_rad_s / std::fabs(driveRadS(1.0));
+  const double limit = own_limit > 0.0 ? std::min(own_limit, drive_limit) : drive_limit;
+  const double rpm = std::clamp(wanted_rpm, -limit, limit);
+  if (rpm != wanted_rpm) limits_ |= kLimitVelocity;
+  return rpm;
+}
+
+CubeMarsMit::Law CubeMarsMit::velocityLaw(double output_rpm, double torque_ff_nm, double gain) noexcept {
+  return {.velocity_rad_s = driveRadS(boundRpm(output_rpm)),
+          .damping_nms_per_rad = gain,
+          .torque_nm = torqueToDrive(torque_ff_nm)};
+}
+
+// `stiffness` and `damping` at the drive's output.
+CubeMarsMit::Law CubeMarsMit::angleLaw(const Target& target, double stiffness, double damping,
+                                       bool bound_speed) noexcept {
+  const double ff_nm = finiteOr0(static_cast<double>(target.torque_ff_nm));
+  if (!inRange()) {
+    // The command cannot say positions out there, and what the drive would make of one is not known.
+    limits_ |= kLimitAngle;
+    return velocityLaw(0.0, 0.0, std::max(damping, velocity_gain_));
+  }
+  const double reach_rad = setup().ranges.position_rad;
+  const double wanted_rad = drivePositionFor(target.value) * kRadPerDeg;
+  Law law{.position_rad = std::clamp(wanted_rad, -reach_rad, reach_rad),
+          .velocity_rad_s = driveRadS(boundRpm(finiteOr0(static_cast<double>(target.velocity_ff_rpm)))),
+          .stiffness_nm_per_rad = std::clamp(stiffness, 0.0, CubeMarsRanges::kStiffnessNmPerRad),
+          .damping_nms_per_rad = std::clamp(damping, 0.0, CubeMarsRanges::kDampingNmsPerRad),
+          .torque_nm = torqueToDrive(ff_nm)};
+  if (law.position_rad != wanted_rad) limits_ |= kLimitAngle;
+  const auto limit_rpm = static_cast<double>(velocityLimitRpm());
+  if (bound_speed && limit_rpm > 0.0 && law.stiffness_nm_per_rad > 0.0 && law.damping_nms_per_rad > 0.0) {
+    // Against the damping the position error drives it at this speed: stiffness / damping * error.
+    const double per_s = law.stiffness_nm_per_rad / law.damping_nms_per_rad;
+    const double limit_rad_s = std::fabs(driveRadS(limit_rpm));
+    const double lead_rad_s = (law.position_rad - position_rad_) * per_s;
+    const double bounded =
+        std::clamp(lead_rad_s, -limit_rad_s - law.velocity_rad_s, limit_rad_s - law.velocity_rad_s);
+    if (bounded != lead_rad_s) {
+      law.position_rad = position_rad_ + bounded / per_s;
+      limits_ |= kLimitVelocity;
+    }
+  }
+  return law;
+}
+
+CubeMarsMit::Law CubeMarsMit::lawOf(const Target& target) noexcept {
+  const double ff_nm = finiteOr0(static_cast<double>(target.torque_ff_nm));
+  switch (target.mode) {
+    case ControlMode::kCurrent: {
+      const double amperes = std::clamp(target.value, -kMostAmperes, kMostAmperes);
+      return {.torque_nm = torqueToDrive(amperes * static_cast<double>(torqueNmPerA()) + ff_nm)};
+    }
+    case ControlMode::kVelocity: return velocityLaw(target.value, ff_nm, velocity_gain_);
+    case ControlMode::kTotalAngle: return angleLaw(target, angle_stiffness_, angle_damping_, true);
+    case ControlMode::kImpedance: {
+      // Gains of the shaft, seen through what gear lies behind the drive's output.
+      const double ratio = toDrive(1.0);
+      return angleLaw(target, finiteOr0(static_cast<double>(target.stiffness_nm_per_rad)) / (ratio * ratio),
+                      finiteOr0(static_cast<double>(target.damping_nms_per_rad)) / (ratio * ratio), false);
+    }
+    case ControlMode::kBrake: return velocityLaw(0.0, 0.0, velocity_gain_);
+    case ControlMode::kCoast:
+    case ControlMode::kAngle:  // wanted() has made it a total angle
+    case ControlMode::kVoltage:
+    case ControlMode::kDuty: break;
+  }
+  return {};
+}
+
+// Both errors and the torque shrink together until the drive's sum is within the limit: the sign of each
+// part stays, and the damping too.
+void CubeMarsMit::send(const Law& wanted_law) noexcept {
+  // What the field cannot say must not be in the sum either.
+  const double most_nm = setup().ranges.torque_nm;
+  Law law = wanted_law;
+  law.torque_nm = std::clamp(law.torque_nm, -most_nm, most_nm);
+  if (law.torque_nm != wanted_law.torque_nm) limits_ |= kLimitCurrent;
+  command_ = law;
+  const double position_error = law.position_rad - position_rad_;
+  const double velocity_error = law.velocity_rad_s - velocity_rad_s_;
+  const double sum_nm =
+      law.stiffness_nm_per_rad * position_error + law.damping_nms_per_rad * velocity_error + law.torque_nm;
+  const double limit_nm =
+      std::fabs(torqueToDrive(static_cast<double>(effortLimit()) * static_cast<double>(torqueNmPerA())));
+  const bool bounded = std::fabs(sum_nm) > limit_nm;
+  const double share = bounded ? limit_nm / std::fabs(sum_nm) : 1.0;
+  if (bounded) {
+    command_.position_rad = position_rad_ + share * position_error;
+    command_.velocity_rad_s = velocity_rad_s_ + share * velocity_error;
+    command_.torque_nm = share * law.torque_nm;
+    limits_ |= kLimitCurrent;
+  }
+  setCommand(torqueToOutput(share * sum_nm) / static_cast<double>(torqueNmPerA()), CommandUnit::kAmpere);
+}
+
+void CubeMarsMit::release() noexcept {
+  command_ = {};
+  setCommand(0.0, CommandUnit::kAmpere);
+}
+
+CanFrame CubeMarsMit::commandFrame(const Law& law) const noexcept {
+  return v3_ ? cubemars::mitV3Frame(driveId(), setup().ranges, law)
+             : cubemars::mitFrame(driveId(), setup().ranges, law);
+}
+
+std::size_t CubeMarsMit::packCommand(const Tick& tick, std::span<CanFrame> out) noexcept {
+  if (out.size() < kMaxFramesPerPacker) return 0;
+  const CanFrame no_torque = commandFrame({});
+  if (clear_now_ || enter_now_) {
+    // A drive that remembers its last command from before must not find it when it enters.
+    out[0] = no_torque;
+    out[1] = cubemars::mitOrderFrame(driveId(), MitOrder::kEnter);
+    out[2] = cubemars::mitOrderFrame(driveId(), MitOrder::kExit);
+    const bool leaves = clear_now_ && !enter_now_;
+    clear_now_ = false;
+    return leaves ? 3 : 2;
+  }
+  if (!due(tick)) return 0;
+  switch (ordered()) {
+    case FrameKind::kRest:
+    case FrameKind::kPoll:
+    case FrameKind::kDisable: return packRest(out);
+    case FrameKind::kEnable: out[0] = no_torque; return 1;
+    default: out[0] = commandFrame(command_); return 1;
+  }
+}
+
+std::size_t CubeMarsMit::packRest(std::span<CanFrame> out) const noexcept {
+  if (out.size() < 2) return 0;
+  if (!v3_) {
+    out[0] = cubemars::mitOrderFrame(driveId(), MitOrder::kExit);  // the drive answers this one too
+    return 1;
+  }
+  // "No torque" of a MIT command is half a step of its field; the current of 0 that follows is exact.
+  out[0] = commandFrame({});
+  out[1] = cubemars::currentFrame(driveId(), 0.0);
+  return 2;
+}
+
+}  // namespace rc10

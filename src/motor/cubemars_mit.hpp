@@ -1,0 +1,74 @@
+#pragma once
+
+#include <array>
+
+#include "motor/cubemars_motor.hpp"
+
+namespace rc10 {
+
+/// An AK drive in MIT mode: torque = stiffness * (position error) + damping * (velocity error) + torque, all
+/// in the drive. V1 and V2 obey after they were told to enter that mode and answer each frame; V3 obey
+/// always and speak unasked.
+///
+/// effortLimit() bounds the sum that the drive will make of a command, as far as the last feedback tells;
+/// without feedback for longestGap() nothing but "no torque" is sent. Scheduler thread only.
+class CubeMarsMit : public CubeMars_Motor {
+ public:
+  /// `settings` has passed its family's check().
+  CubeMarsMit(const MotorSettings& settings, const CubeMarsSetup& setup);
+
+  [[nodiscard]] std::span<const FrameFilter> filters() const noexcept override;
+  [[nodiscard]] bool matchesFrame(const CanFrame& frame) const noexcept override;
+  FrameVerdict updateFeedback(const CanFrame& frame) noexcept override;
+  void update(const Tick& tick) noexcept override;
+  [[nodiscard]] SequenceProgress sequenceProgress() const noexcept override;
+  /// V1 and V2: enters the mode without torque and leaves it again, which is what clears their errors.
+  void clearComplaint() noexcept override;
+
+  [[nodiscard]] std::span<const CanId> commandIds() const noexcept override;
+  [[nodiscard]] std::size_t packCommand(const Tick& tick, std::span<CanFrame> out) noexcept override;
+  [[nodiscard]] std::size_t packRest(std::span<CanFrame> out) const noexcept override;
+
+ private:
+  /// A command at the drive's output, whose velocity and position errors are not yet bounded.
+  using Law = cubemars::MitCommand;
+
+  [[nodiscard]] FrameVerdict takeMitReport(const CanFrame& frame) noexcept;
+  [[nodiscard]] double unwrapped(double position_rad, bool anew) noexcept;
+  void stepEnabling(const Tick& tick) noexcept;
+  [[nodiscard]] bool silent(const Tick& tick) const noexcept;
+  [[nodiscard]] bool inRange() const noexcept { return turns_ == 0 && !positionCutOff(); }
+  [[nodiscard]] Law lawOf(const Target& target) noexcept;
+  [[nodiscard]] Law velocityLaw(double output_rpm, double torque_ff_nm, double gain) noexcept;
+  [[nodiscard]] Law angleLaw(const Target& target, double stiffness, double damping,
+                             bool bound_speed) noexcept;
+  void send(const Law& wanted_law) noexcept;
+  void release() noexcept;
+  [[nodiscard]] double boundRpm(double wanted_rpm) noexcept;
+  [[nodiscard]] double driveRadS(double output_rpm) const noexcept;
+  [[nodiscard]] CanFrame commandFrame(const Law& law) const noexcept;
+
+  bool v3_;
+  std::array<FrameFilter, 2> filters_;
+  std::array<CanId, 2> command_ids_;
+  double angle_stiffness_;
+  double angle_damping_;
+  double velocity_gain_;
+
+  // As the drive sees itself, from its last feedback.
+  double position_rad_ = 0.0;
+  double velocity_rad_s_ = 0.0;
+  int turns_ = 0;  ///< How often the position field has gone round: 0 within its range.
+  int samples_at_end_ = 0;
+
+  Law command_{};  ///< What update() decided on.
+  SequenceProgress enabling_ = SequenceProgress::kPending;
+  bool begun_ = false;  ///< An enable sequence.
+  bool enter_now_ = false;
+  bool clear_now_ = false;
+  int attempts_ = 0;
+  MonotonicTime entered_{};
+  std::uint64_t samples_before_ = 0;
+};
+
+}  // namespace rc10

@@ -1,0 +1,90 @@
+#include "motor/cubemars_motor.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace rc10 {
+namespace {
+
+// No start-up time is published. Its boot loader and the encoder's start take longer than this.
+constexpr Duration kStartUp = std::chrono::milliseconds{100};
+constexpr int kGapPeriods = 3;  // so many feedback periods are no gap
+// Above the no-load speed: a load that drives, a full battery, another winding of the same name.
+constexpr double kReach = 1.5;
+// Stamps of frames that waited for others come bunched.
+constexpr double kStampErrorSeconds = 0.005;
+constexpr double kPositionErrorDeg = 1.0;
+
+}  // namespace
+
+CubeMars_Motor::CubeMars_Motor(const MotorSettings& settings, const CubeMarsSetup& setup)
+    : SoloMotor(settings, cubemarsTraits(setup),
+                settings.gear_ratio > 0.0 ? settings.gear_ratio / setup.model->gear_ratio : 1.0),
+      setup_(setup),
+      id_(settings.id),
+      longest_gap_(std::max(kStartUp, kGapPeriods * feedbackPeriod())),
+      reach_deg_per_s_(kReach * static_cast<double>(setup.model->no_load_rpm) * 6.0) {}
+
+bool CubeMars_Motor::isToObey() const noexcept {
+  switch (ordered()) {
+    case FrameKind::kIdle:
+    case FrameKind::kDamp:
+    case FrameKind::kBrake:
+    case FrameKind::kHold:
+    case FrameKind::kCommand: return true;
+    case FrameKind::kRest:
+    case FrameKind::kPoll:
+    case FrameKind::kEnable:
+    case FrameKind::kDisable: break;
+  }
+  return false;
+}
+
+DriveComplaint CubeMars_Motor::complaint() const noexcept {
+  if (error_ != 0) return {cubemarsFault(error_), error_};
+  if (stopped_) return {FaultCode::kDriveStopped, 0};
+  return {};
+}
+
+bool CubeMars_Motor::noticeRestart(MonotonicTime received) noexcept {
+  if (feedback_.samples == 0 || received - feedback_.received <= longest_gap_) return false;
+  loseReference();
+  stopped_ = stopped_ || isToObey();
+  return true;
+}
+
+void CubeMars_Motor::takePosition(MonotonicTime received, double drive_deg) noexcept {
+  if (feedback_.samples > 0) {
+    const double passed_s =
+        std::max(std::chrono::duration<double>(received - feedback_.received).count(), 0.0);
+    const double reach_deg = reach_deg_per_s_ * (passed_s + kStampErrorSeconds) + kPositionErrorDeg;
+    if (std::fabs(drive_deg - last_drive_deg_) > reach_deg) {
+      ++feedback_.jumps;
+      loseReference();
+    }
+  }
+  last_drive_deg_ = drive_deg;
+  acceptSample(received, drive_deg);
+}
+
+FrameVerdict CubeMars_Motor::takeServoReport(const CanFrame& frame) noexcept {
+  const auto report = cubemars::readServoReport(frame);
+  if (!report) return FrameVerdict::kMalformed;
+  (void)noticeRestart(frame.received);
+  takePosition(frame.received, report->degrees / setup_.message_deg_per_deg);
+  // At the end of the field nobody knows where the shaft is, nor how far it went on its way back.
+  position_cut_off_ = report->position_cut_off;
+  if (position_cut_off_) loseReference();
+  const double drive_rpm = report->erpm / (setup_.model->gear_ratio * std::max(setup_.pole_pairs, 1));
+  feedback_.velocity_rpm = static_cast<float>(toOutput(drive_rpm));
+  if (setup_.model->signed_current) {
+    feedback_.current_a = direction() * static_cast<float>(report->amperes);
+    feedback_.torque_nm = feedback_.current_a * torqueNmPerA();
+  }
+  feedback_.temperature_c = static_cast<float>(report->temperature_c);
+  takeError(report->error);
+  return FrameVerdict::kAccepted;
+}
+
+}  // namespace rc10

@@ -1,0 +1,152 @@
+#include "motor/cubemars_servo.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace rc10 {
+namespace {
+
+using cubemars::ServoCommand;
+
+constexpr double kLargestErpm = 100'000.0;  // of the velocity command
+// The feedback ends here: farther away nobody could see where the shaft is. The command reaches 36000.
+constexpr double kLargestMessageDeg = 3'200.0;
+constexpr double kMostDeg = 1e9;  // of a target or a zero, which may be any number
+// What the fields of the planned way can say at most.
+constexpr double kLargestPlanErpm = 327'670.0;
+
+}  // namespace
+
+CubeMarsServo::CubeMarsServo(const MotorSettings& settings, const CubeMarsSetup& setup)
+    : CubeMars_Motor(settings, setup),
+      filters_{FrameFilter{.id = cubemars::servoFeedbackId(settings.id)}},
+      command_ids_{cubemars::servoId(ServoCommand::kCurrent, settings.id),
+                   cubemars::servoId(ServoCommand::kDuty, settings.id),
+                   cubemars::servoId(ServoCommand::kBrakeCurrent, settings.id),
+                   cubemars::servoId(ServoCommand::kVelocity, settings.id),
+                   cubemars::servoId(ServoCommand::kPosition, settings.id),
+                   cubemars::servoId(ServoCommand::kPositionVelocity, settings.id)},
+      brake_a_(settings.own.number("brake_current_a")),
+      acceleration_rpm_per_s_(settings.own.number("acceleration_limit_rpm_per_s")),
+      next_(cubemars::currentFrame(settings.id, 0.0)) {}
+
+bool CubeMarsServo::matchesFrame(const CanFrame& frame) const noexcept {
+  return isFrom(frame, filters_[0].id);
+}
+
+FrameVerdict CubeMarsServo::updateFeedback(const CanFrame& frame) noexcept { return takeServoReport(frame); }
+
+void CubeMarsServo::update(const Tick& /*tick*/) noexcept {
+  limits_ = 0;
+  const Target target = wanted();
+  const bool nothing_left = !(effortLimit() > 0.0F);
+  if (ordered() == FrameKind::kDamp && !nothing_left) {
+    prepareDamp();
+  } else if (nothing_left || !std::isfinite(target.value)) {
+    if (target.mode != ControlMode::kCoast) limits_ |= kLimitCurrent;
+    prepareRest();
+  } else {
+    prepare(target);
+  }
+}
+
+void CubeMarsServo::prepare(const Target& target) noexcept {
+  switch (target.mode) {
+    case ControlMode::kCurrent: prepareCurrent(target); break;
+    case ControlMode::kVelocity: prepareVelocity(target.value); break;
+    case ControlMode::kTotalAngle: prepareAngle(target.value); break;
+    case ControlMode::kDuty: prepareDuty(target.value); break;
+    case ControlMode::kBrake: prepareBrake(); break;
+    case ControlMode::kCoast:
+    case ControlMode::kAngle:  // wanted() has made it a total angle
+    case ControlMode::kImpedance:
+    case ControlMode::kVoltage: prepareRest(); break;
+  }
+}
+
+void CubeMarsServo::prepareRest() noexcept {
+  next_ = cubemars::currentFrame(driveId(), 0.0);
+  setCommand(0.0, CommandUnit::kAmpere);
+}
+
+// Duty 0 shorts the winding: a torque against the motion in proportion to the speed, with no feedback needed.
+void CubeMarsServo::prepareDamp() noexcept {
+  next_ = cubemars::dutyFrame(driveId(), 0.0);
+  setCommand(0.0, CommandUnit::kNative);
+}
+
+void CubeMarsServo::prepareCurrent(const Target& target) noexcept {
+  const auto limit = static_cast<double>(effortLimit());
+  const double ff_a = torqueNmPerA() > 0.0F
+                          ? static_cast<double>(target.torque_ff_nm) / static_cast<double>(torqueNmPerA())
+                          : 0.0;
+  const double wanted_a = target.value + (std::isfinite(ff_a) ? ff_a : 0.0);
+  const double amperes = std::clamp(wanted_a, -limit, limit);
+  if (amperes != wanted_a) limits_ |= kLimitCurrent;
+  next_ = cubemars::currentFrame(driveId(), amperes * static_cast<double>(direction()));
+  setCommand(amperes, CommandUnit::kAmpere);
+}
+
+void CubeMarsServo::prepareBrake() noexcept {
+  next_ = cubemars::brakeFrame(driveId(), std::min(brake_a_, static_cast<double>(effortLimit())));
+  setCommand(0.0, CommandUnit::kNative);
+}
+
+double CubeMarsServo::erpmOf(double output_rpm) const noexcept {
+  return toDrive(output_rpm) * setup().model->gear_ratio * std::max(setup().pole_pairs, 1);
+}
+
+void CubeMarsServo::prepareVelocity(double wanted_rpm) noexcept {
+  const auto own_limit = static_cast<double>(velocityLimitRpm());
+  const double drive_limit = kLargestErpm / std::fabs(erpmOf(1.0));
+  const double limit = own_limit > 0.0 ? std::min(own_limit, drive_limit) : drive_limit;
+  const double rpm = std::clamp(wanted_rpm, -limit, limit);
+  if (rpm != wanted_rpm) limits_ |= kLimitVelocity;
+  next_ = cubemars::velocityFrame(driveId(), erpmOf(rpm));
+  setCommand(rpm, CommandUnit::kNative);
+}
+
+// Without a limit the drive follows each new target at once, which is what a stream of targets wants. With
+// one it plans its way to the target.
+void CubeMarsServo::prepareAngle(double total_angle_deg) noexcept {
+  if (positionCutOff()) {  // any target would be a jump back
+    prepareBrake();
+    limits_ |= kLimitAngle;
+    return;
+  }
+  const double target_deg = std::clamp(total_angle_deg, -kMostDeg, kMostDeg);
+  const double wanted_deg = drivePositionFor(target_deg) * setup().message_deg_per_deg;
+  const double degrees = std::clamp(wanted_deg, -kLargestMessageDeg, kLargestMessageDeg);
+  if (degrees != wanted_deg) limits_ |= kLimitAngle;
+  const auto limit_rpm = static_cast<double>(velocityLimitRpm());
+  if (limit_rpm > 0.0 || acceleration_rpm_per_s_ > 0.0) {
+    const double erpm = limit_rpm > 0.0 ? std::fabs(erpmOf(limit_rpm)) : kLargestErpm;
+    const double erpm_per_s =
+        acceleration_rpm_per_s_ > 0.0 ? std::fabs(erpmOf(acceleration_rpm_per_s_)) : kLargestPlanErpm;
+    next_ = cubemars::positionVelocityFrame(driveId(), degrees, erpm, erpm_per_s);
+  } else {
+    next_ = cubemars::positionFrame(driveId(), degrees);
+  }
+  const double cut_off_deg = toOutput((wanted_deg - degrees) / setup().message_deg_per_deg);
+  setCommand(std::clamp(target_deg - cut_off_deg, -kMostDeg, kMostDeg), CommandUnit::kNative);
+}
+
+void CubeMarsServo::prepareDuty(double duty) noexcept {
+  const double bounded = std::clamp(duty, -1.0, 1.0);
+  next_ = cubemars::dutyFrame(driveId(), bounded * static_cast<double>(direction()));
+  setCommand(bounded, CommandUnit::kNative);
+}
+
+std::size_t CubeMarsServo::packCommand(const Tick& tick, std::span<CanFrame> out) noexcept {
+  if (!due(tick) || out.empty()) return 0;
+  out[0] = next_;
+  return 1;
+}
+
+std::size_t CubeMarsServo::packRest(std::span<CanFrame> out) const noexcept {
+  if (out.empty()) return 0;
+  out[0] = cubemars::currentFrame(driveId(), 0.0);
+  return 1;
+}
+
+}  // namespace rc10

@@ -1,0 +1,79 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+
+#include "app/time.hpp"
+#include "motor/damiao_frames.hpp"
+#include "motor/drive_frames.hpp"
+
+namespace rc10 {
+
+/// How a Damiao drive is enabled: it is disabled, tells the scales of its frames, takes its control mode and
+/// its watchdog and tells both back, tells its position, and only then is enabled. Every register is written
+/// to RAM only. Scheduler thread only.
+class DamiaoEnabling {
+ public:
+  struct Plan {
+    int id = 0;
+    DamiaoControl control = DamiaoControl::kMit;
+    std::uint32_t timeout = 0;  ///< In steps of damiao::kTimeoutStepMs.
+    DamiaoScale scale;
+  };
+  /// To be sent to the id of the registers, or as a control frame.
+  struct Request {
+    bool of_register = false;
+    damiao::Payload payload{};
+  };
+
+  explicit DamiaoEnabling(const Plan& plan) noexcept : plan_(plan) {}
+
+  void begin() noexcept;
+  /// The drive is enabled by an earlier run: done at once.
+  void skip() noexcept;
+  /// Unanswered for too long: again, or no more.
+  void update(MonotonicTime now) noexcept;
+  void onStatus(std::uint8_t status) noexcept;
+  void onReply(const damiao::RegisterReply& reply) noexcept;
+  /// Whether the drive's own count is known now.
+  void onPosition(bool known) noexcept;
+
+  /// What is to leave now, if anything.
+  [[nodiscard]] std::optional<Request> take(MonotonicTime now) noexcept;
+  /// The drive is still disabled, and may be told so again to get its feedback.
+  [[nodiscard]] bool quiet() const noexcept { return step_ < kEnable; }
+  [[nodiscard]] SequenceProgress progress() const noexcept;
+  /// The register that differs from the plan, or that the drive does not tell.
+  [[nodiscard]] std::optional<damiao::Register> culprit() const noexcept { return culprit_; }
+
+ private:
+  enum Step : std::uint8_t {
+    kDisable,
+    kReadPMax,
+    kReadVMax,
+    kReadTMax,
+    kWriteControl,
+    kReadControl,
+    kWriteTimeout,
+    kReadTimeout,
+    kReadPosition,
+    kEnable,
+    kDone,
+    kFailed,
+  };
+
+  [[nodiscard]] std::optional<damiao::Register> registerOf(Step step) const noexcept;
+  [[nodiscard]] Request request() const noexcept;
+  [[nodiscard]] bool asPlanned(const damiao::RegisterReply& reply) const noexcept;
+  void next() noexcept;
+  void fail() noexcept;
+
+  Plan plan_;
+  Step step_ = kFailed;
+  int sent_ = 0;
+  bool send_ = false;
+  MonotonicTime sent_at_{};
+  std::optional<damiao::Register> culprit_;
+};
+
+}  // namespace rc10

@@ -1,0 +1,363 @@
+#include "motor/damiao_motor.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace rc10 {
+
+using damiao::Special;
+
+namespace {
+
+constexpr double kRadPerDeg = std::numbers::pi / 180.0;
+constexpr double kRadPerSPerRpm = std::numbers::pi / 30.0;
+constexpr std::size_t kFrameLength = 8;
+// So often a drive is told to clear its faults before it is given up.
+constexpr int kClears = 5;
+constexpr Duration kAskEvery = std::chrono::milliseconds{20};
+// The drive turns at most so much faster than its no-load speed: a full battery, a load that drives.
+constexpr double kOverspeed = 1.3;
+// A float still tells tenths of a degree here; nobody needs more turns.
+constexpr double kFarthestRad = 1e4;
+
+double finiteOr0(double value) noexcept { return std::isfinite(value) ? value : 0.0; }
+
+double fastest(const MotorSettings& settings, const DamiaoScale& scale) {
+  const auto* model = findDamiaoModel(settings.model);
+  const double no_load_rpm = model != nullptr ? static_cast<double>(model->no_load_rpm) : 0.0;
+  return std::max(scale.v_max_rad_s, kOverspeed * no_load_rpm * kRadPerSPerRpm);
+}
+
+/// Turns of the drive's own output per turn of the shaft.
+double driveTurns(const MotorSettings& settings, const MotorTraits& traits) {
+  return settings.gear_ratio > 0.0 ? settings.gear_ratio / traits.gear_ratio : 1.0;
+}
+
+}  // namespace
+
+Damiao_Motor::Damiao_Motor(const MotorSettings& settings)
+    : SoloMotor(settings, damiaoFamily().traits(settings.model, settings.own),
+                driveTurns(settings, damiaoFamily().traits(settings.model, settings.own))),
+      own_(damiaoSettings(settings)),
+      id_(settings.id),
+      filters_{FrameFilter{
+          .id = {own_.master_id, false},
+          .mask = kStandardIdMask,
+          .discriminator = PayloadDiscriminator{0, 0x0F, static_cast<std::uint8_t>(settings.id)}}},
+      // Special frames go to the id of the mode as well: the manual and the vendor's routine say so, and new
+      // firmware looks at the low byte only.
+      command_ids_{CanId{
+          (static_cast<std::uint32_t>(own_.control) - 1U) * 0x100U + static_cast<std::uint32_t>(settings.id),
+          false}},
+      // As a shorted winding: full torque at the no-load speed.
+      damp_nms_per_rad_(static_cast<double>(traits().effort_full_scale * traits().torque_nm_per_a) /
+                        (traits().no_load_rpm > 0.0F
+                             ? static_cast<double>(traits().no_load_rpm) * kRadPerSPerRpm
+                             : own_.scale.v_max_rad_s)),
+      heard_within_(kAskEvery + 2 * std::max(settings.command_divider, 1) * tickPeriod()),
+      position_(own_.scale, fastest(settings, own_.scale)),
+      enabling_({.id = settings.id, .control = own_.control, .timeout = own_.timeout, .scale = own_.scale}),
+      setup_codec_(settings.id, own_.can_fd) {
+  restCommand();
+}
+
+bool Damiao_Motor::matchesFrame(const CanFrame& frame) const noexcept {
+  return frame.type == FrameType::kData && frame.id == filters_[0].id && frame.fd == own_.can_fd &&
+         accepts(filters_[0], frame);
+}
+
+FrameVerdict Damiao_Motor::updateFeedback(const CanFrame& frame) noexcept {
+  if (frame.type != FrameType::kData || frame.fd != own_.can_fd || frame.length != kFrameLength) {
+    return FrameVerdict::kMalformed;
+  }
+  configuring_.onFrame(frame);
+  const auto payload = std::span(frame.data).first<kFrameLength>();
+  if (const auto reply = damiao::readReply(payload, id_)) {
+    takeReply(*reply);
+  } else {
+    takeState(damiao::readState(payload), frame.received);
+  }
+  return FrameVerdict::kAccepted;
+}
+
+void Damiao_Motor::takeState(const damiao::State& state, MonotonicTime received) noexcept {
+  const bool was_enabled = status_ == damiao::kStatusEnabled;
+  status_ = state.status;
+  if (status_ < damiao::kFirstFault) clears_left_ = 0;
+  if (ordered() == FrameKind::kEnable && enabling_begun_ &&
+      enabling_.progress() == SequenceProgress::kPending) {
+    enabling_.onStatus(status_);
+    armed_ = enabling_.progress() == SequenceProgress::kDone;
+  }
+  if (armed_ && status_ != damiao::kStatusEnabled) {
+    armed_ = false;
+    // Restarted, perhaps: it may count from elsewhere.
+    if (status_ == damiao::kStatusDisabled) {
+      stopped_ = isObeying();
+      position_.forget();
+      loseReference();
+    }
+  }
+
+  const auto step = position_.take(state.position, received);
+  if (step != DamiaoPosition::Step::kFollows) loseReference();
+  // A drive that has been enabled all the time was not restarted: its encoder has slipped.
+  if (step == DamiaoPosition::Step::kJumped && was_enabled && status_ == damiao::kStatusEnabled) {
+    ++feedback_.jumps;
+  }
+
+  measured_rad_s_ = damiao::measured(state.velocity, own_.scale.v_max_rad_s, 12);
+  const double torque_nm = torqueToOutput(damiao::measured(state.torque, own_.scale.t_max_nm, 12));
+  feedback_.velocity_rpm = static_cast<float>(toOutput(measured_rad_s_) / kRadPerSPerRpm);
+  feedback_.torque_nm = static_cast<float>(torque_nm);
+  feedback_.current_a = static_cast<float>(torque_nm) / torqueNmPerA();
+  // The hotter of power stage and winding.
+  feedback_.temperature_c =
+      std::max(damiao::temperature(state.drive_temperature), damiao::temperature(state.winding_temperature));
+  acceptSample(received, position_.rad() / kRadPerDeg);
+  // Not even an absolute angle is known before the wraps are.
+  if (!position_.known()) feedback_.zeroed = false;
+}
+
+void Damiao_Motor::takeReply(const damiao::RegisterReply& reply) noexcept {
+  if (reply.address != damiao::Register::kOutputPosition) {
+    if (ordered() == FrameKind::kEnable && enabling_begun_) {
+      enabling_.onReply(reply);
+      culprit_ = enabling_.culprit();
+    }
+    return;
+  }
+  if (reply.written) return;
+  if (position_.take(damiao::floatOf(reply.value)) == DamiaoPosition::Wrap::kOther) loseReference();
+  if (ordered() == FrameKind::kEnable) enabling_.onPosition(position_.known());
+}
+
+bool Damiao_Motor::setZero(double angle_deg) noexcept {
+  return position_.known() && SoloMotor::setZero(angle_deg);
+}
+
+bool Damiao_Motor::isObeying() const noexcept {
+  switch (ordered()) {
+    case FrameKind::kIdle:
+    case FrameKind::kDamp:
+    case FrameKind::kBrake:
+    case FrameKind::kHold:
+    case FrameKind::kCommand: return true;
+    case FrameKind::kRest:
+    case FrameKind::kPoll:
+    case FrameKind::kEnable:
+    case FrameKind::kDisable: break;
+  }
+  return false;
+}
+
+SequenceProgress Damiao_Motor::sequenceProgress() const noexcept {
+  if (ordered() != FrameKind::kEnable) return SequenceProgress::kDone;
+  return enabling_begun_ ? enabling_.progress() : SequenceProgress::kPending;
+}
+
+DriveComplaint Damiao_Motor::complaint() const noexcept {
+  if (const auto fault = damiao::faultOf(status_); fault != FaultCode::kNone) return {fault, status_};
+  if (culprit_) {
+    return {FaultCode::kDriveSetting, kRegisterComplaint + static_cast<std::uint32_t>(*culprit_)};
+  }
+  if (stopped_) return {FaultCode::kDriveStopped, status_};
+  return {};
+}
+
+void Damiao_Motor::clearComplaint() noexcept {
+  culprit_.reset();
+  stopped_ = false;
+  if (status_ >= damiao::kFirstFault) clears_left_ = kClears;
+}
+
+void Damiao_Motor::followSequence(const Tick& tick) noexcept {
+  if (ordered() != FrameKind::kEnable) {
+    enabling_begun_ = false;
+    if (!isObeying()) armed_ = false;
+    return;
+  }
+  if (!enabling_begun_) {
+    enabling_begun_ = true;
+    stopped_ = false;
+    culprit_.reset();
+    if (armed_) {  // held or braked until now: it must not be let go for a moment
+      enabling_.skip();
+      return;
+    }
+    enabling_.begin();
+    // Known before it has spoken: a fault is cleared by request only.
+    if (status_ >= damiao::kFirstFault) enabling_.onStatus(status_);
+  }
+  enabling_.update(tick.now);
+  culprit_ = enabling_.culprit();
+}
+
+void Damiao_Motor::update(const Tick& tick) noexcept {
+  limits_ = 0;
+  Target target = wanted();
+  if (!std::isfinite(target.value)) target = Target{};
+  followSequence(tick);
+  if (isObeying() && !armed_ && status_ < damiao::kFirstFault) stopped_ = true;
+  if (!armed_) {
+    restCommand();
+    return;
+  }
+  switch (own_.control) {
+    case DamiaoControl::kMit: mitCommand(target); break;
+    case DamiaoControl::kVelocity: velocityCommand(target); break;
+    case DamiaoControl::kPositionVelocity:
+    case DamiaoControl::kForcePosition: positionCommand(target); break;
+  }
+}
+
+double Damiao_Motor::torqueLimitNm() const noexcept {
+  return std::min(static_cast<double>(effortLimit() * traits().torque_nm_per_a), own_.scale.t_max_nm);
+}
+
+double Damiao_Motor::fastestRadS() const noexcept {
+  const double limit_rad_s = std::fabs(toDrive(static_cast<double>(velocityLimitRpm()))) * kRadPerSPerRpm;
+  return limit_rad_s > 0.0 ? std::min(limit_rad_s, own_.scale.v_max_rad_s) : own_.scale.v_max_rad_s;
+}
+
+void Damiao_Motor::restCommand() noexcept {
+  command_ = specialFrame(Special::kDisable);
+  stay_rad_.reset();
+  setCommand(0.0, CommandUnit::kNone);
+}
+
+damiao::MitCommand Damiao_Motor::mitLaw(const Target& target) const noexcept {
+  damiao::MitCommand law;
+  if (ordered() == FrameKind::kDamp) {
+    law.kd_nms_per_rad = damp_nms_per_rad_;
+    return law;
+  }
+  // Gains are at the output shaft; an own gear behind the drive counts squared.
+  const double gear = toDrive(1.0) * toDrive(1.0);
+  const double ff_nm = torqueToDrive(finiteOr0(static_cast<double>(target.torque_ff_nm)));
+  const double ff_rad_s = toDrive(finiteOr0(static_cast<double>(target.velocity_ff_rpm))) * kRadPerSPerRpm;
+  switch (target.mode) {
+    case ControlMode::kCurrent:
+      law.torque_nm = torqueToDrive(target.value * static_cast<double>(torqueNmPerA())) + ff_nm;
+      break;
+    case ControlMode::kBrake: law.kd_nms_per_rad = own_.gains.velocity_damping_nms_per_rad / gear; break;
+    case ControlMode::kVelocity:
+      law.kd_nms_per_rad = own_.gains.velocity_damping_nms_per_rad / gear;
+      law.velocity_rad_s = toDrive(target.value) * kRadPerSPerRpm;
+      law.torque_nm = ff_nm;
+      break;
+    case ControlMode::kTotalAngle:
+    case ControlMode::kImpedance: {
+      const bool given = target.mode == ControlMode::kImpedance;
+      law.kp_nm_per_rad =
+          (given ? static_cast<double>(target.stiffness_nm_per_rad) : own_.gains.angle_stiffness_nm_per_rad) /
+          gear;
+      law.kd_nms_per_rad =
+          (given ? static_cast<double>(target.damping_nms_per_rad) : own_.gains.angle_damping_nms_per_rad) /
+          gear;
+      law.position_rad = drivePositionFor(target.value) * kRadPerDeg;
+      law.velocity_rad_s = ff_rad_s;
+      law.torque_nm = ff_nm;
+      break;
+    }
+    default: break;
+  }
+  return law;
+}
+
+void Damiao_Motor::mitCommand(const Target& target) noexcept {
+  const DamiaoMitBounds bounds{.scale = own_.scale,
+                               .torque_nm = torqueLimitNm(),
+                               .velocity_rad_s = velocityLimitRpm() > 0.0F ? fastestRadS() : 0.0,
+                               .position_rad = position_.rad(),
+                               .measured_rad_s = measured_rad_s_,
+                               .position_known = position_.known()};
+  const auto command = boundedMit(mitLaw(target), bounds, limits_);
+  command_ = frameOf(command_ids_[0], damiao::mit(command, own_.scale));
+  const double torque_nm = torqueToOutput(mitTorqueNm(command, bounds));
+  setCommand(torque_nm / static_cast<double>(torqueNmPerA()), CommandUnit::kAmpere);
+}
+
+void Damiao_Motor::velocityCommand(const Target& target) noexcept {
+  const double wanted_rad_s =
+      target.mode == ControlMode::kVelocity ? toDrive(target.value) * kRadPerSPerRpm : 0.0;
+  const double rad_s = std::clamp(wanted_rad_s, -fastestRadS(), fastestRadS());
+  if (rad_s != wanted_rad_s) limits_ |= kLimitVelocity;
+  command_ = frameOf(command_ids_[0], damiao::velocity(static_cast<float>(rad_s)));
+  setCommand(toOutput(rad_s), CommandUnit::kNative);
+}
+
+void Damiao_Motor::positionCommand(const Target& target) noexcept {
+  const bool moves = target.mode == ControlMode::kTotalAngle && position_.known();
+  double rad = 0.0;
+  if (moves) {
+    const double wanted_rad = drivePositionFor(target.value) * kRadPerDeg;
+    rad = std::clamp(wanted_rad, -kFarthestRad, kFarthestRad);
+    if (rad != wanted_rad) limits_ |= kLimitAngle;
+    stay_rad_.reset();
+  } else {
+    // With a limit of 0 the position is not even looked at; it is there for a firmware that does.
+    if (!stay_rad_) stay_rad_ = std::clamp(position_.rad(), -kFarthestRad, kFarthestRad);
+    rad = *stay_rad_;
+  }
+  const double limit_rad_s = moves ? fastestRadS() : 0.0;
+  setCommand(toOutput(rad), CommandUnit::kNative);
+  if (own_.control == DamiaoControl::kPositionVelocity) {
+    command_ = frameOf(command_ids_[0],
+                       damiao::positionVelocity(static_cast<float>(rad), static_cast<float>(limit_rad_s)));
+    return;
+  }
+  const bool holds = moves || target.mode == ControlMode::kBrake;
+  const double share = static_cast<double>(effortLimit() / traits().effort_full_scale);
+  command_ = frameOf(command_ids_[0], damiao::forcePosition(static_cast<float>(rad), limit_rad_s,
+                                                            holds ? std::min(share, 1.0) : 0.0));
+}
+
+CanFrame Damiao_Motor::frameOf(CanId id, std::span<const std::uint8_t> payload) const noexcept {
+  return own_.can_fd ? makeFdFrame(id, payload, true) : makeClassicFrame(id, payload);
+}
+
+CanFrame Damiao_Motor::specialFrame(Special command) const noexcept {
+  return frameOf(command_ids_[0], damiao::special(command));
+}
+
+bool Damiao_Motor::asksPosition(const Tick& tick) noexcept {
+  if (position_.known() || feedback_.samples == 0 || ordered() == FrameKind::kEnable) return false;
+  if (tick.now - feedback_.received > heard_within_ || tick.now - asked_position_ < kAskEvery) return false;
+  asked_position_ = tick.now;
+  return true;
+}
+
+std::size_t Damiao_Motor::packCommand(const Tick& tick, std::span<CanFrame> out) noexcept {
+  constexpr CanId kRegisters{damiao::kRegisterId, false};
+  std::size_t count = 0;
+  if (ordered() == FrameKind::kEnable && enabling_begun_ &&
+      enabling_.progress() == SequenceProgress::kPending) {
+    const bool quiet = enabling_.quiet();
+    const auto request = enabling_.take(tick.now);
+    // Told on and on: disabled, for its feedback; enabled, for its watchdog, should only the answer be lost.
+    if (due(tick) && (quiet || !request)) {
+      out[count++] = specialFrame(quiet ? Special::kDisable : Special::kEnable);
+    }
+    if (request)
+      out[count++] = frameOf(request->of_register ? kRegisters : command_ids_[0], request->payload);
+    return count;
+  }
+  if (!armed_ && !isObeying()) count += configuring_.pack(tick.now, out);
+  if (!due(tick)) return count;
+  const bool clears = clears_left_ > 0 && !armed_;
+  if (clears) --clears_left_;
+  out[count++] = clears ? specialFrame(Special::kClear) : command_;
+  if (asksPosition(tick)) {
+    out[count++] = frameOf(kRegisters, damiao::readRegister(id_, damiao::Register::kOutputPosition));
+  }
+  return count;
+}
+
+std::size_t Damiao_Motor::packRest(std::span<CanFrame> out) const noexcept {
+  out[0] = specialFrame(Special::kDisable);
+  return 1;
+}
+
+}  // namespace rc10

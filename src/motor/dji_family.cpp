@@ -1,0 +1,129 @@
+#include "motor/dji_family.hpp"
+
+#include <array>
+#include <memory>
+#include <string>
+
+#include "motor/dji_group.hpp"
+
+namespace rc10 {
+namespace {
+
+constexpr std::array<std::string_view, 2> kCommands{"current", "voltage"};
+constexpr std::array kKeys{
+    FamilyKey{.name = "command",
+              .kind = FamilyKey::Kind::kChoice,
+              .choices = kCommands,
+              .default_text = "current",
+              .about = "What the drive is told. voltage: GM6020 only. GM6020 current: newer firmware, with "
+                       "'current ring' enabled in RoboMaster Assistant."}};
+
+// Every DJI frame, either direction.
+constexpr FrameShape kShape{.extended = false, .fd = false, .bit_rate_switch = false, .length = 8};
+
+[[nodiscard]] DjiCommand commandOf(const DjiModel& model, const OwnValues& own) {
+  const bool voltage = own.text("command") == "voltage" && model.voltage.exists();
+  return voltage ? DjiCommand::kVoltage : DjiCommand::kCurrent;
+}
+
+class DjiFamily final : public MotorFamily {
+ public:
+  [[nodiscard]] std::string_view name() const noexcept override { return "DJI"; }
+  [[nodiscard]] std::span<const std::string_view> models() const noexcept override {
+    static const std::array<std::string_view, 3> kNames{kM3508.name, kM2006.name, kGM6020.name};
+    return kNames;
+  }
+  [[nodiscard]] std::span<const FamilyKey> keys() const noexcept override { return kKeys; }
+
+  [[nodiscard]] MotorTraits traits(std::string_view name, const OwnValues& own) const override {
+    const DjiModel& model = *findDjiModel(name);
+    const DjiCommand command = commandOf(model, own);
+    const DjiCommandTable& table = model.command(command);
+    const bool by_current = command == DjiCommand::kCurrent;
+    MotorTraits traits;
+    traits.min_id = 1;
+    traits.max_id = model.max_id;
+    traits.gear_ratio = model.gear_ratio;
+    traits.effort = by_current ? CommandUnit::kAmpere : CommandUnit::kVolt;
+    traits.effort_full_scale = table.full_scale;
+    traits.torque_nm_per_a = model.rotor_torque_nm_per_a * static_cast<float>(model.gear_ratio);
+    traits.no_load_rpm = model.no_load_rpm;
+    traits.min_feedback_hz = 200;
+    traits.absolute = model.absolute_output;
+    traits.reports_temperature = model.reports_temperature;
+    traits.frozen_a = model.current.full_scale;
+    traits.modes =
+        ModeSet{ControlMode::kCoast,      by_current ? ControlMode::kCurrent : ControlMode::kVoltage,
+                ControlMode::kVelocity,   ControlMode::kAngle,
+                ControlMode::kTotalAngle, ControlMode::kBrake};
+    static constexpr DriveSetup kSetup{.tool =
+                                           "its button or switches (the id), and DJI's RoboMaster Assistant"};
+    traits.setup = &kSetup;
+    traits.frames = kDjiFrames;
+    traits.host_loops = &table.default_loops;
+    return traits;
+  }
+
+  [[nodiscard]] Result<void> check(const MotorSettings& settings) const override {
+    const DjiModel& model = *findDjiModel(settings.model);
+    if (settings.own.text("command") != "voltage" || model.voltage.exists()) return {};
+    return fail("command: the " + settings.model +
+                " obeys currents only; remove it, or write command: current");
+  }
+
+  [[nodiscard]] BusUse busUse(const MotorSettings& settings) const override {
+    const DjiMotorConfig config = djiConfig(settings);
+    const DjiModel& model = *config.model;
+    const CanId sends{model.feedback_id_base + static_cast<std::uint32_t>(config.id), false};
+    const CanId obeys{model.command(config.command).command_ids[config.id > 4 ? 1 : 0], false};
+    const bool gimbal = config.model == &kGM6020;
+    BusUse use;
+    use.sends = {FrameFilter{.id = sends}};
+    use.obeys = {FrameFilter{.id = obeys}};
+    use.feedback = {{sends, kShape, static_cast<double>(settings.feedback_hz)}};
+    use.commands = {{obeys, kShape, static_cast<double>(settings.tick_hz)}};
+    use.layout = gimbal ? "GM6020 commands" : "C620 and C610 currents";
+    return use;
+  }
+
+  [[nodiscard]] Result<std::unique_ptr<Motor_Base>> build(const MotorSettings& settings,
+                                                          BusParts& parts) const override {
+    const DjiMotorConfig config = djiConfig(settings);
+    if (auto checked = DJI_Motor::check(config); !checked) return tl::unexpected(checked.error());
+    auto motor = std::make_unique<DJI_Motor>(config);
+    if (auto listens = parts.bus().registerMotor(*motor); !listens) return tl::unexpected(listens.error());
+    auto* group = parts.find<DJI_Group>(motor->commandId());
+    if (group != nullptr) {
+      if (auto joined = group->registerMotor(*motor); !joined) return tl::unexpected(joined.error());
+      return motor;
+    }
+    auto made = std::make_unique<DJI_Group>(motor->commandId());
+    if (auto joined = made->registerMotor(*motor); !joined) return tl::unexpected(joined.error());
+    if (auto added = parts.add(std::move(made)); !added) return tl::unexpected(added.error());
+    return motor;
+  }
+};
+
+}  // namespace
+
+DjiMotorConfig djiConfig(const MotorSettings& settings) {
+  DjiMotorConfig config;
+  config.name = settings.name;
+  config.model = findDjiModel(settings.model);
+  config.id = settings.id;
+  config.command = settings.own.text("command") == "voltage" ? DjiCommand::kVoltage : DjiCommand::kCurrent;
+  config.gear_ratio = settings.gear_ratio;
+  config.direction = settings.direction;
+  config.effort_limit = settings.effort_limit;
+  config.zero_deg = settings.zero_deg;
+  config.zero_at_power_on = settings.zero_at_power_on;
+  config.loops = settings.loops;
+  return config;
+}
+
+const MotorFamily& djiFamily() noexcept {
+  static const DjiFamily kFamily;
+  return kFamily;
+}
+
+}  // namespace rc10

@@ -1,0 +1,14 @@
+#pragma once
+
+#include "motor/dji_motor.hpp"
+#include "motor/motor_family.hpp"
+
+namespace rc10 {
+
+/// M3508, M2006 and GM6020.
+[[nodiscard]] const MotorFamily& djiFamily() noexcept;
+
+/// The settings of one of them, as DJI_Motor wants them.
+[[nodiscard]] DjiMotorConfig djiConfig(const MotorSettings& settings);
+
+}  // namespace rc10

@@ -1,0 +1,83 @@
+#include "motor/dji_group.hpp"
+
+#include <algorithm>
+
+namespace rc10 {
+namespace {
+
+constexpr std::size_t kSlots = 4;
+constexpr std::array<std::uint32_t, 5> kCommandIds{0x200, 0x1FF, 0x2FF, 0x1FE, 0x2FE};
+
+std::string hex(std::uint32_t id) {
+  constexpr std::string_view kDigits = "0123456789ABCDEF";
+  std::string text = "0x";
+  for (int shift = 8; shift >= 0; shift -= 4) text += kDigits[(id >> static_cast<unsigned>(shift)) & 0xFU];
+  return text;
+}
+
+std::string describe(const DJI_Motor& motor) {
+  return "motor '" + std::string{motor.name()} + "' (" + std::string{motor.modelName()} + " id " +
+         std::to_string(motor.driveId()) + ")";
+}
+
+/// C620 and C610 drives share a protocol; GM6020 has one of its own.
+bool isGM6020(const DJI_Motor& motor) noexcept { return motor.model().absolute_output; }
+
+CanFrame emptyFrame(CanId id) noexcept {
+  CanFrame frame;
+  frame.id = id;
+  frame.length = 2 * kSlots;
+  return frame;
+}
+
+}  // namespace
+
+DJI_Group::DJI_Group(CanId command_id) : ids_{command_id}, name_("DJI group " + hex(command_id.value)) {}
+
+Result<void> DJI_Group::registerMotor(DJI_Motor& motor) {
+  const CanId id = ids_[0];
+  const std::string who = name_ + " refuses " + describe(motor) + ": ";
+  if (id.extended || std::find(kCommandIds.begin(), kCommandIds.end(), id.value) == kCommandIds.end()) {
+    return fail(who + "no DJI drive listens to this id; they do to 0x200, 0x1FF, 0x2FF, 0x1FE and 0x2FE");
+  }
+  if (motor.commandId() != id) return fail(who + "it listens to " + hex(motor.commandId().value));
+  for (const DJI_Motor* member : slots_) {
+    if (member == nullptr) continue;
+    if (member == &motor) return fail(who + "it is registered already");
+    if (isGM6020(*member) != isGM6020(motor)) {
+      return fail(
+          who + "it would share the frame with " + describe(*member) +
+          ", but one frame carries either currents for C620 and C610 or voltages for GM6020; give the "
+          "GM6020 an id of 5-7, or command: current");
+    }
+  }
+  DJI_Motor*& slot = slots_[static_cast<std::size_t>(motor.slot())];
+  if (slot != nullptr) return fail(who + "its slot belongs to " + describe(*slot));
+  slot = &motor;
+  return {};
+}
+
+std::size_t DJI_Group::packCommand(const Tick& /*tick*/, std::span<CanFrame> out) noexcept {
+  if (out.empty()) return 0;
+  CanFrame& frame = out.front();
+  frame = emptyFrame(ids_[0]);
+  bool any = false;
+  for (std::size_t slot = 0; slot < kSlots; ++slot) {
+    if (slots_[slot] == nullptr) continue;
+    any = true;
+    const auto raw = static_cast<std::uint16_t>(slots_[slot]->rawCommand());
+    frame.data[2 * slot] = static_cast<std::uint8_t>(raw >> 8U);
+    frame.data[2 * slot + 1] = static_cast<std::uint8_t>(raw & 0xFFU);
+  }
+  return any ? 1 : 0;
+}
+
+std::size_t DJI_Group::packRest(std::span<CanFrame> out) const noexcept {
+  const bool any =
+      std::any_of(slots_.begin(), slots_.end(), [](const auto* motor) { return motor != nullptr; });
+  if (out.empty() || !any) return 0;
+  out.front() = emptyFrame(ids_[0]);
+  return 1;
+}
+
+}  // namespace rc10

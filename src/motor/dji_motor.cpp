@@ -1,0 +1,231 @@
+#include "motor/dji_motor.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "app/angle.hpp"
+
+namespace rc10 {
+namespace {
+
+constexpr std::size_t kFeedbackLength = 8;
+constexpr std::int32_t kCountsPerTurn = 8192;
+// Host loops must not act on old feedback even if nobody else notices. Far above any spacing that
+// the supervisor accepts as fresh.
+constexpr float kLongestSilenceSeconds = 0.1F;
+
+std::uint16_t bigEndian(const CanFrame& frame, std::size_t at) noexcept {
+  return static_cast<std::uint16_t>((frame.data[at] << 8) | frame.data[at + 1]);
+}
+
+std::int16_t signedBigEndian(const CanFrame& frame, std::size_t at) noexcept {
+  return static_cast<std::int16_t>(bigEndian(frame, at));
+}
+
+bool controlsAngle(ControlMode mode) noexcept {
+  return mode == ControlMode::kAngle || mode == ControlMode::kTotalAngle;
+}
+
+}  // namespace
+
+DJI_Motor::DJI_Motor(const DjiMotorConfig& config)
+    : Motor_Base(config.name),
+      model_(config.model),
+      id_(config.id),
+      command_(config.command),
+      gear_ratio_(config.gear_ratio > 0.0 ? config.gear_ratio : config.model->gear_ratio),
+      direction_(config.direction < 0 ? -1 : 1),
+      effort_limit_(config.effort_limit > 0.0F ? config.effort_limit : table().full_scale),
+      absolute_(model_->absolute_output && gear_ratio_ == model_->gear_ratio),
+      zero_at_power_on_(config.zero_at_power_on),
+      zero_deg_(config.zero_deg),
+      filters_{FrameFilter{.id = {model_->feedback_id_base + static_cast<std::uint32_t>(id_), false},
+                           .mask = kStandardIdMask,
+                           .discriminator = {}}},
+      encoder_(model_->encoder),
+      loops_(config.loops),
+      spacing_(std::chrono::milliseconds{1}),
+      degrees_per_count_(direction_ * 360.0 / (kCountsPerTurn * gear_ratio_)),
+      rpm_per_raw_(static_cast<float>(direction_ / gear_ratio_)),
+      amperes_per_raw_(static_cast<float>(direction_) * model_->feedback_full_scale_a /
+                       static_cast<float>(model_->feedback_raw_full_scale)),
+      torque_nm_per_a_(model_->rotor_torque_nm_per_a * static_cast<float>(gear_ratio_)),
+      raw_per_effort_(static_cast<float>(direction_ * table().raw_full_scale) / table().full_scale),
+      damping_a_per_rpm_(command_ == DjiCommand::kCurrent
+                             ? table().full_scale * static_cast<float>(gear_ratio_ / model_->gear_ratio) /
+                                   model_->no_load_rpm
+                             : 0.0F) {}
+
+bool DJI_Motor::matchesFrame(const CanFrame& frame) const noexcept {
+  return frame.id == filters_[0].id && !frame.fd && frame.type != FrameType::kError;
+}
+
+FrameVerdict DJI_Motor::updateFeedback(const CanFrame& frame) noexcept {
+  if (frame.type != FrameType::kData || frame.fd || frame.length != kFeedbackLength) {
+    return FrameVerdict::kMalformed;
+  }
+  const std::int16_t rotor_rpm = signedBigEndian(frame, 2);
+  if (!encoder_.update(bigEndian(frame, 0), rotor_rpm, frame.received)) return FrameVerdict::kMalformed;
+
+  const bool first = feedback_.samples == 0;
+  spacing_.add(first ? Duration{0} : frame.received - feedback_.received);
+  feedback_.received = frame.received;
+  ++feedback_.samples;
+  feedback_.jumps = encoder_.jumps();
+  feedback_.velocity_rpm = static_cast<float>(rotor_rpm) * rpm_per_raw_;
+  feedback_.current_a = static_cast<float>(signedBigEndian(frame, 4)) * amperes_per_raw_;
+  feedback_.torque_nm = feedback_.current_a * torque_nm_per_a_;
+  if (model_->reports_temperature) feedback_.temperature_c = static_cast<float>(frame.data[6]);
+
+  if (first) {
+    const double reported_deg = static_cast<double>(encoder_.totalCounts()) * degrees_per_count_;
+    const bool known = absolute_ && !zero_at_power_on_;
+    setReference(known ? shortestAngle(zero_deg_, reported_deg) : 0.0);
+    feedback_.zeroed = absolute_ || zero_at_power_on_;
+  }
+  if (encoder_.referenceLost()) feedback_.zeroed = false;
+  updateAngles();
+  return FrameVerdict::kAccepted;
+}
+
+void DJI_Motor::setReference(double total_angle_deg) noexcept {
+  reference_counts_ = encoder_.totalCounts();
+  reference_deg_ = total_angle_deg;
+}
+
+void DJI_Motor::updateAngles() noexcept {
+  // Counts are subtracted as integers: in double the result is exact up to 2^53 counts.
+  const auto counts = static_cast<double>(encoder_.totalCounts() - reference_counts_);
+  feedback_.total_angle_deg = reference_deg_ + counts * degrees_per_count_;
+  // The nearest float may be the full turn itself.
+  const auto angle_deg = static_cast<float>(wrapDegrees(feedback_.total_angle_deg));
+  feedback_.angle_deg = angle_deg < 360.0F ? angle_deg : 0.0F;
+}
+
+bool DJI_Motor::setZero(double angle_deg) noexcept {
+  if (feedback_.samples == 0 || !std::isfinite(angle_deg)) return false;
+  setReference(angle_deg);
+  encoder_.acknowledgeLoss();
+  feedback_.zeroed = true;
+  updateAngles();
+  loops_.reset();
+  holding_ = false;
+  return true;
+}
+
+void DJI_Motor::restoreReference(ControlMode followed) noexcept {
+  if (!absolute_ || !encoder_.referenceLost() || controlsAngle(followed)) return;
+  setReference(shortestAngle(0.0, feedback_.total_angle_deg));
+  encoder_.acknowledgeLoss();
+  feedback_.zeroed = true;
+  updateAngles();
+}
+
+// Host loops must not act on old feedback.
+bool DJI_Motor::silent() const noexcept {
+  return feedback_.samples == 0 || silence_s_ > kLongestSilenceSeconds;
+}
+
+Target DJI_Motor::damped() const noexcept {
+  const auto mode = command_ == DjiCommand::kCurrent ? ControlMode::kCurrent : ControlMode::kVoltage;
+  const float effort = silent() ? 0.0F : -feedback_.velocity_rpm * damping_a_per_rpm_;
+  return Target{.mode = mode, .value = static_cast<double>(effort)};
+}
+
+Target DJI_Motor::held() noexcept {
+  if (feedback_.samples == 0) return Target{};
+  // Where it is now, if turns may have gone uncounted: never back by a turn.
+  if (!holding_ || encoder_.losses() != hold_losses_) hold_deg_ = feedback_.total_angle_deg;
+  hold_losses_ = encoder_.losses();
+  holding_ = true;
+  return Target{.mode = ControlMode::kTotalAngle, .value = hold_deg_};
+}
+
+Target DJI_Motor::wantedTarget() noexcept {
+  const FrameKind kind = ordered();
+  if (kind != FrameKind::kHold) holding_ = false;
+  switch (kind) {
+    case FrameKind::kCommand:
+      if (targetInForce().mode == ControlMode::kBrake) return Target{.mode = ControlMode::kVelocity};
+      return targetInForce();
+    case FrameKind::kDamp: return damped();
+    case FrameKind::kBrake: return Target{.mode = ControlMode::kVelocity};
+    case FrameKind::kHold: return held();
+    case FrameKind::kRest:
+    case FrameKind::kPoll:
+    case FrameKind::kIdle:
+    case FrameKind::kEnable:
+    case FrameKind::kDisable: break;
+  }
+  return Target{};
+}
+
+void DJI_Motor::update(const Tick& tick) noexcept {
+  const float sample_dt_s = spacing_.take();
+  silence_s_ = sample_dt_s > 0.0F ? 0.0F : std::min(silence_s_ + tick.dt_s, 1.0F);
+  limits_ = 0;
+  const Target wanted = wantedTarget();
+  restoreReference(wanted.mode);
+  const float limit = effort_limit_ * derating();
+
+  switch (wanted.mode) {
+    case ControlMode::kCurrent:
+    case ControlMode::kVoltage: {
+      loops_.reset();
+      const float ff = command_ == DjiCommand::kCurrent ? wanted.torque_ff_nm / torque_nm_per_a_ : 0.0F;
+      const float effort = saturate(static_cast<float>(wanted.value)) + saturate(ff);
+      effort_ = std::clamp(effort, -limit, limit);
+      if (effort_ != effort) limits_ |= kLimitCurrent;
+      break;
+    }
+    case ControlMode::kVelocity:
+    case ControlMode::kAngle:
+    case ControlMode::kTotalAngle: runLoops(wanted, sample_dt_s, limit); break;
+    default: releaseEffort(); break;
+  }
+}
+
+void DJI_Motor::runLoops(const Target& target, float sample_dt_s, float limit) noexcept {
+  if (silent()) {
+    releaseEffort();
+    return;
+  }
+  if (sample_dt_s > 0.0F) {
+    const Cascade::Measured measured{.angle_deg = feedback_.angle_deg,
+                                     .total_angle_deg = feedback_.total_angle_deg,
+                                     .velocity_rpm = feedback_.velocity_rpm};
+    const float ff = command_ == DjiCommand::kCurrent ? target.torque_ff_nm / torque_nm_per_a_ : 0.0F;
+    effort_ = loops_.step(target, measured, sample_dt_s, limit, effort_, saturate(ff));
+  }
+  effort_ = std::clamp(effort_, -limit, limit);  // the limit may have come down since the last sample
+  if (loops_.effortLimited()) limits_ |= kLimitCurrent;
+  if (loops_.velocityLimited()) limits_ |= kLimitVelocity;
+}
+
+void DJI_Motor::releaseEffort() noexcept {
+  loops_.reset();
+  effort_ = 0.0F;
+}
+
+ModeSet DJI_Motor::modes() const noexcept {
+  const auto direct = command_ == DjiCommand::kCurrent ? ControlMode::kCurrent : ControlMode::kVoltage;
+  return ModeSet{ControlMode::kCoast,      direct,
+                 ControlMode::kVelocity,   ControlMode::kAngle,
+                 ControlMode::kTotalAngle, ControlMode::kBrake};
+}
+
+const DriveFrames& DJI_Motor::driveFrames() const noexcept { return kDjiFrames; }
+
+CommandUnit DJI_Motor::commandUnit() const noexcept {
+  return command_ == DjiCommand::kCurrent ? CommandUnit::kAmpere : CommandUnit::kVolt;
+}
+
+CanId DJI_Motor::commandId() const noexcept { return {table().command_ids[id_ > 4 ? 1 : 0], false}; }
+
+std::int16_t DJI_Motor::rawCommand() const noexcept {
+  const auto full_scale = static_cast<float>(table().raw_full_scale);
+  const float raw = std::clamp(effort_ * raw_per_effort_, -full_scale, full_scale);
+  return static_cast<std::int16_t>(raw + (raw < 0.0F ? -0.5F : 0.5F));
+}
+
+}  // namespace rc10

@@ -1,0 +1,130 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <string>
+
+#include "app/result.hpp"
+#include "motor/cascade.hpp"
+#include "motor/dji_model.hpp"
+#include "motor/encoder.hpp"
+#include "motor/motor_base.hpp"
+#include "motor/sample_spacing.hpp"
+
+namespace rc10 {
+
+struct DjiMotorConfig {
+  std::string name;
+  const DjiModel* model = nullptr;
+  int id = 0;  ///< As set on the drive: 1-8, GM6020 1-7.
+  DjiCommand command = DjiCommand::kCurrent;
+  double gear_ratio = 0.0;        ///< 0: the model's own.
+  int direction = 1;              ///< -1: mounted the other way round.
+  float effort_limit = 0.0F;      ///< A or V; 0: the model's full scale.
+  double zero_deg = 0.0;          ///< Output angle of an absolute encoder that is to read 0.
+  bool zero_at_power_on = false;  ///< The position of the first sample is 0.
+  CascadeConfig loops;            ///< Start from model->command(command).default_loops.
+};
+
+/// A DJI motor: decodes its feedback and runs its loops. Never packs: that is its DJI_Group's work.
+///
+/// Reference of the angle. M3508 and M2006 count from their first sample, with zeroed = false until
+/// setZero(); a gap too long to know the turns makes that so again. GM6020 without a gear knows its
+/// angle: zeroed from the first sample, total angle then in [-180, 180). After a gap too long its
+/// angle stays right while the number of turns is in doubt: zeroed = false, and without a jump, for
+/// as long as an angle is being controlled; then it starts again as at power-up.
+///
+/// Loops advance on new samples only. After 100 ms without one they stop, and their effort is 0.
+class DJI_Motor : public Motor_Base {
+ public:
+  /// The error names the motor, the key and the allowed range.
+  [[nodiscard]] static Result<void> check(const DjiMotorConfig& config);
+
+  /// `config` has passed check().
+  explicit DJI_Motor(const DjiMotorConfig& config);
+
+  [[nodiscard]] std::span<const FrameFilter> filters() const noexcept override { return filters_; }
+  [[nodiscard]] bool matchesFrame(const CanFrame& frame) const noexcept override;
+  FrameVerdict updateFeedback(const CanFrame& frame) noexcept override;
+  void update(const Tick& tick) noexcept override;
+
+  [[nodiscard]] double get_GearRatio() const noexcept override { return gear_ratio_; }
+  [[nodiscard]] std::string_view modelName() const noexcept override { return model_->name; }
+  [[nodiscard]] ModeSet modes() const noexcept override;
+  [[nodiscard]] const DriveFrames& driveFrames() const noexcept override;
+  [[nodiscard]] Duration feedbackPeriod() const noexcept override { return std::chrono::milliseconds{1}; }
+  [[nodiscard]] bool speaksUnasked() const noexcept override { return true; }
+  [[nodiscard]] float commandValue() const noexcept override { return effort_; }
+  [[nodiscard]] CommandUnit commandUnit() const noexcept override;
+  bool setZero(double angle_deg) noexcept override;
+  void restoreReference(ControlMode followed) noexcept override;
+  [[nodiscard]] const CascadeConfig* hostLoops() const noexcept override { return &loops_.config(); }
+  void retune(const CascadeConfig& loops) noexcept override { loops_.retune(loops); }
+
+  [[nodiscard]] const DjiModel& model() const noexcept { return *model_; }
+  [[nodiscard]] DjiCommand command() const noexcept { return command_; }
+  [[nodiscard]] int driveId() const noexcept { return id_; }
+  /// The id of the frame that carries this motor's command, and its slot in it (0-3).
+  [[nodiscard]] CanId commandId() const noexcept;
+  [[nodiscard]] int slot() const noexcept { return (id_ - 1) % 4; }
+  /// What update() computed, as the drive wants it: direction applied, clamped to full scale.
+  [[nodiscard]] std::int16_t rawCommand() const noexcept;
+
+ private:
+  [[nodiscard]] const DjiCommandTable& table() const noexcept { return model_->command(command_); }
+  void setReference(double total_angle_deg) noexcept;
+  void updateAngles() noexcept;
+  [[nodiscard]] Target wantedTarget() noexcept;
+  [[nodiscard]] Target damped() const noexcept;
+  [[nodiscard]] Target held() noexcept;
+  [[nodiscard]] bool silent() const noexcept;
+  void runLoops(const Target& target, float sample_dt_s, float limit) noexcept;
+  void releaseEffort() noexcept;
+
+  const DjiModel* model_;
+  int id_;
+  DjiCommand command_;
+  double gear_ratio_;
+  int direction_;
+  float effort_limit_;
+  bool absolute_;  ///< The encoder sits on the output shaft.
+  bool zero_at_power_on_;
+  double zero_deg_;
+  std::array<FrameFilter, 1> filters_;
+  Encoder encoder_;
+  Cascade loops_;
+  SampleSpacing spacing_;
+
+  // Signed by the direction: one multiplication per value on receipt.
+  double degrees_per_count_;
+  float rpm_per_raw_;
+  float amperes_per_raw_;
+  float torque_nm_per_a_;
+  float raw_per_effort_;
+  float damping_a_per_rpm_;  ///< What the shorted winding would do; 0 V are just that.
+
+  // total angle = reference_deg_ + (counts - reference_counts_) * degrees_per_count_
+  std::int64_t reference_counts_ = 0;
+  double reference_deg_ = 0.0;
+  double hold_deg_ = 0.0;
+  bool holding_ = false;
+  std::uint64_t hold_losses_ = 0;  ///< Of the encoder, when the hold began.
+  float silence_s_ = 0.0F;         ///< Ticks since the last sample, in seconds.
+  float effort_ = 0.0F;
+};
+
+/// The three models under the users' names: `M3508 wheel{config}`. They differ only in their table.
+class M3508 : public DJI_Motor {
+ public:
+  explicit M3508(DjiMotorConfig config) : DJI_Motor((config.model = &kM3508, config)) {}
+};
+class M2006 : public DJI_Motor {
+ public:
+  explicit M2006(DjiMotorConfig config) : DJI_Motor((config.model = &kM2006, config)) {}
+};
+class GM6020 : public DJI_Motor {
+ public:
+  explicit GM6020(DjiMotorConfig config) : DJI_Motor((config.model = &kGM6020, config)) {}
+};
+
+}  // namespace rc10

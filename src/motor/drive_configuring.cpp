@@ -1,0 +1,147 @@
+#include "motor/drive_configuring.hpp"
+
+#include <cmath>
+
+namespace rc10 {
+namespace {
+
+constexpr int kTries = 5;
+// Flash wears: RAM may be written more often.
+constexpr int kStoringTries = 3;
+constexpr Duration kSettling = std::chrono::milliseconds{10};
+constexpr Duration kPatience = std::chrono::milliseconds{50};
+// A drive at rest is told something in every tick or two. One that has not answered for so long does not
+// answer to this id any more.
+constexpr Duration kSilence = std::chrono::milliseconds{250};
+// Damiao: 40 to 100 ms.
+constexpr Duration kStoring = std::chrono::milliseconds{300};
+constexpr double kSame = 1e-4;
+
+}  // namespace
+
+void DriveConfiguring::begin(const DriveWrite& write) noexcept {
+  write_ = write;
+  progress_ = Progress::kPending;
+  phase_ = Phase::kWrite;
+  index_ = 0;
+  tries_ = 0;
+  new_id_.reset();
+  renamed_ = false;
+  if (write_.count == 0) end(Progress::kDone);
+}
+
+bool DriveConfiguring::changesIdentity() const noexcept {
+  return codec_.setup().settings[value().setting].identity;
+}
+
+bool DriveConfiguring::asWritten() const noexcept {
+  return reading_ && std::fabs(*reading_ - value().value) <= kSame * std::fabs(value().value) + 1e-6;
+}
+
+void DriveConfiguring::onFrame(const CanFrame& frame) noexcept {
+  if (phase_ == Phase::kEnded) return;
+  heard_ = true;
+  if (phase_ == Phase::kSaving) {
+    saved_ = saved_ || codec_.saysSaved(frame);
+  } else if (phase_ == Phase::kWritten || phase_ == Phase::kRead) {
+    // Of a drive that tells by its answer to the reading, the answer to the writing is none.
+    if (const auto reading = codec_.reading(value().setting, frame)) reading_ = reading;
+  }
+}
+
+void DriveConfiguring::end(Progress progress) noexcept {
+  progress_ = progress;
+  phase_ = Phase::kEnded;
+}
+
+void DriveConfiguring::next() noexcept {
+  if (changesIdentity()) {
+    renamed_ = true;
+    if (codec_.idSetting() == value().setting) new_id_ = static_cast<int>(value().value);
+  }
+  tries_ = 0;
+  if (index_ + 1 < write_.count) {
+    ++index_;
+    phase_ = Phase::kWrite;
+  } else if (write_.save && !codec_.setup().stores_at_once) {
+    phase_ = Phase::kSave;
+  } else {
+    end(Progress::kDone);
+  }
+}
+
+void DriveConfiguring::lookForReading(MonotonicTime now) noexcept {
+  if (asWritten()) return next();
+  if (changesIdentity()) {
+    if (now - sent_at_ < kSilence) return;
+    if (!heard_) return next();
+  } else if (!reading_ && now - sent_at_ < kPatience) {
+    return;
+  }
+  const int most = codec_.setup().stores_at_once ? kStoringTries : kTries;
+  if (tries_ < most) {
+    phase_ = Phase::kWrite;
+  } else {
+    end(Progress::kNotConfirmed);
+  }
+}
+
+void DriveConfiguring::lookForSaving(MonotonicTime now) noexcept {
+  // Under its new id it is not heard.
+  if (saved_) return end(Progress::kDone);
+  if (now - sent_at_ < kStoring) return;
+  if (renamed_) return end(Progress::kDone);
+  if (tries_ < kStoringTries) {
+    phase_ = Phase::kSave;
+  } else {
+    end(Progress::kNotSaved);
+  }
+}
+
+void DriveConfiguring::look(MonotonicTime now) noexcept {
+  switch (phase_) {
+    case Phase::kWritten:
+      if (!codec_.read(value().setting)) lookForReading(now);
+      break;
+    case Phase::kRead: lookForReading(now); break;
+    case Phase::kSaving: lookForSaving(now); break;
+    case Phase::kWrite:
+    case Phase::kSave:
+    case Phase::kEnded: break;
+  }
+}
+
+std::size_t DriveConfiguring::pack(MonotonicTime now, std::span<CanFrame> out) noexcept {
+  if (phase_ == Phase::kEnded || out.empty()) return 0;
+  look(now);
+  std::optional<CanFrame> frame;
+  switch (phase_) {
+    case Phase::kWrite:
+      frame = codec_.write(value());
+      phase_ = Phase::kWritten;
+      ++tries_;
+      break;
+    case Phase::kWritten:
+      if (now - sent_at_ < kSettling) return 0;
+      frame = codec_.read(value().setting);
+      if (frame) phase_ = Phase::kRead;
+      break;
+    case Phase::kSave:
+      frame = codec_.save(new_id_);
+      phase_ = Phase::kSaving;
+      ++tries_;
+      break;
+    case Phase::kRead:
+    case Phase::kSaving:
+    case Phase::kEnded: break;
+  }
+  if (!frame) return 0;
+  sent_at_ = now;
+  reading_.reset();
+  heard_ = false;
+  saved_ = false;
+  out.front() = *frame;
+  return 1;
+}
+
+}  // namespace rc10

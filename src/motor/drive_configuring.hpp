@@ -1,0 +1,65 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <span>
+
+#include "app/time.hpp"
+#include "motor/drive_setup.hpp"
+
+namespace rc10 {
+
+/// Writes settings to a drive, one after the other: writes, reads back, compares, writes again if it differs;
+/// then stores them. Begun by a person's request only. Its motor is at rest meanwhile: the motor passes on
+/// every frame of its drive, and packs these frames beside its own. Scheduler thread only.
+class DriveConfiguring {
+ public:
+  enum class Progress : std::uint8_t {
+    kNone,  ///< Never asked.
+    kPending,
+    kDone,
+    kNotConfirmed,  ///< One setting was not read back as written; nothing after it was written or stored.
+    kNotSaved,      ///< All are written, but the drive does not say that they are stored.
+  };
+
+  /// `codec` outlives this.
+  explicit DriveConfiguring(const DriveCodec& codec) noexcept : codec_(codec) {}
+
+  void begin(const DriveWrite& write) noexcept;
+  void cancel() noexcept { phase_ = Phase::kEnded; }
+  void onFrame(const CanFrame& frame) noexcept;
+  /// What leaves in this tick: at most one frame.
+  [[nodiscard]] std::size_t pack(MonotonicTime now, std::span<CanFrame> out) noexcept;
+
+  [[nodiscard]] Progress progress() const noexcept { return progress_; }
+  /// Which of the values it is at, or failed at.
+  [[nodiscard]] std::size_t index() const noexcept { return index_; }
+
+ private:
+  enum class Phase : std::uint8_t { kWrite, kWritten, kRead, kSave, kSaving, kEnded };
+
+  [[nodiscard]] const DriveValue& value() const noexcept { return write_.values[index_]; }
+  [[nodiscard]] bool changesIdentity() const noexcept;
+  [[nodiscard]] bool asWritten() const noexcept;
+  void look(MonotonicTime now) noexcept;
+  void lookForReading(MonotonicTime now) noexcept;
+  void lookForSaving(MonotonicTime now) noexcept;
+  void next() noexcept;
+  void end(Progress progress) noexcept;
+
+  const DriveCodec& codec_;
+  DriveWrite write_;
+  Progress progress_ = Progress::kNone;
+  Phase phase_ = Phase::kEnded;
+  std::size_t index_ = 0;
+  int tries_ = 0;
+  MonotonicTime sent_at_{};
+  std::optional<double> reading_;
+  bool heard_ = false;  ///< Something, since the last frame that was sent.
+  bool saved_ = false;
+  std::optional<int> new_id_;
+  bool renamed_ = false;
+};
+
+}  // namespace rc10

@@ -1,0 +1,58 @@
+#pragma once
+
+#include <cstdint>
+
+namespace rc10 {
+
+/// What the supervisor wants a drive to be told this tick (DESIGN.md section 4, "What is sent when").
+enum class FrameKind : std::uint8_t {
+  kRest,     ///< No torque.
+  kPoll,     ///< No torque, but answer: for drives that speak only when asked.
+  kIdle,     ///< Enabled, without a target.
+  kDamp,     ///< Resist motion gently, in proportion to the speed.
+  kBrake,    ///< Stop and resist being moved.
+  kHold,     ///< Stay at the angle where the hold began.
+  kEnable,   ///< The next step of the enable sequence.
+  kDisable,  ///< The next step of the disable sequence.
+  kCommand,  ///< Follow the target.
+};
+
+/// How a family provides one kind of frame.
+enum class Provision : std::uint8_t {
+  kUnsupported,  ///< It cannot; asking for it in the configuration is an error.
+  kNothing,      ///< Nothing needs to be sent: the kind is fulfilled at once.
+  kFrame,        ///< A frame of the drive's own protocol.
+  kHostLoop,     ///< Computed by the host's loops; needs fresh feedback, else rest is sent.
+};
+
+/// One row per family: what it sends for each kind. `rest` is never unsupported.
+struct DriveFrames {
+  Provision rest = Provision::kFrame;
+  Provision poll = Provision::kNothing;
+  Provision idle = Provision::kFrame;
+  Provision damp = Provision::kUnsupported;
+  Provision brake = Provision::kUnsupported;
+  Provision hold = Provision::kUnsupported;
+  Provision enable = Provision::kNothing;
+  Provision disable = Provision::kNothing;
+
+  [[nodiscard]] constexpr Provision of(FrameKind kind) const noexcept {
+    switch (kind) {
+      case FrameKind::kRest: return rest;
+      case FrameKind::kPoll: return poll;
+      case FrameKind::kIdle: return idle;
+      case FrameKind::kDamp: return damp;
+      case FrameKind::kBrake: return brake;
+      case FrameKind::kHold: return hold;
+      case FrameKind::kEnable: return enable;
+      case FrameKind::kDisable: return disable;
+      case FrameKind::kCommand: return Provision::kFrame;
+    }
+    return Provision::kUnsupported;
+  }
+};
+
+/// How far the enable or disable sequence has come.
+enum class SequenceProgress : std::uint8_t { kDone, kPending, kFailed };
+
+}  // namespace rc10

@@ -1,0 +1,85 @@
+#include "motor/encoder.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace rc10 {
+namespace {
+
+/// The largest spacing, in truth, for which the prediction error stays under `bound` turns.
+double longestSpacingSeconds(const Encoder::Config& config, double bound) noexcept {
+  const double left = bound - Encoder::predictionErrorTurns(config, Duration{0});
+  if (left <= 0.0) return 0.0;
+  const double a = static_cast<double>(config.max_acceleration_rpm_per_s) / 60.0 / 4.0;
+  const double b = static_cast<double>(config.velocity_error_rpm) / 60.0;
+  // a t^2 + b t = left, in the form that also holds for a = 0; an hour if nothing bounds it.
+  const double denominator = b + std::sqrt(b * b + 4.0 * a * left);
+  constexpr double kHour = 3600.0;
+  return denominator > 2.0 * left / kHour ? 2.0 * left / denominator : kHour;
+}
+
+// What cannot be told from a wrap is not called a jump.
+constexpr double kLargestNoticedTurns = 0.45;
+// Of the encoder itself: quantisation and eccentricity.
+constexpr double kJumpMarginTurns = 0.02;
+
+}  // namespace
+
+Encoder::Encoder(const Config& config) noexcept : config_(config) {
+  const double spacing_s = longestSpacingSeconds(config, kHalfTurn);
+  // The stamps may make the spacing look shorter than it is.
+  longest_gap_ =
+      std::max(Duration{0}, std::chrono::duration_cast<Duration>(std::chrono::duration<double>(spacing_s)) -
+                                config.stamp_error);
+}
+
+void Encoder::loseReference() noexcept {
+  reference_lost_ = true;
+  ++losses_;
+}
+
+// Stamps may be late by as much as a gap that is still counted over: a paused receiver reads many samples
+// at once. Up to there speed explains the difference.
+bool Encoder::jumped(double residual_turns, float velocity_rpm, Duration gap) const noexcept {
+  const double fastest_rpm = static_cast<double>(std::max(std::fabs(velocity_rpm), std::fabs(velocity_rpm_)));
+  Config moving = config_;
+  moving.max_velocity_rpm = static_cast<float>(fastest_rpm);
+  moving.stamp_error = longest_gap_;
+  const double explained = predictionErrorTurns(moving, gap + 2 * config_.stamp_error) + kJumpMarginTurns;
+  return explained < kLargestNoticedTurns && std::fabs(residual_turns) > explained;
+}
+
+bool Encoder::update(std::int32_t raw_counts, float velocity_rpm, MonotonicTime received) noexcept {
+  if (raw_counts < 0 || raw_counts >= config_.counts_per_turn || !std::isfinite(velocity_rpm)) return false;
+  if (!has_sample_) {
+    has_sample_ = true;
+    total_counts_ = raw_counts;
+  } else {
+    const Duration gap = std::max(Duration{0}, received - received_);  // stamps may swap, time does not
+    std::int64_t moved = raw_counts - raw_counts_;
+    double predicted = 0.0;
+    const bool countable = gap <= longest_gap_;
+    if (countable) {
+      const double mean_rpm = 0.5 * (static_cast<double>(velocity_rpm_) + static_cast<double>(velocity_rpm));
+      predicted = mean_rpm / 60e9 * static_cast<double>(gap.count()) * config_.counts_per_turn;
+    } else {
+      loseReference();  // the nearest wrap keeps the position within the turn right
+    }
+    // A speed beyond all reason must not overflow the conversion.
+    const double turns =
+        std::clamp((predicted - static_cast<double>(moved)) / config_.counts_per_turn, -1e9, 1e9);
+    moved += static_cast<std::int64_t>(turns + (turns < 0.0 ? -0.5 : 0.5)) * config_.counts_per_turn;
+    total_counts_ += moved;
+    const double residual = (predicted - static_cast<double>(moved)) / config_.counts_per_turn;
+    if (countable && jumped(residual, velocity_rpm, gap)) {
+      ++jumps_;
+      loseReference();
+    }
+  }
+  raw_counts_ = raw_counts;
+  velocity_rpm_ = velocity_rpm;
+  received_ = received;
+  return true;
+}
+
+}  // namespace rc10

@@ -1,0 +1,85 @@
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+
+#include "app/time.hpp"
+
+namespace rc10 {
+
+/// Counts the turns of a single-turn encoder, exactly, in integers: a billion turns lose nothing.
+///
+/// The wrap is chosen by the reported speed and the elapsed time, not by the nearest one: an M2006
+/// rotor makes 0.30 turns in a millisecond, so the nearest wrap is wrong after one lost frame.
+/// With |acceleration| <= a, the angle moved in a gap T differs from the mean of the two reported
+/// speeds times T by at most a T^2 / 4; with the speed and time errors this must stay under half a
+/// turn. Beyond that gap the reference is lost, and referenceLost() says so.
+class Encoder {
+ public:
+  struct Config {
+    std::int32_t counts_per_turn = 8192;
+    float max_velocity_rpm = 0.0F;  ///< Of the encoder's shaft.
+    float max_acceleration_rpm_per_s = 0.0F;
+    float velocity_error_rpm = 0.0F;  ///< Largest error of the reported speed, its delay included.
+    Duration stamp_error{};           ///< Largest error of the spacing of two receive times.
+  };
+
+  explicit Encoder(const Config& config) noexcept;
+
+  /// How wrong the prediction can be, in turns, when two samples are `spacing` apart in truth.
+  [[nodiscard]] static constexpr double predictionErrorTurns(const Config& config,
+                                                             Duration spacing) noexcept {
+    const double t_s = std::chrono::duration<double>(spacing).count();
+    const double stamp_s = std::chrono::duration<double>(config.stamp_error).count();
+    const double acceleration = static_cast<double>(config.max_acceleration_rpm_per_s) / 60.0;
+    const double velocity_error = static_cast<double>(config.velocity_error_rpm) / 60.0;
+    const double velocity = static_cast<double>(config.max_velocity_rpm) / 60.0;
+    return acceleration * t_s * t_s / 4.0 + velocity_error * t_s + velocity * stamp_s;
+  }
+  /// Whether counting stays exact, and is known to be, over `lost_frames` in a row that never arrive.
+  /// Twice the stamp error: the gap may look longer by one, and might then be longer by another.
+  [[nodiscard]] static constexpr bool exactOver(const Config& config, int lost_frames,
+                                                Duration period) noexcept {
+    const Duration longest = (lost_frames + 1) * period + 2 * config.stamp_error;
+    return predictionErrorTurns(config, longest) < kHalfTurn;
+  }
+
+  /// One sample: position in [0, counts_per_turn), the drive's own speed, and when it was received.
+  /// Returns false, and changes nothing, if the position is out of range or the speed is not finite.
+  bool update(std::int32_t raw_counts, float velocity_rpm, MonotonicTime received) noexcept;
+
+  /// Counts since the first sample's turn began: raw position plus whole turns.
+  [[nodiscard]] std::int64_t totalCounts() const noexcept { return total_counts_; }
+  [[nodiscard]] bool hasSample() const noexcept { return has_sample_; }
+  /// A gap was too long to know the number of turns. Stays until acknowledgeLoss().
+  [[nodiscard]] bool referenceLost() const noexcept { return reference_lost_; }
+  void acknowledgeLoss() noexcept { reference_lost_ = false; }
+  /// How often the number of turns was lost.
+  [[nodiscard]] std::uint64_t losses() const noexcept { return losses_; }
+  /// Samples farther from the one before than the shaft can have turned, at the speeds that both
+  /// report. Each loses the reference. Not noticed at speeds where late stamps could explain it.
+  [[nodiscard]] std::uint64_t jumps() const noexcept { return jumps_; }
+
+  /// The longest spacing of two receive times over which counting stays exact.
+  [[nodiscard]] Duration longestGap() const noexcept { return longest_gap_; }
+
+ private:
+  /// Half a turn, less two counts of position quantisation.
+  static constexpr double kHalfTurn = 0.4997;
+
+  void loseReference() noexcept;
+  [[nodiscard]] bool jumped(double residual_turns, float velocity_rpm, Duration gap) const noexcept;
+
+  Config config_;
+  Duration longest_gap_{};
+  std::uint64_t losses_ = 0;
+  std::uint64_t jumps_ = 0;
+  std::int64_t total_counts_ = 0;
+  std::int32_t raw_counts_ = 0;
+  float velocity_rpm_ = 0.0F;
+  MonotonicTime received_;
+  bool has_sample_ = false;
+  bool reference_lost_ = false;
+};
+
+}  // namespace rc10

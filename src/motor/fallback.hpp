@@ -1,0 +1,71 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <string_view>
+
+#include "app/time.hpp"
+#include "motor/drive_frames.hpp"
+
+namespace rc10 {
+
+/// What a motor does when nobody tells it what to do.
+enum class FallbackAction : std::uint8_t { kCoast, kDamp, kBrake, kHold };
+
+/// As the configuration writes them, in the order of FallbackAction.
+inline constexpr std::array<std::string_view, 4> kFallbackWords{"coast", "damp", "brake", "hold"};
+
+struct FallbackConfig {
+  FallbackAction on_timeout = FallbackAction::kCoast;  ///< The last command has lapsed.
+  FallbackAction on_disable = FallbackAction::kCoast;  ///< Until it stands still; also when rc10d ends.
+  FallbackAction on_estop = FallbackAction::kCoast;    ///< Also when its group stops.
+  Duration hold_max = std::chrono::seconds{10};        ///< A hold becomes a damp after this.
+};
+
+[[nodiscard]] constexpr FrameKind frameKindOf(FallbackAction action) noexcept {
+  switch (action) {
+    case FallbackAction::kCoast: break;
+    case FallbackAction::kDamp: return FrameKind::kDamp;
+    case FallbackAction::kBrake: return FrameKind::kBrake;
+    case FallbackAction::kHold: return FrameKind::kHold;
+  }
+  return FrameKind::kRest;
+}
+
+/// The fallback that is in force for one motor, if any. Scheduler thread only.
+class Fallback {
+ public:
+  /// How long it acts.
+  enum class Until : std::uint8_t { kEnded, kStandstill };
+
+  void begin(FallbackAction action, Until until, Duration hold_max, MonotonicTime now) noexcept {
+    kind_ = frameKindOf(action);
+    until_ = until;
+    damp_from_ = now + hold_max;
+    moved_ = now;
+  }
+  void end() noexcept { kind_ = FrameKind::kRest; }
+  [[nodiscard]] bool acts() const noexcept { return kind_ != FrameKind::kRest; }
+  /// What the drive is to be told; kRest while none is in force.
+  [[nodiscard]] FrameKind kind() const noexcept { return kind_; }
+
+  /// Once per tick.
+  void step(bool stands_still, MonotonicTime now) noexcept {
+    if (kind_ == FrameKind::kHold && now >= damp_from_) kind_ = FrameKind::kDamp;
+    if (!stands_still) moved_ = now;
+    // A hold is for what would move by itself: it lasts its time.
+    const bool settled = now - moved_ >= kSettled && kind_ != FrameKind::kHold;
+    if (until_ == Until::kStandstill && settled) end();
+  }
+
+ private:
+  // Still for so long, it is not on its way back from an overshoot.
+  static constexpr Duration kSettled = std::chrono::milliseconds{300};
+
+  FrameKind kind_ = FrameKind::kRest;
+  Until until_ = Until::kEnded;
+  MonotonicTime damp_from_{};
+  MonotonicTime moved_{};
+};
+
+}  // namespace rc10

@@ -1,0 +1,129 @@
+#include <algorithm>
+#include <array>
+
+#include "motor/lktech_group.hpp"
+#include "motor/lktech_model.hpp"
+#include "motor/lktech_motor.hpp"
+
+namespace rc10 {
+namespace {
+
+constexpr std::array<FamilyKey, 3> kKeys{{
+    {.name = "group",
+     .kind = FamilyKey::Kind::kFlag,
+     .default_text = "false",
+     .about = "Currents of the ids 1 to 4 go together in the frame 0x280; current and coast targets only, no "
+              "brake and no hold."},
+    {.name = "torque_nm_per_a",
+     .kind = FamilyKey::Kind::kNumber,
+     .unit = "Nm/A",
+     .min = 0,
+     .max = 100,
+     .default_text = "0",
+     .about = "Torque at the drive's output for each ampere; 0.81 for MF9025 with the winding 35T. 0: the "
+              "model's own."},
+    {.name = "encoder_bits",
+     .kind = FamilyKey::Kind::kInteger,
+     .min = 14,
+     .max = 16,
+     .default_text = "16",
+     .about = "Of the encoder value in answers; 16 also for encoders of 18 bits."},
+}};
+
+constexpr DriveFrames kFrames{.rest = Provision::kFrame,
+                              .poll = Provision::kFrame,
+                              .idle = Provision::kFrame,
+                              .damp = Provision::kUnsupported,
+                              .brake = Provision::kFrame,
+                              .hold = Provision::kFrame,
+                              .enable = Provision::kFrame,
+                              .disable = Provision::kNothing};
+
+class LKTechFamily final : public MotorFamily {
+ public:
+  [[nodiscard]] std::string_view name() const noexcept override { return "LK-Tech"; }
+  [[nodiscard]] std::span<const std::string_view> models() const noexcept override { return lktechModels(); }
+  [[nodiscard]] std::span<const FamilyKey> keys() const noexcept override { return kKeys; }
+
+  [[nodiscard]] MotorTraits traits(std::string_view name, const OwnValues& own) const override {
+    const LKTechModel* const found = findLktechModel(name);
+    const LKTechModel model = found != nullptr ? *found : LKTechModel{};
+    const double own_torque = own.number("torque_nm_per_a");
+    MotorTraits traits;
+    traits.max_id = own.flag("group") ? lktech::kGroupSize : lktech::kMaxId;
+    traits.gear_ratio = model.gear_ratio;
+    traits.effort = CommandUnit::kAmpere;
+    traits.effort_full_scale = model.peak_current_a;
+    traits.torque_nm_per_a = own_torque > 0.0
+                                 ? static_cast<float>(own_torque)
+                                 : model.rotor_torque_nm_per_a * static_cast<float>(model.gear_ratio);
+    traits.nominal_v = 24.0F;
+    traits.absolute = true;  // direct drives, and gears with a second encoder at the output (E)
+    traits.frozen_a = static_cast<float>(model.amperes_per_raw * lktech::kRawCurrentMax);
+    traits.asked = true;
+    static constexpr DriveSetup kSetup{.tool = "LK Motor Tool (over its serial port)"};
+    traits.setup = &kSetup;
+    traits.frames = kFrames;
+    traits.modes = ModeSet{ControlMode::kCoast, ControlMode::kCurrent,    ControlMode::kVelocity,
+                           ControlMode::kAngle, ControlMode::kTotalAngle, ControlMode::kBrake};
+    if (own.flag("group")) {
+      traits.modes = ModeSet{ControlMode::kCoast, ControlMode::kCurrent};
+      traits.frames.brake = Provision::kUnsupported;
+      traits.frames.hold = Provision::kUnsupported;
+    }
+    // "Input signal lost" is an error of newer firmware, but no public document tells how to set its time.
+    traits.watchdog = false;
+    return traits;
+  }
+
+  [[nodiscard]] BusUse busUse(const MotorSettings& settings) const override {
+    const bool grouped = settings.own.flag("group");
+    const auto one = [](std::uint32_t value) {
+      return FrameFilter{.id = {value, false}, .mask = kStandardIdMask};
+    };
+    const std::uint32_t own_id = lktech::kBaseId + static_cast<std::uint32_t>(settings.id);
+    const double told_hz = static_cast<double>(settings.tick_hz) / std::max(settings.command_divider, 1);
+    constexpr double kQueriesHz = 20.0;
+    BusUse use;
+    use.sends = {one(own_id)};
+    use.obeys = {one(own_id)};
+    if (settings.id <= lktech::kGroupSize) {
+      // Currents; and by one source speeds (0x281), angles (0x282) and a mixture (0x288).
+      for (const std::uint32_t id : {lktech::kGroupId, 0x281U, 0x282U, 0x288U}) use.obeys.push_back(one(id));
+    }
+    use.feedback = {{.id = {own_id, false}, .shape = {}, .per_second = told_hz + kQueriesHz}};
+    if (grouped) {
+      use.commands = {{.id = {lktech::kGroupId, false}, .shape = {}, .per_second = told_hz},
+                      {.id = {own_id, false}, .shape = {}, .per_second = kQueriesHz}};
+      use.layout = "LK-Tech 0x280";
+    } else {
+      use.commands = {{.id = {own_id, false}, .shape = {}, .per_second = told_hz + kQueriesHz}};
+    }
+    return use;
+  }
+
+  [[nodiscard]] Result<std::unique_ptr<Motor_Base>> build(const MotorSettings& settings,
+                                                          BusParts& parts) const override {
+    auto motor = std::make_unique<LKTech_Motor>(settings, traits(settings.model, settings.own));
+    if (motor->grouped()) {
+      const CanId id{lktech::kGroupId, false};
+      auto* group = parts.find<LKTech_Group>(id);
+      if (group == nullptr) {
+        if (auto added = parts.add(std::make_unique<LKTech_Group>()); !added)
+          return tl::unexpected(added.error());
+        group = parts.find<LKTech_Group>(id);
+      }
+      if (auto member = group->registerMotor(*motor); !member) return tl::unexpected(member.error());
+    }
+    return registerSolo(std::move(motor), parts);
+  }
+};
+
+}  // namespace
+
+const MotorFamily& lktechFamily() noexcept {
+  static const LKTechFamily kFamily;
+  return kFamily;
+}
+
+}  // namespace rc10

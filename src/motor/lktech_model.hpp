@@ -1,0 +1,35 @@
+#pragma once
+
+#include <span>
+#include <string_view>
+
+#include "motor/fault_code.hpp"
+
+namespace rc10 {
+
+/// Everything in which one LK-Tech model differs from another.
+struct LKTechModel {
+  std::string_view name;
+  double gear_ratio = 1.0;
+  double amperes_per_raw = 0.0;        ///< Of commands and replies.
+  float peak_current_a = 0.0F;         ///< At the peak torque.
+  float rotor_torque_nm_per_a = 0.0F;  ///< 0: unknown. Times the gear at the output.
+};
+
+[[nodiscard]] std::span<const std::string_view> lktechModels() noexcept;
+/// nullptr if there is no such model.
+[[nodiscard]] const LKTechModel* findLktechModel(std::string_view name) noexcept;
+
+/// One bit of the error byte of the reply to 0x9A.
+struct LKTechFault {
+  std::uint8_t bit = 0;
+  FaultCode fault = FaultCode::kNone;
+  std::string_view words;
+};
+
+/// The most serious first.
+[[nodiscard]] std::span<const LKTechFault> lktechFaults() noexcept;
+/// What an error byte means: its most serious bit.
+[[nodiscard]] DriveComplaint lktechComplaint(std::uint8_t errors) noexcept;
+
+}  // namespace rc10

@@ -1,0 +1,360 @@
+#include "motor/lktech_motor.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "app/angle.hpp"
+#include "app/saturated.hpp"
+#include "motor/lktech_model.hpp"
+
+namespace rc10 {
+
+using lktech::Code;
+
+namespace {
+
+constexpr double kDegSPerRpm = 6.0;
+constexpr double kDegPerRaw = 0.01;
+constexpr double kNoLimitDegS = 65535.0;
+
+constexpr Duration kStepPatience = std::chrono::milliseconds{50};
+constexpr int kMostTries = 5;
+constexpr Duration kQuerySpacing = std::chrono::milliseconds{50};
+constexpr Duration kUrgentQuerySpacing = std::chrono::milliseconds{10};
+/// After a shorter silence the drive has not been restarted, and the encoder shows which way it went.
+constexpr Duration kRestartSilence = std::chrono::milliseconds{100};
+/// A frame with the shape of a command is a reply only if the motor is known to be about so cold.
+constexpr float kNearZeroC = 2.0F;
+constexpr int kZeroAnglesBelieved = 3;
+/// So slow that encoder and multi-turn angle are of the same moment.
+constexpr float kStandingRpm = 1.0F;
+/// By how much the two may differ for other reasons.
+constexpr double kSameAngleDeg = 1.0;
+
+[[nodiscard]] MotorSettings asAsked(MotorSettings settings) {
+  settings.feedback_hz = std::max(settings.tick_hz / std::max(settings.command_divider, 1), 1);
+  return settings;
+}
+
+[[nodiscard]] double driveTurns(const MotorSettings& settings, const MotorTraits& traits) {
+  return settings.gear_ratio > 0.0 ? settings.gear_ratio / traits.gear_ratio : 1.0;
+}
+
+[[nodiscard]] double amperesPerRaw(const std::string& model) {
+  const LKTechModel* const found = findLktechModel(model);
+  return found != nullptr ? found->amperes_per_raw : LKTechModel{}.amperes_per_raw;
+}
+
+}  // namespace
+
+LKTech_Motor::LKTech_Motor(const MotorSettings& settings, const MotorTraits& traits)
+    : SoloMotor(asAsked(settings), traits, driveTurns(settings, traits)),
+      id_(settings.id),
+      grouped_(settings.own.flag("group")),
+      amperes_per_raw_(amperesPerRaw(settings.model)),
+      encoder_mask_(static_cast<std::uint16_t>((1U << settings.own.integer("encoder_bits")) - 1U)),
+      filters_{FrameFilter{.id = {lktech::kBaseId + static_cast<std::uint32_t>(id_), false},
+                           .mask = kStandardIdMask}},
+      command_ids_{filters_[0].id} {}
+
+// ---- What the drive says
+
+bool LKTech_Motor::matchesFrame(const CanFrame& frame) const noexcept {
+  return frame.id == filters_[0].id && !frame.fd && frame.type != FrameType::kError;
+}
+
+bool LKTech_Motor::isReply(const CanFrame& frame) const noexcept {
+  if (!lktech::looksLikeCommand(frame.payload())) return true;
+  return !frame.sent_here && std::abs(feedback_.temperature_c) <= kNearZeroC;
+}
+
+FrameVerdict LKTech_Motor::updateFeedback(const CanFrame& frame) noexcept {
+  if (frame.type != FrameType::kData || frame.fd || frame.length != lktech::kLength) {
+    return FrameVerdict::kMalformed;
+  }
+  switch (lktech::codeOf(frame.payload())) {
+    case Code::kReading:
+    case Code::kCurrent:
+    case Code::kVelocity:
+    case Code::kPosition:
+      if (isReply(frame)) acceptReading(frame);
+      break;
+    case Code::kStatus:
+    case Code::kClear:
+      if (isReply(frame)) acceptStatus(frame);
+      break;
+    case Code::kAngle: acceptTurns(frame); break;
+    default: break;  // the copy of a command; the reply to another controller's question
+  }
+  return FrameVerdict::kAccepted;
+}
+
+double LKTech_Motor::encoderDeg(std::uint16_t raw) const noexcept {
+  return static_cast<double>(raw & encoder_mask_) * 360.0 / (static_cast<double>(encoder_mask_) + 1.0);
+}
+
+void LKTech_Motor::acceptReading(const CanFrame& frame) noexcept {
+  const auto reading = lktech::decodeReading(frame.payload());
+  const Duration silence = heard_ ? frame.received - *heard_ : Duration::max();
+  heard_ = frame.received;
+  const float rpm_before = feedback_.velocity_rpm;
+  feedback_.temperature_c = static_cast<float>(reading.temperature_c);
+  feedback_.current_a = static_cast<float>(reading.current_raw * amperes_per_raw_) * direction();
+  if (torqueNmPerA() > 0.0F) feedback_.torque_nm = feedback_.current_a * torqueNmPerA();
+  feedback_.velocity_rpm =
+      static_cast<float>(toOutput(reading.rotor_deg_s / traits().gear_ratio) / kDegSPerRpm);
+  if (silence > kRestartSilence && counted_) {
+    counted_ = false;
+    next_query_ = {};
+  }
+  if (counted_ && encoder_) {
+    // As it turned before and turns now, so far has it come meanwhile: then the nearest such angle.
+    const float mean_rpm =
+        0.5F * (std::isnan(rpm_before) ? feedback_.velocity_rpm : rpm_before) + 0.5F * feedback_.velocity_rpm;
+    const double expected_deg = position_deg_ + toDrive(static_cast<double>(mean_rpm)) * kDegSPerRpm *
+                                                    static_cast<double>(seconds(silence));
+    position_deg_ = expected_deg + shortestAngle(expected_deg, encoderDeg(reading.encoder));
+  }
+  encoder_ = reading.encoder;
+  if (counted_) acceptSample(frame.received, position_deg_);
+  if (lktech::codeOf(frame.payload()) == Code::kCurrent) answered(Step::kObey);
+}
+
+void LKTech_Motor::acceptStatus(const CanFrame& frame) noexcept {
+  const auto status = lktech::decodeStatus(frame.payload());
+  feedback_.temperature_c = static_cast<float>(status.temperature_c);
+  feedback_.voltage_v = static_cast<float>(status.voltage_v);
+  errors_ = status.errors;
+  off_ = status.off;
+  answered(off_ ? Step::kStatus : Step::kTurnOn);
+  if (!off_) answered(Step::kStatus);
+}
+
+void LKTech_Motor::acceptTurns(const CanFrame& frame) noexcept {
+  const std::int32_t raw = lktech::decodeAngle(frame.payload());
+  // A request says 0; the drive says it too when it is there, but then again and again.
+  zero_angles_ = lktech::looksLikeCommand(frame.payload()) ? zero_angles_ + 1 : 0;
+  if (zero_angles_ > 0 && zero_angles_ < kZeroAnglesBelieved) return;
+  if (!encoder_) return;
+  const double angle_deg = static_cast<double>(raw) * kDegPerRaw / traits().gear_ratio;
+  // 32 bits of the rotor's angle end somewhere.
+  const double reach_deg = 4294967296.0 * kDegPerRaw / traits().gear_ratio;
+  const double off_deg = shortestWay(position_deg_ + shift_deg_, angle_deg, reach_deg);
+  if (!counted_ || std::abs(off_deg) > 180.0) {
+    const bool lost = was_counted_ && std::abs(off_deg) > 180.0;
+    if (lost) {
+      loseReference();
+      restarted_ = restarted_ || obeying();
+      if (ordered() == FrameKind::kEnable) beginSequence();
+    }
+    if (lost || !was_counted_) {
+      position_deg_ = angle_deg + shortestAngle(angle_deg, encoderDeg(*encoder_));
+      shift_deg_ = 0.0;
+    } else {
+      position_deg_ += shortestAngle(position_deg_, encoderDeg(*encoder_));
+    }
+    counted_ = true;
+    was_counted_ = true;
+  }
+  // Some firmware may count from another zero than its encoder's. Seen while it stands.
+  if (std::abs(feedback_.velocity_rpm) < kStandingRpm) {
+    const double shift_deg = shortestWay(position_deg_, angle_deg, reach_deg);
+    shift_deg_ = std::abs(shift_deg) > kSameAngleDeg ? shift_deg : 0.0;
+  }
+  answered(Step::kTurns);
+}
+
+// ---- What it is told
+
+bool LKTech_Motor::obeying() const noexcept {
+  switch (ordered()) {
+    case FrameKind::kIdle:
+    case FrameKind::kCommand:
+    case FrameKind::kBrake:
+    case FrameKind::kHold:
+    case FrameKind::kDamp: return true;
+    default: return false;
+  }
+}
+
+void LKTech_Motor::update(const Tick& tick) noexcept {
+  outgoing_count_ = 0;
+  limits_ = 0;
+  const Target target = wanted();
+  const bool begins = ordered() != last_ordered_;
+  last_ordered_ = ordered();
+  if (ordered() == FrameKind::kEnable && begins) beginSequence();
+  if (std::exchange(clear_, false)) send(lktech::request(id_, Code::kClear));
+  // A drive that is just starting must not find an angle of its former life waiting for it.
+  if (!heard_ || tick.now - *heard_ > kRestartSilence) counted_ = false;
+  told_ = due(tick);
+  if (!told_) return;
+
+  switch (ordered()) {
+    case FrameKind::kRest:
+    case FrameKind::kDisable: return release();
+    case FrameKind::kPoll: release(); break;
+    case FrameKind::kEnable: runSequence(tick); break;
+    default:
+      // One that has stopped is not started again behind the back of whoever has to know.
+      counted_&& complaint().fault == FaultCode::kNone ? follow(target) : release();
+      break;
+  }
+  sendQueries(tick);
+}
+
+void LKTech_Motor::sendQueries(const Tick& tick) noexcept {
+  if (tick.now < next_query_) return;
+  next_query_ = tick.now + (counted_ ? kQuerySpacing : kUrgentQuerySpacing);
+  // It is not taken without a temperature.
+  ask_turns_ = std::isnan(feedback_.voltage_v) ? false : !ask_turns_;
+  send(lktech::request(id_, ask_turns_ ? Code::kAngle : Code::kStatus));
+}
+
+void LKTech_Motor::release() noexcept {
+  setCommand(0.0, CommandUnit::kAmpere);
+  sendCurrent(0);
+}
+
+int LKTech_Motor::rawOf(double amperes) const noexcept {
+  const int limit = grouped_ ? lktech::kRawGroupCurrentMax : lktech::kRawCurrentMax;
+  return std::clamp(static_cast<int>(saturatedRound<std::int32_t>(amperes / amperes_per_raw_)), -limit,
+                    limit);
+}
+
+void LKTech_Motor::follow(const Target& target) noexcept {
+  // In a group there is nothing but currents. And no loop of the drive may run when no current is allowed.
+  const bool loops = !grouped_ && effortLimit() > 0.0F;
+  switch (loops ? target.mode : ControlMode::kCurrent) {
+    case ControlMode::kCurrent: return followCurrent(target);
+    case ControlMode::kVelocity: return followVelocity(target.value);
+    case ControlMode::kTotalAngle: return followAngle(target.value);
+    case ControlMode::kBrake: return followVelocity(0.0);
+    default: return release();
+  }
+}
+
+void LKTech_Motor::followCurrent(const Target& target) noexcept {
+  const double current_a = currentWithinLimit(target);
+  setCommand(current_a, CommandUnit::kAmpere);
+  sendCurrent(rawOf(current_a * static_cast<double>(direction())));
+}
+
+void LKTech_Motor::followVelocity(double output_rpm) noexcept {
+  const double rpm = rpmWithinLimit(output_rpm);
+  if (std::abs(feedback_.current_a) >= effortLimit()) limits_ |= kLimitCurrent;
+  setCommand(rpm, CommandUnit::kNative);
+  // 0 would be no bound.
+  const int limit_raw = std::max(rawOf(static_cast<double>(effortLimit())), 1);
+  send(lktech::velocityCommand(id_, toDrive(rpm) * traits().gear_ratio * kDegSPerRpm, limit_raw));
+}
+
+void LKTech_Motor::followAngle(double total_angle_deg) noexcept {
+  if (feedback_.samples == 0 || !std::isfinite(total_angle_deg)) return release();
+  const double rotor_deg = (drivePositionFor(total_angle_deg) + shift_deg_) * traits().gear_ratio;
+  constexpr double kReachDeg = 2147483647.0 * kDegPerRaw;
+  if (std::abs(rotor_deg) > kReachDeg) limits_ |= kLimitAngle;
+  if (std::abs(feedback_.current_a) >= effortLimit()) limits_ |= kLimitCurrent;
+  const auto limit_rpm = static_cast<double>(velocityLimitRpm());
+  const double limit_deg_s =
+      limit_rpm > 0.0 ? std::abs(toDrive(limit_rpm)) * traits().gear_ratio * kDegSPerRpm : kNoLimitDegS;
+  setCommand(total_angle_deg, CommandUnit::kNative);
+  send(lktech::positionCommand(id_, rotor_deg, limit_deg_s));
+}
+
+void LKTech_Motor::send(const CanFrame& frame) noexcept {
+  if (outgoing_count_ < outgoing_.size()) outgoing_[outgoing_count_++] = frame;
+}
+
+void LKTech_Motor::sendCurrent(int raw) noexcept {
+  raw_current_ = raw;
+  if (!grouped_) send(lktech::currentCommand(id_, raw));
+}
+
+std::size_t LKTech_Motor::packCommand(const Tick& /*tick*/, std::span<CanFrame> out) noexcept {
+  const std::size_t count = std::min(outgoing_count_, out.size());
+  std::copy_n(outgoing_.begin(), count, out.begin());
+  return count;
+}
+
+// A group's frame has it in.
+std::size_t LKTech_Motor::packRest(std::span<CanFrame> out) const noexcept {
+  if (out.empty() || grouped_) return 0;
+  out.front() = lktech::currentCommand(id_, 0);
+  return 1;
+}
+
+// ---- Enabling
+
+void LKTech_Motor::beginSequence() noexcept {
+  step_ = Step::kStatus;
+  tries_ = 0;
+  failed_ = false;
+  restarted_ = false;
+}
+
+void LKTech_Motor::sendStep() noexcept {
+  switch (step_) {
+    case Step::kStatus: return send(lktech::request(id_, Code::kStatus));
+    case Step::kTurnOn:
+      send(lktech::request(id_, Code::kOn));
+      return send(lktech::request(id_, Code::kStatus));
+    case Step::kTurns: return send(lktech::request(id_, Code::kAngle));
+    case Step::kObey:
+    case Step::kDone: break;  // the current of 0 that it is told anyway
+  }
+}
+
+void LKTech_Motor::runSequence(const Tick& tick) noexcept {
+  release();
+  if (failed_ || step_ == Step::kDone) return;
+  if (tries_ > 0 && tick.now - asked_at_ < kStepPatience) return;
+  if (tries_ == kMostTries) {
+    failed_ = true;
+    return;
+  }
+  ++tries_;
+  asked_at_ = tick.now;
+  sendStep();
+}
+
+void LKTech_Motor::answered(Step step) noexcept {
+  if (ordered() != FrameKind::kEnable || step != step_ || failed_ || tries_ == 0) return;
+  tries_ = 0;
+  switch (step) {
+    case Step::kStatus:
+      failed_ = errors_ != 0;
+      step_ = off_ ? Step::kTurnOn : Step::kTurns;
+      break;
+    case Step::kTurnOn: step_ = Step::kTurns; break;
+    case Step::kTurns: step_ = Step::kObey; break;
+    case Step::kObey: step_ = Step::kDone; break;
+    case Step::kDone: break;
+  }
+}
+
+SequenceProgress LKTech_Motor::sequenceProgress() const noexcept {
+  if (ordered() != FrameKind::kEnable) return SequenceProgress::kDone;
+  if (last_ordered_ != FrameKind::kEnable) return SequenceProgress::kPending;
+  if (failed_) return SequenceProgress::kFailed;
+  return step_ == Step::kDone ? SequenceProgress::kDone : SequenceProgress::kPending;
+}
+
+// ---- Complaints
+
+DriveComplaint LKTech_Motor::complaint() const noexcept {
+  if (errors_ != 0) return lktechComplaint(errors_);
+  if (restarted_ || (off_ && obeying())) {
+    return {.fault = FaultCode::kDriveStopped, .native_code = off_ ? 0x10U : 0U};
+  }
+  return {};
+}
+
+void LKTech_Motor::clearComplaint() noexcept {
+  clear_ = clear_ || errors_ != 0;
+  restarted_ = false;
+  next_query_ = {};
+  ask_turns_ = true;  // so that the status comes next
+}
+
+}  // namespace rc10

@@ -1,0 +1,103 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+
+#include "motor/lktech_frames.hpp"
+#include "motor/solo_motor.hpp"
+
+namespace rc10 {
+
+/// The LK-Tech MF, MHF and MG drives, protocol V2.35.
+[[nodiscard]] const MotorFamily& lktechFamily() noexcept;
+
+/// An LK-Tech motor. Its drive speaks only when told something, and on the id on which it is told: whether a
+/// frame on that id is its reply or somebody else's command, only the payload shows. Each command brings
+/// current, speed and the encoder of the output; now and then the drive is asked for its errors and for the
+/// turns that it has counted itself, by which a restart is noticed.
+///
+/// As a member of an LKTech_Group it leaves its currents to the group, and sends only what else there is.
+class LKTech_Motor final : public SoloMotor {
+ public:
+  LKTech_Motor(const MotorSettings& settings, const MotorTraits& traits);
+
+  [[nodiscard]] std::span<const FrameFilter> filters() const noexcept override { return filters_; }
+  [[nodiscard]] bool matchesFrame(const CanFrame& frame) const noexcept override;
+  FrameVerdict updateFeedback(const CanFrame& frame) noexcept override;
+  void update(const Tick& tick) noexcept override;
+
+  [[nodiscard]] std::span<const CanId> commandIds() const noexcept override { return command_ids_; }
+  [[nodiscard]] std::size_t packCommand(const Tick& tick, std::span<CanFrame> out) noexcept override;
+  [[nodiscard]] std::size_t packRest(std::span<CanFrame> out) const noexcept override;
+
+  [[nodiscard]] SequenceProgress sequenceProgress() const noexcept override;
+  [[nodiscard]] DriveComplaint complaint() const noexcept override;
+  void clearComplaint() noexcept override;
+
+  // For its group.
+  [[nodiscard]] int driveId() const noexcept { return id_; }
+  [[nodiscard]] bool grouped() const noexcept { return grouped_; }
+  /// What update() computed, as the drive wants it; and whether it is to be told in this tick.
+  [[nodiscard]] int rawCurrent() const noexcept { return raw_current_; }
+  [[nodiscard]] bool told() const noexcept { return told_; }
+
+ private:
+  enum class Step : std::uint8_t { kStatus, kTurnOn, kTurns, kObey, kDone };
+
+  [[nodiscard]] bool isReply(const CanFrame& frame) const noexcept;
+  void acceptReading(const CanFrame& frame) noexcept;
+  void acceptStatus(const CanFrame& frame) noexcept;
+  void acceptTurns(const CanFrame& frame) noexcept;
+  void answered(Step step) noexcept;
+  [[nodiscard]] double encoderDeg(std::uint16_t raw) const noexcept;
+
+  void send(const CanFrame& frame) noexcept;
+  void sendCurrent(int raw) noexcept;
+  void sendQueries(const Tick& tick) noexcept;
+  void runSequence(const Tick& tick) noexcept;
+  void beginSequence() noexcept;
+  void sendStep() noexcept;
+  void follow(const Target& target) noexcept;
+  void followCurrent(const Target& target) noexcept;
+  void followVelocity(double output_rpm) noexcept;
+  void followAngle(double total_angle_deg) noexcept;
+  void release() noexcept;
+  [[nodiscard]] int rawOf(double amperes) const noexcept;
+  [[nodiscard]] bool obeying() const noexcept;
+
+  int id_;
+  bool grouped_;
+  double amperes_per_raw_;
+  std::uint16_t encoder_mask_;
+  std::array<FrameFilter, 1> filters_;
+  std::array<CanId, 1> command_ids_;
+
+  std::array<CanFrame, kMaxFramesPerPacker> outgoing_{};
+  std::size_t outgoing_count_ = 0;
+  int raw_current_ = 0;
+  bool told_ = false;
+  MonotonicTime next_query_{};
+  bool ask_turns_ = false;  ///< Next; else the status.
+  bool clear_ = false;
+
+  // What the drive said.
+  std::optional<MonotonicTime> heard_;
+  std::optional<std::uint16_t> encoder_;
+  double position_deg_ = 0.0;  ///< Of the drive's output, in the drive's own count of turns.
+  double shift_deg_ = 0.0;     ///< The drive's multi-turn angle less that.
+  bool counted_ = false;       ///< The turns are known, and since then it has not been silent.
+  bool was_counted_ = false;   ///< They were before the last silence.
+  int zero_angles_ = 0;        ///< Replies in a row that say an angle of 0.
+  bool off_ = false;
+  std::uint8_t errors_ = 0;
+  bool restarted_ = false;  ///< While it was to obey: it has lost its turns.
+
+  FrameKind last_ordered_ = FrameKind::kRest;
+  Step step_ = Step::kStatus;
+  int tries_ = 0;
+  MonotonicTime asked_at_{};
+  bool failed_ = false;
+};
+
+}  // namespace rc10

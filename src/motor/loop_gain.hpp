@@ -1,0 +1,48 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+
+#include "motor/cascade.hpp"
+
+namespace rc10 {
+
+/// One number of a motor's loops that may change while it runs. The numbers are part of the LCM contract
+/// (event 110) and never change.
+enum class LoopGain : std::uint8_t {
+  kVelocityKp = 0,
+  kVelocityKi = 1,
+  kVelocityKd = 2,
+  kVelocityDeadband = 3,
+  kVelocityDerivativeFilter = 4,
+  kVelocityIntegralLimit = 5,
+  kVelocityIntegralSeparation = 6,
+  kVelocityTargetBandwidth = 7,
+  kAngleKp = 8,
+  kAngleKi = 9,
+  kAngleKd = 10,
+  kAngleDeadband = 11,
+  kAngleVelocityLimit = 12,
+  kAngleIntegralLimit = 13,
+  kAngleIntegralSeparation = 14,
+  kAngleDerivativeFilter = 15,
+};
+inline constexpr std::size_t kLoopGainCount = 16;
+
+/// Where these loops hold it; null: they have none, as a velocity loop of the other type.
+[[nodiscard]] float* gainIn(CascadeConfig& loops, LoopGain gain) noexcept;
+[[nodiscard]] float gainOf(const CascadeConfig& loops, LoopGain gain) noexcept;  ///< 0: they have none.
+
+struct GainChange {
+  LoopGain gain{};
+  float value = 0.0F;
+};
+
+/// What one request changes: all of it in one tick.
+struct GainChanges {
+  std::size_t count = 0;
+  std::array<GainChange, kLoopGainCount> values{};
+};
+
+}  // namespace rc10

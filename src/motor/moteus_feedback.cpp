@@ -1,0 +1,129 @@
+#include <chrono>
+#include <cmath>
+
+#include "motor/moteus_motor.hpp"
+
+// What Moteus_Motor takes from the answers of its drive.
+
+namespace rc10 {
+namespace {
+
+constexpr double kLargestPositionRev = 32768.5;
+// More is no reading. The firmware's own servo.max_velocity is 500 rev/s.
+constexpr double kLargestRevPerS = 1e5;
+constexpr double kLargestTorqueNm = 1e6;
+
+// Its clock has 16 bits here. Over a longer gap it is not compared.
+constexpr double kClockRangeMs = 65'536.0;
+constexpr double kLongestGapMs = 30'000.0;
+constexpr double kClockToleranceMs = 200.0;
+
+[[nodiscard]] double milliseconds(Duration duration) noexcept {
+  return std::chrono::duration<double, std::milli>(duration).count();
+}
+
+}  // namespace
+
+bool Moteus_Motor::decode(const CanFrame& frame, Reading& reading) noexcept {
+  MoteusReader reader(frame.payload());
+  MoteusItem item;
+  for (;;) {
+    const auto step = reader.next(item);
+    if (step == MoteusReader::Step::kEnd) break;
+    if (step == MoteusReader::Step::kMalformed || item.kind != MoteusItem::Kind::kReply) return false;
+    switch (item.reg) {
+      case MoteusRegister::kMode: reading.mode = item.value; break;
+      case MoteusRegister::kFault: reading.fault = item.value; break;
+      case MoteusRegister::kPosition:
+        reading.position_rev = item.value;
+        reading.fine_position = item.type == MoteusType::kFloat;
+        break;
+      case MoteusRegister::kVelocity: reading.velocity_rev_s = item.value; break;
+      case MoteusRegister::kTorque: reading.torque_nm = item.value; break;
+      case MoteusRegister::kQCurrent: reading.current_a = item.value; break;
+      case MoteusRegister::kVoltage: reading.voltage_v = item.value; break;
+      case MoteusRegister::kTemperature: reading.temperature_c = item.value; break;
+      case MoteusRegister::kMilliseconds:
+        reading.clock_ms = item.value;
+        reading.has_clock = true;
+        break;
+      case MoteusRegister::kRegisterMapVersion: reading.version = item.value; break;
+      case MoteusRegister::kHomeState: reading.home_state = item.value; break;
+      case MoteusRegister::kTimeout: reading.timeout_s = item.value; break;
+      default: break;
+    }
+  }
+  // An answer to another program's question has other registers or a coarser position.
+  if (!reading.fine_position || !reading.has_clock) return false;
+  const auto within = [](double value, double most) { return !(std::abs(value) > most); };
+  return reading.mode >= 0.0 && reading.mode <= 15.0 && reading.fault >= 0.0 &&
+         within(reading.position_rev, kLargestPositionRev) &&
+         within(reading.velocity_rev_s, kLargestRevPerS) && within(reading.torque_nm, kLargestTorqueNm);
+}
+
+FrameVerdict Moteus_Motor::updateFeedback(const CanFrame& frame) noexcept {
+  Reading reading;
+  if (!decode(frame, reading)) return FrameVerdict::kMalformed;
+  const bool anew = restarted(frame.received, reading.clock_ms);
+  answered_ = frame.received;
+  takeState(reading);
+  if (anew) {
+    loseReference();
+    if (engaged_) drop(FaultCode::kDriveStopped, static_cast<std::uint32_t>(mode_));
+  }
+  if (!std::isfinite(reading.position_rev)) return FrameVerdict::kAccepted;  // it has no encoder
+  takePosition(reading.position_rev, anew);
+  feedback_.velocity_rpm = static_cast<float>(toOutput(reading.velocity_rev_s * 60.0));
+  feedback_.torque_nm = static_cast<float>(torqueToOutput(reading.torque_nm));
+  feedback_.current_a = static_cast<float>(reading.current_a) * direction();
+  feedback_.voltage_v = static_cast<float>(reading.voltage_v);
+  feedback_.temperature_c = static_cast<float>(reading.temperature_c);
+  acceptSample(frame.received, position_rev_ * 360.0);
+  return FrameVerdict::kAccepted;
+}
+
+// Its clock counts from power-up, so after a restart it shows no more than the time since its last answer.
+bool Moteus_Motor::restarted(MonotonicTime received, double clock_ms) noexcept {
+  if (!std::isfinite(clock_ms)) return false;  // one value in 65536 reads as "not a number"
+  const double before_ms = clock_ms_;
+  const auto before = clock_read_;
+  clock_ms_ = clock_ms < 0.0 ? clock_ms + kClockRangeMs : clock_ms;
+  clock_read_ = received;
+  if (!before) return false;
+  const double passed_ms = milliseconds(received - *before);
+  if (passed_ms > kLongestGapMs) return true;
+  const double off_ms = std::remainder(clock_ms_ - before_ms - passed_ms, kClockRangeMs);
+  return std::abs(off_ms) > kClockToleranceMs && clock_ms_ <= passed_ms + kClockToleranceMs;
+}
+
+void Moteus_Motor::takePosition(double position_rev, bool anew) noexcept {
+  if (feedback_.samples == 0 || (anew && traits().absolute)) {
+    position_rev_ = position_rev;
+  } else if (!anew) {
+    position_rev_ += std::remainder(position_rev - (position_rev_ - wire_rev_), kRangeRev);
+  }
+  wire_rev_ = position_rev_ - position_rev;
+}
+
+void Moteus_Motor::takeState(const Reading& reading) noexcept {
+  mode_ = static_cast<MoteusMode>(reading.mode);
+  native_fault_ = static_cast<std::uint32_t>(reading.fault);
+  if (mode_ != MoteusMode::kFault) clearing_ = false;
+  if (!std::isnan(reading.version)) identity_ = reading;
+  if (!std::isnan(reading.timeout_s)) verified_s_ = reading.timeout_s;
+  if (!engaged_ || mode_ == MoteusMode::kPosition || mode_ == MoteusMode::kBrake) return;
+  if (mode_ == MoteusMode::kFault) {
+    engaged_ = false;  // complaint() has the fault
+  } else if (mode_ == MoteusMode::kTimeout) {
+    drop(FaultCode::kDriveCommunication, static_cast<std::uint32_t>(mode_));
+  } else {
+    drop(FaultCode::kDriveStopped, static_cast<std::uint32_t>(mode_));
+  }
+}
+
+void Moteus_Motor::drop(FaultCode why, std::uint32_t native) noexcept {
+  engaged_ = false;
+  lost_ = {why, native};
+}
+
+}  // namespace rc10

@@ -1,0 +1,218 @@
+#include "motor/moteus_frames.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+#include "bus/byte_order.hpp"
+
+namespace rc10 {
+namespace {
+
+constexpr std::uint8_t kNop = 0x50;
+constexpr std::uint32_t kMaxCount = 64;  // more registers than a frame has bytes
+
+constexpr std::array<std::size_t, 4> kBytes{1, 2, 4, 4};
+
+// Of an 8, 16 and 32 bit integer: docs/protocol/registers.md, "Mappings".
+struct Scale {
+  double int8, int16, int32;
+};
+constexpr Scale kCurrentA{1.0, 0.1, 0.001};
+constexpr Scale kTorqueNm{0.5, 0.01, 0.001};
+constexpr Scale kVolts{0.5, 0.1, 0.001};
+constexpr Scale kCelsius{1.0, 0.1, 0.001};
+constexpr Scale kSeconds{0.01, 0.001, 1e-6};
+constexpr Scale kRevolutions{0.01, 1e-4, 1e-5};
+constexpr Scale kRevPerS{0.1, 2.5e-4, 1e-5};
+constexpr Scale kRevPerS2{0.05, 1e-3, 1e-5};
+constexpr Scale kShare{1.0 / 127.0, 1.0 / 32767.0, 1.0 / 2147483647.0};
+constexpr Scale kNumber{1.0, 1.0, 1.0};
+
+[[nodiscard]] const Scale& scaleOf(MoteusRegister reg) noexcept {
+  using enum MoteusRegister;
+  switch (reg) {
+    case kPosition:
+    case kCommandPosition: return kRevolutions;
+    case kVelocity:
+    case kCommandVelocity:
+    case kVelocityLimit: return kRevPerS;
+    case kAccelerationLimit: return kRevPerS2;
+    case kTorque:
+    case kCommandTorque:
+    case kMaxTorque: return kTorqueNm;
+    case kQCurrent: return kCurrentA;
+    case kVoltage: return kVolts;
+    case kTemperature: return kCelsius;
+    case kTimeout: return kSeconds;
+    case kKpScale:
+    case kKdScale:
+    case kIlimitScale: return kShare;
+    case kMode:
+    case kHomeState:
+    case kFault:
+    case kMilliseconds:
+    case kRegisterMapVersion: break;
+  }
+  return kNumber;
+}
+
+/// Symmetric, as the drive does it: the lowest integer is "not a number".
+template <typename T>
+[[nodiscard]] T toCounts(double value, double scale) noexcept {
+  if (!std::isfinite(value)) return std::numeric_limits<T>::min();
+  constexpr auto kMax = static_cast<double>(std::numeric_limits<T>::max());
+  return static_cast<T>(std::clamp(std::round(value / scale), -kMax, kMax));
+}
+
+template <typename T>
+[[nodiscard]] double fromCounts(T counts, double scale) noexcept {
+  if (counts == std::numeric_limits<T>::min()) return std::numeric_limits<double>::quiet_NaN();
+  return static_cast<double>(counts) * scale;
+}
+
+[[nodiscard]] float toFloat(double value) noexcept {
+  if (std::isnan(value)) return std::numeric_limits<float>::quiet_NaN();
+  constexpr auto kMax = static_cast<double>(std::numeric_limits<float>::max());
+  return static_cast<float>(std::clamp(value, -kMax, kMax));
+}
+
+}  // namespace
+
+double moteusScale(MoteusRegister reg, MoteusType type) noexcept {
+  const Scale& scale = scaleOf(reg);
+  switch (type) {
+    case MoteusType::kInt8: return scale.int8;
+    case MoteusType::kInt16: return scale.int16;
+    case MoteusType::kInt32: return scale.int32;
+    case MoteusType::kFloat: break;
+  }
+  return 1.0;
+}
+
+MoteusWriter::MoteusWriter(CanId id, bool bit_rate_switch) noexcept {
+  frame_.id = id;
+  frame_.fd = true;
+  frame_.bit_rate_switch = bit_rate_switch;
+}
+
+bool MoteusWriter::header(std::uint8_t kind, MoteusType type, MoteusRegister first, std::uint32_t count,
+                          std::size_t value_bytes) noexcept {
+  auto number = static_cast<std::uint32_t>(first);
+  const std::size_t number_bytes = number < 0x80U ? 1 : 2;  // no register has more than 14 bits
+  const std::size_t count_bytes = count > 3 ? 1 : 0;        // no frame has more than 127 registers
+  if (used_ + 1 + count_bytes + number_bytes + value_bytes > kMaxPayload) return false;
+  const auto base = static_cast<std::uint8_t>(kind | static_cast<unsigned>(type) << 2U);
+  frame_.data[used_++] = static_cast<std::uint8_t>(count > 3 ? base : base | count);
+  if (count > 3) frame_.data[used_++] = static_cast<std::uint8_t>(count);
+  if (number_bytes == 2) {
+    frame_.data[used_++] = static_cast<std::uint8_t>(0x80U | (number & 0x7FU));
+    number >>= 7U;
+  }
+  frame_.data[used_++] = static_cast<std::uint8_t>(number);
+  return true;
+}
+
+MoteusWriter& MoteusWriter::put(std::uint8_t kind, MoteusType type, MoteusRegister first,
+                                std::initializer_list<double> values) noexcept {
+  const std::size_t bytes = kBytes[static_cast<std::size_t>(type)];
+  if (!header(kind, type, first, static_cast<std::uint32_t>(values.size()), bytes * values.size())) {
+    return *this;
+  }
+  auto reg = static_cast<std::uint32_t>(first);
+  for (const double value : values) {
+    const double scale = moteusScale(static_cast<MoteusRegister>(reg++), type);
+    switch (type) {
+      case MoteusType::kInt8:
+        writeLittleEndian(frame_.data, used_, toCounts<std::int8_t>(value, scale));
+        break;
+      case MoteusType::kInt16:
+        writeLittleEndian(frame_.data, used_, toCounts<std::int16_t>(value, scale));
+        break;
+      case MoteusType::kInt32:
+        writeLittleEndian(frame_.data, used_, toCounts<std::int32_t>(value, scale));
+        break;
+      case MoteusType::kFloat: writeLittleEndian(frame_.data, used_, toFloat(value)); break;
+    }
+    used_ += bytes;
+  }
+  return *this;
+}
+
+MoteusWriter& MoteusWriter::read(MoteusType type, MoteusRegister first, std::uint32_t count) noexcept {
+  (void)header(0x10, type, first, count, 0);
+  return *this;
+}
+
+CanFrame MoteusWriter::frame() const noexcept {
+  CanFrame frame = frame_;
+  frame.length = roundUpFdLength(used_);
+  for (std::size_t i = used_; i < frame.length; ++i) frame.data[i] = kNop;
+  return frame;
+}
+
+bool MoteusReader::readNumber(std::uint32_t& number) noexcept {
+  number = 0;
+  // 28 bits are more than any register or count has.
+  for (std::uint32_t shift = 0; shift < 28; shift += 7) {
+    if (at_ >= payload_.size()) return false;
+    const std::uint8_t byte = payload_[at_++];
+    number |= static_cast<std::uint32_t>(byte & 0x7FU) << shift;
+    if ((byte & 0x80U) == 0) return true;
+  }
+  return false;
+}
+
+MoteusReader::Step MoteusReader::begin() noexcept {
+  while (at_ < payload_.size() && payload_[at_] == kNop) ++at_;
+  if (at_ >= payload_.size()) return Step::kEnd;
+  const std::uint8_t head = payload_[at_++];
+  if (head == 0x30 || head == 0x31) {
+    kind_ = MoteusItem::Kind::kError;
+    left_ = 1;
+    return readNumber(register_) ? Step::kItem : Step::kMalformed;
+  }
+  if (head >= 0x30) return Step::kMalformed;
+  constexpr std::array kKinds{MoteusItem::Kind::kWrite, MoteusItem::Kind::kRead, MoteusItem::Kind::kReply};
+  kind_ = kKinds[head >> 4U];
+  type_ = static_cast<MoteusType>((head >> 2U) & 3U);
+  left_ = head & 3U;
+  if (left_ == 0 && (!readNumber(left_) || left_ == 0 || left_ > kMaxCount)) return Step::kMalformed;
+  return readNumber(register_) ? Step::kItem : Step::kMalformed;
+}
+
+MoteusReader::Step MoteusReader::next(MoteusItem& item) noexcept {
+  if (left_ == 0) {
+    if (const Step begun = begin(); begun != Step::kItem) return begun;
+  }
+  item = {.kind = kind_, .type = type_, .reg = static_cast<MoteusRegister>(register_), .value = 0.0};
+  --left_;
+  ++register_;
+  if (kind_ == MoteusItem::Kind::kRead) return Step::kItem;
+  if (kind_ == MoteusItem::Kind::kError) {
+    std::uint32_t code = 0;
+    if (!readNumber(code)) return Step::kMalformed;
+    item.value = code;
+    return Step::kItem;
+  }
+  const std::size_t bytes = kBytes[static_cast<std::size_t>(type_)];
+  if (payload_.size() - at_ < bytes) return Step::kMalformed;
+  const double scale = moteusScale(item.reg, type_);
+  switch (type_) {
+    case MoteusType::kInt8:
+      item.value = fromCounts(readLittleEndian<std::int8_t>(payload_, at_), scale);
+      break;
+    case MoteusType::kInt16:
+      item.value = fromCounts(readLittleEndian<std::int16_t>(payload_, at_), scale);
+      break;
+    case MoteusType::kInt32:
+      item.value = fromCounts(readLittleEndian<std::int32_t>(payload_, at_), scale);
+      break;
+    case MoteusType::kFloat: item.value = static_cast<double>(readLittleEndian<float>(payload_, at_)); break;
+  }
+  at_ += bytes;
+  return Step::kItem;
+}
+
+}  // namespace rc10

@@ -1,0 +1,314 @@
+#include "motor/moteus_motor.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <cstdlib>
+
+namespace rc10 {
+namespace {
+
+// What this driver was written for; the drive counts it up when a register changes its meaning. Source:
+// fw/moteus_controller.cc, kRegisterMapVersion.
+constexpr double kRegisterMapVersion = 5.0;
+
+constexpr double kFarthestRev = 32000.0;  // from where it is
+// The firmware's own servo.max_velocity.
+constexpr double kFastestRevPerS = 500.0;
+constexpr double kLargestAngleDeg = 1e9;  // for the state alone
+
+// In velocity mode the drive's controller holds the shaft to a moving point. It is kept this near, so that a
+// shaft that was held up does not race after it. Half a turn is 2 N·m with the vendor's gain of 4 N·m/rev.
+constexpr double kSlipRev = 0.5;
+
+constexpr Duration kStepPatience = std::chrono::milliseconds{250};  // repeated in each tick
+constexpr Duration kFresh = std::chrono::milliseconds{100};
+
+[[nodiscard]] double finite(double value) noexcept { return std::isnan(value) ? 0.0 : value; }
+
+void askForReadings(MoteusWriter& writer) noexcept {
+  writer.read(MoteusType::kInt8, MoteusRegister::kMode)
+      .read(MoteusType::kFloat, MoteusRegister::kPosition, 3)
+      .read(MoteusType::kInt16, MoteusRegister::kQCurrent)
+      .read(MoteusType::kInt8, MoteusRegister::kVoltage, 3)
+      .read(MoteusType::kInt16, MoteusRegister::kMilliseconds);
+}
+
+}  // namespace
+
+Moteus_Motor::Moteus_Motor(const MotorSettings& settings, const MotorTraits& traits)
+    : SoloMotor(settings, traits, settings.gear_ratio > 0.0 ? settings.gear_ratio / traits.gear_ratio : 1.0),
+      own_(moteusSettings(settings.own)),
+      filters_{FrameFilter{.id = moteusReplyId(own_.can_prefix, static_cast<std::uint32_t>(settings.id))}},
+      command_ids_{moteusQueryId(own_.can_prefix, static_cast<std::uint32_t>(settings.id))},
+      watchdog_s_(static_cast<double>(own_.watchdog_ms) * 1e-3),
+      slip_s_(0.002 + 2.0 * static_cast<double>(std::max(settings.command_divider, 1)) *
+                          static_cast<double>(seconds(tickPeriod()))) {}
+
+bool Moteus_Motor::matchesFrame(const CanFrame& frame) const noexcept {
+  return frame.type == FrameType::kData && frame.id == filters_[0].id;
+}
+
+void Moteus_Motor::clearComplaint() noexcept {
+  clearing_ = true;
+  refused_ = {};
+}
+
+DriveComplaint Moteus_Motor::complaint() const noexcept {
+  if (mode_ == MoteusMode::kFault) return {moteusFault(native_fault_), native_fault_};
+  return lost_.fault != FaultCode::kNone ? lost_ : refused_;
+}
+
+SequenceProgress Moteus_Motor::sequenceProgress() const noexcept {
+  if (ordered() != FrameKind::kEnable) return SequenceProgress::kDone;
+  switch (step_) {
+    case Step::kDone: return SequenceProgress::kDone;
+    case Step::kFailed: return SequenceProgress::kFailed;
+    default: return SequenceProgress::kPending;
+  }
+}
+
+void Moteus_Motor::update(const Tick& tick) noexcept {
+  limits_ = mode_ == MoteusMode::kFault ? 0 : moteusLimit(native_fault_);
+  const Target target = wanted();
+  const FrameKind kind = ordered();
+  if (kind != FrameKind::kEnable) step_ = Step::kNone;
+  if (kind != FrameKind::kCommand || target.mode != ControlMode::kVelocity) course_rev_.reset();
+  setCommand(0.0, CommandUnit::kNone);
+  switch (kind) {
+    case FrameKind::kEnable: return updateSequence(tick);
+    case FrameKind::kRest:
+    case FrameKind::kPoll:
+    case FrameKind::kDisable:
+      engaged_ = false;
+      lost_ = {};
+      send_ = kind == FrameKind::kPoll ? restSend(tick) : Send::kStop;
+      return;
+    case FrameKind::kIdle:
+    case FrameKind::kDamp:
+    case FrameKind::kBrake:
+    case FrameKind::kHold:
+    case FrameKind::kCommand: break;
+  }
+  if (!engaged_) {  // nothing but the sequence switches it on
+    if (complaint().fault == FaultCode::kNone) {
+      lost_ = {FaultCode::kDriveStopped, static_cast<std::uint32_t>(mode_)};
+    }
+    send_ = restSend(tick);
+    return;
+  }
+  coast();
+  if (kind == FrameKind::kDamp) {
+    motion_.damped = true;
+  } else {
+    follow(target, tick);
+  }
+}
+
+// A stop clears a fault, so while the drive has one (and no torque) it is only asked, until clearComplaint().
+Moteus_Motor::Send Moteus_Motor::restSend(const Tick& tick) const noexcept {
+  const Duration fresh =
+      std::max(kFresh, std::chrono::duration_cast<Duration>(std::chrono::duration<double>(1.5 * slip_s_)));
+  const bool faulted = mode_ == MoteusMode::kFault && answered_.has_value() && tick.now - *answered_ <= fresh;
+  return faulted && !clearing_ ? Send::kQuery : Send::kStop;
+}
+
+void Moteus_Motor::enter(Step step, const Tick& tick) noexcept {
+  step_ = step;
+  step_began_ = tick.now;
+}
+
+void Moteus_Motor::fail(FaultCode why, std::uint32_t native) noexcept {
+  step_ = Step::kFailed;
+  refused_ = {why, native};
+}
+
+void Moteus_Motor::updateSequence(const Tick& tick) noexcept {
+  if (step_ == Step::kNone) {
+    engaged_ = false;
+    lost_ = {};
+    refused_ = {};
+    identity_.reset();
+    verified_s_.reset();
+    enter(Step::kIdentify, tick);
+  }
+  const bool busy = step_ != Step::kDone && step_ != Step::kFailed;
+  if (busy && (mode_ == MoteusMode::kFault || tick.now - step_began_ > kStepPatience)) {
+    fail(FaultCode::kNone, 0);
+  }
+  if (step_ == Step::kDone && !engaged_) step_ = Step::kFailed;
+  if (step_ == Step::kIdentify && identity_) {
+    // 1: its rotor is known, 2: its output is. Behind a gear the rotor says little of the output.
+    const double needed = own_.rotor_to_output_ratio == 1.0 ? 1.0 : 2.0;
+    if (identity_->version != kRegisterMapVersion) {
+      fail(FaultCode::kDriveSetting, static_cast<std::uint32_t>(std::max(identity_->version, 0.0)));
+    } else if (traits().absolute && !(identity_->home_state >= needed)) {
+      fail(FaultCode::kDriveSetting, static_cast<std::uint32_t>(MoteusRegister::kHomeState));
+    } else if (mode_ == MoteusMode::kStopped) {
+      enter(Step::kEngage, tick);
+    }
+  }
+  if (step_ == Step::kEngage && mode_ == MoteusMode::kPosition) enter(Step::kVerify, tick);
+  if (step_ == Step::kVerify && verified_s_) {
+    constexpr double kHalfCountSeconds = 0.0005;
+    if (std::abs(*verified_s_ - watchdog_s_) < kHalfCountSeconds) {
+      engaged_ = true;
+      enter(Step::kDone, tick);
+    } else {
+      fail(FaultCode::kDriveSetting, static_cast<std::uint32_t>(MoteusRegister::kTimeout));
+    }
+  }
+  coast();
+  if (step_ == Step::kIdentify) send_ = Send::kIdentify;
+  if (step_ == Step::kFailed) send_ = restSend(tick);
+  if (step_ == Step::kVerify && tick.index % 2 == 0) send_ = Send::kVerify;  // between: feeds the watchdog
+}
+
+/// Position mode without any torque; its controller stays where the shaft is, so that whatever comes next
+/// begins there.
+void Moteus_Motor::coast() noexcept {
+  send_ = Send::kMotion;
+  motion_ = {};
+  if (feedback_.samples > 0) motion_.position_rev = onWire(position_rev_);
+  setCommand(0.0, CommandUnit::kAmpere);
+}
+
+void Moteus_Motor::follow(const Target& target, const Tick& tick) noexcept {
+  if (target.mode == ControlMode::kBrake) {
+    send_ = Send::kBrake;
+    setCommand(0.0, CommandUnit::kNone);
+    return;
+  }
+  if (feedback_.samples == 0 || std::isnan(target.value)) return;
+  switch (target.mode) {
+    case ControlMode::kCurrent: return followTorque(target);
+    case ControlMode::kVelocity: return followVelocity(target, tick);
+    case ControlMode::kTotalAngle: return followAngle(target);
+    default: return;
+  }
+}
+
+double Moteus_Motor::torqueLimitNm() const noexcept {
+  return static_cast<double>(effortLimit()) * std::abs(static_cast<double>(torqueNmPerA()));
+}
+
+double Moteus_Motor::boundedTorqueNm(double torque_nm) noexcept {
+  const double limit_nm = torqueLimitNm();
+  const double bounded_nm = std::clamp(finite(torque_nm), -limit_nm, limit_nm);
+  if (std::abs(finite(torque_nm)) > limit_nm) limits_ |= kLimitCurrent;
+  return bounded_nm;
+}
+
+double Moteus_Motor::boundedRpm(double rpm) noexcept {
+  double limit_rpm = std::abs(toOutput(kFastestRevPerS * 60.0));
+  if (velocityLimitRpm() > 0.0F) limit_rpm = std::min(limit_rpm, static_cast<double>(velocityLimitRpm()));
+  if (std::abs(finite(rpm)) > limit_rpm) limits_ |= kLimitVelocity;
+  return std::clamp(finite(rpm), -limit_rpm, limit_rpm);
+}
+
+double Moteus_Motor::onWire(double position_rev) noexcept {
+  const double away_rev = position_rev - position_rev_;
+  if (!(std::abs(away_rev) <= kFarthestRev)) limits_ |= kLimitAngle;
+  const double bounded_rev = position_rev_ + std::clamp(finite(away_rev), -kFarthestRev, kFarthestRev);
+  return std::remainder(bounded_rev - wire_rev_, kRangeRev);
+}
+
+// Not the drive's current mode: its watchdog acts in position mode alone (fw/bldc_servo_control.h).
+void Moteus_Motor::followTorque(const Target& target) noexcept {
+  const auto limit_a = static_cast<double>(effortLimit());
+  const double wanted_a = std::clamp(target.value, -limit_a, limit_a);
+  if (std::abs(target.value) > limit_a) limits_ |= kLimitCurrent;
+  const auto nm_per_a = static_cast<double>(torqueNmPerA());
+  const double torque_nm = boundedTorqueNm(wanted_a * nm_per_a + static_cast<double>(target.torque_ff_nm));
+  motion_.torque_nm = torqueToDrive(torque_nm);
+  setCommand(nm_per_a > 0.0 ? torque_nm / nm_per_a : 0.0, CommandUnit::kAmpere);
+}
+
+void Moteus_Motor::followVelocity(const Target& target, const Tick& tick) noexcept {
+  const double rpm = boundedRpm(target.value);
+  const double rev_s = toDrive(rpm) / 60.0;
+  const double dt_s = std::clamp(finite(static_cast<double>(tick.dt_s)), 0.0, 0.01);
+  const double ahead_rev = course_rev_ ? *course_rev_ + rev_s * dt_s - position_rev_ : 0.0;
+  const double slip_rev = kSlipRev + std::abs(rev_s) * slip_s_;
+  course_rev_ = position_rev_ + std::clamp(ahead_rev, -slip_rev, slip_rev);
+  motion_.position_rev = onWire(*course_rev_);
+  motion_.velocity_rev_s = rev_s;
+  motion_.torque_nm = torqueToDrive(boundedTorqueNm(static_cast<double>(target.torque_ff_nm)));
+  motion_.stiff = motion_.damped = true;
+  setCommand(rpm, CommandUnit::kNative);
+}
+
+void Moteus_Motor::followAngle(const Target& target) noexcept {
+  motion_.position_rev = onWire(drivePositionFor(target.value) / 360.0);
+  motion_.velocity_rev_s = toDrive(boundedRpm(static_cast<double>(target.velocity_ff_rpm))) / 60.0;
+  motion_.torque_nm = torqueToDrive(boundedTorqueNm(static_cast<double>(target.torque_ff_nm)));
+  motion_.stiff = motion_.damped = motion_.profile = true;
+  motion_.limit_rev_s = std::abs(toDrive(static_cast<double>(velocityLimitRpm()))) / 60.0;
+  setCommand(std::clamp(target.value, -kLargestAngleDeg, kLargestAngleDeg), CommandUnit::kNative);
+}
+
+MoteusWriter Moteus_Motor::writer() const noexcept { return {command_ids_[0], own_.bit_rate_switch}; }
+
+CanFrame Moteus_Motor::motionFrame() const noexcept {
+  using enum MoteusRegister;
+  MoteusWriter frame = writer();
+  frame.write(MoteusType::kInt8, kMode, {static_cast<double>(MoteusMode::kPosition)})
+      .write(MoteusType::kFloat, kCommandPosition,
+             {motion_.position_rev, motion_.velocity_rev_s, motion_.torque_nm});
+  if (!motion_.stiff) {
+    // The documents let the position gain bound the velocity gain; the firmware does not (fw/pid.h).
+    frame.write(MoteusType::kInt8, kKpScale, {0.0, motion_.damped ? 1.0 : 0.0})
+        .write(MoteusType::kInt8, kIlimitScale, {0.0});
+  }
+  frame.write(MoteusType::kFloat, kMaxTorque, {std::abs(torqueToDrive(torqueLimitNm()))})
+      .write(MoteusType::kInt16, kTimeout, {watchdog_s_});
+  // Negative: without limits, position and velocity act at once. Not written: as configured in the drive.
+  if (!motion_.profile) {
+    frame.write(MoteusType::kInt8, kVelocityLimit, {-1.0, -1.0});
+  } else if (motion_.limit_rev_s > 0.0) {
+    frame.write(MoteusType::kFloat, kVelocityLimit, {motion_.limit_rev_s});
+  }
+  askForReadings(frame);
+  return frame.frame();
+}
+
+std::size_t Moteus_Motor::packCommand(const Tick& tick, std::span<CanFrame> out) noexcept {
+  const bool sequence = ordered() == FrameKind::kEnable;
+  if (out.empty() || (!sequence && !due(tick))) return 0;
+  const auto mode = [this](MoteusMode value) {
+    MoteusWriter frame = writer();
+    frame.write(MoteusType::kInt8, MoteusRegister::kMode, {static_cast<double>(value)});
+    askForReadings(frame);
+    return frame;
+  };
+  switch (send_) {
+    case Send::kStop: out[0] = mode(MoteusMode::kStopped).frame(); break;
+    case Send::kBrake: out[0] = mode(MoteusMode::kBrake).frame(); break;
+    case Send::kMotion: out[0] = motionFrame(); break;
+    case Send::kIdentify:
+      out[0] = mode(MoteusMode::kStopped)
+                   .read(MoteusType::kInt32, MoteusRegister::kRegisterMapVersion)
+                   .read(MoteusType::kInt8, MoteusRegister::kHomeState)
+                   .frame();
+      break;
+    case Send::kQuery:
+    case Send::kVerify: {
+      MoteusWriter frame = writer();
+      askForReadings(frame);
+      if (send_ == Send::kVerify) frame.read(MoteusType::kInt16, MoteusRegister::kTimeout);
+      out[0] = frame.frame();
+      break;
+    }
+  }
+  return 1;
+}
+
+std::size_t Moteus_Motor::packRest(std::span<CanFrame> out) const noexcept {
+  if (out.empty()) return 0;
+  out[0] = writer()
+               .write(MoteusType::kInt8, MoteusRegister::kMode, {static_cast<double>(MoteusMode::kStopped)})
+               .frame();
+  return 1;
+}
+
+}  // namespace rc10

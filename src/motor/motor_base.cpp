@@ -1,0 +1,47 @@
+#include "motor/motor_base.hpp"
+
+#include <cmath>
+
+namespace rc10 {
+namespace {
+
+bool hasValue(ControlMode mode) noexcept {
+  return mode != ControlMode::kCoast && mode != ControlMode::kBrake;
+}
+
+/// NaN means "not given" in an optional field.
+bool normalise(float& field) noexcept {
+  if (std::isnan(field)) field = 0.0F;
+  return std::isfinite(field);
+}
+
+}  // namespace
+
+bool Motor_Base::setTarget(const Target& target) noexcept {
+  if (static_cast<int>(target.mode) >= kControlModeCount || !modes().contains(target.mode)) return false;
+  Target accepted = target;
+  if (!hasValue(accepted.mode)) accepted.value = 0.0;
+  if (!std::isfinite(accepted.value)) return false;
+  if (!normalise(accepted.velocity_ff_rpm) || !normalise(accepted.torque_ff_nm)) return false;
+  if (!normalise(accepted.stiffness_nm_per_rad) || !normalise(accepted.damping_nms_per_rad)) return false;
+  target_ = accepted;
+  return true;
+}
+
+bool Motor_Base::setTargetCurrent(Amperes current) noexcept {
+  return setTarget(Target{.mode = ControlMode::kCurrent, .value = current.value});
+}
+
+bool Motor_Base::setTargetRPM(Rpm velocity) noexcept {
+  return setTarget(Target{.mode = ControlMode::kVelocity, .value = velocity.value});
+}
+
+bool Motor_Base::setTargetAngle(Degrees angle) noexcept {
+  return setTarget(Target{.mode = ControlMode::kAngle, .value = angle.value});
+}
+
+bool Motor_Base::setTargetTotalAngle(Degrees angle) noexcept {
+  return setTarget(Target{.mode = ControlMode::kTotalAngle, .value = angle.value});
+}
+
+}  // namespace rc10

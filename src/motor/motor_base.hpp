@@ -1,0 +1,157 @@
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+#include <limits>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <utility>
+
+#include "app/time.hpp"
+#include "app/units.hpp"
+#include "bus/frame_listener.hpp"
+#include "motor/drive_frames.hpp"
+#include "motor/fault_code.hpp"
+#include "motor/target.hpp"
+
+namespace rc10 {
+
+inline constexpr float kNotReported = std::numeric_limits<float>::quiet_NaN();
+
+/// The last known state of a motor, at the output shaft, in the users' units. NaN: not reported.
+struct MotorFeedback {
+  MonotonicTime received;          ///< Of the last accepted frame.
+  std::uint64_t samples = 0;       ///< Frames accepted since start; 0: nothing here is known yet.
+  std::uint64_t jumps = 0;         ///< Samples whose angle the motor cannot have reached.
+  float angle_deg = kNotReported;  ///< [0, 360)
+  double total_angle_deg = std::numeric_limits<double>::quiet_NaN();
+  float velocity_rpm = kNotReported;
+  float current_a = kNotReported;
+  float torque_nm = kNotReported;
+  float voltage_v = kNotReported;
+  float temperature_c = kNotReported;
+  bool zeroed = false;  ///< The angle has a known reference.
+};
+
+/// Limits that act right now: not faults. The bits are those of motor_state_t.lcm.
+enum LimitFlag : std::uint32_t {
+  kLimitCurrent = 1U << 0U,
+  kLimitVelocity = 1U << 1U,
+  kLimitAngle = 1U << 2U,
+  kLimitTemperature = 1U << 3U,
+  kLimitSlew = 1U << 4U,
+  kLimitStall = 1U << 5U,
+};
+
+/// The unit of what is sent to the drive. The numbers are those of motor_state_t.lcm.
+enum class CommandUnit : std::uint8_t { kNone = 0, kAmpere = 1, kVolt = 2, kNative = 3 };
+
+struct CascadeConfig;
+class DriveConfiguring;
+
+/// One motor: setTarget...() takes orders, updateFeedback() decodes, update() computes. What update()
+/// computed becomes a frame in a CommandPacker: the motor itself or its group.
+/// Scheduler thread only.
+class Motor_Base : public FrameListener {
+ public:
+  explicit Motor_Base(std::string name) : name_(std::move(name)) {}
+
+  [[nodiscard]] std::string_view name() const noexcept override { return name_; }
+
+  // Orders. A mode the motor does not support is refused: false, and the old target stays.
+  bool setTarget(const Target& target) noexcept;
+  bool setTargetCurrent(Amperes current) noexcept;
+  bool setTargetRPM(Rpm velocity) noexcept;
+  bool setTargetAngle(Degrees angle) noexcept;
+  bool setTargetTotalAngle(Degrees angle) noexcept;
+  void clearTarget() noexcept { target_ = Target{}; }
+  [[nodiscard]] const Target& target() const noexcept { return target_; }
+
+  /// What the drive is told from this tick on. The supervisor's decision; rest until it makes one.
+  void order(FrameKind kind) noexcept {
+    ordered_ = kind;
+    in_force_.reset();
+  }
+  /// The same, with what update() is to follow in place of the target: that, within its limits.
+  void order(FrameKind kind, const Target& in_force) noexcept {
+    ordered_ = kind;
+    in_force_ = in_force;
+  }
+  [[nodiscard]] FrameKind ordered() const noexcept { return ordered_; }
+
+  /// Before a target of this mode is shaped and followed: a motor whose encoder is absolute, and which may
+  /// have lost turns, knows its angle again as at power-up. Not while an angle is followed: it would jump.
+  virtual void restoreReference(ControlMode) noexcept {}
+
+  /// Scales the effort limit from this tick on, by 0 (nothing) to 1 (all): a hot motor gets less.
+  void derate(float factor) noexcept { derating_ = factor > 0.0F ? std::min(factor, 1.0F) : 0.0F; }
+
+  /// Computes what the drive is to be told, from the order, the target and the feedback.
+  virtual void update(const Tick& tick) noexcept = 0;
+
+  // Readings at the output shaft; NaN when the drive does not report it.
+  [[nodiscard]] Rpm getRPM() const noexcept { return Rpm{static_cast<double>(feedback_.velocity_rpm)}; }
+  [[nodiscard]] Amperes getCurrent() const noexcept {
+    return Amperes{static_cast<double>(feedback_.current_a)};
+  }
+  [[nodiscard]] Degrees getAngle() const noexcept {
+    return Degrees{static_cast<double>(feedback_.angle_deg)};
+  }
+  [[nodiscard]] Degrees getTotalAngle() const noexcept { return Degrees{feedback_.total_angle_deg}; }
+  [[nodiscard]] const MotorFeedback& feedback() const noexcept { return feedback_; }
+  [[nodiscard]] std::uint32_t limits() const noexcept { return limits_; }
+
+  /// Rotor turns per turn of the output shaft.
+  [[nodiscard]] virtual double get_GearRatio() const noexcept = 0;
+  [[nodiscard]] virtual std::string_view modelName() const noexcept = 0;
+  [[nodiscard]] virtual ModeSet modes() const noexcept = 0;
+  [[nodiscard]] virtual const DriveFrames& driveFrames() const noexcept = 0;
+  /// The drive's own spacing of feedback frames: the basis of "stale".
+  [[nodiscard]] virtual Duration feedbackPeriod() const noexcept = 0;
+  /// Whether this drive sends feedback without being asked.
+  [[nodiscard]] virtual bool speaksUnasked() const noexcept = 0;
+
+  /// What update() computed, for packers and for the state.
+  [[nodiscard]] virtual float commandValue() const noexcept = 0;
+  [[nodiscard]] virtual CommandUnit commandUnit() const noexcept = 0;
+
+  /// Progress of the sequence begun by order(kEnable) or order(kDisable). Drives without one are done
+  /// at once.
+  [[nodiscard]] virtual SequenceProgress sequenceProgress() const noexcept { return SequenceProgress::kDone; }
+
+  /// What the drive reports as wrong with itself, by its last frames; also that it has left its enabled state
+  /// while it was to obey. Drives that report nothing never complain.
+  [[nodiscard]] virtual DriveComplaint complaint() const noexcept { return {}; }
+  /// Begins to clear the drive's faults: the frames leave with the next packCommand() calls, and never move
+  /// the motor.
+  virtual void clearComplaint() noexcept {}
+
+  /// What writes settings to its drive; null: nothing is written to it. What can be: MotorTraits::setup.
+  [[nodiscard]] virtual DriveConfiguring* driveConfiguring() noexcept { return nullptr; }
+
+  /// The loops that rc10d closes for it, with the gains in force; null: its drive closes all of them.
+  [[nodiscard]] virtual const CascadeConfig* hostLoops() const noexcept { return nullptr; }
+  /// Other gains for hostLoops() from the next update() on, without a bump.
+  virtual void retune(const CascadeConfig&) noexcept {}
+
+  /// Makes the present position `angle_deg`. False while the position is unknown.
+  virtual bool setZero(double angle_deg) noexcept = 0;
+
+ protected:
+  [[nodiscard]] float derating() const noexcept { return derating_; }
+  /// What update() is to follow while kCommand is ordered.
+  [[nodiscard]] const Target& targetInForce() const noexcept { return in_force_ ? *in_force_ : target_; }
+
+  MotorFeedback feedback_;
+  std::uint32_t limits_ = 0;
+
+ private:
+  std::string name_;
+  Target target_;
+  std::optional<Target> in_force_;
+  FrameKind ordered_ = FrameKind::kRest;
+  float derating_ = 1.0F;
+};
+
+}  // namespace rc10

@@ -1,0 +1,124 @@
+#include "motor/motor_guard.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "app/angle.hpp"
+
+namespace rc10 {
+namespace {
+
+// One strange sample is not a speed.
+constexpr int kFastSamples = 3;
+// A motor at rest sends the same frame for ever; one that is told a current does not for so long.
+constexpr Duration kFrozenTime = std::chrono::milliseconds{200};
+
+[[nodiscard]] bool sameReadings(const MotorFeedback& a, const MotorFeedback& b) noexcept {
+  const bool same_temperature =
+      a.temperature_c == b.temperature_c || (std::isnan(a.temperature_c) && std::isnan(b.temperature_c));
+  return a.total_angle_deg == b.total_angle_deg && a.velocity_rpm == b.velocity_rpm &&
+         a.current_a == b.current_a && same_temperature;
+}
+
+}  // namespace
+
+void MotorGuard::reset() noexcept {
+  begun_ = false;
+  fast_samples_ = 0;
+  unchanged_ = false;
+  opposed_ = false;
+  stall_.reset();
+  behind_.reset();
+  frozen_.reset();
+}
+
+MotorGuard::Verdict MotorGuard::step(const Observation& seen) noexcept {
+  const MotorFeedback& feedback = seen.feedback;
+  if (!begun_) jumps_ = feedback.jumps;
+  const bool new_sample = !begun_ || feedback.samples != last_.samples;
+  begun_ = true;
+  Verdict verdict;
+  // Comparisons with NaN, which is what a drive does not report, are false.
+  if (config_.temperature_trip_c > 0.0F) {
+    verdict.derating = derating(feedback.temperature_c);
+    if (verdict.derating < 1.0F) verdict.limits |= kLimitTemperature;
+    if (feedback.temperature_c >= config_.temperature_trip_c) verdict.fault = FaultCode::kOverheated;
+  }
+  if (stalled(seen)) {
+    verdict.limits |= kLimitStall;
+    if (config_.stall_trips) verdict.fault = FaultCode::kStalled;
+  }
+  if (const auto fault = motionFault(seen, new_sample); fault != FaultCode::kNone) verdict.fault = fault;
+  if (new_sample) last_ = feedback;
+  return verdict;
+}
+
+// The last one found is the one that says most.
+FaultCode MotorGuard::motionFault(const Observation& seen, bool new_sample) noexcept {
+  auto fault = FaultCode::kNone;
+  if (fallsBehind(seen)) fault = FaultCode::kFollowingError;
+  if (frozen(seen, new_sample)) fault = FaultCode::kFrozen;
+  if (tooFast(seen.feedback, new_sample)) fault = FaultCode::kOverspeed;
+  if (runsAway(seen)) fault = FaultCode::kRunaway;
+  if (config_.encoder_jumps && seen.feedback.jumps != jumps_) fault = FaultCode::kEncoderJump;
+  jumps_ = seen.feedback.jumps;
+  return fault;
+}
+
+bool MotorGuard::tooFast(const MotorFeedback& feedback, bool new_sample) noexcept {
+  if (!(config_.overspeed_rpm > 0.0F)) return false;
+  if (new_sample) {
+    fast_samples_ = std::fabs(feedback.velocity_rpm) > config_.overspeed_rpm
+                        ? std::min(fast_samples_ + 1, kFastSamples)
+                        : 0;
+  }
+  return fast_samples_ >= kFastSamples;
+}
+
+bool MotorGuard::stalled(const Observation& seen) noexcept {
+  if (config_.stall_time <= Duration{0}) return false;
+  const bool pushes =
+      (seen.limits & kLimitCurrent) != 0 && std::fabs(seen.feedback.velocity_rpm) < config_.stall_rpm;
+  return stall_.step(pushes, seen.now, config_.stall_time);
+}
+
+bool MotorGuard::fallsBehind(const Observation& seen) noexcept {
+  if (!(config_.following_error_deg > 0.0)) return false;
+  double error_deg = 0.0;
+  if (seen.target.mode == ControlMode::kTotalAngle) {
+    error_deg = seen.target.value - seen.feedback.total_angle_deg;
+  } else if (seen.target.mode == ControlMode::kAngle) {
+    error_deg = shortestAngle(static_cast<double>(seen.feedback.angle_deg), seen.target.value);
+  }
+  const bool behind = std::fabs(error_deg) > config_.following_error_deg;
+  return behind_.step(behind, seen.now, config_.following_error_time);
+}
+
+// A drive whose readings stand still, to the last bit, while its current should be another.
+bool MotorGuard::frozen(const Observation& seen, bool new_sample) noexcept {
+  if (!(config_.frozen_a > 0.0F) || seen.unit != CommandUnit::kAmpere) return false;
+  if (new_sample) unchanged_ = last_.samples > 0 && sameReadings(last_, seen.feedback);
+  const bool off = std::fabs(seen.effort - seen.feedback.current_a) > config_.frozen_a;
+  return frozen_.step(unchanged_ && off, seen.now, kFrozenTime);
+}
+
+// A reversed encoder or wrong phases: all the torque there is, and it gains speed the other way. Brakes and
+// loads that push slow it down, or at most keep its speed.
+bool MotorGuard::runsAway(const Observation& seen) noexcept {
+  if (!(config_.runaway_rpm > 0.0F)) return false;
+  const float velocity_rpm = seen.feedback.velocity_rpm;
+  const bool opposed = (seen.limits & kLimitCurrent) != 0 && seen.effort * velocity_rpm < 0.0F;
+  if (opposed && !opposed_) opposed_rpm_ = std::fabs(velocity_rpm);
+  opposed_ = opposed;
+  if (!opposed) return false;
+  opposed_rpm_ = std::min(opposed_rpm_, std::fabs(velocity_rpm));
+  return std::fabs(velocity_rpm) > opposed_rpm_ + config_.runaway_rpm;
+}
+
+float MotorGuard::derating(float temperature_c) const noexcept {
+  const float span_c = config_.temperature_trip_c - config_.temperature_derate_c;
+  if (!(temperature_c > config_.temperature_derate_c) || !(span_c > 0.0F)) return 1.0F;
+  return std::max((config_.temperature_trip_c - temperature_c) / span_c, 0.0F);
+}
+
+}  // namespace rc10

@@ -1,0 +1,86 @@
+#pragma once
+
+#include <cstdint>
+
+#include "app/time.hpp"
+#include "motor/fault_code.hpp"
+#include "motor/motor_base.hpp"
+
+namespace rc10 {
+
+/// What is too much for a motor. At the output shaft; 0: not watched.
+struct GuardConfig {
+  float overspeed_rpm = 0.0F;
+  float temperature_derate_c = 0.0F;  ///< From here on the effort limit comes down, to 0 at the trip.
+  float temperature_trip_c = 0.0F;
+  Duration stall_time{};
+  float stall_rpm = 0.0F;   ///< Slower than this, and at its effort limit: it does not turn.
+  bool stall_trips = true;  ///< false: only the limit flag.
+  double following_error_deg = 0.0;
+  Duration following_error_time{};  ///< So long in a row.
+  bool encoder_jumps = false;       ///< One is a fault.
+  float frozen_a = 0.0F;            ///< The reported current is off by more, and nothing changes at all.
+  float runaway_rpm = 0.0F;         ///< Gains so much speed against all its torque.
+};
+
+/// Watches one ACTIVE motor for what should not be. Scheduler thread only.
+class MotorGuard {
+ public:
+  /// What is known of the motor in this tick, before its update().
+  struct Observation {
+    const MotorFeedback& feedback;
+    const Target& target;  ///< In force since the last tick.
+    float effort = 0.0F;   ///< What the drive was told last.
+    CommandUnit unit = CommandUnit::kNone;
+    std::uint32_t limits = 0;  ///< Of the last update().
+    MonotonicTime now;
+  };
+  struct Verdict {
+    FaultCode fault = FaultCode::kNone;
+    float derating = 1.0F;     ///< For Motor_Base::derate().
+    std::uint32_t limits = 0;  ///< Of LimitFlag: what acts or is noticed right now.
+  };
+
+  explicit MotorGuard(const GuardConfig& config) noexcept : config_(config) {}
+
+  [[nodiscard]] Verdict step(const Observation& seen) noexcept;
+  /// The motor is not ACTIVE, or was not: nothing from before counts.
+  void reset() noexcept;
+  [[nodiscard]] const GuardConfig& config() const noexcept { return config_; }
+
+ private:
+  /// How long something has been so.
+  class Lasting {
+   public:
+    void reset() noexcept { since_ = MonotonicTime{}; }
+    [[nodiscard]] bool step(bool so, MonotonicTime now, Duration enough) noexcept {
+      if (!so || since_ == MonotonicTime{}) since_ = now;
+      return so && now - since_ >= enough;
+    }
+
+   private:
+    MonotonicTime since_{};
+  };
+
+  [[nodiscard]] FaultCode motionFault(const Observation& seen, bool new_sample) noexcept;
+  [[nodiscard]] bool tooFast(const MotorFeedback& feedback, bool new_sample) noexcept;
+  [[nodiscard]] bool stalled(const Observation& seen) noexcept;
+  [[nodiscard]] bool fallsBehind(const Observation& seen) noexcept;
+  [[nodiscard]] bool frozen(const Observation& seen, bool new_sample) noexcept;
+  [[nodiscard]] bool runsAway(const Observation& seen) noexcept;
+  [[nodiscard]] float derating(float temperature_c) const noexcept;
+
+  GuardConfig config_;
+  bool begun_ = false;
+  MotorFeedback last_{};  ///< The sample before.
+  std::uint64_t jumps_ = 0;
+  int fast_samples_ = 0;
+  bool unchanged_ = false;
+  bool opposed_ = false;
+  float opposed_rpm_ = 0.0F;  ///< Speed when torque began to oppose it.
+  Lasting stall_;
+  Lasting behind_;
+  Lasting frozen_;
+};
+
+}  // namespace rc10

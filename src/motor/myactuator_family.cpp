@@ -1,0 +1,120 @@
+#include <array>
+
+#include "motor/myactuator_model.hpp"
+#include "motor/myactuator_motor.hpp"
+
+namespace rc10 {
+namespace {
+
+constexpr std::array<FamilyKey, 4> kKeys{{
+    {.name = "angle_divider",
+     .kind = FamilyKey::Kind::kInteger,
+     .min = 1,
+     .max = 100,
+     .default_text = "1",
+     .about = "The angle (0x92) is asked for with every n-th command: it is a request of its own. The "
+              "feedback rate is that of the angles."},
+    {.name = "torque_nm_per_a",
+     .kind = FamilyKey::Kind::kNumber,
+     .unit = "Nm/A",
+     .min = 0,
+     .max = 100,
+     .default_text = "0",
+     .about = "Torque at the drive's output for each ampere. RMD-X without it: no impedance, no damp, no "
+              "torque reading. 0: the model's own."},
+    {.name = "absolute_encoder",
+     .kind = FamilyKey::Kind::kFlag,
+     .default_text = "false",
+     .about = "The drive has a second encoder and knows the angle of its output after power-up."},
+    {.name = "release_brake",
+     .kind = FamilyKey::Kind::kFlag,
+     .default_text = "false",
+     .about =
+         "Enabling opens the drive's holding brake (0x77). The drive opens it by itself for velocity and "
+         "angle targets, not for current or impedance. What hangs on it falls until the first target."},
+}};
+
+// V4.2 publishes neither; X6-60's data sheet has 176 rpm without load and 153 rpm rated.
+constexpr float kNoLoadPerRated = 176.0F / 153.0F;
+
+constexpr DriveFrames kFrames{.rest = Provision::kFrame,
+                              .poll = Provision::kFrame,
+                              .idle = Provision::kFrame,
+                              .damp = Provision::kFrame,
+                              .brake = Provision::kFrame,
+                              .hold = Provision::kFrame,
+                              .enable = Provision::kFrame,
+                              .disable = Provision::kNothing};
+
+class MyActuatorFamily final : public MotorFamily {
+ public:
+  [[nodiscard]] std::string_view name() const noexcept override { return "MyActuator"; }
+  [[nodiscard]] std::span<const std::string_view> models() const noexcept override {
+    return myactuatorModels();
+  }
+  [[nodiscard]] std::span<const FamilyKey> keys() const noexcept override { return kKeys; }
+
+  [[nodiscard]] MotorTraits traits(std::string_view name, const OwnValues& own) const override {
+    const MyActuatorModel* const found = findMyactuatorModel(name);
+    const MyActuatorModel model = found != nullptr ? *found : MyActuatorModel{};
+    const double own_torque = own.number("torque_nm_per_a");
+    MotorTraits traits;
+    traits.max_id = myactuator::kMaxId;
+    traits.gear_ratio = model.gear_ratio;
+    traits.effort = CommandUnit::kAmpere;
+    traits.effort_full_scale = model.peak_current_a;
+    traits.torque_nm_per_a = own_torque > 0.0 ? static_cast<float>(own_torque) : model.torque_nm_per_a;
+    traits.no_load_rpm = model.rated_rpm * kNoLoadPerRated;
+    traits.nominal_v = model.nominal_v;
+    traits.absolute = own.flag("absolute_encoder");
+    traits.frozen_a = model.peak_current_a;
+    traits.asked = true;
+    traits.frames = kFrames;
+    traits.setup = &myactuatorSetup();
+    traits.modes = ModeSet{ControlMode::kCoast, ControlMode::kCurrent,    ControlMode::kVelocity,
+                           ControlMode::kAngle, ControlMode::kTotalAngle, ControlMode::kImpedance,
+                           ControlMode::kBrake};
+    if (!(traits.torque_nm_per_a > 0.0F)) {
+      // The motion mode speaks of torque: without the constant it cannot be bounded.
+      traits.modes = ModeSet{ControlMode::kCoast, ControlMode::kCurrent,    ControlMode::kVelocity,
+                             ControlMode::kAngle, ControlMode::kTotalAngle, ControlMode::kBrake};
+      traits.frames.damp = Provision::kUnsupported;
+    }
+    // It has one (0xB3), but setting it writes its ROM and nothing reads it back.
+    traits.watchdog = false;
+    return traits;
+  }
+
+  [[nodiscard]] BusUse busUse(const MotorSettings& settings) const override {
+    const auto id = static_cast<std::uint32_t>(settings.id);
+    const auto one = [](std::uint32_t value) {
+      return FrameFilter{.id = {value, false}, .mask = kStandardIdMask};
+    };
+    const double told_hz = static_cast<double>(settings.tick_hz) / std::max(settings.command_divider, 1);
+    const double angles_hz = told_hz / std::max(settings.own.integer("angle_divider"), 1);
+    constexpr double kQueriesHz = 20.0;
+    const double all_hz = told_hz + angles_hz + kQueriesHz;
+    BusUse use;
+    use.sends = {one(myactuator::kReplyBase + id), one(myactuator::kMotionReplyBase + id)};
+    use.obeys = {one(myactuator::kRequestBase + id), one(myactuator::kMotionBase + id),
+                 one(myactuator::kBroadcastId), one(myactuator::kIdSettingId)};
+    use.feedback = {{.id = use.sends[0].id, .shape = {}, .per_second = all_hz}};
+    use.commands = {{.id = use.obeys[0].id, .shape = {}, .per_second = all_hz}};
+    return use;
+  }
+
+  [[nodiscard]] Result<std::unique_ptr<Motor_Base>> build(const MotorSettings& settings,
+                                                          BusParts& parts) const override {
+    return registerSolo(std::make_unique<MyActuator_Motor>(settings, traits(settings.model, settings.own)),
+                        parts);
+  }
+};
+
+}  // namespace
+
+const MotorFamily& myactuatorFamily() noexcept {
+  static const MyActuatorFamily kFamily;
+  return kFamily;
+}
+
+}  // namespace rc10

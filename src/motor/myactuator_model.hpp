@@ -1,0 +1,40 @@
+#pragma once
+
+#include <array>
+#include <span>
+#include <string_view>
+
+#include "motor/fault_code.hpp"
+
+namespace rc10 {
+
+/// Everything in which one RMD-X model differs from another. At the output of its own gear.
+struct MyActuatorModel {
+  std::string_view name;
+  double gear_ratio = 1.0;
+  float peak_current_a = 0.0F;   ///< Of a phase, at the peak torque.
+  float torque_nm_per_a = 0.0F;  ///< 0: unknown.
+  float rated_rpm = 0.0F;        ///< 0: unknown.
+  float nominal_v = 48.0F;
+};
+
+[[nodiscard]] std::span<const std::string_view> myactuatorModels() noexcept;
+/// nullptr if there is no such model.
+[[nodiscard]] const MyActuatorModel* findMyactuatorModel(std::string_view name) noexcept;
+
+/// One bit of the error word of the reply to 0x9A.
+struct MyActuatorFault {
+  std::uint16_t bit = 0;
+  FaultCode fault = FaultCode::kNone;
+  bool needs_reset = false;  ///< "Level 1": the drive does not recover before it is restarted.
+  std::string_view words;
+};
+
+/// The most serious first.
+[[nodiscard]] std::span<const MyActuatorFault> myactuatorFaults() noexcept;
+/// What an error word means: its most serious bit. kDriveOther for bits without a meaning that is known.
+[[nodiscard]] DriveComplaint myactuatorComplaint(std::uint16_t errors) noexcept;
+/// Whether only a restart of the drive clears all of these.
+[[nodiscard]] bool myactuatorNeedsReset(std::uint16_t errors) noexcept;
+
+}  // namespace rc10

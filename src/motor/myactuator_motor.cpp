@@ -1,0 +1,469 @@
+#include "motor/myactuator_motor.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "motor/myactuator_model.hpp"
+
+namespace rc10 {
+
+using myactuator::Code;
+
+namespace {
+
+constexpr double kDegSPerRpm = 6.0;
+constexpr double kRadPerDeg = std::numbers::pi / 180.0;
+constexpr double kRadSPerRpm = std::numbers::pi / 30.0;
+constexpr double kDegPerRaw = 0.01;
+/// Above this the drive limits itself: the field's end.
+constexpr double kNoLimitDegS = 65535.0;
+
+constexpr Duration kStepPatience = std::chrono::milliseconds{50};
+constexpr int kMostTries = 5;
+/// Errors and run time, in turns.
+constexpr Duration kQuerySpacing = std::chrono::milliseconds{50};
+constexpr Duration kUrgentQuerySpacing = std::chrono::milliseconds{10};
+/// No such drive starts faster than this (its bootloader alone takes longer): after a shorter silence it has
+/// not been restarted.
+constexpr Duration kRestartSilence = std::chrono::milliseconds{100};
+/// By how much the drive's clock may be behind ours.
+constexpr std::int64_t kUptimeSlackMs = 250;
+constexpr std::int64_t kUptimeDriftDivider = 200;  // 0.5 %
+/// For a drive whose speed is not known, N·m·s/rad: as a small one of these.
+constexpr double kUnknownDamping = 0.5;
+/// Replies with all zeros are copies of requests unless the motor is about so cold.
+constexpr float kNearZeroC = 2.0F;
+
+[[nodiscard]] std::int64_t milliseconds(Duration duration) noexcept {
+  return std::chrono::duration_cast<std::chrono::milliseconds>(duration).count();
+}
+
+[[nodiscard]] bool allZero(const CanFrame& frame) noexcept {
+  return std::all_of(frame.data.begin() + 1, frame.data.begin() + frame.length,
+                     [](std::uint8_t byte) { return byte == 0; });
+}
+
+[[nodiscard]] double finite(double value) noexcept { return std::isfinite(value) ? value : 0.0; }
+
+[[nodiscard]] MotorSettings asAsked(MotorSettings settings) {
+  const int divider =
+      std::max(settings.command_divider, 1) * std::max(settings.own.integer("angle_divider"), 1);
+  settings.feedback_hz = std::max(settings.tick_hz / divider, 1);
+  return settings;
+}
+
+[[nodiscard]] double driveTurns(const MotorSettings& settings, const MotorTraits& traits) {
+  return settings.gear_ratio > 0.0 ? settings.gear_ratio / traits.gear_ratio : 1.0;
+}
+
+}  // namespace
+
+MyActuator_Motor::MyActuator_Motor(const MotorSettings& settings, const MotorTraits& traits)
+    : SoloMotor(asAsked(settings), traits, driveTurns(settings, traits)),
+      id_(settings.id),
+      angle_divider_(std::max(settings.own.integer("angle_divider"), 1)),
+      release_brake_(settings.own.flag("release_brake")),
+      filters_{FrameFilter{.id = {myactuator::kReplyBase + static_cast<std::uint32_t>(id_), false},
+                           .mask = kStandardIdMask},
+               FrameFilter{.id = {myactuator::kMotionReplyBase + static_cast<std::uint32_t>(id_), false},
+                           .mask = kStandardIdMask,
+                           .discriminator = PayloadDiscriminator{.value = static_cast<std::uint8_t>(id_)}}},
+      command_ids_{CanId{myactuator::kRequestBase + static_cast<std::uint32_t>(id_), false},
+                   CanId{myactuator::kMotionBase + static_cast<std::uint32_t>(id_), false}} {}
+
+// ---- What the drive says
+
+bool MyActuator_Motor::matchesFrame(const CanFrame& frame) const noexcept {
+  return (frame.id == filters_[0].id || frame.id == filters_[1].id) && !frame.fd &&
+         frame.type != FrameType::kError;
+}
+
+FrameVerdict MyActuator_Motor::updateFeedback(const CanFrame& frame) noexcept {
+  if (frame.type != FrameType::kData || frame.fd || frame.length == 0) return FrameVerdict::kMalformed;
+  if (frame.id == filters_[1].id) return acceptMotion(frame);
+  const Code code = myactuator::codeOf(frame.payload());
+  if (code == Code::kSilenceStopped) {
+    silence_stopped_ = silence_stopped_ || obeying();
+    return FrameVerdict::kAccepted;
+  }
+  if (frame.length != myactuator::kLength) return FrameVerdict::kMalformed;
+  configuring_.onFrame(frame);
+  watchSilence(frame.received);
+  switch (code) {
+    case Code::kReading:
+    case Code::kCurrent:
+    case Code::kVelocity:
+    case Code::kPosition: acceptReading(frame); break;
+    case Code::kAngle: return acceptAngle(frame);
+    case Code::kStatus: acceptStatus(frame); break;
+    case Code::kUptime: acceptUptime(frame); break;
+    case Code::kReleaseBrake: answered(Step::kReleaseBrake); break;
+    default: break;  // the copy of a shutdown; the reply to another controller's question
+  }
+  return FrameVerdict::kAccepted;
+}
+
+// After a silence the drive may have been restarted, and its angle may mean something else.
+void MyActuator_Motor::watchSilence(MonotonicTime received) noexcept {
+  if (!heard_ || received - *heard_ > kRestartSilence) {
+    running_ = false;
+    next_query_ = {};
+  }
+  heard_ = received;
+}
+
+bool MyActuator_Motor::isCopyOfRequest(const CanFrame& frame) const noexcept {
+  if (std::abs(feedback_.temperature_c) <= kNearZeroC) return false;  // such a reply may be true
+  if (myactuator::codeOf(frame.payload()) == Code::kReading) return allZero(frame);
+  return last_command_ &&
+         std::equal(frame.data.begin(), frame.data.begin() + frame.length, last_command_->data.begin());
+}
+
+void MyActuator_Motor::acceptReading(const CanFrame& frame) noexcept {
+  if (isCopyOfRequest(frame)) {
+    silence_stopped_ = silence_stopped_ || obeying();
+    return;
+  }
+  const auto reading = myactuator::decodeReading(frame.payload());
+  feedback_.temperature_c = static_cast<float>(reading.temperature_c);
+  feedback_.current_a = static_cast<float>(reading.current_a) * direction();
+  if (torqueNmPerA() > 0.0F) feedback_.torque_nm = feedback_.current_a * torqueNmPerA();
+  feedback_.velocity_rpm = static_cast<float>(toOutput(reading.velocity_deg_s) / kDegSPerRpm);
+  if (myactuator::codeOf(frame.payload()) == Code::kCurrent) answered(Step::kObey);
+}
+
+FrameVerdict MyActuator_Motor::acceptAngle(const CanFrame& frame) noexcept {
+  // A copy of the request says 0. There is only one of them at a time.
+  const bool zero = allZero(frame);
+  if (zero && !std::exchange(zero_before_, true)) return FrameVerdict::kAccepted;
+  zero_before_ = zero;
+  if (!running_) return FrameVerdict::kAccepted;
+  const std::int32_t raw = myactuator::decodeAngle(frame.payload());
+  if (!raw_angle_) {
+    // After a restart a drive that knows its angle says it; another's angle goes on from where it was.
+    const bool absolute = traits().absolute && get_GearRatio() == traits().gear_ratio;
+    if (absolute || feedback_.samples == 0) angle_raw_ = raw;
+  } else {
+    // Modulo 2^32: a wheel gets there within hours.
+    angle_raw_ +=
+        static_cast<std::int32_t>(static_cast<std::uint32_t>(raw) - static_cast<std::uint32_t>(*raw_angle_));
+  }
+  raw_angle_ = raw;
+  acceptSample(frame.received, static_cast<double>(angle_raw_) * kDegPerRaw);
+  return FrameVerdict::kAccepted;
+}
+
+void MyActuator_Motor::acceptStatus(const CanFrame& frame) noexcept {
+  if (allZero(frame)) return;  // a copy: a drive that answers has a voltage
+  const auto status = myactuator::decodeStatus(frame.payload());
+  feedback_.temperature_c = static_cast<float>(status.temperature_c);
+  feedback_.voltage_v = static_cast<float>(status.voltage_v);
+  errors_ = status.errors;
+  answered(Step::kStatus);
+}
+
+void MyActuator_Motor::acceptUptime(const CanFrame& frame) noexcept {
+  const std::uint32_t uptime_ms = myactuator::decodeUptimeMs(frame.payload());
+  if (uptime_ms == 0) return;  // a copy
+  if (uptime_ms_) {
+    const std::int64_t elapsed_ms = milliseconds(frame.received - uptime_at_);
+    const auto expected_ms = static_cast<std::uint32_t>(*uptime_ms_ + static_cast<std::uint64_t>(elapsed_ms));
+    const auto late_ms = static_cast<std::int32_t>(expected_ms - uptime_ms);
+    if (late_ms > kUptimeSlackMs + elapsed_ms / kUptimeDriftDivider) {
+      loseReference();
+      raw_angle_.reset();
+      restarted_ = restarted_ || obeying();
+      if (ordered() == FrameKind::kEnable) beginSequence();
+    }
+  }
+  uptime_ms_ = uptime_ms;
+  uptime_at_ = frame.received;
+  running_ = true;
+  answered(Step::kUptime);
+}
+
+FrameVerdict MyActuator_Motor::acceptMotion(const CanFrame& frame) noexcept {
+  if (frame.length != myactuator::kLength || frame.data[0] != id_) return FrameVerdict::kMalformed;
+  watchSilence(frame.received);
+  const auto reading = myactuator::decodeMotion(frame.payload());
+  feedback_.velocity_rpm = static_cast<float>(toOutput(reading.velocity_rad_s) / kRadSPerRpm);
+  feedback_.torque_nm = static_cast<float>(torqueToOutput(reading.torque_nm));
+  if (torqueNmPerA() > 0.0F) feedback_.current_a = feedback_.torque_nm / torqueNmPerA();
+  return FrameVerdict::kAccepted;
+}
+
+// ---- What it is told
+
+bool MyActuator_Motor::obeying() const noexcept {
+  switch (ordered()) {
+    case FrameKind::kIdle:
+    case FrameKind::kCommand:
+    case FrameKind::kBrake:
+    case FrameKind::kHold:
+    case FrameKind::kDamp: return true;
+    default: return false;
+  }
+}
+
+void MyActuator_Motor::update(const Tick& tick) noexcept {
+  outgoing_count_ = 0;
+  limits_ = 0;
+  const Target target = wanted();
+  const bool begins = ordered() != last_ordered_;
+  last_ordered_ = ordered();
+  if (ordered() == FrameKind::kEnable && begins) beginSequence();
+  if (std::exchange(reset_, false)) send(myactuator::request(id_, Code::kReset));
+  // A drive that is just starting must not find an angle of its former life waiting for it.
+  if (!heard_ || tick.now - *heard_ > kRestartSilence) running_ = false;
+  if (!due(tick)) return;
+
+  const bool ask_angle = turns_due_++ % static_cast<std::uint64_t>(angle_divider_) == 0;
+  switch (ordered()) {
+    case FrameKind::kRest:
+    case FrameKind::kDisable:
+      setCommand(0.0, CommandUnit::kNone);
+      send(myactuator::request(id_, Code::kShutdown));
+      return;
+    case FrameKind::kPoll:
+      // Output off, and in turns with that what it measures.
+      setCommand(0.0, CommandUnit::kNone);
+      send(myactuator::request(id_, begins || turns_due_ % 2 == 0 ? Code::kShutdown : Code::kReading));
+      break;
+    case FrameKind::kEnable:
+      setCommand(0.0, CommandUnit::kNone);
+      runSequence(tick);
+      break;
+    default:
+      // Until it is known to be the same run of the drive, its angles are not, and it is told nothing. One
+      // that has stopped is not started again behind the back of whoever has to know.
+      if (restarted_ || silence_stopped_) {
+        send(myactuator::request(id_, Code::kShutdown));
+      } else if (running_) {
+        follow(target);
+      }
+      break;
+  }
+  if (ask_angle) send(myactuator::request(id_, Code::kAngle));
+  sendQueries(tick);
+}
+
+void MyActuator_Motor::sendQueries(const Tick& tick) noexcept {
+  if (tick.now < next_query_) return;
+  next_query_ = tick.now + (running_ ? kQuerySpacing : kUrgentQuerySpacing);
+  ask_uptime_ = !running_ || !ask_uptime_;
+  send(myactuator::request(id_, ask_uptime_ ? Code::kUptime : Code::kStatus));
+}
+
+void MyActuator_Motor::follow(const Target& target) noexcept {
+  if (ordered() == FrameKind::kDamp && torqueNmPerA() > 0.0F) return damp();
+  // Nothing but a current can be bounded: no loop of the drive may run when none is allowed.
+  const bool allowed = effortLimit() > 0.0F;
+  switch (allowed ? target.mode : ControlMode::kCurrent) {
+    case ControlMode::kCurrent: return followCurrent(target);
+    case ControlMode::kVelocity: return followVelocity(target.value);
+    case ControlMode::kTotalAngle: return followAngle(target.value);
+    case ControlMode::kImpedance:
+      return torqueNmPerA() > 0.0F ? followImpedance(target) : followCurrent(Target{});
+    case ControlMode::kBrake: return followVelocity(0.0);
+    default: return followCurrent(Target{.mode = ControlMode::kCurrent});
+  }
+}
+
+void MyActuator_Motor::followCurrent(const Target& target) noexcept {
+  const double current_a = currentWithinLimit(target);
+  setCommand(current_a, CommandUnit::kAmpere);
+  sendCommand(myactuator::currentCommand(id_, current_a * static_cast<double>(direction())));
+}
+
+void MyActuator_Motor::followVelocity(double output_rpm) noexcept {
+  const double rpm = rpmWithinLimit(output_rpm);
+  if (std::abs(feedback_.current_a) > effortLimit()) limits_ |= kLimitCurrent;
+  setCommand(rpm, CommandUnit::kNative);
+  sendCommand(myactuator::velocityCommand(id_, toDrive(rpm) * kDegSPerRpm));
+}
+
+void MyActuator_Motor::followAngle(double total_angle_deg) noexcept {
+  if (feedback_.samples == 0 || !std::isfinite(total_angle_deg)) return followCurrent(Target{});
+  // The drive's angle is what 32 bits hold of ours.
+  const double drive_deg = drivePositionFor(total_angle_deg) -
+                           static_cast<double>(angle_raw_ - raw_angle_.value_or(0)) * kDegPerRaw;
+  constexpr double kReachDeg = 2147483647.0 * kDegPerRaw;
+  if (std::abs(drive_deg) > kReachDeg) limits_ |= kLimitAngle;
+  const auto limit_rpm = static_cast<double>(velocityLimitRpm());
+  const double limit_deg_s = limit_rpm > 0.0 ? std::abs(toDrive(limit_rpm)) * kDegSPerRpm : kNoLimitDegS;
+  if (std::abs(feedback_.current_a) > effortLimit()) limits_ |= kLimitCurrent;
+  setCommand(total_angle_deg, CommandUnit::kNative);
+  sendCommand(myactuator::positionCommand(id_, drive_deg, limit_deg_s));
+}
+
+void MyActuator_Motor::followImpedance(const Target& target) noexcept {
+  const double drive_deg =
+      drivePositionFor(target.value) - static_cast<double>(angle_raw_ - raw_angle_.value_or(0)) * kDegPerRaw;
+  const double measured_deg = static_cast<double>(raw_angle_.value_or(0)) * kDegPerRaw;
+  const double turns = toDrive(1.0);
+  const double per_drive = 1.0 / (turns * turns);
+  myactuator::Motion motion{
+      .angle_rad = finite(drive_deg) * kRadPerDeg,
+      .velocity_rad_s = toDrive(finite(static_cast<double>(target.velocity_ff_rpm))) * kRadSPerRpm,
+      .stiffness_nm_per_rad =
+          std::max(finite(static_cast<double>(target.stiffness_nm_per_rad)), 0.0) * per_drive,
+      .damping_nms_per_rad =
+          std::max(finite(static_cast<double>(target.damping_nms_per_rad)), 0.0) * per_drive,
+      .torque_ff_nm = torqueToDrive(finite(static_cast<double>(target.torque_ff_nm)))};
+  if (const double limit = std::abs(toDrive(static_cast<double>(velocityLimitRpm()))) * kRadSPerRpm;
+      limit > 0.0) {
+    const double bounded = std::clamp(motion.velocity_rad_s, -limit, limit);
+    if (bounded != motion.velocity_rad_s) limits_ |= kLimitVelocity;
+    motion.velocity_rad_s = bounded;
+  }
+  // Outside its range of angles the drive would pull towards the end of the range: then without a spring.
+  const bool outside = feedback_.samples == 0 || !std::isfinite(drive_deg) ||
+                       std::abs(motion.angle_rad) > myactuator::kMotionAngleRad ||
+                       std::abs(measured_deg * kRadPerDeg) > myactuator::kMotionAngleRad;
+  if (outside) {
+    limits_ |= kLimitAngle;
+    motion.angle_rad = 0.0;
+    motion.stiffness_nm_per_rad = 0.0;
+  }
+  const double measured_rad_s = toDrive(finite(static_cast<double>(feedback_.velocity_rpm))) * kRadSPerRpm;
+  sendMotion(motion.angle_rad - measured_deg * kRadPerDeg, motion.velocity_rad_s - measured_rad_s, motion);
+}
+
+// As a shorted winding would: the full torque at the speed without load.
+void MyActuator_Motor::damp() noexcept {
+  const double no_load_rad_s = static_cast<double>(traits().no_load_rpm) * kRadSPerRpm;
+  const double full_nm = static_cast<double>(traits().effort_full_scale * traits().torque_nm_per_a);
+  const double damping =
+      no_load_rad_s > 0.0 ? std::min(full_nm / no_load_rad_s, myactuator::kMotionDamping) : kUnknownDamping;
+  const double measured_rad_s = toDrive(finite(static_cast<double>(feedback_.velocity_rpm))) * kRadSPerRpm;
+  sendMotion(0.0, -measured_rad_s, {.damping_nms_per_rad = damping});
+}
+
+// The drive computes the torque; from what it measured last we know which, and weaken all of it alike when
+// that would be too much.
+void MyActuator_Motor::sendMotion(double error_rad, double velocity_error_rad_s,
+                                  const myactuator::Motion& wanted) noexcept {
+  myactuator::Motion motion = wanted;
+  motion.stiffness_nm_per_rad = std::min(motion.stiffness_nm_per_rad, myactuator::kMotionStiffness);
+  motion.damping_nms_per_rad = std::min(motion.damping_nms_per_rad, myactuator::kMotionDamping);
+  motion.torque_ff_nm =
+      std::clamp(motion.torque_ff_nm, -myactuator::kMotionTorqueNm, myactuator::kMotionTorqueNm);
+  const double torque_nm = motion.stiffness_nm_per_rad * error_rad +
+                           motion.damping_nms_per_rad * velocity_error_rad_s + motion.torque_ff_nm;
+  const double limit_nm = torqueToDrive(static_cast<double>(effortLimit() * torqueNmPerA()));
+  const double bound_nm = std::min(std::abs(limit_nm), myactuator::kMotionTorqueNm);
+  double scale = 1.0;
+  if (std::abs(torque_nm) > bound_nm) {
+    scale = bound_nm / std::abs(torque_nm);
+    limits_ |= kLimitCurrent;
+  }
+  motion.stiffness_nm_per_rad *= scale;
+  motion.damping_nms_per_rad *= scale;
+  motion.torque_ff_nm *= scale;
+  setCommand(torqueToOutput(torque_nm * scale) / static_cast<double>(torqueNmPerA()), CommandUnit::kNative);
+  last_command_.reset();
+  send(myactuator::motionCommand(id_, motion));
+}
+
+void MyActuator_Motor::send(const CanFrame& frame) noexcept {
+  if (outgoing_count_ < outgoing_.size()) outgoing_[outgoing_count_++] = frame;
+}
+
+void MyActuator_Motor::sendCommand(const CanFrame& frame) noexcept {
+  last_command_ = frame;
+  send(frame);
+}
+
+std::size_t MyActuator_Motor::packCommand(const Tick& tick, std::span<CanFrame> out) noexcept {
+  const std::size_t count = std::min(outgoing_count_, out.size());
+  std::copy_n(outgoing_.begin(), count, out.begin());
+  if (obeying() || ordered() == FrameKind::kEnable) return count;
+  return count + configuring_.pack(tick.now, out.subspan(count));
+}
+
+std::size_t MyActuator_Motor::packRest(std::span<CanFrame> out) const noexcept {
+  if (out.empty()) return 0;
+  out.front() = myactuator::request(id_, Code::kShutdown);
+  return 1;
+}
+
+// ---- Enabling
+
+void MyActuator_Motor::beginSequence() noexcept {
+  step_ = Step::kStatus;
+  tries_ = 0;
+  failed_ = false;
+  restarted_ = false;
+  silence_stopped_ = false;
+}
+
+CanFrame MyActuator_Motor::stepFrame() const noexcept {
+  switch (step_) {
+    case Step::kStatus: return myactuator::request(id_, Code::kStatus);
+    case Step::kUptime: return myactuator::request(id_, Code::kUptime);
+    case Step::kReleaseBrake: return myactuator::request(id_, Code::kReleaseBrake);
+    case Step::kObey:
+    case Step::kDone: break;
+  }
+  return myactuator::currentCommand(id_, 0.0);
+}
+
+void MyActuator_Motor::runSequence(const Tick& tick) noexcept {
+  if (failed_) return send(myactuator::request(id_, Code::kShutdown));
+  if (step_ == Step::kDone) return sendCommand(stepFrame());  // no torque until the first command
+  if (tries_ > 0 && tick.now - asked_at_ < kStepPatience) return;
+  if (tries_ == kMostTries) {
+    failed_ = true;
+    return;
+  }
+  ++tries_;
+  asked_at_ = tick.now;
+  if (step_ == Step::kObey) return sendCommand(stepFrame());
+  send(stepFrame());
+}
+
+void MyActuator_Motor::answered(Step step) noexcept {
+  if (ordered() != FrameKind::kEnable || step != step_ || failed_ || tries_ == 0) return;
+  tries_ = 0;
+  switch (step) {
+    case Step::kStatus:
+      failed_ = errors_ != 0;
+      step_ = Step::kUptime;
+      break;
+    case Step::kUptime: step_ = release_brake_ ? Step::kReleaseBrake : Step::kObey; break;
+    case Step::kReleaseBrake: step_ = Step::kObey; break;
+    case Step::kObey: step_ = Step::kDone; break;
+    case Step::kDone: break;
+  }
+}
+
+SequenceProgress MyActuator_Motor::sequenceProgress() const noexcept {
+  if (ordered() != FrameKind::kEnable) return SequenceProgress::kDone;
+  if (last_ordered_ != FrameKind::kEnable) return SequenceProgress::kPending;
+  if (failed_) return SequenceProgress::kFailed;
+  return step_ == Step::kDone ? SequenceProgress::kDone : SequenceProgress::kPending;
+}
+
+// ---- Complaints
+
+DriveComplaint MyActuator_Motor::complaint() const noexcept {
+  if (errors_ != 0) return myactuatorComplaint(errors_);
+  if (restarted_) return {.fault = FaultCode::kDriveStopped, .native_code = 0};
+  if (silence_stopped_) {
+    return {.fault = FaultCode::kDriveCommunication,
+            .native_code = static_cast<std::uint32_t>(Code::kSilenceStopped)};
+  }
+  return {};
+}
+
+void MyActuator_Motor::clearComplaint() noexcept {
+  // "Level 1" errors end with a restart only; the output is off while they last. Others end by themselves.
+  reset_ = reset_ || myactuatorNeedsReset(errors_);
+  restarted_ = false;
+  silence_stopped_ = false;
+  next_query_ = {};
+  ask_uptime_ = true;  // so that the status comes next
+}
+
+}  // namespace rc10

@@ -1,0 +1,103 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+
+#include "motor/drive_configuring.hpp"
+#include "motor/myactuator_frames.hpp"
+#include "motor/myactuator_setup.hpp"
+#include "motor/solo_motor.hpp"
+
+namespace rc10 {
+
+/// The MyActuator RMD-X drives, protocol V3 and V4.
+[[nodiscard]] const MotorFamily& myactuatorFamily() noexcept;
+
+/// A MyActuator RMD-X motor. Its drive speaks only when asked: each command brings speed, current and
+/// temperature in whole degrees per second and 0.01 A, and a second request the multi-turn angle in 0.01 deg.
+/// Now and then it is asked for its errors and for how long it has been running: by that a restart is
+/// noticed. It has no enabled state of its own: enabling is what makes sure that it runs, has no error and
+/// obeys.
+class MyActuator_Motor final : public SoloMotor {
+ public:
+  MyActuator_Motor(const MotorSettings& settings, const MotorTraits& traits);
+
+  [[nodiscard]] std::span<const FrameFilter> filters() const noexcept override { return filters_; }
+  [[nodiscard]] bool matchesFrame(const CanFrame& frame) const noexcept override;
+  FrameVerdict updateFeedback(const CanFrame& frame) noexcept override;
+  void update(const Tick& tick) noexcept override;
+
+  [[nodiscard]] std::span<const CanId> commandIds() const noexcept override { return command_ids_; }
+  [[nodiscard]] std::size_t packCommand(const Tick& tick, std::span<CanFrame> out) noexcept override;
+  [[nodiscard]] std::size_t packRest(std::span<CanFrame> out) const noexcept override;
+
+  [[nodiscard]] SequenceProgress sequenceProgress() const noexcept override;
+  [[nodiscard]] DriveComplaint complaint() const noexcept override;
+  void clearComplaint() noexcept override;
+  [[nodiscard]] DriveConfiguring* driveConfiguring() noexcept override { return &configuring_; }
+
+ private:
+  enum class Step : std::uint8_t { kStatus, kUptime, kReleaseBrake, kObey, kDone };
+
+  void acceptReading(const CanFrame& frame) noexcept;
+  FrameVerdict acceptAngle(const CanFrame& frame) noexcept;
+  void acceptStatus(const CanFrame& frame) noexcept;
+  void acceptUptime(const CanFrame& frame) noexcept;
+  FrameVerdict acceptMotion(const CanFrame& frame) noexcept;
+  [[nodiscard]] bool isCopyOfRequest(const CanFrame& frame) const noexcept;
+  void watchSilence(MonotonicTime received) noexcept;
+  void answered(Step step) noexcept;
+
+  void send(const CanFrame& frame) noexcept;
+  void sendCommand(const CanFrame& frame) noexcept;
+  void sendQueries(const Tick& tick) noexcept;
+  void runSequence(const Tick& tick) noexcept;
+  void beginSequence() noexcept;
+  [[nodiscard]] CanFrame stepFrame() const noexcept;
+  void follow(const Target& target) noexcept;
+  void followCurrent(const Target& target) noexcept;
+  void followVelocity(double output_rpm) noexcept;
+  void followAngle(double total_angle_deg) noexcept;
+  void followImpedance(const Target& target) noexcept;
+  void damp() noexcept;
+  void sendMotion(double error_rad, double velocity_error_rad_s, const myactuator::Motion& wanted) noexcept;
+  [[nodiscard]] bool obeying() const noexcept;
+
+  int id_;
+  MyActuatorSetupCodec setup_codec_{id_};
+  DriveConfiguring configuring_{setup_codec_};
+  int angle_divider_;
+  bool release_brake_;
+  std::array<FrameFilter, 2> filters_;
+  std::array<CanId, 2> command_ids_;
+
+  // What is to leave with the next packCommand().
+  std::array<CanFrame, kMaxFramesPerPacker> outgoing_{};
+  std::size_t outgoing_count_ = 0;
+  std::optional<CanFrame> last_command_;
+  std::uint64_t turns_due_ = 0;  ///< Ticks in which it was told something.
+  MonotonicTime next_query_{};
+  bool ask_uptime_ = false;  ///< Next; else the status.
+  bool reset_ = false;       ///< The drive is to be restarted with the next frames.
+
+  // What the drive said.
+  std::optional<MonotonicTime> heard_;
+  std::optional<std::int32_t> raw_angle_;  ///< The last, in 0.01 deg.
+  std::int64_t angle_raw_ = 0;             ///< The same, going on where 32 bits end.
+  bool zero_before_ = false;               ///< The reply before said 0.
+  bool running_ = false;                   ///< It has been the same run of the drive since angles were taken.
+  std::optional<std::uint32_t> uptime_ms_;
+  MonotonicTime uptime_at_{};
+  std::uint16_t errors_ = 0;
+  bool restarted_ = false;        ///< While it was to obey.
+  bool silence_stopped_ = false;  ///< Its protection against silence struck while it was to obey.
+
+  FrameKind last_ordered_ = FrameKind::kRest;
+  Step step_ = Step::kStatus;
+  int tries_ = 0;
+  MonotonicTime asked_at_{};
+  bool failed_ = false;
+};
+
+}  // namespace rc10

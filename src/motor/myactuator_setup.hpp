@@ -1,0 +1,31 @@
+#pragma once
+
+#include "motor/drive_setup.hpp"
+#include "motor/myactuator_frames.hpp"
+
+namespace rc10 {
+
+/// What can be written to an RMD-X drive. It stores each at once.
+[[nodiscard]] const DriveSetup& myactuatorSetup() noexcept;
+
+/// The settings of one drive. Each is written with frames of its own kind; accelerations alone can be read.
+class MyActuatorSetupCodec final : public DriveCodec {
+ public:
+  explicit MyActuatorSetupCodec(int id) noexcept : id_(id) {}
+
+  [[nodiscard]] const DriveSetup& setup() const noexcept override { return myactuatorSetup(); }
+  [[nodiscard]] CanFrame write(const DriveValue& value) const noexcept override;
+  [[nodiscard]] std::optional<CanFrame> read(std::size_t setting) const noexcept override;
+  [[nodiscard]] std::optional<double> reading(std::size_t setting,
+                                              const CanFrame& frame) const noexcept override;
+  [[nodiscard]] std::optional<CanFrame> save(std::optional<int> /*new_id*/) const noexcept override {
+    return std::nullopt;
+  }
+  [[nodiscard]] bool saysSaved(const CanFrame& /*frame*/) const noexcept override { return false; }
+  [[nodiscard]] std::optional<std::size_t> idSetting() const noexcept override;
+
+ private:
+  int id_;
+};
+
+}  // namespace rc10

@@ -1,0 +1,413 @@
+#include "motor/odrive_motor.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "app/limits.hpp"
+
+namespace rc10 {
+namespace {
+
+using std::chrono::milliseconds;
+
+constexpr double kDegPerTurn = 360.0;
+constexpr double kRpmPerTurnPerS = 60.0;
+
+// Heartbeats come ten times a second by default, so an answer may take that long: a step is not asked again
+// before one has certainly come.
+constexpr Duration kAskAgain = milliseconds{120};
+constexpr int kMostAsks = 5;
+// A heartbeat this young says that the drive is idle now.
+constexpr Duration kYoungHeartbeat = milliseconds{300};
+// A restart cannot hide in a shorter silence: firmware 0.5 says for 1.5 s that it starts (its current sensors
+// settle for 7.5 times dc_calib_tau, Firmware/MotorControl/motor.cpp), 0.6 says INITIALIZING.
+constexpr Duration kRestartSilence = milliseconds{200};
+constexpr int kRestartPeriods = 5;
+// Telemetry may come once a second; what is older is not known any more.
+constexpr Duration kTelemetryLife = milliseconds{2500};
+
+constexpr int kModeRepeats = 3;
+constexpr int kClearRepeats = 2;
+
+// New limits follow the derating, but neither every tick nor never: a frame may have been lost.
+constexpr Duration kLimitsSpacing = milliseconds{20};
+constexpr Duration kLimitsRefresh = milliseconds{500};
+
+// A position in float32 turns is good to a hundredth of a turn up to here.
+constexpr double kFarthestTurns = 100'000.0;
+// Beyond what the speeds of two samples explain.
+constexpr double kJumpTurns = 0.5;
+
+bool isActive(FrameKind kind) noexcept {
+  switch (kind) {
+    case FrameKind::kIdle:
+    case FrameKind::kDamp:
+    case FrameKind::kBrake:
+    case FrameKind::kHold:
+    case FrameKind::kCommand: return true;
+    case FrameKind::kRest:
+    case FrameKind::kPoll:
+    case FrameKind::kEnable:
+    case FrameKind::kDisable: break;
+  }
+  return false;
+}
+
+bool finite(const OdrivePair& pair) noexcept {
+  return std::isfinite(pair.first) && std::isfinite(pair.second);
+}
+
+/// Appends what there is room for.
+class FrameWriter {
+ public:
+  explicit FrameWriter(std::span<CanFrame> out) noexcept : out_(out) {}
+  void add(const CanFrame& frame) noexcept {
+    if (count_ < out_.size()) out_[count_++] = frame;
+  }
+  [[nodiscard]] std::size_t count() const noexcept { return count_; }
+
+ private:
+  std::span<CanFrame> out_;
+  std::size_t count_ = 0;
+};
+
+}  // namespace
+
+ODrive_Motor::ODrive_Motor(const MotorSettings& settings, const MotorTraits& traits)
+    : SoloMotor(settings, traits, settings.gear_ratio > 0.0 ? settings.gear_ratio : traits.gear_ratio),
+      node_(settings.id),
+      firmware_(findOdriveModel(settings.model) != nullptr ? findOdriveModel(settings.model)->firmware
+                                                           : OdriveFirmware::k06),
+      iq_sign_(settings.own.flag("iq_reversed") ? -1.0F : 1.0F),
+      filter_count_(firmware_ == OdriveFirmware::k06 ? 5 : 4),
+      input_(odriveSetInputTorque(node_, 0.0F)) {
+  using enum OdriveMessage;
+  const bool v05 = firmware_ == OdriveFirmware::k05;
+  const std::array heard{kHeartbeat, kEncoderEstimates, kBusVoltage, v05 ? kIq : kTorques, kTemperature};
+  for (std::size_t i = 0; i < filters_.size(); ++i) {
+    filters_[i] = {.id = odriveId(node_, heard[i]), .mask = kStandardIdMask, .discriminator = {}};
+  }
+  const std::array said{kSetAxisState,   kSetControllerMode, kSetInputPos, kSetInputVel,
+                        kSetInputTorque, kSetLimits,         kClearErrors};
+  std::transform(said.begin(), said.end(), command_ids_.begin(),
+                 [&](OdriveMessage message) { return odriveId(node_, message); });
+}
+
+bool ODrive_Motor::matchesFrame(const CanFrame& frame) const noexcept {
+  if (frame.fd || frame.type == FrameType::kError) return false;
+  const auto mine = filters();
+  return std::any_of(mine.begin(), mine.end(), [&](const auto& filter) { return filter.id == frame.id; });
+}
+
+FrameVerdict ODrive_Motor::updateFeedback(const CanFrame& frame) noexcept {
+  switch (odriveMessage(frame.id)) {
+    case OdriveMessage::kHeartbeat: return acceptHeartbeat(frame);
+    case OdriveMessage::kEncoderEstimates: return acceptEstimates(frame);
+    default: return acceptTelemetry(frame);
+  }
+}
+
+void ODrive_Motor::hear(MonotonicTime received) noexcept {
+  const Duration longest = std::max<Duration>(kRestartSilence, kRestartPeriods * feedbackPeriod());
+  if (heard_ && received - heard_at_ > longest) forgetPosition();
+  heard_ = true;
+  heard_at_ = received;
+}
+
+void ODrive_Motor::forgetPosition() noexcept {
+  loseReference();
+  position_known_ = false;
+}
+
+FrameVerdict ODrive_Motor::acceptHeartbeat(const CanFrame& frame) noexcept {
+  const auto heartbeat = decodeOdriveHeartbeat(frame);
+  if (!heartbeat) return FrameVerdict::kMalformed;
+  hear(frame.received);
+  starting_ = odriveStarting(firmware_, *heartbeat);
+  if (starting_) forgetPosition();
+  heartbeat_ = heartbeat;
+  heartbeat_at_ = frame.received;
+  return FrameVerdict::kAccepted;
+}
+
+bool ODrive_Motor::isJump(MonotonicTime received, double turns, double turns_per_s) const noexcept {
+  if (!position_known_) return false;
+  const double dt_s = std::max(0.0, std::chrono::duration<double>(received - feedback_.received).count());
+  const double fastest = std::max(std::abs(turns_per_s), std::abs(turns_per_s_));
+  return std::abs(turns - turns_) > kJumpTurns + 1.5 * fastest * dt_s;
+}
+
+FrameVerdict ODrive_Motor::acceptEstimates(const CanFrame& frame) noexcept {
+  const auto estimates = decodeOdrivePair(frame);
+  if (!estimates || !finite(*estimates)) return FrameVerdict::kMalformed;
+  hear(frame.received);
+  // A starting drive's position may still change without a movement.
+  if (starting_) return FrameVerdict::kAccepted;
+  const auto turns = static_cast<double>(estimates->first);
+  const auto turns_per_s = static_cast<double>(estimates->second);
+  const bool jumped = isJump(frame.received, turns, turns_per_s);
+  if (jumped) loseReference();
+  acceptSample(frame.received, turns * kDegPerTurn);
+  if (jumped) ++feedback_.jumps;
+  position_known_ = true;
+  turns_ = turns;
+  turns_per_s_ = turns_per_s;
+  feedback_.velocity_rpm = saturate(static_cast<float>(toOutput(turns_per_s * kRpmPerTurnPerS)));
+
+  if (frame.received - current_at_ > kTelemetryLife) {
+    feedback_.current_a = kNotReported;
+    feedback_.torque_nm = kNotReported;
+  }
+  if (frame.received - temperature_at_ > kTelemetryLife) feedback_.temperature_c = kNotReported;
+  if (frame.received - voltage_at_ > kTelemetryLife) feedback_.voltage_v = kNotReported;
+  return FrameVerdict::kAccepted;
+}
+
+FrameVerdict ODrive_Motor::acceptTelemetry(const CanFrame& frame) noexcept {
+  const auto pair = decodeOdrivePair(frame);
+  if (!pair) return FrameVerdict::kMalformed;
+  const auto message = odriveMessage(frame.id);
+  if (message == OdriveMessage::kTemperature) {
+    // The hotter of power stage and motor: a motor without a sensor has no number, or 0.
+    const float celsius = std::fmax(pair->first, pair->second);
+    if (!std::isfinite(celsius)) return FrameVerdict::kMalformed;
+    hear(frame.received);
+    feedback_.temperature_c = celsius;
+    temperature_at_ = frame.received;
+    return FrameVerdict::kAccepted;
+  }
+  if (!finite(*pair)) return FrameVerdict::kMalformed;
+  hear(frame.received);
+  if (message == OdriveMessage::kBusVoltage) {
+    feedback_.voltage_v = pair->first;
+    voltage_at_ = frame.received;
+    return FrameVerdict::kAccepted;
+  }
+  // Firmware 0.6 tells the torque, 0.5 the current. Of the second value in both: what is measured.
+  const float measured = saturate(pair->second);
+  feedback_.current_a =
+      message == OdriveMessage::kTorques
+          ? saturate(static_cast<float>(torqueToOutput(static_cast<double>(measured))) / torqueNmPerA())
+          : measured * iq_sign_ * direction();
+  feedback_.torque_nm = saturate(feedback_.current_a * torqueNmPerA());
+  current_at_ = frame.received;
+  return FrameVerdict::kAccepted;
+}
+
+bool ODrive_Motor::stateSince(OdriveAxisState state, MonotonicTime since) const noexcept {
+  return heartbeat_ && heartbeat_->state == state && heartbeat_at_ >= since;
+}
+
+void ODrive_Motor::enterStep(Step step) noexcept {
+  step_ = step;
+  asked_ = 0;
+}
+
+void ODrive_Motor::runSequence(const Tick& tick) noexcept {
+  ask_ = false;
+  if (step_ == Step::kToIdle && asked_ > 0) {
+    if (heartbeat_ && odriveErrors(firmware_, *heartbeat_) != 0) {
+      enterStep(Step::kFailed);
+    } else if (stateSince(OdriveAxisState::kIdle, asked_first_ - kYoungHeartbeat)) {
+      enterStep(Step::kToClosedLoop);
+    }
+  }
+  if (step_ == Step::kToClosedLoop && asked_ > 0 && heartbeat_ && heartbeat_at_ >= asked_first_) {
+    if (odriveErrors(firmware_, *heartbeat_) != 0) {
+      enterStep(Step::kFailed);
+    } else if (heartbeat_->state == OdriveAxisState::kClosedLoop) {
+      enterStep(Step::kDone);
+    }
+  }
+  if (step_ != Step::kToIdle && step_ != Step::kToClosedLoop) return;
+  if (asked_ > 0 && tick.now - asked_last_ < kAskAgain) return;
+  if (asked_ >= kMostAsks) return enterStep(Step::kFailed);
+  if (asked_ == 0) asked_first_ = tick.now;
+  asked_last_ = tick.now;
+  ++asked_;
+  ask_ = true;
+}
+
+void ODrive_Motor::watchState() noexcept {
+  if (!isActive(ordered())) {
+    stopped_ = false;
+  } else if (!heartbeat_ || heartbeat_->state != OdriveAxisState::kClosedLoop) {
+    stopped_ = true;
+  }
+}
+
+void ODrive_Motor::update(const Tick& tick) noexcept {
+  limits_ = 0;
+  const FrameKind kind = ordered();
+  if (kind == FrameKind::kEnable) {
+    if (last_order_ != FrameKind::kEnable) enterStep(Step::kToIdle);
+    runSequence(tick);
+  } else {
+    step_ = Step::kNone;
+  }
+  last_order_ = kind;
+  watchState();
+
+  const Target target = wanted();
+  if (isActive(kind)) {
+    follow(target);
+    refreshLimits(tick);
+  } else {
+    mode_known_ = false;
+    input_ = odriveSetInputTorque(node_, 0.0F);
+    setCommand(0.0, CommandUnit::kAmpere);
+    if (ask_) {
+      limits_sent_a_ = effortLimit();
+      limits_sent_at_ = tick.now;
+    }
+  }
+}
+
+void ODrive_Motor::follow(const Target& target) noexcept {
+  switch (target.mode) {
+    case ControlMode::kVelocity: return followVelocity(target.value, target.torque_ff_nm);
+    case ControlMode::kBrake: return followVelocity(0.0, 0.0F);
+    case ControlMode::kTotalAngle: return followPosition(target);
+    default: return followTorque(target);
+  }
+}
+
+double ODrive_Motor::limitedTorque(double nm) noexcept {
+  const double limit_nm = static_cast<double>(effortLimit()) * static_cast<double>(torqueNmPerA());
+  if (!(std::abs(nm) > limit_nm)) return std::isnan(nm) ? 0.0 : nm;
+  limits_ |= kLimitCurrent;
+  return std::copysign(limit_nm, nm);
+}
+
+double ODrive_Motor::limitedRpm(double rpm) noexcept {
+  const auto limit_rpm = static_cast<double>(velocityLimitRpm());
+  if (!(std::abs(rpm) > limit_rpm)) return std::isnan(rpm) ? 0.0 : rpm;
+  limits_ |= kLimitVelocity;
+  return std::copysign(limit_rpm, rpm);
+}
+
+void ODrive_Motor::followTorque(const Target& target) noexcept {
+  double nm = 0.0;
+  if (target.mode == ControlMode::kCurrent) {
+    nm = limitedTorque(target.value * static_cast<double>(torqueNmPerA()) +
+                       static_cast<double>(target.torque_ff_nm));
+  }
+  setInput(OdriveControlMode::kTorque,
+           odriveSetInputTorque(node_, saturate(static_cast<float>(torqueToDrive(nm)))));
+  setCommand(nm / static_cast<double>(torqueNmPerA()), CommandUnit::kAmpere);
+}
+
+void ODrive_Motor::followVelocity(double rpm, float torque_ff_nm) noexcept {
+  const double allowed_rpm = limitedRpm(rpm);
+  const double ff_nm = limitedTorque(static_cast<double>(torque_ff_nm));
+  setInput(OdriveControlMode::kVelocity,
+           odriveSetInputVel(node_, saturate(static_cast<float>(toDrive(allowed_rpm) / kRpmPerTurnPerS)),
+                             saturate(static_cast<float>(torqueToDrive(ff_nm)))));
+  setCommand(allowed_rpm, CommandUnit::kNative);
+}
+
+void ODrive_Motor::followPosition(const Target& target) noexcept {
+  double turns = drivePositionFor(target.value) / kDegPerTurn;
+  if (std::isnan(turns)) return followTorque(Target{});
+  if (std::abs(turns) > kFarthestTurns) {
+    limits_ |= kLimitAngle;
+    turns = std::copysign(kFarthestTurns, turns);
+  }
+  const double ff_rpm = limitedRpm(static_cast<double>(target.velocity_ff_rpm));
+  const double ff_nm = limitedTorque(static_cast<double>(target.torque_ff_nm));
+  setInput(OdriveControlMode::kPosition,
+           odriveSetInputPos(node_, static_cast<float>(turns),
+                             saturate(static_cast<float>(toDrive(ff_rpm) / kRpmPerTurnPerS)),
+                             saturate(static_cast<float>(torqueToDrive(ff_nm)))));
+  const auto huge = static_cast<double>(kHugeTerm);
+  setCommand(std::clamp(target.value, -huge, huge), CommandUnit::kNative);
+}
+
+void ODrive_Motor::setInput(OdriveControlMode mode, const CanFrame& input) noexcept {
+  if (!mode_known_ || mode != mode_) mode_repeats_ = kModeRepeats;
+  mode_known_ = true;
+  mode_ = mode;
+  input_ = input;
+}
+
+// Set_Limits is the only current limit that acts inside the drive's velocity and position loops.
+void ODrive_Motor::refreshLimits(const Tick& tick) noexcept {
+  const Duration age = tick.now - limits_sent_at_;
+  const bool changed = std::abs(effortLimit() - limits_sent_a_) > 0.01F * traits().effort_full_scale;
+  limits_due_ = age >= kLimitsRefresh || (changed && age >= kLimitsSpacing);
+}
+
+CanFrame ODrive_Motor::limitsFrame() const noexcept {
+  const double turns_per_s = std::abs(toDrive(static_cast<double>(velocityLimitRpm()))) / kRpmPerTurnPerS;
+  return odriveSetLimits(node_, saturate(static_cast<float>(turns_per_s)), effortLimit());
+}
+
+std::size_t ODrive_Motor::packCommand(const Tick& tick, std::span<CanFrame> out) noexcept {
+  FrameWriter frames(out);
+  if (ask_ && step_ == Step::kToClosedLoop) {
+    frames.add(odriveSetInputTorque(node_, 0.0F));
+    frames.add(odriveSetControllerMode(node_, OdriveControlMode::kTorque));
+    frames.add(limitsFrame());
+    frames.add(odriveSetAxisState(node_, OdriveAxisState::kClosedLoop));
+    return frames.count();
+  }
+  if (clear_repeats_ > 0) {
+    --clear_repeats_;
+    frames.add(odriveClearErrors(node_));
+  }
+  if (!due(tick) && !ask_) return frames.count();
+  if (isActive(ordered())) {
+    // The new mode's input before the mode, so that it never acts on an old one; and after it, because the
+    // drive puts its own position there when position control begins.
+    if (mode_repeats_ > 0) {
+      --mode_repeats_;
+      frames.add(input_);
+      frames.add(odriveSetControllerMode(node_, mode_));
+    } else if (limits_due_) {
+      frames.add(limitsFrame());
+      limits_due_ = false;
+      limits_sent_a_ = effortLimit();
+      limits_sent_at_ = tick.now;
+    }
+    frames.add(input_);
+  } else if (step_ == Step::kToClosedLoop || step_ == Step::kDone) {
+    frames.add(input_);  // 0 N·m: it also keeps the drive's watchdog content.
+  } else {
+    std::array<CanFrame, 2> rest{};
+    for (const auto& frame : std::span{rest}.first(packRest(rest))) frames.add(frame);
+  }
+  return frames.count();
+}
+
+std::size_t ODrive_Motor::packRest(std::span<CanFrame> out) const noexcept {
+  FrameWriter frames(out);
+  frames.add(odriveSetInputTorque(node_, 0.0F));
+  frames.add(odriveSetAxisState(node_, OdriveAxisState::kIdle));
+  return frames.count();
+}
+
+SequenceProgress ODrive_Motor::sequenceProgress() const noexcept {
+  // Ordered, but no tick has begun it: what an earlier sequence came to does not count.
+  if (ordered() == FrameKind::kEnable && last_order_ != FrameKind::kEnable) return SequenceProgress::kPending;
+  switch (step_) {
+    case Step::kToIdle:
+    case Step::kToClosedLoop: return SequenceProgress::kPending;
+    case Step::kFailed: return SequenceProgress::kFailed;
+    case Step::kNone:
+    case Step::kDone: break;
+  }
+  return SequenceProgress::kDone;
+}
+
+DriveComplaint ODrive_Motor::complaint() const noexcept {
+  if (heartbeat_) {
+    const auto reported = odriveComplaint(firmware_, odriveErrors(firmware_, *heartbeat_));
+    if (reported.fault != FaultCode::kNone) return reported;
+  }
+  if (stopped_) return {.fault = FaultCode::kDriveStopped, .native_code = 0};
+  return {};
+}
+
+void ODrive_Motor::clearComplaint() noexcept { clear_repeats_ = kClearRepeats; }
+
+}  // namespace rc10

@@ -1,0 +1,108 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+
+#include "motor/motor_family.hpp"
+#include "motor/odrive_frames.hpp"
+#include "motor/odrive_model.hpp"
+#include "motor/solo_motor.hpp"
+
+namespace rc10 {
+
+/// A motor on an ODrive axis, commanded by CANSimple. The drive runs all loops; it reports its encoder's
+/// shaft unasked, and counts turns by itself until it is restarted.
+///
+/// Enabling: idle, then torque control of 0 N·m, the limits, closed loop, until the heartbeat says so. It
+/// clears no errors. A mode that changes later is told three times, since nothing reports it back.
+class ODrive_Motor : public SoloMotor {
+ public:
+  /// `settings` has passed its family's check().
+  ODrive_Motor(const MotorSettings& settings, const MotorTraits& traits);
+
+  [[nodiscard]] std::span<const FrameFilter> filters() const noexcept override {
+    return std::span{filters_}.first(filter_count_);
+  }
+  [[nodiscard]] bool matchesFrame(const CanFrame& frame) const noexcept override;
+  FrameVerdict updateFeedback(const CanFrame& frame) noexcept override;
+  void update(const Tick& tick) noexcept override;
+
+  [[nodiscard]] std::span<const CanId> commandIds() const noexcept override { return command_ids_; }
+  [[nodiscard]] std::size_t packCommand(const Tick& tick, std::span<CanFrame> out) noexcept override;
+  [[nodiscard]] std::size_t packRest(std::span<CanFrame> out) const noexcept override;
+
+  [[nodiscard]] SequenceProgress sequenceProgress() const noexcept override;
+  [[nodiscard]] DriveComplaint complaint() const noexcept override;
+  void clearComplaint() noexcept override;
+
+ private:
+  /// Of the enable sequence.
+  enum class Step : std::uint8_t { kNone, kToIdle, kToClosedLoop, kDone, kFailed };
+
+  FrameVerdict acceptHeartbeat(const CanFrame& frame) noexcept;
+  FrameVerdict acceptEstimates(const CanFrame& frame) noexcept;
+  FrameVerdict acceptTelemetry(const CanFrame& frame) noexcept;
+  void hear(MonotonicTime received) noexcept;
+  void forgetPosition() noexcept;
+  [[nodiscard]] bool isJump(MonotonicTime received, double turns, double turns_per_s) const noexcept;
+
+  void runSequence(const Tick& tick) noexcept;
+  void enterStep(Step step) noexcept;
+  [[nodiscard]] bool stateSince(OdriveAxisState state, MonotonicTime since) const noexcept;
+  void watchState() noexcept;
+
+  void follow(const Target& target) noexcept;
+  void followTorque(const Target& target) noexcept;
+  void followVelocity(double rpm, float torque_ff_nm) noexcept;
+  void followPosition(const Target& target) noexcept;
+  [[nodiscard]] double limitedTorque(double nm) noexcept;  ///< At the output shaft.
+  [[nodiscard]] double limitedRpm(double rpm) noexcept;
+  void setInput(OdriveControlMode mode, const CanFrame& input) noexcept;
+  void refreshLimits(const Tick& tick) noexcept;
+  [[nodiscard]] CanFrame limitsFrame() const noexcept;
+
+  int node_;
+  OdriveFirmware firmware_;
+  float iq_sign_;
+  std::array<FrameFilter, 5> filters_;
+  std::size_t filter_count_;
+  std::array<CanId, 7> command_ids_;
+
+  // Heard.
+  std::optional<OdriveHeartbeat> heartbeat_;
+  MonotonicTime heartbeat_at_;
+  MonotonicTime heard_at_;
+  bool heard_ = false;
+  bool starting_ = false;
+  bool position_known_ = false;  ///< turns_ is of this drive's present life.
+  double turns_ = 0.0;
+  double turns_per_s_ = 0.0;
+  MonotonicTime current_at_;
+  MonotonicTime temperature_at_;
+  MonotonicTime voltage_at_;
+
+  // Enabling.
+  FrameKind last_order_ = FrameKind::kRest;
+  Step step_ = Step::kNone;
+  bool ask_ = false;  ///< The step's frames are sent in this tick.
+  int asked_ = 0;
+  MonotonicTime asked_first_;
+  MonotonicTime asked_last_;
+  bool stopped_ = false;
+
+  // To be sent.
+  OdriveControlMode mode_ = OdriveControlMode::kTorque;
+  CanFrame input_;
+  int mode_repeats_ = 0;
+  int clear_repeats_ = 0;
+  bool mode_known_ = false;
+  bool limits_due_ = false;
+  float limits_sent_a_ = 0.0F;
+  MonotonicTime limits_sent_at_;
+};
+
+/// ODrive S1, Pro and v3. Constant, usable from any thread.
+[[nodiscard]] const MotorFamily& odriveFamily() noexcept;
+
+}  // namespace rc10

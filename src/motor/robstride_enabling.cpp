@@ -1,0 +1,88 @@
+#include "motor/robstride_enabling.hpp"
+
+#include <bit>
+#include <cmath>
+
+namespace rc10 {
+namespace {
+
+constexpr Duration kPatience = std::chrono::milliseconds{50};
+constexpr int kMaxAttempts = 5;
+constexpr float kLimitTolerance = 1.01F;
+
+}  // namespace
+
+RobStrideSetting RobStrideSetting::limit(std::uint16_t index, float value) noexcept {
+  return {.index = index, .bits = std::bit_cast<std::uint32_t>(value), .at_most = true};
+}
+
+bool RobStrideSetting::agrees(std::uint32_t read_bits) const noexcept {
+  if (!at_most) return read_bits == bits;
+  const auto kept = std::bit_cast<float>(read_bits);
+  return kept >= 0.0F && kept <= std::bit_cast<float>(bits) * kLimitTolerance;
+}
+
+void RobStrideEnabling::add(const RobStrideSetting& setting) noexcept {
+  if (count_ < settings_.size()) settings_[count_++] = setting;
+}
+
+void RobStrideEnabling::begin() noexcept {
+  step_ = 0;
+  attempts_ = 0;
+  progress_ = SequenceProgress::kPending;
+}
+
+void RobStrideEnabling::advance() noexcept {
+  if (atEnable()) progress_ = SequenceProgress::kDone;
+  ++step_;
+  attempts_ = 0;
+}
+
+std::size_t RobStrideEnabling::pack(MonotonicTime now, const RobStrideCodec& codec, bool operation,
+                                    std::span<CanFrame> out) noexcept {
+  if (progress_ != SequenceProgress::kPending || out.size() < 3) return 0;
+  if (attempts_ > 0 && now - sent_at_ < kPatience) return 0;
+  if (attempts_ == kMaxAttempts) {
+    progress_ = SequenceProgress::kFailed;
+    return 0;
+  }
+  ++attempts_;
+  sent_at_ = now;
+  if (atSetting()) {
+    const auto& setting = settings_[step_ - 1];
+    out[0] = codec.write(setting.index, setting.bits);
+    out[1] = codec.read(setting.index);
+    return 2;
+  }
+  if (atPosition()) {
+    out[0] = codec.read(robstride_parameter::kPosition);
+    return 1;
+  }
+  if (!atEnable()) {
+    out[0] = codec.stop();
+    return 1;
+  }
+  std::size_t count = 0;
+  if (operation) out[count++] = codec.operate({});
+  out[count++] = codec.enable();
+  if (operation) out[count++] = codec.operate({});
+  return count;
+}
+
+void RobStrideEnabling::onFeedback(const RobStrideFeedback& seen) noexcept {
+  if (progress_ != SequenceProgress::kPending || attempts_ == 0) return;
+  if (step_ == 0 ? seen.mode == 0 : atEnable() && seen.mode == kRobStrideRunning) advance();
+}
+
+void RobStrideEnabling::onParameter(std::uint16_t index, bool accepted, std::uint32_t bits) noexcept {
+  if (progress_ != SequenceProgress::kPending || attempts_ == 0 || !accepted) return;
+  if (atSetting()) {
+    const auto& setting = settings_[step_ - 1];
+    if (index == setting.index && setting.agrees(bits)) advance();
+  } else if (atPosition() && index == robstride_parameter::kPosition &&
+             std::isfinite(std::bit_cast<float>(bits))) {
+    advance();
+  }
+}
+
+}  // namespace rc10

@@ -1,0 +1,61 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+
+#include "app/time.hpp"
+#include "motor/drive_frames.hpp"
+#include "motor/robstride_frames.hpp"
+
+namespace rc10 {
+
+/// A parameter to be set before a drive is enabled.
+struct RobStrideSetting {
+  std::uint16_t index = 0;
+  std::uint32_t bits = 0;
+  /// A float of which the drive may keep less: a limit, cut down to the model's own.
+  bool at_most = false;
+
+  [[nodiscard]] static RobStrideSetting limit(std::uint16_t index, float value) noexcept;
+  [[nodiscard]] bool agrees(std::uint32_t read_bits) const noexcept;
+};
+
+/// The way to a running drive, one step at a time: stop it, write each setting and read it back, read its
+/// position if that is wanted, enable. What is not answered within 50 ms is sent again, at most 5 times.
+/// Scheduler thread only.
+class RobStrideEnabling {
+ public:
+  static constexpr std::size_t kMaxSettings = 5;
+
+  /// Start-up only.
+  void add(const RobStrideSetting& setting) noexcept;
+  /// Start-up only.
+  void readPosition() noexcept { reads_position_ = true; }
+  void begin() noexcept;
+  [[nodiscard]] SequenceProgress progress() const noexcept { return progress_; }
+
+  /// The frames that are due now, at most 3. `operation`: tell it to be without torque before and after
+  /// it is enabled, whatever it was last told.
+  std::size_t pack(MonotonicTime now, const RobStrideCodec& codec, bool operation,
+                   std::span<CanFrame> out) noexcept;
+  void onFeedback(const RobStrideFeedback& seen) noexcept;
+  void onParameter(std::uint16_t index, bool accepted, std::uint32_t bits) noexcept;
+
+ private:
+  [[nodiscard]] bool atSetting() const noexcept { return step_ >= 1 && step_ <= count_; }
+  [[nodiscard]] bool atPosition() const noexcept { return reads_position_ && step_ == count_ + 1; }
+  [[nodiscard]] bool atEnable() const noexcept { return step_ == count_ + (reads_position_ ? 2 : 1); }
+  void advance() noexcept;
+
+  std::array<RobStrideSetting, kMaxSettings> settings_{};
+  std::size_t count_ = 0;
+  std::size_t step_ = 0;  // 0: stop; then the settings, the position, enable
+  bool reads_position_ = false;
+  int attempts_ = 0;
+  MonotonicTime sent_at_{};
+  SequenceProgress progress_ = SequenceProgress::kPending;
+};
+
+}  // namespace rc10

@@ -1,0 +1,302 @@
+#include "motor/robstride_motor.hpp"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <numbers>
+
+#include "bus/byte_order.hpp"
+
+namespace rc10 {
+namespace {
+
+namespace parameter = robstride_parameter;
+
+constexpr double kDegPerRad = 180.0 / std::numbers::pi;
+constexpr double kRpmPerRadS = 30.0 / std::numbers::pi;
+constexpr std::size_t kLength = 8;
+
+// Half the scale passes in 250 ms at the highest speed; and a drive that was silent for so long may have been
+// without power.
+constexpr Duration kLongestGap = std::chrono::milliseconds{200};
+// Between two samples it cannot have moved further than at this multiple of its highest speed, plus what the
+// time stamps are wrong by.
+constexpr double kJumpFactor = 1.2;
+constexpr double kJumpSlackRad = 0.5;
+constexpr double kWholeTurnsTolerance = 0.02;  // rad
+// What is missing after the end of the scale: whole turns, whatever the scale's end is rounded to.
+constexpr double kScaleRad = 8.0 * std::numbers::pi;
+// No counted position is so far away.
+constexpr double kFarthestRad = 1e5;
+// The supply voltage; also the frame whose echo tells that the bus is not stalled.
+constexpr Duration kReadPeriod = std::chrono::milliseconds{40};
+// A limit that got lost on the way is repeated.
+constexpr Duration kLimitPeriod = std::chrono::milliseconds{100};
+// Gains of a motor for which none are configured: full torque at half a radian and at 5 rad/s. Chosen.
+constexpr double kStiffnessPerTorque = 2.0;
+constexpr double kDampingPerStiffness = 0.035;
+constexpr double kVelocityGainPerTorque = 0.2;
+
+RobStrideControl controlOf(const std::string& text) noexcept {
+  if (text == "current") return RobStrideControl::kCurrent;
+  if (text == "velocity") return RobStrideControl::kVelocity;
+  if (text == "position") return RobStrideControl::kPosition;
+  return RobStrideControl::kOperation;
+}
+
+double orDefault(double value, double otherwise) noexcept { return value > 0.0 ? value : otherwise; }
+
+bool allOf(const FrameFilter& filter, const CanFrame& frame) noexcept {
+  return frame.id.extended == filter.id.extended &&
+         (frame.id.value & filter.mask) == (filter.id.value & filter.mask);
+}
+
+FrameFilter fromDrive(RobStrideType type, int data, int addressee) noexcept {
+  // Status bits or a result stand in bits 23 to 16.
+  return {.id = robStrideId(type, static_cast<std::uint32_t>(data), addressee), .mask = 0x1F00'FFFFU};
+}
+
+}  // namespace
+
+RobStride_Motor::RobStride_Motor(const MotorSettings& settings)
+    : SoloMotor(settings, robStrideFamily().traits(settings.model, settings.own),
+                settings.gear_ratio > 0.0
+                    ? settings.gear_ratio / findRobStrideModel(settings.model)->gear_ratio
+                    : 1.0),
+      model_(findRobStrideModel(settings.model)),
+      codec_{.model = model_,
+             .position_range_rad =
+                 orDefault(settings.own.number("position_range_rad"), model_->position_range_rad),
+             .drive_id = settings.id,
+             .host_id = settings.own.integer("host_id")},
+      control_(controlOf(settings.own.text("control"))),
+      filters_{fromDrive(RobStrideType::kFeedback, codec_.drive_id, codec_.host_id),
+               fromDrive(RobStrideType::kReport, codec_.drive_id, codec_.host_id),
+               fromDrive(RobStrideType::kReadParameter, codec_.drive_id, codec_.host_id),
+               fromDrive(RobStrideType::kFault, codec_.drive_id, codec_.host_id),
+               // The CyberGear's manual has the two ids of a fault frame the other way round.
+               fromDrive(RobStrideType::kFault, codec_.host_id, codec_.drive_id)},
+      command_ids_{codec_.read(0).id, codec_.write(0, 0.0F).id} {
+  const double square = ratio() * ratio();
+  const double torque = model_->torque_range_nm;
+  angle_stiffness_ = settings.own.number("angle_stiffness_nm_per_rad") / square;
+  angle_stiffness_ = orDefault(angle_stiffness_, kStiffnessPerTorque * torque);
+  angle_damping_ = settings.own.number("angle_damping_nms_per_rad") / square;
+  angle_damping_ = orDefault(angle_damping_, std::min(kDampingPerStiffness * kStiffnessPerTorque * torque,
+                                                      model_->damping_range_nms_per_rad));
+  velocity_gain_ = settings.own.number("velocity_gain_nms_per_rad") / square;
+  velocity_gain_ =
+      orDefault(velocity_gain_, std::min(kVelocityGainPerTorque * torque, model_->damping_range_nms_per_rad));
+
+  const auto add_run_mode = [this](std::uint8_t mode) {
+    enabling_.add({.index = parameter::kRunMode, .bits = mode});
+  };
+  // No current before the first command: whatever reference the drive still has, it stays where it is.
+  const RobStrideSetting no_current = RobStrideSetting::limit(parameter::kCurrentLimit, 0.0F);
+  switch (control_) {
+    case RobStrideControl::kOperation:
+      add_run_mode(static_cast<std::uint8_t>(RobStrideRunMode::kOperation));
+      enabling_.add(RobStrideSetting::limit(parameter::kTorqueLimit, static_cast<float>(limitNm())));
+      break;
+    case RobStrideControl::kCurrent:
+      add_run_mode(static_cast<std::uint8_t>(RobStrideRunMode::kCurrent));
+      enabling_.add({.index = parameter::kCurrentRef, .bits = 0});
+      break;
+    case RobStrideControl::kVelocity:
+      add_run_mode(static_cast<std::uint8_t>(RobStrideRunMode::kVelocity));
+      enabling_.add(no_current);
+      enabling_.add({.index = parameter::kVelocityRef, .bits = 0});
+      break;
+    case RobStrideControl::kPosition:
+      add_run_mode(model_->position_run_mode);
+      enabling_.add(no_current);
+      enabling_.add(RobStrideSetting::limit(parameter::kVelocityLimit, static_cast<float>(limitRadS())));
+      break;
+  }
+  // Where the scale wraps, the drive's own count of turns may be ahead of ours.
+  if (wraps()) enabling_.readPosition();
+  const int watchdog_ms = settings.own.integer("watchdog_ms");
+  if (watchdog_ms > 0) {
+    enabling_.add({.index = model_->watchdog_index,
+                   .bits = static_cast<std::uint32_t>(watchdog_ms) * kRobStrideTimeoutPerMs});
+  }
+}
+
+double RobStride_Motor::ratio() const noexcept { return std::abs(toDrive(1.0)); }
+
+double RobStride_Motor::limitNm() const noexcept {
+  return std::min(static_cast<double>(effortLimit()) * model_->torqueNmPerA(), model_->torque_range_nm);
+}
+
+double RobStride_Motor::limitRadS() const noexcept {
+  const double own = model_->velocity_range_rad_s;
+  const double limit_rpm = static_cast<double>(velocityLimitRpm());
+  return limit_rpm > 0.0 ? std::min(limit_rpm * ratio() / kRpmPerRadS, own) : own;
+}
+
+// Newer firmware goes on from the other end of its scale, two whole turns to each side; what has a scale
+// of 12.5 rad is not known to.
+bool RobStride_Motor::wraps() const noexcept {
+  const double turns = codec_.position_range_rad / std::numbers::pi;
+  return std::abs(turns - std::round(turns)) * std::numbers::pi < kWholeTurnsTolerance;
+}
+
+double RobStride_Motor::scaleEndRad() const noexcept {
+  return wraps() ? std::min(codec_.position_range_rad, kScaleRad / 2) : codec_.position_range_rad;
+}
+
+bool RobStride_Motor::toldToRun() const noexcept {
+  switch (ordered()) {
+    case FrameKind::kIdle:
+    case FrameKind::kDamp:
+    case FrameKind::kBrake:
+    case FrameKind::kHold:
+    case FrameKind::kCommand: return true;
+    default: return false;
+  }
+}
+
+bool RobStride_Motor::matchesFrame(const CanFrame& frame) const noexcept {
+  return frame.type != FrameType::kError && !frame.fd &&
+         std::any_of(filters_.begin(), filters_.end(),
+                     [&frame](const FrameFilter& filter) { return allOf(filter, frame); });
+}
+
+FrameVerdict RobStride_Motor::updateFeedback(const CanFrame& frame) noexcept {
+  if (frame.type != FrameType::kData || frame.fd || frame.length != kLength) return FrameVerdict::kMalformed;
+  configuring_.onFrame(frame);
+  switch (static_cast<RobStrideType>(frame.id.value >> 24U & 0x1FU)) {
+    case RobStrideType::kFeedback:
+    case RobStrideType::kReport: takeFeedback(codec_.feedback(frame), frame.received); break;
+    case RobStrideType::kReadParameter: takeParameter(frame); break;
+    case RobStrideType::kFault: fault_word_ = readLittleEndian<std::uint32_t>(frame.payload(), 0); break;
+    default: return FrameVerdict::kMalformed;
+  }
+  return FrameVerdict::kAccepted;
+}
+
+void RobStride_Motor::takeFeedback(const RobStrideFeedback& seen, MonotonicTime received) noexcept {
+  const bool stopped_itself = feedback_.samples > 0 && toldToRun() && seen_.mode == kRobStrideRunning &&
+                              seen.mode != kRobStrideRunning;
+  // A fault stops it where it is. Without one it may have been restarted.
+  if (stopped_itself && seen.status_bits == 0 && fault_word_ == 0) doubtAngles();
+  if (clear_sent_ && seen.status_bits == 0) {
+    clear_sent_ = false;
+    fault_word_ = 0;
+  }
+  trackPosition(seen, received);
+  seen_ = seen;
+  feedback_.velocity_rpm = static_cast<float>(toOutput(seen.velocity_rad_s * kRpmPerRadS));
+  feedback_.torque_nm = static_cast<float>(torqueToOutput(seen.torque_nm));
+  feedback_.current_a = feedback_.torque_nm / torqueNmPerA();
+  feedback_.temperature_c = static_cast<float>(seen.temperature_c);
+  acceptSample(received, position_rad_ * kDegPerRad);
+  enabling_.onFeedback(seen);
+}
+
+void RobStride_Motor::trackPosition(const RobStrideFeedback& seen, MonotonicTime received) noexcept {
+  if (feedback_.samples == 0) {
+    position_rad_ = seen.position_rad;
+    return;
+  }
+  double moved = seen.position_rad - seen_.position_rad;
+  if (wraps() && moved > kScaleRad / 2) moved -= kScaleRad;
+  if (wraps() && moved < -kScaleRad / 2) moved += kScaleRad;
+  const Duration gap = std::max(received - feedback_.received, Duration::zero());
+  const double reach =
+      kJumpSlackRad + kJumpFactor * model_->velocity_range_rad_s * static_cast<double>(seconds(gap));
+  const bool jumped = std::abs(moved) > reach;
+  if (jumped) ++feedback_.jumps;
+  // At its end a scale that does not wrap says no more than that.
+  const bool at_end = !wraps() && (seen.raw_position == 0 || seen.raw_position == 0xFFFF);
+  if (gap > kLongestGap || jumped || at_end) doubtAngles();
+  position_rad_ += moved;
+}
+
+void RobStride_Motor::doubtAngles() noexcept {
+  angles_in_doubt_ = true;
+  loseReference();
+}
+
+void RobStride_Motor::takeParameter(const CanFrame& frame) noexcept {
+  const auto index = readLittleEndian<std::uint16_t>(frame.payload(), 0);
+  const auto bits = readLittleEndian<std::uint32_t>(frame.payload(), 4);
+  const bool accepted = (frame.id.value >> 16U & 0xFFU) == 0;
+  const auto value = static_cast<double>(std::bit_cast<float>(bits));
+  if (accepted && index == parameter::kSupplyVoltage && value >= 0.0 && value < 1000.0) {
+    feedback_.voltage_v = static_cast<float>(value);
+  }
+  if (accepted && index == parameter::kPosition && std::abs(value) < kFarthestRad && feedback_.samples > 0) {
+    // Whole scales apart, because the two were read a moment apart.
+    scale_offset_rad_ = wraps() ? kScaleRad * std::round((value - position_rad_) / kScaleRad) : 0.0;
+  }
+  enabling_.onParameter(index, accepted, bits);
+}
+
+DriveComplaint RobStride_Motor::complaint() const noexcept {
+  const auto native = robStrideNativeCode(fault_word_, seen_.status_bits);
+  if (native != 0) return {.fault = robStrideFault(native, model_->cyber_gear), .native_code = native};
+  if (toldToRun() && feedback_.samples > 0 && seen_.mode != kRobStrideRunning) {
+    return {.fault = FaultCode::kDriveStopped, .native_code = 0};
+  }
+  return {};
+}
+
+SequenceProgress RobStride_Motor::sequenceProgress() const noexcept {
+  if (ordered() != FrameKind::kEnable) return SequenceProgress::kDone;
+  // Ordered a moment ago: what there is belongs to the last time.
+  return last_order_ == FrameKind::kEnable ? enabling_.progress() : SequenceProgress::kPending;
+}
+
+std::size_t RobStride_Motor::packReference(const Tick& tick, std::span<CanFrame> out) noexcept {
+  switch (control_) {
+    case RobStrideControl::kOperation: out[0] = codec_.operate(operation_); return 1;
+    case RobStrideControl::kCurrent:
+      out[0] = codec_.write(parameter::kCurrentRef, reference_.value);
+      return 1;
+    case RobStrideControl::kVelocity: out[0] = codec_.write(parameter::kVelocityRef, reference_.value); break;
+    case RobStrideControl::kPosition: out[0] = codec_.write(parameter::kPositionRef, reference_.value); break;
+  }
+  const bool limit_due =
+      limit_sent_a_ != reference_.current_limit_a || tick.now - limit_sent_at_ >= kLimitPeriod;
+  if (!limit_due) return 1;
+  // After the reference: it is never followed before it is the right one.
+  out[1] = codec_.write(parameter::kCurrentLimit, reference_.current_limit_a);
+  limit_sent_a_ = reference_.current_limit_a;
+  limit_sent_at_ = tick.now;
+  return 2;
+}
+
+std::size_t RobStride_Motor::packCommand(const Tick& tick, std::span<CanFrame> out) noexcept {
+  if (out.size() < 3) return 0;
+  const bool enabling = ordered() == FrameKind::kEnable;
+  if (enabling && enabling_.progress() == SequenceProgress::kPending) {
+    limit_sent_a_ = -1.0F;
+    return enabling_.pack(tick.now, codec_, control_ == RobStrideControl::kOperation, out);
+  }
+  std::size_t count = enabling || toldToRun() ? 0 : configuring_.pack(tick.now, out);
+  if (!due(tick)) return count;
+  if (toldToRun() || (enabling && enabling_.progress() == SequenceProgress::kDone)) {
+    count += packReference(tick, out);
+  } else {
+    out[count++] = codec_.stop(clear_ordered_);
+    clear_sent_ = clear_sent_ || clear_ordered_;
+    clear_ordered_ = false;
+  }
+  if (tick.now - read_at_ >= kReadPeriod) {
+    read_at_ = tick.now;
+    out[count++] = codec_.read(parameter::kSupplyVoltage);
+  }
+  return count;
+}
+
+std::size_t RobStride_Motor::packRest(std::span<CanFrame> out) const noexcept {
+  if (out.empty()) return 0;
+  out[0] = codec_.stop();
+  if (out.size() < 2) return 1;
+  // The one id that is sent in every state: its echo tells that a stalled bus has come back.
+  out[1] = codec_.read(parameter::kSupplyVoltage);
+  return 2;
+}
+
+}  // namespace rc10

@@ -1,0 +1,118 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+#include "motor/drive_configuring.hpp"
+#include "motor/robstride_enabling.hpp"
+#include "motor/robstride_frames.hpp"
+#include "motor/robstride_model.hpp"
+#include "motor/robstride_setup.hpp"
+#include "motor/solo_motor.hpp"
+
+namespace rc10 {
+
+/// How a drive is told what to do: a choice for the motor's whole life, because a drive changes its run mode
+/// only while it is stopped.
+enum class RobStrideControl : std::uint8_t {
+  kOperation,  ///< Stiffness, damping and torque in every frame.
+  kCurrent,    ///< The run modes: references are parameters.
+  kVelocity,
+  kPosition,
+};
+
+/// A RobStride RS00-RS06, EL05 or CyberGear on its private protocol. Scheduler thread only.
+///
+/// The drive answers every frame with its state, and says nothing unasked: not enabled, it is told to stop
+/// again and again. Operation mode: the drive's own torque limit is not trusted alone; position and velocity
+/// references are kept so close to the measured ones that the torque stays within the limit. Its position
+/// scale ends after two turns to each side of the drive's zero. Beyond them angles are not followed, only
+/// damped: how the drive compares a position on the scale with its own is not documented there.
+class RobStride_Motor : public SoloMotor {
+ public:
+  /// `settings` has passed the family's check().
+  explicit RobStride_Motor(const MotorSettings& settings);
+
+  [[nodiscard]] std::span<const FrameFilter> filters() const noexcept override { return filters_; }
+  [[nodiscard]] bool matchesFrame(const CanFrame& frame) const noexcept override;
+  FrameVerdict updateFeedback(const CanFrame& frame) noexcept override;
+  void update(const Tick& tick) noexcept override;
+
+  /// Reading and writing parameters. A command of the operation mode carries its torque in its id, so these
+  /// cannot be listed; and of what is listed, the lowest is to be sent in every state, because its echo is
+  /// watched: reading, so enable and stop are not listed either.
+  [[nodiscard]] std::span<const CanId> commandIds() const noexcept override { return command_ids_; }
+  [[nodiscard]] std::size_t packCommand(const Tick& tick, std::span<CanFrame> out) noexcept override;
+  [[nodiscard]] std::size_t packRest(std::span<CanFrame> out) const noexcept override;
+
+  [[nodiscard]] SequenceProgress sequenceProgress() const noexcept override;
+  [[nodiscard]] DriveComplaint complaint() const noexcept override;
+  void clearComplaint() noexcept override { clear_ordered_ = true; }
+  [[nodiscard]] DriveConfiguring* driveConfiguring() noexcept override { return &configuring_; }
+
+ private:
+  /// The reference of a run mode, as the drive takes it, and the current that it may use for it.
+  struct Reference {
+    float value = 0.0F;
+    float current_limit_a = 0.0F;
+  };
+
+  [[nodiscard]] bool toldToRun() const noexcept;
+  [[nodiscard]] double limitNm() const noexcept;
+  [[nodiscard]] double limitRadS() const noexcept;
+  [[nodiscard]] double ratio() const noexcept;  ///< Turns of the drive's output per turn of the shaft.
+  [[nodiscard]] bool wraps() const noexcept;
+  [[nodiscard]] double scaleEndRad() const noexcept;  ///< As far as operation mode can be told to go.
+  [[nodiscard]] bool positionOnScale() const noexcept;
+  [[nodiscard]] double positionRadFor(double total_angle_deg) const noexcept;
+  [[nodiscard]] double outputTorqueOf(const RobStrideOperation& wanted) const noexcept;
+
+  void takeFeedback(const RobStrideFeedback& seen, MonotonicTime received) noexcept;
+  void takeParameter(const CanFrame& frame) noexcept;
+  void trackPosition(const RobStrideFeedback& seen, MonotonicTime received) noexcept;
+  void doubtAngles() noexcept;
+
+  void planOperation(const Target& target) noexcept;
+  void planCurrent(const Target& target) noexcept;
+  void planVelocity(const Target& target) noexcept;
+  void planPosition(const Target& target) noexcept;
+  [[nodiscard]] double clampVelocity(double rad_s) noexcept;
+  void limitApproach(RobStrideOperation& wanted) noexcept;
+  void limitTorque(RobStrideOperation& wanted) noexcept;
+
+  [[nodiscard]] std::size_t packReference(const Tick& tick, std::span<CanFrame> out) noexcept;
+
+  const RobStrideModel* model_;
+  RobStrideCodec codec_;
+  RobStrideControl control_;
+  double angle_stiffness_;  ///< Of the drive's output, as all of these.
+  double angle_damping_;
+  double velocity_gain_;
+  std::array<FrameFilter, 5> filters_;
+  std::array<CanId, 2> command_ids_;
+  RobStrideEnabling enabling_;
+  RobStrideSetupCodec setup_codec_{codec_};
+  DriveConfiguring configuring_{setup_codec_};
+
+  RobStrideFeedback seen_;
+  std::uint32_t fault_word_ = 0;
+  double position_rad_ = 0.0;      ///< Of the drive's output, over turns.
+  double scale_offset_rad_ = 0.0;  ///< The drive's own count of turns is this much more.
+  bool angles_in_doubt_ = false;   ///< Until the next enabling.
+  FrameKind last_order_ = FrameKind::kRest;
+  bool clear_ordered_ = false;
+  bool clear_sent_ = false;
+
+  RobStrideOperation operation_;
+  Reference reference_;
+  bool brake_held_ = false;
+  double brake_deg_ = 0.0;
+  float limit_sent_a_ = -1.0F;
+  MonotonicTime limit_sent_at_{};
+  MonotonicTime read_at_{};
+};
+
+/// RobStride and CyberGear, on their private protocol.
+[[nodiscard]] const MotorFamily& robStrideFamily() noexcept;
+
+}  // namespace rc10

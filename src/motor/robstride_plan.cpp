@@ -1,0 +1,198 @@
+// What a RobStride_Motor is to be told: its update().
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "motor/robstride_motor.hpp"
+
+namespace rc10 {
+namespace {
+
+constexpr double kDegPerRad = 180.0 / std::numbers::pi;
+constexpr double kRpmPerRadS = 30.0 / std::numbers::pi;
+
+// A float keeps 0.01 rad up to here.
+constexpr double kFarthestRad = 1e5;
+// Of the braking torque.
+constexpr double kDampShare = 0.2;
+constexpr double kScaleEndSlackRad = 1e-3;
+
+// Infinities are cut off by the limits; what is no number at all is nothing.
+double number(double value) noexcept { return std::isnan(value) ? 0.0 : value; }
+
+}  // namespace
+
+bool RobStride_Motor::positionOnScale() const noexcept {
+  return std::abs(position_rad_ + scale_offset_rad_) <= scaleEndRad() + kScaleEndSlackRad;
+}
+
+double RobStride_Motor::positionRadFor(double total_angle_deg) const noexcept {
+  return drivePositionFor(total_angle_deg) / kDegPerRad + scale_offset_rad_;
+}
+
+void RobStride_Motor::update(const Tick& /*tick*/) noexcept {
+  limits_ = 0;
+  if (ordered() == FrameKind::kEnable && last_order_ != FrameKind::kEnable) {
+    enabling_.begin();
+    angles_in_doubt_ = false;
+  }
+  last_order_ = ordered();
+  Target target = wanted();
+  if (!std::isfinite(target.value)) target = Target{};
+  if (target.mode != ControlMode::kBrake) brake_held_ = false;
+  operation_ = {};
+  reference_ = {};
+  switch (control_) {
+    case RobStrideControl::kOperation: planOperation(target); break;
+    case RobStrideControl::kCurrent: planCurrent(target); break;
+    case RobStrideControl::kVelocity: planVelocity(target); break;
+    case RobStrideControl::kPosition: planPosition(target); break;
+  }
+}
+
+double RobStride_Motor::clampVelocity(double rad_s) noexcept {
+  const double limit = limitRadS();
+  const double clamped = std::clamp(number(rad_s), -limit, limit);
+  if (clamped != rad_s) limits_ |= kLimitVelocity;
+  return clamped;
+}
+
+void RobStride_Motor::planOperation(const Target& target) noexcept {
+  RobStrideOperation wanted;
+  const double square = ratio() * ratio();
+  const bool knows_itself = feedback_.samples > 0;
+  const auto take_feed_forward = [&] {
+    wanted.torque_nm = torqueToDrive(number(static_cast<double>(target.torque_ff_nm)));
+    wanted.velocity_rad_s = clampVelocity(toDrive(static_cast<double>(target.velocity_ff_rpm)) / kRpmPerRadS);
+  };
+  switch (target.mode) {
+    case ControlMode::kCurrent:
+      wanted.torque_nm = torqueToDrive(target.value * static_cast<double>(torqueNmPerA()) +
+                                       number(static_cast<double>(target.torque_ff_nm)));
+      break;
+    case ControlMode::kVelocity:
+      take_feed_forward();
+      wanted.velocity_rad_s = clampVelocity(toDrive(target.value) / kRpmPerRadS);
+      wanted.damping_nms_per_rad = velocity_gain_;
+      break;
+    case ControlMode::kBrake: wanted.damping_nms_per_rad = velocity_gain_; break;
+    case ControlMode::kTotalAngle:
+      take_feed_forward();
+      wanted.position_rad = positionRadFor(target.value);
+      wanted.stiffness_nm_per_rad = angle_stiffness_;
+      wanted.damping_nms_per_rad = angle_damping_;
+      break;
+    case ControlMode::kImpedance:
+      take_feed_forward();
+      wanted.position_rad = positionRadFor(target.value);
+      wanted.stiffness_nm_per_rad =
+          std::max(number(static_cast<double>(target.stiffness_nm_per_rad)), 0.0) / square;
+      wanted.damping_nms_per_rad =
+          std::max(number(static_cast<double>(target.damping_nms_per_rad)), 0.0) / square;
+      break;
+    default:
+      if (ordered() == FrameKind::kDamp) wanted.damping_nms_per_rad = kDampShare * velocity_gain_;
+      break;
+  }
+  // Without feedback nothing that depends on where it is can be kept within the limits.
+  if (!knows_itself && (wanted.stiffness_nm_per_rad > 0.0 || wanted.damping_nms_per_rad > 0.0)) wanted = {};
+  const bool follows_angle = wanted.stiffness_nm_per_rad > 0.0;
+  if (follows_angle && (angles_in_doubt_ || !positionOnScale())) {
+    limits_ |= kLimitAngle;
+    wanted = {.damping_nms_per_rad = std::max(wanted.damping_nms_per_rad, angle_damping_)};
+  }
+  const double end = scaleEndRad();
+  if (std::abs(wanted.position_rad) > end) {
+    limits_ |= kLimitAngle;
+    wanted.position_rad = std::clamp(wanted.position_rad, -end, end);
+  }
+  if (target.mode == ControlMode::kTotalAngle) limitApproach(wanted);
+  limitTorque(wanted);
+  operation_ = wanted;
+  setCommand(outputTorqueOf(wanted) / static_cast<double>(torqueNmPerA()), CommandUnit::kAmpere);
+}
+
+double RobStride_Motor::outputTorqueOf(const RobStrideOperation& wanted) const noexcept {
+  double torque_nm = wanted.torque_nm;
+  if (feedback_.samples > 0) {
+    torque_nm += wanted.stiffness_nm_per_rad * (wanted.position_rad - position_rad_ - scale_offset_rad_) +
+                 wanted.damping_nms_per_rad * (wanted.velocity_rad_s - seen_.velocity_rad_s);
+  }
+  return torqueToOutput(torque_nm);
+}
+
+// The spring pulls as fast as the damping lets it: a target further away would be faster than allowed.
+void RobStride_Motor::limitApproach(RobStrideOperation& wanted) noexcept {
+  if (velocityLimitRpm() <= 0.0F || wanted.stiffness_nm_per_rad <= 0.0) return;
+  const double limit = limitRadS();
+  const double per_speed = wanted.damping_nms_per_rad / wanted.stiffness_nm_per_rad;
+  const double here = position_rad_ + scale_offset_rad_;
+  const double near = std::clamp(wanted.position_rad, here - per_speed * (limit + wanted.velocity_rad_s),
+                                 here + per_speed * (limit - wanted.velocity_rad_s));
+  if (near != wanted.position_rad) limits_ |= kLimitVelocity;
+  wanted.position_rad = near;
+}
+
+void RobStride_Motor::limitTorque(RobStrideOperation& wanted) noexcept {
+  const double limit = limitNm();
+  // The gains as they arrive: on a coarse scale they differ enough to matter.
+  const auto arriving = codec_.operation(codec_.operate(wanted));
+  wanted.stiffness_nm_per_rad = arriving.stiffness_nm_per_rad;
+  wanted.damping_nms_per_rad = arriving.damping_nms_per_rad;
+  const double feed_forward = std::clamp(number(wanted.torque_nm), -limit, limit);
+  if (feed_forward != wanted.torque_nm) limits_ |= kLimitCurrent;
+  wanted.torque_nm = feed_forward;
+  if (wanted.stiffness_nm_per_rad <= 0.0 && wanted.damping_nms_per_rad <= 0.0) return;
+
+  const double torque_nm = torqueToDrive(outputTorqueOf(wanted));
+  const double allowed = std::clamp(torque_nm, -limit, limit);
+  if (allowed == torque_nm) return;
+  limits_ |= kLimitCurrent;
+  const double excess = torque_nm - allowed;
+  if (wanted.stiffness_nm_per_rad > 0.0) {
+    wanted.position_rad -= excess / wanted.stiffness_nm_per_rad;
+  } else {
+    wanted.velocity_rad_s -= excess / wanted.damping_nms_per_rad;
+  }
+}
+
+void RobStride_Motor::planCurrent(const Target& target) noexcept {
+  if (target.mode == ControlMode::kCurrent) {
+    const double asked = target.value + number(static_cast<double>(target.torque_ff_nm / torqueNmPerA()));
+    const double limit = static_cast<double>(effortLimit());
+    const double clamped = std::clamp(asked, -limit, limit);
+    if (clamped != asked) limits_ |= kLimitCurrent;
+    reference_.value = static_cast<float>(clamped) * direction();
+  }
+  setCommand(static_cast<double>(reference_.value * direction()), CommandUnit::kAmpere);
+}
+
+void RobStride_Motor::planVelocity(const Target& target) noexcept {
+  if (target.mode == ControlMode::kVelocity) {
+    reference_.value = static_cast<float>(clampVelocity(toDrive(target.value) / kRpmPerRadS));
+  }
+  const bool acts = target.mode == ControlMode::kVelocity || target.mode == ControlMode::kBrake;
+  reference_.current_limit_a = acts ? effortLimit() : 0.0F;
+  setCommand(toOutput(static_cast<double>(reference_.value)) * kRpmPerRadS, CommandUnit::kNative);
+}
+
+void RobStride_Motor::planPosition(const Target& target) noexcept {
+  const bool follows = target.mode == ControlMode::kTotalAngle || target.mode == ControlMode::kBrake;
+  double wanted_deg = feedback_.total_angle_deg;
+  if (target.mode == ControlMode::kTotalAngle) wanted_deg = target.value;
+  if (target.mode == ControlMode::kBrake) {
+    if (!brake_held_) brake_deg_ = feedback_.total_angle_deg;
+    brake_held_ = true;
+    wanted_deg = brake_deg_;
+  }
+  if (feedback_.samples == 0) return;
+  if (follows && angles_in_doubt_) limits_ |= kLimitAngle;
+  const double position_rad = number(positionRadFor(wanted_deg));
+  const double reachable = std::clamp(position_rad, -kFarthestRad, kFarthestRad);
+  if (reachable != position_rad) limits_ |= kLimitAngle;
+  reference_.value = static_cast<float>(reachable);
+  reference_.current_limit_a = follows && !angles_in_doubt_ ? effortLimit() : 0.0F;
+  setCommand(wanted_deg, CommandUnit::kNative);
+}
+
+}  // namespace rc10

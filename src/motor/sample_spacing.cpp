@@ -1,0 +1,35 @@
+#include "motor/sample_spacing.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace rc10 {
+namespace {
+
+constexpr float kShortest = 0.1F;  // periods
+constexpr float kLongest = 5.0F;   // periods
+// Of the period's low-pass, per take: about 30 samples, long against jitter, short against a warm-up.
+constexpr float kSmoothing = 0.03F;
+
+}  // namespace
+
+SampleSpacing::SampleSpacing(Duration nominal) noexcept
+    : nominal_s_(seconds(nominal)), period_s_(nominal_s_) {}
+
+void SampleSpacing::add(Duration spacing) noexcept {
+  pending_s_ += std::clamp(seconds(spacing), 0.0F, kLongest * nominal_s_);
+  ++pending_samples_;
+}
+
+float SampleSpacing::take() noexcept {
+  if (pending_samples_ == 0) return 0.0F;
+  // Lost frames make the spacing a multiple of the period, late ones do not change how many there are.
+  const float periods = std::max(std::round(pending_s_ / period_s_), 1.0F);
+  const float measured_s = std::clamp(pending_s_ / periods, kShortest * nominal_s_, kLongest * nominal_s_);
+  period_s_ += (measured_s - period_s_) * kSmoothing;
+  pending_s_ = 0.0F;
+  pending_samples_ = 0;
+  return std::clamp(periods * period_s_, kShortest * nominal_s_, kLongest * nominal_s_);
+}
+
+}  // namespace rc10

@@ -1,0 +1,101 @@
+#include "motor/solo_motor.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "app/angle.hpp"
+
+namespace rc10 {
+namespace {
+
+[[nodiscard]] Duration periodOf(int hz) noexcept {
+  return std::chrono::duration_cast<Duration>(std::chrono::seconds{1}) / std::max(hz, 1);
+}
+
+[[nodiscard]] double finite(double value) noexcept { return std::isfinite(value) ? value : 0.0; }
+
+}  // namespace
+
+SoloMotor::SoloMotor(const MotorSettings& settings, const MotorTraits& traits, double drive_turns)
+    : Motor_Base(settings.name),
+      model_(settings.model),
+      traits_(traits),
+      gear_ratio_(settings.gear_ratio > 0.0 ? settings.gear_ratio : traits.gear_ratio),
+      drive_per_output_(settings.direction < 0 ? -drive_turns : drive_turns),
+      effort_limit_(settings.effort_limit > 0.0F ? settings.effort_limit : traits.effort_full_scale),
+      velocity_limit_rpm_(settings.velocity_limit_rpm),
+      torque_nm_per_a_(traits.torque_nm_per_a * static_cast<float>(gear_ratio_ / traits.gear_ratio)),
+      tick_period_(periodOf(settings.tick_hz)),
+      feedback_period_(periodOf(settings.feedback_hz > 0 ? settings.feedback_hz : traits.feedback_hz)),
+      divider_(static_cast<std::uint64_t>(std::max(settings.command_divider, 1))),
+      phase_(static_cast<std::uint64_t>(std::max(settings.command_phase, 0))),
+      reference_({.absolute = traits.absolute && gear_ratio_ == traits.gear_ratio,
+                  .zero_deg = settings.zero_deg,
+                  .zero_at_power_on = settings.zero_at_power_on}) {}
+
+void SoloMotor::acceptSample(MonotonicTime received, double drive_position_deg) noexcept {
+  reference_.update(toOutput(drive_position_deg));
+  feedback_.received = received;
+  ++feedback_.samples;
+  feedback_.total_angle_deg = reference_.totalAngleDeg();
+  // The nearest float may be the full turn itself.
+  const auto angle_deg = static_cast<float>(wrapDegrees(feedback_.total_angle_deg));
+  feedback_.angle_deg = angle_deg < 360.0F ? angle_deg : 0.0F;
+  feedback_.zeroed = reference_.known();
+}
+
+void SoloMotor::loseReference() noexcept {
+  reference_.lose();
+  feedback_.zeroed = false;
+  holding_ = false;
+}
+
+bool SoloMotor::setZero(double angle_deg) noexcept {
+  if (!reference_.setZero(angle_deg)) return false;
+  feedback_.total_angle_deg = reference_.totalAngleDeg();
+  const auto wrapped_deg = static_cast<float>(wrapDegrees(feedback_.total_angle_deg));
+  feedback_.angle_deg = wrapped_deg < 360.0F ? wrapped_deg : 0.0F;
+  feedback_.zeroed = true;
+  holding_ = false;
+  return true;
+}
+
+Target SoloMotor::wanted() noexcept {
+  const FrameKind kind = ordered();
+  if (kind != FrameKind::kHold) holding_ = false;
+  if (kind == FrameKind::kBrake) return Target{.mode = ControlMode::kBrake};
+  if (kind == FrameKind::kHold) {
+    if (feedback_.samples == 0) return Target{};
+    if (!holding_) hold_deg_ = feedback_.total_angle_deg;
+    holding_ = true;
+    return Target{.mode = ControlMode::kTotalAngle, .value = hold_deg_};
+  }
+  if (kind != FrameKind::kCommand) return Target{};
+  Target target = targetInForce();
+  if (target.mode == ControlMode::kAngle) {
+    target.mode = ControlMode::kTotalAngle;
+    target.value = feedback_.total_angle_deg + shortestAngle(feedback_.total_angle_deg, target.value);
+  }
+  return target;
+}
+
+double SoloMotor::currentWithinLimit(const Target& target) noexcept {
+  const auto limit_a = static_cast<double>(effortLimit());
+  double wanted_a = target.mode == ControlMode::kCurrent ? finite(target.value) : 0.0;
+  if (torqueNmPerA() > 0.0F) wanted_a += finite(static_cast<double>(target.torque_ff_nm / torqueNmPerA()));
+  const double current_a = std::clamp(wanted_a, -limit_a, limit_a);
+  if (current_a != wanted_a) limits_ |= kLimitCurrent;
+  return current_a;
+}
+
+double SoloMotor::rpmWithinLimit(double output_rpm) noexcept {
+  const double wanted_rpm = finite(output_rpm);
+  const auto limit_rpm = static_cast<double>(velocityLimitRpm());
+  const double rpm = limit_rpm > 0.0 ? std::clamp(wanted_rpm, -limit_rpm, limit_rpm) : wanted_rpm;
+  if (rpm != wanted_rpm) limits_ |= kLimitVelocity;
+  return rpm;
+}
+
+bool SoloMotor::due(const Tick& tick) const noexcept { return tick.index % divider_ == phase_ % divider_; }
+
+}  // namespace rc10

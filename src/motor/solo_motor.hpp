@@ -1,0 +1,117 @@
+#pragma once
+
+#include <string>
+
+#include "bus/command_packer.hpp"
+#include "motor/angle_reference.hpp"
+#include "motor/motor_base.hpp"
+#include "motor/motor_family.hpp"
+
+namespace rc10 {
+
+/// A motor whose drive has frames of its own: it listens and it packs. What most families have in common:
+/// conversion to the output shaft, the reference of the angle, the rhythm of commands, what an order means.
+/// A family adds updateFeedback(), update() and the packing. Scheduler thread only.
+class SoloMotor : public Motor_Base, public CommandPacker {
+ public:
+  [[nodiscard]] std::string_view packerName() const noexcept override { return name(); }
+  [[nodiscard]] double get_GearRatio() const noexcept override { return gear_ratio_; }
+  [[nodiscard]] std::string_view modelName() const noexcept override { return model_; }
+  [[nodiscard]] ModeSet modes() const noexcept override { return traits_.modes; }
+  [[nodiscard]] const DriveFrames& driveFrames() const noexcept override { return traits_.frames; }
+  [[nodiscard]] Duration feedbackPeriod() const noexcept override { return feedback_period_; }
+  [[nodiscard]] bool speaksUnasked() const noexcept override { return !traits_.asked; }
+  [[nodiscard]] float commandValue() const noexcept override { return command_value_; }
+  [[nodiscard]] CommandUnit commandUnit() const noexcept override { return command_unit_; }
+  bool setZero(double angle_deg) noexcept override;
+
+ protected:
+  /// `drive_turns`: turns of what the drive reports per turn of the output shaft. get_GearRatio() where it
+  /// reports its rotor, get_GearRatio() over the model's own where it reports its own output.
+  SoloMotor(const MotorSettings& settings, const MotorTraits& traits, double drive_turns);
+
+  // Conversion, direction included.
+  [[nodiscard]] double toOutput(double drive_angle_or_speed) const noexcept {
+    return drive_angle_or_speed / drive_per_output_;
+  }
+  [[nodiscard]] double toDrive(double output_angle_or_speed) const noexcept {
+    return output_angle_or_speed * drive_per_output_;
+  }
+  [[nodiscard]] double torqueToOutput(double drive_torque_nm) const noexcept {
+    return drive_torque_nm * drive_per_output_;
+  }
+  [[nodiscard]] double torqueToDrive(double output_torque_nm) const noexcept {
+    return output_torque_nm / drive_per_output_;
+  }
+  [[nodiscard]] float direction() const noexcept { return drive_per_output_ < 0.0 ? -1.0F : 1.0F; }
+
+  /// One sample: counts it, and takes the drive's position (deg, going on over turns) into the angles.
+  void acceptSample(MonotonicTime received, double drive_position_deg) noexcept;
+  /// The position that the drive is to be told for a total angle.
+  [[nodiscard]] double drivePositionFor(double total_angle_deg) const noexcept {
+    return toDrive(reference_.positionFor(total_angle_deg));
+  }
+  /// The drive was restarted or turns may have gone uncounted.
+  void loseReference() noexcept;
+
+  /// What is to be followed, whatever the order: the target while kCommand, a standstill for kBrake, the
+  /// angle where it began for kHold (kTotalAngle), else kCoast. An angle (shortest way) comes as the total
+  /// angle it means. To be called once in each update().
+  [[nodiscard]] Target wanted() noexcept;
+
+  /// Whether it is told something in this tick. Sequences may disregard it.
+  [[nodiscard]] bool due(const Tick& tick) const noexcept;
+
+  // A target within the limits of the motor; what they cut off is told in limits_. Not a number: 0.
+  /// Of the mode kCurrent, with the feed-forward that comes with any mode. A at the motor.
+  [[nodiscard]] double currentWithinLimit(const Target& target) noexcept;
+  [[nodiscard]] double rpmWithinLimit(double output_rpm) noexcept;
+
+  /// What is sent, for the state and the guards. Output shaft.
+  void setCommand(double value, CommandUnit unit) noexcept {
+    command_value_ = static_cast<float>(value);
+    command_unit_ = unit;
+  }
+
+  [[nodiscard]] const MotorTraits& traits() const noexcept { return traits_; }
+  [[nodiscard]] float effortLimit() const noexcept { return effort_limit_ * derating(); }
+  /// A at the motor to N·m at the output shaft; the drive's current and this sign agree.
+  [[nodiscard]] float torqueNmPerA() const noexcept { return torque_nm_per_a_; }
+  /// 0: none.
+  [[nodiscard]] float velocityLimitRpm() const noexcept { return velocity_limit_rpm_; }
+  /// How long one tick is.
+  [[nodiscard]] Duration tickPeriod() const noexcept { return tick_period_; }
+
+ private:
+  std::string model_;
+  MotorTraits traits_;
+  double gear_ratio_;
+  double drive_per_output_;  ///< Signed by the direction.
+  float effort_limit_;
+  float velocity_limit_rpm_;
+  float torque_nm_per_a_;
+  Duration tick_period_;
+  Duration feedback_period_;
+  std::uint64_t divider_;
+  std::uint64_t phase_;
+  AngleReference reference_;
+  bool holding_ = false;
+  double hold_deg_ = 0.0;
+  float command_value_ = 0.0F;
+  CommandUnit command_unit_ = CommandUnit::kNone;
+};
+
+/// Registers both halves of a motor with its bus: what most families build() with.
+template <typename Motor>
+[[nodiscard]] Result<std::unique_ptr<Motor_Base>> registerSolo(std::unique_ptr<Motor> motor,
+                                                               BusParts& parts) {
+  if (auto listens = parts.bus().registerMotor(static_cast<FrameListener&>(*motor)); !listens) {
+    return tl::unexpected(listens.error());
+  }
+  if (auto packs = parts.bus().registerMotor(static_cast<CommandPacker&>(*motor)); !packs) {
+    return tl::unexpected(packs.error());
+  }
+  return std::unique_ptr<Motor_Base>(std::move(motor));
+}
+
+}  // namespace rc10

@@ -1,0 +1,56 @@
+#pragma once
+
+#include <cstdint>
+#include <limits>
+#include <type_traits>
+
+namespace rc10 {
+
+/// How a target is meant. The numbers are those of setpoint_t.lcm.
+enum class ControlMode : std::uint8_t {
+  kCoast = 0,
+  kCurrent = 1,     ///< A
+  kVelocity = 2,    ///< rpm
+  kAngle = 3,       ///< deg, the shortest way round
+  kTotalAngle = 4,  ///< deg, multi-turn
+  kImpedance = 5,   ///< deg, with stiffness and damping
+  kVoltage = 6,     ///< V
+  kDuty = 7,        ///< -1 to 1
+  kBrake = 8,
+};
+inline constexpr int kControlModeCount = 9;
+
+/// "current", "velocity", ...: as written in messages and on the command line.
+[[nodiscard]] const char* toString(ControlMode mode) noexcept;
+
+/// Whether a target of this mode means nothing while the angle has no reference.
+[[nodiscard]] constexpr bool needsReference(ControlMode mode) noexcept {
+  return mode == ControlMode::kAngle || mode == ControlMode::kTotalAngle || mode == ControlMode::kImpedance;
+}
+
+/// A set of control modes.
+class ModeSet {
+ public:
+  constexpr ModeSet() = default;
+  template <typename... Modes>
+  explicit constexpr ModeSet(Modes... modes) noexcept : bits_((0U | ... | bit(modes))) {}
+  [[nodiscard]] constexpr std::uint32_t bits() const noexcept { return bits_; }
+  [[nodiscard]] constexpr bool contains(ControlMode mode) const noexcept { return (bits_ & bit(mode)) != 0; }
+
+ private:
+  static constexpr std::uint32_t bit(ControlMode mode) noexcept { return 1U << static_cast<unsigned>(mode); }
+  std::uint32_t bits_ = 0;
+};
+
+/// One order to one motor, at the output shaft. Goes through the command ring as it is.
+struct Target {
+  ControlMode mode = ControlMode::kCoast;
+  double value = 0.0;  ///< In the unit of the mode.
+  float velocity_ff_rpm = 0.0F;
+  float torque_ff_nm = 0.0F;
+  float stiffness_nm_per_rad = 0.0F;
+  float damping_nms_per_rad = 0.0F;
+};
+static_assert(std::is_trivially_copyable_v<Target>);
+
+}  // namespace rc10

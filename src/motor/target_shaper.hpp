@@ -1,0 +1,72 @@
+#pragma once
+
+#include <cstdint>
+#include <limits>
+
+#include "motor/motor_base.hpp"
+#include "motor/target.hpp"
+
+namespace rc10 {
+
+/// The approach to a soft limit, of the angle loop's gain, which is stable: a motor with three times the
+/// inertia it was tuned for still stops before the limit.
+inline constexpr float kApproachOfAngleGain = 0.5F;
+
+/// How fast a target may change and where it may lead. At the output shaft; 0: no slew limit.
+struct ShapingConfig {
+  float effort_slew_per_s = 0.0F;  ///< A/s or V/s, as the drive is commanded.
+  float velocity_slew_rpm_per_s = 0.0F;
+  float angle_slew_deg_per_s = 0.0F;
+  double angle_min_deg = -std::numeric_limits<double>::infinity();  ///< Soft limits of the total angle.
+  double angle_max_deg = std::numeric_limits<double>::infinity();
+  float approach_rpm_per_deg = 0.0F;     ///< Speed allowed towards a soft limit, per degree before it.
+  float approach_effort_per_rpm = 0.0F;  ///< Effort allowed towards it, per rpm below the allowed speed.
+  float effort_per_rpm = 0.0F;           ///< Effort that only keeps up a speed: 0 for A, back-EMF for V.
+  float effort_per_nm = 0.0F;            ///< A per N·m: makes a torque feed-forward a part of a current.
+  double max_first_step_deg = std::numeric_limits<double>::infinity();
+};
+
+/// Turns what a client asks for into what the motor may do in this tick: slew limits, and soft angle
+/// limits that still allow moving back. Soft limits act while the angle is referenced. Scheduler
+/// thread only.
+class TargetShaper {
+ public:
+  struct Shaped {
+    Target target;
+    std::uint32_t limits = 0;  ///< Of LimitFlag.
+  };
+
+  explicit TargetShaper(const ShapingConfig& config) noexcept : config_(config) {}
+
+  /// `effort_in_force`: what the drive was told last, A or V. `dt_s`: since the last step.
+  [[nodiscard]] Shaped step(const Target& asked, const MotorFeedback& feedback, float effort_in_force,
+                            float dt_s) noexcept;
+  /// After a change of the angle loop's gain: see kApproachOfAngleGain.
+  void setApproach(float rpm_per_deg) noexcept { config_.approach_rpm_per_deg = rpm_per_deg; }
+  /// The next target starts from what is measured then.
+  void reset() noexcept { mode_ = ControlMode::kCoast; }
+
+  /// Whether an angle target that follows none is close enough to the measured angle.
+  [[nodiscard]] bool firstStepAllowed(const Target& asked, const MotorFeedback& feedback) const noexcept;
+
+ private:
+  /// Speeds that still stop before the soft limits; both 0 or beyond the limits' own side.
+  struct Envelope {
+    double low_rpm;
+    double high_rpm;
+  };
+  [[nodiscard]] bool bounded(const MotorFeedback& feedback) const noexcept;
+  [[nodiscard]] Envelope envelope(double total_angle_deg) const noexcept;
+  [[nodiscard]] double effortFor(double allowed_rpm, const MotorFeedback& feedback) const noexcept;
+  [[nodiscard]] double reachable(double goal_deg, bool any_turn) const noexcept;
+  [[nodiscard]] bool slew(double goal, float per_second, float dt_s) noexcept;
+  [[nodiscard]] Shaped shapeEffort(Target asked, const MotorFeedback& feedback, float dt_s) noexcept;
+  [[nodiscard]] Shaped shapeVelocity(Target asked, const MotorFeedback& feedback, float dt_s) noexcept;
+  [[nodiscard]] Shaped shapeAngle(Target asked, const MotorFeedback& feedback, float dt_s) noexcept;
+
+  ShapingConfig config_;
+  ControlMode mode_ = ControlMode::kCoast;  ///< Of the last step.
+  double value_ = 0.0;                      ///< The slewed target of that mode.
+};
+
+}  // namespace rc10

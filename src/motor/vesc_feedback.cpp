@@ -1,0 +1,152 @@
+#include <algorithm>
+#include <cmath>
+
+#include "app/angle.hpp"
+#include "motor/vesc_motor.hpp"
+
+// The receiving half of VESC_Motor.
+namespace rc10 {
+namespace {
+
+using std::chrono::milliseconds;
+
+constexpr double kStepsPerElectricalTurn = 6.0;
+constexpr double kSecondsPerMinute = 60.0;
+constexpr double kDegPerSPerRpm = 6.0;
+constexpr int kGapPeriods = 5;
+// A drive that starts is silent for longer (main.c waits 500 ms alone); a cable that is plugged in again may
+// be another drive's.
+constexpr Duration kRestartGap = milliseconds{300};
+// What the tachometer can have moved beyond what its speed explains.
+constexpr double kStepSlack = 12.0;
+constexpr double kErpmPerS = 500'000.0;  // a bare rotor at full current; estimated, generous
+constexpr double kAmbiguousDeg = 120.0;
+
+}  // namespace
+
+bool VESC_Motor::matchesFrame(const CanFrame& frame) const noexcept {
+  if (frame.fd || frame.type != FrameType::kData) return false;
+  return std::any_of(filters_.begin(), filters_.end(),
+                     [&frame](const FrameFilter& filter) { return accepts(filter, frame); });
+}
+
+FrameVerdict VESC_Motor::updateFeedback(const CanFrame& frame) noexcept {
+  if (!matchesFrame(frame)) return FrameVerdict::kMalformed;
+  const auto packet = static_cast<VescPacket>(frame.id.value >> 8U);
+  if (packet == VescPacket::kNotifyBoot) {
+    restarted();
+    return FrameVerdict::kAccepted;
+  }
+  if (packet == VescPacket::kProcessShortBuffer) {
+    const auto answer = decodeVescAnswer(frame);
+    if (!answer) return FrameVerdict::kMalformed;
+    inquiry_.take(*answer);
+    return FrameVerdict::kAccepted;
+  }
+  if (frame.length != kVescStatusLength) return FrameVerdict::kMalformed;
+  switch (packet) {
+    case VescPacket::kStatus1: takeStatus1(frame); break;
+    case VescPacket::kStatus2: telemetry_.status2 = decodeVescStatus2(frame); break;
+    case VescPacket::kStatus3: telemetry_.status3 = decodeVescStatus3(frame); break;
+    case VescPacket::kStatus4:
+      telemetry_.status4 = decodeVescStatus4(frame);
+      feedback_.temperature_c =
+          options_.motor_temperature ? telemetry_.status4.motor_c : telemetry_.status4.drive_c;
+      if (options_.angle == VescAngle::kEncoder) takeEncoder(frame);
+      break;
+    case VescPacket::kStatus5:
+      if (options_.angle == VescAngle::kTachometer) takeSteps(frame);
+      telemetry_.status5 = decodeVescStatus5(frame);
+      feedback_.voltage_v = telemetry_.status5.input_v;
+      break;
+    case VescPacket::kStatus6: telemetry_.status6 = decodeVescStatus6(frame); break;
+    default: return FrameVerdict::kMalformed;
+  }
+  return FrameVerdict::kAccepted;
+}
+
+void VESC_Motor::takeStatus1(const CanFrame& frame) noexcept {
+  const VescStatus1 status = decodeVescStatus1(frame);
+  telemetry_.status1 = status;
+  status1_at_ = frame.received;
+  status1_seen_ = true;
+  const double rotor_rpm = static_cast<double>(status.erpm) / options_.pole_pairs;
+  feedback_.velocity_rpm = static_cast<float>(rotor_rpm / rotor_per_output_);
+  // The sign of the reported current is that of the power: sign(vq * iq). The duty has the sign of vq, so
+  // their product has that of iq, the torque. The speed stands in for a duty too small to be told.
+  const float way = status.duty != 0.0F ? status.duty : static_cast<float>(status.erpm);
+  const float drive_a = way < 0.0F ? -status.current_a : status.current_a;
+  feedback_.current_a = drive_a * direction();
+  if (torqueNmPerA() > 0.0F) feedback_.torque_nm = feedback_.current_a * torqueNmPerA();
+  if (options_.angle != VescAngle::kNone) return;
+  feedback_.received = frame.received;
+  ++feedback_.samples;
+}
+
+bool VESC_Motor::gapTooLong(Duration gap) const noexcept {
+  return gap > std::max(kRestartGap, kGapPeriods * feedbackPeriod());
+}
+
+/// The drive's position has moved by so much, which may be in doubt.
+void VESC_Motor::takePosition(MonotonicTime received, double moved_deg, bool known) noexcept {
+  const Duration gap = received - feedback_.received;
+  spacing_.add(feedback_.samples == 0 ? Duration::zero() : gap);
+  position_deg_ += moved_deg;
+  if (!known && feedback_.samples > 0) loseReference();
+  // Without STATUS_1 beside it there is no speed and no current.
+  if (!status1_seen_ || received - status1_at_ > patience_) {
+    feedback_.velocity_rpm = feedback_.current_a = feedback_.torque_nm = kNotReported;
+  }
+  acceptSample(received, position_deg_);
+  position_seen_ = true;
+}
+
+void VESC_Motor::takeSteps(const CanFrame& frame) noexcept {
+  const std::int32_t steps = decodeVescStatus5(frame).steps;
+  const double deg_per_step = 360.0 / (kStepsPerElectricalTurn * options_.pole_pairs);
+  if (!position_seen_) {
+    takePosition(frame.received, feedback_.samples == 0 ? steps * deg_per_step : 0.0, false);
+    return;
+  }
+  // Modulo 2^32, as the drive counts.
+  const auto moved = static_cast<std::int32_t>(static_cast<std::uint32_t>(steps) -
+                                               static_cast<std::uint32_t>(telemetry_.status5.steps));
+  const Duration gap = frame.received - feedback_.received;
+  const double gap_s = static_cast<double>(seconds(std::clamp(gap, Duration::zero(), kRestartGap)));
+  const double period_s = static_cast<double>(seconds(feedbackPeriod()));
+  const double erpm = std::abs(static_cast<double>(telemetry_.status1.erpm));
+  const double span_s = gap_s + period_s;
+  const double fastest_steps_per_s =
+      (erpm + kErpmPerS * span_s) * kStepsPerElectricalTurn / kSecondsPerMinute;
+  const bool jumped = std::abs(static_cast<double>(moved)) > kStepSlack + fastest_steps_per_s * span_s;
+  const bool doubtful = gapTooLong(gap) || jumped;
+  if (jumped && !gapTooLong(gap)) ++feedback_.jumps;
+  takePosition(frame.received, doubtful ? 0.0 : moved * deg_per_step, !doubtful);
+}
+
+void VESC_Motor::takeEncoder(const CanFrame& frame) noexcept {
+  const double now_deg = static_cast<double>(telemetry_.status4.position_deg);
+  if (!position_seen_) {
+    const double moved = feedback_.samples == 0 ? now_deg : shortestAngle(position_deg_, now_deg);
+    takePosition(frame.received, moved, false);
+    return;
+  }
+  const Duration gap = frame.received - feedback_.received;
+  // Where the speed has taken it, then the nearest such angle.
+  const double rotor_rpm = static_cast<double>(telemetry_.status1.erpm) / options_.pole_pairs;
+  const double gap_s = static_cast<double>(seconds(std::clamp(gap, Duration::zero(), kRestartGap)));
+  const double expected = rotor_rpm / options_.position_divider * kDegPerSPerRpm * gap_s;
+  const double off = shortestAngle(position_deg_ + expected, now_deg);
+  const bool doubtful = gapTooLong(gap) || std::abs(off) > kAmbiguousDeg;
+  const double moved = gapTooLong(gap) ? shortestAngle(position_deg_, now_deg) : expected + off;
+  takePosition(frame.received, moved, !doubtful);
+}
+
+void VESC_Motor::restarted() noexcept {
+  if (obeying()) restarted_ = true;
+  inquiry_.restart();
+  position_seen_ = false;  // it counts from 0 again
+  loseReference();
+}
+
+}  // namespace rc10

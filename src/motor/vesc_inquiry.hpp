@@ -1,0 +1,64 @@
+#pragma once
+
+#include <cstdint>
+
+#include "app/time.hpp"
+#include "motor/drive_frames.hpp"
+#include "motor/vesc_frames.hpp"
+
+namespace rc10 {
+
+/// What a VESC must be asked, since its status frames do not tell: its fault, its kill switch, and whether
+/// its watchdog works. The watchdog is proven once after each start of the drive: either the drive says at
+/// first sight that it has timed out, or a motor at rest is told nothing until it does. Pure: frames and time
+/// come in, what to ask goes out. Scheduler thread only.
+class VescInquiry {
+ public:
+  /// `silent_for`: how long a drive is told nothing to see its watchdog.
+  explicit VescInquiry(Duration silent_for) noexcept : silent_for_(silent_for) {}
+
+  /// Once in each tick, before packing.
+  void update(const Tick& tick, FrameKind ordered) noexcept;
+  void take(const VescAnswer& answer) noexcept;
+  /// The drive was restarted: all is to be found out anew.
+  void restart() noexcept;
+
+  /// What to ask in this tick; 0: nothing.
+  [[nodiscard]] std::uint32_t question() const noexcept { return question_; }
+  /// The drive is to be told nothing, so that its watchdog can be seen.
+  [[nodiscard]] bool silence() const noexcept { return silent_; }
+  [[nodiscard]] SequenceProgress progress() const noexcept { return progress_; }
+  [[nodiscard]] std::uint8_t fault() const noexcept { return fault_; }
+  [[nodiscard]] bool killed() const noexcept { return (status_ & kVescKillSwitch) != 0; }
+  /// It has not heard the commands that it was sent all the time.
+  [[nodiscard]] bool deaf() const noexcept { return deaf_; }
+  [[nodiscard]] bool watchdogProven() const noexcept { return proof_ == Proof::kProven; }
+
+ private:
+  enum class Proof : std::uint8_t { kOpen, kProven, kRefuted };
+  void watchSilence(const Tick& tick) noexcept;
+  void enable() noexcept;
+  void ask(const Tick& tick) noexcept;
+
+  Duration silent_for_;
+  FrameKind ordered_ = FrameKind::kRest;
+  MonotonicTime ordered_since_;
+  MonotonicTime asked_;
+  MonotonicTime silent_since_;
+  MonotonicTime now_;
+  std::uint32_t question_ = 0;
+  std::uint32_t pending_ = 0;  ///< Asked, not yet answered.
+  std::uint32_t next_ = kVescAskStatus;
+  int unanswered_ = 0;
+  std::uint32_t fresh_ = 0;  ///< Answers since the enabling began.
+  Proof proof_ = Proof::kOpen;
+  bool begun_ = false;
+  bool heard_ = false;  ///< It has answered since it was (re)started.
+  bool silent_ = false;
+  bool deaf_ = false;
+  std::uint8_t fault_ = 0;
+  std::uint8_t status_ = 0;
+  SequenceProgress progress_ = SequenceProgress::kPending;
+};
+
+}  // namespace rc10

@@ -1,0 +1,54 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <string_view>
+
+#include "motor/fault_code.hpp"
+#include "motor/motor_family.hpp"
+
+namespace rc10 {
+
+/// What the angle comes from, and with it what closes the angle loop.
+enum class VescAngle : std::uint8_t {
+  kTachometer,  ///< STATUS_5; loop on the host, speeds to the drive.
+  kEncoder,     ///< STATUS_4; the drive's own position loop.
+  kNone,
+};
+
+/// What a velocity of 0 means.
+enum class VescStop : std::uint8_t { kRegulate, kCoast, kBrake };
+
+/// The values of the family's own keys.
+struct VescOptions {
+  explicit VescOptions(const OwnValues& own);
+
+  int pole_pairs;
+  VescAngle angle;
+  double position_divider;
+  double speed_ramp_erpm_per_s;
+  VescStop velocity_zero;
+  float motor_current_max_a;
+  bool relative_current;
+  float brake_current_a;
+  float handbrake_current_a;  ///< 0: no handbrake.
+  double kv_rpm_per_v;        ///< 0: unknown.
+  double supply_v;
+  bool motor_temperature;  ///< Else the drive's.
+  bool ask_status;
+  int host_id;
+};
+
+[[nodiscard]] std::span<const FamilyKey> vescKeys() noexcept;
+[[nodiscard]] MotorTraits vescTraits(const VescOptions& options);
+
+/// What a code of the drive means. An unknown one is kDriveOther.
+[[nodiscard]] FaultCode vescFault(std::uint8_t native_code) noexcept;
+
+/// The slowest feedback on which the host closes the angle loop.
+inline constexpr int kVescLoopMinHz = 50;
+/// The rate of what a drive sends seldom: "CAN Status Rate 2".
+inline constexpr int kVescSlowHz = 5;
+
+}  // namespace rc10

@@ -1,0 +1,317 @@
+#include "motor/vesc_motor.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "app/angle.hpp"
+
+namespace rc10 {
+namespace {
+
+using std::chrono::milliseconds;
+
+// The stock watchdog of a drive, and a tenth.
+constexpr Duration kWatchdogSilence = milliseconds{1100};
+constexpr Duration kShortestPatience = milliseconds{100};
+constexpr int kPatiencePeriods = 5;
+// Electrical: from where the handbrake takes over, and from where it has lost.
+constexpr std::int32_t kStillErpm = 150;
+constexpr std::int32_t kSlippedErpm = 450;
+// SET_POS goes the shortest way round: the drive is told no more than this ahead of where it is.
+constexpr double kLeadDeg = 90.0;
+
+constexpr double kDegPerSPerRpm = 6.0;
+
+/// A float near a double of any size.
+float nearFloat(double value) noexcept {
+  constexpr auto kBound = static_cast<double>(kHugeTerm);
+  return static_cast<float>(std::clamp(value, -kBound, kBound));
+}
+
+std::array<FrameFilter, 8> filtersOf(int id, const VescOptions& options) {
+  const auto exactly = [id](VescPacket packet) { return FrameFilter{.id = vescId(packet, id)}; };
+  return {exactly(VescPacket::kStatus1), exactly(VescPacket::kStatus2), exactly(VescPacket::kStatus3),
+          exactly(VescPacket::kStatus4), exactly(VescPacket::kStatus5), exactly(VescPacket::kStatus6),
+          exactly(VescPacket::kNotifyBoot),
+          // Every drive answers to the one host id, with its own in the first byte.
+          FrameFilter{.id = vescId(VescPacket::kProcessShortBuffer, options.host_id),
+                      .discriminator = PayloadDiscriminator{
+                          .byte_index = 0, .mask = 0xFF, .value = static_cast<std::uint8_t>(id)}}};
+}
+
+std::array<CanId, 10> commandIdsOf(int id) {
+  return {vescId(VescPacket::kSetCurrent, id),
+          vescId(VescPacket::kSetDuty, id),
+          vescId(VescPacket::kSetCurrentBrake, id),
+          vescId(VescPacket::kSetErpm, id),
+          vescId(VescPacket::kSetPosition, id),
+          vescId(VescPacket::kSetCurrentRelative, id),
+          vescId(VescPacket::kSetCurrentBrakeRelative, id),
+          vescId(VescPacket::kSetHandbrake, id),
+          vescId(VescPacket::kSetHandbrakeRelative, id),
+          vescId(VescPacket::kProcessShortBuffer, id)};
+}
+
+/// With a divider the drive's position loop counts turns of what stands behind that gear.
+double driveTurns(const MotorSettings& settings, const VescOptions& options) {
+  const double gear = settings.gear_ratio > 0.0 ? settings.gear_ratio : 1.0;
+  return options.angle == VescAngle::kEncoder ? gear / options.position_divider : gear;
+}
+
+}  // namespace
+
+VESC_Motor::VESC_Motor(const MotorSettings& settings)
+    : SoloMotor(settings, vescTraits(VescOptions{settings.own}),
+                driveTurns(settings, VescOptions{settings.own})),
+      options_(settings.own),
+      id_(settings.id),
+      rotor_per_output_(get_GearRatio() * static_cast<double>(direction())),
+      patience_(std::max(kShortestPatience, kPatiencePeriods * feedbackPeriod())),
+      filters_(filtersOf(settings.id, options_)),
+      command_ids_(commandIdsOf(settings.id)),
+      inquiry_(kWatchdogSilence),
+      loops_(settings.loops),
+      angle_loop_(loops_.angle),
+      spacing_(feedbackPeriod()) {}
+
+void VESC_Motor::retune(const CascadeConfig& loops) noexcept {
+  loops_ = loops;
+  angle_loop_.retune(loops.angle);
+}
+
+bool VESC_Motor::setZero(double angle_deg) noexcept {
+  looping_ = false;
+  return SoloMotor::setZero(angle_deg);
+}
+
+/// Ordered something that a drive which has stopped by itself would not do.
+bool VESC_Motor::obeying() const noexcept {
+  const FrameKind kind = ordered();
+  return kind == FrameKind::kCommand || kind == FrameKind::kIdle || kind == FrameKind::kDamp ||
+         kind == FrameKind::kBrake || kind == FrameKind::kHold;
+}
+
+bool VESC_Motor::silent() const noexcept {
+  return feedback_.samples == 0 || now_ - feedback_.received > patience_;
+}
+
+void VESC_Motor::update(const Tick& tick) noexcept {
+  now_ = tick.now;
+  limits_ = 0;
+  const FrameKind kind = ordered();
+  if (!obeying()) restarted_ = false;
+  if (options_.ask_status) inquiry_.update(tick, kind);
+
+  const Target target = wanted();
+  const bool loops = options_.angle == VescAngle::kTachometer && (target.mode == ControlMode::kTotalAngle) &&
+                     kind != FrameKind::kDamp;
+  if (!loops || kind != last_kind_) looping_ = false;
+  last_kind_ = kind;
+  const bool brakes = target.mode == ControlMode::kBrake || kind == FrameKind::kHold ||
+                      (target.mode == ControlMode::kVelocity && options_.velocity_zero == VescStop::kBrake);
+  if (!brakes) locked_ = false;
+
+  if (kind == FrameKind::kDamp) {
+    damp();
+  } else if (kind == FrameKind::kHold && options_.angle == VescAngle::kNone) {
+    brake();
+  } else {
+    obey(target);
+  }
+}
+
+void VESC_Motor::obey(const Target& target) noexcept {
+  // Too hot for any current: the drive's own loops cannot be given less.
+  if (!(effortLimit() > 0.0F) && target.mode != ControlMode::kCoast) {
+    limits_ |= kLimitCurrent;
+    release();
+    return;
+  }
+  switch (target.mode) {
+    case ControlMode::kCurrent: {
+      const double ff =
+          torqueNmPerA() > 0.0F ? static_cast<double>(target.torque_ff_nm / torqueNmPerA()) : 0.0;
+      setCurrent(target.value + ff);
+      return;
+    }
+    case ControlMode::kVelocity: followVelocity(target); return;
+    case ControlMode::kTotalAngle: followAngle(target); return;
+    case ControlMode::kDuty: setDuty(target.value); return;
+    case ControlMode::kBrake: brake(); return;
+    default: release(); return;
+  }
+}
+
+void VESC_Motor::release() noexcept {
+  command_ = Command{};
+  setCommand(0.0, CommandUnit::kAmpere);
+}
+
+VESC_Motor::Command VESC_Motor::currentCommand(VescPacket absolute, VescPacket relative,
+                                               double drive_a) const noexcept {
+  if (!options_.relative_current) return {absolute, vescRaw(drive_a, kVescPerAmpere)};
+  const double share = std::clamp(drive_a / static_cast<double>(options_.motor_current_max_a), -1.0, 1.0);
+  return {relative, vescRaw(share, kVescPerShare)};
+}
+
+void VESC_Motor::setCurrent(double amperes) noexcept {
+  if (!std::isfinite(amperes)) {
+    release();
+    return;
+  }
+  const double limit = static_cast<double>(effortLimit());
+  const double bounded = std::clamp(amperes, -limit, limit);
+  if (bounded != amperes) limits_ |= kLimitCurrent;
+  command_ = currentCommand(VescPacket::kSetCurrent, VescPacket::kSetCurrentRelative,
+                            bounded * static_cast<double>(direction()));
+  setCommand(bounded, CommandUnit::kAmpere);
+}
+
+void VESC_Motor::setVelocity(double rpm) noexcept {
+  if (!std::isfinite(rpm)) {
+    release();
+    return;
+  }
+  const double limit = static_cast<double>(velocityLimitRpm());
+  const double bounded = limit > 0.0 ? std::clamp(rpm, -limit, limit) : rpm;
+  if (bounded != rpm) limits_ |= kLimitVelocity;
+  command_ = {VescPacket::kSetErpm, vescRaw(bounded * rotor_per_output_ * options_.pole_pairs, kVescPerErpm)};
+  setCommand(bounded, CommandUnit::kNative);
+}
+
+void VESC_Motor::setDuty(double duty) noexcept {
+  if (!std::isfinite(duty)) {
+    release();
+    return;
+  }
+  const double bounded = std::clamp(duty, -1.0, 1.0);
+  command_ = {VescPacket::kSetDuty, vescRaw(bounded * static_cast<double>(direction()), kVescPerShare)};
+  setCommand(bounded, CommandUnit::kNative);
+}
+
+void VESC_Motor::followVelocity(const Target& target) noexcept {
+  const double rpm = target.value + static_cast<double>(target.velocity_ff_rpm);
+  setVelocity(rpm);
+  if (command_.packet != VescPacket::kSetErpm || command_.raw != 0) {
+    locked_ = false;
+    return;
+  }
+  if (options_.velocity_zero == VescStop::kCoast) release();
+  if (options_.velocity_zero == VescStop::kBrake) brake();
+}
+
+void VESC_Motor::followAngle(const Target& target) noexcept {
+  if (silent() || !std::isfinite(target.value)) {
+    looping_ = false;
+    release();
+    return;
+  }
+  if (options_.angle == VescAngle::kEncoder) {
+    setPosition(target.value);
+    return;
+  }
+  const float dt_s = spacing_.take();
+  const float ff = saturate(target.velocity_ff_rpm);
+  if (!looping_) {
+    angle_loop_.reset();
+    loop_position_deg_ = feedback_.total_angle_deg;
+  }
+  if (!looping_ || dt_s > 0.0F) {
+    const float error = nearFloat(target.value - feedback_.total_angle_deg);
+    const float moved = nearFloat(feedback_.total_angle_deg - loop_position_deg_);
+    loop_position_deg_ = feedback_.total_angle_deg;
+    const float step_s = dt_s > 0.0F ? dt_s : spacing_.periodSeconds();
+    const OutputRange range = OutputRange{}.within(velocityLimitRpm()).shifted(-ff);
+    const float rpm = angle_loop_.stepError(error, moved, step_s, range);
+    limited_ = velocityLimitRpm() > 0.0F && std::abs(rpm + ff) >= velocityLimitRpm();
+    const auto stoppable_rpm = static_cast<double>(stoppableRpm(error));
+    loop_rpm_ = std::clamp(static_cast<double>(rpm), -stoppable_rpm, stoppable_rpm);
+  }
+  looping_ = true;
+  setVelocity(loop_rpm_ + static_cast<double>(ff));
+  if (limited_) limits_ |= kLimitVelocity;
+}
+
+/// From this speed the drive's ramp stops the motor within the error, with half of it left for delays.
+float VESC_Motor::stoppableRpm(float error_deg) const noexcept {
+  const double ramp_rpm_per_s =
+      options_.speed_ramp_erpm_per_s / (options_.pole_pairs * std::abs(rotor_per_output_));
+  const double ramp_deg_per_s2 = 0.5 * ramp_rpm_per_s * kDegPerSPerRpm;
+  return static_cast<float>(std::sqrt(2.0 * ramp_deg_per_s2 * std::abs(static_cast<double>(error_deg))) /
+                            kDegPerSPerRpm);
+}
+
+void VESC_Motor::setPosition(double total_angle_deg) noexcept {
+  const double way = drivePositionFor(total_angle_deg) - position_deg_;
+  if (!std::isfinite(way)) {
+    release();
+    return;
+  }
+  const double next_deg = wrapDegrees(position_deg_ + std::clamp(way, -kLeadDeg, kLeadDeg));
+  command_ = {VescPacket::kSetPosition, vescRaw(next_deg, kVescPerDegree)};
+  setCommand(total_angle_deg, CommandUnit::kNative);
+}
+
+/// A brake current in proportion to the speed, as a shorted winding would make it. It never pushes.
+void VESC_Motor::damp() noexcept {
+  const float speed_rpm = std::abs(feedback_.velocity_rpm);
+  const float no_load_rpm = traits().no_load_rpm / static_cast<float>(get_GearRatio());
+  if (silent() || !std::isfinite(speed_rpm) || !(no_load_rpm > 0.0F)) {
+    release();
+    return;
+  }
+  const double amperes = static_cast<double>(effortLimit() * std::min(speed_rpm / no_load_rpm, 1.0F));
+  command_ = currentCommand(VescPacket::kSetCurrentBrake, VescPacket::kSetCurrentBrakeRelative, amperes);
+  setCommand(amperes, CommandUnit::kNative);  // of no direction: no guard may take it for a torque
+}
+
+bool VESC_Motor::standsStill() noexcept {
+  if (!(options_.handbrake_current_a > 0.0F) || silent() || !status1_seen_) return false;
+  const auto erpm = std::abs(static_cast<std::int64_t>(telemetry_.status1.erpm));
+  return erpm <= (locked_ ? kSlippedErpm : kStillErpm);
+}
+
+/// A brake current slows down and holds nothing; at standstill the handbrake holds, if there is one.
+void VESC_Motor::brake() noexcept {
+  locked_ = standsStill();
+  const float wanted_a = locked_ ? options_.handbrake_current_a : options_.brake_current_a;
+  const double amperes = static_cast<double>(std::min(wanted_a, effortLimit()));
+  command_ =
+      locked_ ? currentCommand(VescPacket::kSetHandbrake, VescPacket::kSetHandbrakeRelative, amperes)
+              : currentCommand(VescPacket::kSetCurrentBrake, VescPacket::kSetCurrentBrakeRelative, amperes);
+  setCommand(amperes, CommandUnit::kNative);
+}
+
+std::size_t VESC_Motor::packCommand(const Tick& tick, std::span<CanFrame> out) noexcept {
+  std::size_t count = 0;
+  // Asked first: a drive that has timed out says so before the next command reaches it.
+  if (options_.ask_status && inquiry_.question() != 0 && count < out.size()) {
+    out[count++] = makeVescQuestion(id_, options_.host_id, inquiry_.question());
+  }
+  const bool silence = options_.ask_status && inquiry_.silence();
+  if (!silence && due(tick) && count < out.size()) {
+    out[count++] = makeVescCommand(command_.packet, id_, command_.raw);
+  }
+  return count;
+}
+
+std::size_t VESC_Motor::packRest(std::span<CanFrame> out) const noexcept {
+  if (out.empty()) return 0;
+  out[0] = makeVescCommand(VescPacket::kSetCurrent, id_, 0);
+  return 1;
+}
+
+SequenceProgress VESC_Motor::sequenceProgress() const noexcept {
+  return options_.ask_status && ordered() == FrameKind::kEnable ? inquiry_.progress()
+                                                                : SequenceProgress::kDone;
+}
+
+DriveComplaint VESC_Motor::complaint() const noexcept {
+  if (inquiry_.fault() != 0) return {vescFault(inquiry_.fault()), inquiry_.fault()};
+  if (!obeying()) return {};
+  if (restarted_ || inquiry_.killed()) return {FaultCode::kDriveStopped, 0};
+  if (inquiry_.deaf()) return {FaultCode::kDriveCommunication, 0};
+  return {};
+}
+
+}  // namespace rc10

@@ -1,0 +1,114 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+
+#include "app/pid_position.hpp"
+#include "motor/sample_spacing.hpp"
+#include "motor/solo_motor.hpp"
+#include "motor/vesc_frames.hpp"
+#include "motor/vesc_inquiry.hpp"
+#include "motor/vesc_model.hpp"
+
+namespace rc10 {
+
+/// A motor behind a VESC. The drive closes current, speed and, with an encoder, position; an angle from the
+/// tachometer is closed here, with speeds to the drive. Any command moves the motor: there is no enabling in
+/// the drive, so the enable sequence only asks whether it is well and has a watchdog.
+///
+/// In velocity, angle and duty the drive's own limits bound the current, not the configured ones.
+class VESC_Motor : public SoloMotor {
+ public:
+  explicit VESC_Motor(const MotorSettings& settings);
+
+  [[nodiscard]] std::span<const FrameFilter> filters() const noexcept override { return filters_; }
+  [[nodiscard]] bool matchesFrame(const CanFrame& frame) const noexcept override;
+  FrameVerdict updateFeedback(const CanFrame& frame) noexcept override;
+  void update(const Tick& tick) noexcept override;
+
+  [[nodiscard]] std::span<const CanId> commandIds() const noexcept override { return command_ids_; }
+  [[nodiscard]] std::size_t packCommand(const Tick& tick, std::span<CanFrame> out) noexcept override;
+  [[nodiscard]] std::size_t packRest(std::span<CanFrame> out) const noexcept override;
+
+  [[nodiscard]] SequenceProgress sequenceProgress() const noexcept override;
+  [[nodiscard]] DriveComplaint complaint() const noexcept override;
+  bool setZero(double angle_deg) noexcept override;
+  [[nodiscard]] const CascadeConfig* hostLoops() const noexcept override {
+    return options_.angle == VescAngle::kTachometer ? &loops_ : nullptr;
+  }
+  void retune(const CascadeConfig& loops) noexcept override;
+
+  /// What the status frames tell beyond MotorFeedback. Zeros until the first one.
+  struct Telemetry {
+    VescStatus1 status1;
+    VescStatus2 status2;
+    VescStatus3 status3;
+    VescStatus4 status4;
+    VescStatus5 status5;
+    VescStatus6 status6;
+  };
+  [[nodiscard]] const Telemetry& telemetry() const noexcept { return telemetry_; }
+  [[nodiscard]] bool watchdogProven() const noexcept { return inquiry_.watchdogProven(); }
+
+ private:
+  struct Command {
+    VescPacket packet = VescPacket::kSetCurrent;
+    std::int32_t raw = 0;
+  };
+
+  void takeStatus1(const CanFrame& frame) noexcept;
+  void takePosition(MonotonicTime received, double moved_deg, bool known) noexcept;
+  void takeSteps(const CanFrame& frame) noexcept;
+  void takeEncoder(const CanFrame& frame) noexcept;
+  void restarted() noexcept;
+  [[nodiscard]] bool gapTooLong(Duration gap) const noexcept;
+
+  [[nodiscard]] bool obeying() const noexcept;
+  void obey(const Target& target) noexcept;
+  void release() noexcept;
+  void setCurrent(double amperes) noexcept;
+  void setVelocity(double rpm) noexcept;
+  void setPosition(double total_angle_deg) noexcept;
+  void setDuty(double duty) noexcept;
+  void damp() noexcept;
+  void brake() noexcept;
+  void followVelocity(const Target& target) noexcept;
+  void followAngle(const Target& target) noexcept;
+  [[nodiscard]] Command currentCommand(VescPacket absolute, VescPacket relative,
+                                       double drive_a) const noexcept;
+  [[nodiscard]] float stoppableRpm(float error_deg) const noexcept;
+  [[nodiscard]] bool silent() const noexcept;
+  [[nodiscard]] bool standsStill() noexcept;
+
+  VescOptions options_;
+  int id_;
+  double rotor_per_output_;  ///< Signed by the direction.
+  Duration patience_;        ///< Older feedback than this closes no loop.
+  std::array<FrameFilter, 8> filters_;
+  std::array<CanId, 10> command_ids_;
+  Telemetry telemetry_;
+  VescInquiry inquiry_;
+  CascadeConfig loops_;
+  PID_Position angle_loop_;
+  SampleSpacing spacing_;
+
+  Command command_;
+  MonotonicTime now_;
+  MonotonicTime status1_at_;
+  bool status1_seen_ = false;
+  bool position_seen_ = false;
+  bool restarted_ = false;
+  bool locked_ = false;  ///< The handbrake holds.
+  bool looping_ = false;
+  bool limited_ = false;  ///< The angle loop runs into the velocity limit.
+  FrameKind last_kind_ = FrameKind::kRest;
+  double position_deg_ = 0.0;       ///< Of the drive, going on over turns.
+  double loop_position_deg_ = 0.0;  ///< Output, at the last step of the angle loop.
+  double loop_rpm_ = 0.0;
+};
+
+/// VESC drives.
+[[nodiscard]] const MotorFamily& vescFamily() noexcept;
+
+}  // namespace rc10

@@ -1,0 +1,64 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "app/time.hpp"
+#include "rc10/robot_state.hpp"
+#include "rc10/setpoint.hpp"
+
+namespace rc10 {
+inline namespace robot_client {
+
+/// The targets that are sent again and again, and when a target stops being held. What was set in one message
+/// stays in one message. Pure: the time is an argument.
+class HeldTargets {
+ public:
+  /// A motor that is not held any more, and why.
+  struct Dropped {
+    std::string motor;
+    std::string reason;
+  };
+
+  /// `lapse`: how long a target is held after the program's last sign of life; 0: for ever.
+  HeldTargets(Duration resend, Duration lapse) : resend_(resend), lapse_(lapse) {}
+
+  /// Holds what has just been sent. Motors leave the message in which they were before; COAST needs no
+  /// holding.
+  void set(const MotorSetpoints& message, MonotonicTime now);
+  void release(const std::string& motor);
+  void releaseAll() { messages_.clear(); }
+  /// The program lives.
+  void alive(MonotonicTime now) noexcept { last_life_ = now; }
+
+  [[nodiscard]] bool holds(const std::string& motor) const;
+  [[nodiscard]] std::vector<std::string> motors() const;
+
+  /// When the next message has to be sent again; none while nothing is held.
+  [[nodiscard]] std::optional<MonotonicTime> nextDue() const;
+  /// The messages that are due, counted as sent.
+  [[nodiscard]] std::vector<MotorSetpoints> takeDue(MonotonicTime now);
+
+  /// To be called with every state that comes after set(). Drops the motors that cannot obey any more or that
+  /// another client has taken. So a target never comes back to life when somebody enables the motor or lets
+  /// go of it: the program has to set it anew.
+  [[nodiscard]] std::vector<Dropped> judge(const RobotState& state, const std::string& client);
+  /// Drops everything if the program has not shown life for too long.
+  [[nodiscard]] std::vector<Dropped> lapse(MonotonicTime now);
+
+ private:
+  struct Message {
+    MotorSetpoints setpoints;
+    MonotonicTime set_at;
+    MonotonicTime due;
+  };
+
+  Duration resend_;
+  Duration lapse_;
+  MonotonicTime last_life_{};
+  std::vector<Message> messages_;
+};
+
+}  // namespace robot_client
+}  // namespace rc10

@@ -1,0 +1,25 @@
+#pragma once
+
+#include <optional>
+
+#include "app/time.hpp"
+
+namespace rc10 {
+inline namespace robot_client {
+
+/// Places rc10d's CLOCK_MONOTONIC on this program's clock. The time at which a message is handled says little
+/// about its age, since it may have waited in a queue. The quickest message so far gives the distance of the
+/// two clocks, and then every message tells its own age, from this computer or from another.
+class HostClock {
+ public:
+  /// Takes in a message stamped `host` and handled at `local`; returns its time on the local clock.
+  MonotonicTime observe(Duration host, MonotonicTime local) noexcept;
+
+ private:
+  std::optional<Duration> distance_;
+  Duration last_host_{};
+  MonotonicTime last_local_{};
+};
+
+}  // namespace robot_client
+}  // namespace rc10

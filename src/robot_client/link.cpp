@@ -1,0 +1,186 @@
+#include "rc10/link.hpp"
+
+#include <lcm/lcm.h>
+#include <poll.h>
+#include <sys/eventfd.h>
+#include <unistd.h>
+
+#include <array>
+#include <atomic>
+#include <cctype>
+#include <cstdlib>
+#include <mutex>
+#include <thread>
+
+#include <pthread.h>
+
+#include "app/unique_fd.hpp"
+
+namespace rc10 {
+inline namespace robot_client {
+namespace {
+
+constexpr int kQueueCapacity = 100;
+constexpr std::size_t kMaxChannelLength = 63;
+
+using RawHandler = std::function<void(const std::string& channel, std::span<const std::byte> message)>;
+
+// LCM takes a regular expression.
+[[nodiscard]] std::string literal(const std::string& channel) {
+  std::string pattern;
+  for (const char c : channel) {
+    if (std::isalnum(static_cast<unsigned char>(c)) == 0 && c != '_') pattern += '\\';
+    pattern += c;
+  }
+  return pattern;
+}
+
+[[nodiscard]] std::string startFailure(const std::string& url) {
+  const char* environment = std::getenv("LCM_DEFAULT_URL");
+  const std::string effective = !url.empty() ? url : environment != nullptr ? environment : "";
+  if (!effective.empty() && effective.rfind("udpm://", 0) != 0) {
+    return "LCM could not start with '" + effective + "'";
+  }
+  return "LCM could not start" + (effective.empty() ? "" : " with '" + effective + "'") +
+         ". Usually there is no route for its multicast. Run: sudo ip route add 239.255.76.67/32 dev lo src "
+         "127.0.0.1 "
+         "(and only if that is not enough: sudo ip link set lo multicast on)";
+}
+
+}  // namespace
+
+/// One subscription. The mutex is recursive: a handler may end its own.
+struct Subscription::Handler {
+  lcm_t* lcm = nullptr;
+  lcm_subscription_t* subscribed = nullptr;
+  std::weak_ptr<void> owner;
+  std::recursive_mutex mutex;
+  bool alive = true;
+  RawHandler call;
+};
+
+Subscription& Subscription::operator=(Subscription&& other) noexcept {
+  if (this != &other) {
+    end();
+    handler_ = std::move(other.handler_);
+  }
+  return *this;
+}
+
+void Subscription::end() noexcept {
+  if (!handler_) return;
+  // A connection that has ended has freed its subscriptions.
+  if (const auto owner = handler_->owner.lock()) {
+    {
+      const std::lock_guard lock(handler_->mutex);
+      handler_->alive = false;
+    }
+    lcm_unsubscribe(handler_->lcm, handler_->subscribed);
+  }
+  handler_.reset();
+}
+
+struct Link::Impl {
+  lcm_t* lcm = nullptr;
+  Result<void> status;
+  UniqueFd stop;
+  std::mutex mutex;
+  // Kept to the end: LCM may be about to call a handler that is being unsubscribed.
+  std::vector<std::shared_ptr<Subscription::Handler>> handlers;
+  std::thread thread;
+
+  explicit Impl(const std::string& url) : lcm(lcm_create(url.empty() ? nullptr : url.c_str())) {
+    stop = UniqueFd{eventfd(0, EFD_CLOEXEC)};
+    if (lcm == nullptr) {
+      status = fail(startFailure(url));
+      return;
+    }
+    // Opens what receives; without a route it is this that fails.
+    if (!stop || lcm_get_fileno(lcm) < 0) {
+      status = fail(startFailure(url));
+      return;
+    }
+    thread = std::thread([this] { receive(); });
+    pthread_setname_np(thread.native_handle(), "rc10-link");
+  }
+  Impl(const Impl&) = delete;
+  Impl& operator=(const Impl&) = delete;
+  ~Impl() {
+    if (thread.joinable()) {
+      const std::uint64_t one = 1;
+      (void)!::write(stop.get(), &one, sizeof one);
+      thread.join();
+    }
+    if (lcm != nullptr) lcm_destroy(lcm);
+  }
+
+  void receive() const {
+    std::array<pollfd, 2> fds{pollfd{lcm_get_fileno(lcm), POLLIN, 0}, pollfd{stop.get(), POLLIN, 0}};
+    while (true) {
+      if (::poll(fds.data(), fds.size(), -1) < 0) continue;  // a signal
+      if (fds[1].revents != 0) return;
+      if (fds[0].revents != 0) lcm_handle(lcm);
+    }
+  }
+
+  static void received(const lcm_recv_buf_t* message, const char* channel, void* self) {
+    auto& handler = *static_cast<Subscription::Handler*>(self);
+    const std::lock_guard lock(handler.mutex);
+    if (!handler.alive) return;
+    handler.call(channel, {static_cast<const std::byte*>(message->data), message->data_size});
+  }
+
+  static std::shared_ptr<Subscription::Handler> subscribe(const std::shared_ptr<Impl>& self,
+                                                          const std::string& pattern, RawHandler call) {
+    if (self->lcm == nullptr) return nullptr;
+    auto handler = std::make_shared<Subscription::Handler>();
+    handler->lcm = self->lcm;
+    handler->owner = self;
+    handler->call = std::move(call);
+    {
+      const std::lock_guard lock(self->mutex);
+      self->handlers.push_back(handler);
+    }
+    handler->subscribed = lcm_subscribe(self->lcm, pattern.c_str(), &Impl::received, handler.get());
+    if (handler->subscribed == nullptr) return nullptr;
+    lcm_subscription_set_queue_capacity(handler->subscribed, kQueueCapacity);
+    return handler;
+  }
+};
+
+Link::Link(const std::string& url) : impl_(std::make_shared<Impl>(url)) {}
+
+Result<void> Link::status() const { return impl_->status; }
+
+Result<void> Link::publish(const std::string& channel, std::span<const std::byte> message) const {
+  if (!impl_->status) return impl_->status;
+  if (channel.empty() || channel.size() > kMaxChannelLength) {
+    return fail("'" + channel + "' is no channel: LCM allows 1 to 63 characters");
+  }
+  if (lcm_publish(impl_->lcm, channel.c_str(), message.data(), static_cast<unsigned>(message.size())) != 0) {
+    return fail("LCM could not send on " + channel +
+                ": see whether its multicast route is still there (ip route get 239.255.76.67)");
+  }
+  return {};
+}
+
+Subscription Link::subscribe(const std::string& channel, Handler handler) const {
+  return Subscription{
+      Impl::subscribe(impl_, literal(channel),
+                      [handler = std::move(handler)](const std::string&, std::span<const std::byte> message) {
+                        handler(message);
+                      })};
+}
+
+Subscription Link::subscribePattern(const std::string& pattern,
+                                    std::function<void(const std::string& channel)> handler) const {
+  return Subscription{Impl::subscribe(
+      impl_, pattern, [handler = std::move(handler)](const std::string& channel, std::span<const std::byte>) {
+        handler(channel);
+      })};
+}
+
+bool Link::inHandler() const noexcept { return std::this_thread::get_id() == impl_->thread.get_id(); }
+
+}  // namespace robot_client
+}  // namespace rc10

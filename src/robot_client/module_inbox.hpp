@@ -1,0 +1,33 @@
+#pragma once
+
+#include <string>
+
+#include "rc10/module.hpp"
+#include "rc10/signals_t.hpp"
+#include "rc10/subscriber.hpp"
+
+namespace rc10 {
+inline namespace robot_client {
+
+/// What a module says of itself, from now on. Any thread.
+class ModuleInbox {
+ public:
+  /// `channel`: of the module, <robot>.v1.<module>.
+  ModuleInbox(const Link& link, const std::string& channel) : outputs_(link, channel + ".state") {}
+
+  [[nodiscard]] ModuleState state() const;
+  /// False: nothing new within `timeout`.
+  [[nodiscard]] bool waitForNext(Duration timeout) const { return outputs_.waitForNext(timeout) != nullptr; }
+  /// Messages with other definitions came.
+  [[nodiscard]] bool foreign() const { return outputs_.foreign() > 0; }
+
+ private:
+  Subscriber<signals_t> outputs_;
+};
+
+/// Why no module can be given these inputs: how many they are, or a number that is not finite.
+[[nodiscard]] Result<void> checkInputs(const std::string& module, const Signals& inputs,
+                                       const SendOptions& options);
+
+}  // namespace robot_client
+}  // namespace rc10

@@ -1,0 +1,35 @@
+#include "robot_client/obstacle.hpp"
+
+namespace rc10 {
+inline namespace robot_client {
+namespace {
+
+[[nodiscard]] bool needsReference(Mode mode) noexcept {
+  return mode == Mode::kAngle || mode == Mode::kTotalAngle || mode == Mode::kImpedance;
+}
+
+}  // namespace
+
+std::optional<std::string> obstacle(const RobotState& state, const std::string& motor, Mode mode) {
+  const auto* found = state.find(motor);
+  if (found == nullptr) return "there is no motor '" + motor + "'; the motors are: " + state.motorNames();
+  if (state.status == RobotStatus::kEstop) return "the robot is in ESTOP: clear it, then enable the motors";
+  if (state.status == RobotStatus::kStopping) return "rc10d is stopping";
+  switch (found->status) {
+    case MotorStatus::kOffline:
+      return motor + " is OFFLINE: no feedback from the drive; check power, wiring and id";
+    case MotorStatus::kReady: return motor + " is READY: enable it first";
+    case MotorStatus::kEnabling: return motor + " is ENABLING: wait until it is ACTIVE";
+    case MotorStatus::kFault:
+      return motor + " is in FAULT (" + found->fault_text + "): clear it, then enable it";
+    case MotorStatus::kActive: break;
+  }
+  if (needsReference(mode) && !found->zeroed) {
+    return motor + " has no reference for angles: home it, or zero it while it is disabled, or write zero: " +
+           "power_on in the configuration";
+  }
+  return std::nullopt;
+}
+
+}  // namespace robot_client
+}  // namespace rc10

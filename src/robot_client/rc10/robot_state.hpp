@@ -1,0 +1,103 @@
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <limits>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "app/time.hpp"
+#include "rc10/setpoint.hpp"
+
+namespace rc10 {
+inline namespace robot_client {
+
+inline constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
+
+enum class RobotStatus : std::int8_t {
+  kRun = 0,
+  kEstop = 1,  ///< Latched until cleared.
+  kStopping = 2,
+};
+
+enum class MotorStatus : std::int8_t {
+  kOffline = 0,  ///< No fresh feedback.
+  kReady = 1,    ///< Feedback, no torque, waits to be enabled.
+  kEnabling = 2,
+  kActive = 3,  ///< Obeys setpoints.
+  kFault = 4,   ///< Latched until cleared.
+};
+
+/// "OFFLINE", "READY", ...
+[[nodiscard]] const char* toString(MotorStatus status) noexcept;
+/// "RUN", "ESTOP", "STOPPING".
+[[nodiscard]] const char* toString(RobotStatus status) noexcept;
+
+/// Limits that act right now; they are not faults. Bits of MotorState::limits.
+enum Limit : std::uint32_t {
+  kLimitCurrent = 1U,
+  kLimitVelocity = 2U,
+  kLimitAngle = 4U,
+  kLimitTemperature = 8U,
+  kLimitSlew = 16U,
+  kLimitStall = 32U,
+};
+
+/// One motor, at the output shaft, counter-clockwise positive. NaN: the drive does not report it, or no state
+/// has arrived yet.
+struct MotorState {
+  std::string name{};
+  MotorStatus status = MotorStatus::kOffline;
+  std::int32_t fault = 0;  ///< 0, or the code of the latched fault.
+  std::string fault_text{};
+  std::uint32_t limits = 0;  ///< Bits of Limit.
+
+  Mode mode = Mode::kCoast;  ///< In force; coast when there is no valid target.
+  double target = 0.0;       ///< In the unit of the mode.
+  std::string owner{};       ///< The client whose target is in force, empty without one.
+  bool zeroed = false;       ///< The angle has a known reference.
+
+  double angle_deg = kUnknown;        ///< [0, 360)
+  double total_angle_deg = kUnknown;  ///< Multi-turn.
+  double velocity_rpm = kUnknown;
+  double current_a = kUnknown;
+  double torque_nm = kUnknown;
+  double voltage_v = kUnknown;
+  double temperature_c = kUnknown;
+
+  std::chrono::microseconds feedback_age{-1};  ///< When the state was taken; -1: no feedback yet.
+  double feedback_hz = 0.0;
+};
+
+/// All motors at one tick of rc10d.
+struct RobotState {
+  std::int64_t utime = 0;    ///< Wall clock of the host, us since 1970; may step.
+  std::int64_t mono_us = 0;  ///< CLOCK_MONOTONIC of the host at this tick.
+  std::int64_t tick = 0;     ///< Ticks since start.
+  RobotStatus status = RobotStatus::kRun;
+  bool realtime = false;  ///< The real-time set-up is complete; `rc10ctl stats` says what is not.
+  std::vector<MotorState> motors;
+  MonotonicTime taken;  ///< When rc10d took it, on this computer's clock.
+
+  [[nodiscard]] Duration age() const noexcept { return std::chrono::steady_clock::now() - taken; }
+  /// nullptr: the robot has no such motor.
+  [[nodiscard]] const MotorState* find(std::string_view motor) const noexcept;
+  /// "wheel, lift": for messages.
+  [[nodiscard]] std::string motorNames() const;
+};
+
+enum class Severity : std::int8_t { kInfo = 0, kWarning = 1, kError = 2 };
+
+/// A fault or a change of state as it happens; the codes are listed in docs/lcm.md.
+struct Event {
+  std::int64_t utime = 0;    ///< Wall clock of the host, us since 1970.
+  std::int64_t mono_us = 0;  ///< CLOCK_MONOTONIC of the host.
+  Severity severity = Severity::kInfo;
+  std::int32_t code = 0;
+  std::string source;  ///< Name of a motor or bus, or "robot", "link", "lcm".
+  std::string text;
+};
+
+}  // namespace robot_client
+}  // namespace rc10

@@ -1,0 +1,46 @@
+#include "rc10/setpoint.hpp"
+
+#include <array>
+#include <cmath>
+
+namespace rc10 {
+inline namespace robot_client {
+namespace {
+
+constexpr std::array kModes{"coast",     "current", "velocity", "angle", "total_angle",
+                            "impedance", "voltage", "duty",     "brake"};
+
+// All but the value travel as 32 bit floats.
+[[nodiscard]] bool fitsFloat(double number) {
+  return std::abs(number) <= static_cast<double>(std::numeric_limits<float>::max());
+}
+
+}  // namespace
+
+const char* toString(Mode mode) noexcept {
+  const auto index = static_cast<std::size_t>(mode);
+  return index < kModes.size() ? kModes[index] : "unknown";
+}
+
+Result<void> Setpoint::check() const {
+  const std::string what = std::string(toString(mode)) + " setpoint: ";
+  if (static_cast<std::size_t>(mode) >= kModes.size()) return fail("the mode is none of Mode");
+  if (!std::isfinite(value)) return fail(what + "the value is not a finite number");
+  if (mode == Mode::kDuty && std::abs(value) > 1.0) return fail(what + "a duty is within -1 to 1");
+  if (!fitsFloat(forward.velocity.value) || !fitsFloat(forward.torque_nm)) {
+    return fail(what + "a feed-forward is not a finite number");
+  }
+  if (mode == Mode::kImpedance) {
+    // Written so that NaN is refused as well.
+    if (!(stiffness_nm_per_rad >= 0.0 && fitsFloat(stiffness_nm_per_rad))) {
+      return fail(what + "the stiffness is not a finite number from 0 on");
+    }
+    if (!(damping_nms_per_rad >= 0.0 && fitsFloat(damping_nms_per_rad))) {
+      return fail(what + "the damping is not a finite number from 0 on");
+    }
+  }
+  return {};
+}
+
+}  // namespace robot_client
+}  // namespace rc10

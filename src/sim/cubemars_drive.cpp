@@ -1,0 +1,205 @@
+#include "sim/cubemars_drive.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+#include <utility>
+#include <vector>
+
+#include "bus/byte_order.hpp"
+
+namespace rc10::sim {
+namespace {
+
+constexpr double kRadPerDeg = std::numbers::pi / 180.0;
+constexpr double kRadPerSPerRpm = std::numbers::pi / 30.0;
+
+// timeout_msec and m_fault_stop_time_ms of the settings exported from an AK70-10 (cubemars_hardware,
+// .params); what they do is in the VESC firmware, from which those settings are. In MIT mode of V1 and V2 no
+// timeout is known: the last command holds.
+constexpr Duration kCommandTimeout = std::chrono::milliseconds{1000};
+constexpr Duration kFaultStop = std::chrono::milliseconds{500};
+constexpr Duration kStartUp = std::chrono::milliseconds{300};  // assumed
+
+std::vector<FrameFilter> sendsOf(const MotorSettings& settings, const CubeMarsSetup& setup) {
+  if (setup.protocol != CubeMarsProtocol::kMit) return {{.id = cubemars::servoFeedbackId(settings.id)}};
+  const PayloadDiscriminator own{.value = static_cast<std::uint8_t>(settings.id)};
+  return {{.id = {0, false}, .mask = kStandardIdMask, .discriminator = own}};
+}
+
+double scaled(std::uint32_t code, double low, double high, double last_code) noexcept {
+  return low + (high - low) * code / last_code;
+}
+
+std::uint32_t coded(double value, double reach, double last_code) noexcept {
+  return static_cast<std::uint32_t>(
+      std::lround(std::clamp((value + reach) / (2.0 * reach), 0.0, 1.0) * last_code));
+}
+
+std::int16_t int16Of(double value, double limit) noexcept {
+  return static_cast<std::int16_t>(std::lround(std::clamp(value, -limit, limit)));
+}
+
+}  // namespace
+
+CubeMarsDrive::CubeMarsDrive(const MotorSettings& settings, const CubeMarsSetup& setup, const MotorLoad& load)
+    : ServoDrive(settings, cubemarsTraits(setup), load, sendsOf(settings, setup)),
+      setup_(setup),
+      id_(settings.id) {
+  const int hz = settings.feedback_hz > 0 ? settings.feedback_hz : traits().feedback_hz;
+  feedback_period_ = std::chrono::duration_cast<Duration>(std::chrono::seconds{1}) / std::max(hz, 1);
+}
+
+Duration CubeMarsDrive::feedbackPeriod() const noexcept {
+  return setup_.protocol == CubeMarsProtocol::kMit ? Duration::zero() : feedback_period_;
+}
+
+std::size_t CubeMarsDrive::feedback(std::span<CanFrame> out) noexcept {
+  if (setup_.protocol == CubeMarsProtocol::kMit || off() || out.empty()) return 0;
+  out[0] = servoFeedback();
+  return 1;
+}
+
+double CubeMarsDrive::rpmOf(double erpm) const noexcept {
+  return erpm / (setup_.model->gear_ratio * setup_.pole_pairs);
+}
+
+void CubeMarsDrive::receive(const CanFrame& frame) noexcept {
+  if (frame.type != FrameType::kData || frame.fd || off()) return;
+  if (setup_.protocol == CubeMarsProtocol::kMit) {
+    if (frame.id == CanId{static_cast<std::uint32_t>(id_), false} && frame.length == 8) receiveMit(frame);
+  } else if (frame.id.extended && (frame.id.value & 0xFFU) == static_cast<std::uint32_t>(id_)) {
+    receiveServo(frame);
+  }
+}
+
+void CubeMarsDrive::receiveServo(const CanFrame& frame) noexcept {
+  constexpr std::array<std::size_t, 9> kLengths{4, 4, 4, 4, 4, 1, 8, 9, 8};  // 7 is no command
+  const std::uint32_t command = frame.id.value >> 8U;
+  if (command >= kLengths.size() || frame.length < kLengths[command]) return;
+  if (command == 8 && setup_.protocol != CubeMarsProtocol::kMitV3) return;
+  last_command_ = elapsed();
+  if (error_ != 0) return;
+  const auto bytes = frame.payload();
+  const double value = frame.length >= 4 ? readBigEndian<std::int32_t>(bytes, 0) : 0;
+  switch (command) {
+    case 0: voltage(std::clamp(value / 1e5, -1.0, 1.0) * static_cast<double>(traits().nominal_v)); break;
+    case 1: current(std::clamp(value / 1e3, -60.0, 60.0)); break;
+    case 2: {
+      const double nm = value / 1e3 * static_cast<double>(setup_.torque_nm_per_a);
+      if (nm > 0.0) {
+        velocity(0.0, 0.0, nm);
+      } else {
+        release();
+      }
+      break;
+    }
+    case 3: velocity(rpmOf(value)); break;
+    case 4: setDrivePosition(value / 1e4, 0.0); break;
+    case 5: zeroAt(0.0); break;
+    case 6: setDrivePosition(value / 1e4, rpmOf(10.0 * readBigEndian<std::int16_t>(bytes, 4))); break;
+    case 8:
+      obeyMit(readBigEndian<std::uint16_t>(bytes, 3),
+              static_cast<std::uint32_t>(bytes[5] << 4 | bytes[6] >> 4),
+              static_cast<std::uint32_t>(bytes[0] << 4 | bytes[1] >> 4),
+              static_cast<std::uint32_t>((bytes[1] & 0xF) << 8 | bytes[2]),
+              static_cast<std::uint32_t>((bytes[6] & 0xF) << 8 | bytes[7]));
+      break;
+    default: break;
+  }
+}
+
+void CubeMarsDrive::setDrivePosition(double message_deg, double limit_rpm) noexcept {
+  position(message_deg / setup_.message_deg_per_deg, limit_rpm);
+}
+
+void CubeMarsDrive::receiveMit(const CanFrame& frame) noexcept {
+  const auto bytes = frame.payload();
+  const bool special = std::all_of(bytes.begin(), bytes.begin() + 7, [](auto byte) { return byte == 0xFF; });
+  if (special && bytes[7] == 0xFC) {
+    entered_ = true;
+    error_ = 0;
+  } else if (special && bytes[7] == 0xFD) {
+    entered_ = false;
+    release();
+  } else if (special && bytes[7] == 0xFE) {
+    zeroAt(0.0);
+  } else if (entered_ && error_ == 0) {
+    obeyMit(readBigEndian<std::uint16_t>(bytes, 0), static_cast<std::uint32_t>(bytes[2] << 4 | bytes[3] >> 4),
+            static_cast<std::uint32_t>((bytes[3] & 0xF) << 8 | bytes[4]),
+            static_cast<std::uint32_t>(bytes[5] << 4 | bytes[6] >> 4),
+            static_cast<std::uint32_t>((bytes[6] & 0xF) << 8 | bytes[7]));
+  }
+  answer(mitReply());
+}
+
+void CubeMarsDrive::obeyMit(std::uint32_t position, std::uint32_t velocity, std::uint32_t stiffness,
+                            std::uint32_t damping, std::uint32_t torque) noexcept {
+  const auto& r = setup_.ranges;
+  const auto both = [](std::uint32_t code, double reach, double last) {
+    return scaled(code, -reach, reach, last);
+  };
+  impedance(both(position, r.position_rad, 65535.0) / kRadPerDeg,
+            both(velocity, r.velocity_rad_s, 4095.0) / kRadPerSPerRpm, scaled(stiffness, 0.0, 500.0, 4095.0),
+            scaled(damping, 0.0, 5.0, 4095.0), both(torque, r.torque_nm, 4095.0));
+}
+
+void CubeMarsDrive::step(Duration dt) noexcept {
+  ServoDrive::step(dt);
+  if (setup_.protocol == CubeMarsProtocol::kMit) return;
+  if (elapsed() - last_command_ > kCommandTimeout) release();
+  if (error_ != 0 && elapsed() >= error_until_) error_ = 0;
+}
+
+void CubeMarsDrive::restart() noexcept {
+  release();
+  entered_ = false;
+  error_ = 0;
+  boots_until_ = elapsed() + kStartUp;
+  if (setup_.output_encoder) return;
+  const double rotor_turn_deg = 360.0 / setup_.model->gear_ratio;
+  zeroAt(std::remainder(driveAngleDeg(), rotor_turn_deg));
+}
+
+void CubeMarsDrive::fault(std::uint32_t native_code) noexcept {
+  error_ = static_cast<std::uint8_t>(std::min(native_code, 255U));
+  error_until_ = elapsed() + kFaultStop;
+  if (error_ != 0) release();
+}
+
+CanFrame CubeMarsDrive::servoFeedback() const noexcept {
+  std::array<std::uint8_t, 8> data{};
+  const double amperes = setup_.model->signed_current ? currentA() : std::fabs(currentA());
+  const double erpm = driveRpm() * setup_.model->gear_ratio * setup_.pole_pairs;
+  writeBigEndian(data, 0, int16Of(driveAngleDeg() * setup_.message_deg_per_deg * 10.0, 32000.0));
+  writeBigEndian(data, 2, int16Of(erpm / 10.0, 32000.0));
+  writeBigEndian(data, 4, int16Of(amperes * 100.0, 32000.0));
+  data[6] = static_cast<std::uint8_t>(std::lround(std::clamp(physics().temperatureC(), -20.0, 127.0)));
+  data[7] = error_;
+  return makeClassicFrame(cubemars::servoFeedbackId(id_), data);
+}
+
+CanFrame CubeMarsDrive::mitReply() const noexcept {
+  const auto& r = setup_.ranges;
+  std::array<std::uint8_t, 8> data{};
+  // The position goes round at the ends of its field.
+  const double rad = std::remainder(driveAngleDeg() * kRadPerDeg, 2.0 * r.position_rad);
+  const auto position = coded(rad, r.position_rad, 65535.0);
+  const auto velocity = coded(driveRpm() * kRadPerSPerRpm, r.velocity_rad_s, 4095.0);
+  const auto torque = coded(driveTorqueNm(), r.torque_nm, 4095.0);
+  data[0] = static_cast<std::uint8_t>(id_);
+  writeBigEndian(data, 1, static_cast<std::uint16_t>(position));
+  data[3] = static_cast<std::uint8_t>(velocity >> 4U);
+  data[4] = static_cast<std::uint8_t>((velocity & 0xFU) << 4U | torque >> 8U);
+  data[5] = static_cast<std::uint8_t>(torque & 0xFFU);
+  data[6] = static_cast<std::uint8_t>(std::lround(std::clamp(physics().temperatureC(), -40.0, 215.0)) + 40);
+  data[7] = error_;
+  return makeClassicFrame({0, false}, data);
+}
+
+std::unique_ptr<Drive> makeCubemarsDrive(const MotorSettings& settings, const MotorLoad& load) {
+  return std::make_unique<CubeMarsDrive>(settings, cubemarsSetup(settings.model, settings.own), load);
+}
+
+}  // namespace rc10::sim

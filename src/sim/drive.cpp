@@ -1,0 +1,25 @@
+#include "sim/drive.hpp"
+
+#include <cmath>
+
+namespace rc10::sim {
+namespace {
+
+/// Unset (NaN) is allowed.
+bool negative(float value) noexcept { return value < 0.0F || std::isinf(value); }
+
+}  // namespace
+
+Result<void> checkLoad(const std::string& name, const MotorLoad& load) {
+  const auto refuse = [&](const std::string& why) { return fail("simulated motor '" + name + "': " + why); };
+  if (negative(load.inertia_kg_m2)) return refuse("inertia_kg_m2 must not be negative");
+  if (negative(load.viscous_nms_per_rad)) return refuse("viscous_nms_per_rad must not be negative");
+  if (negative(load.coulomb_nm)) return refuse("coulomb_nm must not be negative");
+  if (!std::isfinite(load.load_torque_nm)) return refuse("load_torque_nm must be a number");
+  if (!std::isfinite(load.initial_angle_deg)) return refuse("initial_angle_deg must be a number");
+  const bool is_fraction = load.lost_frames >= 0.0F && load.lost_frames <= 1.0F;  // NaN is none
+  if (!is_fraction) return refuse("lost_frames must be 0 to 1");
+  return {};
+}
+
+}  // namespace rc10::sim

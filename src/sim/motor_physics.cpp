@@ -1,0 +1,115 @@
+#include "sim/motor_physics.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace rc10::sim {
+namespace {
+
+constexpr double kTwoPi = 2.0 * std::numbers::pi;
+constexpr double kRpmPerRadPerS = 60.0 / kTwoPi;
+
+}  // namespace
+
+MotorPhysics::MotorPhysics(const MotorParameters& parameters, double initial_angle_deg) noexcept
+    : parameters_(parameters), temperature_c_(parameters.ambient_c) {
+  const double turns = initial_angle_deg / 360.0 * parameters.gear_ratio;
+  rotor_turns_ = static_cast<std::int64_t>(std::floor(turns));
+  rotor_fraction_ = turns - std::floor(turns);
+}
+
+void MotorPhysics::step(const WindingCommand& command, Duration dt) noexcept {
+  if (dt <= Duration::zero()) return;
+  const auto steps = (dt + kLongestStep - Duration{1}) / kLongestStep;
+  const double dt_s = std::chrono::duration<double>(dt).count() / static_cast<double>(steps);
+  for (auto i = steps; i > 0; --i) substep(command, dt_s);
+}
+
+void MotorPhysics::substep(const WindingCommand& command, double dt_s) noexcept {
+  stepCurrent(command, dt_s);
+  stepMotion(dt_s);
+  stepHeat(dt_s);
+  stepSpeedMeasurement(dt_s);
+}
+
+void MotorPhysics::stepCurrent(const WindingCommand& command, double dt_s) noexcept {
+  const auto& p = parameters_;
+  const double back_emf_v = p.back_emf_vs_per_rad * velocity_rad_s_ * p.gear_ratio;
+  const auto current_at = [&](double volts) { return (volts - back_emf_v) / p.resistance_ohm; };
+
+  const bool by_voltage = command.kind == WindingCommand::Kind::kVoltage;
+  const double wanted_a =
+      by_voltage ? current_at(std::clamp(command.value, -p.supply_v, p.supply_v)) : command.value;
+  const double limited_a = std::clamp(wanted_a, -p.current_limit_a, p.current_limit_a);
+  const double lag_s = by_voltage ? p.winding_lag_s : p.current_lag_s;
+  current_a_ += (limited_a - current_a_) * dt_s / (lag_s + dt_s);
+
+  // The supply drives no more than this against the back-EMF: it is what limits the speed. Above the
+  // no-load speed the current is negative, as through the bridge's diodes: a driven motor brakes.
+  if (!by_voltage) current_a_ = std::clamp(current_a_, current_at(-p.supply_v), current_at(p.supply_v));
+  current_a_ = std::clamp(current_a_, -p.current_limit_a, p.current_limit_a);
+}
+
+void MotorPhysics::stepMotion(double dt_s) noexcept {
+  if (stalled_) {
+    velocity_rad_s_ = 0.0;
+    return;
+  }
+  const auto& p = parameters_;
+  const double inertia = p.totalInertia();
+  const double torque_nm = outputTorqueNm() - p.output_load_nm;
+  const double previous_rad_s = velocity_rad_s_;
+
+  // Friction is implicit: viscous friction is stable for any step, and Coulomb friction takes away at
+  // most the whole speed, so the shaft comes to rest, stays there until the torque exceeds it, and
+  // never chatters around zero.
+  const double divisor = inertia + dt_s * p.output_viscous_nms_per_rad;
+  const double free_rad_s = (inertia * previous_rad_s + dt_s * torque_nm) / divisor;
+  const double coulomb_rad_s = dt_s * p.output_coulomb_nm / divisor;
+  velocity_rad_s_ = std::copysign(std::max(std::abs(free_rad_s) - coulomb_rad_s, 0.0), free_rad_s);
+
+  const double mean_rad_s = 0.5 * (previous_rad_s + velocity_rad_s_);
+  rotor_fraction_ += mean_rad_s * p.gear_ratio / kTwoPi * dt_s;
+  const double whole = std::floor(rotor_fraction_);
+  rotor_fraction_ -= whole;
+  rotor_turns_ += static_cast<std::int64_t>(whole);
+  if (rotor_fraction_ >= 1.0) {  // -1e-17 - floor(-1e-17) rounds to 1
+    rotor_fraction_ = 0.0;
+    ++rotor_turns_;
+  }
+}
+
+void MotorPhysics::stepHeat(double dt_s) noexcept {
+  const auto& p = parameters_;
+  const double heating_w = p.resistance_ohm * current_a_ * current_a_;
+  const double cooling_w = (temperature_c_ - p.ambient_c) / p.thermal_resistance_k_per_w;
+  temperature_c_ += (heating_w - cooling_w) * dt_s / p.heat_capacity_j_per_k;
+}
+
+void MotorPhysics::stepSpeedMeasurement(double dt_s) noexcept {
+  measured_velocity_rad_s_ +=
+      (velocity_rad_s_ - measured_velocity_rad_s_) * dt_s / (parameters_.speed_lag_s + dt_s);
+}
+
+double MotorPhysics::rotorRpm() const noexcept { return outputRpm() * parameters_.gear_ratio; }
+
+double MotorPhysics::measuredRotorRpm() const noexcept {
+  return measured_velocity_rad_s_ * kRpmPerRadPerS * parameters_.gear_ratio;
+}
+
+double MotorPhysics::outputAngleDeg() const noexcept {
+  return (static_cast<double>(rotor_turns_) + rotor_fraction_) * 360.0 / parameters_.gear_ratio;
+}
+
+double MotorPhysics::outputRpm() const noexcept { return velocity_rad_s_ * kRpmPerRadPerS; }
+
+double MotorPhysics::outputTorqueNm() const noexcept {
+  return current_a_ * parameters_.torque_nm_per_a * parameters_.gear_ratio;
+}
+
+double MotorPhysics::kineticEnergyJ() const noexcept {
+  return 0.5 * parameters_.totalInertia() * velocity_rad_s_ * velocity_rad_s_;
+}
+
+}  // namespace rc10::sim

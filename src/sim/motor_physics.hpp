@@ -1,0 +1,91 @@
+#pragma once
+
+#include <cstdint>
+
+#include "app/time.hpp"
+
+namespace rc10::sim {
+
+/// What a motor, its drive and its load are made of. SI units; winding and rotor figures are the
+/// rotor's, figures named `output_` stand behind the gear.
+struct MotorParameters {
+  double gear_ratio = 1.0;           ///< Rotor turns per turn of the output shaft.
+  double torque_nm_per_a = 0.0;      ///< Kt.
+  double back_emf_vs_per_rad = 0.0;  ///< Ke.
+  double resistance_ohm = 0.0;       ///< As the supply sees it: the slope of speed over torque.
+  double current_limit_a = 0.0;      ///< The drive's maximum.
+  double supply_v = 24.0;
+  double current_lag_s = 0.0;  ///< Of the drive's current loop.
+  double winding_lag_s = 0.0;  ///< L/R: how the current follows a commanded voltage.
+  double speed_lag_s = 0.0;    ///< Of the drive's speed measurement.
+  double inertia_kg_m2 = 0.0;
+  double output_inertia_kg_m2 = 0.0;  ///< Of the load alone.
+  double output_viscous_nms_per_rad = 0.0;
+  double output_coulomb_nm = 0.0;  ///< Also holds the shaft at rest.
+  double output_load_nm = 0.0;     ///< Constant torque in the negative direction.
+  double thermal_resistance_k_per_w = 0.0;
+  double heat_capacity_j_per_k = 0.0;
+  double ambient_c = 25.0;
+
+  /// At the output shaft, the rotor's share included.
+  [[nodiscard]] double totalInertia() const noexcept {
+    return inertia_kg_m2 * gear_ratio * gear_ratio + output_inertia_kg_m2;
+  }
+};
+
+/// What the drive is told to put on the winding.
+struct WindingCommand {
+  enum class Kind : std::uint8_t { kCurrent, kVoltage };
+  Kind kind = Kind::kCurrent;
+  double value = 0.0;  ///< A or V.
+};
+
+/// One motor with its load: state and step. Drives are not coupled, so each steps by itself.
+class MotorPhysics {
+ public:
+  /// Longer steps are cut into equal ones of at most this length.
+  static constexpr Duration kLongestStep{std::chrono::microseconds{250}};
+
+  MotorPhysics(const MotorParameters& parameters, double initial_angle_deg) noexcept;
+
+  /// Advances by `dt` with the command held.
+  void step(const WindingCommand& command, Duration dt) noexcept;
+
+  /// Another load or friction from now on; motion, current and heat stay as they are.
+  void setParameters(const MotorParameters& parameters) noexcept { parameters_ = parameters; }
+  [[nodiscard]] const MotorParameters& parameters() const noexcept { return parameters_; }
+  /// A stalled shaft does not turn, whatever the torque.
+  void stall(bool stalled) noexcept { stalled_ = stalled; }
+  [[nodiscard]] bool stalled() const noexcept { return stalled_; }
+  void setTemperature(double temperature_c) noexcept { temperature_c_ = temperature_c; }
+
+  /// The rotor's position is whole turns and a fraction in [0, 1), so that a long run loses nothing.
+  [[nodiscard]] std::int64_t rotorTurns() const noexcept { return rotor_turns_; }
+  [[nodiscard]] double rotorFraction() const noexcept { return rotor_fraction_; }
+  [[nodiscard]] double rotorRpm() const noexcept;
+  [[nodiscard]] double measuredRotorRpm() const noexcept;  ///< As the drive measures it: late.
+  [[nodiscard]] double outputAngleDeg() const noexcept;    ///< Multi-turn; 0 is 0, not the start.
+  [[nodiscard]] double outputRpm() const noexcept;
+  [[nodiscard]] double currentA() const noexcept { return current_a_; }
+  [[nodiscard]] double outputTorqueNm() const noexcept;  ///< Of the motor, friction not subtracted.
+  [[nodiscard]] double temperatureC() const noexcept { return temperature_c_; }
+  [[nodiscard]] double kineticEnergyJ() const noexcept;
+
+ private:
+  void substep(const WindingCommand& command, double dt_s) noexcept;
+  void stepCurrent(const WindingCommand& command, double dt_s) noexcept;
+  void stepMotion(double dt_s) noexcept;
+  void stepHeat(double dt_s) noexcept;
+  void stepSpeedMeasurement(double dt_s) noexcept;
+
+  MotorParameters parameters_;
+  std::int64_t rotor_turns_ = 0;
+  double rotor_fraction_ = 0.0;
+  double velocity_rad_s_ = 0.0;           // output shaft
+  double measured_velocity_rad_s_ = 0.0;  // output shaft
+  double current_a_ = 0.0;
+  double temperature_c_ = 0.0;
+  bool stalled_ = false;
+};
+
+}  // namespace rc10::sim

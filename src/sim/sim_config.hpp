@@ -1,0 +1,19 @@
+#pragma once
+
+#include <limits>
+
+namespace rc10::sim {
+
+/// What hangs on a simulated motor's output shaft, and what is wrong with it.
+struct MotorLoad {
+  float inertia_kg_m2 = std::numeric_limits<float>::quiet_NaN();  ///< Load only; NaN: the model's default.
+  float viscous_nms_per_rad = std::numeric_limits<float>::quiet_NaN();  ///< NaN: the model's default.
+  float coulomb_nm = std::numeric_limits<float>::quiet_NaN();           ///< NaN: the model's default.
+  float load_torque_nm = 0.0F;  ///< Constant torque against which the motor works (a hanging weight).
+  float initial_angle_deg = 0.0F;
+  bool stalled = false;      ///< The shaft does not turn.
+  bool silent = false;       ///< The drive sends nothing.
+  float lost_frames = 0.0F;  ///< Fraction of feedback frames that are lost, 0 to 1.
+};
+
+}  // namespace rc10::sim

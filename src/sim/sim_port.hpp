@@ -1,0 +1,68 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "app/result.hpp"
+#include "app/time.hpp"
+#include "app/unique_fd.hpp"
+#include "bus/can_frame.hpp"
+#include "bus/can_receiver.hpp"
+#include "bus/send_batch.hpp"
+#include "sim/sim_bus.hpp"
+
+namespace rc10::sim {
+
+/// Connects simulated drives to a descriptor that carries CAN frames: one end of a socket pair, or a
+/// SocketCAN socket. One thread steps it; in the daemon its own, off the scheduler's grid by half a
+/// period, so that feedback does not race with the tick. Never blocks; nothing allocates after
+/// construction.
+class SimPort {
+ public:
+  /// A step longer than this simulates only this much: after a stop (a debugger, a suspended machine) the
+  /// motors go on from where they were.
+  static constexpr Duration kLongestStep{std::chrono::seconds{1}};
+
+  struct Counters {
+    std::uint64_t commands = 0;   ///< Frames read.
+    std::uint64_t malformed = 0;  ///< Messages read that are no frames.
+    std::uint64_t sent = 0;       ///< Feedback frames the kernel took.
+    std::uint64_t refused = 0;    ///< And those it did not take: the reader is late, or the interface down.
+    Duration skipped{};           ///< Time that was not simulated.
+    int error = 0;                ///< errno of the last read that failed; 0 since one succeeded.
+  };
+
+  /// Two connected descriptors, one message a frame, both non-blocking and with kernel receive stamps, as
+  /// SocketCAN has them: one for fdCANbus::adopt(), one for the port.
+  [[nodiscard]] static Result<std::pair<UniqueFd, UniqueFd>> makeSocketPair();
+
+  /// `config` has passed SimBus::check().
+  SimPort(UniqueFd fd, const SimBusConfig& config);
+
+  /// Takes every command that has arrived, advances the motors to `now`, and writes their feedback with one
+  /// system call for 64 frames. The first step only sets the clock. All commands count from the step's begin;
+  /// what came in between is not known better than that.
+  void step(MonotonicTime now) noexcept;
+
+  [[nodiscard]] SimBus& bus() noexcept { return bus_; }
+  [[nodiscard]] const SimBus& bus() const noexcept { return bus_; }
+  [[nodiscard]] int descriptor() const noexcept { return fd_.get(); }
+  [[nodiscard]] const Counters& counters() const noexcept { return counters_; }
+
+ private:
+  void readCommands(MonotonicTime now) noexcept;
+  void writeFeedback(std::size_t count) noexcept;
+
+  UniqueFd fd_;
+  SimBus bus_;
+  CanReceiver receiver_;
+  SendBatch batch_;
+  std::vector<CanFrame> commands_;
+  std::vector<CanFrame> feedback_;
+  std::optional<MonotonicTime> last_step_;
+  Counters counters_;
+};
+
+}  // namespace rc10::sim

@@ -1,0 +1,50 @@
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "app/time.hpp"
+#include "bus/can_frame.hpp"
+#include "survey/recogniser.hpp"
+
+namespace rc10::survey {
+
+/// What was heard under one id of a frame.
+struct Sighting {
+  CanId id;
+  std::uint64_t frames = 0;
+  /// What all of these frames may be: of one kind, that is what it is; of several, it is ambiguous; empty: no
+  /// family that rc10d knows. Drives that share the id are several of one kind.
+  std::vector<Guess> guesses;
+
+  [[nodiscard]] bool ambiguous() const;
+};
+
+/// Collects the frames of a bus. Not for real-time threads: it allocates.
+class BusSurvey {
+ public:
+  static constexpr std::size_t kMostIds =
+      4096;  ///< A bus with more is no bus of motors: the rest is left out.
+
+  void take(const CanFrame& frame);
+
+  /// By id, standard ones first. `listened`: how long frames were taken; 0: how often a frame came says
+  /// nothing.
+  [[nodiscard]] std::vector<Sighting> sightings(Duration listened = {}) const;
+
+  /// The ODrive with extended ids, by its node, that would take this query for a command of its own: one
+  /// whose heartbeat may have been heard. 0: none.
+  [[nodiscard]] int commandedBy(const CanFrame& query) const;
+
+ private:
+  struct Heard {
+    std::uint64_t frames = 0;
+    std::vector<std::pair<Guess, std::uint64_t>> guesses;
+  };
+  std::map<std::pair<bool, std::uint32_t>, Heard> heard_;
+};
+
+}  // namespace rc10::survey

@@ -1,0 +1,197 @@
+// rc10-stop: the last word to the drives of an rc10d that was killed. It sends the rest frames that rc10d
+// left in a file, and knows nothing else: no configuration, no protocol, no threads.
+
+#include <algorithm>
+#include <chrono>
+#include <exception>
+#include <filesystem>
+#include <fstream>
+#include <iostream>
+#include <iterator>
+#include <map>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <thread>
+#include <vector>
+
+#include "bus/frame_text.hpp"
+#include "interface_stop.hpp"
+#include "link/interface_lock.hpp"
+#include "link/run_dir.hpp"
+#include "rc10_version.hpp"
+
+namespace rc10 {
+namespace {
+
+constexpr int kOk = 0;
+constexpr int kInterfaceFailed = 1;
+constexpr int kBadUsageOrFile = 2;
+
+// Together 0.2 s at most: a service manager waits for us.
+constexpr int kMaxSteps = 200;
+constexpr auto kStep = std::chrono::milliseconds{1};
+
+constexpr std::string_view kHelp = R"(usage: rc10-stop ROBOT | --file FILE | --all   [--force]
+
+Sends the drives of a robot the rest frames (no torque) that its rc10d left in
+<run folder>/ROBOT/rest-frames. For when rc10d was killed or has crashed: systemd runs it then.
+While rc10d runs it refuses: use `rc10ctl estop`.
+
+  ROBOT        name of the robot
+  --file FILE  replay this file: lines such as `can0 200#0000000000000000`
+  --all        every robot of the run folder whose rc10d does not run any more
+  --force      send even on an interface that a running rc10d drives
+  --help, --version
+
+RC10_RUN_DIR replaces /run/rc10d.
+Exit status: 0 every frame was accepted, 1 an interface failed or rc10d runs, 2 bad usage or file.
+)";
+
+struct Options {
+  std::vector<std::string> files;
+  bool all = false;
+  bool force = false;
+};
+
+int complain(const std::string& message) {
+  std::cerr << "rc10-stop: " << message << '\n';
+  return kBadUsageOrFile;
+}
+
+bool isRobotName(std::string_view name) {
+  return !name.empty() &&
+         name.find_first_not_of("abcdefghijklmnopqrstuvwxyz0123456789_-") == std::string_view::npos;
+}
+
+/// The files of every robot that ever ran here.
+std::vector<std::string> allFiles() {
+  std::vector<std::string> files;
+  std::error_code none;
+  for (const auto& entry : std::filesystem::directory_iterator(link::runDir(), none)) {
+    auto file = link::restFramesPath(link::runDir(), entry.path().filename().string());
+    if (std::filesystem::exists(file, none)) files.push_back(std::move(file));
+  }
+  std::sort(files.begin(), files.end());
+  return files;
+}
+
+/// Nothing: the message has been printed.
+std::optional<Options> parse(const std::vector<std::string>& words) {
+  Options options;
+  int choices = 0;
+  for (std::size_t i = 0; i < words.size(); ++i) {
+    const auto& word = words[i];
+    if (word == "--force") {
+      options.force = true;
+    } else if (word == "--all") {
+      options.all = true;
+      ++choices;
+    } else if (word == "--file" && i + 1 < words.size()) {
+      options.files.push_back(words[++i]);
+      ++choices;
+    } else if (isRobotName(word) && word.front() != '-') {
+      options.files.push_back(link::restFramesPath(link::runDir(), word));
+      ++choices;
+    } else {
+      complain("'" + word + "' is no robot and no option; --help lists them");
+      return std::nullopt;
+    }
+  }
+  if (choices != 1) {
+    complain("name one robot, or --file FILE, or --all; --help explains");
+    return std::nullopt;
+  }
+  if (options.all) options.files = allFiles();
+  return options;
+}
+
+Result<std::vector<AddressedFrame>> load(const std::string& path) {
+  std::ifstream file(path, std::ios::binary);
+  if (!file) return fail(path + ": cannot be read: no rc10d of that robot ran, or another user's did");
+  const std::string text{std::istreambuf_iterator<char>{file}, {}};
+  auto frames = parseFrameList(text);
+  if (!frames) return fail(path + ": " + frames.error().message);
+  return frames;
+}
+
+class Stop {
+ public:
+  explicit Stop(const Options& options) : options_(options) {}
+
+  int run() {
+    for (const auto& file : options_.files) {
+      const auto frames = load(file);
+      if (frames) {
+        add(*frames);
+      } else {
+        status_ = complain(frames.error().message);  // the other robots have their drives too
+      }
+    }
+    std::vector<InterfaceStop> stops;
+    for (auto& [interface, frames] : frames_) {
+      if (mayUse(interface)) stops.emplace_back(interface, std::move(frames));
+    }
+    send(stops);
+    for (const auto& stop : stops) {
+      if (const auto problem = stop.problem(); !problem.empty()) failed(problem);
+    }
+    return status_;
+  }
+
+ private:
+  void add(const std::vector<AddressedFrame>& frames) {
+    for (const auto& [interface, frame] : frames) frames_[interface].push_back(frame);
+  }
+
+  bool mayUse(const std::string& interface) {
+    if (options_.force) return true;
+    const auto holder = link::InterfaceLock::holder(link::runDir(), interface);
+    if (holder.empty()) return true;
+    if (options_.all) return false;  // its rc10d looks after it
+    failed(interface + " is driven by " + holder +
+           ", which runs: use `rc10ctl estop`, or --force to send all the same");
+    return false;
+  }
+
+  static void send(std::vector<InterfaceStop>& stops) {
+    for (int step = 0; step < kMaxSteps; ++step) {
+      if (step != 0) std::this_thread::sleep_for(kStep);
+      for (auto& stop : stops) stop.step();
+      if (std::all_of(stops.begin(), stops.end(), [](const auto& stop) { return stop.ended(); })) return;
+    }
+  }
+
+  void failed(const std::string& message) {
+    complain(message);
+    status_ = std::max(status_, kInterfaceFailed);
+  }
+
+  const Options& options_;
+  std::map<std::string, std::vector<CanFrame>> frames_;
+  int status_ = kOk;
+};
+
+int runProgram(const std::vector<std::string>& words) {
+  if (std::find(words.begin(), words.end(), "--help") != words.end()) {
+    std::cout << kHelp;
+    return kOk;
+  }
+  if (std::find(words.begin(), words.end(), "--version") != words.end()) {
+    std::cout << "rc10-stop " << kVersion << '\n';
+    return kOk;
+  }
+  const auto options = parse(words);
+  return options ? Stop{*options}.run() : kBadUsageOrFile;
+}
+
+}  // namespace
+}  // namespace rc10
+
+int main(int argc, char** argv) {
+  try {
+    return rc10::runProgram({argv + 1, argv + argc});
+  } catch (const std::exception& error) {
+    return rc10::complain(error.what());
+  }
+}

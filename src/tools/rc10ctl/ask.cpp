@@ -1,0 +1,51 @@
+#include "ask.hpp"
+
+#include <algorithm>
+#include <cstdio>
+
+#include "client/request_call.hpp"
+#include "client/text_table.hpp"
+
+namespace rc10::ctl {
+namespace {
+
+Result<link::Request> requestFor(const std::string& operation, const std::vector<std::string>& motors,
+                                 const std::vector<link::NamedValue>& values) {
+  std::string target;
+  for (const auto& motor : motors) {
+    // An empty name would be left out, and no name at all means every motor.
+    if (motor.empty() || motor.find(',') != std::string::npos)
+      return fail("'" + motor + "' is not the name of a motor");
+    target += (target.empty() ? "" : ",") + motor;
+  }
+  link::Request request;
+  if (target.size() >= sizeof(request.target))
+    return fail("too many motors at once: name none for all, or do it in parts");
+  request.operation = operation;
+  request.target = target;
+  request.value_count = static_cast<std::uint32_t>(std::min(values.size(), link::kMaxValues));
+  std::copy_n(values.begin(), request.value_count, request.values.begin());
+  return request;
+}
+
+}  // namespace
+
+ExitCode ask(const Global& global, const std::string& operation, const std::vector<std::string>& motors,
+             const std::vector<link::NamedValue>& values) {
+  const auto request = requestFor(operation, motors, values);
+  if (!request) return complain(request.error(), ExitCode::kUsage);
+  auto rc10d = connect(global);
+  if (!rc10d) return complain(rc10d.error(), ExitCode::kNoDaemon);
+  const auto response = RequestCall(*rc10d, kClientName).call(*request);
+  if (!response) return complain(response.error(), ExitCode::kFailed);
+  const std::string message = client::printable(response->message.view());
+  if (response->status != link::ResponseStatus::kOk) return complain({message}, ExitCode::kFailed);
+  std::printf("%s\n", message.c_str());
+  for (std::uint32_t i = 0; i < response->value_count; ++i) {
+    std::printf("%s = %g\n", client::printable(response->values[i].name.view()).c_str(),
+                response->values[i].value);
+  }
+  return ExitCode::kOk;
+}
+
+}  // namespace rc10::ctl

@@ -1,0 +1,67 @@
+#include <cstdio>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include <CLI/CLI.hpp>
+
+#include "config/stm32_gains.hpp"
+#include "verbs.hpp"
+
+namespace rc10::ctl {
+namespace {
+
+struct Gains {
+  std::vector<std::string> speed;
+  std::vector<std::string> angle;
+  double td_ratio = 0.0;
+  double separation_deg = 0.0;
+  double tick_ms = 1.0;
+};
+
+ExitCode wrong(const std::string& what) {
+  std::fprintf(stderr, "rc10ctl: %s\n", what.c_str());
+  return ExitCode::kUsage;
+}
+
+ExitCode convert(const Gains& gains) {
+  if (gains.speed.empty() && gains.angle.empty())
+    return wrong("convert-gains needs --speed, --angle, or both");
+  std::string text;
+  if (!gains.speed.empty()) {
+    const auto pid = stm32Pid(gains.speed);
+    if (!pid) return wrong("--speed: " + pid.error().message);
+    text += yamlLines(convertSpeedGains(*pid, gains.td_ratio, gains.tick_ms / 1000.0));
+  }
+  if (!gains.angle.empty()) {
+    const auto pid = stm32Pid(gains.angle);
+    if (!pid) return wrong("--angle: " + pid.error().message);
+    text += yamlLines(convertAngleGains(*pid, gains.separation_deg));
+  }
+  std::fputs(text.c_str(), stdout);
+  return ExitCode::kOk;
+}
+
+}  // namespace
+
+void addConvertGains(CLI::App& app, Action& action) {
+  const auto gains = std::make_shared<Gains>();
+  auto* verb = app.add_subcommand(
+      "convert-gains",
+      "PID parameters of the STM32 library (mA, per tick) as lines for a configuration (A, per second)");
+  const char* order = "KP KI KD [I_OUTLIMIT IS_I_OUTLIMIT OUTPUT_LIMIT DEADBAND]";
+  verb->add_option("--speed", gains->speed, "its PID_Incremental: output rpm to mA, as in PID_Param_Config")
+      ->expected(3, 7)
+      ->type_name(order);
+  verb->add_option("--td-ratio", gains->td_ratio, "its td_ratio")->check(CLI::NonNegativeNumber);
+  verb->add_option("--angle", gains->angle, "its PID_Position: deg to output rpm, as in PID_Param_Config")
+      ->expected(3, 7)
+      ->type_name(order);
+  verb->add_option("--separation", gains->separation_deg, "its I_SeparaThreshold in degrees")
+      ->check(CLI::NonNegativeNumber);
+  verb->add_option("--tick-ms", gains->tick_ms, "how often its speed loop ran")
+      ->check(CLI::Range(0.01, 100.0));
+  verb->callback([&action, gains] { action = [gains](const Global&) { return convert(*gains); }; });
+}
+
+}  // namespace rc10::ctl

@@ -1,0 +1,212 @@
+#include "drive.hpp"
+
+#include <unistd.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cstdio>
+#include <string>
+
+#include "client/quantity_text.hpp"
+#include "client/request_call.hpp"
+#include "client/state_text.hpp"
+#include "client/text_table.hpp"
+#include "feed.hpp"
+#include "link/words.hpp"
+
+namespace rc10::ctl {
+namespace {
+
+using std::chrono::steady_clock;
+
+constexpr Duration kPeriod = std::chrono::milliseconds{20};
+constexpr std::int32_t kValidityMs = 100;
+// A lease that is let go ends within a tick or two; one that is not, within its validity.
+constexpr Duration kReleasing = std::chrono::milliseconds{2 * kValidityMs};
+// Until then the state may not show our first setpoint yet.
+constexpr Duration kSettling = std::chrono::milliseconds{500};
+constexpr Duration kProgressOnTerminal = std::chrono::milliseconds{100};
+constexpr Duration kProgressInFile = std::chrono::milliseconds{500};
+
+// Why the motor cannot take setpoints, and what to do; empty if it can.
+std::string obstacle(const link::State& state, const std::string& name, const link::MotorState& motor) {
+  if (state.robot_state != link::kRobotRun) {
+    return std::string("the robot is in ") + link::robotStateWord(state.robot_state) +
+           ": `rc10ctl clear`, then `rc10ctl enable " + name + "`";
+  }
+  const std::string is = "motor '" + name + "' is " + link::motorStatusWord(motor.status);
+  switch (motor.status) {
+    case link::kMotorActive: return {};
+    case link::kMotorOffline:
+      return is + ": check its power, wiring and id, then `rc10ctl enable " + name + "`";
+    case link::kMotorFault:
+      return is + " (" + link::faultText(motor.fault) + "): `rc10ctl clear " + name +
+             "`, then `rc10ctl enable " + name + "`";
+    default: return is + ": `rc10ctl enable " + name + "`";
+  }
+}
+
+class Progress {
+ public:
+  Progress() : terminal_(::isatty(STDOUT_FILENO) != 0) {}
+  ~Progress() { endLine(); }
+  Progress(const Progress&) = delete;
+  Progress& operator=(const Progress&) = delete;
+
+  /// Not more often than one can read, but for the last time.
+  void show(const std::string& text, bool last) {
+    const auto now = steady_clock::now();
+    if (now < next_ && !last) return;
+    next_ = now + (terminal_ ? kProgressOnTerminal : kProgressInFile);
+    std::printf(terminal_ ? "\r%s\x1b[K" : "%s\n", text.c_str());
+    std::fflush(stdout);
+    line_open_ = terminal_;
+  }
+
+  void note(const std::string& text) {
+    endLine();
+    std::printf("%s\n", text.c_str());
+  }
+
+ private:
+  void endLine() {
+    if (line_open_) std::fputs("\n", stdout);
+    line_open_ = false;
+  }
+
+  bool terminal_;
+  bool line_open_ = false;
+  steady_clock::time_point next_{};
+};
+
+class Driver {
+ public:
+  Driver(LinkClient& rc10d, const Drive& order)
+      : rc10d_(rc10d),
+        order_(order),
+        feed_(rc10d),
+        name_(order.setpoint.motor.view()),
+        setpoint_(order.setpoint) {
+    command_.client = kClientName;
+    command_.session = randomSession();
+    command_.priority = order.priority;
+    command_.validity_ms = kValidityMs;
+    command_.setpoint_count = 1;
+  }
+
+  ExitCode run() {
+    if (const auto there = feed_.awaitState(); !there) return complain(there.error(), ExitCode::kFailed);
+    if (const auto why = trouble(); !why.empty()) return complain({why}, ExitCode::kFailed);
+    const std::string why = repeat();
+    // Whatever happened: no torque. Best effort, as the setpoint lapses by itself too.
+    letGo();
+    if (!why.empty()) return complain({why}, ExitCode::kFailed);
+    std::printf("%s coasts\n", name_.c_str());
+    return ExitCode::kOk;
+  }
+
+ private:
+  // Until the time is over or Ctrl-C. Returns what went wrong, or nothing.
+  std::string repeat() {
+    Progress progress;
+    const auto start = steady_clock::now();
+    auto next = start;
+    while (!interrupted()) {
+      const auto now = steady_clock::now();
+      if (now - start >= order_.time) break;
+      if (now >= next) {
+        if (order_.steer) {
+          if (const auto end = order_.steer(setpoint_, *feed_.state())) {
+            progress.show(line(), true);
+            return *end;
+          }
+        }
+        if (!send(setpoint_)) return "rc10d has ended: see its log";
+        next = std::max(next + kPeriod, now);
+      }
+      waitReadable(rc10d_, std::min(next, start + order_.time) - steady_clock::now());
+      if (!feed_.pump()) return "rc10d has ended: see its log";
+      showEvents(progress);
+      if (auto why = trouble(); !why.empty()) return why;
+      if (auto why = rival(steady_clock::now() - start); !why.empty()) return why;
+      progress.show(line(), false);
+    }
+    progress.show(line(), true);
+    return {};
+  }
+
+  // Coasts, and then gives the motor back: while a target is valid, a coasting one too, nobody else of our
+  // priority may move it, not even the next rc10ctl.
+  void letGo() {
+    auto coast = order_.setpoint;
+    coast.mode = link::kModeCoast;
+    if (!send(coast)) return;
+    const auto end = steady_clock::now() + kReleasing;
+    command_.validity_ms = 1;
+    for (auto now = steady_clock::now(); now < end && feed_.pump(); now = steady_clock::now()) {
+      if (motor() != nullptr && motor()->mode == link::kModeCoast && motor()->owner.view() != kClientName)
+        return;
+      if (!send(coast)) return;
+      waitReadable(rc10d_, std::min<Duration>(kPeriod, end - now));
+    }
+  }
+
+  bool send(const link::Setpoint& setpoint) {
+    command_.setpoints[0] = setpoint;
+    command_.received_ns = 0;  // the present time
+    ++command_.seq;
+    return rc10d_.send(command_) != LinkClient::SendStatus::kClosed;
+  }
+
+  const link::MotorState* motor() const {
+    const auto* state = feed_.state();
+    return state != nullptr && order_.motor < state->motor_count ? &state->motors[order_.motor] : nullptr;
+  }
+
+  std::string trouble() const {
+    return motor() != nullptr ? obstacle(*feed_.state(), name_, *motor()) : std::string{};
+  }
+
+  std::string rival(Duration elapsed) const {
+    if (motor() == nullptr || elapsed < kSettling) return {};
+    const auto owner = motor()->owner.view();
+    if (owner.empty() || owner == kClientName) return {};
+    return "motor '" + name_ + "' is held by '" + client::printable(owner) +
+           "': stop that program, or take over with a higher --priority";
+  }
+
+  void showEvents(Progress& progress) {
+    for (const auto& event : feed_.takeEvents()) {
+      const bool concerns_us = event.source.view() == name_ ? event.severity > 0 : event.severity > 1;
+      if (!concerns_us) continue;
+      progress.note(std::string(link::severityWord(event.severity)) + ": " +
+                    client::printable(event.source.view()) + ": " + client::printable(event.text.view()));
+    }
+  }
+
+  std::string line() const {
+    if (motor() == nullptr) return name_;
+    const auto mode = setpoint_.mode;
+    std::string text = name_ + "  " + link::modeWord(mode);
+    if (mode != link::kModeCoast && mode != link::kModeBrake) {
+      text += "  target " + client::quantity(setpoint_.value, 2, link::modeUnit(mode));
+    }
+    text += "  measured " + client::quantity(client::measured(*motor(), mode), 2, client::measuredUnit(mode));
+    text += "  current " + client::quantity(static_cast<double>(motor()->current_a), 2, "A");
+    const std::string limits = link::limitWords(motor()->limits);
+    return limits.empty() ? text : text + "  limit: " + limits;
+  }
+
+  LinkClient& rc10d_;
+  const Drive& order_;
+  Feed feed_;
+  std::string name_;
+  link::Setpoint setpoint_;  // as steered
+  link::Command command_;
+};
+
+}  // namespace
+
+ExitCode drive(LinkClient& rc10d, const Drive& order) { return Driver(rc10d, order).run(); }
+
+}  // namespace rc10::ctl

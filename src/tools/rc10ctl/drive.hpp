@@ -1,0 +1,29 @@
+#pragma once
+
+#include <cstddef>
+#include <functional>
+#include <optional>
+#include <string>
+
+#include "app/time.hpp"
+#include "client/link_client.hpp"
+#include "session.hpp"
+
+namespace rc10::ctl {
+
+/// What `set`, `jog` and `commission` ask of one motor.
+struct Drive {
+  link::Setpoint setpoint;
+  std::size_t motor = 0;  ///< Its place in Welcome and State.
+  std::int32_t priority = 0;
+  Duration time{};
+  /// Called before each sending with the newest state: may change the setpoint. What it returns ends the
+  /// drive: a reason is a failure, "" the end; empty goes on.
+  std::function<std::optional<std::string>(link::Setpoint& setpoint, const link::State& state)> steer;
+};
+
+/// Sends the setpoint again and again for the time, shows what becomes of it, then lets the motor coast;
+/// so it does after Ctrl-C. Fails if the motor is not ACTIVE, now or later, or somebody else holds it.
+[[nodiscard]] ExitCode drive(LinkClient& rc10d, const Drive& order);
+
+}  // namespace rc10::ctl

@@ -1,0 +1,13 @@
+#pragma once
+
+#include <cstdint>
+
+#include "app/result.hpp"
+#include "link/link_protocol.hpp"
+
+namespace rc10::ctl {
+
+/// Whether the motor has the mode; the error lists those that it has.
+[[nodiscard]] Result<void> requireMode(const link::MotorInfo& motor, std::uint8_t mode);
+
+}  // namespace rc10::ctl

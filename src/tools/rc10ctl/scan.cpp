@@ -1,0 +1,265 @@
+#include <linux/can.h>
+#include <poll.h>
+#include <sys/socket.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <chrono>
+#include <cstdio>
+#include <cstring>
+#include <map>
+#include <memory>
+#include <set>
+#include <string>
+
+#include <CLI/CLI.hpp>
+
+#include "bus/can_link_state.hpp"
+#include "bus/can_socket.hpp"
+#include "bus/wire_frame.hpp"
+#include "client/json_line.hpp"
+#include "client/quantity_text.hpp"
+#include "client/text_table.hpp"
+#include "config/drive_ids.hpp"
+#include "link/interface_lock.hpp"
+#include "link/run_dir.hpp"
+#include "motor/vesc_frames.hpp"
+#include "survey/bus_survey.hpp"
+#include "survey/harmless_queries.hpp"
+#include "verbs.hpp"
+
+namespace rc10::ctl {
+namespace {
+
+using std::chrono::steady_clock;
+using survey::Guess;
+using survey::Sighting;
+
+// A question of 8 bytes and its answer take 0.3 ms at 1 Mbit/s; at 250 kbit/s they fit too.
+constexpr Duration kBetweenQueries = std::chrono::milliseconds{2};
+// The last one is answered by then.
+constexpr Duration kAnswering = std::chrono::milliseconds{200};
+
+struct ScanOptions {
+  std::string interface;
+  double listen_s = 2.0;
+  bool listen_only = false;
+};
+
+// Rows for people: what one drive sends under several ids is one row.
+struct Row {
+  std::string ids;
+  std::uint64_t frames = 0;
+  bool only_answers = true;  // to our questions
+};
+using Rows = std::map<std::pair<std::string, int>, Row>;
+
+bool isAnswer(CanId id) {
+  return id.extended && id.value >> 8U == static_cast<std::uint32_t>(VescPacket::kPong);
+}
+
+std::string nameOf(const Guess& guess) {
+  std::string name(guess.kind);
+  if (guess.id != 0) name += " id " + std::to_string(guess.id);
+  return guess.from_drive ? name : "commands for " + name;
+}
+
+std::string allNames(const Sighting& sighting) {
+  std::string names;
+  for (const auto& guess : sighting.guesses) names += (names.empty() ? "" : ", or ") + nameOf(guess);
+  return names;
+}
+
+Rows rowsOf(const std::vector<Sighting>& sightings) {
+  Rows rows;
+  for (const auto& sighting : sightings) {
+    if (sighting.guesses.empty() || sighting.ambiguous()) continue;
+    for (const auto& guess : sighting.guesses) {
+      auto& row = rows[{guess.from_drive ? std::string(guess.kind) : "commands: " + std::string(guess.kind),
+                        guess.id}];
+      row.ids += (row.ids.empty() ? "" : ", ") + idText(sighting.id);
+      row.frames += sighting.frames;
+      row.only_answers = row.only_answers && isAnswer(sighting.id);
+    }
+  }
+  return rows;
+}
+
+class Scanner {
+ public:
+  Scanner(CanSocket socket, const ScanOptions& options) : socket_(std::move(socket)), options_(options) {}
+
+  // Empty, or what went wrong.
+  std::string run() {
+    auto why = listen(std::chrono::duration_cast<Duration>(std::chrono::duration<double>(options_.listen_s)));
+    if (options_.listen_only) return why;
+    for (const auto& query : survey::harmlessQueries()) {
+      if (!why.empty() || interrupted()) return why;
+      if (const int node = survey_.commandedBy(query); node != 0) {
+        spared_.insert(node);
+        continue;
+      }
+      why = send(query);
+      if (why.empty()) why = listen(kBetweenQueries);
+    }
+    return why.empty() ? listen(kAnswering) : why;
+  }
+
+  [[nodiscard]] const survey::BusSurvey& survey() const noexcept { return survey_; }
+  /// Nodes of ODrives with extended ids to which some questions would have been commands.
+  [[nodiscard]] const std::set<int>& spared() const noexcept { return spared_; }
+
+ private:
+  std::string listen(Duration time) {
+    const auto end = steady_clock::now() + time;
+    for (auto now = steady_clock::now(); now < end && !interrupted(); now = steady_clock::now()) {
+      pollfd entry{.fd = socket_.fd.get(), .events = POLLIN, .revents = 0};
+      const auto wait = std::chrono::ceil<std::chrono::milliseconds>(end - now).count();
+      if (::poll(&entry, 1, static_cast<int>(wait)) <= 0) continue;
+      for (;;) {
+        canfd_frame wire{};
+        const auto size = ::recv(socket_.fd.get(), &wire, sizeof wire, MSG_DONTWAIT);
+        if (size < 0 && (errno == EAGAIN || errno == EINTR)) break;
+        if (size < 0) return std::strerror(errno);
+        CanFrame frame;
+        if (decodeFrame(wire, static_cast<std::size_t>(size), frame)) survey_.take(frame);
+      }
+    }
+    return {};
+  }
+
+  // A queue that is full is a bus on which nobody acknowledges: said by what is not found.
+  std::string send(const CanFrame& frame) {
+    canfd_frame wire{};
+    const auto size = encodeFrame(frame, wire);
+    if (::send(socket_.fd.get(), &wire, size, MSG_DONTWAIT) >= 0 || errno == ENOBUFS || errno == EAGAIN)
+      return {};
+    return std::strerror(errno);
+  }
+
+  CanSocket socket_;
+  const ScanOptions& options_;
+  survey::BusSurvey survey_;
+  std::set<int> spared_;
+};
+
+void printText(const std::vector<Sighting>& sightings, const ScanOptions& options) {
+  const auto rows = rowsOf(sightings);
+  client::TextTable table({{"KIND"},
+                           {"ID", client::TextTable::Align::kRight},
+                           {"FRAMES", client::TextTable::Align::kRight},
+                           {"FRAME IDS"}});
+  for (const auto& [drive, row] : rows)
+    table.add({drive.first, drive.second != 0 || drive.first == "VESC" ? std::to_string(drive.second) : "",
+               std::to_string(row.frames), row.ids});
+  if (!rows.empty()) std::fputs(table.text().c_str(), stdout);
+  for (const auto& sighting : sightings) {
+    if (sighting.guesses.empty())
+      std::printf("unknown: %s, %llu frames: no family that rc10d knows\n", idText(sighting.id).c_str(),
+                  static_cast<unsigned long long>(sighting.frames));
+    else if (sighting.ambiguous())
+      std::printf("ambiguous: %s, %llu frames: %s. Look at its label, or unplug it and scan again\n",
+                  idText(sighting.id).c_str(), static_cast<unsigned long long>(sighting.frames),
+                  allNames(sighting).c_str());
+  }
+  for (const auto& [drive, row] : rows) {
+    if (drive.first != "VESC" || !row.only_answers) continue;
+    std::printf(
+        "VESC id %d answers but sends no status: in VESC Tool, App Settings, General: CAN Status Rate 1 = "
+        "100 Hz, "
+        "CAN Status Messages 1 = Status 1 and Status 5; write the settings (docs/motors/vesc.md)\n",
+        drive.second);
+  }
+  if (sightings.empty())
+    std::puts(
+        "nothing was heard: check the drives' power, the wiring, the termination and the bit rate: `rc10ctl "
+        "doctor`");
+  std::puts(
+      "Damiao, LK-Tech, MyActuator and moteus drives speak only when they are asked, and are not asked here: "
+      "a question to one\n"
+      "family may be a command to another. Take their ids from their labels or tools.");
+  if (options.listen_only)
+    std::puts(
+        "Nothing was asked (--listen-only): VESC as delivered, RobStride and CyberGear may be silent too.");
+}
+
+void printJson(const std::vector<Sighting>& sightings) {
+  for (const auto& sighting : sightings) {
+    client::Json guesses = client::Json::array();
+    for (const auto& guess : sighting.guesses)
+      guesses.push_back({{"kind", guess.kind}, {"id", guess.id}, {"from_drive", guess.from_drive}});
+    std::puts(client::lineOf({{"frame_id", sighting.id.value},
+                              {"extended", sighting.id.extended},
+                              {"frames", sighting.frames},
+                              {"ambiguous", sighting.ambiguous()},
+                              {"guesses", std::move(guesses)}})
+                  .c_str());
+  }
+}
+
+// Somebody else's frames in between would be wrong, and ours in theirs.
+std::string heldBy(const std::string& interface) {
+  const auto holder = link::InterfaceLock::holder(link::runDir(), interface);
+  if (holder.empty()) return {};
+  if (holder.front() == '/')
+    return "cannot see who drives " + interface + ": " + holder + ": join the group rc10, or use sudo";
+  return interface + " is driven by " + holder +
+         ": `rc10ctl stats` and `rc10ctl watch` show its drives; or stop it first: `sudo systemctl stop "
+         "rc10d`";
+}
+
+ExitCode scan(const Global& global, const ScanOptions& options) {
+  if (const auto held = heldBy(options.interface); !held.empty()) return complain({held}, ExitCode::kFailed);
+  auto socket = openCanSocket(options.interface, {.frames_per_tick = 8});
+  if (!socket) return complain(socket.error(), ExitCode::kFailed);
+  const auto link = readCanLink(options.interface);
+  if (link && !link->up) {
+    return complain({options.interface + " is down: `sudo ip link set " + options.interface + " up" +
+                     (link->isController() ? " type can bitrate 1000000 restart-ms 0`" : "`")},
+                    ExitCode::kFailed);
+  }
+  // Where it may be taken: an rc10d that starts meanwhile would be answered by what we asked.
+  const auto lock = link::InterfaceLock::take(link::runDir(), options.interface, "none (rc10ctl scan)");
+  if (!lock) {
+    if (const auto held = heldBy(options.interface); !held.empty())
+      return complain({held}, ExitCode::kFailed);
+  }
+  const auto start = steady_clock::now();
+  Scanner scanner(std::move(*socket), options);
+  if (const auto why = scanner.run(); !why.empty())
+    return complain({options.interface + ": " + why + ": see `rc10ctl doctor`"}, ExitCode::kFailed);
+  if (interrupted()) return complain({"interrupted: nothing is known yet"}, ExitCode::kFailed);
+  const auto sightings = scanner.survey().sightings(steady_clock::now() - start);
+  for (const int node : scanner.spared()) {
+    std::fprintf(
+        stderr,
+        "not all VESC, RobStride and CyberGear ids were asked: an ODrive with extended ids, node %d, would "
+        "take the questions for commands\n",
+        node);
+  }
+  if (global.json)
+    printJson(sightings);
+  else
+    printText(sightings, options);
+  return ExitCode::kOk;
+}
+
+}  // namespace
+
+void addScan(CLI::App& app, Action& action) {
+  const auto options = std::make_shared<ScanOptions>();
+  auto* verb = app.add_subcommand(
+      "scan", "which drives are on a CAN interface; moves none. Not while rc10d drives it");
+  verb->add_option("interface", options->interface, "a CAN interface that is up")
+      ->required()
+      ->type_name("IFACE");
+  verb->add_option("--seconds", options->listen_s, "how long to listen before asking")
+      ->check(CLI::Range(0.5, 3600.0))
+      ->type_name("S")
+      ->capture_default_str();
+  verb->add_flag("--listen-only", options->listen_only, "sends nothing");
+  verb->callback(
+      [&action, options] { action = [options](const Global& global) { return scan(global, *options); }; });
+}
+
+}  // namespace rc10::ctl

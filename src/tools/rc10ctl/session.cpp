@@ -1,0 +1,48 @@
+#include "session.hpp"
+
+#include <poll.h>
+
+#include <algorithm>
+#include <chrono>
+#include <csignal>
+#include <cstdio>
+
+#include "client/find_robot.hpp"
+
+namespace rc10::ctl {
+namespace {
+
+volatile std::sig_atomic_t interrupt_seen = 0;
+
+}  // namespace
+
+Result<LinkClient> connect(const Global& global, std::uint32_t subscriptions) {
+  const LinkClient::Options options{.name = kClientName, .subscriptions = subscriptions};
+  if (global.socket) return LinkClient::connect(*global.socket, options);
+  const auto robot = findRobot(global.robot);
+  if (!robot) return tl::unexpected(robot.error());
+  return LinkClient::connect(robot->path, options);
+}
+
+ExitCode complain(const Error& error, ExitCode code) {
+  std::fflush(stdout);
+  std::fprintf(stderr, "rc10ctl: %s\n", error.message.c_str());
+  return code;
+}
+
+bool interrupted() noexcept { return interrupt_seen != 0; }
+
+void catchInterrupt() {
+  struct sigaction action {};
+  action.sa_handler = [](int) { interrupt_seen = 1; };  // no SA_RESTART: it ends poll()
+  for (const int signal : {SIGINT, SIGTERM, SIGHUP}) ::sigaction(signal, &action, nullptr);
+}
+
+void waitReadable(const LinkClient& rc10d, Duration timeout) {
+  // Rounded up, or the last millisecond would be spent spinning; short, since Ctrl-C may come in between.
+  const auto wait = std::chrono::ceil<std::chrono::milliseconds>(timeout).count();
+  pollfd entry{.fd = rc10d.descriptor(), .events = POLLIN, .revents = 0};
+  (void)::poll(&entry, 1, static_cast<int>(std::clamp<std::int64_t>(wait, 0, 100)));
+}
+
+}  // namespace rc10::ctl

@@ -1,0 +1,37 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+
+#include "app/result.hpp"
+#include "client/link_client.hpp"
+
+namespace rc10::ctl {
+
+/// The exit codes of rc10ctl.
+enum class ExitCode : int { kOk = 0, kFailed = 1, kUsage = 2, kNoDaemon = 3 };
+
+/// What the options that every verb has say.
+struct Global {
+  std::optional<std::string> robot;
+  std::optional<std::string> socket;
+  bool json = false;
+};
+
+inline constexpr const char* kClientName = "rc10ctl";
+
+/// Connects to the rc10d that the options mean.
+[[nodiscard]] Result<LinkClient> connect(const Global& global, std::uint32_t subscriptions = 0);
+
+/// Prints "rc10ctl: ..." on stderr and returns `code`.
+ExitCode complain(const Error& error, ExitCode code);
+
+/// Whether Ctrl-C or SIGTERM came since catchInterrupt().
+[[nodiscard]] bool interrupted() noexcept;
+void catchInterrupt();
+
+/// Waits until something can be received, at most `timeout` and at most until Ctrl-C.
+void waitReadable(const LinkClient& rc10d, Duration timeout);
+
+}  // namespace rc10::ctl

@@ -1,0 +1,112 @@
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include <CLI/CLI.hpp>
+
+#include "client/duration_text.hpp"
+#include "client/text_table.hpp"
+#include "drive.hpp"
+#include "link/words.hpp"
+#include "verbs.hpp"
+
+namespace rc10::ctl {
+namespace {
+
+struct SetOptions {
+  std::string motor;
+  std::string mode;
+  std::optional<double> value;
+  std::string time = "2s";
+  int priority = 0;
+  float velocity_ff_rpm = 0.0F;
+  float torque_ff_nm = 0.0F;
+  float stiffness_nm_per_rad = 0.0F;
+  float damping_nms_per_rad = 0.0F;
+};
+
+constexpr std::uint32_t kAllModes = (1U << link::kModeCount) - 1U;
+
+// What the words mean, without the robot.
+Result<Drive> understand(const SetOptions& options) {
+  const auto mode = link::modeOf(options.mode);
+  if (!mode) return fail("'" + options.mode + "' is not a mode: use one of " + link::modeWords(kAllModes));
+  const bool needs_value = *mode != link::kModeCoast && *mode != link::kModeBrake;
+  if (needs_value && !options.value) {
+    return fail("mode " + options.mode + " needs a value: `rc10ctl set " + options.motor + " " +
+                options.mode + " 10`");
+  }
+  if (!std::isfinite(options.value.value_or(0.0))) return fail("the value has to be a finite number");
+  const auto time = client::parseDuration(options.time);
+  if (!time) return fail("--for " + options.time + ": give a time like 2s, 500ms or 1min, at most a day");
+  if (options.motor.size() >= sizeof(link::Name))
+    return fail("there is no motor '" + options.motor + "': see `rc10ctl list`");
+  Drive order;
+  order.setpoint.motor = options.motor;
+  order.setpoint.mode = *mode;
+  order.setpoint.value = options.value.value_or(0.0);
+  order.setpoint.velocity_ff_rpm = options.velocity_ff_rpm;
+  order.setpoint.torque_ff_nm = options.torque_ff_nm;
+  order.setpoint.stiffness_nm_per_rad = options.stiffness_nm_per_rad;
+  order.setpoint.damping_nms_per_rad = options.damping_nms_per_rad;
+  order.priority = options.priority;
+  order.time = *time;
+  return order;
+}
+
+// Finds the motor; empty, or why this robot cannot do it.
+std::string fit(Drive& order, const link::Welcome& welcome) {
+  const auto motors = std::span{welcome.motors}.first(welcome.motor_count);
+  const auto name = order.setpoint.motor.view();
+  const auto found =
+      std::find_if(motors.begin(), motors.end(), [&](const auto& m) { return m.name.view() == name; });
+  if (found == motors.end()) {
+    std::string names;
+    for (const auto& motor : motors)
+      names += (names.empty() ? "" : ", ") + client::printable(motor.name.view());
+    return "there is no motor '" + std::string(name) + "'; the motors are: " + names;
+  }
+  order.motor = static_cast<std::size_t>(found - motors.begin());
+  const auto mode = order.setpoint.mode;
+  if (mode != link::kModeCoast && (found->modes & (1U << mode)) == 0) {
+    return "motor '" + std::string(name) + "' has no mode " + link::modeWord(mode) + "; it has " +
+           link::modeWords(found->modes);
+  }
+  return {};
+}
+
+ExitCode set(const Global& global, const SetOptions& options) {
+  auto order = understand(options);
+  if (!order) return complain(order.error(), ExitCode::kUsage);
+  auto rc10d = connect(global, link::kStates | link::kEvents);
+  if (!rc10d) return complain(rc10d.error(), ExitCode::kNoDaemon);
+  if (const auto why = fit(*order, rc10d->welcome()); !why.empty()) return complain({why}, ExitCode::kFailed);
+  return drive(*rc10d, *order);
+}
+
+}  // namespace
+
+void addSet(CLI::App& app, Action& action) {
+  const auto options = std::make_shared<SetOptions>();
+  auto* verb = app.add_subcommand("set", "gives one motor a target for a while, then lets it coast");
+  verb->add_option("motor", options->motor, "name of the motor")->required()->type_name("MOTOR");
+  verb->add_option("mode", options->mode, link::modeWords(kAllModes))->required()->type_name("MODE");
+  verb->add_option("value", options->value, "in the unit of the mode: A, rpm, deg, V; duty -1 to 1")
+      ->type_name("VALUE");
+  verb->add_option("--for", options->time, "how long: 2s, 500ms, 1min")
+      ->type_name("TIME")
+      ->capture_default_str();
+  verb->add_option("--priority", options->priority, "a higher one takes the motor over from a lower one");
+  verb->add_option("--velocity-ff", options->velocity_ff_rpm, "added to the angle loop's output")
+      ->type_name("RPM");
+  verb->add_option("--torque-ff", options->torque_ff_nm, "added after the loops, at the output shaft")
+      ->type_name("NM");
+  verb->add_option("--stiffness", options->stiffness_nm_per_rad, "impedance only")->type_name("NM/RAD");
+  verb->add_option("--damping", options->damping_nms_per_rad, "impedance only")->type_name("NMS/RAD");
+  verb->callback(
+      [&action, options] { action = [options](const Global& global) { return set(global, *options); }; });
+}
+
+}  // namespace rc10::ctl

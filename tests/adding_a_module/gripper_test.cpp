@@ -1,0 +1,99 @@
+// The worked example of docs/adding-a-module.md, as a program that embeds rc10d uses it.
+#include "gripper.hpp"
+
+#include <array>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "config/load_config.hpp"
+#include "config/module_types.hpp"
+#include "daemon/virtual_robot.hpp"
+#include "module/fake_robot.hpp"
+
+namespace shop {
+namespace {
+
+using namespace rc10;
+using namespace std::chrono_literals;
+using rc10::test::FakeRobot;
+using rc10::test::VirtualRobot;
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+
+// Before the first configuration, as a main() would.
+const bool kAdded = addModuleType(gripperType()).has_value();
+
+ModuleSettings settings() {
+  ModuleSettings settings;
+  settings.name = "hand";
+  settings.own.set("motor", 0.0);
+  settings.own.set("grip_a", 1.5);
+  settings.own.set("still_ms", 100.0);
+  return settings;
+}
+
+TEST(Gripper, ClosesUntilItHoldsSomethingAndSaysSoOnce) {
+  FakeRobot robot{1};
+  const auto hand = std::move(gripperType().build(settings(), test::outlineOf(1)).value());
+  robot.motor(0).feedback.velocity_rpm = 20.0F;
+  hand->setInputs(std::array{1.0});
+  for (int i = 0; i < 200; ++i) robot.update(*hand);
+  EXPECT_EQ(robot.motor(0).target->value, 1.5);
+  EXPECT_EQ(hand->outputs()[0], 0.0) << "it still moves";
+  robot.motor(0).feedback.velocity_rpm = 0.0F;
+  std::size_t told = 0;
+  for (int i = 0; i < 200; ++i) {
+    robot.update(*hand);
+    told += robot.events().size();
+  }
+  EXPECT_EQ(hand->outputs()[0], 1.0);
+  EXPECT_EQ(told, 1U);
+  hand->setInputs(std::array{0.0});
+  robot.update(*hand);
+  EXPECT_EQ(robot.motor(0).target->value, -1.5);
+}
+
+TEST(Gripper, AsksNothingWithoutACommand) {
+  FakeRobot robot{1};
+  const auto hand = std::move(gripperType().build(settings(), test::outlineOf(1)).value());
+  robot.update(*hand);
+  EXPECT_FALSE(robot.motor(0).target.has_value());
+}
+
+TEST(Gripper, IsConfiguredAndRunsAsAnyOtherModule) {
+  ASSERT_TRUE(kAdded);
+  const auto loaded = loadRobotConfig(std::string{RC10_SOURCE_DIR} + "/examples/adding_a_module/robot.yaml");
+  ASSERT_TRUE(loaded) << loaded.errorText();
+  VirtualRobot robot{*loaded.config};
+  robot.run(10);
+  (void)robot.order(Operation::kEnable);
+  for (int i = 0; i < 300; ++i) {
+    SignalMessage message;
+    message.client = "test";
+    message.deadline = robot.now() + 50ms;
+    message.values.fill(kNoSignal);
+    message.values[0] = 1.0;
+    ASSERT_TRUE(robot.exchange().signals.push(message));
+    robot.tick();
+  }
+  EXPECT_EQ(robot.snapshot().modules[0].outputs[0], 1.0);
+  EXPECT_EQ(robot.motor(0).owner.view(), "hand");
+}
+
+TEST(Gripper, ItsKeysAreAsStrictAsAllOthers) {
+  ASSERT_TRUE(kAdded);
+  const auto loaded = parseRobotConfig(
+      "robot: hero\nmodules:\n  - {name: hand, type: gripper, motor: claw, grip_ma: 1500}\nbuses:\n"
+      "  - {name: arm, type: sim, motors: [{name: claw, model: M2006, id: 1}]}\n",
+      "hero.yaml");
+  EXPECT_THAT(loaded.errorText(), HasSubstr("modules[0].grip_ma: unknown key; did you mean grip_a?"));
+}
+
+TEST(Gripper, ANameThatIsTakenIsRefused) {
+  EXPECT_THAT(addModuleType(gripperType()).error().message, HasSubstr("module type 'gripper'"));
+}
+
+}  // namespace
+}  // namespace shop

@@ -1,0 +1,124 @@
+#include "client/state_text.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "fake_rc10d.hpp"
+#include "sample_messages.hpp"
+
+namespace rc10::client::test {
+namespace {
+
+using rc10::test::heroDiagnostics;
+using rc10::test::heroState;
+using rc10::test::heroWelcome;
+using testing::HasSubstr;
+using testing::Not;
+
+TEST(ListText, NamesEveryMotor) {
+  EXPECT_EQ(listText(heroWelcome()),
+            "robot hero  rc10d 0.1.0, pid 4321, 1000 Hz\n"
+            "LCM udpm://239.255.76.67:7667?ttl=0, state 200 Hz\n"
+            "MOTOR       MODEL   BUS      ID  MODES\n"
+            "front_left  M3508   chassis   1  current,velocity\n"
+            "yaw         GM6020  gimbal    5  current,angle,total_angle\n");
+}
+
+TEST(ListText, IsSilentAboutAnLcmThatIsOff) {
+  auto welcome = heroWelcome();
+  welcome.lcm_url = "";
+  EXPECT_THAT(listText(welcome), Not(HasSubstr("LCM")));
+}
+
+TEST(StateText, ColoursSayWhatActsAndWhatIsWrong) {
+  const std::string text = stateText(heroWelcome(), heroState(), nullptr, true);
+  EXPECT_THAT(text, HasSubstr("\x1b[33mfront_left"));  // a limit acts
+  EXPECT_THAT(text, HasSubstr("\x1b[1;31myaw"));
+  EXPECT_THAT(text, HasSubstr("\x1b[0m\n"));
+}
+
+TEST(StateText, ShowsEveryMotorWithUnits) {
+  const auto diagnostics = heroDiagnostics();
+  EXPECT_EQ(stateText(heroWelcome(), heroState(), &diagnostics),
+            "hero  RUN  tick 41000  wake-up p99 38 us, max 180 us  missed ticks 2\n"
+            "bus chassis (can0)  warning  load 55 % of predicted 56 %  dropped 5  error frames 7\n"
+            "MOTOR       STATUS  MODE         TARGET   MEASURED      ANGLE  CURRENT  TEMP     AGE  ZEROED  "
+            "OWNER   NOTE\n"
+            "front_left  ACTIVE  velocity  120.0 rpm  118.3 rpm  121.5 deg   0.42 A  31 C  0.4 ms  no      "
+            "teleop  limit: current\n"
+            "yaw         FAULT   coast             -          -          -        -     -       -  yes       "
+            "      fault 12\n");
+}
+
+TEST(StateText, DoesWithoutDiagnostics) {
+  auto state = heroState();
+  state.robot_state = 1;
+  state.realtime = 0;
+  EXPECT_THAT(stateText(heroWelcome(), state, nullptr),
+              HasSubstr("hero  ESTOP  NOT REAL-TIME  tick 41000\nMOTOR"));
+}
+
+TEST(StateText, ShowsOnlyMotorsThatHaveAName) {
+  auto state = heroState();
+  state.motor_count = 100;
+  const std::string text = stateText(heroWelcome(), state, nullptr);
+  EXPECT_EQ(std::count(text.begin(), text.end(), '\n'), 4);
+}
+
+TEST(StateText, IsSafeForATerminal) {
+  auto state = heroState();
+  state.motors[0].owner = "\x1b]0;gotcha\x07";
+  EXPECT_THAT(stateText(heroWelcome(), state, nullptr), Not(HasSubstr("\x1b")));
+}
+
+TEST(Measured, IsTheCounterpartOfTheTarget) {
+  const auto motor = heroState().motors[0];
+  EXPECT_FLOAT_EQ(static_cast<float>(measured(motor, 1)), 0.42F);
+  EXPECT_FLOAT_EQ(static_cast<float>(measured(motor, 2)), 118.26F);
+  EXPECT_FLOAT_EQ(static_cast<float>(measured(motor, 3)), 121.5F);
+  EXPECT_EQ(measured(motor, 4), 7321.5);
+  EXPECT_FLOAT_EQ(static_cast<float>(measured(motor, 5)), 121.5F);
+  EXPECT_FLOAT_EQ(static_cast<float>(measured(motor, 0)), 118.26F);
+  EXPECT_STREQ(measuredUnit(1), "A");
+  EXPECT_STREQ(measuredUnit(7), "rpm");
+  EXPECT_STREQ(measuredUnit(5), "deg");
+}
+
+TEST(DiagnosticsText, ShowsTimingBusesAndRefusals) {
+  EXPECT_EQ(diagnosticsText(heroWelcome(), heroDiagnostics()),
+            "robot hero  tick 41001, one every 1000 us\n"
+            "TIME                 P50      P99    P99.9       MAX\n"
+            "wake-up latency   4.1 us  38.5 us  61.0 us  180.2 us\n"
+            "tick duration    12.0 us  19.5 us  25.0 us   70.0 us\n"
+            "missed ticks 2, page faults 0, events dropped 1\n"
+            "BUS                chassis\n"
+            "interface             can0\n"
+            "state              warning\n"
+            "load                  55 %\n"
+            "  predicted           56 %\n"
+            "  predicted worst     68 %\n"
+            "frames received     164000\n"
+            "  of no motor            5\n"
+            "  foreign sender         6\n"
+            "  malformed              1\n"
+            "  lost                   2\n"
+            "frames sent          41000\n"
+            "  echoed             40990\n"
+            "  not taken              3\n"
+            "  held back              8\n"
+            "error frames             7\n"
+            "  TEC, REC           96, -\n"
+            "restarts                 4\n"
+            "refused commands: expired 3\n"
+            "note: not real-time: no permission\n");
+}
+
+TEST(DiagnosticsText, SaysThatNothingWasRefused) {
+  auto diagnostics = heroDiagnostics();
+  diagnostics.refusal_count = 0;
+  diagnostics.bus_count = 0;
+  EXPECT_THAT(diagnosticsText(heroWelcome(), diagnostics), HasSubstr("refused commands: none\n"));
+}
+
+}  // namespace
+}  // namespace rc10::client::test

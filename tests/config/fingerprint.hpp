@@ -1,0 +1,91 @@
+#pragma once
+
+#include <sstream>
+#include <string>
+#include <variant>
+
+#include "config/robot_config.hpp"
+#include "motor/dji_family.hpp"
+
+namespace rc10::test {
+
+namespace detail {
+
+inline void print(std::ostream& out, const PID_Position::Config& c) {
+  out << "position " << c.kp << ' ' << c.ki << ' ' << c.kd << ' ' << c.integral_limit << ' '
+      << c.integral_separation << ' ' << c.deadband << ' ' << c.output_limit << ' ' << c.circular_period
+      << ' ' << c.derivative_filter_hz << '\n';
+}
+
+inline void print(std::ostream& out, const PID_Incremental::Config& c) {
+  out << "incremental " << c.kp << ' ' << c.ki << ' ' << c.kd << ' ' << c.deadband << ' ' << c.tracking_rad_s
+      << ' ' << c.output_limit << ' ' << c.derivative_filter_hz << '\n';
+}
+
+inline void print(std::ostream& out, const MotorConfig& motor) {
+  const DjiMotorConfig dji = djiConfig(motor.settings);
+  const auto& table = dji.model->command(dji.command);
+  // 0 and the model's own value say the same.
+  out << "motor " << dji.name << ' ' << dji.model->name << ' ' << dji.id << ' '
+      << static_cast<int>(dji.command) << ' '
+      << (dji.gear_ratio > 0.0 ? dji.gear_ratio : dji.model->gear_ratio) << ' ' << dji.direction << ' '
+      << (dji.effort_limit > 0.0F ? dji.effort_limit : table.full_scale) << ' ' << dji.zero_deg << ' '
+      << dji.zero_at_power_on << ' ' << motor.settings.feedback_hz << ' ' << motor.feedback_timeout.count()
+      << ' ' << motor.optional << ' ' << dji.loops.velocity_limit_rpm << ' ' << motor.guard.overspeed_rpm
+      << ' ' << motor.guard.temperature_derate_c << ' ' << motor.guard.temperature_trip_c << ' '
+      << motor.guard.stall_time.count() << ' ' << motor.guard.stall_trips << ' '
+      << motor.guard.following_error_deg << ' ' << motor.guard.following_error_time.count() << '\n';
+  const FallbackConfig& fallback = motor.fallback;
+  out << static_cast<int>(fallback.on_timeout) << ' ' << static_cast<int>(fallback.on_disable) << ' '
+      << static_cast<int>(fallback.on_estop) << ' ' << fallback.hold_max.count() << '\n';
+  const ShapingConfig& shaping = motor.shaping;
+  out << shaping.effort_slew_per_s << ' ' << shaping.velocity_slew_rpm_per_s << ' '
+      << shaping.angle_slew_deg_per_s << ' ' << shaping.angle_min_deg << ' ' << shaping.angle_max_deg << ' '
+      << shaping.max_first_step_deg << '\n';
+  std::visit([&out](const auto& pid) { print(out, pid); }, dji.loops.velocity);
+  print(out, dji.loops.angle);
+  const auto& load = motor.simulated;
+  out << load.inertia_kg_m2 << ' ' << load.viscous_nms_per_rad << ' ' << load.coulomb_nm << ' '
+      << load.load_torque_nm << ' ' << load.initial_angle_deg << ' ' << load.stalled << ' ' << load.silent
+      << ' ' << load.lost_frames << '\n';
+}
+
+}  // namespace detail
+
+/// Everything a configuration says, except where it stands: equal texts, equal robots.
+inline std::string fingerprint(const RobotConfig& config) {
+  std::ostringstream out;
+  out.precision(17);
+  out << config.robot << ' ' << static_cast<int>(config.realtime) << ' ' << config.rate_hz << ' '
+      << config.scheduler.priority << ' ' << config.scheduler.cpu.value_or(-1) << ' ' << config.rx.priority
+      << ' ' << config.rx.cpu.value_or(-1) << ' ' << config.lcm.enabled << ' ' << config.lcm.url << ' '
+      << config.lcm.state_hz << ' ' << config.blackbox_mib << '\n';
+  if (const auto& estop = config.estop_gpio) {
+    out << "estop " << estop->pin.name() << ' ' << estop->closed_is_low << ' ' << estop->internal_bias
+        << '\n';
+  }
+  if (const auto& heartbeat = config.heartbeat_gpio) {
+    out << "heartbeat " << heartbeat->pin.name() << ' ' << heartbeat->period.count() << '\n';
+  }
+  for (const auto& bus : config.buses) {
+    out << "bus " << bus.name << ' ' << static_cast<int>(bus.type) << ' ' << bus.interface << ' '
+        << bus.bitrate << ' ' << bus.data_bitrate << ' ' << bus.sample_point << ' ' << bus.data_sample_point
+        << ' ' << bus.manage_link << ' ' << bus.sim_seed << '\n';
+    for (const auto& motor : bus.motors) detail::print(out, motor);
+  }
+  for (const auto& group : config.groups) {
+    out << "group " << group.name << ' ' << static_cast<int>(group.on_return);
+    for (const auto motor : group.motors) out << ' ' << motor;
+    out << '\n';
+  }
+  for (const auto& module : config.modules) {
+    out << "module " << module.settings.name << ' ' << module.type->name() << ' ' << module.settings.priority
+        << '\n';
+    for (const auto& key : module.type->keys())
+      out << key.name << ' ' << module.settings.own.number(key.name) << ' '
+          << module.settings.own.text(key.name) << '\n';
+  }
+  return out.str();
+}
+
+}  // namespace rc10::test

@@ -1,0 +1,226 @@
+// The keys of a motor.
+
+#include <cmath>
+
+#include <gmock/gmock.h>
+
+#include "config_text.hpp"
+
+namespace rc10::test {
+namespace {
+
+using ::testing::AllOf;
+using ::testing::ElementsAre;
+using ::testing::EndsWith;
+using ::testing::IsEmpty;
+using ::testing::StartsWith;
+
+std::vector<std::string> errorsOfMotor(const std::string& motor) { return errorsOf(robotWith(motor)); }
+
+/// An M3508 with these keys, which begin in column 41.
+std::vector<std::string> errorsOfWheel(const std::string& keys) {
+  return errorsOfMotor("{name: wheel, model: M3508, id: 1, " + keys + "}");
+}
+
+TEST(MotorRules, AMotorNeedsANameAnIdAndAModel) {
+  EXPECT_THAT(
+      errorsOfMotor("{optional: true}"),
+      ElementsAre("hero.yaml:6:9: buses[0].motors[0].name: is missing; add it: Name of the motor in commands "
+                  "and states, unique in the robot.",
+                  "hero.yaml:6:9: buses[0].motors[0].id: is missing; add it: Id set on the drive. On one bus "
+                  "GM6020 ids 1-4 collide with M3508 and M2006 ids 5-8.",
+                  "hero.yaml:6:9: buses[0].motors[0].model: is missing; add it here or in a profile"));
+}
+
+TEST(MotorRules, ANameIsOneToThirtyOnePlainCharacters) {
+  const std::string reason = " is not accepted; use 1 to 31 of a-z, 0-9 and _";
+  for (const std::string name : {"Left", "left-wheel", "left wheel", "'a.b'", "ä"}) {
+    EXPECT_EQ(errorsOfMotor("{name: " + name + ", model: M3508, id: 1}").size(), 1U) << name;
+  }
+  EXPECT_THAT(errorsOfMotor("{name: left-wheel, model: M3508, id: 1}"),
+              ElementsAre("hero.yaml:6:16: buses[0].motors[0].name: 'left-wheel'" + reason));
+  EXPECT_THAT(errorsOfMotor("{name: 3, model: M3508, id: 1}"), IsEmpty());
+}
+
+TEST(MotorRules, AnUnknownModelListsTheKnownOnes) {
+  EXPECT_THAT(
+      errorsOfMotor("{name: a, model: Stepper, id: 1}"),
+      ElementsAre(
+          AllOf(StartsWith(
+                    "hero.yaml:6:26: buses[0].motors[0].model: 'Stepper' is not one of M3508, M2006, GM6020, "
+                    "VESC, "),
+                EndsWith("; use one of these"))));
+  EXPECT_THAT(errorsOfMotor("{name: a, model: m3508, id: 1}"),
+              ElementsAre(EndsWith("; did you mean M3508?")));
+}
+
+TEST(MotorRules, AnIdIsOneThatTheDriveCanHave) {
+  EXPECT_THAT(
+      errorsOfMotor("{name: a, model: M3508, id: 9}"),
+      ElementsAre("hero.yaml:6:37: buses[0].motors[0].id: 9 is above the highest M3508 id 8; use 1 to 8"));
+  EXPECT_THAT(
+      errorsOfMotor("{name: a, model: GM6020, id: 8}"),
+      ElementsAre("hero.yaml:6:38: buses[0].motors[0].id: 8 is above the highest GM6020 id 7; use 1 to 7"));
+  EXPECT_THAT(
+      errorsOfMotor("{name: a, model: M2006, id: 0}"),
+      ElementsAre("hero.yaml:6:37: buses[0].motors[0].id: 0 is below the lowest M2006 id 1; use 1 to 8"));
+  EXPECT_THAT(errorsOfMotor("{name: a, model: M2006, id: 1e18}").size(), 1U);
+  EXPECT_THAT(errorsOfMotor("{name: a, model: M2006, id: 4294967297}").size(), 1U);
+  EXPECT_THAT(
+      errorsOfMotor("{name: a, model: M2006, id: 010}"),
+      ElementsAre(
+          "hero.yaml:6:37: buses[0].motors[0].id: '010' has a leading zero, which some read as octal; "
+          "write 10"));
+}
+
+TEST(MotorRules, ACurrentLimitStaysWithinTheDrive) {
+  EXPECT_THAT(
+      errorsOfWheel("current_limit_a: 32"),
+      ElementsAre(
+          "hero.yaml:6:61: buses[0].motors[0].current_limit_a: 32 is above the M3508 limit of 20; use "
+          "more than 0, at most 20"));
+  EXPECT_THAT(
+      errorsOfWheel("current_limit_a: -5"),
+      ElementsAre("hero.yaml:6:61: buses[0].motors[0].current_limit_a: -5 is below 0 A; use more than 0 A"));
+  EXPECT_EQ(motorOf("{name: a, model: M3508, id: 1, current_limit_a: 20}").settings.effort_limit, 20.0F);
+  EXPECT_EQ(motorOf("{name: a, model: M3508, id: 1, current_limit_a: 0.5}").settings.effort_limit, 0.5F);
+}
+
+TEST(MotorRules, ALimitOfZeroIsNotTakenForNoLimit) {
+  for (const std::string zero : {"0", "0.0", "-0", "1e-60"}) {
+    EXPECT_EQ(errorsOfWheel("current_limit_a: " + zero).size(), 1U) << zero;
+    EXPECT_EQ(errorsOfWheel("velocity_limit_rpm: " + zero).size(), 1U) << zero;
+    EXPECT_EQ(errorsOfWheel("gear_ratio: " + zero).size(), 1U) << zero;
+    EXPECT_EQ(errorsOfWheel("angle_pid: {velocity_limit_rpm: " + zero + "}").size(), 1U) << zero;
+  }
+  EXPECT_THAT(
+      errorsOfWheel("current_limit_a: 0"),
+      ElementsAre(
+          "hero.yaml:6:61: buses[0].motors[0].current_limit_a: 0 is not accepted; use more than 0 A"));
+}
+
+TEST(MotorRules, OnlyAGM6020ObeysVoltage) {
+  const auto motor = motorOf("{name: a, model: GM6020, id: 1, command: voltage, voltage_limit_v: 12}");
+  EXPECT_EQ(motor.settings.own.text("command"), "voltage");
+  EXPECT_EQ(motor.settings.effort_limit, 12.0F);
+  EXPECT_THAT(
+      errorsOfWheel("command: voltage"),
+      ElementsAre("hero.yaml:6:53: buses[0].motors[0].command: the M3508 obeys currents only; remove it, or "
+                  "write command: current"));
+  EXPECT_THAT(
+      errorsOfMotor("{name: a, model: GM6020, id: 1, command: voltage, voltage_limit_v: 25}"),
+      ElementsAre(
+          "hero.yaml:6:76: buses[0].motors[0].voltage_limit_v: 25 is above the GM6020 limit of 24; use "
+          "more than 0, at most 24"));
+}
+
+TEST(MotorRules, LimitsAndGainsAreInTheUnitOfTheCommand) {
+  EXPECT_THAT(
+      errorsOfWheel("voltage_limit_v: 12, velocity_pid: {kp_v_per_rpm: 1}"),
+      ElementsAre(
+          "hero.yaml:6:61: buses[0].motors[0].voltage_limit_v: with command: current the M3508 is told "
+          "amperes; use current_limit_a",
+          "hero.yaml:6:94: buses[0].motors[0].velocity_pid.kp_v_per_rpm: with command: current the "
+          "M3508 is told amperes; use kp_a_per_rpm"));
+  EXPECT_THAT(
+      errorsOfMotor("{name: a, model: GM6020, id: 1, command: voltage, current_limit_a: 1}"),
+      ElementsAre(
+          "hero.yaml:6:76: buses[0].motors[0].current_limit_a: with command: voltage the GM6020 is told "
+          "volts; use voltage_limit_v"));
+}
+
+TEST(MotorRules, TheDirectionIsOneOrMinusOne) {
+  EXPECT_EQ(motorOf("{name: a, model: M3508, id: 1, direction: -1}").settings.direction, -1);
+  EXPECT_THAT(errorsOfWheel("direction: 2"),
+              ElementsAre("hero.yaml:6:55: buses[0].motors[0].direction: '2' is not one "
+                          "of 1 and -1; use one of these"));
+  EXPECT_THAT(errorsOfWheel("direction: 1.0"),
+              ElementsAre("hero.yaml:6:55: buses[0].motors[0].direction: '1.0' is not "
+                          "one of 1 and -1; use one of these"));
+}
+
+TEST(MotorRules, TheAngleOfAnAbsoluteEncoderIsForMotorsThatHaveOne) {
+  const auto yaw = motorOf("{name: a, model: GM6020, id: 1, zero_deg: 123.4}");
+  EXPECT_EQ(yaw.settings.zero_deg, 123.4);
+  EXPECT_FALSE(yaw.settings.zero_at_power_on);
+  EXPECT_THAT(
+      errorsOfWheel("zero_deg: 5"),
+      ElementsAre("hero.yaml:6:54: buses[0].motors[0].zero_deg: the M3508 does not know its output angle at "
+                  "power-up; use zero: power_on"));
+  EXPECT_THAT(
+      errorsOfMotor("{name: a, model: GM6020, id: 1, gear_ratio: 2, zero_deg: 5}"),
+      ElementsAre("hero.yaml:6:66: buses[0].motors[0].zero_deg: the GM6020 behind a gear does not know its "
+                  "output angle at power-up; use zero: power_on"));
+  EXPECT_THAT(
+      errorsOfMotor("{name: a, model: GM6020, id: 1, zero: power_on, zero_deg: 5}"),
+      ElementsAre("hero.yaml:6:67: buses[0].motors[0].zero_deg: excludes zero: power_on; keep one of them"));
+}
+
+TEST(MotorRules, AGearedMotorMayCallItsFirstPositionZero) {
+  EXPECT_TRUE(motorOf("{name: a, model: M2006, id: 1, zero: power_on}").settings.zero_at_power_on);
+  EXPECT_FALSE(motorOf("{name: a, model: M2006, id: 1, zero: none}").settings.zero_at_power_on);
+  EXPECT_FALSE(motorOf("{name: a, model: M2006, id: 1}").settings.zero_at_power_on);
+  EXPECT_THAT(errorsOfWheel("zero: poweron"),
+              ElementsAre("hero.yaml:6:50: buses[0].motors[0].zero: 'poweron' is not "
+                          "one of none and power_on; did you mean power_on?"));
+}
+
+TEST(MotorRules, TheTimeoutSpansTwoFeedbackFrames) {
+  EXPECT_EQ(motorOf("{name: a, model: M3508, id: 1, feedback_timeout_ms: 2}").feedback_timeout,
+            std::chrono::milliseconds{2});
+  EXPECT_THAT(
+      errorsOfWheel("feedback_timeout_ms: 1"),
+      ElementsAre(
+          "hero.yaml:6:65: buses[0].motors[0].feedback_timeout_ms: 1 is below 2 ms; use 2 to 1000 ms"));
+  EXPECT_THAT(
+      errorsOfWheel("feedback_timeout_ms: 5, feedback_hz: 300"),
+      ElementsAre("hero.yaml:6:65: buses[0].motors[0].feedback_timeout_ms: 5 ms is less than two periods of "
+                  "feedback at 300 Hz; use at least 7 ms"));
+}
+
+TEST(MotorRules, AVelocityLimitBeyondTheMotorIsWorthAWarning) {
+  const auto text = robotWith("{name: a, model: M3508, id: 1, velocity_limit_rpm: 600}");
+  EXPECT_THAT(errorsOf(text), IsEmpty());
+  EXPECT_THAT(warningsOf(text),
+              ElementsAre("hero.yaml:6:60: buses[0].motors[0].velocity_limit_rpm: 600 rpm is more "
+                          "than the M3508 reaches without load at 24 V (482 rpm)"));
+  EXPECT_THAT(warningsOf(robotWith("{name: a, model: M3508, id: 1, gear_ratio: 1, velocity_limit_rpm: 600}")),
+              IsEmpty());
+}
+
+TEST(MotorRules, ANumberHasNoUnitBehindIt) {
+  EXPECT_THAT(
+      errorsOfWheel("current_limit_a: 10A"),
+      ElementsAre("hero.yaml:6:61: buses[0].motors[0].current_limit_a: '10A' has something after the number; "
+                  "write 10: the unit is in the key's name"));
+}
+
+TEST(MotorRules, ASimulatedLoadIsTakenOver) {
+  const auto load =
+      motorOf(
+          "{name: a, model: M3508, id: 1, simulated: {inertia_kg_m2: 0.01, viscous_nms_per_rad: 0.02, "
+          "coulomb_nm: 0.03, load_torque_nm: -2, initial_angle_deg: 30, stalled: true, silent: true, "
+          "lost_frames: 0.5}}")
+          .simulated;
+  EXPECT_EQ(load.inertia_kg_m2, 0.01F);
+  EXPECT_EQ(load.viscous_nms_per_rad, 0.02F);
+  EXPECT_EQ(load.coulomb_nm, 0.03F);
+  EXPECT_EQ(load.load_torque_nm, -2.0F);
+  EXPECT_EQ(load.initial_angle_deg, 30.0F);
+  EXPECT_TRUE(load.stalled);
+  EXPECT_TRUE(load.silent);
+  EXPECT_EQ(load.lost_frames, 0.5F);
+  EXPECT_TRUE(std::isnan(motorOf("{name: a, model: M3508, id: 1}").simulated.inertia_kg_m2));
+  EXPECT_THAT(
+      errorsOfWheel("simulated: {lost_frames: 1.5}"),
+      ElementsAre("hero.yaml:6:69: buses[0].motors[0].simulated.lost_frames: 1.5 is above 1; use 0 to 1"));
+}
+
+TEST(MotorRules, AMotorKnowsWhereItStands) {
+  const auto motor = motorOf("{name: a, model: M3508, id: 1}");
+  EXPECT_EQ(motor.place.line, 6);
+  EXPECT_EQ(motor.place.column, 9);
+}
+
+}  // namespace
+}  // namespace rc10::test

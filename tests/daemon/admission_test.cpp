@@ -1,0 +1,287 @@
+#include "daemon/admission.hpp"
+
+#include <gtest/gtest.h>
+
+#include <limits>
+#include <set>
+#include <string>
+
+#include "daemon/link_messages.hpp"
+
+namespace rc10::test {
+namespace {
+
+using namespace std::chrono_literals;
+using enum ControlMode;
+
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+constexpr float kNanF = std::numeric_limits<float>::quiet_NaN();
+constexpr float kInfF = std::numeric_limits<float>::infinity();
+
+class AdmissionTest : public ::testing::Test {
+ protected:
+  [[nodiscard]] CommandRefusal admit(const link::Command& message) {
+    return admission.admit(message, now, out);
+  }
+  /// A message with one setpoint and the next sequence number.
+  [[nodiscard]] link::Command one(const link::Setpoint& setpoint) {
+    return linkCommand(++seq, now, {setpoint});
+  }
+  [[nodiscard]] link::Command good() { return one(setpoint("left", kVelocity, 120.0)); }
+
+  MonotonicTime now{1000s};
+  std::int64_t seq = 0;
+  Command out;
+  Admission admission{{{"left", ModeSet{kCurrent, kVelocity, kAngle}},
+                       {"right", ModeSet{kCurrent, kVelocity, kBrake}},
+                       {"arm", ModeSet{kImpedance}}}};
+};
+
+TEST_F(AdmissionTest, TranslatesNamesModesAndValues) {
+  auto message = linkCommand(1, now, {setpoint("right", kVelocity, 120.0), setpoint("left", kCurrent, -2.0)});
+  message.setpoints[0].velocity_ff_rpm = 3.0F;
+  message.setpoints[0].torque_ff_nm = 4.0F;
+  ASSERT_EQ(admit(message), CommandRefusal::kNone);
+  ASSERT_EQ(out.count, 2U);
+  EXPECT_EQ(out.client.view(), "planner");
+  EXPECT_EQ(out.setpoints[0].motor, 1U);
+  EXPECT_EQ(out.setpoints[0].target.mode, kVelocity);
+  EXPECT_EQ(out.setpoints[0].target.value, 120.0);
+  EXPECT_EQ(out.setpoints[0].target.velocity_ff_rpm, 3.0F);
+  EXPECT_EQ(out.setpoints[0].target.torque_ff_nm, 4.0F);
+  EXPECT_EQ(out.setpoints[1].motor, 0U);
+  EXPECT_EQ(out.setpoints[1].target.mode, kCurrent);
+  EXPECT_EQ(out.setpoints[1].target.value, -2.0);
+}
+
+TEST_F(AdmissionTest, KnowsTheIndexOfEveryMotorAndOfNoOther) {
+  EXPECT_EQ(admission.indexOf("left"), 0);
+  EXPECT_EQ(admission.indexOf("arm"), 2);
+  EXPECT_EQ(admission.indexOf("Left"), -1);
+  EXPECT_EQ(admission.indexOf(""), -1);
+}
+
+TEST_F(AdmissionTest, RefusesAMessageWithoutSetpoints) {
+  EXPECT_EQ(admit(linkCommand(1, now, {})), CommandRefusal::kMalformed);
+}
+
+TEST_F(AdmissionTest, RefusesMoreSetpointsThanThereIsRoom) {
+  auto message = good();
+  message.setpoint_count = kMaxMotors + 1;
+  EXPECT_EQ(admit(message), CommandRefusal::kMalformed);
+}
+
+TEST_F(AdmissionTest, RefusesAMessageThatNamesOneMotorTwice) {
+  EXPECT_EQ(admit(linkCommand(1, now, {setpoint("left", kVelocity), setpoint("left", kCurrent)})),
+            CommandRefusal::kMalformed);
+}
+
+TEST_F(AdmissionTest, RefusesAnUnknownMotor) {
+  EXPECT_EQ(admit(one(setpoint("lefty", kVelocity))), CommandRefusal::kUnknownMotor);
+  EXPECT_EQ(admit(one(setpoint("", kVelocity))), CommandRefusal::kUnknownMotor);
+}
+
+TEST_F(AdmissionTest, RefusesANumberThatIsNoMode) {
+  auto message = good();
+  message.setpoints[0].mode = kControlModeCount;
+  EXPECT_EQ(admit(message), CommandRefusal::kUnknownMode);
+  message.setpoints[0].mode = 255;
+  EXPECT_EQ(admit(message), CommandRefusal::kUnknownMode);
+}
+
+TEST_F(AdmissionTest, RefusesAModeThatTheMotorCannotDo) {
+  EXPECT_EQ(admit(one(setpoint("left", kDuty))), CommandRefusal::kUnsupportedMode);
+  EXPECT_EQ(admit(one(setpoint("left", kBrake))), CommandRefusal::kUnsupportedMode);
+  EXPECT_EQ(admit(one(setpoint("right", kBrake))), CommandRefusal::kNone);
+}
+
+TEST_F(AdmissionTest, EveryMotorCanCoast) {
+  EXPECT_EQ(admit(one(setpoint("arm", kCoast))), CommandRefusal::kNone);
+}
+
+TEST_F(AdmissionTest, AValueThatTheModeHasNoUseForGoesNoFurther) {
+  EXPECT_EQ(admit(one(setpoint("left", ControlMode::kCoast, kNan))), CommandRefusal::kNone);
+  EXPECT_EQ(out.setpoints[0].target.value, 0.0);
+}
+
+TEST_F(AdmissionTest, RefusesAValueThatIsNotFinite) {
+  EXPECT_EQ(admit(one(setpoint("left", kVelocity, kNan))), CommandRefusal::kNotFinite);
+  EXPECT_EQ(admit(one(setpoint("left", kVelocity, std::numeric_limits<double>::infinity()))),
+            CommandRefusal::kNotFinite);
+}
+
+TEST_F(AdmissionTest, AFeedForwardThatIsNotGivenIsNone) {
+  auto message = good();
+  message.setpoints[0].velocity_ff_rpm = kNanF;
+  message.setpoints[0].torque_ff_nm = kNanF;
+  EXPECT_EQ(admit(message), CommandRefusal::kNone);
+  EXPECT_EQ(out.setpoints[0].target.velocity_ff_rpm, 0.0F);
+  EXPECT_EQ(out.setpoints[0].target.torque_ff_nm, 0.0F);
+}
+
+TEST_F(AdmissionTest, RefusesAnInfiniteFeedForward) {
+  auto message = good();
+  message.setpoints[0].torque_ff_nm = -kInfF;
+  EXPECT_EQ(admit(message), CommandRefusal::kNotFinite);
+}
+
+TEST_F(AdmissionTest, IgnoresTheValueOfModesThatHaveNone) {
+  EXPECT_EQ(admit(one(setpoint("left", kCoast, kNan))), CommandRefusal::kNone);
+  EXPECT_EQ(admit(one(setpoint("right", kBrake, kNan))), CommandRefusal::kNone);
+}
+
+TEST_F(AdmissionTest, StiffnessAndDampingMayBeNanWhereTheyMeanNothing) {
+  auto message = good();
+  message.setpoints[0].stiffness_nm_per_rad = kNanF;
+  message.setpoints[0].damping_nms_per_rad = kNanF;
+  ASSERT_EQ(admit(message), CommandRefusal::kNone);
+  // They do not reach the motor.
+  EXPECT_EQ(out.setpoints[0].target.stiffness_nm_per_rad, 0.0F);
+  EXPECT_EQ(out.setpoints[0].target.damping_nms_per_rad, 0.0F);
+}
+
+TEST_F(AdmissionTest, ImpedanceNeedsFiniteStiffnessAndDamping) {
+  auto message = one(setpoint("arm", kImpedance, 10.0));
+  message.setpoints[0].stiffness_nm_per_rad = 5.0F;
+  message.setpoints[0].damping_nms_per_rad = 0.5F;
+  ASSERT_EQ(admit(message), CommandRefusal::kNone);
+  EXPECT_EQ(out.setpoints[0].target.stiffness_nm_per_rad, 5.0F);
+  EXPECT_EQ(out.setpoints[0].target.damping_nms_per_rad, 0.5F);
+  message.setpoints[0].stiffness_nm_per_rad = kNanF;
+  EXPECT_EQ(admit(message), CommandRefusal::kNotFinite);
+  message.setpoints[0].stiffness_nm_per_rad = 5.0F;
+  message.setpoints[0].damping_nms_per_rad = kInfF;
+  EXPECT_EQ(admit(message), CommandRefusal::kNotFinite);
+}
+
+TEST_F(AdmissionTest, RefusesTheWholeMessageForOneBadSetpoint) {
+  EXPECT_EQ(
+      admit(linkCommand(1, now, {setpoint("left", kVelocity, 1.0), setpoint("right", kVelocity, kNan)})),
+      CommandRefusal::kNotFinite);
+  // And it has used up no sequence number.
+  EXPECT_EQ(admit(linkCommand(1, now, {setpoint("left", kVelocity, 1.0)})), CommandRefusal::kNone);
+}
+
+TEST_F(AdmissionTest, TheDeadlineIsTheReceiveTimePlusTheValidity) {
+  auto message = good();
+  message.validity_ms = 20;
+  message.received_ns = (now - 5ms).time_since_epoch().count();
+  ASSERT_EQ(admit(message), CommandRefusal::kNone);
+  EXPECT_EQ(out.deadline, now + 15ms);
+}
+
+TEST_F(AdmissionTest, AValidityOfZeroIsFiftyMilliseconds) {
+  ASSERT_EQ(admit(good()), CommandRefusal::kNone);
+  EXPECT_EQ(out.deadline, now + 50ms);
+}
+
+TEST_F(AdmissionTest, RefusesAValidityOutOfRange) {
+  auto message = good();
+  message.validity_ms = 1001;
+  EXPECT_EQ(admit(message), CommandRefusal::kMalformed);
+  message.validity_ms = -1;
+  EXPECT_EQ(admit(message), CommandRefusal::kMalformed);
+  message.validity_ms = std::numeric_limits<std::int32_t>::max();
+  EXPECT_EQ(admit(message), CommandRefusal::kMalformed);
+  message.validity_ms = 1000;
+  EXPECT_EQ(admit(message), CommandRefusal::kNone);
+  EXPECT_EQ(out.deadline, now + 1000ms);
+}
+
+TEST_F(AdmissionTest, AReceiveTimeInTheFutureCountsAsNow) {
+  auto message = good();
+  message.received_ns = (now + 1h).time_since_epoch().count();
+  ASSERT_EQ(admit(message), CommandRefusal::kNone);
+  EXPECT_EQ(out.deadline, now + 50ms);
+}
+
+TEST_F(AdmissionTest, RefusesAMessageThatIsOlderThanItsValidity) {
+  auto message = good();
+  message.received_ns = (now - 50ms).time_since_epoch().count();
+  EXPECT_EQ(admit(message), CommandRefusal::kExpired);
+  message.received_ns = (now - 50ms + 1ns).time_since_epoch().count();
+  EXPECT_EQ(admit(message), CommandRefusal::kNone);
+  message.received_ns = std::numeric_limits<std::int64_t>::min();
+  EXPECT_EQ(admit(message), CommandRefusal::kExpired);
+}
+
+TEST_F(AdmissionTest, SequenceNumbersOfASessionOnlyRise) {
+  const auto numbered = [&](std::int64_t number) {
+    return linkCommand(number, now, {setpoint("left", kVelocity)});
+  };
+  EXPECT_EQ(admit(numbered(5)), CommandRefusal::kNone);
+  EXPECT_EQ(admit(numbered(5)), CommandRefusal::kOldSequence);
+  EXPECT_EQ(admit(numbered(4)), CommandRefusal::kOldSequence);
+  EXPECT_EQ(admit(numbered(9)), CommandRefusal::kNone) << "gaps are allowed";
+  EXPECT_EQ(admit(numbered(6)), CommandRefusal::kOldSequence);
+}
+
+TEST_F(AdmissionTest, EverySessionOfAClientHasASequenceOfItsOwn) {
+  auto first = linkCommand(100, now, {setpoint("left", kVelocity)});
+  auto second = first;
+  second.session = 8;
+  second.seq = 1;
+  EXPECT_EQ(admit(first), CommandRefusal::kNone);
+  EXPECT_EQ(admit(second), CommandRefusal::kNone);
+  EXPECT_EQ(out.session, 8U);
+  EXPECT_EQ(admit(second), CommandRefusal::kOldSequence);
+  EXPECT_EQ(admit(first), CommandRefusal::kOldSequence) << "the other session does not start this one anew";
+}
+
+TEST_F(AdmissionTest, EveryReasonHasWordsOfItsOwn) {
+  std::set<std::string> names;
+  std::set<std::string> words;
+  for (std::size_t i = 0; i < kCommandRefusalCount; ++i) {
+    names.insert(toString(static_cast<CommandRefusal>(i)));
+    words.insert(describe(static_cast<CommandRefusal>(i)));
+  }
+  EXPECT_EQ(names.size(), kCommandRefusalCount);
+  EXPECT_EQ(words.size(), kCommandRefusalCount);
+  EXPECT_EQ(names.count("unknown"), 0U);
+}
+
+TEST_F(AdmissionTest, EveryClientHasASequenceOfItsOwn) {
+  auto message = linkCommand(100, now, {setpoint("left", kVelocity)});
+  EXPECT_EQ(admit(message), CommandRefusal::kNone);
+  message.client = "remote";
+  message.seq = 1;
+  EXPECT_EQ(admit(message), CommandRefusal::kNone);
+}
+
+TEST_F(AdmissionTest, ATableFullOfClientsStillKnowsTheirSequences) {
+  auto message = linkCommand(1, now, {setpoint("left", kVelocity)});
+  for (int i = 0; i < 64; ++i) {
+    message.client = "client " + std::to_string(i);
+    ASSERT_EQ(admit(message), CommandRefusal::kNone);
+  }
+  EXPECT_EQ(admit(message), CommandRefusal::kOldSequence);
+}
+
+TEST_F(AdmissionTest, AFloodOfClientNamesIsSurvived) {
+  auto message = linkCommand(1, now, {setpoint("left", kVelocity)});
+  for (int i = 0; i < 1000; ++i) {
+    message.client = "client " + std::to_string(i);
+    ASSERT_EQ(admit(message), CommandRefusal::kNone);
+  }
+}
+
+TEST_F(AdmissionTest, CountsRefusalsByReason) {
+  admission.count(CommandRefusal::kExpired);
+  admission.count(CommandRefusal::kExpired);
+  admission.count(CommandRefusal::kNone);
+  EXPECT_EQ(admission.counts()[static_cast<std::size_t>(CommandRefusal::kExpired)], 2U);
+  EXPECT_EQ(admission.counts()[static_cast<std::size_t>(CommandRefusal::kNone)], 1U);
+  EXPECT_EQ(admission.counts()[static_cast<std::size_t>(CommandRefusal::kMalformed)], 0U);
+}
+
+TEST_F(AdmissionTest, EveryReasonHasItsOwnWords) {
+  std::set<std::string> words;
+  for (std::size_t i = 0; i < kCommandRefusalCount; ++i) {
+    words.insert(toString(static_cast<CommandRefusal>(i)));
+  }
+  EXPECT_EQ(words.size(), kCommandRefusalCount);
+  EXPECT_EQ(words.count("unknown"), 0U);
+}
+
+}  // namespace
+}  // namespace rc10::test

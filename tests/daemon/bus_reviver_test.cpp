@@ -1,0 +1,79 @@
+// What can be seen without CAN: "lo" stands for an interface that is there but is no CAN interface. The
+// revival itself is tested with real SocketCAN in tests/kernel.
+#include "daemon/bus_reviver.hpp"
+
+#include <gtest/gtest.h>
+#include <net/if.h>
+#include <sys/ioctl.h>
+#include <sys/socket.h>
+
+#include <cstring>
+
+#include "bus/wire_frame.hpp"
+
+#include "daemon/virtual_robot.hpp"
+
+namespace rc10::test {
+namespace {
+
+class BusReviverTest : public ::testing::Test {
+ protected:
+  void setInterface(const std::string& name) { robot->buses()[0].interface = name; }
+  LinkState link() { return inboxes[0].link.load(); }
+  static LinkState stateOfLoopback() {
+    const UniqueFd any{::socket(AF_UNIX, SOCK_DGRAM | SOCK_CLOEXEC, 0)};
+    ifreq request{};
+    std::strcpy(request.ifr_name, "lo");
+    EXPECT_EQ(::ioctl(any.get(), SIOCGIFFLAGS, &request), 0);
+    return (request.ifr_flags & IFF_UP) != 0 ? LinkState::kUp : LinkState::kDown;
+  }
+
+  std::unique_ptr<Robot> robot = Robot::build(twoWheelsAndYaw()).value();
+  std::array<BusInbox, kMaxBuses> inboxes;
+  std::unique_ptr<RxLoop> rx = RxLoop::create(*robot, inboxes).value();
+  BusReviver reviver{*robot, inboxes, *rx};
+};
+
+TEST_F(BusReviverTest, LeavesASimulatedBusAlone) {
+  inboxes[0].link = LinkState::kDown;
+  reviver.check();
+  EXPECT_EQ(link(), LinkState::kDown);
+}
+
+TEST_F(BusReviverTest, SeesThatAnInterfaceIsGone) {
+  setInterface("rc10nosuch");
+  reviver.check();
+  EXPECT_EQ(link(), LinkState::kGone);
+}
+
+TEST_F(BusReviverTest, ShowsWhetherAnInterfaceIsUp) {
+  setInterface("lo");
+  inboxes[0].link = stateOfLoopback() == LinkState::kUp ? LinkState::kDown : LinkState::kUp;
+  reviver.check();
+  EXPECT_EQ(link(), stateOfLoopback());
+}
+
+TEST_F(BusReviverTest, ABusThatWasDownBetweenTwoLooksHasComeUp) {
+  setInterface("lo");
+  (void)reviver.check();
+  inboxes[0].link = LinkState::kDown;  // the RX thread has met ENETDOWN
+  EXPECT_EQ(reviver.check().test(0), stateOfLoopback() == LinkState::kUp);
+  EXPECT_TRUE(reviver.check().none());
+}
+
+TEST_F(BusReviverTest, ABusStaysGoneUntilItsSocketIsReplaced) {
+  setInterface("lo");
+  inboxes[0].link = LinkState::kGone;
+  reviver.check();  // no CAN socket can be bound to lo
+  EXPECT_EQ(link(), LinkState::kGone);
+  // And the descriptor is still the old one: what the drives send arrives.
+  const CanFrame frame = makeClassicFrame({0x201, false}, std::array<std::uint8_t, 1>{1});
+  canfd_frame wire;
+  const auto size = encodeFrame(frame, wire);
+  ASSERT_GT(::send(robot->simPorts()[0]->descriptor(), &wire, size, MSG_DONTWAIT), 0);
+  rx->poll(0);
+  EXPECT_EQ(inboxes[0].frames.read_available(), 1U);
+}
+
+}  // namespace
+}  // namespace rc10::test

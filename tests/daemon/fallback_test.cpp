@@ -1,0 +1,225 @@
+// What a motor does when nobody tells it what to do, on the simulated robot.
+
+#include <cmath>
+
+#include <gtest/gtest.h>
+
+#include "daemon/virtual_robot.hpp"
+
+namespace rc10::test {
+namespace {
+
+using namespace std::chrono_literals;
+
+constexpr std::size_t kLeft = 0;
+constexpr Target kVelocity120{.mode = ControlMode::kVelocity, .value = 120.0};
+
+class FallbackTest : public ::testing::Test {
+ protected:
+  void start(const FallbackConfig& fallback, float load_torque_nm = 0.0F, const GuardConfig& guard = {}) {
+    auto config = twoWheelsAndYaw();
+    config.buses[0].motors[kLeft].guard = guard;
+    config.buses[0].motors[kLeft].fallback = fallback;
+    config.buses[0].motors[kLeft].simulated.load_torque_nm = load_torque_nm;
+    robot = std::make_unique<VirtualRobot>(config);
+    robot->run(5);
+    robot->order(Operation::kEnable);
+    robot->hold(kLeft, kVelocity120, 1000);
+    ASSERT_NEAR(rpm(), 120.0F, 3.0F);
+  }
+  float rpm() { return robot->motor(kLeft).feedback.velocity_rpm; }
+  float currentA() { return robot->motor(kLeft).command_value; }
+  double angleDeg() { return robot->motor(kLeft).feedback.total_angle_deg; }
+  /// Ticks until it stands still.
+  int ticksToStop() {
+    for (int i = 0; i < 20'000; ++i) {
+      robot->tick();
+      if (std::fabs(rpm()) < 2.0F) return i;
+    }
+    return 20'000;
+  }
+
+  std::unique_ptr<VirtualRobot> robot;
+};
+
+TEST_F(FallbackTest, CoastMeansNoCurrentAtAll) {
+  start({});
+  robot->run(49);
+  robot->tick();
+  for (int i = 0; i < 500; ++i) {
+    robot->tick();
+    ASSERT_EQ(currentA(), 0.0F);
+  }
+}
+
+TEST_F(FallbackTest, BrakeStopsSoonerThanDampAndDampSoonerThanCoast) {
+  start({.on_timeout = FallbackAction::kBrake});
+  const int brake = ticksToStop();
+  start({.on_timeout = FallbackAction::kDamp});
+  const int damp = ticksToStop();
+  start({.on_timeout = FallbackAction::kCoast});
+  const int coast = ticksToStop();
+  EXPECT_LT(brake, damp);
+  EXPECT_LT(damp, coast);
+}
+
+TEST_F(FallbackTest, DampNeverPushes) {
+  start({.on_timeout = FallbackAction::kDamp});
+  robot->run(51);
+  for (int i = 0; i < 1000; ++i) {
+    const float before_rpm = rpm();
+    robot->tick();
+    ASSERT_LE(currentA() * before_rpm, 0.0F);
+  }
+}
+
+TEST_F(FallbackTest, HoldStaysWhereItWasAndGivesWayAfterItsTime) {
+  start({.on_timeout = FallbackAction::kHold, .hold_max = 2s}, 1.0F);
+  robot->run(1500);
+  const double held_deg = angleDeg();
+  robot->run(500);
+  EXPECT_NEAR(angleDeg(), held_deg, 1.0);
+  robot->run(2000);
+  EXPECT_LT(angleDeg(), held_deg - 10.0);  // damped: the load pulls it down, slowly
+  EXPECT_LT(std::fabs(rpm()), 100.0F);
+}
+
+TEST_F(FallbackTest, ANewTargetEndsIt) {
+  start({.on_timeout = FallbackAction::kBrake});
+  robot->run(500);
+  EXPECT_EQ(robot->motor(kLeft).status, MotorStatus::kActive);
+  robot->hold(kLeft, kVelocity120, 1000);
+  EXPECT_NEAR(rpm(), 120.0F, 3.0F);
+}
+
+TEST_F(FallbackTest, CoastByACommandIsCoastWhateverTheFallback) {
+  start({.on_timeout = FallbackAction::kBrake});
+  for (int i = 0; i < 500; ++i) {
+    robot->hold(kLeft, {.mode = ControlMode::kCoast}, 1);
+    ASSERT_EQ(currentA(), 0.0F);
+  }
+  robot->run(100);
+  EXPECT_EQ(currentA(), 0.0F);
+}
+
+TEST_F(FallbackTest, AfterADisableItActsUntilTheMotorStandsStill) {
+  start({.on_disable = FallbackAction::kBrake});
+  robot->order(Operation::kDisable);
+  EXPECT_EQ(robot->motor(kLeft).status, MotorStatus::kReady);
+  EXPECT_LT(currentA(), 0.0F);
+  robot->run(1500);
+  EXPECT_LT(std::fabs(rpm()), 1.0F);
+  EXPECT_EQ(currentA(), 0.0F);
+}
+
+TEST_F(FallbackTest, AnEstopBrakesAndHoldsALoadUntilItIsDisabledOnceMore) {
+  start({.on_estop = FallbackAction::kBrake}, 1.0F);
+  robot->exchange().estop.store(true);
+  robot->tick();
+  EXPECT_EQ(robot->motor(kLeft).status, MotorStatus::kReady);
+  EXPECT_LT(currentA(), 0.0F);
+  robot->run(3000);
+  EXPECT_LT(std::fabs(rpm()), 1.0F);
+  EXPECT_GT(currentA(), 0.5F);  // it carries the load
+  EXPECT_EQ(robot->order(Operation::kClear).motors[kLeft], Refusal::kNone);
+  robot->run(100);
+  EXPECT_GT(currentA(), 0.5F);  // and does not drop it in between
+  robot->order(Operation::kDisable);
+  EXPECT_EQ(currentA(), 0.0F);
+}
+
+TEST_F(FallbackTest, AMotorThatIsHeldIsNotLetGoWhileItIsEnabled) {
+  start({.on_estop = FallbackAction::kHold}, 2.0F);
+  robot->order(Operation::kEstop);
+  robot->run(1000);
+  robot->order(Operation::kClear);
+  Order enable;
+  enable.id = 99;
+  enable.operation = Operation::kEnable;
+  enable.motors.set(kLeft);
+  robot->exchange().orders.push(enable);
+  bool was_enabling = false;
+  for (int i = 0; i < 100; ++i) {
+    robot->tick();
+    was_enabling |= robot->motor(kLeft).status == MotorStatus::kEnabling;
+    ASSERT_GT(std::fabs(currentA()), 1.0F) << i;
+  }
+  EXPECT_TRUE(was_enabling);
+  EXPECT_EQ(robot->motor(kLeft).status, MotorStatus::kActive);
+}
+
+TEST_F(FallbackTest, WithoutFeedbackThereIsNone) {
+  start({.on_timeout = FallbackAction::kBrake, .on_estop = FallbackAction::kBrake});
+  robot->exchange().estop.store(true);
+  robot->run(10);
+  EXPECT_NE(currentA(), 0.0F);
+  robot->freezeSimulation(true);
+  robot->run(25);
+  EXPECT_EQ(robot->motor(kLeft).status, MotorStatus::kOffline);
+  EXPECT_EQ(currentA(), 0.0F);
+  robot->freezeSimulation(false);
+  robot->run(500);
+  EXPECT_EQ(currentA(), 0.0F);
+}
+
+TEST_F(FallbackTest, ABrakeInAnEstopIsWatchedAsAnyOtherLoop) {
+  start({.on_estop = FallbackAction::kBrake}, 1.0F,
+        {.temperature_derate_c = 70.0F, .temperature_trip_c = 90.0F});
+  robot->exchange().estop.store(true);
+  robot->run(3000);
+  EXPECT_GT(currentA(), 0.5F);
+  robot->simBus().setTemperature(kLeft, 95.0);
+  robot->run(2);
+  EXPECT_EQ(robot->motor(kLeft).status, MotorStatus::kFault);
+  EXPECT_EQ(robot->motor(kLeft).fault, FaultCode::kOverheated);
+  EXPECT_EQ(currentA(), 0.0F);
+}
+
+TEST_F(FallbackTest, AnEncoderThatIsReversedDoesNotMakeABrakeInAnEstopRunAway) {
+  start({.on_estop = FallbackAction::kBrake}, 0.0F, {.runaway_rpm = 50.0F});
+  robot->exchange().estop.store(true);
+  robot->simBus().setEncoderFault(kLeft, {.reversed = true});
+  robot->run(3000);
+  EXPECT_EQ(robot->motor(kLeft).status, MotorStatus::kFault);
+  EXPECT_EQ(currentA(), 0.0F);
+}
+
+TEST_F(FallbackTest, ALostReferenceBeginsItInPlaceOfTheAngle) {
+  start({.on_timeout = FallbackAction::kBrake});
+  const double far_deg = angleDeg() + 3600.0;
+  robot->hold(kLeft, {.mode = ControlMode::kTotalAngle, .value = far_deg}, 200);
+  robot->command(kLeft, {.mode = ControlMode::kTotalAngle, .value = far_deg}, std::chrono::milliseconds{500});
+  robot->freezeSimulation(true);
+  robot->run(15);  // more than can be counted over, less than the feedback timeout
+  robot->freezeSimulation(false);
+  robot->run(3);
+  EXPECT_EQ(robot->motor(kLeft).status, MotorStatus::kActive);
+  EXPECT_FALSE(robot->motor(kLeft).feedback.zeroed);
+  robot->run(400);
+  EXPECT_LT(std::fabs(rpm()), 3.0F);
+}
+
+TEST_F(FallbackTest, TheEndOfTheProcessWaitsForItButNotForEver) {
+  start({.on_disable = FallbackAction::kBrake});
+  robot->scheduler().beginStop();
+  robot->run(10);
+  EXPECT_LT(currentA(), 0.0F);
+  EXPECT_FALSE(robot->scheduler().stopped());
+  for (int i = 0; i < 1100 && !robot->scheduler().stopped(); ++i) robot->tick();
+  EXPECT_TRUE(robot->scheduler().stopped());
+  EXPECT_EQ(currentA(), 0.0F);
+  EXPECT_LT(std::fabs(rpm()), 1.0F);
+}
+
+TEST_F(FallbackTest, AHoldAtTheEndOfTheProcessLetsGoAfterASecond) {
+  start({.on_disable = FallbackAction::kHold}, 1.0F);
+  robot->scheduler().beginStop();
+  robot->run(990);
+  EXPECT_GT(currentA(), 0.5F);
+  robot->run(100);
+  EXPECT_TRUE(robot->scheduler().stopped());
+  EXPECT_EQ(currentA(), 0.0F);
+}
+
+}  // namespace
+}  // namespace rc10::test

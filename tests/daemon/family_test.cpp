@@ -1,0 +1,204 @@
+// Every family on a whole robot with its simulated drive: enabled, moved, lost, restarted, faulted, cleared.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <string>
+
+#include "config/load_config.hpp"
+#include "config/motor_families.hpp"
+#include "daemon/virtual_robot.hpp"
+
+namespace rc10::test {
+namespace {
+
+using ::testing::AnyOf;
+
+struct Subject {
+  const char* name;
+  const char* motor;           ///< Its keys after the name.
+  std::uint32_t native_fault;  ///< A code of this family; 0: it reports none.
+  bool told_of_restart;        ///< It notices that the drive has forgotten everything.
+  const char* bus = "";
+  double rpm = 30.0;
+};
+
+void PrintTo(const Subject& subject, std::ostream* out) { *out << subject.name; }
+
+const Subject kSubjects[] = {
+    {"Vesc", "model: VESC, id: 10, pole_pairs: 7, velocity_limit_rpm: 3000, feedback_hz: 500", 4, true, "",
+     300.0},  // a stock one lets go below 900 ERPM
+    {"DamiaoMit", "model: DM4310, id: 1, master_id: 17", 0xA, true},
+    {"DamiaoVelocity", "model: DM8009, id: 2, master_id: 18, control: velocity", 0xB, true},
+    {"RobStride", "model: RS00, id: 3", 1, true},
+    {"CyberGear", "model: CyberGear, id: 4", 1, true},
+    {"CubeMarsServo", "model: AK80-9, id: 5", 1, true},
+    {"CubeMarsMit", "model: AK80-9, id: 6, protocol: mit", 1, false},
+    {"Moteus", "model: moteus, id: 7, motor_kv_rpm_per_v: 100", 33, true, "data_bitrate: 5000000\n    "},
+    {"OdriveS1",
+     "model: ODrive_S1, id: 8, torque_constant_nm_per_a: 0.05, current_limit_a: 20, velocity_limit_rpm: 600",
+     0x200, true},
+    {"OdriveV3",
+     "model: ODrive_v3, id: 9, torque_constant_nm_per_a: 0.05, current_limit_a: 20, velocity_limit_rpm: 600",
+     0x40, true},
+    {"MyActuator", "model: RMD-X8-20, id: 11", 0x0004, true},
+    {"LkTech", "model: LK-MG5010E-i10, id: 12", 1, true},
+};
+
+std::string textOf(const Subject& subject) {
+  return std::string{"robot: family\nrealtime: preferred\nbuses:\n  - name: bench\n    type: sim\n    "} +
+         subject.bus + "motors:\n      - {name: motor, " + subject.motor + "}\n";
+}
+
+RobotConfig configOf(const Subject& subject) {
+  auto outcome = parseRobotConfig(textOf(subject), "family.yaml");
+  EXPECT_TRUE(outcome.config) << outcome.errorText();
+  return outcome.config.value_or(twoWheelsAndYaw());
+}
+
+class Family : public ::testing::TestWithParam<Subject> {
+ protected:
+  static constexpr std::size_t kMotor = 0;
+
+  MotorStatus status() { return robot.motor(kMotor).status; }
+  double rpm() { return static_cast<double>(robot.motor(kMotor).feedback.velocity_rpm); }
+  /// What the shaft really does.
+  double truth() { return drive().physics().outputRpm(); }
+  sim::Drive& drive() { return robot.simBus().drive(kMotor); }
+  bool waitFor(MotorStatus wanted, int ticks = 4000) {
+    for (int i = 0; i < ticks && status() != wanted; ++i) robot.run(1);
+    return status() == wanted;
+  }
+  /// Until it is, as an operator would: some drives refuse while they start.
+  bool enable() {
+    for (int attempt = 0; attempt < 4; ++attempt) {
+      robot.order(Operation::kEnable);
+      if (status() == MotorStatus::kActive) return true;
+      robot.run(1000);
+    }
+    return false;
+  }
+  void turn(int ticks) {
+    robot.hold(kMotor, {.mode = ControlMode::kVelocity, .value = GetParam().rpm}, ticks);
+  }
+
+  VirtualRobot robot{configOf(GetParam())};
+};
+
+TEST_P(Family, IsOnlineBeforeAnyoneEnablesItAndWithoutTorque) {
+  ASSERT_TRUE(waitFor(MotorStatus::kReady));
+  robot.run(3000);
+  EXPECT_EQ(status(), MotorStatus::kReady);
+  EXPECT_NEAR(drive().physics().currentA(), 0.0, 0.05);
+}
+
+TEST_P(Family, FollowsASpeedAndIsAtRestAfterItsLease) {
+  ASSERT_TRUE(waitFor(MotorStatus::kReady));
+  ASSERT_TRUE(enable());
+  robot.run(50);
+  EXPECT_NEAR(truth(), 0.0, 1.0) << "being enabled moves nothing";
+  turn(3000);
+  EXPECT_NEAR(truth(), GetParam().rpm, 0.1 * GetParam().rpm);
+  EXPECT_NEAR(rpm(), truth(), 0.1 * GetParam().rpm);
+  robot.run(4000);  // the client is gone
+  EXPECT_EQ(status(), MotorStatus::kActive);
+  EXPECT_LT(std::abs(truth()), 0.5 * GetParam().rpm) << "it runs down";
+  // Some control modes know no enabled state without torque: they stand still (docs/motors/damiao.md).
+  if (std::abs(truth()) > 1.0) {
+    EXPECT_NEAR(drive().physics().currentA(), 0.0, 0.1);
+  }
+}
+
+TEST_P(Family, EndsWithoutTorqueWhenItIsDisabledOrStopped) {
+  ASSERT_TRUE(waitFor(MotorStatus::kReady));
+  for (const auto operation : {Operation::kDisable, Operation::kEstop}) {
+    ASSERT_TRUE(enable());
+    turn(500);
+    robot.order(operation);
+    robot.run(100);
+    EXPECT_EQ(status(), MotorStatus::kReady);
+    EXPECT_NEAR(drive().physics().currentA(), 0.0, 0.1);
+    robot.run(5000);
+    robot.order(Operation::kClear);
+  }
+}
+
+TEST_P(Family, ThatFallsSilentIsOfflineAndComesBackAtRest) {
+  ASSERT_TRUE(waitFor(MotorStatus::kReady));
+  ASSERT_TRUE(enable());
+  turn(500);
+  robot.simBus().silence(kMotor, true);
+  turn(1500);
+  EXPECT_EQ(status(), MotorStatus::kOffline);
+  robot.simBus().silence(kMotor, false);
+  robot.run(3000);
+  EXPECT_THAT(status(), AnyOf(MotorStatus::kReady, MotorStatus::kFault));
+  robot.order(Operation::kClear);
+  robot.run(3000);
+  EXPECT_EQ(status(), MotorStatus::kReady);
+  EXPECT_NEAR(drive().physics().currentA(), 0.0, 0.05);
+  EXPECT_TRUE(enable()) << "and it can be enabled again";
+}
+
+TEST_P(Family, ARestartOfTheDriveEndsActive) {
+  if (!GetParam().told_of_restart) {
+    EXPECT_FALSE(findFamily("AK80-9") ==
+                 nullptr);  // its MIT answers have no bit for it: docs/motors/cubemars.md
+    return;
+  }
+  ASSERT_TRUE(waitFor(MotorStatus::kReady));
+  ASSERT_TRUE(enable());
+  turn(500);
+  drive().restart();
+  turn(2500);
+  EXPECT_NE(status(), MotorStatus::kActive);
+  robot.run(3000);
+  robot.order(Operation::kClear);
+  robot.run(3000);
+  ASSERT_TRUE(waitFor(MotorStatus::kReady));
+  EXPECT_TRUE(enable());
+  turn(2000);
+  EXPECT_NEAR(truth(), GetParam().rpm, 0.1 * GetParam().rpm);
+}
+
+TEST_P(Family, AFaultOfTheDriveIsTheMotorsUntilItIsCleared) {
+  ASSERT_TRUE(waitFor(MotorStatus::kReady));
+  ASSERT_TRUE(enable());
+  turn(500);
+  drive().fault(GetParam().native_fault);
+  ASSERT_TRUE(waitFor(MotorStatus::kFault, 1500));
+  EXPECT_GE(static_cast<int>(robot.motor(kMotor).fault), 32) << "said by the drive";
+  robot.run(5000);
+  EXPECT_EQ(status(), MotorStatus::kFault) << "latched";
+  drive().fault(0);  // its cause is over, the drive may still remember
+  robot.order(Operation::kClear);
+  robot.run(3000);
+  EXPECT_EQ(status(), MotorStatus::kReady);
+  EXPECT_EQ(robot.motor(kMotor).fault, FaultCode::kNone);
+  EXPECT_TRUE(enable());
+}
+
+TEST_P(Family, ADriveWithAnotherIdIsNotThere) {
+  auto config = configOf(GetParam());
+  auto& settings = config.buses[0].motors[0].settings;
+  auto robot_with_it = Robot::build(config);
+  ASSERT_TRUE(robot_with_it);
+  settings.id += 1;
+  if (settings.own.number("master_id") != 0.0)
+    settings.own.set("master_id", settings.own.number("master_id") + 1.0);
+  const auto other = findFamily(settings.model)->simulate(settings, {});
+  // Nothing that the one sends reaches the other.
+  auto& motor = *(*robot_with_it)->motors()[0].motor;
+  std::array<CanFrame, sim::Drive::kMaxFrames> frames{};
+  for (int i = 0; i < 2000; ++i) {
+    other->step(std::chrono::milliseconds{1});
+    for (std::size_t n = other->feedback(frames); n-- > 0;) EXPECT_FALSE(motor.matchesFrame(frames[n]));
+  }
+  EXPECT_EQ(motor.feedback().samples, 0U);
+}
+
+INSTANTIATE_TEST_SUITE_P(All, Family, ::testing::ValuesIn(kSubjects),
+                         [](const auto& subject) { return std::string{subject.param.name}; });
+
+}  // namespace
+}  // namespace rc10::test

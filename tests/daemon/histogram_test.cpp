@@ -1,0 +1,49 @@
+#include "daemon/histogram.hpp"
+
+#include <gtest/gtest.h>
+
+#include <random>
+#include <vector>
+
+namespace rc10 {
+namespace {
+
+using namespace std::chrono_literals;
+
+TEST(DurationHistogram, IsZeroWithoutRecords) {
+  const DurationHistogram histogram;
+  EXPECT_EQ(histogram.percentile(0.99), 0ns);
+  EXPECT_EQ(histogram.count(), 0U);
+}
+
+TEST(DurationHistogram, PercentilesAreRightToASixteenth) {
+  DurationHistogram histogram;
+  std::vector<std::int64_t> values;
+  std::mt19937_64 random(7);
+  std::lognormal_distribution<double> latency(10.0, 2.0);
+  for (int i = 0; i < 100'000; ++i) {
+    values.push_back(static_cast<std::int64_t>(latency(random)));
+    histogram.record(Duration{values.back()});
+  }
+  std::sort(values.begin(), values.end());
+  for (const double fraction : {0.01, 0.5, 0.9, 0.99, 0.999}) {
+    const auto exact = static_cast<double>(values[static_cast<std::size_t>(fraction * 100'000) - 1]);
+    const auto found = static_cast<double>(histogram.percentile(fraction).count());
+    EXPECT_GE(found, exact);
+    EXPECT_LE(found, exact * (1.0 + 1.0 / 16.0) + 1.0);
+  }
+  EXPECT_EQ(histogram.max().count(), values.back());
+  EXPECT_EQ(histogram.percentile(1.0).count(), values.back());
+}
+
+TEST(DurationHistogram, TakesNegativeAndEnormousDurations) {
+  DurationHistogram histogram;
+  histogram.record(-5ns);
+  histogram.record(1h);
+  EXPECT_EQ(histogram.count(), 2U);
+  EXPECT_EQ(histogram.percentile(0.1), 0ns);
+  EXPECT_EQ(histogram.max(), 1h);
+}
+
+}  // namespace
+}  // namespace rc10

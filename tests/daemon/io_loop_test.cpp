@@ -1,0 +1,43 @@
+#include "daemon/io_loop.hpp"
+
+#include <gtest/gtest.h>
+#include <poll.h>
+
+#include <thread>
+
+#include "daemon/serial_rig.hpp"
+#include "daemon/virtual_robot.hpp"
+
+namespace rc10::test {
+namespace {
+
+TEST(IoLoop, EndsWhenItIsAskedTo) {
+  auto robot = Robot::build(twoWheelsAndYaw()).value();
+  robot->buses()[0].interface = "rc10nosuch";
+  std::array<BusInbox, kMaxBuses> inboxes;
+  LinkExchange exchange;
+  const auto rx = RxLoop::create(*robot, inboxes).value();
+  IoLoop loop{BusReviver{*robot, inboxes, *rx}, LinkKeeper{*robot, inboxes, exchange}, nullptr};
+  std::stop_source stop;
+  stop.request_stop();
+  loop.run(stop.get_token());
+  EXPECT_EQ(inboxes[0].link.load(), LinkState::kUp);
+}
+
+TEST(IoLoop, LooksAfterSerialPorts) {
+  SerialRig rig;
+  rig.plugIn();
+  auto serial = std::make_unique<SerialIo>(
+      SerialIo{SerialReviver{*rig.lines, *rig.rx, rig.exchange}, SerialWriter{*rig.lines}});
+  IoLoop loop{BusReviver{*rig.robot, rig.inboxes, *rig.rx}, LinkKeeper{*rig.robot, rig.inboxes, rig.exchange},
+              nullptr, std::move(serial)};
+  std::jthread io([&](const std::stop_token& stop) { loop.run(stop); });
+  ASSERT_TRUE(rig.pump([&] { return rig.device.state() == SerialState::kOpen; }));
+  const std::array<std::uint8_t, 2> bytes{4, 2};
+  EXPECT_TRUE(rig.device.send(bytes));
+  pollfd wait{.fd = rig.pty->master(), .events = POLLIN, .revents = 0};
+  EXPECT_EQ(::poll(&wait, 1, 20'000), 1);
+}
+
+}  // namespace
+}  // namespace rc10::test

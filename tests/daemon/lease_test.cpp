@@ -1,0 +1,126 @@
+// Several clients on one motor: in the supervisor, as its users see it.
+
+#include "daemon/lease.hpp"
+
+#include <algorithm>
+
+#include <gtest/gtest.h>
+
+#include "daemon/virtual_robot.hpp"
+
+namespace rc10::test {
+namespace {
+
+using namespace std::chrono_literals;
+
+constexpr std::size_t kLeft = 0;
+constexpr std::size_t kRight = 1;
+
+Target current(double amperes) { return {.mode = ControlMode::kCurrent, .value = amperes}; }
+
+Lease::Holder planner(std::uint64_t session, int priority) {
+  Lease::Holder holder{.client = {}, .session = session, .priority = priority};
+  holder.client = "planner";
+  return holder;
+}
+
+class LeaseTest : public ::testing::Test {
+ protected:
+  LeaseTest() {
+    robot.run(5);
+    robot.order(Operation::kEnable);
+    (void)robot.events();
+  }
+  float commanded(std::size_t motor) { return robot.motor(motor).command_value; }
+  std::size_t reports() {
+    const auto events = robot.events();
+    return static_cast<std::size_t>(std::count_if(
+        events.begin(), events.end(), [](const Event& e) { return e.code == EventCode::kNotOwner; }));
+  }
+
+  VirtualRobot robot{twoWheelsAndYaw()};
+};
+
+TEST_F(LeaseTest, TheFirstClientHoldsTheMotorWhileItsCommandsAreValid) {
+  robot.commandAs("planner", 0, kLeft, current(1.0));
+  robot.tick();
+  robot.commandAs("second", 0, kLeft, current(-2.0), 500ms);
+  robot.tick();
+  EXPECT_EQ(commanded(kLeft), 1.0F);
+  EXPECT_EQ(robot.motor(kLeft).owner.view(), "planner");
+  EXPECT_EQ(robot.snapshot().refused_commands, 1U);
+
+  robot.run(50);  // the planner has gone
+  robot.commandAs("second", 0, kLeft, current(-2.0));
+  robot.tick();
+  EXPECT_EQ(commanded(kLeft), -2.0F);
+  EXPECT_EQ(robot.motor(kLeft).owner.view(), "second");
+}
+
+TEST_F(LeaseTest, AHigherPriorityTakesOverAndTheLowerOneCannotTakeBack) {
+  robot.commandAs("planner", 0, kLeft, current(1.0));
+  robot.tick();
+  robot.commandAs("remote", 5, kLeft, current(0.5));
+  robot.tick();
+  EXPECT_EQ(commanded(kLeft), 0.5F);
+  robot.commandAs("planner", 0, kLeft, current(1.0));
+  robot.tick();
+  EXPECT_EQ(commanded(kLeft), 0.5F);
+  EXPECT_EQ(robot.motor(kLeft).owner.view(), "remote");
+}
+
+TEST_F(LeaseTest, ARemoteThatCoastsKeepsThePlannerFromMoving) {
+  for (int i = 0; i < 20; ++i) {
+    robot.commandAs("remote", 5, kLeft, {.mode = ControlMode::kCoast});
+    robot.commandAs("planner", 0, kLeft, current(1.0));
+    robot.tick();
+    ASSERT_EQ(commanded(kLeft), 0.0F);
+  }
+  EXPECT_EQ(robot.motor(kLeft).owner.view(), "remote");
+}
+
+TEST_F(LeaseTest, ALowerPriorityCannotMakeTheMotorCoast) {
+  robot.commandAs("remote", 5, kLeft, current(1.0));
+  robot.tick();
+  robot.commandAs("planner", 0, kLeft, {.mode = ControlMode::kCoast});
+  robot.tick();
+  EXPECT_EQ(commanded(kLeft), 1.0F);
+}
+
+TEST_F(LeaseTest, AMessageIsRefusedWholeForOneMotorThatIsHeld) {
+  robot.commandAs("remote", 5, kRight, current(1.0));
+  robot.tick();
+  Command both;
+  both.client = "planner";
+  both.deadline = robot.now() + 50ms;
+  both.count = 2;
+  both.setpoints[0] = {kLeft, current(2.0)};
+  both.setpoints[1] = {kRight, current(2.0)};
+  ASSERT_TRUE(robot.exchange().commands.push(both));
+  robot.tick();
+  EXPECT_EQ(commanded(kLeft), 0.0F);
+  EXPECT_EQ(commanded(kRight), 1.0F);
+}
+
+TEST_F(LeaseTest, AnotherSessionUnderTheNameIsAnotherClient) {
+  Lease lease;
+  const MonotonicTime now{10s};
+  lease.take(planner(7, 0), now + 50ms);
+  EXPECT_TRUE(lease.allows(planner(7, 0), now));
+  EXPECT_FALSE(lease.allows(planner(8, 0), now));
+  EXPECT_TRUE(lease.allows(planner(8, 1), now));
+  EXPECT_TRUE(lease.allows(planner(8, 0), now + 50ms));
+}
+
+TEST_F(LeaseTest, RefusalsAreAllCountedAndToldOnceASecond) {
+  for (int i = 0; i < 1500; ++i) {
+    robot.commandAs("remote", 5, kLeft, current(0.1));
+    robot.commandAs("planner", 0, kLeft, current(1.0));
+    robot.tick();
+  }
+  EXPECT_EQ(robot.snapshot().refused_commands, 1500U);
+  EXPECT_EQ(reports(), 2U);
+}
+
+}  // namespace
+}  // namespace rc10::test

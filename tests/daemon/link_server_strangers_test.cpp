@@ -1,0 +1,184 @@
+// Clients that misbehave: whatever one of them does, the others are served.
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cstring>
+#include <vector>
+
+#include "daemon/link_rig.hpp"
+
+namespace rc10::test {
+namespace {
+
+class LinkServerStrangersTest : public LinkRig {
+ protected:
+  /// A client gets an answer.
+  void expectServed(TestClient& client) {
+    static std::int64_t seq = 1000;
+    ASSERT_TRUE(client.send(linkRequest(++seq, "dance")));
+    pump();
+    EXPECT_TRUE(client.take<link::Response>());
+  }
+  /// What happens to a client that has said hello and then sends these bytes.
+  bool isSentAwayFor(const void* bytes, std::size_t size) {
+    auto client = join();
+    EXPECT_TRUE(client->sendBytes(bytes, size));
+    pump();
+    return client->sentAway();
+  }
+  bool isSentAwayFor(link::Header header, std::size_t size) {
+    std::vector<std::byte> bytes(size);
+    std::memcpy(bytes.data(), &header, std::min(size, sizeof header));
+    return isSentAwayFor(bytes.data(), size);
+  }
+};
+
+TEST_F(LinkServerStrangersTest, GarbageSendsTheClientAwayAndNobodyElse) {
+  auto other = join();
+  EXPECT_TRUE(isSentAwayFor("garbage!garbage!", 16));
+  expectServed(*other);
+}
+
+TEST_F(LinkServerStrangersTest, ClientsThatNeverSayHelloDoNotKeepOthersOut) {
+  auto other = join();
+  std::vector<std::unique_ptr<TestClient>> silent;
+  for (int i = 0; i < 40; ++i) {
+    silent.push_back(std::make_unique<TestClient>(path));
+    pump();
+  }
+  EXPECT_TRUE(silent.front()->sentAway());
+  auto late = join();
+  expectServed(*late);
+  expectServed(*other);
+}
+
+TEST_F(LinkServerStrangersTest, AMessageShorterThanAHeaderSendsTheClientAway) {
+  EXPECT_TRUE(isSentAwayFor("abc", 3));
+}
+
+TEST_F(LinkServerStrangersTest, AnEmptyMessageSendsTheClientAway) { EXPECT_TRUE(isSentAwayFor("", 0)); }
+
+TEST_F(LinkServerStrangersTest, HalfAMessageSendsTheClientAway) {
+  auto request = linkRequest(1, "enable");
+  const auto bytes = link::seal(request);
+  EXPECT_TRUE(isSentAwayFor(bytes.data(), bytes.size() / 2));
+  auto command = velocityCommand(1);
+  const auto command_bytes = link::seal(command);
+  EXPECT_TRUE(isSentAwayFor(command_bytes.data(), command_bytes.size() - 1));
+  EXPECT_EQ(exchange.orders.read_available(), 0U);
+  EXPECT_EQ(exchange.commands.read_available(), 0U);
+}
+
+TEST_F(LinkServerStrangersTest, AShortMessageWithAnHonestHeaderSendsTheClientAway) {
+  EXPECT_TRUE(isSentAwayFor({link::MessageType::kRequest, 64}, 64));
+}
+
+TEST_F(LinkServerStrangersTest, ARequestWithMoreValuesThanThereIsRoomSendsTheClientAway) {
+  auto request = linkRequest(1, "estop");
+  request.value_count = link::kMaxValues + 1;
+  const auto bytes = link::seal(request);
+  EXPECT_TRUE(isSentAwayFor(bytes.data(), bytes.size()));
+}
+
+TEST_F(LinkServerStrangersTest, ATypeThatNoClientSendsSendsTheClientAway) {
+  EXPECT_TRUE(isSentAwayFor({link::MessageType::kState, 64}, 64));
+  EXPECT_TRUE(isSentAwayFor({link::MessageType{77}, 64}, 64));
+  EXPECT_TRUE(isSentAwayFor({link::MessageType::kHello, sizeof(link::Hello)}, sizeof(link::Hello)));
+}
+
+TEST_F(LinkServerStrangersTest, AMessageLargerThanAnyThereIsSendsTheClientAway) {
+  const auto size = link::kMaxMessageSize + 1;
+  EXPECT_TRUE(isSentAwayFor({link::MessageType::kCommand, static_cast<std::uint32_t>(size)}, size));
+}
+
+TEST_F(LinkServerStrangersTest, HalfAHelloSendsTheClientAwayWithoutAWelcome) {
+  TestClient client(path);
+  link::Hello hello;
+  const auto bytes = link::seal(hello);
+  ASSERT_TRUE(client.sendBytes(bytes.data(), bytes.size() - 4));
+  pump();
+  EXPECT_FALSE(client.take<link::Welcome>());
+  EXPECT_TRUE(client.sentAway());
+}
+
+TEST_F(LinkServerStrangersTest, AClientThatNeverReadsBlocksNobody) {
+  auto deaf = join(link::kEvents | link::kStates | link::kDiagnosticsFeed);
+  auto client = join(link::kEvents);
+  int received = 0;
+  for (int round = 0; round < 20; ++round) {
+    for (int i = 0; i < 100; ++i)
+      exchange.events.push({EventCode::kTicksMissed, Severity::kInfo, -1, i, 0, {}});
+    for (int i = 0; i < 100; ++i) received += await<link::Event>(*client).has_value() ? 1 : 0;
+  }
+  EXPECT_EQ(received, 2000);  // more than any socket buffer holds
+  expectServed(*client);
+  // It lost messages, not its connection.
+  int seen = 0;
+  while (deaf->take<link::Event>()) ++seen;
+  EXPECT_GT(seen, 0);
+  EXPECT_LT(seen, 2000);
+  expectServed(*deaf);
+}
+
+TEST_F(LinkServerStrangersTest, AClientThatSendsWithoutPauseLeavesTheOthersTheirTurn) {
+  auto flood = join();
+  auto client = join();
+  for (int i = 1; i <= 60; ++i) ASSERT_TRUE(flood->send(velocityCommand(i)));
+  auto request = linkRequest(1, "dance");
+  ASSERT_TRUE(client->send(request));
+  server->poll(0);
+  EXPECT_TRUE(client->take<link::Response>());
+  EXPECT_EQ(exchange.commands.read_available(), 32U);
+  pump();
+  EXPECT_EQ(exchange.commands.read_available(), 60U);
+}
+
+TEST_F(LinkServerStrangersTest, TheSeventeenthConnectionIsRefusedUntilOneLeaves) {
+  std::vector<std::unique_ptr<TestClient>> clients;
+  for (int i = 0; i < 16; ++i) clients.push_back(join());
+  TestClient seventeenth(path);
+  (void)seventeenth.send(link::Hello{});
+  pump();
+  EXPECT_TRUE(seventeenth.sentAway());
+  for (auto& client : clients) expectServed(*client);
+  clients[7]->leave();
+  pump();
+  expectServed(*join());
+}
+
+TEST_F(LinkServerStrangersTest, AbruptDisconnectsHurtNobody) {
+  auto other = join(link::kEvents);
+  auto client = join(link::kEvents | link::kStates);
+  ASSERT_TRUE(client->send(linkRequest(1, "enable")));
+  pump();
+  const auto order = takeOrder();
+  // It goes with a request under way, messages unread and messages unhandled.
+  ASSERT_TRUE(client->send(velocityCommand(1)));
+  client->leave();
+  TestClient(path).leave();
+  finish(order);
+  exchange.events.push({EventCode::kTicksMissed, Severity::kInfo, -1, 1, 0, {}});
+  EXPECT_TRUE(await<link::Event>(*other));
+  EXPECT_FALSE(other->take<link::Response>());
+  expectServed(*other);
+  expectServed(*join());
+}
+
+TEST_F(LinkServerStrangersTest, AClientThatComesBackGetsTheAnswerItMissed) {
+  auto client = join();
+  ASSERT_TRUE(client->send(linkRequest(1, "enable")));
+  pump();
+  client->leave();
+  pump();
+  finish(takeOrder());
+  auto again = join();
+  ASSERT_TRUE(again->send(linkRequest(1, "enable")));
+  const auto response = await<link::Response>(*again);
+  ASSERT_TRUE(response);
+  EXPECT_EQ(response->status, link::ResponseStatus::kOk);
+  EXPECT_EQ(exchange.orders.read_available(), 0U);
+}
+
+}  // namespace
+}  // namespace rc10::test

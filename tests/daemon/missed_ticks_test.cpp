@@ -1,0 +1,67 @@
+// Late ticks are reported together, at most once a second: a busy computer must not flood the log.
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "daemon/virtual_robot.hpp"
+
+namespace rc10::test {
+namespace {
+
+class MissedTicksTest : public ::testing::Test {
+ protected:
+  /// The values of all reports since the last call.
+  std::vector<std::int32_t> reports() {
+    std::vector<std::int32_t> out;
+    for (const auto& event : robot.events()) {
+      if (event.code == EventCode::kTicksMissed) out.push_back(event.value);
+    }
+    return out;
+  }
+
+  VirtualRobot robot{twoWheelsAndYaw()};
+};
+
+TEST_F(MissedTicksTest, TheFirstLateTickIsReportedAtOnce) {
+  robot.run(10);
+  EXPECT_TRUE(reports().empty());
+  robot.tick(4);
+  EXPECT_EQ(reports(), std::vector<std::int32_t>{3});
+}
+
+TEST_F(MissedTicksTest, LaterOnesAreAddedUpAndReportedOnceASecond) {
+  robot.tick(2);
+  ASSERT_EQ(reports(), std::vector<std::int32_t>{1});
+  for (int i = 0; i < 499; ++i) robot.tick(2);  // 998 ms: every tick is late
+  EXPECT_TRUE(reports().empty());
+  robot.tick(2);
+  EXPECT_EQ(reports(), std::vector<std::int32_t>{500});
+}
+
+TEST_F(MissedTicksTest, NothingIsLostWhenTheLastLateTickIsFollowedByPunctualOnes) {
+  robot.tick(2);
+  robot.run(10);
+  robot.tick(6);
+  (void)reports();
+  robot.run(983);  // 999 ms after the first report
+  EXPECT_TRUE(reports().empty());
+  robot.tick();
+  EXPECT_EQ(reports(), std::vector<std::int32_t>{5});
+  robot.run(3000);
+  EXPECT_TRUE(reports().empty());
+}
+
+TEST_F(MissedTicksTest, AllReportsTogetherAreTheCountInTheSnapshot) {
+  for (std::uint64_t i = 0; i < 3000; ++i) robot.tick(1 + i % 4);
+  robot.run(1000);
+  std::uint64_t sum = 0;
+  const auto seen = reports();
+  for (const auto missed : seen) sum += static_cast<std::uint64_t>(missed);
+  EXPECT_EQ(sum, robot.snapshot().missed_ticks);
+  EXPECT_EQ(sum, 4500U);
+  EXPECT_LE(seen.size(), 9U);  // 8.5 s
+}
+
+}  // namespace
+}  // namespace rc10::test

@@ -1,0 +1,349 @@
+// Modules in the tick: their inputs, their targets, what they ask for.
+#include "daemon/module_runner.hpp"
+
+#include <functional>
+
+#include <gmock/gmock.h>
+
+#include "blackbox/memory_box.hpp"
+#include "virtual_robot.hpp"
+
+namespace rc10::test {
+namespace {
+
+using ::testing::Contains;
+using ::testing::Field;
+using namespace std::chrono_literals;
+
+using Body = std::function<void(const Tick&, ModuleRobot&)>;
+
+/// A module that does what the test says.
+class Scripted : public Module_Base {
+ public:
+  explicit Scripted(Body body)
+      : Module_Base({.inputs = {"speed_rpm", "other"},
+                     .outputs = {"seen_rpm"},
+                     .events = {{.text = "something"}, {.text = "as expected", .expected = true}}}),
+        body_(std::move(body)) {}
+
+  void update(const Tick& tick, ModuleRobot& robot) noexcept override {
+    setOutput(0, commanded() ? input(0) : kNoSignal);
+    if (body_) body_(tick, robot);
+  }
+
+ private:
+  Body body_;
+};
+
+class ScriptedType : public ModuleType {
+ public:
+  explicit ScriptedType(Body body = {}) : body_(std::move(body)) {}
+  [[nodiscard]] std::string_view name() const noexcept override { return "scripted"; }
+  [[nodiscard]] std::string_view about() const noexcept override { return "What a test says."; }
+  [[nodiscard]] std::span<const FamilyKey> keys() const noexcept override { return {}; }
+  [[nodiscard]] Result<std::unique_ptr<Module_Base>> build(const ModuleSettings&,
+                                                           const RobotOutline&) const override {
+    return std::make_unique<Scripted>(body_);
+  }
+
+ private:
+  Body body_;
+};
+
+class ModuleRunnerTest : public ::testing::Test {
+ protected:
+  void start(const std::vector<std::pair<const ModuleType*, int>>& types,
+             FlightRecorder* recorder = nullptr) {
+    auto config = twoWheelsAndYaw();
+    for (const auto& [type, priority] : types) {
+      ModuleConfig module;
+      module.type = type;
+      module.settings.name = "module" + std::to_string(config.modules.size());
+      module.settings.priority = priority;
+      config.modules.push_back(module);
+    }
+    robot_ = std::make_unique<VirtualRobot>(config, recorder);
+    robot_->run(10);
+  }
+  void enable() { (void)robot_->order(Operation::kEnable); }
+  void signal(const char* client, int priority, double value, Duration validity = 50ms) {
+    SignalMessage message;
+    message.client = client;
+    message.session = 7;
+    message.priority = priority;
+    message.deadline = robot_->now() + validity;
+    message.values.fill(kNoSignal);
+    message.values[0] = value;
+    ASSERT_TRUE(robot_->exchange().signals.push(message));
+  }
+  double seen(std::size_t module = 0) { return robot_->snapshot().modules[module].outputs[0]; }
+
+  std::unique_ptr<VirtualRobot> robot_;
+};
+
+Target rpm(double value) { return {.mode = ControlMode::kVelocity, .value = value}; }
+
+TEST_F(ModuleRunnerTest, AModuleTurnsMotorsAsAClientWithItsNameAndPriority) {
+  const ScriptedType type{[](const Tick&, ModuleRobot& robot) { robot.setTarget(0, rpm(50.0)); }};
+  start({{&type, 3}});
+  enable();
+  robot_->run(500);
+  EXPECT_NEAR(robot_->motor(0).feedback.velocity_rpm, 50.0F, 2.0F);
+  EXPECT_EQ(robot_->motor(0).owner.view(), "module0");
+  EXPECT_EQ(robot_->motor(1).owner.view(), "");
+}
+
+TEST_F(ModuleRunnerTest, ATargetActsInTheTickInWhichItIsSet) {
+  bool turn = false;
+  const ScriptedType type{[&](const Tick&, ModuleRobot& robot) {
+    if (turn) robot.setTarget(0, rpm(50.0));
+  }};
+  start({{&type, 0}});
+  enable();
+  turn = true;
+  robot_->tick();
+  EXPECT_EQ(robot_->motor(0).target.value, 50.0);
+}
+
+TEST_F(ModuleRunnerTest, AMotorFallsBackWhenItsModuleFallsSilent) {
+  bool turn = true;
+  const ScriptedType type{[&](const Tick&, ModuleRobot& robot) {
+    if (turn) robot.setTarget(0, rpm(50.0));
+  }};
+  start({{&type, 0}});
+  enable();
+  robot_->run(100);
+  turn = false;
+  robot_->run(25);
+  EXPECT_EQ(robot_->motor(0).target.mode, ControlMode::kCoast);
+}
+
+TEST_F(ModuleRunnerTest, AClientOfAHigherPriorityTakesTheMotorOverAndTheModuleIsToldOff) {
+  bool obeys = true;
+  const ScriptedType type{[&](const Tick&, ModuleRobot& robot) {
+    obeys = robot.obeys(0);
+    robot.setTarget(0, rpm(50.0));
+    robot.setTarget(1, rpm(50.0));
+  }};
+  start({{&type, 3}});
+  enable();
+  robot_->run(10);
+  EXPECT_TRUE(obeys);
+  (void)robot_->events();
+  robot_->commandAs("planner", 4, 0, rpm(-20.0));
+  robot_->run(2);
+  EXPECT_FALSE(obeys);
+  EXPECT_EQ(robot_->motor(0).owner.view(), "planner");
+  EXPECT_EQ(robot_->motor(0).target.value, -20.0);
+  EXPECT_THAT(robot_->events(), Contains(Field(&Event::code, EventCode::kModuleRefused)));
+  robot_->run(60);
+  EXPECT_EQ(robot_->motor(0).owner.view(), "module0") << "once the planner is silent";
+}
+
+TEST_F(ModuleRunnerTest, AClientOfTheSamePriorityIsRefused) {
+  const ScriptedType type{[](const Tick&, ModuleRobot& robot) { robot.setTarget(0, rpm(50.0)); }};
+  start({{&type, 3}});
+  enable();
+  robot_->run(10);
+  robot_->commandAs("planner", 3, 0, rpm(-20.0));
+  robot_->run(2);
+  EXPECT_EQ(robot_->motor(0).owner.view(), "module0");
+}
+
+TEST_F(ModuleRunnerTest, InputsHoldUntilTheirValidityEnds) {
+  const ScriptedType type;
+  start({{&type, 0}});
+  signal("planner", 0, 12.0, 10ms);
+  robot_->tick();
+  EXPECT_EQ(seen(), 12.0);
+  EXPECT_EQ(robot_->snapshot().modules[0].owner.view(), "planner");
+  robot_->run(10);
+  EXPECT_TRUE(std::isnan(seen()));
+  EXPECT_EQ(robot_->snapshot().modules[0].owner.view(), "");
+}
+
+TEST_F(ModuleRunnerTest, ARemoteBeatsAPlannerInTheNextTick) {
+  const ScriptedType type;
+  start({{&type, 0}});
+  signal("planner", 0, 12.0);
+  robot_->tick();
+  signal("planner", 0, 13.0);
+  signal("remote", 10, -5.0);
+  robot_->tick();
+  EXPECT_EQ(seen(), -5.0);
+  signal("planner", 0, 14.0);
+  robot_->tick();
+  EXPECT_EQ(seen(), -5.0);
+  EXPECT_EQ(robot_->snapshot().refused_signals, 1U);
+}
+
+TEST_F(ModuleRunnerTest, AMessageThatIsTooOldIsRefused) {
+  const ScriptedType type;
+  start({{&type, 0}});
+  signal("planner", 0, 12.0, 0ms);
+  robot_->tick();
+  EXPECT_TRUE(std::isnan(seen()));
+  EXPECT_EQ(robot_->snapshot().refused_signals, 1U);
+}
+
+TEST_F(ModuleRunnerTest, AModuleGivesALaterOneItsInputInTheSameTick) {
+  double value = kNoSignal;
+  const ScriptedType remote{[&](const Tick&, ModuleRobot& robot) {
+    if (!std::isnan(value)) robot.send({.module = 1, .signal = 0}, value);
+  }};
+  const ScriptedType chassis;
+  start({{&remote, 10}, {&chassis, 0}});
+  signal("planner", 0, 1.0);
+  value = 30.0;
+  robot_->tick();
+  EXPECT_EQ(seen(1), 30.0);
+  EXPECT_EQ(robot_->snapshot().modules[1].owner.view(), "module0");
+  value = kNoSignal;
+  robot_->run(25);
+  EXPECT_TRUE(std::isnan(seen(1)));
+}
+
+TEST_F(ModuleRunnerTest, AModuleReadsWhatAnEarlierOneGivesInTheSameTick) {
+  double read = kNoSignal;
+  const ScriptedType imu;
+  const ScriptedType gimbal{
+      [&](const Tick&, ModuleRobot& robot) { read = robot.read({.module = 0, .signal = 0}); }};
+  start({{&imu, 0}, {&gimbal, 0}});
+  signal("planner", 0, 45.0);
+  robot_->tick();
+  EXPECT_EQ(read, 45.0);
+}
+
+TEST_F(ModuleRunnerTest, AModuleEnablesAndDisablesTheRobot) {
+  bool enable_now = false;
+  bool disable_now = false;
+  const ScriptedType type{[&](const Tick&, ModuleRobot& robot) {
+    if (std::exchange(enable_now, false)) robot.askAll(RobotRequest::kEnable);
+    if (std::exchange(disable_now, false)) robot.ask(RobotRequest::kDisable, 1);
+  }};
+  start({{&type, 0}});
+  enable_now = true;
+  robot_->run(3);
+  EXPECT_EQ(robot_->motor(0).status, MotorStatus::kActive);
+  EXPECT_EQ(robot_->motor(1).status, MotorStatus::kActive);
+  disable_now = true;
+  robot_->run(3);
+  EXPECT_EQ(robot_->motor(0).status, MotorStatus::kActive);
+  EXPECT_EQ(robot_->motor(1).status, MotorStatus::kReady);
+  OrderResult result;
+  EXPECT_FALSE(robot_->exchange().results.pop(result)) << "nobody else is told";
+}
+
+TEST_F(ModuleRunnerTest, AnEstopOfAModuleIsForTheWholeRobotAndLatches) {
+  bool stop = false;
+  const ScriptedType type{[&](const Tick&, ModuleRobot& robot) {
+    robot.setTarget(0, rpm(50.0));
+    if (stop) robot.ask(RobotRequest::kEstop, 1);
+  }};
+  start({{&type, 0}});
+  enable();
+  robot_->run(100);
+  stop = true;
+  robot_->tick();
+  EXPECT_EQ(robot_->snapshot().state, RobotState::kEstop);
+  EXPECT_EQ(robot_->motor(0).status, MotorStatus::kReady);
+}
+
+TEST_F(ModuleRunnerTest, AModuleMayZeroAMotorThatTurnsButNotOneThatFollowsAnAngle) {
+  Target target = rpm(50.0);
+  bool zero = false;
+  const ScriptedType type{[&](const Tick&, ModuleRobot& robot) {
+    robot.setTarget(0, target);
+    if (std::exchange(zero, false)) robot.ask(RobotRequest::kZero, 0, 1000.0);
+  }};
+  start({{&type, 0}});
+  enable();
+  robot_->run(200);
+  zero = true;
+  robot_->run(2);
+  EXPECT_NEAR(robot_->motor(0).feedback.total_angle_deg, 1000.0, 5.0);
+  target = {.mode = ControlMode::kTotalAngle, .value = robot_->motor(0).feedback.total_angle_deg};
+  robot_->run(100);
+  zero = true;
+  const double before_deg = robot_->motor(0).feedback.total_angle_deg;
+  robot_->run(2);
+  EXPECT_NEAR(robot_->motor(0).feedback.total_angle_deg, before_deg, 5.0);
+  target.value = 5000.0;
+  robot_->run(2000);
+  zero = true;
+  robot_->run(2);
+  EXPECT_GT(robot_->motor(0).feedback.total_angle_deg, 1100.0);
+}
+
+TEST_F(ModuleRunnerTest, WhatAModuleReportsBecomesAnEvent) {
+  bool report = false;
+  const ScriptedType type{[&](const Tick&, ModuleRobot& robot) {
+    if (std::exchange(report, false)) robot.report(1);
+  }};
+  start({{&type, 0}});
+  (void)robot_->events();
+  report = true;
+  robot_->run(2);
+  const auto events = robot_->events();
+  ASSERT_EQ(events.size(), 1U);
+  EXPECT_EQ(events[0].code, EventCode::kModule);
+  EXPECT_EQ(events[0].severity, Severity::kInfo);
+  EXPECT_EQ(events[0].source, 0);
+  EXPECT_EQ(events[0].value, 1);
+}
+
+TEST_F(ModuleRunnerTest, ModulesRestWhileTheProcessStops) {
+  int updates = 0;
+  const ScriptedType type{[&](const Tick&, ModuleRobot&) { ++updates; }};
+  start({{&type, 0}});
+  robot_->scheduler().beginStop();
+  robot_->tick();
+  const int before = updates;
+  robot_->run(5);
+  EXPECT_EQ(updates, before);
+}
+
+TEST_F(ModuleRunnerTest, InputsAreRecordedWithWhatBecameOfThem) {
+  MemoryBox box;
+  FlightRecorder recorder{box.handOff()};
+  const ScriptedType type;
+  start({{&type, 0}, {&type, 0}}, &recorder);
+  signal("planner", 3, 30.0);
+  robot_->tick();
+  signal("other", 3, 40.0);
+  robot_->tick();
+  signal("late", 9, 50.0, -1ms);
+  robot_->tick();
+  const auto recorded = all<blackbox::Signals>(box.recording());
+  ASSERT_EQ(recorded.size(), 3U);
+  EXPECT_EQ(recorded[0].client.view(), "planner");
+  EXPECT_EQ(recorded[0].header.source, 0);
+  EXPECT_EQ(recorded[0].header.id, 0b01U);
+  EXPECT_EQ(recorded[0].values[0], 30.0);
+  EXPECT_EQ(recorded[0].session, 7U);
+  EXPECT_EQ(recorded[0].priority, 3);
+  EXPECT_EQ(recorded[0].header.flags, static_cast<int>(blackbox::Verdict::kApplied));
+  EXPECT_EQ(recorded[1].header.flags, static_cast<int>(blackbox::Verdict::kNotOwner));
+  EXPECT_EQ(recorded[2].header.flags, static_cast<int>(blackbox::Verdict::kExpired));
+}
+
+TEST_F(ModuleRunnerTest, WhatAModuleTellsAnotherInEveryTickIsRecordedWhenItChangesAndAsASample) {
+  MemoryBox box;
+  FlightRecorder recorder{box.handOff()};
+  double value = 1.0;
+  const ScriptedType sending{[&](const Tick&, ModuleRobot& robot) { robot.send({1, 0}, value); }};
+  const ScriptedType taking;
+  start({{&sending, 0}, {&taking, 0}}, &recorder);
+  const auto recorded = [&] { return all<blackbox::Signals>(box.recording()); };
+  const auto at_start = recorded().size();
+  EXPECT_EQ(at_start, 1U) << "ten ticks";
+  value = 2.0;
+  robot_->run(1000);
+  EXPECT_EQ(recorded().size(), at_start + 20);
+  EXPECT_EQ(recorded().back().client.view(), "module0");
+  EXPECT_EQ(recorded().back().header.source, 1);
+  EXPECT_EQ(recorded().back().values[0], 2.0);
+}
+
+}  // namespace
+}  // namespace rc10::test

@@ -1,0 +1,43 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "daemon/link_messages.hpp"
+#include "daemon/request_desk.hpp"
+
+namespace rc10::test {
+namespace {
+
+using link::ResponseStatus;
+using ::testing::HasSubstr;
+
+class OptionalMotorTest : public ::testing::Test {
+ protected:
+  link::Response afterFailureOf(std::size_t motor, std::string_view operation) {
+    const auto outcome = desk.begin(linkRequest(++seq, operation, operation == "zero" ? "spare" : ""), 1);
+    OrderResult result;
+    result.id = outcome.order.value().id;
+    result.motors[motor] = Refusal::kOffline;
+    return desk.finish(result).value().response;
+  }
+
+  Admission admission{{{"wheel", {}}, {"spare", {}}}};
+  RequestDesk desk{admission, {"wheel", "spare"}, MotorSet{0b10}};
+  std::int64_t seq = 0;
+};
+
+TEST_F(OptionalMotorTest, MayFailToEnableAndIsNamed) {
+  const auto response = afterFailureOf(1, "enable");
+  EXPECT_EQ(response.status, ResponseStatus::kOk);
+  EXPECT_THAT(std::string(response.message.view()), HasSubstr("spare: offline"));
+}
+
+TEST_F(OptionalMotorTest, DoesNotExcuseAnother) {
+  EXPECT_EQ(afterFailureOf(0, "enable").status, ResponseStatus::kFailed);
+}
+
+TEST_F(OptionalMotorTest, MayNotFailAnythingElse) {
+  EXPECT_EQ(afterFailureOf(1, "zero").status, ResponseStatus::kFailed);
+}
+
+}  // namespace
+}  // namespace rc10::test

@@ -1,0 +1,257 @@
+#include "daemon/request_desk.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "daemon/link_messages.hpp"
+
+namespace rc10::test {
+namespace {
+
+using link::ResponseStatus;
+using ::testing::HasSubstr;
+
+constexpr std::uint64_t kConnection = 3;
+
+class RequestDeskTest : public ::testing::Test {
+ protected:
+  RequestDesk::Outcome begin(const link::Request& request) { return desk.begin(request, kConnection); }
+  /// The text of a refusal.
+  std::string refusal(const link::Request& request) {
+    const auto outcome = begin(request);
+    EXPECT_FALSE(outcome.order);
+    if (!outcome.response) return "no response";
+    EXPECT_EQ(outcome.response->status, ResponseStatus::kRefused);
+    EXPECT_EQ(outcome.response->seq, request.seq);
+    return std::string(outcome.response->message.view());
+  }
+  /// What the supervisor says when every motor has done it.
+  static OrderResult done(const Order& order) {
+    OrderResult result;
+    result.id = order.id;
+    return result;
+  }
+  static link::Request zero(std::int64_t seq, std::string_view target, double angle_deg) {
+    auto request = linkRequest(seq, "zero", target);
+    request.value_count = 1;
+    request.values[0] = {.name = std::string_view{"angle_deg"}, .value = angle_deg};
+    return request;
+  }
+
+  Admission admission{{{"left", {}}, {"right", {}}, {"yaw", {}}}};
+  RequestDesk desk{admission, {"left", "right", "yaw"}};
+};
+
+TEST_F(RequestDeskTest, EveryOperationBecomesItsOrder) {
+  constexpr std::array<std::pair<const char*, Operation>, 5> kOperations{{{"enable", Operation::kEnable},
+                                                                          {"disable", Operation::kDisable},
+                                                                          {"estop", Operation::kEstop},
+                                                                          {"clear", Operation::kClear},
+                                                                          {"zero", Operation::kZero}}};
+  std::int64_t seq = 0;
+  for (const auto& [word, operation] : kOperations) {
+    const auto outcome = begin(linkRequest(++seq, word, "right"));
+    ASSERT_TRUE(outcome.order) << word;
+    EXPECT_EQ(outcome.order->operation, operation);
+    EXPECT_EQ(outcome.order->motors, MotorSet{0b010});
+    EXPECT_FALSE(outcome.response) << "answered when the supervisor has done it";
+    EXPECT_EQ(outcome.estop, operation == Operation::kEstop);
+  }
+}
+
+TEST_F(RequestDeskTest, NoTargetMeansEveryMotor) {
+  EXPECT_EQ(begin(linkRequest(1, "enable")).order->motors, MotorSet{0b111});
+}
+
+TEST_F(RequestDeskTest, SeveralMotorsAreSeparatedByCommas) {
+  EXPECT_EQ(begin(linkRequest(1, "enable", "yaw,left")).order->motors, MotorSet{0b101});
+}
+
+TEST_F(RequestDeskTest, OrdersHaveDifferentIds) {
+  const auto first = begin(linkRequest(1, "enable"));
+  const auto second = begin(linkRequest(2, "enable"));
+  EXPECT_NE(first.order->id, second.order->id);
+}
+
+TEST_F(RequestDeskTest, ZeroCarriesItsAngle) {
+  EXPECT_EQ(begin(zero(1, "left", 90.0)).order->value, 90.0);
+  EXPECT_EQ(begin(linkRequest(2, "zero", "left")).order->value, 0.0);
+}
+
+TEST_F(RequestDeskTest, ZeroNeedsAMotor) {
+  EXPECT_THAT(refusal(linkRequest(1, "zero")), HasSubstr("name it"));
+}
+
+TEST_F(RequestDeskTest, RefusesAnAngleThatIsNotFinite) {
+  EXPECT_THAT(refusal(zero(1, "left", std::numeric_limits<double>::quiet_NaN())), HasSubstr("angle_deg"));
+}
+
+TEST_F(RequestDeskTest, AnUnknownOperationIsAnsweredWithTheOnesThereAre) {
+  const auto text = refusal(linkRequest(1, "enabel"));
+  EXPECT_THAT(text, HasSubstr("'enabel'"));
+  for (const auto* word : {"enable", "disable", "estop", "clear", "zero"}) EXPECT_THAT(text, HasSubstr(word));
+}
+
+TEST_F(RequestDeskTest, AnUnknownMotorIsAnsweredWithTheOnesThereAre) {
+  const auto text = refusal(linkRequest(1, "enable", "left,rihgt"));
+  EXPECT_THAT(text, HasSubstr("'rihgt'"));
+  EXPECT_THAT(text, HasSubstr("left, right, yaw"));
+}
+
+TEST_F(RequestDeskTest, AnEstopIsOneWhateverElseTheMessageSays) {
+  const auto unknown_motor = begin(linkRequest(1, "estop", "nobody"));
+  EXPECT_TRUE(unknown_motor.estop);
+  EXPECT_EQ(unknown_motor.response->status, ResponseStatus::kRefused);
+  auto not_finite = linkRequest(2, "estop");
+  not_finite.value_count = 1;
+  not_finite.values[0] = {.name = std::string_view{"angle_deg"}, .value = std::nan("")};
+  EXPECT_TRUE(begin(not_finite).estop);
+}
+
+TEST_F(RequestDeskTest, AnEstopIsOneWhenTooManyRequestsAreOpen) {
+  std::int64_t seq = 0;
+  while (begin(linkRequest(++seq, "enable")).order) ASSERT_LT(seq, 1000);
+  EXPECT_THAT(refusal(linkRequest(++seq, "enable")), HasSubstr("too many requests"));
+  EXPECT_TRUE(begin(linkRequest(++seq, "estop")).estop);
+}
+
+TEST_F(RequestDeskTest, ARepeatedEstopIsOneToo) {
+  const auto first = begin(linkRequest(1, "estop"));
+  EXPECT_TRUE(begin(linkRequest(1, "estop")).estop);  // not answered yet
+  ASSERT_TRUE(desk.finish(done(*first.order)));
+  EXPECT_TRUE(begin(linkRequest(1, "estop")).estop);
+}
+
+TEST_F(RequestDeskTest, OtherOperationsRaiseNoEstop) {
+  EXPECT_FALSE(begin(linkRequest(1, "estopp")).estop);
+  EXPECT_FALSE(begin(linkRequest(2, "enable", "nobody")).estop);
+}
+
+TEST_F(RequestDeskTest, TheAnswerGoesToTheConnectionThatAskedAndCarriesItsNumbers) {
+  const auto outcome = begin(linkRequest(42, "enable"));
+  const auto answer = desk.finish(done(*outcome.order));
+  ASSERT_TRUE(answer);
+  EXPECT_EQ(answer->connection, kConnection);
+  EXPECT_EQ(answer->response.client.view(), "pilot");
+  EXPECT_EQ(answer->response.session, 9U);
+  EXPECT_EQ(answer->response.seq, 42);
+  EXPECT_EQ(answer->response.status, ResponseStatus::kOk);
+  EXPECT_EQ(answer->response.message.view(), "enable: 3 of 3 motors");
+}
+
+TEST_F(RequestDeskTest, AFailureNamesEachMotorAndItsReasonInWords) {
+  const auto outcome = begin(linkRequest(1, "enable"));
+  auto result = done(*outcome.order);
+  result.motors[0] = Refusal::kOffline;
+  result.motors[2] = Refusal::kFaulted;
+  const auto answer = desk.finish(result);
+  ASSERT_TRUE(answer);
+  EXPECT_EQ(answer->response.status, ResponseStatus::kFailed);
+  const std::string text(answer->response.message.view());
+  EXPECT_THAT(text, HasSubstr("1 of 3 motors"));
+  EXPECT_THAT(text, HasSubstr("left: offline: no feedback"));
+  EXPECT_THAT(text, HasSubstr("yaw: in FAULT"));
+  EXPECT_THAT(text, ::testing::Not(HasSubstr("right:")));
+}
+
+TEST_F(RequestDeskTest, EveryReasonHasWordsOfItsOwn) {
+  std::vector<std::string> seen;
+  for (int reason = 1; reason <= static_cast<int>(Refusal::kDriveRefused); ++reason) {
+    const auto outcome = begin(linkRequest(reason, "enable", "left"));
+    auto result = done(*outcome.order);
+    result.motors[0] = static_cast<Refusal>(reason);
+    seen.emplace_back(desk.finish(result)->response.message.view());
+    EXPECT_THAT(seen.back(), ::testing::Not(HasSubstr("unknown reason")));
+  }
+  std::sort(seen.begin(), seen.end());
+  EXPECT_EQ(std::unique(seen.begin(), seen.end()), seen.end());
+}
+
+TEST_F(RequestDeskTest, ReasonsOfMotorsThatWereNotAskedForDoNotCount) {
+  const auto outcome = begin(linkRequest(1, "enable", "left"));
+  auto result = done(*outcome.order);
+  result.motors[1] = Refusal::kOffline;
+  const auto answer = desk.finish(result);
+  EXPECT_EQ(answer->response.status, ResponseStatus::kOk);
+  EXPECT_EQ(answer->response.message.view(), "enable: 1 of 1 motors");
+}
+
+TEST_F(RequestDeskTest, AnOrderThatWasNotTriedIsRefused) {
+  const auto outcome = begin(linkRequest(1, "enable"));
+  auto result = done(*outcome.order);
+  result.refused = true;
+  EXPECT_EQ(desk.finish(result)->response.status, ResponseStatus::kRefused);
+}
+
+TEST_F(RequestDeskTest, ARepetitionGetsTheFirstAnswerAndNoNewOrder) {
+  const auto outcome = begin(linkRequest(1, "enable"));
+  auto result = done(*outcome.order);
+  result.motors[1] = Refusal::kDriveRefused;
+  const auto answer = desk.finish(result);
+  const auto again = begin(linkRequest(1, "enable"));
+  EXPECT_FALSE(again.order);
+  ASSERT_TRUE(again.response);
+  EXPECT_EQ(again.response->status, ResponseStatus::kFailed);
+  EXPECT_EQ(again.response->message.view(), answer->response.message.view());
+}
+
+TEST_F(RequestDeskTest, ARepetitionWhileTheFirstIsOpenIsAnsweredOnceAndToTheLatestConnection) {
+  const auto outcome = desk.begin(linkRequest(1, "enable"), 3);
+  const auto again = desk.begin(linkRequest(1, "enable"), 4);
+  EXPECT_FALSE(again.order);
+  EXPECT_FALSE(again.response);
+  const auto answer = desk.finish(done(*outcome.order));
+  ASSERT_TRUE(answer);
+  EXPECT_EQ(answer->connection, 4U);
+  EXPECT_FALSE(desk.finish(done(*outcome.order)));
+}
+
+TEST_F(RequestDeskTest, AnotherClientSessionOrNumberIsAnotherRequest) {
+  (void)desk.finish(done(*begin(linkRequest(1, "enable")).order));
+  EXPECT_TRUE(begin(linkRequest(2, "enable")).order);
+  auto request = linkRequest(1, "enable");
+  request.session = 10;
+  EXPECT_TRUE(begin(request).order);
+  request = linkRequest(1, "enable");
+  request.client = "remote";
+  EXPECT_TRUE(begin(request).order);
+}
+
+TEST_F(RequestDeskTest, ARefusalIsRememberedToo) {
+  (void)refusal(linkRequest(1, "enable", "nobody"));
+  // The same number with another content is a repetition, not a new request.
+  EXPECT_THAT(refusal(linkRequest(1, "enable", "left")), HasSubstr("'nobody'"));
+}
+
+TEST_F(RequestDeskTest, WhatCouldNotBeHandedOverMaySucceedWhenRepeated) {
+  const auto outcome = begin(linkRequest(1, "enable"));
+  const auto failed = desk.fail(outcome.order->id, "the scheduler does not take orders");
+  ASSERT_TRUE(failed);
+  EXPECT_EQ(failed->connection, kConnection);
+  EXPECT_EQ(failed->response.status, ResponseStatus::kFailed);
+  EXPECT_EQ(failed->response.message.view(), "the scheduler does not take orders");
+  EXPECT_TRUE(begin(linkRequest(1, "enable")).order);
+}
+
+TEST_F(RequestDeskTest, ResultsAndFailuresOfUnknownOrdersAreIgnored) {
+  OrderResult result;
+  result.id = 12345;
+  EXPECT_FALSE(desk.finish(result));
+  EXPECT_FALSE(desk.fail(12345, "reason"));
+}
+
+TEST_F(RequestDeskTest, AnswersAreRememberedForAWhileOnly) {
+  for (std::int64_t seq = 1; seq <= 65; ++seq)
+    (void)desk.finish(done(*begin(linkRequest(seq, "clear")).order));
+  EXPECT_TRUE(begin(linkRequest(65, "clear")).response);
+  EXPECT_TRUE(begin(linkRequest(1, "clear")).order);
+}
+
+}  // namespace
+}  // namespace rc10::test

@@ -1,0 +1,280 @@
+#include "daemon/scheduler.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "daemon/virtual_robot.hpp"
+#include "support/alloc_guard.hpp"
+
+#include "sim/dji_drive.hpp"
+
+namespace rc10::test {
+namespace {
+
+using namespace std::chrono_literals;
+
+constexpr std::size_t kLeft = 0;
+constexpr std::size_t kRight = 1;
+constexpr std::size_t kYaw = 2;
+
+const Target kVelocity120{.mode = ControlMode::kVelocity, .value = 120.0};
+
+class SchedulerTest : public ::testing::Test {
+ protected:
+  void enableAll() {
+    robot.run(5);
+    const auto result = robot.order(Operation::kEnable);
+    for (std::size_t i = 0; i < 3; ++i) ASSERT_EQ(result.motors[i], Refusal::kNone);
+  }
+  bool reported(EventCode code, std::int16_t source) {
+    const auto events = robot.events();
+    return std::any_of(events.begin(), events.end(),
+                       [&](const Event& e) { return e.code == code && e.source == source; });
+  }
+
+  VirtualRobot robot{twoWheelsAndYaw()};
+};
+
+TEST_F(SchedulerTest, NothingIsActiveAtStart) {
+  robot.tick();
+  for (std::size_t i = 0; i < 3; ++i) EXPECT_EQ(robot.motor(i).status, MotorStatus::kOffline);
+  robot.run(10);
+  for (std::size_t i = 0; i < 3; ++i) {
+    EXPECT_EQ(robot.motor(i).status, MotorStatus::kReady);
+    EXPECT_EQ(robot.motor(i).command_value, 0.0F);
+  }
+}
+
+TEST_F(SchedulerTest, AnEnabledMotorFollowsItsVelocity) {
+  enableAll();
+  robot.hold(kLeft, kVelocity120, 1500);
+  EXPECT_EQ(robot.motor(kLeft).status, MotorStatus::kActive);
+  EXPECT_NEAR(robot.motor(kLeft).feedback.velocity_rpm, 120.0F, 2.0F);
+  EXPECT_NEAR(robot.motor(kRight).feedback.velocity_rpm, 0.0F, 0.5F);
+}
+
+TEST_F(SchedulerTest, SkipsASetpointForAMotorThatIsNotActiveAndSaysSo) {
+  robot.run(5);
+  robot.command(kLeft, kVelocity120);
+  robot.tick();
+  EXPECT_EQ(robot.snapshot().skipped_setpoints, 1U);
+  EXPECT_EQ(robot.motor(kLeft).target.mode, ControlMode::kCoast);
+  EXPECT_TRUE(reported(EventCode::kSetpointSkipped, kLeft));
+}
+
+TEST_F(SchedulerTest, ReportsSkippedSetpointsAtMostOnceASecond) {
+  robot.run(5);
+  (void)robot.events();
+  for (int i = 0; i < 2500; ++i) {
+    robot.command(kLeft, kVelocity120);
+    robot.tick();
+  }
+  const auto events = robot.events();
+  EXPECT_EQ(std::count_if(events.begin(), events.end(),
+                          [](const Event& e) { return e.code == EventCode::kSetpointSkipped; }),
+            3);
+}
+
+TEST_F(SchedulerTest, CoastsInTheFirstTickAfterTheDeadline) {
+  enableAll();
+  robot.command(kLeft, {.mode = ControlMode::kCurrent, .value = 2.0}, 50ms);
+  // The deadline lies 50 ms after the tick before the command: 49 whole ticks obey.
+  for (int i = 0; i < 49; ++i) {
+    robot.tick();
+    ASSERT_EQ(robot.motor(kLeft).command_value, 2.0F) << "tick " << i;
+  }
+  robot.tick();
+  EXPECT_EQ(robot.motor(kLeft).command_value, 0.0F);
+  EXPECT_EQ(robot.motor(kLeft).status, MotorStatus::kActive);
+  EXPECT_TRUE(reported(EventCode::kCommandTimeout, kLeft));
+}
+
+TEST_F(SchedulerTest, RefusesACommandThatExpiredInTheRing) {
+  enableAll();
+  robot.command(kLeft, kVelocity120, 1ms);
+  robot.tick();
+  EXPECT_EQ(robot.motor(kLeft).target.mode, ControlMode::kCoast);
+  EXPECT_EQ(robot.snapshot().expired_commands, 1U);
+}
+
+TEST_F(SchedulerTest, ATargetFromBeforeEnablingDoesNotActAfterIt) {
+  enableAll();
+  robot.command(kLeft, {.mode = ControlMode::kCurrent, .value = 2.0}, 900ms);
+  robot.tick();
+  ASSERT_EQ(robot.motor(kLeft).command_value, 2.0F);
+  robot.order(Operation::kDisable);
+  EXPECT_EQ(robot.motor(kLeft).command_value, 0.0F);
+  robot.order(Operation::kEnable);
+  robot.run(3);
+  EXPECT_EQ(robot.motor(kLeft).status, MotorStatus::kActive);
+  EXPECT_EQ(robot.motor(kLeft).command_value, 0.0F);
+}
+
+TEST_F(SchedulerTest, CoastLetsGoOfTheMotor) {
+  enableAll();
+  robot.hold(kLeft, kVelocity120, 50);
+  EXPECT_EQ(robot.motor(kLeft).owner.view(), "test");
+  robot.command(kLeft, {.mode = ControlMode::kCoast});
+  robot.tick();
+  EXPECT_EQ(robot.motor(kLeft).command_value, 0.0F);
+  EXPECT_EQ(robot.motor(kLeft).owner.view(), "test");  // while the COAST is valid
+  (void)robot.events();
+  robot.run(50);
+  EXPECT_EQ(robot.motor(kLeft).owner.view(), "");
+  EXPECT_TRUE(robot.events().empty());
+}
+
+TEST_F(SchedulerTest, CoastForAMotorThatIsNotActiveIsNoMistake) {
+  robot.run(5);
+  robot.command(kLeft, {.mode = ControlMode::kCoast});
+  robot.tick();
+  EXPECT_EQ(robot.snapshot().skipped_setpoints, 0U);
+}
+
+TEST_F(SchedulerTest, EstopRestsEveryMotorInTheNextTickAndLatches) {
+  enableAll();
+  robot.hold(kLeft, kVelocity120, 100);
+  robot.exchange().estop.store(true);
+  robot.tick();
+  EXPECT_EQ(robot.snapshot().state, RobotState::kEstop);
+  EXPECT_EQ(robot.motor(kLeft).command_value, 0.0F);
+  robot.hold(kLeft, kVelocity120, 20);
+  EXPECT_EQ(robot.motor(kLeft).command_value, 0.0F);
+  EXPECT_EQ(robot.order(Operation::kEnable).motors[kLeft], Refusal::kEstop);
+  // Not while it still turns.
+  EXPECT_EQ(robot.order(Operation::kClear).motors[kLeft], Refusal::kMoving);
+  EXPECT_EQ(robot.snapshot().state, RobotState::kEstop);
+  robot.run(5000);
+  EXPECT_EQ(robot.order(Operation::kClear).motors[kLeft], Refusal::kNone);
+  EXPECT_EQ(robot.snapshot().state, RobotState::kRun);
+  EXPECT_EQ(robot.motor(kLeft).status, MotorStatus::kReady);
+}
+
+TEST_F(SchedulerTest, EstopGetsThroughWhenEveryRingIsFull) {
+  enableAll();
+  const Order disable_nobody{99, Operation::kDisable, MotorSet{}, 0.0};
+  while (robot.exchange().orders.push(disable_nobody)) {
+  }
+  robot.exchange().estop.store(true);
+  robot.tick();
+  EXPECT_EQ(robot.snapshot().state, RobotState::kEstop);
+}
+
+TEST_F(SchedulerTest, ASilentMotorGoesOfflineAndMustBeEnabledAgain) {
+  enableAll();
+  robot.hold(kLeft, kVelocity120, 100);
+  robot.simBus().silence(kLeft, true);
+  robot.hold(kLeft, kVelocity120, 25);
+  EXPECT_EQ(robot.motor(kLeft).status, MotorStatus::kOffline);
+  EXPECT_EQ(robot.motor(kLeft).command_value, 0.0F);
+  EXPECT_EQ(robot.motor(kRight).status, MotorStatus::kActive);
+  robot.simBus().silence(kLeft, false);
+  robot.hold(kLeft, kVelocity120, 25);
+  EXPECT_EQ(robot.motor(kLeft).status, MotorStatus::kReady);
+  EXPECT_EQ(robot.motor(kLeft).command_value, 0.0F);
+}
+
+TEST_F(SchedulerTest, RefusesToEnableAnOfflineMotorAndNamesTheReason) {
+  robot.simBus().silence(kRight, true);
+  robot.run(30);
+  const auto result = robot.order(Operation::kEnable);
+  EXPECT_EQ(result.motors[kLeft], Refusal::kNone);
+  EXPECT_EQ(result.motors[kRight], Refusal::kOffline);
+  EXPECT_EQ(robot.motor(kLeft).status, MotorStatus::kActive);
+}
+
+TEST_F(SchedulerTest, SetsAZeroOnlyWhileAMotorIsNotActive) {
+  enableAll();
+  EXPECT_EQ(robot.order(Operation::kZero, 90.0).motors[kLeft], Refusal::kActive);
+  robot.order(Operation::kDisable);
+  EXPECT_EQ(robot.order(Operation::kZero, 90.0).motors[kLeft], Refusal::kNone);
+  robot.tick();
+  EXPECT_NEAR(robot.motor(kLeft).feedback.total_angle_deg, 90.0, 0.1);
+}
+
+TEST(SchedulerReference, RefusesAnglesUntilTheMotorIsZeroed) {
+  auto config = twoWheelsAndYaw();
+  config.buses[0].motors[0].settings.zero_at_power_on = false;
+  VirtualRobot robot(config);
+  robot.run(5);
+  robot.order(Operation::kEnable);
+  const Target angle{.mode = ControlMode::kTotalAngle, .value = 10.0};
+  robot.hold(kLeft, angle, 5);
+  EXPECT_EQ(robot.motor(kLeft).target.mode, ControlMode::kCoast);
+  robot.order(Operation::kDisable);
+  robot.order(Operation::kZero);
+  robot.order(Operation::kEnable);
+  robot.hold(kLeft, angle, 1000);
+  EXPECT_NEAR(robot.motor(kLeft).feedback.total_angle_deg, 10.0, 0.5);
+}
+
+TEST_F(SchedulerTest, CountsMissedTicksAndNeverReplaysThem) {
+  robot.run(10);
+  const auto before = robot.scheduler().ticks();
+  robot.tick(4);
+  EXPECT_EQ(robot.scheduler().ticks(), before + 1);
+  EXPECT_EQ(robot.snapshot().missed_ticks, 3U);
+  EXPECT_TRUE(reported(EventCode::kTicksMissed, -1));
+}
+
+TEST_F(SchedulerTest, StoppingSendsRestUntilItIsDone) {
+  enableAll();
+  robot.hold(kLeft, kVelocity120, 200);
+  ASSERT_NE(robot.motor(kLeft).command_value, 0.0F);
+  robot.scheduler().beginStop();
+  int ticks = 0;
+  while (!robot.scheduler().stopped() && ticks < 100) {
+    robot.command(kLeft, kVelocity120);
+    robot.tick();
+    EXPECT_EQ(robot.motor(kLeft).command_value, 0.0F);
+    ++ticks;
+  }
+  EXPECT_TRUE(robot.scheduler().stopped());
+  EXPECT_EQ(robot.snapshot().state, RobotState::kStopping);
+  EXPECT_EQ(dynamic_cast<sim::DjiDrive&>(robot.simBus().drive(kLeft)).rawCommand(), 0);
+}
+
+TEST_F(SchedulerTest, StoppingWaitsForEchoesOfTheRestFrames) {
+  robot.run(5);
+  robot.inboxes()[0].echo_available.store(true);
+  robot.scheduler().beginStop();
+  robot.run(10);
+  EXPECT_FALSE(robot.scheduler().stopped());
+  robot.inboxes()[0].confirmed.fetch_add(10);
+  robot.tick();
+  EXPECT_TRUE(robot.scheduler().stopped());
+}
+
+TEST_F(SchedulerTest, EveryCommandIdLeavesInEveryTick) {
+  robot.run(100);
+  // M3508 1 and 2 share 0x200; GM6020 5 has 0x2FE.
+  EXPECT_EQ(robot.snapshot().buses[0].counters.tx_frames, 200U);
+  EXPECT_EQ(robot.snapshot().buses[0].counters.tx_dropped, 0U);
+}
+
+TEST_F(SchedulerTest, ShowsAnAngleTargetOfAnAbsoluteMotorAtOnce) {
+  enableAll();
+  EXPECT_TRUE(robot.motor(kYaw).feedback.zeroed);
+  robot.hold(kYaw, {.mode = ControlMode::kAngle, .value = 45.0}, 1500);
+  EXPECT_NEAR(robot.motor(kYaw).feedback.angle_deg, 45.0F, 0.5F);
+}
+
+TEST_F(SchedulerTest, DoesNotAllocate) {
+  enableAll();
+  robot.hold(kLeft, kVelocity120, 50);
+  const AllocGuard guard;
+  robot.hold(kLeft, kVelocity120, 1000);
+  EXPECT_EQ(guard.allocations(), 0U);
+}
+
+TEST_F(SchedulerTest, TheAllocationGuardNoticesASingleNew) {
+  const AllocGuard guard;
+  robot.tick();
+  const auto canary = std::make_unique<int>(1);
+  EXPECT_EQ(guard.allocations(), 1U);
+}
+
+}  // namespace
+}  // namespace rc10::test

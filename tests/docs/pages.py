@@ -1,0 +1,97 @@
+"""Reads the project's pages: their code, links, anchors and tables."""
+
+from __future__ import annotations
+
+import re
+from functools import cache
+from pathlib import Path
+from typing import NamedTuple
+
+REPO = Path(__file__).resolve().parents[2]
+FENCE = re.compile(r"^```(?P<kind>\w*) ?(?P<note>[^\n]*)\n(?P<text>.*?)^```", re.M | re.S)
+# As many backticks behind as before, and no more.
+SPAN = re.compile(r"(?<!`)(`+)(?!`)(.+?)(?<!`)\1(?!`)")
+LINK = re.compile(r"\]\(([^()\s]+)\)")
+HEADING = re.compile(r"^#{1,6} +(.+?) *$", re.M)
+
+
+class Page(NamedTuple):
+    path: Path
+    text: str
+
+    @property
+    def name(self) -> str:
+        return str(self.path.relative_to(REPO))
+
+    def fences(self, kind: str) -> list[str]:
+        return [match["text"] for match in FENCE.finditer(self.text) if match["kind"] == kind]
+
+    @property
+    def shell(self) -> list[tuple[str, list[str]]]:
+        """Blocks for a shell: how they are marked, and their commands without comments."""
+        found = []
+        for match in FENCE.finditer(self.text):
+            lines = re.sub(r"<.+?>", "<>", match["text"]).splitlines()
+            if match["kind"] == "console":
+                lines = [line for line in lines if line.startswith("$ ")]
+            if match["kind"] in ("sh", "console"):
+                commands = [re.sub(r" *#.*", "", line) for line in lines]
+                found.append((f"{match['kind']} {match['note']}", commands))
+        return found
+
+    @property
+    def prose(self) -> str:
+        return FENCE.sub("", self.text)
+
+    @property
+    def code(self) -> list[str]:
+        """Every fence, and every span of code outside them."""
+        fences = [match["text"] for match in FENCE.finditer(self.text)]
+        return fences + [span for _, span in SPAN.findall(self.prose)]
+
+    @property
+    def links(self) -> list[str]:
+        """To files of the project, with their anchors."""
+        targets = LINK.findall(SPAN.sub("", self.prose))
+        return [target for target in targets if "://" not in target]
+
+
+def pages() -> list[Page]:
+    found = [*REPO.glob("*.md"), *REPO.glob("docs/**/*.md"), *REPO.glob("examples/**/*.md")]
+    return [read(path) for path in sorted(found)]
+
+
+@cache
+def read(path: Path) -> Page:
+    return Page(path, path.read_text(encoding="utf-8"))
+
+
+@cache
+def anchors(path: Path) -> frozenset[str]:
+    """Of the headings, as GitHub makes them."""
+    seen: dict[str, int] = {}
+    found = set()
+    for heading in HEADING.findall(read(path).prose):
+        words = re.sub(r"\[(.*?)\]\(.*?\)", r"\1", heading).lower()
+        slug = re.sub(r"[^\w\- ]", "", words).replace(" ", "-")
+        repeated = seen.get(slug, 0)
+        seen[slug] = repeated + 1
+        found.add(f"{slug}-{repeated}" if repeated else slug)
+    return frozenset(found)
+
+
+def messages(page: Page) -> list[str]:
+    """What the first cell of each table row quotes as code."""
+    rows = [line for line in page.prose.splitlines() if line.startswith("|")]
+    return [span for row in rows for _, span in SPAN.findall(row.split(" | ")[0])]
+
+
+@cache
+def source_texts() -> str:
+    """The sources, with literals that follow each other made one."""
+    files = [
+        *REPO.glob("src/**/*.[ch]pp"),
+        *REPO.glob("python/src/**/*.py"),
+    ]
+    text = "\n".join(path.read_text(encoding="utf-8") for path in files)
+    return re.sub(r'"\s*f?"', "", text).replace('\\"', '"')

@@ -1,0 +1,79 @@
+"""What the pages refer to is there."""
+
+from __future__ import annotations
+
+import re
+
+import pytest
+from pages import REPO, Page, anchors, messages, pages, read, source_texts
+
+VERB = re.compile(r"\brc10ctl(?: --json| --(?:robot|socket) \S+)* ([a-z][a-z-]*)\b(?![.:/=])")
+PAGES = pages()
+by_name = pytest.mark.parametrize("page", PAGES, ids=[page.name for page in PAGES])
+
+
+@by_name
+def test_every_link_leads_to_a_file_and_a_heading(page: Page) -> None:
+    broken = []
+    for link in page.links:
+        file, _, anchor = link.partition("#")
+        target = (page.path.parent / file).resolve() if file else page.path
+        if not target.exists():
+            broken.append(f"{link}: no such file")
+        elif anchor and anchor not in anchors(target):
+            broken.append(
+                f"{link}: no such heading; there are {', '.join(sorted(anchors(target)))}"
+            )
+    assert broken == []
+
+
+def verbs() -> set[str]:
+    manual = (REPO / "docs/man/rc10ctl.1").read_text(encoding="utf-8").replace("\\-", "-")
+    return set(re.findall(r"^(?:\.B |\\fB)([a-z][a-z-]*)", manual, re.M))
+
+
+@by_name
+def test_every_verb_of_rc10ctl_is_in_its_manual(page: Page) -> None:
+    used = {verb for code in page.code for verb in VERB.findall(code)}
+    assert used - verbs() == set()
+
+
+def test_every_page_is_in_the_index() -> None:
+    index = REPO / "docs/index.md"
+    listed = {(index.parent / link.partition("#")[0]).resolve() for link in read(index).links}
+    written = {page.path for page in PAGES if page.path.is_relative_to(REPO / "docs")}
+    assert written - listed - {index} == set()
+
+
+def test_both_readmes_lead_to_the_index() -> None:
+    assert "docs/index.md" in read(REPO / "README.md").links
+    assert "docs/index.md" in read(REPO / "README.zh-CN.md").links
+
+
+TRANSLATED = [page for page in PAGES if page.name.endswith(".zh-CN.md")]
+
+
+def original_of(page: Page) -> Page:
+    return read(page.path.with_name(page.path.name.replace(".zh-CN", "")))
+
+
+def test_a_translation_has_the_commands_of_its_original() -> None:
+    assert len(TRANSLATED) >= 3
+    for page in TRANSLATED:
+        assert page.shell == original_of(page).shell, page.name
+
+
+def test_a_translation_has_the_robots_of_its_original() -> None:
+    assert len(TRANSLATED) >= 3
+    for page in TRANSLATED:
+        original = original_of(page)
+        without_comments = [re.sub(r" *#.*", "", text) for text in original.fences("yaml")]
+        assert [re.sub(r" *#.*", "", text) for text in page.fences("yaml")] == without_comments
+
+
+def test_troubleshooting_quotes_messages_that_exist() -> None:
+    quoted = messages(read(REPO / "docs/troubleshooting.md"))
+    assert len(quoted) > 50
+    pieces = [piece.strip() for message in quoted for piece in re.split("…|: ", message)]
+    unknown = [piece for piece in pieces if len(piece) > 2 and piece not in source_texts()]
+    assert unknown == []

@@ -1,0 +1,544 @@
+#include "faults/chaos.hpp"
+
+#include <linux/can/error.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "config/load_config.hpp"
+
+namespace rc10::test {
+namespace {
+
+using namespace std::chrono_literals;
+
+// Each model, each fallback, each limit, a group that rearms.
+constexpr std::string_view kRobot = R"(
+robot: chaos
+buses:
+  - name: chassis
+    type: sim
+    motors:
+      - {name: left, model: M3508, id: 1, current_limit_a: 10, on_timeout: brake, on_disable: damp, on_estop: brake,
+         zero: power_on}
+      - {name: right, model: M3508, id: 2, direction: -1, on_timeout: damp, on_disable: brake, on_estop: damp,
+         current_slew_a_per_s: 100, velocity_slew_rpm_per_s: 2000}
+      - {name: feeder, model: M2006, id: 3, current_limit_a: 5, stall_ms: 200}
+  - name: arm
+    type: sim
+    motors:
+      - {name: yaw, model: GM6020, id: 5, command: current, current_limit_a: 1.5, on_timeout: damp, on_disable: damp,
+         on_estop: damp, angle_min_deg: -90, angle_max_deg: 90, angle_slew_deg_per_s: 360, max_first_step_deg: 30,
+         following_error_deg: 30}
+      - {name: pitch, model: GM6020, id: 1, command: voltage, voltage_limit_v: 12, on_timeout: hold, on_disable: damp,
+         on_estop: brake, hold_max_s: 1}
+      - {name: lift, model: M2006, id: 4, current_limit_a: 6, on_timeout: hold, on_disable: brake, on_estop: hold,
+         hold_max_s: 0.5, angle_min_deg: 0, angle_max_deg: 2000, stall_ms: 300, stall_action: notify,
+         simulated: {load_torque_nm: 0.3}}
+groups:
+  - {name: drive, motors: [left, right], on_member_offline: stop_group, on_return: rearm_at_rest}
+)";
+
+constexpr std::array<std::string_view, static_cast<std::size_t>(Chaos::Action::kCount)> kNames{
+    "nothing",        "command",    "program",    "enable",      "disable", "clear",      "zero",
+    "estop",          "repair",     "silence",    "lose",        "stall",   "heat",       "encoder",
+    "load",           "freeze bus", "block bus",  "hold echoes", "link",    "controller", "e-stop input",
+    "foreign frames", "flood bus",  "fill rings", "miss ticks",  "stop",    "crash"};
+
+// The request desk has no more under way.
+constexpr std::size_t kMostOpen = 64;
+
+// How often each is chosen: what brings a robot to work more often than what stops it.
+constexpr std::array<std::uint8_t, static_cast<std::size_t>(Chaos::Action::kCount)> kWeights{
+    16, 24, 50, 38, 4, 26, 5, 2, 36, 4, 3, 4, 3, 4, 4, 2, 2, 4, 3, 3, 3, 4, 1, 1, 5, 1, 1};
+
+[[nodiscard]] RobotConfig chaosRobot() {
+  auto outcome = parseRobotConfig(kRobot, "chaos.yaml");
+  if (!outcome) throw std::runtime_error(outcome.errorText());
+  return std::move(*outcome.config);
+}
+
+[[nodiscard]] Chaos::Action choose(Choices& choices) {
+  constexpr std::uint32_t kSum = [] {
+    std::uint32_t sum = 0;
+    for (const auto weight : kWeights) sum += weight;
+    return sum;
+  }();
+  static_assert(kSum <= 256);  // one byte of a fuzzer
+  std::uint32_t left = choices.next(kSum);
+  for (std::size_t i = 0; i < kWeights.size(); ++i) {
+    if (left < kWeights[i]) return static_cast<Chaos::Action>(i);
+    left -= kWeights[i];
+  }
+  return Chaos::Action::kNothing;
+}
+
+}  // namespace
+
+Chaos::Chaos(Choices& choices) : choices_(choices), config_(chaosRobot()) {
+  for (std::size_t bus = 0; bus < config_.buses.size(); ++bus) {
+    for (std::size_t drive = 0; drive < config_.buses[bus].motors.size(); ++drive)
+      places_.emplace_back(bus, drive);
+  }
+  constexpr std::array<const char*, 3> kClients{"planner", "remote", "planner"};
+  for (std::size_t i = 0; i < clients_.size(); ++i) {
+    clients_[i].name = kClients[i];
+    clients_[i].priority = i == 1 ? 10 : 0;
+    clients_[i].session = i + 1;
+  }
+  start();
+}
+
+// A new process, on drives that were just switched on.
+void Chaos::start() {
+  if (oracle_) visits_.add(oracle_->visits());
+  robot_ = std::make_unique<VirtualRobot>(config_);
+  robot_->freezeSimulation(true);  // stepped here, so that every frame is seen
+  oracle_ = std::make_unique<Oracle>(config_);
+  wires_.clear();
+  for (auto& port : robot_->robot().simPorts()) wires_.emplace_back(port->descriptor());
+  frozen_.reset();
+  blocked_.reset();
+  behind_.reset();
+  contact_open_ = false;
+  queues_ = {};
+  echoed_.reset();
+  for (auto& inbox : robot_->inboxes()) inbox.echo_available.store(true);
+  for (auto& client : clients_) client.motors.reset();
+  tick_ = 0;
+}
+
+void Chaos::step() {
+  const auto action = choose(choices_);
+  ++done_[static_cast<std::size_t>(action)];
+  act(action);
+  constexpr std::array<std::uint64_t, 8> kPauses{1, 1, 2, 3, 10, 30, 60, 400};
+  ticks(kPauses[choices_.next(8)]);
+}
+
+void Chaos::tick(std::uint64_t periods) {
+  for (const auto& client : clients_) {
+    if (client.motors.any() && tick_ % client.every_ticks == 0) command(client);
+  }
+  showContact();
+  const Duration dt = config_.period() * static_cast<std::int64_t>(periods);
+  simulate(dt);
+  oracle_->echoed(std::exchange(echoed_, {}));
+  robot_->tick(periods);
+  readBuses();
+  robot_time_ += dt;
+  ++tick_;
+  OrderResult result;
+  while (robot_->exchange().results.pop(result)) oracle_->answered(result);
+  Event event;
+  while (robot_->exchange().events.pop(event)) {
+  }
+  oracle_->judge(robot_->snapshot(), periods, ~(blocked_ | behind_), robot_->scheduler().stopped());
+  behind_ &= blocked_;
+}
+
+void Chaos::ticks(std::uint64_t count) {
+  for (std::uint64_t i = 0; i < count; ++i) tick();
+}
+
+void Chaos::simulate(Duration dt) {
+  const auto next = robot_->now() + dt;
+  for (std::size_t bus = 0; bus < wires_.size(); ++bus) {
+    const auto count = robot_->simBus(bus).step(next, dt, feedback_);
+    if (frozen_.test(bus)) continue;
+    for (std::size_t i = 0; i < count; ++i) {
+      feedback_[i].received = next - config_.period() / 2;
+      deliver(bus, feedback_[i]);
+    }
+  }
+}
+
+void Chaos::deliver(std::size_t bus, CanFrame frame) {
+  if (robot_->inboxes()[bus].frames.push(frame)) oracle_->heard(bus, frame);
+}
+
+// What the daemon has put on each bus in this tick.
+void Chaos::readBuses() {
+  const WakeUp wake{
+      .now = robot_->now(), .previous = robot_->now(), .realtime_offset = {}, .previous_offset = {}};
+  for (std::size_t bus = 0; bus < wires_.size(); ++bus) {
+    if (blocked_.test(bus)) {
+      behind_.set(bus);
+      continue;
+    }
+    std::size_t count = 0;
+    do {
+      count = wires_[bus].receive(wake, batch_).frame_count;
+      for (std::size_t i = 0; i < count; ++i) {
+        oracle_->sent(bus, batch_[i]);
+        carry(bus, batch_[i]);
+      }
+    } while (count == batch_.size());
+    auto& queue = queues_[bus];
+    if (queue.stuck_ticks > 0 && --queue.stuck_ticks == 0) leaveQueue(bus);
+  }
+}
+
+// From the kernel, which has taken it, to the drives; its echo, if it is watched, back to the daemon.
+void Chaos::carry(std::size_t bus, const CanFrame& frame) {
+  auto& queue = queues_[bus];
+  const bool stuck = queue.stuck_ticks > 0;
+  if (stuck && !queue.on_wire) {
+    queue.frames.push_back(frame);
+    return;
+  }
+  robot_->simBus(bus).receive(frame);
+  if (stuck) return;
+  const auto& watched = robot_->robot().buses()[bus].watched;
+  if (std::find(watched.begin(), watched.end(), frame.id) == watched.end()) return;
+  robot_->inboxes()[bus].confirmed.fetch_add(1);
+  echoed_.set(bus);
+}
+
+// What waited leaves before anything new. Echoes that nobody heard stay lost.
+void Chaos::leaveQueue(std::size_t bus) {
+  auto& queue = queues_[bus];
+  queue.stuck_ticks = 0;
+  const auto frames = std::exchange(queue.frames, {});
+  for (const auto& frame : frames) carry(bus, frame);
+}
+
+void Chaos::holdEchoes(std::size_t bus, std::uint64_t ticks, bool on_wire) {
+  leaveQueue(bus);
+  queues_[bus].stuck_ticks = ticks;
+  queues_[bus].on_wire = on_wire;
+}
+
+void Chaos::note(Action action, MotorSet motors, double value) {
+  history_[noted_++ % history_.size()] = {tick_, action, motors.to_ullong(), value};
+}
+
+std::string Chaos::history() const {
+  std::string out;
+  const auto first = noted_ > history_.size() ? noted_ - history_.size() : 0;
+  for (auto i = first; i < noted_; ++i) {
+    const auto& done = history_[i % history_.size()];
+    out += fmt::format("  before tick {}: {}, motors {:06b}, value {}\n", done.tick,
+                       kNames[static_cast<std::size_t>(done.action)], done.motors, done.value);
+  }
+  return out;
+}
+
+std::string Chaos::actionsText() const {
+  std::string out = "done:";
+  for (std::size_t i = 0; i < done_.size(); ++i)
+    out += fmt::format("{} {} {}", i > 0 ? "," : "", kNames[i], done_[i]);
+  return out + "\n";
+}
+
+Visits Chaos::visits() const {
+  Visits all = visits_;
+  all.add(oracle_->visits());
+  return all;
+}
+
+MotorSet Chaos::someMotors() {
+  const auto which = choices_.next(10);
+  MotorSet motors;
+  if (which < 6) {
+    motors.set(which);
+  } else if (which < 9) {
+    motors = MotorSet{choices_.next(1U << places_.size())};
+  } else {
+    for (std::size_t i = 0; i < places_.size(); ++i) motors.set(i);
+  }
+  return motors;
+}
+
+Chaos::Client& Chaos::someClient() {
+  return clients_[choices_.next(static_cast<std::uint32_t>(clients_.size()))];
+}
+sim::SimBus& Chaos::busOf(std::size_t motor) { return robot_->simBus(places_[motor].first); }
+std::size_t Chaos::driveOf(std::size_t motor) const { return places_[motor].second; }
+
+Target Chaos::randomTarget(std::size_t motor) {
+  constexpr auto kNan = std::numeric_limits<double>::quiet_NaN();
+  constexpr auto kInfinity = std::numeric_limits<double>::infinity();
+  // Mostly what works: any mode, but those of the model more often.
+  using enum ControlMode;
+  Target target;
+  target.mode =
+      choices_.of<ControlMode>({kVelocity, kVelocity, kVelocity, kCurrent, kCurrent, kTotalAngle, kAngle,
+                                kBrake, kCoast, kVoltage, kTotalAngle, kAngle, kDuty, kImpedance});
+  const auto& feedback = robot_->motor(motor).feedback;
+  switch (choices_.next(8)) {
+    case 0: target.value = choices_.of<double>({1e9, -1e300, kNan, kInfinity, -1e9, 1e300}); break;
+    case 1: target.value = 0.0; break;
+    default: target.value = static_cast<double>(choices_.next(256)) - 128.0;
+  }
+  if (target.mode == kCurrent || target.mode == kVoltage) target.value *= 0.1;
+  if (target.mode == kVelocity) target.value *= 4.0;
+  // Near the measured angle, or it is refused.
+  if ((target.mode == kTotalAngle || target.mode == kAngle) && std::isfinite(feedback.total_angle_deg))
+    target.value = feedback.total_angle_deg + target.value * choices_.of<double>({0.1, 0.2, 1.0, 10.0});
+  if (choices_.oneIn(8)) target.torque_ff_nm = choices_.of<float>({1.0F, -1.0F, 1e30F, -1e30F});
+  if (choices_.oneIn(8)) target.velocity_ff_rpm = choices_.of<float>({20.0F, -20.0F, 1e30F, -1e30F});
+  return target;
+}
+
+void Chaos::command(const Client& client) {
+  Command command;
+  command.client = client.name;
+  command.session = client.session;
+  command.priority = client.priority;
+  command.deadline = robot_->now() + client.validity;
+  for (std::size_t motor = 0; motor < places_.size(); ++motor) {
+    if (!client.motors.test(motor)) continue;
+    command.setpoints[command.count++] = {static_cast<std::uint16_t>(motor), client.targets[motor]};
+  }
+  if (robot_->exchange().commands.push(command)) oracle_->commanded(command);
+}
+
+void Chaos::order(Operation operation, MotorSet motors, double value) {
+  if (oracle_->open() >= kMostOpen) return;
+  Order order;
+  order.id = ++orders_;
+  order.operation = operation;
+  order.motors = motors;
+  order.value = value;
+  if (robot_->exchange().orders.push(order)) oracle_->ordered(order);
+}
+
+void Chaos::repair(std::size_t motor) {
+  auto load = config_.buses[places_[motor].first].motors[places_[motor].second].simulated;
+  busOf(motor).setLoad(driveOf(motor), load);
+  busOf(motor).setEncoderFault(driveOf(motor), {});
+  busOf(motor).setTemperature(driveOf(motor), 25.0);
+}
+
+// Anything on the bus: another commander, a drive with a loose screw, another protocol.
+void Chaos::foreignFrame(std::size_t bus) {
+  CanFrame frame;
+  frame.id = {0x1F8U + choices_.next(32), choices_.oneIn(16)};
+  frame.fd = choices_.oneIn(16);
+  frame.type = choices_.oneIn(16) ? FrameType::kRemote : FrameType::kData;
+  frame.length = static_cast<std::uint8_t>(choices_.oneIn(4) ? choices_.next(9) : 8);
+  for (std::size_t i = 0; i < 8; ++i) frame.data[i] = static_cast<std::uint8_t>(choices_.next(256));
+  if (choices_.oneIn(2)) frame.data[0] &= 0x1FU;  // an angle that exists
+  frame.received = robot_->now() + config_.period() / 2;
+  deliver(bus, frame);
+}
+
+// What a controller tells about itself.
+void Chaos::errorFrame(std::size_t bus, std::uint32_t which) {
+  CanFrame frame;
+  frame.type = FrameType::kError;
+  frame.length = 8;
+  frame.received = robot_->now() + config_.period() / 2;
+  switch (which) {
+    case 0: frame.id.value = CAN_ERR_BUSOFF; break;
+    case 1: frame.id.value = CAN_ERR_RESTARTED; break;
+    case 2:
+      frame.id.value = CAN_ERR_CRTL;
+      frame.data[1] = CAN_ERR_CRTL_TX_PASSIVE;
+      break;
+    default: frame.id.value = CAN_ERR_CRTL; frame.data[1] = CAN_ERR_CRTL_RX_WARNING;
+  }
+  if (robot_->inboxes()[bus].frames.push(frame)) oracle_->controllerOff(bus, which == 0);
+}
+
+// As its thread does, all the time.
+void Chaos::showContact() {
+  robot_->exchange().estop_contact.show(contact_open_ ? ContactState::kOpen : ContactState::kClosed);
+  oracle_->contact(contact_open_);
+}
+
+void Chaos::stopAndStartAgain() {
+  robot_->scheduler().beginStop();
+  oracle_->stopBegun();
+  for (int i = 0; i < 1200 && !robot_->scheduler().stopped(); ++i) tick();
+  ticks(5);
+  start();
+}
+
+void Chaos::act(Action action) {
+  const auto buses = static_cast<std::uint32_t>(wires_.size());
+  const auto everyone = MotorSet{(1ULL << places_.size()) - 1};
+  MotorSet motors;
+  double value = 0.0;
+  const auto each = [&](auto&& what) {
+    for (std::size_t i = 0; i < places_.size(); ++i) {
+      if (motors.test(i)) what(i);
+    }
+  };
+  switch (action) {
+    case Action::kNothing:
+    case Action::kCount: break;
+    case Action::kCommand: {
+      Client once = someClient();
+      motors = once.motors = someMotors();
+      if (choices_.oneIn(8)) ++once.session;
+      once.validity = std::chrono::milliseconds{choices_.of<int>({1, 5, 20, 50, 100, 300, 1000, 0})};
+      each([&](std::size_t i) { once.targets[i] = randomTarget(i); });
+      if (motors.any()) command(once);
+      break;
+    }
+    case Action::kProgram: {
+      auto& client = someClient();
+      motors = client.motors = choices_.oneIn(6) ? MotorSet{} : someMotors();
+      client.validity = std::chrono::milliseconds{choices_.of<int>({5, 20, 50, 100, 100, 300})};
+      client.every_ticks = choices_.of<std::uint32_t>({1, 5, 10, 20, 20, 100});
+      each([&](std::size_t i) { client.targets[i] = randomTarget(i); });
+      break;
+    }
+    case Action::kEnable:
+      motors = choices_.oneIn(2) ? everyone : someMotors();
+      order(Operation::kEnable, motors);
+      break;
+    case Action::kDisable:
+      motors = someMotors();
+      order(Operation::kDisable, motors);
+      break;
+    case Action::kClear:
+      motors = choices_.oneIn(2) ? everyone : someMotors();
+      order(Operation::kClear, motors);
+      break;
+    case Action::kZero:
+      motors = someMotors();
+      value = choices_.of<double>({0.0, 45.0, -80.0, 1e6, 1e300});
+      order(Operation::kZero, motors, value);
+      break;
+    case Action::kEstop:
+      if (choices_.oneIn(2)) {
+        robot_->exchange().estop.store(true);
+        oracle_->estopped();
+      } else {
+        order(Operation::kEstop, someMotors());
+      }
+      break;
+    case Action::kRepair:
+      motors = choices_.oneIn(2) ? everyone : someMotors();
+      each([&](std::size_t i) { repair(i); });
+      if (motors == everyone) {
+        frozen_.reset();
+        blocked_.reset();
+        contact_open_ = false;
+        for (std::size_t bus = 0; bus < wires_.size(); ++bus) leaveQueue(bus);
+        for (std::size_t bus = 0; bus < wires_.size(); ++bus) {
+          errorFrame(bus, 1);
+          robot_->inboxes()[bus].link.store(LinkState::kUp);
+          oracle_->linked(bus, true);
+        }
+      }
+      break;
+    case Action::kSilence:
+      motors = someMotors();
+      each([&](std::size_t i) { busOf(i).silence(driveOf(i), true); });
+      break;
+    case Action::kLoseFrames:
+      motors = someMotors();
+      value = choices_.of<double>({0.1, 0.5, 0.9, 0.95});
+      each([&](std::size_t i) { busOf(i).loseFrames(driveOf(i), static_cast<float>(value)); });
+      break;
+    case Action::kStall:
+      motors = someMotors();
+      each([&](std::size_t i) { busOf(i).stall(driveOf(i), true); });
+      break;
+    case Action::kHeat:
+      motors = someMotors();
+      value = choices_.of<double>({60.0, 75.0, 85.0, 130.0});
+      each([&](std::size_t i) { busOf(i).setTemperature(driveOf(i), value); });
+      break;
+    case Action::kEncoder: {
+      motors = someMotors();
+      const auto which = choices_.next(4);
+      value = which;
+      const double slip = static_cast<double>(choices_.next(100)) / 100.0;
+      each([&](std::size_t i) {
+        busOf(i).setEncoderFault(
+            driveOf(i), {.frozen = which == 0, .reversed = which == 1, .slip_turns = which > 1 ? slip : 0.0});
+      });
+      break;
+    }
+    case Action::kLoad: {
+      motors = someMotors();
+      value = choices_.of<double>({-3.0, -1.0, 1.0, 5.0});
+      each([&](std::size_t i) {
+        auto load = busOf(i).drive(driveOf(i)).load();
+        load.load_torque_nm = static_cast<float>(value);
+        busOf(i).setLoad(driveOf(i), load);
+      });
+      break;
+    }
+    case Action::kFreezeBus: frozen_.flip(choices_.next(buses)); break;
+    case Action::kBlockBus: blocked_.flip(choices_.next(buses)); break;
+    case Action::kHoldEchoes: {
+      // Up to five ticks nothing may happen; for ever is until somebody repairs it.
+      const auto bus = choices_.next(buses);
+      const auto for_ticks = choices_.of<std::uint64_t>({1, 3, 5, 6, 7, 8, 12, 60, 200, 1'000, 1'000'000});
+      holdEchoes(bus, for_ticks, choices_.oneIn(3));
+      value = static_cast<double>(for_ticks);
+      break;
+    }
+    case Action::kLink: {
+      const auto bus = choices_.next(buses);
+      const bool up = !choices_.oneIn(3);
+      robot_->inboxes()[bus].link.store(up ? LinkState::kUp : LinkState::kDown);
+      oracle_->linked(bus, up);
+      if (!up) queues_[bus] = {};  // down throws away what waited
+      value = up ? 1.0 : 0.0;
+      break;
+    }
+    case Action::kController: {
+      const auto which = choices_.next(4);
+      errorFrame(choices_.next(buses), which);
+      value = which;
+      break;
+    }
+    case Action::kContact:
+      value = choices_.next(3);
+      contact_open_ = value == 1.0;
+      if (value == 2.0) {  // for an instant
+        robot_->exchange().estop_contact.show(ContactState::kOpen);
+        oracle_->estopped();
+      }
+      break;
+    case Action::kForeignFrames: {
+      const auto bus = choices_.next(buses);
+      for (auto n = choices_.next(8); n > 0; --n) foreignFrame(bus);
+      break;
+    }
+    case Action::kFloodBus: {
+      const auto bus = choices_.next(buses);
+      CanFrame frame = makeClassicFrame({0x123, false}, std::array<std::uint8_t, 8>{});
+      for (std::size_t i = 0; i < BusInbox::kFrames; ++i) deliver(bus, frame);
+      break;
+    }
+    case Action::kFillRings: {
+      Client once = someClient();
+      once.motors = motors = everyone;
+      once.validity = 20ms;
+      each([&](std::size_t i) { once.targets[i] = randomTarget(i); });
+      for (int i = 0; i < 70; ++i) command(once);
+      for (int i = 0; i < 70; ++i)
+        order(choices_.oneIn(2) ? Operation::kEnable : Operation::kClear, everyone);
+      break;
+    }
+    case Action::kMissTicks:
+      value = 2 + choices_.next(39);
+      note(action, motors, value);
+      tick(static_cast<std::uint64_t>(value));
+      return;
+    case Action::kStop:
+      note(action, motors, value);
+      stopAndStartAgain();
+      return;
+    case Action::kCrash:
+      note(action, motors, value);
+      start();
+      return;
+  }
+  if (action != Action::kNothing) note(action, motors, value);
+}
+
+}  // namespace rc10::test

@@ -1,0 +1,140 @@
+#pragma once
+
+#include <array>
+#include <bitset>
+#include <cstdint>
+#include <deque>
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "daemon/virtual_robot.hpp"
+#include "faults/choices.hpp"
+#include "faults/oracle.hpp"
+
+namespace rc10::test {
+
+/// Everything that can be done to a robot, in random order: commands of quarrelling clients, orders,
+/// emergency stops, broken drives and buses, missed ticks, restarts. After every tick the oracle judges.
+class Chaos {
+ public:
+  explicit Chaos(Choices& choices);
+
+  /// One thing happens, then some ticks pass. Throws Violation.
+  void step();
+
+  [[nodiscard]] std::uint64_t ticks() const noexcept { return visits_.ticks + oracle_->visits().ticks; }
+  [[nodiscard]] Duration robotTime() const noexcept { return robot_time_; }
+  [[nodiscard]] Visits visits() const;
+  /// How often each thing was done.
+  [[nodiscard]] std::string actionsText() const;
+  /// The last things that were done, one a line.
+  [[nodiscard]] std::string history() const;
+
+  enum class Action : std::uint8_t {
+    kNothing,
+    kCommand,
+    kProgram,
+    kEnable,
+    kDisable,
+    kClear,
+    kZero,
+    kEstop,
+    kRepair,
+    kSilence,
+    kLoseFrames,
+    kStall,
+    kHeat,
+    kEncoder,
+    kLoad,
+    kFreezeBus,
+    kBlockBus,
+    kHoldEchoes,
+    kLink,
+    kController,
+    kContact,
+    kForeignFrames,
+    kFloodBus,
+    kFillRings,
+    kMissTicks,
+    kStop,
+    kCrash,
+    kCount,
+  };
+
+ private:
+  static constexpr auto kActions = static_cast<std::size_t>(Action::kCount);
+  /// A client that commands in a loop.
+  struct Client {
+    const char* name = "";
+    int priority = 0;
+    std::uint64_t session = 1;
+    MotorSet motors;
+    std::array<Target, 8> targets{};
+    Duration validity{};
+    std::uint32_t every_ticks = 10;
+  };
+  struct Done {
+    std::uint64_t tick = 0;
+    Action action{};
+    std::uint64_t motors = 0;
+    double value = 0.0;
+  };
+
+  void start();
+  void act(Action action);
+  void tick(std::uint64_t periods = 1);
+  void ticks(std::uint64_t count);
+  void simulate(Duration dt);
+  void deliver(std::size_t bus, CanFrame frame);
+  void readBuses();
+  void carry(std::size_t bus, const CanFrame& frame);
+  void leaveQueue(std::size_t bus);
+  void holdEchoes(std::size_t bus, std::uint64_t ticks, bool on_wire);
+  void command(const Client& client);
+  void order(Operation operation, MotorSet motors, double value = 0.0);
+  void stopAndStartAgain();
+  void repair(std::size_t motor);
+  void foreignFrame(std::size_t bus);
+  void errorFrame(std::size_t bus, std::uint32_t which);
+  void showContact();
+  [[nodiscard]] Target randomTarget(std::size_t motor);
+  [[nodiscard]] MotorSet someMotors();
+  [[nodiscard]] Client& someClient();
+  [[nodiscard]] sim::SimBus& busOf(std::size_t motor);
+  [[nodiscard]] std::size_t driveOf(std::size_t motor) const;
+  void note(Action action, MotorSet motors, double value = 0.0);
+
+  Choices& choices_;
+  RobotConfig config_;
+  std::vector<std::pair<std::size_t, std::size_t>> places_;  ///< Bus and drive of each motor.
+  std::unique_ptr<VirtualRobot> robot_;
+  std::unique_ptr<Oracle> oracle_;
+  std::vector<CanReceiver> wires_;  ///< The drives' ends of the buses.
+  std::array<CanFrame, CanReceiver::kBatch> batch_{};
+  std::array<CanFrame, 8> feedback_{};
+  std::array<Client, 3> clients_{};
+  std::bitset<kMaxBuses> frozen_;   ///< Nothing is heard from it.
+  std::bitset<kMaxBuses> blocked_;  ///< Nobody takes its frames.
+  std::bitset<kMaxBuses> behind_;   ///< Frames from before are still in its queue.
+  /// A transmit queue that takes frames and does not move, or echoes that nobody hears.
+  struct Queue {
+    std::uint64_t stuck_ticks = 0;  ///< From now on.
+    bool on_wire = false;           ///< Its frames leave all the same; only their echoes are lost.
+    std::vector<CanFrame> frames;   ///< They leave when it moves again.
+  };
+  std::array<Queue, kMaxBuses> queues_{};
+  std::bitset<kMaxBuses> echoed_;  ///< Since the last tick.
+  bool contact_open_ = false;      ///< Of the e-stop input.
+  std::uint64_t orders_ = 0;
+  std::uint64_t tick_ = 0;
+  Duration robot_time_{};
+  Visits visits_;
+  std::array<std::uint64_t, kActions> done_{};
+  std::array<Done, 64> history_{};
+  std::uint64_t noted_ = 0;
+};
+
+}  // namespace rc10::test

@@ -1,0 +1,137 @@
+"""Fake drives that do wrong things when told so, by frames that no robot uses.
+
+FAULT_ID carries {motor id, fault, signed 16-bit argument}: see `faulty_drives.fault()`.
+"""
+
+from __future__ import annotations
+
+import signal
+import struct
+import sys
+from enum import IntEnum
+from typing import TYPE_CHECKING
+
+import can
+
+from rc10.fakes.address import MotorSpec
+from rc10.fakes.drives import Drives
+from rc10.fakes.fake import Fake
+from rc10.fakes.motor import COUNTS, FakeMotor
+from rc10.fakes.runner import Runner
+
+if TYPE_CHECKING:
+    from types import FrameType
+
+FAULT_ID = 0x7F0
+_FAULT = struct.Struct(">BBh")
+
+
+class Fault(IntEnum):
+    """What a drive does from now on. The argument is 0 where none is named."""
+
+    NONE = 0
+    SILENT = 1
+    FROZEN = 2
+    REVERSED = 3
+    SLIP = 4  # argument: thousandths of a rotor turn
+    HOT = 5  # argument: deg C
+    STALLED = 6
+    SHORT = 7  # frames of 7 bytes
+    REBOOT = 8  # no frame for so many ms, then on with no command
+
+
+def fault(motor_id: int, kind: Fault, argument: int = 0) -> bytes:
+    """The data of the frame that orders it."""
+    return _FAULT.pack(motor_id, kind, argument)
+
+
+class FaultyMotor(FakeMotor):
+    """A drive that may be broken."""
+
+    def __init__(self, spec: MotorSpec) -> None:
+        super().__init__(spec)
+        self.fault = Fault.NONE
+        self.slip_turns = 0.0
+        self._last: can.Message | None = None
+        self._off_s = 0.0
+        self._hot_c = 0.0
+
+    def order(self, kind: Fault, argument: int) -> None:
+        self.fault = kind
+        if kind is Fault.SLIP:
+            self.slip_turns += argument / 1000
+        elif kind is Fault.HOT:
+            self._hot_c = float(argument)
+        elif kind is Fault.REBOOT:
+            self._off_s = argument / 1000
+            self._command_raw = 0
+
+    @property
+    def silent(self) -> bool:
+        return self.fault is Fault.SILENT or self._off_s > 0
+
+    def step(self, dt_s: float) -> None:
+        self._off_s = max(0.0, self._off_s - dt_s)
+        super().step(dt_s)
+        if self.fault is Fault.STALLED:
+            self.speed_rad_s = 0.0
+        elif self.fault is Fault.HOT:
+            self.temperature_c = self._hot_c
+
+    def feedback(self) -> can.Message:
+        if self.fault is Fault.FROZEN and self._last is not None:
+            return self._last
+        message = super().feedback()
+        counts, rpm = struct.unpack_from(">Hh", message.data)
+        if self.fault is Fault.REVERSED:
+            counts, rpm = -counts, -rpm
+        counts = (counts + round(self.slip_turns * COUNTS)) % COUNTS
+        struct.pack_into(">Hh", message.data, 0, counts, rpm)
+        self._last = can.Message(
+            arbitration_id=message.arbitration_id,
+            is_extended_id=False,
+            data=bytes(message.data[: 7 if self.fault is Fault.SHORT else 8]),
+        )
+        return self._last
+
+
+class FaultyDrives(Drives):
+    """Drives that listen to FAULT_ID, too."""
+
+    def __init__(self, motors: list[FaultyMotor]) -> None:
+        super().__init__(motors)
+        self._faulty = {motor.spec.motor_id: motor for motor in motors}
+
+    @property
+    def command_ids(self) -> list[int]:
+        return [*super().command_ids, FAULT_ID]
+
+    def receive(self, message: can.Message) -> None:
+        if message.arbitration_id != FAULT_ID:
+            super().receive(message)
+            return
+        motor_id, kind, argument = _FAULT.unpack(bytes(message.data[: _FAULT.size]))
+        self._faulty[motor_id].order(Fault(kind), argument)
+
+    def _is_silent(self, motor: Fake) -> bool:
+        return isinstance(motor, FaultyMotor) and motor.silent
+
+
+def main() -> None:
+    interface, *names = sys.argv[1:]
+    stopped = False
+
+    def stop(_number: int, _frame: FrameType | None) -> None:
+        nonlocal stopped
+        stopped = True
+
+    signal.signal(signal.SIGTERM, stop)
+    drives = FaultyDrives([FaultyMotor(MotorSpec.parse(name)) for name in names])
+    with can.Bus(interface="socketcan", channel=interface) as bus:
+        runner = Runner(bus, drives)
+        print("ready", flush=True)
+        runner.run(lambda: stopped)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,119 @@
+"""One fake drive of any family that does wrong things when told so, by a frame that no robot uses.
+
+FAULT_ID carries one byte, a Wrong.
+"""
+
+from __future__ import annotations
+
+import signal
+import sys
+from enum import IntEnum
+from typing import TYPE_CHECKING, Any
+
+import can
+
+from rc10.fakes.cli import _motor
+from rc10.fakes.drives import Drives
+from rc10.fakes.runner import Runner
+
+if TYPE_CHECKING:
+    from types import FrameType
+
+    from rc10.fakes.fake import Fake
+
+FAULT_ID = 0x7F0
+
+
+class Wrong(IntEnum):
+    """What happens to the drive."""
+
+    NOTHING = 0  # its cable is plugged in again
+    SILENT = 1
+    RESTARTED = 2
+    FAULTED = 3
+
+
+# The family's own code of a fault that it reports and that `clear` ends.
+_CODES = {
+    "damiao": 0xA,
+    "lktech": 1,
+    "moteus": 33,
+    "myactuator": 4,
+    "robstride": 1,
+    "odrive": 0x200,
+    "vesc": 4,
+    "cubemars": 1,
+}
+
+
+# How long a restarted drive says nothing; the others are back at once, which is harder to notice.
+_BOOT_S = {"lktech": 0.3}
+
+
+class FaultyDrive(Drives):
+    """One drive, which listens to FAULT_ID, too."""
+
+    def __init__(self, motor: Fake) -> None:
+        super().__init__([motor])
+        self._motor: Any = motor
+        self._silent = False
+        self._off_s = 0.0
+
+    @property
+    def command_ids(self) -> list[int]:
+        return [*super().command_ids, FAULT_ID]
+
+    def receive(self, message: can.Message) -> None:
+        if message.arbitration_id == FAULT_ID and not message.is_extended_id:
+            self._order(Wrong(message.data[0]))
+        else:
+            super().receive(message)
+
+    def _order(self, wrong: Wrong) -> None:
+        self._silent = wrong is Wrong.SILENT
+        family = type(self._motor).__module__.rpartition(".")[2]
+        if wrong is Wrong.RESTARTED:
+            restart = getattr(self._motor, "restart", None) or self._motor.reboot
+            restart()
+            self._off_s = _BOOT_S.get(family, 0.0)
+        elif wrong is Wrong.FAULTED:
+            self._fail(_CODES[family])
+        elif wrong is Wrong.NOTHING and family in ("lktech", "myactuator"):
+            self._motor.fail(0)  # the cause is away; what is latched stays until it is cleared
+        elif wrong is Wrong.NOTHING and family == "cubemars":
+            self._motor.error = 0  # servo mode latches nothing
+
+    def step(self, dt_s: float) -> None:
+        self._off_s = max(0.0, self._off_s - dt_s)
+        super().step(dt_s)
+
+    def _fail(self, code: int) -> None:
+        for name in ("fail", "inject_fault", "disarm"):
+            if hasattr(self._motor, name):
+                getattr(self._motor, name)(code)
+                return
+        self._motor.error = code
+
+    def _is_silent(self, motor: Fake) -> bool:
+        return self._silent or self._off_s > 0 or super()._is_silent(motor)
+
+
+def main() -> None:
+    interface, name = sys.argv[1:]
+    stopped = False
+
+    def stop(_number: int, _frame: FrameType | None) -> None:
+        nonlocal stopped
+        stopped = True
+
+    signal.signal(signal.SIGTERM, stop)
+    spec: Any = _motor(name)
+    drive = FaultyDrive(spec.make(initial_angle_deg=0.0, load_nm=0.0))
+    with can.Bus(interface="socketcan", channel=interface, fd=drive.fd) as bus:
+        runner = Runner(bus, drive)
+        print("ready", flush=True)
+        runner.run(lambda: stopped)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,185 @@
+"""What happens to the daemon itself: signals, stalls, clocks, files."""
+# run-guest: --timeout 900
+
+from __future__ import annotations
+
+import re
+import signal
+import subprocess
+import time
+from pathlib import Path
+
+import pytest
+from faultrig import (
+    CONFIG,
+    FRONT,
+    REAR,
+    TICK_NS,
+    drive,
+    drives,
+    proven,
+    robot_under_test,
+    witness,
+)
+from guestlib import run
+from rig import BIN, currents
+
+import rc10
+
+
+def test_sigterm() -> None:
+    with robot_under_test() as (process, robot, log):
+        drive(robot, log, 0.3, left=rc10.velocity_rpm(60), other=rc10.velocity_rpm(60))
+        asked_ns = time.time_ns()
+        assert process.stop(signal.SIGTERM) == 0
+        ended_ns = time.time_ns()
+        for interface in (FRONT, REAR):
+            assert [currents(f) for f in log.frames(interface)[-3:]] == [(0, 0, 0, 0)] * 3
+        log.check()
+        proven(
+            "SIGTERM",
+            "rest until echoed, last on the wire; exit 0",
+            asked_ns,
+            log.last_torque_ns("left"),
+            2,
+        )
+        assert ended_ns - asked_ns < 2_000_000_000
+
+
+@pytest.mark.parametrize("number", [signal.SIGKILL, signal.SIGSEGV])
+def test_the_daemon_is_killed_and_rc10_stop_follows(number: signal.Signals) -> None:
+    with robot_under_test() as (process, robot, log):
+        drive(robot, log, 0.3, left=rc10.velocity_rpm(60), other=rc10.velocity_rpm(60))
+        process.signal(number)
+        killed_ns = time.time_ns()
+        process.wait(5.0)
+        run(BIN / "rc10-stop", "faults")
+        for interface in (FRONT, REAR):
+            assert currents(log.frames(interface)[-1]) == (0, 0, 0, 0)
+        log.check(other_bus=None)
+        proven(
+            f"{number.name} of the daemon",
+            "rc10-stop, by systemd, sends rest to every drive",
+            killed_ns,
+            log.last_torque_ns("left"),
+            2,
+        )
+
+
+@pytest.mark.parametrize("stall_ms", [30, 300])
+def test_the_daemon_stalls(stall_ms: int) -> None:
+    with robot_under_test() as (process, robot, log):
+        start_ns = time.time_ns()
+        for t_s in robot.rate(100):
+            if t_s >= 0.3:
+                break
+            robot.command(left=rc10.velocity_rpm(60), validity_ms=20)
+        last_ns = time.time_ns()
+        process.signal(signal.SIGSTOP)
+        time.sleep(stall_ms / 1000)
+        process.signal(signal.SIGCONT)
+        going_ns = time.time_ns()
+        time.sleep(0.2)
+        log.driven(start_ns, last_ns, "left", validity_ms=20)
+        after = log.frames(FRONT, going_ns)
+        assert after, "it goes on"
+        assert all(currents(f)[0] == 0 for f in after), "computed before the stall"
+        log.check(other_bus=None)
+        proven(
+            f"the daemon stalls for {stall_ms} ms",
+            "missed ticks are counted, not replayed; nothing old is sent",
+            None,
+            None,
+            0,
+        )
+
+
+def test_the_wall_clock_is_set_back_an_hour() -> None:
+    with robot_under_test() as (_, robot, log):
+        drive(robot, log, 0.3, left=rc10.velocity_rpm(60))
+        log.check()
+        time.clock_settime(time.CLOCK_REALTIME, time.time() - 3600)
+        start_ns = time.time_ns()
+        for t_s in robot.rate(100):
+            if t_s >= 0.5:
+                break
+            robot.command(left=rc10.velocity_rpm(60), validity_ms=40)
+        seen = [f for f in log.dump.frames()[-400:] if f.iface == FRONT and f.id == 0x200]
+        assert all(f.t_ns >= start_ns - 500 * TICK_NS for f in seen)
+        assert all(currents(f)[0] != 0 for f in seen[:60])
+        assert robot.motor("left").status is rc10.MotorStatus.ACTIVE
+        proven("wall clock set back an hour", "nothing changes", None, None, 0)
+
+
+def test_a_second_daemon_on_the_interface() -> None:
+    with robot_under_test() as (_, robot, log):
+        other = Path("/tmp/second.yaml")
+        other.write_text(CONFIG.read_text().replace("robot: faults", "robot: second"))
+        start_ns = time.time_ns()
+        second = subprocess.run(
+            [str(BIN / "rc10d"), "-c", str(other)],
+            capture_output=True,
+            text=True,
+            check=False,
+            timeout=60,
+        )
+        assert second.returncode != 0
+        assert "vcan0" in second.stdout + second.stderr
+        drive(robot, log, 0.2, left=rc10.velocity_rpm(60))
+        log.check(other_bus=FRONT)
+        log.check()
+        assert len(log.frames(FRONT, start_ns)) > 190
+        proven(
+            "a second rc10d on an interface",
+            "it refuses to start; the first misses no tick",
+            None,
+            None,
+            0,
+        )
+
+
+def mistakes(count: int) -> str:
+    """A robot with so many different mistakes."""
+    motors = []
+    for number in range(count):
+        bad = [
+            f"{{name: m{number}, model: M3508, id: {number + 9}}}",
+            f"{{name: m{number}, model: M{number}, id: 1}}",
+            f"{{name: 'm {number}', model: M2006, id: 1}}",
+            f"{{name: m{number}, model: M3508, id: 1, key{number}: 1}}",
+            f"{{name: m{number}, model: M3508, id: 1, current_limit_a: {number + 21}}}",
+            f"{{name: m{number}, model: M3508, id: 1, direction: {number + 2}}}",
+            f"{{name: m{number}, model: M3508, id: 1, gear_ratio: -{number + 1}}}",
+            f"{{name: m{number}, model: M3508, id: 0{number}}}",
+        ][number % 8]
+        motors.append(f"      - {bad}\n")
+    return (
+        f"robot: faults\nbuses:\n  - name: front\n    interface: {FRONT}\n    motors:\n"
+        + "".join(motors)
+    )
+
+
+def test_a_configuration_with_a_hundred_mistakes(tmp_path: Path) -> None:
+    path = tmp_path / "robot.yaml"
+    path.write_text(mistakes(100))
+    with drives(), witness() as log:
+        for words in (("--check", str(path)), ("-c", str(path))):
+            done = subprocess.run(
+                [str(BIN / "rc10d"), *words],
+                capture_output=True,
+                text=True,
+                check=False,
+                timeout=60,
+            )
+            assert done.returncode == 2
+            text = done.stdout + done.stderr
+            places = set(re.findall(f"^{path}:(\\d+):", text, re.MULTILINE))
+            assert len(places) >= 100, text
+        assert log.frames(FRONT) == []
+        proven(
+            "a configuration with 100 mistakes",
+            "all are told at once; nothing is sent",
+            None,
+            None,
+            0,
+        )

@@ -1,0 +1,6 @@
+"""What the tests of the whole daemon share."""
+
+from hostlib.daemon import Daemon, Motor, State, check_environment
+from hostlib.program import Program, eventually, processes_of
+
+__all__ = ["Daemon", "Motor", "Program", "State", "check_environment", "eventually", "processes_of"]

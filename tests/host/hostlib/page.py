@@ -1,0 +1,69 @@
+"""What a page of docs/ shows, and running it as a reader would."""
+
+from __future__ import annotations
+
+import os
+import re
+import subprocess
+import sys
+from typing import TYPE_CHECKING, NamedTuple
+
+from hostlib.daemon import BIN, REPO, Daemon
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+BLOCK = re.compile(r"^```(?P<kind>\w+)?(?: (?P<note>\S+))?\n(?P<text>.*?)^```$", re.M | re.S)
+# What cannot run here: see CONTRIBUTING.md. Beside them there is the path of a test.
+NOT_RUN = {"hardware", "setup", "display", "extra"}
+ROBOT = re.compile(r"(?:#.*\n)*robot:")
+
+
+class Block(NamedTuple):
+    kind: str
+    text: str
+
+
+def blocks(page: Path) -> list[Block]:
+    """The blocks of code that are of a kind and can run here."""
+    found = list(BLOCK.finditer(page.read_text(encoding="utf-8")))
+    notes = {block["note"] for block in found if block["kind"] and block["note"]} - NOT_RUN
+    for note in notes:
+        assert "/" in note, f"{page.name}: '{note}' is none of {', '.join(sorted(NOT_RUN))}"
+        assert (REPO / note).is_file(), f"{page.name}: there is no {note}"
+    return [Block(b["kind"], b["text"]) for b in found if b["kind"] and not b["note"]]
+
+
+def robots(page: Path) -> list[str]:
+    """The configurations that it shows: whole ones, and buses of a robot without a name."""
+    found = []
+    for block in blocks(page):
+        if block.kind == "yaml" and ROBOT.match(block.text):
+            found.append(block.text)
+        elif block.kind == "yaml" and block.text.startswith("buses:") and "motors:" in block.text:
+            found.append("robot: page\n" + block.text)
+    return found
+
+
+def run(block: Block, daemon: Daemon, folder: Path) -> None:
+    """Runs Python or shell in the folder, until it succeeds, three times at most."""
+    if not (folder / "python").exists():
+        os.symlink(REPO / "python", folder / "python")
+    python = os.path.dirname(sys.executable)
+    env = {**os.environ, **daemon.env, "PATH": f"{python}:{BIN}:{os.environ['PATH']}"}
+    command = [sys.executable, "-c"] if block.kind == "python" else ["bash", "-ec"]
+    # A pause of this machine may cost a motor its feedback, which is a fault.
+    for _ in range(3):
+        done = subprocess.run(
+            [*command, block.text],
+            cwd=folder,
+            env=env,
+            capture_output=True,
+            text=True,
+            check=False,
+        )
+        if done.returncode == 0:
+            return
+        daemon.must("clear")
+        daemon.wait_ready()
+    raise AssertionError(f"{block.text}\n{done.stdout}{done.stderr}")

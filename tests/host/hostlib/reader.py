@@ -1,0 +1,153 @@
+"""The reader of a page: types what it shows, in its order, in as many terminals as it takes."""
+
+from __future__ import annotations
+
+import os
+import re
+import shutil
+import subprocess
+import sys
+import tempfile
+from collections.abc import Iterator
+from pathlib import Path
+from typing import TYPE_CHECKING, NamedTuple
+
+from hostlib.daemon import BIN, BUILD, REPO
+from hostlib.program import Program, eventually
+
+if TYPE_CHECKING:
+    from hostlib.page import Block
+
+# They run until Ctrl-C: in a terminal of their own, or until something is seen.
+SERVES = re.compile(r"^\S*rc10d(-\w+)? -c \S+$")
+WATCHES = re.compile(r"^rc10ctl watch$")
+# What the shown output of a command that fails begins with.
+COMPLAINT = re.compile(r"^(rc10ctl|[\w/]+\.yaml:\d+(:\d+)?): ")
+# The folder that the pages write; its place in the tests is another.
+RUN_DIR = "/tmp/rc10"
+CTRL_C = 130
+PATIENCE_S = 60.0
+
+
+class Command(NamedTuple):
+    text: str
+    output: str  # what the page shows of it; sh shows nothing
+
+    @property
+    def complaints(self) -> set[str]:
+        return {line for line in self.output.splitlines() if COMPLAINT.match(line)}
+
+    @property
+    def fails(self) -> bool:
+        return bool(self.complaints)
+
+
+def commands(block: Block) -> Iterator[Command]:
+    """Of `sh` each line, of `console` what stands behind a prompt."""
+    if block.kind == "console":
+        for part in re.split(r"^\$ ", block.text, flags=re.M)[1:]:
+            text, _, output = part.partition("\n")
+            yield Command(text, output)
+        return
+    for line in block.text.splitlines():
+        text = re.sub(r"(^|\s+)#.*", "", line).removesuffix("&").strip()
+        if text:
+            yield Command(text, "")
+
+
+class Reader:
+    """Leaving the `with` statement ends what still runs."""
+
+    def __init__(self, folder: Path) -> None:
+        self.folder = folder
+        # Short: the path of a socket has 108 bytes at most.
+        self.run_dir = Path(tempfile.mkdtemp(prefix="rc10-page-", dir="/dev/shm"))
+        self.replace = {RUN_DIR: str(self.run_dir)}
+        self._typed_before = [f"export RC10_RUN_DIR={self.run_dir} RC10_STATE_DIR={self.run_dir}"]
+        self._servers: list[Program] = []
+        self._status = 0
+        for name in ("config", "docs", "examples", "python"):
+            (folder / name).symlink_to(REPO / name)
+        (folder / ".venv").symlink_to(sys.prefix)
+        (folder / "build").mkdir()
+        for preset in ("dev", "release"):
+            (folder / "build" / preset).symlink_to(BUILD)
+        (folder / "root").mkdir()
+        sudo = folder / "root" / "sudo"
+        sudo.write_text('#!/bin/sh\nexec "$@"\n')
+        sudo.chmod(0o755)
+
+    def __enter__(self) -> Reader:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        for server in self._servers:
+            server.stop()
+        shutil.rmtree(self.run_dir)
+
+    def read(self, block: Block) -> None:
+        """Types each command of the block; each must end as the page says."""
+        for command in commands(block):
+            text = command.text
+            for old, new in self.replace.items():
+                text = text.replace(old, new)
+            if text.startswith("export "):
+                self._typed_before.append(text)
+            elif text == "echo $?":
+                assert int(command.output) == self._status
+            elif SERVES.match(text):
+                self.serve(text)
+            elif WATCHES.match(text):
+                self.watch(text)
+            else:
+                self.run(Command(text, command.output))
+
+    def serve(self, text: str) -> None:
+        """Starts rc10d in a terminal of its own, and waits until every motor is READY."""
+        server = Program("bash", "-ec", self.script(f"exec {text}"), env=self.env())
+        self._servers.append(server)
+        eventually(lambda: not server.running or self.ready(), f"{text}: every motor is READY")
+        assert server.running, server.output
+
+    def watch(self, text: str) -> None:
+        """Looks at it, then presses Ctrl-C."""
+        with Program("bash", "-ec", self.script(f"exec {text}"), env=self.env()) as shown:
+            shown.wait_line("^MOTOR ", PATIENCE_S)
+            shown.interrupt()
+            assert shown.wait() in (0, CTRL_C), shown.output
+
+    def run(self, command: Command) -> None:
+        """Runs it to its end, three times at most."""
+        # A pause of this machine may cost a motor its feedback, or a command its validity.
+        for _ in range(3):
+            done = self.shell(command.text)
+            self._status = done.returncode
+            said = (done.stdout + done.stderr).replace(str(self.run_dir), "/run/rc10d")
+            if (done.returncode != 0) == command.fails and command.complaints <= {
+                *said.splitlines()
+            }:
+                return
+            if self._servers:
+                eventually(lambda: self.shell("rc10ctl clear").returncode == 0, "rc10ctl clear")
+                self.shell("rc10ctl enable")
+        raise AssertionError(f"{command.text}: status {done.returncode}\n{said}")
+
+    def ready(self) -> bool:
+        states = self.shell("rc10ctl watch --json --count 1").stdout
+        return bool(states) and set(re.findall(r'"status":"(\w+)"', states)) == {"READY"}
+
+    def shell(self, text: str) -> subprocess.CompletedProcess[str]:
+        return subprocess.run(
+            ["bash", "-ec", self.script(text)],
+            env=self.env(),
+            capture_output=True,
+            text=True,
+            check=False,
+        )
+
+    def script(self, text: str) -> str:
+        return "\n".join([f"cd {self.folder}", *self._typed_before, text])
+
+    def env(self) -> dict[str, str]:
+        path = [self.folder / "root", Path(sys.executable).parent, BIN, os.environ["PATH"]]
+        return {**os.environ, "PATH": ":".join(map(str, path))}

@@ -1,0 +1,35 @@
+"""docs/python.md: what it shows is run, in its order, against the robot of the demo."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+from hostlib import Daemon
+from hostlib.daemon import REPO
+from hostlib.page import blocks, run
+
+
+@pytest.fixture
+def demo() -> Iterator[Daemon]:
+    with Daemon((REPO / "config" / "demo.yaml").read_text(encoding="utf-8")) as daemon:
+        daemon.wait_ready()
+        yield daemon
+
+
+# A dozen programs, on a machine that may be busy.
+@pytest.mark.timeout(400)
+def test_everything_that_it_shows_works(demo: Daemon, tmp_path: Path) -> None:
+    shown = blocks(REPO / "docs" / "python.md")
+    assert len(shown) >= 9
+    for block in shown:
+        run(block, demo, tmp_path)
+    written = {path.name for path in tmp_path.iterdir()}
+    assert written >= {"all.csv", "yaw.png", "step.png", "wheels.png", "bode.png"}
+    assert written >= {"match.lcmlog.mcap", "match.lcmlog.csv"}
+    assert (tmp_path / "bode.png").read_bytes().startswith(b"\x89PNG")
+    table = (tmp_path / "wheels.csv").read_text(encoding="utf-8").splitlines()
+    assert table[0] == "time_s,front_left.velocity_rpm,yaw.angle_deg"
+    assert len(table) > 50
+    demo.wait_motors(lambda motor: motor["status"] == "READY", "is disabled")

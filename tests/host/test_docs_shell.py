@@ -1,0 +1,163 @@
+"""What pages show for a shell is run, in its order, against simulated robots.
+
+How a page marks what cannot run here: CONTRIBUTING.md.
+"""
+
+from __future__ import annotations
+
+import subprocess
+from collections.abc import Iterator, Mapping
+from pathlib import Path
+from typing import NamedTuple
+
+import pytest
+from hostlib import eventually
+from hostlib.daemon import REPO
+from hostlib.page import blocks, robots
+from hostlib.reader import Command, Reader, commands
+
+DEMO = REPO / "config" / "demo.yaml"
+LIFT = """
+robot: lift
+realtime: preferred
+profiles:
+  m3508: {model: M3508, feedback_timeout_ms: 1000, zero: power_on}
+buses:
+  - name: lift
+    type: sim
+    motors:
+      - {name: lift_left, profile: m3508, id: 1}
+      - {name: lift_right, profile: m3508, id: 2}
+"""
+WRONG = """robot: hero
+buses:
+  - name: chassis
+    interface: can0
+    motors:
+      - {name: left, model: M3508, id: 05}
+      - {name: right, model: M3508, id: 9, curent_limit_a: 10}
+      - {name: yaw, model: GM6020, id: 1, current_limit_a: 20}
+      - {name: roll, model: M3508, id: 5}
+"""
+# Of a page without hardware.
+SIMULATED = {
+    "interface: can0": "type: sim",
+    "realtime: required": "realtime: preferred",
+    "zero: power_on}": "zero: power_on, feedback_timeout_ms: 1000}",
+}
+MULTICAST = ("239.255.76.67/32", "dev", "lo", "src", "127.0.0.1")
+
+
+class Scene(NamedTuple):
+    """What is there before a page is read."""
+
+    robot: str = ""  # that runs already
+    files: Mapping[str, str] = {}
+
+
+def bench() -> str:
+    (text,) = robots(REPO / "docs" / "first-motor.md")
+    for old, new in SIMULATED.items():
+        text = text.replace(old, new)
+    return text
+
+
+def lift() -> str:
+    module = next(b.text for b in blocks(REPO / "docs" / "modules.md") if "name: lift" in b.text)
+    return LIFT + module
+
+
+SCENES = {
+    "README.md": Scene(robot=DEMO.read_text(), files={"bad.yaml": WRONG}),
+    "docs/adding-a-motor.md": Scene(),
+    "docs/blackbox.md": Scene(robot=DEMO.read_text()),
+    "docs/first-motor.md": Scene(files={"bench.yaml": bench()}),
+    "docs/modules.md": Scene(robot=lift()),
+    "docs/porting-from-stm32.md": Scene(),
+    "docs/quick-start.md": Scene(),
+    "docs/rc10ctl.md": Scene(robot=DEMO.read_text()),
+}
+# Pages that a test of their own reads.
+READ_ELSEWHERE = {"docs/python.md", "docs/tuning.md"}
+SHELL = {"sh", "console"}
+# The translations show what their originals show: tests/docs.
+PAGES = [
+    page
+    for page in sorted(
+        [*REPO.glob("*.md"), *REPO.glob("docs/**/*.md"), *REPO.glob("examples/**/*.md")]
+    )
+    if not page.name.endswith(".zh-CN.md")
+]
+
+
+@pytest.fixture
+def no_route() -> Iterator[None]:
+    """The reader adds the route of the multicast."""
+    subprocess.run(["ip", "route", "del", *MULTICAST], check=True)
+    yield
+    subprocess.run(["ip", "route", "replace", *MULTICAST], check=True)
+
+
+def test_every_page_that_shows_commands_is_read() -> None:
+    shown = {
+        str(page.relative_to(REPO))
+        for page in PAGES
+        if any(block.kind in SHELL for block in blocks(page))
+    }
+    assert shown == SCENES.keys() | READ_ELSEWHERE
+
+
+def read(name: str, folder: Path) -> None:
+    scene = SCENES[name]
+    with Reader(folder) as reader:
+        for file, text in scene.files.items():
+            (folder / file).write_text(text)
+        if scene.robot:
+            (folder / "robot.yaml").write_text(scene.robot)
+            reader.serve("rc10d -c robot.yaml")
+        if name == "docs/blackbox.md":
+            reader.run(Command("rc10ctl estop", ""))
+            copies = eventually(lambda: list(reader.run_dir.glob("*-estop.blackbox")), "a copy")
+            reader.replace |= {"FILE": str(copies[0]), "DIR": "out"}
+        for block in blocks(REPO / name):
+            if block.kind in SHELL:
+                reader.read(block)
+            elif block.kind == "python" and name == "README.md":
+                (folder / "program.py").write_text(block.text)
+                reader.run(Command("python program.py", ""))
+
+
+# Some programs, on a machine that may be busy.
+@pytest.mark.timeout(300)
+@pytest.mark.parametrize("name", sorted(SCENES.keys() - {"docs/quick-start.md"}))
+def test_what_a_page_shows_works(name: str, tmp_path: Path) -> None:
+    read(name, tmp_path)
+
+
+@pytest.mark.timeout(300)
+@pytest.mark.usefixtures("no_route")
+def test_the_quick_start_leads_to_a_motor_that_turns_and_a_picture_of_its_step(
+    tmp_path: Path,
+) -> None:
+    read("docs/quick-start.md", tmp_path)
+    assert (tmp_path / "step.png").read_bytes().startswith(b"\x89PNG")
+
+
+def test_a_command_that_ends_otherwise_than_shown_is_told(tmp_path: Path) -> None:
+    with Reader(tmp_path) as reader:
+        for text, output in (
+            ("exit 1", ""),
+            ("true", "rc10ctl: no"),
+            ("echo rc10ctl: yes; exit 1", "rc10ctl: no\n"),
+        ):
+            with pytest.raises(AssertionError, match=text):
+                reader.run(Command(text, output))
+
+
+def test_a_shown_complaint_is_a_command_that_fails() -> None:
+    page = REPO / "docs" / "rc10ctl.md"
+    shown = [c for block in blocks(page) if block.kind == "console" for c in commands(block)]
+    assert [c.text for c in shown if c.fails][:2] == [
+        "rc10ctl set front_left velocity 120 --for 1s",
+        "rc10ctl zero rear_left",
+    ]

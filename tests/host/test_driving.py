@@ -1,0 +1,168 @@
+"""Motors obey who may command them, through rc10ctl and through LCM."""
+
+from __future__ import annotations
+
+import os
+import signal
+import sys
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+from hostlib import Daemon, Motor, Program, eventually
+
+import rc10
+
+CLIENT = Path(__file__).parent / "hostlib" / "lcm_client.py"
+
+
+def without_torque(motor: Motor) -> bool:
+    rest = {"mode": "coast", "command_value": 0, "owner": ""}
+    return rest.items() <= motor.items()
+
+
+def turning(rpm: float, within_rpm: float = 3.0) -> Callable[[Motor], bool]:
+    return lambda motor: abs(float(motor["velocity_rpm"]) - rpm) < within_rpm
+
+
+def lcm_client(daemon: Daemon, rpm: float) -> Program:
+    """A separate process that enables the wheel and keeps it turning through LCM."""
+    return Program(sys.executable, CLIENT, str(rpm), env=daemon.env)
+
+
+def test_nothing_is_active_at_start(daemon: Daemon) -> None:
+    state = daemon.state()
+    assert state["state"] == "RUN"
+    for motor in state["motors"]:
+        assert motor["status"] == "READY"
+        assert without_torque(motor)
+
+
+def test_a_motor_that_is_not_enabled_does_not_obey(daemon: Daemon) -> None:
+    done = daemon.ctl("set", "wheel", "velocity", 60, "--for", "100ms")
+    assert done.returncode == 1
+    assert "rc10ctl enable wheel" in done.stderr
+    with rc10.connect("host") as robot:
+        robot.wait_for_state()
+        robot.command(wheel=rc10.velocity_rpm(60))
+        tick = robot.wait_for_state().tick
+        while robot.wait_for_state().tick < tick + 50:
+            assert robot.motor("wheel").status is rc10.MotorStatus.READY
+            assert robot.motor("wheel").command_value == 0
+
+
+def test_rc10ctl_drives_and_lets_go(daemon: Daemon) -> None:
+    daemon.must("enable", "wheel")
+    with daemon.drive("set", "wheel", "velocity", "60", "--for", "60s") as setting:
+        wheel = daemon.wait_motor("wheel", turning(60), "turns at 60 rpm")
+        assert wheel["status"] == "ACTIVE"
+        assert wheel["mode"] == "velocity"
+        assert wheel["target"] == 60
+        assert wheel["owner"] == "rc10ctl"
+        assert daemon.state()["motors"][1]["status"] == "READY"
+        setting.signal(signal.SIGINT)
+        assert setting.wait() == 0
+    daemon.wait_motor("wheel", without_torque, "coasts")
+    daemon.must("disable", "wheel")
+    daemon.wait_motor("wheel", lambda m: m["status"] == "READY", "is READY again")
+
+
+def test_the_next_rc10ctl_gets_the_motor_at_once(daemon: Daemon) -> None:
+    daemon.must("enable", "wheel")
+    for rpm in (30, -30, 60):
+        daemon.must("set", "wheel", "velocity", rpm, "--for", "100ms")
+    wheel = daemon.wait_motor("wheel", without_torque, "coasts")
+    assert wheel["owner"] == ""
+    # Not "none": a pause of this machine may let a command expire on its way.
+    assert "not owner" not in daemon.must("stats")
+
+
+@pytest.mark.usefixtures("daemon")
+def test_a_python_client_drives_through_lcm() -> None:
+    with rc10.connect("host", client="tester") as robot:
+        robot.wait_for_state()
+        robot.enable("wheel")
+        for t_s in robot.rate(100):
+            robot.command(wheel=rc10.velocity_rpm(-90))
+            wheel = robot.motor("wheel")
+            if abs(wheel.velocity_rpm + 90) < 3:
+                break
+            assert t_s < 20, f"does not follow: {wheel}"
+        assert wheel.mode is rc10.Mode.VELOCITY
+        assert wheel.target == -90
+        assert wheel.owner == "tester"
+        robot.disable("wheel")
+        eventually(
+            lambda: robot.spin(0.1) and robot.motor("wheel").status is rc10.MotorStatus.READY,
+            "disabled",
+        )
+        assert robot.motor("wheel").mode is rc10.Mode.COAST
+
+
+def test_a_position_is_reached(daemon: Daemon) -> None:
+    # Not a geared motor: a pause of some milliseconds of this machine would lose its reference,
+    # as it should. tests/kernel does that one, in virtual time.
+    daemon.must("enable", "yaw")
+    with daemon.drive("set", "yaw", "angle", "90", "--for", "60s"):
+        daemon.wait_motor("yaw", lambda m: abs(m["angle_deg"] - 90) < 2, "stands at 90 deg")
+
+
+def test_a_client_that_is_killed_lets_go(daemon: Daemon) -> None:
+    with lcm_client(daemon, 60) as client:
+        daemon.wait_motor("wheel", turning(60), "turns at 60 rpm")
+        client.signal(signal.SIGKILL)
+        client.wait()
+        wheel = daemon.wait_motor("wheel", without_torque, "has no target")
+        # The lease has lapsed, the motor is still enabled.
+        assert wheel["status"] == "ACTIVE"
+
+
+def test_a_client_that_stops_sending_lets_go(daemon: Daemon) -> None:
+    with lcm_client(daemon, 60) as client:
+        daemon.wait_motor("wheel", turning(60), "turns at 60 rpm")
+        client.signal(signal.SIGSTOP)
+        daemon.wait_motor("wheel", without_torque, "has no target")
+        client.signal(signal.SIGCONT)
+        daemon.wait_motor("wheel", turning(60), "turns at 60 rpm again")
+
+
+def test_the_gateway_is_started_again(daemon: Daemon) -> None:
+    with lcm_client(daemon, 60):
+        daemon.wait_motor("wheel", turning(60), "turns at 60 rpm")
+        gateway = eventually(daemon.gateway_pid, "rc10-lcm runs")
+        tick = daemon.state()["tick"]
+        os.kill(gateway, signal.SIGKILL)
+        daemon.wait_motor("wheel", without_torque, "has no target")
+        eventually(lambda: daemon.gateway_pid() not in (0, gateway), "a new rc10-lcm")
+        daemon.wait_motor("wheel", turning(60), "obeys again")
+        assert daemon.state()["tick"] > tick
+    assert "killed by signal 9" in daemon.program.output
+
+
+@pytest.mark.parametrize("how", ["rc10ctl", "lcm"])
+def test_an_emergency_stop_latches(daemon: Daemon, how: str) -> None:
+    with lcm_client(daemon, 60):
+        daemon.wait_motor("wheel", turning(60), "turns at 60 rpm")
+        if how == "rc10ctl":
+            daemon.must("estop")
+        else:
+            with rc10.connect("host", client="stopper") as robot:
+                robot.estop()
+        state = daemon.wait_state(
+            lambda s: s["state"] == "ESTOP" and without_torque(s["motors"][0]), "stopped"
+        )
+        assert all(motor["status"] != "ACTIVE" for motor in state["motors"])
+        daemon.wait_motor("wheel", lambda m: abs(m["velocity_rpm"]) < 0.5, "stands still")
+
+        # The client goes on sending, and nobody can enable.
+        refused = daemon.ctl("enable", "wheel")
+        assert refused.returncode == 1
+        assert "ESTOP" in refused.stderr
+        assert daemon.state()["state"] == "ESTOP"
+
+        daemon.must("clear")
+        state = daemon.state()
+        assert state["state"] == "RUN"
+        assert all(motor["status"] == "READY" for motor in state["motors"])
+        assert without_torque(state["motors"][0])
+    daemon.must("enable", "wheel")

@@ -1,0 +1,77 @@
+"""How rc10d starts, stops, and gets out of the way of another."""
+
+from __future__ import annotations
+
+import re
+import signal
+from pathlib import Path
+
+import pytest
+from hostlib import Daemon, Program, eventually
+from hostlib.daemon import BIN
+
+SUMMARY = re.compile(r"(\d+) ticks, (\d+) missed; wake latency .* max (\d+) us")
+
+
+@pytest.mark.parametrize("number", [signal.SIGTERM, signal.SIGINT])
+def test_a_signal_ends_it_soon_and_well(daemon: Daemon, number: signal.Signals) -> None:
+    daemon.must("enable")
+    with daemon.drive("set", "wheel", "velocity", "60", "--for", "60s"):
+        daemon.wait_motor("wheel", lambda m: m["velocity_rpm"] > 50, "turns")
+        daemon.program.signal(number)
+        assert daemon.program.wait(2.0) == 0
+    summary = SUMMARY.search(daemon.program.output)
+    assert summary, daemon.program.output
+    assert int(summary[1]) > 0
+    assert daemon.processes() == {}
+    assert not (daemon.run_dir / "host.sock").exists()
+
+
+def test_it_ticks_at_its_rate(daemon: Daemon) -> None:
+    first = daemon.state()
+    last = daemon.wait_state(lambda s: s["tick"] >= first["tick"] + 2000, "2000 ticks")
+    elapsed_ms = (last["mono_us"] - first["mono_us"]) / 1000
+    missed = daemon.stats()["missed_ticks"]
+    # Ticks lie on a grid: the missed ones are skipped, never made up for.
+    assert last["tick"] - first["tick"] <= elapsed_ms + 1
+    assert last["tick"] - first["tick"] >= elapsed_ms - missed - 1
+
+
+def test_a_second_one_for_the_same_robot_is_refused(daemon: Daemon) -> None:
+    daemon.must("enable", "wheel")
+    tick = daemon.state()["tick"]
+    with Program(BIN / "rc10d", "-c", daemon.config, env=daemon.env) as second:
+        assert second.wait() == 1
+        assert f"pid {daemon.pid}" in second.output
+    # The first is undisturbed.
+    state = daemon.wait_state(lambda s: s["tick"] > tick + 100, "ticks on")
+    assert state["motors"][0]["status"] == "ACTIVE"
+    assert (daemon.run_dir / "host.sock").exists()
+
+
+def test_it_starts_again_after_it_was_killed(daemon: Daemon) -> None:
+    daemon.must("enable", "wheel")
+    daemon.kill()
+    eventually(lambda: daemon.processes() == {}, "its gateway ended too")
+    daemon.start()
+    state = daemon.wait_ready()
+    assert all(motor["status"] == "READY" for motor in state["motors"])
+    assert "LCM" in daemon.program.output
+
+
+def test_an_unwritable_run_folder_is_named(tmp_path: Path) -> None:
+    file = tmp_path / "file"
+    file.touch()
+    config = tmp_path / "robot.yaml"
+    with Daemon() as daemon:
+        config.write_text(daemon.config.read_text())
+    env = {"RC10_RUN_DIR": str(file / "run")}
+    with Program(BIN / "rc10d", "-c", config, env=env) as rc10d:
+        assert rc10d.wait() == 1
+        assert str(file) in rc10d.output
+
+
+def test_rc10ctl_says_when_no_daemon_runs(tmp_path: Path) -> None:
+    with Program(BIN / "rc10ctl", "list", env={"RC10_RUN_DIR": str(tmp_path)}) as ctl:
+        assert ctl.wait() == 3
+        assert "rc10d is not running" in ctl.output

@@ -1,0 +1,386 @@
+#include "module/chassis.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <functional>
+#include <numbers>
+
+#include <gmock/gmock.h>
+
+#include "app/planar_motion.hpp"
+#include "fake_robot.hpp"
+#include "module/power_limiter.hpp"
+#include "module/swerve_chassis.hpp"
+
+namespace rc10::test {
+namespace {
+
+using ::testing::HasSubstr;
+
+enum Output : std::size_t { kX, kY, kHeading, kVx, kVy, kWz, kPower, kFactor };
+
+struct Inputs {
+  double vx_m_s = kNoSignal;
+  double vy_m_s = kNoSignal;
+  double wz_deg_s = kNoSignal;
+  double frame = kNoSignal;
+  double follow = kNoSignal;
+  double x_m = kNoSignal;
+  double y_m = kNoSignal;
+  double heading_deg = kNoSignal;
+};
+
+class Sensor : public Module_Base {
+ public:
+  Sensor() : Module_Base({.inputs = {}, .outputs = {"yaw_deg", "relative_yaw_deg"}, .events = {}}) {}
+  void update(const Tick&, ModuleRobot&) noexcept override {}
+};
+
+OwnValues common() {
+  OwnValues own;
+  own.set("max_speed_m_s", 2.0);
+  own.set("max_turn_deg_s", 360.0);
+  own.set("max_acceleration_m_s2", 4.0);
+  own.set("max_turn_acceleration_deg_s2", 720.0);
+  own.set("follow_gain_per_s", 5.0);
+  own.set("power_limit_w", 0.0);
+  own.set("loss_w_per_nm2", 0.0);
+  own.set("wheel_radius_m", 0.076);
+  own.set("track_m", 0.5);
+  own.set("wheelbase_m", 0.4);
+  own.set("centre_distance_m", 0.3);
+  own.set("middle_wheel", std::string{"rear"});
+  return own;
+}
+
+OwnValues section(std::initializer_list<const char*> names, std::size_t first = 0) {
+  OwnValues section;
+  for (const auto* name : names) section.set(name, static_cast<double>(first++));
+  return section;
+}
+
+/// A chassis on motors that do at once what they are told.
+class Chassis : public ::testing::Test {
+ protected:
+  void build(const ModuleType& type, OwnValues own) {
+    ModuleSettings settings;
+    settings.name = "base";
+    settings.own = std::move(own);
+    module_ = std::move(type.build(settings, outlineOf(8)).value());
+    const Sensor imu;
+    ASSERT_TRUE(module_->connect(ModuleDirectory{{{"imu", &imu}}}).has_value());
+  }
+  void buildMecanum() { buildMecanum(common()); }
+  void buildMecanum(OwnValues own) {
+    own.set("wheels", std::vector{section({"front_left", "front_right", "rear_left", "rear_right"})});
+    build(mecanumChassisType(), std::move(own));
+  }
+
+  void give(const Inputs& in) {
+    module_->setInputs(
+        std::array{in.vx_m_s, in.vy_m_s, in.wz_deg_s, in.frame, in.follow, in.x_m, in.y_m, in.heading_deg});
+  }
+  void run(int ticks) {
+    for (int i = 0; i < ticks; ++i) {
+      robot_.update(*module_);
+      for (auto& motor : robot_.motors()) obey(motor);
+    }
+  }
+  static void obey(FakeRobot::Motor& motor) {
+    auto& feedback = motor.feedback;
+    const bool steers = motor.target && motor.target->mode == ControlMode::kAngle;
+    if (steers) {
+      feedback.total_angle_deg += std::remainder(motor.target->value - feedback.total_angle_deg, 360.0);
+      feedback.angle_deg = static_cast<float>(motor.target->value);
+    } else {
+      const double rpm = motor.target ? motor.target->value : 0.0;
+      feedback.velocity_rpm = static_cast<float>(rpm);
+      feedback.total_angle_deg += rpm * 0.006;
+    }
+  }
+  double target(std::size_t motor) { return robot_.motor(motor).target->value; }
+  double output(Output output) { return module_->outputs()[output]; }
+  double speed() { return std::hypot(output(kVx), output(kVy)); }
+
+  /// A square of 1 m, a metre in each direction of `frame`, and back to rest.
+  void driveSquare(double frame) {
+    for (const auto& [vx, vy] : {std::pair{1.0, 0.0}, {0.0, 1.0}, {-1.0, 0.0}, {0.0, -1.0}}) {
+      give({.vx_m_s = vx, .vy_m_s = vy, .wz_deg_s = 0.0, .frame = frame});
+      run(1000);
+      give({});
+      run(300);
+    }
+  }
+
+  FakeRobot robot_{8};
+  std::unique_ptr<Module_Base> module_;
+};
+
+TEST_F(Chassis, MecanumWheelsAreDrivenByTheirNames) {
+  buildMecanum();
+  give({.vx_m_s = 0.5});
+  run(1000);
+  const double rpm = 0.5 / (2.0 * std::numbers::pi * 0.076) * 60.0;
+  for (std::size_t i = 0; i < 4; ++i) EXPECT_NEAR(target(i), rpm, 1e-6);
+  give({.vy_m_s = 0.5});
+  run(1000);
+  EXPECT_NEAR(target(0), -rpm, 1e-6) << "front left, towards the left";
+  EXPECT_NEAR(target(1), rpm, 1e-6);
+  EXPECT_NEAR(target(2), rpm, 1e-6);
+  EXPECT_NEAR(target(3), -rpm, 1e-6);
+}
+
+TEST_F(Chassis, OdometryReturnsToTheStartOfASquare) {
+  buildMecanum();
+  driveSquare(0.0);
+  EXPECT_NEAR(output(kX), 0.0, 1e-9);
+  EXPECT_NEAR(output(kY), 0.0, 1e-9);
+}
+
+TEST_F(Chassis, AccelerationIsLimitedAsAVector) {
+  buildMecanum();
+  give({.vx_m_s = 1.0, .vy_m_s = 1.0});
+  double last = 0.0;
+  for (int i = 0; i < 500; ++i) {
+    run(1);
+    EXPECT_LE(speed() - last, 0.004 + 1e-6);
+    last = speed();
+  }
+  EXPECT_NEAR(output(kVx), output(kVy), 1e-6);
+}
+
+TEST_F(Chassis, SpeedIsLimitedInEveryDirectionAndTurningForItself) {
+  buildMecanum();
+  give({.vx_m_s = 30.0, .vy_m_s = 40.0, .wz_deg_s = 0.0});
+  run(3000);
+  EXPECT_NEAR(speed(), 2.0, 1e-6);
+  EXPECT_NEAR(output(kVy) / output(kVx), 4.0 / 3.0, 1e-6);
+}
+
+TEST_F(Chassis, NoWheelIsToldMoreThanItsLimitAndTheDirectionIsKept) {
+  auto own = common();
+  own.set("wheel_limit_rpm", 100.0);
+  buildMecanum(own);
+  give({.vx_m_s = 1.0, .vy_m_s = 0.5, .wz_deg_s = 90.0});
+  run(3000);
+  double fastest = 0.0;
+  for (std::size_t i = 0; i < 4; ++i) fastest = std::max(fastest, std::fabs(target(i)));
+  EXPECT_NEAR(fastest, 100.0, 1e-6);
+  EXPECT_NEAR(output(kVy) / output(kVx), 0.5, 1e-6);
+  EXPECT_NEAR(output(kWz) / output(kVx), 90.0, 1e-4);
+}
+
+TEST_F(Chassis, InTheFrameOfTheWorldItKeepsItsDirectionWhileItTurns) {
+  buildMecanum();
+  give({.vx_m_s = 0.5, .wz_deg_s = 90.0, .frame = 1.0});
+  run(4000);
+  EXPECT_NEAR(output(kY), 0.0, 0.02) << "straight along x";
+  EXPECT_GT(output(kX), 1.8);
+}
+
+TEST_F(Chassis, TheHeadingOfAnImuIsBelieved) {
+  auto own = common();
+  own.set("heading", std::string{"imu.yaw_deg"});
+  buildMecanum(own);
+  robot_.setOutput({.module = 0, .signal = 0}, 90.0);
+  run(1);
+  give({.vx_m_s = 0.5, .frame = 1.0});
+  run(1000);
+  EXPECT_NEAR(output(kHeading), 90.0, 1e-6);
+  EXPECT_NEAR(output(kVy), -0.5, 1e-6) << "the world's x is to its right";
+}
+
+TEST_F(Chassis, FollowsTheGimbalAndDrivesWhereItLooks) {
+  auto own = common();
+  own.set("follow", std::string{"imu.relative_yaw_deg"});
+  buildMecanum(own);
+  robot_.setOutput({.module = 0, .signal = 1}, 30.0);
+  give({.vx_m_s = 1.0, .frame = 2.0, .follow = 1.0});
+  run(1000);
+  EXPECT_NEAR(output(kVx), std::cos(30.0 * std::numbers::pi / 180.0), 1e-3);
+  EXPECT_NEAR(output(kVy), std::sin(30.0 * std::numbers::pi / 180.0), 1e-3);
+  EXPECT_NEAR(output(kWz), 150.0, 1e-3);
+  robot_.setOutput({.module = 0, .signal = 1}, kNoSignal);
+  run(2000);
+  EXPECT_NEAR(speed(), 0.0, 1e-9) << "nobody knows where the gimbal looks";
+}
+
+TEST_F(Chassis, OneWheelThatIsNotThereStopsThemAll) {
+  buildMecanum();
+  give({.vx_m_s = 1.0});
+  run(100);
+  robot_.motor(2).status = MotorStatus::kFault;
+  run(1);
+  for (std::size_t i = 0; i < 4; ++i) EXPECT_FALSE(robot_.motor(i).target.has_value());
+}
+
+TEST_F(Chassis, SilenceLeavesTheWheelsToTheirFallbacks) {
+  buildMecanum();
+  give({.vx_m_s = 1.0});
+  run(100);
+  module_->clearInputs();
+  run(1);
+  EXPECT_FALSE(robot_.motor(0).target.has_value());
+}
+
+TEST_F(Chassis, ACommandGoesOnFromHowItRolls) {
+  buildMecanum();
+  run(2);
+  const double rolls_rpm = 0.4 / (2.0 * std::numbers::pi * 0.076) * 60.0;
+  for (std::size_t i = 0; i < 4; ++i) robot_.motor(i).feedback.velocity_rpm = static_cast<float>(rolls_rpm);
+  robot_.update(*module_);
+  give({.vx_m_s = 0.4});
+  robot_.update(*module_);
+  EXPECT_NEAR(target(0), rolls_rpm, 0.01);
+}
+
+TEST_F(Chassis, ThePoseCanBeSet) {
+  buildMecanum();
+  give({.x_m = 3.0, .y_m = -1.0, .heading_deg = 45.0});
+  run(1);
+  EXPECT_EQ(output(kX), 3.0);
+  EXPECT_EQ(output(kY), -1.0);
+  EXPECT_NEAR(output(kHeading), 45.0, 1e-9);
+}
+
+TEST_F(Chassis, AnAngleThatJumpsIsNoWay) {
+  buildMecanum();
+  run(2);
+  for (std::size_t i = 0; i < 4; ++i) robot_.motor(i).feedback.total_angle_deg = 100'000.0;
+  run(1);
+  EXPECT_EQ(output(kX), 0.0);
+  for (std::size_t i = 0; i < 4; ++i) robot_.motor(i).feedback.total_angle_deg = kNoSignal;
+  run(2);
+  EXPECT_EQ(output(kX), 0.0);
+}
+
+TEST_F(Chassis, OldFeedbackSaysNothing) {
+  buildMecanum();
+  run(2);
+  EXPECT_EQ(output(kVx), 0.0);
+  robot_.motor(3).feedback.samples = 0;
+  robot_.update(*module_);
+  robot_.motor(3).feedback.samples = 0;
+  class Stale : public FakeRobot {
+   public:
+    Stale() : FakeRobot(8) {}
+    [[nodiscard]] const MotorFeedback& feedback(std::size_t) const noexcept override { return never_; }
+
+   private:
+    MotorFeedback never_;
+  } stale;
+  stale.update(*module_);
+  EXPECT_TRUE(std::isnan(output(kVx)));
+  EXPECT_FALSE(std::isnan(output(kX))) << "where it was last";
+}
+
+TEST_F(Chassis, Omni3TurnsOnTheSpotWithAllWheelsAlike) {
+  auto own = common();
+  own.set("wheels", std::vector{section({"left", "right", "middle"})});
+  build(omni3ChassisType(), own);
+  give({.wz_deg_s = 90.0});
+  run(1000);
+  EXPECT_NEAR(target(0), target(1), 1e-9);
+  EXPECT_NEAR(target(0), target(2), 1e-9);
+  EXPECT_NEAR(output(kWz), 90.0, 1e-4);
+  EXPECT_NEAR(output(kHeading), 90.0 * 0.9375, 0.2) << "an eighth of a second to get there";
+}
+
+TEST_F(Chassis, Omni4DrivesASquare) {
+  auto own = common();
+  own.set("wheels", std::vector{section({"front_left", "front_right", "rear_left", "rear_right"})});
+  build(omni4ChassisType(), own);
+  driveSquare(0.0);
+  EXPECT_NEAR(output(kX), 0.0, 1e-9);
+  EXPECT_NEAR(output(kY), 0.0, 1e-9);
+}
+
+TEST_F(Chassis, DifferentialDrivesForwardAndTurnsButNotSideways) {
+  auto own = common();
+  own.set("wheels", std::vector{section({"left", "right"})});
+  build(differentialChassisType(), own);
+  give({.vx_m_s = 0.5, .vy_m_s = 0.5, .wz_deg_s = 30.0});
+  run(1000);
+  EXPECT_NEAR(output(kVx), 0.5, 1e-6);
+  EXPECT_EQ(output(kVy), 0.0);
+  EXPECT_NEAR(output(kWz), 30.0, 1e-4);
+  EXPECT_GT(target(1), target(0));
+}
+
+TEST_F(Chassis, SwerveSteersBeforeItDrivesAndDrivesASquare) {
+  auto own = common();
+  own.set("drive", std::vector{section({"front_left", "front_right", "rear_left", "rear_right"})});
+  own.set("steer", std::vector{section({"front_left", "front_right", "rear_left", "rear_right"}, 4)});
+  build(swerveChassisType(), own);
+  give({.vy_m_s = 1.0});
+  run(1);
+  EXPECT_NEAR(std::fabs(std::remainder(target(4) - 90.0, 180.0)), 0.0, 1e-6)
+      << "towards the left, or backwards";
+  EXPECT_NEAR(target(0), 0.0, 1e-6) << "it still points forward";
+  run(500);
+  EXPECT_NEAR(output(kVy), 1.0, 1e-6);
+  module_->clearInputs();
+  run(2);
+  give({.x_m = 0.0, .y_m = 0.0, .heading_deg = 0.0});
+  run(1);
+  driveSquare(0.0);
+  EXPECT_NEAR(output(kX), 0.0, 0.01);
+  EXPECT_NEAR(output(kY), 0.0, 0.01);
+}
+
+TEST_F(Chassis, SwerveDoesNotDriveWhileOneWheelDoesNotKnowItsDirection) {
+  auto own = common();
+  own.set("drive", std::vector{section({"front_left", "front_right", "rear_left", "rear_right"})});
+  own.set("steer", std::vector{section({"front_left", "front_right", "rear_left", "rear_right"}, 4)});
+  build(swerveChassisType(), own);
+  robot_.motor(6).feedback.zeroed = false;
+  give({.vx_m_s = 1.0});
+  run(1);
+  EXPECT_FALSE(robot_.motor(0).target.has_value());
+}
+
+TEST(ChassisTypes, RefuseAMotorTwiceAndOnesThatTakeNoVelocities) {
+  ModuleSettings settings;
+  settings.own = common();
+  auto wheels = section({"front_left", "front_right", "rear_left", "rear_right"});
+  wheels.set("rear_left", 0.0);
+  settings.own.set("wheels", std::vector{wheels});
+  EXPECT_EQ(mecanumChassisType().build(settings, outlineOf(4)).error().message,
+            "wheels.rear_left: motor 'motor0' is given twice");
+  auto robot = outlineOf(4);
+  robot.motors[1].modes = ModeSet{ControlMode::kCurrent};
+  EXPECT_THAT(mecanumChassisType().build(settings, robot).error().message,
+              HasSubstr("wheels.front_right: motor 'motor1' takes no velocity targets"));
+}
+
+TEST(ChassisTypes, ALimitOfTheWheelsMustComeFromSomewhere) {
+  ModuleSettings settings;
+  settings.own = common();
+  settings.own.set("wheels", std::vector{section({"front_left", "front_right", "rear_left", "rear_right"})});
+  auto robot = outlineOf(4);
+  for (auto& motor : robot.motors) motor.velocity_limit_rpm = 0.0F;
+  EXPECT_THAT(mecanumChassisType().build(settings, robot).error().message,
+              HasSubstr("wheel_limit_rpm: is missing"));
+}
+
+TEST(PowerLimiter, SlowsDownUntilThePowerFitsAndRecovers) {
+  PowerLimiter limiter{100.0};
+  double factor = 1.0;
+  // What drives takes power in proportion to the square of how fast it is told to be.
+  for (int i = 0; i < 2000; ++i) factor = limiter.step(250.0 * factor * factor, 0.001F);
+  EXPECT_NEAR(250.0 * factor * factor, 100.0, 1.0);
+  for (int i = 0; i < 2000; ++i) factor = limiter.step(10.0, 0.001F);
+  EXPECT_EQ(factor, 1.0);
+  for (int i = 0; i < 10'000; ++i) factor = limiter.step(1e9, 0.001F);
+  EXPECT_EQ(factor, PowerLimiter::kLeast);
+  EXPECT_EQ(limiter.step(kNoSignal, 0.001F), PowerLimiter::kLeast) << "what is not known changes nothing";
+}
+
+TEST(PowerLimiter, WithoutALimitEverythingIsAllowed) {
+  PowerLimiter limiter{0.0};
+  EXPECT_EQ(limiter.step(1e9, 0.001F), 1.0);
+}
+
+}  // namespace
+}  // namespace rc10::test

@@ -1,0 +1,118 @@
+#pragma once
+
+#include <limits>
+#include <map>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "module/module_base.hpp"
+#include "module/module_type.hpp"
+
+namespace rc10::test {
+
+/// A robot as a module sees it: what the test says, and what the module asked for in its last update.
+class FakeRobot : public ModuleRobot {
+ public:
+  struct Motor {
+    MotorFeedback feedback;
+    MotorStatus status = MotorStatus::kActive;
+    bool obeys = true;
+    std::optional<Target> target;  ///< Of the last update; empty: none.
+  };
+  struct Asked {
+    RobotRequest request{};
+    std::optional<std::size_t> motor;  ///< Empty: all.
+    double angle_deg = 0.0;
+  };
+
+  explicit FakeRobot(std::size_t motor_count) : motors_(motor_count) {
+    for (auto& motor : motors_) {
+      motor.feedback.samples = 1;
+      motor.feedback.zeroed = true;
+      motor.feedback.angle_deg = 0.0F;
+      motor.feedback.total_angle_deg = 0.0;
+      motor.feedback.velocity_rpm = 0.0F;
+      motor.feedback.current_a = 0.0F;
+    }
+  }
+
+  /// One tick of the module, 1 ms after the last; every motor has fresh feedback.
+  void update(Module_Base& module) {
+    tick_.now += std::chrono::milliseconds{1};
+    ++tick_.index;
+    for (auto& motor : motors_) {
+      motor.target.reset();
+      motor.feedback.received = tick_.now;
+      ++motor.feedback.samples;
+    }
+    asked_.clear();
+    sent_.clear();
+    events_.clear();
+    module.update(tick_, *this);
+  }
+
+  [[nodiscard]] Motor& motor(std::size_t index) { return motors_.at(index); }
+  [[nodiscard]] std::vector<Motor>& motors() { return motors_; }
+  [[nodiscard]] const std::vector<Asked>& asked() const { return asked_; }
+  /// What was sent to inputs of other modules.
+  [[nodiscard]] const std::map<std::pair<std::size_t, std::size_t>, double>& sent() const { return sent_; }
+  [[nodiscard]] const std::vector<std::size_t>& events() const { return events_; }
+  [[nodiscard]] MonotonicTime now() const { return tick_.now; }
+  void setState(RobotState state) { state_ = state; }
+
+  [[nodiscard]] RobotState state() const noexcept override { return state_; }
+  [[nodiscard]] std::size_t motorCount() const noexcept override { return motors_.size(); }
+  [[nodiscard]] const MotorFeedback& feedback(std::size_t motor) const noexcept override {
+    return motors_[motor].feedback;
+  }
+  [[nodiscard]] MotorStatus status(std::size_t motor) const noexcept override {
+    return motors_[motor].status;
+  }
+  [[nodiscard]] bool obeys(std::size_t motor) const noexcept override {
+    return motors_[motor].obeys && motors_[motor].status == MotorStatus::kActive;
+  }
+  void setTarget(std::size_t motor, const Target& target) noexcept override {
+    motors_[motor].target = target;
+  }
+  void ask(RobotRequest request, std::size_t motor, double angle_deg) noexcept override {
+    asked_.push_back({request, motor, angle_deg});
+  }
+  void askAll(RobotRequest request) noexcept override { asked_.push_back({request, std::nullopt, 0.0}); }
+  [[nodiscard]] double read(SignalPlace output) const noexcept override {
+    const auto found = outputs_.find({output.module, output.signal});
+    return found != outputs_.end() ? found->second : kNoSignal;
+  }
+  /// What an output of another module says from now on.
+  void setOutput(SignalPlace output, double value) { outputs_[{output.module, output.signal}] = value; }
+  void send(SignalPlace input, double value) noexcept override {
+    sent_[{input.module, input.signal}] = value;
+  }
+  void report(std::size_t event) noexcept override { events_.push_back(event); }
+
+ private:
+  Tick tick_{.index = 0, .now = MonotonicTime{std::chrono::seconds{1000}}, .dt_s = 0.001F};
+  std::vector<Motor> motors_;
+  std::vector<Asked> asked_;
+  std::map<std::pair<std::size_t, std::size_t>, double> sent_;
+  std::map<std::pair<std::size_t, std::size_t>, double> outputs_;
+  std::vector<std::size_t> events_;
+  RobotState state_ = RobotState::kRun;
+};
+
+/// A robot whose motors take every mode.
+inline RobotOutline outlineOf(std::size_t motor_count) {
+  RobotOutline outline;
+  for (std::size_t i = 0; i < motor_count; ++i) {
+    outline.motors.push_back({.name = "motor" + std::to_string(i),
+                              .modes = ModeSet{ControlMode::kCurrent, ControlMode::kVelocity,
+                                               ControlMode::kAngle, ControlMode::kTotalAngle},
+                              .velocity_limit_rpm = 400.0F,
+                              .angle_min_deg = -std::numeric_limits<double>::infinity(),
+                              .angle_max_deg = std::numeric_limits<double>::infinity()});
+  }
+  return outline;
+}
+
+}  // namespace rc10::test

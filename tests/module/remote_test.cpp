@@ -1,0 +1,241 @@
+#include "module/remote.hpp"
+
+#include <array>
+
+#include <gmock/gmock.h>
+
+#include "fake_robot.hpp"
+#include "module/dbus_protocol.hpp"
+#include "module/sbus_protocol.hpp"
+
+namespace rc10::test {
+namespace {
+
+using ::testing::Contains;
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+using ::testing::Pair;
+
+class Chassis : public Module_Base {
+ public:
+  Chassis() : Module_Base({.inputs = {"vx_m_s", "frame"}, .outputs = {}, .events = {}}) {}
+  void update(const Tick&, ModuleRobot&) noexcept override {}
+};
+
+OwnValues row(std::initializer_list<std::pair<const char*, OwnValues::Value>> values) {
+  OwnValues row;
+  for (const auto& [key, value] : values) row.set(key, value);
+  return row;
+}
+
+ModuleSettings settings(const std::string& protocol, const std::string& channel, const std::string& arm) {
+  ModuleSettings settings;
+  settings.name = "remote";
+  auto& own = settings.own;
+  own.set("port", std::string{"/dev/ttyX"});
+  own.set("protocol", protocol);
+  own.set("lost_ms", 100.0);
+  own.set("disable_s", 1.0);
+  if (!arm.empty()) own.set("arm_channel", arm);
+  own.set("arm_above", 0.5);
+  own.set(
+      "sticks",
+      std::vector{row(
+          {{"channel", channel}, {"to", std::string{"base.vx_m_s"}}, {"scale", 2.0}, {"deadband", 0.1}})});
+  own.set("constants", std::vector{row({{"to", std::string{"base.frame"}}, {"value", 2.0}})});
+  return settings;
+}
+
+/// A remote whose frames come every 14 ms, as long as the test lets them.
+class Remote : public ::testing::Test {
+ protected:
+  void build(const ModuleSettings& settings) {
+    module_ = std::move(remoteType().build(settings, outlineOf(2)).value());
+    auto need = module_->takeSerialNeed();
+    ASSERT_TRUE(need.has_value());
+    protocol_ = std::move(need->protocol);
+    const Chassis base;
+    ASSERT_TRUE(module_->connect(ModuleDirectory{{{"base", &base}}}).has_value());
+  }
+  void build() { build(settings("dbus", "right_y", "left_switch")); }
+
+  void run(int ticks, bool talks = true) {
+    for (int i = 0; i < ticks; ++i) {
+      if (talks && ++since_frame_ >= 14) {
+        since_frame_ = 0;
+        const auto frame = DbusProtocol::encode(dbus_);
+        protocol_->parse_stream(frame, robot_.now());
+      }
+      robot_.update(*module_);
+      asked_.insert(asked_.end(), robot_.asked().begin(), robot_.asked().end());
+      events_.insert(events_.end(), robot_.events().begin(), robot_.events().end());
+    }
+  }
+  void armSwitch(Dr16Input::Switch position) {
+    dbus_.left_switch = position;
+    run(30);
+  }
+  void arm() {
+    armSwitch(Dr16Input::Switch::kDown);
+    armSwitch(Dr16Input::Switch::kUp);
+  }
+  double armed() { return module_->outputs()[1]; }
+  bool asks(RobotRequest request) {
+    return std::any_of(asked_.begin(), asked_.end(),
+                       [&](const auto& asked) { return asked.request == request; });
+  }
+
+  FakeRobot robot_{2};
+  std::unique_ptr<Module_Base> module_;
+  std::unique_ptr<I_Protocol> protocol_;
+  Dr16Input dbus_;
+  int since_frame_ = 0;
+  std::vector<FakeRobot::Asked> asked_;
+  std::vector<std::size_t> events_;
+};
+
+TEST_F(Remote, ASwitchThatIsUpAtTheStartEnablesNothing) {
+  build();
+  dbus_.left_switch = Dr16Input::Switch::kUp;
+  run(200);
+  EXPECT_THAT(asked_, IsEmpty());
+  EXPECT_EQ(armed(), 0.0);
+  EXPECT_THAT(robot_.sent(), IsEmpty());
+}
+
+TEST_F(Remote, TheSwitchGoingUpEnablesWhatIsReadyAndDownDisablesAll) {
+  build();
+  for (auto& motor : robot_.motors()) motor.status = MotorStatus::kReady;
+  arm();
+  EXPECT_EQ(armed(), 1.0);
+  EXPECT_TRUE(asks(RobotRequest::kEnable));
+  asked_.clear();
+  armSwitch(Dr16Input::Switch::kMiddle);
+  ASSERT_FALSE(asked_.empty());
+  EXPECT_EQ(asked_.front().request, RobotRequest::kDisable);
+  EXPECT_FALSE(asked_.front().motor.has_value()) << "all";
+}
+
+TEST_F(Remote, SticksBecomeInputsWhileItIsArmed) {
+  build();
+  dbus_.right_vertical = 660;
+  run(50);
+  EXPECT_THAT(robot_.sent(), IsEmpty());
+  arm();
+  EXPECT_THAT(robot_.sent(), Contains(Pair(std::pair<std::size_t, std::size_t>{0, 0}, 2.0)));
+  EXPECT_THAT(robot_.sent(), Contains(Pair(std::pair<std::size_t, std::size_t>{0, 1}, 2.0)))
+      << "the constant";
+  dbus_.right_vertical = 60;  // within the deadband
+  run(30);
+  EXPECT_THAT(robot_.sent(), Contains(Pair(std::pair<std::size_t, std::size_t>{0, 0}, 0.0)));
+  dbus_.right_vertical = -363;  // 0.55: half of what lies beyond the deadband
+  run(30);
+  EXPECT_NEAR((robot_.sent().at({0, 0})), -1.0, 1e-6);
+}
+
+TEST_F(Remote, WithoutAnArmSwitchItCommandsWheneverItIsHeard) {
+  build(settings("dbus", "right_y", ""));
+  dbus_.right_vertical = 660;
+  run(50);
+  EXPECT_FALSE(robot_.sent().empty());
+}
+
+TEST_F(Remote, LostItCommandsNothingWithinTheTimeThatIsSet) {
+  build();
+  arm();
+  run(100, false);
+  EXPECT_THAT(robot_.sent(), IsEmpty());
+  EXPECT_THAT(events_, Contains(0U));
+  EXPECT_FALSE(asks(RobotRequest::kDisable));
+  run(30);
+  EXPECT_FALSE(robot_.sent().empty()) << "a short gap: it goes on, the switch is still up";
+}
+
+TEST_F(Remote, LostForLongItDisablesAllAndTheSwitchMustGoDownAndUpAgain) {
+  build();
+  arm();
+  asked_.clear();
+  run(1200, false);
+  EXPECT_TRUE(asks(RobotRequest::kDisable));
+  EXPECT_EQ(armed(), 0.0);
+  asked_.clear();
+  run(100);
+  EXPECT_THAT(robot_.sent(), IsEmpty());
+  EXPECT_THAT(asked_, IsEmpty());
+  for (auto& motor : robot_.motors()) motor.status = MotorStatus::kReady;
+  arm();
+  EXPECT_TRUE(asks(RobotRequest::kEnable));
+  EXPECT_EQ(armed(), 1.0);
+}
+
+TEST_F(Remote, AfterAPowerCutTheSwitchAloneRecoversTheRobot) {
+  build();
+  robot_.motor(0).status = MotorStatus::kFault;
+  robot_.motor(1).status = MotorStatus::kOffline;
+  arm();
+  EXPECT_TRUE(asks(RobotRequest::kClear));
+  robot_.motor(0).status = MotorStatus::kReady;
+  robot_.motor(1).status = MotorStatus::kReady;
+  asked_.clear();
+  run(250);
+  EXPECT_TRUE(asks(RobotRequest::kEnable)) << "drives that come back a little later too";
+}
+
+TEST_F(Remote, AMotorThatFailsRightAfterItWasEnabledIsNotEnabledAgain) {
+  build();
+  arm();
+  asked_.clear();
+  robot_.motor(0).status = MotorStatus::kReady;  // its drive was restarted
+  run(500);
+  EXPECT_THAT(asked_, IsEmpty());
+}
+
+TEST_F(Remote, WhatFailsLaterStaysDown) {
+  build();
+  arm();
+  run(3500);
+  asked_.clear();
+  robot_.motor(0).status = MotorStatus::kFault;
+  run(1000);
+  EXPECT_THAT(asked_, IsEmpty());
+}
+
+TEST_F(Remote, AnEstopIsNotItsToClear) {
+  build();
+  robot_.setState(RobotState::kEstop);
+  robot_.motor(0).status = MotorStatus::kFault;
+  armSwitch(Dr16Input::Switch::kDown);
+  asked_.clear();
+  armSwitch(Dr16Input::Switch::kUp);
+  EXPECT_THAT(asked_, IsEmpty());
+}
+
+TEST_F(Remote, AReceiverThatSaysFailsafeIsLost) {
+  build(settings("sbus", "ch3", ""));
+  SbusInput sbus;
+  sbus.raw.fill(SbusInput::kCentre);
+  const auto send = [&] {
+    const auto frame = SbusProtocol::encode(sbus);
+    for (int i = 0; i < 10; ++i) robot_.update(*module_);
+    protocol_->parse_stream(frame, robot_.now());
+    robot_.update(*module_);
+  };
+  send();
+  send();
+  EXPECT_FALSE(robot_.sent().empty());
+  sbus.failsafe = true;
+  send();
+  EXPECT_THAT(robot_.sent(), IsEmpty());
+  EXPECT_EQ(module_->outputs()[0], 0.0);
+}
+
+TEST(RemoteType, NamesTheChannelsThatThereAre) {
+  EXPECT_THAT(remoteType().build(settings("sbus", "right_y", ""), outlineOf(1)).error().message,
+              HasSubstr("sticks: there is no channel 'right_y'; there are ch1, ch2"));
+  EXPECT_THAT(remoteType().build(settings("dbus", "right_y", "ch5"), outlineOf(1)).error().message,
+              HasSubstr("arm_channel: there is no channel 'ch5'; there are right_x"));
+}
+
+}  // namespace
+}  // namespace rc10::test

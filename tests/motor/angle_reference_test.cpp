@@ -1,0 +1,69 @@
+#include "motor/angle_reference.hpp"
+
+#include <gtest/gtest.h>
+
+#include <limits>
+
+namespace rc10 {
+namespace {
+
+TEST(AngleReference, IsUnknownUntilSomebodySetsIt) {
+  AngleReference reference({});
+  EXPECT_FALSE(reference.setZero(0.0)) << "there is no position yet";
+  reference.update(700.0);
+  EXPECT_FALSE(reference.known());
+  EXPECT_EQ(reference.totalAngleDeg(), 0.0);
+  EXPECT_TRUE(reference.setZero(30.0));
+  EXPECT_TRUE(reference.known());
+  reference.update(710.0);
+  EXPECT_EQ(reference.totalAngleDeg(), 40.0);
+  EXPECT_EQ(reference.positionFor(30.0), 700.0);
+}
+
+TEST(AngleReference, RefusesAZeroThatIsNoNumber) {
+  AngleReference reference({});
+  reference.update(1.0);
+  EXPECT_FALSE(reference.setZero(std::numeric_limits<double>::quiet_NaN()));
+  EXPECT_FALSE(reference.known());
+}
+
+TEST(AngleReference, AnAbsoluteEncoderReadsItsZeroAnglesWithinHalfATurn) {
+  AngleReference reference({.absolute = true, .zero_deg = 30.0});
+  reference.update(350.0);
+  EXPECT_TRUE(reference.known());
+  EXPECT_DOUBLE_EQ(reference.totalAngleDeg(), -40.0);
+  EXPECT_DOUBLE_EQ(reference.positionFor(0.0), 390.0);
+}
+
+TEST(AngleReference, TheFirstPositionIsZeroIfTheConfigurationSaysSo) {
+  AngleReference reference({.absolute = true, .zero_deg = 30.0, .zero_at_power_on = true});
+  reference.update(350.0);
+  EXPECT_TRUE(reference.known());
+  EXPECT_EQ(reference.totalAngleDeg(), 0.0);
+}
+
+TEST(AngleReference, ALostReferenceGoesOnWithoutAJump) {
+  AngleReference reference({.zero_at_power_on = true});
+  reference.update(10.0);
+  reference.update(20.0);
+  reference.lose();
+  EXPECT_FALSE(reference.known());
+  reference.update(21.0);
+  EXPECT_FALSE(reference.known()) << "power-on is over";
+  EXPECT_EQ(reference.totalAngleDeg(), 11.0);
+}
+
+TEST(AngleReference, AnAbsoluteEncoderFindsItsReferenceAgain) {
+  AngleReference reference({.absolute = true});
+  reference.update(10.0);
+  reference.update(370.0);
+  EXPECT_EQ(reference.totalAngleDeg(), 370.0);
+  reference.lose();
+  EXPECT_FALSE(reference.known());
+  reference.update(371.0);
+  EXPECT_TRUE(reference.known());
+  EXPECT_DOUBLE_EQ(reference.totalAngleDeg(), 11.0);
+}
+
+}  // namespace
+}  // namespace rc10

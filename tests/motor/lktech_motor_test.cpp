@@ -1,0 +1,485 @@
+#include "motor/lktech_motor.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <random>
+#include <string>
+#include <vector>
+
+#include "bus/byte_order.hpp"
+#include "motor/lktech_group.hpp"
+#include "motor/lktech_model.hpp"
+#include "support/frame_bytes.hpp"
+#include "support/own_defaults.hpp"
+
+namespace rc10::test {
+namespace {
+
+using testing::Contains;
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsEmpty;
+using testing::Not;
+
+MotorSettings settingsOf(std::string model = "LK-MF9025", int id = 1, bool grouped = false) {
+  MotorSettings settings;
+  settings.name = "motor" + std::to_string(id);
+  settings.model = std::move(model);
+  settings.id = id;
+  settings.own = ownDefaults(lktechFamily());
+  settings.own.set("group", grouped ? 1.0 : 0.0);
+  return settings;
+}
+
+std::unique_ptr<LKTech_Motor> motorOf(const MotorSettings& settings) {
+  return std::make_unique<LKTech_Motor>(settings, lktechFamily().traits(settings.model, settings.own));
+}
+
+CanFrame readingReply(int current_raw, int rotor_deg_s, std::uint16_t encoder,
+                      std::int8_t temperature_c = 30) {
+  CanFrame frame = frameOf("141#A100000000000000");
+  frame.data[1] = static_cast<std::uint8_t>(temperature_c);
+  writeLittleEndian(frame.data, 2, static_cast<std::int16_t>(current_raw));
+  writeLittleEndian(frame.data, 4, static_cast<std::int16_t>(rotor_deg_s));
+  writeLittleEndian(frame.data, 6, encoder);
+  return frame;
+}
+
+CanFrame angleReply(std::int32_t raw) {
+  CanFrame frame = frameOf("141#9200000000000000");
+  writeLittleEndian(frame.data, 1, raw);
+  return frame;
+}
+
+class LKTechMotor : public testing::Test {
+ protected:
+  explicit LKTechMotor(const MotorSettings& settings = settingsOf()) : motor_(motorOf(settings)) {}
+
+  FrameVerdict hear(CanFrame frame) {
+    frame.received = now_;
+    EXPECT_TRUE(motor_->matchesFrame(frame));
+    return motor_->updateFeedback(frame);
+  }
+  std::vector<std::string> tick() {
+    now_ += std::chrono::milliseconds{1};
+    const Tick tick{.index = ++ticks_, .now = now_, .dt_s = 0.001F};
+    motor_->update(tick);
+    std::array<CanFrame, kMaxFramesPerPacker> out{};
+    const auto count = motor_->packCommand(tick, out);
+    std::vector<std::string> sent;
+    for (std::size_t i = 0; i < count; ++i) sent.push_back(textOf(out[i]));
+    return sent;
+  }
+  /// A drive that is on, at this angle of its encoder, after so many turns of the output.
+  void comeOnline(std::uint16_t encoder = 0x2000, int turns = 0) {
+    hear(
+        frameOf("141#9A1E6009640000"
+                "00"));  // 30 degC, 24 V, on, no error
+    hear(readingReply(0, 0, encoder));
+    const double deg = encoder * 360.0 / 65536.0 + turns * 360.0;
+    hear(angleReply(static_cast<std::int32_t>(std::lround(deg * motor_gear_ * 100.0))));
+    hear(readingReply(0, 0, encoder));
+  }
+  std::string told(const Target& target) {
+    motor_->order(FrameKind::kCommand, target);
+    return tick().at(0);
+  }
+
+  std::unique_ptr<LKTech_Motor> motor_;
+  double motor_gear_ = 1.0;
+  MonotonicTime now_{std::chrono::hours{1}};
+  std::uint64_t ticks_ = 0;
+};
+
+class GearedLKTechMotor : public LKTechMotor {
+ protected:
+  GearedLKTechMotor() : LKTechMotor(settingsOf("LK-MG5010E-i10")) { motor_gear_ = 10.0; }
+};
+
+TEST_F(LKTechMotor, RestsAndPollsWithACurrentOfZero) {
+  EXPECT_THAT(tick(), ElementsAre("141#A100000000000000"));
+  std::array<CanFrame, 4> out{};
+  ASSERT_EQ(motor_->packRest(out), 1U);
+  EXPECT_EQ(textOf(out[0]), "141#A100000000000000");
+  motor_->order(FrameKind::kPoll);
+  EXPECT_THAT(tick(), ElementsAre("141#A100000000000000", "141#9A00000000000000"));
+}
+
+TEST_F(LKTechMotor, NeverTurnsTheDriveOff) {
+  for (int kind = 0; kind < 9; ++kind) {
+    motor_->order(static_cast<FrameKind>(kind));
+    for (int i = 0; i < 400; ++i) EXPECT_THAT(tick(), Not(Contains("141#8000000000000000")));
+  }
+}
+
+TEST_F(LKTechMotor, ReadsItsFeedback) {
+  comeOnline();
+  hear(readingReply(248, -360, 0x1FF0, 40));
+  const auto& feedback = motor_->feedback();
+  EXPECT_NEAR(feedback.current_a, 1.998, 1e-3);
+  EXPECT_NEAR(feedback.torque_nm, 1.998 * 0.32, 1e-3);
+  EXPECT_NEAR(feedback.velocity_rpm, -60.0, 1e-4);
+  EXPECT_FLOAT_EQ(feedback.temperature_c, 40.0F);
+  EXPECT_FLOAT_EQ(feedback.voltage_v, 24.0F);
+  EXPECT_TRUE(feedback.zeroed) << "its encoder is that of the output";
+  EXPECT_NEAR(feedback.total_angle_deg, 45.0 - 16 * 360.0 / 65536.0, 1e-9);
+}
+
+TEST_F(GearedLKTechMotor, SpeedIsThatOfTheRotorAndTheEncoderThatOfTheOutput) {
+  comeOnline(0x4000);
+  hear(readingReply(100, 3600, 0x4000));
+  EXPECT_NEAR(motor_->feedback().velocity_rpm, 60.0, 1e-4);
+  EXPECT_NEAR(motor_->feedback().total_angle_deg, 90.0, 1e-9);
+  EXPECT_NEAR(motor_->feedback().torque_nm, 100 * 66.0 / 4096.0 * 0.1 * 10.0, 1e-4);
+}
+
+TEST_F(GearedLKTechMotor, AnglesAreCommandedInTheDrivesOwnTurns) {
+  comeOnline(0x4000, 3);  // 1170 deg of the output by the drive's count, 90 deg by ours
+  EXPECT_NEAR(motor_->feedback().total_angle_deg, 90.0, 1e-9);
+  const auto frame = frameOf(told({.mode = ControlMode::kTotalAngle, .value = 100.0}));
+  EXPECT_EQ(frame.data[0], 0xA4);
+  EXPECT_EQ(readLittleEndian<std::int32_t>(frame.payload(), 4), 1180 * 10 * 100);
+}
+
+TEST_F(LKTechMotor, TakesNoSampleBeforeItKnowsTheDrivesTurns) {
+  hear(readingReply(0, 0, 100));
+  EXPECT_EQ(motor_->feedback().samples, 0U);
+  hear(angleReply(55));
+  hear(readingReply(0, 0, 100));
+  EXPECT_EQ(motor_->feedback().samples, 1U);
+}
+
+TEST_F(LKTechMotor, AnotherControllersCommandIsNeverFeedback) {
+  comeOnline();
+  hear(readingReply(10, 60, 0x2000));
+  const MotorFeedback before = motor_->feedback();
+  for (const auto& frame :
+       {lktech::currentCommand(1, 1234), lktech::velocityCommand(1, -5000.0, 700),
+        lktech::positionCommand(1, 90.0, 5.0), lktech::request(1, lktech::Code::kStatus),
+        lktech::request(1, lktech::Code::kReading), lktech::request(1, lktech::Code::kAngle),
+        lktech::request(1, lktech::Code::kOff)}) {
+    for (const bool sent_here : {false, true}) {
+      CanFrame foreign = frame;
+      foreign.sent_here = sent_here;
+      hear(foreign);
+    }
+  }
+  EXPECT_EQ(motor_->feedback().samples, before.samples);
+  EXPECT_EQ(motor_->feedback().velocity_rpm, before.velocity_rpm);
+  EXPECT_EQ(motor_->feedback().voltage_v, before.voltage_v);
+  EXPECT_EQ(motor_->feedback().total_angle_deg, before.total_angle_deg);
+  EXPECT_EQ(motor_->complaint().fault, FaultCode::kNone);
+}
+
+TEST_F(LKTechMotor, AFreezingMotorIsUnderstoodAndACommandFromThisComputerStillIsNot) {
+  comeOnline();
+  hear(frameOf("141#9A00600964000000"));  // 0 degC
+  hear(readingReply(0, 0, 0x2000, 0));
+  const auto samples = motor_->feedback().samples;
+  hear(readingReply(0, 5, 0, 0));
+  EXPECT_EQ(motor_->feedback().samples, samples + 1);
+  CanFrame foreign = lktech::currentCommand(1, 100);
+  foreign.sent_here = true;
+  hear(foreign);
+  EXPECT_EQ(motor_->feedback().samples, samples + 1);
+}
+
+TEST_F(LKTechMotor, CountsTurnsAtAnySpeed) {
+  std::mt19937 random(5);  // NOLINT: the same numbers every time
+  for (const double rpm : {3.0, -200.0, 900.0, -2500.0}) {
+    motor_ = motorOf(settingsOf());
+    comeOnline(0, 0);
+    hear(angleReply(0));
+    hear(angleReply(0));
+    hear(angleReply(0));  // at 0 indeed
+    hear(readingReply(0, static_cast<int>(rpm * 6.0), 0));
+    double deg = 0.0;
+    const double first_deg = motor_->feedback().total_angle_deg;
+    for (int i = 0; i < 2000; ++i) {
+      const auto gap_ms = 1 + static_cast<int>(random() % 12);
+      now_ += std::chrono::milliseconds{gap_ms};
+      deg += rpm * 6.0 * gap_ms * 1e-3;
+      const double turn = deg / 360.0 - std::floor(deg / 360.0);
+      hear(readingReply(0, static_cast<int>(rpm * 6.0), static_cast<std::uint16_t>(turn * 65536.0)));
+    }
+    EXPECT_NEAR(motor_->feedback().total_angle_deg - first_deg, deg, 0.01) << rpm;
+  }
+}
+
+TEST_F(LKTechMotor, ASilenceIsBridgedWhenTheDrivesTurnsSaySo) {
+  comeOnline(0x2000, 2);
+  ASSERT_TRUE(motor_->setZero(0.0));
+  now_ += std::chrono::seconds{5};
+  hear(readingReply(0, 0, 0x2400));
+  const auto samples = motor_->feedback().samples;
+  hear(angleReply(static_cast<std::int32_t>((720.0 + 0x2400 * 360.0 / 65536.0) * 100.0)));
+  hear(readingReply(0, 0, 0x2400));
+  EXPECT_EQ(motor_->feedback().samples, samples + 1);
+  EXPECT_NEAR(motor_->feedback().total_angle_deg, 0x400 * 360.0 / 65536.0, 1e-6);
+  EXPECT_TRUE(motor_->feedback().zeroed);
+}
+
+TEST_F(LKTechMotor, TurnsThatTheDriveHasForgottenAreAComplaintWhileItWasToObey) {
+  comeOnline(0x2000, 2);
+  (void)told({.mode = ControlMode::kTotalAngle, .value = 10.0});
+  hear(angleReply(4500));  // no turns any more
+  EXPECT_EQ(motor_->complaint().fault, FaultCode::kDriveStopped);
+  EXPECT_EQ(tick().at(0), "141#A100000000000000") << "not started again";
+  motor_->clearComplaint();
+  EXPECT_EQ(motor_->complaint().fault, FaultCode::kNone);
+}
+
+TEST_F(LKTechMotor, ADriveThatIsOffWhileItIsToObeyIsAComplaint) {
+  comeOnline();
+  motor_->order(FrameKind::kPoll);
+  (void)tick();
+  hear(frameOf("141#9A1E600964001000"));
+  EXPECT_EQ(motor_->complaint().fault, FaultCode::kNone);
+  motor_->order(FrameKind::kIdle);
+  (void)tick();
+  EXPECT_EQ(motor_->complaint().fault, FaultCode::kDriveStopped);
+}
+
+TEST_F(LKTechMotor, EveryKnownErrorHasItsFaultCodeAndIsClearedOnRequestOnly) {
+  comeOnline();
+  motor_->order(FrameKind::kPoll);
+  for (const LKTechFault& fault : lktechFaults()) {
+    CanFrame frame = frameOf("141#9A1E600964000000");
+    frame.data[7] = fault.bit;
+    hear(frame);
+    EXPECT_EQ(motor_->complaint().fault, fault.fault) << fault.words;
+    EXPECT_EQ(motor_->complaint().native_code, fault.bit);
+    EXPECT_THAT(tick(), Not(Contains("141#9B00000000000000")));
+  }
+  motor_->clearComplaint();
+  EXPECT_THAT(tick(), Contains("141#9B00000000000000"));
+  EXPECT_THAT(tick(), Not(Contains("141#9B00000000000000")));
+  hear(frameOf("141#9B1E600964000000"));
+  EXPECT_EQ(motor_->complaint().fault, FaultCode::kNone);
+}
+
+TEST_F(LKTechMotor, EnablingTurnsTheDriveOnAndMakesSureThatItObeys) {
+  comeOnline();
+  motor_->order(FrameKind::kEnable);
+  EXPECT_EQ(motor_->sequenceProgress(), SequenceProgress::kPending);
+  EXPECT_THAT(tick(), Contains("141#9A00000000000000"));
+  hear(frameOf("141#9A1E600964001000"));  // off
+  const auto second = tick();
+  EXPECT_THAT(second, Contains("141#8800000000000000"));
+  EXPECT_EQ(second.at(0), "141#A100000000000000") << "without torque";
+  hear(frameOf("141#8800000000000000"));
+  EXPECT_EQ(motor_->sequenceProgress(), SequenceProgress::kPending) << "a copy proves nothing";
+  hear(frameOf("141#9A1E600964000000"));
+  EXPECT_THAT(tick(), Contains("141#9200000000000000"));
+  hear(angleReply(4500));
+  (void)tick();
+  EXPECT_EQ(motor_->sequenceProgress(), SequenceProgress::kPending);
+  hear(readingReply(0, 0, 0x2000));
+  EXPECT_EQ(motor_->sequenceProgress(), SequenceProgress::kDone);
+  EXPECT_EQ(tick().at(0), "141#A100000000000000");
+}
+
+TEST_F(LKTechMotor, EnablingFailsWithoutAnAnswerOrWithAnError) {
+  motor_->order(FrameKind::kEnable);
+  int ms = 0;
+  for (; ms < 1000 && motor_->sequenceProgress() == SequenceProgress::kPending; ++ms) (void)tick();
+  EXPECT_EQ(motor_->sequenceProgress(), SequenceProgress::kFailed);
+  EXPECT_LT(ms, 300);
+  motor_->order(FrameKind::kPoll);
+  (void)tick();
+  motor_->order(FrameKind::kEnable);
+  (void)tick();
+  EXPECT_EQ(motor_->sequenceProgress(), SequenceProgress::kPending);
+  hear(frameOf("141#9A1E600964000001"));
+  EXPECT_EQ(motor_->sequenceProgress(), SequenceProgress::kFailed);
+}
+
+TEST_F(LKTechMotor, LimitsBoundWhatIsSentAndSaySo) {
+  MotorSettings settings = settingsOf();
+  settings.effort_limit = 1.0F;
+  settings.velocity_limit_rpm = 50.0F;
+  motor_ = motorOf(settings);
+  comeOnline();
+  EXPECT_EQ(told({.mode = ControlMode::kCurrent, .value = 1e12}), "141#A10000007C000000");
+  EXPECT_EQ(motor_->limits(), kLimitCurrent);
+  EXPECT_EQ(told({.mode = ControlMode::kVelocity, .value = 1e12}), "141#A2007C0030750000")
+      << "124 raw are 1 A";
+  EXPECT_EQ(motor_->limits(), kLimitVelocity);
+  EXPECT_EQ(told({.mode = ControlMode::kTotalAngle, .value = -1e300}), "141#A4002C0100000080");
+  EXPECT_EQ(motor_->limits(), kLimitAngle);
+  motor_->derate(0.0F);
+  EXPECT_EQ(told({.mode = ControlMode::kVelocity, .value = 10.0}), "141#A100000000000000");
+}
+
+TEST_F(LKTechMotor, NonFiniteAndHugeTargetsAreHarmless) {
+  comeOnline();
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  for (const double value : {std::nan(""), kInfinity, -kInfinity, 1e300, -1e300}) {
+    for (int mode = 0; mode < kControlModeCount; ++mode) {
+      Target target{.mode = static_cast<ControlMode>(mode), .value = value};
+      target.torque_ff_nm = static_cast<float>(value);
+      EXPECT_EQ(told(target).size(), 20U);
+      EXPECT_FALSE(std::isnan(motor_->commandValue())) << mode;
+    }
+  }
+}
+
+TEST_F(LKTechMotor, FramesThatAreNotItsOwnAreLeftAlone) {
+  EXPECT_FALSE(motor_->matchesFrame(frameOf("142#9C1E0000000000")));
+  CanFrame frame = readingReply(0, 0, 1);
+  frame.id.extended = true;
+  EXPECT_FALSE(motor_->matchesFrame(frame));
+  frame = readingReply(0, 0, 1);
+  frame.fd = true;
+  EXPECT_FALSE(motor_->matchesFrame(frame));
+  EXPECT_EQ(motor_->updateFeedback(frame), FrameVerdict::kMalformed);
+  frame.fd = false;
+  frame.type = FrameType::kRemote;
+  EXPECT_EQ(motor_->updateFeedback(frame), FrameVerdict::kMalformed);
+  EXPECT_EQ(hear(frameOf("141#A11E")), FrameVerdict::kMalformed);
+}
+
+TEST_F(LKTechMotor, AnythingMayArriveAndReadingsStayFinite) {
+  std::mt19937 random(1);  // NOLINT: the same numbers every time
+  comeOnline();
+  for (int i = 0; i < 20000; ++i) {
+    constexpr std::array<std::uint8_t, 7> kCodes{0x92, 0x9A, 0x9B, 0x9C, 0xA1, 0xA2, 0xA4};
+    CanFrame frame = frameOf("141#0000000000000000");
+    for (auto& byte : std::span(frame.data).first(8)) byte = static_cast<std::uint8_t>(random());
+    frame.data[0] = kCodes[random() % kCodes.size()];
+    now_ += std::chrono::milliseconds{random() % 200};
+    hear(frame);
+    if (random() % 3 == 0) (void)told({.mode = ControlMode::kTotalAngle, .value = 10.0});
+    const auto& feedback = motor_->feedback();
+    ASSERT_TRUE(std::isfinite(feedback.total_angle_deg) && std::isfinite(feedback.velocity_rpm));
+    ASSERT_TRUE(feedback.angle_deg >= 0.0F && feedback.angle_deg < 360.0F);
+  }
+}
+
+class LKTechGroup : public testing::Test {
+ protected:
+  static std::string packed(LKTech_Group& group) {
+    std::array<CanFrame, 4> out{};
+    return group.packCommand(Tick{}, out) == 1 ? textOf(out[0]) : "";
+  }
+  static void tell(LKTech_Motor& motor, double amperes, std::uint64_t index = 0) {
+    motor.order(FrameKind::kCommand, {.mode = ControlMode::kCurrent, .value = amperes});
+    CanFrame reply = readingReply(0, 0, 0x2000);
+    CanFrame turns = angleReply(4500);
+    reply.received = turns.received = MonotonicTime{std::chrono::hours{1}};
+    (void)motor.updateFeedback(reply);
+    (void)motor.updateFeedback(turns);
+    motor.update(Tick{.index = index, .now = reply.received, .dt_s = 0.001F});
+  }
+};
+
+TEST_F(LKTechGroup, PacksEachMembersCurrentIntoItsSlot) {
+  LKTech_Group group;
+  auto one = motorOf(settingsOf("LK-MF9025", 1, true));
+  auto four = motorOf(settingsOf("LK-MF9025", 4, true));
+  ASSERT_TRUE(group.registerMotor(*one));
+  ASSERT_TRUE(group.registerMotor(*four));
+  tell(*one, 100 * 33.0 / 4096.0);
+  tell(*four, -2000 * 33.0 / 4096.0);
+  EXPECT_EQ(packed(group), "280#640000000000A3F9") << "its peak current is less than the frame could say";
+  std::array<CanFrame, 4> out{};
+  for (std::size_t i = 0; i < one->packCommand(Tick{}, out); ++i) EXPECT_NE(out[i].data[0], 0xA1);
+}
+
+TEST_F(LKTechGroup, AMemberAtRestHasAZeroAndTheOthersRun) {
+  LKTech_Group group;
+  auto one = motorOf(settingsOf("LK-MF9025", 1, true));
+  auto two = motorOf(settingsOf("LK-MF9025", 2, true));
+  ASSERT_TRUE(group.registerMotor(*one) && group.registerMotor(*two));
+  tell(*one, 1.0);
+  tell(*two, 1.0);
+  two->order(FrameKind::kPoll);
+  two->update(Tick{});
+  EXPECT_EQ(packed(group), "280#7C00000000000000");
+}
+
+TEST_F(LKTechGroup, RestIsAFrameOfZerosAndMembersLeaveItToTheGroup) {
+  LKTech_Group group;
+  std::array<CanFrame, 4> out{};
+  EXPECT_EQ(group.packRest(out), 0U);
+  auto one = motorOf(settingsOf("LK-MF9025", 1, true));
+  ASSERT_TRUE(group.registerMotor(*one));
+  ASSERT_EQ(group.packRest(out), 1U);
+  EXPECT_EQ(textOf(out[0]), "280#0000000000000000");
+  EXPECT_EQ(one->packRest(out), 0U);
+}
+
+TEST_F(LKTechGroup, NothingIsSentWhenNoMembersTurnHasCome) {
+  LKTech_Group group;
+  auto settings = settingsOf("LK-MF9025", 1, true);
+  settings.command_divider = 2;
+  auto one = motorOf(settings);
+  ASSERT_TRUE(group.registerMotor(*one));
+  tell(*one, 1.0, 1);
+  EXPECT_EQ(packed(group), "");
+  tell(*one, 1.0, 2);
+  EXPECT_EQ(packed(group), "280#7C00000000000000");
+}
+
+TEST_F(LKTechGroup, RefusesTakenSlotsAndMotorsWithoutOneNamingThem) {
+  LKTech_Group group;
+  auto one = motorOf(settingsOf("LK-MF9025", 1, true));
+  auto again = motorOf(settingsOf("LK-MG5010E-i10", 1, true));
+  auto far = motorOf(settingsOf("LK-MF9025", 5, true));
+  auto single = motorOf(settingsOf("LK-MF9025", 2));
+  ASSERT_TRUE(group.registerMotor(*one));
+  EXPECT_THAT(group.registerMotor(*one).error().message, HasSubstr("already"));
+  EXPECT_THAT(group.registerMotor(*again).error().message, HasSubstr("LK-MF9025 id 1"));
+  EXPECT_THAT(group.registerMotor(*far).error().message, HasSubstr("ids 1 to 4"));
+  EXPECT_THAT(group.registerMotor(*single).error().message, HasSubstr("itself"));
+}
+
+TEST_F(LKTechGroup, TheFamilyMakesTheGroupOnceForABusAndRegistersBothHalves) {
+  UniqueFd none;
+  auto bus = fdCANbus::adopt("can0", std::move(none), false);
+  BusParts parts(*bus);
+  std::vector<std::unique_ptr<Motor_Base>> motors;
+  for (int id = 1; id <= 4; ++id) {
+    auto built = lktechFamily().build(settingsOf("LK-MF9025", id, true), parts);
+    ASSERT_TRUE(built) << built.error().message;
+    motors.push_back(std::move(*built));
+  }
+  EXPECT_EQ(bus->packers().size(), 5U);
+  EXPECT_NE(parts.find<LKTech_Group>({0x280, false}), nullptr);
+  EXPECT_FALSE(lktechFamily().build(settingsOf("LK-MF9025", 4, true), parts));
+}
+
+TEST(LKTechFamily, KnowsItsModelsAndWhatAGroupCannot) {
+  const auto& family = lktechFamily();
+  for (const auto model : family.models()) {
+    auto own = ownDefaults(family);
+    const auto traits = family.traits(model, own);
+    EXPECT_EQ(traits.max_id, 32);
+    EXPECT_TRUE(traits.asked && traits.absolute && !traits.watchdog);
+    EXPECT_GT(traits.effort_full_scale, 0.0F);
+    EXPECT_TRUE(traits.modes.contains(ControlMode::kTotalAngle));
+    own.set("group", 1.0);
+    const auto grouped = family.traits(model, own);
+    EXPECT_EQ(grouped.max_id, 4);
+    EXPECT_FALSE(grouped.modes.contains(ControlMode::kVelocity));
+    EXPECT_EQ(grouped.frames.hold, Provision::kUnsupported);
+  }
+}
+
+TEST(LKTechFamily, TellsThatADriveObeysTheSharedFrameEvenAlone) {
+  const auto use = lktechFamily().busUse(settingsOf("LK-MF9025", 3));
+  std::vector<std::uint32_t> obeyed;
+  for (const auto& filter : use.obeys) obeyed.push_back(filter.id.value);
+  EXPECT_THAT(obeyed, ElementsAre(0x143, 0x280, 0x281, 0x282, 0x288));
+  EXPECT_TRUE(use.layout.empty());
+  EXPECT_EQ(lktechFamily().busUse(settingsOf("LK-MF9025", 5)).obeys.size(), 1U);
+  const auto grouped = lktechFamily().busUse(settingsOf("LK-MF9025", 3, true));
+  EXPECT_EQ(grouped.commands[0].id.value, 0x280U);
+  EXPECT_FALSE(grouped.layout.empty());
+}
+
+}  // namespace
+}  // namespace rc10::test

@@ -1,0 +1,213 @@
+#include "motor/motor_guard.hpp"
+
+#include <gtest/gtest.h>
+
+namespace rc10::test {
+namespace {
+
+using namespace std::chrono_literals;
+
+class MotorGuardTest : public ::testing::Test {
+ protected:
+  static MotorFeedback seen(float velocity_rpm, float temperature_c) {
+    MotorFeedback feedback;
+    feedback.velocity_rpm = velocity_rpm;
+    feedback.temperature_c = temperature_c;
+    return feedback;
+  }
+  /// One sample and one tick, a millisecond later.
+  MotorGuard::Verdict step(std::uint32_t limits = 0) {
+    ++feedback.samples;
+    now += 1ms;
+    return look(limits);
+  }
+  /// One tick without a new sample.
+  MotorGuard::Verdict tickOnly() {
+    now += 1ms;
+    return look(0);
+  }
+  MotorGuard::Verdict look(std::uint32_t limits) {
+    return guard.step({.feedback = feedback,
+                       .target = target,
+                       .effort = effort_a,
+                       .unit = CommandUnit::kAmpere,
+                       .limits = limits,
+                       .now = now});
+  }
+
+  MonotonicTime now{1000s};
+  MotorFeedback feedback = seen(100.0F, 30.0F);
+  Target target;
+  float effort_a = 0.0F;
+  MotorGuard guard{{.overspeed_rpm = 700.0F,
+                    .temperature_derate_c = 80.0F,
+                    .temperature_trip_c = 100.0F,
+                    .stall_time = 200ms,
+                    .stall_rpm = 10.0F}};
+};
+
+TEST_F(MotorGuardTest, FindsNothingWrongWithAMotorThatTurns) {
+  for (int i = 0; i < 1000; ++i) {
+    const auto verdict = step(kLimitCurrent);
+    ASSERT_EQ(verdict.fault, FaultCode::kNone);
+    ASSERT_EQ(verdict.derating, 1.0F);
+    ASSERT_EQ(verdict.limits, 0U);
+  }
+}
+
+TEST_F(MotorGuardTest, TripsOnTheThirdSampleThatIsTooFast) {
+  feedback.velocity_rpm = -701.0F;
+  EXPECT_EQ(step().fault, FaultCode::kNone);
+  EXPECT_EQ(step().fault, FaultCode::kNone);
+  EXPECT_EQ(step().fault, FaultCode::kOverspeed);
+}
+
+TEST_F(MotorGuardTest, OneSampleCountsOnceHoweverManyTicksSeeIt) {
+  feedback.velocity_rpm = 701.0F;
+  (void)step();
+  for (int i = 0; i < 10; ++i) EXPECT_EQ(tickOnly().fault, FaultCode::kNone);
+}
+
+TEST_F(MotorGuardTest, AStrangeSampleAmongGoodOnesIsNoSpeed) {
+  for (int i = 0; i < 30; ++i) {
+    feedback.velocity_rpm = i % 3 == 0 ? 100.0F : 5000.0F;
+    EXPECT_EQ(step().fault, FaultCode::kNone);
+  }
+}
+
+TEST_F(MotorGuardTest, TakesCurrentAwayFromAHotMotorAndTripsAtTheEnd) {
+  feedback.temperature_c = 80.0F;
+  EXPECT_EQ(step().derating, 1.0F);
+  feedback.temperature_c = 95.0F;
+  EXPECT_FLOAT_EQ(step().derating, 0.25F);
+  EXPECT_EQ(step().limits, kLimitTemperature);
+  EXPECT_EQ(step().fault, FaultCode::kNone);
+  feedback.temperature_c = 100.0F;
+  EXPECT_EQ(step().derating, 0.0F);
+  EXPECT_EQ(step().fault, FaultCode::kOverheated);
+}
+
+TEST_F(MotorGuardTest, ATemperatureThatIsNotReportedIsNoTemperature) {
+  feedback.temperature_c = kNotReported;
+  EXPECT_EQ(step().derating, 1.0F);
+  EXPECT_EQ(step().fault, FaultCode::kNone);
+}
+
+TEST_F(MotorGuardTest, AStallIsPushingWithoutTurningForSomeTime) {
+  feedback.velocity_rpm = 3.0F;
+  for (int i = 0; i < 200; ++i) ASSERT_EQ(step(kLimitCurrent).fault, FaultCode::kNone) << i;
+  EXPECT_EQ(step(kLimitCurrent).fault, FaultCode::kStalled);
+  EXPECT_EQ(step(kLimitCurrent).limits, kLimitStall);
+}
+
+TEST_F(MotorGuardTest, StandingStillWithoutPushingIsNoStall) {
+  feedback.velocity_rpm = 0.0F;
+  for (int i = 0; i < 1000; ++i) ASSERT_EQ(step().fault, FaultCode::kNone);
+}
+
+TEST_F(MotorGuardTest, EveryStartFromRestCountsAnew) {
+  feedback.velocity_rpm = 0.0F;
+  for (int i = 0; i < 10; ++i) {
+    for (int j = 0; j < 150; ++j) ASSERT_EQ(step(kLimitCurrent).fault, FaultCode::kNone);
+    guard.reset();
+  }
+}
+
+TEST_F(MotorGuardTest, AStallMayBeAFlagOnly) {
+  guard = MotorGuard{{.stall_time = 200ms, .stall_rpm = 10.0F, .stall_trips = false}};
+  feedback.velocity_rpm = 0.0F;
+  for (int i = 0; i < 300; ++i) ASSERT_EQ(step(kLimitCurrent).fault, FaultCode::kNone);
+  EXPECT_EQ(step(kLimitCurrent).limits, kLimitStall);
+}
+
+TEST_F(MotorGuardTest, WatchesNothingThatIsNotConfigured) {
+  guard = MotorGuard{GuardConfig{}};
+  feedback = seen(1e6F, 1000.0F);
+  for (int i = 0; i < 1000; ++i) ASSERT_EQ(step(kLimitCurrent).fault, FaultCode::kNone);
+}
+
+class MotionGuardTest : public MotorGuardTest {
+ protected:
+  MotionGuardTest() {
+    guard = MotorGuard{{.following_error_deg = 15.0,
+                        .following_error_time = 100ms,
+                        .encoder_jumps = true,
+                        .frozen_a = 1.0F,
+                        .runaway_rpm = 48.0F}};
+    feedback.current_a = 0.0F;
+    feedback.total_angle_deg = 0.0;
+  }
+  /// So many samples, and the first fault of them.
+  FaultCode run(int samples, std::uint32_t limits = 0) {
+    for (int i = 0; i < samples; ++i) {
+      if (const auto fault = step(limits).fault; fault != FaultCode::kNone) return fault;
+    }
+    return FaultCode::kNone;
+  }
+};
+
+TEST_F(MotionGuardTest, FarFromTheTargetForLongEnoughIsAFault) {
+  target = {.mode = ControlMode::kTotalAngle, .value = 16.0};
+  EXPECT_EQ(run(100), FaultCode::kNone);
+  EXPECT_EQ(run(1), FaultCode::kFollowingError);
+}
+
+TEST_F(MotionGuardTest, NearTheTargetNowAndThenIsNone) {
+  target = {.mode = ControlMode::kTotalAngle, .value = 16.0};
+  for (int i = 0; i < 10; ++i) {
+    feedback.total_angle_deg = 0.0;
+    EXPECT_EQ(run(90), FaultCode::kNone);
+    feedback.total_angle_deg = 2.0;
+    EXPECT_EQ(run(1), FaultCode::kNone);
+  }
+}
+
+TEST_F(MotionGuardTest, AJumpOfTheEncoderIsAFaultAtOnceButNotOneFromBefore) {
+  feedback.jumps = 3;  // before it was ACTIVE
+  EXPECT_EQ(run(10), FaultCode::kNone);
+  feedback.jumps = 4;
+  EXPECT_EQ(run(1), FaultCode::kEncoderJump);
+}
+
+TEST_F(MotionGuardTest, ReadingsThatStandStillThoughCurrentIsCommandedAreAFault) {
+  effort_a = 5.0F;
+  EXPECT_EQ(run(200), FaultCode::kNone);
+  EXPECT_EQ(run(2), FaultCode::kFrozen);
+}
+
+TEST_F(MotionGuardTest, ABlockedMotorWhoseCurrentIsAsCommandedIsNotFrozen) {
+  effort_a = 5.0F;
+  feedback.current_a = 4.8F;
+  EXPECT_EQ(run(1000), FaultCode::kNone);
+}
+
+TEST_F(MotionGuardTest, ReadingsThatChangeByOneBitAreNotFrozen) {
+  effort_a = 5.0F;
+  for (int i = 0; i < 500; ++i) {
+    feedback.total_angle_deg += i % 100 == 0 ? 0.01 : 0.0;
+    EXPECT_EQ(run(1), FaultCode::kNone);
+  }
+}
+
+TEST_F(MotionGuardTest, GainingSpeedAgainstAllTheTorqueIsARunaway) {
+  effort_a = 20.0F;
+  feedback.velocity_rpm = -10.0F;
+  EXPECT_EQ(run(10, kLimitCurrent), FaultCode::kNone);
+  feedback.velocity_rpm = -58.0F;
+  feedback.current_a = 20.0F;
+  EXPECT_EQ(run(10, kLimitCurrent), FaultCode::kNone);
+  feedback.velocity_rpm = -59.0F;
+  EXPECT_EQ(run(1, kLimitCurrent), FaultCode::kRunaway);
+}
+
+TEST_F(MotionGuardTest, BrakingFromFullSpeedIsNone) {
+  effort_a = -20.0F;
+  feedback.current_a = -20.0F;
+  for (int rpm = 480; rpm > 0; --rpm) {
+    feedback.velocity_rpm = static_cast<float>(rpm);
+    ASSERT_EQ(run(1, kLimitCurrent), FaultCode::kNone) << rpm;
+  }
+}
+
+}  // namespace
+}  // namespace rc10::test

@@ -1,0 +1,167 @@
+#include "motor/target_shaper.hpp"
+
+#include <cmath>
+
+#include <gtest/gtest.h>
+
+namespace rc10::test {
+namespace {
+
+constexpr float kTickS = 0.001F;
+
+class TargetShaperTest : public ::testing::Test {
+ protected:
+  TargetShaperTest() {
+    feedback.samples = 1;
+    feedback.zeroed = true;
+    feedback.velocity_rpm = 0.0F;
+    at(0.0);
+  }
+  void at(double total_angle_deg) {
+    feedback.total_angle_deg = total_angle_deg;
+    feedback.angle_deg = static_cast<float>(total_angle_deg - 360.0 * std::floor(total_angle_deg / 360.0));
+  }
+  void configure(const ShapingConfig& config) { shaper = TargetShaper{config}; }
+  TargetShaper::Shaped step(ControlMode mode, double value, float effort = 0.0F) {
+    return shaper.step({.mode = mode, .value = value}, feedback, effort, kTickS);
+  }
+  double valueAfter(int ticks, ControlMode mode, double value) {
+    double last = 0.0;
+    for (int i = 0; i < ticks; ++i) last = step(mode, value).target.value;
+    return last;
+  }
+
+  MotorFeedback feedback;
+  TargetShaper shaper{ShapingConfig{}};
+  const ShapingConfig soft{.angle_min_deg = -90.0,
+                           .angle_max_deg = 90.0,
+                           .approach_rpm_per_deg = 2.0F,
+                           .approach_effort_per_rpm = 0.2F};
+};
+
+TEST_F(TargetShaperTest, WithoutLimitsEveryTargetPassesAsItIs) {
+  for (int mode = 0; mode < kControlModeCount; ++mode) {
+    const auto shaped = step(static_cast<ControlMode>(mode), 12345.0);
+    EXPECT_EQ(static_cast<int>(shaped.target.mode), mode);
+    EXPECT_EQ(shaped.target.value, 12345.0);
+    EXPECT_EQ(shaped.limits, 0U);
+  }
+}
+
+TEST_F(TargetShaperTest, AVelocityTargetRisesFromTheMeasuredSpeedAtItsRate) {
+  configure({.velocity_slew_rpm_per_s = 1000.0F});
+  feedback.velocity_rpm = 50.0F;
+  const auto first = step(ControlMode::kVelocity, 100.0);
+  EXPECT_NEAR(first.target.value, 51.0, 1e-6);
+  EXPECT_EQ(first.limits, kLimitSlew);
+  EXPECT_EQ(valueAfter(49, ControlMode::kVelocity, 100.0), 100.0);
+  EXPECT_EQ(step(ControlMode::kVelocity, 100.0).limits, 0U);
+}
+
+TEST_F(TargetShaperTest, ACurrentTargetStartsFromTheCurrentInForce) {
+  configure({.effort_slew_per_s = 100.0F});
+  EXPECT_NEAR(step(ControlMode::kCurrent, -5.0, 2.0F).target.value, 1.9, 1e-6);
+}
+
+TEST_F(TargetShaperTest, AnAngleTargetStartsWhereTheMotorIsAndArrivesExactly) {
+  configure({.angle_slew_deg_per_s = 100.0F});
+  at(30.0);
+  EXPECT_NEAR(step(ControlMode::kTotalAngle, 60.0).target.value, 30.1, 1e-6);
+  EXPECT_EQ(valueAfter(300, ControlMode::kTotalAngle, 60.0), 60.0);
+}
+
+TEST_F(TargetShaperTest, ASlewedAngleGoesTheShortestWay) {
+  configure({.angle_slew_deg_per_s = 100.0F});
+  at(350.0);
+  const auto shaped = step(ControlMode::kAngle, 10.0);
+  EXPECT_EQ(shaped.target.mode, ControlMode::kTotalAngle);
+  EXPECT_NEAR(shaped.target.value, 350.1, 1e-6);
+  EXPECT_NEAR(valueAfter(250, ControlMode::kAngle, 10.0), 370.0, 1e-9);
+}
+
+TEST_F(TargetShaperTest, AResetForgetsWhereTheTargetWas) {
+  configure({.velocity_slew_rpm_per_s = 1000.0F});
+  (void)valueAfter(100, ControlMode::kVelocity, 100.0);
+  shaper.reset();
+  EXPECT_NEAR(step(ControlMode::kVelocity, 100.0).target.value, 1.0, 1e-6);
+}
+
+TEST_F(TargetShaperTest, NoAngleTargetLeadsBeyondASoftLimit) {
+  configure(soft);
+  const auto shaped = step(ControlMode::kTotalAngle, 720.0);
+  EXPECT_EQ(shaped.target.value, 90.0);
+  EXPECT_EQ(shaped.limits, kLimitAngle);
+  EXPECT_EQ(step(ControlMode::kTotalAngle, -45.0).limits, 0U);
+}
+
+TEST_F(TargetShaperTest, AnAngleThatIsAllowedAnotherWayRoundIsReachedThatWay) {
+  configure({.angle_min_deg = -300.0, .angle_max_deg = 100.0, .approach_rpm_per_deg = 2.0F});
+  at(80.0);
+  // 200 deg: the shortest way is up, through the limit; -160 deg is the same angle.
+  const auto shaped = step(ControlMode::kAngle, 200.0);
+  EXPECT_EQ(shaped.target.mode, ControlMode::kTotalAngle);
+  EXPECT_NEAR(shaped.target.value, -160.0, 1e-9);
+  EXPECT_EQ(shaped.limits, 0U);
+}
+
+TEST_F(TargetShaperTest, AVelocityTargetSlowsDownTowardsASoftLimitAndEndsThere) {
+  configure(soft);
+  EXPECT_EQ(step(ControlMode::kVelocity, 500.0).target.value, 180.0);
+  at(80.0);
+  EXPECT_EQ(step(ControlMode::kVelocity, 500.0).target.value, 20.0);
+  EXPECT_EQ(step(ControlMode::kVelocity, 500.0).limits, kLimitAngle);
+  at(95.0);
+  EXPECT_EQ(step(ControlMode::kVelocity, 500.0).target.value, 0.0);
+  EXPECT_EQ(step(ControlMode::kVelocity, -500.0).target.value, -370.0);  // back is allowed
+}
+
+TEST_F(TargetShaperTest, NoCurrentPushesOutwardsAtTheLimitAndEveryOneInwards) {
+  configure(soft);
+  at(91.0);
+  const auto out = step(ControlMode::kCurrent, 3.0);
+  EXPECT_EQ(out.target.mode, ControlMode::kCurrent);
+  EXPECT_EQ(out.target.value, 0.0);
+  EXPECT_EQ(out.limits, kLimitAngle);
+  feedback.velocity_rpm = 10.0F;
+  EXPECT_NEAR(step(ControlMode::kCurrent, 3.0).target.value, -2.0, 1e-6);  // it brakes
+  EXPECT_EQ(step(ControlMode::kCurrent, -3.0).target.value, -3.0);
+}
+
+TEST_F(TargetShaperTest, ACurrentFadesAsTheSpeedNearsWhatIsAllowed) {
+  configure(soft);
+  at(80.0);  // 20 rpm are allowed
+  feedback.velocity_rpm = 5.0F;
+  EXPECT_EQ(step(ControlMode::kCurrent, 3.0).target.value, 3.0);
+  feedback.velocity_rpm = 10.0F;
+  EXPECT_NEAR(step(ControlMode::kCurrent, 3.0).target.value, 2.0, 1e-6);
+  feedback.velocity_rpm = 25.0F;
+  EXPECT_NEAR(step(ControlMode::kCurrent, 3.0).target.value, -1.0, 1e-6);
+}
+
+TEST_F(TargetShaperTest, AVoltageMayKeepUpTheAllowedSpeed) {
+  auto config = soft;
+  config.effort_per_rpm = 0.1F;
+  configure(config);
+  at(80.0);
+  feedback.velocity_rpm = 20.0F;
+  EXPECT_NEAR(step(ControlMode::kVoltage, 24.0).target.value, 2.0, 1e-6);
+}
+
+TEST_F(TargetShaperTest, SoftLimitsWaitForAReference) {
+  configure(soft);
+  feedback.zeroed = false;
+  EXPECT_EQ(step(ControlMode::kVelocity, 500.0).target.value, 500.0);
+  EXPECT_EQ(step(ControlMode::kVelocity, 500.0).limits, 0U);
+}
+
+TEST_F(TargetShaperTest, AFirstStepIsAllowedUpToItsLimit) {
+  configure({.max_first_step_deg = 10.0});
+  at(350.0);
+  EXPECT_TRUE(shaper.firstStepAllowed({.mode = ControlMode::kAngle, .value = 0.0}, feedback));
+  EXPECT_FALSE(shaper.firstStepAllowed({.mode = ControlMode::kAngle, .value = 1.0}, feedback));
+  EXPECT_FALSE(shaper.firstStepAllowed({.mode = ControlMode::kTotalAngle, .value = 0.0}, feedback));
+  EXPECT_TRUE(shaper.firstStepAllowed({.mode = ControlMode::kVelocity, .value = 500.0}, feedback));
+}
+
+}  // namespace
+}  // namespace rc10::test

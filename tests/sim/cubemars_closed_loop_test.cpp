@@ -1,0 +1,318 @@
+// AK motors and their simulated drives, frame by frame in virtual time.
+#include <chrono>
+#include <cmath>
+#include <memory>
+#include <string>
+
+#include <gtest/gtest.h>
+
+#include "sim/cubemars_drive.hpp"
+#include "sim/solo_rig.hpp"
+#include "support/cubemars_settings.hpp"
+
+namespace rc10::test {
+namespace {
+
+using std::chrono::milliseconds;
+using std::chrono::seconds;
+
+std::unique_ptr<SoloMotor> motorOf(const MotorSettings& settings) {
+  const auto setup = setupOf(settings);
+  if (setup.protocol == CubeMarsProtocol::kServo) return std::make_unique<CubeMarsServo>(settings, setup);
+  return std::make_unique<CubeMarsMit>(settings, setup);
+}
+
+SoloRig rigOf(const MotorSettings& settings, const sim::MotorLoad& load = {}) {
+  return SoloRig{motorOf(settings), sim::makeCubemarsDrive(settings, load)};
+}
+
+struct Case {
+  const char* model;
+  const char* protocol;
+  double gear_ratio = 0.0;
+  int direction = 1;
+};
+
+MotorSettings settingsOf(const Case& each, OwnKeys keys = {}) {
+  keys.emplace_back("protocol", std::string{each.protocol});
+  auto settings = cubemarsSettings(each.model, 12, keys);
+  settings.gear_ratio = each.gear_ratio;
+  settings.direction = each.direction;
+  settings.zero_at_power_on = true;
+  return settings;
+}
+
+class CubemarsLoop : public ::testing::TestWithParam<Case> {
+ protected:
+  /// Fresh feedback, and enabled.
+  static void wakeUp(SoloRig& rig) {
+    rig.motor().order(rig.motor().driveFrames().poll == Provision::kFrame ? FrameKind::kPoll
+                                                                          : FrameKind::kRest);
+    rig.run(milliseconds{20});
+    ASSERT_GT(rig.motor().feedback().samples, 0U);
+    ASSERT_TRUE(rig.enable());
+    rig.motor().order(FrameKind::kIdle);
+    rig.run(milliseconds{20});
+  }
+  static double rpm(SoloRig& rig) { return static_cast<double>(rig.motor().feedback().velocity_rpm); }
+};
+
+TEST_P(CubemarsLoop, EnablingMovesNothing) {
+  auto rig = rigOf(settingsOf(GetParam()));
+  wakeUp(rig);
+  EXPECT_NEAR(rig.drive().physics().outputAngleDeg(), 0.0, 1e-6);
+  EXPECT_NEAR(rig.drive().physics().currentA(), 0.0, 0.1);
+}
+
+TEST_P(CubemarsLoop, CurrentGivesTorqueInThePositiveDirection) {
+  sim::MotorLoad load;
+  load.stalled = true;
+  auto rig = rigOf(settingsOf(GetParam()), load);
+  wakeUp(rig);
+  rig.command({.mode = ControlMode::kCurrent, .value = 4.0});
+  rig.run(milliseconds{200});
+  EXPECT_NEAR(rig.motor().feedback().current_a, 4.0, 0.2);
+  EXPECT_NEAR(rig.motor().feedback().torque_nm,
+              4.0 * rig.drive().physics().parameters().torque_nm_per_a * rig.motor().get_GearRatio(), 0.3);
+  EXPECT_NEAR(rig.drive().physics().currentA(), 4.0 * GetParam().direction, 0.1);
+}
+
+TEST_P(CubemarsLoop, VelocityReachesItsTarget) {
+  auto rig = rigOf(settingsOf(GetParam(), {{"velocity_gain_nms_per_rad", 5.0}}));
+  wakeUp(rig);
+  rig.command({.mode = ControlMode::kVelocity, .value = 40.0});
+  rig.run(seconds{2});
+  EXPECT_NEAR(rpm(rig), 40.0, 6.0);  // MIT mode has no integral part
+  rig.command({.mode = ControlMode::kVelocity, .value = -40.0});
+  rig.run(seconds{2});
+  EXPECT_NEAR(rpm(rig), -40.0, 6.0);
+}
+
+TEST_P(CubemarsLoop, AnglesReachTheirTargetsAndStay) {
+  auto rig = rigOf(
+      settingsOf(GetParam(), {{"angle_stiffness_nm_per_rad", 80.0}, {"angle_damping_nms_per_rad", 4.0}}));
+  wakeUp(rig);
+  rig.command({.mode = ControlMode::kTotalAngle, .value = 200.0});
+  rig.run(seconds{3});
+  EXPECT_NEAR(rig.motor().feedback().total_angle_deg, 200.0, 3.0);
+  rig.command({.mode = ControlMode::kAngle, .value = 290.0});
+  rig.run(seconds{3});
+  EXPECT_NEAR(rig.motor().feedback().total_angle_deg, 290.0, 3.0);
+  EXPECT_NEAR(rpm(rig), 0.0, 1.0);
+}
+
+TEST_P(CubemarsLoop, BrakeStopsAndDampSlows) {
+  auto rig = rigOf(settingsOf(GetParam(), {{"velocity_gain_nms_per_rad", 5.0}}));
+  wakeUp(rig);
+  for (const auto kind : {FrameKind::kBrake, FrameKind::kDamp}) {
+    rig.command({.mode = ControlMode::kVelocity, .value = 40.0});
+    rig.run(seconds{1});
+    ASSERT_GT(rpm(rig), 20.0);
+    rig.motor().order(kind);
+    rig.run(seconds{2});
+    EXPECT_NEAR(rpm(rig), 0.0, 2.0);
+  }
+}
+
+TEST_P(CubemarsLoop, HoldStaysAgainstALoad) {
+  auto rig = rigOf(
+      settingsOf(GetParam(), {{"angle_stiffness_nm_per_rad", 100.0}, {"angle_damping_nms_per_rad", 4.0}}));
+  wakeUp(rig);
+  rig.motor().order(FrameKind::kHold);
+  rig.run(milliseconds{100});
+  sim::MotorLoad load;
+  load.load_torque_nm = 2.0F;
+  rig.drive().setLoad(load);
+  rig.run(seconds{2});
+  EXPECT_NEAR(rig.motor().feedback().total_angle_deg, 0.0, 6.0);
+  rig.motor().order(FrameKind::kRest);
+  rig.run(seconds{2});
+  EXPECT_GT(std::abs(rig.motor().feedback().total_angle_deg), 20.0) << "rest lets go";
+}
+
+TEST_P(CubemarsLoop, AFaultIsAComplaintAndAfterItEnablingAndMovingGoOn) {
+  auto rig = rigOf(settingsOf(GetParam(), {{"velocity_gain_nms_per_rad", 5.0}}));
+  wakeUp(rig);
+  rig.command({.mode = ControlMode::kVelocity, .value = 40.0});
+  rig.run(seconds{1});
+  rig.drive().fault(4);
+  rig.run(milliseconds{20});
+  EXPECT_EQ(rig.motor().complaint().fault, FaultCode::kDriveUnderVoltage);
+  EXPECT_EQ(rig.motor().complaint().native_code, 4U);
+  EXPECT_NEAR(rig.drive().physics().currentA(), 0.0, 0.1) << "the drive has let go";
+  rig.motor().order(rig.motor().driveFrames().poll == Provision::kFrame ? FrameKind::kPoll
+                                                                        : FrameKind::kRest);
+  rig.run(seconds{1});
+  rig.motor().clearComplaint();
+  const double before = rig.drive().physics().outputAngleDeg();
+  rig.run(milliseconds{20});
+  EXPECT_NEAR(rig.drive().physics().outputAngleDeg(), before, 0.5) << "clearing moves nothing";
+  EXPECT_EQ(rig.motor().complaint().fault, FaultCode::kNone);
+  wakeUp(rig);
+  rig.command({.mode = ControlMode::kVelocity, .value = 40.0});
+  rig.run(seconds{2});
+  EXPECT_NEAR(rpm(rig), 40.0, 6.0);
+}
+
+TEST_P(CubemarsLoop, ARestartOfTheDriveIsNoticed) {
+  auto rig = rigOf(settingsOf(GetParam()));
+  wakeUp(rig);
+  rig.command({.mode = ControlMode::kCurrent, .value = 1.0});
+  rig.run(milliseconds{200});
+  ASSERT_EQ(rig.motor().complaint().fault, FaultCode::kNone);
+  ASSERT_TRUE(rig.motor().feedback().zeroed);
+  rig.drive().restart();
+  rig.run(milliseconds{500});
+  EXPECT_EQ(rig.motor().complaint().fault, FaultCode::kDriveStopped);
+  EXPECT_FALSE(rig.motor().feedback().zeroed);
+  rig.motor().clearComplaint();
+  EXPECT_TRUE(rig.enable());
+  EXPECT_EQ(rig.motor().complaint().fault, FaultCode::kNone);
+}
+
+TEST_P(CubemarsLoop, RestHasNoTorqueWhateverWasBefore) {
+  auto rig = rigOf(settingsOf(GetParam()));
+  wakeUp(rig);
+  for (const auto mode : {ControlMode::kCurrent, ControlMode::kVelocity, ControlMode::kTotalAngle}) {
+    rig.command({.mode = mode, .value = 30.0});
+    rig.run(milliseconds{100});
+    rig.motor().order(FrameKind::kRest);
+    rig.run(milliseconds{20});
+    EXPECT_NEAR(rig.drive().physics().currentA(), 0.0, 0.02);
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Drives, CubemarsLoop,
+                         ::testing::Values(Case{"AK80-9", "servo"}, Case{"AK70-10", "servo", 20.0, -1},
+                                           Case{"AK80-9", "mit"}, Case{"AK60-6", "mit", 12.0, -1},
+                                           Case{"AK80-8-V3", "mit_v3"},
+                                           Case{"AK80-9-V3", "mit_v3", 18.0, -1}),
+                         [](const auto& each) {
+                           std::string name = std::string{each.param.model} + "_" + each.param.protocol;
+                           for (auto& letter : name) {
+                             if (letter == '-') letter = '_';
+                           }
+                           return name;
+                         });
+
+TEST(CubemarsLoops, AServoDrivesWatchdogLetsGoAfterASecond) {
+  sim::MotorLoad load;
+  load.stalled = true;
+  auto rig = rigOf(settingsOf({"AK80-9", "servo"}), load);
+  rig.command({.mode = ControlMode::kCurrent, .value = 5.0});
+  rig.run(milliseconds{500});
+  rig.cut(true);
+  rig.run(milliseconds{900});
+  EXPECT_NEAR(rig.drive().physics().currentA(), 5.0, 0.5);
+  rig.run(milliseconds{200});
+  EXPECT_NEAR(rig.drive().physics().currentA(), 0.0, 0.1);
+}
+
+TEST(CubemarsLoops, ADriveInMitModeIsNotKnownToHaveAWatchdog) {
+  sim::MotorLoad load;
+  load.stalled = true;
+  auto rig = rigOf(settingsOf({"AK80-9", "mit"}), load);
+  rig.motor().order(FrameKind::kPoll);
+  rig.run(milliseconds{10});
+  ASSERT_TRUE(rig.enable());
+  rig.command({.mode = ControlMode::kCurrent, .value = 5.0});
+  rig.run(milliseconds{200});
+  rig.cut(true);
+  rig.run(seconds{3});
+  EXPECT_NEAR(rig.drive().physics().currentA(), 5.0, 0.1);
+  EXPECT_FALSE(rig.motor().complaint().fault != FaultCode::kNone);
+}
+
+TEST(CubemarsLoops, WhatIsNotEnteredDoesNotMove) {
+  auto rig = rigOf(settingsOf({"AK80-9", "mit"}));
+  rig.motor().order(FrameKind::kPoll);
+  rig.run(milliseconds{10});
+  rig.command({.mode = ControlMode::kCurrent, .value = 10.0});
+  rig.run(milliseconds{500});
+  EXPECT_NEAR(rig.drive().physics().outputAngleDeg(), 0.0, 1e-6);
+}
+
+TEST(CubemarsLoops, AMotorThatIsEnabledAnewDoesNotGoOnToItsOldTarget) {
+  sim::MotorLoad load;
+  load.coulomb_nm = 2.0F;
+  auto rig = rigOf(settingsOf({"AK80-9", "mit"}), load);
+  rig.motor().order(FrameKind::kPoll);
+  rig.run(milliseconds{10});
+  ASSERT_TRUE(rig.enable());
+  rig.command({.mode = ControlMode::kTotalAngle, .value = 90.0});
+  rig.run(milliseconds{30});  // on its way
+  rig.motor().order(FrameKind::kPoll);
+  rig.run(seconds{2});
+  const double before = rig.drive().physics().outputAngleDeg();
+  ASSERT_TRUE(rig.enable());
+  rig.motor().order(FrameKind::kIdle);
+  rig.run(milliseconds{500});
+  EXPECT_NEAR(rig.drive().physics().outputAngleDeg(), before, 0.1);
+}
+
+TEST(CubemarsLoops, MoreTurnsThanItsPositionFieldAreCounted) {
+  for (const Case& each : {Case{"AK80-9", "mit"}, Case{"AK80-9", "servo"}}) {
+    auto rig = rigOf(settingsOf(each));
+    rig.motor().order(FrameKind::kPoll);
+    rig.run(milliseconds{10});
+    ASSERT_TRUE(rig.enable());
+    rig.command({.mode = ControlMode::kVelocity, .value = 100.0});
+    rig.run(seconds{4});
+    const double turned = rig.drive().physics().outputAngleDeg();
+    EXPECT_GT(turned, 1500.0);
+    EXPECT_NEAR(rig.motor().feedback().total_angle_deg, turned, 4.0);
+  }
+}
+
+TEST(CubemarsLoops, ImpedanceIsASpring) {
+  sim::MotorLoad load;
+  load.coulomb_nm = 0.0F;
+  auto rig = rigOf(settingsOf({"AK80-9", "mit"}), load);
+  rig.motor().order(FrameKind::kPoll);
+  rig.run(milliseconds{10});
+  ASSERT_TRUE(rig.enable());
+  rig.command({.mode = ControlMode::kImpedance,
+               .value = 0.0,
+               .stiffness_nm_per_rad = 20.0F,
+               .damping_nms_per_rad = 1.0F});
+  load.load_torque_nm = 2.0F;
+  rig.drive().setLoad(load);
+  rig.run(seconds{3});
+  EXPECT_NEAR(rig.motor().feedback().total_angle_deg, -2.0 / 20.0 * 180.0 / 3.14159265, 0.5);
+}
+
+TEST(CubemarsLoops, AVelocityLimitBoundsTheWayToAnAngle) {
+  for (const Case& each : {Case{"AK80-9", "servo"}, Case{"AK80-9", "mit"}}) {
+    auto settings = settingsOf(each);
+    settings.velocity_limit_rpm = 20.0F;
+    auto rig = rigOf(settings);
+    rig.motor().order(FrameKind::kPoll);
+    rig.run(milliseconds{10});
+    ASSERT_TRUE(rig.enable());
+    rig.command({.mode = ControlMode::kTotalAngle, .value = 400.0});
+    double fastest = 0.0;
+    rig.run(seconds{2},
+            [&] { fastest = std::max(fastest, static_cast<double>(rig.motor().feedback().velocity_rpm)); });
+    EXPECT_LT(fastest, 23.0) << each.protocol;
+    EXPECT_GT(fastest, 12.0) << each.protocol;
+  }
+}
+
+TEST(CubemarsLoops, TheServoDriveObeysDuty) {
+  auto rig = rigOf(settingsOf({"AK80-9", "servo"}));
+  rig.command({.mode = ControlMode::kDuty, .value = 0.25});
+  rig.run(seconds{3});
+  EXPECT_NEAR(rig.motor().feedback().velocity_rpm, 0.25 * 533.0, 25.0);
+}
+
+TEST(CubemarsLoops, FeedbackComesAtTheRateThatIsSetOnTheDrive) {
+  auto settings = settingsOf({"AK80-9", "servo"});
+  settings.feedback_hz = 50;
+  auto rig = rigOf(settings);
+  rig.motor().order(FrameKind::kIdle);
+  rig.run(seconds{2});
+  EXPECT_NEAR(static_cast<double>(rig.motor().feedback().samples), 100.0, 2.0);
+}
+
+}  // namespace
+}  // namespace rc10::test

@@ -1,0 +1,280 @@
+// What a person writes into a drive's own memory: frames, reading back, trying again.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <memory>
+#include <string>
+
+#include "bus/frame_text.hpp"
+#include "motor/damiao_motor.hpp"
+#include "motor/drive_configuring.hpp"
+#include "motor/myactuator_motor.hpp"
+#include "motor/robstride_motor.hpp"
+#include "sim/damiao_drive.hpp"
+#include "sim/myactuator_drive.hpp"
+#include "sim/robstride_drive.hpp"
+#include "sim/solo_rig.hpp"
+
+namespace rc10::test {
+namespace {
+
+using Progress = DriveConfiguring::Progress;
+using ::testing::Contains;
+using ::testing::Not;
+
+MotorSettings settingsOf(const MotorFamily& family, std::string_view model, int id) {
+  MotorSettings settings;
+  settings.name = "motor";
+  settings.model = model;
+  settings.id = id;
+  for (const auto& key : family.keys()) {
+    if (key.kind == FamilyKey::Kind::kChoice) {
+      settings.own.set(key.name, std::string(key.default_text));
+    } else if (!key.default_text.empty()) {
+      settings.own.set(key.name, key.default_text == "true"    ? 1.0
+                                 : key.default_text == "false" ? 0.0
+                                                               : std::atof(key.default_text.data()));
+    }
+  }
+  return settings;
+}
+
+std::uint8_t indexOf(const DriveSetup& setup, std::string_view name) {
+  const auto found = std::find_if(setup.settings.begin(), setup.settings.end(),
+                                  [name](const DriveSetting& each) { return each.name == name; });
+  EXPECT_NE(found, setup.settings.end()) << name;
+  return static_cast<std::uint8_t>(found - setup.settings.begin());
+}
+
+/// A motor with its simulated drive, and what is to be written to it.
+class DriveSetupTest : public ::testing::Test {
+ protected:
+  void useDamiao() {
+    auto settings = settingsOf(damiaoFamily(), "DM4310", 2);
+    settings.own.set("master_id", 18.0);
+    use(std::make_unique<Damiao_Motor>(settings), sim::makeDamiaoDrive(settings, {}), damiaoSetup());
+  }
+  void useRobStride(std::string_view model = "RS00") {
+    auto settings = settingsOf(robStrideFamily(), model, 3);
+    settings.own.set("host_id", 253.0);
+    use(std::make_unique<RobStride_Motor>(settings), sim::makeRobStrideDrive(settings, {}),
+        robStrideSetup(model == "CyberGear"));
+  }
+  void useMyActuator() {
+    const auto settings = settingsOf(myactuatorFamily(), "RMD-X8-20", 4);
+    use(std::make_unique<MyActuator_Motor>(settings, myactuatorFamily().traits(settings.model, settings.own)),
+        sim::makeMyactuatorDrive(settings, {}), myactuatorSetup());
+  }
+  void use(std::unique_ptr<SoloMotor> motor, std::unique_ptr<sim::Drive> drive, const DriveSetup& setup) {
+    rig = std::make_unique<SoloRig>(std::move(motor), std::move(drive));
+    setup_ = &setup;
+    rig->motor().order(FrameKind::kPoll);
+    rig->run(std::chrono::milliseconds{100});
+    (void)rig->takeSent();
+  }
+
+  void begin(std::string_view name, double value, bool save) {
+    DriveWrite write;
+    write.values[0] = {indexOf(*setup_, name), value};
+    write.count = 1;
+    write.save = save;
+    rig->motor().driveConfiguring()->begin(write);
+  }
+  Progress finish() {
+    auto& configuring = *rig->motor().driveConfiguring();
+    for (int i = 0; i < 5000 && configuring.progress() == Progress::kPending; ++i) {
+      rig->run(std::chrono::milliseconds{1});
+    }
+    return configuring.progress();
+  }
+  /// What left since, as text; often sent frames once.
+  std::vector<std::string> sent() {
+    std::vector<std::string> out;
+    for (const auto& frame : rig->takeSent()) {
+      auto text = frameText(frame);
+      if (std::find(out.begin(), out.end(), text) == out.end()) out.push_back(std::move(text));
+    }
+    return out;
+  }
+  std::ptrdiff_t times(const std::string& text) {
+    const auto all = rig->takeSent();
+    return std::count_if(all.begin(), all.end(),
+                         [&text](const CanFrame& frame) { return frameText(frame) == text; });
+  }
+
+  std::unique_ptr<SoloRig> rig;
+  const DriveSetup* setup_ = nullptr;
+};
+
+TEST_F(DriveSetupTest, ADamiaoRegisterIsWrittenReadBackAndStored) {
+  useDamiao();
+  begin("timeout_ms", 100, true);
+  EXPECT_EQ(finish(), Progress::kDone);
+  const auto frames = sent();
+  EXPECT_THAT(frames, Contains("7FF#02005509D0070000")) << "PROTOCOLS: TIMEOUT = 2000 x 50 us";
+  EXPECT_THAT(frames, Contains("7FF#0200330900000000"));
+  EXPECT_THAT(frames, Contains("7FF#0200AA0100000000"));
+}
+
+TEST_F(DriveSetupTest, ADamiaoFloatIsWrittenAsOne) {
+  useDamiao();
+  begin("p_max_rad", 12.5, false);
+  EXPECT_EQ(finish(), Progress::kDone);
+  EXPECT_THAT(sent(), Contains("7FF#0200551500004841"));
+}
+
+TEST_F(DriveSetupTest, NothingIsStoredUnlessAsked) {
+  useDamiao();
+  begin("timeout_ms", 100, false);
+  EXPECT_EQ(finish(), Progress::kDone);
+  EXPECT_THAT(sent(), Not(Contains("7FF#0200AA0100000000")));
+}
+
+TEST_F(DriveSetupTest, WhatIsStoredOutlivesARestartAndTheRestDoesNot) {
+  useDamiao();
+  for (const bool save : {false, true}) {
+    begin("over_voltage_v", 30, save);
+    ASSERT_EQ(finish(), Progress::kDone);
+    rig->drive().restart();
+    rig->run(std::chrono::milliseconds{50});
+    (void)rig->takeReceived();
+    rig->drive().receive(
+        makeClassicFrame({0x7FF, false}, damiao::readRegister(2, damiao::Register::kOverVoltage)));
+    rig->run(std::chrono::milliseconds{1});
+    std::vector<std::string> answers;
+    for (const auto& frame : rig->takeReceived()) answers.push_back(frameText(frame));
+    EXPECT_THAT(answers, Contains(save ? "012#0200331D0000F041" : "012#0200331D00000000"));
+  }
+}
+
+TEST_F(DriveSetupTest, AWriteThatGotLostIsWrittenAgain) {
+  useDamiao();
+  begin("timeout_ms", 100, true);
+  rig->cut(true);
+  rig->run(std::chrono::milliseconds{2});
+  rig->cut(false);
+  EXPECT_EQ(finish(), Progress::kDone);
+  EXPECT_EQ(times("7FF#02005509D0070000"), 2);
+}
+
+TEST_F(DriveSetupTest, WhatCannotBeReadBackIsNotStored) {
+  useDamiao();
+  begin("timeout_ms", 100, true);
+  rig->cut(true);
+  EXPECT_EQ(finish(), Progress::kNotConfirmed);
+  const auto frames = rig->takeSent();
+  EXPECT_EQ(std::count_if(frames.begin(), frames.end(),
+                          [](const CanFrame& f) { return frameText(f) == "7FF#02005509D0070000"; }),
+            5);
+  for (const auto& frame : frames) EXPECT_NE(frameText(frame), "7FF#0200AA0100000000");
+}
+
+TEST_F(DriveSetupTest, ADriveThatDoesNotSayThatItHasStoredIsTold) {
+  useDamiao();
+  begin("timeout_ms", 100, true);
+  // Until the save frame has left: its answer, and all others, get lost.
+  for (int i = 0; i < 1000; ++i) {
+    rig->run(std::chrono::milliseconds{1}, [&] {
+      for (const auto& frame : rig->takeSent()) {
+        if (frameText(frame) == "7FF#0200330900000000") rig->cut(true);
+      }
+    });
+    if (rig->motor().driveConfiguring()->progress() != Progress::kPending) break;
+  }
+  EXPECT_EQ(finish(), Progress::kNotSaved);
+}
+
+TEST_F(DriveSetupTest, NoTorqueAndNoCommandWhileItGoesOn) {
+  useDamiao();
+  begin("timeout_ms", 100, true);
+  EXPECT_EQ(finish(), Progress::kDone);
+  for (const auto& frame : rig->takeSent()) {
+    if (frame.id.value != 0x7FF) {
+      EXPECT_EQ(frameText(frame), "002#FFFFFFFFFFFFFFFD");
+    }
+  }
+}
+
+TEST_F(DriveSetupTest, ARobStrideParameterIsWrittenReadBackAndStored) {
+  useRobStride();
+  begin("timeout_ms", 1000, true);
+  EXPECT_EQ(finish(), Progress::kDone);
+  const auto frames = sent();
+  EXPECT_THAT(frames, Contains("1200FD03#28700000204E0000")) << "20000 is 1 s";
+  EXPECT_THAT(frames, Contains("1100FD03#2870000000000000"));
+  EXPECT_THAT(frames, Contains("1600FD03#0102030405060708"));
+}
+
+TEST_F(DriveSetupTest, AReportIntervalIsCountedInStepsOfFive) {
+  useRobStride();
+  begin("report_interval_ms", 20, false);
+  EXPECT_EQ(finish(), Progress::kDone);
+  EXPECT_THAT(sent(), Contains("1200FD03#2670000003000000")) << "1 is 10 ms, each more 5";
+}
+
+TEST_F(DriveSetupTest, ANewRobStrideIdIsSeenByTheSilenceOfTheOldOneAndStoredUnderTheNewOne) {
+  useRobStride();
+  begin("id", 9, true);
+  EXPECT_EQ(finish(), Progress::kDone);
+  const auto frames = sent();
+  EXPECT_THAT(frames, Contains("0709FD03#0000000000000000"));
+  EXPECT_THAT(frames, Contains("1600FD09#0102030405060708"));
+}
+
+TEST_F(DriveSetupTest, ACyberGearIsNeverSentTheFrameThatChangesItsBitRate) {
+  useRobStride("CyberGear");
+  begin("id", 9, true);
+  EXPECT_EQ(finish(), Progress::kDone);
+  for (const auto& frame : rig->takeSent()) EXPECT_NE(frame.id.value >> 24U & 0x1FU, 0x16U);
+}
+
+TEST_F(DriveSetupTest, AnIdThatStaysIsNotConfirmed) {
+  useRobStride();
+  begin("id", 3, true);  // its own: it goes on answering
+  EXPECT_EQ(finish(), Progress::kNotConfirmed);
+}
+
+TEST_F(DriveSetupTest, AMyActuatorAnswersWithACopyOfWhatItStored) {
+  useMyActuator();
+  begin("timeout_ms", 1000, true);
+  EXPECT_EQ(finish(), Progress::kDone);
+  EXPECT_THAT(sent(), Contains("144#B3000000E8030000")) << "PROTOCOLS: 1000 ms";
+}
+
+TEST_F(DriveSetupTest, AMyActuatorAccelerationIsReadBack) {
+  useMyActuator();
+  begin("velocity_acceleration_deg_s2", 2000, true);
+  EXPECT_EQ(finish(), Progress::kDone);
+  const auto frames = sent();
+  EXPECT_THAT(frames, Contains("144#43020000D0070000"));
+  EXPECT_THAT(frames, Contains("144#4202000000000000"));
+}
+
+TEST_F(DriveSetupTest, AMyActuatorGetsItsIdByItselfAndNotAllOfTheBus) {
+  useMyActuator();
+  begin("id", 7, true);
+  EXPECT_EQ(finish(), Progress::kDone);
+  for (const auto& frame : rig->takeSent()) EXPECT_EQ(frame.id.value, 0x144U);
+}
+
+TEST_F(DriveSetupTest, FlashIsWrittenThreeTimesAtMost) {
+  useMyActuator();
+  begin("timeout_ms", 1000, true);
+  rig->cut(true);
+  EXPECT_EQ(finish(), Progress::kNotConfirmed);
+  EXPECT_EQ(times("144#B3000000E8030000"), 3);
+}
+
+TEST_F(DriveSetupTest, ACancelledOneSendsNothingMore) {
+  useDamiao();
+  begin("timeout_ms", 100, true);
+  rig->run(std::chrono::milliseconds{1});
+  rig->motor().driveConfiguring()->cancel();
+  (void)rig->takeSent();
+  rig->run(std::chrono::milliseconds{500});
+  for (const auto& frame : rig->takeSent()) EXPECT_NE(frame.id.value, 0x7FFU);
+}
+
+}  // namespace
+}  // namespace rc10::test

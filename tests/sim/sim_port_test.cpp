@@ -1,0 +1,178 @@
+#include "sim/sim_port.hpp"
+
+#include <gtest/gtest.h>
+#include <sys/socket.h>
+
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <memory>
+#include <utility>
+#include <vector>
+
+#include "bus/can_receiver.hpp"
+#include "support/alloc_guard.hpp"
+
+#include "sim/dji_drive.hpp"
+
+namespace rc10::test {
+namespace {
+
+using namespace std::chrono_literals;
+using sim::SimBusConfig;
+using sim::SimPort;
+
+SimBusConfig twoWheels() {
+  SimBusConfig config;
+  config.drives = {sim::djiDrive({"left", &kM3508, 1, DjiCommand::kCurrent, 0.0, {}}),
+                   sim::djiDrive({"right", &kM3508, 2, DjiCommand::kCurrent, 0.0, {}})};
+  return config;
+}
+
+class SimPortTest : public testing::Test {
+ protected:
+  SimPortTest() {
+    auto ends = SimPort::makeSocketPair();
+    near_ = std::move(ends->first);
+    port_ = std::make_unique<SimPort>(std::move(ends->second), twoWheels());
+    port_->step(now_);
+  }
+
+  void step(Duration dt = 1ms) { port_->step(now_ += dt); }
+
+  /// What the daemon's end has received since.
+  std::vector<CanFrame> received() {
+    CanReceiver receiver{near_.get()};
+    const WakeUp wake{.now = now_, .previous = now_, .realtime_offset = {}, .previous_offset = {}};
+    std::vector<CanFrame> frames;
+    for (std::array<CanFrame, CanReceiver::kBatch> batch{};;) {
+      const Reception reception = receiver.receive(wake, batch);
+      EXPECT_EQ(reception.malformed_count, 0U);
+      if (reception.frame_count == 0) return frames;
+      frames.insert(frames.end(), batch.begin(),
+                    batch.begin() + static_cast<std::ptrdiff_t>(reception.frame_count));
+    }
+  }
+
+  void command(std::int16_t raw) {
+    const auto high = static_cast<std::uint8_t>(static_cast<std::uint16_t>(raw) >> 8U);
+    const auto low = static_cast<std::uint8_t>(static_cast<std::uint16_t>(raw) & 0xFFU);
+    SendBatch batch;
+    ASSERT_TRUE(
+        batch.add(makeClassicFrame({0x200, false}, std::array<std::uint8_t, 8>{high, low}), std::nullopt));
+    ASSERT_EQ(batch.send(near_.get()), 1U);
+  }
+
+  UniqueFd near_;
+  std::unique_ptr<SimPort> port_;
+  MonotonicTime now_{100s};
+};
+
+TEST_F(SimPortTest, TheFirstStepOnlySetsTheClock) {
+  EXPECT_TRUE(received().empty());
+  EXPECT_EQ(port_->counters().sent, 0U);
+}
+
+TEST_F(SimPortTest, EveryMillisecondBringsOneFrameOfEachDrive) {
+  for (int i = 0; i < 10; ++i) {
+    step();
+    const auto frames = received();
+    ASSERT_EQ(frames.size(), 2U);
+    EXPECT_EQ(frames[0].id, (CanId{0x201, false}));
+    EXPECT_EQ(frames[1].id, (CanId{0x202, false}));
+    EXPECT_EQ(frames[0].length, 8);
+  }
+  EXPECT_EQ(port_->counters().sent, 20U);
+}
+
+TEST_F(SimPortTest, CommandsReachTheDrives) {
+  command(8192);  // 10 A on the left one
+  for (int i = 0; i < 300; ++i) step();
+  EXPECT_GT(port_->bus().motor(0).outputRpm(), 100.0);
+  EXPECT_EQ(port_->bus().motor(1).outputRpm(), 0.0);
+  EXPECT_EQ(port_->counters().commands, 1U);
+}
+
+TEST_F(SimPortTest, OfManyCommandsTheLastOneCounts) {
+  for (std::int16_t i = 0; i < 150; ++i) command(i);
+  step();
+  EXPECT_EQ(port_->counters().commands, 150U);
+  EXPECT_EQ(dynamic_cast<const sim::DjiDrive&>(port_->bus().drive(0)).rawCommand(), 149);
+}
+
+TEST_F(SimPortTest, ALateStepMovesTheMotorsButSpeaksOnce) {
+  command(8192);
+  step(40ms);
+  EXPECT_EQ(received().size(), 2U);
+  EXPECT_GT(port_->bus().motor(0).outputRpm(), 5.0);
+  EXPECT_EQ(port_->bus().counters().overslept, 2U * 39U);
+  step();
+  EXPECT_EQ(received().size(), 2U);
+}
+
+TEST_F(SimPortTest, AfterALongStopTheMotorsGoOnFromWhereTheyWere) {
+  command(8192);
+  step(3600s);
+  EXPECT_EQ(port_->counters().skipped, 3599s);
+  step();
+  EXPECT_EQ(received().size(), 4U);
+}
+
+TEST_F(SimPortTest, TimeThatRunsBackwardsIsNoTime) {
+  step(-50ms);
+  EXPECT_EQ(port_->counters().sent, 0U);
+  step(51ms);  // 1 ms after the latest
+  EXPECT_EQ(port_->counters().sent, 2U);
+  EXPECT_EQ(port_->bus().counters().overslept, 0U);
+}
+
+TEST_F(SimPortTest, FeedbackThatNobodyReadsIsDroppedAndCounted) {
+  for (int i = 0; i < 5000; ++i) step();
+  EXPECT_GT(port_->counters().refused, 0U);
+  EXPECT_EQ(port_->counters().sent + port_->counters().refused, 10'000U);
+  EXPECT_EQ(received().size(), port_->counters().sent);
+  step();
+  EXPECT_EQ(received().size(), 2U);
+}
+
+TEST_F(SimPortTest, MessagesThatAreNoFramesAreCounted) {
+  const std::array<char, 5> junk{};
+  ASSERT_EQ(::send(near_.get(), junk.data(), junk.size(), 0), 5);
+  command(100);
+  step();
+  EXPECT_EQ(port_->counters().malformed, 1U);
+  EXPECT_EQ(port_->counters().commands, 1U);
+}
+
+TEST_F(SimPortTest, SurvivesThatTheOtherEndIsClosed) {
+  near_.reset();
+  for (int i = 0; i < 10; ++i) step();
+  EXPECT_EQ(port_->counters().refused, 20U);
+  EXPECT_NE(port_->counters().error, 0);
+}
+
+TEST_F(SimPortTest, KernelStampsArriveLikeOnSocketCan) {
+  step();
+  std::array<std::byte, 64> data{};
+  alignas(cmsghdr) std::array<std::byte, 128> control{};
+  iovec content{data.data(), data.size()};
+  msghdr message{};
+  message.msg_iov = &content;
+  message.msg_iovlen = 1;
+  message.msg_control = control.data();
+  message.msg_controllen = control.size();
+  ASSERT_EQ(::recvmsg(near_.get(), &message, MSG_DONTWAIT), 16);
+  const cmsghdr* header = CMSG_FIRSTHDR(&message);
+  ASSERT_NE(header, nullptr);
+  EXPECT_EQ(header->cmsg_type, SCM_TIMESTAMPNS);
+}
+
+TEST_F(SimPortTest, SteppingAllocatesNothing) {
+  command(1000);
+  AllocGuard guard;
+  for (int i = 0; i < 100; ++i) step();
+  EXPECT_EQ(guard.allocations(), 0U);
+}
+
+}  // namespace
+}  // namespace rc10::test

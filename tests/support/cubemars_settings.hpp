@@ -1,0 +1,42 @@
+#pragma once
+
+#include <cstdlib>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "motor/cubemars_family.hpp"
+#include "motor/cubemars_mit.hpp"
+#include "motor/cubemars_model.hpp"
+#include "motor/cubemars_servo.hpp"
+
+namespace rc10::test {
+
+using OwnKeys = std::vector<std::pair<std::string, OwnValues::Value>>;
+
+/// A motor as configured, all own keys at their defaults but these.
+inline MotorSettings cubemarsSettings(std::string_view model, int id, const OwnKeys& keys = {}) {
+  MotorSettings settings;
+  settings.name = "joint";
+  settings.model = model;
+  settings.id = id;
+  for (const auto& key : cubemarsKeys()) {
+    const std::string text{key.default_text};
+    if (key.kind == FamilyKey::Kind::kChoice) {
+      settings.own.set(key.name, text);
+    } else if (key.kind == FamilyKey::Kind::kFlag) {
+      settings.own.set(key.name, text == "true" ? 1.0 : 0.0);
+    } else {
+      settings.own.set(key.name, std::strtod(text.c_str(), nullptr));
+    }
+  }
+  for (const auto& [name, value] : keys) settings.own.set(name, value);
+  return settings;
+}
+
+inline CubeMarsSetup setupOf(const MotorSettings& settings) {
+  return cubemarsSetup(settings.model, settings.own);
+}
+
+}  // namespace rc10::test

@@ -1,0 +1,70 @@
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <string>
+
+#include "bus/can_frame.hpp"
+#include "motor/dji_motor.hpp"
+
+namespace rc10::test {
+
+/// What a DJI drive reports, in its own units.
+struct DjiReport {
+  std::uint16_t position = 0;
+  std::int16_t rpm = 0;
+  std::int16_t current = 0;
+  std::uint8_t temperature_c = 25;
+};
+
+inline CanFrame makeDjiFeedback(const DjiModel& model, int id, const DjiReport& report,
+                                MonotonicTime received = {}) {
+  CanFrame frame;
+  frame.id = {model.feedback_id_base + static_cast<std::uint32_t>(id), false};
+  frame.length = 8;
+  frame.received = received;
+  const auto put = [&frame](std::size_t at, std::uint16_t value) {
+    frame.data[at] = static_cast<std::uint8_t>(value >> 8U);
+    frame.data[at + 1] = static_cast<std::uint8_t>(value & 0xFFU);
+  };
+  put(0, report.position);
+  put(2, static_cast<std::uint16_t>(report.rpm));
+  put(4, static_cast<std::uint16_t>(report.current));
+  frame.data[6] = report.temperature_c;
+  return frame;
+}
+
+/// A configuration that passes DJI_Motor::check().
+inline DjiMotorConfig djiConfig(const DjiModel& model, int id = 1,
+                                DjiCommand command = DjiCommand::kCurrent) {
+  DjiMotorConfig config;
+  config.name = std::string{model.name} + "_" + std::to_string(id);
+  config.model = &model;
+  config.id = id;
+  config.command = command;
+  config.loops = model.command(command).default_loops;
+  return config;
+}
+
+/// Gives a motor samples a millisecond apart.
+class DjiFeeder {
+ public:
+  explicit DjiFeeder(DJI_Motor& motor) : motor_(motor) {}
+
+  FrameVerdict feed(const DjiReport& report, Duration spacing = std::chrono::milliseconds{1}) {
+    now_ += spacing;
+    return motor_.updateFeedback(makeDjiFeedback(motor_.model(), motor_.driveId(), report, now_));
+  }
+  void tick() { motor_.update(Tick{.index = ++ticks_, .now = now_, .dt_s = 0.001F}); }
+  void feedAndTick(const DjiReport& report) {
+    (void)feed(report);
+    tick();
+  }
+
+ private:
+  DJI_Motor& motor_;
+  MonotonicTime now_{std::chrono::seconds{10}};
+  std::uint64_t ticks_ = 0;
+};
+
+}  // namespace rc10::test

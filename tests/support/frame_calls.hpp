@@ -1,0 +1,23 @@
+#pragma once
+
+#include <sys/socket.h>
+
+#include <cstdint>
+#include <functional>
+
+namespace rc10::test {
+
+/// Stands between the code under test and the kernel for the two calls that move frames: counts them,
+/// and injects what a socketpair cannot do. One per thread; a test resets it: `frameCalls() = {}`.
+struct FrameCalls {
+  std::uint64_t sendmmsg = 0;
+  std::uint64_t recvmmsg = 0;
+  /// The errno with which this message is refused, 0 to let it pass.
+  std::function<int(const msghdr&)> refuse{};
+  /// May change what was received.
+  std::function<void(msghdr&)> received{};
+};
+
+[[nodiscard]] FrameCalls& frameCalls() noexcept;
+
+}  // namespace rc10::test

@@ -1,0 +1,105 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <string>
+
+#include "motor/moteus_motor.hpp"
+#include "support/moteus_settings.hpp"
+
+namespace rc10::test {
+
+/// What a drive says of itself: an answer to Moteus_Motor's questions.
+struct MoteusAnswer {
+  MoteusMode mode = MoteusMode::kStopped;
+  int fault = 0;
+  double position_rev = 0.0;
+  double velocity_rev_s = 0.0;
+  double torque_nm = 0.0;
+  double current_a = 0.0;
+  double voltage_v = 24.0;
+  double temperature_c = 30.0;
+  Duration clock_late{};  ///< How much less than ours its clock shows.
+  std::optional<int> version{};
+  std::optional<double> timeout_s{};
+};
+
+[[nodiscard]] inline CanFrame moteusAnswer(const MoteusAnswer& answer, MonotonicTime received,
+                                           std::uint32_t id = 1, std::uint32_t prefix = 0) {
+  const auto ms =
+      std::chrono::duration_cast<std::chrono::milliseconds>(received.time_since_epoch() - answer.clock_late)
+          .count();
+  MoteusWriter frame(moteusReplyId(prefix, id), true);
+  frame.reply(MoteusType::kInt8, MoteusRegister::kMode, {static_cast<double>(answer.mode)})
+      .reply(MoteusType::kFloat, MoteusRegister::kPosition,
+             {answer.position_rev, answer.velocity_rev_s, answer.torque_nm})
+      .reply(MoteusType::kInt16, MoteusRegister::kQCurrent, {answer.current_a})
+      .reply(MoteusType::kInt8, MoteusRegister::kVoltage,
+             {answer.voltage_v, answer.temperature_c, static_cast<double>(answer.fault)})
+      .reply(MoteusType::kInt16, MoteusRegister::kMilliseconds,
+             {static_cast<double>(static_cast<std::int16_t>(ms & 0xFFFF))});
+  if (answer.version) {
+    frame.reply(MoteusType::kInt32, MoteusRegister::kRegisterMapVersion, {double(*answer.version)})
+        .reply(MoteusType::kInt8, MoteusRegister::kHomeState, {1.0});
+  }
+  if (answer.timeout_s) frame.reply(MoteusType::kInt16, MoteusRegister::kTimeout, {*answer.timeout_s});
+  CanFrame out = frame.frame();
+  out.received = received;
+  return out;
+}
+
+/// A motor and its ticks; the test is the drive.
+struct MoteusBench {
+  explicit MoteusBench(const MotorSettings& settings = moteusMotor())
+      : motor(settings, moteusFamily().traits(settings.model, settings.own)), id(settings.id) {}
+
+  /// The drive's answer, then a tick. What was sent in it is in `sent`.
+  FrameVerdict answer(const MoteusAnswer& answer) {
+    now += std::chrono::milliseconds{1};
+    const auto verdict = motor.updateFeedback(moteusAnswer(answer, now, static_cast<std::uint32_t>(id)));
+    tick();
+    return verdict;
+  }
+  void tick() {
+    ++index;
+    const Tick tick{.index = index, .now = now, .dt_s = 0.001F};
+    motor.update(tick);
+    sent_count = motor.packCommand(tick, frames);
+  }
+  /// Through the whole sequence, with the drive at this position.
+  bool enable(double position_rev = 0.0) {
+    motor.order(FrameKind::kEnable);
+    tick();
+    answer({.position_rev = position_rev, .version = 5});
+    answer({.mode = MoteusMode::kPosition, .position_rev = position_rev});
+    answer({.mode = MoteusMode::kPosition, .position_rev = position_rev, .timeout_s = 0.1});
+    return motor.sequenceProgress() == SequenceProgress::kDone;
+  }
+  bool command(const Target& target, double position_rev = 0.0) {
+    motor.order(FrameKind::kCommand);
+    const bool taken = motor.setTarget(target);
+    answer({.mode = MoteusMode::kPosition, .position_rev = position_rev});
+    return taken;
+  }
+  /// What the sent frame writes to a register; nothing if it does not write it.
+  [[nodiscard]] std::optional<double> written(MoteusRegister reg) const {
+    if (sent_count == 0) return std::nullopt;
+    MoteusReader reader(frames[0].payload());
+    std::optional<double> value;
+    for (MoteusItem item; reader.next(item) == MoteusReader::Step::kItem;) {
+      if (item.kind == MoteusItem::Kind::kWrite && item.reg == reg) value = item.value;
+    }
+    return value;
+  }
+  [[nodiscard]] std::optional<double> mode() const { return written(MoteusRegister::kMode); }
+
+  Moteus_Motor motor;
+  int id;
+  MonotonicTime now{std::chrono::hours{1}};
+  std::uint64_t index = 0;
+  std::array<CanFrame, kMaxFramesPerPacker> frames{};
+  std::size_t sent_count = 0;
+};
+
+}  // namespace rc10::test

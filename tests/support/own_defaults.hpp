@@ -1,0 +1,26 @@
+#pragma once
+
+#include <cstdlib>
+#include <string>
+
+#include "motor/motor_family.hpp"
+
+namespace rc10::test {
+
+/// All of a family's own keys with their defaults, as the configuration fills them in.
+inline OwnValues ownDefaults(const MotorFamily& family) {
+  OwnValues own;
+  for (const FamilyKey& key : family.keys()) {
+    const std::string text{key.default_text};
+    if (key.kind == FamilyKey::Kind::kChoice) {
+      own.set(key.name, text);
+    } else if (key.kind == FamilyKey::Kind::kFlag) {
+      own.set(key.name, text == "true" ? 1.0 : 0.0);
+    } else {
+      own.set(key.name, std::strtod(text.c_str(), nullptr));
+    }
+  }
+  return own;
+}
+
+}  // namespace rc10::test

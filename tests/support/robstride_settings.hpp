@@ -1,0 +1,26 @@
+#pragma once
+
+#include <string>
+#include <string_view>
+
+#include "motor/robstride_motor.hpp"
+
+namespace rc10::test {
+
+/// A motor as the configuration makes it: the family's own keys at their defaults.
+inline MotorSettings robStrideSettings(std::string_view model, int id = 127) {
+  MotorSettings settings;
+  settings.name = "joint";
+  settings.model = std::string{model};
+  settings.id = id;
+  for (const auto& key : robStrideFamily().keys()) {
+    if (key.kind == FamilyKey::Kind::kChoice) {
+      settings.own.set(key.name, std::string{key.default_text});
+    } else {
+      settings.own.set(key.name, std::stod(std::string{key.default_text}));
+    }
+  }
+  return settings;
+}
+
+}  // namespace rc10::test

@@ -1,0 +1,48 @@
+#pragma once
+
+#include <cstdlib>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "motor/vesc_motor.hpp"
+
+namespace rc10::test {
+
+/// A VESC as configured with its defaults and 7 pole pairs, id 7.
+inline MotorSettings vescSettings(const std::vector<std::pair<std::string, OwnValues::Value>>& own = {}) {
+  MotorSettings settings;
+  settings.name = "shooter";
+  settings.model = "VESC";
+  settings.id = 7;
+  settings.feedback_hz = 100;
+  for (const FamilyKey& key : vescFamily().keys()) {
+    const std::string text{key.default_text};
+    if (key.kind == FamilyKey::Kind::kChoice) {
+      settings.own.set(key.name, text);
+    } else if (key.kind == FamilyKey::Kind::kFlag) {
+      settings.own.set(key.name, text == "true" ? 1.0 : 0.0);
+    } else {
+      settings.own.set(key.name, std::strtod(text.c_str(), nullptr));
+    }
+  }
+  settings.own.set("pole_pairs", 7.0);
+  for (const auto& [key, value] : own) settings.own.set(key, value);
+  const auto traits = vescFamily().traits("VESC", settings.own);
+  if (traits.host_loops != nullptr) settings.loops = *traits.host_loops;
+  return settings;
+}
+
+/// The payload in hexadecimal, at the drive's id 7 unless told otherwise.
+inline CanFrame vescFrame(std::uint32_t id, std::string_view hex) {
+  CanFrame frame;
+  frame.id = {id, true};
+  frame.length = static_cast<std::uint8_t>(hex.size() / 2);
+  for (std::size_t i = 0; i < frame.length; ++i) {
+    frame.data[i] = static_cast<std::uint8_t>(std::stoul(std::string{hex.substr(2 * i, 2)}, nullptr, 16));
+  }
+  return frame;
+}
+
+}  // namespace rc10::test

@@ -1,0 +1,200 @@
+#include "survey/recogniser.hpp"
+
+#include <gmock/gmock.h>
+
+#include "bus/frame_text.hpp"
+#include "survey/bus_survey.hpp"
+#include "survey/harmless_queries.hpp"
+
+// Frames of public documents and captures: those of tests/golden and of the families' golden tests.
+
+namespace rc10::survey {
+namespace {
+
+using ::testing::AllOf;
+using ::testing::Contains;
+using ::testing::ElementsAre;
+using ::testing::IsEmpty;
+using ::testing::UnorderedElementsAre;
+
+CanFrame frame(const char* text) {
+  const auto parsed = parseFrameText(text);
+  EXPECT_TRUE(parsed) << text;
+  return parsed.value_or(CanFrame{});
+}
+
+std::vector<Guess> of(const char* text) { return recognise(frame(text)); }
+
+Guess drive(std::string_view kind, int id) { return {kind, id, true}; }
+
+TEST(Recogniser, KnowsDjiFeedback) {
+  EXPECT_THAT(of("203#1000F44806662D00"), Contains(drive("DJI M3508 or M2006", 3)));
+  EXPECT_THAT(of("20B#0800007810002600"), ElementsAre(drive("DJI GM6020", 7)));
+}
+
+TEST(Recogniser, DjiIdsOverlap) {
+  EXPECT_THAT(of("206#1FFF12C0FA240000"),
+              UnorderedElementsAre(drive("DJI M3508 or M2006", 6), drive("DJI GM6020", 2)));
+}
+
+TEST(Recogniser, AnAngleBeyondTheEncoderIsNoDji) { EXPECT_THAT(of("203#2000F44806662D00"), IsEmpty()); }
+
+TEST(Recogniser, KnowsCommandsOfAnotherController) {
+  EXPECT_THAT(of("200#2000F00000004000"), ElementsAre(Guess{"DJI M3508 or M2006", 0, false}));
+  EXPECT_THAT(of("00000001#00002710"), ElementsAre(Guess{"VESC", 1, false}))
+      << frameText(frame("00000001#00002710"));
+}
+
+TEST(Recogniser, KnowsVescStatusAndItsAnswerToAPing) {
+  EXPECT_THAT(of("00000968#0000271000640064"), ElementsAre(drive("VESC", 0x68)));
+  EXPECT_THAT(of("000012FE#2A"), ElementsAre(drive("VESC", 0x2A)));
+}
+
+TEST(Recogniser, KnowsRobStrideAndCyberGear) {
+  EXPECT_THAT(of("02807FFD#70B987C186650138"), ElementsAre(drive("RobStride or CyberGear", 0x7F)));
+  EXPECT_THAT(of("020501FD#7FFF7FFF7FFF05AF"), ElementsAre(drive("RobStride or CyberGear", 1)));
+}
+
+TEST(Recogniser, TheSerialNumberOfARobStrideMayBeTheStatusOfAVesc) {
+  EXPECT_THAT(of("00007FFE#0102030405060708"), ElementsAre(drive("RobStride or CyberGear", 0x7F)));
+  EXPECT_THAT(of("000009FE#0102030405060708"),
+              UnorderedElementsAre(drive("VESC", 0xFE), drive("RobStride or CyberGear", 9)));
+}
+
+TEST(Recogniser, KnowsCubeMars) {
+  EXPECT_THAT(of("00002968#04D2FF0602372A00"), ElementsAre(drive("CubeMars (servo)", 0x68)));
+  EXPECT_THAT(of("000#68851E7FF7FF4600"), Contains(drive("CubeMars (MIT)", 0x68)));
+}
+
+TEST(Recogniser, DamiaoAndCubeMarsMayLookTheSame) {
+  EXPECT_THAT(of("000#017FFF7FF7FF1E1E"),
+              UnorderedElementsAre(drive("Damiao", 1), drive("CubeMars (MIT)", 1)));
+  EXPECT_THAT(of("011#117FFF7FF7FF1E1E"),
+              UnorderedElementsAre(drive("Damiao", 1), drive("CubeMars (MIT)", 0x11)));
+  EXPECT_THAT(of("012#127FFF7FF7FF1E1E"), Contains(drive("Damiao", 2)));
+}
+
+TEST(Recogniser, KnowsMoteusOnFdOnly) {
+  // Three registers as int16 in one answer: mode, position, velocity.
+  EXPECT_THAT(of("100##12700000000000000"), ElementsAre(drive("moteus", 1)));
+  EXPECT_THAT(of("100#2700000000000000"), ::testing::Not(Contains(drive("moteus", 1))));
+}
+
+TEST(Recogniser, KnowsOdrive) {
+  EXPECT_THAT(of("061#4000000001010001"), ElementsAre(drive("ODrive", 3)));
+  EXPECT_THAT(of("069#000000BE00006040"), Contains(drive("ODrive", 3)));
+}
+
+TEST(Recogniser, ANodeOfOdriveMayLookLikeADji) {
+  EXPECT_THAT(of("201#0000000001000000"),
+              UnorderedElementsAre(drive("DJI M3508 or M2006", 1), drive("ODrive", 16)));
+}
+
+TEST(Recogniser, KnowsLKTech) {
+  EXPECT_THAT(of("141#A128F80098FE00C0"), Contains(drive("LK-Tech", 1)));
+  EXPECT_THAT(of("141#9A1EC01264001008"), Contains(drive("LK-Tech", 1)));
+  // A command, to either of the two; by its bytes the heartbeat of ODrive's node 10 too.
+  EXPECT_THAT(of("141#A10000000CFE0000"),
+              AllOf(Contains(Guess{"LK-Tech", 1, false}), Contains(Guess{"MyActuator", 1, false})));
+}
+
+TEST(Recogniser, KnowsMyActuator) {
+  EXPECT_THAT(of("241#9A320001E5010400"), Contains(drive("MyActuator", 1)));
+  EXPECT_THAT(of("501#01E66682EB550000"), Contains(drive("MyActuator", 1)));
+}
+
+TEST(Recogniser, ErrorFramesAndRemoteFramesAreNoDrives) {
+  auto error = frame("203#1000F44806662D00");
+  error.type = FrameType::kError;
+  EXPECT_THAT(recognise(error), IsEmpty());
+}
+
+TEST(BusSurvey, WhatFitsEveryFrameRemains) {
+  BusSurvey survey;
+  survey.take(frame("201#0000000001000000"));  // a DJI, or ODrive's node 16
+  ASSERT_EQ(survey.sightings().size(), 1U);
+  EXPECT_TRUE(survey.sightings()[0].ambiguous());
+  survey.take(frame("201#1000F448F666FF00"));  // no state of an ODrive
+  const auto sightings = survey.sightings();
+  EXPECT_FALSE(sightings[0].ambiguous());
+  EXPECT_THAT(sightings[0].guesses, ElementsAre(drive("DJI M3508 or M2006", 1)));
+  EXPECT_EQ(sightings[0].frames, 2U);
+}
+
+TEST(BusSurvey, AHeartbeatDoesNotComeAThousandTimesASecond) {
+  BusSurvey survey;
+  for (int i = 0; i < 1000; ++i) survey.take(frame("201#0000000000000000"));
+  EXPECT_TRUE(survey.sightings()[0].ambiguous());
+  EXPECT_THAT(survey.sightings(std::chrono::seconds{1})[0].guesses,
+              ElementsAre(drive("DJI M3508 or M2006", 1)));
+  EXPECT_TRUE(survey.sightings(std::chrono::seconds{100})[0].ambiguous());
+}
+
+TEST(BusSurvey, DrivesThatShareAnIdAreSeveralOfOneKind) {
+  BusSurvey survey;
+  survey.take(frame("020#017FFF7FF7FF1E1E"));
+  survey.take(frame("020#027FFF7FF7FF1E1E"));
+  ASSERT_EQ(survey.sightings().size(), 1U);
+  EXPECT_FALSE(survey.sightings()[0].ambiguous());
+  EXPECT_THAT(survey.sightings()[0].guesses, UnorderedElementsAre(drive("Damiao", 1), drive("Damiao", 2)));
+}
+
+TEST(BusSurvey, AStrangersFrameIsKeptAsUnknown) {
+  BusSurvey survey;
+  survey.take(frame("7FE#01"));
+  ASSERT_EQ(survey.sightings().size(), 1U);
+  EXPECT_THAT(survey.sightings()[0].guesses, IsEmpty());
+  EXPECT_FALSE(survey.sightings()[0].ambiguous());
+}
+
+// A standard id means something else to each family; and below 6 a VESC and a CubeMars drive take the third
+// byte for a command that gives torque, 8 is CubeMars' MIT.
+TEST(Recogniser, KnowsTheHeartbeatOfAnOdriveWithExtendedIds) {
+  EXPECT_THAT(of("00000061#0000000001000100"), Contains(drive("ODrive (extended ids)", 3)));
+  EXPECT_THAT(of("00000069#000000BE00006040"), IsEmpty())
+      << "not its encoder: any two numbers look like that";
+}
+
+TEST(Recogniser, AVescAtRestIsNoOdrive) {
+  EXPECT_THAT(of("00000901#0000000000000000"), ElementsAre(drive("VESC", 1)));
+}
+
+TEST(BusSurvey, AHeartbeatUnderTheIdOfAVescIsAmbiguous) {
+  BusSurvey survey;
+  survey.take(frame("00000901#0000000008000000"));
+  const auto sightings = survey.sightings();
+  ASSERT_EQ(sightings.size(), 1U);
+  EXPECT_TRUE(sightings[0].ambiguous());
+  EXPECT_THAT(sightings[0].guesses,
+              UnorderedElementsAre(drive("VESC", 1), drive("ODrive (extended ids)", 72)));
+}
+
+TEST(BusSurvey, AQueryThatAnOdriveWouldObeyIsKnown) {
+  BusSurvey survey;
+  const auto spared = [&survey] {
+    std::vector<std::uint32_t> ids;
+    for (const auto& query : harmlessQueries())
+      if (survey.commandedBy(query) != 0) ids.push_back(query.id.value);
+    return ids;
+  };
+  EXPECT_THAT(spared(), IsEmpty());
+  survey.take(frame("00001101#0000000001000000"));  // node 136, where the PING of VESC 2 is the e-stop
+  EXPECT_EQ(spared().size(), 32U);
+  EXPECT_EQ(spared().front(), 0x1100U);
+  EXPECT_EQ(survey.commandedBy(frame("00001102#FE")), 136);
+  survey.take(frame("0000FD01#0000000008000000"));  // node 2024, which would be told a position of zero
+  EXPECT_EQ(survey.commandedBy(frame("0000FD0C#0000000000000000")), 2024);
+  EXPECT_EQ(spared().size(), 32U + 31U);
+}
+
+TEST(HarmlessQueries, AreExtendedFramesThatCommandNobody) {
+  for (const auto& query : harmlessQueries()) {
+    EXPECT_TRUE(query.id.extended);
+    EXPECT_FALSE(query.fd);
+    EXPECT_THAT((query.id.value >> 8U), ::testing::AnyOf(0x11U, 0xFDU)) << frameText(query);
+  }
+  EXPECT_EQ(harmlessQueries().size(), 254U + 127U);
+}
+
+}  // namespace
+}  // namespace rc10::survey
