@@ -21,8 +21,10 @@ void SimLoop::run(const std::stop_token& stop) noexcept {
   timer_.start(nextOnGrid(monotonicNow(), kPeriod) + kPeriod / 2, kPeriod);
   while (!stop.stop_requested()) {
     if (timer_.wait() == 0) continue;
-    const auto now = monotonicNow();
-    for (auto& port : robot_.simPorts()) port->step(now);
+    for (auto& port : robot_.simPorts()) {
+      port->step(monotonicNow());
+      port->sentAt(monotonicNow());
+    }
   }
 }
 

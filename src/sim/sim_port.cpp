@@ -48,6 +48,12 @@ void SimPort::step(MonotonicTime now) noexcept {
   writeFeedback(bus_.step(now, dt, feedback_));
 }
 
+void SimPort::sentAt(MonotonicTime sent) noexcept {
+  if (!last_step_ || sent - *last_step_ <= kLongestSending) return;
+  counters_.skipped += sent - *last_step_;
+  last_step_ = sent;
+}
+
 void SimPort::readCommands(MonotonicTime now) noexcept {
   const WakeUp wake{.now = now, .previous = now, .realtime_offset = {}, .previous_offset = {}};
   for (int reads = 0; reads < kMostReads; ++reads) {

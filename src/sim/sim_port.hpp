@@ -24,6 +24,9 @@ class SimPort {
   /// A step longer than this simulates only this much: after a stop (a debugger, a suspended machine) the
   /// motors go on from where they were.
   static constexpr Duration kLongestStep{std::chrono::seconds{1}};
+  /// Frames that leave later than this after their step began carry stamps that are too late, by more than a
+  /// drive's encoder counting allows for: the motors stand still for that time instead.
+  static constexpr Duration kLongestSending{std::chrono::milliseconds{2}};
 
   struct Counters {
     std::uint64_t commands = 0;   ///< Frames read.
@@ -45,6 +48,9 @@ class SimPort {
   /// system call for 64 frames. The first step only sets the clock. All commands count from the step's begin;
   /// what came in between is not known better than that.
   void step(MonotonicTime now) noexcept;
+  /// When the step's frames had left: `now` read again. A thread that was held in between (a busy laptop)
+  /// makes the kernel stamp late what was measured early.
+  void sentAt(MonotonicTime sent) noexcept;
 
   [[nodiscard]] SimBus& bus() noexcept { return bus_; }
   [[nodiscard]] const SimBus& bus() const noexcept { return bus_; }

@@ -183,10 +183,10 @@ Result<void> run(std::vector<Running>& buses, int signals, const Options& option
     if (waited[1].revents != 0) return {};
     std::uint64_t expirations = 0;
     if (::read(timer->get(), &expirations, sizeof(expirations)) < 0) continue;
-    const MonotonicTime now = monotonicNow();
-    if (options.duration_s > 0.0 && now >= end) return {};
+    if (options.duration_s > 0.0 && monotonicNow() >= end) return {};
     for (Running& bus : buses) {
-      bus.port->step(now);
+      bus.port->step(monotonicNow());
+      bus.port->sentAt(monotonicNow());
       if (bus.port->counters().error != ENODEV) continue;
       return fail("bus '" + bus.name + "': interface '" + bus.interface +
                   "' is gone; start rc10-sim again when it is back");

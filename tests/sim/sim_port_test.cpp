@@ -118,6 +118,27 @@ TEST_F(SimPortTest, AfterALongStopTheMotorsGoOnFromWhereTheyWere) {
   EXPECT_EQ(received().size(), 4U);
 }
 
+TEST_F(SimPortTest, MotorsStandStillWhileTheirFramesAreHeldBack) {
+  command(8192);
+  for (int i = 0; i < 300; ++i) step();
+  const double before_deg = port_->bus().motor(0).outputAngleDeg();
+  port_->sentAt(now_ += 13ms);  // the kernel's stamp of the last frame
+  step();
+  // 1 ms between the stamps, and 1 ms of turning.
+  const double rpm = port_->bus().motor(0).outputRpm();
+  EXPECT_NEAR(port_->bus().motor(0).outputAngleDeg() - before_deg, rpm * 6.0 / 1000.0, 0.1);
+  EXPECT_EQ(port_->counters().skipped, 13ms);
+}
+
+TEST_F(SimPortTest, SendingThatTakesItsUsualTimeSkipsNothing) {
+  for (int i = 0; i < 10; ++i) {
+    step();
+    port_->sentAt(now_ + 2ms);
+  }
+  EXPECT_EQ(port_->counters().skipped, 0ms);
+  EXPECT_EQ(port_->counters().sent, 20U);
+}
+
 TEST_F(SimPortTest, TimeThatRunsBackwardsIsNoTime) {
   step(-50ms);
   EXPECT_EQ(port_->counters().sent, 0U);
