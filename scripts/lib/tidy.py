@@ -4,8 +4,8 @@
     tidy.py BUILD [REGEX...]      REGEX: only sources that match; BUILD has compile_commands.json
 
 A header is read by many sources, through a link in BUILD/layers, and clang-tidy repeats what it
-finds there. What was clean stays so until the source, something it includes, or .clang-tidy
-changes: BUILD/tidy-cache remembers.
+finds there. What was clean stays so until the source, something it includes, .clang-tidy or
+clang-tidy itself changes: RC10_CACHE (default ~/.cache/rc10) remembers, for every clone.
 """
 
 from __future__ import annotations
@@ -21,16 +21,22 @@ from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 REPO = Path(__file__).resolve().parents[2]
+CACHE = Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache") / "rc10"
+CLEAN = Path(os.environ.get("RC10_CACHE") or CACHE) / "tidy"
 FINDING = re.compile(r"^(/[^:]+):(\d+):(\d+): (warning|error|note): (.*)$")
 
 
-def digest_of_inputs(entry: dict[str, str]) -> str | None:
+def version() -> bytes:
+    return subprocess.run(["clang-tidy-16", "--version"], capture_output=True, check=True).stdout
+
+
+def digest_of_inputs(tool: bytes, entry: dict[str, str]) -> str | None:
     """A hash of all that the compiler reads for one source, None when it cannot be compiled."""
     words = shlex.split(entry["command"])
     if os.path.basename(words[0]) == "ccache":
         del words[0]
-    output = words.index("-o")
-    del words[output : output + 2]
+    at = words.index("-o")
+    del words[at : at + 2]
     words[words.index("-c")] = "-E"
     done = subprocess.run(words, cwd=entry["directory"], capture_output=True, check=False)
     if done.returncode != 0:
@@ -40,13 +46,16 @@ def digest_of_inputs(entry: dict[str, str]) -> str | None:
     headers = set(re.findall(rb'^# \d+ "([^"<]+)"', done.stdout, re.MULTILINE))
     own = (Path(entry["directory"], os.fsdecode(name)).resolve() for name in headers)
     texts = (path.read_bytes() for path in sorted(own) if REPO / "src" in path.parents)
-    return hashlib.sha256(b"\0".join([source, done.stdout, *texts])).hexdigest()
+    # Of a clone's folder only what is below it.
+    preprocessed = done.stdout.replace(os.fsencode(REPO), b"")
+    command = os.fsencode(" ".join(words)).replace(os.fsencode(REPO), b"")
+    return hashlib.sha256(b"\0".join([tool, command, source, preprocessed, *texts])).hexdigest()
 
 
-def check(build: Path, entry: dict[str, str]) -> str:
+def check(build: Path, tool: bytes, entry: dict[str, str]) -> str:
     """The output of clang-tidy for one source; empty when it is clean."""
-    digest = digest_of_inputs(entry)
-    stamp = build / "tidy-cache" / str(digest)
+    digest = digest_of_inputs(tool, entry)
+    stamp = CLEAN / str(digest)
     if digest is not None and stamp.exists():
         return ""
     done = subprocess.run(
@@ -56,8 +65,9 @@ def check(build: Path, entry: dict[str, str]) -> str:
         check=False,
     )
     if done.returncode == 0:
-        stamp.parent.mkdir(exist_ok=True)
-        stamp.touch()
+        if digest is not None:
+            stamp.parent.mkdir(parents=True, exist_ok=True)
+            stamp.touch()
         return ""
     return done.stdout or done.stderr
 
@@ -84,8 +94,9 @@ def main() -> int:
         for entry in json.loads((build / "compile_commands.json").read_text())
         if REPO / "src" in Path(entry["file"]).parents and wanted.search(entry["file"])
     ]
+    tool = version()
     with ThreadPoolExecutor(os.cpu_count()) as pool:
-        outputs = pool.map(lambda entry: check(build, entry), entries)
+        outputs = pool.map(lambda entry: check(build, tool, entry), entries)
     found: dict[tuple[str, ...], str] = {}
     for output in outputs:
         found.update(findings(output))
