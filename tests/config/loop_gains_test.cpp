@@ -89,7 +89,7 @@ TEST(LoopGains, AGainIsNamedByItsPathByItsKeyOrInBrief) {
 TEST(LoopGains, WhatWasToldIsAccepted) {
   for (const auto& loops : {loopsOf(kPosition), loopsOf(kVesc)}) {
     for (const auto& gain : gainKeysOf(loops)) {
-      const double told = gainOf(loops.config, gain.gain);
+      const double told = static_cast<double>(gainOf(loops.config, gain.gain));
       const auto change = gainChange(gain.path(), told, loops);
       ASSERT_TRUE(change) << change.error().message;
       EXPECT_EQ(change->value, static_cast<float>(told));
