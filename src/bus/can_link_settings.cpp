@@ -1,5 +1,9 @@
 #include "bus/can_link_settings.hpp"
 
+#include <linux/can/netlink.h>
+
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdio>
 
@@ -8,6 +12,15 @@ namespace {
 
 // At 8 Mbit/s a clock of 40 MHz has five quanta a bit: the nearest point is up to 10 % away.
 constexpr double kSamplePointTolerance = 0.1;
+
+// linux/can/netlink.h
+constexpr std::array kHinderingModes{
+    HinderingMode{CAN_CTRLMODE_LISTENONLY, "listen-only", "nothing can be sent"},
+    HinderingMode{CAN_CTRLMODE_LOOPBACK, "loopback", "the controller talks to itself"},
+    HinderingMode{CAN_CTRLMODE_ONE_SHOT, "one-shot", "a frame that loses arbitration is never sent"},
+    HinderingMode{CAN_CTRLMODE_PRESUME_ACK, "presume-ack", "a bus without any drive looks like a good one"},
+    HinderingMode{CAN_CTRLMODE_FD_NON_ISO, "fd-non-iso", "drives speak the CAN FD of ISO 11898-1:2015"},
+};
 
 [[nodiscard]] std::string share(double value) {
   char text[16];
@@ -53,8 +66,9 @@ constexpr double kSamplePointTolerance = 0.1;
 }
 
 [[nodiscard]] std::string wrongMode(const std::string& interface, const CanLink& link) {
-  if (link.listen_only) return interface + " is listen-only: nothing can be sent";
-  if (link.loopback) return interface + " is in loopback: the controller talks to itself";
+  if (const auto* mode = hinderingMode(link)) {
+    return interface + " has the mode " + std::string(mode->name) + " on: " + std::string(mode->consequence);
+  }
   if (link.restart_ms != 0) {
     return interface + " restarts by itself " + std::to_string(link.restart_ms) +
            " ms after bus-off, again and again";
@@ -78,6 +92,18 @@ bool sameSamplePoint(double seen, double wanted) noexcept {
   return wanted == 0.0 || std::abs(seen - wanted) <= kSamplePointTolerance;
 }
 
+const HinderingMode* hinderingMode(const CanLink& link) noexcept {
+  const auto* const found =
+      std::ranges::find_if(kHinderingModes, [&](const auto& mode) { return (link.modes & mode.flag) != 0; });
+  return found == kHinderingModes.end() ? nullptr : found;
+}
+
+std::uint32_t hinderingModes(const CanLink& link) noexcept {
+  std::uint32_t flags = 0;
+  for (const auto& mode : kHinderingModes) flags |= link.modes & mode.flag;
+  return flags;
+}
+
 std::string wrongSetting(const std::string& interface, const CanLink& link, const CanLinkSettings& wanted) {
   if (!link.isController()) return {};
   auto wrong = wrongRate(interface, link, wanted);
@@ -98,8 +124,9 @@ std::string upCommand(const std::string& interface, const CanLink& link, const C
   } else if (link.fd_on) {
     command += " fd off";
   }
-  if (link.listen_only) command += " listen-only off";
-  if (link.loopback) command += " loopback off";
+  for (const auto& mode : kHinderingModes) {
+    if ((link.modes & mode.flag) != 0) command += " " + std::string(mode.name) + " off";
+  }
   return command + " restart-ms 0";
 }
 

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <string>
+#include <string_view>
 
 #include "bus/can_link_state.hpp"
 
@@ -23,6 +24,19 @@ struct CanLinkSettings {
 
 /// No time quanta may lie exactly there. 0 is as good as any.
 [[nodiscard]] bool sameSamplePoint(double seen, double wanted) noexcept;
+
+/// A mode of a controller that a robot's bus must not have: frames get lost, or nobody notices that they do.
+struct HinderingMode {
+  std::uint32_t flag = 0;        ///< CAN_CTRLMODE_…
+  std::string_view name;         ///< As `ip link` calls it.
+  std::string_view consequence;  ///< What it means for motors.
+};
+
+/// The first one that is on; nullptr: none.
+[[nodiscard]] const HinderingMode* hinderingMode(const CanLink& link) noexcept;
+
+/// The flags of all that are on.
+[[nodiscard]] std::uint32_t hinderingModes(const CanLink& link) noexcept;
 
 /// The first thing that is not as wanted, in words that name the interface; empty: nothing, or there is no
 /// controller that could be set up.

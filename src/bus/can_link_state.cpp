@@ -84,8 +84,7 @@ void readController(Bytes can, CanLink& link) {
   }
   if (const auto mode = readAs<can_ctrlmode>(attribute(can, IFLA_CAN_CTRLMODE))) {
     link.fd_on = (mode->flags & CAN_CTRLMODE_FD) != 0;
-    link.listen_only = (mode->flags & CAN_CTRLMODE_LISTENONLY) != 0;
-    link.loopback = (mode->flags & CAN_CTRLMODE_LOOPBACK) != 0;
+    link.modes = mode->flags;
   }
   if (const auto counter = readAs<can_berr_counter>(attribute(can, IFLA_CAN_BERR_COUNTER))) {
     link.tec = counter->txerr;

@@ -24,9 +24,8 @@ struct CanLink {
   std::optional<bool> bus_off;
   std::optional<CanState> state;
   bool fd_on = false;
-  bool listen_only = false;
-  bool loopback = false;
-  std::optional<int> tec;  ///< Error counters of the controller.
+  std::uint32_t modes = 0;  ///< All that are on: CAN_CTRLMODE_… of linux/can/netlink.h.
+  std::optional<int> tec;   ///< Error counters of the controller.
   std::optional<int> rec;
   std::uint32_t bus_errors = 0;  ///< These four since the interface exists.
   std::uint32_t times_passive = 0;

@@ -84,9 +84,7 @@ std::span<const std::byte> fdSetupMessage(std::span<std::byte, kFdSetupRoom> roo
   mnl_attr_put(header, IFLA_CAN_BITTIMING, sizeof nominal, &nominal);
   const auto data = timing(wanted.data_bitrate, wanted.data_sample_point);
   mnl_attr_put(header, IFLA_CAN_DATA_BITTIMING, sizeof data, &data);
-  can_ctrlmode mode{.mask = CAN_CTRLMODE_FD, .flags = CAN_CTRLMODE_FD};
-  if (seen.listen_only) mode.mask |= CAN_CTRLMODE_LISTENONLY;
-  if (seen.loopback) mode.mask |= CAN_CTRLMODE_LOOPBACK;
+  const can_ctrlmode mode{.mask = CAN_CTRLMODE_FD | hinderingModes(seen), .flags = CAN_CTRLMODE_FD};
   mnl_attr_put(header, IFLA_CAN_CTRLMODE, sizeof mode, &mode);
   mnl_attr_put_u32(header, IFLA_CAN_RESTART_MS, 0);
   mnl_attr_nest_end(header, settings);

@@ -14,7 +14,7 @@ namespace rc10 {
 constexpr std::size_t kFdSetupRoom = 512;
 
 /// The RTM_NEWLINK message that makes an interface a CAN FD one: both bit timings, FD mode, no automatic
-/// restart. `seen`: modes that are on and hinder (listen-only, loopback) are taken away. Returns the part of
+/// restart. `seen`: hinderingModes() of it are taken away. Returns the part of
 /// `room` that is to be sent. Pure.
 [[nodiscard]] std::span<const std::byte> fdSetupMessage(std::span<std::byte, kFdSetupRoom> room,
                                                         unsigned interface_index, const CanLink& seen,

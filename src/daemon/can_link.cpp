@@ -40,10 +40,8 @@ class LinkSetup {
     const auto sample_point = static_cast<std::uint32_t>(std::lround(wanted_.sample_point * 1000.0));
     if (can_set_bitrate_samplepoint(name, static_cast<std::uint32_t>(wanted_.bitrate), sample_point) != 0)
       return failed("set " + bitrates(wanted_), errno);
-    can_ctrlmode off{};
+    can_ctrlmode off{.mask = hinderingModes(seen_), .flags = 0};
     if (seen_.fd_on) off.mask |= CAN_CTRLMODE_FD;
-    if (seen_.listen_only) off.mask |= CAN_CTRLMODE_LISTENONLY;
-    if (seen_.loopback) off.mask |= CAN_CTRLMODE_LOOPBACK;
     if (off.mask != 0 && can_set_ctrlmode(name, &off) != 0)
       return failed("make it a classic interface", errno);
     if (can_set_restart_ms(name, 0) != 0) return failed("set restart-ms 0", errno);

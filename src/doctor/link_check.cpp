@@ -129,8 +129,8 @@ Finding checkSamplePoint(const LinkFacts& facts) {
 Finding checkFdMode(const LinkFacts& facts) {
   const std::string what = about(facts, "FD mode");
   const auto link = facts.link.value_or(CanLink{});
-  if (link.listen_only) return judged(facts, what, "listen-only: nothing can be sent");
-  if (link.loopback) return judged(facts, what, "loopback: the controller talks to itself");
+  if (const auto* mode = hinderingMode(link))
+    return judged(facts, what, std::string(mode->name) + ": " + std::string(mode->consequence));
   if (!link.isController()) return pass(what, "a " + link.kind + " takes what it is given");
   if (facts.wanted.data_bitrate != 0) {
     if (!link.fd_on)

@@ -2,6 +2,7 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <linux/can/netlink.h>
 
 namespace rc10::test {
 namespace {
@@ -45,10 +46,20 @@ TEST(CanLinkSettings, CommandsAreThoseOfIpLink) {
 
 TEST(CanLinkSettings, CommandsTakeAwayWhatIsOnAndHinders) {
   auto link = asWanted();
-  link.listen_only = true;
-  link.loopback = true;
+  link.modes = CAN_CTRLMODE_LISTENONLY | CAN_CTRLMODE_ONE_SHOT | CAN_CTRLMODE_BERR_REPORTING;
   EXPECT_EQ(upCommand("can0", link, kClassic),
-            "ip link set can0 up type can bitrate 500000 fd off listen-only off loopback off restart-ms 0");
+            "ip link set can0 up type can bitrate 500000 fd off listen-only off one-shot off restart-ms 0");
+}
+
+TEST(CanLinkSettings, OnlyModesThatHinderAreTakenAway) {
+  CanLink link;
+  link.modes = CAN_CTRLMODE_FD | CAN_CTRLMODE_BERR_REPORTING | CAN_CTRLMODE_3_SAMPLES;
+  EXPECT_EQ(hinderingMode(link), nullptr);
+  EXPECT_EQ(hinderingModes(link), 0U);
+  link.modes |= CAN_CTRLMODE_ONE_SHOT | CAN_CTRLMODE_PRESUME_ACK;
+  ASSERT_NE(hinderingMode(link), nullptr);
+  EXPECT_EQ(hinderingMode(link)->name, "one-shot");
+  EXPECT_EQ(hinderingModes(link), static_cast<unsigned>(CAN_CTRLMODE_ONE_SHOT | CAN_CTRLMODE_PRESUME_ACK));
 }
 
 TEST(CanLinkSettings, AVirtualInterfaceTakesFdByItsMtu) {
@@ -89,8 +100,12 @@ TEST(CanLinkSettings, EachDifferenceIsTold) {
   early.data_sample_point = 0.6;
   EXPECT_EQ(told([](CanLink&) {}, early),
             "can0 is set to sample point 0.750 in the data phase, the configuration says 0.600");
-  EXPECT_THAT(told([](CanLink& link) { link.listen_only = true; }), HasSubstr("listen-only"));
-  EXPECT_THAT(told([](CanLink& link) { link.loopback = true; }), HasSubstr("loopback"));
+  EXPECT_EQ(told([](CanLink& link) { link.modes = CAN_CTRLMODE_LISTENONLY; }),
+            "can0 has the mode listen-only on: nothing can be sent");
+  EXPECT_THAT(told([](CanLink& link) { link.modes = CAN_CTRLMODE_LOOPBACK; }), HasSubstr("loopback"));
+  EXPECT_THAT(told([](CanLink& link) { link.modes = CAN_CTRLMODE_ONE_SHOT; }), HasSubstr("one-shot"));
+  EXPECT_THAT(told([](CanLink& link) { link.modes = CAN_CTRLMODE_PRESUME_ACK; }), HasSubstr("presume-ack"));
+  EXPECT_THAT(told([](CanLink& link) { link.modes = CAN_CTRLMODE_FD_NON_ISO; }), HasSubstr("fd-non-iso"));
   EXPECT_THAT(told([](CanLink& link) { link.restart_ms = 100; }), HasSubstr("100 ms after bus-off"));
 }
 

@@ -86,8 +86,7 @@ TEST_F(FdSetupMessage, HasBothBitTimingsFdModeAndNoAutomaticRestart) {
 
 TEST_F(FdSetupMessage, TakesAwayTheModesThatHinder) {
   CanLink seen;
-  seen.listen_only = true;
-  seen.loopback = true;
+  seen.modes = CAN_CTRLMODE_LISTENONLY | CAN_CTRLMODE_LOOPBACK | CAN_CTRLMODE_BERR_REPORTING;
   auto found = settings(seen, {.bitrate = 500'000, .data_bitrate = 2'000'000});
   const auto mode = as<can_ctrlmode>(found[IFLA_CAN_CTRLMODE]);
   EXPECT_EQ(mode.mask,

@@ -1,6 +1,7 @@
 #include "doctor/link_check.hpp"
 
 #include <gmock/gmock.h>
+#include <linux/can/netlink.h>
 
 namespace rc10::doctor {
 namespace {
@@ -111,7 +112,7 @@ TEST(LinkCheck, WhatRc10dMendsIsNoFault) {
   EXPECT_EQ(checkFdMode(facts).verdict, Verdict::kPass);
   facts.wanted.data_bitrate = 0;
   EXPECT_EQ(checkFdMode(facts).verdict, Verdict::kPass);
-  facts.link->listen_only = true;
+  facts.link->modes = CAN_CTRLMODE_LISTENONLY;
   EXPECT_EQ(checkFdMode(facts).verdict, Verdict::kPass);
 }
 
@@ -131,11 +132,10 @@ TEST(LinkCheck, ItSaysWhatRc10dSays) {
 
 TEST(LinkCheck, AControllerThatCannotSendFails) {
   auto facts = good();
-  facts.link->listen_only = true;
-  EXPECT_EQ(checkFdMode(facts).verdict, Verdict::kFail);
-  facts.link->listen_only = false;
-  facts.link->loopback = true;
-  EXPECT_EQ(checkFdMode(facts).verdict, Verdict::kFail);
+  for (const auto mode : {CAN_CTRLMODE_LISTENONLY, CAN_CTRLMODE_LOOPBACK, CAN_CTRLMODE_ONE_SHOT}) {
+    facts.link->modes = static_cast<std::uint32_t>(mode);
+    EXPECT_EQ(checkFdMode(facts).verdict, Verdict::kFail);
+  }
 }
 
 TEST(LinkCheck, AnAutomaticRestartFails) {

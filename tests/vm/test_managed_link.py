@@ -107,6 +107,23 @@ def test_another_bit_rate_while_it_runs_is_mended(tmp_path: Path) -> None:
         wait_for(is_as_configured, PATIENCE_S, "the configured bit rate", poll_s=0.1)
 
 
+def test_modes_in_which_frames_get_lost_are_taken_away(tmp_path: Path) -> None:
+    with running(config(tmp_path, managed=True)) as process:
+        set_link("can0", "bitrate 1000000 one-shot on presume-ack on restart-ms 0")
+        process.wait_line(
+            "can0 has the mode one-shot on: a frame that loses arbitration is never sent: "
+            "can0 taken down and up at 1000000 bit/s",
+            PATIENCE_S,
+        )
+        wait_for(
+            lambda: "ONE-SHOT" not in link_details() and "PRESUME-ACK" not in link_details(),
+            PATIENCE_S,
+            "modes of a robot's bus",
+            poll_s=0.1,
+        )
+        assert is_as_configured()
+
+
 def test_bus_off_ends_in_a_restart(tmp_path: Path) -> None:
     with running(config(tmp_path, managed=True)) as process:
         run("cansend", "can0", BUS_OFF)
