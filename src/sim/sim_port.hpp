@@ -37,8 +37,8 @@ class SimPort {
     int error = 0;                ///< errno of the last read that failed; 0 since one succeeded.
   };
 
-  /// Two connected descriptors, one message a frame, both non-blocking and with kernel receive stamps, as
-  /// SocketCAN has them: one for fdCANbus::adopt(), one for the port.
+  /// Two connected descriptors, one message a frame, both non-blocking and with the kernel's receive stamps,
+  /// if it has them, as on SocketCAN: one for fdCANbus::adopt(), one for the port.
   [[nodiscard]] static Result<std::pair<UniqueFd, UniqueFd>> makeSocketPair();
 
   /// `config` has passed SimBus::check().

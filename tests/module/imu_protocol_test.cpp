@@ -76,8 +76,7 @@ TEST(HipnucProtocol, OtherPacketsCountAndBringNoValues) {
 
 TEST(HipnucProtocol, APacketThatIsTooShortBringsNoValues) {
   HipnucProtocol protocol;
-  Bytes packet(kHipnuc.begin() + 6, kHipnuc.end());
-  packet.pop_back();
+  const Bytes packet(kHipnuc.begin() + 6, kHipnuc.end() - 1);
   feed(protocol, hipnucFrame(packet));
   EXPECT_EQ(protocol.counters().frames, 1U);
   EXPECT_EQ(protocol.angles().samples, 0U);
