@@ -5,10 +5,12 @@
 #include <sys/eventfd.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <atomic>
 #include <cctype>
 #include <cstdlib>
+#include <iterator>
 #include <mutex>
 #include <thread>
 
@@ -47,15 +49,17 @@ using RawHandler = std::function<void(const std::string& channel, std::span<cons
          "(and only if that is not enough: sudo ip link set lo multicast on)";
 }
 
+void notify(int event) noexcept { (void)::eventfd_write(event, 1); }
+
 }  // namespace
 
 /// One subscription. The mutex is recursive: a handler may end its own.
 struct Subscription::Handler {
-  lcm_t* lcm = nullptr;
   lcm_subscription_t* subscribed = nullptr;
   std::weak_ptr<void> owner;
+  int ended = -1;  ///< The owner's: to be written to when `alive` is no more.
   std::recursive_mutex mutex;
-  bool alive = true;
+  std::atomic<bool> alive{true};
   RawHandler call;
 };
 
@@ -75,7 +79,7 @@ void Subscription::end() noexcept {
       const std::lock_guard lock(handler_->mutex);
       handler_->alive = false;
     }
-    lcm_unsubscribe(handler_->lcm, handler_->subscribed);
+    notify(handler_->ended);
   }
   handler_.reset();
 }
@@ -84,19 +88,20 @@ struct Link::Impl {
   lcm_t* lcm = nullptr;
   Result<void> status;
   UniqueFd stop;
+  UniqueFd ended;
   std::mutex mutex;
-  // Kept to the end: LCM may be about to call a handler that is being unsubscribed.
   std::vector<std::shared_ptr<Subscription::Handler>> handlers;
   std::thread thread;
 
   explicit Impl(const std::string& url) : lcm(lcm_create(url.empty() ? nullptr : url.c_str())) {
     stop = UniqueFd{eventfd(0, EFD_CLOEXEC)};
+    ended = UniqueFd{eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK)};
     if (lcm == nullptr) {
       status = fail(startFailure(url));
       return;
     }
     // Opens what receives; without a route it is this that fails.
-    if (!stop || lcm_get_fileno(lcm) < 0) {
+    if (!stop || !ended || lcm_get_fileno(lcm) < 0) {
       status = fail(startFailure(url));
       return;
     }
@@ -107,20 +112,37 @@ struct Link::Impl {
   Impl& operator=(const Impl&) = delete;
   ~Impl() {
     if (thread.joinable()) {
-      const std::uint64_t one = 1;
-      (void)!::write(stop.get(), &one, sizeof one);
+      notify(stop.get());
       thread.join();
     }
     if (lcm != nullptr) lcm_destroy(lcm);
   }
 
-  void receive() const {
-    std::array<pollfd, 2> fds{pollfd{lcm_get_fileno(lcm), POLLIN, 0}, pollfd{stop.get(), POLLIN, 0}};
+  void receive() {
+    std::array<pollfd, 3> fds{pollfd{lcm_get_fileno(lcm), POLLIN, 0}, pollfd{stop.get(), POLLIN, 0},
+                              pollfd{ended.get(), POLLIN, 0}};
     while (true) {
       if (::poll(fds.data(), fds.size(), -1) < 0) continue;  // a signal
       if (fds[1].revents != 0) return;
       if (fds[0].revents != 0) lcm_handle(lcm);
+      if (fds[2].revents != 0) forgetEnded();
     }
+  }
+
+  // By this thread alone, between two messages: liblcm 1.3 loses a handler that another thread unsubscribes
+  // while its channel is dispatched, and may call another one twice.
+  void forgetEnded() {
+    eventfd_t count = 0;
+    (void)::eventfd_read(ended.get(), &count);
+    std::vector<std::shared_ptr<Subscription::Handler>> gone;
+    {
+      const std::lock_guard lock(mutex);
+      const auto first_gone = std::stable_partition(
+          handlers.begin(), handlers.end(), [](const auto& handler) { return handler->alive.load(); });
+      gone.assign(std::make_move_iterator(first_gone), std::make_move_iterator(handlers.end()));
+      handlers.erase(first_gone, handlers.end());
+    }
+    for (const auto& handler : gone) lcm_unsubscribe(lcm, handler->subscribed);
   }
 
   static void received(const lcm_recv_buf_t* message, const char* channel, void* self) {
@@ -134,8 +156,8 @@ struct Link::Impl {
                                                           const std::string& pattern, RawHandler call) {
     if (self->lcm == nullptr) return nullptr;
     auto handler = std::make_shared<Subscription::Handler>();
-    handler->lcm = self->lcm;
     handler->owner = self;
+    handler->ended = self->ended.get();
     handler->call = std::move(call);
     {
       const std::lock_guard lock(self->mutex);
