@@ -35,8 +35,8 @@ def digest_of_inputs(tool: bytes, entry: dict[str, str]) -> str | None:
     words = shlex.split(entry["command"])
     if os.path.basename(words[0]) == "ccache":
         del words[0]
-    at = words.index("-o")
-    del words[at : at + 2]
+    output = words.index("-o")
+    del words[output : output + 2]
     words[words.index("-c")] = "-E"
     done = subprocess.run(words, cwd=entry["directory"], capture_output=True, check=False)
     if done.returncode != 0:

@@ -1,7 +1,6 @@
 #!/bin/bash
 # both commands of the README in a bare Debian 12, with the minutes they took, and the build with GCC 11 (on request)
 # RC10_FRESH=demo: only the first command.
-# RC10_FRESH_CACHE=DIR: is its ~/.cache (ccache, kernels); what that holds already is not in the minutes.
 set -euo pipefail
 # shellcheck source=scripts/lib/results.sh
 . "$(dirname "${BASH_SOURCE[0]}")/../lib/results.sh"
@@ -35,10 +34,7 @@ in_root() {
         shift 2
         mount -t proc proc "$root/proc" && mount --rbind /dev "$root/dev" && mount -t sysfs sysfs "$root/sys" \
             && mount -t tmpfs -o mode=1777 tmpfs "$root/tmp" || exit
-        if [ -n "${RC10_FRESH_CACHE:-}" ]; then
-            mkdir -p "$root/root/.cache" && mount --bind "$RC10_FRESH_CACHE" "$root/root/.cache" || exit
-        fi
-        exec chroot "$root" env -C "$clone" -u TMPDIR -u CCACHE_DIR HOME=/root "$@"' sh "$root" "$clone" "$@"
+        exec chroot "$root" env -C "$clone" -u TMPDIR HOME=/root "$@"' sh "$root" "$clone" "$@"
 }
 
 # timed NAME COMMAND...

@@ -12,10 +12,8 @@ export RC10_GUEST=vm RC10_SCRATCH=$state
 export PYTHONDONTWRITEBYTECODE=1 PYTHONPATH=$RC10_REPO/tests/kernel
 
 modprobe -a can-raw can-dev kvaser_pci
-if [ -n "$RC10_CAN_MODULES" ]; then
-    insmod "$RC10_CAN_MODULES/ctucanfd.ko"
-    insmod "$RC10_CAN_MODULES/ctucanfd_pci.ko"
-fi
+insmod "$RC10_CAN_MODULES/ctucanfd.ko"
+insmod "$RC10_CAN_MODULES/ctucanfd_pci.ko"
 for bus in can0 can1; do
     ip link set "$bus" type can bitrate 1000000 restart-ms 0
     ip link set "$bus" up

@@ -23,11 +23,6 @@ if TYPE_CHECKING:
 
 BIN = Path(os.environ["RC10_BUILD"]) / "bin" if "RC10_BUILD" in os.environ else Path()
 
-pytestmark = pytest.mark.skipif(
-    os.environ.get("RC10_CAN_MODULES") == "",
-    reason="no driver for the CAN FD controllers: tests/vm/build-ctucan says why",
-)
-
 # Emulated time is slow: every wait is for an event, and long.
 PATIENCE_S = 60.0
 
