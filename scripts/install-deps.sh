@@ -8,9 +8,9 @@ declare -A packages=(
         libyaml-cpp-dev libspdlog-dev libfmt-dev liblcm-dev liblcm-bin libexpected-dev
         libcli11-dev libboost-dev libseccomp-dev libgpiod-dev libsocketcan-dev libmnl-dev
         nlohmann-json3-dev libeigen3-dev"
-    [test]="libgtest-dev libgmock-dev libbenchmark-dev strace procps util-linux groff-base"
+    [test]="libgtest-dev libgmock-dev libbenchmark-dev strace procps util-linux groff-base can-utils"
     [languages]="make liblcm-java default-jdk-headless"
-    [lint]="clang-16 clang-tidy-16 clang-format-16 libclang-rt-16-dev shellcheck systemd"
+    [lint]="clang-16 clang-tidy-16 clang-format-16 libclang-rt-16-dev shellcheck systemd udev"
     [kernel]="linux-source-6.1 gcc make flex bison bc libelf-dev xz-utils can-utils"
     [vm]="qemu-system-x86 linux-image-rt-amd64 linux-headers-rt-amd64 linux-source-6.1 make xz-utils busybox-static kmod
         can-utils"

@@ -26,15 +26,16 @@ make_root() {
     [ ! -d /usr/local/share/ca-certificates ] || cp -r /usr/local/share/ca-certificates "$root/usr/local/share/"
 }
 
-# in_root COMMAND...: in the clone, with mounts that end with it.
+# in_root COMMAND...: in the clone, with mounts that end with it. The root is moved to / before: in a mere chroot
+# the kernel lets nobody make a user namespace, nor a mount private.
 in_root() {
     # shellcheck disable=SC2016  # for the inner shell
     "${as_root[@]}" unshare --mount --pid --fork sh -c '
         root=$1 clone=$2
         shift 2
-        mount -t proc proc "$root/proc" && mount --rbind /dev "$root/dev" && mount -t sysfs sysfs "$root/sys" \
-            && mount -t tmpfs -o mode=1777 tmpfs "$root/tmp" || exit
-        exec chroot "$root" env -C "$clone" -u TMPDIR HOME=/root "$@"' sh "$root" "$clone" "$@"
+        mount --bind "$root" "$root" && cd "$root" && mount -t proc proc proc && mount --rbind /dev dev \
+            && mount -t sysfs sysfs sys && mount -t tmpfs -o mode=1777 tmpfs tmp && mount --move . / || exit
+        exec chroot . env -C "$clone" -u TMPDIR HOME=/root "$@"' sh "$root" "$clone" "$@"
 }
 
 # timed NAME COMMAND...
