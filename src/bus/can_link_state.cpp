@@ -14,6 +14,7 @@
 #include <span>
 
 #include "app/unique_fd.hpp"
+#include "bus/netlink_attributes.hpp"
 
 // Not by libsocketcan: can_get_state() of 0.0.12 waits for ever when the interface vanishes meanwhile (it
 // skips the kernel's error answer), and writes to stderr what vcan lacks.
@@ -21,35 +22,10 @@
 namespace rc10 {
 namespace {
 
-using Bytes = std::span<const std::byte>;
-
-template <typename T>
-[[nodiscard]] std::optional<T> readAs(Bytes bytes) noexcept {
-  T value{};
-  if (bytes.size() < sizeof value) return std::nullopt;
-  std::memcpy(&value, bytes.data(), sizeof value);
-  return value;
-}
-
-/// The payload of the attribute of a type, empty if there is none.
-[[nodiscard]] Bytes attribute(Bytes attributes, unsigned short type) noexcept {
-  for (;;) {
-    const auto header = readAs<rtattr>(attributes);
-    if (!header || header->rta_len < sizeof(rtattr) || header->rta_len > attributes.size()) return {};
-    if ((header->rta_type & NLA_TYPE_MASK) == type) {
-      return attributes.subspan(sizeof(rtattr), header->rta_len - sizeof(rtattr));
-    }
-    const std::size_t step = RTA_ALIGN(std::size_t{header->rta_len});
-    if (step > attributes.size()) return {};
-    attributes = attributes.subspan(step);
-  }
-}
-
-[[nodiscard]] std::string text(Bytes bytes) {
-  if (bytes.empty()) return {};  // of a null pointer strnlen() may not ask
-  const auto* chars = reinterpret_cast<const char*>(bytes.data());
-  return {chars, ::strnlen(chars, bytes.size())};
-}
+using netlink::attribute;
+using netlink::Bytes;
+using netlink::readAs;
+using netlink::text;
 
 /// Both rates and sample points of a controller, where they were set.
 void readTiming(Bytes can, CanLink& link) {

@@ -9,9 +9,10 @@ namespace {
 
 constexpr int kFifo = 1;  // sched.h
 constexpr int kRoundRobin = 2;
+constexpr unsigned kKernelThread = 0x00200000;  // PF_KTHREAD of the kernel's sched.h
 
-// proc(5): the name in parentheses may hold anything. After it comes field 3, the state; 40 is the real-time
-// priority, 41 the policy.
+// proc(5): the name in parentheses may hold anything. After it comes field 3, the state; 9 are the kernel's
+// flags, 40 is the real-time priority, 41 the policy.
 bool parse(const std::string& stat, Process& process) {
   const auto open = stat.find('(');
   const auto close = stat.rfind(')');
@@ -19,9 +20,13 @@ bool parse(const std::string& stat, Process& process) {
   process.name = stat.substr(open + 1, close - open - 1);
   std::istringstream fields(stat.substr(close + 1));
   std::string skipped;
-  for (int field = 3; field < 40; ++field) fields >> skipped;
+  for (int field = 3; field < 9; ++field) fields >> skipped;
+  unsigned flags = 0;
+  fields >> flags;
+  for (int field = 10; field < 40; ++field) fields >> skipped;
   int policy = 0;
   if (!(fields >> process.priority >> policy)) return false;
+  process.kernel = (flags & kKernelThread) != 0;
   process.fifo = policy == kFifo || policy == kRoundRobin;
   return true;
 }

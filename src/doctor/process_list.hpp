@@ -10,9 +10,10 @@ namespace rc10::doctor {
 /// One process or thread of the kernel, from /proc.
 struct Process {
   int pid = 0;
-  std::string name;   ///< At most 15 characters: the kernel keeps no more.
-  bool fifo = false;  ///< SCHED_FIFO or SCHED_RR.
-  int priority = 0;   ///< Of a fifo one.
+  std::string name;     ///< Up to Linux 5.16, and of a program always, its first 15 characters.
+  bool kernel = false;  ///< A thread of the kernel.
+  bool fifo = false;    ///< SCHED_FIFO or SCHED_RR.
+  int priority = 0;     ///< Of a fifo one.
 };
 
 [[nodiscard]] std::vector<Process> readProcesses(const HostFiles& files);

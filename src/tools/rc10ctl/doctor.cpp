@@ -15,6 +15,7 @@
 #include "doctor/cpu_check.hpp"
 #include "doctor/daemon_check.hpp"
 #include "doctor/host_files.hpp"
+#include "doctor/interrupt_threads.hpp"
 #include "doctor/irq_check.hpp"
 #include "doctor/kernel_check.hpp"
 #include "doctor/limits_check.hpp"
@@ -134,7 +135,8 @@ class Doctor {
       links.push_back(std::move(facts));
     }
     if (!config_)
-      for (const auto& interface : canInterfaces(files_)) links.push_back(readLink(files_, interface));
+      for (const auto& interface : doctor::canInterfaces(files_))
+        links.push_back(readLink(files_, interface));
     return links;
   }
 

@@ -3,7 +3,6 @@
 #include <linux/ethtool.h>
 #include <linux/sockios.h>
 #include <net/if.h>
-#include <net/if_arp.h>
 #include <sys/ioctl.h>
 #include <sys/socket.h>
 
@@ -33,14 +32,6 @@ doctor::LinkFacts readLink(const doctor::HostFiles& files, const std::string& in
   facts.driver = files.linkedName("/sys/class/net/" + interface + "/device/driver");
   facts.coalescing = readCoalescing(interface);
   return facts;
-}
-
-std::vector<std::string> canInterfaces(const doctor::HostFiles& files) {
-  std::vector<std::string> interfaces;
-  for (const auto& name : files.list("/sys/class/net")) {
-    if (files.number("/sys/class/net/" + name + "/type") == ARPHRD_CAN) interfaces.push_back(name);
-  }
-  return interfaces;
 }
 
 }  // namespace rc10::ctl

@@ -10,7 +10,4 @@ namespace rc10::ctl {
 /// What the kernel and the driver say of a CAN interface; what is wanted of it is left empty.
 [[nodiscard]] doctor::LinkFacts readLink(const doctor::HostFiles& files, const std::string& interface);
 
-/// The CAN interfaces of this computer.
-[[nodiscard]] std::vector<std::string> canInterfaces(const doctor::HostFiles& files);
-
 }  // namespace rc10::ctl

@@ -1,0 +1,22 @@
+#pragma once
+
+#include <cstddef>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace rc10 {
+
+/// What the kernel tells of an interface that was changed.
+struct LinkNews {
+  std::string interface;
+  bool is_can = false;
+  bool up = false;
+
+  bool operator==(const LinkNews&) const = default;
+};
+
+/// One datagram of the netlink group RTMGRP_LINK. What is something else, or cut off, is left out.
+[[nodiscard]] std::vector<LinkNews> parseLinkNews(std::span<const std::byte> datagram);
+
+}  // namespace rc10
