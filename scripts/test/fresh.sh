@@ -1,6 +1,6 @@
 #!/bin/bash
-# both commands of the README in a bare Debian 12, with the minutes they took, and the build with GCC 11 (on request)
-# RC10_FRESH=demo: only the first command.
+# the commands of README.md and what pages install, in a bare Debian 12, with the minutes they took; the build with GCC 11 (on request)
+# RC10_FRESH=demo: only the first command of README.md and quick-start.md. RC10_FRESH=pages: only that and what the pages install.
 set -euo pipefail
 # shellcheck source=scripts/lib/results.sh
 . "$(dirname "${BASH_SOURCE[0]}")/../lib/results.sh"
@@ -22,6 +22,9 @@ make_root() {
     for file in /etc/resolv.conf /etc/pip.conf "${PIP_CERT:-}" "${SSL_CERT_FILE:-}" "${REQUESTS_CA_BUNDLE:-}"; do
         [ ! -f "$file" ] || install -D -m 644 "$file" "$root$file"
     done
+    # Nobody types "y", and root has no use for sudo.
+    echo 'APT::Get::Assume-Yes "true";' >"$root/etc/apt/apt.conf.d/90yes"
+    printf '#!/bin/sh\nexec "$@"\n' >"$root/usr/local/bin/sudo" && chmod 755 "$root/usr/local/bin/sudo"
     # Certificates of this machine's own: the package ca-certificates writes its list anew, with these.
     [ ! -d /usr/local/share/ca-certificates ] || cp -r /usr/local/share/ca-certificates "$root/usr/local/share/"
 }
@@ -47,6 +50,21 @@ timed() {
     return "$status"
 }
 
+# shown PAGE NUMBER: types what the page shows, its NUMBERth block that is marked with this script.
+shown() {
+    local text
+    text=$("$repo/scripts/lib/page_block" scripts/test/fresh.sh "$repo/$1" "$2") || return
+    in_root bash -ec "$text"
+}
+
+pages() {
+    step "docs/quick-start.md: without the demo" timed "quick start, section 2" shown docs/quick-start.md 2
+    step "docs/python.md: installing" timed "Python package" shown docs/python.md 1
+    step "python/README.md: installing" shown python/README.md 1
+    step "python/README.md: developing" shown python/README.md 2
+    step "docs/performance.md: measuring" timed "benchmarks" shown docs/performance.md 1
+}
+
 gcc_11() {
     in_root apt-get -qq install --no-install-recommends --yes g++-11 || return
     # shellcheck disable=SC2016  # for the inner shell
@@ -57,8 +75,10 @@ gcc_11() {
 step "a bare Debian 12" make_root
 if [ "$failed" -eq 0 ]; then
     step "scripts/demo.sh" timed "scripts/demo.sh, 10 s of it" in_root scripts/demo.sh --seconds 10
-    if [ "${RC10_FRESH:-}" != demo ]; then
+    if [ "${RC10_FRESH:-}" != demo ]; then pages; fi
+    if [ -z "${RC10_FRESH:-}" ]; then
         suite "scripts/test.sh" timed scripts/test.sh in_root scripts/test.sh
+        step "CONTRIBUTING.md: building" shown CONTRIBUTING.md 1
         step "the build with GCC 11, and its demo" timed "build with GCC 11" gcc_11
     fi
     cat "$minutes"

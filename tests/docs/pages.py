@@ -58,6 +58,7 @@ class Page(NamedTuple):
 
 def pages() -> list[Page]:
     found = [*REPO.glob("*.md"), *REPO.glob("docs/**/*.md"), *REPO.glob("examples/**/*.md")]
+    found += [REPO / "python" / "README.md", *REPO.glob("tests/*/README.md")]
     return [read(path) for path in sorted(found)]
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from pathlib import Path
 
 import pytest
 from pages import REPO, Page, anchors, messages, pages, read, source_texts
@@ -77,3 +78,17 @@ def test_troubleshooting_quotes_messages_that_exist() -> None:
     pieces = [piece.strip() for message in quoted for piece in re.split("…|: ", message)]
     unknown = [piece for piece in pieces if len(piece) > 2 and piece not in source_texts()]
     assert unknown == []
+
+
+@by_name
+def test_every_command_is_run_by_a_test_or_needs_hardware(page: Page) -> None:
+    name = Path(page.name.replace(".zh-CN", "")).name
+    for how, _ in page.shell:
+        note = how.partition(" ")[2]
+        if note not in ("", "hardware"):
+            assert name in (REPO / note).read_text(encoding="utf-8"), f"{note} reads no {name}"
+
+
+@by_name
+def test_commands_behind_a_prompt_are_in_a_block_for_a_console(page: Page) -> None:
+    assert [text for text in page.fences("") if re.search(r"^\$ ", text, re.M)] == []

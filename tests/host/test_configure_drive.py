@@ -7,7 +7,10 @@ from typing import TYPE_CHECKING
 
 import pytest
 from hostlib import Daemon
-from hostlib.daemon import ARM, BIN
+from hostlib.daemon import ARM, BIN, REPO
+from hostlib.page import blocks_run_by
+from hostlib.reader import commands
+from hostlib.terminal import Terminal
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -55,6 +58,16 @@ def test_flash_is_written_when_the_motor_is_named_once_more(arm: Daemon) -> None
         "write timeout_ms=200, control_mode=2 to the flash of elbow? Type its name:" in done.stdout
     )
     assert "elbow: timeout_ms = 200, control_mode = 2, stored\n" in done.stdout
+
+
+def test_the_page_shows_what_stands_at_the_terminal(arm: Daemon) -> None:
+    (block,) = blocks_run_by("tests/host/test_configure_drive.py", REPO / "docs" / "rc10ctl.md")
+    (shown,) = commands(block)
+    name = shown.text.split()[2]
+    with Terminal([str(BIN / "rc10ctl"), *shown.text.split()[1:]], arm.env) as terminal:
+        terminal.answer("Type its name: ", name)
+        assert terminal.end() == 0, terminal.text
+    assert terminal.text == shown.output
 
 
 @pytest.mark.parametrize("typed", ["", "\n", "y\n", "hip\n"])

@@ -20,7 +20,11 @@ def demo() -> Iterator[Daemon]:
 
 # A dozen programs, on a machine that may be busy.
 @pytest.mark.timeout(400)
-def test_everything_that_it_shows_works(demo: Daemon, tmp_path: Path) -> None:
+def test_everything_that_it_shows_works(
+    demo: Daemon, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    # In place of a display: windows that are closed at once.
+    monkeypatch.setenv("MPLBACKEND", "svg")
     shown = blocks(REPO / "docs" / "python.md")
     assert len(shown) >= 9
     for block in shown:

@@ -76,15 +76,26 @@ SCENES = {
     "docs/porting-from-stm32.md": Scene(),
     "docs/quick-start.md": Scene(),
     "docs/rc10ctl.md": Scene(robot=DEMO.read_text()),
+    "python/README.md": Scene(robot=DEMO.read_text()),
 }
+# They add the route of the multicast.
+WITH_ROUTE = {"docs/quick-start.md", "python/README.md"}
 # Pages that a test of their own reads.
 READ_ELSEWHERE = {"docs/python.md", "docs/tuning.md"}
 SHELL = {"sh", "console"}
+# Whose Python is a program beside the commands.
+WITH_PROGRAMS = {"README.md", "python/README.md"}
 # The translations show what their originals show: tests/docs.
 PAGES = [
     page
     for page in sorted(
-        [*REPO.glob("*.md"), *REPO.glob("docs/**/*.md"), *REPO.glob("examples/**/*.md")]
+        [
+            *REPO.glob("*.md"),
+            *REPO.glob("docs/**/*.md"),
+            *REPO.glob("examples/**/*.md"),
+            REPO / "python" / "README.md",
+            *REPO.glob("tests/*/README.md"),
+        ]
     )
     if not page.name.endswith(".zh-CN.md")
 ]
@@ -122,14 +133,14 @@ def read(name: str, folder: Path) -> None:
         for block in blocks(REPO / name):
             if block.kind in SHELL:
                 reader.read(block)
-            elif block.kind == "python" and name == "README.md":
+            elif block.kind == "python" and name in WITH_PROGRAMS:
                 (folder / "program.py").write_text(block.text)
                 reader.run(Command("python program.py", ""))
 
 
 # Some programs, on a machine that may be busy.
 @pytest.mark.timeout(300)
-@pytest.mark.parametrize("name", sorted(SCENES.keys() - {"docs/quick-start.md"}))
+@pytest.mark.parametrize("name", sorted(SCENES.keys() - WITH_ROUTE))
 def test_what_a_page_shows_works(name: str, tmp_path: Path) -> None:
     read(name, tmp_path)
 
@@ -141,6 +152,12 @@ def test_the_quick_start_leads_to_a_motor_that_turns_and_a_picture_of_its_step(
 ) -> None:
     read("docs/quick-start.md", tmp_path)
     assert (tmp_path / "step.png").read_bytes().startswith(b"\x89PNG")
+
+
+@pytest.mark.timeout(300)
+@pytest.mark.usefixtures("no_route")
+def test_the_page_of_the_python_package_leads_to_a_program_that_runs(tmp_path: Path) -> None:
+    read("python/README.md", tmp_path)
 
 
 def test_a_command_that_ends_otherwise_than_shown_is_told(tmp_path: Path) -> None:

@@ -1,4 +1,4 @@
-"""examples/languages: the message definitions in four languages, each against the whole rc10d."""
+"""examples/languages (docs/lcm.md): the message definitions in four languages, each against it."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The tools of the Python package, as a user runs them, against the whole rc10d."""
+"""The tools of the Python package, as users run them (docs/tuning.md), against the whole rc10d."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""examples/small_robot: the same robot program in C++ and in Python, with its remote on a pty."""
+"""examples/small_robot and its README.md: one program in C++ and in Python, its remote on a pty."""
 
 from __future__ import annotations
 

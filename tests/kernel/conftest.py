@@ -1,5 +1,11 @@
 """Tests in this folder run inside the User-Mode Linux guest only."""
 
+import sys
+from pathlib import Path
+
+# What reads the pages is there.
+sys.path.insert(0, str(Path(__file__).parents[1] / "host"))
+
 from guestlib.collection import fresh_buses, pytest_collection_modifyitems
 
 __all__ = ["fresh_buses", "pytest_collection_modifyitems"]

@@ -19,6 +19,8 @@ from rc10.fakes.port import open_port
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
 
+    from rc10.fakes.fake import Fake
+
 STEP_S = 0.001
 
 
@@ -39,7 +41,7 @@ class Stage:
         drives: by the name of the interface: the fake motors.
     """
 
-    def __init__(self, drives: Mapping[str, Sequence[FakeMotor]]) -> None:
+    def __init__(self, drives: Mapping[str, Sequence[Fake]]) -> None:
         self.powered = True
         self.things: list[Thing] = []
         self._drives = {iface: Drives(motors) for iface, motors in drives.items()}

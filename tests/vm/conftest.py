@@ -17,6 +17,8 @@ IN_GUEST = os.environ.get("RC10_GUEST") == "vm"
 
 # On the host, where the tests are only collected to be skipped, nobody sets PYTHONPATH.
 sys.path.append(str(HERE.parent / "kernel"))
+# What reads the pages is there.
+sys.path.append(str(HERE.parent / "host"))
 
 
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:

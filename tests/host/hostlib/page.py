@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
 BLOCK = re.compile(r"^```(?P<kind>\w+)?(?: (?P<note>\S+))?\n(?P<text>.*?)^```$", re.M | re.S)
 # What cannot run here: see CONTRIBUTING.md. Beside them there is the path of a test.
-NOT_RUN = {"hardware", "setup", "display", "extra"}
+NOT_RUN = {"hardware"}
 ROBOT = re.compile(r"(?:#.*\n)*robot:")
 
 
@@ -32,6 +32,14 @@ def blocks(page: Path) -> list[Block]:
         assert "/" in note, f"{page.name}: '{note}' is none of {', '.join(sorted(NOT_RUN))}"
         assert (REPO / note).is_file(), f"{page.name}: there is no {note}"
     return [Block(b["kind"], b["text"]) for b in found if b["kind"] and not b["note"]]
+
+
+def blocks_run_by(test: str, page: Path) -> list[Block]:
+    """Those that the page says this test runs."""
+    found = BLOCK.finditer(page.read_text(encoding="utf-8"))
+    chosen = [Block(b["kind"], b["text"]) for b in found if b["kind"] and b["note"] == test]
+    assert chosen, f"{page.name}: no block is marked {test}"
+    return chosen
 
 
 def robots(page: Path) -> list[str]:

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from hostlib.page import Block
 
 # They run until Ctrl-C: in a terminal of their own, or until something is seen.
-SERVES = re.compile(r"^\S*rc10d(-\w+)? -c \S+$")
+SERVES = re.compile(r"^\S*rc10(d(-\w+)?|-sim) -c \S+$")
 WATCHES = re.compile(r"^rc10ctl watch$")
 # What the shown output of a command that fails begins with.
 COMPLAINT = re.compile(r"^(rc10ctl|[\w/]+\.yaml:\d+(:\d+)?): ")
@@ -103,10 +103,13 @@ class Reader:
                 self.run(Command(text, command.output))
 
     def serve(self, text: str) -> None:
-        """Starts rc10d in a terminal of its own, and waits until every motor is READY."""
+        """Starts it in a terminal of its own, and waits until every motor is READY."""
         server = Program("bash", "-ec", self.script(f"exec {text}"), env=self.env())
         self._servers.append(server)
-        eventually(lambda: not server.running or self.ready(), f"{text}: every motor is READY")
+        if text.startswith("rc10-sim"):
+            server.wait_line("^ready", PATIENCE_S)
+        else:
+            eventually(lambda: not server.running or self.ready(), f"{text}: every motor is READY")
         assert server.running, server.output
 
     def watch(self, text: str) -> None:
