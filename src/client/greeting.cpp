@@ -11,6 +11,7 @@
 #include <thread>
 #include <vector>
 
+#include "client/daemon_log.hpp"
 #include "link/link_message.hpp"
 
 namespace rc10::client {
@@ -38,7 +39,7 @@ std::string silence(const std::string& robot) {
 
 std::string sentAway(const std::string& robot) {
   return "rc10d for robot '" + robot +
-         "' closed the connection: it has too many clients, or has just ended; see its log";
+         "' closed the connection: it has too many clients, or has just ended; " + kSeeItsLog;
 }
 
 std::string otherVersion(const std::string& its_version) {
@@ -83,7 +84,9 @@ std::string connectFailure(const std::string& socket_path, int error) {
     case ENAMETOOLONG:
       return "the path " + socket_path + " is too long for a socket: use a shorter RC10_RUN_DIR";
     case EPROTOTYPE: return socket_path + " is not a socket of rc10d: another program made it";
-    default: return "cannot connect to " + socket_path + ": " + std::strerror(error);
+    default:
+      return "cannot connect to " + socket_path + ": " + std::strerror(error) + ": is rc10d well? " +
+             kSeeItsLog;
   }
 }
 
@@ -94,7 +97,9 @@ Result<UniqueFd> openSocket(const std::string& socket_path, Deadline deadline) {
   std::memcpy(address.sun_path, socket_path.data(), socket_path.size());
   // Non-blocking, since a listener whose queue is full would hold us for good.
   UniqueFd socket{::socket(AF_UNIX, SOCK_SEQPACKET | SOCK_CLOEXEC | SOCK_NONBLOCK, 0)};
-  if (!socket) return fail(std::string("cannot make a socket: ") + std::strerror(errno));
+  if (!socket)
+    return fail(std::string("cannot make a socket: ") + std::strerror(errno) +
+                ": does this program, or the computer, have too many files open (`ulimit -n`)?");
   while (::connect(socket.get(), reinterpret_cast<const sockaddr*>(&address), sizeof(address)) != 0) {
     const int error = errno;
     if (error != EINTR && error != EAGAIN) return fail(connectFailure(socket_path, error));

@@ -7,6 +7,8 @@
 #include <random>
 #include <string>
 
+#include "client/daemon_log.hpp"
+
 namespace rc10 {
 
 std::uint64_t randomSession() {
@@ -33,7 +35,7 @@ Result<link::Response> RequestCall::call(link::Request request, Duration timeout
   for (;;) {
     const auto received = connection_.receive(buffer_);
     if (received.status == LinkClient::ReceiveStatus::kClosed || sent == LinkClient::SendStatus::kClosed) {
-      return fail("rc10d ended before it answered: see its log");
+      return fail(std::string("rc10d ended before it answered: ") + client::kSeeItsLog);
     }
     link::Response response;
     if (received.status == LinkClient::ReceiveStatus::kMessage) {
@@ -43,7 +45,7 @@ Result<link::Response> RequestCall::call(link::Request request, Duration timeout
     const auto left = std::chrono::ceil<std::chrono::milliseconds>(deadline - steady_clock::now()).count();
     if (left <= 0) {
       const auto waited = std::chrono::duration_cast<std::chrono::milliseconds>(timeout).count();
-      return fail("rc10d did not answer within " + std::to_string(waited) + " ms: see its log");
+      return fail("rc10d did not answer within " + std::to_string(waited) + " ms: " + client::kSeeItsLog);
     }
     pollfd entry{.fd = connection_.descriptor(), .events = POLLIN, .revents = 0};
     (void)::poll(&entry, 1, static_cast<int>(std::min<std::int64_t>(left, 60'000)));  // a signal: looks again

@@ -248,7 +248,11 @@ TEST(LinkClientConnect, ToALongPathSaysThatItIsTooLong) {
 TEST(LinkClientConnect, ToSomethingElseSaysSo) {
   EXPECT_EQ(client::connectFailure("/x/hero.sock", EPROTOTYPE),
             "/x/hero.sock is not a socket of rc10d: another program made it");
-  EXPECT_THAT(client::connectFailure("/x/hero.sock", ENOMEM), HasSubstr("cannot connect to /x/hero.sock: "));
+}
+
+TEST(LinkClientConnect, WhereTheCauseIsNotOursTheLogIsNamed) {
+  EXPECT_THAT(client::connectFailure("/x/hero.sock", ENOMEM),
+              AllOf(HasSubstr("cannot connect to /x/hero.sock: "), HasSubstr("journalctl -eu 'rc10d*'")));
 }
 
 TEST(LinkClientConnect, WithoutPermissionNamesTheGroup) {

@@ -78,7 +78,9 @@ TEST(RequestCall, FailsAfterTheTimeout) {
   const auto response = call.call({}, kShort);
   ASSERT_FALSE(response);
   EXPECT_GE(std::chrono::steady_clock::now() - start, kShort);
-  EXPECT_EQ(response.error().message, "rc10d did not answer within 30 ms: see its log");
+  EXPECT_EQ(
+      response.error().message,
+      "rc10d did not answer within 30 ms: see its log: `journalctl -eu 'rc10d*'`, or the terminal of rc10d");
 }
 
 TEST(RequestCall, DoesNotWaitLongerBecauseOthersTalk) {

@@ -90,13 +90,18 @@ bool print(std::FILE* to, const std::function<void(const Line&)>& each) {
   return std::fflush(to) == 0 && good;
 }
 
+Error notWritten(const fs::path& path, const std::string& why) {
+  return {path.string() + " cannot be written: " + why + ": name another folder with --out"};
+}
+
 Result<std::string> save(const fs::path& path, const std::function<void(const Line&)>& each) {
   std::FILE* const file = std::fopen(path.c_str(), "we");
-  if (file == nullptr) return fail(path.string() + ": " + std::strerror(errno));
+  if (file == nullptr) return tl::unexpected(notWritten(path, std::strerror(errno)));
   const bool printed = print(file, each);
   const int error = errno;
   const bool closed = std::fclose(file) == 0;
-  if (!printed || !closed) return fail(path.string() + ": " + std::strerror(printed ? errno : error));
+  if (interrupted()) return fail("interrupted: " + path.string() + " is not whole");
+  if (!printed || !closed) return tl::unexpected(notWritten(path, std::strerror(printed ? errno : error)));
   return path.string();
 }
 
@@ -104,6 +109,7 @@ ExitCode saveBoth(const blackbox::Recording& recording, const std::string& file,
   const auto base = fs::path(dir) / fs::path(file).stem();
   std::error_code error;
   fs::create_directories(dir, error);
+  if (error) return complain(notWritten(dir, error.message()), ExitCode::kFailed);
   const auto log = save(base.string() + ".log", [&](const Line& line) { eachCandumpLine(recording, line); });
   if (!log) return complain(log.error(), ExitCode::kFailed);
   const auto json = save(base.string() + ".jsonl", [&](const Line& line) { eachJsonLine(recording, line); });

@@ -10,6 +10,7 @@
 
 #include <CLI/CLI.hpp>
 
+#include "client/daemon_log.hpp"
 #include "config/lcm_url.hpp"
 #include "config/load_config.hpp"
 #include "doctor/cpu_check.hpp"
@@ -171,7 +172,7 @@ class Doctor {
                                .max = micros(seen.max_us),
                                .wake_ups = 0,
                                .realtime = feed.state()->realtime != 0,
-                               .refused = "see its log",
+                               .refused = client::kSeeItsLog,
                                .by = "rc10d itself, since its start"}));
     return true;
   }

@@ -121,11 +121,11 @@ class Driver {
             return *end;
           }
         }
-        if (!send(setpoint_)) return "rc10d has ended: see its log";
+        if (!send(setpoint_)) return rc10dEnded().message;
         next = std::max(next + kPeriod, now);
       }
       waitReadable(rc10d_, std::min(next, start + order_.time) - steady_clock::now());
-      if (!feed_.pump()) return "rc10d has ended: see its log";
+      if (!feed_.pump()) return rc10dEnded().message;
       showEvents(progress);
       if (auto why = trouble(); !why.empty()) return why;
       if (auto why = rival(steady_clock::now() - start); !why.empty()) return why;

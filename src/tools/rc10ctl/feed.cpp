@@ -40,7 +40,7 @@ template <typename Message>
 Result<void> Feed::await(const std::optional<Message>& message) {
   const auto deadline = std::chrono::steady_clock::now() + kPatience;
   while (!message) {
-    if (!pump()) return fail("rc10d has ended: see its log");
+    if (!pump()) return tl::unexpected(rc10dEnded());
     if (message) break;
     if (interrupted()) return fail("interrupted");
     const auto left = deadline - std::chrono::steady_clock::now();

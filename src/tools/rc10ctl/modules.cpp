@@ -51,7 +51,7 @@ class ModuleFeed {
       if (steady_clock::now() >= deadline)
         return fail("rc10d sends nothing: is it stopped? See `systemctl status rc10d`");
       waitReadable(rc10d_, deadline - steady_clock::now());
-      if (!pump()) return fail("rc10d has ended: see its log");
+      if (!pump()) return tl::unexpected(rc10dEnded());
     }
     return {};
   }
@@ -102,7 +102,9 @@ Result<link::Signals> understand(const SignalOptions& options) {
   message.priority = options.priority;
   message.validity_ms = kValidityMs;
   message.module = options.module;
-  if (options.values.size() > link::kMaxSignals) return fail("too many values");
+  if (options.values.size() > link::kMaxSignals)
+    return fail("more than " + std::to_string(link::kMaxSignals) +
+                " values: no module has so many inputs; `rc10ctl modules` names them");
   for (const auto& text : options.values) {
     auto value = namedValue(text, "vx_m_s=0.5");
     if (!value) return tl::unexpected(value.error());
@@ -140,11 +142,11 @@ ExitCode repeat(LinkClient& rc10d, link::Signals& message, Duration time, Module
       message.received_ns = 0;  // the present time
       ++message.seq;
       if (rc10d.send(message) == LinkClient::SendStatus::kClosed)
-        return complain({"rc10d has ended: see its log"}, ExitCode::kFailed);
+        return complain(rc10dEnded(), ExitCode::kFailed);
       next = std::max(next + kPeriod, now);
     }
     waitReadable(rc10d, std::min(next, start + time) - steady_clock::now());
-    if (!feed.pump()) return complain({"rc10d has ended: see its log"}, ExitCode::kFailed);
+    if (!feed.pump()) return complain(rc10dEnded(), ExitCode::kFailed);
   }
   std::fputs(client::modulesText(feed.modules()).c_str(), stdout);
   return ExitCode::kOk;

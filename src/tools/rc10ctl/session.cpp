@@ -7,6 +7,7 @@
 #include <csignal>
 #include <cstdio>
 
+#include "client/daemon_log.hpp"
 #include "client/find_robot.hpp"
 
 namespace rc10::ctl {
@@ -29,6 +30,8 @@ ExitCode complain(const Error& error, ExitCode code) {
   std::fprintf(stderr, "rc10ctl: %s\n", error.message.c_str());
   return code;
 }
+
+Error rc10dEnded() { return {std::string("rc10d has ended: ") + client::kSeeItsLog}; }
 
 bool interrupted() noexcept { return interrupt_seen != 0; }
 

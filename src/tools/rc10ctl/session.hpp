@@ -27,6 +27,9 @@ inline constexpr const char* kClientName = "rc10ctl";
 /// Prints "rc10ctl: ..." on stderr and returns `code`.
 ExitCode complain(const Error& error, ExitCode code);
 
+/// What to say when rc10d has closed the connection.
+[[nodiscard]] Error rc10dEnded();
+
 /// Whether Ctrl-C or SIGTERM came since catchInterrupt().
 [[nodiscard]] bool interrupted() noexcept;
 void catchInterrupt();

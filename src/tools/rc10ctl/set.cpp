@@ -38,7 +38,9 @@ Result<Drive> understand(const SetOptions& options) {
     return fail("mode " + options.mode + " needs a value: `rc10ctl set " + options.motor + " " +
                 options.mode + " 10`");
   }
-  if (!std::isfinite(options.value.value_or(0.0))) return fail("the value has to be a finite number");
+  if (!std::isfinite(options.value.value_or(0.0)))
+    return fail("a target is a finite number, such as `rc10ctl set " + options.motor + " " + options.mode +
+                " 10`");
   const auto time = client::parseDuration(options.time);
   if (!time) return fail("--for " + options.time + ": give a time like 2s, 500ms or 1min, at most a day");
   if (options.motor.size() >= sizeof(link::Name))

@@ -118,7 +118,7 @@ ExitCode watch(const Global& global, const WatchOptions& options) {
   const auto period = std::chrono::duration_cast<Duration>(std::chrono::duration<double>(1.0 / options.hz));
   auto next = steady_clock::now();
   for (int shown = 0; !interrupted();) {
-    if (!feed.pump()) return complain({"rc10d has ended: see its log"}, ExitCode::kFailed);
+    if (!feed.pump()) return complain(rc10dEnded(), ExitCode::kFailed);
     if (steady_clock::now() >= next && feed.state() != nullptr) {
       screen.show(picture(global, rc10d->welcome(), feed, spark));
       if (++shown == count) break;
