@@ -23,6 +23,10 @@ SERVES = re.compile(r"^\S*rc10(d(-\w+)?|-sim) -c \S+$")
 WATCHES = re.compile(r"^rc10ctl watch$")
 # What the shown output of a command that fails begins with.
 COMPLAINT = re.compile(r"^(rc10ctl|[\w/]+\.yaml:\d+(:\d+)?): ")
+# The titles of a table: words in capitals, one for each column.
+TITLES = re.compile(r"^[A-Z][A-Z0-9.]*(?: +[A-Z][A-Z0-9.]*)+$")
+# The first cell of a row, unless it is a time: two spaces are between columns.
+ROW = re.compile(r"^ *([A-Za-z]\S*(?: \S+)*)  +\S")
 # The folder that the pages write; its place in the tests is another.
 RUN_DIR = "/tmp/rc10"
 CTRL_C = 130
@@ -38,8 +42,19 @@ class Command(NamedTuple):
         return {line for line in self.output.splitlines() if COMPLAINT.match(line)}
 
     @property
+    def headings(self) -> set[str]:
+        return headings(self.output)
+
+    @property
     def fails(self) -> bool:
         return bool(self.complaints)
+
+
+def headings(output: str) -> set[str]:
+    """What does not change from run to run in tables: titles, and what the rows begin with."""
+    lines = output.splitlines()
+    titles = {" ".join(line.split()) for line in lines if TITLES.match(line)}
+    return titles | {row[1] for line in lines if (row := ROW.match(line))}
 
 
 def commands(block: Block) -> Iterator[Command]:
@@ -98,7 +113,7 @@ class Reader:
             elif SERVES.match(text):
                 self.serve(text)
             elif WATCHES.match(text):
-                self.watch(text)
+                self.watch(Command(text, command.output))
             else:
                 self.run(Command(text, command.output))
 
@@ -112,12 +127,15 @@ class Reader:
             eventually(lambda: not server.running or self.ready(), f"{text}: every motor is READY")
         assert server.running, server.output
 
-    def watch(self, text: str) -> None:
+    def watch(self, command: Command) -> None:
         """Looks at it, then presses Ctrl-C."""
-        with Program("bash", "-ec", self.script(f"exec {text}"), env=self.env()) as shown:
+        with Program("bash", "-ec", self.script(f"exec {command.text}"), env=self.env()) as shown:
+            shown.wait_line("^MOTOR ", PATIENCE_S)
+            # The second picture: the first is whole then.
             shown.wait_line("^MOTOR ", PATIENCE_S)
             shown.interrupt()
             assert shown.wait() in (0, CTRL_C), shown.output
+            assert command.headings <= headings(shown.output), shown.output
 
     def run(self, command: Command) -> None:
         """Runs it to its end, three times at most."""
@@ -126,14 +144,17 @@ class Reader:
             done = self.shell(command.text)
             self._status = done.returncode
             said = (done.stdout + done.stderr).replace(str(self.run_dir), "/run/rc10d")
-            if (done.returncode != 0) == command.fails and command.complaints <= {
-                *said.splitlines()
-            }:
+            ended = (done.returncode != 0) == command.fails
+            told = command.complaints <= {*said.splitlines()}
+            if ended and told and command.headings <= headings(said):
                 return
             if self._servers:
                 eventually(lambda: self.shell("rc10ctl clear").returncode == 0, "rc10ctl clear")
                 self.shell("rc10ctl enable")
-        raise AssertionError(f"{command.text}: status {done.returncode}\n{said}")
+        other = sorted(command.headings - headings(said))
+        raise AssertionError(
+            f"{command.text}: status {done.returncode}; shown, but not printed: {other}\n{said}"
+        )
 
     def ready(self) -> bool:
         states = self.shell("rc10ctl watch --json --count 1").stdout
