@@ -1,5 +1,6 @@
 #include "terminal.hpp"
 
+#include <sys/ioctl.h>
 #include <unistd.h>
 
 #include <cstdlib>
@@ -13,6 +14,12 @@ bool coloured(int descriptor) noexcept {
   const char* kind = std::getenv("TERM");
   return (no_colour == nullptr || *no_colour == '\0') && kind != nullptr && std::strcmp(kind, "dumb") != 0 &&
          ::isatty(descriptor) != 0;
+}
+
+client::ScreenSize screenSize(int descriptor) noexcept {
+  winsize size{};
+  if (::ioctl(descriptor, TIOCGWINSZ, &size) != 0) return {};
+  return {.columns = size.ws_col, .rows = size.ws_row};
 }
 
 bool utf8() {

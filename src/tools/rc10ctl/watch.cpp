@@ -12,6 +12,7 @@
 
 #include "client/motor_signal.hpp"
 #include "client/quantity_text.hpp"
+#include "client/screen_fit.hpp"
 #include "client/sparkline.hpp"
 #include "client/state_json.hpp"
 #include "client/state_text.hpp"
@@ -50,13 +51,21 @@ class Screen {
     if (terminal_) std::fputs("\x1b[2J", stdout);
   }
 
-  void show(const std::string& text) {
+  /// Its size is another than that of the last picture.
+  [[nodiscard]] bool resized() const noexcept {
+    return terminal_ && !first_ && screenSize(STDOUT_FILENO) != size_;
+  }
+
+  void show(const client::Picture& picture) {
     if (terminal_) {
-      std::fputs(overdrawn(text).c_str(), stdout);
+      // A terminal that was resized has moved what was drawn.
+      if (resized()) std::fputs("\x1b[2J", stdout);
+      size_ = screenSize(STDOUT_FILENO);
+      std::fputs(overdrawn(client::fitted(picture, size_)).c_str(), stdout);
     } else {
       // Plain tables one below the other.
       if (separate_ && !first_) std::fputs("\n", stdout);
-      std::fputs(text.c_str(), stdout);
+      std::fputs((picture.text + picture.below).c_str(), stdout);
     }
     first_ = false;
     std::fflush(stdout);
@@ -66,6 +75,7 @@ class Screen {
   bool terminal_;
   bool separate_;
   bool first_ = true;
+  client::ScreenSize size_;
 };
 
 // One signal over the last pictures.
@@ -73,8 +83,9 @@ class Spark {
  public:
   explicit Spark(client::MotorSignal signal) : signal_(std::move(signal)) {}
 
-  std::string line(const link::State& state) {
-    values_.add(signal_.of(state));
+  void add(const link::State& state) { values_.add(signal_.of(state)); }
+
+  [[nodiscard]] std::string line() const {
     return signal_.name + "  " + values_.text(utf8()) + "  " + client::number(values_.newest(), 2) + "  (" +
            client::number(values_.lowest(), 2) + " to " + client::number(values_.highest(), 2) + ")\n";
   }
@@ -84,21 +95,26 @@ class Spark {
   client::Sparkline values_{kSparkWidth};
 };
 
-std::string picture(const Global& global, const link::Welcome& welcome, const Feed& feed,
-                    std::optional<Spark>& spark) {
-  if (global.json) return client::stateJson(welcome, *feed.state()) + "\n";
-  std::string text = client::stateText(welcome, *feed.state(), feed.diagnostics(), coloured(STDOUT_FILENO));
-  if (spark) text += spark->line(*feed.state());
+client::Picture picture(const Global& global, const link::Welcome& welcome, const Feed& feed,
+                        const std::optional<Spark>& spark) {
+  if (global.json)
+    return {.text = client::stateJson(welcome, *feed.state()) + "\n", .motors = 0, .below = {}};
+  std::string below;
+  if (spark) below += spark->line();
   const auto silent = steady_clock::now() - feed.stateTime();
   if (silent > kSilence) {
     const auto whole = std::chrono::duration_cast<std::chrono::seconds>(silent).count();
-    text += "rc10d has sent nothing for " + std::to_string(whole) + " s: is it stopped?\n";
+    below += "rc10d has sent nothing for " + std::to_string(whole) + " s: is it stopped?\n";
   }
-  return text;
+  return {.text = client::stateText(welcome, *feed.state(), feed.diagnostics(), coloured(STDOUT_FILENO)),
+          .motors = std::min<std::size_t>(feed.state()->motor_count, welcome.motor_count),
+          .below = std::move(below)};
 }
 
 ExitCode watch(const Global& global, const WatchOptions& options) {
   if (!std::isfinite(options.hz)) return complain({"--hz: give a number from 0.1 to 100"}, ExitCode::kUsage);
+  if (options.spark && global.json)
+    return complain({"--spark draws for people: leave out --json, or --spark"}, ExitCode::kUsage);
   auto rc10d = connect(global, link::kStates | link::kDiagnosticsFeed);
   if (!rc10d) return complain(rc10d.error(), ExitCode::kNoDaemon);
   std::optional<Spark> spark;
@@ -119,10 +135,12 @@ ExitCode watch(const Global& global, const WatchOptions& options) {
   auto next = steady_clock::now();
   for (int shown = 0; !interrupted();) {
     if (!feed.pump()) return complain(rc10dEnded(), ExitCode::kFailed);
-    if (steady_clock::now() >= next && feed.state() != nullptr) {
+    const bool due = steady_clock::now() >= next;
+    if (feed.state() != nullptr && (due || screen.resized())) {
+      if (due && spark) spark->add(*feed.state());
       screen.show(picture(global, rc10d->welcome(), feed, spark));
-      if (++shown == count) break;
-      next = std::max(next + period, steady_clock::now());
+      if (due && ++shown == count) break;
+      if (due) next = std::max(next + period, steady_clock::now());
     }
     waitReadable(*rc10d, next - steady_clock::now());
   }
@@ -140,7 +158,8 @@ void addWatch(CLI::App& app, Action& action) {
   verb->add_option("--count", options->count, "end after so many pictures; 0: Ctrl-C")
       ->check(CLI::NonNegativeNumber);
   verb->add_flag("--once", options->once, "one picture, then end");
-  verb->add_option("--spark", options->spark, "the last minute or so of one signal as a line: wheel.velocity")
+  verb->add_option("--spark", options->spark,
+                   "one signal as a line, such as wheel.velocity: its last 60 pictures, 12 s at 5 Hz")
       ->type_name("MOTOR.SIGNAL");
   verb->callback(
       [&action, options] { action = [options](const Global& global) { return watch(global, *options); }; });
