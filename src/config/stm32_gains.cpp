@@ -9,17 +9,6 @@ namespace {
 
 constexpr double kMilliamperesPerAmpere = 1000.0;
 
-[[nodiscard]] std::string line(const char* key, float value, const char* comment = "") {
-  return std::string("  ") + key + ": " + numberText(value) + (*comment == '\0' ? "" : "  # ") + comment +
-         "\n";
-}
-
-[[nodiscard]] std::string comments(const std::vector<std::string>& notes) {
-  std::string text;
-  for (const auto& note : notes) text += "# " + note + "\n";
-  return text;
-}
-
 [[nodiscard]] Result<double> numberOf(const std::string& text) {
   // As C++ writes them: 18.0f.
   const bool suffixed = text.size() > 1 && (text.back() == 'f' || text.back() == 'F');
@@ -104,25 +93,51 @@ Converted<PID_Position::Config> convertAngleGains(const Stm32Pid& pid, double se
   return out;
 }
 
-std::string yamlLines(const Converted<PID_Incremental::Config>& speed) {
+ConvertedGains namedGains(const Converted<PID_Incremental::Config>& speed) {
   const auto& config = speed.config;
-  std::string text = comments(speed.notes);
-  if (config.output_limit > 0.0F) text += "current_limit_a: " + numberText(config.output_limit) + "\n";
-  text += "velocity_pid:\n  type: incremental\n";
-  text += line("kp_a_per_rpm", config.kp) + line("ki_a_per_rpm_s", config.ki, "per second");
-  text += line("kd_a_s_per_rpm", config.kd) + line("deadband_rpm", config.deadband);
-  if (config.tracking_rad_s > 0.0F) text += line("target_bandwidth_rad_s", config.tracking_rad_s, "td_ratio");
-  return text;
+  ConvertedGains named{.section = "velocity_pid",
+                       .type = "incremental",
+                       .gains = {{"kp_a_per_rpm", config.kp, {}},
+                                 {"ki_a_per_rpm_s", config.ki, "per second"},
+                                 {"kd_a_s_per_rpm", config.kd, {}},
+                                 {"deadband_rpm", config.deadband, {}}},
+                       .current_limit_a = config.output_limit,
+                       .notes = speed.notes};
+  if (config.tracking_rad_s > 0.0F)
+    named.gains.push_back({"target_bandwidth_rad_s", config.tracking_rad_s, "td_ratio"});
+  return named;
 }
 
-std::string yamlLines(const Converted<PID_Position::Config>& angle) {
+ConvertedGains namedGains(const Converted<PID_Position::Config>& angle) {
   const auto& config = angle.config;
-  std::string text = comments(angle.notes) + "angle_pid:\n";
-  text += line("kp_rpm_per_deg", config.kp) + line("ki_rpm_per_deg_s", config.ki);
-  text += line("kd_rpm_s_per_deg", config.kd) + line("deadband_deg", config.deadband);
-  if (config.output_limit > 0.0F) text += line("velocity_limit_rpm", config.output_limit);
-  if (config.integral_limit > 0.0F) text += line("integral_limit_rpm", config.integral_limit);
-  if (config.integral_separation > 0.0F) text += line("integral_separation_deg", config.integral_separation);
+  ConvertedGains named{.section = "angle_pid",
+                       .type = {},
+                       .gains = {{"kp_rpm_per_deg", config.kp, {}},
+                                 {"ki_rpm_per_deg_s", config.ki, {}},
+                                 {"kd_rpm_s_per_deg", config.kd, {}},
+                                 {"deadband_deg", config.deadband, {}}},
+                       .current_limit_a = 0.0F,
+                       .notes = angle.notes};
+  const auto addIfSet = [&named](std::string_view key, float value) {
+    if (value > 0.0F) named.gains.push_back({key, value, {}});
+  };
+  addIfSet("velocity_limit_rpm", config.output_limit);
+  addIfSet("integral_limit_rpm", config.integral_limit);
+  addIfSet("integral_separation_deg", config.integral_separation);
+  return named;
+}
+
+std::string yamlLines(const ConvertedGains& gains) {
+  std::string text;
+  for (const auto& note : gains.notes) text += "# " + note + "\n";
+  if (gains.current_limit_a > 0.0F) text += "current_limit_a: " + numberText(gains.current_limit_a) + "\n";
+  text += gains.section + ":\n";
+  if (!gains.type.empty()) text += "  type: " + gains.type + "\n";
+  for (const auto& gain : gains.gains) {
+    text += "  " + std::string{gain.key} + ": " + numberText(gain.value);
+    if (!gain.comment.empty()) text += "  # " + std::string{gain.comment};
+    text += "\n";
+  }
   return text;
 }
 

@@ -2,6 +2,7 @@
 
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "app/pid_incremental.hpp"
@@ -40,8 +41,24 @@ struct Converted {
 /// I_SeparaThreshold.
 [[nodiscard]] Converted<PID_Position::Config> convertAngleGains(const Stm32Pid& pid, double separation_deg);
 
+/// The same by the keys of a motor in the robot's configuration.
+struct ConvertedGains {
+  struct Gain {
+    std::string_view key;
+    float value = 0.0F;
+    std::string_view comment;
+  };
+  std::string section;  ///< "velocity_pid"
+  std::string type;     ///< Of the controller; empty: there is one only.
+  std::vector<Gain> gains;
+  float current_limit_a = 0.0F;  ///< Beside the section; 0: none.
+  std::vector<std::string> notes;
+};
+
+[[nodiscard]] ConvertedGains namedGains(const Converted<PID_Incremental::Config>& speed);
+[[nodiscard]] ConvertedGains namedGains(const Converted<PID_Position::Config>& angle);
+
 /// Lines for a motor in the robot's configuration; the notes as comments.
-[[nodiscard]] std::string yamlLines(const Converted<PID_Incremental::Config>& speed);
-[[nodiscard]] std::string yamlLines(const Converted<PID_Position::Config>& angle);
+[[nodiscard]] std::string yamlLines(const ConvertedGains& gains);
 
 }  // namespace rc10

@@ -24,7 +24,6 @@ using Guesses = std::vector<Guess>;
 // C620 and C610 cannot be told apart by their frames: where one has the temperature the other has nothing.
 constexpr std::string_view kC6xx = "DJI M3508 or M2006";
 constexpr std::string_view kGm6020 = "DJI GM6020";
-constexpr std::string_view kVesc = "VESC";
 constexpr std::string_view kDamiao = "Damiao";
 constexpr std::string_view kRobStride = "RobStride or CyberGear";
 constexpr std::string_view kCubeMarsServo = "CubeMars (servo)";

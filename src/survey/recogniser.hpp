@@ -9,6 +9,7 @@
 /// Which drives are on a bus, from their frames alone.
 namespace rc10::survey {
 
+inline constexpr std::string_view kVesc = "VESC";
 inline constexpr std::string_view kODrive = "ODrive";
 /// `is_extended` is set in the drive: the same messages under ids of 29 bits. rc10d does not drive it so.
 inline constexpr std::string_view kODriveExtended = "ODrive (extended ids)";

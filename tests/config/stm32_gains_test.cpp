@@ -185,7 +185,7 @@ TEST(Stm32Pid, WhatIsNoNumberIsRefused) {
 
 TEST(YamlLines, AreThoseOfAConfiguration) {
   const Stm32Pid pid{.kp = 18.0, .ki = 0.015, .output_limit = 15'000.0, .deadband = 5.0};
-  EXPECT_EQ(yamlLines(convertSpeedGains(pid, 0.0, kTick_s)),
+  EXPECT_EQ(yamlLines(namedGains(convertSpeedGains(pid, 0.0, kTick_s))),
             "current_limit_a: 15\n"
             "velocity_pid:\n"
             "  type: incremental\n"
@@ -193,17 +193,26 @@ TEST(YamlLines, AreThoseOfAConfiguration) {
             "  ki_a_per_rpm_s: 0.015  # per second\n"
             "  kd_a_s_per_rpm: 0\n"
             "  deadband_rpm: 5\n");
-  EXPECT_EQ(
-      yamlLines(convertAngleGains({.kp = 30.0, .kd = 1.1, .output_limit = 400.0, .deadband = 0.8}, 0.0)),
-      "angle_pid:\n"
-      "  kp_rpm_per_deg: 30\n"
-      "  ki_rpm_per_deg_s: 0\n"
-      "  kd_rpm_s_per_deg: 1.1\n"
-      "  deadband_deg: 0.8\n"
-      "  velocity_limit_rpm: 400\n");
-  EXPECT_THAT(yamlLines(convertSpeedGains({.kp = 1.0}, 2.0, kTick_s)),
+  EXPECT_EQ(yamlLines(namedGains(
+                convertAngleGains({.kp = 30.0, .kd = 1.1, .output_limit = 400.0, .deadband = 0.8}, 0.0))),
+            "angle_pid:\n"
+            "  kp_rpm_per_deg: 30\n"
+            "  ki_rpm_per_deg_s: 0\n"
+            "  kd_rpm_s_per_deg: 1.1\n"
+            "  deadband_deg: 0.8\n"
+            "  velocity_limit_rpm: 400\n");
+  EXPECT_THAT(yamlLines(namedGains(convertSpeedGains({.kp = 1.0}, 2.0, kTick_s))),
               HasSubstr("target_bandwidth_rad_s: 2"));
-  EXPECT_THAT(yamlLines(convertSpeedGains({.kp = 1.0}, 2.0, kTick_s)), Not(HasSubstr("current_limit_a: ")));
+  EXPECT_THAT(yamlLines(namedGains(convertSpeedGains({.kp = 1.0}, 2.0, kTick_s))),
+              Not(HasSubstr("current_limit_a: ")));
+}
+
+TEST(NamedGains, HaveTheKeysOfAMotorAndTheNotesApart) {
+  const auto named = namedGains(convertSpeedGains({.kp = 18.0, .kd = 1.0}, 0.0, kTick_s));
+  EXPECT_EQ(named.section, "velocity_pid");
+  EXPECT_EQ(named.gains.front().key, "kp_a_per_rpm");
+  EXPECT_FLOAT_EQ(named.gains.front().value, 0.018F);
+  EXPECT_EQ(named.notes.size(), 2U);
 }
 
 }  // namespace

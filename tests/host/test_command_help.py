@@ -8,6 +8,7 @@ import subprocess
 from typing import TYPE_CHECKING
 
 import pytest
+from hostlib.command_help import help_of, verbs
 from hostlib.daemon import BIN, REPO
 
 if TYPE_CHECKING:
@@ -19,19 +20,8 @@ PROGRAMS = ("rc10d", "rc10-lcm", "rc10ctl", "rc10-stop", "rc10-irq", "rc10-sim")
 COMPLETION = REPO / "completions" / "rc10ctl.bash"
 
 
-def help_of(*words: str, program: str = "rc10ctl") -> str:
-    return subprocess.run(
-        [BIN / program, *words, "--help"], capture_output=True, text=True, check=True
-    ).stdout
-
-
 def page_of(program: str) -> str:
     return (MAN / f"{program}.1").read_text().replace("\\-", "-")
-
-
-def verbs() -> list[str]:
-    below = help_of().split("Subcommands:\n", 1)[1]
-    return re.findall(r"^  ([a-z][a-z-]*)(?: |$)", below, re.MULTILINE)
 
 
 def options(*words: str, program: str = "rc10ctl") -> set[str]:

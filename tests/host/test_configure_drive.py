@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import subprocess
 from typing import TYPE_CHECKING
 
@@ -49,6 +50,25 @@ def test_every_drive_tells_what_can_be_written(arm: Daemon) -> None:
     assert "zero_range 0 to 1, whole\n" in arm.must("configure-drive", "hip", "--list")
     assert "save_turns 0 to 1, whole\n" in arm.must("configure-drive", "knee", "--list")
     assert "nothing can be written" in arm.must("configure-drive", "wheel", "--list")
+
+
+def test_what_can_be_written_is_told_in_json(arm: Daemon) -> None:
+    told = json.loads(arm.must("configure-drive", "hip", "--list", "--json"))
+    assert told["motor"] == "hip"
+    settings = {setting["name"]: setting for setting in told["settings"]}
+    assert settings["zero_range"] == {"name": "zero_range", "min": 0, "max": 1, "whole": True}
+    assert told["notes"][0].startswith("everything else: ")
+    nothing = json.loads(arm.must("configure-drive", "wheel", "--list", "--json"))
+    assert nothing["settings"] == []
+    assert "nothing can be written" in nothing["notes"][0]
+
+
+def test_what_was_written_is_told_in_json_and_the_question_is_asked_beside_it(arm: Daemon) -> None:
+    done = answering(arm, "elbow\n", "elbow", "timeout_ms=200", "--json")
+    assert done.returncode == 0, done.stderr
+    assert "Type its name:" in done.stderr
+    told = json.loads(done.stdout)
+    assert told == {"motor": "elbow", "message": "elbow: timeout_ms = 200, stored"}
 
 
 def test_flash_is_written_when_the_motor_is_named_once_more(arm: Daemon) -> None:

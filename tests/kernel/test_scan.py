@@ -16,6 +16,9 @@ def test_the_drives_are_found_and_nobody_is_commanded() -> None:
         found = {}
         for line in scan.output().splitlines():
             sighting = json.loads(line)
+            if "frame_id" not in sighting:  # the last one: about the bus
+                continue
+            assert sighting["advice"] is None
             found[sighting["frame_id"]] = {(g["kind"], g["id"]) for g in sighting["guesses"]}
         for number in (1, 2, 3):
             assert found[0x200 + number] == {("DJI M3508 or M2006", number)}
@@ -32,3 +35,19 @@ def test_an_interface_that_rc10d_drives_is_refused() -> None:
         assert scan.wait(10.0) == 1
         assert "vcan0 is driven by robot 'vcan_mixed'" in scan.output()
         assert "rc10ctl stats" in scan.output()
+
+
+def test_a_bus_on_which_nothing_is_heard_is_told_in_json_too() -> None:
+    with Proc(BIN / "rc10ctl", "scan", "vcan1", "--seconds", "0.5", "--json") as scan:
+        assert scan.wait(20.0) == 0
+        (line,) = scan.output().splitlines()
+    told = json.loads(line)
+    assert told["interface"] == "vcan1"
+    assert told["frame_ids"] == 0
+    assert told["advice"][0].startswith("nothing was heard: check the drives' power")
+
+
+def test_an_interface_that_is_not_there_is_an_error_in_json_too() -> None:
+    with Proc(BIN / "rc10ctl", "scan", "can7", "--json") as scan:
+        assert scan.wait(10.0) == 1
+        assert "can7" in json.loads(scan.output().splitlines()[0])["error"]

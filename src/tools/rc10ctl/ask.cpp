@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <span>
 
+#include "client/json_line.hpp"
 #include "client/request_call.hpp"
 #include "client/text_table.hpp"
 
@@ -28,6 +30,21 @@ Result<link::Request> requestFor(const std::string& operation, const std::vector
   return request;
 }
 
+using Values = std::span<const link::NamedValue>;
+
+void printText(const std::string& message, Values values) {
+  std::printf("%s\n", message.c_str());
+  for (const auto& value : values)
+    std::printf("%s = %g\n", client::printable(value.name.view()).c_str(), value.value);
+}
+
+void printJson(const std::string& operation, const std::string& message, Values values) {
+  client::Json json = client::Json::object();
+  for (const auto& value : values) json[std::string{value.name.view()}] = value.value;
+  std::puts(
+      client::lineOf({{"operation", operation}, {"message", message}, {"values", std::move(json)}}).c_str());
+}
+
 }  // namespace
 
 ExitCode ask(const Global& global, const std::string& operation, const std::vector<std::string>& motors,
@@ -40,11 +57,9 @@ ExitCode ask(const Global& global, const std::string& operation, const std::vect
   if (!response) return complain(response.error(), ExitCode::kFailed);
   const std::string message = client::printable(response->message.view());
   if (response->status != link::ResponseStatus::kOk) return complain({message}, ExitCode::kFailed);
-  std::printf("%s\n", message.c_str());
-  for (std::uint32_t i = 0; i < response->value_count; ++i) {
-    std::printf("%s = %g\n", client::printable(response->values[i].name.view()).c_str(),
-                response->values[i].value);
-  }
+  const auto told =
+      std::span(response->values).first(std::min<std::size_t>(response->value_count, link::kMaxValues));
+  global.json ? printJson(operation, message, told) : printText(message, told);
   return ExitCode::kOk;
 }
 

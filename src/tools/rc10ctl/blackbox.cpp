@@ -18,6 +18,7 @@
 #include "blackbox/recording.hpp"
 #include "client/candump_line.hpp"
 #include "client/find_robot.hpp"
+#include "client/json_line.hpp"
 #include "client/recording_json.hpp"
 #include "client/recording_text.hpp"
 #include "link/run_dir.hpp"
@@ -105,7 +106,8 @@ Result<std::string> save(const fs::path& path, const std::function<void(const Li
   return path.string();
 }
 
-ExitCode saveBoth(const blackbox::Recording& recording, const std::string& file, const std::string& dir) {
+ExitCode saveBoth(const Global& global, const blackbox::Recording& recording, const std::string& file,
+                  const std::string& dir) {
   const auto base = fs::path(dir) / fs::path(file).stem();
   std::error_code error;
   fs::create_directories(dir, error);
@@ -114,11 +116,16 @@ ExitCode saveBoth(const blackbox::Recording& recording, const std::string& file,
   if (!log) return complain(log.error(), ExitCode::kFailed);
   const auto json = save(base.string() + ".jsonl", [&](const Line& line) { eachJsonLine(recording, line); });
   if (!json) return complain(json.error(), ExitCode::kFailed);
-  std::printf("%s\n%s\n", log->c_str(), json->c_str());
+  if (global.json)
+    std::puts(client::lineOf({{"files", {*log, *json}}}).c_str());
+  else
+    std::printf("%s\n%s\n", log->c_str(), json->c_str());
   return ExitCode::kOk;
 }
 
 ExitCode blackbox(const Global& global, const Wish& wish) {
+  if (wish.candump && global.json)
+    return complain({"--candump is a format of its own: leave out --json, or --candump"}, ExitCode::kUsage);
   std::string file = wish.file;
   if (file.empty()) {
     const auto live = liveFile(global);
@@ -127,7 +134,7 @@ ExitCode blackbox(const Global& global, const Wish& wish) {
   }
   const auto recording = load(file);
   if (!recording) return complain(recording.error(), ExitCode::kFailed);
-  if (!wish.out.empty()) return saveBoth(*recording, file, wish.out);
+  if (!wish.out.empty()) return saveBoth(global, *recording, file, wish.out);
   const auto pid = recording->header().pid;
   const bool running = pid > 0 && (::kill(pid, 0) == 0 || errno == EPERM);
   const bool printed = print(stdout, [&](const Line& line) {

@@ -1,18 +1,44 @@
 #include <cstdio>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include <CLI/CLI.hpp>
 
+#include "client/json_line.hpp"
 #include "config/load_config.hpp"
 #include "config/report.hpp"
+#include "robot_json.hpp"
 #include "verbs.hpp"
 
 namespace rc10::ctl {
 namespace {
 
-ExitCode check(const std::string& file) {
+client::Json problemsJson(const std::vector<ConfigProblem>& problems) {
+  client::Json list = client::Json::array();
+  for (const auto& problem : problems) {
+    list.push_back({{"file", problem.file},
+                    {"line", problem.place.line},
+                    {"column", problem.place.column},
+                    {"path", problem.path},
+                    {"text", problem.text}});
+  }
+  return list;
+}
+
+ExitCode checkInJson(const std::string& file, const ConfigOutcome& outcome) {
+  std::puts(client::lineOf({{"file", file},
+                            {"ok", outcome.config.has_value()},
+                            {"errors", problemsJson(outcome.errors)},
+                            {"warnings", problemsJson(outcome.warnings)},
+                            {"robot", outcome.config ? robotJson(*outcome.config) : client::Json(nullptr)}})
+                .c_str());
+  return outcome.config ? ExitCode::kOk : ExitCode::kFailed;
+}
+
+ExitCode check(const Global& global, const std::string& file) {
   const auto outcome = loadRobotConfig(file);
+  if (global.json) return checkInJson(file, outcome);
   std::fputs((outcome.errorText() + outcome.warningText()).c_str(), stderr);
   if (!outcome.config) {
     std::fprintf(stderr, "%s: %zu error%s\n", file.c_str(), outcome.errors.size(),
@@ -30,7 +56,7 @@ void addCheck(CLI::App& app, Action& action) {
   auto* verb =
       app.add_subcommand("check", "says what is wrong with a configuration, or what the robot will be");
   verb->add_option("file", *file, "configuration of a robot")->required()->type_name("FILE");
-  verb->callback([&action, file] { action = [file](const Global&) { return check(*file); }; });
+  verb->callback([&action, file] { action = [file](const Global& global) { return check(global, *file); }; });
 }
 
 }  // namespace rc10::ctl

@@ -5,12 +5,14 @@
 #include <cstdio>
 #include <iostream>
 #include <memory>
+#include <sstream>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include <CLI/CLI.hpp>
 
+#include "client/json_line.hpp"
 #include "client/request_call.hpp"
 #include "client/text_table.hpp"
 #include "verbs.hpp"
@@ -66,14 +68,15 @@ Result<link::Request> requestFor(const Options& options) {
 }
 
 // Flash is for good, and wears: whoever asks for it has to mean this motor.
-bool confirmed(const Options& options) {
+bool confirmed(const Global& global, const Options& options) {
   if (options.no_save || options.yes) return true;
   std::string what;
   for (const auto& text : options.settings) what += (what.empty() ? "" : ", ") + text;
-  std::printf("write %s to the flash of %s? Type its name: ", what.c_str(), options.motor.c_str());
-  std::fflush(stdout);
+  std::FILE* const person = global.json ? stderr : stdout;
+  std::fprintf(person, "write %s to the flash of %s? Type its name: ", what.c_str(), options.motor.c_str());
+  std::fflush(person);
   std::string typed;
-  if (!std::getline(std::cin, typed)) std::fputs("\n", stdout);
+  if (!std::getline(std::cin, typed)) std::fputs("\n", person);
   return typed == options.motor;
 }
 
@@ -86,17 +89,43 @@ void print(std::string_view text) {
   }
 }
 
+// "NAME MIN to MAX[, whole]" is a setting; the last line says what sets everything else.
+void printSettings(const std::string& motor, std::string_view text) {
+  client::Json settings = client::Json::array();
+  client::Json notes = client::Json::array();
+  std::istringstream lines{std::string{text}};
+  for (std::string line; std::getline(lines, line);) {
+    std::istringstream words{line};
+    std::string name;
+    std::string to;
+    double min = 0.0;
+    double max = 0.0;
+    if (words >> name >> min >> to >> max && to == "to")
+      settings.push_back({{"name", name}, {"min", min}, {"max", max}, {"whole", line.ends_with(", whole")}});
+    else
+      notes.push_back(line);
+  }
+  std::puts(client::lineOf({{"motor", motor}, {"settings", std::move(settings)}, {"notes", std::move(notes)}})
+                .c_str());
+}
+
 ExitCode configure(const Global& global, const Options& options) {
   const auto request = requestFor(options);
   if (!request) return complain(request.error(), ExitCode::kUsage);
   auto rc10d = connect(global);
   if (!rc10d) return complain(rc10d.error(), ExitCode::kNoDaemon);
-  if (!options.list && !confirmed(options)) return complain({"nothing was written"}, ExitCode::kFailed);
+  if (!options.list && !confirmed(global, options))
+    return complain({"nothing was written"}, ExitCode::kFailed);
   const auto response = RequestCall(*rc10d, kClientName).call(*request, kPatience);
   if (!response) return complain(response.error(), ExitCode::kFailed);
   if (response->status != link::ResponseStatus::kOk)
     return complain({client::printable(response->message.view())}, ExitCode::kFailed);
-  print(response->message.view());
+  if (!global.json)
+    print(response->message.view());
+  else if (options.list)
+    printSettings(options.motor, response->message.view());
+  else
+    std::puts(client::lineOf({{"motor", options.motor}, {"message", response->message.view()}}).c_str());
   return ExitCode::kOk;
 }
 

@@ -5,6 +5,7 @@
 
 #include <CLI/CLI.hpp>
 
+#include "client/json_line.hpp"
 #include "config/stm32_gains.hpp"
 #include "verbs.hpp"
 
@@ -19,26 +20,37 @@ struct Gains {
   double tick_ms = 1.0;
 };
 
-ExitCode wrong(const std::string& what) {
-  std::fprintf(stderr, "rc10ctl: %s\n", what.c_str());
-  return ExitCode::kUsage;
+ExitCode wrong(const std::string& what) { return complain({what}, ExitCode::kUsage); }
+
+void put(client::Json& json, const ConvertedGains& gains) {
+  if (gains.current_limit_a > 0.0F) json["current_limit_a"] = client::shortest(gains.current_limit_a);
+  auto& section = json[gains.section];
+  if (!gains.type.empty()) section["type"] = gains.type;
+  for (const auto& gain : gains.gains) section[std::string{gain.key}] = client::shortest(gain.value);
+  for (const auto& note : gains.notes) json["notes"].push_back(note);
 }
 
-ExitCode convert(const Gains& gains) {
+ExitCode convert(const Global& global, const Gains& gains) {
   if (gains.speed.empty() && gains.angle.empty())
     return wrong("convert-gains needs --speed, --angle, or both");
-  std::string text;
+  std::vector<ConvertedGains> sections;
   if (!gains.speed.empty()) {
     const auto pid = stm32Pid(gains.speed);
     if (!pid) return wrong("--speed: " + pid.error().message);
-    text += yamlLines(convertSpeedGains(*pid, gains.td_ratio, gains.tick_ms / 1000.0));
+    sections.push_back(namedGains(convertSpeedGains(*pid, gains.td_ratio, gains.tick_ms / 1000.0)));
   }
   if (!gains.angle.empty()) {
     const auto pid = stm32Pid(gains.angle);
     if (!pid) return wrong("--angle: " + pid.error().message);
-    text += yamlLines(convertAngleGains(*pid, gains.separation_deg));
+    sections.push_back(namedGains(convertAngleGains(*pid, gains.separation_deg)));
   }
-  std::fputs(text.c_str(), stdout);
+  client::Json json{{"notes", client::Json::array()}};
+  std::string text;
+  for (const auto& section : sections) {
+    put(json, section);
+    text += yamlLines(section);
+  }
+  std::fputs((global.json ? client::lineOf(json) + "\n" : text).c_str(), stdout);
   return ExitCode::kOk;
 }
 
@@ -61,7 +73,8 @@ void addConvertGains(CLI::App& app, Action& action) {
       ->check(CLI::NonNegativeNumber);
   verb->add_option("--tick-ms", gains->tick_ms, "how often its speed loop ran")
       ->check(CLI::Range(0.01, 100.0));
-  verb->callback([&action, gains] { action = [gains](const Global&) { return convert(*gains); }; });
+  verb->callback(
+      [&action, gains] { action = [gains](const Global& global) { return convert(global, *gains); }; });
 }
 
 }  // namespace rc10::ctl

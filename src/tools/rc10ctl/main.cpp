@@ -1,6 +1,9 @@
+#include <algorithm>
+#include <array>
 #include <cstdio>
 #include <exception>
 #include <string>
+#include <string_view>
 
 #include <CLI/CLI.hpp>
 
@@ -21,6 +24,9 @@ constexpr const char* kExamples =
     "  rc10ctl set front_left velocity 120 --for 2s     turns it at 120 rpm for two seconds\n"
     "  rc10ctl estop                                    stops everything";
 
+// They move a motor before the eyes of a person. Every other verb answers in JSON if asked to.
+constexpr std::array<std::string_view, 3> kForEyes{"set", "jog", "commission"};
+
 int run(int argc, char** argv) {
   using namespace rc10::ctl;
   CLI::App app{kDescription, "rc10ctl"};
@@ -33,7 +39,7 @@ int run(int argc, char** argv) {
   app.add_option("--socket", global.socket, "rc10d's link socket, default /run/rc10d/<robot>.sock")
       ->type_name("PATH");
   app.add_flag("--json", global.json,
-               "list, watch, stats, modules, gains, blackbox, doctor, scan: JSON, one object a line");
+               "answers, and says what went wrong, in JSON, one object a line; not set, jog, commission");
   Action action;
   for (const auto add :
        {addList, addWatch, addStats, addRequests, addZero, addSet, addModules, addSignal, addGains,
@@ -43,6 +49,14 @@ int run(int argc, char** argv) {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
     return app.exit(error) == 0 ? 0 : static_cast<int>(ExitCode::kUsage);
+  }
+  if (global.json) complainInJson();
+  const std::string verb = app.get_subcommands().front()->get_name();
+  if (global.json && std::find(kForEyes.begin(), kForEyes.end(), verb) != kForEyes.end()) {
+    return static_cast<int>(complain(
+        {verb +
+         " shows a motor that moves, not JSON: leave out --json; `rc10ctl watch --json` tells what it does"},
+        ExitCode::kUsage));
   }
   catchInterrupt();
   return static_cast<int>(action(global));

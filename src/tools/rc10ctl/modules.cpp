@@ -77,14 +77,17 @@ class ModuleFeed {
   std::vector<client::ModuleView> modules_;
 };
 
+void print(const Global& global, const std::vector<client::ModuleView>& modules) {
+  std::fputs((global.json ? client::modulesJson(modules) + "\n" : client::modulesText(modules)).c_str(),
+             stdout);
+}
+
 ExitCode modules(const Global& global) {
   auto rc10d = connect(global, link::kModules);
   if (!rc10d) return complain(rc10d.error(), ExitCode::kNoDaemon);
   ModuleFeed feed{*rc10d};
   if (const auto there = feed.awaitAll(); !there) return complain(there.error(), ExitCode::kFailed);
-  std::fputs((global.json ? client::modulesJson(feed.modules()) + "\n" : client::modulesText(feed.modules()))
-                 .c_str(),
-             stdout);
+  print(global, feed.modules());
   return ExitCode::kOk;
 }
 
@@ -134,7 +137,8 @@ std::string fit(const link::Signals& message, const std::vector<client::ModuleVi
   return "there is no module '" + std::string(message.module.view()) + "'; there are: " + known;
 }
 
-ExitCode repeat(LinkClient& rc10d, link::Signals& message, Duration time, ModuleFeed& feed) {
+ExitCode repeat(const Global& global, LinkClient& rc10d, link::Signals& message, Duration time,
+                ModuleFeed& feed) {
   const auto start = steady_clock::now();
   auto next = start;
   while (!interrupted() && steady_clock::now() - start < time) {
@@ -148,7 +152,7 @@ ExitCode repeat(LinkClient& rc10d, link::Signals& message, Duration time, Module
     waitReadable(rc10d, std::min(next, start + time) - steady_clock::now());
     if (!feed.pump()) return complain(rc10dEnded(), ExitCode::kFailed);
   }
-  std::fputs(client::modulesText(feed.modules()).c_str(), stdout);
+  print(global, feed.modules());
   return ExitCode::kOk;
 }
 
@@ -164,7 +168,7 @@ ExitCode signal(const Global& global, const SignalOptions& options) {
   ModuleFeed feed{*rc10d};
   if (const auto there = feed.awaitAll(); !there) return complain(there.error(), ExitCode::kFailed);
   if (const auto why = fit(*message, feed.modules()); !why.empty()) return complain({why}, ExitCode::kFailed);
-  return repeat(*rc10d, *message, *time, feed);
+  return repeat(global, *rc10d, *message, *time, feed);
 }
 
 }  // namespace

@@ -23,9 +23,9 @@
 #include "config/drive_ids.hpp"
 #include "link/interface_lock.hpp"
 #include "link/run_dir.hpp"
-#include "motor/vesc_frames.hpp"
 #include "survey/bus_survey.hpp"
 #include "survey/harmless_queries.hpp"
+#include "survey/scan_advice.hpp"
 #include "verbs.hpp"
 
 namespace rc10::ctl {
@@ -50,13 +50,8 @@ struct ScanOptions {
 struct Row {
   std::string ids;
   std::uint64_t frames = 0;
-  bool only_answers = true;  // to our questions
 };
 using Rows = std::map<std::pair<std::string, int>, Row>;
-
-bool isAnswer(CanId id) {
-  return id.extended && id.value >> 8U == static_cast<std::uint32_t>(VescPacket::kPong);
-}
 
 std::string nameOf(const Guess& guess) {
   std::string name(guess.kind);
@@ -79,7 +74,6 @@ Rows rowsOf(const std::vector<Sighting>& sightings) {
                         guess.id}];
       row.ids += (row.ids.empty() ? "" : ", ") + idText(sighting.id);
       row.frames += sighting.frames;
-      row.only_answers = row.only_answers && isAnswer(sighting.id);
     }
   }
   return rows;
@@ -143,58 +137,50 @@ class Scanner {
   std::set<int> spared_;
 };
 
-void printText(const std::vector<Sighting>& sightings, const ScanOptions& options) {
+void printText(const std::vector<Sighting>& sightings, const survey::Asking& asking) {
   const auto rows = rowsOf(sightings);
   client::TextTable table({{"KIND"},
                            {"ID", client::TextTable::Align::kRight},
                            {"FRAMES", client::TextTable::Align::kRight},
                            {"FRAME IDS"}});
   for (const auto& [drive, row] : rows)
-    table.add({drive.first, drive.second != 0 || drive.first == "VESC" ? std::to_string(drive.second) : "",
+    table.add({drive.first,
+               drive.second != 0 || drive.first == survey::kVesc ? std::to_string(drive.second) : "",
                std::to_string(row.frames), row.ids});
   if (!rows.empty()) std::fputs(table.text().c_str(), stdout);
   for (const auto& sighting : sightings) {
+    const auto advice = survey::adviceFor(sighting, sightings);
+    const auto heard = idText(sighting.id) + ", " + std::to_string(sighting.frames) + " frames: ";
     if (sighting.guesses.empty())
-      std::printf("unknown: %s, %llu frames: no family that rc10d knows\n", idText(sighting.id).c_str(),
-                  static_cast<unsigned long long>(sighting.frames));
+      std::printf("unknown: %s%s\n", heard.c_str(), advice.c_str());
     else if (sighting.ambiguous())
-      std::printf("ambiguous: %s, %llu frames: %s. Look at its label, or unplug it and scan again\n",
-                  idText(sighting.id).c_str(), static_cast<unsigned long long>(sighting.frames),
-                  allNames(sighting).c_str());
+      std::printf("ambiguous: %s%s. %s\n", heard.c_str(), allNames(sighting).c_str(), advice.c_str());
+    else if (!advice.empty())
+      std::printf("%s\n", advice.c_str());
   }
-  for (const auto& [drive, row] : rows) {
-    if (drive.first != "VESC" || !row.only_answers) continue;
-    std::printf(
-        "VESC id %d answers but sends no status: in VESC Tool, App Settings, General: CAN Status Rate 1 = "
-        "100 Hz, "
-        "CAN Status Messages 1 = Status 1 and Status 5; write the settings (docs/motors/vesc.md)\n",
-        drive.second);
-  }
-  if (sightings.empty())
-    std::puts(
-        "nothing was heard: check the drives' power, the wiring, the termination and the bit rate: `rc10ctl "
-        "doctor`");
-  std::puts(
-      "Damiao, LK-Tech, MyActuator and moteus drives speak only when they are asked, and are not asked here: "
-      "a question to one\n"
-      "family may be a command to another. Take their ids from their labels or tools.");
-  if (options.listen_only)
-    std::puts(
-        "Nothing was asked (--listen-only): VESC as delivered, RobStride and CyberGear may be silent too.");
+  for (const auto& advice : survey::adviceForBus(sightings, asking)) std::printf("%s\n", advice.c_str());
 }
 
-void printJson(const std::vector<Sighting>& sightings) {
+void printJson(const std::string& interface, const std::vector<Sighting>& sightings,
+               const survey::Asking& asking) {
   for (const auto& sighting : sightings) {
     client::Json guesses = client::Json::array();
     for (const auto& guess : sighting.guesses)
       guesses.push_back({{"kind", guess.kind}, {"id", guess.id}, {"from_drive", guess.from_drive}});
+    const auto advice = survey::adviceFor(sighting, sightings);
     std::puts(client::lineOf({{"frame_id", sighting.id.value},
                               {"extended", sighting.id.extended},
                               {"frames", sighting.frames},
                               {"ambiguous", sighting.ambiguous()},
-                              {"guesses", std::move(guesses)}})
+                              {"guesses", std::move(guesses)},
+                              {"advice", advice.empty() ? client::Json(nullptr) : client::Json(advice)}})
                   .c_str());
   }
+  std::puts(client::lineOf({{"interface", interface},
+                            {"frame_ids", sightings.size()},
+                            {"listen_only", asking.listen_only},
+                            {"advice", survey::adviceForBus(sightings, asking)}})
+                .c_str());
 }
 
 // Somebody else's frames in between would be wrong, and ours in theirs.
@@ -230,17 +216,11 @@ ExitCode scan(const Global& global, const ScanOptions& options) {
     return complain({options.interface + ": " + why + ": see `rc10ctl doctor`"}, ExitCode::kFailed);
   if (interrupted()) return complain({"interrupted: nothing is known yet"}, ExitCode::kFailed);
   const auto sightings = scanner.survey().sightings(steady_clock::now() - start);
-  for (const int node : scanner.spared()) {
-    std::fprintf(
-        stderr,
-        "not all VESC, RobStride and CyberGear ids were asked: an ODrive with extended ids, node %d, would "
-        "take the questions for commands\n",
-        node);
-  }
+  const survey::Asking asking{.listen_only = options.listen_only, .spared = scanner.spared()};
   if (global.json)
-    printJson(sightings);
+    printJson(options.interface, sightings, asking);
   else
-    printText(sightings, options);
+    printText(sightings, asking);
   return ExitCode::kOk;
 }
 

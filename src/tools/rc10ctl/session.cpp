@@ -9,11 +9,13 @@
 
 #include "client/daemon_log.hpp"
 #include "client/find_robot.hpp"
+#include "client/json_line.hpp"
 
 namespace rc10::ctl {
 namespace {
 
 volatile std::sig_atomic_t interrupt_seen = 0;
+bool json_wanted = false;
 
 }  // namespace
 
@@ -26,10 +28,13 @@ Result<LinkClient> connect(const Global& global, std::uint32_t subscriptions) {
 }
 
 ExitCode complain(const Error& error, ExitCode code) {
+  if (json_wanted) std::puts(client::lineOf({{"error", error.message}}).c_str());
   std::fflush(stdout);
   std::fprintf(stderr, "rc10ctl: %s\n", error.message.c_str());
   return code;
 }
+
+void complainInJson() { json_wanted = true; }
 
 Error rc10dEnded() { return {std::string("rc10d has ended: ") + client::kSeeItsLog}; }
 

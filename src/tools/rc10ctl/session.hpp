@@ -27,6 +27,9 @@ inline constexpr const char* kClientName = "rc10ctl";
 /// Prints "rc10ctl: ..." on stderr and returns `code`.
 ExitCode complain(const Error& error, ExitCode code);
 
+/// From now on complain() prints {"error": ...} on stdout too: for the program that reads --json there.
+void complainInJson();
+
 /// What to say when rc10d has closed the connection.
 [[nodiscard]] Error rc10dEnded();
 

@@ -1,0 +1,27 @@
+#pragma once
+
+#include <set>
+#include <string>
+#include <vector>
+
+#include "survey/bus_survey.hpp"
+
+/// What to do about what was heard on a bus, in words for people.
+namespace rc10::survey {
+
+/// A VESC with this sighting's id has answered our question, and sends nothing by itself.
+[[nodiscard]] bool isSilentVesc(const Sighting& sighting, const std::vector<Sighting>& all);
+
+/// About one sighting; empty: there is nothing to be done.
+[[nodiscard]] std::string adviceFor(const Sighting& sighting, const std::vector<Sighting>& all);
+
+/// How a bus was asked.
+struct Asking {
+  bool listen_only = false;
+  std::set<int> spared;  ///< Nodes of ODrives with extended ids that some questions would have commanded.
+};
+
+/// About the bus as a whole: why drives may be missing.
+[[nodiscard]] std::vector<std::string> adviceForBus(const std::vector<Sighting>& all, const Asking& asking);
+
+}  // namespace rc10::survey
