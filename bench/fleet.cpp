@@ -88,7 +88,8 @@ void Fleet::addWideMotors(const Shape& shape) {
     std::vector<WideMotor*> motors;
     for (std::size_t i = 0; i < shape.motors_per_bus; ++i) {
       const CanId feedback_id{0x201U + static_cast<std::uint32_t>(i), false};
-      auto motor = std::make_unique<WideMotor>(wheel(b * shape.motors_per_bus + i, 1), feedback_id);
+      auto motor =
+          std::make_unique<WideMotor>(djiConfig(wheel(b * shape.motors_per_bus + i, 1)), feedback_id);
       must(bus.registerMotor(*motor));
       motors.push_back(motor.get());
       robot_->motors().push_back(
