@@ -176,7 +176,8 @@ static_assert(link::kMaxSignals <= 32, "a bit each");
   return offsetof(Signals, values) + count * sizeof(double);
 }
 
-/// A request that reached the scheduler; `flags` is the operation: enable, disable, estop, clear, zero.
+/// A request that reached the scheduler; `flags` is the operation: enable, disable, estop, clear, zero,
+/// configure-drive, set_gains, enable_alone.
 struct Order {
   static constexpr auto kType = RecordType::kOrder;
   RecordHeader header;

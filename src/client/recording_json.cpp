@@ -13,8 +13,8 @@ namespace {
 using namespace blackbox;
 
 constexpr std::array kVerdicts{"applied", "expired", "not owner"};
-constexpr std::array kOperations{"enable", "disable",         "estop",    "clear",
-                                 "zero",   "configure-drive", "set_gains"};
+constexpr std::array kOperations{"enable", "disable",         "estop",     "clear",
+                                 "zero",   "configure-drive", "set_gains", "enable_alone"};
 
 template <std::size_t N>
 [[nodiscard]] const char* word(const std::array<const char*, N>& words, std::size_t index) {

@@ -33,7 +33,16 @@ struct Command {
   std::array<Setpoint, kMaxMotors> setpoints;
 };
 
-enum class Operation : std::uint8_t { kEnable, kDisable, kEstop, kClear, kZero, kConfigure, kSetGains };
+enum class Operation : std::uint8_t {
+  kEnable,
+  kDisable,
+  kEstop,
+  kClear,
+  kZero,
+  kConfigure,
+  kSetGains,
+  kEnableAlone,  ///< One motor, and no other until it is not ACTIVE any more.
+};
 
 /// A request that passed the link thread, for the supervisor.
 struct Order {
@@ -78,6 +87,8 @@ enum class Refusal : std::uint8_t {
   kNotSaved,      ///< The drive did not tell that its settings are stored.
   kNoGains,       ///< Its drive closes its loops.
   kStillActs,     ///< It is still being damped, braked or held.
+  kAlone,         ///< Another motor is enabled alone: OrderResult::in_the_way.
+  kOthersOn,      ///< Other motors are enabled, and it was to be the only one: OrderResult::in_the_way.
 };
 
 struct OrderResult {
@@ -85,6 +96,7 @@ struct OrderResult {
   bool refused = false;         ///< Not tried at all.
   std::size_t drive_value = 0;  ///< kConfigure: at which of the values it ended.
   std::array<Refusal, kMaxMotors> motors{};
+  MotorSet in_the_way{};  ///< kAlone, kOthersOn: which motors.
 };
 
 }  // namespace rc10

@@ -15,9 +15,11 @@ constexpr std::size_t kMaxRemembered = 64;
 constexpr std::size_t kMaxOpen = 64;
 // Each gain is an event: those of one tick must leave room for others in their ring.
 constexpr std::ptrdiff_t kMaxOpenGains = 8;
+constexpr std::string_view kEnableAloneOperation = "enable_alone";
 
 [[nodiscard]] std::optional<Operation> operationOf(std::string_view word) {
   if (word == "enable") return Operation::kEnable;
+  if (word == kEnableAloneOperation) return Operation::kEnableAlone;
   if (word == "disable") return Operation::kDisable;
   if (word == "estop") return Operation::kEstop;
   if (word == "clear") return Operation::kClear;
@@ -48,6 +50,8 @@ constexpr std::ptrdiff_t kMaxOpenGains = 8;
       return "written, but the drive did not tell that it stored it: it is lost when the power is off";
     case Refusal::kNoGains: return "its drive closes its loops, with its own gains";
     case Refusal::kStillActs: return "still being damped, braked or held: disable it once more to let go";
+    case Refusal::kAlone: return "locked while another motor is enabled alone";
+    case Refusal::kOthersOn: return "not the only one: disable all others first";
   }
   return "unknown reason";
 }
@@ -108,8 +112,8 @@ RequestDesk::Outcome RequestDesk::begin(const link::Request& request, std::uint6
   }
   if (!operation) {
     problem = fmt::format(
-        "unknown operation '{}': there are enable, disable, estop, clear, zero, set_gains, get_config, "
-        "configure-drive and drive-settings",
+        "unknown operation '{}': there are enable, enable_alone, disable, estop, clear, zero, set_gains, "
+        "get_config, configure-drive and drive-settings",
         request.operation.view());
   } else if (*operation == Operation::kZero && request.target.view().empty()) {
     problem = "zero needs a motor: name it";
@@ -118,6 +122,7 @@ RequestDesk::Outcome RequestDesk::begin(const link::Request& request, std::uint6
   } else if (open_.size() >= kMaxOpen) {
     problem = "too many requests at once: wait for the answers";
   } else if (parseMotors(request, motors, problem) &&
+             (*operation != Operation::kEnableAlone || isOfOneMotor(request, problem)) &&
              (*operation != Operation::kConfigure || parseDrive(request, drive, problem)) &&
              (*operation != Operation::kSetGains || parseChanges(request, gains, problem))) {
     const std::uint64_t id = next_order_id_++;
@@ -179,6 +184,12 @@ bool RequestDesk::parseDrive(const link::Request& request, DriveWrite& drive, st
   return write.has_value();
 }
 
+bool RequestDesk::isOfOneMotor(const link::Request& request, std::string& problem) const {
+  const auto motor = theMotor(request);
+  if (!motor) problem = motor.error().message;
+  return motor.has_value();
+}
+
 std::string RequestDesk::driveOutcome(const Open& open, const OrderResult& result) const {
   const auto motor = theMotor(open.request).value_or(0);
   const auto& setup = setupOf(motor);
@@ -238,6 +249,21 @@ void RequestDesk::finishGains(const Open& open, const OrderResult& result, link:
   tellGains(loops_[motor], response);
 }
 
+// With the motors that are in the way by their names.
+std::string RequestDesk::reasonOf(Refusal reason, const MotorSet& in_the_way) const {
+  std::vector<std::string_view> names;
+  for (std::size_t i = 0; i < names_.size(); ++i) {
+    if (in_the_way.test(i)) names.emplace_back(names_[i]);
+  }
+  const std::string them = fmt::format("{}", fmt::join(names, " "));
+  switch (reason) {
+    case Refusal::kAlone:
+      return fmt::format("locked while {} is enabled alone: `rc10ctl disable {}` ends that", them, them);
+    case Refusal::kOthersOn: return fmt::format("not the only one: `rc10ctl disable {}` first", them);
+    default: return inWords(reason);
+  }
+}
+
 // "left, right: offline; arm: in FAULT": each reason once.
 std::string RequestDesk::reasons(const MotorSet& motors, const OrderResult& result) const {
   std::string text;
@@ -251,7 +277,8 @@ std::string RequestDesk::reasons(const MotorSet& motors, const OrderResult& resu
       who.push_back(names_[i]);
       named.set(i);
     }
-    text += fmt::format("{}{}: {}", text.empty() ? "" : "; ", fmt::join(who, ", "), inWords(reason));
+    text += fmt::format("{}{}: {}", text.empty() ? "" : "; ", fmt::join(who, ", "),
+                        reasonOf(reason, result.in_the_way));
   }
   return text;
 }

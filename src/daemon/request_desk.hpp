@@ -58,12 +58,14 @@ class RequestDesk {
   [[nodiscard]] const DriveSetup& setupOf(std::size_t motor) const;
   [[nodiscard]] Outcome tellSettings(const link::Request& request) const;
   [[nodiscard]] bool parseDrive(const link::Request& request, DriveWrite& drive, std::string& problem) const;
+  [[nodiscard]] bool isOfOneMotor(const link::Request& request, std::string& problem) const;
   [[nodiscard]] std::string driveOutcome(const Open& open, const OrderResult& result) const;
   [[nodiscard]] Result<std::size_t> motorWithGains(const link::Request& request) const;
   [[nodiscard]] Outcome tellConfig(const link::Request& request) const;
   [[nodiscard]] bool parseChanges(const link::Request& request, GainChanges& changes,
                                   std::string& problem) const;
   void finishGains(const Open& open, const OrderResult& result, link::Response& response);
+  [[nodiscard]] std::string reasonOf(Refusal reason, const MotorSet& in_the_way) const;
   [[nodiscard]] std::string reasons(const MotorSet& motors, const OrderResult& result) const;
   [[nodiscard]] static link::Response respond(const link::Request& request, link::ResponseStatus status,
                                               const std::string& message);

@@ -48,6 +48,11 @@ inline constexpr auto kMotorTransitions = [] {
   return detail::kMotorTransitions[row][column];
 }
 
+/// Whether such a motor moves, or is about to.
+[[nodiscard]] constexpr bool isOn(MotorStatus status) noexcept {
+  return status == MotorStatus::kEnabling || status == MotorStatus::kActive;
+}
+
 /// "OFFLINE", "READY", ...
 [[nodiscard]] const char* toString(MotorStatus status) noexcept;
 [[nodiscard]] const char* toString(RobotState state) noexcept;

@@ -195,9 +195,12 @@ void Supervisor::transition(std::size_t motor, MotorEvent event, const Tick& tic
   if (before == MotorStatus::kFault) control.fault = FaultCode::kNone;
   if (after != MotorStatus::kActive) dropTarget(motor);
   if (before == MotorStatus::kActive && after == MotorStatus::kReady) beginFallback(motor, event, tick);
+  const bool was_alone = alone_ == motor;
+  if (was_alone && !isOn(after)) alone_.reset();
   const bool lost = after == MotorStatus::kOffline || after == MotorStatus::kFault;
   if (lost) control.fallback.end();  // without feedback there is nothing to brake by
-  if (lost && before == MotorStatus::kActive && control.group != kNoGroup)
+  // The group of one that was enabled alone rests already, and does not come back by itself.
+  if (lost && before == MotorStatus::kActive && control.group != kNoGroup && !was_alone)
     groups_[control.group].lost.set(motor);
   if (before == MotorStatus::kEnabling) {
     settle(motor, after == MotorStatus::kActive     ? Refusal::kNone

@@ -97,6 +97,10 @@ class Supervisor {
   [[nodiscard]] std::optional<SkipReason> tryTarget(const Command::Setpoint& setpoint) noexcept;
   void carryOut(const Order& order, const Tick& tick) noexcept;
   [[nodiscard]] Refusal enable(std::size_t motor, const Tick& tick) noexcept;
+  [[nodiscard]] Refusal enableAlone(std::size_t motor, const Tick& tick) noexcept;
+  /// The enabled motors that keep this one from being enabled, alone or at all.
+  [[nodiscard]] MotorSet inTheWay(std::size_t motor, Refusal refusal) const noexcept;
+  [[nodiscard]] MotorSet otherMotorsOn(std::size_t motor) const noexcept;
   void disable(std::size_t motor, const Tick& tick) noexcept;
   void clear(std::size_t motor, const Tick& tick) noexcept;
   void answer(const OrderResult& result) noexcept;
@@ -134,6 +138,7 @@ class Supervisor {
   std::array<PendingOrder, 8> pending_{};
   std::vector<Group> groups_;
   std::optional<Configuring> configuring_;
+  std::optional<std::size_t> alone_;  ///< ENABLING or ACTIVE, and no other motor may be.
   std::uint64_t expired_commands_ = 0;
   std::uint64_t refused_commands_ = 0;
   std::uint64_t skipped_setpoints_ = 0;

@@ -143,9 +143,15 @@ void Supervisor::carryOut(const Order& order, const Tick& tick) noexcept {
     if (!order.motors.test(motor)) continue;
     switch (order.operation) {
       case Operation::kEnable:
-        result.motors[motor] = enable(motor, tick);
-        if (controls_[motor].status == MotorStatus::kEnabling) waiting.set(motor);
+      case Operation::kEnableAlone: {
+        const bool alone = order.operation == Operation::kEnableAlone;
+        const auto refusal = alone ? enableAlone(motor, tick) : enable(motor, tick);
+        result.motors[motor] = refusal;
+        result.in_the_way |= inTheWay(motor, refusal);
+        const bool enabling = controls_[motor].status == MotorStatus::kEnabling;
+        if (refusal == Refusal::kNone && enabling) waiting.set(motor);
         break;
+      }
       case Operation::kDisable: disable(motor, tick); break;
       case Operation::kClear: clear(motor, tick); break;
       case Operation::kZero: result.motors[motor] = zero(motor, order); break;
@@ -195,6 +201,7 @@ Refusal Supervisor::enable(std::size_t motor, const Tick& tick) noexcept {
   if (state_ == RobotState::kEstop) return Refusal::kEstop;
   if (state_ == RobotState::kStopping) return Refusal::kStopping;
   if (configuring_ && configuring_->motor == motor) return Refusal::kConfiguring;
+  if (alone_ && *alone_ != motor) return Refusal::kAlone;
   auto& control = controls_[motor];
   switch (control.status) {
     case MotorStatus::kOffline: return Refusal::kOffline;

@@ -124,6 +124,8 @@ TEST_F(RecordingJsonTest, ARequestNamesItsMotors) {
   EXPECT_EQ(line["kind"], "request");
   EXPECT_EQ(line["operation"], "zero");
   EXPECT_EQ(line["motors"], json::array({"right"}));
+  order.header.flags = 7;
+  EXPECT_EQ(lineOf(order)["operation"], "enable_alone");
 }
 
 TEST_F(RecordingJsonTest, AnEventIsInWords) {

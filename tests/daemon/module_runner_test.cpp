@@ -234,6 +234,19 @@ TEST_F(ModuleRunnerTest, AModuleEnablesAndDisablesTheRobot) {
   EXPECT_FALSE(robot_->exchange().results.pop(result)) << "nobody else is told";
 }
 
+TEST_F(ModuleRunnerTest, AModuleEnablesNothingBesideAMotorThatIsEnabledAlone) {
+  bool enable_now = false;
+  const ScriptedType type{[&](const Tick&, ModuleRobot& robot) {
+    if (std::exchange(enable_now, false)) robot.askAll(RobotRequest::kEnable);
+  }};
+  start({{&type, 0}});
+  (void)robot_->orderFor(MotorSet{0b001}, Operation::kEnableAlone);
+  enable_now = true;
+  robot_->run(5);
+  EXPECT_EQ(robot_->motor(0).status, MotorStatus::kActive);
+  EXPECT_EQ(robot_->motor(1).status, MotorStatus::kReady);
+}
+
 TEST_F(ModuleRunnerTest, AnEstopOfAModuleIsForTheWholeRobotAndLatches) {
   bool stop = false;
   const ScriptedType type{[&](const Tick&, ModuleRobot& robot) {

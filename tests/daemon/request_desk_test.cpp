@@ -49,11 +49,13 @@ class RequestDeskTest : public ::testing::Test {
 };
 
 TEST_F(RequestDeskTest, EveryOperationBecomesItsOrder) {
-  constexpr std::array<std::pair<const char*, Operation>, 5> kOperations{{{"enable", Operation::kEnable},
-                                                                          {"disable", Operation::kDisable},
-                                                                          {"estop", Operation::kEstop},
-                                                                          {"clear", Operation::kClear},
-                                                                          {"zero", Operation::kZero}}};
+  constexpr std::array<std::pair<const char*, Operation>, 6> kOperations{
+      {{"enable", Operation::kEnable},
+       {"enable_alone", Operation::kEnableAlone},
+       {"disable", Operation::kDisable},
+       {"estop", Operation::kEstop},
+       {"clear", Operation::kClear},
+       {"zero", Operation::kZero}}};
   std::int64_t seq = 0;
   for (const auto& [word, operation] : kOperations) {
     const auto outcome = begin(linkRequest(++seq, word, "right"));
@@ -88,6 +90,27 @@ TEST_F(RequestDeskTest, ZeroNeedsAMotor) {
   EXPECT_THAT(refusal(linkRequest(1, "zero")), HasSubstr("name it"));
 }
 
+TEST_F(RequestDeskTest, OnlyOneMotorIsEnabledAlone) {
+  EXPECT_THAT(refusal(linkRequest(1, "enable_alone")), HasSubstr("name one motor"));
+  EXPECT_THAT(refusal(linkRequest(2, "enable_alone", "left,right")), HasSubstr("name one motor"));
+}
+
+TEST_F(RequestDeskTest, WhoeverIsInTheWayOfAnEnablingIsNamedWithTheWayOut) {
+  const auto alone = begin(linkRequest(1, "enable_alone", "left"));
+  auto result = done(*alone.order);
+  result.motors[0] = Refusal::kOthersOn;
+  result.in_the_way = MotorSet{0b110};
+  EXPECT_EQ(desk.finish(result)->response.message.view(),
+            "enable_alone: 0 of 1 motors (left: not the only one: `rc10ctl disable right yaw` first)");
+  const auto every = begin(linkRequest(2, "enable"));
+  result = done(*every.order);
+  result.motors[0] = result.motors[2] = Refusal::kAlone;
+  result.in_the_way = MotorSet{0b010};
+  EXPECT_EQ(desk.finish(result)->response.message.view(),
+            "enable: 1 of 3 motors (left, yaw: locked while right is enabled alone: `rc10ctl disable right` "
+            "ends that)");
+}
+
 TEST_F(RequestDeskTest, RefusesAnAngleThatIsNotFinite) {
   EXPECT_THAT(refusal(zero(1, "left", std::numeric_limits<double>::quiet_NaN())), HasSubstr("angle_deg"));
 }
@@ -95,7 +118,8 @@ TEST_F(RequestDeskTest, RefusesAnAngleThatIsNotFinite) {
 TEST_F(RequestDeskTest, AnUnknownOperationIsAnsweredWithTheOnesThereAre) {
   const auto text = refusal(linkRequest(1, "enabel"));
   EXPECT_THAT(text, HasSubstr("'enabel'"));
-  for (const auto* word : {"enable", "disable", "estop", "clear", "zero"}) EXPECT_THAT(text, HasSubstr(word));
+  for (const auto* word : {"enable", "enable_alone", "disable", "estop", "clear", "zero"})
+    EXPECT_THAT(text, HasSubstr(word));
 }
 
 TEST_F(RequestDeskTest, AnUnknownMotorIsAnsweredWithTheOnesThereAre) {
@@ -162,7 +186,7 @@ TEST_F(RequestDeskTest, AFailureNamesEachMotorAndItsReasonInWords) {
 
 TEST_F(RequestDeskTest, EveryReasonHasWordsOfItsOwn) {
   std::vector<std::string> seen;
-  for (int reason = 1; reason <= static_cast<int>(Refusal::kDriveRefused); ++reason) {
+  for (int reason = 1; reason <= static_cast<int>(Refusal::kOthersOn); ++reason) {
     const auto outcome = begin(linkRequest(reason, "enable", "left"));
     auto result = done(*outcome.order);
     result.motors[0] = static_cast<Refusal>(reason);

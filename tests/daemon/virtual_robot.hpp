@@ -72,10 +72,15 @@ class VirtualRobot {
 
   /// Hands an order for all motors to the supervisor and runs until it is answered.
   OrderResult order(Operation operation, double value = 0.0) {
+    MotorSet all;
+    for (std::size_t i = 0; i < robot_->motors().size(); ++i) all.set(i);
+    return orderFor(all, operation, value);
+  }
+  OrderResult orderFor(MotorSet motors, Operation operation, double value = 0.0) {
     Order order;
     order.id = ++orders_;
     order.operation = operation;
-    for (std::size_t i = 0; i < robot_->motors().size(); ++i) order.motors.set(i);
+    order.motors = motors;
     order.value = value;
     exchange_.orders.push(order);
     OrderResult result;

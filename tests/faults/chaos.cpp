@@ -45,17 +45,17 @@ groups:
 )";
 
 constexpr std::array<std::string_view, static_cast<std::size_t>(Chaos::Action::kCount)> kNames{
-    "nothing",        "command",    "program",    "enable",      "disable", "clear",      "zero",
-    "estop",          "repair",     "silence",    "lose",        "stall",   "heat",       "encoder",
-    "load",           "freeze bus", "block bus",  "hold echoes", "link",    "controller", "e-stop input",
-    "foreign frames", "flood bus",  "fill rings", "miss ticks",  "stop",    "crash"};
+    "nothing",      "command",        "program",    "enable",     "enable alone", "disable", "clear",
+    "zero",         "estop",          "repair",     "silence",    "lose",         "stall",   "heat",
+    "encoder",      "load",           "freeze bus", "block bus",  "hold echoes",  "link",    "controller",
+    "e-stop input", "foreign frames", "flood bus",  "fill rings", "miss ticks",   "stop",    "crash"};
 
 // The request desk has no more under way.
 constexpr std::size_t kMostOpen = 64;
 
 // How often each is chosen: what brings a robot to work more often than what stops it.
 constexpr std::array<std::uint8_t, static_cast<std::size_t>(Chaos::Action::kCount)> kWeights{
-    16, 24, 50, 38, 4, 26, 5, 2, 36, 4, 3, 4, 3, 4, 4, 2, 2, 4, 3, 3, 3, 4, 1, 1, 5, 1, 1};
+    16, 24, 50, 38, 2, 4, 26, 5, 2, 36, 4, 3, 4, 3, 4, 4, 2, 2, 4, 3, 3, 3, 4, 1, 1, 5, 1, 1};
 
 [[nodiscard]] RobotConfig chaosRobot() {
   auto outcome = parseRobotConfig(kRobot, "chaos.yaml");
@@ -395,6 +395,15 @@ void Chaos::act(Action action) {
       motors = choices_.oneIn(2) ? everyone : someMotors();
       order(Operation::kEnable, motors);
       break;
+    case Action::kEnableAlone: {
+      // Mostly others are enabled, and it is refused.
+      const MotorSet one = MotorSet{}.set(choices_.next(static_cast<std::uint32_t>(places_.size())));
+      motors = one;
+      if (!choices_.oneIn(4)) order(Operation::kDisable, everyone & ~one);
+      order(Operation::kEnableAlone, one);
+      if (choices_.oneIn(2)) order(Operation::kEnable, everyone & ~one);
+      break;
+    }
     case Action::kDisable:
       motors = someMotors();
       order(Operation::kDisable, motors);

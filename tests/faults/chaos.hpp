@@ -38,6 +38,7 @@ class Chaos {
     kCommand,
     kProgram,
     kEnable,
+    kEnableAlone,
     kDisable,
     kClear,
     kZero,

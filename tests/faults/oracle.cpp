@@ -58,6 +58,7 @@ void Visits::add(const Visits& other) {
   slewed += other.slewed;
   bounded += other.bounded;
   driven += other.driven;
+  alone += other.alone;
   rearmed += other.rearmed;
   sum(robot, other.robot);
   sum(status, other.status);
@@ -81,6 +82,7 @@ std::string Visits::text() const {
     out +=
         fmt::format("{} {} {}", i > 1 ? "," : "", link::faultText(static_cast<std::int32_t>(i)), faults[i]);
   out += fmt::format("\njudged, ticks: slew limits {}, soft limits {}", slewed, bounded);
+  out += fmt::format("\nenabled alone, ticks: {}", alone);
   out += fmt::format("\nbuses without echoes: {}, probed {} times", stalls, probes);
   out += fmt::format("\ngroups enabled again by themselves: {}; orderly ends: {}\n", rearmed, stops);
   return out;
@@ -173,7 +175,10 @@ void Oracle::ordered(const Order& order) {
   for (std::size_t i = 0; i < motors_.size(); ++i) {
     if (!order.motors.test(i)) continue;
     auto& motor = motors_[i];
-    if (order.operation == Operation::kEnable) motor.enable_asked = true;
+    if (order.operation == Operation::kEnableAlone) motor.alone_asked = !motor.enable_asked;
+    if (order.operation == Operation::kEnable) motor.alone_asked = false;
+    if (order.operation == Operation::kEnable || order.operation == Operation::kEnableAlone)
+      motor.enable_asked = true;
     if (order.operation == Operation::kClear) motor.clear_asked = true;
     if (order.operation != Operation::kDisable) continue;
     ++motor.disables_asked;
@@ -224,6 +229,7 @@ void Oracle::judge(const Snapshot& snapshot, std::uint64_t periods, std::bitset<
   judgeFrames(read);
   judgeRobotState(snapshot);
   for (std::size_t i = 0; i < motors_.size(); ++i) judgeStatus(i, snapshot.motors[i], snapshot.state);
+  judgeAlone(snapshot);
   judgeGroups(snapshot);
   for (std::size_t i = 0; i < motors_.size(); ++i) {
     followActions(i, snapshot.motors[i]);
@@ -241,7 +247,7 @@ void Oracle::judge(const Snapshot& snapshot, std::uint64_t periods, std::bitset<
   judgeAnswers();
   count(snapshot);
   for (auto& motor : motors_) {
-    motor.coast_asked = motor.enable_asked = motor.clear_asked = false;
+    motor.coast_asked = motor.enable_asked = motor.alone_asked = motor.clear_asked = false;
     motor.new_sample = false;
     motor.disables_asked = 0;
   }
@@ -363,6 +369,27 @@ void Oracle::judgeStatus(std::size_t index, const MotorSnapshot& seen, RobotStat
   }
 }
 
+// As long as a motor that was enabled alone is ENABLING or ACTIVE, no other is.
+void Oracle::judgeAlone(const Snapshot& snapshot) {
+  const bool stopped = estop_asked_ || stop_asked_;
+  was_alone_ = alone_.has_value();
+  // It may have ended within the tick, and begun anew as one of many.
+  if (alone_ && (stopped || motors_[*alone_].disables_asked > 0)) alone_.reset();
+  for (std::size_t i = 0; i < motors_.size(); ++i) {
+    const auto& motor = motors_[i];
+    const bool rearms = motor.group != kNoGroup && groups_[motor.group].may_rearm.test(i);
+    const bool begun = !isOn(motor.status) && isOn(snapshot.motors[i].status);
+    if (begun && motor.alone_asked && !rearms) alone_ = i;
+  }
+  if (alone_ && !isOn(snapshot.motors[*alone_].status)) alone_.reset();
+  if (!alone_) return;
+  was_alone_ = true;
+  ++visits_.alone;
+  for (std::size_t i = 0; i < motors_.size(); ++i)
+    require(i, i == *alone_ || !isOn(snapshot.motors[i].status),
+            "enabled beside a motor that is enabled alone");
+}
+
 void Oracle::judgeGroups(const Snapshot& snapshot) {
   for (auto& group : groups_) {
     bool fault = false;
@@ -401,7 +428,8 @@ void Oracle::judgeGroups(const Snapshot& snapshot) {
       }
       if (group.rearms) group.may_rearm = active;
     }
-    if (fault || disabled || estop_asked_ || snapshot.state != RobotState::kRun) group.may_rearm.reset();
+    if (fault || disabled || was_alone_ || estop_asked_ || snapshot.state != RobotState::kRun)
+      group.may_rearm.reset();
   }
 }
 

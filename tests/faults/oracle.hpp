@@ -4,6 +4,7 @@
 #include <bitset>
 #include <cstdint>
 #include <map>
+#include <optional>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -27,6 +28,7 @@ struct Visits {
   std::array<std::uint64_t, 8> faults{};                  ///< How often each began.
   std::array<std::uint64_t, 4> fallbacks{};               ///< Ticks in which one gave torque.
   std::uint64_t driven = 0;                               ///< And ticks in which a target did.
+  std::uint64_t alone = 0;                                ///< Ticks in which one motor was enabled alone.
   std::uint64_t rearmed = 0;
   std::uint64_t stops = 0;
   std::uint64_t slewed = 0;   ///< Ticks in which a slew limit was judged,
@@ -103,8 +105,9 @@ class Oracle {
     // What it was told.
     MonotonicTime driven_until{};  ///< The latest deadline of a command that moves.
     MonotonicTime owned_until{};   ///< Of any command.
-    bool coast_asked = false;      ///< Since the last tick, as are the next three.
-    bool enable_asked = false;
+    bool coast_asked = false;      ///< Since the last tick, as are the next four.
+    bool enable_asked = false;     ///< Alone or not.
+    bool alone_asked = false;      ///< And not the other way as well.
     int disables_asked = 0;
     bool clear_asked = false;
     // What it does.
@@ -134,6 +137,7 @@ class Oracle {
   void followEchoes(const Snapshot& snapshot);
   void judgeFrames(std::bitset<kMaxBuses> read);
   void judgeStatus(std::size_t index, const MotorSnapshot& seen, RobotState robot);
+  void judgeAlone(const Snapshot& snapshot);
   void judgeGroups(const Snapshot& snapshot);
   void followActions(std::size_t index, const MotorSnapshot& seen);
   void judgeCommand(std::size_t index, const MotorSnapshot& seen);
@@ -164,6 +168,8 @@ class Oracle {
   std::array<std::vector<Expected>, kMaxBuses> frames_;
   std::map<std::uint64_t, std::uint64_t> unanswered_;  ///< Orders, and the tick in which they were sent.
 
+  std::optional<std::size_t> alone_;  ///< The motor that was enabled alone.
+  bool was_alone_ = false;            ///< In this tick some motor was.
   MonotonicTime now_{};
   std::uint64_t tick_ = 0;
   bool begun_ = false;

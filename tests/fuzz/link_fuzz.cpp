@@ -32,13 +32,14 @@ constexpr std::string_view kRobot =
 constexpr std::size_t kMotorCount = 3;
 constexpr MonotonicTime kNow{std::chrono::hours{1}};
 
-constexpr std::array<std::string_view, 24> kWords{
+constexpr std::array<std::string_view, 25> kWords{
     "wheel",       "arm",        "turret",    "enable",
     "disable",     "estop",      "clear",     "zero",
     "set_gains",   "get_config", "angle_deg", "configure-drive",
     "velocity.kp", "angle.ki",   "kd",        "velocity_pid.kp_a_per_rpm",
     "velocity.",   ".kp",        "wheel,arm", "wheel,wheel",
-    "timeout_ms",  "base",       "speed",     "angle_pid.velocity_limit_rpm"};
+    "timeout_ms",  "base",       "speed",     "angle_pid.velocity_limit_rpm",
+    "enable_alone"};
 
 /// A word that means something, or bytes.
 template <typename Text>
@@ -111,6 +112,7 @@ class Desk {
     if (!outcome.order) return;
     const auto& order = *outcome.order;
     require(order.motors.any() && (order.motors >> kMotorCount).none());
+    require(order.operation != Operation::kEnableAlone || order.motors.count() == 1);
     require(std::isfinite(order.value));
     for (const auto& change : std::span{order.gains.values}.first(order.gains.count)) {
       require(std::isfinite(change.value) && change.value >= 0.0F);

@@ -99,6 +99,21 @@ def test_a_python_client_drives_through_lcm() -> None:
         assert robot.motor("wheel").mode is rc10.Mode.COAST
 
 
+def test_a_program_enables_a_motor_alone_through_lcm(daemon: Daemon) -> None:
+    with rc10.connect("host") as robot:
+        robot.wait_for_state()
+        assert robot.request("enable_alone", "wheel").message == "enable_alone: 1 of 1 motors"
+        refused = daemon.ctl("enable")
+        assert refused.returncode == 1
+        assert "enable: 1 of 3 motors (other, yaw: locked while wheel is enabled alone" in (
+            refused.stderr
+        )
+        robot.disable("wheel")
+        robot.enable()
+        with pytest.raises(rc10.RequestFailed, match="`rc10ctl disable other yaw` first"):
+            robot.request("enable_alone", "wheel")
+
+
 def test_a_position_is_reached(daemon: Daemon) -> None:
     # Not a geared motor: a pause of some milliseconds of this machine would lose its reference,
     # as it should. tests/kernel does that one, in virtual time.
