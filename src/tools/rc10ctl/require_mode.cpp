@@ -1,14 +1,18 @@
 #include "require_mode.hpp"
 
 #include "client/text_table.hpp"
+#include "config/mode_setting.hpp"
 #include "link/words.hpp"
 
 namespace rc10::ctl {
 
 Result<void> requireMode(const link::MotorInfo& motor, std::uint8_t mode) {
   if ((motor.modes & (1U << mode)) != 0) return {};
-  return fail("motor '" + client::printable(motor.name.view()) + "' has no mode " + link::modeWord(mode) +
-              "; it has " + link::modeWords(motor.modes));
+  const std::string setting = settingForMode(motor.model.view(), static_cast<ControlMode>(mode));
+  return fail(
+      "motor '" + client::printable(motor.name.view()) + "' has no mode " + link::modeWord(mode) +
+      "; it has " + link::modeWords(motor.modes) +
+      (setting.empty() ? "" : ". Write `" + setting + "` for it into the robot's file and restart rc10d"));
 }
 
 }  // namespace rc10::ctl
