@@ -4,19 +4,26 @@ from __future__ import annotations
 
 import os
 import pty
+import re
+import signal
 import subprocess
 import termios
 import threading
 from typing import TYPE_CHECKING
 
-from hostlib.daemon import BIN
+import pytest
+from hostlib import Daemon
+from hostlib.daemon import ARM, BIN, CONFIG
 from hostlib.program import eventually
 
+import rc10
+
 if TYPE_CHECKING:
-    from hostlib import Daemon
     from hostlib.daemon import Motor
 
 RIGHT = b"\x1b[C"
+# The spin of a motor that has no load would be over sooner.
+WHOLE_SECOND = ("--over-speed", "10000")
 
 
 # Not a geared motor: after a pause of this machine it has jumped, a fault, as it should be.
@@ -88,6 +95,12 @@ class Person:
         self.process.stdin.write(words.encode() + b"\n")
         self.process.stdin.flush()
 
+    def spin(self, daemon: Daemon, motor: str) -> None:
+        """Up to the first line that is shown of the spin."""
+        turn_by_hand(self, daemon, motor, 360)
+        self.answer("Type its name", motor)
+        eventually(lambda: b"  current  target" in self.output, "it spins")
+
     def end(self) -> int:
         code = self.process.wait(30)
         eventually(lambda: self.output.endswith(b"\n"), "all it printed")
@@ -136,3 +149,92 @@ def test_other_motors_have_to_be_disabled(daemon: Daemon) -> None:
     assert done.returncode == 1
     assert "yaw" in done.stderr
     assert "rc10ctl disable" in done.stderr
+
+
+def test_a_motor_that_was_enabled_meanwhile_is_named_and_nothing_spins(daemon: Daemon) -> None:
+    person = Person(daemon, "yaw")
+    turn_by_hand(person, daemon, "yaw", 360)
+    daemon.must("enable", "other")
+    person.answer("Type its name", "yaw")
+    assert person.end() == 1
+    assert b"not the only one: `rc10ctl disable other` first" in person.output
+    assert yaw(daemon)["status"] == "READY"
+
+
+def test_over_speed_ends_the_spin_early_and_the_motor_is_ready(daemon: Daemon) -> None:
+    person = Person(daemon, "yaw", "--over-speed", "20")
+    person.spin(daemon, "yaw")
+    assert person.end() == 0, person.output
+    turned = re.search(rb"yaw turned by ([0-9.]+) deg the right way: it is ready", person.output)
+    assert turned, person.output
+    assert float(turned[1]) < 800  # 1640 in the whole second
+    assert yaw(daemon)["status"] == "READY"
+
+
+def test_a_motor_that_is_blocked_is_not_commissioned() -> None:
+    blocked = CONFIG.format(realtime="preferred").replace(
+        "profile: gm6020, id: 5", "profile: gm6020, id: 5, simulated: {stalled: true}"
+    )
+    with Daemon(blocked) as daemon:
+        daemon.wait_ready()
+        person = Person(daemon, "yaw")
+        person.spin(daemon, "yaw")
+        assert person.end() == 1
+        assert b"it did not move: is it blocked" in person.output
+        assert yaw(daemon)["status"] == "READY"
+
+
+def test_ctrl_c_in_the_spin_disables_the_motor_and_says_that_it_is_not_commissioned(
+    daemon: Daemon,
+) -> None:
+    person = Person(daemon, "yaw", *WHOLE_SECOND)
+    person.spin(daemon, "yaw")
+    person.process.send_signal(signal.SIGINT)
+    assert person.end() == 1
+    assert b"stopped: it is disabled, and not commissioned" in person.output
+    assert b"it is ready" not in person.output
+    assert yaw(daemon)["status"] == "READY"
+
+
+def test_nobody_enables_another_motor_in_the_spin_and_it_goes_on(daemon: Daemon) -> None:
+    # Connected before: the spin lasts no longer than a second.
+    with rc10.connect("host") as robot:
+        robot.wait_for_state()
+        person = Person(daemon, "yaw", *WHOLE_SECOND)
+        person.spin(daemon, "yaw")
+        with pytest.raises(rc10.RequestFailed, match="locked while yaw is enabled alone"):
+            robot.enable("other")
+    assert person.end() == 0, person.output
+    assert b"it is ready" in person.output
+    daemon.must("enable", "other")
+
+
+def test_a_commission_that_is_killed_in_the_spin_lets_go_and_the_lock_says_how_it_ends(
+    daemon: Daemon,
+) -> None:
+    person = Person(daemon, "yaw", *WHOLE_SECOND)
+    person.spin(daemon, "yaw")
+    person.process.kill()
+    person.process.wait(30)
+    coasts = {"status": "ACTIVE", "mode": "coast", "command_value": 0, "owner": ""}
+    eventually(lambda: coasts.items() <= yaw(daemon).items(), "it coasts")
+    refused = daemon.ctl("enable", "other")
+    assert refused.returncode == 1
+    assert "other: locked while yaw is enabled alone: `rc10ctl disable yaw` ends that" in (
+        refused.stderr
+    )
+    assert "motors are enabled: yaw: `rc10ctl disable` first" in (
+        daemon.ctl("commission", "other").stderr
+    )
+    daemon.must("disable", "yaw")
+    daemon.must("enable", "other")
+
+
+def test_a_motor_without_the_mode_current_is_refused_with_the_setting_that_gives_it() -> None:
+    arm = "      - {name: arm, model: DM4310, id: 1, master_id: 17, control: position_velocity}\n"
+    with Daemon(ARM + arm) as daemon:
+        eventually(lambda: daemon.ctl("list").returncode == 0, "rc10ctl list")
+        done = daemon.ctl("commission", "arm")
+        assert done.returncode == 1
+        assert "'arm' has no mode current; it has coast,angle,total_angle,brake" in done.stderr
+        assert "`control: mit`" in done.stderr

@@ -1,8 +1,8 @@
 #include <poll.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <chrono>
-#include <cmath>
 #include <cstdio>
 #include <iostream>
 #include <memory>
@@ -13,6 +13,7 @@
 
 #include "ask.hpp"
 #include "client/find_motor.hpp"
+#include "client/first_spin.hpp"
 #include "client/hand_turn.hpp"
 #include "client/quantity_text.hpp"
 #include "client/text_table.hpp"
@@ -27,8 +28,8 @@ namespace {
 
 constexpr double kMostCurrentA = 20.0;
 constexpr Duration kSpinTime = std::chrono::seconds{1};
-/// Less is noise, play in the gear, or the shaft that was let go.
-constexpr double kLeastTurnDeg = 5.0;
+/// The slowest state_hz is one a second.
+constexpr Duration kShown = std::chrono::seconds{2};
 
 struct CommissionOptions {
   std::string motor;
@@ -64,13 +65,12 @@ std::optional<std::string> waitLine(Feed& feed) {
   return std::nullopt;
 }
 
-// Empty, or the names of motors that may move beside this one.
-std::string othersActive(const link::Welcome& welcome, const link::State& state, std::size_t motor) {
+// Empty, or the names of motors that may move.
+std::string motorsOn(const link::Welcome& welcome, const link::State& state) {
   std::string names;
   for (std::size_t i = 0; i < std::min<std::size_t>(state.motor_count, welcome.motor_count); ++i) {
-    const bool rests =
-        state.motors[i].status != link::kMotorActive && state.motors[i].status != link::kMotorEnabling;
-    if (i != motor && !rests)
+    const auto status = state.motors[i].status;
+    if (status == link::kMotorActive || status == link::kMotorEnabling)
       names += (names.empty() ? "" : ", ") + client::printable(welcome.motors[i].name.view());
   }
   return names;
@@ -89,19 +89,14 @@ class Commissioning {
 
   ExitCode run() {
     if (const auto there = feed_.awaitState(); !there) return complain(there.error(), ExitCode::kFailed);
-    const auto active = othersActive(rc10d_.welcome(), *feed_.state(), link::kMaxMotors);
-    if (!active.empty())
-      return complain({"motors are enabled: " + active + ": `rc10ctl disable` first"}, ExitCode::kFailed);
+    const auto on = motorsOn(rc10d_.welcome(), *feed_.state());
+    if (!on.empty())
+      return complain({"motors are enabled: " + on + ": `rc10ctl disable` first"}, ExitCode::kFailed);
     if (!handTurn()) return ExitCode::kFailed;
     return spin();
   }
 
  private:
-  struct Spin {
-    double turned_deg = 0.0;
-    bool fast = false;  ///< It reached the over-speed, forwards.
-  };
-
   bool handTurn() {
     std::printf(
         "1. Make sure that nothing can be caught. Mark the output of %s.\n   Press Enter, then turn it by "
@@ -127,50 +122,48 @@ class Commissioning {
                 options_.motor.c_str(), client::quantity(current_a_, 2, "A").c_str(),
                 static_cast<double>(seconds(kSpinTime)), options_.over_speed_rpm);
     if (waitLine(feed_) != options_.motor) return complain({"nothing was enabled"}, ExitCode::kFailed);
-    if (const auto enabled = ask(global_, "enable", {options_.motor}); enabled != ExitCode::kOk)
+    // From here on rc10d enables nothing else, until this one is disabled.
+    if (const auto enabled = ask(global_, "enable_alone", {options_.motor}); enabled != ExitCode::kOk)
       return enabled;
-    Spin seen;
+    awaitActive();
+    client::FirstSpin seen(options_.over_speed_rpm);
     const auto outcome = drive(rc10d_, order(seen));
-    const double turned_deg = seen.turned_deg;
     const auto disabled = ask(global_, "disable", {options_.motor});
-    if (outcome != ExitCode::kOk) return outcome;
-    if (interrupted()) return complain({"stopped: it is disabled, and not commissioned"}, ExitCode::kFailed);
-    // Written so that an unknown angle is no success.
-    if (!seen.fast && !(turned_deg >= kLeastTurnDeg)) {
+    if (interrupted()) {
+      const bool rests = disabled == ExitCode::kOk;
       return complain(
-          {"it turned by " + client::number(turned_deg, 1) + " deg with a positive current: " +
-           (turned_deg <= -kLeastTurnDeg
-                ? "the drive's current has the other sign than its encoder: see its page in docs/motors"
-                : "it did not move: is it blocked, or the current too small (--limit)?")},
+          {rests ? "stopped: it is disabled, and not commissioned"
+                 : "stopped: not commissioned, and not disabled: `rc10ctl disable " + options_.motor + "`"},
           ExitCode::kFailed);
     }
-    std::printf("%s turned by %s deg the right way: it is ready\n", options_.motor.c_str(),
-                client::number(turned_deg, 1).c_str());
+    if (outcome != ExitCode::kOk) return outcome;
+    const auto words = client::text(seen, options_.motor);
+    if (seen.outcome() != client::FirstSpin::Outcome::kRight) return complain({words}, ExitCode::kFailed);
+    std::printf("%s\n", words.c_str());
     return disabled;
   }
 
-  Drive order(Spin& seen) const {
+  // The answer may have overtaken the state that shows it. If none does, drive() says what is there.
+  void awaitActive() {
+    const auto end = std::chrono::steady_clock::now() + kShown;
+    while (feed_.pump() && !interrupted()) {
+      const auto* state = feed_.state();
+      if (state != nullptr && state->motors[motor_].status == link::kMotorActive) return;
+      const auto left = end - std::chrono::steady_clock::now();
+      if (left <= Duration{0}) return;
+      waitReadable(rc10d_, left);
+    }
+  }
+
+  Drive order(client::FirstSpin& seen) const {
     Drive order;
     order.setpoint.motor = options_.motor;
     order.setpoint.mode = link::modeOf("current").value_or(link::kModeCoast);
     order.setpoint.value = current_a_;
     order.motor = motor_;
     order.time = kSpinTime;
-    order.steer = [this, start_deg = std::optional<double>{}, &seen](
-                      link::Setpoint&, const link::State& state) mutable -> std::optional<std::string> {
-      const auto& motor = state.motors[motor_];
-      // Where it stands when the current begins: a shaft that was let go has turned before.
-      if (!start_deg) start_deg = motor.total_angle_deg;
-      seen.turned_deg = motor.total_angle_deg - *start_deg;
-      const auto active = othersActive(rc10d_.welcome(), state, motor_);
-      if (!active.empty())
-        return "another program has enabled " + active + ": commission with nothing else running";
-      if (!std::isfinite(motor.velocity_rpm)) return "its drive reports no speed: nothing can be judged";
-      const auto velocity_rpm = static_cast<double>(motor.velocity_rpm);
-      if (std::abs(velocity_rpm) <= options_.over_speed_rpm) return std::nullopt;
-      // Fast enough is a success: it turns.
-      seen.fast = velocity_rpm > 0.0 && seen.turned_deg > 0.0;
-      return seen.fast ? "" : "too fast, and the wrong way: " + client::quantity(velocity_rpm, 0, "rpm");
+    order.steer = [this, &seen](link::Setpoint&, const link::State& state) -> std::optional<std::string> {
+      return seen.goesOn(state.motors[motor_]) ? std::nullopt : std::optional<std::string>{""};
     };
     return order;
   }
@@ -199,7 +192,7 @@ ExitCode commission(const Global& global, const CommissionOptions& options) {
   if (const auto able =
           requireMode(rc10d->welcome().motors[*motor], link::modeOf("current").value_or(link::kModeCoast));
       !able)
-    return complain(able.error(), ExitCode::kFailed);
+    return complain({"commission spins it with a current: " + able.error().message}, ExitCode::kFailed);
   return Commissioning(global, *rc10d, options, *motor, *current_a).run();
 }
 

@@ -1,0 +1,61 @@
+#include "client/first_spin.hpp"
+
+#include <cmath>
+
+#include "client/quantity_text.hpp"
+
+namespace rc10::client {
+namespace {
+
+// Less is noise, play in the gear, or the shaft that was let go.
+constexpr double kLeastTurnDeg = 5.0;
+
+}  // namespace
+
+bool FirstSpin::goesOn(const link::MotorState& motor) noexcept {
+  const bool begins = !start_deg_;
+  // Where it stands when the current begins: a shaft that was let go has turned before.
+  if (begins) start_deg_ = motor.total_angle_deg;
+  turned_deg_ = motor.total_angle_deg - *start_deg_;
+  velocity_rpm_ = static_cast<double>(motor.velocity_rpm);
+  // Written so that what is unknown ends it.
+  const bool slow = std::abs(velocity_rpm_) <= over_speed_rpm_;
+  fast_ = std::abs(velocity_rpm_) > over_speed_rpm_;
+  if (begins) turned_soon_ = fast_;
+  return slow && std::isfinite(turned_deg_);
+}
+
+FirstSpin::Outcome FirstSpin::outcome() const noexcept {
+  if (!start_deg_ || !std::isfinite(velocity_rpm_) || !std::isfinite(turned_deg_)) return Outcome::kUnknown;
+  if (turned_soon_) return Outcome::kTurnedSoon;
+  // Fast enough is enough, however short the way.
+  if (fast_ && velocity_rpm_ * turned_deg_ <= 0.0) return Outcome::kDisagree;
+  if (!fast_ && std::abs(turned_deg_) < kLeastTurnDeg) return Outcome::kNotMoved;
+  return turned_deg_ > 0.0 ? Outcome::kRight : Outcome::kWrongWay;
+}
+
+std::string text(const FirstSpin& spin, const std::string& motor) {
+  const std::string turned = motor + " turned by " + number(spin.turnedDeg(), 1) + " deg";
+  const std::string speed = quantity(spin.velocityRpm(), 0, "rpm");
+  switch (spin.outcome()) {
+    case FirstSpin::Outcome::kRight: return turned + " the right way: it is ready";
+    case FirstSpin::Outcome::kWrongWay:
+      return turned +
+             " with a positive current: the drive's current has the other sign than its encoder: see its "
+             "page "
+             "in docs/motors";
+    case FirstSpin::Outcome::kNotMoved:
+      return turned +
+             " with a positive current: it did not move: is it blocked, or the current too small (--limit)?";
+    case FirstSpin::Outcome::kTurnedSoon:
+      return motor + " turned with " + speed +
+             " when the current began: let it come to rest, and commission again";
+    case FirstSpin::Outcome::kDisagree:
+      return turned + " while its drive told " + speed +
+             ": one of them has the wrong sign: see its page in docs/motors";
+    case FirstSpin::Outcome::kUnknown: break;
+  }
+  return motor + "'s drive reports no speed or no angle: nothing can be judged";
+}
+
+}  // namespace rc10::client

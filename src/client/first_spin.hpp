@@ -1,0 +1,44 @@
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "link/link_protocol.hpp"
+
+namespace rc10::client {
+
+/// What a motor does with its first current, a small positive one, and what that says about its drive.
+class FirstSpin {
+ public:
+  enum class Outcome : unsigned char {
+    kRight,       ///< It turned the way of the current.
+    kWrongWay,    ///< The drive's current has the other sign than its encoder.
+    kNotMoved,    ///< By no more than noise, play in the gear, or a shaft that was let go.
+    kTurnedSoon,  ///< Too fast before the current could have done it.
+    kDisagree,    ///< Its speed has one sign, its angle the other.
+    kUnknown,     ///< No speed, or no angle.
+  };
+  explicit FirstSpin(double over_speed_rpm) noexcept : over_speed_rpm_(over_speed_rpm) {}
+
+  /// Takes the newest state; the first is that in which the current begins. False: let go of it at once.
+  [[nodiscard]] bool goesOn(const link::MotorState& motor) noexcept;
+
+  /// After the last state.
+  [[nodiscard]] Outcome outcome() const noexcept;
+  [[nodiscard]] double turnedDeg() const noexcept { return turned_deg_; }
+  /// At the last state.
+  [[nodiscard]] double velocityRpm() const noexcept { return velocity_rpm_; }
+
+ private:
+  double over_speed_rpm_;
+  std::optional<double> start_deg_;
+  double turned_deg_ = 0.0;
+  double velocity_rpm_ = 0.0;
+  bool fast_ = false;
+  bool turned_soon_ = false;
+};
+
+/// What it means and what to do, in words.
+[[nodiscard]] std::string text(const FirstSpin& spin, const std::string& motor);
+
+}  // namespace rc10::client

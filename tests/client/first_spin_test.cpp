@@ -1,0 +1,109 @@
+#include "client/first_spin.hpp"
+
+#include <cmath>
+#include <initializer_list>
+
+#include <gmock/gmock.h>
+
+namespace rc10::client::test {
+namespace {
+
+using testing::HasSubstr;
+using Outcome = FirstSpin::Outcome;
+
+struct Seen {
+  double angle_deg;
+  float velocity_rpm;
+};
+
+link::MotorState state(const Seen& seen) {
+  link::MotorState motor;
+  motor.total_angle_deg = seen.angle_deg;
+  motor.velocity_rpm = seen.velocity_rpm;
+  return motor;
+}
+
+class FirstSpinTest : public ::testing::Test {
+ protected:
+  /// Takes states as long as it goes on; the number of those taken.
+  std::size_t spin(std::initializer_list<Seen> states) {
+    std::size_t taken = 0;
+    for (const auto& each : states) {
+      ++taken;
+      if (!first.goesOn(state(each))) break;
+    }
+    return taken;
+  }
+  std::string words() { return text(first, "wheel"); }
+
+  FirstSpin first{60.0};
+};
+
+TEST_F(FirstSpinTest, AMotorThatTurnsWithTheCurrentIsReady) {
+  EXPECT_EQ(spin({{358.0, 0.0F}, {380.0, 30.0F}, {442.8, 40.0F}}), 3U);
+  EXPECT_EQ(first.outcome(), Outcome::kRight);
+  EXPECT_EQ(words(), "wheel turned by 84.8 deg the right way: it is ready");
+}
+
+TEST_F(FirstSpinTest, OverSpeedEndsItAndIsASuccessHoweverShortTheWay) {
+  EXPECT_EQ(spin({{0.0, 0.0F}, {0.5, 30.0F}, {2.0, 61.0F}, {9.0, 90.0F}}), 3U);
+  EXPECT_EQ(first.outcome(), Outcome::kRight);
+  EXPECT_THAT(words(), HasSubstr("2.0 deg the right way"));
+}
+
+TEST_F(FirstSpinTest, TheOverSpeedItselfIsNotBeyondIt) {
+  EXPECT_EQ(spin({{0.0, 0.0F}, {20.0, 60.0F}, {40.0, -60.0F}}), 3U);
+}
+
+TEST_F(FirstSpinTest, AgainstTheCurrentIsTheWrongWay) {
+  (void)spin({{0.0, 0.0F}, {-3.0, -20.0F}, {-30.0, -40.0F}});
+  EXPECT_EQ(first.outcome(), Outcome::kWrongWay);
+  EXPECT_THAT(words(), HasSubstr("wheel turned by -30.0 deg with a positive current: the drive's current has "
+                                 "the other sign than its encoder"));
+}
+
+TEST_F(FirstSpinTest, OverSpeedAgainstTheCurrentEndsItAndIsTheWrongWay) {
+  EXPECT_EQ(spin({{0.0, 0.0F}, {-1.0, -61.0F}, {-9.0, -90.0F}}), 2U);
+  EXPECT_EQ(first.outcome(), Outcome::kWrongWay);
+}
+
+TEST_F(FirstSpinTest, AStalledMotorHasNotMoved) {
+  for (const double end_deg : {0.0, 4.9, -4.9}) {
+    first = FirstSpin{60.0};
+    EXPECT_EQ(spin({{100.0, 0.0F}, {100.0 + end_deg, 1.0F}}), 2U);
+    EXPECT_EQ(first.outcome(), Outcome::kNotMoved) << end_deg;
+  }
+  EXPECT_THAT(words(), HasSubstr("it did not move: is it blocked, or the current too small (--limit)?"));
+}
+
+TEST_F(FirstSpinTest, AShaftThatTurnsBeforeTheCurrentBeginsSaysNothing) {
+  for (const float velocity_rpm : {90.0F, -90.0F}) {
+    first = FirstSpin{60.0};
+    EXPECT_EQ(spin({{100.0, velocity_rpm}, {200.0, velocity_rpm}}), 1U);
+    EXPECT_EQ(first.outcome(), Outcome::kTurnedSoon);
+    EXPECT_THAT(words(), HasSubstr("let it come to rest"));
+  }
+}
+
+TEST_F(FirstSpinTest, ASpeedAgainstTheAngleIsNoSuccess) {
+  for (const Seen& seen : {Seen{-20.0, 70.0F}, Seen{20.0, -70.0F}, Seen{0.0, 70.0F}}) {
+    first = FirstSpin{60.0};
+    EXPECT_EQ(spin({{0.0, 0.0F}, seen}), 2U);
+    EXPECT_EQ(first.outcome(), Outcome::kDisagree);
+    EXPECT_THAT(words(), HasSubstr("wrong sign"));
+  }
+}
+
+TEST_F(FirstSpinTest, WithoutASpeedOrAnAngleItEndsAndNothingIsJudged) {
+  for (const Seen& seen : {Seen{20.0, NAN}, Seen{NAN, 10.0F}, Seen{NAN, NAN}, Seen{INFINITY, 10.0F}}) {
+    first = FirstSpin{60.0};
+    EXPECT_EQ(spin({{0.0, 0.0F}, seen, {90.0, 10.0F}}), 2U);
+    EXPECT_EQ(first.outcome(), Outcome::kUnknown);
+    EXPECT_THAT(words(), HasSubstr("nothing can be judged"));
+  }
+}
+
+TEST_F(FirstSpinTest, NothingSeenIsNoSuccess) { EXPECT_EQ(first.outcome(), Outcome::kUnknown); }
+
+}  // namespace
+}  // namespace rc10::client::test
