@@ -118,12 +118,12 @@ ConvertedGains namedGains(const Converted<PID_Position::Config>& angle) {
                                  {"deadband_deg", config.deadband, {}}},
                        .current_limit_a = 0.0F,
                        .notes = angle.notes};
-  const auto addIfSet = [&named](std::string_view key, float value) {
+  const auto optional = [&named](std::string_view key, float value) {
     if (value > 0.0F) named.gains.push_back({key, value, {}});
   };
-  addIfSet("velocity_limit_rpm", config.output_limit);
-  addIfSet("integral_limit_rpm", config.integral_limit);
-  addIfSet("integral_separation_deg", config.integral_separation);
+  optional("velocity_limit_rpm", config.output_limit);
+  optional("integral_limit_rpm", config.integral_limit);
+  optional("integral_separation_deg", config.integral_separation);
   return named;
 }
 
