@@ -42,7 +42,8 @@ Result<void> lockMemory() {
   getrlimit(RLIMIT_MEMLOCK, &limit);
   return fail(fmt::format(
       "memory could not be locked ({}): RLIMIT_MEMLOCK is {} KiB. Run under systemd with "
-      "LimitMEMLOCK=infinity, or add `@rc10 - memlock unlimited` to /etc/security/limits.d/, or run as root",
+      "LimitMEMLOCK=infinity, "
+      "or add `YOUR_NAME - memlock unlimited` to a file in /etc/security/limits.d/, or run as root",
       std::strerror(error), limit.rlim_cur / 1024));
 }
 

@@ -34,8 +34,8 @@ constexpr std::size_t kPrefaultBytes = std::size_t{160} * 1024;
   rlimit limit{};
   getrlimit(RLIMIT_RTPRIO, &limit);
   return fmt::format(
-      "RLIMIT_RTPRIO is {}: run under systemd with LimitRTPRIO={}, or add `@rc10 - rtprio {}` to "
-      "/etc/security/limits.d/, or run as root{}",
+      "RLIMIT_RTPRIO is {}: run under systemd with LimitRTPRIO={}, or add `YOUR_NAME - rtprio {}` to "
+      "a file in /etc/security/limits.d/, or run as root{}",
       limit.rlim_cur, std::max(priority, 80), std::max(priority, 80),
       limit.rlim_cur >= static_cast<rlim_t>(priority)
           ? "; if root is refused too, the kernel has RT_GROUP_SCHED: `sysctl -w "

@@ -32,9 +32,14 @@ bool hasCapabilities(const std::string& status) {
   return (set >> kCapIpcLock & 1U) != 0 && (set >> kCapSysNice & 1U) != 0;
 }
 
-Finding tooLow(const std::string& what, const std::string& why, const std::string& line, bool service) {
-  const std::string fix =
-      "echo '@rc10 - " + line + "' | sudo tee -a /etc/security/limits.d/rc10.conf   # then log in again";
+// A line of the user's own: it counts whatever file it is in, while of those of a group the last one does,
+// and the package has one in rc10d.conf; and nobody has to be in that group.
+Finding tooLow(const std::string& what, const std::string& why, const LimitFacts& limits,
+               const std::string& line, bool service) {
+  const std::string user =
+      limits.process == "self" ? "$(id -un)" : "$(stat -c %U /proc/" + limits.process + ")";
+  const std::string fix = "echo \"" + user + " - " + line +
+                          "\" | sudo tee -a /etc/security/limits.d/rc10.conf   # then log in again";
   if (service)
     return warn(what, why + ". The service has its own limit: only an rc10d started by hand lacks it", fix);
   return fault(what, why, fix);
@@ -44,7 +49,8 @@ Finding tooLow(const std::string& what, const std::string& why, const std::strin
 
 LimitFacts readLimits(const HostFiles& files, const std::string& process) {
   const auto limits = files.read("/proc/" + process + "/limits").value_or("");
-  return {.realtime_priority = softLimit(limits, "Max realtime priority"),
+  return {.process = process,
+          .realtime_priority = softLimit(limits, "Max realtime priority"),
           .locked_bytes = softLimit(limits, "Max locked memory"),
           .may_anyway = hasCapabilities(files.read("/proc/" + process + "/status").value_or(""))};
 }
@@ -67,7 +73,7 @@ Finding checkRealtimeLimit(const LimitFacts& limits, const std::string& who, boo
     return pass(what, who + " may have up to " + (limit < 0 ? "any" : std::to_string(limit)));
   return tooLow(
       what, who + " may have up to " + std::to_string(limit) + ", rc10d asks for " + std::to_string(priority),
-      "rtprio 90", service);
+      limits, "rtprio 90", service);
 }
 
 Finding checkMemoryLimit(const LimitFacts& limits, const std::string& who, bool service) {
@@ -82,7 +88,7 @@ Finding checkMemoryLimit(const LimitFacts& limits, const std::string& who, bool 
   return tooLow(what,
                 who + " may lock " + size + " of memory; rc10d needs " + std::to_string(kLockedBytes >> 20) +
                     " MiB: without, its threads do not start or wait for the disk",
-                "memlock unlimited", service);
+                limits, "memlock unlimited", service);
 }
 
 }  // namespace rc10::doctor

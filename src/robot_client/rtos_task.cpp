@@ -41,7 +41,8 @@ void sleepUntil(MonotonicTime due) {
   return asked + " was refused (" + std::strerror(error) + "; RLIMIT_RTPRIO is " +
          std::to_string(limit.rlim_cur) +
          "): run under systemd with LimitRTPRIO=" + std::to_string(options.priority) +
-         ", or add `@rc10 - rtprio " + std::to_string(options.priority) + "` to /etc/security/limits.d/";
+         ", or add `YOUR_NAME - rtprio " + std::to_string(options.priority) +
+         "` to a file in /etc/security/limits.d/";
 }
 
 [[nodiscard]] std::string applyCpu(const TaskOptions& options) {

@@ -37,10 +37,18 @@ TEST(LimitsCheck, TooLittleFailsAndNamesTheLineThatMendsIt) {
   const LimitFacts limits{.realtime_priority = 0, .locked_bytes = 8 << 20};
   const auto priority = checkRealtimeLimit(limits, "this shell", false, 65);
   EXPECT_EQ(priority.verdict, Verdict::kFail);
-  EXPECT_THAT(priority.fix, HasSubstr("rtprio 90"));
+  EXPECT_THAT(priority.fix, HasSubstr("\"$(id -un) - rtprio 90\""));
   const auto memory = checkMemoryLimit(limits, "this shell", false);
   EXPECT_EQ(memory.verdict, Verdict::kFail);
-  EXPECT_THAT(memory.fix, HasSubstr("memlock unlimited"));
+  EXPECT_THAT(memory.fix, HasSubstr("\"$(id -un) - memlock unlimited\""));
+}
+
+TEST(LimitsCheck, TheLineIsForTheUserWhoRunsTheDaemon) {
+  HostRoot root;
+  root.write("/proc/7/limits", kLimits);
+  const auto limits = readLimits(root.files(), "7");
+  EXPECT_THAT(checkRealtimeLimit(limits, "rc10d (pid 7)", false, 65).fix,
+              HasSubstr("\"$(stat -c %U /proc/7) - rtprio 90\""));
 }
 
 TEST(LimitsCheck, OfAShellTheyAreAWarningWhereThereIsAService) {
