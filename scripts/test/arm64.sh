@@ -6,6 +6,7 @@ set -euo pipefail
 
 need build package
 root=$repo/scripts/lib/cross_root
+packages=$scratch/packages
 
 # The build that package.sh has made, and the tests beside it.
 unit_tests() {
@@ -14,7 +15,8 @@ unit_tests() {
 }
 
 step "a Debian with the libraries of arm64" "$root"
-step "packages" "$repo/scripts/package.sh" --arm64
+step "packages" env RC10_PACKAGES="$packages" "$repo/scripts/package.sh" --arm64
+suite tests/package/contents "$repo/tests/package/contents" "$packages" arm64
 step "unit tests are built" unit_tests
 suite tests/arm64 "$root" tests/arm64/run
 finish

@@ -1,10 +1,20 @@
 #!/bin/bash
-# the Debian packages: installed, run, upgraded, removed and purged under systemd, in User-Mode Linux
+# the packages and the wheel that are shipped: opened, installed, run, upgraded and removed under systemd, compiled against
 set -euo pipefail
 # shellcheck source=scripts/lib/results.sh
 . "$(dirname "${BASH_SOURCE[0]}")/../lib/results.sh"
 
-need build test kernel package
+need build kernel package
+need_python
+packages=$scratch/packages
 
-if must_build dev; then suite tests/package "$repo/tests/package/run" "$repo/build/dev"; fi
+if must_build package; then
+    step "packages and wheel" env RC10_PACKAGES="$packages" "$repo/scripts/package.sh"
+    if [ "$failed" -eq 0 ]; then
+        suite tests/package/contents "$repo/tests/package/contents" "$packages"
+        suite tests/package/wheel "$repo/tests/package/wheel" "$packages"
+        suite tests/package/compile "$repo/tests/package/compile" "$packages"
+        suite tests/package/run "$repo/tests/package/run" "$packages"
+    fi
+fi
 finish
