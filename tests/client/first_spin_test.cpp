@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <initializer_list>
+#include <limits>
 
 #include <gmock/gmock.h>
 
@@ -10,6 +11,10 @@ namespace {
 
 using testing::HasSubstr;
 using Outcome = FirstSpin::Outcome;
+using Double = std::numeric_limits<double>;
+
+constexpr double kNan = Double::quiet_NaN();
+constexpr double kInfinity = Double::infinity();
 
 struct Seen {
   double angle_deg;
@@ -95,7 +100,7 @@ TEST_F(FirstSpinTest, ASpeedAgainstTheAngleIsNoSuccess) {
 }
 
 TEST_F(FirstSpinTest, WithoutASpeedOrAnAngleItEndsAndNothingIsJudged) {
-  for (const Seen& seen : {Seen{20.0, NAN}, Seen{NAN, 10.0F}, Seen{NAN, NAN}, Seen{INFINITY, 10.0F}}) {
+  for (const Seen& seen : {Seen{20.0, NAN}, Seen{kNan, 10.0F}, Seen{kNan, NAN}, Seen{kInfinity, 10.0F}}) {
     first = FirstSpin{60.0};
     EXPECT_EQ(spin({{0.0, 0.0F}, seen, {90.0, 10.0F}}), 2U);
     EXPECT_EQ(first.outcome(), Outcome::kUnknown);
