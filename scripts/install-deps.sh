@@ -8,7 +8,7 @@ declare -A packages=(
         libyaml-cpp-dev libspdlog-dev libfmt-dev liblcm-dev liblcm-bin libexpected-dev
         libcli11-dev libboost-dev libseccomp-dev libgpiod-dev libsocketcan-dev libmnl-dev
         nlohmann-json3-dev libeigen3-dev"
-    [test]="libgtest-dev libgmock-dev libbenchmark-dev strace procps util-linux groff-base can-utils jq"
+    [test]="libgtest-dev libgmock-dev libbenchmark-dev strace procps util-linux groff-base mount can-utils jq"
     [languages]="make liblcm-java default-jdk-headless"
     [lint]="clang-16 clang-tidy-16 clang-format-16 libclang-rt-16-dev shellcheck systemd udev"
     [kernel]="linux-source-6.1 gcc make flex bison bc libelf-dev xz-utils can-utils"
