@@ -11,10 +11,10 @@ declare -A packages=(
     [test]="libgtest-dev libgmock-dev libbenchmark-dev strace procps util-linux groff-base mount can-utils jq"
     [languages]="make liblcm-java default-jdk-headless"
     [lint]="clang-16 clang-tidy-16 clang-format-16 libclang-rt-16-dev shellcheck systemd udev"
-    [kernel]="linux-source-6.1 gcc make flex bison bc libelf-dev xz-utils can-utils"
-    [vm]="qemu-system-x86 linux-image-rt-amd64 linux-headers-rt-amd64 linux-source-6.1 make xz-utils busybox-static kmod file
+    [kernel]="linux-source-6.1 gcc make flex bison bc libelf-dev xz-utils mount can-utils"
+    [vm]="qemu-system-x86 linux-image-rt-amd64 linux-headers-rt-amd64 linux-source-6.1 make xz-utils busybox-static kmod file mount
         can-utils"
-    [package]="dpkg-dev file fakeroot mmdebstrap lintian"
+    [package]="dpkg-dev file fakeroot mmdebstrap lintian binutils mount"
 )
 groups=(build test languages lint kernel vm package)
 
