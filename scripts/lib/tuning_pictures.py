@@ -13,6 +13,7 @@ import csv
 import json
 import os
 import re
+import socket
 import subprocess
 import sys
 import tempfile
@@ -104,15 +105,23 @@ class Robot:
         (self.text,) = re.findall(r"^```yaml\n(robot: .*?)^```$", PAGE.read_text(), re.M | re.S)
         file = folder / "tuning.yaml"
         file.write_text(self.text)
-        self._rc10d = subprocess.Popen([build / "bin" / "rc10d", "-c", file], env=self.env)
+        # As systemd hears that a service is ready.
+        self._ready = socket.socket(socket.AF_UNIX, socket.SOCK_DGRAM)
+        self._ready.bind(str(folder / "notify"))
+        self._ready.settimeout(PATIENCE_S)
+        env = {**self.env, "NOTIFY_SOCKET": str(folder / "notify")}
+        self._rc10d = subprocess.Popen([build / "bin" / "rc10d", "-c", file], env=env)
 
     def __enter__(self) -> Robot:
+        while b"READY=1" not in self._ready.recv(4096):
+            pass
         self._wait(lambda motors: all(m["status"] == "READY" for m in motors.values()), "the robot")
         return self
 
     def __exit__(self, *_: object) -> None:
         self._rc10d.terminate()
         self._rc10d.wait()
+        self._ready.close()
 
     def best_step(self, motor: str, picture: Picture) -> Step:
         """The one that the computer disturbed least."""
@@ -149,14 +158,18 @@ class Robot:
         return ", ".join(named) + default
 
     def _wait(self, wanted: Callable[[dict[str, Any]], bool], who: str) -> None:
+        there = False
         deadline = time.monotonic() + PATIENCE_S
-        while True:
-            seen = self._output("watch", "--json", "--count", "1")
-            if seen and wanted({motor["name"]: motor for motor in json.loads(seen)["motors"]}):
-                return
-            if time.monotonic() > deadline:
-                raise TimeoutError(f"{who} does not come to rest")
-            time.sleep(0.1)
+        command = [self.ctl, "watch", "--json", "--hz", "20"]
+        with subprocess.Popen(command, env=self.env, stdout=subprocess.PIPE, text=True) as watch:
+            assert watch.stdout is not None
+            for state in watch.stdout:
+                there = wanted({motor["name"]: motor for motor in json.loads(state)["motors"]})
+                if there or time.monotonic() > deadline:
+                    break
+            watch.terminate()
+        if not there:
+            raise TimeoutError(f"{who} does not come to rest")
 
     def _output(self, *words: str) -> str:
         done = subprocess.run(

@@ -2,7 +2,6 @@
 // own. To rc10d, candump and any other node they are drives on the bus.
 
 #include <poll.h>
-#include <sys/signalfd.h>
 #include <sys/timerfd.h>
 #include <unistd.h>
 
@@ -10,15 +9,12 @@
 #include <array>
 #include <cerrno>
 #include <chrono>
-#include <csignal>
 #include <cstdint>
 #include <cstdio>
 #include <ctime>
-#include <exception>
 #include <memory>
 #include <optional>
 #include <string>
-#include <system_error>
 #include <utility>
 #include <vector>
 
@@ -30,15 +26,12 @@
 #include "bus/can_socket.hpp"
 #include "config/load_config.hpp"
 #include "config/simulated_bus.hpp"
+#include "program.hpp"
 #include "rc10_version.hpp"
 #include "sim/sim_port.hpp"
 
 namespace rc10 {
 namespace {
-
-constexpr int kExitOk = 0;
-constexpr int kExitFailed = 1;
-constexpr int kExitUsage = 2;  // the command line or the configuration
 
 constexpr Duration kPeriod{std::chrono::milliseconds{1}};
 
@@ -60,10 +53,6 @@ struct Running {
   std::string interface;
   std::unique_ptr<sim::SimPort> port;
 };
-
-std::string systemError(const char* call) {
-  return std::string{call} + ": " + std::generic_category().message(errno);
-}
 
 MonotonicTime monotonicNow() noexcept {
   timespec now{};
@@ -158,17 +147,6 @@ Result<UniqueFd> makeTimer() {
 }
 
 /// From here on SIGINT and SIGTERM are only seen as something to read.
-Result<UniqueFd> makeSignals() {
-  sigset_t signals{};
-  sigemptyset(&signals);
-  sigaddset(&signals, SIGINT);
-  sigaddset(&signals, SIGTERM);
-  if (::sigprocmask(SIG_BLOCK, &signals, nullptr) != 0) return fail(systemError("sigprocmask"));
-  UniqueFd fd{::signalfd(-1, &signals, SFD_CLOEXEC)};
-  if (!fd) return fail(systemError("signalfd"));
-  return fd;
-}
-
 Result<void> run(std::vector<Running>& buses, int signals, const Options& options) {
   const auto timer = makeTimer();
   if (!timer) return tl::unexpected(timer.error());
@@ -249,22 +227,11 @@ int parseAndSimulate(int argc, char** argv) {
   app.add_option("--seed", options.seed, "of what is random; default: each bus's own sim: {seed: …}");
   app.add_option("--duration", options.duration_s, "seconds to run")->check(CLI::Range(0.001, 1e6));
   app.set_version_flag("--version", std::string("rc10-sim ") + kVersion);
-  try {
-    app.parse(argc, argv);
-  } catch (const CLI::ParseError& error) {
-    return app.exit(error) == 0 ? kExitOk : kExitUsage;
-  }
+  if (const auto ended = parseCommandLine(app, argc, argv)) return *ended;
   return simulate(options);
 }
 
 }  // namespace
 }  // namespace rc10
 
-int main(int argc, char** argv) {
-  try {
-    return rc10::parseAndSimulate(argc, argv);
-  } catch (const std::exception& error) {  // out of memory, or a mistake of ours
-    std::fprintf(stderr, "rc10-sim: %s\n", error.what());
-    return rc10::kExitFailed;
-  }
-}
+int main(int argc, char** argv) { return rc10::runProgram("rc10-sim", rc10::parseAndSimulate, argc, argv); }

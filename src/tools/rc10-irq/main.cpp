@@ -3,35 +3,27 @@
 
 #include <linux/capability.h>
 #include <poll.h>
-#include <sys/signalfd.h>
 #include <sys/syscall.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <array>
 #include <cerrno>
-#include <csignal>
 #include <cstdio>
-#include <exception>
 #include <string>
-#include <system_error>
 #include <vector>
 
 #include <CLI/CLI.hpp>
 
 #include "app/result.hpp"
-#include "app/unique_fd.hpp"
 #include "doctor/interrupt_threads.hpp"
 #include "link_watch.hpp"
+#include "program.hpp"
 #include "rc10_version.hpp"
 #include "thread_priorities.hpp"
 
 namespace rc10 {
 namespace {
-
-constexpr int kExitOk = 0;
-constexpr int kExitFailed = 1;
-constexpr int kExitUsage = 2;
 
 // A new interrupt thread gives itself its 50 as the first thing it does, which may be after the kernel told
 // that the interface is up. So what was changed is looked at again until it stays, but not for ever: somebody
@@ -45,10 +37,6 @@ struct Options {
   bool watch = false;
 };
 
-std::string systemError(const char* call) {
-  return std::string{call} + ": " + std::generic_category().message(errno);
-}
-
 int complain(const Error& error, int exit_code) {
   std::fprintf(stderr, "rc10-irq: %s\n", error.message.c_str());
   return exit_code;
@@ -59,18 +47,6 @@ bool hasTheRight() {
   std::array<__user_cap_data_struct, _LINUX_CAPABILITY_U32S_3> data{};
   return ::syscall(SYS_capget, &header, data.data()) == 0 &&
          (data[CAP_TO_INDEX(CAP_SYS_NICE)].effective & CAP_TO_MASK(CAP_SYS_NICE)) != 0;
-}
-
-/// From here on SIGINT and SIGTERM are only seen as something to read.
-Result<UniqueFd> makeSignals() {
-  sigset_t signals{};
-  sigemptyset(&signals);
-  sigaddset(&signals, SIGINT);
-  sigaddset(&signals, SIGTERM);
-  if (::sigprocmask(SIG_BLOCK, &signals, nullptr) != 0) return fail(systemError("sigprocmask"));
-  UniqueFd fd{::signalfd(-1, &signals, SFD_CLOEXEC)};
-  if (!fd) return fail(systemError("signalfd"));
-  return fd;
 }
 
 Result<void> once(const ThreadPriorities& priorities) {
@@ -161,22 +137,11 @@ int parseAndRun(int argc, char** argv) {
   app.footer(
       "It needs CAP_SYS_NICE: sudo, or the service rc10-irq.\n"
       "Exit status: 0 all have it, or --watch was ended; 1 failed; 2 bad usage.");
-  try {
-    app.parse(argc, argv);
-  } catch (const CLI::ParseError& error) {
-    return app.exit(error) == 0 ? kExitOk : kExitUsage;
-  }
+  if (const auto ended = parseCommandLine(app, argc, argv)) return *ended;
   return run(options);
 }
 
 }  // namespace
 }  // namespace rc10
 
-int main(int argc, char** argv) {
-  try {
-    return rc10::parseAndRun(argc, argv);
-  } catch (const std::exception& error) {  // out of memory, or a mistake of ours
-    std::fprintf(stderr, "rc10-irq: %s\n", error.what());
-    return rc10::kExitFailed;
-  }
-}
+int main(int argc, char** argv) { return rc10::runProgram("rc10-irq", rc10::parseAndRun, argc, argv); }
