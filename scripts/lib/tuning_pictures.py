@@ -160,7 +160,7 @@ class Robot:
     def _wait(self, wanted: Callable[[dict[str, Any]], bool], who: str) -> None:
         there = False
         deadline = time.monotonic() + PATIENCE_S
-        command = [self.ctl, "watch", "--json", "--hz", "20"]
+        command = [str(self.ctl), "watch", "--json", "--hz", "20"]
         with subprocess.Popen(command, env=self.env, stdout=subprocess.PIPE, text=True) as watch:
             assert watch.stdout is not None
             for state in watch.stdout:
