@@ -22,6 +22,7 @@
 #include "app/planar_odometry.hpp"
 #include "app/s_curve_profile.hpp"
 #include "app/slew_limiter.hpp"
+#include "app/subnormals.hpp"
 #include "app/swerve_kinematics.hpp"
 #include "app/tracking_differentiator.hpp"
 #include "app/trapezoid_profile.hpp"
@@ -167,6 +168,7 @@ void addTransforms() {
 
 int main(int argc, char** argv) {
   using namespace rc10::bench;
+  rc10::flushSubnormals();  // as the scheduler's thread
   addControllers();
   addProfiles();
   addFilters();

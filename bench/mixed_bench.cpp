@@ -14,6 +14,7 @@
 #include <string>
 #include <vector>
 
+#include "app/subnormals.hpp"
 #include "bus/can_receiver.hpp"
 #include "config/load_config.hpp"
 #include "daemon/robot.hpp"
@@ -153,6 +154,7 @@ RobotConfig only(const RobotConfig& config, const MotorFamily* family) {
 
 int main(int argc, char** argv) {
   using namespace rc10::bench;
+  rc10::flushSubnormals();  // as the scheduler's thread
   if (argc < 2) die("mixed_bench CONFIG [TICKS]");
   const int ticks = argc > 2 ? std::max(std::atoi(argv[2]), 1) : 60'000;
   const auto outcome = rc10::loadRobotConfig(argv[1]);

@@ -11,6 +11,7 @@
 #include <string>
 #include <vector>
 
+#include "app/subnormals.hpp"
 #include "bus/can_receiver.hpp"
 #include "config/load_config.hpp"
 #include "daemon/module_runner.hpp"
@@ -137,6 +138,7 @@ void add(const test::ModuleCase& module) {
 }  // namespace rc10::bench
 
 int main(int argc, char** argv) {
+  rc10::flushSubnormals();  // as the scheduler's thread
   for (const auto& module : rc10::test::moduleCases()) rc10::bench::add(module);
   benchmark::Initialize(&argc, argv);
   if (benchmark::ReportUnrecognizedArguments(argc, argv)) return 2;

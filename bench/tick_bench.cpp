@@ -11,6 +11,7 @@
 #include <string>
 #include <string_view>
 
+#include "app/subnormals.hpp"
 #include "fleet.hpp"
 
 namespace rc10::bench {
@@ -84,6 +85,7 @@ int runTicks(std::uint64_t ticks, std::string_view name) {
 
 int main(int argc, char** argv) {
   using namespace rc10::bench;
+  rc10::flushSubnormals();  // as the scheduler's thread
   if (argc == 4 && std::string_view(argv[1]) == "--ticks") {
     return runTicks(std::strtoull(argv[2], nullptr, 10), argv[3]);
   }

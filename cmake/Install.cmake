@@ -59,6 +59,14 @@ install(TARGETS rc10_embed EXPORT rc10Targets ARCHIVE DESTINATION ${CMAKE_INSTAL
 install(TARGETS rc10_client_lib rc10_client_lib_static EXPORT rc10ClientTargets
         LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT client NAMELINK_COMPONENT dev
         ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT dev)
+if(CMAKE_INTERPROCEDURAL_OPTIMIZATION)
+  # What only this version of the compiler can read goes.
+  foreach(archive rc10_embed rc10_client_lib_static)
+    install(CODE "execute_process(COMMAND \"${CMAKE_STRIP}\" --strip-debug -R .gnu.lto_* -N __gnu_lto_v1
+                  \"\$ENV{DESTDIR}\${CMAKE_INSTALL_PREFIX}/${CMAKE_INSTALL_LIBDIR}/$<TARGET_FILE_NAME:${archive}>\"
+                  COMMAND_ERROR_IS_FATAL ANY)" COMPONENT dev)
+  endforeach()
+endif()
 install(EXPORT rc10Targets NAMESPACE rc10:: DESTINATION ${package_dir} COMPONENT dev)
 install(EXPORT rc10ClientTargets NAMESPACE rc10:: DESTINATION ${package_dir} COMPONENT dev)
 configure_package_config_file(cmake/rc10Config.cmake.in "${PROJECT_BINARY_DIR}/rc10Config.cmake"

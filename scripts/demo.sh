@@ -36,7 +36,6 @@ build_tree=${RC10_BUILD:-$repo/build/release}
 prepare() {
     if [ -z "${RC10_BUILD:-}" ]; then
         need build
-        configure_options=(-DRC10_BUILD_BENCH=OFF)
         build release rc10d rc10-lcm rc10ctl rc10-sim || die "the build failed"
     fi
     [ -x "$build_tree/bin/rc10d" ] || die "no rc10d in $build_tree/bin"

@@ -16,9 +16,8 @@ need_python() {
     export RC10_PYTHON
 }
 
-# build PRESET [TARGET...]: configures, with $configure_options, and builds, with $build_options. Without a
-# terminal only what went wrong is shown.
-configure_options=()
+# build PRESET [TARGET...]: configures, and builds, with $build_options. Without a terminal only what went wrong
+# is shown.
 build_options=()
 build() {
     local preset=$1
@@ -29,7 +28,7 @@ build() {
     echo "-- building $preset${*:+: $*}"
     (
         cd "$repo" || return
-        cmake --preset "$preset" --log-level=WARNING "${configure_options[@]}" >/dev/null || return
+        cmake --preset "$preset" --log-level=WARNING >/dev/null || return
         if [ -t 1 ]; then
             "${compile[@]}"
         else

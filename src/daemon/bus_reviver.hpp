@@ -1,7 +1,7 @@
 #pragma once
 
-#include <array>
 #include <bitset>
+#include <span>
 
 #include "daemon/rings.hpp"
 #include "daemon/robot.hpp"
@@ -14,7 +14,7 @@ namespace rc10 {
 /// real-time threads need not know. io thread only.
 class BusReviver {
  public:
-  BusReviver(Robot& robot, std::array<BusInbox, kMaxBuses>& inboxes, RxLoop& rx)
+  BusReviver(Robot& robot, std::span<BusInbox> inboxes, RxLoop& rx)
       : robot_(robot), inboxes_(inboxes), rx_(rx) {}
 
   /// Looks at every interface once. To be called some 20 times a second. Returns the buses that have come up:
@@ -25,7 +25,7 @@ class BusReviver {
   [[nodiscard]] bool reopen(std::size_t bus);
 
   Robot& robot_;
-  std::array<BusInbox, kMaxBuses>& inboxes_;
+  std::span<BusInbox> inboxes_;
   RxLoop& rx_;
 };
 

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstdint>
+#include <span>
 
 #include "app/time.hpp"
 #include "daemon/rings.hpp"
@@ -16,7 +17,7 @@ namespace rc10 {
 /// only.
 class BusWatch {
  public:
-  BusWatch(Robot& robot, std::array<BusInbox, kMaxBuses>& inboxes, Supervisor& supervisor)
+  BusWatch(Robot& robot, std::span<BusInbox> inboxes, Supervisor& supervisor)
       : robot_(robot), inboxes_(inboxes), supervisor_(supervisor) {}
 
   /// Marks the buses that are held. After this tick's frames were received, before anything is decided.
@@ -42,7 +43,7 @@ class BusWatch {
   void reportForeign(std::size_t bus, const Tick& tick) noexcept;
 
   Robot& robot_;
-  std::array<BusInbox, kMaxBuses>& inboxes_;
+  std::span<BusInbox> inboxes_;
   Supervisor& supervisor_;
   std::array<Watched, kMaxBuses> watched_{};
 };

@@ -25,7 +25,7 @@ constexpr int kSimPriority = 50;
 }  // namespace
 
 Daemon::Daemon(RobotConfig config, std::shared_ptr<spdlog::logger> log)
-    : config_(std::move(config)), log_(std::move(log)) {}
+    : config_(std::move(config)), log_(std::move(log)), inboxes_(config_.buses.size()) {}
 
 Daemon::~Daemon() { stop(); }
 

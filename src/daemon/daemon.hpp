@@ -1,6 +1,5 @@
 #pragma once
 
-#include <array>
 #include <memory>
 #include <string>
 #include <vector>
@@ -65,7 +64,7 @@ class Daemon {
   RobotDescription description_;
   std::vector<link::InterfaceLock> interface_locks_;  // longer than the sockets of the robot
   std::unique_ptr<Robot> robot_;
-  std::array<BusInbox, kMaxBuses> inboxes_;
+  std::vector<BusInbox> inboxes_;  // of each bus
   LinkExchange exchange_;
   std::unique_ptr<BlackBox> black_box_;  // null: off, or not to be had
   std::unique_ptr<Scheduler> scheduler_;

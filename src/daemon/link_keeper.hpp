@@ -3,6 +3,7 @@
 #include <array>
 #include <bitset>
 #include <cstdint>
+#include <span>
 #include <string>
 
 #include "app/time.hpp"
@@ -23,9 +24,9 @@ class LinkKeeper {
     Result<void> (*restart)(const std::string& interface, const CanLinkSettings& wanted) = restartCanLink;
   };
 
-  LinkKeeper(Robot& robot, std::array<BusInbox, kMaxBuses>& inboxes, LinkExchange& exchange)
+  LinkKeeper(Robot& robot, std::span<BusInbox> inboxes, LinkExchange& exchange)
       : LinkKeeper(robot, inboxes, exchange, Driver{}) {}
-  LinkKeeper(Robot& robot, std::array<BusInbox, kMaxBuses>& inboxes, LinkExchange& exchange, Driver driver)
+  LinkKeeper(Robot& robot, std::span<BusInbox> inboxes, LinkExchange& exchange, Driver driver)
       : robot_(robot), inboxes_(inboxes), exchange_(exchange), driver_(driver) {}
 
   /// Looks at every bus once. `came_up`: of these somebody may have changed the settings.
@@ -45,7 +46,7 @@ class LinkKeeper {
   void tell(std::size_t bus, Severity severity, const std::string& text, MonotonicTime now);
 
   Robot& robot_;
-  std::array<BusInbox, kMaxBuses>& inboxes_;
+  std::span<BusInbox> inboxes_;
   LinkExchange& exchange_;
   Driver driver_;
   std::array<Kept, kMaxBuses> kept_{};

@@ -29,7 +29,7 @@ class LinkServer {
   /// What the server reads from the rest of the daemon. All outlive it.
   struct Sources {
     LinkExchange& exchange;
-    const std::array<BusInbox, kMaxBuses>& inboxes;
+    std::span<const BusInbox> inboxes;
     const TickTiming& timing;
     const RobotDescription& robot;
     std::function<std::uint64_t()> page_faults;   ///< Of the real-time threads, after start.

@@ -3,6 +3,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <span>
 
 #include <fmt/format.h>
 
@@ -147,7 +148,7 @@ void Publication::fill(link::BusStatus& out, std::size_t bus, const Snapshot& sn
 }
 
 void Publication::fill(link::Diagnostics& out, const Snapshot& snapshot, const TickTiming& timing,
-                       const std::array<BusInbox, kMaxBuses>& inboxes, const Admission& admission,
+                       std::span<const BusInbox> inboxes, const Admission& admission,
                        std::uint64_t page_faults, std::int64_t utime) {
   out.utime = utime;
   out.mono_us = monoUs(snapshot.time);

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstdint>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -74,8 +75,8 @@ class Publication {
   void fill(link::State& state, const Snapshot& snapshot, std::int64_t utime);
   void fill(link::ModuleState& state, std::size_t module, const Snapshot& snapshot, std::int64_t utime) const;
   void fill(link::Diagnostics& out, const Snapshot& snapshot, const TickTiming& timing,
-            const std::array<BusInbox, kMaxBuses>& inboxes, const Admission& admission,
-            std::uint64_t page_faults, std::int64_t utime);
+            std::span<const BusInbox> inboxes, const Admission& admission, std::uint64_t page_faults,
+            std::int64_t utime);
   /// A command message that admission refused.
   [[nodiscard]] static link::Event refusal(CommandRefusal reason, const link::Name& client, MonotonicTime now,
                                            std::int64_t utime);

@@ -18,7 +18,7 @@ namespace rc10 {
 namespace {
 
 // spdlog formats on its thread: small, but not tiny. The default is 8 MiB.
-constexpr std::size_t kLibraryStackBytes = std::size_t{256} * 1024;
+constexpr std::size_t kLibraryStackBytes = std::size_t{128} * 1024;
 
 }  // namespace
 

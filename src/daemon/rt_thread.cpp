@@ -13,17 +13,20 @@
 
 #include <fmt/format.h>
 
+#include "app/subnormals.hpp"
+
 namespace rc10 {
 namespace {
 
-// Real-time stacks are small and entirely touched before the first tick.
+// Real-time stacks are small, locked, and touched before the first tick. The deepest use measured is 32 KiB,
+// of the thread that copies recordings.
 #if defined(__SANITIZE_THREAD__) || defined(__SANITIZE_ADDRESS__)
 // A sanitizer keeps its own data of a thread on the thread's stack: over 100 KiB.
 constexpr std::size_t kStackBytes = std::size_t{1024} * 1024;
 #else
-constexpr std::size_t kStackBytes = std::size_t{256} * 1024;
+constexpr std::size_t kStackBytes = std::size_t{128} * 1024;
 #endif
-constexpr std::size_t kPrefaultBytes = std::size_t{160} * 1024;
+constexpr std::size_t kPrefaultBytes = std::size_t{96} * 1024;
 
 [[gnu::noinline]] void touchStack() noexcept {
   std::array<volatile char, kPrefaultBytes> room;
@@ -85,6 +88,7 @@ constexpr std::size_t kPrefaultBytes = std::size_t{160} * 1024;
 Result<void> applyRtSettings(const RtSettings& settings) {
   pthread_setname_np(pthread_self(), settings.name.substr(0, 15).c_str());
   touchStack();
+  flushSubnormals();
   if (auto done = applyCpu(settings); !done) return done;
   return applyPolicy(settings);
 }

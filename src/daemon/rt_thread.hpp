@@ -19,8 +19,8 @@ struct RtSettings {
   std::optional<int> cpu;  ///< Pinned to this CPU.
 };
 
-/// Gives the calling thread its name, policy, priority and CPU, touches its stack, and reads each
-/// setting back. The error says which right is missing and how to give it.
+/// Gives the calling thread its name, policy, priority and CPU, touches its stack, flushes subnormals, and
+/// reads each setting back. The error says which right is missing and how to give it.
 [[nodiscard]] Result<void> applyRtSettings(const RtSettings& settings);
 
 /// A thread with a small fixed stack (locked memory counts whole stacks). start() returns when the

@@ -4,6 +4,7 @@
 
 #include <cerrno>
 #include <cstring>
+#include <span>
 
 #include <fmt/format.h>
 
@@ -22,7 +23,7 @@ constexpr std::uint64_t kSerialBit = std::uint64_t{1} << 63U;
 
 }  // namespace
 
-RxLoop::RxLoop(Robot& robot, std::array<BusInbox, kMaxBuses>& inboxes, SerialLines* serial, UniqueFd epoll)
+RxLoop::RxLoop(Robot& robot, std::span<BusInbox> inboxes, SerialLines* serial, UniqueFd epoll)
     : inboxes_(inboxes), serial_(serial), epoll_(std::move(epoll)) {
   for (std::size_t i = 0; i < robot.buses().size(); ++i) {
     const auto& entry = robot.buses()[i];
@@ -33,7 +34,7 @@ RxLoop::RxLoop(Robot& robot, std::array<BusInbox, kMaxBuses>& inboxes, SerialLin
   }
 }
 
-Result<std::unique_ptr<RxLoop>> RxLoop::create(Robot& robot, std::array<BusInbox, kMaxBuses>& inboxes,
+Result<std::unique_ptr<RxLoop>> RxLoop::create(Robot& robot, std::span<BusInbox> inboxes,
                                                SerialLines* serial) {
   UniqueFd epoll{epoll_create1(EPOLL_CLOEXEC)};
   if (!epoll) return fail(fmt::format("epoll_create1: {}", std::strerror(errno)));

@@ -4,6 +4,7 @@
 #include <atomic>
 #include <cstdint>
 #include <memory>
+#include <span>
 #include <stop_token>
 #include <vector>
 
@@ -20,8 +21,7 @@ namespace rc10 {
 /// moves frames and bytes and counts; it never decodes.
 class RxLoop {
  public:
-  [[nodiscard]] static Result<std::unique_ptr<RxLoop>> create(Robot& robot,
-                                                              std::array<BusInbox, kMaxBuses>& inboxes,
+  [[nodiscard]] static Result<std::unique_ptr<RxLoop>> create(Robot& robot, std::span<BusInbox> inboxes,
                                                               SerialLines* serial = nullptr);
 
   /// The thread's body.
@@ -46,13 +46,13 @@ class RxLoop {
     std::uint32_t kernel_dropped = 0;
   };
 
-  RxLoop(Robot& robot, std::array<BusInbox, kMaxBuses>& inboxes, SerialLines* serial, UniqueFd epoll);
+  RxLoop(Robot& robot, std::span<BusInbox> inboxes, SerialLines* serial, UniqueFd epoll);
   [[nodiscard]] bool watch(std::size_t source) noexcept;
   void receive(Source& source, const WakeUp& wake, std::uint32_t events) noexcept;
   void receiveSerial(std::size_t line, MonotonicTime now, std::uint32_t events) noexcept;
   [[nodiscard]] WakeUp sampleWakeUp() noexcept;
 
-  std::array<BusInbox, kMaxBuses>& inboxes_;
+  std::span<BusInbox> inboxes_;
   SerialLines* serial_;  // null: none
   UniqueFd epoll_;
   std::vector<Source> sources_;

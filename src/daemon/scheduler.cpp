@@ -1,6 +1,7 @@
 #include "daemon/scheduler.hpp"
 
 #include <algorithm>
+#include <span>
 
 namespace rc10 {
 namespace {
@@ -17,8 +18,8 @@ constexpr Duration kMissedReportInterval = std::chrono::seconds{1};
 
 }  // namespace
 
-Scheduler::Scheduler(Robot& robot, std::array<BusInbox, kMaxBuses>& inboxes, LinkExchange& link,
-                     Duration period, FlightRecorder* recorder)
+Scheduler::Scheduler(Robot& robot, std::span<BusInbox> inboxes, LinkExchange& link, Duration period,
+                     FlightRecorder* recorder)
     : robot_(robot),
       inboxes_(inboxes),
       link_(link),

@@ -3,6 +3,7 @@
 #include <array>
 #include <atomic>
 #include <cstdint>
+#include <span>
 
 #include "app/time.hpp"
 #include "daemon/bus_watch.hpp"
@@ -19,7 +20,7 @@ namespace rc10 {
 class Scheduler {
  public:
   /// `recorder`: writes down what happens, if there is one; outlives this.
-  Scheduler(Robot& robot, std::array<BusInbox, kMaxBuses>& inboxes, LinkExchange& link, Duration period,
+  Scheduler(Robot& robot, std::span<BusInbox> inboxes, LinkExchange& link, Duration period,
             FlightRecorder* recorder = nullptr);
 
   /// `periods`: distance on the grid since the last executed tick; above 1, ticks were missed. They
@@ -46,7 +47,7 @@ class Scheduler {
   void snapshot(const Tick& tick) noexcept;
 
   Robot& robot_;
-  std::array<BusInbox, kMaxBuses>& inboxes_;
+  std::span<BusInbox> inboxes_;
   LinkExchange& link_;
   Duration period_;
   FlightRecorder* recorder_;

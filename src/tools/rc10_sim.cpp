@@ -21,6 +21,7 @@
 #include <CLI/CLI.hpp>
 
 #include "app/result.hpp"
+#include "app/subnormals.hpp"
 #include "app/time.hpp"
 #include "app/unique_fd.hpp"
 #include "bus/can_socket.hpp"
@@ -148,6 +149,7 @@ Result<UniqueFd> makeTimer() {
 
 /// From here on SIGINT and SIGTERM are only seen as something to read.
 Result<void> run(std::vector<Running>& buses, int signals, const Options& options) {
+  flushSubnormals();
   const auto timer = makeTimer();
   if (!timer) return tl::unexpected(timer.error());
   const auto end = monotonicNow() +
