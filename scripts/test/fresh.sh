@@ -9,6 +9,7 @@ set -euo pipefail
 need package
 root=$scratch/root
 clone=/srv/rc10d
+home=/root
 minutes=$scratch/minutes
 
 if [ "$(id -u)" -ne 0 ]; then
@@ -34,15 +35,15 @@ make_root() {
 in_root() {
     # shellcheck disable=SC2016  # for the inner shell
     unshare --mount --pid --fork sh -c '
-        root=$1 clone=$2
-        shift 2
+        root=$1 clone=$2 home=$3 caches=${XDG_CACHE_HOME:-$HOME/.cache}
+        shift 3
         for cache in ${RC10_FRESH_CACHE:+ccache rc10/tidy}; do
-            mkdir -p "$HOME/.cache/$cache" "$root/root/.cache/$cache" \
-                && mount --bind "$HOME/.cache/$cache" "$root/root/.cache/$cache" || exit
+            mkdir -p "$caches/$cache" "$root$home/.cache/$cache" \
+                && mount --bind "$caches/$cache" "$root$home/.cache/$cache" || exit
         done
         mount --rbind "$root" "$root" && cd "$root" && mount -t proc proc proc && mount --rbind /dev dev \
             && mount -t sysfs sysfs sys && mount -t tmpfs -o mode=1777 tmpfs tmp && mount --move . / || exit
-        exec chroot . env -C "$clone" -u TMPDIR HOME=/root "$@"' sh "$root" "$clone" "$@"
+        exec chroot . env -C "$clone" -u TMPDIR -u XDG_CACHE_HOME HOME="$home" "$@"' sh "$root" "$clone" "$home" "$@"
 }
 
 # timed NAME COMMAND...

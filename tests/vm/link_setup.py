@@ -1,4 +1,4 @@
-"""How somebody other than rc10d sets up a CAN controller."""
+"""How somebody other than rc10d sets up a CAN controller, and sees how it is set up."""
 
 from __future__ import annotations
 
@@ -14,3 +14,7 @@ def set_link(iface: str, settings: str) -> None:
         f"link set {iface} down\nlink set {iface} type can {settings}\nlink set {iface} up\n"
     )
     run("ip", "-batch", batch)
+
+
+def link_details(iface: str) -> str:
+    return run("ip", "-details", "link", "show", iface)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import pytest
 from guestlib import Candump, link_down, link_up, run
+from link_setup import link_details
 
 # Emulated time is slow: behaviour is tested here, never timing.
 PATIENCE_S = 20.0
@@ -18,7 +19,7 @@ def frame_passes(sender: str, receiver: str) -> bool:
 
 @pytest.mark.parametrize("iface", ["can0", "can1"])
 def test_controller_has_its_settings(iface: str) -> None:
-    details = run("ip", "-details", "link", "show", iface)
+    details = link_details(iface)
     assert "bitrate 1000000 " in details
     assert "restart-ms 0" in details
     assert "state ERROR-ACTIVE" in details
@@ -31,6 +32,6 @@ def test_frame_passes_the_wire(sender: str, receiver: str) -> None:
 
 def test_link_works_again_after_down_and_up() -> None:
     link_down("can0")
-    assert "state STOPPED" in run("ip", "-details", "link", "show", "can0")
+    assert "state STOPPED" in link_details("can0")
     link_up("can0")
     assert frame_passes("can0", "can1")

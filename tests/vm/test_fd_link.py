@@ -15,16 +15,14 @@ from typing import TYPE_CHECKING
 
 import pytest
 from guestlib import Proc, run, wait_for
-from link_setup import set_link
+from link_setup import link_details, set_link
+from patience import PATIENCE_S
 from robot_file import write_robot
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
 BIN = Path(os.environ["RC10_BUILD"]) / "bin" if "RC10_BUILD" in os.environ else Path()
-
-# Emulated time is slow: every wait is for an event, and long.
-PATIENCE_S = 60.0
 
 READY = "knee: OFFLINE -> READY"
 FD = "dbitrate 5000000 fd on"
@@ -75,13 +73,9 @@ def running(file: Path) -> Iterator[Proc]:
             yield process
 
 
-def details(iface: str = "can2") -> str:
-    return run("ip", "-details", "link", "show", iface)
-
-
 def missing() -> list[str]:
     """What is not as configured, and then all there is."""
-    text = details()
+    text = link_details("can2")
     # Not its state: the emulated controller has no register of it.
     wanted = ["<FD", " bitrate 1000000 ", "dbitrate 5000000 ", "mtu 72", "restart-ms 0", "LOWER_UP"]
     absent = [words for words in wanted if words not in text]
@@ -142,7 +136,7 @@ def test_without_manage_link_the_command_is_told_and_helps(tmp_path: Path) -> No
             f"in the data phase, the configuration says 5000000; type: {re.escape(COMMAND)}",
             PATIENCE_S,
         )
-        assert "dbitrate 2000000 " in details()
+        assert "dbitrate 2000000 " in link_details("can2")
 
 
 def test_a_controller_for_classic_can_refuses_and_rc10d_says_why(tmp_path: Path) -> None:
@@ -168,7 +162,7 @@ def test_a_rate_that_the_clock_cannot_make_is_refused_and_the_bus_left_alone(
         assert process.wait(PATIENCE_S) == 1
         said = process.output()
     assert "can2 is set to 7142857 bit/s in the data phase, the configuration says 7000000" in said
-    assert "state STOPPED" in details()
+    assert "state STOPPED" in link_details("can2")
 
 
 def test_a_classic_bus_takes_fd_away(tmp_path: Path) -> None:
@@ -191,7 +185,7 @@ buses:
     )
     with Proc(BIN / "rc10d", "-c", file, env={"RC10_RUN_DIR": "/tmp/rc10"}) as process:
         process.wait_line("can2 brought up at 1000000 bit/s", PATIENCE_S)
-        text = details()
+        text = link_details("can2")
     assert "<FD" not in text
     assert "mtu 16" in text
     assert "sample-point 0.800" in text

@@ -14,12 +14,10 @@ from pathlib import Path
 import pytest
 from guestlib import Proc, link_down, link_up, run, wait_for
 from link_setup import set_link
+from patience import PATIENCE_S
 from robot_file import write_robot
 
 BIN = Path(os.environ["RC10_BUILD"]) / "bin" if "RC10_BUILD" in os.environ else Path()
-
-# Emulated time is slow: every wait is for an event, and long.
-PATIENCE_S = 60.0
 
 KERNELS_OWN = (os.SCHED_FIFO, 50)
 

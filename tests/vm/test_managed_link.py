@@ -13,16 +13,14 @@ from typing import TYPE_CHECKING
 
 import pytest
 from guestlib import Candump, Proc, netem, netem_clear, run, wait_for
-from link_setup import set_link
+from link_setup import link_details, set_link
+from patience import PATIENCE_S
 from robot_file import write_robot
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
 BIN = Path(os.environ["RC10_BUILD"]) / "bin" if "RC10_BUILD" in os.environ else Path()
-
-# Emulated time is slow: every wait is for an event, and long.
-PATIENCE_S = 60.0
 
 READY = "left: OFFLINE -> READY"
 
@@ -41,10 +39,6 @@ def config(tmp_path: Path, *, managed: bool) -> Path:
       - {{name: left, model: M3508, id: 1, feedback_timeout_ms: 1000}}
 """,
     )
-
-
-def link_details(iface: str = "can0") -> str:
-    return run("ip", "-details", "link", "show", iface)
 
 
 def set_bitrate(bitrate: int, restart_ms: int = 0, iface: str = "can0") -> None:
@@ -74,7 +68,7 @@ def running(file: Path) -> Iterator[Proc]:
 
 
 def is_as_configured() -> bool:
-    text = link_details()
+    text = link_details("can0")
     return "bitrate 1000000 " in text and "restart-ms 0" in text and "state ERROR-ACTIVE" in text
 
 
@@ -116,7 +110,9 @@ def test_modes_in_which_frames_get_lost_are_taken_away(tmp_path: Path) -> None:
             PATIENCE_S,
         )
         wait_for(
-            lambda: "ONE-SHOT" not in link_details() and "PRESUME-ACK" not in link_details(),
+            lambda: (
+                "ONE-SHOT" not in link_details("can0") and "PRESUME-ACK" not in link_details("can0")
+            ),
             PATIENCE_S,
             "modes of a robot's bus",
             poll_s=0.1,
@@ -150,7 +146,7 @@ def test_a_stalled_bus_is_restarted_until_its_frames_reach_the_wire(tmp_path: Pa
 def test_without_manage_link_it_says_what_to_type_and_that_helps(tmp_path: Path) -> None:
     set_bitrate(500_000)
     with daemon(config(tmp_path, managed=False)) as process:
-        assert "bitrate 500000 " in link_details()
+        assert "bitrate 500000 " in link_details("can0")
         line = process.output().replace("\n", " ")
         assert "can0 is set to 500000 bit/s, the configuration says 1000000; type: ip link" in line
         run("ip", "link", "set", "can0", "down")
@@ -180,4 +176,4 @@ def test_without_the_right_to_do_it_the_start_fails_and_says_how_to_get_it(tmp_p
         assert process.wait(PATIENCE_S) == 1
         assert "CAP_NET_ADMIN" in process.output()
         assert "AmbientCapabilities" in process.output()
-    assert "state ERROR-ACTIVE" in link_details()
+    assert "state ERROR-ACTIVE" in link_details("can0")

@@ -13,7 +13,8 @@ from typing import TYPE_CHECKING
 import pytest
 from guestlib import Proc, link_down, run, wait_for
 from hostlib.page import blocks_run_by
-from link_setup import set_link
+from link_setup import link_details, set_link
+from patience import PATIENCE_S
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -23,9 +24,6 @@ EXAMPLES = REPO / "systemd/networkd"
 # Where systemd reads what lasts until the next boot.
 CONFIGURATION = Path("/run/systemd/network")
 LCM_ROUTE = "239.255.76.67"
-
-# Emulated time is slow: every wait is for an event, and long.
-PATIENCE_S = 60.0
 
 
 def example(name: str) -> str:
@@ -53,19 +51,15 @@ def networkd() -> Proc:
     return Proc("/lib/systemd/systemd-networkd")
 
 
-def details(iface: str) -> str:
-    return run("ip", "-details", "link", "show", iface)
-
-
 def bring_up(iface: str, text: str) -> str:
     """What networkd makes of a stopped interface, and of every line of the file."""
     link_down(iface)
     with configured(f"80-{iface}.network", text.replace("can0", iface)), networkd() as process:
-        wait_for(lambda: ",UP," in details(iface), PATIENCE_S, f"{iface} is up", poll_s=0.1)
+        wait_for(lambda: ",UP," in link_details(iface), PATIENCE_S, f"{iface} is up", poll_s=0.1)
         process.stop()
         # FILE:LINE: what it ignores there, and why.
         assert not re.search(r"\.network:\d+", process.output()), process.output()
-    return details(iface)
+    return link_details(iface)
 
 
 @pytest.fixture(params=["example", "page"])

@@ -6,9 +6,9 @@ import subprocess
 from pathlib import Path
 
 import pytest
-from guestlib import link_down, run
+from guestlib import link_down
 from hostlib.page import Block, blocks_run_by
-from link_setup import set_link
+from link_setup import link_details, set_link
 
 REPO = Path(__file__).parents[2]
 HERE = "tests/vm/test_pages.py"
@@ -25,7 +25,7 @@ def type_for(iface: str, block: Block) -> str:
     text = block.text.replace("sudo ", "").replace("can0", iface)
     done = subprocess.run(["bash", "-ec", text], capture_output=True, text=True, check=False)
     assert done.returncode == 0, f"{text}{done.stderr}"
-    return run("ip", "-details", "link", "show", iface)
+    return link_details(iface)
 
 
 @pytest.mark.parametrize("page", ["first-motor.md", "can-setup.md"])

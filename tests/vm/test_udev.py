@@ -8,15 +8,13 @@ from typing import TYPE_CHECKING
 
 import pytest
 from guestlib import run, wait_for
+from patience import PATIENCE_S
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
 RULES = Path(__file__).parents[2] / "systemd/udev/60-rc10d.rules"
 GROUP = "rc10d"
-
-# Emulated time is slow: every wait is for an event, and long.
-PATIENCE_S = 60.0
 
 
 def reload_rules() -> None:
