@@ -1,6 +1,7 @@
 #pragma once
 
 #include <compare>
+#include <numbers>
 
 namespace rc10 {
 
@@ -22,6 +23,15 @@ using Amperes = Quantity<struct AmperesTag>;
 using Volts = Quantity<struct VoltsTag>;
 using Rpm = Quantity<struct RpmTag>;
 using Degrees = Quantity<struct DegreesTag>;
+
+/// Between units: `rad = deg * kRadPerDeg`.
+inline constexpr double kDegPerTurn = 360.0;
+inline constexpr double kRadPerDeg = std::numbers::pi / 180.0;
+inline constexpr double kDegPerRad = 180.0 / std::numbers::pi;
+inline constexpr double kDegPerSPerRpm = 6.0;
+inline constexpr double kRadPerSPerRpm = std::numbers::pi / 30.0;
+inline constexpr double kRpmPerRadPerS = 30.0 / std::numbers::pi;
+inline constexpr double kRpmPerTurnPerS = 60.0;
 
 namespace literals {
 // NOLINTBEGIN(readability-identifier-naming): the unit's own symbol reads best.

@@ -3,13 +3,13 @@
 #include <algorithm>
 #include <cmath>
 
+#include "app/units.hpp"
 #include "client/quantity_text.hpp"
 #include "client/text_table.hpp"
 
 namespace rc10::client {
 namespace {
 
-constexpr double kTurnDeg = 360.0;
 // A shaft that was touched, or the play of a gearbox.
 constexpr double kNothingDeg = 20.0;
 // A hand stops within some 20 degrees of a mark; the ratios of gearboxes of one size differ by more (1, 19.2,
@@ -39,7 +39,7 @@ HandTurn judgeHandTurn(const link::State& before, const link::State& after, std:
   } else {
     turn.moved = motor;
     turn.turned_deg = own_deg;
-    turn.ratio_factor = std::abs(own_deg) / kTurnDeg;
+    turn.ratio_factor = std::abs(own_deg) / kDegPerTurn;
     if (std::abs(turn.ratio_factor - 1.0) > kHandError)
       turn.outcome = HandTurn::Outcome::kWrongRatio;
     else if (own_deg < 0.0)

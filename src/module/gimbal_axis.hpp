@@ -2,6 +2,8 @@
 
 #include <cmath>
 
+#include "app/units.hpp"
+
 namespace rc10 {
 
 /// One axis that is to look at an angle of the world: which velocity its motor gets. The angle, its rate and
@@ -40,8 +42,6 @@ class GimbalAxis {
   }
 
  private:
-  static constexpr double kDegPerSPerRpm = 6.0;
-
   Config config_;
   double target_deg_ = 0.0;
 };

@@ -8,14 +8,13 @@
 
 #include "app/s_curve_profile.hpp"
 #include "app/trapezoid_profile.hpp"
+#include "app/units.hpp"
 #include "module/joint_homing.hpp"
 
 namespace rc10 {
 namespace {
 
 using enum FamilyKey::Kind;
-
-constexpr double kDegPerSPerRpm = 6.0;
 
 constexpr std::array<std::string_view, 3> kHomings{"none", "stop", "switch"};
 constexpr std::array<std::string_view, 2> kOnSilence{"hold", "let_go"};

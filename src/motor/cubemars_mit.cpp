@@ -2,7 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
+
+#include "app/units.hpp"
 
 namespace rc10 {
 namespace {
@@ -11,8 +12,6 @@ using cubemars::MitOrder;
 using cubemars::ServoCommand;
 
 constexpr double kMostAmperes = 1e6;  // of a target: no sum overflows
-constexpr double kRadPerDeg = std::numbers::pi / 180.0;
-constexpr double kRadPerSPerRpm = std::numbers::pi / 30.0;
 
 constexpr Duration kStepPatience = std::chrono::milliseconds{50};
 constexpr int kMaxAttempts = 6;  // the first, and five more

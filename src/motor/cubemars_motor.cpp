@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "app/units.hpp"
+
 namespace rc10 {
 namespace {
 
@@ -24,7 +26,7 @@ CubeMars_Motor::CubeMars_Motor(const MotorSettings& settings, const CubeMarsSetu
       setup_(setup),
       id_(settings.id),
       longest_gap_(std::max(kStartUp, kGapPeriods * feedbackPeriod())),
-      reach_deg_per_s_(kReach * static_cast<double>(setup.model->no_load_rpm) * 6.0) {}
+      reach_deg_per_s_(kReach * static_cast<double>(setup.model->no_load_rpm) * kDegPerSPerRpm) {}
 
 bool CubeMars_Motor::isToObey() const noexcept {
   switch (ordered()) {

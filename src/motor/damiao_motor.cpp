@@ -2,7 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
+
+#include "app/units.hpp"
 
 namespace rc10 {
 
@@ -10,8 +11,6 @@ using damiao::Special;
 
 namespace {
 
-constexpr double kRadPerDeg = std::numbers::pi / 180.0;
-constexpr double kRadPerSPerRpm = std::numbers::pi / 30.0;
 constexpr std::size_t kFrameLength = 8;
 // So often a drive is told to clear its faults before it is given up.
 constexpr int kClears = 5;

@@ -5,6 +5,7 @@
 
 #include "app/angle.hpp"
 #include "app/saturated.hpp"
+#include "app/units.hpp"
 #include "motor/lktech_model.hpp"
 
 namespace rc10 {
@@ -13,7 +14,6 @@ using lktech::Code;
 
 namespace {
 
-constexpr double kDegSPerRpm = 6.0;
 constexpr double kDegPerRaw = 0.01;
 constexpr double kNoLimitDegS = 65535.0;
 
@@ -102,7 +102,7 @@ void LKTech_Motor::acceptReading(const CanFrame& frame) noexcept {
   feedback_.current_a = static_cast<float>(reading.current_raw * amperes_per_raw_) * direction();
   if (torqueNmPerA() > 0.0F) feedback_.torque_nm = feedback_.current_a * torqueNmPerA();
   feedback_.velocity_rpm =
-      static_cast<float>(toOutput(reading.rotor_deg_s / traits().gear_ratio) / kDegSPerRpm);
+      static_cast<float>(toOutput(reading.rotor_deg_s / traits().gear_ratio) / kDegPerSPerRpm);
   if (silence > kRestartSilence && counted_) {
     counted_ = false;
     next_query_ = {};
@@ -111,7 +111,7 @@ void LKTech_Motor::acceptReading(const CanFrame& frame) noexcept {
     // As it turned before and turns now, so far has it come meanwhile: then the nearest such angle.
     const float mean_rpm =
         0.5F * (std::isnan(rpm_before) ? feedback_.velocity_rpm : rpm_before) + 0.5F * feedback_.velocity_rpm;
-    const double expected_deg = position_deg_ + toDrive(static_cast<double>(mean_rpm)) * kDegSPerRpm *
+    const double expected_deg = position_deg_ + toDrive(static_cast<double>(mean_rpm)) * kDegPerSPerRpm *
                                                     static_cast<double>(seconds(silence));
     position_deg_ = expected_deg + shortestAngle(expected_deg, encoderDeg(reading.encoder));
   }
@@ -246,7 +246,7 @@ void LKTech_Motor::followVelocity(double output_rpm) noexcept {
   setCommand(rpm, CommandUnit::kNative);
   // 0 would be no bound.
   const int limit_raw = std::max(rawOf(static_cast<double>(effortLimit())), 1);
-  send(lktech::velocityCommand(id_, toDrive(rpm) * traits().gear_ratio * kDegSPerRpm, limit_raw));
+  send(lktech::velocityCommand(id_, toDrive(rpm) * traits().gear_ratio * kDegPerSPerRpm, limit_raw));
 }
 
 void LKTech_Motor::followAngle(double total_angle_deg) noexcept {
@@ -257,7 +257,7 @@ void LKTech_Motor::followAngle(double total_angle_deg) noexcept {
   if (std::abs(feedback_.current_a) >= effortLimit()) limits_ |= kLimitCurrent;
   const auto limit_rpm = static_cast<double>(velocityLimitRpm());
   const double limit_deg_s =
-      limit_rpm > 0.0 ? std::abs(toDrive(limit_rpm)) * traits().gear_ratio * kDegSPerRpm : kNoLimitDegS;
+      limit_rpm > 0.0 ? std::abs(toDrive(limit_rpm)) * traits().gear_ratio * kDegPerSPerRpm : kNoLimitDegS;
   setCommand(total_angle_deg, CommandUnit::kNative);
   send(lktech::positionCommand(id_, rotor_deg, limit_deg_s));
 }

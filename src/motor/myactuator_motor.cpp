@@ -2,8 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
+#include "app/units.hpp"
 #include "motor/myactuator_model.hpp"
 
 namespace rc10 {
@@ -12,9 +12,6 @@ using myactuator::Code;
 
 namespace {
 
-constexpr double kDegSPerRpm = 6.0;
-constexpr double kRadPerDeg = std::numbers::pi / 180.0;
-constexpr double kRadSPerRpm = std::numbers::pi / 30.0;
 constexpr double kDegPerRaw = 0.01;
 /// Above this the drive limits itself: the field's end.
 constexpr double kNoLimitDegS = 65535.0;
@@ -129,7 +126,7 @@ void MyActuator_Motor::acceptReading(const CanFrame& frame) noexcept {
   feedback_.temperature_c = static_cast<float>(reading.temperature_c);
   feedback_.current_a = static_cast<float>(reading.current_a) * direction();
   if (torqueNmPerA() > 0.0F) feedback_.torque_nm = feedback_.current_a * torqueNmPerA();
-  feedback_.velocity_rpm = static_cast<float>(toOutput(reading.velocity_deg_s) / kDegSPerRpm);
+  feedback_.velocity_rpm = static_cast<float>(toOutput(reading.velocity_deg_s) / kDegPerSPerRpm);
   if (myactuator::codeOf(frame.payload()) == Code::kCurrent) answered(Step::kObey);
 }
 
@@ -187,7 +184,7 @@ FrameVerdict MyActuator_Motor::acceptMotion(const CanFrame& frame) noexcept {
   if (frame.length != myactuator::kLength || frame.data[0] != id_) return FrameVerdict::kMalformed;
   watchSilence(frame.received);
   const auto reading = myactuator::decodeMotion(frame.payload());
-  feedback_.velocity_rpm = static_cast<float>(toOutput(reading.velocity_rad_s) / kRadSPerRpm);
+  feedback_.velocity_rpm = static_cast<float>(toOutput(reading.velocity_rad_s) / kRadPerSPerRpm);
   feedback_.torque_nm = static_cast<float>(torqueToOutput(reading.torque_nm));
   if (torqueNmPerA() > 0.0F) feedback_.current_a = feedback_.torque_nm / torqueNmPerA();
   return FrameVerdict::kAccepted;
@@ -280,7 +277,7 @@ void MyActuator_Motor::followVelocity(double output_rpm) noexcept {
   const double rpm = rpmWithinLimit(output_rpm);
   if (std::abs(feedback_.current_a) > effortLimit()) limits_ |= kLimitCurrent;
   setCommand(rpm, CommandUnit::kNative);
-  sendCommand(myactuator::velocityCommand(id_, toDrive(rpm) * kDegSPerRpm));
+  sendCommand(myactuator::velocityCommand(id_, toDrive(rpm) * kDegPerSPerRpm));
 }
 
 void MyActuator_Motor::followAngle(double total_angle_deg) noexcept {
@@ -291,7 +288,7 @@ void MyActuator_Motor::followAngle(double total_angle_deg) noexcept {
   constexpr double kReachDeg = 2147483647.0 * kDegPerRaw;
   if (std::abs(drive_deg) > kReachDeg) limits_ |= kLimitAngle;
   const auto limit_rpm = static_cast<double>(velocityLimitRpm());
-  const double limit_deg_s = limit_rpm > 0.0 ? std::abs(toDrive(limit_rpm)) * kDegSPerRpm : kNoLimitDegS;
+  const double limit_deg_s = limit_rpm > 0.0 ? std::abs(toDrive(limit_rpm)) * kDegPerSPerRpm : kNoLimitDegS;
   if (std::abs(feedback_.current_a) > effortLimit()) limits_ |= kLimitCurrent;
   setCommand(total_angle_deg, CommandUnit::kNative);
   sendCommand(myactuator::positionCommand(id_, drive_deg, limit_deg_s));
@@ -305,13 +302,13 @@ void MyActuator_Motor::followImpedance(const Target& target) noexcept {
   const double per_drive = 1.0 / (turns * turns);
   myactuator::Motion motion{
       .angle_rad = finite(drive_deg) * kRadPerDeg,
-      .velocity_rad_s = toDrive(finite(static_cast<double>(target.velocity_ff_rpm))) * kRadSPerRpm,
+      .velocity_rad_s = toDrive(finite(static_cast<double>(target.velocity_ff_rpm))) * kRadPerSPerRpm,
       .stiffness_nm_per_rad =
           std::max(finite(static_cast<double>(target.stiffness_nm_per_rad)), 0.0) * per_drive,
       .damping_nms_per_rad =
           std::max(finite(static_cast<double>(target.damping_nms_per_rad)), 0.0) * per_drive,
       .torque_ff_nm = torqueToDrive(finite(static_cast<double>(target.torque_ff_nm)))};
-  if (const double limit = std::abs(toDrive(static_cast<double>(velocityLimitRpm()))) * kRadSPerRpm;
+  if (const double limit = std::abs(toDrive(static_cast<double>(velocityLimitRpm()))) * kRadPerSPerRpm;
       limit > 0.0) {
     const double bounded = std::clamp(motion.velocity_rad_s, -limit, limit);
     if (bounded != motion.velocity_rad_s) limits_ |= kLimitVelocity;
@@ -326,17 +323,17 @@ void MyActuator_Motor::followImpedance(const Target& target) noexcept {
     motion.angle_rad = 0.0;
     motion.stiffness_nm_per_rad = 0.0;
   }
-  const double measured_rad_s = toDrive(finite(static_cast<double>(feedback_.velocity_rpm))) * kRadSPerRpm;
+  const double measured_rad_s = toDrive(finite(static_cast<double>(feedback_.velocity_rpm))) * kRadPerSPerRpm;
   sendMotion(motion.angle_rad - measured_deg * kRadPerDeg, motion.velocity_rad_s - measured_rad_s, motion);
 }
 
 // As a shorted winding would: the full torque at the speed without load.
 void MyActuator_Motor::damp() noexcept {
-  const double no_load_rad_s = static_cast<double>(traits().no_load_rpm) * kRadSPerRpm;
+  const double no_load_rad_s = static_cast<double>(traits().no_load_rpm) * kRadPerSPerRpm;
   const double full_nm = static_cast<double>(traits().effort_full_scale * traits().torque_nm_per_a);
   const double damping =
       no_load_rad_s > 0.0 ? std::min(full_nm / no_load_rad_s, myactuator::kMotionDamping) : kUnknownDamping;
-  const double measured_rad_s = toDrive(finite(static_cast<double>(feedback_.velocity_rpm))) * kRadSPerRpm;
+  const double measured_rad_s = toDrive(finite(static_cast<double>(feedback_.velocity_rpm))) * kRadPerSPerRpm;
   sendMotion(0.0, -measured_rad_s, {.damping_nms_per_rad = damping});
 }
 

@@ -4,14 +4,12 @@
 #include <cmath>
 
 #include "app/limits.hpp"
+#include "app/units.hpp"
 
 namespace rc10 {
 namespace {
 
 using std::chrono::milliseconds;
-
-constexpr double kDegPerTurn = 360.0;
-constexpr double kRpmPerTurnPerS = 60.0;
 
 // Heartbeats come ten times a second by default, so an answer may take that long: a step is not asked again
 // before one has certainly come.

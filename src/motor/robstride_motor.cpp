@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "app/units.hpp"
 #include "bus/byte_order.hpp"
 
 namespace rc10 {
@@ -12,8 +13,6 @@ namespace {
 
 namespace parameter = robstride_parameter;
 
-constexpr double kDegPerRad = 180.0 / std::numbers::pi;
-constexpr double kRpmPerRadS = 30.0 / std::numbers::pi;
 constexpr std::size_t kLength = 8;
 
 // Half the scale passes in 250 ms at the highest speed; and a drive that was silent for so long may have been
@@ -131,7 +130,7 @@ double RobStride_Motor::limitNm() const noexcept {
 double RobStride_Motor::limitRadS() const noexcept {
   const double own = model_->velocity_range_rad_s;
   const double limit_rpm = static_cast<double>(velocityLimitRpm());
-  return limit_rpm > 0.0 ? std::min(limit_rpm * ratio() / kRpmPerRadS, own) : own;
+  return limit_rpm > 0.0 ? std::min(limit_rpm * ratio() / kRpmPerRadPerS, own) : own;
 }
 
 // Newer firmware goes on from the other end of its scale, two whole turns to each side; what has a scale
@@ -186,7 +185,7 @@ void RobStride_Motor::takeFeedback(const RobStrideFeedback& seen, MonotonicTime 
   }
   trackPosition(seen, received);
   seen_ = seen;
-  feedback_.velocity_rpm = static_cast<float>(toOutput(seen.velocity_rad_s * kRpmPerRadS));
+  feedback_.velocity_rpm = static_cast<float>(toOutput(seen.velocity_rad_s * kRpmPerRadPerS));
   feedback_.torque_nm = static_cast<float>(torqueToOutput(seen.torque_nm));
   feedback_.current_a = feedback_.torque_nm / torqueNmPerA();
   feedback_.temperature_c = static_cast<float>(seen.temperature_c);

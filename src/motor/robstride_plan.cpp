@@ -1,15 +1,13 @@
 // What a RobStride_Motor is to be told: its update().
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 #include "motor/robstride_motor.hpp"
 
+#include "app/units.hpp"
+
 namespace rc10 {
 namespace {
-
-constexpr double kDegPerRad = 180.0 / std::numbers::pi;
-constexpr double kRpmPerRadS = 30.0 / std::numbers::pi;
 
 // A float keeps 0.01 rad up to here.
 constexpr double kFarthestRad = 1e5;
@@ -63,7 +61,8 @@ void RobStride_Motor::planOperation(const Target& target) noexcept {
   const bool knows_itself = feedback_.samples > 0;
   const auto take_feed_forward = [&] {
     wanted.torque_nm = torqueToDrive(number(static_cast<double>(target.torque_ff_nm)));
-    wanted.velocity_rad_s = clampVelocity(toDrive(static_cast<double>(target.velocity_ff_rpm)) / kRpmPerRadS);
+    wanted.velocity_rad_s =
+        clampVelocity(toDrive(static_cast<double>(target.velocity_ff_rpm)) / kRpmPerRadPerS);
   };
   switch (target.mode) {
     case ControlMode::kCurrent:
@@ -72,7 +71,7 @@ void RobStride_Motor::planOperation(const Target& target) noexcept {
       break;
     case ControlMode::kVelocity:
       take_feed_forward();
-      wanted.velocity_rad_s = clampVelocity(toDrive(target.value) / kRpmPerRadS);
+      wanted.velocity_rad_s = clampVelocity(toDrive(target.value) / kRpmPerRadPerS);
       wanted.damping_nms_per_rad = velocity_gain_;
       break;
     case ControlMode::kBrake: wanted.damping_nms_per_rad = velocity_gain_; break;
@@ -169,11 +168,11 @@ void RobStride_Motor::planCurrent(const Target& target) noexcept {
 
 void RobStride_Motor::planVelocity(const Target& target) noexcept {
   if (target.mode == ControlMode::kVelocity) {
-    reference_.value = static_cast<float>(clampVelocity(toDrive(target.value) / kRpmPerRadS));
+    reference_.value = static_cast<float>(clampVelocity(toDrive(target.value) / kRpmPerRadPerS));
   }
   const bool acts = target.mode == ControlMode::kVelocity || target.mode == ControlMode::kBrake;
   reference_.current_limit_a = acts ? effortLimit() : 0.0F;
-  setCommand(toOutput(static_cast<double>(reference_.value)) * kRpmPerRadS, CommandUnit::kNative);
+  setCommand(toOutput(static_cast<double>(reference_.value)) * kRpmPerRadPerS, CommandUnit::kNative);
 }
 
 void RobStride_Motor::planPosition(const Target& target) noexcept {

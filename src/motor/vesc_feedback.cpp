@@ -2,6 +2,7 @@
 #include <cmath>
 
 #include "app/angle.hpp"
+#include "app/units.hpp"
 #include "motor/vesc_motor.hpp"
 
 // The receiving half of VESC_Motor.
@@ -12,7 +13,6 @@ using std::chrono::milliseconds;
 
 constexpr double kStepsPerElectricalTurn = 6.0;
 constexpr double kSecondsPerMinute = 60.0;
-constexpr double kDegPerSPerRpm = 6.0;
 constexpr int kGapPeriods = 5;
 // A drive that starts is silent for longer (main.c waits 500 ms alone); a cable that is plugged in again may
 // be another drive's.

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "app/angle.hpp"
+#include "app/units.hpp"
 
 namespace rc10 {
 namespace {
@@ -19,8 +20,6 @@ constexpr std::int32_t kStillErpm = 150;
 constexpr std::int32_t kSlippedErpm = 450;
 // SET_POS goes the shortest way round: the drive is told no more than this ahead of where it is.
 constexpr double kLeadDeg = 90.0;
-
-constexpr double kDegPerSPerRpm = 6.0;
 
 /// A float near a double of any size.
 float nearFloat(double value) noexcept {

@@ -3,17 +3,14 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <numbers>
 #include <utility>
 #include <vector>
 
+#include "app/units.hpp"
 #include "bus/byte_order.hpp"
 
 namespace rc10::sim {
 namespace {
-
-constexpr double kRadPerDeg = std::numbers::pi / 180.0;
-constexpr double kRadPerSPerRpm = std::numbers::pi / 30.0;
 
 // timeout_msec and m_fault_stop_time_ms of the settings exported from an AK70-10 (cubemars_hardware,
 // .params); what they do is in the VESC firmware, from which those settings are. In MIT mode of V1 and V2 no

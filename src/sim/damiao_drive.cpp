@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <numbers>
 #include <optional>
 
 #include "app/angle.hpp"
+#include "app/units.hpp"
 #include "bus/byte_order.hpp"
 
 namespace rc10::sim {
@@ -15,8 +15,6 @@ using damiao::Register;
 
 namespace {
 
-constexpr double kDegPerRad = 180.0 / std::numbers::pi;
-constexpr double kRpmPerRadS = 30.0 / std::numbers::pi;
 constexpr std::uint8_t kReadOperation = 0x33;
 constexpr std::uint8_t kWriteOperation = 0x55;
 constexpr std::uint8_t kSaveOperation = 0xAA;
@@ -141,10 +139,10 @@ void DamiaoDrive::follow() noexcept {
   if (!armed_) return;
   const auto& s = setpoint_;
   const double position_deg = s.position_rad * kDegPerRad;
-  const double rpm = s.velocity_rad_s * kRpmPerRadS;
+  const double rpm = s.velocity_rad_s * kRpmPerRadPerS;
   switch (s.control) {
     case DamiaoControl::kMit:
-      impedance(s.mit.position_rad * kDegPerRad, s.mit.velocity_rad_s * kRpmPerRadS, s.mit.kp_nm_per_rad,
+      impedance(s.mit.position_rad * kDegPerRad, s.mit.velocity_rad_s * kRpmPerRadPerS, s.mit.kp_nm_per_rad,
                 s.mit.kd_nms_per_rad, s.mit.torque_nm);
       break;
     case DamiaoControl::kVelocity: velocity(rpm); break;
@@ -178,7 +176,7 @@ void DamiaoDrive::sendState() noexcept {
   const auto status = fault_ != 0 ? fault_ : (armed_ ? damiao::kStatusEnabled : damiao::kStatusDisabled);
   send(damiao::writeState(id_, {.status = status,
                                 .position = wrappedCode(positionRad(), scale.p_max_rad, 16),
-                                .velocity = wrappedCode(driveRpm() / kRpmPerRadS, scale.v_max_rad_s, 12),
+                                .velocity = wrappedCode(driveRpm() / kRpmPerRadPerS, scale.v_max_rad_s, 12),
                                 .torque = wrappedCode(driveTorqueNm(), scale.t_max_nm, 12),
                                 .drive_temperature = kDriveC,
                                 .winding_temperature = static_cast<std::uint8_t>(

@@ -3,13 +3,13 @@
 #include <array>
 #include <cassert>
 #include <cmath>
-#include <numbers>
 #include <string_view>
+
+#include "app/units.hpp"
 
 namespace rc10::sim {
 namespace {
 
-constexpr double kRadPerSPerRpm = std::numbers::pi / 30.0;
 constexpr double kSupplyV = 24.0;
 // The drives do not say how they filter the speed they report; within what the Encoder allows (2 ms).
 constexpr double kSpeedLagSeconds = 0.001;

@@ -5,6 +5,7 @@
 
 #include "app/angle.hpp"
 #include "app/saturated.hpp"
+#include "app/units.hpp"
 #include "bus/byte_order.hpp"
 #include "motor/lktech_model.hpp"
 #include "motor/lktech_motor.hpp"
@@ -17,7 +18,6 @@ namespace {
 
 constexpr double kRawPerDeg = 100.0;
 constexpr double kRawPerVolt = 100.0;
-constexpr double kDegSPerRpm = 6.0;
 constexpr std::uint8_t kOffState = 0x10;
 // Chosen: no source tells how long it starts.
 constexpr Duration kBootTime = std::chrono::milliseconds{300};
@@ -80,11 +80,12 @@ void LKTechDrive::obey(const CanFrame& frame) noexcept {
       if (able()) {
         const double limit_a = std::abs(readLittleEndian<std::int16_t>(payload, 2)) * amperes_per_raw_;
         const double nm_per_a = physics().parameters().torque_nm_per_a * gear;
-        velocity(angle_or_speed / kDegSPerRpm, 0.0, limit_a * nm_per_a);
+        velocity(angle_or_speed / kDegPerSPerRpm, 0.0, limit_a * nm_per_a);
       }
       return answerReading(code);
     case Code::kPosition:
-      if (able()) position(angle_or_speed, readLittleEndian<std::uint16_t>(payload, 2) / kDegSPerRpm / gear);
+      if (able())
+        position(angle_or_speed, readLittleEndian<std::uint16_t>(payload, 2) / kDegPerSPerRpm / gear);
       return answerReading(code);
   }
 }
@@ -94,7 +95,7 @@ void LKTechDrive::answerReading(Code code) noexcept {
   out.data[1] = static_cast<std::uint8_t>(saturatedRound<std::int8_t>(physics().temperatureC()));
   writeLittleEndian(out.data, 2, saturatedRound<std::int16_t>(currentA() / amperes_per_raw_));
   writeLittleEndian(out.data, 4,
-                    saturatedRound<std::int16_t>(driveRpm() * kDegSPerRpm * traits().gear_ratio));
+                    saturatedRound<std::int16_t>(driveRpm() * kDegPerSPerRpm * traits().gear_ratio));
   const double turns = wrapDegrees(driveAngleDeg()) / 360.0;
   const auto encoder = static_cast<std::uint32_t>(turns * encoder_counts_) % encoder_counts_;
   writeLittleEndian(out.data, 6, static_cast<std::uint16_t>(encoder));

@@ -4,11 +4,12 @@
 #include <cmath>
 #include <numbers>
 
+#include "app/units.hpp"
+
 namespace rc10::sim {
 namespace {
 
 constexpr double kTwoPi = 2.0 * std::numbers::pi;
-constexpr double kRpmPerRadPerS = 60.0 / kTwoPi;
 
 }  // namespace
 

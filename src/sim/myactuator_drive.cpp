@@ -2,9 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 #include "app/saturated.hpp"
+#include "app/units.hpp"
 #include "bus/byte_order.hpp"
 #include "motor/myactuator_model.hpp"
 #include "motor/myactuator_motor.hpp"
@@ -18,9 +18,6 @@ namespace {
 constexpr double kRawPerDeg = 100.0;
 constexpr double kRawPerAmpere = 100.0;
 constexpr double kRawPerVolt = 10.0;
-constexpr double kDegSPerRpm = 6.0;
-constexpr double kRadPerDeg = std::numbers::pi / 180.0;
-constexpr double kRadSPerRpm = std::numbers::pi / 30.0;
 // Chosen: no source tells how long it starts.
 constexpr Duration kBootTime = std::chrono::milliseconds{300};
 constexpr Duration kNoticeSpacing = std::chrono::seconds{1};
@@ -100,12 +97,12 @@ void MyActuatorDrive::obey(const CanFrame& frame) noexcept {
       if (able) current(readLittleEndian<std::int16_t>(payload, 4) / kRawPerAmpere);
       return answerReading(code);
     case Code::kVelocity:
-      if (able) velocity(readLittleEndian<std::int32_t>(payload, 4) / kRawPerDeg / kDegSPerRpm);
+      if (able) velocity(readLittleEndian<std::int32_t>(payload, 4) / kRawPerDeg / kDegPerSPerRpm);
       return answerReading(code);
     case Code::kPosition:
       if (able) {
         position(readLittleEndian<std::int32_t>(payload, 4) / kRawPerDeg,
-                 readLittleEndian<std::uint16_t>(payload, 2) / kDegSPerRpm);
+                 readLittleEndian<std::uint16_t>(payload, 2) / kDegPerSPerRpm);
       }
       return answerReading(code);
     case Code::kFunction:
@@ -146,7 +143,7 @@ void MyActuatorDrive::obeyMotion(const CanFrame& frame) noexcept {
   const double stiffness = valueOf((word(3) & 0xFU) << 8U | word(4), 0.0, kMotionStiffness, 12);
   const double damping = valueOf(word(5) << 4U | word(6) >> 4U, 0.0, kMotionDamping, 12);
   const double torque_nm = valueOf((word(6) & 0xFU) << 8U | word(7), -kMotionTorqueNm, kMotionTorqueNm, 12);
-  if (errors_ == 0) impedance(angle_rad / kRadPerDeg, rad_s / kRadSPerRpm, stiffness, damping, torque_nm);
+  if (errors_ == 0) impedance(angle_rad / kRadPerDeg, rad_s / kRadPerSPerRpm, stiffness, damping, torque_nm);
   answerMotion();
 }
 
@@ -154,7 +151,7 @@ void MyActuatorDrive::answerReading(Code code) noexcept {
   CanFrame out = reply(code);
   out.data[1] = static_cast<std::uint8_t>(saturatedRound<std::int8_t>(physics().temperatureC()));
   writeLittleEndian(out.data, 2, saturatedRound<std::int16_t>(currentA() * kRawPerAmpere));
-  writeLittleEndian(out.data, 4, saturatedRound<std::int16_t>(driveRpm() * kDegSPerRpm));
+  writeLittleEndian(out.data, 4, saturatedRound<std::int16_t>(driveRpm() * kDegPerSPerRpm));
   writeLittleEndian(out.data, 6, saturatedRound<std::int16_t>(driveAngleDeg()));
   answer(out);
 }
@@ -166,7 +163,7 @@ void MyActuatorDrive::answerMotion() noexcept {
   out.length = kLength;
   out.data[0] = static_cast<std::uint8_t>(id_);
   const auto angle = bitsOf(driveAngleDeg() * kRadPerDeg, -kMotionAngleRad, kMotionAngleRad, 16);
-  const auto speed = bitsOf(driveRpm() * kRadSPerRpm, -kMotionVelocityRadS, kMotionVelocityRadS, 12);
+  const auto speed = bitsOf(driveRpm() * kRadPerSPerRpm, -kMotionVelocityRadS, kMotionVelocityRadS, 12);
   const auto nm = bitsOf(driveTorqueNm(), -kMotionTorqueNm, kMotionTorqueNm, 12);
   writeBigEndian(out.data, 1, static_cast<std::uint16_t>(angle));
   out.data[3] = static_cast<std::uint8_t>(speed >> 4U);

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 
+#include "app/units.hpp"
 #include "bus/byte_order.hpp"
 #include "motor/odrive_motor.hpp"
 
@@ -19,8 +20,6 @@ constexpr Duration kBootTime = milliseconds{1500};
 
 constexpr std::uint32_t kInitializing = 0x1;
 constexpr std::uint32_t kInvalidState = 0x1;
-constexpr double kDegPerTurn = 360.0;
-constexpr double kRpmPerTurnPerS = 60.0;
 constexpr double kFeedForwardUnit = 0.001;
 // KV * torque constant, in rpm/V * N·m/A: the vendor's own number.
 constexpr float kKvTimesTorqueConstant = 8.27F;

@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "app/angle.hpp"
+#include "app/units.hpp"
 #include "bus/byte_order.hpp"
 
 namespace rc10::sim {
@@ -13,8 +14,6 @@ namespace {
 
 namespace parameter = robstride_parameter;
 
-constexpr double kDegPerRad = 180.0 / std::numbers::pi;
-constexpr double kRpmPerRadS = 30.0 / std::numbers::pi;
 constexpr double kFarthestRad = 1e9;
 constexpr std::uint32_t kLongestTimeout = 100'000;
 // Parameters that are only kept.
@@ -191,17 +190,17 @@ void RobStrideDrive::follow() noexcept {
   const auto run_mode = find(parameter::kRunMode)->bits;
   const double torque_nm = std::max(number(parameter::kCurrentLimit), 0.0) * model_->torqueNmPerA();
   if (run_mode == static_cast<std::uint32_t>(RobStrideRunMode::kOperation)) {
-    impedance(operation_.position_rad * kDegPerRad, operation_.velocity_rad_s * kRpmPerRadS,
+    impedance(operation_.position_rad * kDegPerRad, operation_.velocity_rad_s * kRpmPerRadPerS,
               operation_.stiffness_nm_per_rad, operation_.damping_nms_per_rad, operation_.torque_nm);
   } else if (run_mode == static_cast<std::uint32_t>(RobStrideRunMode::kCurrent)) {
     current(number(parameter::kCurrentRef));
   } else if (torque_nm <= 0.0) {
     release();  // to the base a limit of 0 is none
   } else if (run_mode == static_cast<std::uint32_t>(RobStrideRunMode::kVelocity)) {
-    velocity(number(parameter::kVelocityRef) * kRpmPerRadS, 0.0, torque_nm);
+    velocity(number(parameter::kVelocityRef) * kRpmPerRadPerS, 0.0, torque_nm);
   } else {
     position(number(parameter::kPositionRef) * kDegPerRad,
-             std::max(number(parameter::kVelocityLimit), 0.0) * kRpmPerRadS, torque_nm);
+             std::max(number(parameter::kVelocityLimit), 0.0) * kRpmPerRadPerS, torque_nm);
   }
 }
 
@@ -213,7 +212,7 @@ void RobStrideDrive::answerState() noexcept {
   const bool wraps = std::abs(codec_.position_range_rad - kTwoTurnsRad) < 0.02;
   state.position_rad =
       wraps ? wrapPeriod(position_rad + kTwoTurnsRad, 2.0 * kTwoTurnsRad) - kTwoTurnsRad : position_rad;
-  state.velocity_rad_s = driveRpm() / kRpmPerRadS;
+  state.velocity_rad_s = driveRpm() / kRpmPerRadPerS;
   state.torque_nm = driveTorqueNm();
   state.temperature_c = physics().temperatureC();
   state.status_bits = status_bits_;

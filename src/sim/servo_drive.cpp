@@ -2,14 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <utility>
+
+#include "app/units.hpp"
 
 namespace rc10::sim {
 namespace {
 
-constexpr double kRadPerSPerRpm = std::numbers::pi / 30.0;
-constexpr double kRadPerDeg = std::numbers::pi / 180.0;
 // Loops of a drive that somebody has tuned for its load: stiff, and without overshoot.
 constexpr double kVelocityBandwidthRadS = 120.0;
 constexpr double kPositionGainPerS = 20.0;
@@ -160,7 +159,7 @@ WindingCommand ServoDrive::winding(double dt_s) noexcept {
     case Mode::kPosition: {
       const double own_rpm = static_cast<double>(traits_.no_load_rpm);
       const double limit_rpm = value_rpm_ > 0.0 ? value_rpm_ : (own_rpm > 0.0 ? own_rpm : 1e6);
-      const double wanted_rpm = kPositionGainPerS * (value_ - driveAngleDeg()) / 6.0;
+      const double wanted_rpm = kPositionGainPerS * (value_ - driveAngleDeg()) / kDegPerSPerRpm;
       return amperes(velocityLoop(std::clamp(wanted_rpm, -limit_rpm, limit_rpm), dt_s) / nm_per_a);
     }
     case Mode::kImpedance: {

@@ -6,6 +6,7 @@
 #include <cstdlib>
 
 #include "app/angle.hpp"
+#include "app/units.hpp"
 #include "bus/byte_order.hpp"
 
 // Source of the behaviour: vedderb/bldc@b9d287b:comm/comm_can.c, timeout.c, motor/foc_math.c,
@@ -21,7 +22,6 @@ constexpr Duration kSlowPeriod = milliseconds{200};  // APPCONF_CAN_STATUS_RATE_
 constexpr double kMinErpm = 900.0;                   // MCCONF_S_PID_MIN_RPM
 constexpr double kRampErpmPerS = 25'000.0;           // MCCONF_S_PID_RAMP_ERPMS_S
 constexpr double kBrakeFadeRpm = 5.0;                // a brake current fades out with the speed
-constexpr double kRadPerSPerRpm = 0.10471975511965977;
 constexpr std::uint8_t kGetValuesSelective = 50;
 
 VescOptions optionsOf(const MotorSettings& settings) { return VescOptions{settings.own}; }

@@ -11,6 +11,7 @@
 
 #include <gtest/gtest.h>
 
+#include "app/units.hpp"
 #include "bus/byte_order.hpp"
 #include "bus/fdcan_bus.hpp"
 #include "bus/socket_pair.hpp"
@@ -21,8 +22,6 @@ namespace rc10::test {
 namespace {
 
 using std::chrono::milliseconds;
-constexpr double kRpmPerRadS = 30.0 / std::numbers::pi;
-constexpr double kDegPerRad = 180.0 / std::numbers::pi;
 constexpr int kDrive = 127;
 constexpr int kHost = 253;
 
@@ -171,7 +170,7 @@ TEST(RobStrideMotor, ImpedanceArrivesInTheDrivesOwnMeasure) {
                                      .stiffness_nm_per_rad = 40.0F,
                                      .damping_nms_per_rad = 4.0F});
   EXPECT_NEAR(told.position_rad, -4.0 / kDegPerRad, 1e-3);
-  EXPECT_NEAR(told.velocity_rad_s, -6.0 / kRpmPerRadS, 2e-3);
+  EXPECT_NEAR(told.velocity_rad_s, -6.0 / kRpmPerRadPerS, 2e-3);
   EXPECT_NEAR(told.stiffness_nm_per_rad, 10.0, 0.01);
   EXPECT_NEAR(told.damping_nms_per_rad, 1.0, 1e-3);
   EXPECT_NEAR(told.torque_nm, -0.5, 1e-3);
@@ -221,19 +220,19 @@ TEST(RobStrideMotor, AVelocityTargetIsCutOffAtTheLimit) {
   auto settings = robStrideSettings("RS00");
   settings.velocity_limit_rpm = 60.0F;
   Bench bench(settings);
-  bench.run(0.0, 60.0 / kRpmPerRadS);
+  bench.run(0.0, 60.0 / kRpmPerRadPerS);
   const auto told = bench.operation({.mode = ControlMode::kVelocity, .value = -1e9});
   EXPECT_NE(bench.motor.limits() & kLimitVelocity, 0U);
-  EXPECT_GE(told.velocity_rad_s, -60.0 / kRpmPerRadS - 1e-2);
+  EXPECT_GE(told.velocity_rad_s, -60.0 / kRpmPerRadPerS - 1e-2);
 }
 
 TEST(RobStrideMotor, AnAngleTargetIsNotApproachedFasterThanTheLimit) {
   auto settings = robStrideSettings("RS00");
   settings.velocity_limit_rpm = 30.0F;
   Bench bench(settings);
-  bench.run(0.0, 30.0 / kRpmPerRadS);
+  bench.run(0.0, 30.0 / kRpmPerRadPerS);
   const auto told = bench.operation({.mode = ControlMode::kTotalAngle, .value = 300.0});
-  EXPECT_NEAR(torqueOf(told, 0.0, 30.0 / kRpmPerRadS), 0.0, 0.02);  // at the limit nothing pushes any more
+  EXPECT_NEAR(torqueOf(told, 0.0, 30.0 / kRpmPerRadPerS), 0.0, 0.02);  // at the limit nothing pushes any more
   EXPECT_NE(bench.motor.limits() & kLimitVelocity, 0U);
 }
 
@@ -340,7 +339,7 @@ TEST(RobStrideMotor, TheVelocityModeHasNoCurrentUntilThereIsATarget) {
   EXPECT_FLOAT_EQ(readLittleEndian<float>(frames[1].payload(), 4), 0.0F);
   frames = bench.tick(FrameKind::kCommand, {.mode = ControlMode::kVelocity, .value = 60.0});
   EXPECT_EQ(readLittleEndian<std::uint16_t>(frames[0].payload(), 0), robstride_parameter::kVelocityRef);
-  EXPECT_NEAR(readLittleEndian<float>(frames[0].payload(), 4), 60.0 / kRpmPerRadS, 1e-4);
+  EXPECT_NEAR(readLittleEndian<float>(frames[0].payload(), 4), 60.0 / kRpmPerRadPerS, 1e-4);
   EXPECT_FLOAT_EQ(readLittleEndian<float>(frames[1].payload(), 4), 15.5F);
   EXPECT_EQ(typeOf(bench.tick()[0]), 18U);
 }
@@ -420,7 +419,7 @@ TEST(RobStrideMotor, GearAndDirectionApplyToAllReadings) {
   Bench bench(settings);
   bench.say({.position_rad = 0.0, .velocity_rad_s = 3.0, .torque_nm = 1.5, .mode = kRobStrideRunning});
   const double before_deg = bench.motor.feedback().total_angle_deg;
-  EXPECT_NEAR(bench.motor.feedback().velocity_rpm, -kRpmPerRadS, 0.01);
+  EXPECT_NEAR(bench.motor.feedback().velocity_rpm, -kRpmPerRadPerS, 0.01);
   EXPECT_NEAR(bench.motor.feedback().torque_nm, -4.5, 2e-3);
   EXPECT_NEAR(bench.motor.feedback().current_a, -1.5 / (1.22 / std::numbers::sqrt2), 1e-3);
   bench.now += milliseconds{20};
