@@ -9,8 +9,8 @@
 
 #include <algorithm>
 #include <cerrno>
+#include <cstring>
 #include <iterator>
-#include <system_error>
 #include <type_traits>
 #include <utility>
 #include <vector>
@@ -38,8 +38,6 @@ struct Interface {
   int mtu = 0;
 };
 
-std::string reason(int error) { return std::generic_category().message(error); }
-
 Result<UniqueFd> createSocket(const std::string& interface) {
   if (interface.empty() || interface.size() >= IFNAMSIZ) {
     return fail("'" + interface + "' is no interface name: it has 1 to " + std::to_string(IFNAMSIZ - 1) +
@@ -49,11 +47,12 @@ Result<UniqueFd> createSocket(const std::string& interface) {
   if (fd) return fd;
   const std::string place = "CAN interface '" + interface + "': ";
   if (errno == EAFNOSUPPORT || errno == EPROTONOSUPPORT) {
-    return fail(place + "this kernel has no SocketCAN, or the service may not use it (" + reason(errno) +
+    return fail(place + "this kernel has no SocketCAN, or the service may not use it (" +
+                std::strerror(errno) +
                 "); use `type: sim`, or load it with `modprobe can-raw`, or allow AF_CAN in the unit's "
                 "RestrictAddressFamilies=");
   }
-  return fail(place + "cannot open a CAN socket: " + reason(errno));
+  return fail(place + "cannot open a CAN socket: " + std::strerror(errno));
 }
 
 Result<Interface> findInterface(int fd, const std::string& name) {
@@ -61,13 +60,13 @@ Result<Interface> findInterface(int fd, const std::string& name) {
   std::copy(name.begin(), name.end(), std::begin(request.ifr_name));
   Interface found;
   if (::ioctl(fd, SIOCGIFINDEX, &request) != 0) {
-    return fail("CAN interface '" + name + "': " + reason(errno) +
+    return fail("CAN interface '" + name + "': " + std::strerror(errno) +
                 "; `ip link` lists what there is. A HAT needs its device tree overlay; a virtual interface " +
                 "is made with `ip link add dev " + name + " type vcan && ip link set up " + name + "`");
   }
   found.index = request.ifr_ifindex;
   if (::ioctl(fd, SIOCGIFMTU, &request) != 0) {
-    return fail("CAN interface '" + name + "': cannot read its MTU: " + reason(errno));
+    return fail("CAN interface '" + name + "': cannot read its MTU: " + std::strerror(errno));
   }
   found.mtu = request.ifr_mtu;
   return found;
@@ -85,7 +84,7 @@ Result<void> bindTo(int fd, const std::string& name, const Interface& interface)
   address.can_ifindex = interface.index;
   if (::bind(fd, reinterpret_cast<const sockaddr*>(&address), sizeof(address)) == 0) return {};
   if (errno == ENODEV) return fail("'" + name + "' is not a CAN interface");
-  return fail("CAN interface '" + name + "': cannot bind: " + reason(errno));
+  return fail("CAN interface '" + name + "': cannot bind: " + std::strerror(errno));
 }
 
 // What both sockets need: FD frames where the interface has them, receive stamps, the count of drops.
@@ -93,7 +92,7 @@ Result<void> setReceiveOptions(int fd, const std::string& name, bool fd_frames) 
   const int on = 1;
   if ((fd_frames && !setOption(fd, SOL_CAN_RAW, CAN_RAW_FD_FRAMES, on)) ||
       !setOption(fd, SOL_SOCKET, SO_TIMESTAMPNS, on) || !setOption(fd, SOL_SOCKET, SO_RXQ_OVFL, on)) {
-    return fail("CAN interface '" + name + "': cannot set a socket option: " + reason(errno));
+    return fail("CAN interface '" + name + "': cannot set a socket option: " + std::strerror(errno));
   }
   // FORCE passes net.core.rmem_max but needs CAP_NET_ADMIN. A smaller buffer than asked is no error: what
   // it loses is counted.
@@ -108,7 +107,7 @@ Result<int> setSendBuffer(int fd, const std::string& name, int frames_per_tick) 
   socklen_t size = sizeof(effective);
   if (!setOption(fd, SOL_SOCKET, SO_SNDBUF, sendBufferRequest(frames_per_tick)) ||
       ::getsockopt(fd, SOL_SOCKET, SO_SNDBUF, &effective, &size) != 0) {
-    return fail("CAN interface '" + name + "': cannot set the send buffer: " + reason(errno));
+    return fail("CAN interface '" + name + "': cannot set the send buffer: " + std::strerror(errno));
   }
   return effective;
 }
@@ -128,7 +127,7 @@ Result<CanSocket> openCanSocket(const std::string& interface, const CanSocketOpt
   const bool fd_frames = found->mtu >= static_cast<int>(CANFD_MTU);
   if (auto ok = setReceiveOptions(fd->get(), interface, fd_frames); !ok) return tl::unexpected(ok.error());
   if (!setOption(fd->get(), SOL_CAN_RAW, CAN_RAW_ERR_FILTER, kErrorClasses)) {
-    return fail("CAN interface '" + interface + "': cannot ask for error messages: " + reason(errno));
+    return fail("CAN interface '" + interface + "': cannot ask for error messages: " + std::strerror(errno));
   }
   const auto send_buffer_bytes = setSendBuffer(fd->get(), interface, options.frames_per_tick);
   if (!send_buffer_bytes) return tl::unexpected(send_buffer_bytes.error());
@@ -151,7 +150,7 @@ Result<UniqueFd> openEchoSocket(const std::string& interface, std::span<const Ca
   }
   const auto size = static_cast<socklen_t>(filters.size() * sizeof(can_filter));
   if (::setsockopt(fd->get(), SOL_CAN_RAW, CAN_RAW_FILTER, filters.data(), size) != 0) {
-    return fail("CAN interface '" + interface + "': cannot set the echo filter: " + reason(errno));
+    return fail("CAN interface '" + interface + "': cannot set the echo filter: " + std::strerror(errno));
   }
   if (auto ok = bindTo(fd->get(), interface, *found); !ok) return tl::unexpected(ok.error());
   return fd;

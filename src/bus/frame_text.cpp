@@ -14,7 +14,7 @@ constexpr std::size_t kStandardDigits = 3;
 constexpr std::size_t kExtendedDigits = 8;
 constexpr unsigned kBitRateSwitch = 1;
 
-std::string quoted(std::string_view text) { return "'" + std::string{text.substr(0, 200)} + "'"; }
+std::string excerpt(std::string_view text) { return "'" + std::string{text.substr(0, 200)} + "'"; }
 
 std::optional<unsigned> digit(char c) noexcept {
   if (c >= '0' && c <= '9') return static_cast<unsigned>(c - '0');
@@ -44,7 +44,7 @@ Result<CanId> parseId(std::string_view digits) {
   const bool extended = digits.size() == kExtendedDigits;
   const auto value = extended || digits.size() == kStandardDigits ? number(digits) : std::nullopt;
   if (!value || *value > idMask(extended)) {
-    return fail("the id " + quoted(digits) + " is not 3 digits up to 7FF, nor 8 up to 1FFFFFFF");
+    return fail("the id " + excerpt(digits) + " is not 3 digits up to 7FF, nor 8 up to 1FFFFFFF");
   }
   return CanId{*value, extended};
 }
@@ -52,12 +52,12 @@ Result<CanId> parseId(std::string_view digits) {
 Result<void> parsePayload(std::string_view digits, CanFrame& frame) {
   const std::size_t length = digits.size() / 2;
   if (digits.size() % 2 != 0 || !isValidLength(frame.fd, length)) {
-    return fail("the data " + quoted(digits) + " are not two digits a byte, of a length that a frame has");
+    return fail("the data " + excerpt(digits) + " are not two digits a byte, of a length that a frame has");
   }
   frame.length = static_cast<std::uint8_t>(length);
   for (std::size_t i = 0; i < length; ++i) {
     const auto byte = number(digits.substr(2 * i, 2));
-    if (!byte) return fail("the data " + quoted(digits) + " are not hexadecimal");
+    if (!byte) return fail("the data " + excerpt(digits) + " are not hexadecimal");
     frame.data[i] = static_cast<std::uint8_t>(*byte);
   }
   return {};
@@ -66,7 +66,7 @@ Result<void> parsePayload(std::string_view digits, CanFrame& frame) {
 Result<AddressedFrame> parseLine(std::string_view line) {
   const auto space = line.find(' ');
   if (space == std::string_view::npos || space == 0 || space >= IFNAMSIZ) {
-    return fail("does not begin with an interface and a space: " + quoted(line));
+    return fail("does not begin with an interface and a space: " + excerpt(line));
   }
   auto frame = parseFrameText(line.substr(space + 1));
   if (!frame) return tl::unexpected(frame.error());
@@ -84,7 +84,7 @@ std::string frameText(const CanFrame& frame) {
 
 Result<CanFrame> parseFrameText(std::string_view text) {
   const auto hash = text.find('#');
-  if (hash == std::string_view::npos) return fail("is no frame such as 200#0011: " + quoted(text));
+  if (hash == std::string_view::npos) return fail("is no frame such as 200#0011: " + excerpt(text));
   const auto id = parseId(text.substr(0, hash));
   if (!id) return tl::unexpected(id.error());
   CanFrame frame;
@@ -92,7 +92,7 @@ Result<CanFrame> parseFrameText(std::string_view text) {
   auto rest = text.substr(hash + 1);
   if (rest.substr(0, 1) == "#") {
     const auto flags = rest.size() > 1 ? digit(rest[1]) : std::nullopt;
-    if (!flags || *flags > kBitRateSwitch) return fail("has unknown FD flags: " + quoted(text));
+    if (!flags || *flags > kBitRateSwitch) return fail("has unknown FD flags: " + excerpt(text));
     frame.fd = true;
     frame.bit_rate_switch = *flags == kBitRateSwitch;
     rest.remove_prefix(2);

@@ -13,6 +13,7 @@
 #include <array>
 #include <cerrno>
 #include <cstdlib>
+#include <cstring>
 #include <filesystem>
 #include <system_error>
 
@@ -27,8 +28,6 @@ constexpr unsigned kLastPtyMajor = 143;
 constexpr int kTolerancePercent = 3;
 
 constexpr tcflag_t kFormatBits = CSIZE | PARENB | PARODD | CSTOPB;
-
-std::string reason(int error) { return std::generic_category().message(error); }
 
 std::string place(const std::string& path) { return "serial port '" + path + "': "; }
 
@@ -61,13 +60,14 @@ std::string adviceForOpen(int error) {
 
 Result<UniqueFd> openForUsAlone(const std::string& path) {
   UniqueFd fd{::open(path.c_str(), O_RDWR | O_NOCTTY | O_NONBLOCK | O_CLOEXEC)};
-  if (!fd) return fail(place(path) + reason(errno) + adviceForOpen(errno));
+  if (!fd) return fail(place(path) + std::strerror(errno) + adviceForOpen(errno));
   // TIOCEXCL does not keep root out, and flock only those who ask.
   if (::ioctl(fd.get(), TIOCEXCL) != 0) {
-    return fail(place(path) + (errno == ENOTTY || errno == EINVAL ? "it is no serial port" : reason(errno)));
+    return fail(place(path) +
+                (errno == ENOTTY || errno == EINVAL ? "it is no serial port" : std::strerror(errno)));
   }
   if (::flock(fd.get(), LOCK_EX | LOCK_NB) != 0)
-    return fail(place(path) + reason(EBUSY) + adviceForOpen(EBUSY));
+    return fail(place(path) + std::strerror(EBUSY) + adviceForOpen(EBUSY));
   return fd;
 }
 
@@ -105,11 +105,11 @@ bool near(speed_t got, int wanted) {
 Result<void> setFormat(int fd, const std::string& path, const SerialFormat& format) {
   termios2 settings{};
   if (::ioctl(fd, TCGETS2, &settings) != 0)
-    return fail(place(path) + "it is no serial port: " + reason(errno));
+    return fail(place(path) + "it is no serial port: " + std::strerror(errno));
   setRaw(settings, format);
   termios2 got{};
   if (::ioctl(fd, TCSETS2, &settings) != 0 || ::ioctl(fd, TCGETS2, &got) != 0) {
-    return fail(place(path) + "cannot set " + format.text() + ": " + reason(errno));
+    return fail(place(path) + "cannot set " + format.text() + ": " + std::strerror(errno));
   }
   if (!near(got.c_ospeed, format.baud)) {
     return fail(place(path) + "asked for " + std::to_string(format.baud) + " baud, the adapter gives " +

@@ -5,15 +5,13 @@
 #include <sys/ioctl.h>
 
 #include <cerrno>
-#include <system_error>
+#include <cstring>
 #include <utility>
 
 namespace rc10 {
 namespace {
 
 constexpr std::uint8_t kBitsPerWord = 8;
-
-std::string reason(int error) { return std::generic_category().message(error); }
 
 std::string adviceFor(int error) {
   switch (error) {
@@ -34,7 +32,7 @@ std::string adviceFor(int error) {
 }
 
 tl::unexpected<Error> refusal(const std::string& path, const std::string& what, int error) {
-  return fail("SPI device '" + path + "': " + what + reason(error) + adviceFor(error));
+  return fail("SPI device '" + path + "': " + what + std::strerror(error) + adviceFor(error));
 }
 
 class Spidev final : public SpiPort {

@@ -9,7 +9,7 @@
 #include <array>
 #include <cerrno>
 #include <chrono>
-#include <system_error>
+#include <cstring>
 #include <thread>
 
 namespace rc10::link {
@@ -18,8 +18,6 @@ namespace {
 // holder() of another program has the lock for an instant: that is no reason not to start.
 constexpr int kAttempts = 5;
 constexpr auto kPause = std::chrono::milliseconds{10};
-
-std::string reason(int error) { return std::generic_category().message(error); }
 
 std::string folder(const std::string& run_dir) { return run_dir + "/locks"; }
 
@@ -68,13 +66,13 @@ Result<InterfaceLock> InterfaceLock::take(const std::string& run_dir, const std:
                                           const std::string& robot) {
   const std::string dir = folder(run_dir);
   if (::mkdir(dir.c_str(), 0755) != 0 && errno != EEXIST) {
-    return fail(dir + ": " + reason(errno) + ": set RC10_RUN_DIR to a folder this user may write to");
+    return fail(dir + ": " + std::strerror(errno) + ": set RC10_RUN_DIR to a folder this user may write to");
   }
   // The file stays when its holder ends: removing it would let two processes lock two files of one name.
   const std::string file_path = path(run_dir, interface);
   UniqueFd file{::open(file_path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW, 0644)};
   if (!file) {
-    return fail(file_path + ": " + reason(errno) + ": remove it if no rc10d of another user runs");
+    return fail(file_path + ": " + std::strerror(errno) + ": remove it if no rc10d of another user runs");
   }
   giveToOwnerOf(run_dir, dir, file.get());
   if (!lockFile(file.get())) {
@@ -83,7 +81,7 @@ Result<InterfaceLock> InterfaceLock::take(const std::string& run_dir, const std:
   const std::string words = "robot '" + robot + "' (rc10d, pid " + std::to_string(::getpid()) + ")\n";
   if (::ftruncate(file.get(), 0) != 0 ||
       ::pwrite(file.get(), words.data(), words.size(), 0) != static_cast<ssize_t>(words.size())) {
-    return fail(file_path + ": " + reason(errno));
+    return fail(file_path + ": " + std::strerror(errno));
   }
   return InterfaceLock{std::move(file)};
 }
@@ -92,7 +90,7 @@ std::string InterfaceLock::holder(const std::string& run_dir, const std::string&
   const std::string file_path = path(run_dir, interface);
   const UniqueFd file{::open(file_path.c_str(), O_RDONLY | O_CLOEXEC | O_NOFOLLOW)};
   // Without the file nobody holds it. What may not be looked at is held, to be on the safe side.
-  if (!file) return errno == ENOENT || errno == ENOTDIR ? "" : file_path + " (" + reason(errno) + ")";
+  if (!file) return errno == ENOENT || errno == ENOTDIR ? "" : file_path + " (" + std::strerror(errno) + ")";
   return ::flock(file.get(), LOCK_SH | LOCK_NB) == 0 ? "" : firstLine(file.get());
 }
 
