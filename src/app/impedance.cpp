@@ -18,8 +18,7 @@ float Impedance::torque(const Target& target, const Measured& measured, OutputRa
                      gain(config_.damping_nms_per_rad) * error_rpm * kRadPerSPerRpm +
                      static_cast<double>(target.torque_nm);
   if (!std::isfinite(sum)) return 0.0F;
-  const auto within = static_cast<double>(kHugeTerm);
-  return range.within(config_.torque_limit_nm).clamp(static_cast<float>(std::clamp(sum, -within, within)));
+  return range.within(config_.torque_limit_nm).clamp(nearFloat(sum));
 }
 
 }  // namespace rc10

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <concepts>
 #include <limits>
 
 namespace rc10 {
@@ -34,6 +35,24 @@ inline constexpr float kHugeTerm = 1e30F;
 [[nodiscard]] constexpr float saturate(float value) noexcept {
   if (value != value) return 0.0F;
   return std::clamp(value, -kHugeTerm, kHugeTerm);
+}
+
+/// A float near a double of any size.
+[[nodiscard]] constexpr float nearFloat(double value) noexcept {
+  constexpr auto kBound = static_cast<double>(kHugeTerm);
+  return static_cast<float>(std::clamp(value, -kBound, kBound));
+}
+
+/// What is no number is 0; infinities stay, for limits to cut off.
+template <std::floating_point T>
+[[nodiscard]] inline T numberOr0(T value) noexcept {
+  return std::isnan(value) ? T{0} : value;
+}
+
+/// What is no number, or infinite, is 0.
+template <std::floating_point T>
+[[nodiscard]] inline T finiteOr0(T value) noexcept {
+  return std::isfinite(value) ? value : T{0};
 }
 
 }  // namespace rc10

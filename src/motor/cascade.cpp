@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "app/angle.hpp"
+#include "app/limits.hpp"
 
 namespace rc10 {
 namespace {
@@ -23,12 +24,6 @@ bool allFinite(const Target& target, const Cascade::Measured& measured) noexcept
   return std::isfinite(target.value) && std::isfinite(target.velocity_ff_rpm) &&
          std::isfinite(measured.angle_deg) && std::isfinite(measured.total_angle_deg) &&
          std::isfinite(measured.velocity_rpm);
-}
-
-/// A float near a double of any size.
-float toFloat(double value) noexcept {
-  constexpr auto kBound = static_cast<double>(kHugeTerm);
-  return static_cast<float>(std::clamp(value, -kBound, kBound));
 }
 
 }  // namespace
@@ -58,14 +53,14 @@ float Cascade::velocityTarget(const Target& target, const Measured& measured, fl
   const OutputRange range = OutputRange{}.within(config_.velocity_limit_rpm);
   float wanted = 0.0F;
   if (target.mode == ControlMode::kVelocity) {
-    wanted = toFloat(target.value);
+    wanted = nearFloat(target.value);
   } else {
     const double error = target.mode == ControlMode::kAngle
                              ? shortestAngle(static_cast<double>(measured.angle_deg), target.value)
                              : target.value - measured.total_angle_deg;
-    const float moved = toFloat(measured.total_angle_deg - last_total_angle_deg_);
+    const float moved = nearFloat(measured.total_angle_deg - last_total_angle_deg_);
     const float ff = saturate(target.velocity_ff_rpm);
-    wanted = ff + angle_.stepError(toFloat(error), moved, dt_s, range.shifted(-ff));
+    wanted = ff + angle_.stepError(nearFloat(error), moved, dt_s, range.shifted(-ff));
   }
   const float limited = range.clamp(wanted);
   // The angle loop knows the limit and stops there; a velocity target may lie beyond it.

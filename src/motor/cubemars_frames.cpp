@@ -4,9 +4,10 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
-#include <limits>
 #include <span>
 
+#include "app/limits.hpp"
+#include "app/saturated.hpp"
 #include "bus/byte_order.hpp"
 
 namespace rc10::cubemars {
@@ -21,25 +22,16 @@ constexpr double kTenth = 0.1;
 
 // Ranges of the manual.
 constexpr double kLargestA = 60.0;
-constexpr double kLargestErpm = 100'000.0;
 constexpr double kLargestDeg = 36'000.0;
 constexpr int kPositionCutOff = 32'000;  // of 0.1 degrees in the feedback
 
 constexpr int kMitTemperatureOffsetC = 40;  // cubemars_driver_node and the manual's example
 
-template <typename Int>
-[[nodiscard]] Int toInt(double value) noexcept {
-  if (std::isnan(value)) return 0;
-  constexpr auto kLow = static_cast<double>(std::numeric_limits<Int>::min());
-  constexpr auto kHigh = static_cast<double>(std::numeric_limits<Int>::max());
-  return static_cast<Int>(std::lround(std::clamp(value, kLow, kHigh)));
-}
-
 [[nodiscard]] double within(double value, double limit) noexcept { return std::clamp(value, -limit, limit); }
 
 [[nodiscard]] CanFrame int32Frame(ServoCommand command, int motor_id, double value) noexcept {
   std::array<std::uint8_t, 4> data{};
-  writeBigEndian(data, 0, toInt<std::int32_t>(value));
+  writeBigEndian(data, 0, saturatedRound<std::int32_t>(value));
   return makeClassicFrame(servoId(command, motor_id), data);
 }
 
@@ -64,12 +56,11 @@ struct MitCodes {
 };
 
 [[nodiscard]] MitCodes toCodes(const CubeMarsRanges& r, const MitCommand& c) noexcept {
-  const auto finite = [](double value) { return std::isnan(value) ? 0.0 : value; };
-  return {.position = toCode(finite(c.position_rad), -r.position_rad, r.position_rad, 16),
-          .velocity = toCode(finite(c.velocity_rad_s), -r.velocity_rad_s, r.velocity_rad_s, 12),
+  return {.position = toCode(numberOr0(c.position_rad), -r.position_rad, r.position_rad, 16),
+          .velocity = toCode(numberOr0(c.velocity_rad_s), -r.velocity_rad_s, r.velocity_rad_s, 12),
           .stiffness = toCode(c.stiffness_nm_per_rad, 0.0, CubeMarsRanges::kStiffnessNmPerRad, 12),
           .damping = toCode(c.damping_nms_per_rad, 0.0, CubeMarsRanges::kDampingNmsPerRad, 12),
-          .torque = toCode(finite(c.torque_nm), -r.torque_nm, r.torque_nm, 12)};
+          .torque = toCode(numberOr0(c.torque_nm), -r.torque_nm, r.torque_nm, 12)};
 }
 
 [[nodiscard]] constexpr std::uint8_t byte(std::uint32_t value) noexcept {
@@ -109,10 +100,10 @@ CanFrame positionFrame(int motor_id, double degrees) noexcept {
 
 CanFrame positionVelocityFrame(int motor_id, double degrees, double erpm, double erpm_per_s) noexcept {
   std::array<std::uint8_t, 8> data{};
-  writeBigEndian(data, 0, toInt<std::int32_t>(within(degrees, kLargestDeg) * kPositionScale));
+  writeBigEndian(data, 0, saturatedRound<std::int32_t>(within(degrees, kLargestDeg) * kPositionScale));
   // Some old code sends these two without the division by 10; the manual and all newer code divide.
-  writeBigEndian(data, 4, toInt<std::int16_t>(std::max(erpm, 0.0) * kTenth));
-  writeBigEndian(data, 6, toInt<std::int16_t>(std::max(erpm_per_s, 0.0) * kTenth));
+  writeBigEndian(data, 4, saturatedRound<std::int16_t>(std::max(erpm, 0.0) * kTenth));
+  writeBigEndian(data, 6, saturatedRound<std::int16_t>(std::max(erpm_per_s, 0.0) * kTenth));
   return makeClassicFrame(servoId(ServoCommand::kPositionVelocity, motor_id), data);
 }
 

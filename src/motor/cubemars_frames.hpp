@@ -23,6 +23,7 @@ enum class ServoCommand : std::uint32_t {
   kMit = 8,
 };
 inline constexpr std::uint32_t kServoFeedback = 0x29;
+inline constexpr double kLargestErpm = 100'000.0;  ///< Of the velocity command: the manual's range.
 
 [[nodiscard]] constexpr CanId servoId(ServoCommand command, int motor_id) noexcept {
   return {static_cast<std::uint32_t>(command) << 8U | static_cast<std::uint32_t>(motor_id), true};

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "app/limits.hpp"
 #include "app/units.hpp"
 
 namespace rc10 {
@@ -13,15 +14,13 @@ using cubemars::ServoCommand;
 
 constexpr double kMostAmperes = 1e6;  // of a target: no sum overflows
 
-constexpr Duration kStepPatience = std::chrono::milliseconds{50};
-constexpr int kMaxAttempts = 6;  // the first, and five more
+constexpr Duration kMitStepPatience = std::chrono::milliseconds{50};
+constexpr int kMitAttempts = 6;  // the first, and five more
 // The answers to "no torque" and "enter", and one that was under way before them.
 constexpr std::uint64_t kAnswersToEnter = 3;
-constexpr double kDampShare = 0.25;  // damp is that much of the brake
+constexpr double kMitDampShare = 0.25;  // damp is that much of the brake
 // Two samples at the very end of the field: it does not go round, it is cut off.
 constexpr int kSamplesAtEnd = 2;
-
-[[nodiscard]] double finiteOr0(double value) noexcept { return std::isfinite(value) ? value : 0.0; }
 
 }  // namespace
 
@@ -128,8 +127,8 @@ void CubeMarsMit::stepEnabling(const Tick& tick) noexcept {
   const bool answered = attempts_ > 0 && feedback_.samples >= samples_before_ + kAnswersToEnter;
   if (answered && error() == 0) {
     enabling_ = SequenceProgress::kDone;
-  } else if (attempts_ == 0 || tick.now - entered_ >= kStepPatience) {
-    if (attempts_ == kMaxAttempts) {
+  } else if (attempts_ == 0 || tick.now - entered_ >= kMitStepPatience) {
+    if (attempts_ == kMitAttempts) {
       enabling_ = SequenceProgress::kFailed;
       return;
     }
@@ -160,7 +159,7 @@ void CubeMarsMit::update(const Tick& tick) noexcept {
   if (coasts || silent(tick) || !std::isfinite(target.value)) {
     release();
   } else {
-    send(damps ? velocityLaw(0.0, 0.0, kDampShare * velocity_gain_) : lawOf(target));
+    send(damps ? velocityLaw(0.0, 0.0, kMitDampShare * velocity_gain_) : lawOf(target));
   }
 }
 

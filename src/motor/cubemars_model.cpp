@@ -16,7 +16,7 @@ constexpr CubeMarsRanges range(double position_rad, double velocity_rad_s, doubl
   return {.position_rad = position_rad, .velocity_rad_s = velocity_rad_s, .torque_nm = torque_nm};
 }
 
-constexpr std::array kModels{
+constexpr std::array kCubeMarsModels{
     CubeMarsModel{.name = "AK10-9",
                   .gear_ratio = 9.0,
                   .pole_pairs = 21,
@@ -96,7 +96,7 @@ constexpr std::array<std::string_view, 3> kProtocols{"servo", "mit", "mit_v3"};
 constexpr std::array<std::string_view, 3> kPositionBases{"output", "rotor", "electrical"};
 
 using Kind = FamilyKey::Kind;
-constexpr std::array kKeys{
+constexpr std::array kCubeMarsKeys{
     FamilyKey{.name = "protocol",
               .kind = Kind::kChoice,
               .choices = kProtocols,
@@ -181,7 +181,7 @@ constexpr std::array kKeys{
               .about = "mit: the torque range set in the drive; 0: the model's"}};
 
 // 6 and 7: the newer manuals and cubemars_driver_node. Older ones call 6 "phase unbalance" and have no 7.
-constexpr std::array kFaults{
+constexpr std::array kCubeMarsFaults{
     CubeMarsFault{1, FaultCode::kDriveMotorTooHot, "motor too hot"},
     CubeMarsFault{2, FaultCode::kDriveOverCurrent, "over-current"},
     CubeMarsFault{3, FaultCode::kDriveOverVoltage, "over-voltage"},
@@ -222,17 +222,17 @@ double messageDegPerDeg(const CubeMarsModel& model, int pole_pairs, std::string_
 
 }  // namespace
 
-std::span<const CubeMarsModel> cubemarsModels() noexcept { return kModels; }
+std::span<const CubeMarsModel> cubemarsModels() noexcept { return kCubeMarsModels; }
 
 const CubeMarsModel* findCubemarsModel(std::string_view name) noexcept {
-  const auto found =
-      std::find_if(kModels.begin(), kModels.end(), [name](const auto& model) { return model.name == name; });
-  return found == kModels.end() ? nullptr : &*found;
+  const auto found = std::find_if(kCubeMarsModels.begin(), kCubeMarsModels.end(),
+                                  [name](const auto& model) { return model.name == name; });
+  return found == kCubeMarsModels.end() ? nullptr : &*found;
 }
 
 CubeMarsSetup cubemarsSetup(std::string_view model_name, const OwnValues& own) {
   const CubeMarsModel* found = findCubemarsModel(model_name);
-  const CubeMarsModel& model = found == nullptr ? kModels.front() : *found;
+  const CubeMarsModel& model = found == nullptr ? kCubeMarsModels.front() : *found;
   CubeMarsSetup setup{.model = &model, .ranges = model.ranges};
   const std::string protocol = own.text("protocol");
   if (protocol == "mit") setup.protocol = CubeMarsProtocol::kMit;
@@ -280,13 +280,13 @@ MotorTraits cubemarsTraits(const CubeMarsSetup& setup) {
   return traits;
 }
 
-std::span<const FamilyKey> cubemarsKeys() noexcept { return kKeys; }
+std::span<const FamilyKey> cubemarsKeys() noexcept { return kCubeMarsKeys; }
 
-std::span<const CubeMarsFault> cubemarsFaults() noexcept { return kFaults; }
+std::span<const CubeMarsFault> cubemarsFaults() noexcept { return kCubeMarsFaults; }
 
 FaultCode cubemarsFault(std::uint8_t code) noexcept {
   if (code == 0) return FaultCode::kNone;
-  for (const auto& known : kFaults) {
+  for (const auto& known : kCubeMarsFaults) {
     if (known.code == code) return known.fault;
   }
   return FaultCode::kDriveOther;

@@ -11,11 +11,11 @@ namespace {
 
 // No start-up time is published. Its boot loader and the encoder's start take longer than this.
 constexpr Duration kStartUp = std::chrono::milliseconds{100};
-constexpr int kGapPeriods = 3;  // so many feedback periods are no gap
+constexpr int kCubeMarsGapPeriods = 3;  // so many feedback periods are no gap
 // Above the no-load speed: a load that drives, a full battery, another winding of the same name.
 constexpr double kReach = 1.5;
 // Stamps of frames that waited for others come bunched.
-constexpr double kStampErrorSeconds = 0.005;
+constexpr double kBunchedSeconds = 0.005;
 constexpr double kPositionErrorDeg = 1.0;
 
 }  // namespace
@@ -25,7 +25,7 @@ CubeMars_Motor::CubeMars_Motor(const MotorSettings& settings, const CubeMarsSetu
                 settings.gear_ratio > 0.0 ? settings.gear_ratio / setup.model->gear_ratio : 1.0),
       setup_(setup),
       id_(settings.id),
-      longest_gap_(std::max(kStartUp, kGapPeriods * feedbackPeriod())),
+      longest_gap_(std::max(kStartUp, kCubeMarsGapPeriods * feedbackPeriod())),
       reach_deg_per_s_(kReach * static_cast<double>(setup.model->no_load_rpm) * kDegPerSPerRpm) {}
 
 bool CubeMars_Motor::isToObey() const noexcept {
@@ -60,7 +60,7 @@ void CubeMars_Motor::takePosition(MonotonicTime received, double drive_deg) noex
   if (feedback_.samples > 0) {
     const double passed_s =
         std::max(std::chrono::duration<double>(received - feedback_.received).count(), 0.0);
-    const double reach_deg = reach_deg_per_s_ * (passed_s + kStampErrorSeconds) + kPositionErrorDeg;
+    const double reach_deg = reach_deg_per_s_ * (passed_s + kBunchedSeconds) + kPositionErrorDeg;
     if (std::fabs(drive_deg - last_drive_deg_) > reach_deg) {
       ++feedback_.jumps;
       loseReference();

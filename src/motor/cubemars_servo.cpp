@@ -8,7 +8,6 @@ namespace {
 
 using cubemars::ServoCommand;
 
-constexpr double kLargestErpm = 100'000.0;  // of the velocity command
 // The feedback ends here: farther away nobody could see where the shaft is. The command reaches 36000.
 constexpr double kLargestMessageDeg = 3'200.0;
 constexpr double kMostDeg = 1e9;  // of a target or a zero, which may be any number
@@ -98,7 +97,7 @@ double CubeMarsServo::erpmOf(double output_rpm) const noexcept {
 
 void CubeMarsServo::prepareVelocity(double wanted_rpm) noexcept {
   const auto own_limit = static_cast<double>(velocityLimitRpm());
-  const double drive_limit = kLargestErpm / std::fabs(erpmOf(1.0));
+  const double drive_limit = cubemars::kLargestErpm / std::fabs(erpmOf(1.0));
   const double limit = own_limit > 0.0 ? std::min(own_limit, drive_limit) : drive_limit;
   const double rpm = std::clamp(wanted_rpm, -limit, limit);
   if (rpm != wanted_rpm) limits_ |= kLimitVelocity;
@@ -120,7 +119,7 @@ void CubeMarsServo::prepareAngle(double total_angle_deg) noexcept {
   if (degrees != wanted_deg) limits_ |= kLimitAngle;
   const auto limit_rpm = static_cast<double>(velocityLimitRpm());
   if (limit_rpm > 0.0 || acceleration_rpm_per_s_ > 0.0) {
-    const double erpm = limit_rpm > 0.0 ? std::fabs(erpmOf(limit_rpm)) : kLargestErpm;
+    const double erpm = limit_rpm > 0.0 ? std::fabs(erpmOf(limit_rpm)) : cubemars::kLargestErpm;
     const double erpm_per_s =
         acceleration_rpm_per_s_ > 0.0 ? std::fabs(erpmOf(acceleration_rpm_per_s_)) : kLargestPlanErpm;
     next_ = cubemars::positionVelocityFrame(driveId(), degrees, erpm, erpm_per_s);

@@ -8,8 +8,8 @@ using damiao::Register;
 
 namespace {
 
-constexpr Duration kPatience = std::chrono::milliseconds{50};
-constexpr int kTries = 5;
+constexpr Duration kRegisterPatience = std::chrono::milliseconds{50};
+constexpr int kRegisterTries = 5;
 // A scale is a float on the drive and a decimal number in the configuration.
 constexpr double kSameScale = 1e-4;
 
@@ -59,8 +59,8 @@ std::optional<Register> DamiaoEnabling::registerOf(Step step) const noexcept {
 }
 
 void DamiaoEnabling::update(MonotonicTime now) noexcept {
-  if (step_ >= kDone || send_ || now - sent_at_ < kPatience) return;
-  if (sent_ < kTries) {
+  if (step_ >= kDone || send_ || now - sent_at_ < kRegisterPatience) return;
+  if (sent_ < kRegisterTries) {
     send_ = true;
     return;
   }

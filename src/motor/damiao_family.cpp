@@ -12,7 +12,7 @@ using damiao::kKpMax;
 
 constexpr double kLongestWatchdogMs = 10'000.0;
 
-constexpr std::array kKeys{
+constexpr std::array kDamiaoKeys{
     FamilyKey{
         .name = "master_id",
         .kind = FamilyKey::Kind::kInteger,
@@ -110,7 +110,7 @@ class DamiaoFamily final : public MotorFamily {
   [[nodiscard]] std::span<const std::string_view> models() const noexcept override {
     return damiaoModelNames();
   }
-  [[nodiscard]] std::span<const FamilyKey> keys() const noexcept override { return kKeys; }
+  [[nodiscard]] std::span<const FamilyKey> keys() const noexcept override { return kDamiaoKeys; }
   [[nodiscard]] MotorTraits traits(std::string_view name, const OwnValues& own) const override;
   [[nodiscard]] Result<void> check(const MotorSettings& settings) const override;
   [[nodiscard]] BusUse busUse(const MotorSettings& settings) const override;

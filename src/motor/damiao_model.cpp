@@ -24,7 +24,7 @@ constexpr DamiaoGains kHubGains{0.02, 0.5, 0.01};
 // are shares of that, their torques are right.
 constexpr float fullScaleTorque(float t_max_nm, float current_max_a) { return t_max_nm / current_max_a; }
 
-constexpr std::array kModels{
+constexpr std::array kDamiaoModels{
     DamiaoModel{.name = "DM3507",
                 .scale = {12.566, 50.0, 5.0},  // the vendor's C++ routine has 10 Nm; its drive says 5
                 .gear_ratio = 7.0,
@@ -153,22 +153,22 @@ constexpr std::array kModels{
                 .gains = kDirectGains},
 };
 
-constexpr auto kNames = [] {
-  std::array<std::string_view, kModels.size()> names{};
-  for (std::size_t i = 0; i < kModels.size(); ++i) names[i] = kModels[i].name;
+constexpr auto kDamiaoNames = [] {
+  std::array<std::string_view, kDamiaoModels.size()> names{};
+  for (std::size_t i = 0; i < kDamiaoModels.size(); ++i) names[i] = kDamiaoModels[i].name;
   return names;
 }();
 
 }  // namespace
 
-std::span<const DamiaoModel> damiaoModels() noexcept { return kModels; }
+std::span<const DamiaoModel> damiaoModels() noexcept { return kDamiaoModels; }
 
-std::span<const std::string_view> damiaoModelNames() noexcept { return kNames; }
+std::span<const std::string_view> damiaoModelNames() noexcept { return kDamiaoNames; }
 
 const DamiaoModel* findDamiaoModel(std::string_view name) noexcept {
-  const auto* found =
-      std::find_if(kModels.begin(), kModels.end(), [name](const auto& model) { return model.name == name; });
-  return found != kModels.end() ? found : nullptr;
+  const auto* found = std::find_if(kDamiaoModels.begin(), kDamiaoModels.end(),
+                                   [name](const auto& model) { return model.name == name; });
+  return found != kDamiaoModels.end() ? found : nullptr;
 }
 
 DamiaoControl damiaoControl(std::string_view name) noexcept {

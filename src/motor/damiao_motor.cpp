@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "app/limits.hpp"
 #include "app/units.hpp"
 
 namespace rc10 {
@@ -14,13 +15,11 @@ namespace {
 constexpr std::size_t kFrameLength = 8;
 // So often a drive is told to clear its faults before it is given up.
 constexpr int kClears = 5;
-constexpr Duration kAskEvery = std::chrono::milliseconds{20};
+constexpr Duration kPositionAskedEvery = std::chrono::milliseconds{20};
 // The drive turns at most so much faster than its no-load speed: a full battery, a load that drives.
 constexpr double kOverspeed = 1.3;
 // A float still tells tenths of a degree here; nobody needs more turns.
-constexpr double kFarthestRad = 1e4;
-
-double finiteOr0(double value) noexcept { return std::isfinite(value) ? value : 0.0; }
+constexpr double kFarthestTargetRad = 1e4;
 
 double fastest(const MotorSettings& settings, const DamiaoScale& scale) {
   const auto* model = findDamiaoModel(settings.model);
@@ -29,10 +28,6 @@ double fastest(const MotorSettings& settings, const DamiaoScale& scale) {
 }
 
 /// Turns of the drive's own output per turn of the shaft.
-double driveTurns(const MotorSettings& settings, const MotorTraits& traits) {
-  return settings.gear_ratio > 0.0 ? settings.gear_ratio / traits.gear_ratio : 1.0;
-}
-
 }  // namespace
 
 Damiao_Motor::Damiao_Motor(const MotorSettings& settings)
@@ -54,7 +49,7 @@ Damiao_Motor::Damiao_Motor(const MotorSettings& settings)
                         (traits().no_load_rpm > 0.0F
                              ? static_cast<double>(traits().no_load_rpm) * kRadPerSPerRpm
                              : own_.scale.v_max_rad_s)),
-      heard_within_(kAskEvery + 2 * std::max(settings.command_divider, 1) * tickPeriod()),
+      heard_within_(kPositionAskedEvery + 2 * std::max(settings.command_divider, 1) * tickPeriod()),
       position_(own_.scale, fastest(settings, own_.scale)),
       enabling_({.id = settings.id, .control = own_.control, .timeout = own_.timeout, .scale = own_.scale}),
       setup_codec_(settings.id, own_.can_fd) {
@@ -292,12 +287,12 @@ void Damiao_Motor::positionCommand(const Target& target) noexcept {
   double rad = 0.0;
   if (moves) {
     const double wanted_rad = drivePositionFor(target.value) * kRadPerDeg;
-    rad = std::clamp(wanted_rad, -kFarthestRad, kFarthestRad);
+    rad = std::clamp(wanted_rad, -kFarthestTargetRad, kFarthestTargetRad);
     if (rad != wanted_rad) limits_ |= kLimitAngle;
     stay_rad_.reset();
   } else {
     // With a limit of 0 the position is not even looked at; it is there for a firmware that does.
-    if (!stay_rad_) stay_rad_ = std::clamp(position_.rad(), -kFarthestRad, kFarthestRad);
+    if (!stay_rad_) stay_rad_ = std::clamp(position_.rad(), -kFarthestTargetRad, kFarthestTargetRad);
     rad = *stay_rad_;
   }
   const double limit_rad_s = moves ? fastestRadS() : 0.0;
@@ -323,7 +318,8 @@ CanFrame Damiao_Motor::specialFrame(Special command) const noexcept {
 
 bool Damiao_Motor::asksPosition(const Tick& tick) noexcept {
   if (position_.known() || feedback_.samples == 0 || ordered() == FrameKind::kEnable) return false;
-  if (tick.now - feedback_.received > heard_within_ || tick.now - asked_position_ < kAskEvery) return false;
+  if (tick.now - feedback_.received > heard_within_ || tick.now - asked_position_ < kPositionAskedEvery)
+    return false;
   asked_position_ = tick.now;
   return true;
 }

@@ -16,7 +16,7 @@ constexpr double kSlackRad = 0.1;
 // Between the register and the feedback next to it the motor turns on.
 constexpr double kAskedApartSeconds = 0.05;
 // No count of a drive is as large; keeps garbage from overflowing.
-constexpr double kFarthestRad = 1e7;
+constexpr double kFarthestCountRad = 1e7;
 
 }  // namespace
 
@@ -58,7 +58,7 @@ DamiaoPosition::Step DamiaoPosition::take(std::uint16_t code, MonotonicTime rece
 DamiaoPosition::Wrap DamiaoPosition::take(float register_rad) noexcept {
   const double asked_rad = static_cast<double>(register_rad);
   // NaN is a contradiction, too.
-  if (!begun_ || !(std::fabs(asked_rad) < kFarthestRad)) return Wrap::kContradiction;
+  if (!begun_ || !(std::fabs(asked_rad) < kFarthestCountRad)) return Wrap::kContradiction;
   const double wraps = std::round((asked_rad - rad()) / (kWrap * step_rad_));
   const double apart_rad = std::fabs(asked_rad - rad() - wraps * kWrap * step_rad_);
   if (apart_rad > kSlackRad + fastest_rad_s_ * kAskedApartSeconds) return Wrap::kContradiction;

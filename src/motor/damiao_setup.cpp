@@ -8,13 +8,13 @@ namespace {
 using damiao::Register;
 
 /// How a setting stands in its register. Numbers and ranges: DM-J manuals of 2026, "Register List".
-struct Row {
+struct SettingRegister {
   Register address;
   bool whole = false;     ///< An unsigned integer; else a float.
   double per_unit = 1.0;  ///< Of the register, for one of the setting.
 };
 
-constexpr std::array kSettings{
+constexpr std::array kDamiaoSettings{
     DriveSetting{.name = "timeout_ms", .min = 0, .max = 10'000},
     DriveSetting{.name = "control_mode", .min = 1, .max = 4, .integer = true},
     DriveSetting{.name = "under_voltage_v", .min = 10, .max = 100},
@@ -31,25 +31,25 @@ constexpr std::array kSettings{
     DriveSetting{.name = "id", .min = 1, .max = damiao::kMaxId, .integer = true, .identity = true},
 };
 
-constexpr std::array kRows{
-    Row{Register::kTimeout, true, 1.0 / damiao::kTimeoutStepMs},
-    Row{Register::kControlMode, true},
-    Row{Register::kUnderVoltage},
-    Row{Register::kOverVoltage},
-    Row{Register::kOverTemperature},
-    Row{Register::kOverCurrent},
-    Row{Register::kAcceleration},
-    Row{Register::kDeceleration},
-    Row{Register::kMaxSpeed},
-    Row{Register::kPMax},
-    Row{Register::kVMax},
-    Row{Register::kTMax},
-    Row{Register::kMasterId, true},
-    Row{Register::kId, true},
+constexpr std::array kSettingRegisters{
+    SettingRegister{Register::kTimeout, true, 1.0 / damiao::kTimeoutStepMs},
+    SettingRegister{Register::kControlMode, true},
+    SettingRegister{Register::kUnderVoltage},
+    SettingRegister{Register::kOverVoltage},
+    SettingRegister{Register::kOverTemperature},
+    SettingRegister{Register::kOverCurrent},
+    SettingRegister{Register::kAcceleration},
+    SettingRegister{Register::kDeceleration},
+    SettingRegister{Register::kMaxSpeed},
+    SettingRegister{Register::kPMax},
+    SettingRegister{Register::kVMax},
+    SettingRegister{Register::kTMax},
+    SettingRegister{Register::kMasterId, true},
+    SettingRegister{Register::kId, true},
 };
-static_assert(kRows.size() == kSettings.size());
+static_assert(kSettingRegisters.size() == kDamiaoSettings.size());
 
-constexpr DriveSetup kSetup{.settings = kSettings, .tool = "the DM Debug Tool"};
+constexpr DriveSetup kDamiaoSetup{.settings = kDamiaoSettings, .tool = "the DM Debug Tool"};
 
 std::optional<damiao::RegisterReply> replyIn(const CanFrame& frame, int id) noexcept {
   if (frame.type != FrameType::kData || frame.length != 8) return std::nullopt;
@@ -58,7 +58,7 @@ std::optional<damiao::RegisterReply> replyIn(const CanFrame& frame, int id) noex
 
 }  // namespace
 
-const DriveSetup& damiaoSetup() noexcept { return kSetup; }
+const DriveSetup& damiaoSetup() noexcept { return kDamiaoSetup; }
 
 CanFrame DamiaoSetupCodec::toRegisters(const damiao::Payload& payload) const noexcept {
   constexpr CanId kTo{damiao::kRegisterId, false};
@@ -66,7 +66,7 @@ CanFrame DamiaoSetupCodec::toRegisters(const damiao::Payload& payload) const noe
 }
 
 CanFrame DamiaoSetupCodec::write(const DriveValue& value) const noexcept {
-  const auto& row = kRows[value.setting];
+  const auto& row = kSettingRegisters[value.setting];
   const double raw = value.value * row.per_unit;
   const auto bits =
       row.whole ? static_cast<std::uint32_t>(std::lround(raw)) : damiao::bitsOf(static_cast<float>(raw));
@@ -74,12 +74,12 @@ CanFrame DamiaoSetupCodec::write(const DriveValue& value) const noexcept {
 }
 
 std::optional<CanFrame> DamiaoSetupCodec::read(std::size_t setting) const noexcept {
-  return toRegisters(damiao::readRegister(id_, kRows[setting].address));
+  return toRegisters(damiao::readRegister(id_, kSettingRegisters[setting].address));
 }
 
 std::optional<double> DamiaoSetupCodec::reading(std::size_t setting, const CanFrame& frame) const noexcept {
   const auto reply = replyIn(frame, id_);
-  const auto& row = kRows[setting];
+  const auto& row = kSettingRegisters[setting];
   if (!reply || reply->written || reply->address != row.address) return std::nullopt;
   const double raw =
       row.whole ? static_cast<double>(reply->value) : static_cast<double>(damiao::floatOf(reply->value));
@@ -95,6 +95,6 @@ bool DamiaoSetupCodec::saysSaved(const CanFrame& frame) const noexcept {
   return reply && reply->written && reply->address == Register{};
 }
 
-std::optional<std::size_t> DamiaoSetupCodec::idSetting() const noexcept { return kSettings.size() - 1; }
+std::optional<std::size_t> DamiaoSetupCodec::idSetting() const noexcept { return kDamiaoSettings.size() - 1; }
 
 }  // namespace rc10

@@ -10,7 +10,7 @@ namespace rc10 {
 namespace {
 
 constexpr std::array<std::string_view, 2> kCommands{"current", "voltage"};
-constexpr std::array kKeys{
+constexpr std::array kDjiKeys{
     FamilyKey{.name = "command",
               .kind = FamilyKey::Kind::kChoice,
               .choices = kCommands,
@@ -33,7 +33,7 @@ class DjiFamily final : public MotorFamily {
     static const std::array<std::string_view, 3> kNames{kM3508.name, kM2006.name, kGM6020.name};
     return kNames;
   }
-  [[nodiscard]] std::span<const FamilyKey> keys() const noexcept override { return kKeys; }
+  [[nodiscard]] std::span<const FamilyKey> keys() const noexcept override { return kDjiKeys; }
 
   [[nodiscard]] MotorTraits traits(std::string_view name, const OwnValues& own) const override {
     const DjiModel& model = *findDjiModel(name);

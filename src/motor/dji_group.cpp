@@ -15,11 +15,6 @@ std::string hex(std::uint32_t id) {
   return text;
 }
 
-std::string describe(const DJI_Motor& motor) {
-  return "motor '" + std::string{motor.name()} + "' (" + std::string{motor.modelName()} + " id " +
-         std::to_string(motor.driveId()) + ")";
-}
-
 /// C620 and C610 drives share a protocol; GM6020 has one of its own.
 bool isGM6020(const DJI_Motor& motor) noexcept { return motor.model().absolute_output; }
 
@@ -36,7 +31,7 @@ DJI_Group::DJI_Group(CanId command_id) : ids_{command_id}, name_("DJI group " + 
 
 Result<void> DJI_Group::registerMotor(DJI_Motor& motor) {
   const CanId id = ids_[0];
-  const std::string who = name_ + " refuses " + describe(motor) + ": ";
+  const std::string who = name_ + " refuses " + describe(motor, motor.driveId()) + ": ";
   if (id.extended || std::find(kCommandIds.begin(), kCommandIds.end(), id.value) == kCommandIds.end()) {
     return fail(who + "no DJI drive listens to this id; they do to 0x200, 0x1FF, 0x2FF, 0x1FE and 0x2FE");
   }
@@ -46,13 +41,13 @@ Result<void> DJI_Group::registerMotor(DJI_Motor& motor) {
     if (member == &motor) return fail(who + "it is registered already");
     if (isGM6020(*member) != isGM6020(motor)) {
       return fail(
-          who + "it would share the frame with " + describe(*member) +
+          who + "it would share the frame with " + describe(*member, member->driveId()) +
           ", but one frame carries either currents for C620 and C610 or voltages for GM6020; give the "
           "GM6020 an id of 5-7, or command: current");
     }
   }
   DJI_Motor*& slot = slots_[static_cast<std::size_t>(motor.slot())];
-  if (slot != nullptr) return fail(who + "its slot belongs to " + describe(*slot));
+  if (slot != nullptr) return fail(who + "its slot belongs to " + describe(*slot, slot->driveId()));
   slot = &motor;
   return {};
 }

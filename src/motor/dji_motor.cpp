@@ -22,7 +22,7 @@ std::int16_t signedBigEndian(const CanFrame& frame, std::size_t at) noexcept {
   return static_cast<std::int16_t>(bigEndian(frame, at));
 }
 
-bool controlsAngle(ControlMode mode) noexcept {
+bool isAngle(ControlMode mode) noexcept {
   return mode == ControlMode::kAngle || mode == ControlMode::kTotalAngle;
 }
 
@@ -114,7 +114,7 @@ bool DJI_Motor::setZero(double angle_deg) noexcept {
 }
 
 void DJI_Motor::restoreReference(ControlMode followed) noexcept {
-  if (!absolute_ || !encoder_.referenceLost() || controlsAngle(followed)) return;
+  if (!absolute_ || !encoder_.referenceLost() || isAngle(followed)) return;
   setReference(shortestAngle(0.0, feedback_.total_angle_deg));
   encoder_.acknowledgeLoss();
   feedback_.zeroed = true;

@@ -5,11 +5,11 @@
 namespace rc10 {
 namespace {
 
-constexpr int kTries = 5;
+constexpr int kSettingTries = 5;
 // Flash wears: RAM may be written more often.
 constexpr int kStoringTries = 3;
 constexpr Duration kSettling = std::chrono::milliseconds{10};
-constexpr Duration kPatience = std::chrono::milliseconds{50};
+constexpr Duration kSettingPatience = std::chrono::milliseconds{50};
 // A drive at rest is told something in every tick or two. One that has not answered for so long does not
 // answer to this id any more.
 constexpr Duration kSilence = std::chrono::milliseconds{250};
@@ -75,10 +75,10 @@ void DriveConfiguring::lookForReading(MonotonicTime now) noexcept {
   if (changesIdentity()) {
     if (now - sent_at_ < kSilence) return;
     if (!heard_) return next();
-  } else if (!reading_ && now - sent_at_ < kPatience) {
+  } else if (!reading_ && now - sent_at_ < kSettingPatience) {
     return;
   }
-  const int most = codec_.setup().stores_at_once ? kStoringTries : kTries;
+  const int most = codec_.setup().stores_at_once ? kStoringTries : kSettingTries;
   if (tries_ < most) {
     phase_ = Phase::kWrite;
   } else {

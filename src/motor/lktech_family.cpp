@@ -8,7 +8,7 @@
 namespace rc10 {
 namespace {
 
-constexpr std::array<FamilyKey, 3> kKeys{{
+constexpr std::array<FamilyKey, 3> kLktechKeys{{
     {.name = "group",
      .kind = FamilyKey::Kind::kFlag,
      .default_text = "false",
@@ -30,20 +30,20 @@ constexpr std::array<FamilyKey, 3> kKeys{{
      .about = "Of the encoder value in answers; 16 also for encoders of 18 bits."},
 }};
 
-constexpr DriveFrames kFrames{.rest = Provision::kFrame,
-                              .poll = Provision::kFrame,
-                              .idle = Provision::kFrame,
-                              .damp = Provision::kUnsupported,
-                              .brake = Provision::kFrame,
-                              .hold = Provision::kFrame,
-                              .enable = Provision::kFrame,
-                              .disable = Provision::kNothing};
+constexpr DriveFrames kLktechFrames{.rest = Provision::kFrame,
+                                    .poll = Provision::kFrame,
+                                    .idle = Provision::kFrame,
+                                    .damp = Provision::kUnsupported,
+                                    .brake = Provision::kFrame,
+                                    .hold = Provision::kFrame,
+                                    .enable = Provision::kFrame,
+                                    .disable = Provision::kNothing};
 
 class LKTechFamily final : public MotorFamily {
  public:
   [[nodiscard]] std::string_view name() const noexcept override { return "LK-Tech"; }
   [[nodiscard]] std::span<const std::string_view> models() const noexcept override { return lktechModels(); }
-  [[nodiscard]] std::span<const FamilyKey> keys() const noexcept override { return kKeys; }
+  [[nodiscard]] std::span<const FamilyKey> keys() const noexcept override { return kLktechKeys; }
 
   [[nodiscard]] MotorTraits traits(std::string_view name, const OwnValues& own) const override {
     const LKTechModel* const found = findLktechModel(name);
@@ -63,7 +63,7 @@ class LKTechFamily final : public MotorFamily {
     traits.asked = true;
     static constexpr DriveSetup kSetup{.tool = "LK Motor Tool (over its serial port)"};
     traits.setup = &kSetup;
-    traits.frames = kFrames;
+    traits.frames = kLktechFrames;
     traits.modes = ModeSet{ControlMode::kCoast, ControlMode::kCurrent,    ControlMode::kVelocity,
                            ControlMode::kAngle, ControlMode::kTotalAngle, ControlMode::kBrake};
     if (own.flag("group")) {

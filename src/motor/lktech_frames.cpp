@@ -8,7 +8,6 @@
 namespace rc10::lktech {
 namespace {
 
-constexpr double kDegPerRaw = 0.01;
 constexpr double kVoltsPerRaw = 0.01;
 constexpr std::uint8_t kOffState = 0x10;
 

@@ -16,6 +16,7 @@ inline constexpr std::uint32_t kGroupId = 0x280;  ///< Currents of the ids 1 to 
 inline constexpr int kMaxId = 32;
 inline constexpr int kGroupSize = 4;
 inline constexpr std::uint8_t kLength = 8;
+inline constexpr double kDegPerRaw = 0.01;
 inline constexpr int kRawCurrentMax = 2048;
 inline constexpr int kRawGroupCurrentMax = 2000;
 

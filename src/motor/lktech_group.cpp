@@ -3,24 +3,15 @@
 #include <algorithm>
 
 namespace rc10 {
-namespace {
-
-std::string describe(const LKTech_Motor& motor) {
-  return "motor '" + std::string{motor.name()} + "' (" + std::string{motor.modelName()} + " id " +
-         std::to_string(motor.driveId()) + ")";
-}
-
-}  // namespace
-
 Result<void> LKTech_Group::registerMotor(LKTech_Motor& motor) {
-  const std::string who = std::string{packerName()} + " refuses " + describe(motor) + ": ";
+  const std::string who = std::string{packerName()} + " refuses " + describe(motor, motor.driveId()) + ": ";
   if (motor.driveId() < 1 || motor.driveId() > lktech::kGroupSize) {
     return fail(who + "its frame has room for the ids 1 to 4 only; give it one of them, or group: false");
   }
   if (!motor.grouped()) return fail(who + "it sends its currents itself");
   LKTech_Motor*& slot = slots_[static_cast<std::size_t>(motor.driveId() - 1)];
   if (slot == &motor) return fail(who + "it is registered already");
-  if (slot != nullptr) return fail(who + "its slot belongs to " + describe(*slot));
+  if (slot != nullptr) return fail(who + "its slot belongs to " + describe(*slot, slot->driveId()));
   slot = &motor;
   return {};
 }

@@ -14,8 +14,8 @@ constexpr double kMgAmperes = 66.0 / 4096.0;
 // hardware/device/lk_motor.hpp, after the manufacturer's documents. MF9025 is the winding 16T with 0.32 N·m/A
 // (HNUYueLuRM/basic_framework, offisaac/23_Balance_Second; the winding 35T has 0.81) and 4.2 N·m of peak
 // torque.
-constexpr LKTechModel model(std::string_view name, double gear, double amperes_per_raw, float rotor_nm_per_a,
-                            float peak_nm) {
+constexpr LKTechModel lktechModel(std::string_view name, double gear, double amperes_per_raw,
+                                  float rotor_nm_per_a, float peak_nm) {
   return {.name = name,
           .gear_ratio = gear,
           .amperes_per_raw = amperes_per_raw,
@@ -23,27 +23,27 @@ constexpr LKTechModel model(std::string_view name, double gear, double amperes_p
           .rotor_torque_nm_per_a = rotor_nm_per_a};
 }
 
-constexpr std::array kModels{
+constexpr std::array kLktechModels{
     // Any other direct drive: the current command itself is the limit.
     LKTechModel{.name = "LK-MF", .amperes_per_raw = kMfAmperes, .peak_current_a = 16.5F},
     LKTechModel{.name = "LK-MHF", .amperes_per_raw = kMgAmperes, .peak_current_a = 33.0F},
-    model("LK-MF9025", 1.0, kMfAmperes, 0.32F, 4.2F),
-    model("LK-MHF7015", 1.0, kMgAmperes, 0.51F, 2.42F),
-    model("LK-MG4005E-i10", 10.0, kMgAmperes, 0.06F, 2.5F),
-    model("LK-MG4010E-i10", 10.0, kMgAmperes, 0.07F, 4.5F),
-    model("LK-MG5010E-i10", 10.0, kMgAmperes, 0.1F, 7.0F),
-    model("LK-MG5010E-i36", 36.0, kMgAmperes, 0.3F, 25.0F),
-    model("LK-MG6012E-i8", 8.0, kMgAmperes, 1.09F / 8.0F, 16.0F),
+    lktechModel("LK-MF9025", 1.0, kMfAmperes, 0.32F, 4.2F),
+    lktechModel("LK-MHF7015", 1.0, kMgAmperes, 0.51F, 2.42F),
+    lktechModel("LK-MG4005E-i10", 10.0, kMgAmperes, 0.06F, 2.5F),
+    lktechModel("LK-MG4010E-i10", 10.0, kMgAmperes, 0.07F, 4.5F),
+    lktechModel("LK-MG5010E-i10", 10.0, kMgAmperes, 0.1F, 7.0F),
+    lktechModel("LK-MG5010E-i36", 36.0, kMgAmperes, 0.3F, 25.0F),
+    lktechModel("LK-MG6012E-i8", 8.0, kMgAmperes, 1.09F / 8.0F, 16.0F),
 };
 
-constexpr auto kNames = [] {
-  std::array<std::string_view, kModels.size()> names{};
-  for (std::size_t i = 0; i < names.size(); ++i) names[i] = kModels[i].name;
+constexpr auto kLktechNames = [] {
+  std::array<std::string_view, kLktechModels.size()> names{};
+  for (std::size_t i = 0; i < names.size(); ++i) names[i] = kLktechModels[i].name;
   return names;
 }();
 
 // Bits 0 and 3: protocol V2.35. The others: open drivers for MF9025, which agree; V2.35 calls them unused.
-constexpr std::array<LKTechFault, 8> kFaults{{
+constexpr std::array<LKTechFault, 8> kLktechFaults{{
     {0x20, FaultCode::kDriveHardware, "short circuit"},
     {0x10, FaultCode::kDriveOverCurrent, "over-current"},
     {0x40, FaultCode::kDriveStalled, "motor stalled"},
@@ -56,18 +56,18 @@ constexpr std::array<LKTechFault, 8> kFaults{{
 
 }  // namespace
 
-std::span<const std::string_view> lktechModels() noexcept { return kNames; }
+std::span<const std::string_view> lktechModels() noexcept { return kLktechNames; }
 
 const LKTechModel* findLktechModel(std::string_view name) noexcept {
-  const auto* const found =
-      std::find_if(kModels.begin(), kModels.end(), [name](const LKTechModel& m) { return m.name == name; });
-  return found == kModels.end() ? nullptr : found;
+  const auto* const found = std::find_if(kLktechModels.begin(), kLktechModels.end(),
+                                         [name](const LKTechModel& m) { return m.name == name; });
+  return found == kLktechModels.end() ? nullptr : found;
 }
 
-std::span<const LKTechFault> lktechFaults() noexcept { return kFaults; }
+std::span<const LKTechFault> lktechFaults() noexcept { return kLktechFaults; }
 
 DriveComplaint lktechComplaint(std::uint8_t errors) noexcept {
-  for (const LKTechFault& fault : kFaults) {
+  for (const LKTechFault& fault : kLktechFaults) {
     if ((errors & fault.bit) != 0) return {.fault = fault.fault, .native_code = errors};
   }
   return {};

@@ -10,35 +10,23 @@
 
 namespace rc10 {
 
-using lktech::Code;
-
 namespace {
 
-constexpr double kDegPerRaw = 0.01;
-constexpr double kNoLimitDegS = 65535.0;
+constexpr double kLktechNoLimitDegS = 65535.0;
 
-constexpr Duration kStepPatience = std::chrono::milliseconds{50};
-constexpr int kMostTries = 5;
-constexpr Duration kQuerySpacing = std::chrono::milliseconds{50};
-constexpr Duration kUrgentQuerySpacing = std::chrono::milliseconds{10};
+constexpr Duration kLktechStepPatience = std::chrono::milliseconds{50};
+constexpr int kLktechStepTries = 5;
+constexpr Duration kLktechQuerySpacing = std::chrono::milliseconds{50};
+constexpr Duration kLktechUrgentQuerySpacing = std::chrono::milliseconds{10};
 /// After a shorter silence the drive has not been restarted, and the encoder shows which way it went.
-constexpr Duration kRestartSilence = std::chrono::milliseconds{100};
+constexpr Duration kLktechRestartSilence = std::chrono::milliseconds{100};
 /// A frame with the shape of a command is a reply only if the motor is known to be about so cold.
-constexpr float kNearZeroC = 2.0F;
+constexpr float kLktechNearZeroC = 2.0F;
 constexpr int kZeroAnglesBelieved = 3;
 /// So slow that encoder and multi-turn angle are of the same moment.
 constexpr float kStandingRpm = 1.0F;
 /// By how much the two may differ for other reasons.
 constexpr double kSameAngleDeg = 1.0;
-
-[[nodiscard]] MotorSettings asAsked(MotorSettings settings) {
-  settings.feedback_hz = std::max(settings.tick_hz / std::max(settings.command_divider, 1), 1);
-  return settings;
-}
-
-[[nodiscard]] double driveTurns(const MotorSettings& settings, const MotorTraits& traits) {
-  return settings.gear_ratio > 0.0 ? settings.gear_ratio / traits.gear_ratio : 1.0;
-}
 
 [[nodiscard]] double amperesPerRaw(const std::string& model) {
   const LKTechModel* const found = findLktechModel(model);
@@ -48,7 +36,7 @@ constexpr double kSameAngleDeg = 1.0;
 }  // namespace
 
 LKTech_Motor::LKTech_Motor(const MotorSettings& settings, const MotorTraits& traits)
-    : SoloMotor(asAsked(settings), traits, driveTurns(settings, traits)),
+    : SoloMotor(withFeedbackOfCommands(settings, 1), traits, driveTurns(settings, traits)),
       id_(settings.id),
       grouped_(settings.own.flag("group")),
       amperes_per_raw_(amperesPerRaw(settings.model)),
@@ -65,7 +53,7 @@ bool LKTech_Motor::matchesFrame(const CanFrame& frame) const noexcept {
 
 bool LKTech_Motor::isReply(const CanFrame& frame) const noexcept {
   if (!lktech::looksLikeCommand(frame.payload())) return true;
-  return !frame.sent_here && std::abs(feedback_.temperature_c) <= kNearZeroC;
+  return !frame.sent_here && std::abs(feedback_.temperature_c) <= kLktechNearZeroC;
 }
 
 FrameVerdict LKTech_Motor::updateFeedback(const CanFrame& frame) noexcept {
@@ -73,17 +61,17 @@ FrameVerdict LKTech_Motor::updateFeedback(const CanFrame& frame) noexcept {
     return FrameVerdict::kMalformed;
   }
   switch (lktech::codeOf(frame.payload())) {
-    case Code::kReading:
-    case Code::kCurrent:
-    case Code::kVelocity:
-    case Code::kPosition:
+    case lktech::Code::kReading:
+    case lktech::Code::kCurrent:
+    case lktech::Code::kVelocity:
+    case lktech::Code::kPosition:
       if (isReply(frame)) acceptReading(frame);
       break;
-    case Code::kStatus:
-    case Code::kClear:
+    case lktech::Code::kStatus:
+    case lktech::Code::kClear:
       if (isReply(frame)) acceptStatus(frame);
       break;
-    case Code::kAngle: acceptTurns(frame); break;
+    case lktech::Code::kAngle: acceptTurns(frame); break;
     default: break;  // the copy of a command; the reply to another controller's question
   }
   return FrameVerdict::kAccepted;
@@ -103,7 +91,7 @@ void LKTech_Motor::acceptReading(const CanFrame& frame) noexcept {
   if (torqueNmPerA() > 0.0F) feedback_.torque_nm = feedback_.current_a * torqueNmPerA();
   feedback_.velocity_rpm =
       static_cast<float>(toOutput(reading.rotor_deg_s / traits().gear_ratio) / kDegPerSPerRpm);
-  if (silence > kRestartSilence && counted_) {
+  if (silence > kLktechRestartSilence && counted_) {
     counted_ = false;
     next_query_ = {};
   }
@@ -117,7 +105,7 @@ void LKTech_Motor::acceptReading(const CanFrame& frame) noexcept {
   }
   encoder_ = reading.encoder;
   if (counted_) acceptSample(frame.received, position_deg_);
-  if (lktech::codeOf(frame.payload()) == Code::kCurrent) answered(Step::kObey);
+  if (lktech::codeOf(frame.payload()) == lktech::Code::kCurrent) answered(Step::kObey);
 }
 
 void LKTech_Motor::acceptStatus(const CanFrame& frame) noexcept {
@@ -136,9 +124,9 @@ void LKTech_Motor::acceptTurns(const CanFrame& frame) noexcept {
   zero_angles_ = lktech::looksLikeCommand(frame.payload()) ? zero_angles_ + 1 : 0;
   if (zero_angles_ > 0 && zero_angles_ < kZeroAnglesBelieved) return;
   if (!encoder_) return;
-  const double angle_deg = static_cast<double>(raw) * kDegPerRaw / traits().gear_ratio;
+  const double angle_deg = static_cast<double>(raw) * lktech::kDegPerRaw / traits().gear_ratio;
   // 32 bits of the rotor's angle end somewhere.
-  const double reach_deg = 4294967296.0 * kDegPerRaw / traits().gear_ratio;
+  const double reach_deg = 4294967296.0 * lktech::kDegPerRaw / traits().gear_ratio;
   const double off_deg = shortestWay(position_deg_ + shift_deg_, angle_deg, reach_deg);
   if (!counted_ || std::abs(off_deg) > 180.0) {
     const bool lost = was_counted_ && std::abs(off_deg) > 180.0;
@@ -184,9 +172,9 @@ void LKTech_Motor::update(const Tick& tick) noexcept {
   const bool begins = ordered() != last_ordered_;
   last_ordered_ = ordered();
   if (ordered() == FrameKind::kEnable && begins) beginSequence();
-  if (std::exchange(clear_, false)) send(lktech::request(id_, Code::kClear));
+  if (std::exchange(clear_, false)) send(lktech::request(id_, lktech::Code::kClear));
   // A drive that is just starting must not find an angle of its former life waiting for it.
-  if (!heard_ || tick.now - *heard_ > kRestartSilence) counted_ = false;
+  if (!heard_ || tick.now - *heard_ > kLktechRestartSilence) counted_ = false;
   told_ = due(tick);
   if (!told_) return;
 
@@ -205,10 +193,10 @@ void LKTech_Motor::update(const Tick& tick) noexcept {
 
 void LKTech_Motor::sendQueries(const Tick& tick) noexcept {
   if (tick.now < next_query_) return;
-  next_query_ = tick.now + (counted_ ? kQuerySpacing : kUrgentQuerySpacing);
+  next_query_ = tick.now + (counted_ ? kLktechQuerySpacing : kLktechUrgentQuerySpacing);
   // It is not taken without a temperature.
   ask_turns_ = std::isnan(feedback_.voltage_v) ? false : !ask_turns_;
-  send(lktech::request(id_, ask_turns_ ? Code::kAngle : Code::kStatus));
+  send(lktech::request(id_, ask_turns_ ? lktech::Code::kAngle : lktech::Code::kStatus));
 }
 
 void LKTech_Motor::release() noexcept {
@@ -252,12 +240,13 @@ void LKTech_Motor::followVelocity(double output_rpm) noexcept {
 void LKTech_Motor::followAngle(double total_angle_deg) noexcept {
   if (feedback_.samples == 0 || !std::isfinite(total_angle_deg)) return release();
   const double rotor_deg = (drivePositionFor(total_angle_deg) + shift_deg_) * traits().gear_ratio;
-  constexpr double kReachDeg = 2147483647.0 * kDegPerRaw;
+  constexpr double kReachDeg = 2147483647.0 * lktech::kDegPerRaw;
   if (std::abs(rotor_deg) > kReachDeg) limits_ |= kLimitAngle;
   if (std::abs(feedback_.current_a) >= effortLimit()) limits_ |= kLimitCurrent;
   const auto limit_rpm = static_cast<double>(velocityLimitRpm());
-  const double limit_deg_s =
-      limit_rpm > 0.0 ? std::abs(toDrive(limit_rpm)) * traits().gear_ratio * kDegPerSPerRpm : kNoLimitDegS;
+  const double limit_deg_s = limit_rpm > 0.0
+                                 ? std::abs(toDrive(limit_rpm)) * traits().gear_ratio * kDegPerSPerRpm
+                                 : kLktechNoLimitDegS;
   setCommand(total_angle_deg, CommandUnit::kNative);
   send(lktech::positionCommand(id_, rotor_deg, limit_deg_s));
 }
@@ -295,11 +284,11 @@ void LKTech_Motor::beginSequence() noexcept {
 
 void LKTech_Motor::sendStep() noexcept {
   switch (step_) {
-    case Step::kStatus: return send(lktech::request(id_, Code::kStatus));
+    case Step::kStatus: return send(lktech::request(id_, lktech::Code::kStatus));
     case Step::kTurnOn:
-      send(lktech::request(id_, Code::kOn));
-      return send(lktech::request(id_, Code::kStatus));
-    case Step::kTurns: return send(lktech::request(id_, Code::kAngle));
+      send(lktech::request(id_, lktech::Code::kOn));
+      return send(lktech::request(id_, lktech::Code::kStatus));
+    case Step::kTurns: return send(lktech::request(id_, lktech::Code::kAngle));
     case Step::kObey:
     case Step::kDone: break;  // the current of 0 that it is told anyway
   }
@@ -308,8 +297,8 @@ void LKTech_Motor::sendStep() noexcept {
 void LKTech_Motor::runSequence(const Tick& tick) noexcept {
   release();
   if (failed_ || step_ == Step::kDone) return;
-  if (tries_ > 0 && tick.now - asked_at_ < kStepPatience) return;
-  if (tries_ == kMostTries) {
+  if (tries_ > 0 && tick.now - asked_at_ < kLktechStepPatience) return;
+  if (tries_ == kLktechStepTries) {
     failed_ = true;
     return;
   }

@@ -18,7 +18,7 @@ constexpr double kClockRangeMs = 65'536.0;
 constexpr double kLongestGapMs = 30'000.0;
 constexpr double kClockToleranceMs = 200.0;
 
-[[nodiscard]] double milliseconds(Duration duration) noexcept {
+[[nodiscard]] double inMilliseconds(Duration duration) noexcept {
   return std::chrono::duration<double, std::milli>(duration).count();
 }
 
@@ -90,7 +90,7 @@ bool Moteus_Motor::restarted(MonotonicTime received, double clock_ms) noexcept {
   clock_ms_ = clock_ms < 0.0 ? clock_ms + kClockRangeMs : clock_ms;
   clock_read_ = received;
   if (!before) return false;
-  const double passed_ms = milliseconds(received - *before);
+  const double passed_ms = inMilliseconds(received - *before);
   if (passed_ms > kLongestGapMs) return true;
   const double off_ms = std::remainder(clock_ms_ - before_ms - passed_ms, kClockRangeMs);
   return std::abs(off_ms) > kClockToleranceMs && clock_ms_ <= passed_ms + kClockToleranceMs;

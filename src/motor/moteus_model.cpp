@@ -14,9 +14,9 @@ namespace {
 
 using Kind = FamilyKey::Kind;
 
-constexpr std::array<std::string_view, 1> kModels{"moteus"};
+constexpr std::array<std::string_view, 1> kMoteusModels{"moteus"};
 
-constexpr std::array kKeys{
+constexpr std::array kMoteusKeys{
     FamilyKey{.name = "motor_kv_rpm_per_v",
               .kind = Kind::kNumber,
               .unit = "rpm/V",
@@ -68,21 +68,21 @@ constexpr float kFullScaleA = 100.0F;
 // Torque constant times Kv, for a star winding. Source: fw/bldc_servo.cc, UpdateConfig().
 constexpr double kTorqueFactor = 1.5 / std::numbers::sqrt3 * 30.0 / std::numbers::pi;
 
-constexpr DriveFrames kFrames{.rest = Provision::kFrame,
-                              .poll = Provision::kFrame,
-                              .idle = Provision::kFrame,
-                              .damp = Provision::kFrame,
-                              .brake = Provision::kFrame,
-                              .hold = Provision::kFrame,
-                              .enable = Provision::kFrame,
-                              .disable = Provision::kNothing};
+constexpr DriveFrames kMoteusFrames{.rest = Provision::kFrame,
+                                    .poll = Provision::kFrame,
+                                    .idle = Provision::kFrame,
+                                    .damp = Provision::kFrame,
+                                    .brake = Provision::kFrame,
+                                    .hold = Provision::kFrame,
+                                    .enable = Provision::kFrame,
+                                    .disable = Provision::kNothing};
 
 struct NativeFault {
   std::uint32_t native;
   FaultCode fault;
 };
 // Source: docs/protocol/registers.md, register 0x00F; fw/error.h.
-constexpr std::array kFaults{
+constexpr std::array kMoteusFaults{
     NativeFault{32, FaultCode::kDriveCalibration},   // no magnet sensed, or current offset
     NativeFault{33, FaultCode::kDriveHardware},      // gate driver, mostly for lack of voltage
     NativeFault{34, FaultCode::kDriveOverVoltage},   // servo.max_voltage
@@ -122,8 +122,8 @@ constexpr std::array kLimits{
 class MoteusFamily final : public MotorFamily {
  public:
   [[nodiscard]] std::string_view name() const noexcept override { return "moteus"; }
-  [[nodiscard]] std::span<const std::string_view> models() const noexcept override { return kModels; }
-  [[nodiscard]] std::span<const FamilyKey> keys() const noexcept override { return kKeys; }
+  [[nodiscard]] std::span<const std::string_view> models() const noexcept override { return kMoteusModels; }
+  [[nodiscard]] std::span<const FamilyKey> keys() const noexcept override { return kMoteusKeys; }
 
   [[nodiscard]] MotorTraits traits(std::string_view /*model*/, const OwnValues& own) const override {
     const double gear_ratio = 1.0 / moteusSettings(own).rotor_to_output_ratio;
@@ -148,7 +148,7 @@ class MoteusFamily final : public MotorFamily {
     static constexpr DriveSetup kSetup{
         .tool = "moteus_tool or tview (moteus has its settings on its diagnostic stream)"};
     traits.setup = &kSetup;
-    traits.frames = kFrames;
+    traits.frames = kMoteusFrames;
     return traits;
   }
 
@@ -208,7 +208,7 @@ MoteusSettings moteusSettings(const OwnValues& own) {
 }
 
 FaultCode moteusFault(std::uint32_t native) noexcept {
-  for (const auto& row : kFaults) {
+  for (const auto& row : kMoteusFaults) {
     if (row.native == native) return row.fault;
   }
   return FaultCode::kDriveOther;

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <cstdlib>
 
+#include "app/limits.hpp"
+
 namespace rc10 {
 namespace {
 
@@ -21,10 +23,8 @@ constexpr double kLargestAngleDeg = 1e9;  // for the state alone
 // shaft that was held up does not race after it. Half a turn is 2 N·m with the vendor's gain of 4 N·m/rev.
 constexpr double kSlipRev = 0.5;
 
-constexpr Duration kStepPatience = std::chrono::milliseconds{250};  // repeated in each tick
+constexpr Duration kMoteusStepPatience = std::chrono::milliseconds{250};  // repeated in each tick
 constexpr Duration kFresh = std::chrono::milliseconds{100};
-
-[[nodiscard]] double finite(double value) noexcept { return std::isnan(value) ? 0.0 : value; }
 
 void askForReadings(MoteusWriter& writer) noexcept {
   writer.read(MoteusType::kInt8, MoteusRegister::kMode)
@@ -133,7 +133,7 @@ void Moteus_Motor::updateSequence(const Tick& tick) noexcept {
     enter(Step::kIdentify, tick);
   }
   const bool busy = step_ != Step::kDone && step_ != Step::kFailed;
-  if (busy && (mode_ == MoteusMode::kFault || tick.now - step_began_ > kStepPatience)) {
+  if (busy && (mode_ == MoteusMode::kFault || tick.now - step_began_ > kMoteusStepPatience)) {
     fail(FaultCode::kNone, 0);
   }
   if (step_ == Step::kDone && !engaged_) step_ = Step::kFailed;
@@ -194,22 +194,22 @@ double Moteus_Motor::torqueLimitNm() const noexcept {
 
 double Moteus_Motor::boundedTorqueNm(double torque_nm) noexcept {
   const double limit_nm = torqueLimitNm();
-  const double bounded_nm = std::clamp(finite(torque_nm), -limit_nm, limit_nm);
-  if (std::abs(finite(torque_nm)) > limit_nm) limits_ |= kLimitCurrent;
+  const double bounded_nm = std::clamp(numberOr0(torque_nm), -limit_nm, limit_nm);
+  if (std::abs(numberOr0(torque_nm)) > limit_nm) limits_ |= kLimitCurrent;
   return bounded_nm;
 }
 
 double Moteus_Motor::boundedRpm(double rpm) noexcept {
   double limit_rpm = std::abs(toOutput(kFastestRevPerS * 60.0));
   if (velocityLimitRpm() > 0.0F) limit_rpm = std::min(limit_rpm, static_cast<double>(velocityLimitRpm()));
-  if (std::abs(finite(rpm)) > limit_rpm) limits_ |= kLimitVelocity;
-  return std::clamp(finite(rpm), -limit_rpm, limit_rpm);
+  if (std::abs(numberOr0(rpm)) > limit_rpm) limits_ |= kLimitVelocity;
+  return std::clamp(numberOr0(rpm), -limit_rpm, limit_rpm);
 }
 
 double Moteus_Motor::onWire(double position_rev) noexcept {
   const double away_rev = position_rev - position_rev_;
   if (!(std::abs(away_rev) <= kFarthestRev)) limits_ |= kLimitAngle;
-  const double bounded_rev = position_rev_ + std::clamp(finite(away_rev), -kFarthestRev, kFarthestRev);
+  const double bounded_rev = position_rev_ + std::clamp(numberOr0(away_rev), -kFarthestRev, kFarthestRev);
   return std::remainder(bounded_rev - wire_rev_, kRangeRev);
 }
 
@@ -227,7 +227,7 @@ void Moteus_Motor::followTorque(const Target& target) noexcept {
 void Moteus_Motor::followVelocity(const Target& target, const Tick& tick) noexcept {
   const double rpm = boundedRpm(target.value);
   const double rev_s = toDrive(rpm) / 60.0;
-  const double dt_s = std::clamp(finite(static_cast<double>(tick.dt_s)), 0.0, 0.01);
+  const double dt_s = std::clamp(numberOr0(static_cast<double>(tick.dt_s)), 0.0, 0.01);
   const double ahead_rev = course_rev_ ? *course_rev_ + rev_s * dt_s - position_rev_ : 0.0;
   const double slip_rev = kSlipRev + std::abs(rev_s) * slip_s_;
   course_rev_ = position_rev_ + std::clamp(ahead_rev, -slip_rev, slip_rev);

@@ -17,6 +17,11 @@ bool normalise(float& field) noexcept {
 
 }  // namespace
 
+std::string describe(const Motor_Base& motor, int drive_id) {
+  return "motor '" + std::string{motor.name()} + "' (" + std::string{motor.modelName()} + " id " +
+         std::to_string(drive_id) + ")";
+}
+
 bool Motor_Base::setTarget(const Target& target) noexcept {
   if (static_cast<int>(target.mode) >= kControlModeCount || !modes().contains(target.mode)) return false;
   Target accepted = target;

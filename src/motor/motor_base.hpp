@@ -154,4 +154,7 @@ class Motor_Base : public FrameListener {
   float derating_ = 1.0F;
 };
 
+/// "motor 'lift' (M3508 id 1)"
+[[nodiscard]] std::string describe(const Motor_Base& motor, int drive_id);
+
 }  // namespace rc10

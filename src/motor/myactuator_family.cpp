@@ -6,7 +6,7 @@
 namespace rc10 {
 namespace {
 
-constexpr std::array<FamilyKey, 4> kKeys{{
+constexpr std::array<FamilyKey, 4> kMyActuatorKeys{{
     {.name = "angle_divider",
      .kind = FamilyKey::Kind::kInteger,
      .min = 1,
@@ -37,14 +37,14 @@ constexpr std::array<FamilyKey, 4> kKeys{{
 // V4.2 publishes neither; X6-60's data sheet has 176 rpm without load and 153 rpm rated.
 constexpr float kNoLoadPerRated = 176.0F / 153.0F;
 
-constexpr DriveFrames kFrames{.rest = Provision::kFrame,
-                              .poll = Provision::kFrame,
-                              .idle = Provision::kFrame,
-                              .damp = Provision::kFrame,
-                              .brake = Provision::kFrame,
-                              .hold = Provision::kFrame,
-                              .enable = Provision::kFrame,
-                              .disable = Provision::kNothing};
+constexpr DriveFrames kMyActuatorFrames{.rest = Provision::kFrame,
+                                        .poll = Provision::kFrame,
+                                        .idle = Provision::kFrame,
+                                        .damp = Provision::kFrame,
+                                        .brake = Provision::kFrame,
+                                        .hold = Provision::kFrame,
+                                        .enable = Provision::kFrame,
+                                        .disable = Provision::kNothing};
 
 class MyActuatorFamily final : public MotorFamily {
  public:
@@ -52,7 +52,7 @@ class MyActuatorFamily final : public MotorFamily {
   [[nodiscard]] std::span<const std::string_view> models() const noexcept override {
     return myactuatorModels();
   }
-  [[nodiscard]] std::span<const FamilyKey> keys() const noexcept override { return kKeys; }
+  [[nodiscard]] std::span<const FamilyKey> keys() const noexcept override { return kMyActuatorKeys; }
 
   [[nodiscard]] MotorTraits traits(std::string_view name, const OwnValues& own) const override {
     const MyActuatorModel* const found = findMyactuatorModel(name);
@@ -69,7 +69,7 @@ class MyActuatorFamily final : public MotorFamily {
     traits.absolute = own.flag("absolute_encoder");
     traits.frozen_a = model.peak_current_a;
     traits.asked = true;
-    traits.frames = kFrames;
+    traits.frames = kMyActuatorFrames;
     traits.setup = &myactuatorSetup();
     traits.modes = ModeSet{ControlMode::kCoast, ControlMode::kCurrent,    ControlMode::kVelocity,
                            ControlMode::kAngle, ControlMode::kTotalAngle, ControlMode::kImpedance,

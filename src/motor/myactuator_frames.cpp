@@ -9,7 +9,6 @@
 namespace rc10::myactuator {
 namespace {
 
-constexpr double kDegPerRaw = 0.01;
 constexpr double kAmperesPerRaw = 0.01;
 constexpr double kVoltsPerRaw = 0.1;
 

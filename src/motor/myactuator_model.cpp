@@ -9,8 +9,8 @@ namespace {
 // 2b-t/myactuator_rmd include/myactuator_rmd/actuator_constants.hpp. X6-60: its data sheet (rated 9.5 A, peak
 // 29.1 A). The torque constant is rated torque over rated current, so losses of the gear are in it. The last
 // number of a name is the peak torque in N·m; the peak current of the others follows from it.
-constexpr MyActuatorModel model(std::string_view name, double gear, float rated_nm, float rated_a,
-                                float rated_rpm, float peak_nm, float nominal_v = 48.0F) {
+constexpr MyActuatorModel myactuatorModel(std::string_view name, double gear, float rated_nm, float rated_a,
+                                          float rated_rpm, float peak_nm, float nominal_v = 48.0F) {
   return {.name = name,
           .gear_ratio = gear,
           .peak_current_a = peak_nm / (rated_nm / rated_a),
@@ -23,33 +23,33 @@ constexpr MyActuatorModel model(std::string_view name, double gear, float rated_
 // current command itself is the only limit (a 16-bit number of 0.01 A).
 constexpr MyActuatorModel kOther{.name = "RMD-X", .gear_ratio = 1.0, .peak_current_a = 327.67F};
 
-constexpr std::array kModels{
+constexpr std::array kMyActuatorModels{
     kOther,
-    model("RMD-X4-3", 6.0, 1.5F, 2.0F, 200.0F, 3.0F, 24.0F),
-    model("RMD-X4-24", 36.0, 9.0F, 3.5F, 100.0F, 24.0F, 24.0F),
-    model("RMD-X6-7", 6.0, 3.5F, 4.0F, 400.0F, 7.0F),
-    model("RMD-X6-8", 8.0, 4.5F, 3.6F, 310.0F, 8.0F),
-    model("RMD-X6-40", 36.0, 18.0F, 5.2F, 90.0F, 40.0F),
-    model("RMD-X6-60", 19.612, 20.0F, 9.5F, 153.0F, 60.0F),
-    model("RMD-X8-20", 6.0, 10.0F, 5.2F, 190.0F, 20.0F),
-    model("RMD-X8-25", 9.0, 10.0F, 3.2F, 110.0F, 25.0F),
-    model("RMD-X8-60", 36.0, 30.0F, 4.0F, 40.0F, 60.0F),
-    model("RMD-X8-90", 18.0, 25.0F, 10.0F, 130.0F, 90.0F),
-    model("RMD-X10-40", 7.0, 15.0F, 6.5F, 165.0F, 40.0F),
-    model("RMD-X10-100", 35.0, 50.0F, 6.7F, 50.0F, 100.0F),
-    model("RMD-X12-150", 12.0, 50.0F, 15.0F, 100.0F, 150.0F),
-    model("RMD-X15-400", 11.4, 130.0F, 23.0F, 80.0F, 400.0F),
+    myactuatorModel("RMD-X4-3", 6.0, 1.5F, 2.0F, 200.0F, 3.0F, 24.0F),
+    myactuatorModel("RMD-X4-24", 36.0, 9.0F, 3.5F, 100.0F, 24.0F, 24.0F),
+    myactuatorModel("RMD-X6-7", 6.0, 3.5F, 4.0F, 400.0F, 7.0F),
+    myactuatorModel("RMD-X6-8", 8.0, 4.5F, 3.6F, 310.0F, 8.0F),
+    myactuatorModel("RMD-X6-40", 36.0, 18.0F, 5.2F, 90.0F, 40.0F),
+    myactuatorModel("RMD-X6-60", 19.612, 20.0F, 9.5F, 153.0F, 60.0F),
+    myactuatorModel("RMD-X8-20", 6.0, 10.0F, 5.2F, 190.0F, 20.0F),
+    myactuatorModel("RMD-X8-25", 9.0, 10.0F, 3.2F, 110.0F, 25.0F),
+    myactuatorModel("RMD-X8-60", 36.0, 30.0F, 4.0F, 40.0F, 60.0F),
+    myactuatorModel("RMD-X8-90", 18.0, 25.0F, 10.0F, 130.0F, 90.0F),
+    myactuatorModel("RMD-X10-40", 7.0, 15.0F, 6.5F, 165.0F, 40.0F),
+    myactuatorModel("RMD-X10-100", 35.0, 50.0F, 6.7F, 50.0F, 100.0F),
+    myactuatorModel("RMD-X12-150", 12.0, 50.0F, 15.0F, 100.0F, 150.0F),
+    myactuatorModel("RMD-X15-400", 11.4, 130.0F, 23.0F, 80.0F, 400.0F),
 };
 
-constexpr auto kNames = [] {
-  std::array<std::string_view, kModels.size()> names{};
-  for (std::size_t i = 0; i < names.size(); ++i) names[i] = kModels[i].name;
+constexpr auto kMyActuatorNames = [] {
+  std::array<std::string_view, kMyActuatorModels.size()> names{};
+  for (std::size_t i = 0; i < names.size(); ++i) names[i] = kMyActuatorModels[i].name;
   return names;
 }();
 
 // Motion Protocol V4.2 (2024-05), 2.14 for the bits and 8.2 for the levels. 2b-t/myactuator_rmd agrees on the
 // bits; 0x0200, 0x0400 and 0x0800 occur without a published meaning.
-constexpr std::array<MyActuatorFault, 9> kFaults{{
+constexpr std::array<MyActuatorFault, 9> kMyActuatorFaults{{
     {0x0010, FaultCode::kDriveOverCurrent, true, "phase over-current: short circuit, lost phase, or damage"},
     {0x0002, FaultCode::kDriveStalled, true, "motor stalled"},
     {0x0080, FaultCode::kDriveSetting, true, "a setting could not be written: settings may be lost"},
@@ -63,28 +63,28 @@ constexpr std::array<MyActuatorFault, 9> kFaults{{
 
 }  // namespace
 
-std::span<const std::string_view> myactuatorModels() noexcept { return kNames; }
+std::span<const std::string_view> myactuatorModels() noexcept { return kMyActuatorNames; }
 
 const MyActuatorModel* findMyactuatorModel(std::string_view name) noexcept {
-  const auto* const found = std::find_if(kModels.begin(), kModels.end(),
+  const auto* const found = std::find_if(kMyActuatorModels.begin(), kMyActuatorModels.end(),
                                          [name](const MyActuatorModel& m) { return m.name == name; });
-  return found == kModels.end() ? nullptr : found;
+  return found == kMyActuatorModels.end() ? nullptr : found;
 }
 
-std::span<const MyActuatorFault> myactuatorFaults() noexcept { return kFaults; }
+std::span<const MyActuatorFault> myactuatorFaults() noexcept { return kMyActuatorFaults; }
 
 DriveComplaint myactuatorComplaint(std::uint16_t errors) noexcept {
   if (errors == 0) return {};
-  for (const MyActuatorFault& fault : kFaults) {
+  for (const MyActuatorFault& fault : kMyActuatorFaults) {
     if ((errors & fault.bit) != 0) return {.fault = fault.fault, .native_code = errors};
   }
   return {.fault = FaultCode::kDriveOther, .native_code = errors};
 }
 
 bool myactuatorNeedsReset(std::uint16_t errors) noexcept {
-  return std::any_of(kFaults.begin(), kFaults.end(), [errors](const MyActuatorFault& fault) {
-    return fault.needs_reset && (errors & fault.bit) != 0;
-  });
+  return std::any_of(
+      kMyActuatorFaults.begin(), kMyActuatorFaults.end(),
+      [errors](const MyActuatorFault& fault) { return fault.needs_reset && (errors & fault.bit) != 0; });
 }
 
 }  // namespace rc10

@@ -3,36 +3,34 @@
 #include <algorithm>
 #include <cmath>
 
+#include "app/limits.hpp"
 #include "app/units.hpp"
 #include "motor/myactuator_model.hpp"
 
 namespace rc10 {
 
-using myactuator::Code;
-
 namespace {
 
-constexpr double kDegPerRaw = 0.01;
 /// Above this the drive limits itself: the field's end.
-constexpr double kNoLimitDegS = 65535.0;
+constexpr double kMyActuatorNoLimitDegS = 65535.0;
 
-constexpr Duration kStepPatience = std::chrono::milliseconds{50};
-constexpr int kMostTries = 5;
+constexpr Duration kMyActuatorStepPatience = std::chrono::milliseconds{50};
+constexpr int kMyActuatorStepTries = 5;
 /// Errors and run time, in turns.
-constexpr Duration kQuerySpacing = std::chrono::milliseconds{50};
-constexpr Duration kUrgentQuerySpacing = std::chrono::milliseconds{10};
+constexpr Duration kMyActuatorQuerySpacing = std::chrono::milliseconds{50};
+constexpr Duration kMyActuatorUrgentQuerySpacing = std::chrono::milliseconds{10};
 /// No such drive starts faster than this (its bootloader alone takes longer): after a shorter silence it has
 /// not been restarted.
-constexpr Duration kRestartSilence = std::chrono::milliseconds{100};
+constexpr Duration kMyActuatorRestartSilence = std::chrono::milliseconds{100};
 /// By how much the drive's clock may be behind ours.
 constexpr std::int64_t kUptimeSlackMs = 250;
 constexpr std::int64_t kUptimeDriftDivider = 200;  // 0.5 %
 /// For a drive whose speed is not known, N·m·s/rad: as a small one of these.
 constexpr double kUnknownDamping = 0.5;
 /// Replies with all zeros are copies of requests unless the motor is about so cold.
-constexpr float kNearZeroC = 2.0F;
+constexpr float kMyActuatorNearZeroC = 2.0F;
 
-[[nodiscard]] std::int64_t milliseconds(Duration duration) noexcept {
+[[nodiscard]] std::int64_t wholeMilliseconds(Duration duration) noexcept {
   return std::chrono::duration_cast<std::chrono::milliseconds>(duration).count();
 }
 
@@ -41,23 +39,11 @@ constexpr float kNearZeroC = 2.0F;
                      [](std::uint8_t byte) { return byte == 0; });
 }
 
-[[nodiscard]] double finite(double value) noexcept { return std::isfinite(value) ? value : 0.0; }
-
-[[nodiscard]] MotorSettings asAsked(MotorSettings settings) {
-  const int divider =
-      std::max(settings.command_divider, 1) * std::max(settings.own.integer("angle_divider"), 1);
-  settings.feedback_hz = std::max(settings.tick_hz / divider, 1);
-  return settings;
-}
-
-[[nodiscard]] double driveTurns(const MotorSettings& settings, const MotorTraits& traits) {
-  return settings.gear_ratio > 0.0 ? settings.gear_ratio / traits.gear_ratio : 1.0;
-}
-
 }  // namespace
 
 MyActuator_Motor::MyActuator_Motor(const MotorSettings& settings, const MotorTraits& traits)
-    : SoloMotor(asAsked(settings), traits, driveTurns(settings, traits)),
+    : SoloMotor(withFeedbackOfCommands(settings, settings.own.integer("angle_divider")), traits,
+                driveTurns(settings, traits)),
       id_(settings.id),
       angle_divider_(std::max(settings.own.integer("angle_divider"), 1)),
       release_brake_(settings.own.flag("release_brake")),
@@ -79,8 +65,8 @@ bool MyActuator_Motor::matchesFrame(const CanFrame& frame) const noexcept {
 FrameVerdict MyActuator_Motor::updateFeedback(const CanFrame& frame) noexcept {
   if (frame.type != FrameType::kData || frame.fd || frame.length == 0) return FrameVerdict::kMalformed;
   if (frame.id == filters_[1].id) return acceptMotion(frame);
-  const Code code = myactuator::codeOf(frame.payload());
-  if (code == Code::kSilenceStopped) {
+  const myactuator::Code code = myactuator::codeOf(frame.payload());
+  if (code == myactuator::Code::kSilenceStopped) {
     silence_stopped_ = silence_stopped_ || obeying();
     return FrameVerdict::kAccepted;
   }
@@ -88,14 +74,14 @@ FrameVerdict MyActuator_Motor::updateFeedback(const CanFrame& frame) noexcept {
   configuring_.onFrame(frame);
   watchSilence(frame.received);
   switch (code) {
-    case Code::kReading:
-    case Code::kCurrent:
-    case Code::kVelocity:
-    case Code::kPosition: acceptReading(frame); break;
-    case Code::kAngle: return acceptAngle(frame);
-    case Code::kStatus: acceptStatus(frame); break;
-    case Code::kUptime: acceptUptime(frame); break;
-    case Code::kReleaseBrake: answered(Step::kReleaseBrake); break;
+    case myactuator::Code::kReading:
+    case myactuator::Code::kCurrent:
+    case myactuator::Code::kVelocity:
+    case myactuator::Code::kPosition: acceptReading(frame); break;
+    case myactuator::Code::kAngle: return acceptAngle(frame);
+    case myactuator::Code::kStatus: acceptStatus(frame); break;
+    case myactuator::Code::kUptime: acceptUptime(frame); break;
+    case myactuator::Code::kReleaseBrake: answered(Step::kReleaseBrake); break;
     default: break;  // the copy of a shutdown; the reply to another controller's question
   }
   return FrameVerdict::kAccepted;
@@ -103,7 +89,7 @@ FrameVerdict MyActuator_Motor::updateFeedback(const CanFrame& frame) noexcept {
 
 // After a silence the drive may have been restarted, and its angle may mean something else.
 void MyActuator_Motor::watchSilence(MonotonicTime received) noexcept {
-  if (!heard_ || received - *heard_ > kRestartSilence) {
+  if (!heard_ || received - *heard_ > kMyActuatorRestartSilence) {
     running_ = false;
     next_query_ = {};
   }
@@ -111,8 +97,8 @@ void MyActuator_Motor::watchSilence(MonotonicTime received) noexcept {
 }
 
 bool MyActuator_Motor::isCopyOfRequest(const CanFrame& frame) const noexcept {
-  if (std::abs(feedback_.temperature_c) <= kNearZeroC) return false;  // such a reply may be true
-  if (myactuator::codeOf(frame.payload()) == Code::kReading) return allZero(frame);
+  if (std::abs(feedback_.temperature_c) <= kMyActuatorNearZeroC) return false;  // such a reply may be true
+  if (myactuator::codeOf(frame.payload()) == myactuator::Code::kReading) return allZero(frame);
   return last_command_ &&
          std::equal(frame.data.begin(), frame.data.begin() + frame.length, last_command_->data.begin());
 }
@@ -127,7 +113,7 @@ void MyActuator_Motor::acceptReading(const CanFrame& frame) noexcept {
   feedback_.current_a = static_cast<float>(reading.current_a) * direction();
   if (torqueNmPerA() > 0.0F) feedback_.torque_nm = feedback_.current_a * torqueNmPerA();
   feedback_.velocity_rpm = static_cast<float>(toOutput(reading.velocity_deg_s) / kDegPerSPerRpm);
-  if (myactuator::codeOf(frame.payload()) == Code::kCurrent) answered(Step::kObey);
+  if (myactuator::codeOf(frame.payload()) == myactuator::Code::kCurrent) answered(Step::kObey);
 }
 
 FrameVerdict MyActuator_Motor::acceptAngle(const CanFrame& frame) noexcept {
@@ -147,7 +133,7 @@ FrameVerdict MyActuator_Motor::acceptAngle(const CanFrame& frame) noexcept {
         static_cast<std::int32_t>(static_cast<std::uint32_t>(raw) - static_cast<std::uint32_t>(*raw_angle_));
   }
   raw_angle_ = raw;
-  acceptSample(frame.received, static_cast<double>(angle_raw_) * kDegPerRaw);
+  acceptSample(frame.received, static_cast<double>(angle_raw_) * myactuator::kDegPerRaw);
   return FrameVerdict::kAccepted;
 }
 
@@ -164,7 +150,7 @@ void MyActuator_Motor::acceptUptime(const CanFrame& frame) noexcept {
   const std::uint32_t uptime_ms = myactuator::decodeUptimeMs(frame.payload());
   if (uptime_ms == 0) return;  // a copy
   if (uptime_ms_) {
-    const std::int64_t elapsed_ms = milliseconds(frame.received - uptime_at_);
+    const std::int64_t elapsed_ms = wholeMilliseconds(frame.received - uptime_at_);
     const auto expected_ms = static_cast<std::uint32_t>(*uptime_ms_ + static_cast<std::uint64_t>(elapsed_ms));
     const auto late_ms = static_cast<std::int32_t>(expected_ms - uptime_ms);
     if (late_ms > kUptimeSlackMs + elapsed_ms / kUptimeDriftDivider) {
@@ -210,9 +196,9 @@ void MyActuator_Motor::update(const Tick& tick) noexcept {
   const bool begins = ordered() != last_ordered_;
   last_ordered_ = ordered();
   if (ordered() == FrameKind::kEnable && begins) beginSequence();
-  if (std::exchange(reset_, false)) send(myactuator::request(id_, Code::kReset));
+  if (std::exchange(reset_, false)) send(myactuator::request(id_, myactuator::Code::kReset));
   // A drive that is just starting must not find an angle of its former life waiting for it.
-  if (!heard_ || tick.now - *heard_ > kRestartSilence) running_ = false;
+  if (!heard_ || tick.now - *heard_ > kMyActuatorRestartSilence) running_ = false;
   if (!due(tick)) return;
 
   const bool ask_angle = turns_due_++ % static_cast<std::uint64_t>(angle_divider_) == 0;
@@ -220,12 +206,13 @@ void MyActuator_Motor::update(const Tick& tick) noexcept {
     case FrameKind::kRest:
     case FrameKind::kDisable:
       setCommand(0.0, CommandUnit::kNone);
-      send(myactuator::request(id_, Code::kShutdown));
+      send(myactuator::request(id_, myactuator::Code::kShutdown));
       return;
     case FrameKind::kPoll:
       // Output off, and in turns with that what it measures.
       setCommand(0.0, CommandUnit::kNone);
-      send(myactuator::request(id_, begins || turns_due_ % 2 == 0 ? Code::kShutdown : Code::kReading));
+      send(myactuator::request(
+          id_, begins || turns_due_ % 2 == 0 ? myactuator::Code::kShutdown : myactuator::Code::kReading));
       break;
     case FrameKind::kEnable:
       setCommand(0.0, CommandUnit::kNone);
@@ -235,21 +222,21 @@ void MyActuator_Motor::update(const Tick& tick) noexcept {
       // Until it is known to be the same run of the drive, its angles are not, and it is told nothing. One
       // that has stopped is not started again behind the back of whoever has to know.
       if (restarted_ || silence_stopped_) {
-        send(myactuator::request(id_, Code::kShutdown));
+        send(myactuator::request(id_, myactuator::Code::kShutdown));
       } else if (running_) {
         follow(target);
       }
       break;
   }
-  if (ask_angle) send(myactuator::request(id_, Code::kAngle));
+  if (ask_angle) send(myactuator::request(id_, myactuator::Code::kAngle));
   sendQueries(tick);
 }
 
 void MyActuator_Motor::sendQueries(const Tick& tick) noexcept {
   if (tick.now < next_query_) return;
-  next_query_ = tick.now + (running_ ? kQuerySpacing : kUrgentQuerySpacing);
+  next_query_ = tick.now + (running_ ? kMyActuatorQuerySpacing : kMyActuatorUrgentQuerySpacing);
   ask_uptime_ = !running_ || !ask_uptime_;
-  send(myactuator::request(id_, ask_uptime_ ? Code::kUptime : Code::kStatus));
+  send(myactuator::request(id_, ask_uptime_ ? myactuator::Code::kUptime : myactuator::Code::kStatus));
 }
 
 void MyActuator_Motor::follow(const Target& target) noexcept {
@@ -284,30 +271,31 @@ void MyActuator_Motor::followAngle(double total_angle_deg) noexcept {
   if (feedback_.samples == 0 || !std::isfinite(total_angle_deg)) return followCurrent(Target{});
   // The drive's angle is what 32 bits hold of ours.
   const double drive_deg = drivePositionFor(total_angle_deg) -
-                           static_cast<double>(angle_raw_ - raw_angle_.value_or(0)) * kDegPerRaw;
-  constexpr double kReachDeg = 2147483647.0 * kDegPerRaw;
+                           static_cast<double>(angle_raw_ - raw_angle_.value_or(0)) * myactuator::kDegPerRaw;
+  constexpr double kReachDeg = 2147483647.0 * myactuator::kDegPerRaw;
   if (std::abs(drive_deg) > kReachDeg) limits_ |= kLimitAngle;
   const auto limit_rpm = static_cast<double>(velocityLimitRpm());
-  const double limit_deg_s = limit_rpm > 0.0 ? std::abs(toDrive(limit_rpm)) * kDegPerSPerRpm : kNoLimitDegS;
+  const double limit_deg_s =
+      limit_rpm > 0.0 ? std::abs(toDrive(limit_rpm)) * kDegPerSPerRpm : kMyActuatorNoLimitDegS;
   if (std::abs(feedback_.current_a) > effortLimit()) limits_ |= kLimitCurrent;
   setCommand(total_angle_deg, CommandUnit::kNative);
   sendCommand(myactuator::positionCommand(id_, drive_deg, limit_deg_s));
 }
 
 void MyActuator_Motor::followImpedance(const Target& target) noexcept {
-  const double drive_deg =
-      drivePositionFor(target.value) - static_cast<double>(angle_raw_ - raw_angle_.value_or(0)) * kDegPerRaw;
-  const double measured_deg = static_cast<double>(raw_angle_.value_or(0)) * kDegPerRaw;
+  const double drive_deg = drivePositionFor(target.value) -
+                           static_cast<double>(angle_raw_ - raw_angle_.value_or(0)) * myactuator::kDegPerRaw;
+  const double measured_deg = static_cast<double>(raw_angle_.value_or(0)) * myactuator::kDegPerRaw;
   const double turns = toDrive(1.0);
   const double per_drive = 1.0 / (turns * turns);
   myactuator::Motion motion{
-      .angle_rad = finite(drive_deg) * kRadPerDeg,
-      .velocity_rad_s = toDrive(finite(static_cast<double>(target.velocity_ff_rpm))) * kRadPerSPerRpm,
+      .angle_rad = finiteOr0(drive_deg) * kRadPerDeg,
+      .velocity_rad_s = toDrive(finiteOr0(static_cast<double>(target.velocity_ff_rpm))) * kRadPerSPerRpm,
       .stiffness_nm_per_rad =
-          std::max(finite(static_cast<double>(target.stiffness_nm_per_rad)), 0.0) * per_drive,
+          std::max(finiteOr0(static_cast<double>(target.stiffness_nm_per_rad)), 0.0) * per_drive,
       .damping_nms_per_rad =
-          std::max(finite(static_cast<double>(target.damping_nms_per_rad)), 0.0) * per_drive,
-      .torque_ff_nm = torqueToDrive(finite(static_cast<double>(target.torque_ff_nm)))};
+          std::max(finiteOr0(static_cast<double>(target.damping_nms_per_rad)), 0.0) * per_drive,
+      .torque_ff_nm = torqueToDrive(finiteOr0(static_cast<double>(target.torque_ff_nm)))};
   if (const double limit = std::abs(toDrive(static_cast<double>(velocityLimitRpm()))) * kRadPerSPerRpm;
       limit > 0.0) {
     const double bounded = std::clamp(motion.velocity_rad_s, -limit, limit);
@@ -323,7 +311,8 @@ void MyActuator_Motor::followImpedance(const Target& target) noexcept {
     motion.angle_rad = 0.0;
     motion.stiffness_nm_per_rad = 0.0;
   }
-  const double measured_rad_s = toDrive(finite(static_cast<double>(feedback_.velocity_rpm))) * kRadPerSPerRpm;
+  const double measured_rad_s =
+      toDrive(finiteOr0(static_cast<double>(feedback_.velocity_rpm))) * kRadPerSPerRpm;
   sendMotion(motion.angle_rad - measured_deg * kRadPerDeg, motion.velocity_rad_s - measured_rad_s, motion);
 }
 
@@ -333,7 +322,8 @@ void MyActuator_Motor::damp() noexcept {
   const double full_nm = static_cast<double>(traits().effort_full_scale * traits().torque_nm_per_a);
   const double damping =
       no_load_rad_s > 0.0 ? std::min(full_nm / no_load_rad_s, myactuator::kMotionDamping) : kUnknownDamping;
-  const double measured_rad_s = toDrive(finite(static_cast<double>(feedback_.velocity_rpm))) * kRadPerSPerRpm;
+  const double measured_rad_s =
+      toDrive(finiteOr0(static_cast<double>(feedback_.velocity_rpm))) * kRadPerSPerRpm;
   sendMotion(0.0, -measured_rad_s, {.damping_nms_per_rad = damping});
 }
 
@@ -381,7 +371,7 @@ std::size_t MyActuator_Motor::packCommand(const Tick& tick, std::span<CanFrame> 
 
 std::size_t MyActuator_Motor::packRest(std::span<CanFrame> out) const noexcept {
   if (out.empty()) return 0;
-  out.front() = myactuator::request(id_, Code::kShutdown);
+  out.front() = myactuator::request(id_, myactuator::Code::kShutdown);
   return 1;
 }
 
@@ -397,9 +387,9 @@ void MyActuator_Motor::beginSequence() noexcept {
 
 CanFrame MyActuator_Motor::stepFrame() const noexcept {
   switch (step_) {
-    case Step::kStatus: return myactuator::request(id_, Code::kStatus);
-    case Step::kUptime: return myactuator::request(id_, Code::kUptime);
-    case Step::kReleaseBrake: return myactuator::request(id_, Code::kReleaseBrake);
+    case Step::kStatus: return myactuator::request(id_, myactuator::Code::kStatus);
+    case Step::kUptime: return myactuator::request(id_, myactuator::Code::kUptime);
+    case Step::kReleaseBrake: return myactuator::request(id_, myactuator::Code::kReleaseBrake);
     case Step::kObey:
     case Step::kDone: break;
   }
@@ -407,10 +397,10 @@ CanFrame MyActuator_Motor::stepFrame() const noexcept {
 }
 
 void MyActuator_Motor::runSequence(const Tick& tick) noexcept {
-  if (failed_) return send(myactuator::request(id_, Code::kShutdown));
+  if (failed_) return send(myactuator::request(id_, myactuator::Code::kShutdown));
   if (step_ == Step::kDone) return sendCommand(stepFrame());  // no torque until the first command
-  if (tries_ > 0 && tick.now - asked_at_ < kStepPatience) return;
-  if (tries_ == kMostTries) {
+  if (tries_ > 0 && tick.now - asked_at_ < kMyActuatorStepPatience) return;
+  if (tries_ == kMyActuatorStepTries) {
     failed_ = true;
     return;
   }
@@ -449,7 +439,7 @@ DriveComplaint MyActuator_Motor::complaint() const noexcept {
   if (restarted_) return {.fault = FaultCode::kDriveStopped, .native_code = 0};
   if (silence_stopped_) {
     return {.fault = FaultCode::kDriveCommunication,
-            .native_code = static_cast<std::uint32_t>(Code::kSilenceStopped)};
+            .native_code = static_cast<std::uint32_t>(myactuator::Code::kSilenceStopped)};
   }
   return {};
 }

@@ -7,22 +7,20 @@
 namespace rc10 {
 namespace {
 
-using myactuator::Code;
-
 // Motion Protocol V4.2: 0x20 and its functions, 0x42, 0x43, 0xB3.
 constexpr std::uint8_t kSaveTurns = 4;
 constexpr std::uint8_t kSetId = 5;
 /// Byte 1 of a frame that needs none.
 constexpr std::uint8_t kNoIndex = 0;
 
-struct Row {
-  Code write;
+struct SettingRequest {
+  myactuator::Code write;
   std::uint8_t index = kNoIndex;
 };
 
 constexpr double kLeastDegS2 = 100;
 constexpr double kMostDegS2 = 60'000;
-constexpr std::array kSettings{
+constexpr std::array kMyActuatorSettings{
     DriveSetting{.name = "timeout_ms", .min = 0, .max = 10'000, .integer = true},
     DriveSetting{.name = "save_turns", .min = 0, .max = 1, .integer = true},
     DriveSetting{
@@ -36,21 +34,24 @@ constexpr std::array kSettings{
     DriveSetting{.name = "id", .min = 1, .max = myactuator::kMaxId, .integer = true, .identity = true},
 };
 // The id with function 5 of 0x20, which has an addressee: 0x79 on 0x300 would give it to every drive there.
-constexpr std::array kRows{Row{Code::kSilenceLimit},       Row{Code::kFunction, kSaveTurns},
-                           Row{Code::kSetAcceleration, 0}, Row{Code::kSetAcceleration, 1},
-                           Row{Code::kSetAcceleration, 2}, Row{Code::kSetAcceleration, 3},
-                           Row{Code::kFunction, kSetId}};
-static_assert(kRows.size() == kSettings.size());
+constexpr std::array kSettingRequests{SettingRequest{myactuator::Code::kSilenceLimit},
+                                      SettingRequest{myactuator::Code::kFunction, kSaveTurns},
+                                      SettingRequest{myactuator::Code::kSetAcceleration, 0},
+                                      SettingRequest{myactuator::Code::kSetAcceleration, 1},
+                                      SettingRequest{myactuator::Code::kSetAcceleration, 2},
+                                      SettingRequest{myactuator::Code::kSetAcceleration, 3},
+                                      SettingRequest{myactuator::Code::kFunction, kSetId}};
+static_assert(kSettingRequests.size() == kMyActuatorSettings.size());
 
-constexpr DriveSetup kSetup{
-    .settings = kSettings, .stores_at_once = true, .tool = "MyActuator's setup software"};
+constexpr DriveSetup kMyActuatorSetup{
+    .settings = kMyActuatorSettings, .stores_at_once = true, .tool = "MyActuator's setup software"};
 
 }  // namespace
 
-const DriveSetup& myactuatorSetup() noexcept { return kSetup; }
+const DriveSetup& myactuatorSetup() noexcept { return kMyActuatorSetup; }
 
 CanFrame MyActuatorSetupCodec::write(const DriveValue& value) const noexcept {
-  const auto& row = kRows[value.setting];
+  const auto& row = kSettingRequests[value.setting];
   CanFrame frame = myactuator::request(id_, row.write);
   frame.data[1] = row.index;
   writeLittleEndian(frame.data, 4, static_cast<std::uint32_t>(std::lround(value.value)));
@@ -58,23 +59,26 @@ CanFrame MyActuatorSetupCodec::write(const DriveValue& value) const noexcept {
 }
 
 std::optional<CanFrame> MyActuatorSetupCodec::read(std::size_t setting) const noexcept {
-  const auto& row = kRows[setting];
-  if (row.write != Code::kSetAcceleration) return std::nullopt;
-  CanFrame frame = myactuator::request(id_, Code::kReadAcceleration);
+  const auto& row = kSettingRequests[setting];
+  if (row.write != myactuator::Code::kSetAcceleration) return std::nullopt;
+  CanFrame frame = myactuator::request(id_, myactuator::Code::kReadAcceleration);
   frame.data[1] = row.index;
   return frame;
 }
 
 std::optional<double> MyActuatorSetupCodec::reading(std::size_t setting,
                                                     const CanFrame& frame) const noexcept {
-  const auto& row = kRows[setting];
+  const auto& row = kSettingRequests[setting];
   if (frame.length != myactuator::kLength) return std::nullopt;
   const auto bytes = frame.payload();
-  const Code told = row.write == Code::kSetAcceleration ? Code::kReadAcceleration : row.write;
+  const myactuator::Code told =
+      row.write == myactuator::Code::kSetAcceleration ? myactuator::Code::kReadAcceleration : row.write;
   if (myactuator::codeOf(bytes) != told || bytes[1] != row.index) return std::nullopt;
   return static_cast<double>(readLittleEndian<std::uint32_t>(bytes, 4));
 }
 
-std::optional<std::size_t> MyActuatorSetupCodec::idSetting() const noexcept { return kSettings.size() - 1; }
+std::optional<std::size_t> MyActuatorSetupCodec::idSetting() const noexcept {
+  return kMyActuatorSettings.size() - 1;
+}
 
 }  // namespace rc10

@@ -16,9 +16,9 @@ constexpr double kLimitsHz = 2.0;
 constexpr int kHighestNode = 62;
 constexpr CanId kAddressBroadcast{0x7E6, false};
 
-constexpr std::array<std::string_view, 3> kNames{"ODrive_S1", "ODrive_Pro", "ODrive_v3"};
+constexpr std::array<std::string_view, 3> kOdriveNames{"ODrive_S1", "ODrive_Pro", "ODrive_v3"};
 
-constexpr std::array kKeys{
+constexpr std::array kOdriveKeys{
     FamilyKey{.name = "torque_constant_nm_per_a",
               .kind = Kind::kNumber,
               .unit = "Nm/A",
@@ -44,23 +44,23 @@ constexpr std::array kKeys{
 };
 
 // Loops run on the drive. Damping has no mode of its own there, nor has an impedance.
-constexpr DriveFrames kFrames{.rest = Provision::kFrame,
-                              .poll = Provision::kNothing,
-                              .idle = Provision::kFrame,
-                              .damp = Provision::kUnsupported,
-                              .brake = Provision::kFrame,
-                              .hold = Provision::kFrame,
-                              .enable = Provision::kFrame,
-                              .disable = Provision::kNothing};
+constexpr DriveFrames kOdriveFrames{.rest = Provision::kFrame,
+                                    .poll = Provision::kNothing,
+                                    .idle = Provision::kFrame,
+                                    .damp = Provision::kUnsupported,
+                                    .brake = Provision::kFrame,
+                                    .hold = Provision::kFrame,
+                                    .enable = Provision::kFrame,
+                                    .disable = Provision::kNothing};
 
-constexpr ModeSet kModes{ControlMode::kCoast, ControlMode::kCurrent,    ControlMode::kVelocity,
-                         ControlMode::kAngle, ControlMode::kTotalAngle, ControlMode::kBrake};
+constexpr ModeSet kOdriveModes{ControlMode::kCoast, ControlMode::kCurrent,    ControlMode::kVelocity,
+                               ControlMode::kAngle, ControlMode::kTotalAngle, ControlMode::kBrake};
 
 class OdriveFamily : public MotorFamily {
  public:
   [[nodiscard]] std::string_view name() const noexcept override { return "ODrive"; }
-  [[nodiscard]] std::span<const std::string_view> models() const noexcept override { return kNames; }
-  [[nodiscard]] std::span<const FamilyKey> keys() const noexcept override { return kKeys; }
+  [[nodiscard]] std::span<const std::string_view> models() const noexcept override { return kOdriveNames; }
+  [[nodiscard]] std::span<const FamilyKey> keys() const noexcept override { return kOdriveKeys; }
 
   [[nodiscard]] MotorTraits traits(std::string_view model, const OwnValues& own) const override {
     const auto* row = findOdriveModel(model);
@@ -75,10 +75,10 @@ class OdriveFamily : public MotorFamily {
     // encoder_rate_ms (0.5), encoder_msg_rate_ms (0.6): 10 ms as delivered, whole milliseconds.
     traits.feedback_hz = 100;
     traits.max_feedback_hz = 1000;
-    traits.modes = kModes;
+    traits.modes = kOdriveModes;
     static constexpr DriveSetup kSetup{.tool = "odrivetool (CANSimple reads none of its settings back)"};
     traits.setup = &kSetup;
-    traits.frames = kFrames;
+    traits.frames = kOdriveFrames;
     // traits.watchdog stays false: there is one (enable_watchdog), but no message sets or reads it. Firmware
     // 0.6 could through RxSdo, with endpoint numbers that change with every release.
     return traits;

@@ -19,7 +19,7 @@ constexpr int kMostAsks = 5;
 constexpr Duration kYoungHeartbeat = milliseconds{300};
 // A restart cannot hide in a shorter silence: firmware 0.5 says for 1.5 s that it starts (its current sensors
 // settle for 7.5 times dc_calib_tau, Firmware/MotorControl/motor.cpp), 0.6 says INITIALIZING.
-constexpr Duration kRestartSilence = milliseconds{200};
+constexpr Duration kOdriveRestartSilence = milliseconds{200};
 constexpr int kRestartPeriods = 5;
 // Telemetry may come once a second; what is older is not known any more.
 constexpr Duration kTelemetryLife = milliseconds{2500};
@@ -51,7 +51,7 @@ bool isActive(FrameKind kind) noexcept {
   return false;
 }
 
-bool finite(const OdrivePair& pair) noexcept {
+bool isFinite(const OdrivePair& pair) noexcept {
   return std::isfinite(pair.first) && std::isfinite(pair.second);
 }
 
@@ -106,7 +106,7 @@ FrameVerdict ODrive_Motor::updateFeedback(const CanFrame& frame) noexcept {
 }
 
 void ODrive_Motor::hear(MonotonicTime received) noexcept {
-  const Duration longest = std::max<Duration>(kRestartSilence, kRestartPeriods * feedbackPeriod());
+  const Duration longest = std::max<Duration>(kOdriveRestartSilence, kRestartPeriods * feedbackPeriod());
   if (heard_ && received - heard_at_ > longest) forgetPosition();
   heard_ = true;
   heard_at_ = received;
@@ -137,7 +137,7 @@ bool ODrive_Motor::isJump(MonotonicTime received, double turns, double turns_per
 
 FrameVerdict ODrive_Motor::acceptEstimates(const CanFrame& frame) noexcept {
   const auto estimates = decodeOdrivePair(frame);
-  if (!estimates || !finite(*estimates)) return FrameVerdict::kMalformed;
+  if (!estimates || !isFinite(*estimates)) return FrameVerdict::kMalformed;
   hear(frame.received);
   // A starting drive's position may still change without a movement.
   if (starting_) return FrameVerdict::kAccepted;
@@ -174,7 +174,7 @@ FrameVerdict ODrive_Motor::acceptTelemetry(const CanFrame& frame) noexcept {
     temperature_at_ = frame.received;
     return FrameVerdict::kAccepted;
   }
-  if (!finite(*pair)) return FrameVerdict::kMalformed;
+  if (!isFinite(*pair)) return FrameVerdict::kMalformed;
   hear(frame.received);
   if (message == OdriveMessage::kBusVoltage) {
     feedback_.voltage_v = pair->first;
@@ -317,8 +317,7 @@ void ODrive_Motor::followPosition(const Target& target) noexcept {
            odriveSetInputPos(node_, static_cast<float>(turns),
                              saturate(static_cast<float>(toDrive(ff_rpm) / kRpmPerTurnPerS)),
                              saturate(static_cast<float>(torqueToDrive(ff_nm)))));
-  const auto huge = static_cast<double>(kHugeTerm);
-  setCommand(std::clamp(target.value, -huge, huge), CommandUnit::kNative);
+  setCommand(static_cast<double>(nearFloat(target.value)), CommandUnit::kNative);
 }
 
 void ODrive_Motor::setInput(OdriveControlMode mode, const CanFrame& input) noexcept {

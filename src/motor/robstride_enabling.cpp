@@ -6,8 +6,8 @@
 namespace rc10 {
 namespace {
 
-constexpr Duration kPatience = std::chrono::milliseconds{50};
-constexpr int kMaxAttempts = 5;
+constexpr Duration kRobStridePatience = std::chrono::milliseconds{50};
+constexpr int kRobStrideAttempts = 5;
 constexpr float kLimitTolerance = 1.01F;
 
 }  // namespace
@@ -41,8 +41,8 @@ void RobStrideEnabling::advance() noexcept {
 std::size_t RobStrideEnabling::pack(MonotonicTime now, const RobStrideCodec& codec, bool operation,
                                     std::span<CanFrame> out) noexcept {
   if (progress_ != SequenceProgress::kPending || out.size() < 3) return 0;
-  if (attempts_ > 0 && now - sent_at_ < kPatience) return 0;
-  if (attempts_ == kMaxAttempts) {
+  if (attempts_ > 0 && now - sent_at_ < kRobStridePatience) return 0;
+  if (attempts_ == kRobStrideAttempts) {
     progress_ = SequenceProgress::kFailed;
     return 0;
   }

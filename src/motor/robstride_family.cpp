@@ -10,7 +10,7 @@ namespace {
 
 constexpr std::array<std::string_view, 4> kControls{"operation", "current", "velocity", "position"};
 
-constexpr std::array kKeys{
+constexpr std::array kRobStrideKeys{
     FamilyKey{.name = "host_id",
               .kind = FamilyKey::Kind::kInteger,
               .min = 1,
@@ -70,14 +70,6 @@ constexpr std::array kKeys{
 constexpr double kShortestPositionRangeRad = 12.0;
 constexpr int kCommandsPerWatchdog = 3;
 
-RobStrideControl controlOf(const OwnValues& own) {
-  const std::string text = own.text("control");
-  if (text == "current") return RobStrideControl::kCurrent;
-  if (text == "velocity") return RobStrideControl::kVelocity;
-  if (text == "position") return RobStrideControl::kPosition;
-  return RobStrideControl::kOperation;
-}
-
 ModeSet modesOf(RobStrideControl control) {
   switch (control) {
     case RobStrideControl::kCurrent: return ModeSet{ControlMode::kCoast, ControlMode::kCurrent};
@@ -115,11 +107,11 @@ class RobStrideFamily final : public MotorFamily {
 
   [[nodiscard]] std::string_view name() const noexcept override { return "RobStride"; }
   [[nodiscard]] std::span<const std::string_view> models() const noexcept override { return names_; }
-  [[nodiscard]] std::span<const FamilyKey> keys() const noexcept override { return kKeys; }
+  [[nodiscard]] std::span<const FamilyKey> keys() const noexcept override { return kRobStrideKeys; }
 
   [[nodiscard]] MotorTraits traits(std::string_view name, const OwnValues& own) const override {
     const auto& model = *findRobStrideModel(name);
-    const auto control = controlOf(own);
+    const auto control = robStrideControlOf(own);
     const double torque_nm_per_a = model.torqueNmPerA();
     MotorTraits traits;
     traits.min_id = 1;

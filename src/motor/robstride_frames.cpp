@@ -32,7 +32,7 @@ struct Fault {
 };
 
 // The fault word's bits come first: they say more than the status bits of the feedback.
-constexpr std::array kFaults{
+constexpr std::array kRobStrideFaults{
     Fault{1U << 1U, FaultCode::kDriveHardware},      // driver IC
     Fault{1U << 8U, FaultCode::kDriveHardware},      // hardware identification
     Fault{1U << 9U, FaultCode::kDriveEncoder},       // position initialisation
@@ -150,7 +150,7 @@ CanFrame RobStrideCodec::fault(std::uint32_t fault_word) const noexcept {
 
 FaultCode robStrideFault(std::uint32_t native_code, bool cyber_gear) noexcept {
   if (cyber_gear && (native_code & kCyberGearOverload) != 0) return FaultCode::kDriveOverload;
-  for (const auto& fault : kFaults) {
+  for (const auto& fault : kRobStrideFaults) {
     if ((native_code & fault.bits) == 0) continue;
     return fault.bits == kStatusBit20 && cyber_gear ? FaultCode::kDrivePhase : fault.code;
   }

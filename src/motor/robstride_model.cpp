@@ -47,7 +47,7 @@ constexpr RobStrideModel robStride(std::string_view name, double velocity_rad_s,
 // User manuals RS00-RS06 and EL05 of 2025-12 to 2026-04 (RobStride/Product_Information@ba7236b), CyberGear
 // (belovictor/cybergear-docs). Where a vendor's sample code has other ranges, the manual holds. EL05: the
 // text allows 6 Nm, the scale ends at 5.5.
-constexpr std::array kModels{
+constexpr std::array kRobStrideModels{
     robStride("RS00", 33.0, 14.0, 500.0, 5.0, 15.5, 1.48, 10.0),
     robStride("RS01", 44.0, 17.0, 500.0, 5.0, 23.0, 1.22, 7.75),
     robStride("RS02", 44.0, 17.0, 500.0, 5.0, 23.0, 1.22, 7.75),
@@ -80,11 +80,11 @@ constexpr std::array kModels{
 double RobStrideModel::torqueNmPerA() const noexcept { return torque_nm_per_arms / std::numbers::sqrt2; }
 
 const RobStrideModel* findRobStrideModel(std::string_view name) noexcept {
-  const auto* const found =
-      std::find_if(kModels.begin(), kModels.end(), [name](const auto& model) { return model.name == name; });
-  return found != kModels.end() ? found : nullptr;
+  const auto* const found = std::find_if(kRobStrideModels.begin(), kRobStrideModels.end(),
+                                         [name](const auto& model) { return model.name == name; });
+  return found != kRobStrideModels.end() ? found : nullptr;
 }
 
-std::span<const RobStrideModel> robStrideModels() noexcept { return kModels; }
+std::span<const RobStrideModel> robStrideModels() noexcept { return kRobStrideModels; }
 
 }  // namespace rc10

@@ -26,7 +26,7 @@ constexpr double kWholeTurnsTolerance = 0.02;  // rad
 // What is missing after the end of the scale: whole turns, whatever the scale's end is rounded to.
 constexpr double kScaleRad = 8.0 * std::numbers::pi;
 // No counted position is so far away.
-constexpr double kFarthestRad = 1e5;
+constexpr double kFarthestCountedRad = 1e5;
 // The supply voltage; also the frame whose echo tells that the bus is not stalled.
 constexpr Duration kReadPeriod = std::chrono::milliseconds{40};
 // A limit that got lost on the way is repeated.
@@ -35,13 +35,6 @@ constexpr Duration kLimitPeriod = std::chrono::milliseconds{100};
 constexpr double kStiffnessPerTorque = 2.0;
 constexpr double kDampingPerStiffness = 0.035;
 constexpr double kVelocityGainPerTorque = 0.2;
-
-RobStrideControl controlOf(const std::string& text) noexcept {
-  if (text == "current") return RobStrideControl::kCurrent;
-  if (text == "velocity") return RobStrideControl::kVelocity;
-  if (text == "position") return RobStrideControl::kPosition;
-  return RobStrideControl::kOperation;
-}
 
 double orDefault(double value, double otherwise) noexcept { return value > 0.0 ? value : otherwise; }
 
@@ -57,6 +50,14 @@ FrameFilter fromDrive(RobStrideType type, int data, int addressee) noexcept {
 
 }  // namespace
 
+RobStrideControl robStrideControlOf(const OwnValues& own) {
+  const std::string text = own.text("control");
+  if (text == "current") return RobStrideControl::kCurrent;
+  if (text == "velocity") return RobStrideControl::kVelocity;
+  if (text == "position") return RobStrideControl::kPosition;
+  return RobStrideControl::kOperation;
+}
+
 RobStride_Motor::RobStride_Motor(const MotorSettings& settings)
     : SoloMotor(settings, robStrideFamily().traits(settings.model, settings.own),
                 settings.gear_ratio > 0.0
@@ -68,7 +69,7 @@ RobStride_Motor::RobStride_Motor(const MotorSettings& settings)
                  orDefault(settings.own.number("position_range_rad"), model_->position_range_rad),
              .drive_id = settings.id,
              .host_id = settings.own.integer("host_id")},
-      control_(controlOf(settings.own.text("control"))),
+      control_(robStrideControlOf(settings.own)),
       filters_{fromDrive(RobStrideType::kFeedback, codec_.drive_id, codec_.host_id),
                fromDrive(RobStrideType::kReport, codec_.drive_id, codec_.host_id),
                fromDrive(RobStrideType::kReadParameter, codec_.drive_id, codec_.host_id),
@@ -225,7 +226,8 @@ void RobStride_Motor::takeParameter(const CanFrame& frame) noexcept {
   if (accepted && index == parameter::kSupplyVoltage && value >= 0.0 && value < 1000.0) {
     feedback_.voltage_v = static_cast<float>(value);
   }
-  if (accepted && index == parameter::kPosition && std::abs(value) < kFarthestRad && feedback_.samples > 0) {
+  if (accepted && index == parameter::kPosition && std::abs(value) < kFarthestCountedRad &&
+      feedback_.samples > 0) {
     // Whole scales apart, because the two were read a moment apart.
     scale_offset_rad_ = wraps() ? kScaleRad * std::round((value - position_rad_) / kScaleRad) : 0.0;
   }

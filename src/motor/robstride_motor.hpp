@@ -20,6 +20,7 @@ enum class RobStrideControl : std::uint8_t {
   kVelocity,
   kPosition,
 };
+[[nodiscard]] RobStrideControl robStrideControlOf(const OwnValues& own);
 
 /// A RobStride RS00-RS06, EL05 or CyberGear on its private protocol. Scheduler thread only.
 ///

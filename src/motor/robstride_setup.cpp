@@ -11,14 +11,14 @@ namespace {
 namespace parameter = robstride_parameter;
 
 /// How a setting stands in its parameter; manuals, "Readable and writable single parameters".
-struct Row {
+struct SettingParameter {
   std::uint16_t index = 0;  ///< 0: the id, which has a frame of its own.
   bool whole = false;       ///< An unsigned integer; else a float.
   double per_unit = 1.0;
   double at_zero = 0.0;  ///< Of the parameter, for a setting of 0.
 };
 
-constexpr std::array kSettings{
+constexpr std::array kRobStrideSettings{
     DriveSetting{.name = "id", .min = 1, .max = 127, .integer = true, .identity = true},
     DriveSetting{.name = "timeout_ms", .min = 0, .max = 5000, .integer = true},
     DriveSetting{.name = "report_interval_ms", .min = 10, .max = 1000, .integer = true},
@@ -31,25 +31,26 @@ constexpr std::array kSettings{
     DriveSetting{.name = "velocity_ki", .min = 0, .max = 1000},
 };
 
-constexpr std::array kRows{
-    Row{},
-    Row{0x7028, true, kRobStrideTimeoutPerMs},
-    Row{0x7026, true, 0.2, -1.0},  // 1: 10 ms; each more: 5 ms
-    Row{0x7029, true},
-    Row{parameter::kTorqueLimit},
-    Row{parameter::kCurrentLimit},
-    Row{parameter::kVelocityLimit},
-    Row{0x701E},
-    Row{0x701F},
-    Row{0x7020},
+constexpr std::array kSettingParameters{
+    SettingParameter{},
+    SettingParameter{0x7028, true, kRobStrideTimeoutPerMs},
+    SettingParameter{0x7026, true, 0.2, -1.0},  // 1: 10 ms; each more: 5 ms
+    SettingParameter{0x7029, true},
+    SettingParameter{parameter::kTorqueLimit},
+    SettingParameter{parameter::kCurrentLimit},
+    SettingParameter{parameter::kVelocityLimit},
+    SettingParameter{0x701E},
+    SettingParameter{0x701F},
+    SettingParameter{0x7020},
 };
-static_assert(kRows.size() == kSettings.size());
+static_assert(kSettingParameters.size() == kRobStrideSettings.size());
 
-constexpr DriveSetup kRobStrideSetup{.settings = kSettings, .tool = "RobStride's Motor Studio"};
-constexpr DriveSetup kCyberGearSetup{
-    .settings = std::span(kSettings).first(1), .stores_at_once = true, .tool = "Xiaomi's CyberGear tool"};
+constexpr DriveSetup kRobStrideSetup{.settings = kRobStrideSettings, .tool = "RobStride's Motor Studio"};
+constexpr DriveSetup kCyberGearSetup{.settings = std::span(kRobStrideSettings).first(1),
+                                     .stores_at_once = true,
+                                     .tool = "Xiaomi's CyberGear tool"};
 
-std::uint32_t rawOf(const Row& row, double value) noexcept {
+std::uint32_t rawOf(const SettingParameter& row, double value) noexcept {
   const double raw = value * row.per_unit + row.at_zero;
   return row.whole ? static_cast<std::uint32_t>(std::lround(raw))
                    : std::bit_cast<std::uint32_t>(static_cast<float>(raw));
@@ -62,7 +63,7 @@ const DriveSetup& robStrideSetup(bool cyber_gear) noexcept {
 }
 
 CanFrame RobStrideSetupCodec::write(const DriveValue& value) const noexcept {
-  const auto& row = kRows[value.setting];
+  const auto& row = kSettingParameters[value.setting];
   if (row.index != 0) return codec_.write(row.index, rawOf(row, value.value));
   const auto new_id = static_cast<std::uint32_t>(std::lround(value.value)) & 0xFFU;
   const auto data = new_id << 8U | static_cast<std::uint32_t>(codec_.host_id);
@@ -71,14 +72,14 @@ CanFrame RobStrideSetupCodec::write(const DriveValue& value) const noexcept {
 }
 
 std::optional<CanFrame> RobStrideSetupCodec::read(std::size_t setting) const noexcept {
-  const auto& row = kRows[setting];
+  const auto& row = kSettingParameters[setting];
   if (row.index == 0) return std::nullopt;  // nothing tells it but the silence under the old one
   return codec_.read(row.index);
 }
 
 std::optional<double> RobStrideSetupCodec::reading(std::size_t setting,
                                                    const CanFrame& frame) const noexcept {
-  const auto& row = kRows[setting];
+  const auto& row = kSettingParameters[setting];
   const auto type = static_cast<RobStrideType>(frame.id.value >> 24U & 0x1FU);
   const bool accepted = (frame.id.value >> 16U & 0xFFU) == 0;
   if (row.index == 0 || type != RobStrideType::kReadParameter || !accepted || frame.length != 8) {

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "app/angle.hpp"
+#include "app/limits.hpp"
 
 namespace rc10 {
 namespace {
@@ -12,9 +13,17 @@ namespace {
   return std::chrono::duration_cast<Duration>(std::chrono::seconds{1}) / std::max(hz, 1);
 }
 
-[[nodiscard]] double finite(double value) noexcept { return std::isfinite(value) ? value : 0.0; }
-
 }  // namespace
+
+double driveTurns(const MotorSettings& settings, const MotorTraits& traits) noexcept {
+  return settings.gear_ratio > 0.0 ? settings.gear_ratio / traits.gear_ratio : 1.0;
+}
+
+MotorSettings withFeedbackOfCommands(MotorSettings settings, int commands) {
+  const int divider = std::max(settings.command_divider, 1) * std::max(commands, 1);
+  settings.feedback_hz = std::max(settings.tick_hz / divider, 1);
+  return settings;
+}
 
 SoloMotor::SoloMotor(const MotorSettings& settings, const MotorTraits& traits, double drive_turns)
     : Motor_Base(settings.name),
@@ -81,15 +90,15 @@ Target SoloMotor::wanted() noexcept {
 
 double SoloMotor::currentWithinLimit(const Target& target) noexcept {
   const auto limit_a = static_cast<double>(effortLimit());
-  double wanted_a = target.mode == ControlMode::kCurrent ? finite(target.value) : 0.0;
-  if (torqueNmPerA() > 0.0F) wanted_a += finite(static_cast<double>(target.torque_ff_nm / torqueNmPerA()));
+  double wanted_a = target.mode == ControlMode::kCurrent ? finiteOr0(target.value) : 0.0;
+  if (torqueNmPerA() > 0.0F) wanted_a += finiteOr0(static_cast<double>(target.torque_ff_nm / torqueNmPerA()));
   const double current_a = std::clamp(wanted_a, -limit_a, limit_a);
   if (current_a != wanted_a) limits_ |= kLimitCurrent;
   return current_a;
 }
 
 double SoloMotor::rpmWithinLimit(double output_rpm) noexcept {
-  const double wanted_rpm = finite(output_rpm);
+  const double wanted_rpm = finiteOr0(output_rpm);
   const auto limit_rpm = static_cast<double>(velocityLimitRpm());
   const double rpm = limit_rpm > 0.0 ? std::clamp(wanted_rpm, -limit_rpm, limit_rpm) : wanted_rpm;
   if (rpm != wanted_rpm) limits_ |= kLimitVelocity;

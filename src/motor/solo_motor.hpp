@@ -101,6 +101,12 @@ class SoloMotor : public Motor_Base, public CommandPacker {
   CommandUnit command_unit_ = CommandUnit::kNone;
 };
 
+/// Turns of a drive's own output, on which it reports, per turn of the output shaft.
+[[nodiscard]] double driveTurns(const MotorSettings& settings, const MotorTraits& traits) noexcept;
+
+/// Of a drive that speaks when it is told something, and tells its angle once in `commands`.
+[[nodiscard]] MotorSettings withFeedbackOfCommands(MotorSettings settings, int commands);
+
 /// Registers both halves of a motor with its bus: what most families build() with.
 template <typename Motor>
 [[nodiscard]] Result<std::unique_ptr<Motor_Base>> registerSolo(std::unique_ptr<Motor> motor,

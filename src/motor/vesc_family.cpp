@@ -7,7 +7,7 @@
 namespace rc10 {
 namespace {
 
-constexpr std::array<std::string_view, 1> kModels{"VESC"};
+constexpr std::array<std::string_view, 1> kVescModels{"VESC"};
 constexpr int kAsksPerSecond = 10;
 // Packets 0 to 63 with its own id or 255: firmware compares the low byte, and all that it knows is below 64.
 constexpr std::uint32_t kObeyedMask = 0x1FFF'C0FF;
@@ -15,7 +15,7 @@ constexpr std::uint32_t kObeyedMask = 0x1FFF'C0FF;
 class VescFamily final : public MotorFamily {
  public:
   [[nodiscard]] std::string_view name() const noexcept override { return "VESC"; }
-  [[nodiscard]] std::span<const std::string_view> models() const noexcept override { return kModels; }
+  [[nodiscard]] std::span<const std::string_view> models() const noexcept override { return kVescModels; }
   [[nodiscard]] std::span<const FamilyKey> keys() const noexcept override { return vescKeys(); }
 
   [[nodiscard]] MotorTraits traits(std::string_view /*model*/, const OwnValues& own) const override {

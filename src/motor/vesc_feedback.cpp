@@ -13,7 +13,7 @@ using std::chrono::milliseconds;
 
 constexpr double kStepsPerElectricalTurn = 6.0;
 constexpr double kSecondsPerMinute = 60.0;
-constexpr int kGapPeriods = 5;
+constexpr int kVescGapPeriods = 5;
 // A drive that starts is silent for longer (main.c waits 500 ms alone); a cable that is plugged in again may
 // be another drive's.
 constexpr Duration kRestartGap = milliseconds{300};
@@ -84,7 +84,7 @@ void VESC_Motor::takeStatus1(const CanFrame& frame) noexcept {
 }
 
 bool VESC_Motor::gapTooLong(Duration gap) const noexcept {
-  return gap > std::max(kRestartGap, kGapPeriods * feedbackPeriod());
+  return gap > std::max(kRestartGap, kVescGapPeriods * feedbackPeriod());
 }
 
 /// The drive's position has moved by so much, which may be in doubt.

@@ -13,7 +13,7 @@ constexpr std::array<std::string_view, 3> kAngles{"tachometer", "encoder", "none
 constexpr std::array<std::string_view, 3> kStops{"regulate", "coast", "brake"};
 constexpr std::array<std::string_view, 2> kTemperatures{"drive", "motor"};
 
-constexpr std::array<FamilyKey, 14> kKeys{
+constexpr std::array<FamilyKey, 14> kVescKeys{
     FamilyKey{.name = "pole_pairs",
               .kind = Kind::kInteger,
               .min = 1,
@@ -113,11 +113,11 @@ constexpr std::array<FamilyKey, 14> kKeys{
               .about = "The controller id of rc10d itself, for the answers; no drive may have it."},
 };
 
-constexpr ModeSet kModes{ControlMode::kCoast, ControlMode::kCurrent, ControlMode::kVelocity,
-                         ControlMode::kDuty, ControlMode::kBrake};
-constexpr ModeSet kModesWithAngle{ControlMode::kCoast, ControlMode::kCurrent,    ControlMode::kVelocity,
-                                  ControlMode::kAngle, ControlMode::kTotalAngle, ControlMode::kDuty,
-                                  ControlMode::kBrake};
+constexpr ModeSet kVescModes{ControlMode::kCoast, ControlMode::kCurrent, ControlMode::kVelocity,
+                             ControlMode::kDuty, ControlMode::kBrake};
+constexpr ModeSet kVescModesWithAngle{ControlMode::kCoast, ControlMode::kCurrent,    ControlMode::kVelocity,
+                                      ControlMode::kAngle, ControlMode::kTotalAngle, ControlMode::kDuty,
+                                      ControlMode::kBrake};
 
 // Only the angle loop runs on the host: its output is a speed. 1.5 rpm/deg is a crossover of 9 rad/s, which
 // leaves 75 degrees of phase for one sample of delay and the wait for the tick at 50 Hz.
@@ -129,44 +129,46 @@ constexpr CascadeConfig kAngleLoop{
 constexpr double kTorqueTimesKv = 1.5 * 60.0 / (std::numbers::sqrt3 * 2.0 * std::numbers::pi);
 static_assert(kTorqueTimesKv > 8.269 && kTorqueTimesKv < 8.271);
 
-using enum FaultCode;
 // By native code: mc_fault_code.
-constexpr std::array<FaultCode, 34> kFaults{
-    kNone,
-    kDriveOverVoltage,
-    kDriveUnderVoltage,
-    kDriveHardware,     // DRV: the gate driver
-    kDriveOverCurrent,  // absolute maximum
-    kDriveTooHot,
-    kDriveMotorTooHot,
-    kDriveHardware,  // gate driver over-voltage
-    kDriveHardware,  // gate driver under-voltage
-    kDriveHardware,  // MCU under-voltage
-    kDriveHardware,  // booting from a reset by the processor's watchdog
-    kDriveEncoder,   // SPI
-    kDriveEncoder,   // sin/cos too weak
-    kDriveEncoder,   // sin/cos too strong
-    kDriveHardware,  // flash
-    kDriveHardware,  // offset of current sensor 1
-    kDriveHardware,
-    kDriveHardware,
-    kDrivePhase,     // unbalanced currents
-    kDriveHardware,  // BRK
-    kDriveEncoder,   // resolver LOT
-    kDriveEncoder,   // resolver DOS
-    kDriveEncoder,   // resolver LOS
-    kDriveSetting,   // flash, application settings
-    kDriveSetting,   // flash, motor settings
-    kDriveEncoder,   // no magnet
-    kDriveEncoder,   // magnet too strong
-    kDrivePhase,     // phase filter
-    kDriveEncoder,   // encoder
-    kDriveHardware,  // low-voltage output
-    kDriveEncoder,   // encoder slipped
-    kDriveLimit,     // too fast
-    kDriveLimit,     // too slow
-    kDriveLimit,     // too fast, absolute
-};
+constexpr auto kVescFaults = [] {
+  using enum FaultCode;
+  return std::array<FaultCode, 34>{
+      kNone,
+      kDriveOverVoltage,
+      kDriveUnderVoltage,
+      kDriveHardware,     // DRV: the gate driver
+      kDriveOverCurrent,  // absolute maximum
+      kDriveTooHot,
+      kDriveMotorTooHot,
+      kDriveHardware,  // gate driver over-voltage
+      kDriveHardware,  // gate driver under-voltage
+      kDriveHardware,  // MCU under-voltage
+      kDriveHardware,  // booting from a reset by the processor's watchdog
+      kDriveEncoder,   // SPI
+      kDriveEncoder,   // sin/cos too weak
+      kDriveEncoder,   // sin/cos too strong
+      kDriveHardware,  // flash
+      kDriveHardware,  // offset of current sensor 1
+      kDriveHardware,
+      kDriveHardware,
+      kDrivePhase,     // unbalanced currents
+      kDriveHardware,  // BRK
+      kDriveEncoder,   // resolver LOT
+      kDriveEncoder,   // resolver DOS
+      kDriveEncoder,   // resolver LOS
+      kDriveSetting,   // flash, application settings
+      kDriveSetting,   // flash, motor settings
+      kDriveEncoder,   // no magnet
+      kDriveEncoder,   // magnet too strong
+      kDrivePhase,     // phase filter
+      kDriveEncoder,   // encoder
+      kDriveHardware,  // low-voltage output
+      kDriveEncoder,   // encoder slipped
+      kDriveLimit,     // too fast
+      kDriveLimit,     // too slow
+      kDriveLimit,     // too fast, absolute
+  };
+}();
 
 VescAngle angleOf(const std::string& text) {
   if (text == "encoder") return VescAngle::kEncoder;
@@ -202,7 +204,7 @@ VescOptions::VescOptions(const OwnValues& own)
       ask_status(own.flag("ask_status")),
       host_id(own.integer("host_id")) {}
 
-std::span<const FamilyKey> vescKeys() noexcept { return kKeys; }
+std::span<const FamilyKey> vescKeys() noexcept { return kVescKeys; }
 
 MotorTraits vescTraits(const VescOptions& options) {
   MotorTraits traits;
@@ -224,7 +226,7 @@ MotorTraits vescTraits(const VescOptions& options) {
   traits.frozen_a = 0.0F;
   traits.asked = false;
   traits.watchdog = options.ask_status;
-  traits.modes = options.angle == VescAngle::kNone ? kModes : kModesWithAngle;
+  traits.modes = options.angle == VescAngle::kNone ? kVescModes : kVescModesWithAngle;
   static constexpr DriveSetup kSetup{.tool = "VESC Tool (the simple CAN commands write no settings)"};
   traits.setup = &kSetup;
   traits.frames = {.rest = Provision::kFrame,
@@ -242,7 +244,7 @@ MotorTraits vescTraits(const VescOptions& options) {
 }
 
 FaultCode vescFault(std::uint8_t native_code) noexcept {
-  return native_code < kFaults.size() ? kFaults[native_code] : kDriveOther;
+  return native_code < kVescFaults.size() ? kVescFaults[native_code] : FaultCode::kDriveOther;
 }
 
 }  // namespace rc10

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "app/angle.hpp"
+#include "app/limits.hpp"
 #include "app/units.hpp"
 
 namespace rc10 {
@@ -20,12 +21,6 @@ constexpr std::int32_t kStillErpm = 150;
 constexpr std::int32_t kSlippedErpm = 450;
 // SET_POS goes the shortest way round: the drive is told no more than this ahead of where it is.
 constexpr double kLeadDeg = 90.0;
-
-/// A float near a double of any size.
-float nearFloat(double value) noexcept {
-  constexpr auto kBound = static_cast<double>(kHugeTerm);
-  return static_cast<float>(std::clamp(value, -kBound, kBound));
-}
 
 std::array<FrameFilter, 8> filtersOf(int id, const VescOptions& options) {
   const auto exactly = [id](VescPacket packet) { return FrameFilter{.id = vescId(packet, id)}; };
@@ -52,7 +47,7 @@ std::array<CanId, 10> commandIdsOf(int id) {
 }
 
 /// With a divider the drive's position loop counts turns of what stands behind that gear.
-double driveTurns(const MotorSettings& settings, const VescOptions& options) {
+double reportedTurns(const MotorSettings& settings, const VescOptions& options) {
   const double gear = settings.gear_ratio > 0.0 ? settings.gear_ratio : 1.0;
   return options.angle == VescAngle::kEncoder ? gear / options.position_divider : gear;
 }
@@ -61,7 +56,7 @@ double driveTurns(const MotorSettings& settings, const VescOptions& options) {
 
 VESC_Motor::VESC_Motor(const MotorSettings& settings)
     : SoloMotor(settings, vescTraits(VescOptions{settings.own}),
-                driveTurns(settings, VescOptions{settings.own})),
+                reportedTurns(settings, VescOptions{settings.own})),
       options_(settings.own),
       id_(settings.id),
       rotor_per_output_(get_GearRatio() * static_cast<double>(direction())),
