@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "app/limits.hpp"
 #include "module/module_type.hpp"
 
 namespace rc10 {
@@ -15,7 +16,7 @@ using enum FamilyKey::Kind;
 // Wheels whose feedback is older say nothing about the motion.
 constexpr Duration kFresh = std::chrono::milliseconds{100};
 
-constexpr std::array kKeys{
+constexpr std::array kChassisKeys{
     FamilyKey{.name = "max_speed_m_s",
               .kind = kNumber,
               .unit = "m/s",
@@ -80,16 +81,14 @@ constexpr std::array kKeys{
               .default_text = "0",
               .about = "Heat in the windings, for power_limit_w: W for each Nm squared of each wheel."}};
 
-enum Input : std::size_t { kVx, kVy, kWz, kFrame, kTurnAfter, kX, kY, kHeading };
-enum Output : std::size_t { kOutX, kOutY, kOutHeading, kOutVx, kOutVy, kOutWz, kOutPower, kOutFactor };
+enum ChassisInput : std::size_t { kVx, kVy, kWz, kFrame, kTurnAfter, kX, kY, kHeading };
+enum ChassisOutput : std::size_t { kOutX, kOutY, kOutHeading, kOutVx, kOutVy, kOutWz, kOutPower, kOutFactor };
 
 ModuleSignals chassisSignals() {
   return {.inputs = {"vx_m_s", "vy_m_s", "wz_deg_s", "frame", "follow", "x_m", "y_m", "heading_deg"},
           .outputs = {"x_m", "y_m", "heading_deg", "vx_m_s", "vy_m_s", "wz_deg_s", "power_w", "power_factor"},
           .events = {}};
 }
-
-[[nodiscard]] double orZero(double value) noexcept { return std::isfinite(value) ? value : 0.0; }
 
 Result<void> find(std::optional<SignalPlace>& place, const std::string& name, const char* key,
                   const ModuleDirectory& others) {
@@ -102,7 +101,7 @@ Result<void> find(std::optional<SignalPlace>& place, const std::string& name, co
 
 }  // namespace
 
-std::span<const FamilyKey> Chassis_Base::commonKeys() noexcept { return kKeys; }
+std::span<const FamilyKey> Chassis_Base::commonKeys() noexcept { return kChassisKeys; }
 
 Chassis_Base::Chassis_Base(const OwnValues& own, std::vector<std::size_t> motors)
     : Module_Base(chassisSignals()),
@@ -147,9 +146,10 @@ void Chassis_Base::update(const Tick& tick, ModuleRobot& robot) noexcept {
 }
 
 Twist2D Chassis_Base::wanted(const ModuleRobot& robot) const noexcept {
-  Twist2D twist{.vx_m_s = orZero(input(kVx)), .vy_m_s = orZero(input(kVy)), .wz_deg_s = orZero(input(kWz))};
+  Twist2D twist{
+      .vx_m_s = finiteOr0(input(kVx)), .vy_m_s = finiteOr0(input(kVy)), .wz_deg_s = finiteOr0(input(kWz))};
   const double gimbal_deg = follow_ ? robot.read(*follow_) : kNoSignal;
-  const auto frame = static_cast<int>(orZero(input(kFrame)));
+  const auto frame = static_cast<int>(finiteOr0(input(kFrame)));
   if (frame == 1) {
     twist = worldToBody(twist, odometry_.pose().heading_deg);
   } else if (frame == 2) {
@@ -157,7 +157,7 @@ Twist2D Chassis_Base::wanted(const ModuleRobot& robot) const noexcept {
     if (!std::isfinite(gimbal_deg)) return {};
     twist = seenFrom(-gimbal_deg, twist);
   }
-  if (orZero(input(kTurnAfter)) >= 0.5 && std::isfinite(gimbal_deg))
+  if (finiteOr0(input(kTurnAfter)) >= 0.5 && std::isfinite(gimbal_deg))
     twist.wz_deg_s += follow_gain_per_s_ * std::remainder(gimbal_deg, 360.0);
   return twist;
 }

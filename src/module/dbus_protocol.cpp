@@ -7,23 +7,23 @@
 namespace rc10 {
 namespace {
 
-using Frame = std::span<const std::uint8_t, DbusProtocol::kFrameBytes>;
+using DbusFrame = std::span<const std::uint8_t, DbusProtocol::kFrameBytes>;
 
 constexpr int kCentre = 1024;
 constexpr int kLow = kCentre - Dr16Input::kFullDeflection;
 constexpr int kHigh = kCentre + Dr16Input::kFullDeflection;
-constexpr unsigned kChannelBits = 11;
+constexpr unsigned kDbusChannelBits = 11;
 constexpr unsigned kRightSwitchBit = 44;  // as RMCS reads it; comments of the C board's example say left
 constexpr unsigned kLeftSwitchBit = 46;
 
 // Four channels of 11 bits and two switches of 2, least significant bit first.
-[[nodiscard]] std::uint64_t sticks(Frame frame) noexcept {
+[[nodiscard]] std::uint64_t sticks(DbusFrame frame) noexcept {
   return readLittleEndian<std::uint32_t>(frame, 0) |
          static_cast<std::uint64_t>(readLittleEndian<std::uint16_t>(frame, 4)) << 32U;
 }
 
 [[nodiscard]] int channel(std::uint64_t sticks, unsigned index) noexcept {
-  return static_cast<int>(sticks >> (kChannelBits * index) & 0x7FFU);
+  return static_cast<int>(sticks >> (kDbusChannelBits * index) & 0x7FFU);
 }
 
 [[nodiscard]] unsigned switchAt(std::uint64_t sticks, unsigned bit) noexcept {
@@ -32,7 +32,7 @@ constexpr unsigned kLeftSwitchBit = 46;
 
 [[nodiscard]] bool inRange(int channel) noexcept { return channel >= kLow && channel <= kHigh; }
 
-[[nodiscard]] bool isPlausible(Frame frame) noexcept {
+[[nodiscard]] bool isPlausibleDbus(DbusFrame frame) noexcept {
   const auto bits = sticks(frame);
   for (unsigned i = 0; i < 4; ++i) {
     if (!inRange(channel(bits, i))) return false;
@@ -47,7 +47,7 @@ constexpr unsigned kLeftSwitchBit = 46;
   return static_cast<std::int16_t>(channel - kCentre);
 }
 
-[[nodiscard]] Dr16Input decode(Frame frame) noexcept {
+[[nodiscard]] Dr16Input decodeDbus(DbusFrame frame) noexcept {
   const auto bits = sticks(frame);
   const auto wheel = readLittleEndian<std::uint16_t>(frame, 16);
   return {.right_horizontal = deflection(channel(bits, 0)),
@@ -72,8 +72,8 @@ constexpr unsigned kLeftSwitchBit = 46;
 }  // namespace
 
 void DbusProtocol::parse_stream(std::span<const std::uint8_t> bytes, MonotonicTime received) noexcept {
-  framer_.parse(bytes, received, counters_, isPlausible,
-                [&](Frame frame) { input_.set(decode(frame), received); });
+  framer_.parse(bytes, received, counters_, isPlausibleDbus,
+                [&](DbusFrame frame) { input_.set(decodeDbus(frame), received); });
 }
 
 std::size_t DbusProtocol::pack_frame(std::span<const std::uint8_t> /*payload*/,
@@ -87,7 +87,7 @@ std::array<std::uint8_t, DbusProtocol::kFrameBytes> DbusProtocol::encode(const D
   for (const auto deflected :
        {input.right_horizontal, input.right_vertical, input.left_horizontal, input.left_vertical}) {
     bits |= static_cast<std::uint64_t>(rawChannel(deflected)) << at;
-    at += kChannelBits;
+    at += kDbusChannelBits;
   }
   bits |= static_cast<std::uint64_t>(input.right_switch) << kRightSwitchBit;
   bits |= static_cast<std::uint64_t>(input.left_switch) << kLeftSwitchBit;

@@ -12,7 +12,7 @@ using enum FamilyKey::Kind;
 // Of the velocity that is asked for: slower than this it does not move.
 constexpr double kMoves = 0.2;
 
-constexpr std::array kKeys{
+constexpr std::array kFeederKeys{
     FamilyKey{
         .name = "motor", .kind = kMotor, .required = true, .about = "The motor; it needs velocity targets."},
     FamilyKey{.name = "velocity_limit_rpm",
@@ -59,10 +59,6 @@ constexpr std::array kKeys{
         .default_text = "3",
         .about = "So many times in a row it tries again; then it gives up until nobody asks any more."}};
 
-enum Input : std::size_t { kVelocityRpm, kShots };
-enum Output : std::size_t { kState, kShotsLeft, kJams };
-enum EventPlace : std::size_t { kJammed, kFreed, kGaveUp };
-
 ModuleSignals feederSignals() {
   return {.inputs = {"velocity_rpm", "shots"},
           .outputs = {"state", "shots_left", "jams"},
@@ -101,6 +97,10 @@ class Feeder : public Module_Base {
   }
 
  private:
+  enum Input : std::size_t { kVelocityRpm, kShots };
+  enum Output : std::size_t { kState, kShotsLeft, kJams };
+  enum EventPlace : std::size_t { kJammed, kFreed, kGaveUp };
+
   enum class State { kIdle, kFeeding, kReversing, kGivenUp };
 
   /// 0: nothing is asked, or nothing can be done.
@@ -206,7 +206,7 @@ class FeederType : public ModuleType {
   [[nodiscard]] std::string_view about() const noexcept override {
     return "Pushes balls or discs forward; frees itself when it is jammed.";
   }
-  [[nodiscard]] std::span<const FamilyKey> keys() const noexcept override { return kKeys; }
+  [[nodiscard]] std::span<const FamilyKey> keys() const noexcept override { return kFeederKeys; }
 
   [[nodiscard]] Result<std::unique_ptr<Module_Base>> build(const ModuleSettings& settings,
                                                            const RobotOutline& robot) const override {

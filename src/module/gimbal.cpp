@@ -6,6 +6,7 @@
 #include <optional>
 #include <string>
 
+#include "app/limits.hpp"
 #include "module/gimbal_axis.hpp"
 
 namespace rc10 {
@@ -27,7 +28,7 @@ constexpr FamilyKey limitKey(std::string_view name, double value_if_not, std::st
           .about = about};
 }
 
-constexpr std::array kKeys{
+constexpr std::array kGimbalKeys{
     FamilyKey{.name = "yaw",
               .kind = kMotor,
               .required = true,
@@ -59,10 +60,6 @@ constexpr std::array kKeys{
               .default_text = "60",
               .about = "No axis is told more."}};
 
-enum Input : std::size_t { kYawDeg, kPitchDeg, kYawRate, kPitchRate };
-enum Output : std::size_t { kOutYaw, kOutPitch, kRelativeYaw, kTargetYaw, kTargetPitch, kStabilised };
-enum EventPlace : std::size_t { kLost, kBack };
-
 ModuleSignals gimbalSignals() {
   return {
       .inputs = {"yaw_deg", "pitch_deg", "yaw_rate_deg_s", "pitch_rate_deg_s"},
@@ -71,8 +68,6 @@ ModuleSignals gimbalSignals() {
       .events = {{.text = "the inertial sensor is not heard: the gimbal holds to the chassis"},
                  {.text = "the inertial sensor is heard: the gimbal holds to the world", .expected = true}}};
 }
-
-[[nodiscard]] double orZero(double value) noexcept { return std::isfinite(value) ? value : 0.0; }
 
 class Gimbal : public Module_Base {
  public:
@@ -129,6 +124,10 @@ class Gimbal : public Module_Base {
   }
 
  private:
+  enum Input : std::size_t { kYawDeg, kPitchDeg, kYawRate, kPitchRate };
+  enum Output : std::size_t { kOutYaw, kOutPitch, kRelativeYaw, kTargetYaw, kTargetPitch, kStabilised };
+  enum EventPlace : std::size_t { kLost, kBack };
+
   struct YawMeasured {
     double angle_deg;
     double rate_deg_s;
@@ -140,8 +139,8 @@ class Gimbal : public Module_Base {
   }
 
   void follow(const Tick& tick, ModuleRobot& robot, const YawMeasured& yaw, double pitch_deg) noexcept {
-    const double yaw_rate_deg_s = commanded() ? orZero(input(kYawRate)) : 0.0;
-    double pitch_rate_deg_s = commanded() ? orZero(input(kPitchRate)) : 0.0;
+    const double yaw_rate_deg_s = commanded() ? finiteOr0(input(kYawRate)) : 0.0;
+    double pitch_rate_deg_s = commanded() ? finiteOr0(input(kPitchRate)) : 0.0;
     if (commanded() && std::isfinite(input(kYawDeg))) yaw_.aim(input(kYawDeg));
     if (commanded() && std::isfinite(input(kPitchDeg))) pitch_.aim(input(kPitchDeg));
     yaw_.turn(yaw_rate_deg_s, tick.dt_s);
@@ -181,7 +180,7 @@ class GimbalType : public ModuleType {
   [[nodiscard]] std::string_view about() const noexcept override {
     return "Yaw and pitch that look in one direction of the world.";
   }
-  [[nodiscard]] std::span<const FamilyKey> keys() const noexcept override { return kKeys; }
+  [[nodiscard]] std::span<const FamilyKey> keys() const noexcept override { return kGimbalKeys; }
 
   [[nodiscard]] Result<std::unique_ptr<Module_Base>> build(const ModuleSettings& settings,
                                                            const RobotOutline& robot) const override {

@@ -67,7 +67,7 @@ constexpr std::array kOutputKeys{
                   "safe: the safe value from the e-stop on, until it was commanded safe once after it. keep: "
                   "obeys all the same, as a gripper that must not drop what it holds."}};
 
-constexpr std::array kKeys{
+constexpr std::array kGpioKeys{
     FamilyKey{.name = "chip",
               .kind = kText,
               .required = true,
@@ -96,8 +96,6 @@ constexpr float kOldestReadingSeconds = 0.1F;
 /// As long as the lines thread waits for a tick before the outputs are safe.
 constexpr Duration kLongestTick = std::chrono::milliseconds{200};
 
-enum EventPlace : std::size_t { kHeldBack };
-
 [[nodiscard]] GpioBias biasOf(const std::string& word) {
   if (word == "none") return GpioBias::kNone;
   if (word == "pull_up") return GpioBias::kPullUp;
@@ -121,7 +119,7 @@ enum EventPlace : std::size_t { kHeldBack };
   return ((levels >> place) & 1U) != 0;
 }
 
-[[nodiscard]] constexpr double number(bool value) noexcept { return value ? 1.0 : 0.0; }
+[[nodiscard]] constexpr double asNumber(bool value) noexcept { return value ? 1.0 : 0.0; }
 
 class GpioModule : public Module_Base {
  public:
@@ -152,10 +150,12 @@ class GpioModule : public Module_Base {
   void update(const Tick& tick, ModuleRobot& robot) noexcept override {
     readInputs(tick);
     driveOutputs(tick, robot);
-    setOutput(inputs_.size() + outputs_.size(), number(image_->open));
+    setOutput(inputs_.size() + outputs_.size(), asNumber(image_->open));
   }
 
  private:
+  enum EventPlace : std::size_t { kHeldBack };
+
   struct Input {
     Debouncer debouncer;
     bool active_low = false;
@@ -180,7 +180,7 @@ class GpioModule : public Module_Base {
         input.debouncer.restart();
         setOutput(i, kNoSignal);
       } else if (read) {
-        setOutput(i, number(input.debouncer.step(bit(image_->inputs, i) != input.active_low, tick.now)));
+        setOutput(i, asNumber(input.debouncer.step(bit(image_->inputs, i) != input.active_low, tick.now)));
       }
     }
   }
@@ -207,7 +207,7 @@ class GpioModule : public Module_Base {
       const bool value = output.held_back ? output.safe : wanted;
       setLevel(image_->outputs, i, value);
       const bool driven = image_->open && !bit(image_->unwritten, i);
-      setOutput(inputs_.size() + i, driven ? number(value) : kNoSignal);
+      setOutput(inputs_.size() + i, driven ? asNumber(value) : kNoSignal);
     }
     if (in_vain && !std::exchange(told_, true)) robot.report(kHeldBack);
     if (!held_back) told_ = false;
@@ -236,7 +236,7 @@ class GpioModuleType : public ModuleType {
   [[nodiscard]] std::string_view about() const noexcept override {
     return "Switches and valves on lines of a GPIO chip.";
   }
-  [[nodiscard]] std::span<const FamilyKey> keys() const noexcept override { return kKeys; }
+  [[nodiscard]] std::span<const FamilyKey> keys() const noexcept override { return kGpioKeys; }
 
   [[nodiscard]] Result<std::unique_ptr<Module_Base>> build(const ModuleSettings& settings,
                                                            const RobotOutline&) const override {

@@ -21,7 +21,7 @@ constexpr std::size_t kAnglesAt = 48;        // roll, pitch, yaw in degrees
 constexpr std::size_t kQuaternionAt = 60;    // w, x, y, z
 constexpr std::size_t kValuesEnd = 76;
 
-[[nodiscard]] ScanVerdict judge(std::span<const std::uint8_t> shown) noexcept {
+[[nodiscard]] ScanVerdict judgeHipnuc(std::span<const std::uint8_t> shown) noexcept {
   if (shown.size() <= kSync.size()) {
     return shown.back() == kSync[shown.size() - 1] ? ScanVerdict::kMore : ScanVerdict::kNoise;
   }
@@ -52,7 +52,7 @@ constexpr std::size_t kValuesEnd = 76;
 
 void HipnucProtocol::parse_stream(std::span<const std::uint8_t> bytes, MonotonicTime received) noexcept {
   scanner_.scan(bytes, counters_, [&](std::span<const std::uint8_t> shown) {
-    const auto verdict = judge(shown);
+    const auto verdict = judgeHipnuc(shown);
     if (verdict == ScanVerdict::kFrame) take(shown.subspan(kHeaderBytes), received);
     return verdict;
   });

@@ -14,7 +14,7 @@ namespace {
 
 using enum FamilyKey::Kind;
 
-constexpr std::array<std::string_view, 3> kProtocols{"witmotion", "hipnuc", "inputs"};
+constexpr std::array<std::string_view, 3> kImuProtocols{"witmotion", "hipnuc", "inputs"};
 
 constexpr FamilyKey optionalPort() {
   FamilyKey key = kPortKey;
@@ -22,10 +22,10 @@ constexpr FamilyKey optionalPort() {
   return key;
 }
 
-constexpr std::array kKeys{
+constexpr std::array kImuKeys{
     FamilyKey{.name = "protocol",
               .kind = kChoice,
-              .choices = kProtocols,
+              .choices = kImuProtocols,
               .required = true,
               .about = "witmotion or hipnuc on a serial port; inputs: another program gives the values."},
     optionalPort(),
@@ -54,7 +54,6 @@ constexpr std::array kKeys{
 // The inputs, and the first outputs.
 enum Axis : std::size_t { kYaw, kPitch, kRoll, kYawRate, kPitchRate, kRollRate, kAccX, kAccY, kAccZ, kAxes };
 constexpr std::size_t kAgeMs = kAxes;
-enum EventPlace : std::size_t { kSilent, kBack };
 
 ModuleSignals imuSignals(bool by_inputs) {
   const std::vector<std::string> axes{"yaw_deg",
@@ -118,6 +117,8 @@ class Imu : public Module_Base {
   }
 
  private:
+  enum EventPlace : std::size_t { kSilent, kBack };
+
   // What a sensor does not send stays NaN; the oldest of what it does send decides.
   Duration readStream(std::array<double, kAxes>& values, const Tick& tick) const noexcept {
     Duration oldest{};
@@ -166,7 +167,7 @@ class ImuType : public ModuleType {
   [[nodiscard]] std::string_view about() const noexcept override {
     return "An inertial sensor: angles, rates and acceleration.";
   }
-  [[nodiscard]] std::span<const FamilyKey> keys() const noexcept override { return kKeys; }
+  [[nodiscard]] std::span<const FamilyKey> keys() const noexcept override { return kImuKeys; }
 
   [[nodiscard]] Result<std::unique_ptr<Module_Base>> build(const ModuleSettings& settings,
                                                            const RobotOutline&) const override {

@@ -19,7 +19,7 @@ using enum FamilyKey::Kind;
 constexpr std::array<std::string_view, 3> kHomings{"none", "stop", "switch"};
 constexpr std::array<std::string_view, 2> kOnSilence{"hold", "let_go"};
 
-constexpr std::array kKeys{
+constexpr std::array kJointKeys{
     FamilyKey{.name = "motor",
               .kind = kMotor,
               .required = true,
@@ -123,10 +123,6 @@ constexpr std::array kKeys{
             "When nobody commands it any more: hold brakes within the limits and holds while the motor is "
             "ACTIVE; let_go leaves it to the motor's on_timeout."}};
 
-enum Input : std::size_t { kAngleDeg, kHome };
-enum Output : std::size_t { kState, kMove, kMeasured, kReference, kHomed };
-enum EventPlace : std::size_t { kIsHomed, kNotHomed, kNotReached, kBeyond, kNoSwitch };
-
 ModuleSignals jointSignals() {
   return {
       .inputs = {"angle_deg", "home"},
@@ -225,6 +221,10 @@ class Joint : public Module_Base {
   }
 
  private:
+  enum Input : std::size_t { kAngleDeg, kHome };
+  enum Output : std::size_t { kState, kMove, kMeasured, kReference, kHomed };
+  enum EventPlace : std::size_t { kIsHomed, kNotHomed, kNotReached, kBeyond, kNoSwitch };
+
   enum class State { kIdle, kHoming, kFollowing, kHomingFailed };
   enum class Move { kNone, kUnderWay, kDone, kFailed };
 
@@ -361,7 +361,7 @@ class JointType : public ModuleType {
   [[nodiscard]] std::string_view about() const noexcept override {
     return "One axis that homes and moves between positions.";
   }
-  [[nodiscard]] std::span<const FamilyKey> keys() const noexcept override { return kKeys; }
+  [[nodiscard]] std::span<const FamilyKey> keys() const noexcept override { return kJointKeys; }
 
   [[nodiscard]] Result<std::unique_ptr<Module_Base>> build(const ModuleSettings& settings,
                                                            const RobotOutline& robot) const override {

@@ -60,7 +60,7 @@ constexpr auto kEnabledKeys = effectKeys("steady", "green", "black", "1000");
 // Never quite dark: a dark strip says that rc10d does not run.
 constexpr auto kDisabledKeys = effectKeys("breathe", "#404060", "#040408", "4000");
 
-constexpr std::array kKeys{
+constexpr std::array kLedStripKeys{
     FamilyKey{.name = "device",
               .kind = kText,
               .required = true,
@@ -111,9 +111,6 @@ constexpr std::array kKeys{
               .kind = kSection,
               .about = "Shown while no motor is ACTIVE.",
               .keys = kDisabledKeys}};
-
-enum Input : std::size_t { kRed, kGreen, kBlue, kBrightness };
-enum Output : std::size_t { kState, kShowsInputs, kConnected };
 
 /// Of the robot, the most important last: the numbers of the output `state`.
 enum class Shown : std::uint8_t { kDisabled, kEnabled, kFault, kEstop };
@@ -200,6 +197,9 @@ class LedStrip : public Module_Base {
   }
 
  private:
+  enum Input : std::size_t { kRed, kGreen, kBlue, kBrightness };
+  enum Output : std::size_t { kState, kShowsInputs, kConnected };
+
   /// What people near the robot must see is neither replaced nor dimmed.
   [[nodiscard]] static bool mayReplace(Shown shown) noexcept { return shown < Shown::kFault; }
 
@@ -237,7 +237,7 @@ class LedStripType : public ModuleType {
   [[nodiscard]] std::string_view about() const noexcept override {
     return "WS2812 pixels on an SPI bus that show the state of the robot.";
   }
-  [[nodiscard]] std::span<const FamilyKey> keys() const noexcept override { return kKeys; }
+  [[nodiscard]] std::span<const FamilyKey> keys() const noexcept override { return kLedStripKeys; }
 
   [[nodiscard]] Result<std::unique_ptr<Module_Base>> build(const ModuleSettings& settings,
                                                            const RobotOutline&) const override {

@@ -21,7 +21,7 @@ constexpr Duration kArming = std::chrono::seconds{3};
 constexpr Duration kArmingRetry = std::chrono::milliseconds{200};
 
 constexpr std::string_view kChannelPattern = "[a-z0-9_]{1,31}";
-constexpr std::array<std::string_view, 2> kProtocols{"dbus", "sbus"};
+constexpr std::array<std::string_view, 2> kRemoteProtocols{"dbus", "sbus"};
 
 constexpr std::array kStickKeys{
     FamilyKey{.name = "channel",
@@ -61,11 +61,11 @@ constexpr std::array kConstantKeys{FamilyKey{.name = "to",
                                              .required = true,
                                              .about = "Its value while the remote commands."}};
 
-constexpr std::array kKeys{
+constexpr std::array kRemoteKeys{
     kPortKey,
     FamilyKey{.name = "protocol",
               .kind = kChoice,
-              .choices = kProtocols,
+              .choices = kRemoteProtocols,
               .required = true,
               .about = "Of the receiver: dbus (DJI DR16, 100000 8E1) or sbus (100000 8E2). Both need an "
                        "inverter before an ordinary UART."},
@@ -105,9 +105,6 @@ constexpr std::array kKeys{
               .max = 30,
               .about = "What it gives beside its channels while it commands.",
               .keys = kConstantKeys}};
-
-enum Output : std::size_t { kConnected, kArmed, kAgeMs, kFirstChannel };
-enum EventPlace : std::size_t { kLost, kBack, kDisabled, kEnables };
 
 ModuleSignals remoteSignals(const RemoteChannels& channels) {
   ModuleSignals signals;
@@ -188,6 +185,9 @@ class Remote : public Module_Base {
   }
 
  private:
+  enum Output : std::size_t { kConnected, kArmed, kAgeMs, kFirstChannel };
+  enum EventPlace : std::size_t { kLost, kBack, kDisabled, kEnables };
+
   void watchLink(bool heard, const Tick& tick, ModuleRobot& robot) noexcept {
     if (heard) {
       if (was_heard_ == 0) robot.report(kBack);
@@ -289,7 +289,7 @@ class RemoteType : public ModuleType {
   [[nodiscard]] std::string_view about() const noexcept override {
     return "The driver's remote control: commands other modules and enables the robot.";
   }
-  [[nodiscard]] std::span<const FamilyKey> keys() const noexcept override { return kKeys; }
+  [[nodiscard]] std::span<const FamilyKey> keys() const noexcept override { return kRemoteKeys; }
 
   [[nodiscard]] Result<std::unique_ptr<Module_Base>> build(const ModuleSettings& settings,
                                                            const RobotOutline& robot) const override {

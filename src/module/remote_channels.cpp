@@ -38,9 +38,9 @@ class ChannelsOf : public RemoteChannels {
 }
 
 // The keys in the order of their bits.
-constexpr std::array<const char*, 16> kKeys{"key_w", "key_s", "key_a", "key_d", "key_shift", "key_ctrl",
-                                            "key_q", "key_e", "key_r", "key_f", "key_g",     "key_z",
-                                            "key_x", "key_c", "key_v", "key_b"};
+constexpr std::array<const char*, 16> kKeyboardChannels{
+    "key_w", "key_s", "key_a", "key_d", "key_shift", "key_ctrl", "key_q", "key_e",
+    "key_r", "key_f", "key_g", "key_z", "key_x",     "key_c",    "key_v", "key_b"};
 
 class DbusChannels final : public ChannelsOf<DbusProtocol> {
  public:
@@ -67,7 +67,7 @@ class DbusChannels final : public ChannelsOf<DbusProtocol> {
                                        in.mouse_left ? 1.0 : 0.0,
                                        in.mouse_right ? 1.0 : 0.0};
     std::copy(fixed.begin(), fixed.end(), values.begin());
-    for (std::size_t key = 0; key < kKeys.size(); ++key)
+    for (std::size_t key = 0; key < kKeyboardChannels.size(); ++key)
       values[fixed.size() + key] = (in.keys >> key & 1U) != 0U ? 1.0 : 0.0;
   }
 
@@ -76,7 +76,7 @@ class DbusChannels final : public ChannelsOf<DbusProtocol> {
     std::vector<std::string> names{"right_x", "right_y",      "left_x",      "left_y",
                                    "wheel",   "right_switch", "left_switch", "mouse_x",
                                    "mouse_y", "mouse_z",      "mouse_left",  "mouse_right"};
-    names.insert(names.end(), kKeys.begin(), kKeys.end());
+    names.insert(names.end(), kKeyboardChannels.begin(), kKeyboardChannels.end());
     return names;
   }
 };

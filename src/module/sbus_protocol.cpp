@@ -5,26 +5,26 @@
 namespace rc10 {
 namespace {
 
-using Frame = std::span<const std::uint8_t, SbusProtocol::kFrameBytes>;
+using SbusFrame = std::span<const std::uint8_t, SbusProtocol::kFrameBytes>;
 
-constexpr std::uint8_t kHeader = 0x0F;
+constexpr std::uint8_t kSbusHeader = 0x0F;
 constexpr std::array<std::uint8_t, 5> kEnds{0x00, 0x04, 0x14, 0x24, 0x34};  // SBUS, and the slots of SBUS2
 constexpr std::size_t kFlagsAt = 23;
-constexpr unsigned kChannelBits = 11;
+constexpr unsigned kSbusChannelBits = 11;
 
 enum Flag : std::uint8_t { kChannel17 = 1, kChannel18 = 2, kFrameLost = 4, kFailsafe = 8, kUnused = 0xF0 };
 
-[[nodiscard]] bool isPlausible(Frame frame) noexcept {
-  return frame[0] == kHeader && (frame[kFlagsAt] & kUnused) == 0 &&
+[[nodiscard]] bool isPlausibleSbus(SbusFrame frame) noexcept {
+  return frame[0] == kSbusHeader && (frame[kFlagsAt] & kUnused) == 0 &&
          std::find(kEnds.begin(), kEnds.end(), frame.back()) != kEnds.end();
 }
 
-[[nodiscard]] SbusInput decode(Frame frame) noexcept {
+[[nodiscard]] SbusInput decodeSbus(SbusFrame frame) noexcept {
   SbusInput input;
   for (std::size_t i = 0; i < SbusInput::kChannels; ++i) {
     unsigned value = 0;
-    for (unsigned bit = 0; bit < kChannelBits; ++bit) {
-      const auto at = i * kChannelBits + bit;
+    for (unsigned bit = 0; bit < kSbusChannelBits; ++bit) {
+      const auto at = i * kSbusChannelBits + bit;
       value |= (static_cast<unsigned>(frame[1 + at / 8]) >> (at % 8) & 1U) << bit;
     }
     input.raw[i] = static_cast<std::uint16_t>(value);
@@ -44,8 +44,8 @@ float SbusInput::deflection(std::size_t channel) const noexcept {
 }
 
 void SbusProtocol::parse_stream(std::span<const std::uint8_t> bytes, MonotonicTime received) noexcept {
-  framer_.parse(bytes, received, counters_, isPlausible,
-                [&](Frame frame) { input_.set(decode(frame), received); });
+  framer_.parse(bytes, received, counters_, isPlausibleSbus,
+                [&](SbusFrame frame) { input_.set(decodeSbus(frame), received); });
 }
 
 std::size_t SbusProtocol::pack_frame(std::span<const std::uint8_t> /*payload*/,
@@ -55,10 +55,10 @@ std::size_t SbusProtocol::pack_frame(std::span<const std::uint8_t> /*payload*/,
 
 std::array<std::uint8_t, SbusProtocol::kFrameBytes> SbusProtocol::encode(const SbusInput& input) noexcept {
   std::array<std::uint8_t, kFrameBytes> frame{};
-  frame[0] = kHeader;
+  frame[0] = kSbusHeader;
   for (std::size_t i = 0; i < SbusInput::kChannels; ++i) {
-    for (unsigned bit = 0; bit < kChannelBits; ++bit) {
-      const auto at = i * kChannelBits + bit;
+    for (unsigned bit = 0; bit < kSbusChannelBits; ++bit) {
+      const auto at = i * kSbusChannelBits + bit;
       const unsigned set = static_cast<unsigned>(input.raw[i]) >> bit & 1U;
       frame[1 + at / 8] = static_cast<std::uint8_t>(frame[1 + at / 8] | set << (at % 8));
     }

@@ -9,7 +9,7 @@ namespace {
 
 using enum FamilyKey::Kind;
 
-constexpr std::array kKeys{
+constexpr std::array kPairKeys{
     FamilyKey{.name = "left",
               .kind = kMotor,
               .required = true,
@@ -37,10 +37,6 @@ constexpr std::array kKeys{
               .above_min = true,
               .required = true,
               .about = "No velocity target is higher."}};
-
-enum Input : std::size_t { kVelocityRpm, kTotalAngleDeg };
-enum Output : std::size_t { kAngleOut, kDifference, kApart };
-enum EventPlace : std::size_t { kCameApart };
 
 ModuleSignals pairSignals() {
   return {
@@ -86,6 +82,10 @@ class SynchronisedPair : public Module_Base {
   }
 
  private:
+  enum Input : std::size_t { kVelocityRpm, kTotalAngleDeg };
+  enum Output : std::size_t { kAngleOut, kDifference, kApart };
+  enum EventPlace : std::size_t { kCameApart };
+
   void turn(ModuleRobot& robot, std::size_t motor, double velocity_rpm) const noexcept {
     robot.setTarget(motor, {.mode = ControlMode::kVelocity,
                             .value = std::clamp(velocity_rpm, -velocity_limit_rpm_, velocity_limit_rpm_)});
@@ -104,7 +104,7 @@ class SynchronisedPairType : public ModuleType {
   [[nodiscard]] std::string_view about() const noexcept override {
     return "Two motors that move one thing and must stay together.";
   }
-  [[nodiscard]] std::span<const FamilyKey> keys() const noexcept override { return kKeys; }
+  [[nodiscard]] std::span<const FamilyKey> keys() const noexcept override { return kPairKeys; }
 
   [[nodiscard]] Result<std::unique_ptr<Module_Base>> build(const ModuleSettings& settings,
                                                            const RobotOutline& robot) const override {

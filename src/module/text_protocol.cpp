@@ -30,7 +30,7 @@ constexpr std::string_view kHexDigits = "0123456789ABCDEF";
 }
 
 // A decimal number without exponent. Not std::from_chars: that of GCC 11 may allocate.
-[[nodiscard]] std::optional<double> number(std::string_view text) noexcept {
+[[nodiscard]] std::optional<double> numberIn(std::string_view text) noexcept {
   const bool negative = !text.empty() && text.front() == '-';
   if (negative) text.remove_prefix(1);
   double value = 0.0;
@@ -51,7 +51,7 @@ constexpr std::string_view kHexDigits = "0123456789ABCDEF";
 }
 
 // "name,1.5,-2"
-[[nodiscard]] std::optional<TextMessage> decode(std::string_view content) noexcept {
+[[nodiscard]] std::optional<TextMessage> decodeText(std::string_view content) noexcept {
   TextMessage message;
   const auto name = content.substr(0, content.find(','));
   if (name.empty() || name.size() > TextMessage::kLongestName ||
@@ -63,7 +63,7 @@ constexpr std::string_view kHexDigits = "0123456789ABCDEF";
   while (!content.empty()) {
     content.remove_prefix(1);  // the comma
     const auto text = content.substr(0, content.find(','));
-    const auto value = number(text);
+    const auto value = numberIn(text);
     if (!value || message.value_count == TextMessage::kMostValues) return std::nullopt;
     message.values[message.value_count++] = *value;
     content.remove_prefix(text.size());
@@ -99,7 +99,7 @@ void TextProtocol::parse_stream(std::span<const std::uint8_t> bytes, MonotonicTi
     if (shown.back() != kEnd) return ScanVerdict::kMore;
     const auto line = take(shown);
     if (line.verdict != ScanVerdict::kFrame) return line.verdict;
-    const auto message = decode(line.content);
+    const auto message = decodeText(line.content);
     if (!message) return ScanVerdict::kSkip;
     message_.set(*message, received);
     return ScanVerdict::kFrame;

@@ -8,7 +8,7 @@
 namespace rc10 {
 namespace {
 
-constexpr std::uint8_t kHeader = 0x59;
+constexpr std::uint8_t kTfminiHeader = 0x59;
 constexpr std::uint8_t kCommandHeader = 0x5A;
 constexpr std::size_t kLongestCommand = 8;
 
@@ -17,8 +17,8 @@ constexpr std::uint16_t kOverexposed = 65535;
 // Instead of a distance: 65535 too weak, 65534 saturated, 65532 too much daylight.
 constexpr std::uint16_t kFirstErrorDistance = 65532;
 
-[[nodiscard]] ScanVerdict judge(std::span<const std::uint8_t> shown) noexcept {
-  if (shown.size() <= 2) return shown.back() == kHeader ? ScanVerdict::kMore : ScanVerdict::kNoise;
+[[nodiscard]] ScanVerdict judgeTfmini(std::span<const std::uint8_t> shown) noexcept {
+  if (shown.size() <= 2) return shown.back() == kTfminiHeader ? ScanVerdict::kMore : ScanVerdict::kNoise;
   if (shown.size() < TfminiProtocol::kFrameBytes) return ScanVerdict::kMore;
   return sum8(shown.first(TfminiProtocol::kFrameBytes - 1)) == shown.back() ? ScanVerdict::kFrame
                                                                             : ScanVerdict::kBadChecksum;
@@ -28,7 +28,7 @@ constexpr std::uint16_t kFirstErrorDistance = 65532;
 
 void TfminiProtocol::parse_stream(std::span<const std::uint8_t> bytes, MonotonicTime received) noexcept {
   scanner_.scan(bytes, counters_, [&](std::span<const std::uint8_t> shown) {
-    const auto verdict = judge(shown);
+    const auto verdict = judgeTfmini(shown);
     if (verdict == ScanVerdict::kFrame) range_.set(decode(shown), received);
     return verdict;
   });

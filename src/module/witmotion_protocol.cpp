@@ -9,7 +9,7 @@
 namespace rc10 {
 namespace {
 
-constexpr std::uint8_t kHeader = 0x55;
+constexpr std::uint8_t kWitmotionHeader = 0x55;
 constexpr std::uint8_t kFirstType = 0x50;
 constexpr std::uint8_t kLastType = 0x5F;
 
@@ -28,8 +28,8 @@ constexpr float kFullAngle = 180.0F;                           // deg
   return {scaled(frame, 0, full), scaled(frame, 1, full), scaled(frame, 2, full)};
 }
 
-[[nodiscard]] ScanVerdict judge(std::span<const std::uint8_t> shown) noexcept {
-  if (shown[0] != kHeader) return ScanVerdict::kNoise;
+[[nodiscard]] ScanVerdict judgeWitmotion(std::span<const std::uint8_t> shown) noexcept {
+  if (shown[0] != kWitmotionHeader) return ScanVerdict::kNoise;
   if (shown.size() > 1 && (shown[1] < kFirstType || shown[1] > kLastType)) return ScanVerdict::kNoise;
   if (shown.size() < WitMotionProtocol::kFrameBytes) return ScanVerdict::kMore;
   return sum8(shown.first(WitMotionProtocol::kFrameBytes - 1)) == shown.back() ? ScanVerdict::kFrame
@@ -40,7 +40,7 @@ constexpr float kFullAngle = 180.0F;                           // deg
 
 void WitMotionProtocol::parse_stream(std::span<const std::uint8_t> bytes, MonotonicTime received) noexcept {
   scanner_.scan(bytes, counters_, [&](std::span<const std::uint8_t> shown) {
-    const auto verdict = judge(shown);
+    const auto verdict = judgeWitmotion(shown);
     if (verdict == ScanVerdict::kFrame) take(shown, received);
     return verdict;
   });
