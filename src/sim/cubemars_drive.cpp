@@ -16,10 +16,10 @@ namespace {
 // .params); what they do is in the VESC firmware, from which those settings are. In MIT mode of V1 and V2 no
 // timeout is known: the last command holds.
 constexpr Duration kCommandTimeout = std::chrono::milliseconds{1000};
-constexpr Duration kFaultStop = std::chrono::milliseconds{500};
+constexpr Duration kCubeMarsFaultStop = std::chrono::milliseconds{500};
 constexpr Duration kStartUp = std::chrono::milliseconds{300};  // assumed
 
-std::vector<FrameFilter> sendsOf(const MotorSettings& settings, const CubeMarsSetup& setup) {
+std::vector<FrameFilter> cubemarsSends(const MotorSettings& settings, const CubeMarsSetup& setup) {
   if (setup.protocol != CubeMarsProtocol::kMit) return {{.id = cubemars::servoFeedbackId(settings.id)}};
   const PayloadDiscriminator own{.value = static_cast<std::uint8_t>(settings.id)};
   return {{.id = {0, false}, .mask = kStandardIdMask, .discriminator = own}};
@@ -41,7 +41,7 @@ std::int16_t int16Of(double value, double limit) noexcept {
 }  // namespace
 
 CubeMarsDrive::CubeMarsDrive(const MotorSettings& settings, const CubeMarsSetup& setup, const MotorLoad& load)
-    : ServoDrive(settings, cubemarsTraits(setup), load, sendsOf(settings, setup)),
+    : ServoDrive(settings, cubemarsTraits(setup), load, cubemarsSends(settings, setup)),
       setup_(setup),
       id_(settings.id) {
   const int hz = settings.feedback_hz > 0 ? settings.feedback_hz : traits().feedback_hz;
@@ -161,7 +161,7 @@ void CubeMarsDrive::restart() noexcept {
 
 void CubeMarsDrive::fault(std::uint32_t native_code) noexcept {
   error_ = static_cast<std::uint8_t>(std::min(native_code, 255U));
-  error_until_ = elapsed() + kFaultStop;
+  error_until_ = elapsed() + kCubeMarsFaultStop;
   if (error_ != 0) release();
 }
 

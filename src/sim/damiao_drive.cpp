@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "app/angle.hpp"
+#include "app/limits.hpp"
 #include "app/units.hpp"
 #include "bus/byte_order.hpp"
 
@@ -28,7 +29,9 @@ std::uint16_t wrappedCode(double value, double limit, unsigned bits) noexcept {
   return static_cast<std::uint16_t>(static_cast<std::uint64_t>(code) & ((1U << bits) - 1U));
 }
 
-double finiteOr0(float value) noexcept { return std::isfinite(value) ? static_cast<double>(value) : 0.0; }
+double readFinite(std::span<const std::uint8_t> payload, std::size_t at) noexcept {
+  return static_cast<double>(finiteOr0(readLittleEndian<float>(payload, at)));
+}
 
 /// Registers that are only kept.
 std::optional<std::size_t> otherIndex(Register address) noexcept {
@@ -118,15 +121,13 @@ void DamiaoDrive::receiveSetpoint(std::uint32_t family, const CanFrame& frame) n
   switch (setpoint_.control) {
     case DamiaoControl::kMit: setpoint_.mit = damiao::readMit(payload, registers_.scale); break;
     case DamiaoControl::kPositionVelocity:
-      setpoint_.position_rad = finiteOr0(readLittleEndian<float>(payload, 0));
-      setpoint_.velocity_rad_s = std::fabs(finiteOr0(readLittleEndian<float>(payload, 4)));
+      setpoint_.position_rad = readFinite(payload, 0);
+      setpoint_.velocity_rad_s = std::fabs(readFinite(payload, 4));
       break;
-    case DamiaoControl::kVelocity:
-      setpoint_.velocity_rad_s = finiteOr0(readLittleEndian<float>(payload, 0));
-      break;
+    case DamiaoControl::kVelocity: setpoint_.velocity_rad_s = readFinite(payload, 0); break;
     case DamiaoControl::kForcePosition: {
       constexpr std::uint16_t kMost = 10'000;
-      setpoint_.position_rad = finiteOr0(readLittleEndian<float>(payload, 0));
+      setpoint_.position_rad = readFinite(payload, 0);
       setpoint_.velocity_rad_s = std::min(readLittleEndian<std::uint16_t>(payload, 4), kMost) * 0.01;
       setpoint_.current_pu = std::min(readLittleEndian<std::uint16_t>(payload, 6), kMost) * 0.0001;
       break;

@@ -11,10 +11,6 @@ namespace rc10::sim {
 namespace {
 
 constexpr double kSupplyV = 24.0;
-// The drives do not say how they filter the speed they report; within what the Encoder allows (2 ms).
-constexpr double kSpeedLagSeconds = 0.001;
-constexpr double kRoomC = 25.0;      // of all the manuals' figures
-constexpr double kWindingC = 125.0;  // highest permissible, M3508 V1.0 and GM6020 v1.2
 
 /// What the model table of the motor layer does not know. Manuals: M3508 V1.0, M2006-P36, GM6020 v1.2.
 struct MotorData {
@@ -69,7 +65,7 @@ constexpr std::array kMotorData{MotorData{.model = "M3508",
 
 // Of the power a motor draws without load, the part that is friction at the shaft; the rest is the drive's
 // own and iron losses. Estimated: an M3508 then starts to turn at 0.37 A and an M2006 at 0.46 A.
-constexpr double kFrictionShare = 0.6;
+constexpr double kNoLoadFrictionShare = 0.6;
 
 const MotorData& dataOf(const DjiModel& model) noexcept {
   for (const auto& data : kMotorData) {
@@ -77,10 +73,6 @@ const MotorData& dataOf(const DjiModel& model) noexcept {
   }
   assert(false && "a model without physics");
   return kMotorData.front();
-}
-
-double orDefault(float value, double otherwise) noexcept {
-  return std::isnan(value) ? otherwise : static_cast<double>(value);
 }
 
 }  // namespace
@@ -108,7 +100,7 @@ MotorParameters parametersOf(const DjiModel& model, double gear_ratio, const Mot
 
   // At no-load speed, half of the friction is Coulomb's and half is viscous. The back-EMF is what makes the
   // no-load speed come out. Without its gear (a shooter's wheel) a motor has less friction.
-  const double rotor_friction_nm = kFrictionShare * kSupplyV * data.no_load_input_a / no_load_rad_s;
+  const double rotor_friction_nm = kNoLoadFrictionShare * kSupplyV * data.no_load_input_a / no_load_rad_s;
   p.back_emf_vs_per_rad =
       (kSupplyV - p.resistance_ohm * rotor_friction_nm / p.torque_nm_per_a) / no_load_rad_s;
   p.output_coulomb_nm = orDefault(load.coulomb_nm, 0.5 * rotor_friction_nm * gear_ratio);

@@ -11,16 +11,13 @@
 #include "motor/lktech_motor.hpp"
 
 namespace rc10::sim {
-
-using lktech::Code;
-
 namespace {
 
-constexpr double kRawPerDeg = 100.0;
-constexpr double kRawPerVolt = 100.0;
+constexpr double kLktechRawPerDeg = 100.0;
+constexpr double kLktechRawPerVolt = 100.0;
 constexpr std::uint8_t kOffState = 0x10;
 // Chosen: no source tells how long it starts.
-constexpr Duration kBootTime = std::chrono::milliseconds{300};
+constexpr Duration kLktechBootTime = std::chrono::milliseconds{300};
 
 }  // namespace
 
@@ -37,7 +34,7 @@ LKTechDrive::LKTechDrive(const MotorSettings& settings, const MotorTraits& trait
 // Where it is within a turn of the output, it knows.
 void LKTechDrive::forgetTurns() noexcept { zeroAt(wrapDegrees(driveAngleDeg())); }
 
-CanFrame LKTechDrive::reply(Code code) const noexcept { return lktech::request(id_, code); }
+CanFrame LKTechDrive::reply(lktech::Code code) const noexcept { return lktech::request(id_, code); }
 
 void LKTechDrive::receive(const CanFrame& frame) noexcept {
   if (elapsed() < boots_until_ || frame.type != FrameType::kData || frame.fd || frame.id.extended) return;
@@ -46,51 +43,51 @@ void LKTechDrive::receive(const CanFrame& frame) noexcept {
   if (frame.id.value == lktech::kGroupId && id_ <= lktech::kGroupSize) {
     const auto slot = static_cast<std::size_t>(id_ - 1);
     if (able()) current(readLittleEndian<std::int16_t>(frame.payload(), 2 * slot) * amperes_per_raw_);
-    answerReading(Code::kCurrent);
+    answerReading(lktech::Code::kCurrent);
   }
 }
 
 void LKTechDrive::obey(const CanFrame& frame) noexcept {
   const auto payload = frame.payload();
-  const Code code = lktech::codeOf(payload);
+  const lktech::Code code = lktech::codeOf(payload);
   const double gear = traits().gear_ratio;
-  const auto angle_or_speed = readLittleEndian<std::int32_t>(payload, 4) / kRawPerDeg / gear;
+  const auto angle_or_speed = readLittleEndian<std::int32_t>(payload, 4) / kLktechRawPerDeg / gear;
   switch (code) {
-    case Code::kOff:
+    case lktech::Code::kOff:
       on_ = false;
       release();
       forgetTurns();
       return answer(reply(code));
-    case Code::kOn: on_ = true; return answer(reply(code));
-    case Code::kAngle: {
+    case lktech::Code::kOn: on_ = true; return answer(reply(code));
+    case lktech::Code::kAngle: {
       CanFrame out = reply(code);
-      const auto raw = static_cast<std::int64_t>(std::llround(driveAngleDeg() * gear * kRawPerDeg));
+      const auto raw = static_cast<std::int64_t>(std::llround(driveAngleDeg() * gear * kLktechRawPerDeg));
       for (std::size_t i = 0; i < 7; ++i) {
         out.data[1 + i] = static_cast<std::uint8_t>(static_cast<std::uint64_t>(raw) >> (8U * i) & 0xFFU);
       }
       return answer(out);
     }
-    case Code::kClear: errors_ = cause_; return answerStatus(code);
-    case Code::kStatus: return answerStatus(code);
-    case Code::kReading: return answerReading(code);
-    case Code::kCurrent:
+    case lktech::Code::kClear: errors_ = cause_; return answerStatus(code);
+    case lktech::Code::kStatus: return answerStatus(code);
+    case lktech::Code::kReading: return answerReading(code);
+    case lktech::Code::kCurrent:
       if (able()) current(readLittleEndian<std::int16_t>(payload, 4) * amperes_per_raw_);
       return answerReading(code);
-    case Code::kVelocity:
+    case lktech::Code::kVelocity:
       if (able()) {
         const double limit_a = std::abs(readLittleEndian<std::int16_t>(payload, 2)) * amperes_per_raw_;
         const double nm_per_a = physics().parameters().torque_nm_per_a * gear;
         velocity(angle_or_speed / kDegPerSPerRpm, 0.0, limit_a * nm_per_a);
       }
       return answerReading(code);
-    case Code::kPosition:
+    case lktech::Code::kPosition:
       if (able())
         position(angle_or_speed, readLittleEndian<std::uint16_t>(payload, 2) / kDegPerSPerRpm / gear);
       return answerReading(code);
   }
 }
 
-void LKTechDrive::answerReading(Code code) noexcept {
+void LKTechDrive::answerReading(lktech::Code code) noexcept {
   CanFrame out = reply(code);
   out.data[1] = static_cast<std::uint8_t>(saturatedRound<std::int8_t>(physics().temperatureC()));
   writeLittleEndian(out.data, 2, saturatedRound<std::int16_t>(currentA() / amperes_per_raw_));
@@ -102,11 +99,11 @@ void LKTechDrive::answerReading(Code code) noexcept {
   answer(out);
 }
 
-void LKTechDrive::answerStatus(Code code) noexcept {
+void LKTechDrive::answerStatus(lktech::Code code) noexcept {
   CanFrame out = reply(code);
   out.data[1] = static_cast<std::uint8_t>(saturatedRound<std::int8_t>(physics().temperatureC()));
   writeLittleEndian(out.data, 2,
-                    saturatedRound<std::uint16_t>(physics().parameters().supply_v * kRawPerVolt));
+                    saturatedRound<std::uint16_t>(physics().parameters().supply_v * kLktechRawPerVolt));
   out.data[6] = on_ ? 0 : kOffState;
   out.data[7] = errors_;
   answer(out);
@@ -117,7 +114,7 @@ void LKTechDrive::restart() noexcept {
   forgetTurns();
   on_ = true;
   errors_ = cause_;
-  boots_until_ = elapsed() + kBootTime;
+  boots_until_ = elapsed() + kLktechBootTime;
 }
 
 void LKTechDrive::fault(std::uint32_t native_code) noexcept {

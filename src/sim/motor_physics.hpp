@@ -6,6 +6,12 @@
 
 namespace rc10::sim {
 
+inline constexpr double kRoomC = 25.0;  ///< Of all the manuals' figures.
+/// Highest permissible: DJI's M3508 V1.0 and GM6020 v1.2.
+inline constexpr double kWindingC = 125.0;
+/// The drives do not say how they filter the speed they report; within what the Encoder allows (2 ms).
+inline constexpr double kSpeedLagSeconds = 0.001;
+
 /// What a motor, its drive and its load are made of. SI units; winding and rotor figures are the
 /// rotor's, figures named `output_` stand behind the gear.
 struct MotorParameters {
@@ -25,7 +31,7 @@ struct MotorParameters {
   double output_load_nm = 0.0;     ///< Constant torque in the negative direction.
   double thermal_resistance_k_per_w = 0.0;
   double heat_capacity_j_per_k = 0.0;
-  double ambient_c = 25.0;
+  double ambient_c = kRoomC;
 
   /// At the output shaft, the rotor's share included.
   [[nodiscard]] double totalInertia() const noexcept {

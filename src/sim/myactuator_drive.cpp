@@ -10,19 +10,16 @@
 #include "motor/myactuator_motor.hpp"
 
 namespace rc10::sim {
-
-using myactuator::Code;
-
 namespace {
 
-constexpr double kRawPerDeg = 100.0;
+constexpr double kMyActuatorRawPerDeg = 100.0;
 constexpr double kRawPerAmpere = 100.0;
-constexpr double kRawPerVolt = 10.0;
+constexpr double kMyActuatorRawPerVolt = 10.0;
 // Chosen: no source tells how long it starts.
-constexpr Duration kBootTime = std::chrono::milliseconds{300};
+constexpr Duration kMyActuatorBootTime = std::chrono::milliseconds{300};
 constexpr Duration kNoticeSpacing = std::chrono::seconds{1};
 
-std::uint32_t bitsOf(double value, double low, double high, unsigned bits) noexcept {
+std::uint32_t rawOf(double value, double low, double high, unsigned bits) noexcept {
   const double full_scale = static_cast<double>((1U << bits) - 1U);
   const double inside = std::clamp(value, low, high);
   return saturatedRound<std::uint32_t>((inside - low) / (high - low) * full_scale);
@@ -46,7 +43,7 @@ MyActuatorDrive::MyActuatorDrive(const MotorSettings& settings, const MotorTrait
   zeroAt(std::fmod(driveAngleDeg(), 360.0));
 }
 
-CanFrame MyActuatorDrive::reply(Code code) const noexcept {
+CanFrame MyActuatorDrive::reply(myactuator::Code code) const noexcept {
   CanFrame frame;
   frame.id = {myactuator::kReplyBase + static_cast<std::uint32_t>(id_), false};
   frame.length = myactuator::kLength;
@@ -66,7 +63,7 @@ void MyActuatorDrive::receive(const CanFrame& frame) noexcept {
   if (silence_stopped_) {  // the first frame only ends the silence
     silence_stopped_ = false;
     CanFrame copy = frame;
-    copy.id = reply(Code::kReset).id;
+    copy.id = reply(myactuator::Code::kReset).id;
     return answer(copy);
   }
   motion ? obeyMotion(frame) : obey(frame);
@@ -74,42 +71,42 @@ void MyActuatorDrive::receive(const CanFrame& frame) noexcept {
 
 void MyActuatorDrive::obey(const CanFrame& frame) noexcept {
   const auto payload = frame.payload();
-  const Code code = myactuator::codeOf(payload);
+  const myactuator::Code code = myactuator::codeOf(payload);
   const bool able = errors_ == 0;
   switch (code) {
-    case Code::kReset: return restart();
-    case Code::kReleaseBrake: brake_released_ = true; return answer(reply(code));
-    case Code::kShutdown: release(); return answer(reply(code));
-    case Code::kAngle: {
+    case myactuator::Code::kReset: return restart();
+    case myactuator::Code::kReleaseBrake: brake_released_ = true; return answer(reply(code));
+    case myactuator::Code::kShutdown: release(); return answer(reply(code));
+    case myactuator::Code::kAngle: {
       CanFrame out = reply(code);
-      writeLittleEndian(out.data, 4, saturatedRound<std::int32_t>(driveAngleDeg() * kRawPerDeg));
+      writeLittleEndian(out.data, 4, saturatedRound<std::int32_t>(driveAngleDeg() * kMyActuatorRawPerDeg));
       return answer(out);
     }
-    case Code::kStatus: return answerStatus();
-    case Code::kReading: return answerReading(code);
-    case Code::kUptime: {
+    case myactuator::Code::kStatus: return answerStatus();
+    case myactuator::Code::kReading: return answerReading(code);
+    case myactuator::Code::kUptime: {
       CanFrame out = reply(code);
       const auto run = std::chrono::duration_cast<std::chrono::milliseconds>(elapsed() - started_);
       writeLittleEndian(out.data, 4, static_cast<std::uint32_t>(run.count()));
       return answer(out);
     }
-    case Code::kCurrent:
+    case myactuator::Code::kCurrent:
       if (able) current(readLittleEndian<std::int16_t>(payload, 4) / kRawPerAmpere);
       return answerReading(code);
-    case Code::kVelocity:
-      if (able) velocity(readLittleEndian<std::int32_t>(payload, 4) / kRawPerDeg / kDegPerSPerRpm);
+    case myactuator::Code::kVelocity:
+      if (able) velocity(readLittleEndian<std::int32_t>(payload, 4) / kMyActuatorRawPerDeg / kDegPerSPerRpm);
       return answerReading(code);
-    case Code::kPosition:
+    case myactuator::Code::kPosition:
       if (able) {
-        position(readLittleEndian<std::int32_t>(payload, 4) / kRawPerDeg,
+        position(readLittleEndian<std::int32_t>(payload, 4) / kMyActuatorRawPerDeg,
                  readLittleEndian<std::uint16_t>(payload, 2) / kDegPerSPerRpm);
       }
       return answerReading(code);
-    case Code::kFunction:
-    case Code::kReadAcceleration:
-    case Code::kSetAcceleration:
-    case Code::kSilenceLimit: return set(frame);
-    case Code::kSilenceStopped: break;
+    case myactuator::Code::kFunction:
+    case myactuator::Code::kReadAcceleration:
+    case myactuator::Code::kSetAcceleration:
+    case myactuator::Code::kSilenceLimit: return set(frame);
+    case myactuator::Code::kSilenceStopped: break;
   }
 }
 
@@ -118,13 +115,13 @@ void MyActuatorDrive::set(const CanFrame& frame) noexcept {
   const auto value = readLittleEndian<std::uint32_t>(frame.data, 4);
   const std::uint8_t index = frame.data[1];
   CanFrame out = frame;
-  out.id = reply(Code::kFunction).id;
+  out.id = reply(myactuator::Code::kFunction).id;
   switch (myactuator::codeOf(frame.payload())) {
-    case Code::kSilenceLimit: silence_limit_ = std::chrono::milliseconds{value}; break;
-    case Code::kReadAcceleration:
+    case myactuator::Code::kSilenceLimit: silence_limit_ = std::chrono::milliseconds{value}; break;
+    case myactuator::Code::kReadAcceleration:
       if (index < accelerations_.size()) writeLittleEndian(out.data, 4, accelerations_[index]);
       break;
-    case Code::kSetAcceleration:
+    case myactuator::Code::kSetAcceleration:
       if (index < accelerations_.size()) accelerations_[index] = std::clamp(value, 100U, 60'000U);
       break;
     default:
@@ -147,7 +144,7 @@ void MyActuatorDrive::obeyMotion(const CanFrame& frame) noexcept {
   answerMotion();
 }
 
-void MyActuatorDrive::answerReading(Code code) noexcept {
+void MyActuatorDrive::answerReading(myactuator::Code code) noexcept {
   CanFrame out = reply(code);
   out.data[1] = static_cast<std::uint8_t>(saturatedRound<std::int8_t>(physics().temperatureC()));
   writeLittleEndian(out.data, 2, saturatedRound<std::int16_t>(currentA() * kRawPerAmpere));
@@ -162,9 +159,9 @@ void MyActuatorDrive::answerMotion() noexcept {
   out.id = {kMotionReplyBase + static_cast<std::uint32_t>(id_), false};
   out.length = kLength;
   out.data[0] = static_cast<std::uint8_t>(id_);
-  const auto angle = bitsOf(driveAngleDeg() * kRadPerDeg, -kMotionAngleRad, kMotionAngleRad, 16);
-  const auto speed = bitsOf(driveRpm() * kRadPerSPerRpm, -kMotionVelocityRadS, kMotionVelocityRadS, 12);
-  const auto nm = bitsOf(driveTorqueNm(), -kMotionTorqueNm, kMotionTorqueNm, 12);
+  const auto angle = rawOf(driveAngleDeg() * kRadPerDeg, -kMotionAngleRad, kMotionAngleRad, 16);
+  const auto speed = rawOf(driveRpm() * kRadPerSPerRpm, -kMotionVelocityRadS, kMotionVelocityRadS, 12);
+  const auto nm = rawOf(driveTorqueNm(), -kMotionTorqueNm, kMotionTorqueNm, 12);
   writeBigEndian(out.data, 1, static_cast<std::uint16_t>(angle));
   out.data[3] = static_cast<std::uint8_t>(speed >> 4U);
   out.data[4] = static_cast<std::uint8_t>((speed & 0xFU) << 4U | nm >> 8U);
@@ -173,11 +170,11 @@ void MyActuatorDrive::answerMotion() noexcept {
 }
 
 void MyActuatorDrive::answerStatus() noexcept {
-  CanFrame out = reply(Code::kStatus);
+  CanFrame out = reply(myactuator::Code::kStatus);
   out.data[1] = static_cast<std::uint8_t>(saturatedRound<std::int8_t>(physics().temperatureC()));
   out.data[3] = brake_released_ ? 1 : 0;
   writeLittleEndian(out.data, 4,
-                    saturatedRound<std::uint16_t>(physics().parameters().supply_v * kRawPerVolt));
+                    saturatedRound<std::uint16_t>(physics().parameters().supply_v * kMyActuatorRawPerVolt));
   writeLittleEndian(out.data, 6, errors_);
   answer(out);
 }
@@ -192,7 +189,7 @@ void MyActuatorDrive::step(Duration dt) noexcept {
   }
   if (silence_stopped_ && elapsed() >= next_notice_) {
     next_notice_ = elapsed() + kNoticeSpacing;
-    answer(reply(Code::kSilenceStopped));
+    answer(reply(myactuator::Code::kSilenceStopped));
   }
 }
 
@@ -201,7 +198,7 @@ void MyActuatorDrive::restart() noexcept {
   // With one encoder it knows where within a turn of the rotor it is, with two within a turn of the output.
   zeroAt(std::fmod(driveAngleDeg(), traits().absolute ? 360.0 : 360.0 / traits().gear_ratio));
   started_ = elapsed();
-  boots_until_ = elapsed() + kBootTime;
+  boots_until_ = elapsed() + kMyActuatorBootTime;
   heard_ = boots_until_;
   silence_stopped_ = false;
   brake_released_ = false;

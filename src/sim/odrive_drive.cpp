@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 
+#include "app/limits.hpp"
 #include "app/units.hpp"
 #include "bus/byte_order.hpp"
 #include "motor/odrive_motor.hpp"
@@ -16,7 +17,7 @@ using std::chrono::milliseconds;
 constexpr Duration kHeartbeatPeriod = milliseconds{100};
 // Nothing is sent before the firmware runs, and nothing useful before its current sensors have settled.
 constexpr Duration kBootSilence = milliseconds{300};
-constexpr Duration kBootTime = milliseconds{1500};
+constexpr Duration kOdriveBootTime = milliseconds{1500};
 
 constexpr std::uint32_t kInitializing = 0x1;
 constexpr std::uint32_t kInvalidState = 0x1;
@@ -43,8 +44,6 @@ CanFrame pair(int node, OdriveMessage message, double first, double second) noex
   writeLittleEndian(std::span<std::uint8_t>{payload}, 4, static_cast<float>(second));
   return makeClassicFrame(odriveId(node, message), payload);
 }
-
-double finite(double value) noexcept { return std::isfinite(value) ? value : 0.0; }
 
 }  // namespace
 
@@ -104,7 +103,7 @@ void OdriveDrive::receive(const CanFrame& frame) noexcept {
   std::copy_n(frame.data.begin(), std::min<std::size_t>(frame.length, data.size()), data.begin());
   const std::span<const std::uint8_t> bytes{data};
   const auto number = [&](std::size_t at) {
-    return finite(static_cast<double>(readLittleEndian<float>(bytes, at)));
+    return finiteOr0(static_cast<double>(readLittleEndian<float>(bytes, at)));
   };
   const auto feed_forward = [&](std::size_t at) {
     return kFeedForwardUnit * readLittleEndian<std::int16_t>(bytes, at);
@@ -195,7 +194,7 @@ void OdriveDrive::restart() noexcept {
   current_limit_a_ = 10.0;
   zeroAt(0.0);
   silent_until_ = elapsed() + kBootSilence;
-  ready_at_ = elapsed() + kBootTime;
+  ready_at_ = elapsed() + kOdriveBootTime;
   fed_at_ = ready_at_;
   next_heartbeat_ = silent_until_;
   next_telemetry_ = silent_until_;

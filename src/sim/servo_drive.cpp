@@ -14,17 +14,10 @@ constexpr double kVelocityBandwidthRadS = 120.0;
 constexpr double kPositionGainPerS = 20.0;
 constexpr double kCurrentLagSeconds = 0.0003;
 constexpr double kWindingLagSeconds = 0.0005;
-constexpr double kSpeedLagSeconds = 0.001;
-constexpr double kRoomC = 25.0;
-constexpr double kWindingC = 125.0;
 // Of full scale, for what a model's table leaves open.
 constexpr double kFrictionShare = 0.02;
 constexpr double kRatedShare = 0.4;
 constexpr double kMechanicalLagSeconds = 0.03;
-
-double orDefault(float value, double otherwise) noexcept {
-  return std::isnan(value) ? otherwise : static_cast<double>(value);
-}
 
 }  // namespace
 

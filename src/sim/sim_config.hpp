@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cmath>
 #include <limits>
 
 namespace rc10::sim {
@@ -15,5 +16,10 @@ struct MotorLoad {
   bool silent = false;       ///< The drive sends nothing.
   float lost_frames = 0.0F;  ///< Fraction of feedback frames that are lost, 0 to 1.
 };
+
+/// What a load leaves open.
+[[nodiscard]] inline double orDefault(float value, double model_default) noexcept {
+  return std::isnan(value) ? model_default : static_cast<double>(value);
+}
 
 }  // namespace rc10::sim

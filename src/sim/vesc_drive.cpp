@@ -16,7 +16,7 @@ namespace {
 
 using std::chrono::milliseconds;
 
-constexpr Duration kFaultStop = milliseconds{500};  // MCCONF_M_FAULT_STOP_TIME
+constexpr Duration kVescFaultStop = milliseconds{500};  // MCCONF_M_FAULT_STOP_TIME
 constexpr Duration kBoot = milliseconds{1000};
 constexpr Duration kSlowPeriod = milliseconds{200};  // APPCONF_CAN_STATUS_RATE_2
 constexpr double kMinErpm = 900.0;                   // MCCONF_S_PID_MIN_RPM
@@ -26,7 +26,7 @@ constexpr std::uint8_t kGetValuesSelective = 50;
 
 VescOptions optionsOf(const MotorSettings& settings) { return VescOptions{settings.own}; }
 
-std::vector<FrameFilter> sendsOf(const MotorSettings& settings) {
+std::vector<FrameFilter> vescSends(const MotorSettings& settings) {
   std::vector<FrameFilter> sends;
   for (const auto packet :
        {VescPacket::kStatus1, VescPacket::kStatus4, VescPacket::kStatus5, VescPacket::kNotifyBoot}) {
@@ -45,7 +45,7 @@ std::int16_t raw16(double value, double per_unit) noexcept {
 }  // namespace
 
 VescDrive::VescDrive(const MotorSettings& settings, const MotorLoad& load)
-    : ServoDrive(settings, vescTraits(optionsOf(settings)), load, sendsOf(settings)),
+    : ServoDrive(settings, vescTraits(optionsOf(settings)), load, vescSends(settings)),
       options_(settings.own),
       id_(settings.id),
       period_(Duration{std::chrono::seconds{1}} /
@@ -242,7 +242,7 @@ void VescDrive::restart() noexcept {
 
 void VescDrive::fault(std::uint32_t native_code) noexcept {
   fault_ = static_cast<std::uint8_t>(std::min<std::uint32_t>(native_code, 255));
-  obeys_from_ = native_code == 0 ? Duration::zero() : elapsed() + kFaultStop;
+  obeys_from_ = native_code == 0 ? Duration::zero() : elapsed() + kVescFaultStop;
 }
 
 std::unique_ptr<Drive> makeVescDrive(const MotorSettings& settings, const MotorLoad& load) {
