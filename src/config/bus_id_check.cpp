@@ -22,11 +22,6 @@ struct Device {
   return {&draft, draft.config.family->busUse(draft.config.settings), draft.config.family == &djiFamily()};
 }
 
-std::string nameOf(const MotorDraft& motor) {
-  const auto& settings = motor.config.settings;
-  return quoted(settings.name) + " (" + settings.model + " id " + std::to_string(settings.id) + ")";
-}
-
 /// An id that satisfies both filters, for the message.
 [[nodiscard]] CanId commonId(const FrameFilter& a, const FrameFilter& b) noexcept {
   return {((a.id.value & a.mask) | (b.id.value & b.mask)) & idMask(a.id.extended), a.id.extended};

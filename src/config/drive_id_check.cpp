@@ -15,11 +15,6 @@ using Drafts = std::vector<const MotorDraft*>;
 
 const DjiModel& modelOf(const MotorDraft& motor) { return *findDjiModel(motor.config.settings.model); }
 
-std::string nameOf(const MotorDraft& motor) {
-  const DjiMotorConfig dji = djiConfig(motor.config.settings);
-  return quoted(dji.name) + " (" + std::string{dji.model->name} + " id " + std::to_string(dji.id) + ")";
-}
-
 std::string namesOf(const Drafts& motors) {
   std::vector<std::string> names;
   for (const auto* motor : motors) names.push_back(nameOf(*motor));

@@ -38,7 +38,7 @@ class GroupBuilder {
     const auto [first, is_new] = members_.emplace(*motor, given.path);
     if (is_new) return motor;
     problems_.error(given.place(), given.path,
-                    quoted(given.text()) + " is in a group already, at " + first->second +
+                    inQuotes(given.text()) + " is in a group already, at " + first->second +
                         "; a motor is in one group at most");
     return std::nullopt;
   }

@@ -6,7 +6,7 @@ namespace rc10 {
 namespace {
 
 /// The tables hold printable ASCII, so these two are all there is to escape.
-std::string inQuotes(std::string_view text) {
+std::string jsonString(std::string_view text) {
   std::string quoted = "\"";
   for (const char c : text) {
     if (c == '"' || c == '\\') quoted += '\\';
@@ -19,12 +19,12 @@ std::string inQuotes(std::string_view text) {
 
 JsonWriter& JsonWriter::key(std::string_view name) {
   beginValue();
-  json_ += inQuotes(name) + ": ";
+  json_ += jsonString(name) + ": ";
   after_key_ = true;
   return *this;
 }
 
-JsonWriter& JsonWriter::text(std::string_view value) { return literal(inQuotes(value)); }
+JsonWriter& JsonWriter::text(std::string_view value) { return literal(jsonString(value)); }
 
 JsonWriter& JsonWriter::number(double value) { return literal(numberText(value)); }
 

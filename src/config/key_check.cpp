@@ -120,7 +120,7 @@ class KeyCheck {
       const std::string value_path = joinPath(path, name.text);
       if (!matches(name.text, *key.form)) {
         refuse(name, value_path,
-               quoted(name.text) + " is not accepted as a name; use " + std::string{key.form->words});
+               inQuotes(name.text) + " is not accepted as a name; use " + std::string{key.form->words});
       }
       if (!value.refused) section(value, *key.section, value_path);
     }

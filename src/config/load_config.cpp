@@ -53,7 +53,7 @@ std::optional<RobotConfig> parse(std::string_view text, const std::string& file,
 
 /// yaml-cpp and the standard library may throw (memory); nothing above this file has to know.
 template <typename Work>
-ConfigOutcome collect(std::string file, Work work) noexcept {
+ConfigOutcome outcomeOf(std::string file, Work work) noexcept {
   Problems problems{std::move(file)};
   ConfigOutcome outcome;
   try {
@@ -74,7 +74,7 @@ std::string ConfigOutcome::errorText() const { return listed(errors); }
 std::string ConfigOutcome::warningText() const { return listed(warnings); }
 
 ConfigOutcome loadRobotConfig(const std::string& path) {
-  return collect(path, [&](Problems& problems) -> std::optional<RobotConfig> {
+  return outcomeOf(path, [&](Problems& problems) -> std::optional<RobotConfig> {
     const auto text = readSource(path, problems);
     return text ? parse(*text, path, problems) : std::nullopt;
   });
@@ -82,7 +82,7 @@ ConfigOutcome loadRobotConfig(const std::string& path) {
 
 ConfigOutcome parseRobotConfig(std::string_view text, std::string file_name) {
   const std::string file = file_name;
-  return collect(std::move(file_name), [&](Problems& problems) { return parse(text, file, problems); });
+  return outcomeOf(std::move(file_name), [&](Problems& problems) { return parse(text, file, problems); });
 }
 
 }  // namespace rc10

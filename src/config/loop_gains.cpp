@@ -96,7 +96,7 @@ Result<Asked> asked(std::string_view name) {
   if (dot == std::string_view::npos) return Asked{name, {}, name};
   const auto loop = loopNamed(name.substr(0, dot));
   if (!loop.empty()) return Asked{name, loop, name.substr(dot + 1)};
-  return fail(printable(name) + ": there is no loop " + quoted(name.substr(0, dot)) +
+  return fail(printable(name) + ": there is no loop " + inQuotes(name.substr(0, dot)) +
               "; use velocity_pid or angle_pid");
 }
 

@@ -40,8 +40,9 @@ class ModuleBuilder {
   void checkName(const GivenValue& name) {
     names_.add(name, problems_);
     if (std::find(kRobotChannels.begin(), kRobotChannels.end(), name.text()) == kRobotChannels.end()) return;
-    problems_.error(name.place(), name.path,
-                    quoted(name.text()) + " is a channel of the robot itself; give the module another name");
+    problems_.error(
+        name.place(), name.path,
+        inQuotes(name.text()) + " is a channel of the robot itself; give the module another name");
   }
 
   OwnValues read(const Settings& given, std::span<const FamilyKey> keys) {

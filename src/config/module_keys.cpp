@@ -94,7 +94,7 @@ class TypeTables {
   std::deque<TextForm> forms_;
 };
 
-bool keys_made = false;
+bool module_keys_made = false;
 
 [[nodiscard]] const std::deque<TypeTables>& tables() {
   static const std::deque<TypeTables> kAll = [] {
@@ -102,7 +102,7 @@ bool keys_made = false;
     for (const ModuleType* type : moduleTypes()) all.emplace_back(*type);
     return all;
   }();
-  keys_made = true;
+  module_keys_made = true;
   return kAll;
 }
 
@@ -126,7 +126,7 @@ bool isCommonModuleKey(std::string_view name) {
                      [name](const Key& key) { return key.name == name; });
 }
 
-bool moduleKeysMade() noexcept { return keys_made; }
+bool moduleKeysMade() noexcept { return module_keys_made; }
 
 constexpr SectionTypes kModuleSections{typeNames, findSection};
 

@@ -10,6 +10,7 @@
 #include "config/need_check.hpp"
 #include "config/number_text.hpp"
 #include "config/value_check.hpp"
+#include "motor/fallback.hpp"
 
 namespace rc10 {
 namespace {
@@ -31,16 +32,6 @@ constexpr float kNativeApproach = 2.0F;
 constexpr float kFullEffort = 0.2F;
 constexpr Duration kFreshEnough = std::chrono::milliseconds{20};
 constexpr int kPeriodsToStale = 4;
-
-[[nodiscard]] FrameKind kindOf(FallbackAction action) noexcept {
-  switch (action) {
-    case FallbackAction::kCoast: break;
-    case FallbackAction::kDamp: return FrameKind::kDamp;
-    case FallbackAction::kBrake: return FrameKind::kBrake;
-    case FallbackAction::kHold: return FrameKind::kHold;
-  }
-  return FrameKind::kRest;
-}
 
 /// One motor's settings on their way into its MotorConfig, with the checks that need the model.
 class MotorBuilder {
@@ -147,7 +138,7 @@ class MotorBuilder {
       if (std::find(key.choices.begin(), key.choices.end(), given.text()) != key.choices.end()) return true;
       const std::vector<std::string> words{key.choices.begin(), key.choices.end()};
       problems_.error(given.place(), given.path,
-                      quoted(given.text()) + " is nothing that the " + modelName() + " knows; use " +
+                      inQuotes(given.text()) + " is nothing that the " + modelName() + " knows; use " +
                           listWords(words, " or "));
       return false;
     }
@@ -330,10 +321,10 @@ class MotorBuilder {
 
   void checkFallback(std::string_view key) {
     const auto given = settings_.find(key);
-    if (!given || traits_.frames.of(kindOf(fallbackOf(key))) != Provision::kUnsupported) return;
+    if (!given || traits_.frames.of(frameKindOf(fallbackOf(key))) != Provision::kUnsupported) return;
     std::vector<std::string> possible;
     for (std::size_t i = 0; i < kFallbackWords.size(); ++i) {
-      const auto kind = kindOf(static_cast<FallbackAction>(i));
+      const auto kind = frameKindOf(static_cast<FallbackAction>(i));
       if (traits_.frames.of(kind) != Provision::kUnsupported) possible.emplace_back(kFallbackWords[i]);
     }
     problems_.error(
@@ -425,6 +416,11 @@ class MotorBuilder {
 };
 
 }  // namespace
+
+std::string nameOf(const MotorDraft& motor) {
+  const auto& settings = motor.config.settings;
+  return inQuotes(settings.name) + " (" + settings.model + " id " + std::to_string(settings.id) + ")";
+}
 
 MotorDraft buildMotor(const Settings& settings, const SourcePlace& place, const std::string& path,
                       int tick_hz, Problems& problems) {

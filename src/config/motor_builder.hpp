@@ -16,6 +16,9 @@ struct MotorDraft {
   bool complete = false;  ///< Model, id and command are known and fit together.
 };
 
+/// "'lift' (M3508 id 1)"
+[[nodiscard]] std::string nameOf(const MotorDraft& motor);
+
 /// `tick_hz`: of the scheduler. `settings`: the motor's own keys over those of its profile, already held
 /// against the tables.
 [[nodiscard]] MotorDraft buildMotor(const Settings& settings, const SourcePlace& place,

@@ -251,7 +251,7 @@ constexpr std::array kMotorKeys{
         .about = "What hangs on the shaft when the motor is simulated (a bus of type sim, or rc10-sim), and "
                  "what is wrong with it."}};
 
-[[nodiscard]] ValueKind kindOf(FamilyKey::Kind kind) {
+[[nodiscard]] ValueKind valueKindOf(FamilyKey::Kind kind) {
   switch (kind) {
     case FamilyKey::Kind::kNumber: return kNumber;
     case FamilyKey::Kind::kInteger: return kInteger;
@@ -323,11 +323,11 @@ class MotorKeys {
   std::vector<Key> keys_;
 };
 
-bool keys_made = false;
+bool motor_keys_made = false;
 
 [[nodiscard]] std::span<const Key> motorKeys() {
   static const MotorKeys kKeys;
-  keys_made = true;
+  motor_keys_made = true;
   return kKeys.all();
 }
 
@@ -337,7 +337,7 @@ bool keys_made = false;
 
 Key motorKeyOf(const FamilyKey& key) {
   return {.name = key.name,
-          .kind = kindOf(key.kind),
+          .kind = valueKindOf(key.kind),
           .unit = key.unit,
           .range = {.min = key.min, .max = key.max, .above_min = key.above_min},
           .words = key.choices,
@@ -350,7 +350,7 @@ bool isCommonMotorKey(std::string_view name) {
                      [name](const Key& key) { return key.name == name; });
 }
 
-bool motorKeysMade() noexcept { return keys_made; }
+bool motorKeysMade() noexcept { return motor_keys_made; }
 
 constexpr Section kMotorSection{
     "motor", {}, "One motor. All angles, speeds and torques are at its output shaft.", motorKeys};

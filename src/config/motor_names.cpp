@@ -17,7 +17,7 @@ std::optional<std::size_t> MotorNames::find(const GivenValue& given, Problems& p
   if (found != names_.end()) return static_cast<std::size_t>(found - names_.begin());
   const auto meant = nearest(given.text(), {names_.begin(), names_.end()});
   problems.error(given.place(), given.path,
-                 "there is no motor " + quoted(given.text()) +
+                 "there is no motor " + inQuotes(given.text()) +
                      (meant.empty() ? "; name one of the motors of buses"
                                     : "; did you mean " + std::string{meant} + "?"));
   return std::nullopt;

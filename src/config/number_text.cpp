@@ -83,7 +83,7 @@ bool isNotFinite(std::string_view text) {
 }
 
 /// What stands there instead of a number, and what to write. `text` is without its minus sign.
-std::string whyNoNumber(std::string_view text, const std::string& sign) {
+std::string insteadOfNumber(std::string_view text, const std::string& sign) {
   const auto write = [&](const std::string& better) { return "; write " + sign + better; };
   if (isNotFinite(text)) return " is not finite; write a number";
   if (text[0] == '+' && isNumber(text.substr(1)))
@@ -122,12 +122,12 @@ Result<double> parseNumber(std::string_view text) {
   if (!isNumber(text)) {
     const bool negative = text.size() > 1 && startsWith(text, "-");
     if (text.empty()) return fail("is empty; write a number");
-    return fail(quoted(text) + whyNoNumber(text.substr(negative ? 1 : 0), negative ? "-" : ""));
+    return fail(inQuotes(text) + insteadOfNumber(text.substr(negative ? 1 : 0), negative ? "-" : ""));
   }
   double value = 0.0;
   const auto [stop, error] = std::from_chars(text.data(), text.data() + text.size(), value);
   if (error != std::errc{})
-    return fail(quoted(text) + " cannot be represented; write a smaller number of digits");
+    return fail(inQuotes(text) + " cannot be represented; write a smaller number of digits");
   return value;
 }
 
@@ -139,8 +139,8 @@ Result<std::int64_t> parseInteger(std::string_view text) {
   const auto [stop, error] = std::from_chars(text.data(), end, value);
   if (error == std::errc{} && stop == end) return value;
   const bool is_whole = std::floor(*number) == *number && std::abs(*number) < 1e15;
-  if (is_whole) return fail(quoted(text) + " is to be a whole number; write " + numberText(*number));
-  return fail(quoted(text) + " is not a whole number; remove the fraction");
+  if (is_whole) return fail(inQuotes(text) + " is to be a whole number; write " + numberText(*number));
+  return fail(inQuotes(text) + " is not a whole number; remove the fraction");
 }
 
 std::string numberText(double value) { return shortest(value); }

@@ -71,7 +71,7 @@ std::string printable(std::string_view text) {
   return end < text.size() ? shown + "..." : shown;
 }
 
-std::string quoted(std::string_view text) { return "'" + printable(text) + "'"; }
+std::string inQuotes(std::string_view text) { return "'" + printable(text) + "'"; }
 
 std::string listWords(const std::vector<std::string>& words, std::string_view last_joint) {
   std::string list;

@@ -51,7 +51,7 @@ class Problems {
 /// Text from the file, safe and short enough for a terminal: control characters become '?'.
 [[nodiscard]] std::string printable(std::string_view text);
 /// The same in quotes.
-[[nodiscard]] std::string quoted(std::string_view text);
+[[nodiscard]] std::string inQuotes(std::string_view text);
 /// "a, b and c"
 [[nodiscard]] std::string listWords(const std::vector<std::string>& words,
                                     std::string_view last_joint = " and ");

@@ -99,7 +99,7 @@ class RobotBuilder {
     } else if (url->ttl > 0 && robot_.lcm.enabled && isSharedName(robot_.robot)) {
       problems_.error(
           given->place(), given->path,
-          "ttl=" + std::to_string(url->ttl) + " reaches the network, and " + quoted(robot_.robot) +
+          "ttl=" + std::to_string(url->ttl) + " reaches the network, and " + inQuotes(robot_.robot) +
               " is the name of an example: a neighbour's robot would obey; give the robot a name of its own, "
               "or use ttl=0");
     }

@@ -22,18 +22,18 @@ std::string anchored(const TextForm& form) { return "^(?:" + std::string{form.pa
 bool isText(const Key& key) { return key.kind == ValueKind::kText; }
 
 /// An unquoted 3200000 is a number to an editor, also where rc10d takes it for one of some words.
-bool isNumber(std::string_view word) {
+bool isDigits(std::string_view word) {
   return !word.empty() && std::all_of(word.begin(), word.end(), [](char c) { return c >= '0' && c <= '9'; });
 }
 
 /// The section and all it leads to, each once.
-void collect(const Section& section, std::vector<const Section*>& found) {
+void collectSections(const Section& section, std::vector<const Section*>& found) {
   if (std::find(found.begin(), found.end(), &section) != found.end()) return;
   found.push_back(&section);
   for (const Key& key : section.keys()) {
-    if (key.section != nullptr) collect(*key.section, found);
+    if (key.section != nullptr) collectSections(*key.section, found);
     if (key.types == nullptr) continue;
-    for (const auto type : key.types->names()) collect(*key.types->find(type), found);
+    for (const auto type : key.types->names()) collectSections(*key.types->find(type), found);
   }
 }
 
@@ -48,7 +48,7 @@ class SchemaWriter {
     json_.key("$ref").text(reference(kRobotSection));
     json_.key("$defs").object();
     std::vector<const Section*> sections;
-    collect(kRobotSection, sections);
+    collectSections(kRobotSection, sections);
     for (const Section* section : sections) writeSection(*section);
     json_.endObject().endObject();
     return json_.result();
@@ -123,7 +123,7 @@ class SchemaWriter {
   }
 
   void writeWord(const Key& key, std::string_view word) {
-    const bool literal = !isText(key) || (key.hasChoices() && isNumber(word));
+    const bool literal = !isText(key) || (key.hasChoices() && isDigits(word));
     literal ? json_.literal(word) : json_.text(word);
   }
 

@@ -18,7 +18,7 @@ class UniqueNames {
     const auto [first, is_new] = given_.emplace(name.text(), name);
     if (is_new) return;
     problems.error(name.place(), name.path,
-                   what_ + " " + quoted(name.text()) + " is taken by " + first->second.path + " (line " +
+                   what_ + " " + inQuotes(name.text()) + " is taken by " + first->second.path + " (line " +
                        std::to_string(first->second.place().line) + "); it must be unique in " + where_);
   }
 

@@ -22,7 +22,7 @@ std::string whyNoChoice(const YamlNode& node, const Key& key) {
 }
 
 std::string whyNoNumber(const YamlNode& node, const Key& key) {
-  if (node.in_quotes) return quoted(node.text) + " is a text because of its quotes; remove them";
+  if (node.in_quotes) return inQuotes(node.text) + " is a text because of its quotes; remove them";
   if (key.hasChoices()) return whyNoChoice(node, key);
   if (key.kind == ValueKind::kInteger) {
     const auto value = parseInteger(node.text);
@@ -33,9 +33,9 @@ std::string whyNoNumber(const YamlNode& node, const Key& key) {
 }
 
 std::string whyNoBoolean(const YamlNode& node) {
-  if (node.in_quotes) return quoted(node.text) + " is a text because of its quotes; remove them";
+  if (node.in_quotes) return inQuotes(node.text) + " is a text because of its quotes; remove them";
   if (node.text == "true" || node.text == "false") return "";
-  return quoted(node.text) + " is not true or false; write one of these";
+  return inQuotes(node.text) + " is not true or false; write one of these";
 }
 
 }  // namespace
@@ -57,7 +57,7 @@ std::string whyNoText(const YamlNode& node, const Key& key) {
   if (key.hasChoices()) return whyNoChoice(node, key);
   return matches(node.text, *key.form)
              ? ""
-             : quoted(node.text) + " is not accepted; use " + std::string{key.form->words};
+             : inQuotes(node.text) + " is not accepted; use " + std::string{key.form->words};
 }
 
 bool matches(std::string_view text, const TextForm& form) {
@@ -119,7 +119,7 @@ std::string notOneOf(std::string_view text, const std::vector<std::string_view>&
   const std::vector<std::string> words{choices.begin(), choices.end()};
   const bool is_word = text.size() > 1 && !parseNumber(text);
   const auto meant = is_word ? nearest(text, choices) : std::string_view{};
-  return quoted(text) + " is not one of " + listWords(words) +
+  return inQuotes(text) + " is not one of " + listWords(words) +
          (meant.empty() ? "; use one of these" : "; did you mean " + std::string{meant} + "?");
 }
 
