@@ -14,19 +14,19 @@ namespace rc10::blackbox {
 namespace {
 
 // At most so much at once: what is overwritten must be known before.
-constexpr std::size_t kChunk = std::size_t{64} * 1024;
+constexpr std::size_t kDrainedAtOnce = std::size_t{64} * 1024;
 
 }  // namespace
 
 History::History(FileHead& head, std::span<const std::byte> ring, int fd)
-    : head_(head), ring_(ring), fd_(fd), old_(kChunk) {}
+    : head_(head), ring_(ring), fd_(fd), old_(kDrainedAtOnce) {}
 
 Result<void> History::drain() {
   auto& control = head_.control;
   const std::uint64_t end = std::atomic_ref(control.head).load(std::memory_order_acquire);
   Result<void> outcome;
   for (std::uint64_t tail = control.tail; tail < end && outcome;) {
-    const std::uint64_t next = broken_ ? end : std::min(end, tail + kChunk);
+    const std::uint64_t next = broken_ ? end : std::min(end, tail + kDrainedAtOnce);
     if (!broken_) outcome = store(tail, next);
     broken_ = broken_ || !outcome;
     if (broken_) std::atomic_ref(control.oldest).store(next, std::memory_order_seq_cst);

@@ -14,7 +14,7 @@
 namespace rc10::blackbox {
 namespace {
 
-constexpr std::size_t kChunk = std::size_t{64} * 1024;
+constexpr std::size_t kReadAtOnce = std::size_t{64} * 1024;
 // The largest file that `blackbox_mib` allows.
 constexpr std::uint64_t kMaxFileBytes = std::uint64_t{256} << 20U;
 
@@ -37,9 +37,9 @@ template <typename T>
 }
 
 [[nodiscard]] Result<void> copyRegion(int fd, std::uint64_t offset, std::uint64_t bytes, const Sink& sink) {
-  std::vector<std::byte> buffer(kChunk);
+  std::vector<std::byte> buffer(kReadAtOnce);
   for (const std::uint64_t end = offset + bytes; offset < end;) {
-    const auto piece = std::span(buffer).first(std::min<std::uint64_t>(kChunk, end - offset));
+    const auto piece = std::span(buffer).first(std::min<std::uint64_t>(kReadAtOnce, end - offset));
     if (auto read = readAll(fd, offset, piece); !read) return read;
     if (auto taken = sink(offset, piece); !taken) return taken;
     offset += piece.size();

@@ -12,7 +12,7 @@ constexpr int kGoodShare = 10;
 // Half a tick late, the command of one tick comes nearer to the next one's than to its own.
 constexpr int kBadShare = 2;
 
-std::string micros(Duration duration) {
+std::string microsText(Duration duration) {
   std::array<char, 32> text{};
   std::snprintf(text.data(), text.size(), "%.0f us", static_cast<double>(duration.count()) / 1000.0);
   return text.data();
@@ -22,8 +22,8 @@ std::string micros(Duration duration) {
 
 Finding checkLatency(const LatencyFacts& latency) {
   const std::string what = "wake-up latency";
-  std::string found = "p50 " + micros(latency.p50) + ", p99 " + micros(latency.p99) + ", p99.9 " +
-                      micros(latency.p999) + ", max " + micros(latency.max);
+  std::string found = "p50 " + microsText(latency.p50) + ", p99 " + microsText(latency.p99) + ", p99.9 " +
+                      microsText(latency.p999) + ", max " + microsText(latency.max);
   if (latency.wake_ups != 0) found += " of " + std::to_string(latency.wake_ups) + " wake-ups";
   found += " (" + latency.by + ")";
   const auto good = latency.period / kGoodShare;
@@ -35,9 +35,9 @@ Finding checkLatency(const LatencyFacts& latency) {
     return warn(what, found + ", without real-time priority: " + latency.refused,
                 "raise the limits (above), or run it with sudo");
   }
-  if (latency.max <= good) return pass(what, found + "; good is up to " + micros(good));
-  if (latency.max <= bad) return warn(what, found + "; good is up to " + micros(good), fix);
-  return fault(what, found + "; more than half a tick, " + micros(bad), fix);
+  if (latency.max <= good) return pass(what, found + "; good is up to " + microsText(good));
+  if (latency.max <= bad) return warn(what, found + "; good is up to " + microsText(good), fix);
+  return fault(what, found + "; more than half a tick, " + microsText(bad), fix);
 }
 
 }  // namespace rc10::doctor

@@ -10,14 +10,14 @@ inline namespace robot_client {
 namespace {
 
 // A state that was taken sooner after the target was set may show who held the motor before.
-constexpr Duration kOnItsWay = std::chrono::milliseconds{100};
+constexpr Duration kClaimOnItsWay = std::chrono::milliseconds{100};
 
 [[nodiscard]] std::optional<std::string> whyDropped(const RobotState& state, const MotorSetpoint& order,
                                                     const std::string& client, MonotonicTime set_at) {
   // It was set because the state before this one spoke for it: this is news.
   if (auto reason = obstacle(state, order.motor, order.setpoint.mode)) return reason;
   const auto& owner = state.find(order.motor)->owner;
-  if (owner.empty() || owner == client || state.taken < set_at + kOnItsWay) return std::nullopt;
+  if (owner.empty() || owner == client || state.taken < set_at + kClaimOnItsWay) return std::nullopt;
   return order.motor + " is held by the client '" + owner +
          "', which has the same or a higher priority, or came first";
 }

@@ -7,6 +7,9 @@
 namespace rc10 {
 inline namespace robot_client {
 
+/// This program's clock.
+[[nodiscard]] inline MonotonicTime timeNow() { return std::chrono::steady_clock::now(); }
+
 /// Places rc10d's CLOCK_MONOTONIC on this program's clock. The time at which a message is handled says little
 /// about its age, since it may have waited in a queue. The quickest message so far gives the distance of the
 /// two clocks, and then every message tells its own age, from this computer or from another.

@@ -6,6 +6,7 @@
 #include <cstdio>
 
 #include "app/angle.hpp"
+#include "robot_client/event_codes.hpp"
 #include "robot_client/obstacle.hpp"
 
 namespace rc10 {
@@ -15,15 +16,10 @@ namespace {
 using std::chrono::milliseconds;
 
 // For the target on its way to the motor; after that a state has to show it.
-constexpr Duration kOnItsWay = milliseconds{300};
+constexpr Duration kTargetOnItsWay = milliseconds{300};
 // Passing through the tolerance is not arriving.
 constexpr std::int64_t kSettledUs = 60'000;
 constexpr Duration kSilence = milliseconds{1000};
-
-// rc10d's events about setpoints that do not act: docs/lcm.md.
-constexpr std::int32_t kSetpointSkipped = 103;
-constexpr std::int32_t kNotOwner = 104;
-constexpr std::int32_t kMessageRefused = 202;
 
 [[nodiscard]] std::string number(double value) {
   std::array<char, 32> text{};
@@ -46,7 +42,7 @@ void MoveWatch::onEvent(const Event& event) {
   const bool of_us = event.text.find('\'' + client_ + '\'') != std::string::npos;
   const bool of_motor = event.source == goal_.motor;
   if ((of_motor && event.code == kSetpointSkipped) ||
-      (of_us && ((of_motor && event.code == kNotOwner) || event.code == kMessageRefused))) {
+      (of_us && ((of_motor && event.code == kNotOwner) || event.code == kCommandRefused))) {
     refusal_ = event.text;
   }
 }
@@ -77,7 +73,7 @@ std::optional<MoveResult> MoveWatch::onState(const RobotState& state, MonotonicT
   }
   if (auto reason = obstacle(state, goal_.motor, goal_.mode)) return failed(*reason);
   const auto not_obeyed = notObeyed(*motor);
-  if (not_obeyed && state.taken > started_ + kOnItsWay) return failed(*not_obeyed);
+  if (not_obeyed && state.taken > started_ + kTargetOnItsWay) return failed(*not_obeyed);
   if (std::isnan(angle_deg_)) return failed(goal_.motor + ": the drive reports no angle");
   if (not_obeyed || distance() > goal_.tolerance_deg) {
     within_since_us_.reset();

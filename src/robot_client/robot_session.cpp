@@ -12,6 +12,8 @@
 #include "rc10/command_t.hpp"
 #include "rc10/request_t.hpp"
 #include "robot_client/convert.hpp"
+#include "robot_client/event_codes.hpp"
+#include "robot_client/host_clock.hpp"
 #include "robot_client/motor_reasons.hpp"
 #include "robot_client/obstacle.hpp"
 #include "robot_client/robots_heard.hpp"
@@ -40,13 +42,6 @@ constexpr Duration kReportAgain = milliseconds{1000};
 constexpr Duration kListen = milliseconds{300};
 // A state that is older than the known one by less than this has been overtaken on its way.
 constexpr std::int64_t kOvertakenUs = 1'000'000;
-
-constexpr std::int32_t kSetpointSkipped = 103;
-constexpr std::int32_t kNotOwner = 104;
-constexpr std::int32_t kCommandRefused = 202;
-constexpr std::int32_t kOtherDefinitions = 400;
-
-[[nodiscard]] MonotonicTime timeNow() { return std::chrono::steady_clock::now(); }
 
 [[nodiscard]] std::int64_t wallUs() {
   const auto wall = std::chrono::system_clock::now().time_since_epoch();

@@ -12,11 +12,11 @@
 #include <future>
 #include <memory>
 
+#include "robot_client/host_clock.hpp"
+
 namespace rc10 {
 inline namespace robot_client {
 namespace {
-
-[[nodiscard]] MonotonicTime timeNow() { return std::chrono::steady_clock::now(); }
 
 void sleepUntil(MonotonicTime due) {
   constexpr std::int64_t kNsPerSecond = 1'000'000'000;

@@ -7,6 +7,7 @@
 #include "rc10/service_client.hpp"
 #include "rc10/service_request_t.hpp"
 #include "rc10/service_response_t.hpp"
+#include "robot_client/host_clock.hpp"
 #include "robot_client/session_number.hpp"
 
 namespace rc10 {
@@ -14,8 +15,6 @@ inline namespace robot_client {
 namespace {
 
 using Kind = ServiceError::Kind;
-
-[[nodiscard]] MonotonicTime timeNow() { return std::chrono::steady_clock::now(); }
 
 [[nodiscard]] tl::unexpected<ServiceError> error(Kind kind, std::string message) {
   return tl::unexpected(ServiceError{kind, std::move(message)});

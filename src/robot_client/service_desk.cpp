@@ -13,6 +13,7 @@
 #include "rc10/service_request_t.hpp"
 #include "rc10/service_response_t.hpp"
 #include "rc10/service_server.hpp"
+#include "robot_client/host_clock.hpp"
 
 namespace rc10 {
 inline namespace robot_client {
@@ -20,8 +21,6 @@ namespace {
 
 constexpr std::size_t kMaxWaiting = 16;
 constexpr std::size_t kMaxRemembered = 64;
-
-[[nodiscard]] MonotonicTime timeNow() { return std::chrono::steady_clock::now(); }
 
 [[nodiscard]] bool sameCall(const service_request_t& request, const service_response_t& response) {
   return request.seq == response.seq && request.session == response.session &&
