@@ -21,7 +21,7 @@ namespace {
 
 // Of each robot: 160 MiB with files of the default size.
 constexpr std::size_t kCopiesKept = 10;
-constexpr Duration kLookInterval = std::chrono::milliseconds{50};
+constexpr Duration kCopyLookInterval = std::chrono::milliseconds{50};
 
 [[nodiscard]] blackbox::Header headerOf(const RobotDescription& robot) {
   blackbox::Header header;
@@ -99,7 +99,7 @@ void BlackBox::runCopies(const std::stop_token& stop) {
     const auto now = monotonicNow();
     plan_.note(recorder_.takeCauses(), now);
     if (const char* cause = plan_.due(now)) copy(cause);
-    std::this_thread::sleep_for(kLookInterval);
+    std::this_thread::sleep_for(kCopyLookInterval);
   }
   plan_.note(recorder_.takeCauses(), monotonicNow());
   if (const char* cause = plan_.last(monotonicNow())) copy(cause);

@@ -61,6 +61,9 @@ struct Event {
   link::Name client{};  ///< Whose command or request it was.
 };
 
+/// Repeated reports of one cause come at most this often.
+inline constexpr Duration kReportInterval = std::chrono::seconds{1};
+
 /// The e-stop input has changed.
 [[nodiscard]] inline Event estopInputEvent(ContactState state, MonotonicTime now) noexcept {
   const auto severity = state == ContactState::kClosed ? Severity::kInfo : Severity::kError;

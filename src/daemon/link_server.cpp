@@ -16,7 +16,7 @@ namespace rc10 {
 namespace {
 
 constexpr std::size_t kMaxConnections = 16;
-constexpr int kMaxEvents = 16;
+constexpr int kMaxLinkEvents = 16;
 // Taken from one client before the others have their turn.
 constexpr int kDatagramsPerTurn = 32;
 // Answers and events leave at this rate, whatever state_hz is.
@@ -126,8 +126,8 @@ void LinkServer::run(const std::stop_token& stop) {
 }
 
 void LinkServer::poll(int timeout_ms) {
-  std::array<epoll_event, kMaxEvents> events;
-  const int count = epoll_wait(epoll_.get(), events.data(), kMaxEvents, timeout_ms);
+  std::array<epoll_event, kMaxLinkEvents> events;
+  const int count = epoll_wait(epoll_.get(), events.data(), kMaxLinkEvents, timeout_ms);
   for (int i = 0; i < count; ++i) {
     const std::uint64_t key = events[static_cast<std::size_t>(i)].data.u64;
     if (key == kListener) {

@@ -2,13 +2,13 @@
 
 #include <algorithm>
 
+#include "daemon/events.hpp"
+
 namespace rc10 {
 namespace {
 
 // Modules run in every tick: what one has asked for holds over ticks that come late, and no longer.
 constexpr Duration kModuleValidity = std::chrono::milliseconds{20};
-// Repeated reports of one cause come at most this often.
-constexpr Duration kReportInterval = std::chrono::seconds{1};
 // No client has it: theirs are random, and modules have no other sessions.
 constexpr std::uint64_t kModuleSession = 0;
 

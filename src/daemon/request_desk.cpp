@@ -17,7 +17,7 @@ constexpr std::size_t kMaxOpen = 64;
 constexpr std::ptrdiff_t kMaxOpenGains = 8;
 constexpr std::string_view kEnableAloneOperation = "enable_alone";
 
-[[nodiscard]] std::optional<Operation> operationOf(std::string_view word) {
+[[nodiscard]] std::optional<Operation> operationNamed(std::string_view word) {
   if (word == "enable") return Operation::kEnable;
   if (word == kEnableAloneOperation) return Operation::kEnableAlone;
   if (word == "disable") return Operation::kDisable;
@@ -85,7 +85,7 @@ link::Response RequestDesk::respond(const link::Request& request, link::Response
 }
 
 RequestDesk::Outcome RequestDesk::begin(const link::Request& request, std::uint64_t connection) {
-  const auto operation = operationOf(request.operation.view());
+  const auto operation = operationNamed(request.operation.view());
   Outcome outcome;
   // An e-stop is an e-stop, whatever else the message says, and however often it comes.
   outcome.estop = operation == Operation::kEstop;

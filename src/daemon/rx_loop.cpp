@@ -16,7 +16,7 @@ namespace {
 // Without traffic the loop turns this often, so that the watchdog sees it alive.
 constexpr int kIdleTimeoutMs = 100;
 // What does not fit comes with the next call.
-constexpr int kMaxEvents = 2 * static_cast<int>(kMaxBuses) + 16;
+constexpr int kMaxRxEvents = 2 * static_cast<int>(kMaxBuses) + 16;
 
 // In the data of an epoll event: the rest is the number of a serial port, not that of a source.
 constexpr std::uint64_t kSerialBit = std::uint64_t{1} << 63U;
@@ -83,8 +83,8 @@ WakeUp RxLoop::sampleWakeUp() noexcept {
 }
 
 void RxLoop::poll(int timeout_ms) noexcept {
-  std::array<epoll_event, kMaxEvents> events;
-  const int count = epoll_wait(epoll_.get(), events.data(), kMaxEvents, timeout_ms);
+  std::array<epoll_event, kMaxRxEvents> events;
+  const int count = epoll_wait(epoll_.get(), events.data(), kMaxRxEvents, timeout_ms);
   wake_ups_.fetch_add(1, std::memory_order_relaxed);
   if (count <= 0) return;
   const WakeUp wake = sampleWakeUp();

@@ -1,6 +1,7 @@
 // What clients ask for: targets and requests.
 #include <algorithm>
 
+#include "daemon/events.hpp"
 #include "daemon/supervisor.hpp"
 
 namespace rc10 {
@@ -11,8 +12,6 @@ namespace {
 constexpr Duration kEnableTimeout = std::chrono::seconds{2};
 // A clear request goes out, and the answer comes back, at the slowest command_divider and feedback rate.
 constexpr Duration kClearPatience = std::chrono::milliseconds{250};
-// Repeated reports of one cause come at most this often.
-constexpr Duration kReportInterval = std::chrono::seconds{1};
 
 }  // namespace
 

@@ -6,7 +6,7 @@
 namespace rc10::gateway {
 namespace {
 
-Duration read(clockid_t clock) noexcept {
+Duration readClock(clockid_t clock) noexcept {
   timespec time{};
   ::clock_gettime(clock, &time);
   return std::chrono::seconds{time.tv_sec} + std::chrono::nanoseconds{time.tv_nsec};
@@ -20,9 +20,9 @@ ClockSample sampleClocks() noexcept {
   ClockSample best;
   Duration best_gap = Duration::max();
   for (int attempt = 0; attempt < 5 && best_gap > kClose; ++attempt) {
-    const Duration before = read(CLOCK_MONOTONIC);
-    const Duration realtime = read(CLOCK_REALTIME);
-    const Duration after = read(CLOCK_MONOTONIC);
+    const Duration before = readClock(CLOCK_MONOTONIC);
+    const Duration realtime = readClock(CLOCK_REALTIME);
+    const Duration after = readClock(CLOCK_MONOTONIC);
     if (after - before >= best_gap) continue;
     best_gap = after - before;
     best = {MonotonicTime{before}, realtime - before};

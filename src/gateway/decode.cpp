@@ -20,7 +20,7 @@ WireReader open(std::span<const std::byte> bytes, std::int64_t fingerprint) noex
   return reader;
 }
 
-void read(WireReader& reader, link::Setpoint& setpoint) noexcept {
+void readSetpoint(WireReader& reader, link::Setpoint& setpoint) noexcept {
   readText(reader, setpoint.motor);
   setpoint.mode = reader.number<std::uint8_t>();  // a negative int8_t is a mode that does not exist
   setpoint.value = reader.number<double>();
@@ -41,7 +41,8 @@ Defect decode(std::span<const std::byte> bytes, link::Command& command) noexcept
   command.priority = reader.number<std::int32_t>();
   command.validity_ms = reader.number<std::int32_t>();
   command.setpoint_count = reader.count(link::kMaxMotors);
-  for (auto& setpoint : std::span{command.setpoints}.first(command.setpoint_count)) read(reader, setpoint);
+  for (auto& setpoint : std::span{command.setpoints}.first(command.setpoint_count))
+    readSetpoint(reader, setpoint);
   reader.end();
   return reader.defect();
 }

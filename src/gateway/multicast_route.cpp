@@ -57,7 +57,7 @@ int ask(in_addr group, Reply& reply) {
 }
 
 template <typename Struct>
-std::optional<Struct> read(const Reply& reply, std::size_t offset) {
+std::optional<Struct> readStruct(const Reply& reply, std::size_t offset) {
   Struct value{};
   if (offset + sizeof(value) > reply.size) return std::nullopt;
   std::memcpy(&value, reply.bytes.data() + offset, sizeof(value));
@@ -67,18 +67,18 @@ std::optional<Struct> read(const Reply& reply, std::size_t offset) {
 // The outgoing interface in the answer; or 0 and an errno.
 int outgoingInterface(const Reply& reply, int& error) {
   error = EPROTO;
-  const auto header = read<nlmsghdr>(reply, 0);
+  const auto header = readStruct<nlmsghdr>(reply, 0);
   if (!header) return 0;
   if (header->nlmsg_type == NLMSG_ERROR) {
-    const auto failure = read<nlmsgerr>(reply, NLMSG_HDRLEN);
+    const auto failure = readStruct<nlmsgerr>(reply, NLMSG_HDRLEN);
     if (failure) error = -failure->error;
     return 0;
   }
   std::size_t at = NLMSG_LENGTH(sizeof(rtmsg));
   for (;;) {
-    const auto attribute = read<rtattr>(reply, at);
+    const auto attribute = readStruct<rtattr>(reply, at);
     if (!attribute || attribute->rta_len < sizeof(rtattr)) return 0;
-    if (attribute->rta_type == RTA_OIF) return read<int>(reply, at + RTA_LENGTH(0)).value_or(0);
+    if (attribute->rta_type == RTA_OIF) return readStruct<int>(reply, at + RTA_LENGTH(0)).value_or(0);
     at += RTA_ALIGN(attribute->rta_len);
   }
 }

@@ -34,7 +34,7 @@ constexpr bool kSanitized = false;
 
 constexpr rlim_t kMaxMemory = rlim_t{256} << 20U;
 
-Result<void> failed(const std::string& what, int error) {
+Result<void> notDropped(const std::string& what, int error) {
   return fail("cannot drop privileges: " + what + ": " + std::strerror(error));
 }
 
@@ -52,11 +52,11 @@ Result<void> limitResources() {
   for (const auto& [resource, value, name] : kLimits) {
     if (kSanitized && (resource == RLIMIT_DATA || resource == RLIMIT_AS)) continue;
     rlimit limit{};
-    if (::getrlimit(resource, &limit) != 0) return failed(name, errno);
+    if (::getrlimit(resource, &limit) != 0) return notDropped(name, errno);
     // A limit that is lower already stays.
     limit.rlim_max = limit.rlim_max < value ? limit.rlim_max : value;
     limit.rlim_cur = limit.rlim_cur < limit.rlim_max ? limit.rlim_cur : limit.rlim_max;
-    if (::setrlimit(resource, &limit) != 0) return failed(name, errno);
+    if (::setrlimit(resource, &limit) != 0) return notDropped(name, errno);
   }
   return {};
 }
@@ -66,13 +66,13 @@ Result<void> dropCapabilities() {
   __user_cap_header_struct header{};
   header.version = _LINUX_CAPABILITY_VERSION_3;
   std::array<__user_cap_data_struct, _LINUX_CAPABILITY_U32S_3> none{};
-  if (::syscall(SYS_capset, &header, none.data()) != 0) return failed("capset", errno);
+  if (::syscall(SYS_capset, &header, none.data()) != 0) return notDropped("capset", errno);
   return {};
 }
 
 Result<void> leaveRealTime() {
   const sched_param ordinary{};
-  if (::sched_setscheduler(0, SCHED_OTHER, &ordinary) != 0) return failed("SCHED_OTHER", errno);
+  if (::sched_setscheduler(0, SCHED_OTHER, &ordinary) != 0) return notDropped("SCHED_OTHER", errno);
   return {};
 }
 
@@ -96,7 +96,7 @@ int denyFamily(scmp_filter_ctx filter, int family) {
 
 Result<void> filterSystemCalls() {
   scmp_filter_ctx filter = seccomp_init(SCMP_ACT_ALLOW);
-  if (filter == nullptr) return failed("seccomp", ENOMEM);
+  if (filter == nullptr) return notDropped("seccomp", ENOMEM);
   int status = 0;
   for (const int family : {AF_CAN, AF_PACKET, AF_VSOCK, AF_ALG, AF_BLUETOOTH}) {
     if (status == 0) status = denyFamily(filter, family);
@@ -111,7 +111,7 @@ Result<void> filterSystemCalls() {
   if (status == 0 && !kSanitized) status = deny(filter, SCMP_SYS(ptrace));
   if (status == 0) status = seccomp_load(filter);
   seccomp_release(filter);
-  return status == 0 ? Result<void>{} : failed("seccomp", -status);
+  return status == 0 ? Result<void>{} : notDropped("seccomp", -status);
 }
 
 }  // namespace
@@ -125,7 +125,7 @@ Result<void> enterSandbox(int parent) {
     (void)::prctl(PR_SET_PDEATHSIG, SIGKILL);  // after the capabilities: changing them may clear it
     if (::getppid() != parent) return fail("rc10d has ended");
   }
-  if (::prctl(PR_SET_NO_NEW_PRIVS, 1, 0, 0, 0) != 0) return failed("PR_SET_NO_NEW_PRIVS", errno);
+  if (::prctl(PR_SET_NO_NEW_PRIVS, 1, 0, 0, 0) != 0) return notDropped("PR_SET_NO_NEW_PRIVS", errno);
   return filterSystemCalls();
 }
 

@@ -16,7 +16,7 @@
 namespace rc10::gateway {
 namespace {
 
-tl::unexpected<Error> failed(const char* what, const UdpmUrl& url) {
+tl::unexpected<Error> socketFailed(const char* what, const UdpmUrl& url) {
   const int error = errno;
   return fail(std::string("LCM on ") + url.groupText() + ":" + std::to_string(url.port) + ": " + what + ": " +
               std::strerror(error));
@@ -42,25 +42,25 @@ UniqueFd udpSocket() noexcept {
 Result<UniqueFd> openReceiver(const UdpmUrl& url, const MulticastRoute& route,
                               const std::vector<std::string>& channels) {
   auto socket = udpSocket();
-  if (!socket) return failed("socket", url);
+  if (!socket) return socketFailed("socket", url);
   const int fd = socket.get();
   auto filter = channelFilter(channels);
   const sock_fprog program{.len = static_cast<unsigned short>(filter.size()), .filter = filter.data()};
   // Everything is in place before bind(): no datagram comes in without filter or stamp.
-  if (!set(fd, SOL_SOCKET, SO_ATTACH_FILTER, program)) return failed("channel filter", url);
-  if (!set(fd, SOL_SOCKET, SO_TIMESTAMPNS, 1)) return failed("receive stamps", url);
-  if (!set(fd, SOL_SOCKET, SO_REUSEADDR, 1)) return failed("share the port", url);
+  if (!set(fd, SOL_SOCKET, SO_ATTACH_FILTER, program)) return socketFailed("channel filter", url);
+  if (!set(fd, SOL_SOCKET, SO_TIMESTAMPNS, 1)) return socketFailed("receive stamps", url);
+  if (!set(fd, SOL_SOCKET, SO_REUSEADDR, 1)) return socketFailed("share the port", url);
   if (url.recv_buf_size > 0) (void)set(fd, SOL_SOCKET, SO_RCVBUF, url.recv_buf_size);
   // Only what comes in by the interface that was joined, not what other programs have joined elsewhere.
-  if (!set(fd, IPPROTO_IP, IP_MULTICAST_ALL, 0)) return failed("IP_MULTICAST_ALL", url);
+  if (!set(fd, IPPROTO_IP, IP_MULTICAST_ALL, 0)) return socketFailed("IP_MULTICAST_ALL", url);
   // Bound to the group, not to any address: liblcm's socket takes unicast from the whole network.
   const auto address = addressOf(url);
   if (::bind(fd, reinterpret_cast<const sockaddr*>(&address), sizeof(address)) != 0)
-    return failed("bind", url);
+    return socketFailed("bind", url);
   ip_mreqn membership{};
   membership.imr_multiaddr = url.group;
   membership.imr_ifindex = route.interface_index;
-  if (!set(fd, IPPROTO_IP, IP_ADD_MEMBERSHIP, membership)) return failed("join the group", url);
+  if (!set(fd, IPPROTO_IP, IP_ADD_MEMBERSHIP, membership)) return socketFailed("join the group", url);
   return socket;
 }
 
@@ -86,12 +86,12 @@ Result<UdpmSocket> UdpmSocket::open(const UdpmUrl& url, const MulticastRoute& ro
   auto in = openReceiver(url, route, channels);
   if (!in) return tl::unexpected(in.error());
   auto out = udpSocket();
-  if (!out) return failed("socket", url);
-  if (!set(out.get(), IPPROTO_IP, IP_MULTICAST_TTL, url.ttl)) return failed("ttl", url);
-  if (!set(out.get(), IPPROTO_IP, IP_MULTICAST_LOOP, 1)) return failed("IP_MULTICAST_LOOP", url);
+  if (!out) return socketFailed("socket", url);
+  if (!set(out.get(), IPPROTO_IP, IP_MULTICAST_TTL, url.ttl)) return socketFailed("ttl", url);
+  if (!set(out.get(), IPPROTO_IP, IP_MULTICAST_LOOP, 1)) return socketFailed("IP_MULTICAST_LOOP", url);
   ip_mreqn way{};
   way.imr_ifindex = route.interface_index;
-  if (!set(out.get(), IPPROTO_IP, IP_MULTICAST_IF, way)) return failed("choose the interface", url);
+  if (!set(out.get(), IPPROTO_IP, IP_MULTICAST_IF, way)) return socketFailed("choose the interface", url);
   return UdpmSocket{std::move(*in), std::move(out), url};
 }
 
