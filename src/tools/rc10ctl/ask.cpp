@@ -11,8 +11,8 @@
 namespace rc10::ctl {
 namespace {
 
-Result<link::Request> requestFor(const std::string& operation, const std::vector<std::string>& motors,
-                                 const std::vector<link::NamedValue>& values) {
+Result<link::Request> robotRequest(const std::string& operation, const std::vector<std::string>& motors,
+                                   const std::vector<link::NamedValue>& values) {
   std::string target;
   for (const auto& motor : motors) {
     // An empty name would be left out, and no name at all means every motor.
@@ -32,13 +32,13 @@ Result<link::Request> requestFor(const std::string& operation, const std::vector
 
 using Values = std::span<const link::NamedValue>;
 
-void printText(const std::string& message, Values values) {
+void printAnswerText(const std::string& message, Values values) {
   std::printf("%s\n", message.c_str());
   for (const auto& value : values)
     std::printf("%s = %g\n", client::printable(value.name.view()).c_str(), value.value);
 }
 
-void printJson(const std::string& operation, const std::string& message, Values values) {
+void printAnswerJson(const std::string& operation, const std::string& message, Values values) {
   client::Json json = client::Json::object();
   for (const auto& value : values) json[std::string{value.name.view()}] = value.value;
   std::puts(
@@ -49,7 +49,7 @@ void printJson(const std::string& operation, const std::string& message, Values 
 
 ExitCode ask(const Global& global, const std::string& operation, const std::vector<std::string>& motors,
              const std::vector<link::NamedValue>& values) {
-  const auto request = requestFor(operation, motors, values);
+  const auto request = robotRequest(operation, motors, values);
   if (!request) return complain(request.error(), ExitCode::kUsage);
   auto rc10d = connect(global);
   if (!rc10d) return complain(rc10d.error(), ExitCode::kNoDaemon);
@@ -59,7 +59,7 @@ ExitCode ask(const Global& global, const std::string& operation, const std::vect
   if (response->status != link::ResponseStatus::kOk) return complain({message}, ExitCode::kFailed);
   const auto told =
       std::span(response->values).first(std::min<std::size_t>(response->value_count, link::kMaxValues));
-  global.json ? printJson(operation, message, told) : printText(message, told);
+  global.json ? printAnswerJson(operation, message, told) : printAnswerText(message, told);
   return ExitCode::kOk;
 }
 

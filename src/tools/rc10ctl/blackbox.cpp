@@ -82,7 +82,7 @@ void eachJsonLine(const blackbox::Recording& recording, const Line& line) {
 }
 
 /// `each` goes through the lines and stops where one cannot be written.
-bool print(std::FILE* to, const std::function<void(const Line&)>& each) {
+bool printLines(std::FILE* to, const std::function<void(const Line&)>& each) {
   bool good = true;
   each([&](const std::string& line) {
     good = std::fputs(line.c_str(), to) >= 0 && std::fputc('\n', to) != EOF;
@@ -98,7 +98,7 @@ Error notWritten(const fs::path& path, const std::string& why) {
 Result<std::string> save(const fs::path& path, const std::function<void(const Line&)>& each) {
   std::FILE* const file = std::fopen(path.c_str(), "we");
   if (file == nullptr) return tl::unexpected(notWritten(path, std::strerror(errno)));
-  const bool printed = print(file, each);
+  const bool printed = printLines(file, each);
   const int error = errno;
   const bool closed = std::fclose(file) == 0;
   if (interrupted()) return fail("interrupted: " + path.string() + " is not whole");
@@ -137,7 +137,7 @@ ExitCode blackbox(const Global& global, const Wish& wish) {
   if (!wish.out.empty()) return saveBoth(global, *recording, file, wish.out);
   const auto pid = recording->header().pid;
   const bool running = pid > 0 && (::kill(pid, 0) == 0 || errno == EPERM);
-  const bool printed = print(stdout, [&](const Line& line) {
+  const bool printed = printLines(stdout, [&](const Line& line) {
     if (wish.candump) {
       eachCandumpLine(*recording, line);
     } else if (global.json) {

@@ -21,9 +21,9 @@ namespace rc10::ctl {
 namespace {
 
 // Some settings, each written several times, and stored.
-constexpr Duration kPatience = std::chrono::seconds{12};
+constexpr Duration kConfigurePatience = std::chrono::seconds{12};
 
-struct Options {
+struct ConfigureOptions {
   std::string motor;
   std::vector<std::string> settings;
   bool list = false;
@@ -43,7 +43,7 @@ Result<link::NamedValue> valueIn(const std::string& text) {
   return link::NamedValue{.name = std::string_view{name}, .value = value};
 }
 
-Result<link::Request> requestFor(const Options& options) {
+Result<link::Request> configureRequest(const ConfigureOptions& options) {
   link::Request request;
   if (options.motor.empty() || options.motor.size() >= sizeof(link::Name))
     return fail("'" + options.motor + "' is not the name of a motor: see `rc10ctl list`");
@@ -68,7 +68,7 @@ Result<link::Request> requestFor(const Options& options) {
 }
 
 // Flash is for good, and wears: whoever asks for it has to mean this motor.
-bool confirmed(const Global& global, const Options& options) {
+bool confirmed(const Global& global, const ConfigureOptions& options) {
   if (options.no_save || options.yes) return true;
   std::string what;
   for (const auto& text : options.settings) what += (what.empty() ? "" : ", ") + text;
@@ -81,7 +81,7 @@ bool confirmed(const Global& global, const Options& options) {
 }
 
 // Line by line: the message has more than one.
-void print(std::string_view text) {
+void printMessage(std::string_view text) {
   while (!text.empty()) {
     const auto end = text.find('\n');
     std::printf("%s\n", client::printable(text.substr(0, end)).c_str());
@@ -109,19 +109,19 @@ void printSettings(const std::string& motor, std::string_view text) {
                 .c_str());
 }
 
-ExitCode configure(const Global& global, const Options& options) {
-  const auto request = requestFor(options);
+ExitCode configure(const Global& global, const ConfigureOptions& options) {
+  const auto request = configureRequest(options);
   if (!request) return complain(request.error(), ExitCode::kUsage);
   auto rc10d = connect(global);
   if (!rc10d) return complain(rc10d.error(), ExitCode::kNoDaemon);
   if (!options.list && !confirmed(global, options))
     return complain({"nothing was written"}, ExitCode::kFailed);
-  const auto response = RequestCall(*rc10d, kClientName).call(*request, kPatience);
+  const auto response = RequestCall(*rc10d, kClientName).call(*request, kConfigurePatience);
   if (!response) return complain(response.error(), ExitCode::kFailed);
   if (response->status != link::ResponseStatus::kOk)
     return complain({client::printable(response->message.view())}, ExitCode::kFailed);
   if (!global.json)
-    print(response->message.view());
+    printMessage(response->message.view());
   else if (options.list)
     printSettings(options.motor, response->message.view());
   else
@@ -132,7 +132,7 @@ ExitCode configure(const Global& global, const Options& options) {
 }  // namespace
 
 void addConfigureDrive(CLI::App& app, Action& action) {
-  const auto options = std::make_shared<Options>();
+  const auto options = std::make_shared<ConfigureOptions>();
   auto* verb = app.add_subcommand(
       "configure-drive", "writes settings into a drive's own memory, after asking; not while it is ACTIVE");
   verb->add_option("motor", options->motor, "name of the motor")->required()->type_name("MOTOR");

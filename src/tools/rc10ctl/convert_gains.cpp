@@ -12,7 +12,7 @@
 namespace rc10::ctl {
 namespace {
 
-struct Gains {
+struct Stm32Gains {
   std::vector<std::string> speed;
   std::vector<std::string> angle;
   double td_ratio = 0.0;
@@ -30,7 +30,7 @@ void put(client::Json& json, const ConvertedGains& gains) {
   for (const auto& note : gains.notes) json["notes"].push_back(note);
 }
 
-ExitCode convert(const Global& global, const Gains& gains) {
+ExitCode convert(const Global& global, const Stm32Gains& gains) {
   if (gains.speed.empty() && gains.angle.empty())
     return wrong("convert-gains needs --speed, --angle, or both");
   std::vector<ConvertedGains> sections;
@@ -57,7 +57,7 @@ ExitCode convert(const Global& global, const Gains& gains) {
 }  // namespace
 
 void addConvertGains(CLI::App& app, Action& action) {
-  const auto gains = std::make_shared<Gains>();
+  const auto gains = std::make_shared<Stm32Gains>();
   auto* verb = app.add_subcommand(
       "convert-gains",
       "PID parameters of the STM32 library (mA, per tick) as lines for a configuration (A, per second)");

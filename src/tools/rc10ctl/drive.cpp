@@ -19,8 +19,6 @@ namespace {
 
 using std::chrono::steady_clock;
 
-constexpr Duration kPeriod = std::chrono::milliseconds{20};
-constexpr std::int32_t kValidityMs = 100;
 // A lease that is let go ends within a tick or two; one that is not, within its validity.
 constexpr Duration kReleasing = std::chrono::milliseconds{2 * kValidityMs};
 // Until then the state may not show our first setpoint yet.
@@ -122,7 +120,7 @@ class Driver {
           }
         }
         if (!send(setpoint_)) return rc10dEnded().message;
-        next = std::max(next + kPeriod, now);
+        next = std::max(next + kSendPeriod, now);
       }
       waitReadable(rc10d_, std::min(next, start + order_.time) - steady_clock::now());
       if (!feed_.pump()) return rc10dEnded().message;
@@ -147,7 +145,7 @@ class Driver {
       if (motor() != nullptr && motor()->mode == link::kModeCoast && motor()->owner.view() != kClientName)
         return;
       if (!send(coast)) return;
-      waitReadable(rc10d_, std::min<Duration>(kPeriod, end - now));
+      waitReadable(rc10d_, std::min<Duration>(kSendPeriod, end - now));
     }
   }
 

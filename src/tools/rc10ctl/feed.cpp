@@ -8,7 +8,7 @@ namespace rc10::ctl {
 namespace {
 
 // Diagnostics come twice a second.
-constexpr auto kPatience = std::chrono::seconds{3};
+constexpr auto kDiagnosticsPatience = std::chrono::seconds{3};
 
 }  // namespace
 
@@ -38,7 +38,7 @@ void Feed::take(std::span<const std::byte> datagram) {
 
 template <typename Message>
 Result<void> Feed::await(const std::optional<Message>& message) {
-  const auto deadline = std::chrono::steady_clock::now() + kPatience;
+  const auto deadline = std::chrono::steady_clock::now() + kDiagnosticsPatience;
   while (!message) {
     if (!pump()) return tl::unexpected(rc10dEnded());
     if (message) break;

@@ -20,7 +20,7 @@ namespace {
 
 using client::Json;
 
-struct Options {
+struct GainsOptions {
   std::string motor;
   std::vector<std::string> settings;
   bool save = false;
@@ -32,7 +32,7 @@ Gains gainsIn(const link::Response& response) {
   return std::span(response.values).first(std::min<std::size_t>(response.value_count, link::kMaxValues));
 }
 
-Result<link::Request> requestFor(const Options& options) {
+Result<link::Request> gainsRequest(const GainsOptions& options) {
   link::Request request;
   if (options.motor.empty() || options.motor.size() >= sizeof(link::Name))
     return fail("'" + options.motor + "' is not the name of a motor: see `rc10ctl list`");
@@ -79,7 +79,7 @@ struct Shown {
   std::optional<std::vector<std::string>> lines;
 };
 
-void printJson(const Shown& shown) {
+void printGainsJson(const Shown& shown) {
   Json json{{"motor", shown.motor}};
   if (shown.before) json["before"] = jsonOf(*shown.before);
   json["gains"] = jsonOf(shown.gains);
@@ -100,7 +100,7 @@ void printTable(const Shown& shown) {
   std::printf("%s", table.text().c_str());
 }
 
-void printText(const Shown& shown) {
+void printGainsText(const Shown& shown) {
   if (shown.before || !shown.lines) printTable(shown);
   if (shown.before && !shown.lines)
     std::printf("until rc10d restarts; `rc10ctl gains %s --save` prints the lines for the robot's file\n",
@@ -111,13 +111,13 @@ void printText(const Shown& shown) {
   for (const auto& line : *shown.lines) std::printf("%s\n", line.c_str());
 }
 
-ExitCode gains(const Global& global, const Options& options) {
-  const auto request = requestFor(options);
+ExitCode gains(const Global& global, const GainsOptions& options) {
+  const auto request = gainsRequest(options);
   if (!request) return complain(request.error(), ExitCode::kUsage);
   auto rc10d = connect(global);
   if (!rc10d) return complain(rc10d.error(), ExitCode::kNoDaemon);
   RequestCall call(*rc10d, kClientName);
-  const auto told = requestFor({.motor = options.motor, .settings = {}});
+  const auto told = gainsRequest({.motor = options.motor, .settings = {}});
   const auto before = told ? ask(call, *told) : tl::unexpected(told.error());
   if (!before) return complain(before.error(), ExitCode::kFailed);
   const bool changes = !options.settings.empty();
@@ -129,14 +129,14 @@ ExitCode gains(const Global& global, const Options& options) {
   Shown shown{options.motor, gainsIn(*changed), {}, {}};
   if (changes) shown.before = gainsIn(*before);
   if (options.save) shown.lines = linesOf(after->message.view());
-  global.json ? printJson(shown) : printText(shown);
+  global.json ? printGainsJson(shown) : printGainsText(shown);
   return ExitCode::kOk;
 }
 
 }  // namespace
 
 void addGains(CLI::App& app, Action& action) {
-  const auto options = std::make_shared<Options>();
+  const auto options = std::make_shared<GainsOptions>();
   auto* verb = app.add_subcommand(
       "gains", "shows the gains of a motor's loops, or changes them while it runs; a restart forgets them");
   verb->add_option("motor", options->motor, "name of the motor")->required()->type_name("MOTOR");

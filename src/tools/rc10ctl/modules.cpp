@@ -20,9 +20,7 @@ namespace {
 
 using std::chrono::steady_clock;
 
-constexpr Duration kPatience = std::chrono::seconds{3};
-constexpr Duration kPeriod = std::chrono::milliseconds{20};
-constexpr std::int32_t kValidityMs = 100;
+constexpr Duration kModulesPatience = std::chrono::seconds{3};
 
 /// The modules of a robot, as far as they have told of themselves.
 class ModuleFeed {
@@ -45,7 +43,7 @@ class ModuleFeed {
 
   /// Waits until each has told its state.
   [[nodiscard]] Result<void> awaitAll() {
-    const auto deadline = steady_clock::now() + kPatience;
+    const auto deadline = steady_clock::now() + kModulesPatience;
     while (!complete()) {
       if (interrupted()) return fail("interrupted");
       if (steady_clock::now() >= deadline)
@@ -77,7 +75,7 @@ class ModuleFeed {
   std::vector<client::ModuleView> modules_;
 };
 
-void print(const Global& global, const std::vector<client::ModuleView>& modules) {
+void printModules(const Global& global, const std::vector<client::ModuleView>& modules) {
   std::fputs((global.json ? client::modulesJson(modules) + "\n" : client::modulesText(modules)).c_str(),
              stdout);
 }
@@ -87,7 +85,7 @@ ExitCode modules(const Global& global) {
   if (!rc10d) return complain(rc10d.error(), ExitCode::kNoDaemon);
   ModuleFeed feed{*rc10d};
   if (const auto there = feed.awaitAll(); !there) return complain(there.error(), ExitCode::kFailed);
-  print(global, feed.modules());
+  printModules(global, feed.modules());
   return ExitCode::kOk;
 }
 
@@ -98,7 +96,7 @@ struct SignalOptions {
   int priority = 0;
 };
 
-Result<link::Signals> understand(const SignalOptions& options) {
+Result<link::Signals> signalsFrom(const SignalOptions& options) {
   link::Signals message;
   message.client = kClientName;
   message.session = randomSession();
@@ -117,7 +115,7 @@ Result<link::Signals> understand(const SignalOptions& options) {
 }
 
 /// Empty, or why this robot cannot take it.
-std::string fit(const link::Signals& message, const std::vector<client::ModuleView>& modules) {
+std::string whySignalsUnfit(const link::Signals& message, const std::vector<client::ModuleView>& modules) {
   std::string known;
   for (const auto& module : modules) {
     known += (known.empty() ? "" : ", ") + client::printable(module.name.view());
@@ -147,17 +145,17 @@ ExitCode repeat(const Global& global, LinkClient& rc10d, link::Signals& message,
       ++message.seq;
       if (rc10d.send(message) == LinkClient::SendStatus::kClosed)
         return complain(rc10dEnded(), ExitCode::kFailed);
-      next = std::max(next + kPeriod, now);
+      next = std::max(next + kSendPeriod, now);
     }
     waitReadable(rc10d, std::min(next, start + time) - steady_clock::now());
     if (!feed.pump()) return complain(rc10dEnded(), ExitCode::kFailed);
   }
-  print(global, feed.modules());
+  printModules(global, feed.modules());
   return ExitCode::kOk;
 }
 
 ExitCode signal(const Global& global, const SignalOptions& options) {
-  auto message = understand(options);
+  auto message = signalsFrom(options);
   if (!message) return complain(message.error(), ExitCode::kUsage);
   const auto time = client::parseDuration(options.time);
   if (!time)
@@ -167,7 +165,8 @@ ExitCode signal(const Global& global, const SignalOptions& options) {
   if (!rc10d) return complain(rc10d.error(), ExitCode::kNoDaemon);
   ModuleFeed feed{*rc10d};
   if (const auto there = feed.awaitAll(); !there) return complain(there.error(), ExitCode::kFailed);
-  if (const auto why = fit(*message, feed.modules()); !why.empty()) return complain({why}, ExitCode::kFailed);
+  if (const auto why = whySignalsUnfit(*message, feed.modules()); !why.empty())
+    return complain({why}, ExitCode::kFailed);
   return repeat(global, *rc10d, *message, *time, feed);
 }
 

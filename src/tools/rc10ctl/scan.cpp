@@ -137,7 +137,7 @@ class Scanner {
   std::set<int> spared_;
 };
 
-void printText(const std::vector<Sighting>& sightings, const survey::Asking& asking) {
+void printSightingsText(const std::vector<Sighting>& sightings, const survey::Asking& asking) {
   const auto rows = rowsOf(sightings);
   client::TextTable table({{"KIND"},
                            {"ID", client::TextTable::Align::kRight},
@@ -161,8 +161,8 @@ void printText(const std::vector<Sighting>& sightings, const survey::Asking& ask
   for (const auto& advice : survey::adviceForBus(sightings, asking)) std::printf("%s\n", advice.c_str());
 }
 
-void printJson(const std::string& interface, const std::vector<Sighting>& sightings,
-               const survey::Asking& asking) {
+void printSightingsJson(const std::string& interface, const std::vector<Sighting>& sightings,
+                        const survey::Asking& asking) {
   for (const auto& sighting : sightings) {
     client::Json guesses = client::Json::array();
     for (const auto& guess : sighting.guesses)
@@ -218,9 +218,9 @@ ExitCode scan(const Global& global, const ScanOptions& options) {
   const auto sightings = scanner.survey().sightings(steady_clock::now() - start);
   const survey::Asking asking{.listen_only = options.listen_only, .spared = scanner.spared()};
   if (global.json)
-    printJson(options.interface, sightings, asking);
+    printSightingsJson(options.interface, sightings, asking);
   else
-    printText(sightings, asking);
+    printSightingsText(sightings, asking);
   return ExitCode::kOk;
 }
 

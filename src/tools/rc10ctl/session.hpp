@@ -5,6 +5,7 @@
 #include <string>
 
 #include "app/result.hpp"
+#include "app/time.hpp"
 #include "client/link_client.hpp"
 
 namespace rc10::ctl {
@@ -20,6 +21,10 @@ struct Global {
 };
 
 inline constexpr const char* kClientName = "rc10ctl";
+
+/// What is asked of motors and modules is sent so often, and holds so long.
+inline constexpr Duration kSendPeriod = std::chrono::milliseconds{20};
+inline constexpr std::int32_t kValidityMs = 100;
 
 /// Connects to the rc10d that the options mean.
 [[nodiscard]] Result<LinkClient> connect(const Global& global, std::uint32_t subscriptions = 0);

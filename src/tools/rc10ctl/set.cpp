@@ -30,7 +30,7 @@ struct SetOptions {
 constexpr std::uint32_t kAllModes = (1U << link::kModeCount) - 1U;
 
 // What the words mean, without the robot.
-Result<Drive> understand(const SetOptions& options) {
+Result<Drive> driveFrom(const SetOptions& options) {
   const auto mode = link::modeOf(options.mode);
   if (!mode) return fail("'" + options.mode + "' is not a mode: use one of " + link::modeWords(kAllModes));
   const bool needs_value = *mode != link::kModeCoast && *mode != link::kModeBrake;
@@ -59,7 +59,7 @@ Result<Drive> understand(const SetOptions& options) {
 }
 
 // Finds the motor; empty, or why this robot cannot do it.
-std::string fit(Drive& order, const link::Welcome& welcome) {
+std::string whyDriveUnfit(Drive& order, const link::Welcome& welcome) {
   const auto motors = std::span{welcome.motors}.first(welcome.motor_count);
   const auto name = order.setpoint.motor.view();
   const auto found =
@@ -80,11 +80,12 @@ std::string fit(Drive& order, const link::Welcome& welcome) {
 }
 
 ExitCode set(const Global& global, const SetOptions& options) {
-  auto order = understand(options);
+  auto order = driveFrom(options);
   if (!order) return complain(order.error(), ExitCode::kUsage);
   auto rc10d = connect(global, link::kStates | link::kEvents);
   if (!rc10d) return complain(rc10d.error(), ExitCode::kNoDaemon);
-  if (const auto why = fit(*order, rc10d->welcome()); !why.empty()) return complain({why}, ExitCode::kFailed);
+  if (const auto why = whyDriveUnfit(*order, rc10d->welcome()); !why.empty())
+    return complain({why}, ExitCode::kFailed);
   return drive(*rc10d, *order);
 }
 
