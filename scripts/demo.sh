@@ -8,6 +8,8 @@ set -euo pipefail
 here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
 # shellcheck source=scripts/lib/project.sh
 . "$here/lib/project.sh"
+# shellcheck source=scripts/lib/progress.sh
+. "$here/lib/progress.sh"
 
 usage() {
     echo "usage: scripts/demo.sh [--seconds N]"
@@ -32,14 +34,26 @@ done
 
 build_tree=${RC10_BUILD:-$repo/build/release}
 
-# Once, outside the namespace: everything it takes.
+# Once, outside the namespace: everything it takes, and no more. The times are those of a bare Debian with 2 cores.
 prepare() {
+    local python prepared
+    prepared=$(mktemp "${TMPDIR:-/tmp}/rc10-demo-python.XXXX")
     if [ -z "${RC10_BUILD:-}" ]; then
-        need build
-        build release rc10d rc10-lcm rc10ctl rc10-sim || die "the build failed"
+        "$here/install-deps.sh" --may-ask build
+        progress "demo: installing packages of Debian" 30 need build || die "the packages could not be installed"
+    fi
+    # Beside the compiler: it waits for the network.
+    "$here/venv.sh" client >"$prepared" 2>&1 &
+    python=$!
+    if [ -z "${RC10_BUILD:-}" ]; then
+        build_shows_files=yes
+        progress "demo: compiling rc10d" 60 build release rc10d rc10-lcm rc10ctl || die "the build failed"
     fi
     [ -x "$build_tree/bin/rc10d" ] || die "no rc10d in $build_tree/bin"
-    need_python
+    progress "demo: installing the Python client" 10 wait "$python" \
+        || { cat "$prepared" >&2 && die "the Python client could not be installed"; }
+    RC10_PYTHON=$(tail -n 1 "$prepared")
+    rm "$prepared"
 }
 
 # LCM's multicast goes to a loopback of our own and reaches no network.

@@ -1,6 +1,7 @@
 #!/bin/bash
 # Installs the Debian packages that parts of this project need.
-#   scripts/install-deps.sh [build] [test] [languages] [lint] [kernel] [vm] [package]      default: all
+#   scripts/install-deps.sh [--may-ask] [build] [test] [languages] [lint] [kernel] [vm] [package]      default: all
+# --may-ask: installs nothing, but lets sudo ask for the password now, if something is missing.
 set -euo pipefail
 
 declare -A packages=(
@@ -19,7 +20,7 @@ declare -A packages=(
 groups=(build test languages lint kernel vm package)
 
 usage() {
-    echo "usage: scripts/install-deps.sh [${groups[*]}]  (default: all)"
+    echo "usage: scripts/install-deps.sh [--may-ask] [${groups[*]}]  (default: all)"
 }
 
 die() {
@@ -51,6 +52,8 @@ apt() {
     as_root env DEBIAN_FRONTEND=noninteractive apt-get -qq -o DPkg::Lock::Timeout=300 "$@"
 }
 
+may_ask=
+[ "${1:-}" != --may-ask ] || { may_ask=yes && shift; }
 [ $# -gt 0 ] || set -- "${groups[@]}"
 wanted=()
 for group in "$@"; do
@@ -72,6 +75,10 @@ mapfile -t absent < <(missing "${wanted[@]}" | sort -u)
 
 if [ "$(id -u)" -ne 0 ] && ! command -v sudo >/dev/null; then
     die "missing packages, and neither root nor sudo to install them: apt-get install ${absent[*]}"
+fi
+if [ -n "$may_ask" ]; then
+    [ ! -t 0 ] || as_root true
+    exit
 fi
 echo "install-deps: installing ${absent[*]}" >&2
 install=(install --no-install-recommends --yes "${absent[@]}")

@@ -1,69 +1,57 @@
 #!/bin/bash
 # The project's tests; it installs what they need.
-#   scripts/test.sh [PART...]     default: all parts
+#   scripts/test.sh [PART...]     default: what a clone is trusted by
 # The last line is "N passed, N failed, N skipped". In CI (CI=true) nothing may be skipped.
 set -euo pipefail
 
 here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
-all=(lint unit host kernel faults vm package sanitize soak fuzz)
-# Long, and only for who asks: not among all.
-on_request=(arm64 fresh)
-quick=(unit host lint)
-counts='^([0-9]+) passed, ([0-9]+) failed, ([0-9]+) skipped$'
+# shellcheck source=scripts/lib/project.sh
+. "$here/lib/project.sh"
+# shellcheck source=scripts/lib/progress.sh
+. "$here/lib/progress.sh"
+
+# The long ones of a part first: what runs side by side ends together.
+default=(unit kernel host pages)
+ci=("${default[@]}" lint tidy faults soak)
+all=("${default[@]}" lint clang faults vm package sanitize soak fuzz)
+# Hours, or a Debian of its own: not among all.
+nightly=(arm64 fresh long_fuzz long_soak)
+parts=(build "${all[@]}" tidy "${nightly[@]}")
+
+about() {
+    sed -n '2s/^# //p' "$here/test/$1.sh"
+}
 
 usage() {
     echo "usage: scripts/test.sh [PART...]"
     local part
-    for part in "${all[@]}" "${on_request[@]}"; do
-        printf '  %-9s %s\n' "$part" "$(sed -n '2s/^# //p' "$here/test/$part.sh")"
+    for part in "${parts[@]}"; do
+        printf '  %-9s %s\n' "$part" "$(about "$part")"
     done
-    printf '  %-9s %s\n' quick "${quick[*]}" all "all but ${on_request[*]}, which run on request only"
+    printf '  %-9s %s\n' default "${default[*]}" ci "${ci[*]}" all "${all[*]}" nightly "${nightly[*]}"
 }
 
-parts=()
-for part in "${@:-all}"; do
-    case " ${all[*]} ${on_request[*]} " in
-        *" $part "*) parts+=("$part") && continue ;;
-    esac
+wanted=()
+for part in "${@:-default}"; do
     case $part in
-        all) parts+=("${all[@]}") ;;
-        quick) parts+=("${quick[@]}") ;;
+        default | ci | all | nightly)
+            declare -n set=$part
+            wanted+=("${set[@]}")
+            ;;
         -h | --help) usage && exit ;;
         *)
-            echo "test.sh: no part '$part'" >&2
-            usage >&2
-            exit 2
+            if [[ " ${parts[*]} " != *" $part "* ]]; then
+                echo "test.sh: no part '$part'" >&2
+                usage >&2
+                exit 2
+            fi
+            wanted+=("$part")
             ;;
     esac
 done
 
-log=$(mktemp "${TMPDIR:-/tmp}/rc10-test-log.XXXXXX")
-trap 'rm -f "$log"' EXIT
-passed=0 failed=0 skipped=0
-table=
-
-for part in "${parts[@]}"; do
-    printf '\n==== %s: %s\n' "$part" "$(sed -n '2s/^# //p' "$here/test/$part.sh")"
-    begin=$SECONDS
-    status=0
-    "$here/test/$part.sh" 2>&1 | tee "$log" || status=$?
-    if [[ $(tail -n 1 "$log") =~ $counts ]]; then
-        p=${BASH_REMATCH[1]} f=${BASH_REMATCH[2]} s=${BASH_REMATCH[3]}
-        [ "$status" -eq 0 ] || [ "$f" -gt 0 ] || f=1
-    else
-        echo "FAILED $part: it ended with status $status and without a result"
-        p=0 f=1 s=0
-    fi
-    passed=$((passed + p)) failed=$((failed + f)) skipped=$((skipped + s))
-    took=$((SECONDS - begin))
-    table+=$(printf '%-9s %7d %7d %7d %5d:%02d' "$part" "$p" "$f" "$s" $((took / 60)) $((took % 60)))$'\n'
-done
-
-printf '\n%-9s %7s %7s %7s %8s\n%s' part passed failed skipped min:s "$table"
-bad=$failed
-if [ "$skipped" -gt 0 ] && [ "${CI:-}" = true ]; then
-    echo "in CI nothing may be skipped"
-    bad=1
-fi
-echo "$passed passed, $failed failed, $skipped skipped"
-[ "$bad" -eq 0 ]
+# What all of them need, at once.
+mapfile -t groups < <(for part in "${wanted[@]}"; do sed -n 's/^need //p' "$here/test/$part.sh"; done | tr ' ' '\n' | sort -u)
+"$here/install-deps.sh" --may-ask "${groups[@]}"
+progress "test.sh: installing packages of Debian" 90 need "${groups[@]}"
+exec /usr/bin/python3 "$here/lib/run_parts.py" --name "${1:-default}" "${wanted[@]}"

@@ -1,21 +1,31 @@
 #!/bin/bash
-# Makes the Python environment of the tests and tools, with ./python installed editable.
-#   scripts/venv.sh       the last line printed is the path of its python
+# Makes the Python environment of the project, with ./python installed editable.
+#   scripts/venv.sh [client]     the last line printed is the path of its python
+# client: no more than a robot program needs. Otherwise all that tests and tools need.
 # RC10_VENV: where (default: .venv in the repository).
 set -euo pipefail
 
 repo=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 venv=${RC10_VENV:-$repo/.venv}
-requirements=("$repo/python/requirements-dev.txt" "$repo/scripts/requirements.txt")
+client=("$repo/python/requirements.txt")
+all=("$repo/python/requirements-dev.txt" "$repo/scripts/requirements.txt")
+
+case ${1:-all} in
+    client | all) wanted=${1:-all} ;;
+    *) echo "usage: scripts/venv.sh [client]" >&2 && exit 2 ;;
+esac
 
 # Debian's own, not one that a version manager put first on PATH.
 base=/usr/bin/python3
 [ -x "$base" ] || base=$(command -v python3)
 
+# inputs REQUIREMENTS...: a hash of all that such an environment is made from.
 inputs() {
-    "$base" --version
-    echo "$venv"
-    cat "${requirements[@]}" "$repo"/python/{pyproject.toml,hatch_build.py} "$repo"/lcm_types/*.lcm
+    {
+        "$base" --version
+        echo "$venv"
+        cat "$@" "$repo"/python/{pyproject.toml,hatch_build.py} "$repo"/lcm_types/*.lcm
+    } | sha256sum
 }
 
 # Whoever owns what a link points to would find it emptied.
@@ -27,14 +37,21 @@ mkdir -p "$venv"
 venv=$(cd "$venv" && pwd)
 exec 9<"$venv"
 flock 9
-hash=$(inputs | sha256sum)
-if [ "$(cat "$venv/.inputs" 2>/dev/null)" != "$hash" ]; then
+has_client=$(inputs "${client[@]}") has_all=$(inputs "${client[@]}" "${all[@]}")
+made=$(cat "$venv/.inputs" 2>/dev/null || true)
+pip=("$venv/bin/python" -m pip --quiet --disable-pip-version-check install)
+if [ "$made" != "$has_all" ] && [ "$made" != "$has_client" ]; then
     echo "venv: making $venv" >&2
     "$base" -m venv --clear "$venv" >&2
-    pip=("$venv/bin/python" -m pip --quiet --disable-pip-version-check install)
-    "${pip[@]}" "${requirements[@]/#/--requirement=}" >&2
+    "${pip[@]}" "${client[@]/#/--requirement=}" >&2
     # What it is built with is among the requirements.
     "${pip[@]}" --no-build-isolation --no-deps --editable "$repo/python" >&2
-    echo "$hash" >"$venv/.inputs"
+    made=$has_client
+    echo "$made" >"$venv/.inputs"
+fi
+if [ "$wanted" = all ] && [ "$made" != "$has_all" ]; then
+    echo "venv: adding to $venv what tests and tools need" >&2
+    "${pip[@]}" "${all[@]/#/--requirement=}" >&2
+    echo "$has_all" >"$venv/.inputs"
 fi
 echo "$venv/bin/python"

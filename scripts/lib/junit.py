@@ -6,6 +6,7 @@ junit.py REPORT COMMAND...      the path REPORT is appended to the command
 
 from __future__ import annotations
 
+import os
 import re
 import subprocess
 import sys
@@ -38,6 +39,13 @@ def why(case: ET.Element, skipped: ET.Element) -> str | None:
     return printed[1] if printed else skipped.get("message") or case.get("status")
 
 
+def write_costs(costs: str, report: Path) -> None:
+    """For the table of the slowest tests: see costs.py."""
+    with Path(costs).open("a") as file:
+        for case in ET.parse(report).iter("testcase"):
+            file.write(f"{case.get('time', 0)}\t{label(case)}\n")
+
+
 def main(report: Path, command: list[str]) -> int:
     report.unlink(missing_ok=True)
     status = run([*command, str(report)])
@@ -51,6 +59,8 @@ def main(report: Path, command: list[str]) -> int:
             print(f"SKIPPED {label(case)}: {why(case, skip)}")
         else:
             passed += 1
+    if (costs := os.environ.get("RC10_COSTS")) and report.exists():
+        write_costs(costs, report)
     if status != 0 and failed == 0:
         failed = 1
         print(f"FAILED {Path(command[0]).name} ended with status {status}")

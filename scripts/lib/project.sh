@@ -3,8 +3,8 @@
 
 repo=$(cd "$(dirname "${BASH_SOURCE[0]}")/../.." && pwd)
 
-# So that a fresh clone in another folder finds what was compiled before.
-export CCACHE_BASEDIR=$repo CCACHE_NOHASHDIR=1
+# So that a fresh clone in another folder finds what was compiled before; precompiled headers, too.
+export CCACHE_BASEDIR=$repo CCACHE_NOHASHDIR=1 CCACHE_SLOPPINESS=pch_defines,time_macros
 
 need() {
     "$repo/scripts/install-deps.sh" "$@"
@@ -16,23 +16,27 @@ need_python() {
     export RC10_PYTHON
 }
 
-# build PRESET [TARGET...]: configures, and builds, with $build_options. Without a terminal only what went wrong
-# is shown.
-build_options=()
+# build PRESET [TARGET...]: configures, and builds, with $build_options and on $RC10_JOBS cores, default all. Without a
+# terminal only what went wrong is shown, unless $build_shows_files.
+build_options=() build_shows_files=
 build() {
     local preset=$1
     shift
-    local compile=(cmake --build --preset "$preset" --parallel "$(nproc)")
+    local compile=(cmake --build --preset "$preset" --parallel "${RC10_JOBS:-$(nproc)}")
     [ $# -eq 0 ] || compile+=(--target "$@")
     compile+=("${build_options[@]}")
     echo "-- building $preset${*:+: $*}"
+    mkdir -p "$repo/build"
     (
         cd "$repo" || return
+        # Two builds in one tree would disturb each other.
+        exec 8>"build/.$preset.lock"
+        flock 8
         cmake --preset "$preset" --log-level=WARNING >/dev/null || return
-        if [ -t 1 ]; then
-            "${compile[@]}"
+        if [ -t 1 ] || [ -n "$build_shows_files" ]; then
+            "${compile[@]}" 8>&-
         else
-            "${compile[@]}" | sed -uE '/^\[[0-9]+\/[0-9]+\] /d'
+            "${compile[@]}" 8>&- | sed -uE '/^\[[0-9]+\/[0-9]+\] /d'
         fi
     )
 }

@@ -6,28 +6,41 @@ set -euo pipefail
 
 need build test lint
 seconds=${RC10_FUZZ_SECONDS:-10}
-findings=$repo/build/fuzz/findings
+findings=$repo/build/asan/findings
 
-# What is found stays in build/fuzz/findings: give the file to the target to see it again.
+# What is found stays in build/asan/findings: give the file to the target to see it again.
 fuzz() {
-    local target=$1 name corpus=("$scratch/corpus") status=0 executions
+    local target=$1 name corpus log=$scratch/$2.log
     name=$(basename "$target")
-    mkdir -p "$scratch/corpus" "$findings"
+    corpus=("$scratch/$name.corpus")
+    mkdir -p "${corpus[0]}" "$findings"
     [ ! -d "$repo/tests/fuzz/corpus/$name" ] || corpus+=("$repo/tests/fuzz/corpus/$name")
     "$target" -max_total_time="$seconds" -timeout=10 -rss_limit_mb=2048 -print_final_stats=1 \
-        -artifact_prefix="$findings/$name-" "${corpus[@]}" >"$scratch/log" 2>&1 || status=$?
-    rm -rf "$scratch/corpus"
-    if [ "$status" -ne 0 ]; then
-        tail -n 60 "$scratch/log"
-        return "$status"
-    fi
-    executions=$(sed -n 's/^stat::number_of_executed_units: *//p' "$scratch/log")
-    echo "$executions executions"
+        -artifact_prefix="$findings/$name-" "${corpus[@]}" >"$log" 2>&1
 }
 
-if must_build fuzz tests/fuzz/all; then
-    for target in "$repo"/build/fuzz/fuzz/*_fuzz; do
-        step "$(basename "$target")" fuzz "$target"
+# What became of a target that has run.
+judge() {
+    if [ "$1" -ne 0 ]; then
+        tail -n 60 "$2"
+        return 1
+    fi
+    sed -n 's/^stat::number_of_executed_units: *\(.*\)/\1 executions/p' "$2"
+}
+
+# One target on each core.
+if must_build asan tests/fuzz/all; then
+    declare -A statuses=() names=()
+    for target in "$repo"/build/asan/fuzz/*_fuzz; do
+        while [ "$(jobs -rp | wc -l)" -ge "${RC10_JOBS:-$(nproc)}" ]; do wait -n || true; done
+        name=$(basename "$target")
+        fuzz "$target" "$name" &
+        names[$name]=$!
+    done
+    for name in "${!names[@]}"; do
+        statuses[$name]=0
+        wait "${names[$name]}" || statuses[$name]=$?
+        step "$name" judge "${statuses[$name]}" "$scratch/$name.log"
     done
 fi
 finish

@@ -1,5 +1,5 @@
 #!/bin/bash
-# formatting, shellcheck, ruff and mypy, the order of the layers, what pages refer to, clang's warnings and clang-tidy
+# formatting, shellcheck, ruff, mypy, systemd units
 set -euo pipefail
 # shellcheck source=scripts/lib/results.sh
 . "$(dirname "${BASH_SOURCE[0]}")/../lib/results.sh"
@@ -36,10 +36,6 @@ types_in() {
     (cd "$1" && MYPYPATH="$repo/tests/kernel:$repo/tests/host" python mypy --strict "${@:2}")
 }
 
-layers() {
-    tests/layers/check_layers.py src
-}
-
 step clang-format format_cpp
 step shellcheck shell
 # Its scripts have no extension, and are not found by themselves.
@@ -53,11 +49,5 @@ done
 step "mypy, scripts" types_in scripts/lib .
 step "mypy, bench" types_in bench --scripts-are-modules . "${bench_scripts[@]}"
 step "mypy, examples" types_in examples/small_robot .
-step "order of the layers" layers
-pytest_in tests/layers
-pytest_in tests/docs
 suite tests/systemd tests/systemd/run
-# Everything compiles without a warning, for clang too; the headers made in the build are there then.
-if must_build tidy; then passed=$((passed + 1)); fi
-step clang-tidy scripts/lib/tidy.py build/tidy
 finish

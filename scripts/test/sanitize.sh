@@ -11,12 +11,12 @@ fi
 # shellcheck source=scripts/lib/results.sh
 . "$(dirname "${BASH_SOURCE[0]}")/../lib/results.sh"
 
-need build test
+need build test lint
 export ASAN_OPTIONS=detect_stack_use_after_return=1:strict_string_checks=1
 export UBSAN_OPTIONS=print_stacktrace=1
 export TSAN_OPTIONS="second_deadlock_stack=1 suppressions=$repo/tests/tsan.supp"
 
-for preset in asan-ubsan tsan; do
+for preset in asan tsan; do
     # "tests/all" is Ninja's name for everything in tests/: no programs.
     if must_build "$preset" tests/all; then ctest_in "$preset"; fi
 done

@@ -1,0 +1,263 @@
+#!/usr/bin/python3
+"""Runs parts of the tests, side by side where one leaves cores free, and tells what they cost.
+
+    run_parts.py [--name SET] PART...
+
+A part is scripts/test/PART.sh; its last line is "N passed, N failed, N skipped", and so is that of
+this program. What a part prints is shown if something of it failed, and kept in build/test-logs.
+Python of Debian 12 alone, for nothing else is installed yet.
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+import os
+import re
+import signal
+import subprocess
+import sys
+import time
+from dataclasses import dataclass, field
+from pathlib import Path
+
+import costs
+
+REPO = Path(__file__).resolve().parents[2]
+SCRIPTS = REPO / "scripts" / "test"
+LOGS = REPO / "build" / "test-logs"
+BUDGET = SCRIPTS / "budget.json"
+
+COUNTS = re.compile(r"^(\d+) passed, (\d+) failed, (\d+) skipped$")
+TOLD = re.compile(r"^(SKIPPED|NOTE) .*", re.MULTILINE)
+
+# These run what the dev build has made.
+TESTS_OF_DEV = {"unit", "kernel", "host", "faults", "vm", "soak"}
+# How many cores a part keeps busy; 0: it waits most of its time. All others use every core.
+CORES = {"host": 0, "pages": 1, "lint": 1, "vm": 1, "package": 1}
+ALL_CORES = os.cpu_count() or 1
+
+
+@dataclass
+class Part:
+    """A part while it runs, and what came of it."""
+
+    name: str
+    passed: int = 0
+    failed: int = 0
+    skipped: int = 0
+    begin_s: float = 0.0
+    took_s: float = 0.0
+    cpu_s: float = 0.0
+    process: subprocess.Popen[bytes] | None = field(default=None, repr=False)
+
+    @property
+    def cores(self) -> int:
+        return min(CORES.get(self.name, ALL_CORES), ALL_CORES)
+
+    @property
+    def log(self) -> Path:
+        return LOGS / f"{self.name}.log"
+
+    @property
+    def about(self) -> str:
+        return (SCRIPTS / f"{self.name}.sh").read_text().splitlines()[1].removeprefix("# ")
+
+    def start(self) -> None:
+        self.begin_s = time.monotonic()
+        environment = {
+            **os.environ,
+            "RC10_COSTS": str(LOGS / f"{self.name}.costs"),
+            "RC10_JOBS": str(max(self.cores, 1)),
+        }
+        # What waits goes first when it is woken; what computes can bear it.
+        politely = ["nice", "-n", "5"] if self.cores else []
+        with self.log.open("wb") as log:
+            self.process = subprocess.Popen(
+                [*politely, SCRIPTS / f"{self.name}.sh"],
+                cwd=REPO,
+                env=environment,
+                stdin=subprocess.DEVNULL,
+                stdout=log,
+                stderr=subprocess.STDOUT,
+            )
+
+    def ended(self) -> bool:
+        """Whether it has ended; then its results are known."""
+        assert self.process is not None
+        pid, status, usage = os.wait4(self.process.pid, os.WNOHANG)
+        if pid == 0:
+            return False
+        self.process.returncode = os.waitstatus_to_exitcode(status)
+        self.took_s = time.monotonic() - self.begin_s
+        self.cpu_s = usage.ru_utime + usage.ru_stime
+        lines = self.log.read_text(errors="replace").splitlines()
+        if counts := COUNTS.match(lines[-1] if lines else ""):
+            self.passed, self.failed, self.skipped = map(int, counts.groups())
+            if self.process.returncode != 0 and self.failed + self.skipped == 0:
+                self.failed = 1
+        else:
+            self.failed = 1
+        return True
+
+    def show(self) -> None:
+        text = self.log.read_text(errors="replace")
+        print(f"\n==== {self.name}: {self.about}")
+        if self.failed:
+            print(text, end="" if text.endswith("\n") else "\n")
+            if not COUNTS.match(text.rstrip().rpartition("\n")[2]):
+                status = self.process.returncode if self.process else None
+                print(f"FAILED {self.name}: it ended with status {status} and without a result")
+        else:
+            for told in TOLD.finditer(text):
+                print(told[0])
+            print(f"{self.passed} passed, {self.failed} failed, {self.skipped} skipped")
+        sys.stdout.flush()
+
+
+def as_minutes(seconds: float) -> str:
+    return f"{int(seconds) // 60}:{int(seconds) % 60:02}"
+
+
+class Run:
+    """All the parts of one run."""
+
+    def __init__(self, names: list[str], budget: costs.Budget) -> None:
+        self.budget = budget
+        self.waiting = [Part(name) for name in dict.fromkeys(names)]
+        self.running: list[Part] = []
+        self.done: list[Part] = []
+        self.begin_s = time.monotonic()
+
+    def may_start(self, part: Part) -> bool:
+        unfinished = [*self.running, *self.waiting]
+        if part.name in TESTS_OF_DEV and any(other.name == "build" for other in unfinished):
+            return False
+        return sum(other.cores for other in self.running) + part.cores <= ALL_CORES
+
+    def start_what_may(self) -> None:
+        for part in list(self.waiting):
+            if self.may_start(part):
+                self.waiting.remove(part)
+                self.running.append(part)
+                part.start()
+
+    def status_line(self) -> str:
+        shown = []
+        for part in self.running:
+            elapsed = as_minutes(time.monotonic() - part.begin_s)
+            whole = self.budget.parts.get(part.name)
+            shown.append(
+                part.name
+                + f" {elapsed}"
+                + (f" of about {as_minutes(whole.took_s)}" if whole else "")
+            )
+        rest = f"; then {', '.join(part.name for part in self.waiting)}" if self.waiting else ""
+        return " | ".join(shown) + rest
+
+    def give_up_tests_of_dev(self) -> None:
+        for part in [part for part in self.waiting if part.name in TESTS_OF_DEV]:
+            self.waiting.remove(part)
+            print(f"\n==== {part.name}\nFAILED {part.name}: not run, the dev build failed")
+            part.failed = 1
+            self.done.append(part)
+
+    def go(self) -> None:
+        terminal = sys.stderr.isatty()
+        while self.waiting or self.running:
+            self.start_what_may()
+            for part in [part for part in self.running if part.ended()]:
+                self.running.remove(part)
+                self.done.append(part)
+                if terminal:
+                    print("\r\033[K", end="", file=sys.stderr, flush=True)
+                part.show()
+                if part.name == "build" and part.failed:
+                    self.give_up_tests_of_dev()
+            if terminal and self.running:
+                columns = os.get_terminal_size(sys.stderr.fileno()).columns
+                line = self.status_line()[: columns - 1]
+                print(f"\r{line}\033[K", end="", file=sys.stderr, flush=True)
+            time.sleep(0.2)
+
+    def stop(self) -> None:
+        for part in self.running:
+            if part.process is not None and part.process.poll() is None:
+                part.process.send_signal(signal.SIGTERM)
+        for part in self.running:
+            if part.process is not None:
+                part.process.wait()
+
+    def table(self) -> str:
+        rows = [
+            f"\n{'part':<10} {'passed':>7} {'failed':>7} {'skipped':>7} {'min:s':>7} {'CPU s':>7}"
+        ]
+        rows += [
+            f"{part.name:<10} {part.passed:>7} {part.failed:>7} {part.skipped:>7} "
+            f"{as_minutes(part.took_s):>7} {part.cpu_s:>7.0f}"
+            for part in self.done
+        ]
+        took = as_minutes(time.monotonic() - self.begin_s)
+        rows.append(f"{'together':<34} {took:>7} {sum(part.cpu_s for part in self.done):>7.0f}")
+        return "\n".join(rows)
+
+
+def with_build(names: list[str]) -> list[str]:
+    """The dev build goes first, and alone, where something is tested with it."""
+    needed = "build" not in names and TESTS_OF_DEV.intersection(names)
+    return (["build"] if needed else []) + names
+
+
+def greeting(names: list[str], chosen: str, budget: costs.Budget) -> str:
+    text = f"rc10d's tests: {', '.join(names)}."
+    if took := budget.sets.get(chosen):
+        text += (
+            f" On {budget.machine}: {as_minutes(took.cold_s)} where nothing is compiled yet,"
+            f" {as_minutes(took.warm_s)} afterwards."
+        )
+    return text + f" What they print: {LOGS.relative_to(REPO)}"
+
+
+def main() -> int:
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--name", default="")
+    parser.add_argument("parts", nargs="+")
+    arguments = parser.parse_args()
+    budget = costs.Budget.read(BUDGET)
+    names = with_build(arguments.parts)
+    LOGS.mkdir(parents=True, exist_ok=True)
+    for old in LOGS.glob("*.costs"):
+        old.unlink()
+    print(greeting(names, arguments.name, budget), flush=True)
+    run = Run(names, budget)
+    begin = time.time()
+    try:
+        run.go()
+    except KeyboardInterrupt:
+        run.stop()
+        print("\ninterrupted", file=sys.stderr)
+        return 130
+    print(run.table())
+    print(costs.slowest(LOGS, REPO / "build", begin), end="")
+    if arguments.name == "all":
+        print(costs.compare(budget, {part.name: part.cpu_s for part in run.done}), end="")
+    if measured := os.environ.get("RC10_MEASURED"):
+        took = {
+            part.name: {"took_s": round(part.took_s), "cpu_s": round(part.cpu_s)}
+            for part in run.done
+        }
+        Path(measured).write_text(json.dumps(took, indent=2) + "\n")
+    passed, failed, skipped = (
+        sum(getattr(part, name) for part in run.done) for name in ("passed", "failed", "skipped")
+    )
+    bad = failed > 0
+    if skipped and os.environ.get("CI") == "true":
+        print("in CI nothing may be skipped")
+        bad = True
+    print(f"{passed} passed, {failed} failed, {skipped} skipped")
+    return int(bad)
+
+
+if __name__ == "__main__":
+    signal.signal(signal.SIGTERM, signal.default_int_handler)
+    sys.exit(main())

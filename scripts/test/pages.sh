@@ -1,0 +1,13 @@
+#!/bin/bash
+# the order of the layers; links, quotes and tables of the pages
+set -euo pipefail
+# shellcheck source=scripts/lib/results.sh
+. "$(dirname "${BASH_SOURCE[0]}")/../lib/results.sh"
+
+need build
+need_python
+
+step "order of the layers" "$repo/tests/layers/check_layers.py" "$repo/src"
+pytest_in tests/layers
+pytest_in tests/docs
+finish
