@@ -36,6 +36,7 @@ for part in "${@:-default}"; do
     case $part in
         default | ci | all | nightly)
             declare -n set=$part
+            [ "$part" != all ] || export RC10_GRID_S=60
             wanted+=("${set[@]}")
             ;;
         -h | --help) usage && exit ;;

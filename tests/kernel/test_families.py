@@ -404,7 +404,7 @@ def test_five_families_share_a_bus_and_the_load_is_as_predicted(tmp_path: Path) 
     drives = ("M3508:1", "VESC:10", "DM4310:12", "RS00:127", "ODrive_S1:3")
     targets_rpm = {"dji": 100, "vesc": 300, "damiao": 60, "robstride": 60, "odrive": 120}
     targets = {name: rc10.velocity_rpm(rpm) for name, rpm in targets_rpm.items()}
-    seconds = 20
+    seconds = 5
     with running(config, *drives), client(robot_name=ROBOT) as robot, Candump("vcan0") as bus:
         robot.enable()
         drive(robot, 1.0, **targets)

@@ -1,7 +1,9 @@
-"""One minute of ticks."""
+"""Ticks by the thousand: ten seconds of them, or a minute in the part all (RC10_GRID_S)."""
 # run-guest: --timeout 900
 
 from __future__ import annotations
+
+import os
 
 from guestlib import Candump
 from rig import COMMAND_IDS, MS, commands, enabled_robot, next_diagnostics
@@ -10,20 +12,21 @@ import rc10
 
 # candump's stamps have this resolution: a time between two microseconds falls on either.
 STAMP_NS = 1000
+SECONDS = int(os.environ.get("RC10_GRID_S", "10"))
 
 
-def test_every_command_id_leaves_exactly_once_a_millisecond_for_a_minute() -> None:
+def test_every_command_id_leaves_exactly_once_a_millisecond() -> None:
     with enabled_robot() as (_, robot), Candump("vcan0", ids=COMMAND_IDS) as bus:
         before = next_diagnostics(robot)
         for t_s in robot.rate(50):
-            if t_s >= 60.2:
+            if t_s >= SECONDS + 0.2:
                 break
             robot.command(left=rc10.velocity_rpm(100), validity_ms=100)
         bus.stop()
         frames = bus.frames()
         for number in COMMAND_IDS:
             times = [frame.t_ns for frame in commands(frames, number)]
-            assert len(times) > 60_000
+            assert len(times) > SECONDS * 1000
             # Each frame stands on its own grid point, to the microsecond of the stamp's resolution.
             off_grid = [t for i, t in enumerate(times) if abs(t - times[0] - i * MS) > STAMP_NS]
             assert off_grid == []
