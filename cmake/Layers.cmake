@@ -2,6 +2,12 @@
 # root, <build>/layers/<layer>/, which holds one link named after the layer: `#include "motor/x.hpp"`
 # resolves only in targets that use the layer `motor`.
 
+# What includes the same headers is compiled together: a tenth of the time. So many files that two cores have work.
+set(RC10_UNITY_BATCH 16 CACHE STRING "How many files are compiled together, at most; 0: all of a target")
+function(rc10_together target)
+  set_target_properties(${target} PROPERTIES UNITY_BUILD ${RC10_UNITY} UNITY_BUILD_BATCH_SIZE ${RC10_UNITY_BATCH})
+endfunction()
+
 # rc10_layer(<name> [USES <layer>...] [LIBRARIES <target>...])
 function(rc10_layer layer)
   cmake_parse_arguments(ARG "" "" "USES;LIBRARIES" ${ARGN})
@@ -17,6 +23,7 @@ function(rc10_layer layer)
     add_library(${target} STATIC ${sources})
     set(scope PUBLIC)
     target_link_libraries(${target} PRIVATE rc10_warnings)
+    rc10_together(${target})
   else()
     add_library(${target} INTERFACE)
     set(scope INTERFACE)
@@ -41,5 +48,6 @@ function(rc10_program name)
   add_executable(${name} ${ARG_MAIN})
   list(TRANSFORM ARG_USES PREPEND rc10_)
   target_link_libraries(${name} PRIVATE rc10_warnings ${ARG_USES} ${ARG_LIBRARIES})
+  rc10_together(${name})
   set_target_properties(${name} PROPERTIES RUNTIME_OUTPUT_DIRECTORY "${PROJECT_BINARY_DIR}/bin")
 endfunction()
