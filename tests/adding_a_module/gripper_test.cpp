@@ -11,7 +11,7 @@
 #include "daemon/virtual_robot.hpp"
 #include "module/fake_robot.hpp"
 
-namespace shop {
+namespace shop::gripper_test {
 namespace {
 
 using namespace rc10;
@@ -96,4 +96,4 @@ TEST(Gripper, ANameThatIsTakenIsRefused) {
 }
 
 }  // namespace
-}  // namespace shop
+}  // namespace shop::gripper_test

@@ -11,7 +11,7 @@
 #include "daemon/virtual_robot.hpp"
 #include "sim/solo_rig.hpp"
 
-namespace acme {
+namespace acme::acme_test {
 namespace {
 
 using namespace rc10;
@@ -156,4 +156,4 @@ TEST_F(AcmeRobot, ADriveThatWasRestartedIsNotTrustedWithTheOldTarget) {
 }
 
 }  // namespace
-}  // namespace acme
+}  // namespace acme::acme_test

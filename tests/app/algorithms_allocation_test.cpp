@@ -20,7 +20,7 @@
 #include "app/two_pole_filter.hpp"
 #include "support/alloc_guard.hpp"
 
-namespace rc10::test {
+namespace rc10::test::algorithms_allocation_test {
 namespace {
 
 constexpr float kDt = 0.001F;
@@ -73,4 +73,4 @@ TEST(Algorithms, AllocateNothing) {
 }
 
 }  // namespace
-}  // namespace rc10::test
+}  // namespace rc10::test::algorithms_allocation_test

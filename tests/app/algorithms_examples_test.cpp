@@ -20,7 +20,7 @@
 #include "app/swerve_kinematics.hpp"
 #include "app/two_pole_filter.hpp"
 
-namespace rc10::test {
+namespace rc10::test::algorithms_examples_test {
 namespace {
 
 TEST(AlgorithmsExamples, Feedforward) {
@@ -133,4 +133,4 @@ TEST(AlgorithmsExamples, AreWhatThePageSays) {
 }
 
 }  // namespace
-}  // namespace rc10::test
+}  // namespace rc10::test::algorithms_examples_test

@@ -6,7 +6,7 @@
 
 #include <gtest/gtest.h>
 
-namespace rc10::test {
+namespace rc10::test::angle_test {
 namespace {
 
 TEST(Angle, WrapsIntoOneTurn) {
@@ -50,4 +50,4 @@ TEST(Angle, NotANumberStaysNotANumber) {
 }
 
 }  // namespace
-}  // namespace rc10::test
+}  // namespace rc10::test::angle_test

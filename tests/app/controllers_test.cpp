@@ -6,7 +6,7 @@
 #include "app/feedforward.hpp"
 #include "app/impedance.hpp"
 
-namespace rc10::test {
+namespace rc10::test::controllers_test {
 namespace {
 
 constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
@@ -125,4 +125,4 @@ TEST(Impedance, InputThatIsNotFiniteGivesNoTorque) {
 }
 
 }  // namespace
-}  // namespace rc10::test
+}  // namespace rc10::test::controllers_test

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace rc10::test {
+namespace rc10::test::debouncer_test {
 namespace {
 
 using namespace std::chrono_literals;
@@ -52,4 +52,4 @@ TEST_F(DebouncerTest, AfterARestartTheNextLookIsTheFirst) {
 }
 
 }  // namespace
-}  // namespace rc10::test
+}  // namespace rc10::test::debouncer_test

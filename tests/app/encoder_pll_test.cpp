@@ -10,7 +10,7 @@
 
 #include "app/angle.hpp"
 
-namespace rc10::test {
+namespace rc10::test::encoder_pll_test {
 namespace {
 
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
@@ -122,4 +122,4 @@ TEST(EncoderPll, InputThatMakesNoSenseChangesNothing) {
 }
 
 }  // namespace
-}  // namespace rc10::test
+}  // namespace rc10::test::encoder_pll_test

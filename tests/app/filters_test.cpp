@@ -8,7 +8,7 @@
 #include "app/low_pass.hpp"
 #include "app/tracking_differentiator.hpp"
 
-namespace rc10::test {
+namespace rc10::test::filters_test {
 namespace {
 
 TEST(LowPass, LetsEverythingThroughWithoutABandwidth) {
@@ -83,4 +83,4 @@ TEST(OutputRange, AllowsNothingForALimitThatMakesNoSense) {
 }
 
 }  // namespace
-}  // namespace rc10::test
+}  // namespace rc10::test::filters_test

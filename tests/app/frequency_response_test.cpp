@@ -9,7 +9,7 @@
 #include "app/moving_average.hpp"
 #include "app/two_pole_filter.hpp"
 
-namespace rc10::test {
+namespace rc10::test::frequency_response_test {
 namespace {
 
 constexpr float kDt = 0.001F;
@@ -192,4 +192,4 @@ TEST(Filters, InputThatMakesNoSenseKeepsTheLastOutput) {
 }
 
 }  // namespace
-}  // namespace rc10::test
+}  // namespace rc10::test::frequency_response_test

@@ -8,7 +8,7 @@
 
 #include "app/angle.hpp"
 
-namespace rc10::test {
+namespace rc10::test::homogeneous_transform_test {
 namespace {
 
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
@@ -142,4 +142,4 @@ TEST(HomogeneousTransform, WhatIsNotFiniteStaysNotFinite) {
 }
 
 }  // namespace
-}  // namespace rc10::test
+}  // namespace rc10::test::homogeneous_transform_test

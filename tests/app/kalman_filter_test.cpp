@@ -7,7 +7,7 @@
 #include <gtest/gtest.h>
 #include <Eigen/Eigenvalues>
 
-namespace rc10::test {
+namespace rc10::test::kalman_filter_test {
 namespace {
 
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
@@ -138,4 +138,4 @@ TEST(KalmanFilter, WhatIsNotFiniteOrNoCovarianceIsRefusedAndChangesNothing) {
 }
 
 }  // namespace
-}  // namespace rc10::test
+}  // namespace rc10::test::kalman_filter_test

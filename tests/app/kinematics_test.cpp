@@ -11,7 +11,7 @@
 #include "app/omni_kinematics.hpp"
 #include "app/wheel_speeds.hpp"
 
-namespace rc10::test {
+namespace rc10::test::kinematics_test {
 namespace {
 
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
@@ -249,4 +249,4 @@ TEST(Twist, IsTurnedBetweenTheFramesOfWorldAndRobot) {
 }
 
 }  // namespace
-}  // namespace rc10::test
+}  // namespace rc10::test::kinematics_test

@@ -7,7 +7,7 @@
 
 #include <gtest/gtest.h>
 
-namespace rc10::test {
+namespace rc10::test::pid_incremental_test {
 namespace {
 
 constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
@@ -171,4 +171,4 @@ TEST(PidIncremental, TheTrackingDifferentiatorComesAndGoesWithoutABump) {
 }
 
 }  // namespace
-}  // namespace rc10::test
+}  // namespace rc10::test::pid_incremental_test

@@ -7,7 +7,7 @@
 
 #include <gtest/gtest.h>
 
-namespace rc10::test {
+namespace rc10::test::pid_position_test {
 namespace {
 
 constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
@@ -256,4 +256,4 @@ TEST(PidPosition, OtherGainsBeforeTheFirstStepAreThoseOfTheConfiguration) {
 }
 
 }  // namespace
-}  // namespace rc10::test
+}  // namespace rc10::test::pid_position_test

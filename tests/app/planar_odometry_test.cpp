@@ -11,7 +11,7 @@
 #include "app/angle.hpp"
 #include "app/mecanum_kinematics.hpp"
 
-namespace rc10::test {
+namespace rc10::test::planar_odometry_test {
 namespace {
 
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
@@ -116,4 +116,4 @@ TEST(PlanarOdometry, InputThatMakesNoSenseLeavesThePoseAlone) {
 }
 
 }  // namespace
-}  // namespace rc10::test
+}  // namespace rc10::test::planar_odometry_test

@@ -10,7 +10,7 @@
 #include "app/step_time.hpp"
 #include "app/trapezoid_profile.hpp"
 
-namespace rc10::test {
+namespace rc10::test::profiles_test {
 namespace {
 
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
@@ -399,4 +399,4 @@ TEST(TwistSlewLimiter, InputThatMakesNoSenseKeepsTheValue) {
 }
 
 }  // namespace
-}  // namespace rc10::test
+}  // namespace rc10::test::profiles_test

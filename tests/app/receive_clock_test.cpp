@@ -4,7 +4,7 @@
 
 #include <chrono>
 
-namespace rc10::test {
+namespace rc10::test::receive_clock_test {
 namespace {
 
 using namespace std::chrono_literals;
@@ -73,4 +73,4 @@ TEST(ReceiveClock, MapsEverythingToNowAtTheFirstWakeUp) {
 }
 
 }  // namespace
-}  // namespace rc10::test
+}  // namespace rc10::test::receive_clock_test

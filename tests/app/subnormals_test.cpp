@@ -8,7 +8,7 @@
 
 #include "app/low_pass.hpp"
 
-namespace rc10::test {
+namespace rc10::test::subnormals_test {
 namespace {
 
 // Of this thread, at run time.
@@ -57,4 +57,4 @@ TEST(Subnormals, AreWhatAFilterThatFadesOutEndsIn) {
 }
 
 }  // namespace
-}  // namespace rc10::test
+}  // namespace rc10::test::subnormals_test

@@ -9,7 +9,7 @@
 
 #include "app/angle.hpp"
 
-namespace rc10::test {
+namespace rc10::test::swerve_kinematics_test {
 namespace {
 
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
@@ -151,4 +151,4 @@ TEST(Swerve, InputThatIsNotFiniteStopsTheWheelsAndKeepsTheirAngles) {
 }
 
 }  // namespace
-}  // namespace rc10::test
+}  // namespace rc10::test::swerve_kinematics_test

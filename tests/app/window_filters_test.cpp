@@ -10,7 +10,7 @@
 #include "app/median_filter.hpp"
 #include "app/moving_average.hpp"
 
-namespace rc10::test {
+namespace rc10::test::window_filters_test {
 namespace {
 
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
@@ -76,4 +76,4 @@ TEST(WindowFilters, LeaveOutWhatIsNotFinite) {
 }
 
 }  // namespace
-}  // namespace rc10::test
+}  // namespace rc10::test::window_filters_test

@@ -15,7 +15,7 @@
 #include "blackbox/places.hpp"
 #include "daemon/temp_dir.hpp"
 
-namespace rc10::test {
+namespace rc10::test::copies_test {
 namespace {
 
 using ::testing::ElementsAre;
@@ -106,4 +106,4 @@ TEST(Places, TheStateFolderIsTheUsersElseSystemdsElseTheUsual) {
 }
 
 }  // namespace
-}  // namespace rc10::test
+}  // namespace rc10::test::copies_test

@@ -5,7 +5,7 @@
 #include "blackbox/memory_box.hpp"
 #include "support/alloc_guard.hpp"
 
-namespace rc10::test {
+namespace rc10::test::hand_off_test {
 namespace {
 
 TEST(HandOff, WhatIsWrittenIsReadInTheSameOrder) {
@@ -82,4 +82,4 @@ TEST(Format, LengthCodesAreThoseOfCan) {
 }
 
 }  // namespace
-}  // namespace rc10::test
+}  // namespace rc10::test::hand_off_test

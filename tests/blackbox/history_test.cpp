@@ -16,7 +16,7 @@
 #include "blackbox/memory_box.hpp"
 #include "daemon/temp_dir.hpp"
 
-namespace rc10::test {
+namespace rc10::test::history_test {
 namespace {
 
 using ::testing::HasSubstr;
@@ -166,4 +166,4 @@ TEST(Image, AFileThatIsCutOffIsNamed) {
 }
 
 }  // namespace
-}  // namespace rc10::test
+}  // namespace rc10::test::history_test

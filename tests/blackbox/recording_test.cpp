@@ -8,7 +8,7 @@
 
 #include "blackbox/memory_box.hpp"
 
-namespace rc10::test {
+namespace rc10::test::recording_test {
 namespace {
 
 using ::testing::HasSubstr;
@@ -144,4 +144,4 @@ TEST(Recording, AnyDamageIsARecordingOrAnError) {
 }
 
 }  // namespace
-}  // namespace rc10::test
+}  // namespace rc10::test::recording_test

@@ -5,7 +5,7 @@
 
 #include <array>
 
-namespace rc10::test {
+namespace rc10::test::bus_health_test {
 namespace {
 
 using namespace std::chrono_literals;
@@ -315,4 +315,4 @@ TEST_F(BusHealthTest, TheTimesAreConfigurable) {
 }
 
 }  // namespace
-}  // namespace rc10::test
+}  // namespace rc10::test::bus_health_test

@@ -4,7 +4,7 @@
 
 #include <array>
 
-namespace rc10 {
+namespace rc10::byte_order_test {
 namespace {
 
 TEST(ByteOrder, ReadsBothWays) {
@@ -29,4 +29,4 @@ TEST(ByteOrder, WritesWhatItReads) {
 }
 
 }  // namespace
-}  // namespace rc10
+}  // namespace rc10::byte_order_test

@@ -6,7 +6,7 @@
 #include <numeric>
 #include <vector>
 
-namespace rc10::test {
+namespace rc10::test::can_frame_test {
 namespace {
 
 std::vector<std::uint8_t> counting(std::size_t length) {
@@ -79,4 +79,4 @@ TEST(CanFrame, AnFdFrameCutsOffWhatDoesNotFit) {
 }
 
 }  // namespace
-}  // namespace rc10::test
+}  // namespace rc10::test::can_frame_test

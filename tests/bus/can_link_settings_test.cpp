@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 #include <linux/can/netlink.h>
 
-namespace rc10::test {
+namespace rc10::test::can_link_settings_test {
 namespace {
 
 using ::testing::HasSubstr;
@@ -116,4 +116,4 @@ TEST(CanLinkSettings, WhatIsNoControllerHasNone) {
 }
 
 }  // namespace
-}  // namespace rc10::test
+}  // namespace rc10::test::can_link_settings_test

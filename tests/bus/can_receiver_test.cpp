@@ -11,7 +11,7 @@
 #include "bus/socket_pair.hpp"
 #include "support/frame_calls.hpp"
 
-namespace rc10::test {
+namespace rc10::test::can_receiver_test {
 namespace {
 
 using namespace std::chrono_literals;
@@ -244,4 +244,4 @@ TEST_F(CanReceiverTest, CanBeMoved) {
 }
 
 }  // namespace
-}  // namespace rc10::test
+}  // namespace rc10::test::can_receiver_test

@@ -10,7 +10,7 @@
 #include "bus/fdcan_bus.hpp"
 #include "bus/socket_pair.hpp"
 
-namespace rc10::test {
+namespace rc10::test::can_socket_test {
 namespace {
 
 using testing::AllOf;
@@ -75,4 +75,4 @@ TEST(CanSocket, TheSendBufferIsBoundedForAbsurdFrameCounts) {
 }
 
 }  // namespace
-}  // namespace rc10::test
+}  // namespace rc10::test::can_socket_test

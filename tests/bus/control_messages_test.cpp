@@ -6,7 +6,7 @@
 #include <chrono>
 #include <cstring>
 
-namespace rc10::test {
+namespace rc10::test::control_messages_test {
 namespace {
 
 using namespace std::chrono_literals;
@@ -80,4 +80,4 @@ TEST(ControlMessages, BothFitIntoTheRoomThatAReceiverOffers) {
 }
 
 }  // namespace
-}  // namespace rc10::test
+}  // namespace rc10::test::control_messages_test

@@ -9,7 +9,7 @@
 
 #include "bus/fdcan_bus_fixture.hpp"
 
-namespace rc10::test {
+namespace rc10::test::fdcan_bus_refusal_test {
 namespace {
 
 using testing::ElementsAre;
@@ -214,4 +214,4 @@ TEST_F(FdCanBusTest, EveryByteThatReachesTheKernelIsInitialised) {
 }
 
 }  // namespace
-}  // namespace rc10::test
+}  // namespace rc10::test::fdcan_bus_refusal_test

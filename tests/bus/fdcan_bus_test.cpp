@@ -8,7 +8,7 @@
 
 #include "bus/fdcan_bus_fixture.hpp"
 
-namespace rc10::test {
+namespace rc10::test::fdcan_bus_test {
 namespace {
 
 using testing::AllOf;
@@ -321,4 +321,4 @@ TEST_F(FdCanBusTest, AnFdFrameOfAnInvalidLengthIsRefused) {
 }
 
 }  // namespace
-}  // namespace rc10::test
+}  // namespace rc10::test::fdcan_bus_test

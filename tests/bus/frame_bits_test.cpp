@@ -4,7 +4,7 @@
 
 #include <chrono>
 
-namespace rc10::test {
+namespace rc10::test::frame_bits_test {
 namespace {
 
 constexpr FrameShape classic(bool extended, std::size_t length) { return {extended, false, false, length}; }
@@ -115,4 +115,4 @@ TEST(FrameBits, TheShapeOfAFrameIsItsOwn) {
 }
 
 }  // namespace
-}  // namespace rc10::test
+}  // namespace rc10::test::frame_bits_test

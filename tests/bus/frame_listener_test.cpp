@@ -6,7 +6,7 @@
 
 #include "bus/fake_devices.hpp"
 
-namespace rc10::test {
+namespace rc10::test::frame_listener_test {
 namespace {
 
 CanFrame frameWith(CanId id, std::initializer_list<std::uint8_t> payload = {}) {
@@ -111,4 +111,4 @@ TEST(FrameFilter, AFilterWithoutDiscriminatorOverlapsOneWith) {
 }
 
 }  // namespace
-}  // namespace rc10::test
+}  // namespace rc10::test::frame_listener_test

@@ -7,7 +7,7 @@
 #include <string_view>
 #include <vector>
 
-namespace rc10 {
+namespace rc10::frame_scanner_test {
 namespace {
 
 using ::testing::ElementsAre;
@@ -89,4 +89,4 @@ TEST(FrameScanner, WhatIsForgottenCountsAsNoise) {
 }
 
 }  // namespace
-}  // namespace rc10
+}  // namespace rc10::frame_scanner_test

@@ -8,7 +8,7 @@
 
 #include "bus/fake_devices.hpp"
 
-namespace rc10::test {
+namespace rc10::test::frame_table_test {
 namespace {
 
 using testing::AllOf;
@@ -222,4 +222,4 @@ TEST_F(FrameTableTest, HoldsSixteenMasksAndRefusesTheNext) {
 }
 
 }  // namespace
-}  // namespace rc10::test
+}  // namespace rc10::test::frame_table_test

@@ -5,7 +5,7 @@
 
 #include <array>
 
-namespace rc10::test {
+namespace rc10::test::frame_text_test {
 namespace {
 
 using ::testing::ElementsAre;
@@ -96,4 +96,4 @@ TEST(FrameList, NamesTheLineThatIsWrong) {
 }
 
 }  // namespace
-}  // namespace rc10::test
+}  // namespace rc10::test::frame_text_test

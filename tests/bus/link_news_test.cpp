@@ -9,7 +9,7 @@
 
 #include <cstring>
 
-namespace rc10 {
+namespace rc10::link_news_test {
 namespace {
 
 using ::testing::ElementsAre;
@@ -92,4 +92,4 @@ TEST(LinkNews, ALengthThatCannotBeEndsTheDatagram) {
 }
 
 }  // namespace
-}  // namespace rc10
+}  // namespace rc10::link_news_test

@@ -14,7 +14,7 @@
 #include "bus/socket_pair.hpp"
 #include "support/alloc_guard.hpp"
 
-namespace rc10::test {
+namespace rc10::test::no_allocation_test {
 namespace {
 
 TEST(AllocGuard, CountsWhatIsAllocatedWhileItLives) {
@@ -136,4 +136,4 @@ TEST_F(NoAllocationTest, HealthAllocatesNothing) {
 }
 
 }  // namespace
-}  // namespace rc10::test
+}  // namespace rc10::test::no_allocation_test

@@ -9,7 +9,7 @@
 
 #include "support/alloc_guard.hpp"
 
-namespace rc10::test {
+namespace rc10::test::serial_device_test {
 namespace {
 
 using namespace std::chrono_literals;
@@ -128,4 +128,4 @@ TEST_F(SerialDeviceTest, AllocatesNothing) {
 }
 
 }  // namespace
-}  // namespace rc10::test
+}  // namespace rc10::test::serial_device_test

@@ -3,7 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-namespace rc10 {
+namespace rc10::serial_format_test {
 namespace {
 
 using ::testing::HasSubstr;
@@ -41,4 +41,4 @@ TEST(SerialFormat, KnowsHowLongAByteTakes) {
 }
 
 }  // namespace
-}  // namespace rc10
+}  // namespace rc10::serial_format_test

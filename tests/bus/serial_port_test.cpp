@@ -15,7 +15,7 @@
 
 #include "support/pty.hpp"
 
-namespace rc10::test {
+namespace rc10::test::serial_port_test {
 namespace {
 
 using ::testing::AllOf;
@@ -172,4 +172,4 @@ TEST_F(SteadySerialName, IsEmptyWhereThereIsNone) {
 }
 
 }  // namespace
-}  // namespace rc10::test
+}  // namespace rc10::test::serial_port_test

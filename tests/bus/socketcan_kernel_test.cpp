@@ -22,7 +22,7 @@
 #include "bus/fdcan_bus.hpp"
 #include "bus/wire_frame.hpp"
 
-namespace rc10::test {
+namespace rc10::test::socketcan_kernel_test {
 namespace {
 
 using namespace std::chrono_literals;
@@ -297,4 +297,4 @@ GTEST_ALLOW_UNINSTANTIATED_PARAMETERIZED_TEST(SocketCanTest);
 INSTANTIATE_TEST_SUITE_P(Kernel, SocketCanTest, testing::ValuesIn(kernelsWithCan()));
 
 }  // namespace
-}  // namespace rc10::test
+}  // namespace rc10::test::socketcan_kernel_test

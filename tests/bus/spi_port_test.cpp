@@ -11,7 +11,7 @@
 
 #include <gmock/gmock.h>
 
-namespace rc10::test {
+namespace rc10::test::spi_port_test {
 namespace {
 
 using ::testing::ElementsAre;
@@ -115,4 +115,4 @@ TEST_F(SpiPortTest, ASpeedThatTheBusDoesNotGiveIsRefused) {
 }
 
 }  // namespace
-}  // namespace rc10::test
+}  // namespace rc10::test::spi_port_test

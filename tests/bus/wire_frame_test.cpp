@@ -6,7 +6,7 @@
 #include <cstring>
 #include <numeric>
 
-namespace rc10::test {
+namespace rc10::test::wire_frame_test {
 namespace {
 
 std::array<std::uint8_t, kMaxPayload> countingBytes() {
@@ -148,4 +148,4 @@ TEST(WireFrame, BytesBehindThePayloadAreNotTaken) {
 }
 
 }  // namespace
-}  // namespace rc10::test
+}  // namespace rc10::test::wire_frame_test

@@ -4,7 +4,7 @@
 
 #include "blackbox/memory_box.hpp"
 
-namespace rc10::test {
+namespace rc10::test::candump_line_test {
 namespace {
 
 blackbox::Frame makeFrame(std::uint32_t id, std::uint8_t flags, std::vector<std::uint8_t> data = {}) {
@@ -53,4 +53,4 @@ TEST(FrameText, EveryKindOfFrameHasTheFormOfCanUtils) {
 }
 
 }  // namespace
-}  // namespace rc10::test
+}  // namespace rc10::test::candump_line_test

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace rc10::client::test {
+namespace rc10::client::test::duration_text_test {
 namespace {
 
 using namespace std::chrono_literals;
@@ -23,4 +23,4 @@ TEST(ParseDuration, RefusesWhatIsNoDuration) {
 }
 
 }  // namespace
-}  // namespace rc10::client::test
+}  // namespace rc10::client::test::duration_text_test

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace rc10::client {
+namespace rc10::client::find_motor_test {
 namespace {
 
 link::Welcome twoMotors() {
@@ -27,4 +27,4 @@ TEST(FindMotor, MoreMotorsThanThereIsRoomForAreNotLookedAt) {
 }
 
 }  // namespace
-}  // namespace rc10::client
+}  // namespace rc10::client::find_motor_test

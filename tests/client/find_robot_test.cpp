@@ -7,7 +7,7 @@
 
 #include "fake_rc10d.hpp"
 
-namespace rc10::test {
+namespace rc10::test::find_robot_test {
 namespace {
 
 using testing::HasSubstr;
@@ -69,4 +69,4 @@ TEST(FindRobot, SaysTheSameWhereThereIsNoFolder) {
 }
 
 }  // namespace
-}  // namespace rc10::test
+}  // namespace rc10::test::find_robot_test

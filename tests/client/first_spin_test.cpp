@@ -6,7 +6,7 @@
 
 #include <gmock/gmock.h>
 
-namespace rc10::client::test {
+namespace rc10::client::test::first_spin_test {
 namespace {
 
 using testing::HasSubstr;
@@ -111,4 +111,4 @@ TEST_F(FirstSpinTest, WithoutASpeedOrAnAngleItEndsAndNothingIsJudged) {
 TEST_F(FirstSpinTest, NothingSeenIsNoSuccess) { EXPECT_EQ(first.outcome(), Outcome::kUnknown); }
 
 }  // namespace
-}  // namespace rc10::client::test
+}  // namespace rc10::client::test::first_spin_test

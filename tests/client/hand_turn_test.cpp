@@ -4,7 +4,7 @@
 
 #include "fake_rc10d.hpp"
 
-namespace rc10::client::test {
+namespace rc10::client::test::hand_turn_test {
 namespace {
 
 using rc10::test::heroWelcome;
@@ -48,4 +48,4 @@ TEST(HandTurn, AnotherAngleSaysTheRatio) {
 }
 
 }  // namespace
-}  // namespace rc10::client::test
+}  // namespace rc10::client::test::hand_turn_test

@@ -2,7 +2,7 @@
 
 #include <gmock/gmock.h>
 
-namespace rc10::client::test {
+namespace rc10::client::test::jog_keys_test {
 namespace {
 
 using std::chrono::milliseconds;
@@ -65,4 +65,4 @@ TEST(JogSpeed, UpAndDownChangeTheSpeedWithinItsLimitAndMoveNothing) {
 }
 
 }  // namespace
-}  // namespace rc10::client::test
+}  // namespace rc10::client::test::jog_keys_test

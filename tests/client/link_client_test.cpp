@@ -9,7 +9,7 @@
 #include "client/greeting.hpp"
 #include "fake_rc10d.hpp"
 
-namespace rc10::test {
+namespace rc10::test::link_client_test {
 namespace {
 
 using testing::HasSubstr;
@@ -278,4 +278,4 @@ TEST(LinkClientConnect, ReachesAListeningRc10d) {
 }
 
 }  // namespace
-}  // namespace rc10::test
+}  // namespace rc10::test::link_client_test

@@ -5,7 +5,7 @@
 #include "fake_rc10d.hpp"
 #include "sample_messages.hpp"
 
-namespace rc10::client::test {
+namespace rc10::client::test::motor_signal_test {
 namespace {
 
 using rc10::test::heroState;
@@ -28,4 +28,4 @@ TEST(MotorSignal, TheErrorListsWhatThereIs) {
 }
 
 }  // namespace
-}  // namespace rc10::client::test
+}  // namespace rc10::client::test::motor_signal_test

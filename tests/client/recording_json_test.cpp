@@ -9,7 +9,7 @@
 #include "blackbox/memory_box.hpp"
 #include "client/recording_text.hpp"
 
-namespace rc10::test {
+namespace rc10::test::recording_json_test {
 namespace {
 
 using nlohmann::json;
@@ -205,4 +205,4 @@ TEST_F(RecordingJsonTest, TheSummaryCountsAndShowsTheLastEvents) {
 }
 
 }  // namespace
-}  // namespace rc10::test
+}  // namespace rc10::test::recording_json_test

@@ -8,7 +8,7 @@
 
 #include "fake_rc10d.hpp"
 
-namespace rc10::test {
+namespace rc10::test::request_call_test {
 namespace {
 
 using testing::HasSubstr;
@@ -125,4 +125,4 @@ TEST(RandomSession, IsAnotherOneEachTime) {
 }
 
 }  // namespace
-}  // namespace rc10::test
+}  // namespace rc10::test::request_call_test

@@ -5,7 +5,7 @@
 #include "client/sparkline.hpp"
 #include "client/style.hpp"
 
-namespace rc10::client {
+namespace rc10::client::screen_fit_test {
 namespace {
 
 using testing::HasSubstr;
@@ -88,4 +88,4 @@ TEST(ScreenFit, OnFewRowsTheHeadlineTheNoticeAndWhatIsBelowRemain) {
 }
 
 }  // namespace
-}  // namespace rc10::client
+}  // namespace rc10::client::screen_fit_test

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <limits>
 
-namespace rc10::client::test {
+namespace rc10::client::test::sparkline_test {
 namespace {
 
 TEST(Sparkline, RisesFromItsLowestToItsHighestValue) {
@@ -41,4 +41,4 @@ TEST(Sparkline, WhatIsNotReportedIsAGap) {
 }
 
 }  // namespace
-}  // namespace rc10::client::test
+}  // namespace rc10::client::test::sparkline_test

@@ -6,7 +6,7 @@
 #include "fake_rc10d.hpp"
 #include "sample_messages.hpp"
 
-namespace rc10::client::test {
+namespace rc10::client::test::state_json_test {
 namespace {
 
 using nlohmann::json;
@@ -75,4 +75,4 @@ TEST(DiagnosticsJson, HasTimingBusesAndRefusals) {
 }
 
 }  // namespace
-}  // namespace rc10::client::test
+}  // namespace rc10::client::test::state_json_test

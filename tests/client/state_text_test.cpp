@@ -6,7 +6,7 @@
 #include "fake_rc10d.hpp"
 #include "sample_messages.hpp"
 
-namespace rc10::client::test {
+namespace rc10::client::test::state_text_test {
 namespace {
 
 using rc10::test::heroDiagnostics;
@@ -121,4 +121,4 @@ TEST(DiagnosticsText, SaysThatNothingWasRefused) {
 }
 
 }  // namespace
-}  // namespace rc10::client::test
+}  // namespace rc10::client::test::state_text_test

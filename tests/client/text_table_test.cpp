@@ -7,7 +7,7 @@
 
 #include "client/quantity_text.hpp"
 
-namespace rc10::client::test {
+namespace rc10::client::test::text_table_test {
 namespace {
 
 using Align = TextTable::Align;
@@ -81,4 +81,4 @@ TEST(Age, ChoosesItsUnit) {
 }
 
 }  // namespace
-}  // namespace rc10::client::test
+}  // namespace rc10::client::test::text_table_test

@@ -3,7 +3,7 @@
 
 #include "config_text.hpp"
 
-namespace rc10::test {
+namespace rc10::test::bus_id_test {
 namespace {
 
 using ::testing::AllOf;
@@ -108,4 +108,4 @@ TEST(BusIds, ALoadThatDoesNotFitNamesTheDividerThatDoes) {
 }
 
 }  // namespace
-}  // namespace rc10::test
+}  // namespace rc10::test::bus_id_test

@@ -4,7 +4,7 @@
 
 #include "config_text.hpp"
 
-namespace rc10::test {
+namespace rc10::test::bus_load_test {
 namespace {
 
 using ::testing::ElementsAre;
@@ -99,4 +99,4 @@ TEST(BusLoad, OfCommandsAloneIsMendedByTheirRate) {
 }
 
 }  // namespace
-}  // namespace rc10::test
+}  // namespace rc10::test::bus_load_test

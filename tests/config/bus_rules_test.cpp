@@ -4,7 +4,7 @@
 
 #include "config_text.hpp"
 
-namespace rc10::test {
+namespace rc10::test::bus_rules_test {
 namespace {
 
 using ::testing::ElementsAre;
@@ -141,4 +141,4 @@ TEST(BusRules, TheSeedIsAWholeNumber) {
 }
 
 }  // namespace
-}  // namespace rc10::test
+}  // namespace rc10::test::bus_rules_test

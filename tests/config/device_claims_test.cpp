@@ -3,7 +3,7 @@
 
 #include "config_text.hpp"
 
-namespace rc10::test {
+namespace rc10::test::device_claims_test {
 namespace {
 
 using ::testing::ElementsAre;
@@ -108,4 +108,4 @@ TEST(DeviceKeys, WrongValuesOfAStripAreNamed) {
 }
 
 }  // namespace
-}  // namespace rc10::test
+}  // namespace rc10::test::device_claims_test

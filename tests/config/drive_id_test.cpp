@@ -5,7 +5,7 @@
 #include "config/drive_ids.hpp"
 #include "config_text.hpp"
 
-namespace rc10::test {
+namespace rc10::test::drive_id_test {
 namespace {
 
 using ::testing::ElementsAre;
@@ -102,4 +102,4 @@ TEST(DriveIds, AreThoseThatTheMotorsUse) {
 }
 
 }  // namespace
-}  // namespace rc10::test
+}  // namespace rc10::test::drive_id_test

@@ -9,7 +9,7 @@
 #include "config/number_text.hpp"
 #include "config_text.hpp"
 
-namespace rc10::test {
+namespace rc10::test::family_keys_test {
 namespace {
 
 using ::testing::HasSubstr;
@@ -120,4 +120,4 @@ TEST(FamilyKeys, StandOnThePageOfTheirFamily) {
 }
 
 }  // namespace
-}  // namespace rc10::test
+}  // namespace rc10::test::family_keys_test

@@ -5,7 +5,7 @@
 #include "config/report.hpp"
 #include "config_text.hpp"
 
-namespace rc10::test {
+namespace rc10::test::gpio_rules_test {
 namespace {
 
 using namespace std::chrono_literals;
@@ -93,4 +93,4 @@ TEST(GpioRules, AWaveIsNeverFasterThanTheTicksThatMakeIt) {
 }
 
 }  // namespace
-}  // namespace rc10::test
+}  // namespace rc10::test::gpio_rules_test

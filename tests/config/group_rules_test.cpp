@@ -4,7 +4,7 @@
 
 #include "config_text.hpp"
 
-namespace rc10::test {
+namespace rc10::test::group_rules_test {
 namespace {
 
 using ::testing::ElementsAre;
@@ -107,4 +107,4 @@ TEST(ShapingRules, AFollowingErrorNeedsASlewLimit) {
 }
 
 }  // namespace
-}  // namespace rc10::test
+}  // namespace rc10::test::group_rules_test

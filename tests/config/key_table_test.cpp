@@ -12,7 +12,7 @@
 #include "config_text.hpp"
 #include "fingerprint.hpp"
 
-namespace rc10::test {
+namespace rc10::test::key_table_test {
 namespace {
 
 void collect(const Section& section, std::vector<const Section*>& found) {
@@ -160,4 +160,4 @@ TEST(KeyTable, ShowsTheDefaultsThatAreInForce) {
 }
 
 }  // namespace
-}  // namespace rc10::test
+}  // namespace rc10::test::key_table_test

@@ -10,7 +10,7 @@
 
 #include "config_text.hpp"
 
-namespace rc10::test {
+namespace rc10::test::loop_gains_test {
 namespace {
 
 using ::testing::ElementsAre;
@@ -158,4 +158,4 @@ TEST(LoopGains, WhatAModelLeavesUnlimitedIsNotWritten) {
 }
 
 }  // namespace
-}  // namespace rc10::test
+}  // namespace rc10::test::loop_gains_test

@@ -6,7 +6,7 @@
 
 #include "config_text.hpp"
 
-namespace rc10::test {
+namespace rc10::test::loop_rules_test {
 namespace {
 
 using ::testing::ElementsAre;
@@ -138,4 +138,4 @@ TEST(LoopRules, AGainInTheWrongUnitIsUnknown) {
 }
 
 }  // namespace
-}  // namespace rc10::test
+}  // namespace rc10::test::loop_rules_test

@@ -4,7 +4,7 @@
 
 #include "config_text.hpp"
 
-namespace rc10::test {
+namespace rc10::test::many_mistakes_test {
 namespace {
 
 const char* const kFullOfMistakes = R"(robot: Hero!
@@ -143,4 +143,4 @@ TEST(ManyMistakes, BeyondAnyReasonAreCutOff) {
 }
 
 }  // namespace
-}  // namespace rc10::test
+}  // namespace rc10::test::many_mistakes_test

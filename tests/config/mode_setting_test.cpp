@@ -4,7 +4,7 @@
 
 #include "config/motor_families.hpp"
 
-namespace rc10::test {
+namespace rc10::test::mode_setting_test {
 namespace {
 
 TEST(ModeSetting, IsTheKeyThatGivesTheMode) {
@@ -32,4 +32,4 @@ TEST(ModeSetting, EveryModelWithAChoiceCanBeGivenACurrent) {
 }
 
 }  // namespace
-}  // namespace rc10::test
+}  // namespace rc10::test::mode_setting_test

@@ -9,7 +9,7 @@
 #include "config/schema.hpp"
 #include "config_text.hpp"
 
-namespace rc10::test {
+namespace rc10::test::module_rules_test {
 namespace {
 
 using ::testing::ElementsAre;
@@ -98,4 +98,4 @@ TEST(ModuleRules, EveryTypeStandsOnThePageWithItsKeysAndSignals) {
 }
 
 }  // namespace
-}  // namespace rc10::test
+}  // namespace rc10::test::module_rules_test

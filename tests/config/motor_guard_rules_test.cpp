@@ -4,7 +4,7 @@
 
 #include "config_text.hpp"
 
-namespace rc10::test {
+namespace rc10::test::motor_guard_rules_test {
 namespace {
 
 using ::testing::ElementsAre;
@@ -64,4 +64,4 @@ TEST(MotorGuardRules, AMotorThatReportsNoTemperatureHasNoLimitOfIt) {
 }
 
 }  // namespace
-}  // namespace rc10::test
+}  // namespace rc10::test::motor_guard_rules_test

@@ -6,7 +6,7 @@
 
 #include "config_text.hpp"
 
-namespace rc10::test {
+namespace rc10::test::motor_rules_test {
 namespace {
 
 using ::testing::AllOf;
@@ -223,4 +223,4 @@ TEST(MotorRules, AMotorKnowsWhereItStands) {
 }
 
 }  // namespace
-}  // namespace rc10::test
+}  // namespace rc10::test::motor_rules_test

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace rc10::test {
+namespace rc10::test::number_text_test {
 namespace {
 
 std::string refusal(std::string_view text) {
@@ -74,4 +74,4 @@ TEST(NumberText, WritesTheShortestTextThatReadsBack) {
 }
 
 }  // namespace
-}  // namespace rc10::test
+}  // namespace rc10::test::number_text_test

@@ -6,7 +6,7 @@
 
 #include "config_text.hpp"
 
-namespace rc10::test {
+namespace rc10::test::profile_test {
 namespace {
 
 using ::testing::ElementsAre;
@@ -106,4 +106,4 @@ TEST(Profile, ThatNobodyUsesIsWorthAWarning) {
 }
 
 }  // namespace
-}  // namespace rc10::test
+}  // namespace rc10::test::profile_test

@@ -6,7 +6,7 @@
 
 #include "config_text.hpp"
 
-namespace rc10::test {
+namespace rc10::test::report_test {
 namespace {
 
 using ::testing::HasSubstr;
@@ -128,4 +128,4 @@ TEST(Report, SaysWhatAMotorDoesWhenNobodyCommandsIt) {
 }
 
 }  // namespace
-}  // namespace rc10::test
+}  // namespace rc10::test::report_test

@@ -4,7 +4,7 @@
 
 #include "config_text.hpp"
 
-namespace rc10::test {
+namespace rc10::test::robot_rules_test {
 namespace {
 
 using ::testing::Contains;
@@ -183,4 +183,4 @@ TEST(RobotRules, TheLcmUrlIsChecked) {
 }
 
 }  // namespace
-}  // namespace rc10::test
+}  // namespace rc10::test::robot_rules_test

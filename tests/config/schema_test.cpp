@@ -11,7 +11,7 @@
 #include "config/yaml_reader.hpp"
 #include "config_text.hpp"
 
-namespace rc10::test {
+namespace rc10::test::schema_test {
 namespace {
 
 using ::testing::HasSubstr;
@@ -132,4 +132,4 @@ TEST(Schema, TellsOfEachFamilyItsOwnKeysAndRefusesThoseOfOthers) {
 }
 
 }  // namespace
-}  // namespace rc10::test
+}  // namespace rc10::test::schema_test

@@ -12,7 +12,7 @@
 #include "config_text.hpp"
 #include "fingerprint.hpp"
 
-namespace rc10::test {
+namespace rc10::test::shipped_configs_test {
 namespace {
 
 using ::testing::ElementsAre;
@@ -158,4 +158,4 @@ buses:
 }
 
 }  // namespace
-}  // namespace rc10::test
+}  // namespace rc10::test::shipped_configs_test

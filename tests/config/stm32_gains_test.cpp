@@ -7,7 +7,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-namespace rc10 {
+namespace rc10::stm32_gains_test {
 namespace {
 
 using testing::Contains;
@@ -216,4 +216,4 @@ TEST(NamedGains, HaveTheKeysOfAMotorAndTheNotesApart) {
 }
 
 }  // namespace
-}  // namespace rc10
+}  // namespace rc10::stm32_gains_test

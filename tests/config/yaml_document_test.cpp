@@ -13,7 +13,7 @@
 #include "config/yaml_reader.hpp"
 #include "config_text.hpp"
 
-namespace rc10::test {
+namespace rc10::test::yaml_document_test {
 namespace {
 
 using ::testing::Contains;
@@ -217,4 +217,4 @@ TEST(YamlDocument, LargerThanTheLimitIsNotReadWhole) {
 }
 
 }  // namespace
-}  // namespace rc10::test
+}  // namespace rc10::test::yaml_document_test

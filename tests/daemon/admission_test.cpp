@@ -8,7 +8,7 @@
 
 #include "daemon/link_messages.hpp"
 
-namespace rc10::test {
+namespace rc10::test::admission_test {
 namespace {
 
 using namespace std::chrono_literals;
@@ -284,4 +284,4 @@ TEST_F(AdmissionTest, EveryReasonHasItsOwnWords) {
 }
 
 }  // namespace
-}  // namespace rc10::test
+}  // namespace rc10::test::admission_test

@@ -14,7 +14,7 @@
 #include "daemon/publication.hpp"
 #include "daemon/temp_dir.hpp"
 
-namespace rc10::test {
+namespace rc10::test::black_box_test {
 namespace {
 
 using ::testing::HasSubstr;
@@ -158,4 +158,4 @@ TEST_F(BlackBoxTest, ARunFolderWithoutRoomIsAnErrorWithAReason) {
 }
 
 }  // namespace
-}  // namespace rc10::test
+}  // namespace rc10::test::black_box_test

@@ -13,7 +13,7 @@
 
 #include "daemon/virtual_robot.hpp"
 
-namespace rc10::test {
+namespace rc10::test::bus_reviver_test {
 namespace {
 
 class BusReviverTest : public ::testing::Test {
@@ -76,4 +76,4 @@ TEST_F(BusReviverTest, ABusStaysGoneUntilItsSocketIsReplaced) {
 }
 
 }  // namespace
-}  // namespace rc10::test
+}  // namespace rc10::test::bus_reviver_test

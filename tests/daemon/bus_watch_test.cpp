@@ -14,7 +14,7 @@
 #include "daemon/virtual_robot.hpp"
 #include "support/alloc_guard.hpp"
 
-namespace rc10::test {
+namespace rc10::test::bus_watch_test {
 namespace {
 
 using namespace std::chrono_literals;
@@ -244,4 +244,4 @@ TEST_F(BusWatchTest, FramesOfOtherIdsAreNoForeignCommands) {
 }
 
 }  // namespace
-}  // namespace rc10::test
+}  // namespace rc10::test::bus_watch_test

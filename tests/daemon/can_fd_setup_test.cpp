@@ -14,7 +14,7 @@
 #include <map>
 #include <vector>
 
-namespace rc10::test {
+namespace rc10::test::can_fd_setup_test {
 namespace {
 
 using ::testing::ElementsAre;
@@ -108,4 +108,4 @@ TEST(CanFdSetup, WhatIsNoCanInterfaceIsRefusedByTheKernel) {
 }
 
 }  // namespace
-}  // namespace rc10::test
+}  // namespace rc10::test::can_fd_setup_test

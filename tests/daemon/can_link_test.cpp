@@ -4,7 +4,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-namespace rc10::test {
+namespace rc10::test::can_link_test {
 namespace {
 
 using ::testing::AllOf;
@@ -32,4 +32,4 @@ TEST(CanLink, WhatIsNoControllerIsNotTakenDown) {
 }
 
 }  // namespace
-}  // namespace rc10::test
+}  // namespace rc10::test::can_link_test

@@ -16,7 +16,7 @@
 #include "motor/damiao_setup.hpp"
 #include "motor/myactuator_setup.hpp"
 
-namespace rc10::test {
+namespace rc10::test::configure_drive_test {
 namespace {
 
 using link::ResponseStatus;
@@ -234,4 +234,4 @@ TEST_F(ConfigureDriveTest, ADriveWithoutSettingsIsRefused) {
 }
 
 }  // namespace
-}  // namespace rc10::test
+}  // namespace rc10::test::configure_drive_test

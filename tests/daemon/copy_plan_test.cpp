@@ -4,7 +4,7 @@
 
 #include <string>
 
-namespace rc10::test {
+namespace rc10::test::copy_plan_test {
 namespace {
 
 using namespace std::chrono_literals;
@@ -54,4 +54,4 @@ TEST(CopyPlan, WithoutACauseThereIsNone) {
 }
 
 }  // namespace
-}  // namespace rc10::test
+}  // namespace rc10::test::copy_plan_test

@@ -9,7 +9,7 @@
 #include "module/dbus_protocol.hpp"
 #include "virtual_robot.hpp"
 
-namespace rc10::test {
+namespace rc10::test::driven_robot_test {
 namespace {
 
 using namespace std::chrono_literals;
@@ -195,4 +195,4 @@ TEST_F(DrivenRobot, AnUnpluggedPortMidFrameIsSurvived) {
 }
 
 }  // namespace
-}  // namespace rc10::test
+}  // namespace rc10::test::driven_robot_test

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace rc10::test {
+namespace rc10::test::estop_contact_test {
 namespace {
 
 using enum ContactState;
@@ -81,4 +81,4 @@ TEST_F(EstopContactTest, AWatcherThatIsSilentCountsAsUnreadable) {
 }
 
 }  // namespace
-}  // namespace rc10::test
+}  // namespace rc10::test::estop_contact_test

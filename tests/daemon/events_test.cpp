@@ -11,7 +11,7 @@
 #include "daemon/states.hpp"
 #include "motor/target.hpp"
 
-namespace rc10::test {
+namespace rc10::test::events_test {
 namespace {
 
 using ::testing::HasSubstr;
@@ -93,4 +93,4 @@ TEST(Events, NumbersFromNowhereAreStillPrinted) {
 }
 
 }  // namespace
-}  // namespace rc10::test
+}  // namespace rc10::test::events_test

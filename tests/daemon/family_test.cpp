@@ -9,7 +9,7 @@
 #include "config/motor_families.hpp"
 #include "daemon/virtual_robot.hpp"
 
-namespace rc10::test {
+namespace rc10::test::family_test {
 namespace {
 
 using ::testing::AnyOf;
@@ -201,4 +201,4 @@ INSTANTIATE_TEST_SUITE_P(All, Family, ::testing::ValuesIn(kSubjects),
                          [](const auto& subject) { return std::string{subject.param.name}; });
 
 }  // namespace
-}  // namespace rc10::test
+}  // namespace rc10::test::family_test

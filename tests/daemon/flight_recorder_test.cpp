@@ -9,7 +9,7 @@
 #include "daemon/virtual_robot.hpp"
 #include "link/event_text.hpp"
 
-namespace rc10::test {
+namespace rc10::test::flight_recorder_test {
 namespace {
 
 using namespace std::chrono_literals;
@@ -182,4 +182,4 @@ TEST(FlightRecorderFault, AFaultIsACauseForACopy) {
 }
 
 }  // namespace
-}  // namespace rc10::test
+}  // namespace rc10::test::flight_recorder_test

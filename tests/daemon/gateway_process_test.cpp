@@ -12,7 +12,7 @@
 
 #include "app/unique_fd.hpp"
 
-namespace rc10::test {
+namespace rc10::test::gateway_process_test {
 namespace {
 
 using namespace std::chrono_literals;
@@ -192,4 +192,4 @@ TEST(SiblingProgram, LiesBesideOurOwnExecutable) {
 }
 
 }  // namespace
-}  // namespace rc10::test
+}  // namespace rc10::test::gateway_process_test

@@ -6,7 +6,7 @@
 #include "daemon/fake_gpio.hpp"
 #include "daemon/virtual_robot.hpp"
 
-namespace rc10::test {
+namespace rc10::test::gpio_loop_test {
 namespace {
 
 using namespace std::chrono_literals;
@@ -169,4 +169,4 @@ TEST(GpioLoop, AMissingSafetyInputIsAnErrorThatNamesTheRemedy) {
 }
 
 }  // namespace
-}  // namespace rc10::test
+}  // namespace rc10::test::gpio_loop_test

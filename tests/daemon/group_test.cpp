@@ -7,7 +7,7 @@
 
 #include "daemon/virtual_robot.hpp"
 
-namespace rc10::test {
+namespace rc10::test::group_test {
 namespace {
 
 constexpr std::size_t kLeft = 0;
@@ -174,4 +174,4 @@ TEST_F(GroupTest, AnEstopOrADisableInBetweenEndsTheRearming) {
 }
 
 }  // namespace
-}  // namespace rc10::test
+}  // namespace rc10::test::group_test

@@ -5,7 +5,7 @@
 
 #include "daemon/fake_gpio.hpp"
 
-namespace rc10::test {
+namespace rc10::test::heartbeat_test {
 namespace {
 
 using namespace std::chrono_literals;
@@ -75,4 +75,4 @@ TEST_F(HeartbeatTest, EndsLow) {
 }
 
 }  // namespace
-}  // namespace rc10::test
+}  // namespace rc10::test::heartbeat_test

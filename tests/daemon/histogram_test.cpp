@@ -5,7 +5,7 @@
 #include <random>
 #include <vector>
 
-namespace rc10 {
+namespace rc10::histogram_test {
 namespace {
 
 using namespace std::chrono_literals;
@@ -46,4 +46,4 @@ TEST(DurationHistogram, TakesNegativeAndEnormousDurations) {
 }
 
 }  // namespace
-}  // namespace rc10
+}  // namespace rc10::histogram_test

@@ -8,7 +8,7 @@
 #include "daemon/serial_rig.hpp"
 #include "daemon/virtual_robot.hpp"
 
-namespace rc10::test {
+namespace rc10::test::io_loop_test {
 namespace {
 
 TEST(IoLoop, EndsWhenItIsAskedTo) {
@@ -40,4 +40,4 @@ TEST(IoLoop, LooksAfterSerialPorts) {
 }
 
 }  // namespace
-}  // namespace rc10::test
+}  // namespace rc10::test::io_loop_test

@@ -5,7 +5,7 @@
 #include <array>
 #include <thread>
 
-namespace rc10 {
+namespace rc10::latest_value_test {
 namespace {
 
 TEST(LatestValue, ReadsTheNewestOfSeveralValues) {
@@ -57,4 +57,4 @@ TEST(LatestValue, IsNeverTornAndNeverGoesBack) {
 }
 
 }  // namespace
-}  // namespace rc10
+}  // namespace rc10::latest_value_test

@@ -8,7 +8,7 @@
 
 #include "daemon/virtual_robot.hpp"
 
-namespace rc10::test {
+namespace rc10::test::lease_test {
 namespace {
 
 using namespace std::chrono_literals;
@@ -123,4 +123,4 @@ TEST_F(LeaseTest, RefusalsAreAllCountedAndToldOnceASecond) {
 }
 
 }  // namespace
-}  // namespace rc10::test
+}  // namespace rc10::test::lease_test

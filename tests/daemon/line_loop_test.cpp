@@ -8,7 +8,7 @@
 #include "daemon/fake_gpio.hpp"
 #include "daemon/virtual_robot.hpp"
 
-namespace rc10::test {
+namespace rc10::test::line_loop_test {
 namespace {
 
 using namespace std::chrono_literals;
@@ -294,4 +294,4 @@ TEST(KernelGpio, AMissingChipIsAnErrorThatNamesLineAndRemedy) {
 }
 
 }  // namespace
-}  // namespace rc10::test
+}  // namespace rc10::test::line_loop_test

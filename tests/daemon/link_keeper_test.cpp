@@ -10,7 +10,7 @@
 
 #include "daemon/virtual_robot.hpp"
 
-namespace rc10::test {
+namespace rc10::test::link_keeper_test {
 namespace {
 
 using namespace std::chrono_literals;
@@ -229,4 +229,4 @@ TEST_F(LinkKeeperTest, TheDriversAutomaticRestartIsTold) {
 }
 
 }  // namespace
-}  // namespace rc10::test
+}  // namespace rc10::test::link_keeper_test

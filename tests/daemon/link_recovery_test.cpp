@@ -6,7 +6,7 @@
 
 #include <vector>
 
-namespace rc10::test {
+namespace rc10::test::link_recovery_test {
 namespace {
 
 using namespace std::chrono_literals;
@@ -81,4 +81,4 @@ TEST_F(LinkRecoveryTest, FiveGoodSecondsMakeItQuickAgain) {
 }
 
 }  // namespace
-}  // namespace rc10::test
+}  // namespace rc10::test::link_recovery_test

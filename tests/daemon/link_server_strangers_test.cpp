@@ -8,7 +8,7 @@
 
 #include "daemon/link_rig.hpp"
 
-namespace rc10::test {
+namespace rc10::test::link_server_strangers_test {
 namespace {
 
 class LinkServerStrangersTest : public LinkRig {
@@ -181,4 +181,4 @@ TEST_F(LinkServerStrangersTest, AClientThatComesBackGetsTheAnswerItMissed) {
 }
 
 }  // namespace
-}  // namespace rc10::test
+}  // namespace rc10::test::link_server_strangers_test

@@ -7,7 +7,7 @@
 #include "daemon/clock.hpp"
 #include "daemon/link_rig.hpp"
 
-namespace rc10::test {
+namespace rc10::test::link_server_test {
 namespace {
 
 using ::testing::HasSubstr;
@@ -266,4 +266,4 @@ TEST_F(LinkServerTest, TheLastEventsAndAnswersLeaveWhenTheThreadEnds) {
 }
 
 }  // namespace
-}  // namespace rc10::test
+}  // namespace rc10::test::link_server_test

@@ -9,7 +9,7 @@
 
 #include "daemon/link_rig.hpp"
 
-namespace rc10::test {
+namespace rc10::test::link_socket_test {
 namespace {
 
 using ::testing::HasSubstr;
@@ -105,4 +105,4 @@ TEST_F(LinkSocketTest, APathTooLongForASocketIsRefusedAndNotCutOff) {
 }
 
 }  // namespace
-}  // namespace rc10::test
+}  // namespace rc10::test::link_socket_test

@@ -6,7 +6,7 @@
 
 #include "daemon/virtual_robot.hpp"
 
-namespace rc10::test {
+namespace rc10::test::missed_ticks_test {
 namespace {
 
 class MissedTicksTest : public ::testing::Test {
@@ -64,4 +64,4 @@ TEST_F(MissedTicksTest, AllReportsTogetherAreTheCountInTheSnapshot) {
 }
 
 }  // namespace
-}  // namespace rc10::test
+}  // namespace rc10::test::missed_ticks_test

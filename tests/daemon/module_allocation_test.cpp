@@ -11,7 +11,7 @@
 #include "support/alloc_guard.hpp"
 #include "support/module_cases.hpp"
 
-namespace rc10::test {
+namespace rc10::test::module_allocation_test {
 namespace {
 
 using namespace std::chrono_literals;
@@ -88,4 +88,4 @@ TEST(ModuleCases, ThereIsOneForEveryType) {
 }
 
 }  // namespace
-}  // namespace rc10::test
+}  // namespace rc10::test::module_allocation_test

@@ -8,7 +8,7 @@
 #include "blackbox/memory_box.hpp"
 #include "virtual_robot.hpp"
 
-namespace rc10::test {
+namespace rc10::test::module_runner_test {
 namespace {
 
 using ::testing::Contains;
@@ -359,4 +359,4 @@ TEST_F(ModuleRunnerTest, WhatAModuleTellsAnotherInEveryTickIsRecordedWhenItChang
 }
 
 }  // namespace
-}  // namespace rc10::test
+}  // namespace rc10::test::module_runner_test

@@ -4,7 +4,7 @@
 #include "daemon/link_messages.hpp"
 #include "daemon/request_desk.hpp"
 
-namespace rc10::test {
+namespace rc10::test::optional_motor_test {
 namespace {
 
 using link::ResponseStatus;
@@ -40,4 +40,4 @@ TEST_F(OptionalMotorTest, MayNotFailAnythingElse) {
 }
 
 }  // namespace
-}  // namespace rc10::test
+}  // namespace rc10::test::optional_motor_test

@@ -4,7 +4,7 @@
 
 #include "daemon/clock.hpp"
 
-namespace rc10::test {
+namespace rc10::test::periodic_timer_test {
 namespace {
 
 using namespace std::chrono_literals;
@@ -58,4 +58,4 @@ TEST(PeriodicTimer, StaysOnItsGridHoweverLateItIsRead) {
 }
 
 }  // namespace
-}  // namespace rc10::test
+}  // namespace rc10::test::periodic_timer_test

@@ -8,7 +8,7 @@
 
 #include "rc10_version.hpp"
 
-namespace rc10::test {
+namespace rc10::test::publication_test {
 namespace {
 
 using namespace std::chrono_literals;
@@ -274,4 +274,4 @@ TEST_F(PublicationTest, AnEventCarriesItsTimeSeverityCodeAndWords) {
 }
 
 }  // namespace
-}  // namespace rc10::test
+}  // namespace rc10::test::publication_test

@@ -11,7 +11,7 @@
 
 #include "daemon/link_messages.hpp"
 
-namespace rc10::test {
+namespace rc10::test::request_desk_test {
 namespace {
 
 using link::ResponseStatus;
@@ -278,4 +278,4 @@ TEST_F(RequestDeskTest, AnswersAreRememberedForAWhileOnly) {
 }
 
 }  // namespace
-}  // namespace rc10::test
+}  // namespace rc10::test::request_desk_test

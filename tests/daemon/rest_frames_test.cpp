@@ -12,7 +12,7 @@
 #include "daemon/temp_dir.hpp"
 #include "daemon/virtual_robot.hpp"
 
-namespace rc10::test {
+namespace rc10::test::rest_frames_test {
 namespace {
 
 using ::testing::HasSubstr;
@@ -69,4 +69,4 @@ TEST_F(RestFrames, AFolderThatCannotBeMadeIsNamed) {
 }
 
 }  // namespace
-}  // namespace rc10::test
+}  // namespace rc10::test::rest_frames_test

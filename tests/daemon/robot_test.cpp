@@ -5,7 +5,7 @@
 
 #include "daemon/virtual_robot.hpp"
 
-namespace rc10::test {
+namespace rc10::test::robot_test {
 namespace {
 
 using namespace std::chrono_literals;
@@ -128,4 +128,4 @@ TEST(Robot, ABusWithoutMotorsIsBuilt) {
 }
 
 }  // namespace
-}  // namespace rc10::test
+}  // namespace rc10::test::robot_test

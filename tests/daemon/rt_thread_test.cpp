@@ -11,7 +11,7 @@
 
 #include "daemon/rt_process.hpp"
 
-namespace rc10::test {
+namespace rc10::test::rt_thread_test {
 namespace {
 
 using ::testing::AllOf;
@@ -192,4 +192,4 @@ TEST(RtThread, OneThatWasNeverStartedIsJoinedAtOnce) {
 }
 
 }  // namespace
-}  // namespace rc10::test
+}  // namespace rc10::test::rt_thread_test

@@ -12,7 +12,7 @@
 #include "daemon/virtual_robot.hpp"
 #include "support/frame_calls.hpp"
 
-namespace rc10::test {
+namespace rc10::test::rx_loop_test {
 namespace {
 
 CanFrame numbered(std::uint8_t number) {
@@ -212,4 +212,4 @@ TEST_F(RxLoopTest, TheEchoSocketConfirmsAndGivesNoFrames) {
 }
 
 }  // namespace
-}  // namespace rc10::test
+}  // namespace rc10::test::rx_loop_test

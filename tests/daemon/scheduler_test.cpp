@@ -10,7 +10,7 @@
 
 #include "sim/dji_drive.hpp"
 
-namespace rc10::test {
+namespace rc10::test::scheduler_test {
 namespace {
 
 using namespace std::chrono_literals;
@@ -277,4 +277,4 @@ TEST_F(SchedulerTest, TheAllocationGuardNoticesASingleNew) {
 }
 
 }  // namespace
-}  // namespace rc10::test
+}  // namespace rc10::test::scheduler_test

@@ -9,7 +9,7 @@
 #include "daemon/serial_rig.hpp"
 #include "support/alloc_guard.hpp"
 
-namespace rc10::test {
+namespace rc10::test::serial_line_test {
 namespace {
 
 using ::testing::Each;
@@ -96,4 +96,4 @@ TEST(SerialOutbox, TakesAllOrNothing) {
 }
 
 }  // namespace
-}  // namespace rc10::test
+}  // namespace rc10::test::serial_line_test

@@ -8,7 +8,7 @@
 #include "bus/serial_port.hpp"
 #include "daemon/serial_rig.hpp"
 
-namespace rc10::test {
+namespace rc10::test::serial_reviver_test {
 namespace {
 
 using namespace std::chrono_literals;
@@ -163,4 +163,4 @@ TEST_F(SerialReviverTest, WithoutPortsThereIsNothingToDo) {
 }
 
 }  // namespace
-}  // namespace rc10::test
+}  // namespace rc10::test::serial_reviver_test

@@ -7,7 +7,7 @@
 
 #include "daemon/serial_rig.hpp"
 
-namespace rc10::test {
+namespace rc10::test::serial_writer_test {
 namespace {
 
 using namespace std::chrono_literals;
@@ -112,4 +112,4 @@ TEST_F(SerialWriterTest, ServesForATimeWithoutAnythingToDo) {
 }
 
 }  // namespace
-}  // namespace rc10::test
+}  // namespace rc10::test::serial_writer_test

@@ -12,7 +12,7 @@
 #include "app/unique_fd.hpp"
 #include "daemon/temp_dir.hpp"
 
-namespace rc10::test {
+namespace rc10::test::service_notify_test {
 namespace {
 
 /// What systemd listens on. `name` begins with '@' in the abstract namespace.
@@ -90,4 +90,4 @@ TEST_F(ServiceNotifyTest, NeverWaitsForOneThatDoesNotRead) {
 }
 
 }  // namespace
-}  // namespace rc10::test
+}  // namespace rc10::test::service_notify_test

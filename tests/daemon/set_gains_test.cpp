@@ -17,7 +17,7 @@
 #include "daemon/virtual_robot.hpp"
 #include "link/words.hpp"
 
-namespace rc10::test {
+namespace rc10::test::set_gains_test {
 namespace {
 
 using link::ResponseStatus;
@@ -278,4 +278,4 @@ TEST_F(SetGainsTest, TheApproachToASoftLimitIsThatOfTheNewGain) {
 }
 
 }  // namespace
-}  // namespace rc10::test
+}  // namespace rc10::test::set_gains_test

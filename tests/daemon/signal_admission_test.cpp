@@ -5,7 +5,7 @@
 
 #include <gtest/gtest.h>
 
-namespace rc10::test {
+namespace rc10::test::signal_admission_test {
 namespace {
 
 using namespace std::chrono_literals;
@@ -86,4 +86,4 @@ TEST_F(SignalAdmissionTest, NumbersRiseForEachModule) {
 }
 
 }  // namespace
-}  // namespace rc10::test
+}  // namespace rc10::test::signal_admission_test

@@ -11,7 +11,7 @@
 #include "daemon/virtual_robot.hpp"
 #include "support/alloc_guard.hpp"
 
-namespace rc10::test {
+namespace rc10::test::spi_keeper_test {
 namespace {
 
 using namespace std::chrono_literals;
@@ -152,4 +152,4 @@ TEST_F(SpiKeeperTest, TheTickAllocatesNothingForPictures) {
 }
 
 }  // namespace
-}  // namespace rc10::test
+}  // namespace rc10::test::spi_keeper_test

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace rc10 {
+namespace rc10::states_test {
 namespace {
 
 constexpr std::array kAllStatus{MotorStatus::kOffline, MotorStatus::kReady, MotorStatus::kEnabling,
@@ -54,4 +54,4 @@ TEST(MotorStates, TreatsAnUnknownStatusAsAFault) {
 }
 
 }  // namespace
-}  // namespace rc10
+}  // namespace rc10::states_test

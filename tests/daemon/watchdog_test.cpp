@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace rc10::test {
+namespace rc10::test::watchdog_test {
 namespace {
 
 TEST(Watchdog, IsFedWhileBothThreadsAdvance) {
@@ -37,4 +37,4 @@ TEST(Watchdog, ProgressOfOneDoesNotMakeUpForTheOtherLater) {
 }
 
 }  // namespace
-}  // namespace rc10::test
+}  // namespace rc10::test::watchdog_test

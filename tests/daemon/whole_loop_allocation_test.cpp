@@ -10,7 +10,7 @@
 #include "daemon/virtual_robot.hpp"
 #include "support/alloc_guard.hpp"
 
-namespace rc10::test {
+namespace rc10::test::whole_loop_allocation_test {
 namespace {
 
 using namespace std::chrono_literals;
@@ -97,4 +97,4 @@ TEST_F(WholeLoopAllocationTest, TwoThousandTicksAllocateNothing) {
 TEST_F(WholeLoopAllocationTest, OneNewAmongTwoThousandTicksIsNoticed) { EXPECT_EQ(run(true), 1U); }
 
 }  // namespace
-}  // namespace rc10::test
+}  // namespace rc10::test::whole_loop_allocation_test

@@ -4,7 +4,7 @@
 
 #include "host_root.hpp"
 
-namespace rc10::doctor {
+namespace rc10::doctor::cpu_check_test {
 namespace {
 
 using ::testing::ElementsAre;
@@ -56,4 +56,4 @@ TEST(CpuCheck, WithoutIsolationTheLastCpuIsProposed) {
 }
 
 }  // namespace
-}  // namespace rc10::doctor
+}  // namespace rc10::doctor::cpu_check_test

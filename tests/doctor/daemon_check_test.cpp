@@ -4,7 +4,7 @@
 
 #include "host_root.hpp"
 
-namespace rc10::doctor {
+namespace rc10::doctor::daemon_check_test {
 namespace {
 
 using ::testing::HasSubstr;
@@ -51,4 +51,4 @@ TEST(DaemonCheck, TwoDaemonsAreAWarning) {
 }
 
 }  // namespace
-}  // namespace rc10::doctor
+}  // namespace rc10::doctor::daemon_check_test

@@ -5,7 +5,7 @@
 #include "doctor/irq_check.hpp"
 #include "host_root.hpp"
 
-namespace rc10::doctor {
+namespace rc10::doctor::interrupt_threads_test {
 namespace {
 
 using ::testing::ElementsAre;
@@ -175,4 +175,4 @@ TEST(InterruptThreads, AnInterfaceThatIsNotThereHasNone) {
 }
 
 }  // namespace
-}  // namespace rc10::doctor
+}  // namespace rc10::doctor::interrupt_threads_test

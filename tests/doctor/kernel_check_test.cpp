@@ -4,7 +4,7 @@
 
 #include "host_root.hpp"
 
-namespace rc10::doctor {
+namespace rc10::doctor::kernel_check_test {
 namespace {
 
 using ::testing::HasSubstr;
@@ -69,4 +69,4 @@ TEST(KernelCheck, AComputerWithoutTheseFilesIsJudgedAllTheSame) {
 }
 
 }  // namespace
-}  // namespace rc10::doctor
+}  // namespace rc10::doctor::kernel_check_test

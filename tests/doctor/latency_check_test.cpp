@@ -4,7 +4,7 @@
 
 #include "doctor/report.hpp"
 
-namespace rc10::doctor {
+namespace rc10::doctor::latency_check_test {
 namespace {
 
 using std::chrono::microseconds;
@@ -71,4 +71,4 @@ TEST(Report, AFindingIsALineAndItsFixAnother) {
 }
 
 }  // namespace
-}  // namespace rc10::doctor
+}  // namespace rc10::doctor::latency_check_test

@@ -4,7 +4,7 @@
 
 #include "host_root.hpp"
 
-namespace rc10::doctor {
+namespace rc10::doctor::limits_check_test {
 namespace {
 
 using ::testing::HasSubstr;
@@ -71,4 +71,4 @@ TEST(LimitsCheck, TheServiceIsFoundWhereSystemdLooks) {
 }
 
 }  // namespace
-}  // namespace rc10::doctor
+}  // namespace rc10::doctor::limits_check_test

@@ -3,7 +3,7 @@
 #include <gmock/gmock.h>
 #include <linux/can/netlink.h>
 
-namespace rc10::doctor {
+namespace rc10::doctor::link_check_test {
 namespace {
 
 using ::testing::HasSubstr;
@@ -195,4 +195,4 @@ TEST(LinkCheck, WhatFailsOrWarnsAlwaysSaysTheFix) {
 }
 
 }  // namespace
-}  // namespace rc10::doctor
+}  // namespace rc10::doctor::link_check_test

@@ -4,7 +4,7 @@
 
 #include "host_root.hpp"
 
-namespace rc10::doctor {
+namespace rc10::doctor::multicast_check_test {
 namespace {
 
 using ::testing::HasSubstr;
@@ -52,4 +52,4 @@ TEST(MulticastCheck, FromAnotherSourceItIsDroppedByTheService) {
 }
 
 }  // namespace
-}  // namespace rc10::doctor
+}  // namespace rc10::doctor::multicast_check_test

@@ -11,7 +11,7 @@
 #include "gateway/outlet.hpp"
 #include "lcm_messages.hpp"
 
-namespace rc10::gateway::test {
+namespace rc10::gateway::test::bridge_test {
 namespace {
 
 using namespace std::chrono_literals;
@@ -262,4 +262,4 @@ TEST(WakeUp, JudgesByTheLastTimeTheSocketWasEmpty) {
 }
 
 }  // namespace
-}  // namespace rc10::gateway::test
+}  // namespace rc10::gateway::test::bridge_test

@@ -10,7 +10,7 @@
 #include "link/link_message.hpp"
 #include "link/words.hpp"
 
-namespace rc10::gateway::test {
+namespace rc10::gateway::test::convert_test {
 namespace {
 
 using rc10::test::heroDiagnostics;
@@ -214,4 +214,4 @@ TEST(Encode, IntoTooSmallABufferGivesNothing) {
 }
 
 }  // namespace
-}  // namespace rc10::gateway::test
+}  // namespace rc10::gateway::test::convert_test

@@ -10,7 +10,7 @@
 #include "rc10/event_t.hpp"
 #include "rc10/signals_t.hpp"
 
-namespace rc10::gateway::test {
+namespace rc10::gateway::test::decode_test {
 namespace {
 
 using rc10::test::Bytes;
@@ -271,4 +271,4 @@ TEST(Defect, HasWords) {
 }
 
 }  // namespace
-}  // namespace rc10::gateway::test
+}  // namespace rc10::gateway::test::decode_test

@@ -13,7 +13,7 @@
 #include "live_gateway.hpp"
 #include "private_network.hpp"
 
-namespace rc10::gateway::test {
+namespace rc10::gateway::test::live_test {
 namespace {
 
 using namespace std::chrono_literals;
@@ -263,4 +263,4 @@ TEST(LiveGateway, EndsWithRc10d) {
 }
 
 }  // namespace
-}  // namespace rc10::gateway::test
+}  // namespace rc10::gateway::test::live_test

@@ -5,7 +5,7 @@
 
 #include "private_network.hpp"
 
-namespace rc10::gateway::test {
+namespace rc10::gateway::test::multicast_route_test {
 namespace {
 
 using rc10::test::addLcmRoute;
@@ -42,4 +42,4 @@ TEST(MulticastRoute, HasToBeTheLoopbackWithoutTtl) {
 }
 
 }  // namespace
-}  // namespace rc10::gateway::test
+}  // namespace rc10::gateway::test::multicast_route_test

@@ -18,7 +18,7 @@
 
 #include "app/unique_fd.hpp"
 
-namespace rc10::gateway::test {
+namespace rc10::gateway::test::sandbox_test {
 namespace {
 
 // Runs `check` in a child that has entered the sandbox: there is no way back out of it.
@@ -89,4 +89,4 @@ TEST(Sandbox, BoundsItsMemory) {
 #endif
 
 }  // namespace
-}  // namespace rc10::gateway::test
+}  // namespace rc10::gateway::test::sandbox_test

@@ -13,7 +13,7 @@
 #include "gateway/udpm_url.hpp"
 #include "lcm_messages.hpp"
 
-namespace rc10::gateway::test {
+namespace rc10::gateway::test::udpm_test {
 namespace {
 
 using rc10::test::Bytes;
@@ -198,4 +198,4 @@ TEST_F(ChannelFilter, LooksAtEveryByteOfNamesOfAnyLength) {
 }
 
 }  // namespace
-}  // namespace rc10::gateway::test
+}  // namespace rc10::gateway::test::udpm_test

@@ -10,7 +10,7 @@
 #include <fstream>
 #include <optional>
 
-namespace rc10::link::test {
+namespace rc10::link::test::interface_lock_test {
 namespace {
 
 using ::testing::HasSubstr;
@@ -116,4 +116,4 @@ TEST_F(InterfaceLockTest, AFolderThatCannotBeMadeIsNamedWithTheRemedy) {
 }
 
 }  // namespace
-}  // namespace rc10::link::test
+}  // namespace rc10::link::test::interface_lock_test

@@ -7,7 +7,7 @@
 
 #include <gtest/gtest.h>
 
-namespace rc10::link::test {
+namespace rc10::link::test::link_message_test {
 namespace {
 
 using Bytes = std::vector<std::byte>;
@@ -247,4 +247,4 @@ TEST(Text, OfAStrangerWithoutTerminatorIsBounded) {
 }
 
 }  // namespace
-}  // namespace rc10::link::test
+}  // namespace rc10::link::test::link_message_test

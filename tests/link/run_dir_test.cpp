@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-namespace rc10::link::test {
+namespace rc10::link::test::run_dir_test {
 namespace {
 
 class RunDir : public testing::Test {
@@ -32,4 +32,4 @@ TEST_F(RunDir, IsTheSystemsWithoutOne) {
 }
 
 }  // namespace
-}  // namespace rc10::link::test
+}  // namespace rc10::link::test::run_dir_test

@@ -4,7 +4,7 @@
 
 #include "motor/target.hpp"
 
-namespace rc10::link::test {
+namespace rc10::link::test::words_test {
 namespace {
 
 TEST(Words, ModesAreThoseOfTheMotorLayer) {
@@ -66,4 +66,4 @@ TEST(Words, GainsAreNamedAsTheirKeys) {
 }
 
 }  // namespace
-}  // namespace rc10::link::test
+}  // namespace rc10::link::test::words_test

@@ -13,7 +13,7 @@
 #include "module/power_limiter.hpp"
 #include "module/swerve_chassis.hpp"
 
-namespace rc10::test {
+namespace rc10::test::chassis_test {
 namespace {
 
 using ::testing::HasSubstr;
@@ -383,4 +383,4 @@ TEST(PowerLimiter, WithoutALimitEverythingIsAllowed) {
 }
 
 }  // namespace
-}  // namespace rc10::test
+}  // namespace rc10::test::chassis_test

@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-namespace rc10 {
+namespace rc10::checksums_test {
 namespace {
 
 // The check value of a CRC is that of the digits 1 to 9 (catalogue of parametrised CRC algorithms).
@@ -31,4 +31,4 @@ TEST(Checksums, TheSumWraps) {
 }
 
 }  // namespace
-}  // namespace rc10
+}  // namespace rc10::checksums_test

@@ -6,7 +6,7 @@
 
 #include "fake_robot.hpp"
 
-namespace rc10::test {
+namespace rc10::test::feeder_test {
 namespace {
 
 using ::testing::ElementsAre;
@@ -132,4 +132,4 @@ TEST_F(Feeder, SilenceAsksNothingOfTheMotor) {
 }
 
 }  // namespace
-}  // namespace rc10::test
+}  // namespace rc10::test::feeder_test

@@ -7,7 +7,7 @@
 
 #include "fake_robot.hpp"
 
-namespace rc10::test {
+namespace rc10::test::gimbal_test {
 namespace {
 
 using ::testing::ElementsAre;
@@ -183,4 +183,4 @@ TEST(GimbalType, RefusesOneMotorForBothAndLimitsTheWrongWayRound) {
 }
 
 }  // namespace
-}  // namespace rc10::test
+}  // namespace rc10::test::gimbal_test

@@ -6,7 +6,7 @@
 
 #include "fake_robot.hpp"
 
-namespace rc10::test {
+namespace rc10::test::gpio_module_test {
 namespace {
 
 using ::testing::ElementsAre;
@@ -292,4 +292,4 @@ TEST(GpioModuleType, NamesAreUniqueAndThereIsALine) {
 }
 
 }  // namespace
-}  // namespace rc10::test
+}  // namespace rc10::test::gpio_module_test

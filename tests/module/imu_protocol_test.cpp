@@ -9,7 +9,7 @@
 #include "module/witmotion_protocol.hpp"
 #include "support/alloc_guard.hpp"
 
-namespace rc10::test {
+namespace rc10::test::imu_protocol_test {
 namespace {
 
 using namespace std::chrono_literals;
@@ -188,4 +188,4 @@ TEST(ImuProtocols, AllocateNothing) {
 }
 
 }  // namespace
-}  // namespace rc10::test
+}  // namespace rc10::test::imu_protocol_test

@@ -8,7 +8,7 @@
 #include "fake_robot.hpp"
 #include "module/rangefinder.hpp"
 
-namespace rc10::test {
+namespace rc10::test::imu_test {
 namespace {
 
 using ::testing::ElementsAre;
@@ -126,4 +126,4 @@ TEST(Rangefinder, GivesADistanceWhileItIsYoungAndValid) {
 }
 
 }  // namespace
-}  // namespace rc10::test
+}  // namespace rc10::test::imu_test

@@ -10,7 +10,7 @@
 #include "fake_robot.hpp"
 #include "module/joint_homing.hpp"
 
-namespace rc10::test {
+namespace rc10::test::joint_test {
 namespace {
 
 using ::testing::ElementsAre;
@@ -328,4 +328,4 @@ TEST(JointType, RefusesWhatCannotWork) {
 }
 
 }  // namespace
-}  // namespace rc10::test
+}  // namespace rc10::test::joint_test

@@ -4,7 +4,7 @@
 
 #include <gmock/gmock.h>
 
-namespace rc10::test {
+namespace rc10::test::led_effect_test {
 namespace {
 
 using namespace std::chrono_literals;
@@ -62,4 +62,4 @@ TEST(LedEffect, AQuarterOfTheStripRunsRound) {
 }
 
 }  // namespace
-}  // namespace rc10::test
+}  // namespace rc10::test::led_effect_test

@@ -10,7 +10,7 @@
 #include "fake_robot.hpp"
 #include "module/ws2812_encoder.hpp"
 
-namespace rc10::test {
+namespace rc10::test::led_strip_test {
 namespace {
 
 using ::testing::Each;
@@ -205,4 +205,4 @@ TEST(LedStripType, TooManyPixelsAreRefusedWithTheLimitAndTheRemedies) {
 }
 
 }  // namespace
-}  // namespace rc10::test
+}  // namespace rc10::test::led_strip_test

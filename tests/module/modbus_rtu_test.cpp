@@ -7,7 +7,7 @@
 #include "module/serial_streams.hpp"
 #include "support/alloc_guard.hpp"
 
-namespace rc10::test {
+namespace rc10::test::modbus_rtu_test {
 namespace {
 
 using namespace std::chrono_literals;
@@ -256,4 +256,4 @@ TEST(ModbusRtu, AllocatesNothing) {
 }
 
 }  // namespace
-}  // namespace rc10::test
+}  // namespace rc10::test::modbus_rtu_test

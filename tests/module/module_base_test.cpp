@@ -5,7 +5,7 @@
 
 #include <gmock/gmock.h>
 
-namespace rc10::test {
+namespace rc10::test::module_base_test {
 namespace {
 
 using ::testing::ElementsAre;
@@ -66,4 +66,4 @@ TEST(ModuleDirectory, SaysWhatThereIs) {
 }
 
 }  // namespace
-}  // namespace rc10::test
+}  // namespace rc10::test::module_base_test

@@ -8,7 +8,7 @@
 #include "module/dbus_protocol.hpp"
 #include "module/sbus_protocol.hpp"
 
-namespace rc10::test {
+namespace rc10::test::remote_test {
 namespace {
 
 using ::testing::Contains;
@@ -238,4 +238,4 @@ TEST(RemoteType, NamesTheChannelsThatThereAre) {
 }
 
 }  // namespace
-}  // namespace rc10::test
+}  // namespace rc10::test::remote_test

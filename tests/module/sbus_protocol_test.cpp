@@ -5,7 +5,7 @@
 #include "module/serial_streams.hpp"
 #include "support/alloc_guard.hpp"
 
-namespace rc10::test {
+namespace rc10::test::sbus_protocol_test {
 namespace {
 
 using namespace std::chrono_literals;
@@ -154,4 +154,4 @@ TEST(SbusProtocol, AllocatesNothing) {
 }
 
 }  // namespace
-}  // namespace rc10::test
+}  // namespace rc10::test::sbus_protocol_test

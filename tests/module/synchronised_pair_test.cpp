@@ -7,7 +7,7 @@
 
 #include "fake_robot.hpp"
 
-namespace rc10::test {
+namespace rc10::test::synchronised_pair_test {
 namespace {
 
 using ::testing::ElementsAre;
@@ -122,4 +122,4 @@ TEST(SynchronisedPairType, RefusesOneMotorTwiceAndMotorsThatCannot) {
 }
 
 }  // namespace
-}  // namespace rc10::test
+}  // namespace rc10::test::synchronised_pair_test

@@ -7,7 +7,7 @@
 #include "module/serial_streams.hpp"
 #include "support/alloc_guard.hpp"
 
-namespace rc10::test {
+namespace rc10::test::tfmini_protocol_test {
 namespace {
 
 using namespace std::chrono_literals;
@@ -120,4 +120,4 @@ TEST(TfminiProtocol, AllocatesNothing) {
 }
 
 }  // namespace
-}  // namespace rc10::test
+}  // namespace rc10::test::tfmini_protocol_test

@@ -6,7 +6,7 @@
 
 #include <gmock/gmock.h>
 
-namespace rc10::test {
+namespace rc10::test::ws2812_encoder_test {
 namespace {
 
 using ::testing::AllOf;
@@ -132,4 +132,4 @@ TEST(Ws2812Encoder, NothingIsWrittenWhereItDoesNotFit) {
 }
 
 }  // namespace
-}  // namespace rc10::test
+}  // namespace rc10::test::ws2812_encoder_test

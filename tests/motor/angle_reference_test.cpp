@@ -4,7 +4,7 @@
 
 #include <limits>
 
-namespace rc10 {
+namespace rc10::angle_reference_test {
 namespace {
 
 TEST(AngleReference, IsUnknownUntilSomebodySetsIt) {
@@ -66,4 +66,4 @@ TEST(AngleReference, AnAbsoluteEncoderFindsItsReferenceAgain) {
 }
 
 }  // namespace
-}  // namespace rc10
+}  // namespace rc10::angle_reference_test

@@ -7,7 +7,7 @@
 
 #include <gtest/gtest.h>
 
-namespace rc10::test {
+namespace rc10::test::cascade_test {
 namespace {
 
 constexpr float kDt = 0.001F;
@@ -189,4 +189,4 @@ TEST(Cascade, OtherGainsDoNotPassTheLimits) {
 }
 
 }  // namespace
-}  // namespace rc10::test
+}  // namespace rc10::test::cascade_test

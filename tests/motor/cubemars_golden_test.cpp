@@ -8,7 +8,7 @@
 
 #include "support/cubemars_settings.hpp"
 
-namespace rc10::test {
+namespace rc10::test::cubemars_golden_test {
 namespace {
 
 CanFrame frameOf(CanId id, const std::string& hex) {
@@ -147,4 +147,4 @@ TEST(CubemarsGolden, OrdersOfMitMode) {
 }
 
 }  // namespace
-}  // namespace rc10::test
+}  // namespace rc10::test::cubemars_golden_test

@@ -12,7 +12,7 @@
 #include "bus/byte_order.hpp"
 #include "support/cubemars_settings.hpp"
 
-namespace rc10::test {
+namespace rc10::test::cubemars_motor_test {
 namespace {
 
 using std::chrono::milliseconds;
@@ -868,4 +868,4 @@ TEST(CubemarsFamily, TellsEveryIdOnTheBus) {
 }
 
 }  // namespace
-}  // namespace rc10::test
+}  // namespace rc10::test::cubemars_motor_test

@@ -8,7 +8,7 @@
 
 #include "support/damiao_motors.hpp"
 
-namespace rc10::test {
+namespace rc10::test::damiao_family_test {
 namespace {
 
 std::string problemOf(const MotorSettings& settings) {
@@ -145,4 +145,4 @@ TEST(DamiaoFamily, DrivesOnOneBusMayShareAMasterId) {
 }
 
 }  // namespace
-}  // namespace rc10::test
+}  // namespace rc10::test::damiao_family_test

@@ -10,7 +10,7 @@
 
 #include "support/damiao_motors.hpp"
 
-namespace rc10::test {
+namespace rc10::test::damiao_golden_test {
 namespace {
 
 using Bytes = std::vector<std::uint8_t>;
@@ -170,4 +170,4 @@ TEST(DamiaoGolden, TheEnableSequenceIsTheseFramesAndNoneWritesFlash) {
 }
 
 }  // namespace
-}  // namespace rc10::test
+}  // namespace rc10::test::damiao_golden_test

@@ -10,7 +10,7 @@
 #include "bus/byte_order.hpp"
 #include "support/damiao_motors.hpp"
 
-namespace rc10::test {
+namespace rc10::test::damiao_motor_test {
 namespace {
 
 using std::chrono::milliseconds;
@@ -623,4 +623,4 @@ TEST(DamiaoMotor, GarbageLeavesFiniteReadings) {
 }
 
 }  // namespace
-}  // namespace rc10::test
+}  // namespace rc10::test::damiao_motor_test

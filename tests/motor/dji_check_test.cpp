@@ -6,7 +6,7 @@
 
 #include "support/dji_frames.hpp"
 
-namespace rc10::test {
+namespace rc10::test::dji_check_test {
 namespace {
 
 constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
@@ -90,4 +90,4 @@ TEST(DjiModels, TheUsersClassNamesDifferOnlyInTheirTable) {
 }
 
 }  // namespace
-}  // namespace rc10::test
+}  // namespace rc10::test::dji_check_test

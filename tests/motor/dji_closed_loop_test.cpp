@@ -10,7 +10,7 @@
 
 #include "support/simple_plant.hpp"
 
-namespace rc10::test {
+namespace rc10::test::dji_closed_loop_test {
 namespace {
 
 using std::chrono::milliseconds;
@@ -202,4 +202,4 @@ INSTANTIATE_TEST_SUITE_P(Models, DjiClosedLoop,
                          [](const auto& each) { return std::string{each.param.name}; });
 
 }  // namespace
-}  // namespace rc10::test
+}  // namespace rc10::test::dji_closed_loop_test

@@ -6,7 +6,7 @@
 
 #include "support/dji_frames.hpp"
 
-namespace rc10::test {
+namespace rc10::test::dji_feedback_test {
 namespace {
 
 using std::chrono::milliseconds;
@@ -261,4 +261,4 @@ TEST(DjiReference, AnglesKeepTheirPrecisionAfterABillionTurns) {
 }
 
 }  // namespace
-}  // namespace rc10::test
+}  // namespace rc10::test::dji_feedback_test

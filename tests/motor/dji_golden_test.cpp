@@ -15,7 +15,7 @@
 #include "motor/dji_group.hpp"
 #include "support/dji_frames.hpp"
 
-namespace rc10::test {
+namespace rc10::test::dji_golden_test {
 namespace {
 
 using Values = std::vector<std::pair<std::string, double>>;
@@ -135,4 +135,4 @@ TEST(DjiGolden, EveryPublishedFrameIsPackedAndDecodedAsDocumented) {
 }
 
 }  // namespace
-}  // namespace rc10::test
+}  // namespace rc10::test::dji_golden_test

@@ -8,7 +8,7 @@
 
 #include "support/dji_frames.hpp"
 
-namespace rc10::test {
+namespace rc10::test::dji_group_test {
 namespace {
 
 using namespace rc10::literals;
@@ -152,4 +152,4 @@ TEST(DjiGroup, C620OnIds5To8AndGM6020OnIds1To4ShareFeedbackFramesWhateverTheComm
 }
 
 }  // namespace
-}  // namespace rc10::test
+}  // namespace rc10::test::dji_group_test

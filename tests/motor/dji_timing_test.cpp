@@ -14,7 +14,7 @@
 #include "support/alloc_guard.hpp"
 #include "support/dji_frames.hpp"
 
-namespace rc10::test {
+namespace rc10::test::dji_timing_test {
 namespace {
 
 using std::chrono::microseconds;
@@ -133,4 +133,4 @@ TEST(DjiTiming, ATickAllocatesNothing) {
 }
 
 }  // namespace
-}  // namespace rc10::test
+}  // namespace rc10::test::dji_timing_test

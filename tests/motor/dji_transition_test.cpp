@@ -7,7 +7,7 @@
 
 #include "support/simple_plant.hpp"
 
-namespace rc10::test {
+namespace rc10::test::dji_transition_test {
 namespace {
 
 using std::chrono::milliseconds;
@@ -158,4 +158,4 @@ INSTANTIATE_TEST_SUITE_P(Forms, DjiTransition, testing::Bool(),
                          [](const auto& each) { return each.param ? "Incremental" : "Position"; });
 
 }  // namespace
-}  // namespace rc10::test
+}  // namespace rc10::test::dji_transition_test

@@ -6,7 +6,7 @@
 
 #include "support/dji_frames.hpp"
 
-namespace rc10::test {
+namespace rc10::test::dji_update_test {
 namespace {
 
 using namespace rc10::literals;
@@ -250,4 +250,4 @@ TEST(DjiUpdate, ModesAndFrameKindsAreThoseOfTheFamily) {
 }
 
 }  // namespace
-}  // namespace rc10::test
+}  // namespace rc10::test::dji_update_test

@@ -11,7 +11,7 @@
 
 #include "motor/dji_model.hpp"
 
-namespace rc10::test {
+namespace rc10::test::encoder_test {
 namespace {
 
 using std::chrono::microseconds;
@@ -267,4 +267,4 @@ TEST(Encoder, SamplesThatWereReadLateAndTogetherAreNoJump) {
 }
 
 }  // namespace
-}  // namespace rc10::test
+}  // namespace rc10::test::encoder_test

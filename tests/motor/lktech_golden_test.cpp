@@ -5,7 +5,7 @@
 #include "motor/lktech_model.hpp"
 #include "support/frame_bytes.hpp"
 
-namespace rc10::test {
+namespace rc10::test::lktech_golden_test {
 namespace {
 
 using namespace lktech;
@@ -66,4 +66,4 @@ TEST(LKTechGolden, CommandsAreToldFromRepliesByTheirBytes) {
 }
 
 }  // namespace
-}  // namespace rc10::test
+}  // namespace rc10::test::lktech_golden_test

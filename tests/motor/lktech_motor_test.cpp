@@ -15,7 +15,7 @@
 #include "support/frame_bytes.hpp"
 #include "support/own_defaults.hpp"
 
-namespace rc10::test {
+namespace rc10::test::lktech_motor_test {
 namespace {
 
 using testing::Contains;
@@ -482,4 +482,4 @@ TEST(LKTechFamily, TellsThatADriveObeysTheSharedFrameEvenAlone) {
 }
 
 }  // namespace
-}  // namespace rc10::test
+}  // namespace rc10::test::lktech_motor_test

@@ -8,7 +8,7 @@
 
 #include "support/moteus_answers.hpp"
 
-namespace rc10::test {
+namespace rc10::test::moteus_golden_test {
 namespace {
 
 using enum MoteusRegister;
@@ -158,4 +158,4 @@ TEST(MoteusGolden, AnAnswerBecomesReadingsOfTheOutput) {
 }
 
 }  // namespace
-}  // namespace rc10::test
+}  // namespace rc10::test::moteus_golden_test

@@ -9,7 +9,7 @@
 #include "support/alloc_guard.hpp"
 #include "support/moteus_answers.hpp"
 
-namespace rc10::test {
+namespace rc10::test::moteus_motor_test {
 namespace {
 
 using enum MoteusRegister;
@@ -493,4 +493,4 @@ TEST(MoteusFamily, AWatchdogShorterThanThreeCommandsIsRefused) {
 }
 
 }  // namespace
-}  // namespace rc10::test
+}  // namespace rc10::test::moteus_motor_test

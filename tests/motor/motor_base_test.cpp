@@ -7,7 +7,7 @@
 
 #include "motor/dji_motor.hpp"
 
-namespace rc10::test {
+namespace rc10::test::motor_base_test {
 namespace {
 
 using namespace rc10::literals;
@@ -108,4 +108,4 @@ TEST(ModeSet, ContainsWhatItWasMadeOf) {
 }
 
 }  // namespace
-}  // namespace rc10::test
+}  // namespace rc10::test::motor_base_test

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace rc10::test {
+namespace rc10::test::motor_guard_test {
 namespace {
 
 using namespace std::chrono_literals;
@@ -210,4 +210,4 @@ TEST_F(MotionGuardTest, BrakingFromFullSpeedIsNone) {
 }
 
 }  // namespace
-}  // namespace rc10::test
+}  // namespace rc10::test::motor_guard_test

@@ -4,7 +4,7 @@
 #include "motor/myactuator_frames.hpp"
 #include "support/frame_bytes.hpp"
 
-namespace rc10::test {
+namespace rc10::test::myactuator_golden_test {
 namespace {
 
 using namespace myactuator;
@@ -78,4 +78,4 @@ TEST(MyActuatorGolden, TheMotionReplyTellsIdAngleSpeedAndTorque) {
 }
 
 }  // namespace
-}  // namespace rc10::test
+}  // namespace rc10::test::myactuator_golden_test

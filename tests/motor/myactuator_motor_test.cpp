@@ -16,7 +16,7 @@
 #include "support/frame_bytes.hpp"
 #include "support/own_defaults.hpp"
 
-namespace rc10::test {
+namespace rc10::test::myactuator_motor_test {
 namespace {
 
 using myactuator::Code;
@@ -541,4 +541,4 @@ TEST(MyActuatorFamily, TellsWhichIdsItUsesAndHowOften) {
 }
 
 }  // namespace
-}  // namespace rc10::test
+}  // namespace rc10::test::myactuator_motor_test

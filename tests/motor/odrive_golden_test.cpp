@@ -8,7 +8,7 @@
 
 #include "support/odrive_settings.hpp"
 
-namespace rc10::test {
+namespace rc10::test::odrive_golden_test {
 namespace {
 
 using testing::ElementsAreArray;
@@ -88,4 +88,4 @@ TEST(OdriveGolden, BusVoltage) {
 }
 
 }  // namespace
-}  // namespace rc10::test
+}  // namespace rc10::test::odrive_golden_test

@@ -14,7 +14,7 @@
 #include "bus/byte_order.hpp"
 #include "support/odrive_settings.hpp"
 
-namespace rc10::test {
+namespace rc10::test::odrive_motor_test {
 namespace {
 
 using namespace std::chrono_literals;
@@ -600,4 +600,4 @@ TEST_F(OdriveMotor, ItsBusUseCoversAllThatItSendsAndHears) {
 }
 
 }  // namespace
-}  // namespace rc10::test
+}  // namespace rc10::test::odrive_motor_test

@@ -9,7 +9,7 @@
 
 #include "support/robstride_settings.hpp"
 
-namespace rc10::test {
+namespace rc10::test::robstride_golden_test {
 namespace {
 
 using Bytes = std::array<std::uint8_t, 8>;
@@ -95,4 +95,4 @@ TEST(RobStrideGolden, TheMotorReadsTheFeedbackInTheUsersUnits) {
 }
 
 }  // namespace
-}  // namespace rc10::test
+}  // namespace rc10::test::robstride_golden_test

@@ -18,7 +18,7 @@
 #include "support/alloc_guard.hpp"
 #include "support/robstride_settings.hpp"
 
-namespace rc10::test {
+namespace rc10::test::robstride_motor_test {
 namespace {
 
 using std::chrono::milliseconds;
@@ -728,4 +728,4 @@ TEST(RobStrideMotor, NothingAllocatesAfterConstruction) {
 }
 
 }  // namespace
-}  // namespace rc10::test
+}  // namespace rc10::test::robstride_motor_test

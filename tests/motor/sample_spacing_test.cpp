@@ -5,7 +5,7 @@
 
 #include <gtest/gtest.h>
 
-namespace rc10::test {
+namespace rc10::test::sample_spacing_test {
 namespace {
 
 using std::chrono::microseconds;
@@ -72,4 +72,4 @@ TEST(SampleSpacing, StaysBetweenATenthAndFivePeriods) {
 }
 
 }  // namespace
-}  // namespace rc10::test
+}  // namespace rc10::test::sample_spacing_test

@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-namespace rc10::test {
+namespace rc10::test::target_shaper_test {
 namespace {
 
 constexpr float kTickS = 0.001F;
@@ -164,4 +164,4 @@ TEST_F(TargetShaperTest, AFirstStepIsAllowedUpToItsLimit) {
 }
 
 }  // namespace
-}  // namespace rc10::test
+}  // namespace rc10::test::target_shaper_test

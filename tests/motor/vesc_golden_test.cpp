@@ -7,7 +7,7 @@
 
 #include "support/vesc_motors.hpp"
 
-namespace rc10::test {
+namespace rc10::test::vesc_golden_test {
 namespace {
 
 struct CommandVector {
@@ -144,4 +144,4 @@ TEST(VescGolden, AQuestionAndItsAnswerFitIntoAFrameEach) {
 }
 
 }  // namespace
-}  // namespace rc10::test
+}  // namespace rc10::test::vesc_golden_test

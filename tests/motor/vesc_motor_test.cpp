@@ -11,7 +11,7 @@
 #include "support/alloc_guard.hpp"
 #include "support/vesc_motors.hpp"
 
-namespace rc10::test {
+namespace rc10::test::vesc_motor_test {
 namespace {
 
 using std::chrono::milliseconds;
@@ -543,4 +543,4 @@ TEST(VescFamily, SeveralDrivesShareABusAndTheHostId) {
 }
 
 }  // namespace
-}  // namespace rc10::test
+}  // namespace rc10::test::vesc_motor_test

@@ -5,6 +5,7 @@
 
 namespace rc10 {
 inline namespace robot_client {
+namespace held_targets_test {
 namespace {
 
 using namespace std::chrono_literals;
@@ -134,5 +135,6 @@ TEST(HeldTargets, DoNotLapseUnlessAskedTo) {
 }
 
 }  // namespace
+}  // namespace held_targets_test
 }  // namespace robot_client
 }  // namespace rc10

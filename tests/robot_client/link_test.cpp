@@ -10,7 +10,9 @@
 #include <optional>
 #include <vector>
 
-namespace rc10::test {
+namespace rc10 {
+inline namespace robot_client {
+namespace test::link_test {
 namespace {
 
 using namespace std::chrono_literals;
@@ -69,4 +71,6 @@ TEST(Link, AHandlerMayEndItself) {
 }
 
 }  // namespace
-}  // namespace rc10::test
+}  // namespace test::link_test
+}  // namespace robot_client
+}  // namespace rc10

@@ -10,7 +10,7 @@
 
 namespace rc10 {
 inline namespace robot_client {
-namespace test {
+namespace test::module_test {
 namespace {
 
 using namespace std::chrono_literals;
@@ -187,6 +187,6 @@ TEST(ModuleWithoutLcm, SaysHowToGetIt) {
 }
 
 }  // namespace
-}  // namespace test
+}  // namespace test::module_test
 }  // namespace robot_client
 }  // namespace rc10

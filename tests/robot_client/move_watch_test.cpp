@@ -5,6 +5,7 @@
 
 namespace rc10 {
 inline namespace robot_client {
+namespace move_watch_test {
 namespace {
 
 using namespace std::chrono_literals;
@@ -138,5 +139,6 @@ TEST_F(MoveWatchTest, AStateFromBeforeItProvesNothing) {
 }
 
 }  // namespace
+}  // namespace move_watch_test
 }  // namespace robot_client
 }  // namespace rc10

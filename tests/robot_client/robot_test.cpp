@@ -7,7 +7,7 @@
 
 namespace rc10 {
 inline namespace robot_client {
-namespace test {
+namespace test::robot_test {
 namespace {
 
 using namespace std::chrono_literals;
@@ -483,6 +483,6 @@ TEST_F(RobotTest, LeavingDisablesNothingThatItHasNotEnabled) {
 }
 
 }  // namespace
-}  // namespace test
+}  // namespace test::robot_test
 }  // namespace robot_client
 }  // namespace rc10

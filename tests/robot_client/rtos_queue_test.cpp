@@ -7,6 +7,7 @@
 
 namespace rc10 {
 inline namespace robot_client {
+namespace rtos_queue_test {
 namespace {
 
 using namespace std::chrono_literals;
@@ -80,5 +81,6 @@ TEST(RtosQueue, LosesAndDoublesNothingBetweenThreads) {
 }
 
 }  // namespace
+}  // namespace rtos_queue_test
 }  // namespace robot_client
 }  // namespace rc10

@@ -13,6 +13,7 @@
 
 namespace rc10 {
 inline namespace robot_client {
+namespace rtos_task_test {
 namespace {
 
 using namespace std::chrono_literals;
@@ -139,5 +140,6 @@ TEST(RtosTask, IsRealTimeOrSaysWhyNot) {
 }
 
 }  // namespace
+}  // namespace rtos_task_test
 }  // namespace robot_client
 }  // namespace rc10

@@ -16,6 +16,7 @@
 
 namespace rc10 {
 inline namespace robot_client {
+namespace services_test {
 namespace {
 
 using namespace std::chrono_literals;
@@ -272,5 +273,6 @@ TEST_F(ServiceTest, CallingInACallbackIsAnErrorAndNoDeadlock) {
 }
 
 }  // namespace
+}  // namespace services_test
 }  // namespace robot_client
 }  // namespace rc10

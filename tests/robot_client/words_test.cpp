@@ -8,6 +8,7 @@
 
 namespace rc10 {
 inline namespace robot_client {
+namespace words_test {
 namespace {
 
 using namespace std::chrono_literals;
@@ -81,5 +82,6 @@ TEST(HostClock, BeginsAnewWhenTheHostHasStartedAgain) {
 }
 
 }  // namespace
+}  // namespace words_test
 }  // namespace robot_client
 }  // namespace rc10

@@ -10,7 +10,7 @@
 
 #include "sim/sim_rig.hpp"
 
-namespace rc10::test {
+namespace rc10::test::closed_loop_test {
 namespace {
 
 using namespace std::chrono_literals;
@@ -206,4 +206,4 @@ TEST(ClosedLoopBus, FourMotorsOfTwoFamiliesShareABus) {
 }
 
 }  // namespace
-}  // namespace rc10::test
+}  // namespace rc10::test::closed_loop_test

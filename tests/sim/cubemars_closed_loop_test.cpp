@@ -10,7 +10,7 @@
 #include "sim/solo_rig.hpp"
 #include "support/cubemars_settings.hpp"
 
-namespace rc10::test {
+namespace rc10::test::cubemars_closed_loop_test {
 namespace {
 
 using std::chrono::milliseconds;
@@ -315,4 +315,4 @@ TEST(CubemarsLoops, FeedbackComesAtTheRateThatIsSetOnTheDrive) {
 }
 
 }  // namespace
-}  // namespace rc10::test
+}  // namespace rc10::test::cubemars_closed_loop_test

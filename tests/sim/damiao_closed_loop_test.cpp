@@ -9,7 +9,7 @@
 #include "sim/solo_rig.hpp"
 #include "support/damiao_motors.hpp"
 
-namespace rc10::test {
+namespace rc10::test::damiao_closed_loop_test {
 namespace {
 
 using std::chrono::milliseconds;
@@ -440,4 +440,4 @@ TEST(DamiaoClosedLoop, SpeaksCanFdIfTheDriveDoes) {
 }
 
 }  // namespace
-}  // namespace rc10::test
+}  // namespace rc10::test::damiao_closed_loop_test

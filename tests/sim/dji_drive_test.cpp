@@ -12,7 +12,7 @@
 
 #include "motor/dji_motor.hpp"
 
-namespace rc10::test {
+namespace rc10::test::dji_drive_test {
 namespace {
 
 using namespace std::chrono_literals;
@@ -229,4 +229,4 @@ TEST(DjiDrive, CheckRefusesWhatDoesNotExist) {
 }
 
 }  // namespace
-}  // namespace rc10::test
+}  // namespace rc10::test::dji_drive_test

@@ -16,7 +16,7 @@
 #include "sim/robstride_drive.hpp"
 #include "sim/solo_rig.hpp"
 
-namespace rc10::test {
+namespace rc10::test::drive_setup_test {
 namespace {
 
 using Progress = DriveConfiguring::Progress;
@@ -277,4 +277,4 @@ TEST_F(DriveSetupTest, ACancelledOneSendsNothingMore) {
 }
 
 }  // namespace
-}  // namespace rc10::test
+}  // namespace rc10::test::drive_setup_test

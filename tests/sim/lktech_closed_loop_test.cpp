@@ -11,7 +11,7 @@
 #include "sim/solo_rig.hpp"
 #include "support/own_defaults.hpp"
 
-namespace rc10::test {
+namespace rc10::test::lktech_closed_loop_test {
 namespace {
 
 using namespace std::chrono_literals;
@@ -236,4 +236,4 @@ TEST(LKTechGroupLoop, FourDrivesRunFromOneFrame) {
 }
 
 }  // namespace
-}  // namespace rc10::test
+}  // namespace rc10::test::lktech_closed_loop_test

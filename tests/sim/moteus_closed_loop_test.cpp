@@ -10,7 +10,7 @@
 #include "sim/solo_rig.hpp"
 #include "support/moteus_settings.hpp"
 
-namespace rc10::test {
+namespace rc10::test::moteus_closed_loop_test {
 namespace {
 
 using namespace std::chrono_literals;
@@ -334,4 +334,4 @@ TEST(MoteusClosedLoop, AWheelRunsOnOverTheRangeOfThePositionRegister) {
 }
 
 }  // namespace
-}  // namespace rc10::test
+}  // namespace rc10::test::moteus_closed_loop_test

@@ -8,7 +8,7 @@
 
 #include "sim/dji_parameters.hpp"
 
-namespace rc10::test {
+namespace rc10::test::motor_physics_test {
 namespace {
 
 using namespace std::chrono_literals;
@@ -269,4 +269,4 @@ TEST(MotorPhysics, SurvivesAnyLoadTheConfigurationAllows) {
 }
 
 }  // namespace
-}  // namespace rc10::test
+}  // namespace rc10::test::motor_physics_test

@@ -9,7 +9,7 @@
 #include "sim/solo_rig.hpp"
 #include "support/own_defaults.hpp"
 
-namespace rc10::test {
+namespace rc10::test::myactuator_closed_loop_test {
 namespace {
 
 using namespace std::chrono_literals;
@@ -196,4 +196,4 @@ TEST_F(MyActuatorRig, EnablingFailsWhenNobodyAnswers) {
 }
 
 }  // namespace
-}  // namespace rc10::test
+}  // namespace rc10::test::myactuator_closed_loop_test

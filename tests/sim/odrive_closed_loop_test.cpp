@@ -10,7 +10,7 @@
 #include "sim/solo_rig.hpp"
 #include "support/odrive_settings.hpp"
 
-namespace rc10::test {
+namespace rc10::test::odrive_closed_loop_test {
 namespace {
 
 using namespace std::chrono_literals;
@@ -222,4 +222,4 @@ INSTANTIATE_TEST_SUITE_P(Models, OdriveLoop, testing::Values("ODrive_S1", "ODriv
                          [](const auto& model) { return model.param; });
 
 }  // namespace
-}  // namespace rc10::test
+}  // namespace rc10::test::odrive_closed_loop_test

@@ -11,7 +11,7 @@
 #include "sim/solo_rig.hpp"
 #include "support/robstride_settings.hpp"
 
-namespace rc10::test {
+namespace rc10::test::robstride_closed_loop_test {
 namespace {
 
 using std::chrono::milliseconds;
@@ -360,4 +360,4 @@ TEST(RobStrideClosedLoop, TheDriveAnswersNothingToOthersAndNothingUnasked) {
 }
 
 }  // namespace
-}  // namespace rc10::test
+}  // namespace rc10::test::robstride_closed_loop_test

@@ -13,7 +13,7 @@
 #include "sim/dji_drive.hpp"
 #include "support/alloc_guard.hpp"
 
-namespace rc10::test {
+namespace rc10::test::sim_bus_test {
 namespace {
 
 using namespace std::chrono_literals;
@@ -246,4 +246,4 @@ TEST(SimBus, CheckRefusesTwoDrivesWithOneFeedbackIdAndNamesBoth) {
 }
 
 }  // namespace
-}  // namespace rc10::test
+}  // namespace rc10::test::sim_bus_test

@@ -15,7 +15,7 @@
 
 #include "sim/dji_drive.hpp"
 
-namespace rc10::test {
+namespace rc10::test::sim_port_test {
 namespace {
 
 using namespace std::chrono_literals;
@@ -196,4 +196,4 @@ TEST_F(SimPortTest, SteppingAllocatesNothing) {
 }
 
 }  // namespace
-}  // namespace rc10::test
+}  // namespace rc10::test::sim_port_test

@@ -11,7 +11,7 @@
 #include "sim/vesc_drive.hpp"
 #include "support/vesc_motors.hpp"
 
-namespace rc10::test {
+namespace rc10::test::vesc_closed_loop_test {
 namespace {
 
 using namespace std::chrono_literals;
@@ -288,4 +288,4 @@ TEST(VescClosedLoop, DampSlowsAMotorDown) {
 }
 
 }  // namespace
-}  // namespace rc10::test
+}  // namespace rc10::test::vesc_closed_loop_test

@@ -8,7 +8,7 @@
 
 // Frames of public documents and captures: those of tests/golden and of the families' golden tests.
 
-namespace rc10::survey {
+namespace rc10::survey::recogniser_test {
 namespace {
 
 using ::testing::AllOf;
@@ -197,4 +197,4 @@ TEST(HarmlessQueries, AreExtendedFramesThatCommandNobody) {
 }
 
 }  // namespace
-}  // namespace rc10::survey
+}  // namespace rc10::survey::recogniser_test

@@ -4,7 +4,7 @@
 
 #include "bus/frame_text.hpp"
 
-namespace rc10::survey {
+namespace rc10::survey::scan_advice_test {
 namespace {
 
 using ::testing::AllOf;
@@ -62,4 +62,4 @@ TEST(ScanAdvice, WhoWasNotAskedIsTold) {
 }
 
 }  // namespace
-}  // namespace rc10::survey
+}  // namespace rc10::survey::scan_advice_test
