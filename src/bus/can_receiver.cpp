@@ -56,9 +56,18 @@ Reception CanReceiver::receive(const WakeUp& wake, std::span<CanFrame> out) noex
   const int count =
       ::recvmmsg(fd_, buffers_->headers.data(), static_cast<unsigned>(room), MSG_DONTWAIT, nullptr);
   if (count < 0) {
+    left_behind_.reset();
     if (errno != EAGAIN && errno != EWOULDBLOCK && errno != EINTR) reception.error = errno;
     return reception;
   }
+  // What a batch left behind may be as old as its first frame.
+  WakeUp since = wake;
+  if (left_behind_) {
+    since.previous = left_behind_->previous;
+    since.previous_offset = left_behind_->previous_offset;
+  }
+  left_behind_.reset();
+  if (count > 0 && static_cast<std::size_t>(count) == room) left_behind_ = since;
   for (std::size_t i = 0; i < static_cast<std::size_t>(count); ++i) {
     const auto& [header, size] = buffers_->headers[i];
     if (size == 0) {  // SOCK_SEQPACKET: the other end was closed. CAN_RAW has no empty message.
@@ -72,7 +81,7 @@ Reception CanReceiver::receive(const WakeUp& wake, std::span<CanFrame> out) noex
       ++reception.malformed_count;
       continue;
     }
-    frame.received = control.realtime_stamp ? toMonotonic(*control.realtime_stamp, wake) : wake.now;
+    frame.received = control.realtime_stamp ? toMonotonic(*control.realtime_stamp, since) : wake.now;
     frame.sent_here = (header.msg_flags & kSentHere) != 0;
     if (frame.sent_here) ++reception.confirmed_count;
     ++reception.frame_count;

@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <span>
 
 #include "app/receive_clock.hpp"
@@ -38,6 +39,8 @@ class CanReceiver {
   [[nodiscard]] Reception receive(const WakeUp& wake, std::span<CanFrame> out) noexcept;
 
  private:
+  /// The wake-up of the first of several batches, until one was not full.
+  std::optional<WakeUp> left_behind_;
   struct Buffers;  // mmsghdr, iovec and control buffers: set up once, they point into each other
   int fd_;
   std::unique_ptr<Buffers> buffers_;

@@ -192,6 +192,32 @@ TEST_F(CanReceiverTest, AStampIsTheTimeOfReceptionOnTheMonotonicClock) {
   EXPECT_LE(out_[0].received, out_[1].received);
 }
 
+// After a pause there may be more than one batch; the second was there already when the first was read.
+TEST_F(CanReceiverTest, WhatABatchLeftBehindKeepsItsStamp) {
+  enableStamps();
+  const MonotonicTime before = monotonicNow();
+  for (int i = 0; i < 2 * static_cast<int>(CanReceiver::kBatch); ++i) pair_.write(numbered(1));
+  const MonotonicTime written = monotonicNow();
+  wake_ = {.now = written + 10s,
+           .previous = before - 10s,
+           .realtime_offset = realtimeOffset(),
+           .previous_offset = realtimeOffset()};
+  ASSERT_EQ(receive().frame_count, CanReceiver::kBatch);
+  wake_.previous = wake_.now;
+  wake_.now += 1ms;
+  ASSERT_EQ(receive().frame_count, CanReceiver::kBatch);
+  EXPECT_LE(out_[0].received, written + 5ms);
+  // All of it was read: what comes now came later.
+  wake_.previous = wake_.now;
+  wake_.now += 1ms;
+  EXPECT_EQ(receive().frame_count, 0U);
+  pair_.write(numbered(2));
+  wake_.previous = wake_.now;
+  wake_.now += 1ms;
+  ASSERT_EQ(receive().frame_count, 1U);
+  EXPECT_EQ(out_[0].received, wake_.previous);
+}
+
 TEST_F(CanReceiverTest, AStepOfTheWallClockMakesNoFrameLookFresh) {
   enableStamps();
   pair_.write(numbered(1));
