@@ -20,14 +20,14 @@ constexpr int kSentHere = MSG_CONFIRM | MSG_DONTROUTE;
 
 struct CanReceiver::Buffers {
   struct Slot {
-    canfd_frame frame{};
+    StampedFrame message{};
     alignas(cmsghdr) std::array<std::byte, kControlBytes> control{};
     iovec content{};
   };
 
   Buffers() noexcept {
     for (std::size_t i = 0; i < kBatch; ++i) {
-      slots[i].content = {&slots[i].frame, sizeof(slots[i].frame)};
+      slots[i].content = {&slots[i].message, sizeof(slots[i].message)};
       msghdr& header = headers[i].msg_hdr;
       header.msg_iov = &slots[i].content;
       header.msg_iovlen = 1;
@@ -77,11 +77,15 @@ Reception CanReceiver::receive(const WakeUp& wake, std::span<CanFrame> out) noex
     const ControlMessages control = readControlMessages(header);
     if (control.kernel_dropped) buffers_->kernel_dropped = *control.kernel_dropped;
     CanFrame& frame = out[reception.frame_count];
-    if ((header.msg_flags & MSG_TRUNC) != 0 || !decodeFrame(buffers_->slots[i].frame, size, frame)) {
+    if ((header.msg_flags & MSG_TRUNC) != 0 || !decodeFrame(buffers_->slots[i].message, size, frame)) {
       ++reception.malformed_count;
       continue;
     }
-    frame.received = control.realtime_stamp ? toMonotonic(*control.realtime_stamp, since) : wake.now;
+    if (frame.received != MonotonicTime{}) {
+      frame.received = std::min(frame.received, wake.now);
+    } else {
+      frame.received = control.realtime_stamp ? toMonotonic(*control.realtime_stamp, since) : wake.now;
+    }
     frame.sent_here = (header.msg_flags & kSentHere) != 0;
     if (frame.sent_here) ++reception.confirmed_count;
     ++reception.frame_count;

@@ -1,6 +1,7 @@
 #include "bus/wire_frame.hpp"
 
 #include <algorithm>
+#include <cstring>
 #include <iterator>
 
 namespace rc10 {
@@ -45,6 +46,26 @@ bool decodeFrame(const canfd_frame& wire, std::size_t size, CanFrame& out) noexc
     out.bit_rate_switch = fd && (wire.flags & CANFD_BRS) != 0;
   }
   if (!remote) std::copy_n(std::begin(wire.data), wire.len, out.data.begin());
+  return true;
+}
+
+std::size_t encodeFrame(const CanFrame& frame, StampedFrame& out) noexcept {
+  const std::size_t bytes = encodeFrame(frame, out.frame);
+  if (bytes == 0) return 0;
+  const std::int64_t stamp_ns = frame.received.time_since_epoch().count();
+  std::memcpy(reinterpret_cast<std::byte*>(&out) + bytes, &stamp_ns, sizeof(stamp_ns));
+  return bytes + sizeof(stamp_ns);
+}
+
+bool decodeFrame(const StampedFrame& wire, std::size_t size, CanFrame& out) noexcept {
+  std::int64_t stamp_ns = 0;
+  const bool stamped = size == CAN_MTU + sizeof(stamp_ns) || size == CANFD_MTU + sizeof(stamp_ns);
+  const std::size_t bytes = stamped ? size - sizeof(stamp_ns) : size;
+  if (!decodeFrame(wire.frame, bytes, out)) return false;
+  if (stamped) {
+    std::memcpy(&stamp_ns, reinterpret_cast<const std::byte*>(&wire) + bytes, sizeof(stamp_ns));
+    out.received = MonotonicTime{Duration{stamp_ns}};
+  }
   return true;
 }
 

@@ -3,6 +3,7 @@
 #include <linux/can.h>
 
 #include <cstddef>
+#include <cstdint>
 
 #include "bus/can_frame.hpp"
 
@@ -21,5 +22,19 @@ static_assert(sizeof(can_frame) == CAN_MTU && sizeof(canfd_frame) == CANFD_MTU);
 /// Reads a message of `size` bytes. False, with `out` untouched, if it is no frame. Leaves `received` at
 /// its default.
 [[nodiscard]] bool decodeFrame(const canfd_frame& wire, std::size_t size, CanFrame& out) noexcept;
+
+/// A frame of a simulated bus: behind the 16 or 72 bytes stands when it was on the bus, in ns of
+/// CLOCK_MONOTONIC. The kernel's stamp tells when it was written, and a thread that was held up writes late.
+struct StampedFrame {
+  canfd_frame frame;
+  std::int64_t room_for_stamp_ns;
+};
+static_assert(sizeof(StampedFrame) == CANFD_MTU + sizeof(std::int64_t));
+
+/// Writes `frame` and `frame.received`; returns how many bytes to send, or 0 as encodeFrame() does.
+[[nodiscard]] std::size_t encodeFrame(const CanFrame& frame, StampedFrame& out) noexcept;
+
+/// Reads a message with or without a stamp; without one, `received` is left at its default.
+[[nodiscard]] bool decodeFrame(const StampedFrame& wire, std::size_t size, CanFrame& out) noexcept;
 
 }  // namespace rc10

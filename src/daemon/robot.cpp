@@ -93,7 +93,8 @@ Result<void> Robot::addSimulated(const BusConfig& config) {
   if (auto added = addMotors(config); !added) return added;
   const auto drives = simulatedBus(config);
   if (auto checked = sim::SimBus::check(drives); !checked) return checked;
-  sim_ports_.push_back(std::make_unique<sim::SimPort>(std::move(ends->second), drives));
+  sim_ports_.push_back(
+      std::make_unique<sim::SimPort>(std::move(ends->second), drives, sim::Stamps::kOwn));
   return {};
 }
 

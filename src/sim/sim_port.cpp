@@ -7,12 +7,21 @@
 #include <cerrno>
 #include <system_error>
 
+#include "bus/wire_frame.hpp"
+
 namespace rc10::sim {
 namespace {
 
 // Enough to empty the queue of any bus in one step, and an end in case somebody writes faster than this
 // reads.
 constexpr int kMostReads = 16;
+
+// Of the drives that talk unasked.
+constexpr Duration kPeriod = std::chrono::milliseconds{1};
+// A step of up to this is one: all of its feedback periods come to one frame each.
+constexpr Duration kLate = kPeriod * 3 / 2;
+// Room for what a step makes up for, if the kernel allows it.
+constexpr int kSendBufferBytes = 1 << 20;
 
 }  // namespace
 
@@ -29,30 +38,57 @@ Result<std::pair<UniqueFd, UniqueFd>> SimPort::makeSocketPair() {
     if (::setsockopt(fd, SOL_SOCKET, SO_TIMESTAMPNS, &on, sizeof(on)) != 0 && errno != ENOPROTOOPT) {
       return fail("simulated bus: cannot ask for receive stamps: " + std::generic_category().message(errno));
     }
+    (void)::setsockopt(fd, SOL_SOCKET, SO_SNDBUF, &kSendBufferBytes, sizeof(kSendBufferBytes));
   }
   return pair;
 }
 
-SimPort::SimPort(UniqueFd fd, const SimBusConfig& config)
+struct SimPort::Outbox {
+  static constexpr std::size_t kCapacity = 64;
+
+  Outbox() noexcept {
+    for (std::size_t i = 0; i < kCapacity; ++i) {
+      contents[i].iov_base = &messages[i];
+      headers[i].msg_hdr.msg_iov = &contents[i];
+      headers[i].msg_hdr.msg_iovlen = 1;
+    }
+  }
+
+  std::array<StampedFrame, kCapacity> messages{};
+  std::array<iovec, kCapacity> contents{};
+  std::array<mmsghdr, kCapacity> headers{};
+};
+
+SimPort::SimPort(UniqueFd fd, const SimBusConfig& config, Stamps stamps)
     : fd_(std::move(fd)),
+      stamps_(stamps),
       bus_(config),
       receiver_(fd_.get()),
+      outbox_(std::make_unique<Outbox>()),
       commands_(CanReceiver::kBatch),
       feedback_(SimBus::kMaxFramesPerStep) {}
+
+SimPort::~SimPort() = default;
 
 void SimPort::step(MonotonicTime now) noexcept {
   readCommands(now);
   const Duration passed = last_step_ ? std::max(now - *last_step_, Duration::zero()) : Duration::zero();
   last_step_ = last_step_ ? std::max(now, *last_step_) : now;
-  const Duration dt = std::min(passed, kLongestStep);
+  const bool own = stamps_ == Stamps::kOwn;
+  Duration dt = std::min(passed, own ? kLongestMadeUpFor : kLongestStep);
   counters_.skipped += passed - dt;
-  writeFeedback(bus_.step(now, dt, feedback_));
+  for (; own && dt > kLate; dt -= kPeriod) advance(now - dt + kPeriod, kPeriod);
+  advance(now, dt);
 }
 
 void SimPort::sentAt(MonotonicTime sent) noexcept {
-  if (!last_step_ || sent - *last_step_ <= kLongestSending) return;
+  if (stamps_ == Stamps::kOwn || !last_step_ || sent - *last_step_ <= kLongestSending) return;
   counters_.skipped += sent - *last_step_;
   last_step_ = sent;
+}
+
+void SimPort::advance(MonotonicTime now, Duration dt) noexcept {
+  writeFeedback(std::span(feedback_).first(bus_.step(now, dt, feedback_)));
 }
 
 void SimPort::readCommands(MonotonicTime now) noexcept {
@@ -68,12 +104,21 @@ void SimPort::readCommands(MonotonicTime now) noexcept {
   }
 }
 
-void SimPort::writeFeedback(std::size_t count) noexcept {
-  for (std::size_t next = 0; next < count;) {
-    batch_.clear();
-    while (next < count && batch_.room() > 0) batch_.add(feedback_[next++], std::nullopt);
-    (void)batch_.send(fd_.get());
-    for (const auto& entry : batch_.entries()) ++(entry.sent ? counters_.sent : counters_.refused);
+void SimPort::writeFeedback(std::span<const CanFrame> frames) noexcept {
+  while (!frames.empty()) {
+    const auto batch = frames.first(std::min(frames.size(), Outbox::kCapacity));
+    for (std::size_t i = 0; i < batch.size(); ++i) {
+      auto& message = outbox_->messages[i];
+      outbox_->contents[i].iov_len =
+          stamps_ == Stamps::kOwn ? encodeFrame(batch[i], message) : encodeFrame(batch[i], message.frame);
+    }
+    // MSG_NOSIGNAL: the other end of a simulated bus may be gone, and SIGPIPE would end the process.
+    const int taken = ::sendmmsg(fd_.get(), outbox_->headers.data(), static_cast<unsigned>(batch.size()),
+                                 MSG_DONTWAIT | MSG_NOSIGNAL);
+    const auto sent = static_cast<std::size_t>(std::max(taken, 0));
+    counters_.sent += sent;
+    counters_.refused += batch.size() - sent;
+    frames = frames.subspan(batch.size());
   }
 }
 

@@ -115,7 +115,7 @@ Result<Running> start(const Place& place, const Options& options) {
       openCanSocket(place.interface, {.frames_per_tick = 2 * static_cast<int>(config.drives.size())});
   if (!socket) return tl::unexpected(socket.error());
   return Running{place.bus->name, place.interface,
-                 std::make_unique<sim::SimPort>(std::move(socket->fd), config)};
+                 std::make_unique<sim::SimPort>(std::move(socket->fd), config, sim::Stamps::kKernel)};
 }
 
 Result<std::vector<Running>> startAll(const std::vector<Place>& places, const Options& options) {

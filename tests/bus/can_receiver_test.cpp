@@ -9,6 +9,7 @@
 
 #include "bus/control_messages.hpp"
 #include "bus/socket_pair.hpp"
+#include "bus/wire_frame.hpp"
 #include "support/frame_calls.hpp"
 
 namespace rc10::test::can_receiver_test {
@@ -216,6 +217,26 @@ TEST_F(CanReceiverTest, WhatABatchLeftBehindKeepsItsStamp) {
   wake_.now += 1ms;
   ASSERT_EQ(receive().frame_count, 1U);
   EXPECT_EQ(out_[0].received, wake_.previous);
+}
+
+TEST_F(CanReceiverTest, AFrameWithItsOwnStampKeepsIt) {
+  StampedFrame message{};
+  CanFrame frame = numbered(1);
+  frame.received = MonotonicTime{9500ms};
+  const auto classic = encodeFrame(frame, message);
+  ASSERT_EQ(::send(pair_.far.get(), &message, classic, 0), 24);
+  frame = makeFdFrame({0x8001, true}, std::array<std::uint8_t, 64>{7}, true);
+  frame.received = MonotonicTime{9600ms};
+  const auto fd = encodeFrame(frame, message);
+  ASSERT_EQ(::send(pair_.far.get(), &message, fd, 0), 80);
+  frame.received = MonotonicTime{11s};
+  ASSERT_EQ(::send(pair_.far.get(), &message, encodeFrame(frame, message), 0), 80);
+  ASSERT_EQ(receive().frame_count, 3U);
+  EXPECT_EQ(out_[0].received, MonotonicTime{9500ms});
+  EXPECT_EQ(out_[0].data[0], 1);
+  EXPECT_EQ(out_[1].received, MonotonicTime{9600ms});
+  EXPECT_EQ(out_[1].length, 64);
+  EXPECT_EQ(out_[2].received, wake_.now);
 }
 
 TEST_F(CanReceiverTest, AStepOfTheWallClockMakesNoFrameLookFresh) {

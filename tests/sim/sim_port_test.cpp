@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "bus/can_receiver.hpp"
+#include "bus/send_batch.hpp"
 #include "support/alloc_guard.hpp"
 
 #include "sim/dji_drive.hpp"
@@ -21,6 +22,7 @@ namespace {
 using namespace std::chrono_literals;
 using sim::SimBusConfig;
 using sim::SimPort;
+using sim::Stamps;
 
 SimBusConfig twoWheels() {
   SimBusConfig config;
@@ -31,10 +33,10 @@ SimBusConfig twoWheels() {
 
 class SimPortTest : public testing::Test {
  protected:
-  SimPortTest() {
+  explicit SimPortTest(Stamps stamps = Stamps::kKernel) {
     auto ends = SimPort::makeSocketPair();
     near_ = std::move(ends->first);
-    port_ = std::make_unique<SimPort>(std::move(ends->second), twoWheels());
+    port_ = std::make_unique<SimPort>(std::move(ends->second), twoWheels(), stamps);
     port_->step(now_);
   }
 
@@ -137,6 +139,54 @@ TEST_F(SimPortTest, SendingThatTakesItsUsualTimeSkipsNothing) {
   }
   EXPECT_EQ(port_->counters().skipped, 0ms);
   EXPECT_EQ(port_->counters().sent, 20U);
+}
+
+class SimPortOfItsOwnTest : public SimPortTest {
+ protected:
+  SimPortOfItsOwnTest() : SimPortTest(Stamps::kOwn) {}
+};
+
+TEST_F(SimPortOfItsOwnTest, ALateStepIsMadeUpForMillisecondByMillisecond) {
+  command(8192);
+  step();
+  (void)received();
+  auto late = now_;
+  step(50ms);
+  const auto frames = received();
+  ASSERT_EQ(frames.size(), 2U * 50U);
+  for (std::size_t i = 0; i < frames.size(); i += 2) {
+    EXPECT_EQ(frames[i].received, late += 1ms);
+    EXPECT_EQ(frames[i + 1].received, late);
+  }
+  EXPECT_EQ(port_->bus().counters().overslept, 0U);
+  EXPECT_EQ(port_->counters().skipped, 0ms);
+}
+
+TEST_F(SimPortOfItsOwnTest, ALateStepMovesTheMotorsAsPunctualOnesDo) {
+  auto ends = SimPort::makeSocketPair();
+  SimPort punctual{std::move(ends->second), twoWheels(), Stamps::kOwn};
+  punctual.step(now_);
+  SendBatch batch;
+  ASSERT_TRUE(batch.add(makeClassicFrame({0x200, false}, std::array<std::uint8_t, 8>{0x20}), std::nullopt));
+  ASSERT_EQ(batch.send(ends->first.get()), 1U);
+  for (auto at = now_ + 1ms; at <= now_ + 50ms; at += 1ms) punctual.step(at);
+  command(0x2000);
+  step(50ms);
+  EXPECT_GT(port_->bus().motor(0).outputRpm(), 5.0);
+  EXPECT_EQ(port_->bus().motor(0).outputAngleDeg(), punctual.bus().motor(0).outputAngleDeg());
+}
+
+TEST_F(SimPortOfItsOwnTest, AfterALongStopTheMotorsGoOnFromWhereTheyWere) {
+  step(3600s);
+  EXPECT_EQ(port_->counters().skipped, 3600s - SimPort::kLongestMadeUpFor);
+  EXPECT_EQ(received().size(), 2U * 100U);
+}
+
+TEST_F(SimPortOfItsOwnTest, WhenItsFramesWereWrittenMakesNoDifference) {
+  port_->sentAt(now_ + 13ms);
+  step();
+  EXPECT_EQ(port_->counters().skipped, 0ms);
+  EXPECT_EQ(received().front().received, now_);
 }
 
 TEST_F(SimPortTest, TimeThatRunsBackwardsIsNoTime) {

@@ -36,7 +36,7 @@ class SimRig {
   explicit SimRig(const SimRigConfig& config) {
     auto ends = sim::SimPort::makeSocketPair();
     bus_ = fdCANbus::adopt("simulated", std::move(ends->first), false);
-    port_ = std::make_unique<sim::SimPort>(std::move(ends->second), config.bus());
+    port_ = std::make_unique<sim::SimPort>(std::move(ends->second), config.bus(), sim::Stamps::kOwn);
     receiver_ = std::make_unique<CanReceiver>(bus_->descriptor());
     for (const auto& drive : config.drives) add(drive);
     port_->step(now_ - kHalfPeriod);
