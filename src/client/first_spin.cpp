@@ -22,10 +22,11 @@ bool FirstSpin::goesOn(const link::MotorState& motor) noexcept {
   const bool slow = std::abs(velocity_rpm_) <= over_speed_rpm_;
   fast_ = std::abs(velocity_rpm_) > over_speed_rpm_;
   if (begins) turned_soon_ = fast_;
-  return slow && std::isfinite(turned_deg_);
+  return slow && std::isfinite(turned_deg_) && !angle_lost_;
 }
 
 FirstSpin::Outcome FirstSpin::outcome() const noexcept {
+  if (angle_lost_) return Outcome::kAngleLost;
   if (!start_deg_ || !std::isfinite(velocity_rpm_) || !std::isfinite(turned_deg_)) return Outcome::kUnknown;
   if (turned_soon_) return Outcome::kTurnedSoon;
   // Fast enough is enough, however short the way.
@@ -53,6 +54,10 @@ std::string text(const FirstSpin& spin, const std::string& motor) {
     case FirstSpin::Outcome::kDisagree:
       return turned + " while its drive told " + speed +
              ": one of them has the wrong sign: see its page in docs/motors";
+    case FirstSpin::Outcome::kAngleLost:
+      return motor +
+             "'s feedback had a gap that may hide a turn: nothing can be judged: commission again, and see "
+             "docs/troubleshooting.md if it happens again";
     case FirstSpin::Outcome::kUnknown: break;
   }
   return motor + "'s drive reports no speed or no angle: nothing can be judged";

@@ -17,11 +17,15 @@ class FirstSpin {
     kTurnedSoon,  ///< Too fast before the current could have done it.
     kDisagree,    ///< Its speed has one sign, its angle the other.
     kUnknown,     ///< No speed, or no angle.
+    kAngleLost,   ///< Its turns were not counted for a while: it may have turned either way.
   };
   explicit FirstSpin(double over_speed_rpm) noexcept : over_speed_rpm_(over_speed_rpm) {}
 
   /// Takes the newest state; the first is that in which the current begins. False: let go of it at once.
   [[nodiscard]] bool goesOn(const link::MotorState& motor) noexcept;
+
+  /// rc10d has told of a gap in its feedback that may hide a turn: goesOn() ends it.
+  void loseAngle() noexcept { angle_lost_ = true; }
 
   /// After the last state.
   [[nodiscard]] Outcome outcome() const noexcept;
@@ -36,6 +40,7 @@ class FirstSpin {
   double velocity_rpm_ = 0.0;
   bool fast_ = false;
   bool turned_soon_ = false;
+  bool angle_lost_ = false;
 };
 
 /// What it means and what to do, in words.

@@ -50,6 +50,14 @@ TEST_F(FirstSpinTest, AMotorThatTurnsWithTheCurrentIsReady) {
   EXPECT_EQ(words(), "wheel turned by 84.8 deg the right way: it is ready");
 }
 
+TEST_F(FirstSpinTest, AMotorWhoseTurnsWereNotCountedIsNotJudged) {
+  EXPECT_EQ(spin({{358.0, 0.0F}, {380.0, 30.0F}}), 2U);
+  first.loseAngle();
+  EXPECT_EQ(spin({{20.0, 40.0F}, {40.0, 40.0F}}), 1U);
+  EXPECT_EQ(first.outcome(), Outcome::kAngleLost);
+  EXPECT_THAT(words(), HasSubstr("commission again"));
+}
+
 TEST_F(FirstSpinTest, OverSpeedEndsItAndIsASuccessHoweverShortTheWay) {
   EXPECT_EQ(spin({{0.0, 0.0F}, {0.5, 30.0F}, {2.0, 61.0F}, {9.0, 90.0F}}), 3U);
   EXPECT_EQ(first.outcome(), Outcome::kRight);

@@ -27,6 +27,8 @@ namespace rc10::ctl {
 namespace {
 
 constexpr double kMostCurrentA = 20.0;
+// docs/lcm.md: multi-turn angle lost.
+constexpr std::int32_t kReferenceLost = 102;
 constexpr Duration kSpinTime = std::chrono::seconds{1};
 /// The slowest state_hz is one a second.
 constexpr Duration kShown = std::chrono::seconds{2};
@@ -164,6 +166,9 @@ class Commissioning {
     order.time = kSpinTime;
     order.steer = [this, &seen](link::Setpoint&, const link::State& state) -> std::optional<std::string> {
       return seen.goesOn(state.motors[motor_]) ? std::nullopt : std::optional<std::string>{""};
+    };
+    order.hear = [&seen](const link::Event& event) {
+      if (event.code == kReferenceLost) seen.loseAngle();
     };
     return order;
   }

@@ -175,6 +175,7 @@ class Driver {
 
   void showEvents(Progress& progress) {
     for (const auto& event : feed_.takeEvents()) {
+      if (order_.hear && event.source.view() == name_) order_.hear(event);
       const bool concerns_us = event.source.view() == name_ ? event.severity > 0 : event.severity > 1;
       if (!concerns_us) continue;
       progress.note(std::string(link::severityWord(event.severity)) + ": " +

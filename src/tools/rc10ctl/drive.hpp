@@ -20,6 +20,8 @@ struct Drive {
   /// Called before each sending with the newest state: may change the setpoint. What it returns ends the
   /// drive: a reason is a failure, "" the end; empty goes on.
   std::function<std::optional<std::string>(link::Setpoint& setpoint, const link::State& state)> steer;
+  /// Called with each event of the motor.
+  std::function<void(const link::Event& event)> hear;
 };
 
 /// Sends the setpoint again and again for the time, shows what becomes of it, then lets the motor coast;
