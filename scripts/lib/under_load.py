@@ -1,0 +1,128 @@
+#!/usr/bin/python3
+"""Runs a command as on a busy machine: all cores have other work, and now and then it stands still.
+
+It is stopped with all its descendants. Of a pause they notice nothing but the time, and that some
+system calls are interrupted (signal(7): "Interruption of system calls and library functions by stop
+signals"). It ends with the command's status.
+"""
+
+from __future__ import annotations
+
+import argparse
+import contextlib
+import ctypes
+import multiprocessing
+import os
+import random
+import signal
+import subprocess
+import sys
+import time
+import zlib
+from pathlib import Path
+from typing import NamedTuple
+
+PR_SET_CHILD_SUBREAPER = 36
+STOPPED = "Tt"  # by somebody else: a debugger, or a test whose subject that is
+
+
+class Process(NamedTuple):
+    parent: int
+    state: str
+
+
+def hog(parent: int) -> None:
+    """Works the core and the memory, as a compiler does."""
+    text = os.urandom(1 << 20)
+    while os.getppid() == parent:
+        zlib.compress(text)
+
+
+def processes() -> dict[int, Process]:
+    found = {}
+    for stat in Path("/proc").glob("[0-9]*/stat"):
+        try:
+            fields = stat.read_text(errors="replace").rpartition(")")[2].split()
+        except OSError:
+            continue  # ended
+        found[int(stat.parent.name)] = Process(parent=int(fields[1]), state=fields[0])
+    return found
+
+
+def running(spared: set[int]) -> set[int]:
+    """Every descendant that nobody has stopped, also those in sessions of their own."""
+    everything = processes()
+    tree: set[int] = set()
+    new = {os.getpid()}
+    while new:
+        new = {pid for pid, p in everything.items() if p.parent in new} - spared
+        tree |= new
+    return {pid for pid in tree if everything[pid].state not in STOPPED}
+
+
+def send(number: signal.Signals, pids: set[int]) -> None:
+    for pid in pids:
+        with contextlib.suppress(ProcessLookupError):
+            os.kill(pid, number)
+
+
+def pause(seconds: float, spared: set[int]) -> None:
+    stopped: set[int] = set()
+    # Until there is nobody left: whoever runs may start another.
+    while new := running(spared) - stopped:
+        send(signal.SIGSTOP, new)
+        stopped |= new
+    time.sleep(seconds)
+    send(signal.SIGCONT, stopped)
+
+
+def main() -> int:
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0], allow_abbrev=False)
+    parser.add_argument(
+        "--stop-ms", type=float, default=30.0, help="how long a pause is (default %(default)g)"
+    )
+    parser.add_argument(
+        "--every-ms",
+        type=float,
+        default=600.0,
+        help="between two, on average (default %(default)g)",
+    )
+    parser.add_argument("--seed", type=int, default=random.SystemRandom().randrange(1_000_000))
+    parser.add_argument(
+        "--hogs", type=int, default=os.cpu_count(), help="busy processes (default: one a core)"
+    )
+    parser.add_argument("command", nargs=argparse.REMAINDER)
+    options = parser.parse_args()
+    if not options.command:
+        parser.error("which command?")
+    print(f"under_load: --seed {options.seed}", flush=True)
+    chance = random.Random(options.seed)
+    # Whoever loses his parent stays a descendant.
+    ctypes.CDLL(None).prctl(PR_SET_CHILD_SUBREAPER, 1, 0, 0, 0)
+    hogs = [
+        multiprocessing.Process(target=hog, args=(os.getpid(),), daemon=True)
+        for _ in range(options.hogs)
+    ]
+    for one in hogs:
+        one.start()
+    spared = {one.pid for one in hogs if one.pid is not None}
+    command = subprocess.Popen(options.command, start_new_session=True)
+    pauses = 0
+    try:
+        while True:
+            try:
+                status = command.wait(options.every_ms / 1000 * chance.uniform(0.5, 1.5))
+                break
+            except subprocess.TimeoutExpired:
+                pause(options.stop_ms / 1000, spared)
+                pauses += 1
+    finally:
+        send(signal.SIGTERM, running(spared))
+    print(
+        f"under_load: {pauses} pauses of {options.stop_ms:g} ms, --seed {options.seed}", flush=True
+    )
+    return status if status >= 0 else 128 - status
+
+
+if __name__ == "__main__":
+    sys.exit(main())
