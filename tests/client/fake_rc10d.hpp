@@ -87,7 +87,7 @@ class FakeRc10d {
   }
   /// The same, but waits up to `timeout_ms` for something to come.
   template <typename Message>
-  bool await(Message& message, int timeout_ms = 5000) {
+  bool await(Message& message, int timeout_ms = 30000) {
     pollfd entry{.fd = ours_.get(), .events = POLLIN, .revents = 0};
     return ::poll(&entry, 1, timeout_ms) == 1 && receive(message);
   }

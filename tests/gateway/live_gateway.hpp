@@ -57,10 +57,10 @@ class LcmClient {
     publish(kCommand, rc10::test::encoded(message));
   }
 
-  /// The next message on a channel, decoded; false: none within five seconds.
+  /// The next message on a channel, decoded; false: none within half a minute.
   template <typename Message>
   bool await(const std::string& channel, Message& message) {
-    for (const auto end = nowNs() + 5'000'000'000; received_[channel].empty() && nowNs() < end;) {
+    for (const auto end = nowNs() + 30'000'000'000; received_[channel].empty() && nowNs() < end;) {
       ::lcm_handle_timeout(lcm_, 50);
     }
     auto& queue = received_[channel];
@@ -103,7 +103,13 @@ class GatewayProcess {
     link::Command command;
     for (int attempt = 0; attempt < 200; ++attempt) {
       client.command(0);
-      if (rc10d_.await(command, 50)) return drain();
+      if (!rc10d_.await(command, 50)) continue;
+      // Of the attempts some may be on their way still; this one comes behind them.
+      client.command(kLastAttempt);
+      while (command.seq != kLastAttempt && rc10d_.await(command)) {
+      }
+      EXPECT_EQ(command.seq, kLastAttempt);
+      return;
     }
     ADD_FAILURE() << "the gateway does not pass commands on";
   }
@@ -118,7 +124,7 @@ class GatewayProcess {
 
   /// Waits for its end; its exit status, -1 if it does not end.
   int awaitEnd() {
-    for (int i = 0; i < 500; ++i) {
+    for (int i = 0; i < 3000; ++i) {
       int status = 0;
       if (::waitpid(pid_, &status, WNOHANG) == pid_) {
         pid_ = 0;
@@ -130,11 +136,7 @@ class GatewayProcess {
   }
 
  private:
-  void drain() {
-    link::Command command;
-    while (rc10d_.await(command, 100)) {
-    }
-  }
+  static constexpr std::int64_t kLastAttempt = -1;
 
   FakeRc10d rc10d_;
   pid_t pid_ = -1;
