@@ -56,7 +56,7 @@ def test_it_starts_again_after_it_was_killed(daemon: Daemon) -> None:
     daemon.start()
     state = daemon.wait_ready()
     assert all(motor["status"] == "READY" for motor in state["motors"])
-    assert "LCM" in daemon.program.output
+    daemon.program.wait_line("LCM")
 
 
 def test_an_unwritable_run_folder_is_named(tmp_path: Path) -> None:
