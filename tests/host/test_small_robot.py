@@ -6,7 +6,7 @@ import contextlib
 import re
 import subprocess
 import sys
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
@@ -77,28 +77,10 @@ def wait_heard(daemon: Daemon) -> None:
     eventually(lambda: all(word in daemon.must("modules") for word in words), "the remote is heard")
 
 
-def undisturbed(small: Daemon, mission: Callable[[], None]) -> None:
-    """Again after a fault: when this machine pauses, a geared motor seems to jump."""
-    for last in (False, False, True):
-        try:
-            mission()
-            return
-        except AssertionError as error:
-            if last or "is FAULT" not in str(error):
-                raise
-        small.must("clear")
-        small.must("disable")
-        small.wait_ready()
-
-
 @pytest.mark.parametrize("language", PROGRAMS)
 def test_it_does_its_mission_also_after_the_remote_was_lost(
     small: Daemon, port: Path, language: str
 ) -> None:
-    undisturbed(small, lambda: do_mission(small, port, language))
-
-
-def do_mission(small: Daemon, port: Path, language: str) -> None:
     with Remote(port) as remote, program(language) as robot:
         # A switch that is up when it is first seen enables nothing.
         wait_heard(small)
@@ -124,10 +106,6 @@ def do_mission(small: Daemon, port: Path, language: str) -> None:
 
 @pytest.mark.parametrize("language", PROGRAMS)
 def test_shots_that_the_feeder_forgot_are_asked_for_again(small: Daemon, language: str) -> None:
-    undisturbed(small, lambda: lose_the_feeder(small, language))
-
-
-def lose_the_feeder(small: Daemon, language: str) -> None:
     with (
         program(language, "--no-remote") as robot,
         rc10.connect("small", client="thief", priority=1) as thief,

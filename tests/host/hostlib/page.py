@@ -54,24 +54,13 @@ def robots(page: Path) -> list[str]:
 
 
 def run(block: Block, daemon: Daemon, folder: Path) -> None:
-    """Runs Python or shell in the folder, until it succeeds, three times at most."""
+    """Runs Python or shell in the folder; it must succeed."""
     if not (folder / "python").exists():
         os.symlink(REPO / "python", folder / "python")
     python = os.path.dirname(sys.executable)
     env = {**os.environ, **daemon.env, "PATH": f"{python}:{BIN}:{os.environ['PATH']}"}
     command = [sys.executable, "-c"] if block.kind == "python" else ["bash", "-ec"]
-    # A pause of this machine may cost a motor its feedback, which is a fault.
-    for _ in range(3):
-        done = subprocess.run(
-            [*command, block.text],
-            cwd=folder,
-            env=env,
-            capture_output=True,
-            text=True,
-            check=False,
-        )
-        if done.returncode == 0:
-            return
-        daemon.must("clear")
-        daemon.wait_ready()
-    raise AssertionError(f"{block.text}\n{done.stdout}{done.stderr}")
+    done = subprocess.run(
+        [*command, block.text], cwd=folder, env=env, capture_output=True, text=True, check=False
+    )
+    assert done.returncode == 0, f"{block.text}\n{done.stdout}{done.stderr}"
