@@ -33,7 +33,7 @@ shell() {
 
 # Each folder by itself: several have a conftest.py.
 types_in() {
-    (cd "$1" && MYPYPATH="$repo/tests/kernel:$repo/tests/host" python mypy --strict "${@:2}")
+    (cd "$1" && MYPYPATH="$repo/tests/kernel:$repo/tests/host:$repo/scripts/lib" python mypy --strict "${@:2}")
 }
 
 step clang-format format_cpp

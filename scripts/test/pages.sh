@@ -1,5 +1,5 @@
 #!/bin/bash
-# the order of the layers; links, quotes and tables of the pages
+# the order of the layers; links, quotes and tables of the pages; what the test scripts themselves do
 set -euo pipefail
 # shellcheck source=scripts/lib/results.sh
 . "$(dirname "${BASH_SOURCE[0]}")/../lib/results.sh"
@@ -10,4 +10,5 @@ need_python
 step "order of the layers" "$repo/tests/layers/check_layers.py" "$repo/src"
 pytest_in tests/layers
 pytest_in tests/docs
+pytest_in tests/scripts
 finish

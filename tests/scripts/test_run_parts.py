@@ -1,0 +1,114 @@
+"""Parts of the tests: what is run beside what, what counts, and what is shown."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable
+from typing import TYPE_CHECKING
+
+import pytest
+import run_parts
+from costs import Budget, PartCost, compare
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+WriteParts = Callable[..., None]
+
+
+@pytest.fixture
+def write_parts(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> WriteParts:
+    """Writes scripts of parts, by name and text, in the place of the real ones."""
+    monkeypatch.setattr(run_parts, "SCRIPTS", tmp_path)
+    monkeypatch.setattr(run_parts, "LOGS", tmp_path)
+    monkeypatch.setattr(run_parts, "ALL_CORES", 2)
+
+    def write(**texts: str) -> None:
+        for name, text in texts.items():
+            script = tmp_path / f"{name}.sh"
+            script.write_text(f"#!/bin/sh\n# about {name}\n{text}\n")
+            script.chmod(0o755)
+
+    return write
+
+
+def run(*names: str) -> dict[str, run_parts.Part]:
+    parts = run_parts.Run(list(names), Budget("a test", 1.0, {}, {}))
+    parts.go()
+    return {part.name: part for part in parts.done}
+
+
+def test_counts_are_those_of_the_last_line(write_parts: WriteParts) -> None:
+    write_parts(lint="echo '9 passed, 9 failed, 9 skipped'; echo '3 passed, 0 failed, 1 skipped'")
+    part = run("lint")["lint"]
+    assert (part.passed, part.failed, part.skipped) == (3, 0, 1)
+
+
+@pytest.mark.parametrize(
+    "text",
+    ["echo nothing", "kill -9 $$", "echo '3 passed, 0 failed, 0 skipped'; exit 1"],
+    ids=["no result", "killed", "a status that says no"],
+)
+def test_a_part_that_does_not_end_well_is_a_failure(write_parts: WriteParts, text: str) -> None:
+    write_parts(lint=text)
+    assert run("lint")["lint"].failed == 1
+
+
+def test_what_a_part_prints_is_shown_only_if_it_failed(
+    write_parts: WriteParts, capsys: pytest.CaptureFixture[str]
+) -> None:
+    write_parts(
+        lint="echo quiet; echo 'SKIPPED why'; echo '1 passed, 0 failed, 1 skipped'",
+        pages="echo loud; echo '0 passed, 1 failed, 0 skipped'",
+    )
+    run("lint", "pages")
+    shown = capsys.readouterr().out
+    assert "quiet" not in shown
+    assert "SKIPPED why" in shown
+    assert "loud" in shown
+
+
+def test_without_a_build_its_tests_are_failures_and_not_run(
+    write_parts: WriteParts, tmp_path: Path
+) -> None:
+    ok = "echo '1 passed, 0 failed, 0 skipped'"
+    write_parts(build="exit 1", unit=f"touch {tmp_path}/ran; {ok}", lint=ok)
+    parts = run("build", "unit", "lint")
+    assert (parts["unit"].failed, parts["lint"].failed) == (1, 0)
+    assert not (tmp_path / "ran").exists()
+
+
+def test_what_waits_runs_beside_what_computes(write_parts: WriteParts, tmp_path: Path) -> None:
+    # Each waits for the other: alone, neither would end.
+    here, there = tmp_path / "here", tmp_path / "there"
+    for fifo in (here, there):
+        os.mkfifo(fifo)
+    ok = "echo '1 passed, 0 failed, 0 skipped'"
+    write_parts(
+        kernel=f"echo > {here}; read line < {there}; {ok}",
+        host=f"read line < {here}; echo > {there}; {ok}",
+    )
+    assert [part.passed for part in run("kernel", "host").values()] == [1, 1]
+
+
+def test_tests_of_the_dev_build_wait_for_it(write_parts: WriteParts, tmp_path: Path) -> None:
+    ok = "echo '1 passed, 0 failed, 0 skipped'"
+    write_parts(build=f"touch {tmp_path}/built; {ok}", host=f"[ -e {tmp_path}/built ] && {ok}")
+    assert run("build", "host")["host"].failed == 0
+    assert run_parts.with_build(["host", "pages"]) == ["build", "host", "pages"]
+    assert run_parts.with_build(["pages"]) == ["pages"]
+
+
+def test_a_part_that_grew_by_a_third_is_named(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("costs.reference_cpu_s", lambda: 4.0)
+    parts = {name: PartCost(took_s=1, cpu_s=100) for name in ("unit", "host")}
+    budget = Budget("a machine of twice the speed", 2.0, {}, parts)
+    text = compare(budget, {"unit": 260.0, "host": 270.0, "web": 1.0})
+    assert "GREW host: 270 CPU s instead of 200" in text
+    assert "unit" not in text
+    assert "web: 1 CPU s, and no budget" in text
+
+
+def test_every_part_has_a_script_that_says_what_it_is() -> None:
+    for name in run_parts.TESTS_OF_DEV | run_parts.CORES.keys():
+        assert run_parts.Part(name).about

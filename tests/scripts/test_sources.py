@@ -1,0 +1,74 @@
+"""Which sources are looked at by themselves, and what that finds."""
+
+from __future__ import annotations
+
+import json
+import subprocess
+from typing import TYPE_CHECKING
+
+import alone
+import pytest
+import tidy
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+
+@pytest.fixture
+def repo(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """A repository with one commit: a.cpp and b.cpp include a.hpp, c.cpp nothing."""
+    src = tmp_path / "src" / "app"
+    src.mkdir(parents=True)
+    (src / "a.hpp").write_text("#pragma once\n#include <string>\nstd::string a();\n")
+    (src / "a.cpp").write_text('#include "app/a.hpp"\nstd::string a() { return {}; }\n')
+    (src / "b.cpp").write_text('#include "app/a.hpp"\n')
+    (src / "c.cpp").write_text("int c() { return 0; }\n")
+    git = ["git", "-C", str(tmp_path), "-c", "user.name=n", "-c", "user.email=e"]
+    for words in (["init", "--quiet"], ["add", "."], ["commit", "--quiet", "--message=first"]):
+        subprocess.run([*git, *words], check=True)
+    monkeypatch.setattr(tidy, "REPO", tmp_path)
+    monkeypatch.setattr(alone, "REPO", tmp_path)
+    monkeypatch.setattr(alone, "SRC", tmp_path / "src")
+    return tmp_path
+
+
+def changed(repo: Path) -> list[str]:
+    sources = sorted((repo / "src" / "app").glob("*.cpp"))
+    return sorted(source.name for source in tidy.changed_sources("HEAD", sources))
+
+
+def test_a_source_that_changed_is_looked_at(repo: Path) -> None:
+    assert changed(repo) == []
+    (repo / "src" / "app" / "c.cpp").write_text("int c() { return 1; }\n")
+    assert changed(repo) == ["c.cpp"]
+
+
+def test_a_header_that_changed_is_seen_through_one_source(repo: Path) -> None:
+    (repo / "src" / "app" / "a.hpp").write_text("#pragma once\n#include <string>\n")
+    assert changed(repo) == ["a.cpp"]
+    (repo / "src" / "app" / "b.cpp").write_text('#include "app/a.hpp"\n\n')
+    assert changed(repo) == ["b.cpp"]
+
+
+def test_what_compiles_only_behind_another_is_found(
+    repo: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    app = repo / "src" / "app"
+    (app / "b.cpp").write_text("std::string b;\n")
+    (app / "b.hpp").write_text("#pragma once\ninline std::string b2;\n")
+    commands = [
+        {
+            "file": str(file),
+            "directory": str(repo),
+            "command": f"c++ -std=c++20 -I{repo}/src -o x.o -c {file}",
+        }
+        for file in app.glob("*.cpp")
+    ]
+    (repo / "compile_commands.json").write_text(json.dumps(commands))
+    monkeypatch.setattr("sys.argv", ["alone.py", str(repo)])
+    assert alone.main() == 1
+    shown = capsys.readouterr().out
+    assert "5 sources and headers, 2 do not compile alone" in shown
+    assert "src/app/b.cpp:" in shown
+    assert "src/app/b.hpp:" in shown
+    assert "src/app/a" not in shown
