@@ -189,9 +189,9 @@ TEST_F(FallbackTest, ALostReferenceBeginsItInPlaceOfTheAngle) {
   const double far_deg = angleDeg() + 3600.0;
   robot->hold(kLeft, {.mode = ControlMode::kTotalAngle, .value = far_deg}, 200);
   robot->command(kLeft, {.mode = ControlMode::kTotalAngle, .value = far_deg}, std::chrono::milliseconds{500});
-  robot->freezeSimulation(true);
+  robot->simBus().silence(kLeft, true);
   robot->run(15);  // more than can be counted over, less than the feedback timeout
-  robot->freezeSimulation(false);
+  robot->simBus().silence(kLeft, false);
   robot->run(3);
   EXPECT_EQ(robot->motor(kLeft).status, MotorStatus::kActive);
   EXPECT_FALSE(robot->motor(kLeft).feedback.zeroed);

@@ -15,8 +15,8 @@ namespace {
 
 using namespace std::chrono_literals;
 
-/// RX loop and scheduler on one thread, over the socket pair of a simulated bus. The drives live in virtual
-/// time. The ticks have the time of the clock, since that is what the RX loop stamps frames with.
+/// RX loop and scheduler on one thread, over the socket pair of a simulated bus. The ticks have the time
+/// of the clock, since that is what the RX loop compares stamps with. The drives are ahead of it.
 class WholeLoopAllocationTest : public ::testing::Test {
  protected:
   WholeLoopAllocationTest() {
@@ -72,7 +72,7 @@ class WholeLoopAllocationTest : public ::testing::Test {
   std::unique_ptr<RxLoop> rx;
   std::unique_ptr<Scheduler> scheduler;
   std::unique_ptr<int> canary;
-  MonotonicTime drives_now{1000s};
+  MonotonicTime drives_now = monotonicNow();
 };
 
 TEST_F(WholeLoopAllocationTest, TwoThousandTicksAllocateNothing) {
