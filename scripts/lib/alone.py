@@ -1,7 +1,7 @@
 #!/usr/bin/python3
 """Compiles each source of src/, and each header, by itself: an include that is missing shows.
 
-    alone.py BUILD      BUILD: a tree without unity builds and precompiled headers, configured
+    alone.py BUILD      BUILD: a tree without unity builds, configured
 
 Where sources are compiled together, one finds what another has included.
 """

@@ -3,8 +3,8 @@
 
 repo=$(cd "$(dirname "${BASH_SOURCE[0]}")/../.." && pwd)
 
-# So that a fresh clone in another folder finds what was compiled before; precompiled headers, too.
-export CCACHE_BASEDIR=$repo CCACHE_NOHASHDIR=1 CCACHE_SLOPPINESS=pch_defines,time_macros
+# So that a fresh clone in another folder finds what was compiled before.
+export CCACHE_BASEDIR=$repo CCACHE_NOHASHDIR=1
 
 need() {
     "$repo/scripts/install-deps.sh" "$@"
