@@ -52,16 +52,18 @@ void Gateway::publish(std::string_view channel, std::span<const std::byte> messa
 
 bool Gateway::receiveLcm(const ClockSample& now) {
   if (!lcm_) return true;
-  const WakeUp wake = wakeUp(now, empty_);
   for (int i = 0; i < kMaxDatagrams; ++i) {
     const auto incoming = lcm_->receive(datagram_);
     if (!incoming) {
       empty_ = now;
       return true;
     }
+    // Read anew: this process may have been stopped since `now`, and what came meanwhile would pass as fresh.
+    const ClockSample read = sampleClocks();
+    const WakeUp wake = wakeUp(read, empty_);
     // Without a stamp nothing is known of its age but that it came after the socket was last empty.
     const auto received = incoming->stamp ? toMonotonic(*incoming->stamp, wake) : wake.previous;
-    if (!inlet_.handle(incoming->datagram, received, now.now)) return false;
+    if (!inlet_.handle(incoming->datagram, received, read.now)) return false;
   }
   return true;
 }
