@@ -52,6 +52,7 @@ namespace {
 
 Result<std::unique_ptr<Robot>> Robot::build(const RobotConfig& config) {
   auto robot = std::unique_ptr<Robot>(new Robot);
+  robot->period_ = config.period();
   for (const auto& bus : config.buses) {
     auto added = bus.type == BusType::kSocketCan ? robot->addSocketCan(bus) : robot->addSimulated(bus);
     if (!added) return tl::unexpected(added.error());
@@ -93,8 +94,7 @@ Result<void> Robot::addSimulated(const BusConfig& config) {
   if (auto added = addMotors(config); !added) return added;
   const auto drives = simulatedBus(config);
   if (auto checked = sim::SimBus::check(drives); !checked) return checked;
-  sim_ports_.push_back(
-      std::make_unique<sim::SimPort>(std::move(ends->second), drives, sim::Stamps::kOwn));
+  sim_ports_.push_back(std::make_unique<sim::SimPort>(std::move(ends->second), drives, sim::Stamps::kOwn));
   return {};
 }
 
@@ -115,8 +115,11 @@ Result<void> Robot::addMotor(const MotorConfig& config, std::size_t bus_index) {
   auto motor = config.family->build(config.settings, *entry.parts);
   if (!motor) return tl::unexpected(motor.error());
   entry.feedback_expected |= (*motor)->speaksUnasked();
-  motors_.push_back({std::move(*motor), bus_index, config.feedback_timeout, MotorGuard{config.guard},
-                     TargetShaper{config.shaping}, config.fallback, config.standstill_rpm});
+  // Half: the timeout spans two periods of its feedback at least.
+  motors_.push_back({std::move(*motor), bus_index, config.feedback_timeout,
+                     static_cast<std::uint64_t>(config.feedback_timeout / 2 / period_),
+                     MotorGuard{config.guard}, TargetShaper{config.shaping}, config.fallback,
+                     config.standstill_rpm});
   return {};
 }
 

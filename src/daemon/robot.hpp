@@ -31,6 +31,8 @@ class Robot {
     std::unique_ptr<Motor_Base> motor;
     std::size_t bus = 0;
     Duration feedback_timeout{};
+    /// Without feedback for so many ticks that ran, too, before it counts as lost.
+    std::uint64_t feedback_timeout_ticks = 0;
     MotorGuard guard{GuardConfig{}};
     TargetShaper shaper{ShapingConfig{}};
     FallbackConfig fallback{};
@@ -100,6 +102,7 @@ class Robot {
   void addSpiDevices();
   [[nodiscard]] Result<void> addGpioLines();
 
+  Duration period_{};
   std::vector<BusEntry> buses_;
   std::vector<MotorEntry> motors_;
   std::vector<GroupConfig> coupled_;

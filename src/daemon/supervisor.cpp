@@ -59,6 +59,26 @@ bool Supervisor::fresh(std::size_t motor, const Tick& tick) const noexcept {
          tick.now - feedback.received <= entry.feedback_timeout;
 }
 
+// After a pause of the process, or of the computer, what came meanwhile may be unread, and drives that answer
+// were not asked. By the clock alone each such pause would be a fault of every motor.
+bool Supervisor::lost(std::size_t motor, const Tick& tick) const noexcept {
+  const auto& entry = robot_.motors()[motor];
+  if (fresh(motor, tick)) return false;
+  return robot_.buses()[entry.bus].held || entry.motor->feedback().samples == 0 ||
+         controls_[motor].unheard_ticks > entry.feedback_timeout_ticks;
+}
+
+void Supervisor::listen(std::size_t motor, const Tick& tick) noexcept {
+  auto& control = controls_[motor];
+  const auto& entry = robot_.motors()[motor];
+  const auto& feedback = entry.motor->feedback();
+  // Samples that are old when they come are not heard: they could be old for ever.
+  const bool heard =
+      feedback.samples != control.samples && tick.now - feedback.received <= entry.feedback_timeout / 2;
+  control.unheard_ticks = heard ? 0 : control.unheard_ticks + 1;
+  control.samples = feedback.samples;
+}
+
 bool Supervisor::standsStill(std::size_t motor) const noexcept {
   const auto& entry = robot_.motors()[motor];
   return std::fabs(entry.motor->feedback().velocity_rpm) < entry.standstill_rpm;
@@ -67,7 +87,9 @@ bool Supervisor::standsStill(std::size_t motor) const noexcept {
 void Supervisor::watchFeedback(std::size_t motor, const Tick& tick) noexcept {
   const auto& entry = robot_.motors()[motor];
   const auto& feedback = entry.motor->feedback();
-  transition(motor, fresh(motor, tick) ? MotorEvent::kFeedbackFresh : MotorEvent::kFeedbackLost, tick);
+  listen(motor, tick);
+  if (fresh(motor, tick)) transition(motor, MotorEvent::kFeedbackFresh, tick);
+  if (lost(motor, tick)) transition(motor, MotorEvent::kFeedbackLost, tick);
   auto& control = controls_[motor];
   if (control.reference_known && !feedback.zeroed) {
     if (needsReference(entry.motor->target().mode)) {

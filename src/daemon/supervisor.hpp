@@ -56,8 +56,10 @@ class Supervisor {
   struct Control {
     MotorStatus status = MotorStatus::kOffline;
     FaultCode fault = FaultCode::kNone;
-    std::uint32_t limits = 0;      ///< What the guard sees.
-    bool reference_known = false;  ///< For the event when it is lost.
+    std::uint32_t limits = 0;         ///< What the guard sees.
+    bool reference_known = false;     ///< For the event when it is lost.
+    std::uint64_t samples = 0;        ///< Of its feedback, when it was last heard.
+    std::uint64_t unheard_ticks = 0;  ///< Since then.
     MonotonicTime enabling_since;
     MonotonicTime enable_deadline;
     MonotonicTime clearing_until{};  ///< Until then the drive's complaints are old ones.
@@ -117,6 +119,9 @@ class Supervisor {
   void rearm(std::size_t index, const Tick& tick) noexcept;
   [[nodiscard]] bool groupWhole(std::size_t motor) const noexcept;
   [[nodiscard]] bool fresh(std::size_t motor, const Tick& tick) const noexcept;
+  /// Not fresh, and not only because this thread did not run.
+  [[nodiscard]] bool lost(std::size_t motor, const Tick& tick) const noexcept;
+  void listen(std::size_t motor, const Tick& tick) noexcept;
   [[nodiscard]] bool standsStill(std::size_t motor) const noexcept;
   void beginTimeoutFallback(std::size_t motor, const Tick& tick) noexcept;
   void beginFallback(std::size_t motor, MotorEvent cause, const Tick& tick) noexcept;

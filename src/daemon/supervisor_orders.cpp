@@ -180,7 +180,7 @@ bool Supervisor::clearEstop(OrderResult& result, const Tick& tick) noexcept {
   }
   bool at_rest = true;
   for (std::size_t motor = 0; motor < robot_.motors().size(); ++motor) {
-    if (!fresh(motor, tick) || standsStill(motor)) continue;
+    if (lost(motor, tick) || standsStill(motor)) continue;
     result.motors[motor] = Refusal::kMoving;
     at_rest = false;
   }

@@ -23,6 +23,57 @@ class MissedTicksTest : public ::testing::Test {
   VirtualRobot robot{twoWheelsAndYaw()};
 };
 
+// The RX thread may come after the tick in which this thread runs again.
+TEST_F(MissedTicksTest, AfterAPauseNoMotorIsLostBeforeItsFeedbackCouldBeRead) {
+  robot.run(100);
+  ASSERT_EQ(robot.order(Operation::kEnable).motors[0], Refusal::kNone);
+  for (int pause = 0; pause < 20; ++pause) {
+    robot.freezeSimulation(true);
+    robot.tick(50);
+    EXPECT_EQ(robot.motor(0).status, MotorStatus::kActive);
+    robot.run(2);
+    robot.freezeSimulation(false);
+    robot.run(20);
+    EXPECT_EQ(robot.motor(0).status, MotorStatus::kActive);
+    EXPECT_TRUE(robot.motor(0).feedback.zeroed);
+  }
+}
+
+TEST_F(MissedTicksTest, AMotorThatIsSilentAfterAPauseIsLostOnceTenTicksHaveRun) {
+  robot.run(100);
+  ASSERT_EQ(robot.order(Operation::kEnable).motors[0], Refusal::kNone);
+  robot.freezeSimulation(true);
+  robot.tick(50);
+  robot.run(9);
+  EXPECT_EQ(robot.motor(0).status, MotorStatus::kActive);
+  robot.tick();
+  EXPECT_EQ(robot.motor(0).status, MotorStatus::kOffline);
+}
+
+TEST_F(MissedTicksTest, AMotorThatIsSilentIsLostAlsoIfEveryTickIsLate) {
+  robot.run(100);
+  ASSERT_EQ(robot.order(Operation::kEnable).motors[0], Refusal::kNone);
+  robot.freezeSimulation(true);
+  for (int i = 0; i < 11; ++i) robot.tick(2);
+  EXPECT_EQ(robot.motor(0).status, MotorStatus::kOffline);
+}
+
+TEST_F(MissedTicksTest, WhatTurnedBeforeAPauseIsNoMotorAtRest) {
+  robot.run(100);
+  ASSERT_EQ(robot.order(Operation::kEnable).motors[0], Refusal::kNone);
+  robot.hold(0, Target{.mode = ControlMode::kVelocity, .value = 120.0}, 500);
+  robot.exchange().estop.store(true);
+  robot.tick();
+  robot.freezeSimulation(true);
+  Order clear;
+  clear.id = 77;
+  clear.operation = Operation::kClear;
+  clear.motors.set();
+  robot.exchange().orders.push(clear);
+  robot.tick(50);
+  EXPECT_EQ(robot.snapshot().state, RobotState::kEstop);
+}
+
 TEST_F(MissedTicksTest, TheFirstLateTickIsReportedAtOnce) {
   robot.run(10);
   EXPECT_TRUE(reports().empty());

@@ -55,6 +55,7 @@ void Visits::add(const Visits& other) {
   stops += other.stops;
   stalls += other.stalls;
   probes += other.probes;
+  unread_after_pauses += other.unread_after_pauses;
   slewed += other.slewed;
   bounded += other.bounded;
   driven += other.driven;
@@ -84,6 +85,7 @@ std::string Visits::text() const {
   out += fmt::format("\njudged, ticks: slew limits {}, soft limits {}", slewed, bounded);
   out += fmt::format("\nenabled alone, ticks: {}", alone);
   out += fmt::format("\nbuses without echoes: {}, probed {} times", stalls, probes);
+  out += fmt::format("\nticks of motors that only a pause made stale: {}", unread_after_pauses);
   out += fmt::format("\ngroups enabled again by themselves: {}; orderly ends: {}\n", rearmed, stops);
   return out;
 }
@@ -212,6 +214,23 @@ bool Oracle::fresh(const Motor& motor) const {
          now_ - motor.reported_at <= motor.config->feedback_timeout;
 }
 
+// By the clock, and by ticks that ran: after a pause what came meanwhile has not been read.
+bool Oracle::overdue(const Motor& motor) const {
+  if (fresh(motor)) return false;
+  const auto patience_ticks =
+      static_cast<std::uint64_t>(motor.config->feedback_timeout / 2 / config_.period());
+  return held_.test(motor.bus) || !motor.reported || motor.unheard_ticks > patience_ticks;
+}
+
+void Oracle::followFeedback() {
+  for (auto& motor : motors_) {
+    // What is old when it comes tells nothing of now.
+    const bool heard = motor.new_sample && now_ - motor.reported_at <= motor.config->feedback_timeout / 2;
+    motor.unheard_ticks = heard ? 0 : motor.unheard_ticks + 1;
+    if (!fresh(motor) && !overdue(motor)) ++visits_.unread_after_pauses;
+  }
+}
+
 Oracle::Actions Oracle::only(FallbackAction action) { return Actions{1ULL << static_cast<unsigned>(action)}; }
 
 void Oracle::setActions(Motor& motor, Actions actions) {
@@ -225,6 +244,7 @@ void Oracle::judge(const Snapshot& snapshot, std::uint64_t periods, std::bitset<
                    bool stopped) {
   now_ = snapshot.time;
   periods_ = periods;
+  followFeedback();
   judgeSnapshot(snapshot, periods);
   judgeFrames(read);
   judgeRobotState(snapshot);
@@ -313,7 +333,7 @@ void Oracle::judgeRobotState(const Snapshot& snapshot) {
   if (contact_open_ && snapshot.state == RobotState::kRun) fail("it runs although the e-stop input is open");
   if (!released) return;
   for (std::size_t i = 0; i < motors_.size(); ++i) {
-    require(i, !fresh(motors_[i]) || std::fabs(motors_[i].velocity_rpm) <= motors_[i].config->standstill_rpm,
+    require(i, overdue(motors_[i]) || std::fabs(motors_[i].velocity_rpm) <= motors_[i].config->standstill_rpm,
             "an e-stop was cleared while it turns");
   }
 }
@@ -347,9 +367,12 @@ void Oracle::judgeStatus(std::size_t index, const MotorSnapshot& seen, RobotStat
   const auto& motor = motors_[index];
   const auto before = motor.status;
   const auto after = seen.status;
-  const bool is_fresh = fresh(motor);
-  require(index, is_fresh || lost(after), "stale feedback, and neither OFFLINE nor FAULT");
-  require(index, !is_fresh || after != MotorStatus::kOffline, "OFFLINE with fresh feedback");
+  require(index, !overdue(motor) || lost(after), "stale feedback, and neither OFFLINE nor FAULT");
+  require(index, !fresh(motor) || after != MotorStatus::kOffline, "OFFLINE with fresh feedback");
+  const bool between = !fresh(motor) && !overdue(motor);
+  require(index, !between || after != MotorStatus::kOffline || lost(before),
+          "OFFLINE before its feedback could be read");
+  require(index, !between || before != MotorStatus::kOffline || lost(after), "back without feedback");
   if (before == MotorStatus::kFault && after != MotorStatus::kFault) {
     require(index, motor.clear_asked, "left FAULT unasked");
   }
@@ -486,9 +509,12 @@ void Oracle::judgeCommand(std::size_t index, const MotorSnapshot& seen) {
   const auto& guard = motor.config->guard;
   const bool watched =
       guard.temperature_trip_c > 0.0F && djiConfig(motor.config->settings).model->reports_temperature;
+  // In the tick in which the drive says that it is cool the limit is back as a whole: a step, too.
+  motor.cooled = motor.was_hot;
   if (watched && motor.temperature_c > guard.temperature_derate_c) motor.was_hot = true;
   if (motor.temperature_c <= guard.temperature_derate_c && seen.status == MotorStatus::kActive)
     motor.was_hot = false;
+  motor.cooled = motor.cooled && !motor.was_hot;
   require(index, std::abs(motor.raw) <= motor.raw_limit, "beyond its limit");
   const double told = static_cast<double>(seen.command_value) * motor.raw_per_effort;
   require(index, std::fabs(told - motor.raw) <= 1.0, "the snapshot says another command than the frame");
@@ -513,7 +539,7 @@ void Oracle::judgeSlew(std::size_t index, const MotorSnapshot& seen) {
   const double dt_s =
       static_cast<double>(seconds(config_.period())) * static_cast<double>(std::min(periods_, kMostPeriods));
   const double most = per_s * dt_s * std::fabs(motor.raw_per_effort) + 2.0;
-  if (per_s > 0.0 && follows && motor.followed_effort && !motor.was_hot) {
+  if (per_s > 0.0 && follows && motor.followed_effort && !motor.was_hot && !motor.cooled) {
     require(index, std::abs(motor.raw - motor.raw_before) <= most, "its effort changes too fast");
     ++visits_.slewed;
   }

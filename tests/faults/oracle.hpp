@@ -35,6 +35,7 @@ struct Visits {
   std::uint64_t bounded = 0;  ///< and beyond a soft limit.
   std::uint64_t stalls = 0;   ///< Buses whose echoes stayed away,
   std::uint64_t probes = 0;   ///< and the rest frames that looked for them, as far as they were read.
+  std::uint64_t unread_after_pauses = 0;  ///< Ticks of motors whose feedback was stale by the clock alone.
   void add(const Visits& other);
   [[nodiscard]] std::string text() const;
 };
@@ -100,6 +101,7 @@ class Oracle {
     // What it has reported.
     bool reported = false;
     MonotonicTime reported_at;
+    std::uint64_t unheard_ticks = 0;  ///< Ticks that ran since its last sample of then.
     float velocity_rpm = 0.0F;
     float temperature_c = 0.0F;
     // What it was told.
@@ -122,6 +124,7 @@ class Oracle {
     bool ends_at_standstill = false;
     bool new_sample = false;
     bool was_hot = false;  ///< Its limit may still be reduced.
+    bool cooled = false;   ///< And that ended in this tick.
     int unbraked_ticks = 0;
   };
   struct Group {
@@ -149,7 +152,9 @@ class Oracle {
   void count(const Snapshot& snapshot);
   void setActions(Motor& motor, Actions actions);
   [[nodiscard]] static Actions only(FallbackAction action);
+  void followFeedback();
   [[nodiscard]] bool fresh(const Motor& motor) const;
+  [[nodiscard]] bool overdue(const Motor& motor) const;
   [[nodiscard]] bool matchesDamp(const Motor& motor) const;
   [[noreturn]] void fail(const std::string& what) const;
   [[noreturn]] void fail(std::size_t motor, const std::string& what) const;

@@ -23,5 +23,5 @@ ip link set lo up
 ip route add 239.255.76.67/32 dev lo src 127.0.0.1
 
 cd "$RC10_REPO"
-"$RC10_PYTHON" -m pytest -p no:cacheprovider -v -rR --reruns 1 --color=no \
+"$RC10_PYTHON" -m pytest -p no:cacheprovider -v --color=no \
     --junitxml="$state/report.xml" "${arguments[@]}"

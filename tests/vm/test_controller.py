@@ -5,9 +5,7 @@ from __future__ import annotations
 import pytest
 from guestlib import Candump, link_down, link_up, run
 from link_setup import link_details
-
-# Emulated time is slow: behaviour is tested here, never timing.
-PATIENCE_S = 20.0
+from patience import PATIENCE_S
 
 
 def frame_passes(sender: str, receiver: str) -> bool:
