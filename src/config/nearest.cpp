@@ -8,7 +8,7 @@
 namespace rc10 {
 namespace {
 
-constexpr std::size_t kLongest = 64;  // No key is that long; keeps the work small for any input.
+constexpr std::size_t kLongestKey = 64;  // No key is that long; keeps the work small for any input.
 
 /// Capitals and hyphens are not what makes a name another one.
 std::string plain(std::string_view name) {
@@ -38,7 +38,7 @@ std::size_t editDistance(const std::string& a, const std::string& b) {
 }  // namespace
 
 std::string_view nearest(std::string_view typed, const std::vector<std::string_view>& candidates) {
-  if (typed.empty() || typed.size() > kLongest) return {};
+  if (typed.empty() || typed.size() > kLongestKey) return {};
   const std::string wanted = plain(typed);
   std::string_view best;
   std::size_t best_distance = 1 + std::max<std::size_t>(1, wanted.size() / 3);

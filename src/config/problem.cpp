@@ -57,9 +57,9 @@ std::string joinPath(std::string_view path, std::size_t index) {
 }
 
 std::string printable(std::string_view text) {
-  constexpr std::size_t kLongest = 48;
+  constexpr std::size_t kMostShown = 48;
   const auto byte = [text](std::size_t i) { return static_cast<unsigned char>(text[i]); };
-  std::size_t end = std::min(text.size(), kLongest);
+  std::size_t end = std::min(text.size(), kMostShown);
   while (end > 0 && end < text.size() && (byte(end) & 0xC0U) == 0x80) --end;  // no half character
   std::string shown;
   for (std::size_t i = 0; i < end; ++i) {

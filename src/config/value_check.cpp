@@ -61,8 +61,8 @@ std::string whyNoText(const YamlNode& node, const Key& key) {
 }
 
 bool matches(std::string_view text, const TextForm& form) {
-  constexpr std::size_t kLongest = 128;
-  if (text.size() > kLongest || text.find('\0') != std::string_view::npos) return false;
+  constexpr std::size_t kLongestValue = 128;
+  if (text.size() > kLongestValue || text.find('\0') != std::string_view::npos) return false;
   // POSIX: std::regex recurses once a character, throws, and costs ten times as much.
   regex_t regex{};
   if (regcomp(&regex, ("^(" + std::string{form.pattern} + ")$").c_str(), REG_EXTENDED | REG_NOSUB) != 0)
