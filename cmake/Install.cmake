@@ -25,7 +25,7 @@ install(FILES systemd/udev/60-rc10d.rules DESTINATION lib/udev/rules.d)
 
 # One archive of the layers, so that nobody has to know their order.
 set(rc10_embedded)
-foreach(layer app bus motor module sim config link blackbox daemon)
+foreach(layer app bus motor module sim drives config link blackbox daemon)
   if(NOT TARGET rc10_${layer})
     continue()
   endif()

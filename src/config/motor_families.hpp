@@ -1,22 +1,12 @@
 #pragma once
 
-#include <memory>
 #include <span>
 #include <string_view>
 
 #include "app/result.hpp"
-#include "motor/motor_family.hpp"
-#include "sim/drive.hpp"
+#include "drives/families.hpp"
 
 namespace rc10 {
-
-/// One family of motors, as the rest of the program finds it.
-struct FamilyEntry {
-  const MotorFamily* family = nullptr;
-  /// Makes the simulated drive of a motor; null: this family cannot be simulated.
-  std::unique_ptr<sim::Drive> (*simulate)(const MotorSettings& settings,
-                                          const sim::MotorLoad& load) = nullptr;
-};
 
 /// All families: those of rc10d, and those that a program which embeds it has added. Main thread, before
 /// start.

@@ -23,16 +23,17 @@ USES = {
     "motor": {"bus", "app"},
     "module": {"motor", "bus", "app"},
     "sim": {"motor", "bus", "app"},
-    "config": {"sim", "module", "motor", "bus", "app"},
-    "survey": {"motor", "bus", "app"},
+    "drives": {"sim", "motor", "bus", "app"},
+    "config": {"drives", "sim", "module", "motor", "bus", "app"},
+    "survey": {"drives", "motor", "bus", "app"},
     "link": {"app"},
     "blackbox": {"link", "app"},
     "client": {"blackbox", "link", "app"},
     "doctor": {"client", "link", "bus", "app"},
     "gateway": {"client", "link", "app"},
-    "daemon": {"blackbox", "config", "sim", "module", "motor", "bus", "link", "app"},
+    "daemon": {"blackbox", "config", "drives", "sim", "module", "motor", "bus", "link", "app"},
     "robot_client": {"app"},
-    "tools": {"doctor", "survey", "client", "motor", "blackbox", "config", "link", "sim", "bus"}
+    "tools": {"doctor", "survey", "client", "drives", "motor", "blackbox", "config", "link", "sim", "bus"}
     | {"app"},
 }
 

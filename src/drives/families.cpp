@@ -1,0 +1,34 @@
+#include "drives/families.hpp"
+
+#include "motor/cubemars_family.hpp"
+#include "motor/damiao_motor.hpp"
+#include "motor/dji_family.hpp"
+#include "motor/lktech_motor.hpp"
+#include "motor/moteus_model.hpp"
+#include "motor/myactuator_motor.hpp"
+#include "motor/odrive_motor.hpp"
+#include "motor/robstride_motor.hpp"
+#include "motor/vesc_motor.hpp"
+#include "sim/cubemars_drive.hpp"
+#include "sim/damiao_drive.hpp"
+#include "sim/dji_drive.hpp"
+#include "sim/lktech_drive.hpp"
+#include "sim/moteus_drive.hpp"
+#include "sim/myactuator_drive.hpp"
+#include "sim/odrive_drive.hpp"
+#include "sim/robstride_drive.hpp"
+#include "sim/vesc_drive.hpp"
+
+namespace rc10 {
+
+std::vector<FamilyEntry> builtInFamilies() {
+  return {
+      {&djiFamily(), sim::makeDjiDrive},           {&vescFamily(), sim::makeVescDrive},
+      {&damiaoFamily(), sim::makeDamiaoDrive},     {&robStrideFamily(), sim::makeRobStrideDrive},
+      {&cubemarsFamily(), sim::makeCubemarsDrive}, {&moteusFamily(), sim::makeMoteusDrive},
+      {&odriveFamily(), sim::makeOdriveDrive},     {&myactuatorFamily(), sim::makeMyactuatorDrive},
+      {&lktechFamily(), sim::makeLktechDrive},
+  };
+}
+
+}  // namespace rc10

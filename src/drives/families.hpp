@@ -1,0 +1,22 @@
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "motor/motor_family.hpp"
+#include "sim/drive.hpp"
+
+namespace rc10 {
+
+/// One family of motors, as the rest of the program finds it.
+struct FamilyEntry {
+  const MotorFamily* family = nullptr;
+  /// Makes the simulated drive of a motor; null: this family cannot be simulated.
+  std::unique_ptr<sim::Drive> (*simulate)(const MotorSettings& settings,
+                                          const sim::MotorLoad& load) = nullptr;
+};
+
+/// The families of rc10d: the one place where a new one is entered.
+[[nodiscard]] std::vector<FamilyEntry> builtInFamilies();
+
+}  // namespace rc10
