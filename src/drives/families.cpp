@@ -1,6 +1,7 @@
 #include "drives/families.hpp"
 
-#include "motor/cubemars_family.hpp"
+#include "drives/cubemars/cubemars_family.hpp"
+#include "drives/cubemars/cubemars_simulated.hpp"
 #include "motor/damiao_motor.hpp"
 #include "motor/dji_family.hpp"
 #include "motor/lktech_motor.hpp"
@@ -9,7 +10,6 @@
 #include "motor/odrive_motor.hpp"
 #include "motor/robstride_motor.hpp"
 #include "motor/vesc_motor.hpp"
-#include "sim/cubemars_drive.hpp"
 #include "sim/damiao_drive.hpp"
 #include "sim/dji_drive.hpp"
 #include "sim/lktech_drive.hpp"

@@ -6,7 +6,7 @@
 #include <span>
 
 #include "bus/byte_order.hpp"
-#include "motor/cubemars_frames.hpp"
+#include "drives/cubemars/cubemars_frames.hpp"
 #include "motor/damiao_frames.hpp"
 #include "motor/dji_model.hpp"
 #include "motor/lktech_frames.hpp"

@@ -6,7 +6,7 @@
 
 #include <gtest/gtest.h>
 
-#include "sim/cubemars_drive.hpp"
+#include "drives/cubemars/cubemars_simulated.hpp"
 #include "sim/solo_rig.hpp"
 #include "support/cubemars_settings.hpp"
 

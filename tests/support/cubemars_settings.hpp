@@ -6,10 +6,10 @@
 #include <utility>
 #include <vector>
 
-#include "motor/cubemars_family.hpp"
-#include "motor/cubemars_mit.hpp"
-#include "motor/cubemars_model.hpp"
-#include "motor/cubemars_servo.hpp"
+#include "drives/cubemars/cubemars_family.hpp"
+#include "drives/cubemars/cubemars_mit.hpp"
+#include "drives/cubemars/cubemars_model.hpp"
+#include "drives/cubemars/cubemars_servo.hpp"
 
 namespace rc10::test {
 

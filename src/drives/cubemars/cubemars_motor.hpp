@@ -2,8 +2,8 @@
 
 #include <cstdint>
 
-#include "motor/cubemars_frames.hpp"
-#include "motor/cubemars_model.hpp"
+#include "drives/cubemars/cubemars_frames.hpp"
+#include "drives/cubemars/cubemars_model.hpp"
 #include "motor/solo_motor.hpp"
 
 namespace rc10 {

@@ -1,4 +1,4 @@
-#include "sim/cubemars_drive.hpp"
+#include "drives/cubemars/cubemars_simulated.hpp"
 
 #include <algorithm>
 #include <array>

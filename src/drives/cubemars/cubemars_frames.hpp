@@ -4,7 +4,7 @@
 #include <optional>
 
 #include "bus/can_frame.hpp"
-#include "motor/cubemars_model.hpp"
+#include "drives/cubemars/cubemars_model.hpp"
 
 namespace rc10::cubemars {
 

@@ -2,8 +2,8 @@
 
 #include <memory>
 
-#include "motor/cubemars_frames.hpp"
-#include "motor/cubemars_model.hpp"
+#include "drives/cubemars/cubemars_frames.hpp"
+#include "drives/cubemars/cubemars_model.hpp"
 #include "sim/servo_drive.hpp"
 
 namespace rc10::sim {

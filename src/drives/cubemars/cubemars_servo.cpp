@@ -1,4 +1,4 @@
-#include "motor/cubemars_servo.hpp"
+#include "drives/cubemars/cubemars_servo.hpp"
 
 #include <algorithm>
 #include <cmath>

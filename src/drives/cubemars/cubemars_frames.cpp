@@ -1,4 +1,4 @@
-#include "motor/cubemars_frames.hpp"
+#include "drives/cubemars/cubemars_frames.hpp"
 
 #include <algorithm>
 #include <array>

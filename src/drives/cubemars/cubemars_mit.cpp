@@ -1,4 +1,4 @@
-#include "motor/cubemars_mit.hpp"
+#include "drives/cubemars/cubemars_mit.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "motor/cubemars_model.hpp"
+#include "drives/cubemars/cubemars_model.hpp"
 
 #include <algorithm>
 #include <string>

@@ -1,4 +1,4 @@
-#include "motor/cubemars_motor.hpp"
+#include "drives/cubemars/cubemars_motor.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,14 +1,14 @@
-#include "motor/cubemars_family.hpp"
+#include "drives/cubemars/cubemars_family.hpp"
 
 #include <algorithm>
 #include <memory>
 #include <string>
 #include <vector>
 
-#include "motor/cubemars_frames.hpp"
-#include "motor/cubemars_mit.hpp"
-#include "motor/cubemars_model.hpp"
-#include "motor/cubemars_servo.hpp"
+#include "drives/cubemars/cubemars_frames.hpp"
+#include "drives/cubemars/cubemars_mit.hpp"
+#include "drives/cubemars/cubemars_model.hpp"
+#include "drives/cubemars/cubemars_servo.hpp"
 
 namespace rc10 {
 namespace {

@@ -2,7 +2,7 @@
 
 #include <array>
 
-#include "motor/cubemars_motor.hpp"
+#include "drives/cubemars/cubemars_motor.hpp"
 
 namespace rc10 {
 
