@@ -2,7 +2,8 @@
 
 #include "drives/cubemars/cubemars_family.hpp"
 #include "drives/cubemars/cubemars_simulated.hpp"
-#include "motor/damiao_motor.hpp"
+#include "drives/damiao/damiao_motor.hpp"
+#include "drives/damiao/damiao_simulated.hpp"
 #include "motor/dji_family.hpp"
 #include "motor/lktech_motor.hpp"
 #include "motor/moteus_model.hpp"
@@ -10,7 +11,6 @@
 #include "motor/odrive_motor.hpp"
 #include "motor/robstride_motor.hpp"
 #include "motor/vesc_motor.hpp"
-#include "sim/damiao_drive.hpp"
 #include "sim/dji_drive.hpp"
 #include "sim/lktech_drive.hpp"
 #include "sim/moteus_drive.hpp"

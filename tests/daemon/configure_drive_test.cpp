@@ -13,7 +13,7 @@
 #include "daemon/link_messages.hpp"
 #include "daemon/request_desk.hpp"
 #include "daemon/virtual_robot.hpp"
-#include "motor/damiao_setup.hpp"
+#include "drives/damiao/damiao_setup.hpp"
 #include "motor/myactuator_setup.hpp"
 
 namespace rc10::test::configure_drive_test {

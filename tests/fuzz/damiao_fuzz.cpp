@@ -8,8 +8,8 @@
 #include <string>
 
 #include "bus/byte_order.hpp"
+#include "drives/damiao/damiao_simulated.hpp"
 #include "motor_orders.hpp"
-#include "sim/damiao_drive.hpp"
 
 namespace {
 

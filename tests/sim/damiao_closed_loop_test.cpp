@@ -5,7 +5,7 @@
 
 #include <gtest/gtest.h>
 
-#include "sim/damiao_drive.hpp"
+#include "drives/damiao/damiao_simulated.hpp"
 #include "sim/solo_rig.hpp"
 #include "support/damiao_motors.hpp"
 

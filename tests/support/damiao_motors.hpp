@@ -8,7 +8,7 @@
 
 #include <gtest/gtest.h>
 
-#include "motor/damiao_motor.hpp"
+#include "drives/damiao/damiao_motor.hpp"
 
 namespace rc10::test {
 

@@ -2,7 +2,7 @@
 #include <memory>
 #include <string>
 
-#include "motor/damiao_motor.hpp"
+#include "drives/damiao/damiao_motor.hpp"
 
 namespace rc10 {
 namespace {

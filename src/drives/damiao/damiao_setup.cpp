@@ -1,4 +1,4 @@
-#include "motor/damiao_setup.hpp"
+#include "drives/damiao/damiao_setup.hpp"
 
 #include <cmath>
 

@@ -4,7 +4,7 @@
 #include <optional>
 
 #include "app/time.hpp"
-#include "motor/damiao_frames.hpp"
+#include "drives/damiao/damiao_frames.hpp"
 #include "motor/drive_frames.hpp"
 
 namespace rc10 {

@@ -1,4 +1,4 @@
-#include "motor/damiao_frames.hpp"
+#include "drives/damiao/damiao_frames.hpp"
 
 #include <algorithm>
 #include <cmath>

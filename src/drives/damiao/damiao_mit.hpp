@@ -2,7 +2,7 @@
 
 #include <cstdint>
 
-#include "motor/damiao_frames.hpp"
+#include "drives/damiao/damiao_frames.hpp"
 
 namespace rc10 {
 

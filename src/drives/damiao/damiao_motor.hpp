@@ -5,11 +5,11 @@
 #include <optional>
 #include <span>
 
-#include "motor/damiao_enabling.hpp"
-#include "motor/damiao_frames.hpp"
-#include "motor/damiao_mit.hpp"
-#include "motor/damiao_position.hpp"
-#include "motor/damiao_setup.hpp"
+#include "drives/damiao/damiao_enabling.hpp"
+#include "drives/damiao/damiao_frames.hpp"
+#include "drives/damiao/damiao_mit.hpp"
+#include "drives/damiao/damiao_position.hpp"
+#include "drives/damiao/damiao_setup.hpp"
 #include "motor/drive_configuring.hpp"
 #include "motor/solo_motor.hpp"
 

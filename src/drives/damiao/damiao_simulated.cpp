@@ -1,4 +1,4 @@
-#include "sim/damiao_drive.hpp"
+#include "drives/damiao/damiao_simulated.hpp"
 
 #include <algorithm>
 #include <array>

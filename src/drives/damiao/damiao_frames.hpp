@@ -6,7 +6,7 @@
 #include <span>
 
 #include "bus/can_frame.hpp"
-#include "motor/damiao_model.hpp"
+#include "drives/damiao/damiao_model.hpp"
 #include "motor/fault_code.hpp"
 
 namespace rc10::damiao {

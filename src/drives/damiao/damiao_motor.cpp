@@ -1,4 +1,4 @@
-#include "motor/damiao_motor.hpp"
+#include "drives/damiao/damiao_motor.hpp"
 
 #include <algorithm>
 #include <cmath>

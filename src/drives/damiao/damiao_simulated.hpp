@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <memory>
 
-#include "motor/damiao_motor.hpp"
+#include "drives/damiao/damiao_motor.hpp"
 #include "sim/servo_drive.hpp"
 
 namespace rc10::sim {

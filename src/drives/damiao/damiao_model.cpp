@@ -1,4 +1,4 @@
-#include "motor/damiao_model.hpp"
+#include "drives/damiao/damiao_model.hpp"
 
 #include <algorithm>
 

@@ -1,8 +1,8 @@
-#include "motor/damiao_position.hpp"
+#include "drives/damiao/damiao_position.hpp"
 
 #include <cmath>
 
-#include "motor/damiao_frames.hpp"
+#include "drives/damiao/damiao_frames.hpp"
 
 namespace rc10 {
 namespace {

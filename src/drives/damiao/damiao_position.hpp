@@ -3,7 +3,7 @@
 #include <cstdint>
 
 #include "app/time.hpp"
-#include "motor/damiao_model.hpp"
+#include "drives/damiao/damiao_model.hpp"
 
 namespace rc10 {
 

@@ -1,4 +1,4 @@
-#include "motor/damiao_mit.hpp"
+#include "drives/damiao/damiao_mit.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "motor/damiao_enabling.hpp"
+#include "drives/damiao/damiao_enabling.hpp"
 
 #include <cmath>
 

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "motor/damiao_frames.hpp"
+#include "drives/damiao/damiao_frames.hpp"
 #include "motor/drive_setup.hpp"
 
 namespace rc10 {
