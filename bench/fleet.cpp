@@ -8,7 +8,7 @@
 #include <string>
 
 #include "config/robot_config.hpp"
-#include "motor/dji_family.hpp"
+#include "drives/dji/dji_family.hpp"
 
 // In place of the C library's, for this whole program: takes every frame and goes nowhere. What is
 // measured is rc10d's own work; a real call costs what the kernel and the driver take.

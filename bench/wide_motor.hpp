@@ -6,7 +6,7 @@
 #include <string>
 
 #include "bus/command_packer.hpp"
-#include "motor/dji_motor.hpp"
+#include "drives/dji/dji_motor.hpp"
 
 namespace rc10::bench {
 

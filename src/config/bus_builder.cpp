@@ -5,7 +5,7 @@
 #include "config/bus_id_check.hpp"
 #include "config/bus_load_check.hpp"
 #include "config/drive_id_check.hpp"
-#include "motor/dji_family.hpp"
+#include "drives/dji/dji_family.hpp"
 
 namespace rc10 {
 namespace {

@@ -5,7 +5,7 @@
 #include <string>
 
 #include "config/drive_ids.hpp"
-#include "motor/dji_family.hpp"
+#include "drives/dji/dji_family.hpp"
 
 namespace rc10 {
 namespace {

@@ -4,7 +4,7 @@
 #include <string>
 
 #include "bus/can_frame.hpp"
-#include "motor/dji_motor.hpp"
+#include "drives/dji/dji_motor.hpp"
 
 namespace rc10 {
 

@@ -11,7 +11,7 @@
 #include "config/number_text.hpp"
 #include "config/problem.hpp"
 #include "config/text_table.hpp"
-#include "motor/dji_family.hpp"
+#include "drives/dji/dji_family.hpp"
 
 namespace rc10 {
 namespace {

@@ -10,7 +10,7 @@
 #include "config/key_table.hpp"
 #include "config/motor_families.hpp"
 #include "config/motor_keys.hpp"
-#include "motor/dji_family.hpp"
+#include "drives/dji/dji_family.hpp"
 
 namespace rc10 {
 namespace {

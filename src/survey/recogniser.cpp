@@ -8,7 +8,7 @@
 #include "bus/byte_order.hpp"
 #include "drives/cubemars/cubemars_frames.hpp"
 #include "drives/damiao/damiao_frames.hpp"
-#include "motor/dji_model.hpp"
+#include "drives/dji/dji_model.hpp"
 #include "motor/lktech_frames.hpp"
 #include "motor/moteus_frames.hpp"
 #include "motor/myactuator_frames.hpp"

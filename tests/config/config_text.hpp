@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "config/load_config.hpp"
-#include "motor/dji_family.hpp"
+#include "drives/dji/dji_family.hpp"
 
 namespace rc10::test {
 

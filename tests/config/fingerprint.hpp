@@ -5,7 +5,7 @@
 #include <variant>
 
 #include "config/robot_config.hpp"
-#include "motor/dji_family.hpp"
+#include "drives/dji/dji_family.hpp"
 
 namespace rc10::test {
 

@@ -8,7 +8,7 @@
 #include "daemon/virtual_robot.hpp"
 #include "support/alloc_guard.hpp"
 
-#include "sim/dji_drive.hpp"
+#include "drives/dji/dji_simulated.hpp"
 
 namespace rc10::test::scheduler_test {
 namespace {

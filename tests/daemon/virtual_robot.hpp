@@ -12,7 +12,7 @@
 #include "config/robot_config.hpp"
 #include "daemon/robot.hpp"
 #include "daemon/scheduler.hpp"
-#include "motor/dji_family.hpp"
+#include "drives/dji/dji_family.hpp"
 
 namespace rc10::test {
 

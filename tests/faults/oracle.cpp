@@ -7,7 +7,7 @@
 
 #include "link/words.hpp"
 
-#include "motor/dji_family.hpp"
+#include "drives/dji/dji_family.hpp"
 
 namespace rc10::test {
 namespace {

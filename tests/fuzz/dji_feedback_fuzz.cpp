@@ -6,8 +6,8 @@
 #include <cstdint>
 #include <string>
 
+#include "drives/dji/dji_group.hpp"
 #include "fuzz_input.hpp"
-#include "motor/dji_group.hpp"
 
 namespace {
 

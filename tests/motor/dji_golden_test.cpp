@@ -12,7 +12,7 @@
 
 #include <gtest/gtest.h>
 
-#include "motor/dji_group.hpp"
+#include "drives/dji/dji_group.hpp"
 #include "support/dji_frames.hpp"
 
 namespace rc10::test::dji_golden_test {

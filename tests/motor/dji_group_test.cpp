@@ -1,4 +1,4 @@
-#include "motor/dji_group.hpp"
+#include "drives/dji/dji_group.hpp"
 
 #include <array>
 #include <initializer_list>

@@ -10,7 +10,7 @@
 
 #include <gtest/gtest.h>
 
-#include "motor/dji_group.hpp"
+#include "drives/dji/dji_group.hpp"
 #include "support/alloc_guard.hpp"
 #include "support/dji_frames.hpp"
 

@@ -9,7 +9,7 @@
 
 #include <gtest/gtest.h>
 
-#include "motor/dji_model.hpp"
+#include "drives/dji/dji_model.hpp"
 
 namespace rc10::test::encoder_test {
 namespace {

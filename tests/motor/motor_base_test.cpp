@@ -5,7 +5,7 @@
 
 #include <gtest/gtest.h>
 
-#include "motor/dji_motor.hpp"
+#include "drives/dji/dji_motor.hpp"
 
 namespace rc10::test::motor_base_test {
 namespace {

@@ -1,4 +1,4 @@
-#include "sim/dji_drive.hpp"
+#include "drives/dji/dji_simulated.hpp"
 
 #include <gtest/gtest.h>
 
@@ -10,7 +10,7 @@
 #include <string_view>
 #include <vector>
 
-#include "motor/dji_motor.hpp"
+#include "drives/dji/dji_motor.hpp"
 
 namespace rc10::test::dji_drive_test {
 namespace {

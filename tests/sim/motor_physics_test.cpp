@@ -6,7 +6,7 @@
 #include <cmath>
 #include <string>
 
-#include "sim/dji_parameters.hpp"
+#include "drives/dji/dji_simulated_parameters.hpp"
 
 namespace rc10::test::motor_physics_test {
 namespace {

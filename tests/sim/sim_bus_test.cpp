@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-#include "sim/dji_drive.hpp"
+#include "drives/dji/dji_simulated.hpp"
 #include "support/alloc_guard.hpp"
 
 namespace rc10::test::sim_bus_test {

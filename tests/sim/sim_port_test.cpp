@@ -14,7 +14,7 @@
 #include "bus/send_batch.hpp"
 #include "support/alloc_guard.hpp"
 
-#include "sim/dji_drive.hpp"
+#include "drives/dji/dji_simulated.hpp"
 
 namespace rc10::test::sim_port_test {
 namespace {

@@ -10,9 +10,9 @@
 
 #include "bus/can_receiver.hpp"
 #include "bus/fdcan_bus.hpp"
-#include "motor/dji_group.hpp"
-#include "motor/dji_motor.hpp"
-#include "sim/dji_drive.hpp"
+#include "drives/dji/dji_group.hpp"
+#include "drives/dji/dji_motor.hpp"
+#include "drives/dji/dji_simulated.hpp"
 #include "sim/sim_port.hpp"
 
 namespace rc10::test {

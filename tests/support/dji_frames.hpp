@@ -5,7 +5,7 @@
 #include <string>
 
 #include "bus/can_frame.hpp"
-#include "motor/dji_motor.hpp"
+#include "drives/dji/dji_motor.hpp"
 
 namespace rc10::test {
 

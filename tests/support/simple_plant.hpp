@@ -8,7 +8,7 @@
 #include <numbers>
 #include <utility>
 
-#include "motor/dji_motor.hpp"
+#include "drives/dji/dji_motor.hpp"
 #include "support/dji_frames.hpp"
 
 namespace rc10::test {

@@ -1,4 +1,4 @@
-#include "sim/dji_drive.hpp"
+#include "drives/dji/dji_simulated.hpp"
 
 #include <algorithm>
 #include <array>
@@ -6,8 +6,8 @@
 #include <limits>
 #include <utility>
 
-#include "motor/dji_family.hpp"
-#include "sim/dji_parameters.hpp"
+#include "drives/dji/dji_family.hpp"
+#include "drives/dji/dji_simulated_parameters.hpp"
 
 namespace rc10::sim {
 namespace {

@@ -1,4 +1,4 @@
-#include "sim/dji_parameters.hpp"
+#include "drives/dji/dji_simulated_parameters.hpp"
 
 #include <array>
 #include <cassert>

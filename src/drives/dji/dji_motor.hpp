@@ -5,8 +5,8 @@
 #include <string>
 
 #include "app/result.hpp"
+#include "drives/dji/dji_model.hpp"
 #include "motor/cascade.hpp"
-#include "motor/dji_model.hpp"
 #include "motor/encoder.hpp"
 #include "motor/motor_base.hpp"
 #include "motor/sample_spacing.hpp"

@@ -1,4 +1,4 @@
-#include "motor/dji_model.hpp"
+#include "drives/dji/dji_model.hpp"
 
 #include <chrono>
 

@@ -9,7 +9,7 @@
 #include "app/result.hpp"
 #include "app/time.hpp"
 #include "bus/can_frame.hpp"
-#include "motor/dji_model.hpp"
+#include "drives/dji/dji_model.hpp"
 #include "motor/motor_settings.hpp"
 #include "sim/drive.hpp"
 #include "sim/motor_physics.hpp"

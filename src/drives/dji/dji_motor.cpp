@@ -1,4 +1,4 @@
-#include "motor/dji_motor.hpp"
+#include "drives/dji/dji_motor.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,10 +1,10 @@
-#include "motor/dji_family.hpp"
+#include "drives/dji/dji_family.hpp"
 
 #include <array>
 #include <memory>
 #include <string>
 
-#include "motor/dji_group.hpp"
+#include "drives/dji/dji_group.hpp"
 
 namespace rc10 {
 namespace {

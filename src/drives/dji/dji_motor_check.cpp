@@ -2,7 +2,7 @@
 #include <string>
 #include <variant>
 
-#include "motor/dji_motor.hpp"
+#include "drives/dji/dji_motor.hpp"
 
 namespace rc10 {
 namespace {

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "motor/dji_model.hpp"
+#include "drives/dji/dji_model.hpp"
 #include "sim/motor_physics.hpp"
 #include "sim/sim_config.hpp"
 

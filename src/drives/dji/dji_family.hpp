@@ -1,6 +1,6 @@
 #pragma once
 
-#include "motor/dji_motor.hpp"
+#include "drives/dji/dji_motor.hpp"
 #include "motor/motor_family.hpp"
 
 namespace rc10 {

@@ -5,7 +5,7 @@
 
 #include "app/result.hpp"
 #include "bus/command_packer.hpp"
-#include "motor/dji_motor.hpp"
+#include "drives/dji/dji_motor.hpp"
 
 namespace rc10 {
 
