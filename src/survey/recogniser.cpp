@@ -9,7 +9,7 @@
 #include "drives/cubemars/cubemars_frames.hpp"
 #include "drives/damiao/damiao_frames.hpp"
 #include "drives/dji/dji_model.hpp"
-#include "motor/lktech_frames.hpp"
+#include "drives/lktech/lktech_frames.hpp"
 #include "motor/moteus_frames.hpp"
 #include "motor/myactuator_frames.hpp"
 #include "motor/odrive_frames.hpp"

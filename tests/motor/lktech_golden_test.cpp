@@ -1,8 +1,8 @@
 // Frames computed by hand from LK-Tech's CAN protocol V2.35, both ways.
 #include <gtest/gtest.h>
 
-#include "motor/lktech_frames.hpp"
-#include "motor/lktech_model.hpp"
+#include "drives/lktech/lktech_frames.hpp"
+#include "drives/lktech/lktech_model.hpp"
 #include "support/frame_bytes.hpp"
 
 namespace rc10::test::lktech_golden_test {

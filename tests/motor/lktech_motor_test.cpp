@@ -1,4 +1,4 @@
-#include "motor/lktech_motor.hpp"
+#include "drives/lktech/lktech_motor.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -10,8 +10,8 @@
 #include <vector>
 
 #include "bus/byte_order.hpp"
-#include "motor/lktech_group.hpp"
-#include "motor/lktech_model.hpp"
+#include "drives/lktech/lktech_group.hpp"
+#include "drives/lktech/lktech_model.hpp"
 #include "support/frame_bytes.hpp"
 #include "support/own_defaults.hpp"
 

@@ -5,9 +5,9 @@
 #include <string>
 #include <vector>
 
-#include "motor/lktech_group.hpp"
-#include "motor/lktech_motor.hpp"
-#include "sim/lktech_drive.hpp"
+#include "drives/lktech/lktech_group.hpp"
+#include "drives/lktech/lktech_motor.hpp"
+#include "drives/lktech/lktech_simulated.hpp"
 #include "sim/solo_rig.hpp"
 #include "support/own_defaults.hpp"
 

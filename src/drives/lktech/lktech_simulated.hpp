@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <memory>
 
-#include "motor/lktech_frames.hpp"
+#include "drives/lktech/lktech_frames.hpp"
 #include "sim/servo_drive.hpp"
 
 namespace rc10::sim {

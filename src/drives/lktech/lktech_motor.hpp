@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <optional>
 
-#include "motor/lktech_frames.hpp"
+#include "drives/lktech/lktech_frames.hpp"
 #include "motor/solo_motor.hpp"
 
 namespace rc10 {

@@ -1,4 +1,4 @@
-#include "sim/lktech_drive.hpp"
+#include "drives/lktech/lktech_simulated.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -7,8 +7,8 @@
 #include "app/saturated.hpp"
 #include "app/units.hpp"
 #include "bus/byte_order.hpp"
-#include "motor/lktech_model.hpp"
-#include "motor/lktech_motor.hpp"
+#include "drives/lktech/lktech_model.hpp"
+#include "drives/lktech/lktech_motor.hpp"
 
 namespace rc10::sim {
 namespace {

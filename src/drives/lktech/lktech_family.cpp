@@ -1,9 +1,9 @@
 #include <algorithm>
 #include <array>
 
-#include "motor/lktech_group.hpp"
-#include "motor/lktech_model.hpp"
-#include "motor/lktech_motor.hpp"
+#include "drives/lktech/lktech_group.hpp"
+#include "drives/lktech/lktech_model.hpp"
+#include "drives/lktech/lktech_motor.hpp"
 
 namespace rc10 {
 namespace {

@@ -1,4 +1,4 @@
-#include "motor/lktech_frames.hpp"
+#include "drives/lktech/lktech_frames.hpp"
 
 #include <algorithm>
 

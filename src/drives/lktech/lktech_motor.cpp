@@ -1,4 +1,4 @@
-#include "motor/lktech_motor.hpp"
+#include "drives/lktech/lktech_motor.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -6,7 +6,7 @@
 #include "app/angle.hpp"
 #include "app/saturated.hpp"
 #include "app/units.hpp"
-#include "motor/lktech_model.hpp"
+#include "drives/lktech/lktech_model.hpp"
 
 namespace rc10 {
 

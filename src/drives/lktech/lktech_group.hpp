@@ -5,7 +5,7 @@
 
 #include "app/result.hpp"
 #include "bus/command_packer.hpp"
-#include "motor/lktech_motor.hpp"
+#include "drives/lktech/lktech_motor.hpp"
 
 namespace rc10 {
 

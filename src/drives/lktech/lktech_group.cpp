@@ -1,4 +1,4 @@
-#include "motor/lktech_group.hpp"
+#include "drives/lktech/lktech_group.hpp"
 
 #include <algorithm>
 

@@ -1,4 +1,4 @@
-#include "motor/lktech_model.hpp"
+#include "drives/lktech/lktech_model.hpp"
 
 #include <algorithm>
 #include <array>
