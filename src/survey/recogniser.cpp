@@ -10,7 +10,7 @@
 #include "drives/damiao/damiao_frames.hpp"
 #include "drives/dji/dji_model.hpp"
 #include "drives/lktech/lktech_frames.hpp"
-#include "motor/moteus_frames.hpp"
+#include "drives/moteus/moteus_frames.hpp"
 #include "motor/myactuator_frames.hpp"
 #include "motor/odrive_frames.hpp"
 #include "motor/robstride_frames.hpp"

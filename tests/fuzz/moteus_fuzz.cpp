@@ -6,9 +6,9 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "motor/moteus_motor.hpp"
+#include "drives/moteus/moteus_motor.hpp"
+#include "drives/moteus/moteus_simulated.hpp"
 #include "motor_orders.hpp"
-#include "sim/moteus_drive.hpp"
 
 namespace {
 

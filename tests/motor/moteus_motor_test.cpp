@@ -1,4 +1,4 @@
-#include "motor/moteus_motor.hpp"
+#include "drives/moteus/moteus_motor.hpp"
 
 #include <cmath>
 #include <limits>

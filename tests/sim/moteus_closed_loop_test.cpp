@@ -1,12 +1,12 @@
 // Moteus_Motor and MoteusDrive together: what a user sees of a motor.
-#include "motor/moteus_motor.hpp"
+#include "drives/moteus/moteus_motor.hpp"
 
 #include <cmath>
 #include <memory>
 
 #include <gtest/gtest.h>
 
-#include "sim/moteus_drive.hpp"
+#include "drives/moteus/moteus_simulated.hpp"
 #include "sim/solo_rig.hpp"
 #include "support/moteus_settings.hpp"
 

@@ -5,7 +5,7 @@
 #include <optional>
 #include <string>
 
-#include "motor/moteus_motor.hpp"
+#include "drives/moteus/moteus_motor.hpp"
 #include "support/moteus_settings.hpp"
 
 namespace rc10::test {

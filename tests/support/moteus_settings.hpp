@@ -1,6 +1,6 @@
 #pragma once
 
-#include "motor/moteus_model.hpp"
+#include "drives/moteus/moteus_model.hpp"
 
 namespace rc10::test {
 

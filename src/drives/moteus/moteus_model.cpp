@@ -1,4 +1,4 @@
-#include "motor/moteus_model.hpp"
+#include "drives/moteus/moteus_model.hpp"
 
 #include <algorithm>
 #include <array>
@@ -7,7 +7,7 @@
 #include <numbers>
 #include <string>
 
-#include "motor/moteus_motor.hpp"
+#include "drives/moteus/moteus_motor.hpp"
 
 namespace rc10 {
 namespace {

@@ -1,7 +1,7 @@
 #include <chrono>
 #include <cmath>
 
-#include "motor/moteus_motor.hpp"
+#include "drives/moteus/moteus_motor.hpp"
 
 // What Moteus_Motor takes from the answers of its drive.
 

@@ -6,8 +6,8 @@
 #include <optional>
 #include <span>
 
-#include "motor/moteus_frames.hpp"
-#include "motor/moteus_model.hpp"
+#include "drives/moteus/moteus_frames.hpp"
+#include "drives/moteus/moteus_model.hpp"
 #include "motor/solo_motor.hpp"
 
 namespace rc10 {

@@ -5,8 +5,8 @@
 #include <memory>
 #include <optional>
 
-#include "motor/moteus_frames.hpp"
-#include "motor/moteus_model.hpp"
+#include "drives/moteus/moteus_frames.hpp"
+#include "drives/moteus/moteus_model.hpp"
 #include "sim/servo_drive.hpp"
 
 namespace rc10::sim {

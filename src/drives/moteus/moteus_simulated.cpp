@@ -1,4 +1,4 @@
-#include "sim/moteus_drive.hpp"
+#include "drives/moteus/moteus_simulated.hpp"
 
 #include <algorithm>
 #include <cmath>

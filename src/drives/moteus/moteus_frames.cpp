@@ -1,4 +1,4 @@
-#include "motor/moteus_frames.hpp"
+#include "drives/moteus/moteus_frames.hpp"
 
 #include <algorithm>
 #include <array>
