@@ -11,7 +11,7 @@
 #include "drives/dji/dji_model.hpp"
 #include "drives/lktech/lktech_frames.hpp"
 #include "drives/moteus/moteus_frames.hpp"
-#include "motor/myactuator_frames.hpp"
+#include "drives/myactuator/myactuator_frames.hpp"
 #include "motor/odrive_frames.hpp"
 #include "motor/robstride_frames.hpp"
 #include "motor/vesc_frames.hpp"

@@ -14,7 +14,7 @@
 #include "daemon/request_desk.hpp"
 #include "daemon/virtual_robot.hpp"
 #include "drives/damiao/damiao_setup.hpp"
-#include "motor/myactuator_setup.hpp"
+#include "drives/myactuator/myactuator_setup.hpp"
 
 namespace rc10::test::configure_drive_test {
 namespace {

@@ -1,7 +1,7 @@
 // Frames published by the manufacturer (Motion Protocol V4.2) and vectors computed from it by hand.
 #include <gtest/gtest.h>
 
-#include "motor/myactuator_frames.hpp"
+#include "drives/myactuator/myactuator_frames.hpp"
 #include "support/frame_bytes.hpp"
 
 namespace rc10::test::myactuator_golden_test {

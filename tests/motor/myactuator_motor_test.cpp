@@ -1,4 +1,4 @@
-#include "motor/myactuator_motor.hpp"
+#include "drives/myactuator/myactuator_motor.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "bus/byte_order.hpp"
-#include "motor/myactuator_model.hpp"
+#include "drives/myactuator/myactuator_model.hpp"
 #include "support/frame_bytes.hpp"
 #include "support/own_defaults.hpp"
 

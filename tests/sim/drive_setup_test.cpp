@@ -9,10 +9,10 @@
 #include "bus/frame_text.hpp"
 #include "drives/damiao/damiao_motor.hpp"
 #include "drives/damiao/damiao_simulated.hpp"
+#include "drives/myactuator/myactuator_motor.hpp"
+#include "drives/myactuator/myactuator_simulated.hpp"
 #include "motor/drive_configuring.hpp"
-#include "motor/myactuator_motor.hpp"
 #include "motor/robstride_motor.hpp"
-#include "sim/myactuator_drive.hpp"
 #include "sim/robstride_drive.hpp"
 #include "sim/solo_rig.hpp"
 

@@ -4,8 +4,8 @@
 #include <cmath>
 #include <string>
 
-#include "motor/myactuator_motor.hpp"
-#include "sim/myactuator_drive.hpp"
+#include "drives/myactuator/myactuator_motor.hpp"
+#include "drives/myactuator/myactuator_simulated.hpp"
 #include "sim/solo_rig.hpp"
 #include "support/own_defaults.hpp"
 

@@ -1,7 +1,7 @@
 #pragma once
 
+#include "drives/myactuator/myactuator_frames.hpp"
 #include "motor/drive_setup.hpp"
-#include "motor/myactuator_frames.hpp"
 
 namespace rc10 {
 

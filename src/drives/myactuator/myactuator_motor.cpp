@@ -1,11 +1,11 @@
-#include "motor/myactuator_motor.hpp"
+#include "drives/myactuator/myactuator_motor.hpp"
 
 #include <algorithm>
 #include <cmath>
 
 #include "app/limits.hpp"
 #include "app/units.hpp"
-#include "motor/myactuator_model.hpp"
+#include "drives/myactuator/myactuator_model.hpp"
 
 namespace rc10 {
 

@@ -4,9 +4,9 @@
 #include <cstdint>
 #include <optional>
 
+#include "drives/myactuator/myactuator_frames.hpp"
+#include "drives/myactuator/myactuator_setup.hpp"
 #include "motor/drive_configuring.hpp"
-#include "motor/myactuator_frames.hpp"
-#include "motor/myactuator_setup.hpp"
 #include "motor/solo_motor.hpp"
 
 namespace rc10 {

@@ -1,4 +1,4 @@
-#include "motor/myactuator_model.hpp"
+#include "drives/myactuator/myactuator_model.hpp"
 
 #include <algorithm>
 

@@ -1,4 +1,4 @@
-#include "motor/myactuator_frames.hpp"
+#include "drives/myactuator/myactuator_frames.hpp"
 
 #include <algorithm>
 #include <cmath>

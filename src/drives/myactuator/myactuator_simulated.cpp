@@ -1,4 +1,4 @@
-#include "sim/myactuator_drive.hpp"
+#include "drives/myactuator/myactuator_simulated.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -6,8 +6,8 @@
 #include "app/saturated.hpp"
 #include "app/units.hpp"
 #include "bus/byte_order.hpp"
-#include "motor/myactuator_model.hpp"
-#include "motor/myactuator_motor.hpp"
+#include "drives/myactuator/myactuator_model.hpp"
+#include "drives/myactuator/myactuator_motor.hpp"
 
 namespace rc10::sim {
 namespace {

@@ -1,4 +1,4 @@
-#include "motor/myactuator_setup.hpp"
+#include "drives/myactuator/myactuator_setup.hpp"
 
 #include <cmath>
 

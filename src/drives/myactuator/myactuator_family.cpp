@@ -1,7 +1,7 @@
 #include <array>
 
-#include "motor/myactuator_model.hpp"
-#include "motor/myactuator_motor.hpp"
+#include "drives/myactuator/myactuator_model.hpp"
+#include "drives/myactuator/myactuator_motor.hpp"
 
 namespace rc10 {
 namespace {

@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <memory>
 
-#include "motor/myactuator_frames.hpp"
+#include "drives/myactuator/myactuator_frames.hpp"
 #include "sim/servo_drive.hpp"
 
 namespace rc10::sim {
