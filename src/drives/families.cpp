@@ -12,10 +12,10 @@
 #include "drives/moteus/moteus_simulated.hpp"
 #include "drives/myactuator/myactuator_motor.hpp"
 #include "drives/myactuator/myactuator_simulated.hpp"
-#include "motor/odrive_motor.hpp"
+#include "drives/odrive/odrive_motor.hpp"
+#include "drives/odrive/odrive_simulated.hpp"
 #include "motor/robstride_motor.hpp"
 #include "motor/vesc_motor.hpp"
-#include "sim/odrive_drive.hpp"
 #include "sim/robstride_drive.hpp"
 #include "sim/vesc_drive.hpp"
 

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "motor/odrive_frames.hpp"
+#include "drives/odrive/odrive_frames.hpp"
 
 namespace rc10::survey {
 

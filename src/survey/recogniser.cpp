@@ -12,7 +12,7 @@
 #include "drives/lktech/lktech_frames.hpp"
 #include "drives/moteus/moteus_frames.hpp"
 #include "drives/myactuator/myactuator_frames.hpp"
-#include "motor/odrive_frames.hpp"
+#include "drives/odrive/odrive_frames.hpp"
 #include "motor/robstride_frames.hpp"
 #include "motor/vesc_frames.hpp"
 

@@ -8,7 +8,7 @@
 #include <string>
 
 #include "bus/byte_order.hpp"
-#include "motor/odrive_motor.hpp"
+#include "drives/odrive/odrive_motor.hpp"
 #include "motor_orders.hpp"
 
 namespace {

@@ -6,7 +6,7 @@
 
 #include <gtest/gtest.h>
 
-#include "sim/odrive_drive.hpp"
+#include "drives/odrive/odrive_simulated.hpp"
 #include "sim/solo_rig.hpp"
 #include "support/odrive_settings.hpp"
 

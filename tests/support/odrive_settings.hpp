@@ -2,7 +2,7 @@
 
 #include <string>
 
-#include "motor/odrive_motor.hpp"
+#include "drives/odrive/odrive_motor.hpp"
 
 namespace rc10::test {
 

@@ -3,7 +3,7 @@
 #include <memory>
 #include <string>
 
-#include "motor/odrive_motor.hpp"
+#include "drives/odrive/odrive_motor.hpp"
 
 namespace rc10 {
 namespace {

@@ -4,9 +4,9 @@
 #include <cstdint>
 #include <optional>
 
+#include "drives/odrive/odrive_frames.hpp"
+#include "drives/odrive/odrive_model.hpp"
 #include "motor/motor_family.hpp"
-#include "motor/odrive_frames.hpp"
-#include "motor/odrive_model.hpp"
 #include "motor/solo_motor.hpp"
 
 namespace rc10 {

@@ -4,8 +4,8 @@
 #include <span>
 #include <string_view>
 
+#include "drives/odrive/odrive_frames.hpp"
 #include "motor/fault_code.hpp"
-#include "motor/odrive_frames.hpp"
 
 namespace rc10 {
 

@@ -3,8 +3,8 @@
 #include <cstdint>
 #include <memory>
 
-#include "motor/odrive_frames.hpp"
-#include "motor/odrive_model.hpp"
+#include "drives/odrive/odrive_frames.hpp"
+#include "drives/odrive/odrive_model.hpp"
 #include "sim/servo_drive.hpp"
 #include "sim/sim_config.hpp"
 

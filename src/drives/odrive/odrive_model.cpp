@@ -1,4 +1,4 @@
-#include "motor/odrive_model.hpp"
+#include "drives/odrive/odrive_model.hpp"
 
 #include <algorithm>
 #include <array>

@@ -1,4 +1,4 @@
-#include "motor/odrive_motor.hpp"
+#include "drives/odrive/odrive_motor.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "sim/odrive_drive.hpp"
+#include "drives/odrive/odrive_simulated.hpp"
 
 #include <algorithm>
 #include <array>
@@ -7,7 +7,7 @@
 #include "app/limits.hpp"
 #include "app/units.hpp"
 #include "bus/byte_order.hpp"
-#include "motor/odrive_motor.hpp"
+#include "drives/odrive/odrive_motor.hpp"
 
 namespace rc10::sim {
 namespace {

@@ -1,4 +1,4 @@
-#include "motor/odrive_frames.hpp"
+#include "drives/odrive/odrive_frames.hpp"
 
 #include <algorithm>
 #include <array>
