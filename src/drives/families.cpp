@@ -14,9 +14,9 @@
 #include "drives/myactuator/myactuator_simulated.hpp"
 #include "drives/odrive/odrive_motor.hpp"
 #include "drives/odrive/odrive_simulated.hpp"
-#include "motor/robstride_motor.hpp"
+#include "drives/robstride/robstride_motor.hpp"
+#include "drives/robstride/robstride_simulated.hpp"
 #include "motor/vesc_motor.hpp"
-#include "sim/robstride_drive.hpp"
 #include "sim/vesc_drive.hpp"
 
 namespace rc10 {

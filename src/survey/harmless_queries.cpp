@@ -2,7 +2,7 @@
 
 #include <array>
 
-#include "motor/robstride_frames.hpp"
+#include "drives/robstride/robstride_frames.hpp"
 #include "motor/vesc_frames.hpp"
 
 namespace rc10::survey {

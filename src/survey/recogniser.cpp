@@ -13,7 +13,7 @@
 #include "drives/moteus/moteus_frames.hpp"
 #include "drives/myactuator/myactuator_frames.hpp"
 #include "drives/odrive/odrive_frames.hpp"
-#include "motor/robstride_frames.hpp"
+#include "drives/robstride/robstride_frames.hpp"
 #include "motor/vesc_frames.hpp"
 
 namespace rc10::survey {

@@ -8,8 +8,8 @@
 
 #include "../support/robstride_settings.hpp"
 #include "bus/byte_order.hpp"
+#include "drives/robstride/robstride_simulated.hpp"
 #include "motor_orders.hpp"
-#include "sim/robstride_drive.hpp"
 
 namespace {
 

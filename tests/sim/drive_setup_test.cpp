@@ -11,9 +11,9 @@
 #include "drives/damiao/damiao_simulated.hpp"
 #include "drives/myactuator/myactuator_motor.hpp"
 #include "drives/myactuator/myactuator_simulated.hpp"
+#include "drives/robstride/robstride_motor.hpp"
+#include "drives/robstride/robstride_simulated.hpp"
 #include "motor/drive_configuring.hpp"
-#include "motor/robstride_motor.hpp"
-#include "sim/robstride_drive.hpp"
 #include "sim/solo_rig.hpp"
 
 namespace rc10::test::drive_setup_test {

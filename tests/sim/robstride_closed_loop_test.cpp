@@ -7,7 +7,7 @@
 
 #include <gtest/gtest.h>
 
-#include "sim/robstride_drive.hpp"
+#include "drives/robstride/robstride_simulated.hpp"
 #include "sim/solo_rig.hpp"
 #include "support/robstride_settings.hpp"
 

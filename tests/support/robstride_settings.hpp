@@ -3,7 +3,7 @@
 #include <string>
 #include <string_view>
 
-#include "motor/robstride_motor.hpp"
+#include "drives/robstride/robstride_motor.hpp"
 
 namespace rc10::test {
 

@@ -6,8 +6,8 @@
 #include <span>
 
 #include "app/time.hpp"
+#include "drives/robstride/robstride_frames.hpp"
 #include "motor/drive_frames.hpp"
-#include "motor/robstride_frames.hpp"
 
 namespace rc10 {
 

@@ -1,4 +1,4 @@
-#include "motor/robstride_enabling.hpp"
+#include "drives/robstride/robstride_enabling.hpp"
 
 #include <bit>
 #include <cmath>

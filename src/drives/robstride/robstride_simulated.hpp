@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <memory>
 
-#include "motor/robstride_motor.hpp"
+#include "drives/robstride/robstride_motor.hpp"
 #include "sim/servo_drive.hpp"
 
 namespace rc10::sim {

@@ -1,4 +1,4 @@
-#include "sim/robstride_drive.hpp"
+#include "drives/robstride/robstride_simulated.hpp"
 
 #include <algorithm>
 #include <bit>

@@ -1,7 +1,7 @@
 #pragma once
 
+#include "drives/robstride/robstride_frames.hpp"
 #include "motor/drive_setup.hpp"
-#include "motor/robstride_frames.hpp"
 
 namespace rc10 {
 

@@ -4,7 +4,7 @@
 
 #include "app/limits.hpp"
 #include "app/units.hpp"
-#include "motor/robstride_motor.hpp"
+#include "drives/robstride/robstride_motor.hpp"
 
 namespace rc10 {
 namespace {

@@ -3,11 +3,11 @@
 #include <array>
 #include <cstdint>
 
+#include "drives/robstride/robstride_enabling.hpp"
+#include "drives/robstride/robstride_frames.hpp"
+#include "drives/robstride/robstride_model.hpp"
+#include "drives/robstride/robstride_setup.hpp"
 #include "motor/drive_configuring.hpp"
-#include "motor/robstride_enabling.hpp"
-#include "motor/robstride_frames.hpp"
-#include "motor/robstride_model.hpp"
-#include "motor/robstride_setup.hpp"
 #include "motor/solo_motor.hpp"
 
 namespace rc10 {

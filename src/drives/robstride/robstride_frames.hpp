@@ -4,8 +4,8 @@
 #include <optional>
 
 #include "bus/can_frame.hpp"
+#include "drives/robstride/robstride_model.hpp"
 #include "motor/fault_code.hpp"
-#include "motor/robstride_model.hpp"
 
 namespace rc10 {
 

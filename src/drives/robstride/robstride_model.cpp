@@ -1,4 +1,4 @@
-#include "motor/robstride_model.hpp"
+#include "drives/robstride/robstride_model.hpp"
 
 #include <algorithm>
 #include <array>

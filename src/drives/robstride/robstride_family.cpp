@@ -3,7 +3,7 @@
 #include <memory>
 #include <string>
 
-#include "motor/robstride_motor.hpp"
+#include "drives/robstride/robstride_motor.hpp"
 
 namespace rc10 {
 namespace {

@@ -1,4 +1,4 @@
-#include "motor/robstride_frames.hpp"
+#include "drives/robstride/robstride_frames.hpp"
 
 #include <algorithm>
 #include <array>

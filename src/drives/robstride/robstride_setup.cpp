@@ -1,4 +1,4 @@
-#include "motor/robstride_setup.hpp"
+#include "drives/robstride/robstride_setup.hpp"
 
 #include <bit>
 #include <cmath>

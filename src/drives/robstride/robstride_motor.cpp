@@ -1,4 +1,4 @@
-#include "motor/robstride_motor.hpp"
+#include "drives/robstride/robstride_motor.hpp"
 
 #include <algorithm>
 #include <bit>
