@@ -16,8 +16,8 @@
 #include "drives/odrive/odrive_simulated.hpp"
 #include "drives/robstride/robstride_motor.hpp"
 #include "drives/robstride/robstride_simulated.hpp"
-#include "motor/vesc_motor.hpp"
-#include "sim/vesc_drive.hpp"
+#include "drives/vesc/vesc_motor.hpp"
+#include "drives/vesc/vesc_simulated.hpp"
 
 namespace rc10 {
 

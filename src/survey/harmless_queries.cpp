@@ -3,7 +3,7 @@
 #include <array>
 
 #include "drives/robstride/robstride_frames.hpp"
-#include "motor/vesc_frames.hpp"
+#include "drives/vesc/vesc_frames.hpp"
 
 namespace rc10::survey {
 namespace {

@@ -14,7 +14,7 @@
 #include "drives/myactuator/myactuator_frames.hpp"
 #include "drives/odrive/odrive_frames.hpp"
 #include "drives/robstride/robstride_frames.hpp"
-#include "motor/vesc_frames.hpp"
+#include "drives/vesc/vesc_frames.hpp"
 
 namespace rc10::survey {
 namespace {

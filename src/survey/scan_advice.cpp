@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "motor/vesc_frames.hpp"
+#include "drives/vesc/vesc_frames.hpp"
 
 namespace rc10::survey {
 namespace {

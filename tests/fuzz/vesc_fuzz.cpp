@@ -6,7 +6,7 @@
 #include <cstdint>
 
 #include "bus/byte_order.hpp"
-#include "motor/vesc_motor.hpp"
+#include "drives/vesc/vesc_motor.hpp"
 #include "motor_orders.hpp"
 
 namespace {

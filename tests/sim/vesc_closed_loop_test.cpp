@@ -7,8 +7,8 @@
 #include <gtest/gtest.h>
 
 #include "app/angle.hpp"
+#include "drives/vesc/vesc_simulated.hpp"
 #include "sim/solo_rig.hpp"
-#include "sim/vesc_drive.hpp"
 #include "support/vesc_motors.hpp"
 
 namespace rc10::test::vesc_closed_loop_test {

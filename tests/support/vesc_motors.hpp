@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-#include "motor/vesc_motor.hpp"
+#include "drives/vesc/vesc_motor.hpp"
 
 namespace rc10::test {
 

@@ -2,7 +2,7 @@
 #include <memory>
 #include <string>
 
-#include "motor/vesc_motor.hpp"
+#include "drives/vesc/vesc_motor.hpp"
 
 namespace rc10 {
 namespace {

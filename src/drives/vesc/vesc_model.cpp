@@ -1,4 +1,4 @@
-#include "motor/vesc_model.hpp"
+#include "drives/vesc/vesc_model.hpp"
 
 #include <numbers>
 

@@ -1,4 +1,4 @@
-#include "sim/vesc_drive.hpp"
+#include "drives/vesc/vesc_simulated.hpp"
 
 #include <algorithm>
 #include <array>

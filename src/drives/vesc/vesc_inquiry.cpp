@@ -1,4 +1,4 @@
-#include "motor/vesc_inquiry.hpp"
+#include "drives/vesc/vesc_inquiry.hpp"
 
 namespace rc10 {
 namespace {

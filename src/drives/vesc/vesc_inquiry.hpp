@@ -3,8 +3,8 @@
 #include <cstdint>
 
 #include "app/time.hpp"
+#include "drives/vesc/vesc_frames.hpp"
 #include "motor/drive_frames.hpp"
-#include "motor/vesc_frames.hpp"
 
 namespace rc10 {
 

@@ -3,7 +3,7 @@
 
 #include "app/angle.hpp"
 #include "app/units.hpp"
-#include "motor/vesc_motor.hpp"
+#include "drives/vesc/vesc_motor.hpp"
 
 // The receiving half of VESC_Motor.
 namespace rc10 {

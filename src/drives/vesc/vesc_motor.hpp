@@ -5,11 +5,11 @@
 #include <span>
 
 #include "app/pid_position.hpp"
+#include "drives/vesc/vesc_frames.hpp"
+#include "drives/vesc/vesc_inquiry.hpp"
+#include "drives/vesc/vesc_model.hpp"
 #include "motor/sample_spacing.hpp"
 #include "motor/solo_motor.hpp"
-#include "motor/vesc_frames.hpp"
-#include "motor/vesc_inquiry.hpp"
-#include "motor/vesc_model.hpp"
 
 namespace rc10 {
 

@@ -3,8 +3,8 @@
 #include <cstdint>
 #include <memory>
 
-#include "motor/vesc_frames.hpp"
-#include "motor/vesc_model.hpp"
+#include "drives/vesc/vesc_frames.hpp"
+#include "drives/vesc/vesc_model.hpp"
 #include "sim/servo_drive.hpp"
 
 namespace rc10::sim {

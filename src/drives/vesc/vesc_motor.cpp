@@ -1,4 +1,4 @@
-#include "motor/vesc_motor.hpp"
+#include "drives/vesc/vesc_motor.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "motor/vesc_frames.hpp"
+#include "drives/vesc/vesc_frames.hpp"
 
 #include <array>
 #include <cmath>
