@@ -3,6 +3,7 @@
 #include <memory>
 #include <vector>
 
+#include "drives/recogniser.hpp"
 #include "motor/motor_family.hpp"
 #include "sim/drive.hpp"
 
@@ -14,6 +15,8 @@ struct FamilyEntry {
   /// Makes the simulated drive of a motor; null: this family cannot be simulated.
   std::unique_ptr<sim::Drive> (*simulate)(const MotorSettings& settings,
                                           const sim::MotorLoad& load) = nullptr;
+  /// What `rc10ctl scan` asks of a frame; null: it does not know this family.
+  Recogniser recognise = nullptr;
 };
 
 /// The families of rc10d: the one place where a new one is entered.

@@ -7,7 +7,7 @@
 namespace rc10::survey {
 
 bool Sighting::ambiguous() const {
-  return std::any_of(guesses.begin(), guesses.end(), [this](const Guess& g) {
+  return std::any_of(guesses.begin(), guesses.end(), [this](const DriveGuess& g) {
     return g.kind != guesses.front().kind || g.from_drive != guesses.front().from_drive;
   });
 }
@@ -34,12 +34,14 @@ namespace {
 // same, and comes 1000 times a second.
 constexpr float kMostHeartbeatsHz = 150.0F;
 
-bool isOdrive(const Guess& guess) { return guess.kind == kODrive || guess.kind == kODriveExtended; }
+bool isOdrive(const DriveGuess& guess) {
+  return guess.kind == drive_kind::kODrive || guess.kind == drive_kind::kODriveExtended;
+}
 bool isOdriveHeartbeat(CanId id) { return odriveMessage(id) == OdriveMessage::kHeartbeat; }
 
 void dropTooFrequent(Sighting& sighting, Duration listened) {
   const bool others = std::any_of(sighting.guesses.begin(), sighting.guesses.end(),
-                                  [](const Guess& g) { return !isOdrive(g); });
+                                  [](const DriveGuess& g) { return !isOdrive(g); });
   const bool often =
       listened > Duration{0} && static_cast<float>(sighting.frames) > kMostHeartbeatsHz * seconds(listened);
   if (others && often && isOdriveHeartbeat(sighting.id)) std::erase_if(sighting.guesses, isOdrive);
@@ -72,8 +74,9 @@ int BusSurvey::commandedBy(const CanFrame& query) const {
   const auto found = heard_.find({true, heartbeat});
   if (found == heard_.end()) return 0;
   const auto& guesses = found->second.guesses;
-  const bool odrive = std::any_of(guesses.begin(), guesses.end(),
-                                  [](const auto& guess) { return guess.first.kind == kODriveExtended; });
+  const bool odrive = std::any_of(guesses.begin(), guesses.end(), [](const auto& guess) {
+    return guess.first.kind == drive_kind::kODriveExtended;
+  });
   return odrive ? node : 0;
 }
 

@@ -18,7 +18,7 @@ struct Sighting {
   std::uint64_t frames = 0;
   /// What all of these frames may be: of one kind, that is what it is; of several, it is ambiguous; empty: no
   /// family that rc10d knows. Drives that share the id are several of one kind.
-  std::vector<Guess> guesses;
+  std::vector<DriveGuess> guesses;
 
   [[nodiscard]] bool ambiguous() const;
 };
@@ -42,7 +42,7 @@ class BusSurvey {
  private:
   struct Heard {
     std::uint64_t frames = 0;
-    std::vector<std::pair<Guess, std::uint64_t>> guesses;
+    std::vector<std::pair<DriveGuess, std::uint64_t>> guesses;
   };
   std::map<std::pair<bool, std::uint32_t>, Heard> heard_;
 };

@@ -13,8 +13,8 @@ bool isPong(CanId id) {
 
 bool isVesc(const Sighting& sighting, int id) {
   return !sighting.ambiguous() &&
-         std::any_of(sighting.guesses.begin(), sighting.guesses.end(), [id](const Guess& guess) {
-           return guess.kind == kVesc && guess.from_drive && guess.id == id;
+         std::any_of(sighting.guesses.begin(), sighting.guesses.end(), [id](const DriveGuess& guess) {
+           return guess.kind == drive_kind::kVesc && guess.from_drive && guess.id == id;
          });
 }
 

@@ -23,9 +23,9 @@ CanFrame frame(const char* text) {
   return parsed.value_or(CanFrame{});
 }
 
-std::vector<Guess> of(const char* text) { return recognise(frame(text)); }
+std::vector<DriveGuess> of(const char* text) { return recognise(frame(text)); }
 
-Guess drive(std::string_view kind, int id) { return {kind, id, true}; }
+DriveGuess drive(std::string_view kind, int id) { return {kind, id, true}; }
 
 TEST(Recogniser, KnowsDjiFeedback) {
   EXPECT_THAT(of("203#1000F44806662D00"), Contains(drive("DJI M3508 or M2006", 3)));
@@ -40,8 +40,8 @@ TEST(Recogniser, DjiIdsOverlap) {
 TEST(Recogniser, AnAngleBeyondTheEncoderIsNoDji) { EXPECT_THAT(of("203#2000F44806662D00"), IsEmpty()); }
 
 TEST(Recogniser, KnowsCommandsOfAnotherController) {
-  EXPECT_THAT(of("200#2000F00000004000"), ElementsAre(Guess{"DJI M3508 or M2006", 0, false}));
-  EXPECT_THAT(of("00000001#00002710"), ElementsAre(Guess{"VESC", 1, false}))
+  EXPECT_THAT(of("200#2000F00000004000"), ElementsAre(DriveGuess{"DJI M3508 or M2006", 0, false}));
+  EXPECT_THAT(of("00000001#00002710"), ElementsAre(DriveGuess{"VESC", 1, false}))
       << frameText(frame("00000001#00002710"));
 }
 
@@ -95,7 +95,7 @@ TEST(Recogniser, KnowsLKTech) {
   EXPECT_THAT(of("141#9A1EC01264001008"), Contains(drive("LK-Tech", 1)));
   // A command, to either of the two; by its bytes the heartbeat of ODrive's node 10 too.
   EXPECT_THAT(of("141#A10000000CFE0000"),
-              AllOf(Contains(Guess{"LK-Tech", 1, false}), Contains(Guess{"MyActuator", 1, false})));
+              AllOf(Contains(DriveGuess{"LK-Tech", 1, false}), Contains(DriveGuess{"MyActuator", 1, false})));
 }
 
 TEST(Recogniser, KnowsMyActuator) {

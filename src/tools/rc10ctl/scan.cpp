@@ -32,7 +32,6 @@ namespace rc10::ctl {
 namespace {
 
 using std::chrono::steady_clock;
-using survey::Guess;
 using survey::Sighting;
 
 // A question of 8 bytes and its answer take 0.3 ms at 1 Mbit/s; at 250 kbit/s they fit too.
@@ -53,7 +52,7 @@ struct Row {
 };
 using Rows = std::map<std::pair<std::string, int>, Row>;
 
-std::string nameOf(const Guess& guess) {
+std::string nameOf(const DriveGuess& guess) {
   std::string name(guess.kind);
   if (guess.id != 0) name += " id " + std::to_string(guess.id);
   return guess.from_drive ? name : "commands for " + name;
@@ -145,7 +144,7 @@ void printSightingsText(const std::vector<Sighting>& sightings, const survey::As
                            {"FRAME IDS"}});
   for (const auto& [drive, row] : rows)
     table.add({drive.first,
-               drive.second != 0 || drive.first == survey::kVesc ? std::to_string(drive.second) : "",
+               drive.second != 0 || drive.first == drive_kind::kVesc ? std::to_string(drive.second) : "",
                std::to_string(row.frames), row.ids});
   if (!rows.empty()) std::fputs(table.text().c_str(), stdout);
   for (const auto& sighting : sightings) {

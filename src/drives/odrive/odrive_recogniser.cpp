@@ -1,0 +1,50 @@
+#include "drives/odrive/odrive_recogniser.hpp"
+
+#include <cmath>
+
+#include "drives/odrive/odrive_frames.hpp"
+
+namespace rc10 {
+namespace {
+
+constexpr std::uint8_t kOdriveLastState = 14;
+
+void addStandard(const CanFrame& frame, std::vector<DriveGuess>& guesses) {
+  if (frame.id.extended || frame.fd) return;
+  const int node = static_cast<int>(frame.id.value >> kOdriveMessageBits);
+  const auto message = odriveMessage(frame.id);
+  if (message == OdriveMessage::kHeartbeat) {
+    const auto beat = decodeOdriveHeartbeat(frame);
+    if (beat && static_cast<std::uint8_t>(beat->state) <= kOdriveLastState)
+      guesses.push_back({drive_kind::kODrive, node});
+  }
+  if (message == OdriveMessage::kEncoderEstimates) {
+    const auto pair = decodeOdrivePair(frame);
+    // Numbers that a shaft can have: bytes of another protocol read as floats are seldom.
+    const auto sane = [](float value) {
+      return std::isfinite(value) && (value == 0.0F || (std::abs(value) > 1e-9F && std::abs(value) < 1e7F));
+    };
+    if (pair && sane(pair->first) && sane(pair->second)) guesses.push_back({drive_kind::kODrive, node});
+  }
+}
+
+// The id is that of another family too. What says most is the heartbeat: an axis is in a state from "idle"
+// on, and bytes 5 and 6 are a code and a flag. A VESC or CubeMars at rest has zeros there.
+void addExtended(const CanFrame& frame, std::vector<DriveGuess>& guesses) {
+  constexpr std::uint8_t kHighestCode = 15;
+  if (!frame.id.extended || odriveMessage(frame.id) != OdriveMessage::kHeartbeat) return;
+  const auto beat = decodeOdriveHeartbeat(frame);
+  if (!beat || beat->byte5 > kHighestCode || beat->byte6 > kHighestCode) return;
+  const auto state = static_cast<std::uint8_t>(beat->state);
+  if (state >= static_cast<std::uint8_t>(OdriveAxisState::kIdle) && state <= kOdriveLastState)
+    guesses.push_back({drive_kind::kODriveExtended, static_cast<int>(frame.id.value >> kOdriveMessageBits)});
+}
+
+}  // namespace
+
+void recogniseOdrive(const CanFrame& frame, std::vector<DriveGuess>& guesses) {
+  addStandard(frame, guesses);
+  addExtended(frame, guesses);
+}
+
+}  // namespace rc10

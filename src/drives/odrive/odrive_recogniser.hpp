@@ -1,0 +1,10 @@
+#pragma once
+
+#include "drives/recogniser.hpp"
+
+namespace rc10 {
+
+/// See Recogniser.
+void recogniseOdrive(const CanFrame& frame, std::vector<DriveGuess>& guesses);
+
+}  // namespace rc10

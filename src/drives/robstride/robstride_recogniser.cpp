@@ -1,0 +1,28 @@
+#include "drives/robstride/robstride_recogniser.hpp"
+
+#include <string_view>
+
+#include "drives/robstride/robstride_frames.hpp"
+
+namespace rc10 {
+namespace {
+
+constexpr std::string_view kRobStride = "RobStride or CyberGear";
+
+}  // namespace
+
+// The drive's id is in the second byte of the id, that of the host in the first.
+void recogniseRobStride(const CanFrame& frame, std::vector<DriveGuess>& guesses) {
+  if (!frame.id.extended || frame.fd || frame.length != 8) return;
+  constexpr std::uint32_t kToAnyHost = 0xFE;  // the answer to the question for the id
+  const auto type = static_cast<RobStrideType>(frame.id.value >> 24U);
+  const int drive = static_cast<int>(frame.id.value >> 8U & 0xFFU);
+  const bool answers =
+      type == RobStrideType::kFeedback || type == RobStrideType::kReport || type == RobStrideType::kFault ||
+      (type == RobStrideType::kGetId && (frame.id.value & 0xFFU) == kToAnyHost && frame.id.value <= 0xFFFF);
+  if (answers && drive != 0) guesses.push_back({kRobStride, drive});
+  if (type == RobStrideType::kOperate)
+    guesses.push_back({kRobStride, static_cast<int>(frame.id.value & 0xFFU), false});
+}
+
+}  // namespace rc10
