@@ -16,8 +16,7 @@ function(rc10_layer layer)
   file(CREATE_LINK "${PROJECT_SOURCE_DIR}/src/${layer}" "${include_root}/${layer}" SYMBOLIC)
 
   # A layer is its folder: a new family of motors is two files and no build rule.
-  file(GLOB sources CONFIGURE_DEPENDS "${PROJECT_SOURCE_DIR}/src/${layer}/*.cpp"
-                                    "${PROJECT_SOURCE_DIR}/src/${layer}/*/*.cpp")
+  file(GLOB sources CONFIGURE_DEPENDS "${PROJECT_SOURCE_DIR}/src/${layer}/*.cpp")
   list(FILTER sources EXCLUDE REGEX "/main\\.cpp$")
   set(target rc10_${layer})
   if(sources)

@@ -57,9 +57,9 @@ def compilations(build: Path, scratch: Path) -> list[Compilation]:
             found.setdefault(
                 source, Compilation(source, Path(entry["directory"]), check_only(entry))
             )
-    # In a folder of headers alone: like a source of one below.
+    # Like its own source: those of a folder may see different things. In a folder of headers alone: like one below.
     for header in sorted(SRC.rglob("*.hpp")):
-        like = next(
+        like = found.get(header.with_suffix(".cpp")) or next(
             found[source]
             for folder in header.parents
             for source in found

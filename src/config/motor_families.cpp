@@ -10,7 +10,7 @@ namespace rc10 {
 namespace {
 
 [[nodiscard]] std::vector<FamilyEntry>& entries() {
-  static std::vector<FamilyEntry> all = builtInFamilies();
+  static std::vector<FamilyEntry> all{builtInFamilies().begin(), builtInFamilies().end()};
   return all;
 }
 

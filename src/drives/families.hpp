@@ -1,7 +1,7 @@
 #pragma once
 
 #include <memory>
-#include <vector>
+#include <span>
 
 #include "drives/recogniser.hpp"
 #include "motor/motor_family.hpp"
@@ -20,6 +20,6 @@ struct FamilyEntry {
 };
 
 /// The families of rc10d: the one place where a new one is entered.
-[[nodiscard]] std::vector<FamilyEntry> builtInFamilies();
+[[nodiscard]] std::span<const FamilyEntry> builtInFamilies();
 
 }  // namespace rc10

@@ -8,6 +8,7 @@
 #include <string>
 
 #include "bus/byte_order.hpp"
+#include "drives/damiao/damiao_family.hpp"
 #include "drives/damiao/damiao_simulated.hpp"
 #include "motor_orders.hpp"
 

@@ -10,6 +10,7 @@
 
 #include "../support/own_defaults.hpp"
 #include "bus/byte_order.hpp"
+#include "drives/lktech/lktech_family.hpp"
 #include "drives/lktech/lktech_motor.hpp"
 #include "motor_orders.hpp"
 

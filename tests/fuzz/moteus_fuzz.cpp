@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <cstdint>
 
+#include "drives/moteus/moteus_family.hpp"
 #include "drives/moteus/moteus_motor.hpp"
 #include "drives/moteus/moteus_simulated.hpp"
 #include "motor_orders.hpp"

@@ -10,6 +10,7 @@
 
 #include "../support/own_defaults.hpp"
 #include "bus/byte_order.hpp"
+#include "drives/myactuator/myactuator_family.hpp"
 #include "drives/myactuator/myactuator_motor.hpp"
 #include "motor_orders.hpp"
 

@@ -8,6 +8,7 @@
 #include <string>
 
 #include "bus/byte_order.hpp"
+#include "drives/odrive/odrive_family.hpp"
 #include "drives/odrive/odrive_motor.hpp"
 #include "motor_orders.hpp"
 

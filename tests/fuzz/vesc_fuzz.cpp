@@ -6,6 +6,7 @@
 #include <cstdint>
 
 #include "bus/byte_order.hpp"
+#include "drives/vesc/vesc_family.hpp"
 #include "drives/vesc/vesc_motor.hpp"
 #include "motor_orders.hpp"
 

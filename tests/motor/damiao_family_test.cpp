@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 #include <sys/socket.h>
 
+#include "drives/damiao/damiao_family.hpp"
 #include "support/damiao_motors.hpp"
 
 namespace rc10::test::damiao_family_test {

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "bus/byte_order.hpp"
+#include "drives/lktech/lktech_family.hpp"
 #include "drives/lktech/lktech_group.hpp"
 #include "drives/lktech/lktech_model.hpp"
 #include "support/frame_bytes.hpp"

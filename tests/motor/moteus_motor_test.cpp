@@ -6,6 +6,7 @@
 
 #include <gtest/gtest.h>
 
+#include "drives/moteus/moteus_family.hpp"
 #include "support/alloc_guard.hpp"
 #include "support/moteus_answers.hpp"
 

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "bus/byte_order.hpp"
+#include "drives/myactuator/myactuator_family.hpp"
 #include "drives/myactuator/myactuator_model.hpp"
 #include "support/frame_bytes.hpp"
 #include "support/own_defaults.hpp"

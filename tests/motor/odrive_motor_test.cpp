@@ -12,6 +12,7 @@
 #include <gtest/gtest.h>
 
 #include "bus/byte_order.hpp"
+#include "drives/odrive/odrive_family.hpp"
 #include "support/odrive_settings.hpp"
 
 namespace rc10::test::odrive_motor_test {

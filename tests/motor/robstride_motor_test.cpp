@@ -15,6 +15,7 @@
 #include "bus/byte_order.hpp"
 #include "bus/fdcan_bus.hpp"
 #include "bus/socket_pair.hpp"
+#include "drives/robstride/robstride_family.hpp"
 #include "support/alloc_guard.hpp"
 #include "support/robstride_settings.hpp"
 

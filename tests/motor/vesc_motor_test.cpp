@@ -8,6 +8,7 @@
 
 #include "app/angle.hpp"
 #include "bus/byte_order.hpp"
+#include "drives/vesc/vesc_family.hpp"
 #include "support/alloc_guard.hpp"
 #include "support/vesc_motors.hpp"
 

@@ -7,10 +7,13 @@
 #include <string>
 
 #include "bus/frame_text.hpp"
+#include "drives/damiao/damiao_family.hpp"
 #include "drives/damiao/damiao_motor.hpp"
 #include "drives/damiao/damiao_simulated.hpp"
+#include "drives/myactuator/myactuator_family.hpp"
 #include "drives/myactuator/myactuator_motor.hpp"
 #include "drives/myactuator/myactuator_simulated.hpp"
+#include "drives/robstride/robstride_family.hpp"
 #include "drives/robstride/robstride_motor.hpp"
 #include "drives/robstride/robstride_simulated.hpp"
 #include "motor/drive_configuring.hpp"

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "drives/lktech/lktech_family.hpp"
 #include "drives/lktech/lktech_group.hpp"
 #include "drives/lktech/lktech_motor.hpp"
 #include "drives/lktech/lktech_simulated.hpp"

@@ -6,6 +6,7 @@
 
 #include <gtest/gtest.h>
 
+#include "drives/moteus/moteus_family.hpp"
 #include "drives/moteus/moteus_simulated.hpp"
 #include "sim/solo_rig.hpp"
 #include "support/moteus_settings.hpp"

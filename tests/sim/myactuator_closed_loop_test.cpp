@@ -4,6 +4,7 @@
 #include <cmath>
 #include <string>
 
+#include "drives/myactuator/myactuator_family.hpp"
 #include "drives/myactuator/myactuator_motor.hpp"
 #include "drives/myactuator/myactuator_simulated.hpp"
 #include "sim/solo_rig.hpp"

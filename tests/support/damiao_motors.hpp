@@ -8,6 +8,7 @@
 
 #include <gtest/gtest.h>
 
+#include "drives/damiao/damiao_family.hpp"
 #include "drives/damiao/damiao_motor.hpp"
 
 namespace rc10::test {

@@ -5,6 +5,7 @@
 #include <optional>
 #include <string>
 
+#include "drives/moteus/moteus_family.hpp"
 #include "drives/moteus/moteus_motor.hpp"
 #include "support/moteus_settings.hpp"
 

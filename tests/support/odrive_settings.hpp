@@ -2,6 +2,7 @@
 
 #include <string>
 
+#include "drives/odrive/odrive_family.hpp"
 #include "drives/odrive/odrive_motor.hpp"
 
 namespace rc10::test {

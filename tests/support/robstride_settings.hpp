@@ -3,6 +3,7 @@
 #include <string>
 #include <string_view>
 
+#include "drives/robstride/robstride_family.hpp"
 #include "drives/robstride/robstride_motor.hpp"
 
 namespace rc10::test {

@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "drives/vesc/vesc_family.hpp"
 #include "drives/vesc/vesc_motor.hpp"
 
 namespace rc10::test {

@@ -1,3 +1,5 @@
+#include "drives/damiao/damiao_family.hpp"
+
 #include <cmath>
 #include <memory>
 #include <string>

@@ -5,6 +5,7 @@
 
 #include "app/limits.hpp"
 #include "app/units.hpp"
+#include "drives/damiao/damiao_family.hpp"
 
 namespace rc10 {
 

@@ -6,6 +6,7 @@
 #include <span>
 
 #include "drives/damiao/damiao_enabling.hpp"
+#include "drives/damiao/damiao_family.hpp"
 #include "drives/damiao/damiao_frames.hpp"
 #include "drives/damiao/damiao_mit.hpp"
 #include "drives/damiao/damiao_position.hpp"
@@ -14,22 +15,6 @@
 #include "motor/solo_motor.hpp"
 
 namespace rc10 {
-
-/// DM3507 to DM10010L, DMH and DMG: all Damiao drives.
-[[nodiscard]] const MotorFamily& damiaoFamily() noexcept;
-
-/// The settings of a Damiao motor, taken out of its own keys.
-struct DamiaoSettings {
-  std::uint32_t master_id = 0;
-  DamiaoControl control = DamiaoControl::kMit;
-  std::uint32_t timeout = 0;  ///< In steps of damiao::kTimeoutStepMs.
-  DamiaoScale scale;
-  DamiaoGains gains;  ///< At the output shaft.
-  bool can_fd = false;
-};
-
-/// `settings.model` is one of the family's. What is 0 among the keys is the model's own.
-[[nodiscard]] DamiaoSettings damiaoSettings(const MotorSettings& settings);
 
 /// A Damiao motor in one of its control modes. It speaks only when told something, so at rest it is told
 /// again and again to be disabled, and answers with its state. Nothing but that, and the clearing of faults,

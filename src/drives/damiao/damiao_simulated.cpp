@@ -9,6 +9,7 @@
 #include "app/limits.hpp"
 #include "app/units.hpp"
 #include "bus/byte_order.hpp"
+#include "drives/damiao/damiao_family.hpp"
 
 namespace rc10::sim {
 

@@ -4,7 +4,9 @@
 #include <cstdint>
 #include <memory>
 
-#include "drives/damiao/damiao_motor.hpp"
+#include "drives/damiao/damiao_family.hpp"
+#include "drives/damiao/damiao_frames.hpp"
+#include "drives/damiao/damiao_model.hpp"
 #include "sim/servo_drive.hpp"
 
 namespace rc10::sim {

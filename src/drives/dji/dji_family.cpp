@@ -5,6 +5,7 @@
 #include <string>
 
 #include "drives/dji/dji_group.hpp"
+#include "drives/dji/dji_motor.hpp"
 
 namespace rc10 {
 namespace {

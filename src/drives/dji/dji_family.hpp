@@ -1,6 +1,6 @@
 #pragma once
 
-#include "drives/dji/dji_motor.hpp"
+#include "drives/dji/dji_model.hpp"
 #include "motor/motor_family.hpp"
 
 namespace rc10 {

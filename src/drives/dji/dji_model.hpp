@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstdint>
+#include <string>
 #include <string_view>
 
 #include "motor/cascade.hpp"
@@ -65,5 +66,18 @@ extern const DjiModel kGM6020;
 
 /// All models, for messages and tests.
 [[nodiscard]] std::array<const DjiModel*, 3> djiModels() noexcept;
+
+struct DjiMotorConfig {
+  std::string name;
+  const DjiModel* model = nullptr;
+  int id = 0;  ///< As set on the drive: 1-8, GM6020 1-7.
+  DjiCommand command = DjiCommand::kCurrent;
+  double gear_ratio = 0.0;        ///< 0: the model's own.
+  int direction = 1;              ///< -1: mounted the other way round.
+  float effort_limit = 0.0F;      ///< A or V; 0: the model's full scale.
+  double zero_deg = 0.0;          ///< Output angle of an absolute encoder that is to read 0.
+  bool zero_at_power_on = false;  ///< The position of the first sample is 0.
+  CascadeConfig loops;            ///< Start from model->command(command).default_loops.
+};
 
 }  // namespace rc10

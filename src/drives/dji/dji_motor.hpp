@@ -13,19 +13,6 @@
 
 namespace rc10 {
 
-struct DjiMotorConfig {
-  std::string name;
-  const DjiModel* model = nullptr;
-  int id = 0;  ///< As set on the drive: 1-8, GM6020 1-7.
-  DjiCommand command = DjiCommand::kCurrent;
-  double gear_ratio = 0.0;        ///< 0: the model's own.
-  int direction = 1;              ///< -1: mounted the other way round.
-  float effort_limit = 0.0F;      ///< A or V; 0: the model's full scale.
-  double zero_deg = 0.0;          ///< Output angle of an absolute encoder that is to read 0.
-  bool zero_at_power_on = false;  ///< The position of the first sample is 0.
-  CascadeConfig loops;            ///< Start from model->command(command).default_loops.
-};
-
 /// A DJI motor: decodes its feedback and runs its loops. Never packs: that is its DJI_Group's work.
 ///
 /// Reference of the angle. M3508 and M2006 count from their first sample, with zeroed = false until

@@ -1,3 +1,5 @@
+#include "drives/lktech/lktech_family.hpp"
+
 #include <algorithm>
 #include <array>
 

@@ -9,9 +9,6 @@
 
 namespace rc10 {
 
-/// The LK-Tech MF, MHF and MG drives, protocol V2.35.
-[[nodiscard]] const MotorFamily& lktechFamily() noexcept;
-
 /// An LK-Tech motor. Its drive speaks only when told something, and on the id on which it is told: whether a
 /// frame on that id is its reply or somebody else's command, only the payload shows. Each command brings
 /// current, speed and the encoder of the output; now and then the drive is asked for its errors and for the

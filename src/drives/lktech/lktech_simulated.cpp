@@ -7,8 +7,8 @@
 #include "app/saturated.hpp"
 #include "app/units.hpp"
 #include "bus/byte_order.hpp"
+#include "drives/lktech/lktech_family.hpp"
 #include "drives/lktech/lktech_model.hpp"
-#include "drives/lktech/lktech_motor.hpp"
 
 namespace rc10::sim {
 namespace {

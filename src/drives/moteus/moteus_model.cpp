@@ -7,6 +7,7 @@
 #include <numbers>
 #include <string>
 
+#include "drives/moteus/moteus_family.hpp"
 #include "drives/moteus/moteus_motor.hpp"
 
 namespace rc10 {

@@ -22,6 +22,4 @@ struct MoteusSettings {
 /// Register 0x00F in any other mode: what bounds the output, as LimitFlags.
 [[nodiscard]] std::uint32_t moteusLimit(std::uint32_t native) noexcept;
 
-[[nodiscard]] const MotorFamily& moteusFamily() noexcept;
-
 }  // namespace rc10

@@ -1,4 +1,5 @@
 #include "drives/moteus/moteus_simulated.hpp"
+#include "drives/moteus/moteus_family.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,3 +1,5 @@
+#include "drives/myactuator/myactuator_family.hpp"
+
 #include <array>
 
 #include "drives/myactuator/myactuator_model.hpp"

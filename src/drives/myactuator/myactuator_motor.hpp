@@ -11,9 +11,6 @@
 
 namespace rc10 {
 
-/// The MyActuator RMD-X drives, protocol V3 and V4.
-[[nodiscard]] const MotorFamily& myactuatorFamily() noexcept;
-
 /// A MyActuator RMD-X motor. Its drive speaks only when asked: each command brings speed, current and
 /// temperature in whole degrees per second and 0.01 A, and a second request the multi-turn angle in 0.01 deg.
 /// Now and then it is asked for its errors and for how long it has been running: by that a restart is

@@ -6,8 +6,8 @@
 #include "app/saturated.hpp"
 #include "app/units.hpp"
 #include "bus/byte_order.hpp"
+#include "drives/myactuator/myactuator_family.hpp"
 #include "drives/myactuator/myactuator_model.hpp"
-#include "drives/myactuator/myactuator_motor.hpp"
 
 namespace rc10::sim {
 namespace {

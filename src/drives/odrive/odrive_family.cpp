@@ -1,3 +1,5 @@
+#include "drives/odrive/odrive_family.hpp"
+
 #include <algorithm>
 #include <array>
 #include <memory>

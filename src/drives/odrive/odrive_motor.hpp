@@ -102,7 +102,4 @@ class ODrive_Motor : public SoloMotor {
   MonotonicTime limits_sent_at_;
 };
 
-/// ODrive S1, Pro and v3. Constant, usable from any thread.
-[[nodiscard]] const MotorFamily& odriveFamily() noexcept;
-
 }  // namespace rc10

@@ -7,7 +7,7 @@
 #include "app/limits.hpp"
 #include "app/units.hpp"
 #include "bus/byte_order.hpp"
-#include "drives/odrive/odrive_motor.hpp"
+#include "drives/odrive/odrive_family.hpp"
 
 namespace rc10::sim {
 namespace {

@@ -1,3 +1,5 @@
+#include "drives/robstride/robstride_family.hpp"
+
 #include <array>
 #include <cmath>
 #include <memory>

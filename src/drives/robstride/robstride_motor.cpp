@@ -7,6 +7,7 @@
 
 #include "app/units.hpp"
 #include "bus/byte_order.hpp"
+#include "drives/robstride/robstride_family.hpp"
 
 namespace rc10 {
 namespace {

@@ -4,6 +4,7 @@
 #include <cstdint>
 
 #include "drives/robstride/robstride_enabling.hpp"
+#include "drives/robstride/robstride_family.hpp"
 #include "drives/robstride/robstride_frames.hpp"
 #include "drives/robstride/robstride_model.hpp"
 #include "drives/robstride/robstride_setup.hpp"
@@ -11,16 +12,6 @@
 #include "motor/solo_motor.hpp"
 
 namespace rc10 {
-
-/// How a drive is told what to do: a choice for the motor's whole life, because a drive changes its run mode
-/// only while it is stopped.
-enum class RobStrideControl : std::uint8_t {
-  kOperation,  ///< Stiffness, damping and torque in every frame.
-  kCurrent,    ///< The run modes: references are parameters.
-  kVelocity,
-  kPosition,
-};
-[[nodiscard]] RobStrideControl robStrideControlOf(const OwnValues& own);
 
 /// A RobStride RS00-RS06, EL05 or CyberGear on its private protocol. Scheduler thread only.
 ///
@@ -112,8 +103,5 @@ class RobStride_Motor : public SoloMotor {
   MonotonicTime limit_sent_at_{};
   MonotonicTime read_at_{};
 };
-
-/// RobStride and CyberGear, on their private protocol.
-[[nodiscard]] const MotorFamily& robStrideFamily() noexcept;
 
 }  // namespace rc10

@@ -8,6 +8,7 @@
 #include "app/angle.hpp"
 #include "app/units.hpp"
 #include "bus/byte_order.hpp"
+#include "drives/robstride/robstride_family.hpp"
 
 namespace rc10::sim {
 namespace {

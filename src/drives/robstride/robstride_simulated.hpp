@@ -4,7 +4,9 @@
 #include <cstdint>
 #include <memory>
 
-#include "drives/robstride/robstride_motor.hpp"
+#include "drives/robstride/robstride_family.hpp"
+#include "drives/robstride/robstride_frames.hpp"
+#include "drives/robstride/robstride_model.hpp"
 #include "sim/servo_drive.hpp"
 
 namespace rc10::sim {

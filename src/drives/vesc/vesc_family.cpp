@@ -1,3 +1,5 @@
+#include "drives/vesc/vesc_family.hpp"
+
 #include <algorithm>
 #include <memory>
 #include <string>

@@ -108,7 +108,4 @@ class VESC_Motor : public SoloMotor {
   double loop_rpm_ = 0.0;
 };
 
-/// VESC drives.
-[[nodiscard]] const MotorFamily& vescFamily() noexcept;
-
 }  // namespace rc10

@@ -1,0 +1,22 @@
+#pragma once
+
+#include <cstdint>
+
+#include "motor/motor_family.hpp"
+
+namespace rc10 {
+
+/// RobStride and CyberGear, on their private protocol.
+[[nodiscard]] const MotorFamily& robStrideFamily() noexcept;
+
+/// How a drive is told what to do: a choice for the motor's whole life, because a drive changes its run mode
+/// only while it is stopped.
+enum class RobStrideControl : std::uint8_t {
+  kOperation,  ///< Stiffness, damping and torque in every frame.
+  kCurrent,    ///< The run modes: references are parameters.
+  kVelocity,
+  kPosition,
+};
+[[nodiscard]] RobStrideControl robStrideControlOf(const OwnValues& own);
+
+}  // namespace rc10
