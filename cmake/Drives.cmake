@@ -42,4 +42,4 @@ list(FILTER far_headers INCLUDE REGEX "${drives_far_side}|_(frames|model|family)
 rc10_drives_side(rc10_drives_by_frames SOURCES ${far_sources} SEES ${far_headers} USES sim motor bus app)
 target_link_libraries(rc10_drives_by_frames PUBLIC $<LINK_ONLY:rc10_drives_motors>)
 
-rc10_layer(drives USES drives_by_frames drives_motors sim motor bus app)
+rc10_layer(drives FLAT USES drives_by_frames drives_motors sim motor bus app)

@@ -8,15 +8,19 @@ function(rc10_together target)
   set_target_properties(${target} PROPERTIES UNITY_BUILD ${RC10_UNITY} UNITY_BUILD_BATCH_SIZE ${RC10_UNITY_BATCH})
 endfunction()
 
-# rc10_layer(<name> [USES <layer>...] [LIBRARIES <target>...])
+# rc10_layer(<name> [FLAT] [USES <layer>...] [LIBRARIES <target>...])   FLAT: sources of sub-folders are in other targets
 function(rc10_layer layer)
-  cmake_parse_arguments(ARG "" "" "USES;LIBRARIES" ${ARGN})
+  cmake_parse_arguments(ARG "FLAT" "" "USES;LIBRARIES" ${ARGN})
   set(include_root "${PROJECT_BINARY_DIR}/layers/${layer}")
   file(MAKE_DIRECTORY "${include_root}")
   file(CREATE_LINK "${PROJECT_SOURCE_DIR}/src/${layer}" "${include_root}/${layer}" SYMBOLIC)
 
-  # A layer is its folder: a new family of motors is two files and no build rule.
+  # A layer is its folder: a new file needs no build rule.
   file(GLOB sources CONFIGURE_DEPENDS "${PROJECT_SOURCE_DIR}/src/${layer}/*.cpp")
+  if(NOT ARG_FLAT)
+    file(GLOB rooms CONFIGURE_DEPENDS "${PROJECT_SOURCE_DIR}/src/${layer}/*/*.cpp")
+    list(APPEND sources ${rooms})
+  endif()
   list(FILTER sources EXCLUDE REGEX "/main\\.cpp$")
   set(target rc10_${layer})
   if(sources)

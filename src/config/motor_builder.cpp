@@ -10,7 +10,7 @@
 #include "config/need_check.hpp"
 #include "config/number_text.hpp"
 #include "config/value_check.hpp"
-#include "motor/fallback.hpp"
+#include "motor/guarding/fallback.hpp"
 
 namespace rc10 {
 namespace {

@@ -6,7 +6,7 @@
 
 #include "config/key_table.hpp"
 #include "config/motor_families.hpp"
-#include "motor/fallback.hpp"
+#include "motor/guarding/fallback.hpp"
 
 namespace rc10 {
 namespace {

@@ -8,10 +8,10 @@
 #include "bus/can_link_settings.hpp"
 #include "config/gpio_config.hpp"
 #include "module/module_type.hpp"
-#include "motor/fallback.hpp"
+#include "motor/guarding/fallback.hpp"
+#include "motor/guarding/motor_guard.hpp"
+#include "motor/guarding/target_shaper.hpp"
 #include "motor/motor_family.hpp"
-#include "motor/motor_guard.hpp"
-#include "motor/target_shaper.hpp"
 #include "sim/sim_config.hpp"
 
 namespace rc10 {

@@ -10,7 +10,7 @@
 #include "bus/fdcan_bus.hpp"
 #include "daemon/orders.hpp"
 #include "daemon/states.hpp"
-#include "motor/motor_guard.hpp"
+#include "motor/guarding/motor_guard.hpp"
 
 namespace rc10 {
 

@@ -13,7 +13,7 @@
 #include "daemon/robot.hpp"
 #include "daemon/snapshot.hpp"
 #include "daemon/states.hpp"
-#include "motor/fallback.hpp"
+#include "motor/guarding/fallback.hpp"
 
 namespace rc10 {
 

@@ -1,4 +1,4 @@
-#include "motor/target_shaper.hpp"
+#include "motor/guarding/target_shaper.hpp"
 
 #include <cmath>
 

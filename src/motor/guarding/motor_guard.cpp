@@ -1,4 +1,4 @@
-#include "motor/motor_guard.hpp"
+#include "motor/guarding/motor_guard.hpp"
 
 #include <algorithm>
 #include <cmath>
