@@ -3,12 +3,12 @@
 #include <exception>
 #include <utility>
 
-#include "config/key_check.hpp"
-#include "config/module_builder.hpp"
-#include "config/robot_builder.hpp"
-#include "config/source_text.hpp"
-#include "config/yaml_reader.hpp"
-#include "config/yaml_rules.hpp"
+#include "config/build/module_builder.hpp"
+#include "config/build/robot_builder.hpp"
+#include "config/keys/key_check.hpp"
+#include "config/yaml/source_text.hpp"
+#include "config/yaml/yaml_reader.hpp"
+#include "config/yaml/yaml_rules.hpp"
 
 namespace rc10 {
 namespace {

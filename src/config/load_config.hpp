@@ -5,8 +5,8 @@
 #include <string_view>
 #include <vector>
 
-#include "config/problem.hpp"
 #include "config/robot_config.hpp"
+#include "config/yaml/problem.hpp"
 
 namespace rc10 {
 

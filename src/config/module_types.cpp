@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "config/module_keys.hpp"
+#include "config/keys/module_keys.hpp"
 #include "module/chassis.hpp"
 #include "module/feeder.hpp"
 #include "module/gimbal.hpp"

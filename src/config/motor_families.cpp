@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "config/motor_keys.hpp"
+#include "config/keys/motor_keys.hpp"
 
 namespace rc10 {
 namespace {

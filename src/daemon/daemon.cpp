@@ -7,7 +7,7 @@
 #include <fmt/format.h>
 
 #include "blackbox/places.hpp"
-#include "config/bus_load.hpp"
+#include "config/check/bus_load.hpp"
 #include "daemon/clock.hpp"
 #include "daemon/log.hpp"
 #include "daemon/rest_frames.hpp"

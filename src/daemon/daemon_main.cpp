@@ -7,8 +7,8 @@
 #include <CLI/CLI.hpp>
 
 #include "config/load_config.hpp"
-#include "config/report.hpp"
-#include "config/schema.hpp"
+#include "config/report/report.hpp"
+#include "config/report/schema.hpp"
 #include "daemon/daemon.hpp"
 #include "daemon/log.hpp"
 #include "daemon/rt_process.hpp"

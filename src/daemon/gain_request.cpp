@@ -5,7 +5,7 @@
 
 #include <fmt/format.h>
 
-#include "config/number_text.hpp"
+#include "config/yaml/number_text.hpp"
 
 namespace rc10 {
 

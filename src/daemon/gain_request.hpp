@@ -4,7 +4,7 @@
 #include <string_view>
 
 #include "app/result.hpp"
-#include "config/loop_gains.hpp"
+#include "config/keys/loop_gains.hpp"
 #include "link/link_protocol.hpp"
 
 namespace rc10 {

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "app/time.hpp"
-#include "config/loop_gains.hpp"
+#include "config/keys/loop_gains.hpp"
 #include "daemon/admission.hpp"
 #include "daemon/rings.hpp"
 #include "daemon/sched_loop.hpp"

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "app/result.hpp"
-#include "config/loop_gains.hpp"
+#include "config/keys/loop_gains.hpp"
 #include "daemon/admission.hpp"
 #include "daemon/orders.hpp"
 #include "link/link_protocol.hpp"

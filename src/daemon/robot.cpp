@@ -8,8 +8,8 @@
 #include <fmt/format.h>
 
 #include "bus/can_socket.hpp"
-#include "config/robot_outline.hpp"
-#include "config/simulated_bus.hpp"
+#include "config/build/robot_outline.hpp"
+#include "config/build/simulated_bus.hpp"
 #include "sim/sim_bus.hpp"
 
 namespace rc10 {

@@ -1,4 +1,4 @@
-#include "config/bus_load.hpp"
+#include "config/check/bus_load.hpp"
 
 #include <gmock/gmock.h>
 

@@ -2,7 +2,7 @@
 
 #include <gmock/gmock.h>
 
-#include "config/drive_ids.hpp"
+#include "config/check/drive_ids.hpp"
 #include "config_text.hpp"
 
 namespace rc10::test::drive_id_test {

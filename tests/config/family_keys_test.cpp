@@ -6,7 +6,7 @@
 #include <gmock/gmock.h>
 
 #include "config/motor_families.hpp"
-#include "config/number_text.hpp"
+#include "config/yaml/number_text.hpp"
 #include "config_text.hpp"
 
 namespace rc10::test::family_keys_test {

@@ -2,7 +2,7 @@
 
 #include <gmock/gmock.h>
 
-#include "config/report.hpp"
+#include "config/report/report.hpp"
 #include "config_text.hpp"
 
 namespace rc10::test::gpio_rules_test {

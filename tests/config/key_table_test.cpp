@@ -1,14 +1,14 @@
 // The tables themselves, and that the defaults they show are those in force.
 
-#include "config/key_table.hpp"
-#include "config/motor_keys.hpp"
+#include "config/keys/key_table.hpp"
+#include "config/keys/motor_keys.hpp"
 
 #include <cmath>
 #include <set>
 
 #include <gmock/gmock.h>
 
-#include "config/value_check.hpp"
+#include "config/keys/value_check.hpp"
 #include "config_text.hpp"
 #include "fingerprint.hpp"
 

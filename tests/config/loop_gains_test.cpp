@@ -1,4 +1,4 @@
-#include "config/loop_gains.hpp"
+#include "config/keys/loop_gains.hpp"
 
 #include <cmath>
 #include <limits>

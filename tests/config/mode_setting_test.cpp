@@ -1,4 +1,4 @@
-#include "config/mode_setting.hpp"
+#include "config/keys/mode_setting.hpp"
 
 #include <gtest/gtest.h>
 

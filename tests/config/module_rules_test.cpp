@@ -6,7 +6,7 @@
 #include <gmock/gmock.h>
 
 #include "config/module_types.hpp"
-#include "config/schema.hpp"
+#include "config/report/schema.hpp"
 #include "config_text.hpp"
 
 namespace rc10::test::module_rules_test {

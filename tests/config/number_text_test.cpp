@@ -1,4 +1,4 @@
-#include "config/number_text.hpp"
+#include "config/yaml/number_text.hpp"
 
 #include <gtest/gtest.h>
 

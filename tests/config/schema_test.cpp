@@ -1,14 +1,14 @@
-#include "config/schema.hpp"
+#include "config/report/schema.hpp"
 
 #include <fstream>
 #include <sstream>
 
 #include <gmock/gmock.h>
 
-#include "config/key_table.hpp"
+#include "config/keys/key_table.hpp"
+#include "config/keys/settings.hpp"
 #include "config/motor_families.hpp"
-#include "config/settings.hpp"
-#include "config/yaml_reader.hpp"
+#include "config/yaml/yaml_reader.hpp"
 #include "config_text.hpp"
 
 namespace rc10::test::schema_test {

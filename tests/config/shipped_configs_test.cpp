@@ -6,9 +6,9 @@
 
 #include <gmock/gmock.h>
 
-#include "config/key_table.hpp"
-#include "config/motor_keys.hpp"
-#include "config/report.hpp"
+#include "config/keys/key_table.hpp"
+#include "config/keys/motor_keys.hpp"
+#include "config/report/report.hpp"
 #include "config_text.hpp"
 #include "fingerprint.hpp"
 

@@ -1,4 +1,4 @@
-#include "config/stm32_gains.hpp"
+#include "config/keys/stm32_gains.hpp"
 
 #include <algorithm>
 #include <cmath>

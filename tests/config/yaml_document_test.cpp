@@ -9,8 +9,8 @@
 #include <gmock/gmock.h>
 #include <unistd.h>
 
-#include "config/source_text.hpp"
-#include "config/yaml_reader.hpp"
+#include "config/yaml/source_text.hpp"
+#include "config/yaml/yaml_reader.hpp"
 #include "config_text.hpp"
 
 namespace rc10::test::yaml_document_test {

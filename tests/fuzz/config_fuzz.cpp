@@ -6,7 +6,7 @@
 #include <string_view>
 
 #include "config/load_config.hpp"
-#include "config/report.hpp"
+#include "config/report/report.hpp"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   const std::string_view text{reinterpret_cast<const char*>(data), size};

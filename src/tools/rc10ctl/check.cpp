@@ -7,7 +7,7 @@
 
 #include "client/json_line.hpp"
 #include "config/load_config.hpp"
-#include "config/report.hpp"
+#include "config/report/report.hpp"
 #include "robot_json.hpp"
 #include "verbs.hpp"
 

@@ -6,7 +6,7 @@
 #include <CLI/CLI.hpp>
 
 #include "client/json_line.hpp"
-#include "config/stm32_gains.hpp"
+#include "config/keys/stm32_gains.hpp"
 #include "verbs.hpp"
 
 namespace rc10::ctl {

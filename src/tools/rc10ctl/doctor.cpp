@@ -11,7 +11,7 @@
 #include <CLI/CLI.hpp>
 
 #include "client/daemon_log.hpp"
-#include "config/lcm_url.hpp"
+#include "config/build/lcm_url.hpp"
 #include "config/load_config.hpp"
 #include "doctor/cpu_check.hpp"
 #include "doctor/daemon_check.hpp"

@@ -11,7 +11,7 @@
 #include "client/json_line.hpp"
 #include "client/request_call.hpp"
 #include "client/text_table.hpp"
-#include "config/number_text.hpp"
+#include "config/yaml/number_text.hpp"
 #include "named_value.hpp"
 #include "verbs.hpp"
 

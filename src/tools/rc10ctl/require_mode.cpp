@@ -1,7 +1,7 @@
 #include "require_mode.hpp"
 
 #include "client/text_table.hpp"
-#include "config/mode_setting.hpp"
+#include "config/keys/mode_setting.hpp"
 #include "link/words.hpp"
 
 namespace rc10::ctl {

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <string>
 
-#include "config/bus_load.hpp"
+#include "config/check/bus_load.hpp"
 
 namespace rc10::ctl {
 namespace {

@@ -20,7 +20,7 @@
 #include "client/json_line.hpp"
 #include "client/quantity_text.hpp"
 #include "client/text_table.hpp"
-#include "config/drive_ids.hpp"
+#include "config/check/drive_ids.hpp"
 #include "link/interface_lock.hpp"
 #include "link/run_dir.hpp"
 #include "survey/bus_survey.hpp"

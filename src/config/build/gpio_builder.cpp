@@ -1,0 +1,60 @@
+#include "config/build/gpio_builder.hpp"
+
+#include <algorithm>
+#include <string>
+
+namespace rc10 {
+namespace {
+
+// Each half of the wave must see ticks advance: two, so that one that is late does not drop the relay.
+constexpr int kMinTicksPerPeriod = 4;
+
+GpioPin readPin(const Settings& settings) {
+  GpioPin pin;
+  settings.read("chip", pin.chip);
+  settings.read("line", pin.line);
+  return pin;
+}
+
+EstopGpioConfig readEstop(const Settings& settings) {
+  return {.pin = readPin(settings),
+          .closed_is_low = settings.text("closed_level") != "high",
+          .internal_bias = settings.text("bias") != "external"};
+}
+
+HeartbeatGpioConfig readHeartbeat(const Settings& settings, int rate_hz, Problems& problems) {
+  HeartbeatGpioConfig heartbeat{.pin = readPin(settings)};
+  const Duration least = std::chrono::nanoseconds{1'000'000'000 / rate_hz} * kMinTicksPerPeriod;
+  const auto given = settings.find("period_ms");
+  if (!given) {
+    heartbeat.period = std::max(heartbeat.period, least);
+    return heartbeat;
+  }
+  int period_ms = 0;
+  settings.read("period_ms", period_ms);
+  heartbeat.period = std::chrono::milliseconds{period_ms};
+  if (heartbeat.period < least) {
+    problems.error(given->place(), given->path,
+                   given->text() + " ms are less than four ticks at " + std::to_string(rate_hz) +
+                       " Hz: a late tick would drop the relay; use " +
+                       std::to_string(std::chrono::ceil<std::chrono::milliseconds>(least).count()) +
+                       " ms or more");
+  }
+  return heartbeat;
+}
+
+}  // namespace
+
+void buildGpio(const Settings& top, RobotConfig& robot, Problems& problems) {
+  if (top.find("estop_gpio")) robot.estop_gpio = readEstop(top.section("estop_gpio"));
+  const auto given = top.find("heartbeat_gpio");
+  if (!given) return;
+  robot.heartbeat_gpio = readHeartbeat(top.section("heartbeat_gpio"), robot.rate_hz, problems);
+  if (robot.estop_gpio && robot.estop_gpio->pin == robot.heartbeat_gpio->pin) {
+    problems.error(given->place(), given->path,
+                   robot.heartbeat_gpio->pin.name() +
+                       " is the line of estop_gpio: an output that switches itself; use another line");
+  }
+}
+
+}  // namespace rc10

@@ -1,0 +1,26 @@
+#include "config/build/robot_outline.hpp"
+
+namespace rc10 {
+
+RobotOutline outlineOf(const RobotConfig& robot) {
+  RobotOutline outline;
+  outline.tick_hz = robot.rate_hz;
+  for (const auto& bus : robot.buses) {
+    for (const auto& motor : bus.motors) {
+      const auto traits = motor.traits();
+      const double gear_ratio =
+          motor.settings.gear_ratio > 0.0 ? motor.settings.gear_ratio : traits.gear_ratio;
+      const auto no_load_rpm =
+          static_cast<float>(static_cast<double>(traits.no_load_rpm) * traits.gear_ratio / gear_ratio);
+      const float limit_rpm = motor.settings.velocity_limit_rpm;
+      outline.motors.push_back({.name = motor.name(),
+                                .modes = traits.modes,
+                                .velocity_limit_rpm = limit_rpm > 0.0F ? limit_rpm : no_load_rpm,
+                                .angle_min_deg = motor.shaping.angle_min_deg,
+                                .angle_max_deg = motor.shaping.angle_max_deg});
+    }
+  }
+  return outline;
+}
+
+}  // namespace rc10

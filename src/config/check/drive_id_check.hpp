@@ -1,0 +1,14 @@
+#pragma once
+
+#include <vector>
+
+#include "config/build/motor_builder.hpp"
+#include "config/yaml/problem.hpp"
+
+namespace rc10 {
+
+/// DJI drives on one bus that would answer with one id, or read one command frame in two ways. Looks at
+/// complete drafts only.
+void checkDriveIds(const std::vector<MotorDraft>& motors, Problems& problems);
+
+}  // namespace rc10

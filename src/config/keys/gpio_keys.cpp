@@ -1,0 +1,60 @@
+#include <array>
+
+#include "config/keys/key_table.hpp"
+
+namespace rc10 {
+namespace {
+
+using enum ValueKind;
+
+constexpr TextForm kChip{"[A-Za-z0-9_.:/@-]{1,64}", "name or label of a GPIO chip, as `gpiodetect` shows it"};
+constexpr Range kLines{.min = 0, .max = 1023};
+
+std::vector<std::string_view> levels() { return {"low", "high"}; }
+std::vector<std::string_view> biases() { return {"internal", "external"}; }
+
+constexpr Key kChipKey{.name = "chip",
+                       .kind = kText,
+                       .form = &kChip,
+                       .required = true,
+                       .about =
+                           "GPIO chip: its name (gpiochip0) or its label (pinctrl-rp1), which stays the "
+                           "same when the numbers change."};
+constexpr Key kLineKey{.name = "line",
+                       .kind = kInteger,
+                       .range = kLines,
+                       .required = true,
+                       .about = "Line of the chip. On a Raspberry Pi the BCM number: 17 is GPIO17, pin 11."};
+
+constexpr std::array kEstopKeys{
+    kChipKey, kLineKey,
+    Key{.name = "closed_level",
+        .kind = kText,
+        .choices = levels,
+        .default_text = "low",
+        .about = "What the line reads while the contact is closed and all is well. low: contact to ground. "
+                 "high: contact to 3.3 V."},
+    Key{.name = "bias",
+        .kind = kText,
+        .choices = biases,
+        .default_text = "internal",
+        .about = "What pulls the line to the other level when the contact or a wire is open. internal: the "
+                 "chip's own resistor. external: one on the board; needed where the chip has none."}};
+
+constexpr std::array kHeartbeatKeys{
+    kChipKey, kLineKey,
+    Key{.name = "period_ms",
+        .kind = kInteger,
+        .unit = "ms",
+        .range = {.min = 10, .max = 1000},
+        .default_text = "20",
+        .about = "Period of the square wave; at least four of the scheduler's."}};
+
+}  // namespace
+
+constexpr Section kEstopGpioSection{"estop_gpio", kEstopKeys,
+                                    "An emergency-stop contact on a GPIO line, normally closed."};
+constexpr Section kHeartbeatGpioSection{"heartbeat_gpio", kHeartbeatKeys,
+                                        "A GPIO line that toggles while the scheduler ticks."};
+
+}  // namespace rc10

@@ -1,0 +1,43 @@
+#include <array>
+
+#include "config/keys/key_table.hpp"
+
+namespace rc10 {
+namespace {
+
+using enum ValueKind;
+
+std::vector<std::string_view> memberOfflineChoices() { return {"stop_group"}; }
+std::vector<std::string_view> returnChoices() { return {"request", "rearm_at_rest"}; }
+
+constexpr std::array kGroupKeys{
+    Key{.name = "name",
+        .kind = kText,
+        .form = &kNameForm,
+        .required = true,
+        .about = "Name of the group, unique."},
+    Key{.name = "motors",
+        .kind = kTextList,
+        .range = {.min = 2, .max = 128},
+        .form = &kNameForm,
+        .required = true,
+        .about = "Names of its motors, on any buses. A motor is in one group at most."},
+    Key{.name = "on_member_offline",
+        .kind = kText,
+        .choices = memberOfflineChoices,
+        .default_text = "stop_group",
+        .about = "stop_group: when an active member goes offline or into fault, the others stop by their "
+                 "on_estop and are no longer enabled."},
+    Key{.name = "on_return",
+        .kind = kText,
+        .choices = returnChoices,
+        .default_text = "request",
+        .about =
+            "request: every member must be enabled again. rearm_at_rest: enabled again by itself once "
+            "all are there and stand still; not after a fault, an e-stop, a disable or an enable_alone."}};
+
+}  // namespace
+
+constexpr Section kGroupSection{"group", kGroupKeys, "Motors that stop together."};
+
+}  // namespace rc10

@@ -1,0 +1,359 @@
+#include "config/keys/motor_keys.hpp"
+
+#include <algorithm>
+#include <array>
+#include <string>
+
+#include "config/keys/key_table.hpp"
+#include "config/motor_families.hpp"
+#include "motor/guarding/fallback.hpp"
+
+namespace rc10 {
+namespace {
+
+using enum ValueKind;
+
+std::vector<std::string_view> modelNames() {
+  std::vector<std::string_view> names;
+  for (const auto& entry : motorFamilies()) {
+    const auto models = entry.family->models();
+    names.insert(names.end(), models.begin(), models.end());
+  }
+  return names;
+}
+
+std::vector<std::string_view> directions() { return {"1", "-1"}; }
+std::vector<std::string_view> stallActions() { return {"fault", "notify"}; }
+std::vector<std::string_view> zeroChoices() { return {"none", "power_on"}; }
+std::vector<std::string_view> fallbacks() { return {kFallbackWords.begin(), kFallbackWords.end()}; }
+
+constexpr Range kSlew{.min = 0, .max = 1'000'000, .above_min = true};
+constexpr Range kSoftLimit{.min = -1'000'000, .max = 1'000'000};
+
+/// The first three belong to one motor; the rest may also stand in a profile.
+constexpr std::size_t kOwnKeys = 3;
+
+constexpr std::array kMotorKeys{
+    Key{.name = "name",
+        .kind = kText,
+        .form = &kNameForm,
+        .required = true,
+        .about = "Name of the motor in commands and states, unique in the robot."},
+    Key{.name = "id",
+        .kind = kInteger,
+        .range = {.min = 0, .max = kByModel},
+        .required = true,
+        .about = "Id set on the drive. On one bus GM6020 ids 1-4 collide with M3508 and M2006 ids 5-8."},
+    Key{.name = "profile",
+        .kind = kText,
+        .form = &kNameForm,
+        .about = "Name of the profile whose keys hold where this motor has none of its own."},
+    Key{.name = "model",
+        .kind = kText,
+        .choices = modelNames,
+        .about = "What it is: see docs/motors.md. Required here or in the profile. Keys that only its family "
+                 "has stand on the page of the family."},
+    Key{.name = "direction",
+        .kind = kInteger,
+        .choices = directions,
+        .default_text = "1",
+        .about = "-1: mounted the other way round, so that the robot's positive is the motor's negative."},
+    Key{.name = "gear_ratio",
+        .kind = kNumber,
+        .range = {.min = 0, .max = 10'000, .above_min = true},
+        .about = "Rotor turns per turn of the output shaft. Default: of the model."},
+    Key{.name = "current_limit_a",
+        .kind = kNumber,
+        .unit = "A",
+        .range = {.min = 0, .max = kByModel, .above_min = true},
+        .needs = kNeedsCurrent,
+        .twin = "voltage_limit_v",
+        .about = "Largest current commanded. Default: the most there is, full scale of the drive."},
+    Key{.name = "voltage_limit_v",
+        .kind = kNumber,
+        .unit = "V",
+        .range = {.min = 0, .max = kByModel, .above_min = true},
+        .needs = kNeedsVoltage,
+        .twin = "current_limit_a",
+        .about = "Largest voltage commanded. Default: the most there is, full scale of the drive."},
+    Key{.name = "velocity_limit_rpm",
+        .kind = kNumber,
+        .unit = "rpm",
+        .range = {.min = 0, .max = 100'000, .above_min = true},
+        .about = "Bounds every velocity target and the angle loop. Default: of the model, about its no-load "
+                 "speed."},
+    Key{.name = "overspeed_rpm",
+        .kind = kNumber,
+        .unit = "rpm",
+        .range = {.min = 0, .max = 100'000, .above_min = true},
+        .about = "Three samples faster than this are a fault. Must be above velocity_limit_rpm. Default: 1.5 "
+                 "times the model's no-load speed."},
+    Key{.name = "temperature_derate_c",
+        .kind = kNumber,
+        .unit = "C",
+        .range = {.min = 0, .max = 150, .above_min = true},
+        .needs = kNeedsTemperature,
+        .default_text = "80",
+        .about = "From here on the current or voltage limit comes down, to 0 at temperature_trip_c. Not for "
+                 "drives that report no temperature, as the M2006."},
+    Key{.name = "temperature_trip_c",
+        .kind = kNumber,
+        .unit = "C",
+        .range = {.min = 0, .max = 150, .above_min = true},
+        .needs = kNeedsTemperature,
+        .default_text = "100",
+        .about = "This hot is a fault. Not for drives that report no temperature, as the M2006."},
+    Key{.name = "stall_ms",
+        .kind = kInteger,
+        .unit = "ms",
+        .range = {.min = 0, .max = 60'000},
+        .default_text = "0",
+        .about = "For this long at the current or voltage limit without turning (2 % of the no-load speed) "
+                 "is a stall. 0: not watched."},
+    Key{.name = "stall_action",
+        .kind = kText,
+        .choices = stallActions,
+        .default_text = "fault",
+        .about = "fault: the motor stops until cleared. notify: the state shows it, nothing else."},
+    Key{.name = "on_timeout",
+        .kind = kText,
+        .choices = fallbacks,
+        .default_text = "coast",
+        .about = "What the motor does when its last command has lapsed. coast: no torque. damp: resists in "
+                 "proportion to its speed. brake: stops and resists. hold: stays at its angle. See "
+                 "docs/safety.md#fallbacks."},
+    Key{.name = "on_disable",
+        .kind = kText,
+        .choices = fallbacks,
+        .default_text = "coast",
+        .about = "The same after a disable request and when rc10d ends, until it stands still."},
+    Key{.name = "on_estop",
+        .kind = kText,
+        .choices = fallbacks,
+        .default_text = "coast",
+        .about = "The same during an emergency stop, and when its group stops."},
+    Key{.name = "hold_max_s",
+        .kind = kNumber,
+        .unit = "s",
+        .range = {.min = 0, .max = 3600, .above_min = true},
+        .default_text = "10",
+        .about = "A fallback hold becomes damp after this time."},
+    Key{.name = "current_slew_a_per_s",
+        .kind = kNumber,
+        .unit = "A/s",
+        .range = kSlew,
+        .needs = kNeedsCurrent,
+        .twin = "voltage_slew_v_per_s",
+        .about = "How fast a current target may change. Default: at once."},
+    Key{.name = "voltage_slew_v_per_s",
+        .kind = kNumber,
+        .unit = "V/s",
+        .range = kSlew,
+        .needs = kNeedsVoltage,
+        .twin = "current_slew_a_per_s",
+        .about = "How fast a voltage target may change. Default: at once."},
+    Key{.name = "velocity_slew_rpm_per_s",
+        .kind = kNumber,
+        .unit = "rpm/s",
+        .range = kSlew,
+        .about = "How fast a velocity target may change. Default: at once."},
+    Key{.name = "angle_slew_deg_per_s",
+        .kind = kNumber,
+        .unit = "deg/s",
+        .range = kSlew,
+        .about = "How fast an angle target may move; the angle loop's velocity limit holds anyway. Default: "
+                 "at once."},
+    Key{.name = "angle_min_deg",
+        .kind = kNumber,
+        .unit = "deg",
+        .range = kSoftLimit,
+        .about = "Soft limit of the multi-turn angle, in force while the angle is referenced. No target "
+                 "leads beyond it; moving back is allowed. See docs/safety.md#soft-limits. Default: none."},
+    Key{.name = "angle_max_deg",
+        .kind = kNumber,
+        .unit = "deg",
+        .range = kSoftLimit,
+        .about = "The other soft limit. Default: none."},
+    Key{.name = "max_first_step_deg",
+        .kind = kNumber,
+        .unit = "deg",
+        .range = {.min = 0, .max = 1'000'000, .above_min = true},
+        .about = "An angle target that follows none is refused if it is farther than this from the measured "
+                 "angle. Default: any distance."},
+    Key{.name = "following_error_deg",
+        .kind = kNumber,
+        .unit = "deg",
+        .range = {.min = 0, .max = 1'000'000, .above_min = true},
+        .about = "So far from the angle target, for following_error_ms, is a fault. Needs "
+                 "angle_slew_deg_per_s. Default: not watched."},
+    Key{.name = "following_error_ms",
+        .kind = kInteger,
+        .unit = "ms",
+        .range = {.min = 1, .max = 60'000},
+        .default_text = "200",
+        .about = "For how long."},
+    Key{.name = "zero",
+        .kind = kText,
+        .choices = zeroChoices,
+        .default_text = "none",
+        .about = "power_on: the angle at the first feedback is 0. none: a geared motor refuses angle targets "
+                 "until it "
+                 "is zeroed by request."},
+    Key{.name = "zero_deg",
+        .kind = kNumber,
+        .unit = "deg",
+        .range = {.min = -360, .max = 360},
+        .needs = kNeedsAbsolute,
+        .twin = "zero: power_on",
+        .default_text = "0",
+        .about = "Angle of an absolute encoder that is to read 0 (GM6020)."},
+    Key{.name = "feedback_hz",
+        .kind = kInteger,
+        .unit = "Hz",
+        .range = {.min = 1, .max = kByModel},
+        .needs = kNeedsUnasked,
+        .twin = "command_divider",
+        .about =
+            "Feedback rate set on the drive (C620 and GM6020: RoboMaster Assistant; VESC: VESC Tool), for "
+            "the predicted load and for what counts as stale. Default: the model's own, DJI 1000."},
+    Key{.name = "command_divider",
+        .kind = kInteger,
+        .range = {.min = 1, .max = 100},
+        .needs = kNeedsOwnFrames,
+        .about = "The drive is told something in every n-th tick; the motors of a bus take turns. A drive "
+                 "that only answers sends its feedback at that rate. Not for motors that share frames (DJI). "
+                 "Default: 1."},
+    Key{.name = "feedback_timeout_ms",
+        .kind = kInteger,
+        .unit = "ms",
+        .range = {.min = 2, .max = 1000},
+        .about =
+            "Without feedback for this long the motor is offline and gets no torque. Default: 20, but at "
+            "least four periods of its feedback."},
+    Key{.name = "optional",
+        .kind = kBoolean,
+        .default_text = "false",
+        .about = "true: the robot may be enabled although this motor does not answer. An enable request that "
+                 "fails for optional motors only is answered as done, and names them."},
+    Key{.name = "velocity_pid",
+        .kind = kSection,
+        .section = &kVelocityPidSection,
+        .needs = kNeedsHostLoops,
+        .about = "Velocity loop: rpm to A, or to V. Keys not given keep the model's defaults."},
+    Key{.name = "angle_pid",
+        .kind = kSection,
+        .section = &kAnglePidSection,
+        .needs = kNeedsHostLoops,
+        .about = "Angle loop: degrees to rpm. Keys not given keep the model's defaults."},
+    Key{.name = "simulated",
+        .kind = kSection,
+        .section = &kSimulatedSection,
+        .about = "What hangs on the shaft when the motor is simulated (a bus of type sim, or rc10-sim), and "
+                 "what is wrong with it."}};
+
+[[nodiscard]] ValueKind valueKindOf(FamilyKey::Kind kind) {
+  switch (kind) {
+    case FamilyKey::Kind::kNumber: return kNumber;
+    case FamilyKey::Kind::kInteger: return kInteger;
+    case FamilyKey::Kind::kFlag: return kBoolean;
+    default: break;  // the others are those of modules
+  }
+  return kText;
+}
+
+/// A key that one or more families have: what the loader accepts of it before it knows the model.
+struct OwnKey {
+  FamilyKey key;
+  std::vector<std::string_view> choices;
+  std::string about;
+
+  OwnKey(const FamilyKey& first, std::string_view family)
+      : key(first), choices(first.choices.begin(), first.choices.end()), about(aboutOf(first, family)) {}
+
+  void join(const FamilyKey& other, std::string_view family) {
+    key.min = std::min(key.min, other.min);
+    key.max = std::max(key.max, other.max);
+    key.above_min = key.above_min && other.above_min;
+    if (key.default_text != other.default_text) key.default_text = {};
+    for (const auto word : other.choices) {
+      if (std::find(choices.begin(), choices.end(), word) == choices.end()) choices.push_back(word);
+    }
+    about += " " + aboutOf(other, family);
+  }
+
+  [[nodiscard]] Key made() const {
+    // Whether it is required, the family asks: another family's motor need not have it.
+    Key made = motorKeyOf(key);
+    made.words = choices;
+    made.about = about;
+    return made;
+  }
+
+ private:
+  [[nodiscard]] static std::string aboutOf(const FamilyKey& key, std::string_view family) {
+    std::string text = std::string{family} + ": " + std::string{key.about};
+    if (!text.ends_with('.')) text += '.';
+    return text;
+  }
+};
+
+/// The keys that all motors have, then those of the families, each name once.
+class MotorKeys {
+ public:
+  MotorKeys() : keys_(kMotorKeys.begin(), kMotorKeys.end()) {
+    for (const auto& entry : motorFamilies()) {
+      for (const FamilyKey& key : entry.family->keys()) add(key, entry.family->name());
+    }
+    for (const OwnKey& own : own_) keys_.push_back(own.made());
+  }
+  [[nodiscard]] std::span<const Key> all() const noexcept { return keys_; }
+
+ private:
+  void add(const FamilyKey& key, std::string_view family) {
+    const auto found =
+        std::find_if(own_.begin(), own_.end(), [&](const OwnKey& own) { return own.key.name == key.name; });
+    if (found != own_.end()) {
+      found->join(key, family);
+    } else {
+      own_.emplace_back(key, family);
+    }
+  }
+
+  std::vector<OwnKey> own_;
+  std::vector<Key> keys_;
+};
+
+bool motor_keys_made = false;
+
+[[nodiscard]] std::span<const Key> motorKeys() {
+  static const MotorKeys kKeys;
+  motor_keys_made = true;
+  return kKeys.all();
+}
+
+[[nodiscard]] std::span<const Key> profileKeys() { return motorKeys().subspan(kOwnKeys); }
+
+}  // namespace
+
+Key motorKeyOf(const FamilyKey& key) {
+  return {.name = key.name,
+          .kind = valueKindOf(key.kind),
+          .unit = key.unit,
+          .range = {.min = key.min, .max = key.max, .above_min = key.above_min},
+          .words = key.choices,
+          .default_text = key.default_text,
+          .about = key.about};
+}
+
+bool isCommonMotorKey(std::string_view name) {
+  return std::any_of(kMotorKeys.begin(), kMotorKeys.end(),
+                     [name](const Key& key) { return key.name == name; });
+}
+
+bool motorKeysMade() noexcept { return motor_keys_made; }
+
+constexpr Section kMotorSection{
+    "motor", {}, "One motor. All angles, speeds and torques are at its output shaft.", motorKeys};
+constexpr Section kProfileSection{"profile", {}, "Keys that several motors share.", profileKeys};
+
+}  // namespace rc10

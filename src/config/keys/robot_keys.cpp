@@ -1,0 +1,130 @@
+#include <array>
+
+#include "config/keys/key_table.hpp"
+
+namespace rc10 {
+namespace {
+
+using enum ValueKind;
+
+constexpr TextForm kRobotName{"[a-z0-9_-]{1,31}", "1 to 31 of a-z, 0-9, _ and -"};
+constexpr TextForm kUdpmUrl{"udpm://[0-9]{1,3}(\\.[0-9]{1,3}){3}:[0-9]{1,5}(\\?ttl=[0-9]{1,3})?",
+                            "udpm://A.B.C.D:PORT?ttl=N"};
+
+std::vector<std::string_view> realtimePolicies() { return {"required", "preferred"}; }
+
+constexpr Range kPriorities{.min = 1, .max = 90};
+constexpr Range kCpus{.min = 0, .max = 1023};
+
+constexpr std::array kSchedulerKeys{Key{.name = "rate_hz",
+                                        .kind = kInteger,
+                                        .unit = "Hz",
+                                        .range = {.min = 100, .max = 4000},
+                                        .default_text = "1000",
+                                        .about = "How often every motor is computed and commanded. Must "
+                                                 "divide 1e9 ns evenly: 250, 500, 1000, 2000."},
+                                    Key{.name = "priority",
+                                        .kind = kInteger,
+                                        .range = kPriorities,
+                                        .default_text = "60",
+                                        .about = "SCHED_FIFO priority of the thread that owns the motors. "
+                                                 "Above 50 it precedes threaded interrupts."},
+                                    Key{.name = "cpu",
+                                        .kind = kInteger,
+                                        .range = kCpus,
+                                        .about = "CPU the thread is pinned to. Default: any."}};
+
+constexpr std::array kRxKeys{
+    Key{.name = "priority",
+        .kind = kInteger,
+        .range = kPriorities,
+        .default_text = "65",
+        .about = "SCHED_FIFO priority of the thread that receives. Must be above the scheduler's."},
+    Key{.name = "cpu",
+        .kind = kInteger,
+        .range = kCpus,
+        .about = "CPU the thread is pinned to. Default: any."}};
+
+constexpr std::array kLcmKeys{
+    Key{.name = "enabled",
+        .kind = kBoolean,
+        .default_text = "true",
+        .about = "Whether rc10d starts rc10-lcm."},
+    Key{.name = "url",
+        .kind = kText,
+        .form = &kUdpmUrl,
+        .default_text = "udpm://239.255.76.67:7667?ttl=0",
+        .about = "Multicast group, port and ttl of LCM. The group must be a multicast address. ttl=0 stays "
+                 "on this computer, ttl=1 on its network. Without ?ttl= it is 0."},
+    Key{.name = "state_hz",
+        .kind = kInteger,
+        .unit = "Hz",
+        .range = {.min = 1, .max = 1000},
+        .default_text = "200",
+        .about = "How often the state of the robot is published."}};
+
+constexpr Section kScheduler{"scheduler", kSchedulerKeys, "The thread that owns the motors."};
+constexpr Section kRx{"rx", kRxKeys, "The thread that receives from the buses."};
+constexpr Section kLcm{"lcm", kLcmKeys, "The link to programs in any language, through LCM."};
+
+constexpr std::array kRobotKeys{
+    Key{.name = "robot",
+        .kind = kText,
+        .form = &kRobotName,
+        .required = true,
+        .about = "Name of the robot: the prefix of its LCM channels and the name of its socket."},
+    Key{.name = "realtime",
+        .kind = kText,
+        .choices = realtimePolicies,
+        .default_text = "required",
+        .about = "required: do not start without real-time priority and locked memory. preferred: warn and "
+                 "go on."},
+    Key{.name = "scheduler",
+        .kind = kSection,
+        .section = &kScheduler,
+        .about = "The thread that owns the motors."},
+    Key{.name = "rx", .kind = kSection, .section = &kRx, .about = "The thread that receives from the buses."},
+    Key{.name = "lcm", .kind = kSection, .section = &kLcm, .about = "The link to programs, through LCM."},
+    Key{.name = "estop_gpio",
+        .kind = kSection,
+        .section = &kEstopGpioSection,
+        .about = "An emergency-stop contact on a GPIO line. Default: none."},
+    Key{.name = "heartbeat_gpio",
+        .kind = kSection,
+        .section = &kHeartbeatGpioSection,
+        .about = "A GPIO line that toggles while the scheduler ticks, for a relay. Default: none."},
+    Key{.name = "blackbox_mib",
+        .kind = kInteger,
+        .unit = "MiB",
+        .range = {.min = 0, .max = 256},
+        .default_text = "16",
+        .about = "Size of the file that records the last minute: see docs/blackbox.md. 0: no recording."},
+    Key{.name = "profiles",
+        .kind = kNamedSections,
+        .range = {.min = 0, .max = 128},
+        .form = &kNameForm,
+        .section = &kProfileSection,
+        .about = "Keys that several motors share. A motor names one with 'profile'; its own keys win, key by "
+                 "key."},
+    Key{.name = "buses",
+        .kind = kSectionList,
+        .range = {.min = 1, .max = 4},
+        .section = &kBusSection,
+        .required = true,
+        .about = "The CAN buses, each with its motors."},
+    Key{.name = "groups",
+        .kind = kSectionList,
+        .range = {.min = 0, .max = 32},
+        .section = &kGroupSection,
+        .about = "Motors that are coupled and must stop together."},
+    Key{.name = "modules",
+        .kind = kTypedSections,
+        .range = {.min = 0, .max = 16},
+        .types = &kModuleSections,
+        .about = "Parts of the robot that rc10d runs in every tick before the motors: see docs/modules.md."}};
+
+}  // namespace
+
+constexpr Section kRobotSection{"robot", kRobotKeys, "A robot for rc10d."};
+
+}  // namespace rc10

@@ -1,0 +1,255 @@
+#include "config/report/report.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <variant>
+#include <vector>
+
+#include "config/check/bus_load_check.hpp"
+#include "config/check/drive_ids.hpp"
+#include "config/report/text_table.hpp"
+#include "config/yaml/number_text.hpp"
+#include "config/yaml/problem.hpp"
+#include "drives/dji/dji_family.hpp"
+
+namespace rc10 {
+namespace {
+
+std::string threadText(const ThreadConfig& thread) {
+  return "SCHED_FIFO " + std::to_string(thread.priority) +
+         (thread.cpu ? ", CPU " + std::to_string(*thread.cpu) : ", any CPU");
+}
+
+std::string robotText(const RobotConfig& config) {
+  const bool required = config.realtime == RealtimePolicy::kRequired;
+  TextTable table;
+  table.add({"robot", config.robot + " (" + printable(config.file) + ")"});
+  table.add({"realtime", required ? "required" : "preferred"});
+  table.add({"scheduler", std::to_string(config.rate_hz) + " Hz, " + threadText(config.scheduler)});
+  table.add({"rx", threadText(config.rx)});
+  table.add({"lcm", config.lcm.enabled
+                        ? config.lcm.url + ", state at " + std::to_string(config.lcm.state_hz) + " Hz"
+                        : std::string{"off"}});
+  if (const auto& estop = config.estop_gpio) {
+    table.add({"e-stop input", estop->pin.name() + ", closed contact reads " +
+                                   (estop->closed_is_low ? "low" : "high") + ", " +
+                                   (estop->internal_bias ? "internal " : "external ") +
+                                   (estop->closed_is_low ? "pull-up" : "pull-down")});
+  }
+  if (const auto& heartbeat = config.heartbeat_gpio) {
+    const auto period = std::chrono::duration_cast<std::chrono::milliseconds>(heartbeat->period).count();
+    table.add({"heartbeat", heartbeat->pin.name() + ", every " + std::to_string(period) + " ms"});
+  }
+  return table.text(0);
+}
+
+std::string modesOf(ModeSet set) {
+  std::vector<std::string> modes;
+  for (int i = 0; i < kControlModeCount; ++i) {
+    const auto mode = static_cast<ControlMode>(i);
+    if (set.contains(mode)) modes.emplace_back(toString(mode));
+  }
+  return listWords(modes, ", ");
+}
+
+std::string limitText(const MotorConfig& motor) {
+  const MotorTraits traits = motor.traits();
+  const float limit = motor.settings.effort_limit;
+  return numberText(limit > 0.0F ? limit : traits.effort_full_scale) +
+         (traits.effort == CommandUnit::kVolt ? " V" : " A");
+}
+
+double gearRatio(const MotorConfig& motor) {
+  return motor.settings.gear_ratio > 0.0 ? motor.settings.gear_ratio : motor.traits().gear_ratio;
+}
+
+std::string zeroText(const MotorConfig& motor) {
+  const MotorTraits traits = motor.traits();
+  if (motor.settings.zero_at_power_on) return "at power-on";
+  if (traits.absolute && gearRatio(motor) == traits.gear_ratio)
+    return "at " + numberText(motor.settings.zero_deg) + " deg";
+  return "on request";
+}
+
+/// "0x201", "0x00000901 (extended) and 3 more".
+std::string idsText(const std::vector<BusUse::Stream>& streams) {
+  std::vector<CanId> ids;
+  for (const auto& stream : streams) {
+    if (std::find(ids.begin(), ids.end(), stream.id) == ids.end()) ids.push_back(stream.id);
+  }
+  if (ids.empty()) return "none";
+  return idText(ids.front()) + (ids.size() > 1 ? " and " + std::to_string(ids.size() - 1) + " more" : "");
+}
+
+std::string commandText(const MotorConfig& motor, const BusUse& use) {
+  const auto& settings = motor.settings;
+  if (motor.family == &djiFamily()) {
+    return idsText(use.commands) + " slot " + std::to_string(commandSlot(djiConfig(settings)) + 1);
+  }
+  const std::string rate = numberText(static_cast<double>(settings.tick_hz) / settings.command_divider);
+  return idsText(use.commands) + " at " + rate + " Hz";
+}
+
+std::string feedbackText(const MotorConfig& motor, const BusUse& use) {
+  const std::string rate = std::to_string(motor.settings.feedback_hz) + " Hz";
+  return idsText(use.feedback) + (motor.traits().asked ? ", its answers" : " at " + rate);
+}
+
+std::string wiringText(const BusConfig& bus, int rate_hz) {
+  TextTable table;
+  table.add({"motor", "model", "id", "feedback", "command", "load", "direction", "gear", "zero", "timeout"});
+  const auto loads = predictLoadByMotor(bus, rate_hz);
+  for (std::size_t i = 0; i < bus.motors.size(); ++i) {
+    const auto& motor = bus.motors[i];
+    const auto timeout =
+        std::chrono::duration_cast<std::chrono::milliseconds>(motor.feedback_timeout).count();
+    const BusUse use = motor.family->busUse(motor.settings);
+    table.add({motor.name() + (motor.optional ? " (optional)" : ""), motor.settings.model,
+               std::to_string(motor.settings.id), feedbackText(motor, use), commandText(motor, use),
+               percentText(loads[i].worst_case), motor.settings.direction < 0 ? "reversed" : "normal",
+               numberText(static_cast<float>(gearRatio(motor))), zeroText(motor),
+               std::to_string(timeout) + " ms"});
+  }
+  return table.text(2);
+}
+
+template <typename Pid>
+std::string gains(const Pid& pid) {
+  return "kp " + numberText(pid.kp) + ", ki " + numberText(pid.ki) + ", kd " + numberText(pid.kd);
+}
+
+std::string velocityLoopText(const CascadeConfig& loops) {
+  const bool incremental = std::holds_alternative<PID_Incremental::Config>(loops.velocity);
+  return (incremental ? "incremental, " : "position, ") +
+         std::visit([](const auto& pid) { return gains(pid); }, loops.velocity);
+}
+
+std::string angleLoopText(const CascadeConfig& loops) {
+  const float limit_rpm = loops.angle.output_limit;
+  return gains(loops.angle) + (limit_rpm > 0.0F ? ", up to " + numberText(limit_rpm) + " rpm" : "");
+}
+
+std::string loopsText(const BusConfig& bus) {
+  TextTable table;
+  table.add({"motor", "limit", "velocity", "velocity loop", "angle loop"});
+  for (const auto& motor : bus.motors) {
+    const CascadeConfig& loops = motor.settings.loops;
+    const float limit_rpm = motor.settings.velocity_limit_rpm;
+    const bool on_host = motor.traits().host_loops != nullptr;
+    table.add({motor.name(), limitText(motor), limit_rpm > 0.0F ? numberText(limit_rpm) + " rpm" : "its own",
+               on_host ? velocityLoopText(loops) : "its own", on_host ? angleLoopText(loops) : "its own"});
+  }
+  return table.text(2);
+}
+
+std::string fallbackText(FallbackAction action) {
+  return std::string{kFallbackWords[static_cast<std::size_t>(action)]};
+}
+
+std::string softLimitsText(const ShapingConfig& shaping) {
+  if (!std::isfinite(shaping.angle_min_deg) && !std::isfinite(shaping.angle_max_deg)) return "none";
+  const auto end = [](double deg) { return std::isfinite(deg) ? numberText(deg) : std::string{"any"}; };
+  return end(shaping.angle_min_deg) + " to " + end(shaping.angle_max_deg) + " deg";
+}
+
+std::string overspeedText(const GuardConfig& guard) {
+  return guard.overspeed_rpm > 0.0F ? numberText(guard.overspeed_rpm) + " rpm" : "not watched";
+}
+
+/// What a motor does when nobody commands it, and where it may go.
+std::string safetyText(const BusConfig& bus) {
+  TextTable table;
+  table.add({"motor", "time-out", "disable", "e-stop", "over-speed", "soft limits"});
+  for (const auto& motor : bus.motors) {
+    table.add({motor.name(), fallbackText(motor.fallback.on_timeout), fallbackText(motor.fallback.on_disable),
+               fallbackText(motor.fallback.on_estop), overspeedText(motor.guard),
+               softLimitsText(motor.shaping)});
+  }
+  return table.text(2);
+}
+
+std::string groupsText(const RobotConfig& config) {
+  std::vector<std::string> names;
+  for (const auto& bus : config.buses) {
+    for (const auto& motor : bus.motors) names.push_back(motor.name());
+  }
+  std::string text;
+  for (const auto& group : config.groups) {
+    std::vector<std::string> members;
+    members.reserve(group.motors.size());
+    for (const auto motor : group.motors) members.push_back(names[motor]);
+    const bool rearms = group.on_return == GroupConfig::Return::kRearmAtRest;
+    text += "\ngroup " + group.name + ": " + listWords(members) + " stop together, and are enabled again " +
+            (rearms ? "by themselves at rest" : "by request") + "\n";
+  }
+  return text;
+}
+
+std::string modulesText(const RobotConfig& config) {
+  std::string text;
+  for (const auto& module : config.modules) {
+    text += "\nmodule " + module.settings.name + ": " + std::string{module.type->name()} + ", priority " +
+            std::to_string(module.settings.priority) + ". " + std::string{module.type->about()} + "\n";
+  }
+  return text;
+}
+
+/// One line for all motors that take the same modes.
+std::string modesText(const BusConfig& bus) {
+  std::map<std::string, std::vector<std::string>> motors_by_modes;
+  for (const auto& motor : bus.motors) motors_by_modes[modesOf(motor.traits().modes)].push_back(motor.name());
+  std::string text;
+  for (const auto& [modes, motors] : motors_by_modes) {
+    text += "  modes of " + (motors_by_modes.size() == 1 ? "all" : listWords(motors)) + ": " + modes + "\n";
+  }
+  return text;
+}
+
+std::string busText(const BusConfig& bus, int rate_hz) {
+  const bool simulated = bus.type == BusType::kSimulated;
+  std::string text = "\nbus " + bus.name + ": ";
+  text += simulated ? "simulated, seed " + std::to_string(bus.sim_seed) : "SocketCAN on " + bus.interface;
+  if (bus.manage_link) text += " (set up by rc10d)";
+  text += ", " + std::to_string(bus.bitrate) + " bit/s, ";
+  if (bus.data_bitrate > 0) text += "CAN FD data at " + std::to_string(bus.data_bitrate) + " bit/s, ";
+  text += "predicted load " + loadText(predictLoad(bus, rate_hz)) + " (no stuff bits, all stuff bits)\n";
+  return text + wiringText(bus, rate_hz) + "\n" + loopsText(bus) + "\n" + safetyText(bus) + "\n" +
+         modesText(bus);
+}
+
+/// The families without a watchdog of their own, each once.
+std::vector<std::string> unwatchedFamilies(const RobotConfig& config) {
+  std::vector<std::string> families;
+  for (const auto& bus : config.buses) {
+    for (const auto& motor : bus.motors) {
+      const std::string name{motor.family->name()};
+      if (motor.traits().watchdog || std::find(families.begin(), families.end(), name) != families.end())
+        continue;
+      families.push_back(name);
+    }
+  }
+  return families;
+}
+
+std::string watchdogText(const RobotConfig& config) {
+  const auto families = unwatchedFamilies(config);
+  if (families.empty()) return "";
+  return "\nnote: " + listWords(families) +
+         " drives have no command watchdog that rc10d can set or verify:\n"
+         "if this computer stops, they may go on with their last command. Wire an emergency stop that cuts "
+         "the\n"
+         "motors' power" +
+         (config.heartbeat_gpio ? ", and the relay of heartbeat_gpio.\n"
+                                : "; heartbeat_gpio can drive a relay.\n");
+}
+
+}  // namespace
+
+std::string describe(const RobotConfig& config) {
+  std::string text = robotText(config);
+  for (const auto& bus : config.buses) text += busText(bus, config.rate_hz);
+  return text + groupsText(config) + modulesText(config) + watchdogText(config);
+}
+
+}  // namespace rc10

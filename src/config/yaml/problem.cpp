@@ -1,0 +1,85 @@
+#include "config/yaml/problem.hpp"
+
+#include <algorithm>
+#include <tuple>
+
+namespace rc10 {
+namespace {
+
+auto order(const ConfigProblem& problem) { return std::tie(problem.place.line, problem.place.column); }
+
+std::vector<ConfigProblem> inFileOrder(std::vector<ConfigProblem> problems) {
+  std::stable_sort(problems.begin(), problems.end(),
+                   [](const auto& a, const auto& b) { return order(a) < order(b); });
+  std::vector<ConfigProblem> kept;
+  for (auto& problem : problems) {
+    const auto same = [&](const auto& other) {
+      return order(other) == order(problem) && other.text == problem.text;
+    };
+    if (std::none_of(kept.rbegin(), kept.rend(), same)) kept.push_back(std::move(problem));
+  }
+  return kept;
+}
+
+}  // namespace
+
+std::string toString(const ConfigProblem& problem) {
+  std::string text = problem.file;
+  if (problem.place.line > 0) {
+    text += ":" + std::to_string(problem.place.line) + ":" + std::to_string(problem.place.column);
+  }
+  if (!problem.path.empty()) text += ": " + problem.path;
+  return text + ": " + problem.text;
+}
+
+void Problems::error(SourcePlace place, std::string path, std::string text) {
+  if (!full()) errors_.push_back({file_, place, std::move(path), std::move(text)});
+}
+
+void Problems::warning(SourcePlace place, std::string path, std::string text) {
+  if (warnings_.size() < kMost) warnings_.push_back({file_, place, std::move(path), std::move(text)});
+}
+
+std::vector<ConfigProblem> Problems::errors() const {
+  auto sorted = inFileOrder(errors_);
+  if (full()) sorted.push_back({file_, {}, "", "more problems than can be listed; mend these first"});
+  return sorted;
+}
+
+std::vector<ConfigProblem> Problems::warnings() const { return inFileOrder(warnings_); }
+
+std::string joinPath(std::string_view path, std::string_view key) {
+  return path.empty() ? printable(key) : std::string{path} + "." + printable(key);
+}
+
+std::string joinPath(std::string_view path, std::size_t index) {
+  return std::string{path} + "[" + std::to_string(index) + "]";
+}
+
+std::string printable(std::string_view text) {
+  constexpr std::size_t kMostShown = 48;
+  const auto byte = [text](std::size_t i) { return static_cast<unsigned char>(text[i]); };
+  std::size_t end = std::min(text.size(), kMostShown);
+  while (end > 0 && end < text.size() && (byte(end) & 0xC0U) == 0x80) --end;  // no half character
+  std::string shown;
+  for (std::size_t i = 0; i < end; ++i) {
+    const bool is_c1 = byte(i) == 0xC2 && i + 1 < end && byte(i + 1) < 0xA0;  // U+0080 to U+009F
+    const bool is_control = byte(i) < 0x20 || byte(i) == 0x7F || is_c1;
+    shown += is_control ? '?' : text[i];
+    if (is_c1) ++i;
+  }
+  return end < text.size() ? shown + "..." : shown;
+}
+
+std::string inQuotes(std::string_view text) { return "'" + printable(text) + "'"; }
+
+std::string listWords(const std::vector<std::string>& words, std::string_view last_joint) {
+  std::string list;
+  for (std::size_t i = 0; i < words.size(); ++i) {
+    if (i > 0) list += i + 1 == words.size() ? std::string{last_joint} : std::string{", "};
+    list += words[i];
+  }
+  return list;
+}
+
+}  // namespace rc10
