@@ -8,8 +8,8 @@
 #include <string_view>
 #include <vector>
 
-#include "daemon/robot.hpp"
-#include "daemon/scheduler.hpp"
+#include "daemon/devices/robot.hpp"
+#include "daemon/tick/scheduler.hpp"
 #include "wide_motor.hpp"
 
 namespace rc10::bench {

@@ -17,8 +17,8 @@
 #include "app/subnormals.hpp"
 #include "bus/can_receiver.hpp"
 #include "config/load_config.hpp"
-#include "daemon/robot.hpp"
-#include "daemon/scheduler.hpp"
+#include "daemon/devices/robot.hpp"
+#include "daemon/tick/scheduler.hpp"
 
 namespace rc10::bench {
 namespace {

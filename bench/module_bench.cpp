@@ -14,9 +14,9 @@
 #include "app/subnormals.hpp"
 #include "bus/can_receiver.hpp"
 #include "config/load_config.hpp"
-#include "daemon/module_runner.hpp"
-#include "daemon/robot.hpp"
-#include "daemon/supervisor.hpp"
+#include "daemon/devices/robot.hpp"
+#include "daemon/supervision/supervisor.hpp"
+#include "daemon/tick/module_runner.hpp"
 #include "support/module_cases.hpp"
 
 namespace rc10::bench {

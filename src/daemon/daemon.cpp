@@ -8,7 +8,7 @@
 
 #include "blackbox/places.hpp"
 #include "config/check/bus_load.hpp"
-#include "daemon/clock.hpp"
+#include "daemon/exchange/clock.hpp"
 #include "daemon/log.hpp"
 #include "daemon/rest_frames.hpp"
 #include "daemon/rt_process.hpp"

@@ -6,7 +6,7 @@
 #include <spdlog/async_logger.h>
 #include <spdlog/sinks/stdout_color_sinks.h>
 
-#include "daemon/events.hpp"
+#include "daemon/exchange/events.hpp"
 
 namespace rc10 {
 namespace {

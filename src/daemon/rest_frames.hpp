@@ -3,7 +3,7 @@
 #include <string>
 
 #include "app/result.hpp"
-#include "daemon/robot.hpp"
+#include "daemon/devices/robot.hpp"
 
 namespace rc10 {
 

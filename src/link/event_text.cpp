@@ -80,7 +80,7 @@ namespace {
   return text.data();
 }
 
-// In the order of CommandRefusal in daemon/admission.hpp.
+// In the order of CommandRefusal in daemon/clients/admission.hpp.
 [[nodiscard]] std::string refused(std::int32_t reason, std::string_view client) {
   constexpr std::array kReasons{"accepted",     "malformed",        "unknown motor",
                                 "unknown mode", "unsupported mode", "not finite",
@@ -104,7 +104,7 @@ namespace {
 }  // namespace
 
 std::string eventText(std::int32_t code, std::int32_t value, std::int32_t extra, std::string_view client) {
-  switch (code) {  // the numbers of EventCode in daemon/events.hpp
+  switch (code) {  // the numbers of EventCode in daemon/exchange/events.hpp
     case 100: return change(motorStatusWord(small(extra)), motorStatusWord(small(value)));
     case 101: return std::string("no valid command any more: ") + fallbackWord(value);
     case 102: return "multi-turn angle lost: angle targets are refused until it is set again";

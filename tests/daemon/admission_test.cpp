@@ -1,4 +1,4 @@
-#include "daemon/admission.hpp"
+#include "daemon/clients/admission.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,6 +1,6 @@
 // The black box of a process: what a restart finds, and what becomes of copies.
 
-#include "daemon/black_box.hpp"
+#include "daemon/recording/black_box.hpp"
 
 #include <gmock/gmock.h>
 #include <spdlog/sinks/ostream_sink.h>
@@ -11,7 +11,7 @@
 
 #include "blackbox/image.hpp"
 #include "blackbox/memory_box.hpp"
-#include "daemon/publication.hpp"
+#include "daemon/clients/publication.hpp"
 #include "daemon/temp_dir.hpp"
 
 namespace rc10::test::black_box_test {

@@ -1,6 +1,6 @@
 // What can be seen without CAN: "lo" stands for an interface that is there but is no CAN interface. The
 // revival itself is tested with real SocketCAN in tests/kernel.
-#include "daemon/bus_reviver.hpp"
+#include "daemon/interfaces/bus_reviver.hpp"
 
 #include <gtest/gtest.h>
 #include <net/if.h>

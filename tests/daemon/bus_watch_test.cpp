@@ -1,5 +1,5 @@
 // Buses that do not carry frames, and strangers on a bus: what leaves, and what is told.
-#include "daemon/bus_watch.hpp"
+#include "daemon/tick/bus_watch.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,5 +1,5 @@
 // The message, taken apart again as the kernel does it. That a controller obeys it is tested in tests/vm.
-#include "daemon/can_fd_setup.hpp"
+#include "daemon/interfaces/can_fd_setup.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,5 +1,5 @@
 // What can be seen without CAN; with controllers it is tested in tests/vm.
-#include "daemon/can_link.hpp"
+#include "daemon/interfaces/can_link.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

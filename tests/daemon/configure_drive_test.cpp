@@ -9,9 +9,9 @@
 #include <utility>
 
 #include "config/load_config.hpp"
-#include "daemon/drive_request.hpp"
+#include "daemon/clients/drive_request.hpp"
+#include "daemon/clients/request_desk.hpp"
 #include "daemon/link_messages.hpp"
-#include "daemon/request_desk.hpp"
 #include "daemon/virtual_robot.hpp"
 #include "drives/damiao/damiao_setup.hpp"
 #include "drives/myactuator/myactuator_setup.hpp"

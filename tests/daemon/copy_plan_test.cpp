@@ -1,4 +1,4 @@
-#include "daemon/copy_plan.hpp"
+#include "daemon/recording/copy_plan.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "daemon/estop_contact.hpp"
+#include "daemon/exchange/estop_contact.hpp"
 
 #include <gtest/gtest.h>
 

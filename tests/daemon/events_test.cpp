@@ -1,4 +1,4 @@
-#include "daemon/events.hpp"
+#include "daemon/exchange/events.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -8,7 +8,7 @@
 #include <string>
 
 #include "bus/bus_health.hpp"
-#include "daemon/states.hpp"
+#include "daemon/exchange/states.hpp"
 #include "motor/target.hpp"
 
 namespace rc10::test::events_test {

@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "daemon/gpio.hpp"
-#include "daemon/gpio_lines.hpp"
+#include "daemon/devices/gpio.hpp"
+#include "daemon/devices/gpio_lines.hpp"
 
 namespace rc10::test {
 

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "daemon/spi_keeper.hpp"
+#include "daemon/devices/spi_keeper.hpp"
 
 namespace rc10::test {
 

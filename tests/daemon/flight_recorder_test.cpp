@@ -1,11 +1,11 @@
 // What the scheduler writes down in each tick.
 
-#include "daemon/flight_recorder.hpp"
+#include "daemon/recording/flight_recorder.hpp"
 
 #include <gmock/gmock.h>
 
 #include "blackbox/memory_box.hpp"
-#include "daemon/admission.hpp"
+#include "daemon/clients/admission.hpp"
 #include "daemon/virtual_robot.hpp"
 #include "link/event_text.hpp"
 

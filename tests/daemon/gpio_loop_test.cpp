@@ -1,4 +1,4 @@
-#include "daemon/gpio_loop.hpp"
+#include "daemon/threads/gpio_loop.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-#include "daemon/heartbeat.hpp"
+#include "daemon/devices/heartbeat.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

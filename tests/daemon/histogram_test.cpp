@@ -1,4 +1,4 @@
-#include "daemon/histogram.hpp"
+#include "daemon/exchange/histogram.hpp"
 
 #include <gtest/gtest.h>
 

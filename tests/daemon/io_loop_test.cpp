@@ -1,4 +1,4 @@
-#include "daemon/io_loop.hpp"
+#include "daemon/threads/io_loop.hpp"
 
 #include <gtest/gtest.h>
 #include <poll.h>

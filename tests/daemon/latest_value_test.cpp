@@ -1,4 +1,4 @@
-#include "daemon/latest_value.hpp"
+#include "daemon/exchange/latest_value.hpp"
 
 #include <gtest/gtest.h>
 

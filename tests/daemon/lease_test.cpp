@@ -1,6 +1,6 @@
 // Several clients on one motor: in the supervisor, as its users see it.
 
-#include "daemon/lease.hpp"
+#include "daemon/supervision/lease.hpp"
 
 #include <algorithm>
 

@@ -1,5 +1,5 @@
 // GPIO lines of modules, from a client's signal to the pin and back, on a chip without a kernel.
-#include "daemon/line_loop.hpp"
+#include "daemon/threads/line_loop.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

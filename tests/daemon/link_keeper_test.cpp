@@ -1,6 +1,6 @@
 // What the io thread does about a link, with a driver that only remembers. The real one is tested with
 // controllers, in tests/vm.
-#include "daemon/link_keeper.hpp"
+#include "daemon/interfaces/link_keeper.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

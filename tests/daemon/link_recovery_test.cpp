@@ -1,6 +1,6 @@
 // When the link of a bus is restarted, in virtual time.
 
-#include "daemon/link_recovery.hpp"
+#include "daemon/interfaces/link_recovery.hpp"
 
 #include <gtest/gtest.h>
 

@@ -12,8 +12,8 @@
 #include <string>
 #include <vector>
 
+#include "daemon/clients/link_server.hpp"
 #include "daemon/link_messages.hpp"
-#include "daemon/link_server.hpp"
 #include "daemon/temp_dir.hpp"
 #include "link/link_message.hpp"
 

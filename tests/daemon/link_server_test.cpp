@@ -1,10 +1,10 @@
-#include "daemon/link_server.hpp"
+#include "daemon/clients/link_server.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <unistd.h>
 
-#include "daemon/clock.hpp"
+#include "daemon/exchange/clock.hpp"
 #include "daemon/link_rig.hpp"
 
 namespace rc10::test::link_server_test {

@@ -1,4 +1,4 @@
-#include "daemon/link_socket.hpp"
+#include "daemon/clients/link_socket.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,5 +1,5 @@
 // Modules in the tick: their inputs, their targets, what they ask for.
-#include "daemon/module_runner.hpp"
+#include "daemon/tick/module_runner.hpp"
 
 #include <functional>
 

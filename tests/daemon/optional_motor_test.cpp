@@ -1,8 +1,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "daemon/clients/request_desk.hpp"
 #include "daemon/link_messages.hpp"
-#include "daemon/request_desk.hpp"
 
 namespace rc10::test::optional_motor_test {
 namespace {

@@ -1,8 +1,8 @@
-#include "daemon/periodic_timer.hpp"
+#include "daemon/threads/periodic_timer.hpp"
 
 #include <gtest/gtest.h>
 
-#include "daemon/clock.hpp"
+#include "daemon/exchange/clock.hpp"
 
 namespace rc10::test::periodic_timer_test {
 namespace {

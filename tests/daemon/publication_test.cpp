@@ -1,4 +1,4 @@
-#include "daemon/publication.hpp"
+#include "daemon/clients/publication.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

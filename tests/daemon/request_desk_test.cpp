@@ -1,4 +1,4 @@
-#include "daemon/request_desk.hpp"
+#include "daemon/clients/request_desk.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

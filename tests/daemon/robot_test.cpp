@@ -1,4 +1,4 @@
-#include "daemon/robot.hpp"
+#include "daemon/devices/robot.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-#include "daemon/rt_thread.hpp"
+#include "daemon/threads/rt_thread.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

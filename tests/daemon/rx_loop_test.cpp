@@ -1,4 +1,4 @@
-#include "daemon/rx_loop.hpp"
+#include "daemon/interfaces/rx_loop.hpp"
 
 #include <fcntl.h>
 #include <gtest/gtest.h>
@@ -8,7 +8,7 @@
 #include <cstring>
 
 #include "bus/socket_pair.hpp"
-#include "daemon/clock.hpp"
+#include "daemon/exchange/clock.hpp"
 #include "daemon/virtual_robot.hpp"
 #include "support/frame_calls.hpp"
 

@@ -1,4 +1,4 @@
-#include "daemon/scheduler.hpp"
+#include "daemon/tick/scheduler.hpp"
 
 #include <gtest/gtest.h>
 

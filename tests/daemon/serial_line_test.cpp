@@ -1,11 +1,11 @@
-#include "daemon/serial_line.hpp"
+#include "daemon/devices/serial_line.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <sys/socket.h>
 
 #include "bus/wire_frame.hpp"
-#include "daemon/clock.hpp"
+#include "daemon/exchange/clock.hpp"
 #include "daemon/serial_rig.hpp"
 #include "support/alloc_guard.hpp"
 

@@ -1,4 +1,4 @@
-#include "daemon/serial_writer.hpp"
+#include "daemon/devices/serial_writer.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

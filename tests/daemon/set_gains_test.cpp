@@ -11,9 +11,9 @@
 
 #include "blackbox/memory_box.hpp"
 #include "config/load_config.hpp"
-#include "daemon/gain_request.hpp"
+#include "daemon/clients/gain_request.hpp"
+#include "daemon/clients/request_desk.hpp"
 #include "daemon/link_messages.hpp"
-#include "daemon/request_desk.hpp"
 #include "daemon/virtual_robot.hpp"
 #include "link/words.hpp"
 

@@ -1,4 +1,4 @@
-#include "daemon/signal_admission.hpp"
+#include "daemon/clients/signal_admission.hpp"
 
 #include <cmath>
 #include <limits>

@@ -1,5 +1,5 @@
 // An LED strip from the state of the robot to the bytes on the wire, on an SPI device without a kernel.
-#include "daemon/spi_keeper.hpp"
+#include "daemon/devices/spi_keeper.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

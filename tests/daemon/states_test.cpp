@@ -1,4 +1,4 @@
-#include "daemon/states.hpp"
+#include "daemon/exchange/states.hpp"
 
 #include <gtest/gtest.h>
 

@@ -10,8 +10,8 @@
 
 #include "bus/can_receiver.hpp"
 #include "config/robot_config.hpp"
-#include "daemon/robot.hpp"
-#include "daemon/scheduler.hpp"
+#include "daemon/devices/robot.hpp"
+#include "daemon/tick/scheduler.hpp"
 #include "drives/dji/dji_family.hpp"
 
 namespace rc10::test {

@@ -5,8 +5,8 @@
 #include <memory>
 
 #include "blackbox/memory_box.hpp"
-#include "daemon/clock.hpp"
-#include "daemon/rx_loop.hpp"
+#include "daemon/exchange/clock.hpp"
+#include "daemon/interfaces/rx_loop.hpp"
 #include "daemon/virtual_robot.hpp"
 #include "support/alloc_guard.hpp"
 

@@ -10,8 +10,8 @@
 #include <vector>
 
 #include "config/robot_config.hpp"
-#include "daemon/orders.hpp"
-#include "daemon/snapshot.hpp"
+#include "daemon/exchange/orders.hpp"
+#include "daemon/exchange/snapshot.hpp"
 
 namespace rc10::test {
 

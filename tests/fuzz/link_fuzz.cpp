@@ -11,9 +11,9 @@
 #include <vector>
 
 #include "config/load_config.hpp"
-#include "daemon/admission.hpp"
-#include "daemon/request_desk.hpp"
-#include "daemon/signal_admission.hpp"
+#include "daemon/clients/admission.hpp"
+#include "daemon/clients/request_desk.hpp"
+#include "daemon/clients/signal_admission.hpp"
 #include "fuzz_input.hpp"
 #include "link/link_message.hpp"
 

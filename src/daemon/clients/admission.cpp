@@ -1,0 +1,116 @@
+#include "daemon/clients/admission.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace rc10 {
+namespace {
+
+[[nodiscard]] constexpr bool usesValue(ControlMode mode) noexcept {
+  return mode != ControlMode::kCoast && mode != ControlMode::kBrake;
+}
+
+[[nodiscard]] bool finite(const link::Setpoint& setpoint, ControlMode mode) noexcept {
+  const bool impedance = mode == ControlMode::kImpedance;
+  return (!usesValue(mode) || std::isfinite(setpoint.value)) && !std::isinf(setpoint.velocity_ff_rpm) &&
+         !std::isinf(setpoint.torque_ff_nm) &&
+         // An optional field that is not given is NaN; IMPEDANCE has no use without these two.
+         (!impedance ||
+          (std::isfinite(setpoint.stiffness_nm_per_rad) && std::isfinite(setpoint.damping_nms_per_rad)));
+}
+
+// NaN in an optional field: not given.
+[[nodiscard]] float orZero(float value) noexcept { return std::isnan(value) ? 0.0F : value; }
+
+}  // namespace
+
+const char* toString(CommandRefusal refusal) noexcept {
+  switch (refusal) {
+    case CommandRefusal::kNone: return "accepted";
+    case CommandRefusal::kMalformed: return "malformed";
+    case CommandRefusal::kUnknownMotor: return "unknown motor";
+    case CommandRefusal::kUnknownMode: return "unknown mode";
+    case CommandRefusal::kUnsupportedMode: return "unsupported mode";
+    case CommandRefusal::kNotFinite: return "not finite";
+    case CommandRefusal::kExpired: return "expired";
+    case CommandRefusal::kOldSequence: return "old sequence";
+    case CommandRefusal::kRingFull: return "too many commands";
+    case CommandRefusal::kUnknownModule: return "unknown module";
+    case CommandRefusal::kUnknownSignal: return "unknown signal";
+  }
+  return "unknown";
+}
+
+const char* describe(CommandRefusal refusal) noexcept {
+  switch (refusal) {
+    case CommandRefusal::kNone: break;
+    case CommandRefusal::kMalformed:
+      return "malformed: it needs 1 to 128 setpoints, each motor once (for a module: 1 to 32 values, each "
+             "once), "
+             "and a validity of 1 to 1000 ms";
+    case CommandRefusal::kUnknownMotor: return "unknown motor; `rc10ctl watch` shows the names";
+    case CommandRefusal::kUnknownMode: return "unknown mode";
+    case CommandRefusal::kUnsupportedMode: return "a motor's drive does not support the mode";
+    case CommandRefusal::kNotFinite: return "a value is not finite";
+    case CommandRefusal::kExpired: return "older than its validity when it came in";
+    case CommandRefusal::kOldSequence: return "its sequence number is not above the last of its session";
+    case CommandRefusal::kRingFull: return "too many commands for the scheduler; send fewer";
+    case CommandRefusal::kUnknownModule: return "unknown module; `rc10ctl modules` shows the names";
+    case CommandRefusal::kUnknownSignal:
+      return "the module has no input of that name; `rc10ctl modules` shows the names";
+  }
+  return toString(refusal);
+}
+
+Admission::Admission(std::vector<KnownMotor> motors) : motors_(std::move(motors)) {
+  for (std::size_t i = 0; i < motors_.size(); ++i) index_.emplace(motors_[i].name, static_cast<int>(i));
+}
+
+int Admission::indexOf(std::string_view name) const {
+  const auto found = index_.find(std::string(name));
+  return found == index_.end() ? -1 : found->second;
+}
+
+CommandRefusal Admission::admit(const link::Command& message, MonotonicTime now, Command& out) {
+  const auto deadline = deadlineOf(message.received_ns, message.validity_ms, now);
+  if (message.setpoint_count == 0 || message.setpoint_count > kMaxMotors || !deadline)
+    return CommandRefusal::kMalformed;
+  MotorSet named;
+  out.count = message.setpoint_count;
+  for (std::size_t i = 0; i < out.count; ++i) {
+    const auto refusal = translate(message.setpoints[i], out.setpoints[i]);
+    if (refusal != CommandRefusal::kNone) return refusal;
+    if (named.test(out.setpoints[i].motor)) return CommandRefusal::kMalformed;
+    named.set(out.setpoints[i].motor);
+  }
+  out.deadline = *deadline;
+  out.client = message.client;
+  if (now >= out.deadline) return CommandRefusal::kExpired;
+  out.session = message.session;
+  out.priority = message.priority;
+  const bool new_number = sessions_.accept(message.client.view(), message.session, message.seq);
+  return new_number ? CommandRefusal::kNone : CommandRefusal::kOldSequence;
+}
+
+CommandRefusal Admission::translate(const link::Setpoint& in, Command::Setpoint& out) const {
+  const int motor = indexOf(in.motor.view());
+  if (motor < 0) return CommandRefusal::kUnknownMotor;
+  if (in.mode >= kControlModeCount) return CommandRefusal::kUnknownMode;
+  const auto mode = static_cast<ControlMode>(in.mode);
+  if (mode != ControlMode::kCoast && !motors_[static_cast<std::size_t>(motor)].modes.contains(mode)) {
+    return CommandRefusal::kUnsupportedMode;
+  }
+  if (!finite(in, mode)) return CommandRefusal::kNotFinite;
+  out.motor = static_cast<std::uint16_t>(motor);
+  out.target = {.mode = mode,
+                .value = usesValue(mode) ? in.value : 0.0,
+                .velocity_ff_rpm = orZero(in.velocity_ff_rpm),
+                .torque_ff_nm = orZero(in.torque_ff_nm)};
+  if (mode == ControlMode::kImpedance) {
+    out.target.stiffness_nm_per_rad = in.stiffness_nm_per_rad;
+    out.target.damping_nms_per_rad = in.damping_nms_per_rad;
+  }
+  return CommandRefusal::kNone;
+}
+
+}  // namespace rc10

@@ -1,0 +1,72 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <unordered_map>
+#include <vector>
+
+#include "app/time.hpp"
+#include "daemon/clients/session_numbers.hpp"
+#include "daemon/clients/validity.hpp"
+#include "daemon/exchange/orders.hpp"
+#include "link/link_protocol.hpp"
+#include "motor/target.hpp"
+
+namespace rc10 {
+
+/// Why a command message was refused. A message is refused whole.
+enum class CommandRefusal : std::uint8_t {
+  kNone,
+  kMalformed,  ///< No setpoints, one motor twice, or a validity out of range.
+  kUnknownMotor,
+  kUnknownMode,
+  kUnsupportedMode,  ///< The motor's drive cannot do it.
+  kNotFinite,
+  kExpired,      ///< Older than its own validity when it came in.
+  kOldSequence,  ///< Not above the last sequence number of its session.
+  kRingFull,
+  kUnknownModule,
+  kUnknownSignal,  ///< The module has no such input.
+};
+inline constexpr std::size_t kCommandRefusalCount = 11;
+
+/// The name of the counter.
+[[nodiscard]] const char* toString(CommandRefusal refusal) noexcept;
+/// What is wrong, and what to do about it.
+[[nodiscard]] const char* describe(CommandRefusal refusal) noexcept;
+
+/// What admission knows of a motor.
+struct KnownMotor {
+  std::string name;
+  ModeSet modes;
+};
+
+/// Checks command messages before they reach the scheduler. Link thread only; the time is an argument.
+class Admission {
+ public:
+  explicit Admission(std::vector<KnownMotor> motors);
+
+  /// Translates a message; on refusal `out` is unspecified. `now` is CLOCK_MONOTONIC.
+  [[nodiscard]] CommandRefusal admit(const link::Command& message, MonotonicTime now, Command& out);
+
+  /// Index of a motor, or -1.
+  [[nodiscard]] int indexOf(std::string_view name) const;
+
+  void count(CommandRefusal refusal) noexcept { ++refusals_[static_cast<std::size_t>(refusal)]; }
+  /// Messages refused since start, by reason; kNone counts the accepted ones.
+  [[nodiscard]] const std::array<std::uint64_t, kCommandRefusalCount>& counts() const noexcept {
+    return refusals_;
+  }
+
+ private:
+  [[nodiscard]] CommandRefusal translate(const link::Setpoint& in, Command::Setpoint& out) const;
+
+  std::vector<KnownMotor> motors_;
+  std::unordered_map<std::string, int> index_;
+  SessionNumbers sessions_;
+  std::array<std::uint64_t, kCommandRefusalCount> refusals_{};
+};
+
+}  // namespace rc10

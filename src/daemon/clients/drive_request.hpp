@@ -1,0 +1,29 @@
+#pragma once
+
+#include <string>
+#include <string_view>
+
+#include "app/result.hpp"
+#include "daemon/exchange/orders.hpp"
+#include "link/link_protocol.hpp"
+#include "motor/drive_setup.hpp"
+
+namespace rc10 {
+
+/// The operation that writes to a drive, and the one that tells what can be written.
+inline constexpr std::string_view kConfigureDrive = "configure-drive";
+inline constexpr std::string_view kDriveSettings = "drive-settings";
+
+/// What can be written, one setting a line: its name and range; then what sets everything else.
+[[nodiscard]] std::string settingsText(const DriveSetup& setup);
+
+/// The named values of a request: settings, and `save` (1 or 0), which has to be said. What changes who the
+/// drive is comes last. The error says what is wrong with them.
+[[nodiscard]] Result<DriveWrite> parseDriveWrite(const link::Request& request, const DriveSetup& setup);
+
+/// What was done, in words: the settings with their values, and what they mean for whoever asked.
+[[nodiscard]] std::string wordsOf(const DriveWrite& write, const DriveSetup& setup);
+/// The value at which it ended.
+[[nodiscard]] std::string_view settingAt(const DriveWrite& write, const DriveSetup& setup, std::size_t index);
+
+}  // namespace rc10

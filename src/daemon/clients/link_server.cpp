@@ -1,0 +1,339 @@
+#include "daemon/clients/link_server.hpp"
+
+#include <sys/epoll.h>
+#include <sys/socket.h>
+#include <sys/timerfd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cstring>
+
+#include <fmt/format.h>
+
+#include "daemon/exchange/clock.hpp"
+
+namespace rc10 {
+namespace {
+
+constexpr std::size_t kMaxConnections = 16;
+constexpr int kMaxLinkEvents = 16;
+// Taken from one client before the others have their turn.
+constexpr int kDatagramsPerTurn = 32;
+// Answers and events leave at this rate, whatever state_hz is.
+constexpr int kSlowHz = 100;
+constexpr unsigned kDiagnosticsEvery = kSlowHz / 2;    // 2 Hz
+constexpr unsigned kHousekeepingEvery = kSlowHz / 10;  // 10 Hz
+// Refusals of one reason are told at most this often; all of them are counted.
+constexpr Duration kRefusalReportInterval = std::chrono::seconds{1};
+// epoll data: connections have their id, which starts at 1 and counts up.
+constexpr std::uint64_t kListener = ~std::uint64_t{0};
+constexpr std::uint64_t kStateTimer = kListener - 1;
+constexpr std::uint64_t kSlowTimer = kListener - 2;
+
+[[nodiscard]] UniqueFd makeTimer(int hz) noexcept {
+  UniqueFd timer{timerfd_create(CLOCK_MONOTONIC, TFD_CLOEXEC | TFD_NONBLOCK)};
+  const timespec period{.tv_sec = hz == 1 ? 1 : 0, .tv_nsec = hz == 1 ? 0 : 1'000'000'000 / hz};
+  const itimerspec spec{.it_interval = period, .it_value = period};
+  if (timer) timerfd_settime(timer.get(), 0, &spec, nullptr);
+  return timer;
+}
+
+[[nodiscard]] bool watch(int epoll, int fd, std::uint64_t key) noexcept {
+  epoll_event event{};
+  event.events = EPOLLIN;
+  event.data.u64 = key;
+  return epoll_ctl(epoll, EPOLL_CTL_ADD, fd, &event) == 0;
+}
+
+[[nodiscard]] std::vector<KnownMotor> traits(const RobotDescription& robot) {
+  std::vector<KnownMotor> out;
+  out.reserve(robot.motors.size());
+  for (const auto& motor : robot.motors) out.push_back({motor.name, motor.modes});
+  return out;
+}
+
+[[nodiscard]] std::vector<KnownModule> modules(const RobotDescription& robot) {
+  std::vector<KnownModule> out;
+  out.reserve(robot.modules.size());
+  for (const auto& module : robot.modules) out.push_back({module.name, module.signals.inputs});
+  return out;
+}
+
+[[nodiscard]] std::vector<std::string> names(const RobotDescription& robot) {
+  std::vector<std::string> out;
+  out.reserve(robot.motors.size());
+  for (const auto& motor : robot.motors) out.push_back(motor.name);
+  return out;
+}
+
+[[nodiscard]] MotorSet optional(const RobotDescription& robot) {
+  MotorSet out;
+  for (std::size_t i = 0; i < robot.motors.size(); ++i) out.set(i, robot.motors[i].optional);
+  return out;
+}
+
+[[nodiscard]] std::vector<const DriveSetup*> setups(const RobotDescription& robot) {
+  std::vector<const DriveSetup*> out;
+  out.reserve(robot.motors.size());
+  for (const auto& motor : robot.motors) out.push_back(motor.setup);
+  return out;
+}
+
+[[nodiscard]] std::vector<MotorLoops> loops(const RobotDescription& robot) {
+  std::vector<MotorLoops> out;
+  out.reserve(robot.motors.size());
+  for (const auto& motor : robot.motors) out.push_back(motor.loops);
+  return out;
+}
+
+void drainTimer(int fd) noexcept {
+  std::uint64_t expirations = 0;
+  (void)!::read(fd, &expirations, sizeof expirations);
+}
+
+}  // namespace
+
+LinkServer::LinkServer(LinkSocket socket, Sources sources, UniqueFd epoll, UniqueFd state_timer,
+                       UniqueFd slow_timer)
+    : socket_(std::move(socket)),
+      sources_(std::move(sources)),
+      epoll_(std::move(epoll)),
+      state_timer_(std::move(state_timer)),
+      slow_timer_(std::move(slow_timer)),
+      admission_(traits(sources_.robot)),
+      signal_admission_(modules(sources_.robot)),
+      desk_(admission_, names(sources_.robot), optional(sources_.robot), setups(sources_.robot),
+            loops(sources_.robot)),
+      publication_(sources_.robot) {}
+
+Result<std::unique_ptr<LinkServer>> LinkServer::create(LinkSocket socket, Sources sources) {
+  UniqueFd epoll{epoll_create1(EPOLL_CLOEXEC)};
+  UniqueFd state_timer = makeTimer(sources.robot.state_hz);
+  UniqueFd slow_timer = makeTimer(kSlowHz);
+  if (!epoll || !state_timer || !slow_timer) return fail(fmt::format("link: {}", std::strerror(errno)));
+  if (!watch(epoll.get(), socket.descriptor(), kListener) ||
+      !watch(epoll.get(), state_timer.get(), kStateTimer) ||
+      !watch(epoll.get(), slow_timer.get(), kSlowTimer)) {
+    return fail(fmt::format("link: epoll_ctl: {}", std::strerror(errno)));
+  }
+  return std::unique_ptr<LinkServer>(new LinkServer(std::move(socket), std::move(sources), std::move(epoll),
+                                                    std::move(state_timer), std::move(slow_timer)));
+}
+
+void LinkServer::run(const std::stop_token& stop) {
+  while (!stop.stop_requested()) poll(100);
+  drainScheduler();  // the last events and answers
+}
+
+void LinkServer::poll(int timeout_ms) {
+  std::array<epoll_event, kMaxLinkEvents> events;
+  const int count = epoll_wait(epoll_.get(), events.data(), kMaxLinkEvents, timeout_ms);
+  for (int i = 0; i < count; ++i) {
+    const std::uint64_t key = events[static_cast<std::size_t>(i)].data.u64;
+    if (key == kListener) {
+      accept();
+    } else if (key == kStateTimer) {
+      drainTimer(state_timer_.get());
+      publishState();
+    } else if (key == kSlowTimer) {
+      drainTimer(slow_timer_.get());
+      drainScheduler();
+      if (++slow_ticks_ % kHousekeepingEvery == 0 && sources_.housekeeping) sources_.housekeeping();
+      if (slow_ticks_ % kDiagnosticsEvery == 0) publishDiagnostics();
+    } else {
+      // Looked up anew: an earlier event of this batch may have closed it.
+      const auto found = std::find_if(connections_.begin(), connections_.end(),
+                                      [key](const auto& c) { return c.id == key; });
+      if (found != connections_.end()) receive(static_cast<std::size_t>(found - connections_.begin()));
+    }
+  }
+}
+
+void LinkServer::accept() {
+  for (;;) {
+    UniqueFd fd{::accept4(socket_.descriptor(), nullptr, nullptr, SOCK_NONBLOCK | SOCK_CLOEXEC)};
+    if (!fd) return;
+    if (connections_.size() >= kMaxConnections && !dropSilentConnection())
+      continue;  // closed: the client sees it
+    Connection connection;
+    connection.id = next_connection_++;
+    connection.fd = std::move(fd);
+    if (watch(epoll_.get(), connection.fd.get(), connection.id))
+      connections_.push_back(std::move(connection));
+  }
+}
+
+// Who has not said hello must not keep the others out.
+bool LinkServer::dropSilentConnection() {
+  const auto oldest =
+      std::find_if(connections_.begin(), connections_.end(), [](const auto& c) { return !c.welcomed; });
+  if (oldest == connections_.end()) return false;
+  connections_.erase(oldest);
+  return true;
+}
+
+void LinkServer::receive(std::size_t index) {
+  for (int i = 0; i < kDatagramsPerTurn; ++i) {
+    auto& connection = connections_[index];
+    const auto size = ::recv(connection.fd.get(), buffer_.data(), buffer_.size(), MSG_DONTWAIT | MSG_TRUNC);
+    if (size < 0 && (errno == EAGAIN || errno == EINTR)) return;
+    const bool fits = size > 0 && static_cast<std::size_t>(size) <= buffer_.size();
+    if (!fits || !handle(connection, {buffer_.data(), static_cast<std::size_t>(size)})) {
+      close(index);
+      return;
+    }
+  }
+}
+
+// False: this client does not speak our protocol, and is sent away.
+bool LinkServer::handle(Connection& connection, std::span<const std::byte> datagram) {
+  link::Header header;
+  if (!link::readHeader(datagram, header)) return false;
+  if (!connection.welcomed) return welcome(connection, datagram);
+  if (header.type == link::MessageType::kCommand) {
+    if (link::open(datagram, command_)) {
+      command(command_);
+    } else {
+      admission_.count(CommandRefusal::kMalformed);
+      reportRefusal(CommandRefusal::kMalformed, connection.client);
+    }
+    return true;
+  }
+  if (header.type == link::MessageType::kSignals) {
+    if (link::open(datagram, signals_)) {
+      signals(signals_);
+    } else {
+      admission_.count(CommandRefusal::kMalformed);
+      reportRefusal(CommandRefusal::kMalformed, connection.client);
+    }
+    return true;
+  }
+  if (header.type == link::MessageType::kRequest) {
+    link::Request message;
+    if (!link::open(datagram, message)) return false;
+    request(message, connection);
+    return true;
+  }
+  return false;
+}
+
+bool LinkServer::welcome(Connection& connection, std::span<const std::byte> datagram) {
+  link::Hello hello;
+  if (!link::open(datagram, hello)) return false;
+  connection.client = hello.client;
+  connection.subscriptions = hello.subscriptions;
+  // The answer carries our version; a client of another version reads it there and says so.
+  auto message = publication_.welcome();
+  send(connection, link::seal(message));
+  connection.welcomed = hello.protocol_version == link::kProtocolVersion;
+  if (connection.welcomed && (connection.subscriptions & link::kModules) != 0) {
+    for (std::size_t i = 0; i < sources_.robot.modules.size(); ++i) {
+      auto info = publication_.moduleInfo(i);
+      send(connection, link::seal(info));
+    }
+  }
+  return connection.welcomed;
+}
+
+void LinkServer::command(const link::Command& message) {
+  const auto refusal = admission_.admit(message, monotonicNow(), accepted_);
+  const bool handed_over = refusal == CommandRefusal::kNone && sources_.exchange.commands.push(accepted_);
+  const auto outcome = refusal == CommandRefusal::kNone && !handed_over ? CommandRefusal::kRingFull : refusal;
+  admission_.count(outcome);
+  if (outcome != CommandRefusal::kNone) reportRefusal(outcome, message.client);
+}
+
+void LinkServer::signals(const link::Signals& message) {
+  auto outcome = signal_admission_.admit(message, monotonicNow(), accepted_signals_);
+  if (outcome == CommandRefusal::kNone && !sources_.exchange.signals.push(accepted_signals_))
+    outcome = CommandRefusal::kRingFull;
+  admission_.count(outcome);
+  if (outcome != CommandRefusal::kNone) reportRefusal(outcome, message.client);
+}
+
+void LinkServer::reportRefusal(CommandRefusal reason, const link::Name& client) {
+  const auto now = monotonicNow();
+  auto& next_report = next_refusal_report_[static_cast<std::size_t>(reason)];
+  if (now < next_report) return;
+  next_report = now + kRefusalReportInterval;
+  // To clients not through the scheduler, which never saw the command; but it alone writes the black box.
+  (void)sources_.exchange.refusals.push({EventCode::kCommandRefused, Severity::kWarning, -1,
+                                         static_cast<std::int32_t>(reason), 0, now, client});
+  tell(Publication::refusal(reason, client, now, wallClockUs()));
+}
+
+void LinkServer::tell(link::Event message) {
+  publish(link::kEvents, link::seal(message));
+  if (sources_.log) sources_.log(message);
+}
+
+void LinkServer::request(const link::Request& message, Connection& connection) {
+  auto outcome = desk_.begin(message, connection.id);
+  if (outcome.estop) sources_.exchange.estop.store(true, std::memory_order_release);
+  if (outcome.order && !sources_.exchange.orders.push(*outcome.order)) {
+    if (const auto failed = desk_.fail(outcome.order->id, "the scheduler does not take orders"))
+      answer(*failed);
+  }
+  if (outcome.response) send(connection, link::seal(*outcome.response));
+}
+
+void LinkServer::answer(const RequestDesk::Answer& answer) {
+  for (const auto& connection : connections_) {
+    if (connection.id != answer.connection) continue;
+    auto message = answer.response;
+    send(connection, link::seal(message));
+  }
+}
+
+void LinkServer::close(std::size_t index) {
+  connections_.erase(connections_.begin() +
+                     static_cast<std::ptrdiff_t>(index));  // epoll forgets a closed descriptor
+}
+
+void LinkServer::drainScheduler() {
+  OrderResult result;
+  while (sources_.exchange.results.pop(result)) {
+    if (const auto done = desk_.finish(result)) answer(*done);
+  }
+  Event event;
+  while (sources_.exchange.events.pop(event)) {
+    tell(publication_.event(event, wallClockUs()));
+  }
+  link::Event note;
+  while (sources_.exchange.notes.pop(note)) tell(note);
+  while (sources_.exchange.line_notes.pop(note)) tell(note);
+}
+
+void LinkServer::publishState() {
+  if (!sources_.exchange.snapshot.everPublished()) return;  // a robot without motors would be a lie
+  const auto& snapshot = sources_.exchange.snapshot.read();
+  publication_.fill(state_, snapshot, wallClockUs());
+  publish(link::kStates, link::seal(state_));
+  publishModules(snapshot);
+}
+
+void LinkServer::publishModules(const Snapshot& snapshot) {
+  for (std::size_t i = 0; i < snapshot.module_count; ++i) {
+    publication_.fill(module_state_, i, snapshot, state_.utime);
+    publish(link::kModules, link::seal(module_state_));
+  }
+}
+
+void LinkServer::publishDiagnostics() {
+  publication_.fill(diagnostics_, sources_.exchange.snapshot.read(), sources_.timing, sources_.inboxes,
+                    admission_, sources_.page_faults ? sources_.page_faults() : 0, wallClockUs());
+  publish(link::kDiagnosticsFeed, link::seal(diagnostics_));
+}
+
+void LinkServer::publish(std::uint32_t subscription, std::span<const std::byte> message) {
+  for (const auto& connection : connections_) {
+    if (connection.welcomed && (connection.subscriptions & subscription) != 0) send(connection, message);
+  }
+}
+
+void LinkServer::send(const Connection& connection, std::span<const std::byte> message) noexcept {
+  // A client that does not read loses messages; the next state supersedes the lost one.
+  (void)!::send(connection.fd.get(), message.data(), message.size(), MSG_DONTWAIT | MSG_NOSIGNAL);
+}
+
+}  // namespace rc10

@@ -1,0 +1,100 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <span>
+#include <stop_token>
+#include <string>
+#include <vector>
+
+#include "app/result.hpp"
+#include "app/unique_fd.hpp"
+#include "daemon/clients/admission.hpp"
+#include "daemon/clients/link_socket.hpp"
+#include "daemon/clients/publication.hpp"
+#include "daemon/clients/request_desk.hpp"
+#include "daemon/clients/signal_admission.hpp"
+#include "daemon/exchange/rings.hpp"
+#include "link/link_message.hpp"
+
+namespace rc10 {
+
+/// The daemon's end of the link: clients in and out, between their sockets and the rings. Link thread
+/// only. Nobody waits for it, and it waits for no client: what a client does not read is dropped.
+class LinkServer {
+ public:
+  /// What the server reads from the rest of the daemon. All outlive it.
+  struct Sources {
+    LinkExchange& exchange;
+    std::span<const BusInbox> inboxes;
+    const TickTiming& timing;
+    const RobotDescription& robot;
+    std::function<std::uint64_t()> page_faults;   ///< Of the real-time threads, after start.
+    std::function<void(const link::Event&)> log;  ///< Every event, for the log.
+    std::function<void()> housekeeping;           ///< Called ten times a second: the watchdog.
+  };
+
+  [[nodiscard]] static Result<std::unique_ptr<LinkServer>> create(LinkSocket socket, Sources sources);
+
+  void run(const std::stop_token& stop);
+  /// One wait of at most `timeout_ms` and everything that is due after it.
+  void poll(int timeout_ms);
+
+ private:
+  struct Connection {
+    std::uint64_t id = 0;
+    UniqueFd fd;
+    link::Name client;
+    std::uint32_t subscriptions = 0;
+    bool welcomed = false;
+  };
+
+  LinkServer(LinkSocket socket, Sources sources, UniqueFd epoll, UniqueFd state_timer, UniqueFd slow_timer);
+
+  void accept();
+  [[nodiscard]] bool dropSilentConnection();
+  void receive(std::size_t index);
+  [[nodiscard]] bool handle(Connection& connection, std::span<const std::byte> datagram);
+  [[nodiscard]] bool welcome(Connection& connection, std::span<const std::byte> datagram);
+  void command(const link::Command& message);
+  void signals(const link::Signals& message);
+  void reportRefusal(CommandRefusal reason, const link::Name& client);
+  void tell(link::Event message);
+  void request(const link::Request& message, Connection& connection);
+  void close(std::size_t index);
+  void answer(const RequestDesk::Answer& answer);
+  void drainScheduler();
+  void publishState();
+  void publishModules(const Snapshot& snapshot);
+  void publishDiagnostics();
+  void publish(std::uint32_t subscription, std::span<const std::byte> message);
+  static void send(const Connection& connection, std::span<const std::byte> message) noexcept;
+
+  LinkSocket socket_;
+  Sources sources_;
+  UniqueFd epoll_;
+  UniqueFd state_timer_;
+  UniqueFd slow_timer_;
+  Admission admission_;
+  SignalAdmission signal_admission_;
+  RequestDesk desk_;
+  Publication publication_;
+  std::vector<Connection> connections_;
+  std::uint64_t next_connection_ = 1;
+  unsigned slow_ticks_ = 0;
+  std::array<MonotonicTime, kCommandRefusalCount> next_refusal_report_{};
+  std::array<std::byte, link::kMaxMessageSize> buffer_{};
+  // One of each large message, filled in anew for every publication.
+  link::State state_;
+  link::Diagnostics diagnostics_;
+  link::ModuleState module_state_;
+  link::Command command_;
+  link::Signals signals_;
+  Command accepted_;
+  SignalMessage accepted_signals_;
+};
+
+}  // namespace rc10

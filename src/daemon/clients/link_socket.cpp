@@ -1,0 +1,94 @@
+#include "daemon/clients/link_socket.hpp"
+
+#include <fcntl.h>
+#include <grp.h>
+#include <sys/file.h>
+#include <sys/socket.h>
+#include <sys/stat.h>
+#include <sys/un.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
+#include <memory>
+#include <optional>
+
+#include <fmt/format.h>
+
+namespace rc10 {
+namespace {
+
+constexpr int kBacklog = 16;
+
+struct FileCloser {
+  void operator()(std::FILE* file) const noexcept { (void)std::fclose(file); }
+};
+
+// Read from the file: getgrnam() would load NSS modules into locked memory.
+[[nodiscard]] std::optional<gid_t> groupId(const std::string& name) {
+  const std::unique_ptr<std::FILE, FileCloser> file(std::fopen("/etc/group", "re"));
+  if (!file) return std::nullopt;
+  while (const group* entry = ::fgetgrent(file.get())) {
+    if (entry->gr_name == name) return entry->gr_gid;
+  }
+  return std::nullopt;
+}
+
+[[nodiscard]] Result<UniqueFd> takeLock(const std::string& path, const std::string& robot) {
+  UniqueFd lock{::open(path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0644)};
+  if (!lock) return fail(fmt::format("{}: {}", path, std::strerror(errno)));
+  if (::flock(lock.get(), LOCK_EX | LOCK_NB) != 0) {
+    char holder[16] = {};
+    (void)!::read(lock.get(), holder, sizeof holder - 1);
+    return fail(
+        fmt::format("robot '{}' already has a running rc10d (pid {}): stop it first, or give this robot "
+                    "another name",
+                    robot, holder));
+  }
+  const std::string pid = std::to_string(::getpid());
+  (void)!::ftruncate(lock.get(), 0);
+  (void)!::write(lock.get(), pid.data(), pid.size());
+  return lock;
+}
+
+}  // namespace
+
+Result<LinkSocket> LinkSocket::listen(const std::string& dir, const std::string& robot) {
+  if (::mkdir(dir.c_str(), 0755) != 0 && errno != EEXIST) {
+    return fail(fmt::format("{}: {}: set RC10_RUN_DIR to a folder this user may write to, or run as root",
+                            dir, std::strerror(errno)));
+  }
+  LinkSocket link;
+  auto lock = takeLock(dir + "/" + robot + ".lock", robot);
+  if (!lock) return tl::unexpected(lock.error());
+  link.lock_ = std::move(*lock);
+  const std::string path = dir + "/" + robot + ".sock";
+
+  sockaddr_un address{};
+  address.sun_family = AF_UNIX;
+  if (path.size() >= sizeof address.sun_path) {
+    return fail(
+        fmt::format("{}: longer than the {} bytes a socket path may have: choose a shorter RC10_RUN_DIR",
+                    path, sizeof address.sun_path - 1));
+  }
+  std::memcpy(address.sun_path, path.c_str(), path.size() + 1);
+  link.socket_ = UniqueFd{::socket(AF_UNIX, SOCK_SEQPACKET | SOCK_NONBLOCK | SOCK_CLOEXEC, 0)};
+  (void)::unlink(path.c_str());  // left by one that was killed: we hold the lock
+  if (!link.socket_ ||
+      ::bind(link.socket_.get(), reinterpret_cast<const sockaddr*>(&address), sizeof address) != 0) {
+    return fail(fmt::format("{}: {}", path, std::strerror(errno)));
+  }
+  link.path_ = path;
+  (void)::chmod(path.c_str(), 0660);
+  if (const auto gid = groupId("rc10")) (void)!::chown(path.c_str(), static_cast<uid_t>(-1), *gid);
+  if (::listen(link.socket_.get(), kBacklog) != 0)
+    return fail(fmt::format("{}: {}", path, std::strerror(errno)));
+  return link;
+}
+
+LinkSocket::~LinkSocket() {
+  if (socket_) (void)::unlink(path_.c_str());
+}
+
+}  // namespace rc10

@@ -1,0 +1,221 @@
+#include "daemon/clients/publication.hpp"
+
+#include <unistd.h>
+
+#include <algorithm>
+#include <span>
+
+#include <fmt/format.h>
+
+#include "daemon/exchange/events.hpp"
+#include "rc10_version.hpp"
+
+namespace rc10 {
+namespace {
+
+[[nodiscard]] float toUs(Duration duration) noexcept {
+  return std::chrono::duration<float, std::micro>(duration).count();
+}
+
+[[nodiscard]] link::Percentiles percentiles(const DurationHistogram& histogram) noexcept {
+  return {toUs(histogram.percentile(0.5)), toUs(histogram.percentile(0.99)),
+          toUs(histogram.percentile(0.999)), toUs(histogram.max())};
+}
+
+[[nodiscard]] std::int64_t monoUs(MonotonicTime time) noexcept {
+  return std::chrono::duration_cast<std::chrono::microseconds>(time.time_since_epoch()).count();
+}
+
+}  // namespace
+
+float RateMeter::update(MonotonicTime now, std::uint64_t count) noexcept {
+  const auto elapsed = now - since_;
+  if (elapsed < std::chrono::seconds{1}) return rate_hz_;
+  rate_hz_ = since_ == MonotonicTime{} ? 0.0F : static_cast<float>(count - count_) / seconds(elapsed);
+  since_ = now;
+  count_ = count;
+  return rate_hz_;
+}
+
+link::Welcome Publication::welcome() const {
+  link::Welcome out;
+  out.pid = ::getpid();
+  out.robot = robot_.robot;
+  out.version = kVersion;
+  out.lcm_url = robot_.lcm_url;
+  out.rate_hz = robot_.rate_hz;
+  out.state_hz = robot_.state_hz;
+  out.module_count = static_cast<std::uint32_t>(robot_.modules.size());
+  for (std::size_t i = 0; i < robot_.modules.size(); ++i) out.modules[i] = robot_.modules[i].name;
+  out.motor_count = static_cast<std::uint32_t>(robot_.motors.size());
+  for (std::size_t i = 0; i < robot_.motors.size(); ++i) {
+    const auto& motor = robot_.motors[i];
+    out.motors[i].name = motor.name;
+    out.motors[i].model = motor.model;
+    out.motors[i].bus = robot_.buses[motor.bus].name;
+    out.motors[i].id = motor.id;
+    out.motors[i].modes = motor.modes.bits();
+  }
+  return out;
+}
+
+link::ModuleInfo Publication::moduleInfo(std::size_t module) const {
+  const auto& in = robot_.modules[module];
+  link::ModuleInfo out;
+  out.module = static_cast<std::uint32_t>(module);
+  out.type = in.type;
+  out.input_count = static_cast<std::uint32_t>(in.signals.inputs.size());
+  out.output_count = static_cast<std::uint32_t>(in.signals.outputs.size());
+  auto place = out.names.begin();
+  for (const auto& name : in.signals.inputs) *place++ = name;
+  for (const auto& name : in.signals.outputs) *place++ = name;
+  return out;
+}
+
+void Publication::fill(link::ModuleState& state, std::size_t module, const Snapshot& snapshot,
+                       std::int64_t utime) const {
+  const auto& in = snapshot.modules[module];
+  state.utime = utime;
+  state.mono_us = monoUs(snapshot.time);
+  state.tick = static_cast<std::int64_t>(snapshot.tick);
+  state.module = static_cast<std::uint32_t>(module);
+  state.owner = in.owner;
+  state.value_count = static_cast<std::uint32_t>(robot_.modules[module].signals.outputs.size());
+  state.values = in.outputs;
+}
+
+void Publication::fill(link::State& state, const Snapshot& snapshot, std::int64_t utime) {
+  state.utime = utime;
+  state.mono_us = monoUs(snapshot.time);
+  state.tick = static_cast<std::int64_t>(snapshot.tick);
+  state.robot_state = static_cast<std::uint8_t>(snapshot.state);
+  state.realtime = robot_.realtime ? 1 : 0;
+  state.motor_count = static_cast<std::uint32_t>(snapshot.motor_count);
+  for (std::size_t i = 0; i < snapshot.motor_count; ++i) {
+    const auto& in = snapshot.motors[i];
+    auto& out = state.motors[i];
+    out.status = static_cast<std::uint8_t>(in.status);
+    out.mode = static_cast<std::uint8_t>(in.target.mode);
+    out.command_unit = static_cast<std::uint8_t>(in.command_unit);
+    out.zeroed = in.feedback.zeroed ? 1 : 0;
+    out.limits = in.limits;
+    out.fault = static_cast<std::int32_t>(in.fault);
+    out.feedback_age_us = feedbackAgeUs(in.feedback, snapshot.time);
+    out.target = in.target.value;
+    out.total_angle_deg = in.feedback.total_angle_deg;
+    out.angle_deg = in.feedback.angle_deg;
+    out.velocity_rpm = in.feedback.velocity_rpm;
+    out.current_a = in.feedback.current_a;
+    out.torque_nm = in.feedback.torque_nm;
+    out.voltage_v = in.feedback.voltage_v;
+    out.temperature_c = in.feedback.temperature_c;
+    out.command_value = in.command_value;
+    out.feedback_hz = feedback_rates_[i].update(snapshot.time, in.feedback.samples);
+    out.owner = in.owner;
+  }
+}
+
+void Publication::fill(link::BusStatus& out, std::size_t bus, const Snapshot& snapshot,
+                       const BusInbox& inbox) {
+  const auto& in = snapshot.buses[bus];
+  const auto& description = robot_.buses[bus];
+  out.name = description.name;
+  out.interface = description.interface.empty() ? "simulated" : std::string_view{description.interface};
+  out.state = static_cast<std::uint8_t>(in.state);
+  out.tec = static_cast<std::int16_t>(in.tec);
+  out.rec = static_cast<std::int16_t>(in.rec);
+  out.predicted_load = description.predicted_load;
+  out.predicted_load_worst = description.predicted_load_worst;
+  const auto& counters = in.counters;
+  // The bits of FD's data phase are shorter.
+  const double data_bits = static_cast<double>(counters.rx_data_bits + counters.tx_data_bits);
+  const double shorter =
+      description.data_bitrate > 0.0 ? description.bitrate / description.data_bitrate : 1.0;
+  const auto bits = counters.rx_bits + counters.tx_bits + static_cast<std::uint64_t>(data_bits * shorter);
+  out.measured_load = bit_rates_[bus].update(snapshot.time, bits) / static_cast<float>(description.bitrate);
+  out.rx_frames = static_cast<std::int64_t>(counters.rx_frames);
+  out.rx_unmatched = static_cast<std::int64_t>(counters.rx_unmatched);
+  out.rx_malformed =
+      static_cast<std::int64_t>(counters.rx_malformed + inbox.malformed.load(std::memory_order_relaxed));
+  out.rx_dropped = static_cast<std::int64_t>(inbox.dropped.load(std::memory_order_relaxed));
+  out.tx_frames = static_cast<std::int64_t>(counters.tx_frames);
+  out.tx_confirmed = static_cast<std::int64_t>(inbox.confirmed.load(std::memory_order_relaxed));
+  out.tx_dropped = static_cast<std::int64_t>(counters.tx_dropped);
+  out.rx_foreign = static_cast<std::int64_t>(counters.rx_foreign);
+  out.tx_held = static_cast<std::int64_t>(counters.tx_held);
+  out.error_frames = static_cast<std::int64_t>(in.error_frames);
+  out.restarts = static_cast<std::int64_t>(in.restarts);
+}
+
+void Publication::fill(link::Diagnostics& out, const Snapshot& snapshot, const TickTiming& timing,
+                       std::span<const BusInbox> inboxes, const Admission& admission,
+                       std::uint64_t page_faults, std::int64_t utime) {
+  out.utime = utime;
+  out.mono_us = monoUs(snapshot.time);
+  out.tick = static_cast<std::int64_t>(snapshot.tick);
+  out.tick_period_us = 1'000'000 / robot_.rate_hz;
+  out.wake_latency = percentiles(timing.wake_latency);
+  out.tick_duration = percentiles(timing.duration);
+  out.missed_ticks = static_cast<std::int64_t>(snapshot.missed_ticks);
+  out.page_faults = static_cast<std::int64_t>(page_faults);
+  out.events_dropped = static_cast<std::int64_t>(snapshot.events_dropped);
+  out.refusal_count = 0;
+  const auto add = [&out](std::string_view name, std::uint64_t count) {
+    out.refusals[out.refusal_count].name = name;
+    out.refusals[out.refusal_count].count = static_cast<std::int64_t>(count);
+    ++out.refusal_count;
+  };
+  for (std::size_t i = 1; i < kCommandRefusalCount; ++i) {
+    const auto reason = static_cast<CommandRefusal>(i);
+    // Expired on arrival and expired in the ring are one reason to a user.
+    add(toString(reason),
+        admission.counts()[i] + (reason == CommandRefusal::kExpired ? snapshot.expired_commands : 0));
+  }
+  add("not owner", snapshot.refused_commands + snapshot.refused_signals);
+  add("setpoint skipped", snapshot.skipped_setpoints);
+  out.notice_count = static_cast<std::uint32_t>(std::min(robot_.notices.size(), link::kMaxNotices));
+  for (std::size_t i = 0; i < out.notice_count; ++i) out.notices[i] = robot_.notices[i];
+  out.bus_count = static_cast<std::uint32_t>(snapshot.bus_count);
+  for (std::size_t i = 0; i < snapshot.bus_count; ++i) fill(out.buses[i], i, snapshot, inboxes[i]);
+}
+
+link::Event Publication::refusal(CommandRefusal reason, const link::Name& client, MonotonicTime now,
+                                 std::int64_t utime) {
+  link::Event out;
+  out.utime = utime;
+  out.mono_us = monoUs(now);
+  out.severity = static_cast<std::uint8_t>(Severity::kWarning);
+  out.code = static_cast<std::int32_t>(EventCode::kCommandRefused);
+  out.source = "robot";
+  out.text = fmt::format("command of '{}' refused: {}", client.view(), describe(reason));
+  return out;
+}
+
+link::Event Publication::event(const Event& event, std::int64_t utime) const {
+  link::Event out;
+  out.utime = utime;
+  out.mono_us = monoUs(event.time);
+  out.severity = static_cast<std::uint8_t>(event.severity);
+  out.code = static_cast<std::int32_t>(event.code);
+  const auto index = static_cast<std::size_t>(event.source);
+  if (event.code == EventCode::kEstopInput) {
+    out.source = robot_.estop_input;
+  } else if (event.source < 0) {
+    out.source = "robot";
+  } else if (isOfBus(event.code)) {
+    out.source = index < robot_.buses.size() ? std::string_view{robot_.buses[index].name} : "?";
+  } else if (isOfModule(event.code)) {
+    out.source = index < robot_.modules.size() ? std::string_view{robot_.modules[index].name} : "?";
+  } else {
+    out.source = index < robot_.motors.size() ? std::string_view{robot_.motors[index].name} : "?";
+  }
+  out.text = describe(event);
+  if (event.code == EventCode::kModule && index < robot_.modules.size()) {
+    const auto& events = robot_.modules[index].signals.events;
+    const auto place = static_cast<std::size_t>(event.value);
+    if (place < events.size()) out.text = events[place].text;
+  }
+  return out;
+}
+
+}  // namespace rc10

@@ -1,0 +1,93 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "app/time.hpp"
+#include "config/keys/loop_gains.hpp"
+#include "daemon/clients/admission.hpp"
+#include "daemon/exchange/rings.hpp"
+#include "daemon/exchange/snapshot.hpp"
+#include "daemon/threads/sched_loop.hpp"
+#include "link/link_protocol.hpp"
+
+namespace rc10 {
+
+/// What never changes while the daemon runs, for the messages to clients.
+struct RobotDescription {
+  std::string robot;
+  std::string lcm_url;
+  int rate_hz = 1000;
+  int state_hz = 200;
+  struct Motor {
+    std::string name;
+    std::string model;
+    std::size_t bus = 0;
+    int id = 0;
+    ModeSet modes;
+    bool optional = false;              ///< May fail to enable.
+    const DriveSetup* setup = nullptr;  ///< What can be written to its drive; null: nothing.
+    MotorLoops loops{};                 ///< As they are at the start.
+  };
+  struct Bus {
+    std::string name;
+    std::string interface;
+    double bitrate = 1e6;
+    float predicted_load = 0.0F;
+    float predicted_load_worst = 0.0F;
+    double data_bitrate = 0.0;  ///< Of CAN FD's data phase; 0: a classic bus.
+  };
+  struct Module {
+    std::string name;
+    std::string type;
+    ModuleSignals signals;
+  };
+  std::vector<Motor> motors;
+  std::vector<Bus> buses;
+  std::vector<Module> modules;
+  std::vector<std::string> notices;  ///< What is not as it should be, each with its remedy.
+  bool realtime = true;
+  std::string estop_input;  ///< Chip and line; empty: there is none.
+};
+
+/// Rates over the last second, from counters that only grow.
+class RateMeter {
+ public:
+  /// Returns events per second; refreshed about once a second.
+  [[nodiscard]] float update(MonotonicTime now, std::uint64_t count) noexcept;
+
+ private:
+  MonotonicTime since_{};
+  std::uint64_t count_ = 0;
+  float rate_hz_ = 0.0F;
+};
+
+/// Turns snapshots and counters into the messages that clients get. Link thread only.
+class Publication {
+ public:
+  explicit Publication(const RobotDescription& robot) : robot_(robot) {}
+
+  [[nodiscard]] link::Welcome welcome() const;
+  [[nodiscard]] link::ModuleInfo moduleInfo(std::size_t module) const;
+  void fill(link::State& state, const Snapshot& snapshot, std::int64_t utime);
+  void fill(link::ModuleState& state, std::size_t module, const Snapshot& snapshot, std::int64_t utime) const;
+  void fill(link::Diagnostics& out, const Snapshot& snapshot, const TickTiming& timing,
+            std::span<const BusInbox> inboxes, const Admission& admission, std::uint64_t page_faults,
+            std::int64_t utime);
+  /// A command message that admission refused.
+  [[nodiscard]] static link::Event refusal(CommandRefusal reason, const link::Name& client, MonotonicTime now,
+                                           std::int64_t utime);
+  [[nodiscard]] link::Event event(const Event& event, std::int64_t utime) const;
+
+ private:
+  void fill(link::BusStatus& out, std::size_t bus, const Snapshot& snapshot, const BusInbox& inbox);
+
+  const RobotDescription& robot_;
+  std::array<RateMeter, kMaxMotors> feedback_rates_{};
+  std::array<RateMeter, kMaxBuses> bit_rates_{};
+};
+
+}  // namespace rc10

@@ -1,0 +1,339 @@
+#include "daemon/clients/request_desk.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include "daemon/clients/drive_request.hpp"
+#include "daemon/clients/gain_request.hpp"
+
+namespace rc10 {
+namespace {
+
+constexpr std::size_t kMaxRemembered = 64;
+constexpr std::size_t kMaxOpen = 64;
+// Each gain is an event: those of one tick must leave room for others in their ring.
+constexpr std::ptrdiff_t kMaxOpenGains = 8;
+constexpr std::string_view kEnableAloneOperation = "enable_alone";
+
+[[nodiscard]] std::optional<Operation> operationNamed(std::string_view word) {
+  if (word == "enable") return Operation::kEnable;
+  if (word == kEnableAloneOperation) return Operation::kEnableAlone;
+  if (word == "disable") return Operation::kDisable;
+  if (word == "estop") return Operation::kEstop;
+  if (word == "clear") return Operation::kClear;
+  if (word == "zero") return Operation::kZero;
+  if (word == kSetGainsOperation) return Operation::kSetGains;
+  if (word == kConfigureDrive) return Operation::kConfigure;
+  return std::nullopt;
+}
+
+[[nodiscard]] const char* inWords(Refusal refusal) {
+  switch (refusal) {
+    case Refusal::kNone: return "done";
+    case Refusal::kOffline: return "offline: no feedback from the drive; check power, wiring and id";
+    case Refusal::kFaulted: return "in FAULT: clear it first";
+    case Refusal::kEstop: return "the robot is in ESTOP: clear it first";
+    case Refusal::kStopping: return "rc10d is stopping";
+    case Refusal::kActive: return "ACTIVE: disable it first";
+    case Refusal::kNoPosition: return "no position: the drive sends no feedback";
+    case Refusal::kDriveRefused: return "the drive did not confirm in time";
+    case Refusal::kGroup: return "another motor of its group is offline or in fault";
+    case Refusal::kMoving: return "still turning: the e-stop is cleared when every motor stands still";
+    case Refusal::kEstopInput:
+      return "the e-stop input is open: release the button, or mend its wire or chip";
+    case Refusal::kConfiguring: return "a drive is being configured: wait for it";
+    case Refusal::kNotConfirmed:
+      return "the drive did not tell the setting as it was written; nothing after it was written or stored";
+    case Refusal::kNotSaved:
+      return "written, but the drive did not tell that it stored it: it is lost when the power is off";
+    case Refusal::kNoGains: return "its drive closes its loops, with its own gains";
+    case Refusal::kStillActs: return "still being damped, braked or held: disable it once more to let go";
+    case Refusal::kAlone: return "locked while another motor is enabled alone";
+    case Refusal::kOthersOn: return "not the only one: disable all others first";
+  }
+  return "unknown reason";
+}
+
+[[nodiscard]] bool sameRequest(const link::Request& request, const link::Response& response) {
+  return request.session == response.session && request.seq == response.seq &&
+         request.client.view() == response.client.view();
+}
+
+}  // namespace
+
+RequestDesk::RequestDesk(const Admission& motors, std::vector<std::string> motor_names, MotorSet optional,
+                         std::vector<const DriveSetup*> setups, std::vector<MotorLoops> loops)
+    : admission_(motors),
+      names_(std::move(motor_names)),
+      optional_(optional),
+      setups_(std::move(setups)),
+      loops_(std::move(loops)) {
+  loops_.resize(names_.size());
+}
+
+link::Response RequestDesk::respond(const link::Request& request, link::ResponseStatus status,
+                                    const std::string& message) {
+  link::Response response;
+  response.client = request.client;
+  response.session = request.session;
+  response.seq = request.seq;
+  response.status = status;
+  response.message = message;
+  return response;
+}
+
+RequestDesk::Outcome RequestDesk::begin(const link::Request& request, std::uint64_t connection) {
+  const auto operation = operationNamed(request.operation.view());
+  Outcome outcome;
+  // An e-stop is an e-stop, whatever else the message says, and however often it comes.
+  outcome.estop = operation == Operation::kEstop;
+  if (const auto* known = remembered(request)) {
+    outcome.response = *known;
+    return outcome;
+  }
+  for (auto& open : open_) {
+    if (open.request.session == request.session && open.request.seq == request.seq &&
+        open.request.client.view() == request.client.view()) {
+      open.connection = connection;  // a repetition: answered when the first is
+      return outcome;
+    }
+  }
+  MotorSet motors;
+  std::string problem;
+  if (request.operation.view() == kDriveSettings) return tellSettings(request);
+  if (request.operation.view() == kGetConfigOperation) return tellConfig(request);
+  double value = 0.0;
+  DriveWrite drive;
+  GainChanges gains;
+  for (std::size_t i = 0; i < request.value_count; ++i) {
+    if (request.values[i].name.view() == "angle_deg") value = request.values[i].value;
+  }
+  if (!operation) {
+    problem = fmt::format(
+        "unknown operation '{}': there are enable, enable_alone, disable, estop, clear, zero, set_gains, "
+        "get_config, configure-drive and drive-settings",
+        request.operation.view());
+  } else if (*operation == Operation::kZero && request.target.view().empty()) {
+    problem = "zero needs a motor: name it";
+  } else if (!std::isfinite(value)) {
+    problem = "angle_deg is not a finite number";
+  } else if (open_.size() >= kMaxOpen) {
+    problem = "too many requests at once: wait for the answers";
+  } else if (parseMotors(request, motors, problem) &&
+             (*operation != Operation::kEnableAlone || isOfOneMotor(request, problem)) &&
+             (*operation != Operation::kConfigure || parseDrive(request, drive, problem)) &&
+             (*operation != Operation::kSetGains || parseChanges(request, gains, problem))) {
+    const std::uint64_t id = next_order_id_++;
+    open_.push_back({id, connection, request, motors, drive, gains});
+    outcome.order = Order{id, *operation, motors, value, drive, gains, request.client};
+    return outcome;
+  }
+  outcome.response = respond(request, link::ResponseStatus::kRefused, problem);
+  remember(*outcome.response);
+  return outcome;
+}
+
+bool RequestDesk::parseMotors(const link::Request& request, MotorSet& motors, std::string& problem) const {
+  std::string_view rest = request.target.view();
+  if (rest.empty()) {
+    for (std::size_t i = 0; i < names_.size(); ++i) motors.set(i);
+    return true;
+  }
+  while (!rest.empty()) {
+    const auto comma = rest.find(',');
+    const auto name = rest.substr(0, comma);
+    rest = comma == std::string_view::npos ? std::string_view{} : rest.substr(comma + 1);
+    const int index = admission_.indexOf(name);
+    if (index < 0) {
+      problem = fmt::format("there is no motor '{}'; the motors are: {}", name, fmt::join(names_, ", "));
+      return false;
+    }
+    motors.set(static_cast<std::size_t>(index));
+  }
+  return true;
+}
+
+const DriveSetup& RequestDesk::setupOf(std::size_t motor) const {
+  static constexpr DriveSetup kNone{};
+  return motor < setups_.size() && setups_[motor] != nullptr ? *setups_[motor] : kNone;
+}
+
+Result<std::size_t> RequestDesk::theMotor(const link::Request& request) const {
+  const auto name = request.target.view();
+  const int index = admission_.indexOf(name);
+  if (index >= 0) return static_cast<std::size_t>(index);
+  return tl::unexpected(
+      Error{fmt::format("name one motor, not '{}'; the motors are: {}", name, fmt::join(names_, ", "))});
+}
+
+RequestDesk::Outcome RequestDesk::tellSettings(const link::Request& request) const {
+  Outcome outcome;
+  const auto motor = theMotor(request);
+  outcome.response = motor ? respond(request, link::ResponseStatus::kOk, settingsText(setupOf(*motor)))
+                           : respond(request, link::ResponseStatus::kRefused, motor.error().message);
+  return outcome;
+}
+
+bool RequestDesk::parseDrive(const link::Request& request, DriveWrite& drive, std::string& problem) const {
+  const auto motor = theMotor(request);
+  const auto write = motor ? parseDriveWrite(request, setupOf(*motor)) : tl::unexpected(motor.error());
+  if (write) drive = *write;
+  if (!write) problem = write.error().message;
+  return write.has_value();
+}
+
+bool RequestDesk::isOfOneMotor(const link::Request& request, std::string& problem) const {
+  const auto motor = theMotor(request);
+  if (!motor) problem = motor.error().message;
+  return motor.has_value();
+}
+
+std::string RequestDesk::driveOutcome(const Open& open, const OrderResult& result) const {
+  const auto motor = theMotor(open.request).value_or(0);
+  const auto& setup = setupOf(motor);
+  switch (result.motors[motor]) {
+    case Refusal::kNone: return fmt::format("{}: {}", names_[motor], wordsOf(open.drive, setup));
+    case Refusal::kNotConfirmed:
+      return fmt::format("{}: {}: {}", names_[motor], settingAt(open.drive, setup, result.drive_value),
+                         inWords(Refusal::kNotConfirmed));
+    default: return fmt::format("{}: {}", names_[motor], inWords(result.motors[motor]));
+  }
+}
+
+Result<std::size_t> RequestDesk::motorWithGains(const link::Request& request) const {
+  auto motor = theMotor(request);
+  if (!motor) return motor;
+  if (auto has = checkHasGains(names_[*motor], loops_[*motor]); !has) return tl::unexpected(has.error());
+  return motor;
+}
+
+RequestDesk::Outcome RequestDesk::tellConfig(const link::Request& request) const {
+  Outcome outcome;
+  const auto motor = motorWithGains(request);
+  if (motor) {
+    outcome.response = respond(request, link::ResponseStatus::kOk, gainLines(loops_[*motor]));
+    tellGains(loops_[*motor], *outcome.response);
+  } else {
+    outcome.response = respond(request, link::ResponseStatus::kRefused, motor.error().message);
+  }
+  return outcome;
+}
+
+bool RequestDesk::parseChanges(const link::Request& request, GainChanges& changes,
+                               std::string& problem) const {
+  const auto motor = motorWithGains(request);
+  const auto open =
+      std::count_if(open_.begin(), open_.end(), [](const Open& each) { return each.gains.count > 0; });
+  if (open >= kMaxOpenGains) {
+    problem = "too many changes of gains at once: wait for the answers";
+    return false;
+  }
+  const auto parsed = motor ? parseGains(request, loops_[*motor]) : tl::unexpected(motor.error());
+  if (parsed) changes = *parsed;
+  if (!parsed) problem = motor ? names_[*motor] + ": " + parsed.error().message : parsed.error().message;
+  return parsed.has_value();
+}
+
+// Orders are carried out in the order in which they were given, and so what is done to loops_ here is what
+// was done to the motor's.
+void RequestDesk::finishGains(const Open& open, const OrderResult& result, link::Response& response) {
+  const auto motor = theMotor(open.request).value_or(0);
+  if (result.motors[motor] != Refusal::kNone) {
+    response.message = fmt::format("{}: {}", names_[motor], inWords(result.motors[motor]));
+    return;
+  }
+  response.message =
+      fmt::format("{}: {}; until rc10d restarts", names_[motor], applyGains(open.gains, loops_[motor]));
+  tellGains(loops_[motor], response);
+}
+
+// With the motors that are in the way by their names.
+std::string RequestDesk::reasonOf(Refusal reason, const MotorSet& in_the_way) const {
+  std::vector<std::string_view> names;
+  for (std::size_t i = 0; i < names_.size(); ++i) {
+    if (in_the_way.test(i)) names.emplace_back(names_[i]);
+  }
+  const std::string them = fmt::format("{}", fmt::join(names, " "));
+  switch (reason) {
+    case Refusal::kAlone:
+      return fmt::format("locked while {} is enabled alone: `rc10ctl disable {}` ends that", them, them);
+    case Refusal::kOthersOn: return fmt::format("not the only one: `rc10ctl disable {}` first", them);
+    default: return inWords(reason);
+  }
+}
+
+// "left, right: offline; arm: in FAULT": each reason once.
+std::string RequestDesk::reasons(const MotorSet& motors, const OrderResult& result) const {
+  std::string text;
+  MotorSet named;
+  for (std::size_t first = 0; first < names_.size(); ++first) {
+    const auto reason = result.motors[first];
+    if (!motors.test(first) || reason == Refusal::kNone || named.test(first)) continue;
+    std::vector<std::string> who;
+    for (std::size_t i = first; i < names_.size(); ++i) {
+      if (!motors.test(i) || result.motors[i] != reason) continue;
+      who.push_back(names_[i]);
+      named.set(i);
+    }
+    text += fmt::format("{}{}: {}", text.empty() ? "" : "; ", fmt::join(who, ", "),
+                        reasonOf(reason, result.in_the_way));
+  }
+  return text;
+}
+
+std::optional<RequestDesk::Answer> RequestDesk::finish(const OrderResult& result) {
+  const auto found =
+      std::find_if(open_.begin(), open_.end(), [&](const Open& open) { return open.order_id == result.id; });
+  if (found == open_.end()) return std::nullopt;
+  std::size_t failed = 0;
+  std::size_t needed_failed = 0;  // without those that may fail
+  for (std::size_t i = 0; i < names_.size(); ++i) {
+    if (!found->motors.test(i) || result.motors[i] == Refusal::kNone) continue;
+    ++failed;
+    if (found->request.operation.view() != "enable" || !optional_.test(i)) ++needed_failed;
+  }
+  const auto total = found->motors.count();
+  auto status = link::ResponseStatus::kOk;
+  std::string message =
+      fmt::format("{}: {} of {} motors", found->request.operation.view(), total - failed, total);
+  const bool stays =
+      std::find(result.motors.begin(), result.motors.end(), Refusal::kMoving) != result.motors.end();
+  if (stays) message = fmt::format("{}: nothing done", found->request.operation.view());
+  if (needed_failed != 0) status = link::ResponseStatus::kFailed;
+  if (failed != 0) message += " (" + reasons(found->motors, result) + ")";
+  if (found->request.operation.view() == kConfigureDrive) message = driveOutcome(*found, result);
+  if (result.refused) {
+    status = link::ResponseStatus::kRefused;
+    message = "too many enable requests at once: wait for the answers";
+  }
+  Answer answer{found->connection, respond(found->request, status, message)};
+  if (found->request.operation.view() == kSetGainsOperation) finishGains(*found, result, answer.response);
+  remember(answer.response);
+  open_.erase(found);
+  return answer;
+}
+
+std::optional<RequestDesk::Answer> RequestDesk::fail(std::uint64_t order_id, const std::string& reason) {
+  const auto found =
+      std::find_if(open_.begin(), open_.end(), [&](const Open& open) { return open.order_id == order_id; });
+  if (found == open_.end()) return std::nullopt;
+  // Not remembered: the same request may succeed when it is repeated.
+  Answer answer{found->connection, respond(found->request, link::ResponseStatus::kFailed, reason)};
+  open_.erase(found);
+  return answer;
+}
+
+void RequestDesk::remember(const link::Response& response) {
+  answered_.push_back(response);
+  if (answered_.size() > kMaxRemembered) answered_.pop_front();
+}
+
+const link::Response* RequestDesk::remembered(const link::Request& request) const {
+  const auto found = std::find_if(answered_.begin(), answered_.end(),
+                                  [&](const auto& response) { return sameRequest(request, response); });
+  return found == answered_.end() ? nullptr : &*found;
+}
+
+}  // namespace rc10

@@ -1,0 +1,35 @@
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "app/time.hpp"
+#include "daemon/clients/admission.hpp"
+#include "daemon/clients/session_numbers.hpp"
+#include "daemon/exchange/orders.hpp"
+#include "link/link_protocol.hpp"
+
+namespace rc10 {
+
+/// What admission knows of a module.
+struct KnownModule {
+  std::string name;
+  std::vector<std::string> inputs;
+};
+
+/// Checks messages for modules before they reach the scheduler, by the rules of Admission. Link thread only;
+/// the time is an argument.
+class SignalAdmission {
+ public:
+  explicit SignalAdmission(std::vector<KnownModule> modules);
+
+  /// Translates a message; on refusal `out` is unspecified. `now` is CLOCK_MONOTONIC.
+  [[nodiscard]] CommandRefusal admit(const link::Signals& message, MonotonicTime now, SignalMessage& out);
+
+ private:
+  std::vector<KnownModule> modules_;
+  std::vector<SessionNumbers> sessions_;  // of each module
+};
+
+}  // namespace rc10

@@ -1,0 +1,198 @@
+#include "daemon/devices/robot.hpp"
+
+#include <algorithm>
+#include <array>
+#include <optional>
+#include <span>
+
+#include <fmt/format.h>
+
+#include "bus/can_socket.hpp"
+#include "config/build/robot_outline.hpp"
+#include "config/build/simulated_bus.hpp"
+#include "sim/sim_bus.hpp"
+
+namespace rc10 {
+namespace {
+
+// One DJI command frame carries four motors; a bus with all of them has five. Other drives have one each,
+// in their turn.
+[[nodiscard]] CanSocketOptions socketOptions(const BusConfig& config) {
+  std::size_t shared = 0;
+  std::size_t own = 0;
+  for (const auto& motor : config.motors) {
+    const bool shares = !motor.family->busUse(motor.settings).layout.empty();
+    ++(shares ? shared : own);
+  }
+  return {.frames_per_tick = static_cast<int>(shared / 4 + own + 1)};
+}
+
+// The ids of the packer that has, among its rest frames, the id that wins arbitration against all others: on
+// a crowded bus only a stall delays its echoes. All its ids, for a drive may be told each thing with an id of
+// its own; by its rest frames, as they probe a stalled bus.
+[[nodiscard]] std::vector<CanId> mostUrgent(const fdCANbus& bus) {
+  const auto rank = [](CanId id) { return id.extended ? id.value * 2 + 1 : id.value << 19U; };
+  std::vector<CanId> watched;
+  std::optional<CanId> best;
+  std::array<CanFrame, kMaxFramesPerPacker> frames;
+  for (const auto* packer : bus.packers()) {
+    for (const auto& frame : std::span{frames}.first(packer->packRest(frames))) {
+      if (best && rank(frame.id) >= rank(*best)) continue;
+      best = frame.id;
+      const auto ids = packer->commandIds();
+      watched.assign(ids.begin(), ids.end());
+    }
+  }
+  const bool listed = !best || std::find(watched.begin(), watched.end(), *best) != watched.end();
+  if (!listed) watched.push_back(*best);
+  return watched;
+}
+
+}  // namespace
+
+Result<std::unique_ptr<Robot>> Robot::build(const RobotConfig& config) {
+  auto robot = std::unique_ptr<Robot>(new Robot);
+  robot->period_ = config.period();
+  for (const auto& bus : config.buses) {
+    auto added = bus.type == BusType::kSocketCan ? robot->addSocketCan(bus) : robot->addSimulated(bus);
+    if (!added) return tl::unexpected(added.error());
+  }
+  robot->coupled_ = config.groups;
+  if (auto added = robot->addModules(config); !added) return tl::unexpected(added.error());
+  return robot;
+}
+
+Result<void> Robot::addSocketCan(const BusConfig& config) {
+  const auto options = socketOptions(config);
+  auto bus = fdCANbus::open(config.name, config.interface, options);
+  if (!bus) return tl::unexpected(bus.error());
+  if (config.data_bitrate > 0 && !(*bus)->fdFrames()) {
+    const auto link = readCanLink(config.interface);
+    if (!link) return tl::unexpected(link.error());
+    return fail(fmt::format("bus '{}': interface {} does not take CAN FD frames; type: {}", config.name,
+                            config.interface,
+                            restartCommand(config.interface, *link, config.linkSettings())));
+  }
+  buses_.push_back({.bus = std::move(*bus),
+                    .interface = config.interface,
+                    .options = options,
+                    .settings = config.linkSettings(),
+                    .manage_link = config.manage_link});
+  if (auto added = addMotors(config); !added) return added;
+  auto& entry = buses_.back();
+  if (entry.bus->packers().empty()) return {};
+  auto echo = openEchoSocket(config.interface, entry.watched);
+  if (!echo) return tl::unexpected(echo.error());
+  entry.echo = std::move(*echo);
+  return {};
+}
+
+Result<void> Robot::addSimulated(const BusConfig& config) {
+  auto ends = sim::SimPort::makeSocketPair();
+  if (!ends) return tl::unexpected(ends.error());
+  buses_.push_back({.bus = fdCANbus::adopt(config.name, std::move(ends->first), true)});
+  if (auto added = addMotors(config); !added) return added;
+  const auto drives = simulatedBus(config);
+  if (auto checked = sim::SimBus::check(drives); !checked) return checked;
+  sim_ports_.push_back(std::make_unique<sim::SimPort>(std::move(ends->second), drives, sim::Stamps::kOwn));
+  return {};
+}
+
+Result<void> Robot::addMotors(const BusConfig& config) {
+  for (const auto& motor : config.motors) {
+    if (auto added = addMotor(motor, buses_.size() - 1); !added) return added;
+  }
+  auto& entry = buses_.back();
+  if (entry.bus->packers().empty()) return {};
+  entry.watched = mostUrgent(*entry.bus);
+  entry.bus->watch(entry.watched);
+  return {};
+}
+
+Result<void> Robot::addMotor(const MotorConfig& config, std::size_t bus_index) {
+  auto& entry = buses_[bus_index];
+  if (!entry.parts) entry.parts = std::make_unique<BusParts>(*entry.bus);
+  auto motor = config.family->build(config.settings, *entry.parts);
+  if (!motor) return tl::unexpected(motor.error());
+  entry.feedback_expected |= (*motor)->speaksUnasked();
+  // Half: the timeout spans two periods of its feedback at least.
+  motors_.push_back({std::move(*motor), bus_index, config.feedback_timeout,
+                     static_cast<std::uint64_t>(config.feedback_timeout / 2 / period_),
+                     MotorGuard{config.guard}, TargetShaper{config.shaping}, config.fallback,
+                     config.standstill_rpm});
+  return {};
+}
+
+Result<void> Robot::addModules(const RobotConfig& config) {
+  const RobotOutline outline = outlineOf(config);
+  std::vector<ModuleDirectory::Entry> entries;
+  modules_.reserve(config.modules.size());
+  for (const auto& module : config.modules) {
+    auto built = module.type->build(module.settings, outline);
+    if (!built) return fail(fmt::format("module '{}': {}", module.settings.name, built.error().message));
+    modules_.push_back({module.settings.name, module.settings.priority, std::move(*built)});
+    entries.push_back({modules_.back().name, modules_.back().module.get()});
+  }
+  const ModuleDirectory directory{entries};
+  for (auto& entry : modules_) {
+    if (auto connected = entry.module->connect(directory); !connected)
+      return fail(fmt::format("module '{}': {}", entry.name, connected.error().message));
+  }
+  if (auto added = addSerialPorts(); !added) return added;
+  addSpiDevices();
+  return addGpioLines();
+}
+
+Result<void> Robot::addSerialPorts() {
+  std::vector<SerialLine::Settings> ports;
+  std::vector<std::unique_ptr<I_Protocol>> protocols;
+  for (auto& entry : modules_) {
+    auto need = entry.module->takeSerialNeed();
+    if (!need) continue;
+    ports.push_back({.name = entry.name, .path = need->path, .format = need->format});
+    protocols.push_back(std::move(need->protocol));
+  }
+  if (ports.empty()) return {};
+  auto lines = SerialLines::create(ports);
+  if (!lines) return tl::unexpected(lines.error());
+  serial_lines_ = std::move(*lines);
+  for (std::size_t i = 0; i < ports.size(); ++i) {
+    auto& line = (*serial_lines_)[i];
+    serial_devices_.push_back(
+        {std::make_unique<SerialDevice>(ports[i].name, std::move(protocols[i]), line.outbox), i});
+  }
+  return {};
+}
+
+void Robot::addSpiDevices() {
+  for (auto& entry : modules_) {
+    auto need = entry.module->takeSpiNeed();
+    if (!need) continue;
+    spi_outputs_.push_back({.output = std::move(need->output), .line = spi_lines_.size()});
+    spi_lines_.push_back(std::make_unique<SpiLine>(SpiLine::Settings{.name = entry.name,
+                                                                     .path = std::move(need->path),
+                                                                     .speed_hz = need->speed_hz,
+                                                                     .rest = std::move(need->rest)}));
+  }
+}
+
+Result<void> Robot::addGpioLines() {
+  std::vector<LineBank::Settings> banks;
+  for (auto& entry : modules_) {
+    auto need = entry.module->takeGpioNeed();
+    if (!need) continue;
+    gpio_images_.push_back({.image = std::move(need->image), .bank = banks.size()});
+    banks.push_back({.name = entry.name,
+                     .chip = std::move(need->chip),
+                     .inputs = std::move(need->inputs),
+                     .outputs = std::move(need->outputs),
+                     .safe_levels = need->safe_levels});
+  }
+  if (banks.empty()) return {};
+  auto created = LineBanks::create(std::move(banks));
+  if (!created) return tl::unexpected(created.error());
+  line_banks_ = std::move(*created);
+  return {};
+}
+
+}  // namespace rc10

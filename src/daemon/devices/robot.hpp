@@ -1,0 +1,119 @@
+#pragma once
+
+#include <cstddef>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "app/result.hpp"
+#include "bus/can_link_settings.hpp"
+#include "bus/can_socket.hpp"
+#include "bus/fdcan_bus.hpp"
+#include "bus/serial_device.hpp"
+#include "config/robot_config.hpp"
+#include "daemon/devices/line_bank.hpp"
+#include "daemon/devices/serial_line.hpp"
+#include "daemon/devices/spi_line.hpp"
+#include "module/module_base.hpp"
+#include "motor/motor_family.hpp"
+#include "sim/sim_port.hpp"
+
+namespace rc10 {
+
+/// The buses, motors and groups that a configuration describes, registered with each other.
+/// Built by the main thread; from the first tick on it belongs to the scheduler thread.
+class Robot {
+ public:
+  /// Opens every bus. A simulated bus is one end of a socket pair; the other end is in simPorts().
+  [[nodiscard]] static Result<std::unique_ptr<Robot>> build(const RobotConfig& config);
+
+  struct MotorEntry {
+    std::unique_ptr<Motor_Base> motor;
+    std::size_t bus = 0;
+    Duration feedback_timeout{};
+    /// Without feedback for so many ticks that ran, too, before it counts as lost.
+    std::uint64_t feedback_timeout_ticks = 0;
+    MotorGuard guard{GuardConfig{}};
+    TargetShaper shaper{ShapingConfig{}};
+    FallbackConfig fallback{};
+    float standstill_rpm = 0.0F;
+  };
+  struct BusEntry {
+    std::unique_ptr<fdCANbus> bus;
+    std::string interface {};  ///< Empty: simulated.
+    CanSocketOptions options{};
+    bool feedback_expected = false;     ///< Some motor talks without being asked.
+    UniqueFd echo{};                    ///< Sees the transmit echo; empty where there is none.
+    std::vector<CanId> watched{};       ///< The command ids whose echoes are watched.
+    CanLinkSettings settings{};         ///< As configured; nothing of a simulated one.
+    bool manage_link = false;           ///< rc10d makes them so and restarts the interface.
+    std::unique_ptr<BusParts> parts{};  ///< The packers that several motors share.
+    bool held = false;                  ///< The bus carries no frames now. Scheduler thread only.
+  };
+
+  struct ModuleEntry {
+    std::string name;
+    int priority = 0;
+    std::unique_ptr<Module_Base> module;
+  };
+  struct SerialEntry {
+    std::unique_ptr<SerialDevice> device;
+    std::size_t line = 0;  ///< In serialLines().
+  };
+
+  struct SpiEntry {
+    std::unique_ptr<SpiOutput> output;
+    std::size_t line = 0;           ///< In spiLines().
+    std::uint32_t handed_over = 0;  ///< Frames. Scheduler thread only.
+  };
+  struct GpioEntry {
+    std::unique_ptr<GpioImage> image;
+    std::size_t bank = 0;  ///< In lineBanks().
+  };
+
+  [[nodiscard]] std::vector<MotorEntry>& motors() noexcept { return motors_; }
+  [[nodiscard]] const std::vector<MotorEntry>& motors() const noexcept { return motors_; }
+  [[nodiscard]] std::vector<BusEntry>& buses() noexcept { return buses_; }
+  [[nodiscard]] const std::vector<BusEntry>& buses() const noexcept { return buses_; }
+  [[nodiscard]] std::vector<ModuleEntry>& modules() noexcept { return modules_; }
+  [[nodiscard]] const std::vector<ModuleEntry>& modules() const noexcept { return modules_; }
+  [[nodiscard]] std::vector<SerialEntry>& serialDevices() noexcept { return serial_devices_; }
+  /// Null: no module wants a serial port.
+  [[nodiscard]] SerialLines* serialLines() noexcept { return serial_lines_.get(); }
+  [[nodiscard]] std::vector<SpiEntry>& spiOutputs() noexcept { return spi_outputs_; }
+  [[nodiscard]] std::vector<std::unique_ptr<SpiLine>>& spiLines() noexcept { return spi_lines_; }
+  [[nodiscard]] std::vector<GpioEntry>& gpioImages() noexcept { return gpio_images_; }
+  /// Null: no module wants GPIO lines.
+  [[nodiscard]] LineBanks* lineBanks() noexcept { return line_banks_.get(); }
+  [[nodiscard]] const std::vector<GroupConfig>& groups() const noexcept { return coupled_; }
+  /// The simulated motors, for the thread or the test that steps them.
+  [[nodiscard]] std::vector<std::unique_ptr<sim::SimPort>>& simPorts() noexcept { return sim_ports_; }
+
+ private:
+  Robot() = default;
+
+  [[nodiscard]] Result<void> addSocketCan(const BusConfig& config);
+  [[nodiscard]] Result<void> addSimulated(const BusConfig& config);
+  /// To the bus that was added last.
+  [[nodiscard]] Result<void> addMotors(const BusConfig& config);
+  [[nodiscard]] Result<void> addMotor(const MotorConfig& config, std::size_t bus_index);
+  [[nodiscard]] Result<void> addModules(const RobotConfig& config);
+  [[nodiscard]] Result<void> addSerialPorts();
+  void addSpiDevices();
+  [[nodiscard]] Result<void> addGpioLines();
+
+  Duration period_{};
+  std::vector<BusEntry> buses_;
+  std::vector<MotorEntry> motors_;
+  std::vector<GroupConfig> coupled_;
+  std::unique_ptr<SerialLines> serial_lines_;  // longer than the devices, which push to them
+  std::vector<SerialEntry> serial_devices_;    // and these longer than the modules that read their protocols
+  std::vector<std::unique_ptr<SpiLine>> spi_lines_;
+  std::vector<SpiEntry> spi_outputs_;
+  std::unique_ptr<LineBanks> line_banks_;
+  std::vector<GpioEntry> gpio_images_;
+  std::vector<ModuleEntry> modules_;
+  std::vector<std::unique_ptr<sim::SimPort>> sim_ports_;
+};
+
+}  // namespace rc10

@@ -1,0 +1,102 @@
+#pragma once
+
+#include <atomic>
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "app/result.hpp"
+#include "app/unique_fd.hpp"
+#include "bus/byte_sink.hpp"
+#include "bus/serial_chunk.hpp"
+#include "bus/serial_device.hpp"
+#include "bus/serial_format.hpp"
+#include "daemon/exchange/rings.hpp"
+
+namespace rc10 {
+
+/// What the scheduler sends to one serial port: a bounded queue that the io thread writes. Every push wakes
+/// it.
+class SerialOutbox final : public ByteSink {
+ public:
+  static constexpr std::size_t kBytes = 4096;  // 0.35 s at 115200 baud
+
+  /// `wake`: an eventfd that lives as long.
+  explicit SerialOutbox(int wake) noexcept : wake_(wake) {}
+
+  /// Scheduler thread only. One system call, which does not wait.
+  [[nodiscard]] bool push(std::span<const std::uint8_t> bytes) noexcept override;
+  /// io thread only. Returns how many bytes it has written to `out`.
+  [[nodiscard]] std::size_t pop(std::span<std::uint8_t> out) noexcept {
+    return ring_.pop(out.data(), out.size());
+  }
+
+ private:
+  Ring<std::uint8_t, kBytes> ring_;
+  int wake_;
+};
+
+/// One serial port between the RX, io and scheduler threads. The descriptor keeps its number for ever: while
+/// the port is absent it is /dev/null, and the io thread puts an opened port in its place.
+struct SerialLine {
+  struct Settings {
+    std::string name;
+    std::string path;
+    SerialFormat format{};
+  };
+
+  // The RX thread reads what is there: at most a few chunks a millisecond.
+  static constexpr std::size_t kChunks = 256;
+
+  SerialLine(Settings settings_of_port, UniqueFd null_device, int wake)
+      : settings(std::move(settings_of_port)), fd(std::move(null_device)), outbox(wake) {}
+  SerialLine(const SerialLine&) = delete;
+  SerialLine& operator=(const SerialLine&) = delete;
+  ~SerialLine();
+
+  const Settings settings;
+  const UniqueFd fd;
+  SerialOutbox outbox;                            ///< scheduler -> io
+  Ring<SerialChunk, kChunks> chunks;              ///< rx -> scheduler
+  std::atomic<std::uint64_t> dropped_chunks{0};   ///< The ring was full; counted by rx.
+  std::atomic<std::uint64_t> hang_ups{0};         ///< Counted by rx.
+  std::atomic<std::uint64_t> discarded_bytes{0};  ///< Taken from the outbox and not written; counted by io.
+  /// rx says kAbsent when it has met the end, and then leaves the descriptor alone; io says kOpen once
+  /// another port is in its place, and only then shows it to rx.
+  std::atomic<SerialState> state{SerialState::kAbsent};
+  std::atomic<std::uint32_t> opening{0};  ///< Times the port was opened; counted by io.
+};
+
+/// All the serial ports of a robot. Built before the threads, and outlives them.
+class SerialLines {
+ public:
+  /// Opens nothing yet: see SerialReviver.
+  [[nodiscard]] static Result<std::unique_ptr<SerialLines>> create(
+      std::span<const SerialLine::Settings> ports);
+
+  [[nodiscard]] std::size_t size() const noexcept { return lines_.size(); }
+  [[nodiscard]] SerialLine& operator[](std::size_t index) noexcept { return *lines_[index]; }
+  /// An eventfd: something was pushed to an outbox.
+  [[nodiscard]] int wake() const noexcept { return wake_.get(); }
+
+ private:
+  explicit SerialLines(UniqueFd wake) noexcept : wake_(std::move(wake)) {}
+
+  UniqueFd wake_;
+  std::vector<std::unique_ptr<SerialLine>> lines_;
+};
+
+/// RX thread: one read. `hung_up`: as epoll says; what came before is still read. False: the port is gone.
+[[nodiscard]] bool receiveChunk(SerialLine& line, MonotonicTime now, bool hung_up) noexcept;
+
+/// RX thread: the port is gone, and this thread does not touch the descriptor until it is told to watch it
+/// again.
+void leavePort(SerialLine& line) noexcept;
+
+/// Scheduler thread: gives the device what has come until now, and tells it the port's state.
+void deliver(SerialLine& line, SerialDevice& device) noexcept;
+
+}  // namespace rc10

@@ -1,0 +1,40 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include <poll.h>
+
+#include "app/time.hpp"
+#include "daemon/devices/serial_line.hpp"
+
+namespace rc10 {
+
+/// Writes what the scheduler sends to the serial ports. A port that is absent gets nothing, now or later: an
+/// old command must not act when it is plugged in again. io thread only.
+class SerialWriter {
+ public:
+  explicit SerialWriter(SerialLines& lines);
+
+  /// Writes as it comes for about `duration`.
+  void serve(Duration duration);
+  /// Writes what is there and can be written without waiting.
+  void flush() noexcept;
+
+ private:
+  struct Pending {
+    std::array<std::uint8_t, 256> bytes{};
+    std::size_t begin = 0;
+    std::size_t end = 0;
+  };
+
+  [[nodiscard]] bool write(SerialLine& line, Pending& pending) noexcept;
+
+  SerialLines& lines_;
+  std::vector<Pending> pending_;
+  std::vector<pollfd> waits_;  // one for each line, and the eventfd
+};
+
+}  // namespace rc10

@@ -1,0 +1,87 @@
+#include "daemon/devices/spi_keeper.hpp"
+
+#include <cerrno>
+#include <cstring>
+#include <span>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "daemon/exchange/note.hpp"
+
+namespace rc10 {
+
+SpiKeeper::SpiKeeper(SpiLines& lines, LinkExchange& exchange, Open open)
+    : lines_(lines), exchange_(exchange), open_(std::move(open)), devices_(lines.size()) {}
+
+void SpiKeeper::turn(MonotonicTime now) {
+  for (std::size_t i = 0; i < devices_.size(); ++i) {
+    if (!devices_[i].port && devices_[i].pace.due(now)) open(i, now);
+    if (devices_[i].port) serve(i, now);
+  }
+}
+
+void SpiKeeper::open(std::size_t index, MonotonicTime now) {
+  auto& device = devices_[index];
+  auto& line = *lines_[index];
+  device.pace.begin(now);
+  auto opened = open_(line.settings.path, line.settings.speed_hz);
+  if (!opened) {
+    if (device.pace.failed(opened.error().message))
+      tell(line, Severity::kWarning, opened.error().message, now);
+    return;
+  }
+  // What it shows is not known: the newest frame is sent, though it may have been sent before.
+  device = {.port = std::move(*opened), .pace = device.pace};
+}
+
+void SpiKeeper::serve(std::size_t index, MonotonicTime now) {
+  auto& device = devices_[index];
+  auto& line = *lines_[index];
+  const auto error = sendNewest(line, device);
+  if (!error) return;
+  if (*error != 0) return fail(index, *error, now);
+  if (std::exchange(device.works, true)) return;
+  device.pace.opened(now);
+  line.open.store(true, std::memory_order_relaxed);
+  tell(line, Severity::kInfo, fmt::format("{} works, at {} Hz", line.settings.path, line.settings.speed_hz),
+       now);
+}
+
+void SpiKeeper::fail(std::size_t index, int error, MonotonicTime now) {
+  auto& device = devices_[index];
+  auto& line = *lines_[index];
+  device.port.reset();
+  if (device.works) device.pace.lost(now);
+  line.open.store(false, std::memory_order_relaxed);
+  auto text = fmt::format("SPI device '{}': cannot send: {}", line.settings.path, std::strerror(error));
+  if (error == EMSGSIZE)
+    text += "; its buffer is too small: add spidev.bufsiz=4096 to the kernel's command line";
+  if (device.pace.failed(text)) tell(line, Severity::kWarning, text, now);
+}
+
+std::optional<int> SpiKeeper::sendNewest(SpiLine& line, Device& device) noexcept {
+  const auto& frame = line.frame.read();
+  if (frame.number != device.sent) {
+    device.sent = frame.number;
+    device.silent_turns = 0;
+    device.rests = false;
+    return device.port->send(std::span{frame.bytes}.first(frame.size));
+  }
+  if (device.rests || ++device.silent_turns < kSilentTurns) return std::nullopt;
+  device.rests = true;
+  return device.port->send(line.settings.rest);
+}
+
+void SpiKeeper::end() noexcept {
+  for (std::size_t i = 0; i < devices_.size(); ++i) {
+    if (devices_[i].port) (void)devices_[i].port->send(lines_[i]->settings.rest);
+  }
+}
+
+void SpiKeeper::tell(const SpiLine& line, Severity severity, const std::string& text, MonotonicTime now) {
+  // Full: the link thread does not run, and nobody would read it.
+  (void)exchange_.notes.push(noteOf(EventCode::kDevice, severity, line.settings.name, text, now));
+}
+
+}  // namespace rc10

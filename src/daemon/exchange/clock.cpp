@@ -1,0 +1,21 @@
+#include "daemon/exchange/clock.hpp"
+
+namespace rc10 {
+
+MonotonicTime monotonicNow() noexcept {
+  // libstdc++'s steady_clock is CLOCK_MONOTONIC.
+  return std::chrono::steady_clock::now();
+}
+
+std::int64_t wallClockUs() noexcept {
+  return std::chrono::duration_cast<std::chrono::microseconds>(
+             std::chrono::system_clock::now().time_since_epoch())
+      .count();
+}
+
+Duration realtimeOffset() noexcept {
+  const auto realtime = std::chrono::system_clock::now().time_since_epoch();
+  return std::chrono::duration_cast<Duration>(realtime) - monotonicNow().time_since_epoch();
+}
+
+}  // namespace rc10

@@ -1,0 +1,56 @@
+#pragma once
+
+#include <atomic>
+#include <cstddef>
+#include <cstdint>
+
+#include <boost/lockfree/spsc_queue.hpp>
+
+#include "bus/bus_health.hpp"
+#include "bus/can_frame.hpp"
+#include "daemon/exchange/estop_contact.hpp"
+#include "daemon/exchange/events.hpp"
+#include "daemon/exchange/latest_value.hpp"
+#include "daemon/exchange/orders.hpp"
+#include "daemon/exchange/snapshot.hpp"
+
+namespace rc10 {
+
+template <typename T, std::size_t Capacity>
+using Ring = boost::lockfree::spsc_queue<T, boost::lockfree::capacity<Capacity>>;
+
+/// Between the RX, io and scheduler threads, for one bus: frames, and what each saw of it. Each counter has
+/// one writer.
+struct BusInbox {
+  // A classic 1 Mbit/s bus carries at most 21 frames a millisecond: room for 50 late ticks.
+  static constexpr std::size_t kFrames = 1024;
+
+  Ring<CanFrame, kFrames> frames;
+  std::atomic<std::uint64_t> dropped{0};    ///< By the kernel or because the ring was full.
+  std::atomic<std::uint64_t> malformed{0};  ///< Datagrams that are no frame.
+  std::atomic<std::uint64_t> confirmed{0};  ///< Echoes of the watched command id.
+  std::atomic<LinkState> link{LinkState::kUp};
+  std::atomic<bool> echo_available{false};
+  /// What the scheduler makes of it all, for the io thread.
+  std::atomic<BusState> state{BusState::kActive};
+  /// The io thread counts here when the driver says that a bus-off controller runs again.
+  std::atomic<std::uint32_t> controller_running{0};
+};
+
+/// Everything that crosses to and from the link thread.
+struct LinkExchange {
+  Ring<Command, 64> commands;        // link -> scheduler
+  Ring<Order, 64> orders;            // link -> scheduler
+  Ring<SignalMessage, 64> signals;   // link -> scheduler
+  Ring<Event, 16> refusals;          // link -> scheduler, for the black box: commands that admission refused
+  Ring<OrderResult, 64> results;     // scheduler -> link
+  Ring<Event, 1024> events;          // scheduler -> link
+  Ring<link::Event, 32> notes;       // io -> link, in words already
+  Ring<link::Event, 32> line_notes;  // lines -> link, the same
+  LatestValue<Snapshot> snapshot;    // scheduler -> link
+  /// Beside the ring, so that an e-stop gets through when the ring is full.
+  std::atomic<bool> estop{false};
+  EstopContact estop_contact;  // gpio -> scheduler
+};
+
+}  // namespace rc10

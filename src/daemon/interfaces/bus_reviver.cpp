@@ -1,0 +1,56 @@
+#include "daemon/interfaces/bus_reviver.hpp"
+
+#include <fcntl.h>
+#include <net/if.h>
+#include <sys/ioctl.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
+#include <cstring>
+#include <string>
+
+#include "bus/can_socket.hpp"
+
+namespace rc10 {
+namespace {
+
+[[nodiscard]] LinkState linkStateOf(const std::string& interface) noexcept {
+  const UniqueFd any{::socket(AF_UNIX, SOCK_DGRAM | SOCK_CLOEXEC, 0)};  // any socket answers SIOCGIFFLAGS
+  ifreq request{};
+  interface.copy(request.ifr_name, IFNAMSIZ - 1);
+  if (!any || ::ioctl(any.get(), SIOCGIFFLAGS, &request) != 0) return LinkState::kGone;
+  return (request.ifr_flags & IFF_UP) != 0 ? LinkState::kUp : LinkState::kDown;
+}
+
+}  // namespace
+
+std::bitset<kMaxBuses> BusReviver::check() noexcept {
+  std::bitset<kMaxBuses> came_up;
+  for (std::size_t i = 0; i < robot_.buses().size(); ++i) {
+    const auto& entry = robot_.buses()[i];
+    if (entry.interface.empty()) continue;
+    auto& link = inboxes_[i].link;
+    const LinkState seen = linkStateOf(entry.interface);
+    LinkState before = link.load(std::memory_order_relaxed);
+    // A socket that lost its interface stays dead when one of that name comes back.
+    if (before == LinkState::kGone && seen != LinkState::kGone && !reopen(i)) continue;
+    // Not over what the RX thread has just found out: it knows of a loss that was over before we looked.
+    if (link.compare_exchange_strong(before, seen, std::memory_order_relaxed)) {
+      came_up[i] = before != LinkState::kUp && seen == LinkState::kUp;
+    }
+  }
+  return came_up;
+}
+
+bool BusReviver::reopen(std::size_t bus) {
+  const auto& entry = robot_.buses()[bus];
+  auto socket = openCanSocket(entry.interface, entry.options);
+  if (!socket || ::dup3(socket->fd.get(), entry.bus->descriptor(), O_CLOEXEC) < 0) return false;
+  if (entry.echo) {
+    auto echo = openEchoSocket(entry.interface, entry.watched);
+    if (!echo || ::dup3(echo->get(), entry.echo.get(), O_CLOEXEC) < 0) return false;
+  }
+  return rx_.watchAgain(bus);
+}
+
+}  // namespace rc10

@@ -1,0 +1,32 @@
+#pragma once
+
+#include <bitset>
+#include <span>
+
+#include "daemon/devices/robot.hpp"
+#include "daemon/exchange/rings.hpp"
+#include "daemon/interfaces/rx_loop.hpp"
+
+namespace rc10 {
+
+/// Watches the interfaces of the buses and brings a bus back when its interface comes back. A new
+/// socket takes the place of the old one under the same descriptor number (dup3), so that the
+/// real-time threads need not know. io thread only.
+class BusReviver {
+ public:
+  BusReviver(Robot& robot, std::span<BusInbox> inboxes, RxLoop& rx)
+      : robot_(robot), inboxes_(inboxes), rx_(rx) {}
+
+  /// Looks at every interface once. To be called some 20 times a second. Returns the buses that have come up:
+  /// also those that were down so briefly that only the RX thread knew.
+  std::bitset<kMaxBuses> check() noexcept;
+
+ private:
+  [[nodiscard]] bool reopen(std::size_t bus);
+
+  Robot& robot_;
+  std::span<BusInbox> inboxes_;
+  RxLoop& rx_;
+};
+
+}  // namespace rc10

@@ -1,0 +1,60 @@
+#pragma once
+
+#include <array>
+#include <bitset>
+#include <cstdint>
+#include <span>
+#include <string>
+
+#include "app/time.hpp"
+#include "daemon/devices/robot.hpp"
+#include "daemon/exchange/rings.hpp"
+#include "daemon/interfaces/can_link.hpp"
+#include "daemon/interfaces/link_recovery.hpp"
+
+namespace rc10 {
+
+/// Looks after the links of the CAN buses: with `manage_link` it takes the interface of a bus in trouble down
+/// and up, else it says once which command to type. io thread only; nobody waits for it.
+class LinkKeeper {
+ public:
+  /// Where it reads and writes links. Tests give their own.
+  struct Driver {
+    Result<CanLink> (*read)(const std::string& interface) = readCanLink;
+    Result<void> (*restart)(const std::string& interface, const CanLinkSettings& wanted) = restartCanLink;
+  };
+
+  LinkKeeper(Robot& robot, std::span<BusInbox> inboxes, LinkExchange& exchange)
+      : LinkKeeper(robot, inboxes, exchange, Driver{}) {}
+  LinkKeeper(Robot& robot, std::span<BusInbox> inboxes, LinkExchange& exchange, Driver driver)
+      : robot_(robot), inboxes_(inboxes), exchange_(exchange), driver_(driver) {}
+
+  /// Looks at every bus once. `came_up`: of these somebody may have changed the settings.
+  void check(MonotonicTime now, std::bitset<kMaxBuses> came_up);
+
+ private:
+  struct Kept {
+    LinkRecovery recovery;
+    bool by_us = false;  ///< The interface comes up because we restarted it.
+    std::string last_error;
+  };
+
+  void recover(std::size_t bus, BusState why, MonotonicTime now);
+  [[nodiscard]] bool restart(std::size_t bus, MonotonicTime now);
+  void advise(std::size_t bus, BusState why, const CanLink& link, MonotonicTime now);
+  void checkSettings(std::size_t bus, MonotonicTime now);
+  void tell(std::size_t bus, Severity severity, const std::string& text, MonotonicTime now);
+
+  Robot& robot_;
+  std::span<BusInbox> inboxes_;
+  LinkExchange& exchange_;
+  Driver driver_;
+  std::array<Kept, kMaxBuses> kept_{};
+};
+
+/// What is wrong with the settings of a link that rc10d does not manage, and the command that mends it; empty
+/// if nothing.
+[[nodiscard]] std::string settingsAdvice(const std::string& interface, const CanLink& link,
+                                         const CanLinkSettings& wanted);
+
+}  // namespace rc10

@@ -1,0 +1,45 @@
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <vector>
+
+#include "app/time.hpp"
+#include "app/unique_fd.hpp"
+#include "daemon/devices/retry_pace.hpp"
+#include "daemon/devices/serial_line.hpp"
+#include "daemon/exchange/events.hpp"
+#include "daemon/exchange/rings.hpp"
+#include "daemon/interfaces/rx_loop.hpp"
+
+namespace rc10 {
+
+/// Opens the serial ports, and opens them again when they come back. A port takes its place under the number
+/// that its line has from the start (dup3), so that the real-time threads need not know. io thread only, and
+/// the main thread before there is one.
+class SerialReviver {
+ public:
+  SerialReviver(SerialLines& lines, RxLoop& rx, LinkExchange& exchange)
+      : lines_(lines), rx_(rx), exchange_(exchange), ports_(lines.size()) {}
+
+  /// Looks at every port once. To be called some 20 times a second, and once before the first tick.
+  void check(MonotonicTime now);
+
+ private:
+  struct Port {
+    bool open = false;
+    RetryPace pace{};
+  };
+
+  void release(std::size_t index, MonotonicTime now);
+  void tryToOpen(std::size_t index, MonotonicTime now);
+  [[nodiscard]] Result<void> open(SerialLine& line, std::size_t index);
+  void tell(const SerialLine& line, Severity severity, const std::string& text, MonotonicTime now);
+
+  SerialLines& lines_;
+  RxLoop& rx_;
+  LinkExchange& exchange_;
+  std::vector<Port> ports_;
+};
+
+}  // namespace rc10

@@ -1,0 +1,65 @@
+#include "daemon/threads/gpio_loop.hpp"
+
+#include <algorithm>
+#include <thread>
+#include <utility>
+
+#include "daemon/devices/gpio_lines.hpp"
+#include "daemon/exchange/clock.hpp"
+
+namespace rc10 {
+namespace {
+
+// An edge wakes the thread at once. The level is read this often all the same: for a chip that vanished, and
+// for edges that the kernel had no room for.
+constexpr Duration kLookInterval = std::chrono::milliseconds{10};
+// Between two looks, and the interval of the looks where the chip has no interrupts: a line that flutters, or
+// a chip that only reports errors, must not keep a real-time thread busy.
+constexpr Duration kPause = std::chrono::milliseconds{1};
+
+}  // namespace
+
+GpioLoop::GpioLoop(std::unique_ptr<ContactInput> contact, std::optional<Heartbeat> heartbeat,
+                   LinkExchange& link)
+    : contact_(std::move(contact)), heartbeat_(std::move(heartbeat)), link_(link) {}
+
+Result<std::unique_ptr<GpioLoop>> GpioLoop::create(const RobotConfig& config, LinkExchange& link) {
+  std::unique_ptr<ContactInput> contact;
+  std::optional<Heartbeat> heartbeat;
+  if (config.estop_gpio) {
+    auto opened = openContact(*config.estop_gpio);
+    if (!opened) return tl::unexpected(opened.error());
+    contact = std::move(*opened);
+  }
+  if (config.heartbeat_gpio) {
+    auto opened = openPulse(*config.heartbeat_gpio);
+    if (!opened) return tl::unexpected(opened.error());
+    heartbeat.emplace(std::move(*opened), config.heartbeat_gpio->period);
+  }
+  if (!contact && !heartbeat) return nullptr;
+  auto loop = std::make_unique<GpioLoop>(std::move(contact), std::move(heartbeat), link);
+  loop->turn({}, 0);  // the first tick knows already
+  return loop;
+}
+
+void GpioLoop::turn(MonotonicTime now, std::uint64_t ticks) noexcept {
+  if (heartbeat_ && !heartbeat_->step(now, ticks)) heartbeat_failed_.store(true);
+  const auto due = heartbeat_ ? std::max(heartbeat_->next() - now, Duration::zero()) : kLookInterval;
+  const auto patience = std::min(due, kLookInterval);
+  if (contact_) {
+    const auto state = contact_->wait(patience);
+    link_.estop_contact.show(state);
+  } else {
+    std::this_thread::sleep_for(patience);
+  }
+}
+
+void GpioLoop::run(const std::stop_token& stop, const Scheduler& scheduler) noexcept {
+  while (!stop.stop_requested()) {
+    turn(monotonicNow(), scheduler.ticks());
+    std::this_thread::sleep_for(kPause);
+  }
+  if (heartbeat_) heartbeat_->end();
+}
+
+}  // namespace rc10

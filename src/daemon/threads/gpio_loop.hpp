@@ -1,0 +1,48 @@
+#pragma once
+
+#include <atomic>
+#include <memory>
+#include <optional>
+#include <stop_token>
+
+#include "app/result.hpp"
+#include "app/time.hpp"
+#include "config/robot_config.hpp"
+#include "daemon/devices/gpio.hpp"
+#include "daemon/devices/heartbeat.hpp"
+#include "daemon/exchange/rings.hpp"
+#include "daemon/tick/scheduler.hpp"
+
+namespace rc10 {
+
+/// The gpio thread: watches the e-stop input, and toggles the heartbeat while the scheduler ticks. The
+/// scheduler never waits for a chip, which may sit behind a slow bus.
+class GpioLoop {
+ public:
+  /// Opens what is configured; nullptr where nothing is. A safety input that is missing is an error.
+  [[nodiscard]] static Result<std::unique_ptr<GpioLoop>> create(const RobotConfig& config,
+                                                                LinkExchange& link);
+
+  /// Either may be missing.
+  GpioLoop(std::unique_ptr<ContactInput> contact, std::optional<Heartbeat> heartbeat, LinkExchange& link);
+
+  /// The thread's body.
+  void run(const std::stop_token& stop, const Scheduler& scheduler) noexcept;
+  /// One look at the input, waiting for a change until the heartbeat is due or kLookInterval is over, and
+  /// then the heartbeat.
+  void turn(MonotonicTime now, std::uint64_t ticks) noexcept;
+
+  /// True once, when the heartbeat output has refused. One thread may ask.
+  [[nodiscard]] bool takeHeartbeatFailure() noexcept {
+    return !heartbeat_told_ && (heartbeat_told_ = heartbeat_failed_.load());
+  }
+
+ private:
+  std::unique_ptr<ContactInput> contact_;
+  std::optional<Heartbeat> heartbeat_;
+  LinkExchange& link_;
+  std::atomic<bool> heartbeat_failed_{false};
+  bool heartbeat_told_ = false;
+};
+
+}  // namespace rc10

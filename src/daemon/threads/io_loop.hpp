@@ -1,0 +1,45 @@
+#pragma once
+
+#include <memory>
+#include <stop_token>
+
+#include "daemon/devices/serial_writer.hpp"
+#include "daemon/devices/spi_keeper.hpp"
+#include "daemon/interfaces/bus_reviver.hpp"
+#include "daemon/interfaces/link_keeper.hpp"
+#include "daemon/interfaces/serial_reviver.hpp"
+#include "daemon/recording/black_box.hpp"
+
+namespace rc10 {
+
+/// What the io thread does with serial ports.
+struct SerialIo {
+  SerialReviver reviver;
+  SerialWriter writer;
+};
+
+/// What the io thread does: a hundred times a second it moves the recording from its ring to the history,
+/// twenty times a second it looks at the interfaces, the links and the serial ports, and in between it writes
+/// what the scheduler sends to serial ports and SPI devices.
+class IoLoop {
+ public:
+  /// `black_box`: null if nothing is recorded. `serial`, `spi`: null if there are no such devices.
+  IoLoop(BusReviver reviver, LinkKeeper keeper, BlackBox* black_box,
+         std::unique_ptr<SerialIo> serial = nullptr, std::unique_ptr<SpiKeeper> spi = nullptr)
+      : reviver_(reviver),
+        keeper_(std::move(keeper)),
+        black_box_(black_box),
+        serial_(std::move(serial)),
+        spi_(std::move(spi)) {}
+
+  void run(const std::stop_token& stop);
+
+ private:
+  BusReviver reviver_;
+  LinkKeeper keeper_;
+  BlackBox* black_box_;
+  std::unique_ptr<SerialIo> serial_;
+  std::unique_ptr<SpiKeeper> spi_;
+};
+
+}  // namespace rc10

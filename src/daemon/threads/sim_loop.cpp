@@ -1,0 +1,31 @@
+#include "daemon/threads/sim_loop.hpp"
+
+#include "daemon/exchange/clock.hpp"
+
+namespace rc10 {
+namespace {
+
+// All simulated drives send once a millisecond, as the real ones do.
+constexpr Duration kPeriod = std::chrono::milliseconds{1};
+
+}  // namespace
+
+Result<std::unique_ptr<SimLoop>> SimLoop::create(Robot& robot) {
+  auto timer = PeriodicTimer::create();
+  if (!timer) return tl::unexpected(timer.error());
+  return std::unique_ptr<SimLoop>(new SimLoop(robot, std::move(*timer)));
+}
+
+void SimLoop::run(const std::stop_token& stop) noexcept {
+  // Half a period off the scheduler's grid, so that feedback does not race with the tick.
+  timer_.start(nextOnGrid(monotonicNow(), kPeriod) + kPeriod / 2, kPeriod);
+  while (!stop.stop_requested()) {
+    if (timer_.wait() == 0) continue;
+    for (auto& port : robot_.simPorts()) {
+      port->step(monotonicNow());
+      port->sentAt(monotonicNow());
+    }
+  }
+}
+
+}  // namespace rc10

@@ -1,0 +1,72 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "app/time.hpp"
+#include "daemon/devices/robot.hpp"
+#include "daemon/exchange/orders.hpp"
+#include "daemon/exchange/rings.hpp"
+#include "daemon/exchange/snapshot.hpp"
+#include "daemon/recording/flight_recorder.hpp"
+#include "daemon/supervision/lease.hpp"
+#include "daemon/supervision/supervisor.hpp"
+#include "module/module_robot.hpp"
+
+namespace rc10 {
+
+/// Runs the modules of a robot: gives them their inputs, and takes what they want to the supervisor, as it
+/// does with clients. Scheduler thread only.
+class ModuleRunner : private ModuleRobot {
+ public:
+  /// `recorder`: writes down the inputs, if there is one; outlives this.
+  ModuleRunner(Robot& robot, Supervisor& supervisor, LinkExchange& link, FlightRecorder* recorder = nullptr);
+
+  /// Called between the orders of clients and the supervisor's decisions, in the order of the configuration:
+  /// a module sees in this tick what those before it send, and in the next what those behind it do.
+  void update(const Tick& tick) noexcept;
+
+  void fillSnapshot(Snapshot& snapshot) const noexcept;
+
+ private:
+  struct Control {
+    Lease lease;  ///< Whose inputs are in force, and until when.
+    MonotonicTime last_refusal_report{};
+    bool refused = false;  ///< Its last targets.
+  };
+
+  void receive(const Tick& tick) noexcept;
+  void take(const SignalMessage& message, const Tick& tick) noexcept;
+  void handOver(const Tick& tick) noexcept;
+  [[nodiscard]] Lease::Holder sender() const noexcept;
+
+  [[nodiscard]] RobotState state() const noexcept override { return supervisor_.robotState(); }
+  [[nodiscard]] std::size_t motorCount() const noexcept override { return robot_.motors().size(); }
+  [[nodiscard]] const MotorFeedback& feedback(std::size_t motor) const noexcept override;
+  [[nodiscard]] MotorStatus status(std::size_t motor) const noexcept override;
+  [[nodiscard]] bool obeys(std::size_t motor) const noexcept override;
+  void setTarget(std::size_t motor, const Target& target) noexcept override;
+  void ask(RobotRequest request, std::size_t motor, double angle_deg) noexcept override;
+  void askAll(RobotRequest request) noexcept override;
+  [[nodiscard]] double read(SignalPlace output) const noexcept override;
+  void send(SignalPlace input, double value) noexcept override;
+  void report(std::size_t event) noexcept override;
+
+  Robot& robot_;
+  Supervisor& supervisor_;
+  LinkExchange& link_;
+  FlightRecorder* recorder_;
+  std::vector<Control> controls_;
+  std::uint64_t refused_signals_ = 0;
+
+  // While a module's update() runs: which it is, and what it has asked for so far.
+  std::size_t current_ = 0;
+  Tick tick_{};
+  Command command_;
+  MotorSet commanded_;
+  std::array<SignalMessage, kMaxModules> messages_;
+  std::array<bool, kMaxModules> sent_{};
+};
+
+}  // namespace rc10

@@ -1,0 +1,145 @@
+#include "daemon/tick/scheduler.hpp"
+
+#include <algorithm>
+#include <span>
+
+namespace rc10 {
+namespace {
+
+// Longer gaps are not integrated over: the loops would jump (DESIGN.md section 4, "Time").
+constexpr std::uint64_t kMaxPeriods = 5;
+// A stop sends rest at least this often, and gives up waiting for echoes after kMaxRestTicks.
+constexpr int kMinRestTicks = 3;
+constexpr int kMaxRestTicks = 50;
+// What moves is damped, braked or held before that, as configured, for at most this long.
+constexpr Duration kLongestFallback = std::chrono::seconds{1};
+// On a busy computer many ticks are late: they are reported together, at most this often.
+constexpr Duration kMissedReportInterval = std::chrono::seconds{1};
+
+}  // namespace
+
+Scheduler::Scheduler(Robot& robot, std::span<BusInbox> inboxes, LinkExchange& link, Duration period,
+                     FlightRecorder* recorder)
+    : robot_(robot),
+      inboxes_(inboxes),
+      link_(link),
+      period_(period),
+      recorder_(recorder),
+      supervisor_(robot, link, recorder),
+      modules_(robot, supervisor_, link, recorder),
+      bus_watch_(robot, inboxes, supervisor_) {
+  if (recorder_ != nullptr) recorder_->listenTo(robot_);
+}
+
+void Scheduler::tick(MonotonicTime now, std::uint64_t periods) noexcept {
+  const Tick tick{
+      ticks_.load(std::memory_order_relaxed), now,
+      seconds(period_ * static_cast<std::int64_t>(std::clamp<std::uint64_t>(periods, 1, kMaxPeriods)))};
+  if (recorder_ != nullptr) recorder_->beginTick(now);
+  if (periods > 1) {
+    missed_ticks_ += periods - 1;
+    unreported_missed_ticks_ += periods - 1;
+  }
+  reportMissedTicks(tick);
+  receive(tick);
+  bus_watch_.decide(tick);
+  supervisor_.receiveOrders(tick);
+  if (stop_requested_) beginStop(tick);
+  modules_.update(tick);
+  driveDevices();
+  supervisor_.decide(tick);
+  update(tick);
+  pack(tick);
+  const bool only_rest = stop_requested_ && !supervisor_.fallbackActs();
+  bus_watch_.send(tick, only_rest);
+  bus_watch_.update(tick);
+  if (only_rest) watchStop();
+  snapshot(tick);
+  ticks_.store(tick.index + 1, std::memory_order_relaxed);
+}
+
+void Scheduler::beginStop(const Tick& tick) noexcept {
+  if (supervisor_.robotState() != RobotState::kStopping) stop_deadline_ = tick.now + kLongestFallback;
+  supervisor_.beginStop(tick);
+  if (tick.now >= stop_deadline_) supervisor_.endFallbacks();
+}
+
+void Scheduler::reportMissedTicks(const Tick& tick) noexcept {
+  if (unreported_missed_ticks_ == 0 || tick.now < next_missed_report_) return;
+  supervisor_.report({EventCode::kTicksMissed, Severity::kWarning, -1,
+                      static_cast<std::int32_t>(std::min<std::uint64_t>(unreported_missed_ticks_, INT32_MAX)),
+                      0, tick.now});
+  unreported_missed_ticks_ = 0;
+  next_missed_report_ = tick.now + kMissedReportInterval;
+}
+
+void Scheduler::receive(const Tick&) noexcept {
+  for (std::size_t i = 0; i < robot_.buses().size(); ++i) {
+    auto& bus = *robot_.buses()[i].bus;
+    // Only what is there now: a flooded bus must not lengthen the tick without bound.
+    for (auto n = inboxes_[i].frames.read_available(); n > 0; --n) {
+      inboxes_[i].frames.consume_one([&bus](const CanFrame& frame) { bus.dispatch(frame); });
+    }
+  }
+  for (auto& entry : robot_.serialDevices()) deliver((*robot_.serialLines())[entry.line], *entry.device);
+  for (auto& entry : robot_.gpioImages()) (*robot_.lineBanks())[entry.bank].look(*entry.image);
+}
+
+void Scheduler::driveDevices() noexcept {
+  for (auto& entry : robot_.spiOutputs())
+    handOver(*robot_.spiLines()[entry.line], *entry.output, entry.handed_over);
+  // While the process stops the modules do not run any more, and what they wanted last is past.
+  const bool stopping = supervisor_.robotState() == RobotState::kStopping;
+  for (auto& entry : robot_.gpioImages()) {
+    auto& bank = (*robot_.lineBanks())[entry.bank];
+    bank.want(stopping ? bank.settings().safe_levels : entry.image->outputs);
+  }
+}
+
+void Scheduler::update(const Tick& tick) noexcept {
+  for (auto& entry : robot_.motors()) entry.motor->update(tick);
+}
+
+void Scheduler::pack(const Tick& tick) noexcept {
+  for (auto& entry : robot_.buses()) entry.bus->packCommands(tick);
+}
+
+void Scheduler::watchStop() noexcept {
+  if (rest_ticks_ == 0) {
+    for (std::size_t i = 0; i < robot_.buses().size(); ++i) {
+      confirmed_at_stop_[i] = inboxes_[i].confirmed.load(std::memory_order_relaxed);
+    }
+  }
+  ++rest_ticks_;
+  bool echoed = true;
+  for (std::size_t i = 0; i < robot_.buses().size(); ++i) {
+    if (!inboxes_[i].echo_available.load(std::memory_order_relaxed)) continue;
+    // More echoes than could still belong to frames from before the stop.
+    echoed = echoed &&
+             inboxes_[i].confirmed.load(std::memory_order_relaxed) >= confirmed_at_stop_[i] + kMinRestTicks;
+  }
+  stopped_ = (rest_ticks_ >= kMinRestTicks && echoed) || rest_ticks_ >= kMaxRestTicks;
+}
+
+void Scheduler::snapshot(const Tick& tick) noexcept {
+  auto& out = link_.snapshot.slot();
+  out.time = tick.now;
+  out.tick = tick.index;
+  out.missed_ticks = missed_ticks_;
+  supervisor_.fillSnapshot(out);
+  modules_.fillSnapshot(out);
+  out.bus_count = robot_.buses().size();
+  for (std::size_t i = 0; i < out.bus_count; ++i) {
+    const auto& bus = *robot_.buses()[i].bus;
+    out.buses[i] = {.counters = bus.counters(),
+                    .state = bus.health().state(),
+                    .tec = bus.health().transmitErrors(),
+                    .rec = bus.health().receiveErrors(),
+                    .error_frames = bus.health().errorFrames(),
+                    .restarts = bus.health().restarts()};
+  }
+  if (recorder_ != nullptr) recorder_->states(out);
+  link_.snapshot.publish();
+}
+
+}  // namespace rc10

@@ -1,0 +1,68 @@
+#pragma once
+
+#include <array>
+#include <atomic>
+#include <cstdint>
+#include <span>
+
+#include "app/time.hpp"
+#include "daemon/devices/robot.hpp"
+#include "daemon/exchange/rings.hpp"
+#include "daemon/recording/flight_recorder.hpp"
+#include "daemon/supervision/supervisor.hpp"
+#include "daemon/tick/bus_watch.hpp"
+#include "daemon/tick/module_runner.hpp"
+
+namespace rc10 {
+
+/// One millisecond: receive, command, update, pack, send, snapshot. Owns nothing that runs: the
+/// scheduler thread, or a test, calls tick().
+class Scheduler {
+ public:
+  /// `recorder`: writes down what happens, if there is one; outlives this.
+  Scheduler(Robot& robot, std::span<BusInbox> inboxes, LinkExchange& link, Duration period,
+            FlightRecorder* recorder = nullptr);
+
+  /// `periods`: distance on the grid since the last executed tick; above 1, ticks were missed. They
+  /// are counted and skipped, never replayed.
+  void tick(MonotonicTime now, std::uint64_t periods = 1) noexcept;
+
+  /// From the next tick on no motor obeys; fallbacks act, then only rest frames are sent. Scheduler thread.
+  void beginStop() noexcept { stop_requested_ = true; }
+  /// The rest frames of the stop have reached the wire, as far as that can be known, or it took too long.
+  [[nodiscard]] bool stopped() const noexcept { return stopped_; }
+
+  [[nodiscard]] const Supervisor& supervisor() const noexcept { return supervisor_; }
+  [[nodiscard]] std::uint64_t ticks() const noexcept { return ticks_.load(std::memory_order_relaxed); }
+  [[nodiscard]] std::uint64_t missedTicks() const noexcept { return missed_ticks_; }
+
+ private:
+  void receive(const Tick& tick) noexcept;
+  void driveDevices() noexcept;
+  void update(const Tick& tick) noexcept;
+  void pack(const Tick& tick) noexcept;
+  void reportMissedTicks(const Tick& tick) noexcept;
+  void beginStop(const Tick& tick) noexcept;
+  void watchStop() noexcept;
+  void snapshot(const Tick& tick) noexcept;
+
+  Robot& robot_;
+  std::span<BusInbox> inboxes_;
+  LinkExchange& link_;
+  Duration period_;
+  FlightRecorder* recorder_;
+  Supervisor supervisor_;
+  ModuleRunner modules_;
+  BusWatch bus_watch_;
+  std::atomic<std::uint64_t> ticks_{0};  // read by the link thread, for the watchdog
+  std::uint64_t missed_ticks_ = 0;
+  std::uint64_t unreported_missed_ticks_ = 0;
+  MonotonicTime next_missed_report_{};
+  bool stop_requested_ = false;
+  bool stopped_ = false;
+  MonotonicTime stop_deadline_{};
+  int rest_ticks_ = 0;
+  std::array<std::uint64_t, kMaxBuses> confirmed_at_stop_{};
+};
+
+}  // namespace rc10
