@@ -417,11 +417,6 @@ class MotorBuilder {
 
 }  // namespace
 
-std::string nameOf(const MotorDraft& motor) {
-  const auto& settings = motor.config.settings;
-  return inQuotes(settings.name) + " (" + settings.model + " id " + std::to_string(settings.id) + ")";
-}
-
 MotorDraft buildMotor(const Settings& settings, const SourcePlace& place, const std::string& path,
                       int tick_hz, Problems& problems) {
   MotorDraft draft;

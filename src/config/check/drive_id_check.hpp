@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "config/build/motor_builder.hpp"
+#include "config/check/motor_draft.hpp"
 #include "config/yaml/problem.hpp"
 
 namespace rc10 {

@@ -12,8 +12,8 @@
 #include "blackbox/file_bytes.hpp"
 #include "blackbox/image.hpp"
 #include "blackbox/places.hpp"
-#include "daemon/clients/publication.hpp"
 #include "daemon/exchange/clock.hpp"
+#include "daemon/exchange/robot_description.hpp"
 #include "rc10_version.hpp"
 
 namespace rc10 {

@@ -5,17 +5,11 @@
 #include <stop_token>
 
 #include "app/result.hpp"
-#include "daemon/exchange/histogram.hpp"
+#include "daemon/exchange/tick_timing.hpp"
 #include "daemon/threads/periodic_timer.hpp"
 #include "daemon/tick/scheduler.hpp"
 
 namespace rc10 {
-
-/// How late ticks start and how long they take.
-struct TickTiming {
-  DurationHistogram wake_latency;
-  DurationHistogram duration;
-};
 
 /// Calls Scheduler::tick() on an absolute grid, by timerfd.
 class SchedLoop {

@@ -1,0 +1,48 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "config/keys/loop_gains.hpp"
+#include "daemon/exchange/snapshot.hpp"
+
+namespace rc10 {
+
+/// What never changes while the daemon runs, for the messages to clients.
+struct RobotDescription {
+  std::string robot;
+  std::string lcm_url;
+  int rate_hz = 1000;
+  int state_hz = 200;
+  struct Motor {
+    std::string name;
+    std::string model;
+    std::size_t bus = 0;
+    int id = 0;
+    ModeSet modes;
+    bool optional = false;              ///< May fail to enable.
+    const DriveSetup* setup = nullptr;  ///< What can be written to its drive; null: nothing.
+    MotorLoops loops{};                 ///< As they are at the start.
+  };
+  struct Bus {
+    std::string name;
+    std::string interface;
+    double bitrate = 1e6;
+    float predicted_load = 0.0F;
+    float predicted_load_worst = 0.0F;
+    double data_bitrate = 0.0;  ///< Of CAN FD's data phase; 0: a classic bus.
+  };
+  struct Module {
+    std::string name;
+    std::string type;
+    ModuleSignals signals;
+  };
+  std::vector<Motor> motors;
+  std::vector<Bus> buses;
+  std::vector<Module> modules;
+  std::vector<std::string> notices;  ///< What is not as it should be, each with its remedy.
+  bool realtime = true;
+  std::string estop_input;  ///< Chip and line; empty: there is none.
+};
+
+}  // namespace rc10
