@@ -57,7 +57,8 @@ def compilations(build: Path, scratch: Path) -> list[Compilation]:
             found.setdefault(
                 source, Compilation(source, Path(entry["directory"]), check_only(entry))
             )
-    # Like its own source: those of a folder may see different things. In a folder of headers alone: like one below.
+    # Like its own source: those of a folder may see different things. In a folder of headers alone:
+    # like one below.
     for header in sorted(SRC.rglob("*.hpp")):
         like = found.get(header.with_suffix(".cpp")) or next(
             found[source]

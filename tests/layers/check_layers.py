@@ -33,8 +33,8 @@ USES = {
     "gateway": {"client", "link", "app"},
     "daemon": {"blackbox", "config", "drives", "sim", "module", "motor", "bus", "link", "app"},
     "robot_client": {"app"},
-    "tools": {"doctor", "survey", "client", "drives", "motor", "blackbox", "config", "link", "sim", "bus"}
-    | {"app"},
+    "tools": {"doctor", "survey", "client", "drives", "motor", "blackbox", "config", "link"}
+    | {"sim", "bus", "app"},
 }
 
 # Sub-folders, and what else of their layer they may include. "": headers of the folder itself.
