@@ -3,9 +3,9 @@
 
     tidy.py BUILD [--since COMMIT] [REGEX...]      BUILD has compile_commands.json
 
-REGEX: only sources that match. --since: only sources that differ from that commit, and for each
-header that does one source that includes it. A build that compiles sources together (RC10_UNITY)
-has them checked together, at a sixth of the time.
+REGEX: only sources that match. --since: only sources that differ from that commit by more than
+includes, and for each header that does one source that includes it. A build that compiles sources
+together (RC10_UNITY) has them checked together, at a sixth of the time.
 A header is read by many sources, through a link in BUILD/layers, and clang-tidy repeats what it
 finds there. What was clean stays so until the source, something it includes, .clang-tidy or
 clang-tidy itself changes: RC10_CACHE (default ~/.cache/rc10) remembers, for every clone.
@@ -111,11 +111,28 @@ def included(file: Path) -> set[Path]:
     return found
 
 
+def changed_files(diff: str) -> set[str]:
+    """Of a diff without context: the files of which more than includes has changed."""
+    changed = set()
+    name = ""
+    for line in diff.splitlines():
+        if line.startswith("+++ b/"):
+            name = line.removeprefix("+++ b/")
+        elif line.startswith(("+++", "---", "diff --git ")):
+            name = ""
+        elif name and line[:1] in "+-" and line[1:].strip() and not INCLUDE.match(line[1:]):
+            changed.add(name)
+    return changed
+
+
 def changed_sources(since: str, sources: list[Path]) -> set[Path]:
-    """What differs from a commit; a changed header is seen through the first that includes it."""
-    command = ["git", "-C", str(REPO), "diff", "--name-only", "--diff-filter=d", since]
-    names = subprocess.run(command, capture_output=True, check=True, text=True).stdout.split()
-    changed = {REPO / name for name in names}
+    """What differs from a commit; a changed header is seen through the first that includes it.
+
+    A file that was only moved says nothing new.
+    """
+    command = ["git", "-C", str(REPO), "diff", "--unified=0", "--find-renames", "-l0", since]
+    done = subprocess.run(command, capture_output=True, check=True, encoding="utf-8")
+    changed = {REPO / name for name in changed_files(done.stdout)}
     headers = {file for file in changed if file.suffix == ".hpp"}
     includes = {source: included(source) for source in sources}
     chosen = changed.intersection(sources)

@@ -46,8 +46,24 @@ def test_a_source_that_changed_is_looked_at(repo: Path) -> None:
 def test_a_header_that_changed_is_seen_through_one_source(repo: Path) -> None:
     (repo / "src" / "app" / "a.hpp").write_text("#pragma once\n#include <string>\n")
     assert changed(repo) == ["a.cpp"]
-    (repo / "src" / "app" / "b.cpp").write_text('#include "app/a.hpp"\n\n')
+    (repo / "src" / "app" / "b.cpp").write_text('#include "app/a.hpp"\nint b();\n')
     assert changed(repo) == ["b.cpp"]
+
+
+def test_a_file_that_was_only_moved_says_nothing_new(repo: Path) -> None:
+    git = ["git", "-C", str(repo)]
+    app = repo / "src" / "app"
+    text = '#include "app/a.hpp"\n' + "".join(f"int a{i}();\n" for i in range(9))
+    (app / "b.cpp").write_text(text)
+    subprocess.run([*git, "add", "."], check=True)
+    words = ["-c", "user.name=n", "-c", "user.email=e", "commit", "--quiet", "--message=second"]
+    subprocess.run([*git, *words], check=True)
+    (app / "b.cpp").unlink()
+    (app / "d.cpp").write_text(text.replace("app/a.hpp", "app/other/a.hpp"))
+    subprocess.run([*git, "add", "."], check=True)
+    assert changed(repo) == []
+    (app / "d.cpp").write_text(text + "int d();\n")
+    assert changed(repo) == ["d.cpp"]
 
 
 def test_what_compiles_only_behind_another_is_found(
