@@ -58,6 +58,43 @@ TEST_F(MissedTicksTest, AMotorThatIsSilentIsLostAlsoIfEveryTickIsLate) {
   EXPECT_EQ(robot.motor(0).status, MotorStatus::kOffline);
 }
 
+TEST_F(MissedTicksTest, DrivesOfASimulationThatHadNoProcessorAreNotSilent) {
+  auto& steps = robot.robot().simulationSteps();
+  ++steps;
+  robot.run(100);
+  ++steps;
+  ASSERT_EQ(robot.order(Operation::kEnable).motors[0], Refusal::kNone);
+  ++steps;
+  robot.tick();
+  robot.freezeSimulation(true);
+  robot.run(900);
+  EXPECT_EQ(robot.motor(0).status, MotorStatus::kActive);
+  robot.freezeSimulation(false);
+  ++steps;
+  robot.run(10);
+  EXPECT_EQ(robot.motor(0).status, MotorStatus::kActive);
+}
+
+TEST_F(MissedTicksTest, ASimulationThatHasEndedIsSilent) {
+  ++robot.robot().simulationSteps();
+  robot.run(100);
+  ASSERT_EQ(robot.order(Operation::kEnable).motors[0], Refusal::kNone);
+  robot.freezeSimulation(true);
+  robot.run(1100);
+  EXPECT_EQ(robot.motor(0).status, MotorStatus::kOffline);
+}
+
+TEST_F(MissedTicksTest, SilentDrivesOfASimulationThatRunsAreLost) {
+  robot.run(100);
+  ASSERT_EQ(robot.order(Operation::kEnable).motors[0], Refusal::kNone);
+  robot.freezeSimulation(true);
+  for (int i = 0; i < 25; ++i) {
+    ++robot.robot().simulationSteps();
+    robot.tick();
+  }
+  EXPECT_EQ(robot.motor(0).status, MotorStatus::kOffline);
+}
+
 TEST_F(MissedTicksTest, WhatTurnedBeforeAPauseIsNoMotorAtRest) {
   robot.run(100);
   ASSERT_EQ(robot.order(Operation::kEnable).motors[0], Refusal::kNone);

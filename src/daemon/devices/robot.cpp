@@ -90,7 +90,7 @@ Result<void> Robot::addSocketCan(const BusConfig& config) {
 Result<void> Robot::addSimulated(const BusConfig& config) {
   auto ends = sim::SimPort::makeSocketPair();
   if (!ends) return tl::unexpected(ends.error());
-  buses_.push_back({.bus = fdCANbus::adopt(config.name, std::move(ends->first), true)});
+  buses_.push_back({.bus = fdCANbus::adopt(config.name, std::move(ends->first), true), .simulated = true});
   if (auto added = addMotors(config); !added) return added;
   const auto drives = simulatedBus(config);
   if (auto checked = sim::SimBus::check(drives); !checked) return checked;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <atomic>
 #include <cstddef>
 #include <memory>
 #include <string>
@@ -49,6 +50,7 @@ class Robot {
     bool manage_link = false;           ///< rc10d makes them so and restarts the interface.
     std::unique_ptr<BusParts> parts{};  ///< The packers that several motors share.
     bool held = false;                  ///< The bus carries no frames now. Scheduler thread only.
+    bool simulated = false;             ///< Its drives are a thread of this process.
   };
 
   struct ModuleEntry {
@@ -88,6 +90,8 @@ class Robot {
   [[nodiscard]] const std::vector<GroupConfig>& groups() const noexcept { return coupled_; }
   /// The simulated motors, for the thread or the test that steps them.
   [[nodiscard]] std::vector<std::unique_ptr<sim::SimPort>>& simPorts() noexcept { return sim_ports_; }
+  /// The thread of the simulation counts its steps here; 0: somebody else steps it. Any thread.
+  [[nodiscard]] std::atomic<std::uint64_t>& simulationSteps() noexcept { return simulation_steps_; }
 
  private:
   Robot() = default;
@@ -103,6 +107,7 @@ class Robot {
   [[nodiscard]] Result<void> addGpioLines();
 
   Duration period_{};
+  std::atomic<std::uint64_t> simulation_steps_{0};
   std::vector<BusEntry> buses_;
   std::vector<MotorEntry> motors_;
   std::vector<GroupConfig> coupled_;

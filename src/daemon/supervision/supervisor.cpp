@@ -5,6 +5,13 @@
 #include <utility>
 
 namespace rc10 {
+namespace {
+
+// A simulation that does nothing for so long has ended, and its drives are silent.
+constexpr Duration kDeadSimulation = std::chrono::seconds{1};
+
+}  // namespace
+
 Supervisor::Supervisor(Robot& robot, LinkExchange& link, FlightRecorder* recorder)
     : robot_(robot), link_(link), recorder_(recorder) {
   for (const auto& config : robot.groups()) {
@@ -19,6 +26,7 @@ Supervisor::Supervisor(Robot& robot, LinkExchange& link, FlightRecorder* recorde
 }
 
 void Supervisor::decide(const Tick& tick) noexcept {
+  watchSimulation(tick);
   for (std::size_t motor = 0; motor < robot_.motors().size(); ++motor) {
     watchFeedback(motor, tick);
     watchComplaint(motor, tick);
@@ -68,6 +76,15 @@ bool Supervisor::lost(std::size_t motor, const Tick& tick) const noexcept {
          controls_[motor].unheard_ticks > entry.feedback_timeout_ticks;
 }
 
+// Drives of a simulation whose thread had no processor are not silent: they make up for it.
+void Supervisor::watchSimulation(const Tick& tick) noexcept {
+  const auto steps = robot_.simulationSteps().load(std::memory_order_relaxed);
+  if (steps != simulation_steps_) simulation_stepped_at_ = tick.now;
+  simulation_late_ =
+      steps != 0 && steps == simulation_steps_ && tick.now - simulation_stepped_at_ < kDeadSimulation;
+  simulation_steps_ = steps;
+}
+
 void Supervisor::listen(std::size_t motor, const Tick& tick) noexcept {
   auto& control = controls_[motor];
   const auto& entry = robot_.motors()[motor];
@@ -75,7 +92,9 @@ void Supervisor::listen(std::size_t motor, const Tick& tick) noexcept {
   // Samples that are old when they come are not heard: they could be old for ever.
   const bool heard =
       feedback.samples != control.samples && tick.now - feedback.received <= entry.feedback_timeout / 2;
-  control.unheard_ticks = heard ? 0 : control.unheard_ticks + 1;
+  const bool could_speak = !simulation_late_ || !robot_.buses()[entry.bus].simulated;
+  if (could_speak) ++control.unheard_ticks;
+  if (heard) control.unheard_ticks = 0;
   control.samples = feedback.samples;
 }
 

@@ -122,6 +122,7 @@ class Supervisor {
   /// Not fresh, and not only because this thread did not run.
   [[nodiscard]] bool lost(std::size_t motor, const Tick& tick) const noexcept;
   void listen(std::size_t motor, const Tick& tick) noexcept;
+  void watchSimulation(const Tick& tick) noexcept;
   [[nodiscard]] bool standsStill(std::size_t motor) const noexcept;
   void beginTimeoutFallback(std::size_t motor, const Tick& tick) noexcept;
   void beginFallback(std::size_t motor, MotorEvent cause, const Tick& tick) noexcept;
@@ -143,7 +144,10 @@ class Supervisor {
   std::array<PendingOrder, 8> pending_{};
   std::vector<Group> groups_;
   std::optional<Configuring> configuring_;
-  std::optional<std::size_t> alone_;  ///< ENABLING or ACTIVE, and no other motor may be.
+  std::optional<std::size_t> alone_;    ///< ENABLING or ACTIVE, and no other motor may be.
+  std::uint64_t simulation_steps_ = 0;  ///< As counted in the tick before.
+  MonotonicTime simulation_stepped_at_{};
+  bool simulation_late_ = false;
   std::uint64_t expired_commands_ = 0;
   std::uint64_t refused_commands_ = 0;
   std::uint64_t skipped_setpoints_ = 0;

@@ -25,6 +25,7 @@ void SimLoop::run(const std::stop_token& stop) noexcept {
       port->step(monotonicNow());
       port->sentAt(monotonicNow());
     }
+    robot_.simulationSteps().fetch_add(1, std::memory_order_relaxed);
   }
 }
 

@@ -149,7 +149,8 @@ class Reader:
         ended = (done.returncode != 0) == command.fails
         told = command.complaints <= {*said.splitlines()}
         other = sorted(command.headings - headings(said))
-        assert ended, f"{command.text}: status {done.returncode}\n{said}"
+        logs = "\n".join(server.output for server in self._servers)
+        assert ended, f"{command.text}: status {done.returncode}\n{said}\n{logs}"
         assert told, f"{command.text}: without {command.complaints}\n{said}"
         assert not other, f"{command.text}: shown, but not printed: {other}\n{said}"
 
