@@ -35,7 +35,7 @@ class BusHealth {
   struct Config {
     Duration silent_after{std::chrono::milliseconds{100}};
     Duration stalled_after{std::chrono::milliseconds{5}};
-    /// DESIGN: no echo for 5 ticks. Ticks that ran: after a pause of the whole computer the echo is there,
+    /// No echo for 5 ticks. Ticks that ran: after a pause of the whole computer the echo is there,
     /// only nobody has read it yet.
     int stalled_ticks = 5;
   };

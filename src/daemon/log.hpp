@@ -8,8 +8,8 @@
 
 namespace rc10 {
 
-/// The daemon's log: to standard error, written by spdlog's own thread (the io thread of DESIGN.md), so
-/// that a blocked terminal blocks nobody else. Under systemd the journal adds time and name itself.
+/// The daemon's log: to standard error, written by spdlog's own thread, so that a blocked terminal blocks
+/// nobody else. Under systemd the journal adds time and name itself.
 /// Never from real-time threads: they report events.
 [[nodiscard]] std::shared_ptr<spdlog::logger> makeLog();
 

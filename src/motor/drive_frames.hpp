@@ -4,7 +4,7 @@
 
 namespace rc10 {
 
-/// What the supervisor wants a drive to be told this tick (DESIGN.md section 4, "What is sent when").
+/// What the supervisor wants a drive to be told this tick.
 enum class FrameKind : std::uint8_t {
   kRest,     ///< No torque.
   kPoll,     ///< No torque, but answer: for drives that speak only when asked.

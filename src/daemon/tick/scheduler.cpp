@@ -6,7 +6,7 @@
 namespace rc10 {
 namespace {
 
-// Longer gaps are not integrated over: the loops would jump (DESIGN.md section 4, "Time").
+// Longer gaps are not integrated over: the loops would jump.
 constexpr std::uint64_t kMaxPeriods = 5;
 // A stop sends rest at least this often, and gives up waiting for echoes after kMaxRestTicks.
 constexpr int kMinRestTicks = 3;
