@@ -1,5 +1,9 @@
 #include "config/check/motor_draft.hpp"
 
+#include <string>
+
+#include "config/yaml/problem.hpp"
+
 namespace rc10 {
 
 std::string nameOf(const MotorDraft& motor) {
