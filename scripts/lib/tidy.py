@@ -4,8 +4,8 @@
     tidy.py BUILD [--since COMMIT] [REGEX...]      BUILD has compile_commands.json
 
 REGEX: only sources that match. --since: only sources that differ from that commit by more than
-includes, and for each header that does one source that includes it. A build that compiles sources
-together (RC10_UNITY) has them checked together, at a sixth of the time.
+includes and comments, and for each header that does one source that includes it. A build that
+compiles sources together (RC10_UNITY) has them checked together, at a sixth of the time.
 A header is read by many sources, through a link in BUILD/layers, and clang-tidy repeats what it
 finds there. What was clean stays so until the source, something it includes, .clang-tidy or
 clang-tidy itself changes: RC10_CACHE (default ~/.cache/rc10) remembers, for every clone.
@@ -45,15 +45,17 @@ def digest_of_inputs(tool: bytes, entry: dict[str, str]) -> str | None:
     done = subprocess.run(words, cwd=entry["directory"], capture_output=True, check=False)
     if done.returncode != 0:
         return None
-    # Comments count too: NOLINT is one.
-    source = Path(entry["file"]).read_bytes() + (REPO / ".clang-tidy").read_bytes()
+    settings = (REPO / ".clang-tidy").read_bytes()
     headers = set(re.findall(rb'^# \d+ "([^"<]+)"', done.stdout, re.MULTILINE))
-    own = (Path(entry["directory"], os.fsdecode(name)).resolve() for name in headers)
-    texts = (path.read_bytes() for path in sorted(own) if REPO / "src" in path.parents)
+    own = {Path(entry["directory"], os.fsdecode(name)).resolve() for name in headers}
+    own.add(Path(entry["file"]))
+    texts = (read_by_tidy(path.read_text()) for path in sorted(own) if REPO / "src" in path.parents)
+    # Comments leave empty lines and other line numbers.
+    preprocessed = re.sub(rb"^(# \d+ .*)?\n", b"", done.stdout, flags=re.MULTILINE)
     # Of a clone's folder only what is below it.
-    preprocessed = done.stdout.replace(os.fsencode(REPO), b"")
     command = os.fsencode(" ".join(words)).replace(os.fsencode(REPO), b"")
-    return hashlib.sha256(b"\0".join([tool, command, source, preprocessed, *texts])).hexdigest()
+    inputs = [tool, command, settings, preprocessed, *map(str.encode, texts)]
+    return hashlib.sha256(b"\0".join(inputs)).hexdigest()
 
 
 def check(build: Path, tool: bytes, entry: dict[str, str]) -> str:
@@ -111,28 +113,60 @@ def included(file: Path) -> set[Path]:
     return found
 
 
-def changed_files(diff: str) -> set[str]:
-    """Of a diff without context: the files of which more than includes has changed."""
+# A string or character, so that no comment begins in it (' also separates digits); a comment.
+TEXT_OR_COMMENT = re.compile(
+    r"""R"(\w*)\((?:.|\n)*?\)\1"|"(?:\\.|[^"\\\n])*"|(?<![0-9A-Za-z_])'(?:\\.|[^'\\\n])+'|//[^\n]*"""
+)
+
+
+def read_by_tidy(text: str) -> str:
+    """A source's lines without its comments, but for NOLINT and those within a line."""
+
+    def keep(match: re.Match[str]) -> str:
+        return "" if match[0].startswith("//") and "NOLINT" not in match[0] else match[0]
+
+    lines = (line.strip() for line in TEXT_OR_COMMENT.sub(keep, text).splitlines())
+    return "\n".join(line for line in lines if line)
+
+
+def says_the_same(old: str, new: str) -> bool:
+    """Whether two texts of a source differ in includes and comments at most."""
+    return INCLUDE.sub("", read_by_tidy(old)).split() == INCLUDE.sub("", read_by_tidy(new)).split()
+
+
+def changed_files(since: str) -> set[Path]:
+    """Of the C++ files those that differ from a commit by more than includes and comments.
+
+    A file that was only moved says nothing new.
+    """
+
+    def git(*words: str) -> str:
+        done = subprocess.run(["git", "-C", REPO, *words], capture_output=True, check=True)
+        return done.stdout.decode()
+
+    listed = git(
+        "diff", "--raw", "-z", "--abbrev=40", "--find-renames", "-l0", since, "--", "*.[ch]pp"
+    )
+    fields = iter(listed.split("\0"))
     changed = set()
-    name = ""
-    for line in diff.splitlines():
-        if line.startswith("+++ b/"):
-            name = line.removeprefix("+++ b/")
-        elif line.startswith(("+++", "---", "diff --git ")):
-            name = ""
-        elif name and line[:1] in "+-" and line[1:].strip() and not INCLUDE.match(line[1:]):
-            changed.add(name)
+    for field in fields:
+        if not field:
+            continue
+        _, _, blob, _, status = field.split(" ")
+        name = next(fields)
+        if status[0] in "RC":
+            name = next(fields)
+        if status[0] == "D":
+            continue
+        file = REPO / name
+        if status[0] == "A" or not says_the_same(git("cat-file", "-p", blob), file.read_text()):
+            changed.add(file)
     return changed
 
 
 def changed_sources(since: str, sources: list[Path]) -> set[Path]:
-    """What differs from a commit; a changed header is seen through the first that includes it.
-
-    A file that was only moved says nothing new.
-    """
-    command = ["git", "-C", str(REPO), "diff", "--unified=0", "--find-renames", "-l0", since]
-    done = subprocess.run(command, capture_output=True, check=True, encoding="utf-8")
-    changed = {REPO / name for name in changed_files(done.stdout)}
+    """What differs from a commit; a changed header is seen through the first that includes it."""
+    changed = changed_files(since)
     headers = {file for file in changed if file.suffix == ".hpp"}
     includes = {source: included(source) for source in sources}
     chosen = changed.intersection(sources)

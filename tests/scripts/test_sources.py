@@ -66,6 +66,24 @@ def test_a_file_that_was_only_moved_says_nothing_new(repo: Path) -> None:
     assert changed(repo) == ["d.cpp"]
 
 
+def test_a_comment_says_nothing_to_clang_tidy_but_nolint_does(repo: Path) -> None:
+    app = repo / "src" / "app"
+    (app / "c.cpp").write_text("// Reason.\nint c() { return 0; }  ///< Of c.\n")
+    (app / "a.hpp").write_text("#pragma once\n#include <string>\n\n/// A text.\nstd::string a();\n")
+    assert changed(repo) == []
+    (app / "c.cpp").write_text("int c() { return 0; }  // NOLINT\n")
+    assert changed(repo) == ["c.cpp"]
+
+
+def test_no_comment_begins_in_a_string(repo: Path) -> None:
+    assert tidy.read_by_tidy('f("http://x");  // where\n') == 'f("http://x");'
+    assert tidy.read_by_tidy("g('\"', 1'000, '/');  // how\n") == "g('\"', 1'000, '/');"
+    assert tidy.read_by_tidy('h(R"(a // b\nc)");') == 'h(R"(a // b\nc)");'
+    app = repo / "src" / "app"
+    (app / "c.cpp").write_text('int c() { return "//x"[0]; }\n')
+    assert changed(repo) == ["c.cpp"]
+
+
 def test_what_compiles_only_behind_another_is_found(
     repo: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
