@@ -3,7 +3,7 @@
 
 repo=$(cd "$(dirname "${BASH_SOURCE[0]}")/../.." && pwd)
 
-# So that a fresh clone in another folder finds what was compiled before.
+# ccache: hits across clones in different folders.
 export CCACHE_BASEDIR=$repo CCACHE_NOHASHDIR=1
 
 need() {

@@ -17,7 +17,6 @@ import random
 import signal
 import subprocess
 import sys
-import time
 import zlib
 from pathlib import Path
 from typing import NamedTuple
@@ -66,13 +65,14 @@ def send(number: signal.Signals, pids: set[int]) -> None:
             os.kill(pid, number)
 
 
-def pause(seconds: float, spared: set[int]) -> None:
+def pause(seconds: float, spared: set[int], command: subprocess.Popen[bytes]) -> None:
     stopped: set[int] = set()
     # Until there is nobody left: whoever runs may start another.
     while new := running(spared) - stopped:
         send(signal.SIGSTOP, new)
         stopped |= new
-    time.sleep(seconds)
+    with contextlib.suppress(subprocess.TimeoutExpired):
+        command.wait(seconds)
     send(signal.SIGCONT, stopped)
 
 
@@ -114,7 +114,7 @@ def main() -> int:
                 status = command.wait(options.every_ms / 1000 * chance.uniform(0.5, 1.5))
                 break
             except subprocess.TimeoutExpired:
-                pause(options.stop_ms / 1000, spared)
+                pause(options.stop_ms / 1000, spared, command)
                 pauses += 1
     finally:
         send(signal.SIGTERM, running(spared))

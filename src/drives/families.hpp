@@ -15,7 +15,7 @@ struct FamilyEntry {
   /// Makes the simulated drive of a motor; null: this family cannot be simulated.
   std::unique_ptr<sim::Drive> (*simulate)(const MotorSettings& settings,
                                           const sim::MotorLoad& load) = nullptr;
-  /// What `rc10ctl scan` asks of a frame; null: it does not know this family.
+  /// Guess of `rc10ctl scan` about a frame's sender; null: scan does not know this family.
   Recogniser recognise = nullptr;
 };
 

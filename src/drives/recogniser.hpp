@@ -7,7 +7,7 @@
 
 namespace rc10 {
 
-/// What a frame may be.
+/// Possible sender of a frame.
 struct DriveGuess {
   std::string_view kind;   ///< "VESC", "DJI GM6020"
   int id = 0;              ///< The drive's, as in the configuration.

@@ -4,7 +4,7 @@
 
 namespace rc10 {
 
-/// What the supervisor wants a drive to be told this tick.
+/// Kind of frame that the supervisor orders for a drive in this tick.
 enum class FrameKind : std::uint8_t {
   kRest,     ///< No torque.
   kPoll,     ///< No torque, but answer: for drives that speak only when asked.

@@ -224,7 +224,7 @@ bool Oracle::overdue(const Motor& motor) const {
 
 void Oracle::followFeedback() {
   for (auto& motor : motors_) {
-    // What is old when it comes tells nothing of now.
+    // A sample that is old on arrival is no evidence of the present.
     const bool heard = motor.new_sample && now_ - motor.reported_at <= motor.config->feedback_timeout / 2;
     motor.unheard_ticks = heard ? 0 : motor.unheard_ticks + 1;
     if (!fresh(motor) && !overdue(motor)) ++visits_.unread_after_pauses;

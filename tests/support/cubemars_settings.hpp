@@ -21,7 +21,7 @@ inline MotorSettings cubemarsSettings(std::string_view model, int id, const OwnK
   settings.name = "joint";
   settings.model = model;
   settings.id = id;
-  for (const auto& key : cubemarsKeys()) {
+  for (const auto& key : cubemarsFamily().keys()) {
     const std::string text{key.default_text};
     if (key.kind == FamilyKey::Kind::kChoice) {
       settings.own.set(key.name, text);

@@ -8,7 +8,7 @@
 
 namespace rc10 {
 
-/// What never changes while the daemon runs, for the messages to clients.
+/// The fixed part of the messages to clients: constant while the daemon runs.
 struct RobotDescription {
   std::string robot;
   std::string lcm_url;
@@ -21,7 +21,7 @@ struct RobotDescription {
     int id = 0;
     ModeSet modes;
     bool optional = false;              ///< May fail to enable.
-    const DriveSetup* setup = nullptr;  ///< What can be written to its drive; null: nothing.
+    const DriveSetup* setup = nullptr;  ///< Settings that can be written to its drive; null: none.
     MotorLoops loops{};                 ///< As they are at the start.
   };
   struct Bus {
@@ -40,7 +40,7 @@ struct RobotDescription {
   std::vector<Motor> motors;
   std::vector<Bus> buses;
   std::vector<Module> modules;
-  std::vector<std::string> notices;  ///< What is not as it should be, each with its remedy.
+  std::vector<std::string> notices;  ///< Deviations from the ideal set-up, each with its remedy.
   bool realtime = true;
   std::string estop_input;  ///< Chip and line; empty: there is none.
 };

@@ -56,7 +56,7 @@ class Supervisor {
   struct Control {
     MotorStatus status = MotorStatus::kOffline;
     FaultCode fault = FaultCode::kNone;
-    std::uint32_t limits = 0;         ///< What the guard sees.
+    std::uint32_t limits = 0;         ///< Active limits, as the guard reports them.
     bool reference_known = false;     ///< For the event when it is lost.
     std::uint64_t samples = 0;        ///< Of its feedback, when it was last heard.
     std::uint64_t unheard_ticks = 0;  ///< Since then.

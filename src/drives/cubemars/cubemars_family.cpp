@@ -1,17 +1,130 @@
 #include "drives/cubemars/cubemars_family.hpp"
 
 #include <algorithm>
+#include <array>
 #include <memory>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "drives/cubemars/cubemars_frames.hpp"
 #include "drives/cubemars/cubemars_mit.hpp"
-#include "drives/cubemars/cubemars_model.hpp"
 #include "drives/cubemars/cubemars_servo.hpp"
 
 namespace rc10 {
 namespace {
+
+constexpr std::array<std::string_view, 3> kProtocols{"servo", "mit", "mit_v3"};
+constexpr std::array<std::string_view, 3> kPositionBases{"output", "rotor", "electrical"};
+
+using Kind = FamilyKey::Kind;
+constexpr std::array kCubeMarsKeys{
+    FamilyKey{.name = "protocol",
+              .kind = Kind::kChoice,
+              .choices = kProtocols,
+              .default_text = "servo",
+              .about = "As set in the vendor's program: servo, mit (drives V1 and V2) or mit_v3"},
+    FamilyKey{.name = "pole_pairs",
+              .kind = Kind::kInteger,
+              .min = 0,
+              .max = 64,
+              .default_text = "0",
+              .about = "Of the motor: half its number of magnets; 0: the model's own"},
+    FamilyKey{.name = "position_basis",
+              .kind = Kind::kChoice,
+              .choices = kPositionBases,
+              .default_text = "output",
+              .about = "servo and mit_v3: what the drive's degrees are of. Sources differ: turn the shaft "
+                       "once by hand and see that total_angle_deg changes by 360."},
+    FamilyKey{
+        .name = "output_encoder",
+        .kind = Kind::kFlag,
+        .default_text = "false",
+        .about =
+            "The drive has a second encoder at its output and knows its angle at power-up; zero_deg holds."},
+    FamilyKey{
+        .name = "torque_constant_nm_per_a",
+        .kind = Kind::kNumber,
+        .unit = "Nm/A",
+        .min = 0.0,
+        .max = 10.0,
+        .default_text = "0",
+        .about = "Torque per ampere of the motor itself, before its gear (9.55 / KV); 0: the model's own"},
+    FamilyKey{.name = "brake_current_a",
+              .kind = Kind::kNumber,
+              .unit = "A",
+              .min = 0.0,
+              .max = 60.0,
+              .default_text = "5",
+              .about = "servo: how hard it brakes, within the current limit"},
+    FamilyKey{.name = "acceleration_limit_rpm_per_s",
+              .kind = Kind::kNumber,
+              .unit = "rpm/s",
+              .min = 0.0,
+              .max = 100000.0,
+              .default_text = "0",
+              .about = "servo: the drive plans its way to an angle with this; 0: it follows at once"},
+    FamilyKey{.name = "angle_stiffness_nm_per_rad",
+              .kind = Kind::kNumber,
+              .unit = "Nm/rad",
+              .min = 0.0,
+              .max = 500.0,
+              .default_text = "30",
+              .about = "mit: stiffness of angle targets and of hold, at the drive's own output."},
+    FamilyKey{.name = "angle_damping_nms_per_rad",
+              .kind = Kind::kNumber,
+              .unit = "Nms/rad",
+              .min = 0.0,
+              .max = 5.0,
+              .default_text = "1",
+              .about = "mit: damping of angle targets and of hold, at the drive's own output."},
+    FamilyKey{.name = "velocity_gain_nms_per_rad",
+              .kind = Kind::kNumber,
+              .unit = "Nms/rad",
+              .min = 0.0,
+              .max = 5.0,
+              .above_min = true,
+              .default_text = "2",
+              .about = "mit: torque for each rad/s that a velocity target is missed by; also of the brake; "
+                       "damp is a quarter of it."},
+    FamilyKey{.name = "velocity_range_rad_s",
+              .kind = Kind::kNumber,
+              .unit = "rad/s",
+              .min = 0.0,
+              .max = 200.0,
+              .default_text = "0",
+              .about = "mit: the velocity range set in the drive; 0: the model's"},
+    FamilyKey{.name = "torque_range_nm",
+              .kind = Kind::kNumber,
+              .unit = "Nm",
+              .min = 0.0,
+              .max = 500.0,
+              .default_text = "0",
+              .about = "mit: the torque range set in the drive; 0: the model's"}};
+
+constexpr float kLargestServoA = 60.0F;  // of the current command, manual 5.1.2
+
+constexpr DriveFrames kServoFrames{.rest = Provision::kFrame,
+                                   .poll = Provision::kNothing,
+                                   .idle = Provision::kFrame,
+                                   .damp = Provision::kFrame,
+                                   .brake = Provision::kFrame,
+                                   .hold = Provision::kFrame};
+constexpr DriveFrames kMitFrames{.rest = Provision::kFrame,
+                                 .poll = Provision::kFrame,
+                                 .idle = Provision::kFrame,
+                                 .damp = Provision::kFrame,
+                                 .brake = Provision::kFrame,
+                                 .hold = Provision::kFrame,
+                                 .enable = Provision::kFrame};
+constexpr DriveFrames kMitV3Frames = kServoFrames;
+
+constexpr ModeSet kServoModes{ControlMode::kCoast, ControlMode::kCurrent,    ControlMode::kVelocity,
+                              ControlMode::kAngle, ControlMode::kTotalAngle, ControlMode::kDuty,
+                              ControlMode::kBrake};
+constexpr ModeSet kMitModes{ControlMode::kCoast, ControlMode::kCurrent,    ControlMode::kVelocity,
+                            ControlMode::kAngle, ControlMode::kTotalAngle, ControlMode::kImpedance,
+                            ControlMode::kBrake};
 
 // Commands of the servo protocol are 0 to 8 in bits 8 and up; more is no command.
 constexpr std::uint32_t kServoCommandMask = 0x1FFF'F0FFU;
@@ -33,7 +146,7 @@ class CubeMarsFamily final : public MotorFamily {
 
   [[nodiscard]] std::string_view name() const noexcept override { return "CubeMars"; }
   [[nodiscard]] std::span<const std::string_view> models() const noexcept override { return names_; }
-  [[nodiscard]] std::span<const FamilyKey> keys() const noexcept override { return cubemarsKeys(); }
+  [[nodiscard]] std::span<const FamilyKey> keys() const noexcept override { return kCubeMarsKeys; }
   [[nodiscard]] MotorTraits traits(std::string_view model, const OwnValues& own) const override {
     return cubemarsTraits(cubemarsSetup(model, own));
   }
@@ -97,6 +210,37 @@ class CubeMarsFamily final : public MotorFamily {
 };
 
 }  // namespace
+
+MotorTraits cubemarsTraits(const CubeMarsSetup& setup) {
+  const CubeMarsModel& model = *setup.model;
+  const bool mit = setup.protocol == CubeMarsProtocol::kMit;
+  const bool servo = setup.protocol == CubeMarsProtocol::kServo;
+  MotorTraits traits;
+  traits.min_id = 1;
+  traits.max_id = 254;  // 255 is everybody in the VESC firmware that the servo mode comes from
+  traits.gear_ratio = model.gear_ratio;
+  traits.effort = CommandUnit::kAmpere;
+  // The end of the MIT torque range in amperes; what the motor can do in the other protocols as well.
+  const auto full_nm = static_cast<float>(setup.ranges.torque_nm);
+  traits.effort_full_scale = std::min(full_nm / setup.torque_nm_per_a, kLargestServoA);
+  traits.torque_nm_per_a = setup.torque_nm_per_a;
+  traits.no_load_rpm = model.no_load_rpm;
+  traits.nominal_v = model.nominal_v;
+  traits.phase_resistance_ohm = model.phase_resistance_ohm;
+  traits.absolute = setup.output_encoder;
+  traits.reports_temperature = true;
+  traits.frozen_a = mit || model.signed_current ? traits.effort_full_scale : 0.0F;
+  traits.feedback_hz = mit ? 1000 : 500;  // the upload rate is set in the vendor's program, 1 to 500 Hz
+  traits.max_feedback_hz = mit ? 1000 : 500;
+  traits.asked = mit;
+  // It has one (timeout_msec, 1000 in the settings of cubemars_hardware), but no frame reads or sets it.
+  traits.watchdog = false;
+  traits.modes = servo ? kServoModes : kMitModes;
+  static constexpr DriveSetup kSetup{.tool = "CubeMars' upper computer (over its serial port)"};
+  traits.setup = &kSetup;
+  traits.frames = servo ? kServoFrames : (mit ? kMitFrames : kMitV3Frames);
+  return traits;
+}
 
 const MotorFamily& cubemarsFamily() noexcept {
   static const CubeMarsFamily kFamily;

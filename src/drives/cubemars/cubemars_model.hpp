@@ -1,6 +1,5 @@
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <span>
 #include <string_view>
@@ -56,8 +55,6 @@ struct CubeMarsSetup {
 
 /// `model` is one of cubemarsModels(), `own` has all of the family's keys.
 [[nodiscard]] CubeMarsSetup cubemarsSetup(std::string_view model, const OwnValues& own);
-[[nodiscard]] MotorTraits cubemarsTraits(const CubeMarsSetup& setup);
-[[nodiscard]] std::span<const FamilyKey> cubemarsKeys() noexcept;
 
 /// What a native error code means. The words are those of docs/motors/cubemars.md.
 struct CubeMarsFault {

@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "app/units.hpp"
+#include "drives/cubemars/cubemars_family.hpp"
 
 namespace rc10 {
 namespace {

@@ -8,6 +8,7 @@
 
 #include "app/units.hpp"
 #include "bus/byte_order.hpp"
+#include "drives/cubemars/cubemars_family.hpp"
 
 namespace rc10::sim {
 namespace {

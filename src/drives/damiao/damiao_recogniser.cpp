@@ -12,7 +12,7 @@ namespace {
 constexpr std::string_view kDamiao = "Damiao";
 // Above this a master id would be taken for a command to another drive of one of its modes.
 constexpr std::uint32_t kDamiaoMasterMax = 0xFF;
-// What it may tell in its status: disabled, enabled, and from "sensor" to "overload".
+// Valid status codes: disabled, enabled, and from "sensor" to "overload".
 constexpr std::array<std::uint8_t, 10> kDamiaoStatuses{0x0, 0x1, 0x5, 0x8, 0x9, 0xA, 0xB, 0xC, 0xD, 0xE};
 
 }  // namespace

@@ -1,24 +1,157 @@
 #include "drives/vesc/vesc_family.hpp"
 
 #include <algorithm>
+#include <array>
 #include <memory>
+#include <numbers>
 #include <string>
+#include <string_view>
 
 #include "drives/vesc/vesc_motor.hpp"
 
+// Source, unless another is named: vedderb/bldc@b9d287b, its defaults in motor/mcconf_default.h and
+// applications/appconf_default.h.
 namespace rc10 {
 namespace {
+
+using Kind = FamilyKey::Kind;
 
 constexpr std::array<std::string_view, 1> kVescModels{"VESC"};
 constexpr int kAsksPerSecond = 10;
 // Packets 0 to 63 with its own id or 255: firmware compares the low byte, and all that it knows is below 64.
 constexpr std::uint32_t kObeyedMask = 0x1FFF'C0FF;
 
+constexpr std::array<std::string_view, 3> kAngles{"tachometer", "encoder", "none"};
+constexpr std::array<std::string_view, 3> kStops{"regulate", "coast", "brake"};
+constexpr std::array<std::string_view, 2> kTemperatures{"drive", "motor"};
+
+constexpr std::array<FamilyKey, 14> kVescKeys{
+    FamilyKey{.name = "pole_pairs",
+              .kind = Kind::kInteger,
+              .min = 1,
+              .max = 100,
+              .required = true,
+              .about = "Of the motor: half its number of magnets"},
+    FamilyKey{.name = "angle",
+              .kind = Kind::kChoice,
+              .choices = kAngles,
+              .default_text = "tachometer",
+              .about = "What the angle comes from: tachometer (STATUS_5, angle loop on the host), encoder "
+                       "(STATUS_4, the drive's own position loop) or none: no angle is reported."},
+    FamilyKey{.name = "position_divider",
+              .kind = Kind::kNumber,
+              .min = 0,
+              .max = 1000,
+              .above_min = true,
+              .default_text = "1",
+              .about = "With angle: encoder: Position Angle Division, as set in VESC Tool"},
+    FamilyKey{.name = "speed_ramp_erpm_per_s",
+              .kind = Kind::kNumber,
+              .unit = "ERPM/s",
+              .min = 0,
+              .max = 10'000'000,
+              .above_min = true,
+              .default_text = "25000",  // MCCONF_S_PID_RAMP_ERPMS_S
+              .about = "With angle: tachometer: the ramp of the drive's speed loop, as set in VESC Tool"},
+    FamilyKey{
+        .name = "velocity_zero",
+        .kind = Kind::kChoice,
+        .choices = kStops,
+        .default_text = "regulate",
+        .about =
+            "What a velocity of 0 means: regulate (the drive's speed loop, which lets go below its minimum "
+            "ERPM), coast or brake"},
+    FamilyKey{.name = "motor_current_max_a",
+              .kind = Kind::kNumber,
+              .unit = "A",
+              .min = 0,
+              .max = 2000,
+              .above_min = true,
+              .default_text = "60",  // MCCONF_L_CURRENT_MAX
+              .about = "Motor Current Max, as set in VESC Tool: full scale of currents, the most that the "
+                       "motor is told."},
+    FamilyKey{
+        .name = "relative_current",
+        .kind = Kind::kFlag,
+        .default_text = "false",
+        .about = "Send currents as a share of motor_current_max_a; the drive scales them by its own limits."},
+    FamilyKey{.name = "brake_current_a",
+              .kind = Kind::kNumber,
+              .unit = "A",
+              .min = 0,
+              .max = 2000,
+              .default_text = "10",
+              .about = "How hard it brakes, within the current limit"},
+    FamilyKey{.name = "handbrake_current_a",
+              .kind = Kind::kNumber,
+              .unit = "A",
+              .min = 0,
+              .max = 2000,
+              .default_text = "0",
+              .about = "With it a braked motor is held at standstill, by a current that flows all the time. "
+                       "0: no handbrake."},
+    FamilyKey{.name = "kv_rpm_per_v",
+              .kind = Kind::kNumber,
+              .unit = "rpm/V",
+              .min = 0,
+              .max = 20000,
+              .default_text = "0",
+              .about = "KV of the motor, as printed on it: for torques, guards and damp. Torque per ampere "
+                       "is 8.27 / KV (peak phase current, as VESC counts it). 0: unknown."},
+    FamilyKey{.name = "supply_v",
+              .kind = Kind::kNumber,
+              .unit = "V",
+              .min = 0,
+              .max = 200,
+              .above_min = true,
+              .default_text = "24",
+              .about = "Of the battery: with kv_rpm_per_v it gives the no-load speed."},
+    FamilyKey{.name = "temperature",
+              .kind = Kind::kChoice,
+              .choices = kTemperatures,
+              .default_text = "drive",
+              .about = "Which temperature is reported and watched: of the drive (its transistors), or of the "
+                       "motor (only with a sensor)."},
+    FamilyKey{.name = "ask_status",
+              .kind = Kind::kFlag,
+              .default_text = "true",
+              .about = "Ask the drive for its faults and its watchdog, 10 times a second. false: no faults "
+                       "are seen, the watchdog is not looked at, there is no enable sequence."},
+    FamilyKey{.name = "host_id",
+              .kind = Kind::kInteger,
+              .min = 0,
+              .max = 254,
+              .default_text = "253",
+              .about = "The controller id of rc10d itself, for the answers; no drive may have it."},
+};
+
+constexpr ModeSet kVescModes{ControlMode::kCoast, ControlMode::kCurrent, ControlMode::kVelocity,
+                             ControlMode::kDuty, ControlMode::kBrake};
+constexpr ModeSet kVescModesWithAngle{ControlMode::kCoast, ControlMode::kCurrent,    ControlMode::kVelocity,
+                                      ControlMode::kAngle, ControlMode::kTotalAngle, ControlMode::kDuty,
+                                      ControlMode::kBrake};
+
+// Only the angle loop runs on the host: its output is a speed. 1.5 rpm/deg is a crossover of 9 rad/s, which
+// leaves 75 degrees of phase for one sample of delay and the wait for the tick at 50 Hz.
+constexpr CascadeConfig kAngleLoop{
+    .velocity = PID_Position::Config{.kp = 0.1F}, .angle = {.kp = 1.5F}, .velocity_limit_rpm = 0.0F};
+
+// The q current of a VESC is the peak of the phase current: Kt = 1.5 * pole pairs * flux linkage, and KV (of
+// the peak between two phases) = 60 / (sqrt(3) * 2 pi * pole pairs * flux linkage).
+constexpr double kTorqueTimesKv = 1.5 * 60.0 / (std::numbers::sqrt3 * 2.0 * std::numbers::pi);
+static_assert(kTorqueTimesKv > 8.269 && kTorqueTimesKv < 8.271);
+
+Provision holdOf(const VescOptions& options) {
+  if (options.angle == VescAngle::kTachometer) return Provision::kHostLoop;
+  if (options.angle == VescAngle::kEncoder) return Provision::kFrame;
+  return options.handbrake_current_a > 0.0F ? Provision::kFrame : Provision::kUnsupported;
+}
+
 class VescFamily final : public MotorFamily {
  public:
   [[nodiscard]] std::string_view name() const noexcept override { return "VESC"; }
   [[nodiscard]] std::span<const std::string_view> models() const noexcept override { return kVescModels; }
-  [[nodiscard]] std::span<const FamilyKey> keys() const noexcept override { return vescKeys(); }
+  [[nodiscard]] std::span<const FamilyKey> keys() const noexcept override { return kVescKeys; }
 
   [[nodiscard]] MotorTraits traits(std::string_view /*model*/, const OwnValues& own) const override {
     return vescTraits(VescOptions{own});
@@ -89,6 +222,43 @@ class VescFamily final : public MotorFamily {
 };
 
 }  // namespace
+
+MotorTraits vescTraits(const VescOptions& options) {
+  MotorTraits traits;
+  traits.min_id = 0;
+  traits.max_id = 254;
+  traits.gear_ratio = 1.0;
+  traits.effort = CommandUnit::kAmpere;
+  traits.effort_full_scale = options.motor_current_max_a;
+  if (options.kv_rpm_per_v > 0.0) {
+    traits.torque_nm_per_a = static_cast<float>(kTorqueTimesKv / options.kv_rpm_per_v);
+    traits.no_load_rpm = static_cast<float>(options.kv_rpm_per_v * options.supply_v);
+  }
+  traits.nominal_v = static_cast<float>(options.supply_v);
+  traits.absolute = options.angle == VescAngle::kEncoder && options.position_divider == 1.0;
+  traits.feedback_hz = 50;  // APPCONF_CAN_STATUS_RATE_1
+  traits.min_feedback_hz = options.angle == VescAngle::kTachometer ? kVescLoopMinHz : 1;
+  traits.max_feedback_hz = 1000;  // the setting goes higher, the bus does not
+  // Its own limits may keep the current below what it is told: that is no frozen reading.
+  traits.frozen_a = 0.0F;
+  traits.asked = false;
+  traits.watchdog = options.ask_status;
+  traits.modes = options.angle == VescAngle::kNone ? kVescModes : kVescModesWithAngle;
+  static constexpr DriveSetup kSetup{.tool = "VESC Tool (the simple CAN commands write no settings)"};
+  traits.setup = &kSetup;
+  traits.frames = {.rest = Provision::kFrame,
+                   .poll = Provision::kNothing,
+                   .idle = Provision::kFrame,
+                   // The share of the current limit that the speed has of the no-load speed.
+                   .damp = options.kv_rpm_per_v > 0.0 ? Provision::kHostLoop : Provision::kUnsupported,
+                   .brake = Provision::kFrame,
+                   .hold = holdOf(options),
+                   .enable = options.ask_status ? Provision::kFrame : Provision::kNothing,
+                   .disable = Provision::kNothing};
+  traits.host_loops = options.angle == VescAngle::kTachometer ? &kAngleLoop : nullptr;
+  traits.own_velocity_loop = true;
+  return traits;
+}
 
 const MotorFamily& vescFamily() noexcept {
   static const VescFamily kFamily;

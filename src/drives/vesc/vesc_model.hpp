@@ -1,9 +1,6 @@
 #pragma once
 
-#include <array>
 #include <cstdint>
-#include <span>
-#include <string_view>
 
 #include "motor/fault_code.hpp"
 #include "motor/motor_family.hpp"
@@ -39,9 +36,6 @@ struct VescOptions {
   bool ask_status;
   int host_id;
 };
-
-[[nodiscard]] std::span<const FamilyKey> vescKeys() noexcept;
-[[nodiscard]] MotorTraits vescTraits(const VescOptions& options);
 
 /// What a code of the drive means. An unknown one is kDriveOther.
 [[nodiscard]] FaultCode vescFault(std::uint8_t native_code) noexcept;

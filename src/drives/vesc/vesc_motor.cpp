@@ -6,6 +6,7 @@
 #include "app/angle.hpp"
 #include "app/limits.hpp"
 #include "app/units.hpp"
+#include "drives/vesc/vesc_family.hpp"
 
 namespace rc10 {
 namespace {

@@ -8,6 +8,7 @@
 #include "app/angle.hpp"
 #include "app/units.hpp"
 #include "bus/byte_order.hpp"
+#include "drives/vesc/vesc_family.hpp"
 
 // Source of the behaviour: vedderb/bldc@b9d287b:comm/comm_can.c, timeout.c, motor/foc_math.c,
 // motor/mcconf_default.h.
