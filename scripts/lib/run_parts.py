@@ -80,6 +80,7 @@ class Part:
                 stdin=subprocess.DEVNULL,
                 stdout=log,
                 stderr=subprocess.STDOUT,
+                process_group=0,
             )
 
     def ended(self) -> bool:
@@ -181,9 +182,10 @@ class Run:
             time.sleep(0.2)
 
     def stop(self) -> None:
+        """Ends the running parts with all that they have started."""
         for part in self.running:
             if part.process is not None and part.process.poll() is None:
-                part.process.send_signal(signal.SIGTERM)
+                os.killpg(part.process.pid, signal.SIGTERM)
         for part in self.running:
             if part.process is not None:
                 part.process.wait()

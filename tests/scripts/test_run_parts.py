@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import select
 from collections.abc import Callable
 from typing import TYPE_CHECKING
 
@@ -97,6 +98,18 @@ def test_tests_of_the_dev_build_wait_for_it(write_parts: WriteParts, tmp_path: P
     assert run("build", "host")["host"].failed == 0
     assert run_parts.with_build(["host", "pages"]) == ["build", "host", "pages"]
     assert run_parts.with_build(["pages"]) == ["pages"]
+
+
+def test_a_part_is_ended_with_what_it_has_started(write_parts: WriteParts, tmp_path: Path) -> None:
+    fifo = tmp_path / "fifo"
+    os.mkfifo(fifo)
+    write_parts(lint=f"sleep 30 >{fifo}; echo '1 passed, 0 failed, 0 skipped'")
+    parts = run_parts.Run(["lint"], Budget("a test", 1.0, {}, {}))
+    parts.start_what_may()
+    with fifo.open() as end:  # opened by both: it sleeps
+        parts.stop()
+        assert select.select([end], [], [], 10)[0]
+        assert end.read() == ""
 
 
 def test_a_part_that_grew_by_a_third_is_named(monkeypatch: pytest.MonkeyPatch) -> None:
