@@ -3,13 +3,15 @@
 
     alone.py BUILD      BUILD: a tree without unity builds, configured
 
-Where sources are compiled together, one finds what another has included.
+Where sources are compiled together, one finds what another has included. A header that some source
+includes first has been compiled by itself there.
 """
 
 from __future__ import annotations
 
 import json
 import os
+import re
 import shlex
 import subprocess
 import sys
@@ -49,6 +51,12 @@ def of_header(header: Path, like: Compilation, scratch: Path) -> Compilation:
     return Compilation(header, like.folder, [*like.words[:-1], str(stub)])
 
 
+def included_first(source: Path) -> Path | None:
+    """The project's header that a source includes before anything else."""
+    match = re.search(r'^\s*#\s*include\s*(?:"([^"]+)"|<)', source.read_text(), re.MULTILINE)
+    return SRC / match[1] if match and match[1] else None
+
+
 def compilations(build: Path, scratch: Path) -> list[Compilation]:
     found: dict[Path, Compilation] = {}
     for entry in json.loads((build / "compile_commands.json").read_text()):
@@ -59,7 +67,8 @@ def compilations(build: Path, scratch: Path) -> list[Compilation]:
             )
     # Like its own source: those of a folder may see different things. In a folder of headers alone:
     # like one below.
-    for header in sorted(SRC.rglob("*.hpp")):
+    seen = {included_first(source) for source in found}
+    for header in sorted(set(SRC.rglob("*.hpp")) - seen):
         like = found.get(header.with_suffix(".cpp")) or next(
             found[source]
             for folder in header.parents
@@ -82,7 +91,7 @@ def main() -> int:
         with ThreadPoolExecutor(int(os.environ.get("RC10_JOBS", os.cpu_count() or 1))) as pool:
             complaints = [text for text in pool.map(compile_alone, all_of_them) if text]
     print("".join(complaints), end="")
-    print(f"{len(all_of_them)} sources and headers, {len(complaints)} do not compile alone")
+    print(f"{len(all_of_them)} compiled, {len(complaints)} do not compile alone")
     return int(bool(complaints))
 
 

@@ -9,6 +9,7 @@
 
 #include "bus/byte_order.hpp"
 #include "drives/damiao/damiao_family.hpp"
+#include "drives/damiao/damiao_motor.hpp"
 #include "drives/damiao/damiao_simulated.hpp"
 #include "motor_orders.hpp"
 

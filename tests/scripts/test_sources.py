@@ -102,7 +102,7 @@ def test_what_compiles_only_behind_another_is_found(
     monkeypatch.setattr("sys.argv", ["alone.py", str(repo)])
     assert alone.main() == 1
     shown = capsys.readouterr().out
-    assert "5 sources and headers, 2 do not compile alone" in shown
+    assert "4 compiled, 2 do not compile alone" in shown
     assert "src/app/b.cpp:" in shown
     assert "src/app/b.hpp:" in shown
     assert "src/app/a" not in shown
