@@ -16,21 +16,10 @@
 #include <cstring>
 #include <string>
 
+#include "app/sanitizers.hpp"
+
 namespace rc10::gateway {
 namespace {
-
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-#define RC10_SANITIZED 1
-#elif defined(__has_feature)
-#if __has_feature(address_sanitizer) || __has_feature(thread_sanitizer) || __has_feature(memory_sanitizer)
-#define RC10_SANITIZED 1
-#endif
-#endif
-#ifdef RC10_SANITIZED
-constexpr bool kSanitized = true;  // its shadow memory and its leak search need what is taken away here
-#else
-constexpr bool kSanitized = false;
-#endif
 
 constexpr rlim_t kMaxMemory = rlim_t{256} << 20U;
 
@@ -50,6 +39,7 @@ Result<void> limitResources() {
       Limit{RLIMIT_DATA, kMaxMemory, "RLIMIT_DATA"},     Limit{RLIMIT_AS, kMaxMemory, "RLIMIT_AS"},
   };
   for (const auto& [resource, value, name] : kLimits) {
+    // Shadow memory needs more.
     if (kSanitized && (resource == RLIMIT_DATA || resource == RLIMIT_AS)) continue;
     rlimit limit{};
     if (::getrlimit(resource, &limit) != 0) return notDropped(name, errno);

@@ -16,6 +16,7 @@
 
 #include <gtest/gtest.h>
 
+#include "app/sanitizers.hpp"
 #include "app/unique_fd.hpp"
 
 namespace rc10::gateway::test::sandbox_test {
@@ -78,7 +79,7 @@ TEST(Sandbox, CannotBeLeft) {
 }
 
 // Sanitizers need more memory than the sandbox has.
-#if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
+#if !RC10_SANITIZED
 TEST(Sandbox, BoundsItsMemory) {
   inSandbox([] {
     void* memory =

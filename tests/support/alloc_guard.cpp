@@ -5,16 +5,10 @@
 #include <cstdlib>
 #include <new>
 
-#if defined(__has_feature)
-#define RC10_HAS_FEATURE(feature) __has_feature(feature)
-#else
-#define RC10_HAS_FEATURE(feature) 0
-#endif
+#include "app/sanitizers.hpp"
 
 // A sanitizer's run-time library replaces malloc itself; a second replacement would break it.
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__) || RC10_HAS_FEATURE(address_sanitizer) || \
-    RC10_HAS_FEATURE(thread_sanitizer) || RC10_HAS_FEATURE(memory_sanitizer) || !defined(__GLIBC__) ||      \
-    !defined(__LP64__)
+#if RC10_SANITIZED || !defined(__GLIBC__) || !defined(__LP64__)
 #define RC10_COUNT_MALLOC 0
 #else
 #define RC10_COUNT_MALLOC 1

@@ -13,6 +13,7 @@
 
 #include <fmt/format.h>
 
+#include "app/sanitizers.hpp"
 #include "app/subnormals.hpp"
 
 namespace rc10 {
@@ -20,12 +21,8 @@ namespace {
 
 // Real-time stacks are small, locked, and touched before the first tick. The deepest use measured is 32 KiB,
 // of the thread that copies recordings.
-#if defined(__SANITIZE_THREAD__) || defined(__SANITIZE_ADDRESS__)
 // A sanitizer keeps its own data of a thread on the thread's stack: over 100 KiB.
-constexpr std::size_t kStackBytes = std::size_t{1024} * 1024;
-#else
-constexpr std::size_t kStackBytes = std::size_t{128} * 1024;
-#endif
+constexpr std::size_t kStackBytes = std::size_t{kSanitized ? 1024 : 128} * 1024;
 constexpr std::size_t kPrefaultBytes = std::size_t{96} * 1024;
 
 [[gnu::noinline]] void touchStack() noexcept {
