@@ -17,6 +17,29 @@ enum class FrameKind : std::uint8_t {
   kCommand,  ///< Follow the target.
 };
 
+/// State of a drive for as long as it is told a kind of frame.
+enum class DriveDuty : std::uint8_t {
+  kRest,    ///< Nobody expects anything of it.
+  kEnable,  ///< Its enable sequence runs.
+  kObey,    ///< It follows what it is told; a drive that has stopped by itself is a fault.
+};
+
+/// The one place where a new kind is put.
+[[nodiscard]] constexpr DriveDuty dutyOf(FrameKind kind) noexcept {
+  switch (kind) {
+    case FrameKind::kRest:
+    case FrameKind::kPoll:
+    case FrameKind::kDisable: break;
+    case FrameKind::kEnable: return DriveDuty::kEnable;
+    case FrameKind::kIdle:
+    case FrameKind::kDamp:
+    case FrameKind::kBrake:
+    case FrameKind::kHold:
+    case FrameKind::kCommand: return DriveDuty::kObey;
+  }
+  return DriveDuty::kRest;
+}
+
 /// How a family provides one kind of frame.
 enum class Provision : std::uint8_t {
   kUnsupported,  ///< It cannot; asking for it in the configuration is an error.

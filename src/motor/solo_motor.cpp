@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "app/angle.hpp"
 #include "app/limits.hpp"
@@ -71,6 +72,7 @@ bool SoloMotor::setZero(double angle_deg) noexcept {
 
 Target SoloMotor::wanted() noexcept {
   const FrameKind kind = ordered();
+  begins_ = std::exchange(told_, kind) != kind;
   if (kind != FrameKind::kHold) holding_ = false;
   if (kind == FrameKind::kBrake) return Target{.mode = ControlMode::kBrake};
   if (kind == FrameKind::kHold) {

@@ -54,6 +54,20 @@ class SoloMotor : public Motor_Base, public CommandPacker {
   /// The drive was restarted or turns may have gone uncounted.
   void loseReference() noexcept;
 
+  /// What is ordered is to be obeyed: DriveDuty::kObey.
+  [[nodiscard]] bool obeying() const noexcept { return dutyOf(ordered()) == DriveDuty::kObey; }
+  [[nodiscard]] bool enabling() const noexcept { return dutyOf(ordered()) == DriveDuty::kEnable; }
+  /// First tick of the present order; from wanted() on.
+  [[nodiscard]] bool begins() const noexcept { return begins_; }
+  /// The enable sequence is ordered, and a tick has begun it: what the drive says answers it.
+  [[nodiscard]] bool sequenceRuns() const noexcept { return enabling() && told_ == FrameKind::kEnable; }
+  /// sequenceProgress() of a motor whose enable sequence has come so far: pending from the order on, until
+  /// the tick in which it begins.
+  [[nodiscard]] SequenceProgress progressOf(SequenceProgress sequence) const noexcept {
+    if (!enabling()) return SequenceProgress::kDone;
+    return sequenceRuns() ? sequence : SequenceProgress::kPending;
+  }
+
   /// What is to be followed, whatever the order: the target while kCommand, a standstill for kBrake, the
   /// angle where it began for kHold (kTotalAngle), else kCoast. An angle (shortest way) comes as the total
   /// angle it means. To be called once in each update().
@@ -95,6 +109,8 @@ class SoloMotor : public Motor_Base, public CommandPacker {
   std::uint64_t divider_;
   std::uint64_t phase_;
   AngleReference reference_;
+  FrameKind told_ = FrameKind::kRest;  ///< The order of the last tick.
+  bool begins_ = false;
   bool holding_ = false;
   double hold_deg_ = 0.0;
   float command_value_ = 0.0F;

@@ -29,7 +29,8 @@ CubeMarsMit::CubeMarsMit(const MotorSettings& settings, const CubeMarsSetup& set
       v3_(setup.protocol == CubeMarsProtocol::kMitV3),
       angle_stiffness_(settings.own.number("angle_stiffness_nm_per_rad")),
       angle_damping_(settings.own.number("angle_damping_nms_per_rad")),
-      velocity_gain_(settings.own.number("velocity_gain_nms_per_rad")) {
+      velocity_gain_(settings.own.number("velocity_gain_nms_per_rad")),
+      sequence_(kMitStepPatience, kMitAttempts) {
   const auto id = static_cast<std::uint8_t>(settings.id);
   if (v3_) {
     filters_.fill(FrameFilter{.id = cubemars::servoFeedbackId(settings.id)});
@@ -105,38 +106,26 @@ double CubeMarsMit::unwrapped(double position_rad, bool anew) noexcept {
 }
 
 SequenceProgress CubeMarsMit::sequenceProgress() const noexcept {
-  if (v3_) return SequenceProgress::kDone;
-  return ordered() == FrameKind::kEnable ? enabling_ : SequenceProgress::kDone;
+  return v3_ ? SequenceProgress::kDone : progressOf(sequence_.progress());
 }
 
 void CubeMarsMit::clearComplaint() noexcept {
   forgetStop();
-  clear_now_ = !v3_ && !isToObey();
+  clear_now_ = !v3_ && !obeying();
 }
 
 // Nothing in an answer says whether the drive has entered the mode; that it answers, and without an error,
 // is all there is to see.
 void CubeMarsMit::stepEnabling(const Tick& tick) noexcept {
-  if (!begun_) {
-    begun_ = true;
-    attempts_ = 0;
-    enabling_ = SequenceProgress::kPending;
+  if (begins()) {
+    sequence_.begin(Step::kEnter);
     forgetStop();
   }
-  if (enabling_ != SequenceProgress::kPending) return;
-  const bool answered = attempts_ > 0 && feedback_.samples >= samples_before_ + kAnswersToEnter;
-  if (answered && error() == 0) {
-    enabling_ = SequenceProgress::kDone;
-  } else if (attempts_ == 0 || tick.now - entered_ >= kMitStepPatience) {
-    if (attempts_ == kMitAttempts) {
-      enabling_ = SequenceProgress::kFailed;
-      return;
-    }
-    if (attempts_ == 0) samples_before_ = feedback_.samples;
-    ++attempts_;
-    enter_now_ = true;
-    entered_ = tick.now;
-  }
+  const bool answered = sequence_.awaits() && feedback_.samples >= samples_before_ + kAnswersToEnter;
+  if (answered && error() == 0) sequence_.finish();
+  const bool first = !sequence_.awaits();
+  enter_now_ = sequence_.asks(tick.now);
+  if (enter_now_ && first) samples_before_ = feedback_.samples;
 }
 
 // The bounds of a command are computed from the feedback: it must not be old.
@@ -147,13 +136,8 @@ bool CubeMarsMit::silent(const Tick& tick) const noexcept {
 void CubeMarsMit::update(const Tick& tick) noexcept {
   limits_ = 0;
   enter_now_ = false;
-  if (!v3_ && ordered() == FrameKind::kEnable) {
-    stepEnabling(tick);
-  } else {
-    begun_ = false;
-    enabling_ = SequenceProgress::kPending;
-  }
   const Target target = wanted();
+  if (!v3_ && enabling()) stepEnabling(tick);
   const bool damps = ordered() == FrameKind::kDamp;
   const bool coasts = target.mode == ControlMode::kCoast && !damps;
   if (coasts || silent(tick) || !std::isfinite(target.value)) {
@@ -288,13 +272,9 @@ std::size_t CubeMarsMit::packCommand(const Tick& tick, std::span<CanFrame> out) 
     return leaves ? 3 : 2;
   }
   if (!due(tick)) return 0;
-  switch (ordered()) {
-    case FrameKind::kRest:
-    case FrameKind::kPoll:
-    case FrameKind::kDisable: return packRest(out);
-    case FrameKind::kEnable: out[0] = no_torque; return 1;
-    default: out[0] = commandFrame(command_); return 1;
-  }
+  if (!enabling() && !obeying()) return packRest(out);
+  out[0] = enabling() ? no_torque : commandFrame(command_);
+  return 1;
 }
 
 std::size_t CubeMarsMit::packRest(std::span<CanFrame> out) const noexcept {

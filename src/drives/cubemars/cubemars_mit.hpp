@@ -3,6 +3,7 @@
 #include <array>
 
 #include "drives/cubemars/cubemars_motor.hpp"
+#include "motor/enable_sequence.hpp"
 
 namespace rc10 {
 
@@ -32,6 +33,7 @@ class CubeMarsMit : public CubeMars_Motor {
  private:
   /// A command at the drive's output, whose velocity and position errors are not yet bounded.
   using Law = cubemars::MitCommand;
+  enum class Step : std::uint8_t { kEnter };
 
   [[nodiscard]] FrameVerdict takeMitReport(const CanFrame& frame) noexcept;
   [[nodiscard]] double unwrapped(double position_rad, bool anew) noexcept;
@@ -62,13 +64,10 @@ class CubeMarsMit : public CubeMars_Motor {
   int samples_at_end_ = 0;
 
   Law command_{};  ///< What update() decided on.
-  SequenceProgress enabling_ = SequenceProgress::kPending;
-  bool begun_ = false;  ///< An enable sequence.
+  EnableSequence<Step> sequence_;
   bool enter_now_ = false;
   bool clear_now_ = false;
-  int attempts_ = 0;
-  MonotonicTime entered_{};
-  std::uint64_t samples_before_ = 0;
+  std::uint64_t samples_before_ = 0;  ///< Heard when it was first told to enter.
 };
 
 }  // namespace rc10

@@ -29,21 +29,6 @@ CubeMars_Motor::CubeMars_Motor(const MotorSettings& settings, const CubeMarsSetu
       longest_gap_(std::max(kStartUp, kCubeMarsGapPeriods * feedbackPeriod())),
       reach_deg_per_s_(kReach * static_cast<double>(setup.model->no_load_rpm) * kDegPerSPerRpm) {}
 
-bool CubeMars_Motor::isToObey() const noexcept {
-  switch (ordered()) {
-    case FrameKind::kIdle:
-    case FrameKind::kDamp:
-    case FrameKind::kBrake:
-    case FrameKind::kHold:
-    case FrameKind::kCommand: return true;
-    case FrameKind::kRest:
-    case FrameKind::kPoll:
-    case FrameKind::kEnable:
-    case FrameKind::kDisable: break;
-  }
-  return false;
-}
-
 DriveComplaint CubeMars_Motor::complaint() const noexcept {
   if (error_ != 0) return {cubemarsFault(error_), error_};
   if (stopped_) return {FaultCode::kDriveStopped, 0};
@@ -53,7 +38,7 @@ DriveComplaint CubeMars_Motor::complaint() const noexcept {
 bool CubeMars_Motor::noticeRestart(MonotonicTime received) noexcept {
   if (feedback_.samples == 0 || received - feedback_.received <= longest_gap_) return false;
   loseReference();
-  stopped_ = stopped_ || isToObey();
+  stopped_ = stopped_ || obeying();
   return true;
 }
 

@@ -44,8 +44,6 @@ class CubeMars_Motor : public SoloMotor {
   void takeError(std::uint8_t error) noexcept { error_ = error; }
   [[nodiscard]] std::uint8_t error() const noexcept { return error_; }
   void forgetStop() noexcept { stopped_ = false; }
-  /// The drive is to be enabled now.
-  [[nodiscard]] bool isToObey() const noexcept;
 
  private:
   CubeMarsSetup setup_;

@@ -15,29 +15,27 @@ constexpr double kSameScale = 1e-4;
 
 }  // namespace
 
+DamiaoEnabling::DamiaoEnabling(const Plan& plan) noexcept
+    : plan_(plan), sequence_(kRegisterPatience, kRegisterTries) {}
+
 void DamiaoEnabling::begin() noexcept {
-  step_ = kDisable;
-  sent_ = 0;
-  send_ = true;
+  sequence_.begin(kDisable);
   culprit_.reset();
 }
 
 void DamiaoEnabling::skip() noexcept {
-  step_ = kDone;
-  send_ = false;
-  culprit_.reset();
+  begin();
+  sequence_.finish();
 }
 
 void DamiaoEnabling::next() noexcept {
-  step_ = static_cast<Step>(step_ + 1);
-  sent_ = 0;
-  send_ = step_ < kDone;
+  if (sequence_.step() == kEnable) return sequence_.finish();
+  sequence_.next(static_cast<Step>(sequence_.step() + 1));
 }
 
 void DamiaoEnabling::fail() noexcept {
-  culprit_ = registerOf(step_);
-  step_ = kFailed;
-  send_ = false;
+  culprit_ = registerOf(sequence_.step());
+  sequence_.fail();
 }
 
 std::optional<Register> DamiaoEnabling::registerOf(Step step) const noexcept {
@@ -51,23 +49,17 @@ std::optional<Register> DamiaoEnabling::registerOf(Step step) const noexcept {
     case kReadTimeout: return Register::kTimeout;
     case kReadPosition: return Register::kOutputPosition;
     case kDisable:
-    case kEnable:
-    case kDone:
-    case kFailed: break;
+    case kEnable: break;
   }
   return std::nullopt;
 }
 
 void DamiaoEnabling::update(MonotonicTime now) noexcept {
-  if (step_ >= kDone || send_ || now - sent_at_ < kRegisterPatience) return;
-  if (sent_ < kRegisterTries) {
-    send_ = true;
-    return;
-  }
+  if (!sequence_.exhausted(now)) return;
   // Without its count the drive can be told torques and speeds, but no angles.
   const bool angles_only =
       plan_.control == DamiaoControl::kPositionVelocity || plan_.control == DamiaoControl::kForcePosition;
-  if (step_ == kReadPosition && !angles_only) {
+  if (sequence_.step() == kReadPosition && !angles_only) {
     next();
   } else {
     fail();
@@ -75,15 +67,11 @@ void DamiaoEnabling::update(MonotonicTime now) noexcept {
 }
 
 void DamiaoEnabling::onStatus(std::uint8_t status) noexcept {
-  if (step_ >= kDone) return;
-  if (status >= damiao::kFirstFault) {
-    step_ = kFailed;
-    send_ = false;
-    return;
-  }
-  const bool answers = (step_ == kDisable && status == damiao::kStatusDisabled) ||
-                       (step_ == kEnable && status == damiao::kStatusEnabled);
-  if (answers && sent_ > 0) next();
+  if (!sequence_.pending()) return;
+  if (status >= damiao::kFirstFault) return sequence_.fail();
+  const bool answers = (sequence_.awaits(kDisable) && status == damiao::kStatusDisabled) ||
+                       (sequence_.awaits(kEnable) && status == damiao::kStatusEnabled);
+  if (answers) next();
 }
 
 bool DamiaoEnabling::asPlanned(const damiao::RegisterReply& reply) const noexcept {
@@ -103,8 +91,9 @@ bool DamiaoEnabling::asPlanned(const damiao::RegisterReply& reply) const noexcep
 }
 
 void DamiaoEnabling::onReply(const damiao::RegisterReply& reply) noexcept {
-  if (step_ == kReadPosition || sent_ == 0 || registerOf(step_) != reply.address) return;
-  const bool writes = step_ == kWriteControl || step_ == kWriteTimeout;
+  const Step step = sequence_.step();
+  if (step == kReadPosition || !sequence_.awaits() || registerOf(step) != reply.address) return;
+  const bool writes = step == kWriteControl || step == kWriteTimeout;
   if (reply.written != writes) return;
   if (asPlanned(reply)) {
     next();
@@ -114,14 +103,15 @@ void DamiaoEnabling::onReply(const damiao::RegisterReply& reply) noexcept {
 }
 
 void DamiaoEnabling::onPosition(bool known) noexcept {
-  if (step_ == kReadPosition && sent_ > 0 && known) next();
+  if (sequence_.awaits(kReadPosition) && known) next();
 }
 
 DamiaoEnabling::Request DamiaoEnabling::request() const noexcept {
-  if (step_ == kDisable) return {false, damiao::special(damiao::Special::kDisable)};
-  if (step_ == kEnable) return {false, damiao::special(damiao::Special::kEnable)};
-  const auto address = registerOf(step_).value_or(Register::kTimeout);
-  switch (step_) {
+  const Step step = sequence_.step();
+  if (step == kDisable) return {false, damiao::special(damiao::Special::kDisable)};
+  if (step == kEnable) return {false, damiao::special(damiao::Special::kEnable)};
+  const auto address = registerOf(step).value_or(Register::kTimeout);
+  switch (step) {
     case kWriteControl:
       return {true, damiao::writeRegister(plan_.id, address, static_cast<std::uint32_t>(plan_.control))};
     case kWriteTimeout: return {true, damiao::writeRegister(plan_.id, address, plan_.timeout)};
@@ -130,16 +120,8 @@ DamiaoEnabling::Request DamiaoEnabling::request() const noexcept {
 }
 
 std::optional<DamiaoEnabling::Request> DamiaoEnabling::take(MonotonicTime now) noexcept {
-  if (!send_) return std::nullopt;
-  send_ = false;
-  ++sent_;
-  sent_at_ = now;
+  if (!sequence_.asks(now)) return std::nullopt;
   return request();
-}
-
-SequenceProgress DamiaoEnabling::progress() const noexcept {
-  if (step_ == kDone) return SequenceProgress::kDone;
-  return step_ == kFailed ? SequenceProgress::kFailed : SequenceProgress::kPending;
 }
 
 }  // namespace rc10

@@ -5,7 +5,7 @@
 
 #include "app/time.hpp"
 #include "drives/damiao/damiao_frames.hpp"
-#include "motor/drive_frames.hpp"
+#include "motor/enable_sequence.hpp"
 
 namespace rc10 {
 
@@ -26,12 +26,12 @@ class DamiaoEnabling {
     damiao::Payload payload{};
   };
 
-  explicit DamiaoEnabling(const Plan& plan) noexcept : plan_(plan) {}
+  explicit DamiaoEnabling(const Plan& plan) noexcept;
 
   void begin() noexcept;
   /// The drive is enabled by an earlier run: done at once.
   void skip() noexcept;
-  /// Unanswered for too long: again, or no more.
+  /// Unanswered for too long: no more.
   void update(MonotonicTime now) noexcept;
   void onStatus(std::uint8_t status) noexcept;
   void onReply(const damiao::RegisterReply& reply) noexcept;
@@ -41,8 +41,8 @@ class DamiaoEnabling {
   /// What is to leave now, if anything.
   [[nodiscard]] std::optional<Request> take(MonotonicTime now) noexcept;
   /// The drive is still disabled, and may be told so again to get its feedback.
-  [[nodiscard]] bool quiet() const noexcept { return step_ < kEnable; }
-  [[nodiscard]] SequenceProgress progress() const noexcept;
+  [[nodiscard]] bool quiet() const noexcept { return sequence_.step() < kEnable; }
+  [[nodiscard]] SequenceProgress progress() const noexcept { return sequence_.progress(); }
   /// The register that differs from the plan, or that the drive does not tell.
   [[nodiscard]] std::optional<damiao::Register> culprit() const noexcept { return culprit_; }
 
@@ -58,8 +58,6 @@ class DamiaoEnabling {
     kReadTimeout,
     kReadPosition,
     kEnable,
-    kDone,
-    kFailed,
   };
 
   [[nodiscard]] std::optional<damiao::Register> registerOf(Step step) const noexcept;
@@ -69,10 +67,7 @@ class DamiaoEnabling {
   void fail() noexcept;
 
   Plan plan_;
-  Step step_ = kFailed;
-  int sent_ = 0;
-  bool send_ = false;
-  MonotonicTime sent_at_{};
+  EnableSequence<Step> sequence_;
   std::optional<damiao::Register> culprit_;
 };
 

@@ -80,8 +80,7 @@ void Damiao_Motor::takeState(const damiao::State& state, MonotonicTime received)
   const bool was_enabled = status_ == damiao::kStatusEnabled;
   status_ = state.status;
   if (status_ < damiao::kFirstFault) clears_left_ = 0;
-  if (ordered() == FrameKind::kEnable && enabling_begun_ &&
-      enabling_.progress() == SequenceProgress::kPending) {
+  if (sequenceRuns() && enabling_.progress() == SequenceProgress::kPending) {
     enabling_.onStatus(status_);
     armed_ = enabling_.progress() == SequenceProgress::kDone;
   }
@@ -89,7 +88,7 @@ void Damiao_Motor::takeState(const damiao::State& state, MonotonicTime received)
     armed_ = false;
     // Restarted, perhaps: it may count from elsewhere.
     if (status_ == damiao::kStatusDisabled) {
-      stopped_ = isObeying();
+      stopped_ = obeying();
       position_.forget();
       loseReference();
     }
@@ -117,7 +116,7 @@ void Damiao_Motor::takeState(const damiao::State& state, MonotonicTime received)
 
 void Damiao_Motor::takeReply(const damiao::RegisterReply& reply) noexcept {
   if (reply.address != damiao::Register::kOutputPosition) {
-    if (ordered() == FrameKind::kEnable && enabling_begun_) {
+    if (sequenceRuns()) {
       enabling_.onReply(reply);
       culprit_ = enabling_.culprit();
     }
@@ -125,32 +124,14 @@ void Damiao_Motor::takeReply(const damiao::RegisterReply& reply) noexcept {
   }
   if (reply.written) return;
   if (position_.take(damiao::floatOf(reply.value)) == DamiaoPosition::Wrap::kOther) loseReference();
-  if (ordered() == FrameKind::kEnable) enabling_.onPosition(position_.known());
+  if (enabling()) enabling_.onPosition(position_.known());
 }
 
 bool Damiao_Motor::setZero(double angle_deg) noexcept {
   return position_.known() && SoloMotor::setZero(angle_deg);
 }
 
-bool Damiao_Motor::isObeying() const noexcept {
-  switch (ordered()) {
-    case FrameKind::kIdle:
-    case FrameKind::kDamp:
-    case FrameKind::kBrake:
-    case FrameKind::kHold:
-    case FrameKind::kCommand: return true;
-    case FrameKind::kRest:
-    case FrameKind::kPoll:
-    case FrameKind::kEnable:
-    case FrameKind::kDisable: break;
-  }
-  return false;
-}
-
-SequenceProgress Damiao_Motor::sequenceProgress() const noexcept {
-  if (ordered() != FrameKind::kEnable) return SequenceProgress::kDone;
-  return enabling_begun_ ? enabling_.progress() : SequenceProgress::kPending;
-}
+SequenceProgress Damiao_Motor::sequenceProgress() const noexcept { return progressOf(enabling_.progress()); }
 
 DriveComplaint Damiao_Motor::complaint() const noexcept {
   if (const auto fault = damiao::faultOf(status_); fault != FaultCode::kNone) return {fault, status_};
@@ -168,13 +149,11 @@ void Damiao_Motor::clearComplaint() noexcept {
 }
 
 void Damiao_Motor::followSequence(const Tick& tick) noexcept {
-  if (ordered() != FrameKind::kEnable) {
-    enabling_begun_ = false;
-    if (!isObeying()) armed_ = false;
+  if (!enabling()) {
+    if (!obeying()) armed_ = false;
     return;
   }
-  if (!enabling_begun_) {
-    enabling_begun_ = true;
+  if (begins()) {
     stopped_ = false;
     culprit_.reset();
     if (armed_) {  // held or braked until now: it must not be let go for a moment
@@ -194,7 +173,7 @@ void Damiao_Motor::update(const Tick& tick) noexcept {
   Target target = wanted();
   if (!std::isfinite(target.value)) target = Target{};
   followSequence(tick);
-  if (isObeying() && !armed_ && status_ < damiao::kFirstFault) stopped_ = true;
+  if (obeying() && !armed_ && status_ < damiao::kFirstFault) stopped_ = true;
   if (!armed_) {
     restCommand();
     return;
@@ -318,7 +297,7 @@ CanFrame Damiao_Motor::specialFrame(Special command) const noexcept {
 }
 
 bool Damiao_Motor::asksPosition(const Tick& tick) noexcept {
-  if (position_.known() || feedback_.samples == 0 || ordered() == FrameKind::kEnable) return false;
+  if (position_.known() || feedback_.samples == 0 || enabling()) return false;
   if (tick.now - feedback_.received > heard_within_ || tick.now - asked_position_ < kPositionAskedEvery)
     return false;
   asked_position_ = tick.now;
@@ -328,8 +307,7 @@ bool Damiao_Motor::asksPosition(const Tick& tick) noexcept {
 std::size_t Damiao_Motor::packCommand(const Tick& tick, std::span<CanFrame> out) noexcept {
   constexpr CanId kRegisters{damiao::kRegisterId, false};
   std::size_t count = 0;
-  if (ordered() == FrameKind::kEnable && enabling_begun_ &&
-      enabling_.progress() == SequenceProgress::kPending) {
+  if (sequenceRuns() && enabling_.progress() == SequenceProgress::kPending) {
     const bool quiet = enabling_.quiet();
     const auto request = enabling_.take(tick.now);
     // Told on and on: disabled, for its feedback; enabled, for its watchdog, should only the answer be lost.
@@ -340,7 +318,7 @@ std::size_t Damiao_Motor::packCommand(const Tick& tick, std::span<CanFrame> out)
       out[count++] = frameOf(request->of_register ? kRegisters : command_ids_[0], request->payload);
     return count;
   }
-  if (!armed_ && !isObeying()) count += configuring_.pack(tick.now, out);
+  if (!armed_ && !obeying()) count += configuring_.pack(tick.now, out);
   if (!due(tick)) return count;
   const bool clears = clears_left_ > 0 && !armed_;
   if (clears) --clears_left_;

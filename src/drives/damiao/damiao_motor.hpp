@@ -45,7 +45,6 @@ class Damiao_Motor : public SoloMotor {
   static constexpr std::uint32_t kRegisterComplaint = 0x100;
 
  private:
-  [[nodiscard]] bool isObeying() const noexcept;
   void takeState(const damiao::State& state, MonotonicTime received) noexcept;
   void takeReply(const damiao::RegisterReply& reply) noexcept;
   void followSequence(const Tick& tick) noexcept;
@@ -78,7 +77,6 @@ class Damiao_Motor : public SoloMotor {
   CanFrame command_;
   double measured_rad_s_ = 0.0;  ///< Of the drive.
   std::uint8_t status_ = damiao::kStatusDisabled;
-  bool enabling_begun_ = false;
   bool armed_ = false;    ///< Enabled by the sequence, and neither rested nor stopped since.
   bool stopped_ = false;  ///< Not enabled, though it was to obey.
   std::optional<damiao::Register> culprit_;

@@ -151,13 +151,8 @@ Target DJI_Motor::wantedTarget() noexcept {
     case FrameKind::kDamp: return damped();
     case FrameKind::kBrake: return Target{.mode = ControlMode::kVelocity};
     case FrameKind::kHold: return held();
-    case FrameKind::kRest:
-    case FrameKind::kPoll:
-    case FrameKind::kIdle:
-    case FrameKind::kEnable:
-    case FrameKind::kDisable: break;
+    default: return Target{};
   }
-  return Target{};
 }
 
 void DJI_Motor::update(const Tick& tick) noexcept {

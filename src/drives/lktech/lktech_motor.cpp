@@ -43,7 +43,8 @@ LKTech_Motor::LKTech_Motor(const MotorSettings& settings, const MotorTraits& tra
       encoder_mask_(static_cast<std::uint16_t>((1U << settings.own.integer("encoder_bits")) - 1U)),
       filters_{FrameFilter{.id = {lktech::kBaseId + static_cast<std::uint32_t>(id_), false},
                            .mask = kStandardIdMask}},
-      command_ids_{filters_[0].id} {}
+      command_ids_{filters_[0].id},
+      sequence_(kLktechStepPatience, kLktechStepTries) {}
 
 // ---- What the drive says
 
@@ -133,7 +134,7 @@ void LKTech_Motor::acceptTurns(const CanFrame& frame) noexcept {
     if (lost) {
       loseReference();
       restarted_ = restarted_ || obeying();
-      if (ordered() == FrameKind::kEnable) beginSequence();
+      if (enabling()) beginSequence();
     }
     if (lost || !was_counted_) {
       position_deg_ = angle_deg + shortestAngle(angle_deg, encoderDeg(*encoder_));
@@ -154,25 +155,12 @@ void LKTech_Motor::acceptTurns(const CanFrame& frame) noexcept {
 
 // ---- What it is told
 
-bool LKTech_Motor::obeying() const noexcept {
-  switch (ordered()) {
-    case FrameKind::kIdle:
-    case FrameKind::kCommand:
-    case FrameKind::kBrake:
-    case FrameKind::kHold:
-    case FrameKind::kDamp: return true;
-    default: return false;
-  }
-}
-
 void LKTech_Motor::update(const Tick& tick) noexcept {
-  outgoing_count_ = 0;
+  outbox_.clear();
   limits_ = 0;
   const Target target = wanted();
-  const bool begins = ordered() != last_ordered_;
-  last_ordered_ = ordered();
-  if (ordered() == FrameKind::kEnable && begins) beginSequence();
-  if (std::exchange(clear_, false)) send(lktech::request(id_, lktech::Code::kClear));
+  if (enabling() && begins()) beginSequence();
+  if (std::exchange(clear_, false)) outbox_.add(lktech::request(id_, lktech::Code::kClear));
   // A drive that is just starting must not find an angle of its former life waiting for it.
   if (!heard_ || tick.now - *heard_ > kLktechRestartSilence) counted_ = false;
   told_ = due(tick);
@@ -196,7 +184,7 @@ void LKTech_Motor::sendQueries(const Tick& tick) noexcept {
   next_query_ = tick.now + (counted_ ? kLktechQuerySpacing : kLktechUrgentQuerySpacing);
   // It is not taken without a temperature.
   ask_turns_ = std::isnan(feedback_.voltage_v) ? false : !ask_turns_;
-  send(lktech::request(id_, ask_turns_ ? lktech::Code::kAngle : lktech::Code::kStatus));
+  outbox_.add(lktech::request(id_, ask_turns_ ? lktech::Code::kAngle : lktech::Code::kStatus));
 }
 
 void LKTech_Motor::release() noexcept {
@@ -234,7 +222,7 @@ void LKTech_Motor::followVelocity(double output_rpm) noexcept {
   setCommand(rpm, CommandUnit::kNative);
   // 0 would be no bound.
   const int limit_raw = std::max(rawOf(static_cast<double>(effortLimit())), 1);
-  send(lktech::velocityCommand(id_, toDrive(rpm) * traits().gear_ratio * kDegPerSPerRpm, limit_raw));
+  outbox_.add(lktech::velocityCommand(id_, toDrive(rpm) * traits().gear_ratio * kDegPerSPerRpm, limit_raw));
 }
 
 void LKTech_Motor::followAngle(double total_angle_deg) noexcept {
@@ -248,22 +236,16 @@ void LKTech_Motor::followAngle(double total_angle_deg) noexcept {
                                  ? std::abs(toDrive(limit_rpm)) * traits().gear_ratio * kDegPerSPerRpm
                                  : kLktechNoLimitDegS;
   setCommand(total_angle_deg, CommandUnit::kNative);
-  send(lktech::positionCommand(id_, rotor_deg, limit_deg_s));
-}
-
-void LKTech_Motor::send(const CanFrame& frame) noexcept {
-  if (outgoing_count_ < outgoing_.size()) outgoing_[outgoing_count_++] = frame;
+  outbox_.add(lktech::positionCommand(id_, rotor_deg, limit_deg_s));
 }
 
 void LKTech_Motor::sendCurrent(int raw) noexcept {
   raw_current_ = raw;
-  if (!grouped_) send(lktech::currentCommand(id_, raw));
+  if (!grouped_) outbox_.add(lktech::currentCommand(id_, raw));
 }
 
 std::size_t LKTech_Motor::packCommand(const Tick& /*tick*/, std::span<CanFrame> out) noexcept {
-  const std::size_t count = std::min(outgoing_count_, out.size());
-  std::copy_n(outgoing_.begin(), count, out.begin());
-  return count;
+  return outbox_.copyTo(out);
 }
 
 // A group's frame has it in.
@@ -276,58 +258,39 @@ std::size_t LKTech_Motor::packRest(std::span<CanFrame> out) const noexcept {
 // ---- Enabling
 
 void LKTech_Motor::beginSequence() noexcept {
-  step_ = Step::kStatus;
-  tries_ = 0;
-  failed_ = false;
+  sequence_.begin(Step::kStatus);
   restarted_ = false;
 }
 
 void LKTech_Motor::sendStep() noexcept {
-  switch (step_) {
-    case Step::kStatus: return send(lktech::request(id_, lktech::Code::kStatus));
+  switch (sequence_.step()) {
+    case Step::kStatus: return outbox_.add(lktech::request(id_, lktech::Code::kStatus));
     case Step::kTurnOn:
-      send(lktech::request(id_, lktech::Code::kOn));
-      return send(lktech::request(id_, lktech::Code::kStatus));
-    case Step::kTurns: return send(lktech::request(id_, lktech::Code::kAngle));
-    case Step::kObey:
-    case Step::kDone: break;  // the current of 0 that it is told anyway
+      outbox_.add(lktech::request(id_, lktech::Code::kOn));
+      return outbox_.add(lktech::request(id_, lktech::Code::kStatus));
+    case Step::kTurns: return outbox_.add(lktech::request(id_, lktech::Code::kAngle));
+    case Step::kObey: break;  // the current of 0 that it is told anyway
   }
 }
 
 void LKTech_Motor::runSequence(const Tick& tick) noexcept {
   release();
-  if (failed_ || step_ == Step::kDone) return;
-  if (tries_ > 0 && tick.now - asked_at_ < kLktechStepPatience) return;
-  if (tries_ == kLktechStepTries) {
-    failed_ = true;
-    return;
-  }
-  ++tries_;
-  asked_at_ = tick.now;
-  sendStep();
+  if (sequence_.asks(tick.now)) sendStep();
 }
 
 void LKTech_Motor::answered(Step step) noexcept {
-  if (ordered() != FrameKind::kEnable || step != step_ || failed_ || tries_ == 0) return;
-  tries_ = 0;
+  if (!sequenceRuns() || !sequence_.awaits(step)) return;
   switch (step) {
     case Step::kStatus:
-      failed_ = errors_ != 0;
-      step_ = off_ ? Step::kTurnOn : Step::kTurns;
-      break;
-    case Step::kTurnOn: step_ = Step::kTurns; break;
-    case Step::kTurns: step_ = Step::kObey; break;
-    case Step::kObey: step_ = Step::kDone; break;
-    case Step::kDone: break;
+      if (errors_ != 0) return sequence_.fail();
+      return sequence_.next(off_ ? Step::kTurnOn : Step::kTurns);
+    case Step::kTurnOn: return sequence_.next(Step::kTurns);
+    case Step::kTurns: return sequence_.next(Step::kObey);
+    case Step::kObey: return sequence_.finish();
   }
 }
 
-SequenceProgress LKTech_Motor::sequenceProgress() const noexcept {
-  if (ordered() != FrameKind::kEnable) return SequenceProgress::kDone;
-  if (last_ordered_ != FrameKind::kEnable) return SequenceProgress::kPending;
-  if (failed_) return SequenceProgress::kFailed;
-  return step_ == Step::kDone ? SequenceProgress::kDone : SequenceProgress::kPending;
-}
+SequenceProgress LKTech_Motor::sequenceProgress() const noexcept { return progressOf(sequence_.progress()); }
 
 // ---- Complaints
 

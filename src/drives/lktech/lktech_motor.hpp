@@ -5,6 +5,8 @@
 #include <optional>
 
 #include "drives/lktech/lktech_frames.hpp"
+#include "motor/enable_sequence.hpp"
+#include "motor/frame_outbox.hpp"
 #include "motor/solo_motor.hpp"
 
 namespace rc10 {
@@ -40,7 +42,7 @@ class LKTech_Motor final : public SoloMotor {
   [[nodiscard]] bool told() const noexcept { return told_; }
 
  private:
-  enum class Step : std::uint8_t { kStatus, kTurnOn, kTurns, kObey, kDone };
+  enum class Step : std::uint8_t { kStatus, kTurnOn, kTurns, kObey };
 
   [[nodiscard]] bool isReply(const CanFrame& frame) const noexcept;
   void acceptReading(const CanFrame& frame) noexcept;
@@ -49,7 +51,6 @@ class LKTech_Motor final : public SoloMotor {
   void answered(Step step) noexcept;
   [[nodiscard]] double encoderDeg(std::uint16_t raw) const noexcept;
 
-  void send(const CanFrame& frame) noexcept;
   void sendCurrent(int raw) noexcept;
   void sendQueries(const Tick& tick) noexcept;
   void runSequence(const Tick& tick) noexcept;
@@ -61,7 +62,6 @@ class LKTech_Motor final : public SoloMotor {
   void followAngle(double total_angle_deg) noexcept;
   void release() noexcept;
   [[nodiscard]] int rawOf(double amperes) const noexcept;
-  [[nodiscard]] bool obeying() const noexcept;
 
   int id_;
   bool grouped_;
@@ -70,8 +70,7 @@ class LKTech_Motor final : public SoloMotor {
   std::array<FrameFilter, 1> filters_;
   std::array<CanId, 1> command_ids_;
 
-  std::array<CanFrame, kMaxFramesPerPacker> outgoing_{};
-  std::size_t outgoing_count_ = 0;
+  FrameOutbox outbox_;
   int raw_current_ = 0;
   bool told_ = false;
   MonotonicTime next_query_{};
@@ -90,11 +89,7 @@ class LKTech_Motor final : public SoloMotor {
   std::uint8_t errors_ = 0;
   bool restarted_ = false;  ///< While it was to obey: it has lost its turns.
 
-  FrameKind last_ordered_ = FrameKind::kRest;
-  Step step_ = Step::kStatus;
-  int tries_ = 0;
-  MonotonicTime asked_at_{};
-  bool failed_ = false;
+  EnableSequence<Step> sequence_;
 };
 
 }  // namespace rc10

@@ -60,7 +60,7 @@ DriveComplaint Moteus_Motor::complaint() const noexcept {
 }
 
 SequenceProgress Moteus_Motor::sequenceProgress() const noexcept {
-  if (ordered() != FrameKind::kEnable) return SequenceProgress::kDone;
+  if (!enabling()) return SequenceProgress::kDone;
   switch (step_) {
     case Step::kDone: return SequenceProgress::kDone;
     case Step::kFailed: return SequenceProgress::kFailed;
@@ -72,23 +72,15 @@ void Moteus_Motor::update(const Tick& tick) noexcept {
   limits_ = mode_ == MoteusMode::kFault ? 0 : moteusLimit(native_fault_);
   const Target target = wanted();
   const FrameKind kind = ordered();
-  if (kind != FrameKind::kEnable) step_ = Step::kNone;
+  if (!enabling()) step_ = Step::kNone;
   if (kind != FrameKind::kCommand || target.mode != ControlMode::kVelocity) course_rev_.reset();
   setCommand(0.0, CommandUnit::kNone);
-  switch (kind) {
-    case FrameKind::kEnable: return updateSequence(tick);
-    case FrameKind::kRest:
-    case FrameKind::kPoll:
-    case FrameKind::kDisable:
-      engaged_ = false;
-      lost_ = {};
-      send_ = kind == FrameKind::kPoll ? restSend(tick) : Send::kStop;
-      return;
-    case FrameKind::kIdle:
-    case FrameKind::kDamp:
-    case FrameKind::kBrake:
-    case FrameKind::kHold:
-    case FrameKind::kCommand: break;
+  if (enabling()) return updateSequence(tick);
+  if (!obeying()) {
+    engaged_ = false;
+    lost_ = {};
+    send_ = kind == FrameKind::kPoll ? restSend(tick) : Send::kStop;
+    return;
   }
   if (!engaged_) {  // nothing but the sequence switches it on
     if (complaint().fault == FaultCode::kNone) {
@@ -123,6 +115,7 @@ void Moteus_Motor::fail(FaultCode why, std::uint32_t native) noexcept {
   refused_ = {why, native};
 }
 
+// No EnableSequence: every frame is a question, so only time ends a step.
 void Moteus_Motor::updateSequence(const Tick& tick) noexcept {
   if (step_ == Step::kNone) {
     engaged_ = false;
@@ -273,8 +266,7 @@ CanFrame Moteus_Motor::motionFrame() const noexcept {
 }
 
 std::size_t Moteus_Motor::packCommand(const Tick& tick, std::span<CanFrame> out) noexcept {
-  const bool sequence = ordered() == FrameKind::kEnable;
-  if (out.empty() || (!sequence && !due(tick))) return 0;
+  if (out.empty() || (!enabling() && !due(tick))) return 0;
   const auto mode = [this](MoteusMode value) {
     MoteusWriter frame = writer();
     frame.write(MoteusType::kInt8, MoteusRegister::kMode, {static_cast<double>(value)});

@@ -53,7 +53,8 @@ MyActuator_Motor::MyActuator_Motor(const MotorSettings& settings, const MotorTra
                            .mask = kStandardIdMask,
                            .discriminator = PayloadDiscriminator{.value = static_cast<std::uint8_t>(id_)}}},
       command_ids_{CanId{myactuator::kRequestBase + static_cast<std::uint32_t>(id_), false},
-                   CanId{myactuator::kMotionBase + static_cast<std::uint32_t>(id_), false}} {}
+                   CanId{myactuator::kMotionBase + static_cast<std::uint32_t>(id_), false}},
+      sequence_(kMyActuatorStepPatience, kMyActuatorStepTries) {}
 
 // ---- What the drive says
 
@@ -157,7 +158,7 @@ void MyActuator_Motor::acceptUptime(const CanFrame& frame) noexcept {
       loseReference();
       raw_angle_.reset();
       restarted_ = restarted_ || obeying();
-      if (ordered() == FrameKind::kEnable) beginSequence();
+      if (enabling()) beginSequence();
     }
   }
   uptime_ms_ = uptime_ms;
@@ -178,25 +179,12 @@ FrameVerdict MyActuator_Motor::acceptMotion(const CanFrame& frame) noexcept {
 
 // ---- What it is told
 
-bool MyActuator_Motor::obeying() const noexcept {
-  switch (ordered()) {
-    case FrameKind::kIdle:
-    case FrameKind::kCommand:
-    case FrameKind::kBrake:
-    case FrameKind::kHold:
-    case FrameKind::kDamp: return true;
-    default: return false;
-  }
-}
-
 void MyActuator_Motor::update(const Tick& tick) noexcept {
-  outgoing_count_ = 0;
+  outbox_.clear();
   limits_ = 0;
   const Target target = wanted();
-  const bool begins = ordered() != last_ordered_;
-  last_ordered_ = ordered();
-  if (ordered() == FrameKind::kEnable && begins) beginSequence();
-  if (std::exchange(reset_, false)) send(myactuator::request(id_, myactuator::Code::kReset));
+  if (enabling() && begins()) beginSequence();
+  if (std::exchange(reset_, false)) outbox_.add(myactuator::request(id_, myactuator::Code::kReset));
   // A drive that is just starting must not find an angle of its former life waiting for it.
   if (!heard_ || tick.now - *heard_ > kMyActuatorRestartSilence) running_ = false;
   if (!due(tick)) return;
@@ -206,13 +194,13 @@ void MyActuator_Motor::update(const Tick& tick) noexcept {
     case FrameKind::kRest:
     case FrameKind::kDisable:
       setCommand(0.0, CommandUnit::kNone);
-      send(myactuator::request(id_, myactuator::Code::kShutdown));
+      outbox_.add(myactuator::request(id_, myactuator::Code::kShutdown));
       return;
     case FrameKind::kPoll:
       // Output off, and in turns with that what it measures.
       setCommand(0.0, CommandUnit::kNone);
-      send(myactuator::request(
-          id_, begins || turns_due_ % 2 == 0 ? myactuator::Code::kShutdown : myactuator::Code::kReading));
+      outbox_.add(myactuator::request(
+          id_, begins() || turns_due_ % 2 == 0 ? myactuator::Code::kShutdown : myactuator::Code::kReading));
       break;
     case FrameKind::kEnable:
       setCommand(0.0, CommandUnit::kNone);
@@ -222,13 +210,13 @@ void MyActuator_Motor::update(const Tick& tick) noexcept {
       // Until it is known to be the same run of the drive, its angles are not, and it is told nothing. One
       // that has stopped is not started again behind the back of whoever has to know.
       if (restarted_ || silence_stopped_) {
-        send(myactuator::request(id_, myactuator::Code::kShutdown));
+        outbox_.add(myactuator::request(id_, myactuator::Code::kShutdown));
       } else if (running_) {
         follow(target);
       }
       break;
   }
-  if (ask_angle) send(myactuator::request(id_, myactuator::Code::kAngle));
+  if (ask_angle) outbox_.add(myactuator::request(id_, myactuator::Code::kAngle));
   sendQueries(tick);
 }
 
@@ -236,7 +224,7 @@ void MyActuator_Motor::sendQueries(const Tick& tick) noexcept {
   if (tick.now < next_query_) return;
   next_query_ = tick.now + (running_ ? kMyActuatorQuerySpacing : kMyActuatorUrgentQuerySpacing);
   ask_uptime_ = !running_ || !ask_uptime_;
-  send(myactuator::request(id_, ask_uptime_ ? myactuator::Code::kUptime : myactuator::Code::kStatus));
+  outbox_.add(myactuator::request(id_, ask_uptime_ ? myactuator::Code::kUptime : myactuator::Code::kStatus));
 }
 
 void MyActuator_Motor::follow(const Target& target) noexcept {
@@ -350,22 +338,17 @@ void MyActuator_Motor::sendMotion(double error_rad, double velocity_error_rad_s,
   motion.torque_ff_nm *= scale;
   setCommand(torqueToOutput(torque_nm * scale) / static_cast<double>(torqueNmPerA()), CommandUnit::kNative);
   last_command_.reset();
-  send(myactuator::motionCommand(id_, motion));
-}
-
-void MyActuator_Motor::send(const CanFrame& frame) noexcept {
-  if (outgoing_count_ < outgoing_.size()) outgoing_[outgoing_count_++] = frame;
+  outbox_.add(myactuator::motionCommand(id_, motion));
 }
 
 void MyActuator_Motor::sendCommand(const CanFrame& frame) noexcept {
   last_command_ = frame;
-  send(frame);
+  outbox_.add(frame);
 }
 
 std::size_t MyActuator_Motor::packCommand(const Tick& tick, std::span<CanFrame> out) noexcept {
-  const std::size_t count = std::min(outgoing_count_, out.size());
-  std::copy_n(outgoing_.begin(), count, out.begin());
-  if (obeying() || ordered() == FrameKind::kEnable) return count;
+  const std::size_t count = outbox_.copyTo(out);
+  if (obeying() || enabling()) return count;
   return count + configuring_.pack(tick.now, out.subspan(count));
 }
 
@@ -378,58 +361,43 @@ std::size_t MyActuator_Motor::packRest(std::span<CanFrame> out) const noexcept {
 // ---- Enabling
 
 void MyActuator_Motor::beginSequence() noexcept {
-  step_ = Step::kStatus;
-  tries_ = 0;
-  failed_ = false;
+  sequence_.begin(Step::kStatus);
   restarted_ = false;
   silence_stopped_ = false;
 }
 
 CanFrame MyActuator_Motor::stepFrame() const noexcept {
-  switch (step_) {
+  switch (sequence_.step()) {
     case Step::kStatus: return myactuator::request(id_, myactuator::Code::kStatus);
     case Step::kUptime: return myactuator::request(id_, myactuator::Code::kUptime);
     case Step::kReleaseBrake: return myactuator::request(id_, myactuator::Code::kReleaseBrake);
-    case Step::kObey:
-    case Step::kDone: break;
+    case Step::kObey: break;
   }
   return myactuator::currentCommand(id_, 0.0);
 }
 
 void MyActuator_Motor::runSequence(const Tick& tick) noexcept {
-  if (failed_) return send(myactuator::request(id_, myactuator::Code::kShutdown));
-  if (step_ == Step::kDone) return sendCommand(stepFrame());  // no torque until the first command
-  if (tries_ > 0 && tick.now - asked_at_ < kMyActuatorStepPatience) return;
-  if (tries_ == kMyActuatorStepTries) {
-    failed_ = true;
-    return;
-  }
-  ++tries_;
-  asked_at_ = tick.now;
-  if (step_ == Step::kObey) return sendCommand(stepFrame());
-  send(stepFrame());
+  if (sequence_.failed()) return outbox_.add(myactuator::request(id_, myactuator::Code::kShutdown));
+  // Done: no torque until the first command.
+  if (!sequence_.done() && !sequence_.asks(tick.now)) return;
+  if (sequence_.step() == Step::kObey) return sendCommand(stepFrame());
+  outbox_.add(stepFrame());
 }
 
 void MyActuator_Motor::answered(Step step) noexcept {
-  if (ordered() != FrameKind::kEnable || step != step_ || failed_ || tries_ == 0) return;
-  tries_ = 0;
+  if (!sequenceRuns() || !sequence_.awaits(step)) return;
   switch (step) {
     case Step::kStatus:
-      failed_ = errors_ != 0;
-      step_ = Step::kUptime;
-      break;
-    case Step::kUptime: step_ = release_brake_ ? Step::kReleaseBrake : Step::kObey; break;
-    case Step::kReleaseBrake: step_ = Step::kObey; break;
-    case Step::kObey: step_ = Step::kDone; break;
-    case Step::kDone: break;
+      if (errors_ != 0) return sequence_.fail();
+      return sequence_.next(Step::kUptime);
+    case Step::kUptime: return sequence_.next(release_brake_ ? Step::kReleaseBrake : Step::kObey);
+    case Step::kReleaseBrake: return sequence_.next(Step::kObey);
+    case Step::kObey: return sequence_.finish();
   }
 }
 
 SequenceProgress MyActuator_Motor::sequenceProgress() const noexcept {
-  if (ordered() != FrameKind::kEnable) return SequenceProgress::kDone;
-  if (last_ordered_ != FrameKind::kEnable) return SequenceProgress::kPending;
-  if (failed_) return SequenceProgress::kFailed;
-  return step_ == Step::kDone ? SequenceProgress::kDone : SequenceProgress::kPending;
+  return progressOf(sequence_.progress());
 }
 
 // ---- Complaints

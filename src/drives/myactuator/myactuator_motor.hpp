@@ -7,6 +7,8 @@
 #include "drives/myactuator/myactuator_frames.hpp"
 #include "drives/myactuator/myactuator_setup.hpp"
 #include "motor/drive_configuring.hpp"
+#include "motor/enable_sequence.hpp"
+#include "motor/frame_outbox.hpp"
 #include "motor/solo_motor.hpp"
 
 namespace rc10 {
@@ -35,7 +37,7 @@ class MyActuator_Motor final : public SoloMotor {
   [[nodiscard]] DriveConfiguring* driveConfiguring() noexcept override { return &configuring_; }
 
  private:
-  enum class Step : std::uint8_t { kStatus, kUptime, kReleaseBrake, kObey, kDone };
+  enum class Step : std::uint8_t { kStatus, kUptime, kReleaseBrake, kObey };
 
   void acceptReading(const CanFrame& frame) noexcept;
   FrameVerdict acceptAngle(const CanFrame& frame) noexcept;
@@ -46,7 +48,6 @@ class MyActuator_Motor final : public SoloMotor {
   void watchSilence(MonotonicTime received) noexcept;
   void answered(Step step) noexcept;
 
-  void send(const CanFrame& frame) noexcept;
   void sendCommand(const CanFrame& frame) noexcept;
   void sendQueries(const Tick& tick) noexcept;
   void runSequence(const Tick& tick) noexcept;
@@ -59,7 +60,6 @@ class MyActuator_Motor final : public SoloMotor {
   void followImpedance(const Target& target) noexcept;
   void damp() noexcept;
   void sendMotion(double error_rad, double velocity_error_rad_s, const myactuator::Motion& wanted) noexcept;
-  [[nodiscard]] bool obeying() const noexcept;
 
   int id_;
   MyActuatorSetupCodec setup_codec_{id_};
@@ -69,9 +69,7 @@ class MyActuator_Motor final : public SoloMotor {
   std::array<FrameFilter, 2> filters_;
   std::array<CanId, 2> command_ids_;
 
-  // What is to leave with the next packCommand().
-  std::array<CanFrame, kMaxFramesPerPacker> outgoing_{};
-  std::size_t outgoing_count_ = 0;
+  FrameOutbox outbox_;
   std::optional<CanFrame> last_command_;
   std::uint64_t turns_due_ = 0;  ///< Ticks in which it was told something.
   MonotonicTime next_query_{};
@@ -90,11 +88,7 @@ class MyActuator_Motor final : public SoloMotor {
   bool restarted_ = false;        ///< While it was to obey.
   bool silence_stopped_ = false;  ///< Its protection against silence struck while it was to obey.
 
-  FrameKind last_ordered_ = FrameKind::kRest;
-  Step step_ = Step::kStatus;
-  int tries_ = 0;
-  MonotonicTime asked_at_{};
-  bool failed_ = false;
+  EnableSequence<Step> sequence_;
 };
 
 }  // namespace rc10

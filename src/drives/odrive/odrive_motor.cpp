@@ -36,38 +36,9 @@ constexpr double kFarthestTurns = 100'000.0;
 // Beyond what the speeds of two samples explain.
 constexpr double kJumpTurns = 0.5;
 
-bool isActive(FrameKind kind) noexcept {
-  switch (kind) {
-    case FrameKind::kIdle:
-    case FrameKind::kDamp:
-    case FrameKind::kBrake:
-    case FrameKind::kHold:
-    case FrameKind::kCommand: return true;
-    case FrameKind::kRest:
-    case FrameKind::kPoll:
-    case FrameKind::kEnable:
-    case FrameKind::kDisable: break;
-  }
-  return false;
-}
-
 bool isFinite(const OdrivePair& pair) noexcept {
   return std::isfinite(pair.first) && std::isfinite(pair.second);
 }
-
-/// Appends what there is room for.
-class FrameWriter {
- public:
-  explicit FrameWriter(std::span<CanFrame> out) noexcept : out_(out) {}
-  void add(const CanFrame& frame) noexcept {
-    if (count_ < out_.size()) out_[count_++] = frame;
-  }
-  [[nodiscard]] std::size_t count() const noexcept { return count_; }
-
- private:
-  std::span<CanFrame> out_;
-  std::size_t count_ = 0;
-};
 
 }  // namespace
 
@@ -78,6 +49,7 @@ ODrive_Motor::ODrive_Motor(const MotorSettings& settings, const MotorTraits& tra
                                                            : OdriveFirmware::k06),
       iq_sign_(settings.own.flag("iq_reversed") ? -1.0F : 1.0F),
       filter_count_(firmware_ == OdriveFirmware::k06 ? 5 : 4),
+      sequence_(kAskAgain, kMostAsks),
       input_(odriveSetInputTorque(node_, 0.0F)) {
   using enum OdriveMessage;
   const bool v05 = firmware_ == OdriveFirmware::k05;
@@ -196,38 +168,28 @@ bool ODrive_Motor::stateSince(OdriveAxisState state, MonotonicTime since) const 
   return heartbeat_ && heartbeat_->state == state && heartbeat_at_ >= since;
 }
 
-void ODrive_Motor::enterStep(Step step) noexcept {
-  step_ = step;
-  asked_ = 0;
-}
-
 void ODrive_Motor::runSequence(const Tick& tick) noexcept {
-  ask_ = false;
-  if (step_ == Step::kToIdle && asked_ > 0) {
-    if (heartbeat_ && odriveErrors(firmware_, *heartbeat_) != 0) {
-      enterStep(Step::kFailed);
-    } else if (stateSince(OdriveAxisState::kIdle, asked_first_ - kYoungHeartbeat)) {
-      enterStep(Step::kToClosedLoop);
+  if (begins()) sequence_.begin(Step::kToIdle);
+  const bool well = !heartbeat_ || odriveErrors(firmware_, *heartbeat_) == 0;
+  if (sequence_.awaits(Step::kToIdle)) {
+    if (!well) {
+      sequence_.fail();
+    } else if (stateSince(OdriveAxisState::kIdle, sequence_.askedFirst() - kYoungHeartbeat)) {
+      sequence_.next(Step::kToClosedLoop);
     }
   }
-  if (step_ == Step::kToClosedLoop && asked_ > 0 && heartbeat_ && heartbeat_at_ >= asked_first_) {
-    if (odriveErrors(firmware_, *heartbeat_) != 0) {
-      enterStep(Step::kFailed);
+  if (sequence_.awaits(Step::kToClosedLoop) && heartbeat_ && heartbeat_at_ >= sequence_.askedFirst()) {
+    if (!well) {
+      sequence_.fail();
     } else if (heartbeat_->state == OdriveAxisState::kClosedLoop) {
-      enterStep(Step::kDone);
+      sequence_.finish();
     }
   }
-  if (step_ != Step::kToIdle && step_ != Step::kToClosedLoop) return;
-  if (asked_ > 0 && tick.now - asked_last_ < kAskAgain) return;
-  if (asked_ >= kMostAsks) return enterStep(Step::kFailed);
-  if (asked_ == 0) asked_first_ = tick.now;
-  asked_last_ = tick.now;
-  ++asked_;
-  ask_ = true;
+  ask_ = sequence_.asks(tick.now);
 }
 
 void ODrive_Motor::watchState() noexcept {
-  if (!isActive(ordered())) {
+  if (!obeying()) {
     stopped_ = false;
   } else if (!heartbeat_ || heartbeat_->state != OdriveAxisState::kClosedLoop) {
     stopped_ = true;
@@ -236,18 +198,10 @@ void ODrive_Motor::watchState() noexcept {
 
 void ODrive_Motor::update(const Tick& tick) noexcept {
   limits_ = 0;
-  const FrameKind kind = ordered();
-  if (kind == FrameKind::kEnable) {
-    if (last_order_ != FrameKind::kEnable) enterStep(Step::kToIdle);
-    runSequence(tick);
-  } else {
-    step_ = Step::kNone;
-  }
-  last_order_ = kind;
-  watchState();
-
   const Target target = wanted();
-  if (isActive(kind)) {
+  if (enabling()) runSequence(tick);
+  watchState();
+  if (obeying()) {
     follow(target);
     refreshLimits(tick);
   } else {
@@ -340,20 +294,20 @@ CanFrame ODrive_Motor::limitsFrame() const noexcept {
 }
 
 std::size_t ODrive_Motor::packCommand(const Tick& tick, std::span<CanFrame> out) noexcept {
-  FrameWriter frames(out);
-  if (ask_ && step_ == Step::kToClosedLoop) {
+  FrameOutbox frames;
+  if (enabling() && ask_ && sequence_.at(Step::kToClosedLoop)) {
     frames.add(odriveSetInputTorque(node_, 0.0F));
     frames.add(odriveSetControllerMode(node_, OdriveControlMode::kTorque));
     frames.add(limitsFrame());
     frames.add(odriveSetAxisState(node_, OdriveAxisState::kClosedLoop));
-    return frames.count();
+    return frames.copyTo(out);
   }
   if (clear_repeats_ > 0) {
     --clear_repeats_;
     frames.add(odriveClearErrors(node_));
   }
-  if (!due(tick) && !ask_) return frames.count();
-  if (isActive(ordered())) {
+  if (!due(tick) && !ask_) return frames.copyTo(out);
+  if (obeying()) {
     // The new mode's input before the mode, so that it never acts on an old one; and after it, because the
     // drive puts its own position there when position control begins.
     if (mode_repeats_ > 0) {
@@ -367,34 +321,23 @@ std::size_t ODrive_Motor::packCommand(const Tick& tick, std::span<CanFrame> out)
       limits_sent_at_ = tick.now;
     }
     frames.add(input_);
-  } else if (step_ == Step::kToClosedLoop || step_ == Step::kDone) {
+  } else if (enabling() && (sequence_.at(Step::kToClosedLoop) || sequence_.done())) {
     frames.add(input_);  // 0 N·m: it also keeps the drive's watchdog content.
   } else {
     std::array<CanFrame, 2> rest{};
     for (const auto& frame : std::span{rest}.first(packRest(rest))) frames.add(frame);
   }
-  return frames.count();
+  return frames.copyTo(out);
 }
 
 std::size_t ODrive_Motor::packRest(std::span<CanFrame> out) const noexcept {
-  FrameWriter frames(out);
+  FrameOutbox frames;
   frames.add(odriveSetInputTorque(node_, 0.0F));
   frames.add(odriveSetAxisState(node_, OdriveAxisState::kIdle));
-  return frames.count();
+  return frames.copyTo(out);
 }
 
-SequenceProgress ODrive_Motor::sequenceProgress() const noexcept {
-  // Ordered, but no tick has begun it: what an earlier sequence came to does not count.
-  if (ordered() == FrameKind::kEnable && last_order_ != FrameKind::kEnable) return SequenceProgress::kPending;
-  switch (step_) {
-    case Step::kToIdle:
-    case Step::kToClosedLoop: return SequenceProgress::kPending;
-    case Step::kFailed: return SequenceProgress::kFailed;
-    case Step::kNone:
-    case Step::kDone: break;
-  }
-  return SequenceProgress::kDone;
-}
+SequenceProgress ODrive_Motor::sequenceProgress() const noexcept { return progressOf(sequence_.progress()); }
 
 DriveComplaint ODrive_Motor::complaint() const noexcept {
   if (heartbeat_) {

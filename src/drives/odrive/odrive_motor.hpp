@@ -6,7 +6,8 @@
 
 #include "drives/odrive/odrive_frames.hpp"
 #include "drives/odrive/odrive_model.hpp"
-#include "motor/motor_family.hpp"
+#include "motor/enable_sequence.hpp"
+#include "motor/frame_outbox.hpp"
 #include "motor/solo_motor.hpp"
 
 namespace rc10 {
@@ -38,7 +39,7 @@ class ODrive_Motor : public SoloMotor {
 
  private:
   /// Of the enable sequence.
-  enum class Step : std::uint8_t { kNone, kToIdle, kToClosedLoop, kDone, kFailed };
+  enum class Step : std::uint8_t { kToIdle, kToClosedLoop };
 
   FrameVerdict acceptHeartbeat(const CanFrame& frame) noexcept;
   FrameVerdict acceptEstimates(const CanFrame& frame) noexcept;
@@ -48,7 +49,6 @@ class ODrive_Motor : public SoloMotor {
   [[nodiscard]] bool isJump(MonotonicTime received, double turns, double turns_per_s) const noexcept;
 
   void runSequence(const Tick& tick) noexcept;
-  void enterStep(Step step) noexcept;
   [[nodiscard]] bool stateSince(OdriveAxisState state, MonotonicTime since) const noexcept;
   void watchState() noexcept;
 
@@ -83,12 +83,8 @@ class ODrive_Motor : public SoloMotor {
   MonotonicTime voltage_at_;
 
   // Enabling.
-  FrameKind last_order_ = FrameKind::kRest;
-  Step step_ = Step::kNone;
+  EnableSequence<Step> sequence_;
   bool ask_ = false;  ///< The step's frames are sent in this tick.
-  int asked_ = 0;
-  MonotonicTime asked_first_;
-  MonotonicTime asked_last_;
   bool stopped_ = false;
 
   // To be sent.

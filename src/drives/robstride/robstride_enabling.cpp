@@ -22,34 +22,22 @@ bool RobStrideSetting::agrees(std::uint32_t read_bits) const noexcept {
   return kept >= 0.0F && kept <= std::bit_cast<float>(bits) * kLimitTolerance;
 }
 
+RobStrideEnabling::RobStrideEnabling() noexcept : sequence_(kRobStridePatience, kRobStrideAttempts) {}
+
 void RobStrideEnabling::add(const RobStrideSetting& setting) noexcept {
   if (count_ < settings_.size()) settings_[count_++] = setting;
 }
 
-void RobStrideEnabling::begin() noexcept {
-  step_ = 0;
-  attempts_ = 0;
-  progress_ = SequenceProgress::kPending;
-}
-
 void RobStrideEnabling::advance() noexcept {
-  if (atEnable()) progress_ = SequenceProgress::kDone;
-  ++step_;
-  attempts_ = 0;
+  if (atEnable()) return sequence_.finish();
+  sequence_.next(step() + 1);
 }
 
 std::size_t RobStrideEnabling::pack(MonotonicTime now, const RobStrideCodec& codec, bool operation,
                                     std::span<CanFrame> out) noexcept {
-  if (progress_ != SequenceProgress::kPending || out.size() < 3) return 0;
-  if (attempts_ > 0 && now - sent_at_ < kRobStridePatience) return 0;
-  if (attempts_ == kRobStrideAttempts) {
-    progress_ = SequenceProgress::kFailed;
-    return 0;
-  }
-  ++attempts_;
-  sent_at_ = now;
+  if (out.size() < 3 || !sequence_.asks(now)) return 0;
   if (atSetting()) {
-    const auto& setting = settings_[step_ - 1];
+    const auto& setting = settings_[step() - 1];
     out[0] = codec.write(setting.index, setting.bits);
     out[1] = codec.read(setting.index);
     return 2;
@@ -70,14 +58,14 @@ std::size_t RobStrideEnabling::pack(MonotonicTime now, const RobStrideCodec& cod
 }
 
 void RobStrideEnabling::onFeedback(const RobStrideFeedback& seen) noexcept {
-  if (progress_ != SequenceProgress::kPending || attempts_ == 0) return;
-  if (step_ == 0 ? seen.mode == 0 : atEnable() && seen.mode == kRobStrideRunning) advance();
+  if (!sequence_.awaits()) return;
+  if (step() == 0 ? seen.mode == 0 : atEnable() && seen.mode == kRobStrideRunning) advance();
 }
 
 void RobStrideEnabling::onParameter(std::uint16_t index, bool accepted, std::uint32_t bits) noexcept {
-  if (progress_ != SequenceProgress::kPending || attempts_ == 0 || !accepted) return;
+  if (!sequence_.awaits() || !accepted) return;
   if (atSetting()) {
-    const auto& setting = settings_[step_ - 1];
+    const auto& setting = settings_[step() - 1];
     if (index == setting.index && setting.agrees(bits)) advance();
   } else if (atPosition() && index == robstride_parameter::kPosition &&
              std::isfinite(std::bit_cast<float>(bits))) {

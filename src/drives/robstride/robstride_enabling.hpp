@@ -7,7 +7,7 @@
 
 #include "app/time.hpp"
 #include "drives/robstride/robstride_frames.hpp"
-#include "motor/drive_frames.hpp"
+#include "motor/enable_sequence.hpp"
 
 namespace rc10 {
 
@@ -29,12 +29,14 @@ class RobStrideEnabling {
  public:
   static constexpr std::size_t kMaxSettings = 5;
 
+  RobStrideEnabling() noexcept;
+
   /// Start-up only.
   void add(const RobStrideSetting& setting) noexcept;
   /// Start-up only.
   void readPosition() noexcept { reads_position_ = true; }
-  void begin() noexcept;
-  [[nodiscard]] SequenceProgress progress() const noexcept { return progress_; }
+  void begin() noexcept { sequence_.begin(0); }
+  [[nodiscard]] SequenceProgress progress() const noexcept { return sequence_.progress(); }
 
   /// The frames that are due now, at most 3. `operation`: tell it to be without torque before and after
   /// it is enabled, whatever it was last told.
@@ -44,18 +46,16 @@ class RobStrideEnabling {
   void onParameter(std::uint16_t index, bool accepted, std::uint32_t bits) noexcept;
 
  private:
-  [[nodiscard]] bool atSetting() const noexcept { return step_ >= 1 && step_ <= count_; }
-  [[nodiscard]] bool atPosition() const noexcept { return reads_position_ && step_ == count_ + 1; }
-  [[nodiscard]] bool atEnable() const noexcept { return step_ == count_ + (reads_position_ ? 2 : 1); }
+  [[nodiscard]] bool atSetting() const noexcept { return step() >= 1 && step() <= count_; }
+  [[nodiscard]] bool atPosition() const noexcept { return reads_position_ && step() == count_ + 1; }
+  [[nodiscard]] bool atEnable() const noexcept { return step() == count_ + (reads_position_ ? 2 : 1); }
+  [[nodiscard]] std::size_t step() const noexcept { return sequence_.step(); }
   void advance() noexcept;
 
   std::array<RobStrideSetting, kMaxSettings> settings_{};
   std::size_t count_ = 0;
-  std::size_t step_ = 0;  // 0: stop; then the settings, the position, enable
   bool reads_position_ = false;
-  int attempts_ = 0;
-  MonotonicTime sent_at_{};
-  SequenceProgress progress_ = SequenceProgress::kPending;
+  EnableSequence<std::size_t> sequence_;  ///< 0: stop; then the settings, the position, enable.
 };
 
 }  // namespace rc10

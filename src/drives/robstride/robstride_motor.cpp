@@ -146,17 +146,6 @@ double RobStride_Motor::scaleEndRad() const noexcept {
   return wraps() ? std::min(codec_.position_range_rad, kScaleRad / 2) : codec_.position_range_rad;
 }
 
-bool RobStride_Motor::toldToRun() const noexcept {
-  switch (ordered()) {
-    case FrameKind::kIdle:
-    case FrameKind::kDamp:
-    case FrameKind::kBrake:
-    case FrameKind::kHold:
-    case FrameKind::kCommand: return true;
-    default: return false;
-  }
-}
-
 bool RobStride_Motor::matchesFrame(const CanFrame& frame) const noexcept {
   return frame.type != FrameType::kError && !frame.fd &&
          std::any_of(filters_.begin(), filters_.end(),
@@ -177,8 +166,8 @@ FrameVerdict RobStride_Motor::updateFeedback(const CanFrame& frame) noexcept {
 }
 
 void RobStride_Motor::takeFeedback(const RobStrideFeedback& seen, MonotonicTime received) noexcept {
-  const bool stopped_itself = feedback_.samples > 0 && toldToRun() && seen_.mode == kRobStrideRunning &&
-                              seen.mode != kRobStrideRunning;
+  const bool stopped_itself =
+      feedback_.samples > 0 && obeying() && seen_.mode == kRobStrideRunning && seen.mode != kRobStrideRunning;
   // A fault stops it where it is. Without one it may have been restarted.
   if (stopped_itself && seen.status_bits == 0 && fault_word_ == 0) doubtAngles();
   if (clear_sent_ && seen.status_bits == 0) {
@@ -238,16 +227,14 @@ void RobStride_Motor::takeParameter(const CanFrame& frame) noexcept {
 DriveComplaint RobStride_Motor::complaint() const noexcept {
   const auto native = robStrideNativeCode(fault_word_, seen_.status_bits);
   if (native != 0) return {.fault = robStrideFault(native, model_->cyber_gear), .native_code = native};
-  if (toldToRun() && feedback_.samples > 0 && seen_.mode != kRobStrideRunning) {
+  if (obeying() && feedback_.samples > 0 && seen_.mode != kRobStrideRunning) {
     return {.fault = FaultCode::kDriveStopped, .native_code = 0};
   }
   return {};
 }
 
 SequenceProgress RobStride_Motor::sequenceProgress() const noexcept {
-  if (ordered() != FrameKind::kEnable) return SequenceProgress::kDone;
-  // Ordered a moment ago: what there is belongs to the last time.
-  return last_order_ == FrameKind::kEnable ? enabling_.progress() : SequenceProgress::kPending;
+  return progressOf(enabling_.progress());
 }
 
 std::size_t RobStride_Motor::packReference(const Tick& tick, std::span<CanFrame> out) noexcept {
@@ -271,14 +258,13 @@ std::size_t RobStride_Motor::packReference(const Tick& tick, std::span<CanFrame>
 
 std::size_t RobStride_Motor::packCommand(const Tick& tick, std::span<CanFrame> out) noexcept {
   if (out.size() < 3) return 0;
-  const bool enabling = ordered() == FrameKind::kEnable;
-  if (enabling && enabling_.progress() == SequenceProgress::kPending) {
+  if (enabling() && enabling_.progress() == SequenceProgress::kPending) {
     limit_sent_a_ = -1.0F;
     return enabling_.pack(tick.now, codec_, control_ == RobStrideControl::kOperation, out);
   }
-  std::size_t count = enabling || toldToRun() ? 0 : configuring_.pack(tick.now, out);
+  std::size_t count = enabling() || obeying() ? 0 : configuring_.pack(tick.now, out);
   if (!due(tick)) return count;
-  if (toldToRun() || (enabling && enabling_.progress() == SequenceProgress::kDone)) {
+  if (obeying() || (enabling() && enabling_.progress() == SequenceProgress::kDone)) {
     count += packReference(tick, out);
   } else {
     out[count++] = codec_.stop(clear_ordered_);

@@ -49,7 +49,6 @@ class RobStride_Motor : public SoloMotor {
     float current_limit_a = 0.0F;
   };
 
-  [[nodiscard]] bool toldToRun() const noexcept;
   [[nodiscard]] double limitNm() const noexcept;
   [[nodiscard]] double limitRadS() const noexcept;
   [[nodiscard]] double ratio() const noexcept;  ///< Turns of the drive's output per turn of the shaft.
@@ -91,7 +90,6 @@ class RobStride_Motor : public SoloMotor {
   double position_rad_ = 0.0;      ///< Of the drive's output, over turns.
   double scale_offset_rad_ = 0.0;  ///< The drive's own count of turns is this much more.
   bool angles_in_doubt_ = false;   ///< Until the next enabling.
-  FrameKind last_order_ = FrameKind::kRest;
   bool clear_ordered_ = false;
   bool clear_sent_ = false;
 

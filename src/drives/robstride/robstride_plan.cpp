@@ -27,12 +27,11 @@ double RobStride_Motor::positionRadFor(double total_angle_deg) const noexcept {
 
 void RobStride_Motor::update(const Tick& /*tick*/) noexcept {
   limits_ = 0;
-  if (ordered() == FrameKind::kEnable && last_order_ != FrameKind::kEnable) {
+  Target target = wanted();
+  if (enabling() && begins()) {
     enabling_.begin();
     angles_in_doubt_ = false;
   }
-  last_order_ = ordered();
-  Target target = wanted();
   if (!std::isfinite(target.value)) target = Target{};
   if (target.mode != ControlMode::kBrake) brake_held_ = false;
   operation_ = {};

@@ -13,9 +13,7 @@ constexpr int kMaxUnanswered = 5;
 constexpr Duration kRestFirst = milliseconds{100};
 constexpr Duration kMustHaveHeard = milliseconds{300};
 
-bool atRest(FrameKind kind) noexcept {
-  return kind == FrameKind::kRest || kind == FrameKind::kPoll || kind == FrameKind::kDisable;
-}
+bool atRest(FrameKind kind) noexcept { return dutyOf(kind) == DriveDuty::kRest; }
 
 }  // namespace
 
@@ -39,7 +37,7 @@ void VescInquiry::update(const Tick& tick, FrameKind ordered) noexcept {
 }
 
 void VescInquiry::watchSilence(const Tick& tick) noexcept {
-  const bool may = atRest(ordered_) || ordered_ == FrameKind::kEnable;
+  const bool may = dutyOf(ordered_) != DriveDuty::kObey;
   if (!may || proof_ != Proof::kOpen || !heard_) {
     silent_ = false;
     return;
@@ -57,6 +55,7 @@ void VescInquiry::watchSilence(const Tick& tick) noexcept {
   }
 }
 
+// No EnableSequence: it asks all the time, and enabling only waits for answers that are fresh.
 void VescInquiry::enable() noexcept {
   if (progress_ != SequenceProgress::kPending) return;
   if (proof_ == Proof::kRefuted) {
@@ -98,7 +97,7 @@ void VescInquiry::take(const VescAnswer& answer) noexcept {
   }
   status_ = answer.value;
   const bool timed_out = (answer.value & kVescTimedOut) != 0;
-  const bool commanded = !atRest(ordered_) && ordered_ != FrameKind::kEnable;
+  const bool commanded = dutyOf(ordered_) == DriveDuty::kObey;
   deaf_ = timed_out && commanded && now_ - ordered_since_ >= kMustHaveHeard;
   if (timed_out) {
     proof_ = Proof::kProven;

@@ -79,13 +79,6 @@ bool VESC_Motor::setZero(double angle_deg) noexcept {
   return SoloMotor::setZero(angle_deg);
 }
 
-/// Ordered something that a drive which has stopped by itself would not do.
-bool VESC_Motor::obeying() const noexcept {
-  const FrameKind kind = ordered();
-  return kind == FrameKind::kCommand || kind == FrameKind::kIdle || kind == FrameKind::kDamp ||
-         kind == FrameKind::kBrake || kind == FrameKind::kHold;
-}
-
 bool VESC_Motor::silent() const noexcept {
   return feedback_.samples == 0 || now_ - feedback_.received > patience_;
 }
@@ -100,8 +93,7 @@ void VESC_Motor::update(const Tick& tick) noexcept {
   const Target target = wanted();
   const bool loops = options_.angle == VescAngle::kTachometer && (target.mode == ControlMode::kTotalAngle) &&
                      kind != FrameKind::kDamp;
-  if (!loops || kind != last_kind_) looping_ = false;
-  last_kind_ = kind;
+  if (!loops || begins()) looping_ = false;
   const bool brakes = target.mode == ControlMode::kBrake || kind == FrameKind::kHold ||
                       (target.mode == ControlMode::kVelocity && options_.velocity_zero == VescStop::kBrake);
   if (!brakes) locked_ = false;

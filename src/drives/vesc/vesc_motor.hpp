@@ -64,7 +64,6 @@ class VESC_Motor : public SoloMotor {
   void restarted() noexcept;
   [[nodiscard]] bool gapTooLong(Duration gap) const noexcept;
 
-  [[nodiscard]] bool obeying() const noexcept;
   void obey(const Target& target) noexcept;
   void release() noexcept;
   void setCurrent(double amperes) noexcept;
@@ -101,8 +100,7 @@ class VESC_Motor : public SoloMotor {
   bool restarted_ = false;
   bool locked_ = false;  ///< The handbrake holds.
   bool looping_ = false;
-  bool limited_ = false;  ///< The angle loop runs into the velocity limit.
-  FrameKind last_kind_ = FrameKind::kRest;
+  bool limited_ = false;            ///< The angle loop runs into the velocity limit.
   double position_deg_ = 0.0;       ///< Of the drive, going on over turns.
   double loop_position_deg_ = 0.0;  ///< Output, at the last step of the angle loop.
   double loop_rpm_ = 0.0;
