@@ -392,9 +392,9 @@ TEST(CubemarsServo, AModelWithUnsignedCurrentReportsNone) {
 TEST(CubemarsServo, EveryErrorOfTheDriveIsAComplaint) {
   Servo bench(servo());
   for (const auto& fault : cubemarsFaults()) {
-    (void)bench.feedServo(0.0, 0.0, 0.0, 30, fault.code);
+    (void)bench.feedServo(0.0, 0.0, 0.0, 30, static_cast<std::uint8_t>(fault.native));
     EXPECT_EQ(bench.motor().complaint().fault, fault.fault) << fault.words;
-    EXPECT_EQ(bench.motor().complaint().native_code, fault.code);
+    EXPECT_EQ(bench.motor().complaint().native_code, fault.native);
   }
   (void)bench.feedServo(0.0, 0.0, 0.0, 30, 99);
   EXPECT_EQ(bench.motor().complaint().fault, FaultCode::kDriveOther);

@@ -247,12 +247,12 @@ TEST_F(LKTechMotor, ADriveThatIsOffWhileItIsToObeyIsAComplaint) {
 TEST_F(LKTechMotor, EveryKnownErrorHasItsFaultCodeAndIsClearedOnRequestOnly) {
   comeOnline();
   motor_->order(FrameKind::kPoll);
-  for (const LKTechFault& fault : lktechFaults()) {
+  for (const DriveFault& fault : lktechFaults()) {
     CanFrame frame = frameOf("141#9A1E600964000000");
-    frame.data[7] = fault.bit;
+    frame.data[7] = static_cast<std::uint8_t>(fault.native);
     hear(frame);
     EXPECT_EQ(motor_->complaint().fault, fault.fault) << fault.words;
-    EXPECT_EQ(motor_->complaint().native_code, fault.bit);
+    EXPECT_EQ(motor_->complaint().native_code, fault.native);
     EXPECT_THAT(tick(), Not(Contains("141#9B00000000000000")));
   }
   motor_->clearComplaint();

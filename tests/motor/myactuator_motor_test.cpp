@@ -234,12 +234,12 @@ TEST_F(MyActuatorMotor, TheRunTimeMayWrapWithoutBeingARestart) {
 
 TEST_F(MyActuatorMotor, EveryKnownErrorHasItsFaultCode) {
   comeOnline();
-  for (const MyActuatorFault& fault : myactuatorFaults()) {
+  for (const DriveFault& fault : myactuatorFaults()) {
     CanFrame frame = frameOf("241#9A1E0000E0010000");
-    writeLittleEndian(frame.data, 6, fault.bit);
+    writeLittleEndian(frame.data, 6, static_cast<std::uint16_t>(fault.native));
     hear(frame);
     EXPECT_EQ(motor_.complaint().fault, fault.fault) << fault.words;
-    EXPECT_EQ(motor_.complaint().native_code, fault.bit);
+    EXPECT_EQ(motor_.complaint().native_code, fault.native);
     EXPECT_FALSE(fault.words.empty());
   }
   hear(frameOf("241#9A1E0000E0010002"));

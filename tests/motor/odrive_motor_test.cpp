@@ -446,9 +446,9 @@ TEST_F(OdriveMotor, EveryKnownErrorHasAFaultAndAnyOtherIsAFaultToo) {
     make(odriveSettings(model));
     const auto firmware = findOdriveModel(model)->firmware;
     for (const auto& row : odriveFaults(firmware)) {
-      heartbeat(row.bit, 1);
+      heartbeat(row.native, 1);
       EXPECT_EQ(motor_->complaint().fault, row.fault) << row.words;
-      EXPECT_EQ(motor_->complaint().native_code, row.bit);
+      EXPECT_EQ(motor_->complaint().native_code, row.native);
     }
     heartbeat(0x20'0000, 1);
     EXPECT_EQ(motor_->complaint().fault, FaultCode::kDriveOther);
@@ -461,8 +461,8 @@ TEST_F(OdriveMotor, OneBitOfATableMeansOneThing) {
   for (const auto firmware : {OdriveFirmware::k05, OdriveFirmware::k06}) {
     std::set<std::uint32_t> bits;
     for (const auto& row : odriveFaults(firmware)) {
-      EXPECT_TRUE(bits.insert(row.bit).second) << row.words;
-      EXPECT_EQ(row.bit & (row.bit - 1), 0U) << row.words;
+      EXPECT_TRUE(bits.insert(row.native).second) << row.words;
+      EXPECT_EQ(row.native & (row.native - 1), 0U) << row.words;
     }
   }
 }

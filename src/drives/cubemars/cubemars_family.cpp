@@ -5,7 +5,6 @@
 #include <memory>
 #include <string>
 #include <string_view>
-#include <vector>
 
 #include "drives/cubemars/cubemars_frames.hpp"
 #include "drives/cubemars/cubemars_mit.hpp"
@@ -129,12 +128,6 @@ constexpr ModeSet kMitModes{ControlMode::kCoast, ControlMode::kCurrent,    Contr
 // Commands of the servo protocol are 0 to 8 in bits 8 and up; more is no command.
 constexpr std::uint32_t kServoCommandMask = 0x1FFF'F0FFU;
 
-std::vector<std::string_view> namesOf(std::span<const CubeMarsModel> models) {
-  std::vector<std::string_view> names;
-  for (const auto& model : models) names.push_back(model.name);
-  return names;
-}
-
 /// How often what is told leaves, and for drives that only answer also what comes back.
 double commandsPerSecond(const MotorSettings& settings) {
   return static_cast<double>(settings.tick_hz) / std::max(settings.command_divider, 1);
@@ -142,10 +135,10 @@ double commandsPerSecond(const MotorSettings& settings) {
 
 class CubeMarsFamily final : public MotorFamily {
  public:
-  CubeMarsFamily() : names_(namesOf(cubemarsModels())) {}
-
   [[nodiscard]] std::string_view name() const noexcept override { return "CubeMars"; }
-  [[nodiscard]] std::span<const std::string_view> models() const noexcept override { return names_; }
+  [[nodiscard]] std::span<const std::string_view> models() const noexcept override {
+    return cubemarsModelNames();
+  }
   [[nodiscard]] std::span<const FamilyKey> keys() const noexcept override { return kCubeMarsKeys; }
   [[nodiscard]] MotorTraits traits(std::string_view model, const OwnValues& own) const override {
     return cubemarsTraits(cubemarsSetup(model, own));
@@ -204,9 +197,6 @@ class CubeMarsFamily final : public MotorFamily {
     }
     return registerSolo(std::make_unique<CubeMarsMit>(settings, setup), parts);
   }
-
- private:
-  std::vector<std::string_view> names_;
 };
 
 }  // namespace

@@ -4,6 +4,8 @@
 #include <array>
 #include <string>
 
+#include "motor/model_table.hpp"
+
 // Sources. Ranges: CubeMars AK series module driver manual V1.0.8 (MIT table), which TMotorCANControl,
 // KMR_CubeMars and cubemars_driver_node repeat; V3: cubemars_driver_node and epicallypowerful. Pole pairs:
 // TMotorCANControl, epicallypowerful, cubemars_servo_can; for AK70-10 also foc_encoder_ratio 21 in the
@@ -95,13 +97,13 @@ constexpr std::array kCubeMarsModels{
 
 // 6 and 7: the newer manuals and cubemars_driver_node. Older ones call 6 "phase unbalance" and have no 7.
 constexpr std::array kCubeMarsFaults{
-    CubeMarsFault{1, FaultCode::kDriveMotorTooHot, "motor too hot"},
-    CubeMarsFault{2, FaultCode::kDriveOverCurrent, "over-current"},
-    CubeMarsFault{3, FaultCode::kDriveOverVoltage, "over-voltage"},
-    CubeMarsFault{4, FaultCode::kDriveUnderVoltage, "under-voltage"},
-    CubeMarsFault{5, FaultCode::kDriveEncoder, "encoder"},
-    CubeMarsFault{6, FaultCode::kDriveTooHot, "power stage too hot (older firmware: phase unbalance)"},
-    CubeMarsFault{7, FaultCode::kDriveStalled, "motor stalled"}};
+    DriveFault{1, FaultCode::kDriveMotorTooHot, "motor too hot"},
+    DriveFault{2, FaultCode::kDriveOverCurrent, "over-current"},
+    DriveFault{3, FaultCode::kDriveOverVoltage, "over-voltage"},
+    DriveFault{4, FaultCode::kDriveUnderVoltage, "under-voltage"},
+    DriveFault{5, FaultCode::kDriveEncoder, "encoder"},
+    DriveFault{6, FaultCode::kDriveTooHot, "power stage too hot (older firmware: phase unbalance)"},
+    DriveFault{7, FaultCode::kDriveStalled, "motor stalled"}};
 
 double messageDegPerDeg(const CubeMarsModel& model, int pole_pairs, std::string_view basis) noexcept {
   if (basis == "rotor") return model.gear_ratio;
@@ -113,10 +115,13 @@ double messageDegPerDeg(const CubeMarsModel& model, int pole_pairs, std::string_
 
 std::span<const CubeMarsModel> cubemarsModels() noexcept { return kCubeMarsModels; }
 
+std::span<const std::string_view> cubemarsModelNames() noexcept {
+  static constexpr auto kNames = modelNames(kCubeMarsModels);
+  return kNames;
+}
+
 const CubeMarsModel* findCubemarsModel(std::string_view name) noexcept {
-  const auto found = std::find_if(kCubeMarsModels.begin(), kCubeMarsModels.end(),
-                                  [name](const auto& model) { return model.name == name; });
-  return found == kCubeMarsModels.end() ? nullptr : &*found;
+  return findModel(kCubeMarsModels, name);
 }
 
 CubeMarsSetup cubemarsSetup(std::string_view model_name, const OwnValues& own) {
@@ -138,14 +143,10 @@ CubeMarsSetup cubemarsSetup(std::string_view model_name, const OwnValues& own) {
   return setup;
 }
 
-std::span<const CubeMarsFault> cubemarsFaults() noexcept { return kCubeMarsFaults; }
+std::span<const DriveFault> cubemarsFaults() noexcept { return kCubeMarsFaults; }
 
 FaultCode cubemarsFault(std::uint8_t code) noexcept {
-  if (code == 0) return FaultCode::kNone;
-  for (const auto& known : kCubeMarsFaults) {
-    if (known.code == code) return known.fault;
-  }
-  return FaultCode::kDriveOther;
+  return code == 0 ? FaultCode::kNone : faultOfCode(kCubeMarsFaults, code);
 }
 
 }  // namespace rc10

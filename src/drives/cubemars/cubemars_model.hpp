@@ -4,6 +4,7 @@
 #include <span>
 #include <string_view>
 
+#include "motor/drive_faults.hpp"
 #include "motor/motor_family.hpp"
 
 namespace rc10 {
@@ -39,6 +40,7 @@ struct CubeMarsModel {
 };
 
 [[nodiscard]] std::span<const CubeMarsModel> cubemarsModels() noexcept;
+[[nodiscard]] std::span<const std::string_view> cubemarsModelNames() noexcept;
 /// nullptr if there is no such model.
 [[nodiscard]] const CubeMarsModel* findCubemarsModel(std::string_view name) noexcept;
 
@@ -56,13 +58,8 @@ struct CubeMarsSetup {
 /// `model` is one of cubemarsModels(), `own` has all of the family's keys.
 [[nodiscard]] CubeMarsSetup cubemarsSetup(std::string_view model, const OwnValues& own);
 
-/// What a native error code means. The words are those of docs/motors/cubemars.md.
-struct CubeMarsFault {
-  std::uint8_t code = 0;
-  FaultCode fault = FaultCode::kNone;
-  std::string_view words;
-};
-[[nodiscard]] std::span<const CubeMarsFault> cubemarsFaults() noexcept;
+/// Native error codes. The words are those of docs/motors/cubemars.md.
+[[nodiscard]] std::span<const DriveFault> cubemarsFaults() noexcept;
 /// kNone for 0, kDriveOther for a code that the table does not have.
 [[nodiscard]] FaultCode cubemarsFault(std::uint8_t code) noexcept;
 

@@ -1,6 +1,6 @@
 #include "drives/damiao/damiao_model.hpp"
 
-#include <algorithm>
+#include "motor/model_table.hpp"
 
 // Scales, ratios, torque constants, drive currents, speeds, resistances and inertias are those of the table
 // that Seeed publishes (wiki.seeedstudio.com/damiao_series), if nothing else is said. Where the libraries
@@ -153,11 +153,7 @@ constexpr std::array kDamiaoModels{
                 .gains = kDirectGains},
 };
 
-constexpr auto kDamiaoNames = [] {
-  std::array<std::string_view, kDamiaoModels.size()> names{};
-  for (std::size_t i = 0; i < kDamiaoModels.size(); ++i) names[i] = kDamiaoModels[i].name;
-  return names;
-}();
+constexpr auto kDamiaoNames = modelNames(kDamiaoModels);
 
 }  // namespace
 
@@ -165,11 +161,7 @@ std::span<const DamiaoModel> damiaoModels() noexcept { return kDamiaoModels; }
 
 std::span<const std::string_view> damiaoModelNames() noexcept { return kDamiaoNames; }
 
-const DamiaoModel* findDamiaoModel(std::string_view name) noexcept {
-  const auto* found = std::find_if(kDamiaoModels.begin(), kDamiaoModels.end(),
-                                   [name](const auto& model) { return model.name == name; });
-  return found != kDamiaoModels.end() ? found : nullptr;
-}
+const DamiaoModel* findDamiaoModel(std::string_view name) noexcept { return findModel(kDamiaoModels, name); }
 
 DamiaoControl damiaoControl(std::string_view name) noexcept {
   for (std::size_t i = 0; i < kDamiaoControlNames.size(); ++i) {

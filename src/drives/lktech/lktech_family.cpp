@@ -44,7 +44,9 @@ constexpr DriveFrames kLktechFrames{.rest = Provision::kFrame,
 class LKTechFamily final : public MotorFamily {
  public:
   [[nodiscard]] std::string_view name() const noexcept override { return "LK-Tech"; }
-  [[nodiscard]] std::span<const std::string_view> models() const noexcept override { return lktechModels(); }
+  [[nodiscard]] std::span<const std::string_view> models() const noexcept override {
+    return lktechModelNames();
+  }
   [[nodiscard]] std::span<const FamilyKey> keys() const noexcept override { return kLktechKeys; }
 
   [[nodiscard]] MotorTraits traits(std::string_view name, const OwnValues& own) const override {

@@ -1,7 +1,8 @@
 #include "drives/lktech/lktech_model.hpp"
 
-#include <algorithm>
 #include <array>
+
+#include "motor/model_table.hpp"
 
 namespace rc10 {
 namespace {
@@ -36,14 +37,10 @@ constexpr std::array kLktechModels{
     lktechModel("LK-MG6012E-i8", 8.0, kMgAmperes, 1.09F / 8.0F, 16.0F),
 };
 
-constexpr auto kLktechNames = [] {
-  std::array<std::string_view, kLktechModels.size()> names{};
-  for (std::size_t i = 0; i < names.size(); ++i) names[i] = kLktechModels[i].name;
-  return names;
-}();
+constexpr auto kLktechNames = modelNames(kLktechModels);
 
 // Bits 0 and 3: protocol V2.35. The others: open drivers for MF9025, which agree; V2.35 calls them unused.
-constexpr std::array<LKTechFault, 8> kLktechFaults{{
+constexpr std::array<DriveFault, 8> kLktechFaults{{
     {0x20, FaultCode::kDriveHardware, "short circuit"},
     {0x10, FaultCode::kDriveOverCurrent, "over-current"},
     {0x40, FaultCode::kDriveStalled, "motor stalled"},
@@ -56,21 +53,10 @@ constexpr std::array<LKTechFault, 8> kLktechFaults{{
 
 }  // namespace
 
-std::span<const std::string_view> lktechModels() noexcept { return kLktechNames; }
+std::span<const std::string_view> lktechModelNames() noexcept { return kLktechNames; }
 
-const LKTechModel* findLktechModel(std::string_view name) noexcept {
-  const auto* const found = std::find_if(kLktechModels.begin(), kLktechModels.end(),
-                                         [name](const LKTechModel& m) { return m.name == name; });
-  return found == kLktechModels.end() ? nullptr : found;
-}
+const LKTechModel* findLktechModel(std::string_view name) noexcept { return findModel(kLktechModels, name); }
 
-std::span<const LKTechFault> lktechFaults() noexcept { return kLktechFaults; }
-
-DriveComplaint lktechComplaint(std::uint8_t errors) noexcept {
-  for (const LKTechFault& fault : kLktechFaults) {
-    if ((errors & fault.bit) != 0) return {.fault = fault.fault, .native_code = errors};
-  }
-  return {};
-}
+std::span<const DriveFault> lktechFaults() noexcept { return kLktechFaults; }
 
 }  // namespace rc10

@@ -3,7 +3,7 @@
 #include <span>
 #include <string_view>
 
-#include "motor/fault_code.hpp"
+#include "motor/drive_faults.hpp"
 
 namespace rc10 {
 
@@ -16,20 +16,11 @@ struct LKTechModel {
   float rotor_torque_nm_per_a = 0.0F;  ///< 0: unknown. Times the gear at the output.
 };
 
-[[nodiscard]] std::span<const std::string_view> lktechModels() noexcept;
+[[nodiscard]] std::span<const std::string_view> lktechModelNames() noexcept;
 /// nullptr if there is no such model.
 [[nodiscard]] const LKTechModel* findLktechModel(std::string_view name) noexcept;
 
-/// One bit of the error byte of the reply to 0x9A.
-struct LKTechFault {
-  std::uint8_t bit = 0;
-  FaultCode fault = FaultCode::kNone;
-  std::string_view words;
-};
-
-/// The most serious first.
-[[nodiscard]] std::span<const LKTechFault> lktechFaults() noexcept;
-/// What an error byte means: its most serious bit.
-[[nodiscard]] DriveComplaint lktechComplaint(std::uint8_t errors) noexcept;
+/// Bits of the error byte of the reply to 0x9A, the most serious first.
+[[nodiscard]] std::span<const DriveFault> lktechFaults() noexcept;
 
 }  // namespace rc10

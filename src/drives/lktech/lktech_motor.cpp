@@ -295,7 +295,7 @@ SequenceProgress LKTech_Motor::sequenceProgress() const noexcept { return progre
 // ---- Complaints
 
 DriveComplaint LKTech_Motor::complaint() const noexcept {
-  if (errors_ != 0) return lktechComplaint(errors_);
+  if (errors_ != 0) return complaintOfBits(lktechFaults(), errors_);
   if (restarted_ || (off_ && obeying())) {
     return {.fault = FaultCode::kDriveStopped, .native_code = off_ ? 0x10U : 0U};
   }

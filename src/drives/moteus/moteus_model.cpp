@@ -3,34 +3,32 @@
 #include <algorithm>
 #include <array>
 
+#include "motor/drive_faults.hpp"
+
 namespace rc10 {
 namespace {
 
-struct NativeFault {
-  std::uint32_t native;
-  FaultCode fault;
-};
 // Source: docs/protocol/registers.md, register 0x00F; fw/error.h.
 constexpr std::array kMoteusFaults{
-    NativeFault{32, FaultCode::kDriveCalibration},   // no magnet sensed, or current offset
-    NativeFault{33, FaultCode::kDriveHardware},      // gate driver, mostly for lack of voltage
-    NativeFault{34, FaultCode::kDriveOverVoltage},   // servo.max_voltage
-    NativeFault{35, FaultCode::kDriveEncoder},       //
-    NativeFault{36, FaultCode::kDriveCalibration},   // motor not configured
-    NativeFault{37, FaultCode::kDriveHardware},      // PWM cycle overrun
-    NativeFault{38, FaultCode::kDriveTooHot},        // board, or motor if it has a thermistor
-    NativeFault{39, FaultCode::kDriveLimit},         // started outside servopos bounds
-    NativeFault{40, FaultCode::kDriveUnderVoltage},  //
-    NativeFault{41, FaultCode::kDriveSetting},       // configured while it ran
-    NativeFault{42, FaultCode::kDriveEncoder},       // no commutation encoder
-    NativeFault{43, FaultCode::kDriveEncoder},       // no output encoder
-    NativeFault{44, FaultCode::kDriveHardware},      // gate driver does not enable
-    NativeFault{45, FaultCode::kDriveSetting},       // stop position with limits
-    NativeFault{46, FaultCode::kDriveHardware},      // timing
-    NativeFault{47, FaultCode::kDriveSetting},       // bemf_feedforward without acceleration limit
-    NativeFault{48, FaultCode::kDriveSetting},       // servopos bounds outside the range
-    NativeFault{49, FaultCode::kDriveOverload},      // servo.fault_position_error
-    NativeFault{50, FaultCode::kDriveOverload},      // servo.fault_velocity_error
+    DriveFault{32, FaultCode::kDriveCalibration},   // no magnet sensed, or current offset
+    DriveFault{33, FaultCode::kDriveHardware},      // gate driver, mostly for lack of voltage
+    DriveFault{34, FaultCode::kDriveOverVoltage},   // servo.max_voltage
+    DriveFault{35, FaultCode::kDriveEncoder},       //
+    DriveFault{36, FaultCode::kDriveCalibration},   // motor not configured
+    DriveFault{37, FaultCode::kDriveHardware},      // PWM cycle overrun
+    DriveFault{38, FaultCode::kDriveTooHot},        // board, or motor if it has a thermistor
+    DriveFault{39, FaultCode::kDriveLimit},         // started outside servopos bounds
+    DriveFault{40, FaultCode::kDriveUnderVoltage},  //
+    DriveFault{41, FaultCode::kDriveSetting},       // configured while it ran
+    DriveFault{42, FaultCode::kDriveEncoder},       // no commutation encoder
+    DriveFault{43, FaultCode::kDriveEncoder},       // no output encoder
+    DriveFault{44, FaultCode::kDriveHardware},      // gate driver does not enable
+    DriveFault{45, FaultCode::kDriveSetting},       // stop position with limits
+    DriveFault{46, FaultCode::kDriveHardware},      // timing
+    DriveFault{47, FaultCode::kDriveSetting},       // bemf_feedforward without acceleration limit
+    DriveFault{48, FaultCode::kDriveSetting},       // servopos bounds outside the range
+    DriveFault{49, FaultCode::kDriveOverload},      // servo.fault_position_error
+    DriveFault{50, FaultCode::kDriveOverload},      // servo.fault_velocity_error
 };
 
 struct NativeLimit {
@@ -57,12 +55,7 @@ MoteusSettings moteusSettings(const OwnValues& own) {
   return settings;
 }
 
-FaultCode moteusFault(std::uint32_t native) noexcept {
-  for (const auto& row : kMoteusFaults) {
-    if (row.native == native) return row.fault;
-  }
-  return FaultCode::kDriveOther;
-}
+FaultCode moteusFault(std::uint32_t native) noexcept { return faultOfCode(kMoteusFaults, native); }
 
 std::uint32_t moteusLimit(std::uint32_t native) noexcept {
   for (const auto& row : kLimits) {

@@ -52,7 +52,7 @@ class MyActuatorFamily final : public MotorFamily {
  public:
   [[nodiscard]] std::string_view name() const noexcept override { return "MyActuator"; }
   [[nodiscard]] std::span<const std::string_view> models() const noexcept override {
-    return myactuatorModels();
+    return myactuatorModelNames();
   }
   [[nodiscard]] std::span<const FamilyKey> keys() const noexcept override { return kMyActuatorKeys; }
 

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "motor/model_table.hpp"
+
 namespace rc10 {
 namespace {
 
@@ -41,50 +43,36 @@ constexpr std::array kMyActuatorModels{
     myactuatorModel("RMD-X15-400", 11.4, 130.0F, 23.0F, 80.0F, 400.0F),
 };
 
-constexpr auto kMyActuatorNames = [] {
-  std::array<std::string_view, kMyActuatorModels.size()> names{};
-  for (std::size_t i = 0; i < names.size(); ++i) names[i] = kMyActuatorModels[i].name;
-  return names;
-}();
+constexpr auto kMyActuatorNames = modelNames(kMyActuatorModels);
 
 // Motion Protocol V4.2 (2024-05), 2.14 for the bits and 8.2 for the levels. 2b-t/myactuator_rmd agrees on the
 // bits; 0x0200, 0x0400 and 0x0800 occur without a published meaning.
-constexpr std::array<MyActuatorFault, 9> kMyActuatorFaults{{
-    {0x0010, FaultCode::kDriveOverCurrent, true, "phase over-current: short circuit, lost phase, or damage"},
-    {0x0002, FaultCode::kDriveStalled, true, "motor stalled"},
-    {0x0080, FaultCode::kDriveSetting, true, "a setting could not be written: settings may be lost"},
-    {0x2000, FaultCode::kDriveCalibration, false, "encoder calibration is far off"},
-    {0x1000, FaultCode::kDriveMotorTooHot, false, "motor too hot"},
-    {0x0008, FaultCode::kDriveOverVoltage, false, "supply voltage too high"},
-    {0x0004, FaultCode::kDriveUnderVoltage, false, "supply voltage too low"},
-    {0x0040, FaultCode::kDriveOverload, false, "input power too high"},
-    {0x0100, FaultCode::kDriveLimit, false, "turned faster than its own limit"},
+constexpr std::array<DriveFault, 9> kMyActuatorFaults{{
+    {0x0010, FaultCode::kDriveOverCurrent, "phase over-current: short circuit, lost phase, or damage", true},
+    {0x0002, FaultCode::kDriveStalled, "motor stalled", true},
+    {0x0080, FaultCode::kDriveSetting, "a setting could not be written: settings may be lost", true},
+    {0x2000, FaultCode::kDriveCalibration, "encoder calibration is far off"},
+    {0x1000, FaultCode::kDriveMotorTooHot, "motor too hot"},
+    {0x0008, FaultCode::kDriveOverVoltage, "supply voltage too high"},
+    {0x0004, FaultCode::kDriveUnderVoltage, "supply voltage too low"},
+    {0x0040, FaultCode::kDriveOverload, "input power too high"},
+    {0x0100, FaultCode::kDriveLimit, "turned faster than its own limit"},
 }};
 
 }  // namespace
 
-std::span<const std::string_view> myactuatorModels() noexcept { return kMyActuatorNames; }
+std::span<const std::string_view> myactuatorModelNames() noexcept { return kMyActuatorNames; }
 
 const MyActuatorModel* findMyactuatorModel(std::string_view name) noexcept {
-  const auto* const found = std::find_if(kMyActuatorModels.begin(), kMyActuatorModels.end(),
-                                         [name](const MyActuatorModel& m) { return m.name == name; });
-  return found == kMyActuatorModels.end() ? nullptr : found;
+  return findModel(kMyActuatorModels, name);
 }
 
-std::span<const MyActuatorFault> myactuatorFaults() noexcept { return kMyActuatorFaults; }
-
-DriveComplaint myactuatorComplaint(std::uint16_t errors) noexcept {
-  if (errors == 0) return {};
-  for (const MyActuatorFault& fault : kMyActuatorFaults) {
-    if ((errors & fault.bit) != 0) return {.fault = fault.fault, .native_code = errors};
-  }
-  return {.fault = FaultCode::kDriveOther, .native_code = errors};
-}
+std::span<const DriveFault> myactuatorFaults() noexcept { return kMyActuatorFaults; }
 
 bool myactuatorNeedsReset(std::uint16_t errors) noexcept {
-  return std::any_of(
-      kMyActuatorFaults.begin(), kMyActuatorFaults.end(),
-      [errors](const MyActuatorFault& fault) { return fault.needs_reset && (errors & fault.bit) != 0; });
+  return std::any_of(kMyActuatorFaults.begin(), kMyActuatorFaults.end(), [errors](const DriveFault& fault) {
+    return fault.needs_restart && (errors & fault.native) != 0;
+  });
 }
 
 }  // namespace rc10

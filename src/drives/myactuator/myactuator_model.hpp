@@ -4,7 +4,7 @@
 #include <span>
 #include <string_view>
 
-#include "motor/fault_code.hpp"
+#include "motor/drive_faults.hpp"
 
 namespace rc10 {
 
@@ -18,22 +18,12 @@ struct MyActuatorModel {
   float nominal_v = 48.0F;
 };
 
-[[nodiscard]] std::span<const std::string_view> myactuatorModels() noexcept;
+[[nodiscard]] std::span<const std::string_view> myactuatorModelNames() noexcept;
 /// nullptr if there is no such model.
 [[nodiscard]] const MyActuatorModel* findMyactuatorModel(std::string_view name) noexcept;
 
-/// One bit of the error word of the reply to 0x9A.
-struct MyActuatorFault {
-  std::uint16_t bit = 0;
-  FaultCode fault = FaultCode::kNone;
-  bool needs_reset = false;  ///< "Level 1": the drive does not recover before it is restarted.
-  std::string_view words;
-};
-
-/// The most serious first.
-[[nodiscard]] std::span<const MyActuatorFault> myactuatorFaults() noexcept;
-/// What an error word means: its most serious bit. kDriveOther for bits without a meaning that is known.
-[[nodiscard]] DriveComplaint myactuatorComplaint(std::uint16_t errors) noexcept;
+/// Bits of the error word of the reply to 0x9A, the most serious first; "level 1" needs a restart.
+[[nodiscard]] std::span<const DriveFault> myactuatorFaults() noexcept;
 /// Whether only a restart of the drive clears all of these.
 [[nodiscard]] bool myactuatorNeedsReset(std::uint16_t errors) noexcept;
 

@@ -403,7 +403,7 @@ SequenceProgress MyActuator_Motor::sequenceProgress() const noexcept {
 // ---- Complaints
 
 DriveComplaint MyActuator_Motor::complaint() const noexcept {
-  if (errors_ != 0) return myactuatorComplaint(errors_);
+  if (errors_ != 0) return complaintOfBits(myactuatorFaults(), errors_);
   if (restarted_) return {.fault = FaultCode::kDriveStopped, .native_code = 0};
   if (silence_stopped_) {
     return {.fault = FaultCode::kDriveCommunication,

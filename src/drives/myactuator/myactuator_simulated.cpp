@@ -209,7 +209,7 @@ void MyActuatorDrive::fault(std::uint32_t native_code) noexcept {
   cause_ = static_cast<std::uint16_t>(native_code);
   std::uint16_t kept = 0;
   for (const auto& known : myactuatorFaults()) {
-    if (known.needs_reset) kept = static_cast<std::uint16_t>(kept | (errors_ & known.bit));
+    if (known.needs_restart) kept = static_cast<std::uint16_t>(kept | (errors_ & known.native));
   }
   errors_ = static_cast<std::uint16_t>(cause_ | kept);
   if (errors_ != 0) release();

@@ -18,8 +18,6 @@ constexpr double kLimitsHz = 2.0;
 constexpr int kHighestNode = 62;
 constexpr CanId kAddressBroadcast{0x7E6, false};
 
-constexpr std::array<std::string_view, 3> kOdriveNames{"ODrive_S1", "ODrive_Pro", "ODrive_v3"};
-
 constexpr std::array kOdriveKeys{
     FamilyKey{.name = "torque_constant_nm_per_a",
               .kind = Kind::kNumber,
@@ -61,7 +59,9 @@ constexpr ModeSet kOdriveModes{ControlMode::kCoast, ControlMode::kCurrent,    Co
 class OdriveFamily : public MotorFamily {
  public:
   [[nodiscard]] std::string_view name() const noexcept override { return "ODrive"; }
-  [[nodiscard]] std::span<const std::string_view> models() const noexcept override { return kOdriveNames; }
+  [[nodiscard]] std::span<const std::string_view> models() const noexcept override {
+    return odriveModelNames();
+  }
   [[nodiscard]] std::span<const FamilyKey> keys() const noexcept override { return kOdriveKeys; }
 
   [[nodiscard]] MotorTraits traits(std::string_view model, const OwnValues& own) const override {

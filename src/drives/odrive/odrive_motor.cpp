@@ -341,7 +341,7 @@ SequenceProgress ODrive_Motor::sequenceProgress() const noexcept { return progre
 
 DriveComplaint ODrive_Motor::complaint() const noexcept {
   if (heartbeat_) {
-    const auto reported = odriveComplaint(firmware_, odriveErrors(firmware_, *heartbeat_));
+    const auto reported = complaintOfBits(odriveFaults(firmware_), odriveErrors(firmware_, *heartbeat_));
     if (reported.fault != FaultCode::kNone) return reported;
   }
   if (stopped_) return {.fault = FaultCode::kDriveStopped, .native_code = 0};

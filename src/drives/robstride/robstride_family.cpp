@@ -102,13 +102,10 @@ DriveFrames framesOf(RobStrideControl control) {
 
 class RobStrideFamily final : public MotorFamily {
  public:
-  RobStrideFamily() {
-    std::size_t at = 0;
-    for (const auto& model : robStrideModels()) names_[at++] = model.name;
-  }
-
   [[nodiscard]] std::string_view name() const noexcept override { return "RobStride"; }
-  [[nodiscard]] std::span<const std::string_view> models() const noexcept override { return names_; }
+  [[nodiscard]] std::span<const std::string_view> models() const noexcept override {
+    return robStrideModelNames();
+  }
   [[nodiscard]] std::span<const FamilyKey> keys() const noexcept override { return kRobStrideKeys; }
 
   [[nodiscard]] MotorTraits traits(std::string_view name, const OwnValues& own) const override {
@@ -191,9 +188,6 @@ class RobStrideFamily final : public MotorFamily {
                                                           BusParts& parts) const override {
     return registerSolo(std::make_unique<RobStride_Motor>(settings), parts);
   }
-
- private:
-  std::array<std::string_view, 9> names_{};
 };
 
 }  // namespace

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "bus/byte_order.hpp"
+#include "motor/drive_faults.hpp"
 
 namespace rc10 {
 namespace {
@@ -26,27 +27,21 @@ double fromRaw(std::uint16_t raw, double low, double high) noexcept {
 
 double fromRaw(std::uint16_t raw, double range) noexcept { return fromRaw(raw, -range, range); }
 
-struct Fault {
-  std::uint32_t bits;
-  FaultCode code;
-};
-
 // The fault word's bits come first: they say more than the status bits of the feedback.
 constexpr std::array kRobStrideFaults{
-    Fault{1U << 1U, FaultCode::kDriveHardware},      // driver IC
-    Fault{1U << 8U, FaultCode::kDriveHardware},      // hardware identification
-    Fault{1U << 9U, FaultCode::kDriveEncoder},       // position initialisation
-    Fault{0x1'0030U, FaultCode::kDriveOverCurrent},  // phases A (16), B (4), C (5)
-    Fault{1U << 3U, FaultCode::kDriveOverVoltage},   Fault{1U << 2U, FaultCode::kDriveUnderVoltage},
-    Fault{1U << 0U, FaultCode::kDriveMotorTooHot},   Fault{1U << 7U, FaultCode::kDriveCalibration},
-    Fault{1U << 14U, FaultCode::kDriveOverload},  // stalled with too much current
-    Fault{1U << 25U, FaultCode::kDriveOverCurrent},  Fault{1U << 27U, FaultCode::kDriveEncoder},
-    Fault{1U << 24U, FaultCode::kDriveUnderVoltage}, Fault{1U << 26U, FaultCode::kDriveMotorTooHot},
-    Fault{1U << 28U, FaultCode::kDriveOverload},     Fault{1U << 29U, FaultCode::kDriveCalibration},
+    DriveFault{1U << 1U, FaultCode::kDriveHardware},      // driver IC
+    DriveFault{1U << 8U, FaultCode::kDriveHardware},      // hardware identification
+    DriveFault{1U << 9U, FaultCode::kDriveEncoder},       // position initialisation
+    DriveFault{0x1'0030U, FaultCode::kDriveOverCurrent},  // phases A (16), B (4), C (5)
+    DriveFault{1U << 3U, FaultCode::kDriveOverVoltage},   DriveFault{1U << 2U, FaultCode::kDriveUnderVoltage},
+    DriveFault{1U << 0U, FaultCode::kDriveMotorTooHot},   DriveFault{1U << 7U, FaultCode::kDriveCalibration},
+    DriveFault{1U << 14U, FaultCode::kDriveOverload},  // stalled with too much current
+    DriveFault{1U << 25U, FaultCode::kDriveOverCurrent},  DriveFault{1U << 27U, FaultCode::kDriveEncoder},
+    DriveFault{1U << 24U, FaultCode::kDriveUnderVoltage}, DriveFault{1U << 26U, FaultCode::kDriveMotorTooHot},
+    DriveFault{1U << 28U, FaultCode::kDriveOverload},     DriveFault{1U << 29U, FaultCode::kDriveCalibration},
 };
 // The CyberGear calls its bits 8 to 15 overload, and the status bit 20 a hall sensor's fault.
 constexpr std::uint32_t kCyberGearOverload = 0xFF00U;
-constexpr std::uint32_t kStatusBit20 = 1U << 28U;
 
 }  // namespace
 
@@ -150,11 +145,9 @@ CanFrame RobStrideCodec::fault(std::uint32_t fault_word) const noexcept {
 
 FaultCode robStrideFault(std::uint32_t native_code, bool cyber_gear) noexcept {
   if (cyber_gear && (native_code & kCyberGearOverload) != 0) return FaultCode::kDriveOverload;
-  for (const auto& fault : kRobStrideFaults) {
-    if ((native_code & fault.bits) == 0) continue;
-    return fault.bits == kStatusBit20 && cyber_gear ? FaultCode::kDrivePhase : fault.code;
-  }
-  return native_code != 0 ? FaultCode::kDriveOther : FaultCode::kNone;
+  const FaultCode fault = faultOfBits(kRobStrideFaults, native_code);
+  // What is left of overload is status bit 20.
+  return cyber_gear && fault == FaultCode::kDriveOverload ? FaultCode::kDrivePhase : fault;
 }
 
 }  // namespace rc10

@@ -1,8 +1,9 @@
 #include "drives/robstride/robstride_model.hpp"
 
-#include <algorithm>
 #include <array>
 #include <numbers>
+
+#include "motor/model_table.hpp"
 
 namespace rc10 {
 namespace {
@@ -80,11 +81,14 @@ constexpr std::array kRobStrideModels{
 double RobStrideModel::torqueNmPerA() const noexcept { return torque_nm_per_arms / std::numbers::sqrt2; }
 
 const RobStrideModel* findRobStrideModel(std::string_view name) noexcept {
-  const auto* const found = std::find_if(kRobStrideModels.begin(), kRobStrideModels.end(),
-                                         [name](const auto& model) { return model.name == name; });
-  return found != kRobStrideModels.end() ? found : nullptr;
+  return findModel(kRobStrideModels, name);
 }
 
 std::span<const RobStrideModel> robStrideModels() noexcept { return kRobStrideModels; }
+
+std::span<const std::string_view> robStrideModelNames() noexcept {
+  static constexpr auto kNames = modelNames(kRobStrideModels);
+  return kNames;
+}
 
 }  // namespace rc10

@@ -34,5 +34,6 @@ struct RobStrideModel {
 [[nodiscard]] const RobStrideModel* findRobStrideModel(std::string_view name) noexcept;
 
 [[nodiscard]] std::span<const RobStrideModel> robStrideModels() noexcept;
+[[nodiscard]] std::span<const std::string_view> robStrideModelNames() noexcept;
 
 }  // namespace rc10
