@@ -31,6 +31,12 @@ template <std::floating_point T>
   return wrapPeriod(angle_deg, T{360});
 }
 
+/// The same as a float: the nearest may be the full turn itself, which is 0.
+[[nodiscard]] inline float wrapDegreesToFloat(double angle_deg) noexcept {
+  const auto wrapped_deg = static_cast<float>(wrapDegrees(angle_deg));
+  return wrapped_deg < 360.0F ? wrapped_deg : 0.0F;
+}
+
 /// The shortest way from `from` to `to` on a circle, in [-period/2, period/2), whatever turn the two
 /// are given in.
 template <std::floating_point T>

@@ -43,12 +43,6 @@ inline constexpr float kHugeTerm = 1e30F;
   return static_cast<float>(std::clamp(value, -kBound, kBound));
 }
 
-/// What is no number is 0; infinities stay, for limits to cut off.
-template <std::floating_point T>
-[[nodiscard]] inline T numberOr0(T value) noexcept {
-  return std::isnan(value) ? T{0} : value;
-}
-
 /// What is no number, or infinite, is 0.
 template <std::floating_point T>
 [[nodiscard]] inline T finiteOr0(T value) noexcept {

@@ -73,11 +73,9 @@ class Motor_Base : public FrameListener {
     ordered_ = kind;
     in_force_.reset();
   }
-  /// The same, with what update() is to follow in place of the target: that, within its limits.
-  void order(FrameKind kind, const Target& in_force) noexcept {
-    ordered_ = kind;
-    in_force_ = in_force;
-  }
+  /// The same, with what update() is to follow in place of the target: that, within its limits. As in
+  /// setTarget() what is no number in an optional field is 0, so update() need not look.
+  void order(FrameKind kind, const Target& in_force) noexcept;
   [[nodiscard]] FrameKind ordered() const noexcept { return ordered_; }
 
   /// Before a target of this mode is shaped and followed: a motor whose encoder is absolute, and which may

@@ -48,9 +48,7 @@ void SoloMotor::acceptSample(MonotonicTime received, double drive_position_deg) 
   feedback_.received = received;
   ++feedback_.samples;
   feedback_.total_angle_deg = reference_.totalAngleDeg();
-  // The nearest float may be the full turn itself.
-  const auto angle_deg = static_cast<float>(wrapDegrees(feedback_.total_angle_deg));
-  feedback_.angle_deg = angle_deg < 360.0F ? angle_deg : 0.0F;
+  feedback_.angle_deg = wrapDegreesToFloat(feedback_.total_angle_deg);
   feedback_.zeroed = reference_.known();
 }
 
@@ -63,8 +61,7 @@ void SoloMotor::loseReference() noexcept {
 bool SoloMotor::setZero(double angle_deg) noexcept {
   if (!reference_.setZero(angle_deg)) return false;
   feedback_.total_angle_deg = reference_.totalAngleDeg();
-  const auto wrapped_deg = static_cast<float>(wrapDegrees(feedback_.total_angle_deg));
-  feedback_.angle_deg = wrapped_deg < 360.0F ? wrapped_deg : 0.0F;
+  feedback_.angle_deg = wrapDegreesToFloat(feedback_.total_angle_deg);
   feedback_.zeroed = true;
   holding_ = false;
   return true;

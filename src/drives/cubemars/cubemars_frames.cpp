@@ -56,11 +56,13 @@ struct MitCodes {
 };
 
 [[nodiscard]] MitCodes toCodes(const CubeMarsRanges& r, const MitCommand& c) noexcept {
-  return {.position = toCode(numberOr0(c.position_rad), -r.position_rad, r.position_rad, 16),
-          .velocity = toCode(numberOr0(c.velocity_rad_s), -r.velocity_rad_s, r.velocity_rad_s, 12),
+  return {.position =
+              toCode(finiteOr0(within(c.position_rad, r.position_rad)), -r.position_rad, r.position_rad, 16),
+          .velocity = toCode(finiteOr0(within(c.velocity_rad_s, r.velocity_rad_s)), -r.velocity_rad_s,
+                             r.velocity_rad_s, 12),
           .stiffness = toCode(c.stiffness_nm_per_rad, 0.0, CubeMarsRanges::kStiffnessNmPerRad, 12),
           .damping = toCode(c.damping_nms_per_rad, 0.0, CubeMarsRanges::kDampingNmsPerRad, 12),
-          .torque = toCode(numberOr0(c.torque_nm), -r.torque_nm, r.torque_nm, 12)};
+          .torque = toCode(finiteOr0(within(c.torque_nm, r.torque_nm)), -r.torque_nm, r.torque_nm, 12)};
 }
 
 [[nodiscard]] constexpr std::uint8_t byte(std::uint32_t value) noexcept {

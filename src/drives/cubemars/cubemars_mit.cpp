@@ -169,7 +169,7 @@ CubeMarsMit::Law CubeMarsMit::velocityLaw(double output_rpm, double torque_ff_nm
 // `stiffness` and `damping` at the drive's output.
 CubeMarsMit::Law CubeMarsMit::angleLaw(const Target& target, double stiffness, double damping,
                                        bool bound_speed) noexcept {
-  const double ff_nm = finiteOr0(static_cast<double>(target.torque_ff_nm));
+  const double ff_nm = static_cast<double>(target.torque_ff_nm);
   if (!inRange()) {
     // The command cannot say positions out there, and what the drive would make of one is not known.
     limits_ |= kLimitAngle;
@@ -178,7 +178,7 @@ CubeMarsMit::Law CubeMarsMit::angleLaw(const Target& target, double stiffness, d
   const double reach_rad = setup().ranges.position_rad;
   const double wanted_rad = drivePositionFor(target.value) * kRadPerDeg;
   Law law{.position_rad = std::clamp(wanted_rad, -reach_rad, reach_rad),
-          .velocity_rad_s = driveRadS(boundRpm(finiteOr0(static_cast<double>(target.velocity_ff_rpm)))),
+          .velocity_rad_s = driveRadS(boundRpm(static_cast<double>(target.velocity_ff_rpm))),
           .stiffness_nm_per_rad = std::clamp(stiffness, 0.0, CubeMarsRanges::kStiffnessNmPerRad),
           .damping_nms_per_rad = std::clamp(damping, 0.0, CubeMarsRanges::kDampingNmsPerRad),
           .torque_nm = torqueToDrive(ff_nm)};
@@ -200,7 +200,7 @@ CubeMarsMit::Law CubeMarsMit::angleLaw(const Target& target, double stiffness, d
 }
 
 CubeMarsMit::Law CubeMarsMit::lawOf(const Target& target) noexcept {
-  const double ff_nm = finiteOr0(static_cast<double>(target.torque_ff_nm));
+  const double ff_nm = static_cast<double>(target.torque_ff_nm);
   switch (target.mode) {
     case ControlMode::kCurrent: {
       const double amperes = std::clamp(target.value, -kMostAmperes, kMostAmperes);

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "app/limits.hpp"
 #include "app/units.hpp"
 #include "drives/damiao/damiao_family.hpp"
 
@@ -209,8 +208,8 @@ damiao::MitCommand Damiao_Motor::mitLaw(const Target& target) const noexcept {
   }
   // Gains are at the output shaft; an own gear behind the drive counts squared.
   const double gear = toDrive(1.0) * toDrive(1.0);
-  const double ff_nm = torqueToDrive(finiteOr0(static_cast<double>(target.torque_ff_nm)));
-  const double ff_rad_s = toDrive(finiteOr0(static_cast<double>(target.velocity_ff_rpm))) * kRadPerSPerRpm;
+  const double ff_nm = torqueToDrive(static_cast<double>(target.torque_ff_nm));
+  const double ff_rad_s = toDrive(static_cast<double>(target.velocity_ff_rpm)) * kRadPerSPerRpm;
   switch (target.mode) {
     case ControlMode::kCurrent:
       law.torque_nm = torqueToDrive(target.value * static_cast<double>(torqueNmPerA())) + ff_nm;

@@ -4,6 +4,8 @@
 #include <cmath>
 
 #include "app/angle.hpp"
+#include "app/units.hpp"
+#include "bus/byte_order.hpp"
 
 namespace rc10 {
 namespace {
@@ -13,14 +15,6 @@ constexpr std::int32_t kCountsPerTurn = 8192;
 // Host loops must not act on old feedback even if nobody else notices. Far above any spacing that
 // the supervisor accepts as fresh.
 constexpr float kLongestSilenceSeconds = 0.1F;
-
-std::uint16_t bigEndian(const CanFrame& frame, std::size_t at) noexcept {
-  return static_cast<std::uint16_t>((frame.data[at] << 8) | frame.data[at + 1]);
-}
-
-std::int16_t signedBigEndian(const CanFrame& frame, std::size_t at) noexcept {
-  return static_cast<std::int16_t>(bigEndian(frame, at));
-}
 
 bool isAngle(ControlMode mode) noexcept {
   return mode == ControlMode::kAngle || mode == ControlMode::kTotalAngle;
@@ -45,7 +39,7 @@ DJI_Motor::DJI_Motor(const DjiMotorConfig& config)
       encoder_(model_->encoder),
       loops_(config.loops),
       spacing_(std::chrono::milliseconds{1}),
-      degrees_per_count_(direction_ * 360.0 / (kCountsPerTurn * gear_ratio_)),
+      degrees_per_count_(direction_ * kDegPerTurn / (kCountsPerTurn * gear_ratio_)),
       rpm_per_raw_(static_cast<float>(direction_ / gear_ratio_)),
       amperes_per_raw_(static_cast<float>(direction_) * model_->feedback_full_scale_a /
                        static_cast<float>(model_->feedback_raw_full_scale)),
@@ -64,8 +58,9 @@ FrameVerdict DJI_Motor::updateFeedback(const CanFrame& frame) noexcept {
   if (frame.type != FrameType::kData || frame.fd || frame.length != kFeedbackLength) {
     return FrameVerdict::kMalformed;
   }
-  const std::int16_t rotor_rpm = signedBigEndian(frame, 2);
-  if (!encoder_.update(bigEndian(frame, 0), rotor_rpm, frame.received)) return FrameVerdict::kMalformed;
+  const std::int16_t rotor_rpm = readBigEndian<std::int16_t>(frame.payload(), 2);
+  if (!encoder_.update(readBigEndian<std::uint16_t>(frame.payload(), 0), rotor_rpm, frame.received))
+    return FrameVerdict::kMalformed;
 
   const bool first = feedback_.samples == 0;
   spacing_.add(first ? Duration{0} : frame.received - feedback_.received);
@@ -73,7 +68,8 @@ FrameVerdict DJI_Motor::updateFeedback(const CanFrame& frame) noexcept {
   ++feedback_.samples;
   feedback_.jumps = encoder_.jumps();
   feedback_.velocity_rpm = static_cast<float>(rotor_rpm) * rpm_per_raw_;
-  feedback_.current_a = static_cast<float>(signedBigEndian(frame, 4)) * amperes_per_raw_;
+  feedback_.current_a =
+      static_cast<float>(readBigEndian<std::int16_t>(frame.payload(), 4)) * amperes_per_raw_;
   feedback_.torque_nm = feedback_.current_a * torque_nm_per_a_;
   if (model_->reports_temperature) feedback_.temperature_c = static_cast<float>(frame.data[6]);
 
@@ -97,9 +93,7 @@ void DJI_Motor::updateAngles() noexcept {
   // Counts are subtracted as integers: in double the result is exact up to 2^53 counts.
   const auto counts = static_cast<double>(encoder_.totalCounts() - reference_counts_);
   feedback_.total_angle_deg = reference_deg_ + counts * degrees_per_count_;
-  // The nearest float may be the full turn itself.
-  const auto angle_deg = static_cast<float>(wrapDegrees(feedback_.total_angle_deg));
-  feedback_.angle_deg = angle_deg < 360.0F ? angle_deg : 0.0F;
+  feedback_.angle_deg = wrapDegreesToFloat(feedback_.total_angle_deg);
 }
 
 bool DJI_Motor::setZero(double angle_deg) noexcept {

@@ -1,6 +1,7 @@
 #include <chrono>
 #include <cmath>
 
+#include "app/units.hpp"
 #include "drives/moteus/moteus_motor.hpp"
 
 // What Moteus_Motor takes from the answers of its drive.
@@ -73,12 +74,12 @@ FrameVerdict Moteus_Motor::updateFeedback(const CanFrame& frame) noexcept {
   }
   if (!std::isfinite(reading.position_rev)) return FrameVerdict::kAccepted;  // it has no encoder
   takePosition(reading.position_rev, anew);
-  feedback_.velocity_rpm = static_cast<float>(toOutput(reading.velocity_rev_s * 60.0));
+  feedback_.velocity_rpm = static_cast<float>(toOutput(reading.velocity_rev_s * kRpmPerTurnPerS));
   feedback_.torque_nm = static_cast<float>(torqueToOutput(reading.torque_nm));
   feedback_.current_a = static_cast<float>(reading.current_a) * direction();
   feedback_.voltage_v = static_cast<float>(reading.voltage_v);
   feedback_.temperature_c = static_cast<float>(reading.temperature_c);
-  acceptSample(frame.received, position_rev_ * 360.0);
+  acceptSample(frame.received, position_rev_ * kDegPerTurn);
   return FrameVerdict::kAccepted;
 }
 

@@ -6,6 +6,7 @@
 #include <cstdlib>
 
 #include "app/limits.hpp"
+#include "app/units.hpp"
 
 namespace rc10 {
 namespace {
@@ -187,22 +188,21 @@ double Moteus_Motor::torqueLimitNm() const noexcept {
 
 double Moteus_Motor::boundedTorqueNm(double torque_nm) noexcept {
   const double limit_nm = torqueLimitNm();
-  const double bounded_nm = std::clamp(numberOr0(torque_nm), -limit_nm, limit_nm);
-  if (std::abs(numberOr0(torque_nm)) > limit_nm) limits_ |= kLimitCurrent;
-  return bounded_nm;
+  if (std::abs(torque_nm) > limit_nm) limits_ |= kLimitCurrent;
+  return std::clamp(torque_nm, -limit_nm, limit_nm);
 }
 
 double Moteus_Motor::boundedRpm(double rpm) noexcept {
-  double limit_rpm = std::abs(toOutput(kFastestRevPerS * 60.0));
+  double limit_rpm = std::abs(toOutput(kFastestRevPerS * kRpmPerTurnPerS));
   if (velocityLimitRpm() > 0.0F) limit_rpm = std::min(limit_rpm, static_cast<double>(velocityLimitRpm()));
-  if (std::abs(numberOr0(rpm)) > limit_rpm) limits_ |= kLimitVelocity;
-  return std::clamp(numberOr0(rpm), -limit_rpm, limit_rpm);
+  if (std::abs(rpm) > limit_rpm) limits_ |= kLimitVelocity;
+  return std::clamp(rpm, -limit_rpm, limit_rpm);
 }
 
 double Moteus_Motor::onWire(double position_rev) noexcept {
   const double away_rev = position_rev - position_rev_;
   if (!(std::abs(away_rev) <= kFarthestRev)) limits_ |= kLimitAngle;
-  const double bounded_rev = position_rev_ + std::clamp(numberOr0(away_rev), -kFarthestRev, kFarthestRev);
+  const double bounded_rev = position_rev_ + finiteOr0(std::clamp(away_rev, -kFarthestRev, kFarthestRev));
   return std::remainder(bounded_rev - wire_rev_, kRangeRev);
 }
 
@@ -219,8 +219,8 @@ void Moteus_Motor::followTorque(const Target& target) noexcept {
 
 void Moteus_Motor::followVelocity(const Target& target, const Tick& tick) noexcept {
   const double rpm = boundedRpm(target.value);
-  const double rev_s = toDrive(rpm) / 60.0;
-  const double dt_s = std::clamp(numberOr0(static_cast<double>(tick.dt_s)), 0.0, 0.01);
+  const double rev_s = toDrive(rpm) / kRpmPerTurnPerS;
+  const double dt_s = std::clamp(static_cast<double>(tick.dt_s), 0.0, 0.01);
   const double ahead_rev = course_rev_ ? *course_rev_ + rev_s * dt_s - position_rev_ : 0.0;
   const double slip_rev = kSlipRev + std::abs(rev_s) * slip_s_;
   course_rev_ = position_rev_ + std::clamp(ahead_rev, -slip_rev, slip_rev);
@@ -232,11 +232,11 @@ void Moteus_Motor::followVelocity(const Target& target, const Tick& tick) noexce
 }
 
 void Moteus_Motor::followAngle(const Target& target) noexcept {
-  motion_.position_rev = onWire(drivePositionFor(target.value) / 360.0);
-  motion_.velocity_rev_s = toDrive(boundedRpm(static_cast<double>(target.velocity_ff_rpm))) / 60.0;
+  motion_.position_rev = onWire(drivePositionFor(target.value) / kDegPerTurn);
+  motion_.velocity_rev_s = toDrive(boundedRpm(static_cast<double>(target.velocity_ff_rpm))) / kRpmPerTurnPerS;
   motion_.torque_nm = torqueToDrive(boundedTorqueNm(static_cast<double>(target.torque_ff_nm)));
   motion_.stiff = motion_.damped = motion_.profile = true;
-  motion_.limit_rev_s = std::abs(toDrive(static_cast<double>(velocityLimitRpm()))) / 60.0;
+  motion_.limit_rev_s = std::abs(toDrive(static_cast<double>(velocityLimitRpm()))) / kRpmPerTurnPerS;
   setCommand(std::clamp(target.value, -kLargestAngleDeg, kLargestAngleDeg), CommandUnit::kNative);
 }
 

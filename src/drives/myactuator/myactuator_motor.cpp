@@ -278,12 +278,10 @@ void MyActuator_Motor::followImpedance(const Target& target) noexcept {
   const double per_drive = 1.0 / (turns * turns);
   myactuator::Motion motion{
       .angle_rad = finiteOr0(drive_deg) * kRadPerDeg,
-      .velocity_rad_s = toDrive(finiteOr0(static_cast<double>(target.velocity_ff_rpm))) * kRadPerSPerRpm,
-      .stiffness_nm_per_rad =
-          std::max(finiteOr0(static_cast<double>(target.stiffness_nm_per_rad)), 0.0) * per_drive,
-      .damping_nms_per_rad =
-          std::max(finiteOr0(static_cast<double>(target.damping_nms_per_rad)), 0.0) * per_drive,
-      .torque_ff_nm = torqueToDrive(finiteOr0(static_cast<double>(target.torque_ff_nm)))};
+      .velocity_rad_s = toDrive(static_cast<double>(target.velocity_ff_rpm)) * kRadPerSPerRpm,
+      .stiffness_nm_per_rad = std::max(static_cast<double>(target.stiffness_nm_per_rad), 0.0) * per_drive,
+      .damping_nms_per_rad = std::max(static_cast<double>(target.damping_nms_per_rad), 0.0) * per_drive,
+      .torque_ff_nm = torqueToDrive(static_cast<double>(target.torque_ff_nm))};
   if (const double limit = std::abs(toDrive(static_cast<double>(velocityLimitRpm()))) * kRadPerSPerRpm;
       limit > 0.0) {
     const double bounded = std::clamp(motion.velocity_rad_s, -limit, limit);

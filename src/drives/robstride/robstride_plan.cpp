@@ -46,7 +46,7 @@ void RobStride_Motor::update(const Tick& /*tick*/) noexcept {
 
 double RobStride_Motor::clampVelocity(double rad_s) noexcept {
   const double limit = limitRadS();
-  const double clamped = std::clamp(numberOr0(rad_s), -limit, limit);
+  const double clamped = std::clamp(rad_s, -limit, limit);
   if (clamped != rad_s) limits_ |= kLimitVelocity;
   return clamped;
 }
@@ -56,14 +56,14 @@ void RobStride_Motor::planOperation(const Target& target) noexcept {
   const double square = ratio() * ratio();
   const bool knows_itself = feedback_.samples > 0;
   const auto take_feed_forward = [&] {
-    wanted.torque_nm = torqueToDrive(numberOr0(static_cast<double>(target.torque_ff_nm)));
+    wanted.torque_nm = torqueToDrive(static_cast<double>(target.torque_ff_nm));
     wanted.velocity_rad_s =
         clampVelocity(toDrive(static_cast<double>(target.velocity_ff_rpm)) / kRpmPerRadPerS);
   };
   switch (target.mode) {
     case ControlMode::kCurrent:
       wanted.torque_nm = torqueToDrive(target.value * static_cast<double>(torqueNmPerA()) +
-                                       numberOr0(static_cast<double>(target.torque_ff_nm)));
+                                       static_cast<double>(target.torque_ff_nm));
       break;
     case ControlMode::kVelocity:
       take_feed_forward();
@@ -80,10 +80,8 @@ void RobStride_Motor::planOperation(const Target& target) noexcept {
     case ControlMode::kImpedance:
       take_feed_forward();
       wanted.position_rad = positionRadFor(target.value);
-      wanted.stiffness_nm_per_rad =
-          std::max(numberOr0(static_cast<double>(target.stiffness_nm_per_rad)), 0.0) / square;
-      wanted.damping_nms_per_rad =
-          std::max(numberOr0(static_cast<double>(target.damping_nms_per_rad)), 0.0) / square;
+      wanted.stiffness_nm_per_rad = std::max(static_cast<double>(target.stiffness_nm_per_rad), 0.0) / square;
+      wanted.damping_nms_per_rad = std::max(static_cast<double>(target.damping_nms_per_rad), 0.0) / square;
       break;
     default:
       if (ordered() == FrameKind::kDamp) wanted.damping_nms_per_rad = kOperationDampShare * velocity_gain_;
@@ -134,7 +132,7 @@ void RobStride_Motor::limitTorque(RobStrideOperation& wanted) noexcept {
   const auto arriving = codec_.operation(codec_.operate(wanted));
   wanted.stiffness_nm_per_rad = arriving.stiffness_nm_per_rad;
   wanted.damping_nms_per_rad = arriving.damping_nms_per_rad;
-  const double feed_forward = std::clamp(numberOr0(wanted.torque_nm), -limit, limit);
+  const double feed_forward = finiteOr0(std::clamp(wanted.torque_nm, -limit, limit));
   if (feed_forward != wanted.torque_nm) limits_ |= kLimitCurrent;
   wanted.torque_nm = feed_forward;
   if (wanted.stiffness_nm_per_rad <= 0.0 && wanted.damping_nms_per_rad <= 0.0) return;
@@ -153,7 +151,7 @@ void RobStride_Motor::limitTorque(RobStrideOperation& wanted) noexcept {
 
 void RobStride_Motor::planCurrent(const Target& target) noexcept {
   if (target.mode == ControlMode::kCurrent) {
-    const double asked = target.value + numberOr0(static_cast<double>(target.torque_ff_nm / torqueNmPerA()));
+    const double asked = target.value + static_cast<double>(target.torque_ff_nm / torqueNmPerA());
     const double limit = static_cast<double>(effortLimit());
     const double clamped = std::clamp(asked, -limit, limit);
     if (clamped != asked) limits_ |= kLimitCurrent;
@@ -182,8 +180,8 @@ void RobStride_Motor::planPosition(const Target& target) noexcept {
   }
   if (feedback_.samples == 0) return;
   if (follows && angles_in_doubt_) limits_ |= kLimitAngle;
-  const double position_rad = numberOr0(positionRadFor(wanted_deg));
-  const double reachable = std::clamp(position_rad, -kFarthestReferenceRad, kFarthestReferenceRad);
+  const double position_rad = positionRadFor(wanted_deg);
+  const double reachable = finiteOr0(std::clamp(position_rad, -kFarthestReferenceRad, kFarthestReferenceRad));
   if (reachable != position_rad) limits_ |= kLimitAngle;
   reference_.value = static_cast<float>(reachable);
   reference_.current_limit_a = follows && !angles_in_doubt_ ? effortLimit() : 0.0F;

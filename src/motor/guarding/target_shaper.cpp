@@ -4,13 +4,10 @@
 #include <cmath>
 
 #include "app/angle.hpp"
+#include "app/units.hpp"
 
 namespace rc10 {
 namespace {
-
-[[nodiscard]] bool controlsAngle(ControlMode mode) noexcept {
-  return mode == ControlMode::kAngle || mode == ControlMode::kTotalAngle || mode == ControlMode::kImpedance;
-}
 
 [[nodiscard]] bool isEffort(ControlMode mode) noexcept {
   return mode == ControlMode::kCurrent || mode == ControlMode::kVoltage || mode == ControlMode::kDuty;
@@ -25,7 +22,7 @@ namespace {
 }  // namespace
 
 bool TargetShaper::firstStepAllowed(const Target& asked, const MotorFeedback& feedback) const noexcept {
-  return !controlsAngle(asked.mode) ||
+  return !needsReference(asked.mode) ||
          !(std::fabs(distanceDeg(asked, feedback)) > config_.max_first_step_deg);
 }
 
@@ -35,12 +32,12 @@ TargetShaper::Shaped TargetShaper::step(const Target& asked, const MotorFeedback
     mode_ = asked.mode;
     if (isEffort(mode_)) value_ = static_cast<double>(effort_in_force);
     if (mode_ == ControlMode::kVelocity) value_ = static_cast<double>(feedback.velocity_rpm);
-    if (controlsAngle(mode_)) value_ = feedback.total_angle_deg;
+    if (needsReference(mode_)) value_ = feedback.total_angle_deg;
     if (!std::isfinite(value_)) value_ = 0.0;
   }
   if (isEffort(mode_)) return shapeEffort(asked, feedback, dt_s);
   if (mode_ == ControlMode::kVelocity) return shapeVelocity(asked, feedback, dt_s);
-  if (controlsAngle(mode_)) return shapeAngle(asked, feedback, dt_s);
+  if (needsReference(mode_)) return shapeAngle(asked, feedback, dt_s);
   return {asked, 0};
 }
 
@@ -105,7 +102,7 @@ TargetShaper::Shaped TargetShaper::shapeVelocity(Target asked, const MotorFeedba
 double TargetShaper::reachable(double goal_deg, bool any_turn) const noexcept {
   const double inside = std::clamp(goal_deg, config_.angle_min_deg, config_.angle_max_deg);
   if (inside == goal_deg || !any_turn) return inside;
-  const double other_way = goal_deg + std::copysign(360.0, inside - goal_deg);
+  const double other_way = goal_deg + std::copysign(kDegPerTurn, inside - goal_deg);
   const bool allowed = other_way >= config_.angle_min_deg && other_way <= config_.angle_max_deg;
   return allowed ? other_way : inside;
 }
