@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "app/limits.hpp"
+#include "app/units.hpp"
 #include "module/module_type.hpp"
 
 namespace rc10 {
@@ -158,7 +159,7 @@ Twist2D Chassis_Base::wanted(const ModuleRobot& robot) const noexcept {
     twist = seenFrom(-gimbal_deg, twist);
   }
   if (finiteOr0(input(kTurnAfter)) >= 0.5 && std::isfinite(gimbal_deg))
-    twist.wz_deg_s += follow_gain_per_s_ * std::remainder(gimbal_deg, 360.0);
+    twist.wz_deg_s += follow_gain_per_s_ * std::remainder(gimbal_deg, kDegPerTurn);
   return twist;
 }
 

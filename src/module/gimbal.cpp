@@ -7,6 +7,7 @@
 #include <string>
 
 #include "app/limits.hpp"
+#include "app/units.hpp"
 #include "module/gimbal_axis.hpp"
 
 namespace rc10 {
@@ -99,7 +100,7 @@ class Gimbal : public Module_Base {
     const bool stabilised = std::isfinite(imu_yaw_deg);
     const double yaw_deg = stabilised ? imu_yaw_deg : static_cast<double>(yaw.angle_deg);
     const double imu_pitch_deg = read(robot, 2);
-    const double motor_pitch_deg = std::remainder(static_cast<double>(pitch.angle_deg), 360.0);
+    const double motor_pitch_deg = std::remainder(static_cast<double>(pitch.angle_deg), kDegPerTurn);
     const double pitch_deg = std::isfinite(imu_pitch_deg) ? imu_pitch_deg : motor_pitch_deg;
     const bool ready = robot.obeys(yaw_motor_) && robot.obeys(pitch_motor_) && yaw.zeroed && pitch.zeroed;
     // Another frame, another angle: it goes on looking where it looks.
@@ -114,11 +115,11 @@ class Gimbal : public Module_Base {
       follow(tick, robot, {yaw_deg, stabilised ? read(robot, 1) : kNoSignal}, pitch_deg);
     // Once commanded it holds its direction as long as its motors obey: a gimbal that falls is no rest.
     was_commanded_ = ready && (was_commanded_ || commanded());
-    setOutput(kOutYaw, std::remainder(yaw_deg, 360.0));
+    setOutput(kOutYaw, std::remainder(yaw_deg, kDegPerTurn));
     setOutput(kOutPitch, pitch_deg);
     setOutput(kRelativeYaw,
-              yaw.zeroed ? std::remainder(static_cast<double>(yaw.angle_deg), 360.0) : kNoSignal);
-    setOutput(kTargetYaw, std::remainder(yaw_.target(), 360.0));
+              yaw.zeroed ? std::remainder(static_cast<double>(yaw.angle_deg), kDegPerTurn) : kNoSignal);
+    setOutput(kTargetYaw, std::remainder(yaw_.target(), kDegPerTurn));
     setOutput(kTargetPitch, pitch_.target());
     setOutput(kStabilised, stabilised ? 1.0 : 0.0);
   }

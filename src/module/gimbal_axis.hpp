@@ -32,7 +32,7 @@ class GimbalAxis {
   /// `rate_deg_s`: how fast the target itself moves.
   [[nodiscard]] double velocityRpm(const Measured& measured, double rate_deg_s) const noexcept {
     double missing_deg = target_deg_ - measured.angle_deg;
-    if (config_.circular) missing_deg = std::remainder(missing_deg, 360.0);
+    if (config_.circular) missing_deg = std::remainder(missing_deg, kDegPerTurn);
     const double wanted_deg_s = rate_deg_s + config_.gain_per_s * missing_deg;
     const double carried_deg_s =
         std::isfinite(measured.rate_deg_s) ? measured.rate_deg_s - measured.motor_rpm * kDegPerSPerRpm : 0.0;

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <string>
 
+#include "app/units.hpp"
 #include "module/hipnuc_protocol.hpp"
 #include "module/serial_keys.hpp"
 #include "module/witmotion_protocol.hpp"
@@ -101,7 +102,7 @@ class Imu : public Module_Base {
     std::array<double, kAxes> values{};
     values.fill(kNoSignal);
     const Duration age = protocol_ != nullptr ? readStream(values, tick) : readInputs(values);
-    values[kYaw] = std::remainder(values[kYaw] + yaw_offset_deg_, 360.0);
+    values[kYaw] = std::remainder(values[kYaw] + yaw_offset_deg_, kDegPerTurn);
     const bool fresh = age <= max_age_;
     if (fresh) {
       if (silent_) robot.report(kBack);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 #include "app/angle.hpp"
@@ -97,9 +98,14 @@ double SoloMotor::currentWithinLimit(const Target& target) noexcept {
 }
 
 double SoloMotor::rpmWithinLimit(double output_rpm) noexcept {
+  return rpmWithinLimit(output_rpm, std::numeric_limits<double>::infinity());
+}
+
+double SoloMotor::rpmWithinLimit(double output_rpm, double drive_limit_rpm) noexcept {
   const double wanted_rpm = finiteOr0(output_rpm);
-  const auto limit_rpm = static_cast<double>(velocityLimitRpm());
-  const double rpm = limit_rpm > 0.0 ? std::clamp(wanted_rpm, -limit_rpm, limit_rpm) : wanted_rpm;
+  const auto own_limit_rpm = static_cast<double>(velocityLimitRpm());
+  const double limit_rpm = own_limit_rpm > 0.0 ? std::min(own_limit_rpm, drive_limit_rpm) : drive_limit_rpm;
+  const double rpm = std::clamp(wanted_rpm, -limit_rpm, limit_rpm);
   if (rpm != wanted_rpm) limits_ |= kLimitVelocity;
   return rpm;
 }

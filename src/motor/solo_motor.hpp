@@ -80,6 +80,8 @@ class SoloMotor : public Motor_Base, public CommandPacker {
   /// Of the mode kCurrent, with the feed-forward that comes with any mode. A at the motor.
   [[nodiscard]] double currentWithinLimit(const Target& target) noexcept;
   [[nodiscard]] double rpmWithinLimit(double output_rpm) noexcept;
+  /// The same, where the drive itself ends at `drive_limit_rpm` of the output shaft.
+  [[nodiscard]] double rpmWithinLimit(double output_rpm, double drive_limit_rpm) noexcept;
 
   /// What is sent, for the state and the guards. Output shaft.
   void setCommand(double value, CommandUnit unit) noexcept {

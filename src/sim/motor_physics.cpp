@@ -15,7 +15,7 @@ constexpr double kTwoPi = 2.0 * std::numbers::pi;
 
 MotorPhysics::MotorPhysics(const MotorParameters& parameters, double initial_angle_deg) noexcept
     : parameters_(parameters), temperature_c_(parameters.ambient_c) {
-  const double turns = initial_angle_deg / 360.0 * parameters.gear_ratio;
+  const double turns = initial_angle_deg / kDegPerTurn * parameters.gear_ratio;
   rotor_turns_ = static_cast<std::int64_t>(std::floor(turns));
   rotor_fraction_ = turns - std::floor(turns);
 }
@@ -100,7 +100,7 @@ double MotorPhysics::measuredRotorRpm() const noexcept {
 }
 
 double MotorPhysics::outputAngleDeg() const noexcept {
-  return (static_cast<double>(rotor_turns_) + rotor_fraction_) * 360.0 / parameters_.gear_ratio;
+  return (static_cast<double>(rotor_turns_) + rotor_fraction_) * kDegPerTurn / parameters_.gear_ratio;
 }
 
 double MotorPhysics::outputRpm() const noexcept { return velocity_rad_s_ * kRpmPerRadPerS; }

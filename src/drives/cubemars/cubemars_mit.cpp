@@ -152,12 +152,7 @@ double CubeMarsMit::driveRadS(double output_rpm) const noexcept {
 }
 
 double CubeMarsMit::boundRpm(double wanted_rpm) noexcept {
-  const auto own_limit = static_cast<double>(velocityLimitRpm());
-  const double drive_limit = setup().ranges.velocity_rad_s / std::fabs(driveRadS(1.0));
-  const double limit = own_limit > 0.0 ? std::min(own_limit, drive_limit) : drive_limit;
-  const double rpm = std::clamp(wanted_rpm, -limit, limit);
-  if (rpm != wanted_rpm) limits_ |= kLimitVelocity;
-  return rpm;
+  return rpmWithinLimit(wanted_rpm, setup().ranges.velocity_rad_s / std::fabs(driveRadS(1.0)));
 }
 
 CubeMarsMit::Law CubeMarsMit::velocityLaw(double output_rpm, double torque_ff_nm, double gain) noexcept {

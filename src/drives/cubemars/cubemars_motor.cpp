@@ -22,8 +22,7 @@ constexpr double kPositionErrorDeg = 1.0;
 }  // namespace
 
 CubeMars_Motor::CubeMars_Motor(const MotorSettings& settings, const CubeMarsSetup& setup)
-    : SoloMotor(settings, cubemarsTraits(setup),
-                settings.gear_ratio > 0.0 ? settings.gear_ratio / setup.model->gear_ratio : 1.0),
+    : SoloMotor(settings, cubemarsTraits(setup), driveTurns(settings, cubemarsTraits(setup))),
       setup_(setup),
       id_(settings.id),
       longest_gap_(std::max(kStartUp, kCubeMarsGapPeriods * feedbackPeriod())),

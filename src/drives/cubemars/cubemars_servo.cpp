@@ -96,11 +96,7 @@ double CubeMarsServo::erpmOf(double output_rpm) const noexcept {
 }
 
 void CubeMarsServo::prepareVelocity(double wanted_rpm) noexcept {
-  const auto own_limit = static_cast<double>(velocityLimitRpm());
-  const double drive_limit = cubemars::kLargestErpm / std::fabs(erpmOf(1.0));
-  const double limit = own_limit > 0.0 ? std::min(own_limit, drive_limit) : drive_limit;
-  const double rpm = std::clamp(wanted_rpm, -limit, limit);
-  if (rpm != wanted_rpm) limits_ |= kLimitVelocity;
+  const double rpm = rpmWithinLimit(wanted_rpm, cubemars::kLargestErpm / std::fabs(erpmOf(1.0)));
   next_ = cubemars::velocityFrame(driveId(), erpmOf(rpm));
   setCommand(rpm, CommandUnit::kNative);
 }

@@ -156,7 +156,7 @@ void CubeMarsDrive::restart() noexcept {
   error_ = 0;
   boots_until_ = elapsed() + kStartUp;
   if (setup_.output_encoder) return;
-  const double rotor_turn_deg = 360.0 / setup_.model->gear_ratio;
+  const double rotor_turn_deg = kDegPerTurn / setup_.model->gear_ratio;
   zeroAt(std::remainder(driveAngleDeg(), rotor_turn_deg));
 }
 

@@ -79,7 +79,7 @@ FrameVerdict LKTech_Motor::updateFeedback(const CanFrame& frame) noexcept {
 }
 
 double LKTech_Motor::encoderDeg(std::uint16_t raw) const noexcept {
-  return static_cast<double>(raw & encoder_mask_) * 360.0 / (static_cast<double>(encoder_mask_) + 1.0);
+  return static_cast<double>(raw & encoder_mask_) * kDegPerTurn / (static_cast<double>(encoder_mask_) + 1.0);
 }
 
 void LKTech_Motor::acceptReading(const CanFrame& frame) noexcept {

@@ -93,7 +93,7 @@ void LKTechDrive::answerReading(lktech::Code code) noexcept {
   writeLittleEndian(out.data, 2, saturatedRound<std::int16_t>(currentA() / amperes_per_raw_));
   writeLittleEndian(out.data, 4,
                     saturatedRound<std::int16_t>(driveRpm() * kDegPerSPerRpm * traits().gear_ratio));
-  const double turns = wrapDegrees(driveAngleDeg()) / 360.0;
+  const double turns = wrapDegrees(driveAngleDeg()) / kDegPerTurn;
   const auto encoder = static_cast<std::uint32_t>(turns * encoder_counts_) % encoder_counts_;
   writeLittleEndian(out.data, 6, static_cast<std::uint16_t>(encoder));
   answer(out);

@@ -38,7 +38,7 @@ void askForReadings(MoteusWriter& writer) noexcept {
 }  // namespace
 
 Moteus_Motor::Moteus_Motor(const MotorSettings& settings, const MotorTraits& traits)
-    : SoloMotor(settings, traits, settings.gear_ratio > 0.0 ? settings.gear_ratio / traits.gear_ratio : 1.0),
+    : SoloMotor(settings, traits, driveTurns(settings, traits)),
       own_(moteusSettings(settings.own)),
       filters_{FrameFilter{.id = moteusReplyId(own_.can_prefix, static_cast<std::uint32_t>(settings.id))}},
       command_ids_{moteusQueryId(own_.can_prefix, static_cast<std::uint32_t>(settings.id))},
@@ -193,10 +193,7 @@ double Moteus_Motor::boundedTorqueNm(double torque_nm) noexcept {
 }
 
 double Moteus_Motor::boundedRpm(double rpm) noexcept {
-  double limit_rpm = std::abs(toOutput(kFastestRevPerS * kRpmPerTurnPerS));
-  if (velocityLimitRpm() > 0.0F) limit_rpm = std::min(limit_rpm, static_cast<double>(velocityLimitRpm()));
-  if (std::abs(rpm) > limit_rpm) limits_ |= kLimitVelocity;
-  return std::clamp(rpm, -limit_rpm, limit_rpm);
+  return rpmWithinLimit(rpm, std::abs(toOutput(kFastestRevPerS * kRpmPerTurnPerS)));
 }
 
 double Moteus_Motor::onWire(double position_rev) noexcept {

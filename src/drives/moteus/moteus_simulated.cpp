@@ -1,4 +1,5 @@
 #include "drives/moteus/moteus_simulated.hpp"
+#include "app/units.hpp"
 #include "drives/moteus/moteus_family.hpp"
 
 #include <algorithm>
@@ -31,7 +32,7 @@ constexpr std::uint32_t kMaxTorqueLimit = 102;
 }
 
 /// Where it is at power-up is known within one turn of the rotor.
-[[nodiscard]] double withinTurn(double deg) noexcept { return std::remainder(deg, 360.0); }
+[[nodiscard]] double withinTurn(double deg) noexcept { return std::remainder(deg, kDegPerTurn); }
 
 }  // namespace
 
@@ -97,7 +98,7 @@ double MoteusDrive::read(MoteusRegister reg) const noexcept {
   switch (reg) {
     case MoteusRegister::kMode: return static_cast<double>(mode_);
     case MoteusRegister::kPosition: return positionRev();
-    case MoteusRegister::kVelocity: return driveRpm() / 60.0;
+    case MoteusRegister::kVelocity: return driveRpm() / kRpmPerTurnPerS;
     case MoteusRegister::kTorque: return driveTorqueNm();
     case MoteusRegister::kQCurrent: return currentA();
     case MoteusRegister::kHomeState: return home_state_;
@@ -145,7 +146,9 @@ void MoteusDrive::change(MoteusMode mode) noexcept {
   course_rev_ = kNaN;
 }
 
-double MoteusDrive::positionRev() const noexcept { return std::remainder(driveAngleDeg() / 360.0, 65536.0); }
+double MoteusDrive::positionRev() const noexcept {
+  return std::remainder(driveAngleDeg() / kDegPerTurn, 65536.0);
+}
 
 double MoteusDrive::kd() const noexcept {
   const auto& p = physics().parameters();
@@ -155,7 +158,7 @@ double MoteusDrive::kd() const noexcept {
 }
 
 void MoteusDrive::damp(double kd_scale, double max_torque_nm) noexcept {
-  torque(std::clamp(-kd_scale * kd() * driveRpm() / 60.0, -max_torque_nm, max_torque_nm));
+  torque(std::clamp(-kd_scale * kd() * driveRpm() / kRpmPerTurnPerS, -max_torque_nm, max_torque_nm));
 }
 
 // With limits it gets there by a profile of its own: speeds up, and begins in time to slow down.
@@ -177,10 +180,10 @@ void MoteusDrive::profile(double goal_rev, double dt_s) noexcept {
 }
 
 void MoteusDrive::positionControl(double dt_s) noexcept {
-  const double here_rev = driveAngleDeg() / 360.0;
+  const double here_rev = driveAngleDeg() / kDegPerTurn;
   if (std::isnan(course_rev_)) {
     course_rev_ = here_rev;
-    course_rev_s_ = driveRpm() / 60.0;
+    course_rev_s_ = driveRpm() / kRpmPerTurnPerS;
   }
   const double told_rev_s = std::isnan(command_.velocity_rev_s) ? 0.0 : command_.velocity_rev_s;
   const bool told = !std::isnan(command_.position_rev);
@@ -198,7 +201,7 @@ void MoteusDrive::positionControl(double dt_s) noexcept {
 
   const double kp = kd() * kBandwidthRadS / 2.0;  // N·m per rev
   const double wanted_nm = command_.kp_scale * kp * (course_rev_ - here_rev) +
-                           command_.kd_scale * kd() * (course_rev_s_ - driveRpm() / 60.0) +
+                           command_.kd_scale * kd() * (course_rev_s_ - driveRpm() / kRpmPerTurnPerS) +
                            command_.torque_nm;
   const double most_nm = std::max(0.0, command_.max_torque_nm.value_or(std::numeric_limits<float>::max()));
   fault_ = std::abs(wanted_nm) > most_nm ? kMaxTorqueLimit : 0;

@@ -40,7 +40,7 @@ std::vector<FrameFilter> replyIds(int id) {
 MyActuatorDrive::MyActuatorDrive(const MotorSettings& settings, const MotorTraits& traits,
                                  const MotorLoad& load)
     : ServoDrive(settings, traits, load, replyIds(settings.id)), id_(settings.id) {
-  zeroAt(std::fmod(driveAngleDeg(), 360.0));
+  zeroAt(std::fmod(driveAngleDeg(), kDegPerTurn));
 }
 
 CanFrame MyActuatorDrive::reply(myactuator::Code code) const noexcept {
@@ -196,7 +196,7 @@ void MyActuatorDrive::step(Duration dt) noexcept {
 void MyActuatorDrive::restart() noexcept {
   release();
   // With one encoder it knows where within a turn of the rotor it is, with two within a turn of the output.
-  zeroAt(std::fmod(driveAngleDeg(), traits().absolute ? 360.0 : 360.0 / traits().gear_ratio));
+  zeroAt(std::fmod(driveAngleDeg(), traits().absolute ? kDegPerTurn : kDegPerTurn / traits().gear_ratio));
   started_ = elapsed();
   boots_until_ = elapsed() + kMyActuatorBootTime;
   heard_ = boots_until_;

@@ -231,13 +231,6 @@ double ODrive_Motor::limitedTorque(double nm) noexcept {
   return std::copysign(limit_nm, nm);
 }
 
-double ODrive_Motor::limitedRpm(double rpm) noexcept {
-  const auto limit_rpm = static_cast<double>(velocityLimitRpm());
-  if (!(std::abs(rpm) > limit_rpm)) return std::isnan(rpm) ? 0.0 : rpm;
-  limits_ |= kLimitVelocity;
-  return std::copysign(limit_rpm, rpm);
-}
-
 void ODrive_Motor::followTorque(const Target& target) noexcept {
   double nm = 0.0;
   if (target.mode == ControlMode::kCurrent) {
@@ -250,7 +243,7 @@ void ODrive_Motor::followTorque(const Target& target) noexcept {
 }
 
 void ODrive_Motor::followVelocity(double rpm, float torque_ff_nm) noexcept {
-  const double allowed_rpm = limitedRpm(rpm);
+  const double allowed_rpm = rpmWithinLimit(rpm);
   const double ff_nm = limitedTorque(static_cast<double>(torque_ff_nm));
   setInput(OdriveControlMode::kVelocity,
            odriveSetInputVel(node_, saturate(static_cast<float>(toDrive(allowed_rpm) / kRpmPerTurnPerS)),
@@ -265,7 +258,7 @@ void ODrive_Motor::followPosition(const Target& target) noexcept {
     limits_ |= kLimitAngle;
     turns = std::copysign(kFarthestTurns, turns);
   }
-  const double ff_rpm = limitedRpm(static_cast<double>(target.velocity_ff_rpm));
+  const double ff_rpm = rpmWithinLimit(static_cast<double>(target.velocity_ff_rpm));
   const double ff_nm = limitedTorque(static_cast<double>(target.torque_ff_nm));
   setInput(OdriveControlMode::kPosition,
            odriveSetInputPos(node_, static_cast<float>(turns),

@@ -57,7 +57,6 @@ class ODrive_Motor : public SoloMotor {
   void followVelocity(double rpm, float torque_ff_nm) noexcept;
   void followPosition(const Target& target) noexcept;
   [[nodiscard]] double limitedTorque(double nm) noexcept;  ///< At the output shaft.
-  [[nodiscard]] double limitedRpm(double rpm) noexcept;
   void setInput(OdriveControlMode mode, const CanFrame& input) noexcept;
   void refreshLimits(const Tick& tick) noexcept;
   [[nodiscard]] CanFrame limitsFrame() const noexcept;

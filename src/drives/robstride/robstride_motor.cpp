@@ -61,9 +61,7 @@ RobStrideControl robStrideControlOf(const OwnValues& own) {
 
 RobStride_Motor::RobStride_Motor(const MotorSettings& settings)
     : SoloMotor(settings, robStrideFamily().traits(settings.model, settings.own),
-                settings.gear_ratio > 0.0
-                    ? settings.gear_ratio / findRobStrideModel(settings.model)->gear_ratio
-                    : 1.0),
+                driveTurns(settings, robStrideFamily().traits(settings.model, settings.own))),
       model_(findRobStrideModel(settings.model)),
       codec_{.model = model_,
              .position_range_rad =

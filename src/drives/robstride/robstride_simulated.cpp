@@ -92,7 +92,7 @@ void RobStrideDrive::powerUp() noexcept {
   fault_word_ = 0;
   status_bits_ = 0;
   release();
-  const double turn_deg = model_->absolute ? 360.0 : 360.0 / model_->gear_ratio;
+  const double turn_deg = model_->absolute ? kDegPerTurn : kDegPerTurn / model_->gear_ratio;
   zeroAt(wrapPeriod(driveAngleDeg(), turn_deg));
 }
 

@@ -103,7 +103,7 @@ void VESC_Motor::takePosition(MonotonicTime received, double moved_deg, bool kno
 
 void VESC_Motor::takeSteps(const CanFrame& frame) noexcept {
   const std::int32_t steps = decodeVescStatus5(frame).steps;
-  const double deg_per_step = 360.0 / (kStepsPerElectricalTurn * options_.pole_pairs);
+  const double deg_per_step = kDegPerTurn / (kStepsPerElectricalTurn * options_.pole_pairs);
   if (!position_seen_) {
     takePosition(frame.received, feedback_.samples == 0 ? steps * deg_per_step : 0.0, false);
     return;

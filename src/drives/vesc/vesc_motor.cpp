@@ -159,9 +159,7 @@ void VESC_Motor::setVelocity(double rpm) noexcept {
     release();
     return;
   }
-  const double limit = static_cast<double>(velocityLimitRpm());
-  const double bounded = limit > 0.0 ? std::clamp(rpm, -limit, limit) : rpm;
-  if (bounded != rpm) limits_ |= kLimitVelocity;
+  const double bounded = rpmWithinLimit(rpm);
   command_ = {VescPacket::kSetErpm, vescRaw(bounded * rotor_per_output_ * options_.pole_pairs, kVescPerErpm)};
   setCommand(bounded, CommandUnit::kNative);
 }
