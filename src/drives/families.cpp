@@ -37,7 +37,7 @@ std::span<const FamilyEntry> builtInFamilies() {
       FamilyEntry{&djiFamily(), sim::makeDjiDrive, recogniseDji},
       FamilyEntry{&vescFamily(), sim::makeVescDrive, recogniseVesc},
       FamilyEntry{&damiaoFamily(), sim::makeDamiaoDrive, recogniseDamiao},
-      FamilyEntry{&robStrideFamily(), sim::makeRobStrideDrive, recogniseRobStride},
+      FamilyEntry{&robstrideFamily(), sim::makeRobstrideDrive, recogniseRobstride},
       FamilyEntry{&cubemarsFamily(), sim::makeCubemarsDrive, recogniseCubemars},
       FamilyEntry{&moteusFamily(), sim::makeMoteusDrive, recogniseMoteus},
       FamilyEntry{&odriveFamily(), sim::makeOdriveDrive, recogniseOdrive},

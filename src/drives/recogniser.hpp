@@ -21,11 +21,11 @@ using Recogniser = void (*)(const CanFrame& frame, std::vector<DriveGuess>& gues
 /// Kinds that more than one file names.
 namespace drive_kind {
 inline constexpr std::string_view kVesc = "VESC";
-inline constexpr std::string_view kODrive = "ODrive";
+inline constexpr std::string_view kOdrive = "ODrive";
 /// `is_extended` is set in the drive: the same messages under ids of 29 bits. rc10d does not drive it so.
-inline constexpr std::string_view kODriveExtended = "ODrive (extended ids)";
-inline constexpr std::string_view kLKTech = "LK-Tech";
-inline constexpr std::string_view kMyActuator = "MyActuator";
+inline constexpr std::string_view kOdriveExtended = "ODrive (extended ids)";
+inline constexpr std::string_view kLktech = "LK-Tech";
+inline constexpr std::string_view kMyactuator = "MyActuator";
 }  // namespace drive_kind
 
 }  // namespace rc10

@@ -35,7 +35,7 @@ namespace {
 constexpr float kMostHeartbeatsHz = 150.0F;
 
 bool isOdrive(const DriveGuess& guess) {
-  return guess.kind == drive_kind::kODrive || guess.kind == drive_kind::kODriveExtended;
+  return guess.kind == drive_kind::kOdrive || guess.kind == drive_kind::kOdriveExtended;
 }
 bool isOdriveHeartbeat(CanId id) { return odriveMessage(id) == OdriveMessage::kHeartbeat; }
 
@@ -75,7 +75,7 @@ int BusSurvey::commandedBy(const CanFrame& query) const {
   if (found == heard_.end()) return 0;
   const auto& guesses = found->second.guesses;
   const bool odrive = std::any_of(guesses.begin(), guesses.end(), [](const auto& guess) {
-    return guess.first.kind == drive_kind::kODriveExtended;
+    return guess.first.kind == drive_kind::kOdriveExtended;
   });
   return odrive ? node : 0;
 }

@@ -41,10 +41,10 @@ std::vector<Entry> makeMotors() {
   const auto add = [&motors](const MotorSettings& settings) {
     const auto setup = test::setupOf(settings);
     std::unique_ptr<SoloMotor> motor;
-    if (setup.protocol == CubeMarsProtocol::kServo) {
-      motor = std::make_unique<CubeMarsServo>(settings, setup);
+    if (setup.protocol == CubemarsProtocol::kServo) {
+      motor = std::make_unique<CubemarsServo>(settings, setup);
     } else {
-      motor = std::make_unique<CubeMarsMit>(settings, setup);
+      motor = std::make_unique<CubemarsMit>(settings, setup);
     }
     motors.push_back({settings.id, std::move(motor)});
   };

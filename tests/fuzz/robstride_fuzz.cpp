@@ -20,7 +20,7 @@ using fuzz::require;
 constexpr float kLimitA = 2.5F;
 
 MotorSettings settingsFrom(Input& input) {
-  const auto models = robStrideModels();
+  const auto models = robstrideModels();
   const auto choice = input.take<std::uint8_t>();
   auto settings = test::robStrideSettings(models[choice % models.size()].name, 5);
   constexpr std::array<const char*, 4> kControls{"operation", "current", "velocity", "position"};
@@ -57,7 +57,7 @@ void checkReadings(const RobStride_Motor& motor) {
   require(std::isfinite(feedback.temperature_c));
 }
 
-void checkSent(const CanFrame& frame, const RobStrideCodec& codec) {
+void checkSent(const CanFrame& frame, const RobstrideCodec& codec) {
   require(frame.id.extended && frame.id.value <= kExtendedIdMask && frame.length == 8 && !frame.fd);
   require((frame.id.value & 0xFFU) == 5);
   const auto type = frame.id.value >> 24U;
@@ -82,9 +82,9 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   Input input(data, size);
   const auto settings = settingsFrom(input);
   RobStride_Motor motor(settings);
-  sim::RobStrideDrive drive(settings, {});
-  const auto* model = findRobStrideModel(settings.model);
-  const RobStrideCodec codec{
+  sim::RobstrideDrive drive(settings, {});
+  const auto* model = findRobstrideModel(settings.model);
+  const RobstrideCodec codec{
       .model = model, .position_range_rad = model->position_range_rad, .drive_id = 5, .host_id = 253};
   Tick tick;
   tick.now = MonotonicTime{std::chrono::hours{1}};

@@ -30,7 +30,7 @@ void expectFrame(const CanFrame& frame, CanId id, const std::string& hex) {
 }
 
 CanFrame servoSends(const Target& target, MotorSettings settings) {
-  CubeMarsServo motor(settings, setupOf(settings));
+  CubemarsServo motor(settings, setupOf(settings));
   EXPECT_TRUE(motor.setTarget(target));
   motor.order(FrameKind::kCommand);
   motor.update(Tick{});
@@ -65,7 +65,7 @@ TEST(CubemarsGolden, ServoPositionWithSpeedAndAcceleration) {
 
 TEST(CubemarsGolden, ServoFeedback) {
   const auto settings = servo();
-  CubeMarsServo motor(settings, setupOf(settings));
+  CubemarsServo motor(settings, setupOf(settings));
   const CanFrame frame = frameOf({0x2968, true}, "04D2FF0602372A00");
   ASSERT_TRUE(motor.matchesFrame(frame));
   ASSERT_EQ(motor.updateFeedback(frame), FrameVerdict::kAccepted);
@@ -89,18 +89,18 @@ constexpr cubemars::MitCommand kSetpoint{.position_rad = 0.5,
                                          .torque_nm = 2.0};
 
 TEST(CubemarsGolden, MitCommand) {
-  const CubeMarsRanges ranges = findCubemarsModel("AK80-9")->ranges;
+  const CubemarsRanges ranges = findCubemarsModel("AK80-9")->ranges;
   expectFrame(cubemars::mitFrame(0x68, ranges, kSetpoint), {0x68, false}, "851E8281993338E3");
 }
 
 TEST(CubemarsGolden, MitCommandOfAV3DriveHasAnotherOrder) {
-  const CubeMarsRanges ranges = findCubemarsModel("AK10-9-V3")->ranges;
+  const CubemarsRanges ranges = findCubemarsModel("AK10-9-V3")->ranges;
   expectFrame(cubemars::mitV3Frame(0x68, ranges, kSetpoint), {0x868, true}, "199333851784884B");
 }
 
 TEST(CubemarsGolden, MitCommandOutOfAMotor) {
   auto settings = cubemarsSettings("AK80-9", 0x68, {{"protocol", std::string{"mit"}}});
-  CubeMarsMit motor(settings, setupOf(settings));
+  CubemarsMit motor(settings, setupOf(settings));
   // At 0.5 rad nothing of it is bounded: the drive's sum is 2 N·m and 1 N·m/(rad/s).
   ASSERT_EQ(motor.updateFeedback(frameOf({0, false}, "68851E7FF7FF4600")), FrameVerdict::kAccepted);
   Target target{.mode = ControlMode::kImpedance,
@@ -126,7 +126,7 @@ TEST(CubemarsGolden, MitCommandOutOfAMotor) {
 
 TEST(CubemarsGolden, MitReply) {
   auto settings = cubemarsSettings("AK80-9", 104, {{"protocol", std::string{"mit"}}});
-  CubeMarsMit motor(settings, setupOf(settings));
+  CubemarsMit motor(settings, setupOf(settings));
   const CanFrame reply = frameOf({0, false}, "689EB87FF8004600");
   ASSERT_TRUE(motor.matchesFrame(reply));
   ASSERT_EQ(motor.updateFeedback(reply), FrameVerdict::kAccepted);

@@ -120,13 +120,13 @@ class Bench {
  private:
   MotorSettings settings_;
   Motor motor_;
-  CubeMarsRanges ranges_;
+  CubemarsRanges ranges_;
   MonotonicTime now_{std::chrono::hours{1}};
   std::uint64_t ticks_ = 0;
 };
 
-using Servo = Bench<CubeMarsServo>;
-using Mit = Bench<CubeMarsMit>;
+using Servo = Bench<CubemarsServo>;
+using Mit = Bench<CubemarsMit>;
 
 MotorSettings servo(const OwnKeys& keys = {}) { return cubemarsSettings("AK80-9", 5, keys); }
 MotorSettings mit(OwnKeys keys = {}) {
@@ -756,7 +756,7 @@ TEST(CubemarsFrames, WhatIsTooMuchIsCutOffAndNeverWraps) {
   EXPECT_EQ(readBigEndian<std::int16_t>(planned.payload(), 4), 32767);
   EXPECT_EQ(readBigEndian<std::int16_t>(planned.payload(), 6), 32767);
   EXPECT_EQ(int32Of(cubemars::currentFrame(1, std::nan(""))), 0);
-  const CubeMarsRanges r = cubemarsModels()[0].ranges;
+  const CubemarsRanges r = cubemarsModels()[0].ranges;
   const auto high = cubemars::mitFrame(1, r, {huge, huge, huge, huge, huge});
   const auto low = cubemars::mitFrame(1, r, {-huge, -huge, -huge, -huge, -huge});
   for (std::size_t i = 0; i < 8; ++i) {

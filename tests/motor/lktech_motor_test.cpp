@@ -453,7 +453,7 @@ TEST_F(LKTechGroup, TheFamilyMakesTheGroupOnceForABusAndRegistersBothHalves) {
   EXPECT_FALSE(lktechFamily().build(settingsOf("LK-MF9025", 4, true), parts));
 }
 
-TEST(LKTechFamily, KnowsItsModelsAndWhatAGroupCannot) {
+TEST(LktechFamily, KnowsItsModelsAndWhatAGroupCannot) {
   const auto& family = lktechFamily();
   for (const auto model : family.models()) {
     auto own = ownDefaults(family);
@@ -470,7 +470,7 @@ TEST(LKTechFamily, KnowsItsModelsAndWhatAGroupCannot) {
   }
 }
 
-TEST(LKTechFamily, TellsThatADriveObeysTheSharedFrameEvenAlone) {
+TEST(LktechFamily, TellsThatADriveObeysTheSharedFrameEvenAlone) {
   const auto use = lktechFamily().busUse(settingsOf("LK-MF9025", 3));
   std::vector<std::uint32_t> obeyed;
   for (const auto& filter : use.obeys) obeyed.push_back(filter.id.value);

@@ -511,7 +511,7 @@ TEST_F(MyActuatorMotor, SpeedsAndAnglesSurviveTheWayThereAndBack) {
   }
 }
 
-TEST(MyActuatorFamily, KnowsItsModelsAndWhatTheyNeed) {
+TEST(MyactuatorFamily, KnowsItsModelsAndWhatTheyNeed) {
   const auto& family = myactuatorFamily();
   for (const auto model : family.models()) {
     const auto traits = family.traits(model, ownDefaults(family));
@@ -527,7 +527,7 @@ TEST(MyActuatorFamily, KnowsItsModelsAndWhatTheyNeed) {
   EXPECT_TRUE(family.traits("RMD-X", own).modes.contains(ControlMode::kImpedance));
 }
 
-TEST(MyActuatorFamily, TellsWhichIdsItUsesAndHowOften) {
+TEST(MyactuatorFamily, TellsWhichIdsItUsesAndHowOften) {
   auto settings = settingsOf();
   settings.id = 5;
   settings.command_divider = 2;

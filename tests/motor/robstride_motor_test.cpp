@@ -33,8 +33,8 @@ class Bench {
  public:
   explicit Bench(const MotorSettings& settings)
       : motor(settings),
-        codec{.model = findRobStrideModel(settings.model),
-              .position_range_rad = findRobStrideModel(settings.model)->position_range_rad,
+        codec{.model = findRobstrideModel(settings.model),
+              .position_range_rad = findRobstrideModel(settings.model)->position_range_rad,
               .drive_id = settings.id,
               .host_id = kHost} {}
 
@@ -50,20 +50,20 @@ class Bench {
     const auto count = motor.packCommand(at, out);
     return {out.begin(), out.begin() + static_cast<std::ptrdiff_t>(count)};
   }
-  FrameVerdict say(RobStrideFeedback state) {
+  FrameVerdict say(RobstrideFeedback state) {
     auto frame = codec.answer(state);
     frame.received = now;
     return motor.updateFeedback(frame);
   }
   FrameVerdict run(double position_rad = 0.0, double velocity_rad_s = 0.0) {
-    return say({.position_rad = position_rad, .velocity_rad_s = velocity_rad_s, .mode = kRobStrideRunning});
+    return say({.position_rad = position_rad, .velocity_rad_s = velocity_rad_s, .mode = kRobstrideRunning});
   }
   FrameVerdict parameter(std::uint16_t index, std::uint32_t bits, bool known = true) {
     auto frame = codec.parameter(index, bits, known);
     frame.received = now;
     return motor.updateFeedback(frame);
   }
-  RobStrideOperation operation(const Target& target) {
+  RobstrideOperation operation(const Target& target) {
     for (const auto& frame : tick(FrameKind::kCommand, target)) {
       if (typeOf(frame) == 1) return codec.operation(frame);
     }
@@ -72,7 +72,7 @@ class Bench {
   }
 
   RobStride_Motor motor;
-  RobStrideCodec codec;
+  RobstrideCodec codec;
   MonotonicTime now{std::chrono::hours{1}};
   std::uint64_t ticks = 0;
 };
@@ -83,7 +83,7 @@ MotorSettings controlled(std::string control, std::string_view model = "RS00") {
   return settings;
 }
 
-double torqueOf(const RobStrideOperation& told, double position_rad, double velocity_rad_s) {
+double torqueOf(const RobstrideOperation& told, double position_rad, double velocity_rad_s) {
   return told.stiffness_nm_per_rad * (told.position_rad - position_rad) +
          told.damping_nms_per_rad * (told.velocity_rad_s - velocity_rad_s) + told.torque_nm;
 }
@@ -293,13 +293,13 @@ TEST(RobStrideMotor, InputThatIsNoNumberIsHarmless) {
 TEST(RobStrideMotor, EveryValueOnTheScalesComesBack) {
   std::mt19937 random(7);
   std::uniform_real_distribution<double> share(-1.0, 1.0);
-  for (const auto& model : robStrideModels()) {
-    const RobStrideCodec codec{.model = &model,
+  for (const auto& model : robstrideModels()) {
+    const RobstrideCodec codec{.model = &model,
                                .position_range_rad = model.position_range_rad,
                                .drive_id = kDrive,
                                .host_id = kHost};
     for (int i = 0; i < 500; ++i) {
-      const RobStrideOperation wanted{
+      const RobstrideOperation wanted{
           .position_rad = share(random) * model.position_range_rad,
           .velocity_rad_s = share(random) * model.velocity_range_rad_s,
           .stiffness_nm_per_rad = std::abs(share(random)) * model.stiffness_range_nm_per_rad,
@@ -418,7 +418,7 @@ TEST(RobStrideMotor, GearAndDirectionApplyToAllReadings) {
   settings.gear_ratio = 7.75 * 3;
   settings.direction = -1;
   Bench bench(settings);
-  bench.say({.position_rad = 0.0, .velocity_rad_s = 3.0, .torque_nm = 1.5, .mode = kRobStrideRunning});
+  bench.say({.position_rad = 0.0, .velocity_rad_s = 3.0, .torque_nm = 1.5, .mode = kRobstrideRunning});
   const double before_deg = bench.motor.feedback().total_angle_deg;
   EXPECT_NEAR(bench.motor.feedback().velocity_rpm, -kRpmPerRadPerS, 0.01);
   EXPECT_NEAR(bench.motor.feedback().torque_nm, -4.5, 2e-3);
@@ -444,7 +444,7 @@ TEST(RobStrideMotor, TheSupplyVoltageIsRead) {
 
 TEST(RobStrideMotor, ReportsOfType24AreFeedbackToo) {
   Bench bench(robStrideSettings("RS00"));
-  auto frame = bench.codec.answer({.position_rad = 1.0, .mode = kRobStrideRunning});
+  auto frame = bench.codec.answer({.position_rad = 1.0, .mode = kRobstrideRunning});
   frame.id.value = (frame.id.value & 0x00FFFFFFU) | 24U << 24U;
   ASSERT_TRUE(bench.motor.matchesFrame(frame));
   EXPECT_EQ(bench.motor.updateFeedback(frame), FrameVerdict::kAccepted);
@@ -453,7 +453,7 @@ TEST(RobStrideMotor, ReportsOfType24AreFeedbackToo) {
 
 TEST(RobStrideMotor, FramesOfOthersAndOddFramesAreNotTaken) {
   Bench bench(robStrideSettings("RS00"));
-  const auto good = bench.codec.answer({.mode = kRobStrideRunning});
+  const auto good = bench.codec.answer({.mode = kRobstrideRunning});
   ASSERT_TRUE(bench.motor.matchesFrame(good));
   auto other = good;
   other.id.value = 0x0280'10FD;  // another drive
@@ -501,7 +501,7 @@ TEST(RobStrideMotor, GarbageLeavesFiniteReadings) {
 
 TEST(RobStrideMotor, EveryFaultBitHasItsCode) {
   using enum FaultCode;
-  const auto code = [](std::uint32_t native) { return robStrideFault(native, false); };
+  const auto code = [](std::uint32_t native) { return robstrideFault(native, false); };
   EXPECT_EQ(code(0), kNone);
   EXPECT_EQ(code(1U << 0U), kDriveMotorTooHot);
   EXPECT_EQ(code(1U << 1U), kDriveHardware);
@@ -519,8 +519,8 @@ TEST(RobStrideMotor, EveryFaultBitHasItsCode) {
   EXPECT_EQ(code(1U << 27U), kDriveEncoder);
   EXPECT_EQ(code(1U << 28U), kDriveOverload);
   EXPECT_EQ(code(1U << 29U), kDriveCalibration);
-  EXPECT_EQ(robStrideFault(1U << 28U, true), kDrivePhase);
-  EXPECT_EQ(robStrideFault(1U << 9U, true), kDriveOverload);
+  EXPECT_EQ(robstrideFault(1U << 28U, true), kDrivePhase);
+  EXPECT_EQ(robstrideFault(1U << 9U, true), kDriveOverload);
 }
 
 TEST(RobStrideMotor, AFaultFrameIsAComplaintUntilItIsClearedWhicheverWayRoundItsIdsAre) {
@@ -624,7 +624,7 @@ TEST(RobStrideMotor, ASettingThatTheDriveDoesNotKeepFailsTheEnabling) {
 }
 
 TEST(RobStrideMotor, ALimitMayBecomeSmallerButNotLarger) {
-  const auto limit = RobStrideSetting::limit(robstride_parameter::kCurrentLimit, 23.0F);
+  const auto limit = RobstrideSetting::limit(robstride_parameter::kCurrentLimit, 23.0F);
   EXPECT_TRUE(limit.agrees(std::bit_cast<std::uint32_t>(16.0F)));
   EXPECT_TRUE(limit.agrees(std::bit_cast<std::uint32_t>(23.0F)));
   EXPECT_FALSE(limit.agrees(std::bit_cast<std::uint32_t>(30.0F)));
@@ -649,8 +649,8 @@ TEST(RobStrideMotor, NoFrameEverSavesOrChangesASettingForGood) {
 
 // --- The family
 
-TEST(RobStrideFamily, TraitsAgreeWithTheFrames) {
-  const auto& family = robStrideFamily();
+TEST(RobstrideFamily, TraitsAgreeWithTheFrames) {
+  const auto& family = robstrideFamily();
   EXPECT_EQ(family.models().size(), 9U);
   for (const auto model : family.models()) {
     for (const std::string control : {"operation", "current", "velocity", "position"}) {
@@ -667,9 +667,9 @@ TEST(RobStrideFamily, TraitsAgreeWithTheFrames) {
   }
 }
 
-TEST(RobStrideFamily, RefusesWhatCannotWorkAndNamesTheKey) {
+TEST(RobstrideFamily, RefusesWhatCannotWorkAndNamesTheKey) {
   const auto begins = [](const MotorSettings& settings) {
-    const auto checked = robStrideFamily().check(settings);
+    const auto checked = robstrideFamily().check(settings);
     return checked ? std::string{} : checked.error().message.substr(0, checked.error().message.find(':'));
   };
   auto settings = robStrideSettings("RS00", 100);
@@ -687,7 +687,7 @@ TEST(RobStrideFamily, RefusesWhatCannotWorkAndNamesTheKey) {
   EXPECT_EQ(begins(settings), "");
 }
 
-TEST(RobStrideFamily, DrivesShareABusUnlessTheyShareAnId) {
+TEST(RobstrideFamily, DrivesShareABusUnlessTheyShareAnId) {
   SocketPair wire;
   const auto bus = fdCANbus::adopt("bus", std::move(wire.near), false);
   BusParts parts(*bus);
@@ -695,17 +695,17 @@ TEST(RobStrideFamily, DrivesShareABusUnlessTheyShareAnId) {
   for (int id = 1; id <= 6; ++id) {
     auto settings = robStrideSettings(id % 2 == 0 ? "RS00" : "CyberGear", id);
     settings.name = "joint" + std::to_string(id);
-    auto built = robStrideFamily().build(settings, parts);
+    auto built = robstrideFamily().build(settings, parts);
     ASSERT_TRUE(built.has_value()) << built.error().message;
     motors.push_back(std::move(*built));
   }
   auto again = robStrideSettings("RS02", 3);
   again.name = "other";
-  const auto refused = robStrideFamily().build(again, parts);
+  const auto refused = robstrideFamily().build(again, parts);
   ASSERT_FALSE(refused.has_value());
   EXPECT_NE(refused.error().message.find("joint3"), std::string::npos);
-  const RobStrideCodec codec{
-      .model = findRobStrideModel("RS00"), .position_range_rad = 12.57, .drive_id = 4, .host_id = kHost};
+  const RobstrideCodec codec{
+      .model = findRobstrideModel("RS00"), .position_range_rad = 12.57, .drive_id = 4, .host_id = kHost};
   bus->dispatch(codec.answer({.position_rad = 1.0}));
   for (std::size_t i = 0; i < motors.size(); ++i) {
     EXPECT_EQ(motors[i]->feedback().samples, i == 3 ? 1U : 0U);
@@ -714,7 +714,7 @@ TEST(RobStrideFamily, DrivesShareABusUnlessTheyShareAnId) {
 
 TEST(RobStrideMotor, NothingAllocatesAfterConstruction) {
   Bench bench(robStrideSettings("RS00"));
-  const auto answer = bench.codec.answer({.mode = kRobStrideRunning});
+  const auto answer = bench.codec.answer({.mode = kRobstrideRunning});
   std::array<CanFrame, kMaxFramesPerPacker> out{};
   AllocGuard guard;
   for (int i = 0; i < 500; ++i) {

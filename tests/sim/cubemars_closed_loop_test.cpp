@@ -18,8 +18,8 @@ using std::chrono::seconds;
 
 std::unique_ptr<SoloMotor> motorOf(const MotorSettings& settings) {
   const auto setup = setupOf(settings);
-  if (setup.protocol == CubeMarsProtocol::kServo) return std::make_unique<CubeMarsServo>(settings, setup);
-  return std::make_unique<CubeMarsMit>(settings, setup);
+  if (setup.protocol == CubemarsProtocol::kServo) return std::make_unique<CubemarsServo>(settings, setup);
+  return std::make_unique<CubemarsMit>(settings, setup);
 }
 
 SoloRig rigOf(const MotorSettings& settings, const sim::MotorLoad& load = {}) {

@@ -59,10 +59,10 @@ class DriveSetupTest : public ::testing::Test {
     use(std::make_unique<Damiao_Motor>(settings), sim::makeDamiaoDrive(settings, {}), damiaoSetup());
   }
   void useRobStride(std::string_view model = "RS00") {
-    auto settings = settingsOf(robStrideFamily(), model, 3);
+    auto settings = settingsOf(robstrideFamily(), model, 3);
     settings.own.set("host_id", 253.0);
-    use(std::make_unique<RobStride_Motor>(settings), sim::makeRobStrideDrive(settings, {}),
-        robStrideSetup(model == "CyberGear"));
+    use(std::make_unique<RobStride_Motor>(settings), sim::makeRobstrideDrive(settings, {}),
+        robstrideSetup(model == "CyberGear"));
   }
   void useMyActuator() {
     const auto settings = settingsOf(myactuatorFamily(), "RMD-X8-20", 4);

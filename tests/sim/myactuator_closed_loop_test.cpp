@@ -172,7 +172,7 @@ TEST_F(MyActuatorRig, ARestartedDriveIsNoticedAndNeverTurnsToAnAngleOfItsFormerL
 
 TEST_F(MyActuatorRig, TheDrivesProtectionAgainstSilenceIsNoticed) {
   SoloRig rig = rigOf({});
-  static_cast<sim::MyActuatorDrive&>(rig.drive()).setSilenceLimit(50ms);
+  static_cast<sim::MyactuatorDrive&>(rig.drive()).setSilenceLimit(50ms);
   rig.comeOnline();
   ASSERT_TRUE(rig.enable());
   rig.command({.mode = ControlMode::kVelocity, .value = 20.0});

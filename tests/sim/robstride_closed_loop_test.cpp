@@ -19,7 +19,7 @@ using std::chrono::seconds;
 
 struct Rig : SoloRig {
   explicit Rig(const MotorSettings& settings, const sim::MotorLoad& load = {})
-      : SoloRig(std::make_unique<RobStride_Motor>(settings), sim::makeRobStrideDrive(settings, load)) {
+      : SoloRig(std::make_unique<RobStride_Motor>(settings), sim::makeRobstrideDrive(settings, load)) {
     motor().order(FrameKind::kPoll);
     run(milliseconds{5});
   }
@@ -249,7 +249,7 @@ TEST(RobStrideClosedLoop, AFaultIsClearedAndTheDriveEnabledAgain) {
     rig.run(milliseconds{100});
     rig.drive().fault(native);
     rig.run(milliseconds{5});
-    const auto code = robStrideFault(native, false);
+    const auto code = robstrideFault(native, false);
     EXPECT_EQ(rig.fault(), code);
     EXPECT_TRUE(rig.motor().feedback().zeroed);  // it stopped where it was
     rig.motor().order(FrameKind::kPoll);

@@ -35,7 +35,7 @@ inline MotorSettings cubemarsSettings(std::string_view model, int id, const OwnK
   return settings;
 }
 
-inline CubeMarsSetup setupOf(const MotorSettings& settings) {
+inline CubemarsSetup setupOf(const MotorSettings& settings) {
   return cubemarsSetup(settings.model, settings.own);
 }
 

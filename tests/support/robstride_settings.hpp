@@ -14,7 +14,7 @@ inline MotorSettings robStrideSettings(std::string_view model, int id = 127) {
   settings.name = "joint";
   settings.model = std::string{model};
   settings.id = id;
-  for (const auto& key : robStrideFamily().keys()) {
+  for (const auto& key : robstrideFamily().keys()) {
     if (key.kind == FamilyKey::Kind::kChoice) {
       settings.own.set(key.name, std::string{key.default_text});
     } else {

@@ -17,7 +17,7 @@ constexpr std::array<std::string_view, 3> kProtocols{"servo", "mit", "mit_v3"};
 constexpr std::array<std::string_view, 3> kPositionBases{"output", "rotor", "electrical"};
 
 using Kind = FamilyKey::Kind;
-constexpr std::array kCubeMarsKeys{
+constexpr std::array kCubemarsKeys{
     FamilyKey{.name = "protocol",
               .kind = Kind::kChoice,
               .choices = kProtocols,
@@ -133,13 +133,13 @@ double commandsPerSecond(const MotorSettings& settings) {
   return static_cast<double>(settings.tick_hz) / std::max(settings.command_divider, 1);
 }
 
-class CubeMarsFamily final : public MotorFamily {
+class CubemarsFamily final : public MotorFamily {
  public:
   [[nodiscard]] std::string_view name() const noexcept override { return "CubeMars"; }
   [[nodiscard]] std::span<const std::string_view> models() const noexcept override {
     return cubemarsModelNames();
   }
-  [[nodiscard]] std::span<const FamilyKey> keys() const noexcept override { return kCubeMarsKeys; }
+  [[nodiscard]] std::span<const FamilyKey> keys() const noexcept override { return kCubemarsKeys; }
   [[nodiscard]] MotorTraits traits(std::string_view model, const OwnValues& own) const override {
     return cubemarsTraits(cubemarsSetup(model, own));
   }
@@ -147,13 +147,13 @@ class CubeMarsFamily final : public MotorFamily {
   [[nodiscard]] Result<void> check(const MotorSettings& settings) const override {
     const auto setup = cubemarsSetup(settings.model, settings.own);
     const std::string model{setup.model->name};
-    if (setup.protocol == CubeMarsProtocol::kMitV3 && !setup.model->v3) {
+    if (setup.protocol == CubemarsProtocol::kMitV3 && !setup.model->v3) {
       return fail("protocol: the " + model + " is no V3 drive: write mit, or " + model + "-V3 as the model");
     }
-    if (setup.protocol == CubeMarsProtocol::kMit && setup.model->v3) {
+    if (setup.protocol == CubemarsProtocol::kMit && setup.model->v3) {
       return fail("protocol: a V3 drive like the " + model + " does not understand mit: write mit_v3");
     }
-    if (setup.protocol == CubeMarsProtocol::kMit && settings.own.text("position_basis") != "output") {
+    if (setup.protocol == CubemarsProtocol::kMit && settings.own.text("position_basis") != "output") {
       return fail("position_basis: the protocol mit has positions of the output: leave the key out");
     }
     return {};
@@ -163,7 +163,7 @@ class CubeMarsFamily final : public MotorFamily {
     const auto setup = cubemarsSetup(settings.model, settings.own);
     const double told = commandsPerSecond(settings);
     BusUse use;
-    if (setup.protocol == CubeMarsProtocol::kMit) {
+    if (setup.protocol == CubemarsProtocol::kMit) {
       const PayloadDiscriminator own{.value = static_cast<std::uint8_t>(settings.id)};
       const CanId id = cubemars::mitId(settings.id);
       use.sends = {{.id = {0, false}, .mask = kStandardIdMask, .discriminator = own},
@@ -174,7 +174,7 @@ class CubeMarsFamily final : public MotorFamily {
       return use;
     }
     const auto traits = cubemarsTraits(setup);
-    const bool servo = setup.protocol == CubeMarsProtocol::kServo;
+    const bool servo = setup.protocol == CubemarsProtocol::kServo;
     const int feedback_hz = settings.feedback_hz > 0 ? settings.feedback_hz : traits.feedback_hz;
     const CanId feedback_id = cubemars::servoFeedbackId(settings.id);
     const CanId command_id = cubemars::servoId(
@@ -192,19 +192,19 @@ class CubeMarsFamily final : public MotorFamily {
   [[nodiscard]] Result<std::unique_ptr<Motor_Base>> build(const MotorSettings& settings,
                                                           BusParts& parts) const override {
     const auto setup = cubemarsSetup(settings.model, settings.own);
-    if (setup.protocol == CubeMarsProtocol::kServo) {
-      return registerSolo(std::make_unique<CubeMarsServo>(settings, setup), parts);
+    if (setup.protocol == CubemarsProtocol::kServo) {
+      return registerSolo(std::make_unique<CubemarsServo>(settings, setup), parts);
     }
-    return registerSolo(std::make_unique<CubeMarsMit>(settings, setup), parts);
+    return registerSolo(std::make_unique<CubemarsMit>(settings, setup), parts);
   }
 };
 
 }  // namespace
 
-MotorTraits cubemarsTraits(const CubeMarsSetup& setup) {
-  const CubeMarsModel& model = *setup.model;
-  const bool mit = setup.protocol == CubeMarsProtocol::kMit;
-  const bool servo = setup.protocol == CubeMarsProtocol::kServo;
+MotorTraits cubemarsTraits(const CubemarsSetup& setup) {
+  const CubemarsModel& model = *setup.model;
+  const bool mit = setup.protocol == CubemarsProtocol::kMit;
+  const bool servo = setup.protocol == CubemarsProtocol::kServo;
   MotorTraits traits;
   traits.min_id = 1;
   traits.max_id = 254;  // 255 is everybody in the VESC firmware that the servo mode comes from
@@ -233,7 +233,7 @@ MotorTraits cubemarsTraits(const CubeMarsSetup& setup) {
 }
 
 const MotorFamily& cubemarsFamily() noexcept {
-  static const CubeMarsFamily kFamily;
+  static const CubemarsFamily kFamily;
   return kFamily;
 }
 

@@ -55,13 +55,13 @@ struct MitCodes {
   std::uint32_t torque;
 };
 
-[[nodiscard]] MitCodes toCodes(const CubeMarsRanges& r, const MitCommand& c) noexcept {
+[[nodiscard]] MitCodes toCodes(const CubemarsRanges& r, const MitCommand& c) noexcept {
   return {.position =
               toCode(finiteOr0(within(c.position_rad, r.position_rad)), -r.position_rad, r.position_rad, 16),
           .velocity = toCode(finiteOr0(within(c.velocity_rad_s, r.velocity_rad_s)), -r.velocity_rad_s,
                              r.velocity_rad_s, 12),
-          .stiffness = toCode(c.stiffness_nm_per_rad, 0.0, CubeMarsRanges::kStiffnessNmPerRad, 12),
-          .damping = toCode(c.damping_nms_per_rad, 0.0, CubeMarsRanges::kDampingNmsPerRad, 12),
+          .stiffness = toCode(c.stiffness_nm_per_rad, 0.0, CubemarsRanges::kStiffnessNmPerRad, 12),
+          .damping = toCode(c.damping_nms_per_rad, 0.0, CubemarsRanges::kDampingNmsPerRad, 12),
           .torque = toCode(finiteOr0(within(c.torque_nm, r.torque_nm)), -r.torque_nm, r.torque_nm, 12)};
 }
 
@@ -123,7 +123,7 @@ std::optional<ServoReport> readServoReport(const CanFrame& frame) noexcept {
   return report;
 }
 
-CanFrame mitFrame(int motor_id, const CubeMarsRanges& ranges, const MitCommand& command) noexcept {
+CanFrame mitFrame(int motor_id, const CubemarsRanges& ranges, const MitCommand& command) noexcept {
   const MitCodes codes = toCodes(ranges, command);
   std::array<std::uint8_t, 8> data{};
   data[0] = byte(codes.position >> 8U);
@@ -133,7 +133,7 @@ CanFrame mitFrame(int motor_id, const CubeMarsRanges& ranges, const MitCommand& 
   return makeClassicFrame(mitId(motor_id), data);
 }
 
-CanFrame mitV3Frame(int motor_id, const CubeMarsRanges& ranges, const MitCommand& command) noexcept {
+CanFrame mitV3Frame(int motor_id, const CubemarsRanges& ranges, const MitCommand& command) noexcept {
   const MitCodes codes = toCodes(ranges, command);
   std::array<std::uint8_t, 8> data{};
   writePair(data, 0, codes.stiffness, codes.damping);
@@ -150,7 +150,7 @@ CanFrame mitOrderFrame(int motor_id, MitOrder order) noexcept {
   return makeClassicFrame(mitId(motor_id), data);
 }
 
-std::optional<MitReport> readMitReport(const CanFrame& frame, const CubeMarsRanges& ranges) noexcept {
+std::optional<MitReport> readMitReport(const CanFrame& frame, const CubemarsRanges& ranges) noexcept {
   const bool length_known = frame.length == 8 || frame.length == 6;
   if (frame.type != FrameType::kData || frame.fd || !length_known) return std::nullopt;
   const auto& data = frame.data;

@@ -66,9 +66,9 @@ struct MitCommand {
   double damping_nms_per_rad = 0.0;
   double torque_nm = 0.0;
 };
-[[nodiscard]] CanFrame mitFrame(int motor_id, const CubeMarsRanges& ranges,
+[[nodiscard]] CanFrame mitFrame(int motor_id, const CubemarsRanges& ranges,
                                 const MitCommand& command) noexcept;
-[[nodiscard]] CanFrame mitV3Frame(int motor_id, const CubeMarsRanges& ranges,
+[[nodiscard]] CanFrame mitV3Frame(int motor_id, const CubemarsRanges& ranges,
                                   const MitCommand& command) noexcept;
 
 /// FF FF FF FF FF FF FF and one of these.
@@ -86,6 +86,6 @@ struct MitReport {
 };
 /// Nothing if the frame cannot be one: its id is not looked at.
 [[nodiscard]] std::optional<MitReport> readMitReport(const CanFrame& frame,
-                                                     const CubeMarsRanges& ranges) noexcept;
+                                                     const CubemarsRanges& ranges) noexcept;
 
 }  // namespace rc10::cubemars

@@ -24,9 +24,9 @@ constexpr int kSamplesAtEnd = 2;
 
 }  // namespace
 
-CubeMarsMit::CubeMarsMit(const MotorSettings& settings, const CubeMarsSetup& setup)
+CubemarsMit::CubemarsMit(const MotorSettings& settings, const CubemarsSetup& setup)
     : CubeMars_Motor(settings, setup),
-      v3_(setup.protocol == CubeMarsProtocol::kMitV3),
+      v3_(setup.protocol == CubemarsProtocol::kMitV3),
       angle_stiffness_(settings.own.number("angle_stiffness_nm_per_rad")),
       angle_damping_(settings.own.number("angle_damping_nms_per_rad")),
       velocity_gain_(settings.own.number("velocity_gain_nms_per_rad")),
@@ -47,22 +47,22 @@ CubeMarsMit::CubeMarsMit(const MotorSettings& settings, const CubeMarsSetup& set
   }
 }
 
-std::span<const FrameFilter> CubeMarsMit::filters() const noexcept {
+std::span<const FrameFilter> CubemarsMit::filters() const noexcept {
   return std::span{filters_}.first(v3_ ? 1 : 2);
 }
 
-std::span<const CanId> CubeMarsMit::commandIds() const noexcept {
+std::span<const CanId> CubemarsMit::commandIds() const noexcept {
   return std::span{command_ids_}.first(v3_ ? 2 : 1);
 }
 
-bool CubeMarsMit::matchesFrame(const CanFrame& frame) const noexcept {
+bool CubemarsMit::matchesFrame(const CanFrame& frame) const noexcept {
   if (v3_) return isFrom(frame, filters_[0].id);
   // On the drive's own id also what another program here tells it.
   const bool addressed = isFrom(frame, filters_[0].id) || (isFrom(frame, filters_[1].id) && !frame.sent_here);
   return addressed && frame.length > 0 && frame.data[0] == static_cast<std::uint8_t>(driveId());
 }
 
-FrameVerdict CubeMarsMit::updateFeedback(const CanFrame& frame) noexcept {
+FrameVerdict CubemarsMit::updateFeedback(const CanFrame& frame) noexcept {
   if (!v3_) return takeMitReport(frame);
   const FrameVerdict verdict = takeServoReport(frame);
   if (verdict == FrameVerdict::kAccepted) {
@@ -74,7 +74,7 @@ FrameVerdict CubeMarsMit::updateFeedback(const CanFrame& frame) noexcept {
   return verdict;
 }
 
-FrameVerdict CubeMarsMit::takeMitReport(const CanFrame& frame) noexcept {
+FrameVerdict CubemarsMit::takeMitReport(const CanFrame& frame) noexcept {
   const auto report = cubemars::readMitReport(frame, setup().ranges);
   if (!report) return FrameVerdict::kMalformed;
   const bool anew = feedback_.samples == 0 || noticeRestart(frame.received);
@@ -92,7 +92,7 @@ FrameVerdict CubeMarsMit::takeMitReport(const CanFrame& frame) noexcept {
 
 // The field goes round at its ends (TMotorCANControl and others count its turns). Half of it is far more
 // than an output shaft turns between two answers.
-double CubeMarsMit::unwrapped(double position_rad, bool anew) noexcept {
+double CubemarsMit::unwrapped(double position_rad, bool anew) noexcept {
   const double span_rad = 2.0 * setup().ranges.position_rad;
   if (anew) {
     turns_ = 0;
@@ -105,18 +105,18 @@ double CubeMarsMit::unwrapped(double position_rad, bool anew) noexcept {
   return position_rad + turns_ * span_rad;
 }
 
-SequenceProgress CubeMarsMit::sequenceProgress() const noexcept {
+SequenceProgress CubemarsMit::sequenceProgress() const noexcept {
   return v3_ ? SequenceProgress::kDone : progressOf(sequence_.progress());
 }
 
-void CubeMarsMit::clearComplaint() noexcept {
+void CubemarsMit::clearComplaint() noexcept {
   forgetStop();
   clear_now_ = !v3_ && !obeying();
 }
 
 // Nothing in an answer says whether the drive has entered the mode; that it answers, and without an error,
 // is all there is to see.
-void CubeMarsMit::stepEnabling(const Tick& tick) noexcept {
+void CubemarsMit::stepEnabling(const Tick& tick) noexcept {
   if (begins()) {
     sequence_.begin(Step::kEnter);
     forgetStop();
@@ -129,11 +129,11 @@ void CubeMarsMit::stepEnabling(const Tick& tick) noexcept {
 }
 
 // The bounds of a command are computed from the feedback: it must not be old.
-bool CubeMarsMit::silent(const Tick& tick) const noexcept {
+bool CubemarsMit::silent(const Tick& tick) const noexcept {
   return feedback_.samples == 0 || tick.now - feedback_.received > longestGap();
 }
 
-void CubeMarsMit::update(const Tick& tick) noexcept {
+void CubemarsMit::update(const Tick& tick) noexcept {
   limits_ = 0;
   enter_now_ = false;
   const Target target = wanted();
@@ -147,22 +147,22 @@ void CubeMarsMit::update(const Tick& tick) noexcept {
   }
 }
 
-double CubeMarsMit::driveRadS(double output_rpm) const noexcept {
+double CubemarsMit::driveRadS(double output_rpm) const noexcept {
   return toDrive(output_rpm) * kRadPerSPerRpm;
 }
 
-double CubeMarsMit::boundRpm(double wanted_rpm) noexcept {
+double CubemarsMit::boundRpm(double wanted_rpm) noexcept {
   return rpmWithinLimit(wanted_rpm, setup().ranges.velocity_rad_s / std::fabs(driveRadS(1.0)));
 }
 
-CubeMarsMit::Law CubeMarsMit::velocityLaw(double output_rpm, double torque_ff_nm, double gain) noexcept {
+CubemarsMit::Law CubemarsMit::velocityLaw(double output_rpm, double torque_ff_nm, double gain) noexcept {
   return {.velocity_rad_s = driveRadS(boundRpm(output_rpm)),
           .damping_nms_per_rad = gain,
           .torque_nm = torqueToDrive(torque_ff_nm)};
 }
 
 // `stiffness` and `damping` at the drive's output.
-CubeMarsMit::Law CubeMarsMit::angleLaw(const Target& target, double stiffness, double damping,
+CubemarsMit::Law CubemarsMit::angleLaw(const Target& target, double stiffness, double damping,
                                        bool bound_speed) noexcept {
   const double ff_nm = static_cast<double>(target.torque_ff_nm);
   if (!inRange()) {
@@ -174,8 +174,8 @@ CubeMarsMit::Law CubeMarsMit::angleLaw(const Target& target, double stiffness, d
   const double wanted_rad = drivePositionFor(target.value) * kRadPerDeg;
   Law law{.position_rad = std::clamp(wanted_rad, -reach_rad, reach_rad),
           .velocity_rad_s = driveRadS(boundRpm(static_cast<double>(target.velocity_ff_rpm))),
-          .stiffness_nm_per_rad = std::clamp(stiffness, 0.0, CubeMarsRanges::kStiffnessNmPerRad),
-          .damping_nms_per_rad = std::clamp(damping, 0.0, CubeMarsRanges::kDampingNmsPerRad),
+          .stiffness_nm_per_rad = std::clamp(stiffness, 0.0, CubemarsRanges::kStiffnessNmPerRad),
+          .damping_nms_per_rad = std::clamp(damping, 0.0, CubemarsRanges::kDampingNmsPerRad),
           .torque_nm = torqueToDrive(ff_nm)};
   if (law.position_rad != wanted_rad) limits_ |= kLimitAngle;
   const auto limit_rpm = static_cast<double>(velocityLimitRpm());
@@ -194,7 +194,7 @@ CubeMarsMit::Law CubeMarsMit::angleLaw(const Target& target, double stiffness, d
   return law;
 }
 
-CubeMarsMit::Law CubeMarsMit::lawOf(const Target& target) noexcept {
+CubemarsMit::Law CubemarsMit::lawOf(const Target& target) noexcept {
   const double ff_nm = static_cast<double>(target.torque_ff_nm);
   switch (target.mode) {
     case ControlMode::kCurrent: {
@@ -220,7 +220,7 @@ CubeMarsMit::Law CubeMarsMit::lawOf(const Target& target) noexcept {
 
 // Both errors and the torque shrink together until the drive's sum is within the limit: the sign of each
 // part stays, and the damping too.
-void CubeMarsMit::send(const Law& wanted_law) noexcept {
+void CubemarsMit::send(const Law& wanted_law) noexcept {
   // What the field cannot say must not be in the sum either.
   const double most_nm = setup().ranges.torque_nm;
   Law law = wanted_law;
@@ -244,17 +244,17 @@ void CubeMarsMit::send(const Law& wanted_law) noexcept {
   setCommand(torqueToOutput(share * sum_nm) / static_cast<double>(torqueNmPerA()), CommandUnit::kAmpere);
 }
 
-void CubeMarsMit::release() noexcept {
+void CubemarsMit::release() noexcept {
   command_ = {};
   setCommand(0.0, CommandUnit::kAmpere);
 }
 
-CanFrame CubeMarsMit::commandFrame(const Law& law) const noexcept {
+CanFrame CubemarsMit::commandFrame(const Law& law) const noexcept {
   return v3_ ? cubemars::mitV3Frame(driveId(), setup().ranges, law)
              : cubemars::mitFrame(driveId(), setup().ranges, law);
 }
 
-std::size_t CubeMarsMit::packCommand(const Tick& tick, std::span<CanFrame> out) noexcept {
+std::size_t CubemarsMit::packCommand(const Tick& tick, std::span<CanFrame> out) noexcept {
   if (out.size() < kMaxFramesPerPacker) return 0;
   const CanFrame no_torque = commandFrame({});
   if (clear_now_ || enter_now_) {
@@ -272,7 +272,7 @@ std::size_t CubeMarsMit::packCommand(const Tick& tick, std::span<CanFrame> out) 
   return 1;
 }
 
-std::size_t CubeMarsMit::packRest(std::span<CanFrame> out) const noexcept {
+std::size_t CubemarsMit::packRest(std::span<CanFrame> out) const noexcept {
   if (out.size() < 2) return 0;
   if (!v3_) {
     out[0] = cubemars::mitOrderFrame(driveId(), MitOrder::kExit);  // the drive answers this one too

@@ -13,10 +13,10 @@ namespace rc10 {
 ///
 /// effortLimit() bounds the sum that the drive will make of a command, as far as the last feedback tells;
 /// without feedback for longestGap() nothing but "no torque" is sent. Scheduler thread only.
-class CubeMarsMit : public CubeMars_Motor {
+class CubemarsMit : public CubeMars_Motor {
  public:
   /// `settings` has passed its family's check().
-  CubeMarsMit(const MotorSettings& settings, const CubeMarsSetup& setup);
+  CubemarsMit(const MotorSettings& settings, const CubemarsSetup& setup);
 
   [[nodiscard]] std::span<const FrameFilter> filters() const noexcept override;
   [[nodiscard]] bool matchesFrame(const CanFrame& frame) const noexcept override;

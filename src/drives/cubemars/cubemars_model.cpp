@@ -15,57 +15,57 @@
 namespace rc10 {
 namespace {
 
-constexpr CubeMarsRanges range(double position_rad, double velocity_rad_s, double torque_nm) {
+constexpr CubemarsRanges range(double position_rad, double velocity_rad_s, double torque_nm) {
   return {.position_rad = position_rad, .velocity_rad_s = velocity_rad_s, .torque_nm = torque_nm};
 }
 
-constexpr std::array kCubeMarsModels{
-    CubeMarsModel{.name = "AK10-9",
+constexpr std::array kCubemarsModels{
+    CubemarsModel{.name = "AK10-9",
                   .gear_ratio = 9.0,
                   .pole_pairs = 21,
                   .rotor_torque_nm_per_a = 0.16F,
                   .no_load_rpm = 320.0F,  // KV 60
                   .ranges = range(12.5, 50.0, 65.0)},
-    CubeMarsModel{.name = "AK60-6",
+    CubemarsModel{.name = "AK60-6",
                   .gear_ratio = 6.0,
                   .pole_pairs = 14,
                   .rotor_torque_nm_per_a = 0.068F,
                   .nominal_v = 24.0F,
                   .no_load_rpm = 560.0F,               // KV 140
                   .ranges = range(12.5, 50.0, 15.0)},  // KMR_CubeMars: 45 rad/s, see velocity_range_rad_s
-    CubeMarsModel{.name = "AK70-10",
+    CubemarsModel{.name = "AK70-10",
                   .gear_ratio = 10.0,
                   .pole_pairs = 21,
                   .rotor_torque_nm_per_a = 0.095F,
                   .no_load_rpm = 480.0F,            // KV 100
                   .phase_resistance_ohm = 0.0933F,  // foc_motor_r of an exported setting
                   .ranges = range(12.5, 50.0, 25.0)},
-    CubeMarsModel{.name = "AK80-6",
+    CubemarsModel{.name = "AK80-6",
                   .gear_ratio = 6.0,
                   .pole_pairs = 21,
                   .rotor_torque_nm_per_a = 0.091F,
                   .no_load_rpm = 800.0F,  // KV 100
                   // Firmware V1.1 has 22.5 rad/s (measured by others): velocity_range_rad_s.
                   .ranges = range(12.5, 76.0, 12.0)},
-    CubeMarsModel{.name = "AK80-8",
+    CubemarsModel{.name = "AK80-8",
                   .gear_ratio = 8.0,
                   .pole_pairs = 21,
                   .rotor_torque_nm_per_a = 0.159F,
                   .no_load_rpm = 360.0F,  // KV 60
                   .ranges = range(12.5, 37.5, 32.0)},
-    CubeMarsModel{.name = "AK80-9",
+    CubemarsModel{.name = "AK80-9",
                   .gear_ratio = 9.0,
                   .pole_pairs = 21,
                   .rotor_torque_nm_per_a = 0.091F,  // TMotorCANControl measured 0.115
                   .no_load_rpm = 533.0F,            // KV 100
                   .ranges = range(12.5, 50.0, 18.0)},
-    CubeMarsModel{.name = "AK80-64",
+    CubemarsModel{.name = "AK80-64",
                   .gear_ratio = 64.0,
                   .pole_pairs = 21,
                   .rotor_torque_nm_per_a = 0.119F,
                   .no_load_rpm = 60.0F,  // KV 80
                   .ranges = range(12.5, 8.0, 144.0)},
-    CubeMarsModel{.name = "AK10-9-V3",
+    CubemarsModel{.name = "AK10-9-V3",
                   .gear_ratio = 9.0,
                   .pole_pairs = 21,
                   .rotor_torque_nm_per_a = 1.1314F / 9.0F,  // measured: cubemars_driver_node
@@ -73,21 +73,21 @@ constexpr std::array kCubeMarsModels{
                   .v3 = true,
                   .signed_current = false,  // cubemars_driver_node
                   .ranges = range(12.56, 28.0, 54.0)},
-    CubeMarsModel{.name = "AK60-6-V3",
+    CubemarsModel{.name = "AK60-6-V3",
                   .gear_ratio = 6.0,
                   .pole_pairs = 14,
                   .rotor_torque_nm_per_a = 0.119F,  // KV 80 (cubemars_servo_can)
                   .no_load_rpm = 640.0F,
                   .v3 = true,
                   .ranges = range(12.56, 60.0, 12.0)},
-    CubeMarsModel{.name = "AK80-8-V3",
+    CubemarsModel{.name = "AK80-8-V3",
                   .gear_ratio = 8.0,
                   .pole_pairs = 21,
                   .rotor_torque_nm_per_a = 1.0566F / 8.0F,  // measured: cubemars_driver_node
                   .no_load_rpm = 360.0F,
                   .v3 = true,
                   .ranges = range(12.5, 37.5, 32.0)},
-    CubeMarsModel{.name = "AK80-9-V3",
+    CubemarsModel{.name = "AK80-9-V3",
                   .gear_ratio = 9.0,
                   .pole_pairs = 21,
                   .rotor_torque_nm_per_a = 0.095F,  // cubemars_servo_can
@@ -96,7 +96,7 @@ constexpr std::array kCubeMarsModels{
                   .ranges = range(12.56, 65.0, 18.0)}};
 
 // 6 and 7: the newer manuals and cubemars_driver_node. Older ones call 6 "phase unbalance" and have no 7.
-constexpr std::array kCubeMarsFaults{
+constexpr std::array kCubemarsFaults{
     DriveFault{1, FaultCode::kDriveMotorTooHot, "motor too hot"},
     DriveFault{2, FaultCode::kDriveOverCurrent, "over-current"},
     DriveFault{3, FaultCode::kDriveOverVoltage, "over-voltage"},
@@ -105,7 +105,7 @@ constexpr std::array kCubeMarsFaults{
     DriveFault{6, FaultCode::kDriveTooHot, "power stage too hot (older firmware: phase unbalance)"},
     DriveFault{7, FaultCode::kDriveStalled, "motor stalled"}};
 
-double messageDegPerDeg(const CubeMarsModel& model, int pole_pairs, std::string_view basis) noexcept {
+double messageDegPerDeg(const CubemarsModel& model, int pole_pairs, std::string_view basis) noexcept {
   if (basis == "rotor") return model.gear_ratio;
   if (basis == "electrical") return model.gear_ratio * std::max(pole_pairs, 1);
   return 1.0;
@@ -113,24 +113,24 @@ double messageDegPerDeg(const CubeMarsModel& model, int pole_pairs, std::string_
 
 }  // namespace
 
-std::span<const CubeMarsModel> cubemarsModels() noexcept { return kCubeMarsModels; }
+std::span<const CubemarsModel> cubemarsModels() noexcept { return kCubemarsModels; }
 
 std::span<const std::string_view> cubemarsModelNames() noexcept {
-  static constexpr auto kNames = modelNames(kCubeMarsModels);
+  static constexpr auto kNames = modelNames(kCubemarsModels);
   return kNames;
 }
 
-const CubeMarsModel* findCubemarsModel(std::string_view name) noexcept {
-  return findModel(kCubeMarsModels, name);
+const CubemarsModel* findCubemarsModel(std::string_view name) noexcept {
+  return findModel(kCubemarsModels, name);
 }
 
-CubeMarsSetup cubemarsSetup(std::string_view model_name, const OwnValues& own) {
-  const CubeMarsModel* found = findCubemarsModel(model_name);
-  const CubeMarsModel& model = found == nullptr ? kCubeMarsModels.front() : *found;
-  CubeMarsSetup setup{.model = &model, .ranges = model.ranges};
+CubemarsSetup cubemarsSetup(std::string_view model_name, const OwnValues& own) {
+  const CubemarsModel* found = findCubemarsModel(model_name);
+  const CubemarsModel& model = found == nullptr ? kCubemarsModels.front() : *found;
+  CubemarsSetup setup{.model = &model, .ranges = model.ranges};
   const std::string protocol = own.text("protocol");
-  if (protocol == "mit") setup.protocol = CubeMarsProtocol::kMit;
-  if (protocol == "mit_v3") setup.protocol = CubeMarsProtocol::kMitV3;
+  if (protocol == "mit") setup.protocol = CubemarsProtocol::kMit;
+  if (protocol == "mit_v3") setup.protocol = CubemarsProtocol::kMitV3;
   setup.pole_pairs = own.integer("pole_pairs") > 0 ? own.integer("pole_pairs") : model.pole_pairs;
   const auto torque_constant = static_cast<float>(own.number("torque_constant_nm_per_a"));
   setup.torque_nm_per_a = (torque_constant > 0.0F ? torque_constant : model.rotor_torque_nm_per_a) *
@@ -143,10 +143,10 @@ CubeMarsSetup cubemarsSetup(std::string_view model_name, const OwnValues& own) {
   return setup;
 }
 
-std::span<const DriveFault> cubemarsFaults() noexcept { return kCubeMarsFaults; }
+std::span<const DriveFault> cubemarsFaults() noexcept { return kCubemarsFaults; }
 
 FaultCode cubemarsFault(std::uint8_t code) noexcept {
-  return code == 0 ? FaultCode::kNone : faultOfCode(kCubeMarsFaults, code);
+  return code == 0 ? FaultCode::kNone : faultOfCode(kCubemarsFaults, code);
 }
 
 }  // namespace rc10

@@ -10,14 +10,14 @@
 namespace rc10 {
 
 /// What is spoken with the drive: chosen in the vendor's program, not over CAN.
-enum class CubeMarsProtocol : std::uint8_t {
+enum class CubemarsProtocol : std::uint8_t {
   kServo,  ///< Extended ids; loops in the drive; speaks unasked.
   kMit,    ///< Drives V1 and V2: standard ids, one answer to each frame.
   kMitV3,  ///< Drives V3: the MIT command in an extended frame, with the servo protocol's feedback.
 };
 
 /// What the fields of a MIT frame reach to, at the drive's own output. Both ways from 0, gains from 0 up.
-struct CubeMarsRanges {
+struct CubemarsRanges {
   double position_rad = 12.5;
   double velocity_rad_s = 50.0;
   double torque_nm = 0.0;
@@ -26,7 +26,7 @@ struct CubeMarsRanges {
 };
 
 /// Everything in which one AK model differs from another.
-struct CubeMarsModel {
+struct CubemarsModel {
   std::string_view name;
   double gear_ratio = 1.0;
   int pole_pairs = 0;
@@ -36,19 +36,19 @@ struct CubeMarsModel {
   float phase_resistance_ohm = 0.0F;
   bool v3 = false;             ///< Its drive is of the third generation.
   bool signed_current = true;  ///< false: its feedback has only the amount of the current.
-  CubeMarsRanges ranges;
+  CubemarsRanges ranges;
 };
 
-[[nodiscard]] std::span<const CubeMarsModel> cubemarsModels() noexcept;
+[[nodiscard]] std::span<const CubemarsModel> cubemarsModels() noexcept;
 [[nodiscard]] std::span<const std::string_view> cubemarsModelNames() noexcept;
 /// nullptr if there is no such model.
-[[nodiscard]] const CubeMarsModel* findCubemarsModel(std::string_view name) noexcept;
+[[nodiscard]] const CubemarsModel* findCubemarsModel(std::string_view name) noexcept;
 
 /// A model as it is configured: its table with what the keys change of it.
-struct CubeMarsSetup {
-  const CubeMarsModel* model = nullptr;
-  CubeMarsProtocol protocol = CubeMarsProtocol::kServo;
-  CubeMarsRanges ranges;
+struct CubemarsSetup {
+  const CubemarsModel* model = nullptr;
+  CubemarsProtocol protocol = CubemarsProtocol::kServo;
+  CubemarsRanges ranges;
   int pole_pairs = 0;
   float torque_nm_per_a = 0.0F;      ///< At the model's own output shaft.
   double message_deg_per_deg = 1.0;  ///< Servo: degrees in a frame per degree of the drive's output.
@@ -56,7 +56,7 @@ struct CubeMarsSetup {
 };
 
 /// `model` is one of cubemarsModels(), `own` has all of the family's keys.
-[[nodiscard]] CubeMarsSetup cubemarsSetup(std::string_view model, const OwnValues& own);
+[[nodiscard]] CubemarsSetup cubemarsSetup(std::string_view model, const OwnValues& own);
 
 /// Native error codes. The words are those of docs/motors/cubemars.md.
 [[nodiscard]] std::span<const DriveFault> cubemarsFaults() noexcept;

@@ -12,7 +12,7 @@ namespace {
 
 // No start-up time is published. Its boot loader and the encoder's start take longer than this.
 constexpr Duration kStartUp = std::chrono::milliseconds{100};
-constexpr int kCubeMarsGapPeriods = 3;  // so many feedback periods are no gap
+constexpr int kCubemarsGapPeriods = 3;  // so many feedback periods are no gap
 // Above the no-load speed: a load that drives, a full battery, another winding of the same name.
 constexpr double kReach = 1.5;
 // Stamps of frames that waited for others come bunched.
@@ -21,11 +21,11 @@ constexpr double kPositionErrorDeg = 1.0;
 
 }  // namespace
 
-CubeMars_Motor::CubeMars_Motor(const MotorSettings& settings, const CubeMarsSetup& setup)
+CubeMars_Motor::CubeMars_Motor(const MotorSettings& settings, const CubemarsSetup& setup)
     : SoloMotor(settings, cubemarsTraits(setup), driveTurns(settings, cubemarsTraits(setup))),
       setup_(setup),
       id_(settings.id),
-      longest_gap_(std::max(kStartUp, kCubeMarsGapPeriods * feedbackPeriod())),
+      longest_gap_(std::max(kStartUp, kCubemarsGapPeriods * feedbackPeriod())),
       reach_deg_per_s_(kReach * static_cast<double>(setup.model->no_load_rpm) * kDegPerSPerRpm) {}
 
 DriveComplaint CubeMars_Motor::complaint() const noexcept {

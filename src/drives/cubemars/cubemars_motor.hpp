@@ -17,9 +17,9 @@ class CubeMars_Motor : public SoloMotor {
   [[nodiscard]] DriveComplaint complaint() const noexcept override;
 
  protected:
-  CubeMars_Motor(const MotorSettings& settings, const CubeMarsSetup& setup);
+  CubeMars_Motor(const MotorSettings& settings, const CubemarsSetup& setup);
 
-  [[nodiscard]] const CubeMarsSetup& setup() const noexcept { return setup_; }
+  [[nodiscard]] const CubemarsSetup& setup() const noexcept { return setup_; }
   [[nodiscard]] int driveId() const noexcept { return id_; }
   /// The feedback of a drive with this id; whether it is whole is for updateFeedback() to see. A simulated
   /// drive on a virtual bus is on this computer too.
@@ -46,7 +46,7 @@ class CubeMars_Motor : public SoloMotor {
   void forgetStop() noexcept { stopped_ = false; }
 
  private:
-  CubeMarsSetup setup_;
+  CubemarsSetup setup_;
   int id_;
   Duration longest_gap_;
   double reach_deg_per_s_;  ///< No position changes faster.

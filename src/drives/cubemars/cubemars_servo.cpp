@@ -16,7 +16,7 @@ constexpr double kLargestPlanErpm = 327'670.0;
 
 }  // namespace
 
-CubeMarsServo::CubeMarsServo(const MotorSettings& settings, const CubeMarsSetup& setup)
+CubemarsServo::CubemarsServo(const MotorSettings& settings, const CubemarsSetup& setup)
     : CubeMars_Motor(settings, setup),
       filters_{FrameFilter{.id = cubemars::servoFeedbackId(settings.id)}},
       command_ids_{cubemars::servoId(ServoCommand::kCurrent, settings.id),
@@ -29,13 +29,13 @@ CubeMarsServo::CubeMarsServo(const MotorSettings& settings, const CubeMarsSetup&
       acceleration_rpm_per_s_(settings.own.number("acceleration_limit_rpm_per_s")),
       next_(cubemars::currentFrame(settings.id, 0.0)) {}
 
-bool CubeMarsServo::matchesFrame(const CanFrame& frame) const noexcept {
+bool CubemarsServo::matchesFrame(const CanFrame& frame) const noexcept {
   return isFrom(frame, filters_[0].id);
 }
 
-FrameVerdict CubeMarsServo::updateFeedback(const CanFrame& frame) noexcept { return takeServoReport(frame); }
+FrameVerdict CubemarsServo::updateFeedback(const CanFrame& frame) noexcept { return takeServoReport(frame); }
 
-void CubeMarsServo::update(const Tick& /*tick*/) noexcept {
+void CubemarsServo::update(const Tick& /*tick*/) noexcept {
   limits_ = 0;
   const Target target = wanted();
   const bool nothing_left = !(effortLimit() > 0.0F);
@@ -49,7 +49,7 @@ void CubeMarsServo::update(const Tick& /*tick*/) noexcept {
   }
 }
 
-void CubeMarsServo::prepare(const Target& target) noexcept {
+void CubemarsServo::prepare(const Target& target) noexcept {
   switch (target.mode) {
     case ControlMode::kCurrent: prepareCurrent(target); break;
     case ControlMode::kVelocity: prepareVelocity(target.value); break;
@@ -63,18 +63,18 @@ void CubeMarsServo::prepare(const Target& target) noexcept {
   }
 }
 
-void CubeMarsServo::prepareRest() noexcept {
+void CubemarsServo::prepareRest() noexcept {
   next_ = cubemars::currentFrame(driveId(), 0.0);
   setCommand(0.0, CommandUnit::kAmpere);
 }
 
 // Duty 0 shorts the winding: a torque against the motion in proportion to the speed, with no feedback needed.
-void CubeMarsServo::prepareDamp() noexcept {
+void CubemarsServo::prepareDamp() noexcept {
   next_ = cubemars::dutyFrame(driveId(), 0.0);
   setCommand(0.0, CommandUnit::kNative);
 }
 
-void CubeMarsServo::prepareCurrent(const Target& target) noexcept {
+void CubemarsServo::prepareCurrent(const Target& target) noexcept {
   const auto limit = static_cast<double>(effortLimit());
   const double ff_a = torqueNmPerA() > 0.0F
                           ? static_cast<double>(target.torque_ff_nm) / static_cast<double>(torqueNmPerA())
@@ -86,16 +86,16 @@ void CubeMarsServo::prepareCurrent(const Target& target) noexcept {
   setCommand(amperes, CommandUnit::kAmpere);
 }
 
-void CubeMarsServo::prepareBrake() noexcept {
+void CubemarsServo::prepareBrake() noexcept {
   next_ = cubemars::brakeFrame(driveId(), std::min(brake_a_, static_cast<double>(effortLimit())));
   setCommand(0.0, CommandUnit::kNative);
 }
 
-double CubeMarsServo::erpmOf(double output_rpm) const noexcept {
+double CubemarsServo::erpmOf(double output_rpm) const noexcept {
   return toDrive(output_rpm) * setup().model->gear_ratio * std::max(setup().pole_pairs, 1);
 }
 
-void CubeMarsServo::prepareVelocity(double wanted_rpm) noexcept {
+void CubemarsServo::prepareVelocity(double wanted_rpm) noexcept {
   const double rpm = rpmWithinLimit(wanted_rpm, cubemars::kLargestErpm / std::fabs(erpmOf(1.0)));
   next_ = cubemars::velocityFrame(driveId(), erpmOf(rpm));
   setCommand(rpm, CommandUnit::kNative);
@@ -103,7 +103,7 @@ void CubeMarsServo::prepareVelocity(double wanted_rpm) noexcept {
 
 // Without a limit the drive follows each new target at once, which is what a stream of targets wants. With
 // one it plans its way to the target.
-void CubeMarsServo::prepareAngle(double total_angle_deg) noexcept {
+void CubemarsServo::prepareAngle(double total_angle_deg) noexcept {
   if (positionCutOff()) {  // any target would be a jump back
     prepareBrake();
     limits_ |= kLimitAngle;
@@ -126,19 +126,19 @@ void CubeMarsServo::prepareAngle(double total_angle_deg) noexcept {
   setCommand(std::clamp(target_deg - cut_off_deg, -kMostDeg, kMostDeg), CommandUnit::kNative);
 }
 
-void CubeMarsServo::prepareDuty(double duty) noexcept {
+void CubemarsServo::prepareDuty(double duty) noexcept {
   const double bounded = std::clamp(duty, -1.0, 1.0);
   next_ = cubemars::dutyFrame(driveId(), bounded * static_cast<double>(direction()));
   setCommand(bounded, CommandUnit::kNative);
 }
 
-std::size_t CubeMarsServo::packCommand(const Tick& tick, std::span<CanFrame> out) noexcept {
+std::size_t CubemarsServo::packCommand(const Tick& tick, std::span<CanFrame> out) noexcept {
   if (!due(tick) || out.empty()) return 0;
   out[0] = next_;
   return 1;
 }
 
-std::size_t CubeMarsServo::packRest(std::span<CanFrame> out) const noexcept {
+std::size_t CubemarsServo::packRest(std::span<CanFrame> out) const noexcept {
   if (out.empty()) return 0;
   out[0] = cubemars::currentFrame(driveId(), 0.0);
   return 1;

@@ -11,10 +11,10 @@ namespace rc10 {
 ///
 /// The drive's loops know only the drive's own limit of the current: effortLimit() bounds currents and the
 /// brake, and an effort limit of 0 lets go in every mode. Scheduler thread only.
-class CubeMarsServo : public CubeMars_Motor {
+class CubemarsServo : public CubeMars_Motor {
  public:
   /// `settings` has passed its family's check().
-  CubeMarsServo(const MotorSettings& settings, const CubeMarsSetup& setup);
+  CubemarsServo(const MotorSettings& settings, const CubemarsSetup& setup);
 
   [[nodiscard]] std::span<const FrameFilter> filters() const noexcept override { return filters_; }
   [[nodiscard]] bool matchesFrame(const CanFrame& frame) const noexcept override;

@@ -17,11 +17,11 @@ namespace {
 // .params); what they do is in the VESC firmware, from which those settings are. In MIT mode of V1 and V2 no
 // timeout is known: the last command holds.
 constexpr Duration kCommandTimeout = std::chrono::milliseconds{1000};
-constexpr Duration kCubeMarsFaultStop = std::chrono::milliseconds{500};
+constexpr Duration kCubemarsFaultStop = std::chrono::milliseconds{500};
 constexpr Duration kStartUp = std::chrono::milliseconds{300};  // assumed
 
-std::vector<FrameFilter> cubemarsSends(const MotorSettings& settings, const CubeMarsSetup& setup) {
-  if (setup.protocol != CubeMarsProtocol::kMit) return {{.id = cubemars::servoFeedbackId(settings.id)}};
+std::vector<FrameFilter> cubemarsSends(const MotorSettings& settings, const CubemarsSetup& setup) {
+  if (setup.protocol != CubemarsProtocol::kMit) return {{.id = cubemars::servoFeedbackId(settings.id)}};
   const PayloadDiscriminator own{.value = static_cast<std::uint8_t>(settings.id)};
   return {{.id = {0, false}, .mask = kStandardIdMask, .discriminator = own}};
 }
@@ -41,7 +41,7 @@ std::int16_t int16Of(double value, double limit) noexcept {
 
 }  // namespace
 
-CubeMarsDrive::CubeMarsDrive(const MotorSettings& settings, const CubeMarsSetup& setup, const MotorLoad& load)
+CubemarsDrive::CubemarsDrive(const MotorSettings& settings, const CubemarsSetup& setup, const MotorLoad& load)
     : ServoDrive(settings, cubemarsTraits(setup), load, cubemarsSends(settings, setup)),
       setup_(setup),
       id_(settings.id) {
@@ -49,34 +49,34 @@ CubeMarsDrive::CubeMarsDrive(const MotorSettings& settings, const CubeMarsSetup&
   feedback_period_ = std::chrono::duration_cast<Duration>(std::chrono::seconds{1}) / std::max(hz, 1);
 }
 
-Duration CubeMarsDrive::feedbackPeriod() const noexcept {
-  return setup_.protocol == CubeMarsProtocol::kMit ? Duration::zero() : feedback_period_;
+Duration CubemarsDrive::feedbackPeriod() const noexcept {
+  return setup_.protocol == CubemarsProtocol::kMit ? Duration::zero() : feedback_period_;
 }
 
-std::size_t CubeMarsDrive::feedback(std::span<CanFrame> out) noexcept {
-  if (setup_.protocol == CubeMarsProtocol::kMit || off() || out.empty()) return 0;
+std::size_t CubemarsDrive::feedback(std::span<CanFrame> out) noexcept {
+  if (setup_.protocol == CubemarsProtocol::kMit || off() || out.empty()) return 0;
   out[0] = servoFeedback();
   return 1;
 }
 
-double CubeMarsDrive::rpmOf(double erpm) const noexcept {
+double CubemarsDrive::rpmOf(double erpm) const noexcept {
   return erpm / (setup_.model->gear_ratio * setup_.pole_pairs);
 }
 
-void CubeMarsDrive::receive(const CanFrame& frame) noexcept {
+void CubemarsDrive::receive(const CanFrame& frame) noexcept {
   if (frame.type != FrameType::kData || frame.fd || off()) return;
-  if (setup_.protocol == CubeMarsProtocol::kMit) {
+  if (setup_.protocol == CubemarsProtocol::kMit) {
     if (frame.id == CanId{static_cast<std::uint32_t>(id_), false} && frame.length == 8) receiveMit(frame);
   } else if (frame.id.extended && (frame.id.value & 0xFFU) == static_cast<std::uint32_t>(id_)) {
     receiveServo(frame);
   }
 }
 
-void CubeMarsDrive::receiveServo(const CanFrame& frame) noexcept {
+void CubemarsDrive::receiveServo(const CanFrame& frame) noexcept {
   constexpr std::array<std::size_t, 9> kLengths{4, 4, 4, 4, 4, 1, 8, 9, 8};  // 7 is no command
   const std::uint32_t command = frame.id.value >> 8U;
   if (command >= kLengths.size() || frame.length < kLengths[command]) return;
-  if (command == 8 && setup_.protocol != CubeMarsProtocol::kMitV3) return;
+  if (command == 8 && setup_.protocol != CubemarsProtocol::kMitV3) return;
   last_command_ = elapsed();
   if (error_ != 0) return;
   const auto bytes = frame.payload();
@@ -108,11 +108,11 @@ void CubeMarsDrive::receiveServo(const CanFrame& frame) noexcept {
   }
 }
 
-void CubeMarsDrive::setDrivePosition(double message_deg, double limit_rpm) noexcept {
+void CubemarsDrive::setDrivePosition(double message_deg, double limit_rpm) noexcept {
   position(message_deg / setup_.message_deg_per_deg, limit_rpm);
 }
 
-void CubeMarsDrive::receiveMit(const CanFrame& frame) noexcept {
+void CubemarsDrive::receiveMit(const CanFrame& frame) noexcept {
   const auto bytes = frame.payload();
   const bool special = std::all_of(bytes.begin(), bytes.begin() + 7, [](auto byte) { return byte == 0xFF; });
   if (special && bytes[7] == 0xFC) {
@@ -132,7 +132,7 @@ void CubeMarsDrive::receiveMit(const CanFrame& frame) noexcept {
   answer(mitReply());
 }
 
-void CubeMarsDrive::obeyMit(std::uint32_t position, std::uint32_t velocity, std::uint32_t stiffness,
+void CubemarsDrive::obeyMit(std::uint32_t position, std::uint32_t velocity, std::uint32_t stiffness,
                             std::uint32_t damping, std::uint32_t torque) noexcept {
   const auto& r = setup_.ranges;
   const auto both = [](std::uint32_t code, double reach, double last) {
@@ -143,14 +143,14 @@ void CubeMarsDrive::obeyMit(std::uint32_t position, std::uint32_t velocity, std:
             scaled(damping, 0.0, 5.0, 4095.0), both(torque, r.torque_nm, 4095.0));
 }
 
-void CubeMarsDrive::step(Duration dt) noexcept {
+void CubemarsDrive::step(Duration dt) noexcept {
   ServoDrive::step(dt);
-  if (setup_.protocol == CubeMarsProtocol::kMit) return;
+  if (setup_.protocol == CubemarsProtocol::kMit) return;
   if (elapsed() - last_command_ > kCommandTimeout) release();
   if (error_ != 0 && elapsed() >= error_until_) error_ = 0;
 }
 
-void CubeMarsDrive::restart() noexcept {
+void CubemarsDrive::restart() noexcept {
   release();
   entered_ = false;
   error_ = 0;
@@ -160,13 +160,13 @@ void CubeMarsDrive::restart() noexcept {
   zeroAt(std::remainder(driveAngleDeg(), rotor_turn_deg));
 }
 
-void CubeMarsDrive::fault(std::uint32_t native_code) noexcept {
+void CubemarsDrive::fault(std::uint32_t native_code) noexcept {
   error_ = static_cast<std::uint8_t>(std::min(native_code, 255U));
-  error_until_ = elapsed() + kCubeMarsFaultStop;
+  error_until_ = elapsed() + kCubemarsFaultStop;
   if (error_ != 0) release();
 }
 
-CanFrame CubeMarsDrive::servoFeedback() const noexcept {
+CanFrame CubemarsDrive::servoFeedback() const noexcept {
   std::array<std::uint8_t, 8> data{};
   const double amperes = setup_.model->signed_current ? currentA() : std::fabs(currentA());
   const double erpm = driveRpm() * setup_.model->gear_ratio * setup_.pole_pairs;
@@ -178,7 +178,7 @@ CanFrame CubeMarsDrive::servoFeedback() const noexcept {
   return makeClassicFrame(cubemars::servoFeedbackId(id_), data);
 }
 
-CanFrame CubeMarsDrive::mitReply() const noexcept {
+CanFrame CubemarsDrive::mitReply() const noexcept {
   const auto& r = setup_.ranges;
   std::array<std::uint8_t, 8> data{};
   // The position goes round at the ends of its field.
@@ -197,7 +197,7 @@ CanFrame CubeMarsDrive::mitReply() const noexcept {
 }
 
 std::unique_ptr<Drive> makeCubemarsDrive(const MotorSettings& settings, const MotorLoad& load) {
-  return std::make_unique<CubeMarsDrive>(settings, cubemarsSetup(settings.model, settings.own), load);
+  return std::make_unique<CubemarsDrive>(settings, cubemarsSetup(settings.model, settings.own), load);
 }
 
 }  // namespace rc10::sim

@@ -10,9 +10,9 @@ namespace rc10::sim {
 
 /// A CubeMars AK drive in the protocol that it is configured for. Its own decoder: nothing here uses what
 /// the motor class packs with, except for ids and field ranges.
-class CubeMarsDrive : public ServoDrive {
+class CubemarsDrive : public ServoDrive {
  public:
-  CubeMarsDrive(const MotorSettings& settings, const CubeMarsSetup& setup, const MotorLoad& load);
+  CubemarsDrive(const MotorSettings& settings, const CubemarsSetup& setup, const MotorLoad& load);
 
   void receive(const CanFrame& frame) noexcept override;
   void step(Duration dt) noexcept override;
@@ -35,7 +35,7 @@ class CubeMarsDrive : public ServoDrive {
   [[nodiscard]] bool off() const noexcept { return elapsed() < boots_until_; }
   [[nodiscard]] double rpmOf(double erpm) const noexcept;
 
-  CubeMarsSetup setup_;
+  CubemarsSetup setup_;
   int id_;
   Duration feedback_period_;
   bool entered_ = false;  ///< MIT: obeys.

@@ -41,7 +41,7 @@ constexpr DriveFrames kLktechFrames{.rest = Provision::kFrame,
                                     .enable = Provision::kFrame,
                                     .disable = Provision::kNothing};
 
-class LKTechFamily final : public MotorFamily {
+class LktechFamily final : public MotorFamily {
  public:
   [[nodiscard]] std::string_view name() const noexcept override { return "LK-Tech"; }
   [[nodiscard]] std::span<const std::string_view> models() const noexcept override {
@@ -50,8 +50,8 @@ class LKTechFamily final : public MotorFamily {
   [[nodiscard]] std::span<const FamilyKey> keys() const noexcept override { return kLktechKeys; }
 
   [[nodiscard]] MotorTraits traits(std::string_view name, const OwnValues& own) const override {
-    const LKTechModel* const found = findLktechModel(name);
-    const LKTechModel model = found != nullptr ? *found : LKTechModel{};
+    const LktechModel* const found = findLktechModel(name);
+    const LktechModel model = found != nullptr ? *found : LktechModel{};
     const double own_torque = own.number("torque_nm_per_a");
     MotorTraits traits;
     traits.max_id = own.flag("group") ? lktech::kGroupSize : lktech::kMaxId;
@@ -126,7 +126,7 @@ class LKTechFamily final : public MotorFamily {
 }  // namespace
 
 const MotorFamily& lktechFamily() noexcept {
-  static const LKTechFamily kFamily;
+  static const LktechFamily kFamily;
   return kFamily;
 }
 

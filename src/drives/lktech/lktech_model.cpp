@@ -15,7 +15,7 @@ constexpr double kMgAmperes = 66.0 / 4096.0;
 // hardware/device/lk_motor.hpp, after the manufacturer's documents. MF9025 is the winding 16T with 0.32 N·m/A
 // (HNUYueLuRM/basic_framework, offisaac/23_Balance_Second; the winding 35T has 0.81) and 4.2 N·m of peak
 // torque.
-constexpr LKTechModel lktechModel(std::string_view name, double gear, double amperes_per_raw,
+constexpr LktechModel lktechModel(std::string_view name, double gear, double amperes_per_raw,
                                   float rotor_nm_per_a, float peak_nm) {
   return {.name = name,
           .gear_ratio = gear,
@@ -26,8 +26,8 @@ constexpr LKTechModel lktechModel(std::string_view name, double gear, double amp
 
 constexpr std::array kLktechModels{
     // Any other direct drive: the current command itself is the limit.
-    LKTechModel{.name = "LK-MF", .amperes_per_raw = kMfAmperes, .peak_current_a = 16.5F},
-    LKTechModel{.name = "LK-MHF", .amperes_per_raw = kMgAmperes, .peak_current_a = 33.0F},
+    LktechModel{.name = "LK-MF", .amperes_per_raw = kMfAmperes, .peak_current_a = 16.5F},
+    LktechModel{.name = "LK-MHF", .amperes_per_raw = kMgAmperes, .peak_current_a = 33.0F},
     lktechModel("LK-MF9025", 1.0, kMfAmperes, 0.32F, 4.2F),
     lktechModel("LK-MHF7015", 1.0, kMgAmperes, 0.51F, 2.42F),
     lktechModel("LK-MG4005E-i10", 10.0, kMgAmperes, 0.06F, 2.5F),
@@ -55,7 +55,7 @@ constexpr std::array<DriveFault, 8> kLktechFaults{{
 
 std::span<const std::string_view> lktechModelNames() noexcept { return kLktechNames; }
 
-const LKTechModel* findLktechModel(std::string_view name) noexcept { return findModel(kLktechModels, name); }
+const LktechModel* findLktechModel(std::string_view name) noexcept { return findModel(kLktechModels, name); }
 
 std::span<const DriveFault> lktechFaults() noexcept { return kLktechFaults; }
 

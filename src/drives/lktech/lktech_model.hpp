@@ -8,7 +8,7 @@
 namespace rc10 {
 
 /// Everything in which one LK-Tech model differs from another.
-struct LKTechModel {
+struct LktechModel {
   std::string_view name;
   double gear_ratio = 1.0;
   double amperes_per_raw = 0.0;        ///< Of commands and replies.
@@ -18,7 +18,7 @@ struct LKTechModel {
 
 [[nodiscard]] std::span<const std::string_view> lktechModelNames() noexcept;
 /// nullptr if there is no such model.
-[[nodiscard]] const LKTechModel* findLktechModel(std::string_view name) noexcept;
+[[nodiscard]] const LktechModel* findLktechModel(std::string_view name) noexcept;
 
 /// Bits of the error byte of the reply to 0x9A, the most serious first.
 [[nodiscard]] std::span<const DriveFault> lktechFaults() noexcept;

@@ -29,8 +29,8 @@ constexpr float kStandingRpm = 1.0F;
 constexpr double kSameAngleDeg = 1.0;
 
 [[nodiscard]] double amperesPerRaw(const std::string& model) {
-  const LKTechModel* const found = findLktechModel(model);
-  return found != nullptr ? found->amperes_per_raw : LKTechModel{}.amperes_per_raw;
+  const LktechModel* const found = findLktechModel(model);
+  return found != nullptr ? found->amperes_per_raw : LktechModel{}.amperes_per_raw;
 }
 
 }  // namespace

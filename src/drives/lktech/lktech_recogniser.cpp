@@ -29,8 +29,8 @@ void recogniseLktech(const CanFrame& frame, std::vector<DriveGuess>& guesses) {
   const int id = static_cast<int>(frame.id.value) - static_cast<int>(lktech::kBaseId);
   if (id < 1 || id > lktech::kMaxId || !isLkTechAnswer(frame.payload())) return;
   const bool command = lktech::looksLikeCommand(frame.payload());
-  guesses.push_back({drive_kind::kLKTech, id, !command});
-  if (command) guesses.push_back({drive_kind::kMyActuator, id, false});
+  guesses.push_back({drive_kind::kLktech, id, !command});
+  if (command) guesses.push_back({drive_kind::kMyactuator, id, false});
 }
 
 }  // namespace rc10

@@ -21,7 +21,7 @@ constexpr Duration kLktechBootTime = std::chrono::milliseconds{300};
 
 }  // namespace
 
-LKTechDrive::LKTechDrive(const MotorSettings& settings, const MotorTraits& traits, const MotorLoad& load)
+LktechDrive::LktechDrive(const MotorSettings& settings, const MotorTraits& traits, const MotorLoad& load)
     : ServoDrive(settings, traits, load,
                  {{.id = {lktech::kBaseId + static_cast<std::uint32_t>(settings.id), false},
                    .mask = kStandardIdMask}}),
@@ -32,11 +32,11 @@ LKTechDrive::LKTechDrive(const MotorSettings& settings, const MotorTraits& trait
 }
 
 // Where it is within a turn of the output, it knows.
-void LKTechDrive::forgetTurns() noexcept { zeroAt(wrapDegrees(driveAngleDeg())); }
+void LktechDrive::forgetTurns() noexcept { zeroAt(wrapDegrees(driveAngleDeg())); }
 
-CanFrame LKTechDrive::reply(lktech::Code code) const noexcept { return lktech::request(id_, code); }
+CanFrame LktechDrive::reply(lktech::Code code) const noexcept { return lktech::request(id_, code); }
 
-void LKTechDrive::receive(const CanFrame& frame) noexcept {
+void LktechDrive::receive(const CanFrame& frame) noexcept {
   if (elapsed() < boots_until_ || frame.type != FrameType::kData || frame.fd || frame.id.extended) return;
   if (frame.length != lktech::kLength) return;
   if (frame.id.value == lktech::kBaseId + static_cast<std::uint32_t>(id_)) return obey(frame);
@@ -47,7 +47,7 @@ void LKTechDrive::receive(const CanFrame& frame) noexcept {
   }
 }
 
-void LKTechDrive::obey(const CanFrame& frame) noexcept {
+void LktechDrive::obey(const CanFrame& frame) noexcept {
   const auto payload = frame.payload();
   const lktech::Code code = lktech::codeOf(payload);
   const double gear = traits().gear_ratio;
@@ -87,7 +87,7 @@ void LKTechDrive::obey(const CanFrame& frame) noexcept {
   }
 }
 
-void LKTechDrive::answerReading(lktech::Code code) noexcept {
+void LktechDrive::answerReading(lktech::Code code) noexcept {
   CanFrame out = reply(code);
   out.data[1] = static_cast<std::uint8_t>(saturatedRound<std::int8_t>(physics().temperatureC()));
   writeLittleEndian(out.data, 2, saturatedRound<std::int16_t>(currentA() / amperes_per_raw_));
@@ -99,7 +99,7 @@ void LKTechDrive::answerReading(lktech::Code code) noexcept {
   answer(out);
 }
 
-void LKTechDrive::answerStatus(lktech::Code code) noexcept {
+void LktechDrive::answerStatus(lktech::Code code) noexcept {
   CanFrame out = reply(code);
   out.data[1] = static_cast<std::uint8_t>(saturatedRound<std::int8_t>(physics().temperatureC()));
   writeLittleEndian(out.data, 2,
@@ -109,7 +109,7 @@ void LKTechDrive::answerStatus(lktech::Code code) noexcept {
   answer(out);
 }
 
-void LKTechDrive::restart() noexcept {
+void LktechDrive::restart() noexcept {
   release();
   forgetTurns();
   on_ = true;
@@ -117,14 +117,14 @@ void LKTechDrive::restart() noexcept {
   boots_until_ = elapsed() + kLktechBootTime;
 }
 
-void LKTechDrive::fault(std::uint32_t native_code) noexcept {
+void LktechDrive::fault(std::uint32_t native_code) noexcept {
   cause_ = static_cast<std::uint8_t>(native_code);
   errors_ = static_cast<std::uint8_t>(errors_ | cause_);
   if (errors_ != 0) release();
 }
 
 std::unique_ptr<Drive> makeLktechDrive(const MotorSettings& settings, const MotorLoad& load) {
-  return std::make_unique<LKTechDrive>(settings, lktechFamily().traits(settings.model, settings.own), load);
+  return std::make_unique<LktechDrive>(settings, lktechFamily().traits(settings.model, settings.own), load);
 }
 
 }  // namespace rc10::sim

@@ -10,9 +10,9 @@ namespace rc10::sim {
 
 /// A simulated LK-Tech drive: what CAN protocol V2.35 says of it, with the firmware that honours the bound of
 /// the current in speed commands.
-class LKTechDrive final : public ServoDrive {
+class LktechDrive final : public ServoDrive {
  public:
-  LKTechDrive(const MotorSettings& settings, const MotorTraits& traits, const MotorLoad& load);
+  LktechDrive(const MotorSettings& settings, const MotorTraits& traits, const MotorLoad& load);
 
   void receive(const CanFrame& frame) noexcept override;
   void restart() noexcept override;

@@ -8,7 +8,7 @@
 namespace rc10 {
 namespace {
 
-constexpr std::array<FamilyKey, 4> kMyActuatorKeys{{
+constexpr std::array<FamilyKey, 4> kMyactuatorKeys{{
     {.name = "angle_divider",
      .kind = FamilyKey::Kind::kInteger,
      .min = 1,
@@ -39,7 +39,7 @@ constexpr std::array<FamilyKey, 4> kMyActuatorKeys{{
 // V4.2 publishes neither; X6-60's data sheet has 176 rpm without load and 153 rpm rated.
 constexpr float kNoLoadPerRated = 176.0F / 153.0F;
 
-constexpr DriveFrames kMyActuatorFrames{.rest = Provision::kFrame,
+constexpr DriveFrames kMyactuatorFrames{.rest = Provision::kFrame,
                                         .poll = Provision::kFrame,
                                         .idle = Provision::kFrame,
                                         .damp = Provision::kFrame,
@@ -48,17 +48,17 @@ constexpr DriveFrames kMyActuatorFrames{.rest = Provision::kFrame,
                                         .enable = Provision::kFrame,
                                         .disable = Provision::kNothing};
 
-class MyActuatorFamily final : public MotorFamily {
+class MyactuatorFamily final : public MotorFamily {
  public:
   [[nodiscard]] std::string_view name() const noexcept override { return "MyActuator"; }
   [[nodiscard]] std::span<const std::string_view> models() const noexcept override {
     return myactuatorModelNames();
   }
-  [[nodiscard]] std::span<const FamilyKey> keys() const noexcept override { return kMyActuatorKeys; }
+  [[nodiscard]] std::span<const FamilyKey> keys() const noexcept override { return kMyactuatorKeys; }
 
   [[nodiscard]] MotorTraits traits(std::string_view name, const OwnValues& own) const override {
-    const MyActuatorModel* const found = findMyactuatorModel(name);
-    const MyActuatorModel model = found != nullptr ? *found : MyActuatorModel{};
+    const MyactuatorModel* const found = findMyactuatorModel(name);
+    const MyactuatorModel model = found != nullptr ? *found : MyactuatorModel{};
     const double own_torque = own.number("torque_nm_per_a");
     MotorTraits traits;
     traits.max_id = myactuator::kMaxId;
@@ -71,7 +71,7 @@ class MyActuatorFamily final : public MotorFamily {
     traits.absolute = own.flag("absolute_encoder");
     traits.frozen_a = model.peak_current_a;
     traits.asked = true;
-    traits.frames = kMyActuatorFrames;
+    traits.frames = kMyactuatorFrames;
     traits.setup = &myactuatorSetup();
     traits.modes = ModeSet{ControlMode::kCoast, ControlMode::kCurrent,    ControlMode::kVelocity,
                            ControlMode::kAngle, ControlMode::kTotalAngle, ControlMode::kImpedance,
@@ -115,7 +115,7 @@ class MyActuatorFamily final : public MotorFamily {
 }  // namespace
 
 const MotorFamily& myactuatorFamily() noexcept {
-  static const MyActuatorFamily kFamily;
+  static const MyactuatorFamily kFamily;
   return kFamily;
 }
 

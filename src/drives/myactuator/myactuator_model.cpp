@@ -11,7 +11,7 @@ namespace {
 // 2b-t/myactuator_rmd include/myactuator_rmd/actuator_constants.hpp. X6-60: its data sheet (rated 9.5 A, peak
 // 29.1 A). The torque constant is rated torque over rated current, so losses of the gear are in it. The last
 // number of a name is the peak torque in N·m; the peak current of the others follows from it.
-constexpr MyActuatorModel myactuatorModel(std::string_view name, double gear, float rated_nm, float rated_a,
+constexpr MyactuatorModel myactuatorModel(std::string_view name, double gear, float rated_nm, float rated_a,
                                           float rated_rpm, float peak_nm, float nominal_v = 48.0F) {
   return {.name = name,
           .gear_ratio = gear,
@@ -23,9 +23,9 @@ constexpr MyActuatorModel myactuatorModel(std::string_view name, double gear, fl
 
 // Any other drive that speaks protocol V3 or V4: its torque constant comes from the configuration, and the
 // current command itself is the only limit (a 16-bit number of 0.01 A).
-constexpr MyActuatorModel kOther{.name = "RMD-X", .gear_ratio = 1.0, .peak_current_a = 327.67F};
+constexpr MyactuatorModel kOther{.name = "RMD-X", .gear_ratio = 1.0, .peak_current_a = 327.67F};
 
-constexpr std::array kMyActuatorModels{
+constexpr std::array kMyactuatorModels{
     kOther,
     myactuatorModel("RMD-X4-3", 6.0, 1.5F, 2.0F, 200.0F, 3.0F, 24.0F),
     myactuatorModel("RMD-X4-24", 36.0, 9.0F, 3.5F, 100.0F, 24.0F, 24.0F),
@@ -43,11 +43,11 @@ constexpr std::array kMyActuatorModels{
     myactuatorModel("RMD-X15-400", 11.4, 130.0F, 23.0F, 80.0F, 400.0F),
 };
 
-constexpr auto kMyActuatorNames = modelNames(kMyActuatorModels);
+constexpr auto kMyactuatorNames = modelNames(kMyactuatorModels);
 
 // Motion Protocol V4.2 (2024-05), 2.14 for the bits and 8.2 for the levels. 2b-t/myactuator_rmd agrees on the
 // bits; 0x0200, 0x0400 and 0x0800 occur without a published meaning.
-constexpr std::array<DriveFault, 9> kMyActuatorFaults{{
+constexpr std::array<DriveFault, 9> kMyactuatorFaults{{
     {0x0010, FaultCode::kDriveOverCurrent, "phase over-current: short circuit, lost phase, or damage", true},
     {0x0002, FaultCode::kDriveStalled, "motor stalled", true},
     {0x0080, FaultCode::kDriveSetting, "a setting could not be written: settings may be lost", true},
@@ -61,16 +61,16 @@ constexpr std::array<DriveFault, 9> kMyActuatorFaults{{
 
 }  // namespace
 
-std::span<const std::string_view> myactuatorModelNames() noexcept { return kMyActuatorNames; }
+std::span<const std::string_view> myactuatorModelNames() noexcept { return kMyactuatorNames; }
 
-const MyActuatorModel* findMyactuatorModel(std::string_view name) noexcept {
-  return findModel(kMyActuatorModels, name);
+const MyactuatorModel* findMyactuatorModel(std::string_view name) noexcept {
+  return findModel(kMyactuatorModels, name);
 }
 
-std::span<const DriveFault> myactuatorFaults() noexcept { return kMyActuatorFaults; }
+std::span<const DriveFault> myactuatorFaults() noexcept { return kMyactuatorFaults; }
 
 bool myactuatorNeedsReset(std::uint16_t errors) noexcept {
-  return std::any_of(kMyActuatorFaults.begin(), kMyActuatorFaults.end(), [errors](const DriveFault& fault) {
+  return std::any_of(kMyactuatorFaults.begin(), kMyactuatorFaults.end(), [errors](const DriveFault& fault) {
     return fault.needs_restart && (errors & fault.native) != 0;
   });
 }

@@ -9,7 +9,7 @@
 namespace rc10 {
 
 /// Everything in which one RMD-X model differs from another. At the output of its own gear.
-struct MyActuatorModel {
+struct MyactuatorModel {
   std::string_view name;
   double gear_ratio = 1.0;
   float peak_current_a = 0.0F;   ///< Of a phase, at the peak torque.
@@ -20,7 +20,7 @@ struct MyActuatorModel {
 
 [[nodiscard]] std::span<const std::string_view> myactuatorModelNames() noexcept;
 /// nullptr if there is no such model.
-[[nodiscard]] const MyActuatorModel* findMyactuatorModel(std::string_view name) noexcept;
+[[nodiscard]] const MyactuatorModel* findMyactuatorModel(std::string_view name) noexcept;
 
 /// Bits of the error word of the reply to 0x9A, the most serious first; "level 1" needs a restart.
 [[nodiscard]] std::span<const DriveFault> myactuatorFaults() noexcept;

@@ -12,23 +12,23 @@ namespace rc10 {
 namespace {
 
 /// Above this the drive limits itself: the field's end.
-constexpr double kMyActuatorNoLimitDegS = 65535.0;
+constexpr double kMyactuatorNoLimitDegS = 65535.0;
 
-constexpr Duration kMyActuatorStepPatience = std::chrono::milliseconds{50};
-constexpr int kMyActuatorStepTries = 5;
+constexpr Duration kMyactuatorStepPatience = std::chrono::milliseconds{50};
+constexpr int kMyactuatorStepTries = 5;
 /// Errors and run time, in turns.
-constexpr Duration kMyActuatorQuerySpacing = std::chrono::milliseconds{50};
-constexpr Duration kMyActuatorUrgentQuerySpacing = std::chrono::milliseconds{10};
+constexpr Duration kMyactuatorQuerySpacing = std::chrono::milliseconds{50};
+constexpr Duration kMyactuatorUrgentQuerySpacing = std::chrono::milliseconds{10};
 /// No such drive starts faster than this (its bootloader alone takes longer): after a shorter silence it has
 /// not been restarted.
-constexpr Duration kMyActuatorRestartSilence = std::chrono::milliseconds{100};
+constexpr Duration kMyactuatorRestartSilence = std::chrono::milliseconds{100};
 /// By how much the drive's clock may be behind ours.
 constexpr std::int64_t kUptimeSlackMs = 250;
 constexpr std::int64_t kUptimeDriftDivider = 200;  // 0.5 %
 /// For a drive whose speed is not known, N·m·s/rad: as a small one of these.
 constexpr double kUnknownDamping = 0.5;
 /// Replies with all zeros are copies of requests unless the motor is about so cold.
-constexpr float kMyActuatorNearZeroC = 2.0F;
+constexpr float kMyactuatorNearZeroC = 2.0F;
 
 [[nodiscard]] std::int64_t wholeMilliseconds(Duration duration) noexcept {
   return std::chrono::duration_cast<std::chrono::milliseconds>(duration).count();
@@ -54,7 +54,7 @@ MyActuator_Motor::MyActuator_Motor(const MotorSettings& settings, const MotorTra
                            .discriminator = PayloadDiscriminator{.value = static_cast<std::uint8_t>(id_)}}},
       command_ids_{CanId{myactuator::kRequestBase + static_cast<std::uint32_t>(id_), false},
                    CanId{myactuator::kMotionBase + static_cast<std::uint32_t>(id_), false}},
-      sequence_(kMyActuatorStepPatience, kMyActuatorStepTries) {}
+      sequence_(kMyactuatorStepPatience, kMyactuatorStepTries) {}
 
 // ---- What the drive says
 
@@ -90,7 +90,7 @@ FrameVerdict MyActuator_Motor::updateFeedback(const CanFrame& frame) noexcept {
 
 // After a silence the drive may have been restarted, and its angle may mean something else.
 void MyActuator_Motor::watchSilence(MonotonicTime received) noexcept {
-  if (!heard_ || received - *heard_ > kMyActuatorRestartSilence) {
+  if (!heard_ || received - *heard_ > kMyactuatorRestartSilence) {
     running_ = false;
     next_query_ = {};
   }
@@ -98,7 +98,7 @@ void MyActuator_Motor::watchSilence(MonotonicTime received) noexcept {
 }
 
 bool MyActuator_Motor::isCopyOfRequest(const CanFrame& frame) const noexcept {
-  if (std::abs(feedback_.temperature_c) <= kMyActuatorNearZeroC) return false;  // such a reply may be true
+  if (std::abs(feedback_.temperature_c) <= kMyactuatorNearZeroC) return false;  // such a reply may be true
   if (myactuator::codeOf(frame.payload()) == myactuator::Code::kReading) return allZero(frame);
   return last_command_ &&
          std::equal(frame.data.begin(), frame.data.begin() + frame.length, last_command_->data.begin());
@@ -186,7 +186,7 @@ void MyActuator_Motor::update(const Tick& tick) noexcept {
   if (enabling() && begins()) beginSequence();
   if (std::exchange(reset_, false)) outbox_.add(myactuator::request(id_, myactuator::Code::kReset));
   // A drive that is just starting must not find an angle of its former life waiting for it.
-  if (!heard_ || tick.now - *heard_ > kMyActuatorRestartSilence) running_ = false;
+  if (!heard_ || tick.now - *heard_ > kMyactuatorRestartSilence) running_ = false;
   if (!due(tick)) return;
 
   const bool ask_angle = turns_due_++ % static_cast<std::uint64_t>(angle_divider_) == 0;
@@ -222,7 +222,7 @@ void MyActuator_Motor::update(const Tick& tick) noexcept {
 
 void MyActuator_Motor::sendQueries(const Tick& tick) noexcept {
   if (tick.now < next_query_) return;
-  next_query_ = tick.now + (running_ ? kMyActuatorQuerySpacing : kMyActuatorUrgentQuerySpacing);
+  next_query_ = tick.now + (running_ ? kMyactuatorQuerySpacing : kMyactuatorUrgentQuerySpacing);
   ask_uptime_ = !running_ || !ask_uptime_;
   outbox_.add(myactuator::request(id_, ask_uptime_ ? myactuator::Code::kUptime : myactuator::Code::kStatus));
 }
@@ -264,7 +264,7 @@ void MyActuator_Motor::followAngle(double total_angle_deg) noexcept {
   if (std::abs(drive_deg) > kReachDeg) limits_ |= kLimitAngle;
   const auto limit_rpm = static_cast<double>(velocityLimitRpm());
   const double limit_deg_s =
-      limit_rpm > 0.0 ? std::abs(toDrive(limit_rpm)) * kDegPerSPerRpm : kMyActuatorNoLimitDegS;
+      limit_rpm > 0.0 ? std::abs(toDrive(limit_rpm)) * kDegPerSPerRpm : kMyactuatorNoLimitDegS;
   if (std::abs(feedback_.current_a) > effortLimit()) limits_ |= kLimitCurrent;
   setCommand(total_angle_deg, CommandUnit::kNative);
   sendCommand(myactuator::positionCommand(id_, drive_deg, limit_deg_s));

@@ -62,7 +62,7 @@ class MyActuator_Motor final : public SoloMotor {
   void sendMotion(double error_rad, double velocity_error_rad_s, const myactuator::Motion& wanted) noexcept;
 
   int id_;
-  MyActuatorSetupCodec setup_codec_{id_};
+  MyactuatorSetupCodec setup_codec_{id_};
   DriveConfiguring configuring_{setup_codec_};
   int angle_divider_;
   bool release_brake_;

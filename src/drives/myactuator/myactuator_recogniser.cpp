@@ -21,12 +21,12 @@ void recogniseMyactuator(const CanFrame& frame, std::vector<DriveGuess>& guesses
       case Code::kAngle:
       case Code::kUptime:
       case Code::kShutdown:
-      case Code::kSilenceStopped: guesses.push_back({drive_kind::kMyActuator, id}); return;
+      case Code::kSilenceStopped: guesses.push_back({drive_kind::kMyactuator, id}); return;
       default: return;
     }
   }
   if (const int id = within(myactuator::kMotionReplyBase); id != 0 && frame.data[0] == id)
-    guesses.push_back({drive_kind::kMyActuator, id});
+    guesses.push_back({drive_kind::kMyactuator, id});
 }
 
 }  // namespace rc10

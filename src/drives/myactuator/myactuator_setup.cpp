@@ -20,7 +20,7 @@ struct SettingRequest {
 
 constexpr double kLeastDegS2 = 100;
 constexpr double kMostDegS2 = 60'000;
-constexpr std::array kMyActuatorSettings{
+constexpr std::array kMyactuatorSettings{
     DriveSetting{.name = "timeout_ms", .min = 0, .max = 10'000, .integer = true},
     DriveSetting{.name = "save_turns", .min = 0, .max = 1, .integer = true},
     DriveSetting{
@@ -41,16 +41,16 @@ constexpr std::array kSettingRequests{SettingRequest{myactuator::Code::kSilenceL
                                       SettingRequest{myactuator::Code::kSetAcceleration, 2},
                                       SettingRequest{myactuator::Code::kSetAcceleration, 3},
                                       SettingRequest{myactuator::Code::kFunction, kSetId}};
-static_assert(kSettingRequests.size() == kMyActuatorSettings.size());
+static_assert(kSettingRequests.size() == kMyactuatorSettings.size());
 
-constexpr DriveSetup kMyActuatorSetup{
-    .settings = kMyActuatorSettings, .stores_at_once = true, .tool = "MyActuator's setup software"};
+constexpr DriveSetup kMyactuatorSetup{
+    .settings = kMyactuatorSettings, .stores_at_once = true, .tool = "MyActuator's setup software"};
 
 }  // namespace
 
-const DriveSetup& myactuatorSetup() noexcept { return kMyActuatorSetup; }
+const DriveSetup& myactuatorSetup() noexcept { return kMyactuatorSetup; }
 
-CanFrame MyActuatorSetupCodec::write(const DriveValue& value) const noexcept {
+CanFrame MyactuatorSetupCodec::write(const DriveValue& value) const noexcept {
   const auto& row = kSettingRequests[value.setting];
   CanFrame frame = myactuator::request(id_, row.write);
   frame.data[1] = row.index;
@@ -58,7 +58,7 @@ CanFrame MyActuatorSetupCodec::write(const DriveValue& value) const noexcept {
   return frame;
 }
 
-std::optional<CanFrame> MyActuatorSetupCodec::read(std::size_t setting) const noexcept {
+std::optional<CanFrame> MyactuatorSetupCodec::read(std::size_t setting) const noexcept {
   const auto& row = kSettingRequests[setting];
   if (row.write != myactuator::Code::kSetAcceleration) return std::nullopt;
   CanFrame frame = myactuator::request(id_, myactuator::Code::kReadAcceleration);
@@ -66,7 +66,7 @@ std::optional<CanFrame> MyActuatorSetupCodec::read(std::size_t setting) const no
   return frame;
 }
 
-std::optional<double> MyActuatorSetupCodec::reading(std::size_t setting,
+std::optional<double> MyactuatorSetupCodec::reading(std::size_t setting,
                                                     const CanFrame& frame) const noexcept {
   const auto& row = kSettingRequests[setting];
   if (frame.length != myactuator::kLength) return std::nullopt;
@@ -77,8 +77,8 @@ std::optional<double> MyActuatorSetupCodec::reading(std::size_t setting,
   return static_cast<double>(readLittleEndian<std::uint32_t>(bytes, 4));
 }
 
-std::optional<std::size_t> MyActuatorSetupCodec::idSetting() const noexcept {
-  return kMyActuatorSettings.size() - 1;
+std::optional<std::size_t> MyactuatorSetupCodec::idSetting() const noexcept {
+  return kMyactuatorSettings.size() - 1;
 }
 
 }  // namespace rc10

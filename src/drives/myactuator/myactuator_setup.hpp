@@ -9,9 +9,9 @@ namespace rc10 {
 [[nodiscard]] const DriveSetup& myactuatorSetup() noexcept;
 
 /// The settings of one drive. Each is written with frames of its own kind; accelerations alone can be read.
-class MyActuatorSetupCodec final : public DriveCodec {
+class MyactuatorSetupCodec final : public DriveCodec {
  public:
-  explicit MyActuatorSetupCodec(int id) noexcept : id_(id) {}
+  explicit MyactuatorSetupCodec(int id) noexcept : id_(id) {}
 
   [[nodiscard]] const DriveSetup& setup() const noexcept override { return myactuatorSetup(); }
   [[nodiscard]] CanFrame write(const DriveValue& value) const noexcept override;

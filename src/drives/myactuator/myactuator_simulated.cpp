@@ -12,11 +12,11 @@
 namespace rc10::sim {
 namespace {
 
-constexpr double kMyActuatorRawPerDeg = 100.0;
+constexpr double kMyactuatorRawPerDeg = 100.0;
 constexpr double kRawPerAmpere = 100.0;
-constexpr double kMyActuatorRawPerVolt = 10.0;
+constexpr double kMyactuatorRawPerVolt = 10.0;
 // Chosen: no source tells how long it starts.
-constexpr Duration kMyActuatorBootTime = std::chrono::milliseconds{300};
+constexpr Duration kMyactuatorBootTime = std::chrono::milliseconds{300};
 constexpr Duration kNoticeSpacing = std::chrono::seconds{1};
 
 std::uint32_t rawOf(double value, double low, double high, unsigned bits) noexcept {
@@ -37,13 +37,13 @@ std::vector<FrameFilter> replyIds(int id) {
 
 }  // namespace
 
-MyActuatorDrive::MyActuatorDrive(const MotorSettings& settings, const MotorTraits& traits,
+MyactuatorDrive::MyactuatorDrive(const MotorSettings& settings, const MotorTraits& traits,
                                  const MotorLoad& load)
     : ServoDrive(settings, traits, load, replyIds(settings.id)), id_(settings.id) {
   zeroAt(std::fmod(driveAngleDeg(), kDegPerTurn));
 }
 
-CanFrame MyActuatorDrive::reply(myactuator::Code code) const noexcept {
+CanFrame MyactuatorDrive::reply(myactuator::Code code) const noexcept {
   CanFrame frame;
   frame.id = {myactuator::kReplyBase + static_cast<std::uint32_t>(id_), false};
   frame.length = myactuator::kLength;
@@ -51,7 +51,7 @@ CanFrame MyActuatorDrive::reply(myactuator::Code code) const noexcept {
   return frame;
 }
 
-void MyActuatorDrive::receive(const CanFrame& frame) noexcept {
+void MyactuatorDrive::receive(const CanFrame& frame) noexcept {
   if (booting() || frame.type != FrameType::kData || frame.fd || frame.id.extended) return;
   if (frame.length != myactuator::kLength) return;
   const auto n = static_cast<std::uint32_t>(id_);
@@ -69,7 +69,7 @@ void MyActuatorDrive::receive(const CanFrame& frame) noexcept {
   motion ? obeyMotion(frame) : obey(frame);
 }
 
-void MyActuatorDrive::obey(const CanFrame& frame) noexcept {
+void MyactuatorDrive::obey(const CanFrame& frame) noexcept {
   const auto payload = frame.payload();
   const myactuator::Code code = myactuator::codeOf(payload);
   const bool able = errors_ == 0;
@@ -79,7 +79,7 @@ void MyActuatorDrive::obey(const CanFrame& frame) noexcept {
     case myactuator::Code::kShutdown: release(); return answer(reply(code));
     case myactuator::Code::kAngle: {
       CanFrame out = reply(code);
-      writeLittleEndian(out.data, 4, saturatedRound<std::int32_t>(driveAngleDeg() * kMyActuatorRawPerDeg));
+      writeLittleEndian(out.data, 4, saturatedRound<std::int32_t>(driveAngleDeg() * kMyactuatorRawPerDeg));
       return answer(out);
     }
     case myactuator::Code::kStatus: return answerStatus();
@@ -94,11 +94,11 @@ void MyActuatorDrive::obey(const CanFrame& frame) noexcept {
       if (able) current(readLittleEndian<std::int16_t>(payload, 4) / kRawPerAmpere);
       return answerReading(code);
     case myactuator::Code::kVelocity:
-      if (able) velocity(readLittleEndian<std::int32_t>(payload, 4) / kMyActuatorRawPerDeg / kDegPerSPerRpm);
+      if (able) velocity(readLittleEndian<std::int32_t>(payload, 4) / kMyactuatorRawPerDeg / kDegPerSPerRpm);
       return answerReading(code);
     case myactuator::Code::kPosition:
       if (able) {
-        position(readLittleEndian<std::int32_t>(payload, 4) / kMyActuatorRawPerDeg,
+        position(readLittleEndian<std::int32_t>(payload, 4) / kMyactuatorRawPerDeg,
                  readLittleEndian<std::uint16_t>(payload, 2) / kDegPerSPerRpm);
       }
       return answerReading(code);
@@ -111,7 +111,7 @@ void MyActuatorDrive::obey(const CanFrame& frame) noexcept {
 }
 
 // All of it is stored at once; the answer is a copy.
-void MyActuatorDrive::set(const CanFrame& frame) noexcept {
+void MyactuatorDrive::set(const CanFrame& frame) noexcept {
   const auto value = readLittleEndian<std::uint32_t>(frame.data, 4);
   const std::uint8_t index = frame.data[1];
   CanFrame out = frame;
@@ -131,7 +131,7 @@ void MyActuatorDrive::set(const CanFrame& frame) noexcept {
   answer(out);
 }
 
-void MyActuatorDrive::obeyMotion(const CanFrame& frame) noexcept {
+void MyactuatorDrive::obeyMotion(const CanFrame& frame) noexcept {
   const auto& d = frame.data;
   const auto word = [&d](std::size_t at) { return static_cast<std::uint32_t>(d[at]); };
   using namespace myactuator;
@@ -144,7 +144,7 @@ void MyActuatorDrive::obeyMotion(const CanFrame& frame) noexcept {
   answerMotion();
 }
 
-void MyActuatorDrive::answerReading(myactuator::Code code) noexcept {
+void MyactuatorDrive::answerReading(myactuator::Code code) noexcept {
   CanFrame out = reply(code);
   out.data[1] = static_cast<std::uint8_t>(saturatedRound<std::int8_t>(physics().temperatureC()));
   writeLittleEndian(out.data, 2, saturatedRound<std::int16_t>(currentA() * kRawPerAmpere));
@@ -153,7 +153,7 @@ void MyActuatorDrive::answerReading(myactuator::Code code) noexcept {
   answer(out);
 }
 
-void MyActuatorDrive::answerMotion() noexcept {
+void MyactuatorDrive::answerMotion() noexcept {
   using namespace myactuator;
   CanFrame out;
   out.id = {kMotionReplyBase + static_cast<std::uint32_t>(id_), false};
@@ -169,17 +169,17 @@ void MyActuatorDrive::answerMotion() noexcept {
   answer(out);
 }
 
-void MyActuatorDrive::answerStatus() noexcept {
+void MyactuatorDrive::answerStatus() noexcept {
   CanFrame out = reply(myactuator::Code::kStatus);
   out.data[1] = static_cast<std::uint8_t>(saturatedRound<std::int8_t>(physics().temperatureC()));
   out.data[3] = brake_released_ ? 1 : 0;
   writeLittleEndian(out.data, 4,
-                    saturatedRound<std::uint16_t>(physics().parameters().supply_v * kMyActuatorRawPerVolt));
+                    saturatedRound<std::uint16_t>(physics().parameters().supply_v * kMyactuatorRawPerVolt));
   writeLittleEndian(out.data, 6, errors_);
   answer(out);
 }
 
-void MyActuatorDrive::step(Duration dt) noexcept {
+void MyactuatorDrive::step(Duration dt) noexcept {
   ServoDrive::step(dt);
   if (silence_limit_ == Duration::zero() || booting()) return;
   if (!silence_stopped_ && elapsed() - heard_ > silence_limit_) {
@@ -193,19 +193,19 @@ void MyActuatorDrive::step(Duration dt) noexcept {
   }
 }
 
-void MyActuatorDrive::restart() noexcept {
+void MyactuatorDrive::restart() noexcept {
   release();
   // With one encoder it knows where within a turn of the rotor it is, with two within a turn of the output.
   zeroAt(std::fmod(driveAngleDeg(), traits().absolute ? kDegPerTurn : kDegPerTurn / traits().gear_ratio));
   started_ = elapsed();
-  boots_until_ = elapsed() + kMyActuatorBootTime;
+  boots_until_ = elapsed() + kMyactuatorBootTime;
   heard_ = boots_until_;
   silence_stopped_ = false;
   brake_released_ = false;
   errors_ = cause_;
 }
 
-void MyActuatorDrive::fault(std::uint32_t native_code) noexcept {
+void MyactuatorDrive::fault(std::uint32_t native_code) noexcept {
   cause_ = static_cast<std::uint16_t>(native_code);
   std::uint16_t kept = 0;
   for (const auto& known : myactuatorFaults()) {
@@ -216,7 +216,7 @@ void MyActuatorDrive::fault(std::uint32_t native_code) noexcept {
 }
 
 std::unique_ptr<Drive> makeMyactuatorDrive(const MotorSettings& settings, const MotorLoad& load) {
-  return std::make_unique<MyActuatorDrive>(settings, myactuatorFamily().traits(settings.model, settings.own),
+  return std::make_unique<MyactuatorDrive>(settings, myactuatorFamily().traits(settings.model, settings.own),
                                            load);
 }
 

@@ -11,9 +11,9 @@ namespace rc10::sim {
 
 /// A simulated RMD-X drive: what Motion Protocol V4.2 says of it, and what others measured of its protection
 /// against silence (see myactuator_frames.hpp).
-class MyActuatorDrive final : public ServoDrive {
+class MyactuatorDrive final : public ServoDrive {
  public:
-  MyActuatorDrive(const MotorSettings& settings, const MotorTraits& traits, const MotorLoad& load);
+  MyactuatorDrive(const MotorSettings& settings, const MotorTraits& traits, const MotorLoad& load);
 
   void receive(const CanFrame& frame) noexcept override;
   void step(Duration dt) noexcept override;

@@ -16,7 +16,7 @@ void addStandard(const CanFrame& frame, std::vector<DriveGuess>& guesses) {
   if (message == OdriveMessage::kHeartbeat) {
     const auto beat = decodeOdriveHeartbeat(frame);
     if (beat && static_cast<std::uint8_t>(beat->state) <= kOdriveLastState)
-      guesses.push_back({drive_kind::kODrive, node});
+      guesses.push_back({drive_kind::kOdrive, node});
   }
   if (message == OdriveMessage::kEncoderEstimates) {
     const auto pair = decodeOdrivePair(frame);
@@ -24,7 +24,7 @@ void addStandard(const CanFrame& frame, std::vector<DriveGuess>& guesses) {
     const auto sane = [](float value) {
       return std::isfinite(value) && (value == 0.0F || (std::abs(value) > 1e-9F && std::abs(value) < 1e7F));
     };
-    if (pair && sane(pair->first) && sane(pair->second)) guesses.push_back({drive_kind::kODrive, node});
+    if (pair && sane(pair->first) && sane(pair->second)) guesses.push_back({drive_kind::kOdrive, node});
   }
 }
 
@@ -37,7 +37,7 @@ void addExtended(const CanFrame& frame, std::vector<DriveGuess>& guesses) {
   if (!beat || beat->byte5 > kHighestCode || beat->byte6 > kHighestCode) return;
   const auto state = static_cast<std::uint8_t>(beat->state);
   if (state >= static_cast<std::uint8_t>(OdriveAxisState::kIdle) && state <= kOdriveLastState)
-    guesses.push_back({drive_kind::kODriveExtended, static_cast<int>(frame.id.value >> kOdriveMessageBits)});
+    guesses.push_back({drive_kind::kOdriveExtended, static_cast<int>(frame.id.value >> kOdriveMessageBits)});
 }
 
 }  // namespace

@@ -6,34 +6,34 @@
 namespace rc10 {
 namespace {
 
-constexpr Duration kRobStridePatience = std::chrono::milliseconds{50};
-constexpr int kRobStrideAttempts = 5;
+constexpr Duration kRobstridePatience = std::chrono::milliseconds{50};
+constexpr int kRobstrideAttempts = 5;
 constexpr float kLimitTolerance = 1.01F;
 
 }  // namespace
 
-RobStrideSetting RobStrideSetting::limit(std::uint16_t index, float value) noexcept {
+RobstrideSetting RobstrideSetting::limit(std::uint16_t index, float value) noexcept {
   return {.index = index, .bits = std::bit_cast<std::uint32_t>(value), .at_most = true};
 }
 
-bool RobStrideSetting::agrees(std::uint32_t read_bits) const noexcept {
+bool RobstrideSetting::agrees(std::uint32_t read_bits) const noexcept {
   if (!at_most) return read_bits == bits;
   const auto kept = std::bit_cast<float>(read_bits);
   return kept >= 0.0F && kept <= std::bit_cast<float>(bits) * kLimitTolerance;
 }
 
-RobStrideEnabling::RobStrideEnabling() noexcept : sequence_(kRobStridePatience, kRobStrideAttempts) {}
+RobstrideEnabling::RobstrideEnabling() noexcept : sequence_(kRobstridePatience, kRobstrideAttempts) {}
 
-void RobStrideEnabling::add(const RobStrideSetting& setting) noexcept {
+void RobstrideEnabling::add(const RobstrideSetting& setting) noexcept {
   if (count_ < settings_.size()) settings_[count_++] = setting;
 }
 
-void RobStrideEnabling::advance() noexcept {
+void RobstrideEnabling::advance() noexcept {
   if (atEnable()) return sequence_.finish();
   sequence_.next(step() + 1);
 }
 
-std::size_t RobStrideEnabling::pack(MonotonicTime now, const RobStrideCodec& codec, bool operation,
+std::size_t RobstrideEnabling::pack(MonotonicTime now, const RobstrideCodec& codec, bool operation,
                                     std::span<CanFrame> out) noexcept {
   if (out.size() < 3 || !sequence_.asks(now)) return 0;
   if (atSetting()) {
@@ -57,12 +57,12 @@ std::size_t RobStrideEnabling::pack(MonotonicTime now, const RobStrideCodec& cod
   return count;
 }
 
-void RobStrideEnabling::onFeedback(const RobStrideFeedback& seen) noexcept {
+void RobstrideEnabling::onFeedback(const RobstrideFeedback& seen) noexcept {
   if (!sequence_.awaits()) return;
-  if (step() == 0 ? seen.mode == 0 : atEnable() && seen.mode == kRobStrideRunning) advance();
+  if (step() == 0 ? seen.mode == 0 : atEnable() && seen.mode == kRobstrideRunning) advance();
 }
 
-void RobStrideEnabling::onParameter(std::uint16_t index, bool accepted, std::uint32_t bits) noexcept {
+void RobstrideEnabling::onParameter(std::uint16_t index, bool accepted, std::uint32_t bits) noexcept {
   if (!sequence_.awaits() || !accepted) return;
   if (atSetting()) {
     const auto& setting = settings_[step() - 1];

@@ -12,27 +12,27 @@
 namespace rc10 {
 
 /// A parameter to be set before a drive is enabled.
-struct RobStrideSetting {
+struct RobstrideSetting {
   std::uint16_t index = 0;
   std::uint32_t bits = 0;
   /// A float of which the drive may keep less: a limit, cut down to the model's own.
   bool at_most = false;
 
-  [[nodiscard]] static RobStrideSetting limit(std::uint16_t index, float value) noexcept;
+  [[nodiscard]] static RobstrideSetting limit(std::uint16_t index, float value) noexcept;
   [[nodiscard]] bool agrees(std::uint32_t read_bits) const noexcept;
 };
 
 /// The way to a running drive, one step at a time: stop it, write each setting and read it back, read its
 /// position if that is wanted, enable. What is not answered within 50 ms is sent again, at most 5 times.
 /// Scheduler thread only.
-class RobStrideEnabling {
+class RobstrideEnabling {
  public:
   static constexpr std::size_t kMaxSettings = 5;
 
-  RobStrideEnabling() noexcept;
+  RobstrideEnabling() noexcept;
 
   /// Start-up only.
-  void add(const RobStrideSetting& setting) noexcept;
+  void add(const RobstrideSetting& setting) noexcept;
   /// Start-up only.
   void readPosition() noexcept { reads_position_ = true; }
   void begin() noexcept { sequence_.begin(0); }
@@ -40,9 +40,9 @@ class RobStrideEnabling {
 
   /// The frames that are due now, at most 3. `operation`: tell it to be without torque before and after
   /// it is enabled, whatever it was last told.
-  std::size_t pack(MonotonicTime now, const RobStrideCodec& codec, bool operation,
+  std::size_t pack(MonotonicTime now, const RobstrideCodec& codec, bool operation,
                    std::span<CanFrame> out) noexcept;
-  void onFeedback(const RobStrideFeedback& seen) noexcept;
+  void onFeedback(const RobstrideFeedback& seen) noexcept;
   void onParameter(std::uint16_t index, bool accepted, std::uint32_t bits) noexcept;
 
  private:
@@ -52,7 +52,7 @@ class RobStrideEnabling {
   [[nodiscard]] std::size_t step() const noexcept { return sequence_.step(); }
   void advance() noexcept;
 
-  std::array<RobStrideSetting, kMaxSettings> settings_{};
+  std::array<RobstrideSetting, kMaxSettings> settings_{};
   std::size_t count_ = 0;
   bool reads_position_ = false;
   EnableSequence<std::size_t> sequence_;  ///< 0: stop; then the settings, the position, enable.

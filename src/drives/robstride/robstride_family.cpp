@@ -12,7 +12,7 @@ namespace {
 
 constexpr std::array<std::string_view, 4> kControls{"operation", "current", "velocity", "position"};
 
-constexpr std::array kRobStrideKeys{
+constexpr std::array kRobstrideKeys{
     FamilyKey{.name = "host_id",
               .kind = FamilyKey::Kind::kInteger,
               .min = 1,
@@ -72,45 +72,45 @@ constexpr std::array kRobStrideKeys{
 constexpr double kShortestPositionRangeRad = 12.0;
 constexpr int kCommandsPerWatchdog = 3;
 
-ModeSet modesOf(RobStrideControl control) {
+ModeSet modesOf(RobstrideControl control) {
   switch (control) {
-    case RobStrideControl::kCurrent: return ModeSet{ControlMode::kCoast, ControlMode::kCurrent};
-    case RobStrideControl::kVelocity:
+    case RobstrideControl::kCurrent: return ModeSet{ControlMode::kCoast, ControlMode::kCurrent};
+    case RobstrideControl::kVelocity:
       return ModeSet{ControlMode::kCoast, ControlMode::kVelocity, ControlMode::kBrake};
-    case RobStrideControl::kPosition:
+    case RobstrideControl::kPosition:
       return ModeSet{ControlMode::kCoast, ControlMode::kAngle, ControlMode::kTotalAngle, ControlMode::kBrake};
-    case RobStrideControl::kOperation: break;
+    case RobstrideControl::kOperation: break;
   }
   return ModeSet{ControlMode::kCoast, ControlMode::kCurrent,    ControlMode::kVelocity,
                  ControlMode::kAngle, ControlMode::kTotalAngle, ControlMode::kImpedance,
                  ControlMode::kBrake};
 }
 
-DriveFrames framesOf(RobStrideControl control) {
+DriveFrames framesOf(RobstrideControl control) {
   const auto if_any = [](bool can) { return can ? Provision::kFrame : Provision::kUnsupported; };
-  const bool operation = control == RobStrideControl::kOperation;
-  const bool position = control == RobStrideControl::kPosition;
+  const bool operation = control == RobstrideControl::kOperation;
+  const bool position = control == RobstrideControl::kPosition;
   return {.rest = Provision::kFrame,
           .poll = Provision::kFrame,
           .idle = Provision::kFrame,
           .damp = if_any(operation),
-          .brake = if_any(control != RobStrideControl::kCurrent),
+          .brake = if_any(control != RobstrideControl::kCurrent),
           .hold = if_any(operation || position),
           .enable = Provision::kFrame,
           .disable = Provision::kNothing};
 }
 
-class RobStrideFamily final : public MotorFamily {
+class RobstrideFamily final : public MotorFamily {
  public:
   [[nodiscard]] std::string_view name() const noexcept override { return "RobStride"; }
   [[nodiscard]] std::span<const std::string_view> models() const noexcept override {
-    return robStrideModelNames();
+    return robstrideModelNames();
   }
-  [[nodiscard]] std::span<const FamilyKey> keys() const noexcept override { return kRobStrideKeys; }
+  [[nodiscard]] std::span<const FamilyKey> keys() const noexcept override { return kRobstrideKeys; }
 
   [[nodiscard]] MotorTraits traits(std::string_view name, const OwnValues& own) const override {
-    const auto& model = *findRobStrideModel(name);
-    const auto control = robStrideControlOf(own);
+    const auto& model = *findRobstrideModel(name);
+    const auto control = robstrideControlOf(own);
     const double torque_nm_per_a = model.torqueNmPerA();
     MotorTraits traits;
     traits.min_id = 1;
@@ -118,7 +118,7 @@ class RobStrideFamily final : public MotorFamily {
     traits.gear_ratio = model.gear_ratio;
     traits.effort = CommandUnit::kAmpere;
     // In operation mode the torque scale ends before the current does; to a tenth, for people.
-    const double full_scale_a = control == RobStrideControl::kOperation
+    const double full_scale_a = control == RobstrideControl::kOperation
                                     ? std::floor(10.0 * model.torque_range_nm / torque_nm_per_a) / 10.0
                                     : model.max_current_a;
     traits.effort_full_scale = static_cast<float>(full_scale_a);
@@ -132,7 +132,7 @@ class RobStrideFamily final : public MotorFamily {
     traits.watchdog = own.integer("watchdog_ms") > 0;
     traits.modes = modesOf(control);
     traits.frames = framesOf(control);
-    traits.setup = &robStrideSetup(model.cyber_gear);
+    traits.setup = &robstrideSetup(model.cyber_gear);
     return traits;
   }
 
@@ -156,27 +156,27 @@ class RobStrideFamily final : public MotorFamily {
   [[nodiscard]] BusUse busUse(const MotorSettings& settings) const override {
     const int host_id = settings.own.integer("host_id");
     const auto drive_id = static_cast<std::uint32_t>(settings.id);
-    const auto sends = [&](RobStrideType type) {
-      return FrameFilter{.id = robStrideId(type, drive_id, host_id), .mask = 0x1F00'FFFFU};
+    const auto sends = [&](RobstrideType type) {
+      return FrameFilter{.id = robstrideId(type, drive_id, host_id), .mask = 0x1F00'FFFFU};
     };
     BusUse use;
     use.sends = {
-        sends(RobStrideType::kFeedback), sends(RobStrideType::kReadParameter), sends(RobStrideType::kFault),
-        sends(RobStrideType::kReport),
+        sends(RobstrideType::kFeedback), sends(RobstrideType::kReadParameter), sends(RobstrideType::kFault),
+        sends(RobstrideType::kReport),
         FrameFilter{
-            .id = robStrideId(RobStrideType::kFault, static_cast<std::uint32_t>(host_id), settings.id),
+            .id = robstrideId(RobstrideType::kFault, static_cast<std::uint32_t>(host_id), settings.id),
             .mask = 0x1F00'FFFFU},
         // Its announcement of itself.
-        FrameFilter{.id = robStrideId(RobStrideType::kGetId, drive_id, 0xFE), .mask = kExtendedIdMask}};
+        FrameFilter{.id = robstrideId(RobstrideType::kGetId, drive_id, 0xFE), .mask = kExtendedIdMask}};
     // Whatever is addressed to it, of any type.
     use.obeys = {FrameFilter{.id = {drive_id, true}, .mask = 0xFFU}};
     const double commands_hz = static_cast<double>(settings.tick_hz) / settings.command_divider;
     const FrameShape shape{.extended = true, .length = 8};
     use.commands = {
-        {.id = robStrideId(RobStrideType::kOperate, 0x7FFF, settings.id),
+        {.id = robstrideId(RobstrideType::kOperate, 0x7FFF, settings.id),
          .shape = shape,
          .per_second = commands_hz},
-        {.id = robStrideId(RobStrideType::kReadParameter, static_cast<std::uint32_t>(host_id), settings.id),
+        {.id = robstrideId(RobstrideType::kReadParameter, static_cast<std::uint32_t>(host_id), settings.id),
          .shape = shape,
          .per_second = 25.0}};
     use.feedback = {{.id = use.sends[0].id, .shape = shape, .per_second = commands_hz},
@@ -192,8 +192,8 @@ class RobStrideFamily final : public MotorFamily {
 
 }  // namespace
 
-const MotorFamily& robStrideFamily() noexcept {
-  static const RobStrideFamily kFamily;
+const MotorFamily& robstrideFamily() noexcept {
+  static const RobstrideFamily kFamily;
   return kFamily;
 }
 

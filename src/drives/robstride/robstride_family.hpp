@@ -7,16 +7,16 @@
 namespace rc10 {
 
 /// RobStride and CyberGear, on their private protocol.
-[[nodiscard]] const MotorFamily& robStrideFamily() noexcept;
+[[nodiscard]] const MotorFamily& robstrideFamily() noexcept;
 
 /// How a drive is told what to do: a choice for the motor's whole life, because a drive changes its run mode
 /// only while it is stopped.
-enum class RobStrideControl : std::uint8_t {
+enum class RobstrideControl : std::uint8_t {
   kOperation,  ///< Stiffness, damping and torque in every frame.
   kCurrent,    ///< The run modes: references are parameters.
   kVelocity,
   kPosition,
 };
-[[nodiscard]] RobStrideControl robStrideControlOf(const OwnValues& own);
+[[nodiscard]] RobstrideControl robstrideControlOf(const OwnValues& own);
 
 }  // namespace rc10

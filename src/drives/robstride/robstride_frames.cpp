@@ -28,7 +28,7 @@ double fromRaw(std::uint16_t raw, double low, double high) noexcept {
 double fromRaw(std::uint16_t raw, double range) noexcept { return fromRaw(raw, -range, range); }
 
 // The fault word's bits come first: they say more than the status bits of the feedback.
-constexpr std::array kRobStrideFaults{
+constexpr std::array kRobstrideFaults{
     DriveFault{1U << 1U, FaultCode::kDriveHardware},      // driver IC
     DriveFault{1U << 8U, FaultCode::kDriveHardware},      // hardware identification
     DriveFault{1U << 9U, FaultCode::kDriveEncoder},       // position initialisation
@@ -45,7 +45,7 @@ constexpr std::uint32_t kCyberGearOverload = 0xFF00U;
 
 }  // namespace
 
-CanFrame RobStrideCodec::operate(const RobStrideOperation& wanted) const noexcept {
+CanFrame RobstrideCodec::operate(const RobstrideOperation& wanted) const noexcept {
   const double torque = model->torque_range_nm;
   std::array<std::uint8_t, 8> data{};
   writeBigEndian(data, 0, toRaw(wanted.position_rad, -position_range_rad, position_range_rad));
@@ -54,41 +54,41 @@ CanFrame RobStrideCodec::operate(const RobStrideOperation& wanted) const noexcep
   writeBigEndian(data, 4, toRaw(wanted.stiffness_nm_per_rad, 0.0, model->stiffness_range_nm_per_rad));
   writeBigEndian(data, 6, toRaw(wanted.damping_nms_per_rad, 0.0, model->damping_range_nms_per_rad));
   return makeClassicFrame(
-      robStrideId(RobStrideType::kOperate, toRaw(wanted.torque_nm, -torque, torque), drive_id), data);
+      robstrideId(RobstrideType::kOperate, toRaw(wanted.torque_nm, -torque, torque), drive_id), data);
 }
 
-CanFrame RobStrideCodec::enable() const noexcept {
-  return makeClassicFrame(robStrideId(RobStrideType::kEnable, static_cast<std::uint32_t>(host_id), drive_id),
+CanFrame RobstrideCodec::enable() const noexcept {
+  return makeClassicFrame(robstrideId(RobstrideType::kEnable, static_cast<std::uint32_t>(host_id), drive_id),
                           std::array<std::uint8_t, 8>{});
 }
 
-CanFrame RobStrideCodec::stop(bool clear_faults) const noexcept {
-  return makeClassicFrame(robStrideId(RobStrideType::kStop, static_cast<std::uint32_t>(host_id), drive_id),
+CanFrame RobstrideCodec::stop(bool clear_faults) const noexcept {
+  return makeClassicFrame(robstrideId(RobstrideType::kStop, static_cast<std::uint32_t>(host_id), drive_id),
                           std::array<std::uint8_t, 8>{static_cast<std::uint8_t>(clear_faults ? 1 : 0)});
 }
 
-CanFrame RobStrideCodec::read(std::uint16_t index) const noexcept {
+CanFrame RobstrideCodec::read(std::uint16_t index) const noexcept {
   std::array<std::uint8_t, 8> data{};
   writeLittleEndian(data, 0, index);
   return makeClassicFrame(
-      robStrideId(RobStrideType::kReadParameter, static_cast<std::uint32_t>(host_id), drive_id), data);
+      robstrideId(RobstrideType::kReadParameter, static_cast<std::uint32_t>(host_id), drive_id), data);
 }
 
-CanFrame RobStrideCodec::write(std::uint16_t index, std::uint32_t bits) const noexcept {
+CanFrame RobstrideCodec::write(std::uint16_t index, std::uint32_t bits) const noexcept {
   std::array<std::uint8_t, 8> data{};
   writeLittleEndian(data, 0, index);
   writeLittleEndian(data, 4, bits);
   return makeClassicFrame(
-      robStrideId(RobStrideType::kWriteParameter, static_cast<std::uint32_t>(host_id), drive_id), data);
+      robstrideId(RobstrideType::kWriteParameter, static_cast<std::uint32_t>(host_id), drive_id), data);
 }
 
-CanFrame RobStrideCodec::write(std::uint16_t index, float value) const noexcept {
+CanFrame RobstrideCodec::write(std::uint16_t index, float value) const noexcept {
   return write(index, std::bit_cast<std::uint32_t>(std::isfinite(value) ? value : 0.0F));
 }
 
-RobStrideFeedback RobStrideCodec::feedback(const CanFrame& frame) const noexcept {
+RobstrideFeedback RobstrideCodec::feedback(const CanFrame& frame) const noexcept {
   const auto bytes = frame.payload();
-  RobStrideFeedback seen;
+  RobstrideFeedback seen;
   seen.raw_position = readBigEndian<std::uint16_t>(bytes, 0);
   seen.position_rad = fromRaw(seen.raw_position, position_range_rad);
   seen.velocity_rad_s = fromRaw(readBigEndian<std::uint16_t>(bytes, 2), model->velocity_range_rad_s);
@@ -100,7 +100,7 @@ RobStrideFeedback RobStrideCodec::feedback(const CanFrame& frame) const noexcept
   return seen;
 }
 
-RobStrideOperation RobStrideCodec::operation(const CanFrame& frame) const noexcept {
+RobstrideOperation RobstrideCodec::operation(const CanFrame& frame) const noexcept {
   const auto bytes = frame.payload();
   return {.position_rad = fromRaw(readBigEndian<std::uint16_t>(bytes, 0), position_range_rad),
           .velocity_rad_s = fromRaw(readBigEndian<std::uint16_t>(bytes, 2), model->velocity_range_rad_s),
@@ -111,7 +111,7 @@ RobStrideOperation RobStrideCodec::operation(const CanFrame& frame) const noexce
           .torque_nm = fromRaw(static_cast<std::uint16_t>(frame.id.value >> 8U), model->torque_range_nm)};
 }
 
-CanFrame RobStrideCodec::answer(const RobStrideFeedback& told) const noexcept {
+CanFrame RobstrideCodec::answer(const RobstrideFeedback& told) const noexcept {
   const double velocity = model->velocity_range_rad_s;
   const double torque = model->torque_range_nm;
   std::array<std::uint8_t, 8> data{};
@@ -120,32 +120,32 @@ CanFrame RobStrideCodec::answer(const RobStrideFeedback& told) const noexcept {
   writeBigEndian(data, 4, toRaw(told.torque_nm, -torque, torque));
   writeBigEndian(data, 6, static_cast<std::int16_t>(std::clamp(told.temperature_c * 10.0, -3e4, 3e4)));
   CanFrame frame = makeClassicFrame(
-      robStrideId(RobStrideType::kFeedback, static_cast<std::uint32_t>(drive_id), host_id), data);
+      robstrideId(RobstrideType::kFeedback, static_cast<std::uint32_t>(drive_id), host_id), data);
   frame.id.value |= static_cast<std::uint32_t>(told.status_bits & 0x3FU) << 16U |
                     static_cast<std::uint32_t>(told.mode & 0x3U) << 22U;
   return frame;
 }
 
-CanFrame RobStrideCodec::parameter(std::uint16_t index, std::uint32_t bits, bool known) const noexcept {
+CanFrame RobstrideCodec::parameter(std::uint16_t index, std::uint32_t bits, bool known) const noexcept {
   std::array<std::uint8_t, 8> data{};
   writeLittleEndian(data, 0, index);
   writeLittleEndian(data, 4, bits);
   CanFrame frame = makeClassicFrame(
-      robStrideId(RobStrideType::kReadParameter, static_cast<std::uint32_t>(drive_id), host_id), data);
+      robstrideId(RobstrideType::kReadParameter, static_cast<std::uint32_t>(drive_id), host_id), data);
   if (!known) frame.id.value |= 1U << 16U;
   return frame;
 }
 
-CanFrame RobStrideCodec::fault(std::uint32_t fault_word) const noexcept {
+CanFrame RobstrideCodec::fault(std::uint32_t fault_word) const noexcept {
   std::array<std::uint8_t, 8> data{};
   writeLittleEndian(data, 0, fault_word);
-  return makeClassicFrame(robStrideId(RobStrideType::kFault, static_cast<std::uint32_t>(drive_id), host_id),
+  return makeClassicFrame(robstrideId(RobstrideType::kFault, static_cast<std::uint32_t>(drive_id), host_id),
                           data);
 }
 
-FaultCode robStrideFault(std::uint32_t native_code, bool cyber_gear) noexcept {
+FaultCode robstrideFault(std::uint32_t native_code, bool cyber_gear) noexcept {
   if (cyber_gear && (native_code & kCyberGearOverload) != 0) return FaultCode::kDriveOverload;
-  const FaultCode fault = faultOfBits(kRobStrideFaults, native_code);
+  const FaultCode fault = faultOfBits(kRobstrideFaults, native_code);
   // What is left of overload is status bit 20.
   return cyber_gear && fault == FaultCode::kDriveOverload ? FaultCode::kDrivePhase : fault;
 }

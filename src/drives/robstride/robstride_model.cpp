@@ -22,9 +22,9 @@ constexpr float rpm(double rad_s) {
   return static_cast<float>(whole);
 }
 
-constexpr RobStrideModel robStride(std::string_view name, double velocity_rad_s, double torque_nm,
-                                   double stiffness, double damping, double current_a, double nm_per_arms,
-                                   double gear_ratio) {
+constexpr RobstrideModel robstrideModel(std::string_view name, double velocity_rad_s, double torque_nm,
+                                        double stiffness, double damping, double current_a,
+                                        double nm_per_arms, double gear_ratio) {
   return {.name = name,
           .position_range_rad = kTwoTurnsRad,
           .velocity_range_rad_s = velocity_rad_s,
@@ -48,16 +48,16 @@ constexpr RobStrideModel robStride(std::string_view name, double velocity_rad_s,
 // User manuals RS00-RS06 and EL05 of 2025-12 to 2026-04 (RobStride/Product_Information@ba7236b), CyberGear
 // (belovictor/cybergear-docs). Where a vendor's sample code has other ranges, the manual holds. EL05: the
 // text allows 6 Nm, the scale ends at 5.5.
-constexpr std::array kRobStrideModels{
-    robStride("RS00", 33.0, 14.0, 500.0, 5.0, 15.5, 1.48, 10.0),
-    robStride("RS01", 44.0, 17.0, 500.0, 5.0, 23.0, 1.22, 7.75),
-    robStride("RS02", 44.0, 17.0, 500.0, 5.0, 23.0, 1.22, 7.75),
-    robStride("RS03", 20.0, 60.0, 5000.0, 100.0, 43.0, 2.36, 9.0),
-    robStride("RS04", 15.0, 120.0, 5000.0, 100.0, 90.0, 2.1, 9.0),
-    robStride("RS05", 50.0, 5.5, 500.0, 5.0, 11.0, 0.94, 7.75),
-    robStride("RS06", 50.0, 36.0, 5000.0, 100.0, 57.0, 1.09, 9.0),
-    robStride("EL05", 50.0, 5.5, 500.0, 5.0, 11.0, 0.94, 9.0),
-    RobStrideModel{.name = "CyberGear",
+constexpr std::array kRobstrideModels{
+    robstrideModel("RS00", 33.0, 14.0, 500.0, 5.0, 15.5, 1.48, 10.0),
+    robstrideModel("RS01", 44.0, 17.0, 500.0, 5.0, 23.0, 1.22, 7.75),
+    robstrideModel("RS02", 44.0, 17.0, 500.0, 5.0, 23.0, 1.22, 7.75),
+    robstrideModel("RS03", 20.0, 60.0, 5000.0, 100.0, 43.0, 2.36, 9.0),
+    robstrideModel("RS04", 15.0, 120.0, 5000.0, 100.0, 90.0, 2.1, 9.0),
+    robstrideModel("RS05", 50.0, 5.5, 500.0, 5.0, 11.0, 0.94, 7.75),
+    robstrideModel("RS06", 50.0, 36.0, 5000.0, 100.0, 57.0, 1.09, 9.0),
+    robstrideModel("EL05", 50.0, 5.5, 500.0, 5.0, 11.0, 0.94, 9.0),
+    RobstrideModel{.name = "CyberGear",
                    // The manual's text says 4 pi, its code and every driver 12.5.
                    .position_range_rad = 12.5,
                    .velocity_range_rad_s = 30.0,
@@ -78,16 +78,16 @@ constexpr std::array kRobStrideModels{
 
 }  // namespace
 
-double RobStrideModel::torqueNmPerA() const noexcept { return torque_nm_per_arms / std::numbers::sqrt2; }
+double RobstrideModel::torqueNmPerA() const noexcept { return torque_nm_per_arms / std::numbers::sqrt2; }
 
-const RobStrideModel* findRobStrideModel(std::string_view name) noexcept {
-  return findModel(kRobStrideModels, name);
+const RobstrideModel* findRobstrideModel(std::string_view name) noexcept {
+  return findModel(kRobstrideModels, name);
 }
 
-std::span<const RobStrideModel> robStrideModels() noexcept { return kRobStrideModels; }
+std::span<const RobstrideModel> robstrideModels() noexcept { return kRobstrideModels; }
 
-std::span<const std::string_view> robStrideModelNames() noexcept {
-  static constexpr auto kNames = modelNames(kRobStrideModels);
+std::span<const std::string_view> robstrideModelNames() noexcept {
+  static constexpr auto kNames = modelNames(kRobstrideModels);
   return kNames;
 }
 

@@ -7,7 +7,7 @@
 namespace rc10 {
 
 /// Everything in which one RobStride or CyberGear model differs from another. At the drive's own output.
-struct RobStrideModel {
+struct RobstrideModel {
   std::string_view name;
   // Ends of the scales of operation control and feedback.
   double position_range_rad = 0.0;
@@ -31,9 +31,9 @@ struct RobStrideModel {
 };
 
 /// nullptr if there is no such model.
-[[nodiscard]] const RobStrideModel* findRobStrideModel(std::string_view name) noexcept;
+[[nodiscard]] const RobstrideModel* findRobstrideModel(std::string_view name) noexcept;
 
-[[nodiscard]] std::span<const RobStrideModel> robStrideModels() noexcept;
-[[nodiscard]] std::span<const std::string_view> robStrideModelNames() noexcept;
+[[nodiscard]] std::span<const RobstrideModel> robstrideModels() noexcept;
+[[nodiscard]] std::span<const std::string_view> robstrideModelNames() noexcept;
 
 }  // namespace rc10

@@ -44,37 +44,37 @@ bool allOf(const FrameFilter& filter, const CanFrame& frame) noexcept {
          (frame.id.value & filter.mask) == (filter.id.value & filter.mask);
 }
 
-FrameFilter fromDrive(RobStrideType type, int data, int addressee) noexcept {
+FrameFilter fromDrive(RobstrideType type, int data, int addressee) noexcept {
   // Status bits or a result stand in bits 23 to 16.
-  return {.id = robStrideId(type, static_cast<std::uint32_t>(data), addressee), .mask = 0x1F00'FFFFU};
+  return {.id = robstrideId(type, static_cast<std::uint32_t>(data), addressee), .mask = 0x1F00'FFFFU};
 }
 
 }  // namespace
 
-RobStrideControl robStrideControlOf(const OwnValues& own) {
+RobstrideControl robstrideControlOf(const OwnValues& own) {
   const std::string text = own.text("control");
-  if (text == "current") return RobStrideControl::kCurrent;
-  if (text == "velocity") return RobStrideControl::kVelocity;
-  if (text == "position") return RobStrideControl::kPosition;
-  return RobStrideControl::kOperation;
+  if (text == "current") return RobstrideControl::kCurrent;
+  if (text == "velocity") return RobstrideControl::kVelocity;
+  if (text == "position") return RobstrideControl::kPosition;
+  return RobstrideControl::kOperation;
 }
 
 RobStride_Motor::RobStride_Motor(const MotorSettings& settings)
-    : SoloMotor(settings, robStrideFamily().traits(settings.model, settings.own),
-                driveTurns(settings, robStrideFamily().traits(settings.model, settings.own))),
-      model_(findRobStrideModel(settings.model)),
+    : SoloMotor(settings, robstrideFamily().traits(settings.model, settings.own),
+                driveTurns(settings, robstrideFamily().traits(settings.model, settings.own))),
+      model_(findRobstrideModel(settings.model)),
       codec_{.model = model_,
              .position_range_rad =
                  orDefault(settings.own.number("position_range_rad"), model_->position_range_rad),
              .drive_id = settings.id,
              .host_id = settings.own.integer("host_id")},
-      control_(robStrideControlOf(settings.own)),
-      filters_{fromDrive(RobStrideType::kFeedback, codec_.drive_id, codec_.host_id),
-               fromDrive(RobStrideType::kReport, codec_.drive_id, codec_.host_id),
-               fromDrive(RobStrideType::kReadParameter, codec_.drive_id, codec_.host_id),
-               fromDrive(RobStrideType::kFault, codec_.drive_id, codec_.host_id),
+      control_(robstrideControlOf(settings.own)),
+      filters_{fromDrive(RobstrideType::kFeedback, codec_.drive_id, codec_.host_id),
+               fromDrive(RobstrideType::kReport, codec_.drive_id, codec_.host_id),
+               fromDrive(RobstrideType::kReadParameter, codec_.drive_id, codec_.host_id),
+               fromDrive(RobstrideType::kFault, codec_.drive_id, codec_.host_id),
                // The CyberGear's manual has the two ids of a fault frame the other way round.
-               fromDrive(RobStrideType::kFault, codec_.host_id, codec_.drive_id)},
+               fromDrive(RobstrideType::kFault, codec_.host_id, codec_.drive_id)},
       command_ids_{codec_.read(0).id, codec_.write(0, 0.0F).id} {
   const double square = ratio() * ratio();
   const double torque = model_->torque_range_nm;
@@ -91,25 +91,25 @@ RobStride_Motor::RobStride_Motor(const MotorSettings& settings)
     enabling_.add({.index = parameter::kRunMode, .bits = mode});
   };
   // No current before the first command: whatever reference the drive still has, it stays where it is.
-  const RobStrideSetting no_current = RobStrideSetting::limit(parameter::kCurrentLimit, 0.0F);
+  const RobstrideSetting no_current = RobstrideSetting::limit(parameter::kCurrentLimit, 0.0F);
   switch (control_) {
-    case RobStrideControl::kOperation:
-      add_run_mode(static_cast<std::uint8_t>(RobStrideRunMode::kOperation));
-      enabling_.add(RobStrideSetting::limit(parameter::kTorqueLimit, static_cast<float>(limitNm())));
+    case RobstrideControl::kOperation:
+      add_run_mode(static_cast<std::uint8_t>(RobstrideRunMode::kOperation));
+      enabling_.add(RobstrideSetting::limit(parameter::kTorqueLimit, static_cast<float>(limitNm())));
       break;
-    case RobStrideControl::kCurrent:
-      add_run_mode(static_cast<std::uint8_t>(RobStrideRunMode::kCurrent));
+    case RobstrideControl::kCurrent:
+      add_run_mode(static_cast<std::uint8_t>(RobstrideRunMode::kCurrent));
       enabling_.add({.index = parameter::kCurrentRef, .bits = 0});
       break;
-    case RobStrideControl::kVelocity:
-      add_run_mode(static_cast<std::uint8_t>(RobStrideRunMode::kVelocity));
+    case RobstrideControl::kVelocity:
+      add_run_mode(static_cast<std::uint8_t>(RobstrideRunMode::kVelocity));
       enabling_.add(no_current);
       enabling_.add({.index = parameter::kVelocityRef, .bits = 0});
       break;
-    case RobStrideControl::kPosition:
+    case RobstrideControl::kPosition:
       add_run_mode(model_->position_run_mode);
       enabling_.add(no_current);
-      enabling_.add(RobStrideSetting::limit(parameter::kVelocityLimit, static_cast<float>(limitRadS())));
+      enabling_.add(RobstrideSetting::limit(parameter::kVelocityLimit, static_cast<float>(limitRadS())));
       break;
   }
   // Where the scale wraps, the drive's own count of turns may be ahead of ours.
@@ -117,7 +117,7 @@ RobStride_Motor::RobStride_Motor(const MotorSettings& settings)
   const int watchdog_ms = settings.own.integer("watchdog_ms");
   if (watchdog_ms > 0) {
     enabling_.add({.index = model_->watchdog_index,
-                   .bits = static_cast<std::uint32_t>(watchdog_ms) * kRobStrideTimeoutPerMs});
+                   .bits = static_cast<std::uint32_t>(watchdog_ms) * kRobstrideTimeoutPerMs});
   }
 }
 
@@ -153,19 +153,19 @@ bool RobStride_Motor::matchesFrame(const CanFrame& frame) const noexcept {
 FrameVerdict RobStride_Motor::updateFeedback(const CanFrame& frame) noexcept {
   if (frame.type != FrameType::kData || frame.fd || frame.length != kLength) return FrameVerdict::kMalformed;
   configuring_.onFrame(frame);
-  switch (static_cast<RobStrideType>(frame.id.value >> 24U & 0x1FU)) {
-    case RobStrideType::kFeedback:
-    case RobStrideType::kReport: takeFeedback(codec_.feedback(frame), frame.received); break;
-    case RobStrideType::kReadParameter: takeParameter(frame); break;
-    case RobStrideType::kFault: fault_word_ = readLittleEndian<std::uint32_t>(frame.payload(), 0); break;
+  switch (static_cast<RobstrideType>(frame.id.value >> 24U & 0x1FU)) {
+    case RobstrideType::kFeedback:
+    case RobstrideType::kReport: takeFeedback(codec_.feedback(frame), frame.received); break;
+    case RobstrideType::kReadParameter: takeParameter(frame); break;
+    case RobstrideType::kFault: fault_word_ = readLittleEndian<std::uint32_t>(frame.payload(), 0); break;
     default: return FrameVerdict::kMalformed;
   }
   return FrameVerdict::kAccepted;
 }
 
-void RobStride_Motor::takeFeedback(const RobStrideFeedback& seen, MonotonicTime received) noexcept {
+void RobStride_Motor::takeFeedback(const RobstrideFeedback& seen, MonotonicTime received) noexcept {
   const bool stopped_itself =
-      feedback_.samples > 0 && obeying() && seen_.mode == kRobStrideRunning && seen.mode != kRobStrideRunning;
+      feedback_.samples > 0 && obeying() && seen_.mode == kRobstrideRunning && seen.mode != kRobstrideRunning;
   // A fault stops it where it is. Without one it may have been restarted.
   if (stopped_itself && seen.status_bits == 0 && fault_word_ == 0) doubtAngles();
   if (clear_sent_ && seen.status_bits == 0) {
@@ -182,7 +182,7 @@ void RobStride_Motor::takeFeedback(const RobStrideFeedback& seen, MonotonicTime 
   enabling_.onFeedback(seen);
 }
 
-void RobStride_Motor::trackPosition(const RobStrideFeedback& seen, MonotonicTime received) noexcept {
+void RobStride_Motor::trackPosition(const RobstrideFeedback& seen, MonotonicTime received) noexcept {
   if (feedback_.samples == 0) {
     position_rad_ = seen.position_rad;
     return;
@@ -223,9 +223,9 @@ void RobStride_Motor::takeParameter(const CanFrame& frame) noexcept {
 }
 
 DriveComplaint RobStride_Motor::complaint() const noexcept {
-  const auto native = robStrideNativeCode(fault_word_, seen_.status_bits);
-  if (native != 0) return {.fault = robStrideFault(native, model_->cyber_gear), .native_code = native};
-  if (obeying() && feedback_.samples > 0 && seen_.mode != kRobStrideRunning) {
+  const auto native = robstrideNativeCode(fault_word_, seen_.status_bits);
+  if (native != 0) return {.fault = robstrideFault(native, model_->cyber_gear), .native_code = native};
+  if (obeying() && feedback_.samples > 0 && seen_.mode != kRobstrideRunning) {
     return {.fault = FaultCode::kDriveStopped, .native_code = 0};
   }
   return {};
@@ -237,12 +237,12 @@ SequenceProgress RobStride_Motor::sequenceProgress() const noexcept {
 
 std::size_t RobStride_Motor::packReference(const Tick& tick, std::span<CanFrame> out) noexcept {
   switch (control_) {
-    case RobStrideControl::kOperation: out[0] = codec_.operate(operation_); return 1;
-    case RobStrideControl::kCurrent:
+    case RobstrideControl::kOperation: out[0] = codec_.operate(operation_); return 1;
+    case RobstrideControl::kCurrent:
       out[0] = codec_.write(parameter::kCurrentRef, reference_.value);
       return 1;
-    case RobStrideControl::kVelocity: out[0] = codec_.write(parameter::kVelocityRef, reference_.value); break;
-    case RobStrideControl::kPosition: out[0] = codec_.write(parameter::kPositionRef, reference_.value); break;
+    case RobstrideControl::kVelocity: out[0] = codec_.write(parameter::kVelocityRef, reference_.value); break;
+    case RobstrideControl::kPosition: out[0] = codec_.write(parameter::kPositionRef, reference_.value); break;
   }
   const bool limit_due =
       limit_sent_a_ != reference_.current_limit_a || tick.now - limit_sent_at_ >= kLimitPeriod;
@@ -258,7 +258,7 @@ std::size_t RobStride_Motor::packCommand(const Tick& tick, std::span<CanFrame> o
   if (out.size() < 3) return 0;
   if (enabling() && enabling_.progress() == SequenceProgress::kPending) {
     limit_sent_a_ = -1.0F;
-    return enabling_.pack(tick.now, codec_, control_ == RobStrideControl::kOperation, out);
+    return enabling_.pack(tick.now, codec_, control_ == RobstrideControl::kOperation, out);
   }
   std::size_t count = enabling() || obeying() ? 0 : configuring_.pack(tick.now, out);
   if (!due(tick)) return count;

@@ -56,11 +56,11 @@ class RobStride_Motor : public SoloMotor {
   [[nodiscard]] double scaleEndRad() const noexcept;  ///< As far as operation mode can be told to go.
   [[nodiscard]] bool positionOnScale() const noexcept;
   [[nodiscard]] double positionRadFor(double total_angle_deg) const noexcept;
-  [[nodiscard]] double outputTorqueOf(const RobStrideOperation& wanted) const noexcept;
+  [[nodiscard]] double outputTorqueOf(const RobstrideOperation& wanted) const noexcept;
 
-  void takeFeedback(const RobStrideFeedback& seen, MonotonicTime received) noexcept;
+  void takeFeedback(const RobstrideFeedback& seen, MonotonicTime received) noexcept;
   void takeParameter(const CanFrame& frame) noexcept;
-  void trackPosition(const RobStrideFeedback& seen, MonotonicTime received) noexcept;
+  void trackPosition(const RobstrideFeedback& seen, MonotonicTime received) noexcept;
   void doubtAngles() noexcept;
 
   void planOperation(const Target& target) noexcept;
@@ -68,24 +68,24 @@ class RobStride_Motor : public SoloMotor {
   void planVelocity(const Target& target) noexcept;
   void planPosition(const Target& target) noexcept;
   [[nodiscard]] double clampVelocity(double rad_s) noexcept;
-  void limitApproach(RobStrideOperation& wanted) noexcept;
-  void limitTorque(RobStrideOperation& wanted) noexcept;
+  void limitApproach(RobstrideOperation& wanted) noexcept;
+  void limitTorque(RobstrideOperation& wanted) noexcept;
 
   [[nodiscard]] std::size_t packReference(const Tick& tick, std::span<CanFrame> out) noexcept;
 
-  const RobStrideModel* model_;
-  RobStrideCodec codec_;
-  RobStrideControl control_;
+  const RobstrideModel* model_;
+  RobstrideCodec codec_;
+  RobstrideControl control_;
   double angle_stiffness_;  ///< Of the drive's output, as all of these.
   double angle_damping_;
   double velocity_gain_;
   std::array<FrameFilter, 5> filters_;
   std::array<CanId, 2> command_ids_;
-  RobStrideEnabling enabling_;
-  RobStrideSetupCodec setup_codec_{codec_};
+  RobstrideEnabling enabling_;
+  RobstrideSetupCodec setup_codec_{codec_};
   DriveConfiguring configuring_{setup_codec_};
 
-  RobStrideFeedback seen_;
+  RobstrideFeedback seen_;
   std::uint32_t fault_word_ = 0;
   double position_rad_ = 0.0;      ///< Of the drive's output, over turns.
   double scale_offset_rad_ = 0.0;  ///< The drive's own count of turns is this much more.
@@ -93,7 +93,7 @@ class RobStride_Motor : public SoloMotor {
   bool clear_ordered_ = false;
   bool clear_sent_ = false;
 
-  RobStrideOperation operation_;
+  RobstrideOperation operation_;
   Reference reference_;
   bool brake_held_ = false;
   double brake_deg_ = 0.0;

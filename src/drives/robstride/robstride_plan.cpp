@@ -37,10 +37,10 @@ void RobStride_Motor::update(const Tick& /*tick*/) noexcept {
   operation_ = {};
   reference_ = {};
   switch (control_) {
-    case RobStrideControl::kOperation: planOperation(target); break;
-    case RobStrideControl::kCurrent: planCurrent(target); break;
-    case RobStrideControl::kVelocity: planVelocity(target); break;
-    case RobStrideControl::kPosition: planPosition(target); break;
+    case RobstrideControl::kOperation: planOperation(target); break;
+    case RobstrideControl::kCurrent: planCurrent(target); break;
+    case RobstrideControl::kVelocity: planVelocity(target); break;
+    case RobstrideControl::kPosition: planPosition(target); break;
   }
 }
 
@@ -52,7 +52,7 @@ double RobStride_Motor::clampVelocity(double rad_s) noexcept {
 }
 
 void RobStride_Motor::planOperation(const Target& target) noexcept {
-  RobStrideOperation wanted;
+  RobstrideOperation wanted;
   const double square = ratio() * ratio();
   const bool knows_itself = feedback_.samples > 0;
   const auto take_feed_forward = [&] {
@@ -105,7 +105,7 @@ void RobStride_Motor::planOperation(const Target& target) noexcept {
   setCommand(outputTorqueOf(wanted) / static_cast<double>(torqueNmPerA()), CommandUnit::kAmpere);
 }
 
-double RobStride_Motor::outputTorqueOf(const RobStrideOperation& wanted) const noexcept {
+double RobStride_Motor::outputTorqueOf(const RobstrideOperation& wanted) const noexcept {
   double torque_nm = wanted.torque_nm;
   if (feedback_.samples > 0) {
     torque_nm += wanted.stiffness_nm_per_rad * (wanted.position_rad - position_rad_ - scale_offset_rad_) +
@@ -115,7 +115,7 @@ double RobStride_Motor::outputTorqueOf(const RobStrideOperation& wanted) const n
 }
 
 // The spring pulls as fast as the damping lets it: a target further away would be faster than allowed.
-void RobStride_Motor::limitApproach(RobStrideOperation& wanted) noexcept {
+void RobStride_Motor::limitApproach(RobstrideOperation& wanted) noexcept {
   if (velocityLimitRpm() <= 0.0F || wanted.stiffness_nm_per_rad <= 0.0) return;
   const double limit = limitRadS();
   const double per_speed = wanted.damping_nms_per_rad / wanted.stiffness_nm_per_rad;
@@ -126,7 +126,7 @@ void RobStride_Motor::limitApproach(RobStrideOperation& wanted) noexcept {
   wanted.position_rad = near;
 }
 
-void RobStride_Motor::limitTorque(RobStrideOperation& wanted) noexcept {
+void RobStride_Motor::limitTorque(RobstrideOperation& wanted) noexcept {
   const double limit = limitNm();
   // The gains as they arrive: on a coarse scale they differ enough to matter.
   const auto arriving = codec_.operation(codec_.operate(wanted));

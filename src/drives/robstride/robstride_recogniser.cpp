@@ -7,22 +7,22 @@
 namespace rc10 {
 namespace {
 
-constexpr std::string_view kRobStride = "RobStride or CyberGear";
+constexpr std::string_view kRobstride = "RobStride or CyberGear";
 
 }  // namespace
 
 // The drive's id is in the second byte of the id, that of the host in the first.
-void recogniseRobStride(const CanFrame& frame, std::vector<DriveGuess>& guesses) {
+void recogniseRobstride(const CanFrame& frame, std::vector<DriveGuess>& guesses) {
   if (!frame.id.extended || frame.fd || frame.length != 8) return;
   constexpr std::uint32_t kToAnyHost = 0xFE;  // the answer to the question for the id
-  const auto type = static_cast<RobStrideType>(frame.id.value >> 24U);
+  const auto type = static_cast<RobstrideType>(frame.id.value >> 24U);
   const int drive = static_cast<int>(frame.id.value >> 8U & 0xFFU);
   const bool answers =
-      type == RobStrideType::kFeedback || type == RobStrideType::kReport || type == RobStrideType::kFault ||
-      (type == RobStrideType::kGetId && (frame.id.value & 0xFFU) == kToAnyHost && frame.id.value <= 0xFFFF);
-  if (answers && drive != 0) guesses.push_back({kRobStride, drive});
-  if (type == RobStrideType::kOperate)
-    guesses.push_back({kRobStride, static_cast<int>(frame.id.value & 0xFFU), false});
+      type == RobstrideType::kFeedback || type == RobstrideType::kReport || type == RobstrideType::kFault ||
+      (type == RobstrideType::kGetId && (frame.id.value & 0xFFU) == kToAnyHost && frame.id.value <= 0xFFFF);
+  if (answers && drive != 0) guesses.push_back({kRobstride, drive});
+  if (type == RobstrideType::kOperate)
+    guesses.push_back({kRobstride, static_cast<int>(frame.id.value & 0xFFU), false});
 }
 
 }  // namespace rc10

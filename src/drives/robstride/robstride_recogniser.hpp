@@ -5,6 +5,6 @@
 namespace rc10 {
 
 /// See Recogniser.
-void recogniseRobStride(const CanFrame& frame, std::vector<DriveGuess>& guesses);
+void recogniseRobstride(const CanFrame& frame, std::vector<DriveGuess>& guesses);
 
 }  // namespace rc10

@@ -18,7 +18,7 @@ struct SettingParameter {
   double at_zero = 0.0;  ///< Of the parameter, for a setting of 0.
 };
 
-constexpr std::array kRobStrideSettings{
+constexpr std::array kRobstrideSettings{
     DriveSetting{.name = "id", .min = 1, .max = 127, .integer = true, .identity = true},
     DriveSetting{.name = "timeout_ms", .min = 0, .max = 5000, .integer = true},
     DriveSetting{.name = "report_interval_ms", .min = 10, .max = 1000, .integer = true},
@@ -33,7 +33,7 @@ constexpr std::array kRobStrideSettings{
 
 constexpr std::array kSettingParameters{
     SettingParameter{},
-    SettingParameter{0x7028, true, kRobStrideTimeoutPerMs},
+    SettingParameter{0x7028, true, kRobstrideTimeoutPerMs},
     SettingParameter{0x7026, true, 0.2, -1.0},  // 1: 10 ms; each more: 5 ms
     SettingParameter{0x7029, true},
     SettingParameter{parameter::kTorqueLimit},
@@ -43,10 +43,10 @@ constexpr std::array kSettingParameters{
     SettingParameter{0x701F},
     SettingParameter{0x7020},
 };
-static_assert(kSettingParameters.size() == kRobStrideSettings.size());
+static_assert(kSettingParameters.size() == kRobstrideSettings.size());
 
-constexpr DriveSetup kRobStrideSetup{.settings = kRobStrideSettings, .tool = "RobStride's Motor Studio"};
-constexpr DriveSetup kCyberGearSetup{.settings = std::span(kRobStrideSettings).first(1),
+constexpr DriveSetup kRobstrideSetup{.settings = kRobstrideSettings, .tool = "RobStride's Motor Studio"};
+constexpr DriveSetup kCyberGearSetup{.settings = std::span(kRobstrideSettings).first(1),
                                      .stores_at_once = true,
                                      .tool = "Xiaomi's CyberGear tool"};
 
@@ -58,31 +58,31 @@ std::uint32_t rawOf(const SettingParameter& row, double value) noexcept {
 
 }  // namespace
 
-const DriveSetup& robStrideSetup(bool cyber_gear) noexcept {
-  return cyber_gear ? kCyberGearSetup : kRobStrideSetup;
+const DriveSetup& robstrideSetup(bool cyber_gear) noexcept {
+  return cyber_gear ? kCyberGearSetup : kRobstrideSetup;
 }
 
-CanFrame RobStrideSetupCodec::write(const DriveValue& value) const noexcept {
+CanFrame RobstrideSetupCodec::write(const DriveValue& value) const noexcept {
   const auto& row = kSettingParameters[value.setting];
   if (row.index != 0) return codec_.write(row.index, rawOf(row, value.value));
   const auto new_id = static_cast<std::uint32_t>(std::lround(value.value)) & 0xFFU;
   const auto data = new_id << 8U | static_cast<std::uint32_t>(codec_.host_id);
-  return makeClassicFrame(robStrideId(RobStrideType::kSetId, data, codec_.drive_id),
+  return makeClassicFrame(robstrideId(RobstrideType::kSetId, data, codec_.drive_id),
                           std::array<std::uint8_t, 8>{});
 }
 
-std::optional<CanFrame> RobStrideSetupCodec::read(std::size_t setting) const noexcept {
+std::optional<CanFrame> RobstrideSetupCodec::read(std::size_t setting) const noexcept {
   const auto& row = kSettingParameters[setting];
   if (row.index == 0) return std::nullopt;  // nothing tells it but the silence under the old one
   return codec_.read(row.index);
 }
 
-std::optional<double> RobStrideSetupCodec::reading(std::size_t setting,
+std::optional<double> RobstrideSetupCodec::reading(std::size_t setting,
                                                    const CanFrame& frame) const noexcept {
   const auto& row = kSettingParameters[setting];
-  const auto type = static_cast<RobStrideType>(frame.id.value >> 24U & 0x1FU);
+  const auto type = static_cast<RobstrideType>(frame.id.value >> 24U & 0x1FU);
   const bool accepted = (frame.id.value >> 16U & 0xFFU) == 0;
-  if (row.index == 0 || type != RobStrideType::kReadParameter || !accepted || frame.length != 8) {
+  if (row.index == 0 || type != RobstrideType::kReadParameter || !accepted || frame.length != 8) {
     return std::nullopt;
   }
   const auto bytes = frame.payload();
@@ -92,15 +92,15 @@ std::optional<double> RobStrideSetupCodec::reading(std::size_t setting,
   return (raw - row.at_zero) / row.per_unit;
 }
 
-std::optional<CanFrame> RobStrideSetupCodec::save(std::optional<int> new_id) const noexcept {
+std::optional<CanFrame> RobstrideSetupCodec::save(std::optional<int> new_id) const noexcept {
   if (codec_.model->cyber_gear) return std::nullopt;
-  return makeClassicFrame(robStrideId(RobStrideType::kSave, static_cast<std::uint32_t>(codec_.host_id),
+  return makeClassicFrame(robstrideId(RobstrideType::kSave, static_cast<std::uint32_t>(codec_.host_id),
                                       new_id.value_or(codec_.drive_id)),
                           std::array<std::uint8_t, 8>{1, 2, 3, 4, 5, 6, 7, 8});
 }
 
-bool RobStrideSetupCodec::saysSaved(const CanFrame& frame) const noexcept {
-  return static_cast<RobStrideType>(frame.id.value >> 24U & 0x1FU) == RobStrideType::kFeedback;
+bool RobstrideSetupCodec::saysSaved(const CanFrame& frame) const noexcept {
+  return static_cast<RobstrideType>(frame.id.value >> 24U & 0x1FU) == RobstrideType::kFeedback;
 }
 
 }  // namespace rc10

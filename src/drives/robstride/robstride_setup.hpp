@@ -7,15 +7,15 @@ namespace rc10 {
 
 /// What can be written to a RobStride drive, or to a CyberGear: that has no frame to store parameters (its
 /// type 22 is another bit rate), so only its id.
-[[nodiscard]] const DriveSetup& robStrideSetup(bool cyber_gear) noexcept;
+[[nodiscard]] const DriveSetup& robstrideSetup(bool cyber_gear) noexcept;
 
 /// The parameters of one drive as settings.
-class RobStrideSetupCodec final : public DriveCodec {
+class RobstrideSetupCodec final : public DriveCodec {
  public:
-  explicit RobStrideSetupCodec(const RobStrideCodec& codec) noexcept : codec_(codec) {}
+  explicit RobstrideSetupCodec(const RobstrideCodec& codec) noexcept : codec_(codec) {}
 
   [[nodiscard]] const DriveSetup& setup() const noexcept override {
-    return robStrideSetup(codec_.model->cyber_gear);
+    return robstrideSetup(codec_.model->cyber_gear);
   }
   [[nodiscard]] CanFrame write(const DriveValue& value) const noexcept override;
   [[nodiscard]] std::optional<CanFrame> read(std::size_t setting) const noexcept override;
@@ -27,7 +27,7 @@ class RobStrideSetupCodec final : public DriveCodec {
   [[nodiscard]] std::optional<std::size_t> idSetting() const noexcept override { return 0; }
 
  private:
-  RobStrideCodec codec_;
+  RobstrideCodec codec_;
 };
 
 }  // namespace rc10

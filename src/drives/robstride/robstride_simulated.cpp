@@ -37,7 +37,7 @@ struct StatusBit {
 constexpr std::array kStatusBits{StatusBit{1U << 2U, 0}, StatusBit{0x1'0030U, 1}, StatusBit{1U << 0U, 2},
                                  StatusBit{1U << 9U, 3}, StatusBit{1U << 14U, 4}, StatusBit{1U << 7U, 5}};
 
-RobStrideCodec codecOf(const MotorSettings& settings, const RobStrideModel& model) {
+RobstrideCodec codecOf(const MotorSettings& settings, const RobstrideModel& model) {
   const double range_rad = settings.own.number("position_range_rad");
   return {.model = &model,
           .position_range_rad = range_rad > 0.0 ? range_rad : model.position_range_rad,
@@ -47,10 +47,10 @@ RobStrideCodec codecOf(const MotorSettings& settings, const RobStrideModel& mode
 
 }  // namespace
 
-RobStrideDrive::RobStrideDrive(const MotorSettings& settings, const MotorLoad& load)
-    : ServoDrive(settings, robStrideFamily().traits(settings.model, settings.own), load,
-                 robStrideFamily().busUse(settings).sends),
-      model_(findRobStrideModel(settings.model)),
+RobstrideDrive::RobstrideDrive(const MotorSettings& settings, const MotorLoad& load)
+    : ServoDrive(settings, robstrideFamily().traits(settings.model, settings.own), load,
+                 robstrideFamily().busUse(settings).sends),
+      model_(findRobstrideModel(settings.model)),
       codec_(codecOf(settings, *model_)),
       parameters_{{{.index = parameter::kRunMode, .integer = true, .limit = 5.0},
                    {.index = model_->watchdog_index, .integer = true, .limit = kLongestTimeout},
@@ -74,18 +74,18 @@ RobStrideDrive::RobStrideDrive(const MotorSettings& settings, const MotorLoad& l
   powerUp();
 }
 
-RobStrideDrive::Parameter* RobStrideDrive::find(std::uint16_t index) noexcept {
+RobstrideDrive::Parameter* RobstrideDrive::find(std::uint16_t index) noexcept {
   auto* const found = std::find_if(parameters_.begin(), parameters_.end(),
                                    [index](const Parameter& each) { return each.index == index; });
   return found != parameters_.end() ? found : nullptr;
 }
 
-double RobStrideDrive::number(std::uint16_t index) noexcept {
+double RobstrideDrive::number(std::uint16_t index) noexcept {
   return static_cast<double>(std::bit_cast<float>(find(index)->bits));
 }
 
 // Where it stands within a turn of its output; a CyberGear knows it within a turn of its rotor only.
-void RobStrideDrive::powerUp() noexcept {
+void RobstrideDrive::powerUp() noexcept {
   for (auto& each : parameters_) each.bits = each.at_power_up;
   running_ = false;
   operation_ = {};
@@ -96,9 +96,9 @@ void RobStrideDrive::powerUp() noexcept {
   zeroAt(wrapPeriod(driveAngleDeg(), turn_deg));
 }
 
-void RobStrideDrive::restart() noexcept { powerUp(); }
+void RobstrideDrive::restart() noexcept { powerUp(); }
 
-void RobStrideDrive::fault(std::uint32_t native_code) noexcept {
+void RobstrideDrive::fault(std::uint32_t native_code) noexcept {
   fault_word_ = native_code & 0x00FF'FFFFU;
   status_bits_ = static_cast<std::uint8_t>(native_code >> 24U & 0x3FU);
   for (const auto& [fault_bits, status_bit] : kStatusBits) {
@@ -109,48 +109,48 @@ void RobStrideDrive::fault(std::uint32_t native_code) noexcept {
   if (fault_word_ != 0) answer(codec_.fault(fault_word_));
 }
 
-void RobStrideDrive::receive(const CanFrame& frame) noexcept {
+void RobstrideDrive::receive(const CanFrame& frame) noexcept {
   const bool mine = frame.id.extended && !frame.fd && frame.type == FrameType::kData && frame.length == 8 &&
                     (frame.id.value & 0xFFU) == static_cast<std::uint32_t>(codec_.drive_id);
   if (!mine) return;
   heard_at_ = elapsed();
   const auto bytes = frame.payload();
-  switch (static_cast<RobStrideType>(frame.id.value >> 24U & 0x1FU)) {
-    case RobStrideType::kOperate:
+  switch (static_cast<RobstrideType>(frame.id.value >> 24U & 0x1FU)) {
+    case RobstrideType::kOperate:
       if (running_ && find(parameter::kRunMode)->bits == 0) {
         operation_ = codec_.operation(frame);
         follow();
       }
       break;
-    case RobStrideType::kEnable: enable(); break;
-    case RobStrideType::kStop:
+    case RobstrideType::kEnable: enable(); break;
+    case RobstrideType::kStop:
       if (bytes[0] == 1) fault(0);
       stop();
       break;
-    case RobStrideType::kSetZero:
+    case RobstrideType::kSetZero:
       if (bytes[0] == 1) zeroAt(0.0);
       break;
-    case RobStrideType::kSetId: codec_.drive_id = static_cast<int>(frame.id.value >> 16U & 0x7FU); return;
-    case RobStrideType::kWriteParameter: write(frame); break;
-    case RobStrideType::kSave: save(); break;
-    case RobStrideType::kReadParameter: read(readLittleEndian<std::uint16_t>(bytes, 0)); return;
+    case RobstrideType::kSetId: codec_.drive_id = static_cast<int>(frame.id.value >> 16U & 0x7FU); return;
+    case RobstrideType::kWriteParameter: write(frame); break;
+    case RobstrideType::kSave: save(); break;
+    case RobstrideType::kReadParameter: read(readLittleEndian<std::uint16_t>(bytes, 0)); return;
     default: return;
   }
   answerState();
 }
 
-void RobStrideDrive::enable() noexcept {
+void RobstrideDrive::enable() noexcept {
   if (fault_word_ != 0 || status_bits_ != 0 || running_) return;
   running_ = true;
   follow();
 }
 
-void RobStrideDrive::stop() noexcept {
+void RobstrideDrive::stop() noexcept {
   running_ = false;
   release();
 }
 
-void RobStrideDrive::write(const CanFrame& frame) noexcept {
+void RobstrideDrive::write(const CanFrame& frame) noexcept {
   auto* const found = find(readLittleEndian<std::uint16_t>(frame.payload(), 0));
   if (found == nullptr) return;
   const auto bits = readLittleEndian<std::uint32_t>(frame.payload(), 4);
@@ -166,7 +166,7 @@ void RobStrideDrive::write(const CanFrame& frame) noexcept {
 }
 
 // What is in force while it runs is no setting: the run mode and references start anew.
-void RobStrideDrive::save() noexcept {
+void RobstrideDrive::save() noexcept {
   if (model_->cyber_gear) return;
   for (auto& each : parameters_) {
     const bool reference = each.index == parameter::kRunMode || each.index == parameter::kCurrentRef ||
@@ -175,7 +175,7 @@ void RobStrideDrive::save() noexcept {
   }
 }
 
-void RobStrideDrive::read(std::uint16_t index) noexcept {
+void RobstrideDrive::read(std::uint16_t index) noexcept {
   if (index == parameter::kPosition) {
     answer(codec_.parameter(index, bitsOf(driveAngleDeg() / kDegPerRad), true));
   } else if (index == parameter::kSupplyVoltage) {
@@ -187,17 +187,17 @@ void RobStrideDrive::read(std::uint16_t index) noexcept {
   }
 }
 
-void RobStrideDrive::follow() noexcept {
+void RobstrideDrive::follow() noexcept {
   const auto run_mode = find(parameter::kRunMode)->bits;
   const double torque_nm = std::max(number(parameter::kCurrentLimit), 0.0) * model_->torqueNmPerA();
-  if (run_mode == static_cast<std::uint32_t>(RobStrideRunMode::kOperation)) {
+  if (run_mode == static_cast<std::uint32_t>(RobstrideRunMode::kOperation)) {
     impedance(operation_.position_rad * kDegPerRad, operation_.velocity_rad_s * kRpmPerRadPerS,
               operation_.stiffness_nm_per_rad, operation_.damping_nms_per_rad, operation_.torque_nm);
-  } else if (run_mode == static_cast<std::uint32_t>(RobStrideRunMode::kCurrent)) {
+  } else if (run_mode == static_cast<std::uint32_t>(RobstrideRunMode::kCurrent)) {
     current(number(parameter::kCurrentRef));
   } else if (torque_nm <= 0.0) {
     release();  // to the base a limit of 0 is none
-  } else if (run_mode == static_cast<std::uint32_t>(RobStrideRunMode::kVelocity)) {
+  } else if (run_mode == static_cast<std::uint32_t>(RobstrideRunMode::kVelocity)) {
     velocity(number(parameter::kVelocityRef) * kRpmPerRadPerS, 0.0, torque_nm);
   } else {
     position(number(parameter::kPositionRef) * kDegPerRad,
@@ -205,8 +205,8 @@ void RobStrideDrive::follow() noexcept {
   }
 }
 
-void RobStrideDrive::answerState() noexcept {
-  RobStrideFeedback state;
+void RobstrideDrive::answerState() noexcept {
+  RobstrideFeedback state;
   constexpr double kTwoTurnsRad = 4.0 * std::numbers::pi;
   const double position_rad = driveAngleDeg() / kDegPerRad;
   // The older scale of 12.5 rad ends; the newer one goes on.
@@ -217,18 +217,18 @@ void RobStrideDrive::answerState() noexcept {
   state.torque_nm = driveTorqueNm();
   state.temperature_c = physics().temperatureC();
   state.status_bits = status_bits_;
-  state.mode = running_ ? kRobStrideRunning : 0;
+  state.mode = running_ ? kRobstrideRunning : 0;
   answer(codec_.answer(state));
 }
 
-void RobStrideDrive::step(Duration dt) noexcept {
+void RobstrideDrive::step(Duration dt) noexcept {
   ServoDrive::step(dt);
   const Duration timeout = std::chrono::microseconds{50} * find(model_->watchdog_index)->bits;
   if (running_ && timeout > Duration::zero() && elapsed() - heard_at_ > timeout) stop();
 }
 
-std::unique_ptr<Drive> makeRobStrideDrive(const MotorSettings& settings, const MotorLoad& load) {
-  return std::make_unique<RobStrideDrive>(settings, load);
+std::unique_ptr<Drive> makeRobstrideDrive(const MotorSettings& settings, const MotorLoad& load) {
+  return std::make_unique<RobstrideDrive>(settings, load);
 }
 
 }  // namespace rc10::sim

@@ -14,14 +14,14 @@ namespace rc10::sim {
 /// A RobStride or CyberGear drive on its private protocol. What no document tells is simulated at its worst:
 /// the torque limit does not act in operation mode, and what it was told in operation mode before it was
 /// stopped acts again when it is enabled.
-class RobStrideDrive final : public ServoDrive {
+class RobstrideDrive final : public ServoDrive {
  public:
-  RobStrideDrive(const MotorSettings& settings, const MotorLoad& load);
+  RobstrideDrive(const MotorSettings& settings, const MotorLoad& load);
 
   void receive(const CanFrame& frame) noexcept override;
   void step(Duration dt) noexcept override;
   void restart() noexcept override;
-  /// The number is that of robStrideNativeCode().
+  /// The number is that of robstrideNativeCode().
   void fault(std::uint32_t native_code) noexcept override;
 
  private:
@@ -45,16 +45,16 @@ class RobStrideDrive final : public ServoDrive {
   void answerState() noexcept;
   void powerUp() noexcept;
 
-  const RobStrideModel* model_;
-  RobStrideCodec codec_;
+  const RobstrideModel* model_;
+  RobstrideCodec codec_;
   std::array<Parameter, kParameters> parameters_;
   bool running_ = false;
-  RobStrideOperation operation_;
+  RobstrideOperation operation_;
   std::uint32_t fault_word_ = 0;
   std::uint8_t status_bits_ = 0;
   Duration heard_at_{};
 };
 
-[[nodiscard]] std::unique_ptr<Drive> makeRobStrideDrive(const MotorSettings& settings, const MotorLoad& load);
+[[nodiscard]] std::unique_ptr<Drive> makeRobstrideDrive(const MotorSettings& settings, const MotorLoad& load);
 
 }  // namespace rc10::sim
