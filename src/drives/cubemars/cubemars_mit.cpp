@@ -55,6 +55,8 @@ std::span<const CanId> CubemarsMit::commandIds() const noexcept {
   return std::span{command_ids_}.first(v3_ ? 2 : 1);
 }
 
+// ---- Feedback
+
 bool CubemarsMit::matchesFrame(const CanFrame& frame) const noexcept {
   if (v3_) return isFrom(frame, filters_[0].id);
   // On the drive's own id also what another program here tells it.
@@ -105,28 +107,7 @@ double CubemarsMit::unwrapped(double position_rad, bool anew) noexcept {
   return position_rad + turns_ * span_rad;
 }
 
-SequenceProgress CubemarsMit::sequenceProgress() const noexcept {
-  return v3_ ? SequenceProgress::kDone : progressOf(sequence_.progress());
-}
-
-void CubemarsMit::clearComplaint() noexcept {
-  forgetStop();
-  clear_now_ = !v3_ && !obeying();
-}
-
-// Nothing in an answer says whether the drive has entered the mode; that it answers, and without an error,
-// is all there is to see.
-void CubemarsMit::stepEnabling(const Tick& tick) noexcept {
-  if (begins()) {
-    sequence_.begin(Step::kEnter);
-    forgetStop();
-  }
-  const bool answered = sequence_.awaits() && feedback_.samples >= samples_before_ + kAnswersToEnter;
-  if (answered && error() == 0) sequence_.finish();
-  const bool first = !sequence_.awaits();
-  enter_now_ = sequence_.asks(tick.now);
-  if (enter_now_ && first) samples_before_ = feedback_.samples;
-}
+// ---- Command
 
 // The bounds of a command are computed from the feedback: it must not be old.
 bool CubemarsMit::silent(const Tick& tick) const noexcept {
@@ -249,6 +230,8 @@ void CubemarsMit::release() noexcept {
   setCommand(0.0, CommandUnit::kAmpere);
 }
 
+// ---- Packing
+
 CanFrame CubemarsMit::commandFrame(const Law& law) const noexcept {
   return v3_ ? cubemars::mitV3Frame(driveId(), setup().ranges, law)
              : cubemars::mitFrame(driveId(), setup().ranges, law);
@@ -282,6 +265,33 @@ std::size_t CubemarsMit::packRest(std::span<CanFrame> out) const noexcept {
   out[0] = commandFrame({});
   out[1] = cubemars::currentFrame(driveId(), 0.0);
   return 2;
+}
+
+// ---- Enabling
+
+// Nothing in an answer says whether the drive has entered the mode; that it answers, and without an error,
+// is all there is to see.
+void CubemarsMit::stepEnabling(const Tick& tick) noexcept {
+  if (begins()) {
+    sequence_.begin(Step::kEnter);
+    forgetStop();
+  }
+  const bool answered = sequence_.awaits() && feedback_.samples >= samples_before_ + kAnswersToEnter;
+  if (answered && error() == 0) sequence_.finish();
+  const bool first = !sequence_.awaits();
+  enter_now_ = sequence_.asks(tick.now);
+  if (enter_now_ && first) samples_before_ = feedback_.samples;
+}
+
+SequenceProgress CubemarsMit::sequenceProgress() const noexcept {
+  return v3_ ? SequenceProgress::kDone : progressOf(sequence_.progress());
+}
+
+// ---- Complaints
+
+void CubemarsMit::clearComplaint() noexcept {
+  forgetStop();
+  clear_now_ = !v3_ && !obeying();
 }
 
 }  // namespace rc10

@@ -28,11 +28,7 @@ CubeMars_Motor::CubeMars_Motor(const MotorSettings& settings, const CubemarsSetu
       longest_gap_(std::max(kStartUp, kCubemarsGapPeriods * feedbackPeriod())),
       reach_deg_per_s_(kReach * static_cast<double>(setup.model->no_load_rpm) * kDegPerSPerRpm) {}
 
-DriveComplaint CubeMars_Motor::complaint() const noexcept {
-  if (error_ != 0) return {cubemarsFault(error_), error_};
-  if (stopped_) return {FaultCode::kDriveStopped, 0};
-  return {};
-}
+// ---- Feedback
 
 bool CubeMars_Motor::noticeRestart(MonotonicTime received) noexcept {
   if (feedback_.samples == 0 || received - feedback_.received <= longest_gap_) return false;
@@ -72,6 +68,14 @@ FrameVerdict CubeMars_Motor::takeServoReport(const CanFrame& frame) noexcept {
   feedback_.temperature_c = static_cast<float>(report->temperature_c);
   takeError(report->error);
   return FrameVerdict::kAccepted;
+}
+
+// ---- Complaints
+
+DriveComplaint CubeMars_Motor::complaint() const noexcept {
+  if (error_ != 0) return {cubemarsFault(error_), error_};
+  if (stopped_) return {FaultCode::kDriveStopped, 0};
+  return {};
 }
 
 }  // namespace rc10

@@ -29,11 +29,15 @@ CubemarsServo::CubemarsServo(const MotorSettings& settings, const CubemarsSetup&
       acceleration_rpm_per_s_(settings.own.number("acceleration_limit_rpm_per_s")),
       next_(cubemars::currentFrame(settings.id, 0.0)) {}
 
+// ---- Feedback
+
 bool CubemarsServo::matchesFrame(const CanFrame& frame) const noexcept {
   return isFrom(frame, filters_[0].id);
 }
 
 FrameVerdict CubemarsServo::updateFeedback(const CanFrame& frame) noexcept { return takeServoReport(frame); }
+
+// ---- Command
 
 void CubemarsServo::update(const Tick& /*tick*/) noexcept {
   limits_ = 0;
@@ -131,6 +135,8 @@ void CubemarsServo::prepareDuty(double duty) noexcept {
   next_ = cubemars::dutyFrame(driveId(), bounded * static_cast<double>(direction()));
   setCommand(bounded, CommandUnit::kNative);
 }
+
+// ---- Packing
 
 std::size_t CubemarsServo::packCommand(const Tick& tick, std::span<CanFrame> out) noexcept {
   if (!due(tick) || out.empty()) return 0;

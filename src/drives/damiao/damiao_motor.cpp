@@ -27,7 +27,6 @@ double fastest(const MotorSettings& settings, const DamiaoScale& scale) {
   return std::max(scale.v_max_rad_s, kOverspeed * no_load_rpm * kRadPerSPerRpm);
 }
 
-/// Turns of the drive's own output per turn of the shaft.
 }  // namespace
 
 Damiao_Motor::Damiao_Motor(const MotorSettings& settings)
@@ -55,6 +54,8 @@ Damiao_Motor::Damiao_Motor(const MotorSettings& settings)
       setup_codec_(settings.id, own_.can_fd) {
   restCommand();
 }
+
+// ---- Feedback
 
 bool Damiao_Motor::matchesFrame(const CanFrame& frame) const noexcept {
   return frame.type == FrameType::kData && frame.id == filters_[0].id && frame.fd == own_.can_fd &&
@@ -130,42 +131,7 @@ bool Damiao_Motor::setZero(double angle_deg) noexcept {
   return position_.known() && SoloMotor::setZero(angle_deg);
 }
 
-SequenceProgress Damiao_Motor::sequenceProgress() const noexcept { return progressOf(enabling_.progress()); }
-
-DriveComplaint Damiao_Motor::complaint() const noexcept {
-  if (const auto fault = damiao::faultOf(status_); fault != FaultCode::kNone) return {fault, status_};
-  if (culprit_) {
-    return {FaultCode::kDriveSetting, kRegisterComplaint + static_cast<std::uint32_t>(*culprit_)};
-  }
-  if (stopped_) return {FaultCode::kDriveStopped, status_};
-  return {};
-}
-
-void Damiao_Motor::clearComplaint() noexcept {
-  culprit_.reset();
-  stopped_ = false;
-  if (status_ >= damiao::kFirstFault) clears_left_ = kClears;
-}
-
-void Damiao_Motor::followSequence(const Tick& tick) noexcept {
-  if (!enabling()) {
-    if (!obeying()) armed_ = false;
-    return;
-  }
-  if (begins()) {
-    stopped_ = false;
-    culprit_.reset();
-    if (armed_) {  // held or braked until now: it must not be let go for a moment
-      enabling_.skip();
-      return;
-    }
-    enabling_.begin();
-    // Known before it has spoken: a fault is cleared by request only.
-    if (status_ >= damiao::kFirstFault) enabling_.onStatus(status_);
-  }
-  enabling_.update(tick.now);
-  culprit_ = enabling_.culprit();
-}
+// ---- Command
 
 void Damiao_Motor::update(const Tick& tick) noexcept {
   limits_ = 0;
@@ -287,6 +253,8 @@ void Damiao_Motor::positionCommand(const Target& target) noexcept {
                                                             holds ? std::min(share, 1.0) : 0.0));
 }
 
+// ---- Packing
+
 CanFrame Damiao_Motor::frameOf(CanId id, std::span<const std::uint8_t> payload) const noexcept {
   return own_.can_fd ? makeFdFrame(id, payload, true) : makeClassicFrame(id, payload);
 }
@@ -331,6 +299,47 @@ std::size_t Damiao_Motor::packCommand(const Tick& tick, std::span<CanFrame> out)
 std::size_t Damiao_Motor::packRest(std::span<CanFrame> out) const noexcept {
   out[0] = specialFrame(Special::kDisable);
   return 1;
+}
+
+// ---- Enabling
+
+void Damiao_Motor::followSequence(const Tick& tick) noexcept {
+  if (!enabling()) {
+    if (!obeying()) armed_ = false;
+    return;
+  }
+  if (begins()) {
+    stopped_ = false;
+    culprit_.reset();
+    if (armed_) {  // held or braked until now: it must not be let go for a moment
+      enabling_.skip();
+      return;
+    }
+    enabling_.begin();
+    // Known before it has spoken: a fault is cleared by request only.
+    if (status_ >= damiao::kFirstFault) enabling_.onStatus(status_);
+  }
+  enabling_.update(tick.now);
+  culprit_ = enabling_.culprit();
+}
+
+SequenceProgress Damiao_Motor::sequenceProgress() const noexcept { return progressOf(enabling_.progress()); }
+
+// ---- Complaints
+
+DriveComplaint Damiao_Motor::complaint() const noexcept {
+  if (const auto fault = damiao::faultOf(status_); fault != FaultCode::kNone) return {fault, status_};
+  if (culprit_) {
+    return {FaultCode::kDriveSetting, kRegisterComplaint + static_cast<std::uint32_t>(*culprit_)};
+  }
+  if (stopped_) return {FaultCode::kDriveStopped, status_};
+  return {};
+}
+
+void Damiao_Motor::clearComplaint() noexcept {
+  culprit_.reset();
+  stopped_ = false;
+  if (status_ >= damiao::kFirstFault) clears_left_ = kClears;
 }
 
 }  // namespace rc10

@@ -46,7 +46,7 @@ LKTech_Motor::LKTech_Motor(const MotorSettings& settings, const MotorTraits& tra
       command_ids_{filters_[0].id},
       sequence_(kLktechStepPatience, kLktechStepTries) {}
 
-// ---- What the drive says
+// ---- Feedback
 
 bool LKTech_Motor::matchesFrame(const CanFrame& frame) const noexcept {
   return frame.id == filters_[0].id && !frame.fd && frame.type != FrameType::kError;
@@ -153,7 +153,7 @@ void LKTech_Motor::acceptTurns(const CanFrame& frame) noexcept {
   answered(Step::kTurns);
 }
 
-// ---- What it is told
+// ---- Command
 
 void LKTech_Motor::update(const Tick& tick) noexcept {
   outbox_.clear();
@@ -243,6 +243,8 @@ void LKTech_Motor::sendCurrent(int raw) noexcept {
   raw_current_ = raw;
   if (!grouped_) outbox_.add(lktech::currentCommand(id_, raw));
 }
+
+// ---- Packing
 
 std::size_t LKTech_Motor::packCommand(const Tick& /*tick*/, std::span<CanFrame> out) noexcept {
   return outbox_.copyTo(out);

@@ -50,24 +50,7 @@ bool Moteus_Motor::matchesFrame(const CanFrame& frame) const noexcept {
   return frame.type == FrameType::kData && frame.id == filters_[0].id;
 }
 
-void Moteus_Motor::clearComplaint() noexcept {
-  clearing_ = true;
-  refused_ = {};
-}
-
-DriveComplaint Moteus_Motor::complaint() const noexcept {
-  if (mode_ == MoteusMode::kFault) return {moteusFault(native_fault_), native_fault_};
-  return lost_.fault != FaultCode::kNone ? lost_ : refused_;
-}
-
-SequenceProgress Moteus_Motor::sequenceProgress() const noexcept {
-  if (!enabling()) return SequenceProgress::kDone;
-  switch (step_) {
-    case Step::kDone: return SequenceProgress::kDone;
-    case Step::kFailed: return SequenceProgress::kFailed;
-    default: return SequenceProgress::kPending;
-  }
-}
+// ---- Command
 
 void Moteus_Motor::update(const Tick& tick) noexcept {
   limits_ = mode_ == MoteusMode::kFault ? 0 : moteusLimit(native_fault_);
@@ -104,58 +87,6 @@ Moteus_Motor::Send Moteus_Motor::restSend(const Tick& tick) const noexcept {
       std::max(kFresh, std::chrono::duration_cast<Duration>(std::chrono::duration<double>(1.5 * slip_s_)));
   const bool faulted = mode_ == MoteusMode::kFault && answered_.has_value() && tick.now - *answered_ <= fresh;
   return faulted && !clearing_ ? Send::kQuery : Send::kStop;
-}
-
-void Moteus_Motor::enter(Step step, const Tick& tick) noexcept {
-  step_ = step;
-  step_began_ = tick.now;
-}
-
-void Moteus_Motor::fail(FaultCode why, std::uint32_t native) noexcept {
-  step_ = Step::kFailed;
-  refused_ = {why, native};
-}
-
-// No EnableSequence: every frame is a question, so only time ends a step.
-void Moteus_Motor::updateSequence(const Tick& tick) noexcept {
-  if (step_ == Step::kNone) {
-    engaged_ = false;
-    lost_ = {};
-    refused_ = {};
-    identity_.reset();
-    verified_s_.reset();
-    enter(Step::kIdentify, tick);
-  }
-  const bool busy = step_ != Step::kDone && step_ != Step::kFailed;
-  if (busy && (mode_ == MoteusMode::kFault || tick.now - step_began_ > kMoteusStepPatience)) {
-    fail(FaultCode::kNone, 0);
-  }
-  if (step_ == Step::kDone && !engaged_) step_ = Step::kFailed;
-  if (step_ == Step::kIdentify && identity_) {
-    // 1: its rotor is known, 2: its output is. Behind a gear the rotor says little of the output.
-    const double needed = own_.rotor_to_output_ratio == 1.0 ? 1.0 : 2.0;
-    if (identity_->version != kRegisterMapVersion) {
-      fail(FaultCode::kDriveSetting, static_cast<std::uint32_t>(std::max(identity_->version, 0.0)));
-    } else if (traits().absolute && !(identity_->home_state >= needed)) {
-      fail(FaultCode::kDriveSetting, static_cast<std::uint32_t>(MoteusRegister::kHomeState));
-    } else if (mode_ == MoteusMode::kStopped) {
-      enter(Step::kEngage, tick);
-    }
-  }
-  if (step_ == Step::kEngage && mode_ == MoteusMode::kPosition) enter(Step::kVerify, tick);
-  if (step_ == Step::kVerify && verified_s_) {
-    constexpr double kHalfCountSeconds = 0.0005;
-    if (std::abs(*verified_s_ - watchdog_s_) < kHalfCountSeconds) {
-      engaged_ = true;
-      enter(Step::kDone, tick);
-    } else {
-      fail(FaultCode::kDriveSetting, static_cast<std::uint32_t>(MoteusRegister::kTimeout));
-    }
-  }
-  coast();
-  if (step_ == Step::kIdentify) send_ = Send::kIdentify;
-  if (step_ == Step::kFailed) send_ = restSend(tick);
-  if (step_ == Step::kVerify && tick.index % 2 == 0) send_ = Send::kVerify;  // between: feeds the watchdog
 }
 
 /// Position mode without any torque; its controller stays where the shaft is, so that whatever comes next
@@ -237,6 +168,8 @@ void Moteus_Motor::followAngle(const Target& target) noexcept {
   setCommand(std::clamp(target.value, -kLargestAngleDeg, kLargestAngleDeg), CommandUnit::kNative);
 }
 
+// ---- Packing
+
 MoteusWriter Moteus_Motor::writer() const noexcept { return {command_ids_[0], own_.bit_rate_switch}; }
 
 CanFrame Moteus_Motor::motionFrame() const noexcept {
@@ -298,6 +231,81 @@ std::size_t Moteus_Motor::packRest(std::span<CanFrame> out) const noexcept {
                .write(MoteusType::kInt8, MoteusRegister::kMode, {static_cast<double>(MoteusMode::kStopped)})
                .frame();
   return 1;
+}
+
+// ---- Enabling
+
+void Moteus_Motor::enter(Step step, const Tick& tick) noexcept {
+  step_ = step;
+  step_began_ = tick.now;
+}
+
+void Moteus_Motor::fail(FaultCode why, std::uint32_t native) noexcept {
+  step_ = Step::kFailed;
+  refused_ = {why, native};
+}
+
+// No EnableSequence: every frame is a question, so only time ends a step.
+void Moteus_Motor::updateSequence(const Tick& tick) noexcept {
+  if (step_ == Step::kNone) {
+    engaged_ = false;
+    lost_ = {};
+    refused_ = {};
+    identity_.reset();
+    verified_s_.reset();
+    enter(Step::kIdentify, tick);
+  }
+  const bool busy = step_ != Step::kDone && step_ != Step::kFailed;
+  if (busy && (mode_ == MoteusMode::kFault || tick.now - step_began_ > kMoteusStepPatience)) {
+    fail(FaultCode::kNone, 0);
+  }
+  if (step_ == Step::kDone && !engaged_) step_ = Step::kFailed;
+  if (step_ == Step::kIdentify && identity_) {
+    // 1: its rotor is known, 2: its output is. Behind a gear the rotor says little of the output.
+    const double needed = own_.rotor_to_output_ratio == 1.0 ? 1.0 : 2.0;
+    if (identity_->version != kRegisterMapVersion) {
+      fail(FaultCode::kDriveSetting, static_cast<std::uint32_t>(std::max(identity_->version, 0.0)));
+    } else if (traits().absolute && !(identity_->home_state >= needed)) {
+      fail(FaultCode::kDriveSetting, static_cast<std::uint32_t>(MoteusRegister::kHomeState));
+    } else if (mode_ == MoteusMode::kStopped) {
+      enter(Step::kEngage, tick);
+    }
+  }
+  if (step_ == Step::kEngage && mode_ == MoteusMode::kPosition) enter(Step::kVerify, tick);
+  if (step_ == Step::kVerify && verified_s_) {
+    constexpr double kHalfCountSeconds = 0.0005;
+    if (std::abs(*verified_s_ - watchdog_s_) < kHalfCountSeconds) {
+      engaged_ = true;
+      enter(Step::kDone, tick);
+    } else {
+      fail(FaultCode::kDriveSetting, static_cast<std::uint32_t>(MoteusRegister::kTimeout));
+    }
+  }
+  coast();
+  if (step_ == Step::kIdentify) send_ = Send::kIdentify;
+  if (step_ == Step::kFailed) send_ = restSend(tick);
+  if (step_ == Step::kVerify && tick.index % 2 == 0) send_ = Send::kVerify;  // between: feeds the watchdog
+}
+
+SequenceProgress Moteus_Motor::sequenceProgress() const noexcept {
+  if (!enabling()) return SequenceProgress::kDone;
+  switch (step_) {
+    case Step::kDone: return SequenceProgress::kDone;
+    case Step::kFailed: return SequenceProgress::kFailed;
+    default: return SequenceProgress::kPending;
+  }
+}
+
+// ---- Complaints
+
+DriveComplaint Moteus_Motor::complaint() const noexcept {
+  if (mode_ == MoteusMode::kFault) return {moteusFault(native_fault_), native_fault_};
+  return lost_.fault != FaultCode::kNone ? lost_ : refused_;
+}
+
+void Moteus_Motor::clearComplaint() noexcept {
+  clearing_ = true;
+  refused_ = {};
 }
 
 }  // namespace rc10

@@ -56,7 +56,7 @@ MyActuator_Motor::MyActuator_Motor(const MotorSettings& settings, const MotorTra
                    CanId{myactuator::kMotionBase + static_cast<std::uint32_t>(id_), false}},
       sequence_(kMyactuatorStepPatience, kMyactuatorStepTries) {}
 
-// ---- What the drive says
+// ---- Feedback
 
 bool MyActuator_Motor::matchesFrame(const CanFrame& frame) const noexcept {
   return (frame.id == filters_[0].id || frame.id == filters_[1].id) && !frame.fd &&
@@ -177,7 +177,7 @@ FrameVerdict MyActuator_Motor::acceptMotion(const CanFrame& frame) noexcept {
   return FrameVerdict::kAccepted;
 }
 
-// ---- What it is told
+// ---- Command
 
 void MyActuator_Motor::update(const Tick& tick) noexcept {
   outbox_.clear();
@@ -343,6 +343,8 @@ void MyActuator_Motor::sendCommand(const CanFrame& frame) noexcept {
   last_command_ = frame;
   outbox_.add(frame);
 }
+
+// ---- Packing
 
 std::size_t MyActuator_Motor::packCommand(const Tick& tick, std::span<CanFrame> out) noexcept {
   const std::size_t count = outbox_.copyTo(out);

@@ -63,6 +63,8 @@ ODrive_Motor::ODrive_Motor(const MotorSettings& settings, const MotorTraits& tra
                  [&](OdriveMessage message) { return odriveId(node_, message); });
 }
 
+// ---- Feedback
+
 bool ODrive_Motor::matchesFrame(const CanFrame& frame) const noexcept {
   if (frame.fd || frame.type == FrameType::kError) return false;
   const auto mine = filters();
@@ -164,29 +166,7 @@ FrameVerdict ODrive_Motor::acceptTelemetry(const CanFrame& frame) noexcept {
   return FrameVerdict::kAccepted;
 }
 
-bool ODrive_Motor::stateSince(OdriveAxisState state, MonotonicTime since) const noexcept {
-  return heartbeat_ && heartbeat_->state == state && heartbeat_at_ >= since;
-}
-
-void ODrive_Motor::runSequence(const Tick& tick) noexcept {
-  if (begins()) sequence_.begin(Step::kToIdle);
-  const bool well = !heartbeat_ || odriveErrors(firmware_, *heartbeat_) == 0;
-  if (sequence_.awaits(Step::kToIdle)) {
-    if (!well) {
-      sequence_.fail();
-    } else if (stateSince(OdriveAxisState::kIdle, sequence_.askedFirst() - kYoungHeartbeat)) {
-      sequence_.next(Step::kToClosedLoop);
-    }
-  }
-  if (sequence_.awaits(Step::kToClosedLoop) && heartbeat_ && heartbeat_at_ >= sequence_.askedFirst()) {
-    if (!well) {
-      sequence_.fail();
-    } else if (heartbeat_->state == OdriveAxisState::kClosedLoop) {
-      sequence_.finish();
-    }
-  }
-  ask_ = sequence_.asks(tick.now);
-}
+// ---- Command
 
 void ODrive_Motor::watchState() noexcept {
   if (!obeying()) {
@@ -286,6 +266,8 @@ CanFrame ODrive_Motor::limitsFrame() const noexcept {
   return odriveSetLimits(node_, saturate(static_cast<float>(turns_per_s)), effortLimit());
 }
 
+// ---- Packing
+
 std::size_t ODrive_Motor::packCommand(const Tick& tick, std::span<CanFrame> out) noexcept {
   FrameOutbox frames;
   if (enabling() && ask_ && sequence_.at(Step::kToClosedLoop)) {
@@ -330,7 +312,35 @@ std::size_t ODrive_Motor::packRest(std::span<CanFrame> out) const noexcept {
   return frames.copyTo(out);
 }
 
+// ---- Enabling
+
+bool ODrive_Motor::stateSince(OdriveAxisState state, MonotonicTime since) const noexcept {
+  return heartbeat_ && heartbeat_->state == state && heartbeat_at_ >= since;
+}
+
+void ODrive_Motor::runSequence(const Tick& tick) noexcept {
+  if (begins()) sequence_.begin(Step::kToIdle);
+  const bool well = !heartbeat_ || odriveErrors(firmware_, *heartbeat_) == 0;
+  if (sequence_.awaits(Step::kToIdle)) {
+    if (!well) {
+      sequence_.fail();
+    } else if (stateSince(OdriveAxisState::kIdle, sequence_.askedFirst() - kYoungHeartbeat)) {
+      sequence_.next(Step::kToClosedLoop);
+    }
+  }
+  if (sequence_.awaits(Step::kToClosedLoop) && heartbeat_ && heartbeat_at_ >= sequence_.askedFirst()) {
+    if (!well) {
+      sequence_.fail();
+    } else if (heartbeat_->state == OdriveAxisState::kClosedLoop) {
+      sequence_.finish();
+    }
+  }
+  ask_ = sequence_.asks(tick.now);
+}
+
 SequenceProgress ODrive_Motor::sequenceProgress() const noexcept { return progressOf(sequence_.progress()); }
+
+// ---- Complaints
 
 DriveComplaint ODrive_Motor::complaint() const noexcept {
   if (heartbeat_) {

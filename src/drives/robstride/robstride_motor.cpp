@@ -144,6 +144,8 @@ double RobStride_Motor::scaleEndRad() const noexcept {
   return wraps() ? std::min(codec_.position_range_rad, kScaleRad / 2) : codec_.position_range_rad;
 }
 
+// ---- Feedback
+
 bool RobStride_Motor::matchesFrame(const CanFrame& frame) const noexcept {
   return frame.type != FrameType::kError && !frame.fd &&
          std::any_of(filters_.begin(), filters_.end(),
@@ -222,18 +224,7 @@ void RobStride_Motor::takeParameter(const CanFrame& frame) noexcept {
   enabling_.onParameter(index, accepted, bits);
 }
 
-DriveComplaint RobStride_Motor::complaint() const noexcept {
-  const auto native = robstrideNativeCode(fault_word_, seen_.status_bits);
-  if (native != 0) return {.fault = robstrideFault(native, model_->cyber_gear), .native_code = native};
-  if (obeying() && feedback_.samples > 0 && seen_.mode != kRobstrideRunning) {
-    return {.fault = FaultCode::kDriveStopped, .native_code = 0};
-  }
-  return {};
-}
-
-SequenceProgress RobStride_Motor::sequenceProgress() const noexcept {
-  return progressOf(enabling_.progress());
-}
+// ---- Packing
 
 std::size_t RobStride_Motor::packReference(const Tick& tick, std::span<CanFrame> out) noexcept {
   switch (control_) {
@@ -283,6 +274,23 @@ std::size_t RobStride_Motor::packRest(std::span<CanFrame> out) const noexcept {
   // The one id that is sent in every state: its echo tells that a stalled bus has come back.
   out[1] = codec_.read(parameter::kSupplyVoltage);
   return 2;
+}
+
+// ---- Enabling
+
+SequenceProgress RobStride_Motor::sequenceProgress() const noexcept {
+  return progressOf(enabling_.progress());
+}
+
+// ---- Complaints
+
+DriveComplaint RobStride_Motor::complaint() const noexcept {
+  const auto native = robstrideNativeCode(fault_word_, seen_.status_bits);
+  if (native != 0) return {.fault = robstrideFault(native, model_->cyber_gear), .native_code = native};
+  if (obeying() && feedback_.samples > 0 && seen_.mode != kRobstrideRunning) {
+    return {.fault = FaultCode::kDriveStopped, .native_code = 0};
+  }
+  return {};
 }
 
 }  // namespace rc10

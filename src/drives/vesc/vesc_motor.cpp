@@ -79,6 +79,8 @@ bool VESC_Motor::setZero(double angle_deg) noexcept {
   return SoloMotor::setZero(angle_deg);
 }
 
+// ---- Command
+
 bool VESC_Motor::silent() const noexcept {
   return feedback_.samples == 0 || now_ - feedback_.received > patience_;
 }
@@ -267,6 +269,8 @@ void VESC_Motor::brake() noexcept {
   setCommand(amperes, CommandUnit::kNative);
 }
 
+// ---- Packing
+
 std::size_t VESC_Motor::packCommand(const Tick& tick, std::span<CanFrame> out) noexcept {
   std::size_t count = 0;
   // Asked first: a drive that has timed out says so before the next command reaches it.
@@ -286,10 +290,14 @@ std::size_t VESC_Motor::packRest(std::span<CanFrame> out) const noexcept {
   return 1;
 }
 
+// ---- Enabling
+
 SequenceProgress VESC_Motor::sequenceProgress() const noexcept {
   return options_.ask_status && ordered() == FrameKind::kEnable ? inquiry_.progress()
                                                                 : SequenceProgress::kDone;
 }
+
+// ---- Complaints
 
 DriveComplaint VESC_Motor::complaint() const noexcept {
   if (inquiry_.fault() != 0) return {vescFault(inquiry_.fault()), inquiry_.fault()};
