@@ -36,7 +36,13 @@ types_in() {
     (cd "$1" && MYPYPATH="$repo/tests/kernel:$repo/tests/host:$repo/scripts/lib" python mypy --strict "${@:2}")
 }
 
+# "Name of the motor", not "What the motor is called".
+comments_begin_with_a_noun() {
+    ! grep -rnE '//+<? *(What|Who|Whoever|So that)\>' src
+}
+
 step clang-format format_cpp
+step "comments begin with a noun" comments_begin_with_a_noun
 step shellcheck shell
 # Its scripts have no extension, and are not found by themselves.
 bench_scripts=(path_latency table)

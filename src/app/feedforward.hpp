@@ -2,8 +2,8 @@
 
 namespace rc10 {
 
-/// What a motion needs before there is an error: added to a controller's output, so that this only
-/// corrects. O: unit of the output, A or N m.
+/// Effort that a planned motion needs: added to a controller's output, which then only corrects the error. O:
+/// unit of the output, A or N m.
 ///
 /// A setpoint that is not finite, or numbers so large that the sum is not: 0.
 class Feedforward {

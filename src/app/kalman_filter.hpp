@@ -28,7 +28,7 @@ class KalmanFilter {
   KalmanFilter() = default;
   KalmanFilter(const State& state, const StateMatrix& covariance) noexcept { (void)start(state, covariance); }
 
-  /// What is known at first. False: not finite, refused.
+  /// Initial estimate. False: refused, since it is not finite.
   bool start(const State& state, const StateMatrix& covariance) noexcept {
     if (!state.allFinite() || !covariance.allFinite()) return false;
     state_ = state;

@@ -7,7 +7,7 @@
 
 namespace rc10 {
 
-/// What a controller may put out at this step. `low <= high`.
+/// Bounds of a controller's output at this step. `low <= high`.
 struct OutputRange {
   float low = -std::numeric_limits<float>::infinity();
   float high = std::numeric_limits<float>::infinity();
@@ -43,7 +43,7 @@ inline constexpr float kHugeTerm = 1e30F;
   return static_cast<float>(std::clamp(value, -kBound, kBound));
 }
 
-/// What is no number, or infinite, is 0.
+/// `value`, or 0 for NaN and infinity.
 template <std::floating_point T>
 [[nodiscard]] inline T finiteOr0(T value) noexcept {
   return std::isfinite(value) ? value : T{0};

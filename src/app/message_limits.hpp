@@ -4,8 +4,8 @@
 
 #include "app/time.hpp"
 
-/// What a message may have, for who sends it (the client library, which links nothing of the daemon) and for
-/// who refuses it.
+/// Limits of a message, shared by its sender (the client library, which links nothing of the daemon) and by
+/// the daemon, which refuses larger ones.
 namespace rc10 {
 
 /// Inputs of a module in one message.

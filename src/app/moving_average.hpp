@@ -23,7 +23,7 @@ class MovingAverage {
     samples_[next_] = input;
     next_ = (next_ + 1) % Size;
     count_ = std::min(count_ + 1, Size);
-    // What rounding has left in the sum does not outlive a round.
+    // A fresh sum each round: rounding errors do not accumulate.
     if (next_ == 0) sum_ = std::accumulate(samples_.begin(), samples_.end(), 0.0);
     value_ = sum_ / static_cast<double>(count_);
     return value_;

@@ -93,8 +93,8 @@ void PID_Position::retune(const Config& config) noexcept {
   const OutputRange carried = OutputRange{}.within(config.integral_limit);
   state_.integral = config.ki > 0.0F ? carried.clamp(state_.integral) : 0.0F;
   state_.error = afterDeadband(state_.whole_error);
-  // What acted is carried over, not what was asked for beyond the limit: that would go on pushing after the
-  // error has changed its sign.
+  // The limited output is carried over, not the output asked for: that would go on pushing after the error
+  // has changed its sign.
   const float gap = saturate(state_.output - (proportionalAndDerivative() + state_.integral));
   if (asked > state_.output) {
     state_.output_offset = std::max(gap, 0.0F);

@@ -110,8 +110,7 @@ const ProfileState& SCurveProfile::step(double target, float dt_s) noexcept {
   const double distance = target - state_.position;
   const VelocityChange stop = motions.stop();
   const double room = distance - stop.end().position;
-  // What cannot be told from 0: the digits of the positions, and those of velocities over the time that
-  // stopping takes at most.
+  // Tolerance around 0: the resolution of positions, and that of velocities over the longest stopping time.
   const double stop_s = limits_.velocity / limits_.acceleration + limits_.acceleration / limits_.jerk;
   const double tolerance =
       16.0 * kEpsilon * (std::abs(target) + std::abs(state_.position) + std::abs(stop.end().position)) +

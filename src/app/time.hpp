@@ -11,7 +11,7 @@ using Duration = std::chrono::nanoseconds;
 /// time is an argument.
 using MonotonicTime = std::chrono::time_point<std::chrono::steady_clock, Duration>;
 
-/// What every motor, packer and module is told about the present tick.
+/// Present tick, as every motor, packer and module gets it.
 struct Tick {
   std::uint64_t index = 0;  ///< Ticks executed since start.
   MonotonicTime now;        ///< When this tick started.

@@ -8,7 +8,7 @@ namespace rc10 {
 /// the integrators, so a sample that comes late or is left out does no harm.
 class TwoPoleFilter {
  public:
-  /// What the frequency is to the sample rate at most: near half of it nothing is left of a filter.
+  /// Largest ratio of cut-off frequency to sample rate: the design degenerates near one half.
   static constexpr double kMostOfRate = 0.45;
 
   /// The filter has settled on this input.

@@ -20,7 +20,7 @@ struct WheelScale {
   }
 };
 
-/// What a chassis is told and tells about its wheels: a plain struct whose members are named by their
+/// Commands to a chassis's wheels, or their feedback: a plain struct whose members are named by their
 /// place, and which lists them in kAll for what is done to each of them alike.
 template <typename Wheels>
 concept WheelSet = requires(Wheels wheels) { wheels.*Wheels::kAll[0]; };

@@ -127,7 +127,7 @@ struct Frame {
   std::array<std::uint8_t, 64> data{};
 };
 
-/// What became of a message with commands, or with inputs of a module.
+/// Fate of a message with commands, or with inputs of a module.
 enum class Verdict : std::uint8_t { kApplied = 0, kExpired = 1, kNotOwner = 2 };
 
 /// A command message that reached the scheduler; `flags` is the Verdict, `id` the number of setpoints, which
@@ -194,7 +194,7 @@ struct Event {
   link::Name client;
 };
 
-/// What a motor does, as in motor_state_t.lcm. `flags` is the status, `id` the mode, the unit of
+/// State of a motor, as in motor_state_t.lcm. `flags` is the status, `id` the mode, the unit of
 /// command_value in the second byte and whether the angle is referenced in the third.
 struct Motor {
   static constexpr auto kType = RecordType::kMotor;

@@ -17,8 +17,7 @@ using Record = std::variant<Frame, Command, Setpoint, Order, Event, Motor, Robot
 
 [[nodiscard]] const RecordHeader& headerOf(const Record& record);
 
-/// What a black box holds, in the order of time. Reads bytes of a stranger: whatever they are, the answer is
-/// a recording or an error.
+/// Content of a black box in the order of time. Any bytes may be read: the result is a recording or an error.
 class Recording {
  public:
   /// `image`: all bytes of the file, as from readImage().

@@ -26,7 +26,7 @@ enum class BusState : std::uint8_t {
          state != BusState::kStalled;
 }
 
-/// What the RX thread saw of the interface itself.
+/// State of the interface, as the RX thread sees it.
 enum class LinkState : std::uint8_t { kUp, kDown, kGone };
 
 /// Turns error frames, link states, silence and missing echoes into one state. Scheduler thread only.
@@ -40,7 +40,7 @@ class BusHealth {
     int stalled_ticks = 5;
   };
 
-  /// What happened since the last update(), counted by the threads that saw it.
+  /// Events since the last update(), counted by the threads that saw them.
   struct Traffic {
     std::uint64_t rx_frames = 0;     ///< Since start.
     std::uint64_t tx_watched = 0;    ///< Frames of the watched ids handed to the kernel, since start.

@@ -19,7 +19,7 @@ struct CanLinkSettings {
 /// "1000000 bit/s", for FD "1000000 bit/s, data 5000000 bit/s".
 [[nodiscard]] std::string bitrates(const CanLinkSettings& wanted);
 
-/// What a driver makes of a bit rate may differ from it by a rounding.
+/// Equal but for the rounding of a driver.
 [[nodiscard]] bool sameBitrate(std::uint32_t seen, int wanted) noexcept;
 
 /// No time quanta may lie exactly there. 0 is as good as any.
@@ -29,7 +29,7 @@ struct CanLinkSettings {
 struct HinderingMode {
   std::uint32_t flag = 0;        ///< CAN_CTRLMODE_…
   std::string_view name;         ///< As `ip link` calls it.
-  std::string_view consequence;  ///< What it means for motors.
+  std::string_view consequence;  ///< Effect on motors.
 };
 
 /// The first one that is on; nullptr: none.
@@ -43,7 +43,7 @@ struct HinderingMode {
 [[nodiscard]] std::string wrongSetting(const std::string& interface, const CanLink& link,
                                        const CanLinkSettings& wanted);
 
-/// What a person types to get there from the state that was read, for instance
+/// Command that leads there from the state that was read, for instance
 /// "ip link set can0 up type can bitrate 1000000 restart-ms 0".
 [[nodiscard]] std::string upCommand(const std::string& interface, const CanLink& link,
                                     const CanLinkSettings& wanted);

@@ -11,7 +11,7 @@ namespace rc10 {
 /// The fault confinement state of a controller.
 enum class CanState : std::uint8_t { kActive, kWarning, kPassive, kBusOff, kStopped };
 
-/// What the kernel says of a CAN interface. What its driver does not have (vcan: all of it) is empty.
+/// State of a CAN interface, as the kernel reports it. Empty: not known to its driver (vcan: all of it).
 struct CanLink {
   bool up = false;
   bool is_can = false;                        ///< A CAN interface, of whatever kind.

@@ -60,7 +60,7 @@ Reception CanReceiver::receive(const WakeUp& wake, std::span<CanFrame> out) noex
     if (errno != EAGAIN && errno != EWOULDBLOCK && errno != EINTR) reception.error = errno;
     return reception;
   }
-  // What a batch left behind may be as old as its first frame.
+  // Frames that a batch left behind may be as old as its first one.
   WakeUp since = wake;
   if (left_behind_) {
     since.previous = left_behind_->previous;

@@ -11,7 +11,7 @@
 
 namespace rc10 {
 
-/// What one recvmmsg brought.
+/// Result of one recvmmsg.
 struct Reception {
   std::size_t frame_count = 0;  ///< Frames written to the output.
   /// Of these, frames that this computer sent and its controller has put on the wire. On the echo socket:

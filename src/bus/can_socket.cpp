@@ -25,9 +25,9 @@ namespace {
 constexpr can_err_mask_t kErrorClasses =
     CAN_ERR_TX_TIMEOUT | CAN_ERR_CRTL | CAN_ERR_TRX | CAN_ERR_BUSOFF | CAN_ERR_RESTARTED;
 
-// What the kernel charges for a frame in flight: struct sk_buff, skb_shared_info and a small buffer, 640 to
-// 1000 bytes on 64-bit kernels from 5.15 to 6.18, classic or FD. Too high a figure allows half a tick more
-// in flight; too low a one would refuse the last frame of every tick on an idle bus.
+// Memory that the kernel charges for a frame in flight: struct sk_buff, skb_shared_info and a small buffer,
+// 640 to 1000 bytes on 64-bit kernels from 5.15 to 6.18, classic or FD. Too high a figure allows half a tick
+// more in flight; too low a one would refuse the last frame of every tick on an idle bus.
 constexpr int kBytesPerFrameInFlight = 1024;
 
 // About 60 ms of a full 1 Mbit/s bus, so that a late RX thread loses nothing.
@@ -87,7 +87,7 @@ Result<void> bindTo(int fd, const std::string& name, const Interface& interface)
   return fail("CAN interface '" + name + "': cannot bind: " + std::strerror(errno));
 }
 
-// What both sockets need: FD frames where the interface has them, receive stamps, the count of drops.
+// Options of both sockets: FD frames where the interface has them, receive stamps, the count of drops.
 Result<void> setReceiveOptions(int fd, const std::string& name, bool fd_frames) {
   const int on = 1;
   if ((fd_frames && !setOption(fd, SOL_CAN_RAW, CAN_RAW_FD_FRAMES, on)) ||

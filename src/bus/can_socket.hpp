@@ -21,7 +21,7 @@ struct CanSocket {
   int send_buffer_bytes = 0;  ///< As read back from the kernel.
 };
 
-/// What to ask SO_SNDBUF for, so that at least one and at most about two ticks' frames are in flight.
+/// Value for SO_SNDBUF that keeps at least one and at most about two ticks' frames in flight.
 [[nodiscard]] int sendBufferRequest(int frames_per_tick) noexcept;
 
 /// Opens and binds a CAN_RAW socket: options first, then bind. Main or io thread only: it allocates.

@@ -11,7 +11,7 @@
 
 namespace rc10 {
 
-/// What the kernel tells beside a frame.
+/// Ancillary data that the kernel delivers with a frame.
 struct ControlMessages {
   std::optional<Duration> realtime_stamp;       ///< SO_TIMESTAMPNS: when it was received, CLOCK_REALTIME.
   std::optional<std::uint32_t> kernel_dropped;  ///< SO_RXQ_OVFL: absent until something was dropped.

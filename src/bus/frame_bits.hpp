@@ -18,7 +18,7 @@ struct FrameBits {
   friend constexpr bool operator==(FrameBits, FrameBits) = default;
 };
 
-/// What decides how long a frame is.
+/// Properties that determine the length of a frame on the wire.
 struct FrameShape {
   bool extended = false;
   bool fd = false;

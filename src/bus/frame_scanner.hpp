@@ -10,7 +10,7 @@
 
 namespace rc10 {
 
-/// What a protocol says of the bytes that stand before it.
+/// Verdict of a protocol on the next bytes.
 enum class ScanVerdict : std::uint8_t {
   kMore,         ///< So far the beginning of a frame.
   kFrame,        ///< A frame, which the protocol has taken: as long as what it was shown.

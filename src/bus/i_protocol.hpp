@@ -8,7 +8,7 @@
 
 namespace rc10 {
 
-/// What a protocol has made of the bytes since it was built.
+/// Statistics of a protocol's decoder since it was built.
 struct ProtocolCounters {
   std::uint64_t frames = 0;           ///< Whole and plausible.
   std::uint64_t checksum_errors = 0;  ///< Frames of the right form whose checksum was wrong.

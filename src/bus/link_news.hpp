@@ -7,7 +7,7 @@
 
 namespace rc10 {
 
-/// What the kernel tells of an interface that was changed.
+/// Change of an interface, as rtnetlink reports it.
 struct LinkNews {
   std::string interface;
   bool is_can = false;

@@ -22,7 +22,7 @@ class SendBatch {
   struct Entry {
     CanId id;
     FrameBits bits;
-    std::optional<std::size_t> packer;  ///< Who made it; none: sent on its own.
+    std::optional<std::size_t> packer;  ///< Its packer; none: sent on its own.
     bool sent = false;
   };
 

@@ -31,7 +31,7 @@ constexpr tcflag_t kFormatBits = CSIZE | PARENB | PARODD | CSTOPB;
 
 std::string place(const std::string& path) { return "serial port '" + path + "': "; }
 
-// What there is instead, for someone who mistyped or has not plugged in.
+// Ports that exist: the hint for a typing error, or for a cable that is not plugged in.
 std::string presentNames() {
   std::string names;
   std::error_code error;

@@ -7,7 +7,7 @@
 
 namespace rc10::client {
 
-/// What a motor does with its first current, a small positive one, and what that says about its drive.
+/// Check of a drive by the motor's response to its first current, a small positive one.
 class FirstSpin {
  public:
   enum class Outcome : unsigned char {
@@ -43,7 +43,7 @@ class FirstSpin {
   bool angle_lost_ = false;
 };
 
-/// What it means and what to do, in words.
+/// Result and remedy in words.
 [[nodiscard]] std::string text(const FirstSpin& spin, const std::string& motor);
 
 }  // namespace rc10::client

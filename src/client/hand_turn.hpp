@@ -7,7 +7,7 @@
 
 namespace rc10::client {
 
-/// What turning a motor's output by hand, one whole turn counter-clockwise, says about the configuration.
+/// Check of the configuration by turning a motor's output by hand, one whole turn counter-clockwise.
 struct HandTurn {
   enum class Outcome : unsigned char {
     kGood,
@@ -25,7 +25,7 @@ struct HandTurn {
 /// `before` and `after`: the states at both ends of the turn; `motor`: the one that was meant.
 [[nodiscard]] HandTurn judgeHandTurn(const link::State& before, const link::State& after, std::size_t motor);
 
-/// What it means and what to change, in words.
+/// Result and remedy in words.
 [[nodiscard]] std::string text(const HandTurn& turn, const link::Welcome& welcome, std::size_t motor);
 
 }  // namespace rc10::client

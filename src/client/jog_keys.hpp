@@ -32,7 +32,7 @@ class JogSpeed {
       : speed_rpm_(std::min(speed_rpm, most_rpm)), most_rpm_(most_rpm), dead_man_(dead_man) {}
 
   void press(JogKey key, MonotonicTime now);
-  /// What the motor is to do now, rpm.
+  /// Present target of the motor, rpm.
   [[nodiscard]] double target(MonotonicTime now) const;
   /// The speed of the arrow keys, rpm.
   [[nodiscard]] double speed() const noexcept { return speed_rpm_; }

@@ -18,7 +18,7 @@ namespace rc10 {
 class LinkClient {
  public:
   struct Options {
-    std::string_view name;            ///< Who this is, in rc10d's log and as the owner of motors.
+    std::string_view name;            ///< Name of the client in rc10d's log and as the owner of motors.
     std::uint32_t subscriptions = 0;  ///< link::Subscription bits.
     Duration timeout{std::chrono::seconds{1}};
   };
@@ -47,7 +47,7 @@ class LinkClient {
   LinkClient(const LinkClient&) = delete;
   LinkClient& operator=(const LinkClient&) = delete;
 
-  /// Who answered: the robot and its motors.
+  /// The daemon's answer: the robot and its motors.
   [[nodiscard]] const link::Welcome& welcome() const noexcept { return *welcome_; }
   /// For poll(): readable when there is something to receive or rc10d has ended.
   [[nodiscard]] int descriptor() const noexcept { return socket_.get(); }

@@ -8,7 +8,7 @@
 /// are the field names of lcm_types/; modes and states are words.
 namespace rc10::client {
 
-/// What was recorded: {"kind":"recording","robot":...}.
+/// Summary of a recording: {"kind":"recording","robot":...}.
 [[nodiscard]] std::string recordingJson(const blackbox::Recording& recording);
 [[nodiscard]] std::string recordJson(const blackbox::Recording& recording, const blackbox::Record& record);
 

@@ -4,8 +4,8 @@
 
 #include "link/link_protocol.hpp"
 
-/// What rc10d tells, as one line of JSON for scripts. The keys are the field names of lcm_types/; modes and
-/// states are words; what is not reported is null.
+/// Messages of rc10d, each as one line of JSON for scripts. The keys are the field names of lcm_types/; modes
+/// and states are words; what is not reported is null.
 namespace rc10::client {
 
 [[nodiscard]] std::string listJson(const link::Welcome& welcome);

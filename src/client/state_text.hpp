@@ -4,13 +4,13 @@
 
 #include "link/link_protocol.hpp"
 
-/// What rc10d tells, as text for people.
+/// Messages of rc10d as text for people.
 namespace rc10::client {
 
 /// The robot and its motors, with a line for each.
 [[nodiscard]] std::string listText(const link::Welcome& welcome);
 
-/// What every motor does. `diagnostics` may be null: none received yet. `colour`: what acts, what is doubtful
+/// State of every motor. `diagnostics` may be null: none received yet. `colour`: what acts, what is doubtful
 /// and what is wrong stand out on a terminal.
 [[nodiscard]] std::string stateText(const link::Welcome& welcome, const link::State& state,
                                     const link::Diagnostics* diagnostics, bool colour = false);

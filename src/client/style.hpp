@@ -3,7 +3,7 @@
 #include <string>
 #include <string_view>
 
-/// What a terminal that knows colours is told; nothing else is.
+/// Escape sequences, for terminals with colours only.
 namespace rc10::client {
 
 inline constexpr std::string_view kGood = "\x1b[32m";

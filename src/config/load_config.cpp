@@ -19,8 +19,8 @@ std::string listed(const std::vector<ConfigProblem>& problems) {
   return text;
 }
 
-/// What the motor layer itself demands. The checks before it say where; this one makes sure that no
-/// configuration passes which a motor would refuse.
+/// Check by the motor layer itself. Earlier checks name the place; this one lets no configuration pass
+/// that a motor would refuse.
 void checkMotors(const RobotConfig& robot, Problems& problems) {
   for (const auto& bus : robot.buses) {
     // On a bus of its own, without a wire: the ids are held against each other as they will be.

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-/// What `rc10ctl doctor` looks at: whether this computer can run a robot well. Each check is a function of
+/// Checks of `rc10ctl doctor`: whether this computer can run a robot well. Each check is a function of
 /// facts; each fact is read from the files of the kernel below a root that a test chooses, or handed in.
 namespace rc10::doctor {
 
@@ -17,11 +17,11 @@ enum class Verdict : std::uint8_t {
 /// "pass", "warn", "fail"
 [[nodiscard]] const char* word(Verdict verdict) noexcept;
 
-/// What one check says.
+/// Result of one check.
 struct Finding {
   Verdict verdict = Verdict::kPass;
-  std::string what;  ///< What was looked at: "can0 bit rate".
-  std::string why;   ///< What was found, and what it means.
+  std::string what;  ///< Subject: "can0 bit rate".
+  std::string why;   ///< Fact and its meaning.
   std::string fix;   ///< The command that mends it; empty for kPass.
 };
 

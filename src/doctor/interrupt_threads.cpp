@@ -9,7 +9,7 @@
 namespace rc10::doctor {
 namespace {
 
-// What a kernel before 5.17 shows of a name.
+// Length of a name in kernels before 5.17.
 constexpr std::size_t kCutName = 15;
 
 bool isNumber(const std::string& text) {

@@ -8,7 +8,7 @@
 
 namespace rc10::doctor {
 
-/// What rc10-irq gives them: above rc10d's receive thread with its 65, and below what the kernel needs.
+/// Priority from rc10-irq: above rc10d's receive thread with its 65, and below what the kernel needs.
 inline constexpr int kInterruptPriority = 70;
 
 /// The CAN interfaces of this computer, sorted.
@@ -28,7 +28,8 @@ struct PriorityChange {
   Process thread;
 };
 
-/// What gives all threads of these interfaces one priority. A thread that serves several is named once.
+/// Changes that give all threads of these interfaces one priority. A thread that serves several is named
+/// once.
 [[nodiscard]] std::vector<PriorityChange> priorityChanges(const std::vector<std::string>& interfaces,
                                                           int priority, const HostFiles& files,
                                                           const std::vector<Process>& processes);

@@ -52,7 +52,7 @@ std::string text(const LatencyHistogram& histogram) {
   for (const auto& row : histogram.rows()) {
     const double share =
         static_cast<double>(row.count) / static_cast<double>(std::max<std::uint64_t>(histogram.count(), 1));
-    // What happened is seen: one mark at least.
+    // One mark at least for any count.
     const auto marks = static_cast<std::size_t>(std::ceil(share * kBarWidth));
     std::array<char, 64> head{};
     if (row.up_to_us != 0)

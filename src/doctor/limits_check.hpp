@@ -8,7 +8,7 @@
 
 namespace rc10::doctor {
 
-/// What a process may have, from /proc/PID/limits and /proc/PID/status.
+/// Limits of a process, from /proc/PID/limits and /proc/PID/status.
 struct LimitFacts {
   static constexpr long long kUnlimited = -1;
 

@@ -15,7 +15,7 @@ constexpr double kLatestSample = 0.90;
 constexpr double kUsualSample = 0.80;
 constexpr double kUsualDataSample = 0.75;
 
-// What waits in the queue while a bus is dead goes out as a burst of old commands when it revives: ten frames
+// Frames that wait in the queue of a dead bus leave as a burst of old commands when it revives: ten frames
 // are a tick or two, the 1000 of other networks 100 ms and more (lcm: cannelloni#90 states the same bound).
 constexpr std::uint32_t kLongestQueue = 64;
 constexpr std::uint32_t kGoodQueue = 16;
@@ -58,7 +58,7 @@ std::string command(const LinkFacts& facts, const CanLinkSettings& wanted) {
   return restartCommand(facts.interface, facts.link.value_or(controller), wanted, "sudo ");
 }
 
-// What rc10d mends by itself is no fault.
+// No fault if rc10d mends it by itself.
 Finding judged(const LinkFacts& facts, const std::string& what, const std::string& why) {
   if (facts.managed) return pass(what, why + "; rc10d mends it (manage_link)");
   return fault(what, why, setupCommand(facts));

@@ -13,7 +13,7 @@ struct ClockSample {
 
 [[nodiscard]] ClockSample sampleClocks() noexcept;
 
-/// What a receive stamp is judged by. `empty`: taken before the last time at which the socket was found
+/// References for a receive stamp. `empty`: taken before the last time at which the socket was found
 /// empty, so that whatever is read now came later. It is not simply the last wake-up: datagrams that were
 /// left waiting then must not get younger.
 [[nodiscard]] inline WakeUp wakeUp(const ClockSample& now, const ClockSample& empty) noexcept {

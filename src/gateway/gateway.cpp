@@ -9,7 +9,7 @@
 namespace rc10::gateway {
 namespace {
 
-// What one wake-up may take from one side before the other has its turn.
+// Most that one wake-up takes from one side before the other has its turn.
 constexpr int kMaxDatagrams = 256;
 constexpr int kMaxLinkMessages = 64;
 

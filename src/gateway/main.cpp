@@ -64,7 +64,7 @@ Result<gateway::UdpmUrl> urlOf(const gateway::Options& options, const link::Welc
 }  // namespace
 
 int main(int argc, char** argv) {
-  // Whoever starts us may have left CAN sockets open.
+  // The parent may have left CAN sockets open.
   (void)::close_range(STDERR_FILENO + 1, ~0U, 0);
   const auto options = gateway::parseOptions(argc, argv);
   if (!options) return complain(options.error(), kUsage);

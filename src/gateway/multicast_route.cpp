@@ -29,7 +29,7 @@ struct Reply {
   std::size_t size = 0;
 };
 
-// What `ip route get GROUP` asks. Returns 0 or an errno.
+// The question of `ip route get GROUP`. Returns 0 or an errno.
 int ask(in_addr group, Reply& reply) {
   const UniqueFd socket{::socket(AF_NETLINK, SOCK_RAW | SOCK_CLOEXEC, NETLINK_ROUTE)};
   if (!socket) return errno;

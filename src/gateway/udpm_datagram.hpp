@@ -17,7 +17,7 @@ inline constexpr std::size_t kMaxChannelLength = 63;
 /// Channel, its terminator and the message, as liblcm limits them in one datagram.
 inline constexpr std::size_t kMaxPayload = 65499;
 
-/// What a receive buffer needs besides the room for a message.
+/// Room in a receive buffer besides the message.
 inline constexpr std::size_t kMaxOverhead = kLongHeaderSize + kMaxChannelLength + 1;
 
 /// One UDP datagram of LCM, taken apart.

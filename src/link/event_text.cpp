@@ -72,7 +72,7 @@ namespace {
          ": two controllers command these motors; stop one";
 }
 
-// What the drive itself calls it, for its manual.
+// The drive's own code, for its manual.
 [[nodiscard]] std::string nativeCode(std::int32_t code) {
   if (code == 0) return {};
   std::array<char, 32> text{};

@@ -38,8 +38,8 @@ std::string firstLine(int file) {
   return text.empty() ? "another rc10d" : text;
 }
 
-// What root makes, for a tool that came first, must not lock out the user of the service, who owns the run
-// folder.
+// Files that root makes for a tool that came first must not lock out the user of the service, who owns the
+// run folder.
 void giveToOwnerOf(const std::string& run_dir, const std::string& dir, int file) noexcept {
   struct stat owner {};
   struct stat status {};

@@ -16,7 +16,7 @@ class InterfaceLock {
   [[nodiscard]] static Result<InterfaceLock> take(const std::string& run_dir, const std::string& interface,
                                                   const std::string& robot);
 
-  /// Who holds it now: "robot 'hero' (rc10d, pid 123)". Empty: nobody. Takes nothing.
+  /// Present holder: "robot 'hero' (rc10d, pid 123)". Empty: nobody. Takes nothing.
   [[nodiscard]] static std::string holder(const std::string& run_dir, const std::string& interface);
 
   /// The lock file. An interface of another network namespace is another one, though its name be the same.

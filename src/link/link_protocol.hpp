@@ -64,7 +64,7 @@ struct Header {
   std::uint32_t size = 0;  ///< Of the whole message, which is also the datagram's.
 };
 
-/// What a client wants to be sent besides the answers to its requests.
+/// Messages that a client subscribes to besides the answers to its requests.
 enum Subscription : std::uint32_t {
   kStates = 1U << 0U,
   kDiagnosticsFeed = 1U << 1U,
@@ -164,7 +164,7 @@ struct Signals {
   std::array<NamedValue, kMaxSignals> values;
 };
 
-/// What a module takes and gives. Sent once, before its first state.
+/// Inputs and outputs of a module. Sent once, before its first state.
 struct ModuleInfo {
   static constexpr auto kType = MessageType::kModuleInfo;
   Header header;
@@ -182,7 +182,7 @@ struct ModuleState {
   std::int64_t mono_us = 0;
   std::int64_t tick = 0;
   std::uint32_t module = 0;
-  Name owner;  ///< Who gives its inputs; empty: nobody.
+  Name owner;  ///< Client that gives its inputs; empty: none.
   std::uint32_t value_count = 0;
   std::array<double, kMaxSignals> values;  ///< Its outputs; NaN: without meaning now.
 };

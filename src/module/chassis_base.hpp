@@ -16,10 +16,10 @@
 
 namespace rc10 {
 
-/// What every chassis does, whatever its wheels: takes a twist in one of three frames, keeps it within speed,
-/// acceleration and power, hands it to the wheels, and says where the robot has got to. A user's chassis of
-/// another kind is a subclass. All wheels drive or none: while one of them is not there, the others fall
-/// back.
+/// Common part of every chassis, whatever its wheels: takes a twist in one of three frames, keeps it within
+/// speed, acceleration and power, hands it to the wheels, and says where the robot has got to. A user's
+/// chassis of another kind is a subclass. All wheels drive or none: while one of them is not there, the
+/// others fall back.
 class Chassis_Base : public Module_Base {
  public:
   /// The keys that every chassis has; a type's own come behind them.

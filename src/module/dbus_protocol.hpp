@@ -11,7 +11,7 @@
 
 namespace rc10 {
 
-/// What a DJI DR16 receiver sends: sticks, switches, mouse and keys.
+/// Frame of a DJI DR16 receiver: sticks, switches, mouse and keys.
 struct Dr16Input {
   static constexpr int kFullDeflection = 660;
 

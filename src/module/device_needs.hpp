@@ -13,7 +13,7 @@ namespace rc10 {
 /// two transfers with a gap between them.
 inline constexpr std::size_t kMaxSpiBytes = 4096;
 
-/// What a module wants to be sent over SPI. Plain memory of the scheduler thread: the module writes, and the
+/// SPI transfer of a module. Plain memory of the scheduler thread: the module writes, and the
 /// daemon hands it to the thread that sends. Of frames that come too fast only the newest is sent.
 struct SpiOutput {
   std::uint32_t frames = 0;  ///< So many so far: one more is a new frame.
@@ -40,7 +40,7 @@ struct GpioImage {
   std::uint32_t outputs = 0;    ///< Written by the module.
 };
 
-/// What pulls a line that nothing drives.
+/// Bias of a line that nothing drives.
 enum class GpioBias : std::uint8_t { kAsIs, kNone, kPullUp, kPullDown };
 
 /// Lines of one GPIO chip that a module wants: all, or none is held.

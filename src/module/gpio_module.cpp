@@ -89,8 +89,8 @@ constexpr std::array kGpioKeys{
 
 /// A program that sends too rarely has gaps: only after so long without a command has it let go.
 constexpr Duration kLetGo = std::chrono::seconds{1};
-/// What was read so long ago says nothing any more: a slow chip is read every few milliseconds, and one that
-/// hangs in a transfer fails nothing. The distance is that of the grid, in which a computer that stood still
+/// Age at which a reading is void: a slow chip is read every few milliseconds, and one that hangs in a
+/// transfer reports no error. The distance is that of the grid, in which a computer that stood still
 /// as a whole is no silence.
 constexpr float kOldestReadingSeconds = 0.1F;
 /// As long as the lines thread waits for a tick before the outputs are safe.

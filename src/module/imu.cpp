@@ -120,7 +120,7 @@ class Imu : public Module_Base {
  private:
   enum EventPlace : std::size_t { kSilent, kBack };
 
-  // What a sensor does not send stays NaN; the oldest of what it does send decides.
+  // NaN: not sent by the sensor. The age is that of the oldest value.
   Duration readStream(std::array<double, kAxes>& values, const Tick& tick) const noexcept {
     Duration oldest{};
     const auto take = [&](const auto& stamped, auto put) {

@@ -33,7 +33,7 @@ class JointHoming {
 
   void start(const Measured& measured) noexcept;
   [[nodiscard]] Progress step(const Measured& measured) noexcept;
-  /// What the motor is to be given, A.
+  /// Current for the motor, A.
   [[nodiscard]] double current() const noexcept { return current_a_; }
 
  private:

@@ -16,7 +16,7 @@ struct Rgb {
   friend bool operator==(const Rgb&, const Rgb&) = default;
 };
 
-/// What colourOf() understands, for keys of the configuration.
+/// Pattern of the texts that colourOf() accepts, for keys of the configuration.
 inline constexpr std::string_view kColourPattern =
     "black|white|red|amber|orange|yellow|green|cyan|blue|magenta|#[0-9a-fA-F]{6}";
 inline constexpr std::string_view kColourWords =
@@ -32,7 +32,7 @@ enum class LedPattern : std::uint8_t {
   kRun,      ///< A quarter of the strip in the first colour runs over the second.
 };
 
-/// What a strip shows, as a function of time.
+/// Light of a strip as a function of time.
 struct LedEffect {
   LedPattern pattern = LedPattern::kSteady;
   Rgb colour;

@@ -200,7 +200,7 @@ class LedStrip : public Module_Base {
   enum Input : std::size_t { kRed, kGreen, kBlue, kBrightness };
   enum Output : std::size_t { kState, kShowsInputs, kConnected };
 
-  /// What people near the robot must see is neither replaced nor dimmed.
+  /// Warnings for people near the robot are neither replaced nor dimmed.
   [[nodiscard]] static bool mayReplace(Shown shown) noexcept { return shown < Shown::kFault; }
 
   [[nodiscard]] bool coloursGiven() const noexcept {

@@ -23,7 +23,7 @@ namespace rc10 {
 /// Signals that a module takes and gives, of each kind at most.
 inline constexpr std::size_t kMaxSignals = 32;
 
-/// What stands for an input that nobody gives, and for an output that means nothing now.
+/// Value of an input that nobody gives, and of an output that is not valid now.
 inline constexpr double kNoSignal = std::numeric_limits<double>::quiet_NaN();
 
 /// Something that a module may report.
@@ -32,7 +32,7 @@ struct ModuleEvent {
   bool expected = false;  ///< Told as information, not as a warning.
 };
 
-/// What a module has to do with others, by name. Names end with their unit: "vx_m_s".
+/// Inputs and outputs of a module, by name. Names end with their unit: "vx_m_s".
 struct ModuleSignals {
   std::vector<std::string> inputs;   ///< Given by LCM, by rc10ctl or by another module.
   std::vector<std::string> outputs;  ///< Published with the robot's state.
@@ -77,7 +77,7 @@ class Module_Base {
 
   [[nodiscard]] const ModuleSignals& signals() const noexcept { return signals_; }
 
-  /// What is given now: for the scheduler and for tests. NaN in place of what is not given.
+  /// Present values of the inputs, for the scheduler and for tests. NaN: not given.
   void setInputs(std::span<const double> values) noexcept;
   void clearInputs() noexcept;
   [[nodiscard]] std::span<const double> outputs() const noexcept { return outputs_; }

@@ -15,8 +15,8 @@ struct SignalPlace {
   std::size_t signal = 0;
 };
 
-/// What a module sees of the robot, and asks of it. Motors are places in the robot's list: what a key of kind
-/// kMotor gives. Scheduler thread only.
+/// Robot, as a module reads and commands it. Motors are indices in the robot's list, as a key of kind kMotor
+/// gives them. Scheduler thread only.
 class ModuleRobot {
  public:
   ModuleRobot() = default;

@@ -18,12 +18,12 @@ namespace rc10 {
 inline constexpr std::string_view kSignalPattern = "[a-z0-9_]{1,31}\\.[a-z0-9_]{1,31}";
 inline constexpr std::string_view kSignalWords = "MODULE.SIGNAL, for example imu.yaw_deg";
 
-/// What a module may know of the robot before it runs.
+/// Robot, as a module may know it before it runs.
 struct RobotOutline {
   struct Motor {
     std::string name;
     ModeSet modes;
-    float velocity_limit_rpm = 0.0F;  ///< What it can be told, or reaches without load; 0: not known.
+    float velocity_limit_rpm = 0.0F;  ///< Its limit, or its no-load speed; 0: not known.
     double angle_min_deg = 0.0;       ///< Its soft limits; infinite: none.
     double angle_max_deg = 0.0;
   };

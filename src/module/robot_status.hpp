@@ -21,7 +21,7 @@ enum class MotorStatus : std::uint8_t {
 };
 inline constexpr int kMotorStatusCount = 5;
 
-/// What a module may ask of the robot, beside targets. Writing to drives is not among it: that takes a
+/// Requests of a module to the robot, beside targets. Writing to drives is not among them: that takes a
 /// person.
 enum class RobotRequest : std::uint8_t { kEnable, kDisable, kEstop, kClear, kZero };
 

@@ -71,7 +71,7 @@ constexpr std::string_view kHexDigits = "0123456789ABCDEF";
   return message;
 }
 
-// What stands between `$` and `*`, or why there is no such thing.
+// Text between `$` and `*`, or the reason why there is none.
 struct Line {
   ScanVerdict verdict;
   std::string_view content{};

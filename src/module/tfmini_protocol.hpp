@@ -24,7 +24,7 @@ class TfminiProtocol final : public I_Protocol {
  public:
   static constexpr std::size_t kFrameBytes = 9;
 
-  /// What the sensor is set to; centimetres unless it was told otherwise.
+  /// Unit that the sensor is set to; centimetres by default.
   enum class Unit : std::uint8_t { kCentimetre, kMillimetre };
 
   // Commands for pack_frame(): the first byte of the payload. What is set is lost when the sensor is switched

@@ -20,7 +20,7 @@ struct CascadeConfig {
 /// Gains are per second and per unit, independent of the rate.
 class Cascade {
  public:
-  /// What a new sample says, at the output shaft.
+  /// New sample, at the output shaft.
   struct Measured {
     float angle_deg = 0.0F;
     double total_angle_deg = 0.0;

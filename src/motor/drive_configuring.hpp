@@ -29,7 +29,7 @@ class DriveConfiguring {
   void begin(const DriveWrite& write) noexcept;
   void cancel() noexcept { phase_ = Phase::kEnded; }
   void onFrame(const CanFrame& frame) noexcept;
-  /// What leaves in this tick: at most one frame.
+  /// Frames of this tick: at most one.
   [[nodiscard]] std::size_t pack(MonotonicTime now, std::span<CanFrame> out) noexcept;
 
   [[nodiscard]] Progress progress() const noexcept { return progress_; }

@@ -21,7 +21,7 @@ struct DriveSetting {
   bool identity = false;
 };
 
-/// What can be written to the drives of a family, and what sets everything else. A constant of the family.
+/// Settings that rc10d can write to a family's drives, and the tool for all others. A constant of the family.
 struct DriveSetup {
   std::span<const DriveSetting> settings{};
   bool stores_at_once = false;  ///< There is no writing without storing.
@@ -33,7 +33,7 @@ struct DriveValue {
   double value = 0.0;
 };
 
-/// What a person asked to be written to one drive.
+/// Request to write to one drive.
 struct DriveWrite {
   static constexpr std::size_t kMaxValues = 8;
   std::array<DriveValue, kMaxValues> values{};
@@ -53,7 +53,7 @@ class DriveCodec {
   [[nodiscard]] virtual CanFrame write(const DriveValue& value) const noexcept = 0;
   /// Asks for a setting; nothing where the answer to write() tells it.
   [[nodiscard]] virtual std::optional<CanFrame> read(std::size_t setting) const noexcept = 0;
-  /// What the drive says the setting is, if the frame says that.
+  /// Value of the setting, if the frame reports it.
   [[nodiscard]] virtual std::optional<double> reading(std::size_t setting,
                                                       const CanFrame& frame) const noexcept = 0;
   /// Stores what was written. `new_id` if the drive was given one.

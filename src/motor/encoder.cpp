@@ -18,7 +18,7 @@ double longestSpacingSeconds(const Encoder::Config& config, double bound) noexce
   return denominator > 2.0 * left / kHour ? 2.0 * left / denominator : kHour;
 }
 
-// What cannot be told from a wrap is not called a jump.
+// Beyond this a jump cannot be told from a wrap.
 constexpr double kLargestNoticedTurns = 0.45;
 // Of the encoder itself: quantisation and eccentricity.
 constexpr double kJumpMarginTurns = 0.02;

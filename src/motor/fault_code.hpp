@@ -8,7 +8,7 @@ namespace rc10 {
 /// and never change; link::faultText() has the words.
 enum class FaultCode : std::int32_t {
   kNone = 0,
-  // What rc10d finds.
+  // Found by rc10d.
   kOverspeed = 1,
   kOverheated = 2,
   kStalled = 3,
@@ -16,7 +16,7 @@ enum class FaultCode : std::int32_t {
   kEncoderJump = 5,
   kFrozen = 6,
   kRunaway = 7,
-  // What the drive says of itself: every family maps its own codes to these.
+  // Reported by the drive: every family maps its own codes to these.
   kDriveOverVoltage = 32,
   kDriveUnderVoltage = 33,
   kDriveOverCurrent = 34,
@@ -36,7 +36,7 @@ enum class FaultCode : std::int32_t {
   kDriveOther = 47,
 };
 
-/// What a drive reports as wrong with itself.
+/// Fault that a drive reports.
 struct DriveComplaint {
   FaultCode fault = FaultCode::kNone;
   std::uint32_t native_code = 0;  ///< As the drive sent it.

@@ -5,7 +5,7 @@
 namespace rc10 {
 namespace {
 
-/// What both types of a velocity loop have.
+/// Gains that both types of velocity loop have.
 template <typename Config>
 float* commonGain(Config& pid, LoopGain gain) noexcept {
   switch (gain) {

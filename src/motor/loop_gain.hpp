@@ -39,7 +39,7 @@ struct GainChange {
   float value = 0.0F;
 };
 
-/// What one request changes: all of it in one tick.
+/// Changes of one request, all applied in one tick.
 struct GainChanges {
   std::size_t count = 0;
   std::array<GainChange, kLoopGainCount> values{};

@@ -68,13 +68,13 @@ class Motor_Base : public FrameListener {
   void clearTarget() noexcept { target_ = Target{}; }
   [[nodiscard]] const Target& target() const noexcept { return target_; }
 
-  /// What the drive is told from this tick on. The supervisor's decision; rest until it makes one.
+  /// Kind of frame from this tick on: the supervisor's decision. kRest until the first one.
   void order(FrameKind kind) noexcept {
     ordered_ = kind;
     in_force_.reset();
   }
-  /// The same, with what update() is to follow in place of the target: that, within its limits. As in
-  /// setTarget() what is no number in an optional field is 0, so update() need not look.
+  /// The same, with the target as bounded by the guards, for update() to follow. NaN in an optional field
+  /// becomes 0, as in setTarget().
   void order(FrameKind kind, const Target& in_force) noexcept;
   [[nodiscard]] FrameKind ordered() const noexcept { return ordered_; }
 
@@ -110,7 +110,7 @@ class Motor_Base : public FrameListener {
   /// Whether this drive sends feedback without being asked.
   [[nodiscard]] virtual bool speaksUnasked() const noexcept = 0;
 
-  /// What update() computed, for packers and for the state.
+  /// Result of update(), for packers and for the state.
   [[nodiscard]] virtual float commandValue() const noexcept = 0;
   [[nodiscard]] virtual CommandUnit commandUnit() const noexcept = 0;
 
@@ -118,14 +118,14 @@ class Motor_Base : public FrameListener {
   /// at once.
   [[nodiscard]] virtual SequenceProgress sequenceProgress() const noexcept { return SequenceProgress::kDone; }
 
-  /// What the drive reports as wrong with itself, by its last frames; also that it has left its enabled state
-  /// while it was to obey. Drives that report nothing never complain.
+  /// Fault that the drive reported in its last frames; also that it left its enabled state while it was to
+  /// obey. Drives that report nothing never complain.
   [[nodiscard]] virtual DriveComplaint complaint() const noexcept { return {}; }
   /// Begins to clear the drive's faults: the frames leave with the next packCommand() calls, and never move
   /// the motor.
   virtual void clearComplaint() noexcept {}
 
-  /// What writes settings to its drive; null: nothing is written to it. What can be: MotorTraits::setup.
+  /// Writer of settings to its drive; null: there are none to write. The settings: MotorTraits::setup.
   [[nodiscard]] virtual DriveConfiguring* driveConfiguring() noexcept { return nullptr; }
 
   /// The loops that rc10d closes for it, with the gains in force; null: its drive closes all of them.
@@ -138,7 +138,7 @@ class Motor_Base : public FrameListener {
 
  protected:
   [[nodiscard]] float derating() const noexcept { return derating_; }
-  /// What update() is to follow while kCommand is ordered.
+  /// Target for update() while kCommand is ordered.
   [[nodiscard]] const Target& targetInForce() const noexcept { return in_force_ ? *in_force_ : target_; }
 
   MotorFeedback feedback_;

@@ -17,13 +17,13 @@
 
 namespace rc10 {
 
-/// What one model is, as far as configuration, guards and simulation need it. Torque and speed at the
-/// output shaft of the model's own gear.
+/// Data of one model for configuration, guards and simulation. Torque and speed at the output shaft of the
+/// model's own gear.
 struct MotorTraits {
   int min_id = 1;
   int max_id = 127;
   double gear_ratio = 1.0;                    ///< Of the model itself.
-  CommandUnit effort = CommandUnit::kAmpere;  ///< What effort_limit is in: A or V.
+  CommandUnit effort = CommandUnit::kAmpere;  ///< Unit of effort_limit: A or V.
   float effort_full_scale = 0.0F;             ///< The largest effort that the drive can be told.
   float torque_nm_per_a = 0.0F;               ///< 0: unknown.
   float no_load_rpm = 0.0F;                   ///< At its nominal voltage; 0: unknown.
@@ -44,10 +44,10 @@ struct MotorTraits {
   DriveFrames frames;
   const CascadeConfig* host_loops = nullptr;  ///< Defaults of its loops on the host; null: it has none.
   bool own_velocity_loop = false;             ///< Of host_loops only the angle loop acts.
-  const DriveSetup* setup = nullptr;          ///< What can be written to the drive; null: nothing.
+  const DriveSetup* setup = nullptr;          ///< Settings that can be written; null: none.
 };
 
-/// What a drive does on its bus, for the check of ids and load before power-on.
+/// Frames of a drive on its bus, for the check of ids and load before power-on.
 struct BusUse {
   struct Stream {
     CanId id;
@@ -101,7 +101,7 @@ class MotorFamily {
   [[nodiscard]] virtual std::span<const FamilyKey> keys() const noexcept { return {}; }
   /// `model` is one of models(); `own` has all of keys().
   [[nodiscard]] virtual MotorTraits traits(std::string_view model, const OwnValues& own) const = 0;
-  /// What no key's range can say. The error begins with the key: "master_id: ...".
+  /// Conditions beyond the ranges of single keys. The error begins with the key: "master_id: ...".
   [[nodiscard]] virtual Result<void> check(const MotorSettings& settings) const;
   /// `settings` has passed check().
   [[nodiscard]] virtual BusUse busUse(const MotorSettings& settings) const = 0;

@@ -54,7 +54,7 @@ class SoloMotor : public Motor_Base, public CommandPacker {
   /// The drive was restarted or turns may have gone uncounted.
   void loseReference() noexcept;
 
-  /// What is ordered is to be obeyed: DriveDuty::kObey.
+  /// The order has DriveDuty::kObey.
   [[nodiscard]] bool obeying() const noexcept { return dutyOf(ordered()) == DriveDuty::kObey; }
   [[nodiscard]] bool enabling() const noexcept { return dutyOf(ordered()) == DriveDuty::kEnable; }
   /// First tick of the present order; from wanted() on.
@@ -68,9 +68,9 @@ class SoloMotor : public Motor_Base, public CommandPacker {
     return sequenceRuns() ? sequence : SequenceProgress::kPending;
   }
 
-  /// What is to be followed, whatever the order: the target while kCommand, a standstill for kBrake, the
-  /// angle where it began for kHold (kTotalAngle), else kCoast. An angle (shortest way) comes as the total
-  /// angle it means. To be called once in each update().
+  /// Target that the order amounts to: the client's while kCommand, a standstill for kBrake, the angle where
+  /// it began for kHold (kTotalAngle), else kCoast. kAngle (shortest way) is resolved to the total angle.
+  /// To be called once in each update().
   [[nodiscard]] Target wanted() noexcept;
 
   /// Whether it is told something in this tick. Sequences may disregard it.
@@ -83,7 +83,7 @@ class SoloMotor : public Motor_Base, public CommandPacker {
   /// The same, where the drive itself ends at `drive_limit_rpm` of the output shaft.
   [[nodiscard]] double rpmWithinLimit(double output_rpm, double drive_limit_rpm) noexcept;
 
-  /// What is sent, for the state and the guards. Output shaft.
+  /// Command sent, for the state and the guards. Output shaft.
   void setCommand(double value, CommandUnit unit) noexcept {
     command_value_ = static_cast<float>(value);
     command_unit_ = unit;

@@ -9,7 +9,7 @@
 namespace rc10 {
 inline namespace robot_client {
 
-/// What a module says of itself, from now on. Any thread.
+/// States of a module, from now on. Any thread.
 class ModuleInbox {
  public:
   /// `channel`: of the module, <robot>.v1.<module>.

@@ -10,7 +10,7 @@
 namespace rc10 {
 inline namespace robot_client {
 
-/// What one moveTo() wants.
+/// Goal of one moveTo().
 struct MoveGoal {
   std::string motor;
   Mode mode = Mode::kTotalAngle;  ///< Or kAngle.

@@ -21,8 +21,8 @@
 namespace rc10 {
 inline namespace robot_client {
 
-/// What a Robot and its Motors do: the state, held targets, moves and requests under one mutex, and the
-/// thread that sends again. Callbacks, promises and problem texts leave outside of the mutex.
+/// Implementation of Robot and its Motors: the state, held targets, moves and requests under one mutex, and
+/// the thread that sends again. Callbacks, promises and problem texts leave outside of the mutex.
 class RobotSession {
  public:
   RobotSession(std::string name, const Link& link, RobotOptions options);
@@ -65,7 +65,7 @@ class RobotSession {
     MoveWatch watch;
     std::promise<MoveResult> promise;
   };
-  /// What is to be told after the mutex has been let go of.
+  /// Notifications that leave after the mutex is released.
   struct News {
     std::vector<std::pair<std::promise<MoveResult>, MoveResult>> results;
     std::vector<std::string> problems;
@@ -119,7 +119,7 @@ class RobotSession {
   std::optional<std::int64_t> estop_seq_;                   ///< While the state does not show the e-stop.
   MonotonicTime next_estop_{};
   std::set<std::string> commanded_;
-  std::set<std::string> enabled_;  ///< What has to be undone on leaving.
+  std::set<std::string> enabled_;  ///< To be disabled on leaving.
   bool enabled_all_ = false;
   std::set<std::string> foreign_;  ///< Channels with other definitions.
   std::shared_ptr<std::function<void(const RobotState&)>> on_state_;

@@ -34,7 +34,7 @@ class Drive {
 
   /// The spacing of what it sends without being asked; 0: nothing.
   [[nodiscard]] virtual Duration feedbackPeriod() const noexcept = 0;
-  /// What it sends unasked, at this moment. Returns how many frames were written to `out`.
+  /// Frames that it sends unasked at this moment. Returns how many were written to `out`.
   [[nodiscard]] virtual std::size_t feedback(std::span<CanFrame> out) noexcept = 0;
   /// The answers to what it received since the last call.
   [[nodiscard]] virtual std::size_t answers(std::span<CanFrame> /*out*/) noexcept { return 0; }
@@ -45,7 +45,7 @@ class Drive {
   /// Another load from now on. Where the motor is stays as it is: initial_angle_deg has no effect.
   virtual void setLoad(const MotorLoad& load) noexcept = 0;
 
-  /// What the encoder does wrong from now on.
+  /// Encoder error from now on.
   struct EncoderFault {
     bool frozen = false;    ///< The drive repeats its last frame for ever.
     bool reversed = false;  ///< Counts and speed of the opposite sign.
@@ -62,7 +62,7 @@ class Drive {
   virtual void fault(std::uint32_t /*native_code*/) noexcept {}
 };
 
-/// What is impossible about a load. The error names the motor.
+/// Plausibility of a load. The error names the motor.
 [[nodiscard]] Result<void> checkLoad(const std::string& name, const MotorLoad& load);
 
 }  // namespace rc10::sim

@@ -12,7 +12,7 @@ inline constexpr double kWindingC = 125.0;
 /// The drives do not say how they filter the speed they report; within what the Encoder allows (2 ms).
 inline constexpr double kSpeedLagSeconds = 0.001;
 
-/// What a motor, its drive and its load are made of. SI units; winding and rotor figures are the
+/// Parameters of a motor, its drive and its load. SI units; winding and rotor figures are the
 /// rotor's, figures named `output_` stand behind the gear.
 struct MotorParameters {
   double gear_ratio = 1.0;           ///< Rotor turns per turn of the output shaft.
@@ -39,7 +39,7 @@ struct MotorParameters {
   }
 };
 
-/// What the drive is told to put on the winding.
+/// Command for the voltage or current of the winding.
 struct WindingCommand {
   enum class Kind : std::uint8_t { kCurrent, kVoltage };
   Kind kind = Kind::kCurrent;

@@ -9,8 +9,8 @@
 
 namespace rc10::sim {
 
-/// What a model's motor is made of, behind this gear and with this load, from what its traits tell. What
-/// they leave open is estimated.
+/// Physical parameters of a model's motor with this gear and load, from its traits. Missing ones are
+/// estimated.
 [[nodiscard]] MotorParameters servoParameters(const MotorTraits& traits, double gear_ratio,
                                               const MotorLoad& load) noexcept;
 
@@ -48,7 +48,7 @@ class ServoDrive : public Drive {
   void shortWinding() noexcept;
   [[nodiscard]] bool released() const noexcept { return mode_ == Mode::kReleased; }
 
-  // What the drive measures.
+  // Measurements of the drive.
   [[nodiscard]] double driveAngleDeg() const noexcept;  ///< Multi-turn.
   [[nodiscard]] double driveRpm() const noexcept;
   [[nodiscard]] double driveTorqueNm() const noexcept;

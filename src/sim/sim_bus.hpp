@@ -20,7 +20,7 @@ namespace rc10::sim {
 /// How to make one drive, as often as wanted. The error names the drive and the fix.
 using DriveRecipe = std::function<Result<std::unique_ptr<Drive>>()>;
 
-/// What is on one simulated bus.
+/// Drives and properties of one simulated bus.
 struct SimBusConfig {
   std::vector<DriveRecipe> drives;
   std::uint64_t seed = 1;

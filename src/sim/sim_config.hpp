@@ -5,7 +5,7 @@
 
 namespace rc10::sim {
 
-/// What hangs on a simulated motor's output shaft, and what is wrong with it.
+/// Load on a simulated motor's output shaft, and defects of the motor.
 struct MotorLoad {
   float inertia_kg_m2 = std::numeric_limits<float>::quiet_NaN();  ///< Load only; NaN: the model's default.
   float viscous_nms_per_rad = std::numeric_limits<float>::quiet_NaN();  ///< NaN: the model's default.
@@ -17,7 +17,7 @@ struct MotorLoad {
   float lost_frames = 0.0F;  ///< Fraction of feedback frames that are lost, 0 to 1.
 };
 
-/// What a load leaves open.
+/// `value`, or the model's default where it is NaN.
 [[nodiscard]] inline double orDefault(float value, double model_default) noexcept {
   return std::isnan(value) ? model_default : static_cast<double>(value);
 }

@@ -12,12 +12,12 @@
 
 namespace rc10::survey {
 
-/// What was heard under one id of a frame.
+/// Frames heard under one id.
 struct Sighting {
   CanId id;
   std::uint64_t frames = 0;
-  /// What all of these frames may be: of one kind, that is what it is; of several, it is ambiguous; empty: no
-  /// family that rc10d knows. Drives that share the id are several of one kind.
+  /// Possible senders of all these frames. One kind: certain; several: ambiguous; empty: no family that rc10d
+  /// knows. Drives that share the id are several of one kind.
   std::vector<DriveGuess> guesses;
 
   [[nodiscard]] bool ambiguous() const;

@@ -8,7 +8,7 @@
 namespace rc10::survey {
 namespace {
 
-// Who asks. These numbers are part of the safety: see the header.
+// Host ids of the questions. These numbers are part of the safety: see the header.
 constexpr std::uint8_t kVescHost = 0xFE;
 constexpr std::uint32_t kRobstrideHost = 0xFD;
 constexpr int kVescIds = 254;  // 254 is ours, 255 all of them

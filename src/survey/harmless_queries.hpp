@@ -6,7 +6,7 @@
 
 namespace rc10::survey {
 
-/// What may be asked on a bus whose drives are not known: every VESC for a sign of life (PING), every
+/// Questions that are safe on a bus whose drives are not known: every VESC for a sign of life (PING), every
 /// RobStride and CyberGear for its serial number (type 0). Neither moves, enables or sets anything.
 ///
 /// Both are extended frames, which DJI, Damiao, LK-Tech and MyActuator drives do not listen to, and ODrives

@@ -6,7 +6,7 @@
 
 #include "survey/bus_survey.hpp"
 
-/// What to do about what was heard on a bus, in words for people.
+/// Advice about the frames heard on a bus, in words for people.
 namespace rc10::survey {
 
 /// A VESC with this sighting's id has answered our question, and sends nothing by itself.

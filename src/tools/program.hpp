@@ -15,7 +15,7 @@
 #include "app/result.hpp"
 #include "app/unique_fd.hpp"
 
-/// What the programs that run until a signal ends them have in common.
+/// Common part of programs that run until a signal ends them.
 namespace rc10 {
 
 inline constexpr int kExitOk = 0;

@@ -9,7 +9,7 @@ namespace {
 
 using VelocityConfig = std::variant<PID_Incremental::Config, PID_Position::Config>;
 
-/// What both forms have in common. Gains are per second in both, so they mean the same.
+/// Fields that both forms have. Gains are per second in both.
 template <typename To, typename From>
 To carriedOver(const From& from) {
   To to;

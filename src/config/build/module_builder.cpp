@@ -111,7 +111,7 @@ void checkModules(const RobotConfig& robot, Problems& problems) {
   const RobotOutline outline = outlineOf(robot);
   std::vector<std::unique_ptr<Module_Base>> built;
   std::vector<ModuleDirectory::Entry> entries;
-  // What a module finds wrong begins with the key.
+  // A module's errors begin with the key.
   const auto complain = [&](std::size_t i, const Error& error) {
     const auto colon = error.message.find(": ");
     const std::string path = joinPath("modules", i);

@@ -163,7 +163,7 @@ class MotorBuilder {
                         ". Remove it");
   }
 
-  /// What the family itself finds wrong: its errors begin with the key.
+  /// Check by the family: its errors begin with the key.
   bool checkOwnKeys() {
     settings_.read(effortKey(), motor_.effort_limit);
     settings_.read("velocity_limit_rpm", motor_.velocity_limit_rpm);

@@ -4,7 +4,7 @@
 
 namespace rc10 {
 
-/// What modules may know of a robot before it runs.
+/// Robot, as modules may know it before it runs.
 [[nodiscard]] RobotOutline outlineOf(const RobotConfig& robot);
 
 }  // namespace rc10

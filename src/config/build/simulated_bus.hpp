@@ -5,7 +5,7 @@
 
 namespace rc10 {
 
-/// What a simulator needs to stand in for the motors of a bus.
+/// Simulation in place of the motors of a bus.
 [[nodiscard]] sim::SimBusConfig simulatedBus(const BusConfig& config);
 
 }  // namespace rc10

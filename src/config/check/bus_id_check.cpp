@@ -44,7 +44,7 @@ struct Device {
   return filters;
 }
 
-/// What is wrong with the two on one bus, without the names; empty if nothing.
+/// Conflict of two devices on one bus, without their names; empty: none.
 [[nodiscard]] std::string clash(const Device& a, const Device& b) {
   if (a.dji && b.dji) return {};
   if (const auto id = common(a.use.sends, b.use.sends)) return "both answer with " + idText(*id);

@@ -10,7 +10,7 @@
 
 namespace rc10 {
 
-/// Who has which serial port, SPI device and GPIO line: each has one user.
+/// Users of serial ports, SPI devices and GPIO lines: each has one.
 class DeviceClaims {
  public:
   /// With the lines that the robot itself has.

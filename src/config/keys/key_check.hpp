@@ -12,7 +12,7 @@ namespace rc10 {
 /// of range. What has been reported is marked refused, so that later checks do not stumble over it.
 void checkKeys(YamlNode& node, const Section& section, const std::string& path, Problems& problems);
 
-/// What is said of a key that is none of `known`. `listed`: how they are named where none is near; in the
+/// Error for a key that is none of `known`. `listed`: how they are named where none is near; in the
 /// order of `known`.
 [[nodiscard]] std::string unknownKeyWords(std::string_view typed, const std::vector<std::string_view>& known,
                                           const std::vector<std::string_view>& listed);

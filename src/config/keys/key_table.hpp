@@ -8,7 +8,7 @@
 
 namespace rc10 {
 
-/// What is written under a key.
+/// Kind of value under a key.
 enum class ValueKind : std::uint8_t {
   kText,
   kInteger,
@@ -34,7 +34,7 @@ struct TextForm {
   std::string_view words;    ///< Completes "use ...".
 };
 
-/// What must hold for a key to mean something; tells apart keys that exist for some motors only.
+/// Condition of a key that exists for some motors only.
 enum Need : std::uint16_t {
   kNeedsCurrent = 1U << 0U,      ///< The drive is told a current.
   kNeedsVoltage = 1U << 1U,      ///< The drive is told a voltage.
@@ -64,7 +64,7 @@ struct Key {
   const TextForm* form = nullptr;  ///< Of texts, of those in kTextList, of the names in kNamedSections.
   std::vector<std::string_view> (*choices)() = nullptr;  ///< The only values there are.
   std::span<const std::string_view> words{};             ///< The same, for keys of a family.
-  const Section* section = nullptr;                      ///< What the sections consist of.
+  const Section* section = nullptr;                      ///< Keys of the sections.
   const SectionTypes* types = nullptr;                   ///< Of kTypedSections.
   bool required = false;
   std::uint16_t needs = 0;          ///< Of Need.

@@ -18,7 +18,7 @@ using enum LoopGain;
 
 constexpr std::string_view kVelocity = "velocity_pid";
 constexpr std::string_view kAngle = "angle_pid";
-// So that a person may type "velocity.kp".
+// Optional in requests: "velocity.kp".
 constexpr std::string_view kSuffix = "_pid";
 
 struct Naming {
@@ -79,7 +79,7 @@ std::string_view loopNamed(std::string_view name) {
   return {};
 }
 
-/// What a person typed: one gain of one loop, or the key of a gain in whichever loop has it.
+/// Gain as requested: of one loop, or by its key in whichever loop has it.
 struct Asked {
   std::string_view name;
   std::string_view loop;  ///< Empty: not said.

@@ -11,7 +11,7 @@
 
 namespace rc10 {
 
-/// What a motor is, as far as keys depend on it.
+/// Properties of a motor that keys depend on.
 struct MotorNature {
   std::string_view model;
   const MotorTraits& traits;

@@ -19,7 +19,7 @@ namespace rc10 {
 /// "reason; fix" if the number is outside the key's range; empty if it is not.
 [[nodiscard]] std::string whyOutOfRange(double value, const Key& key);
 
-/// What the key wants, in words: "a number in A", "a list", ...
+/// Expected value in words: "a number in A", "a list", ...
 [[nodiscard]] std::string wantedWords(const Key& key);
 
 /// "use 2 to 1000", "use more than 0": completes a message about a number out of range.

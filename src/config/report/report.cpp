@@ -157,7 +157,7 @@ std::string overspeedText(const GuardConfig& guard) {
   return guard.overspeed_rpm > 0.0F ? numberText(guard.overspeed_rpm) + " rpm" : "not watched";
 }
 
-/// What a motor does when nobody commands it, and where it may go.
+/// Fallbacks and travel limits of each motor.
 std::string safetyText(const BusConfig& bus) {
   TextTable table;
   table.add({"motor", "time-out", "disable", "e-stop", "over-speed", "soft limits"});

@@ -6,7 +6,7 @@
 
 namespace rc10 {
 
-/// What the robot will be, for people: threads, buses with their predicted load, motors with ids, limits
+/// Report of the robot for people: threads, buses with their predicted load, motors with ids, limits
 /// and loops. Plain ASCII, aligned. `config` comes from loadRobotConfig().
 [[nodiscard]] std::string describe(const RobotConfig& config);
 

@@ -172,7 +172,7 @@ class SchemaWriter {
     json_.endArray();
   }
 
-  /// What depends on the model, as far as it stands beside it and not in a profile.
+  /// Keys that depend on the model, where it stands beside them and not in a profile.
   void writeModels() {
     json_.key("anyOf").array();
     for (const std::string_view name : {"model", "profile"}) {

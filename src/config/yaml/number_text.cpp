@@ -82,7 +82,7 @@ bool isNotFinite(std::string_view text) {
   return text == "infinity" || text == "Infinity";
 }
 
-/// What stands there instead of a number, and what to write. `text` is without its minus sign.
+/// Error for a text that is no number, with the number to write. `text` is without its minus sign.
 std::string insteadOfNumber(std::string_view text, const std::string& sign) {
   const auto write = [&](const std::string& better) { return "; write " + sign + better; };
   if (isNotFinite(text)) return " is not finite; write a number";

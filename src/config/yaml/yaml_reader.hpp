@@ -9,7 +9,7 @@
 
 namespace rc10 {
 
-/// What one document may hold. A configuration of 4 buses with 32 motors each stays well below.
+/// Limits of one document. A configuration of 4 buses with 32 motors each stays well below.
 struct YamlLimits {
   static constexpr std::size_t kDepth = 16;        ///< Maps and lists inside each other.
   static constexpr std::size_t kNodes = 20'000;    ///< Values and keys; an alias counts as all it stands for.

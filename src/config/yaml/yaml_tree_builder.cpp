@@ -8,7 +8,8 @@
 namespace rc10 {
 namespace {
 
-// What yaml-cpp reports for a value without a tag: "?" for plain ones, lists and maps, "!" for quoted ones.
+// Tags that yaml-cpp reports for a value without one: "?" for plain ones, lists and maps, "!" for quoted
+// ones.
 constexpr std::string_view kPlainTag = "?";
 constexpr std::string_view kQuotedTag = "!";
 

@@ -34,10 +34,10 @@ inline constexpr std::size_t kCommandRefusalCount = 11;
 
 /// The name of the counter.
 [[nodiscard]] const char* toString(CommandRefusal refusal) noexcept;
-/// What is wrong, and what to do about it.
+/// Cause and remedy.
 [[nodiscard]] const char* describe(CommandRefusal refusal) noexcept;
 
-/// What admission knows of a motor.
+/// Motor, as admission knows it.
 struct KnownMotor {
   std::string name;
   ModeSet modes;

@@ -14,14 +14,14 @@ namespace rc10 {
 inline constexpr std::string_view kConfigureDrive = "configure-drive";
 inline constexpr std::string_view kDriveSettings = "drive-settings";
 
-/// What can be written, one setting a line: its name and range; then what sets everything else.
+/// Settings that can be written, one a line with its range; then the tool for all others.
 [[nodiscard]] std::string settingsText(const DriveSetup& setup);
 
 /// The named values of a request: settings, and `save` (1 or 0), which has to be said. What changes who the
 /// drive is comes last. The error says what is wrong with them.
 [[nodiscard]] Result<DriveWrite> parseDriveWrite(const link::Request& request, const DriveSetup& setup);
 
-/// What was done, in words: the settings with their values, and what they mean for whoever asked.
+/// Report of a write: the settings with their values, and their consequences for the client.
 [[nodiscard]] std::string wordsOf(const DriveWrite& write, const DriveSetup& setup);
 /// The value at which it ended.
 [[nodiscard]] std::string_view settingAt(const DriveWrite& write, const DriveSetup& setup, std::size_t index);

@@ -163,7 +163,7 @@ void LinkServer::accept() {
   }
 }
 
-// Who has not said hello must not keep the others out.
+// Connections without a hello must not keep the others out.
 bool LinkServer::dropSilentConnection() {
   const auto oldest =
       std::find_if(connections_.begin(), connections_.end(), [](const auto& c) { return !c.welcomed; });

@@ -26,7 +26,7 @@ namespace rc10 {
 /// only. Nobody waits for it, and it waits for no client: what a client does not read is dropped.
 class LinkServer {
  public:
-  /// What the server reads from the rest of the daemon. All outlive it.
+  /// Parts of the daemon that the server reads. All outlive it.
   struct Sources {
     LinkExchange& exchange;
     std::span<const BusInbox> inboxes;

@@ -7,7 +7,7 @@
 
 namespace rc10 {
 
-// What the client library refuses is what does not fit here.
+// The limits of the client library are those of the daemon.
 static_assert(kMaxMessageSignals == kMaxSignals && kMaxMessageSignals == link::kMaxSignals);
 static_assert(kMaxNameBytes + 1 == sizeof(link::Name));
 

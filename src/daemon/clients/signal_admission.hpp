@@ -12,7 +12,7 @@
 
 namespace rc10 {
 
-/// What admission knows of a module.
+/// Module, as admission knows it.
 struct KnownModule {
   std::string name;
   std::vector<std::string> inputs;

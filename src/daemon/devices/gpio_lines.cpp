@@ -195,7 +195,7 @@ Result<std::unique_ptr<ContactInput>> openContact(const EstopGpioConfig& config)
   if (!line) return tl::unexpected(line.error());
   const int bias = biasOf(config);
   int error = request(line->line, kConsumer, GPIOD_LINE_REQUEST_EVENT_BOTH_EDGES, bias);
-  // What kernels answer for a line without an interrupt, as on many I2C expanders.
+  // Errors of a line without an interrupt, as on many I2C expanders.
   const bool edges = error != ENODEV && error != ENXIO && error != ENOTSUP;
   if (!edges) error = request(line->line, kConsumer, GPIOD_LINE_REQUEST_DIRECTION_INPUT, bias);
   if (error != 0) return refusal(kKey, config.pin, error);

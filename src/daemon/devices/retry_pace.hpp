@@ -34,7 +34,7 @@ class RetryPace {
     opened_ = now;
     last_error_.clear();
   }
-  /// What was open is gone.
+  /// The open device is gone.
   void lost(MonotonicTime now) noexcept {
     if (now - opened_ >= kWellAfter) wait_ = kFirstWait;
     next_ = now + wait_;

@@ -56,7 +56,7 @@ void leavePort(SerialLine& line) noexcept {
 }
 
 void deliver(SerialLine& line, SerialDevice& device) noexcept {
-  // What comes meanwhile is for the next tick.
+  // Bytes that arrive meanwhile are for the next tick.
   for (auto left = line.chunks.read_available(); left > 0; --left) {
     device.receive(line.chunks.front());
     (void)line.chunks.pop();

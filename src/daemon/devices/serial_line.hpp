@@ -18,7 +18,7 @@
 
 namespace rc10 {
 
-/// What the scheduler sends to one serial port: a bounded queue that the io thread writes. Every push wakes
+/// Outbox of the scheduler to one serial port: a bounded queue that the io thread writes. Every push wakes
 /// it.
 class SerialOutbox final : public ByteSink {
  public:

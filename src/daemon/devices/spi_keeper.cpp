@@ -31,7 +31,7 @@ void SpiKeeper::open(std::size_t index, MonotonicTime now) {
       tell(line, Severity::kWarning, opened.error().message, now);
     return;
   }
-  // What it shows is not known: the newest frame is sent, though it may have been sent before.
+  // Its present state is unknown: the newest frame is sent, even if it was sent before.
   device = {.port = std::move(*opened), .pace = device.pace};
 }
 

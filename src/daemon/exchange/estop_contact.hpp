@@ -6,7 +6,7 @@
 
 namespace rc10 {
 
-/// What the e-stop input says.
+/// State of the e-stop input.
 enum class ContactState : std::uint8_t {
   kAbsent,      ///< None is configured.
   kClosed,      ///< All is well.
@@ -22,7 +22,7 @@ class EstopContact {
   /// as a whole is no silence.
   static constexpr float kMaxSilenceSeconds = 0.2F;
 
-  /// What the input says now. Watching thread only.
+  /// Sets the present state of the input. Watching thread only.
   void show(ContactState state) noexcept {
     state_.store(state, std::memory_order_relaxed);
     if (state != ContactState::kClosed) openings_.fetch_add(1, std::memory_order_relaxed);
@@ -31,7 +31,7 @@ class EstopContact {
 
   struct View {
     bool stop = false;                 ///< Open now, or since the last look.
-    std::optional<ContactState> news;  ///< What has changed, for the event.
+    std::optional<ContactState> news;  ///< Change, for the event.
   };
   /// Once in each tick. Scheduler thread only.
   [[nodiscard]] View look(float dt_s) noexcept;

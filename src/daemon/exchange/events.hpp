@@ -12,7 +12,7 @@ namespace rc10 {
 
 enum class Severity : std::uint8_t { kInfo = 0, kWarning = 1, kError = 2 };
 
-/// What happened. The numbers are part of the LCM contract (event_t.code, docs/lcm.md) and never change.
+/// Kind of event. The numbers are part of the LCM contract (event_t.code, docs/lcm.md) and never change.
 enum class EventCode : std::int32_t {
   kMotorStatus = 100,      ///< value: new MotorStatus, extra: old one
   kCommandTimeout = 101,   ///< no valid command any more; value: the FallbackAction

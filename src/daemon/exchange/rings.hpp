@@ -31,7 +31,7 @@ struct BusInbox {
   std::atomic<std::uint64_t> confirmed{0};  ///< Echoes of the watched command id.
   std::atomic<LinkState> link{LinkState::kUp};
   std::atomic<bool> echo_available{false};
-  /// What the scheduler makes of it all, for the io thread.
+  /// Verdict of the scheduler, for the io thread.
   std::atomic<BusState> state{BusState::kActive};
   /// The io thread counts here when the driver says that a bus-off controller runs again.
   std::atomic<std::uint32_t> controller_running{0};

@@ -46,11 +46,11 @@ struct BusSnapshot {
 inline constexpr std::size_t kMaxModules = link::kMaxModules;
 
 struct ModuleSnapshot {
-  link::Name owner;  ///< Who gives its inputs; empty: nobody.
+  link::Name owner;  ///< Client that gives its inputs; empty: none.
   std::array<double, kMaxSignals> outputs{};
 };
 
-/// What the scheduler shows to the link thread after each tick.
+/// State that the scheduler publishes to the link thread after each tick.
 struct Snapshot {
   MonotonicTime time;
   std::uint64_t tick = 0;

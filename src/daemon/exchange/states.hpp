@@ -7,7 +7,7 @@
 
 namespace rc10 {
 
-/// What can happen to a motor.
+/// Event in the life of a motor.
 enum class MotorEvent : std::uint8_t {
   kFeedbackFresh,  ///< Feedback is there and young enough.
   kFeedbackLost,

@@ -20,7 +20,7 @@ constexpr std::size_t kFdSetupRoom = 512;
                                                         unsigned interface_index, const CanLink& seen,
                                                         const CanLinkSettings& wanted);
 
-/// What the kernel answered instead of doing it.
+/// Refusal of the kernel.
 struct KernelRefusal {
   int error = 0;       ///< errno
   std::string reason;  ///< In the kernel's own words; empty: it gave none.

@@ -52,8 +52,7 @@ class LinkKeeper {
   std::array<Kept, kMaxBuses> kept_{};
 };
 
-/// What is wrong with the settings of a link that rc10d does not manage, and the command that mends it; empty
-/// if nothing.
+/// Wrong settings of a link that rc10d does not manage, and the command that mends them; empty: none.
 [[nodiscard]] std::string settingsAdvice(const std::string& interface, const CanLink& link,
                                          const CanLinkSettings& wanted);
 

@@ -15,7 +15,7 @@ namespace {
 
 // Without traffic the loop turns this often, so that the watchdog sees it alive.
 constexpr int kIdleTimeoutMs = 100;
-// What does not fit comes with the next call.
+// Further events come with the next call.
 constexpr int kMaxRxEvents = 2 * static_cast<int>(kMaxBuses) + 16;
 
 // In the data of an epoll event: the rest is the number of a serial port, not that of a source.

@@ -40,7 +40,7 @@ class FlightRecorder {
   /// A sample of everything 20 times a second; of a motor, the robot or a bus also when its state changes.
   void states(const Snapshot& snapshot) noexcept;
 
-  /// What has happened since the last call that the recording should be kept for: bits of CopyCause. Any
+  /// Reasons since the last call to keep the recording: bits of CopyCause. Any
   /// one thread.
   [[nodiscard]] std::uint32_t takeCauses() noexcept { return causes_.exchange(0, std::memory_order_relaxed); }
 
@@ -56,7 +56,7 @@ class FlightRecorder {
     std::uint8_t bus_ = 0;
   };
 
-  /// What a module was last told by another one.
+  /// Last inputs of a module from another one.
   struct LastSignals {
     link::Name client;
     std::array<double, kMaxSignals> values{};

@@ -7,8 +7,8 @@
 
 namespace rc10 {
 
-/// Who commands a motor: the client whose setpoint it obeys, for as long as that is valid. Others of the
-/// same or a lower priority have to wait; a higher one takes over. Scheduler thread only.
+/// Right to command a motor: held by the client whose setpoint it obeys, for as long as that is valid. Others
+/// of the same or a lower priority have to wait; a higher one takes over. Scheduler thread only.
 class Lease {
  public:
   struct Holder {

@@ -136,8 +136,8 @@ void Supervisor::watchEnabling(std::size_t motor, const Tick& tick) noexcept {
   }
 }
 
-// What the drive says of itself. What it said before a clear request is not held against it until the
-// request can have reached it and come back.
+// Faults that the drive reports. After a clear request an old one is ignored until the request can have
+// taken effect.
 void Supervisor::watchComplaint(std::size_t motor, const Tick& tick) noexcept {
   auto& control = controls_[motor];
   if (control.status == MotorStatus::kOffline || control.status == MotorStatus::kFault) return;

@@ -64,7 +64,7 @@ class Supervisor {
     MonotonicTime enable_deadline;
     MonotonicTime clearing_until{};  ///< Until then the drive's complaints are old ones.
     Lease lease;                     ///< Whose target is in force, and until when.
-    Target in_force;                 ///< What the motor was to follow in the last tick.
+    Target in_force;                 ///< Target that the motor followed in the last tick.
     Fallback fallback;
     std::size_t group = kNoGroup;
   };

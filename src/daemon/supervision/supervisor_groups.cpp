@@ -33,7 +33,7 @@ void Supervisor::watchGroup(std::size_t index, const Tick& tick) noexcept {
     for (std::size_t motor = robot_.motors().size(); motor-- > 0;) {
       if (!group.members.test(motor)) continue;
       if (lost.test(motor)) first = motor;
-      // What stops for a fault waits for somebody to look at it.
+      // A motor that stopped for a fault waits for a person.
       if (controls_[motor].status == MotorStatus::kFault) returns = false;
       if (controls_[motor].status == MotorStatus::kActive) group.rearm.set(motor);
       transition(motor, MotorEvent::kGroupStop, tick);

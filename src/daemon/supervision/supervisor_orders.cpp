@@ -1,4 +1,4 @@
-// What clients ask for: targets and requests.
+// Targets and requests of clients.
 #include <algorithm>
 
 #include "daemon/exchange/events.hpp"

@@ -1,4 +1,4 @@
-// What a person writes into a drive's own memory.
+// Requests that write to a drive's own memory.
 #include "daemon/supervision/supervisor.hpp"
 #include "motor/drive_configuring.hpp"
 

@@ -12,13 +12,13 @@
 
 namespace rc10 {
 
-/// What the io thread does with serial ports.
+/// Serial ports of the io thread.
 struct SerialIo {
   SerialReviver reviver;
   SerialWriter writer;
 };
 
-/// What the io thread does: a hundred times a second it moves the recording from its ring to the history,
+/// Work of the io thread: a hundred times a second it moves the recording from its ring to the history,
 /// twenty times a second it looks at the interfaces, the links and the serial ports, and in between it writes
 /// what the scheduler sends to serial ports and SPI devices.
 class IoLoop {

@@ -44,7 +44,7 @@ void LineLoop::run(const std::stop_token& stop, const Scheduler& scheduler) {
   end();
 }
 
-// What failed is tried again soon, also where outputs alone are used.
+// Failures are retried soon, also where outputs alone are used.
 Duration LineLoop::interval() const noexcept {
   const bool failing =
       std::any_of(lines_.begin(), lines_.end(), [](const Bank& b) { return b.bad_turns != 0; });

@@ -11,7 +11,7 @@ constexpr std::uint64_t kMaxPeriods = 5;
 // A stop sends rest at least this often, and gives up waiting for echoes after kMaxRestTicks.
 constexpr int kMinRestTicks = 3;
 constexpr int kMaxRestTicks = 50;
-// What moves is damped, braked or held before that, as configured, for at most this long.
+// Longest time for the configured damping, braking or holding of moving motors before that.
 constexpr Duration kLongestFallback = std::chrono::seconds{1};
 // On a busy computer many ticks are late: they are reported together, at most this often.
 constexpr Duration kMissedReportInterval = std::chrono::seconds{1};

@@ -46,7 +46,7 @@ inline constexpr double kLargestErpm = 100'000.0;  ///< Of the velocity command:
 [[nodiscard]] CanFrame positionVelocityFrame(int motor_id, double degrees, double erpm,
                                              double erpm_per_s) noexcept;
 
-/// What the drive tells in servo mode, and V3 drives always.
+/// Feedback in servo mode, and of V3 drives always.
 struct ServoReport {
   double degrees = 0.0;
   bool position_cut_off = false;  ///< The position is beyond what the field can say.

@@ -202,7 +202,7 @@ CubemarsMit::Law CubemarsMit::lawOf(const Target& target) noexcept {
 // Both errors and the torque shrink together until the drive's sum is within the limit: the sign of each
 // part stays, and the damping too.
 void CubemarsMit::send(const Law& wanted_law) noexcept {
-  // What the field cannot say must not be in the sum either.
+  // The sum is bounded by the range of the field.
   const double most_nm = setup().ranges.torque_nm;
   Law law = wanted_law;
   law.torque_nm = std::clamp(law.torque_nm, -most_nm, most_nm);

@@ -63,7 +63,7 @@ class CubemarsMit : public CubeMars_Motor {
   int turns_ = 0;  ///< How often the position field has gone round: 0 within its range.
   int samples_at_end_ = 0;
 
-  Law command_{};  ///< What update() decided on.
+  Law command_{};  ///< Result of update().
   EnableSequence<Step> sequence_;
   bool enter_now_ = false;
   bool clear_now_ = false;

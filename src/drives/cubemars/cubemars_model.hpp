@@ -9,14 +9,14 @@
 
 namespace rc10 {
 
-/// What is spoken with the drive: chosen in the vendor's program, not over CAN.
+/// Protocol of the drive: chosen in the vendor's program, not over CAN.
 enum class CubemarsProtocol : std::uint8_t {
   kServo,  ///< Extended ids; loops in the drive; speaks unasked.
   kMit,    ///< Drives V1 and V2: standard ids, one answer to each frame.
   kMitV3,  ///< Drives V3: the MIT command in an extended frame, with the servo protocol's feedback.
 };
 
-/// What the fields of a MIT frame reach to, at the drive's own output. Both ways from 0, gains from 0 up.
+/// Full scale of the fields of a MIT frame, at the drive's own output. Both ways from 0, gains from 0 up.
 struct CubemarsRanges {
   double position_rad = 12.5;
   double velocity_rad_s = 50.0;

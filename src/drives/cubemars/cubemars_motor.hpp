@@ -8,7 +8,7 @@
 
 namespace rc10 {
 
-/// What both kinds of AK drive have in common: what a restart looks like, and errors. Scheduler thread only.
+/// Common part of both kinds of AK drive: restarts and errors. Scheduler thread only.
 ///
 /// No frame tells that a drive was restarted. A silence that is long enough to start up in is taken for
 /// one: the position may then mean something else, and a drive that was to obey has stopped.

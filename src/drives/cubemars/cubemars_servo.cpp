@@ -11,7 +11,7 @@ using cubemars::ServoCommand;
 // The feedback ends here: farther away nobody could see where the shaft is. The command reaches 36000.
 constexpr double kLargestMessageDeg = 3'200.0;
 constexpr double kMostDeg = 1e9;  // of a target or a zero, which may be any number
-// What the fields of the planned way can say at most.
+// Full scale of the fields of a planned motion.
 constexpr double kLargestPlanErpm = 327'670.0;
 
 }  // namespace

@@ -43,7 +43,7 @@ class CubemarsServo : public CubeMars_Motor {
   std::array<CanId, 6> command_ids_;
   double brake_a_;
   double acceleration_rpm_per_s_;
-  CanFrame next_;  ///< What update() decided on.
+  CanFrame next_;  ///< Result of update().
 };
 
 }  // namespace rc10

@@ -38,7 +38,7 @@ class DamiaoEnabling {
   /// Whether the drive's own count is known now.
   void onPosition(bool known) noexcept;
 
-  /// What is to leave now, if anything.
+  /// Request that is due now, if any.
   [[nodiscard]] std::optional<Request> take(MonotonicTime now) noexcept;
   /// The drive is still disabled, and may be told so again to get its feedback.
   [[nodiscard]] bool quiet() const noexcept { return sequence_.step() < kEnable; }

@@ -157,7 +157,7 @@ std::string digits(double value) {
   return text;
 }
 
-/// What is wrong with a gain at the output shaft that the drive cannot be told.
+/// Error if a gain at the output shaft exceeds the range of the drive's field.
 Result<void> checkGain(const MotorSettings& settings, std::string_view key, double most) {
   const auto* model = findDamiaoModel(settings.model);
   const double gear =

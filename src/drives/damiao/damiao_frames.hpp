@@ -51,7 +51,7 @@ inline constexpr std::uint8_t kFirstFault = 2;
 /// The last byte of a frame of seven FF.
 enum class Special : std::uint8_t { kClear = 0xFB, kEnable = 0xFC, kDisable = 0xFD, kZero = 0xFE };
 
-/// What the drive makes of it: torque = kp * (position - its own) + kd * (velocity - its own) + torque.
+/// Control law of the drive: torque = kp * (position - its own) + kd * (velocity - its own) + torque.
 struct MitCommand {
   double position_rad = 0.0;
   double velocity_rad_s = 0.0;
@@ -84,7 +84,7 @@ using Payload = std::array<std::uint8_t, 8>;
 /// outside, and NaN, end at a bound (NaN: the middle).
 [[nodiscard]] std::uint16_t toCode(double value, double limit, unsigned bits) noexcept;
 [[nodiscard]] double fromCode(double code, double limit, unsigned bits) noexcept;
-/// What a drive measured that sends this code: it rounds down, so the middle of the step. 0 comes out as 0.
+/// Measurement behind a code: the middle of its step, since the drive rounds down. 0 comes out as 0.
 [[nodiscard]] inline double measured(std::uint16_t code, double limit, unsigned bits) noexcept {
   return fromCode(code + 0.5, limit, bits);
 }
@@ -119,7 +119,7 @@ using Payload = std::array<std::uint8_t, 8>;
 /// Of a temperature byte: the drive casts a float to it, so cold comes as the two's complement.
 [[nodiscard]] float temperature(std::uint8_t byte) noexcept;
 
-/// What a status means; kNone below kFirstFault.
+/// Fault of a status; kNone below kFirstFault.
 [[nodiscard]] FaultCode faultOf(std::uint8_t status) noexcept;
 
 }  // namespace rc10::damiao

@@ -6,7 +6,7 @@
 
 namespace rc10 {
 
-/// What bounds a MIT command, at the drive's own output.
+/// Bounds of a MIT command, at the drive's own output.
 struct DamiaoMitBounds {
   DamiaoScale scale;
   double torque_nm = 0.0;

@@ -7,7 +7,7 @@
 
 namespace rc10 {
 
-/// What the ends of the fields of a frame mean: registers 21 to 23 of a Damiao drive. Its own output.
+/// Full scale of the fields of a frame: registers 21 to 23 of a Damiao drive. Its own output.
 struct DamiaoScale {
   double p_max_rad = 12.5;
   double v_max_rad_s = 30.0;

@@ -26,7 +26,7 @@ class DamiaoPosition {
   Step take(std::uint16_t code, MonotonicTime received) noexcept;
 
   enum class Wrap : std::uint8_t { kSame, kOther, kContradiction };
-  /// What the register says; after take(). kOther: rad() has changed by whole wraps.
+  /// Evaluates the register, after take(). kOther: rad() has changed by whole wraps.
   Wrap take(float register_rad) noexcept;
 
   /// The drive may have been restarted.

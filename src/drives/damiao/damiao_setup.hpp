@@ -5,7 +5,7 @@
 
 namespace rc10 {
 
-/// What can be written to a Damiao drive: some of its registers.
+/// Settings that can be written to a Damiao drive: some of its registers.
 [[nodiscard]] const DriveSetup& damiaoSetup() noexcept;
 
 /// The registers of one drive as settings.

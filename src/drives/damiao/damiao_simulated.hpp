@@ -25,7 +25,7 @@ class DamiaoDrive : public ServoDrive {
 
  private:
   static constexpr std::size_t kOthers = 7;
-  /// What a restart brings back is what was last stored in its flash.
+  /// Registers with a copy in flash: a restart restores the copy.
   struct Registers {
     std::uint32_t timeout = 0;
     std::uint32_t control = 1;

@@ -11,7 +11,7 @@
 
 namespace rc10 {
 
-/// What the drive is told: the current (torque) or the voltage of the winding.
+/// Command to the drive: the current (torque) or the voltage of the winding.
 enum class DjiCommand : std::uint8_t { kCurrent, kVoltage };
 
 /// One way to command a model: which ids carry it and how a value is written.
@@ -46,7 +46,7 @@ struct DjiModel {
   }
 };
 
-/// What the drives can be told, whatever the model: everything but rest is the host's loops' work.
+/// Frames of all models: everything but rest is computed by the host's loops.
 inline constexpr DriveFrames kDjiFrames{.rest = Provision::kFrame,
                                         .poll = Provision::kNothing,
                                         .idle = Provision::kFrame,

@@ -54,7 +54,7 @@ class DJI_Motor : public Motor_Base {
   /// The id of the frame that carries this motor's command, and its slot in it (0-3).
   [[nodiscard]] CanId commandId() const noexcept;
   [[nodiscard]] int slot() const noexcept { return (id_ - 1) % 4; }
-  /// What update() computed, as the drive wants it: direction applied, clamped to full scale.
+  /// Result of update() in the drive's unit: direction applied, clamped to full scale.
   [[nodiscard]] std::int16_t rawCommand() const noexcept;
 
  private:
@@ -88,7 +88,7 @@ class DJI_Motor : public Motor_Base {
   float amperes_per_raw_;
   float torque_nm_per_a_;
   float raw_per_effort_;
-  float damping_a_per_rpm_;  ///< What the shorted winding would do; 0 V are just that.
+  float damping_a_per_rpm_;  ///< Damping of the shorted winding; 0 V have the same effect.
 
   // total angle = reference_deg_ + (counts - reference_counts_) * degrees_per_count_
   std::int64_t reference_counts_ = 0;

@@ -31,7 +31,7 @@ bool allGains(const PID_Incremental::Config& c) noexcept {
          isGain(c.output_limit) && isGain(c.derivative_filter_hz);
 }
 
-/// What is wrong with the loops, or nothing.
+/// Error in the loops; empty: none.
 std::string loopProblem(const CascadeConfig& loops) {
   if (!std::visit([](const auto& config) { return allGains(config); }, loops.velocity)) {
     return "velocity_pid: every gain and limit must be a finite number, 0 or more";
@@ -53,7 +53,7 @@ std::string referenceProblem(const DjiMotorConfig& config) {
   return {};
 }
 
-/// What is wrong with the configuration of a known model, or nothing.
+/// Error in the configuration of a known model; empty: none.
 std::string problem(const DjiMotorConfig& config) {
   const DjiModel& model = *config.model;
   const std::string name{model.name};

@@ -79,7 +79,7 @@ void DjiDrive::receive(const CanFrame& frame) noexcept {
   if (!mine) return;
   const auto& table = model_->command(command_);
   raw_command_ = readInt16(frame, 2 * static_cast<std::size_t>((id_ - 1) % 4));
-  // What lies beyond full scale is cut off by the current or supply limit.
+  // Beyond full scale the current or supply limit cuts off.
   winding_.value = static_cast<double>(table.full_scale) * raw_command_ / table.raw_full_scale;
 }
 

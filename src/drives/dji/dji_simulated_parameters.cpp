@@ -12,7 +12,7 @@ namespace {
 
 constexpr double kSupplyV = 24.0;
 
-/// What the model table of the motor layer does not know. Manuals: M3508 V1.0, M2006-P36, GM6020 v1.2.
+/// Physical data beyond the model table. Manuals: M3508 V1.0, M2006-P36, GM6020 v1.2.
 struct MotorData {
   std::string_view model;
   double resistance_ohm;

@@ -6,8 +6,8 @@
 
 namespace rc10::sim {
 
-/// What a motor of this model is made of, behind this gear and with this load. What the load leaves
-/// open (NaN) is the model's default.
+/// Physical parameters of a motor of this model with this gear and load. NaN in the load: the model's
+/// default.
 [[nodiscard]] MotorParameters parametersOf(const DjiModel& model, double gear_ratio,
                                            const MotorLoad& load) noexcept;
 

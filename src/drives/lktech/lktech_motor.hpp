@@ -37,7 +37,7 @@ class LKTech_Motor final : public SoloMotor {
   // For its group.
   [[nodiscard]] int driveId() const noexcept { return id_; }
   [[nodiscard]] bool grouped() const noexcept { return grouped_; }
-  /// What update() computed, as the drive wants it; and whether it is to be told in this tick.
+  /// Result of update() in the drive's unit; whether it leaves in this tick.
   [[nodiscard]] int rawCurrent() const noexcept { return raw_current_; }
   [[nodiscard]] bool told() const noexcept { return told_; }
 
@@ -77,7 +77,7 @@ class LKTech_Motor final : public SoloMotor {
   bool ask_turns_ = false;  ///< Next; else the status.
   bool clear_ = false;
 
-  // What the drive said.
+  // Readings of the drive.
   std::optional<MonotonicTime> heard_;
   std::optional<std::uint16_t> encoder_;
   double position_deg_ = 0.0;  ///< Of the drive's output, in the drive's own count of turns.

@@ -4,7 +4,7 @@
 #include "app/units.hpp"
 #include "drives/moteus/moteus_motor.hpp"
 
-// What Moteus_Motor takes from the answers of its drive.
+// Moteus_Motor: evaluation of its drive's answers.
 
 namespace rc10 {
 namespace {

@@ -8,7 +8,7 @@
 
 namespace rc10 {
 
-/// What is set on one moteus, as its own keys say it.
+/// Settings of one moteus, from its own keys.
 struct MoteusSettings {
   double rotor_to_output_ratio = 1.0;
   bool bit_rate_switch = true;

@@ -11,8 +11,8 @@
 namespace rc10 {
 namespace {
 
-// What this driver was written for; the drive counts it up when a register changes its meaning. Source:
-// fw/moteus_controller.cc, kRegisterMapVersion.
+// Version that this driver was written for; the drive counts it up when a register changes its meaning.
+// Source: fw/moteus_controller.cc, kRegisterMapVersion.
 constexpr double kRegisterMapVersion = 5.0;
 
 constexpr double kFarthestRev = 32000.0;  // from where it is

@@ -38,7 +38,7 @@ class Moteus_Motor final : public SoloMotor {
   /// Its position register goes round after so many. Source: fw/bldc_servo_structs.h, control_position_raw.
   static constexpr double kRangeRev = 65536.0;
 
-  /// What an answer to this driver's questions holds. Units of the drive.
+  /// Values of an answer to this driver's questions. Units of the drive.
   struct Reading {
     double mode = kNaN;
     double fault = kNaN;
@@ -55,7 +55,7 @@ class Moteus_Motor final : public SoloMotor {
     bool fine_position = false;  ///< As a float: integers do not reach over its range.
     bool has_clock = false;
   };
-  /// What position mode is told. Units of the drive.
+  /// Command in position mode. Units of the drive.
   struct Motion {
     double position_rev = kNaN;  ///< Where it is.
     double velocity_rev_s = 0.0;

@@ -23,7 +23,7 @@ class MoteusDrive final : public ServoDrive {
   void fault(std::uint32_t native_code) noexcept override;
 
   [[nodiscard]] MoteusMode mode() const noexcept { return mode_; }
-  /// What an attached encoder makes of register 0x00C: 0 nothing is known, 1 the rotor, 2 the output.
+  /// Register 0x00C as the attached encoder sets it: 0 nothing is known, 1 the rotor, 2 the output.
   void setHomeState(int state) noexcept { home_state_ = state; }
   void setRegisterMapVersion(int version) noexcept { version_ = version; }
 

@@ -62,7 +62,7 @@ inline constexpr double kMotionTorqueNm = 24.0;
 inline constexpr double kMotionStiffness = 500.0;
 inline constexpr double kMotionDamping = 5.0;
 
-/// What is out of range is sent as the end of the range.
+/// Values out of range are clamped.
 [[nodiscard]] CanFrame motionCommand(int id, const Motion& motion) noexcept;
 
 // Replies. The payload has 8 bytes.

@@ -76,7 +76,7 @@ class MyActuator_Motor final : public SoloMotor {
   bool ask_uptime_ = false;  ///< Next; else the status.
   bool reset_ = false;       ///< The drive is to be restarted with the next frames.
 
-  // What the drive said.
+  // Readings of the drive.
   std::optional<MonotonicTime> heard_;
   std::optional<std::int32_t> raw_angle_;  ///< The last, in 0.01 deg.
   std::int64_t angle_raw_ = 0;             ///< The same, going on where 32 bits end.

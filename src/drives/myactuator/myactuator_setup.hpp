@@ -5,7 +5,7 @@
 
 namespace rc10 {
 
-/// What can be written to an RMD-X drive. It stores each at once.
+/// Settings that can be written to an RMD-X drive. It stores each at once.
 [[nodiscard]] const DriveSetup& myactuatorSetup() noexcept;
 
 /// The settings of one drive. Each is written with frames of its own kind; accelerations alone can be read.

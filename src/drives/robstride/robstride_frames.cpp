@@ -146,7 +146,7 @@ CanFrame RobstrideCodec::fault(std::uint32_t fault_word) const noexcept {
 FaultCode robstrideFault(std::uint32_t native_code, bool cyber_gear) noexcept {
   if (cyber_gear && (native_code & kCyberGearOverload) != 0) return FaultCode::kDriveOverload;
   const FaultCode fault = faultOfBits(kRobstrideFaults, native_code);
-  // What is left of overload is status bit 20.
+  // Status bit 20 alone remains of overload.
   return cyber_gear && fault == FaultCode::kDriveOverload ? FaultCode::kDrivePhase : fault;
 }
 

@@ -50,7 +50,7 @@ inline constexpr std::uint32_t kRobstrideTimeoutPerMs = 20;
           true};
 }
 
-/// What the operation mode follows: torque = stiffness * (position - its own) + damping * (velocity - its
+/// Control law of the operation mode: torque = stiffness * (position - its own) + damping * (velocity - its
 /// own) + torque_nm.
 struct RobstrideOperation {
   double position_rad = 0.0;

@@ -24,7 +24,7 @@ constexpr Duration kLongestGap = std::chrono::milliseconds{200};
 constexpr double kJumpFactor = 1.2;
 constexpr double kJumpSlackRad = 0.5;
 constexpr double kWholeTurnsTolerance = 0.02;  // rad
-// What is missing after the end of the scale: whole turns, whatever the scale's end is rounded to.
+// Wrap of the position: whole turns, whatever the rounding of full scale.
 constexpr double kScaleRad = 8.0 * std::numbers::pi;
 // No counted position is so far away.
 constexpr double kFarthestCountedRad = 1e5;

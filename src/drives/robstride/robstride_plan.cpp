@@ -1,4 +1,4 @@
-// What a RobStride_Motor is to be told: its update().
+// RobStride_Motor::update(): the command of a tick.
 #include <algorithm>
 #include <cmath>
 

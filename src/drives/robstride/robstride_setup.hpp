@@ -5,8 +5,8 @@
 
 namespace rc10 {
 
-/// What can be written to a RobStride drive, or to a CyberGear: that has no frame to store parameters (its
-/// type 22 is another bit rate), so only its id.
+/// Settings that can be written to a RobStride drive, or to a CyberGear: that has no frame to store
+/// parameters (its type 22 is another bit rate), so only its id.
 [[nodiscard]] const DriveSetup& robstrideSetup(bool cyber_gear) noexcept;
 
 /// The parameters of one drive as settings.

@@ -165,7 +165,7 @@ void RobstrideDrive::write(const CanFrame& frame) noexcept {
   if (running_) follow();
 }
 
-// What is in force while it runs is no setting: the run mode and references start anew.
+// Run mode and references are no settings: they start anew.
 void RobstrideDrive::save() noexcept {
   if (model_->cyber_gear) return;
   for (auto& each : parameters_) {

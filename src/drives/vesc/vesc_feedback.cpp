@@ -17,7 +17,7 @@ constexpr int kVescGapPeriods = 5;
 // A drive that starts is silent for longer (main.c waits 500 ms alone); a cable that is plugged in again may
 // be another drive's.
 constexpr Duration kRestartGap = milliseconds{300};
-// What the tachometer can have moved beyond what its speed explains.
+// Tolerance of a tachometer step over the one that the speed explains.
 constexpr double kStepSlack = 12.0;
 constexpr double kErpmPerS = 500'000.0;  // a bare rotor at full current; estimated, generous
 constexpr double kAmbiguousDeg = 120.0;

@@ -53,7 +53,7 @@ inline constexpr double kVescPerDegree = 1e6;
 /// current, so that 1 A padded with zeros becomes the drive's full current.
 [[nodiscard]] CanFrame makeVescCommand(VescPacket packet, int controller_id, std::int32_t raw) noexcept;
 
-// What a drive can be asked that fits into one frame each way: COMM_GET_VALUES_SELECTIVE (50) with one bit
+// Questions that fit into one frame each way: COMM_GET_VALUES_SELECTIVE (50) with one bit
 // of its mask. It moves nothing and feeds no watchdog.
 inline constexpr std::uint32_t kVescAskFault = 1U << 15U;   ///< mc_fault_code
 inline constexpr std::uint32_t kVescAskStatus = 1U << 21U;  ///< kVescTimedOut, kVescKillSwitch

@@ -8,7 +8,7 @@
 
 namespace rc10 {
 
-/// What a VESC must be asked, since its status frames do not tell: its fault, its kill switch, and whether
+/// Questions to a VESC about state that its status frames lack: its fault, its kill switch, and whether
 /// its watchdog works. The watchdog is proven once after each start of the drive: either the drive says at
 /// first sight that it has timed out, or a motor at rest is told nothing until it does. Pure: frames and time
 /// come in, what to ask goes out. Scheduler thread only.
@@ -23,7 +23,7 @@ class VescInquiry {
   /// The drive was restarted: all is to be found out anew.
   void restart() noexcept;
 
-  /// What to ask in this tick; 0: nothing.
+  /// Question of this tick; 0: none.
   [[nodiscard]] std::uint32_t question() const noexcept { return question_; }
   /// The drive is to be told nothing, so that its watchdog can be seen.
   [[nodiscard]] bool silence() const noexcept { return silent_; }

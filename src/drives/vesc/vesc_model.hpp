@@ -7,14 +7,14 @@
 
 namespace rc10 {
 
-/// What the angle comes from, and with it what closes the angle loop.
+/// Source of the angle; determines where the angle loop is closed.
 enum class VescAngle : std::uint8_t {
   kTachometer,  ///< STATUS_5; loop on the host, speeds to the drive.
   kEncoder,     ///< STATUS_4; the drive's own position loop.
   kNone,
 };
 
-/// What a velocity of 0 means.
+/// Meaning of a velocity of 0.
 enum class VescStop : std::uint8_t { kRegulate, kCoast, kBrake };
 
 /// The values of the family's own keys.
@@ -37,7 +37,7 @@ struct VescOptions {
   int host_id;
 };
 
-/// What a code of the drive means. An unknown one is kDriveOther.
+/// Fault of a native code; kDriveOther for an unknown one.
 [[nodiscard]] FaultCode vescFault(std::uint8_t native_code) noexcept;
 
 /// The slowest feedback on which the host closes the angle loop.

@@ -39,7 +39,7 @@ class VESC_Motor : public SoloMotor {
   }
   void retune(const CascadeConfig& loops) noexcept override;
 
-  /// What the status frames tell beyond MotorFeedback. Zeros until the first one.
+  /// Content of the status frames beyond MotorFeedback. Zeros until the first one.
   struct Telemetry {
     VescStatus1 status1;
     VescStatus2 status2;

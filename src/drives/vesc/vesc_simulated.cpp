@@ -181,7 +181,7 @@ double VescDrive::dutyNow() const noexcept {
   return std::clamp(volts / p.supply_v, -1.0, 1.0);
 }
 
-/// What its position loop sees: the rotor, or what stands behind the divider.
+/// Input of its position loop: the rotor's angle, or that angle after the divider.
 double VescDrive::encoderDeg() const noexcept {
   return wrapDegrees(driveAngleDeg() / options_.position_divider - divided_zero_deg_);
 }

@@ -9,7 +9,7 @@
 
 namespace rc10 {
 
-/// What a motor does when nobody tells it what to do.
+/// Action of a motor whose target has ended.
 enum class FallbackAction : std::uint8_t { kCoast, kDamp, kBrake, kHold };
 
 /// As the configuration writes them, in the order of FallbackAction.
@@ -46,7 +46,7 @@ class Fallback {
   }
   void end() noexcept { kind_ = FrameKind::kRest; }
   [[nodiscard]] bool acts() const noexcept { return kind_ != FrameKind::kRest; }
-  /// What the drive is to be told; kRest while none is in force.
+  /// Kind of frame for the drive; kRest while no fallback is in force.
   [[nodiscard]] FrameKind kind() const noexcept { return kind_; }
 
   /// Once per tick.

@@ -8,7 +8,7 @@
 
 namespace rc10 {
 
-/// What is too much for a motor. At the output shaft; 0: not watched.
+/// Limits of a motor beyond which it is stopped. At the output shaft; 0: not watched.
 struct GuardConfig {
   float overspeed_rpm = 0.0F;
   float temperature_derate_c = 0.0F;  ///< From here on the effort limit comes down, to 0 at the trip.
@@ -26,11 +26,11 @@ struct GuardConfig {
 /// Watches one ACTIVE motor for what should not be. Scheduler thread only.
 class MotorGuard {
  public:
-  /// What is known of the motor in this tick, before its update().
+  /// State of the motor in this tick, before its update().
   struct Observation {
     const MotorFeedback& feedback;
     const Target& target;  ///< In force since the last tick.
-    float effort = 0.0F;   ///< What the drive was told last.
+    float effort = 0.0F;   ///< Last command to the drive.
     CommandUnit unit = CommandUnit::kNone;
     std::uint32_t limits = 0;  ///< Of the last update().
     MonotonicTime now;

@@ -14,7 +14,7 @@ inline namespace robot_client {
 
 /// Keeps a handler subscribed as long as it lives. After its destructor the handler does not run any more; so
 /// do not destroy it while holding a lock that the handler takes.
-/// What the handler captured is destroyed soon after, by the connection's thread.
+/// The handler and its captures are destroyed soon after, by the connection's thread.
 class Subscription {
  public:
   Subscription() = default;

@@ -20,7 +20,7 @@ namespace rc10 {
 inline namespace robot_client {
 
 struct RobotOptions {
-  std::string client{};  ///< Who commands, shown as the owner of a motor; empty: the program's name.
+  std::string client{};  ///< Name shown as the owner of a motor; empty: the program's.
   int priority = 0;      ///< A client with a higher one takes motors over from a lower one.
   /// A target acts so long after rc10d has received it: 1 to 1000 ms. So long a motor goes on when the
   /// program has died.

@@ -83,7 +83,7 @@ class RtosTask {
   void requestStop() noexcept { stop_.request_stop(); }
   [[nodiscard]] bool running() const noexcept { return running_.load(); }
 
-  /// What of the options the system did not grant, and how to get it; empty: everything was granted.
+  /// Options that the system did not grant, and the remedy; empty: everything was granted.
   [[nodiscard]] const std::string& problem() const noexcept { return problem_; }
   /// Times loop() was called.
   [[nodiscard]] std::uint64_t cycles() const noexcept { return cycles_.load(); }

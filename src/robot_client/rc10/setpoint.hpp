@@ -12,7 +12,7 @@
 namespace rc10 {
 inline namespace robot_client {
 
-/// What a motor does with a target. The numbers are those of setpoint_t.lcm.
+/// Mode of a target. The numbers are those of setpoint_t.lcm.
 enum class Mode : std::int8_t {
   kCoast = 0,
   kCurrent = 1,     ///< A
@@ -28,7 +28,7 @@ enum class Mode : std::int8_t {
 /// "coast", "current", "velocity", ...
 [[nodiscard]] const char* toString(Mode mode) noexcept;
 
-/// What is added to a loop's output. 0: nothing.
+/// Addition to a loop's output. 0: none.
 struct FeedForward {
   Rpm velocity{};          ///< Of the trajectory, added to the angle loop's output.
   double torque_nm = 0.0;  ///< At the output shaft, added after the loops.

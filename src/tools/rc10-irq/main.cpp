@@ -94,7 +94,7 @@ Result<void> watch(const Options& options, const ThreadPriorities& priorities) {
   }
 }
 
-/// What is missing for a single run; a watch waits for it.
+/// Error for an interface that is missing in a single run; a watch waits for it.
 Result<void> checkPresence(const Options& options, const std::vector<std::string>& present) {
   for (const auto& interface : options.interfaces) {
     if (std::find(present.begin(), present.end(), interface) != present.end()) continue;

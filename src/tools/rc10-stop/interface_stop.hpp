@@ -21,7 +21,7 @@ class InterfaceStop {
   void step();
   /// Everything was accepted, or the interface is beyond help.
   [[nodiscard]] bool ended() const noexcept { return !failure_.empty() || rounds_ == kRounds; }
-  /// What went wrong, in words; empty: every frame was accepted.
+  /// Error in words; empty: every frame was accepted.
   [[nodiscard]] std::string problem() const;
 
  private:

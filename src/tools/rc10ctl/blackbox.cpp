@@ -68,7 +68,7 @@ void eachCandumpLine(const blackbox::Recording& recording, const Line& line) {
   for (std::size_t i = 0; i < recording.size(); ++i) {
     const auto record = recording.at(i);
     const auto* frame = std::get_if<blackbox::Frame>(&record);
-    // What the kernel refused never was on the bus.
+    // Frames that the kernel refused never were on the bus.
     if (frame == nullptr || (frame->header.flags & blackbox::kFrameRefused) != 0) continue;
     if (!line(client::candumpLine(recording, *frame))) return;
   }

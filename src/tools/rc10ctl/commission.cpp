@@ -57,7 +57,7 @@ std::optional<std::string> waitLine(Feed& feed) {
   std::fflush(stdout);
   while (!interrupted()) {
     pollfd entry{.fd = STDIN_FILENO, .events = POLLIN, .revents = 0};
-    // What was typed ahead is in the stream already.
+    // Text typed ahead is in the stream already.
     if (std::cin.rdbuf()->in_avail() > 0 || ::poll(&entry, 1, 50) > 0) {
       std::string line;
       return std::getline(std::cin, line) && feed.pump() ? std::optional{line} : std::nullopt;

@@ -11,7 +11,7 @@
 
 namespace rc10::ctl {
 
-/// What `set`, `jog` and `commission` ask of one motor.
+/// Command of `set`, `jog` and `commission` to one motor.
 struct Drive {
   link::Setpoint setpoint;
   std::size_t motor = 0;  ///< Its place in Welcome and State.

@@ -71,7 +71,7 @@ std::vector<std::string> linesOf(std::string_view text) {
   return lines;
 }
 
-/// What there is to show: the gains, those before a change, the lines for the robot's file.
+/// Output: the gains, those before a change, the lines for the robot's file.
 struct Shown {
   std::string motor;
   Gains gains;

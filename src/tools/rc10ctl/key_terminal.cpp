@@ -24,7 +24,7 @@ KeyTerminal::KeyTerminal(KeyTerminal&& other) noexcept
     : before_(other.before_), owns_(std::exchange(other.owns_, false)) {}
 
 KeyTerminal::~KeyTerminal() {
-  // What is still typed is meant for the motor, not for the shell.
+  // Keys still in the buffer were meant for the motor, not for the shell.
   if (owns_) ::tcsetattr(STDIN_FILENO, TCSAFLUSH, &before_);
 }
 

@@ -21,7 +21,7 @@ class KeyTerminal {
   KeyTerminal& operator=(const KeyTerminal&) = delete;
   ~KeyTerminal();
 
-  /// What was typed since the last call; does not wait. Sets `closed` when the terminal has gone.
+  /// Text typed since the last call; does not wait. Sets `closed` when the terminal has gone.
   [[nodiscard]] std::string typed(bool& closed) const;
 
  private:

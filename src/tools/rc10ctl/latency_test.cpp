@@ -17,7 +17,7 @@ namespace {
 
 constexpr std::int64_t kNsPerSecond = 1'000'000'000;
 
-// What rc10d does at its start, for as long as the object lives; what is not allowed is left out.
+// Settings of rc10d's scheduler thread for the life of the object; those without permission are left out.
 class AsScheduler {
  public:
   explicit AsScheduler(const LatencyTest& test) {

@@ -7,7 +7,7 @@
 
 namespace rc10::ctl {
 
-/// What the kernel and the driver say of a CAN interface; what is wanted of it is left empty.
+/// Facts of the kernel and the driver about a CAN interface; the wanted settings are left empty.
 [[nodiscard]] doctor::LinkFacts readLink(const doctor::HostFiles& files, const std::string& interface);
 
 }  // namespace rc10::ctl

@@ -5,7 +5,7 @@
 
 namespace rc10::ctl {
 
-/// What the robot will be: the figures of describe(), for programs.
+/// Figures of describe(), for programs.
 [[nodiscard]] client::Json robotJson(const RobotConfig& config);
 
 }  // namespace rc10::ctl

@@ -13,7 +13,7 @@ namespace rc10::ctl {
 /// The exit codes of rc10ctl.
 enum class ExitCode : int { kOk = 0, kFailed = 1, kUsage = 2, kNoDaemon = 3 };
 
-/// What the options that every verb has say.
+/// Options of every verb.
 struct Global {
   std::optional<std::string> robot;
   std::optional<std::string> socket;
@@ -22,7 +22,7 @@ struct Global {
 
 inline constexpr const char* kClientName = "rc10ctl";
 
-/// What is asked of motors and modules is sent so often, and holds so long.
+/// Period and validity of commands to motors and modules.
 inline constexpr Duration kSendPeriod = std::chrono::milliseconds{20};
 inline constexpr std::int32_t kValidityMs = 100;
 
@@ -35,7 +35,7 @@ ExitCode complain(const Error& error, ExitCode code);
 /// From now on complain() prints {"error": ...} on stdout too: for the program that reads --json there.
 void complainInJson();
 
-/// What to say when rc10d has closed the connection.
+/// Error when rc10d has closed the connection.
 [[nodiscard]] Error rc10dEnded();
 
 /// Whether Ctrl-C or SIGTERM came since catchInterrupt().

@@ -29,7 +29,7 @@ struct SetOptions {
 
 constexpr std::uint32_t kAllModes = (1U << link::kModeCount) - 1U;
 
-// What the words mean, without the robot.
+// Parses the options; needs no robot.
 Result<Drive> driveFrom(const SetOptions& options) {
   const auto mode = link::modeOf(options.mode);
   if (!mode) return fail("'" + options.mode + "' is not a mode: use one of " + link::modeWords(kAllModes));
