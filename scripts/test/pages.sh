@@ -8,6 +8,7 @@ need build
 need_python
 
 step "order of the layers" "$repo/tests/layers/check_layers.py" "$repo/src"
+step "public headers are closed" "$repo/tests/layers/check_public_api.py" "$repo"
 pytest_in tests/layers
 pytest_in tests/docs
 pytest_in tests/scripts
