@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "acme_loop_motor.hpp"
 #include "bus/byte_order.hpp"
 
 namespace acme {
@@ -40,17 +41,23 @@ constexpr std::array kFaults{FaultCode::kNone, FaultCode::kDriveOverCurrent, Fau
   return {kFeedbackBase + static_cast<std::uint32_t>(id), false};
 }
 
+constexpr std::string_view kLoopModel = "Turner-C";
+
+/// Default gains of the Turner-C. 200 samples a second allow a velocity loop of some 10 Hz.
+constexpr CascadeConfig kLoops{.velocity = PID_Position::Config{.kp = 0.05F, .ki = 0.5F},
+                               .angle = {.kp = 1.0F}};
+
 constexpr FrameShape kShape{.extended = false, .fd = false, .bit_rate_switch = false, .length = kLength};
 
 class AcmeFamily final : public MotorFamily {
  public:
   [[nodiscard]] std::string_view name() const noexcept override { return "ACME"; }
   [[nodiscard]] std::span<const std::string_view> models() const noexcept override {
-    static constexpr std::array<std::string_view, 1> kModels{"Turner"};
+    static constexpr std::array<std::string_view, 2> kModels{"Turner", kLoopModel};
     return kModels;
   }
 
-  [[nodiscard]] MotorTraits traits(std::string_view /*model*/, const OwnValues& /*own*/) const override {
+  [[nodiscard]] MotorTraits traits(std::string_view model, const OwnValues& /*own*/) const override {
     MotorTraits traits;
     traits.min_id = 1;
     traits.max_id = 16;
@@ -67,6 +74,12 @@ class AcmeFamily final : public MotorFamily {
                      .idle = Provision::kFrame,
                      .brake = Provision::kFrame,  // velocity 0
                      .enable = Provision::kFrame};
+    if (model == kLoopModel) {
+      traits.host_loops = &kLoops;
+      traits.modes = ModeSet{ControlMode::kCoast, ControlMode::kCurrent,    ControlMode::kVelocity,
+                             ControlMode::kAngle, ControlMode::kTotalAngle, ControlMode::kBrake};
+      traits.frames.brake = traits.frames.hold = Provision::kHostLoop;
+    }
     return traits;
   }
 
@@ -82,7 +95,11 @@ class AcmeFamily final : public MotorFamily {
 
   [[nodiscard]] Result<std::unique_ptr<Motor_Base>> build(const MotorSettings& settings,
                                                           BusParts& parts) const override {
-    return registerSolo(std::make_unique<ACME_Motor>(settings, traits(settings.model, settings.own)), parts);
+    const MotorTraits of_model = traits(settings.model, settings.own);
+    if (of_model.host_loops != nullptr) {
+      return registerSolo(std::make_unique<ACME_LoopMotor>(settings, of_model), parts);
+    }
+    return registerSolo(std::make_unique<ACME_Motor>(settings, of_model), parts);
   }
 };
 
@@ -115,31 +132,28 @@ FrameVerdict ACME_Motor::updateFeedback(const CanFrame& frame) noexcept {
 
 void ACME_Motor::update(const Tick& /*tick*/) noexcept {
   limits_ = 0;
-  current_a_ = 0.0;
-  velocity_rpm_ = 0.0;
-  // It is on while it is to be enabled or to obey: then without torque until there is something to follow.
-  const FrameKind kind = ordered();
-  mode_ = kind == FrameKind::kRest || kind == FrameKind::kPoll ? Mode::kOff : Mode::kCurrent;
-
   const Target target = wanted();
-  if (target.mode == ControlMode::kCurrent) {
-    const double limit_a = static_cast<double>(effortLimit());
-    current_a_ = std::clamp(target.value, -limit_a, limit_a);
-    if (current_a_ != target.value) limits_ |= kLimitCurrent;
-    setCommand(current_a_, CommandUnit::kAmpere);
-    return;
+  switch (target.mode) {
+    case ControlMode::kVelocity:
+    case ControlMode::kBrake: return obeyVelocity(rpmWithinLimit(target.value));
+    case ControlMode::kCurrent: return obeyCurrent(currentWithinLimit(target));
+    default: return obeyCurrent(0.0);
   }
-  if (target.mode == ControlMode::kVelocity || target.mode == ControlMode::kBrake) {
-    mode_ = Mode::kVelocity;
-    const auto most_rpm = static_cast<double>(velocityLimitRpm());
-    double rpm = target.value;
-    if (most_rpm > 0.0) rpm = std::clamp(rpm, -most_rpm, most_rpm);
-    if (rpm != target.value) limits_ |= kLimitVelocity;
-    velocity_rpm_ = toDrive(rpm);
-    setCommand(rpm, CommandUnit::kNative);
-    return;
-  }
-  setCommand(0.0, CommandUnit::kAmpere);
+}
+
+// On while it is to be enabled or to obey: then without torque until there is a target.
+void ACME_Motor::obeyCurrent(double current_a) noexcept {
+  mode_ = enabling() || obeying() ? Mode::kCurrent : Mode::kOff;
+  current_a_ = current_a;
+  velocity_rpm_ = 0.0;
+  setCommand(current_a, CommandUnit::kAmpere);
+}
+
+void ACME_Motor::obeyVelocity(double output_rpm) noexcept {
+  mode_ = Mode::kVelocity;
+  current_a_ = 0.0;
+  velocity_rpm_ = toDrive(output_rpm);
+  setCommand(output_rpm, CommandUnit::kNative);
 }
 
 SequenceProgress ACME_Motor::sequenceProgress() const noexcept {
@@ -148,9 +162,7 @@ SequenceProgress ACME_Motor::sequenceProgress() const noexcept {
 
 DriveComplaint ACME_Motor::complaint() const noexcept {
   if (const auto fault = faultOf(flags_); fault != 0) return {kFaults[fault], fault};
-  const FrameKind kind = ordered();
-  const bool obeys = kind == FrameKind::kCommand || kind == FrameKind::kIdle || kind == FrameKind::kBrake;
-  if (obeys && (flags_ & kEnabledFlag) == 0) return {FaultCode::kDriveStopped, 0};
+  if (obeying() && (flags_ & kEnabledFlag) == 0) return {FaultCode::kDriveStopped, 0};
   return {};
 }
 

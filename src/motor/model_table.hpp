@@ -16,11 +16,11 @@ template <typename Models>
 }
 
 /// Names of all rows, as MotorFamily::models() gives them.
-template <typename Model, std::size_t kCount>
-[[nodiscard]] constexpr std::array<std::string_view, kCount> modelNames(
-    const std::array<Model, kCount>& models) noexcept {
-  std::array<std::string_view, kCount> names{};
-  for (std::size_t i = 0; i < kCount; ++i) names[i] = models[i].name;
+template <typename Model, std::size_t Count>
+[[nodiscard]] constexpr std::array<std::string_view, Count> modelNames(
+    const std::array<Model, Count>& models) noexcept {
+  std::array<std::string_view, Count> names{};
+  for (std::size_t i = 0; i < Count; ++i) names[i] = models[i].name;
   return names;
 }
 

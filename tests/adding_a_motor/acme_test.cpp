@@ -5,6 +5,7 @@
 #include <array>
 
 #include "acme_drive.hpp"
+#include "acme_loop_motor.hpp"
 #include "acme_motor.hpp"
 #include "config/load_config.hpp"
 #include "config/motor_families.hpp"
@@ -153,6 +154,71 @@ TEST_F(AcmeRobot, ADriveThatWasRestartedIsNotTrustedWithTheOldTarget) {
   drive().restart();
   robot.run(200);
   EXPECT_EQ(status(), MotorStatus::kReady);
+}
+
+/// A Turner-C: its loops run on the host.
+class AcmeLoops : public ::testing::Test {
+ protected:
+  static constexpr std::size_t kTable = 0;
+  static RobotConfig configOf() {
+    auto outcome = parseRobotConfig(
+        "robot: acme\nbuses: [{name: b, type: sim, motors: [{name: table, model: Turner-C, id: 1, zero: "
+        "power_on, "
+        "feedback_timeout_ms: 50, velocity_limit_rpm: 200}]}]\n",
+        "a.yaml");
+    return std::move(outcome.config.value());
+  }
+  void SetUp() override {
+    ASSERT_TRUE(kAdded);
+    robot.run(20);
+    ASSERT_FALSE(robot.order(Operation::kEnable).refused);
+  }
+  const MotorFeedback& feedback() { return robot.motor(kTable).feedback; }
+
+  VirtualRobot robot{configOf()};
+};
+
+TEST_F(AcmeLoops, HoldAVelocity) {
+  robot.hold(kTable, {.mode = ControlMode::kVelocity, .value = 60.0}, 1500);
+  EXPECT_NEAR(feedback().velocity_rpm, 60.0F, 1.0F);
+}
+
+TEST_F(AcmeLoops, ReachAnAngleWithoutPassingIt) {
+  double farthest_deg = 0.0;
+  for (int i = 0; i < 20; ++i) {
+    robot.hold(kTable, {.mode = ControlMode::kTotalAngle, .value = 90.0}, 100);
+    farthest_deg = std::max(farthest_deg, feedback().total_angle_deg);
+  }
+  EXPECT_NEAR(feedback().total_angle_deg, 90.0, 0.5);
+  EXPECT_LT(farthest_deg, 95.0);
+}
+
+MotorSettings turnerC() {
+  MotorSettings settings = turner();
+  settings.model = "Turner-C";
+  settings.loops = *acmeFamily().traits(settings.model, {}).host_loops;
+  return settings;
+}
+
+TEST_F(AcmeLoops, GiveNoCurrentOnOldFeedback) {
+  const auto settings = turnerC();
+  const auto traits = acmeFamily().traits(settings.model, {});
+  SoloRig bench{std::make_unique<ACME_LoopMotor>(settings, traits), makeAcmeDrive(settings, {})};
+  bench.command({.mode = ControlMode::kVelocity, .value = 100.0});
+  bench.run(15ms);
+  EXPECT_GT(bench.motor().commandValue(), 0.0F);
+  bench.cut(true);
+  bench.run(30ms);
+  EXPECT_EQ(bench.motor().commandValue(), 0.0F);
+}
+
+TEST_F(AcmeLoops, TakeOtherGains) {
+  const auto settings = turnerC();
+  ACME_LoopMotor motor{settings, acmeFamily().traits(settings.model, {})};
+  CascadeConfig loops = *motor.hostLoops();
+  loops.angle.kp *= 2.0F;
+  motor.retune(loops);
+  EXPECT_EQ(motor.hostLoops()->angle.kp, loops.angle.kp);
 }
 
 }  // namespace
