@@ -2,6 +2,7 @@
 
 #include <string>
 
+#include "app/limits.hpp"
 #include "bus/command_packer.hpp"
 #include "motor/angle_reference.hpp"
 #include "motor/motor_base.hpp"
@@ -83,9 +84,9 @@ class SoloMotor : public Motor_Base, public CommandPacker {
   /// The same, where the drive itself ends at `drive_limit_rpm` of the output shaft.
   [[nodiscard]] double rpmWithinLimit(double output_rpm, double drive_limit_rpm) noexcept;
 
-  /// Command sent, for the state and the guards. Output shaft.
+  /// Command sent, for the state and the guards. Output shaft. A target may be any number: see nearFloat().
   void setCommand(double value, CommandUnit unit) noexcept {
-    command_value_ = static_cast<float>(value);
+    command_value_ = nearFloat(value);
     command_unit_ = unit;
   }
 

@@ -10,39 +10,12 @@
 
 #include <fmt/format.h>
 
-#include "config/load_config.hpp"
+#include "faults/robots.hpp"
 
 namespace rc10::test {
 namespace {
 
 using namespace std::chrono_literals;
-
-// Each model, each fallback, each limit, a group that rearms.
-constexpr std::string_view kRobot = R"(
-robot: chaos
-buses:
-  - name: chassis
-    type: sim
-    motors:
-      - {name: left, model: M3508, id: 1, current_limit_a: 10, on_timeout: brake, on_disable: damp, on_estop: brake,
-         zero: power_on}
-      - {name: right, model: M3508, id: 2, direction: -1, on_timeout: damp, on_disable: brake, on_estop: damp,
-         current_slew_a_per_s: 100, velocity_slew_rpm_per_s: 2000}
-      - {name: feeder, model: M2006, id: 3, current_limit_a: 5, stall_ms: 200}
-  - name: arm
-    type: sim
-    motors:
-      - {name: yaw, model: GM6020, id: 5, command: current, current_limit_a: 1.5, on_timeout: damp, on_disable: damp,
-         on_estop: damp, angle_min_deg: -90, angle_max_deg: 90, angle_slew_deg_per_s: 360, max_first_step_deg: 30,
-         following_error_deg: 30}
-      - {name: pitch, model: GM6020, id: 1, command: voltage, voltage_limit_v: 12, on_timeout: hold, on_disable: damp,
-         on_estop: brake, hold_max_s: 1}
-      - {name: lift, model: M2006, id: 4, current_limit_a: 6, on_timeout: hold, on_disable: brake, on_estop: hold,
-         hold_max_s: 0.5, angle_min_deg: 0, angle_max_deg: 2000, stall_ms: 300, stall_action: notify,
-         simulated: {load_torque_nm: 0.3}}
-groups:
-  - {name: drive, motors: [left, right], on_member_offline: stop_group, on_return: rearm_at_rest}
-)";
 
 constexpr std::array<std::string_view, static_cast<std::size_t>(Chaos::Action::kCount)> kNames{
     "nothing",      "command",        "program",    "enable",     "enable alone", "disable", "clear",
@@ -56,12 +29,6 @@ constexpr std::size_t kMostOpen = 64;
 // How often each is chosen: what brings a robot to work more often than what stops it.
 constexpr std::array<std::uint8_t, static_cast<std::size_t>(Chaos::Action::kCount)> kWeights{
     16, 24, 50, 38, 2, 4, 26, 5, 2, 36, 4, 3, 4, 3, 4, 4, 2, 2, 4, 3, 3, 3, 4, 1, 1, 5, 1, 1};
-
-[[nodiscard]] RobotConfig chaosRobot() {
-  auto outcome = parseRobotConfig(kRobot, "chaos.yaml");
-  if (!outcome) throw std::runtime_error(outcome.errorText());
-  return std::move(*outcome.config);
-}
 
 [[nodiscard]] Chaos::Action choose(Choices& choices) {
   constexpr std::uint32_t kSum = [] {
@@ -80,11 +47,8 @@ constexpr std::array<std::uint8_t, static_cast<std::size_t>(Chaos::Action::kCoun
 
 }  // namespace
 
-Chaos::Chaos(Choices& choices) : choices_(choices), config_(chaosRobot()) {
-  for (std::size_t bus = 0; bus < config_.buses.size(); ++bus) {
-    for (std::size_t drive = 0; drive < config_.buses[bus].motors.size(); ++drive)
-      places_.emplace_back(bus, drive);
-  }
+Chaos::Chaos(Choices& choices, std::optional<Lie> lie)
+    : choices_(choices), lie_(lie), starts_(choices.next(static_cast<std::uint32_t>(kRobotCount))) {
   constexpr std::array<const char*, 3> kClients{"planner", "remote", "planner"};
   for (std::size_t i = 0; i < clients_.size(); ++i) {
     clients_[i].name = kClients[i];
@@ -94,12 +58,31 @@ Chaos::Chaos(Choices& choices) : choices_(choices), config_(chaosRobot()) {
   start();
 }
 
-// A new process, on drives that were just switched on.
+// Of the motor that the lie is about, a quarter of its limits.
+RobotConfig Chaos::believed(const Lie& lie) const {
+  RobotConfig config = config_;
+  if (lie.kind != Lie::Kind::kLimits) return config;
+  auto& motor = config.buses[places_[lie.motor].first].motors[places_[lie.motor].second];
+  auto& settings = motor.settings;
+  if (settings.effort_limit <= 0.0F) settings.effort_limit = motor.traits().effort_full_scale;
+  settings.effort_limit *= 0.25F;
+  settings.velocity_limit_rpm *= 0.25F;
+  return config;
+}
+
+// A new process, on drives that were just switched on: the next robot.
 void Chaos::start() {
   if (oracle_) visits_.add(oracle_->visits());
+  config_ = robotOf(lie_ ? lie_->robot : starts_++ % kRobotCount);
+  places_.clear();
+  for (std::size_t bus = 0; bus < config_.buses.size(); ++bus) {
+    for (std::size_t drive = 0; drive < config_.buses[bus].motors.size(); ++drive)
+      places_.emplace_back(bus, drive);
+  }
   robot_ = std::make_unique<VirtualRobot>(config_);
   robot_->freezeSimulation(true);  // stepped here, so that every frame is seen
-  oracle_ = std::make_unique<Oracle>(config_);
+  oracle_ = std::make_unique<Oracle>(lie_ ? believed(*lie_) : config_);
+  if (lie_ && lie_->kind == Lie::Kind::kStuck) oracle_->deafen(lie_->motor);
   wires_.clear();
   for (auto& port : robot_->robot().simPorts()) wires_.emplace_back(port->descriptor());
   frozen_.reset();
@@ -129,6 +112,7 @@ void Chaos::tick(std::uint64_t periods) {
   const Duration dt = config_.period() * static_cast<std::int64_t>(periods);
   simulate(dt);
   oracle_->echoed(std::exchange(echoed_, {}));
+  for (std::size_t bus = 0; bus < wires_.size(); ++bus) watched_before_[bus] = sentWatched(bus);
   robot_->tick(periods);
   readBuses();
   robot_time_ += dt;
@@ -169,6 +153,7 @@ void Chaos::readBuses() {
   for (std::size_t bus = 0; bus < wires_.size(); ++bus) {
     if (blocked_.test(bus)) {
       behind_.set(bus);
+      if (sentWatched(bus) != watched_before_[bus]) oracle_->watched(bus);
       continue;
     }
     std::size_t count = 0;
@@ -176,12 +161,22 @@ void Chaos::readBuses() {
       count = wires_[bus].receive(wake, batch_).frame_count;
       for (std::size_t i = 0; i < count; ++i) {
         oracle_->sent(bus, batch_[i]);
+        if (isWatched(bus, batch_[i])) oracle_->watched(bus);
         carry(bus, batch_[i]);
       }
     } while (count == batch_.size());
     auto& queue = queues_[bus];
     if (queue.stuck_ticks > 0 && --queue.stuck_ticks == 0) leaveQueue(bus);
   }
+}
+
+std::uint64_t Chaos::sentWatched(std::size_t bus) const {
+  return robot_->robot().buses()[bus].bus->counters().tx_watched;
+}
+
+bool Chaos::isWatched(std::size_t bus, const CanFrame& frame) const {
+  const auto& watched = robot_->robot().buses()[bus].watched;
+  return std::find(watched.begin(), watched.end(), frame.id) != watched.end();
 }
 
 // From the kernel, which has taken it, to the drives; its echo, if it is watched, back to the daemon.
@@ -194,8 +189,7 @@ void Chaos::carry(std::size_t bus, const CanFrame& frame) {
   }
   robot_->simBus(bus).receive(frame);
   if (stuck) return;
-  const auto& watched = robot_->robot().buses()[bus].watched;
-  if (std::find(watched.begin(), watched.end(), frame.id) == watched.end()) return;
+  if (!isWatched(bus, frame)) return;
   robot_->inboxes()[bus].confirmed.fetch_add(1);
   echoed_.set(bus);
 }
@@ -223,7 +217,7 @@ std::string Chaos::history() const {
   const auto first = noted_ > history_.size() ? noted_ - history_.size() : 0;
   for (auto i = first; i < noted_; ++i) {
     const auto& done = history_[i % history_.size()];
-    out += fmt::format("  before tick {}: {}, motors {:06b}, value {}\n", done.tick,
+    out += fmt::format("  before tick {}: {}, motors {:08b}, value {}\n", done.tick,
                        kNames[static_cast<std::size_t>(done.action)], done.motors, done.value);
   }
   return out;
@@ -246,7 +240,7 @@ MotorSet Chaos::someMotors() {
   const auto which = choices_.next(10);
   MotorSet motors;
   if (which < 6) {
-    motors.set(which);
+    motors.set(choices_.next(static_cast<std::uint32_t>(places_.size())));
   } else if (which < 9) {
     motors = MotorSet{choices_.next(1U << places_.size())};
   } else {
@@ -264,12 +258,16 @@ std::size_t Chaos::driveOf(std::size_t motor) const { return places_[motor].seco
 Target Chaos::randomTarget(std::size_t motor) {
   constexpr auto kNan = std::numeric_limits<double>::quiet_NaN();
   constexpr auto kInfinity = std::numeric_limits<double>::infinity();
-  // Mostly what works: any mode, but those of the model more often.
+  // Mostly what works: any mode, but those of the motor more often.
   using enum ControlMode;
   Target target;
-  target.mode =
-      choices_.of<ControlMode>({kVelocity, kVelocity, kVelocity, kCurrent, kCurrent, kTotalAngle, kAngle,
-                                kBrake, kCoast, kVoltage, kTotalAngle, kAngle, kDuty, kImpedance});
+  const auto any = [this] {
+    return choices_.of<ControlMode>({kVelocity, kVelocity, kVelocity, kCurrent, kCurrent, kTotalAngle, kAngle,
+                                     kBrake, kCoast, kVoltage, kTotalAngle, kAngle, kDuty, kImpedance});
+  };
+  const auto modes = robot_->robot().motors()[motor].motor->modes();
+  target.mode = any();
+  for (int i = 0; i < 3 && !modes.contains(target.mode); ++i) target.mode = any();
   const auto& feedback = robot_->motor(motor).feedback;
   switch (choices_.next(8)) {
     case 0: target.value = choices_.of<double>({1e9, -1e300, kNan, kInfinity, -1e9, 1e300}); break;
@@ -279,8 +277,14 @@ Target Chaos::randomTarget(std::size_t motor) {
   if (target.mode == kCurrent || target.mode == kVoltage) target.value *= 0.1;
   if (target.mode == kVelocity) target.value *= 4.0;
   // Near the measured angle, or it is refused.
-  if ((target.mode == kTotalAngle || target.mode == kAngle) && std::isfinite(feedback.total_angle_deg))
+  const bool of_angle = target.mode == kTotalAngle || target.mode == kAngle || target.mode == kImpedance;
+  if (of_angle && std::isfinite(feedback.total_angle_deg))
     target.value = feedback.total_angle_deg + target.value * choices_.of<double>({0.1, 0.2, 1.0, 10.0});
+  if (target.mode == kDuty) target.value *= 0.01;
+  if (target.mode == kImpedance) {
+    target.stiffness_nm_per_rad = choices_.of<float>({0.0F, 1.0F, 20.0F, 1e30F, -1.0F});
+    target.damping_nms_per_rad = choices_.of<float>({0.0F, 0.1F, 2.0F, 1e30F, -1.0F});
+  }
   if (choices_.oneIn(8)) target.torque_ff_nm = choices_.of<float>({1.0F, -1.0F, 1e30F, -1e30F});
   if (choices_.oneIn(8)) target.velocity_ff_rpm = choices_.of<float>({20.0F, -20.0F, 1e30F, -1e30F});
   return target;

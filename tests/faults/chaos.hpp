@@ -20,7 +20,17 @@ namespace rc10::test {
 /// emergency stops, broken drives and buses, missed ticks, restarts. After every tick the oracle judges.
 class Chaos {
  public:
-  explicit Chaos(Choices& choices);
+  /// For tests of the oracle: it is wrong about one motor of one robot, and has to see that.
+  struct Lie {
+    enum class Kind : std::uint8_t {
+      kLimits,  ///< It believes in a quarter of its limits,
+      kStuck,   ///< or that it goes on following the first thing that it was told.
+    };
+    std::size_t robot = 0;
+    std::size_t motor = 0;
+    Kind kind = Kind::kLimits;
+  };
+  explicit Chaos(Choices& choices, std::optional<Lie> lie = std::nullopt);
 
   /// One thing happens, then some ticks pass. Throws Violation.
   void step();
@@ -85,6 +95,7 @@ class Chaos {
   };
 
   void start();
+  [[nodiscard]] RobotConfig believed(const Lie& lie) const;
   void act(Action action);
   void tick(std::uint64_t periods = 1);
   void ticks(std::uint64_t count);
@@ -92,6 +103,8 @@ class Chaos {
   void deliver(std::size_t bus, CanFrame frame);
   void readBuses();
   void carry(std::size_t bus, const CanFrame& frame);
+  [[nodiscard]] std::uint64_t sentWatched(std::size_t bus) const;
+  [[nodiscard]] bool isWatched(std::size_t bus, const CanFrame& frame) const;
   void leaveQueue(std::size_t bus);
   void holdEchoes(std::size_t bus, std::uint64_t ticks, bool on_wire);
   void command(const Client& client);
@@ -109,13 +122,15 @@ class Chaos {
   void note(Action action, MotorSet motors, double value = 0.0);
 
   Choices& choices_;
+  std::optional<Lie> lie_;
   RobotConfig config_;
+  std::size_t starts_ = 0;
   std::vector<std::pair<std::size_t, std::size_t>> places_;  ///< Bus and drive of each motor.
   std::unique_ptr<VirtualRobot> robot_;
   std::unique_ptr<Oracle> oracle_;
   std::vector<CanReceiver> wires_;  ///< The drives' ends of the buses.
   std::array<CanFrame, CanReceiver::kBatch> batch_{};
-  std::array<CanFrame, 8> feedback_{};
+  std::array<CanFrame, 64> feedback_{};
   std::array<Client, 3> clients_{};
   std::bitset<kMaxBuses> frozen_;   ///< Nothing is heard from it.
   std::bitset<kMaxBuses> blocked_;  ///< Nobody takes its frames.
@@ -128,7 +143,9 @@ class Chaos {
   };
   std::array<Queue, kMaxBuses> queues_{};
   std::bitset<kMaxBuses> echoed_;  ///< Since the last tick.
-  bool contact_open_ = false;      ///< Of the e-stop input.
+  std::array<std::uint64_t, kMaxBuses>
+      watched_before_{};       ///< Frames whose echoes are watched, before this tick.
+  bool contact_open_ = false;  ///< Of the e-stop input.
   std::uint64_t orders_ = 0;
   std::uint64_t tick_ = 0;
   Duration robot_time_{};

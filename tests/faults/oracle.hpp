@@ -4,41 +4,19 @@
 #include <bitset>
 #include <cstdint>
 #include <map>
+#include <memory>
 #include <optional>
-#include <stdexcept>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "config/robot_config.hpp"
 #include "daemon/exchange/orders.hpp"
 #include "daemon/exchange/snapshot.hpp"
+#include "faults/visits.hpp"
+#include "faults/wire.hpp"
 
 namespace rc10::test {
-
-/// Something that docs/safety.md promises was not so.
-class Violation : public std::runtime_error {
-  using std::runtime_error::runtime_error;
-};
-
-/// How often each state was seen: what the chaos has reached.
-struct Visits {
-  std::uint64_t ticks = 0;
-  std::array<std::uint64_t, 3> robot{};                   ///< Ticks by RobotState.
-  std::array<std::uint64_t, kMotorStatusCount> status{};  ///< Ticks of motors.
-  std::array<std::uint64_t, 8> faults{};                  ///< How often each began.
-  std::array<std::uint64_t, 4> fallbacks{};               ///< Ticks in which one gave torque.
-  std::uint64_t driven = 0;                               ///< And ticks in which a target did.
-  std::uint64_t alone = 0;                                ///< Ticks in which one motor was enabled alone.
-  std::uint64_t rearmed = 0;
-  std::uint64_t stops = 0;
-  std::uint64_t slewed = 0;   ///< Ticks in which a slew limit was judged,
-  std::uint64_t bounded = 0;  ///< and beyond a soft limit.
-  std::uint64_t stalls = 0;   ///< Buses whose echoes stayed away,
-  std::uint64_t probes = 0;   ///< and the rest frames that looked for them, as far as they were read.
-  std::uint64_t unread_after_pauses = 0;  ///< Ticks of motors whose feedback was stale by the clock alone.
-  void add(const Visits& other);
-  [[nodiscard]] std::string text() const;
-};
 
 /// Judges every tick by what was sent to the robot and what came out on its buses. Knows the configuration
 /// and the documents, and nothing of the supervisor's code; of the snapshot it trusts nothing that the
@@ -59,6 +37,8 @@ class Oracle {
     off_.set(bus, off);
     held_ = known_down_ | off_ | stalled_;
   }
+  /// A frame was sent there whose echo shows that the bus carries frames.
+  void watched(std::size_t bus) { watched_.set(bus); }
   /// Echoes of frames of these buses have come: the frames reach the wire. Known to the end of this tick.
   void echoed(std::bitset<kMaxBuses> buses) { echoed_ |= buses; }
   /// What the e-stop input shows in this tick.
@@ -67,6 +47,9 @@ class Oracle {
     if (open) estop_asked_ = true;
   }
   void stopBegun() { stop_asked_ = true; }
+  /// For tests of the oracle itself: once this motor is told something that is not rest, it believes that
+  /// nothing else is told to it any more.
+  void deafen(std::size_t motor) { deaf_ = motor; }
   /// What came out.
   void answered(const OrderResult& result);
   /// A frame on a bus.
@@ -75,8 +58,6 @@ class Oracle {
   /// After the tick and its frames. `read`: whose frames were read, and all of them.
   void judge(const Snapshot& snapshot, std::uint64_t periods, std::bitset<kMaxBuses> read, bool stopped);
 
-  /// Of the motor's last frame, as it was reported; NaN: none.
-  [[nodiscard]] float velocityRpm(std::size_t motor) const { return motors_[motor].velocity_rpm; }
   /// Orders without an answer so far.
   [[nodiscard]] std::size_t open() const noexcept { return unanswered_.size(); }
   [[nodiscard]] const Visits& visits() const noexcept { return visits_; }
@@ -88,22 +69,21 @@ class Oracle {
 
   struct Motor {
     const MotorConfig* config = nullptr;
+    MotorVisits* visits = nullptr;
     std::size_t bus = 0;
     std::size_t group = kNoGroup;
-    CanId command_id;
-    std::size_t slot = 0;
-    CanId feedback_id;
-    double raw_per_effort = 0.0;  ///< Direction included.
-    int raw_limit = 0;
-    float rpm_per_raw = 0.0F;
-    double damping_per_rpm = 0.0;
+    std::unique_ptr<Wire> wire;
+    double limit = 0.0;        ///< Of its effort.
+    bool host_holds = false;   ///< Its hold is a loop of rc10d, of any effort,
+    bool host_brakes = false;  ///< and so is its brake.
 
     // What it has reported.
-    bool reported = false;
+    bool heard = false;  ///< What could be a sample.
+    MonotonicTime heard_at;
+    bool reported = false;  ///< A sample.
     MonotonicTime reported_at;
+    std::uint64_t samples = 0;
     std::uint64_t unheard_ticks = 0;  ///< Ticks that ran since its last sample of then.
-    float velocity_rpm = 0.0F;
-    float temperature_c = 0.0F;
     // What it was told.
     MonotonicTime driven_until{};  ///< The latest deadline of a command that moves.
     MonotonicTime owned_until{};   ///< Of any command.
@@ -113,14 +93,21 @@ class Oracle {
     int disables_asked = 0;
     bool clear_asked = false;
     // What it does.
-    int raw = 0;
-    int raw_before = 0;            ///< In the tick before, if it was read.
-    bool followed_effort = false;  ///< And then it followed a current or a voltage.
+    Told told;
+    int frames = 0;                                            ///< For it, in this tick.
+    std::array<std::pair<std::uint64_t, CanFrame>, 6> last{};  ///< And in which tick, for the report.
+    std::size_t last_count = 0;
+    double effort_before = 0.0;        ///< When it was told something last.
+    bool followed_effort = false;      ///< Since then it follows a current or a voltage, and all was read.
+    std::uint64_t periods_untold = 0;  ///< Since then.
+    std::uint64_t lost_ticks = 0;      ///< Since it is OFFLINE or FAULT.
+    std::uint64_t carried_ticks = 0;   ///< Since its bus carries what is sent, and all of it was read.
     MotorStatus status = MotorStatus::kOffline;
     FaultCode fault = FaultCode::kNone;
     ControlMode mode = ControlMode::kCoast;
     Actions actions{1};
     MonotonicTime acts_since{};
+    std::uint64_t acts_since_tick = 0;
     bool ends_at_standstill = false;
     bool new_sample = false;
     bool was_hot = false;  ///< Its limit may still be reduced.
@@ -145,6 +132,9 @@ class Oracle {
   void followActions(std::size_t index, const MotorSnapshot& seen);
   void judgeCommand(std::size_t index, const MotorSnapshot& seen);
   void judgeFallback(std::size_t index);
+  void judgeBrake(std::size_t index, Actions actions);
+  void judgeLimits(std::size_t index);
+  void judgeTold(std::size_t index, const MotorSnapshot& seen);
   void judgeSlew(std::size_t index, const MotorSnapshot& seen);
   void judgeSoftLimits(std::size_t index, const MotorSnapshot& seen);
   void judgeStop(std::bitset<kMaxBuses> read, bool stopped);
@@ -152,10 +142,12 @@ class Oracle {
   void count(const Snapshot& snapshot);
   void setActions(Motor& motor, Actions actions);
   [[nodiscard]] static Actions only(FallbackAction action);
-  void followFeedback();
+  void followFeedback(const Snapshot& snapshot);
   [[nodiscard]] bool fresh(const Motor& motor) const;
   [[nodiscard]] bool overdue(const Motor& motor) const;
-  [[nodiscard]] bool matchesDamp(const Motor& motor) const;
+  [[nodiscard]] bool damps(const Motor& motor) const;
+  [[nodiscard]] static bool mayLag(const Motor& motor, std::uint64_t ticks);
+  [[nodiscard]] bool fits(const Motor& motor, FallbackAction action) const;
   [[noreturn]] void fail(const std::string& what) const;
   [[noreturn]] void fail(std::size_t motor, const std::string& what) const;
   void require(std::size_t motor, bool condition, const char* what) const {
@@ -165,12 +157,6 @@ class Oracle {
   RobotConfig config_;
   std::vector<Motor> motors_;
   std::vector<Group> groups_;
-  struct Expected {
-    CanId id;
-    int seen = 0;
-    std::uint8_t used_slots = 0;
-  };
-  std::array<std::vector<Expected>, kMaxBuses> frames_;
   std::map<std::uint64_t, std::uint64_t> unanswered_;  ///< Orders, and the tick in which they were sent.
 
   std::optional<std::size_t> alone_;  ///< The motor that was enabled alone.
@@ -185,6 +171,7 @@ class Oracle {
   bool stop_asked_ = false;
   MonotonicTime stopping_since_{};
   std::uint64_t ticks_stopping_ = 0;
+  std::uint64_t ticks_over_ = 0;  ///< Of them, those after the fallbacks.
   bool rested_ = false;
   bool contact_open_ = false;
   std::uint64_t periods_ = 1;  ///< Of this tick.
@@ -198,9 +185,11 @@ class Oracle {
     MonotonicTime next_probe{};
   };
   std::array<Echoes, kMaxBuses> echoes_{};
-  std::bitset<kMaxBuses> echoed_;   ///< In this tick.
+  std::bitset<kMaxBuses> watched_;  ///< In this tick, as is the next.
+  std::bitset<kMaxBuses> echoed_;
   std::bitset<kMaxBuses> stalled_;  ///< As of the end of the last tick.
   std::bitset<kMaxBuses> held_;     ///< Nothing but a probe of a stalled bus may be sent there in this tick.
+  std::optional<std::size_t> deaf_;
   Visits visits_;
 };
 

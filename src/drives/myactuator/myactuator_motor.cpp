@@ -189,6 +189,7 @@ void MyActuator_Motor::update(const Tick& tick) noexcept {
   if (!heard_ || tick.now - *heard_ > kMyactuatorRestartSilence) running_ = false;
   if (!due(tick)) return;
 
+  const bool polled_before = std::exchange(polled_, ordered() == FrameKind::kPoll);
   const bool ask_angle = turns_due_++ % static_cast<std::uint64_t>(angle_divider_) == 0;
   switch (ordered()) {
     case FrameKind::kRest:
@@ -197,10 +198,11 @@ void MyActuator_Motor::update(const Tick& tick) noexcept {
       outbox_.add(myactuator::request(id_, myactuator::Code::kShutdown));
       return;
     case FrameKind::kPoll:
-      // Output off, and in turns with that what it measures.
+      // Output off first, then in turns with that what it measures.
       setCommand(0.0, CommandUnit::kNone);
-      outbox_.add(myactuator::request(
-          id_, begins() || turns_due_ % 2 == 0 ? myactuator::Code::kShutdown : myactuator::Code::kReading));
+      outbox_.add(myactuator::request(id_, polled_before && turns_due_ % 2 != 0
+                                               ? myactuator::Code::kReading
+                                               : myactuator::Code::kShutdown));
       break;
     case FrameKind::kEnable:
       setCommand(0.0, CommandUnit::kNone);
@@ -378,6 +380,9 @@ CanFrame MyActuator_Motor::stepFrame() const noexcept {
 
 void MyActuator_Motor::runSequence(const Tick& tick) noexcept {
   if (sequence_.failed()) return outbox_.add(myactuator::request(id_, myactuator::Code::kShutdown));
+  // Until then it may be following what it was told last.
+  const bool follows = sequence_.at(Step::kStatus) || sequence_.at(Step::kUptime);
+  if (follows) outbox_.add(myactuator::request(id_, myactuator::Code::kShutdown));
   // Done: no torque until the first command.
   if (!sequence_.done() && !sequence_.asks(tick.now)) return;
   if (sequence_.step() == Step::kObey) return sendCommand(stepFrame());

@@ -72,6 +72,7 @@ class MyActuator_Motor final : public SoloMotor {
   FrameOutbox outbox_;
   std::optional<CanFrame> last_command_;
   std::uint64_t turns_due_ = 0;  ///< Ticks in which it was told something.
+  bool polled_ = false;          ///< In the last of them FrameKind::kPoll was ordered.
   MonotonicTime next_query_{};
   bool ask_uptime_ = false;  ///< Next; else the status.
   bool reset_ = false;       ///< The drive is to be restarted with the next frames.

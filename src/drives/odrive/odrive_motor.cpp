@@ -244,7 +244,7 @@ void ODrive_Motor::followPosition(const Target& target) noexcept {
            odriveSetInputPos(node_, static_cast<float>(turns),
                              saturate(static_cast<float>(toDrive(ff_rpm) / kRpmPerTurnPerS)),
                              saturate(static_cast<float>(torqueToDrive(ff_nm)))));
-  setCommand(static_cast<double>(nearFloat(target.value)), CommandUnit::kNative);
+  setCommand(target.value, CommandUnit::kNative);
 }
 
 void ODrive_Motor::setInput(OdriveControlMode mode, const CanFrame& input) noexcept {

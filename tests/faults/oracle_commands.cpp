@@ -1,0 +1,261 @@
+// What a motor is told: limits, slew, soft limits, fallbacks.
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include "faults/oracle.hpp"
+
+namespace rc10::test {
+namespace {
+
+using namespace std::chrono_literals;
+
+// A stop lets fallbacks act for so long (docs/safety.md), then rests.
+constexpr Duration kLongestFallback = 1s;
+// A loop may take so long to turn its effort round: it starts without a jump.
+constexpr int kUnbrakedTicks = 300;
+constexpr double kFast = 0.3;  ///< Of the no-load speed: a brake must oppose this.
+
+// An angle may be so far beyond a soft limit: rounding, and what the shaft has moved since the sample.
+constexpr double kAngleSlackDeg = 1.0;
+
+// Holes of today, closed by another change: a feed-forward passes slew and soft limits, and so does a spring.
+[[nodiscard]] bool shapedPast(const MotorSnapshot& seen) {
+  return seen.target.torque_ff_nm != 0.0F || seen.target.velocity_ff_rpm != 0.0F ||
+         seen.target.mode == ControlMode::kImpedance;
+}
+
+// A spring whose sum is at its limit is told a speed, and a place, on the way from the shaft's own to those
+// that were wanted.
+[[nodiscard]] bool slows(const Told& told, double measured_rpm) {
+  return told.law == Told::Law::kSpring && (told.stiff || told.sum * measured_rpm <= 0.0) &&
+         told.velocity_rpm * measured_rpm >= 0.0 &&
+         std::fabs(told.velocity_rpm) <= std::fabs(measured_rpm) + told.velocity_step_rpm &&
+         std::fabs(told.effort) <= told.effort_step;
+}
+
+[[nodiscard]] bool resistsAtMost(const Told& told, double measured_rpm) {
+  return told.resistsAtMost() || (!told.stiff && slows(told, measured_rpm));
+}
+
+// It stays where it is, as far as the drive can: without a speed or an effort of its own.
+[[nodiscard]] bool staysPut(const Told& told, double measured_rpm) {
+  if (resistsAtMost(told, measured_rpm)) return true;
+  const bool to_a_place = told.law == Told::Law::kAngle || (told.law == Told::Law::kSpring && told.stiff);
+  const bool by_itself =
+      std::fabs(told.velocity_rpm) <= told.velocity_step_rpm && std::fabs(told.effort) <= told.effort_step;
+  return to_a_place && (by_itself || slows(told, measured_rpm));
+}
+
+[[nodiscard]] bool lost(MotorStatus status) {
+  return status == MotorStatus::kOffline || status == MotorStatus::kFault;
+}
+
+}  // namespace
+
+// It is told something in its turn only, of ticks in which its bus carries frames.
+bool Oracle::mayLag(const Motor& motor, std::uint64_t ticks) {
+  const auto turns = static_cast<std::uint64_t>(motor.wire->turnsToRest());
+  const auto lag_ticks = turns * static_cast<std::uint64_t>(motor.config->settings.command_divider);
+  return std::min(ticks, motor.carried_ticks) < lag_ticks;
+}
+
+bool Oracle::damps(const Motor& motor) const {
+  const double per_rpm = motor.wire->dampPerRpm();
+  const double measured_rpm = motor.wire->measured().velocity_rpm;
+  if (std::isnan(per_rpm)) return resistsAtMost(motor.told, measured_rpm);
+  const double bounded = std::clamp(-measured_rpm * per_rpm, -motor.limit, motor.limit);
+  const double slack = 1.5 * motor.told.effort_step;
+  if (std::fabs(motor.told.effort - bounded) <= slack) return true;
+  // A hot motor gets less.
+  return motor.was_hot && motor.told.effort * bounded >= 0.0 &&
+         std::fabs(motor.told.effort) <= std::fabs(bounded) + slack;
+}
+
+void Oracle::judgeCommand(std::size_t index, const MotorSnapshot& seen) {
+  auto& motor = motors_[index];
+  const auto& guard = motor.config->guard;
+  const double celsius = motor.wire->measured().temperature_c;
+  const bool watched = guard.temperature_trip_c > 0.0F && motor.config->traits().reports_temperature;
+  const auto derate_c = static_cast<double>(guard.temperature_derate_c);
+  // In the tick in which the drive says that it is cool the limit is back as a whole: a step, too.
+  motor.cooled = motor.was_hot;
+  if (watched && celsius > derate_c) motor.was_hot = true;
+  if (celsius <= derate_c && seen.status == MotorStatus::kActive) motor.was_hot = false;
+  motor.cooled = motor.cooled && !motor.was_hot;
+  judgeLimits(index);
+  judgeTold(index, seen);
+  judgeSlew(index, seen);
+  if (lost(seen.status)) {
+    require(index, mayLag(motor, motor.lost_ticks) || motor.told.rests(), "a command that is not rest");
+    return;
+  }
+  if (motor.frames == 0) return;  // it was not its turn
+  judgeSoftLimits(index, seen);
+  if (watched && celsius >= static_cast<double>(guard.temperature_trip_c))
+    require(index, motor.told.rests(), "driven although it is too hot");
+  if (seen.target.mode == ControlMode::kCoast) judgeFallback(index);
+}
+
+// Every field that can move the shaft, whatever the law. A hole of today, see shapedPast(): of a spring its
+// sum alone, so that a feed-forward may be beyond the limit while the damping opposes it.
+void Oracle::judgeLimits(std::size_t index) {
+  const auto& motor = motors_[index];
+  const auto& told = motor.told;
+  const double slack = told.effort_step + 1e-6 * motor.limit;
+  if (told.law == Told::Law::kOff) return;
+  if (told.law == Told::Law::kDuty) {
+    require(index, std::fabs(told.effort) <= 1.0, "a duty of more than all");
+  } else if (told.law != Told::Law::kSpring) {
+    require(index, std::fabs(told.effort) <= motor.limit + slack, "beyond its limit");
+  }
+  const double rounded = told.sum_step + slack;
+  const bool summed = told.law == Told::Law::kSpring && std::isfinite(told.sum) && motor.frames > 0;
+  require(index, !summed || std::fabs(told.sum) <= motor.limit + rounded, "its sum is beyond its limit");
+  const bool bounded = std::isfinite(told.most_effort);
+  require(index, !bounded || told.most_effort <= motor.limit + slack + 1e-4 * motor.limit,
+          "told a bound beyond its limit");
+  const auto most_rpm = static_cast<double>(motor.config->settings.velocity_limit_rpm);
+  if (most_rpm <= 0.0) return;
+  const double slack_rpm = told.velocity_step_rpm + 1e-4 * most_rpm;
+  const double measured_rpm = motor.wire->measured().velocity_rpm;
+  const bool pushed_on = told.sum * std::copysign(1.0, measured_rpm) > rounded;
+  const bool by_itself = std::fabs(told.effort) <= 2.0 * told.effort_step;
+  const bool brakes = told.law == Told::Law::kSpring && (!pushed_on || !by_itself) &&
+                      told.velocity_rpm * measured_rpm > 0.0;  // see slows(); a feed-forward is a hole
+  const double fastest_rpm = brakes ? std::max(most_rpm, std::fabs(measured_rpm)) : most_rpm;
+  require(index, std::fabs(told.velocity_rpm) <= fastest_rpm + slack_rpm, "beyond its velocity limit");
+  // Whole degrees a second, of the rotor or of the output.
+  const bool way_bounded = std::isfinite(told.most_rpm);
+  require(index, !way_bounded || told.most_rpm <= most_rpm + slack_rpm + 1.0 / 6.0,
+          "told a bound beyond its velocity limit");
+}
+
+void Oracle::judgeTold(std::size_t index, const MotorSnapshot& seen) {
+  const auto& motor = motors_[index];
+  const auto& told = motor.told;
+  if (motor.frames == 0 || motor.config->settings.command_divider > 1) return;
+  const bool of_effort = seen.command_unit == CommandUnit::kAmpere || seen.command_unit == CommandUnit::kVolt;
+  const auto value = static_cast<double>(seen.command_value);
+  if (told.law == Told::Law::kEffort && of_effort && !std::isfinite(told.most_effort)) {
+    require(index, std::fabs(value - told.effort) <= told.effort_step + 1e-5 * std::fabs(value),
+            "the snapshot says another command than the frame");
+  }
+  if (told.law == Told::Law::kSpring && of_effort && std::isfinite(told.sum)) {
+    require(index, std::fabs(value - told.sum) <= told.sum_step + told.effort_step,
+            "the snapshot says another sum than the frame");
+  }
+}
+
+// A current or a voltage changes no faster than allowed, whatever is asked. Fallbacks and loops may, and so
+// may what keeps a shaft within its soft limits.
+void Oracle::judgeSlew(std::size_t index, const MotorSnapshot& seen) {
+  auto& motor = motors_[index];
+  const bool follows =
+      seen.status == MotorStatus::kActive && motor.told.law == Told::Law::kEffort &&
+      (seen.target.mode == ControlMode::kCurrent || seen.target.mode == ControlMode::kVoltage);
+  const auto& shaping = motor.config->shaping;
+  const auto per_s = static_cast<double>(shaping.effort_slew_per_s);
+  const bool free = std::isinf(shaping.angle_min_deg) && std::isinf(shaping.angle_max_deg);
+  constexpr std::uint64_t kMostPeriods = 5;  // what a tick counts for at most
+  motor.periods_untold += std::min(periods_, kMostPeriods);
+  motor.followed_effort = motor.followed_effort && follows;
+  if (motor.frames == 0) return;
+  const double dt_s =
+      static_cast<double>(seconds(config_.period())) * static_cast<double>(motor.periods_untold);
+  const double most = per_s * dt_s + 2.0 * motor.told.effort_step;
+  if (per_s > 0.0 && free && motor.followed_effort && !motor.was_hot && !motor.cooled) {
+    if (std::fabs(motor.told.effort - motor.effort_before) > most)
+      fail(index, fmt::format("its effort changes too fast, from {:.3f}", motor.effort_before));
+    ++visits_.slewed;
+  }
+  motor.followed_effort = follows;
+  motor.effort_before = motor.told.effort;
+  motor.periods_untold = 0;
+}
+
+// Beyond a soft limit, and not on its way back, nothing pushes on: no effort, no speed, no angle.
+void Oracle::judgeSoftLimits(std::size_t index, const MotorSnapshot& seen) {
+  auto& motor = motors_[index];
+  const auto& shaping = motor.config->shaping;
+  const auto& told = motor.told;
+  const double angle_deg = seen.feedback.total_angle_deg;
+  const bool known =
+      seen.status == MotorStatus::kActive && seen.target.mode != ControlMode::kCoast && seen.feedback.zeroed;
+  if (!known || shapedPast(seen)) return;
+  if (told.law == Told::Law::kAngle && std::isfinite(told.ahead_deg)) {
+    const double place_deg = angle_deg + told.ahead_deg;
+    ++visits_.bounded;
+    require(index,
+            place_deg <= std::max(shaping.angle_max_deg, angle_deg) + kAngleSlackDeg &&
+                place_deg >= std::min(shaping.angle_min_deg, angle_deg) - kAngleSlackDeg,
+            "sent to a place beyond a soft limit");
+  }
+  const bool above = angle_deg >= shaping.angle_max_deg && seen.feedback.velocity_rpm >= 0.0F;
+  const bool below = angle_deg <= shaping.angle_min_deg && seen.feedback.velocity_rpm <= 0.0F;
+  const bool follows_effort =
+      seen.target.mode == ControlMode::kCurrent || seen.target.mode == ControlMode::kVoltage;
+  const bool follows_speed = seen.target.mode == ControlMode::kVelocity && told.law == Told::Law::kVelocity;
+  if ((!above && !below) || (!follows_effort && !follows_speed)) return;
+  ++visits_.bounded;
+  const double push = follows_effort ? told.effort : told.velocity_rpm;
+  const double step = follows_effort ? told.effort_step : told.velocity_step_rpm;
+  require(index, !(above && push > step) && !(below && push < -step), "it is pushed on beyond a soft limit");
+}
+
+bool Oracle::fits(const Motor& motor, FallbackAction action) const {
+  const auto& told = motor.told;
+  const double measured_rpm = motor.wire->measured().velocity_rpm;
+  switch (action) {
+    case FallbackAction::kCoast:
+      if (told.rests()) return true;
+      return !motor.wire->idlesAtRest() && isOn(motor.status) && resistsAtMost(told, measured_rpm);
+    case FallbackAction::kDamp: return damps(motor);
+    case FallbackAction::kBrake: return motor.host_brakes || staysPut(told, measured_rpm);
+    case FallbackAction::kHold: return motor.host_holds || staysPut(told, measured_rpm);
+  }
+  return false;
+}
+
+void Oracle::judgeFallback(std::size_t index) {
+  auto& motor = motors_[index];
+  const auto& fallback = motor.config->fallback;
+  auto actions = motor.actions;
+  if (motor.ends_at_standstill) actions |= only(FallbackAction::kCoast);
+  const auto hold = static_cast<std::size_t>(FallbackAction::kHold);
+  if (actions.test(hold) && now_ - motor.acts_since >= fallback.hold_max) {
+    actions |= only(FallbackAction::kDamp);
+    if (now_ - motor.acts_since >= fallback.hold_max + 60ms) actions.reset(hold);
+  }
+  if (state_ == RobotState::kStopping && now_ - stopping_since_ >= kLongestFallback)
+    actions = only(FallbackAction::kCoast);
+  bool any = false;
+  std::string words;
+  for (std::size_t i = 0; i < actions.size(); ++i) {
+    if (!actions.test(i)) continue;
+    const auto action = static_cast<FallbackAction>(i);
+    any = any || fits(motor, action);
+    words += fmt::format(" {}", wordOf(action));
+  }
+  if (!any && !mayLag(motor, tick_ - motor.acts_since_tick + 1))
+    fail(index, "nobody commands it, and its command is not that of its fallback:" + words);
+  judgeBrake(index, actions);
+}
+
+// A loop of rc10d that brakes opposes a fast motor before long.
+void Oracle::judgeBrake(std::size_t index, Actions actions) {
+  auto& motor = motors_[index];
+  const double rpm = motor.wire->measured().velocity_rpm;
+  const auto no_load_rpm = static_cast<double>(motor.config->traits().no_load_rpm);
+  const bool fast = std::fabs(rpm) > kFast * no_load_rpm;
+  const bool must_brake = actions == only(FallbackAction::kBrake) && !motor.was_hot && motor.host_brakes &&
+                          motor.told.law == Told::Law::kEffort;
+  const bool opposes = motor.told.effort * rpm < 0.0;
+  // Its loop runs on new samples only.
+  if (!must_brake || !fast || opposes) motor.unbraked_ticks = 0;
+  if (must_brake && fast && !opposes && motor.new_sample) ++motor.unbraked_ticks;
+  require(index, motor.unbraked_ticks < kUnbrakedTicks, "its brake does not act");
+}
+
+}  // namespace rc10::test

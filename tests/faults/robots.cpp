@@ -1,0 +1,140 @@
+#include "faults/robots.hpp"
+
+#include <array>
+#include <stdexcept>
+#include <string_view>
+#include <utility>
+
+#include "config/load_config.hpp"
+
+namespace rc10::test {
+namespace {
+
+constexpr std::array<std::string_view, kRobotCount> kRobots{R"(
+robot: dji
+buses:
+  - name: chassis
+    type: sim
+    motors:
+      - {name: left, model: M3508, id: 1, current_limit_a: 10, on_timeout: brake, on_disable: damp, on_estop: brake,
+         zero: power_on}
+      - {name: right, model: M3508, id: 2, direction: -1, on_timeout: damp, on_disable: brake, on_estop: damp,
+         current_slew_a_per_s: 100, velocity_slew_rpm_per_s: 2000}
+      - {name: feeder, model: M2006, id: 3, current_limit_a: 5, stall_ms: 200}
+  - name: arm
+    type: sim
+    motors:
+      - {name: yaw, model: GM6020, id: 5, command: current, current_limit_a: 1.5, on_timeout: damp, on_disable: damp,
+         on_estop: damp, angle_min_deg: -90, angle_max_deg: 90, angle_slew_deg_per_s: 360, max_first_step_deg: 30,
+         following_error_deg: 30}
+      - {name: pitch, model: GM6020, id: 1, command: voltage, voltage_limit_v: 12, on_timeout: hold, on_disable: damp,
+         on_estop: brake, hold_max_s: 1}
+      - {name: lift, model: M2006, id: 4, current_limit_a: 6, on_timeout: hold, on_disable: brake, on_estop: hold,
+         hold_max_s: 0.5, angle_min_deg: 0, angle_max_deg: 2000, stall_ms: 300, stall_action: notify,
+         simulated: {load_torque_nm: 0.3}}
+groups:
+  - {name: drive, motors: [left, right], on_member_offline: stop_group, on_return: rearm_at_rest}
+)",
+                                                            R"(
+robot: springs
+buses:
+  - name: shoulders
+    type: sim
+    motors:
+      - {name: shoulder, model: DM4310, id: 1, master_id: 17, current_limit_a: 4, velocity_limit_rpm: 100,
+         on_timeout: hold, on_disable: damp, on_estop: brake, hold_max_s: 0.5,
+         angle_min_deg: -90, angle_max_deg: 90, zero: power_on}
+      - {name: wheel, model: DMH6215, id: 3, master_id: 19, control: velocity, velocity_limit_rpm: 120, direction: -1,
+         on_timeout: brake, on_estop: brake}
+  - name: elbows
+    type: sim
+    motors:
+      - {name: elbow, model: DM4340, id: 2, master_id: 18, control: position_velocity, velocity_limit_rpm: 30,
+         on_timeout: hold, on_disable: brake, on_estop: hold}
+      - {name: gripper, model: DM4310, id: 4, master_id: 20, control: force_position, velocity_limit_rpm: 60,
+         current_limit_a: 2, on_timeout: hold, on_estop: brake}
+  - name: knees
+    type: sim
+    motors:
+      - {name: knee, model: RS00, id: 20, current_limit_a: 6, velocity_limit_rpm: 100, on_timeout: hold, on_disable: damp,
+         on_estop: damp, hold_max_s: 1, current_slew_a_per_s: 50}
+      - {name: lift, model: RS03, id: 21, control: position, current_limit_a: 10, velocity_limit_rpm: 60, direction: -1,
+         on_timeout: hold, on_disable: brake, on_estop: brake}
+  - name: ankles
+    type: sim
+    motors:
+      - {name: ankle, model: AK80-9, id: 31, protocol: mit, current_limit_a: 6, velocity_limit_rpm: 80, on_timeout: damp,
+         on_disable: brake, on_estop: hold, hold_max_s: 0.5, angle_min_deg: -120, angle_max_deg: 120, zero: power_on}
+      - {name: hip, model: AK80-9, id: 32, current_limit_a: 8, velocity_limit_rpm: 80, on_timeout: brake,
+         on_disable: damp, on_estop: brake, current_slew_a_per_s: 40}
+groups:
+  - {name: leg, motors: [knee, ankle], on_member_offline: stop_group, on_return: rearm_at_rest}
+)",
+                                                            R"(
+robot: loops
+buses:
+  - name: belts
+    type: sim
+    motors:
+      - {name: belt, model: ODrive_S1, id: 3, torque_constant_nm_per_a: 0.0551, current_limit_a: 20,
+         velocity_limit_rpm: 600, on_timeout: brake, on_disable: brake, on_estop: brake, feedback_hz: 200}
+      - {name: winch, model: ODrive_v3, id: 4, torque_constant_nm_per_a: 0.04, current_limit_a: 15,
+         velocity_limit_rpm: 400, direction: -1, gear_ratio: 4, on_timeout: hold, on_estop: hold, hold_max_s: 0.5,
+         feedback_hz: 200, current_slew_a_per_s: 100}
+  - name: shooters
+    type: sim
+    motors:
+      - {name: shooter, model: VESC, id: 10, pole_pairs: 7, motor_current_max_a: 40, current_limit_a: 30,
+         velocity_limit_rpm: 3000, kv_rpm_per_v: 190, on_timeout: damp, on_disable: brake, on_estop: brake,
+         feedback_hz: 200, current_slew_a_per_s: 200}
+      - {name: steer, model: VESC, id: 11, pole_pairs: 7, motor_current_max_a: 20, current_limit_a: 10, gear_ratio: 10,
+         velocity_limit_rpm: 200, relative_current: true, on_timeout: hold, on_disable: damp, on_estop: damp,
+         kv_rpm_per_v: 190, feedback_hz: 200, angle_min_deg: -180, angle_max_deg: 180, zero: power_on, direction: -1}
+  - name: legs
+    type: sim
+    data_bitrate: 5000000
+    motors:
+      - {name: calf, model: moteus, id: 1, motor_kv_rpm_per_v: 100, current_limit_a: 10, velocity_limit_rpm: 300,
+         on_timeout: hold, on_disable: brake, on_estop: damp, hold_max_s: 0.5, current_slew_a_per_s: 50}
+      - {name: thigh, model: moteus, id: 2, motor_kv_rpm_per_v: 100, current_limit_a: 15, velocity_limit_rpm: 200,
+         direction: -1, on_timeout: brake, on_disable: damp, on_estop: hold, command_divider: 2,
+         angle_min_deg: -120, angle_max_deg: 120, zero: power_on}
+groups:
+  - {name: legs, motors: [calf, thigh], on_member_offline: stop_group, on_return: rearm_at_rest}
+)",
+                                                            R"(
+robot: asked
+buses:
+  - name: wheels
+    type: sim
+    motors:
+      - {name: left_wheel, model: LK-MF9025, id: 1, group: true, current_limit_a: 8, current_slew_a_per_s: 40}
+      - {name: right_wheel, model: LK-MF9025, id: 2, group: true, current_limit_a: 8, direction: -1}
+  - name: pans
+    type: sim
+    motors:
+      - {name: pan, model: LK-MG5010E-i10, id: 5, velocity_limit_rpm: 100, current_limit_a: 5, on_timeout: brake,
+         on_disable: brake, on_estop: brake, zero_deg: 30, angle_min_deg: -150, angle_max_deg: 150}
+      - {name: tilt, model: LK-MG5010E-i10, id: 6, velocity_limit_rpm: 100, on_timeout: hold, on_estop: hold,
+         hold_max_s: 0.5, direction: -1, command_divider: 2}
+  - name: tables
+    type: sim
+    motors:
+      - {name: turntable, model: RMD-X8-20, id: 22, current_limit_a: 6, velocity_limit_rpm: 60, on_timeout: damp,
+         on_disable: brake, on_estop: brake, current_slew_a_per_s: 40, command_divider: 2}
+      - {name: shoulder, model: RMD-X8-25, id: 23, velocity_limit_rpm: 40, direction: -1, on_timeout: hold,
+         on_disable: damp, on_estop: damp, hold_max_s: 0.5, command_divider: 2, angle_min_deg: -120,
+         angle_max_deg: 120, zero: power_on}
+groups:
+  - {name: wheels, motors: [left_wheel, right_wheel], on_member_offline: stop_group, on_return: rearm_at_rest}
+)"};
+
+}  // namespace
+
+RobotConfig robotOf(std::size_t index) {
+  auto outcome = parseRobotConfig(kRobots[index], "chaos.yaml");
+  if (!outcome) throw std::runtime_error(outcome.errorText());
+  return std::move(*outcome.config);
+}
+
+}  // namespace rc10::test

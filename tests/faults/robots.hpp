@@ -1,0 +1,13 @@
+#pragma once
+
+#include <cstddef>
+
+#include "config/robot_config.hpp"
+
+namespace rc10::test {
+
+/// The robots of the chaos: each family, each way to control it, each fallback, each limit.
+inline constexpr std::size_t kRobotCount = 4;
+[[nodiscard]] RobotConfig robotOf(std::size_t index);
+
+}  // namespace rc10::test

@@ -1,0 +1,46 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <map>
+#include <string>
+
+#include "daemon/exchange/snapshot.hpp"
+#include "faults/wire.hpp"
+
+namespace rc10::test {
+
+/// Of one motor: what it was told.
+struct MotorVisits {
+  std::uint64_t active = 0;             ///< Ticks.
+  std::array<std::uint64_t, 7> laws{};  ///< Ticks not at rest, by Told::Law.
+};
+
+/// How often each state was seen: what the chaos has reached.
+struct Visits {
+  std::uint64_t ticks = 0;
+  std::array<std::uint64_t, 3> robot{};                   ///< Ticks by RobotState.
+  std::array<std::uint64_t, kMotorStatusCount> status{};  ///< Ticks of motors.
+  std::array<std::uint64_t, 64> faults{};                 ///< How often each began.
+  std::array<std::uint64_t, 4> fallbacks{};               ///< Ticks in which one gave torque.
+  std::uint64_t driven = 0;                               ///< And ticks in which a target did.
+  std::uint64_t alone = 0;                                ///< Ticks in which one motor was enabled alone.
+  std::uint64_t rearmed = 0;
+  std::uint64_t stops = 0;
+  std::uint64_t slewed = 0;   ///< Ticks in which a slew limit was judged,
+  std::uint64_t bounded = 0;  ///< and beyond a soft limit.
+  std::uint64_t stalls = 0;   ///< Buses whose echoes stayed away,
+  std::uint64_t probes = 0;   ///< and the rest frames that looked for them, as far as they were read.
+  std::uint64_t unread_after_pauses = 0;  ///< Ticks of motors whose feedback was stale by the clock alone.
+  std::map<std::string, MotorVisits> motors;  ///< By family and name.
+  void add(const Visits& other);
+  [[nodiscard]] std::string text() const;
+  /// Motors that were never ACTIVE, or never told anything but rest: nothing of them was judged.
+  [[nodiscard]] std::string idle() const;
+};
+
+/// "coast"
+[[nodiscard]] const char* wordOf(FallbackAction action);
+[[nodiscard]] const char* wordOf(Told::Law law);
+
+}  // namespace rc10::test
