@@ -117,9 +117,8 @@ Result<void> Robot::addMotor(const MotorConfig& config, std::size_t bus_index) {
   entry.feedback_expected |= (*motor)->speaksUnasked();
   // Half: the timeout spans two periods of its feedback at least.
   motors_.push_back({std::move(*motor), bus_index, config.feedback_timeout,
-                     static_cast<std::uint64_t>(config.feedback_timeout / 2 / period_),
-                     MotorGuard{config.guard}, TargetShaper{config.shaping}, config.fallback,
-                     config.standstill_rpm});
+                     static_cast<std::uint64_t>(config.feedback_timeout / 2 / period_), config.guard,
+                     config.shaping, config.fallback, config.standstill_rpm});
   return {};
 }
 

@@ -34,8 +34,8 @@ class Robot {
     Duration feedback_timeout{};
     /// Without feedback for so many ticks that ran, too, before it counts as lost.
     std::uint64_t feedback_timeout_ticks = 0;
-    MotorGuard guard{GuardConfig{}};
-    TargetShaper shaper{ShapingConfig{}};
+    GuardConfig guard{};
+    ShapingConfig shaping{};
     FallbackConfig fallback{};
     float standstill_rpm = 0.0F;
   };

@@ -12,13 +12,13 @@
 #include "daemon/exchange/snapshot.hpp"
 #include "daemon/exchange/states.hpp"
 #include "daemon/recording/flight_recorder.hpp"
+#include "daemon/supervision/axis.hpp"
 #include "daemon/supervision/lease.hpp"
-#include "motor/guarding/fallback.hpp"
 
 namespace rc10 {
 
-/// Decides in every tick what each motor may do: takes orders and commands from the link, watches the
-/// feedback and the deadlines. Rest is its answer to everything unknown. Scheduler thread only.
+/// Decides in every tick what the motors may do: takes orders and commands from the link, asks each Axis for
+/// news, stops groups, answers and reports. Rest is its answer to everything unknown. Scheduler thread only.
 class Supervisor {
  public:
   Supervisor(Robot& robot, LinkExchange& link, FlightRecorder* recorder = nullptr);
@@ -33,7 +33,7 @@ class Supervisor {
   /// Whether a target of `sender` for this motor would act now.
   [[nodiscard]] bool wouldObey(std::size_t motor, const Lease::Holder& sender,
                                const Tick& tick) const noexcept {
-    return controls_[motor].status == MotorStatus::kActive && controls_[motor].lease.allows(sender, tick.now);
+    return axes_[motor].obeys(sender, tick.now);
   }
 
   /// Tells every motor what kind of frame its drive gets. Called before Motor_Base::update().
@@ -50,24 +50,9 @@ class Supervisor {
   void report(Event event) noexcept;
 
   [[nodiscard]] RobotState robotState() const noexcept { return state_; }
-  [[nodiscard]] MotorStatus status(std::size_t motor) const noexcept { return controls_[motor].status; }
+  [[nodiscard]] MotorStatus status(std::size_t motor) const noexcept { return axes_[motor].status(); }
 
  private:
-  struct Control {
-    MotorStatus status = MotorStatus::kOffline;
-    FaultCode fault = FaultCode::kNone;
-    std::uint32_t limits = 0;         ///< Active limits, as the guard reports them.
-    bool reference_known = false;     ///< For the event when it is lost.
-    std::uint64_t samples = 0;        ///< Of its feedback, when it was last heard.
-    std::uint64_t unheard_ticks = 0;  ///< Since then.
-    MonotonicTime enabling_since;
-    MonotonicTime enable_deadline;
-    MonotonicTime clearing_until{};  ///< Until then the drive's complaints are old ones.
-    Lease lease;                     ///< Whose target is in force, and until when.
-    Target in_force;                 ///< Target that the motor followed in the last tick.
-    Fallback fallback;
-    std::size_t group = kNoGroup;
-  };
   /// Motors that stop together.
   struct Group {
     MotorSet members;
@@ -89,14 +74,11 @@ class Supervisor {
     MonotonicTime deadline;
   };
 
-  static constexpr std::size_t kNoGroup = ~std::size_t{0};
-
   [[nodiscard]] bool mayCommand(const Command& command, const Lease::Holder& sender,
                                 const Tick& tick) noexcept;
   void apply(const Command& command, const Tick& tick) noexcept;
   void apply(const Command::Setpoint& setpoint, const Lease::Holder& sender, const Command& command,
              const Tick& tick) noexcept;
-  [[nodiscard]] std::optional<SkipReason> tryTarget(const Command::Setpoint& setpoint) noexcept;
   void carryOut(const Order& order, const Tick& tick) noexcept;
   [[nodiscard]] Refusal enable(std::size_t motor, const Tick& tick) noexcept;
   [[nodiscard]] Refusal enableAlone(std::size_t motor, const Tick& tick) noexcept;
@@ -106,41 +88,27 @@ class Supervisor {
   void disable(std::size_t motor, const Tick& tick) noexcept;
   void clear(std::size_t motor, const Tick& tick) noexcept;
   void answer(const OrderResult& result) noexcept;
-  [[nodiscard]] Refusal zero(std::size_t motor, const Order& order) noexcept;
   [[nodiscard]] Refusal setGains(std::size_t motor, const Order& order, const Tick& tick) noexcept;
   void setRobotState(RobotState state, const Tick& tick) noexcept;
   void transition(std::size_t motor, MotorEvent event, const Tick& tick) noexcept;
-  void watchFeedback(std::size_t motor, const Tick& tick) noexcept;
-  void watchEnabling(std::size_t motor, const Tick& tick) noexcept;
-  void watchComplaint(std::size_t motor, const Tick& tick) noexcept;
-  void watchGuard(std::size_t motor, const Tick& tick) noexcept;
-  void watchDeadline(std::size_t motor, const Tick& tick) noexcept;
+  void watch(std::size_t motor, const Tick& tick) noexcept;
   void watchGroup(std::size_t index, const Tick& tick) noexcept;
   void rearm(std::size_t index, const Tick& tick) noexcept;
-  [[nodiscard]] bool groupWhole(std::size_t motor) const noexcept;
-  [[nodiscard]] bool fresh(std::size_t motor, const Tick& tick) const noexcept;
-  /// Not fresh, and not only because this thread did not run.
-  [[nodiscard]] bool lost(std::size_t motor, const Tick& tick) const noexcept;
-  void listen(std::size_t motor, const Tick& tick) noexcept;
+  /// Null: it is in none.
+  [[nodiscard]] Group* groupOf(std::size_t motor) noexcept;
+  [[nodiscard]] bool groupWhole(std::size_t motor) noexcept;
   void watchSimulation(const Tick& tick) noexcept;
-  [[nodiscard]] bool standsStill(std::size_t motor) const noexcept;
-  void beginTimeoutFallback(std::size_t motor, const Tick& tick) noexcept;
-  void beginFallback(std::size_t motor, MotorEvent cause, const Tick& tick) noexcept;
   [[nodiscard]] bool clearEstop(OrderResult& result, const Tick& tick) noexcept;
-  void orderMotor(std::size_t motor, const Tick& tick) noexcept;
-  [[nodiscard]] FrameKind frameKind(std::size_t motor) const noexcept;
-  [[nodiscard]] bool heldWhileEnabling(std::size_t motor) const noexcept;
   void settle(std::size_t motor, Refusal outcome) noexcept;
   void configure(const Order& order, const Tick& tick) noexcept;
   [[nodiscard]] Refusal mayConfigure(std::size_t motor) const noexcept;
   void watchConfiguring(const Tick& tick) noexcept;
-  void dropTarget(std::size_t motor) noexcept;
 
   Robot& robot_;
   LinkExchange& link_;
   FlightRecorder* recorder_;
   RobotState state_ = RobotState::kRun;
-  std::array<Control, kMaxMotors> controls_{};
+  std::vector<Axis> axes_;
   std::array<PendingOrder, 8> pending_{};
   std::vector<Group> groups_;
   std::optional<Configuring> configuring_;
@@ -152,7 +120,6 @@ class Supervisor {
   std::uint64_t refused_commands_ = 0;
   std::uint64_t skipped_setpoints_ = 0;
   std::uint64_t events_dropped_ = 0;
-  std::array<MonotonicTime, kMaxMotors> last_skip_report_{};
   MonotonicTime last_refusal_report_{};
 };
 

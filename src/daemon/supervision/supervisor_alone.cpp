@@ -5,8 +5,8 @@ namespace rc10 {
 
 MotorSet Supervisor::otherMotorsOn(std::size_t motor) const noexcept {
   MotorSet on;
-  for (std::size_t other = 0; other < robot_.motors().size(); ++other)
-    on.set(other, other != motor && isOn(controls_[other].status));
+  for (std::size_t other = 0; other < axes_.size(); ++other)
+    on.set(other, other != motor && isOn(axes_[other].status()));
   return on;
 }
 

@@ -11,15 +11,15 @@ namespace rc10 {
 // configuration stay, and the loops take new gains without a bump.
 Refusal Supervisor::setGains(std::size_t motor, const Order& order, const Tick& tick) noexcept {
   if (state_ == RobotState::kStopping) return Refusal::kStopping;
-  auto& entry = robot_.motors()[motor];
-  const auto* in_force = entry.motor->hostLoops();
+  auto& axis = axes_[motor];
+  const auto* in_force = axis.motor().hostLoops();
   if (in_force == nullptr || order.gains.count > order.gains.values.size()) return Refusal::kNoGains;
   CascadeConfig loops = *in_force;
   const auto changes = std::span(order.gains.values).first(order.gains.count);
   for (const auto& change : changes) {
     if (gainIn(loops, change.gain) == nullptr) return Refusal::kNoGains;
   }
-  const std::int32_t volts = entry.motor->commandUnit() == CommandUnit::kVolt ? kGainInVolts : 0;
+  const std::int32_t volts = axis.motor().commandUnit() == CommandUnit::kVolt ? kGainInVolts : 0;
   for (const auto& change : changes) {
     float& gain = *gainIn(loops, change.gain);
     if (gain == change.value) continue;
@@ -28,8 +28,7 @@ Refusal Supervisor::setGains(std::size_t motor, const Order& order, const Tick& 
             static_cast<std::int32_t>(change.gain) + volts, std::bit_cast<std::int32_t>(change.value),
             tick.now, order.client});
   }
-  entry.motor->retune(loops);
-  entry.shaper.setApproach(kApproachOfAngleGain * loops.angle.kp);
+  axis.retune(loops);
   return Refusal::kNone;
 }
 

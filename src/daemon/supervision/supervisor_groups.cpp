@@ -1,4 +1,5 @@
 // Motors that stop together.
+#include <algorithm>
 #include <utility>
 
 #include "daemon/supervision/supervisor.hpp"
@@ -11,14 +12,20 @@ constexpr Duration kAtRest = std::chrono::milliseconds{300};
 
 }  // namespace
 
+Supervisor::Group* Supervisor::groupOf(std::size_t motor) noexcept {
+  const auto found = std::find_if(groups_.begin(), groups_.end(),
+                                  [motor](const Group& group) { return group.members.test(motor); });
+  return found == groups_.end() ? nullptr : &*found;
+}
+
 // Every member must be there for one to be enabled.
-bool Supervisor::groupWhole(std::size_t motor) const noexcept {
-  const auto group = controls_[motor].group;
-  if (group == kNoGroup) return true;
-  for (std::size_t other = 0; other < robot_.motors().size(); ++other) {
-    const auto status = controls_[other].status;
+bool Supervisor::groupWhole(std::size_t motor) noexcept {
+  const auto* group = groupOf(motor);
+  if (group == nullptr) return true;
+  for (std::size_t other = 0; other < axes_.size(); ++other) {
+    const auto status = axes_[other].status();
     const bool there = status != MotorStatus::kOffline && status != MotorStatus::kFault;
-    if (groups_[group].members.test(other) && !there) return false;
+    if (group->members.test(other) && !there) return false;
   }
   return true;
 }
@@ -28,14 +35,14 @@ void Supervisor::watchGroup(std::size_t index, const Tick& tick) noexcept {
   if (group.lost.any()) {
     const auto lost = std::exchange(group.lost, {});  // all of one bus, perhaps
     bool returns = group.on_return == GroupConfig::Return::kRearmAtRest;
-    std::size_t first = robot_.motors().size();
+    std::size_t first = axes_.size();
     group.rearm = lost;
-    for (std::size_t motor = robot_.motors().size(); motor-- > 0;) {
+    for (std::size_t motor = axes_.size(); motor-- > 0;) {
       if (!group.members.test(motor)) continue;
       if (lost.test(motor)) first = motor;
       // A motor that stopped for a fault waits for a person.
-      if (controls_[motor].status == MotorStatus::kFault) returns = false;
-      if (controls_[motor].status == MotorStatus::kActive) group.rearm.set(motor);
+      if (axes_[motor].status() == MotorStatus::kFault) returns = false;
+      if (axes_[motor].status() == MotorStatus::kActive) group.rearm.set(motor);
       transition(motor, MotorEvent::kGroupStop, tick);
     }
     if (!returns) group.rearm.reset();
@@ -48,16 +55,16 @@ void Supervisor::watchGroup(std::size_t index, const Tick& tick) noexcept {
 
 void Supervisor::rearm(std::size_t index, const Tick& tick) noexcept {
   auto& group = groups_[index];
-  for (std::size_t motor = 0; motor < robot_.motors().size(); ++motor) {
+  for (std::size_t motor = 0; motor < axes_.size(); ++motor) {
     if (!group.members.test(motor)) continue;
-    if (controls_[motor].status == MotorStatus::kFault || state_ != RobotState::kRun) {
+    if (axes_[motor].status() == MotorStatus::kFault || state_ != RobotState::kRun) {
       group.rearm.reset();  // only a request brings it back now
       return;
     }
-    if (controls_[motor].status == MotorStatus::kOffline || !standsStill(motor)) group.moved = tick.now;
+    if (axes_[motor].status() == MotorStatus::kOffline || !axes_[motor].standsStill()) group.moved = tick.now;
   }
   if (tick.now - group.moved < kAtRest) return;
-  for (std::size_t motor = 0; motor < robot_.motors().size(); ++motor) {
+  for (std::size_t motor = 0; motor < axes_.size(); ++motor) {
     if (group.rearm.test(motor)) (void)enable(motor, tick);
   }
   group.rearm.reset();

@@ -13,23 +13,22 @@ constexpr Duration kConfigureTimeout = std::chrono::seconds{8};
 Refusal Supervisor::mayConfigure(std::size_t motor) const noexcept {
   if (state_ == RobotState::kStopping) return Refusal::kStopping;
   if (configuring_) return Refusal::kConfiguring;
-  const auto& control = controls_[motor];
-  switch (control.status) {
+  switch (axes_[motor].status()) {
     case MotorStatus::kOffline: return Refusal::kOffline;
     case MotorStatus::kEnabling:
     case MotorStatus::kActive: return Refusal::kActive;
     case MotorStatus::kReady:
     case MotorStatus::kFault: break;
   }
-  return control.fallback.acts() ? Refusal::kStillActs : Refusal::kNone;
+  return axes_[motor].fallbackActs() ? Refusal::kStillActs : Refusal::kNone;
 }
 
 void Supervisor::configure(const Order& order, const Tick& tick) noexcept {
   OrderResult result;
   result.id = order.id;
   std::size_t motor = 0;
-  while (motor < robot_.motors().size() && !order.motors.test(motor)) ++motor;
-  auto* drive = motor < robot_.motors().size() ? robot_.motors()[motor].motor->driveConfiguring() : nullptr;
+  while (motor < axes_.size() && !order.motors.test(motor)) ++motor;
+  auto* drive = motor < axes_.size() ? axes_[motor].motor().driveConfiguring() : nullptr;
   if (drive == nullptr || order.drive.count > DriveWrite::kMaxValues) {
     result.refused = true;
     link_.results.push(result);
@@ -48,7 +47,7 @@ void Supervisor::watchConfiguring(const Tick& tick) noexcept {
   using Progress = DriveConfiguring::Progress;
   if (!configuring_) return;
   const auto motor = configuring_->motor;
-  auto& drive = *robot_.motors()[motor].motor->driveConfiguring();
+  auto& drive = *axes_[motor].motor().driveConfiguring();
   OrderResult result;
   result.id = configuring_->order_id;
   result.drive_value = drive.index();

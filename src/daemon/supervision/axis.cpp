@@ -1,0 +1,259 @@
+#include "daemon/supervision/axis.hpp"
+
+#include <cmath>
+
+namespace rc10 {
+namespace {
+
+// A drive that has not confirmed its enable sequence by then has failed it: several steps, each sent again a
+// few times.
+constexpr Duration kEnableTimeout = std::chrono::seconds{2};
+// A clear request goes out, and the answer comes back, at the slowest command_divider and feedback rate.
+constexpr Duration kClearPatience = std::chrono::milliseconds{250};
+
+}  // namespace
+
+Axis::Axis(const Robot::MotorEntry& entry, const Robot::BusEntry& bus) noexcept
+    : entry_(entry), bus_(bus), motor_(*entry.motor), guard_(entry.guard), shaper_(entry.shaping) {}
+
+void Axis::fill(MotorSnapshot& snapshot) const noexcept {
+  snapshot.feedback = motor_.feedback();
+  snapshot.target = motor_.target();
+  snapshot.command_value = motor_.commandValue();
+  snapshot.command_unit = motor_.commandUnit();
+  snapshot.limits = motor_.limits() | limits_;
+  snapshot.fault = fault_;
+  snapshot.status = status_;
+  snapshot.owner = lease_.client();
+}
+
+// ---- Feedback
+
+void Axis::listen(const Tick& tick, bool simulation_late) noexcept {
+  const auto& feedback = motor_.feedback();
+  // Samples that are old when they come are not heard: they could be old for ever.
+  const bool heard =
+      feedback.samples != samples_ && tick.now - feedback.received <= entry_.feedback_timeout / 2;
+  const bool could_speak = !simulation_late || !bus_.simulated;
+  if (could_speak) ++unheard_ticks_;
+  if (heard) unheard_ticks_ = 0;
+  samples_ = feedback.samples;
+}
+
+bool Axis::fresh(const Tick& tick) const noexcept {
+  const auto& feedback = motor_.feedback();
+  // Out of reach is as bad as unheard: whatever it was told last, it must be enabled anew.
+  return !bus_.held && feedback.samples > 0 && tick.now - feedback.received <= entry_.feedback_timeout;
+}
+
+// After a pause of the process, or of the computer, what came meanwhile may be unread, and drives that answer
+// were not asked. By the clock alone each such pause would be a fault of every motor.
+bool Axis::lost(const Tick& tick) const noexcept {
+  if (fresh(tick)) return false;
+  return bus_.held || motor_.feedback().samples == 0 || unheard_ticks_ > entry_.feedback_timeout_ticks;
+}
+
+bool Axis::standsStill() const noexcept {
+  return std::fabs(motor_.feedback().velocity_rpm) < entry_.standstill_rpm;
+}
+
+// ---- Once a tick
+
+bool Axis::losesReference(const Tick& tick) noexcept {
+  const bool known = motor_.feedback().zeroed;
+  const bool lost = reference_known_ && !known;
+  reference_known_ = known;
+  if (lost && needsReference(motor_.target().mode)) {
+    dropTarget();
+    beginTimeoutFallback(tick);
+  }
+  return lost;
+}
+
+// After a clear request an old one is ignored until the request can have taken effect.
+std::optional<DriveComplaint> Axis::complains(const Tick& tick) noexcept {
+  if (status_ == MotorStatus::kOffline || status_ == MotorStatus::kFault) return std::nullopt;
+  if (tick.now < clearing_until_) return std::nullopt;
+  const auto complaint = motor_.complaint();
+  if (complaint.fault == FaultCode::kNone) return std::nullopt;
+  fault_ = complaint.fault;
+  return complaint;
+}
+
+std::optional<MotorEvent> Axis::endsEnabling(const Tick& tick) const noexcept {
+  if (status_ != MotorStatus::kEnabling) return std::nullopt;
+  // The sequence runs in the motor from the tick in which it is first ordered; only then ask.
+  const bool held = heldWhileEnabling() && tick.now > enabling_since_;
+  if (motor_.ordered() != FrameKind::kEnable && !held) return std::nullopt;
+  switch (motor_.sequenceProgress()) {
+    case SequenceProgress::kDone: return MotorEvent::kEnableDone;
+    case SequenceProgress::kFailed: return MotorEvent::kEnableFailed;
+    case SequenceProgress::kPending: break;
+  }
+  if (tick.now >= enable_deadline_) return MotorEvent::kEnableFailed;
+  return std::nullopt;
+}
+
+bool Axis::trips(const Tick& tick) noexcept {
+  limits_ = 0;
+  // A fallback that brakes or holds after an e-stop is a loop as well.
+  const bool moves = status_ == MotorStatus::kActive ||
+                     (status_ == MotorStatus::kReady && fallback_.acts()) || heldWhileEnabling();
+  if (!moves) {
+    guard_.reset();
+    return false;
+  }
+  const auto verdict = guard_.step({.feedback = motor_.feedback(),
+                                    .target = in_force_,
+                                    .effort = motor_.commandValue(),
+                                    .unit = motor_.commandUnit(),
+                                    .limits = motor_.limits(),
+                                    .now = tick.now});
+  limits_ = verdict.limits;
+  motor_.derate(verdict.derating);
+  if (verdict.fault == FaultCode::kNone) return false;
+  fault_ = verdict.fault;
+  return true;
+}
+
+bool Axis::lapses(const Tick& tick) noexcept {
+  if (!lease_.taken() || lease_.held(tick.now)) return false;
+  const bool coasts = motor_.target().mode == ControlMode::kCoast;
+  dropTarget();
+  if (coasts) return false;
+  beginTimeoutFallback(tick);
+  return true;
+}
+
+void Axis::order(RobotState robot, const Tick& tick) noexcept {
+  fallback_.step(standsStill(), tick.now);
+  const auto kind = frameKind(robot);
+  if (kind != FrameKind::kCommand) {
+    shaper_.reset();
+    in_force_ = Target{};
+    motor_.order(kind);
+    return;
+  }
+  // First, so that soft limits act in this tick already.
+  motor_.restoreReference(motor_.target().mode);
+  const auto shaped = shaper_.step(motor_.target(), motor_.feedback(), motor_.commandValue(), tick.dt_s);
+  limits_ |= shaped.limits;
+  in_force_ = shaped.target;
+  motor_.order(kind, shaped.target);
+}
+
+FrameKind Axis::frameKind(RobotState robot) const noexcept {
+  const bool polls = motor_.driveFrames().poll == Provision::kFrame && robot != RobotState::kStopping;
+  const auto rest = polls ? FrameKind::kPoll : FrameKind::kRest;
+  switch (status_) {
+    case MotorStatus::kEnabling: return heldWhileEnabling() ? fallback_.kind() : FrameKind::kEnable;
+    case MotorStatus::kActive:
+      if (motor_.target().mode != ControlMode::kCoast) return FrameKind::kCommand;
+      return fallback_.acts() ? fallback_.kind() : FrameKind::kIdle;
+    case MotorStatus::kReady: return fallback_.acts() ? fallback_.kind() : rest;
+    case MotorStatus::kOffline:
+    case MotorStatus::kFault: break;
+  }
+  return rest;
+}
+
+// A drive that needs no enabling is not let go for the tick in which its motor becomes ACTIVE.
+bool Axis::heldWhileEnabling() const noexcept {
+  return status_ == MotorStatus::kEnabling && fallback_.acts() &&
+         motor_.driveFrames().enable == Provision::kNothing;
+}
+
+// ---- Changes
+
+std::optional<MotorStatus> Axis::take(MotorEvent event, RobotState robot, const Tick& tick) noexcept {
+  const auto before = status_;
+  status_ = next(before, event);
+  if (status_ == before) return std::nullopt;
+  if (before == MotorStatus::kFault) fault_ = FaultCode::kNone;
+  if (status_ != MotorStatus::kActive) dropTarget();
+  if (before == MotorStatus::kActive && status_ == MotorStatus::kReady) {
+    const auto& config = entry_.fallback;
+    const bool asked = event == MotorEvent::kDisable || robot == RobotState::kStopping;
+    fallback_.begin(asked ? config.on_disable : config.on_estop,
+                    asked ? Fallback::Until::kStandstill : Fallback::Until::kEnded, config.hold_max,
+                    tick.now);
+  }
+  // Without feedback there is nothing to brake by.
+  if (status_ == MotorStatus::kOffline || status_ == MotorStatus::kFault) fallback_.end();
+  return before;
+}
+
+void Axis::prepareEnabling(const Tick& tick) noexcept {
+  dropTarget();  // an old target must not act after enabling
+  enabling_since_ = tick.now;
+  enable_deadline_ = tick.now + kEnableTimeout;
+}
+
+void Axis::clearFault(const Tick& tick) noexcept {
+  if (status_ != MotorStatus::kFault) return;
+  motor_.clearComplaint();
+  clearing_until_ = tick.now + kClearPatience;
+}
+
+std::optional<SkipReason> Axis::take(const Target& target, const Lease::Holder& sender,
+                                     MonotonicTime deadline) noexcept {
+  if (target.mode == ControlMode::kCoast) {
+    // Letting go of a motor that is not held is no mistake: clients do it when they leave. While it is valid
+    // it keeps others of a lower priority from moving the motor, as every setpoint does.
+    motor_.clearTarget();
+    if (status_ == MotorStatus::kActive) fallback_.end();
+  } else {
+    if (const auto reason = tryTarget(target)) return reason;
+    fallback_.end();
+  }
+  lease_.take(sender, deadline);
+  return std::nullopt;
+}
+
+std::optional<SkipReason> Axis::tryTarget(const Target& target) noexcept {
+  if (status_ != MotorStatus::kActive) return SkipReason::kNotActive;
+  if (needsReference(target.mode)) {
+    if (!motor_.feedback().zeroed) return SkipReason::kNoReference;
+    const bool first = !needsReference(motor_.target().mode);
+    if (first && !shaper_.firstStepAllowed(target, motor_.feedback())) return SkipReason::kFirstStep;
+  }
+  if (!motor_.setTarget(target)) return SkipReason::kRefused;
+  return std::nullopt;
+}
+
+bool Axis::mayReportSkip(MonotonicTime now) noexcept {
+  if (now - last_skip_report_ < kReportInterval) return false;
+  last_skip_report_ = now;
+  return true;
+}
+
+// A motor that follows an angle would jump. A module that homes one knows that it does not.
+Refusal Axis::zero(const Order& order) noexcept {
+  const bool follows_angle = needsReference(motor_.target().mode) || needsReference(in_force_.mode);
+  switch (status_) {
+    case MotorStatus::kEnabling: return Refusal::kActive;
+    case MotorStatus::kActive:
+      if (!order.fromModule() || follows_angle) return Refusal::kActive;
+      break;
+    case MotorStatus::kOffline: return Refusal::kNoPosition;
+    case MotorStatus::kReady:
+    case MotorStatus::kFault: break;
+  }
+  return motor_.setZero(order.value) ? Refusal::kNone : Refusal::kNoPosition;
+}
+
+void Axis::retune(const CascadeConfig& loops) noexcept {
+  motor_.retune(loops);
+  shaper_.setApproach(kApproachOfAngleGain * loops.angle.kp);
+}
+
+void Axis::dropTarget() noexcept {
+  motor_.clearTarget();
+  lease_.release();
+}
+
+void Axis::beginTimeoutFallback(const Tick& tick) noexcept {
+  fallback_.begin(entry_.fallback.on_timeout, Fallback::Until::kEnded, entry_.fallback.hold_max, tick.now);
+}
+
+}  // namespace rc10

@@ -1,0 +1,109 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+
+#include "app/time.hpp"
+#include "daemon/devices/robot.hpp"
+#include "daemon/exchange/events.hpp"
+#include "daemon/exchange/orders.hpp"
+#include "daemon/exchange/snapshot.hpp"
+#include "daemon/exchange/states.hpp"
+#include "daemon/supervision/lease.hpp"
+#include "motor/guarding/fallback.hpp"
+
+namespace rc10 {
+
+/// Supervision of one motor: its status, who commands it and until when, its limits, and its fallback while
+/// nobody does. Knows nothing of other motors; the supervisor asks it in each tick and reports. Scheduler
+/// thread only.
+class Axis {
+ public:
+  /// Both outlive it.
+  Axis(const Robot::MotorEntry& entry, const Robot::BusEntry& bus) noexcept;
+
+  [[nodiscard]] Motor_Base& motor() const noexcept { return motor_; }
+  [[nodiscard]] MotorStatus status() const noexcept { return status_; }
+  [[nodiscard]] FaultCode fault() const noexcept { return fault_; }
+  [[nodiscard]] bool fallbackActs() const noexcept { return fallback_.acts(); }
+  [[nodiscard]] FallbackAction timeoutAction() const noexcept { return entry_.fallback.on_timeout; }
+  void fill(MotorSnapshot& snapshot) const noexcept;
+
+  // ---- Feedback
+
+  /// Once a tick, first. `simulation_late`: simulated drives had no processor to speak.
+  void listen(const Tick& tick, bool simulation_late) noexcept;
+  [[nodiscard]] bool fresh(const Tick& tick) const noexcept;
+  /// Not fresh, and not only because this thread did not run.
+  [[nodiscard]] bool lost(const Tick& tick) const noexcept;
+  [[nodiscard]] bool standsStill() const noexcept;
+
+  // ---- Once a tick
+
+  /// Its angle has just lost its reference; a target of an angle has ended with it.
+  [[nodiscard]] bool losesReference(const Tick& tick) noexcept;
+  /// A fault that its drive reports: fault() from now on.
+  [[nodiscard]] std::optional<DriveComplaint> complains(const Tick& tick) noexcept;
+  /// The end of an enable sequence.
+  [[nodiscard]] std::optional<MotorEvent> endsEnabling(const Tick& tick) const noexcept;
+  /// Limits and derating of this tick. A fault that the guard sees: fault() from now on.
+  [[nodiscard]] bool trips(const Tick& tick) noexcept;
+  /// The command in force has lapsed: its fallback has begun.
+  [[nodiscard]] bool lapses(const Tick& tick) noexcept;
+  /// Tells the motor what kind of frame its drive gets, and the target as it is shaped.
+  void order(RobotState robot, const Tick& tick) noexcept;
+
+  // ---- Changes
+
+  /// The status before, if it changes.
+  [[nodiscard]] std::optional<MotorStatus> take(MotorEvent event, RobotState robot,
+                                                const Tick& tick) noexcept;
+  /// Before MotorEvent::kEnable.
+  void prepareEnabling(const Tick& tick) noexcept;
+  /// Before MotorEvent::kClear: the drive clears its faults.
+  void clearFault(const Tick& tick) noexcept;
+  void endFallback() noexcept { fallback_.end(); }
+
+  /// Whether a command of `sender` would be taken.
+  [[nodiscard]] bool allows(const Lease::Holder& sender, MonotonicTime now) const noexcept {
+    return lease_.allows(sender, now);
+  }
+  [[nodiscard]] bool obeys(const Lease::Holder& sender, MonotonicTime now) const noexcept {
+    return status_ == MotorStatus::kActive && allows(sender, now);
+  }
+  /// Takes a target that the lease allows. The reason, if it does not act.
+  [[nodiscard]] std::optional<SkipReason> take(const Target& target, const Lease::Holder& sender,
+                                               MonotonicTime deadline) noexcept;
+  /// At most one report of a skipped setpoint in each kReportInterval.
+  [[nodiscard]] bool mayReportSkip(MonotonicTime now) noexcept;
+  [[nodiscard]] Refusal zero(const Order& order) noexcept;
+  void retune(const CascadeConfig& loops) noexcept;
+
+ private:
+  [[nodiscard]] FrameKind frameKind(RobotState robot) const noexcept;
+  [[nodiscard]] bool heldWhileEnabling() const noexcept;
+  [[nodiscard]] std::optional<SkipReason> tryTarget(const Target& target) noexcept;
+  void dropTarget() noexcept;
+  void beginTimeoutFallback(const Tick& tick) noexcept;
+
+  const Robot::MotorEntry& entry_;
+  const Robot::BusEntry& bus_;
+  Motor_Base& motor_;
+  MotorGuard guard_;
+  TargetShaper shaper_;
+  Fallback fallback_;
+  Lease lease_;      ///< Whose target is in force, and until when.
+  Target in_force_;  ///< Target that the motor followed in the last tick.
+  MotorStatus status_ = MotorStatus::kOffline;
+  FaultCode fault_ = FaultCode::kNone;
+  std::uint32_t limits_ = 0;         ///< Active limits, as the guard reports them.
+  bool reference_known_ = false;     ///< In the last tick.
+  std::uint64_t samples_ = 0;        ///< Of its feedback, when it was last heard.
+  std::uint64_t unheard_ticks_ = 0;  ///< Since then.
+  MonotonicTime enabling_since_;
+  MonotonicTime enable_deadline_;
+  MonotonicTime clearing_until_{};  ///< Until then the drive's complaints are old ones.
+  MonotonicTime last_skip_report_{};
+};
+
+}  // namespace rc10
