@@ -16,7 +16,8 @@ using namespace std::chrono_literals;
 // ticks of rest.
 constexpr Duration kLongestFallback = 1s;
 constexpr std::uint64_t kMostRestTicks = 50;
-// Requests are answered at the latest after so many ticks: an enable request waits two seconds for the drives.
+// Requests are answered at the latest after so many ticks: an enable request waits two seconds for the
+// drives.
 constexpr std::uint64_t kLongestAnswerTicks = 2'100;
 // So many ticks without an echo are a stall, and a stalled bus is probed so often (docs/can-setup.md).
 constexpr std::uint64_t kStalledTicks = 5;
