@@ -3,13 +3,15 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <sched.h>
+#include <sys/mman.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
+#include <cstdint>
 #include <future>
 #include <limits>
-
-#include "daemon/rt_process.hpp"
+#include <vector>
 
 namespace rc10::test::rt_thread_test {
 namespace {
@@ -124,20 +126,20 @@ TEST(RtThread, HasASmallStack) {
 }
 
 TEST(RtThread, ItsStackIsTouchedBeforeTheBodyRuns) {
-  std::uint64_t faults = 1;
+  constexpr std::uintptr_t kUsed = std::uintptr_t{64} * 1024;
+  const auto page = static_cast<std::uintptr_t>(sysconf(_SC_PAGESIZE));
+  std::vector<unsigned char> resident(kUsed / page);
+  int looked = -1;
   RtThread thread;
   ASSERT_TRUE(thread.start({"rx", 0, {}}, [&](const std::stop_token&) {
-    const auto use = []() {
-      std::array<volatile char, std::size_t{64} * 1024> room;
-      for (std::size_t i = 0; i < room.size(); i += 512) room[i] = 1;
-    };
-    (void)pageFaults(gettid());  // its own code and stack come in first
-    const auto before = pageFaults(gettid());
-    use();
-    faults = pageFaults(gettid()) - before;
+    const auto here = reinterpret_cast<std::uintptr_t>(__builtin_frame_address(0)) / page * page;
+    looked = mincore(reinterpret_cast<void*>(here - kUsed), kUsed, resident.data());
   }));
   thread.join();
-  EXPECT_LE(faults, 4U);  // 64 KiB are 16 pages
+  ASSERT_EQ(looked, 0);
+  EXPECT_EQ(std::count_if(resident.begin(), resident.end(), [](unsigned char at) { return (at & 1U) == 0; }),
+            0)
+      << "pages of the stack below what the thread uses";
 }
 
 TEST(RtThread, FlushesSubnormals) {
