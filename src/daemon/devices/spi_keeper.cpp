@@ -7,12 +7,13 @@
 
 #include <fmt/format.h>
 
-#include "daemon/exchange/note.hpp"
-
 namespace rc10 {
 
 SpiKeeper::SpiKeeper(SpiLines& lines, LinkExchange& exchange, Open open)
-    : lines_(lines), exchange_(exchange), open_(std::move(open)), devices_(lines.size()) {}
+    : lines_(lines),
+      notes_(exchange.notes, EventCode::kDevice),
+      open_(std::move(open)),
+      devices_(lines.size()) {}
 
 void SpiKeeper::turn(MonotonicTime now) {
   for (std::size_t i = 0; i < devices_.size(); ++i) {
@@ -28,7 +29,7 @@ void SpiKeeper::open(std::size_t index, MonotonicTime now) {
   auto opened = open_(line.settings.path, line.settings.speed_hz);
   if (!opened) {
     if (device.pace.failed(opened.error().message))
-      tell(line, Severity::kWarning, opened.error().message, now);
+      notes_.tell(line.settings.name, Severity::kWarning, opened.error().message, now);
     return;
   }
   // Its present state is unknown: the newest frame is sent, even if it was sent before.
@@ -44,8 +45,8 @@ void SpiKeeper::serve(std::size_t index, MonotonicTime now) {
   if (std::exchange(device.works, true)) return;
   device.pace.opened(now);
   line.open.store(true, std::memory_order_relaxed);
-  tell(line, Severity::kInfo, fmt::format("{} works, at {} Hz", line.settings.path, line.settings.speed_hz),
-       now);
+  notes_.tell(line.settings.name, Severity::kInfo,
+              fmt::format("{} works, at {} Hz", line.settings.path, line.settings.speed_hz), now);
 }
 
 void SpiKeeper::fail(std::size_t index, int error, MonotonicTime now) {
@@ -57,7 +58,7 @@ void SpiKeeper::fail(std::size_t index, int error, MonotonicTime now) {
   auto text = fmt::format("SPI device '{}': cannot send: {}", line.settings.path, std::strerror(error));
   if (error == EMSGSIZE)
     text += "; its buffer is too small: add spidev.bufsiz=4096 to the kernel's command line";
-  if (device.pace.failed(text)) tell(line, Severity::kWarning, text, now);
+  if (device.pace.failed(text)) notes_.tell(line.settings.name, Severity::kWarning, text, now);
 }
 
 std::optional<int> SpiKeeper::sendNewest(SpiLine& line, Device& device) noexcept {
@@ -77,11 +78,6 @@ void SpiKeeper::end() noexcept {
   for (std::size_t i = 0; i < devices_.size(); ++i) {
     if (devices_[i].port) (void)devices_[i].port->send(lines_[i]->settings.rest);
   }
-}
-
-void SpiKeeper::tell(const SpiLine& line, Severity severity, const std::string& text, MonotonicTime now) {
-  // Full: the link thread does not run, and nobody would read it.
-  (void)exchange_.notes.push(noteOf(EventCode::kDevice, severity, line.settings.name, text, now));
 }
 
 }  // namespace rc10

@@ -12,6 +12,7 @@
 #include "daemon/devices/retry_pace.hpp"
 #include "daemon/devices/spi_line.hpp"
 #include "daemon/exchange/events.hpp"
+#include "daemon/exchange/note.hpp"
 #include "daemon/exchange/rings.hpp"
 
 namespace rc10 {
@@ -52,10 +53,9 @@ class SpiKeeper {
   void fail(std::size_t index, int error, MonotonicTime now);
   /// 0: sent; empty: nothing was to be sent; else the errno.
   [[nodiscard]] static std::optional<int> sendNewest(SpiLine& line, Device& device) noexcept;
-  void tell(const SpiLine& line, Severity severity, const std::string& text, MonotonicTime now);
 
   SpiLines& lines_;
-  LinkExchange& exchange_;
+  Notes notes_;
   Open open_;
   std::vector<Device> devices_;
 };

@@ -37,17 +37,20 @@ struct BusInbox {
   std::atomic<std::uint32_t> controller_running{0};
 };
 
+/// Events in words, for the link thread.
+using NoteRing = Ring<link::Event, 32>;
+
 /// Everything that crosses to and from the link thread.
 struct LinkExchange {
-  Ring<Command, 64> commands;        // link -> scheduler
-  Ring<Order, 64> orders;            // link -> scheduler
-  Ring<SignalMessage, 64> signals;   // link -> scheduler
-  Ring<Event, 16> refusals;          // link -> scheduler, for the black box: commands that admission refused
-  Ring<OrderResult, 64> results;     // scheduler -> link
-  Ring<Event, 1024> events;          // scheduler -> link
-  Ring<link::Event, 32> notes;       // io -> link, in words already
-  Ring<link::Event, 32> line_notes;  // lines -> link, the same
-  LatestValue<Snapshot> snapshot;    // scheduler -> link
+  Ring<Command, 64> commands;       // link -> scheduler
+  Ring<Order, 64> orders;           // link -> scheduler
+  Ring<SignalMessage, 64> signals;  // link -> scheduler
+  Ring<Event, 16> refusals;         // link -> scheduler, for the black box: commands that admission refused
+  Ring<OrderResult, 64> results;    // scheduler -> link
+  Ring<Event, 1024> events;         // scheduler -> link
+  NoteRing notes;                   // io -> link, in words already
+  NoteRing line_notes;              // lines -> link, the same
+  LatestValue<Snapshot> snapshot;   // scheduler -> link
   /// Beside the ring, so that an e-stop gets through when the ring is full.
   std::atomic<bool> estop{false};
   EstopContact estop_contact;  // gpio -> scheduler

@@ -4,8 +4,6 @@
 
 #include <fmt/format.h>
 
-#include "daemon/exchange/note.hpp"
-
 namespace rc10 {
 namespace {
 
@@ -69,10 +67,10 @@ void LinkKeeper::checkSettings(std::size_t bus, MonotonicTime now) {
   const auto wrong = wrongSetting(entry.interface, *link, entry.settings);
   if (wrong.empty()) return;
   if (!entry.manage_link) {
-    tell(bus, Severity::kWarning, settingsAdvice(entry.interface, *link, entry.settings), now);
+    notes_.tell(nameOf(bus), Severity::kWarning, settingsAdvice(entry.interface, *link, entry.settings), now);
   } else if (restart(bus, now)) {
-    tell(bus, Severity::kWarning, fmt::format("{}: {}", wrong, restarted(entry.interface, entry.settings)),
-         now);
+    notes_.tell(nameOf(bus), Severity::kWarning,
+                fmt::format("{}: {}", wrong, restarted(entry.interface, entry.settings)), now);
   }
 }
 
@@ -85,7 +83,7 @@ void LinkKeeper::recover(std::size_t bus, BusState why, MonotonicTime now) {
   if (attempts == kAttemptsTold) {
     text += fmt::format("; from now on every 2 s, without telling it again. {}", lookAt(why));
   }
-  tell(bus, Severity::kWarning, text, now);
+  notes_.tell(nameOf(bus), Severity::kWarning, text, now);
 }
 
 bool LinkKeeper::restart(std::size_t bus, MonotonicTime now) {
@@ -95,7 +93,7 @@ bool LinkKeeper::restart(std::size_t bus, MonotonicTime now) {
   inboxes_[bus].link.store(LinkState::kDown, std::memory_order_relaxed);
   const auto done = driver_.restart(entry.interface, entry.settings);
   const auto error = done ? std::string{} : done.error().message;
-  if (!error.empty() && error != kept.last_error) tell(bus, Severity::kError, error, now);
+  if (!error.empty() && error != kept.last_error) notes_.tell(nameOf(bus), Severity::kError, error, now);
   kept.last_error = error;
   kept.by_us = error.empty();
   return kept.by_us;
@@ -108,14 +106,10 @@ void LinkKeeper::advise(std::size_t bus, BusState why, const CanLink& link, Mono
                                         upCommand(entry.interface, link, entry.settings))
                           : fmt::format("{}: {}, then type: {}", reason(why), lookAt(why),
                                         restartCommand(entry.interface, link, entry.settings));
-  tell(bus, Severity::kWarning,
-       advice + (link.isController() ? " (rc10d does it itself with `manage_link: true`)" : ""), now);
+  notes_.tell(nameOf(bus), Severity::kWarning,
+              advice + (link.isController() ? " (rc10d does it itself with `manage_link: true`)" : ""), now);
 }
 
-void LinkKeeper::tell(std::size_t bus, Severity severity, const std::string& text, MonotonicTime now) {
-  // Full: the link thread does not run, and nobody would read it.
-  (void)exchange_.notes.push(
-      noteOf(EventCode::kBusAdvice, severity, std::string{robot_.buses()[bus].bus->name()}, text, now));
-}
+std::string_view LinkKeeper::nameOf(std::size_t bus) const { return robot_.buses()[bus].bus->name(); }
 
 }  // namespace rc10

@@ -5,9 +5,11 @@
 #include <cstdint>
 #include <span>
 #include <string>
+#include <string_view>
 
 #include "app/time.hpp"
 #include "daemon/devices/robot.hpp"
+#include "daemon/exchange/note.hpp"
 #include "daemon/exchange/rings.hpp"
 #include "daemon/interfaces/can_link.hpp"
 #include "daemon/interfaces/link_recovery.hpp"
@@ -27,7 +29,7 @@ class LinkKeeper {
   LinkKeeper(Robot& robot, std::span<BusInbox> inboxes, LinkExchange& exchange)
       : LinkKeeper(robot, inboxes, exchange, Driver{}) {}
   LinkKeeper(Robot& robot, std::span<BusInbox> inboxes, LinkExchange& exchange, Driver driver)
-      : robot_(robot), inboxes_(inboxes), exchange_(exchange), driver_(driver) {}
+      : robot_(robot), inboxes_(inboxes), notes_(exchange.notes, EventCode::kBusAdvice), driver_(driver) {}
 
   /// Looks at every bus once. `came_up`: of these somebody may have changed the settings.
   void check(MonotonicTime now, std::bitset<kMaxBuses> came_up);
@@ -43,11 +45,11 @@ class LinkKeeper {
   [[nodiscard]] bool restart(std::size_t bus, MonotonicTime now);
   void advise(std::size_t bus, BusState why, const CanLink& link, MonotonicTime now);
   void checkSettings(std::size_t bus, MonotonicTime now);
-  void tell(std::size_t bus, Severity severity, const std::string& text, MonotonicTime now);
+  [[nodiscard]] std::string_view nameOf(std::size_t bus) const;
 
   Robot& robot_;
   std::span<BusInbox> inboxes_;
-  LinkExchange& exchange_;
+  Notes notes_;
   Driver driver_;
   std::array<Kept, kMaxBuses> kept_{};
 };

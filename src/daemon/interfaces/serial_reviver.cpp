@@ -9,7 +9,6 @@
 #include <fmt/format.h>
 
 #include "bus/serial_port.hpp"
-#include "daemon/exchange/note.hpp"
 
 namespace rc10 {
 
@@ -32,7 +31,7 @@ void SerialReviver::release(std::size_t index, MonotonicTime now) {
   if (const UniqueFd nothing{::open("/dev/null", O_RDWR | O_CLOEXEC)}; nothing) {
     (void)::dup3(nothing.get(), line.fd.get(), O_CLOEXEC);
   }
-  tell(line, Severity::kWarning, fmt::format("{} is gone", line.settings.path), now);
+  notes_.tell(line.settings.name, Severity::kWarning, fmt::format("{} is gone", line.settings.path), now);
 }
 
 void SerialReviver::tryToOpen(std::size_t index, MonotonicTime now) {
@@ -40,16 +39,17 @@ void SerialReviver::tryToOpen(std::size_t index, MonotonicTime now) {
   auto& line = lines_[index];
   port.pace.begin(now);
   if (const auto opened = open(line, index); !opened) {
-    if (port.pace.failed(opened.error().message)) tell(line, Severity::kWarning, opened.error().message, now);
+    if (port.pace.failed(opened.error().message))
+      notes_.tell(line.settings.name, Severity::kWarning, opened.error().message, now);
     return;
   }
   port.open = true;
   port.pace.opened(now);
   const auto steady = steadySerialName(line.settings.path);
-  tell(line, Severity::kInfo,
-       fmt::format("{} is open, {}{}", line.settings.path, line.settings.format.text(),
-                   steady.empty() ? "" : "; its steady name is " + steady),
-       now);
+  notes_.tell(line.settings.name, Severity::kInfo,
+              fmt::format("{} is open, {}{}", line.settings.path, line.settings.format.text(),
+                          steady.empty() ? "" : "; its steady name is " + steady),
+              now);
 }
 
 Result<void> SerialReviver::open(SerialLine& line, std::size_t index) {
@@ -63,12 +63,6 @@ Result<void> SerialReviver::open(SerialLine& line, std::size_t index) {
   if (rx_.watchSerial(index)) return {};
   line.state.store(SerialState::kAbsent, std::memory_order_relaxed);
   return fail(fmt::format("serial port '{}': epoll_ctl: {}", line.settings.path, std::strerror(errno)));
-}
-
-void SerialReviver::tell(const SerialLine& line, Severity severity, const std::string& text,
-                         MonotonicTime now) {
-  // Full: the link thread does not run, and nobody would read it.
-  (void)exchange_.notes.push(noteOf(EventCode::kSerialPort, severity, line.settings.name, text, now));
 }
 
 }  // namespace rc10

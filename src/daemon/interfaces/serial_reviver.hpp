@@ -9,6 +9,7 @@
 #include "daemon/devices/retry_pace.hpp"
 #include "daemon/devices/serial_line.hpp"
 #include "daemon/exchange/events.hpp"
+#include "daemon/exchange/note.hpp"
 #include "daemon/exchange/rings.hpp"
 #include "daemon/interfaces/rx_loop.hpp"
 
@@ -20,7 +21,7 @@ namespace rc10 {
 class SerialReviver {
  public:
   SerialReviver(SerialLines& lines, RxLoop& rx, LinkExchange& exchange)
-      : lines_(lines), rx_(rx), exchange_(exchange), ports_(lines.size()) {}
+      : lines_(lines), rx_(rx), notes_(exchange.notes, EventCode::kSerialPort), ports_(lines.size()) {}
 
   /// Looks at every port once. To be called some 20 times a second, and once before the first tick.
   void check(MonotonicTime now);
@@ -34,11 +35,10 @@ class SerialReviver {
   void release(std::size_t index, MonotonicTime now);
   void tryToOpen(std::size_t index, MonotonicTime now);
   [[nodiscard]] Result<void> open(SerialLine& line, std::size_t index);
-  void tell(const SerialLine& line, Severity severity, const std::string& text, MonotonicTime now);
 
   SerialLines& lines_;
   RxLoop& rx_;
-  LinkExchange& exchange_;
+  Notes notes_;
   std::vector<Port> ports_;
 };
 

@@ -9,7 +9,6 @@
 #include <fmt/format.h>
 
 #include "daemon/exchange/clock.hpp"
-#include "daemon/exchange/note.hpp"
 
 namespace rc10 {
 namespace {
@@ -23,7 +22,7 @@ namespace {
 LineLoop::LineLoop(LineBanks& banks, std::unique_ptr<GpioSystem> gpio, LinkExchange& exchange)
     : banks_(banks),
       gpio_(std::move(gpio)),
-      exchange_(exchange),
+      notes_(exchange.line_notes, EventCode::kDevice),
       lines_(banks.size()),
       interval_(kIdleInterval) {
   for (std::size_t i = 0; i < banks_.size(); ++i) {
@@ -87,10 +86,10 @@ void LineLoop::goodTurn(std::size_t index, MonotonicTime now) {
   if (std::exchange(lines.answers, true)) return;
   const auto& settings = banks_[index].settings();
   lines.pace.opened(now);
-  tell(settings.name, Severity::kInfo,
-       fmt::format("{}: {} inputs and {} outputs are open", settings.chip, settings.inputs.size(),
-                   settings.outputs.size()),
-       now);
+  notes_.tell(settings.name, Severity::kInfo,
+              fmt::format("{}: {} inputs and {} outputs are open", settings.chip, settings.inputs.size(),
+                          settings.outputs.size()),
+              now);
 }
 
 void LineLoop::badTurn(std::size_t index, bool unread, MonotonicTime now) {
@@ -106,10 +105,10 @@ void LineLoop::badTurn(std::size_t index, bool unread, MonotonicTime now) {
     what +=
         fmt::format("{}output {} did not take its level", what.empty() ? "" : ", ", settings.outputs[i].name);
   }
-  tell(settings.name, Severity::kWarning,
-       fmt::format("{}: a transfer failed and is tried again ({} since the last report): {}", settings.chip,
-                   std::exchange(lines.failures, 0), what),
-       now);
+  notes_.tell(settings.name, Severity::kWarning,
+              fmt::format("{}: a transfer failed and is tried again ({} since the last report): {}",
+                          settings.chip, std::exchange(lines.failures, 0), what),
+              now);
 }
 
 void LineLoop::watchScheduler(MonotonicTime now, std::uint64_t ticks) {
@@ -120,8 +119,8 @@ void LineLoop::watchScheduler(MonotonicTime now, std::uint64_t ticks) {
   if (ticks == 0 || was_silent || silence_ <= kMaxSilence) return;
   for (std::size_t i = 0; i < banks_.size(); ++i) {
     if (banks_[i].settings().outputs.empty()) continue;
-    tell(banks_[i].settings().name, Severity::kError,
-         "no tick for 0.2 s: the outputs go to their safe values", now);
+    notes_.tell(banks_[i].settings().name, Severity::kError,
+                "no tick for 0.2 s: the outputs go to their safe values", now);
   }
 }
 
@@ -130,7 +129,7 @@ void LineLoop::tryToOpen(std::size_t index, MonotonicTime now) {
   lines.pace.begin(now);
   if (const auto opened = open(banks_[index], lines); !opened) {
     if (lines.pace.failed(opened.error().message))
-      tell(banks_[index].settings().name, Severity::kWarning, opened.error().message, now);
+      notes_.tell(banks_[index].settings().name, Severity::kWarning, opened.error().message, now);
     return;
   }
   lines.held = true;
@@ -197,15 +196,16 @@ void LineLoop::lose(std::size_t index, MonotonicTime now) {
   if (!std::exchange(lines.answers, false)) {
     // It can be opened and does not answer, again and again: told once.
     const auto text = fmt::format("{}: the chip does not answer", settings.chip);
-    if (lines.pace.failed(text)) tell(settings.name, Severity::kWarning, text, now);
+    if (lines.pace.failed(text)) notes_.tell(settings.name, Severity::kWarning, text, now);
     return;
   }
   lines.pace.lost(now);
-  tell(settings.name, Severity::kWarning,
-       fmt::format(
-           "{}: the chip is gone or does not answer: its inputs mean nothing, its outputs may be anything",
-           settings.chip),
-       now);
+  notes_.tell(
+      settings.name, Severity::kWarning,
+      fmt::format(
+          "{}: the chip is gone or does not answer: its inputs mean nothing, its outputs may be anything",
+          settings.chip),
+      now);
 }
 
 void LineLoop::end() noexcept {
@@ -214,12 +214,6 @@ void LineLoop::end() noexcept {
     lines_[i] = {};
     banks_[i].showClosed();
   }
-}
-
-void LineLoop::tell(const std::string& module, Severity severity, const std::string& text,
-                    MonotonicTime now) {
-  // Full: the link thread does not run, and nobody would read it.
-  (void)exchange_.line_notes.push(noteOf(EventCode::kDevice, severity, module, text, now));
 }
 
 }  // namespace rc10

@@ -12,6 +12,7 @@
 #include "daemon/devices/line_bank.hpp"
 #include "daemon/devices/retry_pace.hpp"
 #include "daemon/exchange/events.hpp"
+#include "daemon/exchange/note.hpp"
 #include "daemon/exchange/rings.hpp"
 #include "daemon/tick/scheduler.hpp"
 
@@ -70,11 +71,10 @@ class LineLoop {
   void badTurn(std::size_t index, bool unread, MonotonicTime now);
   void lose(std::size_t index, MonotonicTime now);
   [[nodiscard]] Duration interval() const noexcept;
-  void tell(const std::string& module, Severity severity, const std::string& text, MonotonicTime now);
 
   LineBanks& banks_;
   std::unique_ptr<GpioSystem> gpio_;
-  LinkExchange& exchange_;
+  Notes notes_;
   std::vector<Bank> lines_;
   Duration interval_;
   std::optional<MonotonicTime> last_turn_;
