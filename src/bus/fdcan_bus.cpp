@@ -141,12 +141,10 @@ void fdCANbus::holdBack() noexcept {
 int fdCANbus::sendError() const noexcept { return batch_->error(); }
 
 void fdCANbus::countSent() noexcept {
-  const auto entries = batch_->entries();
-  for (std::size_t i = 0; i < entries.size(); ++i) {
-    const SendBatch::Entry& entry = entries[i];
-    if (tap_ != nullptr) tap_->onSent(batch_->frame(i), entry.sent);
+  for (const SendBatch::Entry& entry : batch_->entries()) {
+    if (tap_ != nullptr) tap_->onSent(entry.frame, entry.sent);
     // Refused ones too: a queue that stays full is a bus that does not carry frames either.
-    if (std::find(watched_.begin(), watched_.end(), entry.id) != watched_.end()) ++counters_.tx_watched;
+    if (std::find(watched_.begin(), watched_.end(), entry.frame.id) != watched_.end()) ++counters_.tx_watched;
     if (!entry.sent) {
       ++counters_.tx_dropped;
       continue;

@@ -29,15 +29,9 @@ bool SendBatch::add(const CanFrame& frame, std::optional<std::size_t> packer) no
   const std::size_t bytes = encodeFrame(frame, frames_[size_]);
   if (bytes == 0) return false;
   contents_[size_].iov_len = bytes;
-  entries_[size_] = {frame.id, unstuffedBits(shapeOf(frame)), packer, false};
+  entries_[size_] = {frame, unstuffedBits(shapeOf(frame)), packer, false};
   ++size_;
   return true;
-}
-
-CanFrame SendBatch::frame(std::size_t index) const noexcept {
-  CanFrame frame;
-  (void)decodeFrame(frames_[index], contents_[index].iov_len, frame);  // we have encoded it
-  return frame;
 }
 
 std::size_t SendBatch::send(int fd) noexcept {

@@ -20,7 +20,7 @@ class SendBatch {
   static constexpr std::size_t kCapacity = 64;
 
   struct Entry {
-    CanId id;
+    CanFrame frame;  ///< As it was added.
     FrameBits bits;
     std::optional<std::size_t> packer;  ///< Its packer; none: sent on its own.
     bool sent = false;
@@ -33,9 +33,6 @@ class SendBatch {
 
   [[nodiscard]] std::size_t room() const noexcept { return kCapacity - size_; }
   [[nodiscard]] std::span<const Entry> entries() const noexcept { return std::span(entries_).first(size_); }
-
-  /// The frame of the `index`th entry.
-  [[nodiscard]] CanFrame frame(std::size_t index) const noexcept;
 
   /// False if the batch is full or there is no such frame.
   bool add(const CanFrame& frame, std::optional<std::size_t> packer) noexcept;
