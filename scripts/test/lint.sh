@@ -41,6 +41,16 @@ comments_begin_with_a_noun() {
     ! grep -rnE '//+<? *(What|Who|Whoever|So that)\>' src
 }
 
+# A source that .gitignore hides is compiled here and missing in every clone.
+git_sees_each_source() {
+    [ -e .git ] || return 0
+    local hidden
+    hidden=$(git ls-files --others --ignored --exclude-standard -- src tests bench examples cmake scripts docs \
+        | grep -vE '(^|/)(__pycache__|\.[a-z]+_cache)/') || return 0
+    echo "hidden from git by .gitignore:" && echo "$hidden" && return 1
+}
+
+step "git sees each source" git_sees_each_source
 step clang-format format_cpp
 step "comments begin with a noun" comments_begin_with_a_noun
 step shellcheck shell

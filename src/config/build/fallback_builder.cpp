@@ -1,0 +1,47 @@
+#include "config/build/fallback_builder.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "config/keys/value_check.hpp"
+#include "motor/guarding/fallback.hpp"
+
+namespace rc10 {
+namespace {
+
+[[nodiscard]] FallbackAction fallbackOf(MotorReading& in, std::string_view key) {
+  const auto word = std::find(kFallbackWords.begin(), kFallbackWords.end(), in.settings.text(key));
+  if (word == kFallbackWords.end()) return FallbackAction::kCoast;
+  return static_cast<FallbackAction>(word - kFallbackWords.begin());
+}
+
+void checkFallback(MotorReading& in, std::string_view key) {
+  const auto given = in.settings.find(key);
+  if (!given || in.traits.frames.of(frameKindOf(fallbackOf(in, key))) != Provision::kUnsupported) return;
+  std::vector<std::string> possible;
+  for (std::size_t i = 0; i < kFallbackWords.size(); ++i) {
+    const auto kind = frameKindOf(static_cast<FallbackAction>(i));
+    if (in.traits.frames.of(kind) != Provision::kUnsupported) possible.emplace_back(kFallbackWords[i]);
+  }
+  in.problems.error(given->place(), given->path,
+                    "the " + in.modelName() + " cannot " + given->text() + " by itself; use " +
+                        listWords(possible, " or "));
+}
+
+}  // namespace
+
+void readFallbacks(MotorReading& in) {
+  FallbackConfig& fallback = in.draft.config.fallback;
+  fallback.on_timeout = fallbackOf(in, "on_timeout");
+  fallback.on_disable = fallbackOf(in, "on_disable");
+  fallback.on_estop = fallbackOf(in, "on_estop");
+  for (const auto* key : {"on_timeout", "on_disable", "on_estop"}) checkFallback(in, key);
+  if (const auto hold_s = in.settings.number("hold_max_s")) {
+    fallback.hold_max = std::chrono::milliseconds{static_cast<std::int64_t>(*hold_s * 1000.0)};
+  }
+}
+
+}  // namespace rc10

@@ -1,0 +1,81 @@
+#include "config/build/guard_builder.hpp"
+
+#include <chrono>
+
+#include "config/yaml/number_text.hpp"
+
+namespace rc10 {
+namespace {
+
+// Of the no-load speed at 24 V: out of reach for the drive alone; and slower than a turning motor's noise.
+constexpr double kOverspeed = 1.5;
+constexpr double kStall = 0.02;
+// Against all its torque: more than a load or another robot that pushes adds.
+constexpr double kRunaway = 0.1;
+// Of full scale: what a drive's current may be off by while it is in order.
+constexpr float kFrozen = 0.05F;
+// GM6020 manual: it warns above 100 C, its winding stands 125 C; the C620 warns from 125 C.
+constexpr float kDerateC = 80.0F;
+constexpr float kTripC = 100.0F;
+constexpr double kFollowingErrorMs = 200.0;
+
+// A limit that trips on what is asked for would be of no use.
+void checkOverspeed(MotorReading& in) {
+  const auto given = in.settings.find("overspeed_rpm");
+  const double target_rpm = static_cast<double>(in.motor().velocity_limit_rpm);
+  if (!given || static_cast<double>(in.draft.config.guard.overspeed_rpm) > target_rpm) return;
+  in.problems.error(given->place(), given->path,
+                    given->text() + " rpm is not above the velocity limit of " + numberText(target_rpm) +
+                        " rpm; raise it, or lower velocity_limit_rpm");
+}
+
+void checkTemperatures(MotorReading& in) {
+  const GuardConfig& guard = in.draft.config.guard;
+  const auto derate = in.settings.find("temperature_derate_c");
+  const auto trip = in.settings.find("temperature_trip_c");
+  const auto& given = trip ? trip : derate;
+  if (!given || guard.temperature_derate_c < guard.temperature_trip_c) return;
+  in.problems.error(given->place(), given->path,
+                    "temperature_derate_c (" + numberText(static_cast<double>(guard.temperature_derate_c)) +
+                        ") must be below temperature_trip_c (" +
+                        numberText(static_cast<double>(guard.temperature_trip_c)) + "); change one of them");
+}
+
+// Without it a step of the target is at once a following error.
+void checkFollowingError(MotorReading& in) {
+  const auto given = in.settings.find("following_error_deg");
+  if (!given || in.settings.mentions("angle_slew_deg_per_s")) return;
+  in.problems.error(
+      given->place(), given->path,
+      "needs angle_slew_deg_per_s: without it every step of the target would be a fault; add it");
+}
+
+}  // namespace
+
+void readGuard(MotorReading& in) {
+  GuardConfig& guard = in.draft.config.guard;
+  guard.overspeed_rpm = static_cast<float>(kOverspeed * in.noLoadRpm());
+  guard.stall_rpm = static_cast<float>(kStall * in.noLoadRpm());
+  in.settings.read("overspeed_rpm", guard.overspeed_rpm);
+  if (in.traits.reports_temperature) {
+    guard.temperature_derate_c = kDerateC;
+    guard.temperature_trip_c = kTripC;
+  }
+  in.settings.read("temperature_derate_c", guard.temperature_derate_c);
+  in.settings.read("temperature_trip_c", guard.temperature_trip_c);
+  const auto stall_ms = in.settings.number("stall_ms").value_or(0.0);
+  guard.stall_time = std::chrono::milliseconds{static_cast<int>(stall_ms)};
+  guard.stall_trips = in.settings.text("stall_action") != "notify";
+  if (guard.stall_rpm > 0.0F) in.draft.config.standstill_rpm = guard.stall_rpm;
+  guard.encoder_jumps = true;
+  guard.runaway_rpm = static_cast<float>(kRunaway * in.noLoadRpm());
+  guard.frozen_a = kFrozen * in.traits.frozen_a;
+  in.settings.read("following_error_deg", guard.following_error_deg);
+  const auto behind_ms = in.settings.number("following_error_ms").value_or(kFollowingErrorMs);
+  guard.following_error_time = std::chrono::milliseconds{static_cast<int>(behind_ms)};
+  checkOverspeed(in);
+  checkTemperatures(in);
+  checkFollowingError(in);
+}
+
+}  // namespace rc10

@@ -1,0 +1,43 @@
+#pragma once
+
+#include <string>
+
+#include "config/check/motor_draft.hpp"
+#include "config/keys/settings.hpp"
+#include "config/yaml/problem.hpp"
+#include "motor/motor_family.hpp"
+
+namespace rc10 {
+
+/// One motor's settings on their way into its draft: what the parts of buildMotor() share.
+struct MotorReading {
+  const Settings& settings;
+  MotorDraft& draft;
+  Problems& problems;
+  MotorTraits traits{};  ///< Once the model and its family's keys are known.
+
+  [[nodiscard]] MotorSettings& motor() const noexcept { return draft.config.settings; }
+  [[nodiscard]] const std::string& modelName() const noexcept { return motor().model; }
+
+  [[nodiscard]] bool byVoltage() const noexcept { return traits.effort == CommandUnit::kVolt; }
+  [[nodiscard]] const char* effortKey() const noexcept {
+    return byVoltage() ? "voltage_limit_v" : "current_limit_a";
+  }
+  [[nodiscard]] bool knowsItsAngle() const noexcept {
+    const bool own_gear = motor().gear_ratio == 0.0 || motor().gear_ratio == traits.gear_ratio;
+    return traits.absolute && own_gear;
+  }
+  [[nodiscard]] double gear() const noexcept {
+    return motor().gear_ratio > 0.0 ? motor().gear_ratio : traits.gear_ratio;
+  }
+  /// Of a model whose speed nobody knows: what the user allows, or 0.
+  [[nodiscard]] double noLoadRpm() const noexcept {
+    if (traits.no_load_rpm <= 0.0F) return static_cast<double>(motor().velocity_limit_rpm);
+    return static_cast<double>(traits.no_load_rpm) * traits.gear_ratio / gear();
+  }
+  [[nodiscard]] double torqueNmPerA() const noexcept {
+    return static_cast<double>(traits.torque_nm_per_a) / traits.gear_ratio * gear();
+  }
+};
+
+}  // namespace rc10

@@ -1,0 +1,47 @@
+#include "config/build/shaping_builder.hpp"
+
+#include <variant>
+
+namespace rc10 {
+namespace {
+
+// Drives with loops of their own: a speed that stops within a tenth of a second, and the share of the
+// no-load speed over which the effort comes down.
+constexpr float kNativeApproach = 2.0F;
+constexpr float kFullEffort = 0.2F;
+
+}  // namespace
+
+void readShaping(MotorReading& in) {
+  ShapingConfig& shaping = in.draft.config.shaping;
+  in.settings.read(in.byVoltage() ? "voltage_slew_v_per_s" : "current_slew_a_per_s",
+                   shaping.effort_slew_per_s);
+  in.settings.read("velocity_slew_rpm_per_s", shaping.velocity_slew_rpm_per_s);
+  in.settings.read("angle_slew_deg_per_s", shaping.angle_slew_deg_per_s);
+  in.settings.read("angle_min_deg", shaping.angle_min_deg);
+  in.settings.read("angle_max_deg", shaping.angle_max_deg);
+  in.settings.read("max_first_step_deg", shaping.max_first_step_deg);
+  if (in.traits.host_loops != nullptr) {
+    shaping.approach_rpm_per_deg = kApproachOfAngleGain * in.motor().loops.angle.kp;
+    shaping.approach_effort_per_rpm =
+        std::visit([](const auto& pid) { return pid.kp; }, in.traits.host_loops->velocity);
+  } else {
+    shaping.approach_rpm_per_deg = kNativeApproach;
+    if (in.noLoadRpm() > 0.0)
+      shaping.approach_effort_per_rpm =
+          in.traits.effort_full_scale / (kFullEffort * static_cast<float>(in.noLoadRpm()));
+  }
+  if (!in.byVoltage() && in.torqueNmPerA() > 0.0)
+    shaping.effort_per_nm = static_cast<float>(1.0 / in.torqueNmPerA());
+  if (in.byVoltage() && in.noLoadRpm() > 0.0)
+    shaping.effort_per_rpm = in.traits.effort_full_scale / static_cast<float>(in.noLoadRpm());
+  const auto max_deg = in.settings.find("angle_max_deg");
+  const auto min_deg = in.settings.find("angle_min_deg");
+  if (max_deg && min_deg && shaping.angle_min_deg >= shaping.angle_max_deg) {
+    in.problems.error(
+        max_deg->place(), max_deg->path,
+        max_deg->text() + " deg is not above angle_min_deg (" + min_deg->text() + "); change one of them");
+  }
+}
+
+}  // namespace rc10
