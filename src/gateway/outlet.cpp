@@ -26,33 +26,54 @@ Outlet::Outlet(const link::Welcome& welcome, LcmPublisher& publisher)
 }
 
 void Outlet::forward(std::span<const std::byte> datagram) {
+  using enum link::MessageType;
   link::Header header;
-  link::State state;
-  link::Diagnostics diagnostics;
-  link::Event event;
-  link::Response response;
-  link::ModuleInfo info;
-  link::ModuleState module;
   const auto type = link::readHeader(datagram, header) ? header.type : link::MessageType{};
-  if (type == link::MessageType::kState && link::open(datagram, state)) {
-    convert(welcome_, state, state_);
-    send(state_channel_, state_);
-  } else if (type == link::MessageType::kDiagnostics && link::open(datagram, diagnostics)) {
-    convert(diagnostics, diagnostics_);
-    send(diagnostics_channel_, diagnostics_);
-  } else if (type == link::MessageType::kEvent && link::open(datagram, event)) {
-    publish(event);
-  } else if (type == link::MessageType::kResponse && link::open(datagram, response)) {
-    publish(response);
-  } else if (type == link::MessageType::kModuleInfo && link::open(datagram, info) &&
-             info.module < modules_.size()) {
-    modules_[info.module].info = info;
-  } else if (type == link::MessageType::kModuleState && link::open(datagram, module) &&
-             module.module < modules_.size()) {
-    publish(module);
-  } else {
-    ++malformed_;
+  bool taken = false;
+  switch (type) {
+    case kState: taken = open<link::State>(datagram); break;
+    case kDiagnostics: taken = open<link::Diagnostics>(datagram); break;
+    case kEvent: taken = open<link::Event>(datagram); break;
+    case kResponse: taken = open<link::Response>(datagram); break;
+    case kModuleInfo: taken = open<link::ModuleInfo>(datagram); break;
+    case kModuleState: taken = open<link::ModuleState>(datagram); break;
+    default: break;
   }
+  if (!taken) ++malformed_;
+}
+
+template <typename Message>
+bool Outlet::open(std::span<const std::byte> datagram) {
+  Message message;
+  return link::open(datagram, message) && take(message);
+}
+
+bool Outlet::take(const link::State& state) {
+  convert(welcome_, state, state_);
+  send(state_channel_, state_);
+  return true;
+}
+
+bool Outlet::take(const link::Diagnostics& diagnostics) {
+  convert(diagnostics, diagnostics_);
+  send(diagnostics_channel_, diagnostics_);
+  return true;
+}
+
+bool Outlet::take(const link::Event& event) {
+  publish(event);
+  return true;
+}
+
+bool Outlet::take(const link::Response& response) {
+  publish(response);
+  return true;
+}
+
+bool Outlet::take(const link::ModuleInfo& info) {
+  if (info.module >= modules_.size()) return false;
+  modules_[info.module].info = info;
+  return true;
 }
 
 void Outlet::publish(const link::Event& event) {
@@ -65,10 +86,12 @@ void Outlet::publish(const link::Response& response) {
   send(response_channel_, response_);
 }
 
-void Outlet::publish(const link::ModuleState& state) {
+bool Outlet::take(const link::ModuleState& state) {
+  if (state.module >= modules_.size()) return false;
   const auto& [channel, info] = modules_[state.module];
   convert(info, state, signals_);
   send(channel, signals_);
+  return true;
 }
 
 }  // namespace rc10::gateway

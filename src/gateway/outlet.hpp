@@ -46,7 +46,15 @@ class Outlet {
     if (!bytes.empty()) publisher_.publish(channel, bytes);
   }
 
-  void publish(const link::ModuleState& state);
+  template <typename Message>
+  [[nodiscard]] bool open(std::span<const std::byte> datagram);
+  // False: about a module that there is not.
+  [[nodiscard]] bool take(const link::State& state);
+  [[nodiscard]] bool take(const link::Diagnostics& diagnostics);
+  [[nodiscard]] bool take(const link::Event& event);
+  [[nodiscard]] bool take(const link::Response& response);
+  [[nodiscard]] bool take(const link::ModuleInfo& info);
+  [[nodiscard]] bool take(const link::ModuleState& state);
 
   const link::Welcome& welcome_;
   LcmPublisher& publisher_;
