@@ -1,5 +1,8 @@
 #pragma once
 
+#include <map>
+#include <memory>
+#include <mutex>
 #include <string>
 
 #include "rc10/module.hpp"
@@ -23,6 +26,17 @@ class ModuleInbox {
 
  private:
   Subscriber<signals_t> outputs_;
+};
+
+/// Inboxes of the modules that a program asked for. Any thread.
+class ModuleInboxes {
+ public:
+  /// `channel`: as for ModuleInbox. Subscribed from the first call on; stays where it is.
+  [[nodiscard]] const ModuleInbox& of(const Link& link, const std::string& channel);
+
+ private:
+  std::mutex mutex_;
+  std::map<std::string, std::unique_ptr<const ModuleInbox>> inboxes_;
 };
 
 /// Why no module can be given these inputs: how many they are, or a number that is not finite.

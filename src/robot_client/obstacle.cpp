@@ -31,5 +31,20 @@ std::optional<std::string> obstacle(const RobotState& state, const std::string& 
   return std::nullopt;
 }
 
+Result<void> checkSetpoints(const RobotState& state, const MotorSetpoints& setpoints) {
+  if (setpoints.empty()) return fail("a command needs at least one setpoint");
+  for (std::size_t i = 0; i < setpoints.size(); ++i) {
+    const auto& [motor, setpoint] = setpoints[i];
+    if (auto checked = setpoint.check(); !checked) return fail(motor + ": " + checked.error().message);
+    for (std::size_t j = 0; j < i; ++j) {
+      if (setpoints[j].motor == motor) return fail("two setpoints for " + motor);
+    }
+    // Coasting needs nothing but a motor.
+    if (setpoint.mode == Mode::kCoast && state.find(motor) != nullptr) continue;
+    if (auto reason = obstacle(state, motor, setpoint.mode)) return fail(*reason);
+  }
+  return {};
+}
+
 }  // namespace robot_client
 }  // namespace rc10

@@ -3,7 +3,9 @@
 #include <optional>
 #include <string>
 
+#include "app/result.hpp"
 #include "rc10/robot_state.hpp"
+#include "rc10/setpoint.hpp"
 
 namespace rc10 {
 inline namespace robot_client {
@@ -12,6 +14,9 @@ inline namespace robot_client {
 /// count: a higher priority takes it over.
 [[nodiscard]] std::optional<std::string> obstacle(const RobotState& state, const std::string& motor,
                                                   Mode mode);
+
+/// Why these setpoints would not all be acted on.
+[[nodiscard]] Result<void> checkSetpoints(const RobotState& state, const MotorSetpoints& setpoints);
 
 }  // namespace robot_client
 }  // namespace rc10

@@ -1,0 +1,36 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+
+#include "app/time.hpp"
+
+namespace rc10 {
+inline namespace robot_client {
+
+/// Emergency stop that is sent again, under its number, until the state shows it. Pure.
+class EstopRepetition {
+ public:
+  /// Number of the one that is under way.
+  [[nodiscard]] std::optional<std::int64_t> number() const noexcept { return number_; }
+
+  void sent(std::int64_t number, MonotonicTime now) noexcept {
+    number_ = number;
+    next_ = now + kRepeat;
+  }
+  void shown() noexcept { number_.reset(); }
+
+  [[nodiscard]] std::optional<MonotonicTime> nextDue() const noexcept {
+    return number_ ? std::optional(next_) : std::nullopt;
+  }
+
+ private:
+  // An emergency stop is worth the traffic.
+  static constexpr Duration kRepeat = std::chrono::milliseconds{20};
+
+  std::optional<std::int64_t> number_;
+  MonotonicTime next_{};
+};
+
+}  // namespace robot_client
+}  // namespace rc10
