@@ -67,6 +67,6 @@ def test_late_commands_and_states_are_noticed(spacing_s: float, mode: int, bad: 
     nothing = np.zeros_like(time_s)
     modes = np.full_like(time_s, rc10.Mode.VELOCITY)
     modes[50] = mode
-    motor = MotorRecording("wheel", **{**dict.fromkeys(SIGNALS, nothing), "mode": modes})
+    motor = MotorRecording("wheel", {**dict.fromkeys(SIGNALS, nothing), "mode": modes})
     assert disturbed(motor, time_s, 5.0) is bad
     assert len(motor.part(slice(10, None)).mode) == len(time_s) - 10

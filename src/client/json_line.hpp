@@ -1,6 +1,7 @@
 #pragma once
 
 #include <string>
+#include <type_traits>
 
 #include <nlohmann/json.hpp>
 
@@ -14,6 +15,12 @@ using Json = nlohmann::ordered_json;
 
 /// A float with as many digits as it has, not those of the double nearest to it.
 [[nodiscard]] double shortest(float value);
+/// As it is.
+template <typename Number>
+  requires(!std::is_same_v<Number, float>)
+[[nodiscard]] Number shortest(Number value) {
+  return value;
+}
 
 /// "current,stall" as a list.
 [[nodiscard]] Json listOf(const std::string& words);

@@ -6,6 +6,7 @@
 
 #include "client/find_motor.hpp"
 #include "client/text_table.hpp"
+#include "link/motor_readings.hpp"
 
 namespace rc10::client {
 namespace {
@@ -18,17 +19,10 @@ struct Readable {
 };
 
 constexpr std::array kSignals{
-    Readable{"target", [](const MotorState& m) { return m.target; }},
-    Readable{"angle_deg", [](const MotorState& m) { return static_cast<double>(m.angle_deg); }},
-    Readable{"total_angle_deg", [](const MotorState& m) { return m.total_angle_deg; }},
-    Readable{"velocity_rpm", [](const MotorState& m) { return static_cast<double>(m.velocity_rpm); }},
-    Readable{"current_a", [](const MotorState& m) { return static_cast<double>(m.current_a); }},
-    Readable{"torque_nm", [](const MotorState& m) { return static_cast<double>(m.torque_nm); }},
-    Readable{"voltage_v", [](const MotorState& m) { return static_cast<double>(m.voltage_v); }},
-    Readable{"temperature_c", [](const MotorState& m) { return static_cast<double>(m.temperature_c); }},
-    Readable{"command_value", [](const MotorState& m) { return static_cast<double>(m.command_value); }},
-    Readable{"feedback_age_us", [](const MotorState& m) { return static_cast<double>(m.feedback_age_us); }},
-    Readable{"feedback_hz", [](const MotorState& m) { return static_cast<double>(m.feedback_hz); }},
+#define RC10_READABLE(type, name, initial) \
+  Readable{#name, [](const MotorState& m) { return static_cast<double>(m.name); }},
+    RC10_MOTOR_READINGS(RC10_READABLE)
+#undef RC10_READABLE
 };
 
 // The name as it is, or without what follows its last underscore.

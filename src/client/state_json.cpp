@@ -5,6 +5,7 @@
 #include <span>
 
 #include "client/json_line.hpp"
+#include "link/motor_readings.hpp"
 #include "link/words.hpp"
 
 namespace rc10::client {
@@ -16,26 +17,19 @@ std::span<const Element> used(const std::array<Element, N>& array, std::size_t c
 }
 
 Json motorJson(const link::MotorInfo& info, const link::MotorState& motor) {
-  return {{"name", info.name.view()},
-          {"status", link::motorStatusWord(motor.status)},
-          {"fault", motor.fault},
-          {"fault_text", link::faultText(motor.fault)},
-          {"limits", listOf(link::limitWords(motor.limits))},
-          {"mode", link::modeWord(motor.mode)},
-          {"target", motor.target},
-          {"owner", motor.owner.view()},
-          {"zeroed", motor.zeroed != 0},
-          {"angle_deg", shortest(motor.angle_deg)},
-          {"total_angle_deg", motor.total_angle_deg},
-          {"velocity_rpm", shortest(motor.velocity_rpm)},
-          {"current_a", shortest(motor.current_a)},
-          {"torque_nm", shortest(motor.torque_nm)},
-          {"voltage_v", shortest(motor.voltage_v)},
-          {"temperature_c", shortest(motor.temperature_c)},
-          {"command_value", shortest(motor.command_value)},
-          {"command_unit", link::commandUnitWord(motor.command_unit)},
-          {"feedback_age_us", motor.feedback_age_us},
-          {"feedback_hz", shortest(motor.feedback_hz)}};
+  Json json{{"name", info.name.view()},
+            {"status", link::motorStatusWord(motor.status)},
+            {"fault", motor.fault},
+            {"fault_text", link::faultText(motor.fault)},
+            {"limits", listOf(link::limitWords(motor.limits))},
+            {"mode", link::modeWord(motor.mode)},
+            {"owner", motor.owner.view()},
+            {"zeroed", motor.zeroed != 0},
+            {"command_unit", link::commandUnitWord(motor.command_unit)}};
+#define RC10_KEY(type, name, initial) json[#name] = shortest(motor.name);
+  RC10_MOTOR_READINGS(RC10_KEY)
+#undef RC10_KEY
+  return json;
 }
 
 Json percentilesJson(const link::Percentiles& p) {

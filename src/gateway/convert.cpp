@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "link/motor_readings.hpp"
 #include "link/words.hpp"
 
 namespace rc10::gateway {
@@ -31,20 +32,12 @@ void convert(const link::MotorState& in, motor_state_t& out) {
   out.fault_text = link::faultText(in.fault);
   out.limits = static_cast<std::int32_t>(in.limits);
   out.mode = static_cast<std::int8_t>(in.mode);
-  out.target = in.target;
   assign(out.owner, in.owner);
   out.zeroed = static_cast<std::int8_t>(in.zeroed != 0);
-  out.angle_deg = in.angle_deg;
-  out.total_angle_deg = in.total_angle_deg;
-  out.velocity_rpm = in.velocity_rpm;
-  out.current_a = in.current_a;
-  out.torque_nm = in.torque_nm;
-  out.voltage_v = in.voltage_v;
-  out.temperature_c = in.temperature_c;
-  out.command_value = in.command_value;
   out.command_unit = static_cast<std::int8_t>(in.command_unit);
-  out.feedback_age_us = in.feedback_age_us;
-  out.feedback_hz = in.feedback_hz;
+#define RC10_COPY(type, name, initial) out.name = in.name;
+  RC10_MOTOR_READINGS(RC10_COPY)
+#undef RC10_COPY
 }
 
 void convert(const link::BusStatus& in, bus_state_t& out) {

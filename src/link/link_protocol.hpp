@@ -7,6 +7,8 @@
 #include <string_view>
 #include <type_traits>
 
+#include "link/motor_readings.hpp"
+
 /// The messages on rc10d's link socket (SOCK_SEQPACKET): fixed structs, one per datagram, in the
 /// host's byte order. Both ends are of the same build; Hello refuses others.
 namespace rc10::link {
@@ -209,17 +211,9 @@ struct MotorState {
   std::uint8_t zeroed = 0;
   std::int32_t fault = 0;
   std::uint32_t limits = 0;
-  std::int32_t feedback_age_us = -1;
-  double target = 0.0;
-  double total_angle_deg = 0.0;
-  float angle_deg = 0.0F;
-  float velocity_rpm = 0.0F;
-  float current_a = 0.0F;
-  float torque_nm = 0.0F;
-  float voltage_v = 0.0F;
-  float temperature_c = 0.0F;
-  float command_value = 0.0F;
-  float feedback_hz = 0.0F;
+#define RC10_FIELD(type, name, initial) type name = initial;
+  RC10_MOTOR_READINGS(RC10_FIELD)
+#undef RC10_FIELD
   Name owner;
 };
 

@@ -34,30 +34,26 @@ class MotorRecording:
 
     Units and meaning are those of MotorState; NaN is what the drive does not report. What is a
     whole number or an enumeration there is a float here: `status == rc10.MotorStatus.ACTIVE`.
+    Each signal is an attribute too: `recording.motor("wheel").velocity_rpm`.
     """
 
     name: str
-    status: FloatArray = field(repr=False)
-    fault: FloatArray = field(repr=False)
-    limits: FloatArray = field(repr=False)
-    mode: FloatArray = field(repr=False)
-    target: FloatArray = field(repr=False)
-    zeroed: FloatArray = field(repr=False)
-    angle_deg: FloatArray = field(repr=False)
-    total_angle_deg: FloatArray = field(repr=False)
-    velocity_rpm: FloatArray = field(repr=False)
-    current_a: FloatArray = field(repr=False)
-    torque_nm: FloatArray = field(repr=False)
-    voltage_v: FloatArray = field(repr=False)
-    temperature_c: FloatArray = field(repr=False)
-    command_value: FloatArray = field(repr=False)
-    command_unit: FloatArray = field(repr=False)
-    feedback_age_us: FloatArray = field(repr=False)
-    feedback_hz: FloatArray = field(repr=False)
+    signals: Mapping[str, FloatArray] = field(repr=False)
+
+    def __getattr__(self, name: str) -> FloatArray:
+        try:
+            return self.__dict__["signals"][name]  # type: ignore[no-any-return]
+        except KeyError:
+            raise AttributeError(
+                f"a motor has no signal '{name}'; it has: {', '.join(SIGNALS)}"
+            ) from None
+
+    def __dir__(self) -> list[str]:
+        return [*super().__dir__(), *self.signals]
 
     def part(self, samples: slice) -> MotorRecording:
         """Returns some of the samples."""
-        return replace(self, **{name: getattr(self, name)[samples] for name in SIGNALS})
+        return replace(self, signals={name: of[samples] for name, of in self.signals.items()})
 
     def signal(self, name: str) -> FloatArray:
         """Returns a signal by its name.
@@ -66,8 +62,7 @@ class MotorRecording:
             UnknownSignal: there is none of this name.
         """
         signal = Signal.parse(f"{self.name}.{name}")
-        array: FloatArray = getattr(self, signal.name)
-        return array
+        return self.signals[signal.name]
 
 
 @dataclass(frozen=True)
@@ -110,7 +105,7 @@ class Recording:
             start_utime=int(when[0, 1]),
             motors=MappingProxyType(
                 {
-                    name: MotorRecording(name, **dict(zip(SIGNALS, rows)))
+                    name: MotorRecording(name, dict(zip(SIGNALS, rows)))
                     for name, rows in zip(motors, by_motor)
                 }
             ),

@@ -2,36 +2,18 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from typing import TYPE_CHECKING
 
 from rc10.errors import UnknownSignal
 from rc10.setpoints import Mode
-from rc10.state import CommandUnit
+from rc10.state import CommandUnit, MotorState
 
 if TYPE_CHECKING:
-    from rc10.state import MotorState, RobotState
+    from rc10.state import RobotState
 
-SIGNALS = (
-    "status",
-    "fault",
-    "limits",
-    "mode",
-    "target",
-    "zeroed",
-    "angle_deg",
-    "total_angle_deg",
-    "velocity_rpm",
-    "current_a",
-    "torque_nm",
-    "voltage_v",
-    "temperature_c",
-    "command_value",
-    "command_unit",
-    "feedback_age_us",
-    "feedback_hz",
-)
-"""The signals of a motor, in the order of motor_state_t."""
+SIGNALS = tuple(part.name for part in fields(MotorState) if part.type != "str")
+"""The signals of a motor: what is no text in its state."""
 
 _UNITS = {
     "deg": "deg",

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, fields
 from enum import IntEnum, IntFlag
+from functools import cache
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Callable
 
@@ -60,6 +61,14 @@ class CommandUnit(IntEnum):
     """The drive closes the loop: the unit of the mode."""
 
 
+_ENUMERATIONS: Mapping[str, Callable[[int], IntEnum | IntFlag]] = {
+    "status": MotorStatus,
+    "limits": Limit,
+    "mode": Mode,
+    "command_unit": CommandUnit,
+}
+
+
 @dataclass(frozen=True)
 class MotorState:
     """One motor, at the output shaft, counter-clockwise positive.
@@ -97,31 +106,19 @@ class MotorState:
     """Since the last feedback frame; -1: none yet."""
     feedback_hz: float
 
+    # Each field has the name that it has in motor_state_t.
     @classmethod
     def from_lcm(cls, message: motor_state_t) -> MotorState:
         """Makes the typed view of a decoded message."""
-        return cls(
-            name=message.name,
-            status=MotorStatus(message.status),
-            fault=message.fault,
-            fault_text=message.fault_text,
-            limits=Limit(message.limits),
-            mode=Mode(message.mode),
-            target=message.target,
-            owner=message.owner,
-            zeroed=message.zeroed,
-            angle_deg=message.angle_deg,
-            total_angle_deg=message.total_angle_deg,
-            velocity_rpm=message.velocity_rpm,
-            current_a=message.current_a,
-            torque_nm=message.torque_nm,
-            voltage_v=message.voltage_v,
-            temperature_c=message.temperature_c,
-            command_value=message.command_value,
-            command_unit=CommandUnit(message.command_unit),
-            feedback_age_us=message.feedback_age_us,
-            feedback_hz=message.feedback_hz,
-        )
+        values = {name: getattr(message, name) for name in _names()}
+        for name, kind in _ENUMERATIONS.items():
+            values[name] = kind(values[name])
+        return cls(**values)
+
+
+@cache
+def _names() -> tuple[str, ...]:
+    return tuple(part.name for part in fields(MotorState))
 
 
 @dataclass(frozen=True)

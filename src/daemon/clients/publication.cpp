@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include "daemon/exchange/events.hpp"
+#include "link/motor_readings.hpp"
 #include "rc10_version.hpp"
 
 namespace rc10 {
@@ -102,13 +103,9 @@ void Publication::fill(link::State& state, const Snapshot& snapshot, std::int64_
     out.fault = static_cast<std::int32_t>(in.fault);
     out.feedback_age_us = feedbackAgeUs(in.feedback, snapshot.time);
     out.target = in.target.value;
-    out.total_angle_deg = in.feedback.total_angle_deg;
-    out.angle_deg = in.feedback.angle_deg;
-    out.velocity_rpm = in.feedback.velocity_rpm;
-    out.current_a = in.feedback.current_a;
-    out.torque_nm = in.feedback.torque_nm;
-    out.voltage_v = in.feedback.voltage_v;
-    out.temperature_c = in.feedback.temperature_c;
+#define RC10_COPY(type, name, initial) out.name = in.feedback.name;
+    RC10_FEEDBACK_READINGS(RC10_COPY)
+#undef RC10_COPY
     out.command_value = in.command_value;
     out.feedback_hz = feedback_rates_[i].update(snapshot.time, in.feedback.samples);
     out.owner = in.owner;
