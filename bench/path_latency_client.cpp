@@ -72,8 +72,8 @@ void throughLink(const std::string& robot, int count) {
     command.seq = ++seq;
     command.setpoint_count = 1;
     command.setpoints[0].motor = "wheel";
-    command.setpoints[0].mode = 1;
-    command.setpoints[0].value = currentA(number);
+    command.setpoints[0].target.mode = rc10::ControlMode::kCurrent;
+    command.setpoints[0].target.value = currentA(number);
     if (client.send(command) != rc10::LinkClient::SendStatus::kSent) die("rc10d does not read");
   });
   send("module", count, [&](double number) {

@@ -3,21 +3,10 @@
 #include <cstdint>
 
 #include "app/time.hpp"
+#include "app/vocabulary.hpp"
 #include "bus/can_frame.hpp"
 
 namespace rc10 {
-
-/// The numbers are those of bus_state_t.lcm.
-enum class BusState : std::uint8_t {
-  kActive = 0,
-  kWarning = 1,
-  kPassive = 2,
-  kBusOff = 3,
-  kDown = 4,     ///< The interface is down.
-  kGone = 5,     ///< The interface does not exist.
-  kSilent = 6,   ///< No frame received for a while although motors are expected to talk.
-  kStalled = 7,  ///< No echo of our own frames: they do not reach the wire.
-};
 
 /// Whether frames may leave in this state. Where they do not, what is handed to the kernel is lost or, worse,
 /// sent when it is no longer meant.

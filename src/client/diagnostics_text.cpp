@@ -47,7 +47,7 @@ std::string busesText(std::span<const link::BusStatus> buses) {
     row(name, [counter](const auto& bus) { return std::to_string(bus.*counter); });
   };
   row("interface", [](const auto& bus) { return printable(bus.interface.view()); });
-  row("state", [](const auto& bus) { return std::string(link::busStateWord(bus.state)); });
+  row("state", [](const auto& bus) { return std::string(toString(bus.state)); });
   load("load", &link::BusStatus::measured_load);
   load("  predicted", &link::BusStatus::predicted_load);
   load("  predicted worst", &link::BusStatus::predicted_load_worst);

@@ -55,10 +55,10 @@ class Writer {
   }
 
   void add(const Setpoint& r) {
-    const auto mode = static_cast<std::uint8_t>(r.header.id);
+    const auto mode = static_cast<ControlMode>(r.header.id);
     json_["kind"] = "setpoint";
     json_["motor"] = recording_.motorName(r.header.source);
-    json_["mode"] = link::modeWord(mode);
+    json_["mode"] = toString(mode);
     json_["value"] = r.value;
     json_["skipped"] = (r.header.flags & kSetpointSkipped) != 0;
     if (r.header.words * kWord <= kPlainSetpointBytes) return;
@@ -99,7 +99,7 @@ class Writer {
   void add(const Event& r) {
     const auto code = static_cast<std::int32_t>(r.header.id);
     json_["kind"] = "event";
-    json_["severity"] = link::severityWord(r.header.flags);
+    json_["severity"] = toString(Severity{r.header.flags});
     json_["code"] = code;
     json_["source"] = recording_.sourceName(r);
     json_["text"] = link::eventText(code, r.value, r.extra, r.client.view());
@@ -108,11 +108,11 @@ class Writer {
   void add(const Motor& r) {
     json_["kind"] = "motor";
     json_["motor"] = recording_.motorName(r.header.source);
-    json_["status"] = link::motorStatusWord(r.header.flags);
+    json_["status"] = toString(MotorStatus{r.header.flags});
     json_["fault"] = r.fault;
     json_["fault_text"] = link::faultText(r.fault);
     json_["limits"] = listOf(link::limitWords(r.limits));
-    json_["mode"] = link::modeWord(static_cast<std::uint8_t>(r.header.id));
+    json_["mode"] = toString(static_cast<ControlMode>(r.header.id & 0xFFU));
     json_["target"] = r.target;
     json_["zeroed"] = (r.header.id >> 16U & 1U) != 0;
     json_["angle_deg"] = shortest(r.angle_deg);
@@ -123,13 +123,13 @@ class Writer {
     json_["voltage_v"] = shortest(r.voltage_v);
     json_["temperature_c"] = shortest(r.temperature_c);
     json_["command_value"] = shortest(r.command_value);
-    json_["command_unit"] = link::commandUnitWord(static_cast<std::uint8_t>(r.header.id >> 8U));
+    json_["command_unit"] = toString(static_cast<CommandUnit>(r.header.id >> 8U & 0xFFU));
     json_["feedback_age_us"] = r.feedback_age_us;
   }
 
   void add(const Robot& r) {
     json_["kind"] = "robot";
-    json_["state"] = link::robotStateWord(r.header.flags);
+    json_["state"] = toString(RobotStatus{r.header.flags});
     json_["tick"] = r.tick;
     json_["missed_ticks"] = r.missed_ticks;
   }
@@ -137,7 +137,7 @@ class Writer {
   void add(const Bus& r) {
     json_["kind"] = "bus";
     json_["bus"] = recording_.busName(r.header.source);
-    json_["state"] = link::busStateWord(r.header.flags);
+    json_["state"] = toString(BusState{r.header.flags});
     json_["rx_frames"] = r.rx_frames;
     json_["tx_frames"] = r.tx_frames;
     json_["tx_dropped"] = r.tx_dropped;

@@ -100,7 +100,7 @@ struct Counts {
   if (counts.last_events.empty()) return {};
   TextTable table({{"LAST EVENTS (UTC)"}, {""}, {""}, {""}});
   for (const auto& event : counts.last_events) {
-    table.add({utc(recording.wallUs(event.header.time_ns)), link::severityWord(event.header.flags),
+    table.add({utc(recording.wallUs(event.header.time_ns)), toString(Severity{event.header.flags}),
                printable(recording.sourceName(event)),
                printable(link::eventText(static_cast<std::int32_t>(event.header.id), event.value, event.extra,
                                          event.client.view()))});

@@ -18,14 +18,14 @@ std::span<const Element> used(const std::array<Element, N>& array, std::size_t c
 
 Json motorJson(const link::MotorInfo& info, const link::MotorState& motor) {
   Json json{{"name", info.name.view()},
-            {"status", link::motorStatusWord(motor.status)},
+            {"status", toString(motor.status)},
             {"fault", motor.fault},
             {"fault_text", link::faultText(motor.fault)},
             {"limits", listOf(link::limitWords(motor.limits))},
-            {"mode", link::modeWord(motor.mode)},
+            {"mode", toString(motor.mode)},
             {"owner", motor.owner.view()},
             {"zeroed", motor.zeroed != 0},
-            {"command_unit", link::commandUnitWord(motor.command_unit)}};
+            {"command_unit", toString(motor.command_unit)}};
 #define RC10_KEY(type, name, initial) json[#name] = shortest(motor.name);
   RC10_MOTOR_READINGS(RC10_KEY)
 #undef RC10_KEY
@@ -42,7 +42,7 @@ Json percentilesJson(const link::Percentiles& p) {
 Json busJson(const link::BusStatus& bus) {
   return {{"name", bus.name.view()},
           {"interface", bus.interface.view()},
-          {"state", link::busStateWord(bus.state)},
+          {"state", toString(bus.state)},
           {"predicted_load", shortest(bus.predicted_load)},
           {"predicted_load_worst", shortest(bus.predicted_load_worst)},
           {"measured_load", shortest(bus.measured_load)},
@@ -92,7 +92,7 @@ std::string stateJson(const link::Welcome& welcome, const link::State& state) {
                  {"utime", state.utime},
                  {"mono_us", state.mono_us},
                  {"tick", state.tick},
-                 {"state", link::robotStateWord(state.robot_state)},
+                 {"state", toString(state.robot_state)},
                  {"realtime", state.realtime != 0},
                  {"motors", std::move(motors)}});
 }

@@ -12,10 +12,6 @@ namespace {
 
 using Align = TextTable::Align;
 
-constexpr std::uint8_t kModeCurrent = 1;
-constexpr std::uint8_t kModeAngle = 3;
-constexpr std::uint8_t kModeTotalAngle = 4;
-
 std::string note(const link::MotorState& motor) {
   std::string text = link::faultText(motor.fault);
   const std::string limits = link::limitWords(motor.limits);
@@ -24,14 +20,14 @@ std::string note(const link::MotorState& motor) {
 }
 
 std::string target(const link::MotorState& motor) {
-  if (motor.mode == link::kModeCoast || motor.mode == link::kModeBrake) return "-";
-  return quantity(motor.target, motor.mode == kModeCurrent ? 2 : 1, link::modeUnit(motor.mode));
+  if (motor.mode == ControlMode::kCoast || motor.mode == ControlMode::kBrake) return "-";
+  return quantity(motor.target, motor.mode == ControlMode::kCurrent ? 2 : 1, unitOf(motor.mode));
 }
 
 std::string headline(const link::Welcome& welcome, const link::State& state,
                      const link::Diagnostics* diagnostics) {
   std::string text = printable(welcome.robot.view());
-  text += std::string("  ") + link::robotStateWord(state.robot_state);
+  text += std::string("  ") + toString(state.robot_state);
   text += state.realtime != 0 ? "" : "  NOT REAL-TIME";
   text += "  tick " + std::to_string(state.tick);
   if (diagnostics != nullptr) {
@@ -45,7 +41,7 @@ std::string headline(const link::Welcome& welcome, const link::State& state,
 std::string busLine(const link::BusStatus& bus) {
   std::string text = "bus " + printable(bus.name.view());
   if (!bus.interface.view().empty()) text += " (" + printable(bus.interface.view()) + ")";
-  text += std::string("  ") + link::busStateWord(bus.state);
+  text += std::string("  ") + toString(bus.state);
   text += "  load " + percent(static_cast<double>(bus.measured_load));
   text += " of predicted " + percent(static_cast<double>(bus.predicted_load));
   const auto dropped = bus.rx_dropped + bus.tx_dropped;
@@ -55,38 +51,38 @@ std::string busLine(const link::BusStatus& bus) {
 }
 
 std::string_view styleOf(const link::MotorState& motor) {
-  if (motor.status == link::kMotorFault) return kBad;
-  if (motor.status == link::kMotorOffline || motor.limits != 0) return kDoubtful;
-  return motor.status == link::kMotorActive ? kGood : std::string_view{};
+  if (motor.status == MotorStatus::kFault) return kBad;
+  if (motor.status == MotorStatus::kOffline || motor.limits != 0) return kDoubtful;
+  return motor.status == MotorStatus::kActive ? kGood : std::string_view{};
 }
 
 std::string_view styleOf(const link::State& state) {
-  if (state.robot_state != link::kRobotRun) return kBad;
+  if (state.robot_state != RobotStatus::kRun) return kBad;
   return state.realtime == 0 ? kDoubtful : std::string_view{};
 }
 
 // The first state is that of a healthy bus.
 std::string_view styleOf(const link::BusStatus& bus) {
-  if (bus.state != 0) return bus.state == 1 ? kDoubtful : kBad;
+  if (bus.state != BusState::kActive) return bus.state == BusState::kWarning ? kDoubtful : kBad;
   return bus.rx_dropped + bus.tx_dropped != 0 ? kDoubtful : std::string_view{};
 }
 
 }  // namespace
 
-double measured(const link::MotorState& motor, std::uint8_t mode) noexcept {
+double measured(const link::MotorState& motor, ControlMode mode) noexcept {
   switch (mode) {
-    case kModeCurrent: return static_cast<double>(motor.current_a);
-    case kModeAngle:
-    case link::kModeImpedance: return static_cast<double>(motor.angle_deg);
-    case kModeTotalAngle: return motor.total_angle_deg;
+    case ControlMode::kCurrent: return static_cast<double>(motor.current_a);
+    case ControlMode::kAngle:
+    case ControlMode::kImpedance: return static_cast<double>(motor.angle_deg);
+    case ControlMode::kTotalAngle: return motor.total_angle_deg;
     default: return static_cast<double>(motor.velocity_rpm);
   }
 }
 
-const char* measuredUnit(std::uint8_t mode) noexcept {
-  const char* unit = link::modeUnit(mode);
-  const bool own =
-      mode == kModeCurrent || mode == kModeAngle || mode == link::kModeImpedance || mode == kModeTotalAngle;
+const char* measuredUnit(ControlMode mode) noexcept {
+  const char* unit = unitOf(mode);
+  const bool own = mode == ControlMode::kCurrent || mode == ControlMode::kAngle ||
+                   mode == ControlMode::kImpedance || mode == ControlMode::kTotalAngle;
   return own ? unit : "rpm";
 }
 
@@ -130,15 +126,15 @@ std::string stateText(const link::Welcome& welcome, const link::State& state,
                    {"NOTE"}});
   for (std::size_t i = 0; i < std::min<std::size_t>(state.motor_count, welcome.motor_count); ++i) {
     const auto& motor = state.motors[i];
-    table.add(
-        {printable(welcome.motors[i].name.view()), link::motorStatusWord(motor.status),
-         link::modeWord(motor.mode), target(motor),
-         quantity(measured(motor, motor.mode), motor.mode == kModeCurrent ? 2 : 1, measuredUnit(motor.mode)),
-         quantity(static_cast<double>(motor.angle_deg), 1, "deg"),
-         quantity(static_cast<double>(motor.current_a), 2, "A"),
-         quantity(static_cast<double>(motor.temperature_c), 0, "C"), age(motor.feedback_age_us),
-         motor.zeroed != 0 ? "yes" : "no", printable(motor.owner.view()), note(motor)},
-        style(motor));
+    table.add({printable(welcome.motors[i].name.view()), toString(motor.status), toString(motor.mode),
+               target(motor),
+               quantity(measured(motor, motor.mode), motor.mode == ControlMode::kCurrent ? 2 : 1,
+                        measuredUnit(motor.mode)),
+               quantity(static_cast<double>(motor.angle_deg), 1, "deg"),
+               quantity(static_cast<double>(motor.current_a), 2, "A"),
+               quantity(static_cast<double>(motor.temperature_c), 0, "C"), age(motor.feedback_age_us),
+               motor.zeroed != 0 ? "yes" : "no", printable(motor.owner.view()), note(motor)},
+              style(motor));
   }
   return text + table.text();
 }

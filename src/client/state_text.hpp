@@ -20,8 +20,8 @@ namespace rc10::client {
 
 /// The measured counterpart of a mode's target: the current for CURRENT, an angle for the angle modes, the
 /// velocity for all others. NaN: not reported.
-[[nodiscard]] double measured(const link::MotorState& motor, std::uint8_t mode) noexcept;
+[[nodiscard]] double measured(const link::MotorState& motor, ControlMode mode) noexcept;
 /// The unit of measured().
-[[nodiscard]] const char* measuredUnit(std::uint8_t mode) noexcept;
+[[nodiscard]] const char* measuredUnit(ControlMode mode) noexcept;
 
 }  // namespace rc10::client

@@ -28,9 +28,9 @@ std::shared_ptr<spdlog::logger> makeLog() {
 }
 
 void logEvent(spdlog::logger& log, const link::Event& event) {
-  const auto level = event.severity == static_cast<std::uint8_t>(Severity::kError)     ? spdlog::level::err
-                     : event.severity == static_cast<std::uint8_t>(Severity::kWarning) ? spdlog::level::warn
-                                                                                       : spdlog::level::info;
+  const auto level = event.severity == Severity::kError     ? spdlog::level::err
+                     : event.severity == Severity::kWarning ? spdlog::level::warn
+                                                            : spdlog::level::info;
   log.log(level, "{}: {}", event.source.view(), event.text.view());
 }
 

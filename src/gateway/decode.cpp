@@ -22,12 +22,13 @@ WireReader open(std::span<const std::byte> bytes, std::int64_t fingerprint) noex
 
 void readSetpoint(WireReader& reader, link::Setpoint& setpoint) noexcept {
   readText(reader, setpoint.motor);
-  setpoint.mode = reader.number<std::uint8_t>();  // a negative int8_t is a mode that does not exist
-  setpoint.value = reader.number<double>();
-  setpoint.velocity_ff_rpm = reader.number<float>();
-  setpoint.torque_ff_nm = reader.number<float>();
-  setpoint.stiffness_nm_per_rad = reader.number<float>();
-  setpoint.damping_nms_per_rad = reader.number<float>();
+  setpoint.target.mode =
+      ControlMode{reader.number<std::uint8_t>()};  // a negative int8_t is a mode that does not exist
+  setpoint.target.value = reader.number<double>();
+  setpoint.target.velocity_ff_rpm = reader.number<float>();
+  setpoint.target.torque_ff_nm = reader.number<float>();
+  setpoint.target.stiffness_nm_per_rad = reader.number<float>();
+  setpoint.target.damping_nms_per_rad = reader.number<float>();
 }
 
 }  // namespace

@@ -6,9 +6,6 @@
 namespace rc10::gateway {
 namespace {
 
-constexpr std::uint8_t kWarning = 1;
-constexpr std::uint8_t kError = 2;
-
 bool stops(std::string_view operation) noexcept { return operation == "estop" || operation == "disable"; }
 
 }  // namespace
@@ -87,8 +84,8 @@ bool Inlet::sent(LinkClient::SendStatus status, std::uint64_t& counter, Monotoni
     case LinkClient::SendStatus::kSent: ++counter; return true;
     case LinkClient::SendStatus::kBusy:
       ++counters_.busy;
-      report(GatewayEvent::kLinkBusy, kWarning, "rc10d does not take commands fast enough: they are dropped",
-             now);
+      report(GatewayEvent::kLinkBusy, Severity::kWarning,
+             "rc10d does not take commands fast enough: they are dropped", now);
       return true;
     case LinkClient::SendStatus::kClosed: return false;
   }
@@ -111,17 +108,17 @@ void Inlet::reportDefect(Defect defect, std::string_view channel, MonotonicTime 
                            : channel == request_channel_ ? "request_t"
                                                          : "signals_t";
   if (defect == Defect::kOtherDefinitions) {
-    report(GatewayEvent::kOtherDefinitions, kError,
+    report(GatewayEvent::kOtherDefinitions, Severity::kError,
            "a client on channel " + std::string(channel) + " uses other definitions of " + type +
                ": regenerate its types from the lcm_types of rc10d " + version_,
            now);
     return;
   }
-  report(GatewayEvent::kMalformed, kWarning,
+  report(GatewayEvent::kMalformed, Severity::kWarning,
          "a message on channel " + std::string(channel) + " is refused: it " + inWords(defect), now);
 }
 
-void Inlet::report(GatewayEvent code, std::uint8_t severity, std::string text, MonotonicTime now) {
+void Inlet::report(GatewayEvent code, Severity severity, std::string text, MonotonicTime now) {
   const auto index =
       static_cast<std::size_t>(code) - static_cast<std::size_t>(GatewayEvent::kOtherDefinitions);
   const auto held_back = throttles_[index].pass(now);

@@ -54,7 +54,7 @@ class Inlet {
   bool sent(LinkClient::SendStatus status, std::uint64_t& counter, MonotonicTime now);
   void refuse(const std::string& reason);
   void reportDefect(Defect defect, std::string_view channel, MonotonicTime now);
-  void report(GatewayEvent code, std::uint8_t severity, std::string text, MonotonicTime now);
+  void report(GatewayEvent code, Severity severity, std::string text, MonotonicTime now);
 
   LinkClient& rc10d_;
   Outlet& outlet_;

@@ -5,14 +5,11 @@
 #include <charconv>
 #include <cstdio>
 
+#include "app/event_code.hpp"
 #include "link/words.hpp"
 
 namespace rc10::link {
 namespace {
-
-[[nodiscard]] std::uint8_t small(std::int32_t value) noexcept {
-  return value >= 0 && value < 0xFF ? static_cast<std::uint8_t>(value) : std::uint8_t{0xFF};
-}
 
 [[nodiscard]] std::string busStateText(std::int32_t state) {
   switch (state) {
@@ -30,13 +27,15 @@ namespace {
 
 // `reason`: SkipReason; `extra`: the mode, plus 256 times the status of the motor.
 [[nodiscard]] std::string skipped(std::int32_t reason, std::int32_t extra) {
-  const auto text = "setpoint " + std::string(modeWord(small(extra % 256))) + " skipped: ";
-  switch (reason) {
-    case 0: return text + "the motor is " + motorStatusWord(small(extra / 256)) + ", not ACTIVE";
-    case 1: return text + "the angle has no reference; set it with `zero` or `zero: power_on`";
-    case 2:
+  const auto text = "setpoint " + std::string(toString(static_cast<ControlMode>(extra % 256))) + " skipped: ";
+  switch (SkipReason{reason}) {
+    case SkipReason::kNotActive:
+      return text + "the motor is " + toString(static_cast<MotorStatus>(extra / 256)) + ", not ACTIVE";
+    case SkipReason::kNoReference:
+      return text + "the angle has no reference; set it with `zero` or `zero: power_on`";
+    case SkipReason::kFirstStep:
       return text + "farther from where the motor is than max_first_step_deg; begin near the measured angle";
-    case 3: return text + "not a target for this motor";
+    case SkipReason::kRefused: return text + "not a target for this motor";
     default: return text + "unknown reason";
   }
 }
@@ -104,29 +103,32 @@ namespace {
 }  // namespace
 
 std::string eventText(std::int32_t code, std::int32_t value, std::int32_t extra, std::string_view client) {
-  switch (code) {  // the numbers of EventCode in daemon/exchange/events.hpp
-    case 100: return change(motorStatusWord(small(extra)), motorStatusWord(small(value)));
-    case 101: return std::string("no valid command any more: ") + fallbackWord(value);
-    case 102: return "multi-turn angle lost: angle targets are refused until it is set again";
-    case 103: return skipped(value, extra);
-    case 104:
+  using enum EventCode;
+  switch (EventCode{code}) {
+    case kMotorStatus:
+      return change(toString(static_cast<MotorStatus>(extra)), toString(static_cast<MotorStatus>(value)));
+    case kCommandTimeout: return std::string("no valid command any more: ") + fallbackWord(value);
+    case kReferenceLost: return "multi-turn angle lost: angle targets are refused until it is set again";
+    case kSetpointSkipped: return skipped(value, extra);
+    case kNotOwner:
       return "command of '" + std::string(client) +
              "' refused: a client of the same or a higher priority holds the motor";
-    case 105: return faultText(value) + nativeCode(extra);
-    case 106: return "its group stops with it";
-    case 107: return "its group is enabled again";
-    case 108: return "reported event " + std::to_string(value);
-    case 109: return "its targets are refused: another client commands one of its motors";
-    case 110: return gainChanged(value, extra, client);
-    case 200: return change(robotStateWord(small(extra)), robotStateWord(small(value)));
-    case 201: return std::to_string(value) + " ticks missed";
-    case 202: return refused(value, client);
-    case 203: return estopInputText(value);
-    case 300: return "bus " + busStateText(value) + " (was " + busStateText(extra) + ")";
-    case 301: return "bus restarted, or in need of help";
-    case 302: return foreignSender(value, extra);
-    case 310: return "a serial port came, went or cannot be opened";
-    case 311: return "an SPI device or GPIO lines came, went or cannot be opened";
+    case kMotorFault: return faultText(value) + nativeCode(extra);
+    case kGroupStopped: return "its group stops with it";
+    case kGroupRearmed: return "its group is enabled again";
+    case kModule: return "reported event " + std::to_string(value);
+    case kModuleRefused: return "its targets are refused: another client commands one of its motors";
+    case kGainChanged: return gainChanged(value, extra, client);
+    case kRobotState:
+      return change(toString(static_cast<RobotStatus>(extra)), toString(static_cast<RobotStatus>(value)));
+    case kTicksMissed: return std::to_string(value) + " ticks missed";
+    case kCommandRefused: return refused(value, client);
+    case kEstopInput: return estopInputText(value);
+    case kBusState: return "bus " + busStateText(value) + " (was " + busStateText(extra) + ")";
+    case kBusAdvice: return "bus restarted, or in need of help";
+    case kForeignSender: return foreignSender(value, extra);
+    case kSerialPort: return "a serial port came, went or cannot be opened";
+    case kDevice: return "an SPI device or GPIO lines came, went or cannot be opened";
     default: return "event " + std::to_string(code);
   }
 }

@@ -7,6 +7,8 @@
 #include <string_view>
 #include <type_traits>
 
+#include "app/target.hpp"
+#include "app/vocabulary.hpp"
 #include "link/motor_readings.hpp"
 
 /// The messages on rc10d's link socket (SOCK_SEQPACKET): fixed structs, one per datagram, in the
@@ -110,12 +112,7 @@ struct Welcome {
 /// As setpoint_t.lcm.
 struct Setpoint {
   Name motor;
-  std::uint8_t mode = 0;
-  double value = 0.0;
-  float velocity_ff_rpm = 0.0F;
-  float torque_ff_nm = 0.0F;
-  float stiffness_nm_per_rad = 0.0F;
-  float damping_nms_per_rad = 0.0F;
+  Target target;
 };
 
 /// As command_t.lcm, with the time at which this host received it.
@@ -205,9 +202,9 @@ struct Response {
 
 /// As motor_state_t.lcm; the names are in Welcome, in the same order.
 struct MotorState {
-  std::uint8_t status = 0;
-  std::uint8_t mode = 0;
-  std::uint8_t command_unit = 0;
+  MotorStatus status{};
+  ControlMode mode{};
+  CommandUnit command_unit{};
   std::uint8_t zeroed = 0;
   std::int32_t fault = 0;
   std::uint32_t limits = 0;
@@ -223,7 +220,7 @@ struct State {
   std::int64_t utime = 0;
   std::int64_t mono_us = 0;
   std::int64_t tick = 0;
-  std::uint8_t robot_state = 0;
+  RobotStatus robot_state{};
   std::uint8_t realtime = 0;
   std::uint32_t motor_count = 0;
   std::array<MotorState, kMaxMotors> motors;
@@ -233,7 +230,7 @@ struct State {
 struct BusStatus {
   Name name;
   Name interface;
-  std::uint8_t state = 0;
+  BusState state{};
   std::int16_t tec = -1;
   std::int16_t rec = -1;
   float predicted_load = 0.0F;
@@ -293,7 +290,7 @@ struct Event {
   Header header;
   std::int64_t utime = 0;
   std::int64_t mono_us = 0;
-  std::uint8_t severity = 0;
+  Severity severity{};
   std::int32_t code = 0;
   Name source;
   Text<256> text;

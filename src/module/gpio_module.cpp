@@ -186,7 +186,7 @@ class GpioModule : public Module_Base {
   }
 
   void driveOutputs(const Tick& tick, ModuleRobot& robot) noexcept {
-    const bool running = robot.state() == RobotState::kRun;
+    const bool running = robot.state() == RobotStatus::kRun;
     const bool lost = (was_open_ && !image_->open) || (last_tick_ && tick.now - *last_tick_ > kLongestTick);
     was_open_ = image_->open;
     last_tick_ = tick.now;

@@ -141,7 +141,7 @@ ModuleSignals stripSignals() {
 }
 
 [[nodiscard]] Shown shownFor(const ModuleRobot& robot) noexcept {
-  if (robot.state() != RobotState::kRun) return Shown::kEstop;
+  if (robot.state() != RobotStatus::kRun) return Shown::kEstop;
   Shown shown = Shown::kDisabled;
   for (std::size_t motor = 0; motor < robot.motorCount(); ++motor) {
     switch (robot.status(motor)) {

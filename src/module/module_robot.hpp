@@ -3,9 +3,9 @@
 #include <cstddef>
 #include <cstdint>
 
+#include "app/target.hpp"
 #include "module/robot_status.hpp"
 #include "motor/motor_base.hpp"
-#include "motor/target.hpp"
 
 namespace rc10 {
 
@@ -24,7 +24,7 @@ class ModuleRobot {
   ModuleRobot& operator=(const ModuleRobot&) = delete;
   virtual ~ModuleRobot() = default;
 
-  [[nodiscard]] virtual RobotState state() const noexcept = 0;
+  [[nodiscard]] virtual RobotStatus state() const noexcept = 0;
   [[nodiscard]] virtual std::size_t motorCount() const noexcept = 0;
   /// At the output shaft; its age is tick.now - feedback.received.
   [[nodiscard]] virtual const MotorFeedback& feedback(std::size_t motor) const noexcept = 0;

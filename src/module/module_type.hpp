@@ -7,10 +7,10 @@
 #include <vector>
 
 #include "app/result.hpp"
+#include "app/target.hpp"
 #include "module/module_base.hpp"
 #include "motor/family_key.hpp"
 #include "motor/motor_settings.hpp"
-#include "motor/target.hpp"
 
 namespace rc10 {
 

@@ -231,7 +231,7 @@ class Remote : public Module_Base {
     if (!armed_ || tick.now >= arming_until_) return;
     for (std::size_t motor = 0; motor < was_active_.size(); ++motor)
       was_active_[motor] = was_active_[motor] || robot.status(motor) == MotorStatus::kActive;
-    if (tick.now < next_try_ || robot.state() != RobotState::kRun) return;
+    if (tick.now < next_try_ || robot.state() != RobotStatus::kRun) return;
     next_try_ = tick.now + kArmingRetry;
     for (std::size_t motor = 0; motor < was_active_.size(); ++motor) {
       if (was_active_[motor]) continue;

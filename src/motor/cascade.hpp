@@ -5,7 +5,7 @@
 
 #include "app/pid_incremental.hpp"
 #include "app/pid_position.hpp"
-#include "motor/target.hpp"
+#include "app/target.hpp"
 
 namespace rc10 {
 

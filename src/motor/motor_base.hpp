@@ -8,12 +8,12 @@
 #include <string_view>
 #include <utility>
 
+#include "app/target.hpp"
 #include "app/time.hpp"
 #include "app/units.hpp"
 #include "bus/frame_listener.hpp"
 #include "motor/drive_frames.hpp"
 #include "motor/fault_code.hpp"
-#include "motor/target.hpp"
 
 namespace rc10 {
 
@@ -33,19 +33,6 @@ struct MotorFeedback {
   float temperature_c = kNotReported;
   bool zeroed = false;  ///< The angle has a known reference.
 };
-
-/// Limits that act right now: not faults. The bits are those of motor_state_t.lcm.
-enum LimitFlag : std::uint32_t {
-  kLimitCurrent = 1U << 0U,
-  kLimitVelocity = 1U << 1U,
-  kLimitAngle = 1U << 2U,
-  kLimitTemperature = 1U << 3U,
-  kLimitSlew = 1U << 4U,
-  kLimitStall = 1U << 5U,
-};
-
-/// The unit of what is sent to the drive. The numbers are those of motor_state_t.lcm.
-enum class CommandUnit : std::uint8_t { kNone = 0, kAmpere = 1, kVolt = 2, kNative = 3 };
 
 struct CascadeConfig;
 class DriveConfiguring;

@@ -2,14 +2,16 @@
 
 #include <cstdint>
 
+#include "app/event_code.hpp"
+
 namespace rc10 {
 inline namespace robot_client {
 
 // rc10d's events about setpoints and commands that do not act: docs/lcm.md.
-inline constexpr std::int32_t kSetpointSkipped = 103;
-inline constexpr std::int32_t kNotOwner = 104;
-inline constexpr std::int32_t kCommandRefused = 202;
-inline constexpr std::int32_t kOtherDefinitions = 400;
+inline constexpr std::int32_t kSetpointSkipped = static_cast<std::int32_t>(EventCode::kSetpointSkipped);
+inline constexpr std::int32_t kNotOwner = static_cast<std::int32_t>(EventCode::kNotOwner);
+inline constexpr std::int32_t kCommandRefused = static_cast<std::int32_t>(EventCode::kCommandRefused);
+inline constexpr std::int32_t kOtherDefinitions = 400;  // of rc10-lcm
 
 }  // namespace robot_client
 }  // namespace rc10

@@ -1,14 +1,10 @@
 #include "rc10/setpoint.hpp"
 
-#include <array>
 #include <cmath>
 
 namespace rc10 {
 inline namespace robot_client {
 namespace {
-
-constexpr std::array kModes{"coast",     "current", "velocity", "angle", "total_angle",
-                            "impedance", "voltage", "duty",     "brake"};
 
 // All but the value travel as 32 bit floats.
 [[nodiscard]] bool fitsFloat(double number) {
@@ -17,14 +13,9 @@ constexpr std::array kModes{"coast",     "current", "velocity", "angle", "total_
 
 }  // namespace
 
-const char* toString(Mode mode) noexcept {
-  const auto index = static_cast<std::size_t>(mode);
-  return index < kModes.size() ? kModes[index] : "unknown";
-}
-
 Result<void> Setpoint::check() const {
   const std::string what = std::string(toString(mode)) + " setpoint: ";
-  if (static_cast<std::size_t>(mode) >= kModes.size()) return fail("the mode is none of Mode");
+  if (static_cast<int>(mode) >= kControlModeCount) return fail("the mode is none of Mode");
   if (!std::isfinite(value)) return fail(what + "the value is not a finite number");
   if (mode == Mode::kDuty && std::abs(value) > 1.0) return fail(what + "a duty is within -1 to 1");
   if (!fitsFloat(forward.velocity.value) || !fitsFloat(forward.torque_nm)) {

@@ -104,7 +104,7 @@ TEST(LinkClientSend, StampsACommandWithTheTimeOfSending) {
   link::Command command;
   command.client = "tester";
   command.setpoint_count = 2;
-  command.setpoints[1].value = 3.5;
+  command.setpoints[1].target.value = 3.5;
   const auto before = nowNs();
   EXPECT_EQ(client.send(command), LinkClient::SendStatus::kSent);
   link::Command received;
@@ -112,7 +112,7 @@ TEST(LinkClientSend, StampsACommandWithTheTimeOfSending) {
   EXPECT_GE(received.received_ns, before);
   EXPECT_LE(received.received_ns, nowNs());
   EXPECT_EQ(received.setpoint_count, 2U);
-  EXPECT_EQ(received.setpoints[1].value, 3.5);
+  EXPECT_EQ(received.setpoints[1].target.value, 3.5);
 }
 
 TEST(LinkClientSend, KeepsAStampThatIsThere) {

@@ -17,9 +17,9 @@ inline link::State heroState() {
   state.realtime = 1;
   state.motor_count = 2;
   auto& wheel = state.motors[0];
-  wheel.status = 3;
-  wheel.mode = 2;
-  wheel.command_unit = 1;
+  wheel.status = MotorStatus::kActive;
+  wheel.mode = ControlMode::kVelocity;
+  wheel.command_unit = CommandUnit::kAmpere;
   wheel.zeroed = 0;
   wheel.limits = 1;
   wheel.feedback_age_us = 420;
@@ -35,7 +35,7 @@ inline link::State heroState() {
   wheel.feedback_hz = 999.5F;
   wheel.owner = "teleop";
   auto& yaw = state.motors[1];
-  yaw.status = 4;
+  yaw.status = MotorStatus::kFault;
   yaw.fault = 12;
   yaw.zeroed = 1;
   yaw.feedback_age_us = -1;
@@ -65,7 +65,7 @@ inline link::Diagnostics heroDiagnostics() {
   auto& bus = diagnostics.buses[0];
   bus.name = "chassis";
   bus.interface = "can0";
-  bus.state = 1;
+  bus.state = BusState::kWarning;
   bus.tec = 96;
   bus.rec = -1;
   bus.predicted_load = 0.556F;

@@ -52,7 +52,7 @@ TEST(StateText, ShowsEveryMotorWithUnits) {
 
 TEST(StateText, DoesWithoutDiagnostics) {
   auto state = heroState();
-  state.robot_state = 1;
+  state.robot_state = RobotStatus::kEstop;
   state.realtime = 0;
   EXPECT_THAT(stateText(heroWelcome(), state, nullptr),
               HasSubstr("hero  ESTOP  NOT REAL-TIME  tick 41000\nMOTOR"));
@@ -73,15 +73,15 @@ TEST(StateText, IsSafeForATerminal) {
 
 TEST(Measured, IsTheCounterpartOfTheTarget) {
   const auto motor = heroState().motors[0];
-  EXPECT_FLOAT_EQ(static_cast<float>(measured(motor, 1)), 0.42F);
-  EXPECT_FLOAT_EQ(static_cast<float>(measured(motor, 2)), 118.26F);
-  EXPECT_FLOAT_EQ(static_cast<float>(measured(motor, 3)), 121.5F);
-  EXPECT_EQ(measured(motor, 4), 7321.5);
-  EXPECT_FLOAT_EQ(static_cast<float>(measured(motor, 5)), 121.5F);
-  EXPECT_FLOAT_EQ(static_cast<float>(measured(motor, 0)), 118.26F);
-  EXPECT_STREQ(measuredUnit(1), "A");
-  EXPECT_STREQ(measuredUnit(7), "rpm");
-  EXPECT_STREQ(measuredUnit(5), "deg");
+  EXPECT_FLOAT_EQ(static_cast<float>(measured(motor, ControlMode::kCurrent)), 0.42F);
+  EXPECT_FLOAT_EQ(static_cast<float>(measured(motor, ControlMode::kVelocity)), 118.26F);
+  EXPECT_FLOAT_EQ(static_cast<float>(measured(motor, ControlMode::kAngle)), 121.5F);
+  EXPECT_EQ(measured(motor, ControlMode::kTotalAngle), 7321.5);
+  EXPECT_FLOAT_EQ(static_cast<float>(measured(motor, ControlMode::kImpedance)), 121.5F);
+  EXPECT_FLOAT_EQ(static_cast<float>(measured(motor, ControlMode::kCoast)), 118.26F);
+  EXPECT_STREQ(measuredUnit(ControlMode::kCurrent), "A");
+  EXPECT_STREQ(measuredUnit(ControlMode::kDuty), "rpm");
+  EXPECT_STREQ(measuredUnit(ControlMode::kImpedance), "deg");
 }
 
 TEST(DiagnosticsText, ShowsTimingBusesAndRefusals) {

@@ -39,8 +39,8 @@ class AdmissionTest : public ::testing::Test {
 
 TEST_F(AdmissionTest, TranslatesNamesModesAndValues) {
   auto message = linkCommand(1, now, {setpoint("right", kVelocity, 120.0), setpoint("left", kCurrent, -2.0)});
-  message.setpoints[0].velocity_ff_rpm = 3.0F;
-  message.setpoints[0].torque_ff_nm = 4.0F;
+  message.setpoints[0].target.velocity_ff_rpm = 3.0F;
+  message.setpoints[0].target.torque_ff_nm = 4.0F;
   ASSERT_EQ(admit(message), CommandRefusal::kNone);
   ASSERT_EQ(out.count, 2U);
   EXPECT_EQ(out.client.view(), "planner");
@@ -83,9 +83,9 @@ TEST_F(AdmissionTest, RefusesAnUnknownMotor) {
 
 TEST_F(AdmissionTest, RefusesANumberThatIsNoMode) {
   auto message = good();
-  message.setpoints[0].mode = kControlModeCount;
+  message.setpoints[0].target.mode = ControlMode{kControlModeCount};
   EXPECT_EQ(admit(message), CommandRefusal::kUnknownMode);
-  message.setpoints[0].mode = 255;
+  message.setpoints[0].target.mode = ControlMode{255};
   EXPECT_EQ(admit(message), CommandRefusal::kUnknownMode);
 }
 
@@ -112,8 +112,8 @@ TEST_F(AdmissionTest, RefusesAValueThatIsNotFinite) {
 
 TEST_F(AdmissionTest, AFeedForwardThatIsNotGivenIsNone) {
   auto message = good();
-  message.setpoints[0].velocity_ff_rpm = kNanF;
-  message.setpoints[0].torque_ff_nm = kNanF;
+  message.setpoints[0].target.velocity_ff_rpm = kNanF;
+  message.setpoints[0].target.torque_ff_nm = kNanF;
   EXPECT_EQ(admit(message), CommandRefusal::kNone);
   EXPECT_EQ(out.setpoints[0].target.velocity_ff_rpm, 0.0F);
   EXPECT_EQ(out.setpoints[0].target.torque_ff_nm, 0.0F);
@@ -121,7 +121,7 @@ TEST_F(AdmissionTest, AFeedForwardThatIsNotGivenIsNone) {
 
 TEST_F(AdmissionTest, RefusesAnInfiniteFeedForward) {
   auto message = good();
-  message.setpoints[0].torque_ff_nm = -kInfF;
+  message.setpoints[0].target.torque_ff_nm = -kInfF;
   EXPECT_EQ(admit(message), CommandRefusal::kNotFinite);
 }
 
@@ -132,8 +132,8 @@ TEST_F(AdmissionTest, IgnoresTheValueOfModesThatHaveNone) {
 
 TEST_F(AdmissionTest, StiffnessAndDampingMayBeNanWhereTheyMeanNothing) {
   auto message = good();
-  message.setpoints[0].stiffness_nm_per_rad = kNanF;
-  message.setpoints[0].damping_nms_per_rad = kNanF;
+  message.setpoints[0].target.stiffness_nm_per_rad = kNanF;
+  message.setpoints[0].target.damping_nms_per_rad = kNanF;
   ASSERT_EQ(admit(message), CommandRefusal::kNone);
   // They do not reach the motor.
   EXPECT_EQ(out.setpoints[0].target.stiffness_nm_per_rad, 0.0F);
@@ -142,15 +142,15 @@ TEST_F(AdmissionTest, StiffnessAndDampingMayBeNanWhereTheyMeanNothing) {
 
 TEST_F(AdmissionTest, ImpedanceNeedsFiniteStiffnessAndDamping) {
   auto message = one(setpoint("arm", kImpedance, 10.0));
-  message.setpoints[0].stiffness_nm_per_rad = 5.0F;
-  message.setpoints[0].damping_nms_per_rad = 0.5F;
+  message.setpoints[0].target.stiffness_nm_per_rad = 5.0F;
+  message.setpoints[0].target.damping_nms_per_rad = 0.5F;
   ASSERT_EQ(admit(message), CommandRefusal::kNone);
   EXPECT_EQ(out.setpoints[0].target.stiffness_nm_per_rad, 5.0F);
   EXPECT_EQ(out.setpoints[0].target.damping_nms_per_rad, 0.5F);
-  message.setpoints[0].stiffness_nm_per_rad = kNanF;
+  message.setpoints[0].target.stiffness_nm_per_rad = kNanF;
   EXPECT_EQ(admit(message), CommandRefusal::kNotFinite);
-  message.setpoints[0].stiffness_nm_per_rad = 5.0F;
-  message.setpoints[0].damping_nms_per_rad = kInfF;
+  message.setpoints[0].target.stiffness_nm_per_rad = 5.0F;
+  message.setpoints[0].target.damping_nms_per_rad = kInfF;
   EXPECT_EQ(admit(message), CommandRefusal::kNotFinite);
 }
 

@@ -35,18 +35,18 @@ class AxisTest : public ::testing::Test {
     if (speaks) (void)axis_.motor().updateFeedback(makeDjiFeedback(kM3508, 1, {}, now_));
     const Tick tick = this->now();
     axis_.listen(tick, false);
-    if (axis_.fresh(tick)) (void)axis_.take(MotorEvent::kFeedbackFresh, RobotState::kRun, tick);
-    if (axis_.lost(tick)) (void)axis_.take(MotorEvent::kFeedbackLost, RobotState::kRun, tick);
-    if (const auto end = axis_.endsEnabling(tick)) (void)axis_.take(*end, RobotState::kRun, tick);
+    if (axis_.fresh(tick)) (void)axis_.take(MotorEvent::kFeedbackFresh, RobotStatus::kRun, tick);
+    if (axis_.lost(tick)) (void)axis_.take(MotorEvent::kFeedbackLost, RobotStatus::kRun, tick);
+    if (const auto end = axis_.endsEnabling(tick)) (void)axis_.take(*end, RobotStatus::kRun, tick);
     (void)axis_.trips(tick);
     lapsed_ = axis_.lapses(tick);
-    axis_.order(RobotState::kRun, tick);
+    axis_.order(RobotStatus::kRun, tick);
     axis_.motor().update(tick);
   }
   void activate() {
     tick();
     axis_.prepareEnabling(now());
-    (void)axis_.take(MotorEvent::kEnable, RobotState::kRun, now());
+    (void)axis_.take(MotorEvent::kEnable, RobotStatus::kRun, now());
     tick();
     tick();
     ASSERT_EQ(axis_.status(), MotorStatus::kActive);
@@ -102,7 +102,7 @@ TEST_F(AxisTest, BeginsItsFallbackInTheTickInWhichTheCommandLapses) {
 
 TEST_F(AxisTest, WhatEndsActiveDecidesAboutTheFallback) {
   activate();
-  (void)axis_.take(MotorEvent::kFault, RobotState::kRun, now());
+  (void)axis_.take(MotorEvent::kFault, RobotStatus::kRun, now());
   EXPECT_FALSE(axis_.fallbackActs()) << "a fault coasts";
   EXPECT_EQ(axis_.status(), MotorStatus::kFault);
 }

@@ -40,7 +40,7 @@ class BlackBoxTest : public ::testing::Test {
     Event event;
     event.code = EventCode::kRobotState;
     event.severity = Severity::kError;
-    event.value = static_cast<std::int32_t>(RobotState::kEstop);
+    event.value = static_cast<std::int32_t>(RobotStatus::kEstop);
     box.recorder().event(event);
     box.drain();
   }

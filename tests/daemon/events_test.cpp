@@ -7,9 +7,9 @@
 #include <set>
 #include <string>
 
+#include "app/target.hpp"
 #include "bus/bus_health.hpp"
 #include "daemon/exchange/states.hpp"
-#include "motor/target.hpp"
 
 namespace rc10::test::events_test {
 namespace {
@@ -57,7 +57,7 @@ TEST(Events, TheNumbersAreThoseOfTheContract) {
 TEST(Events, AStatusChangeNamesTheOldAndTheNewStatusInThisOrder) {
   EXPECT_EQ(words(EventCode::kMotorStatus, MotorStatus::kActive, MotorStatus::kEnabling),
             "ENABLING -> ACTIVE");
-  EXPECT_EQ(words(EventCode::kRobotState, RobotState::kEstop, RobotState::kRun), "RUN -> ESTOP");
+  EXPECT_EQ(words(EventCode::kRobotState, RobotStatus::kEstop, RobotStatus::kRun), "RUN -> ESTOP");
 }
 
 TEST(Events, ASkippedSetpointNamesTheModeAndTheStatus) {

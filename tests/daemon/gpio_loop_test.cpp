@@ -31,7 +31,7 @@ class EstopInputTest : public ::testing::Test {
     EXPECT_EQ(robot.order(Operation::kEnable).motors[0], Refusal::kNone);
     ASSERT_EQ(robot.motor(0).status, MotorStatus::kActive);
   }
-  RobotState state() { return robot.scheduler().supervisor().robotState(); }
+  RobotStatus state() { return robot.scheduler().supervisor().robotState(); }
   std::vector<std::int32_t> contactEvents() {
     std::vector<std::int32_t> values;
     for (const auto& event : robot.events()) {
@@ -48,7 +48,7 @@ class EstopInputTest : public ::testing::Test {
 TEST_F(EstopInputTest, AClosedContactLetsTheRobotRun) {
   enable();
   for (int i = 0; i < 500; ++i) see(kClosed);
-  EXPECT_EQ(state(), RobotState::kRun);
+  EXPECT_EQ(state(), RobotStatus::kRun);
   EXPECT_EQ(robot.motor(0).status, MotorStatus::kActive);
 }
 
@@ -57,7 +57,7 @@ TEST_F(EstopInputTest, AnOpenContactRestsEveryMotorInTheNextTickAndTellsTheCause
   robot.hold(0, {.mode = ControlMode::kVelocity, .value = 100.0}, 50);
   (void)robot.events();
   see(kOpen);
-  EXPECT_EQ(state(), RobotState::kEstop);
+  EXPECT_EQ(state(), RobotStatus::kEstop);
   for (std::size_t i = 0; i < 3; ++i) EXPECT_NE(robot.motor(i).status, MotorStatus::kActive);
   EXPECT_EQ(robot.motor(0).command_value, 0.0F);
   const auto events = robot.events();
@@ -70,16 +70,16 @@ TEST_F(EstopInputTest, AnOpenContactRestsEveryMotorInTheNextTickAndTellsTheCause
 TEST_F(EstopInputTest, AChipThatCannotBeReadIsAnEstop) {
   enable();
   see(kUnreadable);
-  EXPECT_EQ(state(), RobotState::kEstop);
+  EXPECT_EQ(state(), RobotStatus::kEstop);
   EXPECT_THAT(contactEvents(), ElementsAre(static_cast<int>(kUnreadable)));
 }
 
 TEST_F(EstopInputTest, AThreadThatNoLongerLooksIsAnEstop) {
   enable();
   robot.run(150);
-  EXPECT_EQ(state(), RobotState::kRun);
+  EXPECT_EQ(state(), RobotStatus::kRun);
   robot.run(100);
-  EXPECT_EQ(state(), RobotState::kEstop);
+  EXPECT_EQ(state(), RobotStatus::kEstop);
 }
 
 TEST_F(EstopInputTest, ClearIsRefusedInWordsUntilTheContactIsClosed) {
@@ -87,12 +87,12 @@ TEST_F(EstopInputTest, ClearIsRefusedInWordsUntilTheContactIsClosed) {
   const auto refused = robot.order(Operation::kClear);
   EXPECT_EQ(refused.motors[0], Refusal::kEstopInput);
   EXPECT_EQ(refused.motors[2], Refusal::kEstopInput);
-  EXPECT_EQ(state(), RobotState::kEstop);
+  EXPECT_EQ(state(), RobotStatus::kEstop);
   see(kClosed);
-  EXPECT_EQ(state(), RobotState::kEstop);  // closing alone is not enough
+  EXPECT_EQ(state(), RobotStatus::kEstop);  // closing alone is not enough
   EXPECT_EQ(robot.order(Operation::kEnable).motors[0], Refusal::kEstop);
   EXPECT_EQ(robot.order(Operation::kClear).motors[0], Refusal::kNone);
-  EXPECT_EQ(state(), RobotState::kRun);
+  EXPECT_EQ(state(), RobotStatus::kRun);
   EXPECT_EQ(robot.motor(0).status, MotorStatus::kReady);  // enabling is a request of its own
   EXPECT_THAT(contactEvents(), ElementsAre(static_cast<int>(kOpen), static_cast<int>(kClosed)));
 }
@@ -103,7 +103,7 @@ TEST_F(EstopInputTest, AnOpeningThatIsOverBeforeTheTickActsToo) {
   look();
   look();
   robot.tick();
-  EXPECT_EQ(state(), RobotState::kEstop);
+  EXPECT_EQ(state(), RobotStatus::kEstop);
   EXPECT_EQ(robot.order(Operation::kClear).motors[0], Refusal::kNone);
 }
 
@@ -113,7 +113,7 @@ TEST_F(EstopInputTest, OneThatIsOpenAtTheStartIsAnEstopInTheFirstTick) {
   GpioLoop loop{std::make_unique<FakeContact>(pressed), std::nullopt, other.exchange()};
   loop.turn({}, 0);
   other.tick();
-  EXPECT_EQ(other.scheduler().supervisor().robotState(), RobotState::kEstop);
+  EXPECT_EQ(other.scheduler().supervisor().robotState(), RobotStatus::kEstop);
 }
 
 TEST(GpioLoop, LooksAtTheInputAlsoWhenNothingChanges) {

@@ -149,7 +149,7 @@ TEST_F(GroupTest, AnEstopThatIsClearedInTheSameTickEndsTheRearmingToo) {
   robot->run(5);  // there and still, though not for long enough
   robot->exchange().estop.store(true);
   robot->order(Operation::kClear);
-  EXPECT_EQ(robot->snapshot().state, RobotState::kRun);
+  EXPECT_EQ(robot->snapshot().state, RobotStatus::kRun);
   robot->run(2000);
   EXPECT_EQ(status(kLeft), MotorStatus::kReady);
   EXPECT_EQ(status(kRight), MotorStatus::kReady);
@@ -167,7 +167,7 @@ TEST_F(GroupTest, AnEstopOrADisableInBetweenEndsTheRearming) {
       robot->order(Operation::kDisable);
     }
     robot->run(20'000);
-    EXPECT_EQ(robot->snapshot().state, RobotState::kRun);
+    EXPECT_EQ(robot->snapshot().state, RobotStatus::kRun);
     EXPECT_EQ(status(kLeft), MotorStatus::kReady) << estop;
     EXPECT_EQ(status(kRight), MotorStatus::kReady) << estop;
   }

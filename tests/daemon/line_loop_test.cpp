@@ -145,7 +145,7 @@ TEST_F(LineLoopTest, AnEstopMakesTheOutputsSafe) {
   EXPECT_TRUE(lock.high);
   (void)robot.order(Operation::kClear);
   run(20);
-  EXPECT_EQ(robot.snapshot().state, RobotState::kRun);
+  EXPECT_EQ(robot.snapshot().state, RobotStatus::kRun);
   EXPECT_FALSE(valve.high) << "it is still commanded, but does not come back by itself";
 }
 

@@ -4,17 +4,17 @@
 #include <initializer_list>
 #include <string_view>
 
+#include "app/target.hpp"
 #include "app/time.hpp"
 #include "link/link_protocol.hpp"
-#include "motor/target.hpp"
 
 namespace rc10::test {
 
 inline link::Setpoint setpoint(std::string_view motor, ControlMode mode, double value = 0.0) {
   link::Setpoint out;
   out.motor = motor;
-  out.mode = static_cast<std::uint8_t>(mode);
-  out.value = value;
+  out.target.mode = mode;
+  out.target.value = value;
   return out;
 }
 

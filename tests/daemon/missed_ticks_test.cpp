@@ -108,7 +108,7 @@ TEST_F(MissedTicksTest, WhatTurnedBeforeAPauseIsNoMotorAtRest) {
   clear.motors.set();
   robot.exchange().orders.push(clear);
   robot.tick(50);
-  EXPECT_EQ(robot.snapshot().state, RobotState::kEstop);
+  EXPECT_EQ(robot.snapshot().state, RobotStatus::kEstop);
 }
 
 TEST_F(MissedTicksTest, TheFirstLateTickIsReportedAtOnce) {

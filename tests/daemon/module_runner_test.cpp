@@ -258,7 +258,7 @@ TEST_F(ModuleRunnerTest, AnEstopOfAModuleIsForTheWholeRobotAndLatches) {
   robot_->run(100);
   stop = true;
   robot_->tick();
-  EXPECT_EQ(robot_->snapshot().state, RobotState::kEstop);
+  EXPECT_EQ(robot_->snapshot().state, RobotStatus::kEstop);
   EXPECT_EQ(robot_->motor(0).status, MotorStatus::kReady);
 }
 

@@ -71,7 +71,7 @@ TEST_F(PublicationTest, TheWelcomeDescribesTheRobot) {
 
 TEST_F(PublicationTest, TheStateCarriesTheSnapshotOfTheTick) {
   snapshot->tick = 99;
-  snapshot->state = RobotState::kEstop;
+  snapshot->state = RobotStatus::kEstop;
   auto& motor = snapshot->motors[1];
   motor.status = MotorStatus::kActive;
   motor.target = {.mode = ControlMode::kVelocity, .value = 120.0};
@@ -93,13 +93,13 @@ TEST_F(PublicationTest, TheStateCarriesTheSnapshotOfTheTick) {
   EXPECT_EQ(out.utime, 123);
   EXPECT_EQ(out.mono_us, 100'000'000);
   EXPECT_EQ(out.tick, 99);
-  EXPECT_EQ(out.robot_state, 1);
+  EXPECT_EQ(out.robot_state, RobotStatus::kEstop);
   EXPECT_EQ(out.realtime, 1);
   ASSERT_EQ(out.motor_count, 2U);
   const auto& shown = out.motors[1];
-  EXPECT_EQ(shown.status, 3);
-  EXPECT_EQ(shown.mode, 2);
-  EXPECT_EQ(shown.command_unit, 1);
+  EXPECT_EQ(shown.status, MotorStatus::kActive);
+  EXPECT_EQ(shown.mode, ControlMode::kVelocity);
+  EXPECT_EQ(shown.command_unit, CommandUnit::kAmpere);
   EXPECT_EQ(shown.zeroed, 1);
   EXPECT_EQ(shown.limits, kLimitCurrent | kLimitStall);
   EXPECT_EQ(shown.feedback_age_us, 750);
@@ -224,7 +224,7 @@ TEST_F(PublicationTest, ABusShowsItsCountersFromBothSidesOfTheRing) {
   const auto& bus = out.buses[0];
   EXPECT_EQ(bus.name.view(), "chassis");
   EXPECT_EQ(bus.interface.view(), "can0");
-  EXPECT_EQ(bus.state, 2);
+  EXPECT_EQ(bus.state, BusState::kPassive);
   EXPECT_EQ(bus.tec, 130);
   EXPECT_EQ(bus.rec, 2);
   EXPECT_EQ(bus.predicted_load, 0.5F);
@@ -268,7 +268,7 @@ TEST_F(PublicationTest, AnEventCarriesItsTimeSeverityCodeAndWords) {
       publication.event({EventCode::kTicksMissed, Severity::kWarning, -1, 12, 0, MonotonicTime{2s}}, 789);
   EXPECT_EQ(event.utime, 789);
   EXPECT_EQ(event.mono_us, 2'000'000);
-  EXPECT_EQ(event.severity, 1);
+  EXPECT_EQ(event.severity, Severity::kWarning);
   EXPECT_EQ(event.code, 201);
   EXPECT_THAT(std::string(event.text.view()), HasSubstr("12"));
 }

@@ -138,17 +138,17 @@ TEST_F(SchedulerTest, EstopRestsEveryMotorInTheNextTickAndLatches) {
   robot.hold(kLeft, kVelocity120, 100);
   robot.exchange().estop.store(true);
   robot.tick();
-  EXPECT_EQ(robot.snapshot().state, RobotState::kEstop);
+  EXPECT_EQ(robot.snapshot().state, RobotStatus::kEstop);
   EXPECT_EQ(robot.motor(kLeft).command_value, 0.0F);
   robot.hold(kLeft, kVelocity120, 20);
   EXPECT_EQ(robot.motor(kLeft).command_value, 0.0F);
   EXPECT_EQ(robot.order(Operation::kEnable).motors[kLeft], Refusal::kEstop);
   // Not while it still turns.
   EXPECT_EQ(robot.order(Operation::kClear).motors[kLeft], Refusal::kMoving);
-  EXPECT_EQ(robot.snapshot().state, RobotState::kEstop);
+  EXPECT_EQ(robot.snapshot().state, RobotStatus::kEstop);
   robot.run(5000);
   EXPECT_EQ(robot.order(Operation::kClear).motors[kLeft], Refusal::kNone);
-  EXPECT_EQ(robot.snapshot().state, RobotState::kRun);
+  EXPECT_EQ(robot.snapshot().state, RobotStatus::kRun);
   EXPECT_EQ(robot.motor(kLeft).status, MotorStatus::kReady);
 }
 
@@ -159,7 +159,7 @@ TEST_F(SchedulerTest, EstopGetsThroughWhenEveryRingIsFull) {
   }
   robot.exchange().estop.store(true);
   robot.tick();
-  EXPECT_EQ(robot.snapshot().state, RobotState::kEstop);
+  EXPECT_EQ(robot.snapshot().state, RobotStatus::kEstop);
 }
 
 TEST_F(SchedulerTest, ASilentMotorGoesOfflineAndMustBeEnabledAgain) {
@@ -232,7 +232,7 @@ TEST_F(SchedulerTest, StoppingSendsRestUntilItIsDone) {
     ++ticks;
   }
   EXPECT_TRUE(robot.scheduler().stopped());
-  EXPECT_EQ(robot.snapshot().state, RobotState::kStopping);
+  EXPECT_EQ(robot.snapshot().state, RobotStatus::kStopping);
   EXPECT_EQ(dynamic_cast<sim::DjiDrive&>(robot.simBus().drive(kLeft)).rawCommand(), 0);
 }
 

@@ -253,8 +253,7 @@ void Oracle::followEchoes(const Snapshot& snapshot) {
     const bool told = snapshot.buses[bus].state == BusState::kStalled;
     if (told != stalled_.test(bus)) {
       fail(fmt::format("bus {} is told to be {}, {} ticks after the last echo", config_.buses[bus].name,
-                       link::busStateWord(static_cast<std::uint8_t>(snapshot.buses[bus].state)),
-                       echoes.ticks));
+                       toString(snapshot.buses[bus].state), echoes.ticks));
     }
   }
   echoed_.reset();
@@ -289,11 +288,11 @@ void Oracle::judgeSnapshot(const Snapshot& snapshot, std::uint64_t periods) {
 }
 
 void Oracle::judgeRobotState(const Snapshot& snapshot) {
-  if (stop_asked_ && snapshot.state != RobotState::kStopping) fail("it does not stop");
-  if (estop_asked_ && !clear_all_asked_ && snapshot.state == RobotState::kRun) fail("an e-stop was lost");
-  const bool released = state_ == RobotState::kEstop && snapshot.state == RobotState::kRun;
+  if (stop_asked_ && snapshot.state != RobotStatus::kStopping) fail("it does not stop");
+  if (estop_asked_ && !clear_all_asked_ && snapshot.state == RobotStatus::kRun) fail("an e-stop was lost");
+  const bool released = state_ == RobotStatus::kEstop && snapshot.state == RobotStatus::kRun;
   if (released && !clear_all_asked_) fail("an e-stop ended by itself");
-  if (contact_open_ && snapshot.state == RobotState::kRun) fail("it runs although the e-stop input is open");
+  if (contact_open_ && snapshot.state == RobotStatus::kRun) fail("it runs although the e-stop input is open");
   if (!released) return;
   for (std::size_t i = 0; i < motors_.size(); ++i) {
     const auto most_rpm = static_cast<double>(motors_[i].config->standstill_rpm);
@@ -328,7 +327,7 @@ void Oracle::judgeProbe(std::size_t bus) {
             "a stalled bus is probed with something else than rest");
 }
 
-void Oracle::judgeStatus(std::size_t index, const MotorSnapshot& seen, RobotState robot) {
+void Oracle::judgeStatus(std::size_t index, const MotorSnapshot& seen, RobotStatus robot) {
   const auto& motor = motors_[index];
   const auto before = motor.status;
   const auto after = seen.status;
@@ -350,7 +349,7 @@ void Oracle::judgeStatus(std::size_t index, const MotorSnapshot& seen, RobotStat
   }
   if (now_ >= motor.owned_until) require(index, seen.owner.view().empty(), "owned by a client that is gone");
   if (after == MotorStatus::kActive || after == MotorStatus::kEnabling)
-    require(index, robot == RobotState::kRun, "enabled although the robot is stopped");
+    require(index, robot == RobotStatus::kRun, "enabled although the robot is stopped");
   if (seen.target.mode != ControlMode::kCoast) {
     require(index, after == MotorStatus::kActive, "a target although it is not ACTIVE");
     require(index, now_ < motor.driven_until, "a target without a valid command");
@@ -416,7 +415,7 @@ void Oracle::judgeGroups(const Snapshot& snapshot) {
       }
       if (group.rearms) group.may_rearm = active;
     }
-    if (fault || disabled || was_alone_ || estop_asked_ || snapshot.state != RobotState::kRun)
+    if (fault || disabled || was_alone_ || estop_asked_ || snapshot.state != RobotStatus::kRun)
       group.may_rearm.reset();
   }
 }

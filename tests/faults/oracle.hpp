@@ -126,7 +126,7 @@ class Oracle {
   void judgeProbe(std::size_t bus);
   void followEchoes(const Snapshot& snapshot);
   void judgeFrames(std::bitset<kMaxBuses> read);
-  void judgeStatus(std::size_t index, const MotorSnapshot& seen, RobotState robot);
+  void judgeStatus(std::size_t index, const MotorSnapshot& seen, RobotStatus robot);
   void judgeAlone(const Snapshot& snapshot);
   void judgeGroups(const Snapshot& snapshot);
   void followActions(std::size_t index, const MotorSnapshot& seen);
@@ -165,7 +165,7 @@ class Oracle {
   std::uint64_t tick_ = 0;
   bool begun_ = false;
   std::uint64_t missed_ = 0;
-  RobotState state_ = RobotState::kRun;
+  RobotStatus state_ = RobotStatus::kRun;
   bool estop_asked_ = false;
   bool clear_all_asked_ = false;
   bool stop_asked_ = false;

@@ -228,7 +228,7 @@ void Oracle::judgeFallback(std::size_t index) {
     actions |= only(FallbackAction::kDamp);
     if (now_ - motor.acts_since >= fallback.hold_max + 60ms) actions.reset(hold);
   }
-  if (state_ == RobotState::kStopping && now_ - stopping_since_ >= kLongestFallback)
+  if (state_ == RobotStatus::kStopping && now_ - stopping_since_ >= kLongestFallback)
     actions = only(FallbackAction::kCoast);
   bool any = false;
   std::string words;

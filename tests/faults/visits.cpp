@@ -42,7 +42,7 @@ std::string Visits::text() const {
   const auto millions = [](std::uint64_t n) { return static_cast<double>(n) / 1e6; };
   std::string out = "robot, ticks:";
   for (std::size_t i = 0; i < robot.size(); ++i)
-    out += fmt::format(" {} {}", toString(static_cast<RobotState>(i)), robot[i]);
+    out += fmt::format(" {} {}", toString(static_cast<RobotStatus>(i)), robot[i]);
   out += "\nmotors, million ticks:";
   for (std::size_t i = 0; i < status.size(); ++i)
     out += fmt::format(" {} {:.3f}", toString(static_cast<MotorStatus>(i)), millions(status[i]));

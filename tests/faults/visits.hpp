@@ -19,7 +19,7 @@ struct MotorVisits {
 /// How often each state was seen: what the chaos has reached.
 struct Visits {
   std::uint64_t ticks = 0;
-  std::array<std::uint64_t, 3> robot{};                   ///< Ticks by RobotState.
+  std::array<std::uint64_t, 3> robot{};                   ///< Ticks by RobotStatus.
   std::array<std::uint64_t, kMotorStatusCount> status{};  ///< Ticks of motors.
   std::array<std::uint64_t, 64> faults{};                 ///< How often each began.
   std::array<std::uint64_t, 4> fallbacks{};               ///< Ticks in which one gave torque.

@@ -80,9 +80,9 @@ class Desk {
     message.setpoint_count = input.take<std::uint8_t>() % 5U;
     for (auto& setpoint : std::span{message.setpoints}.first(message.setpoint_count)) {
       setpoint.motor = text<link::Name>(input);
-      setpoint.mode = input.take<std::uint8_t>();
-      setpoint.value = input.take<double>();
-      setpoint.velocity_ff_rpm = input.take<float>();
+      setpoint.target.mode = ControlMode{input.take<std::uint8_t>()};
+      setpoint.target.value = input.take<double>();
+      setpoint.target.velocity_ff_rpm = input.take<float>();
     }
     Command out;
     if (admission_.admit(message, kNow, out) != CommandRefusal::kNone) return;

@@ -167,7 +167,7 @@ TEST(ConvertEvent, HasEveryField) {
   link::Event event;
   event.utime = 1;
   event.mono_us = 2;
-  event.severity = 2;
+  event.severity = Severity::kError;
   event.code = 300;
   event.source = "chassis";
   event.text = "bus-off";

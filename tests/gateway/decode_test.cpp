@@ -44,12 +44,12 @@ TEST(DecodeCommand, HasEveryField) {
   ASSERT_EQ(command.setpoint_count, 3U);
   const auto& last = command.setpoints[2];
   EXPECT_EQ(last.motor.view(), "motor_2");
-  EXPECT_EQ(last.mode, 2);
-  EXPECT_EQ(last.value, 21.0);
-  EXPECT_EQ(last.velocity_ff_rpm, 1.25F);
-  EXPECT_EQ(last.torque_ff_nm, -0.5F);
-  EXPECT_EQ(last.stiffness_nm_per_rad, 3.5F);
-  EXPECT_EQ(last.damping_nms_per_rad, 0.125F);
+  EXPECT_EQ(last.target.mode, ControlMode::kVelocity);
+  EXPECT_EQ(last.target.value, 21.0);
+  EXPECT_EQ(last.target.velocity_ff_rpm, 1.25F);
+  EXPECT_EQ(last.target.torque_ff_nm, -0.5F);
+  EXPECT_EQ(last.target.stiffness_nm_per_rad, 3.5F);
+  EXPECT_EQ(last.target.damping_nms_per_rad, 0.125F);
 }
 
 TEST(DecodeCommand, LeavesTheReceiveTimeAlone) {
@@ -80,10 +80,10 @@ TEST(DecodeCommand, LetsNumbersThroughBitByBit) {
   original.setpoints[0].mode = -1;
   link::Command command;
   ASSERT_EQ(decode(encoded(original), command), Defect::kNone);
-  EXPECT_EQ(std::bit_cast<std::uint64_t>(command.setpoints[0].value), 0x7FF8DEADBEEF0001ULL);
-  EXPECT_EQ(std::bit_cast<std::uint32_t>(command.setpoints[0].velocity_ff_rpm), 0x7FC12345U);
-  EXPECT_TRUE(std::isinf(command.setpoints[0].torque_ff_nm));
-  EXPECT_EQ(command.setpoints[0].mode, 255) << "no mode: rc10d refuses it";
+  EXPECT_EQ(std::bit_cast<std::uint64_t>(command.setpoints[0].target.value), 0x7FF8DEADBEEF0001ULL);
+  EXPECT_EQ(std::bit_cast<std::uint32_t>(command.setpoints[0].target.velocity_ff_rpm), 0x7FC12345U);
+  EXPECT_TRUE(std::isinf(command.setpoints[0].target.torque_ff_nm));
+  EXPECT_EQ(command.setpoints[0].target.mode, ControlMode{255}) << "no mode: rc10d refuses it";
 }
 
 TEST(DecodeCommand, OfOtherDefinitionsIsToldFromOtherDefects) {
@@ -229,9 +229,9 @@ void expectSameAsLcmGen(const Bytes& bytes) {
   ASSERT_EQ(command.setpoint_count, reference.setpoints.size());
   for (std::size_t i = 0; i < command.setpoint_count; ++i) {
     EXPECT_EQ(command.setpoints[i].motor.view(), reference.setpoints[i].motor);
-    EXPECT_EQ(std::bit_cast<std::uint64_t>(command.setpoints[i].value),
+    EXPECT_EQ(std::bit_cast<std::uint64_t>(command.setpoints[i].target.value),
               std::bit_cast<std::uint64_t>(reference.setpoints[i].value));
-    EXPECT_EQ(std::bit_cast<std::uint32_t>(command.setpoints[i].damping_nms_per_rad),
+    EXPECT_EQ(std::bit_cast<std::uint32_t>(command.setpoints[i].target.damping_nms_per_rad),
               std::bit_cast<std::uint32_t>(reference.setpoints[i].damping_nms_per_rad));
   }
 }

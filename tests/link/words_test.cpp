@@ -2,46 +2,22 @@
 
 #include <gtest/gtest.h>
 
-#include "motor/target.hpp"
+#include "app/vocabulary.hpp"
 
 namespace rc10::link::test::words_test {
 namespace {
 
-TEST(Words, ModesAreThoseOfTheMotorLayer) {
-  ASSERT_EQ(kModeCount, kControlModeCount);
-  for (std::uint8_t mode = 0; mode < kModeCount; ++mode) {
-    EXPECT_STREQ(modeWord(mode), toString(static_cast<ControlMode>(mode)));
-    EXPECT_EQ(modeOf(modeWord(mode)), mode);
+TEST(Words, ModesAreFoundByTheirWords) {
+  for (int number = 0; number < kControlModeCount; ++number) {
+    const auto mode = static_cast<ControlMode>(number);
+    EXPECT_EQ(modeOf(toString(mode)), mode);
   }
-  EXPECT_EQ(kModeCoast, static_cast<std::uint8_t>(ControlMode::kCoast));
-  EXPECT_EQ(kModeImpedance, static_cast<std::uint8_t>(ControlMode::kImpedance));
-  EXPECT_EQ(kModeBrake, static_cast<std::uint8_t>(ControlMode::kBrake));
-}
-
-TEST(Words, NumbersOfStrangersHaveAWordToo) {
-  for (int number = 0; number < 256; ++number) {
-    const auto value = static_cast<std::uint8_t>(number);
-    for (const char* word : {motorStatusWord(value), robotStateWord(value), busStateWord(value),
-                             severityWord(value), modeWord(value), modeUnit(value), commandUnitWord(value)}) {
-      EXPECT_NE(word, nullptr);
-    }
-  }
-  EXPECT_STREQ(motorStatusWord(200), "UNKNOWN");
-  EXPECT_STREQ(modeWord(9), "unknown");
-  EXPECT_STREQ(modeUnit(9), "");
 }
 
 TEST(Words, UnknownModeIsNotAMode) {
   EXPECT_FALSE(modeOf("wobble").has_value());
   EXPECT_FALSE(modeOf("").has_value());
   EXPECT_FALSE(modeOf("VELOCITY").has_value());
-}
-
-TEST(Words, UnitsAreThoseOfTheTargets) {
-  EXPECT_STREQ(modeUnit(*modeOf("current")), "A");
-  EXPECT_STREQ(modeUnit(*modeOf("velocity")), "rpm");
-  EXPECT_STREQ(modeUnit(*modeOf("total_angle")), "deg");
-  EXPECT_STREQ(modeUnit(*modeOf("duty")), "");
 }
 
 TEST(Words, SetsAreListed) {

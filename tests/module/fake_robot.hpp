@@ -60,9 +60,9 @@ class FakeRobot : public ModuleRobot {
   [[nodiscard]] const std::map<std::pair<std::size_t, std::size_t>, double>& sent() const { return sent_; }
   [[nodiscard]] const std::vector<std::size_t>& events() const { return events_; }
   [[nodiscard]] MonotonicTime now() const { return tick_.now; }
-  void setState(RobotState state) { state_ = state; }
+  void setState(RobotStatus state) { state_ = state; }
 
-  [[nodiscard]] RobotState state() const noexcept override { return state_; }
+  [[nodiscard]] RobotStatus state() const noexcept override { return state_; }
   [[nodiscard]] std::size_t motorCount() const noexcept override { return motors_.size(); }
   [[nodiscard]] const MotorFeedback& feedback(std::size_t motor) const noexcept override {
     return motors_[motor].feedback;
@@ -98,7 +98,7 @@ class FakeRobot : public ModuleRobot {
   std::map<std::pair<std::size_t, std::size_t>, double> sent_;
   std::map<std::pair<std::size_t, std::size_t>, double> outputs_;
   std::vector<std::size_t> events_;
-  RobotState state_ = RobotState::kRun;
+  RobotStatus state_ = RobotStatus::kRun;
 };
 
 /// A robot whose motors take every mode.

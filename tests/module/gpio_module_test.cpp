@@ -185,7 +185,7 @@ TEST_F(GpioModuleTest, AnOutputThatIsNotGivenIsAtItsSafeValue) {
 
 TEST_F(GpioModuleTest, AtAnEstopOutputsGoToTheirSafeValuesUnlessTheyKeep) {
   command(1.0, 0.0, 1.0);
-  robot.setState(RobotState::kEstop);
+  robot.setState(RobotStatus::kEstop);
   run();
   EXPECT_EQ(image->outputs, 0b111U);
   EXPECT_EQ(signal(kGripper), 1.0);
@@ -195,10 +195,10 @@ TEST_F(GpioModuleTest, AtAnEstopOutputsGoToTheirSafeValuesUnlessTheyKeep) {
 
 TEST_F(GpioModuleTest, AfterAnEstopAnOutputWaitsUntilItWasCommandedSafeOnce) {
   command(1.0, 0.0, 1.0);
-  robot.setState(RobotState::kEstop);
+  robot.setState(RobotStatus::kEstop);
   run(100);
   EXPECT_THAT(events, IsEmpty());
-  robot.setState(RobotState::kRun);
+  robot.setState(RobotStatus::kRun);
   run(100);
   EXPECT_EQ(image->outputs, 0b111U);
   EXPECT_THAT(events, ElementsAre(0U)) << "why, told once";
@@ -271,9 +271,9 @@ TEST_F(GpioModuleTest, AfterALossOfTheLinesAnOutputWaitsUntilItWasCommandedSafeO
 }
 
 TEST_F(GpioModuleTest, OnesThatWereSafeBeforeTheClearObeyAtOnce) {
-  robot.setState(RobotState::kEstop);
+  robot.setState(RobotStatus::kEstop);
   run(10);
-  robot.setState(RobotState::kRun);
+  robot.setState(RobotStatus::kRun);
   run();
   command(1.0, 0.0, 1.0);
   EXPECT_EQ(image->outputs, 0b100U);

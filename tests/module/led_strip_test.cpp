@@ -116,7 +116,7 @@ TEST_F(LedStripTest, AFaultIsMoreImportantThanMotorsThatRun) {
 
 TEST_F(LedStripTest, AnEstopBlinksRedWhateverElseIs) {
   robot.motor(2).status = MotorStatus::kFault;
-  robot.setState(RobotState::kEstop);
+  robot.setState(RobotStatus::kEstop);
   EXPECT_THAT(seenOfTheFirst(), ::testing::UnorderedElementsAre(kRed, kBlack));
   EXPECT_EQ(signal(kState), 3.0);
 }
@@ -144,7 +144,7 @@ TEST_F(LedStripTest, ABrightnessAloneDimsThePattern) {
 
 TEST_F(LedStripTest, NothingReplacesOrDimsAnEstopOrAFault) {
   colour(0.0, 0.0, 255.0, 0.0);
-  robot.setState(RobotState::kEstop);
+  robot.setState(RobotStatus::kEstop);
   bool red = false;
   for (int i = 0; i < 30; ++i) {
     const auto pixels = shown();
@@ -154,7 +154,7 @@ TEST_F(LedStripTest, NothingReplacesOrDimsAnEstopOrAFault) {
   }
   EXPECT_TRUE(red);
   EXPECT_EQ(signal(kShowsInputs), 0.0);
-  robot.setState(RobotState::kRun);
+  robot.setState(RobotStatus::kRun);
   robot.motor(0).status = MotorStatus::kFault;
   EXPECT_THAT(shown(), Each(shown()[0]));
   EXPECT_EQ(signal(kShowsInputs), 0.0);

@@ -203,7 +203,7 @@ TEST_F(Remote, WhatFailsLaterStaysDown) {
 
 TEST_F(Remote, AnEstopIsNotItsToClear) {
   build();
-  robot_.setState(RobotState::kEstop);
+  robot_.setState(RobotStatus::kEstop);
   robot_.motor(0).status = MotorStatus::kFault;
   armSwitch(Dr16Input::Switch::kDown);
   asked_.clear();

@@ -3,7 +3,7 @@
 #include <string>
 #include <string_view>
 
-#include "motor/target.hpp"
+#include "app/target.hpp"
 
 namespace rc10 {
 

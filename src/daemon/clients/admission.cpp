@@ -10,13 +10,13 @@ namespace {
   return mode != ControlMode::kCoast && mode != ControlMode::kBrake;
 }
 
-[[nodiscard]] bool finite(const link::Setpoint& setpoint, ControlMode mode) noexcept {
-  const bool impedance = mode == ControlMode::kImpedance;
-  return (!usesValue(mode) || std::isfinite(setpoint.value)) && !std::isinf(setpoint.velocity_ff_rpm) &&
-         !std::isinf(setpoint.torque_ff_nm) &&
+[[nodiscard]] bool finite(const Target& target) noexcept {
+  const bool impedance = target.mode == ControlMode::kImpedance;
+  return (!usesValue(target.mode) || std::isfinite(target.value)) && !std::isinf(target.velocity_ff_rpm) &&
+         !std::isinf(target.torque_ff_nm) &&
          // An optional field that is not given is NaN; IMPEDANCE has no use without these two.
          (!impedance ||
-          (std::isfinite(setpoint.stiffness_nm_per_rad) && std::isfinite(setpoint.damping_nms_per_rad)));
+          (std::isfinite(target.stiffness_nm_per_rad) && std::isfinite(target.damping_nms_per_rad)));
 }
 
 // NaN in an optional field: not given.
@@ -95,20 +95,20 @@ CommandRefusal Admission::admit(const link::Command& message, MonotonicTime now,
 CommandRefusal Admission::translate(const link::Setpoint& in, Command::Setpoint& out) const {
   const int motor = indexOf(in.motor.view());
   if (motor < 0) return CommandRefusal::kUnknownMotor;
-  if (in.mode >= kControlModeCount) return CommandRefusal::kUnknownMode;
-  const auto mode = static_cast<ControlMode>(in.mode);
+  const auto mode = in.target.mode;
+  if (static_cast<int>(mode) >= kControlModeCount) return CommandRefusal::kUnknownMode;
   if (mode != ControlMode::kCoast && !motors_[static_cast<std::size_t>(motor)].modes.contains(mode)) {
     return CommandRefusal::kUnsupportedMode;
   }
-  if (!finite(in, mode)) return CommandRefusal::kNotFinite;
+  if (!finite(in.target)) return CommandRefusal::kNotFinite;
   out.motor = static_cast<std::uint16_t>(motor);
   out.target = {.mode = mode,
-                .value = usesValue(mode) ? in.value : 0.0,
-                .velocity_ff_rpm = orZero(in.velocity_ff_rpm),
-                .torque_ff_nm = orZero(in.torque_ff_nm)};
+                .value = usesValue(mode) ? in.target.value : 0.0,
+                .velocity_ff_rpm = orZero(in.target.velocity_ff_rpm),
+                .torque_ff_nm = orZero(in.target.torque_ff_nm)};
   if (mode == ControlMode::kImpedance) {
-    out.target.stiffness_nm_per_rad = in.stiffness_nm_per_rad;
-    out.target.damping_nms_per_rad = in.damping_nms_per_rad;
+    out.target.stiffness_nm_per_rad = in.target.stiffness_nm_per_rad;
+    out.target.damping_nms_per_rad = in.target.damping_nms_per_rad;
   }
   return CommandRefusal::kNone;
 }

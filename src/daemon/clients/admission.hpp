@@ -7,12 +7,12 @@
 #include <unordered_map>
 #include <vector>
 
+#include "app/target.hpp"
 #include "app/time.hpp"
 #include "daemon/clients/session_numbers.hpp"
 #include "daemon/clients/validity.hpp"
 #include "daemon/exchange/orders.hpp"
 #include "link/link_protocol.hpp"
-#include "motor/target.hpp"
 
 namespace rc10 {
 

@@ -89,15 +89,15 @@ void Publication::fill(link::State& state, const Snapshot& snapshot, std::int64_
   state.utime = utime;
   state.mono_us = monoUs(snapshot.time);
   state.tick = static_cast<std::int64_t>(snapshot.tick);
-  state.robot_state = static_cast<std::uint8_t>(snapshot.state);
+  state.robot_state = snapshot.state;
   state.realtime = robot_.realtime ? 1 : 0;
   state.motor_count = static_cast<std::uint32_t>(snapshot.motor_count);
   for (std::size_t i = 0; i < snapshot.motor_count; ++i) {
     const auto& in = snapshot.motors[i];
     auto& out = state.motors[i];
-    out.status = static_cast<std::uint8_t>(in.status);
-    out.mode = static_cast<std::uint8_t>(in.target.mode);
-    out.command_unit = static_cast<std::uint8_t>(in.command_unit);
+    out.status = in.status;
+    out.mode = in.target.mode;
+    out.command_unit = in.command_unit;
     out.zeroed = in.feedback.zeroed ? 1 : 0;
     out.limits = in.limits;
     out.fault = static_cast<std::int32_t>(in.fault);
@@ -118,7 +118,7 @@ void Publication::fill(link::BusStatus& out, std::size_t bus, const Snapshot& sn
   const auto& description = robot_.buses[bus];
   out.name = description.name;
   out.interface = description.interface.empty() ? "simulated" : std::string_view{description.interface};
-  out.state = static_cast<std::uint8_t>(in.state);
+  out.state = in.state;
   out.tec = static_cast<std::int16_t>(in.tec);
   out.rec = static_cast<std::int16_t>(in.rec);
   out.predicted_load = description.predicted_load;
@@ -181,7 +181,7 @@ link::Event Publication::refusal(CommandRefusal reason, const link::Name& client
   link::Event out;
   out.utime = utime;
   out.mono_us = monoUs(now);
-  out.severity = static_cast<std::uint8_t>(Severity::kWarning);
+  out.severity = Severity::kWarning;
   out.code = static_cast<std::int32_t>(EventCode::kCommandRefused);
   out.source = "robot";
   out.text = fmt::format("command of '{}' refused: {}", client.view(), describe(reason));
@@ -192,7 +192,7 @@ link::Event Publication::event(const Event& event, std::int64_t utime) const {
   link::Event out;
   out.utime = utime;
   out.mono_us = monoUs(event.time);
-  out.severity = static_cast<std::uint8_t>(event.severity);
+  out.severity = event.severity;
   out.code = static_cast<std::int32_t>(event.code);
   const auto index = static_cast<std::size_t>(event.source);
   if (event.code == EventCode::kEstopInput) {

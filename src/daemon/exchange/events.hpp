@@ -3,49 +3,13 @@
 #include <cstdint>
 #include <string>
 
+#include "app/event_code.hpp"
 #include "app/time.hpp"
 #include "bus/can_frame.hpp"
 #include "daemon/exchange/estop_contact.hpp"
 #include "link/link_protocol.hpp"
 
 namespace rc10 {
-
-enum class Severity : std::uint8_t { kInfo = 0, kWarning = 1, kError = 2 };
-
-/// Kind of event. The numbers are part of the LCM contract (event_t.code, docs/lcm.md) and never change.
-enum class EventCode : std::int32_t {
-  kMotorStatus = 100,      ///< value: new MotorStatus, extra: old one
-  kCommandTimeout = 101,   ///< no valid command any more; value: the FallbackAction
-  kReferenceLost = 102,    ///< the multi-turn angle is unknown
-  kSetpointSkipped = 103,  ///< value: the SkipReason, extra: the mode, plus 256 times the MotorStatus
-  kNotOwner = 104,         ///< a command refused: a motor is held by another client (`client`: who asked)
-  kMotorFault = 105,       ///< value: the FaultCode; extra: the drive's own code
-  kGroupStopped = 106,     ///< with `source`, which is offline or in fault; value: index of the group
-  kGroupRearmed = 107,     ///< enabled again at rest; value: index of the group
-  kModule = 108,           ///< of a module: value: its place in ModuleSignals::events
-  kModuleRefused =
-      109,             ///< targets of a module (`source`) refused: another client commands one of its motors
-  kGainChanged = 110,  ///< of a loop; value: the LoopGain, plus kGainInVolts; extra: the bits of the float;
-                       ///< `client`: who asked
-  kRobotState = 200,   ///< value: new RobotState, extra: old one
-  kTicksMissed = 201,  ///< value: how many
-  kCommandRefused = 202,  ///< admission refused a command message
-  kEstopInput = 203,      ///< value: the ContactState of the e-stop input
-  kBusState = 300,        ///< value: new BusState, extra: old one
-  kBusAdvice = 301,  ///< what rc10d did about a bus, or what a person has to do; from the io thread, in words
-  kForeignSender = 302,  ///< somebody else sends a command id of ours; value: frames since the last report,
-                         ///< extra: foreignFrame()
-  kSerialPort = 310,     ///< a serial port came, went or cannot be opened; from the io thread, in words
-  kDevice = 311,  ///< an SPI device or the lines of a GPIO chip came, went or cannot be opened; in words
-};
-
-/// Why a setpoint of an accepted message did not act.
-enum class SkipReason : std::int32_t {
-  kNotActive,
-  kNoReference,
-  kFirstStep,  ///< Farther from the measured angle than max_first_step_deg.
-  kRefused,    ///< By the motor itself.
-};
 
 /// Added to the LoopGain of kGainChanged where the loop commands volts: its keys have other names.
 inline constexpr std::int32_t kGainInVolts = 256;

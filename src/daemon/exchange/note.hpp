@@ -20,7 +20,7 @@ class Notes {
     link::Event note;
     note.utime = wallClockUs();
     note.mono_us = std::chrono::duration_cast<std::chrono::microseconds>(now.time_since_epoch()).count();
-    note.severity = static_cast<std::uint8_t>(severity);
+    note.severity = severity;
     note.code = static_cast<std::int32_t>(code_);
     note.source = source;
     note.text = text;

@@ -5,13 +5,13 @@
 #include <cstddef>
 #include <cstdint>
 
+#include "app/target.hpp"
 #include "app/time.hpp"
 #include "link/link_protocol.hpp"
 #include "module/module_base.hpp"
 #include "module/robot_status.hpp"
 #include "motor/drive_setup.hpp"
 #include "motor/loop_gain.hpp"
-#include "motor/target.hpp"
 
 namespace rc10 {
 

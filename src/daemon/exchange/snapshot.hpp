@@ -60,7 +60,7 @@ struct Snapshot {
   std::uint64_t skipped_setpoints = 0;  ///< For motors that were not ACTIVE or not referenced.
   std::uint64_t refused_signals = 0;    ///< A module was held by another client, or the message was old.
   std::uint64_t events_dropped = 0;
-  RobotState state = RobotState::kRun;
+  RobotStatus state = RobotStatus::kRun;
   std::size_t motor_count = 0;
   std::size_t bus_count = 0;
   std::array<MotorSnapshot, kMaxMotors> motors;

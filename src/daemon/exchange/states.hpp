@@ -3,7 +3,7 @@
 #include <array>
 #include <cstdint>
 
-#include "module/robot_status.hpp"
+#include "app/vocabulary.hpp"
 
 namespace rc10 {
 
@@ -52,9 +52,5 @@ inline constexpr auto kMotorTransitions = [] {
 [[nodiscard]] constexpr bool isOn(MotorStatus status) noexcept {
   return status == MotorStatus::kEnabling || status == MotorStatus::kActive;
 }
-
-/// "OFFLINE", "READY", ...
-[[nodiscard]] const char* toString(MotorStatus status) noexcept;
-[[nodiscard]] const char* toString(RobotState state) noexcept;
 
 }  // namespace rc10

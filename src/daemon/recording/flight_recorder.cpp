@@ -131,7 +131,7 @@ void FlightRecorder::event(const Event& event) noexcept {
   if (event.code == EventCode::kMotorFault) {
     causes_.fetch_or(static_cast<std::uint32_t>(CopyCause::kFault), std::memory_order_relaxed);
   }
-  if (event.code == EventCode::kRobotState && event.value == static_cast<std::int32_t>(RobotState::kEstop)) {
+  if (event.code == EventCode::kRobotState && event.value == static_cast<std::int32_t>(RobotStatus::kEstop)) {
     causes_.fetch_or(static_cast<std::uint32_t>(CopyCause::kEstop), std::memory_order_relaxed);
   }
 }

@@ -75,7 +75,7 @@ class FlightRecorder {
   std::array<Tap, kMaxBuses> taps_;
   std::array<MotorStatus, kMaxMotors> statuses_{};
   std::array<BusState, kMaxBuses> bus_states_{};
-  RobotState robot_state_ = RobotState::kRun;
+  RobotStatus robot_state_ = RobotStatus::kRun;
   // By module: what was applied, and what was refused.
   std::array<std::array<LastSignals, 2>, kMaxModules> last_signals_{};
   // Written by the scheduler, taken by the thread that makes copies. Relaxed: it carries nothing else.

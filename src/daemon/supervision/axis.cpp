@@ -125,7 +125,7 @@ bool Axis::lapses(const Tick& tick) noexcept {
   return true;
 }
 
-void Axis::order(RobotState robot, const Tick& tick) noexcept {
+void Axis::order(RobotStatus robot, const Tick& tick) noexcept {
   fallback_.step(standsStill(), tick.now);
   const auto kind = frameKind(robot);
   if (kind != FrameKind::kCommand) {
@@ -142,8 +142,8 @@ void Axis::order(RobotState robot, const Tick& tick) noexcept {
   motor_.order(kind, shaped.target);
 }
 
-FrameKind Axis::frameKind(RobotState robot) const noexcept {
-  const bool polls = motor_.driveFrames().poll == Provision::kFrame && robot != RobotState::kStopping;
+FrameKind Axis::frameKind(RobotStatus robot) const noexcept {
+  const bool polls = motor_.driveFrames().poll == Provision::kFrame && robot != RobotStatus::kStopping;
   const auto rest = polls ? FrameKind::kPoll : FrameKind::kRest;
   switch (status_) {
     case MotorStatus::kEnabling: return heldWhileEnabling() ? fallback_.kind() : FrameKind::kEnable;
@@ -165,7 +165,7 @@ bool Axis::heldWhileEnabling() const noexcept {
 
 // ---- Changes
 
-std::optional<MotorStatus> Axis::take(MotorEvent event, RobotState robot, const Tick& tick) noexcept {
+std::optional<MotorStatus> Axis::take(MotorEvent event, RobotStatus robot, const Tick& tick) noexcept {
   const auto before = status_;
   status_ = next(before, event);
   if (status_ == before) return std::nullopt;
@@ -173,7 +173,7 @@ std::optional<MotorStatus> Axis::take(MotorEvent event, RobotState robot, const 
   if (status_ != MotorStatus::kActive) dropTarget();
   if (before == MotorStatus::kActive && status_ == MotorStatus::kReady) {
     const auto& config = entry_.fallback;
-    const bool asked = event == MotorEvent::kDisable || robot == RobotState::kStopping;
+    const bool asked = event == MotorEvent::kDisable || robot == RobotStatus::kStopping;
     fallback_.begin(asked ? config.on_disable : config.on_estop,
                     asked ? Fallback::Until::kStandstill : Fallback::Until::kEnded, config.hold_max,
                     tick.now);

@@ -51,12 +51,12 @@ class Axis {
   /// The command in force has lapsed: its fallback has begun.
   [[nodiscard]] bool lapses(const Tick& tick) noexcept;
   /// Tells the motor what kind of frame its drive gets, and the target as it is shaped.
-  void order(RobotState robot, const Tick& tick) noexcept;
+  void order(RobotStatus robot, const Tick& tick) noexcept;
 
   // ---- Changes
 
   /// The status before, if it changes.
-  [[nodiscard]] std::optional<MotorStatus> take(MotorEvent event, RobotState robot,
+  [[nodiscard]] std::optional<MotorStatus> take(MotorEvent event, RobotStatus robot,
                                                 const Tick& tick) noexcept;
   /// Before MotorEvent::kEnable.
   void prepareEnabling(const Tick& tick) noexcept;
@@ -80,7 +80,7 @@ class Axis {
   void retune(const CascadeConfig& loops) noexcept;
 
  private:
-  [[nodiscard]] FrameKind frameKind(RobotState robot) const noexcept;
+  [[nodiscard]] FrameKind frameKind(RobotStatus robot) const noexcept;
   [[nodiscard]] bool heldWhileEnabling() const noexcept;
   [[nodiscard]] std::optional<SkipReason> tryTarget(const Target& target) noexcept;
   void dropTarget() noexcept;

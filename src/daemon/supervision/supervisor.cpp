@@ -100,19 +100,19 @@ void Supervisor::settle(std::size_t motor, Refusal outcome) noexcept {
   }
 }
 
-void Supervisor::setRobotState(RobotState state, const Tick& tick) noexcept {
+void Supervisor::setRobotState(RobotStatus state, const Tick& tick) noexcept {
   const auto before = state_;
   state_ = state;
-  if (state != RobotState::kRun) {
+  if (state != RobotStatus::kRun) {
     for (auto& group : groups_) group.rearm.reset();  // even if it is cleared within this tick
     for (std::size_t motor = 0; motor < axes_.size(); ++motor) transition(motor, MotorEvent::kEstop, tick);
   }
-  report({EventCode::kRobotState, state == RobotState::kEstop ? Severity::kError : Severity::kInfo, -1,
+  report({EventCode::kRobotState, state == RobotStatus::kEstop ? Severity::kError : Severity::kInfo, -1,
           static_cast<std::int32_t>(state), static_cast<std::int32_t>(before), tick.now});
 }
 
 void Supervisor::beginStop(const Tick& tick) noexcept {
-  if (state_ != RobotState::kStopping) setRobotState(RobotState::kStopping, tick);
+  if (state_ != RobotStatus::kStopping) setRobotState(RobotStatus::kStopping, tick);
 }
 
 bool Supervisor::fallbackActs() const noexcept {

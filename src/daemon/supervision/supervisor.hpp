@@ -49,7 +49,7 @@ class Supervisor {
   void fillSnapshot(Snapshot& snapshot) const noexcept;
   void report(Event event) noexcept;
 
-  [[nodiscard]] RobotState robotState() const noexcept { return state_; }
+  [[nodiscard]] RobotStatus robotState() const noexcept { return state_; }
   [[nodiscard]] MotorStatus status(std::size_t motor) const noexcept { return axes_[motor].status(); }
 
  private:
@@ -89,7 +89,7 @@ class Supervisor {
   void clear(std::size_t motor, const Tick& tick) noexcept;
   void answer(const OrderResult& result) noexcept;
   [[nodiscard]] Refusal setGains(std::size_t motor, const Order& order, const Tick& tick) noexcept;
-  void setRobotState(RobotState state, const Tick& tick) noexcept;
+  void setRobotState(RobotStatus state, const Tick& tick) noexcept;
   void transition(std::size_t motor, MotorEvent event, const Tick& tick) noexcept;
   void watch(std::size_t motor, const Tick& tick) noexcept;
   void watchGroup(std::size_t index, const Tick& tick) noexcept;
@@ -107,7 +107,7 @@ class Supervisor {
   Robot& robot_;
   LinkExchange& link_;
   FlightRecorder* recorder_;
-  RobotState state_ = RobotState::kRun;
+  RobotStatus state_ = RobotStatus::kRun;
   std::vector<Axis> axes_;
   std::array<PendingOrder, 8> pending_{};
   std::vector<Group> groups_;

@@ -10,7 +10,7 @@ namespace rc10 {
 // No lease stops it, as no other request: a person tunes the motor that a program commands. The limits of the
 // configuration stay, and the loops take new gains without a bump.
 Refusal Supervisor::setGains(std::size_t motor, const Order& order, const Tick& tick) noexcept {
-  if (state_ == RobotState::kStopping) return Refusal::kStopping;
+  if (state_ == RobotStatus::kStopping) return Refusal::kStopping;
   auto& axis = axes_[motor];
   const auto* in_force = axis.motor().hostLoops();
   if (in_force == nullptr || order.gains.count > order.gains.values.size()) return Refusal::kNoGains;

@@ -57,7 +57,7 @@ void Supervisor::rearm(std::size_t index, const Tick& tick) noexcept {
   auto& group = groups_[index];
   for (std::size_t motor = 0; motor < axes_.size(); ++motor) {
     if (!group.members.test(motor)) continue;
-    if (axes_[motor].status() == MotorStatus::kFault || state_ != RobotState::kRun) {
+    if (axes_[motor].status() == MotorStatus::kFault || state_ != RobotStatus::kRun) {
       group.rearm.reset();  // only a request brings it back now
       return;
     }

@@ -10,8 +10,8 @@ void Supervisor::receiveOrders(const Tick& tick) noexcept {
   const auto contact = link_.estop_contact.look(tick.dt_s);
   if (contact.news) report(estopInputEvent(*contact.news, tick.now));
   if ((link_.estop.exchange(false, std::memory_order_acquire) || contact.stop) &&
-      state_ == RobotState::kRun) {
-    setRobotState(RobotState::kEstop, tick);
+      state_ == RobotStatus::kRun) {
+    setRobotState(RobotStatus::kEstop, tick);
   }
   // Only what is there now: a client that floods the ring must not lengthen the tick without bound.
   for (auto n = link_.orders.read_available(); n > 0; --n) {
@@ -96,8 +96,8 @@ void Supervisor::carryOut(const Order& order, const Tick& tick) noexcept {
   result.id = order.id;
   MotorSet waiting;
   if (order.operation == Operation::kEstop) {
-    if (state_ == RobotState::kRun) setRobotState(RobotState::kEstop, tick);
-  } else if (order.operation == Operation::kClear && state_ == RobotState::kEstop &&
+    if (state_ == RobotStatus::kRun) setRobotState(RobotStatus::kEstop, tick);
+  } else if (order.operation == Operation::kClear && state_ == RobotStatus::kEstop &&
              order.motors.count() == axes_.size() && !clearEstop(result, tick)) {
     answer(result);
     return;
@@ -148,7 +148,7 @@ bool Supervisor::clearEstop(OrderResult& result, const Tick& tick) noexcept {
     result.motors[motor] = Refusal::kMoving;
     at_rest = false;
   }
-  if (at_rest) setRobotState(RobotState::kRun, tick);
+  if (at_rest) setRobotState(RobotStatus::kRun, tick);
   return at_rest;
 }
 
@@ -161,8 +161,8 @@ void Supervisor::disable(std::size_t motor, const Tick& tick) noexcept {
 }
 
 Refusal Supervisor::enable(std::size_t motor, const Tick& tick) noexcept {
-  if (state_ == RobotState::kEstop) return Refusal::kEstop;
-  if (state_ == RobotState::kStopping) return Refusal::kStopping;
+  if (state_ == RobotStatus::kEstop) return Refusal::kEstop;
+  if (state_ == RobotStatus::kStopping) return Refusal::kStopping;
   if (configuring_ && configuring_->motor == motor) return Refusal::kConfiguring;
   if (alone_ && *alone_ != motor) return Refusal::kAlone;
   switch (axes_[motor].status()) {

@@ -11,7 +11,7 @@ constexpr Duration kConfigureTimeout = std::chrono::seconds{8};
 }  // namespace
 
 Refusal Supervisor::mayConfigure(std::size_t motor) const noexcept {
-  if (state_ == RobotState::kStopping) return Refusal::kStopping;
+  if (state_ == RobotStatus::kStopping) return Refusal::kStopping;
   if (configuring_) return Refusal::kConfiguring;
   switch (axes_[motor].status()) {
     case MotorStatus::kOffline: return Refusal::kOffline;

@@ -41,7 +41,7 @@ class ModuleRunner : private ModuleRobot {
   void handOver(const Tick& tick) noexcept;
   [[nodiscard]] Lease::Holder sender() const noexcept;
 
-  [[nodiscard]] RobotState state() const noexcept override { return supervisor_.robotState(); }
+  [[nodiscard]] RobotStatus state() const noexcept override { return supervisor_.robotState(); }
   [[nodiscard]] std::size_t motorCount() const noexcept override { return robot_.motors().size(); }
   [[nodiscard]] const MotorFeedback& feedback(std::size_t motor) const noexcept override;
   [[nodiscard]] MotorStatus status(std::size_t motor) const noexcept override;

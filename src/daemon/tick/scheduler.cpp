@@ -59,7 +59,7 @@ void Scheduler::tick(MonotonicTime now, std::uint64_t periods) noexcept {
 }
 
 void Scheduler::beginStop(const Tick& tick) noexcept {
-  if (supervisor_.robotState() != RobotState::kStopping) stop_deadline_ = tick.now + kLongestFallback;
+  if (supervisor_.robotState() != RobotStatus::kStopping) stop_deadline_ = tick.now + kLongestFallback;
   supervisor_.beginStop(tick);
   if (tick.now >= stop_deadline_) supervisor_.endFallbacks();
 }
@@ -89,7 +89,7 @@ void Scheduler::driveDevices() noexcept {
   for (auto& entry : robot_.spiOutputs())
     handOver(*robot_.spiLines()[entry.line], *entry.output, entry.handed_over);
   // While the process stops the modules do not run any more, and what they wanted last is past.
-  const bool stopping = supervisor_.robotState() == RobotState::kStopping;
+  const bool stopping = supervisor_.robotState() == RobotStatus::kStopping;
   for (auto& entry : robot_.gpioImages()) {
     auto& bank = (*robot_.lineBanks())[entry.bank];
     bank.want(stopping ? bank.settings().safe_levels : entry.image->outputs);

@@ -3,8 +3,8 @@
 #include <cstdint>
 #include <limits>
 
+#include "app/target.hpp"
 #include "motor/motor_base.hpp"
-#include "motor/target.hpp"
 
 namespace rc10 {
 

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "app/time.hpp"
+#include "app/vocabulary.hpp"
 #include "rc10/setpoint.hpp"
 
 namespace rc10 {
@@ -15,34 +16,8 @@ inline namespace robot_client {
 
 inline constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
 
-enum class RobotStatus : std::int8_t {
-  kRun = 0,
-  kEstop = 1,  ///< Latched until cleared.
-  kStopping = 2,
-};
-
-enum class MotorStatus : std::int8_t {
-  kOffline = 0,  ///< No fresh feedback.
-  kReady = 1,    ///< Feedback, no torque, waits to be enabled.
-  kEnabling = 2,
-  kActive = 3,  ///< Obeys setpoints.
-  kFault = 4,   ///< Latched until cleared.
-};
-
-/// "OFFLINE", "READY", ...
-[[nodiscard]] const char* toString(MotorStatus status) noexcept;
-/// "RUN", "ESTOP", "STOPPING".
-[[nodiscard]] const char* toString(RobotStatus status) noexcept;
-
-/// Limits that act right now; they are not faults. Bits of MotorState::limits.
-enum Limit : std::uint32_t {
-  kLimitCurrent = 1U,
-  kLimitVelocity = 2U,
-  kLimitAngle = 4U,
-  kLimitTemperature = 8U,
-  kLimitSlew = 16U,
-  kLimitStall = 32U,
-};
+/// Bits of MotorState::limits.
+using Limit = LimitFlag;
 
 /// One motor, at the output shaft, counter-clockwise positive. NaN: the drive does not report it, or no state
 /// has arrived yet.
@@ -86,8 +61,6 @@ struct RobotState {
   /// "wheel, lift": for messages.
   [[nodiscard]] std::string motorNames() const;
 };
-
-enum class Severity : std::int8_t { kInfo = 0, kWarning = 1, kError = 2 };
 
 /// A fault or a change of state as it happens; the codes are listed in docs/lcm.md.
 struct Event {

@@ -8,25 +8,12 @@
 
 #include "app/result.hpp"
 #include "app/units.hpp"
+#include "app/vocabulary.hpp"
 
 namespace rc10 {
 inline namespace robot_client {
 
-/// Mode of a target. The numbers are those of setpoint_t.lcm.
-enum class Mode : std::int8_t {
-  kCoast = 0,
-  kCurrent = 1,     ///< A
-  kVelocity = 2,    ///< rpm
-  kAngle = 3,       ///< deg, the shortest way round
-  kTotalAngle = 4,  ///< deg, multi-turn
-  kImpedance = 5,   ///< deg, with stiffness and damping
-  kVoltage = 6,     ///< V
-  kDuty = 7,        ///< -1 to 1
-  kBrake = 8,
-};
-
-/// "coast", "current", "velocity", ...
-[[nodiscard]] const char* toString(Mode mode) noexcept;
+using Mode = ControlMode;
 
 /// Addition to a loop's output. 0: none.
 struct FeedForward {

@@ -72,7 +72,7 @@ std::string motorsOn(const link::Welcome& welcome, const link::State& state) {
   std::string names;
   for (std::size_t i = 0; i < std::min<std::size_t>(state.motor_count, welcome.motor_count); ++i) {
     const auto status = state.motors[i].status;
-    if (status == link::kMotorActive || status == link::kMotorEnabling)
+    if (status == MotorStatus::kActive || status == MotorStatus::kEnabling)
       names += (names.empty() ? "" : ", ") + client::printable(welcome.motors[i].name.view());
   }
   return names;
@@ -150,7 +150,7 @@ class Commissioning {
     const auto end = std::chrono::steady_clock::now() + kShown;
     while (feed_.pump() && !interrupted()) {
       const auto* state = feed_.state();
-      if (state != nullptr && state->motors[motor_].status == link::kMotorActive) return;
+      if (state != nullptr && state->motors[motor_].status == MotorStatus::kActive) return;
       const auto left = end - std::chrono::steady_clock::now();
       if (left <= Duration{0}) return;
       waitReadable(rc10d_, left);
@@ -160,8 +160,8 @@ class Commissioning {
   Drive order(client::FirstSpin& seen) const {
     Drive order;
     order.setpoint.motor = options_.motor;
-    order.setpoint.mode = link::modeOf("current").value_or(link::kModeCoast);
-    order.setpoint.value = current_a_;
+    order.setpoint.target.mode = ControlMode::kCurrent;
+    order.setpoint.target.value = current_a_;
     order.motor = motor_;
     order.time = kSpinTime;
     order.steer = [this, &seen](link::Setpoint&, const link::State& state) -> std::optional<std::string> {
@@ -194,9 +194,7 @@ ExitCode commission(const Global& global, const CommissionOptions& options) {
   if (!rc10d) return complain(rc10d.error(), ExitCode::kNoDaemon);
   const auto motor = client::findMotor(rc10d->welcome(), options.motor);
   if (!motor) return complain(motor.error(), ExitCode::kFailed);
-  if (const auto able =
-          requireMode(rc10d->welcome().motors[*motor], link::modeOf("current").value_or(link::kModeCoast));
-      !able)
+  if (const auto able = requireMode(rc10d->welcome().motors[*motor], ControlMode::kCurrent); !able)
     return complain({"commission spins it with a current: " + able.error().message}, ExitCode::kFailed);
   return Commissioning(global, *rc10d, options, *motor, *current_a).run();
 }

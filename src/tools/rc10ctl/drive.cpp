@@ -28,16 +28,16 @@ constexpr Duration kProgressInFile = std::chrono::milliseconds{500};
 
 // Why the motor cannot take setpoints, and what to do; empty if it can.
 std::string obstacle(const link::State& state, const std::string& name, const link::MotorState& motor) {
-  if (state.robot_state != link::kRobotRun) {
-    return std::string("the robot is in ") + link::robotStateWord(state.robot_state) +
+  if (state.robot_state != RobotStatus::kRun) {
+    return std::string("the robot is in ") + toString(state.robot_state) +
            ": `rc10ctl clear`, then `rc10ctl enable " + name + "`";
   }
-  const std::string is = "motor '" + name + "' is " + link::motorStatusWord(motor.status);
+  const std::string is = "motor '" + name + "' is " + toString(motor.status);
   switch (motor.status) {
-    case link::kMotorActive: return {};
-    case link::kMotorOffline:
+    case MotorStatus::kActive: return {};
+    case MotorStatus::kOffline:
       return is + ": check its power, wiring and id, then `rc10ctl enable " + name + "`";
-    case link::kMotorFault:
+    case MotorStatus::kFault:
       return is + " (" + link::faultText(motor.fault) + "): `rc10ctl clear " + name +
              "`, then `rc10ctl enable " + name + "`";
     default: return is + ": `rc10ctl enable " + name + "`";
@@ -137,12 +137,12 @@ class Driver {
   // priority may move it, not even the next rc10ctl.
   void letGo() {
     auto coast = order_.setpoint;
-    coast.mode = link::kModeCoast;
+    coast.target.mode = ControlMode::kCoast;
     if (!send(coast)) return;
     const auto end = steady_clock::now() + kReleasing;
     command_.validity_ms = 1;
     for (auto now = steady_clock::now(); now < end && feed_.pump(); now = steady_clock::now()) {
-      if (motor() != nullptr && motor()->mode == link::kModeCoast && motor()->owner.view() != kClientName)
+      if (motor() != nullptr && motor()->mode == ControlMode::kCoast && motor()->owner.view() != kClientName)
         return;
       if (!send(coast)) return;
       waitReadable(rc10d_, std::min<Duration>(kSendPeriod, end - now));
@@ -176,19 +176,20 @@ class Driver {
   void showEvents(Progress& progress) {
     for (const auto& event : feed_.takeEvents()) {
       if (order_.hear && event.source.view() == name_) order_.hear(event);
-      const bool concerns_us = event.source.view() == name_ ? event.severity > 0 : event.severity > 1;
+      const bool concerns_us = event.source.view() == name_ ? event.severity > Severity::kInfo
+                                                            : event.severity > Severity::kWarning;
       if (!concerns_us) continue;
-      progress.note(std::string(link::severityWord(event.severity)) + ": " +
-                    client::printable(event.source.view()) + ": " + client::printable(event.text.view()));
+      progress.note(std::string(toString(event.severity)) + ": " + client::printable(event.source.view()) +
+                    ": " + client::printable(event.text.view()));
     }
   }
 
   std::string line() const {
     if (motor() == nullptr) return name_;
-    const auto mode = setpoint_.mode;
-    std::string text = name_ + "  " + link::modeWord(mode);
-    if (mode != link::kModeCoast && mode != link::kModeBrake) {
-      text += "  target " + client::quantity(setpoint_.value, 2, link::modeUnit(mode));
+    const auto mode = setpoint_.target.mode;
+    std::string text = name_ + "  " + toString(mode);
+    if (mode != ControlMode::kCoast && mode != ControlMode::kBrake) {
+      text += "  target " + client::quantity(setpoint_.target.value, 2, unitOf(mode));
     }
     text += "  measured " + client::quantity(client::measured(*motor(), mode), 2, client::measuredUnit(mode));
     text += "  current " + client::quantity(static_cast<double>(motor()->current_a), 2, "A");

@@ -35,7 +35,7 @@ ExitCode jog(const Global& global, const JogOptions& options) {
   if (!rc10d) return complain(rc10d.error(), ExitCode::kNoDaemon);
   const auto motor = client::findMotor(rc10d->welcome(), options.motor);
   if (!motor) return complain(motor.error(), ExitCode::kFailed);
-  const auto velocity = link::modeOf("velocity").value_or(link::kModeCoast);
+  const auto velocity = ControlMode::kVelocity;
   if (const auto able = requireMode(rc10d->welcome().motors[*motor], velocity); !able)
     return complain(able.error(), ExitCode::kFailed);
   auto terminal = KeyTerminal::open();
@@ -45,7 +45,7 @@ ExitCode jog(const Global& global, const JogOptions& options) {
   client::JogSpeed speed(options.speed_rpm, options.most_rpm, std::chrono::milliseconds{options.dead_man_ms});
   Drive order;
   order.setpoint.motor = options.motor;
-  order.setpoint.mode = velocity;
+  order.setpoint.target.mode = velocity;
   order.motor = *motor;
   order.priority = options.priority;
   order.time = std::chrono::hours{24};
@@ -56,7 +56,7 @@ ExitCode jog(const Global& global, const JogOptions& options) {
       if (key == client::JogKey::kQuit) closed = true;
       speed.press(key, now);
     }
-    setpoint.value = speed.target(now);
+    setpoint.target.value = speed.target(now);
     return closed ? std::optional<std::string>{""} : std::nullopt;
   };
   std::printf("hold right or left: turn at %g rpm; up, down: faster, slower; any other key: stand; q: end\n",

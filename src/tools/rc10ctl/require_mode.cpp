@@ -6,12 +6,12 @@
 
 namespace rc10::ctl {
 
-Result<void> requireMode(const link::MotorInfo& motor, std::uint8_t mode) {
-  if ((motor.modes & (1U << mode)) != 0) return {};
-  const std::string setting = settingForMode(motor.model.view(), static_cast<ControlMode>(mode));
+Result<void> requireMode(const link::MotorInfo& motor, ControlMode mode) {
+  if ((motor.modes & (1U << static_cast<unsigned>(mode))) != 0) return {};
+  const std::string setting = settingForMode(motor.model.view(), mode);
   return fail(
-      "motor '" + client::printable(motor.name.view()) + "' has no mode " + link::modeWord(mode) +
-      "; it has " + link::modeWords(motor.modes) +
+      "motor '" + client::printable(motor.name.view()) + "' has no mode " + toString(mode) + "; it has " +
+      link::modeWords(motor.modes) +
       (setting.empty() ? "" : ". Write `" + setting + "` for it into the robot's file and restart rc10d"));
 }
 

@@ -8,6 +8,6 @@
 namespace rc10::ctl {
 
 /// Whether the motor has the mode; the error lists those that it has, and says how it gets this one.
-[[nodiscard]] Result<void> requireMode(const link::MotorInfo& motor, std::uint8_t mode);
+[[nodiscard]] Result<void> requireMode(const link::MotorInfo& motor, ControlMode mode);
 
 }  // namespace rc10::ctl

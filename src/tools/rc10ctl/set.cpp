@@ -27,13 +27,13 @@ struct SetOptions {
   float damping_nms_per_rad = 0.0F;
 };
 
-constexpr std::uint32_t kAllModes = (1U << link::kModeCount) - 1U;
+constexpr std::uint32_t kAllModes = (1U << kControlModeCount) - 1U;
 
 // Parses the options; needs no robot.
 Result<Drive> driveFrom(const SetOptions& options) {
   const auto mode = link::modeOf(options.mode);
   if (!mode) return fail("'" + options.mode + "' is not a mode: use one of " + link::modeWords(kAllModes));
-  const bool needs_value = *mode != link::kModeCoast && *mode != link::kModeBrake;
+  const bool needs_value = *mode != ControlMode::kCoast && *mode != ControlMode::kBrake;
   if (needs_value && !options.value) {
     return fail("mode " + options.mode + " needs a value: `rc10ctl set " + options.motor + " " +
                 options.mode + " 10`");
@@ -47,12 +47,12 @@ Result<Drive> driveFrom(const SetOptions& options) {
     return fail("there is no motor '" + options.motor + "': see `rc10ctl list`");
   Drive order;
   order.setpoint.motor = options.motor;
-  order.setpoint.mode = *mode;
-  order.setpoint.value = options.value.value_or(0.0);
-  order.setpoint.velocity_ff_rpm = options.velocity_ff_rpm;
-  order.setpoint.torque_ff_nm = options.torque_ff_nm;
-  order.setpoint.stiffness_nm_per_rad = options.stiffness_nm_per_rad;
-  order.setpoint.damping_nms_per_rad = options.damping_nms_per_rad;
+  order.setpoint.target.mode = *mode;
+  order.setpoint.target.value = options.value.value_or(0.0);
+  order.setpoint.target.velocity_ff_rpm = options.velocity_ff_rpm;
+  order.setpoint.target.torque_ff_nm = options.torque_ff_nm;
+  order.setpoint.target.stiffness_nm_per_rad = options.stiffness_nm_per_rad;
+  order.setpoint.target.damping_nms_per_rad = options.damping_nms_per_rad;
   order.priority = options.priority;
   order.time = *time;
   return order;
@@ -71,9 +71,9 @@ std::string whyDriveUnfit(Drive& order, const link::Welcome& welcome) {
     return "there is no motor '" + std::string(name) + "'; the motors are: " + names;
   }
   order.motor = static_cast<std::size_t>(found - motors.begin());
-  const auto mode = order.setpoint.mode;
-  if (mode != link::kModeCoast && (found->modes & (1U << mode)) == 0) {
-    return "motor '" + std::string(name) + "' has no mode " + link::modeWord(mode) + "; it has " +
+  const auto mode = order.setpoint.target.mode;
+  if (mode != ControlMode::kCoast && (found->modes & (1U << static_cast<unsigned>(mode))) == 0) {
+    return "motor '" + std::string(name) + "' has no mode " + toString(mode) + "; it has " +
            link::modeWords(found->modes);
   }
   return {};

@@ -1,27 +1,11 @@
 #pragma once
 
 #include <cstdint>
-#include <limits>
 #include <type_traits>
 
+#include "app/vocabulary.hpp"
+
 namespace rc10 {
-
-/// How a target is meant. The numbers are those of setpoint_t.lcm.
-enum class ControlMode : std::uint8_t {
-  kCoast = 0,
-  kCurrent = 1,     ///< A
-  kVelocity = 2,    ///< rpm
-  kAngle = 3,       ///< deg, the shortest way round
-  kTotalAngle = 4,  ///< deg, multi-turn
-  kImpedance = 5,   ///< deg, with stiffness and damping
-  kVoltage = 6,     ///< V
-  kDuty = 7,        ///< -1 to 1
-  kBrake = 8,
-};
-inline constexpr int kControlModeCount = 9;
-
-/// "current", "velocity", ...: as written in messages and on the command line.
-[[nodiscard]] const char* toString(ControlMode mode) noexcept;
 
 /// Whether a target of this mode means nothing while the angle has no reference.
 [[nodiscard]] constexpr bool needsReference(ControlMode mode) noexcept {

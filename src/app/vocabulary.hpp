@@ -1,0 +1,116 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+
+namespace rc10 {
+
+// Numbers and words of the protocol: those of lcm_types/, of rc10ctl, of the black box and of the log.
+
+/// How a target is meant: setpoint_t.lcm.
+enum class ControlMode : std::uint8_t {
+  kCoast = 0,
+  kCurrent = 1,     ///< A
+  kVelocity = 2,    ///< rpm
+  kAngle = 3,       ///< deg, the shortest way round
+  kTotalAngle = 4,  ///< deg, multi-turn
+  kImpedance = 5,   ///< deg, with stiffness and damping
+  kVoltage = 6,     ///< V
+  kDuty = 7,        ///< -1 to 1
+  kBrake = 8,
+};
+inline constexpr int kControlModeCount = 9;
+
+/// motor_state_t.lcm.
+enum class MotorStatus : std::uint8_t {
+  kOffline = 0,   ///< No fresh feedback.
+  kReady = 1,     ///< Feedback, no torque; waits to be enabled.
+  kEnabling = 2,  ///< The enable sequence is under way.
+  kActive = 3,    ///< Obeys setpoints.
+  kFault = 4,     ///< Latched until cleared.
+};
+inline constexpr int kMotorStatusCount = 5;
+
+/// robot_state_t.lcm.
+enum class RobotStatus : std::uint8_t {
+  kRun = 0,
+  kEstop = 1,     ///< Latched: every motor at rest until `clear`.
+  kStopping = 2,  ///< The process is about to end: rest frames only.
+};
+
+/// bus_state_t.lcm.
+enum class BusState : std::uint8_t {
+  kActive = 0,
+  kWarning = 1,
+  kPassive = 2,
+  kBusOff = 3,
+  kDown = 4,     ///< The interface is down.
+  kGone = 5,     ///< The interface does not exist.
+  kSilent = 6,   ///< No frame received for a while although motors are expected to talk.
+  kStalled = 7,  ///< No echo of our own frames: they do not reach the wire.
+};
+
+/// Unit of what is sent to the drive: motor_state_t.lcm.
+enum class CommandUnit : std::uint8_t { kNone = 0, kAmpere = 1, kVolt = 2, kNative = 3 };
+
+/// Limits that act right now: not faults. Bits of motor_state_t.lcm.
+enum LimitFlag : std::uint32_t {
+  kLimitCurrent = 1U << 0U,
+  kLimitVelocity = 1U << 1U,
+  kLimitAngle = 1U << 2U,
+  kLimitTemperature = 1U << 3U,
+  kLimitSlew = 1U << 4U,
+  kLimitStall = 1U << 5U,
+};
+
+/// event_t.lcm.
+enum class Severity : std::uint8_t { kInfo = 0, kWarning = 1, kError = 2 };
+
+/// By number. What comes from another program may be none of them.
+inline constexpr std::array kControlModeWords{"coast",     "current", "velocity", "angle", "total_angle",
+                                              "impedance", "voltage", "duty",     "brake"};
+inline constexpr std::array kControlModeUnits{"", "A", "rpm", "deg", "deg", "deg", "V", "", ""};
+inline constexpr std::array kMotorStatusWords{"OFFLINE", "READY", "ENABLING", "ACTIVE", "FAULT"};
+inline constexpr std::array kRobotStatusWords{"RUN", "ESTOP", "STOPPING"};
+inline constexpr std::array kBusStateWords{"active", "warning", "passive", "bus-off",
+                                           "down",   "gone",    "silent",  "stalled"};
+inline constexpr std::array kCommandUnitWords{"", "A", "V", "native"};
+inline constexpr std::array kLimitWords{"current", "velocity", "angle", "temperature", "slew", "stall"};
+inline constexpr std::array kSeverityWords{"info", "warning", "error"};
+static_assert(kControlModeWords.size() == kControlModeCount && kControlModeUnits.size() == kControlModeCount);
+static_assert(kMotorStatusWords.size() == kMotorStatusCount);
+
+namespace detail {
+template <std::size_t N, typename Number>
+[[nodiscard]] constexpr const char* word(const std::array<const char*, N>& words, Number number,
+                                         const char* otherwise) noexcept {
+  const auto index = static_cast<std::size_t>(number);
+  return index < N ? words[index] : otherwise;
+}
+}  // namespace detail
+
+[[nodiscard]] constexpr const char* toString(ControlMode mode) noexcept {
+  return detail::word(kControlModeWords, mode, "unknown");
+}
+[[nodiscard]] constexpr const char* toString(MotorStatus status) noexcept {
+  return detail::word(kMotorStatusWords, status, "UNKNOWN");
+}
+[[nodiscard]] constexpr const char* toString(RobotStatus status) noexcept {
+  return detail::word(kRobotStatusWords, status, "UNKNOWN");
+}
+[[nodiscard]] constexpr const char* toString(BusState state) noexcept {
+  return detail::word(kBusStateWords, state, "unknown");
+}
+[[nodiscard]] constexpr const char* toString(CommandUnit unit) noexcept {
+  return detail::word(kCommandUnitWords, unit, "unknown");
+}
+[[nodiscard]] constexpr const char* toString(Severity severity) noexcept {
+  return detail::word(kSeverityWords, severity, "unknown");
+}
+/// Of a target of this mode; "" where there is none.
+[[nodiscard]] constexpr const char* unitOf(ControlMode mode) noexcept {
+  return detail::word(kControlModeUnits, mode, "");
+}
+
+}  // namespace rc10
