@@ -47,9 +47,9 @@ void BusHealth::onErrorFrame(const CanFrame& frame) noexcept {
   }
 }
 
-void BusHealth::onLink(LinkState link) noexcept {
+void BusHealth::onLink(CanLinkState link) noexcept {
   if (link == link_) return;
-  if (link == LinkState::kUp) {
+  if (link == CanLinkState::kUp) {
     // A controller that is brought up starts in error-active and sends no message about it.
     ++restarts_;
     controller_ = BusState::kActive;
@@ -68,7 +68,7 @@ void BusHealth::onControllerRunning() noexcept {
 }
 
 void BusHealth::update(MonotonicTime now, const Traffic& traffic) noexcept {
-  const bool carrying = link_ == LinkState::kUp && controller_ != BusState::kBusOff;
+  const bool carrying = link_ == CanLinkState::kUp && controller_ != BusState::kBusOff;
   // A bus that comes back gets the whole time again before it is called silent or stalled.
   const bool heard = traffic.rx_frames != seen_.rx_frames;
   if (!started_ || !carrying || !traffic.feedback_expected || heard) last_rx_ = now;
@@ -97,8 +97,8 @@ void BusHealth::update(MonotonicTime now, const Traffic& traffic) noexcept {
 }
 
 BusState BusHealth::state() const noexcept {
-  if (link_ == LinkState::kGone) return BusState::kGone;
-  if (link_ == LinkState::kDown) return BusState::kDown;
+  if (link_ == CanLinkState::kGone) return BusState::kGone;
+  if (link_ == CanLinkState::kDown) return BusState::kDown;
   if (controller_ == BusState::kBusOff) return BusState::kBusOff;
   if (stalled_) return BusState::kStalled;
   if (silent_) return BusState::kSilent;

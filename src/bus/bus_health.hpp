@@ -16,7 +16,7 @@ namespace rc10 {
 }
 
 /// State of the interface, as the RX thread sees it.
-enum class LinkState : std::uint8_t { kUp, kDown, kGone };
+enum class CanLinkState : std::uint8_t { kUp, kDown, kGone };
 
 /// Turns error frames, link states, silence and missing echoes into one state. Scheduler thread only.
 class BusHealth {
@@ -42,7 +42,7 @@ class BusHealth {
   explicit BusHealth(const Config& config) : config_(config) {}
 
   void onErrorFrame(const CanFrame& frame) noexcept;
-  void onLink(LinkState link) noexcept;
+  void onLink(CanLinkState link) noexcept;
   /// The driver says that the controller is not bus-off: the message about its restart was lost.
   void onControllerRunning() noexcept;
   void update(MonotonicTime now, const Traffic& traffic) noexcept;
@@ -58,7 +58,7 @@ class BusHealth {
  private:
   Config config_{};
   BusState controller_ = BusState::kActive;  // from error frames only
-  LinkState link_ = LinkState::kUp;
+  CanLinkState link_ = CanLinkState::kUp;
   bool silent_ = false;
   bool stalled_ = false;
   int tec_ = -1;

@@ -74,7 +74,7 @@ Result<void> Daemon::build() {
   auto sched_loop = SchedLoop::create(*scheduler_, config_.period());
   if (!sched_loop) return tl::unexpected(sched_loop.error());
   sched_loop_ = std::move(*sched_loop);
-  auto rx_loop = RxLoop::create(*robot_, inboxes_, robot_->serialLines());
+  auto rx_loop = RxLoop::create(*robot_, inboxes_, robot_->serialChannels());
   if (!rx_loop) return tl::unexpected(rx_loop.error());
   rx_loop_ = std::move(*rx_loop);
   auto sim_loop = SimLoop::create(*robot_);
@@ -87,8 +87,8 @@ Result<void> Daemon::build() {
   if (auto* banks = robot_->lineBanks())
     line_loop_ = std::make_unique<LineLoop>(*banks, kernelGpio(), exchange_);
   io_loop_ = std::make_unique<IoLoop>(BusReviver{*robot_, inboxes_, *rx_loop_},
-                                      LinkKeeper{*robot_, inboxes_, exchange_}, black_box_.get(), serialIo(),
-                                      spiIo());
+                                      CanLinkKeeper{*robot_, inboxes_, exchange_}, black_box_.get(),
+                                      serialIo(), spiIo());
   if (config_.lcm.enabled) {
     gateway_ = std::make_unique<GatewayProcess>(
         siblingProgram("rc10-lcm"), std::vector<std::string>{"--socket", socket->path(), "--robot",
@@ -108,7 +108,7 @@ Result<void> Daemon::build() {
 }
 
 std::unique_ptr<SerialIo> Daemon::serialIo() {
-  auto* lines = robot_->serialLines();
+  auto* lines = robot_->serialChannels();
   if (lines == nullptr) return nullptr;
   auto serial =
       std::make_unique<SerialIo>(SerialIo{SerialReviver{*lines, *rx_loop_, exchange_}, SerialWriter{*lines}});
@@ -117,7 +117,7 @@ std::unique_ptr<SerialIo> Daemon::serialIo() {
 }
 
 std::unique_ptr<SpiKeeper> Daemon::spiIo() {
-  auto& lines = robot_->spiLines();
+  auto& lines = robot_->spiChannels();
   if (lines.empty()) return nullptr;
   return std::make_unique<SpiKeeper>(lines, exchange_, [](const std::string& path, std::uint32_t speed_hz) {
     return openSpiPort(path, speed_hz);

@@ -13,7 +13,7 @@ std::string ModuleState::outputNames() const {
   return names.empty() ? "none" : names;
 }
 
-const ModuleInbox& ModuleInboxes::of(const Link& link, const std::string& channel) {
+const ModuleInbox& ModuleInboxes::of(const LcmLink& link, const std::string& channel) {
   const std::lock_guard lock(mutex_);
   auto& inbox = inboxes_[channel];
   if (!inbox) inbox = std::make_unique<const ModuleInbox>(link, channel);

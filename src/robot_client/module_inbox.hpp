@@ -16,7 +16,7 @@ inline namespace robot_client {
 class ModuleInbox {
  public:
   /// `channel`: of the module, <robot>.v1.<module>.
-  ModuleInbox(const Link& link, const std::string& channel) : outputs_(link, channel + ".state") {}
+  ModuleInbox(const LcmLink& link, const std::string& channel) : outputs_(link, channel + ".state") {}
 
   [[nodiscard]] ModuleState state() const;
   /// False: nothing new within `timeout`.
@@ -32,7 +32,7 @@ class ModuleInbox {
 class ModuleInboxes {
  public:
   /// `channel`: as for ModuleInbox. Subscribed from the first call on; stays where it is.
-  [[nodiscard]] const ModuleInbox& of(const Link& link, const std::string& channel);
+  [[nodiscard]] const ModuleInbox& of(const LcmLink& link, const std::string& channel);
 
  private:
   std::mutex mutex_;

@@ -23,7 +23,7 @@ std::string joined(const std::vector<std::string>& names) {
   return text;
 }
 
-Outgoing::Outgoing(Link link, std::string robot, std::string client, int priority)
+Outgoing::Outgoing(LcmLink link, std::string robot, std::string client, int priority)
     : link_(std::move(link)),
       robot_(std::move(robot)),
       client_(std::move(client)),

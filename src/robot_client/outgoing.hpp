@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "rc10/link.hpp"
+#include "rc10/lcm_link.hpp"
 #include "rc10/module.hpp"
 #include "rc10/setpoint.hpp"
 
@@ -20,7 +20,7 @@ inline namespace robot_client {
 /// one with a higher number.
 class Outgoing {
  public:
-  Outgoing(Link link, std::string robot, std::string client, int priority);
+  Outgoing(LcmLink link, std::string robot, std::string client, int priority);
 
   [[nodiscard]] std::string channel(const std::string& kind) const { return robot_ + ".v1." + kind; }
   [[nodiscard]] std::int64_t session() const noexcept { return session_; }
@@ -33,7 +33,7 @@ class Outgoing {
                        const std::map<std::string, double>& values);
 
  private:
-  const Link link_;
+  const LcmLink link_;
   const std::string robot_;
   const std::string client_;
   const int priority_;

@@ -5,15 +5,16 @@
 namespace rc10 {
 inline namespace robot_client {
 
-Robot::Robot(std::string name, RobotOptions options) : Robot(std::move(name), Link{}, std::move(options)) {}
+Robot::Robot(std::string name, RobotOptions options)
+    : Robot(std::move(name), LcmLink{}, std::move(options)) {}
 
-Robot::Robot(std::string name, const Link& link, RobotOptions options)
+Robot::Robot(std::string name, const LcmLink& link, RobotOptions options)
     : session_(std::make_unique<RobotSession>(std::move(name), link, std::move(options))) {}
 
 Robot::~Robot() = default;
 
 const std::string& Robot::name() const noexcept { return session_->name(); }
-const Link& Robot::link() const noexcept { return session_->link(); }
+const LcmLink& Robot::link() const noexcept { return session_->link(); }
 Result<void> Robot::status() const { return session_->status(); }
 
 Result<void> Robot::command(const MotorSetpoints& setpoints) const { return session_->command(setpoints); }

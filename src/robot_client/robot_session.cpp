@@ -34,7 +34,7 @@ constexpr Duration kListen = milliseconds{300};
 
 }  // namespace
 
-RobotSession::RobotSession(std::string name, const Link& link, RobotOptions options)
+RobotSession::RobotSession(std::string name, const LcmLink& link, RobotOptions options)
     : name_(std::move(name)),
       link_(link),
       status_(checkSession(name_, options).and_then([&] { return link_.status(); })),
@@ -63,7 +63,7 @@ RobotSession::~RobotSession() {
 
 void RobotSession::receiveState(std::span<const std::byte> bytes) {
   robot_state_t message;
-  if (!Link::decode(bytes, message)) return foreign(outgoing_.channel("state"));
+  if (!LcmLink::decode(bytes, message)) return foreign(outgoing_.channel("state"));
   const auto now = timeNow();
   auto state = std::make_shared<RobotState>(fromLcm(message));
   std::shared_ptr<std::function<void(const RobotState&)>> callback;
@@ -84,7 +84,7 @@ void RobotSession::receiveState(std::span<const std::byte> bytes) {
 
 void RobotSession::receiveEvent(std::span<const std::byte> bytes) {
   event_t message;
-  if (!Link::decode(bytes, message)) return foreign(outgoing_.channel("event"));
+  if (!LcmLink::decode(bytes, message)) return foreign(outgoing_.channel("event"));
   const auto event = fromLcm(message);
   std::shared_ptr<std::function<void(const Event&)>> callback;
   bool concerns_us = event.code == kOtherDefinitions;
@@ -103,7 +103,7 @@ void RobotSession::receiveEvent(std::span<const std::byte> bytes) {
 
 void RobotSession::receiveResponse(std::span<const std::byte> bytes) {
   response_t message;
-  if (!Link::decode(bytes, message)) return foreign(outgoing_.channel("response"));
+  if (!LcmLink::decode(bytes, message)) return foreign(outgoing_.channel("response"));
   // All clients of the robot hear all answers.
   if (message.session != outgoing_.session() || message.client != options_.client) return;
   {

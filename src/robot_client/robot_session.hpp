@@ -27,13 +27,13 @@ inline namespace robot_client {
 /// that sends again. Callbacks, promises and problems leave outside of the mutex.
 class RobotSession {
  public:
-  RobotSession(std::string name, const Link& link, RobotOptions options);
+  RobotSession(std::string name, const LcmLink& link, RobotOptions options);
   RobotSession(const RobotSession&) = delete;
   RobotSession& operator=(const RobotSession&) = delete;
   ~RobotSession();
 
   [[nodiscard]] const std::string& name() const noexcept { return name_; }
-  [[nodiscard]] const Link& link() const noexcept { return link_; }
+  [[nodiscard]] const LcmLink& link() const noexcept { return link_; }
   [[nodiscard]] const Result<void>& status() const noexcept { return status_; }
 
   Result<void> command(const MotorSetpoints& setpoints);
@@ -94,7 +94,7 @@ class RobotSession {
   [[nodiscard]] std::vector<MotorReason> reasonsIn(const std::string& message);
 
   const std::string name_;
-  const Link link_;
+  const LcmLink link_;
   const Result<void> status_;
   const RobotOptions options_;
   Problems problems_;

@@ -8,7 +8,7 @@ constexpr std::string_view kStateChannel = ".v1.state";
 
 }  // namespace
 
-RobotsHeard::RobotsHeard(const Link& link)
+RobotsHeard::RobotsHeard(const LcmLink& link)
     : subscription_(link.subscribePattern(R"([^.]+\.v1\.state)", [this](const std::string& channel) {
         const std::lock_guard lock(mutex_);
         names_.insert(channel.substr(0, channel.size() - kStateChannel.size()));

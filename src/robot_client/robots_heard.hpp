@@ -6,7 +6,7 @@
 #include <string>
 
 #include "app/time.hpp"
-#include "rc10/link.hpp"
+#include "rc10/lcm_link.hpp"
 
 namespace rc10 {
 inline namespace robot_client {
@@ -14,7 +14,7 @@ inline namespace robot_client {
 /// Listens for any robot, to tell a wrong name from a silent daemon.
 class RobotsHeard {
  public:
-  explicit RobotsHeard(const Link& link);
+  explicit RobotsHeard(const LcmLink& link);
 
   /// Waits at most `patience` for one; the names with commas, empty if there is none.
   [[nodiscard]] std::string names(Duration patience);

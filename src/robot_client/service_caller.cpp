@@ -23,14 +23,14 @@ using Kind = ServiceError::Kind;
 }  // namespace
 
 struct ServiceCaller::Impl {
-  Impl(const Link& the_link, std::string the_name, std::string the_client)
+  Impl(const LcmLink& the_link, std::string the_name, std::string the_client)
       : link(the_link),
         name(std::move(the_name)),
         client(the_client.empty() ? program_invocation_short_name : std::move(the_client)) {}
 
   void receive(std::span<const std::byte> bytes) {
     service_response_t response;
-    const bool ours = Link::decode(bytes, response);
+    const bool ours = LcmLink::decode(bytes, response);
     {
       const std::lock_guard lock(mutex);
       foreign = foreign || !ours;
@@ -43,7 +43,7 @@ struct ServiceCaller::Impl {
     changed.notify_all();
   }
 
-  Link link;
+  LcmLink link;
   std::string name;
   std::string client;
   const std::int64_t session = newSessionNumber();
@@ -55,7 +55,7 @@ struct ServiceCaller::Impl {
   Subscription responses;
 };
 
-ServiceCaller::ServiceCaller(const Link& link, std::string name, std::string client)
+ServiceCaller::ServiceCaller(const LcmLink& link, std::string name, std::string client)
     : impl_(std::make_unique<Impl>(link, std::move(name), std::move(client))) {
   impl_->responses =
       link.subscribe(impl_->name + ".response", [impl = impl_.get()](auto bytes) { impl->receive(bytes); });

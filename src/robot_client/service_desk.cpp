@@ -52,12 +52,12 @@ struct ServiceDesk::Impl {
     MonotonicTime received;
   };
 
-  Impl(const Link& the_link, std::string the_name, Types the_types, Handler the_handler)
+  Impl(const LcmLink& the_link, std::string the_name, Types the_types, Handler the_handler)
       : link(the_link), name(std::move(the_name)), types(the_types), handler(std::move(the_handler)) {}
 
   void receive(std::span<const std::byte> bytes) {
     Call call{{}, timeNow()};
-    if (!Link::decode(bytes, call.request)) return;
+    if (!LcmLink::decode(bytes, call.request)) return;
     std::optional<service_response_t> answer;
     {
       const std::lock_guard lock(mutex);
@@ -130,7 +130,7 @@ struct ServiceDesk::Impl {
     return response;
   }
 
-  Link link;
+  LcmLink link;
   std::string name;
   Types types;
   Handler handler;
@@ -145,7 +145,7 @@ struct ServiceDesk::Impl {
   Subscription requests;
 };
 
-ServiceDesk::ServiceDesk(const Link& link, std::string name, Types types, Handler handler)
+ServiceDesk::ServiceDesk(const LcmLink& link, std::string name, Types types, Handler handler)
     : impl_(std::make_unique<Impl>(link, std::move(name), types, std::move(handler))) {
   impl_->status = link.status();
   if (!impl_->status) return;

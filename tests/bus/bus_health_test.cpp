@@ -158,22 +158,22 @@ TEST_F(BusHealthTest, ARestartWhoseBusOffWasLostIsCounted) {
 
 TEST_F(BusHealthTest, CyclingTheLinkEndsBusOffAndIsOneRestart) {
   health_.onErrorFrame(errorFrame(CAN_ERR_BUSOFF));
-  health_.onLink(LinkState::kDown);
+  health_.onLink(CanLinkState::kDown);
   EXPECT_EQ(state(), BusState::kDown);
   EXPECT_EQ(health_.restarts(), 0U);
-  health_.onLink(LinkState::kUp);
+  health_.onLink(CanLinkState::kUp);
   EXPECT_EQ(state(), BusState::kActive);
   EXPECT_EQ(health_.restarts(), 1U);
 }
 
 TEST_F(BusHealthTest, AnInterfaceThatComesBackFromGoneIsOneRestart) {
-  health_.onLink(LinkState::kDown);
-  health_.onLink(LinkState::kGone);
+  health_.onLink(CanLinkState::kDown);
+  health_.onLink(CanLinkState::kGone);
   EXPECT_EQ(state(), BusState::kGone);
-  health_.onLink(LinkState::kDown);
+  health_.onLink(CanLinkState::kDown);
   EXPECT_EQ(state(), BusState::kDown);
-  health_.onLink(LinkState::kUp);
-  health_.onLink(LinkState::kUp);
+  health_.onLink(CanLinkState::kUp);
+  health_.onLink(CanLinkState::kUp);
   EXPECT_EQ(state(), BusState::kActive);
   EXPECT_EQ(health_.restarts(), 1U);
 }
@@ -256,9 +256,9 @@ TEST_F(BusHealthTest, CyclingTheLinkEndsAStall) {
   run(10ms);
   EXPECT_EQ(state(), BusState::kStalled);
   sends_ = false;
-  health_.onLink(LinkState::kDown);
+  health_.onLink(CanLinkState::kDown);
   run(10ms);
-  health_.onLink(LinkState::kUp);
+  health_.onLink(CanLinkState::kUp);
   run(10ms);
   EXPECT_EQ(state(), BusState::kActive);
 }
@@ -282,9 +282,9 @@ TEST_F(BusHealthTest, ReportsTheMostSeriousOfWhatIsTrue) {
   EXPECT_EQ(state(), BusState::kStalled);
   health_.onErrorFrame(errorFrame(CAN_ERR_BUSOFF));
   EXPECT_EQ(state(), BusState::kBusOff);
-  health_.onLink(LinkState::kDown);
+  health_.onLink(CanLinkState::kDown);
   EXPECT_EQ(state(), BusState::kDown);
-  health_.onLink(LinkState::kGone);
+  health_.onLink(CanLinkState::kGone);
   EXPECT_EQ(state(), BusState::kGone);
 }
 
@@ -292,9 +292,9 @@ TEST_F(BusHealthTest, ABusThatComesBackGetsTheWholeTimeAgain) {
   run(50ms);
   hears_ = false;
   echoes_ = false;
-  health_.onLink(LinkState::kDown);
+  health_.onLink(CanLinkState::kDown);
   run(10s);
-  health_.onLink(LinkState::kUp);
+  health_.onLink(CanLinkState::kUp);
   sends_ = false;
   run(99ms);
   EXPECT_EQ(state(), BusState::kActive);

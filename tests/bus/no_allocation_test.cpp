@@ -130,7 +130,7 @@ TEST_F(NoAllocationTest, HealthAllocatesNothing) {
   for (int i = 0; i < 100; ++i) {
     bus_->health().update(MonotonicTime{std::chrono::milliseconds(i)}, {.echo_available = true});
   }
-  bus_->health().onLink(LinkState::kGone);
+  bus_->health().onLink(CanLinkState::kGone);
   EXPECT_EQ(bus_->health().state(), BusState::kGone);
   EXPECT_EQ(guard.allocations(), 0U);
 }

@@ -19,13 +19,13 @@ namespace {
 class BusReviverTest : public ::testing::Test {
  protected:
   void setInterface(const std::string& name) { robot->buses()[0].interface = name; }
-  LinkState link() { return inboxes[0].link.load(); }
-  static LinkState stateOfLoopback() {
+  CanLinkState link() { return inboxes[0].link.load(); }
+  static CanLinkState stateOfLoopback() {
     const UniqueFd any{::socket(AF_UNIX, SOCK_DGRAM | SOCK_CLOEXEC, 0)};
     ifreq request{};
     std::strcpy(request.ifr_name, "lo");
     EXPECT_EQ(::ioctl(any.get(), SIOCGIFFLAGS, &request), 0);
-    return (request.ifr_flags & IFF_UP) != 0 ? LinkState::kUp : LinkState::kDown;
+    return (request.ifr_flags & IFF_UP) != 0 ? CanLinkState::kUp : CanLinkState::kDown;
   }
 
   std::unique_ptr<Robot> robot = Robot::build(twoWheelsAndYaw()).value();
@@ -35,20 +35,20 @@ class BusReviverTest : public ::testing::Test {
 };
 
 TEST_F(BusReviverTest, LeavesASimulatedBusAlone) {
-  inboxes[0].link = LinkState::kDown;
+  inboxes[0].link = CanLinkState::kDown;
   reviver.check();
-  EXPECT_EQ(link(), LinkState::kDown);
+  EXPECT_EQ(link(), CanLinkState::kDown);
 }
 
 TEST_F(BusReviverTest, SeesThatAnInterfaceIsGone) {
   setInterface("rc10nosuch");
   reviver.check();
-  EXPECT_EQ(link(), LinkState::kGone);
+  EXPECT_EQ(link(), CanLinkState::kGone);
 }
 
 TEST_F(BusReviverTest, ShowsWhetherAnInterfaceIsUp) {
   setInterface("lo");
-  inboxes[0].link = stateOfLoopback() == LinkState::kUp ? LinkState::kDown : LinkState::kUp;
+  inboxes[0].link = stateOfLoopback() == CanLinkState::kUp ? CanLinkState::kDown : CanLinkState::kUp;
   reviver.check();
   EXPECT_EQ(link(), stateOfLoopback());
 }
@@ -56,16 +56,16 @@ TEST_F(BusReviverTest, ShowsWhetherAnInterfaceIsUp) {
 TEST_F(BusReviverTest, ABusThatWasDownBetweenTwoLooksHasComeUp) {
   setInterface("lo");
   (void)reviver.check();
-  inboxes[0].link = LinkState::kDown;  // the RX thread has met ENETDOWN
-  EXPECT_EQ(reviver.check().test(0), stateOfLoopback() == LinkState::kUp);
+  inboxes[0].link = CanLinkState::kDown;  // the RX thread has met ENETDOWN
+  EXPECT_EQ(reviver.check().test(0), stateOfLoopback() == CanLinkState::kUp);
   EXPECT_TRUE(reviver.check().none());
 }
 
 TEST_F(BusReviverTest, ABusStaysGoneUntilItsSocketIsReplaced) {
   setInterface("lo");
-  inboxes[0].link = LinkState::kGone;
+  inboxes[0].link = CanLinkState::kGone;
   reviver.check();  // no CAN socket can be bound to lo
-  EXPECT_EQ(link(), LinkState::kGone);
+  EXPECT_EQ(link(), CanLinkState::kGone);
   // And the descriptor is still the old one: what the drives send arrives.
   const CanFrame frame = makeClassicFrame({0x201, false}, std::array<std::uint8_t, 1>{1});
   canfd_frame wire;

@@ -167,11 +167,11 @@ TEST_F(BusWatchTest, ADriverThatSaysTheControllerRunsEndsBusOff) {
 }
 
 TEST_F(BusWatchTest, AnInterfaceThatIsDownOrGoneIsNotWrittenTo) {
-  for (const auto link : {LinkState::kDown, LinkState::kGone}) {
+  for (const auto link : {CanLinkState::kDown, CanLinkState::kGone}) {
     robot.inboxes()[0].link = link;
     tick();  // the tick that finds it out
     EXPECT_TRUE(sentIn(200).size() <= 2U);
-    robot.inboxes()[0].link = LinkState::kUp;
+    robot.inboxes()[0].link = CanLinkState::kUp;
     const auto frames = sentIn(50);
     EXPECT_GT(frames.size(), 90U);
     EXPECT_TRUE(std::all_of(frames.begin(), frames.end(), isRest));

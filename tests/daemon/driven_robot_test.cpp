@@ -55,11 +55,11 @@ class DrivenRobot : public ::testing::Test {
   static constexpr std::size_t kBase = 1;
 
   DrivenRobot() : robot_(parseRobotConfig(kRobot, "driven.yaml").config.value()) {
-    line().state.store(SerialState::kOpen);
-    line().opening.store(1);
+    channel().state.store(SerialState::kOpen);
+    channel().opening.store(1);
   }
 
-  SerialLine& line() { return (*robot_.robot().serialLines())[0]; }
+  SerialChannel& channel() { return (*robot_.robot().serialChannels())[0]; }
   void run(int ticks, bool remote_talks = true) {
     for (int i = 0; i < ticks; ++i) {
       if (remote_talks && ++since_frame_ >= 14) {
@@ -70,7 +70,7 @@ class DrivenRobot : public ::testing::Test {
         const auto frame = DbusProtocol::encode(remote_);
         std::copy(frame.begin(), frame.end(), chunk.data.begin());
         chunk.size = static_cast<std::uint16_t>(frame.size());
-        ASSERT_TRUE(line().chunks.push(chunk));
+        ASSERT_TRUE(channel().chunks.push(chunk));
       }
       if (!std::isnan(planner_vx_m_s_)) plan();
       robot_.tick();
@@ -184,11 +184,11 @@ TEST_F(DrivenRobot, AnUnpluggedPortMidFrameIsSurvived) {
   half.received = robot_.now();
   half.opening = 1;
   half.size = 7;
-  ASSERT_TRUE(line().chunks.push(half));
-  line().state.store(SerialState::kAbsent);
+  ASSERT_TRUE(channel().chunks.push(half));
+  channel().state.store(SerialState::kAbsent);
   run(200, false);
   EXPECT_TRUE(allAre(MotorStatus::kActive));
-  line().state.store(SerialState::kOpen);
+  channel().state.store(SerialState::kOpen);
   remote_.right_vertical = 660;
   run(1000);
   EXPECT_GT(output(kVx), 0.9);

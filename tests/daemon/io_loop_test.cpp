@@ -17,20 +17,20 @@ TEST(IoLoop, EndsWhenItIsAskedTo) {
   std::array<BusInbox, kMaxBuses> inboxes;
   LinkExchange exchange;
   const auto rx = RxLoop::create(*robot, inboxes).value();
-  IoLoop loop{BusReviver{*robot, inboxes, *rx}, LinkKeeper{*robot, inboxes, exchange}, nullptr};
+  IoLoop loop{BusReviver{*robot, inboxes, *rx}, CanLinkKeeper{*robot, inboxes, exchange}, nullptr};
   std::stop_source stop;
   stop.request_stop();
   loop.run(stop.get_token());
-  EXPECT_EQ(inboxes[0].link.load(), LinkState::kUp);
+  EXPECT_EQ(inboxes[0].link.load(), CanLinkState::kUp);
 }
 
 TEST(IoLoop, LooksAfterSerialPorts) {
   SerialRig rig;
   rig.plugIn();
   auto serial = std::make_unique<SerialIo>(
-      SerialIo{SerialReviver{*rig.lines, *rig.rx, rig.exchange}, SerialWriter{*rig.lines}});
-  IoLoop loop{BusReviver{*rig.robot, rig.inboxes, *rig.rx}, LinkKeeper{*rig.robot, rig.inboxes, rig.exchange},
-              nullptr, std::move(serial)};
+      SerialIo{SerialReviver{*rig.channels, *rig.rx, rig.exchange}, SerialWriter{*rig.channels}});
+  IoLoop loop{BusReviver{*rig.robot, rig.inboxes, *rig.rx},
+              CanLinkKeeper{*rig.robot, rig.inboxes, rig.exchange}, nullptr, std::move(serial)};
   std::jthread io([&](const std::stop_token& stop) { loop.run(stop); });
   ASSERT_TRUE(rig.pump([&] { return rig.device.state() == SerialState::kOpen; }));
   const std::array<std::uint8_t, 2> bytes{4, 2};

@@ -22,7 +22,7 @@ class ModuleAllocationTest : public ::testing::TestWithParam<ModuleCase> {
   void hear() {
     if (GetParam().frame.empty()) return;
     chunk_.received = robot_.now();
-    ASSERT_TRUE((*robot_.robot().serialLines())[0].chunks.push(chunk_));
+    ASSERT_TRUE((*robot_.robot().serialChannels())[0].chunks.push(chunk_));
   }
   void tick(int index) {
     if (message_.client.view() == "test") {

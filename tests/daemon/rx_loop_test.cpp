@@ -142,10 +142,10 @@ TEST_F(RxLoopTest, CountsMalformedMessagesAndGoesOn) {
 }
 
 TEST_F(RxLoopTest, ABusThatIsGoneIsSeen) {
-  EXPECT_EQ(inboxes[0].link.load(), LinkState::kUp);
+  EXPECT_EQ(inboxes[0].link.load(), CanLinkState::kUp);
   robot->simPorts()[0].reset();
   loop->poll(0);
-  EXPECT_EQ(inboxes[0].link.load(), LinkState::kGone);
+  EXPECT_EQ(inboxes[0].link.load(), CanLinkState::kGone);
   write(numbered(7), 1);
   loop->poll(0);
   EXPECT_EQ(numbers(1), std::vector<int>{7});
@@ -156,7 +156,7 @@ TEST_F(RxLoopTest, ABusWhoseFarEndIsClosedWakesNobodyAnyMore) {
   robot->simPorts()[0].reset();
   for (int i = 0; i < 3; ++i) loop->poll(0);
   EXPECT_EQ(numbers(), std::vector<int>{1}) << "what was sent before the end is received";
-  EXPECT_EQ(inboxes[0].link.load(), LinkState::kGone);
+  EXPECT_EQ(inboxes[0].link.load(), CanLinkState::kGone);
   frameCalls() = {};
   for (int i = 0; i < 10; ++i) loop->poll(0);
   EXPECT_EQ(frameCalls().recvmmsg, 0U);

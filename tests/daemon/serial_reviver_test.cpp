@@ -31,8 +31,8 @@ class SerialReviverTest : public ::testing::Test, protected SerialRig {
 TEST_F(SerialReviverTest, APortThatIsThereIsOpenedAtOnce) {
   plugIn();
   check();
-  EXPECT_EQ(line.state.load(), SerialState::kOpen);
-  deliver(line, device);
+  EXPECT_EQ(channel.state.load(), SerialState::kOpen);
+  deliver(channel, device);
   EXPECT_EQ(device.state(), SerialState::kOpen);
   EXPECT_THAT(events(), ElementsAre(AllOf(HasSubstr(path), HasSubstr("is open, 115200 8N1"))));
   isHeard(7);
@@ -40,11 +40,11 @@ TEST_F(SerialReviverTest, APortThatIsThereIsOpenedAtOnce) {
 
 TEST_F(SerialReviverTest, AnAbsentPortIsTriedAgainWithBackOffAndToldOnce) {
   for (int i = 0; i < 10; ++i) check(1s);
-  EXPECT_EQ(line.state.load(), SerialState::kAbsent);
+  EXPECT_EQ(channel.state.load(), SerialState::kAbsent);
   EXPECT_THAT(events(), ElementsAre(AllOf(HasSubstr(path), HasSubstr("No such file"))));
   plugIn();
   check(1s);
-  EXPECT_EQ(line.state.load(), SerialState::kOpen);
+  EXPECT_EQ(channel.state.load(), SerialState::kOpen);
   isHeard(1);
 }
 
@@ -52,15 +52,15 @@ TEST_F(SerialReviverTest, ItIsNotTriedAtEveryLook) {
   check();
   plugIn();
   check(RetryPace::kFirstWait);
-  EXPECT_EQ(line.state.load(), SerialState::kAbsent);
+  EXPECT_EQ(channel.state.load(), SerialState::kAbsent);
   check(RetryPace::kFirstWait);
-  EXPECT_EQ(line.state.load(), SerialState::kOpen);
+  EXPECT_EQ(channel.state.load(), SerialState::kOpen);
 }
 
 TEST_F(SerialReviverTest, APortThatWasPulledComesBackUnderItsNumber) {
   plugIn();
   check();
-  const int number = line.fd.get();
+  const int number = channel.fd.get();
   for (std::uint8_t round = 1; round <= 3; ++round) {
     isHeard(round);
     pull();
@@ -69,11 +69,11 @@ TEST_F(SerialReviverTest, APortThatWasPulledComesBackUnderItsNumber) {
     check(6s);
     plugIn();
     check(1s);
-    EXPECT_EQ(line.state.load(), SerialState::kOpen);
-    EXPECT_EQ(line.fd.get(), number);
+    EXPECT_EQ(channel.state.load(), SerialState::kOpen);
+    EXPECT_EQ(channel.fd.get(), number);
   }
   isHeard(9);
-  EXPECT_EQ(line.hang_ups.load(), 3U);
+  EXPECT_EQ(channel.hang_ups.load(), 3U);
   EXPECT_EQ(protocol.restarts, 4) << "no frame is made of bytes of two openings";
 }
 
@@ -95,7 +95,7 @@ TEST_F(SerialReviverTest, ThePortIsLetGoSoThatTheKernelMayUseItsNameAgain) {
   check();
   struct stat held {};
   struct stat null {};
-  ASSERT_EQ(::fstat(line.fd.get(), &held), 0);
+  ASSERT_EQ(::fstat(channel.fd.get(), &held), 0);
   ASSERT_EQ(::stat("/dev/null", &null), 0);
   EXPECT_EQ(held.st_rdev, null.st_rdev);
 }
@@ -122,7 +122,7 @@ TEST_F(SerialReviverTest, AHangUpIsNotWatchedAnyMore) {
   pull();
   ASSERT_TRUE(pumpUntilGone());
   for (int i = 0; i < 20; ++i) rx->poll(0);
-  EXPECT_EQ(line.hang_ups.load(), 1U) << "the RX thread would spin";
+  EXPECT_EQ(channel.hang_ups.load(), 1U) << "the RX thread would spin";
 }
 
 TEST_F(SerialReviverTest, APortThatComesAndGoesIsTriedEverLessOften) {
@@ -130,13 +130,13 @@ TEST_F(SerialReviverTest, APortThatComesAndGoesIsTriedEverLessOften) {
   check();
   int opened = 1;
   for (int i = 0; i < 200; ++i) {  // 10 s
-    if (line.state.load() == SerialState::kOpen) {
+    if (channel.state.load() == SerialState::kOpen) {
       pull();
       ASSERT_TRUE(pumpUntilGone());
       plugIn();
     }
     check(50ms);
-    if (line.state.load() == SerialState::kOpen) ++opened;
+    if (channel.state.load() == SerialState::kOpen) ++opened;
   }
   EXPECT_GE(opened, 8);
   EXPECT_LE(opened, 15);
@@ -147,15 +147,15 @@ TEST_F(SerialReviverTest, APortOfSomeoneElseIsWaitedFor) {
   {
     const auto other = openSerialPort(path, {});
     check();
-    EXPECT_EQ(line.state.load(), SerialState::kAbsent);
+    EXPECT_EQ(channel.state.load(), SerialState::kAbsent);
     EXPECT_THAT(events(), ElementsAre(HasSubstr("another program")));
   }
   check(1s);
-  EXPECT_EQ(line.state.load(), SerialState::kOpen);
+  EXPECT_EQ(channel.state.load(), SerialState::kOpen);
 }
 
 TEST_F(SerialReviverTest, WithoutPortsThereIsNothingToDo) {
-  const auto none = SerialLines::create({}).value();
+  const auto none = SerialChannels::create({}).value();
   SerialReviver idle{*none, *rx, exchange};
   idle.check(now);
   SerialWriter{*none}.flush();

@@ -55,12 +55,12 @@ class SerialRig {
   [[nodiscard]] bool pump(const std::function<bool()>& done) {
     for (int i = 0; i < 200 && !done(); ++i) {
       rx->poll(50);
-      deliver(line, device);
+      deliver(channel, device);
     }
     return done();
   }
   [[nodiscard]] bool pumpUntilGone() {
-    return pump([&] { return line.state.load() == SerialState::kAbsent; });
+    return pump([&] { return channel.state.load() == SerialState::kAbsent; });
   }
 
   /// The texts of the events since the last call.
@@ -73,16 +73,16 @@ class SerialRig {
   TempDir folder;
   std::string path = folder.path() + "/usb-imu";
   std::optional<Pty> pty;
-  std::unique_ptr<SerialLines> lines =
-      SerialLines::create(std::vector<SerialLine::Settings>{{"imu", path}}).value();
-  SerialLine& line = (*lines)[0];
+  std::unique_ptr<SerialChannels> channels =
+      SerialChannels::create(std::vector<SerialChannel::Settings>{{"imu", path}}).value();
+  SerialChannel& channel = (*channels)[0];
   std::unique_ptr<Robot> robot = Robot::build(twoWheelsAndYaw()).value();
   std::array<BusInbox, kMaxBuses> inboxes;
   LinkExchange exchange;
-  std::unique_ptr<RxLoop> rx = RxLoop::create(*robot, inboxes, lines.get()).value();
-  SerialReviver reviver{*lines, *rx, exchange};
-  SerialWriter writer{*lines};
-  SerialDevice device{"imu", std::make_unique<RecordingProtocol>(), line.outbox};
+  std::unique_ptr<RxLoop> rx = RxLoop::create(*robot, inboxes, channels.get()).value();
+  SerialReviver reviver{*channels, *rx, exchange};
+  SerialWriter writer{*channels};
+  SerialDevice device{"imu", std::make_unique<RecordingProtocol>(), channel.outbox};
   RecordingProtocol& protocol = static_cast<RecordingProtocol&>(device.protocol());
   MonotonicTime now{std::chrono::hours{1}};
 };

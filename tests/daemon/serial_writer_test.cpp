@@ -20,7 +20,7 @@ class SerialWriterTest : public ::testing::Test, protected SerialRig {
   void open() {
     plugIn();
     check(1s);
-    deliver(line, device);
+    deliver(channel, device);
   }
   bool send(std::size_t count, std::uint8_t byte) {
     const std::vector<std::uint8_t> bytes(count, byte);
@@ -48,7 +48,7 @@ TEST_F(SerialWriterTest, WhatAPulledPortDidNotTakeIsNotWrittenWhenItIsBack) {
   pull();
   ASSERT_TRUE(pumpUntilGone());
   writer.flush();
-  EXPECT_EQ(line.discarded_bytes.load(), 10U);
+  EXPECT_EQ(channel.discarded_bytes.load(), 10U);
   check(6s);
   open();
   EXPECT_TRUE(send(1, 2));
@@ -61,7 +61,7 @@ TEST_F(SerialWriterTest, APortThatIsNotYetKnownToBeGoneCostsOnlyItsBytes) {
   EXPECT_TRUE(send(10, 1));
   pull();
   writer.flush();
-  EXPECT_EQ(line.discarded_bytes.load(), 10U);
+  EXPECT_EQ(channel.discarded_bytes.load(), 10U);
 }
 
 TEST_F(SerialWriterTest, ASlowPortTakesItAllInTheEndAndInOrder) {
@@ -80,7 +80,7 @@ TEST_F(SerialWriterTest, ASlowPortTakesItAllInTheEndAndInOrder) {
     writer.serve(1ms);
   }
   EXPECT_EQ(got, sent);
-  EXPECT_EQ(line.discarded_bytes.load(), 0U);
+  EXPECT_EQ(channel.discarded_bytes.load(), 0U);
 }
 
 TEST_F(SerialWriterTest, ServesAtOnceWhatComesMeanwhile) {
@@ -98,7 +98,7 @@ TEST_F(SerialWriterTest, ServesAtOnceWhatComesMeanwhile) {
 
 TEST_F(SerialWriterTest, APushWakesTheIoThread) {
   open();
-  pollfd wait{.fd = lines->wake(), .events = POLLIN, .revents = 0};
+  pollfd wait{.fd = channels->wake(), .events = POLLIN, .revents = 0};
   EXPECT_EQ(::poll(&wait, 1, 0), 0);
   EXPECT_TRUE(send(1, 1));
   EXPECT_EQ(::poll(&wait, 1, 0), 1);
@@ -108,7 +108,7 @@ TEST_F(SerialWriterTest, APushWakesTheIoThread) {
 
 TEST_F(SerialWriterTest, ServesForATimeWithoutAnythingToDo) {
   writer.serve(1ms);
-  EXPECT_EQ(line.discarded_bytes.load(), 0U);
+  EXPECT_EQ(channel.discarded_bytes.load(), 0U);
 }
 
 }  // namespace

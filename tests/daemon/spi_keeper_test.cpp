@@ -55,11 +55,11 @@ class SpiKeeperTest : public ::testing::Test {
         [&](const link::Event& note) { texts.emplace_back(note.text.view()); });
     return texts;
   }
-  const std::vector<std::uint8_t>& dark() { return robot.robot().spiLines()[0]->settings.rest; }
+  const std::vector<std::uint8_t>& dark() { return robot.robot().spiChannels()[0]->settings.rest; }
 
   FakeSpi spi;
   VirtualRobot robot{robotWithStrip()};
-  SpiKeeper keeper{robot.robot().spiLines(), robot.exchange(), spi.opener()};
+  SpiKeeper keeper{robot.robot().spiChannels(), robot.exchange(), spi.opener()};
 };
 
 TEST_F(SpiKeeperTest, PicturesGoOutThirtyTimesASecondInWhole) {

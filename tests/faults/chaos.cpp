@@ -439,7 +439,7 @@ void Chaos::act(Action action) {
         for (std::size_t bus = 0; bus < wires_.size(); ++bus) leaveQueue(bus);
         for (std::size_t bus = 0; bus < wires_.size(); ++bus) {
           errorFrame(bus, 1);
-          robot_->inboxes()[bus].link.store(LinkState::kUp);
+          robot_->inboxes()[bus].link.store(CanLinkState::kUp);
           oracle_->linked(bus, true);
         }
       }
@@ -496,7 +496,7 @@ void Chaos::act(Action action) {
     case Action::kLink: {
       const auto bus = choices_.next(buses);
       const bool up = !choices_.oneIn(3);
-      robot_->inboxes()[bus].link.store(up ? LinkState::kUp : LinkState::kDown);
+      robot_->inboxes()[bus].link.store(up ? CanLinkState::kUp : CanLinkState::kDown);
       oracle_->linked(bus, up);
       if (!up) queues_[bus] = {};  // down throws away what waited
       value = up ? 1.0 : 0.0;

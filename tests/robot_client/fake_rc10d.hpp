@@ -9,7 +9,7 @@
 
 #include "rc10/command_t.hpp"
 #include "rc10/event_t.hpp"
-#include "rc10/link.hpp"
+#include "rc10/lcm_link.hpp"
 #include "rc10/request_t.hpp"
 #include "rc10/response_t.hpp"
 #include "rc10/robot_state_t.hpp"
@@ -25,7 +25,7 @@ inline constexpr auto kPatience = std::chrono::seconds{20};
 /// publishes a state when it is told to. Its clock, and so what it stamps, is a test's.
 class FakeRc10d {
  public:
-  explicit FakeRc10d(const Link& link, std::string robot = "hero")
+  explicit FakeRc10d(const LcmLink& link, std::string robot = "hero")
       : link_(link),
         robot_(std::move(robot)),
         commands_(link.subscribe(channel("command"), [this](auto bytes) { onCommand(bytes); })),
@@ -116,7 +116,7 @@ class FakeRc10d {
 
   void onCommand(std::span<const std::byte> bytes) {
     command_t command;
-    ASSERT_TRUE(Link::decode(bytes, command));
+    ASSERT_TRUE(LcmLink::decode(bytes, command));
     {
       const std::lock_guard lock(mutex);
       for (const auto& setpoint : command.setpoints) {
@@ -133,7 +133,7 @@ class FakeRc10d {
 
   void onRequest(std::span<const std::byte> bytes) {
     request_t request;
-    ASSERT_TRUE(Link::decode(bytes, request));
+    ASSERT_TRUE(LcmLink::decode(bytes, request));
     response_t response{};
     bool twice_a_state = false;
     {
@@ -174,7 +174,7 @@ class FakeRc10d {
     }
   }
 
-  Link link_;
+  LcmLink link_;
   std::string robot_;
   std::condition_variable changed_;
   std::int64_t now_us_ = 1'000'000'000;

@@ -68,7 +68,7 @@ class ModuleTest : public testing::Test {
     return problems_;
   }
 
-  Link link_{"memq://"};
+  LcmLink link_{"memq://"};
   std::mutex mutex_;
   std::condition_variable changed_;
   std::vector<signals_t> inputs_;
@@ -176,7 +176,7 @@ TEST_F(ModuleTest, AClosedRobotGivesNothing) {
 }
 
 TEST(ModuleWithoutLcm, SaysHowToGetIt) {
-  const Link none{"nonsense://"};
+  const LcmLink none{"nonsense://"};
   RobotOptions options;
   options.on_problem = [](const std::string&) {};
   const Robot robot("hero", none, options);

@@ -53,7 +53,7 @@ class RobotTest : public testing::Test {
   }
   motor_state_t& fakeMotor(const std::string& name) { return rc10d_.motors[name]; }
 
-  Link link_{"memq://"};
+  LcmLink link_{"memq://"};
   FakeRc10d rc10d_{link_};
   std::unique_ptr<Robot> robot_;
 };
@@ -284,7 +284,7 @@ TEST_F(RobotTest, NamesThatCannotBeAreRefusedInWords) {
 }
 
 TEST(RobotWithoutLcm, SaysHowToGetIt) {
-  const Link none{"nonsense://"};
+  const LcmLink none{"nonsense://"};
   EXPECT_THAT(none.status().error().message, HasSubstr("LCM could not start"));
   const Robot robot("hero", none);
   EXPECT_THAT(robot.waitForState().error().message, HasSubstr("LCM could not start"));

@@ -33,7 +33,7 @@ counter_t counter(std::int64_t count) {
 }
 
 TEST(PubSub, ACallbackGetsEveryMessage) {
-  const Link link("memq://");
+  const LcmLink link("memq://");
   std::promise<void> all;
   std::vector<std::int64_t> seen;
   const Subscriber<counter_t> subscriber(link, "a.b", [&](const counter_t& message) {
@@ -47,7 +47,7 @@ TEST(PubSub, ACallbackGetsEveryMessage) {
 }
 
 TEST(PubSub, TheLatestComesWithItsAge) {
-  const Link link("memq://");
+  const LcmLink link("memq://");
   const Subscriber<counter_t> subscriber(link, "a.b");
   EXPECT_EQ(subscriber.latest(), nullptr);
   auto next = std::async(std::launch::async, [&] { return subscriber.waitForNext(kPatience); });
@@ -63,7 +63,7 @@ TEST(PubSub, TheLatestComesWithItsAge) {
 }
 
 TEST(PubSub, AChannelIsAWordAndNoPattern) {
-  const Link link("memq://");
+  const LcmLink link("memq://");
   std::promise<std::int64_t> first;
   const Subscriber<counter_t> subscriber(link, "a.b", [&](const counter_t& m) { first.set_value(m.count); });
   ASSERT_TRUE(link.publish("axb", counter(1)));
@@ -72,7 +72,7 @@ TEST(PubSub, AChannelIsAWordAndNoPattern) {
 }
 
 TEST(PubSub, MessagesOfAnotherTypeAreCounted) {
-  const Link link("memq://");
+  const LcmLink link("memq://");
   std::promise<void> ours;
   const Subscriber<counter_t> subscriber(link, "a", [&](const counter_t&) { ours.set_value(); });
   named_value_t other{};
@@ -84,7 +84,7 @@ TEST(PubSub, MessagesOfAnotherTypeAreCounted) {
 }
 
 TEST(PubSub, ASubscriberMayEndInItsOwnCallback) {
-  const Link link("memq://");
+  const LcmLink link("memq://");
   std::unique_ptr<Subscriber<counter_t>> subscriber;
   std::promise<void> ended;
   int calls = 0;
@@ -101,7 +101,7 @@ TEST(PubSub, ASubscriberMayEndInItsOwnCallback) {
 }
 
 TEST(PubSub, AChannelThatLcmCannotHaveIsAnError) {
-  const Link link("memq://");
+  const LcmLink link("memq://");
   EXPECT_FALSE(link.publish(std::string(64, 'a'), counter(1)));
   EXPECT_FALSE(link.publish("", counter(1)));
 }
@@ -122,7 +122,7 @@ class ServiceTest : public testing::Test {
   }
   static CallOptions patient() { return {.timeout = 20s}; }
 
-  Link link_{"memq://"};
+  LcmLink link_{"memq://"};
 };
 
 TEST_F(ServiceTest, IsCalledAndAnswers) {
@@ -243,7 +243,7 @@ TEST_F(ServiceTest, RefusesWhatWouldWaitTooLong) {
   service_request_t request{};
   request.request_type = counter_t::getHash();
   request.response_type = named_value_t::getHash();
-  const auto bytes = Link::encoded(counter(1));
+  const auto bytes = LcmLink::encoded(counter(1));
   for (const auto byte : bytes) request.payload.push_back(static_cast<std::uint8_t>(byte));
   request.size = static_cast<std::int32_t>(request.payload.size());
   request.timeout_ms = 20'000;

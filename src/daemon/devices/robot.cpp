@@ -143,7 +143,7 @@ Result<void> Robot::addModules(const RobotConfig& config) {
 }
 
 Result<void> Robot::addSerialPorts() {
-  std::vector<SerialLine::Settings> ports;
+  std::vector<SerialChannel::Settings> ports;
   std::vector<std::unique_ptr<I_Protocol>> protocols;
   for (auto& entry : modules_) {
     auto need = entry.module->takeSerialNeed();
@@ -152,13 +152,13 @@ Result<void> Robot::addSerialPorts() {
     protocols.push_back(std::move(need->protocol));
   }
   if (ports.empty()) return {};
-  auto lines = SerialLines::create(ports);
-  if (!lines) return tl::unexpected(lines.error());
-  serial_lines_ = std::move(*lines);
+  auto channels = SerialChannels::create(ports);
+  if (!channels) return tl::unexpected(channels.error());
+  serial_channels_ = std::move(*channels);
   for (std::size_t i = 0; i < ports.size(); ++i) {
-    auto& line = (*serial_lines_)[i];
+    auto& channel = (*serial_channels_)[i];
     serial_devices_.push_back(
-        {std::make_unique<SerialDevice>(ports[i].name, std::move(protocols[i]), line.outbox), i});
+        {std::make_unique<SerialDevice>(ports[i].name, std::move(protocols[i]), channel.outbox), i});
   }
   return {};
 }
@@ -167,11 +167,12 @@ void Robot::addSpiDevices() {
   for (auto& entry : modules_) {
     auto need = entry.module->takeSpiNeed();
     if (!need) continue;
-    spi_outputs_.push_back({.output = std::move(need->output), .line = spi_lines_.size()});
-    spi_lines_.push_back(std::make_unique<SpiLine>(SpiLine::Settings{.name = entry.name,
-                                                                     .path = std::move(need->path),
-                                                                     .speed_hz = need->speed_hz,
-                                                                     .rest = std::move(need->rest)}));
+    spi_outputs_.push_back({.output = std::move(need->output), .channel = spi_channels_.size()});
+    spi_channels_.push_back(
+        std::make_unique<SpiChannel>(SpiChannel::Settings{.name = entry.name,
+                                                          .path = std::move(need->path),
+                                                          .speed_hz = need->speed_hz,
+                                                          .rest = std::move(need->rest)}));
   }
 }
 

@@ -13,8 +13,8 @@
 #include "bus/serial_device.hpp"
 #include "config/robot_config.hpp"
 #include "daemon/devices/line_bank.hpp"
-#include "daemon/devices/serial_line.hpp"
-#include "daemon/devices/spi_line.hpp"
+#include "daemon/devices/serial_channel.hpp"
+#include "daemon/devices/spi_channel.hpp"
 #include "module/module_base.hpp"
 #include "motor/motor_family.hpp"
 #include "sim/sim_port.hpp"
@@ -60,12 +60,12 @@ class Robot {
   };
   struct SerialEntry {
     std::unique_ptr<SerialDevice> device;
-    std::size_t line = 0;  ///< In serialLines().
+    std::size_t channel = 0;  ///< In serialChannels().
   };
 
   struct SpiEntry {
     std::unique_ptr<SpiOutput> output;
-    std::size_t line = 0;           ///< In spiLines().
+    std::size_t channel = 0;        ///< In spiChannels().
     std::uint32_t handed_over = 0;  ///< Frames. Scheduler thread only.
   };
   struct GpioEntry {
@@ -81,9 +81,9 @@ class Robot {
   [[nodiscard]] const std::vector<ModuleEntry>& modules() const noexcept { return modules_; }
   [[nodiscard]] std::vector<SerialEntry>& serialDevices() noexcept { return serial_devices_; }
   /// Null: no module wants a serial port.
-  [[nodiscard]] SerialLines* serialLines() noexcept { return serial_lines_.get(); }
+  [[nodiscard]] SerialChannels* serialChannels() noexcept { return serial_channels_.get(); }
   [[nodiscard]] std::vector<SpiEntry>& spiOutputs() noexcept { return spi_outputs_; }
-  [[nodiscard]] std::vector<std::unique_ptr<SpiLine>>& spiLines() noexcept { return spi_lines_; }
+  [[nodiscard]] std::vector<std::unique_ptr<SpiChannel>>& spiChannels() noexcept { return spi_channels_; }
   [[nodiscard]] std::vector<GpioEntry>& gpioImages() noexcept { return gpio_images_; }
   /// Null: no module wants GPIO lines.
   [[nodiscard]] LineBanks* lineBanks() noexcept { return line_banks_.get(); }
@@ -111,9 +111,9 @@ class Robot {
   std::vector<BusEntry> buses_;
   std::vector<MotorEntry> motors_;
   std::vector<GroupConfig> coupled_;
-  std::unique_ptr<SerialLines> serial_lines_;  // longer than the devices, which push to them
-  std::vector<SerialEntry> serial_devices_;    // and these longer than the modules that read their protocols
-  std::vector<std::unique_ptr<SpiLine>> spi_lines_;
+  std::unique_ptr<SerialChannels> serial_channels_;  // longer than the devices, which push to them
+  std::vector<SerialEntry> serial_devices_;  // and these longer than the modules that read their protocols
+  std::vector<std::unique_ptr<SpiChannel>> spi_channels_;
   std::vector<SpiEntry> spi_outputs_;
   std::unique_ptr<LineBanks> line_banks_;
   std::vector<GpioEntry> gpio_images_;

@@ -8,7 +8,7 @@
 #include <poll.h>
 
 #include "app/time.hpp"
-#include "daemon/devices/serial_line.hpp"
+#include "daemon/devices/serial_channel.hpp"
 
 namespace rc10 {
 
@@ -16,7 +16,7 @@ namespace rc10 {
 /// old command must not act when it is plugged in again. io thread only.
 class SerialWriter {
  public:
-  explicit SerialWriter(SerialLines& lines);
+  explicit SerialWriter(SerialChannels& channels);
 
   /// Writes as it comes for about `duration`.
   void serve(Duration duration);
@@ -30,11 +30,11 @@ class SerialWriter {
     std::size_t end = 0;
   };
 
-  [[nodiscard]] bool write(SerialLine& line, Pending& pending) noexcept;
+  [[nodiscard]] bool write(SerialChannel& channel, Pending& pending) noexcept;
 
-  SerialLines& lines_;
+  SerialChannels& channels_;
   std::vector<Pending> pending_;
-  std::vector<pollfd> waits_;  // one for each line, and the eventfd
+  std::vector<pollfd> waits_;  // one for each channel, and the eventfd
 };
 
 }  // namespace rc10

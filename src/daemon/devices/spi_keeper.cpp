@@ -9,11 +9,11 @@
 
 namespace rc10 {
 
-SpiKeeper::SpiKeeper(SpiLines& lines, LinkExchange& exchange, Open open)
-    : lines_(lines),
+SpiKeeper::SpiKeeper(SpiChannels& channels, LinkExchange& exchange, Open open)
+    : channels_(channels),
       notes_(exchange.notes, EventCode::kDevice),
       open_(std::move(open)),
-      devices_(lines.size()) {}
+      devices_(channels.size()) {}
 
 void SpiKeeper::turn(MonotonicTime now) {
   for (std::size_t i = 0; i < devices_.size(); ++i) {
@@ -24,12 +24,12 @@ void SpiKeeper::turn(MonotonicTime now) {
 
 void SpiKeeper::open(std::size_t index, MonotonicTime now) {
   auto& device = devices_[index];
-  auto& line = *lines_[index];
+  auto& channel = *channels_[index];
   device.pace.begin(now);
-  auto opened = open_(line.settings.path, line.settings.speed_hz);
+  auto opened = open_(channel.settings.path, channel.settings.speed_hz);
   if (!opened) {
     if (device.pace.failed(opened.error().message))
-      notes_.tell(line.settings.name, Severity::kWarning, opened.error().message, now);
+      notes_.tell(channel.settings.name, Severity::kWarning, opened.error().message, now);
     return;
   }
   // Its present state is unknown: the newest frame is sent, even if it was sent before.
@@ -38,31 +38,31 @@ void SpiKeeper::open(std::size_t index, MonotonicTime now) {
 
 void SpiKeeper::serve(std::size_t index, MonotonicTime now) {
   auto& device = devices_[index];
-  auto& line = *lines_[index];
-  const auto error = sendNewest(line, device);
+  auto& channel = *channels_[index];
+  const auto error = sendNewest(channel, device);
   if (!error) return;
   if (*error != 0) return fail(index, *error, now);
   if (std::exchange(device.works, true)) return;
   device.pace.opened(now);
-  line.open.store(true, std::memory_order_relaxed);
-  notes_.tell(line.settings.name, Severity::kInfo,
-              fmt::format("{} works, at {} Hz", line.settings.path, line.settings.speed_hz), now);
+  channel.open.store(true, std::memory_order_relaxed);
+  notes_.tell(channel.settings.name, Severity::kInfo,
+              fmt::format("{} works, at {} Hz", channel.settings.path, channel.settings.speed_hz), now);
 }
 
 void SpiKeeper::fail(std::size_t index, int error, MonotonicTime now) {
   auto& device = devices_[index];
-  auto& line = *lines_[index];
+  auto& channel = *channels_[index];
   device.port.reset();
   if (device.works) device.pace.lost(now);
-  line.open.store(false, std::memory_order_relaxed);
-  auto text = fmt::format("SPI device '{}': cannot send: {}", line.settings.path, std::strerror(error));
+  channel.open.store(false, std::memory_order_relaxed);
+  auto text = fmt::format("SPI device '{}': cannot send: {}", channel.settings.path, std::strerror(error));
   if (error == EMSGSIZE)
     text += "; its buffer is too small: add spidev.bufsiz=4096 to the kernel's command line";
-  if (device.pace.failed(text)) notes_.tell(line.settings.name, Severity::kWarning, text, now);
+  if (device.pace.failed(text)) notes_.tell(channel.settings.name, Severity::kWarning, text, now);
 }
 
-std::optional<int> SpiKeeper::sendNewest(SpiLine& line, Device& device) noexcept {
-  const auto& frame = line.frame.read();
+std::optional<int> SpiKeeper::sendNewest(SpiChannel& channel, Device& device) noexcept {
+  const auto& frame = channel.frame.read();
   if (frame.number != device.sent) {
     device.sent = frame.number;
     device.silent_turns = 0;
@@ -71,12 +71,12 @@ std::optional<int> SpiKeeper::sendNewest(SpiLine& line, Device& device) noexcept
   }
   if (device.rests || ++device.silent_turns < kSilentTurns) return std::nullopt;
   device.rests = true;
-  return device.port->send(line.settings.rest);
+  return device.port->send(channel.settings.rest);
 }
 
 void SpiKeeper::end() noexcept {
   for (std::size_t i = 0; i < devices_.size(); ++i) {
-    if (devices_[i].port) (void)devices_[i].port->send(lines_[i]->settings.rest);
+    if (devices_[i].port) (void)devices_[i].port->send(channels_[i]->settings.rest);
   }
 }
 

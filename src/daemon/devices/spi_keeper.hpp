@@ -10,14 +10,14 @@
 #include "app/time.hpp"
 #include "bus/spi_port.hpp"
 #include "daemon/devices/retry_pace.hpp"
-#include "daemon/devices/spi_line.hpp"
+#include "daemon/devices/spi_channel.hpp"
 #include "daemon/exchange/events.hpp"
 #include "daemon/exchange/note.hpp"
 #include "daemon/exchange/rings.hpp"
 
 namespace rc10 {
 
-using SpiLines = std::vector<std::unique_ptr<SpiLine>>;
+using SpiChannels = std::vector<std::unique_ptr<SpiChannel>>;
 
 /// Opens SPI devices, opens them again when they come back, and sends the newest frame of each. io thread
 /// only.
@@ -31,7 +31,7 @@ class SpiKeeper {
   /// a computer that stood still as a whole is no silence.
   static constexpr int kSilentTurns = 100;
 
-  SpiKeeper(SpiLines& lines, LinkExchange& exchange, Open open);
+  SpiKeeper(SpiChannels& channels, LinkExchange& exchange, Open open);
 
   /// A hundred times a second. Waits while bytes go out: 4096 of them take 10 ms.
   void turn(MonotonicTime now);
@@ -52,9 +52,9 @@ class SpiKeeper {
   void serve(std::size_t index, MonotonicTime now);
   void fail(std::size_t index, int error, MonotonicTime now);
   /// 0: sent; empty: nothing was to be sent; else the errno.
-  [[nodiscard]] static std::optional<int> sendNewest(SpiLine& line, Device& device) noexcept;
+  [[nodiscard]] static std::optional<int> sendNewest(SpiChannel& channel, Device& device) noexcept;
 
-  SpiLines& lines_;
+  SpiChannels& channels_;
   Notes notes_;
   Open open_;
   std::vector<Device> devices_;

@@ -29,7 +29,7 @@ struct BusInbox {
   std::atomic<std::uint64_t> dropped{0};    ///< By the kernel or because the ring was full.
   std::atomic<std::uint64_t> malformed{0};  ///< Datagrams that are no frame.
   std::atomic<std::uint64_t> confirmed{0};  ///< Echoes of the watched command id.
-  std::atomic<LinkState> link{LinkState::kUp};
+  std::atomic<CanLinkState> link{CanLinkState::kUp};
   std::atomic<bool> echo_available{false};
   /// Verdict of the scheduler, for the io thread.
   std::atomic<BusState> state{BusState::kActive};

@@ -14,12 +14,12 @@
 namespace rc10 {
 namespace {
 
-[[nodiscard]] LinkState linkStateOf(const std::string& interface) noexcept {
+[[nodiscard]] CanLinkState linkStateOf(const std::string& interface) noexcept {
   const UniqueFd any{::socket(AF_UNIX, SOCK_DGRAM | SOCK_CLOEXEC, 0)};  // any socket answers SIOCGIFFLAGS
   ifreq request{};
   interface.copy(request.ifr_name, IFNAMSIZ - 1);
-  if (!any || ::ioctl(any.get(), SIOCGIFFLAGS, &request) != 0) return LinkState::kGone;
-  return (request.ifr_flags & IFF_UP) != 0 ? LinkState::kUp : LinkState::kDown;
+  if (!any || ::ioctl(any.get(), SIOCGIFFLAGS, &request) != 0) return CanLinkState::kGone;
+  return (request.ifr_flags & IFF_UP) != 0 ? CanLinkState::kUp : CanLinkState::kDown;
 }
 
 }  // namespace
@@ -30,13 +30,13 @@ std::bitset<kMaxBuses> BusReviver::check() noexcept {
     const auto& entry = robot_.buses()[i];
     if (entry.interface.empty()) continue;
     auto& link = inboxes_[i].link;
-    const LinkState seen = linkStateOf(entry.interface);
-    LinkState before = link.load(std::memory_order_relaxed);
+    const CanLinkState seen = linkStateOf(entry.interface);
+    CanLinkState before = link.load(std::memory_order_relaxed);
     // A socket that lost its interface stays dead when one of that name comes back.
-    if (before == LinkState::kGone && seen != LinkState::kGone && !reopen(i)) continue;
+    if (before == CanLinkState::kGone && seen != CanLinkState::kGone && !reopen(i)) continue;
     // Not over what the RX thread has just found out: it knows of a loss that was over before we looked.
     if (link.compare_exchange_strong(before, seen, std::memory_order_relaxed)) {
-      came_up[i] = before != LinkState::kUp && seen == LinkState::kUp;
+      came_up[i] = before != CanLinkState::kUp && seen == CanLinkState::kUp;
     }
   }
   return came_up;

@@ -23,7 +23,7 @@ constexpr std::uint64_t kSerialBit = std::uint64_t{1} << 63U;
 
 }  // namespace
 
-RxLoop::RxLoop(Robot& robot, std::span<BusInbox> inboxes, SerialLines* serial, UniqueFd epoll)
+RxLoop::RxLoop(Robot& robot, std::span<BusInbox> inboxes, SerialChannels* serial, UniqueFd epoll)
     : inboxes_(inboxes), serial_(serial), epoll_(std::move(epoll)) {
   for (std::size_t i = 0; i < robot.buses().size(); ++i) {
     const auto& entry = robot.buses()[i];
@@ -35,7 +35,7 @@ RxLoop::RxLoop(Robot& robot, std::span<BusInbox> inboxes, SerialLines* serial, U
 }
 
 Result<std::unique_ptr<RxLoop>> RxLoop::create(Robot& robot, std::span<BusInbox> inboxes,
-                                               SerialLines* serial) {
+                                               SerialChannels* serial) {
   UniqueFd epoll{epoll_create1(EPOLL_CLOEXEC)};
   if (!epoll) return fail(fmt::format("epoll_create1: {}", std::strerror(errno)));
   auto loop = std::unique_ptr<RxLoop>(new RxLoop(robot, inboxes, serial, std::move(epoll)));
@@ -60,11 +60,11 @@ bool RxLoop::watchAgain(std::size_t bus) noexcept {
   return all;
 }
 
-bool RxLoop::watchSerial(std::size_t line) noexcept {
+bool RxLoop::watchSerial(std::size_t channel) noexcept {
   epoll_event event{};
   event.events = EPOLLIN;
-  event.data.u64 = kSerialBit | line;
-  return epoll_ctl(epoll_.get(), EPOLL_CTL_ADD, (*serial_)[line].fd.get(), &event) == 0;
+  event.data.u64 = kSerialBit | channel;
+  return epoll_ctl(epoll_.get(), EPOLL_CTL_ADD, (*serial_)[channel].fd.get(), &event) == 0;
 }
 
 void RxLoop::run(const std::stop_token& stop) noexcept {
@@ -98,8 +98,8 @@ void RxLoop::poll(int timeout_ms) noexcept {
   }
 }
 
-void RxLoop::receiveSerial(std::size_t line, MonotonicTime now, std::uint32_t events) noexcept {
-  auto& port = (*serial_)[line];
+void RxLoop::receiveSerial(std::size_t channel, MonotonicTime now, std::uint32_t events) noexcept {
+  auto& port = (*serial_)[channel];
   const bool hung_up = (events & (EPOLLHUP | EPOLLERR)) != 0;
   if (receiveChunk(port, now, hung_up)) return;
   // A hang-up is shown for as long as it is watched. And first this: from leavePort() on another port may
@@ -119,8 +119,8 @@ void RxLoop::receive(Source& source, const WakeUp& wake, std::uint32_t events) n
     inbox.confirmed.fetch_add(reception.confirmed_count, std::memory_order_relaxed);
     return;
   }
-  if (reception.error == ENETDOWN) inbox.link.store(LinkState::kDown, std::memory_order_relaxed);
-  if (reception.error == ENODEV) inbox.link.store(LinkState::kGone, std::memory_order_relaxed);
+  if (reception.error == ENETDOWN) inbox.link.store(CanLinkState::kDown, std::memory_order_relaxed);
+  if (reception.error == ENODEV) inbox.link.store(CanLinkState::kGone, std::memory_order_relaxed);
   inbox.malformed.fetch_add(reception.malformed_count, std::memory_order_relaxed);
   std::uint64_t dropped = reception.frame_count - inbox.frames.push(batch_.data(), reception.frame_count);
   // Smaller than before: a new socket, which counts from zero.

@@ -12,7 +12,7 @@
 #include "app/unique_fd.hpp"
 #include "bus/can_receiver.hpp"
 #include "daemon/devices/robot.hpp"
-#include "daemon/devices/serial_line.hpp"
+#include "daemon/devices/serial_channel.hpp"
 #include "daemon/exchange/rings.hpp"
 
 namespace rc10 {
@@ -22,7 +22,7 @@ namespace rc10 {
 class RxLoop {
  public:
   [[nodiscard]] static Result<std::unique_ptr<RxLoop>> create(Robot& robot, std::span<BusInbox> inboxes,
-                                                              SerialLines* serial = nullptr);
+                                                              SerialChannels* serial = nullptr);
 
   /// The thread's body.
   void run(const std::stop_token& stop) noexcept;
@@ -35,7 +35,7 @@ class RxLoop {
   /// Watches a bus's descriptors again after the io thread has put a new socket in their place.
   [[nodiscard]] bool watchAgain(std::size_t bus) noexcept;
   /// Watches a serial port that the io thread has opened; until it is gone. errno says why not.
-  [[nodiscard]] bool watchSerial(std::size_t line) noexcept;
+  [[nodiscard]] bool watchSerial(std::size_t channel) noexcept;
 
  private:
   struct Source {
@@ -46,14 +46,14 @@ class RxLoop {
     std::uint32_t kernel_dropped = 0;
   };
 
-  RxLoop(Robot& robot, std::span<BusInbox> inboxes, SerialLines* serial, UniqueFd epoll);
+  RxLoop(Robot& robot, std::span<BusInbox> inboxes, SerialChannels* serial, UniqueFd epoll);
   [[nodiscard]] bool watch(std::size_t source) noexcept;
   void receive(Source& source, const WakeUp& wake, std::uint32_t events) noexcept;
-  void receiveSerial(std::size_t line, MonotonicTime now, std::uint32_t events) noexcept;
+  void receiveSerial(std::size_t channel, MonotonicTime now, std::uint32_t events) noexcept;
   [[nodiscard]] WakeUp sampleWakeUp() noexcept;
 
   std::span<BusInbox> inboxes_;
-  SerialLines* serial_;  // null: none
+  SerialChannels* serial_;  // null: none
   UniqueFd epoll_;
   std::vector<Source> sources_;
   std::array<CanFrame, CanReceiver::kBatch> batch_{};

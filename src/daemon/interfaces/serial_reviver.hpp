@@ -7,7 +7,7 @@
 #include "app/time.hpp"
 #include "app/unique_fd.hpp"
 #include "daemon/devices/retry_pace.hpp"
-#include "daemon/devices/serial_line.hpp"
+#include "daemon/devices/serial_channel.hpp"
 #include "daemon/exchange/events.hpp"
 #include "daemon/exchange/note.hpp"
 #include "daemon/exchange/rings.hpp"
@@ -16,12 +16,15 @@
 namespace rc10 {
 
 /// Opens the serial ports, and opens them again when they come back. A port takes its place under the number
-/// that its line has from the start (dup3), so that the real-time threads need not know. io thread only, and
-/// the main thread before there is one.
+/// that its channel has from the start (dup3), so that the real-time threads need not know. io thread only,
+/// and the main thread before there is one.
 class SerialReviver {
  public:
-  SerialReviver(SerialLines& lines, RxLoop& rx, LinkExchange& exchange)
-      : lines_(lines), rx_(rx), notes_(exchange.notes, EventCode::kSerialPort), ports_(lines.size()) {}
+  SerialReviver(SerialChannels& channels, RxLoop& rx, LinkExchange& exchange)
+      : channels_(channels),
+        rx_(rx),
+        notes_(exchange.notes, EventCode::kSerialPort),
+        ports_(channels.size()) {}
 
   /// Looks at every port once. To be called some 20 times a second, and once before the first tick.
   void check(MonotonicTime now);
@@ -34,9 +37,9 @@ class SerialReviver {
 
   void release(std::size_t index, MonotonicTime now);
   void tryToOpen(std::size_t index, MonotonicTime now);
-  [[nodiscard]] Result<void> open(SerialLine& line, std::size_t index);
+  [[nodiscard]] Result<void> open(SerialChannel& channel, std::size_t index);
 
-  SerialLines& lines_;
+  SerialChannels& channels_;
   RxLoop& rx_;
   Notes notes_;
   std::vector<Port> ports_;

@@ -6,7 +6,7 @@
 #include "daemon/devices/serial_writer.hpp"
 #include "daemon/devices/spi_keeper.hpp"
 #include "daemon/interfaces/bus_reviver.hpp"
-#include "daemon/interfaces/link_keeper.hpp"
+#include "daemon/interfaces/can_link_keeper.hpp"
 #include "daemon/interfaces/serial_reviver.hpp"
 #include "daemon/recording/black_box.hpp"
 
@@ -24,7 +24,7 @@ struct SerialIo {
 class IoLoop {
  public:
   /// `black_box`: null if nothing is recorded. `serial`, `spi`: null if there are no such devices.
-  IoLoop(BusReviver reviver, LinkKeeper keeper, BlackBox* black_box,
+  IoLoop(BusReviver reviver, CanLinkKeeper keeper, BlackBox* black_box,
          std::unique_ptr<SerialIo> serial = nullptr, std::unique_ptr<SpiKeeper> spi = nullptr)
       : reviver_(reviver),
         keeper_(std::move(keeper)),
@@ -36,7 +36,7 @@ class IoLoop {
 
  private:
   BusReviver reviver_;
-  LinkKeeper keeper_;
+  CanLinkKeeper keeper_;
   BlackBox* black_box_;
   std::unique_ptr<SerialIo> serial_;
   std::unique_ptr<SpiKeeper> spi_;

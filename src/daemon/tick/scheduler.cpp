@@ -81,13 +81,14 @@ void Scheduler::receive(const Tick&) noexcept {
       inboxes_[i].frames.consume_one([&bus](const CanFrame& frame) { bus.dispatch(frame); });
     }
   }
-  for (auto& entry : robot_.serialDevices()) deliver((*robot_.serialLines())[entry.line], *entry.device);
+  for (auto& entry : robot_.serialDevices())
+    deliver((*robot_.serialChannels())[entry.channel], *entry.device);
   for (auto& entry : robot_.gpioImages()) (*robot_.lineBanks())[entry.bank].look(*entry.image);
 }
 
 void Scheduler::driveDevices() noexcept {
   for (auto& entry : robot_.spiOutputs())
-    handOver(*robot_.spiLines()[entry.line], *entry.output, entry.handed_over);
+    handOver(*robot_.spiChannels()[entry.channel], *entry.output, entry.handed_over);
   // While the process stops the modules do not run any more, and what they wanted last is past.
   const bool stopping = supervisor_.robotState() == RobotStatus::kStopping;
   for (auto& entry : robot_.gpioImages()) {

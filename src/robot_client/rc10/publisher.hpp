@@ -4,7 +4,7 @@
 #include <utility>
 
 #include "app/result.hpp"
-#include "rc10/link.hpp"
+#include "rc10/lcm_link.hpp"
 
 namespace rc10 {
 inline namespace robot_client {
@@ -13,7 +13,7 @@ inline namespace robot_client {
 template <typename Message>
 class Publisher {
  public:
-  Publisher(const Link& link, std::string channel) : link_(link), channel_(std::move(channel)) {}
+  Publisher(const LcmLink& link, std::string channel) : link_(link), channel_(std::move(channel)) {}
 
   /// Does not wait for anybody. An error is local: nobody tells whether a message was received.
   Result<void> publish(const Message& message) const { return link_.publish(channel_, message); }
@@ -21,7 +21,7 @@ class Publisher {
   [[nodiscard]] const std::string& channel() const noexcept { return channel_; }
 
  private:
-  Link link_;
+  LcmLink link_;
   std::string channel_;
 };
 

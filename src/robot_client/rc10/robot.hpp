@@ -9,7 +9,7 @@
 
 #include "app/result.hpp"
 #include "app/time.hpp"
-#include "rc10/link.hpp"
+#include "rc10/lcm_link.hpp"
 #include "rc10/module.hpp"
 #include "rc10/motor.hpp"
 #include "rc10/request.hpp"
@@ -52,13 +52,13 @@ class Robot {
   /// `name`: `robot:` in rc10d's configuration. Does not wait for rc10d, and never throws for the state of
   /// the world: status() and whatever is called next say what is wrong.
   explicit Robot(std::string name, RobotOptions options = {});
-  Robot(std::string name, const Link& link, RobotOptions options = {});
+  Robot(std::string name, const LcmLink& link, RobotOptions options = {});
   Robot(const Robot&) = delete;
   Robot& operator=(const Robot&) = delete;
   ~Robot();
 
   [[nodiscard]] const std::string& name() const noexcept;
-  [[nodiscard]] const Link& link() const noexcept;
+  [[nodiscard]] const LcmLink& link() const noexcept;
   /// Whether this program can command at all: LCM, the names, the numbers in the options.
   [[nodiscard]] Result<void> status() const;
 

@@ -11,7 +11,7 @@
 #include <tl/expected.hpp>
 
 #include "app/time.hpp"
-#include "rc10/link.hpp"
+#include "rc10/lcm_link.hpp"
 #include "rc10/service_error.hpp"
 
 namespace rc10 {
@@ -28,7 +28,7 @@ struct CallOptions {
 /// The part of a ServiceClient that does not depend on its types.
 class ServiceCaller {
  public:
-  ServiceCaller(const Link& link, std::string name, std::string client);
+  ServiceCaller(const LcmLink& link, std::string name, std::string client);
   ServiceCaller(const ServiceCaller&) = delete;
   ServiceCaller& operator=(const ServiceCaller&) = delete;
   ~ServiceCaller();
@@ -49,17 +49,17 @@ template <typename Request, typename Response>
 class ServiceClient {
  public:
   /// `client`: shown to the server; empty: the program's name.
-  ServiceClient(const Link& link, std::string name, std::string client = {})
+  ServiceClient(const LcmLink& link, std::string name, std::string client = {})
       : caller_(link, std::move(name), std::move(client)) {}
 
   /// Waits for the answer.
   [[nodiscard]] tl::expected<Response, ServiceError> call(const Request& request,
                                                           const CallOptions& options = {}) {
     const auto answer =
-        caller_.call(Link::encoded(request), Request::getHash(), Response::getHash(), options);
+        caller_.call(LcmLink::encoded(request), Request::getHash(), Response::getHash(), options);
     if (!answer) return tl::unexpected(answer.error());
     Response response;
-    if (!Link::decode(*answer, response)) {
+    if (!LcmLink::decode(*answer, response)) {
       return tl::unexpected(
           ServiceError{ServiceError::Kind::kFailed, "the answer is of another type or of other definitions"});
     }

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "app/result.hpp"
-#include "rc10/link.hpp"
+#include "rc10/lcm_link.hpp"
 
 namespace rc10 {
 inline namespace robot_client {
@@ -23,7 +23,7 @@ class ServiceDesk {
     std::int64_t response = 0;
   };
 
-  ServiceDesk(const Link& link, std::string name, Types types, Handler handler);
+  ServiceDesk(const LcmLink& link, std::string name, Types types, Handler handler);
   ServiceDesk(const ServiceDesk&) = delete;
   ServiceDesk& operator=(const ServiceDesk&) = delete;
   ~ServiceDesk();
@@ -46,15 +46,15 @@ class ServiceServer {
  public:
   using Handler = std::function<Result<Response>(const Request&)>;
 
-  ServiceServer(const Link& link, std::string name, Handler handler)
+  ServiceServer(const LcmLink& link, std::string name, Handler handler)
       : desk_(link, std::move(name), {Request::getHash(), Response::getHash()},
               [handler =
                    std::move(handler)](std::span<const std::byte> bytes) -> Result<std::vector<std::byte>> {
                 Request request;
-                if (!Link::decode(bytes, request)) return fail("the request is cut off");
+                if (!LcmLink::decode(bytes, request)) return fail("the request is cut off");
                 const Result<Response> response = handler(request);
                 if (!response) return tl::unexpected(response.error());
-                return Link::encoded(*response);
+                return LcmLink::encoded(*response);
               }) {}
 
   /// Whether it can be called at all.

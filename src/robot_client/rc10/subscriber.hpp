@@ -10,7 +10,7 @@
 #include <utility>
 
 #include "app/time.hpp"
-#include "rc10/link.hpp"
+#include "rc10/lcm_link.hpp"
 
 namespace rc10 {
 inline namespace robot_client {
@@ -34,7 +34,7 @@ class Subscriber {
 
   /// `callback` runs on the link's receiving thread: do not wait in it. It does not run any more once the
   /// destructor has returned.
-  Subscriber(const Link& link, const std::string& channel, Callback callback = {})
+  Subscriber(const LcmLink& link, const std::string& channel, Callback callback = {})
       : callback_(std::move(callback)),
         subscription_(link.subscribe(channel, [this](auto bytes) { receive(bytes); })) {}
   Subscriber(const Subscriber&) = delete;
@@ -72,7 +72,7 @@ class Subscriber {
   void receive(std::span<const std::byte> bytes) {
     auto received = std::make_shared<Received<Message>>();
     received->received = std::chrono::steady_clock::now();
-    const bool ours = Link::decode(bytes, received->message);
+    const bool ours = LcmLink::decode(bytes, received->message);
     {
       const std::lock_guard lock(mutex_);
       if (!ours) {

@@ -16,8 +16,8 @@
 #include <CLI/CLI.hpp>
 
 #include "app/result.hpp"
+#include "can_link_watch.hpp"
 #include "doctor/interrupt_threads.hpp"
-#include "link_watch.hpp"
 #include "program.hpp"
 #include "rc10_version.hpp"
 #include "thread_priorities.hpp"
@@ -72,7 +72,7 @@ Result<void> watch(const Options& options, const ThreadPriorities& priorities) {
   const auto signals = makeSignals();
   if (!signals) return tl::unexpected(signals.error());
   // Before the first look, so that nothing happens unseen between the two.
-  const auto links = LinkWatch::open();
+  const auto links = CanLinkWatch::open();
   if (!links) return tl::unexpected(links.error());
   printReady(options);
   std::array<pollfd, 2> waited{pollfd{links->fd(), POLLIN, 0}, pollfd{signals->get(), POLLIN, 0}};

@@ -22,8 +22,8 @@ std::string nameOf(const doctor::PriorityChange& change) {
 
 }  // namespace
 
-bool ThreadPriorities::concern(const std::vector<LinkNews>& news) const {
-  return std::any_of(news.begin(), news.end(), [this](const LinkNews& link) {
+bool ThreadPriorities::concern(const std::vector<CanLinkNews>& news) const {
+  return std::any_of(news.begin(), news.end(), [this](const CanLinkNews& link) {
     return link.is_can && link.up &&
            (interfaces_.empty() ||
             std::find(interfaces_.begin(), interfaces_.end(), link.interface) != interfaces_.end());

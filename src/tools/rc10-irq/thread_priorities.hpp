@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "app/result.hpp"
-#include "bus/link_news.hpp"
+#include "bus/can_link_news.hpp"
 #include "doctor/host_files.hpp"
 
 namespace rc10 {
@@ -17,7 +17,7 @@ class ThreadPriorities {
       : interfaces_(std::move(interfaces)), priority_(priority) {}
 
   /// Whether these may be reason for new threads.
-  [[nodiscard]] bool concern(const std::vector<LinkNews>& news) const;
+  [[nodiscard]] bool concern(const std::vector<CanLinkNews>& news) const;
 
   /// Those that are there and shall be served.
   [[nodiscard]] std::vector<std::string> present() const;

@@ -10,6 +10,7 @@
 
 #include <CLI/CLI.hpp>
 
+#include "can_link_facts.hpp"
 #include "client/daemon_log.hpp"
 #include "config/build/lcm_url.hpp"
 #include "config/load_config.hpp"
@@ -26,7 +27,6 @@
 #include "latency_test.hpp"
 #include "link/interface_lock.hpp"
 #include "link/run_dir.hpp"
-#include "link_facts.hpp"
 #include "multicast_source.hpp"
 #include "terminal.hpp"
 #include "verbs.hpp"
@@ -68,7 +68,7 @@ class Doctor {
     std::map<std::string, std::string> holders;
     const auto wanted = links();
     for (const auto& facts : wanted) {
-      for (const auto& finding : doctor::checkLink(facts)) tell(finding);
+      for (const auto& finding : doctor::checkCanLink(facts)) tell(finding);
       if (!facts.link) continue;
       tell(doctor::checkInterruptThreads(
           facts.interface, doctor::threadsOf(facts.interface, files_, processes_), robot_.rx.priority));
@@ -126,8 +126,8 @@ class Doctor {
   }
 
   // Those of the configuration; without one, those that are there.
-  std::vector<doctor::LinkFacts> links() const {
-    std::vector<doctor::LinkFacts> links;
+  std::vector<doctor::CanLinkFacts> links() const {
+    std::vector<doctor::CanLinkFacts> links;
     for (const auto& bus : robot_.buses) {
       if (bus.type != BusType::kSocketCan) continue;
       auto facts = readLink(files_, bus.interface);

@@ -1,4 +1,4 @@
-#include "link_watch.hpp"
+#include "can_link_watch.hpp"
 
 #include <linux/netlink.h>
 #include <linux/rtnetlink.h>
@@ -24,7 +24,7 @@ tl::unexpected<Error> cannotListen(int error) {
 
 }  // namespace
 
-Result<LinkWatch> LinkWatch::open() {
+Result<CanLinkWatch> CanLinkWatch::open() {
   UniqueFd fd{::socket(AF_NETLINK, SOCK_RAW | SOCK_CLOEXEC | SOCK_NONBLOCK, NETLINK_ROUTE)};
   if (!fd) return cannotListen(errno);
   sockaddr_nl address{};
@@ -33,10 +33,10 @@ Result<LinkWatch> LinkWatch::open() {
   if (::bind(fd.get(), reinterpret_cast<const sockaddr*>(&address), sizeof address) != 0) {
     return cannotListen(errno);
   }
-  return LinkWatch{std::move(fd)};
+  return CanLinkWatch{std::move(fd)};
 }
 
-Result<LinkWatch::News> LinkWatch::read() const {
+Result<CanLinkWatch::News> CanLinkWatch::read() const {
   std::array<std::byte, kDatagram> datagram;
   News news;
   for (;;) {

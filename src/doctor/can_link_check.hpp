@@ -16,7 +16,7 @@ struct Coalescing {
 };
 
 /// A CAN interface as it is, and as the configuration wants it.
-struct LinkFacts {
+struct CanLinkFacts {
   std::string interface;
   std::optional<CanLink> link;  ///< Empty: there is none of this name.
   std::string driver;           ///< "mcp251xfd"; empty: virtual.
@@ -26,19 +26,19 @@ struct LinkFacts {
 };
 
 /// The commands that set the interface up as wanted; without a configuration, as it is.
-[[nodiscard]] std::string setupCommand(const LinkFacts& facts);
+[[nodiscard]] std::string setupCommand(const CanLinkFacts& facts);
 
 /// Everything about one interface.
-[[nodiscard]] Findings checkLink(const LinkFacts& facts);
+[[nodiscard]] Findings checkCanLink(const CanLinkFacts& facts);
 
 // Its parts, for an interface that is there.
-[[nodiscard]] Finding checkUp(const LinkFacts& facts);
-[[nodiscard]] Finding checkBitrate(const LinkFacts& facts);
-[[nodiscard]] Finding checkSamplePoint(const LinkFacts& facts);
-[[nodiscard]] Finding checkFdMode(const LinkFacts& facts);
-[[nodiscard]] Finding checkRestart(const LinkFacts& facts);
-[[nodiscard]] Finding checkQueue(const LinkFacts& facts);
-[[nodiscard]] Finding checkErrors(const LinkFacts& facts);
-[[nodiscard]] Finding checkCoalescing(const LinkFacts& facts);
+[[nodiscard]] Finding checkUp(const CanLinkFacts& facts);
+[[nodiscard]] Finding checkBitrate(const CanLinkFacts& facts);
+[[nodiscard]] Finding checkSamplePoint(const CanLinkFacts& facts);
+[[nodiscard]] Finding checkFdMode(const CanLinkFacts& facts);
+[[nodiscard]] Finding checkRestart(const CanLinkFacts& facts);
+[[nodiscard]] Finding checkQueue(const CanLinkFacts& facts);
+[[nodiscard]] Finding checkErrors(const CanLinkFacts& facts);
+[[nodiscard]] Finding checkCoalescing(const CanLinkFacts& facts);
 
 }  // namespace rc10::doctor

@@ -1,10 +1,10 @@
-#include "daemon/interfaces/link_recovery.hpp"
+#include "daemon/interfaces/can_link_recovery.hpp"
 
 #include <algorithm>
 
 namespace rc10 {
 
-LinkRecovery::Step LinkRecovery::update(MonotonicTime now, BusState state) noexcept {
+CanLinkRecovery::Step CanLinkRecovery::update(MonotonicTime now, BusState state) noexcept {
   const bool trouble = state == BusState::kBusOff || state == BusState::kStalled || state == BusState::kDown;
   if (trouble != in_trouble_) {
     in_trouble_ = trouble;

@@ -41,7 +41,7 @@ class SerialOutbox final : public ByteSink {
 
 /// One serial port between the RX, io and scheduler threads. The descriptor keeps its number for ever: while
 /// the port is absent it is /dev/null, and the io thread puts an opened port in its place.
-struct SerialLine {
+struct SerialChannel {
   struct Settings {
     std::string name;
     std::string path;
@@ -51,11 +51,11 @@ struct SerialLine {
   // The RX thread reads what is there: at most a few chunks a millisecond.
   static constexpr std::size_t kChunks = 256;
 
-  SerialLine(Settings settings_of_port, UniqueFd null_device, int wake)
+  SerialChannel(Settings settings_of_port, UniqueFd null_device, int wake)
       : settings(std::move(settings_of_port)), fd(std::move(null_device)), outbox(wake) {}
-  SerialLine(const SerialLine&) = delete;
-  SerialLine& operator=(const SerialLine&) = delete;
-  ~SerialLine();
+  SerialChannel(const SerialChannel&) = delete;
+  SerialChannel& operator=(const SerialChannel&) = delete;
+  ~SerialChannel();
 
   const Settings settings;
   const UniqueFd fd;
@@ -71,32 +71,32 @@ struct SerialLine {
 };
 
 /// All the serial ports of a robot. Built before the threads, and outlives them.
-class SerialLines {
+class SerialChannels {
  public:
   /// Opens nothing yet: see SerialReviver.
-  [[nodiscard]] static Result<std::unique_ptr<SerialLines>> create(
-      std::span<const SerialLine::Settings> ports);
+  [[nodiscard]] static Result<std::unique_ptr<SerialChannels>> create(
+      std::span<const SerialChannel::Settings> ports);
 
-  [[nodiscard]] std::size_t size() const noexcept { return lines_.size(); }
-  [[nodiscard]] SerialLine& operator[](std::size_t index) noexcept { return *lines_[index]; }
+  [[nodiscard]] std::size_t size() const noexcept { return channels_.size(); }
+  [[nodiscard]] SerialChannel& operator[](std::size_t index) noexcept { return *channels_[index]; }
   /// An eventfd: something was pushed to an outbox.
   [[nodiscard]] int wake() const noexcept { return wake_.get(); }
 
  private:
-  explicit SerialLines(UniqueFd wake) noexcept : wake_(std::move(wake)) {}
+  explicit SerialChannels(UniqueFd wake) noexcept : wake_(std::move(wake)) {}
 
   UniqueFd wake_;
-  std::vector<std::unique_ptr<SerialLine>> lines_;
+  std::vector<std::unique_ptr<SerialChannel>> channels_;
 };
 
 /// RX thread: one read. `hung_up`: as epoll says; what came before is still read. False: the port is gone.
-[[nodiscard]] bool receiveChunk(SerialLine& line, MonotonicTime now, bool hung_up) noexcept;
+[[nodiscard]] bool receiveChunk(SerialChannel& channel, MonotonicTime now, bool hung_up) noexcept;
 
 /// RX thread: the port is gone, and this thread does not touch the descriptor until it is told to watch it
 /// again.
-void leavePort(SerialLine& line) noexcept;
+void leavePort(SerialChannel& channel) noexcept;
 
 /// Scheduler thread: gives the device what has come until now, and tells it the port's state.
-void deliver(SerialLine& line, SerialDevice& device) noexcept;
+void deliver(SerialChannel& channel, SerialDevice& device) noexcept;
 
 }  // namespace rc10

@@ -13,7 +13,7 @@ namespace rc10 {
 
 /// One SPI device between the scheduler, which has a new frame now and then, and the io thread, which sends
 /// the newest. Neither waits.
-struct SpiLine {
+struct SpiChannel {
   struct Settings {
     std::string name;  ///< Of the module.
     std::string path;
@@ -26,7 +26,7 @@ struct SpiLine {
     std::array<std::uint8_t, kMaxSpiBytes> bytes{};
   };
 
-  explicit SpiLine(Settings settings_of_device) : settings(std::move(settings_of_device)) {}
+  explicit SpiChannel(Settings settings_of_device) : settings(std::move(settings_of_device)) {}
 
   const Settings settings;
   LatestValue<Frame> frame;       // scheduler -> io
@@ -35,6 +35,6 @@ struct SpiLine {
 
 /// Scheduler thread: hands over the frame that the module has made, if there is a new one, and tells it
 /// whether the device is there.
-void handOver(SpiLine& line, SpiOutput& output, std::uint32_t& handed_over) noexcept;
+void handOver(SpiChannel& channel, SpiOutput& output, std::uint32_t& handed_over) noexcept;
 
 }  // namespace rc10

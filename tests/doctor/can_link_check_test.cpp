@@ -1,4 +1,4 @@
-#include "doctor/link_check.hpp"
+#include "doctor/can_link_check.hpp"
 
 #include <gmock/gmock.h>
 #include <linux/can/netlink.h>
@@ -8,7 +8,7 @@ namespace {
 
 using ::testing::HasSubstr;
 
-LinkFacts good() {
+CanLinkFacts good() {
   CanLink link;
   link.up = true;
   link.is_can = true;
@@ -20,7 +20,7 @@ LinkFacts good() {
   link.rec = 0;
   link.queue_length = 10;
   link.qdisc = "pfifo_fast";
-  LinkFacts facts;
+  CanLinkFacts facts;
   facts.interface = "can0";
   facts.link = link;
   facts.driver = "mcp251xfd";
@@ -29,20 +29,20 @@ LinkFacts good() {
   return facts;
 }
 
-TEST(LinkCheck, AnInterfaceThatIsAsItShouldBePassesEverything) {
-  for (const auto& finding : checkLink(good()))
+TEST(CanLinkCheck, AnInterfaceThatIsAsItShouldBePassesEverything) {
+  for (const auto& finding : checkCanLink(good()))
     EXPECT_EQ(finding.verdict, Verdict::kPass) << finding.what << ": " << finding.why;
 }
 
-TEST(LinkCheck, AnInterfaceThatIsNotThereIsOneFailure) {
+TEST(CanLinkCheck, AnInterfaceThatIsNotThereIsOneFailure) {
   auto facts = good();
   facts.link.reset();
-  const auto findings = checkLink(facts);
+  const auto findings = checkCanLink(facts);
   ASSERT_EQ(findings.size(), 1U);
   EXPECT_EQ(findings[0].verdict, Verdict::kFail);
 }
 
-TEST(LinkCheck, DownFailsUnlessRc10dBringsItUp) {
+TEST(CanLinkCheck, DownFailsUnlessRc10dBringsItUp) {
   auto facts = good();
   facts.link->up = false;
   EXPECT_EQ(checkUp(facts).verdict, Verdict::kFail);
@@ -51,13 +51,13 @@ TEST(LinkCheck, DownFailsUnlessRc10dBringsItUp) {
   EXPECT_EQ(checkUp(facts).verdict, Verdict::kPass);
 }
 
-TEST(LinkCheck, SomethingElseThanCanIsTold) {
+TEST(CanLinkCheck, SomethingElseThanCanIsTold) {
   auto facts = good();
   facts.link->is_can = false;
-  EXPECT_EQ(worst(checkLink(facts)), Verdict::kFail);
+  EXPECT_EQ(worst(checkCanLink(facts)), Verdict::kFail);
 }
 
-TEST(LinkCheck, AnotherBitRateFails) {
+TEST(CanLinkCheck, AnotherBitRateFails) {
   auto facts = good();
   facts.wanted.bitrate = 500'000;
   EXPECT_EQ(checkBitrate(facts).verdict, Verdict::kFail);
@@ -68,7 +68,7 @@ TEST(LinkCheck, AnotherBitRateFails) {
   EXPECT_EQ(checkBitrate(facts).verdict, Verdict::kFail);
 }
 
-TEST(LinkCheck, ASamplePointFarOutIsAWarning) {
+TEST(CanLinkCheck, ASamplePointFarOutIsAWarning) {
   auto facts = good();
   facts.link->sample_point = 0.5;
   EXPECT_EQ(checkSamplePoint(facts).verdict, Verdict::kWarn);
@@ -77,7 +77,7 @@ TEST(LinkCheck, ASamplePointFarOutIsAWarning) {
   EXPECT_THAT(checkSamplePoint(facts).why, HasSubstr("87.5 %"));
 }
 
-TEST(LinkCheck, FdHasToBeAsConfigured) {
+TEST(CanLinkCheck, FdHasToBeAsConfigured) {
   auto facts = good();
   facts.wanted.data_bitrate = 5'000'000;
   EXPECT_EQ(checkFdMode(facts).verdict, Verdict::kFail);
@@ -92,7 +92,7 @@ TEST(LinkCheck, FdHasToBeAsConfigured) {
   EXPECT_THAT(checkFdMode(facts).fix, HasSubstr("fd off"));
 }
 
-TEST(LinkCheck, AConfiguredSamplePointIsCompared) {
+TEST(CanLinkCheck, AConfiguredSamplePointIsCompared) {
   auto facts = good();
   facts.wanted.sample_point = 0.666;
   EXPECT_EQ(checkSamplePoint(facts).verdict, Verdict::kFail);
@@ -101,7 +101,7 @@ TEST(LinkCheck, AConfiguredSamplePointIsCompared) {
   EXPECT_EQ(checkSamplePoint(facts).verdict, Verdict::kPass) << "somebody wanted it that early";
 }
 
-TEST(LinkCheck, WhatRc10dMendsIsNoFault) {
+TEST(CanLinkCheck, WhatRc10dMendsIsNoFault) {
   auto facts = good();
   facts.managed = true;
   facts.wanted.data_bitrate = 5'000'000;
@@ -116,7 +116,7 @@ TEST(LinkCheck, WhatRc10dMendsIsNoFault) {
   EXPECT_EQ(checkFdMode(facts).verdict, Verdict::kPass);
 }
 
-TEST(LinkCheck, ItSaysWhatRc10dSays) {
+TEST(CanLinkCheck, ItSaysWhatRc10dSays) {
   for (const bool fd_on : {false, true}) {
     for (const bool wants_fd : {false, true}) {
       auto facts = good();
@@ -130,7 +130,7 @@ TEST(LinkCheck, ItSaysWhatRc10dSays) {
   }
 }
 
-TEST(LinkCheck, AControllerThatCannotSendFails) {
+TEST(CanLinkCheck, AControllerThatCannotSendFails) {
   auto facts = good();
   for (const auto mode : {CAN_CTRLMODE_LISTENONLY, CAN_CTRLMODE_LOOPBACK, CAN_CTRLMODE_ONE_SHOT}) {
     facts.link->modes = static_cast<std::uint32_t>(mode);
@@ -138,14 +138,14 @@ TEST(LinkCheck, AControllerThatCannotSendFails) {
   }
 }
 
-TEST(LinkCheck, AnAutomaticRestartFails) {
+TEST(CanLinkCheck, AnAutomaticRestartFails) {
   auto facts = good();
   facts.link->restart_ms = 100;
   EXPECT_EQ(checkRestart(facts).verdict, Verdict::kFail);
   EXPECT_THAT(checkRestart(facts).fix, HasSubstr("restart-ms 0"));
 }
 
-TEST(LinkCheck, TheSendQueueIsShortAndKeepsOrder) {
+TEST(CanLinkCheck, TheSendQueueIsShortAndKeepsOrder) {
   auto facts = good();
   facts.link->queue_length = 1000;
   EXPECT_EQ(checkQueue(facts).verdict, Verdict::kWarn);
@@ -156,7 +156,7 @@ TEST(LinkCheck, TheSendQueueIsShortAndKeepsOrder) {
   EXPECT_EQ(checkQueue(facts).verdict, Verdict::kPass);
 }
 
-TEST(LinkCheck, ErrorsAreJudgedByWhatTheySay) {
+TEST(CanLinkCheck, ErrorsAreJudgedByWhatTheySay) {
   auto facts = good();
   facts.link->rec = 3;
   EXPECT_EQ(checkErrors(facts).verdict, Verdict::kPass);
@@ -170,7 +170,7 @@ TEST(LinkCheck, ErrorsAreJudgedByWhatTheySay) {
   EXPECT_EQ(checkErrors(facts).verdict, Verdict::kWarn);
 }
 
-TEST(LinkCheck, CoalescingMustNotHoldAFrameBack) {
+TEST(CanLinkCheck, CoalescingMustNotHoldAFrameBack) {
   auto facts = good();
   facts.coalescing = Coalescing{.rx_delay_us = 0, .rx_frames = 8};
   EXPECT_EQ(checkCoalescing(facts).verdict, Verdict::kFail);
@@ -182,7 +182,7 @@ TEST(LinkCheck, CoalescingMustNotHoldAFrameBack) {
   EXPECT_EQ(checkCoalescing(facts).verdict, Verdict::kPass);
 }
 
-TEST(LinkCheck, WhatFailsOrWarnsAlwaysSaysTheFix) {
+TEST(CanLinkCheck, WhatFailsOrWarnsAlwaysSaysTheFix) {
   auto facts = good();
   facts.link = CanLink{};
   facts.link->is_can = true;
@@ -190,7 +190,7 @@ TEST(LinkCheck, WhatFailsOrWarnsAlwaysSaysTheFix) {
   facts.link->restart_ms = 5;
   facts.link->qdisc = "fq_codel";
   facts.link->state = CanState::kBusOff;
-  for (const auto& finding : checkLink(facts))
+  for (const auto& finding : checkCanLink(facts))
     EXPECT_EQ(finding.fix.empty(), finding.verdict == Verdict::kPass) << finding.what;
 }
 

@@ -1,4 +1,4 @@
-#include "rc10/link.hpp"
+#include "rc10/lcm_link.hpp"
 
 #include <lcm/lcm.h>
 #include <poll.h>
@@ -84,7 +84,7 @@ void Subscription::end() noexcept {
   handler_.reset();
 }
 
-struct Link::Impl {
+struct LcmLink::Impl {
   lcm_t* lcm = nullptr;
   Result<void> status;
   UniqueFd stop;
@@ -170,11 +170,11 @@ struct Link::Impl {
   }
 };
 
-Link::Link(const std::string& url) : impl_(std::make_shared<Impl>(url)) {}
+LcmLink::LcmLink(const std::string& url) : impl_(std::make_shared<Impl>(url)) {}
 
-Result<void> Link::status() const { return impl_->status; }
+Result<void> LcmLink::status() const { return impl_->status; }
 
-Result<void> Link::publish(const std::string& channel, std::span<const std::byte> message) const {
+Result<void> LcmLink::publish(const std::string& channel, std::span<const std::byte> message) const {
   if (!impl_->status) return impl_->status;
   if (channel.empty() || channel.size() > kMaxChannelLength) {
     return fail("'" + channel + "' is no channel: LCM allows 1 to 63 characters");
@@ -186,7 +186,7 @@ Result<void> Link::publish(const std::string& channel, std::span<const std::byte
   return {};
 }
 
-Subscription Link::subscribe(const std::string& channel, Handler handler) const {
+Subscription LcmLink::subscribe(const std::string& channel, Handler handler) const {
   return Subscription{
       Impl::subscribe(impl_, literal(channel),
                       [handler = std::move(handler)](const std::string&, std::span<const std::byte> message) {
@@ -194,15 +194,15 @@ Subscription Link::subscribe(const std::string& channel, Handler handler) const 
                       })};
 }
 
-Subscription Link::subscribePattern(const std::string& pattern,
-                                    std::function<void(const std::string& channel)> handler) const {
+Subscription LcmLink::subscribePattern(const std::string& pattern,
+                                       std::function<void(const std::string& channel)> handler) const {
   return Subscription{Impl::subscribe(
       impl_, pattern, [handler = std::move(handler)](const std::string& channel, std::span<const std::byte>) {
         handler(channel);
       })};
 }
 
-bool Link::inHandler() const noexcept { return std::this_thread::get_id() == impl_->thread.get_id(); }
+bool LcmLink::inHandler() const noexcept { return std::this_thread::get_id() == impl_->thread.get_id(); }
 
 }  // namespace robot_client
 }  // namespace rc10

@@ -4,19 +4,19 @@
 
 #include "app/result.hpp"
 #include "app/unique_fd.hpp"
-#include "bus/link_news.hpp"
+#include "bus/can_link_news.hpp"
 
 namespace rc10 {
 
 /// Hears from the kernel (rtnetlink) which interfaces were changed.
-class LinkWatch {
+class CanLinkWatch {
  public:
   struct News {
-    std::vector<LinkNews> links;
+    std::vector<CanLinkNews> links;
     bool lost = false;  ///< The kernel had more than it could keep: anything may have changed.
   };
 
-  [[nodiscard]] static Result<LinkWatch> open();
+  [[nodiscard]] static Result<CanLinkWatch> open();
 
   /// To be polled for reading.
   [[nodiscard]] int fd() const noexcept { return fd_.get(); }
@@ -25,7 +25,7 @@ class LinkWatch {
   [[nodiscard]] Result<News> read() const;
 
  private:
-  explicit LinkWatch(UniqueFd fd) noexcept : fd_(std::move(fd)) {}
+  explicit CanLinkWatch(UniqueFd fd) noexcept : fd_(std::move(fd)) {}
 
   UniqueFd fd_;
 };

@@ -1,4 +1,4 @@
-#include "daemon/devices/serial_line.hpp"
+#include "daemon/devices/serial_channel.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -9,7 +9,7 @@
 #include "daemon/serial_rig.hpp"
 #include "support/alloc_guard.hpp"
 
-namespace rc10::test::serial_line_test {
+namespace rc10::test::serial_channel_test {
 namespace {
 
 using ::testing::Each;
@@ -40,12 +40,12 @@ TEST_F(SerialLineTest, BytesReachTheProtocolInTheirOrderAndWithATime) {
 }
 
 TEST_F(SerialLineTest, AFullRingDropsAndCounts) {
-  while (line.chunks.push(SerialChunk{})) {
+  while (channel.chunks.push(SerialChunk{})) {
   }
   pty->send({1, 2, 3});
-  for (int i = 0; i < 200 && line.dropped_chunks.load() == 0; ++i) rx->poll(50);
-  deliver(line, device);
-  EXPECT_EQ(device.counters().dropped_chunks, line.dropped_chunks.load());
+  for (int i = 0; i < 200 && channel.dropped_chunks.load() == 0; ++i) rx->poll(50);
+  deliver(channel, device);
+  EXPECT_EQ(device.counters().dropped_chunks, channel.dropped_chunks.load());
   EXPECT_GE(device.counters().dropped_chunks, 1U);
 }
 
@@ -54,11 +54,11 @@ TEST_F(SerialLineTest, DeliversWhatIsThereNow) {
   chunk.size = 1;
   for (std::uint8_t i = 1; i <= 3; ++i) {
     chunk.data[0] = i;
-    line.chunks.push(chunk);
+    channel.chunks.push(chunk);
   }
-  deliver(line, device);
+  deliver(channel, device);
   EXPECT_THAT(protocol.bytes, ElementsAre(1, 2, 3));
-  EXPECT_EQ(line.chunks.read_available(), 0U);
+  EXPECT_EQ(channel.chunks.read_available(), 0U);
 }
 
 TEST_F(SerialLineTest, NothingOnTheWayAllocates) {
@@ -68,7 +68,7 @@ TEST_F(SerialLineTest, NothingOnTheWayAllocates) {
   for (int i = 0; i < 50; ++i) {
     pty->send(sent);
     rx->poll(50);
-    deliver(line, device);
+    deliver(channel, device);
     (void)device.send(sent);
     writer.flush();
   }
@@ -85,8 +85,9 @@ TEST_F(SerialLineTest, BusesAreReceivedBesidePorts) {
 }
 
 TEST(SerialOutbox, TakesAllOrNothing) {
-  const auto lines = SerialLines::create(std::vector<SerialLine::Settings>{{"imu", "/dev/none"}}).value();
-  auto& outbox = (*lines)[0].outbox;
+  const auto channels =
+      SerialChannels::create(std::vector<SerialChannel::Settings>{{"imu", "/dev/none"}}).value();
+  auto& outbox = (*channels)[0].outbox;
   const std::vector<std::uint8_t> most(SerialOutbox::kBytes, 1);
   EXPECT_TRUE(outbox.push(std::span(most).first(SerialOutbox::kBytes - 2)));
   EXPECT_FALSE(outbox.push(std::span(most).first(3)));
@@ -96,4 +97,4 @@ TEST(SerialOutbox, TakesAllOrNothing) {
 }
 
 }  // namespace
-}  // namespace rc10::test::serial_line_test
+}  // namespace rc10::test::serial_channel_test

@@ -1,4 +1,4 @@
-#include "daemon/interfaces/link_keeper.hpp"
+#include "daemon/interfaces/can_link_keeper.hpp"
 
 #include <utility>
 
@@ -35,7 +35,7 @@ std::string settingsAdvice(const std::string& interface, const CanLink& link, co
   return wrong.empty() ? wrong : wrong + "; type: " + restartCommand(interface, link, wanted);
 }
 
-void LinkKeeper::check(MonotonicTime now, std::bitset<kMaxBuses> came_up) {
+void CanLinkKeeper::check(MonotonicTime now, std::bitset<kMaxBuses> came_up) {
   for (std::size_t i = 0; i < robot_.buses().size(); ++i) {
     const auto& entry = robot_.buses()[i];
     if (entry.interface.empty()) continue;
@@ -59,7 +59,7 @@ void LinkKeeper::check(MonotonicTime now, std::bitset<kMaxBuses> came_up) {
 }
 
 // Somebody has brought the interface up, or it is a new one: are its settings ours?
-void LinkKeeper::checkSettings(std::size_t bus, MonotonicTime now) {
+void CanLinkKeeper::checkSettings(std::size_t bus, MonotonicTime now) {
   const auto& entry = robot_.buses()[bus];
   if (std::exchange(kept_[bus].by_us, false)) return;
   const auto link = driver_.read(entry.interface);
@@ -74,7 +74,7 @@ void LinkKeeper::checkSettings(std::size_t bus, MonotonicTime now) {
   }
 }
 
-void LinkKeeper::recover(std::size_t bus, BusState why, MonotonicTime now) {
+void CanLinkKeeper::recover(std::size_t bus, BusState why, MonotonicTime now) {
   const auto& entry = robot_.buses()[bus];
   if (!restart(bus, now)) return;
   const int attempts = kept_[bus].recovery.attempts();
@@ -86,11 +86,11 @@ void LinkKeeper::recover(std::size_t bus, BusState why, MonotonicTime now) {
   notes_.tell(nameOf(bus), Severity::kWarning, text, now);
 }
 
-bool LinkKeeper::restart(std::size_t bus, MonotonicTime now) {
+bool CanLinkKeeper::restart(std::size_t bus, MonotonicTime now) {
   const auto& entry = robot_.buses()[bus];
   auto& kept = kept_[bus];
   // Shown as down until the reviver finds it up: the scheduler must see that the link was away.
-  inboxes_[bus].link.store(LinkState::kDown, std::memory_order_relaxed);
+  inboxes_[bus].link.store(CanLinkState::kDown, std::memory_order_relaxed);
   const auto done = driver_.restart(entry.interface, entry.settings);
   const auto error = done ? std::string{} : done.error().message;
   if (!error.empty() && error != kept.last_error) notes_.tell(nameOf(bus), Severity::kError, error, now);
@@ -99,7 +99,7 @@ bool LinkKeeper::restart(std::size_t bus, MonotonicTime now) {
   return kept.by_us;
 }
 
-void LinkKeeper::advise(std::size_t bus, BusState why, const CanLink& link, MonotonicTime now) {
+void CanLinkKeeper::advise(std::size_t bus, BusState why, const CanLink& link, MonotonicTime now) {
   const auto& entry = robot_.buses()[bus];
   const auto advice = why == BusState::kDown
                           ? fmt::format("{} is down; type: {}", entry.interface,
@@ -110,6 +110,6 @@ void LinkKeeper::advise(std::size_t bus, BusState why, const CanLink& link, Mono
               advice + (link.isController() ? " (rc10d does it itself with `manage_link: true`)" : ""), now);
 }
 
-std::string_view LinkKeeper::nameOf(std::size_t bus) const { return robot_.buses()[bus].bus->name(); }
+std::string_view CanLinkKeeper::nameOf(std::size_t bus) const { return robot_.buses()[bus].bus->name(); }
 
 }  // namespace rc10

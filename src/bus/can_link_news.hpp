@@ -8,15 +8,15 @@
 namespace rc10 {
 
 /// Change of an interface, as rtnetlink reports it.
-struct LinkNews {
+struct CanLinkNews {
   std::string interface;
   bool is_can = false;
   bool up = false;
 
-  bool operator==(const LinkNews&) const = default;
+  bool operator==(const CanLinkNews&) const = default;
 };
 
 /// One datagram of the netlink group RTMGRP_LINK. What is something else, or cut off, is left out.
-[[nodiscard]] std::vector<LinkNews> parseLinkNews(std::span<const std::byte> datagram);
+[[nodiscard]] std::vector<CanLinkNews> parseLinkNews(std::span<const std::byte> datagram);
 
 }  // namespace rc10

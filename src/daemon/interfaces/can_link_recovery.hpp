@@ -10,7 +10,7 @@ namespace rc10 {
 /// Decides when the link of one bus is to be taken down and up: 50 ms after its trouble began, then at twice
 /// the distance each time, at most 2 s. Once the bus has been well for 5 s it starts with 50 ms again. Pure:
 /// time is an argument.
-class LinkRecovery {
+class CanLinkRecovery {
  public:
   static constexpr Duration kFirst = std::chrono::milliseconds{50};
   static constexpr Duration kLongest = std::chrono::seconds{2};

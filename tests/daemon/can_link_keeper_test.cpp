@@ -1,6 +1,6 @@
 // What the io thread does about a link, with a driver that only remembers. The real one is tested with
 // controllers, in tests/vm.
-#include "daemon/interfaces/link_keeper.hpp"
+#include "daemon/interfaces/can_link_keeper.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -10,7 +10,7 @@
 
 #include "daemon/virtual_robot.hpp"
 
-namespace rc10::test::link_keeper_test {
+namespace rc10::test::can_link_keeper_test {
 namespace {
 
 using namespace std::chrono_literals;
@@ -58,9 +58,9 @@ Result<void> restartFake(const std::string& interface, const CanLinkSettings& wa
   return {};
 }
 
-class LinkKeeperTest : public ::testing::Test {
+class CanLinkKeeperTest : public ::testing::Test {
  protected:
-  LinkKeeperTest() {
+  CanLinkKeeperTest() {
     fakeLink() = {};
     robot->buses()[0].interface = "can7";
     robot->buses()[0].settings.bitrate = 1'000'000;
@@ -87,38 +87,38 @@ class LinkKeeperTest : public ::testing::Test {
   std::unique_ptr<Robot> robot = Robot::build(twoWheelsAndYaw()).value();
   std::array<BusInbox, kMaxBuses> inboxes;
   LinkExchange exchange;
-  LinkKeeper keeper{*robot, inboxes, exchange, {readFake, restartFake}};
+  CanLinkKeeper keeper{*robot, inboxes, exchange, {readFake, restartFake}};
   MonotonicTime now{1000s};
 };
 
-TEST_F(LinkKeeperTest, ABusThatIsWellIsNotAskedFor) {
+TEST_F(CanLinkKeeperTest, ABusThatIsWellIsNotAskedFor) {
   manage();
   run(BusState::kActive, 10s);
   EXPECT_EQ(fakeLink().reads, 0);
   EXPECT_EQ(fakeLink().restarts, 0);
 }
 
-TEST_F(LinkKeeperTest, ASimulatedBusIsLeftAlone) {
+TEST_F(CanLinkKeeperTest, ASimulatedBusIsLeftAlone) {
   robot->buses()[0].interface.clear();
   run(BusState::kBusOff, 1s);
   EXPECT_EQ(fakeLink().reads, 0);
 }
 
-TEST_F(LinkKeeperTest, AManagedBusIsRestartedWithBackOffAndToldEachTime) {
+TEST_F(CanLinkKeeperTest, AManagedBusIsRestartedWithBackOffAndToldEachTime) {
   manage();
   run(BusState::kBusOff, 400ms);
   EXPECT_EQ(fakeLink().restarts, 3);
   EXPECT_THAT(told(), ::testing::Each(HasSubstr("bus-off: can7 taken down and up at 1000000 bit/s")));
 }
 
-TEST_F(LinkKeeperTest, ARestartIsSeenByTheSchedulerAsALinkThatWasDown) {
+TEST_F(CanLinkKeeperTest, ARestartIsSeenByTheSchedulerAsALinkThatWasDown) {
   manage();
-  inboxes[0].link = LinkState::kUp;
+  inboxes[0].link = CanLinkState::kUp;
   run(BusState::kStalled, 100ms);
-  EXPECT_EQ(inboxes[0].link.load(), LinkState::kDown) << "the reviver shows it up again, at its next look";
+  EXPECT_EQ(inboxes[0].link.load(), CanLinkState::kDown) << "the reviver shows it up again, at its next look";
 }
 
-TEST_F(LinkKeeperTest, AnEndlessTroubleIsNotToldForEver) {
+TEST_F(CanLinkKeeperTest, AnEndlessTroubleIsNotToldForEver) {
   manage();
   run(BusState::kStalled, 60s);
   EXPECT_GT(fakeLink().restarts, 30);
@@ -128,7 +128,7 @@ TEST_F(LinkKeeperTest, AnEndlessTroubleIsNotToldForEver) {
               AllOf(HasSubstr("without telling it again"), HasSubstr("another node is powered")));
 }
 
-TEST_F(LinkKeeperTest, WhatIsRefusedIsToldOnceWithItsReason) {
+TEST_F(CanLinkKeeperTest, WhatIsRefusedIsToldOnceWithItsReason) {
   manage();
   fakeLink().refusal = "no permission";
   run(BusState::kBusOff, 10s);
@@ -138,7 +138,7 @@ TEST_F(LinkKeeperTest, WhatIsRefusedIsToldOnceWithItsReason) {
   EXPECT_EQ(fakeLink().restarts, 1);
 }
 
-TEST_F(LinkKeeperTest, WithoutManageLinkTheCommandIsToldOnceForEachTrouble) {
+TEST_F(CanLinkKeeperTest, WithoutManageLinkTheCommandIsToldOnceForEachTrouble) {
   fakeLink().link.bus_off = true;
   const auto wanted =
       HasSubstr("type: ip link set can7 down; ip link set can7 up type can bitrate 1000000 restart-ms 0");
@@ -151,25 +151,25 @@ TEST_F(LinkKeeperTest, WithoutManageLinkTheCommandIsToldOnceForEachTrouble) {
   EXPECT_THAT(told(), ::testing::ElementsAre(AllOf(wanted, HasSubstr("another node"))));
 }
 
-TEST_F(LinkKeeperTest, AnInterfaceThatIsDownNeedsOneCommand) {
+TEST_F(CanLinkKeeperTest, AnInterfaceThatIsDownNeedsOneCommand) {
   run(BusState::kDown, 1s);
   EXPECT_THAT(told(), ::testing::ElementsAre(HasSubstr(
                           "can7 is down; type: ip link set can7 up type can bitrate 1000000 restart-ms 0")));
 }
 
-TEST_F(LinkKeeperTest, AVirtualInterfaceHasNoBitRateToSetAndNothingToManage) {
+TEST_F(CanLinkKeeperTest, AVirtualInterfaceHasNoBitRateToSetAndNothingToManage) {
   fakeLink().link = linkOf(false, "vcan");
   run(BusState::kDown, 1s);
   EXPECT_THAT(told(), ::testing::ElementsAre("can7 is down; type: ip link set can7 up"));
 }
 
-TEST_F(LinkKeeperTest, ALostMessageAboutARestartIsMadeGood) {
+TEST_F(CanLinkKeeperTest, ALostMessageAboutARestartIsMadeGood) {
   run(BusState::kBusOff, 100ms);  // the driver says that it is not
   EXPECT_EQ(inboxes[0].controller_running.load(), 1U);
   EXPECT_THAT(told(), IsEmpty());
 }
 
-TEST_F(LinkKeeperTest, ABusThatComesUpWithAnotherBitRateIsToldOrMended) {
+TEST_F(CanLinkKeeperTest, ABusThatComesUpWithAnotherBitRateIsToldOrMended) {
   fakeLink().link.bitrate = 500'000;
   comesUp();
   EXPECT_THAT(told(),
@@ -183,7 +183,7 @@ TEST_F(LinkKeeperTest, ABusThatComesUpWithAnotherBitRateIsToldOrMended) {
                                                    HasSubstr("taken down and up at 1000000 bit/s"))));
 }
 
-TEST_F(LinkKeeperTest, AnFdBusThatComesUpClassicOrWithAnotherDataRateIsToldOrMended) {
+TEST_F(CanLinkKeeperTest, AnFdBusThatComesUpClassicOrWithAnotherDataRateIsToldOrMended) {
   robot->buses()[0].settings.data_bitrate = 5'000'000;
   comesUp();
   EXPECT_THAT(told(),
@@ -204,7 +204,7 @@ TEST_F(LinkKeeperTest, AnFdBusThatComesUpClassicOrWithAnotherDataRateIsToldOrMen
   EXPECT_EQ(fakeLink().restarts, 1);
 }
 
-TEST_F(LinkKeeperTest, ADriverThatCannotSetTheBitRateIsNotRestartedForEver) {
+TEST_F(CanLinkKeeperTest, ADriverThatCannotSetTheBitRateIsNotRestartedForEver) {
   manage();
   fakeLink().link.bitrate = 500'000;
   comesUp();
@@ -213,14 +213,14 @@ TEST_F(LinkKeeperTest, ADriverThatCannotSetTheBitRateIsNotRestartedForEver) {
   EXPECT_EQ(fakeLink().restarts, 1);
 }
 
-TEST_F(LinkKeeperTest, ABitRateThatTheDriverRoundsIsTheSame) {
+TEST_F(CanLinkKeeperTest, ABitRateThatTheDriverRoundsIsTheSame) {
   fakeLink().link.bitrate = 999'999;
   EXPECT_THAT(settingsAdvice("can7", fakeLink().link, {.bitrate = 1'000'000}), IsEmpty());
   fakeLink().link.bitrate = 980'000;
   EXPECT_THAT(settingsAdvice("can7", fakeLink().link, {.bitrate = 1'000'000}), Not(IsEmpty()));
 }
 
-TEST_F(LinkKeeperTest, TheDriversAutomaticRestartIsTold) {
+TEST_F(CanLinkKeeperTest, TheDriversAutomaticRestartIsTold) {
   fakeLink().link.restart_ms = 100;
   EXPECT_THAT(settingsAdvice("can7", fakeLink().link, {.bitrate = 1'000'000}),
               AllOf(HasSubstr("100 ms after bus-off"), HasSubstr("restart-ms 0")));
@@ -229,4 +229,4 @@ TEST_F(LinkKeeperTest, TheDriversAutomaticRestartIsTold) {
 }
 
 }  // namespace
-}  // namespace rc10::test::link_keeper_test
+}  // namespace rc10::test::can_link_keeper_test

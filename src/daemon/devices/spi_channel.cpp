@@ -1,19 +1,19 @@
-#include "daemon/devices/spi_line.hpp"
+#include "daemon/devices/spi_channel.hpp"
 
 #include <algorithm>
 
 namespace rc10 {
 
-void handOver(SpiLine& line, SpiOutput& output, std::uint32_t& handed_over) noexcept {
+void handOver(SpiChannel& channel, SpiOutput& output, std::uint32_t& handed_over) noexcept {
   // Relaxed: it says nothing about other memory.
-  output.open = line.open.load(std::memory_order_relaxed);
+  output.open = channel.open.load(std::memory_order_relaxed);
   if (output.frames == handed_over) return;
   handed_over = output.frames;
-  auto& slot = line.frame.slot();
+  auto& slot = channel.frame.slot();
   slot.number = output.frames;
   slot.size = std::min(output.size, slot.bytes.size());
   std::copy_n(output.bytes.begin(), slot.size, slot.bytes.begin());
-  line.frame.publish();
+  channel.frame.publish();
 }
 
 }  // namespace rc10

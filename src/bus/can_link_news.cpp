@@ -1,4 +1,4 @@
-#include "bus/link_news.hpp"
+#include "bus/can_link_news.hpp"
 
 #include <linux/if_link.h>
 #include <net/if.h>
@@ -11,8 +11,8 @@
 
 namespace rc10 {
 
-std::vector<LinkNews> parseLinkNews(netlink::Bytes datagram) {
-  std::vector<LinkNews> news;
+std::vector<CanLinkNews> parseLinkNews(netlink::Bytes datagram) {
+  std::vector<CanLinkNews> news;
   for (;;) {
     const auto header = netlink::readAs<nlmsghdr>(datagram);
     if (!header || header->nlmsg_len < sizeof(nlmsghdr) || header->nlmsg_len > datagram.size()) return news;

@@ -1,4 +1,4 @@
-#include "doctor/link_check.hpp"
+#include "doctor/can_link_check.hpp"
 
 #include <algorithm>
 #include <array>
@@ -39,11 +39,11 @@ bool sampleOutside(std::optional<double> point) {
   return point && (*point < kEarliestSample || *point > kLatestSample);
 }
 
-std::string about(const LinkFacts& facts, const char* what) { return facts.interface + " " + what; }
+std::string about(const CanLinkFacts& facts, const char* what) { return facts.interface + " " + what; }
 
-std::string setDown(const LinkFacts& facts) { return "sudo ip link set " + facts.interface + " down"; }
+std::string setDown(const CanLinkFacts& facts) { return "sudo ip link set " + facts.interface + " down"; }
 
-CanLinkSettings settingsOf(const LinkFacts& facts) {
+CanLinkSettings settingsOf(const CanLinkFacts& facts) {
   auto wanted = facts.wanted;
   const auto link = facts.link.value_or(CanLink{});
   if (wanted.bitrate != 0) return wanted;
@@ -52,23 +52,23 @@ CanLinkSettings settingsOf(const LinkFacts& facts) {
   return wanted;
 }
 
-std::string command(const LinkFacts& facts, const CanLinkSettings& wanted) {
+std::string command(const CanLinkFacts& facts, const CanLinkSettings& wanted) {
   CanLink controller;
   controller.kind = "can";
   return restartCommand(facts.interface, facts.link.value_or(controller), wanted, "sudo ");
 }
 
 // No fault if rc10d mends it by itself.
-Finding judged(const LinkFacts& facts, const std::string& what, const std::string& why) {
+Finding judged(const CanLinkFacts& facts, const std::string& what, const std::string& why) {
   if (facts.managed) return pass(what, why + "; rc10d mends it (manage_link)");
   return fault(what, why, setupCommand(facts));
 }
 
 }  // namespace
 
-std::string setupCommand(const LinkFacts& facts) { return command(facts, settingsOf(facts)); }
+std::string setupCommand(const CanLinkFacts& facts) { return command(facts, settingsOf(facts)); }
 
-Finding checkUp(const LinkFacts& facts) {
+Finding checkUp(const CanLinkFacts& facts) {
   const std::string what = about(facts, "link");
   const auto link = facts.link.value_or(CanLink{});
   if (!link.is_can)
@@ -81,7 +81,7 @@ Finding checkUp(const LinkFacts& facts) {
   return fault(what, "down", setupCommand(facts));
 }
 
-Finding checkBitrate(const LinkFacts& facts) {
+Finding checkBitrate(const CanLinkFacts& facts) {
   const std::string what = about(facts, "bit rate");
   const auto link = facts.link.value_or(CanLink{});
   if (!link.isController()) return pass(what, "a " + link.kind + " has none");
@@ -99,7 +99,7 @@ Finding checkBitrate(const LinkFacts& facts) {
                     ": no drive understands a frame");
 }
 
-Finding checkSamplePoint(const LinkFacts& facts) {
+Finding checkSamplePoint(const CanLinkFacts& facts) {
   const std::string what = about(facts, "sample point");
   const auto link = facts.link.value_or(CanLink{});
   if (!link.sample_point) return pass(what, "not known");
@@ -126,7 +126,7 @@ Finding checkSamplePoint(const LinkFacts& facts) {
               command(facts, usual));
 }
 
-Finding checkFdMode(const LinkFacts& facts) {
+Finding checkFdMode(const CanLinkFacts& facts) {
   const std::string what = about(facts, "FD mode");
   const auto link = facts.link.value_or(CanLink{});
   if (const auto* mode = hinderingMode(link))
@@ -150,7 +150,7 @@ Finding checkFdMode(const LinkFacts& facts) {
   return facts.managed ? judged(facts, what, why) : warn(what, why, setupCommand(facts));
 }
 
-Finding checkRestart(const LinkFacts& facts) {
+Finding checkRestart(const CanLinkFacts& facts) {
   const std::string what = about(facts, "automatic restart");
   const auto link = facts.link.value_or(CanLink{});
   if (link.restart_ms == 0) return pass(what, "restart-ms 0: none");
@@ -160,7 +160,7 @@ Finding checkRestart(const LinkFacts& facts) {
                     "(raspberrypi/linux#6916)");
 }
 
-Finding checkQueue(const LinkFacts& facts) {
+Finding checkQueue(const CanLinkFacts& facts) {
   const std::string what = about(facts, "send queue");
   const auto link = facts.link.value_or(CanLink{});
   const bool keeps_order =
@@ -181,7 +181,7 @@ Finding checkQueue(const LinkFacts& facts) {
   return pass(what, found);
 }
 
-Finding checkErrors(const LinkFacts& facts) {
+Finding checkErrors(const CanLinkFacts& facts) {
   const std::string what = about(facts, "errors");
   const auto link = facts.link.value_or(CanLink{});
   const std::string wiring =
@@ -209,7 +209,7 @@ Finding checkErrors(const LinkFacts& facts) {
   return pass(what, found);
 }
 
-Finding checkCoalescing(const LinkFacts& facts) {
+Finding checkCoalescing(const CanLinkFacts& facts) {
   const std::string what = about(facts, "coalescing");
   if (!facts.coalescing) return pass(what, "this driver has none");
   const auto& now = *facts.coalescing;
@@ -224,7 +224,7 @@ Finding checkCoalescing(const LinkFacts& facts) {
   return pass(what, found);
 }
 
-Findings checkLink(const LinkFacts& facts) {
+Findings checkCanLink(const CanLinkFacts& facts) {
   if (!facts.link) {
     return {fault(about(facts, "link"), "there is no such interface",
                   "`ip link` lists what there is. A HAT needs its overlay in /boot/firmware/config.txt "

@@ -1,4 +1,4 @@
-#include "rc10/link.hpp"
+#include "rc10/lcm_link.hpp"
 
 #include <gtest/gtest.h>
 
@@ -20,9 +20,9 @@ using namespace std::chrono_literals;
 constexpr auto kPatience = 20s;
 const std::vector<std::byte> kMessage(4);
 
-TEST(Link, SubscriptionsThatEndMeanwhileTakeNoMessageFromTheOthers) {
+TEST(LcmLink, SubscriptionsThatEndMeanwhileTakeNoMessageFromTheOthers) {
   constexpr int kMessages = 2000;
-  const Link link("memq://");
+  const LcmLink link("memq://");
   std::atomic<int> first = 0;
   std::atomic<int> last = 0;
   std::promise<void> all;
@@ -41,8 +41,8 @@ TEST(Link, SubscriptionsThatEndMeanwhileTakeNoMessageFromTheOthers) {
   EXPECT_EQ(last, kMessages);
 }
 
-TEST(Link, WhatAnEndedHandlerHeldIsLetGo) {
-  const Link link("memq://");
+TEST(LcmLink, WhatAnEndedHandlerHeldIsLetGo) {
+  const LcmLink link("memq://");
   struct Held {
     std::promise<void>& gone;
     ~Held() { gone.set_value(); }
@@ -53,8 +53,8 @@ TEST(Link, WhatAnEndedHandlerHeldIsLetGo) {
   EXPECT_EQ(gone.get_future().wait_for(kPatience), std::future_status::ready);
 }
 
-TEST(Link, AHandlerMayEndItself) {
-  const Link link("memq://");
+TEST(LcmLink, AHandlerMayEndItself) {
+  const LcmLink link("memq://");
   int calls = 0;
   Subscription itself;
   std::promise<void> second;

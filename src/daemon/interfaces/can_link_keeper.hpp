@@ -12,13 +12,13 @@
 #include "daemon/exchange/note.hpp"
 #include "daemon/exchange/rings.hpp"
 #include "daemon/interfaces/can_link.hpp"
-#include "daemon/interfaces/link_recovery.hpp"
+#include "daemon/interfaces/can_link_recovery.hpp"
 
 namespace rc10 {
 
 /// Looks after the links of the CAN buses: with `manage_link` it takes the interface of a bus in trouble down
 /// and up, else it says once which command to type. io thread only; nobody waits for it.
-class LinkKeeper {
+class CanLinkKeeper {
  public:
   /// Where it reads and writes links. Tests give their own.
   struct Driver {
@@ -26,9 +26,9 @@ class LinkKeeper {
     Result<void> (*restart)(const std::string& interface, const CanLinkSettings& wanted) = restartCanLink;
   };
 
-  LinkKeeper(Robot& robot, std::span<BusInbox> inboxes, LinkExchange& exchange)
-      : LinkKeeper(robot, inboxes, exchange, Driver{}) {}
-  LinkKeeper(Robot& robot, std::span<BusInbox> inboxes, LinkExchange& exchange, Driver driver)
+  CanLinkKeeper(Robot& robot, std::span<BusInbox> inboxes, LinkExchange& exchange)
+      : CanLinkKeeper(robot, inboxes, exchange, Driver{}) {}
+  CanLinkKeeper(Robot& robot, std::span<BusInbox> inboxes, LinkExchange& exchange, Driver driver)
       : robot_(robot), inboxes_(inboxes), notes_(exchange.notes, EventCode::kBusAdvice), driver_(driver) {}
 
   /// Looks at every bus once. `came_up`: of these somebody may have changed the settings.
@@ -36,7 +36,7 @@ class LinkKeeper {
 
  private:
   struct Kept {
-    LinkRecovery recovery;
+    CanLinkRecovery recovery;
     bool by_us = false;  ///< The interface comes up because we restarted it.
     std::string last_error;
   };

@@ -1,4 +1,4 @@
-#include "bus/link_news.hpp"
+#include "bus/can_link_news.hpp"
 
 #include <gmock/gmock.h>
 #include <linux/if_link.h>
@@ -9,7 +9,7 @@
 
 #include <cstring>
 
-namespace rc10::link_news_test {
+namespace rc10::can_link_news_test {
 namespace {
 
 using ::testing::ElementsAre;
@@ -53,25 +53,25 @@ Datagram operator+(Datagram first, const Datagram& second) {
   return first;
 }
 
-TEST(LinkNews, ACanInterfaceThatComesUpIsTold) {
+TEST(CanLinkNews, ACanInterfaceThatComesUpIsTold) {
   EXPECT_THAT(parseLinkNews(message(RTM_NEWLINK, ARPHRD_CAN, IFF_UP | IFF_RUNNING, "can0")),
-              ElementsAre(LinkNews{.interface = "can0", .is_can = true, .up = true}));
+              ElementsAre(CanLinkNews{.interface = "can0", .is_can = true, .up = true}));
 }
 
-TEST(LinkNews, OneThatGoesDownAndOneThatIsNoCanAreToldAsSuch) {
+TEST(CanLinkNews, OneThatGoesDownAndOneThatIsNoCanAreToldAsSuch) {
   EXPECT_THAT(parseLinkNews(message(RTM_NEWLINK, ARPHRD_CAN, 0, "can0") +
                             message(RTM_NEWLINK, ARPHRD_ETHER, IFF_UP, "eth0")),
-              ElementsAre(LinkNews{.interface = "can0", .is_can = true, .up = false},
-                          LinkNews{.interface = "eth0", .is_can = false, .up = true}));
+              ElementsAre(CanLinkNews{.interface = "can0", .is_can = true, .up = false},
+                          CanLinkNews{.interface = "eth0", .is_can = false, .up = true}));
 }
 
-TEST(LinkNews, OtherMessagesAreLeftOut) {
+TEST(CanLinkNews, OtherMessagesAreLeftOut) {
   EXPECT_THAT(parseLinkNews(message(RTM_DELLINK, ARPHRD_CAN, IFF_UP, "can0") +
                             message(NLMSG_DONE, ARPHRD_CAN, IFF_UP, "can0")),
               IsEmpty());
 }
 
-TEST(LinkNews, WhatIsCutOffIsLeftOut) {
+TEST(CanLinkNews, WhatIsCutOffIsLeftOut) {
   const auto whole = message(RTM_NEWLINK, ARPHRD_CAN, IFF_UP, "can0");
   const auto both = whole + message(RTM_NEWLINK, ARPHRD_CAN, IFF_UP, "can1");
   // Behind can1's name three bytes only fill up.
@@ -83,7 +83,7 @@ TEST(LinkNews, WhatIsCutOffIsLeftOut) {
   }
 }
 
-TEST(LinkNews, ALengthThatCannotBeEndsTheDatagram) {
+TEST(CanLinkNews, ALengthThatCannotBeEndsTheDatagram) {
   auto bytes = message(RTM_NEWLINK, ARPHRD_CAN, IFF_UP, "can0");
   for (const std::uint32_t length : {0U, 3U, 15U, 0xFFFFFFFFU}) {
     std::memcpy(bytes.data(), &length, sizeof length);
@@ -92,4 +92,4 @@ TEST(LinkNews, ALengthThatCannotBeEndsTheDatagram) {
 }
 
 }  // namespace
-}  // namespace rc10::link_news_test
+}  // namespace rc10::can_link_news_test

@@ -1,4 +1,4 @@
-#include "link_facts.hpp"
+#include "can_link_facts.hpp"
 
 #include <linux/ethtool.h>
 #include <linux/sockios.h>
@@ -25,8 +25,8 @@ std::optional<doctor::Coalescing> readCoalescing(const std::string& interface) {
 
 }  // namespace
 
-doctor::LinkFacts readLink(const doctor::HostFiles& files, const std::string& interface) {
-  doctor::LinkFacts facts;
+doctor::CanLinkFacts readLink(const doctor::HostFiles& files, const std::string& interface) {
+  doctor::CanLinkFacts facts;
   facts.interface = interface;
   if (auto link = readCanLink(interface)) facts.link = std::move(*link);
   facts.driver = files.linkedName("/sys/class/net/" + interface + "/device/driver");

@@ -25,7 +25,7 @@ class Subscription {
   void end() noexcept;
 
  private:
-  friend class Link;
+  friend class LcmLink;
   struct Handler;
   explicit Subscription(std::shared_ptr<Handler> handler) : handler_(std::move(handler)) {}
 
@@ -37,13 +37,13 @@ class Subscription {
 ///
 /// Every member may be called from any thread. Handlers run on the receiving thread, one after the other: one
 /// that waits holds up all the others. The last copy must not be destroyed in a handler.
-class Link {
+class LcmLink {
  public:
   using Handler = std::function<void(std::span<const std::byte> message)>;
 
   /// `url`: an LCM provider; empty: $LCM_DEFAULT_URL, else LCM on this computer. Never throws: status() says
   /// whether it works.
-  explicit Link(const std::string& url = {});
+  explicit LcmLink(const std::string& url = {});
 
   /// Why there is no LCM, and what to do about it.
   [[nodiscard]] Result<void> status() const;
