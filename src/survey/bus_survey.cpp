@@ -37,7 +37,7 @@ constexpr float kMostHeartbeatsHz = 150.0F;
 bool isOdrive(const DriveGuess& guess) {
   return guess.kind == drive_kind::kOdrive || guess.kind == drive_kind::kOdriveExtended;
 }
-bool isOdriveHeartbeat(CanId id) { return odriveMessage(id) == OdriveMessage::kHeartbeat; }
+bool isOdriveHeartbeat(CanId id) { return odrive::messageOf(id) == odrive::Message::kHeartbeat; }
 
 void dropTooFrequent(Sighting& sighting, Duration listened) {
   const bool others = std::any_of(sighting.guesses.begin(), sighting.guesses.end(),
@@ -68,9 +68,9 @@ std::vector<Sighting> BusSurvey::sightings(Duration listened) const {
 
 int BusSurvey::commandedBy(const CanFrame& query) const {
   if (!query.id.extended) return 0;
-  const int node = static_cast<int>(query.id.value >> kOdriveMessageBits);
-  const auto heartbeat = (query.id.value >> kOdriveMessageBits << kOdriveMessageBits) |
-                         static_cast<std::uint32_t>(OdriveMessage::kHeartbeat);
+  const int node = static_cast<int>(query.id.value >> odrive::kMessageBits);
+  const auto heartbeat = (query.id.value >> odrive::kMessageBits << odrive::kMessageBits) |
+                         static_cast<std::uint32_t>(odrive::Message::kHeartbeat);
   const auto found = heard_.find({true, heartbeat});
   if (found == heard_.end()) return 0;
   const auto& guesses = found->second.guesses;

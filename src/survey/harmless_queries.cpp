@@ -21,10 +21,11 @@ std::vector<CanFrame> harmlessQueries() {
   queries.reserve(std::size_t{kVescIds} + std::size_t{kRobstrideIds});
   const std::array<std::uint8_t, 1> who{kVescHost};
   for (int id = 0; id < kVescIds; ++id)
-    queries.push_back(makeClassicFrame(vescId(VescPacket::kPing, id), who));
+    queries.push_back(makeClassicFrame(vesc::canId(vesc::Packet::kPing, id), who));
   const std::array<std::uint8_t, 8> nothing{};
   for (int id = 1; id <= kRobstrideIds; ++id)
-    queries.push_back(makeClassicFrame(robstrideId(RobstrideType::kGetId, kRobstrideHost, id), nothing));
+    queries.push_back(
+        makeClassicFrame(robstride::canId(robstride::Type::kGetId, kRobstrideHost, id), nothing));
   return queries;
 }
 

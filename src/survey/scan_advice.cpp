@@ -8,7 +8,7 @@ namespace rc10::survey {
 namespace {
 
 bool isPong(CanId id) {
-  return id.extended && id.value >> 8U == static_cast<std::uint32_t>(VescPacket::kPong);
+  return id.extended && id.value >> 8U == static_cast<std::uint32_t>(vesc::Packet::kPong);
 }
 
 bool isVesc(const Sighting& sighting, int id) {

@@ -50,35 +50,35 @@ void checkMotor(const Moteus_Motor& motor) {
 
 void checkFrame(const CanFrame& frame, const MotorTraits& traits, double turns, FrameKind ordered) {
   require(frame.fd && isValidLength(true, frame.length) && frame.length <= 48);
-  require(frame.id == moteusQueryId(0, 1));
+  require(frame.id == moteus::queryId(0, 1));
   const double most_nm = kEffortA * static_cast<double>(traits.torque_nm_per_a) * 1.001;
   const bool rests =
       ordered == FrameKind::kRest || ordered == FrameKind::kPoll || ordered == FrameKind::kDisable;
-  MoteusReader reader(frame.payload());
-  MoteusItem item;
-  MoteusReader::Step step{};
-  while ((step = reader.next(item)) == MoteusReader::Step::kItem) {
-    if (item.kind != MoteusItem::Kind::kWrite) continue;
+  moteus::Reader reader(frame.payload());
+  moteus::Item item;
+  moteus::Reader::Step step{};
+  while ((step = reader.next(item)) == moteus::Reader::Step::kItem) {
+    if (item.kind != moteus::Item::Kind::kWrite) continue;
     switch (item.reg) {
-      case MoteusRegister::kMode:
+      case moteus::Register::kMode:
         require(item.value == 0.0 || (!rests && (item.value == 10.0 || item.value == 15.0)));
         break;
-      case MoteusRegister::kCommandPosition: require(!(std::abs(item.value) > 32768.0)); break;
-      case MoteusRegister::kCommandVelocity:
+      case moteus::Register::kCommandPosition: require(!(std::abs(item.value) > 32768.0)); break;
+      case moteus::Register::kCommandVelocity:
         require(std::abs(item.value) <= kFastestRpm / 60.0 * turns * 1.001);
         break;
-      case MoteusRegister::kCommandTorque: require(std::abs(item.value) <= most_nm); break;
-      case MoteusRegister::kMaxTorque: require(item.value >= 0.0 && item.value <= most_nm); break;
+      case moteus::Register::kCommandTorque: require(std::abs(item.value) <= most_nm); break;
+      case moteus::Register::kMaxTorque: require(item.value >= 0.0 && item.value <= most_nm); break;
       default: break;
     }
   }
-  require(step == MoteusReader::Step::kEnd);
+  require(step == moteus::Reader::Step::kEnd);
 }
 
 CanFrame takeFrame(Input& input, bool from_drive) {
   CanFrame frame;
   const auto head = input.take<std::uint8_t>();
-  frame.id = from_drive ? moteusReplyId(0, 1) : moteusQueryId(0, 1);
+  frame.id = from_drive ? moteus::replyId(0, 1) : moteus::queryId(0, 1);
   if ((head & 0x40U) != 0) frame.id.value = input.take<std::uint32_t>() & kExtendedIdMask;
   frame.fd = (head & 0x80U) == 0;
   frame.length = frame.fd ? roundUpFdLength(head & 0x3FU) : static_cast<std::uint8_t>(head & 7U);
@@ -88,20 +88,20 @@ CanFrame takeFrame(Input& input, bool from_drive) {
 
 /// What a drive might say, in the right form.
 CanFrame takeAnswer(Input& input) {
-  MoteusWriter frame(moteusReplyId(0, 1), true);
+  moteus::Writer frame(moteus::replyId(0, 1), true);
   const auto head = input.take<std::uint8_t>();
   const auto number = [&input] { return static_cast<double>(input.take<float>()); };
-  frame.reply(MoteusType::kInt8, MoteusRegister::kMode, {static_cast<double>(head & 15U)})
-      .reply(MoteusType::kFloat, MoteusRegister::kPosition, {number(), number(), number()})
-      .reply(MoteusType::kInt8, MoteusRegister::kVoltage,
+  frame.reply(moteus::Type::kInt8, moteus::Register::kMode, {static_cast<double>(head & 15U)})
+      .reply(moteus::Type::kFloat, moteus::Register::kPosition, {number(), number(), number()})
+      .reply(moteus::Type::kInt8, moteus::Register::kVoltage,
              {24.0, 30.0, static_cast<double>(input.take<std::uint8_t>() & 127U)})
-      .reply(MoteusType::kInt16, MoteusRegister::kMilliseconds,
+      .reply(moteus::Type::kInt16, moteus::Register::kMilliseconds,
              {static_cast<double>(input.take<std::int16_t>())});
   if ((head & 16U) != 0) {
-    frame.reply(MoteusType::kInt32, MoteusRegister::kRegisterMapVersion, {5.0})
-        .reply(MoteusType::kInt8, MoteusRegister::kHomeState, {2.0});
+    frame.reply(moteus::Type::kInt32, moteus::Register::kRegisterMapVersion, {5.0})
+        .reply(moteus::Type::kInt8, moteus::Register::kHomeState, {2.0});
   }
-  if ((head & 32U) != 0) frame.reply(MoteusType::kInt16, MoteusRegister::kTimeout, {0.1});
+  if ((head & 32U) != 0) frame.reply(moteus::Type::kInt16, moteus::Register::kTimeout, {0.1});
   return frame.frame();
 }
 

@@ -56,33 +56,33 @@ float numberAt(const CanFrame& frame, std::size_t at) { return readLittleEndian<
 
 void checkFrame(const CanFrame& frame, int node, FrameKind kind) {
   require(!frame.id.extended && !frame.fd && frame.type == FrameType::kData);
-  require((frame.id.value >> kOdriveMessageBits) == static_cast<std::uint32_t>(node));
+  require((frame.id.value >> odrive::kMessageBits) == static_cast<std::uint32_t>(node));
   const bool obeys_targets =
       kind == FrameKind::kCommand || kind == FrameKind::kBrake || kind == FrameKind::kHold;
-  switch (odriveMessage(frame.id)) {
-    case OdriveMessage::kSetAxisState:
+  switch (odrive::messageOf(frame.id)) {
+    case odrive::Message::kSetAxisState:
       require(frame.length == 4 && (frame.data[0] == 1 || frame.data[0] == 8));
       require(frame.data[0] == 1 || kind == FrameKind::kEnable);
       break;
-    case OdriveMessage::kSetControllerMode:
+    case odrive::Message::kSetControllerMode:
       require(frame.length == 8 && frame.data[0] >= 1 && frame.data[0] <= 3 && frame.data[4] == 1);
       break;
-    case OdriveMessage::kSetInputPos:
+    case odrive::Message::kSetInputPos:
       require(obeys_targets && frame.length == 8 && std::abs(numberAt(frame, 0)) <= 1e5F);
       break;
-    case OdriveMessage::kSetInputVel:
+    case odrive::Message::kSetInputVel:
       require(obeys_targets && frame.length == 8 && std::abs(numberAt(frame, 0)) <= kSpeedLimit);
       require(std::abs(numberAt(frame, 4)) <= kTorqueLimitNm);
       break;
-    case OdriveMessage::kSetInputTorque:
+    case odrive::Message::kSetInputTorque:
       require(frame.length == 4 && std::abs(numberAt(frame, 0)) <= kTorqueLimitNm);
       require(obeys_targets || numberAt(frame, 0) == 0.0F);
       break;
-    case OdriveMessage::kSetLimits:
+    case odrive::Message::kSetLimits:
       require(frame.length == 8 && numberAt(frame, 0) > 0.0F && numberAt(frame, 0) <= kSpeedLimit);
       require(numberAt(frame, 4) >= 0.0F && numberAt(frame, 4) <= 20.0F);
       break;
-    case OdriveMessage::kClearErrors: require(frame.length == 1 && frame.data[0] == 0); break;
+    case odrive::Message::kClearErrors: require(frame.length == 1 && frame.data[0] == 0); break;
     default: require(false);
   }
 }

@@ -57,7 +57,7 @@ void checkReadings(const RobStride_Motor& motor) {
   require(std::isfinite(feedback.temperature_c));
 }
 
-void checkSent(const CanFrame& frame, const RobstrideCodec& codec) {
+void checkSent(const CanFrame& frame, const robstride::Codec& codec) {
   require(frame.id.extended && frame.id.value <= kExtendedIdMask && frame.length == 8 && !frame.fd);
   require((frame.id.value & 0xFFU) == 5);
   const auto type = frame.id.value >> 24U;
@@ -70,7 +70,7 @@ void checkSent(const CanFrame& frame, const RobstrideCodec& codec) {
     const auto index = readLittleEndian<std::uint16_t>(frame.payload(), 0);
     const auto value = readLittleEndian<float>(frame.payload(), 4);
     require(std::isfinite(value));
-    if (index == robstride_parameter::kCurrentRef || index == robstride_parameter::kCurrentLimit) {
+    if (index == robstride::parameter::kCurrentRef || index == robstride::parameter::kCurrentLimit) {
       require(std::abs(value) <= kLimitA);
     }
   }
@@ -84,7 +84,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   RobStride_Motor motor(settings);
   sim::RobstrideDrive drive(settings, {});
   const auto* model = findRobstrideModel(settings.model);
-  const RobstrideCodec codec{
+  const robstride::Codec codec{
       .model = model, .position_range_rad = model->position_range_rad, .drive_id = 5, .host_id = 253};
   Tick tick;
   tick.now = MonotonicTime{std::chrono::hours{1}};

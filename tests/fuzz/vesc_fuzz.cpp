@@ -66,23 +66,23 @@ void checkReadings(const VESC_Motor& motor) {
 
 void checkFrame(const CanFrame& frame, int id) {
   require(frame.id.extended && !frame.fd && (frame.id.value & 0xFFU) == static_cast<std::uint32_t>(id));
-  const auto packet = static_cast<VescPacket>(frame.id.value >> 8U);
-  if (packet == VescPacket::kProcessShortBuffer) {
+  const auto packet = static_cast<vesc::Packet>(frame.id.value >> 8U);
+  if (packet == vesc::Packet::kProcessShortBuffer) {
     require(frame.length == 7);
     return;
   }
   require(frame.length == 4);
   const auto raw = static_cast<double>(readBigEndian<std::int32_t>(frame.payload(), 0));
   switch (packet) {
-    case VescPacket::kSetCurrent: require(std::abs(raw) <= kLimitA * 1e3); break;
-    case VescPacket::kSetCurrentBrake:
-    case VescPacket::kSetHandbrake: require(raw >= 0.0 && raw <= kLimitA * 1e3); break;
-    case VescPacket::kSetCurrentRelative: require(std::abs(raw) <= kLimitA / 60.0 * 1e5); break;
-    case VescPacket::kSetCurrentBrakeRelative:
-    case VescPacket::kSetHandbrakeRelative: require(raw >= 0.0 && raw <= kLimitA / 60.0 * 1e5); break;
-    case VescPacket::kSetErpm: require(std::abs(raw) <= kLimitRpm * 3.0 * kPolePairs + 1.0); break;
-    case VescPacket::kSetDuty: require(std::abs(raw) <= 1e5); break;
-    case VescPacket::kSetPosition: require(raw >= 0.0 && raw <= 360e6); break;
+    case vesc::Packet::kSetCurrent: require(std::abs(raw) <= kLimitA * 1e3); break;
+    case vesc::Packet::kSetCurrentBrake:
+    case vesc::Packet::kSetHandbrake: require(raw >= 0.0 && raw <= kLimitA * 1e3); break;
+    case vesc::Packet::kSetCurrentRelative: require(std::abs(raw) <= kLimitA / 60.0 * 1e5); break;
+    case vesc::Packet::kSetCurrentBrakeRelative:
+    case vesc::Packet::kSetHandbrakeRelative: require(raw >= 0.0 && raw <= kLimitA / 60.0 * 1e5); break;
+    case vesc::Packet::kSetErpm: require(std::abs(raw) <= kLimitRpm * 3.0 * kPolePairs + 1.0); break;
+    case vesc::Packet::kSetDuty: require(std::abs(raw) <= 1e5); break;
+    case vesc::Packet::kSetPosition: require(raw >= 0.0 && raw <= 360e6); break;
     default: require(false);
   }
 }

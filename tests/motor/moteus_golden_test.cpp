@@ -11,8 +11,8 @@
 namespace rc10::test::moteus_golden_test {
 namespace {
 
-using enum MoteusRegister;
-using Kind = MoteusItem::Kind;
+using enum moteus::Register;
+using Kind = moteus::Item::Kind;
 
 std::vector<std::uint8_t> bytes(const std::string& hex) {
   std::vector<std::uint8_t> result;
@@ -26,13 +26,13 @@ std::vector<std::uint8_t> bytes(const CanFrame& frame) {
   return {frame.payload().begin(), frame.payload().end()};
 }
 
-using Row = std::tuple<Kind, MoteusRegister, double>;
+using Row = std::tuple<Kind, moteus::Register, double>;
 std::vector<Row> decoded(const std::string& hex) {
   const auto payload = bytes(hex);
-  MoteusReader reader(payload);
+  moteus::Reader reader(payload);
   std::vector<Row> rows;
-  MoteusItem item;
-  while (reader.next(item) == MoteusReader::Step::kItem) rows.emplace_back(item.kind, item.reg, item.value);
+  moteus::Item item;
+  while (reader.next(item) == moteus::Reader::Step::kItem) rows.emplace_back(item.kind, item.reg, item.value);
   return rows;
 }
 
@@ -46,28 +46,28 @@ void expectRows(const std::string& hex, const std::vector<Row>& expected) {
   }
 }
 
-MoteusWriter writer() { return {moteusQueryId(0, 1), true}; }
+moteus::Writer writer() { return {moteus::queryId(0, 1), true}; }
 
 constexpr auto kPositionCommand = "01000A0E200000803F0000004011001F01130D50";
 constexpr auto kInt16Command = "01000A07206000200150FF140400130D";
 constexpr auto kInt16Reply = "2404000A005000000170FF230D181400";
 
 TEST(MoteusGolden, IdsAreThoseOfTheVendor) {
-  EXPECT_EQ(moteusQueryId(0, 1), (CanId{0x8001, true}));
-  EXPECT_EQ(moteusReplyId(0, 1), (CanId{0x100, false}));
-  EXPECT_EQ(moteusReplyId(0, 7), (CanId{0x700, false}));
-  EXPECT_EQ(moteusReplyId(0, 8), (CanId{0x800, true})) << "more than 11 bits";
-  EXPECT_EQ(moteusQueryId(0x13, 2), (CanId{0x138002, true}));
-  EXPECT_EQ(moteusReplyId(0x13, 2), (CanId{0x130200, true}));
+  EXPECT_EQ(moteus::queryId(0, 1), (CanId{0x8001, true}));
+  EXPECT_EQ(moteus::replyId(0, 1), (CanId{0x100, false}));
+  EXPECT_EQ(moteus::replyId(0, 7), (CanId{0x700, false}));
+  EXPECT_EQ(moteus::replyId(0, 8), (CanId{0x800, true})) << "more than 11 bits";
+  EXPECT_EQ(moteus::queryId(0x13, 2), (CanId{0x138002, true}));
+  EXPECT_EQ(moteus::replyId(0x13, 2), (CanId{0x130200, true}));
 }
 
 TEST(MoteusGolden, TheLibrarysPositionCommandWithItsQuery) {
   const CanFrame frame = writer()
-                             .write(MoteusType::kInt8, kMode, {10.0})
-                             .write(MoteusType::kFloat, kCommandPosition, {1.0, 2.0})
-                             .read(MoteusType::kInt8, kMode)
-                             .read(MoteusType::kFloat, kPosition, 3)
-                             .read(MoteusType::kInt8, kVoltage, 3)
+                             .write(moteus::Type::kInt8, kMode, {10.0})
+                             .write(moteus::Type::kFloat, kCommandPosition, {1.0, 2.0})
+                             .read(moteus::Type::kInt8, kMode)
+                             .read(moteus::Type::kFloat, kPosition, 3)
+                             .read(moteus::Type::kInt8, kVoltage, 3)
                              .frame();
   EXPECT_EQ(bytes(frame), bytes(kPositionCommand));
   EXPECT_EQ(frame.length, 20) << "19 bytes, padded with NOP";
@@ -88,18 +88,18 @@ TEST(MoteusGolden, TheLibrarysPositionCommandWithItsQuery) {
 // The document's text has the torque's sign wrong; its bytes are -176.
 TEST(MoteusGolden, TheDocumentsCommandInInt16) {
   const CanFrame frame = writer()
-                             .write(MoteusType::kInt8, kMode, {10.0})
-                             .write(MoteusType::kInt16, kCommandPosition, {0.0096, 0.072, -1.76})
-                             .read(MoteusType::kInt16, kMode, 4)
-                             .read(MoteusType::kInt8, kVoltage, 3)
+                             .write(moteus::Type::kInt8, kMode, {10.0})
+                             .write(moteus::Type::kInt16, kCommandPosition, {0.0096, 0.072, -1.76})
+                             .read(moteus::Type::kInt16, kMode, 4)
+                             .read(moteus::Type::kInt8, kVoltage, 3)
                              .frame();
   EXPECT_EQ(bytes(frame), bytes(kInt16Command));
 }
 
 TEST(MoteusGolden, TheDocumentsReplyInInt16) {
   const CanFrame frame = writer()
-                             .reply(MoteusType::kInt16, kMode, {10.0, 0.008, 0.064, -1.44})
-                             .reply(MoteusType::kInt8, kVoltage, {12.0, 20.0, 0.0})
+                             .reply(moteus::Type::kInt16, kMode, {10.0, 0.008, 0.064, -1.44})
+                             .reply(moteus::Type::kInt8, kVoltage, {12.0, 20.0, 0.0})
                              .frame();
   EXPECT_EQ(bytes(frame), bytes(kInt16Reply));
   expectRows(kInt16Reply, {{Kind::kReply, kMode, 10},
@@ -112,12 +112,12 @@ TEST(MoteusGolden, TheDocumentsReplyInInt16) {
 }
 
 TEST(MoteusGolden, StopAndBrake) {
-  EXPECT_EQ(bytes(writer().write(MoteusType::kInt8, kMode, {0.0}).frame()), bytes("010000"));
-  EXPECT_EQ(bytes(writer().write(MoteusType::kInt8, kMode, {15.0}).frame()), bytes("01000F"));
+  EXPECT_EQ(bytes(writer().write(moteus::Type::kInt8, kMode, {0.0}).frame()), bytes("010000"));
+  EXPECT_EQ(bytes(writer().write(moteus::Type::kInt8, kMode, {15.0}).frame()), bytes("01000F"));
 }
 
 TEST(MoteusGolden, TheShortestQueryAndItsReply) {
-  EXPECT_EQ(bytes(writer().read(MoteusType::kInt8, kMode).read(MoteusType::kInt8, kFault).frame()),
+  EXPECT_EQ(bytes(writer().read(moteus::Type::kInt8, kMode).read(moteus::Type::kInt8, kFault).frame()),
             bytes("1100110F"));
   expectRows("210000210F00", {{Kind::kReply, kMode, 0}, {Kind::kReply, kFault, 0}});
 }

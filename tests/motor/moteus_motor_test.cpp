@@ -13,7 +13,7 @@
 namespace rc10::test::moteus_motor_test {
 namespace {
 
-using enum MoteusRegister;
+using enum moteus::Register;
 using namespace std::chrono_literals;
 
 constexpr double kStop = 0.0;
@@ -58,11 +58,11 @@ TEST(MoteusMotor, TheSequenceStopsEngagesWithoutTorqueAndVerifiesTheWatchdog) {
   EXPECT_EQ(bench.written(kKdScale), 0.0);
   EXPECT_EQ(bench.written(kIlimitScale), 0.0);
   EXPECT_NEAR(*bench.written(kTimeout), 0.1, 1e-9);
-  bench.answer({.mode = MoteusMode::kCalibrating, .position_rev = 0.3});
+  bench.answer({.mode = moteus::Mode::kCalibrating, .position_rev = 0.3});
   EXPECT_EQ(bench.motor.sequenceProgress(), SequenceProgress::kPending);
-  bench.answer({.mode = MoteusMode::kPosition, .position_rev = 0.3});
+  bench.answer({.mode = moteus::Mode::kPosition, .position_rev = 0.3});
   EXPECT_EQ(bench.motor.sequenceProgress(), SequenceProgress::kPending);
-  bench.answer({.mode = MoteusMode::kPosition, .position_rev = 0.3, .timeout_s = 0.1});
+  bench.answer({.mode = moteus::Mode::kPosition, .position_rev = 0.3, .timeout_s = 0.1});
   EXPECT_EQ(bench.motor.sequenceProgress(), SequenceProgress::kDone);
 }
 
@@ -71,10 +71,10 @@ TEST(MoteusMotor, AWatchdogThatWasNotTakenFailsTheSequence) {
   bench.motor.order(FrameKind::kEnable);
   bench.tick();
   bench.answer({.version = 5});
-  bench.answer({.mode = MoteusMode::kPosition});
-  bench.answer({.mode = MoteusMode::kPosition, .timeout_s = kNaN});
+  bench.answer({.mode = moteus::Mode::kPosition});
+  bench.answer({.mode = moteus::Mode::kPosition, .timeout_s = kNaN});
   EXPECT_EQ(bench.motor.sequenceProgress(), SequenceProgress::kPending) << "no answer to that question";
-  bench.answer({.mode = MoteusMode::kPosition, .timeout_s = 1.0});
+  bench.answer({.mode = moteus::Mode::kPosition, .timeout_s = 1.0});
   EXPECT_EQ(bench.motor.sequenceProgress(), SequenceProgress::kFailed);
   EXPECT_EQ(bench.motor.complaint().fault, FaultCode::kDriveSetting);
   EXPECT_EQ(bench.mode(), kStop);
@@ -101,10 +101,10 @@ TEST(MoteusMotor, VelocityIsToldWithTheCourseOfTheShaft) {
   EXPECT_FLOAT_EQ(static_cast<float>(*bench.written(kCommandVelocity)), 2.0F);
   EXPECT_FALSE(bench.written(kKpScale).has_value());
   EXPECT_LT(*bench.written(kVelocityLimit), 0.0);
-  bench.answer({.mode = MoteusMode::kPosition, .position_rev = 0.5});
+  bench.answer({.mode = moteus::Mode::kPosition, .position_rev = 0.5});
   EXPECT_NEAR(*bench.written(kCommandPosition), 0.502, 1e-6);
   // A shaft that does not follow is not left behind by more than the slip.
-  for (int i = 0; i < 5000; ++i) bench.answer({.mode = MoteusMode::kPosition, .position_rev = 0.5});
+  for (int i = 0; i < 5000; ++i) bench.answer({.mode = moteus::Mode::kPosition, .position_rev = 0.5});
   EXPECT_NEAR(*bench.written(kCommandPosition), 1.0, 0.01);
 }
 
@@ -171,17 +171,17 @@ TEST(MoteusMotor, BrakeIdleAndDampAreTheDrivesOwn) {
   MoteusBench bench;
   ASSERT_TRUE(bench.enable());
   bench.motor.order(FrameKind::kBrake);
-  bench.answer({.mode = MoteusMode::kPosition});
+  bench.answer({.mode = moteus::Mode::kPosition});
   EXPECT_EQ(bench.mode(), 15.0);
-  bench.answer({.mode = MoteusMode::kBrake});
+  bench.answer({.mode = moteus::Mode::kBrake});
   EXPECT_EQ(bench.motor.complaint().fault, FaultCode::kNone);
   bench.motor.order(FrameKind::kDamp);
-  bench.answer({.mode = MoteusMode::kBrake});
+  bench.answer({.mode = moteus::Mode::kBrake});
   EXPECT_EQ(bench.mode(), kPositionMode);
   EXPECT_EQ(bench.written(kKpScale), 0.0);
   EXPECT_EQ(bench.written(kKdScale), 1.0);
   bench.motor.order(FrameKind::kIdle);
-  bench.answer({.mode = MoteusMode::kPosition});
+  bench.answer({.mode = moteus::Mode::kPosition});
   EXPECT_EQ(bench.written(kKdScale), 0.0);
   EXPECT_EQ(bench.written(kCommandTorque), 0.0);
 }
@@ -190,20 +190,20 @@ TEST(MoteusMotor, HoldStaysWhereItBegan) {
   MoteusBench bench;
   ASSERT_TRUE(bench.enable(2.0));
   bench.motor.order(FrameKind::kHold);
-  bench.answer({.mode = MoteusMode::kPosition, .position_rev = 2.0});
-  bench.answer({.mode = MoteusMode::kPosition, .position_rev = 2.1});
+  bench.answer({.mode = moteus::Mode::kPosition, .position_rev = 2.0});
+  bench.answer({.mode = moteus::Mode::kPosition, .position_rev = 2.1});
   EXPECT_NEAR(*bench.written(kCommandPosition), 2.0, 1e-6);
 }
 
 TEST(MoteusMotor, EachFaultHasItsCode) {
   MoteusBench bench;
   for (int native = 32; native <= 50; ++native) {
-    bench.answer({.mode = MoteusMode::kFault, .fault = native});
+    bench.answer({.mode = moteus::Mode::kFault, .fault = native});
     EXPECT_EQ(bench.motor.complaint().native_code, static_cast<std::uint32_t>(native));
     EXPECT_NE(bench.motor.complaint().fault, FaultCode::kNone);
     EXPECT_NE(bench.motor.complaint().fault, FaultCode::kDriveOther) << native;
   }
-  bench.answer({.mode = MoteusMode::kFault, .fault = 77});
+  bench.answer({.mode = moteus::Mode::kFault, .fault = 77});
   EXPECT_EQ(bench.motor.complaint().fault, FaultCode::kDriveOther);
 }
 
@@ -211,22 +211,22 @@ TEST(MoteusMotor, WhatBoundsItsOutputIsALimitAndNoFault) {
   MoteusBench bench;
   ASSERT_TRUE(bench.enable());
   bench.motor.order(FrameKind::kIdle);
-  bench.answer({.mode = MoteusMode::kPosition, .fault = 100});
+  bench.answer({.mode = moteus::Mode::kPosition, .fault = 100});
   EXPECT_EQ(bench.motor.complaint().fault, FaultCode::kNone);
   EXPECT_EQ(bench.motor.limits(), static_cast<std::uint32_t>(kLimitTemperature));
-  bench.answer({.mode = MoteusMode::kPosition, .fault = 104});
+  bench.answer({.mode = moteus::Mode::kPosition, .fault = 104});
   EXPECT_EQ(bench.motor.limits(), 0U);
 }
 
 TEST(MoteusMotor, AFaultIsLookedAtUntilClearedAndStoppedWhenItsReadingIsOld) {
   MoteusBench bench;
   bench.motor.order(FrameKind::kPoll);
-  bench.answer({.mode = MoteusMode::kFault, .fault = 34});
+  bench.answer({.mode = moteus::Mode::kFault, .fault = 34});
   EXPECT_FALSE(bench.mode().has_value()) << "a question alone";
   bench.now += 1s;
   bench.tick();
   EXPECT_EQ(bench.mode(), kStop);
-  bench.answer({.mode = MoteusMode::kFault, .fault = 34});
+  bench.answer({.mode = moteus::Mode::kFault, .fault = 34});
   EXPECT_FALSE(bench.mode().has_value());
   bench.motor.order(FrameKind::kRest);
   bench.tick();
@@ -240,14 +240,14 @@ TEST(MoteusMotor, AFaultIsLookedAtUntilClearedAndStoppedWhenItsReadingIsOld) {
 }
 
 TEST(MoteusMotor, ADriveThatLeavesItsModeIsStoppedAndSaid) {
-  for (const auto mode : {MoteusMode::kStopped, MoteusMode::kEnabling, MoteusMode::kZeroVelocity}) {
+  for (const auto mode : {moteus::Mode::kStopped, moteus::Mode::kEnabling, moteus::Mode::kZeroVelocity}) {
     MoteusBench bench;
     ASSERT_TRUE(bench.enable());
     ASSERT_TRUE(bench.command({.mode = ControlMode::kVelocity, .value = 10.0}));
     bench.answer({.mode = mode});
     EXPECT_EQ(bench.motor.complaint().fault, FaultCode::kDriveStopped);
     EXPECT_EQ(bench.mode(), kStop);
-    bench.answer({.mode = MoteusMode::kPosition});
+    bench.answer({.mode = moteus::Mode::kPosition});
     EXPECT_EQ(bench.mode(), kStop) << "only a new sequence switches it on";
   }
 }
@@ -309,10 +309,10 @@ TEST(MoteusMotor, OtherFramesAreNotItsOwn) {
 TEST(MoteusMotor, AnAnswerToSomebodyElseIsNotTaken) {
   MoteusBench bench;
   // A coarse position would read as a jump; an error subframe says that a question was not understood.
-  MoteusWriter coarse(moteusReplyId(0, 1), true);
-  coarse.reply(MoteusType::kInt16, kMode, {0.0, 3.2767, 0.0, 0.0})
-      .reply(MoteusType::kInt8, kFault, {0.0})
-      .reply(MoteusType::kInt16, kMilliseconds, {5.0});
+  moteus::Writer coarse(moteus::replyId(0, 1), true);
+  coarse.reply(moteus::Type::kInt16, kMode, {0.0, 3.2767, 0.0, 0.0})
+      .reply(moteus::Type::kInt8, kFault, {0.0})
+      .reply(moteus::Type::kInt16, kMilliseconds, {5.0});
   EXPECT_EQ(bench.motor.updateFeedback(coarse.frame()), FrameVerdict::kMalformed);
   CanFrame error = moteusAnswer({}, bench.now);
   error.data[0] = 0x31;
@@ -400,19 +400,19 @@ TEST(MoteusMotor, SayingItBackAndForthChangesNothing) {
 
 TEST(MoteusMotor, EveryIntegerScaleRoundTripsAndSaturates) {
   std::mt19937 random(11);
-  for (const auto type : {MoteusType::kInt8, MoteusType::kInt16, MoteusType::kInt32}) {
-    const double most = type == MoteusType::kInt8    ? 127.0
-                        : type == MoteusType::kInt16 ? 32767.0
-                                                     : 2147483647.0;
+  for (const auto type : {moteus::Type::kInt8, moteus::Type::kInt16, moteus::Type::kInt32}) {
+    const double most = type == moteus::Type::kInt8    ? 127.0
+                        : type == moteus::Type::kInt16 ? 32767.0
+                                                       : 2147483647.0;
     for (const auto reg : {kMode, kPosition, kVelocity, kTorque, kQCurrent, kVoltage, kTemperature, kTimeout,
                            kKpScale, kAccelerationLimit}) {
-      const double scale = moteusScale(reg, type);
+      const double scale = moteus::scaleOf(reg, type);
       std::uniform_real_distribution<double> within(-most * scale, most * scale);
       const auto back = [&](double value) {
-        const CanFrame frame = MoteusWriter({1, true}, true).write(type, reg, {value}).frame();
-        MoteusReader reader(frame.payload());
-        MoteusItem item;
-        EXPECT_EQ(reader.next(item), MoteusReader::Step::kItem);
+        const CanFrame frame = moteus::Writer({1, true}, true).write(type, reg, {value}).frame();
+        moteus::Reader reader(frame.payload());
+        moteus::Item item;
+        EXPECT_EQ(reader.next(item), moteus::Reader::Step::kItem);
         return item.value;
       };
       for (int i = 0; i < 100; ++i) {
@@ -439,7 +439,7 @@ TEST(MoteusMotor, TargetsThatAreNoNumbersAreHarmless) {
                           .velocity_ff_rpm = static_cast<float>(std::clamp(value, -1e38, 1e38)),
                           .torque_ff_nm = static_cast<float>(std::clamp(value, -1e38, 1e38))};
       bench.motor.order(FrameKind::kCommand, target);
-      bench.answer({.mode = MoteusMode::kPosition});
+      bench.answer({.mode = moteus::Mode::kPosition});
       EXPECT_TRUE(std::isfinite(*bench.written(kCommandPosition)));
       EXPECT_TRUE(std::isfinite(*bench.written(kCommandVelocity)));
       EXPECT_LE(std::abs(*bench.written(kCommandTorque)), 20.0 * kNmPerA + 1e-3);
@@ -454,7 +454,7 @@ TEST(MoteusMotor, ATickDoesNotAllocate) {
   bench.motor.order(FrameKind::kCommand);
   ASSERT_TRUE(bench.motor.setTarget({.mode = ControlMode::kVelocity, .value = 10.0}));
   const AllocGuard guard;
-  for (int i = 0; i < 100; ++i) bench.answer({.mode = MoteusMode::kPosition});
+  for (int i = 0; i < 100; ++i) bench.answer({.mode = moteus::Mode::kPosition});
   EXPECT_EQ(guard.allocations(), 0U);
 }
 

@@ -25,30 +25,30 @@ void expectFrame(const CanFrame& actual, std::uint32_t id, std::initializer_list
 }
 
 TEST(OdriveGolden, SetInputPos) {
-  expectFrame(odriveSetInputPos(3, 2.5F, 1.5F, -0.25F), 0x06C,
+  expectFrame(odrive::setInputPos(3, 2.5F, 1.5F, -0.25F), 0x06C,
               {0x00, 0x00, 0x20, 0x40, 0xDC, 0x05, 0x06, 0xFF});
 }
 
 TEST(OdriveGolden, SetInputVel) {
-  expectFrame(odriveSetInputVel(3, -4.0F, 0.1F), 0x06D, {0x00, 0x00, 0x80, 0xC0, 0xCD, 0xCC, 0xCC, 0x3D});
+  expectFrame(odrive::setInputVel(3, -4.0F, 0.1F), 0x06D, {0x00, 0x00, 0x80, 0xC0, 0xCD, 0xCC, 0xCC, 0x3D});
 }
 
 TEST(OdriveGolden, SetAxisState) {
-  expectFrame(odriveSetAxisState(3, OdriveAxisState::kClosedLoop), 0x067, {0x08, 0x00, 0x00, 0x00});
-  expectFrame(odriveSetAxisState(0, OdriveAxisState::kIdle), 0x007, {0x01, 0x00, 0x00, 0x00});
+  expectFrame(odrive::setAxisState(3, odrive::AxisState::kClosedLoop), 0x067, {0x08, 0x00, 0x00, 0x00});
+  expectFrame(odrive::setAxisState(0, odrive::AxisState::kIdle), 0x007, {0x01, 0x00, 0x00, 0x00});
 }
 
 // The documented vector asks for input mode 5, a trajectory; rc10d always asks for 1, passthrough.
 TEST(OdriveGolden, SetControllerMode) {
-  expectFrame(odriveSetControllerMode(3, OdriveControlMode::kPosition), 0x06B,
+  expectFrame(odrive::setControllerMode(3, odrive::ControlMode::kPosition), 0x06B,
               {0x03, 0x00, 0x00, 0x00, 0x01, 0x00, 0x00, 0x00});
 }
 
 // Not among the public vectors: by the same table.
 TEST(OdriveGolden, TorqueLimitsAndClearing) {
-  expectFrame(odriveSetInputTorque(62, -0.25F), 0x7CE, {0x00, 0x00, 0x80, 0xBE});
-  expectFrame(odriveSetLimits(3, 25.0F, 20.0F), 0x06F, {0x00, 0x00, 0xC8, 0x41, 0x00, 0x00, 0xA0, 0x41});
-  expectFrame(odriveClearErrors(3), 0x078, {0x00});
+  expectFrame(odrive::setInputTorque(62, -0.25F), 0x7CE, {0x00, 0x00, 0x80, 0xBE});
+  expectFrame(odrive::setLimits(3, 25.0F, 20.0F), 0x06F, {0x00, 0x00, 0xC8, 0x41, 0x00, 0x00, 0xA0, 0x41});
+  expectFrame(odrive::clearErrors(3), 0x078, {0x00});
 }
 
 TEST(OdriveGolden, HeartbeatOfFirmware05) {

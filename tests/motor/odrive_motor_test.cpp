@@ -32,14 +32,14 @@ class OdriveMotor : public testing::Test {
   }
   void SetUp() override { make(odriveSettings()); }
 
-  FrameVerdict feed(OdriveMessage message, float first, float second) {
+  FrameVerdict feed(odrive::Message message, float first, float second) {
     std::array<std::uint8_t, 8> payload{};
     writeLittleEndian(std::span<std::uint8_t>{payload}, 0, first);
     writeLittleEndian(std::span<std::uint8_t>{payload}, 4, second);
     return feed(message, payload);
   }
-  FrameVerdict feed(OdriveMessage message, std::span<const std::uint8_t> payload) {
-    CanFrame frame = makeClassicFrame(odriveId(node_, message), payload);
+  FrameVerdict feed(odrive::Message message, std::span<const std::uint8_t> payload) {
+    CanFrame frame = makeClassicFrame(odrive::canId(node_, message), payload);
     frame.received = now_;
     return motor_->updateFeedback(frame);
   }
@@ -48,10 +48,10 @@ class OdriveMotor : public testing::Test {
     writeLittleEndian(std::span<std::uint8_t>{payload}, 0, error);
     payload[4] = state;
     std::copy(flags.begin(), flags.end(), payload.begin() + 5);
-    return feed(OdriveMessage::kHeartbeat, payload);
+    return feed(odrive::Message::kHeartbeat, payload);
   }
   void sample(float turns = 0.0F, float turns_per_s = 0.0F) {
-    EXPECT_EQ(feed(OdriveMessage::kEncoderEstimates, turns, turns_per_s), FrameVerdict::kAccepted);
+    EXPECT_EQ(feed(odrive::Message::kEncoderEstimates, turns, turns_per_s), FrameVerdict::kAccepted);
   }
 
   std::vector<CanFrame> tick() {
@@ -86,16 +86,16 @@ class OdriveMotor : public testing::Test {
   static float numberAt(const CanFrame& frame, std::size_t at) {
     return readLittleEndian<float>(frame.payload(), at);
   }
-  static std::vector<OdriveMessage> messages(const std::vector<CanFrame>& frames) {
-    std::vector<OdriveMessage> result;
-    for (const auto& frame : frames) result.push_back(odriveMessage(frame.id));
+  static std::vector<odrive::Message> messages(const std::vector<CanFrame>& frames) {
+    std::vector<odrive::Message> result;
+    for (const auto& frame : frames) result.push_back(odrive::messageOf(frame.id));
     return result;
   }
   void expectRest(const std::vector<CanFrame>& frames) {
     ASSERT_EQ(frames.size(), 2U);
-    EXPECT_EQ(frames[0].id, odriveId(node_, OdriveMessage::kSetInputTorque));
+    EXPECT_EQ(frames[0].id, odrive::canId(node_, odrive::Message::kSetInputTorque));
     EXPECT_EQ(numberAt(frames[0], 0), 0.0F);
-    EXPECT_EQ(frames[1].id, odriveId(node_, OdriveMessage::kSetAxisState));
+    EXPECT_EQ(frames[1].id, odrive::canId(node_, odrive::Message::kSetAxisState));
     EXPECT_EQ(frames[1].data[0], 1);
   }
 
@@ -140,13 +140,13 @@ TEST_F(OdriveMotor, Firmware05HasNeitherTorquesNorTemperatureAtThoseIds) {
 
 TEST_F(OdriveMotor, FramesThatAreNotWhatTheyShouldBeAreMalformed) {
   const std::array<std::uint8_t, 7> short_payload{};
-  EXPECT_EQ(feed(OdriveMessage::kHeartbeat, short_payload), FrameVerdict::kMalformed);
-  EXPECT_EQ(feed(OdriveMessage::kEncoderEstimates, short_payload), FrameVerdict::kMalformed);
-  EXPECT_EQ(feed(OdriveMessage::kTorques, std::span<const std::uint8_t>{}), FrameVerdict::kMalformed);
-  EXPECT_EQ(feed(OdriveMessage::kEncoderEstimates, kNan, 0.0F), FrameVerdict::kMalformed);
-  EXPECT_EQ(feed(OdriveMessage::kEncoderEstimates, 0.0F, kInfinity), FrameVerdict::kMalformed);
-  EXPECT_EQ(feed(OdriveMessage::kTorques, 0.0F, kNan), FrameVerdict::kMalformed);
-  EXPECT_EQ(feed(OdriveMessage::kTemperature, kNan, kNan), FrameVerdict::kMalformed);
+  EXPECT_EQ(feed(odrive::Message::kHeartbeat, short_payload), FrameVerdict::kMalformed);
+  EXPECT_EQ(feed(odrive::Message::kEncoderEstimates, short_payload), FrameVerdict::kMalformed);
+  EXPECT_EQ(feed(odrive::Message::kTorques, std::span<const std::uint8_t>{}), FrameVerdict::kMalformed);
+  EXPECT_EQ(feed(odrive::Message::kEncoderEstimates, kNan, 0.0F), FrameVerdict::kMalformed);
+  EXPECT_EQ(feed(odrive::Message::kEncoderEstimates, 0.0F, kInfinity), FrameVerdict::kMalformed);
+  EXPECT_EQ(feed(odrive::Message::kTorques, 0.0F, kNan), FrameVerdict::kMalformed);
+  EXPECT_EQ(feed(odrive::Message::kTemperature, kNan, kNan), FrameVerdict::kMalformed);
   CanFrame remote = makeClassicFrame({0x069, false}, std::array<std::uint8_t, 8>{});
   remote.type = FrameType::kRemote;
   EXPECT_EQ(motor_->updateFeedback(remote), FrameVerdict::kMalformed);
@@ -169,7 +169,7 @@ TEST_F(OdriveMotor, ReadingsAreAtTheOutputShaft) {
   sample(1.25F, 5.0F);
   EXPECT_NEAR(motor_->feedback().total_angle_deg - before_deg, -9.0, 1e-9);
   EXPECT_FLOAT_EQ(motor_->feedback().velocity_rpm, -30.0F);
-  EXPECT_EQ(feed(OdriveMessage::kTorques, 0.0F, 0.5F), FrameVerdict::kAccepted);
+  EXPECT_EQ(feed(odrive::Message::kTorques, 0.0F, 0.5F), FrameVerdict::kAccepted);
   EXPECT_FLOAT_EQ(motor_->feedback().torque_nm, -5.0F);
   EXPECT_FLOAT_EQ(motor_->feedback().current_a, -10.0F);
 }
@@ -177,27 +177,27 @@ TEST_F(OdriveMotor, ReadingsAreAtTheOutputShaft) {
 TEST_F(OdriveMotor, CurrentOfFirmware05CountsInTheDirectionOfItsCalibration) {
   auto settings = odriveSettings("ODrive_v3");
   make(settings);
-  feed(OdriveMessage::kIq, 0.0F, 4.0F);
+  feed(odrive::Message::kIq, 0.0F, 4.0F);
   EXPECT_FLOAT_EQ(motor_->feedback().current_a, 4.0F);
   EXPECT_FLOAT_EQ(motor_->feedback().torque_nm, 0.2F);
   settings.own.set("iq_reversed", 1.0);
   make(settings);
-  feed(OdriveMessage::kIq, 0.0F, 4.0F);
+  feed(odrive::Message::kIq, 0.0F, 4.0F);
   EXPECT_FLOAT_EQ(motor_->feedback().current_a, -4.0F);
 }
 
 TEST_F(OdriveMotor, TheHotterOfTwoSensorsIsTheTemperature) {
-  feed(OdriveMessage::kTemperature, 41.0F, kNan);
+  feed(odrive::Message::kTemperature, 41.0F, kNan);
   EXPECT_FLOAT_EQ(motor_->feedback().temperature_c, 41.0F);
-  feed(OdriveMessage::kTemperature, 41.0F, 66.0F);
+  feed(odrive::Message::kTemperature, 41.0F, 66.0F);
   EXPECT_FLOAT_EQ(motor_->feedback().temperature_c, 66.0F);
 }
 
 TEST_F(OdriveMotor, TelemetryThatStoppedIsNotReportedAnyMore) {
   sample();
-  feed(OdriveMessage::kTorques, 0.0F, 0.5F);
-  feed(OdriveMessage::kBusVoltage, 24.0F, 1.0F);
-  feed(OdriveMessage::kTemperature, 30.0F, 30.0F);
+  feed(odrive::Message::kTorques, 0.0F, 0.5F);
+  feed(odrive::Message::kBusVoltage, 24.0F, 1.0F);
+  feed(odrive::Message::kTemperature, 30.0F, 30.0F);
   now_ += 100ms;
   sample();
   EXPECT_FALSE(std::isnan(motor_->feedback().current_a));
@@ -219,8 +219,8 @@ TEST_F(OdriveMotor, EnablingAsksForTorqueControlAndLimitsBeforeClosedLoop) {
   expectRest(tick());
   const auto frames = tick();
   EXPECT_THAT(messages(frames),
-              testing::ElementsAre(OdriveMessage::kSetInputTorque, OdriveMessage::kSetControllerMode,
-                                   OdriveMessage::kSetLimits, OdriveMessage::kSetAxisState));
+              testing::ElementsAre(odrive::Message::kSetInputTorque, odrive::Message::kSetControllerMode,
+                                   odrive::Message::kSetLimits, odrive::Message::kSetAxisState));
   EXPECT_EQ(numberAt(frames[0], 0), 0.0F);
   EXPECT_EQ(frames[1].data[0], 1);
   EXPECT_EQ(frames[1].data[4], 1);
@@ -231,7 +231,7 @@ TEST_F(OdriveMotor, EnablingAsksForTorqueControlAndLimitsBeforeClosedLoop) {
   // Until it is done nothing but 0 N·m.
   for (int i = 0; i < 50; ++i) {
     for (const auto& frame : tick()) {
-      EXPECT_EQ(odriveMessage(frame.id), OdriveMessage::kSetInputTorque);
+      EXPECT_EQ(odrive::messageOf(frame.id), odrive::Message::kSetInputTorque);
       EXPECT_EQ(numberAt(frame, 0), 0.0F);
     }
   }
@@ -263,7 +263,7 @@ TEST_F(OdriveMotor, UnansweredStepsAreAskedFiveTimesAndThenFail) {
   int asked = 0;
   for (int i = 0; i < 2000 && motor_->sequenceProgress() == SequenceProgress::kPending; ++i) {
     for (const auto& frame : tick()) {
-      asked += odriveMessage(frame.id) == OdriveMessage::kSetAxisState && frame.data[0] == 8 ? 1 : 0;
+      asked += odrive::messageOf(frame.id) == odrive::Message::kSetAxisState && frame.data[0] == 8 ? 1 : 0;
     }
   }
   EXPECT_EQ(motor_->sequenceProgress(), SequenceProgress::kFailed);
@@ -275,7 +275,7 @@ TEST_F(OdriveMotor, EnablingFailsAtOnceOnAnErrorAndClearsNone) {
   heartbeat(0x100, 1);
   motor_->order(FrameKind::kEnable);
   for (int i = 0; i < 3; ++i) {
-    for (const auto& frame : tick()) EXPECT_NE(odriveMessage(frame.id), OdriveMessage::kClearErrors);
+    for (const auto& frame : tick()) EXPECT_NE(odrive::messageOf(frame.id), odrive::Message::kClearErrors);
   }
   EXPECT_EQ(motor_->sequenceProgress(), SequenceProgress::kFailed);
 }
@@ -297,10 +297,10 @@ TEST_F(OdriveMotor, ANewModeIsToldThreeTimesBetweenItsInputs) {
   motor_->setTarget({.mode = ControlMode::kVelocity, .value = 60.0});
   for (int i = 0; i < 3; ++i) {
     EXPECT_THAT(messages(tick()),
-                testing::ElementsAre(OdriveMessage::kSetInputVel, OdriveMessage::kSetControllerMode,
-                                     OdriveMessage::kSetInputVel));
+                testing::ElementsAre(odrive::Message::kSetInputVel, odrive::Message::kSetControllerMode,
+                                     odrive::Message::kSetInputVel));
   }
-  EXPECT_THAT(messages(tick()), testing::ElementsAre(OdriveMessage::kSetInputVel));
+  EXPECT_THAT(messages(tick()), testing::ElementsAre(odrive::Message::kSetInputVel));
 }
 
 TEST_F(OdriveMotor, IdleIsZeroTorqueInTorqueControl) {
@@ -308,7 +308,7 @@ TEST_F(OdriveMotor, IdleIsZeroTorqueInTorqueControl) {
   motor_->order(FrameKind::kIdle);
   const auto frames = tick();
   ASSERT_EQ(frames.size(), 3U);
-  EXPECT_EQ(odriveMessage(frames[0].id), OdriveMessage::kSetInputTorque);
+  EXPECT_EQ(odrive::messageOf(frames[0].id), odrive::Message::kSetInputTorque);
   EXPECT_EQ(numberAt(frames[0], 0), 0.0F);
   EXPECT_EQ(frames[1].data[0], 1);
 }
@@ -320,7 +320,7 @@ TEST_F(OdriveMotor, CurrentBecomesTorqueOfTheDrivesShaft) {
   make(settings);
   enable();
   const auto frame = settledInput({.mode = ControlMode::kCurrent, .value = 8.0, .torque_ff_nm = 0.5F});
-  EXPECT_EQ(odriveMessage(frame.id), OdriveMessage::kSetInputTorque);
+  EXPECT_EQ(odrive::messageOf(frame.id), odrive::Message::kSetInputTorque);
   // 8 A * 0.05 N·m/A, and 0.5 N·m behind a gear of 5.
   EXPECT_FLOAT_EQ(numberAt(frame, 0), -0.5F);
   EXPECT_FLOAT_EQ(motor_->commandValue(), 10.0F);
@@ -338,7 +338,7 @@ TEST_F(OdriveMotor, VelocityAndPositionAreOfTheDrivesShaft) {
   EXPECT_FLOAT_EQ(numberAt(frame, 4), 0.1F);
   frame = settledInput(
       {.mode = ControlMode::kTotalAngle, .value = 720.0, .velocity_ff_rpm = 12.0F, .torque_ff_nm = -0.5F});
-  EXPECT_EQ(odriveMessage(frame.id), OdriveMessage::kSetInputPos);
+  EXPECT_EQ(odrive::messageOf(frame.id), odrive::Message::kSetInputPos);
   EXPECT_FLOAT_EQ(numberAt(frame, 0), 10.0F);
   EXPECT_EQ(readLittleEndian<std::int16_t>(frame.payload(), 4), 1000);
   EXPECT_EQ(readLittleEndian<std::int16_t>(frame.payload(), 6), -100);
@@ -359,11 +359,11 @@ TEST_F(OdriveMotor, BrakeIsSpeedZeroAndHoldIsThePresentAngle) {
   sample(0.25F, 3.0F);
   motor_->order(FrameKind::kBrake);
   auto frames = tick();
-  EXPECT_EQ(odriveMessage(frames.front().id), OdriveMessage::kSetInputVel);
+  EXPECT_EQ(odrive::messageOf(frames.front().id), odrive::Message::kSetInputVel);
   EXPECT_EQ(numberAt(frames.front(), 0), 0.0F);
   motor_->order(FrameKind::kHold);
   frames = tick();
-  EXPECT_EQ(odriveMessage(frames.front().id), OdriveMessage::kSetInputPos);
+  EXPECT_EQ(odrive::messageOf(frames.front().id), odrive::Message::kSetInputPos);
   EXPECT_FLOAT_EQ(numberAt(frames.front(), 0), 0.25F);
 }
 
@@ -385,10 +385,10 @@ TEST_F(OdriveMotor, LimitsClampWhatIsSentAndSaySo) {
 }
 
 TEST_F(OdriveMotor, FeedForwardsOfAPositionSaturate) {
-  const auto frame = odriveSetInputPos(3, 0.0F, 1e9F, -kInfinity);
+  const auto frame = odrive::setInputPos(3, 0.0F, 1e9F, -kInfinity);
   EXPECT_EQ(readLittleEndian<std::int16_t>(frame.payload(), 4), 32767);
   EXPECT_EQ(readLittleEndian<std::int16_t>(frame.payload(), 6), -32767);
-  EXPECT_EQ(readLittleEndian<std::int16_t>(odriveSetInputPos(3, 0.0F, kNan, 0.0F).payload(), 4), 0);
+  EXPECT_EQ(readLittleEndian<std::int16_t>(odrive::setInputPos(3, 0.0F, kNan, 0.0F).payload(), 4), 0);
 }
 
 TEST_F(OdriveMotor, DeratingReachesTheDrivesOwnCurrentLimit) {
@@ -399,7 +399,7 @@ TEST_F(OdriveMotor, DeratingReachesTheDrivesOwnCurrentLimit) {
   int told = 0;
   for (int i = 0; i < 100; ++i) {
     for (const auto& frame : tick()) {
-      if (odriveMessage(frame.id) != OdriveMessage::kSetLimits) continue;
+      if (odrive::messageOf(frame.id) != odrive::Message::kSetLimits) continue;
       told_a = numberAt(frame, 4);
       ++told;
     }
@@ -413,7 +413,8 @@ TEST_F(OdriveMotor, LimitsAreRepeatedSoThatALostFrameDoesNotMatterForLong) {
   settledInput({.mode = ControlMode::kVelocity, .value = 10.0});
   int told = 0;
   for (int i = 0; i < 2000; ++i) {
-    for (const auto& frame : tick()) told += odriveMessage(frame.id) == OdriveMessage::kSetLimits ? 1 : 0;
+    for (const auto& frame : tick())
+      told += odrive::messageOf(frame.id) == odrive::Message::kSetLimits ? 1 : 0;
   }
   EXPECT_GE(told, 3);
   EXPECT_LE(told, 5);
@@ -473,7 +474,7 @@ TEST_F(OdriveMotor, ClearingSendsClearErrorsAndNothingThatMoves) {
   motor_->clearComplaint();
   const auto frames = tick();
   ASSERT_EQ(frames.size(), 3U);
-  EXPECT_EQ(odriveMessage(frames[0].id), OdriveMessage::kClearErrors);
+  EXPECT_EQ(odrive::messageOf(frames[0].id), odrive::Message::kClearErrors);
   EXPECT_EQ(frames[0].length, 1);
   expectRest({frames.begin() + 1, frames.end()});
   tick();

@@ -14,7 +14,7 @@ namespace {
 
 using Bytes = std::array<std::uint8_t, 8>;
 
-RobstrideCodec codec(std::string_view name, int drive_id = 127) {
+robstride::Codec codec(std::string_view name, int drive_id = 127) {
   const auto* model = findRobstrideModel(name);
   return {
       .model = model, .position_range_rad = model->position_range_rad, .drive_id = drive_id, .host_id = 0xFD};
@@ -45,11 +45,11 @@ TEST(RobStrideGolden, EnableAndStop) {
 }
 
 TEST(RobStrideGolden, ParameterWritesAreLittleEndian) {
-  expectFrame(codec("RS00").write(robstride_parameter::kPositionRef, 3.14F), 0x1200FD7F,
+  expectFrame(codec("RS00").write(robstride::parameter::kPositionRef, 3.14F), 0x1200FD7F,
               {0x16, 0x70, 0, 0, 0xC3, 0xF5, 0x48, 0x40});
-  expectFrame(codec("RS00").write(robstride_parameter::kRunMode, std::uint32_t{1}), 0x1200FD7F,
+  expectFrame(codec("RS00").write(robstride::parameter::kRunMode, std::uint32_t{1}), 0x1200FD7F,
               {0x05, 0x70, 0, 0, 1, 0, 0, 0});
-  expectFrame(codec("RS00").write(std::uint16_t{0x7028}, 100 * kRobstrideTimeoutPerMs), 0x1200FD7F,
+  expectFrame(codec("RS00").write(std::uint16_t{0x7028}, 100 * robstride::kTimeoutPerMs), 0x1200FD7F,
               {0x28, 0x70, 0, 0, 0xD0, 0x07, 0, 0});
 }
 
@@ -66,7 +66,7 @@ TEST(RobStrideGolden, Feedback) {
   EXPECT_NEAR(seen.velocity_rad_s, 1.99959, 1e-5);
   EXPECT_NEAR(seen.torque_nm, 0.69963, 1e-5);
   EXPECT_NEAR(seen.temperature_c, 31.2, 1e-6);
-  EXPECT_EQ(seen.mode, kRobstrideRunning);
+  EXPECT_EQ(seen.mode, robstride::kRunning);
   EXPECT_EQ(seen.status_bits, 0);
   expectFrame(codec("RS00").answer(seen), 0x02807FFD, {0x70, 0xB9, 0x87, 0xC1, 0x86, 0x65, 0x01, 0x38});
 }
@@ -77,7 +77,8 @@ TEST(RobStrideGolden, FeedbackWithFaults) {
   EXPECT_EQ(seen.mode, 0);
   EXPECT_EQ(seen.status_bits, 0b000101);
   EXPECT_NEAR(seen.temperature_c, 145.5, 1e-6);
-  EXPECT_EQ(robstrideFault(robstrideNativeCode(0, seen.status_bits), false), FaultCode::kDriveUnderVoltage);
+  EXPECT_EQ(robstride::faultOf(robstride::nativeCode(0, seen.status_bits), false),
+            FaultCode::kDriveUnderVoltage);
 }
 
 TEST(RobStrideGolden, TheMotorReadsTheFeedbackInTheUsersUnits) {

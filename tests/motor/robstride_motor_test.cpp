@@ -50,20 +50,20 @@ class Bench {
     const auto count = motor.packCommand(at, out);
     return {out.begin(), out.begin() + static_cast<std::ptrdiff_t>(count)};
   }
-  FrameVerdict say(RobstrideFeedback state) {
+  FrameVerdict say(robstride::Feedback state) {
     auto frame = codec.answer(state);
     frame.received = now;
     return motor.updateFeedback(frame);
   }
   FrameVerdict run(double position_rad = 0.0, double velocity_rad_s = 0.0) {
-    return say({.position_rad = position_rad, .velocity_rad_s = velocity_rad_s, .mode = kRobstrideRunning});
+    return say({.position_rad = position_rad, .velocity_rad_s = velocity_rad_s, .mode = robstride::kRunning});
   }
   FrameVerdict parameter(std::uint16_t index, std::uint32_t bits, bool known = true) {
     auto frame = codec.parameter(index, bits, known);
     frame.received = now;
     return motor.updateFeedback(frame);
   }
-  RobstrideOperation operation(const Target& target) {
+  robstride::Operation operation(const Target& target) {
     for (const auto& frame : tick(FrameKind::kCommand, target)) {
       if (typeOf(frame) == 1) return codec.operation(frame);
     }
@@ -72,7 +72,7 @@ class Bench {
   }
 
   RobStride_Motor motor;
-  RobstrideCodec codec;
+  robstride::Codec codec;
   MonotonicTime now{std::chrono::hours{1}};
   std::uint64_t ticks = 0;
 };
@@ -83,7 +83,7 @@ MotorSettings controlled(std::string control, std::string_view model = "RS00") {
   return settings;
 }
 
-double torqueOf(const RobstrideOperation& told, double position_rad, double velocity_rad_s) {
+double torqueOf(const robstride::Operation& told, double position_rad, double velocity_rad_s) {
   return told.stiffness_nm_per_rad * (told.position_rad - position_rad) +
          told.damping_nms_per_rad * (told.velocity_rad_s - velocity_rad_s) + told.torque_nm;
 }
@@ -294,12 +294,12 @@ TEST(RobStrideMotor, EveryValueOnTheScalesComesBack) {
   std::mt19937 random(7);
   std::uniform_real_distribution<double> share(-1.0, 1.0);
   for (const auto& model : robstrideModels()) {
-    const RobstrideCodec codec{.model = &model,
-                               .position_range_rad = model.position_range_rad,
-                               .drive_id = kDrive,
-                               .host_id = kHost};
+    const robstride::Codec codec{.model = &model,
+                                 .position_range_rad = model.position_range_rad,
+                                 .drive_id = kDrive,
+                                 .host_id = kHost};
     for (int i = 0; i < 500; ++i) {
-      const RobstrideOperation wanted{
+      const robstride::Operation wanted{
           .position_rad = share(random) * model.position_range_rad,
           .velocity_rad_s = share(random) * model.velocity_range_rad_s,
           .stiffness_nm_per_rad = std::abs(share(random)) * model.stiffness_range_nm_per_rad,
@@ -325,7 +325,7 @@ TEST(RobStrideMotor, TheCurrentModeWritesItsReference) {
   settings.effort_limit = 5.0F;
   Bench bench(settings);
   const auto frames = bench.tick(FrameKind::kCommand, {.mode = ControlMode::kCurrent, .value = 9.0});
-  EXPECT_EQ(readLittleEndian<std::uint16_t>(frames[0].payload(), 0), robstride_parameter::kCurrentRef);
+  EXPECT_EQ(readLittleEndian<std::uint16_t>(frames[0].payload(), 0), robstride::parameter::kCurrentRef);
   EXPECT_FLOAT_EQ(readLittleEndian<float>(frames[0].payload(), 4), -5.0F);
   EXPECT_NE(bench.motor.limits() & kLimitCurrent, 0U);
   EXPECT_FLOAT_EQ(bench.motor.commandValue(), 5.0F);
@@ -336,10 +336,10 @@ TEST(RobStrideMotor, TheVelocityModeHasNoCurrentUntilThereIsATarget) {
   bench.run();
   auto frames = bench.tick(FrameKind::kIdle);
   EXPECT_FLOAT_EQ(readLittleEndian<float>(frames[0].payload(), 4), 0.0F);
-  EXPECT_EQ(readLittleEndian<std::uint16_t>(frames[1].payload(), 0), robstride_parameter::kCurrentLimit);
+  EXPECT_EQ(readLittleEndian<std::uint16_t>(frames[1].payload(), 0), robstride::parameter::kCurrentLimit);
   EXPECT_FLOAT_EQ(readLittleEndian<float>(frames[1].payload(), 4), 0.0F);
   frames = bench.tick(FrameKind::kCommand, {.mode = ControlMode::kVelocity, .value = 60.0});
-  EXPECT_EQ(readLittleEndian<std::uint16_t>(frames[0].payload(), 0), robstride_parameter::kVelocityRef);
+  EXPECT_EQ(readLittleEndian<std::uint16_t>(frames[0].payload(), 0), robstride::parameter::kVelocityRef);
   EXPECT_NEAR(readLittleEndian<float>(frames[0].payload(), 4), 60.0 / kRpmPerRadPerS, 1e-4);
   EXPECT_FLOAT_EQ(readLittleEndian<float>(frames[1].payload(), 4), 15.5F);
   EXPECT_EQ(typeOf(bench.tick()[0]), 18U);
@@ -351,7 +351,7 @@ TEST(RobStrideMotor, ThePositionModeGoesBeyondTheScaleOfFeedback) {
   const auto frames = bench.tick(
       FrameKind::kCommand,
       {.mode = ControlMode::kTotalAngle, .value = bench.motor.feedback().total_angle_deg + 3600.0});
-  EXPECT_EQ(readLittleEndian<std::uint16_t>(frames[0].payload(), 0), robstride_parameter::kPositionRef);
+  EXPECT_EQ(readLittleEndian<std::uint16_t>(frames[0].payload(), 0), robstride::parameter::kPositionRef);
   EXPECT_NEAR(readLittleEndian<float>(frames[0].payload(), 4), 1.0 + 20 * std::numbers::pi, 1e-3);
 }
 
@@ -418,7 +418,7 @@ TEST(RobStrideMotor, GearAndDirectionApplyToAllReadings) {
   settings.gear_ratio = 7.75 * 3;
   settings.direction = -1;
   Bench bench(settings);
-  bench.say({.position_rad = 0.0, .velocity_rad_s = 3.0, .torque_nm = 1.5, .mode = kRobstrideRunning});
+  bench.say({.position_rad = 0.0, .velocity_rad_s = 3.0, .torque_nm = 1.5, .mode = robstride::kRunning});
   const double before_deg = bench.motor.feedback().total_angle_deg;
   EXPECT_NEAR(bench.motor.feedback().velocity_rpm, -kRpmPerRadPerS, 0.01);
   EXPECT_NEAR(bench.motor.feedback().torque_nm, -4.5, 2e-3);
@@ -431,20 +431,20 @@ TEST(RobStrideMotor, GearAndDirectionApplyToAllReadings) {
 
 TEST(RobStrideMotor, TheSupplyVoltageIsRead) {
   Bench bench(robStrideSettings("RS00"));
-  EXPECT_EQ(bench.parameter(robstride_parameter::kSupplyVoltage, std::bit_cast<std::uint32_t>(47.5F), false),
+  EXPECT_EQ(bench.parameter(robstride::parameter::kSupplyVoltage, std::bit_cast<std::uint32_t>(47.5F), false),
             FrameVerdict::kAccepted);
   EXPECT_TRUE(std::isnan(bench.motor.feedback().voltage_v));
-  bench.parameter(robstride_parameter::kSupplyVoltage, std::bit_cast<std::uint32_t>(47.5F));
+  bench.parameter(robstride::parameter::kSupplyVoltage, std::bit_cast<std::uint32_t>(47.5F));
   EXPECT_FLOAT_EQ(bench.motor.feedback().voltage_v, 47.5F);
   for (const float odd : {-1.0F, 1e9F, std::numeric_limits<float>::quiet_NaN()}) {
-    bench.parameter(robstride_parameter::kSupplyVoltage, std::bit_cast<std::uint32_t>(odd));
+    bench.parameter(robstride::parameter::kSupplyVoltage, std::bit_cast<std::uint32_t>(odd));
     EXPECT_FLOAT_EQ(bench.motor.feedback().voltage_v, 47.5F);
   }
 }
 
 TEST(RobStrideMotor, ReportsOfType24AreFeedbackToo) {
   Bench bench(robStrideSettings("RS00"));
-  auto frame = bench.codec.answer({.position_rad = 1.0, .mode = kRobstrideRunning});
+  auto frame = bench.codec.answer({.position_rad = 1.0, .mode = robstride::kRunning});
   frame.id.value = (frame.id.value & 0x00FFFFFFU) | 24U << 24U;
   ASSERT_TRUE(bench.motor.matchesFrame(frame));
   EXPECT_EQ(bench.motor.updateFeedback(frame), FrameVerdict::kAccepted);
@@ -453,7 +453,7 @@ TEST(RobStrideMotor, ReportsOfType24AreFeedbackToo) {
 
 TEST(RobStrideMotor, FramesOfOthersAndOddFramesAreNotTaken) {
   Bench bench(robStrideSettings("RS00"));
-  const auto good = bench.codec.answer({.mode = kRobstrideRunning});
+  const auto good = bench.codec.answer({.mode = robstride::kRunning});
   ASSERT_TRUE(bench.motor.matchesFrame(good));
   auto other = good;
   other.id.value = 0x0280'10FD;  // another drive
@@ -501,7 +501,7 @@ TEST(RobStrideMotor, GarbageLeavesFiniteReadings) {
 
 TEST(RobStrideMotor, EveryFaultBitHasItsCode) {
   using enum FaultCode;
-  const auto code = [](std::uint32_t native) { return robstrideFault(native, false); };
+  const auto code = [](std::uint32_t native) { return robstride::faultOf(native, false); };
   EXPECT_EQ(code(0), kNone);
   EXPECT_EQ(code(1U << 0U), kDriveMotorTooHot);
   EXPECT_EQ(code(1U << 1U), kDriveHardware);
@@ -519,8 +519,8 @@ TEST(RobStrideMotor, EveryFaultBitHasItsCode) {
   EXPECT_EQ(code(1U << 27U), kDriveEncoder);
   EXPECT_EQ(code(1U << 28U), kDriveOverload);
   EXPECT_EQ(code(1U << 29U), kDriveCalibration);
-  EXPECT_EQ(robstrideFault(1U << 28U, true), kDrivePhase);
-  EXPECT_EQ(robstrideFault(1U << 9U, true), kDriveOverload);
+  EXPECT_EQ(robstride::faultOf(1U << 28U, true), kDrivePhase);
+  EXPECT_EQ(robstride::faultOf(1U << 9U, true), kDriveOverload);
 }
 
 TEST(RobStrideMotor, AFaultFrameIsAComplaintUntilItIsClearedWhicheverWayRoundItsIdsAre) {
@@ -569,8 +569,8 @@ TEST(RobStrideMotor, EnablingSetsAndReadsBackAndThenHasNoTorque) {
   EXPECT_TRUE(bench.tick().empty());  // waits for the answer
   bench.say({.position_rad = 0.4, .mode = 0});
 
-  const std::array<std::uint16_t, 3> settings{robstride_parameter::kRunMode,
-                                              robstride_parameter::kTorqueLimit, 0x7028};
+  const std::array<std::uint16_t, 3> settings{robstride::parameter::kRunMode,
+                                              robstride::parameter::kTorqueLimit, 0x7028};
   for (const auto index : settings) {
     frames = bench.tick();
     ASSERT_EQ(frames.size(), 2U);
@@ -582,8 +582,8 @@ TEST(RobStrideMotor, EnablingSetsAndReadsBackAndThenHasNoTorque) {
   }
   frames = bench.tick();
   ASSERT_EQ(frames.size(), 1U);
-  EXPECT_EQ(readLittleEndian<std::uint16_t>(frames[0].payload(), 0), robstride_parameter::kPosition);
-  bench.parameter(robstride_parameter::kPosition, std::bit_cast<std::uint32_t>(0.4F));
+  EXPECT_EQ(readLittleEndian<std::uint16_t>(frames[0].payload(), 0), robstride::parameter::kPosition);
+  bench.parameter(robstride::parameter::kPosition, std::bit_cast<std::uint32_t>(0.4F));
 
   frames = bench.tick();
   ASSERT_EQ(frames.size(), 3U);
@@ -617,14 +617,14 @@ TEST(RobStrideMotor, ASettingThatTheDriveDoesNotKeepFailsTheEnabling) {
   for (int i = 0; i < 400; ++i) {
     for (const auto& frame : bench.tick()) {
       EXPECT_NE(typeOf(frame), 3U);
-      if (typeOf(frame) == 17) bench.parameter(robstride_parameter::kRunMode, 2);
+      if (typeOf(frame) == 17) bench.parameter(robstride::parameter::kRunMode, 2);
     }
   }
   EXPECT_EQ(bench.motor.sequenceProgress(), SequenceProgress::kFailed);
 }
 
 TEST(RobStrideMotor, ALimitMayBecomeSmallerButNotLarger) {
-  const auto limit = RobstrideSetting::limit(robstride_parameter::kCurrentLimit, 23.0F);
+  const auto limit = RobstrideSetting::limit(robstride::parameter::kCurrentLimit, 23.0F);
   EXPECT_TRUE(limit.agrees(std::bit_cast<std::uint32_t>(16.0F)));
   EXPECT_TRUE(limit.agrees(std::bit_cast<std::uint32_t>(23.0F)));
   EXPECT_FALSE(limit.agrees(std::bit_cast<std::uint32_t>(30.0F)));
@@ -704,7 +704,7 @@ TEST(RobstrideFamily, DrivesShareABusUnlessTheyShareAnId) {
   const auto refused = robstrideFamily().build(again, parts);
   ASSERT_FALSE(refused.has_value());
   EXPECT_NE(refused.error().message.find("joint3"), std::string::npos);
-  const RobstrideCodec codec{
+  const robstride::Codec codec{
       .model = findRobstrideModel("RS00"), .position_range_rad = 12.57, .drive_id = 4, .host_id = kHost};
   bus->dispatch(codec.answer({.position_rad = 1.0}));
   for (std::size_t i = 0; i < motors.size(); ++i) {
@@ -714,7 +714,7 @@ TEST(RobstrideFamily, DrivesShareABusUnlessTheyShareAnId) {
 
 TEST(RobStrideMotor, NothingAllocatesAfterConstruction) {
   Bench bench(robStrideSettings("RS00"));
-  const auto answer = bench.codec.answer({.mode = kRobstrideRunning});
+  const auto answer = bench.codec.answer({.mode = robstride::kRunning});
   std::array<CanFrame, kMaxFramesPerPacker> out{};
   AllocGuard guard;
   for (int i = 0; i < 500; ++i) {

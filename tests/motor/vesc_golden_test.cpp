@@ -63,7 +63,7 @@ TEST(VescGolden, CommandsHaveTheBytesOfTheDocuments) {
     settings.id = vector.id;
     VESC_Motor motor(settings);
     const Tick tick{.index = 1, .now = MonotonicTime{std::chrono::seconds{5}}};
-    auto status = vescFrame(vescId(VescPacket::kStatus1, vector.id).value, "0000000000000000");
+    auto status = vescFrame(vesc::canId(vesc::Packet::kStatus1, vector.id).value, "0000000000000000");
     status.received = tick.now;
     ASSERT_EQ(motor.updateFeedback(status), FrameVerdict::kAccepted);  // it stands still
     motor.order(FrameKind::kCommand);
@@ -96,27 +96,27 @@ TEST(VescGolden, APositionHasTheBytesOfTheDocuments) {
 }
 
 TEST(VescGolden, StatusFramesHaveTheValuesOfTheDocuments) {
-  const auto one = decodeVescStatus1(vescFrame(0x907, "FFFFCFC7FF63FE50"));
+  const auto one = vesc::decodeStatus1(vescFrame(0x907, "FFFFCFC7FF63FE50"));
   EXPECT_EQ(one.erpm, -12345);
   EXPECT_FLOAT_EQ(one.current_a, -15.7F);
   EXPECT_FLOAT_EQ(one.duty, -0.432F);
-  const auto four = decodeVescStatus4(vescFrame(0x1007, "01590200FFE91199"));
+  const auto four = vesc::decodeStatus4(vescFrame(0x1007, "01590200FFE91199"));
   EXPECT_FLOAT_EQ(four.drive_c, 34.5F);
   EXPECT_FLOAT_EQ(four.motor_c, 51.2F);
   EXPECT_FLOAT_EQ(four.input_a, -2.3F);
   EXPECT_FLOAT_EQ(four.position_deg, 90.1F);
-  const auto five = decodeVescStatus5(vescFrame(0x1B07, "0000313801E10000"));
+  const auto five = vesc::decodeStatus5(vescFrame(0x1B07, "0000313801E10000"));
   EXPECT_EQ(five.steps, 12600);
   EXPECT_FLOAT_EQ(five.input_v, 48.1F);
-  const auto six = decodeVescStatus6(vescFrame(0x3A07, "06720CE4000001F4"));
+  const auto six = vesc::decodeStatus6(vescFrame(0x3A07, "06720CE4000001F4"));
   EXPECT_FLOAT_EQ(six.adc1_v, 1.65F);
   EXPECT_FLOAT_EQ(six.adc2_v, 3.3F);
   EXPECT_FLOAT_EQ(six.adc3_v, 0.0F);
   EXPECT_FLOAT_EQ(six.ppm, 0.5F);
-  const auto two = decodeVescStatus2(vescFrame(0xE07, "0000303900002710"));
+  const auto two = vesc::decodeStatus2(vescFrame(0xE07, "0000303900002710"));
   EXPECT_DOUBLE_EQ(two.charge_used_ah, 1.2345);
   EXPECT_DOUBLE_EQ(two.charge_returned_ah, 1.0);
-  const auto three = decodeVescStatus3(vescFrame(0xF07, "0001E240FFFFFFFF"));
+  const auto three = vesc::decodeStatus3(vescFrame(0xF07, "0001E240FFFFFFFF"));
   EXPECT_DOUBLE_EQ(three.energy_used_wh, 12.3456);
   EXPECT_DOUBLE_EQ(three.energy_returned_wh, -0.0001);
 }
@@ -133,13 +133,13 @@ TEST(VescGolden, AHundredTurnsOfTwentyOnePolePairsAreAHundredTurns) {
 }
 
 TEST(VescGolden, AQuestionAndItsAnswerFitIntoAFrameEach) {
-  const CanFrame question = makeVescQuestion(7, 0xFD, kVescAskFault);
+  const CanFrame question = vesc::makeQuestion(7, 0xFD, vesc::kAskFault);
   EXPECT_EQ(question.id, (CanId{0x807, true}));
   EXPECT_EQ(question.length, 7);
   EXPECT_EQ(question.data, vescFrame(0x807, "FD003200008000").data);
-  const auto answer = decodeVescAnswer(vescFrame(0x8FD, "0701320000800005"));
+  const auto answer = vesc::decodeAnswer(vescFrame(0x8FD, "0701320000800005"));
   ASSERT_TRUE(answer.has_value());
-  EXPECT_EQ(answer->mask, kVescAskFault);
+  EXPECT_EQ(answer->mask, vesc::kAskFault);
   EXPECT_EQ(answer->value, 5);
 }
 

@@ -72,19 +72,19 @@ class VescMotorTest : public ::testing::Test {
     if (frames.empty()) return 0;
     EXPECT_EQ(frames[0].length, 4);
     EXPECT_EQ(frames[0].id.value & 0xFFU, 7U);
-    packet_ = static_cast<VescPacket>(frames[0].id.value >> 8U);
+    packet_ = static_cast<vesc::Packet>(frames[0].id.value >> 8U);
     return readBigEndian<std::int32_t>(frames[0].payload(), 0);
   }
 
   std::unique_ptr<VESC_Motor> motor_;
   Tick tick_{.index = 0, .now = MonotonicTime{std::chrono::hours{1}}};
-  VescPacket packet_ = VescPacket::kPing;
+  vesc::Packet packet_ = vesc::Packet::kPing;
 };
 
 TEST_F(VescMotorTest, AtFirstAndAtRestItSendsNoCurrent) {
   auto& motor = makeWith();
   EXPECT_EQ(sent(), 0);
-  EXPECT_EQ(packet_, VescPacket::kSetCurrent);
+  EXPECT_EQ(packet_, vesc::Packet::kSetCurrent);
   std::array<CanFrame, 1> rest{};
   ASSERT_EQ(motor.packRest(rest), 1U);
   EXPECT_EQ(rest[0].id, (CanId{0x107, true}));
@@ -99,7 +99,7 @@ TEST_F(VescMotorTest, EveryKindThatIsNoCommandSendsNoCurrent) {
        {FrameKind::kRest, FrameKind::kPoll, FrameKind::kIdle, FrameKind::kEnable, FrameKind::kDisable}) {
     motor.order(kind);
     EXPECT_EQ(sent(), 0);
-    EXPECT_EQ(packet_, VescPacket::kSetCurrent);
+    EXPECT_EQ(packet_, vesc::Packet::kSetCurrent);
   }
 }
 
@@ -110,13 +110,13 @@ TEST_F(VescMotorTest, CurrentsGoThereAndBackOverTheWholeRange) {
   for (int i = 0; i < 1000; ++i) {
     const double a = amperes(random);
     EXPECT_NEAR(sent({.mode = ControlMode::kCurrent, .value = a}) / 1e3, a, 5.1e-4);
-    EXPECT_EQ(packet_, VescPacket::kSetCurrent);
+    EXPECT_EQ(packet_, vesc::Packet::kSetCurrent);
   }
   makeWith({{"relative_current", 1.0}});
   for (int i = 0; i < 1000; ++i) {
     const double a = amperes(random);
     EXPECT_NEAR(sent({.mode = ControlMode::kCurrent, .value = a}) / 1e5 * 60.0, a, 1e-3);
-    EXPECT_EQ(packet_, VescPacket::kSetCurrentRelative);
+    EXPECT_EQ(packet_, vesc::Packet::kSetCurrentRelative);
   }
 }
 
@@ -130,7 +130,7 @@ TEST_F(VescMotorTest, VelocitiesGoThereAndBackBehindAGearAndADirection) {
   for (int i = 0; i < 1000; ++i) {
     const double wanted = rpm(random);
     const auto erpm = sent({.mode = ControlMode::kVelocity, .value = wanted});
-    EXPECT_EQ(packet_, VescPacket::kSetErpm);
+    EXPECT_EQ(packet_, vesc::Packet::kSetErpm);
     EXPECT_EQ(erpm, std::lround(-wanted * 4.0 * 7.0));
     status(erpm);
     EXPECT_NEAR(static_cast<double>(motor.feedback().velocity_rpm), wanted, 0.02);
@@ -159,7 +159,7 @@ TEST_F(VescMotorTest, AMotorThatMayHaveNoCurrentIsReleasedInEveryMode) {
   for (const auto mode :
        {ControlMode::kCurrent, ControlMode::kVelocity, ControlMode::kDuty, ControlMode::kBrake}) {
     EXPECT_EQ(sent({.mode = mode, .value = 1.0}), 0);
-    EXPECT_EQ(packet_, VescPacket::kSetCurrent);
+    EXPECT_EQ(packet_, vesc::Packet::kSetCurrent);
   }
 }
 
@@ -180,7 +180,7 @@ TEST_F(VescMotorTest, NumbersThatAreNoneReleaseTheMotor) {
                             ControlMode::kTotalAngle, ControlMode::kDuty}) {
       for (const double value : {kInfinity, -kInfinity, std::nan("")}) {
         EXPECT_EQ(sent({.mode = mode, .value = value}), 0) << angle;
-        EXPECT_EQ(packet_, VescPacket::kSetCurrent);
+        EXPECT_EQ(packet_, vesc::Packet::kSetCurrent);
       }
     }
   }
@@ -190,14 +190,14 @@ TEST_F(VescMotorTest, WhatAVelocityOfZeroMeansIsConfigured) {
   const Target zero{.mode = ControlMode::kVelocity, .value = 0.0};
   makeWith();
   EXPECT_EQ(sent(zero), 0);
-  EXPECT_EQ(packet_, VescPacket::kSetErpm);
+  EXPECT_EQ(packet_, vesc::Packet::kSetErpm);
   makeWith({{"velocity_zero", std::string{"coast"}}});
   EXPECT_EQ(sent(zero), 0);
-  EXPECT_EQ(packet_, VescPacket::kSetCurrent);
+  EXPECT_EQ(packet_, vesc::Packet::kSetCurrent);
   EXPECT_EQ(sent({.mode = ControlMode::kVelocity, .value = 0.0, .velocity_ff_rpm = 100.0F}), 700);
   makeWith({{"velocity_zero", std::string{"brake"}}, {"brake_current_a", 3.0}});
   EXPECT_EQ(sent(zero), 3000);
-  EXPECT_EQ(packet_, VescPacket::kSetCurrentBrake);
+  EXPECT_EQ(packet_, vesc::Packet::kSetCurrentBrake);
 }
 
 TEST_F(VescMotorTest, ABrakeWorksWithoutFeedbackAndWithinTheLimit) {
@@ -206,7 +206,7 @@ TEST_F(VescMotorTest, ABrakeWorksWithoutFeedbackAndWithinTheLimit) {
   auto& motor = make(settings);
   motor.order(FrameKind::kBrake);
   EXPECT_EQ(sent(), 4000);
-  EXPECT_EQ(packet_, VescPacket::kSetCurrentBrake);
+  EXPECT_EQ(packet_, vesc::Packet::kSetCurrentBrake);
   EXPECT_EQ(motor.limits(), 0U);  // a brake at its limit at standstill is no stalled motor
   EXPECT_EQ(motor.commandUnit(), CommandUnit::kNative);
 }
@@ -217,20 +217,20 @@ TEST_F(VescMotorTest, TheHandbrakeHoldsOnlyAtStandstill) {
   motor.order(FrameKind::kHold);
   status(3000);
   EXPECT_EQ(sent(), 10'000);
-  EXPECT_EQ(packet_, VescPacket::kSetCurrentBrake);
+  EXPECT_EQ(packet_, vesc::Packet::kSetCurrentBrake);
   status(100);
   EXPECT_EQ(sent(), 6000);
-  EXPECT_EQ(packet_, VescPacket::kSetHandbrake);
+  EXPECT_EQ(packet_, vesc::Packet::kSetHandbrake);
   status(300);  // it trembles
   EXPECT_EQ(sent(), 6000);
-  EXPECT_EQ(packet_, VescPacket::kSetHandbrake);
+  EXPECT_EQ(packet_, vesc::Packet::kSetHandbrake);
   status(1000);  // it is dragged along
   EXPECT_EQ(sent(), 10'000);
-  EXPECT_EQ(packet_, VescPacket::kSetCurrentBrake);
+  EXPECT_EQ(packet_, vesc::Packet::kSetCurrentBrake);
   status(0);
   tick(milliseconds{500});  // who knows
   EXPECT_EQ(sent(), 10'000);
-  EXPECT_EQ(packet_, VescPacket::kSetCurrentBrake);
+  EXPECT_EQ(packet_, vesc::Packet::kSetCurrentBrake);
 }
 
 TEST_F(VescMotorTest, DampBrakesInProportionToTheSpeedAndNeedsAKv) {
@@ -239,11 +239,11 @@ TEST_F(VescMotorTest, DampBrakesInProportionToTheSpeedAndNeedsAKv) {
   EXPECT_EQ(motor.driveFrames().damp, Provision::kHostLoop);
   motor.order(FrameKind::kDamp);
   EXPECT_EQ(sent(), 0);  // no feedback yet
-  EXPECT_EQ(packet_, VescPacket::kSetCurrent);
+  EXPECT_EQ(packet_, vesc::Packet::kSetCurrent);
   status(-8400);  // 1200 of 2400 rpm
   steps(0);
   EXPECT_EQ(sent(), 30'000);
-  EXPECT_EQ(packet_, VescPacket::kSetCurrentBrake);
+  EXPECT_EQ(packet_, vesc::Packet::kSetCurrentBrake);
 }
 
 TEST_F(VescMotorTest, TheSignOfTheCurrentIsThatOfTheTorque) {
@@ -352,12 +352,12 @@ TEST_F(VescMotorTest, ANativePositionGoesTheWayThatIsMeantOverTurns) {
   status(0);
   encoder(300.0);                                                                   // reads -60
   EXPECT_EQ(sent({.mode = ControlMode::kTotalAngle, .value = 700.0}), 30'000'000);  // 90 deg ahead
-  EXPECT_EQ(packet_, VescPacket::kSetPosition);
+  EXPECT_EQ(packet_, vesc::Packet::kSetPosition);
   EXPECT_EQ(sent({.mode = ControlMode::kTotalAngle, .value = -700.0}), 210'000'000);
   EXPECT_EQ(sent({.mode = ControlMode::kAngle, .value = 310.0}), 310'000'000);
   tick(milliseconds{300});
   EXPECT_EQ(sent({.mode = ControlMode::kAngle, .value = 310.0}), 0);  // no fresh feedback
-  EXPECT_EQ(packet_, VescPacket::kSetCurrent);
+  EXPECT_EQ(packet_, vesc::Packet::kSetCurrent);
 }
 
 TEST_F(VescMotorTest, OnlyAnAngleLoopOnTheHostTakesOtherGains) {
@@ -385,13 +385,13 @@ TEST_F(VescMotorTest, TheAngleLoopGivesSpeedsAndStopsWithoutFeedback) {
   steps(0);
   // sqrt(2 * 0.5 * 25000 / 7 * 6 * 1e5) deg/s, from where the drive's ramp can still stop it
   EXPECT_NEAR(sent({.mode = ControlMode::kTotalAngle, .value = 1e5}), 54'006, 10);
-  EXPECT_EQ(packet_, VescPacket::kSetErpm);
+  EXPECT_EQ(packet_, vesc::Packet::kSetErpm);
   motor.order(FrameKind::kHold);
   EXPECT_EQ(sent(), 0);
-  EXPECT_EQ(packet_, VescPacket::kSetErpm);
+  EXPECT_EQ(packet_, vesc::Packet::kSetErpm);
   tick(milliseconds{200});
   EXPECT_EQ(sent({.mode = ControlMode::kTotalAngle, .value = 40.0}), 0);
-  EXPECT_EQ(packet_, VescPacket::kSetCurrent);
+  EXPECT_EQ(packet_, vesc::Packet::kSetCurrent);
 }
 
 TEST_F(VescMotorTest, FramesOfOthersAndBrokenOnesAreRefused) {
@@ -522,9 +522,9 @@ TEST(VescFamily, TellsWhatTheDriveSendsAndObeys) {
     return std::any_of(use.obeys.begin(), use.obeys.end(),
                        [&](const auto& filter) { return accepts(filter, frame); });
   };
-  EXPECT_TRUE(obeys(makeVescCommand(VescPacket::kSetErpm, 7, 0)));
-  EXPECT_TRUE(obeys(makeVescCommand(VescPacket::kSetErpm, 255, 0)));
-  EXPECT_FALSE(obeys(makeVescCommand(VescPacket::kSetErpm, 8, 0)));
+  EXPECT_TRUE(obeys(vesc::makeCommand(vesc::Packet::kSetErpm, 7, 0)));
+  EXPECT_TRUE(obeys(vesc::makeCommand(vesc::Packet::kSetErpm, 255, 0)));
+  EXPECT_FALSE(obeys(vesc::makeCommand(vesc::Packet::kSetErpm, 8, 0)));
   EXPECT_FALSE(obeys(vescFrame(0x10007, "00000000")));
   EXPECT_EQ(use.sends.size(), 8U);
 }

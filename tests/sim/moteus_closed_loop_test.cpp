@@ -48,17 +48,17 @@ TEST(MoteusClosedLoop, PollingGivesReadingsAndNoTorque) {
   EXPECT_GT(feedback.samples, 15U);
   EXPECT_NEAR(feedback.voltage_v, 24.0F, 0.5F);
   EXPECT_NEAR(feedback.temperature_c, 25.0F, 1.0F);
-  EXPECT_EQ(rig.moteus().mode(), MoteusMode::kStopped);
+  EXPECT_EQ(rig.moteus().mode(), moteus::Mode::kStopped);
   EXPECT_EQ(rig.motor().complaint().fault, FaultCode::kNone);
 }
 
 TEST(MoteusClosedLoop, EnablingEndsInPositionModeWithoutMoving) {
   Rig rig;
   ASSERT_TRUE(rig.start());
-  EXPECT_EQ(rig.moteus().mode(), MoteusMode::kPosition);
+  EXPECT_EQ(rig.moteus().mode(), moteus::Mode::kPosition);
   rig.motor().order(FrameKind::kIdle);
   rig.run(200ms, [&] { EXPECT_NEAR(rig.currentA(), 0.0, 1e-6); });
-  EXPECT_EQ(rig.moteus().mode(), MoteusMode::kPosition);
+  EXPECT_EQ(rig.moteus().mode(), moteus::Mode::kPosition);
 }
 
 TEST(MoteusClosedLoop, EveryModeReachesItsTarget) {
@@ -84,7 +84,7 @@ TEST(MoteusClosedLoop, EveryModeReachesItsTarget) {
   EXPECT_NEAR(rig.motor().feedback().current_a, 3.0F, 0.4F);
   rig.command({.mode = ControlMode::kBrake});
   rig.run(1s);
-  EXPECT_EQ(rig.moteus().mode(), MoteusMode::kBrake);
+  EXPECT_EQ(rig.moteus().mode(), moteus::Mode::kBrake);
   EXPECT_NEAR(rig.shaftRpm(), 0.0, 5.0);
   rig.command({.mode = ControlMode::kCoast});
   rig.run(50ms);
@@ -175,23 +175,23 @@ TEST(MoteusClosedLoop, AFaultIsReportedAndStaysUntilItIsCleared) {
   EXPECT_EQ(rig.motor().complaint().fault, FaultCode::kDriveEncoder);
   EXPECT_EQ(rig.motor().complaint().native_code, 35U);
   rig.poll(100ms);
-  EXPECT_EQ(rig.moteus().mode(), MoteusMode::kFault) << "polling does not clear it";
+  EXPECT_EQ(rig.moteus().mode(), moteus::Mode::kFault) << "polling does not clear it";
   EXPECT_EQ(rig.motor().complaint().fault, FaultCode::kDriveEncoder);
   EXPECT_NEAR(rig.currentA(), 0.0, 1e-3);
   EXPECT_FALSE(rig.enable());
-  EXPECT_EQ(rig.moteus().mode(), MoteusMode::kFault) << "nor does enabling";
+  EXPECT_EQ(rig.moteus().mode(), moteus::Mode::kFault) << "nor does enabling";
 
   rig.motor().clearComplaint();
   rig.poll();
   EXPECT_EQ(rig.motor().complaint().fault, FaultCode::kNone);
-  EXPECT_EQ(rig.moteus().mode(), MoteusMode::kStopped);
+  EXPECT_EQ(rig.moteus().mode(), moteus::Mode::kStopped);
   ASSERT_TRUE(rig.enable());
   rig.command({.mode = ControlMode::kVelocity, .value = 100.0});
   rig.run(1s);
   EXPECT_NEAR(rig.shaftRpm(), 100.0, 5.0);
   rig.motor().order(FrameKind::kRest);
   rig.run(20ms);
-  EXPECT_EQ(rig.moteus().mode(), MoteusMode::kStopped);
+  EXPECT_EQ(rig.moteus().mode(), moteus::Mode::kStopped);
   EXPECT_NEAR(rig.currentA(), 0.0, 1e-3);
 }
 
@@ -209,7 +209,7 @@ TEST(MoteusClosedLoop, ARestartIsNoticedAndTheDriveIsNotSwitchedOnAgain) {
   EXPECT_EQ(rig.motor().complaint().fault, FaultCode::kDriveStopped);
   EXPECT_FALSE(rig.motor().feedback().zeroed);
   EXPECT_NEAR(rig.motor().feedback().total_angle_deg, before_deg, 60.0) << "the angle goes on";
-  EXPECT_EQ(rig.moteus().mode(), MoteusMode::kStopped);
+  EXPECT_EQ(rig.moteus().mode(), moteus::Mode::kStopped);
   EXPECT_NEAR(rig.currentA(), 0.0, 1e-3);
   rig.poll();
   EXPECT_EQ(rig.motor().complaint().fault, FaultCode::kNone);
@@ -269,9 +269,9 @@ TEST(MoteusClosedLoop, ItsWatchdogTripsLatchesAndIsLeftByAStopAlone) {
   rig.run(500ms);
   rig.cut(true);
   rig.run(25ms);
-  EXPECT_EQ(rig.moteus().mode(), MoteusMode::kPosition);
+  EXPECT_EQ(rig.moteus().mode(), moteus::Mode::kPosition);
   rig.run(10ms);
-  EXPECT_EQ(rig.moteus().mode(), MoteusMode::kTimeout);
+  EXPECT_EQ(rig.moteus().mode(), moteus::Mode::kTimeout);
   rig.run(1s);
   EXPECT_NEAR(rig.shaftRpm(), 0.0, 5.0);
   rig.cut(false);
@@ -279,7 +279,7 @@ TEST(MoteusClosedLoop, ItsWatchdogTripsLatchesAndIsLeftByAStopAlone) {
   EXPECT_EQ(rig.motor().complaint().fault, FaultCode::kDriveCommunication);
   EXPECT_EQ(rig.motor().complaint().native_code, 11U);
   rig.poll();
-  EXPECT_EQ(rig.moteus().mode(), MoteusMode::kStopped);
+  EXPECT_EQ(rig.moteus().mode(), moteus::Mode::kStopped);
   EXPECT_EQ(rig.motor().complaint().fault, FaultCode::kNone);
   EXPECT_TRUE(rig.enable());
 }
@@ -292,7 +292,7 @@ TEST(MoteusClosedLoop, ADriveThatIsAlreadyTimedOutIsEnabled) {
   rig.run(10ms);
   rig.cut(true);
   rig.run(200ms);
-  ASSERT_EQ(rig.moteus().mode(), MoteusMode::kTimeout);
+  ASSERT_EQ(rig.moteus().mode(), moteus::Mode::kTimeout);
   rig.cut(false);
   EXPECT_TRUE(rig.enable());
 }
@@ -315,7 +315,7 @@ TEST(MoteusClosedLoop, RestTakesTheTorqueAwayWhateverTheState) {
     rig.drive().receive(out[0]);
     rig.drive().step(20ms);
     EXPECT_NEAR(rig.currentA(), 0.0, 1e-3);
-    EXPECT_EQ(rig.moteus().mode(), MoteusMode::kStopped);
+    EXPECT_EQ(rig.moteus().mode(), moteus::Mode::kStopped);
   }
 }
 

@@ -45,7 +45,7 @@ class OdriveLoop : public testing::TestWithParam<std::string> {
 
 TEST_P(OdriveLoop, EnablingTakesLessThanTheSupervisorsPatience) {
   ASSERT_TRUE(rig_->enable(450ms));
-  EXPECT_EQ(drive_->state(), OdriveAxisState::kClosedLoop);
+  EXPECT_EQ(drive_->state(), odrive::AxisState::kClosedLoop);
   EXPECT_NEAR(currentA(), 0.0, 1e-6);
 }
 
@@ -155,7 +155,7 @@ TEST_P(OdriveLoop, RestHasNoTorqueWhateverWasBefore) {
     command(target, 100ms);
     rest(50ms);
     EXPECT_NEAR(currentA(), 0.0, 1e-6);
-    EXPECT_EQ(drive_->state(), OdriveAxisState::kIdle);
+    EXPECT_EQ(drive_->state(), odrive::AxisState::kIdle);
     rest();
   }
 }
@@ -182,7 +182,7 @@ TEST_P(OdriveLoop, ItsWatchdogStopsItWhenTheBusIsCut) {
   EXPECT_EQ(fault(), FaultCode::kNone);
   rig_->cut(true);
   rig_->run(150ms);
-  EXPECT_EQ(drive_->state(), OdriveAxisState::kIdle);
+  EXPECT_EQ(drive_->state(), odrive::AxisState::kIdle);
   EXPECT_NEAR(currentA(), 0.0, 1e-6);
   rig_->cut(false);
   rig_->run(150ms);
@@ -214,7 +214,7 @@ TEST_P(OdriveLoop, ADriveThatRunsAlreadyIsStoppedBeforeItIsEnabled) {
   ASSERT_TRUE(rig_->enable());
   command({.mode = ControlMode::kVelocity, .value = 200.0}, 500ms);
   ASSERT_TRUE(rig_->enable());  // as a restarted host would
-  EXPECT_EQ(drive_->state(), OdriveAxisState::kClosedLoop);
+  EXPECT_EQ(drive_->state(), odrive::AxisState::kClosedLoop);
   EXPECT_NEAR(currentA(), 0.0, 0.1);
 }
 

@@ -249,7 +249,7 @@ TEST(RobStrideClosedLoop, AFaultIsClearedAndTheDriveEnabledAgain) {
     rig.run(milliseconds{100});
     rig.drive().fault(native);
     rig.run(milliseconds{5});
-    const auto code = robstrideFault(native, false);
+    const auto code = robstride::faultOf(native, false);
     EXPECT_EQ(rig.fault(), code);
     EXPECT_TRUE(rig.motor().feedback().zeroed);  // it stopped where it was
     rig.motor().order(FrameKind::kPoll);

@@ -129,7 +129,7 @@ TEST(VescClosedLoop, RelativeCurrentsAreTheSameCurrents) {
 TEST(VescClosedLoop, APaddedCurrentIsADifferentCurrent) {
   const auto with = settings();
   sim::VescDrive drive(with, {});
-  auto frame = makeVescCommand(VescPacket::kSetCurrent, with.id, 1000);
+  auto frame = vesc::makeCommand(vesc::Packet::kSetCurrent, with.id, 1000);
   drive.receive(frame);
   drive.step(20ms);
   EXPECT_NEAR(drive.physics().currentA(), 1.0, 0.05);
@@ -146,8 +146,8 @@ TEST(VescClosedLoop, NothingMovesBeforeTheFirstCommandAfterEnabling) {
   rig.motor().order(FrameKind::kIdle);
   rig.run(100ms);
   for (const auto& frame : rig.takeSent()) {
-    if (frame.id == vescId(VescPacket::kProcessShortBuffer, 7)) continue;
-    EXPECT_EQ(frame.id, vescId(VescPacket::kSetCurrent, 7));
+    if (frame.id == vesc::canId(vesc::Packet::kProcessShortBuffer, 7)) continue;
+    EXPECT_EQ(frame.id, vesc::canId(vesc::Packet::kSetCurrent, 7));
     EXPECT_EQ(frame.data, CanFrame{}.data);
   }
   EXPECT_NEAR(rig.drive().physics().outputAngleDeg(), 0.0, 1e-6);

@@ -13,7 +13,7 @@ namespace rc10::test {
 
 /// What a drive says of itself: an answer to Moteus_Motor's questions.
 struct MoteusAnswer {
-  MoteusMode mode = MoteusMode::kStopped;
+  moteus::Mode mode = moteus::Mode::kStopped;
   int fault = 0;
   double position_rev = 0.0;
   double velocity_rev_s = 0.0;
@@ -31,20 +31,20 @@ struct MoteusAnswer {
   const auto ms =
       std::chrono::duration_cast<std::chrono::milliseconds>(received.time_since_epoch() - answer.clock_late)
           .count();
-  MoteusWriter frame(moteusReplyId(prefix, id), true);
-  frame.reply(MoteusType::kInt8, MoteusRegister::kMode, {static_cast<double>(answer.mode)})
-      .reply(MoteusType::kFloat, MoteusRegister::kPosition,
+  moteus::Writer frame(moteus::replyId(prefix, id), true);
+  frame.reply(moteus::Type::kInt8, moteus::Register::kMode, {static_cast<double>(answer.mode)})
+      .reply(moteus::Type::kFloat, moteus::Register::kPosition,
              {answer.position_rev, answer.velocity_rev_s, answer.torque_nm})
-      .reply(MoteusType::kInt16, MoteusRegister::kQCurrent, {answer.current_a})
-      .reply(MoteusType::kInt8, MoteusRegister::kVoltage,
+      .reply(moteus::Type::kInt16, moteus::Register::kQCurrent, {answer.current_a})
+      .reply(moteus::Type::kInt8, moteus::Register::kVoltage,
              {answer.voltage_v, answer.temperature_c, static_cast<double>(answer.fault)})
-      .reply(MoteusType::kInt16, MoteusRegister::kMilliseconds,
+      .reply(moteus::Type::kInt16, moteus::Register::kMilliseconds,
              {static_cast<double>(static_cast<std::int16_t>(ms & 0xFFFF))});
   if (answer.version) {
-    frame.reply(MoteusType::kInt32, MoteusRegister::kRegisterMapVersion, {double(*answer.version)})
-        .reply(MoteusType::kInt8, MoteusRegister::kHomeState, {1.0});
+    frame.reply(moteus::Type::kInt32, moteus::Register::kRegisterMapVersion, {double(*answer.version)})
+        .reply(moteus::Type::kInt8, moteus::Register::kHomeState, {1.0});
   }
-  if (answer.timeout_s) frame.reply(MoteusType::kInt16, MoteusRegister::kTimeout, {*answer.timeout_s});
+  if (answer.timeout_s) frame.reply(moteus::Type::kInt16, moteus::Register::kTimeout, {*answer.timeout_s});
   CanFrame out = frame.frame();
   out.received = received;
   return out;
@@ -73,27 +73,27 @@ struct MoteusBench {
     motor.order(FrameKind::kEnable);
     tick();
     answer({.position_rev = position_rev, .version = 5});
-    answer({.mode = MoteusMode::kPosition, .position_rev = position_rev});
-    answer({.mode = MoteusMode::kPosition, .position_rev = position_rev, .timeout_s = 0.1});
+    answer({.mode = moteus::Mode::kPosition, .position_rev = position_rev});
+    answer({.mode = moteus::Mode::kPosition, .position_rev = position_rev, .timeout_s = 0.1});
     return motor.sequenceProgress() == SequenceProgress::kDone;
   }
   bool command(const Target& target, double position_rev = 0.0) {
     motor.order(FrameKind::kCommand);
     const bool taken = motor.setTarget(target);
-    answer({.mode = MoteusMode::kPosition, .position_rev = position_rev});
+    answer({.mode = moteus::Mode::kPosition, .position_rev = position_rev});
     return taken;
   }
   /// What the sent frame writes to a register; nothing if it does not write it.
-  [[nodiscard]] std::optional<double> written(MoteusRegister reg) const {
+  [[nodiscard]] std::optional<double> written(moteus::Register reg) const {
     if (sent_count == 0) return std::nullopt;
-    MoteusReader reader(frames[0].payload());
+    moteus::Reader reader(frames[0].payload());
     std::optional<double> value;
-    for (MoteusItem item; reader.next(item) == MoteusReader::Step::kItem;) {
-      if (item.kind == MoteusItem::Kind::kWrite && item.reg == reg) value = item.value;
+    for (moteus::Item item; reader.next(item) == moteus::Reader::Step::kItem;) {
+      if (item.kind == moteus::Item::Kind::kWrite && item.reg == reg) value = item.value;
     }
     return value;
   }
-  [[nodiscard]] std::optional<double> mode() const { return written(MoteusRegister::kMode); }
+  [[nodiscard]] std::optional<double> mode() const { return written(moteus::Register::kMode); }
 
   Moteus_Motor motor;
   int id;

@@ -127,8 +127,8 @@ class MoteusFamily final : public MotorFamily {
   [[nodiscard]] BusUse busUse(const MotorSettings& settings) const override {
     const MoteusSettings own = moteusSettings(settings.own);
     const auto id = static_cast<std::uint32_t>(settings.id);
-    const CanId query = moteusQueryId(own.can_prefix, id);
-    const CanId reply = moteusReplyId(own.can_prefix, id);
+    const CanId query = moteus::queryId(own.can_prefix, id);
+    const CanId reply = moteus::replyId(own.can_prefix, id);
     BusUse use;
     use.sends = {FrameFilter{.id = reply}};
     // Its hardware filters: the prefix and the low byte, whatever the source, in extended ids; the low byte

@@ -26,31 +26,31 @@ constexpr double kClockToleranceMs = 200.0;
 }  // namespace
 
 bool Moteus_Motor::decode(const CanFrame& frame, Reading& reading) noexcept {
-  MoteusReader reader(frame.payload());
-  MoteusItem item;
+  moteus::Reader reader(frame.payload());
+  moteus::Item item;
   for (;;) {
     const auto step = reader.next(item);
-    if (step == MoteusReader::Step::kEnd) break;
-    if (step == MoteusReader::Step::kMalformed || item.kind != MoteusItem::Kind::kReply) return false;
+    if (step == moteus::Reader::Step::kEnd) break;
+    if (step == moteus::Reader::Step::kMalformed || item.kind != moteus::Item::Kind::kReply) return false;
     switch (item.reg) {
-      case MoteusRegister::kMode: reading.mode = item.value; break;
-      case MoteusRegister::kFault: reading.fault = item.value; break;
-      case MoteusRegister::kPosition:
+      case moteus::Register::kMode: reading.mode = item.value; break;
+      case moteus::Register::kFault: reading.fault = item.value; break;
+      case moteus::Register::kPosition:
         reading.position_rev = item.value;
-        reading.fine_position = item.type == MoteusType::kFloat;
+        reading.fine_position = item.type == moteus::Type::kFloat;
         break;
-      case MoteusRegister::kVelocity: reading.velocity_rev_s = item.value; break;
-      case MoteusRegister::kTorque: reading.torque_nm = item.value; break;
-      case MoteusRegister::kQCurrent: reading.current_a = item.value; break;
-      case MoteusRegister::kVoltage: reading.voltage_v = item.value; break;
-      case MoteusRegister::kTemperature: reading.temperature_c = item.value; break;
-      case MoteusRegister::kMilliseconds:
+      case moteus::Register::kVelocity: reading.velocity_rev_s = item.value; break;
+      case moteus::Register::kTorque: reading.torque_nm = item.value; break;
+      case moteus::Register::kQCurrent: reading.current_a = item.value; break;
+      case moteus::Register::kVoltage: reading.voltage_v = item.value; break;
+      case moteus::Register::kTemperature: reading.temperature_c = item.value; break;
+      case moteus::Register::kMilliseconds:
         reading.clock_ms = item.value;
         reading.has_clock = true;
         break;
-      case MoteusRegister::kRegisterMapVersion: reading.version = item.value; break;
-      case MoteusRegister::kHomeState: reading.home_state = item.value; break;
-      case MoteusRegister::kTimeout: reading.timeout_s = item.value; break;
+      case moteus::Register::kRegisterMapVersion: reading.version = item.value; break;
+      case moteus::Register::kHomeState: reading.home_state = item.value; break;
+      case moteus::Register::kTimeout: reading.timeout_s = item.value; break;
       default: break;
     }
   }
@@ -107,15 +107,15 @@ void Moteus_Motor::takePosition(double position_rev, bool anew) noexcept {
 }
 
 void Moteus_Motor::takeState(const Reading& reading) noexcept {
-  mode_ = static_cast<MoteusMode>(reading.mode);
+  mode_ = static_cast<moteus::Mode>(reading.mode);
   native_fault_ = static_cast<std::uint32_t>(reading.fault);
-  if (mode_ != MoteusMode::kFault) clearing_ = false;
+  if (mode_ != moteus::Mode::kFault) clearing_ = false;
   if (!std::isnan(reading.version)) identity_ = reading;
   if (!std::isnan(reading.timeout_s)) verified_s_ = reading.timeout_s;
-  if (!engaged_ || mode_ == MoteusMode::kPosition || mode_ == MoteusMode::kBrake) return;
-  if (mode_ == MoteusMode::kFault) {
+  if (!engaged_ || mode_ == moteus::Mode::kPosition || mode_ == moteus::Mode::kBrake) return;
+  if (mode_ == moteus::Mode::kFault) {
     engaged_ = false;  // complaint() has the fault
-  } else if (mode_ == MoteusMode::kTimeout) {
+  } else if (mode_ == moteus::Mode::kTimeout) {
     drop(FaultCode::kDriveCommunication, static_cast<std::uint32_t>(mode_));
   } else {
     drop(FaultCode::kDriveStopped, static_cast<std::uint32_t>(mode_));

@@ -7,7 +7,7 @@
 
 #include "bus/byte_order.hpp"
 
-namespace rc10 {
+namespace rc10::moteus {
 namespace {
 
 constexpr std::uint8_t kNop = 0x50;
@@ -30,8 +30,8 @@ constexpr Scale kRevPerS2{0.05, 1e-3, 1e-5};
 constexpr Scale kShare{1.0 / 127.0, 1.0 / 32767.0, 1.0 / 2147483647.0};
 constexpr Scale kNumber{1.0, 1.0, 1.0};
 
-[[nodiscard]] const Scale& scaleOf(MoteusRegister reg) noexcept {
-  using enum MoteusRegister;
+[[nodiscard]] const Scale& scaleOf(Register reg) noexcept {
+  using enum Register;
   switch (reg) {
     case kPosition:
     case kCommandPosition: return kRevolutions;
@@ -80,25 +80,25 @@ template <typename T>
 
 }  // namespace
 
-double moteusScale(MoteusRegister reg, MoteusType type) noexcept {
+double scaleOf(Register reg, Type type) noexcept {
   const Scale& scale = scaleOf(reg);
   switch (type) {
-    case MoteusType::kInt8: return scale.int8;
-    case MoteusType::kInt16: return scale.int16;
-    case MoteusType::kInt32: return scale.int32;
-    case MoteusType::kFloat: break;
+    case Type::kInt8: return scale.int8;
+    case Type::kInt16: return scale.int16;
+    case Type::kInt32: return scale.int32;
+    case Type::kFloat: break;
   }
   return 1.0;
 }
 
-MoteusWriter::MoteusWriter(CanId id, bool bit_rate_switch) noexcept {
+Writer::Writer(CanId id, bool bit_rate_switch) noexcept {
   frame_.id = id;
   frame_.fd = true;
   frame_.bit_rate_switch = bit_rate_switch;
 }
 
-bool MoteusWriter::header(std::uint8_t kind, MoteusType type, MoteusRegister first, std::uint32_t count,
-                          std::size_t value_bytes) noexcept {
+bool Writer::header(std::uint8_t kind, Type type, Register first, std::uint32_t count,
+                    std::size_t value_bytes) noexcept {
   auto number = static_cast<std::uint32_t>(first);
   const std::size_t number_bytes = number < 0x80U ? 1 : 2;  // no register has more than 14 bits
   const std::size_t count_bytes = count > 3 ? 1 : 0;        // no frame has more than 127 registers
@@ -114,45 +114,39 @@ bool MoteusWriter::header(std::uint8_t kind, MoteusType type, MoteusRegister fir
   return true;
 }
 
-MoteusWriter& MoteusWriter::put(std::uint8_t kind, MoteusType type, MoteusRegister first,
-                                std::initializer_list<double> values) noexcept {
+Writer& Writer::put(std::uint8_t kind, Type type, Register first,
+                    std::initializer_list<double> values) noexcept {
   const std::size_t bytes = kBytes[static_cast<std::size_t>(type)];
   if (!header(kind, type, first, static_cast<std::uint32_t>(values.size()), bytes * values.size())) {
     return *this;
   }
   auto reg = static_cast<std::uint32_t>(first);
   for (const double value : values) {
-    const double scale = moteusScale(static_cast<MoteusRegister>(reg++), type);
+    const double scale = scaleOf(static_cast<Register>(reg++), type);
     switch (type) {
-      case MoteusType::kInt8:
-        writeLittleEndian(frame_.data, used_, toCounts<std::int8_t>(value, scale));
-        break;
-      case MoteusType::kInt16:
-        writeLittleEndian(frame_.data, used_, toCounts<std::int16_t>(value, scale));
-        break;
-      case MoteusType::kInt32:
-        writeLittleEndian(frame_.data, used_, toCounts<std::int32_t>(value, scale));
-        break;
-      case MoteusType::kFloat: writeLittleEndian(frame_.data, used_, toFloat(value)); break;
+      case Type::kInt8: writeLittleEndian(frame_.data, used_, toCounts<std::int8_t>(value, scale)); break;
+      case Type::kInt16: writeLittleEndian(frame_.data, used_, toCounts<std::int16_t>(value, scale)); break;
+      case Type::kInt32: writeLittleEndian(frame_.data, used_, toCounts<std::int32_t>(value, scale)); break;
+      case Type::kFloat: writeLittleEndian(frame_.data, used_, toFloat(value)); break;
     }
     used_ += bytes;
   }
   return *this;
 }
 
-MoteusWriter& MoteusWriter::read(MoteusType type, MoteusRegister first, std::uint32_t count) noexcept {
+Writer& Writer::read(Type type, Register first, std::uint32_t count) noexcept {
   (void)header(0x10, type, first, count, 0);
   return *this;
 }
 
-CanFrame MoteusWriter::frame() const noexcept {
+CanFrame Writer::frame() const noexcept {
   CanFrame frame = frame_;
   frame.length = roundUpFdLength(used_);
   for (std::size_t i = used_; i < frame.length; ++i) frame.data[i] = kNop;
   return frame;
 }
 
-bool MoteusReader::readNumber(std::uint32_t& number) noexcept {
+bool Reader::readNumber(std::uint32_t& number) noexcept {
   number = 0;
   // 28 bits are more than any register or count has.
   for (std::uint32_t shift = 0; shift < 28; shift += 7) {
@@ -164,33 +158,33 @@ bool MoteusReader::readNumber(std::uint32_t& number) noexcept {
   return false;
 }
 
-MoteusReader::Step MoteusReader::begin() noexcept {
+Reader::Step Reader::begin() noexcept {
   while (at_ < payload_.size() && payload_[at_] == kNop) ++at_;
   if (at_ >= payload_.size()) return Step::kEnd;
   const std::uint8_t head = payload_[at_++];
   if (head == 0x30 || head == 0x31) {
-    kind_ = MoteusItem::Kind::kError;
+    kind_ = Item::Kind::kError;
     left_ = 1;
     return readNumber(register_) ? Step::kItem : Step::kMalformed;
   }
   if (head >= 0x30) return Step::kMalformed;
-  constexpr std::array kKinds{MoteusItem::Kind::kWrite, MoteusItem::Kind::kRead, MoteusItem::Kind::kReply};
+  constexpr std::array kKinds{Item::Kind::kWrite, Item::Kind::kRead, Item::Kind::kReply};
   kind_ = kKinds[head >> 4U];
-  type_ = static_cast<MoteusType>((head >> 2U) & 3U);
+  type_ = static_cast<Type>((head >> 2U) & 3U);
   left_ = head & 3U;
   if (left_ == 0 && (!readNumber(left_) || left_ == 0 || left_ > kMaxCount)) return Step::kMalformed;
   return readNumber(register_) ? Step::kItem : Step::kMalformed;
 }
 
-MoteusReader::Step MoteusReader::next(MoteusItem& item) noexcept {
+Reader::Step Reader::next(Item& item) noexcept {
   if (left_ == 0) {
     if (const Step begun = begin(); begun != Step::kItem) return begun;
   }
-  item = {.kind = kind_, .type = type_, .reg = static_cast<MoteusRegister>(register_), .value = 0.0};
+  item = {.kind = kind_, .type = type_, .reg = static_cast<Register>(register_), .value = 0.0};
   --left_;
   ++register_;
-  if (kind_ == MoteusItem::Kind::kRead) return Step::kItem;
-  if (kind_ == MoteusItem::Kind::kError) {
+  if (kind_ == Item::Kind::kRead) return Step::kItem;
+  if (kind_ == Item::Kind::kError) {
     std::uint32_t code = 0;
     if (!readNumber(code)) return Step::kMalformed;
     item.value = code;
@@ -198,21 +192,15 @@ MoteusReader::Step MoteusReader::next(MoteusItem& item) noexcept {
   }
   const std::size_t bytes = kBytes[static_cast<std::size_t>(type_)];
   if (payload_.size() - at_ < bytes) return Step::kMalformed;
-  const double scale = moteusScale(item.reg, type_);
+  const double scale = scaleOf(item.reg, type_);
   switch (type_) {
-    case MoteusType::kInt8:
-      item.value = fromCounts(readLittleEndian<std::int8_t>(payload_, at_), scale);
-      break;
-    case MoteusType::kInt16:
-      item.value = fromCounts(readLittleEndian<std::int16_t>(payload_, at_), scale);
-      break;
-    case MoteusType::kInt32:
-      item.value = fromCounts(readLittleEndian<std::int32_t>(payload_, at_), scale);
-      break;
-    case MoteusType::kFloat: item.value = static_cast<double>(readLittleEndian<float>(payload_, at_)); break;
+    case Type::kInt8: item.value = fromCounts(readLittleEndian<std::int8_t>(payload_, at_), scale); break;
+    case Type::kInt16: item.value = fromCounts(readLittleEndian<std::int16_t>(payload_, at_), scale); break;
+    case Type::kInt32: item.value = fromCounts(readLittleEndian<std::int32_t>(payload_, at_), scale); break;
+    case Type::kFloat: item.value = static_cast<double>(readLittleEndian<float>(payload_, at_)); break;
   }
   at_ += bytes;
   return Step::kItem;
 }
 
-}  // namespace rc10
+}  // namespace rc10::moteus

@@ -7,13 +7,13 @@
 
 #include "bus/can_frame.hpp"
 
-namespace rc10 {
+namespace rc10::moteus {
 
 // The register protocol of moteus: a payload is a row of subframes, each of which writes, reads or answers
 // some registers in a row. Sources: mjbots/moteus@db1a762 docs/protocol/{can,registers}.md,
 // fw/moteus_controller.cc.
 
-enum class MoteusRegister : std::uint32_t {
+enum class Register : std::uint32_t {
   kMode = 0x000,
   kPosition = 0x001,
   kVelocity = 0x002,
@@ -37,7 +37,7 @@ enum class MoteusRegister : std::uint32_t {
   kRegisterMapVersion = 0x102,
 };
 
-enum class MoteusMode : std::uint8_t {
+enum class Mode : std::uint8_t {
   kStopped = 0,
   kFault = 1,
   kEnabling = 2,
@@ -50,42 +50,41 @@ enum class MoteusMode : std::uint8_t {
 };
 
 /// How a value is on the wire. Integers count the unit of their register; their lowest value is NaN.
-enum class MoteusType : std::uint8_t { kInt8, kInt16, kInt32, kFloat };
+enum class Type : std::uint8_t { kInt8, kInt16, kInt32, kFloat };
 
 /// How much one count is, in rev, rev/s, rev/s², N·m, A, V, °C, s, or 1.
-[[nodiscard]] double moteusScale(MoteusRegister reg, MoteusType type) noexcept;
+[[nodiscard]] double scaleOf(Register reg, Type type) noexcept;
 
 /// The id of what the host (source 0) sends to a drive, with the bit that asks for an answer.
-[[nodiscard]] constexpr CanId moteusQueryId(std::uint32_t prefix, std::uint32_t id) noexcept {
+[[nodiscard]] constexpr CanId queryId(std::uint32_t prefix, std::uint32_t id) noexcept {
   return {prefix << 16U | 0x8000U | id, true};
 }
 /// The id of the answer. Standard where it fits into 11 bits: the documents say 15, the firmware (and the
 /// length of an id) says 11.
-[[nodiscard]] constexpr CanId moteusReplyId(std::uint32_t prefix, std::uint32_t id) noexcept {
+[[nodiscard]] constexpr CanId replyId(std::uint32_t prefix, std::uint32_t id) noexcept {
   const std::uint32_t value = prefix << 16U | id << 8U;
   return {value, value > kStandardIdMask};
 }
 
 /// Writes subframes into a frame. 64 bytes are the caller's duty: what is too much is left out.
-class MoteusWriter {
+class Writer {
  public:
-  MoteusWriter(CanId id, bool bit_rate_switch) noexcept;
+  Writer(CanId id, bool bit_rate_switch) noexcept;
 
   /// Values in units, from this register on. Integers saturate; not a number is "not a number" there too.
-  MoteusWriter& write(MoteusType type, MoteusRegister first, std::initializer_list<double> values) noexcept {
+  Writer& write(Type type, Register first, std::initializer_list<double> values) noexcept {
     return put(0x00, type, first, values);
   }
-  MoteusWriter& reply(MoteusType type, MoteusRegister first, std::initializer_list<double> values) noexcept {
+  Writer& reply(Type type, Register first, std::initializer_list<double> values) noexcept {
     return put(0x20, type, first, values);
   }
-  MoteusWriter& read(MoteusType type, MoteusRegister first, std::uint32_t count = 1) noexcept;
+  Writer& read(Type type, Register first, std::uint32_t count = 1) noexcept;
   /// Padded with NOP to a length that CAN FD has.
   [[nodiscard]] CanFrame frame() const noexcept;
 
  private:
-  MoteusWriter& put(std::uint8_t kind, MoteusType type, MoteusRegister first,
-                    std::initializer_list<double> values) noexcept;
-  [[nodiscard]] bool header(std::uint8_t kind, MoteusType type, MoteusRegister first, std::uint32_t count,
+  Writer& put(std::uint8_t kind, Type type, Register first, std::initializer_list<double> values) noexcept;
+  [[nodiscard]] bool header(std::uint8_t kind, Type type, Register first, std::uint32_t count,
                             std::size_t value_bytes) noexcept;
 
   CanFrame frame_;
@@ -93,22 +92,22 @@ class MoteusWriter {
 };
 
 /// One register of a subframe.
-struct MoteusItem {
+struct Item {
   enum class Kind : std::uint8_t { kWrite, kRead, kReply, kError };
   Kind kind = Kind::kWrite;
-  MoteusType type = MoteusType::kInt8;
-  MoteusRegister reg = MoteusRegister::kMode;
+  Type type = Type::kInt8;
+  Register reg = Register::kMode;
   double value = 0.0;  ///< In units; kError: the code; kRead: 0.
 };
 
 /// Takes a payload apart, register by register.
-class MoteusReader {
+class Reader {
  public:
   enum class Step : std::uint8_t { kItem, kEnd, kMalformed };
 
-  explicit MoteusReader(std::span<const std::uint8_t> payload) noexcept : payload_(payload) {}
+  explicit Reader(std::span<const std::uint8_t> payload) noexcept : payload_(payload) {}
   /// The next register; `item` is valid after kItem.
-  [[nodiscard]] Step next(MoteusItem& item) noexcept;
+  [[nodiscard]] Step next(Item& item) noexcept;
 
  private:
   [[nodiscard]] bool readNumber(std::uint32_t& number) noexcept;
@@ -118,8 +117,8 @@ class MoteusReader {
   std::size_t at_ = 0;
   std::uint32_t left_ = 0;  // registers of the present subframe
   std::uint32_t register_ = 0;
-  MoteusItem::Kind kind_ = MoteusItem::Kind::kWrite;
-  MoteusType type_ = MoteusType::kInt8;
+  Item::Kind kind_ = Item::Kind::kWrite;
+  Type type_ = Type::kInt8;
 };
 
-}  // namespace rc10
+}  // namespace rc10::moteus

@@ -27,12 +27,12 @@ constexpr double kSlipRev = 0.5;
 constexpr Duration kMoteusStepPatience = std::chrono::milliseconds{250};  // repeated in each tick
 constexpr Duration kFresh = std::chrono::milliseconds{100};
 
-void askForReadings(MoteusWriter& writer) noexcept {
-  writer.read(MoteusType::kInt8, MoteusRegister::kMode)
-      .read(MoteusType::kFloat, MoteusRegister::kPosition, 3)
-      .read(MoteusType::kInt16, MoteusRegister::kQCurrent)
-      .read(MoteusType::kInt8, MoteusRegister::kVoltage, 3)
-      .read(MoteusType::kInt16, MoteusRegister::kMilliseconds);
+void askForReadings(moteus::Writer& writer) noexcept {
+  writer.read(moteus::Type::kInt8, moteus::Register::kMode)
+      .read(moteus::Type::kFloat, moteus::Register::kPosition, 3)
+      .read(moteus::Type::kInt16, moteus::Register::kQCurrent)
+      .read(moteus::Type::kInt8, moteus::Register::kVoltage, 3)
+      .read(moteus::Type::kInt16, moteus::Register::kMilliseconds);
 }
 
 }  // namespace
@@ -40,8 +40,8 @@ void askForReadings(MoteusWriter& writer) noexcept {
 Moteus_Motor::Moteus_Motor(const MotorSettings& settings, const MotorTraits& traits)
     : SoloMotor(settings, traits, driveTurns(settings, traits)),
       own_(moteusSettings(settings.own)),
-      filters_{FrameFilter{.id = moteusReplyId(own_.can_prefix, static_cast<std::uint32_t>(settings.id))}},
-      command_ids_{moteusQueryId(own_.can_prefix, static_cast<std::uint32_t>(settings.id))},
+      filters_{FrameFilter{.id = moteus::replyId(own_.can_prefix, static_cast<std::uint32_t>(settings.id))}},
+      command_ids_{moteus::queryId(own_.can_prefix, static_cast<std::uint32_t>(settings.id))},
       watchdog_s_(static_cast<double>(own_.watchdog_ms) * 1e-3),
       slip_s_(0.002 + 2.0 * static_cast<double>(std::max(settings.command_divider, 1)) *
                           static_cast<double>(seconds(tickPeriod()))) {}
@@ -53,7 +53,7 @@ bool Moteus_Motor::matchesFrame(const CanFrame& frame) const noexcept {
 // ---- Command
 
 void Moteus_Motor::update(const Tick& tick) noexcept {
-  limits_ = mode_ == MoteusMode::kFault ? 0 : moteusLimit(native_fault_);
+  limits_ = mode_ == moteus::Mode::kFault ? 0 : moteusLimit(native_fault_);
   const Target target = wanted();
   const FrameKind kind = ordered();
   if (!enabling()) step_ = Step::kNone;
@@ -85,7 +85,8 @@ void Moteus_Motor::update(const Tick& tick) noexcept {
 Moteus_Motor::Send Moteus_Motor::restSend(const Tick& tick) const noexcept {
   const Duration fresh =
       std::max(kFresh, std::chrono::duration_cast<Duration>(std::chrono::duration<double>(1.5 * slip_s_)));
-  const bool faulted = mode_ == MoteusMode::kFault && answered_.has_value() && tick.now - *answered_ <= fresh;
+  const bool faulted =
+      mode_ == moteus::Mode::kFault && answered_.has_value() && tick.now - *answered_ <= fresh;
   return faulted && !clearing_ ? Send::kQuery : Send::kStop;
 }
 
@@ -170,26 +171,26 @@ void Moteus_Motor::followAngle(const Target& target) noexcept {
 
 // ---- Packing
 
-MoteusWriter Moteus_Motor::writer() const noexcept { return {command_ids_[0], own_.bit_rate_switch}; }
+moteus::Writer Moteus_Motor::writer() const noexcept { return {command_ids_[0], own_.bit_rate_switch}; }
 
 CanFrame Moteus_Motor::motionFrame() const noexcept {
-  using enum MoteusRegister;
-  MoteusWriter frame = writer();
-  frame.write(MoteusType::kInt8, kMode, {static_cast<double>(MoteusMode::kPosition)})
-      .write(MoteusType::kFloat, kCommandPosition,
+  using enum moteus::Register;
+  moteus::Writer frame = writer();
+  frame.write(moteus::Type::kInt8, kMode, {static_cast<double>(moteus::Mode::kPosition)})
+      .write(moteus::Type::kFloat, kCommandPosition,
              {motion_.position_rev, motion_.velocity_rev_s, motion_.torque_nm});
   if (!motion_.stiff) {
     // The documents let the position gain bound the velocity gain; the firmware does not (fw/pid.h).
-    frame.write(MoteusType::kInt8, kKpScale, {0.0, motion_.damped ? 1.0 : 0.0})
-        .write(MoteusType::kInt8, kIlimitScale, {0.0});
+    frame.write(moteus::Type::kInt8, kKpScale, {0.0, motion_.damped ? 1.0 : 0.0})
+        .write(moteus::Type::kInt8, kIlimitScale, {0.0});
   }
-  frame.write(MoteusType::kFloat, kMaxTorque, {std::abs(torqueToDrive(torqueLimitNm()))})
-      .write(MoteusType::kInt16, kTimeout, {watchdog_s_});
+  frame.write(moteus::Type::kFloat, kMaxTorque, {std::abs(torqueToDrive(torqueLimitNm()))})
+      .write(moteus::Type::kInt16, kTimeout, {watchdog_s_});
   // Negative: without limits, position and velocity act at once. Not written: as configured in the drive.
   if (!motion_.profile) {
-    frame.write(MoteusType::kInt8, kVelocityLimit, {-1.0, -1.0});
+    frame.write(moteus::Type::kInt8, kVelocityLimit, {-1.0, -1.0});
   } else if (motion_.limit_rev_s > 0.0) {
-    frame.write(MoteusType::kFloat, kVelocityLimit, {motion_.limit_rev_s});
+    frame.write(moteus::Type::kFloat, kVelocityLimit, {motion_.limit_rev_s});
   }
   askForReadings(frame);
   return frame.frame();
@@ -197,27 +198,27 @@ CanFrame Moteus_Motor::motionFrame() const noexcept {
 
 std::size_t Moteus_Motor::packCommand(const Tick& tick, std::span<CanFrame> out) noexcept {
   if (out.empty() || (!enabling() && !due(tick))) return 0;
-  const auto mode = [this](MoteusMode value) {
-    MoteusWriter frame = writer();
-    frame.write(MoteusType::kInt8, MoteusRegister::kMode, {static_cast<double>(value)});
+  const auto mode = [this](moteus::Mode value) {
+    moteus::Writer frame = writer();
+    frame.write(moteus::Type::kInt8, moteus::Register::kMode, {static_cast<double>(value)});
     askForReadings(frame);
     return frame;
   };
   switch (send_) {
-    case Send::kStop: out[0] = mode(MoteusMode::kStopped).frame(); break;
-    case Send::kBrake: out[0] = mode(MoteusMode::kBrake).frame(); break;
+    case Send::kStop: out[0] = mode(moteus::Mode::kStopped).frame(); break;
+    case Send::kBrake: out[0] = mode(moteus::Mode::kBrake).frame(); break;
     case Send::kMotion: out[0] = motionFrame(); break;
     case Send::kIdentify:
-      out[0] = mode(MoteusMode::kStopped)
-                   .read(MoteusType::kInt32, MoteusRegister::kRegisterMapVersion)
-                   .read(MoteusType::kInt8, MoteusRegister::kHomeState)
+      out[0] = mode(moteus::Mode::kStopped)
+                   .read(moteus::Type::kInt32, moteus::Register::kRegisterMapVersion)
+                   .read(moteus::Type::kInt8, moteus::Register::kHomeState)
                    .frame();
       break;
     case Send::kQuery:
     case Send::kVerify: {
-      MoteusWriter frame = writer();
+      moteus::Writer frame = writer();
       askForReadings(frame);
-      if (send_ == Send::kVerify) frame.read(MoteusType::kInt16, MoteusRegister::kTimeout);
+      if (send_ == Send::kVerify) frame.read(moteus::Type::kInt16, moteus::Register::kTimeout);
       out[0] = frame.frame();
       break;
     }
@@ -227,9 +228,10 @@ std::size_t Moteus_Motor::packCommand(const Tick& tick, std::span<CanFrame> out)
 
 std::size_t Moteus_Motor::packRest(std::span<CanFrame> out) const noexcept {
   if (out.empty()) return 0;
-  out[0] = writer()
-               .write(MoteusType::kInt8, MoteusRegister::kMode, {static_cast<double>(MoteusMode::kStopped)})
-               .frame();
+  out[0] =
+      writer()
+          .write(moteus::Type::kInt8, moteus::Register::kMode, {static_cast<double>(moteus::Mode::kStopped)})
+          .frame();
   return 1;
 }
 
@@ -256,7 +258,7 @@ void Moteus_Motor::updateSequence(const Tick& tick) noexcept {
     enter(Step::kIdentify, tick);
   }
   const bool busy = step_ != Step::kDone && step_ != Step::kFailed;
-  if (busy && (mode_ == MoteusMode::kFault || tick.now - step_began_ > kMoteusStepPatience)) {
+  if (busy && (mode_ == moteus::Mode::kFault || tick.now - step_began_ > kMoteusStepPatience)) {
     fail(FaultCode::kNone, 0);
   }
   if (step_ == Step::kDone && !engaged_) step_ = Step::kFailed;
@@ -266,19 +268,19 @@ void Moteus_Motor::updateSequence(const Tick& tick) noexcept {
     if (identity_->version != kRegisterMapVersion) {
       fail(FaultCode::kDriveSetting, static_cast<std::uint32_t>(std::max(identity_->version, 0.0)));
     } else if (traits().absolute && !(identity_->home_state >= needed)) {
-      fail(FaultCode::kDriveSetting, static_cast<std::uint32_t>(MoteusRegister::kHomeState));
-    } else if (mode_ == MoteusMode::kStopped) {
+      fail(FaultCode::kDriveSetting, static_cast<std::uint32_t>(moteus::Register::kHomeState));
+    } else if (mode_ == moteus::Mode::kStopped) {
       enter(Step::kEngage, tick);
     }
   }
-  if (step_ == Step::kEngage && mode_ == MoteusMode::kPosition) enter(Step::kVerify, tick);
+  if (step_ == Step::kEngage && mode_ == moteus::Mode::kPosition) enter(Step::kVerify, tick);
   if (step_ == Step::kVerify && verified_s_) {
     constexpr double kHalfCountSeconds = 0.0005;
     if (std::abs(*verified_s_ - watchdog_s_) < kHalfCountSeconds) {
       engaged_ = true;
       enter(Step::kDone, tick);
     } else {
-      fail(FaultCode::kDriveSetting, static_cast<std::uint32_t>(MoteusRegister::kTimeout));
+      fail(FaultCode::kDriveSetting, static_cast<std::uint32_t>(moteus::Register::kTimeout));
     }
   }
   coast();
@@ -299,7 +301,7 @@ SequenceProgress Moteus_Motor::sequenceProgress() const noexcept {
 // ---- Complaints
 
 DriveComplaint Moteus_Motor::complaint() const noexcept {
-  if (mode_ == MoteusMode::kFault) return {moteusFault(native_fault_), native_fault_};
+  if (mode_ == moteus::Mode::kFault) return {moteusFault(native_fault_), native_fault_};
   return lost_.fault != FaultCode::kNone ? lost_ : refused_;
 }
 

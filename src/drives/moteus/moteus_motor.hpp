@@ -91,7 +91,7 @@ class Moteus_Motor final : public SoloMotor {
   [[nodiscard]] double boundedRpm(double rpm) noexcept;
   [[nodiscard]] double onWire(double position_rev) noexcept;
 
-  [[nodiscard]] MoteusWriter writer() const noexcept;
+  [[nodiscard]] moteus::Writer writer() const noexcept;
   [[nodiscard]] CanFrame motionFrame() const noexcept;
 
   MoteusSettings own_;
@@ -102,7 +102,7 @@ class Moteus_Motor final : public SoloMotor {
 
   // The last answer.
   std::optional<MonotonicTime> answered_;
-  MoteusMode mode_ = MoteusMode::kStopped;
+  moteus::Mode mode_ = moteus::Mode::kStopped;
   std::uint32_t native_fault_ = 0;
   std::optional<MonotonicTime> clock_read_;
   double clock_ms_ = 0.0;

@@ -10,14 +10,14 @@ namespace {
 constexpr std::string_view kMoteus = "moteus";
 
 bool isMoteusAnswer(const CanFrame& frame) {
-  MoteusReader reader(frame.payload());
+  moteus::Reader reader(frame.payload());
   bool answered = false;
   for (;;) {
-    MoteusItem item;
+    moteus::Item item;
     const auto step = reader.next(item);
-    if (step == MoteusReader::Step::kMalformed) return false;
-    if (step == MoteusReader::Step::kEnd) return answered;
-    if (item.kind != MoteusItem::Kind::kReply && item.kind != MoteusItem::Kind::kError) return false;
+    if (step == moteus::Reader::Step::kMalformed) return false;
+    if (step == moteus::Reader::Step::kEnd) return answered;
+    if (item.kind != moteus::Item::Kind::kReply && item.kind != moteus::Item::Kind::kError) return false;
     answered = true;
   }
 }
@@ -28,7 +28,7 @@ void recogniseMoteus(const CanFrame& frame, std::vector<DriveGuess>& guesses) {
   if (!frame.fd || !isMoteusAnswer(frame)) return;
   const std::uint32_t prefix = frame.id.value >> 16U;
   const std::uint32_t id = frame.id.value >> 8U & 0x7FU;
-  if (frame.id == moteusReplyId(prefix, id)) guesses.push_back({kMoteus, static_cast<int>(id)});
+  if (frame.id == moteus::replyId(prefix, id)) guesses.push_back({kMoteus, static_cast<int>(id)});
 }
 
 }  // namespace rc10

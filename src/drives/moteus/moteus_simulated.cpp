@@ -27,8 +27,8 @@ constexpr std::uint32_t kFirstLimit = 96;  // codes from here on bound the outpu
 constexpr std::uint32_t kMaxTorqueLimit = 102;
 
 [[nodiscard]] std::vector<FrameFilter> sentBy(const MotorSettings& settings) {
-  return {FrameFilter{
-      .id = moteusReplyId(moteusSettings(settings.own).can_prefix, static_cast<std::uint32_t>(settings.id))}};
+  return {FrameFilter{.id = moteus::replyId(moteusSettings(settings.own).can_prefix,
+                                            static_cast<std::uint32_t>(settings.id))}};
 }
 
 /// Where it is at power-up is known within one turn of the rotor.
@@ -54,14 +54,14 @@ bool MoteusDrive::meant(const CanFrame& frame) const noexcept {
 void MoteusDrive::receive(const CanFrame& frame) noexcept {
   if (!meant(frame)) return;
   const std::uint32_t source = frame.id.value >> 8U & 0xFFU;
-  MoteusWriter reply({prefix_ << 16U | id_ << 8U | (source & 0x7FU), false}, frame.bit_rate_switch);
-  MoteusReader reader(frame.payload());
-  MoteusItem item;
+  moteus::Writer reply({prefix_ << 16U | id_ << 8U | (source & 0x7FU), false}, frame.bit_rate_switch);
+  moteus::Reader reader(frame.payload());
+  moteus::Item item;
   bool commanded = false;
   // Readings are those from before the command: it acts when the frame is done.
-  while (reader.next(item) == MoteusReader::Step::kItem) {
-    if (item.kind == MoteusItem::Kind::kWrite) write(item, commanded);
-    if (item.kind == MoteusItem::Kind::kRead) reply.reply(item.type, item.reg, {read(item.reg)});
+  while (reader.next(item) == moteus::Reader::Step::kItem) {
+    if (item.kind == moteus::Item::Kind::kWrite) write(item, commanded);
+    if (item.kind == moteus::Item::Kind::kRead) reply.reply(item.type, item.reg, {read(item.reg)});
   }
   if (commanded) obey();
   if ((source & 0x80U) == 0) return;
@@ -71,43 +71,43 @@ void MoteusDrive::receive(const CanFrame& frame) noexcept {
   answer(out);
 }
 
-void MoteusDrive::write(const MoteusItem& item, bool& commanded) noexcept {
+void MoteusDrive::write(const moteus::Item& item, bool& commanded) noexcept {
   switch (item.reg) {
-    case MoteusRegister::kMode:
+    case moteus::Register::kMode:
       if (!(item.value >= 0.0 && item.value <= 15.0)) return;
       command_ = {};
-      command_.mode = static_cast<MoteusMode>(item.value);
+      command_.mode = static_cast<moteus::Mode>(item.value);
       commanded = true;
       return;
-    case MoteusRegister::kCommandPosition: command_.position_rev = item.value; return;
-    case MoteusRegister::kCommandVelocity: command_.velocity_rev_s = item.value; return;
-    case MoteusRegister::kCommandTorque: command_.torque_nm = item.value; return;
-    case MoteusRegister::kKpScale: command_.kp_scale = item.value; return;
-    case MoteusRegister::kKdScale: command_.kd_scale = item.value; return;
-    case MoteusRegister::kMaxTorque:
+    case moteus::Register::kCommandPosition: command_.position_rev = item.value; return;
+    case moteus::Register::kCommandVelocity: command_.velocity_rev_s = item.value; return;
+    case moteus::Register::kCommandTorque: command_.torque_nm = item.value; return;
+    case moteus::Register::kKpScale: command_.kp_scale = item.value; return;
+    case moteus::Register::kKdScale: command_.kd_scale = item.value; return;
+    case moteus::Register::kMaxTorque:
       command_.max_torque_nm = std::isnan(item.value) ? std::nullopt : std::optional{item.value};
       return;
-    case MoteusRegister::kTimeout: command_.timeout_s = item.value; return;
-    case MoteusRegister::kVelocityLimit: command_.limit_rev_s = item.value; return;
-    case MoteusRegister::kAccelerationLimit: command_.limit_rev_s2 = item.value; return;
+    case moteus::Register::kTimeout: command_.timeout_s = item.value; return;
+    case moteus::Register::kVelocityLimit: command_.limit_rev_s = item.value; return;
+    case moteus::Register::kAccelerationLimit: command_.limit_rev_s2 = item.value; return;
     default: return;
   }
 }
 
-double MoteusDrive::read(MoteusRegister reg) const noexcept {
+double MoteusDrive::read(moteus::Register reg) const noexcept {
   switch (reg) {
-    case MoteusRegister::kMode: return static_cast<double>(mode_);
-    case MoteusRegister::kPosition: return positionRev();
-    case MoteusRegister::kVelocity: return driveRpm() / kRpmPerTurnPerS;
-    case MoteusRegister::kTorque: return driveTorqueNm();
-    case MoteusRegister::kQCurrent: return currentA();
-    case MoteusRegister::kHomeState: return home_state_;
-    case MoteusRegister::kVoltage: return physics().parameters().supply_v;
-    case MoteusRegister::kTemperature: return physics().temperatureC();
-    case MoteusRegister::kFault: return fault_;
-    case MoteusRegister::kTimeout: return command_.timeout_s;
-    case MoteusRegister::kRegisterMapVersion: return version_;
-    case MoteusRegister::kMilliseconds: {
+    case moteus::Register::kMode: return static_cast<double>(mode_);
+    case moteus::Register::kPosition: return positionRev();
+    case moteus::Register::kVelocity: return driveRpm() / kRpmPerTurnPerS;
+    case moteus::Register::kTorque: return driveTorqueNm();
+    case moteus::Register::kQCurrent: return currentA();
+    case moteus::Register::kHomeState: return home_state_;
+    case moteus::Register::kVoltage: return physics().parameters().supply_v;
+    case moteus::Register::kTemperature: return physics().temperatureC();
+    case moteus::Register::kFault: return fault_;
+    case moteus::Register::kTimeout: return command_.timeout_s;
+    case moteus::Register::kRegisterMapVersion: return version_;
+    case moteus::Register::kMilliseconds: {
       const auto ms = std::chrono::duration_cast<std::chrono::milliseconds>(clock_).count();
       return static_cast<std::int16_t>(ms & 0xFFFF);
     }
@@ -121,26 +121,26 @@ void MoteusDrive::obey() noexcept {
   } else {
     left_s_ = kDefaultTimeoutSeconds;
   }
-  if (command_.mode == MoteusMode::kStopped) {
-    change(MoteusMode::kStopped);
+  if (command_.mode == moteus::Mode::kStopped) {
+    change(moteus::Mode::kStopped);
     fault_ = 0;
     return;
   }
-  const bool known = command_.mode == MoteusMode::kPosition || command_.mode == MoteusMode::kBrake ||
-                     command_.mode == MoteusMode::kZeroVelocity;
+  const bool known = command_.mode == moteus::Mode::kPosition || command_.mode == moteus::Mode::kBrake ||
+                     command_.mode == moteus::Mode::kZeroVelocity;
   if (!known) return;
   switch (mode_) {
-    case MoteusMode::kStopped: return change(MoteusMode::kEnabling);
-    case MoteusMode::kPosition:
-    case MoteusMode::kBrake:
-    case MoteusMode::kZeroVelocity:
+    case moteus::Mode::kStopped: return change(moteus::Mode::kEnabling);
+    case moteus::Mode::kPosition:
+    case moteus::Mode::kBrake:
+    case moteus::Mode::kZeroVelocity:
       if (mode_ != command_.mode) change(command_.mode);
       return;
     default: return;  // a fault or a time-out is left by a stop only
   }
 }
 
-void MoteusDrive::change(MoteusMode mode) noexcept {
+void MoteusDrive::change(moteus::Mode mode) noexcept {
   mode_ = mode;
   switching_ = Duration::zero();
   course_rev_ = kNaN;
@@ -211,21 +211,21 @@ void MoteusDrive::positionControl(double dt_s) noexcept {
 void MoteusDrive::control(double dt_s) noexcept {
   // Only position mode is watched.
   if (left_s_ > 0.0) left_s_ = std::max(0.0, left_s_ - dt_s);
-  if (mode_ == MoteusMode::kPosition && left_s_ <= 0.0) change(MoteusMode::kTimeout);
+  if (mode_ == moteus::Mode::kPosition && left_s_ <= 0.0) change(moteus::Mode::kTimeout);
   switch (mode_) {
-    case MoteusMode::kPosition: return positionControl(dt_s);
-    case MoteusMode::kBrake: return shortWinding();
-    case MoteusMode::kZeroVelocity: return damp(command_.kd_scale, kTimeoutTorqueNm);
-    case MoteusMode::kTimeout: return damp(1.0, kTimeoutTorqueNm);
-    case MoteusMode::kEnabling:
-    case MoteusMode::kCalibrating:
-    case MoteusMode::kCalibrated:
+    case moteus::Mode::kPosition: return positionControl(dt_s);
+    case moteus::Mode::kBrake: return shortWinding();
+    case moteus::Mode::kZeroVelocity: return damp(command_.kd_scale, kTimeoutTorqueNm);
+    case moteus::Mode::kTimeout: return damp(1.0, kTimeoutTorqueNm);
+    case moteus::Mode::kEnabling:
+    case moteus::Mode::kCalibrating:
+    case moteus::Mode::kCalibrated:
       switching_ += std::chrono::duration_cast<Duration>(std::chrono::duration<double>(dt_s));
-      if (switching_ >= kSwitchTime / 2) mode_ = MoteusMode::kCalibrating;
+      if (switching_ >= kSwitchTime / 2) mode_ = moteus::Mode::kCalibrating;
       if (switching_ >= kSwitchTime) change(command_.mode);
       return release();
-    case MoteusMode::kStopped:
-    case MoteusMode::kFault: return release();
+    case moteus::Mode::kStopped:
+    case moteus::Mode::kFault: return release();
   }
 }
 
@@ -240,7 +240,7 @@ void MoteusDrive::step(Duration dt) noexcept {
 }
 
 void MoteusDrive::restart() noexcept {
-  change(MoteusMode::kStopped);
+  change(moteus::Mode::kStopped);
   command_ = {};
   fault_ = 0;
   clock_ = Duration::zero();
@@ -254,11 +254,11 @@ void MoteusDrive::restart() noexcept {
 
 void MoteusDrive::fault(std::uint32_t native_code) noexcept {
   if (native_code == 0 || native_code >= kFirstLimit) {
-    if (mode_ == MoteusMode::kFault) change(MoteusMode::kStopped);
+    if (mode_ == moteus::Mode::kFault) change(moteus::Mode::kStopped);
     fault_ = 0;
     return;
   }
-  change(MoteusMode::kFault);
+  change(moteus::Mode::kFault);
   fault_ = native_code;
 }
 

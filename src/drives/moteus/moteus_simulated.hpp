@@ -22,7 +22,7 @@ class MoteusDrive final : public ServoDrive {
   void restart() noexcept override;
   void fault(std::uint32_t native_code) noexcept override;
 
-  [[nodiscard]] MoteusMode mode() const noexcept { return mode_; }
+  [[nodiscard]] moteus::Mode mode() const noexcept { return mode_; }
   /// Register 0x00C as the attached encoder sets it: 0 nothing is known, 1 the rotor, 2 the output.
   void setHomeState(int state) noexcept { home_state_ = state; }
   void setRegisterMapVersion(int version) noexcept { version_ = version; }
@@ -30,7 +30,7 @@ class MoteusDrive final : public ServoDrive {
  private:
   /// The command registers; each mode write sets all of them back to this.
   struct Command {
-    MoteusMode mode = MoteusMode::kStopped;
+    moteus::Mode mode = moteus::Mode::kStopped;
     double position_rev = 0.0;  // NaN: where it is
     double velocity_rev_s = 0.0;
     double torque_nm = 0.0;
@@ -45,10 +45,10 @@ class MoteusDrive final : public ServoDrive {
   };
 
   [[nodiscard]] bool meant(const CanFrame& frame) const noexcept;
-  void write(const MoteusItem& item, bool& commanded) noexcept;
-  [[nodiscard]] double read(MoteusRegister reg) const noexcept;
+  void write(const moteus::Item& item, bool& commanded) noexcept;
+  [[nodiscard]] double read(moteus::Register reg) const noexcept;
   void obey() noexcept;
-  void change(MoteusMode mode) noexcept;
+  void change(moteus::Mode mode) noexcept;
   void control(double dt_s) noexcept;
   void positionControl(double dt_s) noexcept;
   void profile(double goal_rev, double dt_s) noexcept;
@@ -59,7 +59,7 @@ class MoteusDrive final : public ServoDrive {
   std::uint32_t id_;
   std::uint32_t prefix_;
   Command command_;
-  MoteusMode mode_ = MoteusMode::kStopped;
+  moteus::Mode mode_ = moteus::Mode::kStopped;
   std::uint32_t fault_ = 0;
   int home_state_ = 1;
   int version_ = 5;

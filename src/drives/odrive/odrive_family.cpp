@@ -103,32 +103,32 @@ class OdriveFamily : public MotorFamily {
     const auto* row = findOdriveModel(settings.model);
     const bool v06 = row == nullptr || row->firmware == OdriveFirmware::k06;
     const FrameFilter own_block{
-        .id = odriveId(node, OdriveMessage{}), .mask = kOdriveNodeMask, .discriminator = {}};
+        .id = odrive::canId(node, odrive::Message{}), .mask = odrive::kNodeMask, .discriminator = {}};
     BusUse use;
     use.sends = {own_block};
     use.obeys = {own_block};
     if (v06) use.obeys.push_back({.id = kAddressBroadcast, .mask = kStandardIdMask, .discriminator = {}});
 
     const double feedback_hz = settings.feedback_hz > 0 ? settings.feedback_hz : 100.0;
-    use.feedback = {{odriveId(node, OdriveMessage::kEncoderEstimates), FrameShape{}, feedback_hz},
-                    {odriveId(node, OdriveMessage::kHeartbeat), FrameShape{}, kHeartbeatHz}};
+    use.feedback = {{odrive::canId(node, odrive::Message::kEncoderEstimates), FrameShape{}, feedback_hz},
+                    {odrive::canId(node, odrive::Message::kHeartbeat), FrameShape{}, kHeartbeatHz}};
     if (const double hz = settings.own.number("telemetry_hz"); hz > 0.0) {
-      use.feedback.push_back({odriveId(node, OdriveMessage::kBusVoltage), FrameShape{}, hz});
+      use.feedback.push_back({odrive::canId(node, odrive::Message::kBusVoltage), FrameShape{}, hz});
       use.feedback.push_back(
-          {odriveId(node, v06 ? OdriveMessage::kTorques : OdriveMessage::kIq), FrameShape{}, hz});
-      if (v06) use.feedback.push_back({odriveId(node, OdriveMessage::kTemperature), FrameShape{}, hz});
+          {odrive::canId(node, v06 ? odrive::Message::kTorques : odrive::Message::kIq), FrameShape{}, hz});
+      if (v06) use.feedback.push_back({odrive::canId(node, odrive::Message::kTemperature), FrameShape{}, hz});
     }
     // Rest takes two short frames, more than the one long frame of a target. The others are rare or take
     // their place.
     const double command_hz = static_cast<double>(settings.tick_hz) / std::max(settings.command_divider, 1);
     constexpr FrameShape kShort{.length = 4};
-    use.commands = {{odriveId(node, OdriveMessage::kSetInputTorque), kShort, command_hz},
-                    {odriveId(node, OdriveMessage::kSetAxisState), kShort, command_hz},
-                    {odriveId(node, OdriveMessage::kSetControllerMode), FrameShape{}, 0.0},
-                    {odriveId(node, OdriveMessage::kSetInputPos), FrameShape{}, 0.0},
-                    {odriveId(node, OdriveMessage::kSetInputVel), FrameShape{}, 0.0},
-                    {odriveId(node, OdriveMessage::kSetLimits), FrameShape{}, kLimitsHz},
-                    {odriveId(node, OdriveMessage::kClearErrors), FrameShape{.length = 1}, 0.0}};
+    use.commands = {{odrive::canId(node, odrive::Message::kSetInputTorque), kShort, command_hz},
+                    {odrive::canId(node, odrive::Message::kSetAxisState), kShort, command_hz},
+                    {odrive::canId(node, odrive::Message::kSetControllerMode), FrameShape{}, 0.0},
+                    {odrive::canId(node, odrive::Message::kSetInputPos), FrameShape{}, 0.0},
+                    {odrive::canId(node, odrive::Message::kSetInputVel), FrameShape{}, 0.0},
+                    {odrive::canId(node, odrive::Message::kSetLimits), FrameShape{}, kLimitsHz},
+                    {odrive::canId(node, odrive::Message::kClearErrors), FrameShape{.length = 1}, 0.0}};
     return use;
   }
 

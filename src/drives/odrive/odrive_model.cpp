@@ -81,7 +81,7 @@ std::span<const DriveFault> odriveFaults(OdriveFirmware firmware) noexcept {
   return kOdriveFaults06;
 }
 
-std::uint32_t odriveErrors(OdriveFirmware firmware, const OdriveHeartbeat& heartbeat) noexcept {
+std::uint32_t odriveErrors(OdriveFirmware firmware, const odrive::Heartbeat& heartbeat) noexcept {
   // Every 0.6 drive begins with this bit; it is over after a moment, and no fault.
   if (firmware == OdriveFirmware::k06) return heartbeat.axis_error & ~kInitializing;
   // An idle 0.5 axis may report a failed part in its flags alone.
@@ -90,8 +90,8 @@ std::uint32_t odriveErrors(OdriveFirmware firmware, const OdriveHeartbeat& heart
          ((heartbeat.byte7 & 1U) != 0 ? kControllerFailed : 0U);
 }
 
-bool odriveStarting(OdriveFirmware firmware, const OdriveHeartbeat& heartbeat) noexcept {
-  if (heartbeat.state == OdriveAxisState::kUndefined) return true;
+bool odriveStarting(OdriveFirmware firmware, const odrive::Heartbeat& heartbeat) noexcept {
+  if (heartbeat.state == odrive::AxisState::kUndefined) return true;
   return firmware == OdriveFirmware::k06 && (heartbeat.axis_error & kInitializing) != 0;
 }
 

@@ -27,9 +27,10 @@ struct OdriveModel {
 [[nodiscard]] std::span<const DriveFault> odriveFaults(OdriveFirmware firmware) noexcept;
 
 /// All that a heartbeat says is wrong, as bits of the axis error.
-[[nodiscard]] std::uint32_t odriveErrors(OdriveFirmware firmware, const OdriveHeartbeat& heartbeat) noexcept;
+[[nodiscard]] std::uint32_t odriveErrors(OdriveFirmware firmware,
+                                         const odrive::Heartbeat& heartbeat) noexcept;
 
 /// The drive is still starting: it was switched on or restarted a moment ago.
-[[nodiscard]] bool odriveStarting(OdriveFirmware firmware, const OdriveHeartbeat& heartbeat) noexcept;
+[[nodiscard]] bool odriveStarting(OdriveFirmware firmware, const odrive::Heartbeat& heartbeat) noexcept;
 
 }  // namespace rc10

@@ -36,7 +36,7 @@ constexpr double kFarthestTurns = 100'000.0;
 // Beyond what the speeds of two samples explain.
 constexpr double kJumpTurns = 0.5;
 
-bool isFinite(const OdrivePair& pair) noexcept {
+bool isFinite(const odrive::Pair& pair) noexcept {
   return std::isfinite(pair.first) && std::isfinite(pair.second);
 }
 
@@ -50,17 +50,17 @@ ODrive_Motor::ODrive_Motor(const MotorSettings& settings, const MotorTraits& tra
       iq_sign_(settings.own.flag("iq_reversed") ? -1.0F : 1.0F),
       filter_count_(firmware_ == OdriveFirmware::k06 ? 5 : 4),
       sequence_(kAskAgain, kMostAsks),
-      input_(odriveSetInputTorque(node_, 0.0F)) {
-  using enum OdriveMessage;
+      input_(odrive::setInputTorque(node_, 0.0F)) {
+  using enum odrive::Message;
   const bool v05 = firmware_ == OdriveFirmware::k05;
   const std::array heard{kHeartbeat, kEncoderEstimates, kBusVoltage, v05 ? kIq : kTorques, kTemperature};
   for (std::size_t i = 0; i < filters_.size(); ++i) {
-    filters_[i] = {.id = odriveId(node_, heard[i]), .mask = kStandardIdMask, .discriminator = {}};
+    filters_[i] = {.id = odrive::canId(node_, heard[i]), .mask = kStandardIdMask, .discriminator = {}};
   }
   const std::array said{kSetAxisState,   kSetControllerMode, kSetInputPos, kSetInputVel,
                         kSetInputTorque, kSetLimits,         kClearErrors};
   std::transform(said.begin(), said.end(), command_ids_.begin(),
-                 [&](OdriveMessage message) { return odriveId(node_, message); });
+                 [&](odrive::Message message) { return odrive::canId(node_, message); });
 }
 
 // ---- Feedback
@@ -72,9 +72,9 @@ bool ODrive_Motor::matchesFrame(const CanFrame& frame) const noexcept {
 }
 
 FrameVerdict ODrive_Motor::updateFeedback(const CanFrame& frame) noexcept {
-  switch (odriveMessage(frame.id)) {
-    case OdriveMessage::kHeartbeat: return acceptHeartbeat(frame);
-    case OdriveMessage::kEncoderEstimates: return acceptEstimates(frame);
+  switch (odrive::messageOf(frame.id)) {
+    case odrive::Message::kHeartbeat: return acceptHeartbeat(frame);
+    case odrive::Message::kEncoderEstimates: return acceptEstimates(frame);
     default: return acceptTelemetry(frame);
   }
 }
@@ -92,7 +92,7 @@ void ODrive_Motor::forgetPosition() noexcept {
 }
 
 FrameVerdict ODrive_Motor::acceptHeartbeat(const CanFrame& frame) noexcept {
-  const auto heartbeat = decodeOdriveHeartbeat(frame);
+  const auto heartbeat = odrive::decodeHeartbeat(frame);
   if (!heartbeat) return FrameVerdict::kMalformed;
   hear(frame.received);
   starting_ = odriveStarting(firmware_, *heartbeat);
@@ -110,7 +110,7 @@ bool ODrive_Motor::isJump(MonotonicTime received, double turns, double turns_per
 }
 
 FrameVerdict ODrive_Motor::acceptEstimates(const CanFrame& frame) noexcept {
-  const auto estimates = decodeOdrivePair(frame);
+  const auto estimates = odrive::decodePair(frame);
   if (!estimates || !isFinite(*estimates)) return FrameVerdict::kMalformed;
   hear(frame.received);
   // A starting drive's position may still change without a movement.
@@ -136,10 +136,10 @@ FrameVerdict ODrive_Motor::acceptEstimates(const CanFrame& frame) noexcept {
 }
 
 FrameVerdict ODrive_Motor::acceptTelemetry(const CanFrame& frame) noexcept {
-  const auto pair = decodeOdrivePair(frame);
+  const auto pair = odrive::decodePair(frame);
   if (!pair) return FrameVerdict::kMalformed;
-  const auto message = odriveMessage(frame.id);
-  if (message == OdriveMessage::kTemperature) {
+  const auto message = odrive::messageOf(frame.id);
+  if (message == odrive::Message::kTemperature) {
     // The hotter of power stage and motor: a motor without a sensor has no number, or 0.
     const float celsius = std::fmax(pair->first, pair->second);
     if (!std::isfinite(celsius)) return FrameVerdict::kMalformed;
@@ -150,7 +150,7 @@ FrameVerdict ODrive_Motor::acceptTelemetry(const CanFrame& frame) noexcept {
   }
   if (!isFinite(*pair)) return FrameVerdict::kMalformed;
   hear(frame.received);
-  if (message == OdriveMessage::kBusVoltage) {
+  if (message == odrive::Message::kBusVoltage) {
     feedback_.voltage_v = pair->first;
     voltage_at_ = frame.received;
     return FrameVerdict::kAccepted;
@@ -158,7 +158,7 @@ FrameVerdict ODrive_Motor::acceptTelemetry(const CanFrame& frame) noexcept {
   // Firmware 0.6 tells the torque, 0.5 the current. Of the second value in both: what is measured.
   const float measured = saturate(pair->second);
   feedback_.current_a =
-      message == OdriveMessage::kTorques
+      message == odrive::Message::kTorques
           ? saturate(static_cast<float>(torqueToOutput(static_cast<double>(measured))) / torqueNmPerA())
           : measured * iq_sign_ * direction();
   feedback_.torque_nm = saturate(feedback_.current_a * torqueNmPerA());
@@ -171,7 +171,7 @@ FrameVerdict ODrive_Motor::acceptTelemetry(const CanFrame& frame) noexcept {
 void ODrive_Motor::watchState() noexcept {
   if (!obeying()) {
     stopped_ = false;
-  } else if (!heartbeat_ || heartbeat_->state != OdriveAxisState::kClosedLoop) {
+  } else if (!heartbeat_ || heartbeat_->state != odrive::AxisState::kClosedLoop) {
     stopped_ = true;
   }
 }
@@ -186,7 +186,7 @@ void ODrive_Motor::update(const Tick& tick) noexcept {
     refreshLimits(tick);
   } else {
     mode_known_ = false;
-    input_ = odriveSetInputTorque(node_, 0.0F);
+    input_ = odrive::setInputTorque(node_, 0.0F);
     setCommand(0.0, CommandUnit::kAmpere);
     if (ask_) {
       limits_sent_a_ = effortLimit();
@@ -217,17 +217,17 @@ void ODrive_Motor::followTorque(const Target& target) noexcept {
     nm = limitedTorque(target.value * static_cast<double>(torqueNmPerA()) +
                        static_cast<double>(target.torque_ff_nm));
   }
-  setInput(OdriveControlMode::kTorque,
-           odriveSetInputTorque(node_, saturate(static_cast<float>(torqueToDrive(nm)))));
+  setInput(odrive::ControlMode::kTorque,
+           odrive::setInputTorque(node_, saturate(static_cast<float>(torqueToDrive(nm)))));
   setCommand(nm / static_cast<double>(torqueNmPerA()), CommandUnit::kAmpere);
 }
 
 void ODrive_Motor::followVelocity(double rpm, float torque_ff_nm) noexcept {
   const double allowed_rpm = rpmWithinLimit(rpm);
   const double ff_nm = limitedTorque(static_cast<double>(torque_ff_nm));
-  setInput(OdriveControlMode::kVelocity,
-           odriveSetInputVel(node_, saturate(static_cast<float>(toDrive(allowed_rpm) / kRpmPerTurnPerS)),
-                             saturate(static_cast<float>(torqueToDrive(ff_nm)))));
+  setInput(odrive::ControlMode::kVelocity,
+           odrive::setInputVel(node_, saturate(static_cast<float>(toDrive(allowed_rpm) / kRpmPerTurnPerS)),
+                               saturate(static_cast<float>(torqueToDrive(ff_nm)))));
   setCommand(allowed_rpm, CommandUnit::kNative);
 }
 
@@ -240,14 +240,14 @@ void ODrive_Motor::followPosition(const Target& target) noexcept {
   }
   const double ff_rpm = rpmWithinLimit(static_cast<double>(target.velocity_ff_rpm));
   const double ff_nm = limitedTorque(static_cast<double>(target.torque_ff_nm));
-  setInput(OdriveControlMode::kPosition,
-           odriveSetInputPos(node_, static_cast<float>(turns),
-                             saturate(static_cast<float>(toDrive(ff_rpm) / kRpmPerTurnPerS)),
-                             saturate(static_cast<float>(torqueToDrive(ff_nm)))));
+  setInput(odrive::ControlMode::kPosition,
+           odrive::setInputPos(node_, static_cast<float>(turns),
+                               saturate(static_cast<float>(toDrive(ff_rpm) / kRpmPerTurnPerS)),
+                               saturate(static_cast<float>(torqueToDrive(ff_nm)))));
   setCommand(target.value, CommandUnit::kNative);
 }
 
-void ODrive_Motor::setInput(OdriveControlMode mode, const CanFrame& input) noexcept {
+void ODrive_Motor::setInput(odrive::ControlMode mode, const CanFrame& input) noexcept {
   if (!mode_known_ || mode != mode_) mode_repeats_ = kModeRepeats;
   mode_known_ = true;
   mode_ = mode;
@@ -263,7 +263,7 @@ void ODrive_Motor::refreshLimits(const Tick& tick) noexcept {
 
 CanFrame ODrive_Motor::limitsFrame() const noexcept {
   const double turns_per_s = std::abs(toDrive(static_cast<double>(velocityLimitRpm()))) / kRpmPerTurnPerS;
-  return odriveSetLimits(node_, saturate(static_cast<float>(turns_per_s)), effortLimit());
+  return odrive::setLimits(node_, saturate(static_cast<float>(turns_per_s)), effortLimit());
 }
 
 // ---- Packing
@@ -271,15 +271,15 @@ CanFrame ODrive_Motor::limitsFrame() const noexcept {
 std::size_t ODrive_Motor::packCommand(const Tick& tick, std::span<CanFrame> out) noexcept {
   FrameOutbox frames;
   if (enabling() && ask_ && sequence_.at(Step::kToClosedLoop)) {
-    frames.add(odriveSetInputTorque(node_, 0.0F));
-    frames.add(odriveSetControllerMode(node_, OdriveControlMode::kTorque));
+    frames.add(odrive::setInputTorque(node_, 0.0F));
+    frames.add(odrive::setControllerMode(node_, odrive::ControlMode::kTorque));
     frames.add(limitsFrame());
-    frames.add(odriveSetAxisState(node_, OdriveAxisState::kClosedLoop));
+    frames.add(odrive::setAxisState(node_, odrive::AxisState::kClosedLoop));
     return frames.copyTo(out);
   }
   if (clear_repeats_ > 0) {
     --clear_repeats_;
-    frames.add(odriveClearErrors(node_));
+    frames.add(odrive::clearErrors(node_));
   }
   if (!due(tick) && !ask_) return frames.copyTo(out);
   if (obeying()) {
@@ -288,7 +288,7 @@ std::size_t ODrive_Motor::packCommand(const Tick& tick, std::span<CanFrame> out)
     if (mode_repeats_ > 0) {
       --mode_repeats_;
       frames.add(input_);
-      frames.add(odriveSetControllerMode(node_, mode_));
+      frames.add(odrive::setControllerMode(node_, mode_));
     } else if (limits_due_) {
       frames.add(limitsFrame());
       limits_due_ = false;
@@ -307,14 +307,14 @@ std::size_t ODrive_Motor::packCommand(const Tick& tick, std::span<CanFrame> out)
 
 std::size_t ODrive_Motor::packRest(std::span<CanFrame> out) const noexcept {
   FrameOutbox frames;
-  frames.add(odriveSetInputTorque(node_, 0.0F));
-  frames.add(odriveSetAxisState(node_, OdriveAxisState::kIdle));
+  frames.add(odrive::setInputTorque(node_, 0.0F));
+  frames.add(odrive::setAxisState(node_, odrive::AxisState::kIdle));
   return frames.copyTo(out);
 }
 
 // ---- Enabling
 
-bool ODrive_Motor::stateSince(OdriveAxisState state, MonotonicTime since) const noexcept {
+bool ODrive_Motor::stateSince(odrive::AxisState state, MonotonicTime since) const noexcept {
   return heartbeat_ && heartbeat_->state == state && heartbeat_at_ >= since;
 }
 
@@ -324,14 +324,14 @@ void ODrive_Motor::runSequence(const Tick& tick) noexcept {
   if (sequence_.awaits(Step::kToIdle)) {
     if (!well) {
       sequence_.fail();
-    } else if (stateSince(OdriveAxisState::kIdle, sequence_.askedFirst() - kYoungHeartbeat)) {
+    } else if (stateSince(odrive::AxisState::kIdle, sequence_.askedFirst() - kYoungHeartbeat)) {
       sequence_.next(Step::kToClosedLoop);
     }
   }
   if (sequence_.awaits(Step::kToClosedLoop) && heartbeat_ && heartbeat_at_ >= sequence_.askedFirst()) {
     if (!well) {
       sequence_.fail();
-    } else if (heartbeat_->state == OdriveAxisState::kClosedLoop) {
+    } else if (heartbeat_->state == odrive::AxisState::kClosedLoop) {
       sequence_.finish();
     }
   }

@@ -49,7 +49,7 @@ class ODrive_Motor : public SoloMotor {
   [[nodiscard]] bool isJump(MonotonicTime received, double turns, double turns_per_s) const noexcept;
 
   void runSequence(const Tick& tick) noexcept;
-  [[nodiscard]] bool stateSince(OdriveAxisState state, MonotonicTime since) const noexcept;
+  [[nodiscard]] bool stateSince(odrive::AxisState state, MonotonicTime since) const noexcept;
   void watchState() noexcept;
 
   void follow(const Target& target) noexcept;
@@ -57,7 +57,7 @@ class ODrive_Motor : public SoloMotor {
   void followVelocity(double rpm, float torque_ff_nm) noexcept;
   void followPosition(const Target& target) noexcept;
   [[nodiscard]] double limitedTorque(double nm) noexcept;  ///< At the output shaft.
-  void setInput(OdriveControlMode mode, const CanFrame& input) noexcept;
+  void setInput(odrive::ControlMode mode, const CanFrame& input) noexcept;
   void refreshLimits(const Tick& tick) noexcept;
   [[nodiscard]] CanFrame limitsFrame() const noexcept;
 
@@ -69,7 +69,7 @@ class ODrive_Motor : public SoloMotor {
   std::array<CanId, 7> command_ids_;
 
   // Heard.
-  std::optional<OdriveHeartbeat> heartbeat_;
+  std::optional<odrive::Heartbeat> heartbeat_;
   MonotonicTime heartbeat_at_;
   MonotonicTime heard_at_;
   bool heard_ = false;
@@ -87,7 +87,7 @@ class ODrive_Motor : public SoloMotor {
   bool stopped_ = false;
 
   // To be sent.
-  OdriveControlMode mode_ = OdriveControlMode::kTorque;
+  odrive::ControlMode mode_ = odrive::ControlMode::kTorque;
   CanFrame input_;
   int mode_repeats_ = 0;
   int clear_repeats_ = 0;

@@ -11,15 +11,15 @@ constexpr std::uint8_t kOdriveLastState = 14;
 
 void addStandard(const CanFrame& frame, std::vector<DriveGuess>& guesses) {
   if (frame.id.extended || frame.fd) return;
-  const int node = static_cast<int>(frame.id.value >> kOdriveMessageBits);
-  const auto message = odriveMessage(frame.id);
-  if (message == OdriveMessage::kHeartbeat) {
-    const auto beat = decodeOdriveHeartbeat(frame);
+  const int node = static_cast<int>(frame.id.value >> odrive::kMessageBits);
+  const auto message = odrive::messageOf(frame.id);
+  if (message == odrive::Message::kHeartbeat) {
+    const auto beat = odrive::decodeHeartbeat(frame);
     if (beat && static_cast<std::uint8_t>(beat->state) <= kOdriveLastState)
       guesses.push_back({drive_kind::kOdrive, node});
   }
-  if (message == OdriveMessage::kEncoderEstimates) {
-    const auto pair = decodeOdrivePair(frame);
+  if (message == odrive::Message::kEncoderEstimates) {
+    const auto pair = odrive::decodePair(frame);
     // Numbers that a shaft can have: bytes of another protocol read as floats are seldom.
     const auto sane = [](float value) {
       return std::isfinite(value) && (value == 0.0F || (std::abs(value) > 1e-9F && std::abs(value) < 1e7F));
@@ -32,12 +32,13 @@ void addStandard(const CanFrame& frame, std::vector<DriveGuess>& guesses) {
 // on, and bytes 5 and 6 are a code and a flag. A VESC or CubeMars at rest has zeros there.
 void addExtended(const CanFrame& frame, std::vector<DriveGuess>& guesses) {
   constexpr std::uint8_t kHighestCode = 15;
-  if (!frame.id.extended || odriveMessage(frame.id) != OdriveMessage::kHeartbeat) return;
-  const auto beat = decodeOdriveHeartbeat(frame);
+  if (!frame.id.extended || odrive::messageOf(frame.id) != odrive::Message::kHeartbeat) return;
+  const auto beat = odrive::decodeHeartbeat(frame);
   if (!beat || beat->byte5 > kHighestCode || beat->byte6 > kHighestCode) return;
   const auto state = static_cast<std::uint8_t>(beat->state);
-  if (state >= static_cast<std::uint8_t>(OdriveAxisState::kIdle) && state <= kOdriveLastState)
-    guesses.push_back({drive_kind::kOdriveExtended, static_cast<int>(frame.id.value >> kOdriveMessageBits)});
+  if (state >= static_cast<std::uint8_t>(odrive::AxisState::kIdle) && state <= kOdriveLastState)
+    guesses.push_back(
+        {drive_kind::kOdriveExtended, static_cast<int>(frame.id.value >> odrive::kMessageBits)});
 }
 
 }  // namespace

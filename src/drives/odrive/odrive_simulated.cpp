@@ -38,20 +38,20 @@ MotorTraits withSpeed(MotorTraits traits) noexcept {
   return traits;
 }
 
-CanFrame pair(int node, OdriveMessage message, double first, double second) noexcept {
+CanFrame pair(int node, odrive::Message message, double first, double second) noexcept {
   std::array<std::uint8_t, 8> payload{};
   writeLittleEndian(std::span<std::uint8_t>{payload}, 0, static_cast<float>(first));
   writeLittleEndian(std::span<std::uint8_t>{payload}, 4, static_cast<float>(second));
-  return makeClassicFrame(odriveId(node, message), payload);
+  return makeClassicFrame(odrive::canId(node, message), payload);
 }
 
 }  // namespace
 
 OdriveDrive::OdriveDrive(const MotorSettings& settings, const MotorTraits& traits, const MotorLoad& load)
-    : ServoDrive(
-          settings, withSpeed(traits), load,
-          {FrameFilter{
-              .id = odriveId(settings.id, OdriveMessage{}), .mask = kOdriveNodeMask, .discriminator = {}}}),
+    : ServoDrive(settings, withSpeed(traits), load,
+                 {FrameFilter{.id = odrive::canId(settings.id, odrive::Message{}),
+                              .mask = odrive::kNodeMask,
+                              .discriminator = {}}}),
       node_(settings.id),
       firmware_(findOdriveModel(settings.model) != nullptr ? findOdriveModel(settings.model)->firmware
                                                            : OdriveFirmware::k06),
@@ -65,38 +65,39 @@ double OdriveDrive::torqueLimitNm() const noexcept { return current_limit_a_ * t
 
 void OdriveDrive::disarm(std::uint32_t errors) noexcept {
   errors_ |= errors;
-  state_ = OdriveAxisState::kIdle;
+  state_ = odrive::AxisState::kIdle;
   release();
 }
 
 void OdriveDrive::requestState(std::uint32_t state) noexcept {
   if (firmware_ == OdriveFirmware::k05) errors_ &= ~kInvalidState;
-  if (state != static_cast<std::uint32_t>(OdriveAxisState::kClosedLoop)) return disarm(0);
+  if (state != static_cast<std::uint32_t>(odrive::AxisState::kClosedLoop)) return disarm(0);
   if (errors_ != 0) return disarm(0);
   // Begins where it is.
   input_turns_ = driveAngleDeg() / kDegPerTurn;
-  state_ = OdriveAxisState::kClosedLoop;
+  state_ = odrive::AxisState::kClosedLoop;
   drive();
 }
 
 void OdriveDrive::drive() noexcept {
-  if (state_ != OdriveAxisState::kClosedLoop) return;
+  if (state_ != odrive::AxisState::kClosedLoop) return;
   const double limit_nm = torqueLimitNm();
   const double limit_rpm = velocity_limit_turns_per_s_ * kRpmPerTurnPerS;
   const double torque_nm = std::clamp(input_torque_nm_, -limit_nm, limit_nm);
   switch (control_mode_) {
-    case OdriveControlMode::kTorque: return torque(torque_nm);
-    case OdriveControlMode::kVelocity:
+    case odrive::ControlMode::kTorque: return torque(torque_nm);
+    case odrive::ControlMode::kVelocity:
       return velocity(std::clamp(input_turns_per_s_ * kRpmPerTurnPerS, -limit_rpm, limit_rpm), torque_nm,
                       limit_nm);
-    case OdriveControlMode::kPosition: return position(input_turns_ * kDegPerTurn, limit_rpm, limit_nm);
+    case odrive::ControlMode::kPosition: return position(input_turns_ * kDegPerTurn, limit_rpm, limit_nm);
   }
   disarm(kInvalidState);
 }
 
 void OdriveDrive::receive(const CanFrame& frame) noexcept {
   if (frame.id.extended || frame.fd || frame.type != FrameType::kData) return;
-  if ((frame.id.value & kOdriveNodeMask) != odriveId(node_, OdriveMessage{}).value || starting()) return;
+  if ((frame.id.value & odrive::kNodeMask) != odrive::canId(node_, odrive::Message{}).value || starting())
+    return;
   // 0.5: whatever is addressed to the node (CANSimple::do_command). 0.6 is not published; taken as the same.
   fed_at_ = elapsed();
   std::array<std::uint8_t, 8> data{};
@@ -108,29 +109,29 @@ void OdriveDrive::receive(const CanFrame& frame) noexcept {
   const auto feed_forward = [&](std::size_t at) {
     return kFeedForwardUnit * readLittleEndian<std::int16_t>(bytes, at);
   };
-  switch (odriveMessage(frame.id)) {
-    case OdriveMessage::kEstop: disarm(firmware_ == OdriveFirmware::k05 ? 0x4000U : 0x0200'0000U); break;
-    case OdriveMessage::kSetAxisState: requestState(readLittleEndian<std::uint32_t>(bytes, 0)); break;
-    case OdriveMessage::kSetControllerMode:
-      control_mode_ = static_cast<OdriveControlMode>(readLittleEndian<std::int32_t>(bytes, 0));
-      if (control_mode_ == OdriveControlMode::kPosition) input_turns_ = driveAngleDeg() / kDegPerTurn;
+  switch (odrive::messageOf(frame.id)) {
+    case odrive::Message::kEstop: disarm(firmware_ == OdriveFirmware::k05 ? 0x4000U : 0x0200'0000U); break;
+    case odrive::Message::kSetAxisState: requestState(readLittleEndian<std::uint32_t>(bytes, 0)); break;
+    case odrive::Message::kSetControllerMode:
+      control_mode_ = static_cast<odrive::ControlMode>(readLittleEndian<std::int32_t>(bytes, 0));
+      if (control_mode_ == odrive::ControlMode::kPosition) input_turns_ = driveAngleDeg() / kDegPerTurn;
       break;
-    case OdriveMessage::kSetInputPos:
+    case odrive::Message::kSetInputPos:
       input_turns_ = number(0);
       input_turns_per_s_ = feed_forward(4);
       input_torque_nm_ = feed_forward(6);
       break;
-    case OdriveMessage::kSetInputVel:
+    case odrive::Message::kSetInputVel:
       input_turns_per_s_ = number(0);
       input_torque_nm_ = number(4);
       break;
-    case OdriveMessage::kSetInputTorque: input_torque_nm_ = number(0); break;
-    case OdriveMessage::kSetLimits:
+    case odrive::Message::kSetInputTorque: input_torque_nm_ = number(0); break;
+    case odrive::Message::kSetLimits:
       velocity_limit_turns_per_s_ = std::max(number(0), 0.0);
       current_limit_a_ = std::max(number(4), 0.0);
       break;
-    case OdriveMessage::kReboot: restart(); break;
-    case OdriveMessage::kClearErrors: errors_ = 0; break;
+    case odrive::Message::kReboot: restart(); break;
+    case odrive::Message::kClearErrors: errors_ = 0; break;
     default: break;
   }
   drive();
@@ -149,13 +150,13 @@ CanFrame OdriveDrive::heartbeat() const noexcept {
   std::array<std::uint8_t, 8> payload{};
   const std::uint32_t errors = errors_ | (starting() && !v05 ? kInitializing : 0U);
   writeLittleEndian(std::span<std::uint8_t>{payload}, 0, errors);
-  payload[4] = static_cast<std::uint8_t>(starting() ? OdriveAxisState::kUndefined : state_);
+  payload[4] = static_cast<std::uint8_t>(starting() ? odrive::AxisState::kUndefined : state_);
   if (v05) {
     payload[5] = (errors & 0x40U) != 0 ? 1 : 0;
     payload[6] = (errors & 0x100U) != 0 ? 1 : 0;
     payload[7] = (errors & 0x200U) != 0 ? 1 : 0;
   }
-  return makeClassicFrame(odriveId(node_, OdriveMessage::kHeartbeat), payload);
+  return makeClassicFrame(odrive::canId(node_, odrive::Message::kHeartbeat), payload);
 }
 
 std::size_t OdriveDrive::feedback(std::span<CanFrame> out) noexcept {
@@ -168,16 +169,16 @@ std::size_t OdriveDrive::feedback(std::span<CanFrame> out) noexcept {
     next_heartbeat_ = elapsed() + kHeartbeatPeriod;
     add(heartbeat());
   }
-  add(pair(node_, OdriveMessage::kEncoderEstimates, driveAngleDeg() / kDegPerTurn,
+  add(pair(node_, odrive::Message::kEncoderEstimates, driveAngleDeg() / kDegPerTurn,
            driveRpm() / kRpmPerTurnPerS));
   if (telemetry_period_ > Duration::zero() && elapsed() >= next_telemetry_) {
     next_telemetry_ = elapsed() + telemetry_period_;
-    add(pair(node_, OdriveMessage::kBusVoltage, static_cast<double>(traits().nominal_v), 0.0));
+    add(pair(node_, odrive::Message::kBusVoltage, static_cast<double>(traits().nominal_v), 0.0));
     if (firmware_ == OdriveFirmware::k05) {
-      add(pair(node_, OdriveMessage::kIq, currentA(), currentA()));
+      add(pair(node_, odrive::Message::kIq, currentA(), currentA()));
     } else {
-      add(pair(node_, OdriveMessage::kTorques, driveTorqueNm(), driveTorqueNm()));
-      add(pair(node_, OdriveMessage::kTemperature, physics().temperatureC(), physics().temperatureC()));
+      add(pair(node_, odrive::Message::kTorques, driveTorqueNm(), driveTorqueNm()));
+      add(pair(node_, odrive::Message::kTemperature, physics().temperatureC(), physics().temperatureC()));
     }
   }
   return count;
@@ -186,7 +187,7 @@ std::size_t OdriveDrive::feedback(std::span<CanFrame> out) noexcept {
 void OdriveDrive::restart() noexcept {
   disarm(0);
   errors_ = 0;
-  control_mode_ = OdriveControlMode::kPosition;
+  control_mode_ = odrive::ControlMode::kPosition;
   input_turns_ = 0.0;
   input_turns_per_s_ = 0.0;
   input_torque_nm_ = 0.0;

@@ -25,7 +25,7 @@ class OdriveDrive : public ServoDrive {
 
   /// enable_watchdog and watchdog_timeout, as somebody sets them over USB; 0: off, as delivered.
   void setWatchdog(Duration timeout) noexcept;
-  [[nodiscard]] OdriveAxisState state() const noexcept { return state_; }
+  [[nodiscard]] odrive::AxisState state() const noexcept { return state_; }
 
  private:
   void requestState(std::uint32_t state) noexcept;
@@ -41,9 +41,9 @@ class OdriveDrive : public ServoDrive {
   Duration telemetry_period_;
   double torque_constant_nm_per_a_;
 
-  OdriveAxisState state_ = OdriveAxisState::kIdle;
+  odrive::AxisState state_ = odrive::AxisState::kIdle;
   std::uint32_t errors_ = 0;
-  OdriveControlMode control_mode_ = OdriveControlMode::kPosition;  // as delivered
+  odrive::ControlMode control_mode_ = odrive::ControlMode::kPosition;  // as delivered
   double input_turns_ = 0.0;
   double input_turns_per_s_ = 0.0;
   double input_torque_nm_ = 0.0;

@@ -33,7 +33,7 @@ void RobstrideEnabling::advance() noexcept {
   sequence_.next(step() + 1);
 }
 
-std::size_t RobstrideEnabling::pack(MonotonicTime now, const RobstrideCodec& codec, bool operation,
+std::size_t RobstrideEnabling::pack(MonotonicTime now, const robstride::Codec& codec, bool operation,
                                     std::span<CanFrame> out) noexcept {
   if (out.size() < 3 || !sequence_.asks(now)) return 0;
   if (atSetting()) {
@@ -43,7 +43,7 @@ std::size_t RobstrideEnabling::pack(MonotonicTime now, const RobstrideCodec& cod
     return 2;
   }
   if (atPosition()) {
-    out[0] = codec.read(robstride_parameter::kPosition);
+    out[0] = codec.read(robstride::parameter::kPosition);
     return 1;
   }
   if (!atEnable()) {
@@ -57,9 +57,9 @@ std::size_t RobstrideEnabling::pack(MonotonicTime now, const RobstrideCodec& cod
   return count;
 }
 
-void RobstrideEnabling::onFeedback(const RobstrideFeedback& seen) noexcept {
+void RobstrideEnabling::onFeedback(const robstride::Feedback& seen) noexcept {
   if (!sequence_.awaits()) return;
-  if (step() == 0 ? seen.mode == 0 : atEnable() && seen.mode == kRobstrideRunning) advance();
+  if (step() == 0 ? seen.mode == 0 : atEnable() && seen.mode == robstride::kRunning) advance();
 }
 
 void RobstrideEnabling::onParameter(std::uint16_t index, bool accepted, std::uint32_t bits) noexcept {
@@ -67,7 +67,7 @@ void RobstrideEnabling::onParameter(std::uint16_t index, bool accepted, std::uin
   if (atSetting()) {
     const auto& setting = settings_[step() - 1];
     if (index == setting.index && setting.agrees(bits)) advance();
-  } else if (atPosition() && index == robstride_parameter::kPosition &&
+  } else if (atPosition() && index == robstride::parameter::kPosition &&
              std::isfinite(std::bit_cast<float>(bits))) {
     advance();
   }

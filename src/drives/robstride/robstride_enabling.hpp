@@ -40,9 +40,9 @@ class RobstrideEnabling {
 
   /// The frames that are due now, at most 3. `operation`: tell it to be without torque before and after
   /// it is enabled, whatever it was last told.
-  std::size_t pack(MonotonicTime now, const RobstrideCodec& codec, bool operation,
+  std::size_t pack(MonotonicTime now, const robstride::Codec& codec, bool operation,
                    std::span<CanFrame> out) noexcept;
-  void onFeedback(const RobstrideFeedback& seen) noexcept;
+  void onFeedback(const robstride::Feedback& seen) noexcept;
   void onParameter(std::uint16_t index, bool accepted, std::uint32_t bits) noexcept;
 
  private:

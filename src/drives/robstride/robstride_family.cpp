@@ -156,29 +156,29 @@ class RobstrideFamily final : public MotorFamily {
   [[nodiscard]] BusUse busUse(const MotorSettings& settings) const override {
     const int host_id = settings.own.integer("host_id");
     const auto drive_id = static_cast<std::uint32_t>(settings.id);
-    const auto sends = [&](RobstrideType type) {
-      return FrameFilter{.id = robstrideId(type, drive_id, host_id), .mask = 0x1F00'FFFFU};
+    const auto sends = [&](robstride::Type type) {
+      return FrameFilter{.id = robstride::canId(type, drive_id, host_id), .mask = 0x1F00'FFFFU};
     };
     BusUse use;
-    use.sends = {
-        sends(RobstrideType::kFeedback), sends(RobstrideType::kReadParameter), sends(RobstrideType::kFault),
-        sends(RobstrideType::kReport),
-        FrameFilter{
-            .id = robstrideId(RobstrideType::kFault, static_cast<std::uint32_t>(host_id), settings.id),
-            .mask = 0x1F00'FFFFU},
-        // Its announcement of itself.
-        FrameFilter{.id = robstrideId(RobstrideType::kGetId, drive_id, 0xFE), .mask = kExtendedIdMask}};
+    use.sends = {sends(robstride::Type::kFeedback), sends(robstride::Type::kReadParameter),
+                 sends(robstride::Type::kFault), sends(robstride::Type::kReport),
+                 FrameFilter{.id = robstride::canId(robstride::Type::kFault,
+                                                    static_cast<std::uint32_t>(host_id), settings.id),
+                             .mask = 0x1F00'FFFFU},
+                 // Its announcement of itself.
+                 FrameFilter{.id = robstride::canId(robstride::Type::kGetId, drive_id, 0xFE),
+                             .mask = kExtendedIdMask}};
     // Whatever is addressed to it, of any type.
     use.obeys = {FrameFilter{.id = {drive_id, true}, .mask = 0xFFU}};
     const double commands_hz = static_cast<double>(settings.tick_hz) / settings.command_divider;
     const FrameShape shape{.extended = true, .length = 8};
-    use.commands = {
-        {.id = robstrideId(RobstrideType::kOperate, 0x7FFF, settings.id),
-         .shape = shape,
-         .per_second = commands_hz},
-        {.id = robstrideId(RobstrideType::kReadParameter, static_cast<std::uint32_t>(host_id), settings.id),
-         .shape = shape,
-         .per_second = 25.0}};
+    use.commands = {{.id = robstride::canId(robstride::Type::kOperate, 0x7FFF, settings.id),
+                     .shape = shape,
+                     .per_second = commands_hz},
+                    {.id = robstride::canId(robstride::Type::kReadParameter,
+                                            static_cast<std::uint32_t>(host_id), settings.id),
+                     .shape = shape,
+                     .per_second = 25.0}};
     use.feedback = {{.id = use.sends[0].id, .shape = shape, .per_second = commands_hz},
                     {.id = use.sends[1].id, .shape = shape, .per_second = 25.0}};
     return use;

@@ -8,7 +8,7 @@
 #include "bus/byte_order.hpp"
 #include "motor/drive_faults.hpp"
 
-namespace rc10 {
+namespace rc10::robstride {
 namespace {
 
 constexpr double kRawFullScale = 65535.0;
@@ -45,7 +45,7 @@ constexpr std::uint32_t kCyberGearOverload = 0xFF00U;
 
 }  // namespace
 
-CanFrame RobstrideCodec::operate(const RobstrideOperation& wanted) const noexcept {
+CanFrame Codec::operate(const Operation& wanted) const noexcept {
   const double torque = model->torque_range_nm;
   std::array<std::uint8_t, 8> data{};
   writeBigEndian(data, 0, toRaw(wanted.position_rad, -position_range_rad, position_range_rad));
@@ -53,42 +53,39 @@ CanFrame RobstrideCodec::operate(const RobstrideOperation& wanted) const noexcep
                  toRaw(wanted.velocity_rad_s, -model->velocity_range_rad_s, model->velocity_range_rad_s));
   writeBigEndian(data, 4, toRaw(wanted.stiffness_nm_per_rad, 0.0, model->stiffness_range_nm_per_rad));
   writeBigEndian(data, 6, toRaw(wanted.damping_nms_per_rad, 0.0, model->damping_range_nms_per_rad));
-  return makeClassicFrame(
-      robstrideId(RobstrideType::kOperate, toRaw(wanted.torque_nm, -torque, torque), drive_id), data);
+  return makeClassicFrame(canId(Type::kOperate, toRaw(wanted.torque_nm, -torque, torque), drive_id), data);
 }
 
-CanFrame RobstrideCodec::enable() const noexcept {
-  return makeClassicFrame(robstrideId(RobstrideType::kEnable, static_cast<std::uint32_t>(host_id), drive_id),
+CanFrame Codec::enable() const noexcept {
+  return makeClassicFrame(canId(Type::kEnable, static_cast<std::uint32_t>(host_id), drive_id),
                           std::array<std::uint8_t, 8>{});
 }
 
-CanFrame RobstrideCodec::stop(bool clear_faults) const noexcept {
-  return makeClassicFrame(robstrideId(RobstrideType::kStop, static_cast<std::uint32_t>(host_id), drive_id),
+CanFrame Codec::stop(bool clear_faults) const noexcept {
+  return makeClassicFrame(canId(Type::kStop, static_cast<std::uint32_t>(host_id), drive_id),
                           std::array<std::uint8_t, 8>{static_cast<std::uint8_t>(clear_faults ? 1 : 0)});
 }
 
-CanFrame RobstrideCodec::read(std::uint16_t index) const noexcept {
+CanFrame Codec::read(std::uint16_t index) const noexcept {
   std::array<std::uint8_t, 8> data{};
   writeLittleEndian(data, 0, index);
-  return makeClassicFrame(
-      robstrideId(RobstrideType::kReadParameter, static_cast<std::uint32_t>(host_id), drive_id), data);
+  return makeClassicFrame(canId(Type::kReadParameter, static_cast<std::uint32_t>(host_id), drive_id), data);
 }
 
-CanFrame RobstrideCodec::write(std::uint16_t index, std::uint32_t bits) const noexcept {
+CanFrame Codec::write(std::uint16_t index, std::uint32_t bits) const noexcept {
   std::array<std::uint8_t, 8> data{};
   writeLittleEndian(data, 0, index);
   writeLittleEndian(data, 4, bits);
-  return makeClassicFrame(
-      robstrideId(RobstrideType::kWriteParameter, static_cast<std::uint32_t>(host_id), drive_id), data);
+  return makeClassicFrame(canId(Type::kWriteParameter, static_cast<std::uint32_t>(host_id), drive_id), data);
 }
 
-CanFrame RobstrideCodec::write(std::uint16_t index, float value) const noexcept {
+CanFrame Codec::write(std::uint16_t index, float value) const noexcept {
   return write(index, std::bit_cast<std::uint32_t>(std::isfinite(value) ? value : 0.0F));
 }
 
-RobstrideFeedback RobstrideCodec::feedback(const CanFrame& frame) const noexcept {
+Feedback Codec::feedback(const CanFrame& frame) const noexcept {
   const auto bytes = frame.payload();
-  RobstrideFeedback seen;
+  Feedback seen;
   seen.raw_position = readBigEndian<std::uint16_t>(bytes, 0);
   seen.position_rad = fromRaw(seen.raw_position, position_range_rad);
   seen.velocity_rad_s = fromRaw(readBigEndian<std::uint16_t>(bytes, 2), model->velocity_range_rad_s);
@@ -100,7 +97,7 @@ RobstrideFeedback RobstrideCodec::feedback(const CanFrame& frame) const noexcept
   return seen;
 }
 
-RobstrideOperation RobstrideCodec::operation(const CanFrame& frame) const noexcept {
+Operation Codec::operation(const CanFrame& frame) const noexcept {
   const auto bytes = frame.payload();
   return {.position_rad = fromRaw(readBigEndian<std::uint16_t>(bytes, 0), position_range_rad),
           .velocity_rad_s = fromRaw(readBigEndian<std::uint16_t>(bytes, 2), model->velocity_range_rad_s),
@@ -111,7 +108,7 @@ RobstrideOperation RobstrideCodec::operation(const CanFrame& frame) const noexce
           .torque_nm = fromRaw(static_cast<std::uint16_t>(frame.id.value >> 8U), model->torque_range_nm)};
 }
 
-CanFrame RobstrideCodec::answer(const RobstrideFeedback& told) const noexcept {
+CanFrame Codec::answer(const Feedback& told) const noexcept {
   const double velocity = model->velocity_range_rad_s;
   const double torque = model->torque_range_nm;
   std::array<std::uint8_t, 8> data{};
@@ -119,35 +116,34 @@ CanFrame RobstrideCodec::answer(const RobstrideFeedback& told) const noexcept {
   writeBigEndian(data, 2, toRaw(told.velocity_rad_s, -velocity, velocity));
   writeBigEndian(data, 4, toRaw(told.torque_nm, -torque, torque));
   writeBigEndian(data, 6, static_cast<std::int16_t>(std::clamp(told.temperature_c * 10.0, -3e4, 3e4)));
-  CanFrame frame = makeClassicFrame(
-      robstrideId(RobstrideType::kFeedback, static_cast<std::uint32_t>(drive_id), host_id), data);
+  CanFrame frame =
+      makeClassicFrame(canId(Type::kFeedback, static_cast<std::uint32_t>(drive_id), host_id), data);
   frame.id.value |= static_cast<std::uint32_t>(told.status_bits & 0x3FU) << 16U |
                     static_cast<std::uint32_t>(told.mode & 0x3U) << 22U;
   return frame;
 }
 
-CanFrame RobstrideCodec::parameter(std::uint16_t index, std::uint32_t bits, bool known) const noexcept {
+CanFrame Codec::parameter(std::uint16_t index, std::uint32_t bits, bool known) const noexcept {
   std::array<std::uint8_t, 8> data{};
   writeLittleEndian(data, 0, index);
   writeLittleEndian(data, 4, bits);
-  CanFrame frame = makeClassicFrame(
-      robstrideId(RobstrideType::kReadParameter, static_cast<std::uint32_t>(drive_id), host_id), data);
+  CanFrame frame =
+      makeClassicFrame(canId(Type::kReadParameter, static_cast<std::uint32_t>(drive_id), host_id), data);
   if (!known) frame.id.value |= 1U << 16U;
   return frame;
 }
 
-CanFrame RobstrideCodec::fault(std::uint32_t fault_word) const noexcept {
+CanFrame Codec::fault(std::uint32_t fault_word) const noexcept {
   std::array<std::uint8_t, 8> data{};
   writeLittleEndian(data, 0, fault_word);
-  return makeClassicFrame(robstrideId(RobstrideType::kFault, static_cast<std::uint32_t>(drive_id), host_id),
-                          data);
+  return makeClassicFrame(canId(Type::kFault, static_cast<std::uint32_t>(drive_id), host_id), data);
 }
 
-FaultCode robstrideFault(std::uint32_t native_code, bool cyber_gear) noexcept {
+FaultCode faultOf(std::uint32_t native_code, bool cyber_gear) noexcept {
   if (cyber_gear && (native_code & kCyberGearOverload) != 0) return FaultCode::kDriveOverload;
   const FaultCode fault = faultOfBits(kRobstrideFaults, native_code);
   // Status bit 20 alone remains of overload.
   return cyber_gear && fault == FaultCode::kDriveOverload ? FaultCode::kDrivePhase : fault;
 }
 
-}  // namespace rc10
+}  // namespace rc10::robstride

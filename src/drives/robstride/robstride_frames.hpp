@@ -7,11 +7,11 @@
 #include "drives/robstride/robstride_model.hpp"
 #include "motor/fault_code.hpp"
 
-namespace rc10 {
+namespace rc10::robstride {
 
 /// The private protocol of RobStride and CyberGear: extended ids, type (bits 28-24), data (23-8), addressee
 /// (7-0). Source of all of it: the manuals named in robstride_model.cpp.
-enum class RobstrideType : std::uint8_t {
+enum class Type : std::uint8_t {
   kGetId = 0,
   kOperate = 1,
   kFeedback = 2,
@@ -27,7 +27,7 @@ enum class RobstrideType : std::uint8_t {
 };
 
 /// Indices of parameters; those that are written live in RAM until the drive is told to save them.
-namespace robstride_parameter {
+namespace parameter {
 inline constexpr std::uint16_t kRunMode = 0x7005;        ///< u8
 inline constexpr std::uint16_t kCurrentRef = 0x7006;     ///< A
 inline constexpr std::uint16_t kVelocityRef = 0x700A;    ///< rad/s
@@ -37,14 +37,14 @@ inline constexpr std::uint16_t kVelocityLimit = 0x7017;  ///< rad/s, of position
 inline constexpr std::uint16_t kCurrentLimit = 0x7018;   ///< A, of velocity and position control
 inline constexpr std::uint16_t kPosition = 0x7019;       ///< rad, counted over turns
 inline constexpr std::uint16_t kSupplyVoltage = 0x701C;  ///< V
-}  // namespace robstride_parameter
+}  // namespace parameter
 
-enum class RobstrideRunMode : std::uint8_t { kOperation = 0, kVelocity = 2, kCurrent = 3 };
+enum class RunMode : std::uint8_t { kOperation = 0, kVelocity = 2, kCurrent = 3 };
 
 /// The CAN timeout counts 50 us: 20000 are 1 s.
-inline constexpr std::uint32_t kRobstrideTimeoutPerMs = 20;
+inline constexpr std::uint32_t kTimeoutPerMs = 20;
 
-[[nodiscard]] constexpr CanId robstrideId(RobstrideType type, std::uint32_t data, int addressee) noexcept {
+[[nodiscard]] constexpr CanId canId(Type type, std::uint32_t data, int addressee) noexcept {
   return {static_cast<std::uint32_t>(type) << 24U | (data & 0xFFFFU) << 8U |
               (static_cast<std::uint32_t>(addressee) & 0xFFU),
           true};
@@ -52,7 +52,7 @@ inline constexpr std::uint32_t kRobstrideTimeoutPerMs = 20;
 
 /// Control law of the operation mode: torque = stiffness * (position - its own) + damping * (velocity - its
 /// own) + torque_nm.
-struct RobstrideOperation {
+struct Operation {
   double position_rad = 0.0;
   double velocity_rad_s = 0.0;
   double stiffness_nm_per_rad = 0.0;
@@ -60,26 +60,26 @@ struct RobstrideOperation {
   double torque_nm = 0.0;
 };
 
-struct RobstrideFeedback {
+struct Feedback {
   std::uint16_t raw_position = 0;
   double position_rad = 0.0;
   double velocity_rad_s = 0.0;
   double torque_nm = 0.0;
   double temperature_c = 0.0;
-  std::uint8_t status_bits = 0;  ///< Bits 16-21 of the id: see robstrideFault().
+  std::uint8_t status_bits = 0;  ///< Bits 16-21 of the id: see faultOf().
   std::uint8_t mode = 0;         ///< 0 reset (no torque), 1 calibration, 2 running.
 };
-inline constexpr std::uint8_t kRobstrideRunning = 2;
+inline constexpr std::uint8_t kRunning = 2;
 
 /// One direction and one addressee; the model's scales, but for the position's.
-struct RobstrideCodec {
+struct Codec {
   const RobstrideModel* model = nullptr;
   double position_range_rad = 0.0;
   int drive_id = 0;
   int host_id = 0;
 
   /// Beyond the ends of a scale: its end. NaN: 0.
-  [[nodiscard]] CanFrame operate(const RobstrideOperation& wanted) const noexcept;
+  [[nodiscard]] CanFrame operate(const Operation& wanted) const noexcept;
   [[nodiscard]] CanFrame enable() const noexcept;
   [[nodiscard]] CanFrame stop(bool clear_faults = false) const noexcept;
   [[nodiscard]] CanFrame read(std::uint16_t index) const noexcept;
@@ -88,23 +88,23 @@ struct RobstrideCodec {
   [[nodiscard]] CanFrame write(std::uint16_t index, float value) const noexcept;
 
   /// Of a frame of 8 bytes.
-  [[nodiscard]] RobstrideFeedback feedback(const CanFrame& frame) const noexcept;
+  [[nodiscard]] Feedback feedback(const CanFrame& frame) const noexcept;
 
   // The drive's side. Of `told`, raw_position is not used.
-  [[nodiscard]] RobstrideOperation operation(const CanFrame& frame) const noexcept;
-  [[nodiscard]] CanFrame answer(const RobstrideFeedback& told) const noexcept;
+  [[nodiscard]] Operation operation(const CanFrame& frame) const noexcept;
+  [[nodiscard]] CanFrame answer(const Feedback& told) const noexcept;
   [[nodiscard]] CanFrame parameter(std::uint16_t index, std::uint32_t bits, bool known) const noexcept;
   [[nodiscard]] CanFrame fault(std::uint32_t fault_word) const noexcept;
 };
 
 /// The drive's faults as one number: the word of a fault frame (bits 0-16), and above it from bit 24 on the
 /// six status bits of the feedback's id.
-[[nodiscard]] constexpr std::uint32_t robstrideNativeCode(std::uint32_t fault_word,
-                                                          std::uint8_t status_bits) noexcept {
+[[nodiscard]] constexpr std::uint32_t nativeCode(std::uint32_t fault_word,
+                                                 std::uint8_t status_bits) noexcept {
   return (fault_word & 0x00FF'FFFFU) | static_cast<std::uint32_t>(status_bits & 0x3FU) << 24U;
 }
 
 /// The gravest of the faults in such a number.
-[[nodiscard]] FaultCode robstrideFault(std::uint32_t native_code, bool cyber_gear) noexcept;
+[[nodiscard]] FaultCode faultOf(std::uint32_t native_code, bool cyber_gear) noexcept;
 
-}  // namespace rc10
+}  // namespace rc10::robstride

@@ -12,7 +12,7 @@
 namespace rc10 {
 namespace {
 
-namespace parameter = robstride_parameter;
+namespace parameter = robstride::parameter;
 
 constexpr std::size_t kLength = 8;
 
@@ -44,9 +44,9 @@ bool allOf(const FrameFilter& filter, const CanFrame& frame) noexcept {
          (frame.id.value & filter.mask) == (filter.id.value & filter.mask);
 }
 
-FrameFilter fromDrive(RobstrideType type, int data, int addressee) noexcept {
+FrameFilter fromDrive(robstride::Type type, int data, int addressee) noexcept {
   // Status bits or a result stand in bits 23 to 16.
-  return {.id = robstrideId(type, static_cast<std::uint32_t>(data), addressee), .mask = 0x1F00'FFFFU};
+  return {.id = robstride::canId(type, static_cast<std::uint32_t>(data), addressee), .mask = 0x1F00'FFFFU};
 }
 
 }  // namespace
@@ -69,12 +69,12 @@ RobStride_Motor::RobStride_Motor(const MotorSettings& settings)
              .drive_id = settings.id,
              .host_id = settings.own.integer("host_id")},
       control_(robstrideControlOf(settings.own)),
-      filters_{fromDrive(RobstrideType::kFeedback, codec_.drive_id, codec_.host_id),
-               fromDrive(RobstrideType::kReport, codec_.drive_id, codec_.host_id),
-               fromDrive(RobstrideType::kReadParameter, codec_.drive_id, codec_.host_id),
-               fromDrive(RobstrideType::kFault, codec_.drive_id, codec_.host_id),
+      filters_{fromDrive(robstride::Type::kFeedback, codec_.drive_id, codec_.host_id),
+               fromDrive(robstride::Type::kReport, codec_.drive_id, codec_.host_id),
+               fromDrive(robstride::Type::kReadParameter, codec_.drive_id, codec_.host_id),
+               fromDrive(robstride::Type::kFault, codec_.drive_id, codec_.host_id),
                // The CyberGear's manual has the two ids of a fault frame the other way round.
-               fromDrive(RobstrideType::kFault, codec_.host_id, codec_.drive_id)},
+               fromDrive(robstride::Type::kFault, codec_.host_id, codec_.drive_id)},
       command_ids_{codec_.read(0).id, codec_.write(0, 0.0F).id} {
   const double square = ratio() * ratio();
   const double torque = model_->torque_range_nm;
@@ -94,15 +94,15 @@ RobStride_Motor::RobStride_Motor(const MotorSettings& settings)
   const RobstrideSetting no_current = RobstrideSetting::limit(parameter::kCurrentLimit, 0.0F);
   switch (control_) {
     case RobstrideControl::kOperation:
-      add_run_mode(static_cast<std::uint8_t>(RobstrideRunMode::kOperation));
+      add_run_mode(static_cast<std::uint8_t>(robstride::RunMode::kOperation));
       enabling_.add(RobstrideSetting::limit(parameter::kTorqueLimit, static_cast<float>(limitNm())));
       break;
     case RobstrideControl::kCurrent:
-      add_run_mode(static_cast<std::uint8_t>(RobstrideRunMode::kCurrent));
+      add_run_mode(static_cast<std::uint8_t>(robstride::RunMode::kCurrent));
       enabling_.add({.index = parameter::kCurrentRef, .bits = 0});
       break;
     case RobstrideControl::kVelocity:
-      add_run_mode(static_cast<std::uint8_t>(RobstrideRunMode::kVelocity));
+      add_run_mode(static_cast<std::uint8_t>(robstride::RunMode::kVelocity));
       enabling_.add(no_current);
       enabling_.add({.index = parameter::kVelocityRef, .bits = 0});
       break;
@@ -117,7 +117,7 @@ RobStride_Motor::RobStride_Motor(const MotorSettings& settings)
   const int watchdog_ms = settings.own.integer("watchdog_ms");
   if (watchdog_ms > 0) {
     enabling_.add({.index = model_->watchdog_index,
-                   .bits = static_cast<std::uint32_t>(watchdog_ms) * kRobstrideTimeoutPerMs});
+                   .bits = static_cast<std::uint32_t>(watchdog_ms) * robstride::kTimeoutPerMs});
   }
 }
 
@@ -155,19 +155,19 @@ bool RobStride_Motor::matchesFrame(const CanFrame& frame) const noexcept {
 FrameVerdict RobStride_Motor::updateFeedback(const CanFrame& frame) noexcept {
   if (frame.type != FrameType::kData || frame.fd || frame.length != kLength) return FrameVerdict::kMalformed;
   configuring_.onFrame(frame);
-  switch (static_cast<RobstrideType>(frame.id.value >> 24U & 0x1FU)) {
-    case RobstrideType::kFeedback:
-    case RobstrideType::kReport: takeFeedback(codec_.feedback(frame), frame.received); break;
-    case RobstrideType::kReadParameter: takeParameter(frame); break;
-    case RobstrideType::kFault: fault_word_ = readLittleEndian<std::uint32_t>(frame.payload(), 0); break;
+  switch (static_cast<robstride::Type>(frame.id.value >> 24U & 0x1FU)) {
+    case robstride::Type::kFeedback:
+    case robstride::Type::kReport: takeFeedback(codec_.feedback(frame), frame.received); break;
+    case robstride::Type::kReadParameter: takeParameter(frame); break;
+    case robstride::Type::kFault: fault_word_ = readLittleEndian<std::uint32_t>(frame.payload(), 0); break;
     default: return FrameVerdict::kMalformed;
   }
   return FrameVerdict::kAccepted;
 }
 
-void RobStride_Motor::takeFeedback(const RobstrideFeedback& seen, MonotonicTime received) noexcept {
-  const bool stopped_itself =
-      feedback_.samples > 0 && obeying() && seen_.mode == kRobstrideRunning && seen.mode != kRobstrideRunning;
+void RobStride_Motor::takeFeedback(const robstride::Feedback& seen, MonotonicTime received) noexcept {
+  const bool stopped_itself = feedback_.samples > 0 && obeying() && seen_.mode == robstride::kRunning &&
+                              seen.mode != robstride::kRunning;
   // A fault stops it where it is. Without one it may have been restarted.
   if (stopped_itself && seen.status_bits == 0 && fault_word_ == 0) doubtAngles();
   if (clear_sent_ && seen.status_bits == 0) {
@@ -184,7 +184,7 @@ void RobStride_Motor::takeFeedback(const RobstrideFeedback& seen, MonotonicTime 
   enabling_.onFeedback(seen);
 }
 
-void RobStride_Motor::trackPosition(const RobstrideFeedback& seen, MonotonicTime received) noexcept {
+void RobStride_Motor::trackPosition(const robstride::Feedback& seen, MonotonicTime received) noexcept {
   if (feedback_.samples == 0) {
     position_rad_ = seen.position_rad;
     return;
@@ -285,9 +285,9 @@ SequenceProgress RobStride_Motor::sequenceProgress() const noexcept {
 // ---- Complaints
 
 DriveComplaint RobStride_Motor::complaint() const noexcept {
-  const auto native = robstrideNativeCode(fault_word_, seen_.status_bits);
-  if (native != 0) return {.fault = robstrideFault(native, model_->cyber_gear), .native_code = native};
-  if (obeying() && feedback_.samples > 0 && seen_.mode != kRobstrideRunning) {
+  const auto native = robstride::nativeCode(fault_word_, seen_.status_bits);
+  if (native != 0) return {.fault = robstride::faultOf(native, model_->cyber_gear), .native_code = native};
+  if (obeying() && feedback_.samples > 0 && seen_.mode != robstride::kRunning) {
     return {.fault = FaultCode::kDriveStopped, .native_code = 0};
   }
   return {};

@@ -56,11 +56,11 @@ class RobStride_Motor : public SoloMotor {
   [[nodiscard]] double scaleEndRad() const noexcept;  ///< As far as operation mode can be told to go.
   [[nodiscard]] bool positionOnScale() const noexcept;
   [[nodiscard]] double positionRadFor(double total_angle_deg) const noexcept;
-  [[nodiscard]] double outputTorqueOf(const RobstrideOperation& wanted) const noexcept;
+  [[nodiscard]] double outputTorqueOf(const robstride::Operation& wanted) const noexcept;
 
-  void takeFeedback(const RobstrideFeedback& seen, MonotonicTime received) noexcept;
+  void takeFeedback(const robstride::Feedback& seen, MonotonicTime received) noexcept;
   void takeParameter(const CanFrame& frame) noexcept;
-  void trackPosition(const RobstrideFeedback& seen, MonotonicTime received) noexcept;
+  void trackPosition(const robstride::Feedback& seen, MonotonicTime received) noexcept;
   void doubtAngles() noexcept;
 
   void planOperation(const Target& target) noexcept;
@@ -68,13 +68,13 @@ class RobStride_Motor : public SoloMotor {
   void planVelocity(const Target& target) noexcept;
   void planPosition(const Target& target) noexcept;
   [[nodiscard]] double clampVelocity(double rad_s) noexcept;
-  void limitApproach(RobstrideOperation& wanted) noexcept;
-  void limitTorque(RobstrideOperation& wanted) noexcept;
+  void limitApproach(robstride::Operation& wanted) noexcept;
+  void limitTorque(robstride::Operation& wanted) noexcept;
 
   [[nodiscard]] std::size_t packReference(const Tick& tick, std::span<CanFrame> out) noexcept;
 
   const RobstrideModel* model_;
-  RobstrideCodec codec_;
+  robstride::Codec codec_;
   RobstrideControl control_;
   double angle_stiffness_;  ///< Of the drive's output, as all of these.
   double angle_damping_;
@@ -85,7 +85,7 @@ class RobStride_Motor : public SoloMotor {
   RobstrideSetupCodec setup_codec_{codec_};
   DriveConfiguring configuring_{setup_codec_};
 
-  RobstrideFeedback seen_;
+  robstride::Feedback seen_;
   std::uint32_t fault_word_ = 0;
   double position_rad_ = 0.0;      ///< Of the drive's output, over turns.
   double scale_offset_rad_ = 0.0;  ///< The drive's own count of turns is this much more.
@@ -93,7 +93,7 @@ class RobStride_Motor : public SoloMotor {
   bool clear_ordered_ = false;
   bool clear_sent_ = false;
 
-  RobstrideOperation operation_;
+  robstride::Operation operation_;
   Reference reference_;
   bool brake_held_ = false;
   double brake_deg_ = 0.0;

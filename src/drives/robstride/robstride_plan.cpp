@@ -52,7 +52,7 @@ double RobStride_Motor::clampVelocity(double rad_s) noexcept {
 }
 
 void RobStride_Motor::planOperation(const Target& target) noexcept {
-  RobstrideOperation wanted;
+  robstride::Operation wanted;
   const double square = ratio() * ratio();
   const bool knows_itself = feedback_.samples > 0;
   const auto take_feed_forward = [&] {
@@ -105,7 +105,7 @@ void RobStride_Motor::planOperation(const Target& target) noexcept {
   setCommand(outputTorqueOf(wanted) / static_cast<double>(torqueNmPerA()), CommandUnit::kAmpere);
 }
 
-double RobStride_Motor::outputTorqueOf(const RobstrideOperation& wanted) const noexcept {
+double RobStride_Motor::outputTorqueOf(const robstride::Operation& wanted) const noexcept {
   double torque_nm = wanted.torque_nm;
   if (feedback_.samples > 0) {
     torque_nm += wanted.stiffness_nm_per_rad * (wanted.position_rad - position_rad_ - scale_offset_rad_) +
@@ -115,7 +115,7 @@ double RobStride_Motor::outputTorqueOf(const RobstrideOperation& wanted) const n
 }
 
 // The spring pulls as fast as the damping lets it: a target further away would be faster than allowed.
-void RobStride_Motor::limitApproach(RobstrideOperation& wanted) noexcept {
+void RobStride_Motor::limitApproach(robstride::Operation& wanted) noexcept {
   if (velocityLimitRpm() <= 0.0F || wanted.stiffness_nm_per_rad <= 0.0) return;
   const double limit = limitRadS();
   const double per_speed = wanted.damping_nms_per_rad / wanted.stiffness_nm_per_rad;
@@ -126,7 +126,7 @@ void RobStride_Motor::limitApproach(RobstrideOperation& wanted) noexcept {
   wanted.position_rad = near;
 }
 
-void RobStride_Motor::limitTorque(RobstrideOperation& wanted) noexcept {
+void RobStride_Motor::limitTorque(robstride::Operation& wanted) noexcept {
   const double limit = limitNm();
   // The gains as they arrive: on a coarse scale they differ enough to matter.
   const auto arriving = codec_.operation(codec_.operate(wanted));

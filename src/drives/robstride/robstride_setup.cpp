@@ -8,7 +8,7 @@
 namespace rc10 {
 namespace {
 
-namespace parameter = robstride_parameter;
+namespace parameter = robstride::parameter;
 
 /// How a setting stands in its parameter; manuals, "Readable and writable single parameters".
 struct SettingParameter {
@@ -33,7 +33,7 @@ constexpr std::array kRobstrideSettings{
 
 constexpr std::array kSettingParameters{
     SettingParameter{},
-    SettingParameter{0x7028, true, kRobstrideTimeoutPerMs},
+    SettingParameter{0x7028, true, robstride::kTimeoutPerMs},
     SettingParameter{0x7026, true, 0.2, -1.0},  // 1: 10 ms; each more: 5 ms
     SettingParameter{0x7029, true},
     SettingParameter{parameter::kTorqueLimit},
@@ -67,7 +67,7 @@ CanFrame RobstrideSetupCodec::write(const DriveValue& value) const noexcept {
   if (row.index != 0) return codec_.write(row.index, rawOf(row, value.value));
   const auto new_id = static_cast<std::uint32_t>(std::lround(value.value)) & 0xFFU;
   const auto data = new_id << 8U | static_cast<std::uint32_t>(codec_.host_id);
-  return makeClassicFrame(robstrideId(RobstrideType::kSetId, data, codec_.drive_id),
+  return makeClassicFrame(robstride::canId(robstride::Type::kSetId, data, codec_.drive_id),
                           std::array<std::uint8_t, 8>{});
 }
 
@@ -80,9 +80,9 @@ std::optional<CanFrame> RobstrideSetupCodec::read(std::size_t setting) const noe
 std::optional<double> RobstrideSetupCodec::reading(std::size_t setting,
                                                    const CanFrame& frame) const noexcept {
   const auto& row = kSettingParameters[setting];
-  const auto type = static_cast<RobstrideType>(frame.id.value >> 24U & 0x1FU);
+  const auto type = static_cast<robstride::Type>(frame.id.value >> 24U & 0x1FU);
   const bool accepted = (frame.id.value >> 16U & 0xFFU) == 0;
-  if (row.index == 0 || type != RobstrideType::kReadParameter || !accepted || frame.length != 8) {
+  if (row.index == 0 || type != robstride::Type::kReadParameter || !accepted || frame.length != 8) {
     return std::nullopt;
   }
   const auto bytes = frame.payload();
@@ -94,13 +94,13 @@ std::optional<double> RobstrideSetupCodec::reading(std::size_t setting,
 
 std::optional<CanFrame> RobstrideSetupCodec::save(std::optional<int> new_id) const noexcept {
   if (codec_.model->cyber_gear) return std::nullopt;
-  return makeClassicFrame(robstrideId(RobstrideType::kSave, static_cast<std::uint32_t>(codec_.host_id),
-                                      new_id.value_or(codec_.drive_id)),
+  return makeClassicFrame(robstride::canId(robstride::Type::kSave, static_cast<std::uint32_t>(codec_.host_id),
+                                           new_id.value_or(codec_.drive_id)),
                           std::array<std::uint8_t, 8>{1, 2, 3, 4, 5, 6, 7, 8});
 }
 
 bool RobstrideSetupCodec::saysSaved(const CanFrame& frame) const noexcept {
-  return static_cast<RobstrideType>(frame.id.value >> 24U & 0x1FU) == RobstrideType::kFeedback;
+  return static_cast<robstride::Type>(frame.id.value >> 24U & 0x1FU) == robstride::Type::kFeedback;
 }
 
 }  // namespace rc10

@@ -12,7 +12,7 @@ namespace rc10 {
 /// The parameters of one drive as settings.
 class RobstrideSetupCodec final : public DriveCodec {
  public:
-  explicit RobstrideSetupCodec(const RobstrideCodec& codec) noexcept : codec_(codec) {}
+  explicit RobstrideSetupCodec(const robstride::Codec& codec) noexcept : codec_(codec) {}
 
   [[nodiscard]] const DriveSetup& setup() const noexcept override {
     return robstrideSetup(codec_.model->cyber_gear);
@@ -27,7 +27,7 @@ class RobstrideSetupCodec final : public DriveCodec {
   [[nodiscard]] std::optional<std::size_t> idSetting() const noexcept override { return 0; }
 
  private:
-  RobstrideCodec codec_;
+  robstride::Codec codec_;
 };
 
 }  // namespace rc10

@@ -13,7 +13,7 @@
 namespace rc10::sim {
 namespace {
 
-namespace parameter = robstride_parameter;
+namespace parameter = robstride::parameter;
 
 constexpr double kFarthestRad = 1e9;
 constexpr std::uint32_t kLongestTimeout = 100'000;
@@ -37,7 +37,7 @@ struct StatusBit {
 constexpr std::array kStatusBits{StatusBit{1U << 2U, 0}, StatusBit{0x1'0030U, 1}, StatusBit{1U << 0U, 2},
                                  StatusBit{1U << 9U, 3}, StatusBit{1U << 14U, 4}, StatusBit{1U << 7U, 5}};
 
-RobstrideCodec codecOf(const MotorSettings& settings, const RobstrideModel& model) {
+robstride::Codec codecOf(const MotorSettings& settings, const RobstrideModel& model) {
   const double range_rad = settings.own.number("position_range_rad");
   return {.model = &model,
           .position_range_rad = range_rad > 0.0 ? range_rad : model.position_range_rad,
@@ -115,25 +115,25 @@ void RobstrideDrive::receive(const CanFrame& frame) noexcept {
   if (!mine) return;
   heard_at_ = elapsed();
   const auto bytes = frame.payload();
-  switch (static_cast<RobstrideType>(frame.id.value >> 24U & 0x1FU)) {
-    case RobstrideType::kOperate:
+  switch (static_cast<robstride::Type>(frame.id.value >> 24U & 0x1FU)) {
+    case robstride::Type::kOperate:
       if (running_ && find(parameter::kRunMode)->bits == 0) {
         operation_ = codec_.operation(frame);
         follow();
       }
       break;
-    case RobstrideType::kEnable: enable(); break;
-    case RobstrideType::kStop:
+    case robstride::Type::kEnable: enable(); break;
+    case robstride::Type::kStop:
       if (bytes[0] == 1) fault(0);
       stop();
       break;
-    case RobstrideType::kSetZero:
+    case robstride::Type::kSetZero:
       if (bytes[0] == 1) zeroAt(0.0);
       break;
-    case RobstrideType::kSetId: codec_.drive_id = static_cast<int>(frame.id.value >> 16U & 0x7FU); return;
-    case RobstrideType::kWriteParameter: write(frame); break;
-    case RobstrideType::kSave: save(); break;
-    case RobstrideType::kReadParameter: read(readLittleEndian<std::uint16_t>(bytes, 0)); return;
+    case robstride::Type::kSetId: codec_.drive_id = static_cast<int>(frame.id.value >> 16U & 0x7FU); return;
+    case robstride::Type::kWriteParameter: write(frame); break;
+    case robstride::Type::kSave: save(); break;
+    case robstride::Type::kReadParameter: read(readLittleEndian<std::uint16_t>(bytes, 0)); return;
     default: return;
   }
   answerState();
@@ -190,14 +190,14 @@ void RobstrideDrive::read(std::uint16_t index) noexcept {
 void RobstrideDrive::follow() noexcept {
   const auto run_mode = find(parameter::kRunMode)->bits;
   const double torque_nm = std::max(number(parameter::kCurrentLimit), 0.0) * model_->torqueNmPerA();
-  if (run_mode == static_cast<std::uint32_t>(RobstrideRunMode::kOperation)) {
+  if (run_mode == static_cast<std::uint32_t>(robstride::RunMode::kOperation)) {
     impedance(operation_.position_rad * kDegPerRad, operation_.velocity_rad_s * kRpmPerRadPerS,
               operation_.stiffness_nm_per_rad, operation_.damping_nms_per_rad, operation_.torque_nm);
-  } else if (run_mode == static_cast<std::uint32_t>(RobstrideRunMode::kCurrent)) {
+  } else if (run_mode == static_cast<std::uint32_t>(robstride::RunMode::kCurrent)) {
     current(number(parameter::kCurrentRef));
   } else if (torque_nm <= 0.0) {
     release();  // to the base a limit of 0 is none
-  } else if (run_mode == static_cast<std::uint32_t>(RobstrideRunMode::kVelocity)) {
+  } else if (run_mode == static_cast<std::uint32_t>(robstride::RunMode::kVelocity)) {
     velocity(number(parameter::kVelocityRef) * kRpmPerRadPerS, 0.0, torque_nm);
   } else {
     position(number(parameter::kPositionRef) * kDegPerRad,
@@ -206,7 +206,7 @@ void RobstrideDrive::follow() noexcept {
 }
 
 void RobstrideDrive::answerState() noexcept {
-  RobstrideFeedback state;
+  robstride::Feedback state;
   constexpr double kTwoTurnsRad = 4.0 * std::numbers::pi;
   const double position_rad = driveAngleDeg() / kDegPerRad;
   // The older scale of 12.5 rad ends; the newer one goes on.
@@ -217,7 +217,7 @@ void RobstrideDrive::answerState() noexcept {
   state.torque_nm = driveTorqueNm();
   state.temperature_c = physics().temperatureC();
   state.status_bits = status_bits_;
-  state.mode = running_ ? kRobstrideRunning : 0;
+  state.mode = running_ ? robstride::kRunning : 0;
   answer(codec_.answer(state));
 }
 

@@ -21,7 +21,7 @@ class RobstrideDrive final : public ServoDrive {
   void receive(const CanFrame& frame) noexcept override;
   void step(Duration dt) noexcept override;
   void restart() noexcept override;
-  /// The number is that of robstrideNativeCode().
+  /// The number is that of robstride::nativeCode().
   void fault(std::uint32_t native_code) noexcept override;
 
  private:
@@ -46,10 +46,10 @@ class RobstrideDrive final : public ServoDrive {
   void powerUp() noexcept;
 
   const RobstrideModel* model_;
-  RobstrideCodec codec_;
+  robstride::Codec codec_;
   std::array<Parameter, kParameters> parameters_;
   bool running_ = false;
-  RobstrideOperation operation_;
+  robstride::Operation operation_;
   std::uint32_t fault_word_ = 0;
   std::uint8_t status_bits_ = 0;
   Duration heard_at_{};

@@ -177,37 +177,38 @@ class VescFamily final : public MotorFamily {
 
   [[nodiscard]] BusUse busUse(const MotorSettings& settings) const override {
     const VescOptions options{settings.own};
-    const auto exactly = [&settings](VescPacket packet) {
-      return FrameFilter{.id = vescId(packet, settings.id)};
+    const auto exactly = [&settings](vesc::Packet packet) {
+      return FrameFilter{.id = vesc::canId(packet, settings.id)};
     };
     const FrameFilter answers{
-        .id = vescId(VescPacket::kProcessShortBuffer, options.host_id),
+        .id = vesc::canId(vesc::Packet::kProcessShortBuffer, options.host_id),
         .discriminator = PayloadDiscriminator{.value = static_cast<std::uint8_t>(settings.id)}};
     BusUse use;
-    use.sends = {exactly(VescPacket::kStatus1),    exactly(VescPacket::kStatus2),
-                 exactly(VescPacket::kStatus3),    exactly(VescPacket::kStatus4),
-                 exactly(VescPacket::kStatus5),    exactly(VescPacket::kStatus6),
-                 exactly(VescPacket::kNotifyBoot), answers};
-    use.obeys = {FrameFilter{.id = {static_cast<std::uint32_t>(settings.id), true}, .mask = kObeyedMask},
-                 FrameFilter{.id = {static_cast<std::uint32_t>(kVescBroadcast), true}, .mask = kObeyedMask}};
+    use.sends = {exactly(vesc::Packet::kStatus1),    exactly(vesc::Packet::kStatus2),
+                 exactly(vesc::Packet::kStatus3),    exactly(vesc::Packet::kStatus4),
+                 exactly(vesc::Packet::kStatus5),    exactly(vesc::Packet::kStatus6),
+                 exactly(vesc::Packet::kNotifyBoot), answers};
+    use.obeys = {
+        FrameFilter{.id = {static_cast<std::uint32_t>(settings.id), true}, .mask = kObeyedMask},
+        FrameFilter{.id = {static_cast<std::uint32_t>(vesc::kBroadcast), true}, .mask = kObeyedMask}};
 
     const double rate_hz = settings.feedback_hz > 0 ? settings.feedback_hz : 50.0;
-    const auto status = [&](VescPacket packet, bool fast) {
-      use.feedback.push_back({.id = vescId(packet, settings.id),
-                              .shape = {.extended = true, .length = kVescStatusLength},
+    const auto status = [&](vesc::Packet packet, bool fast) {
+      use.feedback.push_back({.id = vesc::canId(packet, settings.id),
+                              .shape = {.extended = true, .length = vesc::kStatusLength},
                               .per_second = fast ? rate_hz : static_cast<double>(kVescSlowHz)});
     };
-    status(VescPacket::kStatus1, true);
-    status(VescPacket::kStatus4, options.angle == VescAngle::kEncoder);
-    status(VescPacket::kStatus5, options.angle == VescAngle::kTachometer);
+    status(vesc::Packet::kStatus1, true);
+    status(vesc::Packet::kStatus4, options.angle == VescAngle::kEncoder);
+    status(vesc::Packet::kStatus5, options.angle == VescAngle::kTachometer);
     use.commands.push_back(
-        {.id = vescId(VescPacket::kSetCurrent, settings.id),
+        {.id = vesc::canId(vesc::Packet::kSetCurrent, settings.id),
          .shape = {.extended = true, .length = 4},
          .per_second = static_cast<double>(settings.tick_hz) / std::max(settings.command_divider, 1)});
     if (options.ask_status) {
       use.feedback.push_back(
           {.id = answers.id, .shape = {.extended = true, .length = 8}, .per_second = kAsksPerSecond});
-      use.commands.push_back({.id = vescId(VescPacket::kProcessShortBuffer, settings.id),
+      use.commands.push_back({.id = vesc::canId(vesc::Packet::kProcessShortBuffer, settings.id),
                               .shape = {.extended = true, .length = 7},
                               .per_second = kAsksPerSecond});
     }

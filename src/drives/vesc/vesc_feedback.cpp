@@ -32,41 +32,41 @@ bool VESC_Motor::matchesFrame(const CanFrame& frame) const noexcept {
 
 FrameVerdict VESC_Motor::updateFeedback(const CanFrame& frame) noexcept {
   if (!matchesFrame(frame)) return FrameVerdict::kMalformed;
-  const auto packet = static_cast<VescPacket>(frame.id.value >> 8U);
-  if (packet == VescPacket::kNotifyBoot) {
+  const auto packet = static_cast<vesc::Packet>(frame.id.value >> 8U);
+  if (packet == vesc::Packet::kNotifyBoot) {
     restarted();
     return FrameVerdict::kAccepted;
   }
-  if (packet == VescPacket::kProcessShortBuffer) {
-    const auto answer = decodeVescAnswer(frame);
+  if (packet == vesc::Packet::kProcessShortBuffer) {
+    const auto answer = vesc::decodeAnswer(frame);
     if (!answer) return FrameVerdict::kMalformed;
     inquiry_.take(*answer);
     return FrameVerdict::kAccepted;
   }
-  if (frame.length != kVescStatusLength) return FrameVerdict::kMalformed;
+  if (frame.length != vesc::kStatusLength) return FrameVerdict::kMalformed;
   switch (packet) {
-    case VescPacket::kStatus1: takeStatus1(frame); break;
-    case VescPacket::kStatus2: telemetry_.status2 = decodeVescStatus2(frame); break;
-    case VescPacket::kStatus3: telemetry_.status3 = decodeVescStatus3(frame); break;
-    case VescPacket::kStatus4:
-      telemetry_.status4 = decodeVescStatus4(frame);
+    case vesc::Packet::kStatus1: takeStatus1(frame); break;
+    case vesc::Packet::kStatus2: telemetry_.status2 = vesc::decodeStatus2(frame); break;
+    case vesc::Packet::kStatus3: telemetry_.status3 = vesc::decodeStatus3(frame); break;
+    case vesc::Packet::kStatus4:
+      telemetry_.status4 = vesc::decodeStatus4(frame);
       feedback_.temperature_c =
           options_.motor_temperature ? telemetry_.status4.motor_c : telemetry_.status4.drive_c;
       if (options_.angle == VescAngle::kEncoder) takeEncoder(frame);
       break;
-    case VescPacket::kStatus5:
+    case vesc::Packet::kStatus5:
       if (options_.angle == VescAngle::kTachometer) takeSteps(frame);
-      telemetry_.status5 = decodeVescStatus5(frame);
+      telemetry_.status5 = vesc::decodeStatus5(frame);
       feedback_.voltage_v = telemetry_.status5.input_v;
       break;
-    case VescPacket::kStatus6: telemetry_.status6 = decodeVescStatus6(frame); break;
+    case vesc::Packet::kStatus6: telemetry_.status6 = vesc::decodeStatus6(frame); break;
     default: return FrameVerdict::kMalformed;
   }
   return FrameVerdict::kAccepted;
 }
 
 void VESC_Motor::takeStatus1(const CanFrame& frame) noexcept {
-  const VescStatus1 status = decodeVescStatus1(frame);
+  const vesc::Status1 status = vesc::decodeStatus1(frame);
   telemetry_.status1 = status;
   status1_at_ = frame.received;
   status1_seen_ = true;
@@ -102,7 +102,7 @@ void VESC_Motor::takePosition(MonotonicTime received, double moved_deg, bool kno
 }
 
 void VESC_Motor::takeSteps(const CanFrame& frame) noexcept {
-  const std::int32_t steps = decodeVescStatus5(frame).steps;
+  const std::int32_t steps = vesc::decodeStatus5(frame).steps;
   const double deg_per_step = kDegPerTurn / (kStepsPerElectricalTurn * options_.pole_pairs);
   if (!position_seen_) {
     takePosition(frame.received, feedback_.samples == 0 ? steps * deg_per_step : 0.0, false);

@@ -6,7 +6,7 @@
 
 #include "bus/byte_order.hpp"
 
-namespace rc10 {
+namespace rc10::vesc {
 namespace {
 
 constexpr std::uint8_t kGetValuesSelective = 50;
@@ -23,7 +23,7 @@ double scaled32(const CanFrame& frame, std::size_t at, double per_unit) noexcept
 
 }  // namespace
 
-std::int32_t vescRaw(double value, double scale) noexcept {
+std::int32_t toRaw(double value, double scale) noexcept {
   const double raw = std::round(value * scale);
   if (std::isnan(raw)) return 0;
   if (raw >= static_cast<double>(std::numeric_limits<std::int32_t>::max())) {
@@ -35,56 +35,56 @@ std::int32_t vescRaw(double value, double scale) noexcept {
   return static_cast<std::int32_t>(raw);
 }
 
-CanFrame makeVescCommand(VescPacket packet, int controller_id, std::int32_t raw) noexcept {
+CanFrame makeCommand(Packet packet, int controller_id, std::int32_t raw) noexcept {
   std::array<std::uint8_t, 4> payload{};
   writeBigEndian<std::int32_t>(payload, 0, raw);
-  return makeClassicFrame(vescId(packet, controller_id), payload);
+  return makeClassicFrame(canId(packet, controller_id), payload);
 }
 
-CanFrame makeVescQuestion(int controller_id, int host_id, std::uint32_t mask) noexcept {
+CanFrame makeQuestion(int controller_id, int host_id, std::uint32_t mask) noexcept {
   std::array<std::uint8_t, 7> payload{static_cast<std::uint8_t>(host_id), kAnswerToSender,
                                       kGetValuesSelective};
   writeBigEndian<std::uint32_t>(payload, 3, mask);
-  return makeClassicFrame(vescId(VescPacket::kProcessShortBuffer, controller_id), payload);
+  return makeClassicFrame(canId(Packet::kProcessShortBuffer, controller_id), payload);
 }
 
-std::optional<VescAnswer> decodeVescAnswer(const CanFrame& frame) noexcept {
+std::optional<Answer> decodeAnswer(const CanFrame& frame) noexcept {
   if (frame.length != kAnswerLength || frame.data[2] != kGetValuesSelective) return std::nullopt;
-  const VescAnswer answer{.mask = readBigEndian<std::uint32_t>(frame.payload(), 3), .value = frame.data[7]};
-  if (answer.mask != kVescAskFault && answer.mask != kVescAskStatus) return std::nullopt;
+  const Answer answer{.mask = readBigEndian<std::uint32_t>(frame.payload(), 3), .value = frame.data[7]};
+  if (answer.mask != kAskFault && answer.mask != kAskStatus) return std::nullopt;
   return answer;
 }
 
-VescStatus1 decodeVescStatus1(const CanFrame& frame) noexcept {
+Status1 decodeStatus1(const CanFrame& frame) noexcept {
   return {.erpm = readBigEndian<std::int32_t>(frame.payload(), 0),
           .current_a = scaled16(frame, 4, 10.0F),
           .duty = scaled16(frame, 6, 1000.0F)};
 }
 
-VescStatus2 decodeVescStatus2(const CanFrame& frame) noexcept {
+Status2 decodeStatus2(const CanFrame& frame) noexcept {
   return {.charge_used_ah = scaled32(frame, 0, 1e4), .charge_returned_ah = scaled32(frame, 4, 1e4)};
 }
 
-VescStatus3 decodeVescStatus3(const CanFrame& frame) noexcept {
+Status3 decodeStatus3(const CanFrame& frame) noexcept {
   return {.energy_used_wh = scaled32(frame, 0, 1e4), .energy_returned_wh = scaled32(frame, 4, 1e4)};
 }
 
-VescStatus4 decodeVescStatus4(const CanFrame& frame) noexcept {
+Status4 decodeStatus4(const CanFrame& frame) noexcept {
   return {.drive_c = scaled16(frame, 0, 10.0F),
           .motor_c = scaled16(frame, 2, 10.0F),
           .input_a = scaled16(frame, 4, 10.0F),
           .position_deg = scaled16(frame, 6, 50.0F)};
 }
 
-VescStatus5 decodeVescStatus5(const CanFrame& frame) noexcept {
+Status5 decodeStatus5(const CanFrame& frame) noexcept {
   return {.steps = readBigEndian<std::int32_t>(frame.payload(), 0), .input_v = scaled16(frame, 4, 10.0F)};
 }
 
-VescStatus6 decodeVescStatus6(const CanFrame& frame) noexcept {
+Status6 decodeStatus6(const CanFrame& frame) noexcept {
   return {.adc1_v = scaled16(frame, 0, 1000.0F),
           .adc2_v = scaled16(frame, 2, 1000.0F),
           .adc3_v = scaled16(frame, 4, 1000.0F),
           .ppm = scaled16(frame, 6, 1000.0F)};
 }
 
-}  // namespace rc10
+}  // namespace rc10::vesc

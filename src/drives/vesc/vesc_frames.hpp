@@ -5,12 +5,12 @@
 
 #include "bus/can_frame.hpp"
 
-namespace rc10 {
+namespace rc10::vesc {
 
 // The frames of VESC drives. Extended id = packet << 8 | controller id, big-endian payloads, classic CAN.
 // Source: vedderb/bldc@b9d287b:datatypes.h, comm/comm_can.c, comm/commands.c, also tags 5.03 to 7.00.
 
-enum class VescPacket : std::uint8_t {
+enum class Packet : std::uint8_t {
   kSetDuty = 0,
   kSetCurrent = 1,
   kSetCurrentBrake = 2,
@@ -33,78 +33,78 @@ enum class VescPacket : std::uint8_t {
 };
 
 /// Firmware takes frames to this id as meant for itself, whatever its own id.
-inline constexpr int kVescBroadcast = 255;
+inline constexpr int kBroadcast = 255;
 
-[[nodiscard]] constexpr CanId vescId(VescPacket packet, int controller_id) noexcept {
+[[nodiscard]] constexpr CanId canId(Packet packet, int controller_id) noexcept {
   return {static_cast<std::uint32_t>(packet) << 8U | (static_cast<std::uint32_t>(controller_id) & 0xFFU),
           true};
 }
 
 // Raw units per A, rpm (electrical), degree or 1.
-inline constexpr double kVescPerAmpere = 1e3;
-inline constexpr double kVescPerShare = 1e5;  ///< Duty, and currents relative to the drive's maximum.
-inline constexpr double kVescPerErpm = 1.0;
-inline constexpr double kVescPerDegree = 1e6;
+inline constexpr double kPerAmpere = 1e3;
+inline constexpr double kPerShare = 1e5;  ///< Duty, and currents relative to the drive's maximum.
+inline constexpr double kPerErpm = 1.0;
+inline constexpr double kPerDegree = 1e6;
 
 /// The integer nearest to value * scale; beyond 32 bits the last one, and 0 for NaN.
-[[nodiscard]] std::int32_t vescRaw(double value, double scale) noexcept;
+[[nodiscard]] std::int32_t toRaw(double value, double scale) noexcept;
 
 /// A command: always 4 bytes. Firmware >= 6.00 reads a SET_CURRENT of 6 bytes or more as a delay and then the
 /// current, so that 1 A padded with zeros becomes the drive's full current.
-[[nodiscard]] CanFrame makeVescCommand(VescPacket packet, int controller_id, std::int32_t raw) noexcept;
+[[nodiscard]] CanFrame makeCommand(Packet packet, int controller_id, std::int32_t raw) noexcept;
 
 // Questions that fit into one frame each way: COMM_GET_VALUES_SELECTIVE (50) with one bit
 // of its mask. It moves nothing and feeds no watchdog.
-inline constexpr std::uint32_t kVescAskFault = 1U << 15U;   ///< mc_fault_code
-inline constexpr std::uint32_t kVescAskStatus = 1U << 21U;  ///< kVescTimedOut, kVescKillSwitch
-inline constexpr std::uint8_t kVescTimedOut = 1U << 0U;     ///< Its watchdog: too long without a command.
-inline constexpr std::uint8_t kVescKillSwitch = 1U << 1U;
-[[nodiscard]] CanFrame makeVescQuestion(int controller_id, int host_id, std::uint32_t mask) noexcept;
+inline constexpr std::uint32_t kAskFault = 1U << 15U;   ///< mc_fault_code
+inline constexpr std::uint32_t kAskStatus = 1U << 21U;  ///< kTimedOut, kKillSwitch
+inline constexpr std::uint8_t kTimedOut = 1U << 0U;     ///< Its watchdog: too long without a command.
+inline constexpr std::uint8_t kKillSwitch = 1U << 1U;
+[[nodiscard]] CanFrame makeQuestion(int controller_id, int host_id, std::uint32_t mask) noexcept;
 
-struct VescAnswer {
+struct Answer {
   std::uint32_t mask = 0;
   std::uint8_t value = 0;
 };
 /// Nothing if it is no answer to such a question.
-[[nodiscard]] std::optional<VescAnswer> decodeVescAnswer(const CanFrame& frame) noexcept;
+[[nodiscard]] std::optional<Answer> decodeAnswer(const CanFrame& frame) noexcept;
 
 // Status frames. 8 bytes, which the caller has checked.
-inline constexpr std::size_t kVescStatusLength = 8;
+inline constexpr std::size_t kStatusLength = 8;
 
-struct VescStatus1 {
+struct Status1 {
   std::int32_t erpm = 0;
   float current_a = 0.0F;  ///< Positive when the motor takes power, negative when it gives power back.
   float duty = 0.0F;       ///< Of the sign of the voltage.
 };
-struct VescStatus2 {
+struct Status2 {
   double charge_used_ah = 0.0;
   double charge_returned_ah = 0.0;
 };
-struct VescStatus3 {
+struct Status3 {
   double energy_used_wh = 0.0;
   double energy_returned_wh = 0.0;
 };
-struct VescStatus4 {
+struct Status4 {
   float drive_c = 0.0F;  ///< The transistors.
   float motor_c = 0.0F;  ///< Meaningless without a sensor.
   float input_a = 0.0F;
   float position_deg = 0.0F;  ///< Of its position loop, [0, 360).
 };
-struct VescStatus5 {
+struct Status5 {
   std::int32_t steps = 0;  ///< 6 per electrical turn, counting on over turns.
   float input_v = 0.0F;
 };
-struct VescStatus6 {
+struct Status6 {
   float adc1_v = 0.0F;
   float adc2_v = 0.0F;
   float adc3_v = 0.0F;
   float ppm = 0.0F;
 };
-[[nodiscard]] VescStatus1 decodeVescStatus1(const CanFrame& frame) noexcept;
-[[nodiscard]] VescStatus2 decodeVescStatus2(const CanFrame& frame) noexcept;
-[[nodiscard]] VescStatus3 decodeVescStatus3(const CanFrame& frame) noexcept;
-[[nodiscard]] VescStatus4 decodeVescStatus4(const CanFrame& frame) noexcept;
-[[nodiscard]] VescStatus5 decodeVescStatus5(const CanFrame& frame) noexcept;
-[[nodiscard]] VescStatus6 decodeVescStatus6(const CanFrame& frame) noexcept;
+[[nodiscard]] Status1 decodeStatus1(const CanFrame& frame) noexcept;
+[[nodiscard]] Status2 decodeStatus2(const CanFrame& frame) noexcept;
+[[nodiscard]] Status3 decodeStatus3(const CanFrame& frame) noexcept;
+[[nodiscard]] Status4 decodeStatus4(const CanFrame& frame) noexcept;
+[[nodiscard]] Status5 decodeStatus5(const CanFrame& frame) noexcept;
+[[nodiscard]] Status6 decodeStatus6(const CanFrame& frame) noexcept;
 
-}  // namespace rc10
+}  // namespace rc10::vesc

@@ -64,7 +64,7 @@ void VescInquiry::enable() noexcept {
     progress_ = SequenceProgress::kFailed;
   } else if (unanswered_ > kMaxUnanswered) {
     progress_ = SequenceProgress::kFailed;
-  } else if (fresh_ == (kVescAskFault | kVescAskStatus) && proof_ == Proof::kProven) {
+  } else if (fresh_ == (vesc::kAskFault | vesc::kAskStatus) && proof_ == Proof::kProven) {
     progress_ = fault_ == 0 && !killed() ? SequenceProgress::kDone : SequenceProgress::kFailed;
   }
 }
@@ -80,23 +80,23 @@ void VescInquiry::ask(const Tick& tick) noexcept {
   if (!answered) ++unanswered_;
   question_ = next_;
   pending_ = next_;
-  next_ = next_ == kVescAskStatus ? kVescAskFault : kVescAskStatus;
+  next_ = next_ == vesc::kAskStatus ? vesc::kAskFault : vesc::kAskStatus;
   asked_ = tick.now;
 }
 
-void VescInquiry::take(const VescAnswer& answer) noexcept {
+void VescInquiry::take(const vesc::Answer& answer) noexcept {
   heard_ = true;
   fresh_ |= answer.mask;
   if (answer.mask == pending_) {
     pending_ = 0;
     unanswered_ = 0;
   }
-  if (answer.mask == kVescAskFault) {
+  if (answer.mask == vesc::kAskFault) {
     fault_ = answer.value;
     return;
   }
   status_ = answer.value;
-  const bool timed_out = (answer.value & kVescTimedOut) != 0;
+  const bool timed_out = (answer.value & vesc::kTimedOut) != 0;
   const bool commanded = dutyOf(ordered_) == DriveDuty::kObey;
   deaf_ = timed_out && commanded && now_ - ordered_since_ >= kMustHaveHeard;
   if (timed_out) {

@@ -19,7 +19,7 @@ class VescInquiry {
 
   /// Once in each tick, before packing.
   void update(const Tick& tick, FrameKind ordered) noexcept;
-  void take(const VescAnswer& answer) noexcept;
+  void take(const vesc::Answer& answer) noexcept;
   /// The drive was restarted: all is to be found out anew.
   void restart() noexcept;
 
@@ -29,7 +29,7 @@ class VescInquiry {
   [[nodiscard]] bool silence() const noexcept { return silent_; }
   [[nodiscard]] SequenceProgress progress() const noexcept { return progress_; }
   [[nodiscard]] std::uint8_t fault() const noexcept { return fault_; }
-  [[nodiscard]] bool killed() const noexcept { return (status_ & kVescKillSwitch) != 0; }
+  [[nodiscard]] bool killed() const noexcept { return (status_ & vesc::kKillSwitch) != 0; }
   /// It has not heard the commands that it was sent all the time.
   [[nodiscard]] bool deaf() const noexcept { return deaf_; }
   [[nodiscard]] bool watchdogProven() const noexcept { return proof_ == Proof::kProven; }
@@ -48,7 +48,7 @@ class VescInquiry {
   MonotonicTime now_;
   std::uint32_t question_ = 0;
   std::uint32_t pending_ = 0;  ///< Asked, not yet answered.
-  std::uint32_t next_ = kVescAskStatus;
+  std::uint32_t next_ = vesc::kAskStatus;
   int unanswered_ = 0;
   std::uint32_t fresh_ = 0;  ///< Answers since the enabling began.
   Proof proof_ = Proof::kOpen;

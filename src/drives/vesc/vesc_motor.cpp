@@ -24,27 +24,27 @@ constexpr std::int32_t kSlippedErpm = 450;
 constexpr double kLeadDeg = 90.0;
 
 std::array<FrameFilter, 8> filtersOf(int id, const VescOptions& options) {
-  const auto exactly = [id](VescPacket packet) { return FrameFilter{.id = vescId(packet, id)}; };
-  return {exactly(VescPacket::kStatus1), exactly(VescPacket::kStatus2), exactly(VescPacket::kStatus3),
-          exactly(VescPacket::kStatus4), exactly(VescPacket::kStatus5), exactly(VescPacket::kStatus6),
-          exactly(VescPacket::kNotifyBoot),
+  const auto exactly = [id](vesc::Packet packet) { return FrameFilter{.id = vesc::canId(packet, id)}; };
+  return {exactly(vesc::Packet::kStatus1), exactly(vesc::Packet::kStatus2), exactly(vesc::Packet::kStatus3),
+          exactly(vesc::Packet::kStatus4), exactly(vesc::Packet::kStatus5), exactly(vesc::Packet::kStatus6),
+          exactly(vesc::Packet::kNotifyBoot),
           // Every drive answers to the one host id, with its own in the first byte.
-          FrameFilter{.id = vescId(VescPacket::kProcessShortBuffer, options.host_id),
+          FrameFilter{.id = vesc::canId(vesc::Packet::kProcessShortBuffer, options.host_id),
                       .discriminator = PayloadDiscriminator{
                           .byte_index = 0, .mask = 0xFF, .value = static_cast<std::uint8_t>(id)}}};
 }
 
 std::array<CanId, 10> commandIdsOf(int id) {
-  return {vescId(VescPacket::kSetCurrent, id),
-          vescId(VescPacket::kSetDuty, id),
-          vescId(VescPacket::kSetCurrentBrake, id),
-          vescId(VescPacket::kSetErpm, id),
-          vescId(VescPacket::kSetPosition, id),
-          vescId(VescPacket::kSetCurrentRelative, id),
-          vescId(VescPacket::kSetCurrentBrakeRelative, id),
-          vescId(VescPacket::kSetHandbrake, id),
-          vescId(VescPacket::kSetHandbrakeRelative, id),
-          vescId(VescPacket::kProcessShortBuffer, id)};
+  return {vesc::canId(vesc::Packet::kSetCurrent, id),
+          vesc::canId(vesc::Packet::kSetDuty, id),
+          vesc::canId(vesc::Packet::kSetCurrentBrake, id),
+          vesc::canId(vesc::Packet::kSetErpm, id),
+          vesc::canId(vesc::Packet::kSetPosition, id),
+          vesc::canId(vesc::Packet::kSetCurrentRelative, id),
+          vesc::canId(vesc::Packet::kSetCurrentBrakeRelative, id),
+          vesc::canId(vesc::Packet::kSetHandbrake, id),
+          vesc::canId(vesc::Packet::kSetHandbrakeRelative, id),
+          vesc::canId(vesc::Packet::kProcessShortBuffer, id)};
 }
 
 /// With a divider the drive's position loop counts turns of what stands behind that gear.
@@ -136,11 +136,11 @@ void VESC_Motor::release() noexcept {
   setCommand(0.0, CommandUnit::kAmpere);
 }
 
-VESC_Motor::Command VESC_Motor::currentCommand(VescPacket absolute, VescPacket relative,
+VESC_Motor::Command VESC_Motor::currentCommand(vesc::Packet absolute, vesc::Packet relative,
                                                double drive_a) const noexcept {
-  if (!options_.relative_current) return {absolute, vescRaw(drive_a, kVescPerAmpere)};
+  if (!options_.relative_current) return {absolute, vesc::toRaw(drive_a, vesc::kPerAmpere)};
   const double share = std::clamp(drive_a / static_cast<double>(options_.motor_current_max_a), -1.0, 1.0);
-  return {relative, vescRaw(share, kVescPerShare)};
+  return {relative, vesc::toRaw(share, vesc::kPerShare)};
 }
 
 void VESC_Motor::setCurrent(double amperes) noexcept {
@@ -151,7 +151,7 @@ void VESC_Motor::setCurrent(double amperes) noexcept {
   const double limit = static_cast<double>(effortLimit());
   const double bounded = std::clamp(amperes, -limit, limit);
   if (bounded != amperes) limits_ |= kLimitCurrent;
-  command_ = currentCommand(VescPacket::kSetCurrent, VescPacket::kSetCurrentRelative,
+  command_ = currentCommand(vesc::Packet::kSetCurrent, vesc::Packet::kSetCurrentRelative,
                             bounded * static_cast<double>(direction()));
   setCommand(bounded, CommandUnit::kAmpere);
 }
@@ -162,7 +162,8 @@ void VESC_Motor::setVelocity(double rpm) noexcept {
     return;
   }
   const double bounded = rpmWithinLimit(rpm);
-  command_ = {VescPacket::kSetErpm, vescRaw(bounded * rotor_per_output_ * options_.pole_pairs, kVescPerErpm)};
+  command_ = {vesc::Packet::kSetErpm,
+              vesc::toRaw(bounded * rotor_per_output_ * options_.pole_pairs, vesc::kPerErpm)};
   setCommand(bounded, CommandUnit::kNative);
 }
 
@@ -172,14 +173,15 @@ void VESC_Motor::setDuty(double duty) noexcept {
     return;
   }
   const double bounded = std::clamp(duty, -1.0, 1.0);
-  command_ = {VescPacket::kSetDuty, vescRaw(bounded * static_cast<double>(direction()), kVescPerShare)};
+  command_ = {vesc::Packet::kSetDuty,
+              vesc::toRaw(bounded * static_cast<double>(direction()), vesc::kPerShare)};
   setCommand(bounded, CommandUnit::kNative);
 }
 
 void VESC_Motor::followVelocity(const Target& target) noexcept {
   const double rpm = target.value + static_cast<double>(target.velocity_ff_rpm);
   setVelocity(rpm);
-  if (command_.packet != VescPacket::kSetErpm || command_.raw != 0) {
+  if (command_.packet != vesc::Packet::kSetErpm || command_.raw != 0) {
     locked_ = false;
     return;
   }
@@ -235,7 +237,7 @@ void VESC_Motor::setPosition(double total_angle_deg) noexcept {
     return;
   }
   const double next_deg = wrapDegrees(position_deg_ + std::clamp(way, -kLeadDeg, kLeadDeg));
-  command_ = {VescPacket::kSetPosition, vescRaw(next_deg, kVescPerDegree)};
+  command_ = {vesc::Packet::kSetPosition, vesc::toRaw(next_deg, vesc::kPerDegree)};
   setCommand(total_angle_deg, CommandUnit::kNative);
 }
 
@@ -248,7 +250,7 @@ void VESC_Motor::damp() noexcept {
     return;
   }
   const double amperes = static_cast<double>(effortLimit() * std::min(speed_rpm / no_load_rpm, 1.0F));
-  command_ = currentCommand(VescPacket::kSetCurrentBrake, VescPacket::kSetCurrentBrakeRelative, amperes);
+  command_ = currentCommand(vesc::Packet::kSetCurrentBrake, vesc::Packet::kSetCurrentBrakeRelative, amperes);
   setCommand(amperes, CommandUnit::kNative);  // of no direction: no guard may take it for a torque
 }
 
@@ -264,8 +266,9 @@ void VESC_Motor::brake() noexcept {
   const float wanted_a = locked_ ? options_.handbrake_current_a : options_.brake_current_a;
   const double amperes = static_cast<double>(std::min(wanted_a, effortLimit()));
   command_ =
-      locked_ ? currentCommand(VescPacket::kSetHandbrake, VescPacket::kSetHandbrakeRelative, amperes)
-              : currentCommand(VescPacket::kSetCurrentBrake, VescPacket::kSetCurrentBrakeRelative, amperes);
+      locked_
+          ? currentCommand(vesc::Packet::kSetHandbrake, vesc::Packet::kSetHandbrakeRelative, amperes)
+          : currentCommand(vesc::Packet::kSetCurrentBrake, vesc::Packet::kSetCurrentBrakeRelative, amperes);
   setCommand(amperes, CommandUnit::kNative);
 }
 
@@ -275,18 +278,18 @@ std::size_t VESC_Motor::packCommand(const Tick& tick, std::span<CanFrame> out) n
   std::size_t count = 0;
   // Asked first: a drive that has timed out says so before the next command reaches it.
   if (options_.ask_status && inquiry_.question() != 0 && count < out.size()) {
-    out[count++] = makeVescQuestion(id_, options_.host_id, inquiry_.question());
+    out[count++] = vesc::makeQuestion(id_, options_.host_id, inquiry_.question());
   }
   const bool silence = options_.ask_status && inquiry_.silence();
   if (!silence && due(tick) && count < out.size()) {
-    out[count++] = makeVescCommand(command_.packet, id_, command_.raw);
+    out[count++] = vesc::makeCommand(command_.packet, id_, command_.raw);
   }
   return count;
 }
 
 std::size_t VESC_Motor::packRest(std::span<CanFrame> out) const noexcept {
   if (out.empty()) return 0;
-  out[0] = makeVescCommand(VescPacket::kSetCurrent, id_, 0);
+  out[0] = vesc::makeCommand(vesc::Packet::kSetCurrent, id_, 0);
   return 1;
 }
 

@@ -41,19 +41,19 @@ class VESC_Motor : public SoloMotor {
 
   /// Content of the status frames beyond MotorFeedback. Zeros until the first one.
   struct Telemetry {
-    VescStatus1 status1;
-    VescStatus2 status2;
-    VescStatus3 status3;
-    VescStatus4 status4;
-    VescStatus5 status5;
-    VescStatus6 status6;
+    vesc::Status1 status1;
+    vesc::Status2 status2;
+    vesc::Status3 status3;
+    vesc::Status4 status4;
+    vesc::Status5 status5;
+    vesc::Status6 status6;
   };
   [[nodiscard]] const Telemetry& telemetry() const noexcept { return telemetry_; }
   [[nodiscard]] bool watchdogProven() const noexcept { return inquiry_.watchdogProven(); }
 
  private:
   struct Command {
-    VescPacket packet = VescPacket::kSetCurrent;
+    vesc::Packet packet = vesc::Packet::kSetCurrent;
     std::int32_t raw = 0;
   };
 
@@ -74,7 +74,7 @@ class VESC_Motor : public SoloMotor {
   void brake() noexcept;
   void followVelocity(const Target& target) noexcept;
   void followAngle(const Target& target) noexcept;
-  [[nodiscard]] Command currentCommand(VescPacket absolute, VescPacket relative,
+  [[nodiscard]] Command currentCommand(vesc::Packet absolute, vesc::Packet relative,
                                        double drive_a) const noexcept;
   [[nodiscard]] float stoppableRpm(float error_deg) const noexcept;
   [[nodiscard]] bool silent() const noexcept;

@@ -30,11 +30,11 @@ VescOptions optionsOf(const MotorSettings& settings) { return VescOptions{settin
 std::vector<FrameFilter> vescSends(const MotorSettings& settings) {
   std::vector<FrameFilter> sends;
   for (const auto packet :
-       {VescPacket::kStatus1, VescPacket::kStatus4, VescPacket::kStatus5, VescPacket::kNotifyBoot}) {
-    sends.push_back({.id = vescId(packet, settings.id)});
+       {vesc::Packet::kStatus1, vesc::Packet::kStatus4, vesc::Packet::kStatus5, vesc::Packet::kNotifyBoot}) {
+    sends.push_back({.id = vesc::canId(packet, settings.id)});
   }
   // Its answers go to whoever asked: here that is the host.
-  sends.push_back({.id = vescId(VescPacket::kProcessShortBuffer, optionsOf(settings).host_id),
+  sends.push_back({.id = vesc::canId(vesc::Packet::kProcessShortBuffer, optionsOf(settings).host_id),
                    .discriminator = PayloadDiscriminator{.value = static_cast<std::uint8_t>(settings.id)}});
   return sends;
 }
@@ -62,38 +62,38 @@ bool VescDrive::timedOut() const noexcept {
 void VescDrive::receive(const CanFrame& frame) noexcept {
   if (booting_ || !frame.id.extended || frame.fd || frame.type != FrameType::kData) return;
   const auto to = static_cast<int>(frame.id.value & 0xFFU);
-  if (to != id_ && to != kVescBroadcast) return;
+  if (to != id_ && to != vesc::kBroadcast) return;
   if (frame.id.value >> 8U > 0xFFU) return;
-  const auto packet = static_cast<VescPacket>(frame.id.value >> 8U);
-  if (packet == VescPacket::kProcessShortBuffer) {
+  const auto packet = static_cast<vesc::Packet>(frame.id.value >> 8U);
+  if (packet == vesc::Packet::kProcessShortBuffer) {
     question(frame);
-  } else if (packet == VescPacket::kPing && frame.length >= 1) {
+  } else if (packet == vesc::Packet::kPing && frame.length >= 1) {
     const std::array<std::uint8_t, 2> pong{static_cast<std::uint8_t>(id_), 0};
-    answer(makeClassicFrame(vescId(VescPacket::kPong, frame.data[0]), pong));
+    answer(makeClassicFrame(vesc::canId(vesc::Packet::kPong, frame.data[0]), pong));
   } else {
     command(packet, frame);
   }
 }
 
-void VescDrive::command(VescPacket packet, const CanFrame& frame) noexcept {
+void VescDrive::command(vesc::Packet packet, const CanFrame& frame) noexcept {
   // A real drive reads its buffer whatever the length; what is not there is here 0.
   auto number = [&frame](std::size_t at, double scale) {
     return static_cast<double>(readBigEndian<std::int32_t>(std::span{frame.data}, at)) / scale;
   };
-  const bool padded = packet == VescPacket::kSetCurrent && frame.length >= 6;
-  const double amperes = number(padded ? 2 : 0, kVescPerAmpere);
-  const double share = number(0, kVescPerShare);
+  const bool padded = packet == vesc::Packet::kSetCurrent && frame.length >= 6;
+  const double amperes = number(padded ? 2 : 0, vesc::kPerAmpere);
+  const double share = number(0, vesc::kPerShare);
   const double most = static_cast<double>(options_.motor_current_max_a);
   switch (packet) {
-    case VescPacket::kSetDuty:
-    case VescPacket::kSetCurrent:
-    case VescPacket::kSetCurrentBrake:
-    case VescPacket::kSetErpm:
-    case VescPacket::kSetPosition:
-    case VescPacket::kSetCurrentRelative:
-    case VescPacket::kSetCurrentBrakeRelative:
-    case VescPacket::kSetHandbrake:
-    case VescPacket::kSetHandbrakeRelative: break;
+    case vesc::Packet::kSetDuty:
+    case vesc::Packet::kSetCurrent:
+    case vesc::Packet::kSetCurrentBrake:
+    case vesc::Packet::kSetErpm:
+    case vesc::Packet::kSetPosition:
+    case vesc::Packet::kSetCurrentRelative:
+    case vesc::Packet::kSetCurrentBrakeRelative:
+    case vesc::Packet::kSetHandbrake:
+    case vesc::Packet::kSetHandbrakeRelative: break;
     default: return;
   }
   commanded_ = elapsed();
@@ -105,20 +105,22 @@ void VescDrive::command(VescPacket packet, const CanFrame& frame) noexcept {
     position(driveAngleDeg(), 0.0, std::abs(a) * nm_per_a);
   };
   switch (packet) {
-    case VescPacket::kSetDuty: voltage(std::clamp(share, -1.0, 1.0) * physics().parameters().supply_v); break;
-    case VescPacket::kSetCurrent: current(std::clamp(amperes, -most, most)); break;
-    case VescPacket::kSetCurrentRelative: current(std::clamp(share, -1.0, 1.0) * most); break;
-    case VescPacket::kSetCurrentBrake: brake(std::min(std::abs(amperes), most)); break;
-    case VescPacket::kSetCurrentBrakeRelative: brake(std::min(std::abs(share), 1.0) * most); break;
-    case VescPacket::kSetHandbrake: hold(std::min(std::abs(amperes), most)); break;
-    case VescPacket::kSetHandbrakeRelative: hold(std::min(std::abs(share), 1.0) * most); break;
-    case VescPacket::kSetErpm:
+    case vesc::Packet::kSetDuty:
+      voltage(std::clamp(share, -1.0, 1.0) * physics().parameters().supply_v);
+      break;
+    case vesc::Packet::kSetCurrent: current(std::clamp(amperes, -most, most)); break;
+    case vesc::Packet::kSetCurrentRelative: current(std::clamp(share, -1.0, 1.0) * most); break;
+    case vesc::Packet::kSetCurrentBrake: brake(std::min(std::abs(amperes), most)); break;
+    case vesc::Packet::kSetCurrentBrakeRelative: brake(std::min(std::abs(share), 1.0) * most); break;
+    case vesc::Packet::kSetHandbrake: hold(std::min(std::abs(amperes), most)); break;
+    case vesc::Packet::kSetHandbrakeRelative: hold(std::min(std::abs(share), 1.0) * most); break;
+    case vesc::Packet::kSetErpm:
       regulating_ = true;
       if (!was_regulating) speed_rpm_ = rotorRpm();
-      command_rpm_ = number(0, kVescPerErpm) / options_.pole_pairs;
+      command_rpm_ = number(0, vesc::kPerErpm) / options_.pole_pairs;
       break;
-    case VescPacket::kSetPosition: {
-      const double way = shortestAngle(encoderDeg(), number(0, kVescPerDegree));
+    case vesc::Packet::kSetPosition: {
+      const double way = shortestAngle(encoderDeg(), number(0, vesc::kPerDegree));
       position(driveAngleDeg() + way * options_.position_divider);
       break;
     }
@@ -129,11 +131,11 @@ void VescDrive::command(VescPacket packet, const CanFrame& frame) noexcept {
 void VescDrive::question(const CanFrame& frame) noexcept {
   if (frame.length != 7 || frame.data[1] != 0 || frame.data[2] != kGetValuesSelective) return;
   const auto mask = readBigEndian<std::uint32_t>(frame.payload(), 3);
-  if (mask != kVescAskFault && mask != kVescAskStatus) return;
+  if (mask != vesc::kAskFault && mask != vesc::kAskStatus) return;
   std::array<std::uint8_t, 8> reply{static_cast<std::uint8_t>(id_), 1, kGetValuesSelective};
   writeBigEndian<std::uint32_t>(reply, 3, mask);
-  reply[7] = mask == kVescAskFault ? fault_ : (timedOut() ? kVescTimedOut : std::uint8_t{0});
-  answer(makeClassicFrame(vescId(VescPacket::kProcessShortBuffer, frame.data[0]), reply));
+  reply[7] = mask == vesc::kAskFault ? fault_ : (timedOut() ? vesc::kTimedOut : std::uint8_t{0});
+  answer(makeClassicFrame(vesc::canId(vesc::Packet::kProcessShortBuffer, frame.data[0]), reply));
 }
 
 void VescDrive::brake(double rotor_a) noexcept {
@@ -171,7 +173,7 @@ void VescDrive::step(Duration dt) noexcept {
   if (booting_ && elapsed() >= speaks_from_) {
     booting_ = false;
     constexpr std::array<std::uint8_t, 2> kHardware{'6', '0'};
-    answer(makeClassicFrame(vescId(VescPacket::kNotifyBoot, id_), kHardware));
+    answer(makeClassicFrame(vesc::canId(vesc::Packet::kNotifyBoot, id_), kHardware));
   }
 }
 
@@ -190,16 +192,16 @@ std::int64_t VescDrive::stepsNow() const noexcept {
   return static_cast<std::int64_t>(std::floor(driveAngleDeg() * options_.pole_pairs / 60.0));
 }
 
-CanFrame VescDrive::status(VescPacket packet) const noexcept {
+CanFrame VescDrive::status(vesc::Packet packet) const noexcept {
   std::array<std::uint8_t, 8> payload{};
-  if (packet == VescPacket::kStatus1) {
+  if (packet == vesc::Packet::kStatus1) {
     const double duty = dutyNow();
     // The sign of the power.
     const double current_a = duty * currentA() < 0.0 ? -std::abs(currentA()) : std::abs(currentA());
     writeBigEndian<std::int32_t>(payload, 0, static_cast<std::int32_t>(rotorRpm() * options_.pole_pairs));
     writeBigEndian<std::int16_t>(payload, 4, raw16(current_a, 10.0));
     writeBigEndian<std::int16_t>(payload, 6, raw16(duty, 1000.0));
-  } else if (packet == VescPacket::kStatus4) {
+  } else if (packet == vesc::Packet::kStatus4) {
     writeBigEndian<std::int16_t>(payload, 0, raw16(physics().parameters().ambient_c + 5.0, 10.0));
     writeBigEndian<std::int16_t>(payload, 2, raw16(physics().temperatureC(), 10.0));
     writeBigEndian<std::int16_t>(payload, 4, raw16(dutyNow() * currentA(), 10.0));
@@ -209,7 +211,7 @@ CanFrame VescDrive::status(VescPacket packet) const noexcept {
         payload, 0, static_cast<std::int32_t>(static_cast<std::uint32_t>(stepsNow() - steps_zero_)));
     writeBigEndian<std::int16_t>(payload, 4, raw16(physics().parameters().supply_v, 10.0));
   }
-  return makeClassicFrame(vescId(packet, id_), payload);
+  return makeClassicFrame(vesc::canId(packet, id_), payload);
 }
 
 std::size_t VescDrive::feedback(std::span<CanFrame> out) noexcept {
@@ -217,12 +219,12 @@ std::size_t VescDrive::feedback(std::span<CanFrame> out) noexcept {
   const bool slow = elapsed() >= slow_next_;
   if (slow) slow_next_ = elapsed() + kSlowPeriod;
   std::size_t count = 0;
-  const auto send = [&](VescPacket packet) {
+  const auto send = [&](vesc::Packet packet) {
     if (count < out.size()) out[count++] = status(packet);
   };
-  send(VescPacket::kStatus1);
-  if (slow || options_.angle == VescAngle::kEncoder) send(VescPacket::kStatus4);
-  if (slow || options_.angle == VescAngle::kTachometer) send(VescPacket::kStatus5);
+  send(vesc::Packet::kStatus1);
+  if (slow || options_.angle == VescAngle::kEncoder) send(vesc::Packet::kStatus4);
+  if (slow || options_.angle == VescAngle::kTachometer) send(vesc::Packet::kStatus5);
   return count;
 }
 

@@ -29,7 +29,7 @@ class VescDrive : public ServoDrive {
   [[nodiscard]] bool timedOut() const noexcept;
 
  private:
-  void command(VescPacket packet, const CanFrame& frame) noexcept;
+  void command(vesc::Packet packet, const CanFrame& frame) noexcept;
   void question(const CanFrame& frame) noexcept;
   void brake(double rotor_a) noexcept;
   void stepBrake() noexcept;
@@ -37,7 +37,7 @@ class VescDrive : public ServoDrive {
   [[nodiscard]] double dutyNow() const noexcept;
   [[nodiscard]] double encoderDeg() const noexcept;
   [[nodiscard]] std::int64_t stepsNow() const noexcept;
-  [[nodiscard]] CanFrame status(VescPacket packet) const noexcept;
+  [[nodiscard]] CanFrame status(vesc::Packet packet) const noexcept;
 
   VescOptions options_;
   int id_;
