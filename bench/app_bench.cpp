@@ -1,4 +1,4 @@
-// What one step of each algorithm of src/app costs: see docs/algorithms.md.
+// Cost of one step of each algorithm of src/app: see docs/algorithms.md.
 //   app_bench [Google Benchmark's options]
 #include <benchmark/benchmark.h>
 

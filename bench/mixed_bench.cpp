@@ -1,4 +1,4 @@
-// What a tick costs on a robot of 32 drives of nine families, and on each family by itself: see
+// Cost of a tick on a robot of 32 drives of nine families, and on each family by itself: see
 // docs/performance.md. The drives are the simulated ones: every frame is a real one.
 //   mixed_bench CONFIG [TICKS]
 #include <sys/socket.h>

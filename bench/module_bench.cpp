@@ -1,4 +1,4 @@
-// What one tick of each type of module costs: its inputs, its update(), and what it asks of the motors. See
+// Cost of one tick of each type of module: its inputs, its update(), and what it asks of the motors. See
 // docs/performance.md.
 //   module_bench [Google Benchmark's options]
 #include <benchmark/benchmark.h>
@@ -56,7 +56,7 @@ class ModuleRig {
     }
   }
 
-  /// What is measured.
+  /// The subject.
   void update() noexcept { runner_.update(tick()); }
 
   [[nodiscard]] bool hasDevice() const noexcept { return chunk_.size > 0; }

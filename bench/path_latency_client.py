@@ -1,4 +1,4 @@
-"""What path_latency_client.cpp does through LCM, in Python: path_latency_client.py ROBOT COUNT."""
+"""path_latency_client.cpp through LCM, in Python: path_latency_client.py ROBOT COUNT."""
 
 from __future__ import annotations
 

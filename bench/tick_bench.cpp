@@ -1,4 +1,4 @@
-// What a tick costs, for fleets of different size: see docs/performance.md. bench/table runs this program
+// Cost of a tick, for fleets of different size: see docs/performance.md. bench/table runs this program
 // and turns its figures into cost per frame and per motor.
 //   tick_bench [Google Benchmark's options]
 //   tick_bench --ticks N FLEET     N whole ticks and nothing else, for counting instructions from outside

@@ -1,8 +1,8 @@
-# What `cmake --install` puts where: programs, units, example robots, documents, and for programs that build on rc10d the
+# Places of `cmake --install`: programs, units, example robots, documents, and for programs that build on rc10d the
 # libraries librc10 (the layers up to the daemon) and librc10-client with headers, a CMake package and .pc files.
 include(CMakePackageConfigHelpers)
 
-# What an install rule does not say otherwise goes into the package rc10d: Packages.cmake.
+# Files without a component go into the package rc10d: Packages.cmake.
 set(CMAKE_INSTALL_DEFAULT_COMPONENT_NAME daemon)
 install(TARGETS rc10d rc10-lcm rc10ctl rc10-stop rc10-irq rc10-sim RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
 install(DIRECTORY docs/man/ DESTINATION ${CMAKE_INSTALL_MANDIR}/man1 FILES_MATCHING PATTERN "*.1")
@@ -64,7 +64,7 @@ install(TARGETS rc10_client_lib rc10_client_lib_static EXPORT rc10ClientTargets
         LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT client NAMELINK_COMPONENT dev
         ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT dev)
 if(CMAKE_INTERPROCEDURAL_OPTIMIZATION)
-  # What only this version of the compiler can read goes.
+  # Sections that only this version of the compiler can read go.
   foreach(archive rc10_embed rc10_client_lib_static)
     install(CODE "execute_process(COMMAND \"${CMAKE_STRIP}\" --strip-debug -R .gnu.lto_* -N __gnu_lto_v1
                   \"\$ENV{DESTDIR}\${CMAKE_INSTALL_PREFIX}/${CMAKE_INSTALL_LIBDIR}/$<TARGET_FILE_NAME:${archive}>\"

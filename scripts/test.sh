@@ -51,7 +51,7 @@ for part in "${@:-default}"; do
     esac
 done
 
-# What all of them need, at once.
+# Packages and the venv of all parts, at once.
 mapfile -t groups < <(for part in "${wanted[@]}"; do sed -n 's/^need //p' "$here/test/$part.sh"; done | tr ' ' '\n' | sort -u)
 "$here/install-deps.sh" --may-ask "${groups[@]}"
 progress "test.sh: installing packages of Debian" 90 need "${groups[@]}"

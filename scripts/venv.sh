@@ -28,7 +28,7 @@ inputs() {
     } | sha256sum
 }
 
-# Whoever owns what a link points to would find it emptied.
+# A link's target would be emptied.
 if [ -L "$venv" ]; then
     echo "venv: $venv is a link: remove it, or say with RC10_VENV where the environment shall be" >&2
     exit 1
@@ -44,7 +44,7 @@ if [ "$made" != "$has_all" ] && [ "$made" != "$has_client" ]; then
     echo "venv: making $venv" >&2
     "$base" -m venv --clear "$venv" >&2
     "${pip[@]}" "${client[@]/#/--requirement=}" >&2
-    # What it is built with is among the requirements.
+    # Its build tools are among the requirements.
     "${pip[@]}" --no-build-isolation --no-deps --editable "$repo/python" >&2
     made=$has_client
     echo "$made" >"$venv/.inputs"

@@ -45,7 +45,7 @@ def play(path: Path) -> None:
         while True:
             next_s = max(next_s + PERIOD_S, time.monotonic())
             if powered:
-                # What nobody reads is lost, as on a wire.
+                # Bytes that nobody reads are lost, as on a wire.
                 with contextlib.suppress(BlockingIOError):
                     os.write(master, frame(switch))
             while (left_s := next_s - time.monotonic()) > 0:

@@ -117,7 +117,7 @@ class SmallRobot {
     if (feeder_.output("shots_left") > 0.0) {
       firing_ = now;
     } else if (now - firing_ > kForgotten) {
-      // What we sent lapsed once, or somebody else had the feeder: it forgets its shots then, and begins to
+      // Our message lapsed once, or somebody else had the feeder: it forgets its shots then, and begins to
       // count anew. One more for each that is missing.
       shots_ += kShots - static_cast<int>(std::floor(turned_deg / kDegPerShot + kNearly));
       firing_ = now;

@@ -42,7 +42,7 @@ MODULES = ("remote", "base", "gimbal", "feeder")
 
 
 class State(Enum):
-    """What the robot does."""
+    """The robot's program."""
 
     WAIT_ARMED = auto()
     DRIVE = auto()
@@ -137,7 +137,7 @@ class SmallRobot:
         if self.feeder.state["shots_left"] > 0:
             self.firing_s = time.monotonic()
         elif time.monotonic() - self.firing_s > FORGOTTEN_S:
-            # What we sent lapsed once, or somebody else had the feeder: it forgets its shots then,
+            # Our message lapsed once, or somebody else had the feeder: it forgets its shots then,
             # and begins to count anew. One more for each that is missing.
             self.shots += SHOTS - math.floor(turned_deg / DEG_PER_SHOT + NEARLY)
             self.firing_s = time.monotonic()

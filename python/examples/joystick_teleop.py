@@ -109,7 +109,7 @@ class Teleop:
     def step(self, sticks: Sticks, dt_s: float) -> tuple[float, float, float] | None:
         """Returns forward, left and turn."""
         if not sticks.dead_man:
-            # What is driven next starts from rest.
+            # The next one driven starts from rest.
             for slew in self._slews:
                 slew.value = 0.0
             return None

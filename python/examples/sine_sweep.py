@@ -30,7 +30,7 @@ _HIGHEST_HZ = 20.0
 _VALIDITY_MS = 100
 # Of each frequency: the beginning is the transient.
 _SETTLE_PERIODS, _PERIODS, _LEAST_S = 1, 4, 0.4
-# What a busy computer has disturbed is run again, so often at most.
+# Tries of a run that a busy computer has disturbed.
 _TRIES = 3
 
 Floats = NDArray[np.float64]

@@ -1,4 +1,4 @@
-"""What a client sees of rc10d: answers requests, takes commands, publishes its state."""
+"""rc10d as a client sees it: answers requests, takes commands, publishes its state."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What is installed: the generated messages are in it, from a clone and from an sdist."""
+"""The installed package: the generated messages are in it, from a clone and from an sdist."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What robot.record() gives, and what can be done with it."""
+"""Recordings by robot.record()."""
 
 from __future__ import annotations
 

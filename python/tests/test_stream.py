@@ -1,4 +1,4 @@
-"""What VOFA+ receives."""
+"""The stream that VOFA+ receives."""
 
 from __future__ import annotations
 

@@ -80,7 +80,7 @@ def compilations(build: Path, scratch: Path) -> list[Compilation]:
 
 
 def compile_alone(one: Compilation) -> str:
-    """What the compiler says; empty when all is well."""
+    """Messages of the compiler; empty when all is well."""
     done = subprocess.run(one.words, cwd=one.folder, capture_output=True, text=True, check=False)
     return "" if done.returncode == 0 else f"{one.what.relative_to(REPO)}:\n{done.stderr}"
 

@@ -1,4 +1,4 @@
-"""What tests and builds cost: the slowest of them, and what grew beyond its budget.
+"""Cost of tests and builds: the slowest of them, and what grew beyond its budget.
 
 A test runner appends lines "SECONDS<TAB>NAME" to the file $RC10_COSTS.
 """
@@ -19,7 +19,7 @@ GROWTH = 4 / 3
 
 @dataclass(frozen=True)
 class PartCost:
-    """What a part took where nothing was compiled before."""
+    """Cost of a part where nothing was compiled before."""
 
     took_s: float
     cpu_s: float
@@ -89,7 +89,7 @@ def measured_tests(logs: Path) -> list[tuple[float, str]]:
 
 
 def compiled_files(builds: Path, since: float) -> list[tuple[float, str]]:
-    """What Ninja has made since then. Its log: start, end (ms), time of the file (ns), file."""
+    """Files that Ninja has made since. Its log: start, end (ms), time of the file (ns), file."""
     files = {}
     for log in builds.glob("*/.ninja_log"):
         for line in log.read_text().splitlines()[1:]:

@@ -41,7 +41,7 @@ Section = dict[str, Any]
 
 
 class WrongPageError(Exception):
-    """What a page asks for is not in the schema, or the other way round."""
+    """A page and the schema differ."""
 
 
 class Row(NamedTuple):
@@ -221,7 +221,7 @@ class Tables:
 
 
 def taken(pattern: re.Pattern[str], text: str) -> tuple[str, str]:
-    """What the pattern finds, and the text without it."""
+    """The match of the pattern, and the text without it."""
     found = pattern.search(text)
     if found is None:
         return "", text

@@ -70,7 +70,7 @@ class Part:
             "RC10_COSTS": str(LOGS / f"{self.name}.costs"),
             "RC10_JOBS": str(max(self.cores, 1)),
         }
-        # What waits goes first when it is woken; what computes can bear it.
+        # A part that waits goes first when it is woken; one that computes can bear it.
         politely = ["nice", "-n", "5"] if self.cores else []
         with self.log.open("wb") as log:
             self.process = subprocess.Popen(

@@ -59,7 +59,7 @@ def enter_namespace() -> None:
 
 
 def run_in_terminal(command: list[str], env: dict[str, str], seconds: float) -> pyte.Screen:
-    """What stands on the screen after a while, just before Ctrl-C."""
+    """The screen after a while, just before Ctrl-C."""
     screen = pyte.Screen(COLUMNS, ROWS)
     stream = pyte.Stream(screen)
     decode = codecs.getincrementaldecoder("utf-8")("replace").decode

@@ -165,7 +165,7 @@ def changed_files(since: str) -> set[Path]:
 
 
 def changed_sources(since: str, sources: list[Path]) -> set[Path]:
-    """What differs from a commit; a changed header is seen through the first that includes it."""
+    """Sources that differ from a commit; a header is seen through the first that includes it."""
     changed = changed_files(since)
     headers = {file for file in changed if file.suffix == ".hpp"}
     includes = {source: included(source) for source in sources}

@@ -81,7 +81,7 @@ PICTURES = (
 
 @dataclass(frozen=True)
 class Step:
-    """What came of one step; time 0 is when the target changed."""
+    """Response to one step; time 0 is when the target changed."""
 
     title: str
     time_s: list[float]

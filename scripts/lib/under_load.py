@@ -97,7 +97,7 @@ def main() -> int:
         parser.error("which command?")
     print(f"under_load: --seed {options.seed}", flush=True)
     chance = random.Random(options.seed)
-    # Whoever loses his parent stays a descendant.
+    # An orphan stays a descendant.
     ctypes.CDLL(None).prctl(PR_SET_CHILD_SUBREAPER, 1, 0, 0, 0)
     hogs = [
         multiprocessing.Process(target=hog, args=(os.getpid(),), daemon=True)

@@ -8,7 +8,7 @@ need build test lint
 seconds=${RC10_FUZZ_SECONDS:-10}
 findings=$repo/build/asan/findings
 
-# What is found stays in build/asan/findings: give the file to the target to see it again.
+# Findings stay in build/asan/findings: give the file to the target to see one again.
 fuzz() {
     local target=$1 name corpus log=$scratch/$2.log
     name=$(basename "$target")
@@ -19,7 +19,7 @@ fuzz() {
         -artifact_prefix="$findings/$name-" "${corpus[@]}" >"$log" 2>&1
 }
 
-# What became of a target that has run.
+# Result of a target that has run.
 judge() {
     if [ "$1" -ne 0 ]; then
         tail -n 60 "$2"

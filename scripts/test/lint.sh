@@ -38,7 +38,8 @@ types_in() {
 
 # "Name of the motor", not "What the motor is called".
 comments_begin_with_a_noun() {
-    ! grep -rnE '//+<? *(What|Who|Whoever|So that)\>' src
+    ! git grep -nE '(//+<?|#|""") *(What|Who|Whoever|So that)\>' -- src tests bench examples cmake scripts python \
+        ':!scripts/test/*.sh' ':!tests/kernel/uml.config' ':!python/requirements.txt' ':!scripts/test/lint.sh'
 }
 
 # A source that .gitignore hides is compiled here and missing in every clone.

@@ -10,7 +10,7 @@
 namespace rc10 {
 inline namespace robot_client {
 
-/// What nobody asked about is told here, the same text at most once a second. Any thread.
+/// Reports that nobody asked for; the same text at most once a second. Any thread.
 class Problems {
  public:
   using Callback = std::function<void(const std::string&)>;

@@ -97,7 +97,7 @@ TEST(Omni3, AMiddleWheelAtTheRearTurnsBackwardsOnTheWayToTheLeftAndOneInFrontFor
   EXPECT_NEAR(front.left_rpm, -0.5 * kRpm, 1e-9);
 }
 
-/// What each wheel measures, from its place and rolling direction alone.
+/// Reading of each wheel, from its place and rolling direction alone.
 double rolled(const Twist2D& twist, double x_m, double y_m, double direction_deg) {
   const double w_rad_s = toRadians(twist.wz_deg_s);
   const double vx = twist.vx_m_s - w_rad_s * y_m;

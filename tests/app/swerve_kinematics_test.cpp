@@ -107,7 +107,7 @@ TEST(Swerve, AModuleTurnsAtMostNinetyDegreesAndRollsBackwardsInstead) {
     for (double measured_deg = -800.0; measured_deg < 800.0; measured_deg += 77.7) {
       const SwerveModule to = steered({.speed_rpm = 100.0, .angle_deg = wanted_deg}, measured_deg);
       ASSERT_LE(std::abs(shortestAngle(measured_deg, to.angle_deg)), 90.0 + 1e-9);
-      // What rolls in the wanted direction is never negative.
+      // A wheel that rolls in the wanted direction is never negative.
       const double along = to.speed_rpm * std::cos(toRadians(to.angle_deg - wanted_deg));
       ASSERT_GE(along, -1e-9);
       ASSERT_LE(along, 100.0 + 1e-9);

@@ -67,7 +67,7 @@ TEST_F(CopiesTest, AFolderThatIsNotThereIsNamed) {
 }
 
 TEST_F(CopiesTest, OfACopyThatFailedNothingIsLeft) {
-  // What the disk refuses: the place of the copy is taken by a folder.
+  // A refusal of the disk: a folder is in the place of the copy.
   std::filesystem::create_directories(state / "hero-20261121T160529Z-estop.blackbox/in");
   EXPECT_FALSE(copy(state.path()));
   EXPECT_THAT(filesIn(state.path()), ElementsAre("hero-20261121T160529Z-estop.blackbox"));

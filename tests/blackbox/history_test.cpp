@@ -36,7 +36,7 @@ class HistoryTest : public ::testing::Test {
   }
   void drain() { ASSERT_TRUE(history.drain()); }
 
-  /// What a reader of the file finds. Checks that no frame is missing in between.
+  /// The file as a reader finds it. Checks that no frame is missing in between.
   std::vector<blackbox::Frame> framesInFile() {
     EXPECT_TRUE(file->publish());
     auto image = blackbox::readImage(file->path());

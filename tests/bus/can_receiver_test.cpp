@@ -35,7 +35,7 @@ class CanReceiverTest : public testing::Test {
   void SetUp() override { frameCalls() = {}; }
   void TearDown() override { frameCalls() = {}; }
 
-  // What CAN_RAW adds once it had to drop frames; a socketpair never does.
+  // The drop counter of CAN_RAW; a socketpair has none.
   static void reportDropped(msghdr& message, std::uint32_t count) {
     message.msg_controllen = CMSG_SPACE(sizeof(count));
     cmsghdr* const control = CMSG_FIRSTHDR(&message);

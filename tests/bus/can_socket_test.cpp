@@ -16,7 +16,7 @@ namespace {
 using testing::AllOf;
 using testing::HasSubstr;
 
-// What a real interface does is tested in tests/kernel; here is what must be said when there is none.
+// Messages where there is no interface; tests/kernel has real ones.
 bool kernelHasCan() { return UniqueFd{::socket(PF_CAN, SOCK_RAW, CAN_RAW)} || errno != EAFNOSUPPORT; }
 
 auto expectedComplaint() {

@@ -1,4 +1,4 @@
-// What a bus does when the kernel refuses.
+// A bus whose frames the kernel refuses.
 
 #include "bus/fdcan_bus.hpp"
 

@@ -1,4 +1,4 @@
-// What runs in the real-time threads allocates nothing: no malloc, no mmap.
+// The real-time threads allocate nothing: no malloc, no mmap.
 
 #include <gtest/gtest.h>
 #include <sys/mman.h>

@@ -54,7 +54,7 @@ struct Received {
   Reception reception;
 };
 
-/// What one wake-up of the RX thread would bring.
+/// Frames of one wake-up of the RX thread.
 Received receiveFrom(CanReceiver& receiver, int fd) {
   pollfd waiting{fd, POLLIN, 0};
   ::poll(&waiting, 1, 100);

@@ -21,7 +21,7 @@ CanFrame frameOf(CanId id, std::size_t length, bool fd = false) {
   return fd ? makeFdFrame(id, payload, true) : makeClassicFrame(id, payload);
 }
 
-// What is on the stack before must not reach the wire.
+// Earlier bytes of the stack must not reach the wire.
 canfd_frame garbage() {
   canfd_frame wire{};
   std::memset(&wire, 0xA5, sizeof(wire));

@@ -74,7 +74,7 @@ class FakeRc10d {
               static_cast<ssize_t>(bytes.size()));
   }
 
-  /// What the client has sent; empty: nothing.
+  /// Messages of the client; empty: none.
   std::vector<std::byte> receiveBytes() {
     std::vector<std::byte> bytes(link::kMaxMessageSize);
     const auto size = ::recv(ours_.get(), bytes.data(), bytes.size(), MSG_DONTWAIT);

@@ -27,7 +27,7 @@ std::string whyNot(std::string_view name, double value, const MotorLoops& loops)
   return change ? "accepted" : change.error().message;
 }
 
-/// What the configuration says of the same key and number, without its place.
+/// The configuration's message for the same key and number, without its place.
 std::string whyNotInTheFile(const std::string& key, const std::string& number) {
   const auto errors =
       errorsOf(robotWith("{name: wheel, model: M3508, id: 1, velocity_pid: {" + key + ": " + number + "}}"));

@@ -1,4 +1,4 @@
-// What a configuration file may be as a document, before any key is looked at.
+// The configuration file as a document, before any key is looked at.
 
 #include <chrono>
 #include <cstdio>

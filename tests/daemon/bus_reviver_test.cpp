@@ -1,4 +1,4 @@
-// What can be seen without CAN: "lo" stands for an interface that is there but is no CAN interface. The
+// Without CAN: "lo" stands for an interface that is there but is no CAN interface. The
 // revival itself is tested with real SocketCAN in tests/kernel.
 #include "daemon/interfaces/bus_reviver.hpp"
 

@@ -1,4 +1,4 @@
-// What the io thread does about a link, with a driver that only remembers. The real one is tested with
+// Care of the io thread for a CAN link, with a driver that only remembers. The real one is tested with
 // controllers, in tests/vm.
 #include "daemon/interfaces/can_link_keeper.hpp"
 

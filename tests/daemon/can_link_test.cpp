@@ -1,4 +1,4 @@
-// What can be seen without CAN; with controllers it is tested in tests/vm.
+// Without CAN; tests/vm has controllers.
 #include "daemon/interfaces/can_link.hpp"
 
 #include <gmock/gmock.h>

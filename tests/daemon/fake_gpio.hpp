@@ -17,7 +17,7 @@ class FakeContact final : public ContactInput {
  public:
   struct State {
     ContactState now = ContactState::kClosed;
-    std::deque<ContactState> first;  ///< What the next calls say, before `now`.
+    std::deque<ContactState> first;  ///< Answers of the next calls, before `now`.
     std::vector<Duration> waits;
   };
   explicit FakeContact(State& state) : state_(state) {}

@@ -1,4 +1,4 @@
-// What a motor does when nobody tells it what to do, on the simulated robot.
+// A motor without a target, on the simulated robot.
 
 #include <cmath>
 

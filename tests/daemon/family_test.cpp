@@ -62,7 +62,7 @@ class Family : public ::testing::TestWithParam<Subject> {
 
   MotorStatus status() { return robot.motor(kMotor).status; }
   double rpm() { return static_cast<double>(robot.motor(kMotor).feedback.velocity_rpm); }
-  /// What the shaft really does.
+  /// The true motion of the shaft.
   double truth() { return drive().physics().outputRpm(); }
   sim::Drive& drive() { return robot.simBus().drive(kMotor); }
   bool waitFor(MotorStatus wanted, int ticks = 4000) {

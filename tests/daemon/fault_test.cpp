@@ -94,7 +94,7 @@ TEST_F(FaultTest, AStalledMotorStopsPushing) {
   EXPECT_EQ(robot->motor(kLeft).command_value, 0.0F);
 }
 
-/// What the configuration sets for an M3508.
+/// Guard of an M3508 as configured.
 const GuardConfig kMotion{
     .overspeed_rpm = 723.0F, .encoder_jumps = true, .frozen_a = 1.0F, .runaway_rpm = 48.0F};
 

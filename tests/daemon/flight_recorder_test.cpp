@@ -1,4 +1,4 @@
-// What the scheduler writes down in each tick.
+// Records of the scheduler in each tick.
 
 #include "daemon/recording/flight_recorder.hpp"
 

@@ -116,7 +116,7 @@ class LinkRig : public ::testing::Test {
     }
     return std::nullopt;
   }
-  /// What the scheduler would show after a tick.
+  /// The scheduler's snapshot after a tick.
   void publishSnapshot(std::uint64_t tick) {
     auto& slot = exchange.snapshot.slot();
     slot.tick = tick;

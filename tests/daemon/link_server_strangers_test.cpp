@@ -20,7 +20,7 @@ class LinkServerStrangersTest : public LinkRig {
     pump();
     EXPECT_TRUE(client.take<link::Response>());
   }
-  /// What happens to a client that has said hello and then sends these bytes.
+  /// Fate of a client that says hello and then sends these bytes.
   bool isSentAwayFor(const void* bytes, std::size_t size) {
     auto client = join();
     EXPECT_TRUE(client->sendBytes(bytes, size));

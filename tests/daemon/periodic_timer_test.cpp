@@ -52,7 +52,7 @@ TEST(PeriodicTimer, StaysOnItsGridHoweverLateItIsRead) {
   std::uint64_t expirations = 0;
   while (expirations < 20) {
     expirations += timer.wait();
-    // What was counted has passed: no expiration comes early, none twice.
+    // Counted expirations have passed: no expiration comes early, none twice.
     ASSERT_GE(monotonicNow(), first + 1ms * static_cast<std::int64_t>(expirations - 1));
   }
 }

@@ -31,7 +31,7 @@ class RequestDeskTest : public ::testing::Test {
     EXPECT_EQ(outcome.response->seq, request.seq);
     return std::string(outcome.response->message.view());
   }
-  /// What the supervisor says when every motor has done it.
+  /// The supervisor's result when every motor has done it.
   static OrderResult done(const Order& order) {
     OrderResult result;
     result.id = order.id;

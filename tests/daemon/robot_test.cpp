@@ -114,7 +114,7 @@ TEST(Robot, ASimulatedBusHasItsDrivesAtTheOtherEnd) {
   EXPECT_TRUE(entry.interface.empty());
   EXPECT_FALSE(entry.echo);
   EXPECT_THAT(entry.watched, ::testing::ElementsAre(CanId{0x200, false}));
-  // What the bus sends, the drives receive.
+  // The drives receive all that the bus sends.
   entry.bus->packRest();
   entry.bus->flush();
   robot->simPorts()[0]->step(MonotonicTime{1s});

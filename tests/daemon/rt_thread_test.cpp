@@ -19,7 +19,7 @@ namespace {
 using ::testing::AllOf;
 using ::testing::HasSubstr;
 
-/// What a thread sees of itself.
+/// A thread's own view of its settings.
 struct Seen {
   std::string name;
   int policy = -1;

@@ -15,7 +15,7 @@
 namespace rc10::test::service_notify_test {
 namespace {
 
-/// What systemd listens on. `name` begins with '@' in the abstract namespace.
+/// The socket of systemd. `name` begins with '@' in the abstract namespace.
 class Systemd {
  public:
   explicit Systemd(const std::string& name) : fd_(::socket(AF_UNIX, SOCK_DGRAM | SOCK_CLOEXEC, 0)) {

@@ -82,7 +82,7 @@ def anchors(path: Path) -> frozenset[str]:
 
 
 def messages(page: Page) -> list[str]:
-    """What the first cell of each table row quotes as code."""
+    """Code quoted in the first cell of each table row."""
     rows = [line for line in page.prose.splitlines() if line.startswith("|")]
     return [span for row in rows for _, span in SPAN.findall(row.split(" | ")[0])]
 

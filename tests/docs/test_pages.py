@@ -1,4 +1,4 @@
-"""What the pages refer to is there."""
+"""References of the pages lead somewhere."""
 
 from __future__ import annotations
 

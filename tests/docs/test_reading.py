@@ -1,4 +1,4 @@
-"""What is wrong in a page is found."""
+"""Errors in a page are found."""
 
 from __future__ import annotations
 

@@ -146,7 +146,7 @@ void Chaos::deliver(std::size_t bus, CanFrame frame) {
   if (robot_->inboxes()[bus].frames.push(frame)) oracle_->heard(bus, frame);
 }
 
-// What the daemon has put on each bus in this tick.
+// Frames of the daemon on each bus in this tick.
 void Chaos::readBuses() {
   const WakeUp wake{
       .now = robot_->now(), .previous = robot_->now(), .realtime_offset = {}, .previous_offset = {}};
@@ -194,7 +194,7 @@ void Chaos::carry(std::size_t bus, const CanFrame& frame) {
   echoed_.set(bus);
 }
 
-// What waited leaves before anything new. Echoes that nobody heard stay lost.
+// Waiting frames leave before new ones. Echoes that nobody heard stay lost.
 void Chaos::leaveQueue(std::size_t bus) {
   auto& queue = queues_[bus];
   queue.stuck_ticks = 0;
@@ -333,7 +333,7 @@ void Chaos::foreignFrame(std::size_t bus) {
   deliver(bus, frame);
 }
 
-// What a controller tells about itself.
+// Error frames of a controller.
 void Chaos::errorFrame(std::size_t bus, std::uint32_t which) {
   CanFrame frame;
   frame.type = FrameType::kError;

@@ -27,7 +27,7 @@ _FAULT = struct.Struct(">BBh")
 
 
 class Fault(IntEnum):
-    """What a drive does from now on. The argument is 0 where none is named."""
+    """Behaviour of a drive from now on. The argument is 0 where none is named."""
 
     NONE = 0
     SILENT = 1

@@ -25,7 +25,7 @@ FAULT_ID = 0x7F0
 
 
 class Wrong(IntEnum):
-    """What happens to the drive."""
+    """Fault of the drive."""
 
     NOTHING = 0  # its cable is plugged in again
     SILENT = 1

@@ -84,7 +84,7 @@ void Oracle::fail(std::size_t motor, const std::string& what) const {
       Ms(now_ - known.acts_since).count(), Ms(known.driven_until - now_).count(), frames));
 }
 
-// What the drive has told, if this is one of its frames.
+// The drive's report, if this is one of its frames.
 void Oracle::heard(std::size_t bus, const CanFrame& frame) {
   for (auto& motor : motors_) {
     if (motor.bus != bus || !motor.wire->heard(frame)) continue;
@@ -420,7 +420,7 @@ void Oracle::judgeGroups(const Snapshot& snapshot) {
   }
 }
 
-// What a motor without a target may do from now on.
+// Permitted action of a motor without a target, from now on.
 void Oracle::followActions(std::size_t index, const MotorSnapshot& seen) {
   auto& motor = motors_[index];
   const auto& fallback = motor.config->fallback;

@@ -25,7 +25,7 @@ class Oracle {
  public:
   explicit Oracle(const RobotConfig& config);
 
-  // What was put in, before the tick that sees it.
+  // Inputs, before the tick that sees them.
   void heard(std::size_t bus, const CanFrame& frame);
   void commanded(const Command& command);
   void ordered(const Order& order);
@@ -41,7 +41,7 @@ class Oracle {
   void watched(std::size_t bus) { watched_.set(bus); }
   /// Echoes of frames of these buses have come: the frames reach the wire. Known to the end of this tick.
   void echoed(std::bitset<kMaxBuses> buses) { echoed_ |= buses; }
-  /// What the e-stop input shows in this tick.
+  /// The e-stop input in this tick.
   void contact(bool open) {
     contact_open_ = open;
     if (open) estop_asked_ = true;
@@ -50,7 +50,7 @@ class Oracle {
   /// For tests of the oracle itself: once this motor is told something that is not rest, it believes that
   /// nothing else is told to it any more.
   void deafen(std::size_t motor) { deaf_ = motor; }
-  /// What came out.
+  /// Outputs.
   void answered(const OrderResult& result);
   /// A frame on a bus.
   void sent(std::size_t bus, const CanFrame& frame);
@@ -77,14 +77,14 @@ class Oracle {
     bool host_holds = false;   ///< Its hold is a loop of rc10d, of any effort,
     bool host_brakes = false;  ///< and so is its brake.
 
-    // What it has reported.
-    bool heard = false;  ///< What could be a sample.
+    // Its reports.
+    bool heard = false;  ///< A report that could be a sample.
     MonotonicTime heard_at;
     bool reported = false;  ///< A sample.
     MonotonicTime reported_at;
     std::uint64_t samples = 0;
     std::uint64_t unheard_ticks = 0;  ///< Ticks that ran since its last sample of then.
-    // What it was told.
+    // Its commands.
     MonotonicTime driven_until{};  ///< The latest deadline of a command that moves.
     MonotonicTime owned_until{};   ///< Of any command.
     bool coast_asked = false;      ///< Since the last tick, as are the next four.
@@ -92,7 +92,7 @@ class Oracle {
     bool alone_asked = false;      ///< And not the other way as well.
     int disables_asked = 0;
     bool clear_asked = false;
-    // What it does.
+    // Its action.
     Told told;
     int frames = 0;                                            ///< For it, in this tick.
     std::array<std::pair<std::uint64_t, CanFrame>, 6> last{};  ///< And in which tick, for the report.

@@ -1,4 +1,4 @@
-// What a motor is told: limits, slew, soft limits, fallbacks.
+// Rules for commands: limits, slew, soft limits, fallbacks.
 #include <algorithm>
 #include <cmath>
 

@@ -1,4 +1,4 @@
-"""What happens to the daemon itself: signals, stalls, clocks, files."""
+"""The daemon's process: signals, stalls, clocks, files."""
 # run-guest: --timeout 900
 
 from __future__ import annotations

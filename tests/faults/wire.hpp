@@ -17,7 +17,7 @@ class Violation : public std::runtime_error {
 
 inline constexpr double kUnsaid = std::numeric_limits<double>::quiet_NaN();
 
-/// What the frames of a drive make it do. At the output shaft, direction included; effort in A at the motor,
+/// The frames of a drive as its orders. At the output shaft, direction included; effort in A at the motor,
 /// or V.
 struct Told {
   enum class Law : std::uint8_t {
@@ -48,7 +48,7 @@ struct Told {
   [[nodiscard]] bool resistsAtMost() const noexcept;
 };
 
-/// What a drive has reported of itself.
+/// A drive's report of itself.
 struct Heard {
   double velocity_rpm = 0.0;
   double temperature_c = 0.0;

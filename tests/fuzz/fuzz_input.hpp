@@ -9,7 +9,7 @@
 
 namespace rc10::fuzz {
 
-/// What has to be so, in every run.
+/// A condition of every run.
 inline void require(bool condition, std::source_location where = std::source_location::current()) {
   if (condition) return;
   std::fprintf(stderr, "%s:%u: does not hold\n", where.file_name(), static_cast<unsigned>(where.line()));

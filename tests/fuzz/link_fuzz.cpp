@@ -69,7 +69,7 @@ std::vector<MotorLoops> loops() {
   return all;
 }
 
-/// What the link thread has, and what a stranger may do to it.
+/// The parts of the link thread, and the inputs of a stranger.
 class Desk {
  public:
   void command(Input& input) {

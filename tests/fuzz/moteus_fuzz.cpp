@@ -86,7 +86,7 @@ CanFrame takeFrame(Input& input, bool from_drive) {
   return frame;
 }
 
-/// What a drive might say, in the right form.
+/// A possible answer of a drive, in the right form.
 CanFrame takeAnswer(Input& input) {
   moteus::Writer frame(moteus::replyId(0, 1), true);
   const auto head = input.take<std::uint8_t>();

@@ -81,7 +81,7 @@ void streamOf(std::span<const std::uint8_t> input, std::size_t longest, const Ma
   check(*gaps);
 }
 
-/// What is packed fits, whatever the room.
+/// Packed bytes fit, whatever the room.
 template <typename Make>
 void roundTrip(std::span<const std::uint8_t> payload, const Make& make) {
   const auto protocol = make();

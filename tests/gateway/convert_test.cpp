@@ -22,7 +22,7 @@ link::Welcome welcomeOf(std::initializer_list<const char*> motors) {
   return welcome;
 }
 
-// What a client reads of it.
+// The message as a client reads it.
 template <typename Message>
 Message throughLcm(const Message& message) {
   static std::array<std::byte, kMaxPayload> buffer;

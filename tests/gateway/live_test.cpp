@@ -46,7 +46,7 @@ TEST(LiveGateway, PassesCommandsOnWithTheKernelsReceiveTime) {
   });
 }
 
-// What liblcm gets wrong: its stamp of a datagram that follows one of another channel, or of any after the
+// A defect of liblcm: its stamp of a datagram that follows one of another channel, or of any after the
 // first 2000, is the time of reading.
 TEST(LiveGateway, CommandsThatWaitedWhileItWasStoppedKeepTheirAge) {
   inPrivateNetwork([] {

@@ -38,7 +38,7 @@ def options(*words: str, program: str = "rc10ctl") -> set[str]:
 
 
 def complete(*words: str, env: dict[str, str] | None = None) -> list[str]:
-    """What bash offers for the last word."""
+    """Completions of bash for the last word."""
     program = [str(BIN / "rc10ctl"), *words]
     quoted = " ".join(f"'{word}'" for word in program)
     script = (

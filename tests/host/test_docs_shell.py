@@ -1,4 +1,4 @@
-"""What pages show for a shell is run, in its order, against simulated robots.
+"""Commands that pages show for a shell, run in their order against simulated robots.
 
 How a page marks what cannot run here: CONTRIBUTING.md.
 """
@@ -50,7 +50,7 @@ MULTICAST = ("239.255.76.67/32", "dev", "lo", "src", "127.0.0.1")
 
 
 class Scene(NamedTuple):
-    """What is there before a page is read."""
+    """The files before a page is read."""
 
     robot: str = ""  # that runs already
     files: Mapping[str, str] = {}

@@ -1,4 +1,4 @@
-"""What rc10ctl cannot do, it says with what to do next."""
+"""Errors of rc10ctl say what to do next."""
 
 from __future__ import annotations
 

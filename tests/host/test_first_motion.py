@@ -71,7 +71,7 @@ def test_jog_needs_a_terminal(daemon: Daemon) -> None:
 
 
 class Person:
-    """Who answers what rc10ctl commission asks, by what it prints."""
+    """The person who answers rc10ctl commission, by its output."""
 
     def __init__(self, daemon: Daemon, *words: str) -> None:
         self.process = subprocess.Popen(

@@ -19,7 +19,7 @@ LIFT = """
 modules:
   - {name: lift, type: synchronised_pair, left: wheel, right: other, velocity_limit_rpm: 60}
 """
-# What a verb needs to answer. All that the help names are called: a new one has to come here.
+# Arguments that a verb needs. All that the help names are called: a new one has to come here.
 WORDS: dict[str, list[str | Path]] = {
     "list": [],
     "watch": ["--once"],
@@ -41,7 +41,7 @@ WORDS: dict[str, list[str | Path]] = {
     "jog": ["wheel"],
     "commission": ["wheel"],
 }
-# What has to fail here.
+# Verbs that have to fail here.
 FAILS: dict[str, list[str | Path]] = {"scan": ["nocan0"]}
 
 

@@ -1,4 +1,4 @@
-"""What rc10d does where it may not be real-time: refuse or say so, as the configuration wants."""
+"""rc10d where it may not be real-time: it refuses or says so, as the configuration wants."""
 
 from __future__ import annotations
 

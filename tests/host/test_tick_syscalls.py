@@ -1,4 +1,4 @@
-"""What a tick costs in system calls and page faults, counted from outside."""
+"""Cost of a tick in system calls and page faults, counted from outside."""
 
 from __future__ import annotations
 

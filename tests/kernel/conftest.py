@@ -3,7 +3,7 @@
 import sys
 from pathlib import Path
 
-# What reads the pages is there.
+# The readers of pages are there.
 sys.path.insert(0, str(Path(__file__).parents[1] / "host"))
 
 from guestlib.collection import fresh_buses, pytest_collection_modifyitems

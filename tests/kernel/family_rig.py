@@ -44,7 +44,7 @@ def running(config: Path, *drives: str) -> Iterator[Proc]:
 
 
 def rc10ctl(*words: str) -> str:
-    """What rc10ctl prints; raises when it fails."""
+    """Output of rc10ctl; raises when it fails."""
     return run(BIN / "rc10ctl", "--robot", ROBOT, *words)
 
 

@@ -1,4 +1,4 @@
-"""What the tests of modules share: a robot from its file, and waiting while receiving."""
+"""Helpers of the tests of modules: a robot from its file, and waiting while receiving."""
 
 from __future__ import annotations
 

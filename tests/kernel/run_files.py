@@ -38,7 +38,7 @@ STAMP_PLAY_NS = 1000
 guests: list[subprocess.Popen[str]] = []
 stopped: list[int] = []
 
-# What a test file leaves in $RC10_SCRATCH/records.jsonl goes to $RC10_RECORDS/<file>.jsonl.
+# Records that a test file leaves in $RC10_SCRATCH/records.jsonl go to $RC10_RECORDS/<file>.jsonl.
 
 
 def run_file(file: Path, pytest_options: list[str]) -> summary.Counts:
@@ -110,7 +110,7 @@ def main() -> int:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--jobs", type=int, default=int(os.environ.get("RC10_JOBS", 2)))
     parser.add_argument("files", nargs="*", type=Path)
-    # What follows "--" is pytest's.
+    # Arguments after "--" are pytest's.
     end = sys.argv.index("--") if "--" in sys.argv else len(sys.argv)
     arguments = parser.parse_args(sys.argv[1:end])
     files = [file.resolve() for file in arguments.files] or sorted(HERE.glob("test_*.py"))

@@ -101,7 +101,7 @@ class Stage:
 def _cut_power(drives: Drives) -> None:
     for motor in drives.motors:
         if motor.command != 0.0:
-            # What a drive was told is gone with its power.
+            # A drive's orders are gone with its power.
             rest = can.Message(
                 arbitration_id=motor.command_ids[0], is_extended_id=False, data=bytes(8)
             )
@@ -109,7 +109,7 @@ def _cut_power(drives: Drives) -> None:
 
 
 class Recorder:
-    """What is true in every step, from now on."""
+    """A condition of every step, from now on."""
 
     def __init__(self, stage: Stage, **values: Callable[[], float]) -> None:
         self._values = values

@@ -1,4 +1,4 @@
-"""What the black box recorded is what was on the bus, and can be played on one again."""
+"""The black box has recorded the frames of the bus, and they can be played on one again."""
 
 from __future__ import annotations
 

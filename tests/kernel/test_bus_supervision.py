@@ -88,7 +88,7 @@ def test_a_stalled_bus_comes_back_with_rest_and_waits_to_be_enabled() -> None:
 
 def test_a_stalled_bus_gets_no_frames_but_a_rest_probe() -> None:
     with enabled_robot() as (process, robot), Candump("vcan0") as bus:
-        # What is handed over now arrives, and is echoed, after the test has looked.
+        # A frame handed over now arrives, and is echoed, after the test has looked.
         stall(process, robot, "delay 3s")
         netem_ns = time.time_ns()
         drive(robot, 1.0, left=rc10.velocity_rpm(100))

@@ -365,7 +365,7 @@ def test_a_stalled_bus_is_seen_and_comes_back_with_rest(family: Family, tmp_path
 
 
 def assert_loads_agree(stats: dict[str, Any], load: float) -> None:
-    """What candump saw, what rc10d predicts and what it measures, within 5 points."""
+    """Bus load by candump, as predicted and as measured, within 5 points."""
     assert load == pytest.approx(stats["predicted_load"], abs=0.05)
     assert stats["measured_load"] == pytest.approx(load, abs=0.05)
     assert stats["measured_load"] == pytest.approx(stats["predicted_load"], abs=0.05)

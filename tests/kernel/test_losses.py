@@ -1,4 +1,4 @@
-"""What is lost: the client, the gateway, the interface, the daemon, the wall clock's place."""
+"""Losses: the client, the gateway, the interface, the daemon, the wall clock's place."""
 
 from __future__ import annotations
 

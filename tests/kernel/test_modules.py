@@ -248,7 +248,7 @@ class TestAMecanumRobot:
             assert math.isnan(imu.state["yaw_deg"])
             hero.imu_port.plug()
             hero.daemon.wait_line("imu.*is open")
-            # What comes first is no beginning of a frame.
+            # The first bytes are no beginning of a frame.
             hero.imu_port.send(hero.imu.frame()[40:])
             hero.imu.on = True
             until(hero.robot, lambda: gimbal.state["stabilised"] == 1.0, "held to the world again")
@@ -341,7 +341,7 @@ class TestAMecanumRobot:
             let_pass(hero.robot, 0.2)
             hero.remote_port.plug()
             hero.daemon.wait_line("remote.*is open")
-            # What comes first is the rest of a frame.
+            # The first bytes are the rest of a frame.
             hero.remote_port.send(hero.remote.frame()[9:])
             hero.remote.on = True
             sent = len(hero.remote_sent_ns)
@@ -619,7 +619,7 @@ class TestAJointAndAFeeder:
         assert sum(back) == 2
         assert feeder.state["state"] == 3.0
         assert set(seen["deg"][-300:]) == {20.0}
-        # What was in its way is taken out; nobody asks for a moment, then somebody does.
+        # The obstacle is taken out; nobody asks for a moment, then somebody does.
         axes.wheel.stops_deg = (-math.inf, math.inf)
         until(axes.robot, lambda: feeder.state.owner == "", "a feeder that nobody asks")
         until(

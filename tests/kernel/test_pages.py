@@ -1,5 +1,5 @@
 # run-guest: --timeout 900
-"""What pages show on a CAN interface is typed on virtual ones, in the page's order."""
+"""Commands that pages show for a CAN interface, typed on virtual ones in the page's order."""
 
 from __future__ import annotations
 
@@ -43,7 +43,7 @@ def mine(page: str) -> list[Block]:
 @pytest.fixture
 def reader(tmp_path: Path) -> Iterator[Reader]:
     with Reader(tmp_path) as reader:
-        # What would be a module is part of the guest's kernel.
+        # Modules of other kernels are part of the guest's.
         modprobe = tmp_path / "root" / "modprobe"
         modprobe.write_text("#!/bin/sh\n")
         modprobe.chmod(0o755)
@@ -123,7 +123,7 @@ def test_the_quick_start_drives_simulated_motors_on_a_virtual_bus(reader: Reader
 
 
 def found_by_doctor(reader: Reader, command: Command) -> str:
-    """What it found; how good this guest is, which has just started, is not judged."""
+    """Its findings; the quality of this guest, which has just started, is not judged."""
     done = reader.shell(command.text)
     counts = re.search(r"^\d+ passed, \d+ warned, (\d+) failed$", done.stdout, re.M)
     assert counts, done.stdout + done.stderr

@@ -35,7 +35,7 @@ constexpr std::uint32_t room() {
   return kMaxMotors;
 }
 
-// What open() promises to whoever gets a true from it.
+// The promises of open() when it returns true.
 template <typename Message>
 void expectSafe(const Bytes& bytes) {
   Message message;

@@ -367,7 +367,7 @@ TEST(ChassisTypes, ALimitOfTheWheelsMustComeFromSomewhere) {
 TEST(PowerLimiter, SlowsDownUntilThePowerFitsAndRecovers) {
   PowerLimiter limiter{100.0};
   double factor = 1.0;
-  // What drives takes power in proportion to the square of how fast it is told to be.
+  // A driving motor takes power in proportion to the square of how fast it is told to be.
   for (int i = 0; i < 2000; ++i) factor = limiter.step(250.0 * factor * factor, 0.001F);
   EXPECT_NEAR(250.0 * factor * factor, 100.0, 1.0);
   for (int i = 0; i < 2000; ++i) factor = limiter.step(10.0, 0.001F);

@@ -56,7 +56,7 @@ class FakeRobot : public ModuleRobot {
   [[nodiscard]] Motor& motor(std::size_t index) { return motors_.at(index); }
   [[nodiscard]] std::vector<Motor>& motors() { return motors_; }
   [[nodiscard]] const std::vector<Asked>& asked() const { return asked_; }
-  /// What was sent to inputs of other modules.
+  /// Messages to inputs of other modules.
   [[nodiscard]] const std::map<std::pair<std::size_t, std::size_t>, double>& sent() const { return sent_; }
   [[nodiscard]] const std::vector<std::size_t>& events() const { return events_; }
   [[nodiscard]] MonotonicTime now() const { return tick_.now; }
@@ -84,7 +84,7 @@ class FakeRobot : public ModuleRobot {
     const auto found = outputs_.find({output.module, output.signal});
     return found != outputs_.end() ? found->second : kNoSignal;
   }
-  /// What an output of another module says from now on.
+  /// An output of another module, from now on.
   void setOutput(SignalPlace output, double value) { outputs_[{output.module, output.signal}] = value; }
   void send(SignalPlace input, double value) noexcept override {
     sent_[{input.module, input.signal}] = value;

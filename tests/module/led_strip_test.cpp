@@ -47,7 +47,7 @@ class LedStripTest : public ::testing::Test {
   void run(int ticks = 40) {
     for (int i = 0; i < ticks; ++i) robot.update(*module);
   }
-  /// What the strip shows after the next frame, each colour rounded to off or on.
+  /// The strip after the next frame, each colour rounded to off or on.
   std::vector<Rgb> shown() {
     run();
     std::vector<Rgb> pixels;

@@ -42,7 +42,7 @@ std::vector<Level> levels(Rate rate, std::span<const std::uint8_t> bytes) {
   return out;
 }
 
-/// What a strip would make of the bytes: the bits of each 1.25 us, as text.
+/// The bytes as a strip reads them: the bits of each 1.25 us, as text.
 std::string bitsSeen(Rate rate, std::span<const std::uint8_t> bytes) {
   std::string bits;
   for (const auto& level : levels(rate, bytes)) {

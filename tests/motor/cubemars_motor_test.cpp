@@ -70,7 +70,7 @@ class Bench {
     frame.received = now_;
     return frame;
   }
-  /// What it sends in a tick at the present time.
+  /// Its frame in a tick at the present time.
   std::vector<CanFrame> tick(FrameKind kind) {
     motor_.order(kind);
     return tick();
@@ -110,7 +110,7 @@ class Bench {
             .damping_nms_per_rad = number(d[5] * 16U + d[6] / 16U, 0, 5, 4095),
             .torque_nm = number((d[6] & 15U) * 256U + d[7], -r.torque_nm, r.torque_nm, 4095)};
   }
-  /// What the drive would make of it at this position and speed.
+  /// The drive's torque for it at this position and speed.
   [[nodiscard]] double sumNm(const CanFrame& frame, double rad, double rad_s) const {
     const auto c = decode(frame);
     return c.stiffness_nm_per_rad * (c.position_rad - rad) +

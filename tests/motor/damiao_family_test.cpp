@@ -1,4 +1,4 @@
-// What the configuration is told of Damiao motors.
+// Damiao motors in the configuration.
 #include <algorithm>
 #include <set>
 #include <string>

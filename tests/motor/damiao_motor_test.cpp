@@ -1,4 +1,4 @@
-// What a Damiao motor sends and believes, frame by frame.
+// Frames of a Damiao motor, one by one.
 #include <cmath>
 #include <limits>
 #include <random>

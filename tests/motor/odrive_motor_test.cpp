@@ -1,4 +1,4 @@
-// What an ODrive is told and what is made of what it says, frame by frame. Together with a drive: see
+// Frames to and from an ODrive, one by one. Together with a drive: see
 // tests/sim/odrive_closed_loop_test.cpp.
 #include <array>
 #include <cmath>

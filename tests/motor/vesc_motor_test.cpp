@@ -61,7 +61,7 @@ class VescMotorTest : public ::testing::Test {
     writeBigEndian<std::int16_t>(frame.data, 6, static_cast<std::int16_t>(std::lround(deg * 50.0)));
     ASSERT_EQ(give(frame), FrameVerdict::kAccepted);
   }
-  /// What is sent for this target in one tick: the raw value, and its packet.
+  /// The command for this target in one tick: the raw value, and its packet.
   std::int32_t sent(const Target& target) {
     motor_->order(FrameKind::kCommand, target);
     return sent();

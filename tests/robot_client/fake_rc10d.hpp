@@ -21,7 +21,7 @@ namespace test {
 /// So long a test waits for what has to happen. Nothing waits this long when all is well.
 inline constexpr auto kPatience = std::chrono::seconds{20};
 
-/// What a client sees of rc10d, on the client's own memq link: it answers requests, takes commands, and
+/// rc10d as a client sees it, on the client's own memq link: it answers requests, takes commands, and
 /// publishes a state when it is told to. Its clock, and so what it stamps, is a test's.
 class FakeRc10d {
  public:
@@ -33,7 +33,7 @@ class FakeRc10d {
     for (const auto* name : {"lift", "wheel", "yaw"}) motors[name] = motor(name);
   }
 
-  // What a test sets, before the state or the answer goes out; under `mutex` once a client runs.
+  // Settings of a test, before the state or the answer goes out; under `mutex` once a client runs.
   std::mutex mutex;
   std::map<std::string, motor_state_t> motors;
   std::int8_t robot_state = robot_state_t::STATE_RUN;

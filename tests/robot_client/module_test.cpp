@@ -33,7 +33,7 @@ class ModuleTest : public testing::Test {
     return options;
   }
 
-  /// What the module would say.
+  /// A state of the module.
   void publish(const Signals& outputs, const std::string& owner = "") {
     signals_t message{};
     message.client = owner;

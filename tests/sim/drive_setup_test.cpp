@@ -1,4 +1,4 @@
-// What a person writes into a drive's own memory: frames, reading back, trying again.
+// Writing into a drive's own memory: frames, reading back, trying again.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -91,7 +91,7 @@ class DriveSetupTest : public ::testing::Test {
     }
     return configuring.progress();
   }
-  /// What left since, as text; often sent frames once.
+  /// Frames sent since, as text; repeated ones once.
   std::vector<std::string> sent() {
     std::vector<std::string> out;
     for (const auto& frame : rig->takeSent()) {

@@ -42,7 +42,7 @@ class SimPortTest : public testing::Test {
 
   void step(Duration dt = 1ms) { port_->step(now_ += dt); }
 
-  /// What the daemon's end has received since.
+  /// Bytes that the daemon's end has received since.
   std::vector<CanFrame> received() {
     CanReceiver receiver{near_.get()};
     const WakeUp wake{.now = now_, .previous = now_, .realtime_offset = {}, .previous_offset = {}};

@@ -9,7 +9,7 @@
 
 namespace rc10::test {
 
-/// What a DJI drive reports, in its own units.
+/// Report of a DJI drive, in its own units.
 struct DjiReport {
   std::uint16_t position = 0;
   std::int16_t rpm = 0;

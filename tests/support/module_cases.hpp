@@ -13,7 +13,7 @@ struct ModuleCase {
   int motors = 0;    ///< M3508 called m0, m1, ...
   std::string keys;  ///< Of the module, in YAML.
   std::vector<std::pair<std::string, double>> inputs{};
-  std::vector<std::uint8_t> frame{};  ///< What its serial device sends.
+  std::vector<std::uint8_t> frame{};  ///< Frame of its serial device.
 
   [[nodiscard]] std::string yaml() const {
     constexpr int kOnOneBus = 4;  // more at 1 kHz would not fit

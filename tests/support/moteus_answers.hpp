@@ -11,7 +11,7 @@
 
 namespace rc10::test {
 
-/// What a drive says of itself: an answer to Moteus_Motor's questions.
+/// A drive's report of itself: an answer to Moteus_Motor's questions.
 struct MoteusAnswer {
   moteus::Mode mode = moteus::Mode::kStopped;
   int fault = 0;
@@ -83,7 +83,7 @@ struct MoteusBench {
     answer({.mode = moteus::Mode::kPosition, .position_rev = position_rev});
     return taken;
   }
-  /// What the sent frame writes to a register; nothing if it does not write it.
+  /// The value that the sent frame writes to a register; none if it does not write it.
   [[nodiscard]] std::optional<double> written(moteus::Register reg) const {
     if (sent_count == 0) return std::nullopt;
     moteus::Reader reader(frames[0].payload());

@@ -39,7 +39,7 @@ class Pty {
     }
   }
   void send(std::initializer_list<std::uint8_t> bytes) const { send(std::vector<std::uint8_t>(bytes)); }
-  /// What the port has sent and nobody has read yet.
+  /// Bytes that the port has sent and nobody has read yet.
   [[nodiscard]] std::vector<std::uint8_t> received() const {
     std::vector<std::uint8_t> all;
     std::array<std::uint8_t, 4096> part;

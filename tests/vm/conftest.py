@@ -17,7 +17,7 @@ IN_GUEST = os.environ.get("RC10_GUEST") == "vm"
 
 # On the host, where the tests are only collected to be skipped, nobody sets PYTHONPATH.
 sys.path.append(str(HERE.parent / "kernel"))
-# What reads the pages is there.
+# The readers of pages are there.
 sys.path.append(str(HERE.parent / "host"))
 
 

@@ -1,5 +1,5 @@
 #!/bin/bash
-# What runs inside the QEMU guest: guest.sh STATE, where STATE is the folder tests/vm/run prepared.
+# Runs inside the QEMU guest: guest.sh STATE, where STATE is the folder tests/vm/run prepared.
 # can0 and can1 are two controllers on one wire, can2 and can3 two for CAN FD on another. A test of the daemon
 # gives it can0 or can2 and puts simulated drives on can1 or can3.
 set -euo pipefail

@@ -74,7 +74,7 @@ def running(file: Path) -> Iterator[Proc]:
 
 
 def missing() -> list[str]:
-    """What is not as configured, and then all there is."""
+    """Differences from the configuration, then all findings."""
     text = link_details("can2")
     # Not its state: the emulated controller has no register of it.
     wanted = ["<FD", " bitrate 1000000 ", "dbitrate 5000000 ", "mtu 72", "restart-ms 0", "LOWER_UP"]

@@ -1,4 +1,4 @@
-"""What systemd-networkd and udev make of systemd/networkd, and of the file that a page shows.
+"""systemd-networkd and udev read systemd/networkd, and of the file that a page shows.
 
 Of this guest's interfaces can0 and can1 are SJA1000, can2 and can3 CTU CAN FD.
 """
@@ -52,7 +52,7 @@ def networkd() -> Proc:
 
 
 def bring_up(iface: str, text: str) -> str:
-    """What networkd makes of a stopped interface, and of every line of the file."""
+    """A stopped interface after networkd, and of every line of the file."""
     link_down(iface)
     with configured(f"80-{iface}.network", text.replace("can0", iface)), networkd() as process:
         wait_for(lambda: ",UP," in link_details(iface), PATIENCE_S, f"{iface} is up", poll_s=0.1)

@@ -1,4 +1,4 @@
-"""What pages show for the interface of a real controller is typed for one with a real driver."""
+"""Commands that pages show for a real controller, typed for one with a real driver."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What udev makes of systemd/udev. GPIO chips are in tests/package, where there is one."""
+"""udev reads systemd/udev. GPIO chips are in tests/package, where there is one."""
 
 from __future__ import annotations
 

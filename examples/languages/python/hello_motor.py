@@ -23,7 +23,7 @@ CLIENT = "hello-python"
 
 
 class Program:
-    """What is known of one motor."""
+    """The known state of one motor."""
 
     def __init__(self, robot: str, motor: str) -> None:
         self.lcm = lcm.LCM()

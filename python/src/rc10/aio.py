@@ -295,7 +295,7 @@ class Robot(RobotClient):
         self._check_entered()
         with self._requests.open("estop", "", {}) as request:
             request.publish()
-            # What had been waiting in the queue was published before, and proves nothing.
+            # A state from the queue was published before, and proves nothing.
             self._receive()
             known = self._inbox.state
 

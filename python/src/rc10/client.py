@@ -311,7 +311,7 @@ class Robot(RobotClient):
         with self._requests.open("estop", "", {}) as request:
             deadline_s = self._link.now() + timeout_s
             request.publish()
-            # What had been waiting in the queue was published before, and proves nothing.
+            # A state from the queue was published before, and proves nothing.
             self.spin(0.0)
             known = self._inbox.state
             while True:

@@ -1,4 +1,4 @@
-"""What the command line tools of this package share."""
+"""Options and helpers of this package's command line tools."""
 
 from __future__ import annotations
 

@@ -87,7 +87,7 @@ class Diagnostics:
     refusals: Mapping[str, int]
     """Command messages and setpoints refused, by reason."""
     notices: tuple[str, ...]
-    """What is not as it should be, in words, each with its remedy."""
+    """Defects in words, each with its remedy."""
     buses: Mapping[str, BusState]
 
     @classmethod

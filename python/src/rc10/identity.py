@@ -1,4 +1,4 @@
-"""Who a run of a program is to the daemon."""
+"""Identity of a run of a program."""
 
 from __future__ import annotations
 

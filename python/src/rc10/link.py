@@ -23,7 +23,7 @@ _LONGEST_SLEEP_S = 0.2
 
 
 class Link(Protocol):
-    """What a client needs of its transport. Not thread-safe."""
+    """Transport of a client. Not thread-safe."""
 
     def publish(self, channel: str, data: bytes) -> None:
         """Sends a message, without waiting."""

@@ -26,7 +26,7 @@ class ModuleState:
 
     outputs: Mapping[str, float]
     owner: str
-    """Who gives its inputs; empty: nobody."""
+    """The client that gives its inputs; empty: nobody."""
     received_s: float
     """On this program's clock."""
     _now: Callable[[], float] = field(repr=False, compare=False)

@@ -11,7 +11,7 @@ if TYPE_CHECKING:
     from rc10.events import Event
     from rc10.setpoints import Setpoint
 
-# What rc10d says about setpoints that do not act: docs/lcm.md.
+# Events about setpoints that do not act: docs/lcm.md.
 _SETPOINT_SKIPPED, _NOT_OWNER, _MESSAGE_REFUSED = 103, 104, 202
 
 
@@ -23,7 +23,7 @@ class Order:
     setpoint: Setpoint
     client: str
     refusal: str = ""
-    """What rc10d said, the last time that it skipped or refused it."""
+    """Text of the last event that it was skipped or refused."""
 
     def on_event(self, event: Event) -> None:
         """Keeps what rc10d says about a setpoint that it skipped or refused."""

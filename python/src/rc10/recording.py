@@ -1,4 +1,4 @@
-"""What a robot did, as NumPy arrays."""
+"""Motion of a robot over time, as NumPy arrays."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What the client and the asyncio client of a robot share: all that does not wait."""
+"""Common part of the client and the asyncio client of a robot: all that does not wait."""
 
 from __future__ import annotations
 
@@ -79,7 +79,7 @@ class RobotClient:
         self._resend_s = 0.0
         self._judged: RobotState | None = None
         self._inbox.on_event = self._on_event
-        # What has to be undone on leaving.
+        # To be undone on leaving.
         self._commanded: set[str] = set()
         self._enabled: set[str] = set()
 

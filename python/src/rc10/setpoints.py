@@ -18,7 +18,7 @@ _IMPEDANCE_ONLY = ("stiffness_nm_per_rad", "damping_nms_per_rad")
 
 
 class Mode(IntEnum):
-    """What a motor does with a setpoint's value."""
+    """Meaning of a setpoint's value."""
 
     COAST = setpoint_t.MODE_COAST
     CURRENT = setpoint_t.MODE_CURRENT

@@ -1,4 +1,4 @@
-"""What a robot tells about itself and its motors, `<robot>.v1.state`."""
+"""State of a robot and its motors, `<robot>.v1.state`."""
 
 from __future__ import annotations
 
@@ -100,7 +100,7 @@ class MotorState:
     voltage_v: float
     temperature_c: float
     command_value: float
-    """What the host last sent to the drive, in command_unit."""
+    """Last value sent to the drive, in command_unit."""
     command_unit: CommandUnit
     feedback_age_us: int
     """Since the last feedback frame; -1: none yet."""

@@ -1,4 +1,4 @@
-"""What the tests of the whole daemon share."""
+"""Helpers of the tests of the whole daemon."""
 
 from hostlib.daemon import Daemon, Motor, State, check_environment
 from hostlib.program import Program, eventually, processes_of

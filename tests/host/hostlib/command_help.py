@@ -1,4 +1,4 @@
-"""What `--help` tells of a program."""
+"""The `--help` of a program, parsed."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What a page of docs/ shows, and running it as a reader would."""
+"""The commands of a page of docs/, run as a reader would."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from pathlib import Path
 
 BLOCK = re.compile(r"^```(?P<kind>\w+)?(?: (?P<note>\S+))?\n(?P<text>.*?)^```$", re.M | re.S)
-# What cannot run here: see CONTRIBUTING.md. Beside them there is the path of a test.
+# Commands that cannot run here: see CONTRIBUTING.md. Beside them there is the path of a test.
 NOT_RUN = {"hardware"}
 ROBOT = re.compile(r"(?:#.*\n)*robot:")
 

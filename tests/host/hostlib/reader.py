@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 # They run until Ctrl-C: in a terminal of their own, or until something is seen.
 SERVES = re.compile(r"^\S*rc10(d(-\w+)?|-sim) -c \S+$")
 WATCHES = re.compile(r"^rc10ctl watch$")
-# What the shown output of a command that fails begins with.
+# Beginnings of the shown output of a command that fails.
 COMPLAINT = re.compile(r"^(rc10ctl|[\w/]+\.yaml:\d+(:\d+)?): ")
 STILL_TURNING = "still turning: the e-stop is cleared when every motor stands still"
 # The titles of a table: words in capitals, one for each column.
@@ -52,7 +52,7 @@ class Command(NamedTuple):
 
 
 def headings(output: str) -> set[str]:
-    """What does not change from run to run in tables: titles, and what the rows begin with."""
+    """Constant parts of tables: titles, and the beginnings of rows."""
     lines = output.splitlines()
     titles = {" ".join(line.split()) for line in lines if TITLES.match(line)}
     return titles | {row[1] for line in lines if (row := ROW.match(line))}
@@ -141,7 +141,7 @@ class Reader:
     def run(self, command: Command) -> None:
         """Runs it to its end, which must be as the page says."""
         done = self.shell(command.text)
-        # Whoever reads that a motor still turns waits, and types it again.
+        # A reader who is told that a motor still turns waits, and types it again.
         while STILL_TURNING in done.stderr:
             done = self.shell(command.text)
         self._status = done.returncode

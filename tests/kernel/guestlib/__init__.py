@@ -1,4 +1,4 @@
-"""What tests inside a guest use: processes, recorded buses, links and pins.
+"""Helpers of tests inside a guest: processes, recorded buses, links and pins.
 
 In the User-Mode Linux guest the clock moves only while every process sleeps, so a wait that
 polls costs nothing and a time-out counts virtual seconds. The same helpers work in the QEMU guest,

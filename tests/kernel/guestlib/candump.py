@@ -58,7 +58,7 @@ def parse_line(line: str) -> Frame:
     )
 
 
-# What candump says of an interface that goes down.
+# candump's message for an interface that goes down.
 _DOWN = re.compile(
     r"read: (Network is down|No such device)|\S+: interface down|\S+: Network is down"
 )
@@ -117,7 +117,7 @@ class Candump:
         """Stop after candump has written all that is in its socket."""
         if self._process is None or self._process.poll() is not None:
             return
-        # What is on the bus now is in the file after this; the bus may go on.
+        # Frames that are on the bus now are in the file after this; the bus may go on.
         time.sleep(SETTLE_S)
         self._process.terminate()
         self._process.wait(5.0)

@@ -1,4 +1,4 @@
-"""What every folder of guest tests asks of pytest: import both names into its conftest.py."""
+"""Hooks of pytest for each folder of guest tests: import both names into its conftest.py."""
 
 from __future__ import annotations
 

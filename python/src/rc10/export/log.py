@@ -1,4 +1,4 @@
-"""What is in a log file of lcm-logger."""
+"""Contents of a log file of lcm-logger."""
 
 from __future__ import annotations
 

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
 
 class CommandKind(Enum):
-    """What the numbers in a motor's command frame mean: a setting stored in the drive."""
+    """Meaning of the numbers in a motor's command frame: a setting stored in the drive."""
 
     CURRENT = "current"
     VOLTAGE = "voltage"

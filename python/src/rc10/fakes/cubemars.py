@@ -40,7 +40,7 @@ _FRICTION = 0.02  # of all its torque
 
 
 class Protocol(Enum):
-    """What is chosen in the vendor's program."""
+    """Settings of the vendor's program."""
 
     SERVO = "servo"
     MIT = "mit"

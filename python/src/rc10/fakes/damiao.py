@@ -65,7 +65,7 @@ class Mode(IntEnum):
 
 @dataclass(frozen=True)
 class DamiaoModel:
-    """What differs between models, at the output shaft.
+    """Differences between models, at the output shaft.
 
     Attributes:
         p_max_rad, v_max_rad_s, t_max_nm: what the ends of the fields mean, as delivered.
@@ -108,7 +108,7 @@ class DamiaoAddress:
 
     @property
     def feedback_id(self) -> int:
-        """What tells its feedback apart: the master id, and above its bits the low nibble.
+        """Identity of its feedback: the master id, and above its bits the low nibble.
 
         Drives may share a master id: the nibble is in byte 0 of their frames.
         """
@@ -170,7 +170,7 @@ def from_code(code: int, limit: float, bits: int) -> float:
 
 @dataclass
 class Target:
-    """What a drive was told last; it keeps it until it is disabled."""
+    """Last command of a drive, kept until it is disabled."""
 
     mode: Mode = Mode.MIT
     position_rad: float = 0.0

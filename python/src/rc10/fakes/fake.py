@@ -1,4 +1,4 @@
-"""What every fake drive has in common, whatever its family."""
+"""Common part of all fake drives, whatever the family."""
 
 from __future__ import annotations
 
@@ -57,7 +57,7 @@ class Fake(Protocol):
 
     @property
     def spec(self) -> Spec:
-        """What it was made from."""
+        """Its settings."""
 
     @property
     def name(self) -> str:

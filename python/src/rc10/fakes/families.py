@@ -1,4 +1,4 @@
-"""Who reads the name of a drive, for the families besides DJI."""
+"""Readers of a drive's name, for the families besides DJI."""
 
 from __future__ import annotations
 

@@ -117,7 +117,7 @@ class FakeLKTech(AnsweringDrive):
 
     @property
     def command_ids(self) -> list[int]:
-        """What it listens to: its own id, and the frame of the ids 1 to 4."""
+        """Filters of its own id, and of the frame of the ids 1 to 4."""
         return [self._own_id, _GROUP_ID] if self.motor_id <= 4 else [self._own_id]
 
     def decode_command(self, message: can.Message) -> bool:

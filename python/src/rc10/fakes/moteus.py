@@ -294,7 +294,7 @@ class FakeMoteus:
 
     @property
     def command_ids(self) -> list[int]:
-        """What a host with the id 0 sends to it."""
+        """Filter of frames from a host with the id 0."""
         return [EXTENDED | self.spec.address.command_id]
 
     @property

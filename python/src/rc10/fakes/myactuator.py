@@ -36,7 +36,7 @@ _RUN_TIME_REPLY = struct.Struct("<B3xI")
 
 @dataclass(frozen=True)
 class MyActuatorModel:
-    """What the maker says of one model, at its output."""
+    """Data of one model by its maker, at its output."""
 
     name: str
     gear_ratio: float
@@ -117,7 +117,7 @@ class FakeMyActuator(AnsweringDrive):
 
     @property
     def command_ids(self) -> list[int]:
-        """What it listens to: its requests, its motion commands, and requests to all."""
+        """Filters of its requests, its motion commands, and requests to all."""
         return [0x140 + self.motor_id, 0x400 + self.motor_id, 0x280]
 
     def decode_command(self, message: can.Message) -> bool:

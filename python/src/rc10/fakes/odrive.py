@@ -69,7 +69,7 @@ _HEARD = (
 
 @dataclass(frozen=True)
 class Generation:
-    """What the two firmwares do not share.
+    """Differences between the two firmwares.
 
     Attributes:
         watchdog: error bit.
@@ -225,7 +225,7 @@ class FakeOdrive:
 
     @property
     def pos_estimate(self) -> float:
-        """What its encoder counts, in turns."""
+        """Position of its encoder, in turns."""
         return self.turns - self._zero_turns
 
     @property

@@ -39,7 +39,7 @@ AMBIENT_C = 25.0
 
 @dataclass(frozen=True)
 class RobStrideModel:
-    """What the manuals say of one model, at its output.
+    """Data of one model by its manuals, at its output.
 
     Attributes:
         name: "RS00" to "RS06", "EL05" or "CyberGear".
@@ -210,7 +210,7 @@ class FakeRobStride:
 
     @property
     def command_filters(self) -> list[tuple[int, int]]:
-        """What it listens to: all extended ids that end with its own."""
+        """Filter of all extended ids that end with its own."""
         return [(EXTENDED | self.motor_id, 0xFF)]
 
     def decode_command(self, message: can.Message) -> bool:

@@ -35,7 +35,7 @@ class _Sender:
         self._left_s = 0.0
 
     def frame(self) -> bytes:
-        """What it sends now."""
+        """Its present bytes."""
         raise NotImplementedError
 
     def step(self, dt_s: float) -> None:

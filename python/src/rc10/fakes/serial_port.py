@@ -12,7 +12,7 @@ if TYPE_CHECKING:
 
 
 class FakePort:
-    """What a device on a USB adapter is to the host: plugged in, pulled out, plugged in again.
+    """A device on a USB adapter as the host sees it: plugged in, pulled out, plugged in again.
 
     The host opens `path`, a link to a pseudo terminal, as it does with /dev/serial/by-id. A
     pseudo terminal has no bit rate: bytes arrive as soon as they are sent.

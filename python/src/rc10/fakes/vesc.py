@@ -154,7 +154,7 @@ class FakeVesc:
 
     @property
     def command(self) -> float:
-        """What it was last told: A, rpm (electrical), degrees or a share, as the command says."""
+        """Its last command: A, rpm (electrical), degrees or a share, as the command says."""
         return self._value
 
     @property

@@ -43,7 +43,7 @@ class Panel:
 
     @property
     def label(self) -> str:
-        """What its axis shows, with the unit: "velocity (rpm)"."""
+        """Label of its axis, with the unit: "velocity (rpm)"."""
         names = dict.fromkeys(_quantity(signal.name) for signal in self.signals)
         # The target of a velocity is a velocity.
         names = {name: None for name in names if name != "target"} or names

@@ -74,7 +74,7 @@ def main() -> None:
         for path in filter(None, (options.csv, options.png)):
             check_writable(path)
         if options.png:
-            # What is missing is said before the motor moves.
+            # Missing packages are named before the motor moves.
             from rc10.plot.figure import save_png
             from rc10.step.figure import figure_of
         name = find_robot(options.robot, options.url)

@@ -24,7 +24,7 @@ _SETTLED_PART = 0.05
 
 @dataclass(frozen=True)
 class StepMetrics:
-    """What a step response is judged by. Everything refers to the step that was asked for.
+    """Figures of a step response. Everything refers to the step that was asked for.
 
     Values are in the unit of the response, times in seconds after the step. NaN: it never got
     there.

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
     from rc10.step.run import StepResult
 
-# What is shown beneath the response.
+# Signals shown beneath the response.
 _BENEATH = {
     "velocity_rpm": ("current_a",),
     "total_angle_deg": ("velocity_rpm", "current_a"),

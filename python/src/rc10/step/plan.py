@@ -1,4 +1,4 @@
-"""What a step is to be."""
+"""Plan of a step."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ MODES = (Mode.VELOCITY, Mode.ANGLE, Mode.TOTAL_ANGLE, Mode.CURRENT)
 
 @dataclass(frozen=True)
 class StepPlan:
-    """What to do.
+    """Settings of a step.
 
     Raises:
         ValueError: a mode without a response, or a time or a tolerance out of its range.
