@@ -172,7 +172,7 @@ void LKTech_Motor::update(const Tick& tick) noexcept {
     case FrameKind::kPoll: release(); break;
     case FrameKind::kEnable: runSequence(tick); break;
     default:
-      // One that has stopped is not started again behind the back of whoever has to know.
+      // A drive that has stopped stays so until the client enables it.
       counted_&& complaint().fault == FaultCode::kNone ? follow(target) : release();
       break;
   }

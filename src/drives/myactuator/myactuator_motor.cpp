@@ -209,8 +209,8 @@ void MyActuator_Motor::update(const Tick& tick) noexcept {
       runSequence(tick);
       break;
     default:
-      // Until it is known to be the same run of the drive, its angles are not, and it is told nothing. One
-      // that has stopped is not started again behind the back of whoever has to know.
+      // After a restart of the drive its angles are unknown, and it is told nothing. A drive that has stopped
+      // stays so until the client enables it.
       if (restarted_ || silence_stopped_) {
         outbox_.add(myactuator::request(id_, myactuator::Code::kShutdown));
       } else if (running_) {
