@@ -29,6 +29,7 @@ while [ $# -gt 0 ]; do
         *) usage >&2 && exit 2 ;;
     esac
     [[ $seconds =~ ^[0-9]+$ ]] || { usage >&2 && exit 2; }
+    seconds=$((10#$seconds))
     shift
 done
 
@@ -93,8 +94,12 @@ alive() {
 }
 
 end() {
+    local pid status=0
     kill -TERM "$@" 2>/dev/null || true
-    wait "$@"
+    for pid; do
+        wait "$pid" || status=$?
+    done
+    return "$status"
 }
 
 # shellcheck disable=SC2317  # called by the trap

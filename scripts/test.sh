@@ -41,7 +41,7 @@ for part in "${@:-default}"; do
             ;;
         -h | --help) usage && exit ;;
         *)
-            if [[ " ${parts[*]} " != *" $part "* ]]; then
+            if [[ $part == *' '* || " ${parts[*]} " != *" $part "* ]]; then
                 echo "test.sh: no part '$part'" >&2
                 usage >&2
                 exit 2

@@ -6,6 +6,8 @@ A test runner appends lines "SECONDS<TAB>NAME" to the file $RC10_COSTS.
 from __future__ import annotations
 
 import json
+import math
+import re
 import resource
 import subprocess
 import tempfile
@@ -45,6 +47,10 @@ class Budget:
     @staticmethod
     def read(path: Path) -> Budget:
         raw = json.loads(path.read_text())
+        costs = [*raw["sets"].values(), *raw["parts"].values()]
+        numbers = [raw["reference_cpu_s"], *(number for cost in costs for number in cost.values())]
+        if not all(math.isfinite(number) and number > 0 for number in numbers):
+            raise ValueError(f"{path}: a cost is a number above 0")
         return Budget(
             raw["machine"],
             raw["reference_cpu_s"],
@@ -79,12 +85,17 @@ def compare(budget: Budget, cpu_s: dict[str, float]) -> str:
     return text + (grown or "  no part grew by a third\n")
 
 
+def is_number(text: str) -> bool:
+    return re.fullmatch(r"[0-9]+(\.[0-9]+)?", text) is not None
+
+
 def measured_tests(logs: Path) -> list[tuple[float, str]]:
     tests = []
     for file in logs.glob("*.costs"):
         for line in file.read_text().splitlines():
             seconds, _, name = line.partition("\t")
-            tests.append((float(seconds), f"{file.stem}: {name}"))
+            if is_number(seconds):
+                tests.append((float(seconds), f"{file.stem}: {name}"))
     return tests
 
 
@@ -93,7 +104,10 @@ def compiled_files(builds: Path, since: float) -> list[tuple[float, str]]:
     files = {}
     for log in builds.glob("*/.ninja_log"):
         for line in log.read_text().splitlines()[1:]:
-            begin, end, made_ns, output, *_ = line.split("\t")
+            fields = line.split("\t")
+            if len(fields) < 5 or not all(map(is_number, fields[:3])):
+                continue  # the end of a build that was interrupted
+            begin, end, made_ns, output, *_ = fields
             if int(made_ns) / 1e9 >= since and output.endswith((".o", ".gch", ".pch")):
                 files[f"{log.parent.name}/{output}"] = (int(end) - int(begin)) / 1000
     return [(seconds, name) for name, seconds in files.items()]

@@ -33,10 +33,11 @@ def label(case: ET.Element) -> str:
     return "::".join(names)
 
 
-def why(case: ET.Element, skipped: ET.Element) -> str | None:
+def why(case: ET.Element, skipped: ET.Element | None) -> str | None:
     # ctest knows only that it was; GoogleTest has printed the reason
     printed = re.search(r": Skipped\n(.+)", case.findtext("system-out") or "")
-    return printed[1] if printed else skipped.get("message") or case.get("status")
+    message = skipped.get("message") if skipped is not None else None
+    return printed[1] if printed else message or case.get("status")
 
 
 def write_costs(costs: str, report: Path) -> None:
@@ -54,7 +55,7 @@ def main(report: Path, command: list[str]) -> int:
         if case.find("failure") is not None or case.find("error") is not None:
             failed += 1
             print(f"FAILED {label(case)}")
-        elif (skip := case.find("skipped")) is not None:
+        elif (skip := case.find("skipped")) is not None or case.get("status") == "disabled":
             skipped += 1
             print(f"SKIPPED {label(case)}: {why(case, skip)}")
         else:
@@ -64,6 +65,9 @@ def main(report: Path, command: list[str]) -> int:
     if status != 0 and failed == 0:
         failed = 1
         print(f"FAILED {Path(command[0]).name} ended with status {status}")
+    if passed + failed + skipped == 0:
+        failed = status = 1
+        print(f"FAILED {Path(command[0]).name} ran no test")
     print(f"{passed} passed, {failed} failed, {skipped} skipped", flush=True)
     return status
 

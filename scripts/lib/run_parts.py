@@ -11,6 +11,9 @@ Python of Debian 12 alone, for nothing else is installed yet.
 from __future__ import annotations
 
 import argparse
+import contextlib
+import fcntl
+import io
 import json
 import os
 import re
@@ -90,12 +93,15 @@ class Part:
         if pid == 0:
             return False
         self.process.returncode = os.waitstatus_to_exitcode(status)
+        end_group(self.process)  # whatever it left running
         self.took_s = time.monotonic() - self.begin_s
         self.cpu_s = usage.ru_utime + usage.ru_stime
         lines = self.log.read_text(errors="replace").splitlines()
         if counts := COUNTS.match(lines[-1] if lines else ""):
             self.passed, self.failed, self.skipped = map(int, counts.groups())
-            if self.process.returncode != 0 and self.failed + self.skipped == 0:
+            if self.process.returncode != 0 and not self.failed:
+                self.failed = 1
+            if self.passed + self.failed + self.skipped == 0:
                 self.failed = 1
         else:
             self.failed = 1
@@ -106,14 +112,32 @@ class Part:
         print(f"\n==== {self.name}: {self.about}")
         if self.failed:
             print(text, end="" if text.endswith("\n") else "\n")
-            if not COUNTS.match(text.rstrip().rpartition("\n")[2]):
-                status = self.process.returncode if self.process else None
+            status = self.process.returncode if self.process else None
+            counts = COUNTS.match(text.rstrip().rpartition("\n")[2])
+            if not counts:
                 print(f"FAILED {self.name}: it ended with status {status} and without a result")
+            elif counts[2] == "0":
+                print(f"FAILED {self.name}: it ended with status {status}, {counts[0]}")
         else:
             for told in TOLD.finditer(text):
                 print(told[0])
             print(f"{self.passed} passed, {self.failed} failed, {self.skipped} skipped")
         sys.stdout.flush()
+
+
+def end_group(process: subprocess.Popen[bytes]) -> None:
+    with contextlib.suppress(ProcessLookupError):
+        os.killpg(process.pid, signal.SIGTERM)
+
+
+def kill_what_is_left(process: subprocess.Popen[bytes], grace_s: float = 5.0) -> None:
+    """Of the group whose leader has ended."""
+    deadline = time.monotonic() + grace_s
+    with contextlib.suppress(ProcessLookupError):
+        while time.monotonic() < deadline:
+            os.killpg(process.pid, 0)
+            time.sleep(0.05)
+        os.killpg(process.pid, signal.SIGKILL)
 
 
 def as_minutes(seconds: float) -> str:
@@ -185,10 +209,11 @@ class Run:
         """Ends the running parts with all that they have started."""
         for part in self.running:
             if part.process is not None and part.process.poll() is None:
-                os.killpg(part.process.pid, signal.SIGTERM)
+                end_group(part.process)
         for part in self.running:
             if part.process is not None:
                 part.process.wait()
+                kill_what_is_left(part.process)
 
     def table(self) -> str:
         rows = [
@@ -228,6 +253,12 @@ def main() -> int:
     budget = costs.Budget.read(BUDGET)
     names = with_build(arguments.parts)
     LOGS.mkdir(parents=True, exist_ok=True)
+    lock = (LOGS / "lock").open("w")
+    try:
+        fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
+    except BlockingIOError:
+        print("test.sh: another run of this clone is under way", file=sys.stderr)
+        return 2
     for old in LOGS.glob("*.costs"):
         old.unlink()
     print(greeting(names, arguments.name, budget), flush=True)
@@ -239,10 +270,17 @@ def main() -> int:
         run.stop()
         print("\ninterrupted", file=sys.stderr)
         return 130
+    except BaseException:
+        run.stop()
+        raise
     print(run.table())
-    print(costs.slowest(LOGS, REPO / "build", begin), end="")
-    if arguments.name == "all":
-        print(costs.compare(budget, {part.name: part.cpu_s for part in run.done}), end="")
+    # Statistics must not cost the result.
+    try:
+        print(costs.slowest(LOGS, REPO / "build", begin), end="")
+        if arguments.name == "all":
+            print(costs.compare(budget, {part.name: part.cpu_s for part in run.done}), end="")
+    except (OSError, ValueError, subprocess.CalledProcessError) as error:
+        print(f"\nno statistics: {error}")
     if measured := os.environ.get("RC10_MEASURED"):
         took = {
             part.name: {"took_s": round(part.took_s), "cpu_s": round(part.cpu_s)}
@@ -261,5 +299,9 @@ def main() -> int:
 
 
 if __name__ == "__main__":
-    signal.signal(signal.SIGTERM, signal.default_int_handler)
+    for number in (signal.SIGTERM, signal.SIGHUP):
+        signal.signal(number, signal.default_int_handler)
+    for stream in (sys.stdout, sys.stderr):
+        assert isinstance(stream, io.TextIOWrapper)
+        stream.reconfigure(errors="replace")
     sys.exit(main())

@@ -22,6 +22,7 @@ import shlex
 import subprocess
 import sys
 from concurrent.futures import ThreadPoolExecutor
+from functools import cache
 from pathlib import Path
 
 REPO = Path(__file__).resolve().parents[2]
@@ -79,7 +80,7 @@ def check(build: Path, tool: bytes, entry: dict[str, str]) -> str:
             stamp.parent.mkdir(parents=True, exist_ok=True)
             stamp.touch()
         return ""
-    return done.stdout or done.stderr
+    return done.stdout or done.stderr or f"{entry['file']}: status {done.returncode}\n"
 
 
 def findings(output: str) -> dict[tuple[str, ...], str]:
@@ -103,13 +104,25 @@ def sources_of(file: Path) -> list[Path]:
     return [file]
 
 
-def included(file: Path) -> set[Path]:
+@cache
+def included_by(file: Path) -> frozenset[Path]:
     """The project's own files that a file includes itself."""
     found = set()
     for name in INCLUDE.findall(file.read_text(encoding="utf-8")):
-        for folder in (REPO / "src", file.parent):
+        for folder in (REPO / "src", REPO / "src" / "robot_client", file.parent):
             if (folder / name).is_file():
                 found.add((folder / name).resolve())
+    return frozenset(found)
+
+
+def included(source: Path) -> set[Path]:
+    """The project's own files that a source includes, and those that they include."""
+    found: set[Path] = set()
+    left = [source]
+    while left:
+        new = included_by(left.pop()) - found
+        found |= new
+        left += new
     return found
 
 
@@ -144,11 +157,14 @@ def changed_files(since: str) -> set[Path]:
         done = subprocess.run(["git", "-C", REPO, *words], capture_output=True, check=True)
         return done.stdout.decode()
 
+    if git("diff", "--name-only", since, "--", ".clang-tidy"):
+        return set((REPO / "src").rglob("*.[ch]pp"))
     listed = git(
         "diff", "--raw", "-z", "--abbrev=40", "--find-renames", "-l0", since, "--", "*.[ch]pp"
     )
     fields = iter(listed.split("\0"))
-    changed = set()
+    new = git("ls-files", "-z", "--others", "--exclude-standard", "--", "*.[ch]pp").split("\0")
+    changed = {REPO / name for name in new if name}
     for field in fields:
         if not field:
             continue
@@ -170,11 +186,18 @@ def changed_sources(since: str, sources: list[Path]) -> set[Path]:
     headers = {file for file in changed if file.suffix == ".hpp"}
     includes = {source: included(source) for source in sources}
     chosen = changed.intersection(sources)
-    for source in sorted(sources, key=lambda source: (source not in chosen, source)):
+    headers = {file for file in headers if REPO / "src" in file.parents}
+    # A source that is to be checked anyway, then the one with the fewest headers.
+    order = sorted(
+        sources, key=lambda source: (source not in chosen, len(includes[source]), source)
+    )
+    for source in order:
         seen = headers & includes[source]
         if seen:
             chosen.add(source)
             headers -= seen
+    for header in sorted(headers):
+        print(f"not checked: {header.relative_to(REPO)}, which no source includes")
     return chosen
 
 
@@ -189,12 +212,16 @@ def main() -> int:
     entries = [
         entry
         for entry in json.loads((build / "compile_commands.json").read_text())
-        if all(REPO / "src" in file.parents for file in sources_of(Path(entry["file"])))
+        if all(REPO / "src" in file.resolve().parents for file in sources_of(Path(entry["file"])))
         and wanted.search(entry["file"])
     ]
+    if not entries:
+        print(f"{build}: no source of src/ in its compile_commands.json")
+        return 1
     if arguments.since is not None:
-        chosen = changed_sources(arguments.since, [Path(entry["file"]) for entry in entries])
-        entries = [entry for entry in entries if Path(entry["file"]) in chosen]
+        sources = [Path(entry["file"]).resolve() for entry in entries]
+        chosen = changed_sources(arguments.since, sources)
+        entries = [entry for entry in entries if Path(entry["file"]).resolve() in chosen]
     tool = version()
     with ThreadPoolExecutor(int(os.environ.get("RC10_JOBS", os.cpu_count() or 1))) as pool:
         outputs = pool.map(lambda entry: check(build, tool, entry), entries)

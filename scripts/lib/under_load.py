@@ -71,9 +71,11 @@ def pause(seconds: float, spared: set[int], command: subprocess.Popen[bytes]) ->
     while new := running(spared) - stopped:
         send(signal.SIGSTOP, new)
         stopped |= new
-    with contextlib.suppress(subprocess.TimeoutExpired):
-        command.wait(seconds)
-    send(signal.SIGCONT, stopped)
+    try:
+        with contextlib.suppress(subprocess.TimeoutExpired):
+            command.wait(seconds)
+    finally:
+        send(signal.SIGCONT, stopped)
 
 
 def main() -> int:
@@ -99,6 +101,7 @@ def main() -> int:
     chance = random.Random(options.seed)
     # An orphan stays a descendant.
     ctypes.CDLL(None).prctl(PR_SET_CHILD_SUBREAPER, 1, 0, 0, 0)
+    signal.signal(signal.SIGTERM, signal.default_int_handler)
     hogs = [
         multiprocessing.Process(target=hog, args=(os.getpid(),), daemon=True)
         for _ in range(options.hogs)

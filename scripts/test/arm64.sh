@@ -10,7 +10,7 @@ packages=$scratch/packages
 
 # The build that package.sh has made, and the tests beside it.
 unit_tests() {
-    "$root" cmake --preset arm64 -DRC10_BUILD_TESTS=ON --log-level=WARNING >/dev/null
+    "$root" cmake --preset arm64 -DRC10_BUILD_TESTS=ON --log-level=WARNING >/dev/null || return
     "$root" cmake --build --preset arm64 --target app_test motor_test module_test config_test
 }
 

@@ -15,14 +15,16 @@ python() {
 format_cpp() {
     local wrong
     wrong=$(find src tests bench examples -name '*.[ch]pp' -print0 \
-        | xargs -0 clang-format-16 --dry-run -ferror-limit=1 -Werror 2>&1 | sed -nE 's/^([^ :]+):[0-9]+:.*/\1/p')
-    [ -z "$wrong" ] || { echo "to be formatted:" && sort -u <<<"$wrong" && return 1; }
+        | xargs -0 clang-format-16 --dry-run -ferror-limit=1 -Werror 2>&1) && return
+    echo "to be formatted:"
+    sed -nE 's/:[0-9]+:[0-9]+: error.*//p' <<<"$wrong" | sort -u | grep . || echo "$wrong"
+    return 1
 }
 
 # Whatever begins like a shell script, with or without an extension.
 shell_scripts() {
     find scripts .ci tests -type f -not -path '*/.*_cache/*' -print0 \
-        | xargs -0 awk 'FNR == 1 && /^#!.*\/(ba)?sh|^# Sourced by/ {print FILENAME}'
+        | xargs -0 awk 'FNR == 1 && /^#!.*[\/ ](ba|da)?sh|^# Sourced by/ {print FILENAME}'
 }
 
 shell() {
@@ -38,16 +40,20 @@ types_in() {
 
 # "Name of the motor", not "What the motor is called".
 comments_begin_with_a_noun() {
-    ! git grep -nE '(//+<?|#|""") *(What|Who|Whoever|So that)\>' -- src tests bench examples cmake scripts python \
-        ':!scripts/test/*.sh' ':!tests/kernel/uml.config' ':!python/requirements.txt' ':!scripts/test/lint.sh'
+    local status=0
+    git grep -nE '(//+[!<]?|/\*+|^ *\*|#|""") *(-+ )?(What|Who|Whoever|So that)\>' -- \
+        src tests bench examples cmake scripts python packaging systemd config CMakeLists.txt \
+        ':!scripts/test/*.sh' ':!tests/kernel/uml.config' ':!python/requirements.txt' ':!scripts/test/lint.sh' \
+        || status=$?
+    [ "$status" -eq 1 ]  # 0: there are some; more: git did not look
 }
 
 # A source that .gitignore hides is compiled here and missing in every clone.
 git_sees_each_source() {
     [ -e .git ] || return 0
-    local hidden
-    hidden=$(git ls-files --others --ignored --exclude-standard -- src tests bench examples cmake scripts docs \
-        | grep -vE '(^|/)(__pycache__|\.[a-z]+_cache)/') || return 0
+    local ignored hidden
+    ignored=$(git ls-files --others --ignored --exclude-standard -- src tests bench examples cmake scripts docs) || return
+    hidden=$(grep -vE '(^|/)(__pycache__|\.[a-z]+_cache)/|^$' <<<"$ignored") || return 0
     echo "hidden from git by .gitignore:" && echo "$hidden" && return 1
 }
 

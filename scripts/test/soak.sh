@@ -17,7 +17,9 @@ if must_build dev rc10_soak; then
     soak "$seed" >"$scratch/other" 2>&1 &
     other=$!
     suite "rc10_soak, seed 1" soak 1
-    wait "$other" || true
-    suite "rc10_soak, seed $seed" cat "$scratch/other"
+    status=0
+    wait "$other" || status=$?
+    # shellcheck disable=SC2016  # for the inner shell
+    suite "rc10_soak, seed $seed" sh -c 'cat "$1"; exit "$2"' sh "$scratch/other" "$status"
 fi
 finish

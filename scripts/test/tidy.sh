@@ -6,17 +6,17 @@ set -euo pipefail
 
 need build lint
 
-# The last commit that is a day older than the newest; a clone without a history has only its first.
+# The last commit that is a day older than the newest. Without one, as in a shallow clone: the empty tree.
 a_day_ago() {
     local day=$(($(git -C "$repo" log -1 --format=%ct) - 86400)) commit
     commit=$(git -C "$repo" rev-list -1 --before="$day" HEAD)
-    echo "${commit:-$(git -C "$repo" rev-list --max-parents=0 HEAD | tail -n 1)}"
+    echo "${commit:-$(git -C "$repo" hash-object -t tree /dev/null)}"
 }
 
 since=${RC10_TIDY_SINCE:-$(a_day_ago)}
 # The headers made in the build are there then.
 if must_build tidy rc10_lcm_headers; then
-    step "clang-tidy of what changed since $(git -C "$repo" log -1 --format='%h %s' "$since")" \
+    step "clang-tidy of what changed since $since" \
         "$repo/scripts/lib/tidy.py" "$repo/build/tidy" --since "$since"
 fi
 finish

@@ -38,8 +38,9 @@ def count_file(name: str, status: int, report: Path) -> Counts:
             if (reason := case.find("skipped")) is not None:
                 print(f"SKIPPED {name}: {case.get('name')}: {reason.get('message')}")
     # 5: pytest was told to leave every test of this file out
-    if status not in (0, 5) and counts.failed == 0:
-        print(f"FAILED {name}: the guest returned {status}")
+    died = status not in (0, 5) or not report.exists()
+    if died and counts.failed == 0:
+        print(f"FAILED {name}: the guest returned {status}, report: {report.exists()}")
         counts = counts._replace(failed=1)
     return counts
 

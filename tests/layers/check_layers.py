@@ -58,24 +58,34 @@ ROOMS = {
         "threads": {"interfaces", "tick", "recording", "devices", "exchange"},
     },
 }
-# Families of drives know what all have in common, and no other family.
+# Headers of a layer's own folder that stand above its rooms: they include rooms, and no room them.
+ABOVE_ROOMS = {"config/load_config.hpp"}
+# Families of drives know what all have in common, and no other family. A simulated drive and a
+# recogniser see no motor, and a motor neither of them.
 FAMILIES = "drives"
+SIMULATED = re.compile(r"_(simulated|recogniser)")
+OF_SIMULATED = re.compile(r"_(simulated\w*|recogniser|frames|model|family)\.hpp$|/recogniser\.hpp$")
 
 # Plain objects: no threads, locks, atomics or logging; who uses them decides about those.
 PLAIN = ("app", "bus", "motor", "drives", "module")
 NOT_IN_PLAIN = re.compile(
     r"^(atomic|barrier|condition_variable|future|iostream|latch|mutex|semaphore|shared_mutex"
-    r"|stop_token|thread|pthread\.h|semaphore\.h|spdlog/.*|boost/lockfree/.*)$"
+    r"|stop_token|thread|(pthread|semaphore|stdatomic|syslog|threads)\.h|spdlog/.*"
+    r"|boost/(atomic|lockfree|thread).*)$"
 )
 
 # Time is an argument below the daemon.
 TIMELESS = (*PLAIN, "sim", "drives", "config")
 CLOCK = re.compile(
-    r"_clock::now\b|\b(clock_gettime|clock_nanosleep|gettimeofday|nanosleep|usleep|sleep_for)\s*\(|\btime\(nullptr\)"
+    r"\bnow\s*\(\s*\)|\b(time|clock|timespec_get|gettimeofday|nanosleep|usleep|sleep_for|sleep_until)\s*\("
+    r"|\bclock_(gettime|nanosleep)\s*\("
 )
 
-INCLUDE = re.compile(r'^\s*#\s*include\s*([<"])([^>"]+)[>"]')
-LINE_COMMENT = re.compile(r"//.*")
+INCLUDE = re.compile(r'^\s*#\s*include\s*([<"])([^>"]+)[>"]\s*$')
+ANY_INCLUDE = re.compile(r"^\s*#\s*(include|import|include_next)\b")
+# A string (kept, so that no comment begins in it), or a comment.
+STRING_OR_COMMENT = re.compile(r'"(?:\\.|[^"\\\n])*"|//[^\n]*|/\*.*?\*/', re.DOTALL)
+SUFFIXES = {".cpp", ".hpp"}
 
 
 class Violation(NamedTuple):
@@ -94,18 +104,39 @@ def bad_include(layer: str, quote: str, name: str) -> str | None:
     if layer in PLAIN and NOT_IN_PLAIN.match(name):
         return f"<{name}>: no threads, locks, atomics or logging in {layer}/"
     used = Path(name).parts[0]
-    if quote == '"' and used in USES and used != layer and used not in USES[layer]:
+    if quote == '"' and len(Path(name).parts) == 1 and layer not in ("tools", "robot_client"):
+        return None if name == "rc10_version.hpp" else f'"{name}": includes name the layer'
+    if used in USES and used != layer and used not in USES[layer]:
         allowed = ", ".join(sorted(USES[layer])) or "nothing"
         return f'"{name}": {layer}/ may use {allowed}'
     return None
 
 
-def bad_room(layer: str, room: str, name: str) -> str | None:
-    """Says what is wrong with an include by a file in a sub-folder."""
+def bad_role(file: Path, name: str) -> str | None:
+    """Says what is wrong with an include between the files of a family of drives."""
+    if SIMULATED.search(file.name):
+        if Path(name).parts[0] == FAMILIES and not OF_SIMULATED.search(name):
+            return f'"{name}": a simulated drive and a recogniser see no motor'
+    elif name.startswith("sim/") or SIMULATED.search(name) or name == "drives/families.hpp":
+        return f'"{name}": a motor sees no simulated drive, no recogniser and no list of families'
+    return None
+
+
+def bad_room(layer: str, room: str, file: Path, name: str) -> str | None:
+    """Says what is wrong with an include of the file's own layer."""
     parts = Path(name).parts
     used = parts[1] if len(parts) > 2 else ""
-    if parts[0] != layer or not room or used == room:
+    if layer == FAMILIES and room and (what := bad_role(file, name)):
+        return what
+    if parts[0] != layer or used == room:
         return None
+    if not room:
+        below = file.suffix == ".hpp" and f"{layer}/{file.name}" not in ABOVE_ROOMS
+        if below and any("" in allowed for allowed in ROOMS.get(layer, {}).values()):
+            return f'"{name}": rooms of {layer}/ include {file.name}, not the other way round'
+        return None
+    if name in ABOVE_ROOMS:
+        return f'"{name}": it stands above the rooms of {layer}/'
     if layer == FAMILIES and used:
         return f'"{name}": a family of drives knows no other'
     allowed = ROOMS.get(layer, {}).get(room, {""})
@@ -115,21 +146,37 @@ def bad_room(layer: str, room: str, name: str) -> str | None:
     return f'"{name}": of its layer {layer}/{room}/ may use {names}'
 
 
+def without_comments(text: str) -> list[str]:
+    """The lines of a source, each where it was; one that goes on in the next is one."""
+
+    def blank(match: re.Match[str]) -> str:
+        return match[0] if match[0].startswith('"') else " " + "\n" * match[0].count("\n")
+
+    return STRING_OR_COMMENT.sub(blank, text.replace("\\\n", " ")).splitlines()
+
+
 def violations_in(file: Path, layer: str, room: str) -> Iterator[Violation]:
-    for number, text in enumerate(file.read_text(encoding="utf-8").splitlines(), 1):
+    for number, text in enumerate(without_comments(file.read_text(encoding="utf-8")), 1):
         if include := INCLUDE.match(text):
             what = bad_include(layer, include[1], include[2])
-            if what is None and include[1] == '"':
-                what = bad_room(layer, room, include[2])
+            if what is None:
+                what = bad_room(layer, room, file, include[2])
             if what is not None:
                 yield Violation(file, number, what)
-        elif layer in TIMELESS and (clock := CLOCK.search(LINE_COMMENT.sub("", text))):
+        elif ANY_INCLUDE.match(text):
+            yield Violation(file, number, f"{text.strip()}: write #include and the name in full")
+        elif layer in TIMELESS and (clock := CLOCK.search(STRING_OR_COMMENT.sub("", text))):
             yield Violation(file, number, f"{clock[0]}: {layer}/ gets the time as an argument")
 
 
 def violations(src: Path) -> Iterator[Violation]:
-    for file in sorted([*src.rglob("*.hpp"), *src.rglob("*.cpp")]):
+    for file in sorted(path for path in src.rglob("*") if path.is_file()):
         layer, *rooms = file.relative_to(src).parts[:-1] or [file.name]
+        if file.suffix not in SUFFIXES:
+            yield Violation(file, 1, f"sources end with {' or '.join(sorted(SUFFIXES))}")
+            continue
+        if len(rooms) > 1:
+            yield Violation(file, 1, "a layer has rooms, and rooms have none")
         if layer not in USES:
             yield Violation(file, 1, f"{layer}/ is no layer")
             continue
@@ -140,7 +187,11 @@ def violations(src: Path) -> Iterator[Violation]:
 
 
 def main() -> int:
-    found = list(violations(Path(sys.argv[1])))
+    src = Path(sys.argv[1])
+    if not any(src.glob("*/*.cpp")):
+        print(f"{src}: there are no sources")
+        return 2
+    found = list(violations(src))
     for violation in found:
         print(violation)
     return int(bool(found))

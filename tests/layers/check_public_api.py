@@ -10,7 +10,7 @@ import re
 import sys
 from pathlib import Path
 
-INCLUDE = re.compile(r'^\s*#\s*include\s*"([^"]+)"', re.MULTILINE)
+INCLUDE = re.compile(r'^\s*#\s*include\s*[<"]([^>"]+)[>"]', re.MULTILINE)
 
 
 def listed(text: str, name: str) -> list[str]:
@@ -24,7 +24,13 @@ def violations(clone: Path) -> list[str]:
     src = clone / "src"
     layers = listed(text, "RC10_PUBLIC_LAYERS")
     headers = listed(text, "RC10_PUBLIC_HEADERS")
-    found = [f"{name}: listed, and not there" for name in headers if not (src / name).is_file()]
+    found = [
+        f"{name}: no list of it in PublicApi.cmake"
+        for name, values in (("RC10_PUBLIC_LAYERS", layers), ("RC10_PUBLIC_HEADERS", headers))
+        if not values
+    ]
+    found += [f"{name}: listed, and not there" for name in headers if not (src / name).is_file()]
+    found += [f"{name}/: listed, and no layer" for name in layers if not (src / name).is_dir()]
     public = {src / name for name in headers if (src / name).is_file()}
     for layer in layers:
         public.update((src / layer).rglob("*.hpp"))
@@ -33,7 +39,8 @@ def violations(clone: Path) -> list[str]:
             f"{header.relative_to(src)} is public and includes {name}, which is not:"
             " add it to cmake/PublicApi.cmake, or do without"
             for name in INCLUDE.findall(header.read_text())
-            if (src / name).is_file() and src / name not in public
+            for included in (src / name, header.parent / name)
+            if included.is_file() and included not in public
         ]
     return found
 

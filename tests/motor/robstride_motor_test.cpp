@@ -136,7 +136,7 @@ TEST(RobStrideMotor, TheDividerThinsOutWhatIsSent) {
   for (int i = 1; i <= 40; ++i) EXPECT_EQ(bench.tick(FrameKind::kPoll).empty(), i % 4 != 3) << i;
 }
 
-// --- What it is told in operation mode
+// --- Commands in operation mode
 
 TEST(RobStrideMotor, IdleIsAFrameWithoutAnyTorque) {
   Bench bench(robStrideSettings("RS00"));
@@ -355,7 +355,7 @@ TEST(RobStrideMotor, ThePositionModeGoesBeyondTheScaleOfFeedback) {
   EXPECT_NEAR(readLittleEndian<float>(frames[0].payload(), 4), 1.0 + 20 * std::numbers::pi, 1e-3);
 }
 
-// --- What it says
+// --- Feedback
 
 TEST(RobStrideMotor, TurnsAreCountedAcrossTheEndOfTheScale) {
   Bench bench(robStrideSettings("RS00"));

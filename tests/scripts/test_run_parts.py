@@ -47,8 +47,14 @@ def test_counts_are_those_of_the_last_line(write_parts: WriteParts) -> None:
 
 @pytest.mark.parametrize(
     "text",
-    ["echo nothing", "kill -9 $$", "echo '3 passed, 0 failed, 0 skipped'; exit 1"],
-    ids=["no result", "killed", "a status that says no"],
+    [
+        "echo nothing",
+        "kill -9 $$",
+        "echo '3 passed, 0 failed, 0 skipped'; exit 1",
+        "echo '3 passed, 0 failed, 1 skipped'; exit 139",
+        "echo '0 passed, 0 failed, 0 skipped'",
+    ],
+    ids=["no result", "killed", "a status that says no", "skips and a crash", "no test"],
 )
 def test_a_part_that_does_not_end_well_is_a_failure(write_parts: WriteParts, text: str) -> None:
     write_parts(lint=text)

@@ -33,7 +33,8 @@ constexpr std::array<FamilyKey, 4> kMyactuatorKeys{{
      .default_text = "false",
      .about =
          "Enabling opens the drive's holding brake (0x77). The drive opens it by itself for velocity and "
-         "angle targets, not for current or impedance. A load that hangs on it falls until the first target."},
+         "angle targets, not for current or impedance. A load that hangs on it falls until the first "
+         "target."},
 }};
 
 // V4.2 publishes neither; X6-60's data sheet has 176 rpm without load and 153 rpm rated.
