@@ -1,6 +1,6 @@
 #!/bin/bash
 # The project's tests; it installs what they need.
-#   scripts/test.sh [PART...]     default: what a clone is trusted by
+#   scripts/test.sh [PART...]     default: the tests that show that a fresh clone works here
 # The last line is "N passed, N failed, N skipped". In CI (CI=true) nothing may be skipped.
 set -euo pipefail
 
@@ -54,5 +54,5 @@ done
 # Packages and the venv of all parts, at once.
 mapfile -t groups < <(for part in "${wanted[@]}"; do sed -n 's/^need //p' "$here/test/$part.sh"; done | tr ' ' '\n' | sort -u)
 "$here/install-deps.sh" --may-ask "${groups[@]}"
-progress "test.sh: installing packages of Debian" 90 need "${groups[@]}"
+progress "test.sh: installing Debian packages" 90 need "${groups[@]}"
 exec /usr/bin/python3 "$here/lib/run_parts.py" --name "${1:-default}" "${wanted[@]}"

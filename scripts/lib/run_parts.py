@@ -175,7 +175,7 @@ class Run:
             shown.append(
                 part.name
                 + f" {elapsed}"
-                + (f" of about {as_minutes(whole.took_s)}" if whole else "")
+                + (f" of at most about {as_minutes(whole.took_s)}" if whole else "")
             )
         rest = f"; then {', '.join(part.name for part in self.waiting)}" if self.waiting else ""
         return " | ".join(shown) + rest
@@ -242,7 +242,7 @@ def greeting(names: list[str], chosen: str, budget: costs.Budget) -> str:
             f" On {budget.machine}: {as_minutes(took.cold_s)} where nothing is compiled yet,"
             f" {as_minutes(took.warm_s)} afterwards."
         )
-    return text + f" What they print: {LOGS.relative_to(REPO)}"
+    return text + f" The full output of each: {LOGS.relative_to(REPO)}/PART.log"
 
 
 def main() -> int:
