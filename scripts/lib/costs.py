@@ -74,7 +74,7 @@ def reference_cpu_s() -> float:
 def compare(budget: Budget, cpu_s: dict[str, float]) -> str:
     """Names each part that costs a third more than its budget; fewer CPU-seconds are no finding."""
     slower = reference_cpu_s() / budget.reference_cpu_s
-    text = f"\nbudget (scripts/test/budget.json; here times {slower:.2f}, the pace of this machine):\n"
+    text = f"\nbudget (scripts/test/budget.json, times {slower:.2f}: the pace of this machine):\n"
     grown = ""
     for name, spent in cpu_s.items():
         allowed = budget.parts[name].cpu_s * slower if name in budget.parts else None

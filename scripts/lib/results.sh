@@ -48,10 +48,11 @@ suite() {
     failed=$((failed + BASH_REMATCH[2]))
     skipped=$((skipped + BASH_REMATCH[3]))
     # Some runners return 1 for skipped tests; test.sh judges them: in CI they are failures.
-    if [ "$status" -ne 0 ] && [ "${BASH_REMATCH[2]}" -eq 0 ]; then
-        [ "$status" -eq 1 ] && [ "${BASH_REMATCH[3]}" -gt 0 ] || fail "$1: status $status"
+    if [[ $status -ne 0 && ${BASH_REMATCH[2]} -eq 0 && ($status -ne 1 || ${BASH_REMATCH[3]} -eq 0) ]]; then
+        fail "$1: status $status"
+    elif [ $((BASH_REMATCH[1] + BASH_REMATCH[2] + BASH_REMATCH[3])) -eq 0 ]; then
+        fail "$1: it ran no test"
     fi
-    [ $((BASH_REMATCH[1] + BASH_REMATCH[2] + BASH_REMATCH[3])) -gt 0 ] || fail "$1: it ran no test"
 }
 
 # junit NAME COMMAND...: a test runner that takes, as one more argument, where to write JUnit's XML.
