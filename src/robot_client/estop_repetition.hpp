@@ -20,6 +20,10 @@ class EstopRepetition {
   }
   void shown() noexcept { number_.reset(); }
 
+  /// Number of the one that is to be sent again now.
+  [[nodiscard]] std::optional<std::int64_t> due(MonotonicTime now) const noexcept {
+    return now >= next_ ? number_ : std::nullopt;
+  }
   [[nodiscard]] std::optional<MonotonicTime> nextDue() const noexcept {
     return number_ ? std::optional(next_) : std::nullopt;
   }

@@ -260,9 +260,9 @@ void RobotSession::resend(MonotonicTime now, News& news) {
   }
   moves_.onTime(now, news.moves);
   for (const auto& message : held_.takeDue(now)) (void)publishCommand(message);
-  if (const auto due = estop_.nextDue(); due && now >= *due) {
-    (void)outgoing_.request(*estop_.number(), "estop", "", {});
-    estop_.sent(*estop_.number(), now);
+  if (const auto number = estop_.due(now)) {
+    (void)outgoing_.request(*number, "estop", "", {});
+    estop_.sent(*number, now);
   }
 }
 
@@ -434,7 +434,8 @@ Result<void> RobotSession::estop(Duration timeout) {
   if (!status_) return status_;
   Lock lock(mutex_);
   held_.releaseAll();
-  const auto number = estop_.number() ? *estop_.number() : outgoing_.nextNumber();
+  const auto under_way = estop_.number();
+  const auto number = under_way ? *under_way : outgoing_.nextNumber();
   estop_.sent(number, timeNow());
   auto sent = outgoing_.request(number, "estop", "", {});
   wake_sender_.notify_all();
