@@ -77,6 +77,8 @@ def test_a_number_that_is_not_finite_is_refused(bad: float) -> None:
         (lambda: rc10.velocity_rpm(1, torque_ff_nm=1e39), "too large"),
         (lambda: rc10.impedance_deg(0, **{**SPRING, "damping_nms_per_rad": -1}), "negative"),
         (lambda: rc10.Setpoint(rc10.Mode.ANGLE, stiffness_nm_per_rad=1), "IMPEDANCE only"),
+        (lambda: rc10.Setpoint(rc10.Mode.VELOCITY, velocity_ff_rpm=1), "ANGLE, IMPEDANCE only"),
+        (lambda: rc10.Setpoint(rc10.Mode.DUTY, torque_ff_nm=1), "CURRENT, VELOCITY"),
     ],
 )
 def test_a_number_out_of_range_is_refused(make: Any, complaint: str) -> None:  # noqa: ANN401

@@ -37,4 +37,36 @@ struct Target {
 };
 static_assert(std::is_trivially_copyable_v<Target>);
 
+/// Fields of a target, beside its value, that a mode uses.
+struct TargetFields {
+  bool velocity_ff = false;
+  bool torque_ff = false;
+  bool spring = false;  ///< Stiffness and damping.
+};
+
+[[nodiscard]] constexpr TargetFields fieldsOf(ControlMode mode) noexcept {
+  switch (mode) {
+    case ControlMode::kCurrent:
+    case ControlMode::kVelocity: return {.torque_ff = true};
+    case ControlMode::kAngle:
+    case ControlMode::kTotalAngle: return {.velocity_ff = true, .torque_ff = true};
+    case ControlMode::kImpedance: return {.velocity_ff = true, .torque_ff = true, .spring = true};
+    case ControlMode::kCoast:
+    case ControlMode::kVoltage:
+    case ControlMode::kDuty:
+    case ControlMode::kBrake: break;
+  }
+  return {};
+}
+
+/// The same target without the fields that its mode does not use: nothing can move a shaft past the limits
+/// that act on its mode.
+[[nodiscard]] constexpr Target withoutUnused(Target target) noexcept {
+  const TargetFields used = fieldsOf(target.mode);
+  if (!used.velocity_ff) target.velocity_ff_rpm = 0.0F;
+  if (!used.torque_ff) target.torque_ff_nm = 0.0F;
+  if (!used.spring) target.stiffness_nm_per_rad = target.damping_nms_per_rad = 0.0F;
+  return target;
+}
+
 }  // namespace rc10

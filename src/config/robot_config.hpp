@@ -30,7 +30,8 @@ struct MotorConfig {
   GuardConfig guard{};
   ShapingConfig shaping{};
   FallbackConfig fallback{};
-  float standstill_rpm = 10.0F;  ///< Slower than this it stands still.
+  float standstill_rpm = 10.0F;                ///< Slower than this it stands still.
+  Duration run_down{std::chrono::seconds{5}};  ///< Without torque it turns no longer than this.
   bool optional = false;
   sim::MotorLoad simulated;  ///< Used on a simulated bus and by rc10-sim.
 

@@ -26,7 +26,7 @@ std::string describe(const Motor_Base& motor, int drive_id) {
 
 bool Motor_Base::setTarget(const Target& target) noexcept {
   if (static_cast<int>(target.mode) >= kControlModeCount || !modes().contains(target.mode)) return false;
-  Target accepted = target;
+  Target accepted = withoutUnused(target);
   if (!hasValue(accepted.mode)) accepted.value = 0.0;
   if (!std::isfinite(accepted.value)) return false;
   if (!normalise(accepted.velocity_ff_rpm) || !normalise(accepted.torque_ff_nm)) return false;

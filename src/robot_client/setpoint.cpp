@@ -2,6 +2,8 @@
 
 #include <cmath>
 
+#include "app/target.hpp"
+
 namespace rc10 {
 inline namespace robot_client {
 namespace {
@@ -21,6 +23,12 @@ Result<void> Setpoint::check() const {
   if (!fitsFloat(forward.velocity.value) || !fitsFloat(forward.torque_nm)) {
     return fail(what + "a feed-forward is not a finite number");
   }
+  const TargetFields used = fieldsOf(static_cast<ControlMode>(mode));
+  if (!used.velocity_ff && forward.velocity.value != 0.0)
+    return fail(what + "a velocity feed-forward is for ANGLE, TOTAL_ANGLE and IMPEDANCE only");
+  if (!used.torque_ff && forward.torque_nm != 0.0)
+    return fail(what +
+                "a torque feed-forward is for CURRENT, VELOCITY, ANGLE, TOTAL_ANGLE and IMPEDANCE only");
   if (mode == Mode::kImpedance) {
     // Written so that NaN is refused as well.
     if (!(stiffness_nm_per_rad >= 0.0 && fitsFloat(stiffness_nm_per_rad))) {

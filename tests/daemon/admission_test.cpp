@@ -39,7 +39,6 @@ class AdmissionTest : public ::testing::Test {
 
 TEST_F(AdmissionTest, TranslatesNamesModesAndValues) {
   auto message = linkCommand(1, now, {setpoint("right", kVelocity, 120.0), setpoint("left", kCurrent, -2.0)});
-  message.setpoints[0].target.velocity_ff_rpm = 3.0F;
   message.setpoints[0].target.torque_ff_nm = 4.0F;
   ASSERT_EQ(admit(message), CommandRefusal::kNone);
   ASSERT_EQ(out.count, 2U);
@@ -47,7 +46,6 @@ TEST_F(AdmissionTest, TranslatesNamesModesAndValues) {
   EXPECT_EQ(out.setpoints[0].motor, 1U);
   EXPECT_EQ(out.setpoints[0].target.mode, kVelocity);
   EXPECT_EQ(out.setpoints[0].target.value, 120.0);
-  EXPECT_EQ(out.setpoints[0].target.velocity_ff_rpm, 3.0F);
   EXPECT_EQ(out.setpoints[0].target.torque_ff_nm, 4.0F);
   EXPECT_EQ(out.setpoints[1].motor, 0U);
   EXPECT_EQ(out.setpoints[1].target.mode, kCurrent);
@@ -102,6 +100,20 @@ TEST_F(AdmissionTest, EveryMotorCanCoast) {
 TEST_F(AdmissionTest, AValueThatTheModeHasNoUseForGoesNoFurther) {
   EXPECT_EQ(admit(one(setpoint("left", ControlMode::kCoast, kNan))), CommandRefusal::kNone);
   EXPECT_EQ(out.setpoints[0].target.value, 0.0);
+}
+
+TEST_F(AdmissionTest, AFieldThatAModeDoesNotUseIsClearedAndTold) {
+  auto with_ff = setpoint("left", kVelocity, 100.0);
+  with_ff.target.velocity_ff_rpm = 50.0F;
+  with_ff.target.torque_ff_nm = 1.0F;
+  EXPECT_EQ(admit(one(with_ff)), CommandRefusal::kNone);
+  EXPECT_TRUE(admission.clearedField());
+  EXPECT_EQ(out.setpoints[0].target.velocity_ff_rpm, 0.0F);
+  EXPECT_EQ(out.setpoints[0].target.torque_ff_nm, 1.0F);
+  with_ff.target.mode = kAngle;
+  EXPECT_EQ(admit(one(with_ff)), CommandRefusal::kNone);
+  EXPECT_FALSE(admission.clearedField());
+  EXPECT_EQ(out.setpoints[0].target.velocity_ff_rpm, 50.0F);
 }
 
 TEST_F(AdmissionTest, RefusesAValueThatIsNotFinite) {

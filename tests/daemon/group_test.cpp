@@ -136,7 +136,7 @@ TEST_F(GroupTest, MembersThatAreLostTogetherAreEnabledTogether) {
   EXPECT_EQ(status(kRight), MotorStatus::kActive);
 }
 
-TEST_F(GroupTest, AnEstopThatIsClearedInTheSameTickEndsTheRearmingToo) {
+TEST_F(GroupTest, AnEstopThatIsClearedInTheNextTickEndsTheRearmingToo) {
   start(GroupConfig::Return::kRearmAtRest);
   for (int i = 0; i < 2000; ++i) {
     for (const auto motor : {kLeft, kRight, kYaw}) robot->command(motor, {.mode = ControlMode::kBrake});
@@ -148,6 +148,7 @@ TEST_F(GroupTest, AnEstopThatIsClearedInTheSameTickEndsTheRearmingToo) {
   robot->freezeSimulation(false);
   robot->run(5);  // there and still, though not for long enough
   robot->exchange().estop.store(true);
+  robot->tick();
   robot->order(Operation::kClear);
   EXPECT_EQ(robot->snapshot().state, RobotStatus::kRun);
   robot->run(2000);

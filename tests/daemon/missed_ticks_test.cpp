@@ -106,6 +106,7 @@ TEST_F(MissedTicksTest, WhatTurnedBeforeAPauseIsNoMotorAtRest) {
   clear.id = 77;
   clear.operation = Operation::kClear;
   clear.motors.set();
+  clear.whole_robot = true;
   robot.exchange().orders.push(clear);
   robot.tick(50);
   EXPECT_EQ(robot.snapshot().state, RobotStatus::kEstop);

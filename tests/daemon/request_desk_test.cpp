@@ -71,6 +71,11 @@ TEST_F(RequestDeskTest, NoTargetMeansEveryMotor) {
   EXPECT_EQ(begin(linkRequest(1, "enable")).order->motors, MotorSet{0b111});
 }
 
+TEST_F(RequestDeskTest, OnlyARequestThatNamesNoMotorIsOfTheWholeRobot) {
+  EXPECT_TRUE(begin(linkRequest(1, "clear")).order->whole_robot);
+  EXPECT_FALSE(begin(linkRequest(2, "clear", "left,right,yaw")).order->whole_robot);
+}
+
 TEST_F(RequestDeskTest, SeveralMotorsAreSeparatedByCommas) {
   EXPECT_EQ(begin(linkRequest(1, "enable", "yaw,left")).order->motors, MotorSet{0b101});
 }

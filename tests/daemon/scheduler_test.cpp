@@ -152,6 +152,68 @@ TEST_F(SchedulerTest, EstopRestsEveryMotorInTheNextTickAndLatches) {
   EXPECT_EQ(robot.motor(kLeft).status, MotorStatus::kReady);
 }
 
+TEST_F(SchedulerTest, AnEstopAskedForInTheTickOfAClearWins) {
+  robot.run(5);
+  robot.exchange().estop.store(true);
+  robot.tick();
+  robot.exchange().estop.store(true);
+  EXPECT_EQ(robot.order(Operation::kClear).motors[kLeft], Refusal::kEstopAsked);
+  EXPECT_EQ(robot.snapshot().state, RobotStatus::kEstop);
+  EXPECT_EQ(robot.order(Operation::kClear).motors[kLeft], Refusal::kNone);
+  EXPECT_EQ(robot.snapshot().state, RobotStatus::kRun);
+}
+
+TEST_F(SchedulerTest, AnEstopRequestBeforeAClearOfTheSameTickWins) {
+  robot.run(5);
+  const auto ask = [&](std::uint64_t id, Operation operation) {
+    Order order;
+    order.id = id;
+    order.operation = operation;
+    order.whole_robot = true;
+    robot.exchange().orders.push(order);
+  };
+  ask(100, Operation::kEstop);
+  ask(101, Operation::kClear);
+  robot.tick();
+  EXPECT_EQ(robot.snapshot().state, RobotStatus::kEstop);
+  ask(102, Operation::kClear);
+  ask(103, Operation::kEstop);
+  robot.tick();
+  EXPECT_EQ(robot.snapshot().state, RobotStatus::kEstop);
+}
+
+TEST_F(SchedulerTest, ClearingTheFaultsOfAllMotorsByNameLeavesTheEstop) {
+  robot.run(5);
+  robot.exchange().estop.store(true);
+  robot.tick();
+  MotorSet all;
+  for (std::size_t i = 0; i < robot.robot().motors().size(); ++i) all.set(i);
+  EXPECT_EQ(robot.orderFor(all, Operation::kClear).motors[kLeft], Refusal::kNone);
+  EXPECT_EQ(robot.snapshot().state, RobotStatus::kEstop);
+}
+
+TEST_F(SchedulerTest, AnEstopIsNotClearedWhileAMotorThatWasLostInMotionMayStillTurn) {
+  enableAll();
+  robot.hold(kLeft, kVelocity120, 100);
+  robot.freezeSimulation(true);
+  robot.exchange().estop.store(true);
+  robot.run(2000);
+  EXPECT_EQ(robot.order(Operation::kClear).motors[kLeft], Refusal::kMayTurn);
+  robot.run(2500);
+  EXPECT_EQ(robot.order(Operation::kClear).motors[kLeft], Refusal::kMayTurn);
+  robot.run(600);
+  EXPECT_EQ(robot.order(Operation::kClear).motors[kLeft], Refusal::kNone);
+  EXPECT_EQ(robot.snapshot().state, RobotStatus::kRun);
+}
+
+TEST_F(SchedulerTest, AMotorThatWasLostAtRestKeepsNoEstop) {
+  robot.run(50);
+  robot.freezeSimulation(true);
+  robot.exchange().estop.store(true);
+  robot.run(100);
+  EXPECT_EQ(robot.order(Operation::kClear).motors[kLeft], Refusal::kNone);
+}
+
 TEST_F(SchedulerTest, EstopGetsThroughWhenEveryRingIsFull) {
   enableAll();
   const Order disable_nobody{99, Operation::kDisable, MotorSet{}, 0.0};

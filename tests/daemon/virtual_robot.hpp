@@ -74,14 +74,23 @@ class VirtualRobot {
   OrderResult order(Operation operation, double value = 0.0) {
     MotorSet all;
     for (std::size_t i = 0; i < robot_->motors().size(); ++i) all.set(i);
-    return orderFor(all, operation, value);
+    Order order;
+    order.operation = operation;
+    order.motors = all;
+    order.value = value;
+    order.whole_robot = true;
+    return carryOut(order);
   }
+  /// The same for motors that are named.
   OrderResult orderFor(MotorSet motors, Operation operation, double value = 0.0) {
     Order order;
-    order.id = ++orders_;
     order.operation = operation;
     order.motors = motors;
     order.value = value;
+    return carryOut(order);
+  }
+  OrderResult carryOut(Order order) {
+    order.id = ++orders_;
     exchange_.orders.push(order);
     OrderResult result;
     for (int i = 0; i < 1000; ++i) {

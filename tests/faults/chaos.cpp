@@ -310,6 +310,7 @@ void Chaos::order(Operation operation, MotorSet motors, double value) {
   order.operation = operation;
   order.motors = motors;
   order.value = value;
+  order.whole_robot = motors.count() == places_.size() && !choices_.oneIn(4);
   if (robot_->exchange().orders.push(order)) oracle_->ordered(order);
 }
 

@@ -109,7 +109,7 @@ void Oracle::commanded(const Command& command) {
 void Oracle::ordered(const Order& order) {
   unanswered_[order.id] = tick_;
   if (order.operation == Operation::kEstop) estop_asked_ = true;
-  if (order.operation == Operation::kClear && order.motors.count() == motors_.size()) clear_all_asked_ = true;
+  if (order.operation == Operation::kClear && order.whole_robot) clear_all_asked_ = true;
   for (std::size_t i = 0; i < motors_.size(); ++i) {
     if (!order.motors.test(i)) continue;
     auto& motor = motors_[i];
@@ -287,9 +287,16 @@ void Oracle::judgeSnapshot(const Snapshot& snapshot, std::uint64_t periods) {
   }
 }
 
+// It turned when it was last heard, and that is not long ago.
+bool Oracle::mayTurn(std::size_t index, const MotorFeedback& feedback) const {
+  const auto& config = *motors_[index].config;
+  return feedback.samples > 0 && std::fabs(feedback.velocity_rpm) >= config.standstill_rpm &&
+         now_ - feedback.received < config.run_down;
+}
+
 void Oracle::judgeRobotState(const Snapshot& snapshot) {
   if (stop_asked_ && snapshot.state != RobotStatus::kStopping) fail("it does not stop");
-  if (estop_asked_ && !clear_all_asked_ && snapshot.state == RobotStatus::kRun) fail("an e-stop was lost");
+  if (estop_asked_ && snapshot.state == RobotStatus::kRun) fail("an e-stop was lost");
   const bool released = state_ == RobotStatus::kEstop && snapshot.state == RobotStatus::kRun;
   if (released && !clear_all_asked_) fail("an e-stop ended by itself");
   if (contact_open_ && snapshot.state == RobotStatus::kRun) fail("it runs although the e-stop input is open");
@@ -300,6 +307,8 @@ void Oracle::judgeRobotState(const Snapshot& snapshot) {
     require(i,
             overdue(motors_[i]) || std::fabs(measured.velocity_rpm) <= most_rpm + measured.velocity_step_rpm,
             "an e-stop was cleared while it turns");
+    require(i, !overdue(motors_[i]) || !mayTurn(i, snapshot.motors[i].feedback),
+            "an e-stop was cleared while it may still turn");
   }
 }
 

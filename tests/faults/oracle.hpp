@@ -122,6 +122,7 @@ class Oracle {
   };
 
   void judgeSnapshot(const Snapshot& snapshot, std::uint64_t periods);
+  [[nodiscard]] bool mayTurn(std::size_t index, const MotorFeedback& feedback) const;
   void judgeRobotState(const Snapshot& snapshot);
   void judgeProbe(std::size_t bus);
   void followEchoes(const Snapshot& snapshot);
@@ -136,6 +137,7 @@ class Oracle {
   void judgeLimits(std::size_t index);
   void judgeTold(std::size_t index, const MotorSnapshot& seen);
   void judgeSlew(std::size_t index, const MotorSnapshot& seen);
+  void judgeFeedForward(std::size_t index, double outwards);
   void judgeSoftLimits(std::size_t index, const MotorSnapshot& seen);
   void judgeStop(std::bitset<kMaxBuses> read, bool stopped);
   void judgeAnswers();

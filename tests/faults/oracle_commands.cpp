@@ -20,12 +20,6 @@ constexpr double kFast = 0.3;  ///< Of the no-load speed: a brake must oppose th
 // An angle may be so far beyond a soft limit: rounding, and what the shaft has moved since the sample.
 constexpr double kAngleSlackDeg = 1.0;
 
-// Holes of today, closed by another change: a feed-forward passes slew and soft limits, and so does a spring.
-[[nodiscard]] bool shapedPast(const MotorSnapshot& seen) {
-  return seen.target.torque_ff_nm != 0.0F || seen.target.velocity_ff_rpm != 0.0F ||
-         seen.target.mode == ControlMode::kImpedance;
-}
-
 // A spring whose sum is at its limit is told a speed, and a place, on the way from the shaft's own to those
 // that were wanted.
 [[nodiscard]] bool slows(const Told& told, double measured_rpm) {
@@ -98,8 +92,8 @@ void Oracle::judgeCommand(std::size_t index, const MotorSnapshot& seen) {
   if (seen.target.mode == ControlMode::kCoast) judgeFallback(index);
 }
 
-// Every field that can move the shaft, whatever the law. A hole of today, see shapedPast(): of a spring its
-// sum alone, so that a feed-forward may be beyond the limit while the damping opposes it.
+// Every field that can move the shaft, whatever the law. Of a spring its sum alone, so that a feed-forward
+// may be beyond the limit while the damping opposes it.
 void Oracle::judgeLimits(std::size_t index) {
   const auto& motor = motors_[index];
   const auto& told = motor.told;
@@ -183,7 +177,7 @@ void Oracle::judgeSoftLimits(std::size_t index, const MotorSnapshot& seen) {
   const double angle_deg = seen.feedback.total_angle_deg;
   const bool known =
       seen.status == MotorStatus::kActive && seen.target.mode != ControlMode::kCoast && seen.feedback.zeroed;
-  if (!known || shapedPast(seen)) return;
+  if (!known) return;
   if (told.law == Told::Law::kAngle && std::isfinite(told.ahead_deg)) {
     const double place_deg = angle_deg + told.ahead_deg;
     ++visits_.bounded;
@@ -194,6 +188,7 @@ void Oracle::judgeSoftLimits(std::size_t index, const MotorSnapshot& seen) {
   }
   const bool above = angle_deg >= shaping.angle_max_deg && seen.feedback.velocity_rpm >= 0.0F;
   const bool below = angle_deg <= shaping.angle_min_deg && seen.feedback.velocity_rpm <= 0.0F;
+  if (above || below) judgeFeedForward(index, above ? 1.0 : -1.0);
   const bool follows_effort =
       seen.target.mode == ControlMode::kCurrent || seen.target.mode == ControlMode::kVoltage;
   const bool follows_speed = seen.target.mode == ControlMode::kVelocity && told.law == Told::Law::kVelocity;
@@ -202,6 +197,20 @@ void Oracle::judgeSoftLimits(std::size_t index, const MotorSnapshot& seen) {
   const double push = follows_effort ? told.effort : told.velocity_rpm;
   const double step = follows_effort ? told.effort_step : told.velocity_step_rpm;
   require(index, !(above && push > step) && !(below && push < -step), "it is pushed on beyond a soft limit");
+}
+
+// A field beside a speed, a place or a spring moves the shaft, too.
+void Oracle::judgeFeedForward(std::size_t index, double outwards) {
+  const auto& told = motors_[index].told;
+  const bool beside =
+      told.law == Told::Law::kVelocity || told.law == Told::Law::kAngle || told.law == Told::Law::kSpring;
+  if (!beside) return;
+  ++visits_.bounded;
+  require(index, outwards * told.effort <= 2.0 * told.effort_step,
+          "a torque feed-forward pushes on beyond a soft limit");
+  if (told.law == Told::Law::kVelocity || slows(told, motors_[index].wire->measured().velocity_rpm)) return;
+  require(index, outwards * told.velocity_rpm <= told.velocity_step_rpm,
+          "a velocity feed-forward leads on beyond a soft limit");
 }
 
 bool Oracle::fits(const Motor& motor, FallbackAction action) const {

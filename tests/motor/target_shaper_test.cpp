@@ -22,8 +22,11 @@ class TargetShaperTest : public ::testing::Test {
     feedback.angle_deg = static_cast<float>(total_angle_deg - 360.0 * std::floor(total_angle_deg / 360.0));
   }
   void configure(const ShapingConfig& config) { shaper = TargetShaper{config}; }
-  TargetShaper::Shaped step(ControlMode mode, double value, float effort = 0.0F) {
-    return shaper.step({.mode = mode, .value = value}, feedback, effort, kTickS);
+  TargetShaper::Shaped step(ControlMode mode, double value, float amperes = 0.0F) {
+    return shaper.step({.mode = mode, .value = value}, feedback, {amperes, CommandUnit::kAmpere}, kTickS);
+  }
+  TargetShaper::Shaped step(const Target& target) {
+    return shaper.step(target, feedback, {0.0F, CommandUnit::kAmpere}, kTickS);
   }
   double valueAfter(int ticks, ControlMode mode, double value) {
     double last = 0.0;
@@ -61,6 +64,73 @@ TEST_F(TargetShaperTest, AVelocityTargetRisesFromTheMeasuredSpeedAtItsRate) {
 TEST_F(TargetShaperTest, ACurrentTargetStartsFromTheCurrentInForce) {
   configure({.effort_slew_per_s = 100.0F});
   EXPECT_NEAR(step(ControlMode::kCurrent, -5.0, 2.0F).target.value, 1.9, 1e-6);
+}
+
+TEST_F(TargetShaperTest, ACurrentStartsFromTheMeasuredOneWhereTheLastCommandWasASpeed) {
+  configure({.effort_slew_per_s = 100.0F});
+  feedback.current_a = 1.5F;
+  const auto shaped = shaper.step({.mode = ControlMode::kCurrent, .value = 5.0}, feedback,
+                                  {3000.0F, CommandUnit::kNative}, kTickS);
+  EXPECT_NEAR(shaped.target.value, 1.6, 1e-6);
+}
+
+TEST_F(TargetShaperTest, AVoltageStartsFromNothingWhereTheLastCommandWasACurrent) {
+  configure({.effort_slew_per_s = 100.0F});
+  EXPECT_NEAR(step(ControlMode::kVoltage, 5.0, 20.0F).target.value, 0.1, 1e-6);
+}
+
+TEST_F(TargetShaperTest, ADutyStartsFromNothingAndRisesByItsShareOfTheFullEffort) {
+  configure({.effort_slew_per_s = 100.0F, .effort_full_scale = 50.0F});
+  EXPECT_NEAR(step(ControlMode::kDuty, 0.5, 20.0F).target.value, 0.002, 1e-9);
+}
+
+TEST_F(TargetShaperTest, ATorqueFeedForwardRisesAtTheRateOfTheCurrent) {
+  configure({.effort_slew_per_s = 100.0F, .effort_per_nm = 2.0F});
+  for (const auto mode :
+       {ControlMode::kVelocity, ControlMode::kAngle, ControlMode::kTotalAngle, ControlMode::kImpedance}) {
+    shaper.reset();
+    const Target target{.mode = mode, .torque_ff_nm = 3.0F};
+    EXPECT_NEAR(static_cast<double>(step(target).target.torque_ff_nm), 0.05, 1e-6);
+    EXPECT_NEAR(static_cast<double>(step(target).target.torque_ff_nm), 0.10, 1e-6);
+    EXPECT_EQ(step(target).limits, kLimitSlew);
+  }
+}
+
+TEST_F(TargetShaperTest, AVelocityFeedForwardIsNoFasterThanTheAngleMayMoveAndDoesNotJump) {
+  configure({.velocity_slew_rpm_per_s = 1000.0F, .angle_slew_deg_per_s = 60.0F});
+  const Target target{.mode = ControlMode::kTotalAngle, .velocity_ff_rpm = 500.0F};
+  EXPECT_NEAR(static_cast<double>(step(target).target.velocity_ff_rpm), 1.0, 1e-6);
+  for (int i = 0; i < 50; ++i) (void)step(target);
+  EXPECT_NEAR(static_cast<double>(step(target).target.velocity_ff_rpm), 10.0, 1e-6);
+}
+
+TEST_F(TargetShaperTest, NoFeedForwardPushesOutwardsAtASoftLimit) {
+  auto config = soft;
+  for (const float effort_per_nm : {0.0F, 2.0F}) {
+    config.effort_per_nm = effort_per_nm;
+    configure(config);
+    at(91.0);
+    for (const auto mode :
+         {ControlMode::kVelocity, ControlMode::kAngle, ControlMode::kTotalAngle, ControlMode::kImpedance}) {
+      const auto out = step({.mode = mode, .value = 90.0, .velocity_ff_rpm = 50.0F, .torque_ff_nm = 3.0F});
+      EXPECT_EQ(out.target.torque_ff_nm, 0.0F);
+      EXPECT_EQ(out.limits & kLimitAngle, kLimitAngle);
+      if (mode != ControlMode::kVelocity) {
+        EXPECT_EQ(out.target.velocity_ff_rpm, 0.0F);
+      }
+      EXPECT_EQ(step({.mode = mode, .value = 90.0, .torque_ff_nm = -3.0F}).target.torque_ff_nm, -3.0F);
+    }
+  }
+}
+
+TEST_F(TargetShaperTest, ATorqueBesideASoftSpringBrakesBeforeASoftLimit) {
+  auto config = soft;
+  config.effort_per_nm = 2.0F;
+  configure(config);
+  at(80.0);  // 20 rpm are allowed
+  feedback.velocity_rpm = 25.0F;
+  const auto out = step({.mode = ControlMode::kImpedance, .value = 80.0, .torque_ff_nm = 3.0F});
+  EXPECT_NEAR(static_cast<double>(out.target.torque_ff_nm), -0.5, 1e-6);
 }
 
 TEST_F(TargetShaperTest, AnAngleTargetStartsWhereTheMotorIsAndArrivesExactly) {

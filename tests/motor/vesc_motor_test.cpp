@@ -194,7 +194,8 @@ TEST_F(VescMotorTest, WhatAVelocityOfZeroMeansIsConfigured) {
   makeWith({{"velocity_zero", std::string{"coast"}}});
   EXPECT_EQ(sent(zero), 0);
   EXPECT_EQ(packet_, vesc::Packet::kSetCurrent);
-  EXPECT_EQ(sent({.mode = ControlMode::kVelocity, .value = 0.0, .velocity_ff_rpm = 100.0F}), 700);
+  EXPECT_EQ(sent({.mode = ControlMode::kVelocity, .value = 0.0, .velocity_ff_rpm = 100.0F}), 0)
+      << "a field that the mode does not use";
   makeWith({{"velocity_zero", std::string{"brake"}}, {"brake_current_a", 3.0}});
   EXPECT_EQ(sent(zero), 3000);
   EXPECT_EQ(packet_, vesc::Packet::kSetCurrentBrake);

@@ -46,6 +46,12 @@ _UNITS = {
 }
 
 
+_USED_BY: dict[str, tuple[Mode, ...]] = {
+    "velocity_ff_rpm": (Mode.ANGLE, Mode.TOTAL_ANGLE, Mode.IMPEDANCE),
+    "torque_ff_nm": (Mode.CURRENT, Mode.VELOCITY, Mode.ANGLE, Mode.TOTAL_ANGLE, Mode.IMPEDANCE),
+}
+
+
 @dataclass(frozen=True)
 class Setpoint:
     """One order to one motor; made by the functions below.
@@ -77,6 +83,8 @@ class Setpoint:
             return None if math.isnan(number) else "is for IMPEDANCE only"
         if not math.isfinite(number):
             return "is not a finite number"
+        if number != 0 and self.mode not in _USED_BY.get(name, Mode):
+            return "is for " + ", ".join(mode.name for mode in _USED_BY[name]) + " only"
         # All but the value travel as 32 bit floats.
         if name != "value" and abs(number) > _FLOAT32_MAX:
             return "is too large"

@@ -42,6 +42,9 @@ void readFallbacks(MotorReading& in) {
   if (const auto hold_s = in.settings.number("hold_max_s")) {
     fallback.hold_max = std::chrono::milliseconds{static_cast<std::int64_t>(*hold_s * 1000.0)};
   }
+  if (const auto run_down_s = in.settings.number("run_down_s")) {
+    in.draft.config.run_down = std::chrono::milliseconds{static_cast<std::int64_t>(*run_down_s * 1000.0)};
+  }
 }
 
 }  // namespace rc10

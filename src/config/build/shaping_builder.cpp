@@ -21,6 +21,7 @@ void readShaping(MotorReading& in) {
   in.settings.read("angle_min_deg", shaping.angle_min_deg);
   in.settings.read("angle_max_deg", shaping.angle_max_deg);
   in.settings.read("max_first_step_deg", shaping.max_first_step_deg);
+  shaping.effort_full_scale = in.traits.effort_full_scale;
   if (in.traits.host_loops != nullptr) {
     shaping.approach_rpm_per_deg = kApproachOfAngleGain * in.motor().loops.angle.kp;
     shaping.approach_effort_per_rpm =

@@ -138,6 +138,15 @@ constexpr std::array kMotorKeys{
         .range = {.min = 0, .max = 3600, .above_min = true},
         .default_text = "10",
         .about = "A fallback hold becomes damp after this time."},
+    Key{.name = "run_down_s",
+        .kind = kNumber,
+        .unit = "s",
+        .range = {.min = 0, .max = 3600},
+        .default_text = "5",
+        .about =
+            "Without torque the motor turns no longer than this: an e-stop is not cleared before a motor "
+            "that was lost while it was enabled, or turned, has been unheard for so long. A flywheel "
+            "needs more."},
     Key{.name = "current_slew_a_per_s",
         .kind = kNumber,
         .unit = "A/s",

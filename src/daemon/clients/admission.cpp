@@ -22,6 +22,14 @@ namespace {
 // NaN in an optional field: not given.
 [[nodiscard]] float orZero(float value) noexcept { return std::isnan(value) ? 0.0F : value; }
 
+[[nodiscard]] bool hasUnused(const Target& target) noexcept {
+  const TargetFields used = fieldsOf(target.mode);
+  const auto given = [](float value) { return !std::isnan(value) && value != 0.0F; };
+  return (!used.velocity_ff && given(target.velocity_ff_rpm)) ||
+         (!used.torque_ff && given(target.torque_ff_nm)) ||
+         (!used.spring && (given(target.stiffness_nm_per_rad) || given(target.damping_nms_per_rad)));
+}
+
 }  // namespace
 
 const char* toString(CommandRefusal refusal) noexcept {
@@ -37,6 +45,7 @@ const char* toString(CommandRefusal refusal) noexcept {
     case CommandRefusal::kRingFull: return "too many commands";
     case CommandRefusal::kUnknownModule: return "unknown module";
     case CommandRefusal::kUnknownSignal: return "unknown signal";
+    case CommandRefusal::kUnusedField: return "unused field";
   }
   return "unknown";
 }
@@ -58,6 +67,9 @@ const char* describe(CommandRefusal refusal) noexcept {
     case CommandRefusal::kUnknownModule: return "unknown module; `rc10ctl modules` shows the names";
     case CommandRefusal::kUnknownSignal:
       return "the module has no input of that name; `rc10ctl modules` shows the names";
+    case CommandRefusal::kUnusedField:
+      return "a feed-forward, stiffness or damping that its mode does not use was ignored; "
+             "docs/lcm.md#modes has what each mode uses";
   }
   return toString(refusal);
 }
@@ -76,10 +88,12 @@ CommandRefusal Admission::admit(const link::Command& message, MonotonicTime now,
   if (message.setpoint_count == 0 || message.setpoint_count > kMaxMotors || !deadline)
     return CommandRefusal::kMalformed;
   MotorSet named;
+  cleared_field_ = false;
   out.count = message.setpoint_count;
   for (std::size_t i = 0; i < out.count; ++i) {
     const auto refusal = translate(message.setpoints[i], out.setpoints[i]);
     if (refusal != CommandRefusal::kNone) return refusal;
+    cleared_field_ = cleared_field_ || hasUnused(message.setpoints[i].target);
     if (named.test(out.setpoints[i].motor)) return CommandRefusal::kMalformed;
     named.set(out.setpoints[i].motor);
   }
@@ -102,14 +116,12 @@ CommandRefusal Admission::translate(const link::Setpoint& in, Command::Setpoint&
   }
   if (!finite(in.target)) return CommandRefusal::kNotFinite;
   out.motor = static_cast<std::uint16_t>(motor);
-  out.target = {.mode = mode,
-                .value = usesValue(mode) ? in.target.value : 0.0,
-                .velocity_ff_rpm = orZero(in.target.velocity_ff_rpm),
-                .torque_ff_nm = orZero(in.target.torque_ff_nm)};
-  if (mode == ControlMode::kImpedance) {
-    out.target.stiffness_nm_per_rad = in.target.stiffness_nm_per_rad;
-    out.target.damping_nms_per_rad = in.target.damping_nms_per_rad;
-  }
+  out.target = withoutUnused({.mode = mode,
+                              .value = usesValue(mode) ? in.target.value : 0.0,
+                              .velocity_ff_rpm = orZero(in.target.velocity_ff_rpm),
+                              .torque_ff_nm = orZero(in.target.torque_ff_nm),
+                              .stiffness_nm_per_rad = in.target.stiffness_nm_per_rad,
+                              .damping_nms_per_rad = in.target.damping_nms_per_rad});
   return CommandRefusal::kNone;
 }
 

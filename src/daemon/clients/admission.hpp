@@ -29,8 +29,9 @@ enum class CommandRefusal : std::uint8_t {
   kRingFull,
   kUnknownModule,
   kUnknownSignal,  ///< The module has no such input.
+  kUnusedField,    ///< Not refused: a field that its mode does not use was cleared.
 };
-inline constexpr std::size_t kCommandRefusalCount = 11;
+inline constexpr std::size_t kCommandRefusalCount = 12;
 
 /// The name of the counter.
 [[nodiscard]] const char* toString(CommandRefusal refusal) noexcept;
@@ -51,6 +52,9 @@ class Admission {
   /// Translates a message; on refusal `out` is unspecified. `now` is CLOCK_MONOTONIC.
   [[nodiscard]] CommandRefusal admit(const link::Command& message, MonotonicTime now, Command& out);
 
+  /// Whether the last message that was accepted had a field that its mode does not use.
+  [[nodiscard]] bool clearedField() const noexcept { return cleared_field_; }
+
   /// Index of a motor, or -1.
   [[nodiscard]] int indexOf(std::string_view name) const;
 
@@ -67,6 +71,7 @@ class Admission {
   std::unordered_map<std::string, int> index_;
   SessionNumbers sessions_;
   std::array<std::uint64_t, kCommandRefusalCount> refusals_{};
+  bool cleared_field_ = false;
 };
 
 }  // namespace rc10

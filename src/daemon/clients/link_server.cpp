@@ -240,7 +240,10 @@ void LinkServer::command(const link::Command& message) {
   const bool handed_over = refusal == CommandRefusal::kNone && sources_.exchange.commands.push(accepted_);
   const auto outcome = refusal == CommandRefusal::kNone && !handed_over ? CommandRefusal::kRingFull : refusal;
   admission_.count(outcome);
-  if (outcome != CommandRefusal::kNone) reportRefusal(outcome, message.client);
+  if (outcome != CommandRefusal::kNone) return reportRefusal(outcome, message.client);
+  if (!admission_.clearedField()) return;
+  admission_.count(CommandRefusal::kUnusedField);
+  reportRefusal(CommandRefusal::kUnusedField, message.client);
 }
 
 void LinkServer::signals(const link::Signals& message) {

@@ -184,7 +184,8 @@ link::Event Publication::refusal(CommandRefusal reason, const link::Name& client
   out.severity = Severity::kWarning;
   out.code = static_cast<std::int32_t>(EventCode::kCommandRefused);
   out.source = "robot";
-  out.text = fmt::format("command of '{}' refused: {}", client.view(), describe(reason));
+  const auto* verdict = reason == CommandRefusal::kUnusedField ? "accepted" : "refused";
+  out.text = fmt::format("command of '{}' {}: {}", client.view(), verdict, describe(reason));
   return out;
 }
 

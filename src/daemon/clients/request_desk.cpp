@@ -43,6 +43,9 @@ constexpr std::string_view kEnableAloneOperation = "enable_alone";
     case Refusal::kMoving: return "still turning: the e-stop is cleared when every motor stands still";
     case Refusal::kEstopInput:
       return "the e-stop input is open: release the button, or mend its wire or chip";
+    case Refusal::kMayTurn:
+      return "no feedback, and it may still turn: wait until run_down_s after its last feedback";
+    case Refusal::kEstopAsked: return "an e-stop was asked for at the same time: it stays; clear it again";
     case Refusal::kConfiguring: return "a drive is being configured: wait for it";
     case Refusal::kNotConfirmed:
       return "the drive did not tell the setting as it was written; nothing after it was written or stored";
@@ -127,7 +130,8 @@ RequestDesk::Outcome RequestDesk::begin(const link::Request& request, std::uint6
              (*operation != Operation::kSetGains || parseChanges(request, gains, problem))) {
     const std::uint64_t id = next_order_id_++;
     open_.push_back({id, connection, request, motors, drive, gains});
-    outcome.order = Order{id, *operation, motors, value, drive, gains, request.client};
+    outcome.order =
+        Order{id, *operation, motors, value, drive, gains, request.client, request.target.view().empty()};
     return outcome;
   }
   outcome.response = respond(request, link::ResponseStatus::kRefused, problem);
@@ -298,8 +302,9 @@ std::optional<RequestDesk::Answer> RequestDesk::finish(const OrderResult& result
   auto status = link::ResponseStatus::kOk;
   std::string message =
       fmt::format("{}: {} of {} motors", found->request.operation.view(), total - failed, total);
-  const bool stays =
-      std::find(result.motors.begin(), result.motors.end(), Refusal::kMoving) != result.motors.end();
+  const bool stays = std::any_of(result.motors.begin(), result.motors.end(), [](Refusal refusal) {
+    return refusal == Refusal::kMoving || refusal == Refusal::kMayTurn;
+  });
   if (stays) message = fmt::format("{}: nothing done", found->request.operation.view());
   if (needed_failed != 0) status = link::ResponseStatus::kFailed;
   if (failed != 0) message += " (" + reasons(found->motors, result) + ")";

@@ -38,6 +38,7 @@ class Robot {
     ShapingConfig shaping{};
     FallbackConfig fallback{};
     float standstill_rpm = 0.0F;
+    Duration run_down{};  ///< Without torque and feedback it turns no longer than this.
   };
   struct BusEntry {
     std::unique_ptr<fdCANbus> bus;

@@ -51,10 +51,11 @@ struct Order {
   std::uint64_t id = kFromModule;  ///< Chosen by the link thread; comes back in the result.
   Operation operation{};
   MotorSet motors;
-  double value = 0.0;   ///< kZero: what the present angle becomes, deg.
-  DriveWrite drive{};   ///< kConfigure: what is written to the drive of the one motor.
-  GainChanges gains{};  ///< kSetGains: of the one motor.
-  link::Name client{};  ///< kSetGains: who asked.
+  double value = 0.0;        ///< kZero: what the present angle becomes, deg.
+  DriveWrite drive{};        ///< kConfigure: what is written to the drive of the one motor.
+  GainChanges gains{};       ///< kSetGains: of the one motor.
+  link::Name client{};       ///< kSetGains: who asked.
+  bool whole_robot = false;  ///< Named no motor. Only such a kClear ends an e-stop.
 
   [[nodiscard]] bool fromModule() const noexcept { return id == kFromModule; }
 };
@@ -82,6 +83,8 @@ enum class Refusal : std::uint8_t {
   kGroup,         ///< A motor that it is coupled with is offline or in fault.
   kMoving,        ///< Not before the motor stands still.
   kEstopInput,    ///< The e-stop input is open.
+  kMayTurn,       ///< Unheard for less than its run-down time: it may still turn.
+  kEstopAsked,    ///< An e-stop was asked for in the same tick.
   kConfiguring,   ///< A drive is being configured.
   kNotConfirmed,  ///< The drive did not tell a setting as it was written.
   kNotSaved,      ///< The drive did not tell that its settings are stored.

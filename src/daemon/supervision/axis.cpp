@@ -37,6 +37,7 @@ void Axis::listen(const Tick& tick, bool simulation_late) noexcept {
   const bool could_speak = !simulation_late || !bus_.simulated;
   if (could_speak) ++unheard_ticks_;
   if (heard) unheard_ticks_ = 0;
+  if (heard) on_when_heard_ = isOn(status_);
   samples_ = feedback.samples;
 }
 
@@ -55,6 +56,14 @@ bool Axis::lost(const Tick& tick) const noexcept {
 
 bool Axis::standsStill() const noexcept {
   return std::fabs(motor_.feedback().velocity_rpm) < entry_.standstill_rpm;
+}
+
+// The last speed of a motor that was on says nothing: it may have begun to move since.
+Refusal Axis::unrest(const Tick& tick) const noexcept {
+  if (!lost(tick)) return standsStill() ? Refusal::kNone : Refusal::kMoving;
+  const auto& feedback = motor_.feedback();
+  if (feedback.samples == 0 || (standsStill() && !on_when_heard_)) return Refusal::kNone;
+  return tick.now - feedback.received < entry_.run_down ? Refusal::kMayTurn : Refusal::kNone;
 }
 
 // ---- Once a tick
@@ -136,7 +145,8 @@ void Axis::order(RobotStatus robot, const Tick& tick) noexcept {
   }
   // First, so that soft limits act in this tick already.
   motor_.restoreReference(motor_.target().mode);
-  const auto shaped = shaper_.step(motor_.target(), motor_.feedback(), motor_.commandValue(), tick.dt_s);
+  const auto shaped = shaper_.step(motor_.target(), motor_.feedback(),
+                                   {motor_.commandValue(), motor_.commandUnit()}, tick.dt_s);
   limits_ |= shaped.limits;
   in_force_ = shaped.target;
   motor_.order(kind, shaped.target);

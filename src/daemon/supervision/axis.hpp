@@ -37,6 +37,8 @@ class Axis {
   /// Not fresh, and not only because this thread did not run.
   [[nodiscard]] bool lost(const Tick& tick) const noexcept;
   [[nodiscard]] bool standsStill() const noexcept;
+  /// Why an e-stop must not end yet: it turns, or may do so.
+  [[nodiscard]] Refusal unrest(const Tick& tick) const noexcept;
 
   // ---- Once a tick
 
@@ -100,6 +102,7 @@ class Axis {
   bool reference_known_ = false;     ///< In the last tick.
   std::uint64_t samples_ = 0;        ///< Of its feedback, when it was last heard.
   std::uint64_t unheard_ticks_ = 0;  ///< Since then.
+  bool on_when_heard_ = false;       ///< ENABLING or ACTIVE at that time.
   MonotonicTime enabling_since_;
   MonotonicTime enable_deadline_;
   MonotonicTime clearing_until_{};  ///< Until then the drive's complaints are old ones.

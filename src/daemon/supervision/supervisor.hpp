@@ -90,6 +90,8 @@ class Supervisor {
   void answer(const OrderResult& result) noexcept;
   [[nodiscard]] Refusal setGains(std::size_t motor, const Order& order, const Tick& tick) noexcept;
   void setRobotState(RobotStatus state, const Tick& tick) noexcept;
+  /// In every state: it also vetoes a kClear of this tick.
+  void estop(const Tick& tick) noexcept;
   void transition(std::size_t motor, MotorEvent event, const Tick& tick) noexcept;
   void watch(std::size_t motor, const Tick& tick) noexcept;
   void watchGroup(std::size_t index, const Tick& tick) noexcept;
@@ -116,6 +118,7 @@ class Supervisor {
   std::uint64_t simulation_steps_ = 0;  ///< As counted in the tick before.
   MonotonicTime simulation_stepped_at_{};
   bool simulation_late_ = false;
+  bool estop_asked_ = false;  ///< In this tick.
   std::uint64_t expired_commands_ = 0;
   std::uint64_t refused_commands_ = 0;
   std::uint64_t skipped_setpoints_ = 0;

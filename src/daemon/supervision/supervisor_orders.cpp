@@ -9,10 +9,8 @@ namespace rc10 {
 void Supervisor::receiveOrders(const Tick& tick) noexcept {
   const auto contact = link_.estop_contact.look(tick.dt_s);
   if (contact.news) report(estopInputEvent(*contact.news, tick.now));
-  if ((link_.estop.exchange(false, std::memory_order_acquire) || contact.stop) &&
-      state_ == RobotStatus::kRun) {
-    setRobotState(RobotStatus::kEstop, tick);
-  }
+  estop_asked_ = false;
+  if (link_.estop.exchange(false, std::memory_order_acquire) || contact.stop) estop(tick);
   // Only what is there now: a client that floods the ring must not lengthen the tick without bound.
   for (auto n = link_.orders.read_available(); n > 0; --n) {
     link_.orders.consume_one([&](const Order& order) { carryOut(order, tick); });
@@ -96,9 +94,9 @@ void Supervisor::carryOut(const Order& order, const Tick& tick) noexcept {
   result.id = order.id;
   MotorSet waiting;
   if (order.operation == Operation::kEstop) {
-    if (state_ == RobotStatus::kRun) setRobotState(RobotStatus::kEstop, tick);
-  } else if (order.operation == Operation::kClear && state_ == RobotStatus::kEstop &&
-             order.motors.count() == axes_.size() && !clearEstop(result, tick)) {
+    estop(tick);
+  } else if (order.operation == Operation::kClear && state_ == RobotStatus::kEstop && order.whole_robot &&
+             !clearEstop(result, tick)) {
     answer(result);
     return;
   }
@@ -135,18 +133,26 @@ void Supervisor::carryOut(const Order& order, const Tick& tick) noexcept {
   answer(result);
 }
 
-// The e-stop is the whole robot's: clearing one motor's fault leaves it. False: some
-// motor still turns, or the e-stop input is open.
+void Supervisor::estop(const Tick& tick) noexcept {
+  estop_asked_ = true;
+  if (state_ == RobotStatus::kRun) setRobotState(RobotStatus::kEstop, tick);
+}
+
+// The e-stop is the whole robot's: clearing the faults of motors leaves it, even of all that there are.
+// False: it stays, and the result says why.
 bool Supervisor::clearEstop(OrderResult& result, const Tick& tick) noexcept {
   if (link_.estop_contact.open()) {
     result.motors.fill(Refusal::kEstopInput);
     return false;
   }
+  if (estop_asked_) {
+    result.motors.fill(Refusal::kEstopAsked);
+    return false;
+  }
   bool at_rest = true;
   for (std::size_t motor = 0; motor < axes_.size(); ++motor) {
-    if (axes_[motor].lost(tick) || axes_[motor].standsStill()) continue;
-    result.motors[motor] = Refusal::kMoving;
-    at_rest = false;
+    result.motors[motor] = axes_[motor].unrest(tick);
+    if (result.motors[motor] != Refusal::kNone) at_rest = false;
   }
   if (at_rest) setRobotState(RobotStatus::kRun, tick);
   return at_rest;

@@ -143,6 +143,7 @@ void ModuleRunner::askAll(RobotRequest request) noexcept {
   Order order;
   order.operation = operationOf(request);
   for (std::size_t motor = 0; motor < motorCount(); ++motor) order.motors.set(motor);
+  order.whole_robot = true;
   supervisor_.takeModuleOrder(order, tick_);
 }
 

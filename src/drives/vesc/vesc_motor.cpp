@@ -179,7 +179,7 @@ void VESC_Motor::setDuty(double duty) noexcept {
 }
 
 void VESC_Motor::followVelocity(const Target& target) noexcept {
-  const double rpm = target.value + static_cast<double>(target.velocity_ff_rpm);
+  const double rpm = target.value;
   setVelocity(rpm);
   if (command_.packet != vesc::Packet::kSetErpm || command_.raw != 0) {
     locked_ = false;

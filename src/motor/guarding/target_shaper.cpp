@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "app/angle.hpp"
 #include "app/units.hpp"
@@ -19,6 +20,14 @@ namespace {
              : asked.value - feedback.total_angle_deg;
 }
 
+// The next value on the way to the goal; 0 per second: at once. True: the limit acts.
+[[nodiscard]] bool slewTowards(double goal, double per_second, float dt_s, double& value) noexcept {
+  const double most = per_second * static_cast<double>(dt_s);
+  const bool limited = per_second > 0.0 && std::fabs(goal - value) > most;
+  value = limited ? value + std::copysign(most, goal - value) : goal;
+  return limited;
+}
+
 }  // namespace
 
 bool TargetShaper::firstStepAllowed(const Target& asked, const MotorFeedback& feedback) const noexcept {
@@ -26,19 +35,32 @@ bool TargetShaper::firstStepAllowed(const Target& asked, const MotorFeedback& fe
          !(std::fabs(distanceDeg(asked, feedback)) > config_.max_first_step_deg);
 }
 
-TargetShaper::Shaped TargetShaper::step(const Target& asked, const MotorFeedback& feedback,
-                                        float effort_in_force, float dt_s) noexcept {
-  if (asked.mode != mode_) {
-    mode_ = asked.mode;
-    if (isEffort(mode_)) value_ = static_cast<double>(effort_in_force);
-    if (mode_ == ControlMode::kVelocity) value_ = static_cast<double>(feedback.velocity_rpm);
-    if (needsReference(mode_)) value_ = feedback.total_angle_deg;
-    if (!std::isfinite(value_)) value_ = 0.0;
+TargetShaper::Shaped TargetShaper::step(const Target& target, const MotorFeedback& feedback, InForce in_force,
+                                        float dt_s) noexcept {
+  if (target.mode != mode_) begin(target.mode, feedback, in_force);
+  if (isEffort(mode_)) return shapeEffort(target, feedback, dt_s);
+  if (mode_ != ControlMode::kVelocity && !needsReference(mode_)) return {target, 0};
+  Target asked = target;
+  const auto limits = shapeVelocityFf(asked, dt_s) | shapeTorqueFf(asked, feedback, dt_s);
+  auto out = mode_ == ControlMode::kVelocity ? shapeVelocity(asked, feedback, dt_s)
+                                             : shapeAngle(asked, feedback, dt_s);
+  out.limits |= limits;
+  return out;
+}
+
+// From what acts, in the unit of the mode: the last command may have been a speed.
+void TargetShaper::begin(ControlMode mode, const MotorFeedback& feedback, InForce in_force) noexcept {
+  mode_ = mode;
+  value_ = velocity_ff_rpm_ = torque_ff_nm_ = 0.0;
+  if (mode == ControlMode::kCurrent) {
+    const bool told = in_force.unit == CommandUnit::kAmpere;
+    value_ = static_cast<double>(told ? in_force.value : feedback.current_a);
   }
-  if (isEffort(mode_)) return shapeEffort(asked, feedback, dt_s);
-  if (mode_ == ControlMode::kVelocity) return shapeVelocity(asked, feedback, dt_s);
-  if (needsReference(mode_)) return shapeAngle(asked, feedback, dt_s);
-  return {asked, 0};
+  if (mode == ControlMode::kVoltage && in_force.unit == CommandUnit::kVolt)
+    value_ = static_cast<double>(in_force.value);
+  if (mode == ControlMode::kVelocity) value_ = static_cast<double>(feedback.velocity_rpm);
+  if (needsReference(mode)) value_ = feedback.total_angle_deg;
+  if (!std::isfinite(value_)) value_ = 0.0;
 }
 
 bool TargetShaper::bounded(const MotorFeedback& feedback) const noexcept {
@@ -51,29 +73,72 @@ TargetShaper::Envelope TargetShaper::envelope(double total_angle_deg) const noex
           std::max(0.0, (config_.angle_max_deg - total_angle_deg) * slope)};
 }
 
-// The next value on the way to the goal. True: the limit acts.
 bool TargetShaper::slew(double goal, float per_second, float dt_s) noexcept {
-  const double most = static_cast<double>(per_second) * static_cast<double>(dt_s);
-  const bool limited = per_second > 0.0F && std::fabs(goal - value_) > most;
-  value_ = limited ? value_ + std::copysign(most, goal - value_) : goal;
-  return limited;
+  return slewTowards(goal, static_cast<double>(per_second), dt_s, value_);
+}
+
+// The velocity of a trajectory: no faster than the angle may move, and no jump.
+std::uint32_t TargetShaper::shapeVelocityFf(Target& asked, float dt_s) noexcept {
+  const double most_rpm = config_.angle_slew_deg_per_s > 0.0F
+                              ? static_cast<double>(config_.angle_slew_deg_per_s) / kDegPerSPerRpm
+                              : std::numeric_limits<double>::infinity();
+  const auto wanted_rpm = static_cast<double>(asked.velocity_ff_rpm);
+  const double goal_rpm = std::clamp(wanted_rpm, -most_rpm, most_rpm);
+  const bool slewed =
+      slewTowards(goal_rpm, static_cast<double>(config_.velocity_slew_rpm_per_s), dt_s, velocity_ff_rpm_);
+  asked.velocity_ff_rpm = static_cast<float>(velocity_ff_rpm_);
+  return slewed || goal_rpm != wanted_rpm ? kLimitSlew : 0U;
+}
+
+// A feed-forward is an effort as any other: it rises at the rate of one, and fades towards a soft limit.
+std::uint32_t TargetShaper::shapeTorqueFf(Target& asked, const MotorFeedback& feedback, float dt_s) noexcept {
+  const auto per_nm = static_cast<double>(config_.effort_per_nm);
+  const double nm_per_s = per_nm > 0.0 ? static_cast<double>(config_.effort_slew_per_s) / per_nm : 0.0;
+  std::uint32_t limits = 0;
+  if (slewTowards(static_cast<double>(asked.torque_ff_nm), nm_per_s, dt_s, torque_ff_nm_))
+    limits = kLimitSlew;
+  if (torque_ff_nm_ != 0.0 && bounded(feedback)) {
+    const double sign = std::copysign(1.0, torque_ff_nm_);
+    const double most_nm = mostTorqueFf(asked, feedback, sign);
+    if (std::fabs(torque_ff_nm_) > most_nm) {
+      torque_ff_nm_ = sign * most_nm;
+      limits |= kLimitAngle;
+    }
+  }
+  asked.torque_ff_nm = static_cast<float>(torque_ff_nm_);
+  return limits;
+}
+
+// The most in the direction of `sign`. Below 0 it brakes: where a spring may be too soft to do it.
+double TargetShaper::mostTorqueFf(const Target& asked, const MotorFeedback& feedback,
+                                  double sign) const noexcept {
+  const Envelope allowed = envelope(feedback.total_angle_deg);
+  const double allowed_rpm = sign > 0.0 ? allowed.high_rpm : allowed.low_rpm;
+  double most_nm = 0.0;
+  if (config_.effort_per_nm > 0.0F) {
+    most_nm = sign * effortFor(allowed_rpm, feedback) / static_cast<double>(config_.effort_per_nm);
+  } else if (sign * (allowed_rpm - static_cast<double>(feedback.velocity_rpm)) > 0.0) {
+    most_nm = std::numeric_limits<double>::infinity();
+  }
+  return asked.mode == ControlMode::kImpedance ? most_nm : std::max(most_nm, 0.0);
 }
 
 TargetShaper::Shaped TargetShaper::shapeEffort(Target asked, const MotorFeedback& feedback,
                                                float dt_s) noexcept {
   // One effort, so that no part of it passes the limits by.
-  if (config_.effort_per_nm > 0.0F) {
-    asked.value += static_cast<double>(asked.torque_ff_nm) * static_cast<double>(config_.effort_per_nm);
-    asked.torque_ff_nm = 0.0F;
-  }
-  Shaped out{asked, slew(asked.value, config_.effort_slew_per_s, dt_s) ? kLimitSlew : 0U};
+  asked.value += static_cast<double>(asked.torque_ff_nm) * static_cast<double>(config_.effort_per_nm);
+  asked.torque_ff_nm = 0.0F;
+  const bool duty = mode_ == ControlMode::kDuty && config_.effort_full_scale > 0.0F;
+  const double scale = duty ? 1.0 / static_cast<double>(config_.effort_full_scale) : 1.0;
+  const double per_s = scale * static_cast<double>(config_.effort_slew_per_s);
+  Shaped out{asked, slewTowards(asked.value, per_s, dt_s, value_) ? kLimitSlew : 0U};
   out.target.value = value_;
   if (!bounded(feedback)) return out;
   // A push outwards fades as the speed nears what is allowed, and brakes beyond it. A push inwards always
   // acts.
   const Envelope allowed = envelope(feedback.total_angle_deg);
-  const double inside =
-      std::clamp(value_, effortFor(allowed.low_rpm, feedback), effortFor(allowed.high_rpm, feedback));
+  const double inside = std::clamp(value_, scale * effortFor(allowed.low_rpm, feedback),
+                                   scale * effortFor(allowed.high_rpm, feedback));
   if (inside != value_) out.limits |= kLimitAngle;
   out.target.value = inside;
   return out;

@@ -22,7 +22,8 @@ struct ShapingConfig {
   float approach_rpm_per_deg = 0.0F;     ///< Speed allowed towards a soft limit, per degree before it.
   float approach_effort_per_rpm = 0.0F;  ///< Effort allowed towards it, per rpm below the allowed speed.
   float effort_per_rpm = 0.0F;           ///< Effort that only keeps up a speed: 0 for A, back-EMF for V.
-  float effort_per_nm = 0.0F;            ///< A per N·m: makes a torque feed-forward a part of a current.
+  float effort_per_nm = 0.0F;            ///< A per N·m: of a torque feed-forward. 0: unknown.
+  float effort_full_scale = 0.0F;        ///< Effort of a duty of 1. 0: unknown.
   double max_first_step_deg = std::numeric_limits<double>::infinity();
 };
 
@@ -38,8 +39,13 @@ class TargetShaper {
 
   explicit TargetShaper(const ShapingConfig& config) noexcept : config_(config) {}
 
-  /// `effort_in_force`: what the drive was told last, A or V. `dt_s`: since the last step.
-  [[nodiscard]] Shaped step(const Target& asked, const MotorFeedback& feedback, float effort_in_force,
+  /// Last command to the drive.
+  struct InForce {
+    float value = 0.0F;
+    CommandUnit unit = CommandUnit::kNone;
+  };
+  /// `dt_s`: since the last step.
+  [[nodiscard]] Shaped step(const Target& asked, const MotorFeedback& feedback, InForce in_force,
                             float dt_s) noexcept;
   /// After a change of the angle loop's gain: see kApproachOfAngleGain.
   void setApproach(float rpm_per_deg) noexcept { config_.approach_rpm_per_deg = rpm_per_deg; }
@@ -59,7 +65,13 @@ class TargetShaper {
   [[nodiscard]] Envelope envelope(double total_angle_deg) const noexcept;
   [[nodiscard]] double effortFor(double allowed_rpm, const MotorFeedback& feedback) const noexcept;
   [[nodiscard]] double reachable(double goal_deg, bool any_turn) const noexcept;
+  void begin(ControlMode mode, const MotorFeedback& feedback, InForce in_force) noexcept;
   [[nodiscard]] bool slew(double goal, float per_second, float dt_s) noexcept;
+  [[nodiscard]] std::uint32_t shapeVelocityFf(Target& asked, float dt_s) noexcept;
+  [[nodiscard]] std::uint32_t shapeTorqueFf(Target& asked, const MotorFeedback& feedback,
+                                            float dt_s) noexcept;
+  [[nodiscard]] double mostTorqueFf(const Target& asked, const MotorFeedback& feedback,
+                                    double sign) const noexcept;
   [[nodiscard]] Shaped shapeEffort(Target asked, const MotorFeedback& feedback, float dt_s) noexcept;
   [[nodiscard]] Shaped shapeVelocity(Target asked, const MotorFeedback& feedback, float dt_s) noexcept;
   [[nodiscard]] Shaped shapeAngle(Target asked, const MotorFeedback& feedback, float dt_s) noexcept;
@@ -67,6 +79,8 @@ class TargetShaper {
   ShapingConfig config_;
   ControlMode mode_ = ControlMode::kCoast;  ///< Of the last step.
   double value_ = 0.0;                      ///< The slewed target of that mode.
+  double velocity_ff_rpm_ = 0.0;            ///< Slewed, too.
+  double torque_ff_nm_ = 0.0;
 };
 
 }  // namespace rc10

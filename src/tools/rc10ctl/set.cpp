@@ -6,6 +6,7 @@
 
 #include <CLI/CLI.hpp>
 
+#include "app/target.hpp"
 #include "client/duration_text.hpp"
 #include "client/text_table.hpp"
 #include "drive.hpp"
@@ -41,6 +42,14 @@ Result<Drive> driveFrom(const SetOptions& options) {
   if (!std::isfinite(options.value.value_or(0.0)))
     return fail("a target is a finite number, such as `rc10ctl set " + options.motor + " " + options.mode +
                 " 10`");
+  const TargetFields used = fieldsOf(*mode);
+  if (!used.velocity_ff && options.velocity_ff_rpm != 0.0F)
+    return fail("--velocity-ff is for angle, total_angle and impedance, not for " + options.mode +
+                ": leave it out");
+  if (!used.torque_ff && options.torque_ff_nm != 0.0F)
+    return fail("--torque-ff is not for " + options.mode + ": leave it out");
+  if (!used.spring && (options.stiffness_nm_per_rad != 0.0F || options.damping_nms_per_rad != 0.0F))
+    return fail("--stiffness and --damping are for impedance, not for " + options.mode + ": leave them out");
   const auto time = client::parseDuration(options.time);
   if (!time) return fail("--for " + options.time + ": give a time like 2s, 500ms or 1min, at most a day");
   if (options.motor.size() >= sizeof(link::Name))
