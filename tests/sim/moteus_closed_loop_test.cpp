@@ -260,6 +260,16 @@ TEST(MoteusClosedLoop, OtherRegisterMapsAreRefused) {
   EXPECT_EQ(rig.motor().complaint().fault, FaultCode::kNone);
 }
 
+// The firmware truncates a read: each of these comes back as one count less.
+TEST(MoteusClosedLoop, AWatchdogThatIsReadBackTruncatedIsTheRightOne) {
+  for (const int watchdog_ms : {63, 125, 126, 250, 252, 500, 504, 505, 509, 1000}) {
+    auto settings = moteusMotor();
+    settings.own.set("watchdog_ms", watchdog_ms);
+    Rig rig(settings);
+    EXPECT_TRUE(rig.start()) << watchdog_ms;
+  }
+}
+
 TEST(MoteusClosedLoop, ItsWatchdogTripsLatchesAndIsLeftByAStopAlone) {
   auto settings = moteusMotor();
   settings.own.set("watchdog_ms", 30.0);

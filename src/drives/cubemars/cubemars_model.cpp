@@ -31,8 +31,8 @@ constexpr std::array kCubemarsModels{
                   .pole_pairs = 14,
                   .rotor_torque_nm_per_a = 0.068F,
                   .nominal_v = 24.0F,
-                  .no_load_rpm = 560.0F,               // KV 140
-                  .ranges = range(12.5, 50.0, 15.0)},  // KMR_CubeMars: 45 rad/s, see velocity_range_rad_s
+                  .no_load_rpm = 560.0F,  // KV 140
+                  .ranges = range(12.5, 45.0, 15.0)},
     CubemarsModel{.name = "AK70-10",
                   .gear_ratio = 10.0,
                   .pole_pairs = 21,

@@ -58,12 +58,19 @@ constexpr Scale kNumber{1.0, 1.0, 1.0};
   return kNumber;
 }
 
+// Values written to the drive are rounded. The drive truncates those of its replies, in single precision:
+// 0.063 s are 62 ms (mjbots/moteus, fw/moteus_controller.cc, ScaleMapping).
+constexpr std::uint8_t kReply = 0x20;
+
 /// Symmetric, as the drive does it: the lowest integer is "not a number".
 template <typename T>
-[[nodiscard]] T toCounts(double value, double scale) noexcept {
+[[nodiscard]] T toCounts(double value, double scale, std::uint8_t kind) noexcept {
   if (!std::isfinite(value)) return std::numeric_limits<T>::min();
   constexpr auto kMax = static_cast<double>(std::numeric_limits<T>::max());
-  return static_cast<T>(std::clamp(std::round(value / scale), -kMax, kMax));
+  const double counts = kind == kReply
+                            ? std::trunc(static_cast<double>(static_cast<float>(value) / static_cast<float>(scale)))
+                            : std::round(value / scale);
+  return static_cast<T>(std::clamp(counts, -kMax, kMax));
 }
 
 template <typename T>
@@ -124,9 +131,9 @@ Writer& Writer::put(std::uint8_t kind, Type type, Register first,
   for (const double value : values) {
     const double scale = scaleOf(static_cast<Register>(reg++), type);
     switch (type) {
-      case Type::kInt8: writeLittleEndian(frame_.data, used_, toCounts<std::int8_t>(value, scale)); break;
-      case Type::kInt16: writeLittleEndian(frame_.data, used_, toCounts<std::int16_t>(value, scale)); break;
-      case Type::kInt32: writeLittleEndian(frame_.data, used_, toCounts<std::int32_t>(value, scale)); break;
+      case Type::kInt8: writeLittleEndian(frame_.data, used_, toCounts<std::int8_t>(value, scale, kind)); break;
+      case Type::kInt16: writeLittleEndian(frame_.data, used_, toCounts<std::int16_t>(value, scale, kind)); break;
+      case Type::kInt32: writeLittleEndian(frame_.data, used_, toCounts<std::int32_t>(value, scale, kind)); break;
       case Type::kFloat: writeLittleEndian(frame_.data, used_, toFloat(value)); break;
     }
     used_ += bytes;

@@ -275,8 +275,9 @@ void Moteus_Motor::updateSequence(const Tick& tick) noexcept {
   }
   if (step_ == Step::kEngage && mode_ == moteus::Mode::kPosition) enter(Step::kVerify, tick);
   if (step_ == Step::kVerify && verified_s_) {
-    constexpr double kHalfCountSeconds = 0.0005;
-    if (std::abs(*verified_s_ - watchdog_s_) < kHalfCountSeconds) {
+    // The drive truncates what it reads back: 63 ms are told as 62.
+    constexpr double kToleranceSeconds = 0.0015;
+    if (std::abs(*verified_s_ - watchdog_s_) < kToleranceSeconds) {
       engaged_ = true;
       enter(Step::kDone, tick);
     } else {

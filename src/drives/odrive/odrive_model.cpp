@@ -57,6 +57,7 @@ constexpr auto kOdriveFaults06 = [] {
       DriveFault{0x4000, kDriveTooHot, "power stage too hot"},
       DriveFault{0x8000, kDriveLimit, "faster than its velocity limit"},
       DriveFault{0x1'0000, kDriveLimit, "beyond its position limit"},
+      DriveFault{0x2'0000, kDriveSetting, "more current asked for than its limit"},
       DriveFault{0x0400'0000, kDriveEncoder, "spin-out: encoder and motor do not agree"},
       DriveFault{0x8, kDriveEncoder, "no position estimate"},
       DriveFault{0x4000'0000, kDriveCalibration, "calibration failed"},

@@ -86,7 +86,7 @@ CUBEMARS_MODELS = {
     model.name: model
     for model in (
         CubeMarsModel("AK10-9", 9, 21, 0.16, 320, 12.5, 50, 65),
-        CubeMarsModel("AK60-6", 6, 14, 0.068, 560, 12.5, 50, 15),
+        CubeMarsModel("AK60-6", 6, 14, 0.068, 560, 12.5, 45, 15),
         CubeMarsModel("AK70-10", 10, 21, 0.095, 480, 12.5, 50, 25),
         CubeMarsModel("AK80-6", 6, 21, 0.091, 800, 12.5, 76, 12),
         CubeMarsModel("AK80-9", 9, 21, 0.091, 533, 12.5, 50, 18),

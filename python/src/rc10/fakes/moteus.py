@@ -114,13 +114,20 @@ def _put_varuint(value: int) -> bytes:
     return bytes(out)
 
 
+def _single(value: float) -> float:
+    (number,) = _FLOAT.unpack(_FLOAT.pack(value))
+    return float(number)
+
+
 def _encode(value: float, wire_type: int, register: int) -> bytes:
+    """Encodes as the firmware does: in single precision, truncated. 0.063 s are 62 ms."""
     if wire_type == 3:
         return _FLOAT.pack(value)
     most = _MOST[wire_type]
     if not math.isfinite(value):
         return _INTS[wire_type].pack(-most - 1)
-    counts = round(value / _SCALES.get(register, _PLAIN)[wire_type])
+    scale = _SCALES.get(register, _PLAIN)[wire_type]
+    counts = int(_single(_single(value) / _single(scale)))
     return _INTS[wire_type].pack(max(-most, min(most, counts)))
 
 
