@@ -200,9 +200,44 @@ def test_values_survive_and_saturate(wire_type: int, register: int) -> None:
     for _ in range(50):
         value = generator.uniform(-most, most)
         (subframe,) = parse(reply(wire_type, register, [value]))
-        assert subframe.values[0] == pytest.approx(value, abs=count * 0.51)
+        # Truncated, in single precision.
+        assert subframe.values[0] == pytest.approx(value, abs=count * 1.01, rel=1e-6)
     (subframe,) = parse(reply(wire_type, register, [math.nan]))
     assert math.isnan(subframe.values[0])
+
+
+# The values that the firmware reads back as one count less.
+@pytest.mark.parametrize("milliseconds", [63, 125, 126, 250, 252, 500, 504, 505, 509, 1000])
+def test_a_watchdog_is_read_back_truncated(milliseconds: int) -> None:
+    answer = ask(FakeMoteus(1), "01000A 0527" + struct.pack("<h", milliseconds).hex() + "1527")
+    assert bytes(answer.data[:4]) == bytes.fromhex("2527") + struct.pack("<h", milliseconds - 1)
+
+
+def test_a_watchdog_of_another_length_is_read_back_as_it_is() -> None:
+    for milliseconds in (10, 50, 62, 64, 100, 200, 999):
+        answer = ask(FakeMoteus(1), "01000A 0527" + struct.pack("<h", milliseconds).hex() + "1527")
+        assert bytes(answer.data[:4]) == bytes.fromhex("2527") + struct.pack("<h", milliseconds)
+
+
+def test_what_is_not_there_is_answered_with_an_error() -> None:
+    fake = FakeMoteus(1)
+    assert bytes(ask(fake, "1100 1108 110F").data) == bytes.fromhex("210000310801")
+    assert bytes(ask(fake, "118202").data) == bytes.fromhex("31820201")
+    assert bytes(ask(fake, "010800 010100").data) == bytes.fromhex("300801300102")
+    assert [part.kind for part in parse(bytes.fromhex("300801310801"))] == ["error"] * 2
+
+
+def test_its_other_modes_are_taken() -> None:
+    for mode in (5, 6, 7, 8, 9, 12, 13, 15):
+        fake = FakeMoteus(1)
+        run(fake, 0.02, f"0100{mode:02X}")
+        assert fake.mode == mode
+    fake = FakeMoteus(1)
+    run(fake, 0.02, "010009 051C 1E00")
+    assert fake.current_a == pytest.approx(3.0)
+    fake = FakeMoteus(1)
+    run(fake, 1.0, "01000D 0640 1027 FF7F")
+    assert fake.position_rev == pytest.approx(1.0, abs=0.05)
 
 
 def test_garbage_does_nothing() -> None:
@@ -230,7 +265,9 @@ def test_it_is_asked_for_by_model_and_id() -> None:
 def test_it_answers_beside_others() -> None:
     drives = Drives([FakeMoteus(1), FakeMoteus(2)])
     assert drives.fd
-    assert drives.filters[1] == {"can_id": 0x8002, "can_mask": 0x1FFFFFFF, "extended": True}
+    assert {"can_id": 2, "can_mask": 0x1FFF00FF, "extended": True} in drives.filters
+    drives.receive(frame("01000F", 0x001, is_extended_id=False))
+    assert [motor.commands for motor in drives.motors] == [1, 0], "nobody asks for an answer"
     drives.receive(frame(QUERY, 0x8002))
     drives.step(0.001)
     (answer,) = drives.feedback()

@@ -93,6 +93,13 @@ TEST(CubemarsGolden, MitCommand) {
   expectFrame(cubemars::mitFrame(0x68, ranges, kSetpoint), {0x68, false}, "851E8281993338E3");
 }
 
+// CubeMars AK series manual, p. 63.
+TEST(CubemarsGolden, TheSpeedScaleOfAnAk606EndsAt45RadPerSecond) {
+  const CubemarsRanges ranges = findCubemarsModel("AK60-6")->ranges;
+  expectFrame(cubemars::mitFrame(1, ranges, {.velocity_rad_s = 45.0}), {1, false}, "7FFFFFF0000007FF");
+  expectFrame(cubemars::mitFrame(1, ranges, {.velocity_rad_s = 22.5}), {1, false}, "7FFFBFF0000007FF");
+}
+
 TEST(CubemarsGolden, MitCommandOfAV3DriveHasAnotherOrder) {
   const CubemarsRanges ranges = findCubemarsModel("AK10-9-V3")->ranges;
   expectFrame(cubemars::mitV3Frame(0x68, ranges, kSetpoint), {0x868, true}, "199333851784884B");

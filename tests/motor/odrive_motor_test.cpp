@@ -458,6 +458,14 @@ TEST_F(OdriveMotor, EveryKnownErrorHasAFaultAndAnyOtherIsAFaultToo) {
   }
 }
 
+// ODrive.Error.REQUESTED_CURRENT_TOO_HIGH
+TEST_F(OdriveMotor, MoreCurrentAskedForThanItsLimitIsAWrongSetting) {
+  make(odriveSettings("ODrive_S1"));
+  heartbeat(0x2'0000, 1);
+  EXPECT_EQ(motor_->complaint().fault, FaultCode::kDriveSetting);
+  EXPECT_EQ(motor_->complaint().native_code, 0x2'0000U);
+}
+
 TEST_F(OdriveMotor, OneBitOfATableMeansOneThing) {
   for (const auto firmware : {OdriveFirmware::k05, OdriveFirmware::k06}) {
     std::set<std::uint32_t> bits;

@@ -262,12 +262,116 @@ TEST(MoteusClosedLoop, OtherRegisterMapsAreRefused) {
 
 // The firmware truncates a read: each of these comes back as one count less.
 TEST(MoteusClosedLoop, AWatchdogThatIsReadBackTruncatedIsTheRightOne) {
-  for (const int watchdog_ms : {63, 125, 126, 250, 252, 500, 504, 505, 509, 1000}) {
+  for (const double watchdog_ms : {63.0, 125.0, 126.0, 250.0, 252.0, 500.0, 504.0, 505.0, 509.0, 1000.0}) {
     auto settings = moteusMotor();
     settings.own.set("watchdog_ms", watchdog_ms);
     Rig rig(settings);
     EXPECT_TRUE(rig.start()) << watchdog_ms;
   }
+}
+
+// Source of these answers: mjbots/mjlib, mjlib/multiplex/micro_server.cc; mjbots/moteus,
+// fw/moteus_controller.cc.
+class Conversation {
+ public:
+  std::string ask(std::initializer_list<std::uint8_t> payload, std::uint32_t id = 0x8001) {
+    CanFrame frame;
+    frame.id = {id, id > kStandardIdMask};
+    frame.fd = true;
+    frame.length = roundUpFdLength(payload.size());
+    std::fill_n(frame.data.begin(), frame.length, std::uint8_t{0x50});
+    std::copy(payload.begin(), payload.end(), frame.data.begin());
+    drive->receive(frame);
+    std::array<CanFrame, sim::Drive::kMaxFrames> out{};
+    if (drive->answers(out) == 0) return "silence";
+    std::string text;
+    for (const auto byte : out[0].payload()) {
+      constexpr std::string_view kDigits = "0123456789ABCDEF";
+      text += {kDigits[byte >> 4U], kDigits[byte & 15U]};
+    }
+    while (text.ends_with("50")) text.resize(text.size() - 2);
+    return text;
+  }
+  void wait(Duration time) { drive->step(time); }
+
+  std::unique_ptr<sim::Drive> drive = sim::makeMoteusDrive(moteusMotor(), {});
+};
+
+TEST(MoteusClosedLoop, AnAnswerIsGroupedAsItsQuestion) {
+  Conversation drive;
+  EXPECT_EQ(drive.ask({0x11, 0x00, 0x13, 0x0D}), "210000230D301900");
+  EXPECT_EQ(drive.ask({0x10, 0x05, 0x0B}), "20050B0101301900");
+  // 15 registers as floats: 63 bytes in one subframe, one too many with a head each.
+  EXPECT_EQ(drive.ask({0x1C, 0x0F, 0x20}), "312E01") << "one of them is not there";
+  EXPECT_EQ(drive.ask({0x1C, 0x0E, 0x20}).substr(0, 6), "2C0E20");
+  EXPECT_EQ(drive.ask({0x1C, 0x0E, 0x20}).size(), 2U * (3U + 14U * 4U));
+}
+
+TEST(MoteusClosedLoop, ARegisterThatIsNotThereIsAnsweredWithAnError) {
+  Conversation drive;
+  EXPECT_EQ(drive.ask({0x11, 0x00, 0x11, 0x08, 0x11, 0x0F}), "210000310801")
+      << "and what follows is not read";
+  EXPECT_EQ(drive.ask({0x13, 0x07}), "310801") << "nor what was read of its subframe";
+  EXPECT_EQ(drive.ask({0x11, 0x82, 0x02}), "31820201") << "the version is an int32";
+  EXPECT_EQ(drive.ask({0x19, 0x82, 0x02}),
+            "2982020500"
+            "0000");
+  EXPECT_EQ(drive.ask({0x01, 0x08, 0x00, 0x01, 0x01, 0x00}), "300801300102");
+  EXPECT_EQ(drive.ask({0x01, 0x00, 0x0A}, 0x001), "silence") << "nobody asked for an answer";
+}
+
+TEST(MoteusClosedLoop, ItsCommandRegistersAreReadAsTheyWereWritten) {
+  Conversation drive;
+  EXPECT_EQ(drive.ask({0x14, 0x0E, 0x20}),
+            "240E20"
+            "0000"
+            "0000"
+            "0000"
+            "FF7F"
+            "FF7F"
+            "1027"
+            "0080"
+            "0000"
+            "0080"
+            "0080"
+            "0080"
+            "FF7F"
+            "0080"
+            "0000");
+  EXPECT_EQ(drive.ask({0x01, 0x00, 0x0D, 0x05, 0x46, 0x3F, 0x00, 0x15, 0x27}), "25273E00")
+      << "63 ms truncated";
+  EXPECT_EQ(drive.ask({0x05, 0x1C, 0x1E, 0x00, 0x15, 0x1C}), "251C1E00");
+}
+
+TEST(MoteusClosedLoop, ItsOtherModesAreTakenAndLeftLikePositionMode) {
+  for (std::uint8_t mode = 5; mode <= 15; ++mode) {
+    Conversation drive;
+    drive.ask({0x01, 0x00, mode});
+    drive.wait(20ms);
+    if (mode == 11) continue;  // its watchdog's
+    EXPECT_EQ(drive.ask({0x11, 0x00, 0x11, 0x0F}),
+              std::string{"2100"} + "0" + "0123456789ABCDEF"[mode] + "210F00");
+    drive.ask({0x01, 0x00, 0x0F});
+    EXPECT_EQ(drive.ask({0x11, 0x00}), "21000F");
+    drive.ask({0x01, 0x00, 0x00});
+    EXPECT_EQ(drive.ask({0x11, 0x00}), "210000");
+  }
+}
+
+TEST(MoteusClosedLoop, ItsCurrentModeGivesTheCurrentAndStayWithinPushesBack) {
+  Conversation drive;
+  drive.ask({0x01, 0x00, 0x09, 0x05, 0x1C, 0x1E, 0x00});  // 3 A
+  drive.wait(20ms);
+  EXPECT_NEAR(drive.drive->physics().currentA(), 3.0, 0.1);
+  EXPECT_GT(drive.drive->physics().outputRpm(), 10.0);
+
+  Conversation held;  // at 0, told to be within 1 and 2 turns; a watchdog of 2 s
+  held.ask({0x01, 0x00, 0x0D, 0x06, 0x40, 0x10, 0x27, 0xFF, 0x7F, 0x05, 0x46, 0xD0, 0x07});
+  held.wait(1s);
+  EXPECT_NEAR(held.drive->physics().outputAngleDeg(), 360.0, 20.0);
+  EXPECT_NEAR(held.drive->physics().outputRpm(), 0.0, 5.0);
+  held.wait(2s);
+  EXPECT_EQ(held.ask({0x11, 0x00}), "21000B") << "it is watched";
 }
 
 TEST(MoteusClosedLoop, ItsWatchdogTripsLatchesAndIsLeftByAStopAlone) {

@@ -11,6 +11,8 @@ namespace rc10::moteus {
 namespace {
 
 constexpr std::uint8_t kNop = 0x50;
+constexpr std::uint8_t kWriteError = 0x30;
+constexpr std::uint8_t kReadError = 0x31;
 constexpr std::uint32_t kMaxCount = 64;  // more registers than a frame has bytes
 
 constexpr std::array<std::size_t, 4> kBytes{1, 2, 4, 4};
@@ -27,6 +29,7 @@ constexpr Scale kSeconds{0.01, 0.001, 1e-6};
 constexpr Scale kRevolutions{0.01, 1e-4, 1e-5};
 constexpr Scale kRevPerS{0.1, 2.5e-4, 1e-5};
 constexpr Scale kRevPerS2{0.05, 1e-3, 1e-5};
+constexpr Scale kWatts{10.0, 0.05, 1e-4};
 constexpr Scale kShare{1.0 / 127.0, 1.0 / 32767.0, 1.0 / 2147483647.0};
 constexpr Scale kNumber{1.0, 1.0, 1.0};
 
@@ -34,21 +37,52 @@ constexpr Scale kNumber{1.0, 1.0, 1.0};
   using enum Register;
   switch (reg) {
     case kPosition:
-    case kCommandPosition: return kRevolutions;
+    case kAbsolutePosition:
+    case kCommandPosition:
+    case kStopPosition:
+    case kStayWithinLower:
+    case kStayWithinUpper: return kRevolutions;
     case kVelocity:
     case kCommandVelocity:
+    case kVoltageFocThetaRate:
     case kVelocityLimit: return kRevPerS;
     case kAccelerationLimit: return kRevPerS2;
     case kTorque:
     case kCommandTorque:
-    case kMaxTorque: return kTorqueNm;
-    case kQCurrent: return kCurrentA;
-    case kVoltage: return kVolts;
-    case kTemperature: return kCelsius;
-    case kTimeout: return kSeconds;
+    case kMaxTorque:
+    case kStayWithinTorque:
+    case kStayWithinMaxTorque: return kTorqueNm;
+    case kQCurrent:
+    case kDCurrent:
+    case kCommandQCurrent:
+    case kCommandDCurrent:
+    case kFixedCurrent: return kCurrentA;
+    case kVoltage:
+    case kVoltagePhaseA:
+    case kVoltagePhaseB:
+    case kVoltagePhaseC:
+    case kVoltageFoc:
+    case kVoltageDqD:
+    case kVoltageDqQ:
+    case kFixedVoltage: return kVolts;
+    case kTemperature:
+    case kMotorTemperature: return kCelsius;
+    case kTimeout:
+    case kStayWithinTimeout: return kSeconds;
+    case kPower: return kWatts;
+    case kPwmPhaseA:
+    case kPwmPhaseB:
+    case kPwmPhaseC:
+    case kVoltageFocTheta:
     case kKpScale:
     case kKdScale:
-    case kIlimitScale: return kShare;
+    case kIlimitScale:
+    case kStayWithinKpScale:
+    case kStayWithinKdScale:
+    case kStayWithinIlimitScale: return kShare;
+    case kTrajectoryComplete:
+    case kIgnorePositionBounds:
+    case kStayWithinIgnorePositionBounds:
     case kMode:
     case kHomeState:
     case kFault:
@@ -67,9 +101,9 @@ template <typename T>
 [[nodiscard]] T toCounts(double value, double scale, std::uint8_t kind) noexcept {
   if (!std::isfinite(value)) return std::numeric_limits<T>::min();
   constexpr auto kMax = static_cast<double>(std::numeric_limits<T>::max());
-  const double counts = kind == kReply
-                            ? std::trunc(static_cast<double>(static_cast<float>(value) / static_cast<float>(scale)))
-                            : std::round(value / scale);
+  const double counts =
+      kind == kReply ? std::trunc(static_cast<double>(static_cast<float>(value) / static_cast<float>(scale)))
+                     : std::round(value / scale);
   return static_cast<T>(std::clamp(counts, -kMax, kMax));
 }
 
@@ -121,8 +155,7 @@ bool Writer::header(std::uint8_t kind, Type type, Register first, std::uint32_t 
   return true;
 }
 
-Writer& Writer::put(std::uint8_t kind, Type type, Register first,
-                    std::initializer_list<double> values) noexcept {
+Writer& Writer::put(std::uint8_t kind, Type type, Register first, std::span<const double> values) noexcept {
   const std::size_t bytes = kBytes[static_cast<std::size_t>(type)];
   if (!header(kind, type, first, static_cast<std::uint32_t>(values.size()), bytes * values.size())) {
     return *this;
@@ -131,13 +164,30 @@ Writer& Writer::put(std::uint8_t kind, Type type, Register first,
   for (const double value : values) {
     const double scale = scaleOf(static_cast<Register>(reg++), type);
     switch (type) {
-      case Type::kInt8: writeLittleEndian(frame_.data, used_, toCounts<std::int8_t>(value, scale, kind)); break;
-      case Type::kInt16: writeLittleEndian(frame_.data, used_, toCounts<std::int16_t>(value, scale, kind)); break;
-      case Type::kInt32: writeLittleEndian(frame_.data, used_, toCounts<std::int32_t>(value, scale, kind)); break;
+      case Type::kInt8:
+        writeLittleEndian(frame_.data, used_, toCounts<std::int8_t>(value, scale, kind));
+        break;
+      case Type::kInt16:
+        writeLittleEndian(frame_.data, used_, toCounts<std::int16_t>(value, scale, kind));
+        break;
+      case Type::kInt32:
+        writeLittleEndian(frame_.data, used_, toCounts<std::int32_t>(value, scale, kind));
+        break;
       case Type::kFloat: writeLittleEndian(frame_.data, used_, toFloat(value)); break;
     }
     used_ += bytes;
   }
+  return *this;
+}
+
+Writer& Writer::error(bool of_read, Register reg, std::uint8_t code) noexcept {
+  const auto number = static_cast<std::uint32_t>(reg);
+  const std::size_t number_bytes = number < 0x80U ? 1 : 2;
+  if (used_ + 2 + number_bytes > kMaxPayload) return *this;
+  frame_.data[used_++] = of_read ? kReadError : kWriteError;
+  if (number_bytes == 2) frame_.data[used_++] = static_cast<std::uint8_t>(0x80U | (number & 0x7FU));
+  frame_.data[used_++] = static_cast<std::uint8_t>(number_bytes == 2 ? number >> 7U & 0x7FU : number);
+  frame_.data[used_++] = code & 0x7FU;
   return *this;
 }
 
@@ -169,7 +219,7 @@ Reader::Step Reader::begin() noexcept {
   while (at_ < payload_.size() && payload_[at_] == kNop) ++at_;
   if (at_ >= payload_.size()) return Step::kEnd;
   const std::uint8_t head = payload_[at_++];
-  if (head == 0x30 || head == 0x31) {
+  if (head == kWriteError || head == kReadError) {
     kind_ = Item::Kind::kError;
     left_ = 1;
     return readNumber(register_) ? Step::kItem : Step::kMalformed;
@@ -187,7 +237,7 @@ Reader::Step Reader::next(Item& item) noexcept {
   if (left_ == 0) {
     if (const Step begun = begin(); begun != Step::kItem) return begun;
   }
-  item = {.kind = kind_, .type = type_, .reg = static_cast<Register>(register_), .value = 0.0};
+  item = {.kind = kind_, .type = type_, .reg = static_cast<Register>(register_), .value = 0.0, .left = left_};
   --left_;
   ++register_;
   if (kind_ == Item::Kind::kRead) return Step::kItem;

@@ -275,9 +275,10 @@ void Moteus_Motor::updateSequence(const Tick& tick) noexcept {
   }
   if (step_ == Step::kEngage && mode_ == moteus::Mode::kPosition) enter(Step::kVerify, tick);
   if (step_ == Step::kVerify && verified_s_) {
-    // The drive truncates what it reads back: 63 ms are told as 62.
-    constexpr double kToleranceSeconds = 0.0015;
-    if (std::abs(*verified_s_ - watchdog_s_) < kToleranceSeconds) {
+    // The drive truncates its replies: 63 ms are told as 62.
+    constexpr double kHalfCountSeconds = 0.0005;
+    const double missing_s = watchdog_s_ - *verified_s_;
+    if (missing_s > -kHalfCountSeconds && missing_s < 3.0 * kHalfCountSeconds) {
       engaged_ = true;
       enter(Step::kDone, tick);
     } else {

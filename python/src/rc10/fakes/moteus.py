@@ -16,10 +16,15 @@ if TYPE_CHECKING:
 
 NAN = math.nan
 NOP = 0x50
+WRITE_ERROR, READ_ERROR = 0x30, 0x31
+UNKNOWN_REGISTER, READ_ONLY = 1, 2
 _FD_LENGTHS = (0, 1, 2, 3, 4, 5, 6, 7, 8, 12, 16, 20, 24, 32, 48, 64)
 
 STOPPED, FAULT, ENABLING, POSITION, TIMEOUT, ZERO_VELOCITY, BRAKE = 0, 1, 2, 10, 11, 12, 15
-_DRIVEN = (POSITION, ZERO_VELOCITY, BRAKE)
+PWM, VOLTAGE, VOLTAGE_FOC, VOLTAGE_DQ, CURRENT, STAY_WITHIN = 5, 6, 7, 8, 9, 13
+_OPEN = (PWM, VOLTAGE, VOLTAGE_FOC, VOLTAGE_DQ)
+_DRIVEN = (*_OPEN, CURRENT, POSITION, ZERO_VELOCITY, STAY_WITHIN, BRAKE)
+_WATCHED = (POSITION, STAY_WITHIN)
 
 # Wire types by bits 2 and 3 of a subframe's first byte; the lowest integer means NaN.
 _INTS = (struct.Struct("<b"), struct.Struct("<h"), struct.Struct("<i"))
@@ -37,7 +42,7 @@ _REV = (0.01, 1e-4, 1e-5)
 _REV_S = (0.1, 2.5e-4, 1e-5)
 _REV_S2 = (0.05, 1e-3, 1e-5)
 _SHARE = (1 / 127, 1 / 32767, 1 / 2147483647)
-_SCALES = {
+_SCALES: dict[int, tuple[float, float, float]] = {
     0x001: _REV,
     0x002: _REV_S,
     0x003: _TORQUE,
@@ -45,6 +50,12 @@ _SCALES = {
     0x005: _AMPERE,
     0x006: _REV,
     0x00A: _CELSIUS,
+    0x007: (10.0, 0.05, 1e-4),
+    **dict.fromkeys((0x10, 0x11, 0x12, 0x18), _SHARE),
+    **dict.fromkeys((0x14, 0x15, 0x16, 0x19, 0x1A, 0x1B), _VOLT),
+    0x01C: _AMPERE,
+    0x01D: _AMPERE,
+    0x01E: _REV_S,
     0x00D: _VOLT,
     0x00E: _CELSIUS,
     0x020: _REV,
@@ -57,22 +68,48 @@ _SCALES = {
     0x027: _SECOND,
     0x028: _REV_S,
     0x029: _REV_S2,
+    0x02A: _VOLT,
     0x02B: _SHARE,
+    0x02C: _AMPERE,
+    0x040: _REV,
+    0x041: _REV,
+    0x042: _TORQUE,
+    0x043: _SHARE,
+    0x044: _SHARE,
+    0x045: _TORQUE,
+    0x046: _SECOND,
+    0x047: _SHARE,
 }
 
 # Command registers after a write of the mode.
-_DEFAULTS = {
+_DEFAULTS: dict[int, float] = {
+    **dict.fromkeys((*range(0x10, 0x13), *range(0x14, 0x17), *range(0x18, 0x1F)), 0.0),
     0x020: 0.0,
     0x021: 0.0,
     0x022: 0.0,
     0x023: 1.0,
     0x024: 1.0,
-    0x025: NAN,
+    0x025: 100.0,
     0x026: NAN,
     0x027: 0.0,
     0x028: NAN,
     0x029: NAN,
+    0x02A: NAN,
     0x02B: 1.0,
+    0x02C: NAN,
+    0x02D: 0.0,
+    0x040: 0.0,
+    0x041: 0.0,
+}
+# Second names, for the mode stay within.
+_SAME = {
+    0x042: 0x022,
+    0x043: 0x023,
+    0x044: 0x024,
+    0x045: 0x025,
+    0x046: 0x027,
+    0x047: 0x02B,
+    0x048: 0x02D,
 }
 
 _ENABLE_S = 0.01
@@ -85,7 +122,7 @@ class ProtocolError(ValueError):
 
 @dataclass(frozen=True)
 class Subframe:
-    """Some registers in a row: kind is "write", "read" or "reply", with values unless it reads."""
+    """Some registers in a row: kind is "write", "read", "reply" or "error". No values in a read."""
 
     kind: str
     wire_type: int
@@ -131,14 +168,15 @@ def _encode(value: float, wire_type: int, register: int) -> bytes:
     return _INTS[wire_type].pack(max(-most, min(most, counts)))
 
 
-def _decode(data: bytes, wire_type: int, register: int) -> float:
+def _decode(data: bytes, wire_type: int, register: int, by_drive: bool) -> float:
     if wire_type == 3:
         (number,) = _FLOAT.unpack(data)
         return float(number)
     (counts,) = _INTS[wire_type].unpack(data)
     if counts == -_MOST[wire_type] - 1:
         return NAN
-    return float(counts) * _SCALES.get(register, _PLAIN)[wire_type]
+    scale = _SCALES.get(register, _PLAIN)[wire_type]
+    return _single(_single(counts) * _single(scale)) if by_drive else float(counts) * scale
 
 
 def parse(data: bytes) -> list[Subframe]:
@@ -154,6 +192,11 @@ def parse(data: bytes) -> list[Subframe]:
         at += 1
         if head == NOP:
             continue
+        if head in (WRITE_ERROR, READ_ERROR):
+            start, at = _varuint(data, at)
+            code, at = _varuint(data, at)
+            result.append(Subframe("error", 0, start, 1, (float(code),)))
+            continue
         if head >= 0x30:
             raise ProtocolError(f"subframe 0x{head:02X}")
         kind = ("write", "read", "reply")[head >> 4]
@@ -168,7 +211,7 @@ def parse(data: bytes) -> list[Subframe]:
             if at + size * count > len(data):
                 raise ProtocolError("cut off")
             for i in range(count):
-                values.append(_decode(data[at : at + size], wire_type, start + i))
+                values.append(_decode(data[at : at + size], wire_type, start + i, kind == "write"))
                 at += size
         result.append(Subframe(kind, wire_type, start, count, tuple(values)))
     return result
@@ -181,6 +224,11 @@ def reply(wire_type: int, start: int, values: list[float]) -> bytes:
     first = bytes([head | count]) if 1 <= count <= 3 else bytes([head]) + _put_varuint(count)
     body = b"".join(_encode(v, wire_type, start + i) for i, v in enumerate(values))
     return first + _put_varuint(start) + body
+
+
+def error(subframe: int, register: int, code: int) -> bytes:
+    """Returns an error subframe."""
+    return bytes([subframe]) + _put_varuint(register) + _put_varuint(code)
 
 
 def pad(data: bytes) -> bytes:
@@ -301,8 +349,16 @@ class FakeMoteus:
 
     @property
     def command_ids(self) -> list[int]:
-        """Filter of frames from a host with the id 0."""
-        return [EXTENDED | self.spec.address.command_id]
+        """None: see command_filters."""
+        return []
+
+    @property
+    def command_filters(self) -> list[tuple[int, int]]:
+        """Filters of all ids that end with its own: of any host, asking for an answer or not."""
+        return [
+            (EXTENDED | self.prefix << 16 | self.motor_id, 0x1FFF00FF),
+            (self.motor_id, 0x1FFFF8FF),
+        ]
 
     @property
     def command(self) -> float:
@@ -367,10 +423,18 @@ class FakeMoteus:
         for part in subframes:
             registers = range(part.start, part.start + part.count)
             if part.kind == "read":
-                answer += reply(part.wire_type, part.start, [self._read(r) for r in registers])
+                values = [self._read(r, part.wire_type) for r in registers]
+                if None in values:
+                    # Nothing after it is read. Source: mjlib/multiplex/micro_server.cc.
+                    missing = part.start + values.index(None)
+                    answer += error(READ_ERROR, missing, UNKNOWN_REGISTER)
+                    break
+                answer += reply(part.wire_type, part.start, [v for v in values if v is not None])
             elif part.kind == "write":
                 for register, value in zip(registers, part.values):
-                    commanded |= self._write(register, value)
+                    code = self._write(register, value)
+                    commanded |= register == 0 and code == 0
+                    answer += error(WRITE_ERROR, register, code) if code else b""
         if commanded:
             self._obey()
         if identifier & 0x8000:
@@ -399,32 +463,43 @@ class FakeMoteus:
         """Yields what it sends now: the same."""
         yield from self.answers()
 
-    def _read(self, register: int) -> float:
+    def _read(self, register: int, wire_type: int) -> float | None:
+        """Value of a register; None: there is no such, or not of this type."""
         fixed: dict[int, float] = {
             0x000: self.mode,
             0x001: math.remainder(self.position_rev, 65536.0),
             0x002: self.velocity_rev_s,
             0x003: self.torque_nm,
             0x004: self.torque_nm / self.kt_nm_per_a,
+            0x005: 0.0,
+            0x006: 0.0,
+            0x007: self.torque_nm * self.speed_rad_s,
+            0x00A: 0.0,
+            0x00B: self._course_rev is None or math.isnan(self.registers[0x020]),
             0x00C: 1,
             0x00D: self.voltage_v,
             0x00E: self.temperature_c,
             0x00F: self.fault,
             0x070: (int(self._clock_s * 1000) + 32768) % 65536 - 32768,
-            0x102: 5,
-            0x110: self.motor_id,
         }
-        return fixed.get(register, self.registers.get(register, 0.0))
+        if wire_type == 2:
+            fixed[0x102] = 5
+        register = _SAME.get(register, register)
+        return fixed.get(register, self.registers.get(register))
 
-    def _write(self, register: int, value: float) -> bool:
-        """Writes a register; returns whether it was the mode."""
+    def _write(self, register: int, value: float) -> int:
+        """Writes a register; returns the code of its error, or 0."""
         if register == 0x000:
+            if not 0 <= value <= BRAKE:
+                return UNKNOWN_REGISTER
             self._wanted_mode = int(value)
             self.registers = dict(_DEFAULTS)
-            return True
+            return 0
+        register = _SAME.get(register, register)
         if register in self.registers:
             self.registers[register] = value
-        return False
+            return 0
+        return UNKNOWN_REGISTER if self._read(register, 2) is None else READ_ONLY
 
     def _obey(self) -> None:
         self.commands += 1
@@ -464,7 +539,7 @@ class FakeMoteus:
                 self._change(self._wanted_mode)
         if not math.isnan(self._left_s):
             self._left_s = max(0.0, self._left_s - dt_s)
-        if self.mode == POSITION and self._left_s <= 0.0:
+        if self.mode in _WATCHED and self._left_s <= 0.0:
             self._change(TIMEOUT)
         self.torque_nm = self._torque(dt_s)
         speed = self.velocity_rev_s * math.tau
@@ -480,7 +555,17 @@ class FakeMoteus:
             wanted = self._position_torque(dt_s, kd)
             most = self.registers[0x025]
             most = self.full_torque_nm if math.isnan(most) else min(most, self.full_torque_nm)
-        elif self.mode in (TIMEOUT, ZERO_VELOCITY, BRAKE):
+        elif self.mode == STAY_WITHIN:
+            bound = min(max(self.position_rev, self.registers[0x040]), self.registers[0x041])
+            away = bound - self.position_rev
+            wanted = kd * (60.0 * away - self.velocity_rev_s) if away else 0.0
+            wanted += self.registers[0x022]
+            most = min(self.registers[0x025], self.full_torque_nm)
+        elif self.mode == CURRENT:
+            wanted = self.registers[0x01C] * self.kt_nm_per_a
+            most = self.full_torque_nm
+        elif self.mode in (TIMEOUT, ZERO_VELOCITY, BRAKE, *_OPEN):
+            # Voltages without a look at the rotor hold it, here as a brake does.
             wanted = -kd * self.velocity_rev_s
             most = self.full_torque_nm
         else:
