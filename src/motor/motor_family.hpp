@@ -32,8 +32,9 @@ struct MotorTraits {
   float phase_resistance_ohm = 0.0F;  ///< 0: unknown.
   bool absolute = false;              ///< Knows its output angle at power-up, behind its own gear.
   bool reports_temperature = true;
-  float frozen_a = 0.0F;   ///< Full scale of the current that it reports; 0: it reports none.
-  int feedback_hz = 1000;  ///< If nobody says otherwise.
+  bool scaled_speed = false;  ///< Its speed is a share of a range that depends on the model.
+  float frozen_a = 0.0F;      ///< Full scale of the current that it reports; 0: it reports none.
+  int feedback_hz = 1000;     ///< If nobody says otherwise.
   int min_feedback_hz = 1;
   int max_feedback_hz = 1000;
   bool asked = false;        ///< Speaks only when told something: its feedback comes at the command rate.

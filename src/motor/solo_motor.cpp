@@ -46,11 +46,21 @@ SoloMotor::SoloMotor(const MotorSettings& settings, const MotorTraits& traits, d
 
 void SoloMotor::acceptSample(MonotonicTime received, double drive_position_deg) noexcept {
   reference_.update(toOutput(drive_position_deg));
+  if (traits_.scaled_speed && obeying()) {
+    speed_scale_.add(received, toOutput(drive_position_deg), static_cast<double>(feedback_.velocity_rpm));
+  }
   feedback_.received = received;
   ++feedback_.samples;
   feedback_.total_angle_deg = reference_.totalAngleDeg();
   feedback_.angle_deg = wrapDegreesToFloat(feedback_.total_angle_deg);
   feedback_.zeroed = reference_.known();
+}
+
+DriveComplaint SoloMotor::scaleComplaint() const noexcept {
+  if (speed_scale_.verdict() != SpeedScaleCheck::Verdict::kWrong) return {};
+  return {.fault = FaultCode::kDriveSetting,
+          .native_code =
+              kSpeedScaleComplaint + static_cast<std::uint32_t>(std::lround(100.0 * speed_scale_.ratio()))};
 }
 
 void SoloMotor::loseReference() noexcept {
@@ -71,6 +81,7 @@ bool SoloMotor::setZero(double angle_deg) noexcept {
 Target SoloMotor::wanted() noexcept {
   const FrameKind kind = ordered();
   begins_ = std::exchange(told_, kind) != kind;
+  if (!obeying()) speed_scale_.reset();
   if (kind != FrameKind::kHold) holding_ = false;
   if (kind == FrameKind::kBrake) return Target{.mode = ControlMode::kBrake};
   if (kind == FrameKind::kHold) {

@@ -7,6 +7,7 @@
 #include "motor/angle_reference.hpp"
 #include "motor/motor_base.hpp"
 #include "motor/motor_family.hpp"
+#include "motor/speed_scale_check.hpp"
 
 namespace rc10 {
 
@@ -15,6 +16,9 @@ namespace rc10 {
 /// A family adds updateFeedback(), update() and the packing. Scheduler thread only.
 class SoloMotor : public Motor_Base, public CommandPacker {
  public:
+  /// Native code of kDriveSetting: above it, the reported speed in percent of that of the angle.
+  static constexpr std::uint32_t kSpeedScaleComplaint = 0x8000'0000;
+
   [[nodiscard]] std::string_view packerName() const noexcept override { return name(); }
   [[nodiscard]] double get_GearRatio() const noexcept override { return gear_ratio_; }
   [[nodiscard]] std::string_view modelName() const noexcept override { return model_; }
@@ -52,6 +56,11 @@ class SoloMotor : public Motor_Base, public CommandPacker {
   [[nodiscard]] double drivePositionFor(double total_angle_deg) const noexcept {
     return toDrive(reference_.positionFor(total_angle_deg));
   }
+  /// The reported speed does not fit the change of the angle, for a complaint() that has nothing graver: of
+  /// families with MotorTraits::scaled_speed. Compared while the motor obeys, until it is known.
+  [[nodiscard]] DriveComplaint scaleComplaint() const noexcept;
+  /// The speed comes from another field from now on.
+  void compareSpeedAnew() noexcept { speed_scale_.reset(); }
   /// The drive was restarted or turns may have gone uncounted.
   void loseReference() noexcept;
 
@@ -112,6 +121,7 @@ class SoloMotor : public Motor_Base, public CommandPacker {
   std::uint64_t divider_;
   std::uint64_t phase_;
   AngleReference reference_;
+  SpeedScaleCheck speed_scale_;
   FrameKind told_ = FrameKind::kRest;  ///< The order of the last tick.
   bool begins_ = false;
   bool holding_ = false;

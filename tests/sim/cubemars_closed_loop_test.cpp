@@ -57,6 +57,23 @@ class CubemarsLoop : public ::testing::TestWithParam<Case> {
   static double rpm(SoloRig& rig) { return static_cast<double>(rig.motor().feedback().velocity_rpm); }
 };
 
+TEST(CubemarsScale, AMitDriveOnAnotherSpeedScaleIsStoppedAtItsFirstMotion) {
+  for (const auto* of_drive : {"AK80-9", "AK80-6"}) {
+    const bool right = std::string_view{of_drive} == "AK80-9";
+    SoloRig rig(motorOf(settingsOf({"AK80-9", "mit"})),
+                sim::makeCubemarsDrive(settingsOf({of_drive, "mit"}), {}));
+    rig.comeOnline();
+    ASSERT_TRUE(rig.enable());
+    rig.command({.mode = ControlMode::kVelocity, .value = 60.0});
+    rig.run(seconds{1});
+    const auto complaint = rig.motor().complaint();
+    EXPECT_EQ(complaint.fault, right ? FaultCode::kNone : FaultCode::kDriveSetting);
+    if (!right) {
+      EXPECT_NEAR(static_cast<double>(complaint.native_code - SoloMotor::kSpeedScaleComplaint), 66.0, 2.0);
+    }
+  }
+}
+
 TEST_P(CubemarsLoop, EnablingMovesNothing) {
   auto rig = rigOf(settingsOf(GetParam()));
   wakeUp(rig);

@@ -19,7 +19,9 @@ using std::chrono::seconds;
 
 struct Rig : SoloRig {
   explicit Rig(const MotorSettings& settings, const sim::MotorLoad& load = {})
-      : SoloRig(std::make_unique<RobStride_Motor>(settings), sim::makeRobstrideDrive(settings, load)) {
+      : Rig(settings, settings, load) {}
+  Rig(const MotorSettings& settings, const MotorSettings& of_drive, const sim::MotorLoad& load = {})
+      : SoloRig(std::make_unique<RobStride_Motor>(settings), sim::makeRobstrideDrive(of_drive, load)) {
     motor().order(FrameKind::kPoll);
     run(milliseconds{5});
   }
@@ -342,6 +344,33 @@ TEST(RobStrideClosedLoop, SlowCommandsAreEnough) {
   rig.run(seconds{2});
   EXPECT_NEAR(rig.total(), start_deg + 45.0, 2.5);
   EXPECT_EQ(rig.fault(), FaultCode::kNone);
+}
+
+// Another model's speed and torque scale, as the maker's sample and its manuals contradict each other.
+TEST(RobStrideClosedLoop, ADriveOnAnotherScaleIsStoppedAtItsFirstMotion) {
+  struct Pair {
+    std::string_view told, is;
+    unsigned percent;
+  };
+  for (const auto& pair : {Pair{"RS00", "RS03", 165}, Pair{"RS03", "RS00", 61}, Pair{"RS05", "RS00", 152},
+                           Pair{"RS06", "RS03", 250}, Pair{"RS01", "RS05", 88}}) {
+    SCOPED_TRACE(std::string{pair.told} + " " + std::string{pair.is});
+    Rig rig(controlled("velocity", pair.told), controlled("velocity", pair.is));
+    ASSERT_TRUE(rig.enable());
+    EXPECT_EQ(rig.fault(), FaultCode::kNone);
+    rig.command({.mode = ControlMode::kVelocity, .value = 40.0});
+    rig.run(seconds{1});
+    if (pair.percent == 88) {  // near enough to be somebody's noise
+      EXPECT_EQ(rig.fault(), FaultCode::kNone);
+      continue;
+    }
+    EXPECT_EQ(rig.fault(), FaultCode::kDriveSetting);
+    EXPECT_NEAR(static_cast<double>(rig.motor().complaint().native_code - SoloMotor::kSpeedScaleComplaint),
+                pair.percent, 2.0);
+    rig.motor().order(FrameKind::kPoll);
+    rig.run(milliseconds{10});
+    EXPECT_EQ(rig.fault(), FaultCode::kNone) << "until it moves again";
+  }
 }
 
 TEST(RobStrideClosedLoop, TheDriveAnswersNothingToOthersAndNothingUnasked) {

@@ -222,6 +222,7 @@ MotorTraits cubemarsTraits(const CubemarsSetup& setup) {
   traits.frozen_a = mit || model.signed_current ? traits.effort_full_scale : 0.0F;
   traits.feedback_hz = mit ? 1000 : 500;  // the upload rate is set in the vendor's program, 1 to 500 Hz
   traits.max_feedback_hz = mit ? 1000 : 500;
+  traits.scaled_speed = mit;  // a V3 drive reports in the servo protocol's ERPM
   traits.asked = mit;
   // It has one (timeout_msec, 1000 in the settings of cubemars_hardware), but no frame reads or sets it.
   traits.watchdog = false;

@@ -75,7 +75,7 @@ FrameVerdict CubeMars_Motor::takeServoReport(const CanFrame& frame) noexcept {
 DriveComplaint CubeMars_Motor::complaint() const noexcept {
   if (error_ != 0) return {cubemarsFault(error_), error_};
   if (stopped_) return {FaultCode::kDriveStopped, 0};
-  return {};
+  return scaleComplaint();
 }
 
 }  // namespace rc10

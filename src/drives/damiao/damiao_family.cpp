@@ -140,6 +140,7 @@ MotorTraits DamiaoFamily::traits(std::string_view name, const OwnValues& own) co
   traits.phase_resistance_ohm = model.phase_resistance_ohm;
   traits.absolute = model.output_encoder;
   traits.frozen_a = static_cast<float>(model.scale.t_max_nm) / model.torque_nm_per_a;
+  traits.scaled_speed = true;
   traits.asked = true;
   traits.fd = can_fd;
   traits.classic_only = !can_fd;

@@ -333,7 +333,7 @@ DriveComplaint Damiao_Motor::complaint() const noexcept {
     return {FaultCode::kDriveSetting, kRegisterComplaint + static_cast<std::uint32_t>(*culprit_)};
   }
   if (stopped_) return {FaultCode::kDriveStopped, status_};
-  return {};
+  return scaleComplaint();
 }
 
 void Damiao_Motor::clearComplaint() noexcept {

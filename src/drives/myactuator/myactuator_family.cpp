@@ -71,6 +71,7 @@ class MyactuatorFamily final : public MotorFamily {
     traits.nominal_v = model.nominal_v;
     traits.absolute = own.flag("absolute_encoder");
     traits.frozen_a = model.peak_current_a;
+    traits.scaled_speed = true;  // of the motion mode
     traits.asked = true;
     traits.frames = kMyactuatorFrames;
     traits.setup = &myactuatorSetup();

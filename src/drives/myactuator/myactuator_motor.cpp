@@ -113,8 +113,13 @@ void MyActuator_Motor::acceptReading(const CanFrame& frame) noexcept {
   feedback_.temperature_c = static_cast<float>(reading.temperature_c);
   feedback_.current_a = static_cast<float>(reading.current_a) * direction();
   if (torqueNmPerA() > 0.0F) feedback_.torque_nm = feedback_.current_a * torqueNmPerA();
-  feedback_.velocity_rpm = static_cast<float>(toOutput(reading.velocity_deg_s) / kDegPerSPerRpm);
+  takeSpeed(toOutput(reading.velocity_deg_s) / kDegPerSPerRpm, false);
   if (myactuator::codeOf(frame.payload()) == myactuator::Code::kCurrent) answered(Step::kObey);
+}
+
+void MyActuator_Motor::takeSpeed(double output_rpm, bool of_motion) noexcept {
+  if (std::exchange(speed_of_motion_, of_motion) != of_motion) compareSpeedAnew();
+  feedback_.velocity_rpm = static_cast<float>(output_rpm);
 }
 
 FrameVerdict MyActuator_Motor::acceptAngle(const CanFrame& frame) noexcept {
@@ -171,7 +176,7 @@ FrameVerdict MyActuator_Motor::acceptMotion(const CanFrame& frame) noexcept {
   if (frame.length != myactuator::kLength || frame.data[0] != id_) return FrameVerdict::kMalformed;
   watchSilence(frame.received);
   const auto reading = myactuator::decodeMotion(frame.payload());
-  feedback_.velocity_rpm = static_cast<float>(toOutput(reading.velocity_rad_s) / kRadPerSPerRpm);
+  takeSpeed(toOutput(reading.velocity_rad_s) / kRadPerSPerRpm, true);
   feedback_.torque_nm = static_cast<float>(torqueToOutput(reading.torque_nm));
   if (torqueNmPerA() > 0.0F) feedback_.current_a = feedback_.torque_nm / torqueNmPerA();
   return FrameVerdict::kAccepted;
@@ -414,7 +419,7 @@ DriveComplaint MyActuator_Motor::complaint() const noexcept {
     return {.fault = FaultCode::kDriveCommunication,
             .native_code = static_cast<std::uint32_t>(myactuator::Code::kSilenceStopped)};
   }
-  return {};
+  return scaleComplaint();
 }
 
 void MyActuator_Motor::clearComplaint() noexcept {

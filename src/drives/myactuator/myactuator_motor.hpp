@@ -40,6 +40,7 @@ class MyActuator_Motor final : public SoloMotor {
   enum class Step : std::uint8_t { kStatus, kUptime, kReleaseBrake, kObey };
 
   void acceptReading(const CanFrame& frame) noexcept;
+  void takeSpeed(double output_rpm, bool of_motion) noexcept;
   FrameVerdict acceptAngle(const CanFrame& frame) noexcept;
   void acceptStatus(const CanFrame& frame) noexcept;
   void acceptUptime(const CanFrame& frame) noexcept;
@@ -82,6 +83,7 @@ class MyActuator_Motor final : public SoloMotor {
   std::optional<std::int32_t> raw_angle_;  ///< The last, in 0.01 deg.
   std::int64_t angle_raw_ = 0;             ///< The same, going on where 32 bits end.
   bool zero_before_ = false;               ///< The reply before said 0.
+  bool speed_of_motion_ = false;           ///< Its scale is that of the motion mode.
   bool running_ = false;                   ///< It has been the same run of the drive since angles were taken.
   std::optional<std::uint32_t> uptime_ms_;
   MonotonicTime uptime_at_{};

@@ -128,6 +128,7 @@ class RobstrideFamily final : public MotorFamily {
     traits.phase_resistance_ohm = model.phase_resistance_ohm;
     traits.absolute = model.absolute;
     traits.frozen_a = static_cast<float>(model.torque_range_nm / torque_nm_per_a);
+    traits.scaled_speed = true;
     traits.asked = true;
     traits.watchdog = own.integer("watchdog_ms") > 0;
     traits.modes = modesOf(control);

@@ -290,7 +290,7 @@ DriveComplaint RobStride_Motor::complaint() const noexcept {
   if (obeying() && feedback_.samples > 0 && seen_.mode != robstride::kRunning) {
     return {.fault = FaultCode::kDriveStopped, .native_code = 0};
   }
-  return {};
+  return scaleComplaint();
 }
 
 }  // namespace rc10
