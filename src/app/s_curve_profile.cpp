@@ -77,6 +77,13 @@ void SCurveProfile::setLimits(const Limits& limits) noexcept {
 void SCurveProfile::start(const ProfileState& state) noexcept {
   if (!isFinite(state)) return;
   state_ = {withinMotion(state.position), withinMotion(state.velocity), withinMotion(state.acceleration)};
+  target_ = state_.position;
+  ahead_ = 0.0;
+}
+
+void SCurveProfile::aim(double target) noexcept {
+  ahead_ += target_ - target;
+  target_ = target;
 }
 
 double SCurveProfile::stopPosition() const noexcept {
@@ -85,8 +92,9 @@ double SCurveProfile::stopPosition() const noexcept {
 }
 
 void SCurveProfile::moveBy(const ProfileState& step) noexcept {
-  state_ = {withinMotion(state_.position + step.position), withinMotion(step.velocity),
-            withinMotion(step.acceleration)};
+  ahead_ += step.position;
+  state_ = {withinMotion(target_ + ahead_), withinMotion(step.velocity), withinMotion(step.acceleration)};
+  if (std::abs(state_.position) >= kHugeMotion) ahead_ = state_.position - target_;
 }
 
 const ProfileState& SCurveProfile::brake(float dt_s) noexcept {
@@ -107,17 +115,17 @@ const ProfileState& SCurveProfile::step(double target, float dt_s) noexcept {
   target = withinMotion(target);
 
   const Motions motions(state_, limits_);
-  const double distance = target - state_.position;
+  aim(target);
+  const double distance = -ahead_;
   const VelocityChange stop = motions.stop();
   const double room = distance - stop.end().position;
   // Tolerance around 0: the resolution of positions, and that of velocities over the longest stopping time.
   const double stop_s = limits_.velocity / limits_.acceleration + limits_.acceleration / limits_.jerk;
-  const double tolerance =
-      16.0 * kEpsilon * (std::abs(target) + std::abs(state_.position) + std::abs(stop.end().position)) +
-      std::min(16.0 * kEpsilon * limits_.velocity * stop_s, 1e-9);
+  const double tolerance = 16.0 * kEpsilon * (std::abs(distance) + std::abs(stop.end().position)) +
+                           std::min(16.0 * kEpsilon * limits_.velocity * stop_s, 1e-9);
   const auto finish = [&](const VelocityChange& last, double t) noexcept -> const ProfileState& {
     if (t >= last.durationSeconds() && std::abs(distance - last.end().position) <= 4.0 * tolerance) {
-      state_ = {.position = target};
+      reset(target);
     } else {
       moveBy(last.at(t));
     }

@@ -12,6 +12,8 @@ namespace rc10 {
 /// of their kind (VelocityChange), so that going and then stopping is the fastest way to rest at the
 /// target from any state; it need not be planned, and the target may change at any time.
 ///
+/// Reckoned from the target, so that no digits are lost far from 0: a move always ends.
+///
 /// The target is hit exactly. It is not overshot, unless stopping at once would already pass it: then the
 /// reference stops, having gone past it, and comes back. So from rest it never leaves the range between its
 /// start and its targets, as long as limits are not lowered in mid-motion.
@@ -53,9 +55,12 @@ class SCurveProfile {
  private:
   [[nodiscard]] bool stuck() const noexcept { return limits_.acceleration == 0.0 || limits_.jerk == 0.0; }
   void moveBy(const ProfileState& step) noexcept;
+  void aim(double target) noexcept;
 
   Limits limits_;
   ProfileState state_;
+  double target_ = 0.0;  ///< Of the last step().
+  double ahead_ = 0.0;   ///< From it to the position: what the position of state_ has no digits for.
 };
 
 }  // namespace rc10

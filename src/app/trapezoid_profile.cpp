@@ -19,6 +19,14 @@ void TrapezoidProfile::setLimits(const Limits& limits) noexcept {
 void TrapezoidProfile::start(const ProfileState& state) noexcept {
   if (!isFinite(state)) return;
   state_ = {.position = withinMotion(state.position), .velocity = withinMotion(state.velocity)};
+  target_ = state_.position;
+  ahead_ = 0.0;
+}
+
+void TrapezoidProfile::moveBy(double way, double velocity, double acceleration) noexcept {
+  ahead_ += way;
+  state_ = {.position = withinMotion(target_ + ahead_), .velocity = velocity, .acceleration = acceleration};
+  if (std::abs(state_.position) >= kHugeMotion) ahead_ = state_.position - target_;
 }
 
 const ProfileState& TrapezoidProfile::brake(float dt_s) noexcept {
@@ -27,13 +35,11 @@ const ProfileState& TrapezoidProfile::brake(float dt_s) noexcept {
   if (dt == 0.0) return state_;
   const double v = state_.velocity;
   if (std::abs(v) <= a * dt || a == 0.0) {
-    state_ = {.position = withinMotion(stopPosition())};
+    moveBy(stopDistance(), 0.0, 0.0);
     return state_;
   }
   const double braking = -std::copysign(a, v);
-  state_ = {.position = withinMotion(state_.position + (v + 0.5 * braking * dt) * dt),
-            .velocity = v + braking * dt,
-            .acceleration = braking};
+  moveBy((v + 0.5 * braking * dt) * dt, v + braking * dt, braking);
   return state_;
 }
 
@@ -42,11 +48,13 @@ const ProfileState& TrapezoidProfile::step(double target, float dt_s) noexcept {
   double left = stepSeconds(dt_s);
   if (left == 0.0) return state_;
   target = withinMotion(target);
+  ahead_ += target_ - target;
+  target_ = target;
 
   // As if the target lay in the positive direction of where braking would end.
-  const double direction = target >= stopPosition() ? 1.0 : -1.0;
+  const double direction = ahead_ + stopDistance() <= 0.0 ? 1.0 : -1.0;
   const double a = limits_.acceleration;
-  const double distance = direction * (target - state_.position);
+  const double distance = -direction * ahead_;
   const double v0 = direction * state_.velocity;
   // Accelerate to a peak and brake from it: distance = (peak^2 - v0^2) / 2a + peak^2 / 2a.
   const double square = std::max(0.0, a * distance + 0.5 * v0 * v0);
@@ -59,7 +67,7 @@ const ProfileState& TrapezoidProfile::step(double target, float dt_s) noexcept {
   const double brake_s = peak / a;
 
   if (to_peak_s + cruise_s + brake_s <= left) {
-    state_ = {.position = target};
+    reset(target);
     return state_;
   }
 
@@ -77,9 +85,7 @@ const ProfileState& TrapezoidProfile::step(double target, float dt_s) noexcept {
   drive(to_peak, to_peak_s);
   drive(0.0, cruise_s);
   drive(-a, brake_s);
-  state_ = {.position = withinMotion(state_.position + direction * moved),
-            .velocity = direction * v,
-            .acceleration = direction * now};
+  moveBy(direction * moved, direction * v, direction * now);
   return state_;
 }
 

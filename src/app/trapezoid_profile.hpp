@@ -8,6 +8,8 @@ namespace rc10 {
 /// each step it plans anew from where it is, so the target may change at any time, and each step is the
 /// exact solution over its dt, so the steps may have any length.
 ///
+/// Reckoned from the target, so that no digits are lost far from 0: a move always ends.
+///
 /// The target is hit exactly. It is not overshot, unless stopping at once would already pass it: then the
 /// reference brakes, having gone past it, and comes back. So from rest it never leaves the range between its
 /// start and its targets, as long as limits are not lowered in mid-motion.
@@ -46,9 +48,12 @@ class TrapezoidProfile {
 
  private:
   [[nodiscard]] double stopDistance() const noexcept;
+  void moveBy(double way, double velocity, double acceleration) noexcept;
 
   Limits limits_;
   ProfileState state_;
+  double target_ = 0.0;  ///< Of the last step().
+  double ahead_ = 0.0;   ///< From it to the position: what the position of state_ has no digits for.
 };
 
 }  // namespace rc10

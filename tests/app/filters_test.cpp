@@ -49,6 +49,18 @@ TEST(TrackingDifferentiator, ArrivesWithoutOvershootAfterSixTimeConstants) {
   EXPECT_GT(before, 97.9F);
 }
 
+TEST(TrackingDifferentiator, ArrivesHoweverFarOut) {
+  for (const float far : {1e6F, 1e8F, 3e9F, -1e12F}) {
+    for (const float bandwidth : {0.5F, 20.0F}) {
+      TrackingDifferentiator tracker(bandwidth);
+      tracker.reset(far);
+      const float target = far * 1.0001F;
+      for (int i = 0; i < 100'000; ++i) (void)tracker.step(target, 0.001F);
+      EXPECT_EQ(tracker.step(target, 0.001F), target);
+    }
+  }
+}
+
 TEST(TrackingDifferentiator, IsTheSameAtEveryRate) {
   for (const float dt_s : {0.0001F, 0.001F, 0.01F, 0.05F}) {
     TrackingDifferentiator tracker(10.0F);

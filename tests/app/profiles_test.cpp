@@ -74,6 +74,41 @@ TYPED_TEST(Profiles, HitTheTargetExactlyAndStayThere) {
   }
 }
 
+TYPED_TEST(Profiles, EndAMoveThatBeginsOrEndsFarOut) {
+  struct Move {
+    double from;
+    double to;
+  };
+  for (const double far : {1e8, 3.3e9, -1e10, 1e11, 0.9e12}) {
+    for (const Move move :
+         {Move{far, far - 720.1}, Move{far + 0.3, far}, Move{far, far + 1e-3}, Move{far - 90.0, far}}) {
+      for (const double velocity : {1.0, 50.0, 5000.0}) {
+        auto profile = make<TypeParam>({velocity, 4.0 * velocity, 40.0 * velocity});
+        profile.reset(move.from);
+        const double way = std::abs(move.to - move.from);
+        const auto enough = static_cast<int>((way / velocity + 2.0) / static_cast<double>(kDt));
+        int steps = 0;
+        while (!profile.restsAt(move.to) && steps < enough) {
+          (void)profile.step(move.to, kDt);
+          ++steps;
+        }
+        EXPECT_TRUE(profile.restsAt(move.to)) << move.from << " to " << move.to << " at " << velocity;
+      }
+    }
+  }
+}
+
+TYPED_TEST(Profiles, ComeBackFromFarOut) {
+  auto profile = make<TypeParam>({1e8, 1e8, 1e9});
+  profile.reset(1.3e9);
+  int steps = 0;
+  while (!profile.restsAt(90.0) && steps < 60'000) {
+    (void)profile.step(90.0, kDt);
+    ++steps;
+  }
+  EXPECT_TRUE(profile.restsAt(90.0));
+}
+
 TYPED_TEST(Profiles, NeverExceedTheirLimitsUnderRandomRetargeting) {
   std::mt19937 random(2024);
   std::uniform_real_distribution<double> exponent(-1.0, 3.0);
