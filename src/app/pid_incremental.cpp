@@ -4,6 +4,14 @@
 #include <cmath>
 
 namespace rc10 {
+namespace {
+
+// Long against the sample period, short against a change of load.
+constexpr float kNoiseSeconds = 0.2F;
+// Of the range of outputs: a measurement that leaps is no noise.
+constexpr float kMostNoise = 0.1F;
+
+}  // namespace
 
 float PID_Incremental::afterDeadband(float error) const noexcept {
   return std::abs(error) < config_.deadband ? 0.0F : error;
@@ -19,7 +27,10 @@ float PID_Incremental::step(float target, float measured, float dt_s, OutputRang
   const float dt = std::min(dt_s, kMaxStepSeconds);
 
   const float previous_rate = rate_.value();
-  const float rate = rate_.step(saturate((measured - state_.measured) / dt), dt);
+  const float moved = saturate(measured - state_.measured);
+  const float rate = rate_.step(saturate(moved / dt), dt);
+  const float damping = saturate(config_.kd * saturate(rate - previous_rate));
+  watchNoise(saturate(config_.kp * moved) + damping, dt);
   state_.measured = measured;
 
   state_.glide *= kStartGlideSeconds / (kStartGlideSeconds + dt);
@@ -27,11 +38,24 @@ float PID_Incremental::step(float target, float measured, float dt_s, OutputRang
   state_.whole_error = saturate(saturate(tracker_.step(target, dt) - measured) + state_.glide);
   const float e = afterDeadband(state_.whole_error);
 
-  const float increment = saturate(config_.kp * saturate(e - state_.error)) + saturate(config_.ki * e * dt) -
-                          saturate(config_.kd * saturate(rate - previous_rate));
+  const float increment =
+      saturate(config_.kp * saturate(e - state_.error)) + saturate(config_.ki * e * dt) - damping;
   state_.error = e;
-  state_.output = range.within(config_.output_limit).clamp(saturate(state_.output + increment));
+  const OutputRange allowed = range.within(config_.output_limit);
+  const float slack = std::min(state_.noise, kMostNoise * saturate(allowed.high - allowed.low));
+  const float memory = std::clamp(saturate(state_.output + state_.beyond + increment), allowed.low - slack,
+                                  allowed.high + slack);
+  state_.output = allowed.clamp(memory);
+  state_.beyond = saturate(memory - state_.output);
   return state_.output;
+}
+
+// Steady acceleration pushes alike in each step; what changes from one to the next is noise, and its highest
+// peak of late is above the noise's whole width.
+void PID_Incremental::watchNoise(float push, float dt_s) noexcept {
+  state_.noise *= kNoiseSeconds / (kNoiseSeconds + dt_s);
+  state_.noise = std::max(state_.noise, saturate(std::abs(push - state_.push)));
+  state_.push = push;
 }
 
 void PID_Incremental::start(float output_in_force, float measured, float target) noexcept {
@@ -52,6 +76,8 @@ void PID_Incremental::retune(const Config& config) noexcept {
   if (state_.running && stops_tracking) {
     state_.glide = saturate(state_.glide + saturate(tracker_.state().value - state_.target));
   }
+  state_.beyond = 0.0F;
+  state_.noise = 0.0F;
   config_ = config;
   tracker_.setBandwidth(config.tracking_rad_s);
   rate_.setBandwidth(config.derivative_filter_hz);

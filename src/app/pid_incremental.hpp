@@ -11,7 +11,9 @@ namespace rc10 {
 
 /// PID in velocity form: each step adds to the output what the change of the error, the error and
 /// the change of the measurement's rate ask for. The memory is the output itself, so that clamping
-/// it to the limit in force is the anti-windup. Gains are per second, so they hold at any rate.
+/// it to the limit in force is the anti-windup. It may go past the limit by as much as the measurement's
+/// noise moves it: cut off there, noise would only ever take effort away. Gains are per second, so they hold
+/// at any rate.
 ///
 /// A step of the target that drives the output into its limit loses the clamped part of the
 /// proportional share: the approach is slow and without overshoot. With `tracking_rad_s` the target
@@ -38,6 +40,9 @@ class PID_Incremental {
     float target = 0.0F;       ///< E; of the last step.
     float measured = 0.0F;     ///< E
     float glide = 0.0F;        ///< E; what is left of a way that begins at start() or retune().
+    float beyond = 0.0F;       ///< O; what the memory has past the limit.
+    float noise = 0.0F;        ///< O; how far the measurement's noise moves the output.
+    float push = 0.0F;         ///< O; what the measurement alone added in the last step.
     bool running = false;      ///< A step or start() came since reset().
   };
 
@@ -65,6 +70,7 @@ class PID_Incremental {
 
  private:
   [[nodiscard]] float afterDeadband(float error) const noexcept;
+  void watchNoise(float push, float dt_s) noexcept;
 
   Config config_;
   State state_;

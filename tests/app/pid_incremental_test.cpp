@@ -170,5 +170,36 @@ TEST(PidIncremental, TheTrackingDifferentiatorComesAndGoesWithoutABump) {
   EXPECT_NEAR(pid.state().output, 220.0F, 0.1F);
 }
 
+/// Mean output at a limit of 10 while a large error stays and the measurement is noisy by `noise` each way.
+float meanAtLimit(PID_Incremental::Config config, float error, float noise) {
+  PID_Incremental pid(config);
+  std::mt19937 random(7);
+  std::uniform_real_distribution<float> unit(-1.0F, 1.0F);
+  double sum = 0.0;
+  constexpr int kSteps = 5000;
+  for (int i = 0; i < 2 * kSteps; ++i) {
+    const float output = pid.step(error, noise * unit(random), kDt, 10.0F);
+    if (i >= kSteps) sum += static_cast<double>(output);
+  }
+  return static_cast<float>(sum / kSteps);
+}
+
+TEST(PidIncremental, NoiseTakesNothingFromTheEffortAtTheLimit) {
+  const PID_Incremental::Config gains{.kp = 0.05F, .ki = 0.3F};
+  const PID_Incremental::Config damped{.kp = 0.05F, .ki = 0.3F, .kd = 2e-5F, .derivative_filter_hz = 100.0F};
+  for (const float noise : {1.0F, 5.0F, 15.0F}) {
+    EXPECT_GT(meanAtLimit(gains, 300.0F, noise), 9.99F) << noise;
+    EXPECT_LT(meanAtLimit(gains, -300.0F, noise), -9.99F) << noise;
+    EXPECT_GT(meanAtLimit(damped, 300.0F, noise), 9.99F) << noise;
+  }
+}
+
+TEST(PidIncremental, ALeapOfTheMeasurementHardlyWindsItUp) {
+  PID_Incremental pid({.kp = 1.0F});
+  for (int i = 0; i < 5000; ++i) (void)pid.step(100.0F, 0.0F, kDt, 10.0F);
+  (void)pid.step(100.0F, -1000.0F, kDt, 10.0F);
+  EXPECT_NEAR(pid.step(100.0F, -990.0F, kDt, 10.0F), 2.0F, 0.01F) << "by a fifth of the limit at most";
+}
+
 }  // namespace
 }  // namespace rc10::test::pid_incremental_test
