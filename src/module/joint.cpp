@@ -362,6 +362,9 @@ class JointType : public ModuleType {
     return "One axis that homes and moves between positions.";
   }
   [[nodiscard]] std::span<const FamilyKey> keys() const noexcept override { return kJointKeys; }
+  [[nodiscard]] bool homes(const ModuleSettings& settings, std::size_t motor) const override {
+    return settings.own.motor("motor") == motor && settings.own.text("homing") != "none";
+  }
 
   [[nodiscard]] Result<std::unique_ptr<Module_Base>> build(const ModuleSettings& settings,
                                                            const RobotOutline& robot) const override {

@@ -55,6 +55,10 @@ class ModuleType {
   /// One sentence, for people.
   [[nodiscard]] virtual std::string_view about() const noexcept = 0;
   [[nodiscard]] virtual std::span<const FamilyKey> keys() const noexcept = 0;
+  /// Whether it finds the angle of this motor once that is enabled.
+  [[nodiscard]] virtual bool homes(const ModuleSettings& /*settings*/, std::size_t /*motor*/) const {
+    return false;
+  }
   /// `settings.own` has all of keys(), each in its range. The error begins with the key that is wrong:
   /// "wheel_radius_m: ...".
   [[nodiscard]] virtual Result<std::unique_ptr<Module_Base>> build(const ModuleSettings& settings,

@@ -1,19 +1,22 @@
 #include "motor/angle_reference.hpp"
 
 #include <cmath>
+#include <optional>
 
 #include "app/angle.hpp"
 
 namespace rc10 {
 
-void AngleReference::update(double position_deg) noexcept {
-  if (!begun_) {
+void AngleReference::update(double position_deg, bool may_restart) noexcept {
+  if (!begun_ || (turn_unclear_ && may_restart)) {
     const bool power_on = config_.zero_at_power_on;
     const bool absolute = config_.absolute && !power_on;
-    // In [-180, 180): the number of turns at power-up says nothing.
-    const double first_deg = absolute ? shortestAngle(config_.zero_deg, position_deg) : 0.0;
-    offset_deg_ = first_deg - position_deg;
-    known_ = absolute || power_on;
+    // The number of turns at power-up says nothing.
+    const double within_turn_deg = absolute ? shortestAngle(config_.zero_deg, position_deg) : 0.0;
+    const auto first_deg = absolute ? firstAngle(within_turn_deg, config_.travel) : std::optional{0.0};
+    offset_deg_ = first_deg.value_or(within_turn_deg) - position_deg;
+    known_ = (absolute && first_deg) || power_on;
+    turn_unclear_ = !first_deg;
     begun_ = true;
   }
   position_deg_ = position_deg;
@@ -23,11 +26,13 @@ bool AngleReference::setZero(double angle_deg) noexcept {
   if (!begun_ || !std::isfinite(angle_deg)) return false;
   offset_deg_ = angle_deg - position_deg_;
   known_ = true;
+  turn_unclear_ = false;
   return true;
 }
 
 void AngleReference::lose() noexcept {
   known_ = false;
+  turn_unclear_ = false;
   if (config_.absolute && !config_.zero_at_power_on) begun_ = false;
 }
 

@@ -1,5 +1,7 @@
 #pragma once
 
+#include "motor/first_angle.hpp"
+
 namespace rc10 {
 
 /// Where a motor's angle is 0. Fed with the drive's position as an output-shaft angle that goes on over
@@ -10,11 +12,13 @@ class AngleReference {
     bool absolute = false;          ///< The drive's position means the same after every power-up.
     double zero_deg = 0.0;          ///< Absolute only: the position that is to read 0.
     bool zero_at_power_on = false;  ///< The first position is 0, and known.
+    Travel travel{};                ///< Absolute only: says on which turn it is.
   };
 
   explicit AngleReference(const Config& config) noexcept : config_(config) {}
 
-  void update(double position_deg) noexcept;
+  /// `may_restart`: nothing follows the angle, so it may jump once its turn is clear.
+  void update(double position_deg, bool may_restart = true) noexcept;
   /// The present position reads `angle_deg` from now on. False before the first update().
   bool setZero(double angle_deg) noexcept;
   /// The drive may have lost turns: the angle goes on, but without a known reference. An absolute drive
@@ -22,6 +26,8 @@ class AngleReference {
   void lose() noexcept;
 
   [[nodiscard]] bool known() const noexcept { return known_; }
+  /// Absolute, but its travel does not say on which turn.
+  [[nodiscard]] bool turnUnclear() const noexcept { return turn_unclear_; }
   [[nodiscard]] double totalAngleDeg() const noexcept { return position_deg_ + offset_deg_; }
   /// The drive's position at this total angle: for targets.
   [[nodiscard]] double positionFor(double total_angle_deg) const noexcept {
@@ -32,6 +38,7 @@ class AngleReference {
   Config config_;
   bool begun_ = false;
   bool known_ = false;
+  bool turn_unclear_ = false;
   double position_deg_ = 0.0;
   double offset_deg_ = 0.0;
 };

@@ -31,7 +31,8 @@ struct MotorFeedback {
   float torque_nm = kNotReported;
   float voltage_v = kNotReported;
   float temperature_c = kNotReported;
-  bool zeroed = false;  ///< The angle has a known reference.
+  bool zeroed = false;        ///< The angle has a known reference.
+  bool turn_unclear = false;  ///< Absolute, but its travel does not say on which turn it stands.
 };
 
 struct CascadeConfig;

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "motor/cascade.hpp"
+#include "motor/first_angle.hpp"
 
 namespace rc10 {
 
@@ -51,6 +52,7 @@ struct MotorSettings {
   float velocity_limit_rpm = 0.0F;  ///< Bounds every velocity target. 0: none.
   double zero_deg = 0.0;            ///< Output angle of an absolute encoder that is to read 0.
   bool zero_at_power_on = false;    ///< The position of the first sample is 0.
+  Travel travel{};                  ///< Tells the turn of an absolute encoder at power-up.
   CascadeConfig loops;              ///< Of the host; meaningless where MotorTraits has none.
   int feedback_hz = 0;              ///< As set on the drive, or as often as it is asked.
   int tick_hz = 1000;               ///< Of the scheduler.

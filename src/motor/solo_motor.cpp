@@ -42,18 +42,24 @@ SoloMotor::SoloMotor(const MotorSettings& settings, const MotorTraits& traits, d
       phase_(static_cast<std::uint64_t>(std::max(settings.command_phase, 0))),
       reference_({.absolute = traits.absolute && gear_ratio_ == traits.gear_ratio,
                   .zero_deg = settings.zero_deg,
-                  .zero_at_power_on = settings.zero_at_power_on}) {}
+                  .zero_at_power_on = settings.zero_at_power_on,
+                  .travel = settings.travel}) {}
 
 void SoloMotor::acceptSample(MonotonicTime received, double drive_position_deg) noexcept {
-  reference_.update(toOutput(drive_position_deg));
+  takeAngle(drive_position_deg);
   if (traits_.scaled_speed && obeying()) {
     speed_scale_.add(received, toOutput(drive_position_deg), static_cast<double>(feedback_.velocity_rpm));
   }
   feedback_.received = received;
   ++feedback_.samples;
+}
+
+void SoloMotor::takeAngle(double drive_position_deg) noexcept {
+  reference_.update(toOutput(drive_position_deg), !obeying());
   feedback_.total_angle_deg = reference_.totalAngleDeg();
   feedback_.angle_deg = wrapDegreesToFloat(feedback_.total_angle_deg);
   feedback_.zeroed = reference_.known();
+  feedback_.turn_unclear = reference_.turnUnclear();
 }
 
 DriveComplaint SoloMotor::scaleComplaint() const noexcept {
@@ -66,6 +72,7 @@ DriveComplaint SoloMotor::scaleComplaint() const noexcept {
 void SoloMotor::loseReference() noexcept {
   reference_.lose();
   feedback_.zeroed = false;
+  feedback_.turn_unclear = false;
   holding_ = false;
 }
 
@@ -74,6 +81,7 @@ bool SoloMotor::setZero(double angle_deg) noexcept {
   feedback_.total_angle_deg = reference_.totalAngleDeg();
   feedback_.angle_deg = wrapDegreesToFloat(feedback_.total_angle_deg);
   feedback_.zeroed = true;
+  feedback_.turn_unclear = false;
   holding_ = false;
   return true;
 }

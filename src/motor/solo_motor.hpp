@@ -52,6 +52,8 @@ class SoloMotor : public Motor_Base, public CommandPacker {
 
   /// One sample: counts it, and takes the drive's position (deg, going on over turns) into the angles.
   void acceptSample(MonotonicTime received, double drive_position_deg) noexcept;
+  /// The same position, but not a sample: its place among the drive's turns has become known.
+  void takeAngle(double drive_position_deg) noexcept;
   /// The position that the drive is to be told for a total angle.
   [[nodiscard]] double drivePositionFor(double total_angle_deg) const noexcept {
     return toDrive(reference_.positionFor(total_angle_deg));

@@ -156,6 +156,17 @@ TEST(MotorRules, TheAngleOfAnAbsoluteEncoderIsForMotorsThatHaveOne) {
       ElementsAre("hero.yaml:6:67: buses[0].motors[0].zero_deg: excludes zero: power_on; keep one of them"));
 }
 
+TEST(MotorRules, AnAbsoluteEncoderGetsItsTravelAndABoundOfItsFirstStep) {
+  const auto arm = motorOf("{name: a, model: GM6020, id: 1, angle_min_deg: -90, angle_max_deg: 200}");
+  EXPECT_EQ(arm.settings.travel.min_deg, -90.0);
+  EXPECT_EQ(arm.settings.travel.max_deg, 200.0);
+  EXPECT_EQ(arm.shaping.max_first_step_deg, 180.0);
+  const auto slow = motorOf("{name: a, model: GM6020, id: 1, angle_slew_deg_per_s: 90}");
+  EXPECT_TRUE(std::isinf(slow.shaping.max_first_step_deg));
+  const auto lift = motorOf("{name: a, model: M2006, id: 1, zero: power_on}");
+  EXPECT_TRUE(std::isinf(lift.shaping.max_first_step_deg));
+}
+
 TEST(MotorRules, AGearedMotorMayCallItsFirstPositionZero) {
   EXPECT_TRUE(motorOf("{name: a, model: M2006, id: 1, zero: power_on}").settings.zero_at_power_on);
   EXPECT_FALSE(motorOf("{name: a, model: M2006, id: 1, zero: none}").settings.zero_at_power_on);

@@ -191,7 +191,7 @@ TEST_F(RequestDeskTest, AFailureNamesEachMotorAndItsReasonInWords) {
 
 TEST_F(RequestDeskTest, EveryReasonHasWordsOfItsOwn) {
   std::vector<std::string> seen;
-  for (int reason = 1; reason <= static_cast<int>(Refusal::kOthersOn); ++reason) {
+  for (int reason = 1; reason <= static_cast<int>(Refusal::kTurnUnclear); ++reason) {
     const auto outcome = begin(linkRequest(reason, "enable", "left"));
     auto result = done(*outcome.order);
     result.motors[0] = static_cast<Refusal>(reason);

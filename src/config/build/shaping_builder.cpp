@@ -9,6 +9,9 @@ namespace {
 // no-load speed over which the effort comes down.
 constexpr float kNativeApproach = 2.0F;
 constexpr float kFullEffort = 0.2F;
+// Of an encoder that may be a turn astray, where nothing makes the way there slow: farther is a matter of
+// turns.
+constexpr double kFirstStepDeg = 180.0;
 
 }  // namespace
 
@@ -20,6 +23,9 @@ void readShaping(MotorReading& in) {
   in.settings.read("angle_slew_deg_per_s", shaping.angle_slew_deg_per_s);
   in.settings.read("angle_min_deg", shaping.angle_min_deg);
   in.settings.read("angle_max_deg", shaping.angle_max_deg);
+  in.motor().travel = {shaping.angle_min_deg, shaping.angle_max_deg};
+  if (in.knowsItsAngle() && !in.settings.mentions("angle_slew_deg_per_s"))
+    shaping.max_first_step_deg = kFirstStepDeg;
   in.settings.read("max_first_step_deg", shaping.max_first_step_deg);
   shaping.effort_full_scale = in.traits.effort_full_scale;
   if (in.traits.host_loops != nullptr) {

@@ -176,8 +176,10 @@ constexpr std::array kMotorKeys{
         .kind = kNumber,
         .unit = "deg",
         .range = kSoftLimit,
-        .about = "Soft limit of the multi-turn angle, in force while the angle is referenced. No target "
-                 "leads beyond it; moving back is allowed. See docs/safety.md#soft-limits. Default: none."},
+        .about =
+            "Soft limit of the multi-turn angle, in force while the angle is referenced. No target "
+            "leads beyond it; moving back is allowed. With both limits set they tell an absolute encoder "
+            "its turn at power-up. See docs/safety.md#soft-limits. Default: none."},
     Key{.name = "angle_max_deg",
         .kind = kNumber,
         .unit = "deg",
@@ -188,7 +190,8 @@ constexpr std::array kMotorKeys{
         .unit = "deg",
         .range = {.min = 0, .max = 1'000'000, .above_min = true},
         .about = "An angle target that follows none is refused if it is farther than this from the measured "
-                 "angle. Default: any distance."},
+                 "angle. Default: 180 for an absolute encoder without angle_slew_deg_per_s, else "
+                 "any distance."},
     Key{.name = "following_error_deg",
         .kind = kNumber,
         .unit = "deg",

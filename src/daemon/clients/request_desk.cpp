@@ -55,6 +55,9 @@ constexpr std::string_view kEnableAloneOperation = "enable_alone";
     case Refusal::kStillActs: return "still being damped, braked or held: disable it once more to let go";
     case Refusal::kAlone: return "locked while another motor is enabled alone";
     case Refusal::kOthersOn: return "not the only one: disable all others first";
+    case Refusal::kTurnUnclear:
+      return "its turn is unclear: turn it by hand into its travel (angle_min_deg to angle_max_deg); with a "
+             "travel of a turn or more set its angle, rc10ctl zero";
   }
   return "unknown reason";
 }

@@ -118,7 +118,7 @@ Result<void> Robot::addMotor(const MotorConfig& config, std::size_t bus_index) {
   // Half: the timeout spans two periods of its feedback at least.
   motors_.push_back({std::move(*motor), bus_index, config.feedback_timeout,
                      static_cast<std::uint64_t>(config.feedback_timeout / 2 / period_), config.guard,
-                     config.shaping, config.fallback, config.standstill_rpm, config.run_down});
+                     config.shaping, config.fallback, config.standstill_rpm, config.run_down, false});
   return {};
 }
 
@@ -127,6 +127,8 @@ Result<void> Robot::addModules(const RobotConfig& config) {
   std::vector<ModuleDirectory::Entry> entries;
   modules_.reserve(config.modules.size());
   for (const auto& module : config.modules) {
+    for (std::size_t i = 0; i < motors_.size(); ++i)
+      motors_[i].homed |= module.type->homes(module.settings, i);
     auto built = module.type->build(module.settings, outline);
     if (!built) return fail(fmt::format("module '{}': {}", module.settings.name, built.error().message));
     modules_.push_back({module.settings.name, module.settings.priority, std::move(*built)});

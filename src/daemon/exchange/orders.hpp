@@ -92,6 +92,7 @@ enum class Refusal : std::uint8_t {
   kStillActs,     ///< It is still being damped, braked or held.
   kAlone,         ///< Another motor is enabled alone: OrderResult::in_the_way.
   kOthersOn,      ///< Other motors are enabled, and it was to be the only one: OrderResult::in_the_way.
+  kTurnUnclear,   ///< Its encoder is absolute, but its travel does not say on which turn it stands.
 };
 
 struct OrderResult {

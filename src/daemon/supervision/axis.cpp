@@ -95,7 +95,7 @@ std::optional<MotorEvent> Axis::endsEnabling(const Tick& tick) const noexcept {
   const bool held = heldWhileEnabling() && tick.now > enabling_since_;
   if (motor_.ordered() != FrameKind::kEnable && !held) return std::nullopt;
   switch (motor_.sequenceProgress()) {
-    case SequenceProgress::kDone: return MotorEvent::kEnableDone;
+    case SequenceProgress::kDone: return turnUnclear() ? MotorEvent::kEnableFailed : MotorEvent::kEnableDone;
     case SequenceProgress::kFailed: return MotorEvent::kEnableFailed;
     case SequenceProgress::kPending: break;
   }

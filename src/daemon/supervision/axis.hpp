@@ -27,6 +27,8 @@ class Axis {
   [[nodiscard]] FaultCode fault() const noexcept { return fault_; }
   [[nodiscard]] bool fallbackActs() const noexcept { return fallback_.acts(); }
   [[nodiscard]] FallbackAction timeoutAction() const noexcept { return entry_.fallback.on_timeout; }
+  /// It must not be enabled: an angle could lead it a turn astray. One that is homed finds its angle itself.
+  [[nodiscard]] bool turnUnclear() const noexcept { return motor_.feedback().turn_unclear && !entry_.homed; }
   void fill(MotorSnapshot& snapshot) const noexcept;
 
   // ---- Feedback

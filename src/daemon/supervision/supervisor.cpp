@@ -78,6 +78,7 @@ void Supervisor::transition(std::size_t motor, MotorEvent event, const Tick& tic
                   : after == MotorStatus::kFault    ? Refusal::kFaulted
                   : event == MotorEvent::kEstop     ? Refusal::kEstop
                   : event == MotorEvent::kGroupStop ? Refusal::kGroup
+                  : axis.turnUnclear()              ? Refusal::kTurnUnclear
                                                     : Refusal::kDriveRefused);
   }
   const bool worrying =

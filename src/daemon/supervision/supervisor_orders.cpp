@@ -176,6 +176,7 @@ Refusal Supervisor::enable(std::size_t motor, const Tick& tick) noexcept {
     case MotorStatus::kFault: return Refusal::kFaulted;
     case MotorStatus::kReady:
       if (!groupWhole(motor)) return Refusal::kGroup;
+      if (axes_[motor].turnUnclear()) return Refusal::kTurnUnclear;
       axes_[motor].prepareEnabling(tick);
       transition(motor, MotorEvent::kEnable, tick);
       return Refusal::kNone;

@@ -111,7 +111,7 @@ void Damiao_Motor::takeState(const damiao::State& state, MonotonicTime received)
       std::max(damiao::temperature(state.drive_temperature), damiao::temperature(state.winding_temperature));
   acceptSample(received, position_.rad() / kRadPerDeg);
   // Not even an absolute angle is known before the wraps are.
-  if (!position_.known()) feedback_.zeroed = false;
+  if (!position_.known()) feedback_.zeroed = feedback_.turn_unclear = false;
 }
 
 void Damiao_Motor::takeReply(const damiao::RegisterReply& reply) noexcept {
@@ -124,6 +124,7 @@ void Damiao_Motor::takeReply(const damiao::RegisterReply& reply) noexcept {
   }
   if (reply.written) return;
   if (position_.take(damiao::floatOf(reply.value)) == DamiaoPosition::Wrap::kOther) loseReference();
+  if (position_.known()) takeAngle(position_.rad() / kRadPerDeg);
   if (enabling()) enabling_.onPosition(position_.known());
 }
 

@@ -118,6 +118,7 @@ DjiMotorConfig djiConfig(const MotorSettings& settings) {
   config.effort_limit = settings.effort_limit;
   config.zero_deg = settings.zero_deg;
   config.zero_at_power_on = settings.zero_at_power_on;
+  config.travel = settings.travel;
   config.loops = settings.loops;
   return config;
 }

@@ -8,6 +8,7 @@
 #include "motor/cascade.hpp"
 #include "motor/drive_frames.hpp"
 #include "motor/encoder.hpp"
+#include "motor/first_angle.hpp"
 
 namespace rc10 {
 
@@ -77,6 +78,7 @@ struct DjiMotorConfig {
   float effort_limit = 0.0F;      ///< A or V; 0: the model's full scale.
   double zero_deg = 0.0;          ///< Output angle of an absolute encoder that is to read 0.
   bool zero_at_power_on = false;  ///< The position of the first sample is 0.
+  Travel travel{};                ///< Tells the turn of an absolute encoder at power-up.
   CascadeConfig loops;            ///< Start from model->command(command).default_loops.
 };
 

@@ -33,6 +33,7 @@ DJI_Motor::DJI_Motor(const DjiMotorConfig& config)
       absolute_(model_->absolute_output && gear_ratio_ == model_->gear_ratio),
       zero_at_power_on_(config.zero_at_power_on),
       zero_deg_(config.zero_deg),
+      travel_(config.travel),
       filters_{FrameFilter{.id = {model_->feedback_id_base + static_cast<std::uint32_t>(id_), false},
                            .mask = kStandardIdMask,
                            .discriminator = {}}},
@@ -75,13 +76,28 @@ FrameVerdict DJI_Motor::updateFeedback(const CanFrame& frame) noexcept {
 
   if (first) {
     const double reported_deg = static_cast<double>(encoder_.totalCounts()) * degrees_per_count_;
-    const bool known = absolute_ && !zero_at_power_on_;
-    setReference(known ? shortestAngle(zero_deg_, reported_deg) : 0.0);
-    feedback_.zeroed = absolute_ || zero_at_power_on_;
+    if (absolute_ && !zero_at_power_on_) {
+      findTurn(shortestAngle(zero_deg_, reported_deg));
+    } else {
+      setReference(0.0);
+      feedback_.zeroed = zero_at_power_on_;
+    }
   }
   if (encoder_.referenceLost()) feedback_.zeroed = false;
   updateAngles();
+  // Turned by hand to where its turn is clear.
+  if (!first && feedback_.turn_unclear && dutyOf(ordered()) != DriveDuty::kObey) {
+    findTurn(feedback_.total_angle_deg);
+    updateAngles();
+  }
   return FrameVerdict::kAccepted;
+}
+
+void DJI_Motor::findTurn(double within_turn_deg) noexcept {
+  const auto first_deg = firstAngle(within_turn_deg, travel_);
+  setReference(first_deg.value_or(within_turn_deg));
+  feedback_.zeroed = first_deg.has_value();
+  feedback_.turn_unclear = !first_deg;
 }
 
 void DJI_Motor::setReference(double total_angle_deg) noexcept {
@@ -101,6 +117,7 @@ bool DJI_Motor::setZero(double angle_deg) noexcept {
   setReference(angle_deg);
   encoder_.acknowledgeLoss();
   feedback_.zeroed = true;
+  feedback_.turn_unclear = false;
   updateAngles();
   loops_.reset();
   holding_ = false;
@@ -109,9 +126,8 @@ bool DJI_Motor::setZero(double angle_deg) noexcept {
 
 void DJI_Motor::restoreReference(ControlMode followed) noexcept {
   if (!absolute_ || !encoder_.referenceLost() || isAngle(followed)) return;
-  setReference(shortestAngle(0.0, feedback_.total_angle_deg));
+  findTurn(feedback_.total_angle_deg);
   encoder_.acknowledgeLoss();
-  feedback_.zeroed = true;
   updateAngles();
 }
 

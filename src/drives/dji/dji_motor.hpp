@@ -61,6 +61,7 @@ class DJI_Motor : public Motor_Base {
   [[nodiscard]] const DjiCommandTable& table() const noexcept { return model_->command(command_); }
   void setReference(double total_angle_deg) noexcept;
   void updateAngles() noexcept;
+  void findTurn(double within_turn_deg) noexcept;
   [[nodiscard]] Target wantedTarget() noexcept;
   [[nodiscard]] Target damped() const noexcept;
   [[nodiscard]] Target held() noexcept;
@@ -77,6 +78,7 @@ class DJI_Motor : public Motor_Base {
   bool absolute_;  ///< The encoder sits on the output shaft.
   bool zero_at_power_on_;
   double zero_deg_;
+  Travel travel_;
   std::array<FrameFilter, 1> filters_;
   Encoder encoder_;
   Cascade loops_;

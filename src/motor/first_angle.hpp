@@ -1,0 +1,21 @@
+#pragma once
+
+#include <limits>
+#include <optional>
+
+namespace rc10 {
+
+/// Where an output shaft may stand: its soft limits. Infinite: none.
+struct Travel {
+  double min_deg = -std::numeric_limits<double>::infinity();
+  double max_deg = std::numeric_limits<double>::infinity();
+};
+
+/// The total angle at power-up of an encoder that tells the angle of the output shaft within one turn.
+/// Without both limits in [-180, 180): such a shaft has no wrong turn. With both the turn on which the shaft
+/// is nearest to its travel: half the gap that the travel leaves of a turn belongs to each end, so an arm
+/// that sags past its limit is still on its turn. None near the middle of the gap, where noise would decide,
+/// and where the travel is a turn or more.
+[[nodiscard]] std::optional<double> firstAngle(double within_turn_deg, const Travel& travel) noexcept;
+
+}  // namespace rc10

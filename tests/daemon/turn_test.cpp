@@ -1,0 +1,138 @@
+// The turn of an absolute encoder after a power cycle, at each place of the travel, in each family that has
+// one.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <string>
+
+#include "config/load_config.hpp"
+#include "daemon/virtual_robot.hpp"
+
+namespace rc10::test::turn_test {
+namespace {
+
+struct Subject {
+  const char* name;
+  const char* motor;
+  const char* bus = "";
+};
+
+void PrintTo(const Subject& subject, std::ostream* out) { *out << subject.name; }
+
+const Subject kSubjects[] = {
+    {"Dji", "model: GM6020, id: 1"},
+    {"DjiReversed", "model: GM6020, id: 1, direction: -1, zero_deg: 70"},
+    {"Damiao", "model: DM4310, id: 1, master_id: 17"},
+    {"DamiaoReversed", "model: DM4310, id: 1, master_id: 17, direction: -1, zero_deg: 70"},
+    {"RobStride", "model: RS00, id: 3"},
+    {"CubeMarsServo", "model: AK80-9, id: 5, output_encoder: true"},
+    {"CubeMarsMit", "model: AK80-9, id: 6, protocol: mit, output_encoder: true"},
+    {"Moteus", "model: moteus, id: 7, motor_kv_rpm_per_v: 100, absolute: true",
+     "data_bitrate: 5000000\n    "},
+    {"MoteusGeared",
+     "model: moteus, id: 7, motor_kv_rpm_per_v: 100, absolute: true, rotor_to_output_ratio: 0.1",
+     "data_bitrate: 5000000\n    "},
+    {"MyActuator", "model: RMD-X8-20, id: 11, absolute_encoder: true"},
+    {"LkTech", "model: LK-MG5010E-i10, id: 12"},
+    {"Vesc",
+     "model: VESC, id: 10, pole_pairs: 7, velocity_limit_rpm: 3000, feedback_hz: 500, angle: encoder"},
+};
+
+RobotConfig configOf(const Subject& subject, const std::string& limits, double parked_deg) {
+  auto outcome =
+      parseRobotConfig(std::string{"robot: turn\nrealtime: preferred\nbuses:\n  - name: bench\n"
+                                   "    type: sim\n    "} +
+                           subject.bus + "motors:\n      - {name: arm, " + subject.motor + limits +
+                           ", simulated: {initial_angle_deg: " + std::to_string(parked_deg) + "}}\n",
+                       "turn.yaml");
+  EXPECT_TRUE(outcome.config) << outcome.errorText();
+  return outcome.config.value_or(twoWheelsAndYaw());
+}
+
+class TurnTest : public ::testing::TestWithParam<Subject> {
+ protected:
+  static constexpr std::size_t kArm = 0;
+
+  /// Until the drive is enabled, or refuses for its turn.
+  static Refusal enable(VirtualRobot& robot) {
+    for (int i = 0; i < 4000 && robot.motor(kArm).status != MotorStatus::kReady; ++i) robot.run(1);
+    Refusal refusal = Refusal::kOffline;
+    for (int attempt = 0; attempt < 4; ++attempt) {
+      refusal = robot.order(Operation::kEnable).motors[kArm];
+      if (refusal == Refusal::kNone || refusal == Refusal::kTurnUnclear) break;
+      robot.run(1000);
+    }
+    robot.run(20);
+    return refusal;
+  }
+  static bool reversed() {
+    return std::string_view{GetParam().motor}.find("direction") != std::string_view::npos;
+  }
+};
+
+TEST_P(TurnTest, IsFoundAtEachPlaceOfTheTravel) {
+  const double zero_deg = reversed() ? 70.0 : 0.0;
+  for (const double parked_deg : {-120.0, -90.0, -30.0, 0.0, 95.0, 179.0, 181.0, 190.0, 200.0, 230.0}) {
+    VirtualRobot robot(configOf(GetParam(), ", angle_min_deg: -90, angle_max_deg: 200",
+                                (reversed() ? -1.0 : 1.0) * (parked_deg + zero_deg)));
+    ASSERT_EQ(enable(robot), Refusal::kNone) << parked_deg;
+    EXPECT_TRUE(robot.motor(kArm).feedback.zeroed);
+    EXPECT_NEAR(robot.motor(kArm).feedback.total_angle_deg, parked_deg, 0.5);
+  }
+}
+
+TEST_P(TurnTest, ThatIsUnclearKeepsItFromBeingEnabledUntilItsAngleIsSet) {
+  VirtualRobot robot(configOf(GetParam(), ", angle_min_deg: -400, angle_max_deg: 400", 10.0));
+  EXPECT_EQ(enable(robot), Refusal::kTurnUnclear);
+  EXPECT_EQ(robot.motor(kArm).status, MotorStatus::kReady);
+  EXPECT_FALSE(robot.motor(kArm).feedback.zeroed);
+  EXPECT_EQ(robot.order(Operation::kZero, 370.0).motors[kArm], Refusal::kNone);
+  EXPECT_EQ(enable(robot), Refusal::kNone);
+  EXPECT_NEAR(robot.motor(kArm).feedback.total_angle_deg, 370.0, 1.0);
+}
+
+TEST_P(TurnTest, OfAWheelWithoutLimitsNeedsNothing) {
+  VirtualRobot robot(configOf(GetParam(), "", 100.0));
+  EXPECT_EQ(enable(robot), Refusal::kNone);
+  EXPECT_TRUE(robot.motor(kArm).feedback.zeroed);
+}
+
+INSTANTIATE_TEST_SUITE_P(All, TurnTest, ::testing::ValuesIn(kSubjects),
+                         [](const auto& each) { return std::string{each.param.name}; });
+
+TEST(TurnOfAnArm, IsNotWrongByOneAndItsTargetLeadsNowhereElse) {
+  VirtualRobot robot(
+      configOf({"", "model: GM6020, id: 1"}, ", angle_min_deg: -90, angle_max_deg: 200", 190.0));
+  robot.run(10);
+  ASSERT_EQ(robot.order(Operation::kEnable).motors[0], Refusal::kNone);
+  const auto start_deg = robot.simBus().drive(0).physics().outputAngleDeg();
+  for (int i = 0; i < 1500; ++i) {
+    robot.hold(0, {.mode = ControlMode::kTotalAngle, .value = 180.0}, 1);
+    ASSERT_LT(std::fabs(robot.simBus().drive(0).physics().outputAngleDeg() - start_deg), 20.0);
+  }
+  EXPECT_NEAR(robot.motor(0).feedback.total_angle_deg, 180.0, 1.0);
+}
+
+TEST(TurnOfAnArm, DoesNotMatterToOneThatIsHomed) {
+  auto outcome = parseRobotConfig(R"(
+robot: turn
+realtime: preferred
+buses:
+  - name: bench
+    type: sim
+    motors:
+      - {name: arm, model: GM6020, id: 1, command: current, angle_min_deg: -400, angle_max_deg: 400}
+modules:
+  - {name: lift, type: joint, motor: arm, homing: stop, homing_velocity_rpm: 20, homing_current_a: 0.5,
+     max_velocity_deg_s: 100, max_acceleration_deg_s2: 100}
+)",
+                                  "turn.yaml");
+  ASSERT_TRUE(outcome.config) << outcome.errorText();
+  VirtualRobot robot(*outcome.config);
+  robot.run(10);
+  EXPECT_FALSE(robot.motor(0).feedback.zeroed);
+  EXPECT_EQ(robot.order(Operation::kEnable).motors[0], Refusal::kNone);
+}
+
+}  // namespace
+}  // namespace rc10::test::turn_test
