@@ -37,6 +37,7 @@ enum class SkipReason : std::int32_t {
   kNoReference,
   kFirstStep,  ///< Farther from the measured angle than max_first_step_deg.
   kRefused,    ///< By the motor itself.
+  kTooFar,     ///< An angle beyond kFarthestAngleDeg.
 };
 
 }  // namespace rc10

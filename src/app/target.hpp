@@ -7,6 +7,9 @@
 
 namespace rc10 {
 
+/// Farther from 0 a double is coarser than an encoder (0.0001 deg), and moves no longer end.
+inline constexpr double kFarthestAngleDeg = 1e12;
+
 /// Whether a target of this mode means nothing while the angle has no reference.
 [[nodiscard]] constexpr bool needsReference(ControlMode mode) noexcept {
   return mode == ControlMode::kAngle || mode == ControlMode::kTotalAngle || mode == ControlMode::kImpedance;

@@ -36,6 +36,8 @@ namespace {
     case SkipReason::kFirstStep:
       return text + "farther from where the motor is than max_first_step_deg; begin near the measured angle";
     case SkipReason::kRefused: return text + "not a target for this motor";
+    case SkipReason::kTooFar:
+      return text + "no angle so far from 0 can be told exactly; ask for one within 1e12 degrees";
     default: return text + "unknown reason";
   }
 }

@@ -11,6 +11,8 @@ using enum FamilyKey::Kind;
 
 // Of the velocity that is asked for: slower than this it does not move.
 constexpr double kMoves = 0.2;
+// More than any magazine holds: a count that leaps farther is a mistake of its sender.
+constexpr double kMostShots = 1000.0;
 
 constexpr std::array kFeederKeys{
     FamilyKey{
@@ -123,7 +125,8 @@ class Feeder : public Module_Base {
     last_deg_ = feedback.total_angle_deg;
     const double shots = commanded() ? input(kShots) : kNoSignal;
     if (std::isfinite(shots) && std::isfinite(last_shots_) && shots > last_shots_)
-      shots_left_deg_ += (shots - last_shots_) * deg_per_shot_;
+      shots_left_deg_ = std::min(shots_left_deg_ + std::min(shots - last_shots_, kMostShots) * deg_per_shot_,
+                                 kMostShots * deg_per_shot_);
     last_shots_ = shots;
   }
 

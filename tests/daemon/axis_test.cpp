@@ -78,6 +78,14 @@ TEST_F(AxisTest, SaysWhyATargetDoesNotAct) {
   EXPECT_EQ(axis_.take({.mode = ControlMode::kVoltage}, kPlanner, now_ + 50ms), SkipReason::kRefused);
 }
 
+TEST_F(AxisTest, RefusesAnAngleThatNoDoubleTellsExactly) {
+  activate();
+  for (const double far_deg : {1.1e12, -1e17, 1e300}) {
+    for (const auto mode : {ControlMode::kTotalAngle, ControlMode::kAngle})
+      EXPECT_EQ(axis_.take({.mode = mode, .value = far_deg}, kPlanner, now_ + 50ms), SkipReason::kTooFar);
+  }
+}
+
 TEST_F(AxisTest, ObeysOneClientUntilItsCommandLapsesOrAHigherPriorityTakesOver) {
   activate();
   (void)axis_.take(kTurn, kPlanner, now_ + 50ms);

@@ -116,6 +116,12 @@ TEST_F(RequestDeskTest, WhoeverIsInTheWayOfAnEnablingIsNamedWithTheWayOut) {
             "ends that)");
 }
 
+TEST_F(RequestDeskTest, RefusesAZeroFartherThanSoftLimitsGo) {
+  EXPECT_EQ(begin(zero(1, "left", -1e6)).order->value, -1e6);
+  EXPECT_THAT(refusal(zero(2, "left", 1e17)), HasSubstr("use -1000000 to 1000000"));
+  EXPECT_THAT(refusal(zero(3, "left", -1000001.0)), HasSubstr("out of range"));
+}
+
 TEST_F(RequestDeskTest, RefusesAnAngleThatIsNotFinite) {
   EXPECT_THAT(refusal(zero(1, "left", std::numeric_limits<double>::quiet_NaN())), HasSubstr("angle_deg"));
 }

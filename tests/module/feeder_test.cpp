@@ -110,6 +110,17 @@ TEST_F(Feeder, GivesUpAfterItsRetriesUntilNobodyAsksAnyMore) {
   EXPECT_EQ(state(), kFeeding);
 }
 
+TEST_F(Feeder, FiresNoMoreThanAThousandShotsAtOnce) {
+  ask(kNoSignal, -1e308);
+  run(1);
+  for (const double shots : {1e308, 1.5e308, 1.7e308}) {
+    ask(kNoSignal, shots);
+    run(1);
+    EXPECT_LE(module_->outputs()[1], 1000.0);
+    EXPECT_GT(module_->outputs()[1], 990.0);
+  }
+}
+
 TEST_F(Feeder, ShotsThatCannotBeFiredNowAreNotFiredLater) {
   ask(kNoSignal, 0.0);
   run(1);

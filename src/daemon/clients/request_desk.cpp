@@ -11,6 +11,9 @@
 namespace rc10 {
 namespace {
 
+// As far as soft limits go (angle_min_deg).
+constexpr double kFarthestZeroDeg = 1e6;
+
 constexpr std::size_t kMaxRemembered = 64;
 constexpr std::size_t kMaxOpen = 64;
 // Each gain is an event: those of one tick must leave room for others in their ring.
@@ -125,6 +128,8 @@ RequestDesk::Outcome RequestDesk::begin(const link::Request& request, std::uint6
     problem = "zero needs a motor: name it";
   } else if (!std::isfinite(value)) {
     problem = "angle_deg is not a finite number";
+  } else if (*operation == Operation::kZero && std::fabs(value) > kFarthestZeroDeg) {
+    problem = fmt::format("angle_deg: {} is out of range; use -1000000 to 1000000", value);
   } else if (open_.size() >= kMaxOpen) {
     problem = "too many requests at once: wait for the answers";
   } else if (parseMotors(request, motors, problem) &&

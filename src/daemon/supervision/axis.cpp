@@ -223,6 +223,7 @@ std::optional<SkipReason> Axis::take(const Target& target, const Lease::Holder& 
 std::optional<SkipReason> Axis::tryTarget(const Target& target) noexcept {
   if (status_ != MotorStatus::kActive) return SkipReason::kNotActive;
   if (needsReference(target.mode)) {
+    if (!(std::fabs(target.value) <= kFarthestAngleDeg)) return SkipReason::kTooFar;
     if (!motor_.feedback().zeroed) return SkipReason::kNoReference;
     const bool first = !needsReference(motor_.target().mode);
     if (first && !shaper_.firstStepAllowed(target, motor_.feedback())) return SkipReason::kFirstStep;
