@@ -127,7 +127,9 @@ void Chassis_Base::update(const Tick& tick, ModuleRobot& robot) noexcept {
   const bool fresh = allFresh(tick, robot);
   const Twist2D now = fresh ? measured(robot) : Twist2D{};
   const double power_w = fresh ? power(robot) : kNoSignal;
-  const double factor = power_.step(power_w, tick.dt_s);
+  const Twist2D twist = commanded() ? bounded(wanted(robot)) : Twist2D{};
+  const double factor = power_.step(
+      power_w, {.told = shareOf(twist, slew_.value()), .measured = shareOf(twist, now)}, tick.dt_s);
   setOutput(kOutVx, fresh ? now.vx_m_s : kNoSignal);
   setOutput(kOutVy, fresh ? now.vy_m_s : kNoSignal);
   setOutput(kOutWz, fresh ? now.wz_deg_s : kNoSignal);
@@ -138,7 +140,6 @@ void Chassis_Base::update(const Tick& tick, ModuleRobot& robot) noexcept {
     slew_.reset(finiteOrRest(now));
     return;
   }
-  const Twist2D twist = bounded(wanted(robot));
   drive(slew_.step({.vx_m_s = twist.vx_m_s * factor,
                     .vy_m_s = twist.vy_m_s * factor,
                     .wz_deg_s = twist.wz_deg_s * factor},
@@ -161,6 +162,17 @@ Twist2D Chassis_Base::wanted(const ModuleRobot& robot) const noexcept {
   if (finiteOr0(input(kTurnAfter)) >= 0.5 && std::isfinite(gimbal_deg))
     twist.wz_deg_s += follow_gain_per_s_ * std::remainder(gimbal_deg, kDegPerTurn);
   return twist;
+}
+
+// By the speed of a wheel at the edge: speeds and turning each against their limit.
+double Chassis_Base::shareOf(const Twist2D& wanted, const Twist2D& part) const noexcept {
+  const double per_speed = max_speed_m_s_ > 0.0 ? 1.0 / (max_speed_m_s_ * max_speed_m_s_) : 0.0;
+  const double per_turn = max_turn_deg_s_ > 0.0 ? 1.0 / (max_turn_deg_s_ * max_turn_deg_s_) : 0.0;
+  const auto product = [&](const Twist2D& a, const Twist2D& b) noexcept {
+    return (a.vx_m_s * b.vx_m_s + a.vy_m_s * b.vy_m_s) * per_speed + a.wz_deg_s * b.wz_deg_s * per_turn;
+  };
+  const double whole = product(wanted, wanted);
+  return whole > 0.0 ? product(wanted, part) / whole : 0.0;
 }
 
 Twist2D Chassis_Base::bounded(Twist2D twist) const noexcept {

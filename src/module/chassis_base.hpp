@@ -47,6 +47,7 @@ class Chassis_Base : public Module_Base {
   [[nodiscard]] bool allObey(const ModuleRobot& robot) const noexcept;
   [[nodiscard]] bool allFresh(const Tick& tick, const ModuleRobot& robot) const noexcept;
   [[nodiscard]] Twist2D wanted(const ModuleRobot& robot) const noexcept;
+  [[nodiscard]] double shareOf(const Twist2D& wanted, const Twist2D& part) const noexcept;
   [[nodiscard]] Twist2D bounded(Twist2D twist) const noexcept;
   void updateOdometry(const Tick& tick, const ModuleRobot& robot) noexcept;
   [[nodiscard]] double power(const ModuleRobot& robot) const noexcept;

@@ -10,12 +10,27 @@ namespace {
 // the limit, up more slowly, so that it does not hunt.
 constexpr double kDownPerS = 20.0;
 constexpr double kUpPerS = 2.0;
+// How fast it comes down to what the power predicts: motors follow what they are told in a few milliseconds.
+constexpr double kPredictSeconds = 0.005;
+// So far ahead the power is predicted from how it grows.
+constexpr double kAheadSeconds = 0.01;
 
 }  // namespace
 
-double PowerLimiter::step(double power_w, float dt_s) noexcept {
+double PowerLimiter::step(double power_w, const Shares& shares, float dt_s) noexcept {
   if (limit_w_ <= 0.0 || !std::isfinite(power_w) || !(dt_s > 0.0F)) return factor_;
   const double left = std::clamp(1.0 - power_w / limit_w_, -1.0, 1.0);
+  const auto dt = static_cast<double>(dt_s);
+  growth_w_per_s_ += ((power_w - power_w_) / dt - growth_w_per_s_) * dt / (kPredictSeconds + dt);
+  power_w_ = power_w;
+  const double ahead = shares.told - shares.measured;
+  // A motor that gets faster pushes in proportion to how far it is behind, so that much less is to be ahead.
+  // A factor far above the motion would come down too late.
+  const double soon_w = power_w + std::max(0.0, growth_w_per_s_) * kAheadSeconds;
+  if (soon_w > limit_w_ && ahead > 0.0 && std::isfinite(ahead)) {
+    const double fits = shares.measured + ahead * limit_w_ / soon_w;
+    if (fits < factor_) factor_ += (fits - factor_) * dt / (kPredictSeconds + dt);
+  }
   factor_ += (left < 0.0 ? kDownPerS : kUpPerS) * left * static_cast<double>(dt_s);
   factor_ = std::clamp(factor_, kLeast, 1.0);
   return factor_;
