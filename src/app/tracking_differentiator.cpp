@@ -28,7 +28,7 @@ float TrackingDifferentiator::step(float target, float dt_s) noexcept {
   target_ = goal;
   distance_ = (distance + slope * dt) * decay;
   rate_per_s_ = (rate_per_s_ - r * slope * dt) * decay;
-  // What is left becomes 0 itself: subnormal numbers are slow.
+  // The rest becomes 0 itself: subnormal numbers are slow.
   constexpr double kNothing = 1e-60;
   if (std::fabs(distance_) < kNothing && std::fabs(rate_per_s_) < kNothing) distance_ = rate_per_s_ = 0.0;
   state_ = {.value = nearFloat(goal + distance_), .rate_per_s = nearFloat(rate_per_s_)};

@@ -7,7 +7,7 @@ class PowerLimiter {
  public:
   /// Of the motion that is wanted, along it: 1 is all of it.
   struct Shares {
-    double told = 0.0;  ///< What the motors are told now; how far it is ahead is what they push for.
+    double told = 0.0;  ///< As the motors are told now; how far it is ahead is what they push for.
     double measured = 0.0;
   };
 

@@ -39,7 +39,7 @@ class Robot {
     FallbackConfig fallback{};
     float standstill_rpm = 0.0F;
     Duration run_down{};  ///< Without torque and feedback it turns no longer than this.
-    bool homed = false;  ///< A module finds its angle.
+    bool homed = false;   ///< A module finds its angle.
   };
   struct BusEntry {
     std::unique_ptr<fdCANbus> bus;
