@@ -12,7 +12,7 @@ enum class EventCode : std::int32_t {
   kSetpointSkipped = 103,  ///< value: the SkipReason, extra: the mode, plus 256 times the MotorStatus
   kNotOwner = 104,         ///< a command refused: a motor is held by another client (`client`: who asked)
   kMotorFault = 105,       ///< value: the FaultCode; extra: the drive's own code
-  kGroupStopped = 106,     ///< with `source`, which is offline or in fault; value: index of the group
+  kGroupStopped = 106,     ///< with `source`; value: index of the group; extra: the GroupStop
   kGroupRearmed = 107,     ///< enabled again at rest; value: index of the group
   kModule = 108,           ///< of a module: value: its place in ModuleSignals::events
   kModuleRefused =
@@ -38,6 +38,14 @@ enum class SkipReason : std::int32_t {
   kFirstStep,  ///< Farther from the measured angle than max_first_step_deg.
   kRefused,    ///< By the motor itself.
   kTooFar,     ///< An angle beyond kFarthestAngleDeg.
+  kGroup,      ///< Not every motor of its group is ACTIVE, and they act together only.
+};
+
+/// Why a group has stopped.
+enum class GroupStop : std::int32_t {
+  kLost,      ///< `source` is offline or in fault.
+  kDisabled,  ///< `source` was disabled.
+  kRefused,   ///< `source` was not enabled: its drive refused.
 };
 
 }  // namespace rc10

@@ -62,7 +62,7 @@ struct BusConfig {
   }
 };
 
-/// Motors that stop together.
+/// Motors that stop together. An optional one stops with the others, and nothing stops or waits for it.
 struct GroupConfig {
   enum class Return : std::uint8_t {
     kRequest,      ///< Each member must be enabled again.
@@ -72,6 +72,8 @@ struct GroupConfig {
   std::string name;
   std::vector<std::size_t> motors;  ///< Their places among all motors of the robot, in the file's order.
   Return on_return = Return::kRequest;
+  bool together = false;  ///< Enabled together, too, and obeying only when all do.
+  bool implied = false;   ///< By the module of its name.
 };
 
 /// A chassis, a gimbal, a remote: see module_base.hpp.

@@ -38,8 +38,20 @@ namespace {
     case SkipReason::kRefused: return text + "not a target for this motor";
     case SkipReason::kTooFar:
       return text + "no angle so far from 0 can be told exactly; ask for one within 1e12 degrees";
+    case SkipReason::kGroup:
+      return text + "its group acts together, and not all of its motors are ACTIVE; enable them all";
     default: return text + "unknown reason";
   }
+}
+
+// `reason`: GroupStop.
+[[nodiscard]] const char* groupStopped(std::int32_t reason) noexcept {
+  switch (GroupStop{reason}) {
+    case GroupStop::kDisabled: return "its group is disabled with it";
+    case GroupStop::kRefused: return "its group stops: it was not enabled";
+    case GroupStop::kLost: break;
+  }
+  return "its group stops with it";
 }
 
 [[nodiscard]] const char* fallbackWord(std::int32_t action) noexcept {
@@ -116,7 +128,7 @@ std::string eventText(std::int32_t code, std::int32_t value, std::int32_t extra,
       return "command of '" + std::string(client) +
              "' refused: a client of the same or a higher priority holds the motor";
     case kMotorFault: return faultText(value) + nativeCode(extra);
-    case kGroupStopped: return "its group stops with it";
+    case kGroupStopped: return groupStopped(extra);
     case kGroupRearmed: return "its group is enabled again";
     case kModule: return "reported event " + std::to_string(value);
     case kModuleRefused: return "its targets are refused: another client commands one of its motors";

@@ -35,7 +35,7 @@ Result<std::unique_ptr<Module_Base>> make(const OwnValues& own, const RobotOutli
 
 /// Four wheels at the corners: only their kinematics differ.
 template <typename Kinematics, typename Wheels>
-class CornerChassisType : public ModuleType {
+class CornerChassisType : public ChassisType {
  public:
   CornerChassisType(std::string_view name, std::string_view about) : name_(name), about_(about) {}
   [[nodiscard]] std::string_view name() const noexcept override { return name_; }
@@ -58,7 +58,7 @@ class CornerChassisType : public ModuleType {
   std::string_view about_;
 };
 
-class Omni3ChassisType : public ModuleType {
+class Omni3ChassisType : public ChassisType {
  public:
   [[nodiscard]] std::string_view name() const noexcept override { return "omni3_chassis"; }
   [[nodiscard]] std::string_view about() const noexcept override {
@@ -87,7 +87,7 @@ class Omni3ChassisType : public ModuleType {
   }
 };
 
-class DifferentialChassisType : public ModuleType {
+class DifferentialChassisType : public ChassisType {
  public:
   [[nodiscard]] std::string_view name() const noexcept override { return "differential_chassis"; }
   [[nodiscard]] std::string_view about() const noexcept override {

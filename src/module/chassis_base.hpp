@@ -66,4 +66,10 @@ class Chassis_Base : public Module_Base {
   PowerLimiter power_;
 };
 
+/// A type of chassis: its motors stop together, by themselves each may be tried.
+class ChassisType : public ModuleType {
+ public:
+  [[nodiscard]] Coupling coupling() const noexcept override { return Coupling::kStop; }
+};
+
 }  // namespace rc10

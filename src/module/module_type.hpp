@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <memory>
 #include <span>
 #include <string>
@@ -59,6 +60,14 @@ class ModuleType {
   [[nodiscard]] virtual bool homes(const ModuleSettings& /*settings*/, std::size_t /*motor*/) const {
     return false;
   }
+  /// How the motors that its keys name depend on each other: they are a group, whether the robot declares one
+  /// or not.
+  enum class Coupling : std::uint8_t {
+    kNone,
+    kStop,      ///< They stop together.
+    kTogether,  ///< They are enabled together, too: mechanically they are one.
+  };
+  [[nodiscard]] virtual Coupling coupling() const noexcept { return Coupling::kNone; }
   /// `settings.own` has all of keys(), each in its range. The error begins with the key that is wrong:
   /// "wheel_radius_m: ...".
   [[nodiscard]] virtual Result<std::unique_ptr<Module_Base>> build(const ModuleSettings& settings,

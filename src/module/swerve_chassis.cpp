@@ -80,7 +80,7 @@ class SwerveChassis final : public Chassis_Base {
   WheelTravel travel_;
 };
 
-class SwerveChassisType : public ModuleType {
+class SwerveChassisType : public ChassisType {
  public:
   [[nodiscard]] std::string_view name() const noexcept override { return "swerve_chassis"; }
   [[nodiscard]] std::string_view about() const noexcept override {

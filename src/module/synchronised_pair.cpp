@@ -106,6 +106,8 @@ class SynchronisedPairType : public ModuleType {
   }
   [[nodiscard]] std::span<const FamilyKey> keys() const noexcept override { return kPairKeys; }
 
+  [[nodiscard]] Coupling coupling() const noexcept override { return Coupling::kTogether; }
+
   [[nodiscard]] Result<std::unique_ptr<Module_Base>> build(const ModuleSettings& settings,
                                                            const RobotOutline& robot) const override {
     const auto& own = settings.own;

@@ -75,7 +75,8 @@ inline std::string fingerprint(const RobotConfig& config) {
     for (const auto& motor : bus.motors) detail::print(out, motor);
   }
   for (const auto& group : config.groups) {
-    out << "group " << group.name << ' ' << static_cast<int>(group.on_return);
+    out << "group " << group.name << ' ' << static_cast<int>(group.on_return)
+        << (group.together ? " together" : "") << (group.implied ? " implied" : "");
     for (const auto motor : group.motors) out << ' ' << motor;
     out << '\n';
   }

@@ -28,6 +28,42 @@ TEST(GroupRules, AGroupSpansBuses) {
   EXPECT_EQ(group.on_return, GroupConfig::Return::kRearmAtRest);
 }
 
+std::string chassisOf(const std::string& more) {
+  return "robot: hero\n" + more +
+         "buses:\n  - name: a\n    type: sim\n    motors:\n"
+         "      - {name: left, model: M3508, id: 1}\n      - {name: right, model: M3508, id: 2}\n"
+         "      - {name: lift_left, model: M2006, id: 3}\n      - {name: lift_right, model: M2006, id: 4}\n"
+         "modules:\n  - {name: base, type: differential_chassis, wheel_radius_m: 0.1, track_m: 0.4, "
+         "max_speed_m_s: 1, max_turn_deg_s: 90, max_acceleration_m_s2: 1, max_turn_acceleration_deg_s2: 90, "
+         "wheels: {left: left, right: right}}\n"
+         "  - {name: lift, type: synchronised_pair, left: lift_left, right: lift_right, velocity_limit_rpm: "
+         "100}\n";
+}
+
+TEST(GroupRules, AChassisAndAPairAreGroups) {
+  const auto loaded = parseRobotConfig(chassisOf(""), "hero.yaml");
+  ASSERT_TRUE(loaded) << loaded.errorText();
+  ASSERT_EQ(loaded.config->groups.size(), 2U);
+  const auto& base = loaded.config->groups[0];
+  EXPECT_EQ(base.name, "base");
+  EXPECT_THAT(base.motors, ElementsAre(0U, 1U));
+  EXPECT_EQ(base.on_return, GroupConfig::Return::kRearmAtRest);
+  EXPECT_FALSE(base.together) << "a wheel may be tried by itself";
+  EXPECT_TRUE(loaded.config->groups[1].together);
+  EXPECT_TRUE(loaded.config->groups[1].implied);
+}
+
+TEST(GroupRules, ADeclaredGroupWinsOverTheOneOfAModule) {
+  const auto loaded = parseRobotConfig(
+      chassisOf("groups:\n  - {name: mine, motors: [left, lift_left, lift_right], together: true}\n"),
+      "hero.yaml");
+  ASSERT_TRUE(loaded) << loaded.errorText();
+  ASSERT_EQ(loaded.config->groups.size(), 1U) << "one wheel is left, and that is no group";
+  EXPECT_FALSE(loaded.config->groups[0].implied);
+  EXPECT_TRUE(loaded.config->groups[0].together);
+  EXPECT_EQ(loaded.config->groups[0].on_return, GroupConfig::Return::kRequest);
+}
+
 TEST(GroupRules, EveryMistakeIsNamed) {
   EXPECT_THAT(
       errorsOf(robotWithGroups("  - {name: drive, motors: [left, rigt]}\n"

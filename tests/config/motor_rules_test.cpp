@@ -161,8 +161,10 @@ TEST(MotorRules, AnAbsoluteEncoderGetsItsTravelAndABoundOfItsFirstStep) {
   EXPECT_EQ(arm.settings.travel.min_deg, -90.0);
   EXPECT_EQ(arm.settings.travel.max_deg, 200.0);
   EXPECT_EQ(arm.shaping.max_first_step_deg, 180.0);
-  const auto slow = motorOf("{name: a, model: GM6020, id: 1, angle_slew_deg_per_s: 90}");
+  const auto slow = motorOf("{name: a, model: GM6020, id: 1, angle_max_deg: 90, angle_slew_deg_per_s: 90}");
   EXPECT_TRUE(std::isinf(slow.shaping.max_first_step_deg));
+  const auto table = motorOf("{name: a, model: GM6020, id: 1}");
+  EXPECT_TRUE(std::isinf(table.shaping.max_first_step_deg)) << "it turns freely";
   const auto lift = motorOf("{name: a, model: M2006, id: 1, zero: power_on}");
   EXPECT_TRUE(std::isinf(lift.shaping.max_first_step_deg));
 }

@@ -116,7 +116,7 @@ TEST(Report, SaysWhatAMotorDoesWhenNobodyCommandsIt) {
       "      - {name: arm, model: M2006, id: 1, on_timeout: hold, on_disable: damp, "
       "on_estop: brake, angle_max_deg: 90}\n"
       "      - {name: wheel, model: M3508, id: 2}\n"
-      "groups: [{name: lift, motors: [arm, wheel], on_return: rearm_at_rest}]\n";
+      "groups: [{name: lift, motors: [arm, wheel], on_return: rearm_at_rest, together: true}]\n";
   const auto text = describe(parseRobotConfig(robot, "hero.yaml").config.value());
   EXPECT_THAT(wordsAfter(text, "arm", 2),
               ::testing::ElementsAre("hold", "damp", "brake", "750", "rpm", "any", "to", "90", "deg"));
@@ -124,7 +124,9 @@ TEST(Report, SaysWhatAMotorDoesWhenNobodyCommandsIt) {
               ::testing::ElementsAre("coast", "coast", "coast", "723", "rpm", "none"));
   EXPECT_THAT(
       text,
-      HasSubstr("group lift: arm and wheel stop together, and are enabled again by themselves at rest"));
+      HasSubstr(
+          "group lift: arm and wheel are enabled and stop together, and are enabled again by themselves "
+          "at rest"));
 }
 
 }  // namespace

@@ -225,10 +225,11 @@ TEST_F(EnableAloneInAGroupTest, AMemberIsEnabledWithoutTheOthers) {
   EXPECT_EQ(enable(kRight), Refusal::kAlone);
 }
 
-TEST_F(EnableAloneInAGroupTest, NoMemberIsEnabledWhileAnotherIsMissing) {
+TEST_F(EnableAloneInAGroupTest, AMemberIsEnabledWhileAnotherIsMissing) {
   robot->freezeBus(0, true);
   robot->run(50);
-  EXPECT_EQ(alone(kRight), Refusal::kGroup);
+  EXPECT_EQ(alone(kRight), Refusal::kNone);
+  EXPECT_EQ(status(kRight), MotorStatus::kActive);
 }
 
 TEST_F(EnableAloneInAGroupTest, AGroupThatWaitsToComeBackWaitsForARequestInstead) {

@@ -13,6 +13,8 @@ namespace {
 constexpr std::size_t kLeft = 0;
 constexpr std::size_t kRight = 1;
 constexpr std::size_t kYaw = 2;
+MotorSet only(std::size_t motor) { return MotorSet{}.set(motor); }
+
 constexpr Target kVelocity120{.mode = ControlMode::kVelocity, .value = 120.0};
 
 /// `left` and `right` are coupled, on buses of their own; `yaw` shares the bus of `left`.
@@ -172,6 +174,139 @@ TEST_F(GroupTest, AnEstopOrADisableInBetweenEndsTheRearming) {
     EXPECT_EQ(status(kLeft), MotorStatus::kReady) << estop;
     EXPECT_EQ(status(kRight), MotorStatus::kReady) << estop;
   }
+}
+
+// ---- All or none
+
+TEST_F(GroupTest, AMemberThatIsLostBeforeItObeysStopsTheOthers) {
+  start(GroupConfig::Return::kRearmAtRest);
+  robot->orderFor(only(kLeft) | only(kRight), Operation::kDisable);
+  robot->run(3000);
+  ASSERT_EQ(robot->orderFor(only(kRight), Operation::kEnable).motors[kRight], Refusal::kNone);
+  ASSERT_EQ(status(kLeft), MotorStatus::kReady);
+  ASSERT_EQ(status(kRight), MotorStatus::kActive);
+  robot->freezeBus(0, true);
+  int ticks = 0;
+  while (status(kLeft) == MotorStatus::kReady && ++ticks < 100) {
+    ASSERT_EQ(status(kRight), MotorStatus::kActive);
+    drive(1);
+  }
+  EXPECT_EQ(status(kLeft), MotorStatus::kOffline);
+  EXPECT_EQ(status(kRight), MotorStatus::kReady) << "in the same tick";
+}
+
+TEST_F(GroupTest, OneThatIsDisabledDisablesTheOthers) {
+  start(GroupConfig::Return::kRearmAtRest);
+  robot->orderFor(only(kLeft), Operation::kDisable);
+  EXPECT_EQ(status(kRight), MotorStatus::kReady);
+  EXPECT_EQ(status(kYaw), MotorStatus::kActive);
+  EXPECT_TRUE(told(EventCode::kGroupStopped));
+  robot->run(20'000);
+  EXPECT_EQ(status(kLeft), MotorStatus::kReady) << "and it does not come back by itself";
+  EXPECT_EQ(status(kRight), MotorStatus::kReady);
+}
+
+TEST_F(GroupTest, WhatStopsWithADisabledMotorDoesWhatItDoesWhenDisabledAndItsOwnDisableLetsNothingGo) {
+  auto config = coupled(GroupConfig::Return::kRequest);
+  for (auto& motor : config.buses[1].motors) {
+    motor.fallback.on_disable = FallbackAction::kBrake;
+    motor.fallback.on_estop = FallbackAction::kCoast;
+  }
+  robot = std::make_unique<VirtualRobot>(config);
+  robot->run(5);
+  robot->order(Operation::kEnable);
+  drive(1000);
+  robot->orderFor(only(kLeft), Operation::kDisable);
+  robot->run(3);
+  EXPECT_LT(robot->motor(kRight).command_value, -0.1F) << "it brakes";
+  robot->orderFor(only(kRight), Operation::kDisable);
+  robot->run(3);
+  EXPECT_LT(robot->motor(kRight).command_value, -0.1F) << "the request that follows was meant to do that";
+  robot->orderFor(only(kRight), Operation::kDisable);
+  robot->run(3);
+  EXPECT_EQ(robot->motor(kRight).command_value, 0.0F) << "once more lets go";
+}
+
+TEST_F(GroupTest, AnOptionalMemberStopsWithTheOthersAndNothingStopsForIt) {
+  auto config = coupled(GroupConfig::Return::kRequest);
+  config.buses[0].motors[0].optional = true;
+  robot = std::make_unique<VirtualRobot>(config);
+  robot->run(5);
+  robot->order(Operation::kEnable);
+  drive(100);
+  losePower(50);
+  EXPECT_EQ(status(kRight), MotorStatus::kActive);
+  robot->run(5);
+  ASSERT_EQ(robot->orderFor(only(kLeft), Operation::kEnable).motors[kLeft], Refusal::kNone);
+  robot->orderFor(only(kRight), Operation::kDisable);
+  EXPECT_EQ(status(kLeft), MotorStatus::kReady);
+}
+
+TEST_F(GroupTest, AMemberThatIsMissingIsNamed) {
+  start(GroupConfig::Return::kRequest);
+  robot->freezeBus(0, true);
+  robot->run(50);
+  EXPECT_EQ(robot->orderFor(only(kRight), Operation::kEnable).in_the_way, only(kLeft));
+}
+
+class TogetherTest : public GroupTest {
+ protected:
+  void SetUp() override {
+    auto config = coupled(GroupConfig::Return::kRearmAtRest);
+    config.groups[0].together = true;
+    robot = std::make_unique<VirtualRobot>(config);
+    robot->run(5);
+  }
+};
+
+TEST_F(TogetherTest, AllAreEnabledOrNone) {
+  const auto alone = robot->orderFor(only(kLeft) | only(kYaw), Operation::kEnable);
+  EXPECT_EQ(alone.motors[kLeft], Refusal::kTogether);
+  EXPECT_EQ(alone.in_the_way, only(kRight));
+  EXPECT_EQ(alone.motors[kYaw], Refusal::kNone) << "it is in no group";
+  EXPECT_EQ(status(kLeft), MotorStatus::kReady);
+  const auto both = robot->orderFor(only(kLeft) | only(kRight), Operation::kEnable);
+  EXPECT_EQ(both.motors[kLeft], Refusal::kNone);
+  EXPECT_EQ(both.motors[kRight], Refusal::kNone);
+  EXPECT_EQ(robot->orderFor(only(kLeft), Operation::kEnable).motors[kLeft], Refusal::kNone) << "once more";
+}
+
+TEST_F(TogetherTest, NoneIsEnabledWhileOneCannotBe) {
+  robot->freezeBus(0, true);
+  robot->run(50);
+  const auto result = robot->order(Operation::kEnable);
+  EXPECT_EQ(result.motors[kLeft], Refusal::kOffline);
+  EXPECT_EQ(result.motors[kRight], Refusal::kGroup);
+  EXPECT_EQ(status(kRight), MotorStatus::kReady);
+}
+
+TEST_F(TogetherTest, NoTargetActsBeforeAllAreActive) {
+  Order order;
+  order.id = 77;
+  order.operation = Operation::kEnable;
+  order.motors = only(kLeft) | only(kRight);
+  ASSERT_TRUE(robot->exchange().orders.push(order));
+  bool waited = false;
+  for (int i = 0; i < 100; ++i) {
+    for (const auto motor : {kLeft, kRight}) robot->command(motor, kVelocity120);
+    robot->tick();
+    const bool whole = status(kLeft) == MotorStatus::kActive && status(kRight) == MotorStatus::kActive;
+    waited |= !whole && (status(kLeft) == MotorStatus::kActive || status(kRight) == MotorStatus::kActive);
+    if (whole) continue;
+    EXPECT_EQ(robot->motor(kLeft).target.mode, ControlMode::kCoast);
+    EXPECT_EQ(robot->motor(kRight).target.mode, ControlMode::kCoast);
+  }
+  EXPECT_EQ(robot->motor(kRight).target.mode, ControlMode::kVelocity);
+  RecordProperty("waited", waited);
+}
+
+TEST_F(TogetherTest, AMemberIsEnabledAloneWithoutTheOthers) {
+  robot->freezeBus(0, true);
+  robot->run(50);
+  EXPECT_EQ(robot->orderFor(only(kRight), Operation::kEnableAlone).motors[kRight], Refusal::kNone);
+  EXPECT_EQ(status(kRight), MotorStatus::kActive);
+  drive(100);
+  EXPECT_EQ(robot->motor(kRight).target.mode, ControlMode::kVelocity);
 }
 
 }  // namespace

@@ -55,8 +55,10 @@ Oracle::Oracle(const RobotConfig& config) : config_(config) {
   for (const auto& entry : config_.groups) {
     Group group;
     group.rearms = entry.on_return == GroupConfig::Return::kRearmAtRest;
+    group.together = entry.together;
     for (const auto member : entry.motors) {
       group.members.set(member);
+      group.required.set(member, !motors_[member].config->optional);
       motors_[member].group = groups_.size();
     }
     groups_.push_back(group);
@@ -377,6 +379,10 @@ void Oracle::judgeAlone(const Snapshot& snapshot) {
     const bool begun = !isOn(motor.status) && isOn(snapshot.motors[i].status);
     if (begun && motor.alone_asked && !rearms) alone_ = i;
   }
+  for (std::size_t i = 0; i < motors_.size(); ++i) {
+    auto& motor = motors_[i];
+    motor.perhaps_alone = (motor.perhaps_alone || motor.alone_asked) && isOn(snapshot.motors[i].status);
+  }
   if (alone_ && !isOn(snapshot.motors[*alone_].status)) alone_.reset();
   if (!alone_) return;
   was_alone_ = true;
@@ -386,27 +392,46 @@ void Oracle::judgeAlone(const Snapshot& snapshot) {
             "enabled beside a motor that is enabled alone");
 }
 
+// All or none: while a required member is missing, and in the tick in which one leaves, none is on. A motor
+// that is enabled alone needs no group.
 void Oracle::judgeGroups(const Snapshot& snapshot) {
   for (auto& group : groups_) {
-    bool fault = false;
-    group.stops_now = false;
-    bool stops = false;
-    bool disabled = false;
+    bool missing = false;
+    bool newly_lost = false;
+    bool refused = false;
+    bool leaves = false;
+    bool disable_asked = false;
+    bool faulted = false;
+    group.stops_now = group.disabled_now = false;
     MotorSet active;
     MotorSet rearmed;
     for (std::size_t i = 0; i < motors_.size(); ++i) {
       if (!group.members.test(i)) continue;
-      const auto before = motors_[i].status;
+      const auto& motor = motors_[i];
+      const auto before = motor.status;
       const auto after = snapshot.motors[i].status;
       if (before == MotorStatus::kActive) active.set(i);
-      stops |= before == MotorStatus::kActive && lost(after);
-      // Perhaps it was ACTIVE within the tick.
-      group.stops_now |= before == MotorStatus::kEnabling && lost(after);
-      fault |= after == MotorStatus::kFault;
-      disabled |= motors_[i].disables_asked > 0;
-      if (after == MotorStatus::kEnabling && !motors_[i].enable_asked && before != MotorStatus::kEnabling)
+      disable_asked |= motor.disables_asked > 0;
+      if (after == MotorStatus::kEnabling && !motor.enable_asked && before != MotorStatus::kEnabling)
         rearmed.set(i);
+      if (!group.required.test(i)) continue;
+      missing |= lost(after);
+      faulted |= after == MotorStatus::kFault;
+      newly_lost |= lost(after) && !lost(before);
+      refused |= before == MotorStatus::kEnabling && !isOn(after) && motor.disables_asked == 0;
+      leaves |= isOn(before) && (!isOn(after) || motor.disables_asked > 0);
+      group.disabled_now |= motor.disables_asked > 0 && (isOn(before) || motor.enable_asked);
     }
+    bool alone = alone_ && group.members.test(*alone_);
+    for (std::size_t i = 0; i < motors_.size(); ++i)
+      alone |= group.members.test(i) && motors_[i].perhaps_alone;
+    group.stops_now = newly_lost || refused;
+    for (std::size_t i = 0; i < motors_.size(); ++i) {
+      if (!group.members.test(i) || alone || !isOn(snapshot.motors[i].status)) continue;
+      require(i, !missing, "enabled although a motor of its group is missing");
+      require(i, !leaves || was_alone_, "enabled although its group has stopped");
+    }
+    if (group.together && !alone) judgeTogether(group, snapshot);
     if (rearmed.any()) {
       for (std::size_t i = 0; i < motors_.size(); ++i) {
         const bool left_out = group.may_rearm.test(i) && snapshot.motors[i].status == MotorStatus::kReady;
@@ -415,17 +440,26 @@ void Oracle::judgeGroups(const Snapshot& snapshot) {
       group.may_rearm.reset();
       ++visits_.rearmed;
     }
-    group.stops_now |= stops;
-    if (stops) {
-      for (std::size_t i = 0; i < motors_.size(); ++i) {
-        if (!group.members.test(i)) continue;
-        require(i, snapshot.motors[i].status != MotorStatus::kActive,
-                "ACTIVE although its group has stopped");
-      }
-      if (group.rearms) group.may_rearm = active;
-    }
-    if (fault || disabled || was_alone_ || estop_asked_ || snapshot.state != RobotStatus::kRun)
+    if (newly_lost && group.rearms && active.any()) group.may_rearm = active;
+    if (faulted || disable_asked || was_alone_ || estop_asked_ || snapshot.state != RobotStatus::kRun)
       group.may_rearm.reset();
+  }
+}
+
+void Oracle::judgeTogether(const Group& group, const Snapshot& snapshot) {
+  bool whole = true;
+  bool asked = true;
+  for (std::size_t i = 0; i < motors_.size(); ++i) {
+    if (!group.required.test(i)) continue;
+    whole = whole && snapshot.motors[i].status == MotorStatus::kActive;
+    asked = asked && (motors_[i].enable_asked || isOn(motors_[i].status) || group.may_rearm.test(i));
+  }
+  for (std::size_t i = 0; i < motors_.size(); ++i) {
+    if (!group.members.test(i)) continue;
+    require(i, whole || snapshot.motors[i].target.mode == ControlMode::kCoast,
+            "a target although its group is not enabled as a whole");
+    const bool begun = !isOn(motors_[i].status) && isOn(snapshot.motors[i].status);
+    require(i, asked || !begun, "enabled without its group");
   }
 }
 
@@ -440,7 +474,9 @@ void Oracle::followActions(std::size_t index, const MotorSnapshot& seen) {
   if (seen.target.mode != ControlMode::kCoast) return setActions(motor, only(fallback.on_timeout));
   if (before == MotorStatus::kActive && after != MotorStatus::kActive) {
     Actions actions;
-    const bool asked = motor.disables_asked > 0 || stop_asked_;
+    const bool with_group = motor.group != kNoGroup && groups_[motor.group].disabled_now;
+    const bool asked = motor.disables_asked > 0 || stop_asked_ || with_group;
+    motor.rests_with_group = with_group && motor.disables_asked == 0;
     if (asked) actions |= only(fallback.on_disable);
     if (motor.disables_asked > 1 || (motor.disables_asked > 0 && estop_asked_)) actions |= coast;
     if (estop_asked_ || (motor.group != kNoGroup && groups_[motor.group].stops_now))
@@ -451,8 +487,10 @@ void Oracle::followActions(std::size_t index, const MotorSnapshot& seen) {
     return;
   }
   // Enabled and stopped within a tick.
-  const bool stopped_with_group = motor.group != kNoGroup && groups_[motor.group].stops_now;
-  if (before == MotorStatus::kEnabling && stopped_with_group) motor.actions |= only(fallback.on_estop);
+  const bool stopped_with_group =
+      motor.group != kNoGroup && (groups_[motor.group].stops_now || groups_[motor.group].disabled_now);
+  if (before == MotorStatus::kEnabling && stopped_with_group)
+    motor.actions |= only(fallback.on_estop) | only(fallback.on_disable);
   if (motor.mode != ControlMode::kCoast) {  // its target has just gone
     auto actions = only(fallback.on_timeout);
     if (motor.coast_asked) actions |= coast;
@@ -462,7 +500,7 @@ void Oracle::followActions(std::size_t index, const MotorSnapshot& seen) {
   // A target that came and went within the tick cannot be; one that was taken back by COAST can.
   if (after == MotorStatus::kReady && motor.disables_asked > 0 && motor.disables_asked < 2 &&
       before == MotorStatus::kReady && !motor.enable_asked) {
-    setActions(motor, coast);
+    if (!std::exchange(motor.rests_with_group, false)) setActions(motor, coast);
   }
 }
 

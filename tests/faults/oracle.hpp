@@ -90,6 +90,7 @@ class Oracle {
     bool coast_asked = false;      ///< Since the last tick, as are the next four.
     bool enable_asked = false;     ///< Alone or not.
     bool alone_asked = false;      ///< And not the other way as well.
+    bool perhaps_alone = false;    ///< Since it was asked for, as long as it is on.
     int disables_asked = 0;
     bool clear_asked = false;
     // Its action.
@@ -109,6 +110,7 @@ class Oracle {
     MonotonicTime acts_since{};
     std::uint64_t acts_since_tick = 0;
     bool ends_at_standstill = false;
+    bool rests_with_group = false;  ///< Disabled since another member was.
     bool new_sample = false;
     bool was_hot = false;  ///< Its limit may still be reduced.
     bool cooled = false;   ///< And that ended in this tick.
@@ -116,9 +118,12 @@ class Oracle {
   };
   struct Group {
     MotorSet members;
+    MotorSet required;
+    bool together = false;
     bool rearms = false;
-    bool stops_now = false;
-    MotorSet may_rearm;  ///< Were ACTIVE when it stopped, and nothing has forbidden it since.
+    bool stops_now = false;     ///< Perhaps: since one is lost or was refused.
+    bool disabled_now = false;  ///< Perhaps: since one was.
+    MotorSet may_rearm;         ///< Were ACTIVE when it stopped, and nothing has forbidden it since.
   };
 
   void judgeSnapshot(const Snapshot& snapshot, std::uint64_t periods);
@@ -130,6 +135,7 @@ class Oracle {
   void judgeStatus(std::size_t index, const MotorSnapshot& seen, RobotStatus robot);
   void judgeAlone(const Snapshot& snapshot);
   void judgeGroups(const Snapshot& snapshot);
+  void judgeTogether(const Group& group, const Snapshot& snapshot);
   void followActions(std::size_t index, const MotorSnapshot& seen);
   void judgeCommand(std::size_t index, const MotorSnapshot& seen);
   void judgeFallback(std::size_t index);

@@ -20,7 +20,7 @@ buses:
          zero: power_on}
       - {name: right, model: M3508, id: 2, direction: -1, on_timeout: damp, on_disable: brake, on_estop: damp,
          current_slew_a_per_s: 100, velocity_slew_rpm_per_s: 2000}
-      - {name: feeder, model: M2006, id: 3, current_limit_a: 5, stall_ms: 200}
+      - {name: feeder, model: M2006, id: 3, current_limit_a: 5, stall_ms: 200, optional: true}
   - name: arm
     type: sim
     motors:
@@ -33,7 +33,7 @@ buses:
          hold_max_s: 0.5, angle_min_deg: 0, angle_max_deg: 2000, stall_ms: 300, stall_action: notify,
          simulated: {load_torque_nm: 0.3}}
 groups:
-  - {name: drive, motors: [left, right], on_member_offline: stop_group, on_return: rearm_at_rest}
+  - {name: drive, motors: [left, right, feeder], on_member_offline: stop_group, on_return: rearm_at_rest}
 )",
                                                             R"(
 robot: springs
@@ -126,7 +126,7 @@ buses:
          on_disable: damp, on_estop: damp, hold_max_s: 0.5, command_divider: 2, angle_min_deg: -120,
          angle_max_deg: 120, zero: power_on}
 groups:
-  - {name: wheels, motors: [left_wheel, right_wheel], on_member_offline: stop_group, on_return: rearm_at_rest}
+  - {name: wheels, motors: [left_wheel, right_wheel], together: true, on_return: rearm_at_rest}
 )"};
 
 }  // namespace

@@ -14,12 +14,12 @@ def hello_motor(*words: str) -> Program:
 
 
 def test_a_cpp_program_enables_moves_and_lets_go(daemon: Daemon) -> None:
-    with hello_motor("host", "yaw", "150") as program:
+    with hello_motor("host", "yaw", "450") as program:
         moving = daemon.wait_motor("yaw", lambda m: m["mode"] == "total_angle", "is moved")
         assert moving["status"] == "ACTIVE"
         assert moving["owner"] == "hello-motor"
-        assert moving["target"] == 150
-        assert abs(float(program.wait_line(r"^yaw stands at (\S+) deg$")[1]) - 150) < 2
+        assert moving["target"] == 450
+        assert abs(float(program.wait_line(r"^yaw stands at (\S+) deg$")[1]) - 450) < 2
         assert program.wait() == 0, program.output
     yaw = daemon.wait_motor("yaw", lambda m: m["status"] == "READY", "is disabled")
     assert yaw["mode"] == "coast"

@@ -22,6 +22,7 @@ class GroupBuilder {
     settings.read("name", group.name);
     if (const auto name = settings.find("name")) group_names_.add(*name, problems_);
     if (settings.text("on_return") == "rearm_at_rest") group.on_return = GroupConfig::Return::kRearmAtRest;
+    settings.read("together", group.together);
     const auto motors = settings.find("motors");
     for (std::size_t i = 0; motors && i < motors->node->items.size(); ++i) {
       const YamlNode& item = motors->node->items[i];

@@ -7,6 +7,7 @@
 #include "config/build/bus_builder.hpp"
 #include "config/build/gpio_builder.hpp"
 #include "config/build/group_builder.hpp"
+#include "config/build/implied_groups.hpp"
 #include "config/build/lcm_url.hpp"
 #include "config/build/module_builder.hpp"
 #include "config/keys/profiles.hpp"
@@ -55,6 +56,7 @@ class RobotBuilder {
     readBuses();
     robot_.groups = buildGroups(top_, robot_.buses, problems_);
     robot_.modules = buildModules(top_, robot_.buses, problems_);
+    addImpliedGroups(robot_);
     return std::move(robot_);
   }
 

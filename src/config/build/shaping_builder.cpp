@@ -1,5 +1,6 @@
 #include "config/build/shaping_builder.hpp"
 
+#include <cmath>
 #include <variant>
 
 namespace rc10 {
@@ -24,7 +25,9 @@ void readShaping(MotorReading& in) {
   in.settings.read("angle_min_deg", shaping.angle_min_deg);
   in.settings.read("angle_max_deg", shaping.angle_max_deg);
   in.motor().travel = {shaping.angle_min_deg, shaping.angle_max_deg};
-  if (in.knowsItsAngle() && !in.settings.mentions("angle_slew_deg_per_s"))
+  // A shaft without limits has no wrong turn, and moves over many turns are its trade.
+  const bool limited = std::isfinite(shaping.angle_min_deg) || std::isfinite(shaping.angle_max_deg);
+  if (limited && in.knowsItsAngle() && !in.settings.mentions("angle_slew_deg_per_s"))
     shaping.max_first_step_deg = kFirstStepDeg;
   in.settings.read("max_first_step_deg", shaping.max_first_step_deg);
   shaping.effort_full_scale = in.traits.effort_full_scale;

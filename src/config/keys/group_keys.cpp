@@ -26,8 +26,14 @@ constexpr std::array kGroupKeys{
         .kind = kText,
         .choices = memberOfflineChoices,
         .default_text = "stop_group",
-        .about = "stop_group: when an active member goes offline or into fault, the others stop by their "
-                 "on_estop and are no longer enabled."},
+        .about = "stop_group: while a member is offline or in fault, the others stop by their on_estop and "
+                 "are not enabled. They stop as well when one is disabled, or its drive refuses to be "
+                 "enabled. A motor that is optional stops with its group, and nothing stops for it."},
+    Key{.name = "together",
+        .kind = kBoolean,
+        .default_text = "false",
+        .about = "true: mechanically one. Enabled all or none, in one request that names them all, and no "
+                 "target acts before all are ACTIVE."},
     Key{.name = "on_return",
         .kind = kText,
         .choices = returnChoices,

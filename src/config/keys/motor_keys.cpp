@@ -190,8 +190,8 @@ constexpr std::array kMotorKeys{
         .unit = "deg",
         .range = {.min = 0, .max = 1'000'000, .above_min = true},
         .about = "An angle target that follows none is refused if it is farther than this from the measured "
-                 "angle. Default: 180 for an absolute encoder without angle_slew_deg_per_s, else "
-                 "any distance."},
+                 "angle. Default: 180 for an absolute encoder with a soft limit and without "
+                 "angle_slew_deg_per_s, else any distance."},
     Key{.name = "following_error_deg",
         .kind = kNumber,
         .unit = "deg",

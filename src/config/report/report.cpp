@@ -180,8 +180,9 @@ std::string groupsText(const RobotConfig& config) {
     members.reserve(group.motors.size());
     for (const auto motor : group.motors) members.push_back(names[motor]);
     const bool rearms = group.on_return == GroupConfig::Return::kRearmAtRest;
-    text += "\ngroup " + group.name + ": " + listWords(members) + " stop together, and are enabled again " +
-            (rearms ? "by themselves at rest" : "by request") + "\n";
+    text += "\ngroup " + group.name + (group.implied ? " (of its module)" : "") + ": " + listWords(members) +
+            (group.together ? " are enabled and stop together" : " stop together") +
+            ", and are enabled again " + (rearms ? "by themselves at rest" : "by request") + "\n";
   }
   return text;
 }

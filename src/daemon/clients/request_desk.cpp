@@ -42,7 +42,9 @@ constexpr std::string_view kEnableAloneOperation = "enable_alone";
     case Refusal::kActive: return "ACTIVE: disable it first";
     case Refusal::kNoPosition: return "no position: the drive sends no feedback";
     case Refusal::kDriveRefused: return "the drive did not confirm in time";
-    case Refusal::kGroup: return "another motor of its group is offline or in fault";
+    case Refusal::kGroup: return "another motor of its group is offline, in fault or not enabled";
+    case Refusal::kTogether: return "its group is enabled all or none: name all of its motors";
+    case Refusal::kDisabled: return "disabled while it was being enabled";
     case Refusal::kMoving: return "still turning: the e-stop is cleared when every motor stands still";
     case Refusal::kEstopInput:
       return "the e-stop input is open: release the button, or mend its wire or chip";
@@ -272,6 +274,10 @@ std::string RequestDesk::reasonOf(Refusal reason, const MotorSet& in_the_way) co
     case Refusal::kAlone:
       return fmt::format("locked while {} is enabled alone: `rc10ctl disable {}` ends that", them, them);
     case Refusal::kOthersOn: return fmt::format("not the only one: `rc10ctl disable {}` first", them);
+    case Refusal::kTogether: return fmt::format("its group is enabled all or none: name {} as well", them);
+    case Refusal::kGroup:
+      return names.empty() ? inWords(reason)
+                           : fmt::format("of its group, {} cannot be enabled: offline or in fault", them);
     default: return inWords(reason);
   }
 }

@@ -118,7 +118,8 @@ Result<void> Robot::addMotor(const MotorConfig& config, std::size_t bus_index) {
   // Half: the timeout spans two periods of its feedback at least.
   motors_.push_back({std::move(*motor), bus_index, config.feedback_timeout,
                      static_cast<std::uint64_t>(config.feedback_timeout / 2 / period_), config.guard,
-                     config.shaping, config.fallback, config.standstill_rpm, config.run_down, false});
+                     config.shaping, config.fallback, config.standstill_rpm, config.run_down, config.optional,
+                     false});
   return {};
 }
 

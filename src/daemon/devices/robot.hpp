@@ -38,8 +38,9 @@ class Robot {
     ShapingConfig shaping{};
     FallbackConfig fallback{};
     float standstill_rpm = 0.0F;
-    Duration run_down{};  ///< Without torque and feedback it turns no longer than this.
-    bool homed = false;   ///< A module finds its angle.
+    Duration run_down{};    ///< Without torque and feedback it turns no longer than this.
+    bool optional = false;  ///< The robot may be enabled without it.
+    bool homed = false;     ///< A module finds its angle.
   };
   struct BusEntry {
     std::unique_ptr<fdCANbus> bus;

@@ -80,11 +80,13 @@ enum class Refusal : std::uint8_t {
   kActive,        ///< Not while the motor is ACTIVE.
   kNoPosition,    ///< No feedback to set a zero from.
   kDriveRefused,  ///< The drive did not confirm.
-  kGroup,         ///< A motor that it is coupled with is offline or in fault.
-  kMoving,        ///< Not before the motor stands still.
-  kEstopInput,    ///< The e-stop input is open.
-  kMayTurn,       ///< Unheard for less than its run-down time: it may still turn.
-  kEstopAsked,    ///< An e-stop was asked for in the same tick.
+  kGroup,  ///< A motor that it is coupled with is not there, or cannot be enabled: OrderResult::in_the_way.
+  kTogether,    ///< Its group is enabled all or none, and the request left some out: OrderResult::in_the_way.
+  kDisabled,    ///< Disabled while it was being enabled.
+  kMoving,      ///< Not before the motor stands still.
+  kEstopInput,  ///< The e-stop input is open.
+  kMayTurn,     ///< Unheard for less than its run-down time: it may still turn.
+  kEstopAsked,  ///< An e-stop was asked for in the same tick.
   kConfiguring,   ///< A drive is being configured.
   kNotConfirmed,  ///< The drive did not tell a setting as it was written.
   kNotSaved,      ///< The drive did not tell that its settings are stored.
@@ -100,7 +102,7 @@ struct OrderResult {
   bool refused = false;         ///< Not tried at all.
   std::size_t drive_value = 0;  ///< kConfigure: at which of the values it ended.
   std::array<Refusal, kMaxMotors> motors{};
-  MotorSet in_the_way{};  ///< kAlone, kOthersOn: which motors.
+  MotorSet in_the_way{};  ///< kAlone, kOthersOn, kGroup, kTogether: which motors.
 };
 
 }  // namespace rc10

@@ -14,10 +14,16 @@ Supervisor::Supervisor(Robot& robot, LinkExchange& link, FlightRecorder* recorde
     : robot_(robot), link_(link), recorder_(recorder) {
   axes_.reserve(robot.motors().size());
   for (const auto& entry : robot.motors()) axes_.emplace_back(entry, robot.buses()[entry.bus]);
+  group_of_.assign(axes_.size(), kNoGroup);
   for (const auto& config : robot.groups()) {
     Group group;
+    group.motors = config.motors;
+    group.together = config.together;
     group.on_return = config.on_return;
-    for (const auto motor : config.motors) group.members.set(motor);
+    for (const auto motor : config.motors) {
+      group_of_[motor] = groups_.size();
+      group.required.set(motor, !robot.motors()[motor].optional);
+    }
     groups_.push_back(group);
   }
 }
@@ -66,18 +72,16 @@ void Supervisor::transition(std::size_t motor, MotorEvent event, const Tick& tic
   if (!changed) return;
   const auto before = *changed;
   const auto after = axis.status();
-  const bool was_alone = alone_ == motor;
-  if (was_alone && !isOn(after)) alone_.reset();
-  const bool lost = after == MotorStatus::kOffline || after == MotorStatus::kFault;
   // The group of one that was enabled alone rests already, and does not come back by itself.
-  auto* group = groupOf(motor);
-  if (lost && before == MotorStatus::kActive && group != nullptr && !was_alone) group->lost.set(motor);
+  if (alone_ != motor) noteLeaving(motor, before, event);
+  if (alone_ == motor && !isOn(after)) alone_.reset();
   if (before == MotorStatus::kEnabling) {
     settle(motor, after == MotorStatus::kActive     ? Refusal::kNone
                   : after == MotorStatus::kOffline  ? Refusal::kOffline
                   : after == MotorStatus::kFault    ? Refusal::kFaulted
                   : event == MotorEvent::kEstop     ? Refusal::kEstop
                   : event == MotorEvent::kGroupStop ? Refusal::kGroup
+                  : event == MotorEvent::kDisable   ? Refusal::kDisabled
                   : axis.turnUnclear()              ? Refusal::kTurnUnclear
                                                     : Refusal::kDriveRefused);
   }

@@ -33,7 +33,7 @@ class Supervisor {
   /// Whether a target of `sender` for this motor would act now.
   [[nodiscard]] bool wouldObey(std::size_t motor, const Lease::Holder& sender,
                                const Tick& tick) const noexcept {
-    return axes_[motor].obeys(sender, tick.now);
+    return axes_[motor].obeys(sender, tick.now) && !waitsForGroup(motor);
   }
 
   /// Tells every motor what kind of frame its drive gets. Called before Motor_Base::update().
@@ -53,13 +53,20 @@ class Supervisor {
   [[nodiscard]] MotorStatus status(std::size_t motor) const noexcept { return axes_[motor].status(); }
 
  private:
-  /// Motors that stop together.
+  static constexpr std::size_t kNoGroup = ~std::size_t{0};
+  /// Motors that stop together. After decide() none is on while a required one is missing.
   struct Group {
-    MotorSet members;
+    std::vector<std::size_t> motors;
+    MotorSet required;      ///< Without the optional ones: nothing stops or waits for those.
+    bool together = false;  ///< Enabled all or none, and obeying only when all do.
     GroupConfig::Return on_return = GroupConfig::Return::kRequest;
-    MotorSet lost;          ///< Members that have just been lost.
-    MotorSet rearm;         ///< To be enabled again by itself; empty: none.
-    MonotonicTime moved{};  ///< When some member was last seen not to be there and still.
+    MotorSet dropped;            ///< Members that were ACTIVE and have just been lost.
+    MotorSet disabled;           ///< Required members that were on and have just been disabled,
+    MotorSet refused;            ///< or whose drives have just refused.
+    bool disable_asked = false;  ///< In this tick, of any member.
+    MotorSet rests_with_it;      ///< Disabled since another member was.
+    MotorSet rearm;              ///< To be enabled again by itself; empty: none.
+    MonotonicTime moved{};       ///< When some member was last seen not to be there and still.
   };
   struct PendingOrder {
     OrderResult result;
@@ -80,10 +87,15 @@ class Supervisor {
   void apply(const Command::Setpoint& setpoint, const Lease::Holder& sender, const Command& command,
              const Tick& tick) noexcept;
   void carryOut(const Order& order, const Tick& tick) noexcept;
-  [[nodiscard]] Refusal enable(std::size_t motor, const Tick& tick) noexcept;
+  /// `asked`: all motors that the request names.
+  [[nodiscard]] Refusal enable(std::size_t motor, const MotorSet& asked, const Tick& tick) noexcept;
+  /// Why it cannot be enabled, whatever its group says.
+  [[nodiscard]] Refusal ownRefusal(std::size_t motor) const noexcept;
+  /// Why its group does not let it be enabled.
+  [[nodiscard]] Refusal groupRefusal(std::size_t motor, const MotorSet& asked) const noexcept;
   [[nodiscard]] Refusal enableAlone(std::size_t motor, const Tick& tick) noexcept;
-  /// The enabled motors that keep this one from being enabled, alone or at all.
-  [[nodiscard]] MotorSet inTheWay(std::size_t motor, Refusal refusal) const noexcept;
+  /// The motors that keep this one from being enabled, alone or at all.
+  [[nodiscard]] MotorSet inTheWay(std::size_t motor, Refusal refusal, const MotorSet& asked) const noexcept;
   [[nodiscard]] MotorSet otherMotorsOn(std::size_t motor) const noexcept;
   void disable(std::size_t motor, const Tick& tick) noexcept;
   void clear(std::size_t motor, const Tick& tick) noexcept;
@@ -95,10 +107,21 @@ class Supervisor {
   void transition(std::size_t motor, MotorEvent event, const Tick& tick) noexcept;
   void watch(std::size_t motor, const Tick& tick) noexcept;
   void watchGroup(std::size_t index, const Tick& tick) noexcept;
+  void stopGroup(std::size_t index, GroupStop reason, const Tick& tick) noexcept;
   void rearm(std::size_t index, const Tick& tick) noexcept;
   /// Null: it is in none.
-  [[nodiscard]] Group* groupOf(std::size_t motor) noexcept;
-  [[nodiscard]] bool groupWhole(std::size_t motor) noexcept;
+  [[nodiscard]] Group* groupOf(std::size_t motor) noexcept {
+    return group_of_[motor] != kNoGroup ? &groups_[group_of_[motor]] : nullptr;
+  }
+  [[nodiscard]] const Group* groupOf(std::size_t motor) const noexcept {
+    return group_of_[motor] != kNoGroup ? &groups_[group_of_[motor]] : nullptr;
+  }
+  void noteLeaving(std::size_t motor, MotorStatus before, MotorEvent event) noexcept;
+  [[nodiscard]] MotorSet membersOn(const Group& group) const noexcept;
+  /// Required members that are OFFLINE or in FAULT.
+  [[nodiscard]] MotorSet missing(const Group& group) const noexcept;
+  /// Its group acts together, and not all of it is ACTIVE.
+  [[nodiscard]] bool waitsForGroup(std::size_t motor) const noexcept;
   void watchSimulation(const Tick& tick) noexcept;
   [[nodiscard]] bool clearEstop(OrderResult& result, const Tick& tick) noexcept;
   void settle(std::size_t motor, Refusal outcome) noexcept;
@@ -113,6 +136,7 @@ class Supervisor {
   std::vector<Axis> axes_;
   std::array<PendingOrder, 8> pending_{};
   std::vector<Group> groups_;
+  std::vector<std::size_t> group_of_;  ///< By motor; kNoGroup: none.
   std::optional<Configuring> configuring_;
   std::optional<std::size_t> alone_;    ///< ENABLING or ACTIVE, and no other motor may be.
   std::uint64_t simulation_steps_ = 0;  ///< As counted in the tick before.

@@ -14,15 +14,12 @@ MotorSet Supervisor::otherMotorsOn(std::size_t motor) const noexcept {
 // ACTIVE.
 Refusal Supervisor::enableAlone(std::size_t motor, const Tick& tick) noexcept {
   if (otherMotorsOn(motor).any()) return Refusal::kOthersOn;
-  const auto refusal = enable(motor, tick);
-  if (refusal != Refusal::kNone) return refusal;
+  if (const auto refusal = ownRefusal(motor); refusal != Refusal::kNone) return refusal;
   alone_ = motor;
+  const auto refusal = enable(motor, {}, tick);
+  if (!isOn(axes_[motor].status())) alone_.reset();
   for (auto& group : groups_) group.rearm.reset();  // or it would come back when this one ends
-  return Refusal::kNone;
-}
-
-MotorSet Supervisor::inTheWay(std::size_t motor, Refusal refusal) const noexcept {
-  return refusal == Refusal::kAlone || refusal == Refusal::kOthersOn ? otherMotorsOn(motor) : MotorSet{};
+  return refusal;
 }
 
 }  // namespace rc10

@@ -10,66 +10,147 @@ namespace {
 // Motors that stood still for so long are at rest.
 constexpr Duration kAtRest = std::chrono::milliseconds{300};
 
-}  // namespace
-
-Supervisor::Group* Supervisor::groupOf(std::size_t motor) noexcept {
-  const auto found = std::find_if(groups_.begin(), groups_.end(),
-                                  [motor](const Group& group) { return group.members.test(motor); });
-  return found == groups_.end() ? nullptr : &*found;
+[[nodiscard]] std::int16_t firstOf(const MotorSet& motors) noexcept {
+  std::int16_t first = 0;
+  while (static_cast<std::size_t>(first) < motors.size() && !motors.test(static_cast<std::size_t>(first)))
+    ++first;
+  return first;
 }
 
-// Every member must be there for one to be enabled.
-bool Supervisor::groupWhole(std::size_t motor) noexcept {
-  const auto* group = groupOf(motor);
-  if (group == nullptr) return true;
-  for (std::size_t other = 0; other < axes_.size(); ++other) {
-    const auto status = axes_[other].status();
+}  // namespace
+
+MotorSet Supervisor::membersOn(const Group& group) const noexcept {
+  MotorSet on;
+  for (const auto motor : group.motors) on.set(motor, isOn(axes_[motor].status()));
+  return on;
+}
+
+MotorSet Supervisor::missing(const Group& group) const noexcept {
+  MotorSet missing;
+  for (const auto motor : group.motors) {
+    const auto status = axes_[motor].status();
     const bool there = status != MotorStatus::kOffline && status != MotorStatus::kFault;
-    if (group->members.test(other) && !there) return false;
+    missing.set(motor, !there && group.required.test(motor));
   }
-  return true;
+  return missing;
+}
+
+// A motor that is enabled alone needs no group.
+Refusal Supervisor::groupRefusal(std::size_t motor, const MotorSet& asked) const noexcept {
+  const auto* group = groupOf(motor);
+  if (group == nullptr || alone_ == motor) return Refusal::kNone;
+  if (missing(*group).any()) return Refusal::kGroup;
+  if (!group->together) return Refusal::kNone;
+  const auto others = group->required & ~membersOn(*group);
+  if ((others & ~asked).any()) return Refusal::kTogether;
+  const bool all = std::all_of(group->motors.begin(), group->motors.end(), [&](std::size_t other) {
+    return !others.test(other) || ownRefusal(other) == Refusal::kNone;
+  });
+  return all ? Refusal::kNone : Refusal::kGroup;
+}
+
+MotorSet Supervisor::inTheWay(std::size_t motor, Refusal refusal, const MotorSet& asked) const noexcept {
+  const auto* group = groupOf(motor);
+  switch (refusal) {
+    case Refusal::kAlone:
+    case Refusal::kOthersOn: return otherMotorsOn(motor);
+    case Refusal::kGroup: return group != nullptr ? missing(*group) : MotorSet{};
+    case Refusal::kTogether:
+      return group != nullptr ? group->required & ~asked & ~membersOn(*group) : MotorSet{};
+    default: return {};
+  }
+}
+
+bool Supervisor::waitsForGroup(std::size_t motor) const noexcept {
+  const auto* group = groupOf(motor);
+  if (group == nullptr || !group->together || alone_ == motor) return false;
+  return std::any_of(group->motors.begin(), group->motors.end(), [&](std::size_t other) {
+    return group->required.test(other) && axes_[other].status() != MotorStatus::kActive;
+  });
+}
+
+// An e-stop stops all of them anyway, and the stop of a group is no reason for another.
+void Supervisor::noteLeaving(std::size_t motor, MotorStatus before, MotorEvent event) noexcept {
+  auto* group = groupOf(motor);
+  if (group == nullptr || !isOn(before) || isOn(axes_[motor].status())) return;
+  switch (event) {
+    case MotorEvent::kDisable: group->disabled.set(motor, group->required.test(motor)); break;
+    case MotorEvent::kEnableFailed: group->refused.set(motor, group->required.test(motor)); break;
+    case MotorEvent::kFeedbackLost:
+    case MotorEvent::kFault: group->dropped.set(motor, before == MotorStatus::kActive); break;
+    default: break;
+  }
 }
 
 void Supervisor::watchGroup(std::size_t index, const Tick& tick) noexcept {
   auto& group = groups_[index];
-  if (group.lost.any()) {
-    const auto lost = std::exchange(group.lost, {});  // all of one bus, perhaps
-    bool returns = group.on_return == GroupConfig::Return::kRearmAtRest;
-    std::size_t first = axes_.size();
-    group.rearm = lost;
-    for (std::size_t motor = axes_.size(); motor-- > 0;) {
-      if (!group.members.test(motor)) continue;
-      if (lost.test(motor)) first = motor;
-      // A motor that stopped for a fault waits for a person.
-      if (axes_[motor].status() == MotorStatus::kFault) returns = false;
-      if (axes_[motor].status() == MotorStatus::kActive) group.rearm.set(motor);
-      transition(motor, MotorEvent::kGroupStop, tick);
+  const auto gone = missing(group);
+  const bool alone = alone_ && groupOf(*alone_) == &group;
+  if (!alone && (membersOn(group) | group.dropped).any()) {
+    if (gone.any()) {
+      stopGroup(index, GroupStop::kLost, tick);
+    } else if (group.refused.any()) {
+      stopGroup(index, GroupStop::kRefused, tick);
+    } else if (group.disabled.any()) {
+      stopGroup(index, GroupStop::kDisabled, tick);
     }
-    if (!returns) group.rearm.reset();
-    group.moved = tick.now;
-    report({EventCode::kGroupStopped, Severity::kError, static_cast<std::int16_t>(first),
-            static_cast<std::int32_t>(index), 0, tick.now});
   }
+  group.dropped.reset();
+  group.disabled.reset();
+  group.refused.reset();
+  group.disable_asked = false;
   if (group.rearm.any()) rearm(index, tick);
+}
+
+void Supervisor::stopGroup(std::size_t index, GroupStop reason, const Tick& tick) noexcept {
+  auto& group = groups_[index];
+  const auto gone = missing(group);
+  const auto& culprits = reason == GroupStop::kLost      ? gone
+                         : reason == GroupStop::kRefused ? group.refused
+                                                         : group.disabled;
+  const auto source = firstOf(culprits);
+  const bool asked = reason == GroupStop::kDisabled;
+  group.rearm = group.dropped;
+  for (const auto motor : group.motors) {
+    if (axes_[motor].status() == MotorStatus::kActive) group.rearm.set(motor);
+    if (asked && isOn(axes_[motor].status())) group.rests_with_it.set(motor);
+    transition(motor, asked ? MotorEvent::kDisable : MotorEvent::kGroupStop, tick);
+  }
+  bool returns = reason == GroupStop::kLost && !group.disable_asked &&
+                 group.on_return == GroupConfig::Return::kRearmAtRest;
+  // A motor that stopped for a fault waits for a person.
+  for (const auto motor : group.motors)
+    if (gone.test(motor) && axes_[motor].status() == MotorStatus::kFault) returns = false;
+  // What acts together comes back as a whole.
+  if (group.together && (group.required & ~group.rearm).any()) returns = false;
+  if (!returns) group.rearm.reset();
+  group.moved = tick.now;
+  report({EventCode::kGroupStopped, asked ? Severity::kInfo : Severity::kError, source,
+          static_cast<std::int32_t>(index), static_cast<std::int32_t>(reason), tick.now});
 }
 
 void Supervisor::rearm(std::size_t index, const Tick& tick) noexcept {
   auto& group = groups_[index];
-  for (std::size_t motor = 0; motor < axes_.size(); ++motor) {
-    if (!group.members.test(motor)) continue;
-    if (axes_[motor].status() == MotorStatus::kFault || state_ != RobotStatus::kRun) {
+  const auto needed = group.required | group.rearm;
+  for (const auto motor : group.motors) {
+    if (!needed.test(motor)) continue;
+    const bool optional = !group.required.test(motor);
+    const auto status = axes_[motor].status();
+    if (state_ != RobotStatus::kRun || (status == MotorStatus::kFault && !optional)) {
       group.rearm.reset();  // only a request brings it back now
       return;
     }
-    if (axes_[motor].status() == MotorStatus::kOffline || !axes_[motor].standsStill()) group.moved = tick.now;
+    const bool waited_for = status == MotorStatus::kOffline && !optional;
+    const bool turns = status != MotorStatus::kOffline && !axes_[motor].standsStill();
+    if (waited_for || turns) group.moved = tick.now;
   }
   if (tick.now - group.moved < kAtRest) return;
-  for (std::size_t motor = 0; motor < axes_.size(); ++motor) {
-    if (group.rearm.test(motor)) (void)enable(motor, tick);
+  const auto rearmed = std::exchange(group.rearm, {});
+  for (const auto motor : group.motors) {
+    if (rearmed.test(motor)) (void)enable(motor, rearmed, tick);
   }
-  group.rearm.reset();
-  const auto first = static_cast<std::int16_t>(robot_.groups()[index].motors.front());
-  report({EventCode::kGroupRearmed, Severity::kInfo, first, static_cast<std::int32_t>(index), 0, tick.now});
+  report({EventCode::kGroupRearmed, Severity::kInfo, firstOf(rearmed), static_cast<std::int32_t>(index), 0,
+          tick.now});
 }
 
 }  // namespace rc10

@@ -77,7 +77,9 @@ void Supervisor::apply(const Command& command, const Tick& tick) noexcept {
 void Supervisor::apply(const Command::Setpoint& setpoint, const Lease::Holder& sender, const Command& command,
                        const Tick& tick) noexcept {
   auto& axis = axes_[setpoint.motor];
-  const auto reason = axis.take(setpoint.target, sender, command.deadline);
+  const bool waits = setpoint.target.mode != ControlMode::kCoast && axis.status() == MotorStatus::kActive &&
+                     waitsForGroup(setpoint.motor);
+  const auto reason = waits ? SkipReason::kGroup : axis.take(setpoint.target, sender, command.deadline);
   if (!reason) return;
   ++skipped_setpoints_;
   if (!axis.mayReportSkip(tick.now)) return;
@@ -106,9 +108,9 @@ void Supervisor::carryOut(const Order& order, const Tick& tick) noexcept {
       case Operation::kEnable:
       case Operation::kEnableAlone: {
         const bool alone = order.operation == Operation::kEnableAlone;
-        const auto refusal = alone ? enableAlone(motor, tick) : enable(motor, tick);
+        const auto refusal = alone ? enableAlone(motor, tick) : enable(motor, order.motors, tick);
         result.motors[motor] = refusal;
-        result.in_the_way |= inTheWay(motor, refusal);
+        result.in_the_way |= inTheWay(motor, refusal, order.motors);
         const bool enabling = axes_[motor].status() == MotorStatus::kEnabling;
         if (refusal == Refusal::kNone && enabling) waiting.set(motor);
         break;
@@ -160,13 +162,20 @@ bool Supervisor::clearEstop(OrderResult& result, const Tick& tick) noexcept {
 
 void Supervisor::disable(std::size_t motor, const Tick& tick) noexcept {
   auto& axis = axes_[motor];
-  // Once more lets go of a motor that is still being held or braked.
-  if (axis.status() == MotorStatus::kReady) axis.endFallback();
-  if (auto* group = groupOf(motor)) group->rearm.reset();
+  auto* group = groupOf(motor);
+  // Once more lets go of a motor that is still being held or braked; the first time may have been its
+  // group's.
+  const bool once_more = group == nullptr || !group->rests_with_it.test(motor);
+  if (axis.status() == MotorStatus::kReady && once_more) axis.endFallback();
+  if (group != nullptr) {
+    group->rearm.reset();
+    group->rests_with_it.reset(motor);
+    group->disable_asked = true;
+  }
   transition(motor, MotorEvent::kDisable, tick);
 }
 
-Refusal Supervisor::enable(std::size_t motor, const Tick& tick) noexcept {
+Refusal Supervisor::ownRefusal(std::size_t motor) const noexcept {
   if (state_ == RobotStatus::kEstop) return Refusal::kEstop;
   if (state_ == RobotStatus::kStopping) return Refusal::kStopping;
   if (configuring_ && configuring_->motor == motor) return Refusal::kConfiguring;
@@ -174,16 +183,21 @@ Refusal Supervisor::enable(std::size_t motor, const Tick& tick) noexcept {
   switch (axes_[motor].status()) {
     case MotorStatus::kOffline: return Refusal::kOffline;
     case MotorStatus::kFault: return Refusal::kFaulted;
-    case MotorStatus::kReady:
-      if (!groupWhole(motor)) return Refusal::kGroup;
-      if (axes_[motor].turnUnclear()) return Refusal::kTurnUnclear;
-      axes_[motor].prepareEnabling(tick);
-      transition(motor, MotorEvent::kEnable, tick);
-      return Refusal::kNone;
+    case MotorStatus::kReady: return axes_[motor].turnUnclear() ? Refusal::kTurnUnclear : Refusal::kNone;
     case MotorStatus::kEnabling:
     case MotorStatus::kActive: return Refusal::kNone;
   }
   return Refusal::kFaulted;
+}
+
+Refusal Supervisor::enable(std::size_t motor, const MotorSet& asked, const Tick& tick) noexcept {
+  if (const auto refusal = ownRefusal(motor); refusal != Refusal::kNone) return refusal;
+  if (isOn(axes_[motor].status())) return Refusal::kNone;
+  if (const auto refusal = groupRefusal(motor, asked); refusal != Refusal::kNone) return refusal;
+  if (auto* group = groupOf(motor)) group->rests_with_it.reset(motor);
+  axes_[motor].prepareEnabling(tick);
+  transition(motor, MotorEvent::kEnable, tick);
+  return Refusal::kNone;
 }
 
 void Supervisor::clear(std::size_t motor, const Tick& tick) noexcept {

@@ -86,7 +86,9 @@ Json groupsJson(const RobotConfig& config) {
     for (const auto motor : group.motors) members.push_back(names[motor]);
     groups.push_back({{"name", group.name},
                       {"motors", std::move(members)},
-                      {"rearms_at_rest", group.on_return == GroupConfig::Return::kRearmAtRest}});
+                      {"rearms_at_rest", group.on_return == GroupConfig::Return::kRearmAtRest},
+                      {"together", group.together},
+                      {"implied", group.implied}});
   }
   return groups;
 }
