@@ -45,7 +45,7 @@ class TargetShaper {
     CommandUnit unit = CommandUnit::kNone;
   };
   /// `dt_s`: since the last step.
-  [[nodiscard]] Shaped step(const Target& asked, const MotorFeedback& feedback, InForce in_force,
+  [[nodiscard]] Shaped step(const Target& target, const MotorFeedback& feedback, InForce in_force,
                             float dt_s) noexcept;
   /// After a change of the angle loop's gain: see kApproachOfAngleGain.
   void setApproach(float rpm_per_deg) noexcept { config_.approach_rpm_per_deg = rpm_per_deg; }
