@@ -29,6 +29,7 @@ usage() {
         printf '  %-9s %s\n' "$part" "$(about "$part")"
     done
     printf '  %-9s %s\n' default "${default[*]}" ci "${ci[*]}" all "${all[*]}" nightly "${nightly[*]}"
+    echo "Minutes of each set: CONTRIBUTING.md"
 }
 
 wanted=()

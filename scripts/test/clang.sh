@@ -1,5 +1,5 @@
 #!/bin/bash
-# clang: each source and header compiles by itself without a warning; clang-tidy of all sources
+# each source and header compiles by itself without a warning of clang; clang-tidy of all sources
 set -euo pipefail
 # shellcheck source=scripts/lib/results.sh
 . "$(dirname "${BASH_SOURCE[0]}")/../lib/results.sh"

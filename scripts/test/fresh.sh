@@ -1,5 +1,5 @@
 #!/bin/bash
-# the commands of README.md and what pages install, in a bare Debian 12, with the minutes they took; the build with GCC 11 (on request)
+# the commands of README.md and what pages install, in a bare Debian 12, with the minutes they took; the build with GCC 11 (on request; above an hour)
 # RC10_FRESH: one thing only: demo, the first command of README.md; default, ci or all, these sets of scripts/test.sh; pages, what they install.
 # RC10_FRESH_CACHE=1: with this machine's compiler cache, and its list of what clang-tidy found clean.
 set -euo pipefail

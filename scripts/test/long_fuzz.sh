@@ -1,4 +1,4 @@
 #!/bin/bash
-# each fuzz target for ten minutes: hours, and rarely a finding
+# each fuzz target for ten minutes: about two hours, and rarely a finding
 set -euo pipefail
 RC10_FUZZ_SECONDS=${RC10_FUZZ_SECONDS:-600} exec "$(dirname "${BASH_SOURCE[0]}")/fuzz.sh"
