@@ -121,7 +121,7 @@ void Supervisor::stopGroup(std::size_t index, GroupStop reason, const Tick& tick
   // A motor that stopped for a fault waits for a person.
   for (const auto motor : group.motors)
     if (gone.test(motor) && axes_[motor].status() == MotorStatus::kFault) returns = false;
-  // What acts together comes back as a whole.
+  // A group that acts together comes back as a whole.
   if (group.together && (group.required & ~group.rearm).any()) returns = false;
   if (!returns) group.rearm.reset();
   group.moved = tick.now;
