@@ -36,9 +36,9 @@ inline void print(std::ostream& out, const MotorConfig& motor) {
       << motor.guard.stall_time.count() << ' ' << motor.guard.stall_trips << ' '
       << motor.guard.following_error_deg << ' ' << motor.guard.following_error_time.count() << '\n';
   const FallbackConfig& fallback = motor.fallback;
-  out << static_cast<int>(fallback.on_timeout) << ' ' << static_cast<int>(fallback.on_disable) << ' '
-      << static_cast<int>(fallback.on_estop) << ' ' << fallback.hold_max.count() << ' '
-      << motor.run_down.count() << '\n';
+  out << fallback.brake_max.count() << ' ' << static_cast<int>(fallback.on_timeout) << ' '
+      << static_cast<int>(fallback.on_disable) << ' ' << static_cast<int>(fallback.on_estop) << ' '
+      << fallback.hold_max.count() << ' ' << motor.run_down.count() << '\n';
   const ShapingConfig& shaping = motor.shaping;
   out << shaping.effort_slew_per_s << ' ' << shaping.velocity_slew_rpm_per_s << ' '
       << shaping.angle_slew_deg_per_s << ' ' << shaping.angle_min_deg << ' ' << shaping.angle_max_deg << ' '

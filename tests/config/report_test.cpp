@@ -119,7 +119,8 @@ TEST(Report, SaysWhatAMotorDoesWhenNobodyCommandsIt) {
       "groups: [{name: lift, motors: [arm, wheel], on_return: rearm_at_rest, together: true}]\n";
   const auto text = describe(parseRobotConfig(robot, "hero.yaml").config.value());
   EXPECT_THAT(wordsAfter(text, "arm", 2),
-              ::testing::ElementsAre("hold", "damp", "brake", "750", "rpm", "any", "to", "90", "deg"));
+              ::testing::ElementsAre("hold", "damp", "brake,", "after", "10", "s", "damp", "750", "rpm",
+                                     "any", "to", "90", "deg"));
   EXPECT_THAT(wordsAfter(text, "wheel", 2),
               ::testing::ElementsAre("coast", "coast", "coast", "723", "rpm", "none"));
   EXPECT_THAT(

@@ -84,6 +84,35 @@ TEST_F(FallbackTest, HoldStaysWhereItWasAndGivesWayAfterItsTime) {
   EXPECT_LT(std::fabs(rpm()), 100.0F);
 }
 
+TEST_F(FallbackTest, ABrakeInAnEstopDampsAfterItsTimeAndNeverCoasts) {
+  start({.on_estop = FallbackAction::kBrake, .brake_max = 2s}, 1.0F);
+  robot->exchange().estop.store(true);
+  robot->run(1900);
+  const float braked_rpm = std::fabs(rpm());
+  robot->run(2000);
+  EXPECT_GT(std::fabs(rpm()), braked_rpm + 1.0F) << "the load pulls it down, slowly";
+  EXPECT_LT(std::fabs(rpm()), 100.0F);
+  EXPECT_NE(currentA(), 0.0F);
+}
+
+TEST_F(FallbackTest, ABrakeAfterATimeoutLasts) {
+  start({.on_timeout = FallbackAction::kBrake, .brake_max = 1s}, 1.0F);
+  robot->run(5000);
+  EXPECT_LT(std::fabs(rpm()), 1.0F);
+}
+
+TEST_F(FallbackTest, ADriveThatCannotDampBrakesWhenItsHoldIsOver) {
+  constexpr FallbackConfig kConfig{};
+  DriveFrames frames;
+  frames.brake = frames.hold = Provision::kFrame;
+  EXPECT_EQ(boundOf(FallbackAction::kHold, false, kConfig, frames).then, FrameKind::kBrake);
+  frames.brake = Provision::kUnsupported;
+  EXPECT_EQ(boundOf(FallbackAction::kHold, false, kConfig, frames).then, FrameKind::kHold);
+  frames.damp = Provision::kFrame;
+  EXPECT_EQ(boundOf(FallbackAction::kHold, false, kConfig, frames).then, FrameKind::kDamp);
+  EXPECT_FALSE(boundOf(FallbackAction::kBrake, false, kConfig, frames).most) << "of a group, or a time-out";
+}
+
 TEST_F(FallbackTest, ANewTargetEndsIt) {
   start({.on_timeout = FallbackAction::kBrake});
   robot->run(500);

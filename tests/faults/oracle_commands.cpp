@@ -232,11 +232,15 @@ void Oracle::judgeFallback(std::size_t index) {
   const auto& fallback = motor.config->fallback;
   auto actions = motor.actions;
   if (motor.ends_at_standstill) actions |= only(FallbackAction::kCoast);
-  const auto hold = static_cast<std::size_t>(FallbackAction::kHold);
-  if (actions.test(hold) && now_ - motor.acts_since >= fallback.hold_max) {
-    actions |= only(FallbackAction::kDamp);
-    if (now_ - motor.acts_since >= fallback.hold_max + 60ms) actions.reset(hold);
-  }
+  const bool damps = motor.config->traits().frames.damp != Provision::kUnsupported;
+  const auto bounded = [&](FallbackAction action, Duration most) {
+    const auto bit = static_cast<std::size_t>(action);
+    if (!actions.test(bit) || now_ - motor.acts_since < most) return;
+    actions |= only(damps ? FallbackAction::kDamp : FallbackAction::kBrake);
+    if (action == FallbackAction::kHold && now_ - motor.acts_since >= most + 60ms) actions.reset(bit);
+  };
+  bounded(FallbackAction::kHold, fallback.hold_max);
+  bounded(FallbackAction::kBrake, fallback.brake_max);
   if (state_ == RobotStatus::kStopping && now_ - stopping_since_ >= kLongestFallback)
     actions = only(FallbackAction::kCoast);
   bool any = false;

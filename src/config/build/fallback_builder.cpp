@@ -31,6 +31,11 @@ void checkFallback(MotorReading& in, std::string_view key) {
                         listWords(possible, " or "));
 }
 
+void readSeconds(MotorReading& in, std::string_view key, Duration& time) {
+  const auto given_s = in.settings.number(key);
+  if (given_s) time = std::chrono::milliseconds{static_cast<std::int64_t>(*given_s * 1000.0)};
+}
+
 }  // namespace
 
 void readFallbacks(MotorReading& in) {
@@ -39,12 +44,9 @@ void readFallbacks(MotorReading& in) {
   fallback.on_disable = fallbackOf(in, "on_disable");
   fallback.on_estop = fallbackOf(in, "on_estop");
   for (const auto* key : {"on_timeout", "on_disable", "on_estop"}) checkFallback(in, key);
-  if (const auto hold_s = in.settings.number("hold_max_s")) {
-    fallback.hold_max = std::chrono::milliseconds{static_cast<std::int64_t>(*hold_s * 1000.0)};
-  }
-  if (const auto run_down_s = in.settings.number("run_down_s")) {
-    in.draft.config.run_down = std::chrono::milliseconds{static_cast<std::int64_t>(*run_down_s * 1000.0)};
-  }
+  readSeconds(in, "hold_max_s", fallback.hold_max);
+  readSeconds(in, "brake_max_s", fallback.brake_max);
+  readSeconds(in, "run_down_s", in.draft.config.run_down);
 }
 
 }  // namespace rc10

@@ -137,7 +137,15 @@ constexpr std::array kMotorKeys{
         .unit = "s",
         .range = {.min = 0, .max = 3600, .above_min = true},
         .default_text = "10",
-        .about = "A fallback hold becomes damp after this time."},
+        .about = "A fallback hold becomes damp after this time; brake, where the drive cannot damp."},
+    Key{.name = "brake_max_s",
+        .kind = kNumber,
+        .unit = "s",
+        .range = {.min = 0, .max = 3600, .above_min = true},
+        .default_text = "10",
+        .about =
+            "A brake in an e-stop becomes damp after this time, if the drive can. When its group stops it "
+            "stays: the robot may stand on a slope."},
     Key{.name = "run_down_s",
         .kind = kNumber,
         .unit = "s",

@@ -147,6 +147,17 @@ std::string fallbackText(FallbackAction action) {
   return std::string{kFallbackWords[static_cast<std::size_t>(action)]};
 }
 
+/// With what it becomes in the end.
+std::string estopText(const MotorConfig& motor) {
+  const auto& fallback = motor.fallback;
+  const auto bound = boundOf(fallback.on_estop, true, fallback, motor.traits().frames);
+  const auto text = fallbackText(fallback.on_estop);
+  if (!bound.most || bound.then == frameKindOf(fallback.on_estop)) return text;
+  const double seconds = std::chrono::duration<double>(*bound.most).count();
+  const char* then = bound.then == FrameKind::kDamp ? " s damp" : " s brake";
+  return text + ", after " + numberText(seconds) + then;
+}
+
 std::string softLimitsText(const ShapingConfig& shaping) {
   if (!std::isfinite(shaping.angle_min_deg) && !std::isfinite(shaping.angle_max_deg)) return "none";
   const auto end = [](double deg) { return std::isfinite(deg) ? numberText(deg) : std::string{"any"}; };
@@ -163,8 +174,7 @@ std::string safetyText(const BusConfig& bus) {
   table.add({"motor", "time-out", "disable", "e-stop", "over-speed", "soft limits"});
   for (const auto& motor : bus.motors) {
     table.add({motor.name(), fallbackText(motor.fallback.on_timeout), fallbackText(motor.fallback.on_disable),
-               fallbackText(motor.fallback.on_estop), overspeedText(motor.guard),
-               softLimitsText(motor.shaping)});
+               estopText(motor), overspeedText(motor.guard), softLimitsText(motor.shaping)});
   }
   return table.text(2);
 }

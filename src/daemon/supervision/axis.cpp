@@ -184,9 +184,9 @@ std::optional<MotorStatus> Axis::take(MotorEvent event, RobotStatus robot, const
   if (before == MotorStatus::kActive && status_ == MotorStatus::kReady) {
     const auto& config = entry_.fallback;
     const bool asked = event == MotorEvent::kDisable || robot == RobotStatus::kStopping;
-    fallback_.begin(asked ? config.on_disable : config.on_estop,
-                    asked ? Fallback::Until::kStandstill : Fallback::Until::kEnded, config.hold_max,
-                    tick.now);
+    const auto action = asked ? config.on_disable : config.on_estop;
+    fallback_.begin(action, asked ? Fallback::Until::kStandstill : Fallback::Until::kEnded,
+                    boundOf(action, event == MotorEvent::kEstop, config, motor_.driveFrames()), tick.now);
   }
   // Without feedback there is nothing to brake by.
   if (status_ == MotorStatus::kOffline || status_ == MotorStatus::kFault) fallback_.end();
@@ -264,7 +264,9 @@ void Axis::dropTarget() noexcept {
 }
 
 void Axis::beginTimeoutFallback(const Tick& tick) noexcept {
-  fallback_.begin(entry_.fallback.on_timeout, Fallback::Until::kEnded, entry_.fallback.hold_max, tick.now);
+  const auto& config = entry_.fallback;
+  fallback_.begin(config.on_timeout, Fallback::Until::kEnded,
+                  boundOf(config.on_timeout, false, config, motor_.driveFrames()), tick.now);
 }
 
 }  // namespace rc10

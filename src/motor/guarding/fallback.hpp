@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <string_view>
 
 #include "app/time.hpp"
@@ -19,7 +20,8 @@ struct FallbackConfig {
   FallbackAction on_timeout = FallbackAction::kCoast;  ///< The last command has lapsed.
   FallbackAction on_disable = FallbackAction::kCoast;  ///< Until it stands still; also when rc10d ends.
   FallbackAction on_estop = FallbackAction::kCoast;    ///< Also when its group stops.
-  Duration hold_max = std::chrono::seconds{10};        ///< A hold becomes a damp after this.
+  Duration hold_max = std::chrono::seconds{10};        ///< A hold ends after this,
+  Duration brake_max = std::chrono::seconds{10};       ///< and a brake in an e-stop.
 };
 
 [[nodiscard]] constexpr FrameKind frameKindOf(FallbackAction action) noexcept {
@@ -32,16 +34,36 @@ struct FallbackConfig {
   return FrameKind::kRest;
 }
 
+/// End of a hold or a brake that must not push for ever.
+struct FallbackBound {
+  std::optional<Duration> most;       ///< None: it acts until its end.
+  FrameKind then = FrameKind::kDamp;  ///< Never rest: a load must not fall after a while.
+};
+
+/// `estop`: of the robot. In one, motors have no torque of their own in the end (IEC 60204-1); a group that
+/// stops keeps its brakes, or a robot would roll down its slope.
+[[nodiscard]] constexpr FallbackBound boundOf(FallbackAction action, bool estop, const FallbackConfig& config,
+                                              const DriveFrames& frames) noexcept {
+  FallbackBound bound;
+  if (action == FallbackAction::kHold) bound.most = config.hold_max;
+  if (action == FallbackAction::kBrake && estop) bound.most = config.brake_max;
+  if (frames.damp != Provision::kUnsupported) return bound;
+  bound.then = frames.brake != Provision::kUnsupported ? FrameKind::kBrake : FrameKind::kHold;
+  return bound;
+}
+
 /// The fallback that is in force for one motor, if any. Scheduler thread only.
 class Fallback {
  public:
   /// How long it acts.
   enum class Until : std::uint8_t { kEnded, kStandstill };
 
-  void begin(FallbackAction action, Until until, Duration hold_max, MonotonicTime now) noexcept {
+  void begin(FallbackAction action, Until until, const FallbackBound& bound, MonotonicTime now) noexcept {
     kind_ = frameKindOf(action);
     until_ = until;
-    damp_from_ = now + hold_max;
+    bounded_ = bound.most.has_value();
+    bound_ = now + bound.most.value_or(Duration{});
+    then_ = bound.then;
     moved_ = now;
   }
   void end() noexcept { kind_ = FrameKind::kRest; }
@@ -51,7 +73,7 @@ class Fallback {
 
   /// Once per tick.
   void step(bool stands_still, MonotonicTime now) noexcept {
-    if (kind_ == FrameKind::kHold && now >= damp_from_) kind_ = FrameKind::kDamp;
+    if (acts() && bounded_ && now >= bound_) kind_ = then_;
     if (!stands_still) moved_ = now;
     // A hold is for what would move by itself: it lasts its time.
     const bool settled = now - moved_ >= kSettled && kind_ != FrameKind::kHold;
@@ -64,7 +86,9 @@ class Fallback {
 
   FrameKind kind_ = FrameKind::kRest;
   Until until_ = Until::kEnded;
-  MonotonicTime damp_from_{};
+  bool bounded_ = false;
+  MonotonicTime bound_{};
+  FrameKind then_ = FrameKind::kDamp;
   MonotonicTime moved_{};
 };
 
