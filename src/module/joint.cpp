@@ -93,7 +93,18 @@ constexpr std::array kJointKeys{
               .max = 3600,
               .above_min = true,
               .default_text = "5",
-              .about = "So far it goes away from the end first, which shows that it moves at all."},
+              .about =
+                  "So far it goes away from the end first, which shows that it moves at all, and between "
+                  "the two meetings with a stop."},
+    FamilyKey{.name = "homing_tolerance_deg",
+              .kind = kNumber,
+              .unit = "deg",
+              .max = 90,
+              .above_min = true,
+              .default_text = "1",
+              .about =
+                  "The stop is met twice, the second time at half the velocity. Places farther apart, or "
+                  "nearer than where it began, are not the stop."},
     FamilyKey{.name = "homing_stopped_ms",
               .kind = kInteger,
               .unit = "ms",
@@ -127,13 +138,17 @@ ModuleSignals jointSignals() {
   return {
       .inputs = {"angle_deg", "home"},
       .outputs = {"state", "move", "angle_deg", "reference_deg", "homed"},
-      .events = {{.text = "homed", .expected = true},
-                 {.text = "homing failed: it did not move away from the end, or did not find it in time; see "
-                          "homing_current_a, the sign of homing_velocity_rpm and homing_timeout_s"},
-                 {.text = "a move failed: it does not reach its target; see what is in its way, the motor's "
-                          "limits, tolerance_deg and settle_ms"},
-                 {.text = "a target lies beyond the motor's soft limits: it goes to the limit"},
-                 {.text = "homing failed: the switch is not heard; see the module that reads it"}}};
+      .events = {
+          {.text = "homed", .expected = true},
+          {.text = "homing failed: it did not move away from the end, or did not find it in time; see "
+                   "homing_current_a, the sign of homing_velocity_rpm and homing_timeout_s"},
+          {.text = "a move failed: it does not reach its target; see what is in its way, the motor's "
+                   "limits, tolerance_deg and settle_ms"},
+          {.text = "a target lies beyond the motor's soft limits: it goes to the limit"},
+          {.text = "homing failed: the switch is not heard; see the module that reads it"},
+          {.text = "homing failed: it stood still, but not at the stop: nearer than where it began, at two "
+                   "places, without the full current, or farther than the travel; see what is in its "
+                   "way, homing_current_a against gravity and friction, and homing_tolerance_deg"}}};
 }
 
 /// The reference that runs ahead of the motor: with or without limited jerk.
@@ -164,11 +179,14 @@ class Reference {
   std::optional<SCurveProfile> s_curve_;
 };
 
-JointHoming::Config homingConfig(const OwnValues& own) {
+JointHoming::Config homingConfig(const OwnValues& own, const RobotOutline::Motor& motor) {
+  const double far_deg = own.number("homing_velocity_rpm") < 0.0 ? motor.angle_max_deg : motor.angle_min_deg;
   return {.way = own.text("homing") == "switch" ? JointHoming::Way::kSwitch : JointHoming::Way::kStop,
           .velocity_rpm = own.number("homing_velocity_rpm"),
           .current_a = own.number("homing_current_a"),
           .away_deg = own.number("homing_away_deg"),
+          .tolerance_deg = own.number("homing_tolerance_deg"),
+          .travel_deg = std::fabs(far_deg - own.number("home_angle_deg")),
           .stopped = std::chrono::milliseconds{own.integer("homing_stopped_ms")},
           .timeout = std::chrono::milliseconds{static_cast<int>(own.number("homing_timeout_s") * 1000.0)}};
 }
@@ -187,7 +205,7 @@ class Joint : public Module_Base {
         holds_(own.text("on_silence") == "hold"),
         switch_name_(own.text("switch")),
         reference_(own),
-        homing_(homingConfig(own)) {}
+        homing_(homingConfig(own, motor)) {}
 
   [[nodiscard]] Result<void> connect(const ModuleDirectory& others) override {
     if (switch_name_.empty()) return {};
@@ -223,7 +241,7 @@ class Joint : public Module_Base {
  private:
   enum Input : std::size_t { kAngleDeg, kHome };
   enum Output : std::size_t { kState, kMove, kMeasured, kReference, kHomed };
-  enum EventPlace : std::size_t { kIsHomed, kNotHomed, kNotReached, kBeyond, kNoSwitch };
+  enum EventPlace : std::size_t { kIsHomed, kNotHomed, kNotReached, kBeyond, kNoSwitch, kNoStop };
 
   enum class State { kIdle, kHoming, kFollowing, kHomingFailed };
   enum class Move { kNone, kUnderWay, kDone, kFailed };
@@ -233,6 +251,7 @@ class Joint : public Module_Base {
     const double closed = switch_ ? robot.read(*switch_) : 0.0;
     return {.total_angle_deg = feedback.total_angle_deg,
             .velocity_rpm = static_cast<double>(feedback.velocity_rpm),
+            .current_a = static_cast<double>(feedback.current_a),
             .at_switch = closed >= 0.5,
             .switch_heard = std::isfinite(closed),
             .now = tick.now};
@@ -265,12 +284,15 @@ class Joint : public Module_Base {
         robot.ask(RobotRequest::kZero, motor_, home_angle_deg_);
         zero_asked_ = true;
         break;
-      case JointHoming::Progress::kFailed:
-        robot.report(now.switch_heard ? kNotHomed : kNoSwitch);
-        state_ = State::kHomingFailed;
-        return;
+      case JointHoming::Progress::kFailed: return failHoming(now.switch_heard ? kNotHomed : kNoSwitch, robot);
+      case JointHoming::Progress::kNoStop: return failHoming(kNoStop, robot);
     }
     robot.setTarget(motor_, {.mode = ControlMode::kCurrent, .value = homing_.current()});
+  }
+
+  void failHoming(EventPlace why, ModuleRobot& robot) noexcept {
+    robot.report(why);
+    state_ = State::kHomingFailed;
   }
 
   void beginFollowing(const MotorFeedback& feedback) noexcept {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 
 #include "app/time.hpp"
 
@@ -9,25 +10,38 @@ namespace rc10 {
 /// Finds the end of an axis: first away from it, to see that the axis moves at all, then towards it until it
 /// stands against the stop or the switch closes. All by a current that is bounded, so that the stop is met
 /// gently: near the homing velocity the current goes to 0.
+///
+/// A standstill alone is no stop: gravity or friction may balance the current anywhere. The stop is no nearer
+/// than where the axis began, is pressed with the full current, is met twice at the same place, the second
+/// time at half the velocity, and is no farther than the travel allows.
 class JointHoming {
  public:
   enum class Way : std::uint8_t { kStop, kSwitch };
   struct Config {
     Way way = Way::kStop;
-    double velocity_rpm = 0.0;  ///< Towards the end; its sign says where that is.
-    double current_a = 0.0;     ///< The most that pushes.
-    double away_deg = 0.0;      ///< So far it goes away first.
-    Duration stopped{};         ///< Standing still for so long is the stop.
+    double velocity_rpm = 0.0;   ///< Towards the end; its sign says where that is.
+    double current_a = 0.0;      ///< The most that pushes.
+    double away_deg = 0.0;       ///< So far it goes away first, and between the two meetings.
+    double tolerance_deg = 1.0;  ///< Between the two meetings with the stop.
+    /// From the end to the far soft limit; infinite: not known.
+    double travel_deg = std::numeric_limits<double>::infinity();
+    Duration stopped{};  ///< Standing still for so long is the stop.
     Duration timeout{};
   };
   struct Measured {
     double total_angle_deg = 0.0;
     double velocity_rpm = 0.0;
+    double current_a = 0.0;  ///< NaN: the drive does not tell.
     bool at_switch = false;
     bool switch_heard = true;  ///< Else the end would be run over.
     MonotonicTime now;
   };
-  enum class Progress : std::uint8_t { kUnderWay, kFound, kFailed };
+  enum class Progress : std::uint8_t {
+    kUnderWay,
+    kFound,
+    kFailed,  ///< In time nothing was found, or it cannot be seen.
+    kNoStop,  ///< It stood still, but not at the stop.
+  };
 
   explicit JointHoming(const Config& config) noexcept : config_(config) {}
 
@@ -37,14 +51,22 @@ class JointHoming {
   [[nodiscard]] double current() const noexcept { return current_a_; }
 
  private:
+  enum class Phase : std::uint8_t { kAway, kTowards, kBackOff, kAgain };
+
+  void begin(Phase phase, const Measured& measured) noexcept;
+  [[nodiscard]] Progress end(Progress outcome) noexcept;
+  [[nodiscard]] Progress stoodStill(const Measured& measured) noexcept;
   void push(double velocity_rpm, double measured_rpm) noexcept;
   [[nodiscard]] bool standsStill(const Measured& measured) noexcept;
-
-  enum class Phase : std::uint8_t { kAway, kTowards };
+  [[nodiscard]] bool pressed(const Measured& measured) const noexcept;
+  /// Way from `from_deg` to `to_deg`, positive towards the end.
+  [[nodiscard]] double towards(double from_deg, double to_deg) const noexcept;
 
   Config config_;
   Phase phase_ = Phase::kAway;
   double start_deg_ = 0.0;
+  double left_deg_ = 0.0;  ///< Where it last began to go away.
+  double met_deg_ = 0.0;   ///< Where it met the stop first.
   MonotonicTime started_{};
   MonotonicTime moved_{};
   double current_a_ = 0.0;

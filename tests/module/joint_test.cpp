@@ -41,6 +41,7 @@ ModuleSettings settings() {
   settings.own.set("homing_velocity_rpm", -5.0);
   settings.own.set("homing_current_a", 0.5);
   settings.own.set("homing_away_deg", 3.0);
+  settings.own.set("homing_tolerance_deg", 1.0);
   settings.own.set("homing_stopped_ms", 100.0);
   settings.own.set("homing_timeout_s", 5.0);
   settings.own.set("on_silence", std::string{"hold"});
@@ -87,7 +88,9 @@ class Joint : public ::testing::Test {
     if (motor.target && motor.target->mode == ControlMode::kTotalAngle && !blocked_)
       feedback.total_angle_deg = motor.target->value;
     if (motor.target && motor.target->mode == ControlMode::kCurrent && !blocked_) {
-      rpm_ += (motor.target->value * 400.0 - 5.0 * rpm_) * 0.001;
+      feedback.current_a = static_cast<float>(motor.target->value * gets_);
+      const double push_a = motor.target->value * gets_ + gravity_a_;
+      rpm_ += (push_a * 400.0 - 5.0 * rpm_) * 0.001;
       feedback.total_angle_deg = std::max(stop_deg_, before_deg + rpm_ * 0.006);
       if (feedback.total_angle_deg == stop_deg_) rpm_ = 0.0;
     }
@@ -107,6 +110,8 @@ class Joint : public ::testing::Test {
   std::unique_ptr<Module_Base> module_;
   std::vector<std::size_t> events_;
   double stop_deg_ = -1e6;
+  double gravity_a_ = 0.0;  ///< Away from the stop.
+  double gets_ = 1.0;       ///< Of the current that it is told.
   double rpm_ = 0.0;
   bool blocked_ = false;
   bool switch_heard_ = true;
@@ -248,6 +253,81 @@ TEST_F(Joint, FindsItsReferenceAtAStop) {
   ask(-10.0);
   run(3000);
   EXPECT_EQ(angle(), -10.0);
+}
+
+TEST_F(Joint, AStandstillThatGravityMakesIsNotTheStop) {
+  auto own = settings();
+  own.own.set("homing", std::string{"stop"});
+  build(own);
+  robot_.motor(0).feedback.zeroed = false;
+  robot_.motor(0).feedback.total_angle_deg = 40.0;
+  stop_deg_ = 0.0;
+  gravity_a_ = 0.499;  // of 0.5: it creeps towards the stop more slowly than a standstill
+  ask(kNoSignal, 1.0);
+  run(5100);
+  EXPECT_EQ(state(), kHomingFailed);
+  EXPECT_THAT(events_, ElementsAre(5U));
+  EXPECT_FALSE(robot_.motor(0).feedback.zeroed);
+  EXPECT_FALSE(robot_.motor(0).target.has_value());
+}
+
+TEST_F(Joint, AStopThatIsMetAtTwoPlacesIsNone) {
+  auto own = settings();
+  own.own.set("homing", std::string{"stop"});
+  build(own);
+  robot_.motor(0).feedback.zeroed = false;
+  robot_.motor(0).feedback.total_angle_deg = 10.0;
+  stop_deg_ = 0.0;
+  int pressed = 0;
+  ask(kNoSignal, 1.0);
+  run(1);
+  for (int i = 0; i < 5100 && state() == kHoming; ++i) {
+    run(1);
+    if (state() == kHoming && angle() == 0.0 && ++pressed > 110)
+      stop_deg_ = -2.0;  // something soft lay before it
+  }
+  EXPECT_EQ(state(), kHomingFailed);
+  EXPECT_THAT(events_, ElementsAre(5U));
+}
+
+TEST_F(Joint, AStopBeyondTheTravelIsNone) {
+  auto own = settings();
+  own.own.set("homing", std::string{"stop"});
+  own.own.set("homing_timeout_s", 60.0);
+  build(own);
+  robot_.motor(0).feedback.zeroed = false;
+  robot_.motor(0).feedback.total_angle_deg = 230.0;  // the travel is 210 deg from the stop
+  stop_deg_ = 0.0;
+  ask(kNoSignal, 1.0);
+  run(30'000);
+  EXPECT_EQ(state(), kHomingFailed);
+  EXPECT_THAT(events_, ElementsAre(5U));
+}
+
+TEST_F(Joint, AMotorThatGetsLessThanTheHomingCurrentDoesNotFindTheStop) {
+  auto own = settings();
+  own.own.set("homing", std::string{"stop"});
+  build(own);
+  robot_.motor(0).feedback.zeroed = false;
+  robot_.motor(0).feedback.total_angle_deg = 10.0;
+  stop_deg_ = 0.0;
+  gets_ = 0.5;
+  ask(kNoSignal, 1.0);
+  run(5100);
+  EXPECT_EQ(state(), kHomingFailed);
+  EXPECT_THAT(events_, ElementsAre(5U));
+}
+
+TEST_F(Joint, AnAxisThatBeginsAtItsStopIsHomed) {
+  auto own = settings();
+  own.own.set("homing", std::string{"stop"});
+  build(own);
+  robot_.motor(0).feedback.zeroed = false;
+  stop_deg_ = robot_.motor(0).feedback.total_angle_deg = 7.0;
+  ask(kNoSignal, 1.0);
+  run(4000);
+  EXPECT_THAT(events_, ElementsAre(0U));
+  EXPECT_NEAR(angle(), -30.0, 0.01);
 }
 
 TEST_F(Joint, FindsItsReferenceAtASwitch) {
