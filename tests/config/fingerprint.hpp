@@ -42,7 +42,7 @@ inline void print(std::ostream& out, const MotorConfig& motor) {
   const ShapingConfig& shaping = motor.shaping;
   out << shaping.effort_slew_per_s << ' ' << shaping.velocity_slew_rpm_per_s << ' '
       << shaping.angle_slew_deg_per_s << ' ' << shaping.angle_min_deg << ' ' << shaping.angle_max_deg << ' '
-      << shaping.max_first_step_deg << '\n';
+      << shaping.max_first_step_deg << ' ' << shaping.soft_start_s << '\n';
   std::visit([&out](const auto& pid) { print(out, pid); }, dji.loops.velocity);
   print(out, dji.loops.angle);
   const auto& load = motor.simulated;

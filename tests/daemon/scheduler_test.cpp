@@ -323,6 +323,29 @@ TEST_F(SchedulerTest, ShowsAnAngleTargetOfAnAbsoluteMotorAtOnce) {
   EXPECT_NEAR(robot.motor(kYaw).feedback.angle_deg, 45.0F, 0.5F);
 }
 
+TEST_F(SchedulerTest, EnablingIntoARunningStreamStartsSoftly) {
+  const auto mostCurrentA = [](float soft_start_s) {
+    auto config = twoWheelsAndYaw();
+    config.buses[0].motors[kLeft].shaping.soft_start_s = soft_start_s;
+    VirtualRobot softly(config);
+    softly.run(5);
+    Order order;
+    order.id = 77;
+    order.operation = Operation::kEnable;
+    order.motors = MotorSet{}.set(kLeft);
+    EXPECT_TRUE(softly.exchange().orders.push(order));
+    float most_a = 0.0F;
+    for (int i = 0; i < 20; ++i) {
+      softly.command(kLeft, {.mode = ControlMode::kCurrent, .value = 8.0});
+      softly.tick();
+      most_a = std::max(most_a, std::fabs(softly.motor(kLeft).command_value));
+    }
+    return most_a;
+  };
+  EXPECT_EQ(mostCurrentA(0.0F), 8.0F);
+  EXPECT_LT(mostCurrentA(0.2F), 1.0F);
+}
+
 TEST_F(SchedulerTest, DoesNotAllocate) {
   enableAll();
   robot.hold(kLeft, kVelocity120, 50);

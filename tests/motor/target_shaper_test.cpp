@@ -233,5 +233,56 @@ TEST_F(TargetShaperTest, AFirstStepIsAllowedUpToItsLimit) {
   EXPECT_TRUE(shaper.firstStepAllowed({.mode = ControlMode::kVelocity, .value = 500.0}, feedback));
 }
 
+// ---- Soft start
+
+TEST_F(TargetShaperTest, ASoftStartGoesFromWhatIsMeasuredToWhatIsAsked) {
+  configure({.soft_start_s = 0.1F});
+  shaper.restart();
+  feedback.velocity_rpm = 40.0F;
+  EXPECT_NEAR(step(ControlMode::kVelocity, 140.0).target.value, 41.0, 1e-3);
+  EXPECT_EQ(step(ControlMode::kVelocity, 140.0).limits, kLimitSlew);
+  EXPECT_NEAR(valueAfter(48, ControlMode::kVelocity, 140.0), 90.0, 1e-3);
+  EXPECT_NEAR(valueAfter(50, ControlMode::kVelocity, 140.0), 140.0, 1e-3);
+  EXPECT_EQ(step(ControlMode::kVelocity, -140.0).target.value, -140.0) << "from then on at once";
+  EXPECT_EQ(step(ControlMode::kVelocity, -140.0).limits, 0U);
+}
+
+TEST_F(TargetShaperTest, ASoftStartOfAnAngleTakesTheShortestWay) {
+  configure({.soft_start_s = 0.1F});
+  shaper.restart();
+  at(350.0);
+  for (int i = 0; i < 50; ++i) (void)step(ControlMode::kAngle, 30.0);
+  const double half_way = step(ControlMode::kAngle, 30.0).target.value;
+  EXPECT_NEAR(std::remainder(half_way - 10.0, 360.0), 0.4, 0.1);
+}
+
+TEST_F(TargetShaperTest, ASoftStartBeginsWithTheEffortThatHolds) {
+  configure({.soft_start_s = 0.1F});
+  shaper.restart();
+  EXPECT_NEAR(step(ControlMode::kCurrent, 2.0, 2.0F).target.value, 2.0, 1e-6) << "it is not reduced";
+}
+
+TEST_F(TargetShaperTest, ASoftStartHoldsForFeedForwardAndSpring) {
+  configure({.soft_start_s = 0.1F});
+  shaper.restart();
+  const auto first = step({.mode = ControlMode::kImpedance,
+                           .value = 100.0,
+                           .velocity_ff_rpm = 50.0F,
+                           .torque_ff_nm = 2.0F,
+                           .stiffness_nm_per_rad = 10.0F,
+                           .damping_nms_per_rad = 1.0F});
+  EXPECT_NEAR(first.target.value, 1.0, 1e-3);
+  EXPECT_NEAR(first.target.velocity_ff_rpm, 0.5F, 1e-3F);
+  EXPECT_NEAR(first.target.torque_ff_nm, 0.02F, 1e-3F);
+  EXPECT_EQ(first.target.stiffness_nm_per_rad, 10.0F);
+}
+
+TEST_F(TargetShaperTest, ABrakeDoesNotStartSoftly) {
+  configure({.soft_start_s = 0.1F});
+  shaper.restart();
+  const auto first = step(ControlMode::kBrake, 0.0);
+  EXPECT_EQ(first.target.mode, ControlMode::kBrake);
+}
+
 }  // namespace
 }  // namespace rc10::test::target_shaper_test

@@ -13,6 +13,8 @@ constexpr float kFullEffort = 0.2F;
 // Of an encoder that may be a turn astray, where nothing makes the way there slow: farther is a matter of
 // turns.
 constexpr double kFirstStepDeg = 180.0;
+// A gimbal and a wheel live with it, and a hand has time.
+constexpr double kSoftStartMs = 200.0;
 
 }  // namespace
 
@@ -30,6 +32,8 @@ void readShaping(MotorReading& in) {
   if (limited && in.knowsItsAngle() && !in.settings.mentions("angle_slew_deg_per_s"))
     shaping.max_first_step_deg = kFirstStepDeg;
   in.settings.read("max_first_step_deg", shaping.max_first_step_deg);
+  shaping.soft_start_s =
+      static_cast<float>(in.settings.number("soft_start_ms").value_or(kSoftStartMs) / 1000.0);
   shaping.effort_full_scale = in.traits.effort_full_scale;
   if (in.traits.host_loops != nullptr) {
     shaping.approach_rpm_per_deg = kApproachOfAngleGain * in.motor().loops.angle.kp;

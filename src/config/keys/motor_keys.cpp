@@ -200,6 +200,14 @@ constexpr std::array kMotorKeys{
         .about = "An angle target that follows none is refused if it is farther than this from the measured "
                  "angle. Default: 180 for an absolute encoder with a soft limit and without "
                  "angle_slew_deg_per_s, else any distance."},
+    Key{.name = "soft_start_ms",
+        .kind = kInteger,
+        .unit = "ms",
+        .range = {.min = 0, .max = 10'000},
+        .default_text = "200",
+        .about =
+            "After enabling the first targets come into force over this time, from what is measured then: "
+            "a client may have been sending. 0: at once."},
     Key{.name = "following_error_deg",
         .kind = kNumber,
         .unit = "deg",

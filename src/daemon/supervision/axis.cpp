@@ -195,6 +195,7 @@ std::optional<MotorStatus> Axis::take(MotorEvent event, RobotStatus robot, const
 
 void Axis::prepareEnabling(const Tick& tick) noexcept {
   dropTarget();  // an old target must not act after enabling
+  shaper_.restart();
   enabling_since_ = tick.now;
   enable_deadline_ = tick.now + kEnableTimeout;
 }

@@ -38,6 +38,28 @@ bool TargetShaper::firstStepAllowed(const Target& asked, const MotorFeedback& fe
 TargetShaper::Shaped TargetShaper::step(const Target& target, const MotorFeedback& feedback, InForce in_force,
                                         float dt_s) noexcept {
   if (target.mode != mode_) begin(target.mode, feedback, in_force);
+  if (!(share_ < 1.0)) return shape(target, feedback, dt_s);
+  auto out = shape(softened(target, dt_s), feedback, dt_s);
+  out.limits |= kLimitSlew;
+  return out;
+}
+
+// In part, by the time since the motor was enabled. A spring is stiff at once, and begins where the shaft is.
+Target TargetShaper::softened(Target asked, float dt_s) noexcept {
+  share_ = std::min(1.0, share_ + static_cast<double>(dt_s / config_.soft_start_s));
+  const bool moves = isEffort(mode_) || mode_ == ControlMode::kVelocity || needsReference(mode_);
+  if (!moves) return asked;
+  const bool any_turn = mode_ == ControlMode::kAngle;
+  const double way = any_turn ? shortestAngle(start_, asked.value) : asked.value - start_;
+  asked.value = start_ + share_ * way;
+  if (any_turn) asked.value = wrapDegrees(asked.value);
+  asked.velocity_ff_rpm *= static_cast<float>(share_);
+  asked.torque_ff_nm *= static_cast<float>(share_);
+  return asked;
+}
+
+TargetShaper::Shaped TargetShaper::shape(const Target& target, const MotorFeedback& feedback,
+                                         float dt_s) noexcept {
   if (isEffort(mode_)) return shapeEffort(target, feedback, dt_s);
   if (mode_ != ControlMode::kVelocity && !needsReference(mode_)) return {target, 0};
   Target asked = target;
@@ -61,6 +83,7 @@ void TargetShaper::begin(ControlMode mode, const MotorFeedback& feedback, InForc
   if (mode == ControlMode::kVelocity) value_ = static_cast<double>(feedback.velocity_rpm);
   if (needsReference(mode)) value_ = feedback.total_angle_deg;
   if (!std::isfinite(value_)) value_ = 0.0;
+  start_ = value_;
 }
 
 bool TargetShaper::bounded(const MotorFeedback& feedback) const noexcept {

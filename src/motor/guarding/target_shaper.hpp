@@ -25,10 +25,12 @@ struct ShapingConfig {
   float effort_per_nm = 0.0F;            ///< A per N·m: of a torque feed-forward. 0: unknown.
   float effort_full_scale = 0.0F;        ///< Effort of a duty of 1. 0: unknown.
   double max_first_step_deg = std::numeric_limits<double>::infinity();
+  float soft_start_s = 0.0F;  ///< The first target after enabling comes into force over this time.
 };
 
 /// Turns what a client asks for into what the motor may do in this tick: slew limits, and soft angle
-/// limits that still allow moving back. Soft limits act while the angle is referenced. Scheduler
+/// limits that still allow moving back. Soft limits act while the angle is referenced. After enabling the
+/// target in force goes from what is measured to what is asked: a client may have sent for long. Scheduler
 /// thread only.
 class TargetShaper {
  public:
@@ -51,6 +53,8 @@ class TargetShaper {
   void setApproach(float rpm_per_deg) noexcept { config_.approach_rpm_per_deg = rpm_per_deg; }
   /// The next target starts from what is measured then.
   void reset() noexcept { mode_ = ControlMode::kCoast; }
+  /// The motor is being enabled: the next targets start softly.
+  void restart() noexcept { share_ = config_.soft_start_s > 0.0F ? 0.0 : 1.0; }
 
   /// Whether an angle target that follows none is close enough to the measured angle.
   [[nodiscard]] bool firstStepAllowed(const Target& asked, const MotorFeedback& feedback) const noexcept;
@@ -66,6 +70,8 @@ class TargetShaper {
   [[nodiscard]] double effortFor(double allowed_rpm, const MotorFeedback& feedback) const noexcept;
   [[nodiscard]] double reachable(double goal_deg, bool any_turn) const noexcept;
   void begin(ControlMode mode, const MotorFeedback& feedback, InForce in_force) noexcept;
+  [[nodiscard]] Shaped shape(const Target& target, const MotorFeedback& feedback, float dt_s) noexcept;
+  [[nodiscard]] Target softened(Target asked, float dt_s) noexcept;
   [[nodiscard]] bool slew(double goal, float per_second, float dt_s) noexcept;
   [[nodiscard]] std::uint32_t shapeVelocityFf(Target& asked, float dt_s) noexcept;
   [[nodiscard]] std::uint32_t shapeTorqueFf(Target& asked, const MotorFeedback& feedback,
@@ -81,6 +87,8 @@ class TargetShaper {
   double value_ = 0.0;                      ///< The slewed target of that mode.
   double velocity_ff_rpm_ = 0.0;            ///< Slewed, too.
   double torque_ff_nm_ = 0.0;
+  double share_ = 1.0;  ///< Of the way from start_ to what is asked; 1: all.
+  double start_ = 0.0;  ///< Where a soft start begins, in the unit of the mode.
 };
 
 }  // namespace rc10
