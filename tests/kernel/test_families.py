@@ -211,7 +211,8 @@ FAMILIES = (
     Family(
         name="LK-Tech in the frame of the group",
         fake="LK-MF9025:2",
-        keys="model: LK-MF9025, id: 2, group: true, current_limit_a: 8, overspeed_rpm: 450",
+        keys="model: LK-MF9025, id: 2, group: true, current_limit_a: 8, overspeed_rpm: 450,"
+        " soft_start_ms: 0",
         commands="280#.*|142#(A[0-8]|8[0189]|9B)00.*",
         enabling=("142#9A00000000000000", "142#9A19.*", "280#0000000000000000", "142#A119.*"),
         targets=(Target("current", 1, "280#00007C0000000000", near=0.2, seconds=0.1),),

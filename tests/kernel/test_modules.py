@@ -153,6 +153,10 @@ def drive_a_square(robot: rc10.Robot, pose: Callable[[], Pose]) -> list[tuple[Po
     """1 m/s for a second in each direction; where it stood after each, by odometry and in truth."""
     base = robot.module("base")
     corners = []
+    for t_s in robot.rate(50):  # the soft start
+        if t_s > 0.3:
+            break
+        base.send(vx_m_s=0.0, vy_m_s=0.0)
     for x, y in ((1.0, 0.0), (0.0, 1.0), (-1.0, 0.0), (0.0, -1.0)):
         for t_s in robot.rate(50):
             if t_s > 1.49:

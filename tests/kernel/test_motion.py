@@ -57,18 +57,21 @@ def test_steps_of_velocity_angle_and_total_angle_settle() -> None:
 
 
 def test_a_commanded_current_reaches_the_bus_as_the_right_bytes() -> None:
-    with enabled_robot() as (_, robot), Candump("vcan0") as bus:
-        drive(
-            robot,
-            0.1,
-            left=rc10.current_a(2.0),  # 2 / 20 * 16384 = 1638.4
-            right=rc10.current_a(1.0),  # direction -1: -819.2
-            feeder=rc10.current_a(-2.5),  # -2.5 / 10 * 10000
-            yaw=rc10.current_a(1.0),  # 1 / 3 * 16384 = 5461.3
-        )
-        bus.stop()
-        c6xx = [frame for frame in commands(bus.frames(), C6XX_COMMAND) if any(frame.data)]
-        gm6020 = [frame for frame in commands(bus.frames(), GM6020_COMMAND) if any(frame.data)]
-        assert len(c6xx) > 90
-        assert {frame.data.hex(" ") for frame in c6xx} == {"06 66 fc cd f6 3c 00 00"}
-        assert {frame.data.hex(" ") for frame in gm6020} == {"15 55 00 00 00 00 00 00"}
+    with enabled_robot() as (_, robot):
+        still = rc10.current_a(0.0)
+        drive(robot, 0.3, left=still, right=still, feeder=still, yaw=still)  # the soft start
+        with Candump("vcan0") as bus:
+            drive(
+                robot,
+                0.1,
+                left=rc10.current_a(2.0),  # 2 / 20 * 16384 = 1638.4
+                right=rc10.current_a(1.0),  # direction -1: -819.2
+                feeder=rc10.current_a(-2.5),  # -2.5 / 10 * 10000
+                yaw=rc10.current_a(1.0),  # 1 / 3 * 16384 = 5461.3
+            )
+            bus.stop()
+            c6xx = [frame for frame in commands(bus.frames(), C6XX_COMMAND) if any(frame.data)]
+            gm6020 = [frame for frame in commands(bus.frames(), GM6020_COMMAND) if any(frame.data)]
+            assert len(c6xx) > 90
+            assert {frame.data.hex(" ") for frame in c6xx} == {"06 66 fc cd f6 3c 00 00"}
+            assert {frame.data.hex(" ") for frame in gm6020} == {"15 55 00 00 00 00 00 00"}

@@ -49,7 +49,8 @@ def test_a_motor_that_is_too_fast_stops_and_the_state_says_why(tmp_path: Path) -
     config.write_text(
         CONFIG.read_text().replace(
             "{name: left, model: M3508, id: 1,",
-            "{name: left, model: M3508, id: 1, velocity_limit_rpm: 50, overspeed_rpm: 60,",
+            "{name: left, model: M3508, id: 1, velocity_limit_rpm: 50, overspeed_rpm: 60,"
+            " soft_start_ms: 0,",
         )
     )
     with simulator() as motors, Candump("vcan0") as bus, daemon(config), client() as robot:
