@@ -10,6 +10,7 @@
 #include "app/planar_odometry.hpp"
 #include "app/slew_limiter.hpp"
 #include "module/module_base.hpp"
+#include "module/module_type.hpp"
 #include "module/power_limiter.hpp"
 #include "motor/family_key.hpp"
 #include "motor/motor_settings.hpp"

@@ -151,7 +151,7 @@ std::string fallbackText(FallbackAction action) {
 std::string estopText(const MotorConfig& motor) {
   const auto& fallback = motor.fallback;
   const auto bound = boundOf(fallback.on_estop, true, fallback, motor.traits().frames);
-  const auto text = fallbackText(fallback.on_estop);
+  auto text = fallbackText(fallback.on_estop);
   if (!bound.most || bound.then == frameKindOf(fallback.on_estop)) return text;
   const double seconds = std::chrono::duration<double>(*bound.most).count();
   const char* then = bound.then == FrameKind::kDamp ? " s damp" : " s brake";

@@ -280,7 +280,7 @@ void MoteusDrive::positionControl(double dt_s) noexcept {
 }
 
 void MoteusDrive::push(double wanted_nm) noexcept {
-  constexpr double kUnbounded = double{std::numeric_limits<float>::max()};
+  constexpr double kUnbounded = static_cast<double>(std::numeric_limits<float>::max());
   const double most_nm =
       std::isnan(command_.max_torque_nm) ? kUnbounded : std::max(0.0, command_.max_torque_nm);
   fault_ = std::abs(wanted_nm) > most_nm ? kMaxTorqueLimit : 0;
