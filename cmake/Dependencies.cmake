@@ -19,6 +19,8 @@ pkg_check_modules(LIBGPIOD REQUIRED IMPORTED_TARGET "libgpiod>=1.6" "libgpiod<2"
 add_library(rc10::gpiod ALIAS PkgConfig::LIBGPIOD)
 pkg_check_modules(LIBSOCKETCAN REQUIRED IMPORTED_TARGET libsocketcan)
 add_library(rc10::socketcan ALIAS PkgConfig::LIBSOCKETCAN)
+pkg_check_modules(LIBMD REQUIRED IMPORTED_TARGET libmd)
+add_library(rc10::md ALIAS PkgConfig::LIBMD)
 pkg_check_modules(LIBMNL REQUIRED IMPORTED_TARGET libmnl)
 add_library(rc10::mnl ALIAS PkgConfig::LIBMNL)
 

@@ -47,7 +47,7 @@ target_include_directories(rc10_embed INTERFACE $<INSTALL_INTERFACE:${CMAKE_INST
 target_link_libraries(rc10_embed INTERFACE
   $<INSTALL_INTERFACE:Eigen3::Eigen> $<INSTALL_INTERFACE:spdlog::spdlog> $<INSTALL_INTERFACE:yaml-cpp> $<INSTALL_INTERFACE:CLI11::CLI11>
   $<INSTALL_INTERFACE:Boost::headers> $<INSTALL_INTERFACE:tl::expected> $<INSTALL_INTERFACE:Threads::Threads>
-  $<INSTALL_INTERFACE:socketcan> $<INSTALL_INTERFACE:mnl> $<INSTALL_INTERFACE:gpiod>)
+  $<INSTALL_INTERFACE:socketcan> $<INSTALL_INTERFACE:mnl> $<INSTALL_INTERFACE:md> $<INSTALL_INTERFACE:gpiod>)
 
 foreach(library rc10_client_lib rc10_client_lib_static)
   target_compile_features(${library} PUBLIC cxx_std_20)

@@ -58,5 +58,5 @@ layers of rc10d, for a daemon with motor families or modules of one's own. With
 a CMake package and pkg-config files.")
 set(CPACK_DEBIAN_DEV_PACKAGE_DEPENDS "librc10-client${soversion} (= ${PROJECT_VERSION}-${RC10_PACKAGE_RELEASE}), \
 libexpected-dev, liblcm-dev, libeigen3-dev, libspdlog-dev, libyaml-cpp-dev, libcli11-dev, libboost-dev, \
-libgpiod-dev, libmnl-dev, libsocketcan-dev")
+libgpiod-dev, libmd-dev, libmnl-dev, libsocketcan-dev")
 include(CPack)

@@ -7,7 +7,7 @@ set -euo pipefail
 declare -A packages=(
     [build]="g++ cmake ninja-build pkg-config ccache git python3 python3-venv iproute2
         libyaml-cpp-dev libspdlog-dev libfmt-dev liblcm-dev liblcm-bin libexpected-dev
-        libcli11-dev libboost-dev libseccomp-dev libgpiod-dev libsocketcan-dev libmnl-dev
+        libcli11-dev libboost-dev libseccomp-dev libgpiod-dev libsocketcan-dev libmnl-dev libmd-dev
         nlohmann-json3-dev libeigen3-dev"
     [test]="libgtest-dev libgmock-dev libbenchmark-dev strace procps util-linux groff-base mount can-utils jq"
     [languages]="make liblcm-java default-jdk-headless"

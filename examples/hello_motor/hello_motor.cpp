@@ -22,6 +22,7 @@ int failed(const std::string& why) {
 int run(const std::string& robot_name, const std::string& motor_name, rc10::Degrees angle) {
   rc10::RobotOptions options;
   options.client = "hello-motor";
+  options.at_end = rc10::AtEnd::kDisable;  // without it each motor does its on_timeout, and stays ACTIVE
   rc10::Robot robot(robot_name, options);
   if (const auto heard = robot.waitForState(); !heard) return failed(heard.error().message);
 
@@ -42,7 +43,7 @@ int run(const std::string& robot_name, const std::string& motor_name, rc10::Degr
   if (!result) return failed(result.reason);
   std::printf("%s stands at %.1f deg\n", motor_name.c_str(), result.angle_deg);
   return 0;
-  // Leaving the block has let go of the motor and disabled it.
+  // Leaving the block has disabled the motor.
 }
 
 }  // namespace

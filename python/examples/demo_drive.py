@@ -73,7 +73,7 @@ def main() -> None:
     # Like Ctrl-C: leaving the `with` statement lets go of the motors.
     signal.signal(signal.SIGTERM, signal.default_int_handler)
 
-    with rc10.connect(options.robot, client="demo-drive") as robot:
+    with rc10.connect(options.robot, client="demo-drive", at_end="disable") as robot:
         robot.wait_for_state()
         robot.enable()
         print("enabled", flush=True)

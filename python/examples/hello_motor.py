@@ -21,7 +21,7 @@ def main() -> None:
     parser.add_argument("--seconds", type=float, default=3.0, help="how long (3)")
     options = parser.parse_args()
 
-    with rc10.connect(options.robot, client="hello-motor") as robot:
+    with rc10.connect(options.robot, client="hello-motor", at_end="disable") as robot:
         robot.wait_for_state()
         robot.enable(options.motor)
         # The loop is what keeps the motor going: a command acts for 50 ms.

@@ -182,7 +182,7 @@ def main() -> None:
     """Runs the example."""
     options = parse()
     pad = Gamepad(options.button)
-    with rc10.connect(options.robot, client="joystick", priority=10) as robot:
+    with rc10.connect(options.robot, client="joystick", priority=10, at_end="disable") as robot:
         robot.wait_for_state()
         # Never all: others may use the rest of the robot.
         motors = options.left + options.right + options.enable

@@ -191,7 +191,7 @@ def main() -> None:
     parser.add_argument("--seconds", type=float, default=0.8, help="of a step (0.8)")
     parser.add_argument("--tries", type=int, default=12, help="steps to run (12)")
     options = parser.parse_args()
-    with rc10.connect(options.robot, client="pid-tuning") as robot:
+    with rc10.connect(options.robot, client="pid-tuning", at_end="disable") as robot:
         robot.wait_for_state()
         robot.enable(options.motor)
         _active(robot, options.motor)

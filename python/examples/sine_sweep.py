@@ -170,7 +170,7 @@ def main() -> None:
         parser.error(f"0.05 <= --from < --to <= {_HIGHEST_HZ:g}, and two points at least")
 
     frequencies = frequencies_hz(options.lowest, options.highest, options.points)
-    with rc10.connect(options.robot, client="sine-sweep") as robot:
+    with rc10.connect(options.robot, client="sine-sweep", at_end="disable") as robot:
         robot.wait_for_state()
         robot.enable(options.motor)
         response = sweep(robot, options.motor, frequencies, options.amplitude, options.offset)

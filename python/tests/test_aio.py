@@ -94,20 +94,26 @@ async def test_a_slow_reader_gets_the_newest_state(
 
 
 @in_loop
-async def test_a_loop_commands_and_leaving_lets_go(
+async def test_a_loop_commands_and_leaving_is_a_timeout(
     robot: aio.Robot, daemon: ObedientDaemon
 ) -> None:
     await robot.enable("wheel")
     assert daemon.active == {"wheel"}
     async for t_s in robot.rate(200):
-        robot.command(wheel=rc10.velocity_rpm(60))
+        robot.command(wheel=rc10.velocity_rpm(60), validity_ms=1000)
         if daemon.commands:
             break
         assert t_s < PATIENCE_S
     assert setpoints(daemon.commands[0]) == {"wheel": (setpoint_t.MODE_VELOCITY, 60)}
+    # memq hands over when it is pumped: what close() sends would go with the link.
+    link, close = robot.link, robot.link.close
+    link.close = lambda: None  # type: ignore[method-assign]
     await robot.close()
-    assert daemon.operations() == ["enable wheel", "disable wheel"]
-    assert setpoints(daemon.commands[-1]) == {"wheel": (setpoint_t.MODE_COAST, 0)}
+    link.pump(0.0)
+    close()
+    assert daemon.operations() == ["enable wheel"]
+    assert setpoints(daemon.commands[-1]) == {"wheel": (setpoint_t.MODE_VELOCITY, 60)}
+    assert daemon.commands[-1].validity_ms == 1
     with pytest.raises(rc10.LinkError, match="closed"):
         await robot.wait_for_state()
 
@@ -231,7 +237,7 @@ def test_a_cancelled_program_lets_go() -> None:
     daemon = ObedientDaemon("demo", link)
 
     async def program(entered: asyncio.Event) -> None:
-        async with aio.Robot("demo", link, client="tester") as robot:
+        async with aio.Robot("demo", link, client="tester", at_end="coast") as robot:
             await robot.enable("wheel", timeout_s=PATIENCE_S)
             robot.command(wheel=rc10.velocity_rpm(60))
             entered.set()

@@ -5,6 +5,7 @@ import pytest
 import rc10
 from fake_daemon import FakeDaemon, setpoints
 from rc10.lcm_types import response_t
+from rc10.robot_client import AtEnd
 from virtual_link import VirtualLink
 
 COAST = (rc10.Mode.COAST, 0.0)
@@ -13,18 +14,79 @@ COAST = (rc10.Mode.COAST, 0.0)
 class Client(rc10.Robot):
     """Leaves its link open, so that the daemon on it can be asked afterwards."""
 
-    def __init__(self, link: VirtualLink) -> None:
+    def __init__(self, link: VirtualLink, at_end: AtEnd) -> None:
         link.close = lambda: None  # type: ignore[method-assign]
-        super().__init__("demo", link, client="tester")
+        super().__init__("demo", link, client="tester", at_end=at_end)
 
 
 @pytest.fixture
 def client(link: VirtualLink) -> Client:
-    return Client(link)
+    return Client(link, "coast")
+
+
+@pytest.fixture
+def lapsing(link: VirtualLink) -> Client:
+    return Client(link, "timeout")
 
 
 def drain(link: VirtualLink) -> None:
     link.pump(0.0)
+
+
+def test_leaving_is_a_timeout_at_once(
+    lapsing: Client, daemon: FakeDaemon, link: VirtualLink
+) -> None:
+    with lapsing as robot:
+        robot.enable(["wheel", "yaw"])
+        robot.command(wheel=rc10.velocity_rpm(120), validity_ms=1000)
+        robot.command(yaw=rc10.angle_deg(3), validity_ms=1000)
+    drain(link)
+    last = daemon.commands[-1]
+    assert setpoints(last) == {"wheel": (rc10.Mode.VELOCITY, 120), "yaw": (rc10.Mode.ANGLE, 3)}
+    assert last.validity_ms == 1
+    assert daemon.operations() == ["enable wheel,yaw"]
+
+
+def test_a_target_that_has_lapsed_does_not_come_back_for_the_end(
+    lapsing: Client, daemon: FakeDaemon, link: VirtualLink
+) -> None:
+    with lapsing as robot:
+        robot.command(wheel=rc10.velocity_rpm(120))
+        robot.command(yaw=rc10.angle_deg(3), validity_ms=200)
+        before_s = link.now()
+        while link.now() < before_s + 0.06:
+            robot.spin(0.01)
+    drain(link)
+    assert setpoints(daemon.commands[-1]) == {"yaw": (rc10.Mode.ANGLE, 3)}
+
+
+def test_a_motor_that_is_gone_does_not_spoil_the_end_of_the_others(
+    lapsing: Client, daemon: FakeDaemon, link: VirtualLink
+) -> None:
+    with lapsing as robot:
+        daemon.publish_state()
+        robot.wait_for_state()
+        robot.command(wheel=rc10.velocity_rpm(1), yaw=rc10.velocity_rpm(1), validity_ms=1000)
+        daemon.motors = ("wheel",)
+        daemon.publish_state()
+        robot.wait_for_state()
+    drain(link)
+    assert setpoints(daemon.commands[-1]) == {"wheel": (rc10.Mode.VELOCITY, 1)}
+
+
+def test_leaving_may_disable_and_nothing_else(daemon: FakeDaemon, link: VirtualLink) -> None:
+    with Client(link, "disable") as robot:
+        robot.enable("wheel")
+        robot.command(wheel=rc10.velocity_rpm(120))
+    drain(link)
+    assert setpoints(daemon.commands[-1]) == {"wheel": (rc10.Mode.VELOCITY, 120)}
+    assert len(daemon.commands) == 1
+    assert daemon.operations() == ["enable wheel", "disable wheel"]
+
+
+def test_an_end_that_does_not_exist_is_refused_at_once(link: VirtualLink) -> None:
+    with pytest.raises(ValueError, match="at_end='hold': use timeout, disable, coast"):
+        Client(link, "hold")  # type: ignore[arg-type]
 
 
 def test_leaving_lets_go_of_what_was_taken(

@@ -47,11 +47,25 @@ def test_a_client_is_called_like_its_program(monkeypatch: pytest.MonkeyPatch) ->
         assert robot.name == "demo"
 
 
+def test_a_program_with_a_long_name_is_called_as_much_of_it_as_there_is_room_for(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.setattr(sys, "argv", ["/opt/team/measure_the_whole_arm_again_and_again.py"])
+    with rc10.connect("demo", url="memq://") as robot:
+        assert robot.client == "measure_the_whole_arm_again_and"
+    monkeypatch.setattr(sys, "argv", ["/opt/" + "底盘" * 10 + ".py"])
+    with rc10.connect("demo", url="memq://") as robot:
+        assert len(robot.client.encode()) == 30
+        assert robot.client == "底盘" * 5
+    with pytest.raises(ValueError, match="is longer than 31 bytes: shorten it"):
+        rc10.connect("demo", url="memq://", client="n" * 32)
+
+
 @pytest.mark.netns
 def test_a_session_over_multicast() -> None:
     with ThreadedDaemon("demo") as daemon:
         daemon.deaf_to_requests = 2
-        with rc10.connect("demo", client="tester", priority=3) as robot:
+        with rc10.connect("demo", client="tester", priority=3, at_end="coast") as robot:
             robot.wait_for_state()
             robot.enable("wheel")
             while robot.motor("wheel").status is not rc10.MotorStatus.ACTIVE:
@@ -82,7 +96,7 @@ def test_a_long_pause_does_not_leave_old_states() -> None:
 def test_ctrl_c_ends_a_wait_and_lets_go() -> None:
     program = (
         "import rc10\n"
-        "with rc10.connect('demo', client='waiter') as robot:\n"
+        "with rc10.connect('demo', client='waiter', at_end='disable') as robot:\n"
         "    robot.wait_for_state()\n"
         "    robot.enable('wheel')\n"
         "    print('waiting', flush=True)\n"
@@ -121,7 +135,6 @@ def test_the_example_turns_a_motor_and_lets_go() -> None:
     assert len(re.findall(r"measured +12.5 rpm", result.stdout)) >= 2
     assert daemon.operations() == ["enable wheel", "disable wheel"]
     assert setpoints(daemon.commands[0]) == {"wheel": (rc10.Mode.VELOCITY, 90.0)}
-    assert setpoints(daemon.commands[-1]) == {"wheel": (rc10.Mode.COAST, 0.0)}
 
 
 @pytest.mark.netns(route=False)

@@ -13,16 +13,17 @@
 #include <string>
 #include <vector>
 
-#define EACH_TYPE(apply)                                                                  \
-    apply(bus_state_t) apply(command_t) apply(counter_t) apply(diagnostics_t)             \
-    apply(event_t) apply(motor_state_t) apply(named_value_t) apply(request_t)             \
-    apply(response_t) apply(robot_state_t) apply(service_request_t)                       \
-    apply(service_response_t) apply(setpoint_t) apply(signals_t)
+#define EACH_TYPE(apply)                                                                            \
+  apply(bus_state_t) apply(command_t) apply(counter_t) apply(diagnostics_t) apply(durations_t)      \
+      apply(event_t) apply(motor_state_t) apply(named_value_t) apply(request_t) apply(response_t)   \
+          apply(robot_state_t) apply(service_request_t) apply(service_response_t) apply(setpoint_t) \
+              apply(signals_t)
 
 #include "rc10/bus_state_t.hpp"
 #include "rc10/command_t.hpp"
 #include "rc10/counter_t.hpp"
 #include "rc10/diagnostics_t.hpp"
+#include "rc10/durations_t.hpp"
 #include "rc10/event_t.hpp"
 #include "rc10/motor_state_t.hpp"
 #include "rc10/named_value_t.hpp"
@@ -37,53 +38,52 @@
 namespace {
 
 template <typename Message>
-int recode(const std::vector<char>& in)
-{
-    Message message;
-    if (message.decode(in.data(), 0, static_cast<int>(in.size())) != static_cast<int>(in.size())) {
-        return 1;
-    }
-    std::vector<char> out(static_cast<std::size_t>(message.getEncodedSize()));
-    message.encode(out.data(), 0, static_cast<int>(out.size()));
-    return std::fwrite(out.data(), 1, out.size(), stdout) == out.size() ? 0 : 1;
+int recode(const std::vector<char>& in) {
+  Message message;
+  if (message.decode(in.data(), 0, static_cast<int>(in.size())) != static_cast<int>(in.size())) {
+    return 1;
+  }
+  std::vector<char> out(static_cast<std::size_t>(message.getEncodedSize()));
+  message.encode(out.data(), 0, static_cast<int>(out.size()));
+  return std::fwrite(out.data(), 1, out.size(), stdout) == out.size() ? 0 : 1;
 }
 
-struct Echo
-{
-    lcm::LCM* lcm;
-    std::string to;
+struct Echo {
+  lcm::LCM* lcm;
+  std::string to;
 
-    void handle(const lcm::ReceiveBuffer*, const std::string&, const rc10::command_t* message)
-    {
-        lcm->publish(to, message);
-    }
+  void handle(const lcm::ReceiveBuffer*, const std::string&, const rc10::command_t* message) {
+    lcm->publish(to, message);
+  }
 };
 
 }  // namespace
 
-int main(int argc, char** argv)
-{
-    const std::vector<std::string> args(argv + 1, argv + argc);
-    if (args.size() == 1 && args[0] == "fingerprints") {
-#define PRINT(type) std::printf("%s %016llx\n", #type, \
-                                static_cast<unsigned long long>(rc10::type::getHash()));
-        EACH_TYPE(PRINT)
-        return 0;
+int main(int argc, char** argv) {
+  const std::vector<std::string> args(argv + 1, argv + argc);
+  if (args.size() == 1 && args[0] == "fingerprints") {
+#define PRINT(type) \
+  std::printf("%s %016llx\n", #type, static_cast<unsigned long long>(rc10::type::getHash()));
+    EACH_TYPE(PRINT)
+    return 0;
+  }
+  if (args.size() == 2 && args[0] == "recode") {
+    const std::vector<char> in{std::istreambuf_iterator<char>(std::cin), {}};
+#define RECODE(type)               \
+  if (args[1] == #type) {          \
+    return recode<rc10::type>(in); \
+  }
+    EACH_TYPE(RECODE)
+  }
+  if (args.size() == 3 && args[0] == "echo") {
+    lcm::LCM lcm;
+    Echo echo{&lcm, args[2]};
+    lcm.subscribe(args[1], &Echo::handle, &echo);
+    lcm.getFileno();  // from here on it listens
+    std::puts("listening");
+    std::fflush(stdout);
+    while (lcm.handle() == 0) {
     }
-    if (args.size() == 2 && args[0] == "recode") {
-        const std::vector<char> in{std::istreambuf_iterator<char>(std::cin), {}};
-#define RECODE(type) if (args[1] == #type) { return recode<rc10::type>(in); }
-        EACH_TYPE(RECODE)
-    }
-    if (args.size() == 3 && args[0] == "echo") {
-        lcm::LCM lcm;
-        Echo echo{&lcm, args[2]};
-        lcm.subscribe(args[1], &Echo::handle, &echo);
-        lcm.getFileno();  // from here on it listens
-        std::puts("listening");
-        std::fflush(stdout);
-        while (lcm.handle() == 0) {
-        }
-    }
-    return 2;
+  }
+  return 2;
 }

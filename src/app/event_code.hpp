@@ -6,7 +6,8 @@ namespace rc10 {
 
 /// Kind of event. The numbers are part of the LCM contract (event_t.code, docs/lcm.md) and never change.
 enum class EventCode : std::int32_t {
-  kMotorStatus = 100,      ///< value: new MotorStatus, extra: old one
+  kMotorStatus =
+      100,  ///< value: new MotorStatus, extra: old one plus 256 times the StopCause; `client`: by whom
   kCommandTimeout = 101,   ///< no valid command any more; value: the FallbackAction
   kReferenceLost = 102,    ///< the multi-turn angle is unknown
   kSetpointSkipped = 103,  ///< value: the SkipReason, extra: the mode, plus 256 times the MotorStatus
@@ -19,8 +20,9 @@ enum class EventCode : std::int32_t {
       109,             ///< targets of a module (`source`) refused: another client commands one of its motors
   kGainChanged = 110,  ///< of a loop; value: the LoopGain, plus kGainInVolts; extra: the bits of the float;
                        ///< `client`: who asked
-  kRobotState = 200,   ///< value: new RobotStatus, extra: old one
-  kTicksMissed = 201,  ///< value: how many
+  kRobotState =
+      200,  ///< value: new RobotStatus, extra: old one plus 256 times the StopCause; `client`: by whom
+  kTicksMissed = 201,     ///< value: how many
   kCommandRefused = 202,  ///< admission refused a command message
   kEstopInput = 203,      ///< value: the ContactState of the e-stop input
   kBusState = 300,        ///< value: new BusState, extra: old one

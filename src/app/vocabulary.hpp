@@ -39,6 +39,37 @@ enum class RobotStatus : std::uint8_t {
   kStopping = 2,  ///< The process is about to end: rest frames only.
 };
 
+/// Source of what the shaft feels: motor_state_t.lcm.
+enum class Acting : std::uint8_t {
+  kNothing = 0,  ///< No torque.
+  kTarget = 1,
+  kHold = 2,
+  kDamp = 3,
+  kBrake = 4,
+  kRamp = 5,  ///< A velocity that falls to 0.
+};
+
+/// Why a motor does not obey, or the robot does not run: motor_state_t.lcm.
+enum class StopCause : std::uint8_t {
+  kNone = 0,
+  kRequest = 1,
+  kEstop = 2,
+  kFault = 3,
+  kSilence = 4,  ///< Its drive was not heard.
+  kGroup = 5,
+  kTimeout = 6,    ///< The command in force was not renewed.
+  kRefused = 7,    ///< Its drive did not confirm that it was enabled.
+  kReference = 8,  ///< Its angle has lost the reference.
+  kShutdown = 9,
+  kInput = 10,  ///< The e-stop input.
+};
+
+/// Bits of robot_state_t.lcm.
+enum Condition : std::uint32_t {
+  kConditionSimulated = 1U << 0U,
+  kConditionInputOpen = 1U << 1U,
+};
+
 /// bus_state_t.lcm.
 enum class BusState : std::uint8_t {
   kActive = 0,
@@ -73,6 +104,10 @@ inline constexpr std::array kControlModeWords{"coast",     "current", "velocity"
 inline constexpr std::array kControlModeUnits{"", "A", "rpm", "deg", "deg", "deg", "V", "", ""};
 inline constexpr std::array kMotorStatusWords{"OFFLINE", "READY", "ENABLING", "ACTIVE", "FAULT"};
 inline constexpr std::array kRobotStatusWords{"RUN", "ESTOP", "STOPPING"};
+inline constexpr std::array kActingWords{"nothing", "target", "hold", "damp", "brake", "ramp"};
+inline constexpr std::array kStopCauseWords{"",        "request", "estop",     "fault",    "silence", "group",
+                                            "timeout", "refused", "reference", "shutdown", "input"};
+inline constexpr std::array kConditionWords{"simulated", "input-open"};
 inline constexpr std::array kBusStateWords{"active", "warning", "passive", "bus-off",
                                            "down",   "gone",    "silent",  "stalled"};
 inline constexpr std::array kCommandUnitWords{"", "A", "V", "native"};
@@ -98,6 +133,13 @@ template <std::size_t N, typename Number>
 }
 [[nodiscard]] constexpr const char* toString(RobotStatus status) noexcept {
   return detail::word(kRobotStatusWords, status, "UNKNOWN");
+}
+[[nodiscard]] constexpr const char* toString(Acting acting) noexcept {
+  return detail::word(kActingWords, acting, "unknown");
+}
+/// "" for kNone.
+[[nodiscard]] constexpr const char* toString(StopCause cause) noexcept {
+  return detail::word(kStopCauseWords, cause, "unknown");
 }
 [[nodiscard]] constexpr const char* toString(BusState state) noexcept {
   return detail::word(kBusStateWords, state, "unknown");

@@ -18,7 +18,7 @@
 namespace rc10::blackbox {
 
 inline constexpr std::array<char, 8> kMagic{'R', 'C', '1', '0', 'B', 'O', 'X', '1'};
-inline constexpr std::uint32_t kFormatVersion = 2;
+inline constexpr std::uint32_t kFormatVersion = 3;
 /// Records are a whole number of these.
 inline constexpr std::size_t kWord = 8;
 inline constexpr std::size_t kMaxRecordBytes = 255 * kWord;
@@ -34,11 +34,14 @@ struct MotorInfo {
   std::uint32_t bus = 0;
 };
 
+inline constexpr std::size_t kMaxModuleEvents = 16;
+
 struct ModuleInfo {
   link::Name name;
   std::uint32_t input_count = 0;
-  std::uint32_t reserved = 0;
+  std::uint32_t event_count = 0;
   std::array<link::Name, link::kMaxSignals> inputs;
+  std::array<link::Text<96>, kMaxModuleEvents> events;  ///< Words of its events, by their numbers.
 };
 
 /// Written once, at the start.
@@ -58,7 +61,8 @@ struct Header {
   std::uint32_t module_count = 0;
   link::Name robot;
   link::Text<32> program_version;
-  link::Text<32> cause;  ///< Of a copy: why it was made. Empty: not a copy.
+  link::Text<72> config_hash;  ///< SHA-256 of the configuration file, in hexadecimal digits.
+  link::Text<32> cause;        ///< Of a copy: why it was made. Empty: not a copy.
   std::array<BusInfo, link::kMaxBuses> buses;
   std::array<MotorInfo, link::kMaxMotors> motors;
   std::array<ModuleInfo, link::kMaxModules> modules;
@@ -81,7 +85,7 @@ struct FileHead {
 };
 static_assert(std::is_trivially_copyable_v<FileHead> && std::is_standard_layout_v<FileHead>);
 
-inline constexpr std::uint64_t kRingOffset = 32768;
+inline constexpr std::uint64_t kRingOffset = 65536;
 static_assert(sizeof(FileHead) <= kRingOffset);
 
 // ---- Records
@@ -177,12 +181,13 @@ static_assert(link::kMaxSignals <= 32, "a bit each");
 }
 
 /// A request that reached the scheduler; `flags` is the operation: enable, disable, estop, clear, zero,
-/// configure-drive, set_gains, enable_alone.
+/// configure-drive, set_gains, enable_alone. `source` is 1 if it named no motor: it was meant for the robot.
 struct Order {
   static constexpr auto kType = RecordType::kOrder;
   RecordHeader header;
   std::array<std::uint64_t, link::kMaxMotors / 64> motors{};  ///< One bit each.
   double value = 0.0;
+  link::Name client;
 };
 
 /// `id` is the code of event_t.lcm, `source` the motor or bus, `flags` the severity.
@@ -195,11 +200,13 @@ struct Event {
 };
 
 /// State of a motor, as in motor_state_t.lcm. `flags` is the status, `id` the mode, the unit of
-/// command_value in the second byte and whether the angle is referenced in the third.
+/// command_value in the second byte, whether the angle is referenced in the third, and in the fourth what
+/// acts.
 struct Motor {
   static constexpr auto kType = RecordType::kMotor;
   RecordHeader header;
   double target = 0.0;
+  double target_shaped = 0.0;
   double total_angle_deg = 0.0;
   float angle_deg = 0.0F;
   float velocity_rpm = 0.0F;
@@ -211,14 +218,19 @@ struct Motor {
   std::uint32_t limits = 0;
   std::int32_t fault = 0;
   std::int32_t feedback_age_us = -1;
+  std::int32_t feedback_age_at_use_us = -1;
+  std::int32_t command_age_us = -1;
+  std::uint32_t stop_cause = 0;
+  std::uint32_t reserved = 0;
 };
 
-/// `flags` is the state of the robot.
+/// `flags` is the state of the robot, `source` the cause of its stop, `id` its conditions.
 struct Robot {
   static constexpr auto kType = RecordType::kRobot;
   RecordHeader header;
   std::uint64_t tick = 0;
   std::uint64_t missed_ticks = 0;
+  std::uint64_t estops = 0;
 };
 
 /// `source` is the bus, `flags` its state.

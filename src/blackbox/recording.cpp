@@ -124,6 +124,20 @@ std::string_view Recording::inputName(std::size_t module, std::size_t input) con
                                                                              : "?";
 }
 
+std::string_view Recording::moduleEvent(std::size_t module, std::int32_t event) const noexcept {
+  if (module >= header().module_count || event < 0) return {};
+  const auto& info = header().modules[module];
+  const auto known = std::min<std::size_t>(info.event_count, info.events.size());
+  const auto place = static_cast<std::size_t>(event);
+  return place < known ? info.events[place].view() : std::string_view{};
+}
+
+bool Recording::simulated() const noexcept {
+  const auto buses = std::span{header().buses}.first(header().bus_count);
+  return std::any_of(buses.begin(), buses.end(),
+                     [](const BusInfo& bus) { return bus.interface.view().empty(); });
+}
+
 std::string_view Recording::sourceName(const Event& event) const noexcept {
   // docs/lcm.md
   constexpr std::uint32_t kFirstModuleCode = 108;

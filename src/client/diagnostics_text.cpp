@@ -20,11 +20,15 @@ std::string timesText(const link::Diagnostics& diagnostics) {
                    {"P99", Align::kRight},
                    {"P99.9", Align::kRight},
                    {"MAX", Align::kRight}});
-  const auto row = [&table](const char* name, const link::Percentiles& p) {
+  const auto row = [&table](const std::string& name, const link::Percentiles& p) {
     table.add({name, micros(p.p50_us), micros(p.p99_us), micros(p.p999_us), micros(p.max_us)});
   };
   row("wake-up latency", diagnostics.wake_latency);
   row("tick duration", diagnostics.tick_duration);
+  for (std::size_t i = 0; i < std::min<std::size_t>(diagnostics.duration_count, link::kMaxDurations); ++i) {
+    const auto& each = diagnostics.durations[i];
+    if (each.count > 0) row(printable(each.name.view()), each.percentiles);
+  }
   return table.text();
 }
 

@@ -4,6 +4,7 @@
 
 #include "client/candump_line.hpp"
 #include "client/json_line.hpp"
+#include "client/recording_text.hpp"
 #include "link/event_text.hpp"
 #include "link/words.hpp"
 
@@ -94,15 +95,17 @@ class Writer {
     }
     json_["motors"] = std::move(motors);
     json_["value"] = r.value;
+    json_["client"] = r.client.view();
+    json_["whole_robot"] = r.header.source != 0;
   }
 
   void add(const Event& r) {
-    const auto code = static_cast<std::int32_t>(r.header.id);
     json_["kind"] = "event";
     json_["severity"] = toString(Severity{r.header.flags});
-    json_["code"] = code;
+    json_["code"] = static_cast<std::int32_t>(r.header.id);
     json_["source"] = recording_.sourceName(r);
-    json_["text"] = link::eventText(code, r.value, r.extra, r.client.view());
+    json_["client"] = r.client.view();
+    json_["text"] = eventText(recording_, r);
   }
 
   void add(const Motor& r) {
@@ -113,7 +116,10 @@ class Writer {
     json_["fault_text"] = link::faultText(r.fault);
     json_["limits"] = listOf(link::limitWords(r.limits));
     json_["mode"] = toString(static_cast<ControlMode>(r.header.id & 0xFFU));
+    json_["acting"] = toString(static_cast<Acting>(r.header.id >> 24U));
+    json_["stop_cause"] = toString(static_cast<StopCause>(r.stop_cause));
     json_["target"] = r.target;
+    json_["target_shaped"] = r.target_shaped;
     json_["zeroed"] = (r.header.id >> 16U & 1U) != 0;
     json_["angle_deg"] = shortest(r.angle_deg);
     json_["total_angle_deg"] = r.total_angle_deg;
@@ -125,11 +131,16 @@ class Writer {
     json_["command_value"] = shortest(r.command_value);
     json_["command_unit"] = toString(static_cast<CommandUnit>(r.header.id >> 8U & 0xFFU));
     json_["feedback_age_us"] = r.feedback_age_us;
+    json_["feedback_age_at_use_us"] = r.feedback_age_at_use_us;
+    json_["command_age_us"] = r.command_age_us;
   }
 
   void add(const Robot& r) {
     json_["kind"] = "robot";
     json_["state"] = toString(RobotStatus{r.header.flags});
+    json_["stop_cause"] = toString(static_cast<StopCause>(r.header.source));
+    json_["conditions"] = listOf(link::conditionWords(r.header.id));
+    json_["estops"] = r.estops;
     json_["tick"] = r.tick;
     json_["missed_ticks"] = r.missed_ticks;
   }

@@ -6,6 +6,7 @@
 #include <ctime>
 #include <deque>
 
+#include "app/event_code.hpp"
 #include "client/quantity_text.hpp"
 #include "client/text_table.hpp"
 #include "link/event_text.hpp"
@@ -101,14 +102,21 @@ struct Counts {
   TextTable table({{"LAST EVENTS (UTC)"}, {""}, {""}, {""}});
   for (const auto& event : counts.last_events) {
     table.add({utc(recording.wallUs(event.header.time_ns)), toString(Severity{event.header.flags}),
-               printable(recording.sourceName(event)),
-               printable(link::eventText(static_cast<std::int32_t>(event.header.id), event.value, event.extra,
-                                         event.client.view()))});
+               printable(recording.sourceName(event)), printable(eventText(recording, event))});
   }
   return table.text();
 }
 
 }  // namespace
+
+std::string eventText(const Recording& recording, const Event& event) {
+  const auto own = EventCode{static_cast<std::int32_t>(event.header.id)} == EventCode::kModule
+                       ? recording.moduleEvent(event.header.source, event.value)
+                       : std::string_view{};
+  if (!own.empty()) return std::string(own);
+  return link::eventText(static_cast<std::int32_t>(event.header.id), event.value, event.extra,
+                         event.client.view());
+}
 
 std::string recordingText(const Recording& recording, bool running) {
   Counts counts;

@@ -10,4 +10,7 @@ namespace rc10::client {
 /// `running`: the process that writes it is still there.
 [[nodiscard]] std::string recordingText(const blackbox::Recording& recording, bool running);
 
+/// An event of a recording in words; that of a module in its own.
+[[nodiscard]] std::string eventText(const blackbox::Recording& recording, const blackbox::Event& event);
+
 }  // namespace rc10::client

@@ -25,7 +25,10 @@ Json motorJson(const link::MotorInfo& info, const link::MotorState& motor) {
             {"mode", toString(motor.mode)},
             {"owner", motor.owner.view()},
             {"zeroed", motor.zeroed != 0},
-            {"command_unit", toString(motor.command_unit)}};
+            {"command_unit", toString(motor.command_unit)},
+            {"acting", toString(motor.acting)},
+            {"stop_cause", toString(motor.stop_cause)},
+            {"stopped_by", motor.stopped_by.view()}};
 #define RC10_KEY(type, name, initial) json[#name] = shortest(motor.name);
   RC10_MOTOR_READINGS(RC10_KEY)
 #undef RC10_KEY
@@ -74,6 +77,7 @@ std::string listJson(const link::Welcome& welcome) {
   }
   return lineOf({{"robot", welcome.robot.view()},
                  {"version", welcome.version.view()},
+                 {"config_hash", welcome.config_hash.view()},
                  {"pid", welcome.pid},
                  {"rate_hz", welcome.rate_hz},
                  {"lcm_url", welcome.lcm_url.view()},
@@ -94,6 +98,13 @@ std::string stateJson(const link::Welcome& welcome, const link::State& state) {
                  {"tick", state.tick},
                  {"state", toString(state.robot_state)},
                  {"realtime", state.realtime != 0},
+                 {"stop_cause", toString(state.stop_cause)},
+                 {"stopped_by", state.stopped_by.view()},
+                 {"stopped_mono_us", state.stopped_mono_us},
+                 {"estop_count", state.estop_count},
+                 {"conditions", listOf(link::conditionWords(state.conditions))},
+                 {"version", welcome.version.view()},
+                 {"config_hash", welcome.config_hash.view()},
                  {"motors", std::move(motors)}});
 }
 
@@ -101,6 +112,15 @@ std::string diagnosticsJson(const link::Welcome& welcome, const link::Diagnostic
   Json refusals = Json::object();
   for (const auto& refusal : used(diagnostics.refusals, diagnostics.refusal_count)) {
     refusals[std::string(refusal.name.view())] = refusal.count;
+  }
+  Json counters = Json::object();
+  for (const auto& counter : used(diagnostics.counters, diagnostics.counter_count))
+    counters[std::string(counter.name.view())] = counter.count;
+  Json durations = Json::object();
+  for (const auto& each : used(diagnostics.durations, diagnostics.duration_count)) {
+    Json json = percentilesJson(each.percentiles);
+    json["count"] = each.count;
+    durations[std::string(each.name.view())] = std::move(json);
   }
   Json notices = Json::array();
   for (const auto& notice : used(diagnostics.notices, diagnostics.notice_count))
@@ -118,6 +138,8 @@ std::string diagnosticsJson(const link::Welcome& welcome, const link::Diagnostic
                  {"page_faults", diagnostics.page_faults},
                  {"events_dropped", diagnostics.events_dropped},
                  {"refusals", std::move(refusals)},
+                 {"counters", std::move(counters)},
+                 {"durations_us", std::move(durations)},
                  {"notices", std::move(notices)},
                  {"buses", std::move(buses)}});
 }

@@ -16,7 +16,17 @@ std::string note(const link::MotorState& motor) {
   std::string text = link::faultText(motor.fault);
   const std::string limits = link::limitWords(motor.limits);
   if (!limits.empty()) text += (text.empty() ? "limit: " : "; limit: ") + limits;
+  const std::string stop = motor.stop_cause == StopCause::kFault
+                               ? std::string{}
+                               : printable(link::stopText(motor.stop_cause, motor.stopped_by.view()));
+  if (!stop.empty()) text += (text.empty() ? "" : "; ") + stop;
   return text;
+}
+
+// A motor that is held, damped or braked obeys no target.
+std::string modeOf(const link::MotorState& motor) {
+  const bool own = motor.acting == Acting::kNothing || motor.acting == Acting::kTarget;
+  return own ? toString(motor.mode) : toString(motor.acting);
 }
 
 std::string target(const link::MotorState& motor) {
@@ -28,7 +38,11 @@ std::string headline(const link::Welcome& welcome, const link::State& state,
                      const link::Diagnostics* diagnostics) {
   std::string text = printable(welcome.robot.view());
   text += std::string("  ") + toString(state.robot_state);
+  const std::string stop = printable(link::stopText(state.stop_cause, state.stopped_by.view()));
+  text += stop.empty() ? "" : " (" + stop + ")";
   text += state.realtime != 0 ? "" : "  NOT REAL-TIME";
+  text += (state.conditions & kConditionSimulated) != 0 ? "  SIMULATED" : "";
+  text += (state.conditions & kConditionInputOpen) != 0 ? "  E-STOP INPUT OPEN" : "";
   text += "  tick " + std::to_string(state.tick);
   if (diagnostics != nullptr) {
     text += "  wake-up p99 " + quantity(static_cast<double>(diagnostics->wake_latency.p99_us), 0, "us");
@@ -126,8 +140,7 @@ std::string stateText(const link::Welcome& welcome, const link::State& state,
                    {"NOTE"}});
   for (std::size_t i = 0; i < std::min<std::size_t>(state.motor_count, welcome.motor_count); ++i) {
     const auto& motor = state.motors[i];
-    table.add({printable(welcome.motors[i].name.view()), toString(motor.status), toString(motor.mode),
-               target(motor),
+    table.add({printable(welcome.motors[i].name.view()), toString(motor.status), modeOf(motor), target(motor),
                quantity(measured(motor, motor.mode), motor.mode == ControlMode::kCurrent ? 2 : 1,
                         measuredUnit(motor.mode)),
                quantity(static_cast<double>(motor.angle_deg), 1, "deg"),

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <string>
 #include <string_view>
 
@@ -36,6 +37,7 @@ struct EstopGpioConfig {
 struct HeartbeatGpioConfig {
   GpioPin pin;
   Duration period{std::chrono::milliseconds{20}};  ///< Of the square wave.
+  std::optional<Duration> rests_in_estop_after;    ///< Of the e-stop; none: it goes on.
 };
 
 }  // namespace rc10

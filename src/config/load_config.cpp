@@ -6,6 +6,7 @@
 #include "config/build/module_builder.hpp"
 #include "config/build/robot_builder.hpp"
 #include "config/keys/key_check.hpp"
+#include "config/sha256.hpp"
 #include "config/yaml/source_text.hpp"
 #include "config/yaml/yaml_reader.hpp"
 #include "config/yaml/yaml_rules.hpp"
@@ -46,6 +47,7 @@ std::optional<RobotConfig> parse(std::string_view text, const std::string& file,
   checkKeys(*root, kRobotSection, "", problems);
   RobotConfig robot = buildRobot(*root, problems);
   robot.file = file;
+  robot.hash = sha256(text);
   if (!problems.hasErrors()) checkMotors(robot, problems);
   if (!problems.hasErrors()) checkModules(robot, problems);
   return robot;

@@ -98,6 +98,7 @@ struct LcmConfig {
 
 struct RobotConfig {
   std::string file;
+  std::string hash;  ///< SHA-256 of the file, as sha256sum prints it.
   std::string robot;
   RealtimePolicy realtime = RealtimePolicy::kRequired;
   int rate_hz = 1000;

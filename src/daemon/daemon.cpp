@@ -70,7 +70,8 @@ Result<void> Daemon::build() {
   describeRobot();
   openBlackBox();  // the file is ours: no other daemon of this robot runs
   scheduler_ = std::make_unique<Scheduler>(*robot_, inboxes_, exchange_, config_.period(),
-                                           black_box_ ? &black_box_->recorder() : nullptr);
+                                           black_box_ ? &black_box_->recorder() : nullptr, &monotonicNow);
+  if (config_.heartbeat_gpio) scheduler_->restHeartbeatAfter(config_.heartbeat_gpio->rests_in_estop_after);
   auto sched_loop = SchedLoop::create(*scheduler_, config_.period());
   if (!sched_loop) return tl::unexpected(sched_loop.error());
   sched_loop_ = std::move(*sched_loop);
@@ -157,6 +158,7 @@ Result<void> Daemon::prepareLinks() {
 void Daemon::describeRobot() {
   description_.robot = config_.robot;
   description_.lcm_url = config_.lcm.enabled ? config_.lcm.url : "";
+  description_.config_hash = config_.hash;
   description_.rate_hz = config_.rate_hz;
   description_.state_hz = config_.lcm.state_hz;
   if (config_.estop_gpio) description_.estop_input = config_.estop_gpio->pin.name();

@@ -33,6 +33,9 @@ void convert(const link::MotorState& in, motor_state_t& out) {
   out.limits = static_cast<std::int32_t>(in.limits);
   out.mode = static_cast<std::int8_t>(in.mode);
   assign(out.owner, in.owner);
+  out.acting = static_cast<std::int8_t>(in.acting);
+  out.stop_cause = static_cast<std::int8_t>(in.stop_cause);
+  assign(out.stopped_by, in.stopped_by);
   out.zeroed = static_cast<std::int8_t>(in.zeroed != 0);
   out.command_unit = static_cast<std::int8_t>(in.command_unit);
 #define RC10_COPY(type, name, initial) out.name = in.name;
@@ -50,14 +53,35 @@ void convert(const link::BusStatus& in, bus_state_t& out) {
   out.rx_frames = in.rx_frames;
   out.rx_unmatched = in.rx_unmatched;
   out.rx_malformed = in.rx_malformed;
+  out.rx_foreign = in.rx_foreign;
   out.rx_dropped = in.rx_dropped;
   out.tx_frames = in.tx_frames;
   out.tx_confirmed = in.tx_confirmed;
   out.tx_dropped = in.tx_dropped;
+  out.tx_held = in.tx_held;
   out.error_frames = in.error_frames;
   out.restarts = in.restarts;
   out.tec = in.tec;
   out.rec = in.rec;
+}
+
+template <std::size_t N>
+std::int32_t convert(const std::array<link::Counter, N>& in, std::size_t count, std::vector<counter_t>& out) {
+  const auto used = prepare(in, count, out);
+  for (std::size_t i = 0; i < used.size(); ++i) {
+    assign(out[i].name, used[i].name);
+    out[i].count = used[i].count;
+  }
+  return countOf(out);
+}
+
+void convert(const link::Durations& in, durations_t& out) {
+  assign(out.name, in.name);
+  out.count = in.count;
+  out.p50_us = in.percentiles.p50_us;
+  out.p99_us = in.percentiles.p99_us;
+  out.p999_us = in.percentiles.p999_us;
+  out.max_us = in.percentiles.max_us;
 }
 
 }  // namespace
@@ -67,7 +91,14 @@ void convert(const link::Welcome& welcome, const link::State& state, robot_state
   out.mono_us = state.mono_us;
   out.tick = state.tick;
   out.state = static_cast<std::int8_t>(state.robot_state);
+  out.stop_cause = static_cast<std::int8_t>(state.stop_cause);
+  assign(out.stopped_by, state.stopped_by);
+  out.stopped_mono_us = state.stopped_mono_us;
+  out.estop_count = state.estop_count;
+  out.conditions = static_cast<std::int32_t>(state.conditions);
   out.realtime = static_cast<std::int8_t>(state.realtime != 0);
+  assign(out.version, welcome.version);
+  assign(out.config_hash, welcome.config_hash);
   // A motor without a name is of no use to anyone.
   const auto named = std::min<std::size_t>(state.motor_count, welcome.motor_count);
   const auto motors = prepare(state.motors, named, out.motors);
@@ -94,12 +125,11 @@ void convert(const link::Diagnostics& diagnostics, diagnostics_t& out) {
   out.missed_ticks = diagnostics.missed_ticks;
   out.page_faults = diagnostics.page_faults;
   out.events_dropped = diagnostics.events_dropped;
-  const auto refusals = prepare(diagnostics.refusals, diagnostics.refusal_count, out.refusals);
-  for (std::size_t i = 0; i < refusals.size(); ++i) {
-    assign(out.refusals[i].name, refusals[i].name);
-    out.refusals[i].count = refusals[i].count;
-  }
-  out.refusal_count = countOf(out.refusals);
+  out.refusal_count = convert(diagnostics.refusals, diagnostics.refusal_count, out.refusals);
+  out.counter_count = convert(diagnostics.counters, diagnostics.counter_count, out.counters);
+  const auto durations = prepare(diagnostics.durations, diagnostics.duration_count, out.durations);
+  for (std::size_t i = 0; i < durations.size(); ++i) convert(durations[i], out.durations[i]);
+  out.duration_count = countOf(out.durations);
   const auto notices = prepare(diagnostics.notices, diagnostics.notice_count, out.notices);
   for (std::size_t i = 0; i < notices.size(); ++i) assign(out.notices[i], notices[i]);
   out.notice_count = countOf(out.notices);
@@ -114,6 +144,7 @@ void convert(const link::Event& event, event_t& out) {
   out.severity = static_cast<std::int8_t>(event.severity);
   out.code = event.code;
   assign(out.source, event.source);
+  assign(out.client, event.client);
   assign(out.text, event.text);
 }
 
@@ -134,6 +165,7 @@ void convert(const link::Response& response, std::int64_t utime, response_t& out
 
 void convert(const link::ModuleInfo& info, const link::ModuleState& state, signals_t& out) {
   out.utime = state.utime;
+  out.mono_us = state.mono_us;
   assign(out.client, state.owner);
   out.session = 0;
   out.seq = state.tick;

@@ -29,7 +29,8 @@ inline constexpr std::size_t kMaxIncoming = std::size_t{16} * 1024;
 /// client, session and seq may be valid: see `identified`.
 struct RequestDecoding {
   Defect defect = Defect::kNone;
-  bool identified = false;  ///< Client, session and seq are those of the sender: it can be answered.
+  bool identified = false;          ///< Client, session and seq are those of the sender: it can be answered.
+  Defect forgiven = Defect::kNone;  ///< Of an e-stop, which counts whatever else its message says.
 };
 [[nodiscard]] RequestDecoding decode(std::span<const std::byte> bytes, link::Request& request) noexcept;
 

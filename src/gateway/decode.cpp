@@ -1,10 +1,15 @@
 #include "gateway/convert.hpp"
+
+#include <string_view>
+
 #include "rc10/command_t.hpp"
 #include "rc10/request_t.hpp"
 #include "rc10/signals_t.hpp"
 
 namespace rc10::gateway {
 namespace {
+
+constexpr std::string_view kEstopOperation = "estop";
 
 template <std::size_t N>
 void readText(WireReader& reader, link::Text<N>& text) noexcept {
@@ -31,6 +36,25 @@ void readSetpoint(WireReader& reader, link::Setpoint& setpoint) noexcept {
   setpoint.target.damping_nms_per_rad = reader.number<float>();
 }
 
+// As much of a request as an e-stop needs. False: it is none.
+bool decodeEstop(std::span<const std::byte> bytes, link::Request& request) noexcept {
+  WireReader reader(bytes);
+  if (reader.number<std::int64_t>() != request_t::getHash()) return false;
+  (void)reader.number<std::int64_t>();  // utime
+  const auto client = reader.anyText();
+  const auto session = reader.number<std::uint64_t>();
+  const auto seq = reader.number<std::int64_t>();
+  const auto operation = reader.anyText();
+  if (operation != kEstopOperation) return false;
+  request.client = client;  // cut off, where it is too long
+  request.session = session;
+  request.seq = seq;
+  request.operation = operation;
+  request.target = "";
+  request.value_count = 0;
+  return true;
+}
+
 }  // namespace
 
 Defect decode(std::span<const std::byte> bytes, link::Command& command) noexcept {
@@ -51,6 +75,7 @@ Defect decode(std::span<const std::byte> bytes, link::Command& command) noexcept
 Defect decode(std::span<const std::byte> bytes, link::Signals& signals) noexcept {
   WireReader reader = open(bytes, signals_t::getHash());
   (void)reader.number<std::int64_t>();  // utime
+  (void)reader.number<std::int64_t>();  // mono_us
   readText(reader, signals.client);
   signals.session = reader.number<std::uint64_t>();
   signals.seq = reader.number<std::int64_t>();
@@ -79,7 +104,9 @@ RequestDecoding decode(std::span<const std::byte> bytes, link::Request& request)
     value.value = reader.number<double>();
   }
   reader.end();
-  return {reader.defect(), identified};
+  const Defect defect = reader.defect();
+  if (defect != Defect::kNone && decodeEstop(bytes, request)) return {Defect::kNone, true, defect};
+  return {defect, identified};
 }
 
 }  // namespace rc10::gateway

@@ -51,7 +51,9 @@ bool Inlet::command(const UdpmDatagram& datagram, MonotonicTime received, Monoto
 }
 
 bool Inlet::request(const UdpmDatagram& datagram, MonotonicTime received, MonotonicTime now) {
-  const auto [defect, identified] = decode(datagram.message, request_);
+  const auto [defect, identified, forgiven] = decode(datagram.message, request_);
+  if (forgiven != Defect::kNone)
+    reportDefect(forgiven, datagram.channel, now, "is an e-stop, and obeyed as such, but");
   if (defect != Defect::kNone) {
     reportDefect(defect, datagram.channel, now);
     if (identified) refuse(std::string("the request ") + inWords(defect));
@@ -102,7 +104,7 @@ void Inlet::refuse(const std::string& reason) {
   outlet_.publish(response);
 }
 
-void Inlet::reportDefect(Defect defect, std::string_view channel, MonotonicTime now) {
+void Inlet::reportDefect(Defect defect, std::string_view channel, MonotonicTime now, const char* verdict) {
   ++counters_.defective;
   const std::string type = channel == command_channel_   ? "command_t"
                            : channel == request_channel_ ? "request_t"
@@ -115,7 +117,7 @@ void Inlet::reportDefect(Defect defect, std::string_view channel, MonotonicTime 
     return;
   }
   report(GatewayEvent::kMalformed, Severity::kWarning,
-         "a message on channel " + std::string(channel) + " is refused: it " + inWords(defect), now);
+         "a message on channel " + std::string(channel) + ' ' + verdict + " it " + inWords(defect), now);
 }
 
 void Inlet::report(GatewayEvent code, Severity severity, std::string text, MonotonicTime now) {

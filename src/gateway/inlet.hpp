@@ -53,7 +53,8 @@ class Inlet {
   bool signals(std::size_t module, const UdpmDatagram& datagram, MonotonicTime received, MonotonicTime now);
   bool sent(LinkClient::SendStatus status, std::uint64_t& counter, MonotonicTime now);
   void refuse(const std::string& reason);
-  void reportDefect(Defect defect, std::string_view channel, MonotonicTime now);
+  void reportDefect(Defect defect, std::string_view channel, MonotonicTime now,
+                    const char* verdict = "is refused:");
   void report(GatewayEvent code, Severity severity, std::string text, MonotonicTime now);
 
   LinkClient& rc10d_;

@@ -51,6 +51,15 @@ std::string_view WireReader::text(std::size_t max_size) noexcept {
   return all.substr(0, size - 1);
 }
 
+std::string_view WireReader::anyText() noexcept {
+  const auto size = number<std::uint32_t>();
+  if (size > rest_.size()) spoil(Defect::kTruncated);
+  if (defect_ != Defect::kNone) return {};
+  const std::string_view all{reinterpret_cast<const char*>(rest_.data()), size};
+  rest_ = rest_.subspan(size);
+  return all.substr(0, all.find('\0'));
+}
+
 std::uint32_t WireReader::count(std::uint32_t max) noexcept {
   const auto value = number<std::int32_t>();
   if (value < 0) spoil(Defect::kBadCount);

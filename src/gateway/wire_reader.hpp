@@ -45,6 +45,9 @@ class WireReader {
   /// A string of at most `max_size` bytes; it points into the bytes.
   [[nodiscard]] std::string_view text(std::size_t max_size) noexcept;
 
+  /// The bytes of a string up to its first 0, whatever its length and its end say; it points into the bytes.
+  [[nodiscard]] std::string_view anyText() noexcept;
+
   /// How many elements an array has, at most `max`.
   [[nodiscard]] std::uint32_t count(std::uint32_t max) noexcept;
 

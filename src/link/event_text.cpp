@@ -60,6 +60,7 @@ namespace {
     case 1: return "damping";
     case 2: return "braking";
     case 3: return "holding";
+    case 4: return "coming to rest along a ramp";
     default: return "at rest";
   }
 }
@@ -112,15 +113,20 @@ namespace {
          std::string(client) + "'";
 }
 
-[[nodiscard]] std::string change(const char* from, const char* to) { return std::string(from) + " -> " + to; }
+// `extra`: the number before, plus 256 times the StopCause.
+template <typename Status>
+[[nodiscard]] std::string change(std::int32_t value, std::int32_t extra, std::string_view by) {
+  const auto why = stopText(static_cast<StopCause>(extra / 256), by);
+  return std::string(toString(static_cast<Status>(extra % 256))) + " -> " +
+         toString(static_cast<Status>(value)) + (why.empty() ? "" : " (" + why + ")");
+}
 
 }  // namespace
 
 std::string eventText(std::int32_t code, std::int32_t value, std::int32_t extra, std::string_view client) {
   using enum EventCode;
   switch (EventCode{code}) {
-    case kMotorStatus:
-      return change(toString(static_cast<MotorStatus>(extra)), toString(static_cast<MotorStatus>(value)));
+    case kMotorStatus: return change<MotorStatus>(value, extra, client);
     case kCommandTimeout: return std::string("no valid command any more: ") + fallbackWord(value);
     case kReferenceLost: return "multi-turn angle lost: angle targets are refused until it is set again";
     case kSetpointSkipped: return skipped(value, extra);
@@ -133,8 +139,7 @@ std::string eventText(std::int32_t code, std::int32_t value, std::int32_t extra,
     case kModule: return "reported event " + std::to_string(value);
     case kModuleRefused: return "its targets are refused: another client commands one of its motors";
     case kGainChanged: return gainChanged(value, extra, client);
-    case kRobotState:
-      return change(toString(static_cast<RobotStatus>(extra)), toString(static_cast<RobotStatus>(value)));
+    case kRobotState: return change<RobotStatus>(value, extra, client);
     case kTicksMissed: return std::to_string(value) + " ticks missed";
     case kCommandRefused: return refused(value, client);
     case kEstopInput: return estopInputText(value);

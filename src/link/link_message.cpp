@@ -6,7 +6,7 @@ namespace rc10::link {
 namespace {
 
 // Size of a struct whose array member starts at `offset` and uses `used` of its `room` elements. The
-// array is the last member of every message of variable size but Diagnostics, Request and Response,
+// array is the last member of every message of variable size but Request and Response,
 // whose arrays are short and travel whole.
 template <typename Element>
 std::size_t upTo(std::size_t offset, std::size_t used, std::size_t room) noexcept {
@@ -27,7 +27,9 @@ std::size_t wireSize(const Response&) noexcept { return sizeof(Response); }
 std::size_t wireSize(const State& message) noexcept {
   return upTo<MotorState>(offsetof(State, motors), message.motor_count, kMaxMotors);
 }
-std::size_t wireSize(const Diagnostics&) noexcept { return sizeof(Diagnostics); }
+std::size_t wireSize(const Diagnostics& message) noexcept {
+  return upTo<Durations>(offsetof(Diagnostics, durations), message.duration_count, kMaxDurations);
+}
 std::size_t wireSize(const Event&) noexcept { return sizeof(Event); }
 std::size_t wireSize(const Signals& message) noexcept {
   return upTo<NamedValue>(offsetof(Signals, values), message.value_count, kMaxSignals);
@@ -47,7 +49,8 @@ bool countsFit(const Response& message) noexcept { return message.value_count <=
 bool countsFit(const State& message) noexcept { return message.motor_count <= kMaxMotors; }
 bool countsFit(const Diagnostics& message) noexcept {
   return message.refusal_count <= kMaxRefusalReasons && message.notice_count <= kMaxNotices &&
-         message.bus_count <= kMaxBuses;
+         message.bus_count <= kMaxBuses && message.counter_count <= kMaxCounters &&
+         message.duration_count <= kMaxDurations;
 }
 bool countsFit(const Event&) noexcept { return true; }
 bool countsFit(const Signals& message) noexcept { return message.value_count <= kMaxSignals; }
@@ -57,6 +60,15 @@ bool countsFit(const ModuleInfo& message) noexcept {
 }
 bool countsFit(const ModuleState& message) noexcept {
   return message.module < kMaxModules && message.value_count <= kMaxSignals;
+}
+
+bool openEstop(std::span<const std::byte> datagram, Request& request) noexcept {
+  constexpr std::size_t kNeeded = offsetof(Request, operation) + sizeof(Request::operation);
+  if (datagram.size() < kNeeded) return false;
+  std::memcpy(static_cast<void*>(&request), datagram.data(), kNeeded);
+  request.target = "";
+  request.value_count = 0;
+  return request.header.type == MessageType::kRequest && request.operation.view() == "estop";
 }
 
 bool readHeader(std::span<const std::byte> datagram, Header& header) noexcept {

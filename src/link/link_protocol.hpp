@@ -15,7 +15,7 @@
 /// host's byte order. Both ends are of the same build; Hello refuses others.
 namespace rc10::link {
 
-inline constexpr std::uint32_t kProtocolVersion = 2;
+inline constexpr std::uint32_t kProtocolVersion = 3;
 inline constexpr std::size_t kMaxMotors = 128;
 inline constexpr std::size_t kMaxBuses = 4;
 inline constexpr std::size_t kMaxModules = 16;
@@ -100,6 +100,7 @@ struct Welcome {
   std::int32_t pid = 0;
   Name robot;
   Text<32> version;
+  Text<72> config_hash;  ///< SHA-256 of the configuration file, in hexadecimal digits.
   Text<256> lcm_url;
   std::int32_t rate_hz = 0;
   std::int32_t state_hz = 0;
@@ -206,12 +207,15 @@ struct MotorState {
   ControlMode mode{};
   CommandUnit command_unit{};
   std::uint8_t zeroed = 0;
+  Acting acting{};
+  StopCause stop_cause{};
   std::int32_t fault = 0;
   std::uint32_t limits = 0;
 #define RC10_FIELD(type, name, initial) type name = initial;
   RC10_MOTOR_READINGS(RC10_FIELD)
 #undef RC10_FIELD
   Name owner;
+  Name stopped_by;
 };
 
 struct State {
@@ -222,6 +226,11 @@ struct State {
   std::int64_t tick = 0;
   RobotStatus robot_state{};
   std::uint8_t realtime = 0;
+  StopCause stop_cause{};
+  Name stopped_by;
+  std::int64_t stopped_mono_us = 0;
+  std::int32_t estop_count = 0;
+  std::uint32_t conditions = 0;
   std::uint32_t motor_count = 0;
   std::array<MotorState, kMaxMotors> motors;
 };
@@ -239,12 +248,12 @@ struct BusStatus {
   std::int64_t rx_frames = 0;
   std::int64_t rx_unmatched = 0;
   std::int64_t rx_malformed = 0;
-  std::int64_t rx_foreign = 0;  ///< Not in bus_state_t.lcm.
+  std::int64_t rx_foreign = 0;
   std::int64_t rx_dropped = 0;
   std::int64_t tx_frames = 0;
   std::int64_t tx_confirmed = 0;
   std::int64_t tx_dropped = 0;
-  std::int64_t tx_held = 0;  ///< Not in bus_state_t.lcm.
+  std::int64_t tx_held = 0;
   std::int64_t error_frames = 0;
   std::int64_t restarts = 0;
 };
@@ -261,7 +270,16 @@ struct Counter {
   std::int64_t count = 0;
 };
 
+/// As durations_t.lcm.
+struct Durations {
+  Text<48> name;
+  std::int64_t count = 0;
+  Percentiles percentiles;
+};
+
 inline constexpr std::size_t kMaxNotices = 4;
+inline constexpr std::size_t kMaxCounters = 16;
+inline constexpr std::size_t kMaxDurations = kMaxMotors + 32;
 
 /// As diagnostics_t.lcm.
 struct Diagnostics {
@@ -278,10 +296,14 @@ struct Diagnostics {
   std::int64_t events_dropped = 0;
   std::uint32_t refusal_count = 0;
   std::array<Counter, kMaxRefusalReasons> refusals;
+  std::uint32_t counter_count = 0;
+  std::array<Counter, kMaxCounters> counters;
   std::uint32_t notice_count = 0;
   std::array<Text<256>, kMaxNotices> notices;
   std::uint32_t bus_count = 0;
   std::array<BusStatus, kMaxBuses> buses;
+  std::uint32_t duration_count = 0;
+  std::array<Durations, kMaxDurations> durations;
 };
 
 /// As event_t.lcm.
@@ -293,6 +315,7 @@ struct Event {
   Severity severity{};
   std::int32_t code = 0;
   Name source;
+  Name client;
   Text<256> text;
 };
 

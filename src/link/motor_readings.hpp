@@ -15,10 +15,13 @@
   READING(float, temperature_c, 0.0F)
 
 /// Of the tick, and of the daemon's other threads.
-#define RC10_TICK_READINGS(READING)   \
-  READING(double, target, 0.0)        \
-  READING(float, command_value, 0.0F) \
-  READING(float, feedback_hz, 0.0F)   \
-  READING(std::int32_t, feedback_age_us, -1)
+#define RC10_TICK_READINGS(READING)                 \
+  READING(double, target, 0.0)                      \
+  READING(double, target_shaped, 0.0)               \
+  READING(float, command_value, 0.0F)               \
+  READING(float, feedback_hz, 0.0F)                 \
+  READING(std::int32_t, feedback_age_us, -1)        \
+  READING(std::int32_t, feedback_age_at_use_us, -1) \
+  READING(std::int32_t, command_age_us, -1)
 
 #define RC10_MOTOR_READINGS(READING) RC10_TICK_READINGS(READING) RC10_FEEDBACK_READINGS(READING)

@@ -64,6 +64,29 @@ std::optional<ControlMode> modeOf(std::string_view word) noexcept {
 std::string modeWords(std::uint32_t modes) { return join(kControlModeWords, modes); }
 std::string limitWords(std::uint32_t limits) { return join(kLimitWords, limits); }
 
+std::string conditionWords(std::uint32_t conditions) { return join(kConditionWords, conditions); }
+
+std::string stopText(StopCause cause, std::string_view stopped_by) {
+  const auto with = [&](const char* words) {
+    return stopped_by.empty() ? std::string(words) : words + (" by '" + std::string(stopped_by) + '\'');
+  };
+  switch (cause) {
+    case StopCause::kNone:
+      return stopped_by.empty() ? std::string{} : "by '" + std::string(stopped_by) + '\'';
+    case StopCause::kRequest: return with("asked for");
+    case StopCause::kEstop: return with("e-stop");
+    case StopCause::kFault: return "fault";
+    case StopCause::kSilence: return "its drive is not heard";
+    case StopCause::kGroup: return "its group stopped for '" + std::string(stopped_by) + '\'';
+    case StopCause::kTimeout: return "no valid command any more";
+    case StopCause::kRefused: return "its drive did not confirm";
+    case StopCause::kReference: return "its angle has lost the reference";
+    case StopCause::kShutdown: return "rc10d ends";
+    case StopCause::kInput: return "the e-stop input";
+  }
+  return "unknown cause";
+}
+
 std::string faultText(std::int32_t fault) {
   using enum FaultCode;
   switch (FaultCode{fault}) {

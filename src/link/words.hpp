@@ -19,6 +19,11 @@ namespace rc10::link {
 
 /// The limits that act (MotorState::limits), separated by commas: "current,stall".
 [[nodiscard]] std::string limitWords(std::uint32_t limits);
+/// Why a motor does not obey, or the robot does not run, in words: "asked for by 'teleop'". For
+/// kNone only by whom, or nothing.
+[[nodiscard]] std::string stopText(StopCause cause, std::string_view stopped_by);
+/// The conditions of a robot, separated by commas: "simulated".
+[[nodiscard]] std::string conditionWords(std::uint32_t conditions);
 /// A latched fault in words; empty for 0.
 [[nodiscard]] std::string faultText(std::int32_t fault);
 

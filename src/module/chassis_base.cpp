@@ -186,9 +186,9 @@ Twist2D Chassis_Base::bounded(Twist2D twist) const noexcept {
 }
 
 void Chassis_Base::updateOdometry(const Tick& tick, const ModuleRobot& robot) noexcept {
-  const Twist2D way = travelled(robot, tick.dt_s);
   const double heading_deg = heading_ ? robot.read(*heading_) : kNoSignal;
-  if (allFresh(tick, robot)) odometry_.step(way, heading_deg, tick.dt_s);
+  // While one wheel is not heard, the way of the others waits for it.
+  if (allFresh(tick, robot)) odometry_.step(travelled(robot, tick.dt_s), heading_deg, tick.dt_s);
   if (commanded()) {
     Pose2D pose = odometry_.pose();
     if (std::isfinite(input(kX))) pose.x_m = input(kX);

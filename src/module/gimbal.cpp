@@ -59,7 +59,14 @@ constexpr std::array kGimbalKeys{
               .max = 1000,
               .above_min = true,
               .default_text = "60",
-              .about = "No axis is told more."}};
+              .about = "No axis is told more."},
+    FamilyKey{.name = "silence_max_s",
+              .kind = kNumber,
+              .unit = "s",
+              .max = 3600,
+              .default_text = "10",
+              .about = "So long it holds its direction when nobody commands it; then its motors do their "
+                       "on_timeout."}};
 
 ModuleSignals gimbalSignals() {
   return {
@@ -67,7 +74,8 @@ ModuleSignals gimbalSignals() {
       .outputs = {"yaw_deg", "pitch_deg", "relative_yaw_deg", "target_yaw_deg", "target_pitch_deg",
                   "stabilised"},
       .events = {{.text = "the inertial sensor is not heard: the gimbal holds to the chassis"},
-                 {.text = "the inertial sensor is heard: the gimbal holds to the world", .expected = true}}};
+                 {.text = "the inertial sensor is heard: the gimbal holds to the world", .expected = true},
+                 {.text = "nobody has commanded it for silence_max_s: it holds its direction no longer"}}};
 }
 
 class Gimbal : public Module_Base {
@@ -78,6 +86,7 @@ class Gimbal : public Module_Base {
         pitch_motor_(own.motor("pitch")),
         pitch_min_deg_(own.number("pitch_min_deg")),
         pitch_max_deg_(own.number("pitch_max_deg")),
+        silence_max_(std::chrono::milliseconds{static_cast<int>(own.number("silence_max_s") * 1000.0)}),
         names_{own.text("imu_yaw"), own.text("imu_yaw_rate"), own.text("imu_pitch")},
         yaw_({own.number("gain_per_s"), own.number("velocity_limit_rpm"), true}),
         pitch_({own.number("gain_per_s"), own.number("velocity_limit_rpm"), false}) {}
@@ -113,8 +122,7 @@ class Gimbal : public Module_Base {
     was_stabilised_ = stabilised;
     if (ready && was_commanded_)
       follow(tick, robot, {yaw_deg, stabilised ? read(robot, 1) : kNoSignal}, pitch_deg);
-    // Once commanded it holds its direction as long as its motors obey: a gimbal that falls is no rest.
-    was_commanded_ = ready && (was_commanded_ || commanded());
+    holdOn(ready, tick, robot);
     setOutput(kOutYaw, std::remainder(yaw_deg, kDegPerTurn));
     setOutput(kOutPitch, pitch_deg);
     setOutput(kRelativeYaw,
@@ -127,12 +135,21 @@ class Gimbal : public Module_Base {
  private:
   enum Input : std::size_t { kYawDeg, kPitchDeg, kYawRate, kPitchRate };
   enum Output : std::size_t { kOutYaw, kOutPitch, kRelativeYaw, kTargetYaw, kTargetPitch, kStabilised };
-  enum EventPlace : std::size_t { kLost, kBack };
+  enum EventPlace : std::size_t { kLost, kBack, kSilent };
 
   struct YawMeasured {
     double angle_deg;
     double rate_deg_s;
   };
+
+  // Once commanded it holds its direction for a while: a gimbal that falls is no rest. Not for ever: with its
+  // client it may have lost its reason.
+  void holdOn(bool ready, const Tick& tick, ModuleRobot& robot) noexcept {
+    if (commanded()) commanded_at_ = tick.now;
+    const bool silent = tick.now - commanded_at_ >= silence_max_;
+    if (ready && was_commanded_ && !commanded() && silent) robot.report(kSilent);
+    was_commanded_ = ready && (commanded() || (was_commanded_ && !silent));
+  }
 
   [[nodiscard]] double read(const ModuleRobot& robot, std::size_t which) const noexcept {
     const auto& place = places_[which];
@@ -166,6 +183,7 @@ class Gimbal : public Module_Base {
   std::size_t pitch_motor_;
   double pitch_min_deg_;
   double pitch_max_deg_;
+  Duration silence_max_;
   std::array<std::string, 3> names_;
   std::array<std::optional<SignalPlace>, 3> places_;
   GimbalAxis yaw_;
@@ -173,6 +191,7 @@ class Gimbal : public Module_Base {
   bool was_ready_ = false;
   bool was_stabilised_ = false;
   bool was_commanded_ = false;
+  MonotonicTime commanded_at_{};
 };
 
 class GimbalType : public ModuleType {

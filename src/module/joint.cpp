@@ -130,9 +130,15 @@ constexpr std::array kJointKeys{
         .kind = kChoice,
         .choices = kOnSilence,
         .default_text = "hold",
-        .about =
-            "When nobody commands it any more: hold brakes within the limits and holds while the motor is "
-            "ACTIVE; let_go leaves it to the motor's on_timeout."}};
+        .about = "When nobody commands it any more: hold brakes within the limits and holds, as long as some "
+                 "client of the robot is heard; let_go leaves it to the motor's on_timeout."},
+    FamilyKey{.name = "silence_max_s",
+              .kind = kNumber,
+              .unit = "s",
+              .max = 86'400,
+              .default_text = "60",
+              .about = "For on_silence: hold: when no client of the robot at all has been heard for so long, "
+                       "it holds no longer; its motor does its on_timeout."}};
 
 ModuleSignals jointSignals() {
   return {
@@ -148,7 +154,8 @@ ModuleSignals jointSignals() {
           {.text = "homing failed: the switch is not heard; see the module that reads it"},
           {.text = "homing failed: it stood still, but not at the stop: nearer than where it began, at two "
                    "places, without the full current, or farther than the travel; see what is in its "
-                   "way, homing_current_a against gravity and friction, and homing_tolerance_deg"}}};
+                   "way, homing_current_a against gravity and friction, and homing_tolerance_deg"},
+          {.text = "no client has been heard for silence_max_s: it holds no longer"}}};
 }
 
 /// The reference that runs ahead of the motor: with or without limited jerk.
@@ -203,6 +210,7 @@ class Joint : public Module_Base {
         homes_(own.text("homing") != "none"),
         home_angle_deg_(own.number("home_angle_deg")),
         holds_(own.text("on_silence") == "hold"),
+        silence_max_(std::chrono::milliseconds{static_cast<int>(own.number("silence_max_s") * 1000.0)}),
         switch_name_(own.text("switch")),
         reference_(own),
         homing_(homingConfig(own, motor)) {}
@@ -241,7 +249,7 @@ class Joint : public Module_Base {
  private:
   enum Input : std::size_t { kAngleDeg, kHome };
   enum Output : std::size_t { kState, kMove, kMeasured, kReference, kHomed };
-  enum EventPlace : std::size_t { kIsHomed, kNotHomed, kNotReached, kBeyond, kNoSwitch, kNoStop };
+  enum EventPlace : std::size_t { kIsHomed, kNotHomed, kNotReached, kBeyond, kNoSwitch, kNoStop, kSilent };
 
   enum class State { kIdle, kHoming, kFollowing, kHomingFailed };
   enum class Move { kNone, kUnderWay, kDone, kFailed };
@@ -315,9 +323,10 @@ class Joint : public Module_Base {
     if (wanted) {
       aim(robot, tick);
       reference_.step(target_deg_, tick.dt_s);
-    } else if (holds_) {
+    } else if (holds_ && robot.clientsSilent() < silence_max_) {
       reference_.brake(tick.dt_s);
     } else {
+      if (holds_) robot.report(kSilent);
       state_ = State::kIdle;
       return;
     }
@@ -363,6 +372,7 @@ class Joint : public Module_Base {
   bool homes_;
   double home_angle_deg_;
   bool holds_;
+  Duration silence_max_;
   std::string switch_name_;
   std::optional<SignalPlace> switch_;
   Reference reference_;

@@ -2,8 +2,10 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <span>
 
 #include "app/target.hpp"
+#include "app/time.hpp"
 #include "module/robot_status.hpp"
 #include "motor/motor_base.hpp"
 
@@ -40,8 +42,16 @@ class ModuleRobot {
   /// `angle_deg` is what the present angle becomes; a module may zero a motor that is ACTIVE, as long as no
   /// target in force refers to the angle.
   virtual void ask(RobotRequest request, std::size_t motor, double angle_deg = 0.0) noexcept = 0;
+  /// The same for several in one request, as motors that are enabled together need it.
+  virtual void ask(RobotRequest request, std::span<const std::size_t> motors) noexcept = 0;
   /// The same for all motors. kEstop and the clearing of an e-stop are always for all.
   virtual void askAll(RobotRequest request) noexcept = 0;
+
+  /// Since a client was last heard: by a command, a request or inputs of a module, or by hearClient().
+  [[nodiscard]] virtual Duration clientsSilent() const noexcept = 0;
+  /// A person speaks through this module, as by a remote: that counts as a client. In each tick in which it
+  /// is so.
+  virtual void hearClient() noexcept = 0;
 
   /// An output of another module, as its last update() left it. NaN: without meaning now.
   [[nodiscard]] virtual double read(SignalPlace output) const noexcept = 0;

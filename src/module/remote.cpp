@@ -150,7 +150,8 @@ class Remote : public Module_Base {
         sticks_(std::move(sticks)),
         channels_(std::move(channels)),
         values_(channels_->names().size(), 0.0),
-        was_active_(motor_count, false) {
+        was_active_(motor_count, false),
+        to_enable_(motor_count) {
     for (const auto& row : own.rows("constants"))
       constants_.push_back({row.text("to"), row.number("value"), {}});
   }
@@ -178,8 +179,11 @@ class Remote : public Module_Base {
     const bool heard = age < lost_ && !channels_->saysLost();
     if (heard) channels_->read(values_);
     watchLink(heard, tick, robot);
-    if (heard) watchArm(tick, robot);
-    arm(tick, robot);
+    if (heard) {
+      robot.hearClient();
+      watchArm(tick, robot);
+      arm(tick, robot);
+    }
     if (heard && (armed_ || !arm_channel_)) command(robot);
     show(heard, age);
   }
@@ -233,11 +237,14 @@ class Remote : public Module_Base {
       was_active_[motor] = was_active_[motor] || robot.status(motor) == MotorStatus::kActive;
     if (tick.now < next_try_ || robot.state() != RobotStatus::kRun) return;
     next_try_ = tick.now + kArmingRetry;
+    std::size_t ready = 0;
     for (std::size_t motor = 0; motor < was_active_.size(); ++motor) {
       if (was_active_[motor]) continue;
       if (robot.status(motor) == MotorStatus::kFault) robot.ask(RobotRequest::kClear, motor);
-      if (robot.status(motor) == MotorStatus::kReady) robot.ask(RobotRequest::kEnable, motor);
+      if (robot.status(motor) == MotorStatus::kReady) to_enable_[ready++] = motor;
     }
+    // At once: some are enabled together or not at all.
+    if (ready > 0) robot.ask(RobotRequest::kEnable, std::span{to_enable_}.first(ready));
   }
 
   void command(ModuleRobot& robot) const noexcept {
@@ -263,7 +270,8 @@ class Remote : public Module_Base {
   std::vector<Constant> constants_;
   std::unique_ptr<RemoteChannels> channels_;
   std::vector<double> values_;
-  std::vector<bool> was_active_;  ///< Of each motor, since the switch went up.
+  std::vector<bool> was_active_;        ///< Of each motor, since the switch went up.
+  std::vector<std::size_t> to_enable_;  ///< Room for the motors of one request.
 
   int was_heard_ = -1;  ///< -1: never.
   bool armed_ = false;

@@ -12,26 +12,41 @@
 
 namespace rc10 {
 
-/// Between two ticks no wheel turns this many times faster than it can be told to: an angle that has jumped
+/// Between two samples no wheel turns this many times faster than it can be told to: an angle that has jumped
 /// (a new reference, a restarted drive) is no way that was travelled.
 inline constexpr double kImpossibleSpeed = 3.0;
 
-/// The multi-turn angles of wheels, for the way that they have travelled from tick to tick.
+/// Multi-turn angles of wheels, for the way that they have travelled from sample to sample. Samples come when
+/// they come, or are lost: the whole way since the last one counts in the tick of the next.
 class WheelTravel {
  public:
-  WheelTravel(std::size_t wheels, double limit_rpm) : last_deg_(wheels, kNoSignal), limit_rpm_(limit_rpm) {}
+  WheelTravel(std::size_t wheels, double limit_rpm) : last_(wheels), limit_rpm_(limit_rpm) {}
 
-  /// Mean speed since the last call. Where the angle is not known or has jumped: the measured velocity.
+  /// Way since the sample of the last call, as a mean speed over dt; 0 without a new one. Where the angle is
+  /// not known or has jumped: by the measured velocity.
   [[nodiscard]] double meanRpm(std::size_t wheel, const MotorFeedback& feedback, float dt_s) noexcept {
-    const double rpm = rc10::meanRpm(last_deg_[wheel], feedback.total_angle_deg, dt_s);
-    last_deg_[wheel] = feedback.total_angle_deg;
-    // Samples do not come in step with ticks: one with two of them shows twice the speed.
+    const Sample last = last_[wheel];
+    if (feedback.samples == last.samples) return 0.0;
+    last_[wheel] = {feedback.total_angle_deg, feedback.received, feedback.samples};
+    // Stamps jitter: two samples of one tick may lie closer together than the drive took them.
+    const float between_s =
+        last.samples == 0 ? dt_s : std::max(dt_s, seconds(feedback.received - last.received));
+    const double share = static_cast<double>(between_s) / static_cast<double>(dt_s);
+    const double rpm = rc10::meanRpm(last.angle_deg, feedback.total_angle_deg, between_s);
     const bool possible = std::isfinite(rpm) && std::fabs(rpm) <= kImpossibleSpeed * limit_rpm_;
-    return possible ? rpm : static_cast<double>(feedback.velocity_rpm);
+    // After a long silence the present velocity says nothing about the time before.
+    return possible ? rpm * share : static_cast<double>(feedback.velocity_rpm) * std::min(share, kMostTicks);
   }
 
  private:
-  std::vector<double> last_deg_;
+  struct Sample {
+    double angle_deg = kNoSignal;
+    MonotonicTime received{};
+    std::uint64_t samples = 0;
+  };
+  static constexpr double kMostTicks = 10.0;
+
+  std::vector<Sample> last_;
   double limit_rpm_;
 };
 

@@ -13,7 +13,11 @@ namespace {
   motor.limits = static_cast<std::uint32_t>(message.limits);
   motor.mode = static_cast<Mode>(message.mode);
   motor.target = message.target;
+  motor.target_shaped = message.target_shaped;
   motor.owner = message.owner;
+  motor.acting = static_cast<Acting>(message.acting);
+  motor.stop_cause = static_cast<StopCause>(message.stop_cause);
+  motor.stopped_by = message.stopped_by;
   motor.zeroed = message.zeroed != 0;
   motor.angle_deg = static_cast<double>(message.angle_deg);
   motor.total_angle_deg = message.total_angle_deg;
@@ -23,6 +27,10 @@ namespace {
   motor.voltage_v = static_cast<double>(message.voltage_v);
   motor.temperature_c = static_cast<double>(message.temperature_c);
   motor.feedback_age = std::chrono::microseconds{message.feedback_age_us};
+  motor.feedback_age_at_use = std::chrono::microseconds{message.feedback_age_at_use_us};
+  motor.command_age = std::chrono::microseconds{message.command_age_us};
+  motor.command_value = static_cast<double>(message.command_value);
+  motor.command_unit = static_cast<CommandUnit>(message.command_unit);
   motor.feedback_hz = static_cast<double>(message.feedback_hz);
   return motor;
 }
@@ -36,6 +44,13 @@ RobotState fromLcm(const robot_state_t& message) {
   state.tick = message.tick;
   state.status = static_cast<RobotStatus>(message.state);
   state.realtime = message.realtime != 0;
+  state.stop_cause = static_cast<StopCause>(message.stop_cause);
+  state.stopped_by = message.stopped_by;
+  state.stopped_mono_us = message.stopped_mono_us;
+  state.estop_count = message.estop_count;
+  state.conditions = static_cast<std::uint32_t>(message.conditions);
+  state.version = message.version;
+  state.config_hash = message.config_hash;
   state.motors.reserve(message.motors.size());
   for (const auto& motor : message.motors) state.motors.push_back(motorFrom(motor));
   return state;
@@ -47,6 +62,7 @@ Event fromLcm(const event_t& message) {
           .severity = static_cast<Severity>(message.severity),
           .code = message.code,
           .source = message.source,
+          .client = message.client,
           .text = message.text};
 }
 

@@ -73,6 +73,13 @@ std::vector<MotorSetpoints> HeldTargets::takeDue(MonotonicTime now) {
   return due;
 }
 
+std::vector<MotorSetpoints> HeldTargets::takeAll() {
+  std::vector<MotorSetpoints> all;
+  for (auto& message : messages_) all.push_back(std::move(message.setpoints));
+  messages_.clear();
+  return all;
+}
+
 std::vector<HeldTargets::Dropped> HeldTargets::judge(const RobotState& state, const std::string& client) {
   std::vector<Dropped> dropped;
   for (const auto& message : messages_) {

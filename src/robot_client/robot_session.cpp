@@ -458,8 +458,13 @@ Result<void> RobotSession::close() {
     const Lock lock(mutex_);
     if (closed_) return {};
     closed_ = true;
-    held_.releaseAll();
+    const auto held = held_.takeAll();
     moves_.failAll("the program has let go of the robot", news.moves);
+    if (options_.at_end == AtEnd::kTimeout) {
+      // The same targets, and not COAST: after that rc10d would have nothing to do in their stead.
+      for (const auto& message : held) (void)outgoing_.command(message, milliseconds{1});
+      leaving_ = {};
+    }
     // rc10d refuses a whole message for one motor that it no longer has.
     const auto& state = newest_.get();
     const auto known = [&](const std::string& motor) { return state && state->find(motor) != nullptr; };
@@ -471,7 +476,7 @@ Result<void> RobotSession::close() {
     }
     disable_all = leaving_.enabled_all;
     // Torque first: that needs no answer.
-    if (!coast.empty()) (void)publishCommand(coast);
+    if (options_.at_end == AtEnd::kCoast && !coast.empty()) (void)publishCommand(coast);
   }
   wake_sender_.notify_all();
   if (sender_.joinable()) sender_.join();

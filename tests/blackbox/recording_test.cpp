@@ -94,7 +94,7 @@ TEST(Recording, AnotherFormatIsRefusedWithBothNumbers) {
   auto box = boxWithFrames(1);
   box.head().header.version = 7;
   EXPECT_EQ(errorOf(box.image()),
-            "it was written by another version of rc10d (format 7, this program reads 2)");
+            "it was written by another version of rc10d (format 7, this program reads 3)");
 }
 
 TEST(Recording, AFileThatIsCutOffIsRefused) {

@@ -63,7 +63,7 @@ TEST(LinkClientGreeting, OfAnotherVersionNamesBothVersions) {
   welcome.protocol_version = link::kProtocolVersion + 7;
   rc10d.send(welcome);
   const auto error = greetingError(rc10d);
-  EXPECT_THAT(error, HasSubstr("link version 9, not 2"));
+  EXPECT_THAT(error, HasSubstr("link version 10, not 3"));
   EXPECT_THAT(error, HasSubstr("install both from the same"));
 }
 
@@ -71,12 +71,12 @@ TEST(LinkClientGreeting, OfAnotherVersionWithAnotherWelcomeIsUnderstoodAllTheSam
   FakeRc10d rc10d;
   struct {
     link::Header header{link::MessageType::kWelcome, 20};
-    std::uint32_t version = 3;
+    std::uint32_t version = 4;
     std::array<char, 8> news{};
   } other;
   static_assert(sizeof(other) == 20);
   rc10d.sendBytes(std::as_bytes(std::span{&other, 1}));
-  EXPECT_THAT(greetingError(rc10d), HasSubstr("link version 3, not 2"));
+  EXPECT_THAT(greetingError(rc10d), HasSubstr("link version 4, not 3"));
 }
 
 TEST(LinkClientGreeting, LargerThanAnyKnownWelcomeIsAnotherVersion) {
@@ -87,7 +87,7 @@ TEST(LinkClientGreeting, LargerThanAnyKnownWelcomeIsAnotherVersion) {
   const std::uint32_t version = 1;
   std::memcpy(bytes.data() + sizeof(header), &version, sizeof(version));
   rc10d.sendBytes(bytes);
-  EXPECT_THAT(greetingError(rc10d), HasSubstr("link version 1, not 2"));
+  EXPECT_THAT(greetingError(rc10d), HasSubstr("link version 1, not 3"));
 }
 
 TEST(LinkClientGreeting, OfSomethingElseIsNotAWelcome) {

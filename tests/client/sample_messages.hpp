@@ -15,6 +15,8 @@ inline link::State heroState() {
   state.mono_us = 42'000'000;
   state.tick = 41'000;
   state.realtime = 1;
+  state.stopped_mono_us = 41'000'000;
+  state.estop_count = 3;
   state.motor_count = 2;
   auto& wheel = state.motors[0];
   wheel.status = MotorStatus::kActive;
@@ -23,7 +25,11 @@ inline link::State heroState() {
   wheel.zeroed = 0;
   wheel.limits = 1;
   wheel.feedback_age_us = 420;
+  wheel.feedback_age_at_use_us = 460;
+  wheel.command_age_us = 5200;
+  wheel.acting = Acting::kTarget;
   wheel.target = 120.0;
+  wheel.target_shaped = 119.0;
   wheel.total_angle_deg = 7321.5;
   wheel.angle_deg = 121.5F;
   wheel.velocity_rpm = 118.26F;
@@ -37,6 +43,7 @@ inline link::State heroState() {
   auto& yaw = state.motors[1];
   yaw.status = MotorStatus::kFault;
   yaw.fault = 12;
+  yaw.stop_cause = StopCause::kFault;
   yaw.zeroed = 1;
   yaw.feedback_age_us = -1;
   yaw.total_angle_deg = std::numeric_limits<double>::quiet_NaN();
@@ -59,6 +66,14 @@ inline link::Diagnostics heroDiagnostics() {
   diagnostics.refusals[0].name = "expired";
   diagnostics.refusals[0].count = 3;
   diagnostics.refusals[1].name = "unknown motor";
+  diagnostics.counter_count = 1;
+  diagnostics.counters[0].name = "e-stops";
+  diagnostics.counters[0].count = 4;
+  diagnostics.duration_count = 2;
+  diagnostics.durations[0].name = "command to frames";
+  diagnostics.durations[0].count = 41'000;
+  diagnostics.durations[0].percentiles = {420.0F, 900.0F, 950.0F, 1020.5F};
+  diagnostics.durations[1].name = "feedback at use: yaw";
   diagnostics.notice_count = 1;
   diagnostics.notices[0] = "not real-time: no permission";
   diagnostics.bus_count = 1;

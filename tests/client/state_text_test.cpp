@@ -50,6 +50,31 @@ TEST(StateText, ShowsEveryMotorWithUnits) {
             "      fault 12\n");
 }
 
+TEST(StateText, ShowsWhatActsOnAMotorThatNobodyCommandsAndWhoStoppedIt) {
+  auto state = heroState();
+  auto& wheel = state.motors[0];
+  wheel.status = MotorStatus::kReady;
+  wheel.mode = ControlMode::kCoast;
+  wheel.acting = Acting::kHold;
+  wheel.limits = 0;
+  wheel.stop_cause = StopCause::kRequest;
+  wheel.stopped_by = "teleop";
+  const std::string text = stateText(heroWelcome(), state, nullptr);
+  EXPECT_THAT(text, testing::ContainsRegex("front_left  READY   hold  .*asked for by 'teleop'\n"));
+}
+
+TEST(StateText, SaysWhoStoppedTheRobotAndThatItIsSimulated) {
+  auto state = heroState();
+  state.robot_state = RobotStatus::kEstop;
+  state.stop_cause = StopCause::kRequest;
+  state.stopped_by = "\x1b[31mjudge";
+  state.conditions = kConditionSimulated | kConditionInputOpen;
+  const std::string text = stateText(heroWelcome(), state, nullptr);
+  EXPECT_THAT(text, HasSubstr("ESTOP (asked for by '"));
+  EXPECT_THAT(text, HasSubstr("  SIMULATED  E-STOP INPUT OPEN  tick"));
+  EXPECT_THAT(text, Not(HasSubstr("\x1b")));
+}
+
 TEST(StateText, DoesWithoutDiagnostics) {
   auto state = heroState();
   state.robot_state = RobotStatus::kEstop;
@@ -87,9 +112,10 @@ TEST(Measured, IsTheCounterpartOfTheTarget) {
 TEST(DiagnosticsText, ShowsTimingBusesAndRefusals) {
   EXPECT_EQ(diagnosticsText(heroWelcome(), heroDiagnostics()),
             "robot hero  tick 41001, one every 1000 us\n"
-            "TIME                 P50      P99    P99.9       MAX\n"
-            "wake-up latency   4.1 us  38.5 us  61.0 us  180.2 us\n"
-            "tick duration    12.0 us  19.5 us  25.0 us   70.0 us\n"
+            "TIME                    P50       P99     P99.9        MAX\n"
+            "wake-up latency      4.1 us   38.5 us   61.0 us   180.2 us\n"
+            "tick duration       12.0 us   19.5 us   25.0 us    70.0 us\n"
+            "command to frames  420.0 us  900.0 us  950.0 us  1020.5 us\n"
             "missed ticks 2, page faults 0, events dropped 1\n"
             "BUS                chassis\n"
             "interface             can0\n"

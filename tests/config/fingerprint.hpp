@@ -36,9 +36,10 @@ inline void print(std::ostream& out, const MotorConfig& motor) {
       << motor.guard.stall_time.count() << ' ' << motor.guard.stall_trips << ' '
       << motor.guard.following_error_deg << ' ' << motor.guard.following_error_time.count() << '\n';
   const FallbackConfig& fallback = motor.fallback;
-  out << fallback.brake_max.count() << ' ' << static_cast<int>(fallback.on_timeout) << ' '
-      << static_cast<int>(fallback.on_disable) << ' ' << static_cast<int>(fallback.on_estop) << ' '
-      << fallback.hold_max.count() << ' ' << motor.run_down.count() << '\n';
+  out << fallback.brake_max.count() << ' ' << fallback.ramp.count() << ' '
+      << static_cast<int>(fallback.on_timeout) << ' ' << static_cast<int>(fallback.on_disable) << ' '
+      << static_cast<int>(fallback.on_estop) << ' ' << fallback.hold_max.count() << ' '
+      << motor.run_down.count() << '\n';
   const ShapingConfig& shaping = motor.shaping;
   out << shaping.effort_slew_per_s << ' ' << shaping.velocity_slew_rpm_per_s << ' '
       << shaping.angle_slew_deg_per_s << ' ' << shaping.angle_min_deg << ' ' << shaping.angle_max_deg << ' '
@@ -66,7 +67,8 @@ inline std::string fingerprint(const RobotConfig& config) {
         << '\n';
   }
   if (const auto& heartbeat = config.heartbeat_gpio) {
-    out << "heartbeat " << heartbeat->pin.name() << ' ' << heartbeat->period.count() << '\n';
+    out << "heartbeat " << heartbeat->pin.name() << ' ' << heartbeat->period.count() << ' '
+        << heartbeat->rests_in_estop_after.value_or(Duration{-1}).count() << '\n';
   }
   for (const auto& bus : config.buses) {
     out << "bus " << bus.name << ' ' << static_cast<int>(bus.type) << ' ' << bus.interface << ' '

@@ -42,14 +42,15 @@ TEST(GpioRules, TheContactGoesToGroundAndTheChipPullsUpByDefault) {
 TEST(GpioRules, EveryKeyIsRead) {
   const auto robot = robotOf(
       "estop_gpio: {chip: pinctrl-rp1, line: 4, closed_level: high, bias: external}\n"
-      "heartbeat_gpio: {chip: /dev/gpiochip4, line: 27, period_ms: 50}\n");
+      "heartbeat_gpio: {chip: /dev/gpiochip4, line: 27, period_ms: 50, stops_on_estop_after_ms: 3000}\n");
   EXPECT_EQ(robot.estop_gpio->pin, (GpioPin{"pinctrl-rp1", 4}));
   EXPECT_FALSE(robot.estop_gpio->closed_is_low);
   EXPECT_FALSE(robot.estop_gpio->internal_bias);
   EXPECT_EQ(robot.heartbeat_gpio->pin, (GpioPin{"/dev/gpiochip4", 27}));
   EXPECT_EQ(robot.heartbeat_gpio->period, 50ms);
+  EXPECT_EQ(robot.heartbeat_gpio->rests_in_estop_after, 3000ms);
   EXPECT_THAT(describe(robot), HasSubstr("closed contact reads high, external pull-down\n"));
-  EXPECT_THAT(describe(robot), HasSubstr("/dev/gpiochip4:27, every 50 ms\n"));
+  EXPECT_THAT(describe(robot), HasSubstr("/dev/gpiochip4:27, every 50 ms, until 3000 ms after an e-stop\n"));
 }
 
 TEST(GpioRules, ChipAndLineAreRequired) {

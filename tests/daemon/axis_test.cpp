@@ -35,9 +35,9 @@ class AxisTest : public ::testing::Test {
     if (speaks) (void)axis_.motor().updateFeedback(makeDjiFeedback(kM3508, 1, {}, now_));
     const Tick tick = this->now();
     axis_.listen(tick, false);
-    if (axis_.fresh(tick)) (void)axis_.take(MotorEvent::kFeedbackFresh, RobotStatus::kRun, tick);
-    if (axis_.lost(tick)) (void)axis_.take(MotorEvent::kFeedbackLost, RobotStatus::kRun, tick);
-    if (const auto end = axis_.endsEnabling(tick)) (void)axis_.take(*end, RobotStatus::kRun, tick);
+    if (axis_.fresh(tick)) (void)axis_.take(MotorEvent::kFeedbackFresh, RobotStatus::kRun, {}, tick);
+    if (axis_.lost(tick)) (void)axis_.take(MotorEvent::kFeedbackLost, RobotStatus::kRun, {}, tick);
+    if (const auto end = axis_.endsEnabling(tick)) (void)axis_.take(*end, RobotStatus::kRun, {}, tick);
     (void)axis_.trips(tick);
     lapsed_ = axis_.lapses(tick);
     axis_.order(RobotStatus::kRun, tick);
@@ -46,7 +46,7 @@ class AxisTest : public ::testing::Test {
   void activate() {
     tick();
     axis_.prepareEnabling(now());
-    (void)axis_.take(MotorEvent::kEnable, RobotStatus::kRun, now());
+    (void)axis_.take(MotorEvent::kEnable, RobotStatus::kRun, {}, now());
     tick();
     tick();
     ASSERT_EQ(axis_.status(), MotorStatus::kActive);
@@ -72,32 +72,33 @@ TEST_F(AxisTest, IsReadyWithFreshFeedbackAndOfflineWithoutForItsTimeout) {
 
 TEST_F(AxisTest, SaysWhyATargetDoesNotAct) {
   tick();
-  EXPECT_EQ(axis_.take(kTurn, kPlanner, now_ + 50ms), SkipReason::kNotActive);
+  EXPECT_EQ(axis_.take(kTurn, kPlanner, {now_, now_ + 50ms}), SkipReason::kNotActive);
   activate();
-  EXPECT_EQ(axis_.take(kTurn, kPlanner, now_ + 50ms), std::nullopt);
-  EXPECT_EQ(axis_.take({.mode = ControlMode::kVoltage}, kPlanner, now_ + 50ms), SkipReason::kRefused);
+  EXPECT_EQ(axis_.take(kTurn, kPlanner, {now_, now_ + 50ms}), std::nullopt);
+  EXPECT_EQ(axis_.take({.mode = ControlMode::kVoltage}, kPlanner, {now_, now_ + 50ms}), SkipReason::kRefused);
 }
 
 TEST_F(AxisTest, RefusesAnAngleThatNoDoubleTellsExactly) {
   activate();
   for (const double far_deg : {1.1e12, -1e17, 1e300}) {
     for (const auto mode : {ControlMode::kTotalAngle, ControlMode::kAngle})
-      EXPECT_EQ(axis_.take({.mode = mode, .value = far_deg}, kPlanner, now_ + 50ms), SkipReason::kTooFar);
+      EXPECT_EQ(axis_.take({.mode = mode, .value = far_deg}, kPlanner, {now_, now_ + 50ms}),
+                SkipReason::kTooFar);
   }
 }
 
 TEST_F(AxisTest, ObeysOneClientUntilItsCommandLapsesOrAHigherPriorityTakesOver) {
   activate();
-  (void)axis_.take(kTurn, kPlanner, now_ + 50ms);
+  (void)axis_.take(kTurn, kPlanner, {now_, now_ + 50ms});
   EXPECT_TRUE(axis_.obeys(kRemote, now_));
-  (void)axis_.take(kTurn, kRemote, now_ + 50ms);
+  (void)axis_.take(kTurn, kRemote, {now_, now_ + 50ms});
   EXPECT_FALSE(axis_.obeys(kPlanner, now_));
   EXPECT_TRUE(axis_.obeys(kPlanner, now_ + 50ms));
 }
 
 TEST_F(AxisTest, BeginsItsFallbackInTheTickInWhichTheCommandLapses) {
   activate();
-  (void)axis_.take(kTurn, kPlanner, now_ + 2ms);
+  (void)axis_.take(kTurn, kPlanner, {now_, now_ + 2ms});
   tick();
   EXPECT_FALSE(lapsed_);
   EXPECT_EQ(axis_.motor().ordered(), FrameKind::kCommand);
@@ -110,7 +111,7 @@ TEST_F(AxisTest, BeginsItsFallbackInTheTickInWhichTheCommandLapses) {
 
 TEST_F(AxisTest, WhatEndsActiveDecidesAboutTheFallback) {
   activate();
-  (void)axis_.take(MotorEvent::kFault, RobotStatus::kRun, now());
+  (void)axis_.take(MotorEvent::kFault, RobotStatus::kRun, {}, now());
   EXPECT_FALSE(axis_.fallbackActs()) << "a fault coasts";
   EXPECT_EQ(axis_.status(), MotorStatus::kFault);
 }

@@ -95,6 +95,56 @@ TEST_F(FallbackTest, ABrakeInAnEstopDampsAfterItsTimeAndNeverCoasts) {
   EXPECT_NE(currentA(), 0.0F);
 }
 
+TEST_F(FallbackTest, ARampTakesTheSpeedToZeroInItsTimeAndThenTheTorque) {
+  start({.on_estop = FallbackAction::kRamp, .ramp = 1s});
+  robot->exchange().estop.store(true);
+  robot->run(500);
+  EXPECT_EQ(robot->motor(kLeft).acting, Acting::kRamp);
+  EXPECT_NEAR(rpm(), 60.0F, 6.0F);
+  robot->run(500);
+  EXPECT_NEAR(rpm(), 0.0F, 6.0F);
+  robot->run(201);
+  EXPECT_EQ(robot->motor(kLeft).acting, Acting::kNothing);
+  for (int i = 0; i < 500; ++i) {
+    robot->tick();
+    ASSERT_EQ(currentA(), 0.0F);
+  }
+}
+
+TEST_F(FallbackTest, ARampEndsWithoutTorqueWhateverPulls) {
+  start({.on_estop = FallbackAction::kRamp, .ramp = 500ms}, 1.0F);
+  robot->exchange().estop.store(true);
+  robot->run(750);
+  for (int i = 0; i < 200; ++i) {
+    robot->tick();
+    ASSERT_EQ(currentA(), 0.0F) << "safe torque off, although the load pulls it down";
+  }
+  EXPECT_LT(rpm(), -10.0F);
+}
+
+TEST_F(FallbackTest, ARampAfterATimeoutEndsWithTheNextTarget) {
+  start({.on_timeout = FallbackAction::kRamp, .ramp = 1s});
+  robot->run(350);
+  EXPECT_EQ(robot->motor(kLeft).status, MotorStatus::kActive);
+  EXPECT_EQ(robot->motor(kLeft).acting, Acting::kRamp);
+  robot->hold(kLeft, kVelocity120, 500);
+  EXPECT_EQ(robot->motor(kLeft).acting, Acting::kTarget);
+  EXPECT_NEAR(rpm(), 120.0F, 3.0F);
+}
+
+TEST_F(FallbackTest, AMotorThatIsLostOnItsRampIsWithoutTorque) {
+  start({.on_estop = FallbackAction::kRamp, .ramp = 1s});
+  robot->exchange().estop.store(true);
+  robot->run(100);
+  robot->freezeSimulation(true);
+  robot->run(60);
+  EXPECT_EQ(robot->motor(kLeft).status, MotorStatus::kOffline);
+  EXPECT_EQ(currentA(), 0.0F);
+  robot->freezeSimulation(false);
+  robot->run(100);
+  EXPECT_EQ(currentA(), 0.0F) << "and the ramp does not come back";
+}
+
 TEST_F(FallbackTest, ABrakeAfterATimeoutLasts) {
   start({.on_timeout = FallbackAction::kBrake, .brake_max = 1s}, 1.0F);
   robot->run(5000);

@@ -141,7 +141,7 @@ TEST_F(FlightRecorderTest, EveryEventIsThere) {
   robot.order(Operation::kEnable);
   robot.order(Operation::kEstop);
   EXPECT_EQ(recorded<blackbox::Event>().size(), robot.events().size());
-  EXPECT_THAT(eventTexts(), ::testing::Contains("RUN -> ESTOP"));
+  EXPECT_THAT(eventTexts(), ::testing::Contains("RUN -> ESTOP (asked for)"));
   EXPECT_THAT(eventTexts(), ::testing::Contains("ENABLING -> ACTIVE").Times(3));
 }
 

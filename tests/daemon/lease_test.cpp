@@ -105,7 +105,7 @@ TEST_F(LeaseTest, AMessageIsRefusedWholeForOneMotorThatIsHeld) {
 TEST_F(LeaseTest, AnotherSessionUnderTheNameIsAnotherClient) {
   Lease lease;
   const MonotonicTime now{10s};
-  lease.take(planner(7, 0), now + 50ms);
+  lease.take(planner(7, 0), {now, now + 50ms});
   EXPECT_TRUE(lease.allows(planner(7, 0), now));
   EXPECT_FALSE(lease.allows(planner(8, 0), now));
   EXPECT_TRUE(lease.allows(planner(8, 1), now));

@@ -81,6 +81,29 @@ TEST_F(LinkServerStrangersTest, ARequestWithMoreValuesThanThereIsRoomSendsTheCli
   EXPECT_TRUE(isSentAwayFor(bytes.data(), bytes.size()));
 }
 
+TEST_F(LinkServerStrangersTest, AnEstopIsObeyedWhateverElseItsMessageSays) {
+  auto too_many = linkRequest(1, "estop");
+  too_many.value_count = 1000;
+  const auto sealed = link::seal(too_many);
+  EXPECT_TRUE(isSentAwayFor(sealed.data(), sealed.size())) << "it does not speak our protocol";
+  EXPECT_TRUE(exchange.estop.exchange(false));
+  for (const auto cut : {std::size_t{1}, sealed.size() / 2, sizeof(link::Request::values)}) {
+    EXPECT_TRUE(isSentAwayFor(sealed.data(), sealed.size() - cut));
+    EXPECT_TRUE(exchange.estop.exchange(false)) << "cut off by " << cut;
+  }
+  auto unknown = linkRequest(2, "estop");
+  unknown.target = "no,such,motors";
+  auto client = join();
+  ASSERT_TRUE(client->send(unknown));
+  pump();
+  EXPECT_TRUE(exchange.estop.exchange(false));
+  auto other = linkRequest(3, "estopped");
+  other.value_count = 1000;
+  const auto others = link::seal(other);
+  EXPECT_TRUE(isSentAwayFor(others.data(), others.size()));
+  EXPECT_FALSE(exchange.estop.load());
+}
+
 TEST_F(LinkServerStrangersTest, ATypeThatNoClientSendsSendsTheClientAway) {
   EXPECT_TRUE(isSentAwayFor({link::MessageType::kState, 64}, 64));
   EXPECT_TRUE(isSentAwayFor({link::MessageType{77}, 64}, 64));

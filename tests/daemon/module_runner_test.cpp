@@ -234,6 +234,51 @@ TEST_F(ModuleRunnerTest, AModuleEnablesAndDisablesTheRobot) {
   EXPECT_FALSE(robot_->exchange().results.pop(result)) << "nobody else is told";
 }
 
+TEST_F(ModuleRunnerTest, MotorsThatAreEnabledTogetherAreAskedForInOneRequest) {
+  bool enable_now = false;
+  const ScriptedType type{[&](const Tick&, ModuleRobot& robot) {
+    constexpr std::array<std::size_t, 2> kPair{0, 1};
+    if (std::exchange(enable_now, false)) robot.ask(RobotRequest::kEnable, kPair);
+  }};
+  auto config = twoWheelsAndYaw();
+  config.groups.push_back({.place = {}, .name = "lift", .motors = {0, 1}, .together = true});
+  ModuleConfig module;
+  module.type = &type;
+  module.settings.name = "module0";
+  config.modules.push_back(module);
+  robot_ = std::make_unique<VirtualRobot>(config);
+  robot_->run(10);
+  enable_now = true;
+  robot_->run(5);
+  EXPECT_EQ(robot_->motor(0).status, MotorStatus::kActive);
+  EXPECT_EQ(robot_->motor(1).status, MotorStatus::kActive);
+  EXPECT_EQ(robot_->motor(2).status, MotorStatus::kReady);
+}
+
+TEST_F(ModuleRunnerTest, AModuleKnowsHowLongNoClientWasHeard) {
+  Duration silent{};
+  bool remote = false;
+  const ScriptedType type{[&](const Tick&, ModuleRobot& robot) {
+    if (remote) robot.hearClient();
+    silent = robot.clientsSilent();
+  }};
+  start({{&type, 0}});
+  enable();
+  robot_->run(100);
+  EXPECT_GE(silent, 100ms) << "a request";
+  EXPECT_LT(silent, 110ms);
+  robot_->command(0, rpm(10.0));
+  robot_->run(3);
+  EXPECT_EQ(silent, 2ms) << "a command";
+  robot_->run(50);
+  signal("planner", 0, 45.0);
+  robot_->run(3);
+  EXPECT_EQ(silent, 2ms) << "inputs";
+  remote = true;
+  robot_->run(50);
+  EXPECT_EQ(silent, 0ms) << "a person at a remote";
+}
+
 TEST_F(ModuleRunnerTest, AModuleEnablesNothingBesideAMotorThatIsEnabledAlone) {
   bool enable_now = false;
   const ScriptedType type{[&](const Tick&, ModuleRobot& robot) {

@@ -32,7 +32,7 @@ class PublicationTest : public ::testing::Test {
     return *state_;
   }
   const link::Diagnostics& diagnostics() {
-    publication.fill(*diagnostics_, *snapshot, timing, inboxes, admission, 17, 456);
+    publication.fill(*diagnostics_, *snapshot, timing, ages, inboxes, admission, 17, 456);
     return *diagnostics_;
   }
   std::int64_t refusals(std::string_view name) {
@@ -45,6 +45,7 @@ class PublicationTest : public ::testing::Test {
 
   RobotDescription robot;
   TickTiming timing;
+  TickAges ages;
   std::array<BusInbox, kMaxBuses> inboxes;
   Admission admission{{}};
   std::unique_ptr<Snapshot> snapshot = std::make_unique<Snapshot>();

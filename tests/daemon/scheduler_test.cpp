@@ -323,6 +323,27 @@ TEST_F(SchedulerTest, ShowsAnAngleTargetOfAnAbsoluteMotorAtOnce) {
   EXPECT_NEAR(robot.motor(kYaw).feedback.angle_deg, 45.0F, 0.5F);
 }
 
+TEST_F(SchedulerTest, TheHeartbeatRestsSoLongAfterAnEstop) {
+  robot.scheduler().restHeartbeatAfter(20ms);
+  enableAll();
+  EXPECT_EQ(robot.scheduler().beats(), robot.scheduler().ticks());
+  (void)robot.order(Operation::kEstop);  // acts in its first tick
+  const auto before = robot.scheduler().beats();
+  robot.run(19);
+  EXPECT_EQ(robot.scheduler().beats(), before + 19);
+  robot.run(100);
+  EXPECT_EQ(robot.scheduler().beats(), before + 19);
+  (void)robot.order(Operation::kClear);
+  EXPECT_GT(robot.scheduler().beats(), before + 19) << "cleared";
+}
+
+TEST_F(SchedulerTest, TheHeartbeatGoesOnInAnEstopUnlessItIsToldToRest) {
+  enableAll();
+  (void)robot.order(Operation::kEstop);
+  robot.run(1000);
+  EXPECT_EQ(robot.scheduler().beats(), robot.scheduler().ticks());
+}
+
 TEST_F(SchedulerTest, EnablingIntoARunningStreamStartsSoftly) {
   const auto mostCurrentA = [](float soft_start_s) {
     auto config = twoWheelsAndYaw();

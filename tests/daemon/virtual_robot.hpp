@@ -104,6 +104,7 @@ class VirtualRobot {
   void command(std::size_t motor, Target target, Duration validity = std::chrono::milliseconds{50}) {
     Command command;
     command.client = "test";
+    command.received = now_;
     command.deadline = now_ + validity;
     command.count = 1;
     command.setpoints[0] = {static_cast<std::uint16_t>(motor), target};
@@ -116,6 +117,7 @@ class VirtualRobot {
     Command command;
     command.client = client;
     command.priority = priority;
+    command.received = now_;
     command.deadline = now_ + validity;
     command.count = 1;
     command.setpoints[0] = {static_cast<std::uint16_t>(motor), target};

@@ -190,6 +190,7 @@ Oracle::Actions Oracle::only(FallbackAction action) { return Actions{1ULL << sta
 void Oracle::setActions(Motor& motor, Actions actions) {
   motor.actions = actions;
   motor.acts_since = now_;
+  motor.rpm_when_it_began = motor.wire->measured().velocity_rpm;
   motor.acts_since_tick = tick_;
   motor.unbraked_ticks = 0;
   motor.ends_at_standstill = false;

@@ -65,7 +65,7 @@ class Oracle {
  private:
   static constexpr std::size_t kNoGroup = ~std::size_t{0};
   /// The actions that a motor without a target may be doing.
-  using Actions = std::bitset<4>;
+  using Actions = std::bitset<kFallbackWords.size()>;
 
   struct Motor {
     const MotorConfig* config = nullptr;
@@ -108,6 +108,7 @@ class Oracle {
     ControlMode mode = ControlMode::kCoast;
     Actions actions{1};
     MonotonicTime acts_since{};
+    double rpm_when_it_began = 0.0;
     std::uint64_t acts_since_tick = 0;
     bool ends_at_standstill = false;
     bool rests_with_group = false;  ///< Disabled since another member was.
@@ -156,6 +157,7 @@ class Oracle {
   [[nodiscard]] bool damps(const Motor& motor) const;
   [[nodiscard]] static bool mayLag(const Motor& motor, std::uint64_t ticks);
   [[nodiscard]] bool fits(const Motor& motor, FallbackAction action) const;
+  [[nodiscard]] bool ramps(const Motor& motor) const;
   [[noreturn]] void fail(const std::string& what) const;
   [[noreturn]] void fail(std::size_t motor, const std::string& what) const;
   void require(std::size_t motor, bool condition, const char* what) const {

@@ -17,6 +17,11 @@ constexpr Duration kLongestFallback = 1s;
 constexpr int kUnbrakedTicks = 300;
 constexpr double kFast = 0.3;  ///< Of the no-load speed: a brake must oppose this.
 
+// Of the time of a ramp and of the no-load speed: feedback is younger or older than what the oracle sees.
+constexpr double kRampSlack = 0.1;
+// After its time a ramp has the motor stand still for so long, and a frame may be on its way.
+constexpr Duration kRampEnd = 260ms;
+
 // An angle may be so far beyond a soft limit: rounding, and what the shaft has moved since the sample.
 constexpr double kAngleSlackDeg = 1.0;
 
@@ -223,8 +228,23 @@ bool Oracle::fits(const Motor& motor, FallbackAction action) const {
     case FallbackAction::kDamp: return damps(motor);
     case FallbackAction::kBrake: return motor.host_brakes || staysPut(told, measured_rpm);
     case FallbackAction::kHold: return motor.host_holds || staysPut(told, measured_rpm);
+    case FallbackAction::kRamp: return ramps(motor);
   }
   return false;
+}
+
+// No faster than in proportion to the time that is left; a loop of rc10d tells an effort, which its limits
+// bound.
+bool Oracle::ramps(const Motor& motor) const {
+  if (motor.told.rests()) return true;
+  if (motor.told.law == Told::Law::kEffort) return motor.host_brakes;
+  if (motor.told.law != Told::Law::kVelocity && motor.told.law != Told::Law::kSpring) return false;
+  const double left = 1.0 - static_cast<double>(seconds(now_ - motor.acts_since)) /
+                                static_cast<double>(seconds(motor.config->fallback.ramp));
+  const double most_rpm = std::fabs(motor.rpm_when_it_began) * std::max(left + kRampSlack, 0.0);
+  const double slack_rpm =
+      motor.told.velocity_step_rpm + kRampSlack * static_cast<double>(motor.config->traits().no_load_rpm);
+  return std::fabs(motor.told.velocity_rpm) <= most_rpm + slack_rpm;
 }
 
 void Oracle::judgeFallback(std::size_t index) {
@@ -241,6 +261,11 @@ void Oracle::judgeFallback(std::size_t index) {
   };
   bounded(FallbackAction::kHold, fallback.hold_max);
   bounded(FallbackAction::kBrake, fallback.brake_max);
+  constexpr auto kRamp = static_cast<std::size_t>(FallbackAction::kRamp);
+  if (actions.test(kRamp) && now_ - motor.acts_since >= fallback.ramp) {
+    actions |= only(FallbackAction::kCoast);
+    if (now_ - motor.acts_since >= fallback.ramp + kRampEnd) actions.reset(kRamp);
+  }
   if (state_ == RobotStatus::kStopping && now_ - stopping_since_ >= kLongestFallback)
     actions = only(FallbackAction::kCoast);
   bool any = false;

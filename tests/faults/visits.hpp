@@ -7,6 +7,7 @@
 
 #include "daemon/exchange/snapshot.hpp"
 #include "faults/wire.hpp"
+#include "motor/guarding/fallback.hpp"
 
 namespace rc10::test {
 
@@ -19,12 +20,12 @@ struct MotorVisits {
 /// How often each state was seen: what the chaos has reached.
 struct Visits {
   std::uint64_t ticks = 0;
-  std::array<std::uint64_t, 3> robot{};                   ///< Ticks by RobotStatus.
-  std::array<std::uint64_t, kMotorStatusCount> status{};  ///< Ticks of motors.
-  std::array<std::uint64_t, 64> faults{};                 ///< How often each began.
-  std::array<std::uint64_t, 4> fallbacks{};               ///< Ticks in which one gave torque.
-  std::uint64_t driven = 0;                               ///< And ticks in which a target did.
-  std::uint64_t alone = 0;                                ///< Ticks in which one motor was enabled alone.
+  std::array<std::uint64_t, 3> robot{};                          ///< Ticks by RobotStatus.
+  std::array<std::uint64_t, kMotorStatusCount> status{};         ///< Ticks of motors.
+  std::array<std::uint64_t, 64> faults{};                        ///< How often each began.
+  std::array<std::uint64_t, kFallbackWords.size()> fallbacks{};  ///< Ticks in which one gave torque.
+  std::uint64_t driven = 0;                                      ///< And ticks in which a target did.
+  std::uint64_t alone = 0;  ///< Ticks in which one motor was enabled alone.
   std::uint64_t rearmed = 0;
   std::uint64_t stops = 0;
   std::uint64_t slewed = 0;   ///< Ticks in which a slew limit was judged,

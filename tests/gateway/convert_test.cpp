@@ -63,14 +63,61 @@ TEST(ConvertState, HasEveryField) {
   EXPECT_EQ(wheel.command_value, 0.43F);
   EXPECT_EQ(wheel.command_unit, +motor_state_t::UNIT_AMPERE);
   EXPECT_EQ(wheel.feedback_age_us, 420);
+  EXPECT_EQ(wheel.feedback_age_at_use_us, 460);
+  EXPECT_EQ(wheel.command_age_us, 5200);
+  EXPECT_EQ(wheel.target_shaped, 119.0);
+  EXPECT_EQ(wheel.acting, +motor_state_t::ACTING_TARGET);
+  EXPECT_EQ(wheel.stop_cause, +motor_state_t::STOP_NONE);
   EXPECT_EQ(wheel.feedback_hz, 999.5F);
   const auto& yaw = copy.motors[1];
   EXPECT_EQ(yaw.status, +motor_state_t::STATUS_FAULT);
   EXPECT_EQ(yaw.fault, 12);
+  EXPECT_EQ(yaw.stop_cause, +motor_state_t::STOP_FAULT);
   EXPECT_EQ(yaw.fault_text, link::faultText(12));
   EXPECT_TRUE(std::isnan(yaw.total_angle_deg));
   EXPECT_EQ(yaw.zeroed, 1);
   EXPECT_EQ(yaw.feedback_age_us, -1);
+}
+
+TEST(ConvertState, SaysWhoStoppedTheRobotAndWhatItRuns) {
+  auto welcome = welcomeOf({"front_left", "yaw"});
+  welcome.version = "0.2.0";
+  welcome.config_hash = std::string(64, 'a');
+  auto state = heroState();
+  state.robot_state = RobotStatus::kEstop;
+  state.stop_cause = StopCause::kRequest;
+  state.stopped_by = "judge";
+  state.conditions = kConditionSimulated;
+  state.motors[1].stopped_by = "judge";
+  robot_state_t out{};
+  convert(welcome, state, out);
+  const auto copy = throughLcm(out);
+  EXPECT_EQ(copy.state, +robot_state_t::STATE_ESTOP);
+  EXPECT_EQ(copy.stop_cause, +motor_state_t::STOP_REQUEST);
+  EXPECT_EQ(copy.stopped_by, "judge");
+  EXPECT_EQ(copy.stopped_mono_us, 41'000'000);
+  EXPECT_EQ(copy.estop_count, 3);
+  EXPECT_EQ(copy.conditions, +robot_state_t::CONDITION_SIMULATED);
+  EXPECT_EQ(copy.version, "0.2.0");
+  EXPECT_EQ(copy.config_hash, std::string(64, 'a'));
+  EXPECT_EQ(copy.motors[1].stopped_by, "judge");
+}
+
+// The words of app/vocabulary.hpp are those of the types.
+TEST(ConvertState, HasTheNumbersOfTheTypes) {
+  EXPECT_EQ(static_cast<int>(Acting::kBrake), +motor_state_t::ACTING_BRAKE);
+  EXPECT_EQ(static_cast<int>(Acting::kDamp), +motor_state_t::ACTING_DAMP);
+  EXPECT_EQ(static_cast<int>(Acting::kHold), +motor_state_t::ACTING_HOLD);
+  EXPECT_EQ(static_cast<int>(StopCause::kRequest), +motor_state_t::STOP_REQUEST);
+  EXPECT_EQ(static_cast<int>(StopCause::kEstop), +motor_state_t::STOP_ESTOP);
+  EXPECT_EQ(static_cast<int>(StopCause::kFault), +motor_state_t::STOP_FAULT);
+  EXPECT_EQ(static_cast<int>(StopCause::kSilence), +motor_state_t::STOP_SILENCE);
+  EXPECT_EQ(static_cast<int>(StopCause::kGroup), +motor_state_t::STOP_GROUP);
+  EXPECT_EQ(static_cast<int>(StopCause::kTimeout), +motor_state_t::STOP_TIMEOUT);
+  EXPECT_EQ(static_cast<int>(StopCause::kRefused), +motor_state_t::STOP_REFUSED);
+  EXPECT_EQ(static_cast<int>(StopCause::kReference), +motor_state_t::STOP_REFERENCE);
+  EXPECT_EQ(static_cast<int>(StopCause::kShutdown), +motor_state_t::STOP_SHUTDOWN);
+  EXPECT_EQ(static_cast<int>(StopCause::kInput), +motor_state_t::STOP_INPUT);
 }
 
 TEST(ConvertState, LeavesMotorsWithoutANameOut) {
@@ -100,6 +147,7 @@ TEST(ConvertState, OfTheLargestRobotFitsOneDatagram) {
   for (std::size_t i = 0; i < link::kMaxMotors; ++i) {
     welcome.motors[i].name = std::string(31, 'm');
     state.motors[i].owner = std::string(31, 'o');
+    state.motors[i].stopped_by = std::string(31, 's');
     state.motors[i].fault = -2'000'000'000;
   }
   robot_state_t out{};
@@ -129,6 +177,17 @@ TEST(ConvertDiagnostics, HasEveryField) {
   ASSERT_EQ(copy.refusal_count, 2);
   EXPECT_EQ(copy.refusals[0].name, "expired");
   EXPECT_EQ(copy.refusals[0].count, 3);
+  ASSERT_EQ(copy.counter_count, 1);
+  EXPECT_EQ(copy.counters[0].name, "e-stops");
+  EXPECT_EQ(copy.counters[0].count, 4);
+  ASSERT_EQ(copy.duration_count, 2);
+  EXPECT_EQ(copy.durations[0].name, "command to frames");
+  EXPECT_EQ(copy.durations[0].count, 41'000);
+  EXPECT_EQ(copy.durations[0].p50_us, 420.0F);
+  EXPECT_EQ(copy.durations[0].p99_us, 900.0F);
+  EXPECT_EQ(copy.durations[0].p999_us, 950.0F);
+  EXPECT_EQ(copy.durations[0].max_us, 1020.5F);
+  EXPECT_EQ(copy.durations[1].name, "feedback at use: yaw");
   ASSERT_EQ(copy.notice_count, 1);
   EXPECT_EQ(copy.notices[0], "not real-time: no permission");
   ASSERT_EQ(copy.bus_count, 1);
@@ -144,6 +203,8 @@ TEST(ConvertDiagnostics, HasEveryField) {
   EXPECT_EQ(bus.rx_frames, 164'000);
   EXPECT_EQ(bus.rx_unmatched, 5);
   EXPECT_EQ(bus.rx_malformed, 1);
+  EXPECT_EQ(bus.rx_foreign, 6);
+  EXPECT_EQ(bus.tx_held, 8);
   EXPECT_EQ(bus.rx_dropped, 2);
   EXPECT_EQ(bus.tx_frames, 41'000);
   EXPECT_EQ(bus.tx_confirmed, 40'990);
@@ -154,11 +215,14 @@ TEST(ConvertDiagnostics, HasEveryField) {
 
 TEST(ConvertDiagnostics, DoesNotBelieveTheCounts) {
   auto diagnostics = heroDiagnostics();
-  diagnostics.refusal_count = diagnostics.notice_count = diagnostics.bus_count = 0xFFFFFFFF;
+  diagnostics.refusal_count = diagnostics.counter_count = diagnostics.notice_count = diagnostics.bus_count =
+      diagnostics.duration_count = 0xFFFFFFFF;
   diagnostics_t out{};
   convert(diagnostics, out);
   const auto copy = throughLcm(out);
   EXPECT_EQ(copy.refusals.size(), link::kMaxRefusalReasons);
+  EXPECT_EQ(copy.counters.size(), link::kMaxCounters);
+  EXPECT_EQ(copy.durations.size(), link::kMaxDurations);
   EXPECT_EQ(copy.notices.size(), link::kMaxNotices);
   EXPECT_EQ(copy.buses.size(), link::kMaxBuses);
 }

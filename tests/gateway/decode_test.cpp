@@ -86,6 +86,32 @@ TEST(DecodeCommand, LetsNumbersThroughBitByBit) {
   EXPECT_EQ(command.setpoints[0].target.mode, ControlMode{255}) << "no mode: rc10d refuses it";
 }
 
+TEST(DecodeSignals, HasEveryField) {
+  signals_t original{};
+  original.utime = 11;
+  original.mono_us = 0x0102030405060708;
+  original.client = "pad";
+  original.session = 12;
+  original.seq = 13;
+  original.priority = 14;
+  original.validity_ms = 15;
+  original.count = 2;
+  original.names = {"vx_m_s", "wz_rad_s"};
+  original.values = {0.5, -1.5};
+  link::Signals signals;
+  ASSERT_EQ(decode(encoded(original), signals), Defect::kNone);
+  EXPECT_EQ(signals.client.view(), "pad");
+  EXPECT_EQ(signals.session, 12U);
+  EXPECT_EQ(signals.seq, 13);
+  EXPECT_EQ(signals.priority, 14);
+  EXPECT_EQ(signals.validity_ms, 15);
+  ASSERT_EQ(signals.value_count, 2U);
+  EXPECT_EQ(signals.values[0].name.view(), "vx_m_s");
+  EXPECT_EQ(signals.values[1].name.view(), "wz_rad_s");
+  EXPECT_EQ(signals.values[0].value, 0.5);
+  EXPECT_EQ(signals.values[1].value, -1.5);
+}
+
 TEST(DecodeCommand, OfOtherDefinitionsIsToldFromOtherDefects) {
   signals_t signals{};
   EXPECT_EQ(decodeCommand(encoded(signals)), Defect::kOtherDefinitions);
@@ -93,7 +119,7 @@ TEST(DecodeCommand, OfOtherDefinitionsIsToldFromOtherDefects) {
   bytes[7] ^= std::byte{1};
   EXPECT_EQ(decodeCommand(bytes), Defect::kOtherDefinitions);
   link::Request request;
-  const auto [defect, identified] = decode(encoded(commandWith(1)), request);
+  const auto [defect, identified, forgiven] = decode(encoded(commandWith(1)), request);
   EXPECT_EQ(defect, Defect::kOtherDefinitions);
   EXPECT_FALSE(identified);
 }
@@ -171,7 +197,7 @@ TEST(DecodeCommand, LargerThanAnyIsRefused) {
 
 TEST(DecodeRequest, HasEveryField) {
   link::Request request;
-  const auto [defect, identified] = decode(encoded(requestWith(2)), request);
+  const auto [defect, identified, forgiven] = decode(encoded(requestWith(2)), request);
   ASSERT_EQ(defect, Defect::kNone);
   EXPECT_TRUE(identified);
   EXPECT_EQ(request.client.view(), "teleop");
@@ -206,6 +232,55 @@ TEST(DecodeRequest, IsIdentifiedAsSoonAsItsSenderIsKnown) {
   original = requestWith(1);
   original.client.assign(32, 'c');
   EXPECT_FALSE(decode(encoded(original), request).identified);
+}
+
+TEST(DecodeRequest, AnEstopIsOneWhateverElseItsMessageSays) {
+  const auto isEstop = [](const std::vector<std::byte>& bytes) {
+    link::Request request;
+    request.target = "of the message before";
+    const auto [defect, identified, forgiven] = decode(bytes, request);
+    return defect == Defect::kNone && identified && request.operation.view() == "estop" &&
+           (forgiven == Defect::kNone || (request.target.view().empty() && request.value_count == 0));
+  };
+  auto plain = requestWith(0);
+  plain.operation = "estop";
+  EXPECT_TRUE(isEstop(encoded(plain)));
+  auto long_name = plain;
+  long_name.client = std::string(500, 'n');
+  EXPECT_TRUE(isEstop(encoded(long_name)));
+  auto long_target = plain;
+  long_target.target = std::string(20'000, 't');
+  EXPECT_TRUE(isEstop(encoded(long_target)));
+  auto values = requestWith(17);
+  values.operation = "estop";
+  EXPECT_TRUE(isEstop(encoded(values)));
+  auto trailing = encoded(plain);
+  trailing.resize(trailing.size() + 40);
+  EXPECT_TRUE(isEstop(trailing));
+  auto cut = encoded(plain);
+  const std::size_t after_operation = 8 + 8 + 4 + plain.client.size() + 1 + 8 + 8 + 4 + 6;
+  for (std::size_t size = after_operation; size < encoded(plain).size(); ++size) {
+    cut.resize(size);
+    EXPECT_TRUE(isEstop(cut)) << size;
+    cut = encoded(plain);
+  }
+  cut.resize(after_operation - 1);
+  EXPECT_FALSE(isEstop(cut)) << "\"estop\" may go on";
+  auto other = plain;
+  other.operation = "estopped";
+  other.client = std::string(500, 'n');
+  EXPECT_FALSE(isEstop(encoded(other)));
+}
+
+TEST(DecodeRequest, AnEstopOfALongNameIsOfAsMuchOfItAsThereIsRoomFor) {
+  auto long_name = requestWith(0);
+  long_name.operation = "estop";
+  long_name.client = std::string(31, 'n') + "xyz";
+  link::Request request;
+  EXPECT_EQ(decode(encoded(long_name), request).forgiven, Defect::kTextTooLong);
+  EXPECT_EQ(request.client.view(), std::string(31, 'n'));
+  EXPECT_EQ(request.session, 77U);
+  EXPECT_EQ(request.seq, 5);
 }
 
 TEST(DecodeRequest, CutOffAnywhereIsRefused) {

@@ -104,7 +104,7 @@ def test_an_estop_is_copied_with_what_followed(daemon: Daemon) -> None:
     daemon.program.wait_line(re.escape(str(copy)))
     found = records(daemon, copy)
     assert found[0]["cause"] == "estop"
-    stop = next(e for e in kinds(found, "event") if e["text"] == "RUN -> ESTOP")
+    stop = next(e for e in kinds(found, "event") if e["text"].startswith("RUN -> ESTOP"))
     before = [f for f in kinds(found, "frame") if f["mono_us"] < stop["mono_us"]]
     after = [f for f in kinds(found, "frame") if f["mono_us"] > stop["mono_us"]]
     assert before

@@ -36,4 +36,4 @@ def test_everything_that_it_shows_works(
     table = (tmp_path / "wheels.csv").read_text(encoding="utf-8").splitlines()
     assert table[0] == "time_s,front_left.velocity_rpm,yaw.angle_deg"
     assert len(table) > 50
-    demo.wait_motors(lambda motor: motor["status"] == "READY", "is disabled")
+    demo.wait_motors(lambda motor: motor["acting"] != "target", "obeys nobody any more")

@@ -5,11 +5,12 @@ from __future__ import annotations
 import os
 import signal
 import sys
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from pathlib import Path
 
 import pytest
 from hostlib import Daemon, Motor, Program, eventually
+from hostlib.daemon import ARM
 
 import rc10
 
@@ -65,6 +66,44 @@ def test_rc10ctl_drives_and_lets_go(daemon: Daemon) -> None:
     daemon.wait_motor("wheel", without_torque, "coasts")
     daemon.must("disable", "wheel")
     daemon.wait_motor("wheel", lambda m: m["status"] == "READY", "is READY again")
+
+
+LIFT = ARM + "      - {name: lift, model: GM6020, id: 5, on_timeout: hold}\n"
+
+
+@pytest.fixture
+def lift() -> Iterator[Daemon]:
+    """A robot whose one motor holds its place when nobody commands it."""
+    with Daemon(LIFT) as daemon:
+        daemon.wait_ready()
+        daemon.must("enable", "lift")
+        yield daemon
+
+
+HELD = {"status": "ACTIVE", "acting": "hold", "stop_cause": "timeout", "owner": ""}
+
+
+def test_a_load_is_held_when_its_program_has_ended(lift: Daemon) -> None:
+    told = lift.must("set", "lift", "velocity", 20, "--for", "200ms")
+    assert "lift holds its place (on_timeout)" in told
+    lift.wait_motor("lift", lambda motor: HELD.items() <= motor.items(), "is held")
+    with rc10.connect("host", client="lift-program") as robot:
+        robot.wait_for_state()
+        robot.command(lift=rc10.velocity_rpm(20), validity_ms=1000)
+        obeyed = robot.wait_for_state()
+        while obeyed.motor("lift").acting is not rc10.Acting.TARGET:
+            obeyed = robot.wait_for_state()
+    held = lift.wait_motor("lift", lambda motor: HELD.items() <= motor.items(), "is held")
+    assert held["command_age_us"] == -1
+
+
+def test_the_end_of_a_target_can_be_chosen(lift: Daemon) -> None:
+    order = ("set", "lift", "velocity", 20, "--for", "100ms", "--then")
+    assert "lift coasts" in lift.must(*order, "coast")
+    lift.wait_motor("lift", lambda motor: motor["acting"] == "nothing", "coasts")
+    lift.must(*order, "disable")
+    ready = lift.wait_motor("lift", lambda motor: motor["status"] == "READY", "is READY")
+    assert ready["stopped_by"] == "rc10ctl"
 
 
 def test_the_next_rc10ctl_gets_the_motor_at_once(daemon: Daemon) -> None:

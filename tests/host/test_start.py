@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from hostlib import Daemon
 
 # Neither LCM nor its GLib, no logging, no Python: to load them takes longer than the work itself.
-LIBRARIES = {"libyaml-cpp", "libstdc++", "libm", "libgcc_s", "libc"}
+LIBRARIES = {"libyaml-cpp", "libmd", "libstdc++", "libm", "libgcc_s", "libc"}
 # A third more than were counted: loading, and for `list` finding the robot and one question to it.
 MOST_CALLS_TO_START = 100
 MOST_CALLS_TO_LIST = 120

@@ -25,7 +25,9 @@ void setCount(Command& m, std::uint32_t n) { m.setpoint_count = n; }
 void setCount(Request& m, std::uint32_t n) { m.value_count = n; }
 void setCount(Response& m, std::uint32_t n) { m.value_count = n; }
 void setCount(State& m, std::uint32_t n) { m.motor_count = n; }
-void setCount(Diagnostics& m, std::uint32_t n) { m.refusal_count = m.notice_count = m.bus_count = n; }
+void setCount(Diagnostics& m, std::uint32_t n) {
+  m.refusal_count = m.counter_count = m.notice_count = m.bus_count = m.duration_count = n;
+}
 
 template <typename Message>
 constexpr std::uint32_t room() {

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <functional>
 #include <numbers>
+#include <random>
 
 #include <gmock/gmock.h>
 
@@ -83,8 +84,8 @@ class Chassis : public ::testing::Test {
   }
   void run(int ticks) {
     for (int i = 0; i < ticks; ++i) {
-      robot_.update(*module_);
-      for (auto& motor : robot_.motors()) obey(motor);
+      robot_->update(*module_);
+      for (auto& motor : robot_->motors()) obey(motor);
     }
   }
   static void obey(FakeRobot::Motor& motor) {
@@ -99,7 +100,7 @@ class Chassis : public ::testing::Test {
       feedback.total_angle_deg += rpm * 0.006;
     }
   }
-  double target(std::size_t motor) { return robot_.motor(motor).target->value; }
+  double target(std::size_t motor) { return robot_->motor(motor).target->value; }
   double output(Output output) { return module_->outputs()[output]; }
   double speed() { return std::hypot(output(kVx), output(kVy)); }
 
@@ -113,7 +114,7 @@ class Chassis : public ::testing::Test {
     }
   }
 
-  FakeRobot robot_{8};
+  std::unique_ptr<FakeRobot> robot_ = std::make_unique<FakeRobot>(8);
   std::unique_ptr<Module_Base> module_;
 };
 
@@ -183,7 +184,7 @@ TEST_F(Chassis, TheHeadingOfAnImuIsBelieved) {
   auto own = common();
   own.set("heading", std::string{"imu.yaw_deg"});
   buildMecanum(own);
-  robot_.setOutput({.module = 0, .signal = 0}, 90.0);
+  robot_->setOutput({.module = 0, .signal = 0}, 90.0);
   run(1);
   give({.vx_m_s = 0.5, .frame = 1.0});
   run(1000);
@@ -195,13 +196,13 @@ TEST_F(Chassis, FollowsTheGimbalAndDrivesWhereItLooks) {
   auto own = common();
   own.set("follow", std::string{"imu.relative_yaw_deg"});
   buildMecanum(own);
-  robot_.setOutput({.module = 0, .signal = 1}, 30.0);
+  robot_->setOutput({.module = 0, .signal = 1}, 30.0);
   give({.vx_m_s = 1.0, .frame = 2.0, .follow = 1.0});
   run(1000);
   EXPECT_NEAR(output(kVx), std::cos(30.0 * std::numbers::pi / 180.0), 1e-3);
   EXPECT_NEAR(output(kVy), std::sin(30.0 * std::numbers::pi / 180.0), 1e-3);
   EXPECT_NEAR(output(kWz), 150.0, 1e-3);
-  robot_.setOutput({.module = 0, .signal = 1}, kNoSignal);
+  robot_->setOutput({.module = 0, .signal = 1}, kNoSignal);
   run(2000);
   EXPECT_NEAR(speed(), 0.0, 1e-9) << "nobody knows where the gimbal looks";
 }
@@ -210,9 +211,9 @@ TEST_F(Chassis, OneWheelThatIsNotThereStopsThemAll) {
   buildMecanum();
   give({.vx_m_s = 1.0});
   run(100);
-  robot_.motor(2).status = MotorStatus::kFault;
+  robot_->motor(2).status = MotorStatus::kFault;
   run(1);
-  for (std::size_t i = 0; i < 4; ++i) EXPECT_FALSE(robot_.motor(i).target.has_value());
+  for (std::size_t i = 0; i < 4; ++i) EXPECT_FALSE(robot_->motor(i).target.has_value());
 }
 
 TEST_F(Chassis, SilenceLeavesTheWheelsToTheirFallbacks) {
@@ -221,17 +222,17 @@ TEST_F(Chassis, SilenceLeavesTheWheelsToTheirFallbacks) {
   run(100);
   module_->clearInputs();
   run(1);
-  EXPECT_FALSE(robot_.motor(0).target.has_value());
+  EXPECT_FALSE(robot_->motor(0).target.has_value());
 }
 
 TEST_F(Chassis, ACommandGoesOnFromHowItRolls) {
   buildMecanum();
   run(2);
   const double rolls_rpm = 0.4 / (2.0 * std::numbers::pi * 0.076) * 60.0;
-  for (std::size_t i = 0; i < 4; ++i) robot_.motor(i).feedback.velocity_rpm = static_cast<float>(rolls_rpm);
-  robot_.update(*module_);
+  for (std::size_t i = 0; i < 4; ++i) robot_->motor(i).feedback.velocity_rpm = static_cast<float>(rolls_rpm);
+  robot_->update(*module_);
   give({.vx_m_s = 0.4});
-  robot_.update(*module_);
+  robot_->update(*module_);
   EXPECT_NEAR(target(0), rolls_rpm, 0.01);
 }
 
@@ -244,13 +245,70 @@ TEST_F(Chassis, ThePoseCanBeSet) {
   EXPECT_NEAR(output(kHeading), 45.0, 1e-9);
 }
 
+// How far the wheels of a mecanum chassis roll, and how far it thinks that it came, when samples come only
+// every so many ticks, of each wheel in another one, and some are lost.
+class LossyChassis : public Chassis {
+ protected:
+  double lost(int every, double lost_share) {
+    robot_ = std::make_unique<FakeRobot>(8);
+    buildMecanum();
+    std::mt19937 random(7);
+    std::uniform_real_distribution<double> share(0.0, 1.0);
+    std::array<double, 4> true_deg{};
+    for (int tick = 0; tick < 4000; ++tick) {
+      give({.vx_m_s = tick < 3500 ? 2.0 : 0.0});
+      for (std::size_t i = 0; i < 4; ++i) {
+        auto& motor = robot_->motor(i);
+        const double rpm = motor.target ? motor.target->value : 0.0;
+        true_deg[i] += rpm * 0.006;
+        motor.heard = (tick + static_cast<int>(i)) % every == 0 && share(random) >= lost_share;
+        if (!motor.heard) continue;
+        motor.feedback.velocity_rpm = static_cast<float>(rpm);
+        motor.feedback.total_angle_deg = true_deg[i];
+      }
+      robot_->update(*module_);
+    }
+    const double true_m = true_deg[0] / 360.0 * 2.0 * std::numbers::pi * 0.076;
+    return std::fabs(output(kX) / true_m - 1.0);
+  }
+};
+
+TEST_F(LossyChassis, LosesNoWayOverGapsOfFeedback) {
+  for (const int every : {1, 2, 3, 5, 10}) {
+    for (const double lost_share : {0.0, 0.03, 0.2}) {
+      EXPECT_LT(lost(every, lost_share), 1e-3) << "every " << every << " ticks, " << lost_share << " lost";
+    }
+  }
+}
+
+TEST_F(LossyChassis, TheWayOfTheOthersWaitsForAWheelThatIsNotHeard) {
+  buildMecanum();
+  give({.vx_m_s = 1.0});
+  run(3000);
+  const double before_m = output(kX);
+  robot_->motor(3).heard = false;
+  const double unheard_deg = robot_->motor(3).feedback.total_angle_deg;
+  double true_deg = unheard_deg;
+  for (int tick = 0; tick < 400; ++tick) {
+    run(1);
+    true_deg = robot_->motor(3).feedback.total_angle_deg;
+    if (tick == 200) {
+      EXPECT_LT(output(kX), before_m + 0.2) << "waits, as soon as it is not fresh";
+    }
+  }
+  robot_->motor(3).heard = true;
+  robot_->motor(3).feedback.total_angle_deg = true_deg;
+  run(1);
+  EXPECT_NEAR(output(kX) - before_m, 0.4, 0.01);
+}
+
 TEST_F(Chassis, AnAngleThatJumpsIsNoWay) {
   buildMecanum();
   run(2);
-  for (std::size_t i = 0; i < 4; ++i) robot_.motor(i).feedback.total_angle_deg = 100'000.0;
+  for (std::size_t i = 0; i < 4; ++i) robot_->motor(i).feedback.total_angle_deg = 100'000.0;
   run(1);
   EXPECT_EQ(output(kX), 0.0);
-  for (std::size_t i = 0; i < 4; ++i) robot_.motor(i).feedback.total_angle_deg = kNoSignal;
+  for (std::size_t i = 0; i < 4; ++i) robot_->motor(i).feedback.total_angle_deg = kNoSignal;
   run(2);
   EXPECT_EQ(output(kX), 0.0);
 }
@@ -259,9 +317,9 @@ TEST_F(Chassis, OldFeedbackSaysNothing) {
   buildMecanum();
   run(2);
   EXPECT_EQ(output(kVx), 0.0);
-  robot_.motor(3).feedback.samples = 0;
-  robot_.update(*module_);
-  robot_.motor(3).feedback.samples = 0;
+  robot_->motor(3).feedback.samples = 0;
+  robot_->update(*module_);
+  robot_->motor(3).feedback.samples = 0;
   class Stale : public FakeRobot {
    public:
     Stale() : FakeRobot(8) {}
@@ -334,10 +392,10 @@ TEST_F(Chassis, SwerveDoesNotDriveWhileOneWheelDoesNotKnowItsDirection) {
   own.set("drive", std::vector{section({"front_left", "front_right", "rear_left", "rear_right"})});
   own.set("steer", std::vector{section({"front_left", "front_right", "rear_left", "rear_right"}, 4)});
   build(swerveChassisType(), own);
-  robot_.motor(6).feedback.zeroed = false;
+  robot_->motor(6).feedback.zeroed = false;
   give({.vx_m_s = 1.0});
   run(1);
-  EXPECT_FALSE(robot_.motor(0).target.has_value());
+  EXPECT_FALSE(robot_->motor(0).target.has_value());
 }
 
 TEST(ChassisTypes, RefuseAMotorTwiceAndOnesThatTakeNoVelocities) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <limits>
 #include <map>
 #include <optional>
@@ -19,6 +20,7 @@ class FakeRobot : public ModuleRobot {
     MotorFeedback feedback;
     MotorStatus status = MotorStatus::kActive;
     bool obeys = true;
+    bool heard = true;             ///< A sample comes with each update.
     std::optional<Target> target;  ///< Of the last update; empty: none.
   };
   struct Asked {
@@ -44,15 +46,22 @@ class FakeRobot : public ModuleRobot {
     ++tick_.index;
     for (auto& motor : motors_) {
       motor.target.reset();
+      if (!motor.heard) continue;
       motor.feedback.received = tick_.now;
       ++motor.feedback.samples;
     }
     asked_.clear();
     sent_.clear();
     events_.clear();
+    client_heard_ = false;
     module.update(tick_, *this);
   }
 
+  /// From now on no client has been heard for so long.
+  void silenceClients(Duration silent) { clients_silent_ = silent; }
+  [[nodiscard]] std::size_t largestRequest() const { return largest_request_; }
+  /// In the last update.
+  [[nodiscard]] bool clientHeard() const { return client_heard_; }
   [[nodiscard]] Motor& motor(std::size_t index) { return motors_.at(index); }
   [[nodiscard]] std::vector<Motor>& motors() { return motors_; }
   [[nodiscard]] const std::vector<Asked>& asked() const { return asked_; }
@@ -79,6 +88,12 @@ class FakeRobot : public ModuleRobot {
   void ask(RobotRequest request, std::size_t motor, double angle_deg) noexcept override {
     asked_.push_back({request, motor, angle_deg});
   }
+  void ask(RobotRequest request, std::span<const std::size_t> motors) noexcept override {
+    largest_request_ = std::max(largest_request_, motors.size());
+    for (const auto motor : motors) ask(request, motor, 0.0);
+  }
+  [[nodiscard]] Duration clientsSilent() const noexcept override { return clients_silent_; }
+  void hearClient() noexcept override { client_heard_ = true; }
   void askAll(RobotRequest request) noexcept override { asked_.push_back({request, std::nullopt, 0.0}); }
   [[nodiscard]] double read(SignalPlace output) const noexcept override {
     const auto found = outputs_.find({output.module, output.signal});
@@ -93,6 +108,9 @@ class FakeRobot : public ModuleRobot {
 
  private:
   Tick tick_{.index = 0, .now = MonotonicTime{std::chrono::seconds{1000}}, .dt_s = 0.001F};
+  Duration clients_silent_{};
+  bool client_heard_ = false;
+  std::size_t largest_request_ = 0;  ///< Motors of one request.
   std::vector<Motor> motors_;
   std::vector<Asked> asked_;
   std::map<std::pair<std::size_t, std::size_t>, double> sent_;

@@ -30,6 +30,7 @@ ModuleSettings settings(bool with_imu) {
   own.set("pitch_max_deg", 30.0);
   own.set("gain_per_s", 10.0);
   own.set("velocity_limit_rpm", 60.0);
+  own.set("silence_max_s", 10.0);
   if (with_imu) {
     own.set("imu_yaw", std::string{"imu.yaw_deg"});
     own.set("imu_yaw_rate", std::string{"imu.yaw_rate_deg_s"});
@@ -129,6 +130,25 @@ TEST_F(Gimbal, HoldsWhenItsClientFallsSilentButAsksNothingBeforeTheFirstCommand)
   chassis_deg_s_ = 90.0;
   run(2000);
   EXPECT_LT(worst_deg_, 0.5);
+}
+
+TEST_F(Gimbal, ActsForNobodyNoLongerThanItsTime) {
+  build(true);
+  aim(30.0, 5.0);
+  run(2000);
+  module_->clearInputs();
+  run(9'999);
+  EXPECT_TRUE(robot_.motor(0).target.has_value());
+  EXPECT_THAT(events_, ::testing::IsEmpty());
+  run(2);
+  EXPECT_FALSE(robot_.motor(0).target.has_value());
+  EXPECT_FALSE(robot_.motor(1).target.has_value());
+  EXPECT_THAT(events_, ElementsAre(2U)) << "told once";
+  run(5000);
+  EXPECT_THAT(events_, ElementsAre(2U));
+  aim(30.0, 5.0);
+  run(2);
+  EXPECT_TRUE(robot_.motor(0).target.has_value()) << "a client brings it back";
 }
 
 TEST_F(Gimbal, WithoutItsSensorItHoldsToTheChassisAndNothingJumps) {

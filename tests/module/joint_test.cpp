@@ -45,6 +45,7 @@ ModuleSettings settings() {
   settings.own.set("homing_stopped_ms", 100.0);
   settings.own.set("homing_timeout_s", 5.0);
   settings.own.set("on_silence", std::string{"hold"});
+  settings.own.set("silence_max_s", 60.0);
   return settings;
 }
 
@@ -189,6 +190,25 @@ TEST_F(Joint, HoldsWhenItsClientFallsSilent) {
   EXPECT_LT(held_deg, 90.0);
   run(1000);
   EXPECT_EQ(target(), held_deg);
+}
+
+TEST_F(Joint, HoldsAsLongAsAnyClientOfTheRobotIsHeard) {
+  build(settings());
+  ask(90.0);
+  run(500);
+  module_->clearInputs();
+  robot_.silenceClients(59s);
+  run(1);
+  EXPECT_TRUE(robot_.motor(0).target.has_value());
+  robot_.silenceClients(60s);
+  run(1);
+  EXPECT_FALSE(robot_.motor(0).target.has_value());
+  EXPECT_THAT(robot_.events(), ::testing::ElementsAre(6U));
+  run(1);
+  EXPECT_THAT(robot_.events(), ::testing::IsEmpty()) << "told once";
+  robot_.silenceClients(0s);
+  run(1);
+  EXPECT_FALSE(robot_.motor(0).target.has_value()) << "another client is no reason to hold again";
 }
 
 TEST_F(Joint, LetsGoWhenItIsToldToDoSo) {

@@ -182,6 +182,37 @@ TEST_F(Remote, AfterAPowerCutTheSwitchAloneRecoversTheRobot) {
   EXPECT_TRUE(asks(RobotRequest::kEnable)) << "drives that come back a little later too";
 }
 
+TEST_F(Remote, UnheardItNeitherClearsNorEnables) {
+  build();
+  robot_.motor(0).status = MotorStatus::kOffline;
+  arm();
+  run(200, false);
+  asked_.clear();
+  robot_.motor(0).status = MotorStatus::kFault;
+  run(250, false);
+  robot_.motor(0).status = MotorStatus::kReady;
+  run(250, false);
+  EXPECT_THAT(asked_, IsEmpty());
+  run(250);
+  EXPECT_TRUE(asks(RobotRequest::kEnable)) << "heard again within the time of the switch";
+}
+
+TEST_F(Remote, ItsDriverIsAClientWhileItIsHeard) {
+  build();
+  run(30);
+  EXPECT_TRUE(robot_.clientHeard());
+  run(200, false);
+  EXPECT_FALSE(robot_.clientHeard());
+}
+
+TEST_F(Remote, MotorsAreEnabledInOneRequest) {
+  build();
+  for (auto& motor : robot_.motors()) motor.status = MotorStatus::kReady;
+  armSwitch(Dr16Input::Switch::kDown);
+  armSwitch(Dr16Input::Switch::kUp);
+  EXPECT_EQ(robot_.largestRequest(), 2U);
+}
+
 TEST_F(Remote, AMotorThatFailsRightAfterItWasEnabledIsNotEnabledAgain) {
   build();
   arm();

@@ -460,8 +460,48 @@ TEST_F(RobotTest, LeavingEndsAMove) {
 
 // ---- leaving
 
-TEST_F(RobotTest, LeavingCoastsAndDisables) {
+TEST_F(RobotTest, LeavingIsATimeoutAtOnce) {
   connect();
+  ASSERT_TRUE(robot_->enable({"lift", "wheel"}));
+  ASSERT_TRUE(robot_->motor("wheel").setTargetRPM(60_rpm));
+  ASSERT_TRUE(rc10d_.awaitCommands(1));
+  ASSERT_TRUE(robot_->close());
+  ASSERT_TRUE(rc10d_.awaitCommand([](const command_t& command) { return command.validity_ms == 1; }));
+  const auto last = rc10d_.commands().back();
+  ASSERT_EQ(last.setpoint_count, 1);
+  EXPECT_EQ(last.setpoints[0].mode, +setpoint_t::MODE_VELOCITY)
+      << "COAST would leave on_timeout nothing to do";
+  EXPECT_EQ(last.setpoints[0].value, 60.0);
+  EXPECT_THAT(rc10d_.operations(), Not(Contains(HasSubstr("disable"))));
+}
+
+TEST_F(RobotTest, LeavingEndsNoTargetThatIsNotHeldAnyMore) {
+  connect();
+  ASSERT_TRUE(robot_->enable({"wheel"}));
+  ASSERT_TRUE(robot_->motor("wheel").setTargetRPM(60_rpm));
+  ASSERT_TRUE(robot_->motor("wheel").coast());
+  ASSERT_TRUE(rc10d_.awaitCommand(
+      [](const command_t& command) { return command.setpoints[0].mode == +setpoint_t::MODE_COAST; }));
+  const auto sent = rc10d_.commands().size();
+  ASSERT_TRUE(robot_->close());
+  EXPECT_EQ(rc10d_.commands().size(), sent);
+}
+
+TEST_F(RobotTest, LeavingMayDisableAndNothingElse) {
+  auto leaving = options();
+  leaving.at_end = AtEnd::kDisable;
+  connect(leaving);
+  ASSERT_TRUE(robot_->enable({"wheel"}));
+  ASSERT_TRUE(robot_->motor("wheel").setTargetRPM(60_rpm));
+  ASSERT_TRUE(robot_->close());
+  EXPECT_THAT(rc10d_.operations(), Contains("disable wheel"));
+  for (const auto& command : rc10d_.commands()) EXPECT_NE(command.setpoints[0].mode, +setpoint_t::MODE_COAST);
+}
+
+TEST_F(RobotTest, LeavingMayCoastAndDisable) {
+  auto leaving = options();
+  leaving.at_end = AtEnd::kCoast;
+  connect(leaving);
   ASSERT_TRUE(robot_->enable({"lift", "wheel"}));
   ASSERT_TRUE(robot_->motor("wheel").setTargetRPM(60_rpm));
   ASSERT_TRUE(rc10d_.awaitCommands(1));

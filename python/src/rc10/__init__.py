@@ -13,7 +13,7 @@ positive. The LCM messages themselves are in rc10.lcm_types.
 
 from rc10 import aio, radians
 from rc10.client import Robot, connect
-from rc10.diagnostics import BusState, BusStatus, Diagnostics
+from rc10.diagnostics import BusState, BusStatus, Diagnostics, Durations
 from rc10.errors import (
     InvalidSetpoint,
     LinkError,
@@ -53,16 +53,29 @@ from rc10.setpoints import (
     velocity_rpm,
     voltage_v,
 )
-from rc10.state import CommandUnit, Limit, MotorState, MotorStatus, RobotState, RobotStatus
+from rc10.state import (
+    Acting,
+    CommandUnit,
+    Condition,
+    Limit,
+    MotorState,
+    MotorStatus,
+    RobotState,
+    RobotStatus,
+    StopCause,
+)
 from rc10.topics import Publisher, Received, Subscriber
 
 __version__ = "0.1.0"
 
 __all__ = [
+    "Acting",
     "BusState",
     "BusStatus",
     "CommandUnit",
+    "Condition",
     "Diagnostics",
+    "Durations",
     "Event",
     "Gains",
     "InvalidSetpoint",
@@ -99,6 +112,7 @@ __all__ = [
     "ServiceTimeout",
     "Setpoint",
     "Severity",
+    "StopCause",
     "Subscriber",
     "Timeout",
     "UnknownMotor",

@@ -28,6 +28,7 @@ from rc10.robot_client import (
     REPEAT_ESTOP_S,
     REPEAT_REQUEST_S,
     RESEND_S,
+    AtEnd,
     Names,
     RobotClient,
 )
@@ -51,13 +52,17 @@ T = TypeVar("T")
 
 
 def connect(
-    robot: str, url: str | None = None, client: str | None = None, priority: int = 0
+    robot: str,
+    url: str | None = None,
+    client: str | None = None,
+    priority: int = 0,
+    at_end: AtEnd = "timeout",
 ) -> Robot:
     """Opens the link to the robot named `robot`; use the result in an `async with` statement.
 
     Args and errors are those of rc10.connect().
     """
-    return Robot(robot, LcmLink(url), client_name(client), priority)
+    return Robot(robot, LcmLink(url), client_name(client), priority, at_end)
 
 
 class Rate(Grid):
@@ -96,18 +101,26 @@ class AsyncModule(Module):
 class Robot(RobotClient):
     """One robot, seen from one program. Belongs to the event loop that entered it.
 
-    Leaving the `async with` statement, by an exception or a cancellation too, sends COAST to the
-    motors that this program commanded and disables those that it enabled.
+    Leaving the `async with` statement, by an exception or a cancellation too, ends the commands:
+    each motor does its `on_timeout`. Argument at_end of connect() says otherwise.
 
     Args:
         name: the name of the robot.
         link: the transport; connect() makes one.
         client: who commands.
         priority: see rc10.connect().
+        at_end: see rc10.connect().
     """
 
-    def __init__(self, name: str, link: Link, client: str, priority: int = 0) -> None:
-        super().__init__(name, link, client, priority)
+    def __init__(
+        self,
+        name: str,
+        link: Link,
+        client: str,
+        priority: int = 0,
+        at_end: AtEnd = "timeout",
+    ) -> None:
+        super().__init__(name, link, client, priority, at_end)
         self._modules: dict[str, AsyncModule] = {}
         self._loop: asyncio.AbstractEventLoop | None = None
         self._waiters: set[asyncio.Future[None]] = set()
@@ -130,7 +143,7 @@ class Robot(RobotClient):
         await self.close()
 
     async def close(self) -> None:
-        """Lets go of the motors and closes the link. Takes half a second at most.
+        """Ends what acts, as `at_end` says, and closes the link. Takes half a second at most.
 
         Does not raise for what the daemon says or fails to say; a release that was not
         confirmed is logged as a warning.

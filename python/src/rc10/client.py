@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 
 from rc10.errors import Rc10Error, Timeout
 from rc10.gains import gains_in
+from rc10.identity import shortened
 from rc10.link import LcmLink, Link
 from rc10.modules import WaitingModule
 from rc10.rate import Rate
@@ -17,6 +18,7 @@ from rc10.robot_client import (
     REPEAT_ESTOP_S,
     REPEAT_REQUEST_S,
     RESEND_S,
+    AtEnd,
     Names,
     RobotClient,
 )
@@ -36,12 +38,16 @@ _log = logging.getLogger("rc10")
 
 
 def client_name(client: str | None) -> str:
-    """Returns `client`, or the program's name."""
-    return client or Path(sys.argv[0]).stem or "python"
+    """Returns `client`, or the program's name, as much of it as a client may have."""
+    return client or shortened(Path(sys.argv[0]).stem) or "python"
 
 
 def connect(
-    robot: str, url: str | None = None, client: str | None = None, priority: int = 0
+    robot: str,
+    url: str | None = None,
+    client: str | None = None,
+    priority: int = 0,
+    at_end: AtEnd = "timeout",
 ) -> Robot:
     """Opens the link to the robot named `robot`; use the result in a `with` statement.
 
@@ -52,12 +58,16 @@ def connect(
         url: an LCM provider; None for $LCM_DEFAULT_URL or LCM's default.
         client: who commands, shown as the owner of a motor; None for the program's name.
         priority: a client with a higher one takes motors over from a lower one.
+        at_end: what leaving the `with` statement does. "timeout": the commands end, and each motor
+            does its `on_timeout`, as when the program dies; it stays ACTIVE. "disable": motors that
+            this program enabled are disabled, and do their `on_disable`. "coast": those that it
+            commanded lose their torque, and are disabled.
 
     Raises:
         LinkError: LCM could not start, usually for want of a multicast route.
         ValueError: a name that no robot or client can have.
     """
-    return Robot(robot, LcmLink(url), client_name(client), priority)
+    return Robot(robot, LcmLink(url), client_name(client), priority, at_end)
 
 
 class Robot(RobotClient):
@@ -68,20 +78,28 @@ class Robot(RobotClient):
     commands are sent by command() alone, and each acts only for its validity: a program that
     hangs or dies lets go of the motors.
 
-    Leaving the `with` statement, by an exception too, sends COAST to the motors that this
-    program commanded and disables those that it enabled.
+    Leaving the `with` statement, by an exception too, ends the commands: each motor does its
+    `on_timeout`, as when the program dies. Argument at_end of connect() says otherwise.
 
     Args:
         name: the name of the robot.
         link: the transport; connect() makes one.
         client: who commands.
         priority: see connect().
+        at_end: see connect().
     """
 
     # ---- leaving -----------------------------------------------------------------------------
 
-    def __init__(self, name: str, link: Link, client: str, priority: int = 0) -> None:
-        super().__init__(name, link, client, priority)
+    def __init__(
+        self,
+        name: str,
+        link: Link,
+        client: str,
+        priority: int = 0,
+        at_end: AtEnd = "timeout",
+    ) -> None:
+        super().__init__(name, link, client, priority, at_end)
         self._modules: dict[str, WaitingModule] = {}
 
     def __enter__(self) -> Robot:
@@ -96,7 +114,7 @@ class Robot(RobotClient):
         self.close()
 
     def close(self) -> None:
-        """Lets go of the motors and closes the link. Takes half a second at most.
+        """Ends what acts, as `at_end` says, and closes the link. Takes half a second at most.
 
         Does not raise for what the daemon says or fails to say, so that it cannot hide the
         exception that led here; a release that was not confirmed is logged as a warning.

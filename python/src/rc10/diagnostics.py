@@ -44,10 +44,14 @@ class BusState:
     rx_frames: int
     rx_unmatched: int
     rx_malformed: int
+    rx_foreign: int
+    """Frames with a command id of the robot that rc10d did not send."""
     rx_dropped: int
     tx_frames: int
     tx_confirmed: int
     tx_dropped: int
+    tx_held: int
+    """Not sent, since the bus was not able to carry them."""
     error_frames: int
     restarts: int
     tec: int
@@ -60,6 +64,17 @@ class BusState:
         """Makes the typed view of a decoded message."""
         same = {f.name: getattr(message, f.name) for f in fields(cls) if f.name != "status"}
         return cls(status=BusStatus(message.state), **same)
+
+
+@dataclass(frozen=True)
+class Durations:
+    """Distribution of one kind of duration, over the whole run."""
+
+    count: int
+    p50_us: float
+    p99_us: float
+    p999_us: float
+    max_us: float
 
 
 @dataclass(frozen=True)
@@ -86,6 +101,10 @@ class Diagnostics:
     events_dropped: int
     refusals: Mapping[str, int]
     """Command messages and setpoints refused, by reason."""
+    counters: Mapping[str, int]
+    """Everything else that is counted."""
+    durations: Mapping[str, Durations]
+    """Ages and latencies."""
     notices: tuple[str, ...]
     """Defects in words, each with its remedy."""
     buses: Mapping[str, BusState]
@@ -93,10 +112,17 @@ class Diagnostics:
     @classmethod
     def from_lcm(cls, message: diagnostics_t) -> Diagnostics:
         """Makes the typed view of a decoded message."""
-        converted = ("refusals", "notices", "buses")
+        converted = ("refusals", "counters", "durations", "notices", "buses")
         same = {f.name: getattr(message, f.name) for f in fields(cls) if f.name not in converted}
         return cls(
             refusals=MappingProxyType({c.name: c.count for c in message.refusals}),
+            counters=MappingProxyType({c.name: c.count for c in message.counters}),
+            durations=MappingProxyType(
+                {
+                    d.name: Durations(d.count, d.p50_us, d.p99_us, d.p999_us, d.max_us)
+                    for d in message.durations
+                }
+            ),
             notices=tuple(message.notices),
             buses=MappingProxyType({b.name: BusState.from_lcm(b) for b in message.buses}),
             **same,

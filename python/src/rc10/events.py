@@ -28,6 +28,8 @@ class Event:
     code: int
     source: str
     """Name of a motor or bus, or "robot", "link", "lcm"."""
+    client: str
+    """The client or module whose request or command it was, empty without one."""
     text: str
 
     @classmethod
@@ -39,5 +41,6 @@ class Event:
             severity=Severity(message.severity),
             code=message.code,
             source=message.source,
+            client=message.client,
             text=message.text,
         )

@@ -4,6 +4,14 @@ from __future__ import annotations
 
 import secrets
 
+# Of a name on the daemon's side; the daemon would refuse what a longer one says.
+MAX_CLIENT_BYTES = 31
+
+
+def shortened(client: str) -> str:
+    """Returns as much of a name as a client may have."""
+    return client.encode()[:MAX_CLIENT_BYTES].decode(errors="ignore")
+
 
 class Identity:
     """A client's name, the random session of this run, and its growing sequence number.
@@ -14,6 +22,10 @@ class Identity:
     def __init__(self, client: str) -> None:
         if not client:
             raise ValueError("the client needs a name")
+        if len(client.encode()) > MAX_CLIENT_BYTES:
+            raise ValueError(
+                f"the client's name {client!r} is longer than {MAX_CLIENT_BYTES} bytes: shorten it"
+            )
         self.client = client
         # From 1: zero is what a program that forgets about sessions sends.
         self.session = secrets.randbelow(2**63 - 1) + 1

@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 import time
 from contextlib import contextmanager
-from typing import TYPE_CHECKING, Union
+from typing import TYPE_CHECKING, Literal, Union, get_args
 
 from rc10.decoder import Decoder
 from rc10.errors import LinkError, NotReceived, RequestRefused, UnknownMotor
@@ -30,6 +30,8 @@ if TYPE_CHECKING:
     from rc10.state import MotorState, RobotState
 
 Names = Union[str, "Iterable[str]"]
+AtEnd = Literal["timeout", "disable", "coast"]
+"""What becomes of the motors when a program leaves its robot in good order."""
 
 # A request or its answer can be lost: LCM is UDP. The daemon knows a repeated one again.
 REPEAT_REQUEST_S = 0.1
@@ -40,6 +42,8 @@ RELEASE_TIMEOUT_S = 0.5
 # While the program receives, the target of a move is sent so often, and acts for so long.
 RESEND_S = 0.02
 _MOVE_VALIDITY_MS = 100
+# Of the daemon, for a message that says 0.
+DEFAULT_VALIDITY_MS = 50
 # A state younger than this proves that the daemon runs and is heard.
 _LIVE_S = 1.0
 
@@ -58,9 +62,20 @@ class RobotClient:
         link: the transport.
         client: who commands.
         priority: a client with a higher one takes motors over from a lower one.
+        at_end: what leaving does, see rc10.connect().
     """
 
-    def __init__(self, name: str, link: Link, client: str, priority: int = 0) -> None:
+    def __init__(
+        self,
+        name: str,
+        link: Link,
+        client: str,
+        priority: int = 0,
+        at_end: AtEnd = "timeout",
+    ) -> None:
+        if at_end not in get_args(AtEnd):
+            raise ValueError(f"at_end={at_end!r}: use {', '.join(get_args(AtEnd))}")
+        self._at_end = at_end
         if not re.fullmatch(rf"[\w.-]{{1,{_MAX_NAME}}}", name, re.ASCII):
             raise ValueError(
                 f"{name!r} is no robot's name: that has letters, digits, '_', '-' and '.', "
@@ -82,6 +97,8 @@ class RobotClient:
         # To be undone on leaving.
         self._commanded: set[str] = set()
         self._enabled: set[str] = set()
+        # The last setpoint of each motor, and until when it acts.
+        self._in_force: dict[str, tuple[Setpoint, float]] = {}
 
     # ---- what is known -----------------------------------------------------------------------
 
@@ -253,20 +270,39 @@ class RobotClient:
         return ",".join(self._choose(names))
 
     def _let_go(self) -> str | None:
-        """Takes the torque away, and returns the target of the disable request that is due."""
+        """Ends what acts, as `at_end` says, and returns the target of a disable request, if any."""
         for move in self._moves.values():
             move.fail("the program has let go of the robot")
         self._moves.clear()
+        if self._at_end == "timeout":
+            self._lapse()
+            return None
         # The daemon refuses a whole message for one motor that it no longer has.
         state = self._inbox.state
         gone = set() if state is None else (self._commanded | self._enabled) - {*state.motors, _ALL}
         # Torque first: that needs no answer.
         motors = sorted(self._commanded - gone)
-        if motors:
+        if motors and self._at_end == "coast":
             self._publish_command({name: coast() for name in motors}, validity_ms=0)
         if _ALL in self._enabled:
             return ""
         return ",".join(sorted(self._enabled - gone)) or None
+
+    def _lapse(self) -> None:
+        """Has the targets in force end now, not at the end of their validity.
+
+        The same targets, and not COAST: after that the daemon would have nothing to do in their
+        stead.
+        """
+        now = self._link.now()
+        known = None if self._inbox.state is None else self._inbox.state.motors
+        last = {
+            name: setpoint
+            for name, (setpoint, until) in self._in_force.items()
+            if now < until and (known is None or name in known)
+        }
+        if last:
+            self._publish_command(last, validity_ms=1)
 
     def _no_state(self, timeout_s: float) -> str:
         return f"no state of robot '{self._name}' within {timeout_s:g} s. {self._what_to_check()}"
@@ -321,6 +357,8 @@ class RobotClient:
         message.priority = self._priority
         message.validity_ms = validity_ms
         message.setpoint_count = len(orders)
+        until = self._link.now() + (validity_ms or DEFAULT_VALIDITY_MS) / 1000
+        self._in_force.update({name: (setpoint, until) for name, setpoint in orders.items()})
         for name, order in orders.items():
             setpoint = setpoint_t()
             setpoint.motor = name

@@ -61,11 +61,70 @@ class CommandUnit(IntEnum):
     """The drive closes the loop: the unit of the mode."""
 
 
+class Acting(IntEnum):
+    """Source of the torque that a shaft feels."""
+
+    NOTHING = motor_state_t.ACTING_NOTHING
+    TARGET = motor_state_t.ACTING_TARGET
+    HOLD = motor_state_t.ACTING_HOLD
+    """The place where it stopped, with torque."""
+    DAMP = motor_state_t.ACTING_DAMP
+    BRAKE = motor_state_t.ACTING_BRAKE
+    RAMP = motor_state_t.ACTING_RAMP
+    """A velocity that falls to 0, then no torque."""
+    UNKNOWN = -1
+    """Something that this version of the client does not know."""
+
+    @classmethod
+    def _missing_(cls, _value: object) -> Acting:
+        return cls.UNKNOWN
+
+
+class StopCause(IntEnum):
+    """Why a motor does not obey, or the robot does not run."""
+
+    NONE = motor_state_t.STOP_NONE
+    REQUEST = motor_state_t.STOP_REQUEST
+    """Asked for by stopped_by."""
+    ESTOP = motor_state_t.STOP_ESTOP
+    FAULT = motor_state_t.STOP_FAULT
+    SILENCE = motor_state_t.STOP_SILENCE
+    """Its drive was not heard."""
+    GROUP = motor_state_t.STOP_GROUP
+    """Its group stopped, for the motor stopped_by."""
+    TIMEOUT = motor_state_t.STOP_TIMEOUT
+    """The command in force was not renewed: ACTIVE, with on_timeout acting."""
+    REFUSED = motor_state_t.STOP_REFUSED
+    """Its drive did not confirm that it was enabled."""
+    REFERENCE = motor_state_t.STOP_REFERENCE
+    """Its angle has lost the reference: ACTIVE, with on_timeout acting."""
+    SHUTDOWN = motor_state_t.STOP_SHUTDOWN
+    INPUT = motor_state_t.STOP_INPUT
+    """The e-stop input."""
+    UNKNOWN = -1
+    """A cause that this version of the client does not know."""
+
+    @classmethod
+    def _missing_(cls, _value: object) -> StopCause:
+        return cls.UNKNOWN
+
+
+class Condition(IntFlag):
+    """Conditions of the whole robot."""
+
+    SIMULATED = robot_state_t.CONDITION_SIMULATED
+    """Some bus of it has simulated drives."""
+    INPUT_OPEN = robot_state_t.CONDITION_INPUT_OPEN
+    """The e-stop input is open, or cannot be read."""
+
+
 _ENUMERATIONS: Mapping[str, Callable[[int], IntEnum | IntFlag]] = {
     "status": MotorStatus,
     "limits": Limit,
     "mode": Mode,
     "command_unit": CommandUnit,
+    "acting": Acting,
+    "stop_cause": StopCause,
 }
 
 
@@ -85,7 +144,15 @@ class MotorState:
     mode: Mode
     """The mode in force; COAST when there is no valid target."""
     target: float
-    """In the unit of the mode."""
+    """As it was asked for, in the unit of the mode."""
+    target_shaped: float
+    """As limits and slew let it act; NaN unless it acts."""
+    acting: Acting
+    """Source of what the shaft feels."""
+    stop_cause: StopCause
+    """Why it stopped obeying; NONE while it obeys."""
+    stopped_by: str
+    """The client, module or motor that stopped it, where there is one."""
     owner: str
     """The client whose target is in force, empty without one."""
     zeroed: bool
@@ -104,6 +171,10 @@ class MotorState:
     command_unit: CommandUnit
     feedback_age_us: int
     """Since the last feedback frame; -1: none yet."""
+    feedback_age_at_use_us: int
+    """Of the feedback that the tick's frames were computed from, when they left."""
+    command_age_us: int
+    """Since the host received the command in force; -1: none is."""
     feedback_hz: float
 
     # Each field has the name that it has in motor_state_t.
@@ -134,6 +205,19 @@ class RobotState:
     status: RobotStatus
     realtime: bool
     """The real-time set-up is complete; if not, Diagnostics.notices says why."""
+    stop_cause: StopCause
+    """Why it is not in RUN."""
+    stopped_by: str
+    """The client or module that asked for that, where there is one."""
+    stopped_mono_us: int
+    """When it left RUN, as mono_us; 0 in RUN."""
+    estop_count: int
+    """E-stops since start."""
+    conditions: Condition
+    version: str
+    """Of rc10d."""
+    config_hash: str
+    """SHA-256 of the configuration file as rc10d read it, as sha256sum prints it."""
     motors: Mapping[str, MotorState]
     taken_at_s: float = field(compare=False)
     """When the daemon took this state, on this program's clock."""
@@ -143,6 +227,11 @@ class RobotState:
     def age_s(self) -> float:
         """Seconds since the daemon took this state."""
         return self._now() - self.taken_at_s
+
+    @property
+    def simulated(self) -> bool:
+        """Whether some bus of the robot has simulated drives."""
+        return Condition.SIMULATED in self.conditions
 
     @property
     def estopped(self) -> bool:
@@ -173,6 +262,13 @@ class RobotState:
             tick=message.tick,
             status=RobotStatus(message.state),
             realtime=message.realtime,
+            stop_cause=StopCause(message.stop_cause),
+            stopped_by=message.stopped_by,
+            stopped_mono_us=message.stopped_mono_us,
+            estop_count=message.estop_count,
+            conditions=Condition(message.conditions),
+            version=message.version,
+            config_hash=message.config_hash,
             motors=MappingProxyType({m.name: MotorState.from_lcm(m) for m in message.motors}),
             taken_at_s=taken_at_s,
             _now=now,

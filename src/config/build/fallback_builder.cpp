@@ -18,13 +18,17 @@ namespace {
   return static_cast<FallbackAction>(word - kFallbackWords.begin());
 }
 
+[[nodiscard]] bool able(const MotorReading& in, FallbackAction action) {
+  if (action == FallbackAction::kRamp) return in.traits.modes.contains(ControlMode::kVelocity);
+  return in.traits.frames.of(frameKindOf(action)) != Provision::kUnsupported;
+}
+
 void checkFallback(MotorReading& in, std::string_view key) {
   const auto given = in.settings.find(key);
-  if (!given || in.traits.frames.of(frameKindOf(fallbackOf(in, key))) != Provision::kUnsupported) return;
+  if (!given || able(in, fallbackOf(in, key))) return;
   std::vector<std::string> possible;
   for (std::size_t i = 0; i < kFallbackWords.size(); ++i) {
-    const auto kind = frameKindOf(static_cast<FallbackAction>(i));
-    if (in.traits.frames.of(kind) != Provision::kUnsupported) possible.emplace_back(kFallbackWords[i]);
+    if (able(in, static_cast<FallbackAction>(i))) possible.emplace_back(kFallbackWords[i]);
   }
   in.problems.error(given->place(), given->path,
                     "the " + in.modelName() + " cannot " + given->text() + " by itself; use " +
@@ -46,6 +50,7 @@ void readFallbacks(MotorReading& in) {
   for (const auto* key : {"on_timeout", "on_disable", "on_estop"}) checkFallback(in, key);
   readSeconds(in, "hold_max_s", fallback.hold_max);
   readSeconds(in, "brake_max_s", fallback.brake_max);
+  readSeconds(in, "ramp_s", fallback.ramp);
   readSeconds(in, "run_down_s", in.draft.config.run_down);
 }
 

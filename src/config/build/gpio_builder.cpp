@@ -23,7 +23,12 @@ EstopGpioConfig readEstop(const Settings& settings) {
 }
 
 HeartbeatGpioConfig readHeartbeat(const Settings& settings, int rate_hz, Problems& problems) {
-  HeartbeatGpioConfig heartbeat{.pin = readPin(settings)};
+  HeartbeatGpioConfig heartbeat{.pin = readPin(settings), .rests_in_estop_after = std::nullopt};
+  if (settings.find("stops_on_estop_after_ms")) {
+    int after_ms = 0;
+    settings.read("stops_on_estop_after_ms", after_ms);
+    heartbeat.rests_in_estop_after = std::chrono::milliseconds{after_ms};
+  }
   const Duration least = std::chrono::nanoseconds{1'000'000'000 / rate_hz} * kMinTicksPerPeriod;
   const auto given = settings.find("period_ms");
   if (!given) {

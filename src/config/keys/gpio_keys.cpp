@@ -48,7 +48,15 @@ constexpr std::array kHeartbeatKeys{
         .unit = "ms",
         .range = {.min = 10, .max = 1000},
         .default_text = "20",
-        .about = "Period of the square wave; at least four of the scheduler's."}};
+        .about = "Period of the square wave; at least four of the scheduler's."},
+    Key{.name = "stops_on_estop_after_ms",
+        .kind = kInteger,
+        .unit = "ms",
+        .range = {.min = 0, .max = 600'000},
+        .about =
+            "So long after the beginning of an e-stop it stops, and the relay takes the motors' power; "
+            "longer than what on_estop needs to brake them. It toggles again when the e-stop is cleared. "
+            "Without it it never stops for that."}};
 
 }  // namespace
 

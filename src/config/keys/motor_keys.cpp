@@ -119,9 +119,10 @@ constexpr std::array kMotorKeys{
         .kind = kText,
         .choices = fallbacks,
         .default_text = "coast",
-        .about = "What the motor does when its last command has lapsed. coast: no torque. damp: resists in "
-                 "proportion to its speed. brake: stops and resists. hold: stays at its angle. See "
-                 "docs/safety.md#fallbacks."},
+        .about =
+            "What the motor does when its last command has lapsed. coast: no torque. damp: resists in "
+            "proportion to its speed. brake: stops and resists. hold: stays at its angle. ramp: comes to "
+            "rest within ramp_s, and then has no torque. See docs/safety.md#fallbacks."},
     Key{.name = "on_disable",
         .kind = kText,
         .choices = fallbacks,
@@ -146,6 +147,13 @@ constexpr std::array kMotorKeys{
         .about =
             "A brake in an e-stop becomes damp after this time, if the drive can. When its group stops it "
             "stays: the robot may stand on a slope."},
+    Key{.name = "ramp_s",
+        .kind = kNumber,
+        .unit = "s",
+        .range = {.min = 0.02, .max = 60},
+        .default_text = "1",
+        .about = "A fallback ramp takes the speed to 0 in this time, whatever it was, and 0.2 s later the "
+                 "torque. What gravity pulls on falls then."},
     Key{.name = "run_down_s",
         .kind = kNumber,
         .unit = "s",

@@ -39,7 +39,11 @@ std::string robotText(const RobotConfig& config) {
   }
   if (const auto& heartbeat = config.heartbeat_gpio) {
     const auto period = std::chrono::duration_cast<std::chrono::milliseconds>(heartbeat->period).count();
-    table.add({"heartbeat", heartbeat->pin.name() + ", every " + std::to_string(period) + " ms"});
+    const auto rests = heartbeat->rests_in_estop_after;
+    table.add({"heartbeat", heartbeat->pin.name() + ", every " + std::to_string(period) + " ms" +
+                                (rests ? ", until " + std::to_string(*rests / std::chrono::milliseconds{1}) +
+                                             " ms after an e-stop"
+                                       : std::string{", also in an e-stop"})});
   }
   return table.text(0);
 }
@@ -152,6 +156,8 @@ std::string estopText(const MotorConfig& motor) {
   const auto& fallback = motor.fallback;
   const auto bound = boundOf(fallback.on_estop, true, fallback, motor.traits().frames);
   auto text = fallbackText(fallback.on_estop);
+  if (fallback.on_estop == FallbackAction::kRamp)
+    return text + ", after " + numberText(std::chrono::duration<double>(fallback.ramp).count()) + " s coast";
   if (!bound.most || bound.then == frameKindOf(fallback.on_estop)) return text;
   const double seconds = std::chrono::duration<double>(*bound.most).count();
   const char* then = bound.then == FrameKind::kDamp ? " s damp" : " s brake";

@@ -98,6 +98,7 @@ CommandRefusal Admission::admit(const link::Command& message, MonotonicTime now,
     named.set(out.setpoints[i].motor);
   }
   out.deadline = *deadline;
+  out.received = receivedAt(message.received_ns, now);
   out.client = message.client;
   if (now >= out.deadline) return CommandRefusal::kExpired;
   out.session = message.session;

@@ -188,8 +188,8 @@ void LinkServer::receive(std::size_t index) {
 // False: this client does not speak our protocol, and is sent away.
 bool LinkServer::handle(Connection& connection, std::span<const std::byte> datagram) {
   link::Header header;
-  if (!link::readHeader(datagram, header)) return false;
-  if (!connection.welcomed) return welcome(connection, datagram);
+  if (!connection.welcomed) return link::readHeader(datagram, header) && welcome(connection, datagram);
+  if (!link::readHeader(datagram, header)) return obeyEstop(datagram, connection);
   if (header.type == link::MessageType::kCommand) {
     if (link::open(datagram, command_)) {
       command(command_);
@@ -210,10 +210,17 @@ bool LinkServer::handle(Connection& connection, std::span<const std::byte> datag
   }
   if (header.type == link::MessageType::kRequest) {
     link::Request message;
-    if (!link::open(datagram, message)) return false;
+    if (!link::open(datagram, message)) return obeyEstop(datagram, connection);
     request(message, connection);
     return true;
   }
+  return false;
+}
+
+// The client is sent away all the same: it does not speak our protocol.
+bool LinkServer::obeyEstop(std::span<const std::byte> datagram, Connection& connection) {
+  link::Request message;
+  if (link::openEstop(datagram, message)) request(message, connection);
   return false;
 }
 
@@ -272,7 +279,11 @@ void LinkServer::tell(link::Event message) {
 
 void LinkServer::request(const link::Request& message, Connection& connection) {
   auto outcome = desk_.begin(message, connection.id);
-  if (outcome.estop) sources_.exchange.estop.store(true, std::memory_order_release);
+  if (outcome.estop) {
+    sources_.exchange.estop_client.slot() = message.client;
+    sources_.exchange.estop_client.publish();
+    sources_.exchange.estop.store(true, std::memory_order_release);
+  }
   if (outcome.order && !sources_.exchange.orders.push(*outcome.order)) {
     if (const auto failed = desk_.fail(outcome.order->id, "the scheduler does not take orders"))
       answer(*failed);
@@ -323,8 +334,9 @@ void LinkServer::publishModules(const Snapshot& snapshot) {
 }
 
 void LinkServer::publishDiagnostics() {
-  publication_.fill(diagnostics_, sources_.exchange.snapshot.read(), sources_.timing, sources_.inboxes,
-                    admission_, sources_.page_faults ? sources_.page_faults() : 0, wallClockUs());
+  publication_.fill(diagnostics_, sources_.exchange.snapshot.read(), sources_.timing, sources_.exchange.ages,
+                    sources_.inboxes, admission_, sources_.page_faults ? sources_.page_faults() : 0,
+                    wallClockUs());
   publish(link::kDiagnosticsFeed, link::seal(diagnostics_));
 }
 

@@ -58,6 +58,8 @@ class LinkServer {
   [[nodiscard]] bool dropSilentConnection();
   void receive(std::size_t index);
   [[nodiscard]] bool handle(Connection& connection, std::span<const std::byte> datagram);
+  /// A defective message may still be an e-stop. False.
+  [[nodiscard]] bool obeyEstop(std::span<const std::byte> datagram, Connection& connection);
   [[nodiscard]] bool welcome(Connection& connection, std::span<const std::byte> datagram);
   void command(const link::Command& message);
   void signals(const link::Signals& message);

@@ -43,6 +43,7 @@ link::Welcome Publication::welcome() const {
   out.pid = ::getpid();
   out.robot = robot_.robot;
   out.version = kVersion;
+  out.config_hash = robot_.config_hash;
   out.lcm_url = robot_.lcm_url;
   out.rate_hz = robot_.rate_hz;
   out.state_hz = robot_.state_hz;
@@ -91,6 +92,12 @@ void Publication::fill(link::State& state, const Snapshot& snapshot, std::int64_
   state.tick = static_cast<std::int64_t>(snapshot.tick);
   state.robot_state = snapshot.state;
   state.realtime = robot_.realtime ? 1 : 0;
+  state.stop_cause = snapshot.stop.cause;
+  state.stopped_by = snapshot.stop.by;
+  state.stopped_mono_us = monoUs(snapshot.stopped);
+  state.estop_count = static_cast<std::int32_t>(snapshot.estops);
+  state.conditions =
+      (robot_.simulated() ? kConditionSimulated : 0U) | (snapshot.input_open ? kConditionInputOpen : 0U);
   state.motor_count = static_cast<std::uint32_t>(snapshot.motor_count);
   for (std::size_t i = 0; i < snapshot.motor_count; ++i) {
     const auto& in = snapshot.motors[i];
@@ -102,7 +109,13 @@ void Publication::fill(link::State& state, const Snapshot& snapshot, std::int64_
     out.limits = in.limits;
     out.fault = static_cast<std::int32_t>(in.fault);
     out.feedback_age_us = feedbackAgeUs(in.feedback, snapshot.time);
+    out.feedback_age_at_use_us = feedbackAgeUs(in.feedback, snapshot.sent);
+    out.command_age_us = commandAgeUs(in, snapshot.time);
     out.target = in.target.value;
+    out.target_shaped = in.target_shaped;
+    out.acting = in.acting;
+    out.stop_cause = in.stop.cause;
+    out.stopped_by = in.stop.by;
 #define RC10_COPY(type, name, initial) out.name = in.feedback.name;
     RC10_FEEDBACK_READINGS(RC10_COPY)
 #undef RC10_COPY
@@ -144,8 +157,32 @@ void Publication::fill(link::BusStatus& out, std::size_t bus, const Snapshot& sn
   out.restarts = static_cast<std::int64_t>(in.restarts);
 }
 
+void Publication::fillCounters(link::Diagnostics& out, const Snapshot& snapshot) {
+  out.counter_count = 0;
+  const auto add = [&out](std::string_view name, std::uint64_t count) {
+    out.counters[out.counter_count].name = name;
+    out.counters[out.counter_count].count = static_cast<std::int64_t>(count);
+    ++out.counter_count;
+  };
+  add("e-stops", snapshot.estops);
+  add("commands expired in the ring", snapshot.expired_commands);
+}
+
+void Publication::fillDurations(link::Diagnostics& out, const TickAges& ages) const {
+  out.duration_count = 0;
+  const auto add = [&out](std::string_view name, const DurationHistogram& histogram) {
+    out.durations[out.duration_count].name = name;
+    out.durations[out.duration_count].count = static_cast<std::int64_t>(histogram.count());
+    out.durations[out.duration_count].percentiles = percentiles(histogram);
+    ++out.duration_count;
+  };
+  add("command to frames", ages.command);
+  for (std::size_t i = 0; i < ages.feedback.size(); ++i)
+    add("feedback at use: " + robot_.motors[i].name, ages.feedback[i]);
+}
+
 void Publication::fill(link::Diagnostics& out, const Snapshot& snapshot, const TickTiming& timing,
-                       std::span<const BusInbox> inboxes, const Admission& admission,
+                       const TickAges& ages, std::span<const BusInbox> inboxes, const Admission& admission,
                        std::uint64_t page_faults, std::int64_t utime) {
   out.utime = utime;
   out.mono_us = monoUs(snapshot.time);
@@ -170,6 +207,8 @@ void Publication::fill(link::Diagnostics& out, const Snapshot& snapshot, const T
   }
   add("not owner", snapshot.refused_commands + snapshot.refused_signals);
   add("setpoint skipped", snapshot.skipped_setpoints);
+  fillCounters(out, snapshot);
+  fillDurations(out, ages);
   out.notice_count = static_cast<std::uint32_t>(std::min(robot_.notices.size(), link::kMaxNotices));
   for (std::size_t i = 0; i < out.notice_count; ++i) out.notices[i] = robot_.notices[i];
   out.bus_count = static_cast<std::uint32_t>(snapshot.bus_count);
@@ -184,6 +223,7 @@ link::Event Publication::refusal(CommandRefusal reason, const link::Name& client
   out.severity = Severity::kWarning;
   out.code = static_cast<std::int32_t>(EventCode::kCommandRefused);
   out.source = "robot";
+  out.client = client;
   const auto* verdict = reason == CommandRefusal::kUnusedField ? "accepted" : "refused";
   out.text = fmt::format("command of '{}' {}: {}", client.view(), verdict, describe(reason));
   return out;
@@ -207,6 +247,7 @@ link::Event Publication::event(const Event& event, std::int64_t utime) const {
   } else {
     out.source = index < robot_.motors.size() ? std::string_view{robot_.motors[index].name} : "?";
   }
+  out.client = event.client;
   out.text = describe(event);
   if (event.code == EventCode::kModule && index < robot_.modules.size()) {
     const auto& events = robot_.modules[index].signals.events;

@@ -11,6 +11,7 @@
 #include "daemon/exchange/rings.hpp"
 #include "daemon/exchange/robot_description.hpp"
 #include "daemon/exchange/snapshot.hpp"
+#include "daemon/exchange/tick_ages.hpp"
 #include "daemon/exchange/tick_timing.hpp"
 #include "link/link_protocol.hpp"
 
@@ -37,7 +38,7 @@ class Publication {
   [[nodiscard]] link::ModuleInfo moduleInfo(std::size_t module) const;
   void fill(link::State& state, const Snapshot& snapshot, std::int64_t utime);
   void fill(link::ModuleState& state, std::size_t module, const Snapshot& snapshot, std::int64_t utime) const;
-  void fill(link::Diagnostics& out, const Snapshot& snapshot, const TickTiming& timing,
+  void fill(link::Diagnostics& out, const Snapshot& snapshot, const TickTiming& timing, const TickAges& ages,
             std::span<const BusInbox> inboxes, const Admission& admission, std::uint64_t page_faults,
             std::int64_t utime);
   /// A command message that admission refused.
@@ -46,6 +47,8 @@ class Publication {
   [[nodiscard]] link::Event event(const Event& event, std::int64_t utime) const;
 
  private:
+  static void fillCounters(link::Diagnostics& out, const Snapshot& snapshot);
+  void fillDurations(link::Diagnostics& out, const TickAges& ages) const;
   void fill(link::BusStatus& out, std::size_t bus, const Snapshot& snapshot, const BusInbox& inbox);
 
   const RobotDescription& robot_;

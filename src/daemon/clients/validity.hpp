@@ -11,6 +11,11 @@ namespace rc10 {
 
 inline constexpr Duration kDefaultValidity = std::chrono::milliseconds{50};
 
+/// A stamp from the future is a sender's mistake; it must not prolong the message.
+[[nodiscard]] inline MonotonicTime receivedAt(std::int64_t received_ns, MonotonicTime now) noexcept {
+  return std::min(MonotonicTime{Duration{received_ns}}, now);
+}
+
 /// Until when a message acts that was received at `received_ns` (CLOCK_MONOTONIC); nothing if its validity is
 /// out of range. 0 ms: the default.
 [[nodiscard]] inline std::optional<MonotonicTime> deadlineOf(std::int64_t received_ns,
@@ -18,8 +23,7 @@ inline constexpr Duration kDefaultValidity = std::chrono::milliseconds{50};
                                                              MonotonicTime now) noexcept {
   const Duration validity = validity_ms == 0 ? kDefaultValidity : std::chrono::milliseconds{validity_ms};
   if (validity <= Duration{0} || validity > kMaxValidity) return std::nullopt;
-  // A stamp from the future is a sender's mistake; it must not prolong the message.
-  return std::min(MonotonicTime{Duration{received_ns}}, now) + validity;
+  return receivedAt(received_ns, now) + validity;
 }
 
 }  // namespace rc10

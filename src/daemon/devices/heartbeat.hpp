@@ -8,15 +8,15 @@
 
 namespace rc10 {
 
-/// Toggles an output while the scheduler makes progress. An external relay that needs the wave cuts the
-/// motors' power when the computer hangs; so the output is never toggled for any other reason. The gpio
-/// thread's only.
+/// Toggles an output while the scheduler makes progress and lets it. An external relay that needs the wave
+/// cuts the motors' power when the computer hangs; so the output is never toggled for any other reason. The
+/// gpio thread's only.
 class Heartbeat {
  public:
   Heartbeat(std::unique_ptr<DigitalOutput> output, Duration period)
       : output_(std::move(output)), half_period_(period / 2) {}
 
-  /// `ticks`: of the scheduler, so far. False: the output refused.
+  /// `ticks`: Scheduler::beats() so far. False: the output refused.
   bool step(MonotonicTime now, std::uint64_t ticks) noexcept {
     if (now < next_) return true;
     next_ = next_ + half_period_ > now ? next_ + half_period_

@@ -28,7 +28,8 @@ struct Command {
   link::Name client;
   std::uint64_t session = 0;
   std::int32_t priority = 0;
-  MonotonicTime deadline;  ///< Receive time of the message plus its validity.
+  MonotonicTime received;  ///< By this host, as the kernel stamped it; from a module: its tick.
+  MonotonicTime deadline;  ///< That plus its validity.
   std::size_t count = 0;
   std::array<Setpoint, kMaxMotors> setpoints;
 };
@@ -54,7 +55,7 @@ struct Order {
   double value = 0.0;        ///< kZero: what the present angle becomes, deg.
   DriveWrite drive{};        ///< kConfigure: what is written to the drive of the one motor.
   GainChanges gains{};       ///< kSetGains: of the one motor.
-  link::Name client{};       ///< kSetGains: who asked.
+  link::Name client{};       ///< Who asked.
   bool whole_robot = false;  ///< Named no motor. Only such a kClear ends an e-stop.
 
   [[nodiscard]] bool fromModule() const noexcept { return id == kFromModule; }

@@ -13,6 +13,7 @@
 #include "daemon/exchange/latest_value.hpp"
 #include "daemon/exchange/orders.hpp"
 #include "daemon/exchange/snapshot.hpp"
+#include "daemon/exchange/tick_ages.hpp"
 
 namespace rc10 {
 
@@ -51,9 +52,11 @@ struct LinkExchange {
   NoteRing notes;                   // io -> link, in words already
   NoteRing line_notes;              // lines -> link, the same
   LatestValue<Snapshot> snapshot;   // scheduler -> link
+  TickAges ages;                    // scheduler -> link
   /// Beside the ring, so that an e-stop gets through when the ring is full.
   std::atomic<bool> estop{false};
-  EstopContact estop_contact;  // gpio -> scheduler
+  LatestValue<link::Name> estop_client;  ///< Who asked for it; published before.
+  EstopContact estop_contact;            // gpio -> scheduler
 };
 
 }  // namespace rc10

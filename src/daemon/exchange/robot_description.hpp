@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <string>
 #include <vector>
 
@@ -12,6 +13,7 @@ namespace rc10 {
 struct RobotDescription {
   std::string robot;
   std::string lcm_url;
+  std::string config_hash;  ///< SHA-256 of the configuration file.
   int rate_hz = 1000;
   int state_hz = 200;
   struct Motor {
@@ -40,6 +42,10 @@ struct RobotDescription {
   std::vector<Motor> motors;
   std::vector<Bus> buses;
   std::vector<Module> modules;
+  [[nodiscard]] bool simulated() const noexcept {
+    return std::any_of(buses.begin(), buses.end(), [](const Bus& bus) { return bus.interface.empty(); });
+  }
+
   std::vector<std::string> notices;  ///< Deviations from the ideal set-up, each with its remedy.
   bool realtime = true;
   std::string estop_input;  ///< Chip and line; empty: there is none.

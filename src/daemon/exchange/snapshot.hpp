@@ -5,6 +5,7 @@
 #include <chrono>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 
 #include "app/time.hpp"
 #include "bus/fdcan_bus.hpp"
@@ -19,6 +20,10 @@ inline constexpr std::size_t kMaxBuses = link::kMaxBuses;
 struct MotorSnapshot {
   MotorFeedback feedback;
   Target target;
+  double target_shaped = std::numeric_limits<double>::quiet_NaN();  ///< As it acts; NaN: none does.
+  MonotonicTime command_received{};                                 ///< Of the command in force; 0: none is.
+  Acting acting = Acting::kNothing;
+  Stop stop;  ///< Why it does not obey.
   float command_value = 0.0F;
   std::uint32_t limits = 0;
   FaultCode fault = FaultCode::kNone;
@@ -27,11 +32,20 @@ struct MotorSnapshot {
   link::Name owner;
 };
 
-/// Microseconds since the last feedback, as clients are told; -1: there was none.
-[[nodiscard]] inline std::int32_t feedbackAgeUs(const MotorFeedback& feedback, MonotonicTime now) noexcept {
-  if (feedback.samples == 0) return -1;
-  const auto age = std::chrono::duration_cast<std::chrono::microseconds>(now - feedback.received).count();
+/// Microseconds from one time to another, as clients are told.
+[[nodiscard]] inline std::int32_t ageUs(MonotonicTime since, MonotonicTime now) noexcept {
+  const auto age = std::chrono::duration_cast<std::chrono::microseconds>(now - since).count();
   return static_cast<std::int32_t>(std::clamp<std::int64_t>(age, 0, INT32_MAX));
+}
+
+/// Microseconds since the last feedback; -1: there was none.
+[[nodiscard]] inline std::int32_t feedbackAgeUs(const MotorFeedback& feedback, MonotonicTime now) noexcept {
+  return feedback.samples == 0 ? -1 : ageUs(feedback.received, now);
+}
+
+/// Microseconds since the command in force was received; -1: none is.
+[[nodiscard]] inline std::int32_t commandAgeUs(const MotorSnapshot& motor, MonotonicTime now) noexcept {
+  return motor.command_received == MonotonicTime{} ? -1 : ageUs(motor.command_received, now);
 }
 
 struct BusSnapshot {
@@ -53,6 +67,7 @@ struct ModuleSnapshot {
 /// State that the scheduler publishes to the link thread after each tick.
 struct Snapshot {
   MonotonicTime time;
+  MonotonicTime sent;  ///< After the frames of the tick were handed to the kernel.
   std::uint64_t tick = 0;
   std::uint64_t missed_ticks = 0;
   std::uint64_t expired_commands = 0;   ///< Arrived in the tick after their deadline.
@@ -61,6 +76,10 @@ struct Snapshot {
   std::uint64_t refused_signals = 0;    ///< A module was held by another client, or the message was old.
   std::uint64_t events_dropped = 0;
   RobotStatus state = RobotStatus::kRun;
+  Stop stop;                ///< Why it is not in RUN,
+  MonotonicTime stopped{};  ///< and since when; 0: it is.
+  std::uint32_t estops = 0;
+  bool input_open = false;  ///< The e-stop input.
   std::size_t motor_count = 0;
   std::size_t bus_count = 0;
   std::array<MotorSnapshot, kMaxMotors> motors;

@@ -4,6 +4,7 @@
 #include <cstdint>
 
 #include "app/vocabulary.hpp"
+#include "link/link_protocol.hpp"
 
 namespace rc10 {
 
@@ -46,6 +47,30 @@ inline constexpr auto kMotorTransitions = [] {
   // Rest is the answer to everything unknown.
   if (row >= kMotorStatusCount || column >= kMotorEventCount) return MotorStatus::kFault;
   return detail::kMotorTransitions[row][column];
+}
+
+/// Why something stopped, and who had it stop: a client or module, or the motor for which a group stopped.
+struct Stop {
+  StopCause cause = StopCause::kNone;
+  link::Name by{};
+};
+
+/// Why such an event stops a motor that was on.
+[[nodiscard]] constexpr StopCause causeOf(MotorEvent event, RobotStatus robot) noexcept {
+  switch (event) {
+    case MotorEvent::kFeedbackLost: return StopCause::kSilence;
+    case MotorEvent::kEnableFailed: return StopCause::kRefused;
+    case MotorEvent::kDisable: return StopCause::kRequest;
+    case MotorEvent::kEstop:
+      return robot == RobotStatus::kStopping ? StopCause::kShutdown : StopCause::kEstop;
+    case MotorEvent::kFault: return StopCause::kFault;
+    case MotorEvent::kGroupStop: return StopCause::kGroup;
+    case MotorEvent::kFeedbackFresh:
+    case MotorEvent::kEnable:
+    case MotorEvent::kEnableDone:
+    case MotorEvent::kClear: break;
+  }
+  return StopCause::kNone;
 }
 
 /// Whether such a motor moves, or is about to.

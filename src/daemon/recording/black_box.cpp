@@ -4,6 +4,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <atomic>
 #include <thread>
 #include <utility>
@@ -30,6 +31,7 @@ constexpr Duration kCopyLookInterval = std::chrono::milliseconds{50};
   header.rate_hz = static_cast<std::uint32_t>(robot.rate_hz);
   header.robot = robot.robot;
   header.program_version = rc10::kVersion;
+  header.config_hash = robot.config_hash;
   header.bus_count = static_cast<std::uint32_t>(robot.buses.size());
   header.motor_count = static_cast<std::uint32_t>(robot.motors.size());
   for (std::size_t i = 0; i < robot.buses.size(); ++i) {
@@ -48,6 +50,10 @@ constexpr Duration kCopyLookInterval = std::chrono::milliseconds{50};
     module.name = robot.modules[i].name;
     module.input_count = static_cast<std::uint32_t>(inputs.size());
     for (std::size_t input = 0; input < inputs.size(); ++input) module.inputs[input] = inputs[input];
+    const auto& events = robot.modules[i].signals.events;
+    module.event_count = static_cast<std::uint32_t>(std::min(events.size(), module.events.size()));
+    for (std::size_t event = 0; event < module.event_count; ++event)
+      module.events[event] = events[event].text;
   }
   return header;
 }

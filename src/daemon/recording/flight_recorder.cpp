@@ -111,10 +111,12 @@ void FlightRecorder::order(const Order& order) noexcept {
   blackbox::Order record;
   record.header.time_ns = nowNs();
   record.header.flags = static_cast<std::uint8_t>(order.operation);
+  record.header.source = order.whole_robot ? 1 : 0;
   for (std::size_t i = 0; i < order.motors.size(); ++i) {
     if (order.motors.test(i)) record.motors[i / 64] |= std::uint64_t{1} << (i % 64);
   }
   record.value = order.value;
+  record.client = order.client;
   out_.write(record);
 }
 
@@ -144,14 +146,17 @@ void FlightRecorder::states(const Snapshot& snapshot) noexcept {
     blackbox::Robot record;
     record.header.time_ns = nowNs();
     record.header.flags = static_cast<std::uint8_t>(snapshot.state);
+    record.header.source = static_cast<std::uint8_t>(snapshot.stop.cause);
+    record.header.id = snapshot.input_open ? kConditionInputOpen : 0U;
     record.tick = snapshot.tick;
     record.missed_ticks = snapshot.missed_ticks;
+    record.estops = snapshot.estops;
     out_.write(record);
   }
   for (std::size_t i = 0; i < snapshot.motor_count; ++i) {
     if (!due && snapshot.motors[i].status == statuses_[i]) continue;
     statuses_[i] = snapshot.motors[i].status;
-    motor(snapshot.motors[i], static_cast<std::uint8_t>(i));
+    motor(snapshot.motors[i], snapshot.sent, static_cast<std::uint8_t>(i));
   }
   for (std::size_t i = 0; i < snapshot.bus_count; ++i) {
     if (!due && snapshot.buses[i].state == bus_states_[i]) continue;
@@ -160,15 +165,16 @@ void FlightRecorder::states(const Snapshot& snapshot) noexcept {
   }
 }
 
-void FlightRecorder::motor(const MotorSnapshot& motor, std::uint8_t index) noexcept {
+void FlightRecorder::motor(const MotorSnapshot& motor, MonotonicTime sent, std::uint8_t index) noexcept {
   blackbox::Motor record;
   record.header.time_ns = nowNs();
   record.header.source = index;
   record.header.flags = static_cast<std::uint8_t>(motor.status);
-  record.header.id = static_cast<std::uint32_t>(motor.target.mode) |
-                     static_cast<std::uint32_t>(motor.command_unit) << 8U |
-                     (motor.feedback.zeroed ? 1U << 16U : 0U);
+  record.header.id =
+      static_cast<std::uint32_t>(motor.target.mode) | static_cast<std::uint32_t>(motor.command_unit) << 8U |
+      (motor.feedback.zeroed ? 1U << 16U : 0U) | static_cast<std::uint32_t>(motor.acting) << 24U;
   record.target = motor.target.value;
+  record.target_shaped = motor.target_shaped;
   record.total_angle_deg = motor.feedback.total_angle_deg;
   record.angle_deg = motor.feedback.angle_deg;
   record.velocity_rpm = motor.feedback.velocity_rpm;
@@ -180,6 +186,9 @@ void FlightRecorder::motor(const MotorSnapshot& motor, std::uint8_t index) noexc
   record.limits = motor.limits;
   record.fault = static_cast<std::int32_t>(motor.fault);
   record.feedback_age_us = feedbackAgeUs(motor.feedback, now_);
+  record.feedback_age_at_use_us = feedbackAgeUs(motor.feedback, sent);
+  record.command_age_us = commandAgeUs(motor, now_);
+  record.stop_cause = static_cast<std::uint32_t>(motor.stop.cause);
   out_.write(record);
 }
 

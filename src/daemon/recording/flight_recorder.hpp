@@ -65,7 +65,7 @@ class FlightRecorder {
 
   [[nodiscard]] bool isNew(const SignalMessage& message, LastSignals& last) const noexcept;
   void frame(const CanFrame& frame, std::uint8_t bus, std::uint8_t flags, MonotonicTime time) noexcept;
-  void motor(const MotorSnapshot& motor, std::uint8_t index) noexcept;
+  void motor(const MotorSnapshot& motor, MonotonicTime sent, std::uint8_t index) noexcept;
   void bus(const BusSnapshot& bus, std::uint8_t index) noexcept;
   [[nodiscard]] std::int64_t nowNs() const noexcept { return now_.time_since_epoch().count(); }
 

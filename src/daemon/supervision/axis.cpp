@@ -25,6 +25,26 @@ void Axis::fill(MotorSnapshot& snapshot) const noexcept {
   snapshot.fault = fault_;
   snapshot.status = status_;
   snapshot.owner = lease_.client();
+  snapshot.acting = acting();
+  snapshot.target_shaped =
+      snapshot.acting == Acting::kTarget ? in_force_.value : std::numeric_limits<double>::quiet_NaN();
+  snapshot.command_received = lease_.received();
+  snapshot.stop = stop_;
+}
+
+Acting Axis::acting() const noexcept {
+  switch (motor_.ordered()) {
+    case FrameKind::kCommand: return ramps() ? Acting::kRamp : Acting::kTarget;
+    case FrameKind::kHold: return Acting::kHold;
+    case FrameKind::kDamp: return Acting::kDamp;
+    case FrameKind::kBrake: return Acting::kBrake;
+    case FrameKind::kRest:
+    case FrameKind::kPoll:
+    case FrameKind::kIdle:
+    case FrameKind::kEnable:
+    case FrameKind::kDisable: break;
+  }
+  return Acting::kNothing;
 }
 
 // ---- Feedback
@@ -74,7 +94,7 @@ bool Axis::losesReference(const Tick& tick) noexcept {
   reference_known_ = known;
   if (lost && needsReference(motor_.target().mode)) {
     dropTarget();
-    beginTimeoutFallback(tick);
+    beginTimeoutFallback(StopCause::kReference, tick);
   }
   return lost;
 }
@@ -130,7 +150,7 @@ bool Axis::lapses(const Tick& tick) noexcept {
   const bool coasts = motor_.target().mode == ControlMode::kCoast;
   dropTarget();
   if (coasts) return false;
-  beginTimeoutFallback(tick);
+  beginTimeoutFallback(StopCause::kTimeout, tick);
   return true;
 }
 
@@ -143,10 +163,12 @@ void Axis::order(RobotStatus robot, const Tick& tick) noexcept {
     motor_.order(kind);
     return;
   }
+  const Target target = ramps() ? Target{.mode = ControlMode::kVelocity, .value = fallback_.rampRpm(tick.now)}
+                                : motor_.target();
   // First, so that soft limits act in this tick already.
-  motor_.restoreReference(motor_.target().mode);
-  const auto shaped = shaper_.step(motor_.target(), motor_.feedback(),
-                                   {motor_.commandValue(), motor_.commandUnit()}, tick.dt_s);
+  motor_.restoreReference(target.mode);
+  const auto shaped =
+      shaper_.step(target, motor_.feedback(), {motor_.commandValue(), motor_.commandUnit()}, tick.dt_s);
   limits_ |= shaped.limits;
   in_force_ = shaped.target;
   motor_.order(kind, shaped.target);
@@ -175,18 +197,23 @@ bool Axis::heldWhileEnabling() const noexcept {
 
 // ---- Changes
 
-std::optional<MotorStatus> Axis::take(MotorEvent event, RobotStatus robot, const Tick& tick) noexcept {
+std::optional<MotorStatus> Axis::take(MotorEvent event, RobotStatus robot, const Stop& stop,
+                                      const Tick& tick) noexcept {
   const auto before = status_;
   status_ = next(before, event);
   if (status_ == before) return std::nullopt;
   if (before == MotorStatus::kFault) fault_ = FaultCode::kNone;
+  if (isOn(status_)) stop_ = {};
+  const bool stopped = isOn(before) && !isOn(status_);
+  if (stopped || status_ == MotorStatus::kFault) stop_ = stop;
   if (status_ != MotorStatus::kActive) dropTarget();
   if (before == MotorStatus::kActive && status_ == MotorStatus::kReady) {
     const auto& config = entry_.fallback;
     const bool asked = event == MotorEvent::kDisable || robot == RobotStatus::kStopping;
     const auto action = asked ? config.on_disable : config.on_estop;
     fallback_.begin(action, asked ? Fallback::Until::kStandstill : Fallback::Until::kEnded,
-                    boundOf(action, event == MotorEvent::kEstop, config, motor_.driveFrames()), tick.now);
+                    boundOf(action, event == MotorEvent::kEstop, config, motor_.driveFrames()), ramp(),
+                    tick.now);
   }
   // Without feedback there is nothing to brake by.
   if (status_ == MotorStatus::kOffline || status_ == MotorStatus::kFault) fallback_.end();
@@ -207,7 +234,7 @@ void Axis::clearFault(const Tick& tick) noexcept {
 }
 
 std::optional<SkipReason> Axis::take(const Target& target, const Lease::Holder& sender,
-                                     MonotonicTime deadline) noexcept {
+                                     const Lease::Term& term) noexcept {
   if (target.mode == ControlMode::kCoast) {
     // Letting go of a motor that is not held is no mistake: clients do it when they leave. While it is valid
     // it keeps others of a lower priority from moving the motor, as every setpoint does.
@@ -216,8 +243,9 @@ std::optional<SkipReason> Axis::take(const Target& target, const Lease::Holder& 
   } else {
     if (const auto reason = tryTarget(target)) return reason;
     fallback_.end();
+    stop_ = {};
   }
-  lease_.take(sender, deadline);
+  lease_.take(sender, term);
   return std::nullopt;
 }
 
@@ -264,10 +292,15 @@ void Axis::dropTarget() noexcept {
   lease_.release();
 }
 
-void Axis::beginTimeoutFallback(const Tick& tick) noexcept {
+void Axis::beginTimeoutFallback(StopCause cause, const Tick& tick) noexcept {
+  stop_ = {cause};
   const auto& config = entry_.fallback;
   fallback_.begin(config.on_timeout, Fallback::Until::kEnded,
-                  boundOf(config.on_timeout, false, config, motor_.driveFrames()), tick.now);
+                  boundOf(config.on_timeout, false, config, motor_.driveFrames()), ramp(), tick.now);
+}
+
+Fallback::Ramp Axis::ramp() const noexcept {
+  return {static_cast<double>(motor_.feedback().velocity_rpm), entry_.fallback.ramp};
 }
 
 }  // namespace rc10

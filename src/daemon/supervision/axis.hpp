@@ -25,6 +25,8 @@ class Axis {
   [[nodiscard]] Motor_Base& motor() const noexcept { return motor_; }
   [[nodiscard]] MotorStatus status() const noexcept { return status_; }
   [[nodiscard]] FaultCode fault() const noexcept { return fault_; }
+  /// Why it does not obey.
+  [[nodiscard]] const Stop& stop() const noexcept { return stop_; }
   [[nodiscard]] bool fallbackActs() const noexcept { return fallback_.acts(); }
   [[nodiscard]] FallbackAction timeoutAction() const noexcept { return entry_.fallback.on_timeout; }
   /// It must not be enabled: an angle could lead it a turn astray. One that is homed finds its angle itself.
@@ -60,7 +62,7 @@ class Axis {
   // ---- Changes
 
   /// The status before, if it changes.
-  [[nodiscard]] std::optional<MotorStatus> take(MotorEvent event, RobotStatus robot,
+  [[nodiscard]] std::optional<MotorStatus> take(MotorEvent event, RobotStatus robot, const Stop& stop,
                                                 const Tick& tick) noexcept;
   /// Before MotorEvent::kEnable.
   void prepareEnabling(const Tick& tick) noexcept;
@@ -77,7 +79,7 @@ class Axis {
   }
   /// Takes a target that the lease allows. The reason, if it does not act.
   [[nodiscard]] std::optional<SkipReason> take(const Target& target, const Lease::Holder& sender,
-                                               MonotonicTime deadline) noexcept;
+                                               const Lease::Term& term) noexcept;
   /// At most one report of a skipped setpoint in each kReportInterval.
   [[nodiscard]] bool mayReportSkip(MonotonicTime now) noexcept;
   [[nodiscard]] Refusal zero(const Order& order) noexcept;
@@ -85,10 +87,16 @@ class Axis {
 
  private:
   [[nodiscard]] FrameKind frameKind(RobotStatus robot) const noexcept;
+  [[nodiscard]] Acting acting() const noexcept;
+  /// Its command is the velocity of a fallback.
+  [[nodiscard]] bool ramps() const noexcept {
+    return fallback_.kind() == FrameKind::kCommand && motor_.target().mode == ControlMode::kCoast;
+  }
+  [[nodiscard]] Fallback::Ramp ramp() const noexcept;
   [[nodiscard]] bool heldWhileEnabling() const noexcept;
   [[nodiscard]] std::optional<SkipReason> tryTarget(const Target& target) noexcept;
   void dropTarget() noexcept;
-  void beginTimeoutFallback(const Tick& tick) noexcept;
+  void beginTimeoutFallback(StopCause cause, const Tick& tick) noexcept;
 
   const Robot::MotorEntry& entry_;
   const Robot::BusEntry& bus_;
@@ -100,6 +108,7 @@ class Axis {
   Target in_force_;  ///< Target that the motor followed in the last tick.
   MotorStatus status_ = MotorStatus::kOffline;
   FaultCode fault_ = FaultCode::kNone;
+  Stop stop_;
   std::uint32_t limits_ = 0;         ///< Active limits, as the guard reports them.
   bool reference_known_ = false;     ///< In the last tick.
   std::uint64_t samples_ = 0;        ///< Of its feedback, when it was last heard.

@@ -18,26 +18,34 @@ class Lease {
   };
 
   /// Somebody has taken it, though it may have lapsed since.
-  [[nodiscard]] bool taken() const noexcept { return until_ != MonotonicTime{}; }
-  [[nodiscard]] bool held(MonotonicTime now) const noexcept { return now < until_; }
+  [[nodiscard]] bool taken() const noexcept { return term_.until != MonotonicTime{}; }
+  [[nodiscard]] bool held(MonotonicTime now) const noexcept { return now < term_.until; }
 
   [[nodiscard]] bool allows(const Holder& other, MonotonicTime now) const noexcept {
     const bool same = other.session == holder_.session && other.client.view() == holder_.client.view();
     return !held(now) || same || other.priority > holder_.priority;
   }
 
-  void take(const Holder& holder, MonotonicTime until) noexcept {
+  /// From when this host received the command until it lapses.
+  struct Term {
+    MonotonicTime received{};
+    MonotonicTime until{};
+  };
+
+  void take(const Holder& holder, const Term& term) noexcept {
     holder_ = holder;
-    until_ = until;
+    term_ = term;
   }
   void release() noexcept { *this = Lease{}; }
 
   /// Empty when nobody has it.
   [[nodiscard]] const link::Name& client() const noexcept { return holder_.client; }
+  /// Of the command in force; 0 when there is none.
+  [[nodiscard]] MonotonicTime received() const noexcept { return term_.received; }
 
  private:
   Holder holder_;
-  MonotonicTime until_{};
+  Term term_;
 };
 
 }  // namespace rc10

@@ -67,8 +67,12 @@ void Supervisor::watchSimulation(const Tick& tick) noexcept {
 }
 
 void Supervisor::transition(std::size_t motor, MotorEvent event, const Tick& tick) noexcept {
+  transition(motor, event, {causeOf(event, state_)}, tick);
+}
+
+void Supervisor::transition(std::size_t motor, MotorEvent event, const Stop& why, const Tick& tick) noexcept {
   auto& axis = axes_[motor];
-  const auto changed = axis.take(event, state_, tick);
+  const auto changed = axis.take(event, state_, why, tick);
   if (!changed) return;
   const auto before = *changed;
   const auto after = axis.status();
@@ -85,11 +89,14 @@ void Supervisor::transition(std::size_t motor, MotorEvent event, const Tick& tic
                   : axis.turnUnclear()              ? Refusal::kTurnUnclear
                                                     : Refusal::kDriveRefused);
   }
+  const bool stopped = after == MotorStatus::kFault || (isOn(before) && !isOn(after));
+  const auto stop = stopped ? axis.stop() : Stop{};
   const bool worrying =
       after == MotorStatus::kFault || (after == MotorStatus::kOffline && before == MotorStatus::kActive);
   report({EventCode::kMotorStatus, worrying ? Severity::kError : Severity::kInfo,
           static_cast<std::int16_t>(motor), static_cast<std::int32_t>(after),
-          static_cast<std::int32_t>(before), tick.now});
+          static_cast<std::int32_t>(before) + 256 * static_cast<std::int32_t>(stop.cause), tick.now,
+          stop.by});
 }
 
 // Answers every pending enable order for which this was the last motor.
@@ -105,19 +112,25 @@ void Supervisor::settle(std::size_t motor, Refusal outcome) noexcept {
   }
 }
 
-void Supervisor::setRobotState(RobotStatus state, const Tick& tick) noexcept {
+void Supervisor::setRobotState(RobotStatus state, const Stop& why, const Tick& tick) noexcept {
   const auto before = state_;
   state_ = state;
+  stop_ = state == RobotStatus::kRun ? Stop{} : why;
+  stopped_ = state == RobotStatus::kRun ? MonotonicTime{} : tick.now;
+  if (state == RobotStatus::kEstop) ++estops_;
   if (state != RobotStatus::kRun) {
     for (auto& group : groups_) group.rearm.reset();  // even if it is cleared within this tick
-    for (std::size_t motor = 0; motor < axes_.size(); ++motor) transition(motor, MotorEvent::kEstop, tick);
+    const Stop stop{causeOf(MotorEvent::kEstop, state), why.by};
+    for (std::size_t motor = 0; motor < axes_.size(); ++motor)
+      transition(motor, MotorEvent::kEstop, stop, tick);
   }
   report({EventCode::kRobotState, state == RobotStatus::kEstop ? Severity::kError : Severity::kInfo, -1,
-          static_cast<std::int32_t>(state), static_cast<std::int32_t>(before), tick.now});
+          static_cast<std::int32_t>(state),
+          static_cast<std::int32_t>(before) + 256 * static_cast<std::int32_t>(why.cause), tick.now, why.by});
 }
 
 void Supervisor::beginStop(const Tick& tick) noexcept {
-  if (state_ != RobotStatus::kStopping) setRobotState(RobotStatus::kStopping, tick);
+  if (state_ != RobotStatus::kStopping) setRobotState(RobotStatus::kStopping, {StopCause::kShutdown}, tick);
 }
 
 bool Supervisor::fallbackActs() const noexcept {
@@ -135,6 +148,10 @@ void Supervisor::report(Event event) noexcept {
 
 void Supervisor::fillSnapshot(Snapshot& snapshot) const noexcept {
   snapshot.state = state_;
+  snapshot.stop = stop_;
+  snapshot.stopped = stopped_;
+  snapshot.estops = estops_;
+  snapshot.input_open = link_.estop_contact.open();
   snapshot.expired_commands = expired_commands_;
   snapshot.refused_commands = refused_commands_;
   snapshot.skipped_setpoints = skipped_setpoints_;

@@ -49,6 +49,12 @@ class Supervisor {
   void fillSnapshot(Snapshot& snapshot) const noexcept;
   void report(Event event) noexcept;
 
+  /// A client has said something.
+  void hearClient(MonotonicTime now) noexcept { client_heard_ = now; }
+  [[nodiscard]] MonotonicTime clientHeard() const noexcept { return client_heard_; }
+
+  /// When it left RUN.
+  [[nodiscard]] MonotonicTime stoppedAt() const noexcept { return stopped_; }
   [[nodiscard]] RobotStatus robotState() const noexcept { return state_; }
   [[nodiscard]] MotorStatus status(std::size_t motor) const noexcept { return axes_[motor].status(); }
 
@@ -97,14 +103,17 @@ class Supervisor {
   /// The motors that keep this one from being enabled, alone or at all.
   [[nodiscard]] MotorSet inTheWay(std::size_t motor, Refusal refusal, const MotorSet& asked) const noexcept;
   [[nodiscard]] MotorSet otherMotorsOn(std::size_t motor) const noexcept;
-  void disable(std::size_t motor, const Tick& tick) noexcept;
+  void disable(std::size_t motor, const link::Name& client, const Tick& tick) noexcept;
   void clear(std::size_t motor, const Tick& tick) noexcept;
   void answer(const OrderResult& result) noexcept;
   [[nodiscard]] Refusal setGains(std::size_t motor, const Order& order, const Tick& tick) noexcept;
-  void setRobotState(RobotStatus state, const Tick& tick) noexcept;
+  /// `why`: kNone and who cleared it for RUN.
+  void setRobotState(RobotStatus state, const Stop& why, const Tick& tick) noexcept;
   /// In every state: it also vetoes a kClear of this tick.
-  void estop(const Tick& tick) noexcept;
+  void estop(const Stop& why, const Tick& tick) noexcept;
+  /// `why`: of an event that stops a motor; by default what the event says.
   void transition(std::size_t motor, MotorEvent event, const Tick& tick) noexcept;
+  void transition(std::size_t motor, MotorEvent event, const Stop& why, const Tick& tick) noexcept;
   void watch(std::size_t motor, const Tick& tick) noexcept;
   void watchGroup(std::size_t index, const Tick& tick) noexcept;
   void stopGroup(std::size_t index, GroupStop reason, const Tick& tick) noexcept;
@@ -123,7 +132,7 @@ class Supervisor {
   /// Its group acts together, and not all of it is ACTIVE.
   [[nodiscard]] bool waitsForGroup(std::size_t motor) const noexcept;
   void watchSimulation(const Tick& tick) noexcept;
-  [[nodiscard]] bool clearEstop(OrderResult& result, const Tick& tick) noexcept;
+  [[nodiscard]] bool clearEstop(const Order& order, OrderResult& result, const Tick& tick) noexcept;
   void settle(std::size_t motor, Refusal outcome) noexcept;
   void configure(const Order& order, const Tick& tick) noexcept;
   [[nodiscard]] Refusal mayConfigure(std::size_t motor) const noexcept;
@@ -133,6 +142,9 @@ class Supervisor {
   LinkExchange& link_;
   FlightRecorder* recorder_;
   RobotStatus state_ = RobotStatus::kRun;
+  Stop stop_;                ///< Why not in RUN,
+  MonotonicTime stopped_{};  ///< and since when.
+  std::uint32_t estops_ = 0;
   std::vector<Axis> axes_;
   std::array<PendingOrder, 8> pending_{};
   std::vector<Group> groups_;
@@ -143,6 +155,7 @@ class Supervisor {
   MonotonicTime simulation_stepped_at_{};
   bool simulation_late_ = false;
   bool estop_asked_ = false;  ///< In this tick.
+  MonotonicTime client_heard_{};
   std::uint64_t expired_commands_ = 0;
   std::uint64_t refused_commands_ = 0;
   std::uint64_t skipped_setpoints_ = 0;

@@ -10,7 +10,9 @@ void Supervisor::receiveOrders(const Tick& tick) noexcept {
   const auto contact = link_.estop_contact.look(tick.dt_s);
   if (contact.news) report(estopInputEvent(*contact.news, tick.now));
   estop_asked_ = false;
-  if (link_.estop.exchange(false, std::memory_order_acquire) || contact.stop) estop(tick);
+  if (contact.stop) estop({StopCause::kInput}, tick);
+  if (link_.estop.exchange(false, std::memory_order_acquire))
+    estop({StopCause::kRequest, link_.estop_client.read()}, tick);
   // Only what is there now: a client that floods the ring must not lengthen the tick without bound.
   for (auto n = link_.orders.read_available(); n > 0; --n) {
     link_.orders.consume_one([&](const Order& order) { carryOut(order, tick); });
@@ -55,6 +57,7 @@ bool Supervisor::mayCommand(const Command& command, const Lease::Holder& sender,
 }
 
 void Supervisor::apply(const Command& command, const Tick& tick) noexcept {
+  hearClient(tick.now);
   if (tick.now >= command.deadline) {
     ++expired_commands_;
     if (recorder_ != nullptr) recorder_->command(command, blackbox::Verdict::kExpired);
@@ -79,7 +82,8 @@ void Supervisor::apply(const Command::Setpoint& setpoint, const Lease::Holder& s
   auto& axis = axes_[setpoint.motor];
   const bool waits = setpoint.target.mode != ControlMode::kCoast && axis.status() == MotorStatus::kActive &&
                      waitsForGroup(setpoint.motor);
-  const auto reason = waits ? SkipReason::kGroup : axis.take(setpoint.target, sender, command.deadline);
+  const Lease::Term term{command.received, command.deadline};
+  const auto reason = waits ? SkipReason::kGroup : axis.take(setpoint.target, sender, term);
   if (!reason) return;
   ++skipped_setpoints_;
   if (!axis.mayReportSkip(tick.now)) return;
@@ -91,14 +95,15 @@ void Supervisor::apply(const Command::Setpoint& setpoint, const Lease::Holder& s
 
 void Supervisor::carryOut(const Order& order, const Tick& tick) noexcept {
   if (recorder_ != nullptr) recorder_->order(order);
+  if (!order.fromModule()) hearClient(tick.now);
   if (order.operation == Operation::kConfigure) return configure(order, tick);
   OrderResult result;
   result.id = order.id;
   MotorSet waiting;
   if (order.operation == Operation::kEstop) {
-    estop(tick);
+    estop({StopCause::kRequest, order.client}, tick);
   } else if (order.operation == Operation::kClear && state_ == RobotStatus::kEstop && order.whole_robot &&
-             !clearEstop(result, tick)) {
+             !clearEstop(order, result, tick)) {
     answer(result);
     return;
   }
@@ -115,7 +120,7 @@ void Supervisor::carryOut(const Order& order, const Tick& tick) noexcept {
         if (refusal == Refusal::kNone && enabling) waiting.set(motor);
         break;
       }
-      case Operation::kDisable: disable(motor, tick); break;
+      case Operation::kDisable: disable(motor, order.client, tick); break;
       case Operation::kClear: clear(motor, tick); break;
       case Operation::kZero: result.motors[motor] = axes_[motor].zero(order); break;
       case Operation::kSetGains: result.motors[motor] = setGains(motor, order, tick); break;
@@ -135,14 +140,14 @@ void Supervisor::carryOut(const Order& order, const Tick& tick) noexcept {
   answer(result);
 }
 
-void Supervisor::estop(const Tick& tick) noexcept {
+void Supervisor::estop(const Stop& why, const Tick& tick) noexcept {
   estop_asked_ = true;
-  if (state_ == RobotStatus::kRun) setRobotState(RobotStatus::kEstop, tick);
+  if (state_ == RobotStatus::kRun) setRobotState(RobotStatus::kEstop, why, tick);
 }
 
 // The e-stop is the whole robot's: clearing the faults of motors leaves it, even of all that there are.
 // False: it stays, and the result says why.
-bool Supervisor::clearEstop(OrderResult& result, const Tick& tick) noexcept {
+bool Supervisor::clearEstop(const Order& order, OrderResult& result, const Tick& tick) noexcept {
   if (link_.estop_contact.open()) {
     result.motors.fill(Refusal::kEstopInput);
     return false;
@@ -156,11 +161,11 @@ bool Supervisor::clearEstop(OrderResult& result, const Tick& tick) noexcept {
     result.motors[motor] = axes_[motor].unrest(tick);
     if (result.motors[motor] != Refusal::kNone) at_rest = false;
   }
-  if (at_rest) setRobotState(RobotStatus::kRun, tick);
+  if (at_rest) setRobotState(RobotStatus::kRun, {StopCause::kNone, order.client}, tick);
   return at_rest;
 }
 
-void Supervisor::disable(std::size_t motor, const Tick& tick) noexcept {
+void Supervisor::disable(std::size_t motor, const link::Name& client, const Tick& tick) noexcept {
   auto& axis = axes_[motor];
   auto* group = groupOf(motor);
   // Once more lets go of a motor that is still being held or braked; the first time may have been its
@@ -172,7 +177,7 @@ void Supervisor::disable(std::size_t motor, const Tick& tick) noexcept {
     group->rests_with_it.reset(motor);
     group->disable_asked = true;
   }
-  transition(motor, MotorEvent::kDisable, tick);
+  transition(motor, MotorEvent::kDisable, {StopCause::kRequest, client}, tick);
 }
 
 Refusal Supervisor::ownRefusal(std::size_t motor) const noexcept {

@@ -56,7 +56,7 @@ void GpioLoop::turn(MonotonicTime now, std::uint64_t ticks) noexcept {
 
 void GpioLoop::run(const std::stop_token& stop, const Scheduler& scheduler) noexcept {
   while (!stop.stop_requested()) {
-    turn(monotonicNow(), scheduler.ticks());
+    turn(monotonicNow(), scheduler.beats());
     std::this_thread::sleep_for(kPause);
   }
   if (heartbeat_) heartbeat_->end();

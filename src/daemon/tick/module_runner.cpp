@@ -62,6 +62,7 @@ void ModuleRunner::receive(const Tick& tick) noexcept {
 void ModuleRunner::take(const SignalMessage& message, const Tick& tick) noexcept {
   auto& control = controls_[message.module];
   const Lease::Holder sender{message.client, message.session, message.priority};
+  if (message.session != kModuleSession) supervisor_.hearClient(tick.now);
   auto verdict = blackbox::Verdict::kApplied;
   if (!control.lease.allows(sender, tick.now)) verdict = blackbox::Verdict::kNotOwner;
   if (tick.now >= message.deadline) verdict = blackbox::Verdict::kExpired;
@@ -70,7 +71,7 @@ void ModuleRunner::take(const SignalMessage& message, const Tick& tick) noexcept
     ++refused_signals_;
     return;
   }
-  control.lease.take(sender, message.deadline);
+  control.lease.take(sender, {tick.now, message.deadline});
   robot_.modules()[message.module].module->setInputs(message.values);
 }
 
@@ -81,6 +82,7 @@ void ModuleRunner::handOver(const Tick& tick) noexcept {
     command_.client = from.client;
     command_.session = from.session;
     command_.priority = from.priority;
+    command_.received = tick.now;
     command_.deadline = tick.now + kModuleValidity;
     const bool refused = !supervisor_.takeModuleCommand(command_, tick);
     if (refused && !control.refused && tick.now - control.last_refusal_report >= kReportInterval) {
@@ -134,14 +136,24 @@ void ModuleRunner::ask(RobotRequest request, std::size_t motor, double angle_deg
   if (request == RobotRequest::kEstop) return askAll(request);
   Order order;
   order.operation = operationOf(request);
+  order.client = sender().client;
   order.motors.set(motor);
   order.value = angle_deg;
+  supervisor_.takeModuleOrder(order, tick_);
+}
+
+void ModuleRunner::ask(RobotRequest request, std::span<const std::size_t> motors) noexcept {
+  Order order;
+  order.operation = operationOf(request);
+  order.client = sender().client;
+  for (const auto motor : motors) order.motors.set(motor);
   supervisor_.takeModuleOrder(order, tick_);
 }
 
 void ModuleRunner::askAll(RobotRequest request) noexcept {
   Order order;
   order.operation = operationOf(request);
+  order.client = sender().client;
   for (std::size_t motor = 0; motor < motorCount(); ++motor) order.motors.set(motor);
   order.whole_robot = true;
   supervisor_.takeModuleOrder(order, tick_);

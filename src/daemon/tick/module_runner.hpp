@@ -48,7 +48,12 @@ class ModuleRunner : private ModuleRobot {
   [[nodiscard]] bool obeys(std::size_t motor) const noexcept override;
   void setTarget(std::size_t motor, const Target& target) noexcept override;
   void ask(RobotRequest request, std::size_t motor, double angle_deg) noexcept override;
+  void ask(RobotRequest request, std::span<const std::size_t> motors) noexcept override;
   void askAll(RobotRequest request) noexcept override;
+  [[nodiscard]] Duration clientsSilent() const noexcept override {
+    return tick_.now - supervisor_.clientHeard();
+  }
+  void hearClient() noexcept override { supervisor_.hearClient(tick_.now); }
   [[nodiscard]] double read(SignalPlace output) const noexcept override;
   void send(SignalPlace input, double value) noexcept override;
   void report(std::size_t event) noexcept override;

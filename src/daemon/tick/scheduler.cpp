@@ -19,15 +19,17 @@ constexpr Duration kMissedReportInterval = std::chrono::seconds{1};
 }  // namespace
 
 Scheduler::Scheduler(Robot& robot, std::span<BusInbox> inboxes, LinkExchange& link, Duration period,
-                     FlightRecorder* recorder)
+                     FlightRecorder* recorder, Clock clock)
     : robot_(robot),
       inboxes_(inboxes),
       link_(link),
       period_(period),
       recorder_(recorder),
+      clock_(clock),
       supervisor_(robot, link, recorder),
       modules_(robot, supervisor_, link, recorder),
       bus_watch_(robot, inboxes, supervisor_) {
+  link_.ages.feedback = std::vector<DurationHistogram>(robot_.motors().size());
   if (recorder_ != nullptr) recorder_->listenTo(robot_);
 }
 
@@ -52,10 +54,18 @@ void Scheduler::tick(MonotonicTime now, std::uint64_t periods) noexcept {
   pack(tick);
   const bool only_rest = stop_requested_ && !supervisor_.fallbackActs();
   bus_watch_.send(tick, only_rest);
+  sent_ = clock_ != nullptr ? clock_() : now;
   bus_watch_.update(tick);
   if (only_rest) watchStop();
   snapshot(tick);
+  beat(tick);
   ticks_.store(tick.index + 1, std::memory_order_relaxed);
+}
+
+void Scheduler::beat(const Tick& tick) noexcept {
+  const bool rests = heartbeat_rests_after_ && supervisor_.robotState() == RobotStatus::kEstop &&
+                     tick.now - supervisor_.stoppedAt() >= *heartbeat_rests_after_;
+  if (!rests) beats_.store(beats_.load(std::memory_order_relaxed) + 1, std::memory_order_relaxed);
 }
 
 void Scheduler::beginStop(const Tick& tick) noexcept {
@@ -122,9 +132,21 @@ void Scheduler::watchStop() noexcept {
   stopped_ = (rest_ticks_ >= kMinRestTicks && echoed) || rest_ticks_ >= kMaxRestTicks;
 }
 
+void Scheduler::recordAges(const Snapshot& snapshot) noexcept {
+  for (std::size_t i = 0; i < snapshot.motor_count; ++i) {
+    const auto& motor = snapshot.motors[i];
+    if (motor.acting != Acting::kTarget) continue;
+    link_.ages.feedback[i].record(snapshot.sent - motor.feedback.received);
+    if (motor.command_received == commands_[i]) continue;
+    commands_[i] = motor.command_received;
+    link_.ages.command.record(snapshot.sent - motor.command_received);
+  }
+}
+
 void Scheduler::snapshot(const Tick& tick) noexcept {
   auto& out = link_.snapshot.slot();
   out.time = tick.now;
+  out.sent = sent_;
   out.tick = tick.index;
   out.missed_ticks = missed_ticks_;
   supervisor_.fillSnapshot(out);
@@ -139,6 +161,7 @@ void Scheduler::snapshot(const Tick& tick) noexcept {
                     .error_frames = bus.health().errorFrames(),
                     .restarts = bus.health().restarts()};
   }
+  recordAges(out);
   if (recorder_ != nullptr) recorder_->states(out);
   link_.snapshot.publish();
 }

@@ -3,6 +3,7 @@
 #include <array>
 #include <atomic>
 #include <cstdint>
+#include <optional>
 #include <span>
 
 #include "app/time.hpp"
@@ -19,9 +20,13 @@ namespace rc10 {
 /// scheduler thread, or a test, calls tick().
 class Scheduler {
  public:
-  /// `recorder`: writes down what happens, if there is one; outlives this.
+  /// The time at any moment of a tick.
+  using Clock = MonotonicTime (*)() noexcept;
+
+  /// `recorder`: writes down what happens, if there is one; outlives this. `clock`: when the frames of a tick
+  /// have left; without one, a tick takes no time.
   Scheduler(Robot& robot, std::span<BusInbox> inboxes, LinkExchange& link, Duration period,
-            FlightRecorder* recorder = nullptr);
+            FlightRecorder* recorder = nullptr, Clock clock = nullptr);
 
   /// `periods`: distance on the grid since the last executed tick; above 1, ticks were missed. They
   /// are counted and skipped, never replayed.
@@ -31,6 +36,12 @@ class Scheduler {
   void beginStop() noexcept { stop_requested_ = true; }
   /// The rest frames of the stop have reached the wire, as far as that can be known, or it took too long.
   [[nodiscard]] bool stopped() const noexcept { return stopped_; }
+
+  /// The heartbeat is to end so long after the beginning of an e-stop, until that is cleared. Before the
+  /// first tick.
+  void restHeartbeatAfter(std::optional<Duration> estop) noexcept { heartbeat_rests_after_ = estop; }
+  /// Ticks in which the heartbeat goes on. Any thread.
+  [[nodiscard]] std::uint64_t beats() const noexcept { return beats_.load(std::memory_order_relaxed); }
 
   [[nodiscard]] const Supervisor& supervisor() const noexcept { return supervisor_; }
   [[nodiscard]] std::uint64_t ticks() const noexcept { return ticks_.load(std::memory_order_relaxed); }
@@ -45,16 +56,23 @@ class Scheduler {
   void beginStop(const Tick& tick) noexcept;
   void watchStop() noexcept;
   void snapshot(const Tick& tick) noexcept;
+  void recordAges(const Snapshot& snapshot) noexcept;
+  void beat(const Tick& tick) noexcept;
 
   Robot& robot_;
   std::span<BusInbox> inboxes_;
   LinkExchange& link_;
   Duration period_;
   FlightRecorder* recorder_;
+  Clock clock_;
+  MonotonicTime sent_{};  ///< When the frames of this tick had left.
   Supervisor supervisor_;
   ModuleRunner modules_;
   BusWatch bus_watch_;
-  std::atomic<std::uint64_t> ticks_{0};  // read by the link thread, for the watchdog
+  std::array<MonotonicTime, kMaxMotors> commands_{};  ///< By motor: receipt of the last that acted.
+  std::atomic<std::uint64_t> ticks_{0};               // read by the link thread, for the watchdog
+  std::atomic<std::uint64_t> beats_{0};               // read by the gpio thread
+  std::optional<Duration> heartbeat_rests_after_;
   std::uint64_t missed_ticks_ = 0;
   std::uint64_t unreported_missed_ticks_ = 0;
   MonotonicTime next_missed_report_{};

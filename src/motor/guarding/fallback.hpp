@@ -11,10 +11,10 @@
 namespace rc10 {
 
 /// Action of a motor whose target has ended.
-enum class FallbackAction : std::uint8_t { kCoast, kDamp, kBrake, kHold };
+enum class FallbackAction : std::uint8_t { kCoast, kDamp, kBrake, kHold, kRamp };
 
 /// As the configuration writes them, in the order of FallbackAction.
-inline constexpr std::array<std::string_view, 4> kFallbackWords{"coast", "damp", "brake", "hold"};
+inline constexpr std::array<std::string_view, 5> kFallbackWords{"coast", "damp", "brake", "hold", "ramp"};
 
 struct FallbackConfig {
   FallbackAction on_timeout = FallbackAction::kCoast;  ///< The last command has lapsed.
@@ -22,6 +22,7 @@ struct FallbackConfig {
   FallbackAction on_estop = FallbackAction::kCoast;    ///< Also when its group stops.
   Duration hold_max = std::chrono::seconds{10};        ///< A hold ends after this,
   Duration brake_max = std::chrono::seconds{10};       ///< and a brake in an e-stop.
+  Duration ramp = std::chrono::seconds{1};  ///< A ramp is at rest after this, and then without torque.
 };
 
 [[nodiscard]] constexpr FrameKind frameKindOf(FallbackAction action) noexcept {
@@ -30,6 +31,7 @@ struct FallbackConfig {
     case FallbackAction::kDamp: return FrameKind::kDamp;
     case FallbackAction::kBrake: return FrameKind::kBrake;
     case FallbackAction::kHold: return FrameKind::kHold;
+    case FallbackAction::kRamp: return FrameKind::kCommand;  // a velocity
   }
   return FrameKind::kRest;
 }
@@ -58,8 +60,17 @@ class Fallback {
   /// How long it acts.
   enum class Until : std::uint8_t { kEnded, kStandstill };
 
-  void begin(FallbackAction action, Until until, const FallbackBound& bound, MonotonicTime now) noexcept {
+  /// Way to rest of FallbackAction::kRamp: SS1 of IEC 61800-5-2 by time.
+  struct Ramp {
+    double from_rpm = 0.0;
+    Duration over{};
+  };
+
+  void begin(FallbackAction action, Until until, const FallbackBound& bound, const Ramp& ramp,
+             MonotonicTime now) noexcept {
     kind_ = frameKindOf(action);
+    ramp_ = ramp;
+    begun_ = now;
     until_ = until;
     bounded_ = bound.most.has_value();
     bound_ = now + bound.most.value_or(Duration{});
@@ -71,8 +82,16 @@ class Fallback {
   /// Kind of frame for the drive; kRest while no fallback is in force.
   [[nodiscard]] FrameKind kind() const noexcept { return kind_; }
 
+  /// The velocity of a ramp: in proportion to the time that it has left.
+  [[nodiscard]] double rampRpm(MonotonicTime now) const noexcept {
+    const Duration left = begun_ + ramp_.over - now;
+    return left <= Duration{0} ? 0.0
+                               : ramp_.from_rpm * static_cast<double>(seconds(left) / seconds(ramp_.over));
+  }
+
   /// Once per tick.
   void step(bool stands_still, MonotonicTime now) noexcept {
+    if (kind_ == FrameKind::kCommand && now - begun_ >= ramp_.over + kRampRest) end();
     if (acts() && bounded_ && now >= bound_) kind_ = then_;
     if (!stands_still) moved_ = now;
     // A hold is for what would move by itself: it lasts its time.
@@ -84,7 +103,12 @@ class Fallback {
   // Still for so long, it is not on its way back from an overshoot.
   static constexpr Duration kSettled = std::chrono::milliseconds{300};
 
+  // A motor that lags behind its ramp has this time to come to rest.
+  static constexpr Duration kRampRest = std::chrono::milliseconds{200};
+
   FrameKind kind_ = FrameKind::kRest;
+  Ramp ramp_;
+  MonotonicTime begun_{};
   Until until_ = Until::kEnded;
   bool bounded_ = false;
   MonotonicTime bound_{};

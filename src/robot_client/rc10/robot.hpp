@@ -1,6 +1,7 @@
 #pragma once
 
 #include <chrono>
+#include <cstdint>
 #include <functional>
 #include <map>
 #include <memory>
@@ -19,6 +20,13 @@
 namespace rc10 {
 inline namespace robot_client {
 
+/// What becomes of the motors when a program leaves its robot in good order.
+enum class AtEnd : std::uint8_t {
+  kTimeout,  ///< Each does its on_timeout, as when the program dies, and stays ACTIVE.
+  kDisable,  ///< Those that the program enabled are disabled, and do their on_disable.
+  kCoast,    ///< Those that it commanded lose their torque, and those that it enabled are disabled.
+};
+
 struct RobotOptions {
   std::string client{};  ///< Name shown as the owner of a motor; empty: the program's.
   int priority = 0;      ///< A client with a higher one takes motors over from a lower one.
@@ -31,6 +39,7 @@ struct RobotOptions {
   /// inputs, nor called alive() for so long. For programs with a loop: one that hangs would otherwise hold
   /// its motors for ever.
   std::chrono::milliseconds alive_within{0};
+  AtEnd at_end = AtEnd::kTimeout;  ///< What close() and the destructor do.
   /// Told what nobody asked about: a target that was dropped, a setpoint that rc10d skipped, messages of
   /// other definitions. The same text at most once a second, on any thread. Without one: stderr.
   std::function<void(const std::string& problem)> on_problem{};
@@ -45,8 +54,8 @@ struct RobotOptions {
 /// being ACTIVE, another client takes it, or no state has come for a second: nothing comes back to life by
 /// itself.
 ///
-/// **Leaving.** close() and the destructor send COAST to the motors that this program commanded, and disable
-/// those that it enabled.
+/// **Leaving.** close() and the destructor end the held targets: each motor does its on_timeout, as when the
+/// program dies. RobotOptions::at_end says otherwise.
 class Robot {
  public:
   /// `name`: `robot:` in rc10d's configuration. Does not wait for rc10d, and never throws for the state of
@@ -98,7 +107,8 @@ class Robot {
   /// shows it, after `timeout` as well. In a callback it does not wait.
   Result<void> estop(Duration timeout = std::chrono::seconds{2}) const;
 
-  /// Lets go of the motors; half a second at most. The error says what was not confirmed.
+  /// Ends what acts, as RobotOptions::at_end says; half a second at most. The error says what was not
+  /// confirmed.
   Result<void> close();
 
  private:

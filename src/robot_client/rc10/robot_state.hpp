@@ -28,10 +28,14 @@ struct MotorState {
   std::string fault_text{};
   std::uint32_t limits = 0;  ///< Bits of Limit.
 
-  Mode mode = Mode::kCoast;  ///< In force; coast when there is no valid target.
-  double target = 0.0;       ///< In the unit of the mode.
-  std::string owner{};       ///< The client whose target is in force, empty without one.
-  bool zeroed = false;       ///< The angle has a known reference.
+  Mode mode = Mode::kCoast;                 ///< In force; coast when there is no valid target.
+  double target = 0.0;                      ///< As it was asked for, in the unit of the mode.
+  double target_shaped = kUnknown;          ///< As limits and slew let it act; NaN unless it acts.
+  std::string owner{};                      ///< The client whose target is in force, empty without one.
+  Acting acting = Acting::kNothing;         ///< Source of what the shaft feels.
+  StopCause stop_cause = StopCause::kNone;  ///< Why it stopped obeying; kNone while it obeys.
+  std::string stopped_by{};                 ///< The client, module or motor that stopped it, if any.
+  bool zeroed = false;                      ///< The angle has a known reference.
 
   double angle_deg = kUnknown;        ///< [0, 360)
   double total_angle_deg = kUnknown;  ///< Multi-turn.
@@ -41,8 +45,12 @@ struct MotorState {
   double voltage_v = kUnknown;
   double temperature_c = kUnknown;
 
-  std::chrono::microseconds feedback_age{-1};  ///< When the state was taken; -1: no feedback yet.
+  std::chrono::microseconds feedback_age{-1};         ///< When the state was taken; -1: no feedback yet.
+  std::chrono::microseconds feedback_age_at_use{-1};  ///< When the frames computed from it left.
+  std::chrono::microseconds command_age{-1};  ///< Since rc10d's host received the command in force; -1: none.
   double feedback_hz = 0.0;
+  double command_value = kUnknown;  ///< Last value sent to the drive, in command_unit.
+  CommandUnit command_unit = CommandUnit::kNone;
 };
 
 /// All motors at one tick of rc10d.
@@ -52,9 +60,18 @@ struct RobotState {
   std::int64_t tick = 0;     ///< Ticks since start.
   RobotStatus status = RobotStatus::kRun;
   bool realtime = false;  ///< The real-time set-up is complete; `rc10ctl stats` says what is not.
+  StopCause stop_cause = StopCause::kNone;  ///< Why it is not in RUN,
+  std::string stopped_by;                   ///< the client or module that asked for that, if any,
+  std::int64_t stopped_mono_us = 0;         ///< and since when, as mono_us; 0 in RUN.
+  std::int32_t estop_count = 0;             ///< Since start.
+  std::uint32_t conditions = 0;             ///< Bits of Condition.
+  std::string version;                      ///< Of rc10d.
+  std::string config_hash;                  ///< SHA-256 of its configuration file, as sha256sum prints it.
   std::vector<MotorState> motors;
   MonotonicTime taken;  ///< When rc10d took it, on this computer's clock.
 
+  /// Some bus has simulated drives.
+  [[nodiscard]] bool simulated() const noexcept { return (conditions & kConditionSimulated) != 0; }
   [[nodiscard]] Duration age() const noexcept { return std::chrono::steady_clock::now() - taken; }
   /// nullptr: the robot has no such motor.
   [[nodiscard]] const MotorState* find(std::string_view motor) const noexcept;
@@ -68,7 +85,8 @@ struct Event {
   std::int64_t mono_us = 0;  ///< CLOCK_MONOTONIC of the host.
   Severity severity = Severity::kInfo;
   std::int32_t code = 0;
-  std::string source;  ///< Name of a motor or bus, or "robot", "link", "lcm".
+  std::string source;    ///< Name of a motor or bus, or "robot", "link", "lcm".
+  std::string client{};  ///< Whose request or command it was, empty without one.
   std::string text;
 };
 

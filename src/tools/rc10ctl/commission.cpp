@@ -159,6 +159,7 @@ class Commissioning {
 
   Drive order(client::FirstSpin& seen) const {
     Drive order;
+    order.then = Then::kCoast;  // Above its speed it must be let go, whatever its on_timeout is.
     order.setpoint.motor = options_.motor;
     order.setpoint.target.mode = ControlMode::kCurrent;
     order.setpoint.target.value = current_a_;

@@ -96,10 +96,11 @@ class Driver {
     if (const auto there = feed_.awaitState(); !there) return complain(there.error(), ExitCode::kFailed);
     if (const auto why = trouble(); !why.empty()) return complain({why}, ExitCode::kFailed);
     const std::string why = repeat();
-    // Whatever happened: no torque. Best effort, as the setpoint lapses by itself too.
-    letGo();
+    // Whatever happened. Best effort, as the setpoint lapses by itself too.
+    if (order_.then == Then::kCoast) letGo();
+    if (order_.then == Then::kTimeout) lapse();
     if (!why.empty()) return complain({why}, ExitCode::kFailed);
-    std::printf("%s coasts\n", name_.c_str());
+    if (order_.then != Then::kDisable) std::printf("%s %s\n", name_.c_str(), whatItDoes());
     return ExitCode::kOk;
   }
 
@@ -147,6 +148,30 @@ class Driver {
       if (!send(coast)) return;
       waitReadable(rc10d_, std::min<Duration>(kSendPeriod, end - now));
     }
+  }
+
+  // The same target, and not COAST: after that rc10d would have nothing to do in its stead. Once: again, it
+  // would come back to life.
+  void lapse() {
+    command_.validity_ms = 1;
+    if (!send(setpoint_)) return;
+    const auto end = steady_clock::now() + kReleasing;
+    for (auto now = steady_clock::now(); now < end && feed_.pump(); now = steady_clock::now()) {
+      if (motor() == nullptr || motor()->owner.view() != kClientName) return;
+      waitReadable(rc10d_, end - now);
+    }
+  }
+
+  const char* whatItDoes() const {
+    switch (motor() != nullptr ? motor()->acting : Acting::kNothing) {
+      case Acting::kHold: return "holds its place (on_timeout)";
+      case Acting::kDamp: return "is damped (on_timeout)";
+      case Acting::kBrake: return "brakes (on_timeout)";
+      case Acting::kRamp: return "comes to rest along a ramp (on_timeout)";
+      case Acting::kTarget: return "obeys another target";
+      case Acting::kNothing: break;
+    }
+    return "coasts";
   }
 
   bool send(const link::Setpoint& setpoint) {

@@ -7,6 +7,7 @@
 #include <CLI/CLI.hpp>
 
 #include "app/target.hpp"
+#include "ask.hpp"
 #include "client/duration_text.hpp"
 #include "client/text_table.hpp"
 #include "drive.hpp"
@@ -21,6 +22,7 @@ struct SetOptions {
   std::string mode;
   std::optional<double> value;
   std::string time = "2s";
+  std::string then = "timeout";
   int priority = 0;
   float velocity_ff_rpm = 0.0F;
   float torque_ff_nm = 0.0F;
@@ -64,6 +66,9 @@ Result<Drive> driveFrom(const SetOptions& options) {
   order.setpoint.target.damping_nms_per_rad = options.damping_nms_per_rad;
   order.priority = options.priority;
   order.time = *time;
+  order.then = options.then == "coast"     ? Then::kCoast
+               : options.then == "disable" ? Then::kDisable
+                                           : Then::kTimeout;
   return order;
 }
 
@@ -95,20 +100,27 @@ ExitCode set(const Global& global, const SetOptions& options) {
   if (!rc10d) return complain(rc10d.error(), ExitCode::kNoDaemon);
   if (const auto why = whyDriveUnfit(*order, rc10d->welcome()); !why.empty())
     return complain({why}, ExitCode::kFailed);
-  return drive(*rc10d, *order);
+  const auto done = drive(*rc10d, *order);
+  if (order->then != Then::kDisable) return done;
+  const auto disabled = ask(global, "disable", {options.motor});
+  return done == ExitCode::kOk ? disabled : done;
 }
 
 }  // namespace
 
 void addSet(CLI::App& app, Action& action) {
   const auto options = std::make_shared<SetOptions>();
-  auto* verb = app.add_subcommand("set", "gives one motor a target for a while, then lets it coast");
+  auto* verb = app.add_subcommand("set", "gives one motor a target for a while; then its on_timeout acts");
   verb->add_option("motor", options->motor, "name of the motor")->required()->type_name("MOTOR");
   verb->add_option("mode", options->mode, link::modeWords(kAllModes))->required()->type_name("MODE");
   verb->add_option("value", options->value, "in the unit of the mode: A, rpm, deg, V; duty -1 to 1")
       ->type_name("VALUE");
   verb->add_option("--for", options->time, "how long: 2s, 500ms, 1min")
       ->type_name("TIME")
+      ->capture_default_str();
+  verb->add_option("--then", options->then, "its end: timeout (its on_timeout), coast or disable")
+      ->check(CLI::IsMember({"timeout", "coast", "disable"}))
+      ->type_name("END")
       ->capture_default_str();
   verb->add_option("--priority", options->priority, "a higher one takes the motor over from a lower one");
   verb->add_option("--velocity-ff", options->velocity_ff_rpm, "added to the angle loop's output")

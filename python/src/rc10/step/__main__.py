@@ -78,7 +78,7 @@ def main() -> None:
             from rc10.plot.figure import save_png
             from rc10.step.figure import figure_of
         name = find_robot(options.robot, options.url)
-        with connect(name, options.url, client="rc10-step") as robot:
+        with connect(name, options.url, client="rc10-step", at_end="disable") as robot:
             result = run_step(robot, plan)
         print(text_of(result))
         if options.csv:

@@ -1,0 +1,15 @@
+#include "config/sha256.hpp"
+
+#include <array>
+
+#include <sha2.h>  // libmd
+
+namespace rc10 {
+
+std::string sha256(std::string_view bytes) {
+  std::array<char, SHA256_DIGEST_STRING_LENGTH> digits{};
+  SHA256Data(reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size(), digits.data());
+  return digits.data();
+}
+
+}  // namespace rc10
