@@ -48,7 +48,7 @@ class Recording {
   [[nodiscard]] std::string_view inputName(std::size_t module, std::size_t input) const noexcept;
   /// The interface, or the name of a simulated bus.
   [[nodiscard]] std::string_view interfaceName(std::size_t index) const noexcept;
-  /// What the module calls its event; empty: not known.
+  /// The module's word for its event; empty: not known.
   [[nodiscard]] std::string_view moduleEvent(std::size_t module, std::int32_t event) const noexcept;
   /// The robot that was recorded had simulated drives.
   [[nodiscard]] bool simulated() const noexcept;

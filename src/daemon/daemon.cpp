@@ -267,9 +267,11 @@ void Daemon::waitForSignal(SignalInbox& signals) {
     pollfd wait_for{.fd = signals.descriptor(), .events = POLLIN, .revents = 0};
     (void)::poll(&wait_for, 1, kSuperviseMs);
     while (const int signal = signals.take()) {
-      if (signal == SIGCHLD) continue;
-      log_->info("{}: stopping", signal == SIGINT ? "SIGINT" : "SIGTERM");
-      return;
+      switch (meaningOf(signal)) {
+        case SignalMeaning::kChild: break;
+        case SignalMeaning::kIgnored: log_->warn("{}: ignored", describeSignal(signal)); break;
+        case SignalMeaning::kStop: log_->info("{}: stopping", describeSignal(signal)); return;
+      }
     }
   }
 }

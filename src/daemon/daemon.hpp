@@ -37,7 +37,7 @@ class Daemon {
 
   /// Builds and starts. After an error nothing runs.
   [[nodiscard]] Result<void> start();
-  /// Waits for SIGTERM or SIGINT, and looks after the gateway meanwhile.
+  /// Waits for a signal that means to stop, and looks after the gateway meanwhile.
   void waitForSignal(SignalInbox& signals);
   /// Rest frames until they are on the wire, then the end of every thread; prints the summary.
   void stop();

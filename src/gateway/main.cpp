@@ -29,7 +29,9 @@ int complain(const Error& error, ExitCode code) {
 void catchSignals() {
   struct sigaction action {};
   action.sa_handler = [](int) { stop_requested = 1; };  // no SA_RESTART: it ends poll()
-  for (const int signal : {SIGTERM, SIGINT, SIGHUP}) ::sigaction(signal, &action, nullptr);
+  // Those of a terminal, too: rc10d ends by them in order, and must find the gateway neither stopped nor
+  // dumping.
+  for (const int signal : {SIGTERM, SIGINT, SIGHUP, SIGQUIT, SIGTSTP}) ::sigaction(signal, &action, nullptr);
   ::signal(SIGPIPE, SIG_IGN);  // a closed stderr
 }
 

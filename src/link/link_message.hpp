@@ -63,8 +63,8 @@ template <typename Message>
   return datagram.size() >= sizeof(Header) && countsFit(message) && wireSize(message) == datagram.size();
 }
 
-/// What is left of a defective request for an e-stop: an e-stop counts whatever else its message says. False:
-/// it is none; then `request` is unspecified.
+/// Reads of a defective request for an e-stop what is left: an e-stop counts whatever else its message says.
+/// False: it is none; then `request` is unspecified.
 [[nodiscard]] bool openEstop(std::span<const std::byte> datagram, Request& request) noexcept;
 
 }  // namespace rc10::link

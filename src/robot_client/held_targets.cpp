@@ -75,6 +75,7 @@ std::vector<MotorSetpoints> HeldTargets::takeDue(MonotonicTime now) {
 
 std::vector<MotorSetpoints> HeldTargets::takeAll() {
   std::vector<MotorSetpoints> all;
+  all.reserve(messages_.size());
   for (auto& message : messages_) all.push_back(std::move(message.setpoints));
   messages_.clear();
   return all;

@@ -29,7 +29,7 @@ class HeldTargets {
   void set(const MotorSetpoints& message, MonotonicTime now);
   void release(const std::string& motor);
   void releaseAll() { messages_.clear(); }
-  /// What is held, message by message; nothing is from now on.
+  /// Gives up all that is held, message by message.
   [[nodiscard]] std::vector<MotorSetpoints> takeAll();
   /// The program lives.
   void alive(MonotonicTime now) noexcept { last_life_ = now; }

@@ -1,4 +1,4 @@
-// Who stopped a motor or the robot, and why: in the state, and in the event.
+// The cause of a stop, and the client behind it: in the state, and in the event.
 
 #include <algorithm>
 

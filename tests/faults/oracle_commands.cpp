@@ -17,7 +17,7 @@ constexpr Duration kLongestFallback = 1s;
 constexpr int kUnbrakedTicks = 300;
 constexpr double kFast = 0.3;  ///< Of the no-load speed: a brake must oppose this.
 
-// Of the time of a ramp and of the no-load speed: feedback is younger or older than what the oracle sees.
+// Of the time of a ramp and of the full speed: feedback is younger or older than what the oracle sees.
 constexpr double kRampSlack = 0.1;
 // After its time a ramp has the motor stand still for so long, and a frame may be on its way.
 constexpr Duration kRampEnd = 260ms;
@@ -242,8 +242,10 @@ bool Oracle::ramps(const Motor& motor) const {
   const double left = 1.0 - static_cast<double>(seconds(now_ - motor.acts_since)) /
                                 static_cast<double>(seconds(motor.config->fallback.ramp));
   const double most_rpm = std::fabs(motor.rpm_when_it_began) * std::max(left + kRampSlack, 0.0);
-  const double slack_rpm =
-      motor.told.velocity_step_rpm + kRampSlack * static_cast<double>(motor.config->traits().no_load_rpm);
+  // Of some models the no-load speed is not known.
+  const float full_rpm =
+      std::max(motor.config->traits().no_load_rpm, motor.config->settings.velocity_limit_rpm);
+  const double slack_rpm = motor.told.velocity_step_rpm + kRampSlack * static_cast<double>(full_rpm);
   return std::fabs(motor.told.velocity_rpm) <= most_rpm + slack_rpm;
 }
 

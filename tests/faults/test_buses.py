@@ -39,7 +39,7 @@ import rc10
 @pytest.mark.parametrize(
     ("rules", "words"),
     [
-        ("loss 10%", "10 % of all frames lost"),
+        ("loss 5%", "5 % of all frames lost"),
         ("duplicate 20%", "20 % of all frames doubled"),
         ("delay 4ms", "every frame 4 ms late"),
     ],

@@ -27,17 +27,27 @@ from rig import BIN, currents
 import rc10
 
 
-def test_sigterm() -> None:
+@pytest.mark.parametrize(
+    ("number", "words"),
+    [
+        (signal.SIGTERM, "SIGTERM"),
+        (signal.SIGHUP, "SIGHUP: its terminal is closed"),
+        (signal.SIGTSTP, "SIGTSTP: Ctrl-Z"),
+        (signal.SIGQUIT, "SIGQUIT: Ctrl-\\"),
+        (signal.SIGALRM, "SIGALRM, as every other signal that would end the process"),
+    ],
+)
+def test_a_signal_is_the_orderly_stop(number: signal.Signals, words: str) -> None:
     with robot_under_test() as (process, robot, log):
         drive(robot, log, 0.3, left=rc10.velocity_rpm(60), other=rc10.velocity_rpm(60))
         asked_ns = time.time_ns()
-        assert process.stop(signal.SIGTERM) == 0
+        assert process.stop(number) == 0
         ended_ns = time.time_ns()
         for interface in (FRONT, REAR):
             assert [currents(f) for f in log.frames(interface)[-3:]] == [(0, 0, 0, 0)] * 3
         log.check()
         proven(
-            "SIGTERM",
+            words,
             "rest until echoed, last on the wire; exit 0",
             asked_ns,
             log.last_torque_ns("left"),

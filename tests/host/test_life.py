@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import re
 import signal
 from pathlib import Path
@@ -13,7 +14,20 @@ from hostlib.daemon import BIN
 SUMMARY = re.compile(r"(\d+) ticks, (\d+) missed; wake latency .* max (\d+) us")
 
 
-@pytest.mark.parametrize("number", [signal.SIGTERM, signal.SIGINT])
+@pytest.mark.parametrize(
+    "number",
+    [
+        signal.SIGTERM,
+        signal.SIGINT,
+        signal.SIGHUP,
+        signal.SIGQUIT,
+        signal.SIGTSTP,
+        signal.SIGUSR1,
+        signal.SIGALRM,
+        signal.SIGXCPU,
+        signal.SIGRTMIN,
+    ],
+)
 def test_a_signal_ends_it_soon_and_well(daemon: Daemon, number: signal.Signals) -> None:
     daemon.must("enable")
     with daemon.drive("set", "wheel", "velocity", "60", "--for", "60s"):
@@ -25,6 +39,38 @@ def test_a_signal_ends_it_soon_and_well(daemon: Daemon, number: signal.Signals) 
     assert int(summary[1]) > 0
     assert daemon.processes() == {}
     assert not (daemon.run_dir / "host.sock").exists()
+
+
+@pytest.mark.parametrize("number", [signal.SIGHUP, signal.SIGQUIT, signal.SIGTSTP])
+def test_what_a_terminal_sends_to_all_ends_the_gateway_too(
+    daemon: Daemon, number: signal.Signals
+) -> None:
+    os.killpg(daemon.program.pid, number)
+    assert daemon.program.wait(2.0) == 0
+    assert daemon.processes() == {}
+
+
+@pytest.mark.parametrize("number", [signal.SIGXFSZ, signal.SIGTTIN, signal.SIGTTOU])
+def test_a_signal_about_a_file_or_terminal_is_told_and_ends_nothing(
+    daemon: Daemon, number: signal.Signals
+) -> None:
+    daemon.must("enable", "wheel")
+    daemon.program.signal(number)
+    daemon.program.wait_line(rf"warning {number.name} \(.*\): ignored")
+    tick = daemon.state()["tick"]
+    state = daemon.wait_state(lambda s: s["tick"] > tick + 20, "ticks on")
+    assert state["motors"][0]["status"] == "ACTIVE"
+
+
+def test_nohup_lets_it_outlive_its_terminal(daemon: Daemon) -> None:
+    daemon.program.stop()
+    with Program(BIN / "rc10d", "-c", daemon.config, env=daemon.env, prefix=["nohup"]) as program:
+        program.wait_line("LCM on")
+        program.signal(signal.SIGHUP)
+        tick = daemon.state()["tick"]
+        daemon.wait_state(lambda s: s["tick"] > tick + 20, "ticks on")
+        program.signal(signal.SIGTERM)
+        assert program.wait() == 0
 
 
 def test_it_ticks_at_its_rate(daemon: Daemon) -> None:

@@ -31,7 +31,7 @@ if TYPE_CHECKING:
 
 Names = Union[str, "Iterable[str]"]
 AtEnd = Literal["timeout", "disable", "coast"]
-"""What becomes of the motors when a program leaves its robot in good order."""
+"""The fate of the motors when a program leaves its robot in good order."""
 
 # A request or its answer can be lost: LCM is UDP. The daemon knows a repeated one again.
 REPEAT_REQUEST_S = 0.1

@@ -55,7 +55,7 @@ struct Order {
   double value = 0.0;        ///< kZero: what the present angle becomes, deg.
   DriveWrite drive{};        ///< kConfigure: what is written to the drive of the one motor.
   GainChanges gains{};       ///< kSetGains: of the one motor.
-  link::Name client{};       ///< Who asked.
+  link::Name client{};       ///< The one that asked.
   bool whole_robot = false;  ///< Named no motor. Only such a kClear ends an e-stop.
 
   [[nodiscard]] bool fromModule() const noexcept { return id == kFromModule; }

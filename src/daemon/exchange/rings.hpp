@@ -55,7 +55,7 @@ struct LinkExchange {
   TickAges ages;                    // scheduler -> link
   /// Beside the ring, so that an e-stop gets through when the ring is full.
   std::atomic<bool> estop{false};
-  LatestValue<link::Name> estop_client;  ///< Who asked for it; published before.
+  LatestValue<link::Name> estop_client;  ///< The one that asked for it; published before.
   EstopContact estop_contact;            // gpio -> scheduler
 };
 

@@ -20,7 +20,7 @@
 namespace rc10 {
 inline namespace robot_client {
 
-/// What becomes of the motors when a program leaves its robot in good order.
+/// The fate of the motors when a program leaves its robot in good order.
 enum class AtEnd : std::uint8_t {
   kTimeout,  ///< Each does its on_timeout, as when the program dies, and stays ACTIVE.
   kDisable,  ///< Those that the program enabled are disabled, and do their on_disable.
@@ -39,7 +39,7 @@ struct RobotOptions {
   /// inputs, nor called alive() for so long. For programs with a loop: one that hangs would otherwise hold
   /// its motors for ever.
   std::chrono::milliseconds alive_within{0};
-  AtEnd at_end = AtEnd::kTimeout;  ///< What close() and the destructor do.
+  AtEnd at_end = AtEnd::kTimeout;  ///< Done by close() and the destructor.
   /// Told what nobody asked about: a target that was dropped, a setpoint that rc10d skipped, messages of
   /// other definitions. The same text at most once a second, on any thread. Without one: stderr.
   std::function<void(const std::string& problem)> on_problem{};

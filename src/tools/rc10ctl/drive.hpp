@@ -12,7 +12,7 @@
 
 namespace rc10::ctl {
 
-/// What becomes of the motor in the end.
+/// The fate of the motor in the end.
 enum class Then : std::uint8_t {
   kTimeout,  ///< Its on_timeout, as when the program dies.
   kCoast,
