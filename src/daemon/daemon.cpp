@@ -260,7 +260,7 @@ void Daemon::waitForSignal(SignalInbox& signals) {
     if (gateway_) {
       if (const auto news = gateway_->supervise(monotonicNow()); !news.empty()) log_->warn("{}", news);
     }
-    if (gpio_loop_ && gpio_loop_->takeHeartbeatFailure()) {
+    if (gpio_loop_ && gpio_loop_->takeHeartbeatFailure() && config_.heartbeat_gpio) {
       log_->error("heartbeat_gpio: {} cannot be set: the relay behind it cuts the motors' power",
                   config_.heartbeat_gpio->pin.name());
     }
