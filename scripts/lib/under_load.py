@@ -56,7 +56,16 @@ def running(spared: set[int]) -> set[int]:
     while new:
         new = {pid for pid, p in everything.items() if p.parent in new} - spared
         tree |= new
-    return {pid for pid in tree if everything[pid].state not in STOPPED}
+    return {pid for pid in tree if everything[pid].state not in STOPPED and not traced(pid)}
+
+
+def traced(pid: int) -> bool:
+    """A User-Mode Linux traces its processes, and takes a SIGSTOP for one of theirs."""
+    try:
+        status = Path(f"/proc/{pid}/status").read_text(errors="replace")
+    except OSError:
+        return True  # ended
+    return "TracerPid:\t0\n" not in status
 
 
 def send(number: signal.Signals, pids: set[int]) -> None:

@@ -61,7 +61,9 @@ enum class StopCause : std::uint8_t {
   kRefused = 7,    ///< Its drive did not confirm that it was enabled.
   kReference = 8,  ///< Its angle has lost the reference.
   kShutdown = 9,
-  kInput = 10,  ///< The e-stop input.
+  kInput = 10,     ///< The e-stop input.
+  kGuard = 11,     ///< rc10-guard told the drives to rest, or has ended.
+  kOverload = 12,  ///< Reserved: the ticks took longer than their period.
 };
 
 /// Bits of robot_state_t.lcm.
@@ -105,8 +107,9 @@ inline constexpr std::array kControlModeUnits{"", "A", "rpm", "deg", "deg", "deg
 inline constexpr std::array kMotorStatusWords{"OFFLINE", "READY", "ENABLING", "ACTIVE", "FAULT"};
 inline constexpr std::array kRobotStatusWords{"RUN", "ESTOP", "STOPPING"};
 inline constexpr std::array kActingWords{"nothing", "target", "hold", "damp", "brake", "ramp"};
-inline constexpr std::array kStopCauseWords{"",        "request", "estop",     "fault",    "silence", "group",
-                                            "timeout", "refused", "reference", "shutdown", "input"};
+inline constexpr std::array kStopCauseWords{"",      "request", "estop",   "fault",     "silence",
+                                            "group", "timeout", "refused", "reference", "shutdown",
+                                            "input", "guard",   "overload"};
 inline constexpr std::array kConditionWords{"simulated", "input-open"};
 inline constexpr std::array kBusStateWords{"active", "warning", "passive", "bus-off",
                                            "down",   "gone",    "silent",  "stalled"};

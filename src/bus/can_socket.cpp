@@ -102,6 +102,17 @@ Result<void> setReceiveOptions(int fd, const std::string& name, bool fd_frames) 
   return {};
 }
 
+bool hearOnly(int fd, std::span<const CanId> ids) {
+  // With exactly this mask the kernel finds the socket by direct index or hash, not in a list.
+  std::vector<can_filter> filters;
+  for (const CanId id : ids) {
+    filters.push_back(
+        {id.value | (id.extended ? CAN_EFF_FLAG : 0U), CAN_EFF_FLAG | CAN_RTR_FLAG | idMask(id.extended)});
+  }
+  const auto size = static_cast<socklen_t>(filters.size() * sizeof(can_filter));
+  return ::setsockopt(fd, SOL_CAN_RAW, CAN_RAW_FILTER, filters.data(), size) == 0;
+}
+
 Result<int> setSendBuffer(int fd, const std::string& name, int frames_per_tick) {
   int effective = 0;
   socklen_t size = sizeof(effective);
@@ -126,13 +137,22 @@ Result<CanSocket> openCanSocket(const std::string& interface, const CanSocketOpt
   if (!found) return tl::unexpected(found.error());
   const bool fd_frames = found->mtu >= static_cast<int>(CANFD_MTU);
   if (auto ok = setReceiveOptions(fd->get(), interface, fd_frames); !ok) return tl::unexpected(ok.error());
-  if (!setOption(fd->get(), SOL_CAN_RAW, CAN_RAW_ERR_FILTER, kErrorClasses)) {
+  if (options.send_only && ::setsockopt(fd->get(), SOL_CAN_RAW, CAN_RAW_FILTER, nullptr, 0) != 0) {
+    return fail("CAN interface '" + interface + "': cannot set the filter: " + std::strerror(errno));
+  }
+  const can_err_mask_t errors = options.send_only ? 0U : kErrorClasses;
+  if (!setOption(fd->get(), SOL_CAN_RAW, CAN_RAW_ERR_FILTER, errors)) {
     return fail("CAN interface '" + interface + "': cannot ask for error messages: " + std::strerror(errno));
   }
   const auto send_buffer_bytes = setSendBuffer(fd->get(), interface, options.frames_per_tick);
   if (!send_buffer_bytes) return tl::unexpected(send_buffer_bytes.error());
   if (auto ok = bindTo(fd->get(), interface, *found); !ok) return tl::unexpected(ok.error());
   return CanSocket{std::move(*fd), fd_frames, *send_buffer_bytes};
+}
+
+bool hearOwnFrames(int fd, std::span<const CanId> ids) {
+  const int on = 1;
+  return setOption(fd, SOL_CAN_RAW, CAN_RAW_RECV_OWN_MSGS, on) && hearOnly(fd, ids);
 }
 
 Result<UniqueFd> openEchoSocket(const std::string& interface, std::span<const CanId> command_ids) {
@@ -142,14 +162,7 @@ Result<UniqueFd> openEchoSocket(const std::string& interface, std::span<const Ca
   if (!found) return tl::unexpected(found.error());
   const bool fd_frames = found->mtu >= static_cast<int>(CANFD_MTU);
   if (auto ok = setReceiveOptions(fd->get(), interface, fd_frames); !ok) return tl::unexpected(ok.error());
-  // With exactly this mask the kernel finds the socket by direct index or hash, not in a list.
-  std::vector<can_filter> filters;
-  for (const CanId id : command_ids) {
-    filters.push_back(
-        {id.value | (id.extended ? CAN_EFF_FLAG : 0U), CAN_EFF_FLAG | CAN_RTR_FLAG | idMask(id.extended)});
-  }
-  const auto size = static_cast<socklen_t>(filters.size() * sizeof(can_filter));
-  if (::setsockopt(fd->get(), SOL_CAN_RAW, CAN_RAW_FILTER, filters.data(), size) != 0) {
+  if (!hearOnly(fd->get(), command_ids)) {
     return fail("CAN interface '" + interface + "': cannot set the echo filter: " + std::strerror(errno));
   }
   if (auto ok = bindTo(fd->get(), interface, *found); !ok) return tl::unexpected(ok.error());

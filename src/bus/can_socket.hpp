@@ -13,6 +13,8 @@ struct CanSocketOptions {
   /// Frames of one tick; SO_SNDBUF is sized for about this many, so that what is in flight is never
   /// older than one or two ticks.
   int frames_per_tick = 8;
+  /// Nothing is received: neither frames nor error messages. See hearOwnFrames().
+  bool send_only = false;
 };
 
 struct CanSocket {
@@ -28,6 +30,10 @@ struct CanSocket {
 /// The error names the interface, the cause and what to do (interface missing, kernel without CAN).
 /// An interface that is down is no error: the first receive reports ENETDOWN.
 [[nodiscard]] Result<CanSocket> openCanSocket(const std::string& interface, const CanSocketOptions& options);
+
+/// From now on a socket that was opened to send only receives frames of these ids, its own ones too, when the
+/// controller has sent them: the kernel marks those MSG_CONFIRM. False: errno.
+[[nodiscard]] bool hearOwnFrames(int fd, std::span<const CanId> ids);
 
 /// Opens a second socket that sees the echoes of some command ids when the controller has sent them: the only
 /// proof that a frame reached the wire. The kernel marks it MSG_DONTROUTE (sent on this computer), which

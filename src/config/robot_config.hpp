@@ -84,6 +84,8 @@ struct ModuleConfig {
 };
 
 enum class RealtimePolicy : std::uint8_t { kRequired, kPreferred };
+/// Of rc10-guard.
+enum class GuardPolicy : std::uint8_t { kRequired, kPreferred, kOff };
 
 struct ThreadConfig {
   int priority = 0;        ///< SCHED_FIFO
@@ -101,6 +103,7 @@ struct RobotConfig {
   std::string hash;  ///< SHA-256 of the file, as sha256sum prints it.
   std::string robot;
   RealtimePolicy realtime = RealtimePolicy::kRequired;
+  GuardPolicy guard = GuardPolicy::kPreferred;
   int rate_hz = 1000;
   ThreadConfig scheduler{.priority = 60, .cpu = std::nullopt};
   ThreadConfig rx{.priority = 65, .cpu = std::nullopt};

@@ -2,12 +2,15 @@
 
 #include <poll.h>
 
+#include <algorithm>
+#include <array>
 #include <thread>
 
 #include <fmt/format.h>
 
 #include "blackbox/places.hpp"
 #include "config/check/bus_load.hpp"
+#include "daemon/child_process.hpp"
 #include "daemon/exchange/clock.hpp"
 #include "daemon/log.hpp"
 #include "daemon/rest_frames.hpp"
@@ -21,6 +24,10 @@ namespace {
 constexpr int kSuperviseMs = 50;
 // Below the scheduler: to the daemon the simulated drives are the outside world.
 constexpr int kSimPriority = 50;
+// Until rc10-guard takes ticks for stopped. Without real-time priority a busy computer stops them, too.
+constexpr Duration kStandstillInRealTime = std::chrono::milliseconds{20};
+constexpr Duration kStandstill = std::chrono::milliseconds{100};
+constexpr int kStandstillPeriods = 4;
 
 }  // namespace
 
@@ -67,10 +74,12 @@ Result<void> Daemon::build() {
   if (!robot) return tl::unexpected(robot.error());
   robot_ = std::move(*robot);
   if (auto written = writeRestFrames(*robot_, link::runDir(), config_.robot); !written) return written;
+  if (auto guarded = findGuard(); !guarded) return guarded;
   describeRobot();
   openBlackBox();  // the file is ours: no other daemon of this robot runs
   scheduler_ = std::make_unique<Scheduler>(*robot_, inboxes_, exchange_, config_.period(),
                                            black_box_ ? &black_box_->recorder() : nullptr, &monotonicNow);
+  if (guard_) scheduler_->watchedBy(guard_->page());
   if (config_.heartbeat_gpio) scheduler_->restHeartbeatAfter(config_.heartbeat_gpio->rests_in_estop_after);
   auto sched_loop = SchedLoop::create(*scheduler_, config_.period());
   if (!sched_loop) return tl::unexpected(sched_loop.error());
@@ -106,6 +115,42 @@ Result<void> Daemon::build() {
   if (!link) return tl::unexpected(link.error());
   link_ = std::move(*link);
   return {};
+}
+
+Result<void> Daemon::findGuard() {
+  const bool needed = std::any_of(config_.buses.begin(), config_.buses.end(), [](const BusConfig& bus) {
+    return bus.type == BusType::kSocketCan && !bus.motors.empty();
+  });
+  if (config_.guard == GuardPolicy::kOff || !needed) return {};
+  const bool required = config_.realtime == RealtimePolicy::kRequired;
+  const auto standstill = std::max<Duration>(required ? kStandstillInRealTime : kStandstill,
+                                             kStandstillPeriods * config_.period());
+  auto guard = GuardLink::create(
+      {.run_dir = link::runDir(),
+       .program = siblingProgram("rc10-guard"),
+       .hello = {.robot = config_.robot,
+                 .standstill_ms = static_cast<std::uint32_t>(
+                     std::chrono::duration_cast<std::chrono::milliseconds>(standstill).count()),
+                 .rest_frames = restFramesText(*robot_, config_.robot)}});
+  if (guard) {
+    guard_ = std::move(*guard);
+    return {};
+  }
+  const std::string message = "no guard: " + guard.error().message;
+  if (config_.guard == GuardPolicy::kRequired)
+    return fail(message + ". (`guard: preferred` in the configuration starts without it.)");
+  description_.notices.push_back(message +
+                                 "; if rc10d dies, the drives keep their last command until systemd "
+                                 "runs rc10-stop");
+  log_->warn("{}", description_.notices.back());
+  return {};
+}
+
+void Daemon::superviseGuard() {
+  if (!guard_) return;
+  const auto news = guard_->supervise(monotonicNow());
+  if (news.lost) exchange_.guard_lost.store(true, std::memory_order_release);
+  if (!news.text.empty()) log_->warn("{}", news.text);
 }
 
 std::unique_ptr<SerialIo> Daemon::serialIo() {
@@ -257,6 +302,7 @@ void Daemon::feedWatchdog() {
 
 void Daemon::waitForSignal(SignalInbox& signals) {
   for (;;) {
+    superviseGuard();
     if (gateway_) {
       if (const auto news = gateway_->supervise(monotonicNow()); !news.empty()) log_->warn("{}", news);
     }
@@ -264,8 +310,9 @@ void Daemon::waitForSignal(SignalInbox& signals) {
       log_->error("heartbeat_gpio: {} cannot be set: the relay behind it cuts the motors' power",
                   config_.heartbeat_gpio->pin.name());
     }
-    pollfd wait_for{.fd = signals.descriptor(), .events = POLLIN, .revents = 0};
-    (void)::poll(&wait_for, 1, kSuperviseMs);
+    std::array wait_for{pollfd{.fd = signals.descriptor(), .events = POLLIN, .revents = 0},
+                        pollfd{.fd = guard_ ? guard_->descriptor() : -1, .events = POLLIN, .revents = 0}};
+    (void)::poll(wait_for.data(), wait_for.size(), kSuperviseMs);
     while (const int signal = signals.take()) {
       switch (meaningOf(signal)) {
         case SignalMeaning::kChild: break;
@@ -279,7 +326,8 @@ void Daemon::waitForSignal(SignalInbox& signals) {
 void Daemon::stop() {
   notifyService("STOPPING=1");
   sched_thread_.join();  // goes on until rest frames are on the wire
-  line_thread_.join();   // leaves its outputs safe
+  if (guard_) guard_->end();
+  line_thread_.join();  // leaves its outputs safe
   if (gateway_) gateway_->stop();
   link_thread_.join();
   rx_thread_.join();

@@ -11,6 +11,7 @@
 #include "daemon/clients/link_server.hpp"
 #include "daemon/devices/robot.hpp"
 #include "daemon/gateway_process.hpp"
+#include "daemon/guard_link.hpp"
 #include "daemon/interfaces/rx_loop.hpp"
 #include "daemon/recording/black_box.hpp"
 #include "daemon/signal_inbox.hpp"
@@ -50,6 +51,8 @@ class Daemon {
   [[nodiscard]] Result<void> startThread(RtThread& thread, RtSettings settings,
                                          std::function<void(std::stop_token)> body);
   [[nodiscard]] Result<void> tolerate(const Result<void>& outcome);
+  [[nodiscard]] Result<void> findGuard();
+  void superviseGuard();
   void describeRobot();
   void describeModules();
   [[nodiscard]] std::unique_ptr<SerialIo> serialIo();
@@ -67,6 +70,7 @@ class Daemon {
   std::vector<BusInbox> inboxes_;  // of each bus
   LinkExchange exchange_;
   std::unique_ptr<BlackBox> black_box_;  // null: off, or not to be had
+  std::unique_ptr<GuardLink> guard_;     // null: off, not to be had, or no drive on a CAN interface
   std::unique_ptr<Scheduler> scheduler_;
   std::unique_ptr<SchedLoop> sched_loop_;
   std::unique_ptr<RxLoop> rx_loop_;

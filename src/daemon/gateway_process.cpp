@@ -2,22 +2,16 @@
 
 #include <poll.h>
 #include <signal.h>
-#include <spawn.h>
 #include <sys/syscall.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
 #include <algorithm>
-#include <array>
-#include <cerrno>
-#include <cstring>
 
 #include <fmt/format.h>
 
 #include "app/unique_fd.hpp"
-
-// NOLINTNEXTLINE(readability-redundant-declaration): POSIX declares it nowhere
-extern char** environ;
+#include "daemon/child_process.hpp"
 
 namespace rc10 {
 namespace {
@@ -39,25 +33,10 @@ GatewayProcess::GatewayProcess(std::string program, std::vector<std::string> arg
     : program_(std::move(program)), arguments_(std::move(arguments)), backoff_(kFirstBackoff) {}
 
 Result<void> GatewayProcess::spawn() {
-  std::vector<char*> argv{program_.data()};
-  for (auto& argument : arguments_) argv.push_back(argument.data());
-  argv.push_back(nullptr);
-  posix_spawnattr_t attributes;
-  posix_spawnattr_init(&attributes);
-  // Signals as a fresh process has them: ours are blocked for signalfd, or ignored.
-  sigset_t none;
-  sigemptyset(&none);
-  posix_spawnattr_setsigmask(&attributes, &none);
-  sigset_t ignored_here;
-  sigemptyset(&ignored_here);
-  sigaddset(&ignored_here, SIGPIPE);
-  posix_spawnattr_setsigdefault(&attributes, &ignored_here);
-  posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETSIGMASK | POSIX_SPAWN_SETSIGDEF);
-  const int error = posix_spawn(&pid_, program_.c_str(), nullptr, &attributes, argv.data(), environ);
-  posix_spawnattr_destroy(&attributes);
-  if (error == 0) return {};
-  pid_ = 0;
-  return fail(fmt::format("{} could not be started: {}", program_, std::strerror(error)));
+  const auto child = startChild(program_, arguments_);
+  if (!child) return tl::unexpected(child.error());
+  pid_ = *child;
+  return {};
 }
 
 std::string GatewayProcess::supervise(MonotonicTime now) {
@@ -89,14 +68,6 @@ void GatewayProcess::stop() noexcept {
   if (::poll(&poll_for, 1, kStopTimeoutMs) != 1) kill(pid_, SIGKILL);
   waitpid(pid_, nullptr, 0);
   pid_ = 0;
-}
-
-std::string siblingProgram(const std::string& name) {
-  std::array<char, 4096> path{};
-  const auto size = ::readlink("/proc/self/exe", path.data(), path.size() - 1);
-  const std::string self(path.data(), size > 0 ? static_cast<std::size_t>(size) : 0);
-  const auto slash = self.rfind('/');
-  return slash == std::string::npos ? "/usr/bin/" + name : self.substr(0, slash + 1) + name;
 }
 
 }  // namespace rc10

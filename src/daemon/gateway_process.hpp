@@ -37,7 +37,4 @@ class GatewayProcess {
   Duration backoff_;
 };
 
-/// rc10-lcm beside our own executable, so that a build tree uses its own.
-[[nodiscard]] std::string siblingProgram(const std::string& name);
-
 }  // namespace rc10

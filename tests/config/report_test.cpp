@@ -45,6 +45,7 @@ std::vector<std::string> wordsAfter(const std::string& text, const std::string& 
 TEST(Report, SaysHowTheRobotRuns) {
   EXPECT_THAT(report(), HasSubstr("robot      hero (hero.yaml)\n"
                                   "realtime   preferred\n"
+                                  "guard      preferred\n"
                                   "scheduler  1000 Hz, SCHED_FIFO 50, CPU 3\n"
                                   "rx         SCHED_FIFO 65, any CPU\n"
                                   "lcm        udpm://239.255.76.67:7667?ttl=0, state at 100 Hz\n"));

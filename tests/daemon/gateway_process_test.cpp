@@ -8,7 +8,6 @@
 
 #include <array>
 #include <cerrno>
-#include <filesystem>
 
 #include "app/unique_fd.hpp"
 
@@ -184,11 +183,6 @@ TEST_F(GatewayProcessTest, DoesNotOutliveItsOwner) {
     pid = gateway.pid();
   }
   EXPECT_EQ(::kill(pid, 0), -1);
-}
-
-TEST(SiblingProgram, LiesBesideOurOwnExecutable) {
-  const auto self = std::filesystem::read_symlink("/proc/self/exe");
-  EXPECT_EQ(siblingProgram("rc10-lcm"), (self.parent_path() / "rc10-lcm").string());
 }
 
 }  // namespace

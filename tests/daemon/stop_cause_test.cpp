@@ -123,6 +123,33 @@ TEST_F(StopCauseTest, TheInputIsACauseOfItsOwn) {
   EXPECT_THAT(told(), Contains("RUN -> ESTOP (the e-stop input)"));
 }
 
+TEST_F(StopCauseTest, WhatTheGuardHasToldToRestIsNotTakenUpAgain) {
+  link::GuardPage page;
+  robot.scheduler().watchedBy(page);
+  robot.tick();
+  EXPECT_EQ(page.ticks.load(), robot.scheduler().ticks());
+  page.acted.store(true);
+  robot.tick();
+  EXPECT_EQ(robot.snapshot().stop.cause, StopCause::kGuard);
+  EXPECT_EQ(robot.motor(kLeft).acting, Acting::kNothing) << "not its fallback either";
+  EXPECT_FALSE(page.acted.load()) << "once";
+  EXPECT_THAT(told(), Contains("RUN -> ESTOP (rc10-guard told the drives to rest, or has ended)"));
+}
+
+TEST_F(StopCauseTest, WithoutItsGuardTheRobotStopsWithItsFallbacks) {
+  robot.exchange().guard_lost.store(true);
+  robot.tick();
+  EXPECT_EQ(robot.snapshot().stop.cause, StopCause::kGuard);
+  EXPECT_EQ(robot.motor(kLeft).acting, Acting::kDamp);
+}
+
+TEST_F(StopCauseTest, AStopOfTheComputerVetoesAClearOfItsTick) {
+  robot.exchange().guard_lost.store(true);
+  const auto result = asked(Operation::kClear, "captain", {}, true);
+  EXPECT_EQ(result.motors[kLeft], Refusal::kEstopAsked);
+  EXPECT_EQ(robot.snapshot().state, RobotStatus::kEstop);
+}
+
 TEST_F(StopCauseTest, ASilentDriveIsToldFromAFault) {
   robot.freezeBus(0, true);
   robot.run(200);

@@ -21,7 +21,7 @@ from faultrig import (
     robot_under_test,
     witness,
 )
-from guestlib import run
+from guestlib import run, wait_for
 from rig import BIN, currents
 
 import rc10
@@ -56,27 +56,69 @@ def test_a_signal_is_the_orderly_stop(number: signal.Signals, words: str) -> Non
         assert ended_ns - asked_ns < 2_000_000_000
 
 
-@pytest.mark.parametrize("number", [signal.SIGKILL, signal.SIGSEGV])
-def test_the_daemon_is_killed_and_rc10_stop_follows(number: signal.Signals) -> None:
+@pytest.mark.parametrize("number", [signal.SIGKILL, signal.SIGSEGV, signal.SIGABRT])
+def test_the_daemon_dies_and_its_guard_follows(number: signal.Signals) -> None:
     with robot_under_test() as (process, robot, log):
         drive(robot, log, 0.3, left=rc10.velocity_rpm(60), other=rc10.velocity_rpm(60))
         process.signal(number)
         killed_ns = time.time_ns()
         process.wait(5.0)
-        run(BIN / "rc10-stop", "faults")
+        process.wait_line("the rest frames are on the wire", 5.0)
         for interface in (FRONT, REAR):
-            assert currents(log.frames(interface)[-1]) == (0, 0, 0, 0)
+            rest = log.frames(interface, killed_ns + 2 * TICK_NS)
+            assert [currents(f) for f in log.frames(interface)[-2:]] == [(0, 0, 0, 0)] * 2
+            assert rest[-1].t_ns - killed_ns < 25 * TICK_NS
         log.check(other_bus=None)
         proven(
             f"{number.name} of the daemon",
-            "rc10-stop, by systemd, sends rest to every drive",
+            "rc10-guard sends rest to every drive until echoed",
             killed_ns,
             log.last_torque_ns("left"),
             2,
         )
 
 
-@pytest.mark.parametrize("stall_ms", [30, 300])
+def test_the_guard_dies() -> None:
+    with robot_under_test() as (_, robot, log):
+        drive(robot, log, 0.3, left=rc10.velocity_rpm(60))
+        run("pkill", "-KILL", "-x", "rc10-guard")
+        killed_ns = time.time_ns()
+        wait_for(lambda: robot.wait_for_state(5.0).stop_cause is rc10.StopCause.GUARD, 5.0)
+        time.sleep(0.1)
+        log.check(other_bus=None)
+        proven(
+            "rc10-guard is killed",
+            "e-stop; another guard is started",
+            killed_ns,
+            log.last_torque_ns("left"),
+            3,
+        )
+
+
+def test_the_daemon_stands_still_for_long() -> None:
+    with robot_under_test() as (process, robot, log):
+        drive(robot, log, 0.3, left=rc10.velocity_rpm(60), other=rc10.velocity_rpm(60))
+        process.signal(signal.SIGSTOP)
+        stopped_ns = time.time_ns()
+        process.wait_line("the rest frames are on the wire", 5.0)
+        rested_ns = time.time_ns()
+        for interface in (FRONT, REAR):
+            assert [currents(f) for f in log.frames(interface)[-3:]] == [(0, 0, 0, 0)] * 3
+        assert rested_ns - stopped_ns < 130 * TICK_NS
+        process.signal(signal.SIGCONT)
+        wait_for(lambda: robot.wait_for_state(5.0).stop_cause is rc10.StopCause.GUARD, 5.0)
+        time.sleep(0.1)
+        assert not any(any(currents(f)) for f in log.frames(FRONT, rested_ns)[2:])
+        proven(
+            "SIGSTOP of the daemon, `realtime: preferred`",
+            "rc10-guard sends rest after 100 ms; e-stop when it goes on",
+            stopped_ns,
+            rested_ns,
+            130,
+        )
+
+
+@pytest.mark.parametrize("stall_ms", [30, 80])
 def test_the_daemon_stalls(stall_ms: int) -> None:
     with robot_under_test() as (process, robot, log):
         start_ns = time.time_ns()

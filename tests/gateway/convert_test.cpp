@@ -118,6 +118,8 @@ TEST(ConvertState, HasTheNumbersOfTheTypes) {
   EXPECT_EQ(static_cast<int>(StopCause::kReference), +motor_state_t::STOP_REFERENCE);
   EXPECT_EQ(static_cast<int>(StopCause::kShutdown), +motor_state_t::STOP_SHUTDOWN);
   EXPECT_EQ(static_cast<int>(StopCause::kInput), +motor_state_t::STOP_INPUT);
+  EXPECT_EQ(static_cast<int>(StopCause::kGuard), +motor_state_t::STOP_GUARD);
+  EXPECT_EQ(static_cast<int>(StopCause::kOverload), +motor_state_t::STOP_OVERLOAD);
 }
 
 TEST(ConvertState, LeavesMotorsWithoutANameOut) {

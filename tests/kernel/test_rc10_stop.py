@@ -12,7 +12,7 @@ from pathlib import Path
 
 import pytest
 from guestlib import Candump, Frame, Proc, netem, run, wait_for
-from rig import BIN, C6XX_COMMAND, COMMAND_IDS, MS, ROBOT, commands, currents, daemon, fakes
+from rig import BIN, C6XX_COMMAND, COMMAND_IDS, CONFIG, MS, ROBOT, commands, currents, daemon, fakes
 
 HOLD = Path(__file__).with_name("hold_velocity.py")
 LEFT_FEEDBACK = 0x201
@@ -42,9 +42,11 @@ def after(frames: list[Frame], t_ns: int) -> list[Frame]:
     ("number", "words"), [(signal.SIGKILL, ["--all"]), (signal.SIGSEGV, [ROBOT])]
 )
 def test_the_motor_of_a_killed_rc10d_is_brought_to_rest(
-    number: signal.Signals, words: list[str]
+    number: signal.Signals, words: list[str], tmp_path: Path
 ) -> None:
-    with fakes(), daemon() as process, Candump("vcan0") as bus, holder() as hold:
+    unguarded = tmp_path / "robot.yaml"
+    unguarded.write_text(CONFIG.read_text().replace("robot:", "guard: off\nrobot:", 1))
+    with fakes(), daemon(unguarded) as process, Candump("vcan0") as bus, holder() as hold:
         hold.wait_line("holding", 10.0)
         time.sleep(0.5)
         process.signal(number)

@@ -30,10 +30,21 @@ USES = {
     "blackbox": {"link", "app"},
     "client": {"blackbox", "link", "app"},
     "doctor": {"client", "link", "bus", "app"},
+    "guard": {"link", "bus", "app"},
     "gateway": {"client", "link", "app"},
     "daemon": {"blackbox", "config", "drives", "sim", "module", "motor", "bus", "link", "app"},
     "robot_client": {"app"},
-    "tools": {"doctor", "survey", "client", "drives", "motor", "blackbox", "config", "link"}
+    "tools": {
+        "guard",
+        "doctor",
+        "survey",
+        "client",
+        "drives",
+        "motor",
+        "blackbox",
+        "config",
+        "link",
+    }
     | {"sim", "bus", "app"},
 }
 

@@ -101,6 +101,10 @@ class StopCause(IntEnum):
     SHUTDOWN = motor_state_t.STOP_SHUTDOWN
     INPUT = motor_state_t.STOP_INPUT
     """The e-stop input."""
+    GUARD = motor_state_t.STOP_GUARD
+    """rc10-guard told the drives to rest, or has ended."""
+    OVERLOAD = motor_state_t.STOP_OVERLOAD
+    """The ticks took longer than their period."""
     UNKNOWN = -1
     """A cause that this version of the client does not know."""
 

@@ -49,6 +49,10 @@ class RobotBuilder {
     top_.read("robot", robot_.robot);
     robot_.realtime =
         top_.text("realtime") == "preferred" ? RealtimePolicy::kPreferred : RealtimePolicy::kRequired;
+    const auto guard = top_.text("guard");
+    robot_.guard = guard == "required" ? GuardPolicy::kRequired
+                   : guard == "off"    ? GuardPolicy::kOff
+                                       : GuardPolicy::kPreferred;
     readThreads();
     readLcm();
     buildGpio(top_, robot_, problems_);

@@ -13,6 +13,8 @@ constexpr TextForm kUdpmUrl{"udpm://[0-9]{1,3}(\\.[0-9]{1,3}){3}:[0-9]{1,5}(\\?t
 
 std::vector<std::string_view> realtimePolicies() { return {"required", "preferred"}; }
 
+std::vector<std::string_view> guardPolicies() { return {"required", "preferred", "off"}; }
+
 constexpr Range kPriorities{.min = 1, .max = 90};
 constexpr Range kCpus{.min = 0, .max = 1023};
 
@@ -79,6 +81,13 @@ constexpr std::array kRobotKeys{
         .default_text = "required",
         .about = "required: do not start without real-time priority and locked memory. preferred: warn and "
                  "go on."},
+    Key{.name = "guard",
+        .kind = kText,
+        .choices = guardPolicies,
+        .default_text = "preferred",
+        .about =
+            "rc10-guard, which tells the drives to rest when rc10d dies or hangs. required: do not start "
+            "without it. preferred: warn and go on. off: for a debugger, which stops rc10d."},
     Key{.name = "scheduler",
         .kind = kSection,
         .section = &kScheduler,

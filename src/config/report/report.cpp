@@ -26,6 +26,9 @@ std::string robotText(const RobotConfig& config) {
   TextTable table;
   table.add({"robot", config.robot + " (" + printable(config.file) + ")"});
   table.add({"realtime", required ? "required" : "preferred"});
+  table.add({"guard", config.guard == GuardPolicy::kOff        ? "off: nobody rests the drives if rc10d dies"
+                      : config.guard == GuardPolicy::kRequired ? "required"
+                                                               : "preferred"});
   table.add({"scheduler", std::to_string(config.rate_hz) + " Hz, " + threadText(config.scheduler)});
   table.add({"rx", threadText(config.rx)});
   table.add({"lcm", config.lcm.enabled

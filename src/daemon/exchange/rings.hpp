@@ -57,6 +57,7 @@ struct LinkExchange {
   std::atomic<bool> estop{false};
   LatestValue<link::Name> estop_client;  ///< The one that asked for it; published before.
   EstopContact estop_contact;            // gpio -> scheduler
+  std::atomic<bool> guard_lost{false};   // main -> scheduler: rc10-guard has ended
 };
 
 }  // namespace rc10

@@ -29,6 +29,7 @@ Supervisor::Supervisor(Robot& robot, LinkExchange& link, FlightRecorder* recorde
 }
 
 void Supervisor::decide(const Tick& tick) noexcept {
+  estop_asked_ = false;
   watchSimulation(tick);
   for (std::size_t motor = 0; motor < axes_.size(); ++motor) watch(motor, tick);
   for (std::size_t group = 0; group < groups_.size(); ++group) watchGroup(group, tick);

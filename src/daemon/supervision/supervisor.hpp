@@ -39,6 +39,8 @@ class Supervisor {
   /// Tells every motor what kind of frame its drive gets. Called before Motor_Base::update().
   void decide(const Tick& tick) noexcept;
 
+  /// E-stop of the robot for a cause within this computer. A `clear` of the same tick is refused.
+  void stopFor(StopCause cause, const Tick& tick) noexcept { estop({cause}, tick); }
   /// The end of the process begins: every motor is disabled, and its fallback acts.
   void beginStop(const Tick& tick) noexcept;
   /// Whether some motor is still being damped, braked or held.
@@ -154,7 +156,7 @@ class Supervisor {
   std::uint64_t simulation_steps_ = 0;  ///< As counted in the tick before.
   MonotonicTime simulation_stepped_at_{};
   bool simulation_late_ = false;
-  bool estop_asked_ = false;  ///< In this tick.
+  bool estop_asked_ = false;  ///< In this tick, until decide().
   MonotonicTime client_heard_{};
   std::uint64_t expired_commands_ = 0;
   std::uint64_t refused_commands_ = 0;

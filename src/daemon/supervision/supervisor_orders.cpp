@@ -9,7 +9,6 @@ namespace rc10 {
 void Supervisor::receiveOrders(const Tick& tick) noexcept {
   const auto contact = link_.estop_contact.look(tick.dt_s);
   if (contact.news) report(estopInputEvent(*contact.news, tick.now));
-  estop_asked_ = false;
   if (contact.stop) estop({StopCause::kInput}, tick);
   if (link_.estop.exchange(false, std::memory_order_acquire))
     estop({StopCause::kRequest, link_.estop_client.read()}, tick);

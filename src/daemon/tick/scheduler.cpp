@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <span>
+#include <utility>
 
 namespace rc10 {
 namespace {
@@ -45,6 +46,7 @@ void Scheduler::tick(MonotonicTime now, std::uint64_t periods) noexcept {
   reportMissedTicks(tick);
   receive(tick);
   bus_watch_.decide(tick);
+  stopForTheComputer(tick);
   supervisor_.receiveOrders(tick);
   if (stop_requested_) beginStop(tick);
   modules_.update(tick);
@@ -60,6 +62,20 @@ void Scheduler::tick(MonotonicTime now, std::uint64_t periods) noexcept {
   snapshot(tick);
   beat(tick);
   ticks_.store(tick.index + 1, std::memory_order_relaxed);
+  if (guard_ != nullptr) guard_->ticks.store(tick.index + 1, std::memory_order_release);
+}
+
+// Reasons to stop that neither a client nor the e-stop input has given.
+void Scheduler::stopForTheComputer(const Tick& tick) noexcept {
+  if (link_.guard_lost.exchange(false, std::memory_order_acquire))
+    supervisor_.stopFor(StopCause::kGuard, tick);
+  if (guard_ != nullptr && guard_->acted.load(std::memory_order_acquire)) {
+    guard_->acted.store(false, std::memory_order_release);
+    supervisor_.stopFor(StopCause::kGuard, tick);
+    supervisor_.endFallbacks();  // the drives rest already: nothing takes them up again
+  }
+  if (const auto cause = std::exchange(stop_cause_, StopCause::kNone); cause != StopCause::kNone)
+    supervisor_.stopFor(cause, tick);
 }
 
 void Scheduler::beat(const Tick& tick) noexcept {

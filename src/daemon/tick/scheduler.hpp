@@ -13,6 +13,7 @@
 #include "daemon/supervision/supervisor.hpp"
 #include "daemon/tick/bus_watch.hpp"
 #include "daemon/tick/module_runner.hpp"
+#include "link/guard_page.hpp"
 
 namespace rc10 {
 
@@ -40,6 +41,11 @@ class Scheduler {
   /// The heartbeat is to end so long after the beginning of an e-stop, until that is cleared. Before the
   /// first tick.
   void restHeartbeatAfter(std::optional<Duration> estop) noexcept { heartbeat_rests_after_ = estop; }
+  /// What rc10-guard reads and writes; outlives this. Before the first tick.
+  void watchedBy(link::GuardPage& page) noexcept { guard_ = &page; }
+  /// From the next tick on an e-stop. Scheduler thread.
+  void stopFor(StopCause cause) noexcept { stop_cause_ = cause; }
+
   /// Ticks in which the heartbeat goes on. Any thread.
   [[nodiscard]] std::uint64_t beats() const noexcept { return beats_.load(std::memory_order_relaxed); }
 
@@ -58,6 +64,7 @@ class Scheduler {
   void snapshot(const Tick& tick) noexcept;
   void recordAges(const Snapshot& snapshot) noexcept;
   void beat(const Tick& tick) noexcept;
+  void stopForTheComputer(const Tick& tick) noexcept;
 
   Robot& robot_;
   std::span<BusInbox> inboxes_;
@@ -73,6 +80,8 @@ class Scheduler {
   std::atomic<std::uint64_t> ticks_{0};               // read by the link thread, for the watchdog
   std::atomic<std::uint64_t> beats_{0};               // read by the gpio thread
   std::optional<Duration> heartbeat_rests_after_;
+  link::GuardPage* guard_ = nullptr;  ///< None: nobody watches.
+  StopCause stop_cause_ = StopCause::kNone;
   std::uint64_t missed_ticks_ = 0;
   std::uint64_t unreported_missed_ticks_ = 0;
   MonotonicTime next_missed_report_{};

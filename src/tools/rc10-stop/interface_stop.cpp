@@ -13,7 +13,8 @@ namespace rc10 {
 
 InterfaceStop::InterfaceStop(std::string interface, std::vector<CanFrame> frames)
     : interface_(std::move(interface)), frames_(std::move(frames)) {
-  auto socket = openCanSocket(interface_, {.frames_per_tick = static_cast<int>(frames_.size())});
+  auto socket =
+      openCanSocket(interface_, {.frames_per_tick = static_cast<int>(frames_.size()), .send_only = true});
   if (socket) {
     socket_ = std::move(socket->fd);
   } else {

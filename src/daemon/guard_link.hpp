@@ -1,0 +1,62 @@
+#pragma once
+
+#include <sys/types.h>
+
+#include <memory>
+#include <string>
+
+#include "app/result.hpp"
+#include "app/time.hpp"
+#include "app/unique_fd.hpp"
+#include "link/guard_hello.hpp"
+#include "link/guard_page.hpp"
+
+namespace rc10 {
+
+/// rc10-guard, which watches this process from outside: uses the one of the run folder, or starts one. Main
+/// thread only; the page is the scheduler's.
+class GuardLink {
+ public:
+  struct Settings {
+    std::string run_dir;
+    std::string program;  ///< Started where no guard runs.
+    link::GuardHello hello;
+  };
+
+  /// Returns when the guard has said that it watches. The error says why it does not.
+  [[nodiscard]] static Result<std::unique_ptr<GuardLink>> create(Settings settings);
+  GuardLink(const GuardLink&) = delete;
+  GuardLink& operator=(const GuardLink&) = delete;
+  ~GuardLink() { end(); }
+
+  [[nodiscard]] link::GuardPage& page() noexcept { return *page_; }
+
+  /// Readable when the guard has ended; -1: there is none.
+  [[nodiscard]] int descriptor() const noexcept { return connection_.get(); }
+
+  struct News {
+    bool lost = false;  ///< The guard has just ended: the robot is to be stopped.
+    std::string text;   ///< To be logged; empty: nothing.
+  };
+  /// Notices the end of the guard, and gets another one.
+  [[nodiscard]] News supervise(MonotonicTime now);
+
+  /// The drives are at rest: the guard has nothing to do any more.
+  void end() noexcept;
+
+ private:
+  GuardLink(Settings settings, link::SharedGuardPage page, UniqueFd self)
+      : settings_(std::move(settings)), page_(std::move(page)), self_(std::move(self)) {}
+  [[nodiscard]] Result<void> connect();
+  [[nodiscard]] Result<void> sayHello(int connection);
+  void reap() noexcept;
+
+  Settings settings_;
+  link::SharedGuardPage page_;
+  UniqueFd self_;        ///< pidfd of this process.
+  UniqueFd connection_;  ///< Without: nobody watches.
+  pid_t child_ = 0;      ///< A guard that we have started.
+  MonotonicTime next_try_{};
+};
+
+}  // namespace rc10

@@ -1,0 +1,107 @@
+#include "guard/guard_server.hpp"
+
+#include <poll.h>
+#include <sys/socket.h>
+#include <sys/timerfd.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cstdint>
+#include <utility>
+
+#include "link/descriptor_message.hpp"
+#include "link/guard_hello.hpp"
+
+namespace rc10::guard {
+namespace {
+
+// More are no rc10d.
+constexpr std::size_t kMaxVisitors = 8;
+// One that was started for an rc10d that never came looks so often whether it is used.
+constexpr timespec kLongestWait{.tv_sec = 10, .tv_nsec = 0};
+
+void answer(int connection, std::string_view text) noexcept {
+  (void)!::send(connection, text.data(), text.size(), MSG_DONTWAIT | MSG_NOSIGNAL);
+}
+
+}  // namespace
+
+GuardServer::GuardServer(GuardSocket socket)
+    : socket_(std::move(socket)), timer_(::timerfd_create(CLOCK_MONOTONIC, TFD_NONBLOCK | TFD_CLOEXEC)) {}
+
+bool GuardServer::rests() const noexcept {
+  return std::any_of(robots_.begin(), robots_.end(), [](const auto& robot) { return robot.rests(); });
+}
+
+void GuardServer::setTimer(bool on) noexcept {
+  if (on == timer_on_) return;
+  timer_on_ = on;
+  const timespec step{.tv_sec = 0, .tv_nsec = on ? Standstill::kStepMs * 1'000'000L : 0};
+  const itimerspec times{.it_interval = step, .it_value = step};
+  (void)::timerfd_settime(timer_.get(), 0, &times, nullptr);
+}
+
+std::vector<std::string> GuardServer::serve(const sigset_t& signals_while_waiting) {
+  setTimer(!robots_.empty());
+  std::vector<pollfd> wait_for{{.fd = socket_.descriptor(), .events = POLLIN, .revents = 0},
+                               {.fd = timer_.get(), .events = POLLIN, .revents = 0}};
+  for (const auto& robot : robots_)
+    wait_for.push_back({.fd = robot.deathDescriptor(), .events = POLLIN, .revents = 0});
+  for (const auto& visitor : visitors_)
+    wait_for.push_back({.fd = visitor.get(), .events = POLLIN, .revents = 0});
+  std::vector<std::string> news;
+  if (::ppoll(wait_for.data(), wait_for.size(), &kLongestWait, &signals_while_waiting) <= 0) return news;
+  if (std::uint64_t expirations = 0; wait_for[1].revents != 0)
+    (void)!::read(timer_.get(), &expirations, sizeof expirations);
+  const auto died = [](const pollfd& descriptor) { return descriptor.revents != 0; };
+  const auto deaths = wait_for.begin() + 2;
+  // A death is acted upon at once; a step is counted only by the timer.
+  if (wait_for[1].revents != 0 ||
+      std::any_of(deaths, deaths + static_cast<std::ptrdiff_t>(robots_.size()), died))
+    step(news);
+  if (wait_for[0].revents != 0) welcome();
+  hear(news);
+  return news;
+}
+
+void GuardServer::step(std::vector<std::string>& news) {
+  for (auto& robot : robots_) {
+    if (auto line = robot.step(); !line.empty()) news.push_back(std::move(line));
+  }
+  for (auto& old : robots_) {
+    const bool replaced = std::any_of(robots_.begin(), robots_.end(), [&old](const auto& other) {
+      return &other != &old && other.robot() == old.robot() && other.ticks() && other.deathDescriptor() >= 0;
+    });
+    if (replaced && old.deathDescriptor() < 0) old.handOver();
+  }
+  std::erase_if(robots_, [](const auto& robot) { return robot.over(); });
+}
+
+void GuardServer::welcome() {
+  auto visitor = socket_.accept();
+  if (visitor && visitors_.size() < kMaxVisitors) visitors_.push_back(std::move(visitor));
+}
+
+void GuardServer::hear(std::vector<std::string>& news) {
+  for (auto& visitor : visitors_) {
+    link::DescriptorMessage message;
+    if (!link::receiveWithDescriptors(visitor.get(), message)) {
+      if (errno != EAGAIN && errno != EINTR) visitor.reset();
+      continue;
+    }
+    auto robot = WatchedRobot::from(std::move(message));
+    if (robot) {
+      answer(visitor.get(), link::kGuardArmed);
+      robot->keep(std::move(visitor));
+      robots_.push_back(std::move(*robot));
+    } else {
+      answer(visitor.get(), robot.error().message);
+      news.push_back("a robot is not watched: " + robot.error().message);
+      visitor.reset();
+    }
+  }
+  std::erase_if(visitors_, [](const auto& visitor) { return !visitor; });
+}
+
+}  // namespace rc10::guard

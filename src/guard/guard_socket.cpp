@@ -1,0 +1,66 @@
+#include "guard/guard_socket.hpp"
+
+#include <fcntl.h>
+#include <sys/file.h>
+#include <sys/socket.h>
+#include <sys/stat.h>
+#include <sys/un.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstring>
+
+#include "link/run_dir.hpp"
+
+namespace rc10::guard {
+namespace {
+
+constexpr int kBacklog = 8;
+
+tl::unexpected<Error> failure(const std::string& path) { return fail(path + ": " + std::strerror(errno)); }
+
+bool mayHaveAGuard(int connection) noexcept {
+  ucred peer{};
+  socklen_t size = sizeof peer;
+  return ::getsockopt(connection, SOL_SOCKET, SO_PEERCRED, &peer, &size) == 0 &&
+         (peer.uid == 0 || peer.uid == ::geteuid());
+}
+
+}  // namespace
+
+Result<GuardSocket> GuardSocket::listen(const std::string& run_dir) {
+  if (::mkdir(run_dir.c_str(), 0755) != 0 && errno != EEXIST) return failure(run_dir);
+  GuardSocket guard;
+  const std::string lock_path = run_dir + "/guard.lock";
+  guard.lock_ = UniqueFd{::open(lock_path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW, 0600)};
+  if (!guard.lock_) return failure(lock_path);
+  if (::flock(guard.lock_.get(), LOCK_EX | LOCK_NB) != 0)
+    return fail("there is another rc10-guard in " + run_dir);
+  const std::string path = link::guardSocketPath(run_dir);
+  sockaddr_un address{};
+  address.sun_family = AF_UNIX;
+  if (path.size() >= sizeof address.sun_path)
+    return fail(path + ": too long for a socket: choose a shorter RC10_RUN_DIR");
+  std::memcpy(address.sun_path, path.c_str(), path.size() + 1);
+  guard.socket_ = UniqueFd{::socket(AF_UNIX, SOCK_SEQPACKET | SOCK_NONBLOCK | SOCK_CLOEXEC, 0)};
+  (void)::unlink(path.c_str());  // left by one that was killed: we hold the lock
+  if (!guard.socket_ ||
+      ::bind(guard.socket_.get(), reinterpret_cast<const sockaddr*>(&address), sizeof address) != 0)
+    return failure(path);
+  guard.path_ = path;
+  (void)::chmod(path.c_str(), 0600);
+  if (::listen(guard.socket_.get(), kBacklog) != 0) return failure(path);
+  return guard;
+}
+
+GuardSocket::~GuardSocket() {
+  if (socket_) (void)::unlink(path_.c_str());
+}
+
+UniqueFd GuardSocket::accept() const noexcept {
+  UniqueFd connection{::accept4(socket_.get(), nullptr, nullptr, SOCK_NONBLOCK | SOCK_CLOEXEC)};
+  if (connection && !mayHaveAGuard(connection.get())) connection.reset();
+  return connection;
+}
+
+}  // namespace rc10::guard

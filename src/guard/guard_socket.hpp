@@ -1,0 +1,36 @@
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "app/result.hpp"
+#include "app/unique_fd.hpp"
+
+namespace rc10::guard {
+
+/// Where rc10d finds its guard. Only processes of the same user, and root, are served.
+class GuardSocket {
+ public:
+  /// Listens at link::guardSocketPath(), which only one guard may do. The error names the folder or says that
+  /// there is a guard already.
+  [[nodiscard]] static Result<GuardSocket> listen(const std::string& run_dir);
+
+  GuardSocket(GuardSocket&&) noexcept = default;
+  GuardSocket& operator=(GuardSocket&&) noexcept = default;
+  GuardSocket(const GuardSocket&) = delete;
+  GuardSocket& operator=(const GuardSocket&) = delete;
+  ~GuardSocket();
+
+  [[nodiscard]] int descriptor() const noexcept { return socket_.get(); }
+  /// A connection that waits, of a process that may have a guard. Never waits.
+  [[nodiscard]] UniqueFd accept() const noexcept;
+
+ private:
+  GuardSocket() = default;
+
+  UniqueFd lock_;
+  UniqueFd socket_;
+  std::string path_;
+};
+
+}  // namespace rc10::guard

@@ -1,0 +1,57 @@
+#include "guard/guard_socket.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <filesystem>
+
+#include "link/run_dir.hpp"
+
+namespace rc10::guard::test::guard_socket_test {
+namespace {
+
+using ::testing::HasSubstr;
+
+class GuardSocketTest : public testing::Test {
+ protected:
+  GuardSocketTest() {
+    if (::mkdtemp(dir.data()) == nullptr) ADD_FAILURE() << "no temporary folder";
+  }
+  ~GuardSocketTest() override {
+    std::error_code ignored;
+    std::filesystem::remove_all(dir, ignored);
+  }
+  [[nodiscard]] bool there() const { return std::filesystem::exists(link::guardSocketPath(dir)); }
+
+  std::string dir = "/tmp/rc10-test-XXXXXX";
+};
+
+TEST_F(GuardSocketTest, ThereIsOneGuardInARunFolder) {
+  const auto first = GuardSocket::listen(dir);
+  ASSERT_TRUE(first);
+  const auto second = GuardSocket::listen(dir);
+  ASSERT_FALSE(second);
+  EXPECT_THAT(second.error().message, HasSubstr("another rc10-guard in " + dir));
+  EXPECT_TRUE(there());
+}
+
+TEST_F(GuardSocketTest, LeavesNothingBehindThatLooksLikeAGuard) {
+  { const auto guard = GuardSocket::listen(dir); }
+  EXPECT_FALSE(there());
+  EXPECT_TRUE(GuardSocket::listen(dir));
+}
+
+TEST_F(GuardSocketTest, IsForItsOwnUserAlone) {
+  const auto guard = GuardSocket::listen(dir);
+  const auto mode = std::filesystem::status(link::guardSocketPath(dir)).permissions();
+  EXPECT_EQ(mode, std::filesystem::perms::owner_read | std::filesystem::perms::owner_write);
+}
+
+TEST_F(GuardSocketTest, AFolderThatCannotBeMadeIsNamed) {
+  const auto guard = GuardSocket::listen(dir + "/no/such");
+  ASSERT_FALSE(guard);
+  EXPECT_THAT(guard.error().message, HasSubstr(dir + "/no/such: No such file"));
+}
+
+}  // namespace
+}  // namespace rc10::guard::test::guard_socket_test
