@@ -31,12 +31,12 @@ bool mayHaveAGuard(int connection) noexcept {
 Result<GuardSocket> GuardSocket::listen(const std::string& run_dir) {
   if (::mkdir(run_dir.c_str(), 0755) != 0 && errno != EEXIST) return failure(run_dir);
   GuardSocket guard;
-  const std::string lock_path = run_dir + "/guard.lock";
+  const std::string path = link::guardSocketPath(run_dir);
+  const std::string lock_path = path + ".lock";
   guard.lock_ = UniqueFd{::open(lock_path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW, 0600)};
   if (!guard.lock_) return failure(lock_path);
   if (::flock(guard.lock_.get(), LOCK_EX | LOCK_NB) != 0)
     return fail("there is another rc10-guard in " + run_dir);
-  const std::string path = link::guardSocketPath(run_dir);
   sockaddr_un address{};
   address.sun_family = AF_UNIX;
   if (path.size() >= sizeof address.sun_path)

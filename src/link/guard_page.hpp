@@ -8,8 +8,8 @@
 
 namespace rc10::link {
 
-/// What rc10d and rc10-guard share. Neither waits for the other. A page of its own, so that the guard still
-/// reads it when rc10d is dead.
+/// Memory that rc10d and rc10-guard share. Neither waits for the other. A page of its own, so that the guard
+/// still reads it when rc10d is dead.
 struct GuardPage {
   std::atomic<std::uint64_t> ticks{0};  ///< rc10d: executed ticks. 0: no drive has been commanded yet.
   std::atomic<bool> ended{false};       ///< rc10d: an orderly end; its drives are at rest.

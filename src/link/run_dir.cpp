@@ -15,6 +15,6 @@ std::string restFramesPath(const std::string& run_dir, const std::string& robot)
   return run_dir + "/" + robot + "/rest-frames";
 }
 
-std::string guardSocketPath(const std::string& run_dir) { return run_dir + "/guard.sock"; }
+std::string guardSocketPath(const std::string& run_dir) { return run_dir + "/guard.socket"; }
 
 }  // namespace rc10::link

@@ -14,7 +14,9 @@ namespace rc10::link {
 /// Where rc10d leaves the rest frames of a robot's drives for rc10-stop: <run_dir>/<robot>/rest-frames.
 [[nodiscard]] std::string restFramesPath(const std::string& run_dir, const std::string& robot);
 
-/// Where rc10-guard listens: <run_dir>/guard.sock.
+/// Where rc10-guard listens: <run_dir>/guard.socket. No robot has a file of this name: its link socket ends
+/// in
+/// ".sock", and its name has no dot.
 [[nodiscard]] std::string guardSocketPath(const std::string& run_dir);
 
 }  // namespace rc10::link

@@ -34,7 +34,7 @@ TEST_F(GuardLinkTest, AGuardThatEndsAtOnceIsNotWaitedForForEver) {
   const auto link = with("/bin/false");
   ASSERT_FALSE(link);
   EXPECT_THAT(link.error().message,
-              StrEq("/bin/false was started and does not answer at " + dir + "/guard.sock"));
+              StrEq("/bin/false was started and does not answer at " + dir + "/guard.socket"));
 }
 
 TEST_F(GuardLinkTest, AGuardThatIsNotInstalledIsNamed) {

@@ -41,6 +41,15 @@ TEST_F(GuardSocketTest, LeavesNothingBehindThatLooksLikeAGuard) {
   EXPECT_TRUE(GuardSocket::listen(dir));
 }
 
+TEST_F(GuardSocketTest, HasNoFileThatARobotOfItsNameWouldHave) {
+  const auto guard = GuardSocket::listen(dir);
+  for (const auto& entry : std::filesystem::directory_iterator(dir)) {
+    EXPECT_NE(entry.path().filename(), "guard.sock");
+    EXPECT_NE(entry.path().filename(), "guard.lock");
+    EXPECT_NE(entry.path().extension(), ".sock") << "rc10ctl would take it for a robot";
+  }
+}
+
 TEST_F(GuardSocketTest, IsForItsOwnUserAlone) {
   const auto guard = GuardSocket::listen(dir);
   const auto mode = std::filesystem::status(link::guardSocketPath(dir)).permissions();

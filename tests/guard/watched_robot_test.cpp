@@ -1,4 +1,4 @@
-// What needs no CAN interface; with one: tests/kernel/test_guard.py.
+// Tests without a CAN interface; with one: tests/kernel/test_guard.py.
 #include "guard/watched_robot.hpp"
 
 #include <gmock/gmock.h>

@@ -119,7 +119,7 @@ def test_a_standstill_ends_in_rest_and_latches(required: Path) -> None:
         time.sleep(0.1)
         assert robot.state is not None
         assert robot.state.stop_cause is rc10.StopCause.GUARD
-        # What had been packed when it stopped may still leave; nothing after it.
+        # A frame packed when it stopped may still leave; nothing after it.
         late = [f for f in commands(bus.frames(), C6XX_COMMAND) if f.t_ns > going_ns]
         assert sum(any(currents(f)) for f in late) <= 1
         assert not any(currents(late[-1]))

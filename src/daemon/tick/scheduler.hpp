@@ -41,7 +41,7 @@ class Scheduler {
   /// The heartbeat is to end so long after the beginning of an e-stop, until that is cleared. Before the
   /// first tick.
   void restHeartbeatAfter(std::optional<Duration> estop) noexcept { heartbeat_rests_after_ = estop; }
-  /// What rc10-guard reads and writes; outlives this. Before the first tick.
+  /// Before the first tick. The page, which rc10-guard reads and writes, outlives this.
   void watchedBy(link::GuardPage& page) noexcept { guard_ = &page; }
   /// From the next tick on an e-stop. Scheduler thread.
   void stopFor(StopCause cause) noexcept { stop_cause_ = cause; }

@@ -68,7 +68,7 @@ sigset_t catchSignals() noexcept {
   return before;
 }
 
-// What is refused costs reaction time, not the guard: rc10d says whether real time is required.
+// A refused right costs reaction time, not the guard: rc10d says whether real time is required.
 void becomeRealTime() {
   sched_param param{};
   param.sched_priority = kPriority;
