@@ -29,6 +29,7 @@ void BusRest::begin() {
 
 void BusRest::listen() {
   std::vector<CanId> ids;
+  ids.reserve(frames_.size());
   for (const auto& frame : frames_) ids.push_back(frame.id);
   if (socket_ && !hearOwnFrames(socket_.get(), ids)) socket_.reset();
 }
