@@ -15,7 +15,7 @@ namespace rc10 {
          state != BusState::kStalled;
 }
 
-/// State of the interface, as the RX thread sees it.
+/// State of the interface, as its socket tells it.
 enum class CanLinkState : std::uint8_t { kUp, kDown, kGone };
 
 /// Turns error frames, link states, silence and missing echoes into one state. Scheduler thread only.

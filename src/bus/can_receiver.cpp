@@ -13,7 +13,8 @@ namespace rc10 {
 namespace {
 
 // Set on frames that were sent on this computer and looped back once transmitted: MSG_CONFIRM if by this
-// very socket, MSG_DONTROUTE if by any (net/can/raw.c). recvmmsg reports them as received flags.
+// very socket, MSG_DONTROUTE if by any (net/can/raw.c). recvmmsg reports them as received flags. A bus's
+// socket does not see its own: another program commands too.
 constexpr int kSentHere = MSG_CONFIRM | MSG_DONTROUTE;
 
 }  // namespace
@@ -87,7 +88,6 @@ Reception CanReceiver::receive(const WakeUp& wake, std::span<CanFrame> out) noex
       frame.received = control.realtime_stamp ? toMonotonic(*control.realtime_stamp, since) : wake.now;
     }
     frame.sent_here = (header.msg_flags & kSentHere) != 0;
-    if (frame.sent_here) ++reception.confirmed_count;
     ++reception.frame_count;
   }
   reception.kernel_dropped = buffers_->kernel_dropped;

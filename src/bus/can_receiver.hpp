@@ -13,10 +13,7 @@ namespace rc10 {
 
 /// Result of one recvmmsg.
 struct Reception {
-  std::size_t frame_count = 0;  ///< Frames written to the output.
-  /// Of these, frames that this computer sent and its controller has put on the wire. On the echo socket:
-  /// our own. On a bus's main socket, which does not see its own frames: another program commands too.
-  std::size_t confirmed_count = 0;
+  std::size_t frame_count = 0;       ///< Frames written to the output.
   std::size_t malformed_count = 0;   ///< Messages of a size that is no frame; skipped.
   std::uint32_t kernel_dropped = 0;  ///< SO_RXQ_OVFL: frames the kernel dropped since the socket exists.
   /// errno or 0, never EAGAIN. ENETDOWN and ENODEV are link states; ENODEV also stands for the end of a
@@ -24,7 +21,7 @@ struct Reception {
   int error = 0;
 };
 
-/// Receives frames from a descriptor that somebody else owns. RX thread only. No allocation after
+/// Receives frames from a descriptor that somebody else owns. One thread. No allocation after
 /// construction, one system call per receive().
 class CanReceiver {
  public:

@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <cerrno>
+#include <cstdint>
 #include <cstring>
 #include <iterator>
 #include <type_traits>
@@ -30,7 +31,7 @@ constexpr can_err_mask_t kErrorClasses =
 // more in flight; too low a one would refuse the last frame of every tick on an idle bus.
 constexpr int kBytesPerFrameInFlight = 1024;
 
-// About 60 ms of a full 1 Mbit/s bus, so that a late RX thread loses nothing.
+// About 60 ms of a full 1 Mbit/s bus, so that a late thread loses nothing.
 constexpr int kReceiveBufferBytes = 512 * 1024;
 
 struct Interface {
@@ -87,11 +88,14 @@ Result<void> bindTo(int fd, const std::string& name, const Interface& interface)
   return fail("CAN interface '" + name + "': cannot bind: " + std::strerror(errno));
 }
 
-// Options of both sockets: FD frames where the interface has them, receive stamps, the count of drops.
-Result<void> setReceiveOptions(int fd, const std::string& name, bool fd_frames) {
+enum class Reading : std::uint8_t { kFrames, kEchoes };
+
+// FD frames where the interface has them; for frames that are read, receive stamps and the count of drops.
+Result<void> setReceiveOptions(int fd, const std::string& name, bool fd_frames, Reading reading) {
   const int on = 1;
-  if ((fd_frames && !setOption(fd, SOL_CAN_RAW, CAN_RAW_FD_FRAMES, on)) ||
-      !setOption(fd, SOL_SOCKET, SO_TIMESTAMPNS, on) || !setOption(fd, SOL_SOCKET, SO_RXQ_OVFL, on)) {
+  const bool stamped = reading == Reading::kEchoes || (setOption(fd, SOL_SOCKET, SO_TIMESTAMPNS, on) &&
+                                                       setOption(fd, SOL_SOCKET, SO_RXQ_OVFL, on));
+  if (!stamped || (fd_frames && !setOption(fd, SOL_CAN_RAW, CAN_RAW_FD_FRAMES, on))) {
     return fail("CAN interface '" + name + "': cannot set a socket option: " + std::strerror(errno));
   }
   // FORCE passes net.core.rmem_max but needs CAP_NET_ADMIN. A smaller buffer than asked is no error: what
@@ -136,7 +140,8 @@ Result<CanSocket> openCanSocket(const std::string& interface, const CanSocketOpt
   const auto found = findInterface(fd->get(), interface);
   if (!found) return tl::unexpected(found.error());
   const bool fd_frames = found->mtu >= static_cast<int>(CANFD_MTU);
-  if (auto ok = setReceiveOptions(fd->get(), interface, fd_frames); !ok) return tl::unexpected(ok.error());
+  if (auto ok = setReceiveOptions(fd->get(), interface, fd_frames, Reading::kFrames); !ok)
+    return tl::unexpected(ok.error());
   if (options.send_only && ::setsockopt(fd->get(), SOL_CAN_RAW, CAN_RAW_FILTER, nullptr, 0) != 0) {
     return fail("CAN interface '" + interface + "': cannot set the filter: " + std::strerror(errno));
   }
@@ -161,7 +166,8 @@ Result<UniqueFd> openEchoSocket(const std::string& interface, std::span<const Ca
   const auto found = findInterface(fd->get(), interface);
   if (!found) return tl::unexpected(found.error());
   const bool fd_frames = found->mtu >= static_cast<int>(CANFD_MTU);
-  if (auto ok = setReceiveOptions(fd->get(), interface, fd_frames); !ok) return tl::unexpected(ok.error());
+  if (auto ok = setReceiveOptions(fd->get(), interface, fd_frames, Reading::kEchoes); !ok)
+    return tl::unexpected(ok.error());
   if (!hearOnly(fd->get(), command_ids)) {
     return fail("CAN interface '" + interface + "': cannot set the echo filter: " + std::strerror(errno));
   }

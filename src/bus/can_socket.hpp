@@ -37,7 +37,7 @@ struct CanSocket {
 
 /// Opens a second socket that sees the echoes of some command ids when the controller has sent them: the only
 /// proof that a frame reached the wire. The kernel marks it MSG_DONTROUTE (sent on this computer), which
-/// CanReceiver counts as confirmed.
+/// EchoCounter counts.
 [[nodiscard]] Result<UniqueFd> openEchoSocket(const std::string& interface,
                                               std::span<const CanId> command_ids);
 

@@ -48,7 +48,7 @@ struct ForeignFrame {
 /// One CAN bus: pure communication, it never knows a protocol. Holds the registered devices and
 /// packers; owns the socket.
 ///
-/// Everything here belongs to the scheduler thread after start, except that the RX thread reads from
+/// Everything here belongs to the scheduler thread after start, except that another thread may read from
 /// descriptor() through a CanReceiver of its own.
 class fdCANbus {
  public:
@@ -99,7 +99,7 @@ class fdCANbus {
   /// Throws everything collected away and counts it as held back.
   void holdBack() noexcept;
   /// errno with which the kernel refused the whole last flush(), else 0. ENETDOWN and ENXIO (gone) are link
-  /// states: a send can take away the socket's one notice of going down before the RX thread reads it.
+  /// states: a send can take away the socket's one notice of going down before a receive reads it.
   [[nodiscard]] int sendError() const noexcept;
 
   [[nodiscard]] const BusCounters& counters() const noexcept { return counters_; }

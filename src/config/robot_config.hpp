@@ -87,6 +87,11 @@ enum class RealtimePolicy : std::uint8_t { kRequired, kPreferred };
 /// Of rc10-guard.
 enum class GuardPolicy : std::uint8_t { kRequired, kPreferred, kOff };
 
+/// Of the scheduler's thread.
+enum class TimerPolicy : std::uint8_t { kAuto, kTimerfd, kNanosleep };
+/// The reader of the CAN sockets.
+enum class ReceivePolicy : std::uint8_t { kTick, kThread };
+
 struct ThreadConfig {
   int priority = 0;        ///< SCHED_FIFO
   std::optional<int> cpu;  ///< Pinned to this CPU.
@@ -104,9 +109,13 @@ struct RobotConfig {
   std::string robot;
   RealtimePolicy realtime = RealtimePolicy::kRequired;
   GuardPolicy guard = GuardPolicy::kPreferred;
+  ReceivePolicy receive = ReceivePolicy::kTick;
   int rate_hz = 1000;
+  TimerPolicy timer = TimerPolicy::kAuto;
+  double phase_of_period = 0.3;  ///< 0 to below 1: where in a period of CLOCK_MONOTONIC the ticks lie.
   ThreadConfig scheduler{.priority = 60, .cpu = std::nullopt};
   ThreadConfig rx{.priority = 65, .cpu = std::nullopt};
+  Duration rx_lead = std::chrono::microseconds{100};  ///< Before the tick, with ReceivePolicy::kThread.
   LcmConfig lcm;
   std::optional<EstopGpioConfig> estop_gpio;
   std::optional<HeartbeatGpioConfig> heartbeat_gpio;
@@ -116,6 +125,10 @@ struct RobotConfig {
   std::vector<ModuleConfig> modules;
 
   [[nodiscard]] Duration period() const noexcept { return std::chrono::nanoseconds{1'000'000'000 / rate_hz}; }
+  /// Of the ticks' grid, after multiples of period().
+  [[nodiscard]] Duration phase() const noexcept {
+    return Duration{static_cast<Duration::rep>(phase_of_period * static_cast<double>(period().count()))};
+  }
 };
 
 }  // namespace rc10

@@ -29,6 +29,15 @@ constexpr Duration kStandstillInRealTime = std::chrono::milliseconds{20};
 constexpr Duration kStandstill = std::chrono::milliseconds{100};
 constexpr int kStandstillPeriods = 4;
 
+TimerKind timerKind(TimerPolicy policy) {
+  switch (policy) {
+    case TimerPolicy::kTimerfd: return TimerKind::kTimerfd;
+    case TimerPolicy::kNanosleep: return TimerKind::kNanosleep;
+    case TimerPolicy::kAuto: break;
+  }
+  return kernelIsPreemptRt() ? TimerKind::kNanosleep : TimerKind::kTimerfd;
+}
+
 }  // namespace
 
 Daemon::Daemon(RobotConfig config, std::shared_ptr<spdlog::logger> log)
@@ -81,24 +90,16 @@ Result<void> Daemon::build() {
                                            black_box_ ? &black_box_->recorder() : nullptr, &monotonicNow);
   if (guard_) scheduler_->watchedBy(guard_->page());
   if (config_.heartbeat_gpio) scheduler_->restHeartbeatAfter(config_.heartbeat_gpio->rests_in_estop_after);
-  auto sched_loop = SchedLoop::create(*scheduler_, config_.period());
-  if (!sched_loop) return tl::unexpected(sched_loop.error());
-  sched_loop_ = std::move(*sched_loop);
-  auto rx_loop = RxLoop::create(*robot_, inboxes_, robot_->serialChannels());
-  if (!rx_loop) return tl::unexpected(rx_loop.error());
-  rx_loop_ = std::move(*rx_loop);
-  auto sim_loop = SimLoop::create(*robot_);
-  if (!sim_loop) return tl::unexpected(sim_loop.error());
-  sim_loop_ = std::move(*sim_loop);
+  if (auto created = createLoops(); !created) return created;
   auto gpio_loop = GpioLoop::create(config_, exchange_);
   if (!gpio_loop) return tl::unexpected(gpio_loop.error());
   gpio_loop_ = std::move(*gpio_loop);
   // After the e-stop input and the heartbeat: a line that is also theirs stays theirs.
   if (auto* banks = robot_->lineBanks())
     line_loop_ = std::make_unique<LineLoop>(*banks, kernelGpio(), exchange_);
-  io_loop_ = std::make_unique<IoLoop>(BusReviver{*robot_, inboxes_, *rx_loop_},
-                                      CanLinkKeeper{*robot_, inboxes_, exchange_}, black_box_.get(),
-                                      serialIo(), spiIo());
+  io_loop_ =
+      std::make_unique<IoLoop>(BusReviver{*robot_, inboxes_}, CanLinkKeeper{*robot_, inboxes_, exchange_},
+                               black_box_.get(), serialIo(), spiIo());
   if (config_.lcm.enabled) {
     gateway_ = std::make_unique<GatewayProcess>(
         siblingProgram("rc10-lcm"), std::vector<std::string>{"--socket", socket->path(), "--robot",
@@ -114,6 +115,25 @@ Result<void> Daemon::build() {
                                               .housekeeping = [this] { feedWatchdog(); }});
   if (!link) return tl::unexpected(link.error());
   link_ = std::move(*link);
+  return {};
+}
+
+Result<void> Daemon::createLoops() {
+  intake_ = std::make_unique<CanIntake>(*robot_, inboxes_, monotonicNow());
+  const TimeGrid grid{config_.period(), config_.phase()};
+  const bool in_tick = config_.receive == ReceivePolicy::kTick;
+  auto sched_loop =
+      SchedLoop::create(*scheduler_, grid, timerKind(config_.timer), in_tick ? intake_.get() : nullptr);
+  if (!sched_loop) return tl::unexpected(sched_loop.error());
+  sched_loop_ = std::move(*sched_loop);
+  std::optional<RxLoop::Drain> drain;
+  if (!in_tick) drain.emplace(RxLoop::Drain{*intake_, grid.shifted(-config_.rx_lead)});
+  auto rx_loop = RxLoop::create(robot_->serialChannels(), drain);
+  if (!rx_loop) return tl::unexpected(rx_loop.error());
+  rx_loop_ = std::move(*rx_loop);
+  auto sim_loop = SimLoop::create(*robot_, grid.offset);
+  if (!sim_loop) return tl::unexpected(sim_loop.error());
+  sim_loop_ = std::move(*sim_loop);
   return {};
 }
 

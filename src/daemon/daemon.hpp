@@ -12,6 +12,7 @@
 #include "daemon/devices/robot.hpp"
 #include "daemon/gateway_process.hpp"
 #include "daemon/guard_link.hpp"
+#include "daemon/interfaces/can_intake.hpp"
 #include "daemon/interfaces/rx_loop.hpp"
 #include "daemon/recording/black_box.hpp"
 #include "daemon/signal_inbox.hpp"
@@ -51,6 +52,7 @@ class Daemon {
   [[nodiscard]] Result<void> startThread(RtThread& thread, RtSettings settings,
                                          std::function<void(std::stop_token)> body);
   [[nodiscard]] Result<void> tolerate(const Result<void>& outcome);
+  [[nodiscard]] Result<void> createLoops();
   [[nodiscard]] Result<void> findGuard();
   void superviseGuard();
   void describeRobot();
@@ -72,6 +74,7 @@ class Daemon {
   std::unique_ptr<BlackBox> black_box_;  // null: off, or not to be had
   std::unique_ptr<GuardLink> guard_;     // null: off, not to be had, or no drive on a CAN interface
   std::unique_ptr<Scheduler> scheduler_;
+  std::unique_ptr<CanIntake> intake_;
   std::unique_ptr<SchedLoop> sched_loop_;
   std::unique_ptr<RxLoop> rx_loop_;
   std::unique_ptr<SimLoop> sim_loop_;

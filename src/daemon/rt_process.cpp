@@ -11,6 +11,8 @@
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
+#include <fstream>
+#include <string>
 
 #include <fmt/format.h>
 
@@ -52,6 +54,15 @@ UniqueFd holdCpuDmaLatency() noexcept {
   const std::int32_t latency_us = 0;
   if (fd && ::write(fd.get(), &latency_us, sizeof latency_us) != sizeof latency_us) fd.reset();
   return fd;
+}
+
+bool kernelIsPreemptRt() {
+  // Kernels with the patch have the file, those of mainline say it in their version only.
+  std::string version;
+  std::ifstream realtime("/sys/kernel/realtime");
+  if (char yes = '0'; realtime.get(yes)) return yes == '1';
+  std::getline(std::ifstream("/proc/sys/kernel/version"), version);
+  return version.find("PREEMPT_RT") != std::string::npos;
 }
 
 std::uint64_t pageFaults(int tid) noexcept {

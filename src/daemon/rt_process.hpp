@@ -21,6 +21,9 @@ void configureMemory() noexcept;
 /// such file or does not let us: then nothing is lost but some wake-up latency.
 [[nodiscard]] UniqueFd holdCpuDmaLatency() noexcept;
 
+/// PREEMPT_RT, where a timerfd is no match for clock_nanosleep().
+[[nodiscard]] bool kernelIsPreemptRt();
+
 /// Minor and major page faults of one thread of this process so far, from /proc.
 [[nodiscard]] std::uint64_t pageFaults(int tid) noexcept;
 

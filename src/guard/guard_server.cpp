@@ -2,12 +2,10 @@
 
 #include <poll.h>
 #include <sys/socket.h>
-#include <sys/timerfd.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <cerrno>
-#include <cstdint>
+#include <chrono>
 #include <utility>
 
 #include "link/descriptor_message.hpp"
@@ -19,7 +17,8 @@ namespace {
 // More are no rc10d.
 constexpr std::size_t kMaxVisitors = 8;
 // One that was started for an rc10d that never came looks so often whether it is used.
-constexpr timespec kLongestWait{.tv_sec = 10, .tv_nsec = 0};
+constexpr Duration kLongestWait = std::chrono::seconds{10};
+constexpr Duration kStep = std::chrono::milliseconds{Standstill::kStepMs};
 
 void answer(int connection, std::string_view text) noexcept {
   (void)!::send(connection, text.data(), text.size(), MSG_DONTWAIT | MSG_NOSIGNAL);
@@ -27,39 +26,35 @@ void answer(int connection, std::string_view text) noexcept {
 
 }  // namespace
 
-GuardServer::GuardServer(GuardSocket socket)
-    : socket_(std::move(socket)), timer_(::timerfd_create(CLOCK_MONOTONIC, TFD_NONBLOCK | TFD_CLOEXEC)) {}
+GuardServer::GuardServer(GuardSocket socket) : socket_(std::move(socket)) {}
 
 bool GuardServer::rests() const noexcept {
   return std::any_of(robots_.begin(), robots_.end(), [](const auto& robot) { return robot.rests(); });
 }
 
-void GuardServer::setTimer(bool on) noexcept {
-  if (on == timer_on_) return;
-  timer_on_ = on;
-  const timespec step{.tv_sec = 0, .tv_nsec = on ? Standstill::kStepMs * 1'000'000L : 0};
-  const itimerspec times{.it_interval = step, .it_value = step};
-  (void)::timerfd_settime(timer_.get(), 0, &times, nullptr);
-}
-
 std::vector<std::string> GuardServer::serve(const sigset_t& signals_while_waiting) {
-  setTimer(!robots_.empty());
-  std::vector<pollfd> wait_for{{.fd = socket_.descriptor(), .events = POLLIN, .revents = 0},
-                               {.fd = timer_.get(), .events = POLLIN, .revents = 0}};
+  const auto start = std::chrono::steady_clock::now();
+  // By the wait's own end and not by a timerfd, whose expiry on PREEMPT_RT waits for ktimers (FIFO 1).
+  const Duration patience =
+      robots_.empty() ? kLongestWait : std::clamp(next_step_ - start, Duration::zero(), kStep);
+  std::vector<pollfd> wait_for{{.fd = socket_.descriptor(), .events = POLLIN, .revents = 0}};
   for (const auto& robot : robots_)
     wait_for.push_back({.fd = robot.deathDescriptor(), .events = POLLIN, .revents = 0});
   for (const auto& visitor : visitors_)
     wait_for.push_back({.fd = visitor.get(), .events = POLLIN, .revents = 0});
   std::vector<std::string> news;
-  if (::ppoll(wait_for.data(), wait_for.size(), &kLongestWait, &signals_while_waiting) <= 0) return news;
-  if (std::uint64_t expirations = 0; wait_for[1].revents != 0)
-    (void)!::read(timer_.get(), &expirations, sizeof expirations);
+  const timespec at_most{.tv_sec = patience / std::chrono::seconds{1},
+                         .tv_nsec = (patience % std::chrono::seconds{1}).count()};
+  const int ready = ::ppoll(wait_for.data(), wait_for.size(), &at_most, &signals_while_waiting);
+  if (ready < 0) return news;
+  const auto now = std::chrono::steady_clock::now();
+  const bool due = now >= next_step_;
+  if (due) next_step_ = now + kStep;
   const auto died = [](const pollfd& descriptor) { return descriptor.revents != 0; };
-  const auto deaths = wait_for.begin() + 2;
-  // A death is acted upon at once; a step is counted only by the timer.
-  if (wait_for[1].revents != 0 ||
-      std::any_of(deaths, deaths + static_cast<std::ptrdiff_t>(robots_.size()), died))
-    step(news);
+  const auto deaths = wait_for.begin() + 1;
+  // A death is acted upon at once; steps have their time.
+  if (due || std::any_of(deaths, deaths + static_cast<std::ptrdiff_t>(robots_.size()), died)) step(news);
+  if (ready == 0) return news;
   if (wait_for[0].revents != 0) welcome();
   hear(news);
   return news;

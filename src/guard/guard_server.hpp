@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "app/time.hpp"
 #include "app/unique_fd.hpp"
 #include "guard/guard_socket.hpp"
 #include "guard/watched_robot.hpp"
@@ -29,11 +30,9 @@ class GuardServer {
   void welcome();
   void hear(std::vector<std::string>& news);
   void step(std::vector<std::string>& news);
-  void setTimer(bool on) noexcept;
 
   GuardSocket socket_;
-  UniqueFd timer_;
-  bool timer_on_ = false;
+  MonotonicTime next_step_{};
   std::vector<UniqueFd> visitors_;  ///< Connections without a hello yet.
   std::vector<WatchedRobot> robots_;
 };

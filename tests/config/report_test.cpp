@@ -47,7 +47,7 @@ TEST(Report, SaysHowTheRobotRuns) {
                                   "realtime   preferred\n"
                                   "guard      preferred\n"
                                   "scheduler  1000 Hz, SCHED_FIFO 50, CPU 3\n"
-                                  "rx         SCHED_FIFO 65, any CPU\n"
+                                  "receive    by the tick; serial ports SCHED_FIFO 65, any CPU\n"
                                   "lcm        udpm://239.255.76.67:7667?ttl=0, state at 100 Hz\n"));
 }
 

@@ -10,6 +10,8 @@
 #include <cstring>
 
 #include "bus/wire_frame.hpp"
+#include "daemon/exchange/clock.hpp"
+#include "daemon/interfaces/can_intake.hpp"
 
 #include "daemon/virtual_robot.hpp"
 
@@ -30,8 +32,8 @@ class BusReviverTest : public ::testing::Test {
 
   std::unique_ptr<Robot> robot = Robot::build(twoWheelsAndYaw()).value();
   std::array<BusInbox, kMaxBuses> inboxes;
-  std::unique_ptr<RxLoop> rx = RxLoop::create(*robot, inboxes).value();
-  BusReviver reviver{*robot, inboxes, *rx};
+  CanIntake intake{*robot, inboxes, monotonicNow()};
+  BusReviver reviver{*robot, inboxes};
 };
 
 TEST_F(BusReviverTest, LeavesASimulatedBusAlone) {
@@ -56,7 +58,7 @@ TEST_F(BusReviverTest, ShowsWhetherAnInterfaceIsUp) {
 TEST_F(BusReviverTest, ABusThatWasDownBetweenTwoLooksHasComeUp) {
   setInterface("lo");
   (void)reviver.check();
-  inboxes[0].link = CanLinkState::kDown;  // the RX thread has met ENETDOWN
+  inboxes[0].link = CanLinkState::kDown;  // a receive has met ENETDOWN
   EXPECT_EQ(reviver.check().test(0), stateOfLoopback() == CanLinkState::kUp);
   EXPECT_TRUE(reviver.check().none());
 }
@@ -71,7 +73,7 @@ TEST_F(BusReviverTest, ABusStaysGoneUntilItsSocketIsReplaced) {
   canfd_frame wire;
   const auto size = encodeFrame(frame, wire);
   ASSERT_GT(::send(robot->simPorts()[0]->descriptor(), &wire, size, MSG_DONTWAIT), 0);
-  rx->poll(0);
+  intake.drain(monotonicNow());
   EXPECT_EQ(inboxes[0].frames.read_available(), 1U);
 }
 

@@ -147,10 +147,10 @@ TEST_F(FlightRecorderTest, EveryEventIsThere) {
 
 TEST_F(FlightRecorderTest, StatesAreSampledTwentyTimesASecondAndWhenTheyChange) {
   robot.run(1000);
-  // Every motor twenty times and when it became READY.
-  EXPECT_EQ(recorded<blackbox::Motor>().size(), 3U * 21U);
-  EXPECT_EQ(recorded<blackbox::Robot>().size(), 20U);
-  EXPECT_EQ(recorded<blackbox::Bus>().size(), 20U);
+  // In the first tick and in twenty turns; every motor also when it became READY.
+  EXPECT_EQ(recorded<blackbox::Motor>().size(), 3U * 22U);
+  EXPECT_EQ(recorded<blackbox::Robot>().size(), 21U);
+  EXPECT_EQ(recorded<blackbox::Bus>().size(), 21U);
   robot.order(Operation::kEnable);
   const auto last = recorded<blackbox::Motor>().back();
   EXPECT_EQ(last.header.flags, static_cast<int>(MotorStatus::kActive));

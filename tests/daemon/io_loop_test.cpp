@@ -16,8 +16,7 @@ TEST(IoLoop, EndsWhenItIsAskedTo) {
   robot->buses()[0].interface = "rc10nosuch";
   std::array<BusInbox, kMaxBuses> inboxes;
   LinkExchange exchange;
-  const auto rx = RxLoop::create(*robot, inboxes).value();
-  IoLoop loop{BusReviver{*robot, inboxes, *rx}, CanLinkKeeper{*robot, inboxes, exchange}, nullptr};
+  IoLoop loop{BusReviver{*robot, inboxes}, CanLinkKeeper{*robot, inboxes, exchange}, nullptr};
   std::stop_source stop;
   stop.request_stop();
   loop.run(stop.get_token());
@@ -29,8 +28,8 @@ TEST(IoLoop, LooksAfterSerialPorts) {
   rig.plugIn();
   auto serial = std::make_unique<SerialIo>(
       SerialIo{SerialReviver{*rig.channels, *rig.rx, rig.exchange}, SerialWriter{*rig.channels}});
-  IoLoop loop{BusReviver{*rig.robot, rig.inboxes, *rig.rx},
-              CanLinkKeeper{*rig.robot, rig.inboxes, rig.exchange}, nullptr, std::move(serial)};
+  IoLoop loop{BusReviver{*rig.robot, rig.inboxes}, CanLinkKeeper{*rig.robot, rig.inboxes, rig.exchange},
+              nullptr, std::move(serial)};
   std::jthread io([&](const std::stop_token& stop) { loop.run(stop); });
   ASSERT_TRUE(rig.pump([&] { return rig.device.state() == SerialState::kOpen; }));
   const std::array<std::uint8_t, 2> bytes{4, 2};

@@ -1,7 +1,10 @@
 #include "daemon/threads/periodic_timer.hpp"
 
+#include <fcntl.h>
 #include <gtest/gtest.h>
+#include <unistd.h>
 
+#include "app/time_grid.hpp"
 #include "daemon/exchange/clock.hpp"
 
 namespace rc10::test::periodic_timer_test {
@@ -9,45 +12,25 @@ namespace {
 
 using namespace std::chrono_literals;
 
-constexpr MonotonicTime at(Duration time) { return MonotonicTime{time}; }
+class PeriodicTimerTest : public testing::TestWithParam<TimerKind> {};
 
-TEST(NextOnGrid, IsAMultipleOfThePeriod) {
-  for (Duration now = 5s; now < 5s + 3ms; now += 7us) {
-    const auto next = nextOnGrid(at(now), 1ms).time_since_epoch();
-    ASSERT_EQ(next % 1ms, 0ns);
-    ASSERT_GE(next - now, 500us) << "no time left to get there";
-    ASSERT_LE(next - now, 1500us) << "a tick was left out";
-  }
-}
-
-TEST(NextOnGrid, LeavesOutAPointThatIsTooClose) {
-  EXPECT_EQ(nextOnGrid(at(5s), 1ms), at(5s + 1ms));
-  EXPECT_EQ(nextOnGrid(at(5s + 499us), 1ms), at(5s + 1ms));
-  EXPECT_EQ(nextOnGrid(at(5s + 501us), 1ms), at(5s + 2ms));
-}
-
-TEST(NextOnGrid, WorksForOtherPeriods) {
-  EXPECT_EQ(nextOnGrid(at(5s + 1ms), 2ms + 500us), at(5s + 2500us));
-  EXPECT_EQ(nextOnGrid(at(5s + 1ms), 1ms + 250us), at(5s + 2500us));
-}
-
-TEST(PeriodicTimer, CountsTheExpirationsThatWereMissed) {
-  auto timer = PeriodicTimer::create().value();
+TEST_P(PeriodicTimerTest, CountsTheExpirationsThatWereMissed) {
+  auto timer = PeriodicTimer::create(GetParam()).value();
   timer.start(monotonicNow() - 10ms, 1ms);  // the first lies in the past: nothing to wait for
   EXPECT_GE(timer.wait(), 11U);
 }
 
-TEST(PeriodicTimer, DoesNotExpireBeforeItsTime) {
-  auto timer = PeriodicTimer::create().value();
+TEST_P(PeriodicTimerTest, DoesNotExpireBeforeItsTime) {
+  auto timer = PeriodicTimer::create(GetParam()).value();
   const auto first = monotonicNow() + 2ms;
   timer.start(first, 1h);
   EXPECT_EQ(timer.wait(), 1U);
   EXPECT_GE(monotonicNow(), first);
 }
 
-TEST(PeriodicTimer, StaysOnItsGridHoweverLateItIsRead) {
-  auto timer = PeriodicTimer::create().value();
-  const auto first = nextOnGrid(monotonicNow(), 1ms);
+TEST_P(PeriodicTimerTest, StaysOnItsGridHoweverLateItIsRead) {
+  auto timer = PeriodicTimer::create(GetParam()).value();
+  const auto first = TimeGrid{1ms}.next(monotonicNow());
   timer.start(first, 1ms);
   std::uint64_t expirations = 0;
   while (expirations < 20) {
@@ -55,6 +38,24 @@ TEST(PeriodicTimer, StaysOnItsGridHoweverLateItIsRead) {
     // Counted expirations have passed: no expiration comes early, none twice.
     ASSERT_GE(monotonicNow(), first + 1ms * static_cast<std::int64_t>(expirations - 1));
   }
+}
+
+INSTANTIATE_TEST_SUITE_P(Kinds, PeriodicTimerTest,
+                         testing::Values(TimerKind::kTimerfd, TimerKind::kNanosleep), [](const auto& kind) {
+                           return kind.param == TimerKind::kTimerfd ? "Timerfd" : "Nanosleep";
+                         });
+
+TEST(PeriodicTimer, GoesOnByNanosleepWhenItsDescriptorCannotBeRead) {
+  const UniqueFd unreadable{::open("/dev/null", O_WRONLY | O_CLOEXEC)};
+  const int next = ::dup(unreadable.get());
+  ::close(next);
+  auto timer = PeriodicTimer::create(TimerKind::kTimerfd).value();
+  const auto first = monotonicNow() + 2ms;
+  timer.start(first, 1h);
+  ASSERT_EQ(::dup2(unreadable.get(), next), next) << "in the place of its descriptor";
+  EXPECT_EQ(timer.wait(), 0U);
+  EXPECT_EQ(timer.wait(), 1U);
+  EXPECT_GE(monotonicNow(), first);
 }
 
 }  // namespace

@@ -1,172 +1,68 @@
 #include "daemon/interfaces/rx_loop.hpp"
 
-#include <fcntl.h>
-#include <gtest/gtest.h>
 #include <sys/socket.h>
-#include <unistd.h>
 
-#include <cstring>
+#include <gtest/gtest.h>
 
-#include "bus/socket_pair.hpp"
-#include "daemon/exchange/clock.hpp"
+#include "bus/wire_frame.hpp"
 #include "daemon/virtual_robot.hpp"
-#include "support/frame_calls.hpp"
 
 namespace rc10::test::rx_loop_test {
 namespace {
 
-CanFrame numbered(std::uint8_t number) {
-  return makeClassicFrame({0x201, false}, std::array<std::uint8_t, 1>{number});
-}
+using namespace std::chrono_literals;
 
-void reportDropped(msghdr& message, std::uint32_t count) {
-  message.msg_controllen = CMSG_SPACE(sizeof(count));
-  cmsghdr* const control = CMSG_FIRSTHDR(&message);
-  control->cmsg_level = SOL_SOCKET;
-  control->cmsg_type = SO_RXQ_OVFL;
-  control->cmsg_len = CMSG_LEN(sizeof(count));
-  std::memcpy(CMSG_DATA(control), &count, sizeof(count));
-}
+constexpr MonotonicTime at(Duration time) { return MonotonicTime{time}; }
 
-// Two buses whose wire is a socket pair; the simulated drives at the other end are never stepped.
+// The wire is a socket pair; the simulated drives at its other end are never stepped.
 class RxLoopTest : public ::testing::Test {
  protected:
-  RxLoopTest() {
-    auto config = twoWheelsAndYaw();
-    config.buses.push_back(config.buses[0]);
-    config.buses[1].name = "arm";
-    for (auto& motor : config.buses[1].motors) motor.settings.name = "arm_" + motor.settings.name;
-    robot = Robot::build(config).value();
-    loop = RxLoop::create(*robot, inboxes).value();
-  }
-  ~RxLoopTest() override { frameCalls() = {}; }
-
-  void write(const CanFrame& frame, std::size_t bus = 0) {
+  void write() {
+    const CanFrame frame = makeClassicFrame({0x201, false}, std::array<std::uint8_t, 1>{1});
     canfd_frame wire;
     const auto size = encodeFrame(frame, wire);
-    ASSERT_EQ(::send(robot->simPorts()[bus]->descriptor(), &wire, size, MSG_DONTWAIT),
-              static_cast<ssize_t>(size));
+    ASSERT_GT(::send(robot->simPorts()[0]->descriptor(), &wire, size, MSG_DONTWAIT), 0);
   }
-  /// The numbers of the frames in the ring, which is empty afterwards.
-  std::vector<int> numbers(std::size_t bus = 0) {
-    std::vector<int> out;
-    inboxes[bus].frames.consume_all([&](const CanFrame& frame) { out.push_back(frame.data[0]); });
-    return out;
-  }
+  std::size_t frames() { return inboxes[0].frames.read_available(); }
 
-  std::unique_ptr<Robot> robot;
+  std::unique_ptr<Robot> robot = Robot::build(twoWheelsAndYaw()).value();
   std::array<BusInbox, kMaxBuses> inboxes;
-  std::unique_ptr<RxLoop> loop;
+  CanIntake intake{*robot, inboxes, at(4s)};
+  // 100 us before ticks at 0.3 of a millisecond.
+  std::unique_ptr<RxLoop> loop =
+      RxLoop::create(nullptr, RxLoop::Drain{intake, TimeGrid{1ms, 300us}.shifted(-100us)}).value();
 };
 
-TEST_F(RxLoopTest, FramesReachTheRingOfTheirBusInTheirOrder) {
-  for (std::uint8_t i = 1; i <= 3; ++i) write(numbered(i));
-  write(numbered(9), 1);
-  loop->poll(0);
-  EXPECT_EQ(numbers(0), (std::vector<int>{1, 2, 3}));
-  EXPECT_EQ(numbers(1), std::vector<int>{9});
+TEST_F(RxLoopTest, DrainsTheBusesOnceAPeriodOnItsGrid) {
+  EXPECT_EQ(loop->turn(at(5s)), 1200us) << "the first point that is not too close";
+  write();
+  EXPECT_EQ(loop->turn(at(5s + 1199us)), 1us);
+  EXPECT_EQ(frames(), 0U);
+  EXPECT_EQ(loop->turn(at(5s + 1200us)), 1ms);
+  EXPECT_EQ(frames(), 1U);
+  write();
+  EXPECT_EQ(loop->turn(at(5s + 1300us)), 900us);
+  EXPECT_EQ(frames(), 1U);
 }
 
-TEST_F(RxLoopTest, ABurstLongerThanOneReadKeepsItsOrder) {
-  std::vector<int> expected;
-  for (std::uint8_t i = 0; i < 100; ++i) {
-    write(numbered(i));
-    expected.push_back(i);
-  }
-  loop->poll(0);
-  loop->poll(0);
-  EXPECT_EQ(numbers(), expected);
+TEST_F(RxLoopTest, StaysOnItsGridHoweverLateItIs) {
+  (void)loop->turn(at(5s));
+  write();
+  EXPECT_EQ(loop->turn(at(5s + 9900us)), 300us);
+  EXPECT_EQ(frames(), 1U);
 }
 
-TEST_F(RxLoopTest, AWakeUpIsOneSystemCallForEachBusThatHasFrames) {
-  for (std::uint8_t i = 0; i < 10; ++i) write(numbered(i));
-  frameCalls() = {};
-  loop->poll(0);
-  EXPECT_EQ(frameCalls().recvmmsg, 1U);
+TEST_F(RxLoopTest, WithoutBusesItTurnsTenTimesASecond) {
+  const auto idle = RxLoop::create(nullptr).value();
+  EXPECT_EQ(idle->turn(at(5s)), 100ms);
 }
 
-TEST_F(RxLoopTest, FramesAreStampedWithMonotonicTimeOfTheirReception) {
-  loop->poll(0);
-  write(numbered(1));
-  loop->poll(0);  // the first wake-up with a frame has no predecessor
-  const auto before = monotonicNow();
-  write(numbered(2));
-  loop->poll(0);
-  const auto after = monotonicNow();
-  CanFrame frame;
-  ASSERT_TRUE(inboxes[0].frames.pop(frame));
-  ASSERT_TRUE(inboxes[0].frames.pop(frame));
-  EXPECT_GE(frame.received, before - std::chrono::milliseconds{1});
-  EXPECT_LE(frame.received, after);
-}
-
-TEST_F(RxLoopTest, CountsTheFramesThatAFullRingCannotTakeAndKeepsTheOldestOnes) {
-  for (std::size_t i = 0; i < BusInbox::kFrames - 1; ++i) {
-    ASSERT_TRUE(inboxes[0].frames.push(numbered(1)));
-  }
-  for (std::uint8_t i = 2; i <= 5; ++i) write(numbered(i));
-  loop->poll(0);
-  EXPECT_EQ(inboxes[0].dropped.load(), 3U);
-  EXPECT_EQ(inboxes[1].dropped.load(), 0U);
-  const auto seen = numbers();
-  ASSERT_EQ(seen.size(), BusInbox::kFrames);
-  EXPECT_EQ(seen.back(), 2);
-  write(numbered(6));
-  loop->poll(0);
-  EXPECT_EQ(numbers(), std::vector<int>{6});
-}
-
-TEST_F(RxLoopTest, AddsWhatTheKernelDropped) {
-  const auto receive = [&](std::uint32_t kernel_dropped) {
-    frameCalls().received = [=](msghdr& message) { reportDropped(message, kernel_dropped); };
-    write(numbered(1));
-    loop->poll(0);
-    return inboxes[0].dropped.load();
-  };
-  EXPECT_EQ(receive(5), 5U);
-  EXPECT_EQ(receive(5), 5U);
-  EXPECT_EQ(receive(8), 8U);
-  EXPECT_EQ(receive(2), 10U) << "a new socket counts from zero";
-  EXPECT_EQ(receive(3), 11U);
-}
-
-TEST_F(RxLoopTest, CountsMalformedMessagesAndGoesOn) {
-  const int wire = robot->simPorts()[0]->descriptor();
-  write(numbered(1));
-  ASSERT_EQ(::send(wire, "odd", 3, MSG_DONTWAIT), 3);
-  write(numbered(2));
-  loop->poll(0);
-  EXPECT_EQ(inboxes[0].malformed.load(), 1U);
-  EXPECT_EQ(inboxes[0].dropped.load(), 0U);
-  EXPECT_EQ(numbers(), (std::vector<int>{1, 2}));
-}
-
-TEST_F(RxLoopTest, ABusThatIsGoneIsSeen) {
-  EXPECT_EQ(inboxes[0].link.load(), CanLinkState::kUp);
-  robot->simPorts()[0].reset();
-  loop->poll(0);
-  EXPECT_EQ(inboxes[0].link.load(), CanLinkState::kGone);
-  write(numbered(7), 1);
-  loop->poll(0);
-  EXPECT_EQ(numbers(1), std::vector<int>{7});
-}
-
-TEST_F(RxLoopTest, ABusWhoseFarEndIsClosedWakesNobodyAnyMore) {
-  write(numbered(1));
-  robot->simPorts()[0].reset();
-  for (int i = 0; i < 3; ++i) loop->poll(0);
-  EXPECT_EQ(numbers(), std::vector<int>{1}) << "what was sent before the end is received";
-  EXPECT_EQ(inboxes[0].link.load(), CanLinkState::kGone);
-  frameCalls() = {};
-  for (int i = 0; i < 10; ++i) loop->poll(0);
-  EXPECT_EQ(frameCalls().recvmmsg, 0U);
-}
-
-TEST_F(RxLoopTest, EveryWakeUpIsCountedAlsoWithoutTraffic) {
+TEST_F(RxLoopTest, FramesWakeNobody) {
+  write();
   const auto before = loop->wakeUps();
-  loop->poll(0);
-  loop->poll(0);
-  EXPECT_EQ(loop->wakeUps(), before + 2);
+  loop->poll(0ns);
+  EXPECT_EQ(frames(), 0U);
+  EXPECT_EQ(loop->wakeUps(), before + 1) << "every wake-up is counted";
 }
 
 TEST_F(RxLoopTest, EndsWhenItIsAskedTo) {
@@ -174,41 +70,6 @@ TEST_F(RxLoopTest, EndsWhenItIsAskedTo) {
   stop.request_stop();
   loop->run(stop.get_token());
   EXPECT_EQ(loop->wakeUps(), 0U);
-}
-
-TEST_F(RxLoopTest, WatchesANewSocketUnderTheOldNumber) {
-  const SocketPair fresh;
-  ASSERT_GE(::dup3(fresh.near.get(), robot->buses()[0].bus->descriptor(), O_CLOEXEC), 0);
-  fresh.write(numbered(1));
-  loop->poll(0);
-  EXPECT_TRUE(numbers().empty()) << "epoll has forgotten the old socket and does not know the new one";
-  EXPECT_TRUE(loop->watchAgain(0));
-  loop->poll(0);
-  EXPECT_EQ(numbers(), std::vector<int>{1});
-  EXPECT_TRUE(loop->watchAgain(0)) << "watching what is watched is no error";
-}
-
-TEST_F(RxLoopTest, WatchingAClosedDescriptorAgainFails) {
-  const int descriptor = robot->buses()[0].bus->descriptor();
-  const UniqueFd kept{::dup(descriptor)};
-  ::close(descriptor);
-  EXPECT_FALSE(loop->watchAgain(0));
-  ASSERT_EQ(::dup2(kept.get(), descriptor), descriptor);  // the bus closes it once more
-}
-
-TEST_F(RxLoopTest, TheEchoSocketConfirmsAndGivesNoFrames) {
-  SocketPair echo;
-  robot->buses()[0].echo = std::move(echo.near);
-  loop = RxLoop::create(*robot, inboxes).value();
-  EXPECT_TRUE(inboxes[0].echo_available.load());
-  EXPECT_FALSE(inboxes[1].echo_available.load());
-  frameCalls().received = [n = 0](msghdr& message) mutable {
-    if (n++ < 2) message.msg_flags |= MSG_DONTROUTE;  // sent by this computer
-  };
-  for (std::uint8_t i = 0; i < 3; ++i) echo.write(numbered(i));
-  loop->poll(0);
-  EXPECT_EQ(inboxes[0].confirmed.load(), 2U);
-  EXPECT_TRUE(numbers().empty());
 }
 
 }  // namespace

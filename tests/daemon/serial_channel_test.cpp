@@ -43,7 +43,7 @@ TEST_F(SerialLineTest, AFullRingDropsAndCounts) {
   while (channel.chunks.push(SerialChunk{})) {
   }
   pty->send({1, 2, 3});
-  for (int i = 0; i < 200 && channel.dropped_chunks.load() == 0; ++i) rx->poll(50);
+  for (int i = 0; i < 200 && channel.dropped_chunks.load() == 0; ++i) rx->poll(std::chrono::milliseconds{50});
   deliver(channel, device);
   EXPECT_EQ(device.counters().dropped_chunks, channel.dropped_chunks.load());
   EXPECT_GE(device.counters().dropped_chunks, 1U);
@@ -67,7 +67,7 @@ TEST_F(SerialLineTest, NothingOnTheWayAllocates) {
   const AllocGuard guard;
   for (int i = 0; i < 50; ++i) {
     pty->send(sent);
-    rx->poll(50);
+    rx->poll(std::chrono::milliseconds{50});
     deliver(channel, device);
     (void)device.send(sent);
     writer.flush();
@@ -81,7 +81,15 @@ TEST_F(SerialLineTest, BusesAreReceivedBesidePorts) {
   canfd_frame wire;
   const auto size = encodeFrame(frame, wire);
   ASSERT_GT(::send(robot->simPorts()[0]->descriptor(), &wire, size, MSG_DONTWAIT), 0);
-  EXPECT_TRUE(pump([&] { return !protocol.bytes.empty() && inboxes[0].frames.read_available() == 1; }));
+  CanIntake intake{*robot, inboxes, monotonicNow()};
+  rx = RxLoop::create(channels.get(), RxLoop::Drain{intake, TimeGrid{std::chrono::milliseconds{1}}}).value();
+  ASSERT_TRUE(rx->watchSerial(0));
+  for (int i = 0; i < 1000 && (protocol.bytes.empty() || inboxes[0].frames.empty()); ++i) {
+    rx->poll(rx->turn(monotonicNow()));
+    deliver(channel, device);
+  }
+  EXPECT_THAT(protocol.bytes, ElementsAre(1));
+  EXPECT_EQ(inboxes[0].frames.read_available(), 1U);
 }
 
 TEST(SerialOutbox, TakesAllOrNothing) {

@@ -121,7 +121,7 @@ TEST_F(SerialReviverTest, AHangUpIsNotWatchedAnyMore) {
   check();
   pull();
   ASSERT_TRUE(pumpUntilGone());
-  for (int i = 0; i < 20; ++i) rx->poll(0);
+  for (int i = 0; i < 20; ++i) rx->poll(Duration::zero());
   EXPECT_EQ(channel.hang_ups.load(), 1U) << "the RX thread would spin";
 }
 

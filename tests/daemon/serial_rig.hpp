@@ -54,7 +54,7 @@ class SerialRig {
   /// Lets the RX loop run until `done`. A pseudo terminal hands bytes over in its own time.
   [[nodiscard]] bool pump(const std::function<bool()>& done) {
     for (int i = 0; i < 200 && !done(); ++i) {
-      rx->poll(50);
+      rx->poll(std::chrono::milliseconds{50});
       deliver(channel, device);
     }
     return done();
@@ -79,7 +79,7 @@ class SerialRig {
   std::unique_ptr<Robot> robot = Robot::build(twoWheelsAndYaw()).value();
   std::array<BusInbox, kMaxBuses> inboxes;
   LinkExchange exchange;
-  std::unique_ptr<RxLoop> rx = RxLoop::create(*robot, inboxes, channels.get()).value();
+  std::unique_ptr<RxLoop> rx = RxLoop::create(channels.get()).value();
   SerialReviver reviver{*channels, *rx, exchange};
   SerialWriter writer{*channels};
   SerialDevice device{"imu", std::make_unique<RecordingProtocol>(), channel.outbox};

@@ -3,10 +3,11 @@
 #include <gtest/gtest.h>
 
 #include <memory>
+#include <optional>
 
 #include "blackbox/memory_box.hpp"
 #include "daemon/exchange/clock.hpp"
-#include "daemon/interfaces/rx_loop.hpp"
+#include "daemon/interfaces/can_intake.hpp"
 #include "daemon/virtual_robot.hpp"
 #include "support/alloc_guard.hpp"
 
@@ -15,8 +16,8 @@ namespace {
 
 using namespace std::chrono_literals;
 
-/// RX loop and scheduler on one thread, over the socket pair of a simulated bus. The ticks have the time
-/// of the clock, since that is what the RX loop compares stamps with. The drives are ahead of it.
+/// Intake and scheduler on one thread, over the socket pair of a simulated bus. The ticks have the time of
+/// the clock, since that is what stamps are compared with. The drives are ahead of it.
 class WholeLoopAllocationTest : public ::testing::Test {
  protected:
   WholeLoopAllocationTest() {
@@ -24,7 +25,7 @@ class WholeLoopAllocationTest : public ::testing::Test {
     // However long this computer is busy with something else, no motor goes offline.
     for (auto& motor : config.buses[0].motors) motor.feedback_timeout = 60s;
     robot = Robot::build(config).value();
-    rx = RxLoop::create(*robot, inboxes).value();
+    intake.emplace(*robot, inboxes, monotonicNow());
     scheduler = std::make_unique<Scheduler>(*robot, inboxes, exchange, 1ms, &recorder);
     for (int i = 0; i < 5; ++i) tick();
     Order enable{1, Operation::kEnable, MotorSet{0b111}, 0.0};
@@ -36,8 +37,9 @@ class WholeLoopAllocationTest : public ::testing::Test {
   void tick() {
     drives_now += 1ms;
     robot->simPorts()[0]->step(drives_now);
-    rx->poll(0);
-    scheduler->tick(monotonicNow());
+    const auto now = monotonicNow();
+    intake->drain(now);
+    scheduler->tick(now);
   }
 
   /// 2,000 ticks with a command in each, a request now and then, and late ticks. Returns what they allocated.
@@ -69,7 +71,7 @@ class WholeLoopAllocationTest : public ::testing::Test {
   MemoryBox box;
   FlightRecorder recorder{box.handOff()};
   std::unique_ptr<Robot> robot;
-  std::unique_ptr<RxLoop> rx;
+  std::optional<CanIntake> intake;
   std::unique_ptr<Scheduler> scheduler;
   std::unique_ptr<int> canary;
   MonotonicTime drives_now = monotonicNow();

@@ -41,7 +41,9 @@ def test_an_interface_that_is_not_there_fails() -> None:
     config = REPO / "config" / "four_wheels_can0.yaml"
     done = doctor("--json", "--config", config, "--latency-seconds", "0")
     assert done.returncode == 1
-    assert findings(done)["can0 link"]["status"] == "fail"
+    found = findings(done)
+    assert "can0 link" in found, done.stdout + done.stderr
+    assert found["can0 link"]["status"] == "fail"
 
 
 def test_a_wrong_configuration_is_told(tmp_path: Path) -> None:

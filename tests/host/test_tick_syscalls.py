@@ -14,11 +14,11 @@ if TYPE_CHECKING:
 
 TICKS = 300
 BUSES = 2
+FULL_READ = " = 64"
 
-CALL = re.compile(r"^(\w+)\((\d+)")
+CALL = re.compile(r"^(\w+)\((\w+)")
 # Of strace itself; a process that was stopped and goes on (signal(7)) is in its call once more.
 NO_CALL = re.compile(r"^strace:|^--- |^restart_syscall\(|.* = -1 EINTR |.* = \? ERESTART")
-EPOLL = re.compile(r"^epoll_wait\(.* = (\d+)$")
 
 
 def trace(daemon: Daemon, thread: str, folder: Path) -> list[str]:
@@ -33,7 +33,6 @@ def trace(daemon: Daemon, thread: str, folder: Path) -> list[str]:
         daemon.wait_state(lambda s: s["tick"] > tick + TICKS, f"{TICKS} ticks")
     lines = [text for text in output.read_text().splitlines() if not NO_CALL.match(text)]
     # It was inside a call when strace came, and inside another when it went.
-    assert len(lines) > TICKS
     return lines[1:-1]
 
 
@@ -46,43 +45,30 @@ def busy(daemon: Daemon) -> Iterator[Daemon]:
         yield daemon
 
 
-def test_the_scheduler_reads_its_timer_and_sends_once_for_each_bus(
+def test_the_scheduler_waits_once_and_receives_and_sends_once_for_each_bus(
     busy: Daemon, tmp_path: Path
 ) -> None:
-    calls = trace(busy, "sched", tmp_path)
-    ticks: list[list[str]] = []
-    for text in calls:
+    ticks: list[list[tuple[str, str]]] = []
+    for text in trace(busy, "sched", tmp_path):
         call = CALL.match(text)
         assert call, text
-        if call[1] == "read":
-            assert text.endswith(" = 8"), text
+        if call[1] in ("read", "clock_nanosleep"):  # as `scheduler.timer` chose
             ticks.append([])
-        else:
-            assert call[1] == "sendmmsg", text
-            assert "= -1" not in text, text
-            if ticks:
-                ticks[-1].append(call[2])
+        elif ticks and not text.endswith(FULL_READ):  # strace held it up: there is more
+            ticks[-1].append((call[1], call[2]))
+    assert len(ticks) > TICKS / 2  # what strace delayed was missed
     # The last one may be cut off.
-    for sent in ticks[:-1]:
-        assert len(sent) == len(set(sent)) == BUSES, sent
+    for calls in ticks[:-1]:
+        names = [name for name, _ in calls]
+        assert names == ["recvmmsg"] * BUSES + ["sendmmsg"] * BUSES, calls
+        assert len(set(calls)) == 2 * BUSES, f"one bus twice: {calls}"
 
 
-def test_rx_waits_and_reads_once_for_each_readable_bus(busy: Daemon, tmp_path: Path) -> None:
-    readable: int | None = None
-    received: set[str] = set()
-    for text in trace(busy, "rx", tmp_path):
-        call = CALL.match(text)
-        assert call, text
-        if call[1] == "epoll_wait":
-            assert readable is None or len(received) == readable
-            wait = EPOLL.match(text)
-            assert wait, text
-            readable, received = int(wait[1]), set()
-        else:
-            assert call[1] == "recvmmsg", text
-            if readable is not None:
-                assert call[2] not in received, f"twice in one turn: {text}"
-                received.add(call[2])
+def test_frames_wake_nobody(busy: Daemon, tmp_path: Path) -> None:
+    calls = trace(busy, "rx", tmp_path)
+    assert {text.split("(")[0] for text in calls} <= {"ppoll"}, calls
+    assert all("(Timeout)" in text for text in calls), calls
+    assert len(calls) < TICKS / 3, "it wakes ten times a second, to be seen alive"
 
 
 def page_faults(daemon: Daemon, tid: int) -> tuple[int, int]:

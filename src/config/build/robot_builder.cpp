@@ -53,6 +53,7 @@ class RobotBuilder {
     robot_.guard = guard == "required" ? GuardPolicy::kRequired
                    : guard == "off"    ? GuardPolicy::kOff
                                        : GuardPolicy::kPreferred;
+    robot_.receive = top_.text("receive") == "thread" ? ReceivePolicy::kThread : ReceivePolicy::kTick;
     readThreads();
     readLcm();
     buildGpio(top_, robot_, problems_);
@@ -68,7 +69,15 @@ class RobotBuilder {
   void readThreads() {
     const Settings scheduler = top_.section("scheduler");
     readThread(scheduler, robot_.scheduler);
-    readThread(top_.section("rx"), robot_.rx);
+    const Settings rx = top_.section("rx");
+    readThread(rx, robot_.rx);
+    if (const auto lead_us = rx.number("lead_us"))
+      robot_.rx_lead = std::chrono::round<Duration>(std::chrono::duration<double, std::micro>(*lead_us));
+    const auto timer = scheduler.text("timer");
+    robot_.timer = timer == "timerfd"     ? TimerPolicy::kTimerfd
+                   : timer == "nanosleep" ? TimerPolicy::kNanosleep
+                                          : TimerPolicy::kAuto;
+    scheduler.read("phase", robot_.phase_of_period);
     checkPriorities();
     const auto rate = scheduler.find("rate_hz");
     scheduler.read("rate_hz", robot_.rate_hz);

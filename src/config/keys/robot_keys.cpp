@@ -15,26 +15,46 @@ std::vector<std::string_view> realtimePolicies() { return {"required", "preferre
 
 std::vector<std::string_view> guardPolicies() { return {"required", "preferred", "off"}; }
 
+std::vector<std::string_view> timerPolicies() { return {"auto", "timerfd", "nanosleep"}; }
+
+std::vector<std::string_view> receivePolicies() { return {"tick", "thread"}; }
+
 constexpr Range kPriorities{.min = 1, .max = 90};
 constexpr Range kCpus{.min = 0, .max = 1023};
 
-constexpr std::array kSchedulerKeys{Key{.name = "rate_hz",
-                                        .kind = kInteger,
-                                        .unit = "Hz",
-                                        .range = {.min = 100, .max = 4000},
-                                        .default_text = "1000",
-                                        .about = "How often every motor is computed and commanded. Must "
-                                                 "divide 1e9 ns evenly: 250, 500, 1000, 2000."},
-                                    Key{.name = "priority",
-                                        .kind = kInteger,
-                                        .range = kPriorities,
-                                        .default_text = "60",
-                                        .about = "SCHED_FIFO priority of the thread that owns the motors. "
-                                                 "Above 50 it precedes threaded interrupts."},
-                                    Key{.name = "cpu",
-                                        .kind = kInteger,
-                                        .range = kCpus,
-                                        .about = "CPU the thread is pinned to. Default: any."}};
+constexpr std::array kSchedulerKeys{
+    Key{.name = "rate_hz",
+        .kind = kInteger,
+        .unit = "Hz",
+        .range = {.min = 100, .max = 4000},
+        .default_text = "1000",
+        .about = "How often every motor is computed and commanded. Must "
+                 "divide 1e9 ns evenly: 250, 500, 1000, 2000."},
+    Key{.name = "priority",
+        .kind = kInteger,
+        .range = kPriorities,
+        .default_text = "60",
+        .about = "SCHED_FIFO priority of the thread that owns the motors. "
+                 "Above 50 it precedes threaded interrupts."},
+    Key{.name = "timer",
+        .kind = kText,
+        .choices = timerPolicies,
+        .default_text = "auto",
+        .about = "What wakes the thread. nanosleep: clock_nanosleep, which on "
+                 "PREEMPT_RT no FIFO thread below it delays. auto: nanosleep on "
+                 "PREEMPT_RT, else timerfd."},
+    Key{.name = "phase",
+        .kind = kNumber,
+        .range = {.min = 0.0, .max = 0.99},
+        .default_text = "0.3",
+        .about = "Where in each period of the clock the ticks lie, as a part of "
+                 "the period. At 0 the kernel's own timer tick delays them. "
+                 "Computers with a common clock share out a bus with different "
+                 "phases."},
+    Key{.name = "cpu",
+        .kind = kInteger,
+        .range = kCpus,
+        .about = "CPU the thread is pinned to. Default: any."}};
 
 constexpr std::array kRxKeys{
     Key{.name = "priority",
@@ -42,6 +62,12 @@ constexpr std::array kRxKeys{
         .range = kPriorities,
         .default_text = "65",
         .about = "SCHED_FIFO priority of the thread that receives. Must be above the scheduler's."},
+    Key{.name = "lead_us",
+        .kind = kNumber,
+        .unit = "us",
+        .range = {.min = 0, .max = 200},
+        .default_text = "100",
+        .about = "With receive: thread, how long before each tick the CAN buses are drained."},
     Key{.name = "cpu",
         .kind = kInteger,
         .range = kCpus,
@@ -66,7 +92,8 @@ constexpr std::array kLcmKeys{
         .about = "How often the state of the robot is published."}};
 
 constexpr Section kScheduler{"scheduler", kSchedulerKeys, "The thread that owns the motors."};
-constexpr Section kRx{"rx", kRxKeys, "The thread that receives from the buses."};
+constexpr Section kRx{"rx", kRxKeys,
+                      "The thread that reads serial ports and, with receive: thread, the CAN buses."};
 constexpr Section kLcm{"lcm", kLcmKeys, "The link to programs in any language, through LCM."};
 
 constexpr std::array kRobotKeys{
@@ -88,11 +115,21 @@ constexpr std::array kRobotKeys{
         .about =
             "rc10-guard, which tells the drives to rest when rc10d dies or hangs. required: do not start "
             "without it. preferred: warn and go on. off: for a debugger, which stops rc10d."},
+    Key{.name = "receive",
+        .kind = kText,
+        .choices = receivePolicies,
+        .default_text = "tick",
+        .about =
+            "Who takes frames from the CAN sockets, once a period. tick: the scheduler, at the start of the "
+            "tick that uses them. thread: the rx thread, rx.lead_us before the tick."},
     Key{.name = "scheduler",
         .kind = kSection,
         .section = &kScheduler,
         .about = "The thread that owns the motors."},
-    Key{.name = "rx", .kind = kSection, .section = &kRx, .about = "The thread that receives from the buses."},
+    Key{.name = "rx",
+        .kind = kSection,
+        .section = &kRx,
+        .about = "The thread that reads serial ports and, with receive: thread, the CAN buses."},
     Key{.name = "lcm", .kind = kSection, .section = &kLcm, .about = "The link to programs, through LCM."},
     Key{.name = "estop_gpio",
         .kind = kSection,

@@ -30,7 +30,9 @@ std::string robotText(const RobotConfig& config) {
                       : config.guard == GuardPolicy::kRequired ? "required"
                                                                : "preferred"});
   table.add({"scheduler", std::to_string(config.rate_hz) + " Hz, " + threadText(config.scheduler)});
-  table.add({"rx", threadText(config.rx)});
+  table.add({"receive", config.receive == ReceivePolicy::kTick
+                            ? "by the tick; serial ports " + threadText(config.rx)
+                            : "rx thread, " + threadText(config.rx)});
   table.add({"lcm", config.lcm.enabled
                         ? config.lcm.url + ", state at " + std::to_string(config.lcm.state_hz) + " Hz"
                         : std::string{"off"}});

@@ -34,7 +34,7 @@ std::bitset<kMaxBuses> BusReviver::check() noexcept {
     CanLinkState before = link.load(std::memory_order_relaxed);
     // A socket that lost its interface stays dead when one of that name comes back.
     if (before == CanLinkState::kGone && seen != CanLinkState::kGone && !reopen(i)) continue;
-    // Not over what the RX thread has just found out: it knows of a loss that was over before we looked.
+    // Not over what a receive has just found out: it knows of a loss that was over before we looked.
     if (link.compare_exchange_strong(before, seen, std::memory_order_relaxed)) {
       came_up[i] = before != CanLinkState::kUp && seen == CanLinkState::kUp;
     }
@@ -50,7 +50,7 @@ bool BusReviver::reopen(std::size_t bus) {
     auto echo = openEchoSocket(entry.interface, entry.watched);
     if (!echo || ::dup3(echo->get(), entry.echo.get(), O_CLOEXEC) < 0) return false;
   }
-  return rx_.watchAgain(bus);
+  return true;
 }
 
 }  // namespace rc10

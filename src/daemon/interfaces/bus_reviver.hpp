@@ -5,7 +5,6 @@
 
 #include "daemon/devices/robot.hpp"
 #include "daemon/exchange/rings.hpp"
-#include "daemon/interfaces/rx_loop.hpp"
 
 namespace rc10 {
 
@@ -14,11 +13,10 @@ namespace rc10 {
 /// real-time threads need not know. io thread only.
 class BusReviver {
  public:
-  BusReviver(Robot& robot, std::span<BusInbox> inboxes, RxLoop& rx)
-      : robot_(robot), inboxes_(inboxes), rx_(rx) {}
+  BusReviver(Robot& robot, std::span<BusInbox> inboxes) : robot_(robot), inboxes_(inboxes) {}
 
   /// Looks at every interface once. To be called some 20 times a second. Returns the buses that have come up:
-  /// also those that were down so briefly that only the RX thread knew.
+  /// also those that were down so briefly that only their socket knew.
   std::bitset<kMaxBuses> check() noexcept;
 
  private:
@@ -26,7 +24,6 @@ class BusReviver {
 
   Robot& robot_;
   std::span<BusInbox> inboxes_;
-  RxLoop& rx_;
 };
 
 }  // namespace rc10

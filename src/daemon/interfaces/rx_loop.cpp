@@ -1,7 +1,10 @@
 #include "daemon/interfaces/rx_loop.hpp"
 
+#include <poll.h>
 #include <sys/epoll.h>
 
+#include <algorithm>
+#include <array>
 #include <cerrno>
 #include <cstring>
 #include <span>
@@ -14,88 +17,54 @@ namespace rc10 {
 namespace {
 
 // Without traffic the loop turns this often, so that the watchdog sees it alive.
-constexpr int kIdleTimeoutMs = 100;
+constexpr Duration kIdle = std::chrono::milliseconds{100};
 // Further events come with the next call.
-constexpr int kMaxRxEvents = 2 * static_cast<int>(kMaxBuses) + 16;
-
-// In the data of an epoll event: the rest is the number of a serial port, not that of a source.
-constexpr std::uint64_t kSerialBit = std::uint64_t{1} << 63U;
+constexpr int kMaxEvents = 16;
 
 }  // namespace
 
-RxLoop::RxLoop(Robot& robot, std::span<BusInbox> inboxes, SerialChannels* serial, UniqueFd epoll)
-    : inboxes_(inboxes), serial_(serial), epoll_(std::move(epoll)) {
-  for (std::size_t i = 0; i < robot.buses().size(); ++i) {
-    const auto& entry = robot.buses()[i];
-    sources_.push_back({i, false, entry.bus->descriptor(), CanReceiver{entry.bus->descriptor()}});
-    if (!entry.echo) continue;
-    sources_.push_back({i, true, entry.echo.get(), CanReceiver{entry.echo.get()}});
-    inboxes_[i].echo_available.store(true);
-  }
-}
-
-Result<std::unique_ptr<RxLoop>> RxLoop::create(Robot& robot, std::span<BusInbox> inboxes,
-                                               SerialChannels* serial) {
+Result<std::unique_ptr<RxLoop>> RxLoop::create(SerialChannels* serial, std::optional<Drain> drain) {
   UniqueFd epoll{epoll_create1(EPOLL_CLOEXEC)};
   if (!epoll) return fail(fmt::format("epoll_create1: {}", std::strerror(errno)));
-  auto loop = std::unique_ptr<RxLoop>(new RxLoop(robot, inboxes, serial, std::move(epoll)));
-  for (std::size_t i = 0; i < loop->sources_.size(); ++i) {
-    if (!loop->watch(i)) return fail(fmt::format("epoll_ctl: {}", std::strerror(errno)));
-  }
-  return loop;
-}
-
-bool RxLoop::watch(std::size_t source) noexcept {
-  epoll_event event{};
-  event.events = EPOLLIN;
-  event.data.u64 = source;
-  return epoll_ctl(epoll_.get(), EPOLL_CTL_ADD, sources_[source].fd, &event) == 0 || errno == EEXIST;
-}
-
-bool RxLoop::watchAgain(std::size_t bus) noexcept {
-  bool all = true;
-  for (std::size_t i = 0; i < sources_.size(); ++i) {
-    if (sources_[i].bus == bus) all = watch(i) && all;
-  }
-  return all;
+  return std::unique_ptr<RxLoop>(new RxLoop(serial, drain, std::move(epoll)));
 }
 
 bool RxLoop::watchSerial(std::size_t channel) noexcept {
   epoll_event event{};
   event.events = EPOLLIN;
-  event.data.u64 = kSerialBit | channel;
+  event.data.u64 = channel;
   return epoll_ctl(epoll_.get(), EPOLL_CTL_ADD, (*serial_)[channel].fd.get(), &event) == 0;
 }
 
 void RxLoop::run(const std::stop_token& stop) noexcept {
-  while (!stop.stop_requested()) poll(kIdleTimeoutMs);
+  while (!stop.stop_requested()) poll(turn(monotonicNow()));
 }
 
-WakeUp RxLoop::sampleWakeUp() noexcept {
-  WakeUp wake{};
-  wake.now = monotonicNow();
-  wake.realtime_offset = realtimeOffset();
-  const bool first = last_wake_.now == MonotonicTime{};
-  wake.previous = first ? wake.now : last_wake_.now;
-  wake.previous_offset = first ? wake.realtime_offset : last_wake_.realtime_offset;
-  last_wake_ = wake;
-  return wake;
-}
-
-void RxLoop::poll(int timeout_ms) noexcept {
-  std::array<epoll_event, kMaxRxEvents> events;
-  const int count = epoll_wait(epoll_.get(), events.data(), kMaxRxEvents, timeout_ms);
-  wake_ups_.fetch_add(1, std::memory_order_relaxed);
-  if (count <= 0) return;
-  const WakeUp wake = sampleWakeUp();
-  for (const epoll_event& event : std::span(events).first(static_cast<std::size_t>(count))) {
-    const std::uint64_t source = event.data.u64;
-    if ((source & kSerialBit) != 0) {
-      receiveSerial(source & ~kSerialBit, wake.now, event.events);
-    } else {
-      receive(sources_[source], wake, event.events);
-    }
+Duration RxLoop::turn(MonotonicTime now) noexcept {
+  if (!drain_) return kIdle;
+  if (next_drain_ == MonotonicTime{}) next_drain_ = drain_->grid.next(now);
+  if (now >= next_drain_) {
+    drain_->intake.drain(now);
+    next_drain_ += drain_->grid.period * ((now - next_drain_) / drain_->grid.period + 1);
   }
+  return next_drain_ - now;
+}
+
+void RxLoop::poll(Duration patience) noexcept {
+  // ppoll and not a timerfd in the epoll set: on PREEMPT_RT its timer expires in interrupt context for a
+  // real-time thread, while a timerfd waits for ktimers (FIFO 1).
+  patience = std::clamp(patience, Duration::zero(), kIdle);
+  const timespec at_most{.tv_sec = 0, .tv_nsec = patience.count()};
+  pollfd ports{.fd = epoll_.get(), .events = POLLIN, .revents = 0};
+  const int ready = ::ppoll(&ports, 1, &at_most, nullptr);
+  wake_ups_.fetch_add(1, std::memory_order_relaxed);
+  if (ready <= 0) return;
+  std::array<epoll_event, kMaxEvents> events;
+  const int count = epoll_wait(epoll_.get(), events.data(), kMaxEvents, 0);
+  if (count <= 0) return;
+  const MonotonicTime now = monotonicNow();
+  for (const epoll_event& event : std::span(events).first(static_cast<std::size_t>(count)))
+    receiveSerial(event.data.u64, now, event.events);
 }
 
 void RxLoop::receiveSerial(std::size_t channel, MonotonicTime now, std::uint32_t events) noexcept {
@@ -106,28 +75,6 @@ void RxLoop::receiveSerial(std::size_t channel, MonotonicTime now, std::uint32_t
   // take the descriptor.
   (void)epoll_ctl(epoll_.get(), EPOLL_CTL_DEL, port.fd.get(), nullptr);
   leavePort(port);
-}
-
-void RxLoop::receive(Source& source, const WakeUp& wake, std::uint32_t events) noexcept {
-  auto& inbox = inboxes_[source.bus];
-  const Reception reception = source.receiver.receive(wake, batch_);
-  // The far end of a simulated bus was closed, which is shown for as long as it is watched: the loop would
-  // never wait again. watchAgain() takes it back.
-  if (reception.error == ENODEV && (events & EPOLLHUP) != 0)
-    (void)epoll_ctl(epoll_.get(), EPOLL_CTL_DEL, source.fd, nullptr);
-  if (source.echo) {
-    inbox.confirmed.fetch_add(reception.confirmed_count, std::memory_order_relaxed);
-    return;
-  }
-  if (reception.error == ENETDOWN) inbox.link.store(CanLinkState::kDown, std::memory_order_relaxed);
-  if (reception.error == ENODEV) inbox.link.store(CanLinkState::kGone, std::memory_order_relaxed);
-  inbox.malformed.fetch_add(reception.malformed_count, std::memory_order_relaxed);
-  std::uint64_t dropped = reception.frame_count - inbox.frames.push(batch_.data(), reception.frame_count);
-  // Smaller than before: a new socket, which counts from zero.
-  const bool same_socket = reception.kernel_dropped >= source.kernel_dropped;
-  dropped += reception.kernel_dropped - (same_socket ? source.kernel_dropped : 0);
-  source.kernel_dropped = reception.kernel_dropped;
-  if (dropped != 0) inbox.dropped.fetch_add(dropped, std::memory_order_relaxed);
 }
 
 }  // namespace rc10

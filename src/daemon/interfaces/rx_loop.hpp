@@ -1,63 +1,55 @@
 #pragma once
 
-#include <array>
 #include <atomic>
 #include <cstdint>
 #include <memory>
-#include <span>
+#include <optional>
 #include <stop_token>
-#include <vector>
 
 #include "app/result.hpp"
+#include "app/time_grid.hpp"
 #include "app/unique_fd.hpp"
-#include "bus/can_receiver.hpp"
-#include "daemon/devices/robot.hpp"
 #include "daemon/devices/serial_channel.hpp"
-#include "daemon/exchange/rings.hpp"
+#include "daemon/interfaces/can_intake.hpp"
 
 namespace rc10 {
 
-/// The receive side of every bus and serial port: epoll, recvmmsg and read, time stamps, one ring each. It
-/// moves frames and bytes and counts; it never decodes.
+/// The RX thread: reads serial ports when they have bytes and, with `receive: thread`, the CAN buses once a
+/// period.
 class RxLoop {
  public:
-  [[nodiscard]] static Result<std::unique_ptr<RxLoop>> create(Robot& robot, std::span<BusInbox> inboxes,
-                                                              SerialChannels* serial = nullptr);
+  /// The CAN intake, and the times to drain it.
+  struct Drain {
+    CanIntake& intake;
+    TimeGrid grid;
+  };
+
+  /// `serial`: null if there are no ports. Without `drain` the scheduler drains the buses itself.
+  [[nodiscard]] static Result<std::unique_ptr<RxLoop>> create(SerialChannels* serial,
+                                                              std::optional<Drain> drain = std::nullopt);
 
   /// The thread's body.
   void run(const std::stop_token& stop) noexcept;
-  /// One epoll_wait of at most `timeout_ms` and one recvmmsg or read per descriptor that is readable.
-  void poll(int timeout_ms) noexcept;
+  /// Drains the buses if that is due. Returns the patience for the poll() that follows.
+  [[nodiscard]] Duration turn(MonotonicTime now) noexcept;
+  /// One wait of at most `patience` for the serial ports, and one read of each that has bytes.
+  void poll(Duration patience) noexcept;
 
   /// Wake-ups so far; advances at least ten times a second also without traffic. Any thread.
   [[nodiscard]] std::uint64_t wakeUps() const noexcept { return wake_ups_.load(std::memory_order_relaxed); }
 
-  /// Watches a bus's descriptors again after the io thread has put a new socket in their place.
-  [[nodiscard]] bool watchAgain(std::size_t bus) noexcept;
   /// Watches a serial port that the io thread has opened; until it is gone. errno says why not.
   [[nodiscard]] bool watchSerial(std::size_t channel) noexcept;
 
  private:
-  struct Source {
-    std::size_t bus;
-    bool echo;
-    int fd;
-    CanReceiver receiver;
-    std::uint32_t kernel_dropped = 0;
-  };
-
-  RxLoop(Robot& robot, std::span<BusInbox> inboxes, SerialChannels* serial, UniqueFd epoll);
-  [[nodiscard]] bool watch(std::size_t source) noexcept;
-  void receive(Source& source, const WakeUp& wake, std::uint32_t events) noexcept;
+  RxLoop(SerialChannels* serial, std::optional<Drain> drain, UniqueFd epoll)
+      : serial_(serial), drain_(drain), epoll_(std::move(epoll)) {}
   void receiveSerial(std::size_t channel, MonotonicTime now, std::uint32_t events) noexcept;
-  [[nodiscard]] WakeUp sampleWakeUp() noexcept;
 
-  std::span<BusInbox> inboxes_;
   SerialChannels* serial_;  // null: none
+  std::optional<Drain> drain_;
+  MonotonicTime next_drain_{};
   UniqueFd epoll_;
-  std::vector<Source> sources_;
-  std::array<CanFrame, CanReceiver::kBatch> batch_{};
-  WakeUp last_wake_{};
   std::atomic<std::uint64_t> wake_ups_{0};
 };
 

@@ -6,11 +6,6 @@
 #include "daemon/devices/robot.hpp"
 
 namespace rc10 {
-namespace {
-
-constexpr Duration kSampleInterval = std::chrono::milliseconds{50};
-
-}  // namespace
 
 void FlightRecorder::Tap::connect(FlightRecorder& recorder, std::uint8_t bus) noexcept {
   recorder_ = &recorder;
@@ -139,9 +134,9 @@ void FlightRecorder::event(const Event& event) noexcept {
 }
 
 void FlightRecorder::states(const Snapshot& snapshot) noexcept {
-  const bool due = now_ >= next_sample_;
-  if (due) next_sample_ = now_ + kSampleInterval;
-  if (due || snapshot.state != robot_state_) {
+  // Turns: the robot, its motors, its buses.
+  turns_.advance(now_, 1 + snapshot.motor_count + snapshot.bus_count);
+  if (turns_.due(0) || snapshot.state != robot_state_) {
     robot_state_ = snapshot.state;
     blackbox::Robot record;
     record.header.time_ns = nowNs();
@@ -154,12 +149,12 @@ void FlightRecorder::states(const Snapshot& snapshot) noexcept {
     out_.write(record);
   }
   for (std::size_t i = 0; i < snapshot.motor_count; ++i) {
-    if (!due && snapshot.motors[i].status == statuses_[i]) continue;
+    if (!turns_.due(1 + i) && snapshot.motors[i].status == statuses_[i]) continue;
     statuses_[i] = snapshot.motors[i].status;
     motor(snapshot.motors[i], snapshot.sent, static_cast<std::uint8_t>(i));
   }
   for (std::size_t i = 0; i < snapshot.bus_count; ++i) {
-    if (!due && snapshot.buses[i].state == bus_states_[i]) continue;
+    if (!turns_.due(1 + snapshot.motor_count + i) && snapshot.buses[i].state == bus_states_[i]) continue;
     bus_states_[i] = snapshot.buses[i].state;
     bus(snapshot.buses[i], static_cast<std::uint8_t>(i));
   }

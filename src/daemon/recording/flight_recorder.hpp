@@ -11,6 +11,7 @@
 #include "daemon/exchange/events.hpp"
 #include "daemon/exchange/orders.hpp"
 #include "daemon/exchange/snapshot.hpp"
+#include "daemon/recording/sample_turns.hpp"
 
 namespace rc10 {
 
@@ -37,7 +38,8 @@ class FlightRecorder {
   void signals(const SignalMessage& message, blackbox::Verdict verdict) noexcept;
   void order(const Order& order) noexcept;
   void event(const Event& event) noexcept;
-  /// A sample of everything 20 times a second; of a motor, the robot or a bus also when its state changes.
+  /// A sample of each motor and bus and of the robot 20 times a second, one after the other; also when its
+  /// state changes.
   void states(const Snapshot& snapshot) noexcept;
 
   /// Reasons since the last call to keep the recording: bits of CopyCause. Any
@@ -45,6 +47,8 @@ class FlightRecorder {
   [[nodiscard]] std::uint32_t takeCauses() noexcept { return causes_.exchange(0, std::memory_order_relaxed); }
 
  private:
+  static constexpr Duration kSampleInterval = std::chrono::milliseconds{50};
+
   class Tap : public FrameTap {
    public:
     void connect(FlightRecorder& recorder, std::uint8_t bus) noexcept;
@@ -71,7 +75,7 @@ class FlightRecorder {
 
   blackbox::HandOff out_;
   MonotonicTime now_{};
-  MonotonicTime next_sample_{};
+  SampleTurns turns_{kSampleInterval};
   std::array<Tap, kMaxBuses> taps_;
   std::array<MotorStatus, kMaxMotors> statuses_{};
   std::array<BusState, kMaxBuses> bus_states_{};

@@ -1,12 +1,6 @@
 #pragma once
 
-#include <sys/timerfd.h>
-#include <unistd.h>
-
-#include <cerrno>
 #include <cstdint>
-#include <cstring>
-#include <string>
 
 #include "app/result.hpp"
 #include "app/time.hpp"
@@ -14,43 +8,32 @@
 
 namespace rc10 {
 
-/// The next multiple of `period` on CLOCK_MONOTONIC that lies at least half a period ahead.
-[[nodiscard]] constexpr MonotonicTime nextOnGrid(MonotonicTime now, Duration period) noexcept {
-  const auto ahead = now.time_since_epoch() + period / 2;
-  return MonotonicTime{(ahead / period + 1) * period};
-}
+enum class TimerKind : std::uint8_t {
+  kTimerfd,
+  /// clock_nanosleep(TIMER_ABSTIME). On PREEMPT_RT its timer expires in interrupt context for a real-time
+  /// thread; a timerfd's waits for ktimers (FIFO 1), so that any FIFO thread on the CPU delays it.
+  kNanosleep,
+};
 
-/// A timerfd on an absolute grid of CLOCK_MONOTONIC.
+/// Wakes one thread on an absolute grid of CLOCK_MONOTONIC.
 class PeriodicTimer {
  public:
-  [[nodiscard]] static Result<PeriodicTimer> create() {
-    UniqueFd fd{timerfd_create(CLOCK_MONOTONIC, TFD_CLOEXEC)};
-    if (!fd) return fail(std::string("timerfd_create: ") + std::strerror(errno));
-    return PeriodicTimer{std::move(fd)};
-  }
+  [[nodiscard]] static Result<PeriodicTimer> create(TimerKind kind = TimerKind::kTimerfd);
 
   /// Expires at `first` and then every `period`.
-  void start(MonotonicTime first, Duration period) noexcept {
-    const itimerspec spec{.it_interval = split(period), .it_value = split(first.time_since_epoch())};
-    timerfd_settime(fd_.get(), TFD_TIMER_ABSTIME, &spec, nullptr);
-  }
+  void start(MonotonicTime first, Duration period) noexcept;
 
   /// Waits for the next expiration. Returns how many came since the last wait: above 1, some were
   /// missed. 0: interrupted.
-  [[nodiscard]] std::uint64_t wait() noexcept {
-    std::uint64_t expirations = 0;
-    return ::read(fd_.get(), &expirations, sizeof expirations) == sizeof expirations ? expirations : 0;
-  }
+  [[nodiscard]] std::uint64_t wait() noexcept;
 
  private:
   explicit PeriodicTimer(UniqueFd fd) : fd_(std::move(fd)) {}
+  [[nodiscard]] std::uint64_t sleep() noexcept;
 
-  [[nodiscard]] static timespec split(Duration duration) noexcept {
-    constexpr std::int64_t kNsPerSecond = 1'000'000'000;
-    return {.tv_sec = duration.count() / kNsPerSecond, .tv_nsec = duration.count() % kNsPerSecond};
-  }
-
-  UniqueFd fd_;
+  UniqueFd fd_;  // none: nanosleep
+  MonotonicTime next_{};
+  Duration period_{};
 };
 
 }  // namespace rc10

@@ -1,20 +1,23 @@
 #pragma once
 
-#include <atomic>
 #include <memory>
 #include <stop_token>
 
 #include "app/result.hpp"
+#include "app/time_grid.hpp"
 #include "daemon/exchange/tick_timing.hpp"
+#include "daemon/interfaces/can_intake.hpp"
 #include "daemon/threads/periodic_timer.hpp"
 #include "daemon/tick/scheduler.hpp"
 
 namespace rc10 {
 
-/// Calls Scheduler::tick() on an absolute grid, by timerfd.
+/// Calls Scheduler::tick() on an absolute grid.
 class SchedLoop {
  public:
-  [[nodiscard]] static Result<std::unique_ptr<SchedLoop>> create(Scheduler& scheduler, Duration period);
+  /// `intake`: drained at the start of each tick (`receive: tick`); null: the RX thread drains it.
+  [[nodiscard]] static Result<std::unique_ptr<SchedLoop>> create(Scheduler& scheduler, TimeGrid grid,
+                                                                 TimerKind timer, CanIntake* intake);
 
   /// The thread's body. When asked to stop it goes on until rest frames are on the wire.
   void run(const std::stop_token& stop) noexcept;
@@ -22,12 +25,13 @@ class SchedLoop {
   [[nodiscard]] const TickTiming& timing() const noexcept { return timing_; }
 
  private:
-  SchedLoop(Scheduler& scheduler, Duration period, PeriodicTimer timer)
-      : scheduler_(scheduler), period_(period), timer_(std::move(timer)) {}
+  SchedLoop(Scheduler& scheduler, TimeGrid grid, PeriodicTimer timer, CanIntake* intake)
+      : scheduler_(scheduler), grid_(grid), timer_(std::move(timer)), intake_(intake) {}
 
   Scheduler& scheduler_;
-  Duration period_;
+  TimeGrid grid_;
   PeriodicTimer timer_;
+  CanIntake* intake_;
   TickTiming timing_;
 };
 

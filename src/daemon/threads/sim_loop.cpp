@@ -10,15 +10,15 @@ constexpr Duration kPeriod = std::chrono::milliseconds{1};
 
 }  // namespace
 
-Result<std::unique_ptr<SimLoop>> SimLoop::create(Robot& robot) {
+Result<std::unique_ptr<SimLoop>> SimLoop::create(Robot& robot, Duration offset) {
   auto timer = PeriodicTimer::create();
   if (!timer) return tl::unexpected(timer.error());
-  return std::unique_ptr<SimLoop>(new SimLoop(robot, std::move(*timer)));
+  // Half a period off the scheduler's grid, so that feedback does not race with the tick.
+  return std::unique_ptr<SimLoop>(new SimLoop(robot, {kPeriod, offset + kPeriod / 2}, std::move(*timer)));
 }
 
 void SimLoop::run(const std::stop_token& stop) noexcept {
-  // Half a period off the scheduler's grid, so that feedback does not race with the tick.
-  timer_.start(nextOnGrid(monotonicNow(), kPeriod) + kPeriod / 2, kPeriod);
+  timer_.start(grid_.next(monotonicNow()), grid_.period);
   while (!stop.stop_requested()) {
     if (timer_.wait() == 0) continue;
     for (auto& port : robot_.simPorts()) {

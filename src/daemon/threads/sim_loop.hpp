@@ -4,6 +4,7 @@
 #include <stop_token>
 
 #include "app/result.hpp"
+#include "app/time_grid.hpp"
 #include "daemon/devices/robot.hpp"
 #include "daemon/threads/periodic_timer.hpp"
 
@@ -13,15 +14,18 @@ namespace rc10 {
 /// they are drives at the other end of a bus.
 class SimLoop {
  public:
-  [[nodiscard]] static Result<std::unique_ptr<SimLoop>> create(Robot& robot);
+  /// `offset`: of the scheduler's grid.
+  [[nodiscard]] static Result<std::unique_ptr<SimLoop>> create(Robot& robot, Duration offset);
 
   /// The thread's body.
   void run(const std::stop_token& stop) noexcept;
 
  private:
-  SimLoop(Robot& robot, PeriodicTimer timer) : robot_(robot), timer_(std::move(timer)) {}
+  SimLoop(Robot& robot, TimeGrid grid, PeriodicTimer timer)
+      : robot_(robot), grid_(grid), timer_(std::move(timer)) {}
 
   Robot& robot_;
+  TimeGrid grid_;
   PeriodicTimer timer_;
 };
 

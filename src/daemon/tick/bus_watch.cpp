@@ -31,7 +31,7 @@ void BusWatch::send(const Tick& tick, bool stopping) noexcept {
       continue;
     }
     bus.flush();
-    // The kernel reports a lost interface once, to whoever asks first: the RX thread may not see it.
+    // The kernel reports a lost interface once, to whoever asks first: a receive may not see it.
     if (bus.sendError() == ENETDOWN) {
       auto expected = CanLinkState::kUp;  // never hides that the interface is gone
       inboxes_[i].link.compare_exchange_strong(expected, CanLinkState::kDown, std::memory_order_relaxed);

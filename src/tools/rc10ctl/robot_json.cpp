@@ -112,6 +112,7 @@ Json robotJson(const RobotConfig& config) {
   return {{"name", config.robot},
           {"realtime", required ? "required" : "preferred"},
           {"rate_hz", config.rate_hz},
+          {"receive", config.receive == ReceivePolicy::kTick ? "tick" : "thread"},
           {"scheduler", threadJson(config.scheduler)},
           {"rx", threadJson(config.rx)},
           {"lcm_url", config.lcm.enabled ? Json(config.lcm.url) : Json(nullptr)},

@@ -1,0 +1,62 @@
+#include "daemon/interfaces/can_intake.hpp"
+
+#include <cerrno>
+
+#include "daemon/exchange/clock.hpp"
+
+namespace rc10 {
+
+CanIntake::CanIntake(Robot& robot, std::span<BusInbox> inboxes, MonotonicTime now) : inboxes_(inboxes) {
+  last_wake_.now = now;
+  last_wake_.realtime_offset = realtimeOffset();
+  for (std::size_t i = 0; i < robot.buses().size(); ++i) {
+    const auto& entry = robot.buses()[i];
+    sources_.push_back({i, CanReceiver{entry.bus->descriptor()}});
+    if (!entry.echo) continue;
+    echoes_.push_back({i, EchoCounter{entry.echo.get()}});
+    inboxes_[i].echo_available.store(true);
+  }
+}
+
+void CanIntake::drain(MonotonicTime now) noexcept {
+  const WakeUp wake{.now = now,
+                    .previous = last_wake_.now,
+                    .realtime_offset = realtimeOffset(),
+                    .previous_offset = last_wake_.realtime_offset};
+  last_wake_ = wake;
+  for (Source& source : sources_) drain(source, wake);
+  for (Echoes& echoes : echoes_) drain(echoes);
+}
+
+void CanIntake::drain(Source& source, const WakeUp& wake) noexcept {
+  for (int reads = 0; reads < kMaxReads; ++reads) {
+    const Reception reception = source.receiver.receive(wake, batch_);
+    take(source, reception);
+    if (reception.frame_count + reception.malformed_count < CanReceiver::kBatch) return;
+  }
+}
+
+void CanIntake::drain(Echoes& echoes) noexcept {
+  for (int reads = 0; reads < kMaxReads; ++reads) {
+    const auto count = echoes.counter.take();
+    if (count.confirmed != 0)
+      inboxes_[echoes.bus].confirmed.fetch_add(count.confirmed, std::memory_order_relaxed);
+    if (count.messages < EchoCounter::kBatch) return;
+  }
+}
+
+void CanIntake::take(Source& source, const Reception& reception) noexcept {
+  auto& inbox = inboxes_[source.bus];
+  if (reception.error == ENETDOWN) inbox.link.store(CanLinkState::kDown, std::memory_order_relaxed);
+  if (reception.error == ENODEV) inbox.link.store(CanLinkState::kGone, std::memory_order_relaxed);
+  if (reception.malformed_count != 0)
+    inbox.malformed.fetch_add(reception.malformed_count, std::memory_order_relaxed);
+  std::uint64_t dropped = reception.frame_count - inbox.frames.push(batch_.data(), reception.frame_count);
+  // Smaller than before: a new socket, which counts from zero.
+  const bool same_socket = reception.kernel_dropped >= source.kernel_dropped;
+  dropped += reception.kernel_dropped - (same_socket ? source.kernel_dropped : 0);
+  source.kernel_dropped = reception.kernel_dropped;
+  if (dropped != 0) inbox.dropped.fetch_add(dropped, std::memory_order_relaxed);
+}
+
+}  // namespace rc10
