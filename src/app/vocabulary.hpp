@@ -63,7 +63,7 @@ enum class StopCause : std::uint8_t {
   kShutdown = 9,
   kInput = 10,     ///< The e-stop input.
   kGuard = 11,     ///< rc10-guard told the drives to rest, or has ended.
-  kOverload = 12,  ///< Reserved: the ticks took longer than their period.
+  kOverload = 12,  ///< The ticks took longer than their period.
 };
 
 /// Bits of robot_state_t.lcm.

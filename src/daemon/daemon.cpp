@@ -122,8 +122,8 @@ Result<void> Daemon::createLoops() {
   intake_ = std::make_unique<CanIntake>(*robot_, inboxes_, monotonicNow());
   const TimeGrid grid{config_.period(), config_.phase()};
   const bool in_tick = config_.receive == ReceivePolicy::kTick;
-  auto sched_loop =
-      SchedLoop::create(*scheduler_, grid, timerKind(config_.timer), in_tick ? intake_.get() : nullptr);
+  auto sched_loop = SchedLoop::create(*scheduler_, {grid, timerKind(config_.timer), config_.overload},
+                                      in_tick ? intake_.get() : nullptr);
   if (!sched_loop) return tl::unexpected(sched_loop.error());
   sched_loop_ = std::move(*sched_loop);
   std::optional<RxLoop::Drain> drain;

@@ -61,9 +61,9 @@ inline std::string fingerprint(const RobotConfig& config) {
   out << config.robot << ' ' << static_cast<int>(config.realtime) << ' ' << static_cast<int>(config.guard)
       << ' ' << config.rate_hz << ' ' << config.scheduler.priority << ' ' << config.scheduler.cpu.value_or(-1)
       << ' ' << static_cast<int>(config.receive) << ' ' << static_cast<int>(config.timer) << ' '
-      << config.phase_of_period << ' ' << config.rx_lead.count() << ' ' << config.rx.priority << ' '
-      << config.rx.cpu.value_or(-1) << ' ' << config.lcm.enabled << ' ' << config.lcm.url << ' '
-      << config.lcm.state_hz << ' ' << config.blackbox_mib << '\n';
+      << config.phase_of_period << ' ' << config.rx_lead.count() << ' ' << config.overload.count() << ' '
+      << config.rx.priority << ' ' << config.rx.cpu.value_or(-1) << ' ' << config.lcm.enabled << ' '
+      << config.lcm.url << ' ' << config.lcm.state_hz << ' ' << config.blackbox_mib << '\n';
   if (const auto& estop = config.estop_gpio) {
     out << "estop " << estop->pin.name() << ' ' << estop->closed_is_low << ' ' << estop->internal_bias
         << '\n';

@@ -224,6 +224,19 @@ TEST_F(SchedulerTest, EstopGetsThroughWhenEveryRingIsFull) {
   EXPECT_EQ(robot.snapshot().state, RobotStatus::kEstop);
 }
 
+TEST_F(SchedulerTest, ATickAppliesABoundedNumberOfSetpoints) {
+  Command command;
+  command.count = kMaxMotors;
+  command.deadline = robot.now() + 1h;
+  auto& ring = robot.exchange().commands;
+  for (int i = 0; i < 20; ++i) ASSERT_TRUE(ring.push(command));
+  robot.tick();
+  EXPECT_EQ(ring.read_available(), 20 - kSetpointsPerTick / kMaxMotors);
+  robot.tick();
+  robot.tick();
+  EXPECT_EQ(ring.read_available(), 0U) << "nothing is lost";
+}
+
 TEST_F(SchedulerTest, ASilentMotorGoesOfflineAndMustBeEnabledAgain) {
   enableAll();
   robot.hold(kLeft, kVelocity120, 100);

@@ -78,6 +78,8 @@ class RobotBuilder {
                    : timer == "nanosleep" ? TimerPolicy::kNanosleep
                                           : TimerPolicy::kAuto;
     scheduler.read("phase", robot_.phase_of_period);
+    if (const auto overload_ms = scheduler.number("overload_ms"))
+      robot_.overload = std::chrono::milliseconds{static_cast<std::int64_t>(*overload_ms)};
     checkPriorities();
     const auto rate = scheduler.find("rate_hz");
     scheduler.read("rate_hz", robot_.rate_hz);

@@ -51,6 +51,13 @@ constexpr std::array kSchedulerKeys{
                  "the period. At 0 the kernel's own timer tick delays them. "
                  "Computers with a common clock share out a bus with different "
                  "phases."},
+    Key{.name = "overload_ms",
+        .kind = kInteger,
+        .unit = "ms",
+        .range = {.min = 20, .max = 60000},
+        .default_text = "100",
+        .about = "The robot stops when ticks have each used more CPU time than their period for so long, "
+                 "before the kernel cuts them into lumps."},
     Key{.name = "cpu",
         .kind = kInteger,
         .range = kCpus,

@@ -101,6 +101,7 @@ CommandRefusal Admission::admit(const link::Command& message, MonotonicTime now,
   out.received = receivedAt(message.received_ns, now);
   out.client = message.client;
   if (now >= out.deadline) return CommandRefusal::kExpired;
+  if (!budget_.spend(message.client.view(), out.count, now)) return CommandRefusal::kRingFull;
   out.session = message.session;
   out.priority = message.priority;
   const bool new_number = sessions_.accept(message.client.view(), message.session, message.seq);

@@ -9,6 +9,7 @@
 
 #include "app/target.hpp"
 #include "app/time.hpp"
+#include "daemon/clients/command_budget.hpp"
 #include "daemon/clients/session_numbers.hpp"
 #include "daemon/clients/validity.hpp"
 #include "daemon/exchange/orders.hpp"
@@ -26,7 +27,7 @@ enum class CommandRefusal : std::uint8_t {
   kNotFinite,
   kExpired,      ///< Older than its own validity when it came in.
   kOldSequence,  ///< Not above the last sequence number of its session.
-  kRingFull,
+  kRingFull,     ///< More than the scheduler takes, or than this client's share of it.
   kUnknownModule,
   kUnknownSignal,  ///< The module has no such input.
   kUnusedField,    ///< Not refused: a field that its mode does not use was cleared.
@@ -70,6 +71,7 @@ class Admission {
   std::vector<KnownMotor> motors_;
   std::unordered_map<std::string, int> index_;
   SessionNumbers sessions_;
+  CommandBudget budget_;
   std::array<std::uint64_t, kCommandRefusalCount> refusals_{};
   bool cleared_field_ = false;
 };

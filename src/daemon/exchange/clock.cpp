@@ -1,5 +1,7 @@
 #include "daemon/exchange/clock.hpp"
 
+#include <ctime>
+
 namespace rc10 {
 
 MonotonicTime monotonicNow() noexcept {
@@ -11,6 +13,12 @@ std::int64_t wallClockUs() noexcept {
   return std::chrono::duration_cast<std::chrono::microseconds>(
              std::chrono::system_clock::now().time_since_epoch())
       .count();
+}
+
+Duration threadCpuTime() noexcept {
+  timespec time{};
+  (void)::clock_gettime(CLOCK_THREAD_CPUTIME_ID, &time);
+  return std::chrono::seconds{time.tv_sec} + std::chrono::nanoseconds{time.tv_nsec};
 }
 
 Duration realtimeOffset() noexcept {

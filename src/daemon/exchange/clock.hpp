@@ -8,6 +8,8 @@ namespace rc10 {
 [[nodiscard]] MonotonicTime monotonicNow() noexcept;
 /// CLOCK_REALTIME in microseconds since 1970, for `utime` fields only.
 [[nodiscard]] std::int64_t wallClockUs() noexcept;
+/// CPU time of the calling thread. A system call.
+[[nodiscard]] Duration threadCpuTime() noexcept;
 /// CLOCK_REALTIME - CLOCK_MONOTONIC, now.
 [[nodiscard]] Duration realtimeOffset() noexcept;
 

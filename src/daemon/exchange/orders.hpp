@@ -19,6 +19,9 @@ inline constexpr std::size_t kMaxMotors = link::kMaxMotors;
 static_assert(kMaxSignals == link::kMaxSignals);
 using MotorSet = std::bitset<kMaxMotors>;
 
+/// Bound of the work in a tick: with these applied, the commands that follow wait for the next one.
+inline constexpr std::size_t kSetpointsPerTick = 1024;
+
 /// A command message that passed admission, with motors as indices. All setpoints act in one tick.
 struct Command {
   struct Setpoint {

@@ -21,8 +21,12 @@ void Supervisor::receiveOrders(const Tick& tick) noexcept {
       if (recorder_ != nullptr) recorder_->event(refusal);
     });
   }
-  for (auto n = link_.commands.read_available(); n > 0; --n) {
-    link_.commands.consume_one([&](const Command& command) { apply(command, tick); });
+  std::size_t setpoints = 0;
+  for (auto n = link_.commands.read_available(); n > 0 && setpoints < kSetpointsPerTick; --n) {
+    link_.commands.consume_one([&](const Command& command) {
+      setpoints += command.count;
+      apply(command, tick);
+    });
   }
 }
 

@@ -4,11 +4,11 @@
 
 namespace rc10 {
 
-Result<std::unique_ptr<SchedLoop>> SchedLoop::create(Scheduler& scheduler, TimeGrid grid, TimerKind timer,
+Result<std::unique_ptr<SchedLoop>> SchedLoop::create(Scheduler& scheduler, const Settings& settings,
                                                      CanIntake* intake) {
-  auto created = PeriodicTimer::create(timer);
-  if (!created) return tl::unexpected(created.error());
-  return std::unique_ptr<SchedLoop>(new SchedLoop(scheduler, grid, std::move(*created), intake));
+  auto timer = PeriodicTimer::create(settings.timer);
+  if (!timer) return tl::unexpected(timer.error());
+  return std::unique_ptr<SchedLoop>(new SchedLoop(scheduler, settings, std::move(*timer), intake));
 }
 
 void SchedLoop::run(const std::stop_token& stop) noexcept {
@@ -25,7 +25,17 @@ void SchedLoop::run(const std::stop_token& stop) noexcept {
     if (stop.stop_requested()) scheduler_.beginStop();
     if (intake_ != nullptr) intake_->drain(now);
     scheduler_.tick(now, periods);
-    timing_.duration.record(monotonicNow() - now);
+    watchDuration(monotonicNow() - now);
+  }
+}
+
+void SchedLoop::watchDuration(Duration duration) noexcept {
+  timing_.duration.record(duration);
+  if (duration <= grid_.period) return overload_.inTime();
+  // A tick that the kernel cuts into lumps (RT throttling) is worse than none.
+  if (overload_.overran(threadCpuTime())) {
+    scheduler_.stopFor(StopCause::kOverload);
+    overload_.inTime();  // after the next limit it is told anew
   }
 }
 

@@ -7,6 +7,7 @@
 #include "app/time_grid.hpp"
 #include "daemon/exchange/tick_timing.hpp"
 #include "daemon/interfaces/can_intake.hpp"
+#include "daemon/threads/overload_watch.hpp"
 #include "daemon/threads/periodic_timer.hpp"
 #include "daemon/tick/scheduler.hpp"
 
@@ -15,9 +16,16 @@ namespace rc10 {
 /// Calls Scheduler::tick() on an absolute grid.
 class SchedLoop {
  public:
+  struct Settings {
+    TimeGrid grid;
+    TimerKind timer = TimerKind::kTimerfd;
+    Duration
+        overload;  ///< Range: above 0. The robot stops after ticks of so much CPU time, see OverloadWatch.
+  };
+
   /// `intake`: drained at the start of each tick (`receive: tick`); null: the RX thread drains it.
-  [[nodiscard]] static Result<std::unique_ptr<SchedLoop>> create(Scheduler& scheduler, TimeGrid grid,
-                                                                 TimerKind timer, CanIntake* intake);
+  [[nodiscard]] static Result<std::unique_ptr<SchedLoop>> create(Scheduler& scheduler,
+                                                                 const Settings& settings, CanIntake* intake);
 
   /// The thread's body. When asked to stop it goes on until rest frames are on the wire.
   void run(const std::stop_token& stop) noexcept;
@@ -25,13 +33,19 @@ class SchedLoop {
   [[nodiscard]] const TickTiming& timing() const noexcept { return timing_; }
 
  private:
-  SchedLoop(Scheduler& scheduler, TimeGrid grid, PeriodicTimer timer, CanIntake* intake)
-      : scheduler_(scheduler), grid_(grid), timer_(std::move(timer)), intake_(intake) {}
+  SchedLoop(Scheduler& scheduler, const Settings& settings, PeriodicTimer timer, CanIntake* intake)
+      : scheduler_(scheduler),
+        grid_(settings.grid),
+        timer_(std::move(timer)),
+        intake_(intake),
+        overload_(settings.grid.period, settings.overload) {}
+  void watchDuration(Duration duration) noexcept;
 
   Scheduler& scheduler_;
   TimeGrid grid_;
   PeriodicTimer timer_;
   CanIntake* intake_;
+  OverloadWatch overload_;
   TickTiming timing_;
 };
 

@@ -1,0 +1,36 @@
+#pragma once
+
+#include <cstddef>
+#include <map>
+#include <string>
+#include <string_view>
+
+#include "app/time.hpp"
+
+namespace rc10 {
+
+/// Shares out what the scheduler applies in a tick among the clients that send, so that one that floods keeps
+/// nobody else's commands out. A token bucket for each. Link thread only.
+class CommandBudget {
+ public:
+  /// Setpoints per millisecond, of all clients together.
+  static constexpr double kSetpointsPerMs = 1024.0;
+  /// A message costs as much as so many setpoints, or as its own if those are more: 32 messages a
+  /// millisecond, half the ring.
+  static constexpr std::size_t kLeastCost = 32;
+
+  /// Whether the client may send so many setpoints now; if so, they are taken.
+  [[nodiscard]] bool spend(std::string_view client, std::size_t setpoints, MonotonicTime now);
+
+ private:
+  struct Account {
+    double tokens;
+    MonotonicTime last;
+  };
+
+  [[nodiscard]] std::size_t sending(MonotonicTime now) const noexcept;
+
+  std::map<std::string, Account, std::less<>> accounts_;  // bounded
+};
+
+}  // namespace rc10

@@ -1,0 +1,37 @@
+#pragma once
+
+#include <optional>
+
+#include "app/time.hpp"
+
+namespace rc10 {
+
+/// Tells from its CPU time that a thread does more than fits into its period. A thread that was late because
+/// others had the CPU has used little of it, and is not overloaded.
+class OverloadWatch {
+ public:
+  /// `limit`: CPU time in ticks that each use more than `period`, one after the other.
+  constexpr OverloadWatch(Duration period, Duration limit) noexcept : period_(period), limit_(limit) {}
+
+  /// After a tick that took longer than its period. `cpu_time`: the thread's, so far. True: overloaded.
+  [[nodiscard]] constexpr bool overran(Duration cpu_time) noexcept {
+    // Of the first of several the start is not known.
+    const Duration used = last_cpu_time_ ? cpu_time - *last_cpu_time_ : Duration::zero();
+    over_ = used > period_ ? over_ + used : Duration::zero();
+    last_cpu_time_ = cpu_time;
+    return over_ >= limit_;
+  }
+  /// After a tick that did not.
+  constexpr void inTime() noexcept {
+    last_cpu_time_.reset();
+    over_ = Duration::zero();
+  }
+
+ private:
+  Duration period_;
+  Duration limit_;
+  std::optional<Duration> last_cpu_time_;  // at the end of the tick before, if that overran
+  Duration over_{};
+};
+
+}  // namespace rc10

@@ -1,0 +1,72 @@
+#include "daemon/threads/sched_loop.hpp"
+
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <thread>
+#include <vector>
+
+#include "daemon/exchange/clock.hpp"
+#include "daemon/virtual_robot.hpp"
+
+namespace rc10::test::sched_loop_test {
+namespace {
+
+using namespace std::chrono_literals;
+
+// Of each tick, taken by the clock that the scheduler reads once in it.
+std::atomic<Duration> load{};
+std::atomic<int> ticks_left{};
+std::stop_source* ended = nullptr;
+
+MonotonicTime loadedClock() noexcept {
+  const Duration until = threadCpuTime() + load.load();
+  while (threadCpuTime() < until) {
+  }
+  if (--ticks_left == 0) ended->request_stop();
+  return monotonicNow();
+}
+
+class SchedLoopTest : public ::testing::Test {
+ protected:
+  SchedLoopTest() { ended = &stop; }
+  ~SchedLoopTest() override { ended = nullptr; }
+
+  /// Ticks with so much work each, and the orderly stop.
+  void run(Duration work, int ticks) {
+    load = work;
+    ticks_left = ticks;
+    const auto loop =
+        SchedLoop::create(scheduler, {TimeGrid{1ms}, TimerKind::kTimerfd, 20ms}, nullptr).value();
+    loop->run(stop.get_token());
+    exchange.events.consume_all([&](const Event& event) { events.push_back(event); });
+  }
+  [[nodiscard]] std::vector<StopCause> stops() const {
+    std::vector<StopCause> causes;
+    for (const Event& event : events) {
+      if (event.code == EventCode::kRobotState && event.value == static_cast<int>(RobotStatus::kEstop))
+        causes.push_back(static_cast<StopCause>(event.extra / 256));
+    }
+    return causes;
+  }
+
+  std::unique_ptr<Robot> robot = Robot::build(twoWheelsAndYaw()).value();
+  std::array<BusInbox, kMaxBuses> inboxes;
+  LinkExchange exchange;
+  Scheduler scheduler{*robot, inboxes, exchange, 1ms, nullptr, &loadedClock};
+  std::stop_source stop;
+  std::vector<Event> events;
+};
+
+TEST_F(SchedLoopTest, TicksThatUseMoreThanTheirPeriodStopTheRobot) {
+  run(2ms, 12);
+  EXPECT_EQ(stops(), std::vector{StopCause::kOverload});
+}
+
+TEST_F(SchedLoopTest, TicksThatFitDoNot) {
+  run(50us, 100);
+  EXPECT_TRUE(stops().empty());
+}
+
+}  // namespace
+}  // namespace rc10::test::sched_loop_test
