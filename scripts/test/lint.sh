@@ -35,7 +35,7 @@ shell() {
 
 # Each folder by itself: several have a conftest.py.
 types_in() {
-    (cd "$1" && MYPYPATH="$repo/tests/kernel:$repo/tests/host:$repo/scripts/lib" python mypy --strict "${@:2}")
+    (cd "$1" && MYPYPATH="$repo/bench/peers:$repo/tests/kernel:$repo/tests/host:$repo/scripts/lib" python mypy --strict "${@:2}")
 }
 
 # "Name of the motor", not "What the motor is called".
@@ -62,7 +62,7 @@ step clang-format format_cpp
 step "comments begin with a noun" comments_begin_with_a_noun
 step shellcheck shell
 # Its scripts have no extension, and are not found by themselves.
-bench_scripts=(path_latency table)
+bench_scripts=(path_latency table peers/run)
 step "ruff check" python ruff check python tests scripts examples bench "${bench_scripts[@]/#/bench/}"
 step "ruff format" python ruff format --check --quiet python tests scripts examples bench "${bench_scripts[@]/#/bench/}"
 step "mypy, python" types_in python

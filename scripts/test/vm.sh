@@ -1,5 +1,5 @@
 #!/bin/bash
-# a real CAN controller driver on a PREEMPT_RT kernel, in QEMU
+# a real CAN controller driver on a PREEMPT_RT kernel, in QEMU; instructions and lateness counted on one
 set -euo pipefail
 # shellcheck source=scripts/lib/results.sh
 . "$(dirname "${BASH_SOURCE[0]}")/../lib/results.sh"
@@ -8,5 +8,8 @@ need build test vm
 need_python
 export RC10_BUILD=$repo/build/dev
 
-if must_build dev; then suite tests/vm "$repo/tests/vm/run"; fi
+if must_build dev; then
+    suite tests/vm "$repo/tests/vm/run"
+    pytest_in tests/counted
+fi
 finish

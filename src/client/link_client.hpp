@@ -10,6 +10,7 @@
 #include "app/result.hpp"
 #include "app/time.hpp"
 #include "app/unique_fd.hpp"
+#include "link/estop_datagram.hpp"
 #include "link/link_message.hpp"
 
 namespace rc10 {
@@ -54,6 +55,7 @@ class LinkClient {
 
   /// A message whose received_ns is 0 is stamped with the present time.
   [[nodiscard]] SendStatus send(link::Command& command) noexcept;
+  /// An e-stop goes by a datagram too, which the next tick takes however busy the rest of rc10d is.
   [[nodiscard]] SendStatus send(link::Request& request) noexcept;
   [[nodiscard]] SendStatus send(link::Signals& signals) noexcept;
 
@@ -61,12 +63,13 @@ class LinkClient {
   [[nodiscard]] Received receive(std::span<std::byte> buffer) noexcept;
 
  private:
-  LinkClient(UniqueFd socket, std::unique_ptr<link::Welcome> welcome) noexcept
-      : socket_(std::move(socket)), welcome_(std::move(welcome)) {}
+  LinkClient(UniqueFd socket, link::EstopDatagram estop, std::unique_ptr<link::Welcome> welcome) noexcept
+      : socket_(std::move(socket)), estop_(std::move(estop)), welcome_(std::move(welcome)) {}
 
   [[nodiscard]] SendStatus sendBytes(std::span<const std::byte> bytes) noexcept;
 
   UniqueFd socket_;
+  link::EstopDatagram estop_;
   std::unique_ptr<link::Welcome> welcome_;
 };
 

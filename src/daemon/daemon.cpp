@@ -90,7 +90,7 @@ Result<void> Daemon::build() {
                                            black_box_ ? &black_box_->recorder() : nullptr, &monotonicNow);
   if (guard_) scheduler_->watchedBy(guard_->page());
   if (config_.heartbeat_gpio) scheduler_->restHeartbeatAfter(config_.heartbeat_gpio->rests_in_estop_after);
-  if (auto created = createLoops(); !created) return created;
+  if (auto created = createLoops(socket->estopDescriptor()); !created) return created;
   auto gpio_loop = GpioLoop::create(config_, exchange_);
   if (!gpio_loop) return tl::unexpected(gpio_loop.error());
   gpio_loop_ = std::move(*gpio_loop);
@@ -118,11 +118,15 @@ Result<void> Daemon::build() {
   return {};
 }
 
-Result<void> Daemon::createLoops() {
+Result<void> Daemon::createLoops(int estop_socket) {
   intake_ = std::make_unique<CanIntake>(*robot_, inboxes_, monotonicNow());
   const TimeGrid grid{config_.period(), config_.phase()};
   const bool in_tick = config_.receive == ReceivePolicy::kTick;
-  auto sched_loop = SchedLoop::create(*scheduler_, {grid, timerKind(config_.timer), config_.overload},
+  auto sched_loop = SchedLoop::create(*scheduler_,
+                                      {.grid = grid,
+                                       .timer = timerKind(config_.timer),
+                                       .estops = EstopDatagrams{estop_socket},
+                                       .overload = config_.overload},
                                       in_tick ? intake_.get() : nullptr);
   if (!sched_loop) return tl::unexpected(sched_loop.error());
   sched_loop_ = std::move(*sched_loop);

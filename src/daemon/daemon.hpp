@@ -52,7 +52,7 @@ class Daemon {
   [[nodiscard]] Result<void> startThread(RtThread& thread, RtSettings settings,
                                          std::function<void(std::stop_token)> body);
   [[nodiscard]] Result<void> tolerate(const Result<void>& outcome);
-  [[nodiscard]] Result<void> createLoops();
+  [[nodiscard]] Result<void> createLoops(int estop_socket);
   [[nodiscard]] Result<void> findGuard();
   void superviseGuard();
   void describeRobot();

@@ -9,8 +9,6 @@
 namespace rc10::gateway {
 namespace {
 
-constexpr std::string_view kEstopOperation = "estop";
-
 template <std::size_t N>
 void readText(WireReader& reader, link::Text<N>& text) noexcept {
   // A name that is cut off could be that of another motor.
@@ -45,7 +43,7 @@ bool decodeEstop(std::span<const std::byte> bytes, link::Request& request) noexc
   const auto session = reader.number<std::uint64_t>();
   const auto seq = reader.number<std::int64_t>();
   const auto operation = reader.anyText();
-  if (operation != kEstopOperation) return false;
+  if (operation != link::kEstopOperation) return false;
   request.client = client;  // cut off, where it is too long
   request.session = session;
   request.seq = seq;

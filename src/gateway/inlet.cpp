@@ -6,7 +6,9 @@
 namespace rc10::gateway {
 namespace {
 
-bool stops(std::string_view operation) noexcept { return operation == "estop" || operation == "disable"; }
+bool stops(std::string_view operation) noexcept {
+  return operation == link::kEstopOperation || operation == "disable";
+}
 
 }  // namespace
 

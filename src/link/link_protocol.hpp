@@ -47,6 +47,9 @@ struct Text {
 
 using Name = Text<32>;
 
+/// The operation of a request that stops every motor. It is never refused.
+inline constexpr std::string_view kEstopOperation = "estop";
+
 enum class MessageType : std::uint32_t {
   // client to rc10d
   kHello = 1,

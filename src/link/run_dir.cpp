@@ -1,6 +1,7 @@
 #include "link/run_dir.hpp"
 
 #include <cstdlib>
+#include <filesystem>
 
 namespace rc10::link {
 
@@ -10,6 +11,10 @@ std::string runDir() {
 }
 
 std::string socketPath(const std::string& robot) { return runDir() + "/" + robot + ".sock"; }
+
+std::string estopPath(const std::string& socket_path) {
+  return std::filesystem::path(socket_path).replace_extension(".estop").string();
+}
 
 std::string restFramesPath(const std::string& run_dir, const std::string& robot) {
   return run_dir + "/" + robot + "/rest-frames";

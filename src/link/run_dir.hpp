@@ -11,12 +11,14 @@ namespace rc10::link {
 /// The link socket of a robot: <runDir>/<robot>.sock.
 [[nodiscard]] std::string socketPath(const std::string& robot);
 
+/// The socket for link::EstopDatagram beside a link socket: "<robot>.estop" for "<robot>.sock".
+[[nodiscard]] std::string estopPath(const std::string& socket_path);
+
 /// Where rc10d leaves the rest frames of a robot's drives for rc10-stop: <run_dir>/<robot>/rest-frames.
 [[nodiscard]] std::string restFramesPath(const std::string& run_dir, const std::string& robot);
 
-/// Where rc10-guard listens: <run_dir>/guard.socket. No robot has a file of this name: its link socket ends
-/// in
-/// ".sock", and its name has no dot.
+/// Where rc10-guard listens: <run_dir>/guard.socket. No robot has a file of this name: its files
+/// end in ".sock", ".estop" and ".lock", and its name has no dot.
 [[nodiscard]] std::string guardSocketPath(const std::string& run_dir);
 
 }  // namespace rc10::link

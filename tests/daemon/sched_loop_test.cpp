@@ -1,11 +1,13 @@
 #include "daemon/threads/sched_loop.hpp"
 
 #include <gtest/gtest.h>
+#include <sys/socket.h>
 
 #include <atomic>
 #include <thread>
 #include <vector>
 
+#include "bus/socket_pair.hpp"
 #include "daemon/exchange/clock.hpp"
 #include "daemon/virtual_robot.hpp"
 
@@ -32,15 +34,24 @@ class SchedLoopTest : public ::testing::Test {
   SchedLoopTest() { ended = &stop; }
   ~SchedLoopTest() override { ended = nullptr; }
 
+  /// Sends e-stops as clients do.
+  void sendEstop(std::string_view client) {
+    ASSERT_GE(::send(socket.far.get(), client.data(), client.size(), MSG_DONTWAIT), 0);
+  }
+
   /// Ticks with so much work each, and the orderly stop.
   void run(Duration work, int ticks) {
     load = work;
     ticks_left = ticks;
     const auto loop =
-        SchedLoop::create(scheduler, {TimeGrid{1ms}, TimerKind::kTimerfd, 20ms}, nullptr).value();
+        SchedLoop::create(scheduler,
+                          {.grid = {1ms}, .estops = EstopDatagrams{socket.near.get()}, .overload = 20ms},
+                          nullptr)
+            .value();
     loop->run(stop.get_token());
     exchange.events.consume_all([&](const Event& event) { events.push_back(event); });
   }
+  /// Of the whole robot.
   [[nodiscard]] std::vector<StopCause> stops() const {
     std::vector<StopCause> causes;
     for (const Event& event : events) {
@@ -55,6 +66,7 @@ class SchedLoopTest : public ::testing::Test {
   LinkExchange exchange;
   Scheduler scheduler{*robot, inboxes, exchange, 1ms, nullptr, &loadedClock};
   std::stop_source stop;
+  SocketPair socket;
   std::vector<Event> events;
 };
 
@@ -66,6 +78,15 @@ TEST_F(SchedLoopTest, TicksThatUseMoreThanTheirPeriodStopTheRobot) {
 TEST_F(SchedLoopTest, TicksThatFitDoNot) {
   run(50us, 100);
   EXPECT_TRUE(stops().empty());
+}
+
+TEST_F(SchedLoopTest, AnEstopByDatagramActsInTheNextTickHoweverFullTheRingsAre) {
+  while (exchange.orders.push(Order{})) {
+  }
+  sendEstop("pult");
+  run(0us, 2);
+  EXPECT_EQ(stops(), std::vector{StopCause::kRequest});
+  EXPECT_EQ(events.front().client.view(), "pult");
 }
 
 }  // namespace

@@ -16,6 +16,8 @@
 
 #include <fmt/format.h>
 
+#include "link/run_dir.hpp"
+
 namespace rc10 {
 namespace {
 
@@ -52,6 +54,25 @@ struct FileCloser {
   return lock;
 }
 
+// The caller holds the lock: a file of that name was left by one that was killed.
+[[nodiscard]] Result<UniqueFd> bindSocket(const std::string& path, int type) {
+  sockaddr_un address{};
+  address.sun_family = AF_UNIX;
+  if (path.size() >= sizeof address.sun_path) {
+    return fail(
+        fmt::format("{}: longer than the {} bytes a socket path may have: choose a shorter RC10_RUN_DIR",
+                    path, sizeof address.sun_path - 1));
+  }
+  std::memcpy(address.sun_path, path.c_str(), path.size() + 1);
+  UniqueFd socket{::socket(AF_UNIX, type | SOCK_NONBLOCK | SOCK_CLOEXEC, 0)};
+  (void)::unlink(path.c_str());
+  if (!socket || ::bind(socket.get(), reinterpret_cast<const sockaddr*>(&address), sizeof address) != 0)
+    return fail(fmt::format("{}: {}", path, std::strerror(errno)));
+  (void)::chmod(path.c_str(), 0660);
+  if (const auto gid = groupId("rc10")) (void)!::chown(path.c_str(), static_cast<uid_t>(-1), *gid);
+  return socket;
+}
+
 }  // namespace
 
 Result<LinkSocket> LinkSocket::listen(const std::string& dir, const std::string& robot) {
@@ -64,31 +85,22 @@ Result<LinkSocket> LinkSocket::listen(const std::string& dir, const std::string&
   if (!lock) return tl::unexpected(lock.error());
   link.lock_ = std::move(*lock);
   const std::string path = dir + "/" + robot + ".sock";
-
-  sockaddr_un address{};
-  address.sun_family = AF_UNIX;
-  if (path.size() >= sizeof address.sun_path) {
-    return fail(
-        fmt::format("{}: longer than the {} bytes a socket path may have: choose a shorter RC10_RUN_DIR",
-                    path, sizeof address.sun_path - 1));
-  }
-  std::memcpy(address.sun_path, path.c_str(), path.size() + 1);
-  link.socket_ = UniqueFd{::socket(AF_UNIX, SOCK_SEQPACKET | SOCK_NONBLOCK | SOCK_CLOEXEC, 0)};
-  (void)::unlink(path.c_str());  // left by one that was killed: we hold the lock
-  if (!link.socket_ ||
-      ::bind(link.socket_.get(), reinterpret_cast<const sockaddr*>(&address), sizeof address) != 0) {
-    return fail(fmt::format("{}: {}", path, std::strerror(errno)));
-  }
+  auto socket = bindSocket(path, SOCK_SEQPACKET);
+  if (!socket) return tl::unexpected(socket.error());
+  auto estop = bindSocket(link::estopPath(path), SOCK_DGRAM);
+  if (!estop) return tl::unexpected(estop.error());
+  link.socket_ = std::move(*socket);
+  link.estop_ = std::move(*estop);
   link.path_ = path;
-  (void)::chmod(path.c_str(), 0660);
-  if (const auto gid = groupId("rc10")) (void)!::chown(path.c_str(), static_cast<uid_t>(-1), *gid);
   if (::listen(link.socket_.get(), kBacklog) != 0)
     return fail(fmt::format("{}: {}", path, std::strerror(errno)));
   return link;
 }
 
 LinkSocket::~LinkSocket() {
-  if (socket_) (void)::unlink(path_.c_str());
+  if (!socket_) return;
+  (void)::unlink(path_.c_str());
+  (void)::unlink(link::estopPath(path_).c_str());
 }
 
 }  // namespace rc10

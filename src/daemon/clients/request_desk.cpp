@@ -24,7 +24,7 @@ constexpr std::string_view kEnableAloneOperation = "enable_alone";
   if (word == "enable") return Operation::kEnable;
   if (word == kEnableAloneOperation) return Operation::kEnableAlone;
   if (word == "disable") return Operation::kDisable;
-  if (word == "estop") return Operation::kEstop;
+  if (word == link::kEstopOperation) return Operation::kEstop;
   if (word == "clear") return Operation::kClear;
   if (word == "zero") return Operation::kZero;
   if (word == kSetGainsOperation) return Operation::kSetGains;

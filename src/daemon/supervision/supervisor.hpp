@@ -40,7 +40,7 @@ class Supervisor {
   void decide(const Tick& tick) noexcept;
 
   /// E-stop of the robot for a cause within this computer. A `clear` of the same tick is refused.
-  void stopFor(StopCause cause, const Tick& tick) noexcept { estop({cause}, tick); }
+  void stopFor(const Stop& why, const Tick& tick) noexcept { estop(why, tick); }
   /// The end of the process begins: every motor is disabled, and its fallback acts.
   void beginStop(const Tick& tick) noexcept;
   /// Whether some motor is still being damped, braked or held.

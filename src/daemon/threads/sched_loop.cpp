@@ -23,6 +23,7 @@ void SchedLoop::run(const std::stop_token& stop) noexcept {
     timing_.wake_latency.record(now - (planned + grid_.period));
     planned += grid_.period * static_cast<std::int64_t>(periods);
     if (stop.stop_requested()) scheduler_.beginStop();
+    if (const auto client = estops_.take()) scheduler_.stopFor({StopCause::kRequest, *client});
     if (intake_ != nullptr) intake_->drain(now);
     scheduler_.tick(now, periods);
     watchDuration(monotonicNow() - now);
@@ -34,7 +35,7 @@ void SchedLoop::watchDuration(Duration duration) noexcept {
   if (duration <= grid_.period) return overload_.inTime();
   // A tick that the kernel cuts into lumps (RT throttling) is worse than none.
   if (overload_.overran(threadCpuTime())) {
-    scheduler_.stopFor(StopCause::kOverload);
+    scheduler_.stopFor({StopCause::kOverload});
     overload_.inTime();  // after the next limit it is told anew
   }
 }

@@ -5,6 +5,7 @@
 
 #include "app/result.hpp"
 #include "app/time_grid.hpp"
+#include "daemon/exchange/estop_datagrams.hpp"
 #include "daemon/exchange/tick_timing.hpp"
 #include "daemon/interfaces/can_intake.hpp"
 #include "daemon/threads/overload_watch.hpp"
@@ -19,6 +20,7 @@ class SchedLoop {
   struct Settings {
     TimeGrid grid;
     TimerKind timer = TimerKind::kTimerfd;
+    EstopDatagrams estops{-1};
     Duration
         overload;  ///< Range: above 0. The robot stops after ticks of so much CPU time, see OverloadWatch.
   };
@@ -38,6 +40,7 @@ class SchedLoop {
         grid_(settings.grid),
         timer_(std::move(timer)),
         intake_(intake),
+        estops_(settings.estops),
         overload_(settings.grid.period, settings.overload) {}
   void watchDuration(Duration duration) noexcept;
 
@@ -45,6 +48,7 @@ class SchedLoop {
   TimeGrid grid_;
   PeriodicTimer timer_;
   CanIntake* intake_;
+  EstopDatagrams estops_;
   OverloadWatch overload_;
   TickTiming timing_;
 };

@@ -68,14 +68,14 @@ void Scheduler::tick(MonotonicTime now, std::uint64_t periods) noexcept {
 // Reasons to stop that neither a client nor the e-stop input has given.
 void Scheduler::stopForTheComputer(const Tick& tick) noexcept {
   if (link_.guard_lost.exchange(false, std::memory_order_acquire))
-    supervisor_.stopFor(StopCause::kGuard, tick);
+    supervisor_.stopFor({StopCause::kGuard}, tick);
   if (guard_ != nullptr && guard_->acted.load(std::memory_order_acquire)) {
     guard_->acted.store(false, std::memory_order_release);
-    supervisor_.stopFor(StopCause::kGuard, tick);
+    supervisor_.stopFor({StopCause::kGuard}, tick);
     supervisor_.endFallbacks();  // the drives rest already: nothing takes them up again
   }
-  if (const auto cause = std::exchange(stop_cause_, StopCause::kNone); cause != StopCause::kNone)
-    supervisor_.stopFor(cause, tick);
+  if (const Stop why = std::exchange(stop_asked_, {}); why.cause != StopCause::kNone)
+    supervisor_.stopFor(why, tick);
 }
 
 void Scheduler::beat(const Tick& tick) noexcept {

@@ -44,7 +44,7 @@ class Scheduler {
   /// Before the first tick. The page, which rc10-guard reads and writes, outlives this.
   void watchedBy(link::GuardPage& page) noexcept { guard_ = &page; }
   /// From the next tick on an e-stop. Scheduler thread.
-  void stopFor(StopCause cause) noexcept { stop_cause_ = cause; }
+  void stopFor(const Stop& why) noexcept { stop_asked_ = why; }
 
   /// Ticks in which the heartbeat goes on. Any thread.
   [[nodiscard]] std::uint64_t beats() const noexcept { return beats_.load(std::memory_order_relaxed); }
@@ -81,7 +81,7 @@ class Scheduler {
   std::atomic<std::uint64_t> beats_{0};               // read by the gpio thread
   std::optional<Duration> heartbeat_rests_after_;
   link::GuardPage* guard_ = nullptr;  ///< None: nobody watches.
-  StopCause stop_cause_ = StopCause::kNone;
+  Stop stop_asked_{};
   std::uint64_t missed_ticks_ = 0;
   std::uint64_t unreported_missed_ticks_ = 0;
   MonotonicTime next_missed_report_{};

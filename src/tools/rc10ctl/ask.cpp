@@ -7,6 +7,7 @@
 #include "client/json_line.hpp"
 #include "client/request_call.hpp"
 #include "client/text_table.hpp"
+#include "link/estop_datagram.hpp"
 
 namespace rc10::ctl {
 namespace {
@@ -45,16 +46,25 @@ void printAnswerJson(const std::string& operation, const std::string& message, V
       client::lineOf({{"operation", operation}, {"message", message}, {"values", std::move(json)}}).c_str());
 }
 
+// Past connections that are all taken and an rc10d that answers nobody. False: it was no e-stop, or is not
+// under way.
+bool sendEstop(const Global& global, const std::string& operation) {
+  if (operation != link::kEstopOperation) return false;
+  const auto path = socketOf(global);
+  return path && link::EstopDatagram::to(*path).send(kClientName);
+}
+
 }  // namespace
 
 ExitCode ask(const Global& global, const std::string& operation, const std::vector<std::string>& motors,
              const std::vector<link::NamedValue>& values) {
   const auto request = robotRequest(operation, motors, values);
   if (!request) return complain(request.error(), ExitCode::kUsage);
+  const std::string estop = sendEstop(global, operation) ? "the e-stop was sent and is not confirmed: " : "";
   auto rc10d = connect(global);
-  if (!rc10d) return complain(rc10d.error(), ExitCode::kNoDaemon);
+  if (!rc10d) return complain({estop + rc10d.error().message}, ExitCode::kNoDaemon);
   const auto response = RequestCall(*rc10d, kClientName).call(*request);
-  if (!response) return complain(response.error(), ExitCode::kFailed);
+  if (!response) return complain({estop + response.error().message}, ExitCode::kFailed);
   const std::string message = client::printable(response->message.view());
   if (response->status != link::ResponseStatus::kOk) return complain({message}, ExitCode::kFailed);
   const auto told =

@@ -19,12 +19,17 @@ bool json_wanted = false;
 
 }  // namespace
 
-Result<LinkClient> connect(const Global& global, std::uint32_t subscriptions) {
-  const LinkClient::Options options{.name = kClientName, .subscriptions = subscriptions};
-  if (global.socket) return LinkClient::connect(*global.socket, options);
+Result<std::string> socketOf(const Global& global) {
+  if (global.socket) return *global.socket;
   const auto robot = findRobot(global.robot);
   if (!robot) return tl::unexpected(robot.error());
-  return LinkClient::connect(robot->path, options);
+  return robot->path;
+}
+
+Result<LinkClient> connect(const Global& global, std::uint32_t subscriptions) {
+  const auto path = socketOf(global);
+  if (!path) return tl::unexpected(path.error());
+  return LinkClient::connect(*path, {.name = kClientName, .subscriptions = subscriptions});
 }
 
 ExitCode complain(const Error& error, ExitCode code) {

@@ -26,6 +26,9 @@ inline constexpr const char* kClientName = "rc10ctl";
 inline constexpr Duration kSendPeriod = std::chrono::milliseconds{20};
 inline constexpr std::int32_t kValidityMs = 100;
 
+/// The link socket of the rc10d that the options mean.
+[[nodiscard]] Result<std::string> socketOf(const Global& global);
+
 /// Connects to the rc10d that the options mean.
 [[nodiscard]] Result<LinkClient> connect(const Global& global, std::uint32_t subscriptions = 0);
 

@@ -1,0 +1,34 @@
+#include "link/estop_datagram.hpp"
+
+#include <sys/socket.h>
+#include <sys/un.h>
+
+#include <cerrno>
+#include <cstring>
+
+#include "link/link_protocol.hpp"
+#include "link/run_dir.hpp"
+
+namespace rc10::link {
+
+EstopDatagram EstopDatagram::to(const std::string& socket_path) noexcept {
+  const std::string path = estopPath(socket_path);
+  sockaddr_un address{};
+  address.sun_family = AF_UNIX;
+  if (path.size() >= sizeof address.sun_path) return EstopDatagram{{}};
+  std::memcpy(address.sun_path, path.c_str(), path.size() + 1);
+  UniqueFd socket{::socket(AF_UNIX, SOCK_DGRAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0)};
+  if (::connect(socket.get(), reinterpret_cast<const sockaddr*>(&address), sizeof address) != 0)
+    socket.reset();
+  return EstopDatagram{std::move(socket)};
+}
+
+bool EstopDatagram::send(std::string_view client) const noexcept {
+  if (!socket_) return false;
+  const auto name = client.substr(0, sizeof(Name));
+  const ssize_t sent = ::send(socket_.get(), name.data(), name.size(), MSG_DONTWAIT | MSG_NOSIGNAL);
+  // A full queue holds e-stops.
+  return sent >= 0 || errno == EAGAIN || errno == ENOBUFS;
+}
+
+}  // namespace rc10::link

@@ -1,0 +1,6 @@
+"""The guests are those of bench/peers."""
+
+import sys
+from pathlib import Path
+
+sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "bench" / "peers"))
