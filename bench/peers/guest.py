@@ -86,7 +86,7 @@ def fetched_kernel(cache: Path) -> Kernel:
 
 
 def run(kernel: Kernel, script: str, files: dict[str, Path], *, limit_s: float = 600) -> str:
-    """What the script prints. `files`: place in the guest -> file, with its libraries."""
+    """Returns the output of the script. `files`: place in the guest -> file, with its libraries."""
     with tempfile.TemporaryDirectory(prefix="rc10-counted-") as folder:
         work = Path(folder)
         _build_root(work / "root", kernel, script, files)

@@ -40,7 +40,7 @@ Result<std::unique_ptr<BoxFile>> BoxFile::create(const std::string& path, Header
   header.history_bytes = header.file_bytes - header.history_offset;
 
   const std::string temporary = path + ".new";
-  UniqueFd fd{::open(temporary.c_str(), O_RDWR | O_CREAT | O_TRUNC | O_CLOEXEC, 0640)};
+  UniqueFd fd{::open(temporary.c_str(), O_RDWR | O_CREAT | O_TRUNC | O_CLOEXEC | O_NOFOLLOW, 0640)};
   if (!fd) return tl::unexpected(trouble(temporary, std::strerror(errno)));
   const auto give_up = [&](const char* why) {
     (void)::unlink(temporary.c_str());

@@ -67,7 +67,7 @@ Result<std::string> keepCopy(int fd, const std::string& dir, const std::string& 
   const std::string path = dir + "/" + copyName(robot, wall_s, cause);
   const UniqueFd folder{::open(dir.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC)};
   if (!folder) return fail(dir + ": " + std::strerror(errno));
-  const UniqueFd out{::open(temporary.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0640)};
+  const UniqueFd out{::open(temporary.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC | O_NOFOLLOW, 0640)};
   if (!out) return fail(dir + ": " + std::strerror(errno));
   auto copied = copyInto(fd, out.get(), cause);
   if (copied && ::rename(temporary.c_str(), path.c_str()) != 0) copied = fail(std::strerror(errno));

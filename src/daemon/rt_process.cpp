@@ -4,6 +4,7 @@
 #include <malloc.h>
 #include <pthread.h>
 #include <sys/mman.h>
+#include <sys/prctl.h>
 #include <sys/resource.h>
 #include <unistd.h>
 
@@ -15,6 +16,8 @@
 #include <string>
 
 #include <fmt/format.h>
+
+#include "app/sanitizers.hpp"
 
 namespace rc10 {
 namespace {
@@ -54,6 +57,10 @@ UniqueFd holdCpuDmaLatency() noexcept {
   const std::int32_t latency_us = 0;
   if (fd && ::write(fd.get(), &latency_us, sizeof latency_us) != sizeof latency_us) fd.reset();
   return fd;
+}
+
+void forbidDumps() noexcept {
+  if (!kSanitized) (void)::prctl(PR_SET_DUMPABLE, 0);  // LeakSanitizer traces its own process
 }
 
 bool kernelIsPreemptRt() {

@@ -21,6 +21,10 @@ void configureMemory() noexcept;
 /// such file or does not let us: then nothing is lost but some wake-up latency.
 [[nodiscard]] UniqueFd holdCpuDmaLatency() noexcept;
 
+/// No core file, which takes its time before the guard sees the end; and no other process of this user traces
+/// or writes into this one.
+void forbidDumps() noexcept;
+
 /// PREEMPT_RT, where a timerfd is no match for clock_nanosleep().
 [[nodiscard]] bool kernelIsPreemptRt();
 

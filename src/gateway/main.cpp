@@ -5,6 +5,7 @@
 #include <memory>
 #include <string>
 
+#include "app/standard_output.hpp"
 #include "client/find_robot.hpp"
 #include "client/link_client.hpp"
 #include "gateway/gateway.hpp"
@@ -73,7 +74,7 @@ int main(int argc, char** argv) {
   if (options->help || options->version) {
     std::fputs(options->help ? gateway::helpText() : (std::string("rc10-lcm ") + kVersion + "\n").c_str(),
                stdout);
-    return kOk;
+    return statusOfOutput("rc10-lcm", kOk);
   }
   catchSignals();
   auto rc10d = connect(*options);

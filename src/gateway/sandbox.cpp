@@ -108,6 +108,8 @@ Result<void> filterSystemCalls() {
 
 Result<void> enterSandbox(int parent) {
   firstToDie();
+  // Last that needs /proc/self, which root owns from here on. LeakSanitizer traces its own process.
+  if (!kSanitized && ::prctl(PR_SET_DUMPABLE, 0) != 0) return notDropped("PR_SET_DUMPABLE", errno);
   if (auto result = leaveRealTime(); !result) return result;
   if (auto result = limitResources(); !result) return result;
   if (auto result = dropCapabilities(); !result) return result;

@@ -29,7 +29,7 @@ bool mayHaveAGuard(int connection) noexcept {
 }  // namespace
 
 Result<GuardSocket> GuardSocket::listen(const std::string& run_dir) {
-  if (::mkdir(run_dir.c_str(), 0755) != 0 && errno != EEXIST) return failure(run_dir);
+  if (auto made = link::makeRunDir(run_dir); !made) return tl::unexpected(made.error());
   GuardSocket guard;
   const std::string path = link::guardSocketPath(run_dir);
   const std::string lock_path = path + ".lock";

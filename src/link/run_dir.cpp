@@ -1,13 +1,49 @@
 #include "link/run_dir.hpp"
 
+#include <fcntl.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <cerrno>
 #include <cstdlib>
+#include <cstring>
 #include <filesystem>
 
+#include "app/unique_fd.hpp"
+
 namespace rc10::link {
+namespace {
+
+constexpr const char* kRemedy =
+    "set RC10_RUN_DIR to a folder of this user, such as $XDG_RUNTIME_DIR/rc10, or run as root";
+
+// Nobody but root makes or replaces something in it.
+bool isRootsAlone(const std::filesystem::path& dir) noexcept {
+  struct stat status {};
+  return ::stat(dir.c_str(), &status) == 0 && status.st_uid == 0 &&
+         (status.st_mode & (S_IWGRP | S_IWOTH)) == 0;
+}
+
+}  // namespace
 
 std::string runDir() {
   const char* dir = std::getenv("RC10_RUN_DIR");
   return dir != nullptr && *dir != '\0' ? dir : "/run/rc10d";
+}
+
+Result<void> makeRunDir(const std::string& dir) {
+  if (::mkdir(dir.c_str(), 0755) != 0 && errno != EEXIST)
+    return fail(dir + ": " + std::strerror(errno) + ": " + kRemedy);
+  struct stat status {};
+  const UniqueFd folder{::open(dir.c_str(), O_PATH | O_DIRECTORY | O_NOFOLLOW | O_CLOEXEC)};
+  if (!folder || ::fstat(folder.get(), &status) != 0)
+    return fail(dir + " is no folder of its own (a link, or a file): " + kRemedy);
+  if ((status.st_mode & S_IWOTH) != 0) return fail(dir + ": every user may write to it: " + kRemedy);
+  const bool ours = status.st_uid == 0 || status.st_uid == ::geteuid();
+  // One that systemd made for the service belongs to the user rc10, in a folder of root's.
+  if (!ours && !isRootsAlone(std::filesystem::path(dir).parent_path()))
+    return fail(dir + " belongs to another user (uid " + std::to_string(status.st_uid) + "): " + kRemedy);
+  return {};
 }
 
 std::string socketPath(const std::string& robot) { return runDir() + "/" + robot + ".sock"; }

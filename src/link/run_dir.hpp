@@ -2,11 +2,17 @@
 
 #include <string>
 
+#include "app/result.hpp"
+
 namespace rc10::link {
 
 /// Folder of sockets and of what others need to know about a running rc10d: $RC10_RUN_DIR, else
 /// /run/rc10d. Not for real-time threads.
 [[nodiscard]] std::string runDir();
+
+/// Makes the folder if it is missing, and refuses one in which another user could put something in the place
+/// of a socket or a lock. The error names the remedy.
+[[nodiscard]] Result<void> makeRunDir(const std::string& dir);
 
 /// The link socket of a robot: <runDir>/<robot>.sock.
 [[nodiscard]] std::string socketPath(const std::string& robot);

@@ -13,6 +13,7 @@
 #include <CLI/CLI.hpp>
 
 #include "app/result.hpp"
+#include "app/standard_output.hpp"
 #include "app/unique_fd.hpp"
 
 /// Common part of programs that run until a signal ends them.
@@ -52,7 +53,7 @@ inline constexpr int kExitUsage = 2;
 /// For main(): what the program throws, out of memory or a mistake of ours, is told and no crash.
 [[nodiscard]] inline int runProgram(const char* name, int (*program)(int, char**), int argc, char** argv) {
   try {
-    return program(argc, argv);
+    return statusOfOutput(name, program(argc, argv));
   } catch (const std::exception& error) {
     std::fprintf(stderr, "%s: %s\n", name, error.what());
     return kExitFailed;

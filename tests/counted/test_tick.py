@@ -1,4 +1,4 @@
-"""What a millisecond costs the computer, and how late ticks are, counted in a PREEMPT_RT guest.
+"""The cost of a millisecond, and how late ticks are, counted in a PREEMPT_RT guest.
 
 Instructions, not times: the same program gives the same figures on a busy machine. The limits are
 the goals of docs/performance.md.

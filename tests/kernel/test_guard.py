@@ -7,6 +7,7 @@ import re
 import signal
 import subprocess
 import time
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 import pytest
@@ -30,7 +31,6 @@ import rc10
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
-    from pathlib import Path
 
 LIMIT_MS = 25
 REST = (0, 0, 0, 0)
@@ -219,3 +219,19 @@ def test_one_guard_serves_all_robots_and_the_debugger_has_none(tmp_path: Path) -
         with daemon(), daemon(second):
             assert len(guards()) == 1
     wait_for(lambda: not guards(), 5.0, "the end of the guard")
+
+
+@pytest.mark.parametrize(("guard", "dumped"), [("preferred", False), ("off", True)])
+def test_a_crash_writes_a_core_only_without_a_guard(
+    guard: str, dumped: bool, tmp_path: Path
+) -> None:
+    """Writing it would come before the end that the guard sees."""
+    Path("/proc/sys/kernel/core_pattern").write_text("core")
+    robot = tmp_path / "robot.yaml"
+    robot.write_text(CONFIG.read_text() + f"\nguard: {guard}\n")
+    limited = f"ulimit -c unlimited; exec {BIN}/rc10d -c {robot}"
+    with fakes(), Proc("sh", "-c", limited, cwd=tmp_path) as process:
+        process.wait_line("robot '.*' runs", 10.0)
+        process.signal(signal.SIGSEGV)
+        process.wait(30.0)
+        assert [path.name for path in tmp_path.glob("core*")] == (["core"] if dumped else [])

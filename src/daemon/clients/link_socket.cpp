@@ -38,7 +38,7 @@ struct FileCloser {
 }
 
 [[nodiscard]] Result<UniqueFd> takeLock(const std::string& path, const std::string& robot) {
-  UniqueFd lock{::open(path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0644)};
+  UniqueFd lock{::open(path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW, 0644)};
   if (!lock) return fail(fmt::format("{}: {}", path, std::strerror(errno)));
   if (::flock(lock.get(), LOCK_EX | LOCK_NB) != 0) {
     char holder[16] = {};
@@ -76,10 +76,7 @@ struct FileCloser {
 }  // namespace
 
 Result<LinkSocket> LinkSocket::listen(const std::string& dir, const std::string& robot) {
-  if (::mkdir(dir.c_str(), 0755) != 0 && errno != EEXIST) {
-    return fail(fmt::format("{}: {}: set RC10_RUN_DIR to a folder this user may write to, or run as root",
-                            dir, std::strerror(errno)));
-  }
+  if (auto made = link::makeRunDir(dir); !made) return tl::unexpected(made.error());
   LinkSocket link;
   auto lock = takeLock(dir + "/" + robot + ".lock", robot);
   if (!lock) return tl::unexpected(lock.error());

@@ -14,6 +14,7 @@
 #include <string>
 #include <string_view>
 
+#include "app/standard_output.hpp"
 #include "guard/guard_server.hpp"
 #include "guard/guard_socket.hpp"
 #include "link/run_dir.hpp"
@@ -107,7 +108,7 @@ int main(int argc, char** argv) {
     if (word == "--help" || word == "--version") {
       const std::string version = std::string("rc10-guard ") + rc10::kVersion + "\n";
       std::fputs(word == "--help" ? std::string(kHelp).c_str() : version.c_str(), stdout);
-      return kOk;
+      return rc10::statusOfOutput("rc10-guard", kOk);
     }
     if (word != "--until-unused") {
       tell("'" + std::string(word) + "' is no option; --help lists them");

@@ -15,6 +15,7 @@
 #include <thread>
 #include <vector>
 
+#include "app/standard_output.hpp"
 #include "bus/frame_text.hpp"
 #include "interface_stop.hpp"
 #include "link/interface_lock.hpp"
@@ -190,7 +191,7 @@ int runProgram(const std::vector<std::string>& words) {
 
 int main(int argc, char** argv) {
   try {
-    return rc10::runProgram({argv + 1, argv + argc});
+    return rc10::statusOfOutput("rc10-stop", rc10::runProgram({argv + 1, argv + argc}));
   } catch (const std::exception& error) {
     return rc10::complain(error.what());
   }

@@ -7,6 +7,7 @@
 
 #include <CLI/CLI.hpp>
 
+#include "app/standard_output.hpp"
 #include "rc10_version.hpp"
 #include "verbs.hpp"
 
@@ -66,7 +67,7 @@ int run(int argc, char** argv) {
 
 int main(int argc, char** argv) {
   try {
-    return run(argc, argv);
+    return rc10::statusOfOutput("rc10ctl", run(argc, argv));
   } catch (const std::exception& error) {  // no memory, for example
     std::fprintf(stderr, "rc10ctl: %s\n", error.what());
     return static_cast<int>(rc10::ctl::ExitCode::kFailed);
