@@ -2,6 +2,7 @@
 #include <span>
 #include <vector>
 
+#include "app/printable.hpp"
 #include "client/quantity_text.hpp"
 #include "client/state_text.hpp"
 #include "client/text_table.hpp"

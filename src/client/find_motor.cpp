@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "app/printable.hpp"
 #include "client/text_table.hpp"
 
 namespace rc10::client {

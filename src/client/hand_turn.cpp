@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "app/printable.hpp"
 #include "app/units.hpp"
 #include "client/quantity_text.hpp"
 #include "client/text_table.hpp"

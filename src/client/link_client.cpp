@@ -28,7 +28,7 @@ Result<LinkClient> LinkClient::adopt(UniqueFd connected, const std::string& sock
   const auto deadline = std::chrono::steady_clock::now() + options.timeout;
   auto welcome = client::greet(connected.get(), socket_path, options.name, options.subscriptions, deadline);
   if (!welcome) return tl::unexpected(welcome.error());
-  return LinkClient{std::move(connected), link::EstopDatagram::to(socket_path), std::move(*welcome)};
+  return LinkClient{std::move(connected), socket_path, std::move(*welcome)};
 }
 
 LinkClient::SendStatus LinkClient::send(link::Command& command) noexcept {
@@ -37,9 +37,16 @@ LinkClient::SendStatus LinkClient::send(link::Command& command) noexcept {
 }
 
 LinkClient::SendStatus LinkClient::send(link::Request& request) noexcept {
-  if (request.operation.view() == link::kEstopOperation) (void)estop_.send(request.client.view());
+  if (request.operation.view() == link::kEstopOperation) {
+    prepareEstop();
+    (void)estop_->send(request.client.view());
+  }
   if (request.received_ns == 0) request.received_ns = nowNs();
   return sendBytes(link::seal(request));
+}
+
+void LinkClient::prepareEstop() noexcept {
+  if (!estop_) estop_ = link::EstopDatagram::to(socket_path_);
 }
 
 LinkClient::SendStatus LinkClient::send(link::Signals& signals) noexcept {

@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -57,19 +58,23 @@ class LinkClient {
   [[nodiscard]] SendStatus send(link::Command& command) noexcept;
   /// An e-stop goes by a datagram too, which the next tick takes however busy the rest of rc10d is.
   [[nodiscard]] SendStatus send(link::Request& request) noexcept;
+  /// Opens the way of that datagram now and not when the first e-stop is sent: for a process that may open
+  /// nothing later.
+  void prepareEstop() noexcept;
   [[nodiscard]] SendStatus send(link::Signals& signals) noexcept;
 
   /// Does not wait. `buffer` has room for link::kMaxMessageSize.
   [[nodiscard]] Received receive(std::span<std::byte> buffer) noexcept;
 
  private:
-  LinkClient(UniqueFd socket, link::EstopDatagram estop, std::unique_ptr<link::Welcome> welcome) noexcept
-      : socket_(std::move(socket)), estop_(std::move(estop)), welcome_(std::move(welcome)) {}
+  LinkClient(UniqueFd socket, std::string socket_path, std::unique_ptr<link::Welcome> welcome) noexcept
+      : socket_(std::move(socket)), socket_path_(std::move(socket_path)), welcome_(std::move(welcome)) {}
 
   [[nodiscard]] SendStatus sendBytes(std::span<const std::byte> bytes) noexcept;
 
   UniqueFd socket_;
-  link::EstopDatagram estop_;
+  std::string socket_path_;
+  std::optional<link::EstopDatagram> estop_;
   std::unique_ptr<link::Welcome> welcome_;
 };
 

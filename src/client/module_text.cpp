@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <span>
 
+#include "app/printable.hpp"
 #include "client/json_line.hpp"
 #include "client/quantity_text.hpp"
 #include "client/text_table.hpp"

@@ -4,6 +4,7 @@
 #include <array>
 #include <limits>
 
+#include "app/printable.hpp"
 #include "client/find_motor.hpp"
 #include "client/text_table.hpp"
 #include "link/motor_readings.hpp"

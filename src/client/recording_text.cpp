@@ -7,6 +7,7 @@
 #include <deque>
 
 #include "app/event_code.hpp"
+#include "app/printable.hpp"
 #include "client/quantity_text.hpp"
 #include "client/text_table.hpp"
 #include "link/event_text.hpp"

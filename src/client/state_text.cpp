@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "app/printable.hpp"
 #include "client/quantity_text.hpp"
 #include "client/style.hpp"
 #include "client/text_table.hpp"

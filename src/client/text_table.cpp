@@ -15,15 +15,6 @@ std::size_t length(std::string_view text) {
 
 }  // namespace
 
-std::string printable(std::string_view text) {
-  std::string clean;
-  for (const char c : text) {
-    const auto byte = static_cast<unsigned char>(c);
-    clean += byte < 0x20U || byte == 0x7FU ? '?' : c;
-  }
-  return clean;
-}
-
 void TextTable::add(std::vector<std::string> cells, std::string_view style) {
   cells.resize(columns_.size());
   rows_.push_back(std::move(cells));

@@ -7,9 +7,6 @@
 
 namespace rc10::client {
 
-/// Text without what would move the cursor of a terminal: names come from strangers.
-[[nodiscard]] std::string printable(std::string_view text);
-
 /// Columns of plain text, as wide as their widest cell, two spaces apart. Columns in which every cell is
 /// empty are left out.
 class TextTable {

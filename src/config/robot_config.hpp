@@ -101,6 +101,7 @@ struct LcmConfig {
   bool enabled = true;
   std::string url = "udpm://239.255.76.67:7667?ttl=0";
   int state_hz = 200;
+  bool leaves_computer = false;  ///< The url has a ttl above 0.
 };
 
 struct RobotConfig {

@@ -85,6 +85,7 @@ Result<void> Daemon::build() {
   if (auto written = writeRestFrames(*robot_, link::runDir(), config_.robot); !written) return written;
   if (auto guarded = findGuard(); !guarded) return guarded;
   describeRobot();
+  tellWhoMayCommand();
   openBlackBox();  // the file is ours: no other daemon of this robot runs
   scheduler_ = std::make_unique<Scheduler>(*robot_, inboxes_, exchange_, config_.period(),
                                            black_box_ ? &black_box_->recorder() : nullptr, &monotonicNow);
@@ -192,6 +193,12 @@ std::unique_ptr<SpiKeeper> Daemon::spiIo() {
   return std::make_unique<SpiKeeper>(lines, exchange_, [](const std::string& path, std::uint32_t speed_hz) {
     return openSpiPort(path, speed_hz);
   });
+}
+
+void Daemon::tellWhoMayCommand() {
+  if (!config_.lcm.leaves_computer) return;
+  description_.notices.push_back("LCM reaches the network (" + config_.lcm.url +
+                                 "): every computer there may command this robot");
 }
 
 Result<void> Daemon::lockInterfaces() {

@@ -54,6 +54,7 @@ class Daemon {
   [[nodiscard]] Result<void> tolerate(const Result<void>& outcome);
   [[nodiscard]] Result<void> createLoops(int estop_socket);
   [[nodiscard]] Result<void> findGuard();
+  void tellWhoMayCommand();
   void superviseGuard();
   void describeRobot();
   void describeModules();

@@ -1,11 +1,16 @@
 #include "daemon/log.hpp"
 
 #include <cstdlib>
+#include <ctime>
+#include <memory>
+#include <string>
 
 #include <spdlog/async.h>
 #include <spdlog/async_logger.h>
+#include <spdlog/pattern_formatter.h>
 #include <spdlog/sinks/stdout_color_sinks.h>
 
+#include "app/printable.hpp"
 #include "daemon/exchange/events.hpp"
 
 namespace rc10 {
@@ -13,6 +18,19 @@ namespace {
 
 // Lines that wait to be written; older ones are overwritten when the terminal does not keep up.
 constexpr std::size_t kQueue = 256;
+
+// Lines have names and texts of clients in them, which must not act on a terminal or look like other lines.
+class PrintableText final : public spdlog::custom_flag_formatter {
+ public:
+  void format(const spdlog::details::log_msg& message, const std::tm& /*time*/,
+              spdlog::memory_buf_t& line) override {
+    const std::string text = printable({message.payload.data(), message.payload.size()});
+    line.append(text.data(), text.data() + text.size());
+  }
+  [[nodiscard]] std::unique_ptr<spdlog::custom_flag_formatter> clone() const override {
+    return std::make_unique<PrintableText>();
+  }
+};
 
 }  // namespace
 
@@ -22,7 +40,9 @@ std::shared_ptr<spdlog::logger> makeLog() {
   auto log = std::make_shared<spdlog::async_logger>("rc10d", std::move(sink), kPool,
                                                     spdlog::async_overflow_policy::overrun_oldest);
   const bool journal = std::getenv("JOURNAL_STREAM") != nullptr;
-  log->set_pattern(journal ? "%v" : "[%H:%M:%S.%e] %^%l%$ %v");
+  auto formatter = std::make_unique<spdlog::pattern_formatter>();
+  formatter->add_flag<PrintableText>('*').set_pattern(journal ? "%*" : "[%H:%M:%S.%e] %^%l%$ %*");
+  log->set_formatter(std::move(formatter));
   log->flush_on(spdlog::level::info);
   return log;
 }

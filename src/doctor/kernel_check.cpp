@@ -39,6 +39,7 @@ KernelFacts readKernel(const HostFiles& files) {
   kernel.group_scheduling = groupScheduling(files, kernel.release);
   kernel.rt_runtime_us = files.number("/proc/sys/kernel/sched_rt_runtime_us");
   kernel.rt_period_us = files.number("/proc/sys/kernel/sched_rt_period_us");
+  kernel.compact_unevictable = files.number("/proc/sys/vm/compact_unevictable_allowed");
   return kernel;
 }
 
@@ -76,6 +77,15 @@ Finding checkThrottling(const KernelFacts& kernel) {
     return warn(kThrottling, found + "real-time threads get " + percentOf(share) + " of the time", fix);
   return pass(kThrottling, found + "only a thread that spins for " + percentOf(share) +
                                " of a second is held back; rc10d sleeps in every tick");
+}
+
+Finding checkCompaction(const KernelFacts& kernel) {
+  const std::string what = "memory compaction";
+  if (kernel.compact_unevictable.value_or(0) == 0) return pass(what, "leaves locked memory where it is");
+  return warn(what,
+              "vm.compact_unevictable_allowed is 1: the kernel may move locked memory, and a tick that meets "
+              "that waits",
+              "sudo sysctl -w vm.compact_unevictable_allowed=0   # to keep it: /etc/sysctl.d/90-rc10d.conf");
 }
 
 }  // namespace rc10::doctor

@@ -15,6 +15,7 @@ struct KernelFacts {
   std::optional<bool> group_scheduling;  ///< CONFIG_RT_GROUP_SCHED; empty: not known.
   std::optional<long long> rt_runtime_us;
   std::optional<long long> rt_period_us;
+  std::optional<long long> compact_unevictable;  ///< vm.compact_unevictable_allowed; empty: not there.
 };
 
 [[nodiscard]] KernelFacts readKernel(const HostFiles& files);
@@ -23,5 +24,7 @@ struct KernelFacts {
 [[nodiscard]] Finding checkPreemption(const KernelFacts& kernel);
 /// Whether the kernel lets real-time threads run as long as they have to.
 [[nodiscard]] Finding checkThrottling(const KernelFacts& kernel);
+/// Whether locked memory stays where it is.
+[[nodiscard]] Finding checkCompaction(const KernelFacts& kernel);
 
 }  // namespace rc10::doctor

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "app/printable.hpp"
 #include "client/json_line.hpp"
 #include "client/style.hpp"
 #include "client/text_table.hpp"
@@ -26,9 +27,8 @@ std::string text(const Finding& finding, bool colour) {
   const std::string mark =
       client::styled(word(finding.verdict), colour ? styleOf(finding.verdict) : std::string_view{});
   // Names of interfaces and threads come from the computer, not from us.
-  std::string text =
-      mark + "  " + client::printable(finding.what) + ": " + client::printable(finding.why) + "\n";
-  if (!finding.fix.empty()) text += "      fix: " + client::printable(finding.fix) + "\n";
+  std::string text = mark + "  " + printable(finding.what) + ": " + printable(finding.why) + "\n";
+  if (!finding.fix.empty()) text += "      fix: " + printable(finding.fix) + "\n";
   return text;
 }
 

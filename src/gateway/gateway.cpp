@@ -6,6 +6,8 @@
 #include <chrono>
 #include <cstdio>
 
+#include "app/printable.hpp"
+
 namespace rc10::gateway {
 namespace {
 
@@ -110,7 +112,7 @@ Result<void> Gateway::openTransport(const ClockSample& now) {
 void Gateway::logOnce(const std::string& text) {
   if (text == last_log_) return;
   last_log_ = text;
-  std::fprintf(stderr, "rc10-lcm: %s\n", text.c_str());
+  std::fprintf(stderr, "rc10-lcm: %s\n", printable(text).c_str());
 }
 
 }  // namespace rc10::gateway

@@ -81,6 +81,7 @@ int main(int argc, char** argv) {
   if (!rc10d) return complain(rc10d.error(), kNoDaemon);
   const auto url = urlOf(*options, rc10d->welcome());
   if (!url) return complain(url.error(), kUsage);
+  rc10d->prepareEstop();
   if (const auto done = gateway::enterSandbox(rc10d->welcome().pid); !done)
     return complain(done.error(), kFailed);
   std::make_unique<gateway::Gateway>(std::move(*rc10d), *url)->run(stop_requested);

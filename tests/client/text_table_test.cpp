@@ -48,11 +48,6 @@ TEST(TextTable, FillsShortRows) {
   EXPECT_EQ(table.text(), "A  B\n1\n1  2\n");
 }
 
-TEST(Printable, TakesControlCharactersOut) {
-  EXPECT_EQ(printable("\x1b[31mred\r\n\x7f"), "?[31mred???");
-  EXPECT_EQ(printable("caf\u00e9"), "caf\u00e9");
-}
-
 TEST(Quantity, IsShort) {
   EXPECT_EQ(quantity(12.345, 1, "rpm"), "12.3 rpm");
   EXPECT_EQ(quantity(12.345, 1, ""), "12.3");

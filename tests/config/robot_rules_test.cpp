@@ -156,6 +156,18 @@ TEST(RobotRules, ANameThatManyRobotsHaveMustNotReachTheNetwork) {
   EXPECT_THAT(errors("hero", "ttl=1\""), IsEmpty());
 }
 
+TEST(RobotRules, WhoMayCommandIsToldWhenLcmLeavesTheComputer) {
+  const auto warnings = [](const std::string& lcm) {
+    return warningsOf(robotAfter("robot: hero\nlcm: {url: \"udpm://239.255.76.67:7667?" + lcm + "}\n"));
+  };
+  EXPECT_THAT(
+      warnings("ttl=1\""),
+      ElementsAre("hero.yaml:2:12: lcm.url: ttl=1 reaches the network, and LCM has no passwords: every "
+                  "computer there may command this robot. Use ttl=0, or a network of the robot alone"));
+  EXPECT_THAT(warnings("ttl=0\""), IsEmpty());
+  EXPECT_THAT(warnings("ttl=1\", enabled: false"), IsEmpty());
+}
+
 TEST(RobotRules, TheLcmUrlIsChecked) {
   const auto errors = [](const std::string& url) {
     return errorsOf(robotAfter("robot: hero\nlcm: {url: \"" + url + "\"}\n"));

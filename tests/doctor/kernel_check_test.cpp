@@ -68,5 +68,16 @@ TEST(KernelCheck, AComputerWithoutTheseFilesIsJudgedAllTheSame) {
   EXPECT_EQ(checkThrottling(readKernel(root.files())).verdict, Verdict::kPass);
 }
 
+TEST(KernelCheck, LockedMemoryThatTheKernelMayMoveIsAWarning) {
+  HostRoot root;
+  root.write("/proc/sys/vm/compact_unevictable_allowed", "1");
+  const auto finding = checkCompaction(readKernel(root.files()));
+  EXPECT_EQ(finding.verdict, Verdict::kWarn);
+  EXPECT_THAT(finding.fix, HasSubstr("vm.compact_unevictable_allowed=0"));
+  root.write("/proc/sys/vm/compact_unevictable_allowed", "0");
+  EXPECT_EQ(checkCompaction(readKernel(root.files())).verdict, Verdict::kPass);
+  EXPECT_EQ(checkCompaction(KernelFacts{}).verdict, Verdict::kPass) << "a kernel without compaction";
+}
+
 }  // namespace
 }  // namespace rc10::doctor::kernel_check_test

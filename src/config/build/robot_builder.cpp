@@ -119,6 +119,13 @@ class RobotBuilder {
           "ttl=" + std::to_string(url->ttl) + " reaches the network, and " + inQuotes(robot_.robot) +
               " is the name of an example: a neighbour's robot would obey; give the robot a name of its own, "
               "or use ttl=0");
+    } else if (url->ttl > 0 && robot_.lcm.enabled) {
+      robot_.lcm.leaves_computer = true;
+      problems_.warning(
+          given->place(), given->path,
+          "ttl=" + std::to_string(url->ttl) +
+              " reaches the network, and LCM has no passwords: every computer there may command "
+              "this robot. Use ttl=0, or a network of the robot alone");
     }
   }
 

@@ -96,7 +96,7 @@ Result<Asked> asked(std::string_view name) {
   if (dot == std::string_view::npos) return Asked{name, {}, name};
   const auto loop = loopNamed(name.substr(0, dot));
   if (!loop.empty()) return Asked{name, loop, name.substr(dot + 1)};
-  return fail(printable(name) + ": there is no loop " + inQuotes(name.substr(0, dot)) +
+  return fail(excerpt(name) + ": there is no loop " + inQuotes(name.substr(0, dot)) +
               "; use velocity_pid or angle_pid");
 }
 
@@ -124,7 +124,7 @@ Result<GainKey> gainMeant(const Asked& asked, const MotorLoops& loops) {
     meant.push_back(gain);
     if (closed(gain.loop, loops) && unmetNeeds(*gain.key, loops) == 0) usable.push_back(gain);
   }
-  const auto why = [&](const std::string& reason) { return fail(printable(asked.name) + ": " + reason); };
+  const auto why = [&](const std::string& reason) { return fail(excerpt(asked.name) + ": " + reason); };
   // At the motor itself velocity_limit_rpm is a limit, which no gain may pass.
   if (asked.loop.empty() && !meant.empty() && findKey(kMotorSection, asked.key) != nullptr)
     return why(std::string{kAtStartOnly} + "; or write " + meant.front().path());

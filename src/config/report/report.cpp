@@ -24,7 +24,7 @@ std::string threadText(const ThreadConfig& thread) {
 std::string robotText(const RobotConfig& config) {
   const bool required = config.realtime == RealtimePolicy::kRequired;
   TextTable table;
-  table.add({"robot", config.robot + " (" + printable(config.file) + ")"});
+  table.add({"robot", config.robot + " (" + excerpt(config.file) + ")"});
   table.add({"realtime", required ? "required" : "preferred"});
   table.add({"guard", config.guard == GuardPolicy::kOff        ? "off: nobody rests the drives if rc10d dies"
                       : config.guard == GuardPolicy::kRequired ? "required"

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <tuple>
 
+#include "app/printable.hpp"
+
 namespace rc10 {
 namespace {
 
@@ -49,29 +51,22 @@ std::vector<ConfigProblem> Problems::errors() const {
 std::vector<ConfigProblem> Problems::warnings() const { return inFileOrder(warnings_); }
 
 std::string joinPath(std::string_view path, std::string_view key) {
-  return path.empty() ? printable(key) : std::string{path} + "." + printable(key);
+  return path.empty() ? excerpt(key) : std::string{path} + "." + excerpt(key);
 }
 
 std::string joinPath(std::string_view path, std::size_t index) {
   return std::string{path} + "[" + std::to_string(index) + "]";
 }
 
-std::string printable(std::string_view text) {
+std::string excerpt(std::string_view text) {
   constexpr std::size_t kMostShown = 48;
-  const auto byte = [text](std::size_t i) { return static_cast<unsigned char>(text[i]); };
   std::size_t end = std::min(text.size(), kMostShown);
-  while (end > 0 && end < text.size() && (byte(end) & 0xC0U) == 0x80) --end;  // no half character
-  std::string shown;
-  for (std::size_t i = 0; i < end; ++i) {
-    const bool is_c1 = byte(i) == 0xC2 && i + 1 < end && byte(i + 1) < 0xA0;  // U+0080 to U+009F
-    const bool is_control = byte(i) < 0x20 || byte(i) == 0x7F || is_c1;
-    shown += is_control ? '?' : text[i];
-    if (is_c1) ++i;
-  }
-  return end < text.size() ? shown + "..." : shown;
+  // No half character.
+  while (end > 0 && end < text.size() && (static_cast<unsigned char>(text[end]) & 0xC0U) == 0x80U) --end;
+  return printable(text.substr(0, end)) + (end < text.size() ? "..." : "");
 }
 
-std::string inQuotes(std::string_view text) { return "'" + printable(text) + "'"; }
+std::string inQuotes(std::string_view text) { return "'" + excerpt(text) + "'"; }
 
 std::string listWords(const std::vector<std::string>& words, std::string_view last_joint) {
   std::string list;

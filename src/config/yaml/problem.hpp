@@ -48,8 +48,8 @@ class Problems {
 /// "motors" + 2 -> "motors[2]"
 [[nodiscard]] std::string joinPath(std::string_view path, std::size_t index);
 
-/// Text from the file, safe and short enough for a terminal: control characters become '?'.
-[[nodiscard]] std::string printable(std::string_view text);
+/// Text from the file, printable and short enough for a message.
+[[nodiscard]] std::string excerpt(std::string_view text);
 /// The same in quotes.
 [[nodiscard]] std::string inQuotes(std::string_view text);
 /// "a, b and c"

@@ -14,6 +14,7 @@
 #include <string>
 #include <string_view>
 
+#include "app/printable.hpp"
 #include "app/standard_output.hpp"
 #include "guard/guard_server.hpp"
 #include "guard/guard_socket.hpp"
@@ -50,7 +51,9 @@ Exit status: 0 ended by a signal or unused, 1 could not start, 2 bad usage.
 
 volatile std::sig_atomic_t ending = 0;
 
-void tell(const std::string& line) { std::fprintf(stderr, "rc10-guard: %s\n", line.c_str()); }
+void tell(const std::string& line) {
+  std::fprintf(stderr, "rc10-guard: %s\n", rc10::printable(line).c_str());
+}
 
 /// The signals that end it act only while it waits. The mask for that.
 sigset_t catchSignals() noexcept {

@@ -4,6 +4,7 @@
 #include <cstdio>
 #include <span>
 
+#include "app/printable.hpp"
 #include "client/json_line.hpp"
 #include "client/request_call.hpp"
 #include "client/text_table.hpp"
@@ -36,7 +37,7 @@ using Values = std::span<const link::NamedValue>;
 void printAnswerText(const std::string& message, Values values) {
   std::printf("%s\n", message.c_str());
   for (const auto& value : values)
-    std::printf("%s = %g\n", client::printable(value.name.view()).c_str(), value.value);
+    std::printf("%s = %g\n", printable(value.name.view()).c_str(), value.value);
 }
 
 void printAnswerJson(const std::string& operation, const std::string& message, Values values) {
@@ -65,7 +66,7 @@ ExitCode ask(const Global& global, const std::string& operation, const std::vect
   if (!rc10d) return complain({estop + rc10d.error().message}, ExitCode::kNoDaemon);
   const auto response = RequestCall(*rc10d, kClientName).call(*request);
   if (!response) return complain({estop + response.error().message}, ExitCode::kFailed);
-  const std::string message = client::printable(response->message.view());
+  const std::string message = printable(response->message.view());
   if (response->status != link::ResponseStatus::kOk) return complain({message}, ExitCode::kFailed);
   const auto told =
       std::span(response->values).first(std::min<std::size_t>(response->value_count, link::kMaxValues));

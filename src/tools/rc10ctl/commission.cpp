@@ -11,6 +11,7 @@
 
 #include <CLI/CLI.hpp>
 
+#include "app/printable.hpp"
 #include "ask.hpp"
 #include "client/find_motor.hpp"
 #include "client/first_spin.hpp"
@@ -73,7 +74,7 @@ std::string motorsOn(const link::Welcome& welcome, const link::State& state) {
   for (std::size_t i = 0; i < std::min<std::size_t>(state.motor_count, welcome.motor_count); ++i) {
     const auto status = state.motors[i].status;
     if (status == MotorStatus::kActive || status == MotorStatus::kEnabling)
-      names += (names.empty() ? "" : ", ") + client::printable(welcome.motors[i].name.view());
+      names += (names.empty() ? "" : ", ") + printable(welcome.motors[i].name.view());
   }
   return names;
 }

@@ -12,6 +12,7 @@
 
 #include <CLI/CLI.hpp>
 
+#include "app/printable.hpp"
 #include "client/json_line.hpp"
 #include "client/request_call.hpp"
 #include "client/text_table.hpp"
@@ -84,7 +85,7 @@ bool confirmed(const Global& global, const ConfigureOptions& options) {
 void printMessage(std::string_view text) {
   while (!text.empty()) {
     const auto end = text.find('\n');
-    std::printf("%s\n", client::printable(text.substr(0, end)).c_str());
+    std::printf("%s\n", printable(text.substr(0, end)).c_str());
     text = end == std::string_view::npos ? std::string_view{} : text.substr(end + 1);
   }
 }
@@ -119,7 +120,7 @@ ExitCode configure(const Global& global, const ConfigureOptions& options) {
   const auto response = RequestCall(*rc10d, kClientName).call(*request, kConfigurePatience);
   if (!response) return complain(response.error(), ExitCode::kFailed);
   if (response->status != link::ResponseStatus::kOk)
-    return complain({client::printable(response->message.view())}, ExitCode::kFailed);
+    return complain({printable(response->message.view())}, ExitCode::kFailed);
   if (!global.json)
     printMessage(response->message.view());
   else if (options.list)

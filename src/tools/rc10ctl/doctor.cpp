@@ -55,6 +55,7 @@ class Doctor {
     const auto kernel = doctor::readKernel(files_);
     tell(doctor::checkPreemption(kernel));
     tell(doctor::checkThrottling(kernel));
+    tell(doctor::checkCompaction(kernel));
     examineLimits();
     const auto cpus = doctor::readCpus(files_);
     tell(doctor::checkGovernor(cpus));

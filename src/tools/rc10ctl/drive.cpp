@@ -7,6 +7,7 @@
 #include <cstdio>
 #include <string>
 
+#include "app/printable.hpp"
 #include "client/quantity_text.hpp"
 #include "client/request_call.hpp"
 #include "client/state_text.hpp"
@@ -194,7 +195,7 @@ class Driver {
     if (motor() == nullptr || elapsed < kSettling) return {};
     const auto owner = motor()->owner.view();
     if (owner.empty() || owner == kClientName) return {};
-    return "motor '" + name_ + "' is held by '" + client::printable(owner) +
+    return "motor '" + name_ + "' is held by '" + printable(owner) +
            "': stop that program, or take over with a higher --priority";
   }
 
@@ -204,8 +205,8 @@ class Driver {
       const bool concerns_us = event.source.view() == name_ ? event.severity > Severity::kInfo
                                                             : event.severity > Severity::kWarning;
       if (!concerns_us) continue;
-      progress.note(std::string(toString(event.severity)) + ": " + client::printable(event.source.view()) +
-                    ": " + client::printable(event.text.view()));
+      progress.note(std::string(toString(event.severity)) + ": " + printable(event.source.view()) + ": " +
+                    printable(event.text.view()));
     }
   }
 

@@ -8,6 +8,7 @@
 
 #include <CLI/CLI.hpp>
 
+#include "app/printable.hpp"
 #include "client/json_line.hpp"
 #include "client/request_call.hpp"
 #include "client/text_table.hpp"
@@ -51,7 +52,7 @@ Result<link::Request> gainsRequest(const GainsOptions& options) {
 Result<link::Response> ask(RequestCall& call, const link::Request& request) {
   auto response = call.call(request);
   if (response && response->status != link::ResponseStatus::kOk)
-    return fail(client::printable(response->message.view()));
+    return fail(printable(response->message.view()));
   return response;
 }
 
@@ -65,7 +66,7 @@ std::vector<std::string> linesOf(std::string_view text) {
   std::vector<std::string> lines;
   while (!text.empty()) {
     const auto end = text.find('\n');
-    lines.push_back(client::printable(text.substr(0, end)));
+    lines.push_back(printable(text.substr(0, end)));
     text = end == std::string_view::npos ? std::string_view{} : text.substr(end + 1);
   }
   return lines;
@@ -94,8 +95,7 @@ void printTable(const Shown& shown) {
   for (std::size_t i = 0; i < shown.gains.size(); ++i) {
     const double now = shown.gains[i].value;
     const double then = shown.before && i < shown.before->size() ? (*shown.before)[i].value : now;
-    table.add({client::printable(shown.gains[i].name.view()), numberText(then),
-               then == now ? "" : numberText(now)});
+    table.add({printable(shown.gains[i].name.view()), numberText(then), then == now ? "" : numberText(now)});
   }
   std::printf("%s", table.text().c_str());
 }
@@ -104,10 +104,10 @@ void printGainsText(const Shown& shown) {
   if (shown.before || !shown.lines) printTable(shown);
   if (shown.before && !shown.lines)
     std::printf("until rc10d restarts; `rc10ctl gains %s --save` prints the lines for the robot's file\n",
-                client::printable(shown.motor).c_str());
+                printable(shown.motor).c_str());
   if (!shown.lines) return;
   std::printf("# %s: in place of the loops that it has in the robot's file\n",
-              client::printable(shown.motor).c_str());
+              printable(shown.motor).c_str());
   for (const auto& line : *shown.lines) std::printf("%s\n", line.c_str());
 }
 

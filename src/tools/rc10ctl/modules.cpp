@@ -8,6 +8,7 @@
 
 #include <CLI/CLI.hpp>
 
+#include "app/printable.hpp"
 #include "client/duration_text.hpp"
 #include "client/module_text.hpp"
 #include "client/request_call.hpp"
@@ -118,11 +119,11 @@ Result<link::Signals> signalsFrom(const SignalOptions& options) {
 std::string whySignalsUnfit(const link::Signals& message, const std::vector<client::ModuleView>& modules) {
   std::string known;
   for (const auto& module : modules) {
-    known += (known.empty() ? "" : ", ") + client::printable(module.name.view());
+    known += (known.empty() ? "" : ", ") + printable(module.name.view());
     if (module.name.view() != message.module.view()) continue;
     const auto inputs = std::span{module.info.names}.first(module.info.input_count);
     std::string names;
-    for (const auto& input : inputs) names += (names.empty() ? "" : ", ") + client::printable(input.view());
+    for (const auto& input : inputs) names += (names.empty() ? "" : ", ") + printable(input.view());
     for (const auto& value : std::span{message.values}.first(message.value_count)) {
       const auto found = std::find_if(inputs.begin(), inputs.end(),
                                       [&](const auto& input) { return input.view() == value.name.view(); });

@@ -6,6 +6,7 @@
 
 #include <CLI/CLI.hpp>
 
+#include "app/printable.hpp"
 #include "app/target.hpp"
 #include "ask.hpp"
 #include "client/duration_text.hpp"
@@ -80,8 +81,7 @@ std::string whyDriveUnfit(Drive& order, const link::Welcome& welcome) {
       std::find_if(motors.begin(), motors.end(), [&](const auto& m) { return m.name.view() == name; });
   if (found == motors.end()) {
     std::string names;
-    for (const auto& motor : motors)
-      names += (names.empty() ? "" : ", ") + client::printable(motor.name.view());
+    for (const auto& motor : motors) names += (names.empty() ? "" : ", ") + printable(motor.name.view());
     return "there is no motor '" + std::string(name) + "'; the motors are: " + names;
   }
   order.motor = static_cast<std::size_t>(found - motors.begin());
