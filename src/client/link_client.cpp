@@ -37,16 +37,15 @@ LinkClient::SendStatus LinkClient::send(link::Command& command) noexcept {
 }
 
 LinkClient::SendStatus LinkClient::send(link::Request& request) noexcept {
-  if (request.operation.view() == link::kEstopOperation) {
-    prepareEstop();
-    (void)estop_->send(request.client.view());
-  }
+  if (request.operation.view() == link::kEstopOperation) (void)estopWay().send(request.client.view());
   if (request.received_ns == 0) request.received_ns = nowNs();
   return sendBytes(link::seal(request));
 }
 
-void LinkClient::prepareEstop() noexcept {
-  if (!estop_) estop_ = link::EstopDatagram::to(socket_path_);
+void LinkClient::prepareEstop() noexcept { (void)estopWay(); }
+
+const link::EstopDatagram& LinkClient::estopWay() noexcept {
+  return estop_ ? *estop_ : estop_.emplace(link::EstopDatagram::to(socket_path_));
 }
 
 LinkClient::SendStatus LinkClient::send(link::Signals& signals) noexcept {

@@ -70,6 +70,7 @@ class LinkClient {
   LinkClient(UniqueFd socket, std::string socket_path, std::unique_ptr<link::Welcome> welcome) noexcept
       : socket_(std::move(socket)), socket_path_(std::move(socket_path)), welcome_(std::move(welcome)) {}
 
+  [[nodiscard]] const link::EstopDatagram& estopWay() noexcept;
   [[nodiscard]] SendStatus sendBytes(std::span<const std::byte> bytes) noexcept;
 
   UniqueFd socket_;

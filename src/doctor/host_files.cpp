@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <charconv>
 #include <filesystem>
-#include <fstream>
-#include <iterator>
 #include <sstream>
 #include <system_error>
+
+#include "app/whole_file.hpp"
 
 namespace rc10::doctor {
 namespace {
@@ -27,11 +27,8 @@ std::optional<Number> numberIn(std::string_view text) {
 }  // namespace
 
 std::optional<std::string> HostFiles::read(const std::string& path) const {
-  std::ifstream file(root_ + path, std::ios::binary);
-  if (!file) return std::nullopt;
-  std::string text{std::istreambuf_iterator<char>(file), {}};
-  if (file.bad()) return std::nullopt;
-  text.erase(text.find_last_not_of(" \t\n\r") + 1);
+  auto text = readWholeFile(root_ + path);
+  if (text) text->erase(text->find_last_not_of(" \t\n\r") + 1);
   return text;
 }
 

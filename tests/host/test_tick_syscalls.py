@@ -52,6 +52,8 @@ def test_the_scheduler_waits_once_and_receives_and_sends_once_for_each_bus(
     for text in trace(busy, "sched", tmp_path):
         call = CALL.match(text)
         assert call, text
+        if call[1] == "clock_gettime":  # of its CPU time, after an overrun: strace causes them
+            continue
         if call[1] in ("read", "clock_nanosleep"):  # as `scheduler.timer` chose
             ticks.append([])
         elif ticks and not text.endswith(FULL_READ):  # strace held it up: there is more

@@ -5,9 +5,7 @@
 #include <chrono>
 #include <exception>
 #include <filesystem>
-#include <fstream>
 #include <iostream>
-#include <iterator>
 #include <map>
 #include <optional>
 #include <string>
@@ -16,6 +14,7 @@
 #include <vector>
 
 #include "app/standard_output.hpp"
+#include "app/whole_file.hpp"
 #include "bus/frame_text.hpp"
 #include "interface_stop.hpp"
 #include "link/interface_lock.hpp"
@@ -108,10 +107,9 @@ std::optional<Options> parse(const std::vector<std::string>& words) {
 }
 
 Result<std::vector<AddressedFrame>> load(const std::string& path) {
-  std::ifstream file(path, std::ios::binary);
-  if (!file) return fail(path + ": cannot be read: no rc10d of that robot ran, or another user's did");
-  const std::string text{std::istreambuf_iterator<char>{file}, {}};
-  auto frames = parseFrameList(text);
+  const auto text = readWholeFile(path);
+  if (!text) return fail(path + ": cannot be read: no rc10d of that robot ran, or another user's did");
+  auto frames = parseFrameList(*text);
   if (!frames) return fail(path + ": " + frames.error().message);
   return frames;
 }
