@@ -17,7 +17,6 @@
 
 #include <array>
 #include <atomic>
-#include <chrono>
 #include <cstdint>
 #include <cstdio>
 #include <cstdlib>
@@ -37,7 +36,7 @@ constexpr std::int64_t kFirstFrame = 150'000;
 constexpr std::int64_t kSpacing = 110'000;
 constexpr std::int64_t kHogPeriod = 10 * kMs;
 // Programs of the script start, and rc10d enables its motors.
-constexpr std::chrono::seconds kSettling{3};
+constexpr std::int64_t kSettling = 3000 * kMs;
 constexpr int kDrivesPriority = 70;
 constexpr int kHogPriority = 50;
 
@@ -178,12 +177,12 @@ int main(int argc, char** argv) {
   std::vector<std::thread> workers;
   if (options.count > 0) workers.emplace_back(drive, std::cref(options));
   if (options.hog_ns > 0) workers.emplace_back(hog, options.hog_ns);
-  std::this_thread::sleep_for(kSettling);
+  sleepUntil(now() + kSettling);
   const auto before = threads(options.pid);
   std::int64_t left = 0;
   const std::int64_t start = now();
   std::thread spinner{[&left] { left = spin(); }};
-  std::this_thread::sleep_for(std::chrono::seconds{options.seconds});
+  sleepUntil(start + options.seconds * 1000 * kMs);
   ended = true;
   spinner.join();
   const std::int64_t end = now();

@@ -2,7 +2,6 @@
 
 #include <poll.h>
 #include <sys/socket.h>
-#include <sys/un.h>
 
 #include <algorithm>
 #include <cerrno>
@@ -13,6 +12,7 @@
 
 #include "client/daemon_log.hpp"
 #include "link/link_message.hpp"
+#include "link/unix_address.hpp"
 
 namespace rc10::client {
 namespace {
@@ -91,16 +91,14 @@ std::string connectFailure(const std::string& socket_path, int error) {
 }
 
 Result<UniqueFd> openSocket(const std::string& socket_path, Deadline deadline) {
-  sockaddr_un address{};
-  address.sun_family = AF_UNIX;
-  if (socket_path.size() >= sizeof(address.sun_path)) return fail(connectFailure(socket_path, ENAMETOOLONG));
-  std::memcpy(address.sun_path, socket_path.data(), socket_path.size());
+  const auto address = link::unixAddress(socket_path);
+  if (!address) return fail(connectFailure(socket_path, ENAMETOOLONG));
   // Non-blocking, since a listener whose queue is full would hold us for good.
   UniqueFd socket{::socket(AF_UNIX, SOCK_SEQPACKET | SOCK_CLOEXEC | SOCK_NONBLOCK, 0)};
   if (!socket)
     return fail(std::string("cannot make a socket: ") + std::strerror(errno) +
                 ": does this program, or the computer, have too many files open (`ulimit -n`)?");
-  while (::connect(socket.get(), reinterpret_cast<const sockaddr*>(&address), sizeof(address)) != 0) {
+  while (::connect(socket.get(), reinterpret_cast<const sockaddr*>(&*address), sizeof *address) != 0) {
     const int error = errno;
     if (error != EINTR && error != EAGAIN) return fail(connectFailure(socket_path, error));
     if (steady_clock::now() >= deadline) return fail(connectFailure(socket_path, EAGAIN));

@@ -113,9 +113,9 @@ struct RobotConfig {
   ReceivePolicy receive = ReceivePolicy::kTick;
   int rate_hz = 1000;
   TimerPolicy timer = TimerPolicy::kAuto;
-  double phase_of_period = 0.3;  ///< 0 to below 1: where in a period of CLOCK_MONOTONIC the ticks lie.
-  Duration overload =
-      std::chrono::milliseconds{100};  ///< CPU time of ticks that overrun, until the robot stops.
+  double phase_of_period = 0.3;  ///< 0 to below 1: place of the ticks in a period of CLOCK_MONOTONIC.
+  /// CPU time of ticks that overrun, until the robot stops.
+  Duration overload = std::chrono::milliseconds{100};
   ThreadConfig scheduler{.priority = 60, .cpu = std::nullopt};
   ThreadConfig rx{.priority = 65, .cpu = std::nullopt};
   Duration rx_lead = std::chrono::microseconds{100};  ///< Before the tick, with ReceivePolicy::kThread.

@@ -10,7 +10,6 @@
 #include "config/report/report.hpp"
 #include "config/report/schema.hpp"
 #include "daemon/daemon.hpp"
-#include "daemon/exit_limit.hpp"
 #include "daemon/log.hpp"
 #include "daemon/rt_process.hpp"
 #include "daemon/signal_inbox.hpp"
@@ -32,9 +31,6 @@ std::optional<RobotConfig> load(const std::string& file) {
   return std::move(outcome.config);
 }
 
-// More than a log needs that is read.
-constexpr Duration kLastWords = std::chrono::seconds{2};
-
 int run(RobotConfig config) {
   SignalInbox signals;  // before the log, which starts a thread
   // A debugger and a core file need what this forbids.
@@ -47,7 +43,6 @@ int run(RobotConfig config) {
   }
   daemon.waitForSignal(signals);
   daemon.stop();
-  limitExit(kLastWords, kOk);
   return kOk;
 }
 

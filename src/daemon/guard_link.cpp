@@ -3,7 +3,6 @@
 #include <poll.h>
 #include <sys/socket.h>
 #include <sys/syscall.h>
-#include <sys/un.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -19,6 +18,7 @@
 #include "daemon/exchange/clock.hpp"
 #include "link/descriptor_message.hpp"
 #include "link/run_dir.hpp"
+#include "link/unix_address.hpp"
 
 namespace rc10 {
 namespace {
@@ -35,12 +35,10 @@ struct Attempt {
 };
 
 Attempt connectTo(const std::string& path) noexcept {
-  sockaddr_un address{};
-  address.sun_family = AF_UNIX;
-  if (path.size() >= sizeof address.sun_path) return {.connection = {}, .error = ENAMETOOLONG};
-  std::memcpy(address.sun_path, path.c_str(), path.size() + 1);
+  const auto address = link::unixAddress(path);
+  if (!address) return {.connection = {}, .error = ENAMETOOLONG};
   UniqueFd socket{::socket(AF_UNIX, SOCK_SEQPACKET | SOCK_NONBLOCK | SOCK_CLOEXEC, 0)};
-  if (!socket || ::connect(socket.get(), reinterpret_cast<const sockaddr*>(&address), sizeof address) != 0)
+  if (!socket || ::connect(socket.get(), reinterpret_cast<const sockaddr*>(&*address), sizeof *address) != 0)
     return {.connection = {}, .error = errno};
   return {.connection = std::move(socket)};
 }

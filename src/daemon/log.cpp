@@ -1,5 +1,8 @@
 #include "daemon/log.hpp"
 
+#include <poll.h>
+#include <unistd.h>
+
 #include <cstdlib>
 #include <ctime>
 #include <memory>
@@ -32,11 +35,27 @@ class PrintableText final : public spdlog::custom_flag_formatter {
   }
 };
 
+// Stderr that nobody reads, as a pipe that is full, holds up neither the log nor whoever waits for its end:
+// it gets its time once, and until it takes lines again they are left out.
+class UnblockedStderr final : public spdlog::sinks::stderr_color_sink_st {
+ public:
+  void log(const spdlog::details::log_msg& message) override {
+    pollfd stderr_takes{.fd = STDERR_FILENO, .events = POLLOUT, .revents = 0};
+    taken_ = ::poll(&stderr_takes, 1, taken_ ? kPatienceMs : 0) > 0;
+    if (taken_) spdlog::sinks::stderr_color_sink_st::log(message);
+  }
+
+ private:
+  static constexpr int kPatienceMs = 2000;
+
+  bool taken_ = true;
+};
+
 }  // namespace
 
 std::shared_ptr<spdlog::logger> makeLog() {
   static const auto kPool = std::make_shared<spdlog::details::thread_pool>(kQueue, 1);
-  auto sink = std::make_shared<spdlog::sinks::stderr_color_sink_st>();
+  auto sink = std::make_shared<UnblockedStderr>();
   auto log = std::make_shared<spdlog::async_logger>("rc10d", std::move(sink), kPool,
                                                     spdlog::async_overflow_policy::overrun_oldest);
   const bool journal = std::getenv("JOURNAL_STREAM") != nullptr;

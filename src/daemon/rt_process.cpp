@@ -12,12 +12,13 @@
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
-#include <fstream>
 #include <string>
 
 #include <fmt/format.h>
 
+#include "app/preempt_rt.hpp"
 #include "app/sanitizers.hpp"
+#include "app/whole_file.hpp"
 
 namespace rc10 {
 namespace {
@@ -64,12 +65,8 @@ void forbidDumps() noexcept {
 }
 
 bool kernelIsPreemptRt() {
-  // Kernels with the patch have the file, those of mainline say it in their version only.
-  std::string version;
-  std::ifstream realtime("/sys/kernel/realtime");
-  if (char yes = '0'; realtime.get(yes)) return yes == '1';
-  std::getline(std::ifstream("/proc/sys/kernel/version"), version);
-  return version.find("PREEMPT_RT") != std::string::npos;
+  return isPreemptRt(readWholeFile("/sys/kernel/realtime").value_or(""),
+                     readWholeFile("/proc/sys/kernel/version").value_or(""));
 }
 
 std::uint64_t pageFaults(int tid) noexcept {

@@ -2,6 +2,8 @@
 
 #include <cmath>
 
+#include "app/preempt_rt.hpp"
+
 namespace rc10::doctor {
 namespace {
 
@@ -32,10 +34,8 @@ KernelFacts readKernel(const HostFiles& files) {
   KernelFacts kernel;
   kernel.release = files.read("/proc/sys/kernel/osrelease").value_or("");
   kernel.machine = debianMachine(files);
-  // Kernels with the patch have the file, those of mainline say it in their version only.
-  kernel.preempt_rt =
-      files.number("/sys/kernel/realtime") == 1 ||
-      files.read("/proc/sys/kernel/version").value_or("").find("PREEMPT_RT") != std::string::npos;
+  kernel.preempt_rt = isPreemptRt(files.read("/sys/kernel/realtime").value_or(""),
+                                  files.read("/proc/sys/kernel/version").value_or(""));
   kernel.group_scheduling = groupScheduling(files, kernel.release);
   kernel.rt_runtime_us = files.number("/proc/sys/kernel/sched_rt_runtime_us");
   kernel.rt_period_us = files.number("/proc/sys/kernel/sched_rt_period_us");

@@ -8,6 +8,7 @@
 #include <chrono>
 #include <utility>
 
+#include "app/timespec.hpp"
 #include "link/descriptor_message.hpp"
 #include "link/guard_hello.hpp"
 
@@ -43,8 +44,7 @@ std::vector<std::string> GuardServer::serve(const sigset_t& signals_while_waitin
   for (const auto& visitor : visitors_)
     wait_for.push_back({.fd = visitor.get(), .events = POLLIN, .revents = 0});
   std::vector<std::string> news;
-  const timespec at_most{.tv_sec = patience / std::chrono::seconds{1},
-                         .tv_nsec = (patience % std::chrono::seconds{1}).count()};
+  const timespec at_most = toTimespec(patience);
   const int ready = ::ppoll(wait_for.data(), wait_for.size(), &at_most, &signals_while_waiting);
   if (ready < 0) return news;
   const auto now = std::chrono::steady_clock::now();

@@ -4,13 +4,13 @@
 #include <sys/file.h>
 #include <sys/socket.h>
 #include <sys/stat.h>
-#include <sys/un.h>
 #include <unistd.h>
 
 #include <cerrno>
 #include <cstring>
 
 #include "link/run_dir.hpp"
+#include "link/unix_address.hpp"
 
 namespace rc10::guard {
 namespace {
@@ -37,15 +37,12 @@ Result<GuardSocket> GuardSocket::listen(const std::string& run_dir) {
   if (!guard.lock_) return failure(lock_path);
   if (::flock(guard.lock_.get(), LOCK_EX | LOCK_NB) != 0)
     return fail("there is another rc10-guard in " + run_dir);
-  sockaddr_un address{};
-  address.sun_family = AF_UNIX;
-  if (path.size() >= sizeof address.sun_path)
-    return fail(path + ": too long for a socket: choose a shorter RC10_RUN_DIR");
-  std::memcpy(address.sun_path, path.c_str(), path.size() + 1);
+  const auto address = link::unixAddress(path);
+  if (!address) return fail(path + ": too long for a socket: choose a shorter RC10_RUN_DIR");
   guard.socket_ = UniqueFd{::socket(AF_UNIX, SOCK_SEQPACKET | SOCK_NONBLOCK | SOCK_CLOEXEC, 0)};
   (void)::unlink(path.c_str());  // left by one that was killed: we hold the lock
   if (!guard.socket_ ||
-      ::bind(guard.socket_.get(), reinterpret_cast<const sockaddr*>(&address), sizeof address) != 0)
+      ::bind(guard.socket_.get(), reinterpret_cast<const sockaddr*>(&*address), sizeof *address) != 0)
     return failure(path);
   guard.path_ = path;
   (void)::chmod(path.c_str(), 0600);

@@ -1,24 +1,21 @@
 #include "link/estop_datagram.hpp"
 
 #include <sys/socket.h>
-#include <sys/un.h>
 
 #include <cerrno>
 #include <cstring>
 
 #include "link/link_protocol.hpp"
 #include "link/run_dir.hpp"
+#include "link/unix_address.hpp"
 
 namespace rc10::link {
 
 EstopDatagram EstopDatagram::to(const std::string& socket_path) noexcept {
-  const std::string path = estopPath(socket_path);
-  sockaddr_un address{};
-  address.sun_family = AF_UNIX;
-  if (path.size() >= sizeof address.sun_path) return EstopDatagram{{}};
-  std::memcpy(address.sun_path, path.c_str(), path.size() + 1);
+  const auto address = unixAddress(estopPath(socket_path));
+  if (!address) return EstopDatagram{{}};
   UniqueFd socket{::socket(AF_UNIX, SOCK_DGRAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0)};
-  if (::connect(socket.get(), reinterpret_cast<const sockaddr*>(&address), sizeof address) != 0)
+  if (::connect(socket.get(), reinterpret_cast<const sockaddr*>(&*address), sizeof *address) != 0)
     socket.reset();
   return EstopDatagram{std::move(socket)};
 }

@@ -2,7 +2,6 @@
 
 #include <fcntl.h>
 #include <sys/stat.h>
-#include <unistd.h>
 
 #include <cerrno>
 #include <cstdlib>
@@ -31,7 +30,7 @@ std::string runDir() {
   return dir != nullptr && *dir != '\0' ? dir : "/run/rc10d";
 }
 
-Result<void> makeRunDir(const std::string& dir) {
+Result<void> makeRunDir(const std::string& dir, uid_t user) {
   if (::mkdir(dir.c_str(), 0755) != 0 && errno != EEXIST)
     return fail(dir + ": " + std::strerror(errno) + ": " + kRemedy);
   struct stat status {};
@@ -39,7 +38,7 @@ Result<void> makeRunDir(const std::string& dir) {
   if (!folder || ::fstat(folder.get(), &status) != 0)
     return fail(dir + " is no folder of its own (a link, or a file): " + kRemedy);
   if ((status.st_mode & S_IWOTH) != 0) return fail(dir + ": every user may write to it: " + kRemedy);
-  const bool ours = status.st_uid == 0 || status.st_uid == ::geteuid();
+  const bool ours = status.st_uid == 0 || status.st_uid == user;
   // One that systemd made for the service belongs to the user rc10, in a folder of root's.
   if (!ours && !isRootsAlone(std::filesystem::path(dir).parent_path()))
     return fail(dir + " belongs to another user (uid " + std::to_string(status.st_uid) + "): " + kRemedy);

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <unistd.h>
+
 #include <string>
 
 #include "app/result.hpp"
@@ -11,8 +13,8 @@ namespace rc10::link {
 [[nodiscard]] std::string runDir();
 
 /// Makes the folder if it is missing, and refuses one in which another user could put something in the place
-/// of a socket or a lock. The error names the remedy.
-[[nodiscard]] Result<void> makeRunDir(const std::string& dir);
+/// of a socket or a lock. `user`: the one who uses it. The error names the remedy.
+[[nodiscard]] Result<void> makeRunDir(const std::string& dir, uid_t user = ::geteuid());
 
 /// The link socket of a robot: <runDir>/<robot>.sock.
 [[nodiscard]] std::string socketPath(const std::string& robot);

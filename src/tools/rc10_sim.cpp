@@ -23,6 +23,7 @@
 #include "app/result.hpp"
 #include "app/subnormals.hpp"
 #include "app/time.hpp"
+#include "app/timespec.hpp"
 #include "app/unique_fd.hpp"
 #include "bus/can_socket.hpp"
 #include "config/build/simulated_bus.hpp"
@@ -128,19 +129,14 @@ Result<std::vector<Running>> startAll(const std::vector<Place>& places, const Op
   return running;
 }
 
-timespec split(Duration duration) noexcept {
-  const auto whole = std::chrono::floor<std::chrono::seconds>(duration);
-  return {.tv_sec = whole.count(), .tv_nsec = (duration - whole).count()};
-}
-
-/// Expires every period, half a period off the whole periods of CLOCK_MONOTONIC: rc10d ticks on those, and
-/// feedback that raced with its tick would come now before and now after it.
+/// Expires every period, half a period off the whole periods of CLOCK_MONOTONIC: rc10d ticks 0.3 of one after
+/// those, and feedback that raced with its tick would come now before and now after it.
 Result<UniqueFd> makeTimer() {
   UniqueFd timer{::timerfd_create(CLOCK_MONOTONIC, TFD_NONBLOCK | TFD_CLOEXEC)};
   if (!timer) return fail(systemError("timerfd_create"));
   const Duration now = monotonicNow().time_since_epoch();
-  const itimerspec spec{.it_interval = split(kPeriod),
-                        .it_value = split((now / kPeriod + 1) * kPeriod + kPeriod / 2)};
+  const itimerspec spec{.it_interval = toTimespec(kPeriod),
+                        .it_value = toTimespec((now / kPeriod + 1) * kPeriod + kPeriod / 2)};
   if (::timerfd_settime(timer.get(), TFD_TIMER_ABSTIME, &spec, nullptr) != 0) {
     return fail(systemError("timerfd_settime"));
   }

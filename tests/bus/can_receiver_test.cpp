@@ -17,10 +17,6 @@ namespace {
 
 using namespace std::chrono_literals;
 
-CanFrame numbered(std::uint8_t number) {
-  return makeClassicFrame({0x201, false}, std::array<std::uint8_t, 8>{number});
-}
-
 Duration readClock(clockid_t clock) {
   timespec time{};
   ::clock_gettime(clock, &time);
@@ -34,16 +30,6 @@ class CanReceiverTest : public testing::Test {
  protected:
   void SetUp() override { frameCalls() = {}; }
   void TearDown() override { frameCalls() = {}; }
-
-  // The drop counter of CAN_RAW; a socketpair has none.
-  static void reportDropped(msghdr& message, std::uint32_t count) {
-    message.msg_controllen = CMSG_SPACE(sizeof(count));
-    cmsghdr* const control = CMSG_FIRSTHDR(&message);
-    control->cmsg_level = SOL_SOCKET;
-    control->cmsg_type = SO_RXQ_OVFL;
-    control->cmsg_len = CMSG_LEN(sizeof(count));
-    std::memcpy(CMSG_DATA(control), &count, sizeof(count));
-  }
 
   void enableStamps() {
     const int on = 1;

@@ -9,10 +9,6 @@
 namespace rc10::test::echo_counter_test {
 namespace {
 
-CanFrame numbered(std::uint8_t number) {
-  return makeClassicFrame({0x201, false}, std::array<std::uint8_t, 1>{number});
-}
-
 class EchoCounterTest : public ::testing::Test {
  protected:
   ~EchoCounterTest() override { frameCalls() = {}; }

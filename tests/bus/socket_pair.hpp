@@ -4,7 +4,9 @@
 #include <linux/can.h>
 #include <sys/socket.h>
 
+#include <array>
 #include <cerrno>
+#include <cstdint>
 #include <cstring>
 #include <vector>
 
@@ -12,6 +14,11 @@
 #include "bus/wire_frame.hpp"
 
 namespace rc10::test {
+
+/// A feedback frame that can be told from others.
+[[nodiscard]] inline CanFrame numbered(std::uint8_t number) {
+  return makeClassicFrame({0x201, false}, std::array<std::uint8_t, 8>{number});
+}
 
 /// A bus without CAN: `near` is what a bus adopts, `far` is the wire as the test sees it.
 struct SocketPair {

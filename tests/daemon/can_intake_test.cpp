@@ -5,7 +5,6 @@
 #include <sys/socket.h>
 #include <unistd.h>
 
-#include <cstring>
 #include <optional>
 #include <vector>
 
@@ -16,19 +15,6 @@
 
 namespace rc10::test::can_intake_test {
 namespace {
-
-CanFrame numbered(std::uint8_t number) {
-  return makeClassicFrame({0x201, false}, std::array<std::uint8_t, 1>{number});
-}
-
-void reportDropped(msghdr& message, std::uint32_t count) {
-  message.msg_controllen = CMSG_SPACE(sizeof(count));
-  cmsghdr* const control = CMSG_FIRSTHDR(&message);
-  control->cmsg_level = SOL_SOCKET;
-  control->cmsg_type = SO_RXQ_OVFL;
-  control->cmsg_len = CMSG_LEN(sizeof(count));
-  std::memcpy(CMSG_DATA(control), &count, sizeof(count));
-}
 
 // Two buses whose wire is a socket pair; the simulated drives at the other end are never stepped.
 class CanIntakeTest : public ::testing::Test {

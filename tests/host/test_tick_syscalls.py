@@ -52,13 +52,13 @@ def test_the_scheduler_waits_once_and_receives_and_sends_once_for_each_bus(
     for text in trace(busy, "sched", tmp_path):
         call = CALL.match(text)
         assert call, text
-        if call[1] == "clock_gettime":  # of its CPU time, after an overrun: strace causes them
+        if call[1] == "clock_gettime":  # CPU time, read after an overrun, which strace causes
             continue
         if call[1] in ("read", "clock_nanosleep"):  # as `scheduler.timer` chose
             ticks.append([])
-        elif ticks and not text.endswith(FULL_READ):  # strace held it up: there is more
+        elif ticks and not text.endswith(FULL_READ):  # after a delayed tick one read is not enough
             ticks[-1].append((call[1], call[2]))
-    assert len(ticks) > TICKS / 2  # what strace delayed was missed
+    assert len(ticks) > TICKS / 2  # strace delays ticks, and late ones are skipped
     # The last one may be cut off.
     for calls in ticks[:-1]:
         names = [name for name, _ in calls]

@@ -36,8 +36,8 @@ TEST_F(RunDir, IsTheSystemsWithoutOne) {
   EXPECT_EQ(socketPath("hero"), "/run/rc10d/hero.sock");
 }
 
-std::string refusal(const std::string& dir) {
-  const auto made = makeRunDir(dir);
+std::string refusal(const std::string& dir, uid_t user = ::geteuid()) {
+  const auto made = makeRunDir(dir, user);
   return made ? "" : made.error().message;
 }
 
@@ -62,15 +62,28 @@ TEST(MakeRunDir, RefusesALinkAndAFile) {
   EXPECT_THAT(refusal("/etc/passwd"), HasSubstr("is no folder of its own"));
 }
 
-TEST(MakeRunDir, RefusesAnotherUsersExceptWhereRootPutIt) {
-  if (::geteuid() != 0) GTEST_SKIP() << "only root gives folders away";
+// As root one that was given away; else this user's, seen by another one.
+TEST(MakeRunDir, RefusesAnotherUsers) {
   const rc10::test::TempDir folder;
-  ASSERT_EQ(::chmod(folder.path().c_str(), 0755), 0);
-  ASSERT_EQ(::mkdir((folder / "run").c_str(), 0755), 0);
-  ASSERT_EQ(::chown((folder / "run").c_str(), 12345, 12345), 0);
-  EXPECT_EQ(refusal(folder / "run"), "") << "as systemd does for the service";
   ASSERT_EQ(::chmod(folder.path().c_str(), 0777), 0);
-  EXPECT_THAT(refusal(folder / "run"), HasSubstr("belongs to another user (uid 12345)"));
+  ASSERT_EQ(::mkdir((folder / "run").c_str(), 0755), 0);
+  if (::geteuid() == 0) {
+    ASSERT_EQ(::chown((folder / "run").c_str(), 12345, 12345), 0);
+  }
+  EXPECT_THAT(refusal(folder / "run", ::geteuid() + 1), HasSubstr("belongs to another user (uid "));
+}
+
+// As systemd does for the service, and as /proc is made.
+TEST(MakeRunDir, TakesAnotherUsersWhereOnlyRootCouldHavePutIt) {
+  const rc10::test::TempDir folder;
+  std::string dir = "/proc/" + std::to_string(::getpid());
+  if (::geteuid() == 0) {
+    dir = folder / "run";
+    ASSERT_EQ(::chmod(folder.path().c_str(), 0755), 0);
+    ASSERT_EQ(::mkdir(dir.c_str(), 0755), 0);
+    ASSERT_EQ(::chown(dir.c_str(), 12345, 12345), 0);
+  }
+  EXPECT_EQ(refusal(dir, ::geteuid() + 1), "");
 }
 
 TEST(MakeRunDir, SaysWhatToDoWhereNothingMayBeMade) {

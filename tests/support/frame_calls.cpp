@@ -4,12 +4,22 @@
 #include <unistd.h>
 
 #include <cerrno>
+#include <cstring>
 
 namespace rc10::test {
 
 FrameCalls& frameCalls() noexcept {
   thread_local FrameCalls calls;
   return calls;
+}
+
+void reportDropped(msghdr& message, std::uint32_t count) noexcept {
+  message.msg_controllen = CMSG_SPACE(sizeof(count));
+  cmsghdr* const control = CMSG_FIRSTHDR(&message);
+  control->cmsg_level = SOL_SOCKET;
+  control->cmsg_type = SO_RXQ_OVFL;
+  control->cmsg_len = CMSG_LEN(sizeof(count));
+  std::memcpy(CMSG_DATA(control), &count, sizeof(count));
 }
 
 namespace {

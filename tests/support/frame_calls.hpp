@@ -20,4 +20,7 @@ struct FrameCalls {
 
 [[nodiscard]] FrameCalls& frameCalls() noexcept;
 
+/// Writes the drop counter of CAN_RAW (SO_RXQ_OVFL) into a message; a socket pair has none.
+void reportDropped(msghdr& message, std::uint32_t count) noexcept;
+
 }  // namespace rc10::test

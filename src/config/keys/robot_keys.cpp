@@ -40,14 +40,14 @@ constexpr std::array kSchedulerKeys{
         .kind = kText,
         .choices = timerPolicies,
         .default_text = "auto",
-        .about = "What wakes the thread. nanosleep: clock_nanosleep, which on "
+        .about = "Wake-up of the thread. nanosleep: clock_nanosleep, which on "
                  "PREEMPT_RT no FIFO thread below it delays. auto: nanosleep on "
                  "PREEMPT_RT, else timerfd."},
     Key{.name = "phase",
         .kind = kNumber,
         .range = {.min = 0.0, .max = 0.99},
         .default_text = "0.3",
-        .about = "Where in each period of the clock the ticks lie, as a part of "
+        .about = "Place of the ticks in each period of the clock, as a part of "
                  "the period. At 0 the kernel's own timer tick delays them. "
                  "Computers with a common clock share out a bus with different "
                  "phases."},
@@ -126,9 +126,8 @@ constexpr std::array kRobotKeys{
         .kind = kText,
         .choices = receivePolicies,
         .default_text = "tick",
-        .about =
-            "Who takes frames from the CAN sockets, once a period. tick: the scheduler, at the start of the "
-            "tick that uses them. thread: the rx thread, rx.lead_us before the tick."},
+        .about = "Reader of the CAN sockets, once a period. tick: the scheduler, at the start of the "
+                 "tick that uses them. thread: the rx thread, rx.lead_us before the tick."},
     Key{.name = "scheduler",
         .kind = kSection,
         .section = &kScheduler,

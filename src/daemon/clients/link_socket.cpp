@@ -5,7 +5,6 @@
 #include <sys/file.h>
 #include <sys/socket.h>
 #include <sys/stat.h>
-#include <sys/un.h>
 #include <unistd.h>
 
 #include <cerrno>
@@ -17,6 +16,7 @@
 #include <fmt/format.h>
 
 #include "link/run_dir.hpp"
+#include "link/unix_address.hpp"
 
 namespace rc10 {
 namespace {
@@ -56,17 +56,15 @@ struct FileCloser {
 
 // The caller holds the lock: a file of that name was left by one that was killed.
 [[nodiscard]] Result<UniqueFd> bindSocket(const std::string& path, int type) {
-  sockaddr_un address{};
-  address.sun_family = AF_UNIX;
-  if (path.size() >= sizeof address.sun_path) {
+  const auto address = link::unixAddress(path);
+  if (!address) {
     return fail(
         fmt::format("{}: longer than the {} bytes a socket path may have: choose a shorter RC10_RUN_DIR",
-                    path, sizeof address.sun_path - 1));
+                    path, link::kMaxSocketPath));
   }
-  std::memcpy(address.sun_path, path.c_str(), path.size() + 1);
   UniqueFd socket{::socket(AF_UNIX, type | SOCK_NONBLOCK | SOCK_CLOEXEC, 0)};
   (void)::unlink(path.c_str());
-  if (!socket || ::bind(socket.get(), reinterpret_cast<const sockaddr*>(&address), sizeof address) != 0)
+  if (!socket || ::bind(socket.get(), reinterpret_cast<const sockaddr*>(&*address), sizeof *address) != 0)
     return fail(fmt::format("{}: {}", path, std::strerror(errno)));
   (void)::chmod(path.c_str(), 0660);
   if (const auto gid = groupId("rc10")) (void)!::chown(path.c_str(), static_cast<uid_t>(-1), *gid);

@@ -11,6 +11,7 @@
 
 #include <fmt/format.h>
 
+#include "app/timespec.hpp"
 #include "daemon/exchange/clock.hpp"
 
 namespace rc10 {
@@ -54,7 +55,7 @@ void RxLoop::poll(Duration patience) noexcept {
   // ppoll and not a timerfd in the epoll set: on PREEMPT_RT its timer expires in interrupt context for a
   // real-time thread, while a timerfd waits for ktimers (FIFO 1).
   patience = std::clamp(patience, Duration::zero(), kIdle);
-  const timespec at_most{.tv_sec = 0, .tv_nsec = patience.count()};
+  const timespec at_most = toTimespec(patience);
   pollfd ports{.fd = epoll_.get(), .events = POLLIN, .revents = 0};
   const int ready = ::ppoll(&ports, 1, &at_most, nullptr);
   wake_ups_.fetch_add(1, std::memory_order_relaxed);

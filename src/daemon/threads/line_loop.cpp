@@ -8,6 +8,7 @@
 
 #include <fmt/format.h>
 
+#include "app/timespec.hpp"
 #include "daemon/exchange/clock.hpp"
 
 namespace rc10 {
@@ -33,7 +34,7 @@ LineLoop::LineLoop(LineBanks& banks, std::unique_ptr<GpioSystem> gpio, LinkExcha
 void LineLoop::run(const std::stop_token& stop, const Scheduler& scheduler) {
   while (!stop.stop_requested()) {
     turn(monotonicNow(), scheduler.ticks());
-    const timespec patience{.tv_sec = 0, .tv_nsec = interval().count()};
+    const timespec patience = toTimespec(interval());
     pollfd wake{.fd = banks_.wake(), .events = POLLIN, .revents = 0};
     if (::ppoll(&wake, 1, &patience, nullptr) > 0) {
       eventfd_t changes = 0;

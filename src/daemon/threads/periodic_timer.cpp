@@ -5,20 +5,12 @@
 
 #include <cerrno>
 #include <cstring>
-#include <ctime>
 #include <string>
 
+#include "app/timespec.hpp"
 #include "daemon/exchange/clock.hpp"
 
 namespace rc10 {
-namespace {
-
-[[nodiscard]] timespec split(Duration duration) noexcept {
-  constexpr std::int64_t kNsPerSecond = 1'000'000'000;
-  return {.tv_sec = duration.count() / kNsPerSecond, .tv_nsec = duration.count() % kNsPerSecond};
-}
-
-}  // namespace
 
 Result<PeriodicTimer> PeriodicTimer::create(TimerKind kind) {
   if (kind == TimerKind::kNanosleep) return PeriodicTimer{UniqueFd{}};
@@ -31,7 +23,7 @@ void PeriodicTimer::start(MonotonicTime first, Duration period) noexcept {
   next_ = first;
   period_ = period;
   if (!fd_) return;
-  const itimerspec spec{.it_interval = split(period), .it_value = split(first.time_since_epoch())};
+  const itimerspec spec{.it_interval = toTimespec(period), .it_value = toTimespec(first.time_since_epoch())};
   if (timerfd_settime(fd_.get(), TFD_TIMER_ABSTIME, &spec, nullptr) != 0) fd_.reset();
 }
 
@@ -48,7 +40,7 @@ std::uint64_t PeriodicTimer::wait() noexcept {
 }
 
 std::uint64_t PeriodicTimer::sleep() noexcept {
-  const timespec until = split(next_.time_since_epoch());
+  const timespec until = toTimespec(next_.time_since_epoch());
   if (clock_nanosleep(CLOCK_MONOTONIC, TIMER_ABSTIME, &until, nullptr) != 0) return 0;
   const auto expirations = (monotonicNow() - next_) / period_ + 1;
   next_ += period_ * expirations;

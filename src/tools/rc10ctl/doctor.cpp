@@ -91,7 +91,7 @@ class Doctor {
     doctor::LatencyHistogram histogram;
     const auto facts =
         measureLatency({.time = std::chrono::duration_cast<Duration>(std::chrono::duration<double>(time_s)),
-                        .period = robot_.period(),
+                        .grid = {robot_.period(), robot_.phase()},
                         .priority = robot_.scheduler.priority,
                         .cpu = robot_.scheduler.cpu},
                        histogram);

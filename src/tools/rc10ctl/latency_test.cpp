@@ -9,13 +9,12 @@
 #include <cstring>
 #include <ctime>
 
+#include "app/timespec.hpp"
 #include "app/unique_fd.hpp"
 #include "session.hpp"
 
 namespace rc10::ctl {
 namespace {
-
-constexpr std::int64_t kNsPerSecond = 1'000'000'000;
 
 // Settings of rc10d's scheduler thread for the life of the object; those without permission are left out.
 class AsScheduler {
@@ -52,30 +51,26 @@ class AsScheduler {
   std::string refused_;
 };
 
-std::int64_t now() noexcept {
-  timespec time{};
-  ::clock_gettime(CLOCK_MONOTONIC, &time);
-  return time.tv_sec * kNsPerSecond + time.tv_nsec;
-}
+MonotonicTime now() noexcept { return std::chrono::steady_clock::now(); }
 
 }  // namespace
 
 doctor::LatencyFacts measureLatency(const LatencyTest& test, doctor::LatencyHistogram& histogram) {
   doctor::LatencyFacts facts;
-  facts.period = test.period;
+  facts.period = test.grid.period;
   facts.by = "the latency test";
   {
     const AsScheduler as_scheduler(test);
     facts.refused = as_scheduler.refused();
     facts.realtime = facts.refused.empty();
-    const std::int64_t period = test.period.count();
-    std::int64_t next = (now() / period + 1) * period;
-    for (const std::int64_t end = next + test.time.count(); next < end && !interrupted();) {
-      const timespec wanted{.tv_sec = next / kNsPerSecond, .tv_nsec = next % kNsPerSecond};
+    MonotonicTime next = test.grid.next(now());
+    for (const MonotonicTime end = next + test.time; next < end && !interrupted();) {
+      const timespec wanted = toTimespec(next.time_since_epoch());
       if (::clock_nanosleep(CLOCK_MONOTONIC, TIMER_ABSTIME, &wanted, nullptr) != 0) continue;  // a signal
-      const std::int64_t late = now() - next;
-      histogram.record(Duration{late});
-      next += (late / period + 1) * period;  // those that were missed are skipped, as in rc10d
+      const Duration late = now() - next;
+      histogram.record(late);
+      // Points that were missed are skipped, as in rc10d.
+      next += (late / test.grid.period + 1) * test.grid.period;
     }
   }
   facts.p50 = histogram.percentile(0.5);

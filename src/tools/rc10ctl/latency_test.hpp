@@ -3,6 +3,7 @@
 #include <optional>
 
 #include "app/time.hpp"
+#include "app/time_grid.hpp"
 #include "doctor/latency_check.hpp"
 #include "doctor/latency_histogram.hpp"
 
@@ -10,7 +11,7 @@ namespace rc10::ctl {
 
 struct LatencyTest {
   Duration time{};
-  Duration period{};
+  TimeGrid grid;     ///< Of the ticks.
   int priority = 0;  ///< SCHED_FIFO
   std::optional<int> cpu;
 };
