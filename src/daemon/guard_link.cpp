@@ -25,7 +25,7 @@ namespace {
 
 // A guard that has just been started opens its CAN sockets first.
 constexpr Duration kPatience = std::chrono::seconds{1};
-constexpr auto kPause = std::chrono::milliseconds{5};
+constexpr auto kRetryPause = std::chrono::milliseconds{5};
 constexpr Duration kRetry = std::chrono::seconds{1};
 
 /// Error 0: connected. Else errno.
@@ -82,7 +82,7 @@ Result<void> GuardLink::connect() {
     }
     if (monotonicNow() >= deadline)
       return fail(fmt::format("{} was started and does not answer at {}", settings_.program, path));
-    std::this_thread::sleep_for(kPause);
+    std::this_thread::sleep_for(kRetryPause);
   }
 }
 
