@@ -2,6 +2,7 @@
 
 #include <linux/rtnetlink.h>
 #include <net/if.h>
+#include <sys/ioctl.h>
 #include <sys/socket.h>
 #include <sys/time.h>
 #include <unistd.h>
@@ -83,6 +84,15 @@ int outgoingInterface(const Reply& reply, int& error) {
   }
 }
 
+// As if_indextoname() does, but by a socket that the sandbox has.
+std::string nameOf(int interface_index) {
+  const UniqueFd any{::socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0)};
+  ifreq request{};
+  request.ifr_ifindex = interface_index;
+  const bool named = any && ::ioctl(any.get(), SIOCGIFNAME, &request) == 0;
+  return named ? request.ifr_name : std::to_string(interface_index);
+}
+
 std::string remedy(const UdpmUrl& url) {
   return "`sudo ip route add " + url.groupText() + "/32 dev lo src 127.0.0.1`";
 }
@@ -101,9 +111,7 @@ Result<MulticastRoute> findRoute(const UdpmUrl& url) {
     }
     return fail("cannot ask the kernel for the route to " + url.groupText() + ": " + std::strerror(error));
   }
-  std::array<char, IF_NAMESIZE> name{};
-  const bool named = ::if_indextoname(static_cast<unsigned>(route.interface_index), name.data()) != nullptr;
-  route.interface = named ? name.data() : std::to_string(route.interface_index);
+  route.interface = nameOf(route.interface_index);
   route.loopback = route.interface == "lo";
   return route;
 }

@@ -1,8 +1,15 @@
 #include "gateway/sandbox.hpp"
 
+#include <grp.h>
 #include <linux/capability.h>
+#include <linux/netlink.h>
+#include <net/if.h>
+#include <netinet/in.h>
+#include <pwd.h>
 #include <sched.h>
 #include <seccomp.h>
+#include <sys/ioctl.h>
+#include <sys/mman.h>
 #include <sys/prctl.h>
 #include <sys/resource.h>
 #include <sys/socket.h>
@@ -12,8 +19,11 @@
 #include <array>
 #include <cerrno>
 #include <csignal>
+#include <cstdint>
 #include <cstdio>
 #include <cstring>
+#include <memory>
+#include <optional>
 #include <string>
 
 #include "app/sanitizers.hpp"
@@ -74,33 +84,131 @@ void firstToDie() {
   }
 }
 
-// Denies a system call, or one with a given first argument. 0, or a negative errno.
-int deny(scmp_filter_ctx filter, int call) {
-  return seccomp_rule_add(filter, SCMP_ACT_ERRNO(EACCES), call, 0);
+struct FileCloser {
+  void operator()(std::FILE* file) const noexcept { (void)std::fclose(file); }
+};
+
+// Read from the file: getpwnam() would load modules of NSS.
+std::optional<uid_t> idOfUser(const std::string& name) {
+  const std::unique_ptr<std::FILE, FileCloser> file(std::fopen("/etc/passwd", "re"));
+  if (!file) return std::nullopt;
+  while (const passwd* entry = ::fgetpwent(file.get()))
+    if (entry->pw_name == name) return entry->pw_uid;
+  return std::nullopt;
 }
-int denyFamily(scmp_filter_ctx filter, int family) {
-  const scmp_arg_cmp is_family{
-      .arg = 0, .op = SCMP_CMP_EQ, .datum_a = static_cast<scmp_datum_t>(family), .datum_b = 0};
-  return seccomp_rule_add(filter, SCMP_ACT_ERRNO(EACCES), SCMP_SYS(socket), 1, is_family);
+
+// Of root; without a user of its own, `nobody`, who owns no file.
+Result<void> leaveRoot() {
+  if (::geteuid() != 0) return {};
+  constexpr const char* kUser = "rc10-lcm";
+  constexpr uid_t kNobody = 65534;
+  const auto user = idOfUser(kUser).value_or(kNobody);
+  if (::setgroups(0, nullptr) == 0 && ::setresgid(user, user, user) == 0 &&
+      ::setresuid(user, user, user) == 0)
+    return {};
+  // In a user namespace without other users root is an ordinary user of the computer.
+  return errno == EINVAL || errno == EPERM ? Result<void>{} : notDropped("user", errno);
+}
+
+// All that libc and the gateway call from here on, on any architecture: libseccomp leaves out those that this
+// one has not. None opens a file, starts a program, or names another process.
+constexpr std::array kAllowed{SCMP_SYS(brk),
+                              SCMP_SYS(clock_gettime),
+                              SCMP_SYS(clock_gettime64),
+                              SCMP_SYS(close),
+                              SCMP_SYS(exit),
+                              SCMP_SYS(exit_group),
+                              SCMP_SYS(fstat),
+                              SCMP_SYS(fstat64),
+                              SCMP_SYS(futex),
+                              SCMP_SYS(futex_time64),
+                              SCMP_SYS(getpid),
+                              SCMP_SYS(getppid),
+                              SCMP_SYS(getrandom),
+                              SCMP_SYS(gettid),
+                              SCMP_SYS(gettimeofday),
+                              SCMP_SYS(madvise),
+                              SCMP_SYS(mremap),
+                              SCMP_SYS(munmap),
+                              SCMP_SYS(poll),
+                              SCMP_SYS(ppoll),
+                              SCMP_SYS(ppoll_time64),
+                              SCMP_SYS(read),
+                              SCMP_SYS(recv),
+                              SCMP_SYS(recvfrom),
+                              SCMP_SYS(recvmsg),
+                              SCMP_SYS(restart_syscall),
+                              SCMP_SYS(rt_sigaction),
+                              SCMP_SYS(rt_sigprocmask),
+                              SCMP_SYS(rt_sigreturn),
+                              SCMP_SYS(send),
+                              SCMP_SYS(sendmsg),
+                              SCMP_SYS(sendto),
+                              SCMP_SYS(sigreturn),
+                              SCMP_SYS(write),
+                              SCMP_SYS(writev)};
+
+// The sanitizers' own: they start threads, read files of /proc and trace this very process.
+constexpr std::array kAllowedToSanitizers{
+    SCMP_SYS(clone),       SCMP_SYS(getdents64),  SCMP_SYS(openat),     SCMP_SYS(prctl),
+    SCMP_SYS(ptrace),      SCMP_SYS(readlink),    SCMP_SYS(readlinkat), SCMP_SYS(sched_getaffinity),
+    SCMP_SYS(sched_yield), SCMP_SYS(sigaltstack), SCMP_SYS(wait4),      SCMP_SYS(getrlimit),
+    SCMP_SYS(prlimit64),   SCMP_SYS(newfstatat),  SCMP_SYS(lseek),      SCMP_SYS(set_robust_list)};
+
+/// Rules of one filter; the first error stays.
+class Filter {
+ public:
+  // A call that is not allowed fails like one without the right, so that a libc of another version than the
+  // tested one loses a message and not the gateway.
+  Filter() : context_(seccomp_init(SCMP_ACT_ERRNO(EACCES))), status_(context_ == nullptr ? -ENOMEM : 0) {}
+  Filter(const Filter&) = delete;
+  Filter& operator=(const Filter&) = delete;
+  ~Filter() { seccomp_release(context_); }
+
+  template <typename... Conditions>
+  void allow(int call, Conditions... conditions) {
+    if (status_ == 0)
+      status_ = seccomp_rule_add(context_, SCMP_ACT_ALLOW, call, sizeof...(conditions), conditions...);
+  }
+  int load() {
+    if (status_ == 0) status_ = seccomp_load(context_);
+    return status_;
+  }
+
+ private:
+  scmp_filter_ctx context_;
+  int status_;
+};
+
+// An argument that the kernel takes for 32 bits is compared as 32 bits: the upper half may be anything.
+scmp_arg_cmp argument(unsigned place, std::uint32_t value, std::uint32_t mask = ~std::uint32_t{0}) {
+  return {.arg = place, .op = SCMP_CMP_MASKED_EQ, .datum_a = mask, .datum_b = value};
+}
+
+// The kinds of LCM and of the question for its route. The kernel takes flags out of the type.
+void allowSockets(Filter& filter) {
+  constexpr std::uint32_t kTypeMask = 0xF;
+  filter.allow(SCMP_SYS(socket), argument(0, AF_INET), argument(1, SOCK_DGRAM, kTypeMask), argument(2, 0));
+  filter.allow(SCMP_SYS(socket), argument(0, AF_NETLINK), argument(1, SOCK_RAW, kTypeMask),
+               argument(2, NETLINK_ROUTE));
+  filter.allow(SCMP_SYS(bind));
+  filter.allow(SCMP_SYS(setsockopt), argument(1, SOL_SOCKET));
+  filter.allow(SCMP_SYS(setsockopt), argument(1, IPPROTO_IP));
+  filter.allow(SCMP_SYS(ioctl), argument(1, SIOCGIFNAME));
 }
 
 Result<void> filterSystemCalls() {
-  scmp_filter_ctx filter = seccomp_init(SCMP_ACT_ALLOW);
-  if (filter == nullptr) return notDropped("seccomp", ENOMEM);
-  int status = 0;
-  for (const int family : {AF_CAN, AF_PACKET, AF_VSOCK, AF_ALG, AF_BLUETOOTH}) {
-    if (status == 0) status = denyFamily(filter, family);
-  }
-  // io_uring makes sockets without socket(). The others start programs, reach into other processes or
-  // take a priority.
-  for (const int call : {SCMP_SYS(io_uring_setup), SCMP_SYS(execve), SCMP_SYS(execveat),
-                         SCMP_SYS(process_vm_writev), SCMP_SYS(sched_setattr), SCMP_SYS(sched_setparam),
-                         SCMP_SYS(sched_setscheduler), SCMP_SYS(pidfd_getfd)}) {
-    if (status == 0) status = deny(filter, call);
-  }
-  if (status == 0 && !kSanitized) status = deny(filter, SCMP_SYS(ptrace));
-  if (status == 0) status = seccomp_load(filter);
-  seccomp_release(filter);
+  Filter filter;
+  for (const int call : kAllowed) filter.allow(call);
+  if (kSanitized)
+    for (const int call : kAllowedToSanitizers) filter.allow(call);
+  allowSockets(filter);
+  // Memory that is no code; of sanitizers' code, neither.
+  for (const int call : {SCMP_SYS(mmap), SCMP_SYS(mmap2), SCMP_SYS(mprotect)})
+    filter.allow(call, argument(2, 0, PROT_EXEC));
+  // abort(): at nobody else.
+  filter.allow(SCMP_SYS(tgkill), argument(0, static_cast<std::uint32_t>(::getpid())));
+  const int status = filter.load();
   return status == 0 ? Result<void>{} : notDropped("seccomp", -status);
 }
 
@@ -112,6 +220,7 @@ Result<void> enterSandbox(int parent) {
   if (!kSanitized && ::prctl(PR_SET_DUMPABLE, 0) != 0) return notDropped("PR_SET_DUMPABLE", errno);
   if (auto result = leaveRealTime(); !result) return result;
   if (auto result = limitResources(); !result) return result;
+  if (auto result = leaveRoot(); !result) return result;
   if (auto result = dropCapabilities(); !result) return result;
   if (::getppid() == parent) {
     (void)::prctl(PR_SET_PDEATHSIG, SIGKILL);  // after the capabilities: changing them may clear it
