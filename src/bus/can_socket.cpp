@@ -155,6 +155,21 @@ Result<CanSocket> openCanSocket(const std::string& interface, const CanSocketOpt
   return CanSocket{std::move(*fd), fd_frames, *send_buffer_bytes};
 }
 
+Result<int> findCanInterface(const std::string& interface) {
+  const auto fd = createSocket(interface);
+  if (!fd) return tl::unexpected(fd.error());
+  const auto found = findInterface(fd->get(), interface);
+  if (!found) return tl::unexpected(found.error());
+  return found->index;
+}
+
+int boundInterface(int fd) noexcept {
+  sockaddr_can address{};
+  socklen_t size = sizeof(address);
+  const bool known = ::getsockname(fd, reinterpret_cast<sockaddr*>(&address), &size) == 0;
+  return known && address.can_family == AF_CAN ? address.can_ifindex : 0;
+}
+
 bool hearOwnFrames(int fd, std::span<const CanId> ids) {
   const int on = 1;
   return setOption(fd, SOL_CAN_RAW, CAN_RAW_RECV_OWN_MSGS, on) && hearOnly(fd, ids);

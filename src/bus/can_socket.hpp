@@ -31,6 +31,14 @@ struct CanSocket {
 /// An interface that is down is no error: the first receive reports ENETDOWN.
 [[nodiscard]] Result<CanSocket> openCanSocket(const std::string& interface, const CanSocketOptions& options);
 
+/// The index of the CAN interface of this name; it may be one of several names. The error is that of
+/// openCanSocket().
+[[nodiscard]] Result<int> findCanInterface(const std::string& interface);
+
+/// The index of the interface that a CAN socket is bound to; 0: none. A name may have moved to another one
+/// since it was looked up.
+[[nodiscard]] int boundInterface(int fd) noexcept;
+
 /// From now on a socket that was opened to send only receives frames of these ids, its own ones too, when the
 /// controller has sent them: the kernel marks those MSG_CONFIRM. False: errno.
 [[nodiscard]] bool hearOwnFrames(int fd, std::span<const CanId> ids);

@@ -77,11 +77,14 @@ Result<void> Daemon::build() {
   // First what makes this the only rc10d of its robot and of its interfaces: another one must not notice.
   auto socket = LinkSocket::listen(link::runDir(), config_.robot);
   if (!socket) return tl::unexpected(socket.error());
-  if (auto locked = lockInterfaces(); !locked) return locked;
+  auto locks = InterfaceLocks::take(config_);
+  if (!locks) return tl::unexpected(locks.error());
+  interface_locks_ = std::move(*locks);
   if (auto prepared = prepareLinks(); !prepared) return prepared;
   auto robot = Robot::build(config_);
   if (!robot) return tl::unexpected(robot.error());
   robot_ = std::move(*robot);
+  if (auto ours = interface_locks_.check(*robot_); !ours) return ours;
   if (auto written = writeRestFrames(*robot_, link::runDir(), config_.robot); !written) return written;
   if (auto guarded = findGuard(); !guarded) return guarded;
   describeRobot();
@@ -98,9 +101,9 @@ Result<void> Daemon::build() {
   // After the e-stop input and the heartbeat: a line that is also theirs stays theirs.
   if (auto* banks = robot_->lineBanks())
     line_loop_ = std::make_unique<LineLoop>(*banks, kernelGpio(), exchange_);
-  io_loop_ =
-      std::make_unique<IoLoop>(BusReviver{*robot_, inboxes_}, CanLinkKeeper{*robot_, inboxes_, exchange_},
-                               black_box_.get(), serialIo(), spiIo());
+  io_loop_ = std::make_unique<IoLoop>(BusReviver{*robot_, inboxes_, exchange_, interface_locks_},
+                                      CanLinkKeeper{*robot_, inboxes_, exchange_}, black_box_.get(),
+                                      serialIo(), spiIo());
   if (config_.lcm.enabled) {
     gateway_ = std::make_unique<GatewayProcess>(
         siblingProgram("rc10-lcm"), std::vector<std::string>{"--socket", socket->path(), "--robot",
@@ -199,16 +202,6 @@ void Daemon::tellWhoMayCommand() {
   if (!config_.lcm.leaves_computer) return;
   description_.notices.push_back("LCM reaches the network (" + config_.lcm.url +
                                  "): every computer there may command this robot");
-}
-
-Result<void> Daemon::lockInterfaces() {
-  for (const auto& bus : config_.buses) {
-    if (bus.type != BusType::kSocketCan) continue;
-    auto lock = link::InterfaceLock::take(link::runDir(), bus.interface, config_.robot);
-    if (!lock) return tl::unexpected(lock.error());
-    interface_locks_.push_back(std::move(*lock));
-  }
-  return {};
 }
 
 // Before the sockets are opened. What is missing or no CAN interface at all, opening will tell.

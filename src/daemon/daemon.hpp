@@ -13,6 +13,7 @@
 #include "daemon/gateway_process.hpp"
 #include "daemon/guard_link.hpp"
 #include "daemon/interfaces/can_intake.hpp"
+#include "daemon/interfaces/interface_locks.hpp"
 #include "daemon/interfaces/rx_loop.hpp"
 #include "daemon/recording/black_box.hpp"
 #include "daemon/signal_inbox.hpp"
@@ -24,7 +25,6 @@
 #include "daemon/threads/sim_loop.hpp"
 #include "daemon/tick/scheduler.hpp"
 #include "daemon/watchdog.hpp"
-#include "link/interface_lock.hpp"
 
 namespace rc10 {
 
@@ -46,7 +46,6 @@ class Daemon {
 
  private:
   [[nodiscard]] Result<void> build();
-  [[nodiscard]] Result<void> lockInterfaces();
   [[nodiscard]] Result<void> prepareLinks();
   [[nodiscard]] Result<void> startThreads();
   [[nodiscard]] Result<void> startThread(RtThread& thread, RtSettings settings,
@@ -68,7 +67,7 @@ class Daemon {
   std::shared_ptr<spdlog::logger> log_;
   UniqueFd cpu_latency_;
   RobotDescription description_;
-  std::vector<link::InterfaceLock> interface_locks_;  // longer than the sockets of the robot
+  InterfaceLocks interface_locks_;  // longer than the sockets of the robot
   std::unique_ptr<Robot> robot_;
   std::vector<BusInbox> inboxes_;  // of each bus
   LinkExchange exchange_;

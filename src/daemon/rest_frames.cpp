@@ -14,6 +14,7 @@
 #include <fmt/format.h>
 
 #include "bus/frame_text.hpp"
+#include "link/process_identity.hpp"
 #include "link/run_dir.hpp"
 
 namespace rc10 {
@@ -50,7 +51,7 @@ Result<void> writeRestFrames(const Robot& robot, const std::string& run_dir, con
   const std::string path = link::restFramesPath(run_dir, name);
   const std::string dir = path.substr(0, path.rfind('/'));
   if (::mkdir(dir.c_str(), 0755) != 0 && errno != EEXIST) return failure(dir);
-  const std::string text = restFramesText(robot, name);
+  const std::string text = link::ProcessIdentity::own().line() + "\n" + restFramesText(robot, name);
   const std::string temporary = path + ".new";
   UniqueFd file{::open(temporary.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC | O_NOFOLLOW, 0644)};
   // No fsync: what outlives a power cut is not to be replayed.

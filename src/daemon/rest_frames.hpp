@@ -11,9 +11,9 @@ namespace rc10 {
 /// come from the packers, so each family has them. Main thread, before the first tick.
 [[nodiscard]] std::string restFramesText(const Robot& robot, const std::string& name);
 
-/// Writes link::restFramesPath() for rc10-stop, whole or not at all. To be called while the robot's locks
-/// are held and before anything is sent. It stays after a clean end, where it does no harm: rest is what
-/// the drives were told last.
+/// Writes link::restFramesPath() for rc10-stop, whole or not at all, with the identity of this process. To be
+/// called while the robot's locks are held and before anything is sent. It stays after a clean end, where it
+/// does no harm: rest is what the drives were told last.
 [[nodiscard]] Result<void> writeRestFrames(const Robot& robot, const std::string& run_dir,
                                            const std::string& name);
 

@@ -1,97 +1,94 @@
 #include "link/interface_lock.hpp"
 
-#include <fcntl.h>
-#include <sys/file.h>
-#include <sys/stat.h>
+#include <net/if.h>
+#include <sys/socket.h>
+#include <sys/un.h>
 #include <unistd.h>
 
 #include <algorithm>
-#include <array>
 #include <cerrno>
-#include <chrono>
+#include <cstddef>
 #include <cstring>
-#include <thread>
+#include <fstream>
+#include <string_view>
+
+#include "app/printable.hpp"
 
 namespace rc10::link {
 namespace {
 
-// holder() of another program has the lock for an instant: that is no reason not to start.
-constexpr int kAttempts = 5;
-constexpr auto kPause = std::chrono::milliseconds{10};
+struct AbstractAddress {
+  sockaddr_un address{};
+  socklen_t size = 0;
+};
 
-std::string folder(const std::string& run_dir) { return run_dir + "/locks"; }
+std::string lockName(int index) { return "rc10d-interface/" + std::to_string(index); }
 
-// As /proc/self/ns/net shows it; 0 where there is no /proc.
-ino_t networkNamespace() noexcept {
-  struct stat status {};
-  return ::stat("/proc/self/ns/net", &status) == 0 ? status.st_ino : 0;
+// The first byte is zero: no file. A name that is too long is cut; locks are short.
+AbstractAddress abstractAddress(std::string_view name) noexcept {
+  AbstractAddress result;
+  const auto size = std::min(name.size(), sizeof(result.address.sun_path) - 1);
+  result.address.sun_family = AF_UNIX;
+  std::memcpy(result.address.sun_path + 1, name.data(), size);
+  result.size = static_cast<socklen_t>(offsetof(sockaddr_un, sun_path) + 1 + size);
+  return result;
 }
 
-// Text that another process wrote, for a message: of one line.
-std::string firstLine(int file) {
-  std::array<char, 128> bytes{};
-  const auto size = ::pread(file, bytes.data(), bytes.size(), 0);
-  std::string text(bytes.data(), size > 0 ? static_cast<std::size_t>(size) : 0);
-  text.resize(std::min(text.find('\n'), text.size()));
-  std::replace_if(
-      text.begin(), text.end(), [](char c) { return c < ' ' || c > '~'; }, '?');
-  return text.empty() ? "another rc10d" : text;
+UniqueFd datagramSocket() noexcept {
+  return UniqueFd{::socket(AF_UNIX, SOCK_DGRAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0)};
 }
 
-// Files that root makes for a tool that came first must not lock out the user of the service, who owns the
-// run folder.
-void giveToOwnerOf(const std::string& run_dir, const std::string& dir, int file) noexcept {
-  struct stat owner {};
-  struct stat status {};
-  if (::geteuid() != 0 || ::stat(run_dir.c_str(), &owner) != 0) return;
-  (void)!::lchown(dir.c_str(), owner.st_uid, owner.st_gid);
-  if (::fstat(file, &status) == 0 && status.st_nlink == 1) (void)!::fchown(file, owner.st_uid, owner.st_gid);
+// A datagram socket has no queue of connections that others could fill, and this one receives nothing.
+UniqueFd bindName(std::string_view name) noexcept {
+  UniqueFd socket = datagramSocket();
+  const auto at = abstractAddress(name);
+  if (!socket || ::bind(socket.get(), reinterpret_cast<const sockaddr*>(&at.address), at.size) != 0)
+    return {};
+  (void)::shutdown(socket.get(), SHUT_RD);
+  return socket;
 }
 
-bool lockFile(int file) noexcept {
-  for (int attempt = 0; attempt < kAttempts; ++attempt) {
-    if (attempt != 0) std::this_thread::sleep_for(kPause);
-    if (::flock(file, LOCK_EX | LOCK_NB) == 0) return true;
+bool isBound(std::string_view name) noexcept {
+  const UniqueFd socket = datagramSocket();
+  const auto at = abstractAddress(name);
+  // Without descriptors it cannot be known: held, to be on the safe side.
+  return !socket || ::connect(socket.get(), reinterpret_cast<const sockaddr*>(&at.address), at.size) == 0 ||
+         errno != ECONNREFUSED;
+}
+
+// The kernel lists abstract names with '@' first. Anybody may choose a name, so the words are for people
+// alone.
+std::string wordsOf(int index) {
+  const std::string beginning = " @" + lockName(index) + "/";
+  std::ifstream sockets("/proc/self/net/unix");
+  for (std::string line; std::getline(sockets, line);) {
+    const auto at = line.find(beginning);
+    if (at != std::string::npos) return printable(line.substr(at + beginning.size()));
   }
-  return false;
+  return "another program (`sudo ss -xap | grep " + lockName(index) + "` names it)";
 }
 
 }  // namespace
 
-std::string InterfaceLock::path(const std::string& run_dir, const std::string& interface) {
-  return folder(run_dir) + "/" + interface + "-" + std::to_string(networkNamespace()) + ".lock";
+Result<InterfaceLock> InterfaceLock::take(int index, const std::string& interface, const std::string& robot) {
+  UniqueFd lock = bindName(lockName(index));
+  if (!lock) {
+    const int error = errno;
+    if (error != EADDRINUSE)
+      return fail("cannot lock CAN interface '" + interface + "': " + std::strerror(error));
+    return fail(interface + " is driven by " + wordsOf(index) + "; stop it first");
+  }
+  // Of this process alone: names of others that begin alike do not matter.
+  UniqueFd words =
+      bindName(lockName(index) + "/robot '" + robot + "' (rc10d, pid " + std::to_string(::getpid()) + ")");
+  return InterfaceLock{index, std::move(lock), std::move(words)};
 }
 
-Result<InterfaceLock> InterfaceLock::take(const std::string& run_dir, const std::string& interface,
-                                          const std::string& robot) {
-  const std::string dir = folder(run_dir);
-  if (::mkdir(dir.c_str(), 0755) != 0 && errno != EEXIST) {
-    return fail(dir + ": " + std::strerror(errno) + ": set RC10_RUN_DIR to a folder this user may write to");
-  }
-  // The file stays when its holder ends: removing it would let two processes lock two files of one name.
-  const std::string file_path = path(run_dir, interface);
-  UniqueFd file{::open(file_path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW, 0644)};
-  if (!file) {
-    return fail(file_path + ": " + std::strerror(errno) + ": remove it if no rc10d of another user runs");
-  }
-  giveToOwnerOf(run_dir, dir, file.get());
-  if (!lockFile(file.get())) {
-    return fail(interface + " is driven by " + firstLine(file.get()) + "; stop it first");
-  }
-  const std::string words = "robot '" + robot + "' (rc10d, pid " + std::to_string(::getpid()) + ")\n";
-  if (::ftruncate(file.get(), 0) != 0 ||
-      ::pwrite(file.get(), words.data(), words.size(), 0) != static_cast<ssize_t>(words.size())) {
-    return fail(file_path + ": " + std::strerror(errno));
-  }
-  return InterfaceLock{std::move(file)};
-}
+std::string InterfaceLock::holder(int index) { return isBound(lockName(index)) ? wordsOf(index) : ""; }
 
-std::string InterfaceLock::holder(const std::string& run_dir, const std::string& interface) {
-  const std::string file_path = path(run_dir, interface);
-  const UniqueFd file{::open(file_path.c_str(), O_RDONLY | O_CLOEXEC | O_NOFOLLOW)};
-  // Without the file nobody holds it. What may not be looked at is held, to be on the safe side.
-  if (!file) return errno == ENOENT || errno == ENOTDIR ? "" : file_path + " (" + std::strerror(errno) + ")";
-  return ::flock(file.get(), LOCK_SH | LOCK_NB) == 0 ? "" : firstLine(file.get());
+std::string holderOfInterface(const std::string& interface) {
+  const auto index = ::if_nametoindex(interface.c_str());
+  return index == 0 ? "" : InterfaceLock::holder(static_cast<int>(index));
 }
 
 }  // namespace rc10::link

@@ -33,40 +33,42 @@ class BusReviverTest : public ::testing::Test {
   std::unique_ptr<Robot> robot = Robot::build(twoWheelsAndYaw()).value();
   std::array<BusInbox, kMaxBuses> inboxes;
   CanIntake intake{*robot, inboxes, monotonicNow()};
-  BusReviver reviver{*robot, inboxes};
+  LinkExchange exchange;
+  InterfaceLocks locks;
+  BusReviver reviver{*robot, inboxes, exchange, locks};
 };
 
 TEST_F(BusReviverTest, LeavesASimulatedBusAlone) {
   inboxes[0].link = CanLinkState::kDown;
-  reviver.check();
+  reviver.check(monotonicNow());
   EXPECT_EQ(link(), CanLinkState::kDown);
 }
 
 TEST_F(BusReviverTest, SeesThatAnInterfaceIsGone) {
   setInterface("rc10nosuch");
-  reviver.check();
+  reviver.check(monotonicNow());
   EXPECT_EQ(link(), CanLinkState::kGone);
 }
 
 TEST_F(BusReviverTest, ShowsWhetherAnInterfaceIsUp) {
   setInterface("lo");
   inboxes[0].link = stateOfLoopback() == CanLinkState::kUp ? CanLinkState::kDown : CanLinkState::kUp;
-  reviver.check();
+  reviver.check(monotonicNow());
   EXPECT_EQ(link(), stateOfLoopback());
 }
 
 TEST_F(BusReviverTest, ABusThatWasDownBetweenTwoLooksHasComeUp) {
   setInterface("lo");
-  (void)reviver.check();
+  (void)reviver.check(monotonicNow());
   inboxes[0].link = CanLinkState::kDown;  // a receive has met ENETDOWN
-  EXPECT_EQ(reviver.check().test(0), stateOfLoopback() == CanLinkState::kUp);
-  EXPECT_TRUE(reviver.check().none());
+  EXPECT_EQ(reviver.check(monotonicNow()).test(0), stateOfLoopback() == CanLinkState::kUp);
+  EXPECT_TRUE(reviver.check(monotonicNow()).none());
 }
 
 TEST_F(BusReviverTest, ABusStaysGoneUntilItsSocketIsReplaced) {
   setInterface("lo");
   inboxes[0].link = CanLinkState::kGone;
-  reviver.check();  // no CAN socket can be bound to lo
+  reviver.check(monotonicNow());  // no CAN socket can be bound to lo
   EXPECT_EQ(link(), CanLinkState::kGone);
   // And the descriptor is still the old one: what the drives send arrives.
   const CanFrame frame = makeClassicFrame({0x201, false}, std::array<std::uint8_t, 1>{1});

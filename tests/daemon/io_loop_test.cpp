@@ -16,7 +16,9 @@ TEST(IoLoop, EndsWhenItIsAskedTo) {
   robot->buses()[0].interface = "rc10nosuch";
   std::array<BusInbox, kMaxBuses> inboxes;
   LinkExchange exchange;
-  IoLoop loop{BusReviver{*robot, inboxes}, CanLinkKeeper{*robot, inboxes, exchange}, nullptr};
+  InterfaceLocks locks;
+  IoLoop loop{BusReviver{*robot, inboxes, exchange, locks}, CanLinkKeeper{*robot, inboxes, exchange},
+              nullptr};
   std::stop_source stop;
   stop.request_stop();
   loop.run(stop.get_token());
@@ -28,8 +30,9 @@ TEST(IoLoop, LooksAfterSerialPorts) {
   rig.plugIn();
   auto serial = std::make_unique<SerialIo>(
       SerialIo{SerialReviver{*rig.channels, *rig.rx, rig.exchange}, SerialWriter{*rig.channels}});
-  IoLoop loop{BusReviver{*rig.robot, rig.inboxes}, CanLinkKeeper{*rig.robot, rig.inboxes, rig.exchange},
-              nullptr, std::move(serial)};
+  InterfaceLocks locks;
+  IoLoop loop{BusReviver{*rig.robot, rig.inboxes, rig.exchange, locks},
+              CanLinkKeeper{*rig.robot, rig.inboxes, rig.exchange}, nullptr, std::move(serial)};
   std::jthread io([&](const std::stop_token& stop) { loop.run(stop); });
   ASSERT_TRUE(rig.pump([&] { return rig.device.state() == SerialState::kOpen; }));
   const std::array<std::uint8_t, 2> bytes{4, 2};

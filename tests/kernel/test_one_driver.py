@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import itertools
+import signal
+import subprocess
 import sys
 import time
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from guestlib import Candump, Proc, run
+from guestlib import Candump, Proc, link_add, link_delete, link_down, link_up, run
 from rig import BIN, C6XX_COMMAND, COMMAND_IDS, CONFIG, MS, commands, daemon, fakes
 
 if TYPE_CHECKING:
@@ -78,3 +80,91 @@ def test_an_interface_of_the_same_name_in_another_network_namespace_is_another_o
     )
     with daemon(), Proc("unshare", "--net", "bash", inside) as second:
         second.wait_line("robot 'other' runs", 10.0)
+
+
+def rename(old: str, new: str) -> None:
+    link_down(old)
+    run("ip", "link", "set", old, "name", new)
+    link_up(new)
+
+
+def refused(config: Path, *, run_dir: Path | None = None) -> str:
+    """What a second rc10d says, which does not start."""
+    env = {} if run_dir is None else {"RC10_RUN_DIR": str(run_dir)}
+    with Proc(BIN / "rc10d", "-c", config, env=env) as second:
+        assert second.wait(10.0) == 1
+        return second.output()
+
+
+def test_another_run_folder_is_no_way_around_the_first(tmp_path: Path) -> None:
+    with daemon() as first:
+        words = refused(other_robot(tmp_path), run_dir=tmp_path / "run")
+        assert f"vcan0 is driven by robot 'vcan_mixed' (rc10d, pid {first.pid})" in words
+        # The same robot, too: not even its rest frames are written.
+        words = refused(CONFIG, run_dir=tmp_path / "run")
+        assert f"vcan0 is driven by robot 'vcan_mixed' (rc10d, pid {first.pid})" in words
+        assert not list((tmp_path / "run").rglob("rest-frames"))
+
+
+def test_another_name_of_the_interface_is_no_way_around_the_first(tmp_path: Path) -> None:
+    run("ip", "link", "property", "add", "dev", "vcan0", "altname", "front")
+    config = other_robot(tmp_path)
+    config.write_text(config.read_text().replace("vcan0", "front"))
+    with daemon() as first:
+        assert f"front is driven by robot 'vcan_mixed' (rc10d, pid {first.pid})" in refused(config)
+        scan = subprocess.run(
+            [BIN / "rc10ctl", "scan", "front"], capture_output=True, text=True, check=False
+        )
+        assert scan.returncode == 1
+        assert "front is driven by robot 'vcan_mixed'" in scan.stderr
+        # A new name does not free it either: its sockets are still the first one's.
+        rename("vcan0", "rear")
+        config.write_text(config.read_text().replace("front", "rear"))
+        assert f"rear is driven by robot 'vcan_mixed' (rc10d, pid {first.pid})" in refused(config)
+        rename("rear", "vcan0")
+
+
+def test_one_file_cannot_name_an_interface_twice(tmp_path: Path) -> None:
+    run("ip", "link", "property", "add", "dev", "vcan0", "altname", "front")
+    file = tmp_path / "twice.yaml"
+    file.write_text(
+        """robot: twice
+realtime: preferred
+buses:
+  - name: left
+    type: socketcan
+    interface: vcan0
+    motors:
+      - {name: one, model: M3508, id: 1}
+  - name: right
+    type: socketcan
+    interface: front
+    motors:
+      - {name: two, model: M3508, id: 2}
+"""
+    )
+    words = refused(file)
+    assert "buses 'left' and 'right' are one: vcan0 and front are names of the same interface" in (
+        words
+    )
+
+
+def test_an_interface_that_comes_back_is_locked_before_it_is_opened(tmp_path: Path) -> None:
+    config = other_robot(tmp_path)
+    with daemon() as first:
+        link_delete("vcan0")
+        first.wait_line("bus interface gone", 5.0)
+        link_add("vcan0")
+        time.sleep(0.2)
+        assert f"vcan0 is driven by robot 'vcan_mixed' (rc10d, pid {first.pid})" in refused(config)
+        # While it is away another rc10d may take what is plugged in, and the first leaves it alone.
+        link_delete("vcan0")
+        time.sleep(0.2)
+        first.signal(signal.SIGSTOP)
+        link_add("vcan0")
+        with daemon(config) as second:
+            first.signal(signal.SIGCONT)
+            first.wait_line(f"vcan0 is driven by robot 'other' .rc10d, pid {second.pid}.", 5.0)
+            assert second.stop() == 0
+        time.sleep(0.2)
+        assert f"vcan0 is driven by robot 'vcan_mixed' (rc10d, pid {first.pid})" in refused(config)

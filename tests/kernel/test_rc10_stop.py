@@ -95,7 +95,7 @@ def test_a_clean_end_leaves_the_file_for_execstoppost() -> None:
     with fakes(), daemon() as process:
         assert process.stop() == 0
         text = Path(f"/run/rc10d/{ROBOT}/rest-frames").read_text()
-        assert text.splitlines()[1:] == [f"vcan0 200#{REST}", f"vcan0 2FE#{REST}"]
+        assert text.splitlines()[2:] == [f"vcan0 200#{REST}", f"vcan0 2FE#{REST}"]
         with Candump("vcan0") as bus:
             assert rc10_stop("--all").returncode == 0
         assert len(commands(bus.frames(), C6XX_COMMAND)) == 3
@@ -147,3 +147,36 @@ def test_a_bus_that_takes_nothing_is_given_up_after_a_fifth_of_a_second(tmp_path
     assert "queue is full" in done.stderr
     assert 190 * MS < elapsed_ns < 300 * MS
     assert len(bus.frames()) == 3
+
+
+def test_an_interface_that_it_leaves_out_is_told_and_the_status_says_so(tmp_path: Path) -> None:
+    other = tmp_path / "other.yaml"
+    other.write_text(CONFIG.read_text().replace("robot: vcan_mixed", "guard: off\nrobot: other"))
+    with fakes(), daemon(other) as dead:
+        dead.signal(signal.SIGKILL)
+        dead.wait(5.0)
+        with daemon() as process, Candump("vcan0") as bus:
+            # The dead one's frames would come between those of the living.
+            time.sleep(0.1)
+            done = rc10_stop("--all")
+            assert done.returncode == 1
+            words = f"vcan0 is driven by robot '{ROBOT}' (rc10d, pid {process.pid}), which runs"
+            assert done.stderr.count(words) == 1
+            time.sleep(0.1)
+            bus.stop()
+            stamps = [frame.t_ns for frame in commands(bus.frames(), C6XX_COMMAND)]
+            assert all(abs(b - a - MS) < MS // 100 for a, b in itertools.pairwise(stamps))
+        Path("/run/rc10d/other/rest-frames").unlink()
+
+
+def test_the_identity_of_the_dead_decides_not_its_number(tmp_path: Path) -> None:
+    text = Path(f"/run/rc10d/{ROBOT}/rest-frames")
+    with fakes(), daemon() as process:
+        assert text.read_text().startswith(f"# pid {process.pid}, start ")
+        # Another process of its number, which began at another time: that one is dead.
+        copy = tmp_path / "rest-frames"
+        copy.write_text(f"# pid {process.pid}, start 1\nvcan1 200#{REST}\n")
+        run("ip", "link", "set", "vcan1", "up")
+        with Candump("vcan1") as bus:
+            assert rc10_stop("--file", copy).returncode == 0
+        assert len(bus.frames()) == 3

@@ -8,6 +8,7 @@
 
 #include <cstring>
 #include <string>
+#include <utility>
 
 #include "bus/can_socket.hpp"
 
@@ -24,7 +25,7 @@ namespace {
 
 }  // namespace
 
-std::bitset<kMaxBuses> BusReviver::check() noexcept {
+std::bitset<kMaxBuses> BusReviver::check(MonotonicTime now) noexcept {
   std::bitset<kMaxBuses> came_up;
   for (std::size_t i = 0; i < robot_.buses().size(); ++i) {
     const auto& entry = robot_.buses()[i];
@@ -33,7 +34,7 @@ std::bitset<kMaxBuses> BusReviver::check() noexcept {
     const CanLinkState seen = linkStateOf(entry.interface);
     CanLinkState before = link.load(std::memory_order_relaxed);
     // A socket that lost its interface stays dead when one of that name comes back.
-    if (before == CanLinkState::kGone && seen != CanLinkState::kGone && !reopen(i)) continue;
+    if (before == CanLinkState::kGone && seen != CanLinkState::kGone && !reopen(i, now)) continue;
     // Not over what a receive has just found out: it knows of a loss that was over before we looked.
     if (link.compare_exchange_strong(before, seen, std::memory_order_relaxed)) {
       came_up[i] = before != CanLinkState::kUp && seen == CanLinkState::kUp;
@@ -42,14 +43,27 @@ std::bitset<kMaxBuses> BusReviver::check() noexcept {
   return came_up;
 }
 
-bool BusReviver::reopen(std::size_t bus) {
+bool BusReviver::reopen(std::size_t bus, MonotonicTime now) {
   const auto& entry = robot_.buses()[bus];
-  auto socket = openCanSocket(entry.interface, entry.options);
-  if (!socket || ::dup3(socket->fd.get(), entry.bus->descriptor(), O_CLOEXEC) < 0) return false;
-  if (entry.echo) {
-    auto echo = openEchoSocket(entry.interface, entry.watched);
-    if (!echo || ::dup3(echo->get(), entry.echo.get(), O_CLOEXEC) < 0) return false;
+  const auto index = locks_.takeAnew(bus, entry.interface);
+  if (!index) {
+    // Twenty times a second the same: once is enough.
+    if (std::exchange(told_[bus], index.error().message) != index.error().message)
+      notes_.tell(entry.bus->name(), Severity::kError, index.error().message, now);
+    return false;
   }
+  told_[bus].clear();
+  auto socket = openCanSocket(entry.interface, entry.options);
+  if (!socket || boundInterface(socket->fd.get()) != *index) return false;
+  UniqueFd echo;
+  if (entry.echo) {
+    auto opened = openEchoSocket(entry.interface, entry.watched);
+    if (!opened || boundInterface(opened->get()) != *index) return false;
+    echo = std::move(*opened);
+  }
+  if (::dup3(socket->fd.get(), entry.bus->descriptor(), O_CLOEXEC) < 0) return false;
+  if (echo && ::dup3(echo.get(), entry.echo.get(), O_CLOEXEC) < 0) return false;
+  locks_.keep(bus, *index);
   return true;
 }
 

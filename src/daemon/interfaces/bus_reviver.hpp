@@ -1,10 +1,14 @@
 #pragma once
 
+#include <array>
 #include <bitset>
 #include <span>
+#include <string>
 
 #include "daemon/devices/robot.hpp"
+#include "daemon/exchange/note.hpp"
 #include "daemon/exchange/rings.hpp"
+#include "daemon/interfaces/interface_locks.hpp"
 
 namespace rc10 {
 
@@ -13,17 +17,21 @@ namespace rc10 {
 /// real-time threads need not know. io thread only.
 class BusReviver {
  public:
-  BusReviver(Robot& robot, std::span<BusInbox> inboxes) : robot_(robot), inboxes_(inboxes) {}
+  BusReviver(Robot& robot, std::span<BusInbox> inboxes, LinkExchange& exchange, InterfaceLocks& locks)
+      : robot_(robot), inboxes_(inboxes), notes_(exchange.notes, EventCode::kBusAdvice), locks_(locks) {}
 
   /// Looks at every interface once. To be called some 20 times a second. Returns the buses that have come up:
   /// also those that were down so briefly that only their socket knew.
-  std::bitset<kMaxBuses> check() noexcept;
+  std::bitset<kMaxBuses> check(MonotonicTime now) noexcept;
 
  private:
-  [[nodiscard]] bool reopen(std::size_t bus);
+  [[nodiscard]] bool reopen(std::size_t bus, MonotonicTime now);
 
   Robot& robot_;
   std::span<BusInbox> inboxes_;
+  Notes notes_;
+  InterfaceLocks& locks_;
+  std::array<std::string, kMaxBuses> told_{};  ///< Why a bus could not be had, as told last.
 };
 
 }  // namespace rc10

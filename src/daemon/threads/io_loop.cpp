@@ -16,8 +16,8 @@ constexpr int kDrainsPerLook = 5;
 void IoLoop::run(const std::stop_token& stop) {
   for (int drains = 0; !stop.stop_requested(); drains = (drains + 1) % kDrainsPerLook) {
     if (drains == 0) {
-      const auto came_up = reviver_.check();
-      keeper_.check(monotonicNow(), came_up);
+      const auto now = monotonicNow();
+      keeper_.check(now, reviver_.check(now));
       if (serial_) serial_->reviver.check(monotonicNow());
     }
     if (black_box_ != nullptr) black_box_->drain();

@@ -26,7 +26,7 @@ class IoLoop {
   /// `black_box`: null if nothing is recorded. `serial`, `spi`: null if there are no such devices.
   IoLoop(BusReviver reviver, CanLinkKeeper keeper, BlackBox* black_box,
          std::unique_ptr<SerialIo> serial = nullptr, std::unique_ptr<SpiKeeper> spi = nullptr)
-      : reviver_(reviver),
+      : reviver_(std::move(reviver)),
         keeper_(std::move(keeper)),
         black_box_(black_box),
         serial_(std::move(serial)),

@@ -18,6 +18,7 @@
 #include "bus/frame_text.hpp"
 #include "interface_stop.hpp"
 #include "link/interface_lock.hpp"
+#include "link/process_identity.hpp"
 #include "link/run_dir.hpp"
 #include "rc10_version.hpp"
 
@@ -31,6 +32,8 @@ constexpr int kBadUsageOrFile = 2;
 // Together 0.2 s at most: a service manager waits for us.
 constexpr int kMaxSteps = 200;
 constexpr auto kStep = std::chrono::milliseconds{1};
+// For an rc10d that has been killed and is not gone yet.
+constexpr int kEndingSteps = 100;
 
 constexpr std::string_view kHelp = R"(usage: rc10-stop ROBOT | --file FILE | --all   [--force]
 
@@ -45,7 +48,8 @@ While rc10d runs it refuses: use `rc10ctl estop`.
   --help, --version
 
 RC10_RUN_DIR replaces /run/rc10d.
-Exit status: 0 every frame was accepted, 1 an interface failed or rc10d runs, 2 bad usage or file.
+Exit status: 0 every frame was accepted, 1 an interface failed, or was left out because an rc10d drives it,
+2 bad usage or file.
 )";
 
 struct Options {
@@ -106,12 +110,20 @@ std::optional<Options> parse(const std::vector<std::string>& words) {
   return options;
 }
 
-Result<std::vector<AddressedFrame>> load(const std::string& path) {
+struct RestFile {
+  std::optional<link::ProcessIdentity>
+      writer;  ///< The rc10d that left it; a file of other programs has none.
+  std::map<std::string, std::vector<CanFrame>> frames;  ///< By interface.
+};
+
+Result<RestFile> load(const std::string& path) {
   const auto text = readWholeFile(path);
   if (!text) return fail(path + ": cannot be read: no rc10d of that robot ran, or another user's did");
-  auto frames = parseFrameList(*text);
+  const auto frames = parseFrameList(*text);
   if (!frames) return fail(path + ": " + frames.error().message);
-  return frames;
+  RestFile file{.writer = link::ProcessIdentity::in(*text), .frames = {}};
+  for (const auto& [interface, frame] : *frames) file.frames[interface].push_back(frame);
+  return file;
 }
 
 class Stop {
@@ -119,18 +131,16 @@ class Stop {
   explicit Stop(const Options& options) : options_(options) {}
 
   int run() {
-    for (const auto& file : options_.files) {
-      const auto frames = load(file);
-      if (frames) {
-        add(*frames);
+    for (const auto& path : options_.files) {
+      const auto file = load(path);
+      if (file) {
+        add(*file);
       } else {
-        status_ = complain(frames.error().message);  // the other robots have their drives too
+        status_ = complain(file.error().message);  // the other robots have their drives too
       }
     }
     std::vector<InterfaceStop> stops;
-    for (auto& [interface, frames] : frames_) {
-      if (mayUse(interface)) stops.emplace_back(interface, std::move(frames));
-    }
+    for (auto& [interface, frames] : frames_) stops.emplace_back(interface, std::move(frames));
     send(stops);
     for (const auto& stop : stops) {
       if (const auto problem = stop.problem(); !problem.empty()) failed(problem);
@@ -139,15 +149,26 @@ class Stop {
   }
 
  private:
-  void add(const std::vector<AddressedFrame>& frames) {
-    for (const auto& [interface, frame] : frames) frames_[interface].push_back(frame);
+  void add(const RestFile& file) {
+    for (const auto& [interface, frames] : file.frames) {
+      if (!mayUse(interface, file.writer)) continue;
+      auto& all = frames_[interface];
+      all.insert(all.end(), frames.begin(), frames.end());
+    }
   }
 
-  bool mayUse(const std::string& interface) {
+  bool mayUse(const std::string& interface, const std::optional<link::ProcessIdentity>& writer) {
     if (options_.force) return true;
-    const auto holder = link::InterfaceLock::holder(link::runDir(), interface);
+    auto holder = link::holderOfInterface(interface);
     if (holder.empty()) return true;
-    if (options_.all) return false;  // its rc10d looks after it
+    if (writer && writer->runs()) {
+      if (options_.all) return false;  // it looks after its drives, and is none of those we were asked for
+      for (int step = 0; step < kEndingSteps && !holder.empty(); ++step) {
+        std::this_thread::sleep_for(kStep);
+        holder = link::holderOfInterface(interface);
+      }
+      if (holder.empty()) return true;
+    }
     failed(interface + " is driven by " + holder +
            ", which runs: use `rc10ctl estop`, or --force to send all the same");
     return false;

@@ -26,7 +26,6 @@
 #include "feed.hpp"
 #include "latency_test.hpp"
 #include "link/interface_lock.hpp"
-#include "link/run_dir.hpp"
 #include "multicast_source.hpp"
 #include "terminal.hpp"
 #include "verbs.hpp"
@@ -73,7 +72,7 @@ class Doctor {
       if (!facts.link) continue;
       tell(doctor::checkInterruptThreads(
           facts.interface, doctor::threadsOf(facts.interface, files_, processes_), robot_.rx.priority));
-      holders[facts.interface] = link::InterfaceLock::holder(link::runDir(), facts.interface);
+      holders[facts.interface] = link::holderOfInterface(facts.interface);
     }
     if (wanted.empty()) tell(noInterfaces());
     examineMulticast();

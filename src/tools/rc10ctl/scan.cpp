@@ -22,7 +22,6 @@
 #include "client/text_table.hpp"
 #include "config/check/drive_ids.hpp"
 #include "link/interface_lock.hpp"
-#include "link/run_dir.hpp"
 #include "survey/bus_survey.hpp"
 #include "survey/harmless_queries.hpp"
 #include "survey/scan_advice.hpp"
@@ -184,10 +183,8 @@ void printSightingsJson(const std::string& interface, const std::vector<Sighting
 
 // Somebody else's frames in between would be wrong, and ours in theirs.
 std::string heldBy(const std::string& interface) {
-  const auto holder = link::InterfaceLock::holder(link::runDir(), interface);
+  const auto holder = link::holderOfInterface(interface);
   if (holder.empty()) return {};
-  if (holder.front() == '/')
-    return "cannot see who drives " + interface + ": " + holder + ": join the group rc10, or use sudo";
   return interface + " is driven by " + holder +
          ": `rc10ctl stats` and `rc10ctl watch` show its drives; or stop it first: `sudo systemctl stop "
          "rc10d`";
@@ -203,12 +200,10 @@ ExitCode scan(const Global& global, const ScanOptions& options) {
                      (link->isController() ? " type can bitrate 1000000 restart-ms 0`" : "`")},
                     ExitCode::kFailed);
   }
-  // Where it may be taken: an rc10d that starts meanwhile would be answered by what we asked.
-  const auto lock = link::InterfaceLock::take(link::runDir(), options.interface, "none (rc10ctl scan)");
-  if (!lock) {
-    if (const auto held = heldBy(options.interface); !held.empty())
-      return complain({held}, ExitCode::kFailed);
-  }
+  // An rc10d that starts meanwhile would be answered by what we asked.
+  const auto lock =
+      link::InterfaceLock::take(boundInterface(socket->fd.get()), options.interface, "none (rc10ctl scan)");
+  if (!lock) return complain(lock.error(), ExitCode::kFailed);
   const auto start = steady_clock::now();
   Scanner scanner(std::move(*socket), options);
   if (const auto why = scanner.run(); !why.empty())
