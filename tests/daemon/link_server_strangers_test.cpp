@@ -1,6 +1,9 @@
 // Clients that misbehave: whatever one of them does, the others are served.
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <sys/resource.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <cstring>
@@ -142,6 +145,56 @@ TEST_F(LinkServerStrangersTest, AClientThatNeverReadsBlocksNobody) {
   EXPECT_GT(seen, 0);
   EXPECT_LT(seen, 2000);
   expectServed(*deaf);
+}
+
+// More answers than its socket holds.
+TEST_F(LinkServerStrangersTest, EveryAnswerOfABurstArrives) {
+  auto client = join();
+  std::int64_t asked = 0;
+  while (asked < 160) {
+    for (int i = 0; i < 20; ++i) ASSERT_TRUE(client->send(linkRequest(++asked, "dance")));
+    pump();
+  }
+  std::int64_t answered = 0;
+  for (int turn = 0; turn < 100 && answered < asked; ++turn) {
+    while (const auto response = client->take<link::Response>()) EXPECT_EQ(response->seq, ++answered);
+    server->poll(100);
+  }
+  EXPECT_EQ(answered, asked);
+  expectServed(*client);
+}
+
+TEST_F(LinkServerStrangersTest, AClientThatLeavesItsAnswersUnreadIsSentAwayAndKnowsIt) {
+  auto deaf = join();
+  auto client = join();
+  for (std::int64_t asked = 0; asked < 2000; ++asked) {
+    (void)deaf->send(linkRequest(asked, "dance"));
+    if (asked % 50 == 0) pump();
+  }
+  for (int turn = 0; turn < 5; ++turn) server->poll(100);  // some turns of the slow timer
+  std::int64_t answered = 0;
+  while (deaf->take<link::Response>()) ++answered;
+  EXPECT_LT(answered, 2000);
+  EXPECT_TRUE(deaf->sentAway());
+  expectServed(*client);
+}
+
+TEST_F(LinkServerStrangersTest, WithoutDescriptorsAClientIsSentAwayAndTheLogSaysWhy) {
+  auto client = join();
+  rlimit before{};
+  ASSERT_EQ(::getrlimit(RLIMIT_NOFILE, &before), 0);
+  TestClient late(path);
+  const int highest = ::dup(0);
+  ::close(highest);
+  const rlimit none{.rlim_cur = static_cast<rlim_t>(highest), .rlim_max = before.rlim_max};
+  ASSERT_EQ(::setrlimit(RLIMIT_NOFILE, &none), 0);
+  server->poll(0);
+  ASSERT_EQ(::setrlimit(RLIMIT_NOFILE, &before), 0);
+  EXPECT_TRUE(late.sentAway());
+  ASSERT_EQ(logged.size(), 1U);
+  EXPECT_THAT(std::string(logged[0].text.view()), testing::HasSubstr("no file descriptors left"));
+  expectServed(*client);
+  expectServed(*join());
 }
 
 TEST_F(LinkServerStrangersTest, AClientThatSendsWithoutPauseLeavesTheOthersTheirTurn) {

@@ -156,6 +156,24 @@ TEST_F(RequestDeskTest, AnEstopIsOneWhenTooManyRequestsAreOpen) {
   EXPECT_TRUE(begin(linkRequest(++seq, "estop")).estop);
 }
 
+TEST_F(RequestDeskTest, AClientThatAsksOnAndOnLeavesRoomForOthers) {
+  std::int64_t seq = 0;
+  int flood = 0;
+  while (begin(linkRequest(++seq, "enable")).order) ++flood;
+  EXPECT_EQ(flood, 32);
+  auto other = linkRequest(1, "disable");
+  other.client = std::string_view{"keyboard"};
+  EXPECT_TRUE(begin(other).order);
+}
+
+TEST_F(RequestDeskTest, AnswersMakeRoomForMoreRequests) {
+  std::vector<Order> orders;
+  for (std::int64_t seq = 1; seq <= 32; ++seq) orders.push_back(*begin(linkRequest(seq, "enable")).order);
+  EXPECT_FALSE(begin(linkRequest(33, "enable")).order);
+  for (const auto& order : orders) EXPECT_TRUE(desk.finish(done(order)));
+  EXPECT_TRUE(begin(linkRequest(34, "enable")).order);
+}
+
 TEST_F(RequestDeskTest, ARepeatedEstopIsOneToo) {
   const auto first = begin(linkRequest(1, "estop"));
   EXPECT_TRUE(begin(linkRequest(1, "estop")).estop);  // not answered yet

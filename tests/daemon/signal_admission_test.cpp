@@ -76,6 +76,24 @@ TEST_F(SignalAdmissionTest, RefusesWhatIsTooOld) {
   EXPECT_EQ(admit(message(), kNow + 50ms), CommandRefusal::kExpired);
 }
 
+TEST_F(SignalAdmissionTest, AClientThatFloodsLeavesRoomForAnother) {
+  auto now = kNow;
+  int flood = 0;
+  for (int ms = 0; ms < 100; ++ms, now += 1ms) {
+    for (int i = 0; i < 200; ++i) {
+      auto signals = message();
+      signals.received_ns = now.time_since_epoch().count();
+      flood += admit(signals, now) == CommandRefusal::kNone ? 1 : 0;
+    }
+    auto other = message();
+    other.client = std::string_view{"keyboard"};
+    other.received_ns = now.time_since_epoch().count();
+    EXPECT_EQ(admit(other, now), CommandRefusal::kNone) << ms;
+  }
+  EXPECT_LE(flood, 64 + 100 * 32);  // a burst, and what is left of the ring's share in each millisecond
+  EXPECT_EQ(admit(message(), kNow), CommandRefusal::kRingFull);
+}
+
 TEST_F(SignalAdmissionTest, NumbersRiseForEachModule) {
   auto first = message();
   ASSERT_EQ(admit(first), CommandRefusal::kNone);

@@ -1,5 +1,6 @@
 #include "daemon/clients/link_server.hpp"
 
+#include <fcntl.h>
 #include <sys/epoll.h>
 #include <sys/socket.h>
 #include <sys/timerfd.h>
@@ -21,6 +22,8 @@ constexpr int kMaxLinkEvents = 16;
 constexpr int kDatagramsPerTurn = 32;
 // Answers and events leave at this rate, whatever state_hz is.
 constexpr int kSlowHz = 100;
+// More than a client may have under way: it asks on and on, and reads nothing.
+constexpr std::size_t kMaxUnsent = 128;
 constexpr unsigned kDiagnosticsEvery = kSlowHz / 2;    // 2 Hz
 constexpr unsigned kHousekeepingEvery = kSlowHz / 10;  // 10 Hz
 // Refusals of one reason are told at most this often; all of them are counted.
@@ -100,6 +103,7 @@ LinkServer::LinkServer(LinkSocket socket, Sources sources, UniqueFd epoll, Uniqu
       epoll_(std::move(epoll)),
       state_timer_(std::move(state_timer)),
       slow_timer_(std::move(slow_timer)),
+      spare_(::open("/dev/null", O_RDONLY | O_CLOEXEC)),
       admission_(traits(sources_.robot)),
       signal_admission_(modules(sources_.robot)),
       desk_(admission_, names(sources_.robot), optional(sources_.robot), setups(sources_.robot),
@@ -138,6 +142,7 @@ void LinkServer::poll(int timeout_ms) {
     } else if (key == kSlowTimer) {
       drainTimer(slow_timer_.get());
       drainScheduler();
+      sendUnsent();
       if (++slow_ticks_ % kHousekeepingEvery == 0 && sources_.housekeeping) sources_.housekeeping();
       if (slow_ticks_ % kDiagnosticsEvery == 0) publishDiagnostics();
     } else {
@@ -152,6 +157,7 @@ void LinkServer::poll(int timeout_ms) {
 void LinkServer::accept() {
   for (;;) {
     UniqueFd fd{::accept4(socket_.descriptor(), nullptr, nullptr, SOCK_NONBLOCK | SOCK_CLOEXEC)};
+    if (!fd && (errno == EMFILE || errno == ENFILE)) return refuseForWantOfDescriptors();
     if (!fd) return;
     if (connections_.size() >= kMaxConnections && !dropSilentConnection())
       continue;  // closed: the client sees it
@@ -161,6 +167,23 @@ void LinkServer::accept() {
     if (watch(epoll_.get(), connection.fd.get(), connection.id))
       connections_.push_back(std::move(connection));
   }
+}
+
+// One that stayed in the queue would wake this thread again and again, and wait for ever.
+void LinkServer::refuseForWantOfDescriptors() {
+  spare_.reset();
+  UniqueFd{::accept4(socket_.descriptor(), nullptr, nullptr, SOCK_CLOEXEC)}.reset();
+  spare_ = UniqueFd{::open("/dev/null", O_RDONLY | O_CLOEXEC)};
+  const auto now = monotonicNow();
+  if (!sources_.log || now < next_descriptor_report_) return;
+  next_descriptor_report_ = now + kRefusalReportInterval;
+  link::Event event;
+  event.severity = Severity::kError;
+  event.source = std::string_view{"link"};
+  event.text = std::string_view{
+      "no file descriptors left: a client was sent away; raise the limit "
+      "(LimitNOFILE= of the unit, `ulimit -n`)"};
+  sources_.log(event);
 }
 
 // Connections without a hello must not keep the others out.
@@ -288,14 +311,26 @@ void LinkServer::request(const link::Request& message, Connection& connection) {
     if (const auto failed = desk_.fail(outcome.order->id, "the scheduler does not take orders"))
       answer(*failed);
   }
-  if (outcome.response) send(connection, link::seal(*outcome.response));
+  if (outcome.response) respond(connection, *outcome.response);
 }
 
 void LinkServer::answer(const RequestDesk::Answer& answer) {
-  for (const auto& connection : connections_) {
-    if (connection.id != answer.connection) continue;
-    auto message = answer.response;
-    send(connection, link::seal(message));
+  for (auto& connection : connections_) {
+    if (connection.id == answer.connection) respond(connection, answer.response);
+  }
+}
+
+void LinkServer::respond(Connection& connection, link::Response response) {
+  if (connection.unsent.empty() && send(connection, link::seal(response))) return;
+  connection.unsent.push_back(std::move(response));
+}
+
+void LinkServer::sendUnsent() {
+  for (std::size_t i = connections_.size(); i-- > 0;) {
+    auto& unsent = connections_[i].unsent;
+    while (!unsent.empty() && send(connections_[i], link::seal(unsent.front()))) unsent.pop_front();
+    // It sees the end of the connection, and knows that answers are missing.
+    if (unsent.size() > kMaxUnsent) close(i);
   }
 }
 
@@ -346,9 +381,11 @@ void LinkServer::publish(std::uint32_t subscription, std::span<const std::byte> 
   }
 }
 
-void LinkServer::send(const Connection& connection, std::span<const std::byte> message) noexcept {
-  // A client that does not read loses messages; the next state supersedes the lost one.
-  (void)!::send(connection.fd.get(), message.data(), message.size(), MSG_DONTWAIT | MSG_NOSIGNAL);
+bool LinkServer::send(const Connection& connection, std::span<const std::byte> message) noexcept {
+  // A client that does not read loses messages; the next state supersedes the lost one. One that is gone
+  // needs none.
+  return ::send(connection.fd.get(), message.data(), message.size(), MSG_DONTWAIT | MSG_NOSIGNAL) >= 0 ||
+         (errno != EAGAIN && errno != ENOBUFS);
 }
 
 }  // namespace rc10

@@ -3,6 +3,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <deque>
 #include <functional>
 #include <memory>
 #include <span>
@@ -23,7 +24,8 @@
 namespace rc10 {
 
 /// The daemon's end of the link: clients in and out, between their sockets and the rings. Link thread
-/// only. Nobody waits for it, and it waits for no client: what a client does not read is dropped.
+/// only. Nobody waits for it, and it waits for no client: what a client does not read is dropped, but answers
+/// wait until they fill their room, and then the client is sent away.
 class LinkServer {
  public:
   /// Parts of the daemon that the server reads. All outlive it.
@@ -50,6 +52,7 @@ class LinkServer {
     link::Name client;
     std::uint32_t subscriptions = 0;
     bool welcomed = false;
+    std::deque<link::Response> unsent{};  ///< Answers that found no room; the oldest first.
   };
 
   LinkServer(LinkSocket socket, Sources sources, UniqueFd epoll, UniqueFd state_timer, UniqueFd slow_timer);
@@ -73,13 +76,21 @@ class LinkServer {
   void publishModules(const Snapshot& snapshot);
   void publishDiagnostics();
   void publish(std::uint32_t subscription, std::span<const std::byte> message);
-  static void send(const Connection& connection, std::span<const std::byte> message) noexcept;
+  /// Hands an answer over, or keeps it.
+  void respond(Connection& connection, link::Response response);
+  /// Answers that have found no room until now; a client that leaves too many of them is sent away.
+  void sendUnsent();
+  void refuseForWantOfDescriptors();
+  /// False: there was no room.
+  static bool send(const Connection& connection, std::span<const std::byte> message) noexcept;
 
   LinkSocket socket_;
   Sources sources_;
   UniqueFd epoll_;
   UniqueFd state_timer_;
   UniqueFd slow_timer_;
+  UniqueFd spare_;  ///< Given up for an instant to refuse a client when there are no descriptors left.
+  MonotonicTime next_descriptor_report_{};
   Admission admission_;
   SignalAdmission signal_admission_;
   RequestDesk desk_;

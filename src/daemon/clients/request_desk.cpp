@@ -132,7 +132,7 @@ RequestDesk::Outcome RequestDesk::begin(const link::Request& request, std::uint6
     problem = "angle_deg is not a finite number";
   } else if (*operation == Operation::kZero && std::fabs(value) > kFarthestZeroDeg) {
     problem = fmt::format("angle_deg: {} is out of range; use -1000000 to 1000000", value);
-  } else if (open_.size() >= kMaxOpen) {
+  } else if (!mayOpen(request.client.view())) {
     problem = "too many requests at once: wait for the answers";
   } else if (parseMotors(request, motors, problem) &&
              (*operation != Operation::kEnableAlone || isOfOneMotor(request, problem)) &&
@@ -147,6 +147,13 @@ RequestDesk::Outcome RequestDesk::begin(const link::Request& request, std::uint6
   outcome.response = respond(request, link::ResponseStatus::kRefused, problem);
   remember(*outcome.response);
   return outcome;
+}
+
+// No more than what is left for the others: there is room for a newcomer, whoever floods.
+bool RequestDesk::mayOpen(std::string_view client) const {
+  const auto own = std::count_if(open_.begin(), open_.end(),
+                                 [client](const Open& open) { return open.request.client.view() == client; });
+  return static_cast<std::size_t>(own) + open_.size() < kMaxOpen;
 }
 
 bool RequestDesk::parseMotors(const link::Request& request, MotorSet& motors, std::string& problem) const {

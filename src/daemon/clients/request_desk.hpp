@@ -4,6 +4,7 @@
 #include <deque>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "app/result.hpp"
@@ -52,6 +53,7 @@ class RequestDesk {
     GainChanges gains;
   };
 
+  [[nodiscard]] bool mayOpen(std::string_view client) const;
   [[nodiscard]] bool parseMotors(const link::Request& request, MotorSet& motors, std::string& problem) const;
   /// The motor that a request about one drive names, or what is wrong.
   [[nodiscard]] Result<std::size_t> theMotor(const link::Request& request) const;

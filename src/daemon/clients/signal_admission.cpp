@@ -33,6 +33,7 @@ CommandRefusal SignalAdmission::admit(const link::Signals& message, MonotonicTim
     place = given.value;
   }
   if (now >= *deadline) return CommandRefusal::kExpired;
+  if (!budget_.spend(message.client.view(), message.value_count, now)) return CommandRefusal::kRingFull;
   const auto module = static_cast<std::size_t>(known - modules_.begin());
   out.module = static_cast<std::uint16_t>(module);
   out.client = message.client;

@@ -6,6 +6,7 @@
 
 #include "app/time.hpp"
 #include "daemon/clients/admission.hpp"
+#include "daemon/clients/command_budget.hpp"
 #include "daemon/clients/session_numbers.hpp"
 #include "daemon/exchange/orders.hpp"
 #include "link/link_protocol.hpp"
@@ -30,6 +31,7 @@ class SignalAdmission {
  private:
   std::vector<KnownModule> modules_;
   std::vector<SessionNumbers> sessions_;  // of each module
+  CommandBudget budget_;                  // of messages, whose ring is as large as that of commands
 };
 
 }  // namespace rc10
