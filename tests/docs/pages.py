@@ -96,3 +96,39 @@ def source_texts() -> str:
     ]
     text = "\n".join(path.read_text(encoding="utf-8") for path in files)
     return re.sub(r'"\s*f?"', "", text).replace('\\"', '"')
+
+
+def columns(page: Page, name: str) -> list[str]:
+    """The code in the column of this name, in every table that has one."""
+    found: list[str] = []
+    place = None
+    for line in page.prose.splitlines():
+        if not line.startswith("|"):
+            place = None
+            continue
+        cells = [cell.strip() for cell in line.strip("|").split(" | ")]
+        if name in cells:
+            place = cells.index(name)
+        elif place is not None and place < len(cells):
+            found += [span for _, span in SPAN.findall(cells[place])]
+    return found
+
+
+@cache
+def known_tests() -> frozenset[str]:
+    """Suite.Name of C++ tests and instances of suites, functions of the others, programs, files."""
+    names: set[str] = set()
+    for file in REPO.glob("tests/**/*.cpp"):
+        text = file.read_text(encoding="utf-8")
+        found = re.findall(r"^(?:TYPED_)?TEST(?:_F|_P)?\(\s*(\w+),\s*(\w+)\s*\)", text, re.M)
+        names |= {f"{suite}.{test}" for suite, test in found}
+        for instance, suite in re.findall(r"INSTANTIATE_TEST_SUITE_P\(\s*(\w+),\s*(\w+)", text):
+            names |= {f"{instance}/{suite}.{test}/0" for of, test in found if of == suite}
+            names |= {f"{instance}/{suite}.{test}" for of, test in found if of == suite}
+    for file in [*REPO.glob("tests/**/*.py"), *REPO.glob("python/tests/*.py")]:
+        text = file.read_text(encoding="utf-8")
+        names |= set(re.findall(r"^(?:async )?def (test_\w+)", text, re.M))
+        names.add(str(file.relative_to(REPO)))
+    names |= {file.stem for file in REPO.glob("tests/fuzz/*_fuzz.cpp")}
+    programs = (REPO / "tests/CMakeLists.txt").read_text(encoding="utf-8")
+    return frozenset(names | set(re.findall(r"add_executable\((\w+) ", programs)))

@@ -2,11 +2,22 @@
 
 from __future__ import annotations
 
+import fnmatch
 import re
 from pathlib import Path
 
 import pytest
-from pages import REPO, Page, anchors, messages, pages, read, source_texts
+from pages import (
+    REPO,
+    Page,
+    anchors,
+    columns,
+    known_tests,
+    messages,
+    pages,
+    read,
+    source_texts,
+)
 
 VERB = re.compile(r"\brc10ctl(?: --json| --(?:robot|socket) \S+)* ([a-z][a-z-]*)\b(?![.:/=])")
 PAGES = pages()
@@ -82,6 +93,23 @@ def test_troubleshooting_quotes_messages_that_exist() -> None:
     pieces = [piece.strip() for message in quoted for piece in re.split("…|: ", message)]
     unknown = [piece for piece in pieces if len(piece) > 2 and piece not in source_texts()]
     assert unknown == []
+
+
+def missing_tests(page: Page) -> list[str]:
+    """Those that the page names, and nobody wrote. It may leave out the suite, or end in `*`."""
+    shaped = r"(\w+/)?[A-Z]\w*\*?\.[A-Z*][\w*/]*|test_\w+\*?|tests/\S+\.py"
+    said = columns(page, "test") + [code for code in page.code if re.fullmatch(shaped, code)]
+    known = known_tests()
+    short = known | {name.partition(".")[2] for name in known}
+    return [name for name in dict.fromkeys(said) if not fnmatch.filter(short, name)]
+
+
+def test_every_test_that_proves_safety_exists() -> None:
+    page = read(REPO / "docs/safety.md")
+    assert len(columns(page, "test")) > 150
+    assert missing_tests(page) == []
+    changed = page.text.replace("`MotorStates.*`", "`MotorSates.*`")
+    assert missing_tests(Page(page.path, changed)) == ["MotorSates.*"]
 
 
 @by_name
