@@ -1,6 +1,7 @@
 #!/bin/bash
 # Installs the Debian packages that parts of this project need.
-#   scripts/install-deps.sh [--may-ask] [build] [test] [languages] [lint] [kernel] [vm] [package]      default: all
+#   scripts/install-deps.sh [--list|--may-ask] [build] [test] [languages] [lint] [kernel] [vm] [package]      default: all
+# --list: installs nothing, and prints the packages.
 # --may-ask: installs nothing, but lets sudo ask for the password now, if something is missing.
 set -euo pipefail
 
@@ -20,7 +21,7 @@ declare -A packages=(
 groups=(build test languages lint kernel vm package)
 
 usage() {
-    echo "usage: scripts/install-deps.sh [--may-ask] [${groups[*]}]  (default: all)"
+    echo "usage: scripts/install-deps.sh [--list|--may-ask] [${groups[*]}]  (default: all)"
 }
 
 die() {
@@ -52,7 +53,8 @@ apt() {
     as_root env DEBIAN_FRONTEND=noninteractive apt-get -qq -o DPkg::Lock::Timeout=300 "$@"
 }
 
-may_ask=
+list='' may_ask=''
+[ "${1:-}" != --list ] || { list=yes && shift; }
 [ "${1:-}" != --may-ask ] || { may_ask=yes && shift; }
 [ $# -gt 0 ] || set -- "${groups[@]}"
 wanted=()
@@ -67,6 +69,7 @@ for group in "$@"; do
     wanted+=("${names[@]}")
 done
 
+[ -z "$list" ] || { printf '%s\n' "${wanted[@]}" && exit; }
 command -v dpkg-query >/dev/null || die "this is no Debian or Ubuntu; what is needed there: ${wanted[*]}"
 mapfile -t absent < <(missing "${wanted[@]}" | sort -u)
 [ ${#absent[@]} -gt 0 ] || exit 0

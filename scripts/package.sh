@@ -1,5 +1,5 @@
 #!/bin/bash
-# Makes the Debian packages and the Python wheel, into build/packages.
+# Makes the Debian packages, the Python wheel, their bill of materials (SPDX) and SHA256SUMS, into build/packages.
 #   scripts/package.sh [--arm64] [--no-wheel]
 # RC10_BUILD: a build tree to pack as it is, instead of making build/package (with --arm64: build/arm64).
 # RC10_PACKAGES: another folder for what is made.
@@ -50,4 +50,11 @@ if [ -n "$wheel" ]; then
     "$RC10_PYTHON" -m pip --quiet --disable-pip-version-check wheel --no-deps --no-build-isolation \
         --wheel-dir "$packages" "$repo/python"
 fi
+
+# Headers and archives, whose code is in the programs, as the build found them.
+# shellcheck disable=SC2016  # dpkg-query expands
+"${run[@]}" dpkg-query --show --showformat '${db:Status-Status} ${Package} ${Version}\n' '*-dev' \
+    | sed -n 's/^installed //p' | sort -u \
+    | grep -F -f <("$repo/scripts/install-deps.sh" --list build | grep -e '-dev$' | sed 's/$/ /') >"$tree/build-packages"
+/usr/bin/python3 "$repo/scripts/lib/sbom.py" "$packages" "$tree/build-packages"
 ls -l "$packages"

@@ -24,7 +24,7 @@ inputs() {
     {
         "$base" --version
         echo "$venv"
-        cat "$@" "$repo"/python/{pyproject.toml,hatch_build.py} "$repo"/lcm_types/*.lcm
+        cat "$@" "$repo"/scripts/python-hashes.txt "$repo"/python/{pyproject.toml,hatch_build.py} "$repo"/lcm_types/*.lcm
     } | sha256sum
 }
 
@@ -40,10 +40,16 @@ flock 9
 has_client=$(inputs "${client[@]}") has_all=$(inputs "${client[@]}" "${all[@]}")
 made=$(cat "$venv/.inputs" 2>/dev/null || true)
 pip=("$venv/bin/python" -m pip --quiet --disable-pip-version-check install)
+
+# install REQUIREMENTS...: what was looked at when their hashes were written down, and nothing else.
+install() {
+    "$base" "$repo/scripts/lib/hashed_requirements.py" "$@" >"$venv/.requirements" || return
+    "${pip[@]}" --require-hashes --requirement="$venv/.requirements" >&2
+}
 if [ "$made" != "$has_all" ] && [ "$made" != "$has_client" ]; then
     echo "venv: making $venv" >&2
     "$base" -m venv --clear "$venv" >&2
-    "${pip[@]}" "${client[@]/#/--requirement=}" >&2
+    install "${client[@]}"
     # Its build tools are among the requirements.
     "${pip[@]}" --no-build-isolation --no-deps --editable "$repo/python" >&2
     made=$has_client
@@ -51,7 +57,7 @@ if [ "$made" != "$has_all" ] && [ "$made" != "$has_client" ]; then
 fi
 if [ "$wanted" = all ] && [ "$made" != "$has_all" ]; then
     echo "venv: adding to $venv what tests and tools need" >&2
-    "${pip[@]}" "${all[@]/#/--requirement=}" >&2
+    install "${all[@]}"
     echo "$has_all" >"$venv/.inputs"
 fi
 echo "$venv/bin/python"

@@ -43,7 +43,7 @@ in_root() {
         done
         mount --rbind "$root" "$root" && cd "$root" && mount -t proc proc proc && mount --rbind /dev dev \
             && mount -t sysfs sysfs sys && mount -t tmpfs -o mode=1777 tmpfs tmp && mount --move . / || exit
-        exec chroot . env -C "$clone" -u TMPDIR -u XDG_CACHE_HOME HOME="$home" "$@"' sh "$root" "$clone" "$home" "$@"
+        exec chroot . env -C "$clone" -u TMPDIR -u XDG_CACHE_HOME HOME="$home" XDG_RUNTIME_DIR="$home" "$@"' sh "$root" "$clone" "$home" "$@"
 }
 
 # timed NAME COMMAND...

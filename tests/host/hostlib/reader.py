@@ -29,7 +29,7 @@ TITLES = re.compile(r"^[A-Z][A-Z0-9.]*(?: +[A-Z][A-Z0-9.]*)+$")
 # The first cell of a row, unless it is a time: two spaces are between columns.
 ROW = re.compile(r"^ *([A-Za-z]\S*(?: \S+)*)  +\S")
 # The folder that the pages write; its place in the tests is another.
-RUN_DIR = "/tmp/rc10"
+RUN_DIR = "$XDG_RUNTIME_DIR/rc10"
 CTRL_C = 130
 PATIENCE_S = 60.0
 
