@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING
 
 from rc10.errors import Rc10Error, Timeout
 from rc10.link import MULTICAST_GROUP, ROUTE_COMMAND, LcmLink
+from rc10.printable import printable
 from rc10.signals import SIGNALS
 
 if TYPE_CHECKING:
@@ -111,7 +112,7 @@ def run(name: str, main: Callable[[], int | None]) -> NoReturn:
     try:
         sys.exit(main() or 0)
     except (Rc10Error, OSError) as error:
-        print(f"{name}: {error}", file=sys.stderr)
+        print(f"{name}: {printable(error)}", file=sys.stderr)
         sys.exit(1)
     except KeyboardInterrupt:
         print(f"{name}: interrupted", file=sys.stderr)

@@ -2,9 +2,17 @@
 
 from __future__ import annotations
 
+from rc10.printable import printable
+
 
 class Rc10Error(Exception):
-    """Base of all errors of this package."""
+    """Base of all errors of this package.
+
+    Its text is one line that acts on no terminal, whatever names and words it quotes.
+    """
+
+    def __str__(self) -> str:
+        return printable(super().__str__())
 
 
 class LinkError(Rc10Error, ConnectionError):

@@ -12,6 +12,7 @@ from rc10.command_line import run
 from rc10.errors import Rc10Error
 from rc10.export.log import LogReader
 from rc10.export.table import Tables
+from rc10.printable import printable
 
 if TYPE_CHECKING:
     from rc10.export.log import Logged
@@ -65,16 +66,17 @@ def main() -> None:
                     sink.add(logged)
         for channel, count in reader.foreign.items():
             print(
-                f"export: {channel}: {count} messages of other types than this rc10's, left out",
+                f"export: {printable(channel)}: {count} messages of other types than this rc10's, "
+                "left out",
                 file=sys.stderr,
             )
         if not messages:
             raise Rc10Error(f"{options.log} has no message of rc10")
         if mcap is not None:
-            print(f"wrote {path}: {mcap.messages} messages")
+            print(f"wrote {printable(path)}: {mcap.messages} messages")
         if tables is not None:
             for robot, (file, rows) in tables.written().items():
-                print(f"wrote {file}: {rows} states of robot '{robot}'")
+                print(f"wrote {printable(file)}: {rows} states of robot '{printable(robot)}'")
 
     run("export", export)
 

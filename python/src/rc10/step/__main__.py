@@ -6,6 +6,7 @@ import argparse
 
 from rc10.client import connect
 from rc10.command_line import add_robot_arguments, check_writable, find_robot, run
+from rc10.printable import printable
 from rc10.setpoints import Mode
 from rc10.step.plan import MODES, StepPlan
 
@@ -80,7 +81,8 @@ def main() -> None:
         name = find_robot(options.robot, options.url)
         with connect(name, options.url, client="rc10-step", at_end="disable") as robot:
             result = run_step(robot, plan)
-        print(text_of(result))
+        for line in text_of(result).splitlines():
+            print(printable(line))
         if options.csv:
             result.recording.to_csv(options.csv)
             print(f"wrote {options.csv}")
