@@ -7,7 +7,9 @@
 #include <string>
 
 #include "app/limits.hpp"
+#include "app/motion_match.hpp"
 #include "app/units.hpp"
+#include "module/carried_rate.hpp"
 #include "module/gimbal_axis.hpp"
 
 namespace rc10 {
@@ -17,6 +19,9 @@ using enum FamilyKey::Kind;
 
 constexpr FamilyKey signalKey(std::string_view name, std::string_view about) {
   return {.name = name, .kind = kText, .about = about, .pattern = kSignalPattern, .words = kSignalWords};
+}
+constexpr FamilyKey reversedKey(std::string_view name, std::string_view about) {
+  return {.name = name, .kind = kFlag, .default_text = "false", .about = about};
 }
 constexpr FamilyKey limitKey(std::string_view name, double value_if_not, std::string_view default_text,
                              std::string_view about) {
@@ -39,11 +44,16 @@ constexpr std::array kGimbalKeys{
     FamilyKey{.name = "pitch",
               .kind = kMotor,
               .required = true,
-              .about = "The motor that lifts; the same, 0 where it looks level."},
+              .about = "The motor that lifts; the same, 0 where it looks level, positive where it looks up."},
     signalKey("imu_yaw",
               "The yaw of an inertial sensor on the gimbal, deg. Default: none; it holds to the chassis."),
     signalKey("imu_yaw_rate", "Its rate, deg/s: with it the turning of the chassis is taken off at once."),
-    signalKey("imu_pitch", "The pitch of that sensor, deg. Default: the motor's angle."),
+    signalKey("imu_pitch",
+              "The pitch of that sensor, deg, positive where it looks up. Default: the motor's angle."),
+    reversedKey("imu_yaw_reversed",
+                "The sensor hangs upside down: its yaw and yaw rate count clockwise, seen from above."),
+    reversedKey("imu_pitch_reversed",
+                "The sensor's pitch is positive where it looks down: its y axis points to the left."),
     limitKey("pitch_min_deg", 90, "-20", "No lower does it look."),
     limitKey("pitch_max_deg", 90, "30", "Nor higher."),
     FamilyKey{.name = "gain_per_s",
@@ -72,10 +82,16 @@ ModuleSignals gimbalSignals() {
   return {
       .inputs = {"yaw_deg", "pitch_deg", "yaw_rate_deg_s", "pitch_rate_deg_s"},
       .outputs = {"yaw_deg", "pitch_deg", "relative_yaw_deg", "target_yaw_deg", "target_pitch_deg",
-                  "stabilised"},
+                  "stabilised", "imu_lag_ms", "imu_agrees"},
       .events = {{.text = "the inertial sensor is not heard: the gimbal holds to the chassis"},
                  {.text = "the inertial sensor is heard: the gimbal holds to the world", .expected = true},
-                 {.text = "nobody has commanded it for silence_max_s: it holds its direction no longer"}}};
+                 {.text = "nobody has commanded it for silence_max_s: it holds its direction no longer"},
+                 {.text = "imu_yaw moves against the yaw motor and is not used: the gimbal holds to the "
+                          "chassis; see imu_yaw_reversed, and the motor's direction"},
+                 {.text = "imu_yaw_rate moves against the yaw motor and is not used; see imu_yaw_reversed, "
+                          "and the motor's direction"},
+                 {.text = "imu_pitch moves against the pitch motor and is not used: the motor's angle is; "
+                          "see imu_pitch_reversed, and the motor's direction"}}};
 }
 
 class Gimbal : public Module_Base {
@@ -88,6 +104,8 @@ class Gimbal : public Module_Base {
         pitch_max_deg_(own.number("pitch_max_deg")),
         silence_max_(std::chrono::milliseconds{static_cast<int>(own.number("silence_max_s") * 1000.0)}),
         names_{own.text("imu_yaw"), own.text("imu_yaw_rate"), own.text("imu_pitch")},
+        signs_{signOf(own, "imu_yaw_reversed"), signOf(own, "imu_yaw_reversed"),
+               signOf(own, "imu_pitch_reversed")},
         yaw_({own.number("gain_per_s"), own.number("velocity_limit_rpm"), true}),
         pitch_({own.number("gain_per_s"), own.number("velocity_limit_rpm"), false}) {}
 
@@ -105,23 +123,28 @@ class Gimbal : public Module_Base {
   void update(const Tick& tick, ModuleRobot& robot) noexcept override {
     const auto& yaw = robot.feedback(yaw_motor_);
     const auto& pitch = robot.feedback(pitch_motor_);
-    const double imu_yaw_deg = read(robot, 0);
+    compare(tick, robot);
+    const double imu_yaw_deg = read(robot, kImuYaw);
     const bool stabilised = std::isfinite(imu_yaw_deg);
     const double yaw_deg = stabilised ? imu_yaw_deg : static_cast<double>(yaw.angle_deg);
-    const double imu_pitch_deg = read(robot, 2);
+    const double imu_pitch_deg = read(robot, kImuPitch);
+    const bool by_imu_pitch = std::isfinite(imu_pitch_deg);
     const double motor_pitch_deg = std::remainder(static_cast<double>(pitch.angle_deg), kDegPerTurn);
-    const double pitch_deg = std::isfinite(imu_pitch_deg) ? imu_pitch_deg : motor_pitch_deg;
+    const double pitch_deg = by_imu_pitch ? imu_pitch_deg : motor_pitch_deg;
     const bool ready = robot.obeys(yaw_motor_) && robot.obeys(pitch_motor_) && yaw.zeroed && pitch.zeroed;
     // Another frame, another angle: it goes on looking where it looks.
-    if (!ready || !was_ready_ || stabilised != was_stabilised_) {
-      if (was_ready_ && ready && places_[0]) robot.report(stabilised ? kBack : kLost);
+    const bool restarts = !ready || !was_ready_;
+    if (restarts || stabilised != was_stabilised_) {
+      if (!restarts && !opposed(kImuYaw)) robot.report(stabilised ? kBack : kLost);
       yaw_.hold(yaw_deg);
-      pitch_.hold(pitch_deg);
     }
+    if (restarts || by_imu_pitch != was_by_imu_pitch_) pitch_.hold(pitch_deg);
+    if (was_ready_ && !ready) forgetOpposed();
     was_ready_ = ready;
     was_stabilised_ = stabilised;
+    was_by_imu_pitch_ = by_imu_pitch;
     if (ready && was_commanded_)
-      follow(tick, robot, {yaw_deg, stabilised ? read(robot, 1) : kNoSignal}, pitch_deg);
+      follow(tick, robot, {yaw_deg, stabilised ? carried_.degPerSecond() : kNoSignal}, pitch_deg);
     holdOn(ready, tick, robot);
     setOutput(kOutYaw, std::remainder(yaw_deg, kDegPerTurn));
     setOutput(kOutPitch, pitch_deg);
@@ -130,17 +153,74 @@ class Gimbal : public Module_Base {
     setOutput(kTargetYaw, std::remainder(yaw_.target(), kDegPerTurn));
     setOutput(kTargetPitch, pitch_.target());
     setOutput(kStabilised, stabilised ? 1.0 : 0.0);
+    setOutput(kImuLagMs, lagMs());
+    setOutput(kImuAgrees, agreement());
   }
 
  private:
   enum Input : std::size_t { kYawDeg, kPitchDeg, kYawRate, kPitchRate };
-  enum Output : std::size_t { kOutYaw, kOutPitch, kRelativeYaw, kTargetYaw, kTargetPitch, kStabilised };
-  enum EventPlace : std::size_t { kLost, kBack, kSilent };
-
-  struct YawMeasured {
-    double angle_deg;
-    double rate_deg_s;
+  enum Output : std::size_t {
+    kOutYaw,
+    kOutPitch,
+    kRelativeYaw,
+    kTargetYaw,
+    kTargetPitch,
+    kStabilised,
+    kImuLagMs,
+    kImuAgrees
   };
+  enum EventPlace : std::size_t { kLost, kBack, kSilent, kFirstOpposed };
+  enum ImuSignal : std::size_t { kImuYaw, kImuYawRate, kImuPitch, kImuSignals };
+
+  // A degree within a tenth of a second; less than that where it is faster.
+  static constexpr MotionMatch::Config kAngleMatch{.enough = 0.002, .circular_period = kDegPerTurn};
+
+  [[nodiscard]] static double signOf(const OwnValues& own, std::string_view key) {
+    return own.flag(key) ? -1.0 : 1.0;
+  }
+
+  // A sensor of the wrong sign makes its loop run away: it is found by the first motion, also of a hand, and
+  // is not used until the motors are enabled again.
+  void compare(const Tick& tick, ModuleRobot& robot) noexcept {
+    const auto& yaw = robot.feedback(yaw_motor_);
+    yaw_match_.step(yaw.total_angle_deg, raw(robot, kImuYaw), tick.dt_s);
+    carried_.step(static_cast<double>(yaw.velocity_rpm), raw(robot, kImuYawRate), tick.dt_s);
+    pitch_match_.step(robot.feedback(pitch_motor_).total_angle_deg, raw(robot, kImuPitch), tick.dt_s);
+    for (std::size_t i = 0; i < kImuSignals; ++i) {
+      if (opposed(i) && !told_opposed_[i]) robot.report(kFirstOpposed + i);
+      told_opposed_[i] = opposed(i);
+    }
+  }
+  [[nodiscard]] const MotionMatch& match(std::size_t which) const noexcept {
+    if (which == kImuYawRate) return carried_.match();
+    return which == kImuYaw ? yaw_match_ : pitch_match_;
+  }
+  [[nodiscard]] bool opposed(std::size_t which) const noexcept {
+    return match(which).sign() == MotionMatch::Sign::kOpposed;
+  }
+  void forgetOpposed() noexcept {
+    if (opposed(kImuYaw)) yaw_match_.reset();
+    if (opposed(kImuYawRate)) carried_.forget();
+    if (opposed(kImuPitch)) pitch_match_.reset();
+  }
+  [[nodiscard]] double lagMs() const noexcept {
+    for (const auto which : {kImuYawRate, kImuYaw, kImuPitch}) {
+      if (const auto lag_s = match(which).lagSeconds()) return *lag_s * 1000.0;
+    }
+    return kNoSignal;
+  }
+  // 0: one does not; NaN: not each of them was seen to move yet.
+  [[nodiscard]] double agreement() const noexcept {
+    double all = kNoSignal;
+    bool unknown = false;
+    for (std::size_t i = 0; i < kImuSignals; ++i) {
+      if (!places_[i]) continue;
+      if (opposed(i)) return 0.0;
+      all = 1.0;
+      unknown = unknown || match(i).sign() == MotionMatch::Sign::kUnknown;
+    }
+    return unknown ? kNoSignal : all;
+  }
 
   // Once commanded it holds its direction for a while: a gimbal that falls is no rest. Not for ever: with its
   // client it may have lost its reason.
@@ -151,12 +231,16 @@ class Gimbal : public Module_Base {
     was_commanded_ = ready && (commanded() || (was_commanded_ && !silent));
   }
 
-  [[nodiscard]] double read(const ModuleRobot& robot, std::size_t which) const noexcept {
+  [[nodiscard]] double raw(const ModuleRobot& robot, std::size_t which) const noexcept {
     const auto& place = places_[which];
-    return place.has_value() ? robot.read(*place) : kNoSignal;
+    return place.has_value() ? robot.read(*place) * signs_[which] : kNoSignal;
+  }
+  [[nodiscard]] double read(const ModuleRobot& robot, std::size_t which) const noexcept {
+    return opposed(which) ? kNoSignal : raw(robot, which);
   }
 
-  void follow(const Tick& tick, ModuleRobot& robot, const YawMeasured& yaw, double pitch_deg) noexcept {
+  void follow(const Tick& tick, ModuleRobot& robot, const GimbalAxis::Measured& yaw,
+              double pitch_deg) noexcept {
     const double yaw_rate_deg_s = commanded() ? finiteOr0(input(kYawRate)) : 0.0;
     double pitch_rate_deg_s = commanded() ? finiteOr0(input(kPitchRate)) : 0.0;
     if (commanded() && std::isfinite(input(kYawDeg))) yaw_.aim(input(kYawDeg));
@@ -168,13 +252,8 @@ class Gimbal : public Module_Base {
       pitch_.aim(bounded_deg);
       pitch_rate_deg_s = 0.0;
     }
-    const auto rpm_of = [&](std::size_t motor) {
-      return static_cast<double>(robot.feedback(motor).velocity_rpm);
-    };
-    const double yaw_rpm =
-        yaw_.velocityRpm({yaw.angle_deg, yaw.rate_deg_s, rpm_of(yaw_motor_)}, yaw_rate_deg_s);
-    const double pitch_rpm =
-        pitch_.velocityRpm({pitch_deg, kNoSignal, rpm_of(pitch_motor_)}, pitch_rate_deg_s);
+    const double yaw_rpm = yaw_.velocityRpm(yaw, yaw_rate_deg_s);
+    const double pitch_rpm = pitch_.velocityRpm({pitch_deg, kNoSignal}, pitch_rate_deg_s);
     robot.setTarget(yaw_motor_, {.mode = ControlMode::kVelocity, .value = yaw_rpm});
     robot.setTarget(pitch_motor_, {.mode = ControlMode::kVelocity, .value = pitch_rpm});
   }
@@ -184,11 +263,17 @@ class Gimbal : public Module_Base {
   double pitch_min_deg_;
   double pitch_max_deg_;
   Duration silence_max_;
-  std::array<std::string, 3> names_;
-  std::array<std::optional<SignalPlace>, 3> places_;
+  std::array<std::string, kImuSignals> names_;
+  std::array<double, kImuSignals> signs_;
+  std::array<std::optional<SignalPlace>, kImuSignals> places_;
   GimbalAxis yaw_;
   GimbalAxis pitch_;
+  MotionMatch yaw_match_{kAngleMatch};
+  MotionMatch pitch_match_{kAngleMatch};
+  CarriedRate carried_;
+  std::array<bool, kImuSignals> told_opposed_{};
   bool was_ready_ = false;
+  bool was_by_imu_pitch_ = false;
   bool was_stabilised_ = false;
   bool was_commanded_ = false;
   MonotonicTime commanded_at_{};

@@ -6,8 +6,8 @@
 
 namespace rc10 {
 
-/// One axis that is to look at an angle of the world: which velocity its motor gets. The angle, its rate and
-/// the motor's velocity come in; so it is known how fast the axis is carried round, and that is taken off.
+/// One axis that is to look at an angle of the world: which velocity its motor gets. How fast the axis is
+/// carried round is taken off.
 class GimbalAxis {
  public:
   struct Config {
@@ -16,9 +16,8 @@ class GimbalAxis {
     bool circular = true;  ///< The shortest way round.
   };
   struct Measured {
-    double angle_deg = 0.0;   ///< Of the world, or of the chassis.
-    double rate_deg_s = 0.0;  ///< Of the world; NaN: not known, nothing is taken off.
-    double motor_rpm = 0.0;
+    double angle_deg = 0.0;      ///< Of the world, or of the chassis.
+    double carried_deg_s = 0.0;  ///< NaN: not known, nothing is taken off.
   };
 
   explicit GimbalAxis(const Config& config) noexcept : config_(config) {}
@@ -34,8 +33,7 @@ class GimbalAxis {
     double missing_deg = target_deg_ - measured.angle_deg;
     if (config_.circular) missing_deg = std::remainder(missing_deg, kDegPerTurn);
     const double wanted_deg_s = rate_deg_s + config_.gain_per_s * missing_deg;
-    const double carried_deg_s =
-        std::isfinite(measured.rate_deg_s) ? measured.rate_deg_s - measured.motor_rpm * kDegPerSPerRpm : 0.0;
+    const double carried_deg_s = std::isfinite(measured.carried_deg_s) ? measured.carried_deg_s : 0.0;
     const double rpm = (wanted_deg_s - carried_deg_s) / kDegPerSPerRpm;
     if (!std::isfinite(rpm)) return 0.0;
     return std::fmax(-config_.velocity_limit_rpm, std::fmin(config_.velocity_limit_rpm, rpm));
