@@ -17,6 +17,7 @@
 #include <pthread.h>
 
 #include "app/unique_fd.hpp"
+#include "robot_client/own_datagrams.hpp"
 
 namespace rc10 {
 inline namespace robot_client {
@@ -37,9 +38,13 @@ using RawHandler = std::function<void(const std::string& channel, std::span<cons
   return pattern;
 }
 
-[[nodiscard]] std::string startFailure(const std::string& url) {
+[[nodiscard]] std::string effectiveUrl(const std::string& url) {
   const char* environment = std::getenv("LCM_DEFAULT_URL");
-  const std::string effective = !url.empty() ? url : environment != nullptr ? environment : "";
+  return !url.empty() ? url : environment != nullptr ? environment : "";
+}
+
+[[nodiscard]] std::string startFailure(const std::string& url) {
+  const std::string effective = effectiveUrl(url);
   if (!effective.empty() && effective.rfind("udpm://", 0) != 0) {
     return "LCM could not start with '" + effective + "'";
   }
@@ -85,6 +90,7 @@ void Subscription::end() noexcept {
 }
 
 struct LcmLink::Impl {
+  OwnDatagrams datagrams;  // before liblcm opens anything
   lcm_t* lcm = nullptr;
   Result<void> status;
   UniqueFd stop;
@@ -105,6 +111,7 @@ struct LcmLink::Impl {
       status = fail(startFailure(url));
       return;
     }
+    datagrams.keepOut(effectiveUrl(url));
     thread = std::thread([this] { receive(); });
     pthread_setname_np(thread.native_handle(), "rc10-link");
   }

@@ -12,7 +12,7 @@
 
 #include <gtest/gtest.h>
 
-namespace rc10::test {
+namespace rc10::private_network {
 
 inline bool writeFile(const char* path, const std::string& text) {
   const int fd = ::open(path, O_WRONLY | O_CLOEXEC);
@@ -56,4 +56,10 @@ inline void inPrivateNetwork(const std::function<void()>& body) {
   EXPECT_TRUE(WIFEXITED(status) && WEXITSTATUS(status) == 0) << "status " << status << ", see above";
 }
 
+}  // namespace rc10::private_network
+
+namespace rc10::test {
+using private_network::addLcmRoute;
+using private_network::enterPrivateNetwork;
+using private_network::inPrivateNetwork;
 }  // namespace rc10::test

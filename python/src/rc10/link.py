@@ -11,6 +11,7 @@ from typing import Callable, Protocol
 import lcm
 
 from rc10.errors import LinkError
+from rc10.own_datagrams import descriptors, keep_others_out, stays_on_this_computer
 
 MULTICAST_GROUP = "239.255.76.67"
 ROUTE_COMMAND = f"sudo ip route add {MULTICAST_GROUP}/32 dev lo src 127.0.0.1"
@@ -59,10 +60,14 @@ class LcmLink:
     """
 
     def __init__(self, url: str | None = None) -> None:
+        before = descriptors()
         try:
             self._lcm: lcm.LCM | None = lcm.LCM(url)
-        except RuntimeError as error:
+            self._lcm.fileno()  # opens what receives
+        except (RuntimeError, OSError) as error:
             raise LinkError(_start_failure(url)) from error
+        if stays_on_this_computer(_effective(url)):
+            keep_others_out(descriptors() - before)
 
     @property
     def lcm(self) -> lcm.LCM:
@@ -117,8 +122,12 @@ class LcmLink:
         return bool(select.select([self.fileno()], [], [], timeout_s)[0])
 
 
+def _effective(url: str | None) -> str:
+    return url or os.environ.get("LCM_DEFAULT_URL") or ""
+
+
 def _start_failure(url: str | None) -> str:
-    effective = url or os.environ.get("LCM_DEFAULT_URL") or ""
+    effective = _effective(url)
     if effective and not effective.startswith("udpm://"):
         return f"LCM could not start with '{effective}'"
     return (
