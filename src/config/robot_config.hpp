@@ -6,6 +6,7 @@
 
 #include "app/time.hpp"
 #include "bus/can_link_settings.hpp"
+#include "config/client_config.hpp"
 #include "config/gpio_config.hpp"
 #include "module/module_type.hpp"
 #include "motor/guarding/fallback.hpp"
@@ -120,6 +121,9 @@ struct RobotConfig {
   ThreadConfig rx{.priority = 65, .cpu = std::nullopt};
   Duration rx_lead = std::chrono::microseconds{100};  ///< Before the tick, with ReceivePolicy::kThread.
   LcmConfig lcm;
+  std::optional<ClientsConfig> clients;  ///< None: everybody may do everything.
+  ForbiddenAt tuning_locked_at = 0;      ///< Line of `tuning: locked`.
+  ForbiddenAt clear_local_at = 0;        ///< Line of `clear: local`.
   std::optional<EstopGpioConfig> estop_gpio;
   std::optional<HeartbeatGpioConfig> heartbeat_gpio;
   int blackbox_mib = 16;  ///< 0: none.

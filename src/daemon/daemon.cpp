@@ -200,8 +200,9 @@ std::unique_ptr<SpiKeeper> Daemon::spiIo() {
 
 void Daemon::tellWhoMayCommand() {
   if (!config_.lcm.leaves_computer) return;
-  description_.notices.push_back("LCM reaches the network (" + config_.lcm.url +
-                                 "): every computer there may command this robot");
+  description_.notices.push_back(
+      "LCM reaches the network (" + config_.lcm.url + "): every computer there may " +
+      (config_.clients ? "stop this robot, and forge its state" : "command this robot"));
 }
 
 // Before the sockets are opened. What is missing or no CAN interface at all, opening will tell.
@@ -228,6 +229,10 @@ void Daemon::describeRobot() {
   description_.robot = config_.robot;
   description_.lcm_url = config_.lcm.enabled ? config_.lcm.url : "";
   description_.config_hash = config_.hash;
+  description_.config_file = config_.file;
+  description_.clients = config_.clients;
+  description_.tuning_locked_at = config_.tuning_locked_at;
+  description_.clear_local_at = config_.clear_local_at;
   description_.rate_hz = config_.rate_hz;
   description_.state_hz = config_.lcm.state_hz;
   if (config_.estop_gpio) description_.estop_input = config_.estop_gpio->pin.name();

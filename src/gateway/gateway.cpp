@@ -65,7 +65,10 @@ bool Gateway::receiveLcm(const ClockSample& now) {
     const WakeUp wake = wakeUp(read, empty_);
     // Without a stamp nothing is known of its age but that it came after the socket was last empty.
     const auto received = incoming->stamp ? toMonotonic(*incoming->stamp, wake) : wake.previous;
-    if (!inlet_.handle(incoming->datagram, received, read.now)) return false;
+    // On the loopback there is nothing from elsewhere.
+    const bool here = loopback_ || origins_.isOwn(incoming->sender, read.now);
+    const auto origin = here ? link::Origin::kThisComputer : link::Origin::kElsewhere;
+    if (!inlet_.handle(incoming->datagram, received, read.now, origin)) return false;
   }
   return true;
 }
@@ -103,6 +106,7 @@ Result<void> Gateway::openTransport(const ClockSample& now) {
   if (!socket) return tl::unexpected(socket.error());
   lcm_ = std::move(*socket);
   interface_index_ = route->interface_index;
+  loopback_ = route->loopback;
   empty_ = now;
   logOnce("LCM on " + url_.groupText() + ":" + std::to_string(url_.port) + " by interface " +
           route->interface + ", ttl " + std::to_string(url_.ttl));

@@ -12,6 +12,7 @@
 #include "gateway/clock_sample.hpp"
 #include "gateway/inlet.hpp"
 #include "gateway/outlet.hpp"
+#include "gateway/own_addresses.hpp"
 #include "gateway/udpm_socket.hpp"
 
 namespace rc10::gateway {
@@ -45,6 +46,8 @@ class Gateway : private LcmPublisher {
   Inlet inlet_;
   std::optional<UdpmSocket> lcm_;
   int interface_index_ = 0;
+  bool loopback_ = false;
+  OwnAddresses origins_;
   ClockSample empty_;  // see wakeUp()
   MonotonicTime next_check_{};
   Duration pause_ = std::chrono::seconds{1};  // before the next attempt

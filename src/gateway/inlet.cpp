@@ -28,7 +28,8 @@ std::vector<std::string> Inlet::channels() const {
   return all;
 }
 
-bool Inlet::handle(const UdpmDatagram& datagram, MonotonicTime received, MonotonicTime now) {
+bool Inlet::handle(const UdpmDatagram& datagram, MonotonicTime received, MonotonicTime now,
+                   link::Origin origin) {
   const auto module = std::find(module_channels_.begin(), module_channels_.end(), datagram.channel);
   const bool ours = datagram.channel == command_channel_ || datagram.channel == request_channel_ ||
                     module != module_channels_.end();
@@ -37,6 +38,7 @@ bool Inlet::handle(const UdpmDatagram& datagram, MonotonicTime received, Monoton
     reportDefect(Defect::kTooLarge, datagram.channel, now);
     return true;
   }
+  command_.origin = request_.origin = signals_.origin = origin;
   if (datagram.channel == command_channel_) return command(datagram, received, now);
   if (datagram.channel == request_channel_) return request(datagram, received, now);
   return signals(static_cast<std::size_t>(module - module_channels_.begin()), datagram, received, now);

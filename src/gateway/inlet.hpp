@@ -35,7 +35,8 @@ class Inlet {
   [[nodiscard]] std::vector<std::string> channels() const;
 
   /// A datagram that this host received at `received`. False: rc10d has ended.
-  bool handle(const UdpmDatagram& datagram, MonotonicTime received, MonotonicTime now);
+  bool handle(const UdpmDatagram& datagram, MonotonicTime received, MonotonicTime now,
+              link::Origin origin = link::Origin::kElsewhere);
 
   struct Counters {
     std::uint64_t commands = 0;  ///< Passed on.

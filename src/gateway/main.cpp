@@ -46,7 +46,7 @@ Result<LinkClient> connect(const gateway::Options& options) {
     path = robot->path;
   }
   auto rc10d = LinkClient::connect(
-      path, {.name = "rc10-lcm",
+      path, {.name = std::string(link::kGatewayClient),
              .subscriptions = link::kStates | link::kDiagnosticsFeed | link::kEvents | link::kModules});
   if (rc10d && options.robot && rc10d->welcome().robot.view() != *options.robot) {
     return fail("robot '" + std::string(rc10d->welcome().robot.view()) + "' answers at " + path + ", not '" +

@@ -99,6 +99,14 @@ std::string remedy(const UdpmUrl& url) {
 
 }  // namespace
 
+bool isOwnAddress(in_addr address) {
+  Reply reply;
+  if (ask(address, reply) != 0) return false;
+  const auto header = readStruct<nlmsghdr>(reply, 0);
+  const auto route = readStruct<rtmsg>(reply, NLMSG_HDRLEN);
+  return header && route && header->nlmsg_type == RTM_NEWROUTE && route->rtm_type == RTN_LOCAL;
+}
+
 Result<MulticastRoute> findRoute(const UdpmUrl& url) {
   Reply reply;
   int error = ask(url.group, reply);

@@ -17,6 +17,9 @@ struct MulticastRoute {
   bool loopback = false;
 };
 
+/// Whether an address is one of this computer, by the kernel's routes.
+[[nodiscard]] bool isOwnAddress(in_addr address);
+
 /// Asks the kernel. The error says what to do.
 [[nodiscard]] Result<MulticastRoute> findRoute(const UdpmUrl& url);
 

@@ -99,7 +99,10 @@ std::optional<UdpmSocket::Incoming> UdpmSocket::receive(std::span<std::byte> buf
   for (;;) {
     iovec data{buffer.data(), buffer.size()};
     alignas(cmsghdr) std::array<std::byte, 128> control{};
+    sockaddr_in sender{};
     msghdr message{};
+    message.msg_name = &sender;
+    message.msg_namelen = sizeof(sender);
     message.msg_iov = &data;
     message.msg_iovlen = 1;
     message.msg_control = control.data();
@@ -109,6 +112,7 @@ std::optional<UdpmSocket::Incoming> UdpmSocket::receive(std::span<std::byte> buf
     if (size < 0) return std::nullopt;
     Incoming incoming;
     incoming.stamp = stampOf(message);
+    incoming.sender = sender.sin_addr;
     incoming.datagram = parseDatagram(buffer.first(static_cast<std::size_t>(size)));
     return incoming;
   }

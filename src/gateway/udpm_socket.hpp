@@ -1,5 +1,7 @@
 #pragma once
 
+#include <netinet/in.h>
+
 #include <cstddef>
 #include <cstdint>
 #include <optional>
@@ -28,6 +30,7 @@ class UdpmSocket {
 
   struct Incoming {
     UdpmDatagram datagram;
+    in_addr sender{};
     std::optional<Duration> stamp;  ///< CLOCK_REALTIME at which the kernel received it.
   };
   /// The next datagram, in `buffer`; empty when there is none. What does not fit is cut off.

@@ -47,6 +47,9 @@ struct Text {
 
 using Name = Text<32>;
 
+/// The name in the hello of rc10-lcm.
+inline constexpr std::string_view kGatewayClient = "rc10-lcm";
+
 /// The operation of a request that stops every motor. It is never refused.
 inline constexpr std::string_view kEstopOperation = "estop";
 
@@ -113,6 +116,12 @@ struct Welcome {
   std::array<MotorInfo, kMaxMotors> motors;
 };
 
+/// Origin of what the gateway passes on. Of a client of the socket itself the kernel tells more.
+enum class Origin : std::uint32_t {
+  kElsewhere = 0,     ///< Another computer, or not known.
+  kThisComputer = 1,  ///< LCM on this computer.
+};
+
 /// As setpoint_t.lcm.
 struct Setpoint {
   Name motor;
@@ -129,6 +138,7 @@ struct Command {
   std::int32_t priority = 0;
   std::int32_t validity_ms = 0;  ///< 0: default.
   std::int64_t received_ns = 0;  ///< CLOCK_MONOTONIC; one in the future counts as now.
+  Origin origin{};
   std::uint32_t setpoint_count = 0;
   std::array<Setpoint, kMaxMotors> setpoints;
 };
@@ -146,6 +156,7 @@ struct Request {
   std::uint64_t session = 0;
   std::int64_t seq = 0;
   std::int64_t received_ns = 0;  ///< CLOCK_MONOTONIC at which this host received it; 0: not known.
+  Origin origin{};
   Text<32> operation;
   Text<1024> target;  ///< Motor names separated by commas; empty: all.
   std::uint32_t value_count = 0;
@@ -162,6 +173,7 @@ struct Signals {
   std::int32_t priority = 0;
   std::int32_t validity_ms = 0;  ///< 0: default.
   std::int64_t received_ns = 0;  ///< CLOCK_MONOTONIC; one in the future counts as now.
+  Origin origin{};
   Name module;
   std::uint32_t value_count = 0;
   std::array<NamedValue, kMaxSignals> values;

@@ -21,7 +21,7 @@ constexpr float kInfF = std::numeric_limits<float>::infinity();
 class AdmissionTest : public ::testing::Test {
  protected:
   [[nodiscard]] CommandRefusal admit(const link::Command& message) {
-    return admission.admit(message, now, out);
+    return admission.admit(message, {}, now, out);
   }
   /// A message with one setpoint and the next sequence number.
   [[nodiscard]] link::Command one(const link::Setpoint& setpoint) {

@@ -207,6 +207,33 @@ TEST_F(FallbackTest, AnEstopBrakesAndHoldsALoadUntilItIsDisabledOnceMore) {
   EXPECT_EQ(currentA(), 0.0F);
 }
 
+TEST_F(FallbackTest, ADisableThatIsRepeatedForWantOfAnAnswerLetsNothingGo) {
+  start({.on_estop = FallbackAction::kBrake}, 1.0F);
+  robot->order(Operation::kEstop);
+  robot->run(3000);
+  EXPECT_GT(currentA(), 0.5F);  // it carries the load
+  Order order;
+  order.operation = Operation::kDisable;
+  order.motors.set(kLeft);
+  order.repeated = true;
+  robot->carryOut(order);
+  robot->run(10);
+  EXPECT_GT(currentA(), 0.5F);
+  order.repeated = false;
+  robot->carryOut(order);
+  EXPECT_EQ(currentA(), 0.0F);
+}
+
+TEST_F(FallbackTest, ARepeatedDisableStopsWhatWasEnabledSince) {
+  start({});
+  Order order;
+  order.operation = Operation::kDisable;
+  order.motors.set(kLeft);
+  order.repeated = true;
+  robot->carryOut(order);
+  EXPECT_EQ(robot->motor(kLeft).status, MotorStatus::kReady);
+}
+
 TEST_F(FallbackTest, AMotorThatIsHeldIsNotLetGoWhileItIsEnabled) {
   start({.on_estop = FallbackAction::kHold}, 2.0F);
   robot->order(Operation::kEstop);

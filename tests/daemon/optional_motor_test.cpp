@@ -13,7 +13,8 @@ using ::testing::HasSubstr;
 class OptionalMotorTest : public ::testing::Test {
  protected:
   link::Response afterFailureOf(std::size_t motor, std::string_view operation) {
-    const auto outcome = desk.begin(linkRequest(++seq, operation, operation == "zero" ? "spare" : ""), 1);
+    const auto outcome =
+        desk.begin(linkRequest(++seq, operation, operation == "zero" ? "spare" : ""), {.connection = 1});
     OrderResult result;
     result.id = outcome.order.value().id;
     result.motors[motor] = Refusal::kOffline;

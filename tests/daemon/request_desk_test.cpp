@@ -21,7 +21,9 @@ constexpr std::uint64_t kConnection = 3;
 
 class RequestDeskTest : public ::testing::Test {
  protected:
-  RequestDesk::Outcome begin(const link::Request& request) { return desk.begin(request, kConnection); }
+  RequestDesk::Outcome begin(const link::Request& request) {
+    return desk.begin(request, {.connection = kConnection});
+  }
   /// The text of a refusal.
   std::string refusal(const link::Request& request) {
     const auto outcome = begin(request);
@@ -255,8 +257,9 @@ TEST_F(RequestDeskTest, ARepetitionGetsTheFirstAnswerAndNoNewOrder) {
 }
 
 TEST_F(RequestDeskTest, ARepetitionWhileTheFirstIsOpenIsAnsweredOnceAndToTheLatestConnection) {
-  const auto outcome = desk.begin(linkRequest(1, "enable"), 3);
-  const auto again = desk.begin(linkRequest(1, "enable"), 4);
+  const auto by = Speaker::Way::kLcm;  // the gateway was started again
+  const auto outcome = desk.begin(linkRequest(1, "enable"), {.connection = 3, .way = by});
+  const auto again = desk.begin(linkRequest(1, "enable"), {.connection = 4, .way = by});
   EXPECT_FALSE(again.order);
   EXPECT_FALSE(again.response);
   const auto answer = desk.finish(done(*outcome.order));
@@ -297,6 +300,33 @@ TEST_F(RequestDeskTest, ResultsAndFailuresOfUnknownOrdersAreIgnored) {
   result.id = 12345;
   EXPECT_FALSE(desk.finish(result));
   EXPECT_FALSE(desk.fail(12345, "reason"));
+}
+
+TEST_F(RequestDeskTest, AnAnswerBelongsToItsSenderAndOperation) {
+  (void)desk.finish(done(*begin(linkRequest(1, "enable")).order));
+  EXPECT_TRUE(desk.begin(linkRequest(1, "enable"), {.connection = kConnection, .user = 1}).order);
+  EXPECT_TRUE(begin(linkRequest(1, "clear")).order) << "a program that counts from 1 anew";
+  // What comes by LCM from another computer takes no answer away from a program of this one.
+  (void)desk.finish(done(*desk.begin(linkRequest(2, "enable"), {.way = Speaker::Way::kNetwork}).order));
+  EXPECT_TRUE(desk.begin(linkRequest(2, "enable"), {.way = Speaker::Way::kLcm}).order);
+}
+
+TEST_F(RequestDeskTest, WhatStopsIsNeverAnsweredFromMemory) {
+  for (const auto* operation : {"disable", "estop"}) {
+    const auto first = begin(linkRequest(1, operation, "left"));
+    ASSERT_TRUE(first.order) << operation;
+    EXPECT_FALSE(first.order->repeated);
+    const auto open = begin(linkRequest(1, operation, "left"));
+    ASSERT_TRUE(open.order) << operation << " whose first is not answered yet";
+    EXPECT_TRUE(open.order->repeated);
+    (void)desk.finish(done(*first.order));
+    (void)desk.finish(done(*open.order));
+    const auto again = begin(linkRequest(1, operation, "left"));
+    ASSERT_TRUE(again.order) << operation;
+    EXPECT_TRUE(again.order->repeated);
+    EXPECT_FALSE(again.response);
+    EXPECT_FALSE(begin(linkRequest(2, operation, "left")).order->repeated);
+  }
 }
 
 TEST_F(RequestDeskTest, AnswersAreRememberedForAWhileOnly) {

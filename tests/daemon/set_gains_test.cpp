@@ -54,7 +54,7 @@ class SetGainsTest : public ::testing::Test {
   }
   /// The answer of the whole daemon, link thread and scheduler.
   link::Response answer(const link::Request& request) {
-    auto outcome = desk.begin(request, 1);
+    auto outcome = desk.begin(request, {.connection = 1});
     if (outcome.response) return *outcome.response;
     if (!outcome.order || !robot.exchange().orders.push(*outcome.order)) return {};
     OrderResult result;
@@ -165,9 +165,9 @@ TEST_F(SetGainsTest, ARepeatedRequestIsCarriedOutOnce) {
 }
 
 TEST_F(SetGainsTest, OrdersOfOneTickFollowOneAnother) {
-  const auto first = desk.begin(ask(kSetGainsOperation, "wheel", {{"velocity.kp", 0.5}}), 1);
-  const auto second =
-      desk.begin(ask(kSetGainsOperation, "wheel", {{"velocity.kp", 0.6}, {"velocity.ki", 2.0}}), 1);
+  const auto first = desk.begin(ask(kSetGainsOperation, "wheel", {{"velocity.kp", 0.5}}), {.connection = 1});
+  const auto second = desk.begin(
+      ask(kSetGainsOperation, "wheel", {{"velocity.kp", 0.6}, {"velocity.ki", 2.0}}), {.connection = 1});
   robot.exchange().orders.push(*first.order);
   robot.exchange().orders.push(*second.order);
   robot.tick();
@@ -180,12 +180,14 @@ TEST_F(SetGainsTest, OrdersOfOneTickFollowOneAnother) {
 
 TEST_F(SetGainsTest, AFloodOfThemIsRefused) {
   for (int i = 0; i < 8; ++i) {
-    EXPECT_TRUE(desk.begin(ask(kSetGainsOperation, "wheel", {{"velocity.kp", 0.1 * i}}), 1).order);
+    EXPECT_TRUE(
+        desk.begin(ask(kSetGainsOperation, "wheel", {{"velocity.kp", 0.1 * i}}), {.connection = 1}).order);
   }
-  const auto outcome = desk.begin(ask(kSetGainsOperation, "wheel", {{"velocity.kp", 1.0}}), 1);
+  const auto outcome =
+      desk.begin(ask(kSetGainsOperation, "wheel", {{"velocity.kp", 1.0}}), {.connection = 1});
   ASSERT_TRUE(outcome.response);
   EXPECT_THAT(std::string(outcome.response->message.view()), HasSubstr("wait for the answers"));
-  EXPECT_TRUE(desk.begin(ask("disable", "wheel"), 1).order) << "other requests are taken";
+  EXPECT_TRUE(desk.begin(ask("disable", "wheel"), {.connection = 1}).order) << "other requests are taken";
 }
 
 TEST_F(SetGainsTest, AMotorThatTurnsGoesOnWithoutABump) {
@@ -193,8 +195,8 @@ TEST_F(SetGainsTest, AMotorThatTurnsGoesOnWithoutABump) {
   turn(60.0, 1000);
   ASSERT_NEAR(robot.motor(0).feedback.velocity_rpm, 60.0F, 3.0F);
   const float before = effort();
-  const auto outcome =
-      desk.begin(ask(kSetGainsOperation, "wheel", {{"velocity.ki", 20.0}, {"velocity.kp", 0.5}}), 1);
+  const auto outcome = desk.begin(
+      ask(kSetGainsOperation, "wheel", {{"velocity.ki", 20.0}, {"velocity.kp", 0.5}}), {.connection = 1});
   robot.exchange().orders.push(*outcome.order);
   turn(60.0, 1);
   EXPECT_NEAR(effort(), before, 0.25F);

@@ -31,7 +31,7 @@ link::Signals message(std::string_view module = "base", std::string_view input =
 class SignalAdmissionTest : public ::testing::Test {
  protected:
   CommandRefusal admit(const link::Signals& message, MonotonicTime now = kNow) {
-    return admission_.admit(message, now, out_);
+    return admission_.admit(message, {}, now, out_);
   }
 
   SignalAdmission admission_{{{"base", {"vx_m_s", "vy_m_s"}}, {"arm", {"angle_deg"}}}};

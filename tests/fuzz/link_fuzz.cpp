@@ -85,7 +85,7 @@ class Desk {
       setpoint.target.velocity_ff_rpm = input.take<float>();
     }
     Command out;
-    if (admission_.admit(message, kNow, out) != CommandRefusal::kNone) return;
+    if (admission_.admit(message, {}, kNow, out) != CommandRefusal::kNone) return;
     require(out.count == message.setpoint_count && out.count > 0);
     require(out.deadline > kNow - kMaxValidity && out.deadline <= kNow + kMaxValidity);
     MotorSet seen;
@@ -106,7 +106,7 @@ class Desk {
       value.name = text<link::Text<48>>(input);
       value.value = input.take<double>();
     }
-    const auto outcome = desk_.begin(message, 1);
+    const auto outcome = desk_.begin(message, {.connection = 1});
     require(!outcome.order || !outcome.response);
     if (outcome.response) told(*outcome.response);
     if (!outcome.order) return;
@@ -144,7 +144,7 @@ class Desk {
       value.value = input.take<double>();
     }
     SignalMessage out;
-    if (signals_.admit(message, kNow, out) != CommandRefusal::kNone) return;
+    if (signals_.admit(message, {}, kNow, out) != CommandRefusal::kNone) return;
     require(out.module == 0);
     for (std::size_t i = 0; i < out.values.size(); ++i)
       require(i < 1 ? !std::isinf(out.values[i]) : std::isnan(out.values[i]));

@@ -121,6 +121,27 @@ TEST_F(Bridge, RefusesARequestThatWaitedTooLong) {
   EXPECT_EQ(inlet_.counters().stale_requests, 1U);
 }
 
+TEST_F(Bridge, SaysOfEachMessageWhetherThisComputerSentIt) {
+  using link::Origin;
+  const auto send = [&](const char* channel, const Bytes& bytes, Origin origin) {
+    EXPECT_TRUE(inlet_.handle({UdpmDatagram::Kind::kMessage, channel, bytes}, now_, now_, origin));
+  };
+  for (const auto origin : {Origin::kThisComputer, Origin::kElsewhere, Origin::kThisComputer}) {
+    send("hero.v1.command", encoded(commandWith(1)), origin);
+    link::Command command;
+    ASSERT_TRUE(rc10d_.receive(command));
+    EXPECT_EQ(command.origin, origin);
+    send("hero.v1.request", encoded(requestWith(1)), origin);
+    link::Request request;
+    ASSERT_TRUE(rc10d_.receive(request));
+    EXPECT_EQ(request.origin, origin);
+  }
+  EXPECT_TRUE(arrive("hero.v1.command", encoded(commandWith(1)))) << "nothing is said of it";
+  link::Command command;
+  ASSERT_TRUE(rc10d_.receive(command));
+  EXPECT_EQ(command.origin, Origin::kElsewhere);
+}
+
 TEST_F(Bridge, PassesAnOldStopOn) {
   for (const char* operation : {"estop", "disable"}) {
     auto stop = requestWith(0);

@@ -5,6 +5,7 @@
 #include <string>
 
 #include "config/build/bus_builder.hpp"
+#include "config/build/client_builder.hpp"
 #include "config/build/gpio_builder.hpp"
 #include "config/build/group_builder.hpp"
 #include "config/build/implied_groups.hpp"
@@ -62,6 +63,7 @@ class RobotBuilder {
     robot_.groups = buildGroups(top_, robot_.buses, problems_);
     robot_.modules = buildModules(top_, robot_.buses, problems_);
     addImpliedGroups(robot_);
+    buildClients(top_, robot_, problems_);
     return std::move(robot_);
   }
 
@@ -123,9 +125,10 @@ class RobotBuilder {
       robot_.lcm.leaves_computer = true;
       problems_.warning(
           given->place(), given->path,
-          "ttl=" + std::to_string(url->ttl) +
-              " reaches the network, and LCM has no passwords: every computer there may command "
-              "this robot. Use ttl=0, or a network of the robot alone");
+          "ttl=" + std::to_string(url->ttl) + " reaches the network, and LCM has no passwords: " +
+              (top_.mentions("clients") ? "every computer there may stop this robot, and forge its state"
+                                        : "every computer there may command this robot") +
+              ". Use ttl=0, or a network of the robot alone");
     }
   }
 

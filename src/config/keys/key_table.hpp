@@ -95,6 +95,7 @@ struct Section {
 extern const Section kRobotSection;
 extern const Section kEstopGpioSection;
 extern const Section kHeartbeatGpioSection;
+extern const Section kClientSection;
 extern const Section kBusSection;
 extern const Section kGroupSection;
 extern const SectionTypes kModuleSections;

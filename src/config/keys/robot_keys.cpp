@@ -15,6 +15,10 @@ std::vector<std::string_view> realtimePolicies() { return {"required", "preferre
 
 std::vector<std::string_view> guardPolicies() { return {"required", "preferred", "off"}; }
 
+std::vector<std::string_view> tuningPolicies() { return {"open", "locked"}; }
+
+std::vector<std::string_view> clearPolicies() { return {"anywhere", "local"}; }
+
 std::vector<std::string_view> timerPolicies() { return {"auto", "timerfd", "nanosleep"}; }
 
 std::vector<std::string_view> receivePolicies() { return {"tick", "thread"}; }
@@ -137,6 +141,22 @@ constexpr std::array kRobotKeys{
         .section = &kRx,
         .about = "The thread that reads serial ports and, with receive: thread, the CAN buses."},
     Key{.name = "lcm", .kind = kSection, .section = &kLcm, .about = "The link to programs, through LCM."},
+    Key{.name = "clients",
+        .kind = kSectionList,
+        .range = {.min = 0, .max = 32},
+        .section = &kClientSection,
+        .about = "Rights of programs and people. With this key everybody else may only observe, and stop the "
+                 "robot. Default: everybody may do everything."},
+    Key{.name = "tuning",
+        .kind = kText,
+        .choices = tuningPolicies,
+        .default_text = "open",
+        .about = "locked: nobody changes gains or the settings of drives while rc10d runs, for a match."},
+    Key{.name = "clear",
+        .kind = kText,
+        .choices = clearPolicies,
+        .default_text = "anywhere",
+        .about = "local: an e-stop is cleared from this computer only, not through LCM from another one."},
     Key{.name = "estop_gpio",
         .kind = kSection,
         .section = &kEstopGpioSection,

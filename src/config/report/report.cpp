@@ -21,6 +21,22 @@ std::string threadText(const ThreadConfig& thread) {
          (thread.cpu ? ", CPU " + std::to_string(*thread.cpu) : ", any CPU");
 }
 
+/// "teleop (LCM): command, clear; anna (user): command; all others observe and stop"
+std::string clientsText(const RobotConfig& config) {
+  std::string text;
+  for (const auto& client : config.clients->entries) {
+    std::vector<std::string> rights;
+    for (std::size_t i = 0; i < kRightWords.size(); ++i)
+      if (client.rights[i]) rights.emplace_back(kRightWords[i]);
+    const char* by = client.by == ClientConfig::By::kLcmName ? "LCM"
+                     : client.by == ClientConfig::By::kUser  ? "user"
+                                                             : "group";
+    text += client.who + " (" + by + "): " + (rights.empty() ? "observe" : listWords(rights, ", ")) +
+            (client.all_motors ? "; " : ", in part; ");
+  }
+  return text + "all others observe and stop";
+}
+
 std::string robotText(const RobotConfig& config) {
   const bool required = config.realtime == RealtimePolicy::kRequired;
   TextTable table;
@@ -36,6 +52,9 @@ std::string robotText(const RobotConfig& config) {
   table.add({"lcm", config.lcm.enabled
                         ? config.lcm.url + ", state at " + std::to_string(config.lcm.state_hz) + " Hz"
                         : std::string{"off"}});
+  if (config.clients) table.add({"clients", clientsText(config)});
+  if (config.tuning_locked_at != 0) table.add({"tuning", "locked"});
+  if (config.clear_local_at != 0) table.add({"clear", "from this computer only"});
   if (const auto& estop = config.estop_gpio) {
     table.add({"e-stop input", estop->pin.name() + ", closed contact reads " +
                                    (estop->closed_is_low ? "low" : "high") + ", " +

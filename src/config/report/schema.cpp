@@ -19,7 +19,7 @@ std::string reference(const Section& section) { return "#/$defs/" + std::string{
 
 std::string anchored(const TextForm& form) { return "^(?:" + std::string{form.pattern} + ")$"; }
 
-bool isText(const Key& key) { return key.kind == ValueKind::kText; }
+bool isText(const Key& key) { return key.kind == ValueKind::kText || key.kind == ValueKind::kTextList; }
 
 /// An unquoted 3200000 is a number to an editor, also where rc10d takes it for one of some words.
 bool isDigits(std::string_view word) {

@@ -46,6 +46,7 @@ const char* toString(CommandRefusal refusal) noexcept {
     case CommandRefusal::kUnknownModule: return "unknown module";
     case CommandRefusal::kUnknownSignal: return "unknown signal";
     case CommandRefusal::kUnusedField: return "unused field";
+    case CommandRefusal::kNotPermitted: return "not permitted";
   }
   return "unknown";
 }
@@ -70,11 +71,13 @@ const char* describe(CommandRefusal refusal) noexcept {
     case CommandRefusal::kUnusedField:
       return "a feed-forward, stiffness or damping that its mode does not use was ignored; "
              "docs/lcm.md#modes has what each mode uses";
+    case CommandRefusal::kNotPermitted: return "`clients` in the robot's file does not grant it";
   }
   return toString(refusal);
 }
 
-Admission::Admission(std::vector<KnownMotor> motors) : motors_(std::move(motors)) {
+Admission::Admission(std::vector<KnownMotor> motors, Permissions permissions)
+    : motors_(std::move(motors)), permissions_(std::move(permissions)) {
   for (std::size_t i = 0; i < motors_.size(); ++i) index_.emplace(motors_[i].name, static_cast<int>(i));
 }
 
@@ -83,7 +86,8 @@ int Admission::indexOf(std::string_view name) const {
   return found == index_.end() ? -1 : found->second;
 }
 
-CommandRefusal Admission::admit(const link::Command& message, MonotonicTime now, Command& out) {
+CommandRefusal Admission::admit(const link::Command& message, const Speaker& speaker, MonotonicTime now,
+                                Command& out) {
   const auto deadline = deadlineOf(message.received_ns, message.validity_ms, now);
   if (message.setpoint_count == 0 || message.setpoint_count > kMaxMotors || !deadline)
     return CommandRefusal::kMalformed;
@@ -100,12 +104,20 @@ CommandRefusal Admission::admit(const link::Command& message, MonotonicTime now,
   out.deadline = *deadline;
   out.received = receivedAt(message.received_ns, now);
   out.client = message.client;
+  const auto client = message.client.view();
+  not_permitted_ = permissions_.whyNoCommand(speaker, client, named, message.priority);
+  if (!not_permitted_.empty()) return CommandRefusal::kNotPermitted;
   if (now >= out.deadline) return CommandRefusal::kExpired;
   if (!budget_.spend(message.client.view(), out.count, now)) return CommandRefusal::kRingFull;
   out.session = message.session;
   out.priority = message.priority;
-  const bool new_number = sessions_.accept(message.client.view(), message.session, message.seq);
-  return new_number ? CommandRefusal::kNone : CommandRefusal::kOldSequence;
+  switch (sessions_.accept(speaker.owner(), client, message.session, message.seq)) {
+    case SessionNumbers::Verdict::kNew: return CommandRefusal::kNone;
+    case SessionNumbers::Verdict::kOld: return CommandRefusal::kOldSequence;
+    case SessionNumbers::Verdict::kOfAnother: break;
+  }
+  not_permitted_ = permissions_.whyOtherSession(client);
+  return CommandRefusal::kNotPermitted;
 }
 
 CommandRefusal Admission::translate(const link::Setpoint& in, Command::Setpoint& out) const {

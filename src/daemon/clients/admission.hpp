@@ -10,6 +10,7 @@
 #include "app/target.hpp"
 #include "app/time.hpp"
 #include "daemon/clients/command_budget.hpp"
+#include "daemon/clients/permissions.hpp"
 #include "daemon/clients/session_numbers.hpp"
 #include "daemon/clients/validity.hpp"
 #include "daemon/exchange/orders.hpp"
@@ -31,8 +32,9 @@ enum class CommandRefusal : std::uint8_t {
   kUnknownModule,
   kUnknownSignal,  ///< The module has no such input.
   kUnusedField,    ///< Not refused: a field that its mode does not use was cleared.
+  kNotPermitted,   ///< `clients` does not grant it, or its name or session is another's. Requests too.
 };
-inline constexpr std::size_t kCommandRefusalCount = 12;
+inline constexpr std::size_t kCommandRefusalCount = 13;
 
 /// The name of the counter.
 [[nodiscard]] const char* toString(CommandRefusal refusal) noexcept;
@@ -48,10 +50,15 @@ struct KnownMotor {
 /// Checks command messages before they reach the scheduler. Link thread only; the time is an argument.
 class Admission {
  public:
-  explicit Admission(std::vector<KnownMotor> motors);
+  explicit Admission(std::vector<KnownMotor> motors, Permissions permissions = {});
 
   /// Translates a message; on refusal `out` is unspecified. `now` is CLOCK_MONOTONIC.
-  [[nodiscard]] CommandRefusal admit(const link::Command& message, MonotonicTime now, Command& out);
+  [[nodiscard]] CommandRefusal admit(const link::Command& message, const Speaker& speaker, MonotonicTime now,
+                                     Command& out);
+
+  [[nodiscard]] const Permissions& permissions() const noexcept { return permissions_; }
+  /// After kNotPermitted, why.
+  [[nodiscard]] const std::string& whyNotPermitted() const noexcept { return not_permitted_; }
 
   /// Whether the last message that was accepted had a field that its mode does not use.
   [[nodiscard]] bool clearedField() const noexcept { return cleared_field_; }
@@ -69,6 +76,8 @@ class Admission {
   [[nodiscard]] CommandRefusal translate(const link::Setpoint& in, Command::Setpoint& out) const;
 
   std::vector<KnownMotor> motors_;
+  Permissions permissions_;
+  std::string not_permitted_;
   std::unordered_map<std::string, int> index_;
   SessionNumbers sessions_;
   CommandBudget budget_;

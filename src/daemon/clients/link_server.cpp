@@ -4,6 +4,7 @@
 #include <sys/epoll.h>
 #include <sys/socket.h>
 #include <sys/timerfd.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <cerrno>
@@ -89,6 +90,28 @@ constexpr std::uint64_t kSlowTimer = kListener - 2;
   return out;
 }
 
+[[nodiscard]] Permissions::Rules rules(const RobotDescription& robot) {
+  Permissions::Rules out{.clients = robot.clients,
+                         .tuning_locked_at = robot.tuning_locked_at,
+                         .clear_local_at = robot.clear_local_at,
+                         .file = robot.config_file,
+                         .motors = names(robot),
+                         .modules = {}};
+  for (const auto& module : robot.modules) out.modules.push_back(module.name);
+  return out;
+}
+
+// Primary and supplementary. A process in more groups than these is known by its user and primary group.
+[[nodiscard]] std::vector<gid_t> groupsOf(int fd, gid_t primary) {
+  constexpr std::size_t kMaxGroups = 256;
+  std::vector<gid_t> groups(kMaxGroups);
+  socklen_t size = static_cast<socklen_t>(groups.size() * sizeof(gid_t));
+  const bool known = ::getsockopt(fd, SOL_SOCKET, SO_PEERGROUPS, groups.data(), &size) == 0;
+  groups.resize(known ? size / sizeof(gid_t) : 0);
+  groups.push_back(primary);
+  return groups;
+}
+
 void drainTimer(int fd) noexcept {
   std::uint64_t expirations = 0;
   (void)!::read(fd, &expirations, sizeof expirations);
@@ -96,21 +119,23 @@ void drainTimer(int fd) noexcept {
 
 }  // namespace
 
-LinkServer::LinkServer(LinkSocket socket, Sources sources, UniqueFd epoll, UniqueFd state_timer,
-                       UniqueFd slow_timer)
+LinkServer::LinkServer(LinkSocket socket, Sources sources, Permissions permissions, UniqueFd epoll,
+                       UniqueFd state_timer, UniqueFd slow_timer)
     : socket_(std::move(socket)),
       sources_(std::move(sources)),
       epoll_(std::move(epoll)),
       state_timer_(std::move(state_timer)),
       slow_timer_(std::move(slow_timer)),
       spare_(::open("/dev/null", O_RDONLY | O_CLOEXEC)),
-      admission_(traits(sources_.robot)),
-      signal_admission_(modules(sources_.robot)),
+      admission_(traits(sources_.robot), permissions),
+      signal_admission_(modules(sources_.robot), permissions),
       desk_(admission_, names(sources_.robot), optional(sources_.robot), setups(sources_.robot),
             loops(sources_.robot)),
       publication_(sources_.robot) {}
 
 Result<std::unique_ptr<LinkServer>> LinkServer::create(LinkSocket socket, Sources sources) {
+  auto permissions = Permissions::resolve(rules(sources.robot));
+  if (!permissions) return tl::unexpected(permissions.error());
   UniqueFd epoll{epoll_create1(EPOLL_CLOEXEC)};
   UniqueFd state_timer = makeTimer(sources.robot.state_hz);
   UniqueFd slow_timer = makeTimer(kSlowHz);
@@ -120,7 +145,8 @@ Result<std::unique_ptr<LinkServer>> LinkServer::create(LinkSocket socket, Source
       !watch(epoll.get(), slow_timer.get(), kSlowTimer)) {
     return fail(fmt::format("link: epoll_ctl: {}", std::strerror(errno)));
   }
-  return std::unique_ptr<LinkServer>(new LinkServer(std::move(socket), std::move(sources), std::move(epoll),
+  return std::unique_ptr<LinkServer>(new LinkServer(std::move(socket), std::move(sources),
+                                                    std::move(*permissions), std::move(epoll),
                                                     std::move(state_timer), std::move(slow_timer)));
 }
 
@@ -163,6 +189,7 @@ void LinkServer::accept() {
       continue;  // closed: the client sees it
     Connection connection;
     connection.id = next_connection_++;
+    connection.speaker = speakerOf(fd.get(), connection.id);
     connection.fd = std::move(fd);
     if (watch(epoll_.get(), connection.fd.get(), connection.id))
       connections_.push_back(std::move(connection));
@@ -184,6 +211,26 @@ void LinkServer::refuseForWantOfDescriptors() {
       "no file descriptors left: a client was sent away; raise the limit "
       "(LimitNOFILE= of the unit, `ulimit -n`)"};
   sources_.log(event);
+}
+
+Speaker LinkServer::speakerOf(int fd, std::uint64_t connection) const {
+  ucred peer{.pid = 0, .uid = static_cast<uid_t>(-1), .gid = static_cast<gid_t>(-1)};
+  socklen_t size = sizeof peer;
+  (void)::getsockopt(fd, SOL_SOCKET, SO_PEERCRED, &peer, &size);
+  return {.connection = connection,
+          .way = Speaker::Way::kSocket,
+          .user = peer.uid,
+          .grants = admission_.permissions().ofUser(peer.uid, groupsOf(fd, peer.gid))};
+}
+
+Speaker LinkServer::speakerOf(const Connection& connection, const link::Name& client,
+                              link::Origin origin) const {
+  if (!connection.is_gateway) return connection.speaker;
+  const bool here = origin == link::Origin::kThisComputer;
+  return {.connection = connection.id,
+          .way = here ? Speaker::Way::kLcm : Speaker::Way::kNetwork,
+          .user = connection.speaker.user,
+          .grants = here ? admission_.permissions().ofLcmClient(client.view()) : GrantSet{}};
 }
 
 // Connections without a hello must not keep the others out.
@@ -215,7 +262,7 @@ bool LinkServer::handle(Connection& connection, std::span<const std::byte> datag
   if (!link::readHeader(datagram, header)) return obeyEstop(datagram, connection);
   if (header.type == link::MessageType::kCommand) {
     if (link::open(datagram, command_)) {
-      command(command_);
+      command(command_, speakerOf(connection, command_.client, command_.origin));
     } else {
       admission_.count(CommandRefusal::kMalformed);
       reportRefusal(CommandRefusal::kMalformed, connection.client);
@@ -224,7 +271,7 @@ bool LinkServer::handle(Connection& connection, std::span<const std::byte> datag
   }
   if (header.type == link::MessageType::kSignals) {
     if (link::open(datagram, signals_)) {
-      signals(signals_);
+      signals(signals_, speakerOf(connection, signals_.client, signals_.origin));
     } else {
       admission_.count(CommandRefusal::kMalformed);
       reportRefusal(CommandRefusal::kMalformed, connection.client);
@@ -251,6 +298,9 @@ bool LinkServer::welcome(Connection& connection, std::span<const std::byte> data
   link::Hello hello;
   if (!link::open(datagram, hello)) return false;
   connection.client = hello.client;
+  // A process of rc10d's own user could end rc10d and start another: nobody is kept out by asking for more.
+  connection.is_gateway =
+      connection.speaker.user == ::geteuid() && hello.client.view() == link::kGatewayClient;
   connection.subscriptions = hello.subscriptions;
   // The answer carries our version; a client of another version reads it there and says so.
   auto message = publication_.welcome();
@@ -265,26 +315,30 @@ bool LinkServer::welcome(Connection& connection, std::span<const std::byte> data
   return connection.welcomed;
 }
 
-void LinkServer::command(const link::Command& message) {
-  const auto refusal = admission_.admit(message, monotonicNow(), accepted_);
+void LinkServer::command(const link::Command& message, const Speaker& speaker) {
+  const auto refusal = admission_.admit(message, speaker, monotonicNow(), accepted_);
   const bool handed_over = refusal == CommandRefusal::kNone && sources_.exchange.commands.push(accepted_);
   const auto outcome = refusal == CommandRefusal::kNone && !handed_over ? CommandRefusal::kRingFull : refusal;
   admission_.count(outcome);
+  if (outcome == CommandRefusal::kNotPermitted)
+    return reportRefusal(outcome, message.client, admission_.whyNotPermitted());
   if (outcome != CommandRefusal::kNone) return reportRefusal(outcome, message.client);
   if (!admission_.clearedField()) return;
   admission_.count(CommandRefusal::kUnusedField);
   reportRefusal(CommandRefusal::kUnusedField, message.client);
 }
 
-void LinkServer::signals(const link::Signals& message) {
-  auto outcome = signal_admission_.admit(message, monotonicNow(), accepted_signals_);
+void LinkServer::signals(const link::Signals& message, const Speaker& speaker) {
+  auto outcome = signal_admission_.admit(message, speaker, monotonicNow(), accepted_signals_);
   if (outcome == CommandRefusal::kNone && !sources_.exchange.signals.push(accepted_signals_))
     outcome = CommandRefusal::kRingFull;
   admission_.count(outcome);
+  if (outcome == CommandRefusal::kNotPermitted)
+    return reportRefusal(outcome, message.client, signal_admission_.whyNotPermitted());
   if (outcome != CommandRefusal::kNone) reportRefusal(outcome, message.client);
 }
 
-void LinkServer::reportRefusal(CommandRefusal reason, const link::Name& client) {
+void LinkServer::reportRefusal(CommandRefusal reason, const link::Name& client, const std::string& why) {
   const auto now = monotonicNow();
   auto& next_report = next_refusal_report_[static_cast<std::size_t>(reason)];
   if (now < next_report) return;
@@ -292,7 +346,7 @@ void LinkServer::reportRefusal(CommandRefusal reason, const link::Name& client) 
   // To clients not through the scheduler, which never saw the command; but it alone writes the black box.
   (void)sources_.exchange.refusals.push({EventCode::kCommandRefused, Severity::kWarning, -1,
                                          static_cast<std::int32_t>(reason), 0, now, client});
-  tell(Publication::refusal(reason, client, now, wallClockUs()));
+  tell(Publication::refusal(reason, client, now, wallClockUs(), why));
 }
 
 void LinkServer::tell(link::Event message) {
@@ -301,7 +355,7 @@ void LinkServer::tell(link::Event message) {
 }
 
 void LinkServer::request(const link::Request& message, Connection& connection) {
-  auto outcome = desk_.begin(message, connection.id);
+  auto outcome = desk_.begin(message, speakerOf(connection, message.client, message.origin));
   if (outcome.estop) {
     sources_.exchange.estop_client.slot() = message.client;
     sources_.exchange.estop_client.publish();
@@ -312,6 +366,9 @@ void LinkServer::request(const link::Request& message, Connection& connection) {
       answer(*failed);
   }
   if (outcome.response) respond(connection, *outcome.response);
+  if (outcome.not_permitted.empty()) return;
+  admission_.count(CommandRefusal::kNotPermitted);
+  reportRefusal(CommandRefusal::kNotPermitted, message.client, outcome.not_permitted);
 }
 
 void LinkServer::answer(const RequestDesk::Answer& answer) {

@@ -53,9 +53,12 @@ class LinkServer {
     std::uint32_t subscriptions = 0;
     bool welcomed = false;
     std::deque<link::Response> unsent{};  ///< Answers that found no room; the oldest first.
+    Speaker speaker{};
+    bool is_gateway = false;  ///< It says for whom it speaks.
   };
 
-  LinkServer(LinkSocket socket, Sources sources, UniqueFd epoll, UniqueFd state_timer, UniqueFd slow_timer);
+  LinkServer(LinkSocket socket, Sources sources, Permissions permissions, UniqueFd epoll,
+             UniqueFd state_timer, UniqueFd slow_timer);
 
   void accept();
   [[nodiscard]] bool dropSilentConnection();
@@ -64,9 +67,12 @@ class LinkServer {
   /// A defective message may still be an e-stop. False.
   [[nodiscard]] bool obeyEstop(std::span<const std::byte> datagram, Connection& connection);
   [[nodiscard]] bool welcome(Connection& connection, std::span<const std::byte> datagram);
-  void command(const link::Command& message);
-  void signals(const link::Signals& message);
-  void reportRefusal(CommandRefusal reason, const link::Name& client);
+  [[nodiscard]] Speaker speakerOf(int fd, std::uint64_t connection) const;
+  [[nodiscard]] Speaker speakerOf(const Connection& connection, const link::Name& client,
+                                  link::Origin origin) const;
+  void command(const link::Command& message, const Speaker& speaker);
+  void signals(const link::Signals& message, const Speaker& speaker);
+  void reportRefusal(CommandRefusal reason, const link::Name& client, const std::string& why = {});
   void tell(link::Event message);
   void request(const link::Request& message, Connection& connection);
   void close(std::size_t index);

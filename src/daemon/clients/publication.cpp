@@ -216,7 +216,7 @@ void Publication::fill(link::Diagnostics& out, const Snapshot& snapshot, const T
 }
 
 link::Event Publication::refusal(CommandRefusal reason, const link::Name& client, MonotonicTime now,
-                                 std::int64_t utime) {
+                                 std::int64_t utime, const std::string& why) {
   link::Event out;
   out.utime = utime;
   out.mono_us = monoUs(now);
@@ -225,7 +225,8 @@ link::Event Publication::refusal(CommandRefusal reason, const link::Name& client
   out.source = "robot";
   out.client = client;
   const auto* verdict = reason == CommandRefusal::kUnusedField ? "accepted" : "refused";
-  out.text = fmt::format("command of '{}' {}: {}", client.view(), verdict, describe(reason));
+  out.text = fmt::format("command of '{}' {}: {}", client.view(), verdict,
+                         why.empty() ? std::string_view{describe(reason)} : std::string_view{why});
   return out;
 }
 

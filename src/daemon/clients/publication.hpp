@@ -43,7 +43,7 @@ class Publication {
             std::int64_t utime);
   /// A command message that admission refused.
   [[nodiscard]] static link::Event refusal(CommandRefusal reason, const link::Name& client, MonotonicTime now,
-                                           std::int64_t utime);
+                                           std::int64_t utime, const std::string& why = {});
   [[nodiscard]] link::Event event(const Event& event, std::int64_t utime) const;
 
  private:

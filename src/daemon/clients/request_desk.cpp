@@ -67,9 +67,24 @@ constexpr std::string_view kEnableAloneOperation = "enable_alone";
   return "unknown reason";
 }
 
-[[nodiscard]] bool sameRequest(const link::Request& request, const link::Response& response) {
-  return request.session == response.session && request.seq == response.seq &&
-         request.client.view() == response.client.view();
+template <typename Other>
+[[nodiscard]] bool sameNumber(const link::Request& request, const Other& other) {
+  return request.session == other.session && request.seq == other.seq &&
+         request.client.view() == other.client.view();
+}
+
+[[nodiscard]] Right rightFor(Operation operation) {
+  switch (operation) {
+    case Operation::kClear: return Right::kClear;
+    case Operation::kSetGains: return Right::kTune;
+    case Operation::kConfigure: return Right::kConfigure;
+    case Operation::kEnable:
+    case Operation::kEnableAlone:
+    case Operation::kDisable:
+    case Operation::kEstop:
+    case Operation::kZero: break;
+  }
+  return Right::kCommand;
 }
 
 }  // namespace
@@ -95,21 +110,23 @@ link::Response RequestDesk::respond(const link::Request& request, link::Response
   return response;
 }
 
-RequestDesk::Outcome RequestDesk::begin(const link::Request& request, std::uint64_t connection) {
+RequestDesk::Outcome RequestDesk::begin(const link::Request& request, const Speaker& speaker) {
   const auto operation = operationNamed(request.operation.view());
   Outcome outcome;
   // An e-stop is an e-stop, whatever else the message says, and however often it comes.
   outcome.estop = operation == Operation::kEstop;
-  if (const auto* known = remembered(request)) {
+  const auto asker = speaker.owner();
+  const auto* known = remembered(asker, request);
+  auto* open = openRepetition(asker, request);
+  // An answer from memory stops nothing.
+  const bool stops = operation == Operation::kEstop || operation == Operation::kDisable;
+  if (known != nullptr && !stops) {
     outcome.response = *known;
     return outcome;
   }
-  for (auto& open : open_) {
-    if (open.request.session == request.session && open.request.seq == request.seq &&
-        open.request.client.view() == request.client.view()) {
-      open.connection = connection;  // a repetition: answered when the first is
-      return outcome;
-    }
+  if (open != nullptr && !stops) {
+    open->connection = speaker.connection;  // a repetition: answered when the first is
+    return outcome;
   }
   MotorSet motors;
   std::string problem;
@@ -138,14 +155,31 @@ RequestDesk::Outcome RequestDesk::begin(const link::Request& request, std::uint6
              (*operation != Operation::kEnableAlone || isOfOneMotor(request, problem)) &&
              (*operation != Operation::kConfigure || parseDrive(request, drive, problem)) &&
              (*operation != Operation::kSetGains || parseChanges(request, gains, problem))) {
+    const bool whole_robot = request.target.view().empty();
+    if (!outcome.estop) {
+      outcome.not_permitted = admission_.permissions().whyNoRequest(
+          speaker, request.client.view(), rightFor(*operation), motors, whole_robot);
+    }
+    if (!outcome.not_permitted.empty()) {
+      // Not remembered: another rule may be in force when it is repeated.
+      outcome.response = respond(request, link::ResponseStatus::kRefused, outcome.not_permitted);
+      return outcome;
+    }
     const std::uint64_t id = next_order_id_++;
-    open_.push_back({id, connection, request, motors, drive, gains});
-    outcome.order =
-        Order{id, *operation, motors, value, drive, gains, request.client, request.target.view().empty()};
+    open_.push_back({id, speaker.connection, asker, request, motors, drive, gains});
+    outcome.order = Order{.id = id,
+                          .operation = *operation,
+                          .motors = motors,
+                          .value = value,
+                          .drive = drive,
+                          .gains = gains,
+                          .client = request.client,
+                          .whole_robot = whole_robot,
+                          .repeated = known != nullptr || open != nullptr};
     return outcome;
   }
   outcome.response = respond(request, link::ResponseStatus::kRefused, problem);
-  remember(*outcome.response);
+  remember(asker, request, *outcome.response);
   return outcome;
 }
 
@@ -336,7 +370,7 @@ std::optional<RequestDesk::Answer> RequestDesk::finish(const OrderResult& result
   }
   Answer answer{found->connection, respond(found->request, status, message)};
   if (found->request.operation.view() == kSetGainsOperation) finishGains(*found, result, answer.response);
-  remember(answer.response);
+  remember(found->asker, found->request, answer.response);
   open_.erase(found);
   return answer;
 }
@@ -351,15 +385,27 @@ std::optional<RequestDesk::Answer> RequestDesk::fail(std::uint64_t order_id, con
   return answer;
 }
 
-void RequestDesk::remember(const link::Response& response) {
-  answered_.push_back(response);
+void RequestDesk::remember(std::uint64_t asker, const link::Request& request,
+                           const link::Response& response) {
+  answered_.push_back({asker, request.operation, response});
   if (answered_.size() > kMaxRemembered) answered_.pop_front();
 }
 
-const link::Response* RequestDesk::remembered(const link::Request& request) const {
-  const auto found = std::find_if(answered_.begin(), answered_.end(),
-                                  [&](const auto& response) { return sameRequest(request, response); });
-  return found == answered_.end() ? nullptr : &*found;
+const link::Response* RequestDesk::remembered(std::uint64_t asker, const link::Request& request) const {
+  // The newest: what stops is answered anew each time.
+  const auto found = std::find_if(answered_.rbegin(), answered_.rend(), [&](const Remembered& each) {
+    return each.asker == asker && sameNumber(request, each.response) &&
+           each.operation.view() == request.operation.view();
+  });
+  return found == answered_.rend() ? nullptr : &found->response;
+}
+
+RequestDesk::Open* RequestDesk::openRepetition(std::uint64_t asker, const link::Request& request) {
+  const auto found = std::find_if(open_.begin(), open_.end(), [&](const Open& each) {
+    return each.asker == asker && sameNumber(request, each.request) &&
+           each.request.operation.view() == request.operation.view();
+  });
+  return found == open_.end() ? nullptr : &*found;
 }
 
 }  // namespace rc10

@@ -16,8 +16,8 @@
 namespace rc10 {
 
 /// Turns requests into orders for the supervisor, and its results into responses in words.
-/// A repeated request, by client, session and sequence number, gets the first answer again.
-/// Link thread only.
+/// A repeated request, by sender, client, session, sequence number and operation, gets the first answer
+/// again; one that stops is carried out again. Link thread only.
 class RequestDesk {
  public:
   /// `optional`: motors that may fail to enable without the request failing. `setups`: what can be written to
@@ -30,9 +30,10 @@ class RequestDesk {
     std::optional<Order> order;              ///< To be sent to the supervisor; answered by finish().
     std::optional<link::Response> response;  ///< To be sent back at once.
     bool estop = false;                      ///< Raise the e-stop flag too: the ring may be full.
+    std::string not_permitted;               ///< Why, if that is the reason of the response.
   };
-  /// `client`: which connection asks; finish() tells it back.
-  [[nodiscard]] Outcome begin(const link::Request& request, std::uint64_t connection);
+  /// finish() tells the speaker's connection back.
+  [[nodiscard]] Outcome begin(const link::Request& request, const Speaker& speaker);
 
   struct Answer {
     std::uint64_t connection = 0;
@@ -47,6 +48,7 @@ class RequestDesk {
   struct Open {
     std::uint64_t order_id = 0;
     std::uint64_t connection = 0;
+    std::uint64_t asker = 0;
     link::Request request;
     MotorSet motors;
     DriveWrite drive;
@@ -71,8 +73,15 @@ class RequestDesk {
   [[nodiscard]] std::string reasons(const MotorSet& motors, const OrderResult& result) const;
   [[nodiscard]] static link::Response respond(const link::Request& request, link::ResponseStatus status,
                                               const std::string& message);
-  void remember(const link::Response& response);
-  [[nodiscard]] const link::Response* remembered(const link::Request& request) const;
+  struct Remembered {
+    std::uint64_t asker = 0;
+    link::Text<32> operation;
+    link::Response response;
+  };
+
+  void remember(std::uint64_t asker, const link::Request& request, const link::Response& response);
+  [[nodiscard]] const link::Response* remembered(std::uint64_t asker, const link::Request& request) const;
+  [[nodiscard]] Open* openRepetition(std::uint64_t asker, const link::Request& request);
 
   const Admission& admission_;
   std::vector<std::string> names_;
@@ -81,7 +90,7 @@ class RequestDesk {
   std::vector<MotorLoops> loops_;  ///< With the gains in force.
   std::uint64_t next_order_id_ = 1;
   std::deque<Open> open_;
-  std::deque<link::Response> answered_;  // newest last; bounded
+  std::deque<Remembered> answered_;  // newest last; bounded
 };
 
 }  // namespace rc10

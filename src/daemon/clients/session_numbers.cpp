@@ -10,7 +10,8 @@ constexpr std::size_t kMaxSessions = 64;
 
 }  // namespace
 
-bool SessionNumbers::accept(std::string_view client, std::uint64_t session, std::int64_t seq) {
+SessionNumbers::Verdict SessionNumbers::accept(std::uint64_t owner, std::string_view client,
+                                               std::uint64_t session, std::int64_t seq) {
   const std::pair key{std::string(client), session};
   auto entry = sessions_.find(key);
   if (entry == sessions_.end()) {
@@ -20,11 +21,13 @@ bool SessionNumbers::accept(std::string_view client, std::uint64_t session, std:
       }));
     }
     entry = sessions_.emplace(key, Session{}).first;
+  } else if (owner != entry->second.owner) {
+    return Verdict::kOfAnother;
   } else if (seq <= entry->second.last_seq) {
-    return false;
+    return Verdict::kOld;
   }
-  entry->second = {seq, ++messages_};
-  return true;
+  entry->second = {owner, seq, ++messages_};
+  return Verdict::kNew;
 }
 
 }  // namespace rc10

@@ -13,11 +13,17 @@ namespace rc10 {
 /// only.
 class SessionNumbers {
  public:
-  /// False: not above the last one of its session.
-  [[nodiscard]] bool accept(std::string_view client, std::uint64_t session, std::int64_t seq);
+  enum class Verdict : std::uint8_t {
+    kNew,
+    kOld,        ///< Not above the last one of its session.
+    kOfAnother,  ///< The session was begun by another owner.
+  };
+  [[nodiscard]] Verdict accept(std::uint64_t owner, std::string_view client, std::uint64_t session,
+                               std::int64_t seq);
 
  private:
   struct Session {
+    std::uint64_t owner = 0;
     std::int64_t last_seq = 0;
     std::uint64_t last_used = 0;  // counts messages
   };

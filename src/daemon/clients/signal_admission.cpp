@@ -11,10 +11,11 @@ namespace rc10 {
 static_assert(kMaxMessageSignals == kMaxSignals && kMaxMessageSignals == link::kMaxSignals);
 static_assert(kMaxNameBytes + 1 == sizeof(link::Name));
 
-SignalAdmission::SignalAdmission(std::vector<KnownModule> modules)
-    : modules_(std::move(modules)), sessions_(modules_.size()) {}
+SignalAdmission::SignalAdmission(std::vector<KnownModule> modules, Permissions permissions)
+    : modules_(std::move(modules)), permissions_(std::move(permissions)), sessions_(modules_.size()) {}
 
-CommandRefusal SignalAdmission::admit(const link::Signals& message, MonotonicTime now, SignalMessage& out) {
+CommandRefusal SignalAdmission::admit(const link::Signals& message, const Speaker& speaker, MonotonicTime now,
+                                      SignalMessage& out) {
   const auto known = std::find_if(modules_.begin(), modules_.end(), [&](const KnownModule& module) {
     return module.name == message.module.view();
   });
@@ -32,16 +33,24 @@ CommandRefusal SignalAdmission::admit(const link::Signals& message, MonotonicTim
     if (!std::isnan(place)) return CommandRefusal::kMalformed;
     place = given.value;
   }
-  if (now >= *deadline) return CommandRefusal::kExpired;
-  if (!budget_.spend(message.client.view(), message.value_count, now)) return CommandRefusal::kRingFull;
   const auto module = static_cast<std::size_t>(known - modules_.begin());
+  const auto client = message.client.view();
+  not_permitted_ = permissions_.whyNoSignals(speaker, client, module, message.priority);
+  if (!not_permitted_.empty()) return CommandRefusal::kNotPermitted;
+  if (now >= *deadline) return CommandRefusal::kExpired;
+  if (!budget_.spend(client, message.value_count, now)) return CommandRefusal::kRingFull;
   out.module = static_cast<std::uint16_t>(module);
   out.client = message.client;
   out.session = message.session;
   out.priority = message.priority;
   out.deadline = *deadline;
-  const bool new_number = sessions_[module].accept(message.client.view(), message.session, message.seq);
-  return new_number ? CommandRefusal::kNone : CommandRefusal::kOldSequence;
+  switch (sessions_[module].accept(speaker.owner(), client, message.session, message.seq)) {
+    case SessionNumbers::Verdict::kNew: return CommandRefusal::kNone;
+    case SessionNumbers::Verdict::kOld: return CommandRefusal::kOldSequence;
+    case SessionNumbers::Verdict::kOfAnother: break;
+  }
+  not_permitted_ = permissions_.whyOtherSession(client);
+  return CommandRefusal::kNotPermitted;
 }
 
 }  // namespace rc10

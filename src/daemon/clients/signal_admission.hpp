@@ -23,13 +23,19 @@ struct KnownModule {
 /// the time is an argument.
 class SignalAdmission {
  public:
-  explicit SignalAdmission(std::vector<KnownModule> modules);
+  explicit SignalAdmission(std::vector<KnownModule> modules, Permissions permissions = {});
 
   /// Translates a message; on refusal `out` is unspecified. `now` is CLOCK_MONOTONIC.
-  [[nodiscard]] CommandRefusal admit(const link::Signals& message, MonotonicTime now, SignalMessage& out);
+  [[nodiscard]] CommandRefusal admit(const link::Signals& message, const Speaker& speaker, MonotonicTime now,
+                                     SignalMessage& out);
+
+  /// After kNotPermitted, why.
+  [[nodiscard]] const std::string& whyNotPermitted() const noexcept { return not_permitted_; }
 
  private:
   std::vector<KnownModule> modules_;
+  Permissions permissions_;
+  std::string not_permitted_;
   std::vector<SessionNumbers> sessions_;  // of each module
   CommandBudget budget_;                  // of messages, whose ring is as large as that of commands
 };

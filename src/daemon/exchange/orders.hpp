@@ -60,6 +60,7 @@ struct Order {
   GainChanges gains{};       ///< kSetGains: of the one motor.
   link::Name client{};       ///< The one that asked.
   bool whole_robot = false;  ///< Named no motor. Only such a kClear ends an e-stop.
+  bool repeated = false;     ///< Of a request that was taken before: one more kDisable it is not.
 
   [[nodiscard]] bool fromModule() const noexcept { return id == kFromModule; }
 };

@@ -1,9 +1,11 @@
 #pragma once
 
 #include <algorithm>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "config/client_config.hpp"
 #include "config/keys/loop_gains.hpp"
 #include "daemon/exchange/snapshot.hpp"
 
@@ -14,6 +16,10 @@ struct RobotDescription {
   std::string robot;
   std::string lcm_url;
   std::string config_hash;  ///< SHA-256 of the configuration file.
+  std::string config_file;
+  std::optional<ClientsConfig> clients;
+  ForbiddenAt tuning_locked_at = 0;
+  ForbiddenAt clear_local_at = 0;
   int rate_hz = 1000;
   int state_hz = 200;
   struct Motor {

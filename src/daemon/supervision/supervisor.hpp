@@ -105,7 +105,7 @@ class Supervisor {
   /// The motors that keep this one from being enabled, alone or at all.
   [[nodiscard]] MotorSet inTheWay(std::size_t motor, Refusal refusal, const MotorSet& asked) const noexcept;
   [[nodiscard]] MotorSet otherMotorsOn(std::size_t motor) const noexcept;
-  void disable(std::size_t motor, const link::Name& client, const Tick& tick) noexcept;
+  void disable(std::size_t motor, const Order& order, const Tick& tick) noexcept;
   void clear(std::size_t motor, const Tick& tick) noexcept;
   void answer(const OrderResult& result) noexcept;
   [[nodiscard]] Refusal setGains(std::size_t motor, const Order& order, const Tick& tick) noexcept;

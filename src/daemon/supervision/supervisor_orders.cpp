@@ -123,7 +123,7 @@ void Supervisor::carryOut(const Order& order, const Tick& tick) noexcept {
         if (refusal == Refusal::kNone && enabling) waiting.set(motor);
         break;
       }
-      case Operation::kDisable: disable(motor, order.client, tick); break;
+      case Operation::kDisable: disable(motor, order, tick); break;
       case Operation::kClear: clear(motor, tick); break;
       case Operation::kZero: result.motors[motor] = axes_[motor].zero(order); break;
       case Operation::kSetGains: result.motors[motor] = setGains(motor, order, tick); break;
@@ -168,19 +168,19 @@ bool Supervisor::clearEstop(const Order& order, OrderResult& result, const Tick&
   return at_rest;
 }
 
-void Supervisor::disable(std::size_t motor, const link::Name& client, const Tick& tick) noexcept {
+void Supervisor::disable(std::size_t motor, const Order& order, const Tick& tick) noexcept {
   auto& axis = axes_[motor];
   auto* group = groupOf(motor);
   // Once more lets go of a motor that is still being held or braked; the first time may have been its
-  // group's.
-  const bool once_more = group == nullptr || !group->rests_with_it.test(motor);
+  // group's. A request that is repeated since its answer was lost is no second one.
+  const bool once_more = !order.repeated && (group == nullptr || !group->rests_with_it.test(motor));
   if (axis.status() == MotorStatus::kReady && once_more) axis.endFallback();
   if (group != nullptr) {
     group->rearm.reset();
-    group->rests_with_it.reset(motor);
+    if (!order.repeated) group->rests_with_it.reset(motor);
     group->disable_asked = true;
   }
-  transition(motor, MotorEvent::kDisable, {StopCause::kRequest, client}, tick);
+  transition(motor, MotorEvent::kDisable, {StopCause::kRequest, order.client}, tick);
 }
 
 Refusal Supervisor::ownRefusal(std::size_t motor) const noexcept {

@@ -1,0 +1,127 @@
+// `clients` on a real socket: who a sender is, the kernel and the gateway say.
+
+#include <gmock/gmock.h>
+#include <unistd.h>
+
+#include "daemon/link_rig.hpp"
+
+namespace rc10::test::link_server_clients_test {
+namespace {
+
+using link::Origin;
+using ::testing::HasSubstr;
+
+ClientConfig commander(ClientConfig::By by, std::string who) {
+  ClientConfig client;
+  client.line = 8;
+  client.by = by;
+  client.who = std::move(who);
+  client.all_motors = client.all_modules = true;
+  client.rights[static_cast<std::size_t>(Right::kCommand)] = true;
+  return client;
+}
+
+class LinkServerClientsTest : public LinkRig {
+ protected:
+  void start(const ClientConfig& client) {
+    server.reset();
+    robot.config_file = "robot.yaml";
+    robot.clients = ClientsConfig{.line = 7, .entries = {client}};
+    auto socket = LinkSocket::listen(dir.path(), "hero");
+    ASSERT_TRUE(socket);
+    server =
+        LinkServer::create(std::move(*socket), {.exchange = exchange,
+                                                .inboxes = inboxes,
+                                                .timing = timing,
+                                                .robot = robot,
+                                                .page_faults = {},
+                                                .log = [this](const link::Event& e) { logged.push_back(e); },
+                                                .housekeeping = {}})
+            .value();
+  }
+  std::unique_ptr<TestClient> joinAs(std::string_view name, std::uint32_t subscriptions = 0) {
+    auto client = std::make_unique<TestClient>(path);
+    link::Hello hello;
+    hello.client = name;
+    hello.subscriptions = subscriptions;
+    EXPECT_TRUE(client->send(hello));
+    pump();
+    EXPECT_TRUE(client->take<link::Welcome>());
+    return client;
+  }
+  bool obeyed(TestClient& client, Origin origin, std::string_view name = "planner") {
+    auto message = velocityCommand(++seq_);
+    message.client = name;
+    message.origin = origin;
+    EXPECT_TRUE(client.send(message));
+    pump();
+    Command command;
+    return exchange.commands.pop(command);
+  }
+  std::optional<link::Response> answer(TestClient& client, std::string_view operation, Origin origin = {}) {
+    auto request = linkRequest(++seq_, operation, "left");
+    request.origin = origin;
+    EXPECT_TRUE(client.send(request));
+    pump();
+    return client.take<link::Response>();
+  }
+
+  std::int64_t seq_ = 0;
+};
+
+std::string me() { return std::to_string(::geteuid()); }
+std::string somebodyElse() { return std::to_string(::geteuid() + 1); }
+
+TEST_F(LinkServerClientsTest, TheKernelSaysWhoAClientOfTheSocketIs) {
+  start(commander(ClientConfig::By::kUser, me()));
+  EXPECT_TRUE(obeyed(*joinAs("pilot"), Origin::kElsewhere));
+  start(commander(ClientConfig::By::kUser, somebodyElse()));
+  EXPECT_FALSE(obeyed(*joinAs("pilot"), Origin::kThisComputer));
+}
+
+TEST_F(LinkServerClientsTest, AMemberOfAGroupIsKnownByIt) {
+  start(commander(ClientConfig::By::kGroup, std::to_string(::getegid())));
+  EXPECT_TRUE(obeyed(*joinAs("pilot"), Origin::kElsewhere));
+}
+
+TEST_F(LinkServerClientsTest, TheGatewayVouchesForNamesOfThisComputerOnly) {
+  start(commander(ClientConfig::By::kLcmName, "planner"));
+  auto gateway = joinAs("rc10-lcm");
+  EXPECT_TRUE(obeyed(*gateway, Origin::kThisComputer));
+  EXPECT_FALSE(obeyed(*gateway, Origin::kThisComputer, "other"));
+  EXPECT_FALSE(obeyed(*gateway, Origin::kElsewhere));
+  auto pilot = joinAs("pilot");
+  EXPECT_FALSE(obeyed(*pilot, Origin::kThisComputer)) << "a client of the socket vouches for nobody";
+}
+
+TEST_F(LinkServerClientsTest, ARefusalIsToldCountedAndInTheEvents) {
+  start(commander(ClientConfig::By::kUser, somebodyElse()));
+  auto pilot = joinAs("pilot", link::kDiagnosticsFeed);
+  const auto response = answer(*pilot, "enable");
+  ASSERT_TRUE(response);
+  EXPECT_EQ(response->status, link::ResponseStatus::kRefused);
+  EXPECT_THAT(std::string(response->message.view()), HasSubstr("clients at robot.yaml:7"));
+  ASSERT_FALSE(logged.empty());
+  EXPECT_EQ(logged.back().code, static_cast<std::int32_t>(EventCode::kCommandRefused));
+  EXPECT_THAT(std::string(logged.back().text.view()), HasSubstr("robot.yaml:7"));
+  EXPECT_FALSE(obeyed(*pilot, {}));
+  publishSnapshot(1);
+  const auto diagnostics = await<link::Diagnostics>(*pilot);
+  ASSERT_TRUE(diagnostics);
+  std::int64_t counted = 0;
+  for (std::size_t i = 0; i < diagnostics->refusal_count; ++i) {
+    if (diagnostics->refusals[i].name.view() == "not permitted") counted = diagnostics->refusals[i].count;
+  }
+  EXPECT_EQ(counted, 2);
+}
+
+TEST_F(LinkServerClientsTest, AnEstopOfAnObserverStops) {
+  start(commander(ClientConfig::By::kUser, somebodyElse()));
+  auto pilot = joinAs("pilot");
+  EXPECT_FALSE(answer(*pilot, "estop")) << "answered by the scheduler";
+  EXPECT_TRUE(exchange.estop.load());
+  EXPECT_EQ(takeOrder().operation, Operation::kEstop);
+}
+
+}  // namespace
+}  // namespace rc10::test::link_server_clients_test
