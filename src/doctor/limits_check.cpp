@@ -9,6 +9,9 @@ namespace {
 // rc10d locks 11 MiB with seven motors (docs/performance.md); twice that, and the recording.
 constexpr long long kLockedBytes = 64LL << 20;
 
+// systemd/limits.d/rc10d.conf
+constexpr int kPriorityOfDevelopers = 65;
+
 constexpr unsigned kCapIpcLock = 14;  // linux/capability.h
 constexpr unsigned kCapSysNice = 23;
 
@@ -72,7 +75,9 @@ Finding checkRealtimeLimit(const LimitFacts& limits, const std::string& who, boo
   if (limit == LimitFacts::kUnlimited || limit >= priority)
     return pass(what, who + " may have up to " + (limit < 0 ? "any" : std::to_string(limit)));
   return tooLow(
-      what, who + " may have up to " + std::to_string(limit) + ", rc10d asks for " + std::to_string(priority),
+      what,
+      who + " may have up to " + std::to_string(limit) + ", rc10d asks for " + std::to_string(priority) +
+          (priority <= kPriorityOfDevelopers ? " (which members of the group rc10-dev get from the package)" : ""),
       limits, "rtprio 90", service);
 }
 

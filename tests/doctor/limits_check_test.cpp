@@ -8,6 +8,7 @@ namespace rc10::doctor::limits_check_test {
 namespace {
 
 using ::testing::HasSubstr;
+using ::testing::Not;
 
 constexpr const char* kLimits =
     "Limit                     Soft Limit           Hard Limit           Units     \n"
@@ -55,6 +56,14 @@ TEST(LimitsCheck, OfAShellTheyAreAWarningWhereThereIsAService) {
   const LimitFacts limits{.realtime_priority = 64, .locked_bytes = 8 << 20};
   EXPECT_EQ(checkRealtimeLimit(limits, "this shell", true, 65).verdict, Verdict::kWarn);
   EXPECT_EQ(checkMemoryLimit(limits, "this shell", true).verdict, Verdict::kWarn);
+}
+
+TEST(LimitsCheck, TheGroupIsNamedWhereItSuffices) {
+  const LimitFacts member_of_rc10{.realtime_priority = 49, .locked_bytes = LimitFacts::kUnlimited};
+  const auto finding = checkRealtimeLimit(member_of_rc10, "this shell", false, 65);
+  EXPECT_EQ(finding.verdict, Verdict::kFail);
+  EXPECT_THAT(finding.why, HasSubstr("rc10-dev"));
+  EXPECT_THAT(checkRealtimeLimit(member_of_rc10, "this shell", false, 85).why, Not(HasSubstr("rc10-dev")));
 }
 
 TEST(LimitsCheck, EnoughPasses) {
