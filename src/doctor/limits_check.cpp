@@ -77,7 +77,8 @@ Finding checkRealtimeLimit(const LimitFacts& limits, const std::string& who, boo
   return tooLow(
       what,
       who + " may have up to " + std::to_string(limit) + ", rc10d asks for " + std::to_string(priority) +
-          (priority <= kPriorityOfDevelopers ? " (which members of the group rc10-dev get from the package)" : ""),
+          (priority <= kPriorityOfDevelopers ? " (which members of the group rc10-dev get from the package)"
+                                             : ""),
       limits, "rtprio 90", service);
 }
 
