@@ -248,3 +248,15 @@ def test_two_drives_that_cannot_be_told_apart_are_refused() -> None:
     options = _parser().parse_args(["--motor", "DM4310:2", "--motor", "DM4340:2"])
     with pytest.raises(ValueError, match="DM4310:2 and DM4340:2"):
         build_drives(options)
+
+
+def test_its_state_and_its_nameplate_can_be_asked_for() -> None:
+    fake = drive()
+    (state,) = tell(fake, 0x7FF, "01 00 CC 00")
+    assert state.startswith("011#01")
+    (gear,) = tell(fake, 0x7FF, "01 00 33 14 00 00 00 00")
+    assert gear == "011#0100331400002041"
+    for register in (1, *range(11, 21)):
+        (told,) = tell(fake, 0x7FF, f"01 00 33 {register:02X} 00 00 00 00")
+        assert told[:12] == f"011#010033{register:02X}"
+        assert tell(fake, 0x7FF, f"01 00 55 {register:02X} 00 00 80 3F") == []

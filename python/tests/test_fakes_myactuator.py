@@ -128,3 +128,10 @@ def test_is_asked_for_by_name() -> None:
     assert fake.name == "RMD-X8-25:32"
     with pytest.raises(ValueError, match="ids 1 to 32"):
         family_spec("RMD-X8-25:33")
+
+
+def test_accelerations_are_read_and_kept(drive: FakeMyActuator) -> None:
+    assert say(drive, "141#4201000000000000") == ["241#42010000E8030000"]
+    assert say(drive, "141#4301000010270000") == ["241#4301000010270000"]
+    assert say(drive, "141#4201000000000000") == ["241#4201000010270000"]
+    assert say(drive, "141#4200000000000000") == ["241#42000000E8030000"]

@@ -217,3 +217,34 @@ def test_it_shares_a_bus_with_other_families() -> None:
     # Node 16 has the ids 0x200 to 0x21F; what it sends most is a motor's feedback.
     with pytest.raises(ValueError, match="0x209"):
         check_collisions([OdriveSpec.parse("ODrive_S1:16"), MotorSpec.parse("GM6020:5")])
+
+
+def asked(fake: FakeOdrive, arbitration_id: int) -> list[can.Message]:
+    """Its answers to a remote frame, without what it sends unasked."""
+    question = can.Message(
+        arbitration_id=arbitration_id, is_extended_id=False, is_remote_frame=True
+    )
+    list(fake.frames())
+    heard = fake.decode_command(question)
+    answers = list(fake.frames())[:-1]
+    assert heard == bool(answers) or fake.generation.torques is False
+    return answers
+
+
+def test_remote_frames_are_answered() -> None:
+    fake = axis()
+    fake.current_a = 2.0
+    (currents,) = asked(fake, 0x074)
+    assert currents.data == struct.pack("<ff", 2.0, 2.0)
+    (supply,) = asked(fake, 0x077)
+    assert supply.data == struct.pack("<ff", 24.0, 0.0)
+    assert [message.arbitration_id for message in asked(fake, 0x07C)] == [0x07C]
+    assert [message.arbitration_id for message in asked(fake, 0x075)] == [0x075]
+    assert not asked(fake, 0x067)
+
+
+def test_the_older_firmware_means_something_else_by_two_of_them() -> None:
+    fake = axis("ODrive_v3:3")
+    assert not asked(fake, 0x075)
+    assert not asked(fake, 0x07C)
+    assert [message.arbitration_id for message in asked(fake, 0x074)] == [0x074]

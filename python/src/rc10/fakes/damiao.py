@@ -42,16 +42,38 @@ _MAX_WAITING = 32
 class Register(IntEnum):
     """The registers that this drive has."""
 
+    KT = 1
     MST_ID = 7
     ESC_ID = 8
     TIMEOUT = 9
     CTRL_MODE = 10
+    DAMPING = 11
+    INERTIA = 12
+    HW_VER = 13
+    SW_VER = 14
+    SN = 15
+    NPP = 16
+    RS = 17
+    LS = 18
+    FLUX = 19
     GEAR = 20
     PMAX = 21
     VMAX = 22
     TMAX = 23
     P_M = 80
     XOUT = 81
+
+
+_WHOLE = (
+    Register.MST_ID,
+    Register.ESC_ID,
+    Register.TIMEOUT,
+    Register.CTRL_MODE,
+    Register.HW_VER,
+    Register.SW_VER,
+    Register.SN,
+    Register.NPP,
+)
 
 
 class Mode(IntEnum):
@@ -225,6 +247,22 @@ class FakeDamiao:
             Register.TIMEOUT: timeout,
             Register.CTRL_MODE: Mode.MIT,
             Register.GEAR: model.gear,
+            # Read only; what the model's data do not have is 0.
+            Register.KT: model.kt_nm_per_a,
+            Register.HW_VER: 1,
+            Register.SW_VER: 1,
+            Register.SN: 1,
+            **dict.fromkeys(
+                (
+                    Register.DAMPING,
+                    Register.INERTIA,
+                    Register.NPP,
+                    Register.RS,
+                    Register.LS,
+                    Register.FLUX,
+                ),
+                0.0,
+            ),
             Register.PMAX: model.p_max_rad,
             Register.VMAX: model.v_max_rad_s,
             Register.TMAX: model.t_max_nm,
@@ -361,7 +399,7 @@ class FakeDamiao:
         if register is Register.P_M:
             return _FLOAT.pack(math.remainder(self.angle_rad * self.model.gear, math.tau))
         value = self.registers[register]
-        if register in (Register.MST_ID, Register.ESC_ID, Register.TIMEOUT, Register.CTRL_MODE):
+        if register in _WHOLE:
             return _UINT.pack(int(value))
         return _FLOAT.pack(value)
 

@@ -20,6 +20,7 @@ _RESET, _RELEASE_BRAKE, _LOCK_BRAKE, _SHUTDOWN, _STOP = 0x76, 0x77, 0x78, 0x80, 
 _ANGLE, _STATUS, _READING = 0x92, 0x9A, 0x9C
 _CURRENT, _SPEED, _POSITION = 0xA1, 0xA2, 0xA4
 _RUN_TIME, _SILENCE_LIMIT, _SILENCE_NOTICE = 0xB1, 0xB3, 0xF1
+_READ_ACCELERATION, _SET_ACCELERATION = 0x42, 0x43
 
 _NEEDS_RESTART = 0x0002 | 0x0010 | 0x0080
 _SUPPLY_V = 48.0
@@ -114,6 +115,8 @@ class FakeMyActuator(AnsweringDrive):
         self._silence_s = 0.0
         self._stopped_by_silence = False
         self._run_time_s = 0.0
+        # Of position (up, down) and velocity (up, down), deg/s².
+        self._accelerations = [1000] * 4
 
     @property
     def command_ids(self) -> list[int]:
@@ -165,6 +168,8 @@ class FakeMyActuator(AnsweringDrive):
             self._answer(_RUN_TIME_REPLY.pack(code, int(self._run_time_s * 1000) & 0xFFFFFFFF))
         elif code == _RESET:
             self.restart()
+        elif code in (_READ_ACCELERATION, _SET_ACCELERATION):
+            self._answer_acceleration(data)
         else:
             if code == _SHUTDOWN:
                 self.servo.release()
@@ -177,6 +182,15 @@ class FakeMyActuator(AnsweringDrive):
             else:
                 return
             self._answer(data)
+
+    def _answer_acceleration(self, data: bytes) -> None:
+        index = data[1]
+        if index < len(self._accelerations):
+            if data[0] == _SET_ACCELERATION:
+                self._accelerations[index] = max(100, min(60_000, _UINT32.unpack(data)[0]))
+            else:
+                data = data[:4] + self._accelerations[index].to_bytes(4, "little")
+        self._answer(data)
 
     def _follow(self, data: bytes) -> None:
         if data[0] == _CURRENT:

@@ -54,7 +54,18 @@ TORQUE = 1
 VELOCITY = 2
 POSITION = 3
 
+# Told when a remote frame asks for it.
+_ASKED = (
+    Cmd.HEARTBEAT,
+    Cmd.GET_ENCODER_ESTIMATES,
+    Cmd.GET_IQ,
+    Cmd.GET_TEMPERATURE,
+    Cmd.GET_BUS_VOLTAGE_CURRENT,
+    Cmd.GET_TORQUES,
+)
+
 _HEARD = (
+    *_ASKED,
     Cmd.ESTOP,
     Cmd.SET_AXIS_STATE,
     Cmd.SET_CONTROLLER_MODE,
@@ -197,6 +208,7 @@ class FakeOdrive:
         self._watchdog_s = watchdog_s
         self._unfed_s = 0.0
         self._since_heartbeat_s = _HEARTBEAT_S
+        self._asked: list[int] = []
         self._integral_nm = 0.0
         # A rotor of about half a kilogram, alone.
         self._inertia_kg_m2 = 2e-4
@@ -251,11 +263,15 @@ class FakeOdrive:
         if (
             message.is_extended_id
             or message.is_error_frame
-            or message.is_remote_frame
             or message.arbitration_id >> 5 != self.spec.node
         ):
             return False
         self._unfed_s = 0.0
+        if message.is_remote_frame:
+            cmd = message.arbitration_id & 0x1F
+            if cmd in _ASKED:
+                self._asked.append(cmd)
+            return cmd in _ASKED
         self.commands += 1
         try:
             self._obey(message.arbitration_id & 0x1F, bytes(message.data))
@@ -365,19 +381,37 @@ class FakeOdrive:
         return self._pair(Cmd.GET_ENCODER_ESTIMATES, self.pos_estimate, self.speed_rad_s / math.tau)
 
     def frames(self) -> Iterator[can.Message]:
-        """Yields position and speed, and every 100 ms a heartbeat and the telemetry."""
+        """Yields what was asked for, position and speed, every 100 ms heartbeat and telemetry."""
+        asked, self._asked = self._asked, []
+        for cmd in asked:
+            yield from self._told(cmd)
         # A float of the clock may be a hair short of the period.
         if self._since_heartbeat_s >= _HEARTBEAT_S - 1e-9:
             self._since_heartbeat_s = 0.0
             yield self.heartbeat()
-            yield self._pair(Cmd.GET_BUS_VOLTAGE_CURRENT, SUPPLY_V, 0.0)
+            yield from self._told(Cmd.GET_BUS_VOLTAGE_CURRENT)
             if self.generation.torques:
-                torque_nm = self.current_a * self._kt
-                yield self._pair(Cmd.GET_TORQUES, torque_nm, torque_nm)
-                yield self._pair(Cmd.GET_TEMPERATURE, AMBIENT_C, self.temperature_c)
+                yield from self._told(Cmd.GET_TORQUES)
+                yield from self._told(Cmd.GET_TEMPERATURE)
             else:
-                yield self._pair(Cmd.GET_IQ, self.current_a, self.current_a)
+                yield from self._told(Cmd.GET_IQ)
         yield self.estimates()
+
+    def _told(self, cmd: int) -> Iterator[can.Message]:
+        if cmd == Cmd.HEARTBEAT:
+            yield self.heartbeat()
+        elif cmd == Cmd.GET_ENCODER_ESTIMATES:
+            yield self.estimates()
+        elif cmd == Cmd.GET_IQ:
+            yield self._pair(Cmd.GET_IQ, self.current_a, self.current_a)
+        elif cmd == Cmd.GET_BUS_VOLTAGE_CURRENT:
+            yield self._pair(Cmd.GET_BUS_VOLTAGE_CURRENT, SUPPLY_V, 0.0)
+        # The older firmware means something else by these two.
+        elif cmd == Cmd.GET_TORQUES and self.generation.torques:
+            torque_nm = self.current_a * self._kt
+            yield self._pair(Cmd.GET_TORQUES, torque_nm, torque_nm)
+        elif cmd == Cmd.GET_TEMPERATURE and self.generation.torques:
+            yield self._pair(Cmd.GET_TEMPERATURE, AMBIENT_C, self.temperature_c)
 
     def _pair(self, cmd: Cmd, first: float, second: float) -> can.Message:
         return self._message(cmd, _TWO_FLOATS.pack(first, second))
