@@ -67,6 +67,21 @@ class Family:
 
 FAMILIES = (
     Family(
+        name="DJI",
+        fake="M3508:1",
+        keys="model: M3508, id: 1, zero: power_on, soft_start_ms: 0",
+        commands="200#.*",
+        enabling=("201#.*", "200#0000000000000000"),
+        targets=(
+            # Loops of the host: the first slot has what they want, the others nobody has.
+            Target("angle", 90, "200#(?!0000)....000000000000", near=3),
+            Target("velocity", 60, "200#(?!0000)....000000000000", near=3),
+            # Of 16384 for 20 A.
+            Target("current", 1, "200#0333000000000000", near=0.3, seconds=0.1),
+        ),
+        rest=("200#0000000000000000",),
+    ),
+    Family(
         name="VESC",
         fake="VESC:10",
         keys="model: VESC, id: 10, pole_pairs: 7, angle: none, feedback_hz: 100, "
