@@ -113,8 +113,9 @@ class Oracle {
     bool ends_at_standstill = false;
     bool rests_with_group = false;  ///< Disabled since another member was.
     bool new_sample = false;
-    bool was_hot = false;  ///< Its limit may still be reduced.
-    bool cooled = false;   ///< And that ended in this tick.
+    std::uint64_t cool_periods = 0;  ///< Below what derates it.
+    bool was_hot = false;            ///< Its limit may still be reduced.
+    bool cooled = false;             ///< And that ended in this tick.
     int unbraked_ticks = 0;
   };
   struct Group {

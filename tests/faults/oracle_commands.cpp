@@ -78,10 +78,13 @@ void Oracle::judgeCommand(std::size_t index, const MotorSnapshot& seen) {
   const double celsius = motor.wire->measured().temperature_c;
   const bool watched = guard.temperature_trip_c > 0.0F && motor.config->traits().reports_temperature;
   const auto derate_c = static_cast<double>(guard.temperature_derate_c);
-  // In the tick in which the drive says that it is cool the limit is back as a whole: a step, too.
+  // The limit is back at most 5 s after the motor is 3 C cooler (docs/safety.md).
   motor.cooled = motor.was_hot;
   if (watched && celsius > derate_c) motor.was_hot = true;
-  if (celsius <= derate_c && seen.status == MotorStatus::kActive) motor.was_hot = false;
+  motor.cool_periods = celsius <= derate_c - 3.0 ? motor.cool_periods + periods_ : 0;
+  const double cool_s =
+      static_cast<double>(seconds(config_.period())) * static_cast<double>(motor.cool_periods);
+  if (cool_s > 5.1 && seen.status == MotorStatus::kActive) motor.was_hot = false;
   motor.cooled = motor.cooled && !motor.was_hot;
   judgeLimits(index);
   judgeTold(index, seen);

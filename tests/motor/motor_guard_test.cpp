@@ -1,5 +1,7 @@
 #include "motor/guarding/motor_guard.hpp"
 
+#include <cmath>
+
 #include <gtest/gtest.h>
 
 namespace rc10::test::motor_guard_test {
@@ -85,6 +87,60 @@ TEST_F(MotorGuardTest, TakesCurrentAwayFromAHotMotorAndTripsAtTheEnd) {
   feedback.temperature_c = 100.0F;
   EXPECT_EQ(step().derating, 0.0F);
   EXPECT_EQ(step().fault, FaultCode::kOverheated);
+}
+
+TEST_F(MotorGuardTest, TorqueComesBackSlowlyOnceItIsThreeDegreesCooler) {
+  feedback.temperature_c = 95.0F;
+  ASSERT_FLOAT_EQ(step().derating, 0.25F);
+  feedback.temperature_c = 93.0F;
+  for (int i = 0; i < 1000; ++i) ASSERT_FLOAT_EQ(step().derating, 0.25F) << "two degrees are noise";
+  feedback.temperature_c = 70.0F;
+  float before = 0.25F;
+  for (int i = 0; i < 3749; ++i) {
+    const float now_derating = step().derating;
+    ASSERT_GT(now_derating, before) << i;
+    ASSERT_NEAR(now_derating - before, 0.2e-3F, 1e-6F) << i;
+    before = now_derating;
+  }
+  EXPECT_NEAR(before, 1.0F, 1e-3F) << "the whole in at most five seconds";
+  (void)step();
+  (void)step();
+  EXPECT_EQ(step().derating, 1.0F);
+  EXPECT_EQ(step().limits, 0U);
+}
+
+TEST_F(MotorGuardTest, ItIsAsWarmWhenItIsEnabledAgainAsTheTimeBetweenSays) {
+  feedback.temperature_c = 95.0F;
+  (void)step();
+  guard.reset();
+  feedback.temperature_c = 70.0F;
+  EXPECT_NEAR(step().derating, 0.25F, 0.001F) << "no way round the slope";
+  guard.reset();
+  now += 2s;
+  EXPECT_NEAR(step().derating, 0.65F, 0.001F);
+}
+
+// What a winding does around the threshold: told in whole degrees, with noise, heated by the square of the
+// current that it is allowed, under a load that would take it to 110 C.
+TEST_F(MotorGuardTest, AroundItsThresholdAHotMotorIsInNoLimitCycle) {
+  double winding_c = 70.0;
+  float before = 1.0F;
+  int rises = 0;
+  std::uint32_t random = 1;
+  for (int i = 0; i < 1'200'000; ++i) {
+    random = random * 1664525U + 1013904223U;
+    const double noise_c = static_cast<double>(random >> 8U) / 16777216.0 - 0.5;
+    feedback.temperature_c = static_cast<float>(std::floor(winding_c + noise_c));
+    const float factor = step().derating;
+    winding_c += 0.001 / 60.0 * (85.0 * static_cast<double>(factor * factor) + 25.0 - winding_c);
+    if (i > 600'000) {
+      ASSERT_GT(factor, 0.6F);
+      ASSERT_LT(factor, 1.0F);
+      rises += factor > before ? 1 : 0;
+    }
+    before = factor;
+  }
+  EXPECT_EQ(rises, 0) << "it has settled";
 }
 
 TEST_F(MotorGuardTest, ATemperatureThatIsNotReportedIsNoTemperature) {

@@ -94,8 +94,9 @@ constexpr std::array kMotorKeys{
         .range = {.min = 0, .max = 150, .above_min = true},
         .needs = kNeedsTemperature,
         .default_text = "80",
-        .about = "From here on the current or voltage limit comes down, to 0 at temperature_trip_c. Not for "
-                 "drives that report no temperature, as the M2006."},
+        .about = "From here on the current or voltage limit comes down, to 0 at temperature_trip_c; it comes "
+                 "back 3 C cooler, by a fifth a second. Not for drives that report no temperature, as the "
+                 "M2006."},
     Key{.name = "temperature_trip_c",
         .kind = kNumber,
         .unit = "C",

@@ -13,6 +13,11 @@ constexpr int kFastSamples = 3;
 // A motor at rest sends the same frame for ever; one that is told a current does not for so long.
 constexpr Duration kFrozenTime = std::chrono::milliseconds{200};
 
+// Torque taken away for heat comes back this much cooler, so that noise of a degree changes nothing, and by
+// this share a second, so that a motor that cools under a load jerks nothing.
+constexpr float kCoolerC = 3.0F;
+constexpr float kRecoveryPerSecond = 0.2F;
+
 [[nodiscard]] bool sameReadings(const MotorFeedback& a, const MotorFeedback& b) noexcept {
   const bool same_temperature =
       a.temperature_c == b.temperature_c || (std::isnan(a.temperature_c) && std::isnan(b.temperature_c));
@@ -40,7 +45,7 @@ MotorGuard::Verdict MotorGuard::step(const Observation& seen) noexcept {
   Verdict verdict;
   // Comparisons with NaN, which is what a drive does not report, are false.
   if (config_.temperature_trip_c > 0.0F) {
-    verdict.derating = derating(feedback.temperature_c);
+    verdict.derating = derate(feedback.temperature_c, seen.now);
     if (verdict.derating < 1.0F) verdict.limits |= kLimitTemperature;
     if (feedback.temperature_c >= config_.temperature_trip_c) verdict.fault = FaultCode::kOverheated;
   }
@@ -115,7 +120,15 @@ bool MotorGuard::runsAway(const Observation& seen) noexcept {
   return std::fabs(velocity_rpm) > opposed_rpm_ + config_.runaway_rpm;
 }
 
-float MotorGuard::derating(float temperature_c) const noexcept {
+float MotorGuard::derate(float temperature_c, MonotonicTime now) noexcept {
+  const float most = derating_ + kRecoveryPerSecond * seconds(now - derated_at_);
+  derated_at_ = now;
+  const float cooler = factorAt(temperature_c + kCoolerC);
+  derating_ = std::min(factorAt(temperature_c), std::max(derating_, std::min(cooler, most)));
+  return derating_;
+}
+
+float MotorGuard::factorAt(float temperature_c) const noexcept {
   const float span_c = config_.temperature_trip_c - config_.temperature_derate_c;
   if (!(temperature_c > config_.temperature_derate_c) || !(span_c > 0.0F)) return 1.0F;
   return std::max((config_.temperature_trip_c - temperature_c) / span_c, 0.0F);

@@ -44,7 +44,7 @@ class MotorGuard {
   explicit MotorGuard(const GuardConfig& config) noexcept : config_(config) {}
 
   [[nodiscard]] Verdict step(const Observation& seen) noexcept;
-  /// The motor is not ACTIVE, or was not: nothing from before counts.
+  /// The motor is not ACTIVE, or was not: nothing from before counts but its heat.
   void reset() noexcept;
   [[nodiscard]] const GuardConfig& config() const noexcept { return config_; }
 
@@ -68,12 +68,15 @@ class MotorGuard {
   [[nodiscard]] bool fallsBehind(const Observation& seen) noexcept;
   [[nodiscard]] bool frozen(const Observation& seen, bool new_sample) noexcept;
   [[nodiscard]] bool runsAway(const Observation& seen) noexcept;
-  [[nodiscard]] float derating(float temperature_c) const noexcept;
+  [[nodiscard]] float factorAt(float temperature_c) const noexcept;
+  [[nodiscard]] float derate(float temperature_c, MonotonicTime now) noexcept;
 
   GuardConfig config_;
   bool begun_ = false;
   MotorFeedback last_{};  ///< The sample before.
   std::uint64_t jumps_ = 0;
+  float derating_ = 1.0F;
+  MonotonicTime derated_at_{};  ///< Last step of it.
   int fast_samples_ = 0;
   bool unchanged_ = false;
   bool opposed_ = false;
