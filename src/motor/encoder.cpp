@@ -22,6 +22,7 @@ double longestSpacingSeconds(const Encoder::Config& config, double bound) noexce
 constexpr double kLargestNoticedTurns = 0.45;
 // Of the encoder itself: quantisation and eccentricity.
 constexpr double kJumpMarginTurns = 0.02;
+constexpr Duration::rep kMostLatePeriods = 2;
 
 }  // namespace
 
@@ -49,6 +50,45 @@ bool Encoder::jumped(double residual_turns, float velocity_rpm, Duration gap) co
   return explained < kLargestNoticedTurns && std::fabs(residual_turns) > explained;
 }
 
+Encoder::Step Encoder::stepOver(std::int64_t moved, double mean_rpm, Duration spacing) const noexcept {
+  const auto turn = static_cast<double>(config_.counts_per_turn);
+  const double predicted = mean_rpm / 60e9 * static_cast<double>(spacing.count()) * turn;
+  // A speed beyond all reason must not overflow the conversion.
+  const double turns = std::clamp((predicted - static_cast<double>(moved)) / turn, -1e9, 1e9);
+  moved += static_cast<std::int64_t>(turns + (turns < 0.0 ? -0.5 : 0.5)) * config_.counts_per_turn;
+  Config moving = config_;
+  moving.stamp_error = Duration{0};
+  Step step{.moved = moved, .residual = (predicted - static_cast<double>(moved)) / turn};
+  step.explained = std::fabs(step.residual) <= predictionErrorTurns(moving, spacing) + kJumpMarginTurns;
+  return step;
+}
+
+// By the stamps, and by whole periods from what they say down to two less: of these, the number of turns that
+// speed and position agree on.
+Encoder::Step Encoder::chooseStep(std::int64_t moved, double mean_rpm, Duration gap) noexcept {
+  Step chosen = stepOver(moved, mean_rpm, gap);
+  const Duration period = config_.sample_period;
+  if (period <= Duration{0}) return chosen;
+  const Duration arrived = gap + late_;
+  const auto most = std::max<Duration::rep>(1, (arrived + period - period / 20).count() / period.count());
+  bool unsure = false;
+  bool agreed = true;
+  Duration late = late_;
+  for (auto periods = std::max<Duration::rep>(0, most - kMostLatePeriods); periods <= most; ++periods) {
+    const Step other = stepOver(moved, mean_rpm, periods * period);
+    unsure = unsure || other.moved != chosen.moved;
+    if (!other.explained) continue;
+    if (chosen.explained && other.moved != chosen.moved) agreed = false;
+    if (chosen.explained && std::fabs(other.residual) > std::fabs(chosen.residual)) continue;
+    chosen = other;
+    late = arrived - periods * period;
+  }
+  chosen.in_doubt = unsure && !(chosen.explained && agreed);
+  // Clocks drift: what is not seen again is forgotten.
+  late_ = std::clamp(late - gap / 100, Duration{0}, kMostLatePeriods * period);
+  return chosen;
+}
+
 bool Encoder::update(std::int32_t raw_counts, float velocity_rpm, MonotonicTime received) noexcept {
   if (raw_counts < 0 || raw_counts >= config_.counts_per_turn || !std::isfinite(velocity_rpm)) return false;
   if (!has_sample_) {
@@ -56,25 +96,16 @@ bool Encoder::update(std::int32_t raw_counts, float velocity_rpm, MonotonicTime 
     total_counts_ = raw_counts;
   } else {
     const Duration gap = std::max(Duration{0}, received - received_);  // stamps may swap, time does not
-    std::int64_t moved = raw_counts - raw_counts_;
-    double predicted = 0.0;
     const bool countable = gap <= longest_gap_;
-    if (countable) {
-      const double mean_rpm = 0.5 * (static_cast<double>(velocity_rpm_) + static_cast<double>(velocity_rpm));
-      predicted = mean_rpm / 60e9 * static_cast<double>(gap.count()) * config_.counts_per_turn;
-    } else {
-      loseReference();  // the nearest wrap keeps the position within the turn right
-    }
-    // A speed beyond all reason must not overflow the conversion.
-    const double turns =
-        std::clamp((predicted - static_cast<double>(moved)) / config_.counts_per_turn, -1e9, 1e9);
-    moved += static_cast<std::int64_t>(turns + (turns < 0.0 ? -0.5 : 0.5)) * config_.counts_per_turn;
-    total_counts_ += moved;
-    const double residual = (predicted - static_cast<double>(moved)) / config_.counts_per_turn;
-    if (countable && jumped(residual, velocity_rpm, gap)) {
-      ++jumps_;
-      loseReference();
-    }
+    const double mean_rpm = 0.5 * (static_cast<double>(velocity_rpm_) + static_cast<double>(velocity_rpm));
+    const std::int64_t moved = raw_counts - raw_counts_;
+    // Too far apart, the nearest wrap keeps the position within the turn right.
+    const Step step = countable ? chooseStep(moved, mean_rpm, gap) : stepOver(moved, 0.0, gap);
+    total_counts_ += step.moved;
+    if (!countable) late_ = Duration{0};
+    const bool leapt = countable && !step.explained && jumped(step.residual, velocity_rpm, gap);
+    if (leapt) ++jumps_;
+    if (!countable || step.in_doubt || leapt) loseReference();
   }
   raw_counts_ = raw_counts;
   velocity_rpm_ = velocity_rpm;

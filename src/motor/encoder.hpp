@@ -14,6 +14,10 @@ namespace rc10 {
 /// With |acceleration| <= a, the angle moved in a gap T differs from the mean of the two reported
 /// speeds times T by at most a T^2 / 4; with the speed and time errors this must stay under half a
 /// turn. Beyond that gap the reference is lost, and referenceLost() says so.
+///
+/// Where the sample period is known, stamps that are late by up to two of them cost nothing: in truth the
+/// samples lie whole periods apart, and what the encoder moved tells how many. Where it does not, and turns
+/// depend on it, the reference is lost: a miscount is never silent.
 class Encoder {
  public:
   struct Config {
@@ -22,6 +26,7 @@ class Encoder {
     float max_acceleration_rpm_per_s = 0.0F;
     float velocity_error_rpm = 0.0F;  ///< Largest error of the reported speed, its delay included.
     Duration stamp_error{};           ///< Largest error of the spacing of two receive times.
+    Duration sample_period{};         ///< Samples lie whole ones apart. 0: anywhere.
   };
 
   explicit Encoder(const Config& config) noexcept;
@@ -67,7 +72,17 @@ class Encoder {
   /// Half a turn, less two counts of position quantisation.
   static constexpr double kHalfTurn = 0.4997;
 
+  /// Turns of one step, and how sure they are.
+  struct Step {
+    std::int64_t moved = 0;  ///< Counts.
+    double residual = 0.0;   ///< Turns that the prediction was off.
+    bool explained = false;  ///< By the speeds, at a spacing that the stamps allow.
+    bool in_doubt = false;   ///< Another spacing would be another number of turns.
+  };
+
   void loseReference() noexcept;
+  [[nodiscard]] Step stepOver(std::int64_t moved, double mean_rpm, Duration spacing) const noexcept;
+  [[nodiscard]] Step chooseStep(std::int64_t moved, double mean_rpm, Duration gap) noexcept;
   [[nodiscard]] bool jumped(double residual_turns, float velocity_rpm, Duration gap) const noexcept;
 
   Config config_;
@@ -78,6 +93,7 @@ class Encoder {
   std::int32_t raw_counts_ = 0;
   float velocity_rpm_ = 0.0F;
   MonotonicTime received_;
+  Duration late_{};  ///< Of the last stamp, as far as is known.
   bool has_sample_ = false;
   bool reference_lost_ = false;
 };

@@ -89,6 +89,74 @@ TEST(Encoder, CountsExactlyOverAnyMotionWithinTheModelsLimitsAndItsLostFrames) {
   }
 }
 
+/// Samples of a shaft at a steady or random speed, stamped late by up to so much: whether a count was ever
+/// wrong without being noticed, and how often the reference was lost.
+struct LateStamps {
+  bool silently_wrong = false;
+  std::uint64_t losses = 0;
+  std::uint64_t jumps = 0;
+};
+LateStamps countLate(const Encoder::Config& config, double most_late_s, double steady, std::uint64_t seed,
+                     double clock = 1.0) {
+  RandomShaft shaft(config, seed);
+  Encoder encoder(config);
+  LateStamps result;
+  MonotonicTime received{};
+  double turns = 0.0;
+  std::int64_t offset = 0;
+  for (int sample = 0; sample < 100'000; ++sample) {
+    shaft.advance(kPeriod_s * clock);
+    const double rpm = steady != 0.0 ? steady * static_cast<double>(config.max_velocity_rpm) : shaft.rpm();
+    turns = steady != 0.0 ? turns + rpm / 60.0 * kPeriod_s * clock : shaft.turns();
+    const double late_s = shaft.uniform() * most_late_s;
+    const auto stamp_ns = static_cast<std::int64_t>((1.0 + sample * kPeriod_s * clock + late_s) * 1e9);
+    received = std::max(received, MonotonicTime{Duration{stamp_ns}});
+    const auto counts = static_cast<std::int64_t>(std::floor(turns * config.counts_per_turn));
+    const auto raw = static_cast<std::int32_t>(((counts % 8192) + 8192) % 8192);
+    EXPECT_TRUE(encoder.update(raw, static_cast<float>(std::round(rpm)), received));
+    if (sample == 0) offset = counts - raw;
+    const bool right = encoder.totalCounts() + offset == counts;
+    if (!right && !encoder.referenceLost()) result.silently_wrong = true;
+    if (encoder.referenceLost()) {
+      encoder.acknowledgeLoss();
+      offset = counts - encoder.totalCounts();
+    }
+  }
+  result.losses = encoder.losses();
+  result.jumps = encoder.jumps();
+  return result;
+}
+
+TEST(Encoder, StampsThatAreTwoMillisecondsLateCostNoTurn) {
+  for (const DjiModel* model : djiModels()) {
+    for (const double steady : {1.0, -0.95, 0.9, 0.8, 0.5, 0.25, 0.0}) {
+      const auto late = countLate(model->encoder, 0.0019, steady, 3);
+      EXPECT_FALSE(late.silently_wrong) << model->name << ' ' << steady;
+      EXPECT_EQ(late.losses, 0U) << model->name << ' ' << steady;
+      EXPECT_EQ(late.jumps, 0U) << model->name << ' ' << steady;
+    }
+  }
+}
+
+TEST(Encoder, AMiscountByStampsThatAreFourMillisecondsLateIsNoticed) {
+  for (const double steady : {1.0, 0.9, 0.5, 0.0}) {
+    EXPECT_FALSE(countLate(kM3508.encoder, 0.004, steady, 3).silently_wrong) << steady;
+    EXPECT_FALSE(countLate(kGM6020.encoder, 0.004, steady, 3).silently_wrong) << steady;
+  }
+  EXPECT_GT(countLate(kM3508.encoder, 0.004, 1.0, 3).losses, 1000U) << "nothing here is exact by luck";
+  EXPECT_FALSE(countLate(kM2006.encoder, 0.003, 0.9, 3).silently_wrong);
+}
+
+TEST(Encoder, ADriveWhoseClockIsOnePercentOffIsCountedExactly) {
+  for (const DjiModel* model : djiModels()) {
+    for (const double clock : {0.99, 1.01}) {
+      const auto late = countLate(model->encoder, 0.0008, 0.9, 3, clock);
+      EXPECT_FALSE(late.silently_wrong) << model->name << ' ' << clock;
+      EXPECT_EQ(late.losses, 0U) << model->name << ' ' << clock;
+    }
+  }
+}
+
 TEST(Encoder, EveryModelSurvivesTheLostFramesOfItsTable) {
   for (const DjiModel* model : djiModels()) {
     const Encoder encoder(model->encoder);

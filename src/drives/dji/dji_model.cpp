@@ -23,7 +23,8 @@ constexpr Encoder::Config encoder(float max_velocity_rpm, float max_acceleration
           .max_velocity_rpm = max_velocity_rpm,
           .max_acceleration_rpm_per_s = max_acceleration_rpm_per_s,
           .velocity_error_rpm = max_acceleration_rpm_per_s * kSpeedDelaySeconds + 0.5F,
-          .stamp_error = kStampError};
+          .stamp_error = kStampError,
+          .sample_period = kFeedbackPeriod};
 }
 
 // Rotor side. Speed: 482 rpm * 19.2 at 24 V, with 10 % for a full 6S battery (25.2 V) and a load that
