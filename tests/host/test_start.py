@@ -55,3 +55,19 @@ def test_list_is_one_connection_and_waits_for_nothing_else(daemon: Daemon, tmp_p
     assert made.count("connect") == 1
     assert made.count("poll") <= 1  # for rc10d's answer
     assert not WAITS & set(made)
+
+
+def test_every_program_is_moved_to_a_random_address_and_bound_before_it_runs() -> None:
+    programs = [program for program in sorted(BIN.glob("rc10*")) if program.is_file()]
+    assert len(programs) >= 6
+    for program in programs:
+        told = subprocess.run(
+            ["readelf", "--wide", "--file-header", "--program-headers", "--dynamic", program],
+            capture_output=True,
+            text=True,
+            check=True,
+        ).stdout
+        assert re.search(r"Type: +DYN", told), program
+        assert re.search(r"FLAGS.*\bNOW\b", told), program
+        assert "GNU_RELRO" in told, program
+        assert re.search(r"GNU_STACK.* RW ", told), program
