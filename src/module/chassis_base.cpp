@@ -85,10 +85,16 @@ constexpr std::array kChassisKeys{
 enum ChassisInput : std::size_t { kVx, kVy, kWz, kFrame, kTurnAfter, kX, kY, kHeading };
 enum ChassisOutput : std::size_t { kOutX, kOutY, kOutHeading, kOutVx, kOutVy, kOutWz, kOutPower, kOutFactor };
 
+enum ChassisEvent : std::size_t { kHeadingOpposed };
+
+// Three degrees within a tenth of a second; less than that where it turns faster.
+constexpr MotionMatch::Config kHeadingMatch{.enough = 0.02, .circular_period = kDegPerTurn};
+
 ModuleSignals chassisSignals() {
   return {.inputs = {"vx_m_s", "vy_m_s", "wz_deg_s", "frame", "follow", "x_m", "y_m", "heading_deg"},
           .outputs = {"x_m", "y_m", "heading_deg", "vx_m_s", "vy_m_s", "wz_deg_s", "power_w", "power_factor"},
-          .events = {}};
+          .events = {{.text = "heading turns against the wheels and is not used: the odometry's own is; see "
+                              "the sensor's mounting and the direction of the wheels"}}};
 }
 
 Result<void> find(std::optional<SignalPlace>& place, const std::string& name, const char* key,
@@ -115,6 +121,7 @@ Chassis_Base::Chassis_Base(const OwnValues& own, std::vector<std::size_t> motors
       follow_name_(own.text("follow")),
       slew_({.linear_m_s2 = own.number("max_acceleration_m_s2"),
              .angular_deg_s2 = own.number("max_turn_acceleration_deg_s2")}),
+      heading_match_(kHeadingMatch),
       power_(own.number("power_limit_w")) {}
 
 Result<void> Chassis_Base::connect(const ModuleDirectory& others) {
@@ -185,10 +192,12 @@ Twist2D Chassis_Base::bounded(Twist2D twist) const noexcept {
   return twist;
 }
 
-void Chassis_Base::updateOdometry(const Tick& tick, const ModuleRobot& robot) noexcept {
-  const double heading_deg = heading_ ? robot.read(*heading_) : kNoSignal;
+void Chassis_Base::updateOdometry(const Tick& tick, ModuleRobot& robot) noexcept {
   // While one wheel is not heard, the way of the others waits for it.
-  if (allFresh(tick, robot)) odometry_.step(travelled(robot, tick.dt_s), heading_deg, tick.dt_s);
+  if (allFresh(tick, robot)) {
+    const Twist2D way = travelled(robot, tick.dt_s);
+    odometry_.step(way, trustedHeading(way, tick, robot), tick.dt_s);
+  }
   if (commanded()) {
     Pose2D pose = odometry_.pose();
     if (std::isfinite(input(kX))) pose.x_m = input(kX);
@@ -199,6 +208,18 @@ void Chassis_Base::updateOdometry(const Tick& tick, const ModuleRobot& robot) no
   setOutput(kOutX, odometry_.pose().x_m);
   setOutput(kOutY, odometry_.pose().y_m);
   setOutput(kOutHeading, odometry_.pose().heading_deg);
+}
+
+// A heading of the wrong sign would turn every twist of the world's frame the wrong way. The first turn shows
+// it; a sensor is not mended while rc10d runs.
+double Chassis_Base::trustedHeading(const Twist2D& way, const Tick& tick, ModuleRobot& robot) noexcept {
+  const double heading_deg = heading_ ? robot.read(*heading_) : kNoSignal;
+  if (std::isfinite(way.wz_deg_s)) wheels_heading_deg_ += way.wz_deg_s * static_cast<double>(tick.dt_s);
+  heading_match_.step(wheels_heading_deg_, heading_deg, tick.dt_s);
+  const bool opposed = heading_match_.sign() == MotionMatch::Sign::kOpposed;
+  if (opposed && !heading_opposed_) robot.report(kHeadingOpposed);
+  heading_opposed_ = opposed;
+  return opposed ? kNoSignal : heading_deg;
 }
 
 bool Chassis_Base::allObey(const ModuleRobot& robot) const noexcept {

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "app/motion_match.hpp"
 #include "app/planar_motion.hpp"
 #include "app/planar_odometry.hpp"
 #include "app/slew_limiter.hpp"
@@ -50,7 +51,8 @@ class Chassis_Base : public Module_Base {
   [[nodiscard]] Twist2D wanted(const ModuleRobot& robot) const noexcept;
   [[nodiscard]] double shareOf(const Twist2D& wanted, const Twist2D& part) const noexcept;
   [[nodiscard]] Twist2D bounded(Twist2D twist) const noexcept;
-  void updateOdometry(const Tick& tick, const ModuleRobot& robot) noexcept;
+  void updateOdometry(const Tick& tick, ModuleRobot& robot) noexcept;
+  [[nodiscard]] double trustedHeading(const Twist2D& way, const Tick& tick, ModuleRobot& robot) noexcept;
   [[nodiscard]] double power(const ModuleRobot& robot) const noexcept;
 
   std::vector<std::size_t> motors_;
@@ -64,6 +66,9 @@ class Chassis_Base : public Module_Base {
   std::optional<SignalPlace> follow_;
   TwistSlewLimiter slew_;
   PlanarOdometry odometry_;
+  MotionMatch heading_match_;
+  double wheels_heading_deg_ = 0.0;
+  bool heading_opposed_ = false;
   PowerLimiter power_;
 };
 

@@ -25,7 +25,12 @@ class GimbalAxis {
   /// Looks where it looks now.
   void hold(double angle_deg) noexcept { target_deg_ = angle_deg; }
   void aim(double angle_deg) noexcept { target_deg_ = angle_deg; }
-  void turn(double rate_deg_s, float dt_s) noexcept { target_deg_ += rate_deg_s * static_cast<double>(dt_s); }
+  /// No faster than the axis can follow: a count that runs away never comes back.
+  void turn(double rate_deg_s, float dt_s) noexcept {
+    const double most_deg_s = config_.velocity_limit_rpm * kDegPerSPerRpm;
+    target_deg_ += std::fmax(-most_deg_s, std::fmin(most_deg_s, rate_deg_s)) * static_cast<double>(dt_s);
+    if (config_.circular) target_deg_ = std::remainder(target_deg_, kDegPerTurn);
+  }
   [[nodiscard]] double target() const noexcept { return target_deg_; }
 
   /// `rate_deg_s`: how fast the target itself moves.

@@ -6,6 +6,7 @@
 #include <functional>
 #include <numbers>
 #include <random>
+#include <vector>
 
 #include <gmock/gmock.h>
 
@@ -106,12 +107,16 @@ class Chassis : public ::testing::Test {
 
   /// A square of 1 m, a metre in each direction of `frame`, and back to rest.
   void driveSquare(double frame) {
+    double farthest_m = 0.0;
     for (const auto& [vx, vy] : {std::pair{1.0, 0.0}, {0.0, 1.0}, {-1.0, 0.0}, {0.0, -1.0}}) {
       give({.vx_m_s = vx, .vy_m_s = vy, .wz_deg_s = 0.0, .frame = frame});
       run(1000);
       give({});
       run(300);
+      farthest_m = std::max(farthest_m, std::hypot(output(kX), output(kY)));
     }
+    // At the corner, with the way that acceleration costs.
+    EXPECT_NEAR(farthest_m, std::hypot(1.0, 1.0), 0.4);
   }
 
   std::unique_ptr<FakeRobot> robot_ = std::make_unique<FakeRobot>(8);
@@ -192,6 +197,58 @@ TEST_F(Chassis, TheHeadingOfAnImuIsBelieved) {
   EXPECT_NEAR(output(kVy), -0.5, 1e-6) << "the world's x is to its right";
 }
 
+/// A chassis whose sensor tells the turning of its wheels, 7 ms late, times a sign.
+class HeadingSensor : public Chassis {
+ protected:
+  void turn(double sign, int ticks) {
+    for (int i = 0; i < ticks; ++i) {
+      // Its wheels roll without slip: a metre of way per radian at half of track and wheelbase.
+      const double rolled_deg = robot_->motor(1).feedback.total_angle_deg;
+      past_.insert(past_.begin(), sign * rolled_deg * 0.076 / ((0.5 + 0.4) / 2.0));
+      if (past_.size() > 8) past_.pop_back();
+      robot_->setOutput({.module = 0, .signal = 0}, std::remainder(past_.back() + pushed_deg_, 360.0));
+      run(1);
+      events_.insert(events_.end(), robot_->events().begin(), robot_->events().end());
+    }
+  }
+  void buildWithHeading() {
+    auto own = common();
+    own.set("heading", std::string{"imu.yaw_deg"});
+    buildMecanum(own);
+  }
+  std::vector<double> past_;
+  std::vector<std::size_t> events_;
+  double pushed_deg_ = 0.0;
+};
+
+TEST_F(HeadingSensor, ThatTurnsAgainstTheWheelsIsToldAndNotUsed) {
+  buildWithHeading();
+  turn(-1.0, 100);
+  give({.wz_deg_s = 90.0});
+  turn(-1.0, 1000);
+  EXPECT_THAT(events_, ::testing::ElementsAre(0U));
+  EXPECT_GT(output(kHeading), 70.0) << "by the wheels";
+}
+
+TEST_F(HeadingSensor, ThatTurnsWithThemIsUsedWhateverPushesTheRobot) {
+  buildWithHeading();
+  give({.wz_deg_s = 90.0});
+  for (int i = 0; i < 40; ++i) {
+    pushed_deg_ += i % 3 == 0 ? 5.0 : -3.0;
+    give({.wz_deg_s = i % 2 == 0 ? 90.0 : -60.0});
+    turn(1.0, 200);
+  }
+  EXPECT_TRUE(events_.empty());
+  EXPECT_NEAR(std::remainder(output(kHeading) - past_.back() - pushed_deg_, 360.0), 0.0, 2.0);
+}
+
+TEST_F(HeadingSensor, ThatStandsWhileTheWheelsSlipIsNoWrongSign) {
+  buildWithHeading();
+  give({.wz_deg_s = 90.0});
+  turn(0.0, 3000);
+  EXPECT_TRUE(events_.empty());
+}
+
 TEST_F(Chassis, FollowsTheGimbalAndDrivesWhereItLooks) {
   auto own = common();
   own.set("follow", std::string{"imu.relative_yaw_deg"});
@@ -211,6 +268,7 @@ TEST_F(Chassis, OneWheelThatIsNotThereStopsThemAll) {
   buildMecanum();
   give({.vx_m_s = 1.0});
   run(100);
+  for (std::size_t i = 0; i < 4; ++i) ASSERT_TRUE(robot_->motor(i).target.has_value());
   robot_->motor(2).status = MotorStatus::kFault;
   run(1);
   for (std::size_t i = 0; i < 4; ++i) EXPECT_FALSE(robot_->motor(i).target.has_value());
@@ -220,6 +278,7 @@ TEST_F(Chassis, SilenceLeavesTheWheelsToTheirFallbacks) {
   buildMecanum();
   give({.vx_m_s = 1.0});
   run(100);
+  ASSERT_TRUE(robot_->motor(0).target.has_value());
   module_->clearInputs();
   run(1);
   EXPECT_FALSE(robot_->motor(0).target.has_value());
@@ -396,6 +455,9 @@ TEST_F(Chassis, SwerveDoesNotDriveWhileOneWheelDoesNotKnowItsDirection) {
   give({.vx_m_s = 1.0});
   run(1);
   EXPECT_FALSE(robot_->motor(0).target.has_value());
+  robot_->motor(6).feedback.zeroed = true;
+  run(1);
+  EXPECT_TRUE(robot_->motor(0).target.has_value());
 }
 
 TEST(ChassisTypes, RefuseAMotorTwiceAndOnesThatTakeNoVelocities) {

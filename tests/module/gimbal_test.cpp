@@ -130,6 +130,22 @@ TEST_F(Gimbal, TurnsAtTheRateThatItIsTold) {
   EXPECT_NEAR(pitch(), 10.0, 1.0);
 }
 
+TEST_F(Gimbal, ARateBeyondAllReasonCountsToNoInfinity) {
+  build(true);
+  turn(1e300, -1e300);
+  run(1000);
+  EXPECT_NEAR(world(), 360.0, 10.0) << "as fast as it may";
+  EXPECT_NEAR(pitch(), -20.0, 0.1);
+  turn(0.0, 0.0);
+  run(1000);
+  const double stopped_deg = world();
+  run(500);
+  EXPECT_NEAR(world(), stopped_deg, 0.1);
+  aim(30.0, 0.0);
+  run(2000);
+  EXPECT_NEAR(std::remainder(world() - 30.0, 360.0), 0.0, 0.1) << "and it can be aimed again";
+}
+
 TEST_F(Gimbal, HoldsWhenItsClientFallsSilentButAsksNothingBeforeTheFirstCommand) {
   build(true);
   run(10);
@@ -201,6 +217,9 @@ TEST_F(Gimbal, WithoutAReferenceItDoesNotMove) {
   aim(90.0, 0.0);
   run(100);
   EXPECT_FALSE(robot_.motor(0).target.has_value());
+  robot_.motor(0).feedback.zeroed = true;
+  run(2);
+  EXPECT_TRUE(robot_.motor(0).target.has_value());
 }
 
 /// A gimbal whose motors take some time, with a gyro that is late, noisy and slower than the tick.
