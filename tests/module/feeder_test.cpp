@@ -137,6 +137,7 @@ TEST_F(Feeder, ShotsThatCannotBeFiredNowAreNotFiredLater) {
 TEST_F(Feeder, SilenceAsksNothingOfTheMotor) {
   ask(30.0);
   run(10);
+  ASSERT_TRUE(robot_.motor(0).target.has_value());
   module_->clearInputs();
   run(1);
   EXPECT_FALSE(robot_.motor(0).target.has_value());

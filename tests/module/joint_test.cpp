@@ -217,6 +217,7 @@ TEST_F(Joint, LetsGoWhenItIsToldToDoSo) {
   build(own);
   ask(90.0);
   run(500);
+  ASSERT_TRUE(robot_.motor(0).target.has_value());
   module_->clearInputs();
   run(1);
   EXPECT_FALSE(robot_.motor(0).target.has_value());
@@ -235,6 +236,9 @@ TEST_F(Joint, WithoutAReferenceItGoesNowhere) {
   ask(90.0);
   run(10);
   EXPECT_FALSE(robot_.motor(0).target.has_value());
+  robot_.motor(0).feedback.zeroed = true;
+  run(10);
+  EXPECT_TRUE(robot_.motor(0).target.has_value());
 }
 
 TEST_F(Joint, AfterItWasDisabledItBeginsWhereItIs) {

@@ -240,6 +240,9 @@ TEST_F(Remote, AnEstopIsNotItsToClear) {
   asked_.clear();
   armSwitch(Dr16Input::Switch::kUp);
   EXPECT_THAT(asked_, IsEmpty());
+  robot_.setState(RobotStatus::kRun);
+  run(500);
+  EXPECT_FALSE(asked_.empty()) << "the fault is";
 }
 
 TEST_F(Remote, AReceiverThatSaysFailsafeIsLost) {

@@ -107,6 +107,9 @@ TEST_F(SynchronisedPair, NeitherMovesWhileOneIsNotActiveOrNotReferenced) {
   robot_.motor(1).feedback.zeroed = false;
   robot_.update(*module_);
   EXPECT_FALSE(robot_.motor(0).target.has_value());
+  robot_.motor(1).feedback.zeroed = true;
+  robot_.update(*module_);
+  EXPECT_TRUE(robot_.motor(0).target.has_value());
 }
 
 TEST(SynchronisedPairType, RefusesOneMotorTwiceAndMotorsThatCannot) {
