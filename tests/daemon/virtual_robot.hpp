@@ -67,6 +67,9 @@ class VirtualRobot {
     for (int i = 0; i < ticks; ++i) tick();
   }
 
+  /// Every frame that the drives send from now on is added there.
+  void record(std::vector<CanFrame>& frames) { heard_ = &frames; }
+
   void freezeSimulation(bool frozen) { frozen ? frozen_.set() : frozen_.reset(); }
   void freezeBus(std::size_t bus, bool frozen) { frozen_.set(bus, frozen); }
 
@@ -156,6 +159,10 @@ class VirtualRobot {
     for (std::size_t i = 0; i < receivers_.size(); ++i) {
       const auto reception = receivers_[i].receive(wake, batch_);
       inboxes_[i].frames.push(batch_.data(), reception.frame_count);
+      if (heard_ != nullptr) {
+        heard_->insert(heard_->end(), batch_.begin(),
+                       batch_.begin() + static_cast<std::ptrdiff_t>(reception.frame_count));
+      }
     }
   }
 
@@ -168,6 +175,7 @@ class VirtualRobot {
   std::vector<CanReceiver> receivers_;
   std::array<CanFrame, CanReceiver::kBatch> batch_{};
   std::uint64_t orders_ = 0;
+  std::vector<CanFrame>* heard_ = nullptr;
   std::bitset<kMaxBuses> frozen_;
 };
 
