@@ -110,7 +110,10 @@ Target SoloMotor::wanted() noexcept {
 double SoloMotor::currentWithinLimit(const Target& target) noexcept {
   const auto limit_a = static_cast<double>(effortLimit());
   double wanted_a = target.mode == ControlMode::kCurrent ? finiteOr0(target.value) : 0.0;
-  if (torqueNmPerA() > 0.0F) wanted_a += finiteOr0(static_cast<double>(target.torque_ff_nm / torqueNmPerA()));
+  // In double, where neither the quotient nor the sum of two floats overflows.
+  if (torqueNmPerA() > 0.0F) {
+    wanted_a += finiteOr0(static_cast<double>(target.torque_ff_nm)) / static_cast<double>(torqueNmPerA());
+  }
   const double current_a = std::clamp(wanted_a, -limit_a, limit_a);
   if (current_a != wanted_a) limits_ |= kLimitCurrent;
   return current_a;

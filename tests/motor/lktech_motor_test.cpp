@@ -309,7 +309,7 @@ TEST_F(LKTechMotor, LimitsBoundWhatIsSentAndSaySo) {
   EXPECT_EQ(told({.mode = ControlMode::kVelocity, .value = 1e12}), "141#A2007C0030750000")
       << "124 raw are 1 A";
   EXPECT_EQ(motor_->limits(), kLimitVelocity);
-  EXPECT_EQ(told({.mode = ControlMode::kTotalAngle, .value = -1e300}), "141#A4002C0100000080");
+  EXPECT_EQ(told({.mode = ControlMode::kTotalAngle, .value = -1e300}), "141#A4002C0101000080");
   EXPECT_EQ(motor_->limits(), kLimitAngle);
   motor_->derate(0.0F);
   EXPECT_EQ(told({.mode = ControlMode::kVelocity, .value = 10.0}), "141#A100000000000000");

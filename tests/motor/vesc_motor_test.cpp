@@ -167,7 +167,7 @@ TEST_F(VescMotorTest, AVelocityWithoutALimitSaturates) {
   makeWith();
   EXPECT_EQ(sent({.mode = ControlMode::kVelocity, .value = 1e300}), std::numeric_limits<std::int32_t>::max());
   EXPECT_EQ(sent({.mode = ControlMode::kVelocity, .value = -1e300}),
-            std::numeric_limits<std::int32_t>::min());
+            -std::numeric_limits<std::int32_t>::max());
 }
 
 TEST_F(VescMotorTest, NumbersThatAreNoneReleaseTheMotor) {

@@ -15,6 +15,7 @@ using ::testing::AllOf;
 using ::testing::Contains;
 using ::testing::ElementsAre;
 using ::testing::IsEmpty;
+using ::testing::Not;
 using ::testing::UnorderedElementsAre;
 
 CanFrame frame(const char* text) {
@@ -83,6 +84,12 @@ TEST(Recogniser, KnowsMoteusOnFdOnly) {
 TEST(Recogniser, KnowsOdrive) {
   EXPECT_THAT(of("061#4000000001010001"), ElementsAre(drive("ODrive", 3)));
   EXPECT_THAT(of("069#000000BE00006040"), Contains(drive("ODrive", 3)));
+  EXPECT_THAT(of("077#CDCCC0410000C03F"), Contains(drive("ODrive", 3)));  // 24.1 V, 1.5 A
+  EXPECT_THAT(of("075#0000F0410000C07F"), Contains(drive("ODrive", 3)));  // 30 degC, a motor without a sensor
+  EXPECT_THAT(of("07C#0000003F0000803E"), Contains(drive("ODrive", 3)));  // 0.5 and 0.25 N·m
+  EXPECT_THAT(of("074#0000803F0000803F"), Contains(drive("ODrive", 3)));
+  EXPECT_THAT(of("077#0000000000000000"),
+              Not(Contains(drive("ODrive", 3))));  // a drive that speaks has power
 }
 
 TEST(Recogniser, ANodeOfOdriveMayLookLikeADji) {

@@ -5,6 +5,7 @@
 
 #include "app/limits.hpp"
 #include "app/units.hpp"
+#include "motor/frame_outbox.hpp"
 
 namespace rc10 {
 namespace {
@@ -256,15 +257,15 @@ std::size_t CubemarsMit::packCommand(const Tick& tick, std::span<CanFrame> out) 
 }
 
 std::size_t CubemarsMit::packRest(std::span<CanFrame> out) const noexcept {
-  if (out.size() < 2) return 0;
+  FrameOutbox frames;
   if (!v3_) {
-    out[0] = cubemars::mitOrderFrame(driveId(), MitOrder::kExit);  // the drive answers this one too
-    return 1;
+    frames.add(cubemars::mitOrderFrame(driveId(), MitOrder::kExit));  // the drive answers this one too
+  } else {
+    // "No torque" of a MIT command is half a step of its field; the current of 0 that follows is exact.
+    frames.add(commandFrame({}));
+    frames.add(cubemars::currentFrame(driveId(), 0.0));
   }
-  // "No torque" of a MIT command is half a step of its field; the current of 0 that follows is exact.
-  out[0] = commandFrame({});
-  out[1] = cubemars::currentFrame(driveId(), 0.0);
-  return 2;
+  return frames.copyTo(out);
 }
 
 // ---- Enabling

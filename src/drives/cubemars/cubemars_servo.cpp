@@ -79,13 +79,7 @@ void CubemarsServo::prepareDamp() noexcept {
 }
 
 void CubemarsServo::prepareCurrent(const Target& target) noexcept {
-  const auto limit = static_cast<double>(effortLimit());
-  const double ff_a = torqueNmPerA() > 0.0F
-                          ? static_cast<double>(target.torque_ff_nm) / static_cast<double>(torqueNmPerA())
-                          : 0.0;
-  const double wanted_a = target.value + (std::isfinite(ff_a) ? ff_a : 0.0);
-  const double amperes = std::clamp(wanted_a, -limit, limit);
-  if (amperes != wanted_a) limits_ |= kLimitCurrent;
+  const double amperes = currentWithinLimit(target);
   next_ = cubemars::currentFrame(driveId(), amperes * static_cast<double>(direction()));
   setCommand(amperes, CommandUnit::kAmpere);
 }

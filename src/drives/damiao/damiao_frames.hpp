@@ -27,6 +27,7 @@ inline constexpr double kTimeoutStepMs = 0.05;
 
 enum class Register : std::uint8_t {
   kUnderVoltage = 0,
+  kTorqueConstant = 1,  ///< N·m/A
   kOverTemperature = 2,
   kOverCurrent = 3,  ///< Share of the drive's maximum.
   kAcceleration = 4,
@@ -36,6 +37,16 @@ enum class Register : std::uint8_t {
   kId = 8,
   kTimeout = 9,
   kControlMode = 10,
+  kDamping = 11,
+  kInertia = 12,
+  kHardwareVersion = 13,
+  kSoftwareVersion = 14,
+  kSerialNumber = 15,
+  kPolePairs = 16,
+  kResistance = 17,
+  kInductance = 18,
+  kFlux = 19,
+  kGear = 20,
   kPMax = 21,
   kVMax = 22,
   kTMax = 23,

@@ -5,6 +5,7 @@
 
 #include "app/units.hpp"
 #include "drives/damiao/damiao_family.hpp"
+#include "motor/frame_outbox.hpp"
 
 namespace rc10 {
 
@@ -225,7 +226,7 @@ void Damiao_Motor::velocityCommand(const Target& target) noexcept {
   const double rad_s = std::clamp(wanted_rad_s, -fastestRadS(), fastestRadS());
   if (rad_s != wanted_rad_s) limits_ |= kLimitVelocity;
   command_ = frameOf(command_ids_[0], damiao::velocity(static_cast<float>(rad_s)));
-  setCommand(toOutput(rad_s), CommandUnit::kNative);
+  setCommand(toOutput(rad_s) / kRadPerSPerRpm, CommandUnit::kNative);
 }
 
 void Damiao_Motor::positionCommand(const Target& target) noexcept {
@@ -242,7 +243,9 @@ void Damiao_Motor::positionCommand(const Target& target) noexcept {
     rad = *stay_rad_;
   }
   const double limit_rad_s = moves ? fastestRadS() : 0.0;
-  setCommand(toOutput(rad), CommandUnit::kNative);
+  // From where it is: exact however far away the target was.
+  setCommand(feedback_.total_angle_deg + toOutput((rad - position_.rad()) / kRadPerDeg),
+             CommandUnit::kNative);
   if (own_.control == DamiaoControl::kPositionVelocity) {
     command_ = frameOf(command_ids_[0],
                        damiao::positionVelocity(static_cast<float>(rad), static_cast<float>(limit_rad_s)));
@@ -274,32 +277,32 @@ bool Damiao_Motor::asksPosition(const Tick& tick) noexcept {
 
 std::size_t Damiao_Motor::packCommand(const Tick& tick, std::span<CanFrame> out) noexcept {
   constexpr CanId kRegisters{damiao::kRegisterId, false};
-  std::size_t count = 0;
+  FrameOutbox frames;
   if (sequenceRuns() && enabling_.progress() == SequenceProgress::kPending) {
     const bool quiet = enabling_.quiet();
     const auto request = enabling_.take(tick.now);
     // Told on and on: disabled, for its feedback; enabled, for its watchdog, should only the answer be lost.
     if (due(tick) && (quiet || !request)) {
-      out[count++] = specialFrame(quiet ? Special::kDisable : Special::kEnable);
+      frames.add(specialFrame(quiet ? Special::kDisable : Special::kEnable));
     }
-    if (request)
-      out[count++] = frameOf(request->of_register ? kRegisters : command_ids_[0], request->payload);
-    return count;
+    if (request) frames.add(frameOf(request->of_register ? kRegisters : command_ids_[0], request->payload));
+    return frames.copyTo(out);
   }
-  if (!armed_ && !obeying()) count += configuring_.pack(tick.now, out);
+  const std::size_t count = !armed_ && !obeying() ? configuring_.pack(tick.now, out) : 0;
   if (!due(tick)) return count;
   const bool clears = clears_left_ > 0 && !armed_;
   if (clears) --clears_left_;
-  out[count++] = clears ? specialFrame(Special::kClear) : command_;
+  frames.add(clears ? specialFrame(Special::kClear) : command_);
   if (asksPosition(tick)) {
-    out[count++] = frameOf(kRegisters, damiao::readRegister(id_, damiao::Register::kOutputPosition));
+    frames.add(frameOf(kRegisters, damiao::readRegister(id_, damiao::Register::kOutputPosition)));
   }
-  return count;
+  return count + frames.copyTo(out.subspan(count));
 }
 
 std::size_t Damiao_Motor::packRest(std::span<CanFrame> out) const noexcept {
-  out[0] = specialFrame(Special::kDisable);
-  return 1;
+  FrameOutbox frames;
+  frames.add(specialFrame(Special::kDisable));
+  return frames.copyTo(out);
 }
 
 // ---- Enabling

@@ -20,6 +20,7 @@ namespace {
 constexpr std::uint8_t kReadOperation = 0x33;
 constexpr std::uint8_t kWriteOperation = 0x55;
 constexpr std::uint8_t kSaveOperation = 0xAA;
+constexpr std::uint8_t kStateOperation = 0xCC;
 constexpr std::uint8_t kDriveC = 30;
 constexpr auto kTimeoutStep = std::chrono::microseconds{50};
 
@@ -42,6 +43,25 @@ std::optional<std::size_t> otherIndex(Register address) noexcept {
   const auto* const found = std::find(kKept.begin(), kKept.end(), address);
   if (found == kKept.end()) return std::nullopt;
   return static_cast<std::size_t>(found - kKept.begin());
+}
+
+/// Of the motor and its make: read only. What the model's data do not have is 0.
+std::optional<std::uint32_t> nameplate(Register address, const MotorTraits& traits) noexcept {
+  constexpr std::uint32_t kVersion = 1;
+  switch (address) {
+    case Register::kTorqueConstant: return damiao::bitsOf(traits.torque_nm_per_a);
+    case Register::kInertia: return damiao::bitsOf(traits.rotor_inertia_kg_m2);
+    case Register::kHardwareVersion:
+    case Register::kSoftwareVersion:
+    case Register::kSerialNumber: return kVersion;
+    case Register::kResistance: return damiao::bitsOf(traits.phase_resistance_ohm);
+    case Register::kGear: return damiao::bitsOf(static_cast<float>(traits.gear_ratio));
+    case Register::kDamping:
+    case Register::kPolePairs:
+    case Register::kInductance:
+    case Register::kFlux: return 0;
+    default: return std::nullopt;
+  }
 }
 
 std::vector<FrameFilter> sent(const MotorSettings& settings) { return damiaoFamily().busUse(settings).sends; }
@@ -202,6 +222,7 @@ void DamiaoDrive::receiveRegister(std::span<const std::uint8_t, 8> payload) noex
     saved_ = registers_;
     return send(damiao::saveRegisters(id_));
   }
+  if (payload[2] == kStateOperation) return sendState();
   if (payload[2] != kReadOperation) return;
   std::uint32_t value = 0;
   const auto& scale = registers_.scale;
@@ -216,8 +237,9 @@ void DamiaoDrive::receiveRegister(std::span<const std::uint8_t, 8> payload) noex
     case Register::kId: value = static_cast<std::uint32_t>(registers_.id); break;
     default: {
       const auto other = otherIndex(static_cast<Register>(address));
-      if (!other) return;
-      value = registers_.others[*other];
+      const auto plate = nameplate(static_cast<Register>(address), traits());
+      if (!other && !plate) return;
+      value = other ? registers_.others[*other] : *plate;
     }
   }
   auto reply = damiao::readRegister(id_, static_cast<Register>(address));

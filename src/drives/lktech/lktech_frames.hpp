@@ -23,6 +23,7 @@ inline constexpr int kRawGroupCurrentMax = 2000;
 /// The first byte of a command and of its reply. Nothing here writes to the drive's memory.
 enum class Code : std::uint8_t {
   kOff = 0x80,     ///< Also forgets the turns: rc10d never sends it.
+  kStop = 0x81,    ///< Without torque, but still on: it keeps its turns.
   kOn = 0x88,      ///< As after power-up.
   kAngle = 0x92,   ///< Multi-turn.
   kStatus = 0x9A,  ///< Temperature, voltage, on or off, errors.

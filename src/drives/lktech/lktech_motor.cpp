@@ -217,7 +217,9 @@ void LKTech_Motor::followCurrent(const Target& target) noexcept {
 }
 
 void LKTech_Motor::followVelocity(double output_rpm) noexcept {
-  const double rpm = rpmWithinLimit(output_rpm);
+  constexpr double kFastestDegS = 2147483647.0 * lktech::kDegPerRaw;
+  const double deg_s_per_rpm = std::abs(toDrive(1.0)) * traits().gear_ratio * kDegPerSPerRpm;
+  const double rpm = rpmWithinLimit(output_rpm, kFastestDegS / deg_s_per_rpm);
   if (std::abs(feedback_.current_a) >= effortLimit()) limits_ |= kLimitCurrent;
   setCommand(rpm, CommandUnit::kNative);
   // 0 would be no bound.
@@ -227,15 +229,22 @@ void LKTech_Motor::followVelocity(double output_rpm) noexcept {
 
 void LKTech_Motor::followAngle(double total_angle_deg) noexcept {
   if (feedback_.samples == 0 || !std::isfinite(total_angle_deg)) return release();
-  const double rotor_deg = (drivePositionFor(total_angle_deg) + shift_deg_) * traits().gear_ratio;
+  const auto rotor_deg_of = [this](double output_deg) {
+    return (drivePositionFor(output_deg) + shift_deg_) * traits().gear_ratio;
+  };
   constexpr double kReachDeg = 2147483647.0 * lktech::kDegPerRaw;
-  if (std::abs(rotor_deg) > kReachDeg) limits_ |= kLimitAngle;
+  const double wanted_deg = rotor_deg_of(total_angle_deg);
+  const double rotor_deg = std::clamp(wanted_deg, -kReachDeg, kReachDeg);
+  const bool reaches = rotor_deg == wanted_deg;
+  if (!reaches) limits_ |= kLimitAngle;
   if (std::abs(feedback_.current_a) >= effortLimit()) limits_ |= kLimitCurrent;
   const auto limit_rpm = static_cast<double>(velocityLimitRpm());
   const double limit_deg_s = limit_rpm > 0.0
                                  ? std::abs(toDrive(limit_rpm)) * traits().gear_ratio * kDegPerSPerRpm
                                  : kLktechNoLimitDegS;
-  setCommand(total_angle_deg, CommandUnit::kNative);
+  const double away_deg = (rotor_deg - rotor_deg_of(feedback_.total_angle_deg)) / traits().gear_ratio;
+  setCommand(reaches ? total_angle_deg : feedback_.total_angle_deg + toOutput(away_deg),
+             CommandUnit::kNative);
   outbox_.add(lktech::positionCommand(id_, rotor_deg, limit_deg_s));
 }
 

@@ -58,6 +58,7 @@ void LktechDrive::obey(const CanFrame& frame) noexcept {
       release();
       forgetTurns();
       return answer(reply(code));
+    case lktech::Code::kStop: release(); return answer(reply(code));
     case lktech::Code::kOn: on_ = true; return answer(reply(code));
     case lktech::Code::kAngle: {
       CanFrame out = reply(code);

@@ -18,7 +18,6 @@ constexpr double kRegisterMapVersion = 5.0;
 constexpr double kFarthestRev = 32000.0;  // from where it is
 // The firmware's own servo.max_velocity.
 constexpr double kFastestRevPerS = 500.0;
-constexpr double kLargestAngleDeg = 1e9;  // for the state alone
 
 // In velocity mode the drive's controller holds the shaft to a moving point. It is kept this near, so that a
 // shaft that was held up does not race after it. Half a turn is 2 N·m with the vendor's gain of 4 N·m/rev.
@@ -161,12 +160,17 @@ void Moteus_Motor::followVelocity(const Target& target, const Tick& tick) noexce
 }
 
 void Moteus_Motor::followAngle(const Target& target) noexcept {
-  motion_.position_rev = onWire(drivePositionFor(target.value) / kDegPerTurn);
+  const double position_rev = drivePositionFor(target.value) / kDegPerTurn;
+  motion_.position_rev = onWire(position_rev);
   motion_.velocity_rev_s = toDrive(boundedRpm(static_cast<double>(target.velocity_ff_rpm))) / kRpmPerTurnPerS;
   motion_.torque_nm = torqueToDrive(boundedTorqueNm(static_cast<double>(target.torque_ff_nm)));
   motion_.stiff = motion_.damped = motion_.profile = true;
   motion_.limit_rev_s = std::abs(toDrive(static_cast<double>(velocityLimitRpm()))) / kRpmPerTurnPerS;
-  setCommand(std::clamp(target.value, -kLargestAngleDeg, kLargestAngleDeg), CommandUnit::kNative);
+  const double away_rev = position_rev - position_rev_;
+  const double told_rev = std::clamp(away_rev, -kFarthestRev, kFarthestRev);
+  setCommand(
+      told_rev == away_rev ? target.value : feedback_.total_angle_deg + toOutput(told_rev * kDegPerTurn),
+      CommandUnit::kNative);
 }
 
 // ---- Packing

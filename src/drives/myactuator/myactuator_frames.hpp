@@ -27,6 +27,7 @@ enum class Code : std::uint8_t {
   kReset = 0x76,            ///< No reply.
   kReleaseBrake = 0x77,
   kShutdown = 0x80,  ///< Output off, no loop runs. The reply is a copy.
+  kStop = 0x81,      ///< Stands still, with torque. The reply is a copy.
   kAngle = 0x92,     ///< Multi-turn.
   kStatus = 0x9A,    ///< Temperature, voltage, errors.
   kReading = 0x9C,   ///< The reply of the three commands below, without commanding anything.

@@ -256,8 +256,9 @@ void MyActuator_Motor::followCurrent(const Target& target) noexcept {
 }
 
 void MyActuator_Motor::followVelocity(double output_rpm) noexcept {
-  const double rpm = rpmWithinLimit(output_rpm);
-  if (std::abs(feedback_.current_a) > effortLimit()) limits_ |= kLimitCurrent;
+  constexpr double kFastestDegS = 2147483647.0 * myactuator::kDegPerRaw;
+  const double rpm = rpmWithinLimit(output_rpm, kFastestDegS / (std::abs(toDrive(1.0)) * kDegPerSPerRpm));
+  if (std::abs(feedback_.current_a) >= effortLimit()) limits_ |= kLimitCurrent;
   setCommand(rpm, CommandUnit::kNative);
   sendCommand(myactuator::velocityCommand(id_, toDrive(rpm) * kDegPerSPerRpm));
 }
@@ -265,15 +266,22 @@ void MyActuator_Motor::followVelocity(double output_rpm) noexcept {
 void MyActuator_Motor::followAngle(double total_angle_deg) noexcept {
   if (feedback_.samples == 0 || !std::isfinite(total_angle_deg)) return followCurrent(Target{});
   // The drive's angle is what 32 bits hold of ours.
-  const double drive_deg = drivePositionFor(total_angle_deg) -
-                           static_cast<double>(angle_raw_ - raw_angle_.value_or(0)) * myactuator::kDegPerRaw;
+  const auto drive_deg_of = [this](double output_deg) {
+    return drivePositionFor(output_deg) -
+           static_cast<double>(angle_raw_ - raw_angle_.value_or(0)) * myactuator::kDegPerRaw;
+  };
   constexpr double kReachDeg = 2147483647.0 * myactuator::kDegPerRaw;
-  if (std::abs(drive_deg) > kReachDeg) limits_ |= kLimitAngle;
+  const double wanted_deg = drive_deg_of(total_angle_deg);
+  const double drive_deg = std::clamp(wanted_deg, -kReachDeg, kReachDeg);
+  const bool reaches = drive_deg == wanted_deg;
+  if (!reaches) limits_ |= kLimitAngle;
   const auto limit_rpm = static_cast<double>(velocityLimitRpm());
   const double limit_deg_s =
       limit_rpm > 0.0 ? std::abs(toDrive(limit_rpm)) * kDegPerSPerRpm : kMyactuatorNoLimitDegS;
-  if (std::abs(feedback_.current_a) > effortLimit()) limits_ |= kLimitCurrent;
-  setCommand(total_angle_deg, CommandUnit::kNative);
+  if (std::abs(feedback_.current_a) >= effortLimit()) limits_ |= kLimitCurrent;
+  const double away_deg = drive_deg - drive_deg_of(feedback_.total_angle_deg);
+  setCommand(reaches ? total_angle_deg : feedback_.total_angle_deg + toOutput(away_deg),
+             CommandUnit::kNative);
   sendCommand(myactuator::positionCommand(id_, drive_deg, limit_deg_s));
 }
 

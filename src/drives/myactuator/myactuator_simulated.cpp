@@ -77,6 +77,9 @@ void MyactuatorDrive::obey(const CanFrame& frame) noexcept {
     case myactuator::Code::kReset: return restart();
     case myactuator::Code::kReleaseBrake: brake_released_ = true; return answer(reply(code));
     case myactuator::Code::kShutdown: release(); return answer(reply(code));
+    case myactuator::Code::kStop:
+      if (able) velocity(0.0);
+      return answer(reply(code));
     case myactuator::Code::kAngle: {
       CanFrame out = reply(code);
       writeLittleEndian(out.data, 4, saturatedRound<std::int32_t>(driveAngleDeg() * kMyactuatorRawPerDeg));

@@ -179,6 +179,8 @@ void ODrive_Motor::watchState() noexcept {
 void ODrive_Motor::update(const Tick& tick) noexcept {
   limits_ = 0;
   const Target target = wanted();
+  // Abandoned while a step was asked for: nothing of it may leave later.
+  ask_ = false;
   if (enabling()) runSequence(tick);
   watchState();
   if (obeying()) {
@@ -232,19 +234,19 @@ void ODrive_Motor::followVelocity(double rpm, float torque_ff_nm) noexcept {
 }
 
 void ODrive_Motor::followPosition(const Target& target) noexcept {
-  double turns = drivePositionFor(target.value) / kDegPerTurn;
-  if (std::isnan(turns)) return followTorque(Target{});
-  if (std::abs(turns) > kFarthestTurns) {
-    limits_ |= kLimitAngle;
-    turns = std::copysign(kFarthestTurns, turns);
-  }
+  const double wanted_turns = drivePositionFor(target.value) / kDegPerTurn;
+  if (std::isnan(wanted_turns)) return followTorque(Target{});
+  const double turns = std::clamp(wanted_turns, -kFarthestTurns, kFarthestTurns);
+  const bool reaches = turns == wanted_turns;
+  if (!reaches) limits_ |= kLimitAngle;
   const double ff_rpm = rpmWithinLimit(static_cast<double>(target.velocity_ff_rpm));
   const double ff_nm = limitedTorque(static_cast<double>(target.torque_ff_nm));
   setInput(odrive::ControlMode::kPosition,
            odrive::setInputPos(node_, static_cast<float>(turns),
                                saturate(static_cast<float>(toDrive(ff_rpm) / kRpmPerTurnPerS)),
                                saturate(static_cast<float>(torqueToDrive(ff_nm)))));
-  setCommand(target.value, CommandUnit::kNative);
+  const double away_deg = turns * kDegPerTurn - drivePositionFor(feedback_.total_angle_deg);
+  setCommand(reaches ? target.value : feedback_.total_angle_deg + toOutput(away_deg), CommandUnit::kNative);
 }
 
 void ODrive_Motor::setInput(odrive::ControlMode mode, const CanFrame& input) noexcept {

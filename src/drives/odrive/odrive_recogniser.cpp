@@ -9,6 +9,30 @@ namespace {
 
 constexpr std::uint8_t kOdriveLastState = 14;
 
+/// Numbers that a shaft can have: bytes of another protocol read as floats are seldom.
+bool sane(float value) {
+  return std::isfinite(value) && (value == 0.0F || (std::abs(value) > 1e-9F && std::abs(value) < 1e7F));
+}
+
+/// What it sends beside its estimates. 0x15 and 0x1C of firmware 0.5 are something else, but also such
+/// numbers.
+bool isTelemetry(odrive::Message message, const CanFrame& frame) {
+  const auto pair = odrive::decodePair(frame);
+  if (!pair) return false;
+  constexpr float kLowestV = 5.0F;
+  constexpr float kHighestV = 100.0F;
+  switch (message) {
+    case odrive::Message::kIq:
+    case odrive::Message::kTorques: return sane(pair->first) && sane(pair->second);
+    // A motor without a sensor has no number.
+    case odrive::Message::kTemperature:
+      return sane(pair->first) && (std::isnan(pair->second) || sane(pair->second));
+    case odrive::Message::kBusVoltage:
+      return pair->first > kLowestV && pair->first < kHighestV && sane(pair->second);
+    default: return false;
+  }
+}
+
 void addStandard(const CanFrame& frame, std::vector<DriveGuess>& guesses) {
   if (frame.id.extended || frame.fd) return;
   const int node = static_cast<int>(frame.id.value >> odrive::kMessageBits);
@@ -20,12 +44,9 @@ void addStandard(const CanFrame& frame, std::vector<DriveGuess>& guesses) {
   }
   if (message == odrive::Message::kEncoderEstimates) {
     const auto pair = odrive::decodePair(frame);
-    // Numbers that a shaft can have: bytes of another protocol read as floats are seldom.
-    const auto sane = [](float value) {
-      return std::isfinite(value) && (value == 0.0F || (std::abs(value) > 1e-9F && std::abs(value) < 1e7F));
-    };
     if (pair && sane(pair->first) && sane(pair->second)) guesses.push_back({drive_kind::kOdrive, node});
   }
+  if (isTelemetry(message, frame)) guesses.push_back({drive_kind::kOdrive, node});
 }
 
 // The id is that of another family too. What says most is the heartbeat: an axis is in a state from "idle"

@@ -95,11 +95,12 @@ void OdriveDrive::drive() noexcept {
 }
 
 void OdriveDrive::receive(const CanFrame& frame) noexcept {
-  if (frame.id.extended || frame.fd || frame.type != FrameType::kData) return;
+  if (frame.id.extended || frame.fd || frame.type == FrameType::kError) return;
   if ((frame.id.value & odrive::kNodeMask) != odrive::canId(node_, odrive::Message{}).value || starting())
     return;
   // 0.5: whatever is addressed to the node (CANSimple::do_command). 0.6 is not published; taken as the same.
   fed_at_ = elapsed();
+  if (frame.type == FrameType::kRemote) return answerQuestion(odrive::messageOf(frame.id));
   std::array<std::uint8_t, 8> data{};
   std::copy_n(frame.data.begin(), std::min<std::size_t>(frame.length, data.size()), data.begin());
   const std::span<const std::uint8_t> bytes{data};
@@ -137,6 +138,40 @@ void OdriveDrive::receive(const CanFrame& frame) noexcept {
   drive();
 }
 
+// A remote frame asks. What is not known of this firmware stays without an answer.
+void OdriveDrive::answerQuestion(odrive::Message asked) noexcept {
+  switch (asked) {
+    case odrive::Message::kHeartbeat: return answer(heartbeat());
+    case odrive::Message::kEncoderEstimates: return answer(estimates());
+    case odrive::Message::kIq: return answer(pair(node_, asked, currentA(), currentA()));
+    case odrive::Message::kBusVoltage: return answer(busVoltage());
+    case odrive::Message::kTemperature:
+      if (firmware_ == OdriveFirmware::k06) answer(temperatures());
+      return;
+    case odrive::Message::kTorques:
+      if (firmware_ == OdriveFirmware::k06) answer(torques());
+      return;
+    default: return;
+  }
+}
+
+CanFrame OdriveDrive::estimates() const noexcept {
+  return pair(node_, odrive::Message::kEncoderEstimates, driveAngleDeg() / kDegPerTurn,
+              driveRpm() / kRpmPerTurnPerS);
+}
+
+CanFrame OdriveDrive::busVoltage() const noexcept {
+  return pair(node_, odrive::Message::kBusVoltage, static_cast<double>(traits().nominal_v), 0.0);
+}
+
+CanFrame OdriveDrive::temperatures() const noexcept {
+  return pair(node_, odrive::Message::kTemperature, physics().temperatureC(), physics().temperatureC());
+}
+
+CanFrame OdriveDrive::torques() const noexcept {
+  return pair(node_, odrive::Message::kTorques, driveTorqueNm(), driveTorqueNm());
+}
+
 void OdriveDrive::step(Duration dt) noexcept {
   ServoDrive::step(dt);
   // It counts in every state, so an idle axis that nobody talks to expires too.
@@ -169,16 +204,15 @@ std::size_t OdriveDrive::feedback(std::span<CanFrame> out) noexcept {
     next_heartbeat_ = elapsed() + kHeartbeatPeriod;
     add(heartbeat());
   }
-  add(pair(node_, odrive::Message::kEncoderEstimates, driveAngleDeg() / kDegPerTurn,
-           driveRpm() / kRpmPerTurnPerS));
+  add(estimates());
   if (telemetry_period_ > Duration::zero() && elapsed() >= next_telemetry_) {
     next_telemetry_ = elapsed() + telemetry_period_;
-    add(pair(node_, odrive::Message::kBusVoltage, static_cast<double>(traits().nominal_v), 0.0));
+    add(busVoltage());
     if (firmware_ == OdriveFirmware::k05) {
       add(pair(node_, odrive::Message::kIq, currentA(), currentA()));
     } else {
-      add(pair(node_, odrive::Message::kTorques, driveTorqueNm(), driveTorqueNm()));
-      add(pair(node_, odrive::Message::kTemperature, physics().temperatureC(), physics().temperatureC()));
+      add(torques());
+      add(temperatures());
     }
   }
   return count;

@@ -32,7 +32,12 @@ class OdriveDrive : public ServoDrive {
   void disarm(std::uint32_t errors) noexcept;
   void drive() noexcept;
   [[nodiscard]] bool starting() const noexcept { return elapsed() < ready_at_; }
+  void answerQuestion(odrive::Message asked) noexcept;
   [[nodiscard]] CanFrame heartbeat() const noexcept;
+  [[nodiscard]] CanFrame estimates() const noexcept;
+  [[nodiscard]] CanFrame busVoltage() const noexcept;
+  [[nodiscard]] CanFrame temperatures() const noexcept;
+  [[nodiscard]] CanFrame torques() const noexcept;
   [[nodiscard]] double torqueLimitNm() const noexcept;
 
   int node_;

@@ -139,6 +139,11 @@ CanFrame Codec::fault(std::uint32_t fault_word) const noexcept {
   return makeClassicFrame(canId(Type::kFault, static_cast<std::uint32_t>(drive_id), host_id), data);
 }
 
+CanFrame Codec::identity(const std::array<std::uint8_t, 8>& unique_id) const noexcept {
+  constexpr int kAllHosts = 0xFE;
+  return makeClassicFrame(canId(Type::kGetId, static_cast<std::uint32_t>(drive_id), kAllHosts), unique_id);
+}
+
 FaultCode faultOf(std::uint32_t native_code, bool cyber_gear) noexcept {
   if (cyber_gear && (native_code & kCyberGearOverload) != 0) return FaultCode::kDriveOverload;
   const FaultCode fault = faultOfBits(kRobstrideFaults, native_code);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <optional>
 
@@ -95,6 +96,8 @@ struct Codec {
   [[nodiscard]] CanFrame answer(const Feedback& told) const noexcept;
   [[nodiscard]] CanFrame parameter(std::uint16_t index, std::uint32_t bits, bool known) const noexcept;
   [[nodiscard]] CanFrame fault(std::uint32_t fault_word) const noexcept;
+  /// The answer to kGetId. It goes to 0xFE, whoever asked.
+  [[nodiscard]] CanFrame identity(const std::array<std::uint8_t, 8>& unique_id) const noexcept;
 };
 
 /// The drive's faults as one number: the word of a fault frame (bits 0-16), and above it from bit 24 on the

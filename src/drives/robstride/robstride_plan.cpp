@@ -151,11 +151,7 @@ void RobStride_Motor::limitTorque(robstride::Operation& wanted) noexcept {
 
 void RobStride_Motor::planCurrent(const Target& target) noexcept {
   if (target.mode == ControlMode::kCurrent) {
-    const double asked = target.value + static_cast<double>(target.torque_ff_nm / torqueNmPerA());
-    const double limit = static_cast<double>(effortLimit());
-    const double clamped = std::clamp(asked, -limit, limit);
-    if (clamped != asked) limits_ |= kLimitCurrent;
-    reference_.value = static_cast<float>(clamped) * direction();
+    reference_.value = static_cast<float>(currentWithinLimit(target)) * direction();
   }
   setCommand(static_cast<double>(reference_.value * direction()), CommandUnit::kAmpere);
 }
@@ -185,7 +181,11 @@ void RobStride_Motor::planPosition(const Target& target) noexcept {
   if (reachable != position_rad) limits_ |= kLimitAngle;
   reference_.value = static_cast<float>(reachable);
   reference_.current_limit_a = follows && !angles_in_doubt_ ? effortLimit() : 0.0F;
-  setCommand(wanted_deg, CommandUnit::kNative);
+  const double here_rad = positionRadFor(feedback_.total_angle_deg);
+  setCommand(reachable == position_rad
+                 ? wanted_deg
+                 : feedback_.total_angle_deg + toOutput((reachable - here_rad) * kDegPerRad),
+             CommandUnit::kNative);
 }
 
 }  // namespace rc10

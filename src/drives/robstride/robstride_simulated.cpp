@@ -1,6 +1,7 @@
 #include "drives/robstride/robstride_simulated.hpp"
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cmath>
 #include <numbers>
@@ -24,6 +25,8 @@ constexpr std::uint16_t kPositionKp = 0x701E;
 constexpr std::uint16_t kVelocityKp = 0x701F;
 constexpr std::uint16_t kVelocityKi = 0x7020;
 constexpr double kMostGain = 1e6;
+// "rc10 sim"
+constexpr std::array<std::uint8_t, 8> kUniqueId{0x72, 0x63, 0x31, 0x30, 0x20, 0x73, 0x69, 0x6D};
 
 std::uint32_t bitsOf(double value) noexcept {
   return std::bit_cast<std::uint32_t>(static_cast<float>(value));
@@ -115,7 +118,11 @@ void RobstrideDrive::receive(const CanFrame& frame) noexcept {
   if (!mine) return;
   heard_at_ = elapsed();
   const auto bytes = frame.payload();
-  switch (static_cast<robstride::Type>(frame.id.value >> 24U & 0x1FU)) {
+  const auto type = static_cast<robstride::Type>(frame.id.value >> 24U & 0x1FU);
+  // Answers go to whoever asked last; an operation command has its torque where others have that.
+  if (type != robstride::Type::kOperate) codec_.host_id = static_cast<int>(frame.id.value >> 8U & 0xFFU);
+  switch (type) {
+    case robstride::Type::kGetId: answer(codec_.identity(kUniqueId)); return;
     case robstride::Type::kOperate:
       if (running_ && find(parameter::kRunMode)->bits == 0) {
         operation_ = codec_.operation(frame);

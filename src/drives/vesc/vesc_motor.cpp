@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "app/angle.hpp"
 #include "app/limits.hpp"
@@ -117,12 +118,7 @@ void VESC_Motor::obey(const Target& target) noexcept {
     return;
   }
   switch (target.mode) {
-    case ControlMode::kCurrent: {
-      const double ff =
-          torqueNmPerA() > 0.0F ? static_cast<double>(target.torque_ff_nm / torqueNmPerA()) : 0.0;
-      setCurrent(target.value + ff);
-      return;
-    }
+    case ControlMode::kCurrent: followCurrent(target); return;
     case ControlMode::kVelocity: followVelocity(target); return;
     case ControlMode::kTotalAngle: followAngle(target); return;
     case ControlMode::kDuty: setDuty(target.value); return;
@@ -143,14 +139,12 @@ VESC_Motor::Command VESC_Motor::currentCommand(vesc::Packet absolute, vesc::Pack
   return {relative, vesc::toRaw(share, vesc::kPerShare)};
 }
 
-void VESC_Motor::setCurrent(double amperes) noexcept {
-  if (!std::isfinite(amperes)) {
+void VESC_Motor::followCurrent(const Target& target) noexcept {
+  if (!std::isfinite(target.value)) {
     release();
     return;
   }
-  const double limit = static_cast<double>(effortLimit());
-  const double bounded = std::clamp(amperes, -limit, limit);
-  if (bounded != amperes) limits_ |= kLimitCurrent;
+  const double bounded = currentWithinLimit(target);
   command_ = currentCommand(vesc::Packet::kSetCurrent, vesc::Packet::kSetCurrentRelative,
                             bounded * static_cast<double>(direction()));
   setCommand(bounded, CommandUnit::kAmpere);
@@ -161,7 +155,9 @@ void VESC_Motor::setVelocity(double rpm) noexcept {
     release();
     return;
   }
-  const double bounded = rpmWithinLimit(rpm);
+  const double raw_per_rpm = rotor_per_output_ * options_.pole_pairs * vesc::kPerErpm;
+  const double bounded =
+      rpmWithinLimit(rpm, std::numeric_limits<std::int32_t>::max() / std::abs(raw_per_rpm));
   command_ = {vesc::Packet::kSetErpm,
               vesc::toRaw(bounded * rotor_per_output_ * options_.pole_pairs, vesc::kPerErpm)};
   setCommand(bounded, CommandUnit::kNative);
@@ -236,9 +232,11 @@ void VESC_Motor::setPosition(double total_angle_deg) noexcept {
     release();
     return;
   }
-  const double next_deg = wrapDegrees(position_deg_ + std::clamp(way, -kLeadDeg, kLeadDeg));
+  const double lead_deg = std::clamp(way, -kLeadDeg, kLeadDeg);
+  const double next_deg = wrapDegrees(position_deg_ + lead_deg);
   command_ = {vesc::Packet::kSetPosition, vesc::toRaw(next_deg, vesc::kPerDegree)};
-  setCommand(total_angle_deg, CommandUnit::kNative);
+  setCommand(lead_deg == way ? total_angle_deg : feedback_.total_angle_deg + toOutput(lead_deg),
+             CommandUnit::kNative);
 }
 
 /// A brake current in proportion to the speed, as a shorted winding would make it. It never pushes.

@@ -66,7 +66,7 @@ class VESC_Motor : public SoloMotor {
 
   void obey(const Target& target) noexcept;
   void release() noexcept;
-  void setCurrent(double amperes) noexcept;
+  void followCurrent(const Target& target) noexcept;
   void setVelocity(double rpm) noexcept;
   void setPosition(double total_angle_deg) noexcept;
   void setDuty(double duty) noexcept;

@@ -1,0 +1,175 @@
+// Every family: what it packs has room, what it tells of a command is what the frame says.
+#include <cmath>
+#include <limits>
+#include <memory>
+#include <ostream>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "bus/fdcan_bus.hpp"
+#include "drives/families.hpp"
+#include "sim/solo_rig.hpp"
+#include "support/own_defaults.hpp"
+
+namespace rc10::test::told_values_test {
+namespace {
+
+using namespace std::chrono_literals;
+
+struct Subject {
+  const char* name;
+  const char* model;
+  int id;
+  std::vector<std::pair<std::string, OwnValues::Value>> own;
+};
+
+void PrintTo(const Subject& subject, std::ostream* out) { *out << subject.name; }
+
+const Subject kSubjects[] = {
+    {"Vesc", "VESC", 7, {{"pole_pairs", 7.0}, {"kv_rpm_per_v", 190.0}}},
+    {"VescWithEncoder", "VESC", 7, {{"pole_pairs", 7.0}, {"kv_rpm_per_v", 190.0}, {"angle", "encoder"}}},
+    {"DamiaoMit", "DM4310", 1, {{"master_id", 17.0}}},
+    {"DamiaoVelocity", "DM4310", 1, {{"master_id", 17.0}, {"control", "velocity"}}},
+    {"DamiaoPosition", "DM4310", 1, {{"master_id", 17.0}, {"control", "position_velocity"}}},
+    {"DamiaoForce", "DM4310", 1, {{"master_id", 17.0}, {"control", "force_position"}}},
+    {"RobStride", "RS00", 3, {}},
+    {"RobStrideCurrent", "RS00", 3, {{"control", "current"}}},
+    {"RobStrideVelocity", "RS00", 3, {{"control", "velocity"}}},
+    {"RobStridePosition", "RS00", 3, {{"control", "position"}}},
+    {"CubeMarsServo", "AK80-9", 5, {}},
+    {"CubeMarsMit", "AK80-9", 5, {{"protocol", "mit"}}},
+    {"Moteus", "moteus", 1, {{"motor_kv_rpm_per_v", 304.0}}},
+    {"OdriveS1", "ODrive_S1", 3, {{"torque_constant_nm_per_a", 0.05}}},
+    {"OdriveV3", "ODrive_v3", 3, {{"torque_constant_nm_per_a", 0.05}}},
+    {"MyActuator", "RMD-X8-20", 3, {}},
+    {"LkTech", "LK-MG5010E-i10", 3, {}},
+};
+
+const FamilyEntry& entryOf(const std::string& model) {
+  for (const auto& entry : builtInFamilies()) {
+    for (const auto known : entry.family->models()) {
+      if (known == model) return entry;
+    }
+  }
+  throw std::invalid_argument(model);
+}
+
+/// A motor that its family built, as the daemon does.
+class Built {
+ public:
+  explicit Built(const Subject& subject) : entry_(entryOf(subject.model)) {
+    settings_.name = "motor";
+    settings_.model = subject.model;
+    settings_.id = subject.id;
+    settings_.zero_at_power_on = true;
+    settings_.own = ownDefaults(*entry_.family);
+    for (const auto& [key, value] : subject.own) settings_.own.set(key, value);
+    const auto traits = entry_.family->traits(settings_.model, settings_.own);
+    settings_.effort_limit = traits.effort_full_scale > 0.0F ? 0.5F * traits.effort_full_scale : 10.0F;
+    if (settings_.model.starts_with("ODrive")) settings_.velocity_limit_rpm = 600.0F;  // it must be given
+    if (traits.host_loops != nullptr) settings_.loops = *traits.host_loops;
+  }
+
+  std::unique_ptr<SoloMotor> motor() {
+    auto built = entry_.family->build(settings_, parts_);
+    if (!built) throw std::invalid_argument(built.error().message);
+    return std::unique_ptr<SoloMotor>(dynamic_cast<SoloMotor*>(built->release()));
+  }
+  std::unique_ptr<sim::Drive> drive() { return entry_.simulate(settings_, {}); }
+  [[nodiscard]] double limit() const { return static_cast<double>(settings_.effort_limit); }
+
+ private:
+  const FamilyEntry& entry_;
+  MotorSettings settings_;
+  std::unique_ptr<fdCANbus> bus_ = fdCANbus::adopt("can0", UniqueFd{}, true);
+  BusParts parts_{*bus_};
+};
+
+class ToldValues : public ::testing::TestWithParam<Subject> {
+ protected:
+  bool activate() {
+    rig_.comeOnline();
+    rig_.run(2000ms);  // some start slowly
+    return rig_.enable();
+  }
+  void follow(const Target& target) {
+    rig_.command(target);
+    rig_.run(3ms);
+  }
+  [[nodiscard]] double told() { return static_cast<double>(rig_.motor().commandValue()); }
+
+  Built built_{GetParam()};
+  SoloRig rig_{built_.motor(), built_.drive()};
+};
+
+TEST_P(ToldValues, NoFrameIsWrittenBeyondTheRoomThatThereIs) {
+  Built apart{GetParam()};
+  const auto motor = apart.motor();
+  const CanFrame untouched = makeClassicFrame({0x7EF, false}, std::array<std::uint8_t, 1>{0x5A});
+  std::uint64_t ticks = 0;
+  for (int kind = 0; kind <= static_cast<int>(FrameKind::kCommand); ++kind) {
+    for (std::size_t room = 0; room <= kMaxFramesPerPacker; ++room) {
+      std::array<CanFrame, kMaxFramesPerPacker + 1> frames{};
+      frames.fill(untouched);
+      motor->order(static_cast<FrameKind>(kind));
+      const Tick tick{.index = ++ticks, .now = MonotonicTime{ticks * 1ms}, .dt_s = 0.001F};
+      motor->update(tick);
+      EXPECT_LE(motor->packCommand(tick, std::span{frames}.first(room)), room);
+      for (std::size_t i = room; i < frames.size(); ++i) EXPECT_EQ(frames[i].id, untouched.id);
+      frames.fill(untouched);
+      const std::size_t rests = motor->packRest(std::span{frames}.first(room));
+      EXPECT_LE(rests, room);
+      EXPECT_EQ(rests > 0, room > 0) << "rest leaves wherever one frame can";
+      for (std::size_t i = room; i < frames.size(); ++i) EXPECT_EQ(frames[i].id, untouched.id);
+    }
+  }
+}
+
+TEST_P(ToldValues, ATargetBeyondWhatAFrameCanSayIsToldAsTheFrameSaysIt) {
+  constexpr double kMostToldByAnyFrame = 1e11;
+  ASSERT_TRUE(activate());
+  for (const auto mode : {ControlMode::kVelocity, ControlMode::kTotalAngle, ControlMode::kCurrent}) {
+    if (!rig_.motor().modes().contains(mode)) continue;
+    for (const double value : {1e20, -1e20}) {
+      SCOPED_TRACE(std::string{toString(mode)} + " " + std::to_string(value));
+      follow({.mode = mode, .value = value});
+      EXPECT_LT(std::fabs(told()), kMostToldByAnyFrame);
+      // A place is told step by step where the shortest way would be another.
+      EXPECT_TRUE(mode == ControlMode::kTotalAngle || told() == 0.0 || rig_.motor().limits() != 0U);
+      follow({});
+    }
+  }
+}
+
+TEST_P(ToldValues, ATargetThatTheFrameCanSayIsToldInTheUnitOfItsMode) {
+  ASSERT_TRUE(activate());
+  for (const auto mode : {ControlMode::kVelocity, ControlMode::kTotalAngle}) {
+    if (!rig_.motor().modes().contains(mode)) continue;
+    follow({.mode = mode, .value = 20.0});
+    const bool by_host = mode == ControlMode::kTotalAngle && std::string{GetParam().name} == "Vesc";
+    if (rig_.motor().commandUnit() == CommandUnit::kNative && !by_host) {
+      EXPECT_NEAR(told(), 20.0, 0.01) << toString(mode);
+    }
+    follow({});
+  }
+}
+
+TEST_P(ToldValues, AFeedForwardOfAnySizeIsBoundedByTheCurrentLimit) {
+  ASSERT_TRUE(activate());
+  if (!rig_.motor().modes().contains(ControlMode::kCurrent)) return;
+  constexpr float kMost = std::numeric_limits<float>::max();
+  follow({.mode = ControlMode::kCurrent, .torque_ff_nm = kMost});
+  EXPECT_NEAR(told(), built_.limit(), 1e-3 * built_.limit());
+  EXPECT_NE(rig_.motor().limits() & kLimitCurrent, 0U);
+  follow({.mode = ControlMode::kCurrent, .torque_ff_nm = -kMost});
+  EXPECT_NEAR(told(), -built_.limit(), 1e-3 * built_.limit());
+}
+
+INSTANTIATE_TEST_SUITE_P(All, ToldValues, ::testing::ValuesIn(kSubjects),
+                         [](const auto& subject) { return std::string{subject.param.name}; });
+
+}  // namespace
+}  // namespace rc10::test::told_values_test
