@@ -125,6 +125,7 @@ struct RobotConfig {
   ForbiddenAt tuning_locked_at = 0;      ///< Line of `tuning: locked`.
   ForbiddenAt clear_local_at = 0;        ///< Line of `clear: local`.
   std::optional<EstopGpioConfig> estop_gpio;
+  std::optional<EstopGpioConfig> enabling_gpio;  ///< Of a three-position enabling switch.
   std::optional<HeartbeatGpioConfig> heartbeat_gpio;
   int blackbox_mib = 16;  ///< 0: none.
   std::vector<BusConfig> buses;

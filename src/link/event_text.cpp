@@ -70,6 +70,7 @@ namespace {
     case 1: return "the e-stop input is closed again: `clear` ends the e-stop";
     case 2: return "e-stop: the input is open: pressed, or a wire is off";
     case 3: return "e-stop: the input cannot be read: the chip is gone or does not answer";
+    case 4: return "e-stop: the enabling switch is released or squeezed: hold it in the middle, then `clear`";
     default: return "e-stop input unknown";
   }
 }

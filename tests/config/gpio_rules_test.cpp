@@ -53,6 +53,23 @@ TEST(GpioRules, EveryKeyIsRead) {
   EXPECT_THAT(describe(robot), HasSubstr("/dev/gpiochip4:27, every 50 ms, until 3000 ms after an e-stop\n"));
 }
 
+TEST(GpioRules, AnEnablingSwitchIsAContactAsTheButtonIs) {
+  const auto robot = robotOf("enabling_gpio: {chip: gpiochip0, line: 22, bias: external}\n");
+  ASSERT_TRUE(robot.enabling_gpio);
+  EXPECT_FALSE(robot.estop_gpio);
+  EXPECT_EQ(robot.enabling_gpio->pin.name(), "gpiochip0:22");
+  EXPECT_FALSE(robot.enabling_gpio->internal_bias);
+  EXPECT_THAT(describe(robot), HasSubstr("gpiochip0:22, closed contact reads low, external pull-up\n"));
+}
+
+TEST(GpioRules, TheEnablingSwitchHasALineOfItsOwn) {
+  const std::string estop = "estop_gpio: {chip: gpiochip0, line: 22}\n";
+  const std::string enabling = "enabling_gpio: {chip: /dev/gpiochip0, line: 22}\n";
+  EXPECT_THAT(errorsAfter(estop + enabling), ElementsAre(HasSubstr("is the line of estop_gpio")));
+  EXPECT_THAT(errorsAfter(enabling + "heartbeat_gpio: {chip: gpiochip0, line: 22}\n"),
+              ElementsAre(HasSubstr("is the line of enabling_gpio: an output that switches itself")));
+}
+
 TEST(GpioRules, ChipAndLineAreRequired) {
   EXPECT_THAT(errorsAfter("estop_gpio: {}\n"), ElementsAre(HasSubstr("estop_gpio.chip: is missing"),
                                                            HasSubstr("estop_gpio.line: is missing")));

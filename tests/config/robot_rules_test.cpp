@@ -36,10 +36,12 @@ TEST(RobotRules, AnUnknownKeyIsRefusedWithTheNearestOne) {
               ElementsAre("hero.yaml:2:1: scheduller: unknown key; did you mean scheduler?"));
   EXPECT_THAT(errorsOf(robotAfter("robot: hero\nLCM: {}\n")),
               ElementsAre("hero.yaml:2:1: LCM: unknown key; did you mean lcm?"));
-  EXPECT_THAT(errorsOf(robotAfter("robot: hero\nwheels: 4\n")),
-              ElementsAre("hero.yaml:2:1: wheels: unknown key; known here: robot, realtime, guard, receive, "
-                          "scheduler, rx, lcm, clients, tuning, clear, "
-                          "estop_gpio, heartbeat_gpio, blackbox_mib, profiles, buses, groups and modules"));
+  EXPECT_THAT(
+      errorsOf(robotAfter("robot: hero\nwheels: 4\n")),
+      ElementsAre(
+          "hero.yaml:2:1: wheels: unknown key; known here: robot, realtime, guard, receive, "
+          "scheduler, rx, lcm, clients, tuning, clear, "
+          "estop_gpio, enabling_gpio, heartbeat_gpio, blackbox_mib, profiles, buses, groups and modules"));
 }
 
 TEST(RobotRules, AValueOfTheWrongKindIsRefusedWithTheRightOne) {

@@ -116,6 +116,109 @@ TEST_F(EstopInputTest, OneThatIsOpenAtTheStartIsAnEstopInTheFirstTick) {
   EXPECT_EQ(other.scheduler().supervisor().robotState(), RobotStatus::kEstop);
 }
 
+/// A robot with an enabling switch in the other hand.
+class EnablingSwitchTest : public EstopInputTest {
+ protected:
+  EnablingSwitchTest() { turn(); }
+  void turn() { both.turn(robot.now(), robot.scheduler().ticks()); }
+  void hold(ContactState state) {
+    switch_.now = state;
+    turn();
+    robot.tick();
+  }
+
+  FakeContact::State switch_;
+  GpioLoop both{std::make_unique<FakeContact>(input), std::nullopt, robot.exchange(),
+                std::make_unique<FakeContact>(switch_)};
+};
+
+TEST_F(EnablingSwitchTest, HeldInTheMiddleItLetsTheRobotRun) {
+  enable();
+  for (int i = 0; i < 500; ++i) hold(kClosed);
+  EXPECT_EQ(robot.motor(0).status, MotorStatus::kActive);
+}
+
+TEST_F(EnablingSwitchTest, ReleasedOrSqueezedItStopsInTheNextTickAndSaysSo) {
+  enable();
+  robot.hold(0, {.mode = ControlMode::kVelocity, .value = 100.0}, 50);
+  (void)robot.events();
+  hold(kOpen);
+  EXPECT_EQ(state(), RobotStatus::kEstop);
+  EXPECT_EQ(robot.motor(0).command_value, 0.0F);
+  const auto events = robot.events();
+  ASSERT_GE(events.size(), 2U);
+  EXPECT_THAT(describe(events[0]), HasSubstr("the enabling switch is released or squeezed"));
+}
+
+TEST_F(EnablingSwitchTest, HoldingItAgainStartsNothing) {
+  enable();
+  hold(kOpen);
+  switch_.now = kOpen;
+  turn();
+  EXPECT_EQ(robot.order(Operation::kClear).motors[0], Refusal::kEstopInput);
+  for (int i = 0; i < 10; ++i) hold(kClosed);
+  EXPECT_EQ(state(), RobotStatus::kEstop);
+  EXPECT_EQ(robot.order(Operation::kClear).motors[0], Refusal::kNone);
+  EXPECT_EQ(robot.motor(0).status, MotorStatus::kReady) << "it has to be enabled anew";
+}
+
+TEST_F(EnablingSwitchTest, AReleaseThatIsOverBeforeTheTickActsTooAndIsToldAsOne) {
+  enable();
+  (void)robot.events();
+  switch_.first = {kOpen, kClosed};
+  turn();
+  turn();
+  robot.tick();
+  EXPECT_EQ(state(), RobotStatus::kEstop);
+  EXPECT_EQ(contactEvents().front(), static_cast<int>(kReleased));
+}
+
+TEST_F(EnablingSwitchTest, OneThatCannotBeReadIsAnEstop) {
+  enable();
+  hold(kUnreadable);
+  EXPECT_EQ(state(), RobotStatus::kEstop);
+}
+
+TEST_F(EnablingSwitchTest, TheButtonCountsAsBefore) {
+  enable();
+  input.now = kOpen;
+  hold(kClosed);
+  EXPECT_EQ(state(), RobotStatus::kEstop);
+  EXPECT_EQ(contactEvents().back(), static_cast<int>(kOpen));
+}
+
+TEST(GpioLoop, AnEnablingSwitchAloneIsWaitedFor) {
+  LinkExchange exchange;
+  FakeContact::State switch_;
+  GpioLoop loop{nullptr, std::nullopt, exchange, std::make_unique<FakeContact>(switch_)};
+  loop.turn(MonotonicTime{1s}, 1);
+  EXPECT_THAT(switch_.waits, ElementsAre(10ms));
+  EXPECT_FALSE(exchange.estop_contact.look(0.001F).stop);
+  switch_.now = kOpen;
+  loop.turn(MonotonicTime{2s}, 2);
+  EXPECT_EQ(exchange.estop_contact.look(0.001F).news, kReleased);
+}
+
+TEST(GpioLoop, BesideTheButtonNeitherWaitsLong) {
+  LinkExchange exchange;
+  FakeContact::State input;
+  FakeContact::State switch_;
+  GpioLoop loop{std::make_unique<FakeContact>(input), std::nullopt, exchange,
+                std::make_unique<FakeContact>(switch_)};
+  loop.turn(MonotonicTime{1s}, 1);
+  EXPECT_THAT(input.waits, ElementsAre(1ms));
+  EXPECT_THAT(switch_.waits, ElementsAre(0ms));
+}
+
+TEST(GpioLoop, AMissingEnablingSwitchIsAnErrorThatNamesItsKey) {
+  LinkExchange exchange;
+  RobotConfig config;
+  config.enabling_gpio = EstopGpioConfig{.pin = {"no_such_chip", 22}};
+  const auto loop = GpioLoop::create(config, exchange);
+  ASSERT_FALSE(loop);
+  EXPECT_THAT(loop.error().message, HasSubstr("enabling_gpio: no_such_chip:22: "));
+}
+
 TEST(GpioLoop, LooksAtTheInputAlsoWhenNothingChanges) {
   LinkExchange exchange;
   FakeContact::State input;

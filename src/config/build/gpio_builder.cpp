@@ -52,14 +52,26 @@ HeartbeatGpioConfig readHeartbeat(const Settings& settings, int rate_hz, Problem
 
 void buildGpio(const Settings& top, RobotConfig& robot, Problems& problems) {
   if (top.find("estop_gpio")) robot.estop_gpio = readEstop(top.section("estop_gpio"));
+  if (const auto enabling = top.find("enabling_gpio")) {
+    robot.enabling_gpio = readEstop(top.section("enabling_gpio"));
+    if (robot.estop_gpio && robot.estop_gpio->pin == robot.enabling_gpio->pin) {
+      problems.error(enabling->place(), enabling->path,
+                     robot.enabling_gpio->pin.name() +
+                         " is the line of estop_gpio: each contact needs its "
+                         "own; use another line");
+    }
+  }
   const auto given = top.find("heartbeat_gpio");
   if (!given) return;
   robot.heartbeat_gpio = readHeartbeat(top.section("heartbeat_gpio"), robot.rate_hz, problems);
-  if (robot.estop_gpio && robot.estop_gpio->pin == robot.heartbeat_gpio->pin) {
-    problems.error(given->place(), given->path,
-                   robot.heartbeat_gpio->pin.name() +
-                       " is the line of estop_gpio: an output that switches itself; use another line");
-  }
+  const auto is_its_line = [&](const std::optional<EstopGpioConfig>& input) {
+    return input && input->pin == robot.heartbeat_gpio->pin;
+  };
+  if (!is_its_line(robot.estop_gpio) && !is_its_line(robot.enabling_gpio)) return;
+  problems.error(given->place(), given->path,
+                 robot.heartbeat_gpio->pin.name() + " is the line of " +
+                     (is_its_line(robot.estop_gpio) ? "estop_gpio" : "enabling_gpio") +
+                     ": an output that switches itself; use another line");
 }
 
 }  // namespace rc10

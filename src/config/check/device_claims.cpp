@@ -7,6 +7,7 @@ namespace rc10 {
 
 DeviceClaims::DeviceClaims(const RobotConfig& robot) {
   if (robot.estop_gpio) claimLine("", robot.estop_gpio->pin, "estop_gpio");
+  if (robot.enabling_gpio) claimLine("", robot.enabling_gpio->pin, "enabling_gpio");
   if (robot.heartbeat_gpio) claimLine("", robot.heartbeat_gpio->pin, "heartbeat_gpio");
 }
 

@@ -62,6 +62,9 @@ constexpr std::array kHeartbeatKeys{
 
 constexpr Section kEstopGpioSection{"estop_gpio", kEstopKeys,
                                     "An emergency-stop contact on a GPIO line, normally closed."};
+constexpr Section kEnablingGpioSection{
+    "enabling_gpio", kEstopKeys,
+    "The contact of a three-position enabling switch on a GPIO line, closed in the middle position alone."};
 constexpr Section kHeartbeatGpioSection{"heartbeat_gpio", kHeartbeatKeys,
                                         "A GPIO line that toggles while the scheduler ticks."};
 

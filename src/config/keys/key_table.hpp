@@ -94,6 +94,7 @@ struct Section {
 // The tables. A profile has a motor's keys without those that belong to one motor alone.
 extern const Section kRobotSection;
 extern const Section kEstopGpioSection;
+extern const Section kEnablingGpioSection;
 extern const Section kHeartbeatGpioSection;
 extern const Section kClientSection;
 extern const Section kBusSection;

@@ -21,6 +21,12 @@ std::string threadText(const ThreadConfig& thread) {
          (thread.cpu ? ", CPU " + std::to_string(*thread.cpu) : ", any CPU");
 }
 
+std::string contactText(const EstopGpioConfig& contact) {
+  return contact.pin.name() + ", closed contact reads " + (contact.closed_is_low ? "low" : "high") + ", " +
+         (contact.internal_bias ? "internal " : "external ") +
+         (contact.closed_is_low ? "pull-up" : "pull-down");
+}
+
 /// "teleop (LCM): command, clear; anna (user): command; all others observe and stop"
 std::string clientsText(const RobotConfig& config) {
   std::string text;
@@ -55,12 +61,8 @@ std::string robotText(const RobotConfig& config) {
   if (config.clients) table.add({"clients", clientsText(config)});
   if (config.tuning_locked_at != 0) table.add({"tuning", "locked"});
   if (config.clear_local_at != 0) table.add({"clear", "from this computer only"});
-  if (const auto& estop = config.estop_gpio) {
-    table.add({"e-stop input", estop->pin.name() + ", closed contact reads " +
-                                   (estop->closed_is_low ? "low" : "high") + ", " +
-                                   (estop->internal_bias ? "internal " : "external ") +
-                                   (estop->closed_is_low ? "pull-up" : "pull-down")});
-  }
+  if (config.estop_gpio) table.add({"e-stop input", contactText(*config.estop_gpio)});
+  if (config.enabling_gpio) table.add({"enabling switch", contactText(*config.enabling_gpio)});
   if (const auto& heartbeat = config.heartbeat_gpio) {
     const auto period = std::chrono::duration_cast<std::chrono::milliseconds>(heartbeat->period).count();
     const auto rests = heartbeat->rests_in_estop_after;

@@ -33,14 +33,10 @@ struct Speaker {
   uid_t user = 0;
   GrantSet grants{};
 
-  /// Owner of sessions: of what comes by LCM all that is sent there, over ends of the gateway.
-  [[nodiscard]] std::uint64_t owner() const noexcept { return way == Way::kSocket ? user : byLcm(); }
-  /// Owner of answers that are remembered.
-  [[nodiscard]] std::uint64_t asker() const noexcept { return way == Way::kSocket ? connection : byLcm(); }
-
- private:
-  [[nodiscard]] std::uint64_t byLcm() const noexcept {
-    return ~std::uint64_t{0} - static_cast<std::uint64_t>(way);
+  /// Owner of sessions, and of answers that are remembered: the user, so that one who comes back finds them;
+  /// of what comes by LCM all that is sent there, over ends of the gateway.
+  [[nodiscard]] std::uint64_t owner() const noexcept {
+    return way == Way::kSocket ? user : ~std::uint64_t{0} - static_cast<std::uint64_t>(way);
   }
 };
 

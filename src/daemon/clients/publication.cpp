@@ -238,7 +238,8 @@ link::Event Publication::event(const Event& event, std::int64_t utime) const {
   out.code = static_cast<std::int32_t>(event.code);
   const auto index = static_cast<std::size_t>(event.source);
   if (event.code == EventCode::kEstopInput) {
-    out.source = robot_.estop_input;
+    const bool enabling = event.value == static_cast<std::int32_t>(ContactState::kReleased);
+    out.source = enabling || robot_.estop_input.empty() ? robot_.enabling_input : robot_.estop_input;
   } else if (event.source < 0) {
     out.source = "robot";
   } else if (isOfBus(event.code)) {

@@ -47,7 +47,9 @@ constexpr std::string_view kEnableAloneOperation = "enable_alone";
     case Refusal::kDisabled: return "disabled while it was being enabled";
     case Refusal::kMoving: return "still turning: the e-stop is cleared when every motor stands still";
     case Refusal::kEstopInput:
-      return "the e-stop input is open: release the button, or mend its wire or chip";
+      return "the e-stop input is open: release the button, or mend its wire or chip; with an enabling "
+             "switch "
+             "hold it in the middle";
     case Refusal::kMayTurn:
       return "no feedback, and it may still turn: wait until run_down_s after its last feedback";
     case Refusal::kEstopAsked: return "an e-stop was asked for at the same time: it stays; clear it again";

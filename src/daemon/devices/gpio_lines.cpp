@@ -188,17 +188,16 @@ class KernelGpio final : public GpioSystem {
 
 std::unique_ptr<GpioSystem> kernelGpio() { return std::make_unique<KernelGpio>(); }
 
-Result<std::unique_ptr<ContactInput>> openContact(const EstopGpioConfig& config) {
-  constexpr const char* kKey = "estop_gpio";
-  constexpr const char* kConsumer = "rc10d e-stop";
-  auto line = findLine(kKey, config.pin);
+Result<std::unique_ptr<ContactInput>> openContact(const EstopGpioConfig& config, const char* key) {
+  const std::string consumer = std::string("rc10d ") + key;
+  auto line = findLine(key, config.pin);
   if (!line) return tl::unexpected(line.error());
   const int bias = biasOf(config);
-  int error = request(line->line, kConsumer, GPIOD_LINE_REQUEST_EVENT_BOTH_EDGES, bias);
+  int error = request(line->line, consumer.c_str(), GPIOD_LINE_REQUEST_EVENT_BOTH_EDGES, bias);
   // Errors of a line without an interrupt, as on many I2C expanders.
   const bool edges = error != ENODEV && error != ENXIO && error != ENOTSUP;
-  if (!edges) error = request(line->line, kConsumer, GPIOD_LINE_REQUEST_DIRECTION_INPUT, bias);
-  if (error != 0) return refusal(kKey, config.pin, error);
+  if (!edges) error = request(line->line, consumer.c_str(), GPIOD_LINE_REQUEST_DIRECTION_INPUT, bias);
+  if (error != 0) return refusal(key, config.pin, error);
   return std::make_unique<GpioContact>(std::move(*line), config.closed_is_low, edges);
 }
 

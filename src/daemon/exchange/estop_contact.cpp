@@ -17,7 +17,7 @@ EstopContact::View EstopContact::look(float dt_s) noexcept {
 
   View view;
   view.stop = open_ || opened;
-  const auto shown = view.stop && !open_ ? ContactState::kOpen : state;
+  const auto shown = view.stop && !open_ ? opened_as_.load(std::memory_order_relaxed) : state;
   if (shown != std::exchange(told_, shown)) view.news = shown;
   return view;
 }

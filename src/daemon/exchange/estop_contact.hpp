@@ -12,10 +12,12 @@ enum class ContactState : std::uint8_t {
   kClosed,      ///< All is well.
   kOpen,        ///< Pressed, or a wire is off.
   kUnreadable,  ///< The chip is gone, or nobody looks any more.
+  kReleased,    ///< The enabling switch is released or squeezed.
 };
 
-/// The e-stop input on its way from the thread that watches it to the scheduler. Neither side waits. An
-/// opening is never missed, however short; and silence of the watcher counts as unreadable.
+/// The e-stop input, and the enabling switch, on their way from the thread that watches it to the scheduler.
+/// Neither side waits. An opening is never missed, however short; and silence of the watcher counts as
+/// unreadable.
 class EstopContact {
  public:
   /// The watcher looks far more often; in ticks that were executed, so that a computer that stood still
@@ -25,7 +27,10 @@ class EstopContact {
   /// Sets the present state of the input. Watching thread only.
   void show(ContactState state) noexcept {
     state_.store(state, std::memory_order_relaxed);
-    if (state != ContactState::kClosed) openings_.fetch_add(1, std::memory_order_relaxed);
+    if (state != ContactState::kClosed) {
+      opened_as_.store(state, std::memory_order_relaxed);
+      openings_.fetch_add(1, std::memory_order_relaxed);
+    }
     sightings_.fetch_add(1, std::memory_order_release);
   }
 
@@ -40,6 +45,7 @@ class EstopContact {
 
  private:
   std::atomic<ContactState> state_{ContactState::kAbsent};
+  std::atomic<ContactState> opened_as_{ContactState::kOpen};  // the watcher's; ordered by sightings_
   std::atomic<std::uint32_t> openings_{0};
   std::atomic<std::uint32_t> sightings_{0};
   // Of the scheduler.

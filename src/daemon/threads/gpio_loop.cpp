@@ -20,35 +20,57 @@ constexpr Duration kPause = std::chrono::milliseconds{1};
 }  // namespace
 
 GpioLoop::GpioLoop(std::unique_ptr<ContactInput> contact, std::optional<Heartbeat> heartbeat,
-                   LinkExchange& link)
-    : contact_(std::move(contact)), heartbeat_(std::move(heartbeat)), link_(link) {}
+                   LinkExchange& link, std::unique_ptr<ContactInput> enabling)
+    : contact_(std::move(contact)),
+      enabling_(std::move(enabling)),
+      heartbeat_(std::move(heartbeat)),
+      link_(link) {}
 
 Result<std::unique_ptr<GpioLoop>> GpioLoop::create(const RobotConfig& config, LinkExchange& link) {
   std::unique_ptr<ContactInput> contact;
+  std::unique_ptr<ContactInput> enabling;
   std::optional<Heartbeat> heartbeat;
   if (config.estop_gpio) {
     auto opened = openContact(*config.estop_gpio);
     if (!opened) return tl::unexpected(opened.error());
     contact = std::move(*opened);
   }
+  if (config.enabling_gpio) {
+    auto opened = openContact(*config.enabling_gpio, "enabling_gpio");
+    if (!opened) return tl::unexpected(opened.error());
+    enabling = std::move(*opened);
+  }
   if (config.heartbeat_gpio) {
     auto opened = openPulse(*config.heartbeat_gpio);
     if (!opened) return tl::unexpected(opened.error());
     heartbeat.emplace(std::move(*opened), config.heartbeat_gpio->period);
   }
-  if (!contact && !heartbeat) return nullptr;
-  auto loop = std::make_unique<GpioLoop>(std::move(contact), std::move(heartbeat), link);
+  if (!contact && !enabling && !heartbeat) return nullptr;
+  auto loop = std::make_unique<GpioLoop>(std::move(contact), std::move(heartbeat), link, std::move(enabling));
   loop->turn({}, 0);  // the first tick knows already
   return loop;
+}
+
+// The e-stop input is waited for; beside it the enabling switch is looked at more often. Neither loses an
+// opening: the kernel keeps the edges.
+ContactState GpioLoop::look(Duration patience) noexcept {
+  const auto enabled = [this](Duration timeout) {
+    const auto state = enabling_->wait(timeout);
+    return state == ContactState::kOpen ? ContactState::kReleased : state;
+  };
+  if (!contact_) return enabled(patience);
+  if (!enabling_) return contact_->wait(patience);
+  const auto contact = contact_->wait(std::min(patience, kPause));
+  const auto enabling = enabled(Duration::zero());
+  return contact != ContactState::kClosed ? contact : enabling;
 }
 
 void GpioLoop::turn(MonotonicTime now, std::uint64_t ticks) noexcept {
   if (heartbeat_ && !heartbeat_->step(now, ticks)) heartbeat_failed_.store(true);
   const auto due = heartbeat_ ? std::max(heartbeat_->next() - now, Duration::zero()) : kLookInterval;
   const auto patience = std::min(due, kLookInterval);
-  if (contact_) {
-    const auto state = contact_->wait(patience);
-    link_.estop_contact.show(state);
+  if (contact_ || enabling_) {
+    link_.estop_contact.show(look(patience));
   } else {
     std::this_thread::sleep_for(patience);
   }

@@ -23,12 +23,13 @@ class GpioLoop {
   [[nodiscard]] static Result<std::unique_ptr<GpioLoop>> create(const RobotConfig& config,
                                                                 LinkExchange& link);
 
-  /// Either may be missing.
-  GpioLoop(std::unique_ptr<ContactInput> contact, std::optional<Heartbeat> heartbeat, LinkExchange& link);
+  /// Each may be missing. `enabling`: the contact of an enabling switch.
+  GpioLoop(std::unique_ptr<ContactInput> contact, std::optional<Heartbeat> heartbeat, LinkExchange& link,
+           std::unique_ptr<ContactInput> enabling = nullptr);
 
   /// The thread's body.
   void run(const std::stop_token& stop, const Scheduler& scheduler) noexcept;
-  /// One look at the input, waiting for a change until the heartbeat is due or kLookInterval is over, and
+  /// One look at the inputs, waiting for a change until the heartbeat is due or kLookInterval is over, and
   /// then the heartbeat.
   void turn(MonotonicTime now, std::uint64_t ticks) noexcept;
 
@@ -38,7 +39,10 @@ class GpioLoop {
   }
 
  private:
+  [[nodiscard]] ContactState look(Duration patience) noexcept;
+
   std::unique_ptr<ContactInput> contact_;
+  std::unique_ptr<ContactInput> enabling_;
   std::optional<Heartbeat> heartbeat_;
   LinkExchange& link_;
   std::atomic<bool> heartbeat_failed_{false};
