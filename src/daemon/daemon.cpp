@@ -139,7 +139,7 @@ Result<void> Daemon::createLoops(int estop_socket) {
   auto rx_loop = RxLoop::create(robot_->serialChannels(), drain);
   if (!rx_loop) return tl::unexpected(rx_loop.error());
   rx_loop_ = std::move(*rx_loop);
-  auto sim_loop = SimLoop::create(*robot_, grid.offset);
+  auto sim_loop = SimLoop::create(*robot_, grid);
   if (!sim_loop) return tl::unexpected(sim_loop.error());
   sim_loop_ = std::move(*sim_loop);
   return {};

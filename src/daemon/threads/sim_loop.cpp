@@ -1,20 +1,26 @@
 #include "daemon/threads/sim_loop.hpp"
 
+#include <algorithm>
+
 #include "daemon/exchange/clock.hpp"
 
 namespace rc10 {
 namespace {
 
-// All simulated drives send once a millisecond, as the real ones do.
+// Drives that talk unasked send once a millisecond.
 constexpr Duration kPeriod = std::chrono::milliseconds{1};
 
 }  // namespace
 
-Result<std::unique_ptr<SimLoop>> SimLoop::create(Robot& robot, Duration offset) {
+TimeGrid SimLoop::gridBeside(const TimeGrid& scheduler) noexcept {
+  const Duration period = std::min(kPeriod, scheduler.period);
+  return {period, scheduler.offset + period / 2};
+}
+
+Result<std::unique_ptr<SimLoop>> SimLoop::create(Robot& robot, const TimeGrid& scheduler) {
   auto timer = PeriodicTimer::create();
   if (!timer) return tl::unexpected(timer.error());
-  // Half a period off the scheduler's grid, so that feedback does not race with the tick.
-  return std::unique_ptr<SimLoop>(new SimLoop(robot, {kPeriod, offset + kPeriod / 2}, std::move(*timer)));
+  return std::unique_ptr<SimLoop>(new SimLoop(robot, gridBeside(scheduler), std::move(*timer)));
 }
 
 void SimLoop::run(const std::stop_token& stop) noexcept {

@@ -10,12 +10,14 @@
 
 namespace rc10 {
 
-/// Steps the simulated motors in a thread of their own, once a millisecond: to the rest of the daemon
-/// they are drives at the other end of a bus.
+/// Steps the simulated motors in a thread of their own, once a millisecond or tick, whichever is shorter: to
+/// the rest of the daemon they are drives at the other end of a bus.
 class SimLoop {
  public:
-  /// `offset`: of the scheduler's grid.
-  [[nodiscard]] static Result<std::unique_ptr<SimLoop>> create(Robot& robot, Duration offset);
+  /// Steps for a scheduler's grid: a drive answers each tick before the next, and half a period off, so that
+  /// its feedback does not race with the tick.
+  [[nodiscard]] static TimeGrid gridBeside(const TimeGrid& scheduler) noexcept;
+  [[nodiscard]] static Result<std::unique_ptr<SimLoop>> create(Robot& robot, const TimeGrid& scheduler);
 
   /// The thread's body.
   void run(const std::stop_token& stop) noexcept;

@@ -9,9 +9,11 @@ namespace {
 
 // Longer gaps are not integrated over: the loops would jump.
 constexpr std::uint64_t kMaxPeriods = 5;
-// A stop sends rest at least this often, and gives up waiting for echoes after kMaxRestTicks.
+// A stop sends rest at least this often, and gives up waiting for echoes after kMaxRestTicks and
+// kLongestRest: the frames before it need their time on the wire at any rate of the tick.
 constexpr int kMinRestTicks = 3;
 constexpr int kMaxRestTicks = 50;
+constexpr Duration kLongestRest = std::chrono::milliseconds{50};
 // Longest time for the configured damping, braking or holding of moving motors before that.
 constexpr Duration kLongestFallback = std::chrono::seconds{1};
 // On a busy computer many ticks are late: they are reported together, at most this often.
@@ -145,7 +147,8 @@ void Scheduler::watchStop() noexcept {
     echoed = echoed &&
              inboxes_[i].confirmed.load(std::memory_order_relaxed) >= confirmed_at_stop_[i] + kMinRestTicks;
   }
-  stopped_ = (rest_ticks_ >= kMinRestTicks && echoed) || rest_ticks_ >= kMaxRestTicks;
+  const bool given_up = rest_ticks_ >= kMaxRestTicks && rest_ticks_ * period_ >= kLongestRest;
+  stopped_ = (rest_ticks_ >= kMinRestTicks && echoed) || given_up;
 }
 
 void Scheduler::recordAges(const Snapshot& snapshot) noexcept {
