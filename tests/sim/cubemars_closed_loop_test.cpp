@@ -193,6 +193,7 @@ TEST_P(CubemarsLoop, RestHasNoTorqueWhateverWasBefore) {
   for (const auto mode : {ControlMode::kCurrent, ControlMode::kVelocity, ControlMode::kTotalAngle}) {
     rig.command({.mode = mode, .value = 30.0});
     rig.run(milliseconds{100});
+    EXPECT_GT(std::abs(rig.drive().physics().outputRpm()), 1.0) << "it obeyed before";
     rig.motor().order(FrameKind::kRest);
     rig.run(milliseconds{20});
     EXPECT_NEAR(rig.drive().physics().currentA(), 0.0, 0.02);
@@ -247,6 +248,10 @@ TEST(CubemarsLoops, WhatIsNotEnteredDoesNotMove) {
   rig.command({.mode = ControlMode::kCurrent, .value = 10.0});
   rig.run(milliseconds{500});
   EXPECT_NEAR(rig.drive().physics().outputAngleDeg(), 0.0, 1e-6);
+  ASSERT_TRUE(rig.enable());
+  rig.command({.mode = ControlMode::kCurrent, .value = 10.0});
+  rig.run(milliseconds{500});
+  EXPECT_GT(rig.drive().physics().outputAngleDeg(), 1.0) << "entered, it does";
 }
 
 TEST(CubemarsLoops, AMotorThatIsEnabledAnewDoesNotGoOnToItsOldTarget) {

@@ -94,6 +94,8 @@ TEST(DjiDrive, IgnoresFramesThatAreNotItsCommand) {
     DjiDrive drive{config(kM3508, 1)};
     drive.receive(other);
     EXPECT_EQ(drive.rawCommand(), 0);
+    drive.receive(frame(0x200, full));
+    EXPECT_EQ(drive.rawCommand(), 0x4000) << "its own it takes";
   }
 }
 
@@ -141,6 +143,9 @@ TEST(DjiDrive, C610LeavesTheTemperatureByteEmpty) {
   DjiDrive drive{config(kM2006, 1)};
   drive.physics().setTemperature(80.0);
   EXPECT_EQ(drive.feedbackFrame().data[6], 0);
+  DjiDrive other{config(kM3508, 1)};
+  other.physics().setTemperature(80.0);
+  EXPECT_EQ(other.feedbackFrame().data[6], 80);
 }
 
 TEST(DjiDrive, TemperatureByteStaysInRange) {

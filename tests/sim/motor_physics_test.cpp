@@ -61,10 +61,13 @@ TEST_P(EveryModel, StalledGivesCurrentTimesTorqueConstant) {
 
 TEST_P(EveryModel, NeverCarriesMoreThanTheDrivesMaximum) {
   MotorPhysics motor{parameters(model_), 0.0};
+  double most_a = 0.0;
   for (int i = 0; i < 1000; ++i) {
     motor.step(i % 20 < 10 ? amperes(1000.0) : volts(-1000.0), 1ms);
     ASSERT_LE(std::abs(motor.currentA()), fullCurrent(model_));
+    most_a = std::max(most_a, std::abs(motor.currentA()));
   }
+  EXPECT_GT(most_a, 0.99 * fullCurrent(model_));
 }
 
 TEST_P(EveryModel, StaysAtRestUntilTheTorqueExceedsCoulombFriction) {
@@ -139,6 +142,7 @@ TEST_P(EveryModel, AcceleratesNoFasterThanTheEncoderAssumes) {
               static_cast<double>(model_.encoder.max_acceleration_rpm_per_s));
     last_rpm = motor.rotorRpm();
   }
+  EXPECT_GT(last_rpm, 0.0) << "it accelerated at all";
 }
 
 TEST(MotorPhysics, CurrentFollowsItsCommandWithTheLoopsLag) {
