@@ -86,11 +86,12 @@ class FakeDaemon:
         self.publish_state()
         self.link.after(1.0 / hz, lambda: self.publish_states(hz))
 
-    def publish_event(self, text: str) -> None:
+    def publish_event(self, text: str, code: int = 42, client: str = "") -> None:
         message = event_t()
         message.severity = event_t.SEVERITY_WARNING
-        message.code = 42
+        message.code = code
         message.source = "wheel"
+        message.client = client
         message.text = text
         self.link.publish(self.channel("event"), message.encode())
 

@@ -212,6 +212,7 @@ async def test_recording_while_another_task_commands(
     robot: aio.Robot, daemon: ObedientDaemon
 ) -> None:
     await robot.wait_for_state()
+    await robot.enable("wheel")
     task = asyncio.create_task(robot.record(1.0, ["wheel"]))
     async for _ in robot.rate(100):
         robot.command(wheel=rc10.velocity_rpm(60))

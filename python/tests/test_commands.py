@@ -109,3 +109,67 @@ def test_a_command_must_say_something(robot: rc10.Robot) -> None:
         robot.command({"yaw": rc10.coast()}, yaw=rc10.brake())
     with pytest.raises(ValueError, match="validity_ms = -1"):
         robot.command(yaw=rc10.brake(), validity_ms=-1)
+
+
+def test_a_command_to_a_motor_that_was_never_active_raises_and_sends_nothing(
+    robot: rc10.Robot, daemon: FakeDaemon
+) -> None:
+    known(robot, daemon)
+    with pytest.raises(rc10.CommandRefused, match="wheel is READY: enable it first"):
+        robot.command(wheel=rc10.velocity_rpm(1))
+    robot.command(wheel=rc10.coast())
+    robot.enable("wheel")
+    robot.command(wheel=rc10.velocity_rpm(2))
+    robot.spin()
+    assert [setpoints(message)["wheel"][1] for message in daemon.commands] == [0, 2]
+
+
+def test_a_motor_that_another_program_has_just_enabled_obeys(
+    robot: rc10.Robot, daemon: FakeDaemon
+) -> None:
+    known(robot, daemon)
+    daemon.active = {"wheel"}
+    daemon.publish_state()  # not received yet
+    robot.command(wheel=rc10.velocity_rpm(1))
+    robot.spin()
+    assert len(daemon.commands) == 1
+
+
+def test_a_motor_that_stops_later_does_not_end_a_loop_that_holds_others(
+    robot: rc10.Robot, daemon: FakeDaemon
+) -> None:
+    daemon.active = {"wheel", "yaw"}
+    known(robot, daemon)
+    robot.command(wheel=rc10.velocity_rpm(1), yaw=rc10.velocity_rpm(1))
+    daemon.active = {"yaw"}
+    known(robot, daemon)
+    robot.command(wheel=rc10.velocity_rpm(1), yaw=rc10.velocity_rpm(1))
+    assert robot.motor("wheel").status is rc10.MotorStatus.READY
+
+
+def test_a_mode_that_rc10d_has_refused_raises_when_it_is_asked_for_again(
+    robot: rc10.Robot, daemon: FakeDaemon
+) -> None:
+    daemon.active = {"wheel"}
+    known(robot, daemon)
+    stiff = rc10.impedance_deg(0, stiffness_nm_per_rad=1, damping_nms_per_rad=0)
+    robot.command(wheel=stiff)
+    text = (
+        "command of 'tester' refused: wheel: impedance: the motor's drive does not support the mode"
+    )
+    daemon.publish_event(text, code=202, client="another")
+    robot.spin()
+    robot.command(wheel=stiff)
+    daemon.publish_event(text, code=202, client="tester")
+    robot.spin()
+    with pytest.raises(rc10.CommandRefused, match="wheel: impedance"):
+        robot.command(wheel=stiff)
+    robot.command(wheel=rc10.velocity_rpm(1))
+
+
+def test_a_misspelt_motor_is_suggested(robot: rc10.Robot, daemon: FakeDaemon) -> None:
+    known(robot, daemon)
+    with pytest.raises(rc10.UnknownMotor, match=r"did you mean wheel\?"):
+        robot.enable("whel")
+    with pytest.raises(rc10.UnknownMotor, match=r"did you mean wheel\?"):
+        robot.motor("wheeel")

@@ -51,6 +51,7 @@ def test_wheels_keep_the_curve_when_they_are_at_their_limit() -> None:
 
 
 def test_it_sends_only_while_the_button_is_held(robot: rc10.Robot, daemon: FakeDaemon) -> None:
+    daemon.active = {"wheel", "yaw"}
     daemon.publish_states()
     options = parse(["demo", "--left", "wheel", "--right", "yaw", "--rpm", "100", "--seconds", "1"])
     drive(robot, ScriptedPad(25), options)

@@ -32,6 +32,8 @@ def test_the_client_needs_none() -> None:
         ("matplotlib", "rc10.plot.figure", "plotting needs matplotlib", "plot"),
         ("matplotlib", "rc10.plot.live", "plotting needs matplotlib", "plot"),
         ("mcap", "rc10.export.mcap_file", "MCAP needs mcap", "mcap"),
+        ("mcap", "rc10.export.recording_file", "MCAP needs mcap", "mcap"),
+        ("numpy", "rc10.joints", "joints() needs numpy", "numpy"),
     ],
 )
 def test_what_is_missing_is_named(missing: str, module: str, what: str, extra: str) -> None:

@@ -64,6 +64,7 @@ def test_a_motor_that_is_gone_does_not_spoil_the_end_of_the_others(
     lapsing: Client, daemon: FakeDaemon, link: VirtualLink
 ) -> None:
     with lapsing as robot:
+        daemon.active = {"wheel", "yaw"}
         daemon.publish_state()
         robot.wait_for_state()
         robot.command(wheel=rc10.velocity_rpm(1), yaw=rc10.velocity_rpm(1), validity_ms=1000)

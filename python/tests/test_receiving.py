@@ -143,6 +143,15 @@ def test_without_a_state_the_timeout_says_what_to_check(
     assert link.now() - before_s == pytest.approx(2.0)
 
 
+def test_without_its_robot_those_that_are_heard_are_listed(
+    robot: rc10.Robot, link: VirtualLink
+) -> None:
+    for name in ("demo2", "hero"):
+        FakeDaemon(name, link).publish_states()
+    with pytest.raises(rc10.Timeout, match=r"heard here: demo2, hero; .* did you mean demo2\?"):
+        robot.wait_for_state(timeout_s=0.5)
+
+
 def test_another_robots_state_is_not_ours(
     robot: rc10.Robot, daemon: FakeDaemon, link: VirtualLink
 ) -> None:

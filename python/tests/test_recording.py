@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import csv
+import json
 import math
 from pathlib import Path
 
 import numpy as np
 import pytest
+from mcap.reader import make_reader
 
 import rc10
 from fake_daemon import FakeDaemon, setpoints
@@ -32,6 +34,7 @@ class SpinningDaemon(FakeDaemon):
 @pytest.fixture
 def daemon(link: VirtualLink) -> SpinningDaemon:
     daemon = SpinningDaemon("demo", link)
+    daemon.active = {"wheel"}
     daemon.publish_states()
     return daemon
 
@@ -146,3 +149,42 @@ def test_what_is_followed_is_shown_without_being_asked_for(recording: Recording)
 def test_a_wrong_signal_is_named(recording: Recording, name: str, message: str) -> None:
     with pytest.raises(rc10.UnknownSignal, match=message):
         recording[name]
+
+
+def test_a_data_frame_has_words_for_numbers_and_units_of_choice(recording: Recording) -> None:
+    frame = recording.to_pandas(["wheel.velocity_rpm", "wheel.mode", "wheel.target"], units="rad")
+    assert list(frame.columns) == ["wheel.velocity_rad_s", "wheel.mode", "wheel.target"]
+    assert frame.index.name == "time_s"
+    np.testing.assert_allclose(
+        frame["wheel.velocity_rad_s"], recording["wheel.velocity_rpm"] * 2 * math.pi / 60
+    )
+    assert frame["wheel.mode"].iloc[0] == "COAST"
+    assert frame["wheel.mode"].iloc[-1] == "VELOCITY"
+    assert frame["wheel.target"].iloc[-1] == pytest.approx(2 * math.pi)
+    whole = recording.to_pandas()
+    assert len(whole.columns) == len(recording.names())
+    assert set(whole["wheel.status"]) == {"ACTIVE"}
+    with pytest.raises(ValueError, match="units='turns': use deg or rad"):
+        recording.to_pandas(units="turns")  # type: ignore[arg-type]
+
+
+def test_an_mcap_file_has_a_topic_for_each_motor_and_the_words(
+    recording: Recording, tmp_path: Path
+) -> None:
+    recording.to_mcap(tmp_path / "all.mcap")
+    with (tmp_path / "all.mcap").open("rb") as file:
+        reader = make_reader(file)
+        messages = list(reader.iter_messages())
+        legends = {record.name: record.metadata for record in reader.iter_metadata()}
+    assert {channel.topic for _, channel, _ in messages} == {
+        f"/demo/motor/{name}" for name in recording.motors
+    }
+    assert len(messages) == len(recording) * len(recording.motors)
+    wheel = [json.loads(m.data) for _, channel, m in messages if channel.topic.endswith("/wheel")]
+    np.testing.assert_allclose(
+        [message["velocity_rpm"] for message in wheel], recording["wheel.velocity_rpm"]
+    )
+    assert wheel[0]["voltage_v"] is None
+    assert legends["legend: status"]["3"] == "ACTIVE"
+    first_ns = min(message.log_time for _, _, message in messages)
+    assert first_ns == recording.start_utime * 1000

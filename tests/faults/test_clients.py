@@ -198,10 +198,13 @@ def test_one_bad_setpoint_refuses_the_message() -> None:
 def test_a_client_that_speaks_before_it_is_enabled() -> None:
     with drives(), witness() as log, daemon(), client() as robot:
         wait_status(robot, rc10.MotorStatus.READY)
+        with pytest.raises(rc10.CommandRefused, match="left is READY"):
+            robot.command(left=rc10.velocity_rpm(60), validity_ms=VALIDITY_MS)
+        stranger = Stranger()
         for t_s in robot.rate(100):
             if t_s > 0.3:
                 break
-            robot.command(left=rc10.velocity_rpm(60), validity_ms=VALIDITY_MS)
+            stranger.command("left", VELOCITY, 60.0)
         assert log.last_torque_ns("left") == 0
         log.check()
         proven("commands before enable", "skipped, counted, told", None, None, 0)

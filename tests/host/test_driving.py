@@ -45,7 +45,10 @@ def test_a_motor_that_is_not_enabled_does_not_obey(daemon: Daemon) -> None:
     assert "rc10ctl enable wheel" in done.stderr
     with rc10.connect("host") as robot:
         robot.wait_for_state()
-        robot.command(wheel=rc10.velocity_rpm(60))
+        with pytest.raises(rc10.CommandRefused, match="wheel is READY: enable it first"):
+            robot.command(wheel=rc10.velocity_rpm(60))
+        # As a program in another language would.
+        robot._publish_command({"wheel": rc10.velocity_rpm(60)}, validity_ms=0)
         tick = robot.wait_for_state().tick
         while robot.wait_for_state().tick < tick + 50:
             assert robot.motor("wheel").status is rc10.MotorStatus.READY

@@ -15,6 +15,7 @@ from rc10 import aio, radians
 from rc10.client import Robot, connect
 from rc10.diagnostics import BusState, BusStatus, Diagnostics, Durations
 from rc10.errors import (
+    CommandRefused,
     InvalidSetpoint,
     LinkError,
     MissingPackage,
@@ -72,6 +73,7 @@ __all__ = [
     "Acting",
     "BusState",
     "BusStatus",
+    "CommandRefused",
     "CommandUnit",
     "Condition",
     "Diagnostics",

@@ -179,7 +179,8 @@ class Robot(RobotClient):
             state = self._inbox.state
             return None if state is known else state
 
-        state = await self._until(newer, timeout_s)
+        with self._hearing():
+            state = await self._until(newer, timeout_s)
         if state is None:
             raise Timeout(self._no_state(timeout_s))
         return state
@@ -271,7 +272,7 @@ class Robot(RobotClient):
             return await self.request("enable", target, timeout_s=timeout_s)
 
     async def disable(self, names: Names | None = None, timeout_s: float = 2.0) -> Response:
-        """Disables motors: each does its `on_disable`, and then has no torque."""
+        """Disables motors: each does its `on_disable`, which may hold, damp or brake it."""
         with self._disabling(names) as target:
             return await self.request("disable", target, timeout_s=timeout_s)
 

@@ -161,14 +161,15 @@ class Robot(RobotClient):
         """
         known = self._inbox.state
         deadline_s = self._link.now() + timeout_s
-        while True:
-            left_s = deadline_s - self._link.now()
-            self.spin(max(0.0, left_s))
-            state = self._inbox.state
-            if state is not None and state is not known:
-                return state
-            if left_s <= 0:
-                raise Timeout(self._no_state(timeout_s))
+        with self._hearing():
+            while True:
+                left_s = deadline_s - self._link.now()
+                self.spin(max(0.0, left_s))
+                state = self._inbox.state
+                if state is not None and state is not known:
+                    return state
+                if left_s <= 0:
+                    raise Timeout(self._no_state(timeout_s))
 
     def rate(self, hz: float) -> Rate:
         """Returns an iterator for a control loop, which receives while it waits.
@@ -265,7 +266,7 @@ class Robot(RobotClient):
             return self.request("enable", target, timeout_s=timeout_s)
 
     def disable(self, names: Names | None = None, timeout_s: float = 2.0) -> Response:
-        """Disables motors: each does its `on_disable`, and then has no torque.
+        """Disables motors: each does its `on_disable`, which may hold, damp or brake it.
 
         Args and errors are those of enable().
         """

@@ -35,6 +35,10 @@ class InvalidSetpoint(Rc10Error, ValueError):
     """A target that no motor can be given: not a finite number, or out of its range."""
 
 
+class CommandRefused(Rc10Error):
+    """A setpoint that rc10d would skip, or has refused: the message names motor and remedy."""
+
+
 class RequestError(Rc10Error):
     """The daemon answered a request with something other than "done".
 

@@ -6,12 +6,17 @@ import os
 import re
 import select
 import time
-from typing import Callable, Protocol
+from contextlib import contextmanager
+from typing import TYPE_CHECKING, Callable, Protocol
 
 import lcm
 
 from rc10.errors import LinkError
 from rc10.own_datagrams import descriptors, keep_others_out, stays_on_this_computer
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+    from contextlib import AbstractContextManager
 
 MULTICAST_GROUP = "239.255.76.67"
 ROUTE_COMMAND = f"sudo ip route add {MULTICAST_GROUP}/32 dev lo src 127.0.0.1"
@@ -38,6 +43,9 @@ class Link(Protocol):
         Returns:
             How many were handled.
         """
+
+    def robots(self) -> AbstractContextManager[set[str]]:
+        """Collects the names of the robots whose states come while it is pumped."""
 
     def fileno(self) -> int:
         """A descriptor that is readable while a message waits."""
@@ -95,6 +103,20 @@ class LcmLink:
             handled += 1
             ready = self._readable(0.0)
         return handled
+
+    @contextmanager
+    def robots(self) -> Iterator[set[str]]:
+        """Collects the names of the robots whose states come while it is pumped."""
+        heard: set[str] = set()
+        suffix = ".v1.state"
+        subscription = self.lcm.subscribe(
+            f".*{re.escape(suffix)}", lambda channel, _: heard.add(channel[: -len(suffix)])
+        )
+        try:
+            yield heard
+        finally:
+            if self._lcm is not None:
+                self._lcm.unsubscribe(subscription)
 
     def fileno(self) -> int:
         """A descriptor that is readable while a message waits."""

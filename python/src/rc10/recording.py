@@ -22,8 +22,11 @@ if TYPE_CHECKING:
     from array import array
     from collections.abc import Mapping, Sequence
 
+    import pandas as pd
     from matplotlib.figure import Figure
     from numpy.typing import NDArray
+
+    from rc10.recording_table import Units
 
     FloatArray = NDArray[np.float64]
 
@@ -163,6 +166,44 @@ class Recording:
             writer.writerow(["time_s", *chosen])
             for row in zip(*(column.tolist() for column in columns)):
                 writer.writerow(["" if value != value else f"{value:.9g}" for value in row])
+
+    def to_pandas(self, signals: Sequence[str] | None = None, units: Units = "deg") -> pd.DataFrame:
+        """Returns a table with time_s as its index; enumerations are words, not numbers.
+
+        Args:
+            signals: names as `wheel.velocity_rpm`; None for all.
+            units: "deg", or "rad" for rad and rad/s, with columns as `wheel.velocity_rad_s`.
+
+        Raises:
+            MissingPackage: pandas is not installed.
+            UnknownMotor, UnknownSignal: it was not recorded.
+        """
+        from rc10.recording_table import data_frame
+
+        return data_frame(self, signals, units)
+
+    def to_mcap(
+        self,
+        path: str | os.PathLike[str],
+        signals: Sequence[str] | None = None,
+        units: Units = "deg",
+    ) -> None:
+        """Writes an MCAP file, for Foxglove and PlotJuggler: a topic for each motor.
+
+        The words for numbers, as of `status`, are its metadata.
+
+        Args:
+            path: of the file.
+            signals: names as `wheel.velocity_rpm`; None for all.
+            units: "deg", or "rad" for rad and rad/s.
+
+        Raises:
+            MissingPackage: mcap is not installed.
+            UnknownMotor, UnknownSignal: it was not recorded.
+        """
+        from rc10.recording_table import write_mcap
+
+        write_mcap(self, path, signals, units)
 
     def plot(self, *signals: str, title: str = "") -> Figure:
         """Returns a figure of these signals, with axes of their own for each unit.

@@ -8,7 +8,7 @@ from contextlib import contextmanager
 from typing import TYPE_CHECKING, Literal, Union, get_args
 
 from rc10.decoder import Decoder
-from rc10.errors import LinkError, NotReceived, RequestRefused, UnknownMotor
+from rc10.errors import CommandRefused, LinkError, NotReceived, RequestRefused, UnknownMotor
 from rc10.identity import Identity
 from rc10.inbox import Inbox
 from rc10.lcm_types.command_t import command_t
@@ -18,7 +18,8 @@ from rc10.moves import Move
 from rc10.orders import obstacle, without_reference
 from rc10.recorder import Recorder
 from rc10.requests import Requests
-from rc10.setpoints import Setpoint, angle_deg, coast, total_angle_deg
+from rc10.setpoints import Mode, Setpoint, angle_deg, coast, total_angle_deg
+from rc10.spelling import did_you_mean, meant
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping
@@ -26,6 +27,7 @@ if TYPE_CHECKING:
 
     from rc10.diagnostics import Diagnostics
     from rc10.events import Event
+    from rc10.joints import Joints
     from rc10.modules import ModuleParts
     from rc10.state import MotorState, RobotState
 
@@ -49,6 +51,9 @@ _LIVE_S = 1.0
 
 # Among names of motors; no motor's name is empty.
 _ALL = ""
+
+# Event of a command message that rc10d refused: docs/lcm.md.
+_MESSAGE_REFUSED = 202
 
 # LCM allows 63 characters for a channel, and ".v1.diagnostics" takes 15 of them.
 _MAX_NAME = 48
@@ -97,6 +102,11 @@ class RobotClient:
         # To be undone on leaving.
         self._commanded: set[str] = set()
         self._enabled: set[str] = set()
+        # Motors that were ACTIVE, and rc10d's words about a mode that it refused.
+        self._was_active: set[str] = set()
+        self._unsupported = ""
+        # Robots that were heard while the first state was waited for.
+        self._heard: set[str] = set()
         # The last setpoint of each motor, and until when it acts.
         self._in_force: dict[str, tuple[Setpoint, float]] = {}
 
@@ -194,6 +204,9 @@ class RobotClient:
 
         Raises:
             UnknownMotor: a state is known, and it has no such motor; nothing was sent.
+            CommandRefused: a motor that has not been ACTIVE yet cannot act on it; nothing was
+                sent. A motor that stops later, in a loop
+                that holds others, raises nothing: its state and an event tell.
             TypeError: a value is not a setpoint; nothing was sent.
             ValueError: no setpoints, a motor twice, or a validity out of range; nothing was sent.
         """
@@ -214,10 +227,28 @@ class RobotClient:
                     f"for example rc10.velocity_rpm({setpoint!r})"
                 )
         self._check_known(orders)
+        self._check_obeyed(orders)
         for name in orders.keys() & self._moves.keys():
             self._moves.pop(name).fail(f"{name} was given another target")
         self._commanded.update(orders)
         self._publish_command(orders, validity_ms)
+
+    def joints(self, names: Iterable[str] | None = None) -> Joints:
+        """Returns motors as NumPy arrays in radians: `.q`, `.dq`, `.tau`, `.command(q=...)`.
+
+        Args:
+            names: of the motors, in the order of the arrays; None for all that the state has.
+
+        Raises:
+            MissingPackage: NumPy is not installed.
+            NotReceived: no state yet, and no names.
+            UnknownMotor: a state is known, and it has no such motor.
+        """
+        from rc10.joints import Joints
+
+        chosen = list(self.state.motors if names is None else names)
+        self._check_known(chosen)
+        return Joints(self, chosen)
 
     # ---- for the clients ---------------------------------------------------------------------
 
@@ -255,6 +286,9 @@ class RobotClient:
         except RequestRefused:
             self._enabled = before
             raise
+        # The state that shows it may come after the answer.
+        state = self._inbox.state
+        self._was_active.update(chosen or ([] if state is None else state.motors))
 
     @contextmanager
     def _disabling(self, names: Names | None) -> Iterator[str]:
@@ -304,8 +338,22 @@ class RobotClient:
         if last:
             self._publish_command(last, validity_ms=1)
 
+    @contextmanager
+    def _hearing(self) -> Iterator[None]:
+        """Notes which robots there are, as long as nothing is known of this one."""
+        if self._inbox.state is not None:
+            yield
+            return
+        with self._link.robots() as heard:
+            self._heard = heard
+            yield
+
     def _no_state(self, timeout_s: float) -> str:
-        return f"no state of robot '{self._name}' within {timeout_s:g} s. {self._what_to_check()}"
+        what = f"no state of robot '{self._name}' within {timeout_s:g} s. "
+        heard = sorted(self._heard)
+        if heard and self._name not in heard:
+            return what + f"Robots heard here: {', '.join(heard)}; {meant(self._name, heard)}"
+        return what + self._what_to_check()
 
     def _no_answer(self, operation: str, timeout_s: float) -> str:
         return (
@@ -322,6 +370,8 @@ class RobotClient:
     # ---- within ------------------------------------------------------------------------------
 
     def _on_event(self, event: Event) -> None:
+        if event.code == _MESSAGE_REFUSED and event.client == self.client:
+            self._unsupported = event.text
         for move in self._moves.values():
             move.on_event(event)
 
@@ -392,7 +442,34 @@ class RobotClient:
             raise UnknownMotor(
                 f"robot '{self._name}' has no motor {', '.join(map(repr, unknown))}; "
                 f"it has: {', '.join(state.motors) or 'none'}"
+                f"{did_you_mean(unknown[0], state.motors)}"
             )
+
+    def _check_obeyed(self, orders: Mapping[str, Setpoint]) -> None:
+        """Refuses what would do nothing, and would say so nowhere near the caller's line."""
+        for name, setpoint in orders.items():
+            if f"refused: {name}: {setpoint.mode.name.lower()}:" in self._unsupported:
+                raise CommandRefused(self._unsupported)
+        new = [
+            name
+            for name, setpoint in orders.items()
+            if name not in self._was_active and setpoint.mode is not Mode.COAST
+        ]
+        if new and self._why_not(new):
+            # It may have been enabled since.
+            self._inbox.poll()
+            if why := self._why_not(new):
+                raise CommandRefused(why)
+
+    def _why_not(self, names: Iterable[str]) -> str:
+        state = self._inbox.state
+        if state is None or state.age_s > _LIVE_S:
+            return ""
+        for name in names:
+            if why := obstacle(state, state.motor(name)):
+                return why
+            self._was_active.add(name)
+        return ""
 
     def _module_parts(self, module: str) -> ModuleParts:
         return self._name, module, self._link, self._identity, self._priority

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 from rc10.errors import UnknownSignal
 from rc10.setpoints import Mode
+from rc10.spelling import did_you_mean
 from rc10.state import CommandUnit, MotorState
 
 if TYPE_CHECKING:
@@ -52,6 +53,7 @@ class Signal:
         if name not in SIGNALS:
             raise UnknownSignal(
                 f"{text!r}: a motor has no signal {name!r}; it has: {', '.join(SIGNALS)}"
+                f"{did_you_mean(name, SIGNALS)}"
             )
         return cls(motor, name)
 

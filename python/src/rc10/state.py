@@ -12,6 +12,7 @@ from rc10.errors import UnknownMotor
 from rc10.lcm_types.motor_state_t import motor_state_t
 from rc10.lcm_types.robot_state_t import robot_state_t
 from rc10.setpoints import Mode
+from rc10.spelling import did_you_mean
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -32,7 +33,7 @@ class MotorStatus(IntEnum):
     OFFLINE = motor_state_t.STATUS_OFFLINE
     """No fresh feedback."""
     READY = motor_state_t.STATUS_READY
-    """Feedback, no torque, waits to be enabled."""
+    """Feedback, waits to be enabled; `acting` says whether it holds, damps or brakes meanwhile."""
     ENABLING = motor_state_t.STATUS_ENABLING
     ACTIVE = motor_state_t.STATUS_ACTIVE
     """Obeys setpoints."""
@@ -253,6 +254,7 @@ class RobotState:
         except KeyError:
             raise UnknownMotor(
                 f"the robot has no motor '{name}'; it has: {', '.join(self.motors) or 'none'}"
+                f"{did_you_mean(name, self.motors)}"
             ) from None
 
     @classmethod
