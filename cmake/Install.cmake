@@ -4,18 +4,20 @@ include(CMakePackageConfigHelpers)
 
 # Files without a component go into the package rc10d: Packages.cmake.
 set(CMAKE_INSTALL_DEFAULT_COMPONENT_NAME daemon)
-install(TARGETS rc10d rc10-lcm rc10ctl rc10-stop rc10-guard rc10-irq rc10-sim RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
+install(TARGETS rc10d rc10-lcm rc10ctl rc10-stop rc10-guard rc10-irq rc10-sim rc10-web RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
 install(DIRECTORY docs/man/ DESTINATION ${CMAKE_INSTALL_MANDIR}/man1 FILES_MATCHING PATTERN "*.1")
 install(FILES completions/rc10ctl.bash DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions RENAME rc10ctl)
 install(DIRECTORY config/ DESTINATION ${CMAKE_INSTALL_DATADIR}/rc10d/config FILES_MATCHING PATTERN "*.yaml" PATTERN "*.json")
 install(DIRECTORY lcm_types/ DESTINATION ${CMAKE_INSTALL_DATADIR}/rc10d/lcm_types FILES_MATCHING PATTERN "*.lcm")
 install(DIRECTORY docs/ DESTINATION ${CMAKE_INSTALL_DOCDIR} FILES_MATCHING PATTERN "*.md" PATTERN "*.png" PATTERN "*.svg")
 install(FILES README.md README.zh-CN.md DESTINATION ${CMAKE_INSTALL_DOCDIR})
+# The page of rc10-web, which scripts/web.sh makes; scripts/package.sh sees to it.
+install(DIRECTORY build/web/ DESTINATION ${CMAKE_INSTALL_DATADIR}/rc10d/web OPTIONAL PATTERN ".*" EXCLUDE)
 
 # The units are for the prefix /usr.
 set(RC10_INSTANCE_UNIT "${PROJECT_BINARY_DIR}/systemd/rc10d@.service")
 include(InstanceUnit)
-install(FILES systemd/rc10d.service "${RC10_INSTANCE_UNIT}" systemd/rc10-guard.service systemd/rc10-irq.service DESTINATION lib/systemd/system)
+install(FILES systemd/rc10d.service "${RC10_INSTANCE_UNIT}" systemd/rc10-guard.service systemd/rc10-irq.service systemd/rc10-web.service DESTINATION lib/systemd/system)
 foreach(unit rc10d rc10d@)
   install(FILES systemd/drop-ins/manage-link.conf DESTINATION lib/systemd/system/${unit}.service.d)
 endforeach()

@@ -46,15 +46,39 @@ prepare() {
     # Beside the compiler: it waits for the network.
     "$here/venv.sh" client >"$prepared" 2>&1 &
     python=$!
+    page_log=$(mktemp "${TMPDIR:-/tmp}/rc10-demo-page.XXXX")
+    [ -n "${RC10_BUILD:-}" ] || "$here/web.sh" >"$page_log" 2>&1 &
+    page_made=$!
     if [ -z "${RC10_BUILD:-}" ]; then
         build_shows_files=yes
-        progress "demo: compiling rc10d" 60 build release rc10d rc10-lcm rc10ctl || die "the build failed"
+        progress "demo: compiling rc10d" 60 build release rc10d rc10-lcm rc10ctl rc10-web || die "the build failed"
     fi
     [ -x "$build_tree/bin/rc10d" ] || die "no rc10d in $build_tree/bin"
     progress "demo: installing the Python client" 10 wait "$python" \
         || { cat "$prepared" >&2 && die "the Python client could not be installed"; }
     RC10_PYTHON=$(tail -n 1 "$prepared")
-    rm "$prepared"
+    progress "demo: making the page" 10 wait "$page_made" || {
+        cat "$page_log" >&2
+        echo "demo: without the page, then; rc10ctl shows the robot" >&2
+    }
+    rm "$prepared" "$page_log"
+}
+
+# The page is served outside of the namespace, where the browser is; it reaches rc10d by its socket.
+serve_page() {
+    local port
+    page=
+    [ -x "$build_tree/bin/rc10-web" ] && [ -e "$repo/build/web/index.html" ] || return 0
+    for port in 8010 0; do
+        setsid setpriv --pdeathsig TERM "$build_tree/bin/rc10-web" --page "$repo/build/web" --port "$port" \
+            >"$RC10_RUN_DIR/web.log" 2>&1 &
+        RC10_DEMO_WEB=$!
+        until grep -q . "$RC10_RUN_DIR/web.log" || ! kill -0 "$RC10_DEMO_WEB" 2>/dev/null; do sleep 0.05; done
+        page=$(sed -n 's/^rc10-web: \(http:.*\)/\1/p' "$RC10_RUN_DIR/web.log")
+        [ -z "$page" ] || return 0
+        RC10_DEMO_WEB=
+    done
+    sed 's/^/demo: without the page: /' "$RC10_RUN_DIR/web.log" >&2
 }
 
 # LCM's multicast goes to a loopback of our own and reaches no network.
@@ -72,15 +96,17 @@ enter_namespace() {
 
 if [ -z "$lcm" ]; then
     prepare
-    export RC10_PYTHON RC10_BUILD=$build_tree
+    RC10_RUN_DIR=$(mktemp -d /tmp/rc10-demo.XXXX)
+    RC10_DEMO_WEB=''
+    export RC10_RUN_DIR RC10_STATE_DIR=$RC10_RUN_DIR RC10_DEMO_WEB
+    serve_page
+    export RC10_PYTHON RC10_BUILD=$build_tree RC10_DEMO_PAGE=$page
     enter_namespace
 fi
 
 # ---- from here on in the namespace, if there is one
 
 bin=$build_tree/bin
-RC10_RUN_DIR=$(mktemp -d /tmp/rc10-demo.XXXX)
-export RC10_RUN_DIR RC10_STATE_DIR=$RC10_RUN_DIR
 log=$RC10_RUN_DIR/rc10d.log
 rc10d='' clients=() ended=
 
@@ -108,6 +134,7 @@ clean_up() {
     for pid in "${clients[@]}" $rc10d; do
         end "$pid" || true
     done 2>/dev/null
+    [ -z "$RC10_DEMO_WEB" ] || kill -TERM "$RC10_DEMO_WEB" 2>/dev/null || true
     rm -rf "$RC10_RUN_DIR"
 }
 trap clean_up EXIT
@@ -169,7 +196,8 @@ start_clients() {
 hints() {
     local ctl="RC10_RUN_DIR=$RC10_RUN_DIR $bin/rc10ctl"
     cat <<END
-A robot with seven simulated motors runs. In a second terminal:
+A robot with seven simulated motors runs.${RC10_DEMO_PAGE:+ In a browser: $RC10_DEMO_PAGE}
+In a second terminal:
   $ctl watch
   $ctl estop      (go on: clear, then enable)
 END

@@ -1,6 +1,6 @@
 #!/bin/bash
 # Installs the Debian packages that parts of this project need.
-#   scripts/install-deps.sh [--list|--may-ask] [build] [test] [languages] [lint] [kernel] [vm] [package]      default: all
+#   scripts/install-deps.sh [--list|--may-ask] [build] [test] [languages] [lint] [kernel] [vm] [web] [package]      default: all
 # --list: installs nothing, and prints the packages.
 # --may-ask: installs nothing, but lets sudo ask for the password now, if something is missing.
 set -euo pipefail
@@ -16,9 +16,10 @@ declare -A packages=(
     [kernel]="linux-source-6.1 gcc make flex bison bc libelf-dev xz-utils mount can-utils"
     [vm]="qemu-system-x86 linux-image-rt-amd64 linux-headers-rt-amd64 linux-source-6.1 make xz-utils busybox-static kmod file mount
         can-utils systemd udev"
+    [web]="chromium fonts-noto-cjk"
     [package]="dpkg-dev file fakeroot mmdebstrap lintian binutils mount"
 )
-groups=(build test languages lint kernel vm package)
+groups=(build test languages lint kernel vm web package)
 
 usage() {
     echo "usage: scripts/install-deps.sh [--list|--may-ask] [${groups[*]}]  (default: all)"

@@ -28,6 +28,7 @@ SOURCE_DATE_EPOCH=$(git -C "$repo" log -1 --format=%ct 2>/dev/null || date +%s)
 export SOURCE_DATE_EPOCH
 
 need build package
+"$repo/scripts/web.sh" >/dev/null
 tree=${RC10_BUILD:-$repo/build/$preset}
 if [ -z "${RC10_BUILD:-}" ] && [ "$preset" = package ]; then
     build package

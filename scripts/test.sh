@@ -12,8 +12,8 @@ here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
 
 # The long ones of a part first: what runs side by side ends together.
 default=(unit kernel host pages)
-ci=("${default[@]}" lint demo tidy faults soak)
-all=("${default[@]}" lint demo clang faults vm package sanitize soak fuzz)
+ci=("${default[@]}" lint web demo tidy faults soak)
+all=("${default[@]}" lint web demo clang faults vm package sanitize soak fuzz)
 # Hours, or a Debian of its own: not among all.
 nightly=(arm64 fresh long_fuzz long_soak)
 parts=(build "${all[@]}" tidy "${nightly[@]}")

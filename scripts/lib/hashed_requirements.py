@@ -17,6 +17,7 @@ FILES = [
     REPO / "python/requirements.txt",
     REPO / "python/requirements-dev.txt",
     REPO / "scripts/requirements.txt",
+    REPO / "web/requirements.txt",
 ]
 PIN = re.compile(r"([A-Za-z0-9_.-]+)==([^ ;\\]+)")
 

@@ -35,9 +35,9 @@ COUNTS = re.compile(r"^(\d+) passed, (\d+) failed, (\d+) skipped$")
 TOLD = re.compile(r"^(SKIPPED|NOTE) .*", re.MULTILINE)
 
 # These run what the dev build has made.
-TESTS_OF_DEV = {"unit", "kernel", "host", "faults", "vm", "soak"}
+TESTS_OF_DEV = {"unit", "kernel", "host", "faults", "vm", "soak", "web"}
 # How many cores a part keeps busy; 0: it waits most of its time. All others use every core.
-CORES = {"host": 0, "pages": 1, "lint": 1, "vm": 1, "package": 1}
+CORES = {"host": 0, "pages": 1, "lint": 1, "web": 1, "vm": 1, "package": 1}
 ALL_CORES = os.cpu_count() or 1
 
 

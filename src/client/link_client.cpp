@@ -53,6 +53,10 @@ LinkClient::SendStatus LinkClient::send(link::Signals& signals) noexcept {
   return sendBytes(link::seal(signals));
 }
 
+LinkClient::SendStatus LinkClient::send(link::TraceChoice& choice) noexcept {
+  return sendBytes(link::seal(choice));
+}
+
 LinkClient::SendStatus LinkClient::sendBytes(std::span<const std::byte> bytes) noexcept {
   for (;;) {
     if (::send(socket_.get(), bytes.data(), bytes.size(), MSG_DONTWAIT | MSG_NOSIGNAL) >= 0) {

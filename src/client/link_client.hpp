@@ -62,6 +62,7 @@ class LinkClient {
   /// nothing later.
   void prepareEstop() noexcept;
   [[nodiscard]] SendStatus send(link::Signals& signals) noexcept;
+  [[nodiscard]] SendStatus send(link::TraceChoice& choice) noexcept;
 
   /// Does not wait. `buffer` has room for link::kMaxMessageSize.
   [[nodiscard]] Received receive(std::span<std::byte> buffer) noexcept;

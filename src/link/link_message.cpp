@@ -38,6 +38,10 @@ std::size_t wireSize(const ModuleInfo&) noexcept { return sizeof(ModuleInfo); }
 std::size_t wireSize(const ModuleState& message) noexcept {
   return upTo<double>(offsetof(ModuleState, values), message.value_count, kMaxSignals);
 }
+std::size_t wireSize(const TraceChoice&) noexcept { return sizeof(TraceChoice); }
+std::size_t wireSize(const Trace& message) noexcept {
+  return upTo<TraceRow>(offsetof(Trace, rows), message.row_count, kMaxTraceRows);
+}
 
 bool countsFit(const Hello&) noexcept { return true; }
 bool countsFit(const Welcome& message) noexcept {
@@ -60,6 +64,10 @@ bool countsFit(const ModuleInfo& message) noexcept {
 }
 bool countsFit(const ModuleState& message) noexcept {
   return message.module < kMaxModules && message.value_count <= kMaxSignals;
+}
+bool countsFit(const TraceChoice& message) noexcept { return message.signal_count <= kMaxTraceSignals; }
+bool countsFit(const Trace& message) noexcept {
+  return message.signal_count <= kMaxTraceSignals && message.row_count <= kMaxTraceRows;
 }
 
 bool openEstop(std::span<const std::byte> datagram, Request& request) noexcept {

@@ -21,11 +21,14 @@ namespace rc10::link {
 [[nodiscard]] std::size_t wireSize(const ModuleState& message) noexcept;
 [[nodiscard]] std::size_t wireSize(const ModuleInfo& message) noexcept;
 [[nodiscard]] std::size_t wireSize(const Signals& message) noexcept;
+[[nodiscard]] std::size_t wireSize(const TraceChoice&) noexcept;
+[[nodiscard]] std::size_t wireSize(const Trace& message) noexcept;
 
 /// The largest message there is: room for a receive buffer.
-inline constexpr std::size_t kMaxMessageSize = std::max(
-    {sizeof(Hello), sizeof(Welcome), sizeof(Command), sizeof(State), sizeof(Diagnostics), sizeof(Event),
-     sizeof(Request), sizeof(Response), sizeof(Signals), sizeof(ModuleInfo), sizeof(ModuleState)});
+inline constexpr std::size_t kMaxMessageSize =
+    std::max({sizeof(Hello), sizeof(Welcome), sizeof(Command), sizeof(State), sizeof(Diagnostics),
+              sizeof(Event), sizeof(Request), sizeof(Response), sizeof(Signals), sizeof(ModuleInfo),
+              sizeof(ModuleState), sizeof(TraceChoice), sizeof(Trace)});
 
 /// Fills in the header; call it last. Returns the bytes to send.
 template <typename Message>
@@ -50,6 +53,8 @@ template <typename Message>
 [[nodiscard]] bool countsFit(const ModuleState& message) noexcept;
 [[nodiscard]] bool countsFit(const ModuleInfo& message) noexcept;
 [[nodiscard]] bool countsFit(const Signals& message) noexcept;
+[[nodiscard]] bool countsFit(const TraceChoice& message) noexcept;
+[[nodiscard]] bool countsFit(const Trace& message) noexcept;
 
 /// Copies a received datagram of a stranger into `message`. False if the type, the length or a count
 /// does not fit; then `message` is unspecified. Text needs no check: Text::view() is always bounded.

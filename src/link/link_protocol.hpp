@@ -10,6 +10,7 @@
 #include "app/target.hpp"
 #include "app/vocabulary.hpp"
 #include "link/motor_readings.hpp"
+#include "link/trace_signal.hpp"
 
 /// The messages on rc10d's link socket (SOCK_SEQPACKET): fixed structs, one per datagram, in the
 /// host's byte order. Both ends are of the same build; Hello refuses others.
@@ -59,6 +60,7 @@ enum class MessageType : std::uint32_t {
   kCommand,
   kRequest,
   kSignals,
+  kTraceChoice,
   // rc10d to client
   kWelcome = 100,
   kState,
@@ -67,6 +69,7 @@ enum class MessageType : std::uint32_t {
   kResponse,
   kModuleInfo,
   kModuleState,
+  kTrace,
 };
 
 struct Header {
@@ -334,11 +337,32 @@ struct Event {
   Text<256> text;
 };
 
+/// The signals that this client wants of each tick; the newest choice counts, none ends it. Answered by a
+/// Trace without rows, which names those that are traced.
+struct TraceChoice {
+  static constexpr auto kType = MessageType::kTraceChoice;
+  Header header;
+  std::uint32_t signal_count = 0;
+  std::array<TraceSignal, kMaxTraceSignals> signals;
+};
+
+/// The chosen signals, of each tick since the last Trace: those of all clients together.
+struct Trace {
+  static constexpr auto kType = MessageType::kTrace;
+  Header header;
+  std::uint32_t signal_count = 0;
+  std::uint32_t row_count = 0;
+  std::int64_t dropped = 0;  ///< Ticks since the start of rc10d whose rows found no room.
+  std::array<TraceSignal, kMaxTraceSignals> signals;
+  std::array<TraceRow, kMaxTraceRows> rows;
+};
+
 /// Bytes go in and out of these by memcpy.
 template <typename Message>
 inline constexpr bool kIsMessage =
     std::is_trivially_copyable_v<Message> && std::is_standard_layout_v<Message>;
 static_assert(kIsMessage<Hello> && kIsMessage<Welcome> && kIsMessage<Command> && kIsMessage<Request>);
+static_assert(kIsMessage<TraceChoice> && kIsMessage<Trace>);
 static_assert(kIsMessage<Signals> && kIsMessage<ModuleInfo> && kIsMessage<ModuleState>);
 static_assert(kIsMessage<Response> && kIsMessage<State> && kIsMessage<Diagnostics> && kIsMessage<Event>);
 

@@ -16,7 +16,16 @@ if TYPE_CHECKING:
 
 MAN = REPO / "docs" / "man"
 # All that are installed.
-PROGRAMS = ("rc10d", "rc10-lcm", "rc10ctl", "rc10-stop", "rc10-guard", "rc10-irq", "rc10-sim")
+PROGRAMS = (
+    "rc10d",
+    "rc10-lcm",
+    "rc10ctl",
+    "rc10-stop",
+    "rc10-guard",
+    "rc10-irq",
+    "rc10-sim",
+    "rc10-web",
+)
 COMPLETION = REPO / "completions" / "rc10ctl.bash"
 
 

@@ -18,7 +18,10 @@ DEMO = REPO / "config" / "demo.yaml"
     "words",
     [
         *([name, "--version"] for name in ("rc10d", "rc10ctl", "rc10-lcm", "rc10-guard")),
-        *([name, "--help"] for name in ("rc10-stop", "rc10-irq", "rc10-sim", "rc10ctl")),
+        *(
+            [name, "--help"]
+            for name in ("rc10-stop", "rc10-irq", "rc10-sim", "rc10-web", "rc10ctl")
+        ),
         ["rc10d", "--check", str(DEMO)],
         ["rc10d", "--schema"],
         ["rc10ctl", "check", str(DEMO)],

@@ -32,10 +32,12 @@ USES = {
     "doctor": {"client", "link", "bus", "app"},
     "guard": {"link", "bus", "app"},
     "gateway": {"client", "link", "app"},
+    "web": {"client", "link", "app"},
     "daemon": {"blackbox", "config", "drives", "sim", "module", "motor", "bus", "link", "app"},
     "robot_client": {"app"},
     "tools": {
         "guard",
+        "web",
         "doctor",
         "survey",
         "client",

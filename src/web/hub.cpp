@@ -1,0 +1,209 @@
+#include "web/hub.hpp"
+
+#include <algorithm>
+#include <utility>
+
+#include "web/page_messages.hpp"
+#include "web/signal_names.hpp"
+
+namespace rc10::web {
+namespace {
+
+constexpr std::uint64_t kTurnsPerSecond = 100;
+constexpr std::uint64_t kConnectEvery = kTurnsPerSecond / 2;
+// 25 pictures a second: an eye sees no more of a curve.
+constexpr std::uint64_t kPublishEvery = kTurnsPerSecond / 25;
+
+PageSocket::Text shared(std::string text) { return std::make_shared<const std::string>(std::move(text)); }
+
+constexpr std::string_view statusWord(link::ResponseStatus status) {
+  switch (status) {
+    case link::ResponseStatus::kOk: return "ok";
+    case link::ResponseStatus::kRefused: return "refused";
+    case link::ResponseStatus::kFailed: break;
+  }
+  return "failed";
+}
+
+}  // namespace
+
+Hub::Hub(std::optional<std::string> robot, std::string token)
+    : feed_(std::move(robot)), token_(std::move(token)) {}
+
+Hub::Page* Hub::pageOf(const PageSocket& socket) noexcept {
+  const auto found =
+      std::find_if(pages_.begin(), pages_.end(), [&](const auto& page) { return page->socket == &socket; });
+  return found == pages_.end() ? nullptr : found->get();
+}
+
+void Hub::join(PageSocket& socket, bool loopback, std::string_view address) {
+  auto page = std::make_unique<Page>();
+  page->socket = &socket;
+  page->loopback = loopback;
+  page->right = rightOf(loopback, {}, token_);
+  // As the owner of a motor and in rc10d's log.
+  page->name = "web-" + std::to_string(++opened_) + " " + std::string{address};
+  page->name.resize(std::min(page->name.size(), sizeof(link::Name) - 1));
+  page->link = std::make_unique<PageLink>(page->name);
+  greet(*page);
+  pages_.push_back(std::move(page));
+}
+
+void Hub::leave(PageSocket& socket) {
+  std::erase_if(pages_, [&](const auto& page) { return page->socket == &socket; });
+  chooseTraces();
+}
+
+// All that a page needs to draw its first picture.
+void Hub::greet(Page& page) {
+  page.socket->sendText(shared(helloMessage(page.right, page.name)));
+  if (page.right == Right::kNothing) return;
+  if (!feed_.connected()) {
+    page.socket->sendText(shared(downMessage(feed_.reason())));
+    return;
+  }
+  page.socket->sendText(shared(robotMessage(feed_)));
+  for (const auto& event : feed_.pastEvents()) page.socket->sendText(shared(eventMessage(event)));
+}
+
+void Hub::handle(PageSocket& socket, std::string_view message) {
+  Page* page = pageOf(socket);
+  if (page == nullptr) return;
+  const auto request = parsePageRequest(message);
+  if (!request) {
+    page->socket->sendText(shared(responseMessage(0, "refused", request.error().message)));
+    return;
+  }
+  if (const auto* shown = std::get_if<ShowToken>(&*request)) {
+    page->right = rightOf(page->loopback, shown->token, token_);
+    greet(*page);
+  } else if (const auto* robot = std::get_if<AskRobot>(&*request)) {
+    ask(*page, *robot);
+  } else if (page->right == Right::kNothing) {
+    page->socket->sendText(shared(responseMessage(0, "refused", "show the token first")));
+  } else if (const auto* view = std::get_if<ChooseView>(&*request)) {
+    choose(*page, *view);
+  } else if (const auto* range = std::get_if<AskRange>(&*request)) {
+    answer(*page, *range);
+  }
+}
+
+void Hub::choose(Page& page, const ChooseView& wanted) {
+  page.view_number = wanted.view;
+  page.view = View{.signals = {}, .column_us = wanted.column_us};
+  std::vector<std::string> drawn;
+  std::vector<std::string> unknown;
+  const auto infos = feed_.moduleInfos();
+  for (const auto& name : wanted.signals) {
+    const auto signal =
+        feed_.connected() ? traceSignalOf(name, feed_.welcome(), infos) : std::optional<link::TraceSignal>{};
+    (signal ? drawn : unknown).push_back(name);
+    if (signal) page.view->signals.push_back(*signal);
+  }
+  page.socket->sendText(shared(viewMessage(wanted.view, drawn, unknown, feed_.droppedTicks())));
+  const auto& traces = feed_.traces();
+  const auto newest = traces.newestUs() / wanted.column_us;
+  const auto count = std::clamp<std::int64_t>(wanted.span_us / wanted.column_us, 0, kMaxColumns);
+  page.next_column = newest;
+  const auto first = std::max(newest - count, traces.oldestUs() / wanted.column_us);
+  page.socket->sendBinary(columnsFrame(traces, *page.view, FrameKind::kReset, page.view_number, first,
+                                       static_cast<std::size_t>(newest - first)));
+  chooseTraces();
+}
+
+void Hub::answer(Page& page, const AskRange& wanted) {
+  if (!page.view) return;
+  const View view{.signals = page.view->signals, .column_us = wanted.column_us};
+  page.socket->sendBinary(columnsFrame(feed_.traces(), view, FrameKind::kRange, page.view_number,
+                                       wanted.first_column, wanted.count));
+}
+
+void Hub::ask(Page& page, const AskRobot& wanted) {
+  const bool estop = wanted.operation == link::kEstopOperation;
+  std::string refused;
+  if (!estop && page.right != Right::kCommand) {
+    refused = page.right == Right::kNothing
+                  ? "show the token first"
+                  : "over a network without encryption a page looks and stops; open it "
+                    "on the robot itself or through a tunnel: ssh -L 8010:localhost:8010";
+  } else if (!feed_.connected()) {
+    refused = feed_.reason();
+  } else {
+    refused = page.link->ask(wanted, feed_.socketPath());
+  }
+  if (!refused.empty()) page.socket->sendText(shared(responseMessage(wanted.seq, "refused", refused)));
+}
+
+// What all pages draw together.
+void Hub::chooseTraces() {
+  std::vector<link::TraceSignal> all;
+  for (const auto& page : pages_) {
+    if (!page->view) continue;
+    for (const auto& signal : page->view->signals) {
+      if (std::find(all.begin(), all.end(), signal) == all.end()) all.push_back(signal);
+    }
+  }
+  feed_.choose(all);
+}
+
+void Hub::turn() {
+  watchRobot();
+  if (turns_++ % kPublishEvery == 0) publish();
+  for (const auto& page : pages_) publishAnswers(*page);
+}
+
+void Hub::watchRobot() {
+  if (!feed_.connected() && turns_ % kConnectEvery == 0) {
+    feed_.connect();
+    if (!feed_.connected() && feed_.reason() != std::exchange(told_reason_, feed_.reason()))
+      tell(downMessage(feed_.reason()));
+  }
+  if (feed_.connected() && !feed_.receive()) {
+    told_reason_ = feed_.reason();
+    for (const auto& page : pages_) {
+      page->link->close();
+      page->view.reset();  // its signals were those of that robot: the page chooses anew
+    }
+    tell(downMessage(feed_.reason()));
+  }
+  if (feed_.takeRobotIsNew()) tell(robotMessage(feed_));
+}
+
+void Hub::publish() {
+  for (const auto& event : feed_.takeEvents()) tell(eventMessage(event));
+  if (const auto* diagnostics = feed_.takeDiagnostics()) tell(diagnosticsMessage(feed_, *diagnostics));
+  if (const auto* state = feed_.takeState(); state != nullptr && !pages_.empty()) {
+    const auto text = shared(stateMessage(feed_, *state));
+    for (const auto& page : pages_) {
+      if (page->right != Right::kNothing && !page->socket->behind()) page->socket->sendText(text);
+    }
+  }
+  for (const auto& page : pages_) publishColumns(*page);
+}
+
+void Hub::publishColumns(Page& page) {
+  if (!page.view || page.view->signals.empty() || page.socket->behind()) return;
+  // The column of the newest row may still grow.
+  const auto end = feed_.traces().newestUs() / page.view->column_us;
+  if (end <= page.next_column) return;
+  const auto oldest = feed_.traces().oldestUs() / page.view->column_us;
+  const auto first = std::max({page.next_column, oldest, end - static_cast<std::int64_t>(kMaxColumns)});
+  page.socket->sendBinary(columnsFrame(feed_.traces(), *page.view, FrameKind::kNext, page.view_number, first,
+                                       static_cast<std::size_t>(end - first)));
+  page.next_column = end;
+}
+
+void Hub::publishAnswers(Page& page) {
+  while (const auto answer = page.link->answer())
+    page.socket->sendText(shared(
+        responseMessage(answer->seq, statusWord(answer->response.status), answer->response.message.view())));
+}
+
+void Hub::tell(const std::string& message) {
+  const auto text = shared(message);
+  for (const auto& page : pages_) {
+    if (page->right != Right::kNothing) page->socket->sendText(text);
+  }
+}
+
+}  // namespace rc10::web

@@ -1,0 +1,80 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "web/access.hpp"
+#include "web/columns_frame.hpp"
+#include "web/page_link.hpp"
+#include "web/page_request.hpp"
+#include "web/robot_feed.hpp"
+
+namespace rc10::web {
+
+/// The connection to one open page. Nothing here waits for it.
+class PageSocket {
+ public:
+  PageSocket() = default;
+  PageSocket(const PageSocket&) = delete;
+  PageSocket& operator=(const PageSocket&) = delete;
+  virtual ~PageSocket() = default;
+
+  using Text = std::shared_ptr<const std::string>;
+  virtual void sendText(Text text) = 0;
+  virtual void sendBinary(std::vector<std::byte> frame) = 0;
+  /// It has not read what it was sent: what is newer soon waits for it. Then it gets less often more.
+  [[nodiscard]] virtual bool behind() const = 0;
+  virtual void close() = 0;
+};
+
+/// The pages and the robot, without a network and without waiting: what the pages are told, and what they
+/// ask.
+class Hub {
+ public:
+  Hub(std::optional<std::string> robot, std::string token);
+
+  /// A page has been opened; `socket` is told of until leave().
+  void join(PageSocket& socket, bool loopback, std::string_view address);
+  void leave(PageSocket& socket);
+  void handle(PageSocket& socket, std::string_view message);
+
+  /// A hundred times a second.
+  void turn();
+
+ private:
+  struct Page {
+    PageSocket* socket = nullptr;
+    bool loopback = false;
+    Right right = Right::kNothing;
+    std::string name;
+    std::optional<View> view;
+    std::uint32_t view_number = 0;
+    std::int64_t next_column = 0;
+    std::unique_ptr<PageLink> link;
+  };
+
+  [[nodiscard]] Page* pageOf(const PageSocket& socket) noexcept;
+  void greet(Page& page);
+  void choose(Page& page, const ChooseView& wanted);
+  void answer(Page& page, const AskRange& wanted);
+  void ask(Page& page, const AskRobot& wanted);
+  void chooseTraces();
+  void watchRobot();
+  void publish();
+  void publishColumns(Page& page);
+  void publishAnswers(Page& page);
+  void tell(const std::string& message);
+
+  RobotFeed feed_;
+  std::string token_;
+  std::vector<std::unique_ptr<Page>> pages_;
+  std::uint64_t opened_ = 0;
+  std::uint64_t turns_ = 0;
+  std::string told_reason_;
+};
+
+}  // namespace rc10::web

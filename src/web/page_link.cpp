@@ -1,0 +1,67 @@
+#include "web/page_link.hpp"
+
+#include <algorithm>
+#include <utility>
+
+#include "client/request_call.hpp"
+
+namespace rc10::web {
+namespace {
+
+// A page that asks for more has not waited for an answer.
+constexpr std::size_t kMostOpen = 16;
+constexpr Duration kPatience = std::chrono::milliseconds{200};
+
+}  // namespace
+
+PageLink::PageLink(std::string client_name)
+    : client_name_(std::move(client_name)), session_(randomSession()), buffer_(link::kMaxMessageSize) {}
+
+std::string PageLink::ask(const AskRobot& request, const std::string& socket_path) {
+  if (!rc10d_) {
+    auto connection =
+        LinkClient::connect(socket_path, {.name = client_name_, .subscriptions = 0, .timeout = kPatience});
+    if (!connection) return connection.error().message;
+    rc10d_.emplace(std::move(*connection));
+    open_.clear();
+  }
+  const bool estop = request.operation == link::kEstopOperation;
+  if (open_.size() >= kMostOpen && !estop) return "too many requests have no answer yet";
+  link::Request message;
+  message.client = client_name_;
+  message.session = session_;
+  message.seq = ++seq_;
+  message.operation = request.operation;
+  message.target = request.target;
+  for (const auto& [name, value] : request.values)
+    message.values[message.value_count++] = link::NamedValue{.name = std::string_view{name}, .value = value};
+  switch (rc10d_->send(message)) {
+    case LinkClient::SendStatus::kSent: open_.emplace_back(seq_, request.seq); return {};
+    case LinkClient::SendStatus::kBusy: return "rc10d does not read what it is asked";
+    case LinkClient::SendStatus::kClosed: break;
+  }
+  rc10d_.reset();
+  return "rc10d has ended";
+}
+
+std::optional<PageLink::Answer> PageLink::answer() {
+  while (rc10d_) {
+    const auto received = rc10d_->receive(buffer_);
+    if (received.status == LinkClient::ReceiveStatus::kNothing) return std::nullopt;
+    if (received.status == LinkClient::ReceiveStatus::kClosed) {
+      close();
+      return std::nullopt;
+    }
+    Answer answer;
+    if (!link::open(received.datagram, answer.response) || answer.response.session != session_) continue;
+    const auto found = std::find_if(open_.begin(), open_.end(),
+                                    [&](const auto& o) { return o.first == answer.response.seq; });
+    if (found == open_.end()) continue;
+    answer.seq = found->second;
+    open_.erase(found);
+    return answer;
+  }
+  return std::nullopt;
+}
+
+}  // namespace rc10::web

@@ -1,0 +1,42 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "client/link_client.hpp"
+#include "web/page_request.hpp"
+
+namespace rc10::web {
+
+/// A page's own connection to rc10d, for what it asks: so that owners and logs name the page. Opened when it
+/// first asks for something.
+class PageLink {
+ public:
+  explicit PageLink(std::string client_name);
+
+  /// Why it could not be sent; empty: it was.
+  [[nodiscard]] std::string ask(const AskRobot& request, const std::string& socket_path);
+
+  struct Answer {
+    std::int64_t seq = 0;  ///< The page's number.
+    link::Response response;
+  };
+  /// The next answer that is there; nothing: none.
+  [[nodiscard]] std::optional<Answer> answer();
+  /// rc10d has ended.
+  void close() noexcept { rc10d_.reset(); }
+
+ private:
+  std::string client_name_;
+  std::uint64_t session_;
+  std::int64_t seq_ = 0;
+  std::optional<LinkClient> rc10d_;
+  std::vector<std::pair<std::int64_t, std::int64_t>> open_;  ///< Numbers here, and of the page.
+  std::vector<std::byte> buffer_;
+};
+
+}  // namespace rc10::web

@@ -1,0 +1,91 @@
+#include "web/page_messages.hpp"
+
+#include <algorithm>
+#include <span>
+
+#include "client/json_line.hpp"
+#include "client/module_text.hpp"
+#include "client/state_json.hpp"
+#include "rc10_version.hpp"
+
+namespace rc10::web {
+namespace {
+
+using client::Json;
+using client::lineOf;
+
+Json namesOf(std::span<const link::Name> names) {
+  Json list = Json::array();
+  for (const auto& name : names) list.push_back(name.view());
+  return list;
+}
+
+// What the client's writers give, in an envelope.
+std::string wrapped(std::string_view type, const std::string& data) {
+  return R"({"type":")" + std::string{type} + R"(","data":)" + data + "}";
+}
+
+}  // namespace
+
+std::string helloMessage(Right right, std::string_view session_name) {
+  constexpr std::array kWords{"nothing", "look", "command"};
+  return lineOf({{"type", "hello"},
+                 {"protocol", kPageProtocol},
+                 {"version", kVersion},
+                 {"right", kWords[static_cast<std::size_t>(right)]},
+                 {"name", session_name}});
+}
+
+std::string downMessage(std::string_view reason) { return lineOf({{"type", "down"}, {"reason", reason}}); }
+
+std::string robotMessage(const RobotFeed& feed) {
+  Json modules = Json::array();
+  for (const auto& module : feed.modules()) {
+    const auto names = std::span{module.info.names};
+    const auto inputs = std::min<std::size_t>(module.info.input_count, link::kMaxSignals);
+    const auto outputs = std::min<std::size_t>(module.info.output_count, link::kMaxSignals);
+    modules.push_back({{"name", module.name.view()},
+                       {"type", module.info.type.view()},
+                       {"inputs", namesOf(names.first(inputs))},
+                       {"outputs", namesOf(names.subspan(inputs, outputs))}});
+  }
+  Json readings = Json::array();
+  for (const auto reading : link::kTraceReadings) readings.push_back(reading);
+  return R"({"type":"robot","robot":)" + client::listJson(feed.welcome()) + R"(,"modules":)" +
+         lineOf(modules) + R"(,"readings":)" + lineOf(readings) + "}";
+}
+
+std::string stateMessage(const RobotFeed& feed, const link::State& state) {
+  return R"({"type":"state","data":)" + client::stateJson(feed.welcome(), state) + R"(,"modules":)" +
+         client::modulesJson(feed.modules()) + "}";
+}
+
+std::string diagnosticsMessage(const RobotFeed& feed, const link::Diagnostics& diagnostics) {
+  return wrapped("diagnostics", client::diagnosticsJson(feed.welcome(), diagnostics));
+}
+
+std::string eventMessage(const link::Event& event) {
+  return lineOf({{"type", "event"},
+                 {"utime", event.utime},
+                 {"mono_us", event.mono_us},
+                 {"severity", toString(event.severity)},
+                 {"code", event.code},
+                 {"source", event.source.view()},
+                 {"client", event.client.view()},
+                 {"text", event.text.view()}});
+}
+
+std::string viewMessage(std::uint32_t view, const std::vector<std::string>& drawn,
+                        const std::vector<std::string>& unknown, std::int64_t dropped_ticks) {
+  return lineOf({{"type", "view"},
+                 {"view", view},
+                 {"signals", drawn},
+                 {"unknown", unknown},
+                 {"dropped_ticks", dropped_ticks}});
+}
+
+std::string responseMessage(std::int64_t seq, std::string_view status, std::string_view message) {
+  return lineOf({{"type", "response"}, {"seq", seq}, {"status", status}, {"message", message}});
+}
+
+}  // namespace rc10::web

@@ -1,0 +1,34 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+
+#include "link/link_protocol.hpp"
+#include "web/access.hpp"
+#include "web/robot_feed.hpp"
+
+namespace rc10::web {
+
+/// Version of the messages between this server and its page, which come from one package: a page that was
+/// loaded before an upgrade loads itself anew.
+inline constexpr int kPageProtocol = 1;
+
+// Messages to a page, one JSON object each with its "type".
+
+[[nodiscard]] std::string helloMessage(Right right, std::string_view session_name);
+/// rc10d is not there, and why.
+[[nodiscard]] std::string downMessage(std::string_view reason);
+/// The robot: motors, modules with their inputs and outputs, readings of each tick.
+[[nodiscard]] std::string robotMessage(const RobotFeed& feed);
+[[nodiscard]] std::string stateMessage(const RobotFeed& feed, const link::State& state);
+[[nodiscard]] std::string diagnosticsMessage(const RobotFeed& feed, const link::Diagnostics& diagnostics);
+[[nodiscard]] std::string eventMessage(const link::Event& event);
+/// Names of the signals of a view that are drawn, in the order of its frames, and those that are not.
+[[nodiscard]] std::string viewMessage(std::uint32_t view, const std::vector<std::string>& drawn,
+                                      const std::vector<std::string>& unknown, std::int64_t dropped_ticks);
+/// To a request of the page, by its own number.
+[[nodiscard]] std::string responseMessage(std::int64_t seq, std::string_view status,
+                                          std::string_view message);
+
+}  // namespace rc10::web

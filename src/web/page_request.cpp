@@ -1,0 +1,122 @@
+#include "web/page_request.hpp"
+
+#include <cmath>
+#include <limits>
+
+#include <nlohmann/json.hpp>
+
+#include "link/link_protocol.hpp"
+#include "web/columns_frame.hpp"
+
+namespace rc10::web {
+namespace {
+
+using Received = nlohmann::json;
+
+// A column is at least a tick of the fastest loop wide, and at most a minute.
+constexpr double kMinColumnUs = 100.0;
+constexpr double kMaxColumnUs = 60e6;
+constexpr double kMaxSpanUs = 3600e6;
+// Whole numbers beyond it are not exact in a page.
+constexpr double kMaxExact = 9007199254740991.0;
+
+const Received* memberOf(const Received& object, const char* key) {
+  const auto found = object.find(key);
+  return found == object.end() ? nullptr : &*found;
+}
+
+std::string textOf(const Received& object, const char* key) {
+  const auto* member = memberOf(object, key);
+  return member != nullptr && member->is_string() ? member->get<std::string>() : std::string{};
+}
+
+Result<std::int64_t> wholeOf(const Received& object, const char* key, double least, double most) {
+  const auto* member = memberOf(object, key);
+  const double value = member != nullptr && member->is_number() ? member->get<double>() : std::nan("");
+  if (!(value >= least && value <= most))
+    return fail(std::string{"'"} + key + "' is missing or out of range");
+  return static_cast<std::int64_t>(value);
+}
+
+Result<PageRequest> viewOf(const Received& object) {
+  ChooseView view;
+  const auto number = wholeOf(object, "view", 0, std::numeric_limits<std::uint32_t>::max());
+  const auto column_us = wholeOf(object, "column_us", kMinColumnUs, kMaxColumnUs);
+  const auto span_us = wholeOf(object, "span_us", 0, kMaxSpanUs);
+  for (const auto* each : {&number, &column_us, &span_us}) {
+    if (!*each) return tl::unexpected(each->error());
+  }
+  view.view = static_cast<std::uint32_t>(*number);
+  view.column_us = *column_us;
+  view.span_us = *span_us;
+  const auto* signals = memberOf(object, "signals");
+  if (signals == nullptr || !signals->is_array()) return fail("'signals' is missing");
+  if (signals->size() > link::kMaxTraceSignals)
+    return fail("at most " + std::to_string(link::kMaxTraceSignals) + " signals can be drawn");
+  for (const auto& signal : *signals) {
+    if (!signal.is_string()) return fail("a signal is a name");
+    view.signals.push_back(signal.get<std::string>());
+  }
+  return view;
+}
+
+Result<PageRequest> rangeOf(const Received& object) {
+  const auto first = wholeOf(object, "first_column", 0, kMaxExact);
+  const auto column_us = wholeOf(object, "column_us", kMinColumnUs, kMaxColumnUs);
+  const auto count = wholeOf(object, "count", 1, static_cast<double>(kMaxColumns));
+  for (const auto* each : {&first, &column_us, &count}) {
+    if (!*each) return tl::unexpected(each->error());
+  }
+  // Its end in microseconds is a number of a page, too.
+  if (static_cast<double>(*first) * static_cast<double>(*column_us) > kMaxExact)
+    return fail("'first_column' is out of range");
+  return AskRange{*first, *column_us, static_cast<std::uint32_t>(*count)};
+}
+
+Result<PageRequest> operationOf(const Received& object) {
+  AskRobot ask;
+  const auto seq = wholeOf(object, "seq", 0, kMaxExact);
+  if (!seq) return tl::unexpected(seq.error());
+  ask.seq = *seq;
+  ask.operation = textOf(object, "operation");
+  ask.target = textOf(object, "target");
+  if (ask.operation.empty() || ask.operation.size() >= sizeof(link::Request::operation))
+    return fail("'operation' is missing or too long");
+  if (ask.target.size() >= sizeof(link::Request::target)) return fail("'target' is too long");
+  if (const auto* values = memberOf(object, "values"); values != nullptr) {
+    if (!values->is_object() || values->size() > link::kMaxValues)
+      return fail("'values' has too many, or none");
+    for (const auto& [name, value] : values->items()) {
+      if (!value.is_number() || name.size() >= sizeof(link::NamedValue::name))
+        return fail("a value is a number");
+      ask.values.emplace_back(name, value.get<double>());
+    }
+  }
+  return ask;
+}
+
+// An e-stop counts whatever else its message says, and if it says nothing that can be read.
+PageRequest estopOf(std::int64_t seq) {
+  return AskRobot{.seq = seq, .operation = std::string{link::kEstopOperation}, .target = {}, .values = {}};
+}
+
+}  // namespace
+
+Result<PageRequest> parsePageRequest(std::string_view text) {
+  // Without exceptions: a mistake gives a discarded value.
+  const auto json = Received::parse(text.begin(), text.end(), nullptr, false);
+  if (!json.is_object()) {
+    if (text.find(R"("estop")") != std::string_view::npos) return estopOf(0);
+    return fail("a message is one JSON object");
+  }
+  const auto type = textOf(json, "type");
+  if (type == link::kEstopOperation || textOf(json, "operation") == link::kEstopOperation)
+    return estopOf(wholeOf(json, "seq", 0, kMaxExact).value_or(0));
+  if (type == "token") return ShowToken{textOf(json, "token")};
+  if (type == "view") return viewOf(json);
+  if (type == "range") return rangeOf(json);
+  if (type == "request") return operationOf(json);
+  return fail("there is no message of this type");
+}
+
+}  // namespace rc10::web

@@ -1,0 +1,45 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <variant>
+#include <vector>
+
+#include "app/result.hpp"
+
+namespace rc10::web {
+
+// Messages from a page, one JSON object each with its "type".
+
+struct ShowToken {
+  std::string token;
+};
+/// The signals to be drawn from now on: the last `span_us`, then all that follow.
+struct ChooseView {
+  std::uint32_t view = 0;
+  std::vector<std::string> signals;
+  std::int64_t column_us = 0;
+  std::int64_t span_us = 0;
+};
+/// Columns of the past, of the signals of the view.
+struct AskRange {
+  std::int64_t first_column = 0;
+  std::int64_t column_us = 0;
+  std::uint32_t count = 0;
+};
+/// An operation of rc10d, as rc10ctl's verbs send it.
+struct AskRobot {
+  std::int64_t seq = 0;
+  std::string operation;
+  std::string target;
+  std::vector<std::pair<std::string, double>> values;
+};
+
+using PageRequest = std::variant<ShowToken, ChooseView, AskRange, AskRobot>;
+
+/// What a stranger sent. The error is a sentence for him.
+[[nodiscard]] Result<PageRequest> parsePageRequest(std::string_view text);
+
+}  // namespace rc10::web

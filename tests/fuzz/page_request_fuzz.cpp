@@ -1,0 +1,35 @@
+// Messages of a page of a stranger: parsed or refused in words, within the bounds that the hub relies on.
+#include <cstddef>
+#include <cstdint>
+#include <string_view>
+#include <variant>
+
+#include "fuzz_input.hpp"
+#include "link/link_protocol.hpp"
+#include "web/columns_frame.hpp"
+#include "web/page_request.hpp"
+
+namespace {
+
+using namespace rc10;
+using fuzz::require;
+
+}  // namespace
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  const std::string_view text{reinterpret_cast<const char*>(data), size};
+  const auto request = web::parsePageRequest(text);
+  if (!request) {
+    require(!request.error().message.empty());
+    return 0;
+  }
+  if (const auto* view = std::get_if<web::ChooseView>(&*request)) {
+    require(view->signals.size() <= link::kMaxTraceSignals && view->column_us > 0 && view->span_us >= 0);
+  } else if (const auto* range = std::get_if<web::AskRange>(&*request)) {
+    require(range->count >= 1 && range->count <= web::kMaxColumns && range->first_column >= 0);
+  } else if (const auto* ask = std::get_if<web::AskRobot>(&*request)) {
+    require(ask->values.size() <= link::kMaxValues &&
+            ask->operation.size() < sizeof(link::Request::operation));
+  }
+  return 0;
+}

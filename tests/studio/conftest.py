@@ -1,0 +1,94 @@
+"""The page in a real Chromium, against a running rc10d: see scripts/test/web.sh."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+from hostlib import Daemon, Program, check_environment
+from hostlib.daemon import BIN, CONFIG, REPO
+from playwright.sync_api import Browser, Page, sync_playwright
+
+# Debian's Chromium, which asks nobody on the internet for anything.
+CHROMIUM = "/usr/bin/chromium"
+QUIET = (
+    "--no-sandbox",
+    "--disable-gpu",
+    "--disable-quic",
+    "--no-first-run",
+    "--disable-background-networking",
+    "--disable-component-update",
+    "--disable-sync",
+)
+PATIENCE_MS = 20_000.0
+
+
+def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
+    reason = check_environment()
+    for item in items:
+        if reason is not None:
+            item.add_marker(pytest.mark.skip(reason=reason))
+
+
+class Studio:
+    """rc10d, rc10-web, and the address of the page."""
+
+    def __init__(self, daemon: Daemon) -> None:
+        self.daemon = daemon
+        self.start()
+
+    def start(self, port: int = 0) -> None:
+        self.web = Program(
+            BIN / "rc10-web",
+            "--page",
+            REPO / "build" / "web",
+            "--port",
+            str(port),
+            env=self.daemon.env,
+        )
+        told = self.web.wait_line(r"http://localhost:(\d+)/$")
+        self.port = int(told[1])
+        self.url = f"http://localhost:{self.port}/"
+
+
+@pytest.fixture
+def studio() -> Iterator[Studio]:
+    with Daemon(CONFIG.format(realtime="preferred")) as daemon:
+        daemon.wait_ready()
+        running = Studio(daemon)
+        yield running
+        running.web.stop()
+
+
+@pytest.fixture(scope="session")
+def chromium() -> Iterator[Browser]:
+    assert Path(CHROMIUM).exists(), "scripts/install-deps.sh web"
+    with sync_playwright() as playwright:
+        browser = playwright.chromium.launch(executable_path=CHROMIUM, args=[*QUIET])
+        yield browser
+        browser.close()
+
+
+# What the browser says of a page: a script or a style that its policy forbids, a script that fails.
+EXPECTED = re.compile(r"WebSocket connection|ERR_CONNECTION_REFUSED")
+
+
+@pytest.fixture
+def page(chromium: Browser, studio: Studio) -> Iterator[Page]:
+    """The page, open; nothing in it may have gone wrong at the end."""
+    context = chromium.new_context(viewport={"width": 1280, "height": 860}, locale="en-GB")
+    context.set_default_timeout(PATIENCE_MS)
+    opened = context.new_page()
+    problems: list[str] = []
+    opened.on("pageerror", lambda error: problems.append(str(error)))
+    opened.on(
+        "console",
+        lambda message: problems.append(message.text) if message.type == "error" else None,
+    )
+    opened.goto(studio.url)
+    opened.get_by_role("article", name="wheel").wait_for()
+    yield opened
+    context.close()
+    assert [text for text in problems if not EXPECTED.search(text)] == []

@@ -1,0 +1,204 @@
+"""Each part of the page, by clicking."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import pytest
+from hostlib.daemon import REPO
+from playwright.sync_api import Browser, Page, expect
+
+if TYPE_CHECKING:
+    from conftest import Studio
+
+PATIENCE_MS = 20_000.0
+TABS = ("overview", "plots", "events", "timing")
+
+expect.set_options(timeout=PATIENCE_MS)
+
+
+def open_tab(page: Page, name: str) -> None:
+    page.locator(f"#tab-{name}").click()
+    expect(page.locator(f"#tab-{name}")).to_have_attribute("aria-selected", "true")
+
+
+def test_a_motor_is_enabled_and_disabled_by_clicking(page: Page, studio: Studio) -> None:
+    wheel = page.get_by_role("article", name="wheel", exact=True)
+    expect(wheel.locator(".badge.status")).to_have_text("READY")
+    wheel.get_by_role("button", name="Enable", exact=True).click()
+    studio.daemon.wait_motor("wheel", lambda motor: motor["status"] == "ACTIVE", "enabled")
+    expect(wheel.locator(".badge.status")).to_have_text("ACTIVE")
+    wheel.get_by_role("button", name="Disable", exact=True).click()
+    studio.daemon.wait_motor("wheel", lambda motor: motor["status"] == "READY", "disabled")
+    expect(wheel.locator(".cause")).to_contain_text("request (web-1 127.0.0.1)")
+
+
+def test_a_motor_that_holds_is_not_shown_as_one_without_torque(page: Page, studio: Studio) -> None:
+    studio.daemon.must("enable")
+    with studio.daemon.drive("set", "wheel", "velocity", 60, "--for", "60s"):
+        wheel = page.get_by_role("article", name="wheel", exact=True)
+        expect(wheel.locator(".badge.acting")).to_have_text("velocity")
+        expect(wheel.get_by_text("60.0")).not_to_have_count(0)
+        expect(wheel).to_have_class(re.compile("torque"))
+        expect(wheel.get_by_text("by rc10ctl")).to_be_visible()
+
+
+def test_stop_is_confirmed_by_the_robots_own_state_and_cleared_again(
+    page: Page, studio: Studio
+) -> None:
+    told = page.locator(".stop-told")
+    page.get_by_role("button", name="STOP").click()
+    studio.daemon.wait_state(lambda state: state["state"] == "ESTOP", "it is stopped")
+    expect(told).to_have_text("stopped: confirmed")
+    expect(page.locator(".badge.robot")).to_have_text("ESTOP")
+    page.get_by_role("button", name="Clear", exact=True).first.click()
+    studio.daemon.wait_state(lambda state: state["state"] == "RUN", "it is cleared")
+    expect(told).to_have_text("")
+
+
+def test_the_key_escape_twice_stops_once_does_not(page: Page, studio: Studio) -> None:
+    page.keyboard.press("Escape")
+    page.wait_for_timeout(700)  # longer than between the two
+    assert studio.daemon.state()["state"] == "RUN"
+    for _ in range(2):
+        page.keyboard.press("Escape")
+    studio.daemon.wait_state(lambda state: state["state"] == "ESTOP", "it is stopped")
+
+
+def test_a_stop_that_nobody_hears_is_not_confirmed(page: Page, studio: Studio) -> None:
+    studio.web.stop()
+    expect(page.locator(".badge.connection")).to_have_text("no connection to rc10-web")
+    page.get_by_role("button", name="STOP").click()
+    expect(page.locator(".stop-told")).to_have_text("NOT CONFIRMED: use the real emergency stop")
+    # The server returns, and the page by itself.
+    studio.start(studio.port)
+    expect(page.locator(".badge.connection")).to_have_text("live")
+    expect(page.get_by_role("article", name="wheel", exact=True)).to_be_visible()
+
+
+def test_when_rc10d_ends_the_page_says_why_and_it_comes_back_by_itself(
+    page: Page, studio: Studio
+) -> None:
+    open_tab(page, "plots")
+    expect(page.locator(".legend tr")).to_have_count(2)
+    studio.daemon.kill()
+    expect(page.get_by_role("alert")).to_contain_text("rc10d is not running")
+    studio.daemon.start()
+    studio.daemon.wait_ready()
+    expect(page.get_by_role("alert")).to_have_count(0)
+    expect(page.locator(".legend tr")).to_have_count(2)
+    open_tab(page, "events")
+    expect(page.locator(".events tr").first).to_be_visible()
+
+
+def columns_of(page: Page) -> int:
+    """Non-empty points of the first curve, as the page would save them."""
+    with page.expect_download() as saved:
+        page.get_by_role("button", name="CSV").click()
+    lines = Path(saved.value.path()).read_text().splitlines()
+    return sum(1 for line in lines[1:] if line.split(",")[1] != "")
+
+
+def test_curves_have_every_tick_and_are_frozen_measured_and_saved(
+    page: Page, studio: Studio
+) -> None:
+    studio.daemon.must("enable")
+    open_tab(page, "plots")
+    page.get_by_label("span").select_option("2")
+    page.get_by_role("group", name="yaw").get_by_label("angle_deg", exact=True).check()
+    expect(page.locator(".legend tr")).to_have_count(3)
+    with studio.daemon.drive("set", "wheel", "velocity", 90, "--for", "60s"):
+        expect(page.locator(".legend tr").first).to_contain_text(re.compile(r"9\d\.\d\d rpm"))
+    with page.expect_download() as saved:
+        page.get_by_role("button", name="CSV").click()
+    lines = Path(saved.value.path()).read_text().splitlines()
+    assert lines[0].startswith("time_s,wheel.velocity_rpm.min,wheel.velocity_rpm.max,")
+    assert len(lines) > 50
+    chart = page.locator(".chart .u-over")
+    box = chart.bounding_box()
+    assert box is not None
+    page.get_by_role("button", name="Freeze").click()
+    frozen = page.locator(".legend tr").first.inner_text()
+    # Two clicks: values at both, and the difference.
+    for share in (0.75, 0.95):
+        page.mouse.click(box["x"] + share * box["width"], box["y"] + 40)
+    expect(page.locator(".legend tr").first).to_contain_text("Δ")
+    expect(page.get_by_text("Δt")).to_be_visible()
+    assert frozen.split()[0] in page.locator(".legend tr").first.inner_text()
+    # A part of the picture, with the narrow columns that the server still has.
+    page.mouse.move(box["x"] + 0.8 * box["width"], box["y"] + 60)
+    page.mouse.down()
+    page.mouse.move(box["x"] + 0.9 * box["width"], box["y"] + 60, steps=4)
+    page.mouse.up()
+    page.wait_for_function("document.querySelector('.plot button[aria-pressed=\"true\"]') !== null")
+    assert columns_of(page) > 50
+    page.get_by_role("button", name="Go on").click()
+    page.get_by_role("button", name="Keep behind").click()
+    expect(page.get_by_role("button", name="Forget kept")).to_be_visible()
+
+
+def test_events_are_told_in_words_and_can_be_sifted(page: Page, studio: Studio) -> None:
+    open_tab(page, "events")
+    studio.daemon.must("enable", "wheel")
+    expect(page.locator(".events tr", has_text="wheel").first).to_contain_text("ACTIVE")
+    studio.daemon.must("estop")
+    page.get_by_role("button", name="warnings and errors").click()
+    expect(page.locator(".events tr.info")).to_have_count(0)
+
+
+def test_timing_shows_the_latencies_that_rc10d_measures(page: Page) -> None:
+    open_tab(page, "timing")
+    expect(page.get_by_role("rowheader", name="Wake-up latency")).to_be_visible()
+    expect(page.get_by_role("rowheader", name="Tick duration")).to_be_visible()
+
+
+def test_language_favourites_and_part_are_remembered(page: Page) -> None:
+    page.get_by_role("button", name="favourite yaw").click()
+    expect(page.locator(".card.motor h3").first).to_have_text("yaw")
+    page.get_by_role("button", name="中文").click()
+    expect(page.locator("#tab-events")).to_have_text("事件")
+    open_tab(page, "events")
+    page.reload()
+    expect(page.locator("#tab-events")).to_have_attribute("aria-selected", "true")
+    expect(page.locator("#tab-events")).to_have_text("事件")
+    assert page.evaluate("document.documentElement.lang") == "zh"
+    open_tab(page, "overview")
+    expect(page.locator(".card.motor h3").first).to_have_text("yaw")
+
+
+def test_each_value_has_the_command_that_does_the_same(page: Page) -> None:
+    copy = page.get_by_role("article", name="wheel", exact=True).locator(".copy")
+    expect(copy).to_have_attribute("title", re.compile(r"rc10ctl enable wheel$"))
+
+
+@pytest.mark.parametrize("scheme", ["light", "dark"])
+@pytest.mark.parametrize(("width", "height"), [(390, 844), (1280, 860)])
+@pytest.mark.parametrize("language", ["en-GB", "zh-CN"])
+def test_nothing_overlaps_or_sticks_out_and_all_can_use_it(
+    chromium: Browser, studio: Studio, language: str, width: int, height: int, scheme: str
+) -> None:
+    context = chromium.new_context(
+        viewport={"width": width, "height": height},
+        locale=language,
+        color_scheme="dark" if scheme == "dark" else "light",
+    )
+    context.set_default_timeout(PATIENCE_MS)
+    page = context.new_page()
+    page.goto(studio.url)
+    page.get_by_role("article", name="wheel", exact=True).wait_for()
+    axe = (REPO / "web" / "node_modules" / "axe-core" / "axe.min.js").read_text()
+    page.evaluate(axe)
+    for tab in TABS:
+        open_tab(page, tab)
+        page.wait_for_timeout(100)
+        assert page.evaluate("document.documentElement.scrollWidth <= innerWidth"), tab
+        found = page.evaluate("axe.run().then((result) => result.violations)")
+        serious = [
+            (one["id"], [node["html"] for node in one["nodes"]][:3])
+            for one in found
+            if one["impact"] in ("serious", "critical")
+        ]
+        assert serious == [], tab
+    context.close()

@@ -1,0 +1,99 @@
+#include "web/page_request.hpp"
+
+#include <random>
+#include <string>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace rc10::web::test::page_request_test {
+namespace {
+
+template <typename Wanted>
+Wanted parsed(std::string_view text) {
+  const auto request = parsePageRequest(text);
+  EXPECT_TRUE(request) << text << ": " << (request ? "" : request.error().message);
+  const auto* found = request ? std::get_if<Wanted>(&*request) : nullptr;
+  EXPECT_NE(found, nullptr);
+  return found != nullptr ? *found : Wanted{};
+}
+
+TEST(PageRequest, AViewHasItsSignalsWidthAndSpan) {
+  const auto view = parsed<ChooseView>(
+      R"({"type":"view","view":3,"signals":["yaw.velocity_rpm","base.vx"],"column_us":12500,"span_us":1e7})");
+  EXPECT_EQ(view.view, 3U);
+  EXPECT_THAT(view.signals, ::testing::ElementsAre("yaw.velocity_rpm", "base.vx"));
+  EXPECT_EQ(view.column_us, 12'500);
+  EXPECT_EQ(view.span_us, 10'000'000);
+}
+
+TEST(PageRequest, AnOperationHasItsTargetAndValues) {
+  const auto ask = parsed<AskRobot>(
+      R"({"type":"request","seq":9,"operation":"zero","target":"yaw","values":{"angle_deg":-12.5}})");
+  EXPECT_EQ(ask.seq, 9);
+  EXPECT_EQ(ask.operation, "zero");
+  EXPECT_EQ(ask.target, "yaw");
+  ASSERT_EQ(ask.values.size(), 1U);
+  EXPECT_EQ(ask.values[0].first, "angle_deg");
+  EXPECT_EQ(ask.values[0].second, -12.5);
+}
+
+TEST(PageRequest, AnEstopCountsWhateverElseItsMessageSays) {
+  for (const auto* text :
+       {R"({"type":"request","operation":"estop"})", R"({"type":"estop"})",
+        R"({"type":"request","seq":-1e400,"operation":"estop","target":7,"values":[1,2]})",
+        R"({"type":"estop","seq":"x","operation":null})", R"({"operation":"estop","type":[]})"})
+    EXPECT_EQ(parsed<AskRobot>(text).operation, "estop") << text;
+}
+
+TEST(PageRequest, WhatIsWrongIsRefusedInWords) {
+  const std::string long_text(2000, 'x');
+  for (const auto& text : std::initializer_list<std::string>{
+           "",
+           "null",
+           "[]",
+           "{",
+           "{}",
+           R"({"type":"shutdown"})",
+           R"({"type":7})",
+           R"({"type":"view","view":1,"signals":"yaw","column_us":1000,"span_us":1})",
+           R"({"type":"view","view":1,"signals":[1],"column_us":1000,"span_us":1})",
+           R"({"type":"view","view":-1,"signals":[],"column_us":1000,"span_us":1})",
+           R"({"type":"view","view":1,"signals":[],"column_us":0,"span_us":1})",
+           R"({"type":"view","view":1,"signals":[],"column_us":1e300,"span_us":1})",
+           R"({"type":"range","first_column":1e15,"column_us":60000000,"count":1})",
+           R"({"type":"range","first_column":-1,"column_us":1000,"count":1})",
+           R"({"type":"range","first_column":1,"column_us":1000,"count":100000})",
+           R"({"type":"request","seq":1,"operation":""})",
+           R"({"type":"request","operation":"enable"})",
+           R"({"type":"request","seq":1,"operation":")" + long_text + "\"}",
+           R"({"type":"request","seq":1,"operation":"enable","target":")" + long_text + "\"}",
+           R"({"type":"request","seq":1,"operation":"zero","values":{"angle_deg":"1"}})",
+           R"({"type":"request","seq":1,"operation":"zero","values":{")" + long_text + R"(":1}})"}) {
+    const auto request = parsePageRequest(text);
+    EXPECT_FALSE(request) << text.substr(0, 80);
+    if (!request) {
+      EXPECT_FALSE(request.error().message.empty());
+    }
+  }
+  std::string many = R"({"type":"view","view":1,"column_us":1000,"span_us":1,"signals":["a")";
+  for (int i = 0; i < 40; ++i) many += R"(,"a")";
+  EXPECT_FALSE(parsePageRequest(many + "]}"));
+}
+
+TEST(PageRequest, NeitherDeepNorRandomTextDoesHarm) {
+  EXPECT_FALSE(parsePageRequest(std::string(60'000, '[')));
+  std::mt19937 random{3};
+  std::uniform_int_distribution<int> byte{0, 255};
+  const std::string good =
+      R"({"type":"view","view":3,"signals":["yaw.velocity_rpm"],"column_us":12500,"span_us":1e7})";
+  for (int i = 0; i < 20'000; ++i) {
+    std::string text = good;
+    for (int n = 0; n < 3; ++n)
+      text[static_cast<std::size_t>(byte(random)) % text.size()] = static_cast<char>(byte(random));
+    (void)parsePageRequest(text);
+  }
+}
+
+}  // namespace
+}  // namespace rc10::web::test::page_request_test

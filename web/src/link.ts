@@ -1,0 +1,186 @@
+// The connection to rc10-web: it comes back by itself, and what the page knows of the robot is here.
+
+import {
+  type Columns,
+  type Diagnostics,
+  type Down,
+  type Hello,
+  type Response,
+  type Robot,
+  type RobotEvent,
+  type ServerMessage,
+  type State,
+  type ViewAnswer,
+  kProtocol,
+  readColumns,
+} from './protocol';
+
+export type Connection = 'connecting' | 'live' | 'lost';
+
+export interface Known {
+  connection: Connection;
+  hello: Hello | null;
+  down: Down | null;
+  robot: Robot | null;
+  state: State | null;
+  diagnostics: Diagnostics | null;
+  events: RobotEvent[];
+}
+
+const kMaxEvents = 500;
+const kFirstPauseMs = 500;
+const kLongestPauseMs = 5000;
+const kAnswerPatienceMs = 6000;
+
+type Listener = () => void;
+
+export interface RobotRequest {
+  operation: string;
+  target?: string;
+  values?: Record<string, number>;
+}
+
+export class Link {
+  readonly known: Known = {
+    connection: 'connecting',
+    hello: null,
+    down: null,
+    robot: null,
+    state: null,
+    diagnostics: null,
+    events: [],
+  };
+
+  onColumns: (columns: Columns) => void = () => {};
+  onView: (view: ViewAnswer) => void = () => {};
+
+  private socket: WebSocket | null = null;
+  private pauseMs = kFirstPauseMs;
+  private readonly listeners = new Set<Listener>();
+  private readonly open = new Map<number, (answer: Response) => void>();
+  private seq = 0;
+  private drawn = false;
+
+  connect(): void {
+    const scheme = location.protocol === 'https:' ? 'wss' : 'ws';
+    const socket = new WebSocket(`${scheme}://${location.host}/link`);
+    socket.binaryType = 'arraybuffer';
+    socket.onopen = () => {
+      this.pauseMs = kFirstPauseMs;
+      const token = new URLSearchParams(location.hash.slice(1)).get('token') ?? location.hash.slice(1);
+      if (token !== '') this.showToken(token);
+    };
+    socket.onmessage = (message: MessageEvent<string | ArrayBuffer>) => this.take(message.data);
+    socket.onclose = () => this.lost();
+    this.socket = socket;
+  }
+
+  subscribe(listener: Listener): () => void {
+    this.listeners.add(listener);
+    return () => this.listeners.delete(listener);
+  }
+
+  showToken(token: string): void {
+    this.send({ type: 'token', token });
+  }
+
+  view(view: number, signals: string[], columnUs: number, spanUs: number): void {
+    this.send({ type: 'view', view, signals, column_us: columnUs, span_us: spanUs });
+  }
+
+  range(firstColumn: number, columnUs: number, count: number): void {
+    this.send({ type: 'range', first_column: firstColumn, column_us: columnUs, count });
+  }
+
+  /** Without an answer in time it has failed: nobody knows whether it was done. */
+  ask(request: RobotRequest): Promise<Response> {
+    const seq = ++this.seq;
+    return new Promise((resolve) => {
+      const done = (answer: Response) => {
+        clearTimeout(timer);
+        this.open.delete(seq);
+        resolve(answer);
+      };
+      const timer = setTimeout(
+        () => done({ type: 'response', seq, status: 'failed', message: 'no answer' }),
+        kAnswerPatienceMs,
+      );
+      this.open.set(seq, done);
+      if (!this.send({ type: 'request', seq, target: '', values: {}, ...request }))
+        done({ type: 'response', seq, status: 'failed', message: 'no connection' });
+    });
+  }
+
+  private send(message: object): boolean {
+    if (this.socket?.readyState !== WebSocket.OPEN) return false;
+    this.socket.send(JSON.stringify(message));
+    return true;
+  }
+
+  private lost(): void {
+    this.known.connection = 'lost';
+    this.known.state = null;
+    for (const done of [...this.open.values()])
+      done({ type: 'response', seq: 0, status: 'failed', message: 'the connection was lost' });
+    this.changed();
+    setTimeout(() => this.connect(), this.pauseMs);
+    this.pauseMs = Math.min(2 * this.pauseMs, kLongestPauseMs);
+  }
+
+  private take(data: string | ArrayBuffer): void {
+    if (typeof data !== 'string') {
+      const columns = readColumns(data);
+      if (columns !== null) this.onColumns(columns);
+      return;
+    }
+    const message = JSON.parse(data) as ServerMessage;
+    const known = this.known;
+    switch (message.type) {
+      case 'hello':
+        // A page from before an upgrade.
+        if (message.protocol !== kProtocol) return location.reload();
+        known.hello = message;
+        known.connection = 'live';
+        known.events = [];
+        known.robot = null;
+        break;
+      case 'down':
+        known.down = message;
+        known.state = null;
+        break;
+      case 'robot':
+        known.robot = message;
+        known.down = null;
+        break;
+      case 'state':
+        known.state = message;
+        known.down = null;
+        break;
+      case 'diagnostics':
+        known.diagnostics = message;
+        break;
+      case 'event':
+        known.events = [message, ...known.events].slice(0, kMaxEvents);
+        break;
+      case 'view':
+        this.onView(message);
+        break;
+      case 'response':
+        this.open.get(message.seq)?.(message);
+        break;
+    }
+    this.changed();
+  }
+
+  // Once for each picture of the screen, however much arrives.
+  private changed(): void {
+    if (this.drawn) return;
+    this.drawn = true;
+    const draw = () => {
+      this.drawn = false;
+      for (const listener of this.listeners) listener();
+    };
+    if (document.hidden) setTimeout(draw, 250);
+    else requestAnimationFrame(draw);
+  }
+}

@@ -1,0 +1,287 @@
+import { useEffect, useMemo, useRef, useState } from 'preact/hooks';
+import type uPlot from 'uplot';
+
+import { type Kept, type Mark, colourOf, makeChart } from './chart';
+import { useKnown, useStored, useStudio } from './context';
+import { number, unitOf } from './numbers';
+import { Traces } from './traces';
+
+const kMostSignals = 12;
+const kSpans_s = [2, 5, 10, 30, 60];
+const kUs = 1e6;
+
+function allSignals(known: ReturnType<typeof useKnown>): { owner: string; names: string[] }[] {
+  const robot = known.robot;
+  if (robot === null) return [];
+  return [
+    ...robot.robot.motors.map((motor) => ({
+      owner: motor.name,
+      names: robot.readings.map((reading) => `${motor.name}.${reading}`),
+    })),
+    ...robot.modules.map((module) => ({
+      owner: module.name,
+      names: module.outputs.map((output) => `${module.name}.${output}`),
+    })),
+  ];
+}
+
+function download(name: string, content: Blob): void {
+  const link = document.createElement('a');
+  link.href = URL.createObjectURL(content);
+  link.download = name;
+  link.click();
+  setTimeout(() => URL.revokeObjectURL(link.href), 1000);
+}
+
+function SignalChooser(props: { chosen: string[]; onChoose: (names: string[]) => void }) {
+  const { word } = useStudio();
+  const known = useKnown();
+  const [filter, setFilter] = useState('');
+  const toggle = (name: string) =>
+    props.onChoose(
+      props.chosen.includes(name) ? props.chosen.filter((n) => n !== name) : [...props.chosen, name],
+    );
+  return (
+    <details class="chooser" open>
+      <summary>{`${word('signals')} (${props.chosen.length})`}</summary>
+      <input
+        type="search"
+        placeholder="velocity"
+        aria-label={word('choose')}
+        value={filter}
+        onInput={(event) => setFilter(event.currentTarget.value)}
+      />
+      {allSignals(known).map(({ owner, names }) => {
+        const shown = names.filter((name) => name.includes(filter) || props.chosen.includes(name));
+        if (shown.length === 0) return null;
+        return (
+          <fieldset key={owner}>
+            <legend>{owner}</legend>
+            {shown.map((name) => (
+              <label key={name}>
+                <input
+                  type="checkbox"
+                  checked={props.chosen.includes(name)}
+                  disabled={!props.chosen.includes(name) && props.chosen.length >= kMostSignals}
+                  onChange={() => toggle(name)}
+                />
+                {name.slice(owner.length + 1)}
+              </label>
+            ))}
+          </fieldset>
+        );
+      })}
+    </details>
+  );
+}
+
+function firstChoice(known: ReturnType<typeof useKnown>): string[] {
+  const motor = known.robot?.robot.motors[0]?.name;
+  return motor === undefined ? [] : [`${motor}.velocity_rpm`, `${motor}.current_a`];
+}
+
+export function Plots() {
+  const { link, word } = useStudio();
+  const known = useKnown();
+  const [stored, setChosen] = useStored<string[]>('signals', []);
+  const [span_s, setSpan] = useStored('span_s', 10);
+  const [frozen, setFrozen] = useState(false);
+  const [points, setPoints] = useState<number[]>([]);
+  const [kept, setKept] = useState<Kept[]>([]);
+  const [drawn, setDrawn] = useState<string[]>([]);
+  const [droppedTicks, setDroppedTicks] = useState(0);
+  const box = useRef<HTMLDivElement>(null);
+  const chart = useRef<uPlot | null>(null);
+  const view = useRef(0);
+  const origin = useRef(0);
+  const pointsNow = useRef<number[]>([]);
+  const keptNow = useRef<Kept[]>([]);
+  const frozenNow = useRef(false);
+  pointsNow.current = points;
+  keptNow.current = kept;
+  frozenNow.current = frozen;
+  const robotName = known.robot?.robot.robot ?? '';
+  const chosen = stored.length === 0 ? firstChoice(known) : stored;
+  const key = chosen.join(' ');
+  const traces = useMemo(() => new Traces(() => origin.current), [key, span_s, robotName]);
+
+  const columns = () => Math.min(2000, Math.max(200, Math.round(box.current?.clientWidth ?? 800)));
+
+  const draw = () => {
+    const u = chart.current;
+    if (u === null) return;
+    const data = [traces.times, ...traces.min.flatMap((min, i) => [min, traces.max[i] ?? []])];
+    u.batch(() => {
+      u.setData(data as unknown as uPlot.AlignedData, false);
+      const end = traces.times[traces.times.length - 1] ?? 0;
+      if (!frozenNow.current) u.setScale('x', { min: end - span_s, max: end });
+      else u.redraw();
+    });
+  };
+
+  // The chart is made anew for other signals; its data come with the answer.
+  useEffect(() => {
+    const target = box.current;
+    if (target === null || chosen.length === 0 || known.robot === null) return;
+    const columnUs = Math.max(100, Math.round((span_s * kUs) / columns()));
+    const marks = (): Mark[] => [
+      ...link.known.events.slice(0, 60).map((event) => ({
+        time: (event.mono_us - origin.current) / kUs,
+        colour: event.severity === 'info' ? '#888888' : '#d55e00',
+        text: event.source,
+      })),
+      ...pointsNow.current.map((time, i) => ({ time, colour: '#cc79a7', text: i === 0 ? 'A' : 'B' })),
+    ];
+    setPoints([]);
+    setFrozen(false);
+    const number_ = ++view.current;
+    link.onView = (answer) => {
+      if (answer.view !== number_) return;
+      setDroppedTicks(answer.dropped_ticks);
+      setDrawn(answer.signals);
+      chart.current?.destroy();
+      chart.current = makeChart(target, answer.signals, {
+        marks,
+        kept: () => keptNow.current,
+        onClick: (time) => setPoints((before) => (before.length >= 2 ? [time] : [...before, time])),
+        onSelect: (from, to) => zoom(from, to),
+      });
+    };
+    link.onColumns = (received) => {
+      if (received.kind === 'reset' && received.count > 0 && origin.current === 0)
+        origin.current = received.first * received.columnUs;
+      if (received.kind === 'next' && origin.current === 0) origin.current = received.first * received.columnUs;
+      if (received.kind === 'range') {
+        const fine = new Traces(() => origin.current);
+        if (!fine.add({ ...received, kind: 'reset' }, number_, received.count)) return;
+        chart.current?.setData(
+          [fine.times, ...fine.min.flatMap((min, i) => [min, fine.max[i] ?? []])] as unknown as uPlot.AlignedData,
+          true,
+        );
+        return;
+      }
+      if (traces.add(received, number_, Math.ceil((60 * kUs) / received.columnUs)) && !frozenNow.current) draw();
+    };
+    link.view(number_, chosen, columnUs, span_s * kUs);
+    return () => {
+      link.onView = () => {};
+      link.onColumns = () => {};
+      link.view(++view.current, [], 1000, 0);
+      chart.current?.destroy();
+      chart.current = null;
+    };
+  }, [key, span_s, robotName, known.hello]);
+
+  // A narrower column shows what a wide one hides, as long as the server has it.
+  const zoom = (from: number, to: number) => {
+    setFrozen(true);
+    frozenNow.current = true;
+    const columnUs = Math.max(100, Math.round(((to - from) * kUs) / columns()));
+    const first = Math.floor((from * kUs + origin.current) / columnUs);
+    link.range(first, columnUs, Math.min(4096, Math.ceil(((to - from) * kUs) / columnUs)));
+  };
+
+  useEffect(() => {
+    const target = box.current;
+    if (target === null) return;
+    const observer = new ResizeObserver(() =>
+      chart.current?.setSize({ width: Math.max(280, target.clientWidth), height: Math.max(240, target.clientHeight) }),
+    );
+    observer.observe(target);
+    return () => observer.disconnect();
+  }, []);
+
+  useEffect(() => chart.current?.redraw(), [points, kept]);
+
+  const valueAt = (signal: number, time: number): number | null => {
+    const times = chart.current?.data[0] ?? [];
+    const values = chart.current?.data[2 * signal + 2] ?? [];
+    let best: number | null = null;
+    for (let i = 0; i < times.length && (times[i] ?? 0) <= time; ++i) best = values[i] ?? best;
+    return best;
+  };
+
+  const csv = () => {
+    const data = chart.current?.data ?? [[]];
+    const lines = [['time_s', ...drawn.flatMap((name) => [`${name}.min`, `${name}.max`])].join(',')];
+    for (let i = 0; i < (data[0]?.length ?? 0); ++i)
+      lines.push(data.map((values) => values[i] ?? '').join(','));
+    download('rc10.csv', new Blob([`${lines.join('\n')}\n`], { type: 'text/csv' }));
+  };
+  const png = () => chart.current?.ctx.canvas.toBlob((blob) => blob !== null && download('rc10.png', blob));
+
+  const keep = () =>
+    setKept(drawn.map((name, i) => ({ name, times: [...traces.times], values: [...(traces.max[i] ?? [])] })));
+
+  return (
+    <div class="plots">
+      <SignalChooser chosen={chosen} onChoose={setChosen} />
+      <div class="plot">
+        <div class="toolbar">
+          <label>
+            {`${word('span')} `}
+            <select value={span_s} onChange={(event) => setSpan(Number(event.currentTarget.value))}>
+              {kSpans_s.map((seconds) => (
+                <option key={seconds} value={seconds}>{`${seconds} s`}</option>
+              ))}
+            </select>
+          </label>
+          <button
+            type="button"
+            aria-pressed={frozen}
+            onClick={() => {
+              setFrozen(!frozen);
+              frozenNow.current = !frozen;
+              if (frozen) draw();
+            }}
+          >
+            {frozen ? word('go') : word('freeze')}
+          </button>
+          <button type="button" onClick={draw}>
+            {word('fit')}
+          </button>
+          <button type="button" onClick={kept.length > 0 ? () => setKept([]) : keep}>
+            {kept.length > 0 ? word('forget') : word('keep')}
+          </button>
+          <button type="button" onClick={csv}>
+            {word('csv')}
+          </button>
+          <button type="button" onClick={png}>
+            {word('png')}
+          </button>
+          {droppedTicks > 0 && <span class="hint">{`${droppedTicks} ${word('droppedTicks')}`}</span>}
+        </div>
+        <div class="chart" ref={box} />
+        <table class="legend">
+          <tbody>
+            {drawn.map((name, i) => {
+              const at = points.map((time) => valueAt(i, time));
+              const [a, b] = at;
+              const last = traces.max[i]?.[traces.times.length - 1] ?? null;
+              return (
+                <tr key={name}>
+                  <td>
+                    <span class="swatch" style={{ background: colourOf(i) }} />
+                    {name}
+                  </td>
+                  <td class="number">{`${number(last, 2)} ${unitOf(name)}`}</td>
+                  {at.map((value, n) => (
+                    <td key={n} class="number">{`${n === 0 ? 'A' : 'B'} ${number(value, 2)}`}</td>
+                  ))}
+                  {a !== undefined && b !== undefined && (
+                    <td class="number">{`Δ ${number(a === null || b === null ? null : b - a, 2)}`}</td>
+                  )}
+                </tr>
+              );
+            })}
+          </tbody>
+        </table>
+        <p class="hint">
+          {points.length === 2
+            ? `Δt ${number(((points[1] ?? 0) - (points[0] ?? 0)) * 1000, 1)} ms`
+            : word('cursor')}
+        </p>
+      </div>
+    </div>
+  );
+}

@@ -1,0 +1,215 @@
+// Messages between rc10-web and this page; src/web/page_messages.hpp and columns_frame.hpp are their other end.
+
+export const kProtocol = 1;
+
+export type Right = 'nothing' | 'look' | 'command';
+
+export interface Hello {
+  type: 'hello';
+  protocol: number;
+  version: string;
+  right: Right;
+  name: string;
+}
+
+export interface Down {
+  type: 'down';
+  reason: string;
+}
+
+export interface MotorInfo {
+  name: string;
+  model: string;
+  bus: string;
+  id: number;
+  modes: string[];
+}
+
+export interface ModuleInfo {
+  name: string;
+  type: string;
+  inputs: string[];
+  outputs: string[];
+}
+
+export interface Robot {
+  type: 'robot';
+  robot: {
+    robot: string;
+    version: string;
+    config_hash: string;
+    rate_hz: number;
+    motors: MotorInfo[];
+  };
+  modules: ModuleInfo[];
+  readings: string[];
+}
+
+/** A motor as motor_state_t.lcm has it; null: not reported. */
+export interface MotorState {
+  name: string;
+  status: 'OFFLINE' | 'READY' | 'ENABLING' | 'ACTIVE' | 'FAULT';
+  fault: number;
+  fault_text: string;
+  limits: string[];
+  mode: string;
+  owner: string;
+  zeroed: boolean;
+  acting: 'nothing' | 'target' | 'hold' | 'damp' | 'brake' | 'ramp';
+  stop_cause: string;
+  stopped_by: string;
+  target: number | null;
+  target_shaped: number | null;
+  feedback_hz: number | null;
+  feedback_age_us: number;
+  total_angle_deg: number | null;
+  angle_deg: number | null;
+  velocity_rpm: number | null;
+  current_a: number | null;
+  torque_nm: number | null;
+  voltage_v: number | null;
+  temperature_c: number | null;
+}
+
+export interface ModuleState {
+  name: string;
+  type: string;
+  owner: string;
+  inputs: string[];
+  outputs: Record<string, number | null>;
+}
+
+export interface State {
+  type: 'state';
+  data: {
+    mono_us: number;
+    state: 'RUN' | 'ESTOP' | 'STOPPING';
+    realtime: boolean;
+    stop_cause: string;
+    stopped_by: string;
+    stopped_mono_us: number;
+    estop_count: number;
+    conditions: string[];
+    motors: MotorState[];
+  };
+  modules: { modules: ModuleState[] };
+}
+
+export interface Percentiles {
+  p50: number;
+  p99: number;
+  p999: number;
+  max: number;
+}
+
+export interface Bus {
+  name: string;
+  interface: string;
+  state: string;
+  predicted_load: number;
+  predicted_load_worst: number;
+  measured_load: number;
+  rx_frames: number;
+  tx_frames: number;
+  rx_unmatched: number;
+  rx_foreign: number;
+  rx_dropped: number;
+  tx_dropped: number;
+  error_frames: number;
+  restarts: number;
+}
+
+export interface Diagnostics {
+  type: 'diagnostics';
+  data: {
+    tick_period_us: number;
+    wake_latency_us: Percentiles;
+    tick_duration_us: Percentiles;
+    missed_ticks: number;
+    page_faults: number;
+    refusals: Record<string, number>;
+    counters: Record<string, number>;
+    durations_us: Record<string, Percentiles & { count: number }>;
+    notices: string[];
+    buses: Bus[];
+  };
+}
+
+export interface RobotEvent {
+  type: 'event';
+  utime: number;
+  mono_us: number;
+  severity: 'info' | 'warning' | 'error';
+  code: number;
+  source: string;
+  client: string;
+  text: string;
+}
+
+export interface ViewAnswer {
+  type: 'view';
+  view: number;
+  signals: string[];
+  unknown: string[];
+  dropped_ticks: number;
+}
+
+export interface Response {
+  type: 'response';
+  seq: number;
+  status: 'ok' | 'refused' | 'failed';
+  message: string;
+}
+
+export type ServerMessage =
+  | Hello
+  | Down
+  | Robot
+  | State
+  | Diagnostics
+  | RobotEvent
+  | ViewAnswer
+  | Response;
+
+export type FrameKind = 'next' | 'reset' | 'range';
+
+/** Least and greatest value of each column of some signals; NaN: none. */
+export interface Columns {
+  kind: FrameKind;
+  view: number;
+  first: number;
+  columnUs: number;
+  count: number;
+  min: Float32Array[];
+  max: Float32Array[];
+}
+
+const kHeaderBytes = 32;
+const kKinds: Record<number, FrameKind> = { 1: 'next', 2: 'reset', 3: 'range' };
+
+/** Null: another version, or too short. */
+export function readColumns(buffer: ArrayBuffer): Columns | null {
+  if (buffer.byteLength < kHeaderBytes) return null;
+  const data = new DataView(buffer);
+  const kind = kKinds[data.getUint8(1)];
+  if (data.getUint8(0) !== 1 || kind === undefined) return null;
+  const signals = data.getUint16(2, true);
+  const count = data.getUint32(4, true);
+  if (buffer.byteLength !== kHeaderBytes + signals * count * 8) return null;
+  const min: Float32Array[] = [];
+  const max: Float32Array[] = [];
+  for (let i = 0; i < signals; ++i) {
+    const at = kHeaderBytes + i * count * 8;
+    min.push(new Float32Array(buffer, at, count));
+    max.push(new Float32Array(buffer, at + count * 4, count));
+  }
+  return {
+    kind,
+    view: data.getUint32(8, true),
+    first: data.getFloat64(16, true),
+    columnUs: data.getFloat64(24, true),
+    count,
+    min,
+    max,
+  };
+}
