@@ -16,6 +16,8 @@ enum class FaultCode : std::int32_t {
   kEncoderJump = 5,
   kFrozen = 6,
   kRunaway = 7,
+  kNotAtRest = 8,        ///< Its drive has torque though it is told to rest.
+  kForeignCommands = 9,  ///< Somebody else commands its drive.
   // Reported by the drive: every family maps its own codes to these.
   kDriveOverVoltage = 32,
   kDriveUnderVoltage = 33,

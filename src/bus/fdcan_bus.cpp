@@ -66,16 +66,29 @@ void fdCANbus::dispatch(const CanFrame& frame) noexcept {
   counters_.rx_bits += bits.nominal;
   counters_.rx_data_bits += bits.data;
   FrameListener* const device = table_.find(frame);
-  if (device == nullptr) {
-    ++counters_.rx_unmatched;
-    // The socket does not receive what it sends itself.
-    if (frame.type == FrameType::kData && isCommandId(frame.id)) {
-      ++counters_.rx_foreign;
-      last_foreign_ = {frame.id, frame.sent_here};
-    }
-  } else if (device->updateFeedback(frame) == FrameVerdict::kMalformed) {
-    ++counters_.rx_malformed;
+  const auto verdict = device != nullptr ? device->updateFeedback(frame) : FrameVerdict::kForeign;
+  if (device == nullptr) ++counters_.rx_unmatched;
+  if (verdict == FrameVerdict::kMalformed) ++counters_.rx_malformed;
+  // The socket does not receive what it sends itself.
+  if (verdict != FrameVerdict::kForeign || frame.type != FrameType::kData) return;
+  if (isCommandId(frame.id)) {
+    ++counters_.rx_foreign;
+    last_foreign_ = {frame.id, frame.sent_here};
   }
+  if (foreign_ != nullptr) foreign_->onForeign(*this, frame);
+}
+
+bool fdCANbus::isRest(const CanFrame& frame) const noexcept {
+  std::array<CanFrame, kMaxFramesPerPacker> frames{};
+  const auto same = [&frame](const CanFrame& rest) {
+    const auto bytes = rest.payload();
+    return rest.id == frame.id &&
+           std::equal(bytes.begin(), bytes.end(), frame.payload().begin(), frame.payload().end());
+  };
+  return std::any_of(packers_.begin(), packers_.end(), [&](const CommandPacker* packer) {
+    const auto rest = std::span{frames}.first(packer->packRest(frames));
+    return std::any_of(rest.begin(), rest.end(), same);
+  });
 }
 
 // Asked for frames that no device claims: there are few of them, and few packers.

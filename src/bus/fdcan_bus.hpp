@@ -13,6 +13,7 @@
 #include "bus/can_frame.hpp"
 #include "bus/can_socket.hpp"
 #include "bus/command_packer.hpp"
+#include "bus/foreign_listener.hpp"
 #include "bus/frame_listener.hpp"
 #include "bus/frame_table.hpp"
 #include "bus/frame_tap.hpp"
@@ -25,12 +26,11 @@ struct BusCounters {
   std::uint64_t rx_frames = 0;     ///< Data and remote frames; error frames are counted by health().
   std::uint64_t rx_unmatched = 0;  ///< Belong to no registered device.
   std::uint64_t rx_malformed = 0;  ///< A known id with a wrong length or content.
-  std::uint64_t rx_foreign =
-      0;                        ///< Of rx_unmatched, those with a command id of ours: somebody else sends it.
-  std::uint64_t tx_frames = 0;  ///< Accepted by the kernel.
-  std::uint64_t tx_dropped = 0;  ///< Refused, by the kernel or before; never retried.
-  std::uint64_t tx_held = 0;     ///< Not even tried, because the bus did not carry frames.
-  std::uint64_t tx_watched = 0;  ///< Handed to the kernel with a watched command id.
+  std::uint64_t rx_foreign = 0;    ///< With a command id of ours: somebody else sends it.
+  std::uint64_t tx_frames = 0;     ///< Accepted by the kernel.
+  std::uint64_t tx_dropped = 0;    ///< Refused, by the kernel or before; never retried.
+  std::uint64_t tx_held = 0;       ///< Not even tried, because the bus did not carry frames.
+  std::uint64_t tx_watched = 0;    ///< Handed to the kernel with a watched command id.
   /// Unstuffed bits of all frames, for the measured load: those at the nominal bit rate, and apart from
   /// them those of the data phase of FD frames with bit rate switch.
   std::uint64_t rx_bits = 0;
@@ -82,6 +82,9 @@ class fdCANbus {
   /// `tap` sees every frame from now on; it outlives the bus. Before start only.
   void setTap(FrameTap& tap) noexcept { tap_ = &tap; }
 
+  /// `listener` hears what somebody else sends; it outlives the bus. Before start only.
+  void setForeignListener(ForeignListener& listener) noexcept { foreign_ = &listener; }
+
   /// Gives a received frame to the device it belongs to; error frames go to health().
   void dispatch(const CanFrame& frame) noexcept;
 
@@ -93,6 +96,8 @@ class fdCANbus {
   void packCommands(const Tick& tick) noexcept;
   /// Asks every packer for its rest frames.
   void packRest() noexcept;
+  /// Is this one of the packers' rest frames, whoever sent it?
+  [[nodiscard]] bool isRest(const CanFrame& frame) const noexcept;
   /// Hands everything collected to the kernel in one sendmmsg(MSG_DONTWAIT). What is refused is
   /// dropped and counted; the next tick starts packing there.
   void flush() noexcept;
@@ -126,6 +131,7 @@ class fdCANbus {
   std::optional<std::size_t> first_crowded_out_;  // the first packer whose frames the tick had no room for
   std::vector<CanId> watched_;
   FrameTap* tap_ = nullptr;
+  ForeignListener* foreign_ = nullptr;
   BusCounters counters_;
   ForeignFrame last_foreign_;
   BusHealth health_;

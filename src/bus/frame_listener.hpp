@@ -35,6 +35,7 @@ struct FrameFilter {
 enum class FrameVerdict : std::uint8_t {
   kAccepted,
   kMalformed,  ///< Right id, but a wrong length or content: ignored and counted.
+  kForeign,    ///< To its drive, from somebody else: of drives that answer on the id of their commands.
 };
 
 /// The receiving half of a device on a bus. Scheduler thread only.

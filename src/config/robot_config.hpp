@@ -11,6 +11,7 @@
 #include "module/module_type.hpp"
 #include "motor/guarding/fallback.hpp"
 #include "motor/guarding/motor_guard.hpp"
+#include "motor/guarding/rest_check.hpp"
 #include "motor/guarding/target_shaper.hpp"
 #include "motor/motor_family.hpp"
 #include "sim/sim_config.hpp"
@@ -29,6 +30,7 @@ struct MotorConfig {
   MotorSettings settings;
   Duration feedback_timeout{std::chrono::milliseconds{20}};
   GuardConfig guard{};
+  RestConfig rest{};
   ShapingConfig shaping{};
   FallbackConfig fallback{};
   float standstill_rpm = 10.0F;                ///< Slower than this it stands still.
@@ -38,6 +40,13 @@ struct MotorConfig {
 
   [[nodiscard]] MotorTraits traits() const { return family->traits(settings.model, settings.own); }
   [[nodiscard]] const std::string& name() const noexcept { return settings.name; }
+};
+
+/// Frames of others that command our drives, for the motors of one bus.
+struct ForeignLimit {
+  static constexpr int kMost = 16;
+  int frames = 3;  ///< So many within the time are a fault; 0: they are only told.
+  Duration within{std::chrono::milliseconds{100}};
 };
 
 enum class BusType : std::uint8_t { kSocketCan, kSimulated };
@@ -51,7 +60,8 @@ struct BusConfig {
   int data_bitrate = 0;       ///< Of the data phase of CAN FD frames; 0: a classic bus.
   double sample_point = 0.0;  ///< Share of the bit, 0 to 1; 0: what the kernel chooses.
   double data_sample_point = 0.0;
-  bool manage_link = false;    ///< rc10d sets the bit rate and takes the interface down and up.
+  bool manage_link = false;  ///< rc10d sets the bit rate and takes the interface down and up.
+  ForeignLimit foreign{};
   std::uint64_t sim_seed = 1;  ///< Simulated buses and rc10-sim.
   std::vector<MotorConfig> motors;
 
@@ -88,6 +98,13 @@ enum class RealtimePolicy : std::uint8_t { kRequired, kPreferred };
 /// Of rc10-guard.
 enum class GuardPolicy : std::uint8_t { kRequired, kPreferred, kOff };
 
+/// What stops when a drive does not rest.
+enum class UnrestPolicy : std::uint8_t {
+  kGroup,      ///< Its group.
+  kEstop,      ///< The robot.
+  kHeartbeat,  ///< The robot, and the heartbeat, so that a relay cuts the power.
+};
+
 /// Of the scheduler's thread.
 enum class TimerPolicy : std::uint8_t { kAuto, kTimerfd, kNanosleep };
 /// The reader of the CAN sockets.
@@ -111,6 +128,7 @@ struct RobotConfig {
   std::string robot;
   RealtimePolicy realtime = RealtimePolicy::kRequired;
   GuardPolicy guard = GuardPolicy::kPreferred;
+  UnrestPolicy unrest = UnrestPolicy::kGroup;
   ReceivePolicy receive = ReceivePolicy::kTick;
   int rate_hz = 1000;
   TimerPolicy timer = TimerPolicy::kAuto;

@@ -6,6 +6,7 @@
 #include <cstdio>
 
 #include "app/event_code.hpp"
+#include "app/fault_code.hpp"
 #include "link/words.hpp"
 
 namespace rc10::link {
@@ -75,15 +76,20 @@ namespace {
   }
 }
 
-// `extra`: the id, plus 2^29 if it is extended, plus 2^30 if it was sent on this computer.
-[[nodiscard]] std::string foreignSender(std::int32_t frames, std::int32_t extra) {
+// `0x200) from another node on the bus`. `extra`: the id, plus 2^29 if it is extended, plus 2^30 if it was
+// sent on this computer.
+[[nodiscard]] std::string foreignId(std::int32_t extra) {
   const auto bits = static_cast<std::uint32_t>(extra);
   const bool extended = (bits & (1U << 29U)) != 0;
   std::array<char, 16> id{};
   (void)std::snprintf(id.data(), id.size(), extended ? "0x%08X" : "0x%03X", bits & 0x1FFFFFFFU);
   const bool sent_here = (bits & (1U << 30U)) != 0;
-  return std::to_string(frames) + " frames with our command id (" + id.data() + ") from " +
-         (sent_here ? "another program on this computer" : "another node on the bus") +
+  return std::string(id.data()) + ") from " +
+         (sent_here ? "another program on this computer" : "another node on the bus");
+}
+
+[[nodiscard]] std::string foreignSender(std::int32_t frames, std::int32_t extra) {
+  return std::to_string(frames) + " frames with our command id (" + foreignId(extra) +
          ": two controllers command these motors; stop one";
 }
 
@@ -135,12 +141,17 @@ std::string eventText(std::int32_t code, std::int32_t value, std::int32_t extra,
     case kNotOwner:
       return "command of '" + std::string(client) +
              "' refused: a client of the same or a higher priority holds the motor";
-    case kMotorFault: return faultText(value) + nativeCode(extra);
+    case kMotorFault:
+      return FaultCode{value} == FaultCode::kForeignCommands ? faultText(value) + " (" + foreignId(extra)
+                                                             : faultText(value) + nativeCode(extra);
     case kGroupStopped: return groupStopped(extra);
     case kGroupRearmed: return "its group is enabled again";
     case kModule: return "reported event " + std::to_string(value);
     case kModuleRefused: return "its targets are refused: another client commands one of its motors";
     case kGainChanged: return gainChanged(value, extra, client);
+    case kMovesAtRest:
+      return "it gains speed, " + std::to_string(value) +
+             " rpm now, though its drive is told to rest: gravity, a slope, a hand, or the drive";
     case kRobotState: return change<RobotStatus>(value, extra, client);
     case kTicksMissed: return std::to_string(value) + " ticks missed";
     case kCommandRefused: return refused(value, client);

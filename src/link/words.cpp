@@ -104,6 +104,11 @@ std::string faultText(std::int32_t fault) {
              "cable";
     case kRunaway:
       return "runaway: it gains speed against all its torque; see the direction of encoder and phases";
+    case kNotAtRest:
+      return "not at rest: its drive reports torque though it is told to rest; cut the power, see the bus "
+             "and "
+             "the drive";
+    case kForeignCommands: return "another controller commands its drive; stop one of the two";
     case kDriveOverVoltage: return "the drive reports over-voltage; see the supply, and what brakes into it";
     case kDriveUnderVoltage: return "the drive reports under-voltage; see battery and power cable";
     case kDriveOverCurrent: return "the drive reports over-current";

@@ -58,6 +58,7 @@ struct DriveFrames {
   Provision hold = Provision::kUnsupported;
   Provision enable = Provision::kNothing;
   Provision disable = Provision::kNothing;
+  bool idle_rests = true;  ///< While it is enabled without a target it has no torque.
 
   [[nodiscard]] constexpr Provision of(FrameKind kind) const noexcept {
     switch (kind) {

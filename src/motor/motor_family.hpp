@@ -34,6 +34,8 @@ struct MotorTraits {
   bool reports_temperature = true;
   bool scaled_speed = false;  ///< Its speed is a share of a range that depends on the model.
   float frozen_a = 0.0F;      ///< Full scale of the current that it reports; 0: it reports none.
+  float signed_a = 0.0F;      ///< Full scale of a current with the sign of the torque; 0: it reports none.
+  int signed_current_hz = 0;  ///< How often it reports that; 0: with each feedback.
   int feedback_hz = 1000;     ///< If nobody says otherwise.
   int min_feedback_hz = 1;
   int max_feedback_hz = 1000;
@@ -57,7 +59,10 @@ struct BusUse {
   };
   std::vector<FrameFilter> sends;  ///< Every frame that the drive may send.
   std::vector<FrameFilter> obeys;  ///< Every frame that it takes as meant for it.
-  std::vector<Stream> feedback;    ///< Its usual traffic while it is enabled.
+  /// Of those, what moves, brakes, enables or stops it: another sender of these commands our drive. Empty:
+  /// all. Questions and settings are none.
+  std::vector<FrameFilter> steers;
+  std::vector<Stream> feedback;  ///< Its usual traffic while it is enabled.
   std::vector<Stream> commands;
   /// Drives with the same layout may share command frames (four DJI currents in one); empty: shares none.
   std::string_view layout{};

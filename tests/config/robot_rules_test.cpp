@@ -39,7 +39,7 @@ TEST(RobotRules, AnUnknownKeyIsRefusedWithTheNearestOne) {
   EXPECT_THAT(
       errorsOf(robotAfter("robot: hero\nwheels: 4\n")),
       ElementsAre(
-          "hero.yaml:2:1: wheels: unknown key; known here: robot, realtime, guard, receive, "
+          "hero.yaml:2:1: wheels: unknown key; known here: robot, realtime, guard, on_unrest, receive, "
           "scheduler, rx, lcm, clients, tuning, clear, "
           "estop_gpio, enabling_gpio, heartbeat_gpio, blackbox_mib, profiles, buses, groups and modules"));
 }

@@ -108,8 +108,8 @@ def test_every_test_that_proves_safety_exists() -> None:
     page = read(REPO / "docs/safety.md")
     assert len(columns(page, "test")) > 150
     assert missing_tests(page) == []
-    changed = page.text.replace("`MotorStates.*`", "`MotorSates.*`")
-    assert missing_tests(Page(page.path, changed)) == ["MotorSates.*"]
+    changed = page.text.replace("`RestCheckTest.*`", "`RestChekTest.*`")
+    assert missing_tests(Page(page.path, changed)) == ["RestChekTest.*"]
 
 
 @by_name

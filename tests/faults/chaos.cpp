@@ -88,6 +88,7 @@ void Chaos::start() {
   frozen_.reset();
   blocked_.reset();
   behind_.reset();
+  seen_count_ = 0;
   contact_open_ = false;
   queues_ = {};
   echoed_.reset();
@@ -161,6 +162,7 @@ void Chaos::readBuses() {
       count = wires_[bus].receive(wake, batch_).frame_count;
       for (std::size_t i = 0; i < count; ++i) {
         oracle_->sent(bus, batch_[i]);
+        seen_[seen_count_++ % seen_.size()] = {bus, batch_[i]};
         if (isWatched(bus, batch_[i])) oracle_->watched(bus);
         carry(bus, batch_[i]);
       }
@@ -321,6 +323,19 @@ void Chaos::repair(std::size_t motor) {
   busOf(motor).setTemperature(driveOf(motor), 25.0);
 }
 
+// A second controller says what ours has said.
+void Chaos::secondController() {
+  if (seen_count_ < seen_.size()) return;
+  auto [bus, frame] = seen_[choices_.next(static_cast<std::uint32_t>(seen_.size()))];
+  const auto times = choices_.of<std::uint32_t>({1, 2, 3, 4, 60});
+  const auto spacing = choices_.of<std::uint64_t>({0, 1, 20, 60});
+  for (std::uint32_t i = 0; i < times; ++i) {
+    frame.received = robot_->now() + config_.period() / 2;
+    if (robot_->inboxes()[bus].frames.push(frame)) oracle_->foreign(bus, frame);
+    ticks(spacing);
+  }
+}
+
 // Anything on the bus: another commander, a drive with a loose screw, another protocol.
 void Chaos::foreignFrame(std::size_t bus) {
   CanFrame frame;
@@ -331,7 +346,9 @@ void Chaos::foreignFrame(std::size_t bus) {
   for (std::size_t i = 0; i < 8; ++i) frame.data[i] = static_cast<std::uint8_t>(choices_.next(256));
   if (choices_.oneIn(2)) frame.data[0] &= 0x1FU;  // an angle that exists
   frame.received = robot_->now() + config_.period() / 2;
-  deliver(bus, frame);
+  if (!robot_->inboxes()[bus].frames.push(frame)) return;
+  oracle_->heard(bus, frame);
+  oracle_->foreign(bus, frame);
 }
 
 // Error frames of a controller.
@@ -519,6 +536,7 @@ void Chaos::act(Action action) {
       break;
     case Action::kForeignFrames: {
       const auto bus = choices_.next(buses);
+      if (choices_.oneIn(2)) secondController();
       for (auto n = choices_.next(8); n > 0; --n) foreignFrame(bus);
       break;
     }

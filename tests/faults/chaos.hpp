@@ -8,6 +8,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "daemon/virtual_robot.hpp"
@@ -112,6 +113,7 @@ class Chaos {
   void stopAndStartAgain();
   void repair(std::size_t motor);
   void foreignFrame(std::size_t bus);
+  void secondController();
   void errorFrame(std::size_t bus, std::uint32_t which);
   void showContact();
   [[nodiscard]] Target randomTarget(std::size_t motor);
@@ -130,6 +132,8 @@ class Chaos {
   std::unique_ptr<Oracle> oracle_;
   std::vector<CanReceiver> wires_;  ///< The drives' ends of the buses.
   std::array<CanFrame, CanReceiver::kBatch> batch_{};
+  std::array<std::pair<std::size_t, CanFrame>, 32> seen_{};  ///< The daemon's last frames, and their buses.
+  std::size_t seen_count_ = 0;
   std::array<CanFrame, 64> feedback_{};
   std::array<Client, 3> clients_{};
   std::bitset<kMaxBuses> frozen_;   ///< Nothing is heard from it.

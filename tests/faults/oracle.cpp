@@ -44,6 +44,7 @@ Oracle::Oracle(const RobotConfig& config) : config_(config) {
       motor.config = &entry;
       motor.bus = bus;
       motor.wire = makeWire(entry);
+      motor.strangers_wire = makeWire(entry);
       motor.told = motor.wire->told();
       motor.limit = static_cast<double>(entry.settings.effort_limit > 0.0F ? entry.settings.effort_limit
                                                                            : traits.effort_full_scale);
@@ -95,6 +96,29 @@ void Oracle::heard(std::size_t bus, const CanFrame& frame) {
     motor.heard_at = frame.received;
     motor.new_sample = motor.wire->samplesAlways();
   }
+}
+
+// Of drives that are told something once a tick every frame is a command; in others there are questions, too.
+void Oracle::foreign(std::size_t bus, const CanFrame& frame) {
+  std::vector<Motor*> readers;
+  bool command = false;
+  for (auto& motor : motors_) {
+    if (motor.bus != bus) continue;
+    bool read = true;
+    bool moves = false;
+    try {
+      read = motor.strangers_wire->said(frame) != 0;
+      moves = read && frame.type == FrameType::kData && !motor.strangers_wire->told().rests();
+      read |= motor.wire->obeys(frame);
+    } catch (const Violation&) {  // what rc10d must never send, others may
+    }
+    if (!read) continue;
+    motor.perhaps_foreign.push_back(frame.received);
+    readers.push_back(&motor);
+    command |= moves && motor.wire->toldOnceATick();
+  }
+  for (auto* motor : readers)
+    if (command) motor->foreign.push_back(frame.received);
 }
 
 void Oracle::commanded(const Command& command) {
@@ -206,7 +230,11 @@ void Oracle::judge(const Snapshot& snapshot, std::uint64_t periods, std::bitset<
   judgeSnapshot(snapshot, periods);
   judgeFrames(read);
   judgeRobotState(snapshot);
-  for (std::size_t i = 0; i < motors_.size(); ++i) judgeStatus(i, snapshot.motors[i], snapshot.state);
+  for (std::size_t i = 0; i < motors_.size(); ++i) {
+    judgeStatus(i, snapshot.motors[i], snapshot.state);
+    judgeForeign(i, snapshot.motors[i]);
+    judgeRest(i, snapshot.motors[i]);
+  }
   judgeAlone(snapshot);
   judgeGroups(snapshot);
   for (std::size_t i = 0; i < motors_.size(); ++i) {
@@ -370,6 +398,60 @@ void Oracle::judgeStatus(std::size_t index, const MotorSnapshot& seen, RobotStat
     require(index, after == MotorStatus::kActive, "a target although it is not ACTIVE");
     require(index, now_ < motor.driven_until, "a target without a valid command");
   }
+}
+
+// Three within the time end ACTIVE, READY and ENABLING, and fewer do not.
+void Oracle::judgeForeign(std::size_t index, const MotorSnapshot& seen) {
+  auto& motor = motors_[index];
+  const auto& limit = config_.buses[motor.bus].foreign;
+  const auto enough = [&limit](const std::deque<MonotonicTime>& times) {
+    const auto frames = static_cast<std::size_t>(limit.frames);
+    for (std::size_t i = frames - 1; i < times.size(); ++i)
+      if (times[i] - times[i - frames + 1] <= limit.within) return true;
+    return false;
+  };
+  const bool newly = seen.fault == FaultCode::kForeignCommands && motor.fault != seen.fault;
+  require(index, !newly || enough(motor.perhaps_foreign), "in FAULT for commands that nobody has sent");
+  const bool there = !lost(motor.status) && seen.status != MotorStatus::kOffline;
+  require(index, !there || !enough(motor.foreign) || seen.status == MotorStatus::kFault,
+          "somebody else commands its drive, and it is not in FAULT");
+  const auto forget = [&](std::deque<MonotonicTime>& times) {
+    while (!times.empty() && (lost(seen.status) || now_ - times.front() > limit.within)) times.pop_front();
+  };
+  forget(motor.perhaps_foreign);
+  forget(motor.foreign);
+}
+
+// What its drive reports while nothing is asked of it, against the thresholds of the configuration.
+void Oracle::judgeRest(std::size_t index, const MotorSnapshot& seen) {
+  auto& motor = motors_[index];
+  const auto& rest = motor.config->rest;
+  const auto& feedback = seen.feedback;
+  const bool rested =
+      std::exchange(motor.rests, seen.acting == Acting::kNothing && seen.status != MotorStatus::kEnabling &&
+                                     (motor.wire->idlesAtRest() || seen.status != MotorStatus::kActive)) &&
+      fresh(motor);
+  const bool newly = seen.fault == FaultCode::kNotAtRest && motor.fault != seen.fault;
+  double sign = 0.0;
+  if (rested && std::fabs(feedback.current_a) > rest.current_a && rest.current_a > 0.0F) {
+    const bool stands = std::fabs(feedback.velocity_rpm) < motor.config->standstill_rpm;
+    if (stands || feedback.current_a * feedback.velocity_rpm > 0.0F)
+      sign = std::copysign(1.0, static_cast<double>(feedback.current_a));
+  }
+  if (sign != motor.torque_sign) {
+    motor.torque_sign = sign;
+    motor.torque_since = feedback.received;
+    motor.torque_samples = 0;
+  }
+  if (motor.new_sample && sign != 0.0) ++motor.torque_samples;
+  const auto lasting = feedback.received - motor.torque_since;
+  // The first sample may have come with the order.
+  const auto slack = motor.config->feedback_timeout / 2 + 2 * config_.period();
+  require(index, !newly || (sign != 0.0 && lasting >= rest.time - slack),
+          "in FAULT for torque at rest that it does not report");
+  const bool proven = sign != 0.0 && motor.torque_samples > 4 && lasting > rest.time + slack;
+  require(index, !proven || !fresh(motor) || lost(seen.status),
+          "its drive reports torque at rest, and it is not in FAULT");
 }
 
 // As long as a motor that was enabled alone is ENABLING or ACTIVE, no other is.

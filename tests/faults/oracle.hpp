@@ -3,6 +3,7 @@
 #include <array>
 #include <bitset>
 #include <cstdint>
+#include <deque>
 #include <map>
 #include <memory>
 #include <optional>
@@ -27,6 +28,8 @@ class Oracle {
 
   // Inputs, before the tick that sees them.
   void heard(std::size_t bus, const CanFrame& frame);
+  /// A frame of somebody else, heard on this bus.
+  void foreign(std::size_t bus, const CanFrame& frame);
   void commanded(const Command& command);
   void ordered(const Order& order);
   void estopped() { estop_asked_ = true; }
@@ -73,9 +76,10 @@ class Oracle {
     std::size_t bus = 0;
     std::size_t group = kNoGroup;
     std::unique_ptr<Wire> wire;
-    double limit = 0.0;        ///< Of its effort.
-    bool host_holds = false;   ///< Its hold is a loop of rc10d, of any effort,
-    bool host_brakes = false;  ///< and so is its brake.
+    std::unique_ptr<Wire> strangers_wire;  ///< Reads what somebody else sends to its drive.
+    double limit = 0.0;                    ///< Of its effort.
+    bool host_holds = false;               ///< Its hold is a loop of rc10d, of any effort,
+    bool host_brakes = false;              ///< and so is its brake.
 
     // Its reports.
     bool heard = false;  ///< A report that could be a sample.
@@ -117,6 +121,14 @@ class Oracle {
     bool was_hot = false;            ///< Its limit may still be reduced.
     bool cooled = false;             ///< And that ended in this tick.
     int unbraked_ticks = 0;
+    // Somebody else's commands: frames that may be some, and those that are.
+    std::deque<MonotonicTime> perhaps_foreign;
+    std::deque<MonotonicTime> foreign;
+    // Reports of torque while it is to rest.
+    bool rests = false;        ///< As of the last tick.
+    double torque_sign = 0.0;  ///< 0: there is no evidence.
+    MonotonicTime torque_since{};
+    int torque_samples = 0;
   };
   struct Group {
     MotorSet members;
@@ -135,6 +147,8 @@ class Oracle {
   void followEchoes(const Snapshot& snapshot);
   void judgeFrames(std::bitset<kMaxBuses> read);
   void judgeStatus(std::size_t index, const MotorSnapshot& seen, RobotStatus robot);
+  void judgeForeign(std::size_t index, const MotorSnapshot& seen);
+  void judgeRest(std::size_t index, const MotorSnapshot& seen);
   void judgeAlone(const Snapshot& snapshot);
   void judgeGroups(const Snapshot& snapshot);
   void judgeTogether(const Group& group, const Snapshot& snapshot);

@@ -76,6 +76,8 @@ class Wire {
   /// Takes in a frame that rc10d has sent on its bus. A bit for each byte that means something to this
   /// drive; 0: it is none of its frames. Throws Violation for what rc10d must never send.
   virtual std::uint64_t said(const CanFrame& frame) = 0;
+  /// It is a command to this drive of a kind that rc10d never sends.
+  [[nodiscard]] virtual bool obeys(const CanFrame&) const { return false; }
   /// Takes in a frame from the bus. Whether it is feedback of this drive that could be a sample.
   virtual bool heard(const CanFrame& frame) = 0;
   [[nodiscard]] virtual Told told() const = 0;

@@ -55,6 +55,9 @@ void BusBuilder::readPlain(const Settings& settings, BusConfig& bus) {
   settings.read("sample_point", bus.sample_point);
   settings.read("data_sample_point", bus.data_sample_point);
   settings.read("manage_link", bus.manage_link);
+  settings.read("foreign_frames", bus.foreign.frames);
+  if (const auto within_ms = settings.number("foreign_ms"))
+    bus.foreign.within = std::chrono::milliseconds{static_cast<int>(*within_ms)};
   settings.section("sim").read("seed", bus.sim_seed);
 }
 

@@ -1,5 +1,6 @@
 #include "config/build/guard_builder.hpp"
 
+#include <algorithm>
 #include <chrono>
 
 #include "config/yaml/number_text.hpp"
@@ -18,6 +19,12 @@ constexpr float kFrozen = 0.05F;
 constexpr float kDerateC = 80.0F;
 constexpr float kTripC = 100.0F;
 constexpr double kFollowingErrorMs = 200.0;
+// Of the largest current that a drive reports: the offset and noise of its measurement stay below.
+constexpr float kRest = 0.05F;
+// Of the limit: a drive that goes on with its last command may go on with that.
+constexpr float kRestOfLimit = 0.5F;
+constexpr Duration kRestTime = std::chrono::milliseconds{100};
+constexpr int kFastCurrentHz = 50;
 
 // A limit that trips on what is asked for would be of no use.
 void checkOverspeed(MotorReading& in) {
@@ -50,6 +57,22 @@ void checkFollowingError(MotorReading& in) {
       "needs angle_slew_deg_per_s: without it every step of the target would be a fault; add it");
 }
 
+void readRest(MotorReading& in) {
+  RestConfig& rest = in.draft.config.rest;
+  rest.gained_rpm = in.draft.config.guard.runaway_rpm;
+  rest.current_a = kRest * in.traits.signed_a;
+  const float limit_a = in.byVoltage() ? 0.0F : in.motor().effort_limit;
+  if (limit_a > 0.0F) rest.current_a = std::min(rest.current_a, kRestOfLimit * limit_a);
+  in.settings.read("rest_current_a", rest.current_a);
+  const int feedback_hz =
+      in.motor().feedback_hz > 0 ? in.motor().feedback_hz : std::max(in.traits.feedback_hz, 1);
+  const int current_hz = in.traits.signed_current_hz > 0 ? in.traits.signed_current_hz : feedback_hz;
+  rest.time = kRestTime;
+  if (current_hz < kFastCurrentHz) rest.time += std::chrono::nanoseconds{2'000'000'000 / current_hz};
+  if (const auto given_ms = in.settings.number("rest_ms"))
+    rest.time = std::chrono::milliseconds{static_cast<int>(*given_ms)};
+}
+
 }  // namespace
 
 void readGuard(MotorReading& in) {
@@ -73,6 +96,7 @@ void readGuard(MotorReading& in) {
   in.settings.read("following_error_deg", guard.following_error_deg);
   const auto behind_ms = in.settings.number("following_error_ms").value_or(kFollowingErrorMs);
   guard.following_error_time = std::chrono::milliseconds{static_cast<int>(behind_ms)};
+  readRest(in);
   checkOverspeed(in);
   checkTemperatures(in);
   checkFollowingError(in);

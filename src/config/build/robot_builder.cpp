@@ -54,6 +54,7 @@ class RobotBuilder {
     robot_.guard = guard == "required" ? GuardPolicy::kRequired
                    : guard == "off"    ? GuardPolicy::kOff
                                        : GuardPolicy::kPreferred;
+    readUnrest();
     robot_.receive = top_.text("receive") == "thread" ? ReceivePolicy::kThread : ReceivePolicy::kTick;
     readThreads();
     readLcm();
@@ -68,6 +69,18 @@ class RobotBuilder {
   }
 
  private:
+  void readUnrest() {
+    const auto given = top_.find("on_unrest");
+    if (!given) return;
+    const auto policy = given->text();
+    robot_.unrest = policy == "estop"       ? UnrestPolicy::kEstop
+                    : policy == "heartbeat" ? UnrestPolicy::kHeartbeat
+                                            : UnrestPolicy::kGroup;
+    if (robot_.unrest != UnrestPolicy::kHeartbeat || top_.find("heartbeat_gpio")) return;
+    problems_.error(given->place(), given->path,
+                    "there is no heartbeat that could stop; add heartbeat_gpio, or write estop");
+  }
+
   void readThreads() {
     const Settings scheduler = top_.section("scheduler");
     readThread(scheduler, robot_.scheduler);

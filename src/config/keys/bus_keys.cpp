@@ -69,6 +69,19 @@ constexpr std::array kBusKeys{
                  "and up when the bus is off, stalled or down; needs CAP_NET_ADMIN, and a CAN controller "
                  "(not vcan). false: it says "
                  "which command to type."},
+    Key{.name = "foreign_frames",
+        .kind = kInteger,
+        .range = {.min = 0, .max = 16},
+        .default_text = "3",
+        .about =
+            "So many frames within foreign_ms from somebody else that command one of our drives are a fault "
+            "of each motor that obeys them; questions and rest frames do not count. 0: they are only told."},
+    Key{.name = "foreign_ms",
+        .kind = kInteger,
+        .unit = "ms",
+        .range = {.min = 1, .max = 10'000},
+        .default_text = "100",
+        .about = "See foreign_frames."},
     Key{.name = "sim", .kind = kSection, .section = &kBusSim, .about = "How the bus is simulated."},
     Key{.name = "motors",
         .kind = kSectionList,

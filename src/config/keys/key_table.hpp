@@ -36,15 +36,16 @@ struct TextForm {
 
 /// Condition of a key that exists for some motors only.
 enum Need : std::uint16_t {
-  kNeedsCurrent = 1U << 0U,      ///< The drive is told a current.
-  kNeedsVoltage = 1U << 1U,      ///< The drive is told a voltage.
-  kNeedsIncremental = 1U << 2U,  ///< The velocity loop is of type incremental.
-  kNeedsPosition = 1U << 3U,     ///< The velocity loop is of type position.
-  kNeedsAbsolute = 1U << 4U,     ///< The encoder sits on the output shaft.
-  kNeedsTemperature = 1U << 5U,  ///< The drive reports its temperature.
-  kNeedsHostLoops = 1U << 6U,    ///< Its loops run on the host.
-  kNeedsUnasked = 1U << 7U,      ///< It speaks without being asked.
-  kNeedsOwnFrames = 1U << 8U,    ///< It shares its command frames with no other.
+  kNeedsCurrent = 1U << 0U,        ///< The drive is told a current.
+  kNeedsVoltage = 1U << 1U,        ///< The drive is told a voltage.
+  kNeedsIncremental = 1U << 2U,    ///< The velocity loop is of type incremental.
+  kNeedsPosition = 1U << 3U,       ///< The velocity loop is of type position.
+  kNeedsAbsolute = 1U << 4U,       ///< The encoder sits on the output shaft.
+  kNeedsTemperature = 1U << 5U,    ///< The drive reports its temperature.
+  kNeedsHostLoops = 1U << 6U,      ///< Its loops run on the host.
+  kNeedsUnasked = 1U << 7U,        ///< It speaks without being asked.
+  kNeedsOwnFrames = 1U << 8U,      ///< It shares its command frames with no other.
+  kNeedsSignedCurrent = 1U << 9U,  ///< It reports a current with the sign of its torque.
 };
 
 struct Section;

@@ -116,6 +116,23 @@ constexpr std::array kMotorKeys{
         .choices = stallActions,
         .default_text = "fault",
         .about = "fault: the motor stops until cleared. notify: the state shows it, nothing else."},
+    Key{.name = "rest_current_a",
+        .kind = kNumber,
+        .unit = "A",
+        .range = {.min = 0, .max = 1000},
+        .needs = kNeedsSignedCurrent,
+        .about =
+            "A drive that is told to rest and reports more than this, along with its motion or at "
+            "standstill, "
+            "for rest_ms is a fault. 0: not watched. Default: 5 % of the current that it can report, at most "
+            "half of current_limit_a."},
+    Key{.name = "rest_ms",
+        .kind = kInteger,
+        .unit = "ms",
+        .range = {.min = 20, .max = 10'000},
+        .needs = kNeedsSignedCurrent,
+        .about = "See rest_current_a; three samples at least. Default: 100, and of a drive that reports its "
+                 "current less often than 50 times a second two of its reports more."},
     Key{.name = "on_timeout",
         .kind = kText,
         .choices = fallbacks,

@@ -18,6 +18,8 @@ std::string whyMeaningless(const Key& key, std::uint16_t unmet, const MotorNatur
   if ((unmet & kNeedsIncremental) != 0) return "belongs to type: incremental; remove it, or change the type";
   if ((unmet & kNeedsPosition) != 0) return "belongs to type: position; remove it, or change the type";
   if ((unmet & kNeedsTemperature) != 0) return "the " + model + " reports no temperature; remove it";
+  if ((unmet & kNeedsSignedCurrent) != 0)
+    return "the " + model + ", as it is configured, reports no current with a sign; remove it";
   const std::string geared = nature.traits.absolute ? " behind a gear" : "";
   return "the " + model + geared + " does not know its output angle at power-up" + use_twin;
 }
@@ -26,6 +28,7 @@ std::uint16_t MotorNature::metNeeds() const noexcept {
   unsigned met = traits.effort == CommandUnit::kVolt ? kNeedsVoltage : kNeedsCurrent;
   met |= incremental ? kNeedsIncremental : kNeedsPosition;
   if (traits.reports_temperature) met |= kNeedsTemperature;
+  if (traits.signed_a > 0.0F) met |= kNeedsSignedCurrent;
   if (absolute) met |= kNeedsAbsolute;
   if (traits.host_loops != nullptr) met |= kNeedsHostLoops;
   if (!traits.asked) met |= kNeedsUnasked;

@@ -19,6 +19,8 @@ std::vector<std::string_view> tuningPolicies() { return {"open", "locked"}; }
 
 std::vector<std::string_view> clearPolicies() { return {"anywhere", "local"}; }
 
+std::vector<std::string_view> unrestPolicies() { return {"group", "estop", "heartbeat"}; }
+
 std::vector<std::string_view> timerPolicies() { return {"auto", "timerfd", "nanosleep"}; }
 
 std::vector<std::string_view> receivePolicies() { return {"tick", "thread"}; }
@@ -126,6 +128,14 @@ constexpr std::array kRobotKeys{
         .about =
             "rc10-guard, which tells the drives to rest when rc10d dies or hangs. required: do not start "
             "without it. preferred: warn and go on. off: for a debugger, which stops rc10d."},
+    Key{.name = "on_unrest",
+        .kind = kText,
+        .choices = unrestPolicies,
+        .default_text = "group",
+        .about =
+            "What stops when a drive has torque though it is told to rest. group: its motor, in FAULT, and "
+            "its group. estop: the robot as well. heartbeat: the robot, and heartbeat_gpio stops at once, so "
+            "that its relay cuts the power, until the e-stop is cleared."},
     Key{.name = "receive",
         .kind = kText,
         .choices = receivePolicies,

@@ -287,12 +287,24 @@ std::string watchdogText(const RobotConfig& config) {
                                 : "; heartbeat_gpio can drive a relay.\n");
 }
 
+/// The motors whose drives cannot be seen to rest.
+std::string restText(const RobotConfig& config) {
+  std::vector<std::string> motors;
+  for (const auto& bus : config.buses) {
+    for (const auto& motor : bus.motors)
+      if (!(motor.rest.current_a > 0.0F)) motors.push_back(motor.name());
+  }
+  if (motors.empty()) return "";
+  return "\nnote: whether " + listWords(motors) + " rest" + (motors.size() == 1 ? "s" : "") +
+         " when told to is not verified: a current with its sign is not reported, or not watched.\n";
+}
+
 }  // namespace
 
 std::string describe(const RobotConfig& config) {
   std::string text = robotText(config);
   for (const auto& bus : config.buses) text += busText(bus, config.rate_hz);
-  return text + groupsText(config) + modulesText(config) + watchdogText(config);
+  return text + groupsText(config) + modulesText(config) + watchdogText(config) + restText(config);
 }
 
 }  // namespace rc10

@@ -53,6 +53,7 @@ namespace {
 Result<std::unique_ptr<Robot>> Robot::build(const RobotConfig& config) {
   auto robot = std::unique_ptr<Robot>(new Robot);
   robot->period_ = config.period();
+  robot->unrest_ = config.unrest;
   for (const auto& bus : config.buses) {
     auto added = bus.type == BusType::kSocketCan ? robot->addSocketCan(bus) : robot->addSimulated(bus);
     if (!added) return tl::unexpected(added.error());
@@ -77,7 +78,8 @@ Result<void> Robot::addSocketCan(const BusConfig& config) {
                     .interface = config.interface,
                     .options = options,
                     .settings = config.linkSettings(),
-                    .manage_link = config.manage_link});
+                    .manage_link = config.manage_link,
+                    .foreign = config.foreign});
   if (auto added = addMotors(config); !added) return added;
   auto& entry = buses_.back();
   if (entry.bus->packers().empty()) return {};
@@ -90,7 +92,9 @@ Result<void> Robot::addSocketCan(const BusConfig& config) {
 Result<void> Robot::addSimulated(const BusConfig& config) {
   auto ends = sim::SimPort::makeSocketPair();
   if (!ends) return tl::unexpected(ends.error());
-  buses_.push_back({.bus = fdCANbus::adopt(config.name, std::move(ends->first), true), .simulated = true});
+  buses_.push_back({.bus = fdCANbus::adopt(config.name, std::move(ends->first), true),
+                    .foreign = config.foreign,
+                    .simulated = true});
   if (auto added = addMotors(config); !added) return added;
   const auto drives = simulatedBus(config);
   if (auto checked = sim::SimBus::check(drives); !checked) return checked;
@@ -116,10 +120,20 @@ Result<void> Robot::addMotor(const MotorConfig& config, std::size_t bus_index) {
   if (!motor) return tl::unexpected(motor.error());
   entry.feedback_expected |= (*motor)->speaksUnasked();
   // Half: the timeout spans two periods of its feedback at least.
-  motors_.push_back({std::move(*motor), bus_index, config.feedback_timeout,
-                     static_cast<std::uint64_t>(config.feedback_timeout / 2 / period_), config.guard,
-                     config.shaping, config.fallback, config.standstill_rpm, config.run_down, config.optional,
-                     false});
+  auto use = config.family->busUse(config.settings);
+  motors_.push_back(
+      {.motor = std::move(*motor),
+       .bus = bus_index,
+       .feedback_timeout = config.feedback_timeout,
+       .feedback_timeout_ticks = static_cast<std::uint64_t>(config.feedback_timeout / 2 / period_),
+       .guard = config.guard,
+       .rest = config.rest,
+       .shaping = config.shaping,
+       .fallback = config.fallback,
+       .standstill_rpm = config.standstill_rpm,
+       .run_down = config.run_down,
+       .optional = config.optional,
+       .steers = std::move(use.steers.empty() ? use.obeys : use.steers)});
   return {};
 }
 

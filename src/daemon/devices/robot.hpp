@@ -35,12 +35,14 @@ class Robot {
     /// Without feedback for so many ticks that ran, too, before it counts as lost.
     std::uint64_t feedback_timeout_ticks = 0;
     GuardConfig guard{};
+    RestConfig rest{};
     ShapingConfig shaping{};
     FallbackConfig fallback{};
     float standstill_rpm = 0.0F;
-    Duration run_down{};    ///< Without torque and feedback it turns no longer than this.
-    bool optional = false;  ///< The robot may be enabled without it.
-    bool homed = false;     ///< A module finds its angle.
+    Duration run_down{};                ///< Without torque and feedback it turns no longer than this.
+    bool optional = false;              ///< The robot may be enabled without it.
+    bool homed = false;                 ///< A module finds its angle.
+    std::vector<FrameFilter> steers{};  ///< Frames that command its drive, whoever sends them.
   };
   struct BusEntry {
     std::unique_ptr<fdCANbus> bus;
@@ -52,8 +54,9 @@ class Robot {
     CanLinkSettings settings{};         ///< As configured; nothing of a simulated one.
     bool manage_link = false;           ///< rc10d makes them so and restarts the interface.
     std::unique_ptr<BusParts> parts{};  ///< The packers that several motors share.
-    bool held = false;                  ///< The bus carries no frames now. Scheduler thread only.
-    bool simulated = false;             ///< Its drives are a thread of this process.
+    ForeignLimit foreign{};
+    bool held = false;       ///< The bus carries no frames now. Scheduler thread only.
+    bool simulated = false;  ///< Its drives are a thread of this process.
   };
 
   struct ModuleEntry {
@@ -91,6 +94,7 @@ class Robot {
   /// Null: no module wants GPIO lines.
   [[nodiscard]] LineBanks* lineBanks() noexcept { return line_banks_.get(); }
   [[nodiscard]] const std::vector<GroupConfig>& groups() const noexcept { return coupled_; }
+  [[nodiscard]] UnrestPolicy unrestPolicy() const noexcept { return unrest_; }
   /// The simulated motors, for the thread or the test that steps them.
   [[nodiscard]] std::vector<std::unique_ptr<sim::SimPort>>& simPorts() noexcept { return sim_ports_; }
   /// The thread of the simulation counts its steps here; 0: somebody else steps it. Any thread.
@@ -110,6 +114,7 @@ class Robot {
   [[nodiscard]] Result<void> addGpioLines();
 
   Duration period_{};
+  UnrestPolicy unrest_ = UnrestPolicy::kGroup;
   std::atomic<std::uint64_t> simulation_steps_{0};
   std::vector<BusEntry> buses_;
   std::vector<MotorEntry> motors_;

@@ -14,7 +14,12 @@ constexpr Duration kClearPatience = std::chrono::milliseconds{250};
 }  // namespace
 
 Axis::Axis(const Robot::MotorEntry& entry, const Robot::BusEntry& bus) noexcept
-    : entry_(entry), bus_(bus), motor_(*entry.motor), guard_(entry.guard), shaper_(entry.shaping) {}
+    : entry_(entry),
+      bus_(bus),
+      motor_(*entry.motor),
+      guard_(entry.guard),
+      rest_(entry.rest),
+      shaper_(entry.shaping) {}
 
 void Axis::fill(MotorSnapshot& snapshot) const noexcept {
   snapshot.feedback = motor_.feedback();
@@ -145,6 +150,23 @@ bool Axis::trips(const Tick& tick) noexcept {
   return true;
 }
 
+RestCheck::Verdict Axis::checkRest(const Tick& tick) noexcept {
+  const auto ordered = motor_.ordered();
+  const bool rests = ordered == FrameKind::kRest || ordered == FrameKind::kPoll ||
+                     (ordered == FrameKind::kIdle && motor_.driveFrames().idle_rests);
+  const auto verdict = rest_.step(motor_.feedback(), rests && fresh(tick), entry_.standstill_rpm);
+  if (verdict == RestCheck::Verdict::kDriven && status_ != MotorStatus::kFault)
+    fault_ = FaultCode::kNotAtRest;
+  return verdict;
+}
+
+// One that is not there obeys nobody, as far as is known, and must be enabled anyway.
+bool Axis::yields() noexcept {
+  if (status_ == MotorStatus::kOffline || status_ == MotorStatus::kFault) return false;
+  fault_ = FaultCode::kForeignCommands;
+  return true;
+}
+
 bool Axis::lapses(const Tick& tick) noexcept {
   if (!lease_.taken() || lease_.held(tick.now)) return false;
   const bool coasts = motor_.target().mode == ControlMode::kCoast;
@@ -202,7 +224,10 @@ std::optional<MotorStatus> Axis::take(MotorEvent event, RobotStatus robot, const
   const auto before = status_;
   status_ = next(before, event);
   if (status_ == before) return std::nullopt;
-  if (before == MotorStatus::kFault) fault_ = FaultCode::kNone;
+  if (before == MotorStatus::kFault) {
+    fault_ = FaultCode::kNone;
+    rest_.reset();  // a drive that still does not rest is a fault again
+  }
   if (isOn(status_)) stop_ = {};
   const bool stopped = isOn(before) && !isOn(status_);
   if (stopped || status_ == MotorStatus::kFault) stop_ = stop;

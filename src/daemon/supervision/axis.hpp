@@ -54,6 +54,11 @@ class Axis {
   [[nodiscard]] std::optional<MotorEvent> endsEnabling(const Tick& tick) const noexcept;
   /// Limits and derating of this tick. A fault that the guard sees: fault() from now on.
   [[nodiscard]] bool trips(const Tick& tick) noexcept;
+  /// Whether its drive rests, while it is told to. RestCheck::Verdict::kDriven: fault() from now on, unless
+  /// it is in FAULT for another reason.
+  [[nodiscard]] RestCheck::Verdict checkRest(const Tick& tick) noexcept;
+  /// Another controller commands its drive: fault() from now on. False: it is not there, or in FAULT already.
+  [[nodiscard]] bool yields() noexcept;
   /// The command in force has lapsed: its fallback has begun.
   [[nodiscard]] bool lapses(const Tick& tick) noexcept;
   /// Tells the motor what kind of frame its drive gets, and the target as it is shaped.
@@ -102,6 +107,7 @@ class Axis {
   const Robot::BusEntry& bus_;
   Motor_Base& motor_;
   MotorGuard guard_;
+  RestCheck rest_;
   TargetShaper shaper_;
   Fallback fallback_;
   Lease lease_;      ///< Whose target is in force, and until when.

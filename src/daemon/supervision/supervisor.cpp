@@ -1,6 +1,9 @@
 #include "daemon/supervision/supervisor.hpp"
 
 #include <algorithm>
+#include <cmath>
+
+#include "app/saturated.hpp"
 
 namespace rc10 {
 namespace {
@@ -11,7 +14,7 @@ constexpr Duration kDeadSimulation = std::chrono::seconds{1};
 }  // namespace
 
 Supervisor::Supervisor(Robot& robot, LinkExchange& link, FlightRecorder* recorder)
-    : robot_(robot), link_(link), recorder_(recorder) {
+    : robot_(robot), link_(link), recorder_(recorder), foreign_(robot) {
   axes_.reserve(robot.motors().size());
   for (const auto& entry : robot.motors()) axes_.emplace_back(entry, robot.buses()[entry.bus]);
   group_of_.assign(axes_.size(), kNoGroup);
@@ -40,22 +43,45 @@ void Supervisor::decide(const Tick& tick) noexcept {
 void Supervisor::watch(std::size_t motor, const Tick& tick) noexcept {
   auto& axis = axes_[motor];
   const auto who = static_cast<std::int16_t>(motor);
-  const auto fault = [&](std::uint32_t native_code) {
+  const auto fault = [&](std::int32_t native_code) {
     report({EventCode::kMotorFault, Severity::kError, who, static_cast<std::int32_t>(axis.fault()),
-            static_cast<std::int32_t>(native_code), tick.now});
+            native_code, tick.now});
     transition(motor, MotorEvent::kFault, tick);
   };
   axis.listen(tick, simulation_late_);
   if (axis.fresh(tick)) transition(motor, MotorEvent::kFeedbackFresh, tick);
   if (axis.lost(tick)) transition(motor, MotorEvent::kFeedbackLost, tick);
   if (axis.losesReference(tick)) report({EventCode::kReferenceLost, Severity::kWarning, who, 0, 0, tick.now});
-  if (const auto complaint = axis.complains(tick)) fault(complaint->native_code);
+  if (const auto complaint = axis.complains(tick)) fault(static_cast<std::int32_t>(complaint->native_code));
   if (const auto end = axis.endsEnabling(tick)) transition(motor, *end, tick);
   if (axis.trips(tick)) fault(0);
+  if (const auto by = foreign_.takeover(motor); by && axis.yields()) fault(*by);
+  watchRest(motor, tick);
   if (axis.lapses(tick)) {
     report({EventCode::kCommandTimeout, Severity::kWarning, who,
             static_cast<std::int32_t>(axis.timeoutAction()), 0, tick.now});
   }
+}
+
+// A motor that is in FAULT stays there for its first reason; what its drive does is told all the same.
+void Supervisor::watchRest(std::size_t motor, const Tick& tick) noexcept {
+  auto& axis = axes_[motor];
+  const auto who = static_cast<std::int16_t>(motor);
+  switch (axis.checkRest(tick)) {
+    case RestCheck::Verdict::kRests: return;
+    case RestCheck::Verdict::kGainsSpeed: {
+      const float rpm = std::round(axis.motor().feedback().velocity_rpm);
+      return report(
+          {EventCode::kMovesAtRest, Severity::kInfo, who, saturatedRound<std::int32_t>(rpm), 0, tick.now});
+    }
+    case RestCheck::Verdict::kDriven: break;
+  }
+  report({EventCode::kMotorFault, Severity::kError, who, static_cast<std::int32_t>(FaultCode::kNotAtRest), 0,
+          tick.now});
+  transition(motor, MotorEvent::kFault, tick);
+  if (robot_.unrestPolicy() == UnrestPolicy::kGroup) return;
+  estop({StopCause::kFault, link::Name{axis.motor().name()}}, tick);
+  heartbeat_rests_ = robot_.unrestPolicy() == UnrestPolicy::kHeartbeat;
 }
 
 // Drives of a simulation whose thread had no processor are not silent: they make up for it.
@@ -119,6 +145,7 @@ void Supervisor::setRobotState(RobotStatus state, const Stop& why, const Tick& t
   stop_ = state == RobotStatus::kRun ? Stop{} : why;
   stopped_ = state == RobotStatus::kRun ? MonotonicTime{} : tick.now;
   if (state == RobotStatus::kEstop) ++estops_;
+  if (state == RobotStatus::kRun) heartbeat_rests_ = false;
   if (state != RobotStatus::kRun) {
     for (auto& group : groups_) group.rearm.reset();  // even if it is cleared within this tick
     const Stop stop{causeOf(MotorEvent::kEstop, state), why.by};

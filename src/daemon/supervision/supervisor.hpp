@@ -13,6 +13,7 @@
 #include "daemon/exchange/states.hpp"
 #include "daemon/recording/flight_recorder.hpp"
 #include "daemon/supervision/axis.hpp"
+#include "daemon/supervision/foreign_watch.hpp"
 #include "daemon/supervision/lease.hpp"
 
 namespace rc10 {
@@ -55,6 +56,8 @@ class Supervisor {
   void hearClient(MonotonicTime now) noexcept { client_heard_ = now; }
   [[nodiscard]] MonotonicTime clientHeard() const noexcept { return client_heard_; }
 
+  /// A drive does not rest, and the heartbeat is to end with that, until the e-stop is cleared.
+  [[nodiscard]] bool heartbeatRests() const noexcept { return heartbeat_rests_; }
   /// When it left RUN.
   [[nodiscard]] MonotonicTime stoppedAt() const noexcept { return stopped_; }
   [[nodiscard]] RobotStatus robotState() const noexcept { return state_; }
@@ -117,6 +120,7 @@ class Supervisor {
   void transition(std::size_t motor, MotorEvent event, const Tick& tick) noexcept;
   void transition(std::size_t motor, MotorEvent event, const Stop& why, const Tick& tick) noexcept;
   void watch(std::size_t motor, const Tick& tick) noexcept;
+  void watchRest(std::size_t motor, const Tick& tick) noexcept;
   void watchGroup(std::size_t index, const Tick& tick) noexcept;
   void stopGroup(std::size_t index, GroupStop reason, const Tick& tick) noexcept;
   void rearm(std::size_t index, const Tick& tick) noexcept;
@@ -143,6 +147,7 @@ class Supervisor {
   Robot& robot_;
   LinkExchange& link_;
   FlightRecorder* recorder_;
+  ForeignWatch foreign_;
   RobotStatus state_ = RobotStatus::kRun;
   Stop stop_;                ///< Why not in RUN,
   MonotonicTime stopped_{};  ///< and since when.
@@ -156,6 +161,7 @@ class Supervisor {
   std::uint64_t simulation_steps_ = 0;  ///< As counted in the tick before.
   MonotonicTime simulation_stepped_at_{};
   bool simulation_late_ = false;
+  bool heartbeat_rests_ = false;
   bool estop_asked_ = false;  ///< In this tick, until decide().
   MonotonicTime client_heard_{};
   std::uint64_t expired_commands_ = 0;

@@ -83,9 +83,10 @@ void Scheduler::stopForTheComputer(const Tick& tick) noexcept {
 }
 
 void Scheduler::beat(const Tick& tick) noexcept {
-  const bool rests = heartbeat_rests_after_ && supervisor_.robotState() == RobotStatus::kEstop &&
+  const bool stays = heartbeat_rests_after_ && supervisor_.robotState() == RobotStatus::kEstop &&
                      tick.now - supervisor_.stoppedAt() >= *heartbeat_rests_after_;
-  if (!rests) beats_.store(beats_.load(std::memory_order_relaxed) + 1, std::memory_order_relaxed);
+  if (!stays && !supervisor_.heartbeatRests())
+    beats_.store(beats_.load(std::memory_order_relaxed) + 1, std::memory_order_relaxed);
 }
 
 void Scheduler::beginStop(const Tick& tick) noexcept {

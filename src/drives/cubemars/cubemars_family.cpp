@@ -220,6 +220,7 @@ MotorTraits cubemarsTraits(const CubemarsSetup& setup) {
   traits.absolute = setup.output_encoder;
   traits.reports_temperature = true;
   traits.frozen_a = mit || model.signed_current ? traits.effort_full_scale : 0.0F;
+  traits.signed_a = traits.frozen_a;
   traits.feedback_hz = mit ? 1000 : 500;  // the upload rate is set in the vendor's program, 1 to 500 Hz
   traits.max_feedback_hz = mit ? 1000 : 500;
   traits.scaled_speed = mit;  // a V3 drive reports in the servo protocol's ERPM

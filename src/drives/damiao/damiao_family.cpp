@@ -87,6 +87,7 @@ constexpr DriveFrames driveFrames(DamiaoControl control) {
                      .brake = Provision::kFrame,
                      .enable = Provision::kFrame};
   if (control == DamiaoControl::kMit) frames.damp = Provision::kFrame;
+  frames.idle_rests = control == DamiaoControl::kMit;  // the others are told to stand still
   // At a speed of 0 a drive in velocity mode may be pulled away for good.
   if (control != DamiaoControl::kVelocity) frames.hold = Provision::kFrame;
   return frames;
@@ -140,6 +141,7 @@ MotorTraits DamiaoFamily::traits(std::string_view name, const OwnValues& own) co
   traits.phase_resistance_ohm = model.phase_resistance_ohm;
   traits.absolute = model.output_encoder;
   traits.frozen_a = static_cast<float>(model.scale.t_max_nm) / model.torque_nm_per_a;
+  traits.signed_a = traits.frozen_a;
   traits.scaled_speed = true;
   traits.asked = true;
   traits.fd = can_fd;
@@ -214,6 +216,9 @@ BusUse DamiaoFamily::busUse(const MotorSettings& settings) const {
                {.id = {damiao::kRegisterId, false},
                 .mask = kStandardIdMask,
                 .discriminator = PayloadDiscriminator{0, 0xFF, byte}}};
+  // In each of its control modes; it takes other ids that end in its own as well, but devices may have those.
+  for (std::uint32_t mode = 0; mode < 4; ++mode)
+    use.steers.push_back({.id = {mode * 0x100U + id, false}, .mask = kStandardIdMask});
   use.feedback = {{master_id, shape(8), per_second}};
   use.commands = {{control_id, shape(own.control == DamiaoControl::kVelocity ? 4 : 8), per_second}};
   return use;

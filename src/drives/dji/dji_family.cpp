@@ -53,6 +53,7 @@ class DjiFamily final : public MotorFamily {
     traits.absolute = model.absolute_output;
     traits.reports_temperature = model.reports_temperature;
     traits.frozen_a = model.current.full_scale;
+    traits.signed_a = traits.frozen_a;
     traits.modes =
         ModeSet{ControlMode::kCoast,      by_current ? ControlMode::kCurrent : ControlMode::kVoltage,
                 ControlMode::kVelocity,   ControlMode::kAngle,

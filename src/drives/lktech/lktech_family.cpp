@@ -64,6 +64,7 @@ class LktechFamily final : public MotorFamily {
     traits.nominal_v = 24.0F;
     traits.absolute = true;  // direct drives, and gears with a second encoder at the output (E)
     traits.frozen_a = static_cast<float>(model.amperes_per_raw * lktech::kRawCurrentMax);
+    traits.signed_a = traits.frozen_a;
     traits.asked = true;
     static constexpr DriveSetup kSetup{.tool = "LK Motor Tool (over its serial port)"};
     traits.setup = &kSetup;
@@ -95,6 +96,14 @@ class LktechFamily final : public MotorFamily {
       // Currents; and by one source speeds (0x281), angles (0x282) and a mixture (0x288).
       for (const std::uint32_t id : {lktech::kGroupId, 0x281U, 0x282U, 0x288U}) use.obeys.push_back(one(id));
     }
+    // 0xA0 to 0xA8 move it; 0x80 and 0x81 switch it off and stop it.
+    use.steers = {FrameFilter{.id = {own_id, false},
+                              .mask = kStandardIdMask,
+                              .discriminator = PayloadDiscriminator{0, 0xF0, 0xA0}},
+                  FrameFilter{.id = {own_id, false},
+                              .mask = kStandardIdMask,
+                              .discriminator = PayloadDiscriminator{0, 0xFE, 0x80}}};
+    use.steers.insert(use.steers.end(), use.obeys.begin() + 1, use.obeys.end());
     use.feedback = {{.id = {own_id, false}, .shape = {}, .per_second = told_hz + kQueriesHz}};
     if (grouped) {
       use.commands = {{.id = {lktech::kGroupId, false}, .shape = {}, .per_second = told_hz},

@@ -65,8 +65,10 @@ bool looksLikeCommand(std::span<const std::uint8_t> payload) noexcept {
     case Code::kCurrent: return zeros(payload.subspan(1, 3)) && zeros(payload.subspan(6));
     case Code::kVelocity:
     case Code::kPosition: return payload[1] == 0;
-    default: return zeros(payload.subspan(1));
+    default: break;
   }
+  const bool moves = (payload[0] & 0xF0U) == 0xA0U;  // with parameters, of which the first is 0 in most
+  return moves ? payload[1] == 0 : zeros(payload.subspan(1));
 }
 
 Reading decodeReading(std::span<const std::uint8_t> payload) noexcept {

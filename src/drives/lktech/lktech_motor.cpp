@@ -52,6 +52,11 @@ bool LKTech_Motor::matchesFrame(const CanFrame& frame) const noexcept {
   return frame.id == filters_[0].id && !frame.fd && frame.type != FrameType::kError;
 }
 
+// Before the temperature is known a reply may look like a command.
+FrameVerdict LKTech_Motor::verdictOnCommand() const noexcept {
+  return std::isnan(feedback_.temperature_c) ? FrameVerdict::kAccepted : FrameVerdict::kForeign;
+}
+
 bool LKTech_Motor::isReply(const CanFrame& frame) const noexcept {
   if (!lktech::looksLikeCommand(frame.payload())) return true;
   return !frame.sent_here && std::abs(feedback_.temperature_c) <= kLktechNearZeroC;
@@ -66,14 +71,19 @@ FrameVerdict LKTech_Motor::updateFeedback(const CanFrame& frame) noexcept {
     case lktech::Code::kCurrent:
     case lktech::Code::kVelocity:
     case lktech::Code::kPosition:
-      if (isReply(frame)) acceptReading(frame);
+      if (!isReply(frame)) return verdictOnCommand();
+      acceptReading(frame);
       break;
     case lktech::Code::kStatus:
     case lktech::Code::kClear:
-      if (isReply(frame)) acceptStatus(frame);
+      if (!isReply(frame)) return verdictOnCommand();
+      acceptStatus(frame);
       break;
     case lktech::Code::kAngle: acceptTurns(frame); break;
-    default: break;  // the copy of a command; the reply to another controller's question
+    case lktech::Code::kOn:
+      break;  // the copy of our command
+    // What rc10d never says: another controller's command or question, and the drive's copy of it or answer.
+    default: return lktech::looksLikeCommand(frame.payload()) ? verdictOnCommand() : FrameVerdict::kAccepted;
   }
   return FrameVerdict::kAccepted;
 }

@@ -45,6 +45,7 @@ class LKTech_Motor final : public SoloMotor {
   enum class Step : std::uint8_t { kStatus, kTurnOn, kTurns, kObey };
 
   [[nodiscard]] bool isReply(const CanFrame& frame) const noexcept;
+  [[nodiscard]] FrameVerdict verdictOnCommand() const noexcept;
   void acceptReading(const CanFrame& frame) noexcept;
   void acceptStatus(const CanFrame& frame) noexcept;
   void acceptTurns(const CanFrame& frame) noexcept;

@@ -99,6 +99,7 @@ class MoteusFamily final : public MotorFamily {
     traits.torque_nm_per_a =
         kv_rpm_per_v > 0.0 ? static_cast<float>(kTorqueFactor / kv_rpm_per_v * gear_ratio) : 0.0F;
     traits.frozen_a = kFullScaleA;
+    traits.signed_a = traits.frozen_a;
     traits.nominal_v = 24.0F;
     traits.no_load_rpm = static_cast<float>(kv_rpm_per_v * 24.0 / gear_ratio);
     traits.absolute = own.flag("absolute");
@@ -140,6 +141,9 @@ class MoteusFamily final : public MotorFamily {
       use.obeys.push_back({.id = {own.can_prefix << 16U | destination, true}, .mask = kExtendedMask});
       use.obeys.push_back({.id = {destination, false}, .mask = kStandardMask});
     }
+    // Commands begin with a write of a register (0x00 to 0x0F), questions with a read.
+    use.steers = use.obeys;
+    for (auto& filter : use.steers) filter.discriminator = PayloadDiscriminator{0, 0xF0, 0x00};
     const auto shape = [&own](CanId of, std::size_t length) {
       return FrameShape{
           .extended = of.extended, .fd = true, .bit_rate_switch = own.bit_rate_switch, .length = length};

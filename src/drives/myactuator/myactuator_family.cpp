@@ -71,6 +71,7 @@ class MyactuatorFamily final : public MotorFamily {
     traits.nominal_v = model.nominal_v;
     traits.absolute = own.flag("absolute_encoder");
     traits.frozen_a = model.peak_current_a;
+    traits.signed_a = traits.frozen_a;
     traits.scaled_speed = true;  // of the motion mode
     traits.asked = true;
     traits.frames = kMyactuatorFrames;
@@ -102,6 +103,12 @@ class MyactuatorFamily final : public MotorFamily {
     use.sends = {one(myactuator::kReplyBase + id), one(myactuator::kMotionReplyBase + id)};
     use.obeys = {one(myactuator::kRequestBase + id), one(myactuator::kMotionBase + id),
                  one(myactuator::kBroadcastId), one(myactuator::kIdSettingId)};
+    // 0xA0 to 0xAF move it; 0x80 and 0x81 switch it off and stop it.
+    for (const auto request : {myactuator::kRequestBase + id, myactuator::kBroadcastId}) {
+      for (const auto code : {PayloadDiscriminator{0, 0xF0, 0xA0}, PayloadDiscriminator{0, 0xFE, 0x80}})
+        use.steers.push_back({.id = {request, false}, .mask = kStandardIdMask, .discriminator = code});
+    }
+    use.steers.push_back(one(myactuator::kMotionBase + id));
     use.feedback = {{.id = use.sends[0].id, .shape = {}, .per_second = all_hz}};
     use.commands = {{.id = use.obeys[0].id, .shape = {}, .per_second = all_hz}};
     return use;

@@ -74,6 +74,8 @@ class OdriveFamily : public MotorFamily {
     traits.torque_nm_per_a = static_cast<float>(own.number("torque_constant_nm_per_a"));
     traits.reports_temperature = telemetry && row != nullptr && row->firmware == OdriveFirmware::k06;
     // traits.frozen_a stays 0: the current comes too rarely to tell a frozen drive by it.
+    if (telemetry) traits.signed_a = traits.effort_full_scale;
+    traits.signed_current_hz = own.integer("telemetry_hz");
     // encoder_rate_ms (0.5), encoder_msg_rate_ms (0.6): 10 ms as delivered, whole milliseconds.
     traits.feedback_hz = 100;
     traits.max_feedback_hz = 1000;
@@ -108,6 +110,11 @@ class OdriveFamily : public MotorFamily {
     use.sends = {own_block};
     use.obeys = {own_block};
     if (v06) use.obeys.push_back({.id = kAddressBroadcast, .mask = kStandardIdMask, .discriminator = {}});
+    using odrive::Message;
+    for (const auto message :
+         {Message::kEstop, Message::kSetAxisState, Message::kSetControllerMode, Message::kSetInputPos,
+          Message::kSetInputVel, Message::kSetInputTorque, Message::kSetLimits, Message::kReboot})
+      use.steers.push_back({.id = odrive::canId(node, message), .mask = kStandardIdMask});
 
     const double feedback_hz = settings.feedback_hz > 0 ? settings.feedback_hz : 100.0;
     use.feedback = {{odrive::canId(node, odrive::Message::kEncoderEstimates), FrameShape{}, feedback_hz},

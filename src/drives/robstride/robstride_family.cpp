@@ -128,6 +128,7 @@ class RobstrideFamily final : public MotorFamily {
     traits.phase_resistance_ohm = model.phase_resistance_ohm;
     traits.absolute = model.absolute;
     traits.frozen_a = static_cast<float>(model.torque_range_nm / torque_nm_per_a);
+    traits.signed_a = traits.frozen_a;
     traits.scaled_speed = true;
     traits.asked = true;
     traits.watchdog = own.integer("watchdog_ms") > 0;
@@ -171,6 +172,10 @@ class RobstrideFamily final : public MotorFamily {
                              .mask = kExtendedIdMask}};
     // Whatever is addressed to it, of any type.
     use.obeys = {FrameFilter{.id = {drive_id, true}, .mask = 0xFFU}};
+    for (const auto type : {robstride::Type::kOperate, robstride::Type::kEnable, robstride::Type::kStop,
+                            robstride::Type::kSetZero, robstride::Type::kWriteParameter})
+      use.steers.push_back(
+          {.id = {static_cast<std::uint32_t>(type) << 24U | drive_id, true}, .mask = 0x1F00'00FFU});
     const double commands_hz = static_cast<double>(settings.tick_hz) / settings.command_divider;
     const FrameShape shape{.extended = true, .length = 8};
     use.commands = {{.id = robstride::canId(robstride::Type::kOperate, 0x7FFF, settings.id),

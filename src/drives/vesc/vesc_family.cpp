@@ -191,6 +191,14 @@ class VescFamily final : public MotorFamily {
     use.obeys = {
         FrameFilter{.id = {static_cast<std::uint32_t>(settings.id), true}, .mask = kObeyedMask},
         FrameFilter{.id = {static_cast<std::uint32_t>(vesc::kBroadcast), true}, .mask = kObeyedMask}};
+    using vesc::Packet;
+    for (const int id : {settings.id, vesc::kBroadcast}) {
+      for (const auto packet :
+           {Packet::kSetDuty, Packet::kSetCurrent, Packet::kSetCurrentBrake, Packet::kSetErpm,
+            Packet::kSetPosition, Packet::kSetCurrentRelative, Packet::kSetCurrentBrakeRelative,
+            Packet::kSetHandbrake, Packet::kSetHandbrakeRelative})
+        use.steers.push_back({.id = vesc::canId(packet, id)});
+    }
 
     const double rate_hz = settings.feedback_hz > 0 ? settings.feedback_hz : 50.0;
     const auto status = [&](vesc::Packet packet, bool fast) {
@@ -242,6 +250,7 @@ MotorTraits vescTraits(const VescOptions& options) {
   traits.max_feedback_hz = 1000;  // the setting goes higher, the bus does not
   // Its own limits may keep the current below what it is told: that is no frozen reading.
   traits.frozen_a = 0.0F;
+  traits.signed_a = options.motor_current_max_a;
   traits.asked = false;
   traits.watchdog = options.ask_status;
   traits.modes = options.angle == VescAngle::kNone ? kVescModes : kVescModesWithAngle;

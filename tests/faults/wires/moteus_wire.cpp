@@ -71,6 +71,11 @@ class MoteusWire final : public Wire {
     return kAllBytes;
   }
 
+  // With another source, or a standard id, or to every drive.
+  [[nodiscard]] bool obeys(const CanFrame& frame) const override {
+    const auto destination = frame.id.value & 0xFFU;
+    return destination == static_cast<std::uint32_t>(id()) || destination == 0x7F;
+  }
   bool heard(const CanFrame& frame) override {
     if (frame.id != reply_id_ || frame.type != FrameType::kData) return false;
     const auto told = numbersOf(frame, 0x20);

@@ -1,0 +1,46 @@
+#include "daemon/supervision/foreign_watch.hpp"
+
+#include <algorithm>
+#include <utility>
+
+#include "daemon/exchange/events.hpp"
+
+namespace rc10 {
+
+ForeignWatch::ForeignWatch(Robot& robot) : robot_(robot), watched_(robot.motors().size()) {
+  for (auto& entry : robot.buses()) entry.bus->setForeignListener(*this);
+}
+
+void ForeignWatch::onForeign(const fdCANbus& bus, const CanFrame& frame) noexcept {
+  const auto steered = [&frame](const Robot::MotorEntry& entry) {
+    return std::any_of(entry.steers.begin(), entry.steers.end(),
+                       [&frame](const FrameFilter& filter) { return accepts(filter, frame); });
+  };
+  for (std::size_t motor = 0; motor < watched_.size(); ++motor) {
+    const auto& entry = robot_.motors()[motor];
+    const auto& on = robot_.buses()[entry.bus];
+    if (on.bus.get() != &bus || on.foreign.frames == 0 || !steered(entry)) continue;
+    if (bus.isRest(frame)) return;
+    count(motor, on.foreign, frame);
+  }
+}
+
+void ForeignWatch::count(std::size_t motor, const ForeignLimit& limit, const CanFrame& frame) noexcept {
+  auto& watched = watched_[motor];
+  const auto frames = static_cast<std::size_t>(limit.frames);
+  auto& oldest = watched.received[watched.count % frames];
+  const bool enough = ++watched.count >= frames;
+  // The place of the newest is the one of the first of so many.
+  const auto& first = frames == 1 ? frame.received : watched.received[watched.count % frames];
+  oldest = frame.received;
+  if (enough && frame.received - first <= limit.within)
+    watched.takeover = foreignFrame(frame.id, frame.sent_here);
+}
+
+std::optional<std::int32_t> ForeignWatch::takeover(std::size_t motor) noexcept {
+  auto& watched = watched_[motor];
+  if (watched.takeover) watched.count = 0;
+  return std::exchange(watched.takeover, std::nullopt);
+}
+
+}  // namespace rc10
