@@ -42,8 +42,10 @@ COMMAND_PERIOD_MS = 10
 
 
 @contextlib.contextmanager
-def drives() -> Iterator[None]:
-    front = Proc(sys.executable, HERE / "faulty_drives.py", FRONT, "M3508:1", "M3508:2", "M2006:3")
+def drives(*on_front: str) -> Iterator[None]:
+    """Those of robot.yaml, or on the front bus others."""
+    names = on_front or ("M3508:1", "M3508:2", "M2006:3")
+    front = Proc(sys.executable, HERE / "faulty_drives.py", FRONT, *names)
     rear = Proc(sys.executable, HERE / "faulty_drives.py", REAR, "M3508:1")
     with front, rear:
         front.wait_line("^ready", 30.0)
@@ -118,7 +120,10 @@ class Witness:
         return [
             f
             for f in self.dump.frames()
-            if f.iface == interface and f.id == COMMAND and not f.error and f.t_ns >= after_ns
+            if f.iface == interface
+            and f.id == COMMAND
+            and not (f.error or f.rtr)
+            and f.t_ns >= after_ns
         ]
 
     def last_torque_ns(self, name: str) -> int:

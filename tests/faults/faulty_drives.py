@@ -38,6 +38,9 @@ class Fault(IntEnum):
     STALLED = 6
     SHORT = 7  # frames of 7 bytes
     REBOOT = 8  # no frame for so many ms, then on with no command
+    DEAF = 9  # goes on with its last command: its receiving line is off; argument: 1: blocked, too
+    PUSHED = 10  # argument: hundredths of N m of a load from outside
+    PARKED = 11  # argument: deg; switched off, turned there by hand, switched on 100 ms later
 
 
 def fault(motor_id: int, kind: Fault, argument: int = 0) -> bytes:
@@ -55,9 +58,11 @@ class FaultyMotor(FakeMotor):
         self._last: can.Message | None = None
         self._off_s = 0.0
         self._hot_c = 0.0
+        self._blocked = False
 
     def order(self, kind: Fault, argument: int) -> None:
         self.fault = kind
+        self._blocked = kind is Fault.STALLED or (kind is Fault.DEAF and argument == 1)
         if kind is Fault.SLIP:
             self.slip_turns += argument / 1000
         elif kind is Fault.HOT:
@@ -65,6 +70,16 @@ class FaultyMotor(FakeMotor):
         elif kind is Fault.REBOOT:
             self._off_s = argument / 1000
             self._command_raw = 0
+        elif kind is Fault.PUSHED:
+            self.load_nm = -argument / 100
+        elif kind is Fault.PARKED:
+            self._off_s = 0.1
+            self._command_raw = 0
+            self.speed_rad_s = self.current_a = 0.0
+            self.rotor_turns = argument / 360 * self.spec.model.gear_ratio
+
+    def decode_command(self, message: can.Message) -> bool:
+        return self.fault is not Fault.DEAF and super().decode_command(message)
 
     @property
     def silent(self) -> bool:
@@ -73,7 +88,7 @@ class FaultyMotor(FakeMotor):
     def step(self, dt_s: float) -> None:
         self._off_s = max(0.0, self._off_s - dt_s)
         super().step(dt_s)
-        if self.fault is Fault.STALLED:
+        if self._blocked:
             self.speed_rad_s = 0.0
         elif self.fault is Fault.HOT:
             self.temperature_c = self._hot_c
