@@ -21,6 +21,7 @@ enum class EventCode : std::int32_t {
   kGainChanged = 110,  ///< of a loop; value: the LoopGain, plus kGainInVolts; extra: the bits of the float;
                        ///< `client`: who asked
   kMovesAtRest = 111,  ///< it gains speed though its drive is told to rest; value: its speed in rpm
+  kNeverHeard = 112,   ///< no frame of its drive since the start; value: its id
   kRobotState =
       200,  ///< value: new RobotStatus, extra: old one plus 256 times the StopCause; `client`: by whom
   kTicksMissed = 201,     ///< value: how many

@@ -1,7 +1,9 @@
 #include "client/find_motor.hpp"
 
 #include <algorithm>
+#include <vector>
 
+#include "app/nearest.hpp"
 #include "app/printable.hpp"
 #include "client/text_table.hpp"
 
@@ -19,7 +21,10 @@ Result<std::size_t> findMotor(const link::Welcome& welcome, std::string_view nam
   for (std::size_t i = 0; i < motorCount(welcome); ++i) {
     if (welcome.motors[i].name.view() == name) return i;
   }
-  return fail("there is no motor '" + printable(name) + "'; the motors are: " + motorNames(welcome));
+  std::vector<std::string_view> names;
+  for (std::size_t i = 0; i < motorCount(welcome); ++i) names.push_back(welcome.motors[i].name.view());
+  return fail("there is no motor '" + printable(name) + "'; the motors are: " + motorNames(welcome) +
+              printable(didYouMean(name, names)));
 }
 
 std::string motorNames(const link::Welcome& welcome) {

@@ -47,6 +47,21 @@ std::string modulesText(const std::vector<ModuleView>& modules) {
   return text;
 }
 
+std::string moduleLines(const std::vector<ModuleView>& modules) {
+  std::string text;
+  for (const auto& module : modules) {
+    const auto owner = module.state.owner.view();
+    text += "module " + printable(module.name.view()) + " (" + printable(module.info.type.view()) + ")  ";
+    if (!inputs(module).empty())
+      text += owner.empty() ? "commanded by nobody  " : "commanded by '" + printable(owner) + "'  ";
+    const auto names = outputs(module);
+    for (std::size_t i = 0; i < names.size(); ++i)
+      text += (i == 0 ? "" : "  ") + printable(names[i].view()) + " " + number(module.state.values[i], 2);
+    text += '\n';
+  }
+  return text;
+}
+
 std::string modulesJson(const std::vector<ModuleView>& modules) {
   Json all = Json::array();
   for (const auto& module : modules) {

@@ -19,6 +19,8 @@ struct ModuleView {
 [[nodiscard]] std::string modulesText(const std::vector<ModuleView>& modules);
 
 /// The same as one line of JSON. An output without meaning is null.
+/// A line for each: who commands it, and its outputs.
+[[nodiscard]] std::string moduleLines(const std::vector<ModuleView>& modules);
 [[nodiscard]] std::string modulesJson(const std::vector<ModuleView>& modules);
 
 }  // namespace rc10::client

@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <array>
 #include <limits>
+#include <vector>
 
+#include "app/nearest.hpp"
 #include "app/printable.hpp"
 #include "client/find_motor.hpp"
 #include "client/text_table.hpp"
@@ -31,6 +33,15 @@ bool means(std::string_view name, std::string_view text) {
   return name == text || name.substr(0, name.rfind('_')) == text;
 }
 
+std::vector<std::string_view> signalWords() {
+  std::vector<std::string_view> words;
+  for (const auto& signal : kSignals) {
+    words.push_back(signal.name);
+    words.push_back(signal.name.substr(0, signal.name.rfind('_')));
+  }
+  return words;
+}
+
 std::string signalNames() {
   std::string names;
   for (const auto& signal : kSignals) names += (names.empty() ? "" : ", ") + std::string(signal.name);
@@ -55,7 +66,8 @@ Result<MotorSignal> findSignal(const link::Welcome& welcome, std::string_view te
   const auto signal = std::find_if(kSignals.begin(), kSignals.end(),
                                    [&](const auto& s) { return means(s.name, signal_name); });
   if (signal == kSignals.end())
-    return fail("there is no signal '" + printable(signal_name) + "'; a motor has " + signalNames());
+    return fail("there is no signal '" + printable(signal_name) + "'; a motor has " + signalNames() +
+                didYouMean(signal_name, signalWords()));
   const auto motor = findMotor(welcome, motor_name);
   if (!motor) return tl::unexpected(motor.error());
   return MotorSignal{*motor, printable(motor_name) + "." + std::string(signal->name), signal->read};

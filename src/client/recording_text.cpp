@@ -53,6 +53,7 @@ struct Counts {
   std::size_t requests = 0;
   std::size_t events = 0;
   std::size_t states = 0;
+  std::int64_t ticks_missed = 0;
   std::deque<Event> last_events;
 
   void add(const Frame& frame) {
@@ -66,6 +67,11 @@ struct Counts {
   void add(const Order&) noexcept { ++requests; }
   void add(const Event& event) {
     ++events;
+    // A busy computer has hundreds, and they would crowd out what happened to the robot.
+    if (EventCode{static_cast<std::int32_t>(event.header.id)} == EventCode::kTicksMissed) {
+      ticks_missed += event.value;
+      return;
+    }
     last_events.push_back(event);
     if (last_events.size() > kEventsShown) last_events.pop_front();
   }
@@ -93,6 +99,7 @@ struct Counts {
   }
   row("requests", counts.requests);
   row("events", counts.events);
+  row("ticks missed", static_cast<std::uint64_t>(counts.ticks_missed));
   row("states of motors", counts.states);
   row("lost: recorded faster than written", recording.control().dropped);
   return table.text();

@@ -45,6 +45,16 @@ std::string clipped(std::string_view line, std::size_t columns) {
   return text;
 }
 
+// As many as there is room for; the last line tells of the others.
+void fit(Lines& modules, std::string& notice, std::size_t rows) {
+  const std::size_t all = modules.size();
+  if (all <= rows) return;
+  modules.resize(rows > 0 ? rows - 1 : 0);
+  if (rows > 0)
+    notice = std::to_string(all - modules.size()) + " of " + std::to_string(all) +
+             " modules are not shown: `rc10ctl modules` shows them";
+}
+
 // Motors make room first, then what stands between the headline and them.
 void makeRoom(Lines& head, Lines& motors, const Lines& below, std::string& notice, std::size_t rows) {
   if (head.size() + motors.size() + below.size() <= rows) return;
@@ -67,9 +77,15 @@ std::string fitted(const Picture& picture, ScreenSize size) {
   std::string notice;
   const std::size_t rows = std::max<std::size_t>(size.rows, 2) - 1;
   if (size.rows != 0) makeRoom(head, motors, below, notice, rows);
+  auto modules = linesOf(picture.modules);
+  std::string modules_notice;
+  const std::size_t taken = head.size() + motors.size() + below.size() + (notice.empty() ? 0 : 1);
+  if (size.rows != 0) fit(modules, modules_notice, rows > taken ? rows - taken : 0);
   Lines lines = std::move(head);
   lines.insert(lines.end(), motors.begin(), motors.end());
   if (!notice.empty()) lines.emplace_back(notice);
+  lines.insert(lines.end(), modules.begin(), modules.end());
+  if (!modules_notice.empty()) lines.emplace_back(modules_notice);
   lines.insert(lines.end(), below.begin(), below.end());
   if (size.rows != 0) lines.resize(std::min(lines.size(), rows));
   std::string text;

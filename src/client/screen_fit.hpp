@@ -16,6 +16,7 @@ struct ScreenSize {
 struct Picture {
   std::string text;
   std::size_t motors = 0;  ///< So many lines at the end of `text` are motors, one each.
+  std::string modules;     ///< Lines that make room first.
   std::string below;
 };
 

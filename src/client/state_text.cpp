@@ -1,7 +1,9 @@
 #include "client/state_text.hpp"
 
 #include <algorithm>
+#include <cmath>
 
+#include "app/angle.hpp"
 #include "app/printable.hpp"
 #include "client/quantity_text.hpp"
 #include "client/style.hpp"
@@ -82,13 +84,19 @@ std::string_view styleOf(const link::BusStatus& bus) {
   return bus.rx_dropped + bus.tx_dropped != 0 ? kDoubtful : std::string_view{};
 }
 
+// The angle in the turn of its target: -15.3, not 344.7 beside a target of -15.
+double angleBeside(const link::MotorState& motor, ControlMode mode) {
+  const double target_deg = motor.mode == mode && std::isfinite(motor.target) ? motor.target : 0.0;
+  return target_deg + shortestAngle(target_deg, static_cast<double>(motor.angle_deg));
+}
+
 }  // namespace
 
 double measured(const link::MotorState& motor, ControlMode mode) noexcept {
   switch (mode) {
     case ControlMode::kCurrent: return static_cast<double>(motor.current_a);
     case ControlMode::kAngle:
-    case ControlMode::kImpedance: return static_cast<double>(motor.angle_deg);
+    case ControlMode::kImpedance: return angleBeside(motor, mode);
     case ControlMode::kTotalAngle: return motor.total_angle_deg;
     default: return static_cast<double>(motor.velocity_rpm);
   }
@@ -144,7 +152,7 @@ std::string stateText(const link::Welcome& welcome, const link::State& state,
     table.add({printable(welcome.motors[i].name.view()), toString(motor.status), modeOf(motor), target(motor),
                quantity(measured(motor, motor.mode), motor.mode == ControlMode::kCurrent ? 2 : 1,
                         measuredUnit(motor.mode)),
-               quantity(static_cast<double>(motor.angle_deg), 1, "deg"),
+               quantity(shortestAngle(0.0, static_cast<double>(motor.angle_deg)), 1, "deg"),
                quantity(static_cast<double>(motor.current_a), 2, "A"),
                quantity(static_cast<double>(motor.temperature_c), 0, "C"), age(motor.feedback_age_us),
                motor.zeroed != 0 ? "yes" : "no", printable(motor.owner.view()), note(motor)},

@@ -1,6 +1,8 @@
 #include "config/load_config.hpp"
 
+#include <algorithm>
 #include <exception>
+#include <tuple>
 #include <utility>
 
 #include "config/build/module_builder.hpp"
@@ -14,9 +16,11 @@
 namespace rc10 {
 namespace {
 
-std::string listed(const std::vector<ConfigProblem>& problems) {
+constexpr std::string_view kWarning = "warning: ";
+
+std::string listed(const std::vector<ConfigProblem>& problems, std::string_view kind = {}) {
   std::string text;
-  for (const auto& problem : problems) text += toString(problem) + "\n";
+  for (const auto& problem : problems) text += toString(problem, kind) + "\n";
   return text;
 }
 
@@ -73,7 +77,20 @@ ConfigOutcome outcomeOf(std::string file, Work work) noexcept {
 
 std::string ConfigOutcome::errorText() const { return listed(errors); }
 
-std::string ConfigOutcome::warningText() const { return listed(warnings); }
+std::string ConfigOutcome::warningText() const { return listed(warnings, kWarning); }
+
+std::string ConfigOutcome::text() const {
+  std::vector<std::pair<const ConfigProblem*, std::string_view>> all;
+  for (const auto& problem : errors) all.emplace_back(&problem, "");
+  for (const auto& problem : warnings) all.emplace_back(&problem, kWarning);
+  std::stable_sort(all.begin(), all.end(), [](const auto& a, const auto& b) {
+    return std::tie(a.first->place.line, a.first->place.column) <
+           std::tie(b.first->place.line, b.first->place.column);
+  });
+  std::string text;
+  for (const auto& [problem, kind] : all) text += toString(*problem, kind) + "\n";
+  return text;
+}
 
 ConfigOutcome loadRobotConfig(const std::string& path) {
   return outcomeOf(path, [&](Problems& problems) -> std::optional<RobotConfig> {

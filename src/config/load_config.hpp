@@ -20,6 +20,8 @@ struct ConfigOutcome {
   /// One problem a line, each with a line feed.
   [[nodiscard]] std::string errorText() const;
   [[nodiscard]] std::string warningText() const;
+  /// Both, in the order of the file, warnings marked as such.
+  [[nodiscard]] std::string text() const;
 };
 
 /// Reads a configuration file. Never throws.

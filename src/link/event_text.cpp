@@ -121,6 +121,13 @@ namespace {
          std::string(client) + "'";
 }
 
+[[nodiscard]] std::string neverHeard(std::int32_t id) {
+  return "nothing heard from its drive since the start: check its power, CANH and CANL, both terminations, "
+         "the "
+         "bit rate, and that its id is " +
+         std::to_string(id) + " (`rc10ctl scan` names the drives of a bus while rc10d is stopped)";
+}
+
 // `extra`: the number before, plus 256 times the StopCause.
 template <typename Status>
 [[nodiscard]] std::string change(std::int32_t value, std::int32_t extra, std::string_view by) {
@@ -152,6 +159,7 @@ std::string eventText(std::int32_t code, std::int32_t value, std::int32_t extra,
     case kMovesAtRest:
       return "it gains speed, " + std::to_string(value) +
              " rpm now, though its drive is told to rest: gravity, a slope, a hand, or the drive";
+    case kNeverHeard: return neverHeard(value);
     case kRobotState: return change<RobotStatus>(value, extra, client);
     case kTicksMissed: return std::to_string(value) + " ticks missed";
     case kCommandRefused: return refused(value, client);

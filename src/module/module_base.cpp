@@ -2,6 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <vector>
+
+#include "app/nearest.hpp"
 
 namespace rc10 {
 
@@ -43,9 +46,13 @@ Result<SignalPlace> ModuleDirectory::find(std::string_view name,
       listed(names, signals[signal]);
     }
     return fail("module '" + std::string{module_name} + "' has no " + what + " '" + std::string{signal_name} +
-                (names.empty() ? "'; it has none" : "'; it has " + names));
+                (names.empty() ? "'; it has none" : "'; it has " + names) +
+                didYouMean(signal_name, {signals.begin(), signals.end()}));
   }
-  return fail("there is no module '" + std::string{module_name} + "'; there are " + known);
+  std::vector<std::string_view> modules;
+  for (const auto& entry : entries_) modules.emplace_back(entry.name);
+  return fail("there is no module '" + std::string{module_name} + "'; there are " + known +
+              didYouMean(module_name, modules));
 }
 
 }  // namespace rc10

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "app/nearest.hpp"
 #include "module/remote_channels.hpp"
 #include "module/serial_keys.hpp"
 
@@ -288,7 +289,8 @@ Result<std::size_t> findChannel(const RemoteChannels& channels, const std::strin
   if (found != names.end()) return static_cast<std::size_t>(found - names.begin());
   std::string known;
   for (const auto& word : names) known += (known.empty() ? "" : ", ") + word;
-  return fail(std::string{key} + ": there is no channel '" + name + "'; there are " + known);
+  return fail(std::string{key} + ": there is no channel '" + name + "'; there are " + known +
+              didYouMean(name, {names.begin(), names.end()}));
 }
 
 class RemoteType : public ModuleType {

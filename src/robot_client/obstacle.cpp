@@ -1,5 +1,10 @@
 #include "robot_client/obstacle.hpp"
 
+#include <string_view>
+#include <vector>
+
+#include "app/nearest.hpp"
+
 namespace rc10 {
 inline namespace robot_client {
 namespace {
@@ -10,9 +15,16 @@ namespace {
 
 }  // namespace
 
+std::string noMotor(const RobotState& state, const std::string& motor) {
+  std::vector<std::string_view> names;
+  for (const auto& each : state.motors) names.emplace_back(each.name);
+  return "there is no motor '" + motor + "'; the motors are: " + state.motorNames() +
+         didYouMean(motor, names);
+}
+
 std::optional<std::string> obstacle(const RobotState& state, const std::string& motor, Mode mode) {
   const auto* found = state.find(motor);
-  if (found == nullptr) return "there is no motor '" + motor + "'; the motors are: " + state.motorNames();
+  if (found == nullptr) return noMotor(state, motor);
   if (state.status == RobotStatus::kEstop) return "the robot is in ESTOP: clear it, then enable the motors";
   if (state.status == RobotStatus::kStopping) return "rc10d is stopping";
   switch (found->status) {

@@ -15,6 +15,9 @@ inline namespace robot_client {
 [[nodiscard]] std::optional<std::string> obstacle(const RobotState& state, const std::string& motor,
                                                   Mode mode);
 
+/// The motors that there are, and the one that was meant.
+[[nodiscard]] std::string noMotor(const RobotState& state, const std::string& motor);
+
 /// Why these setpoints would not all be acted on.
 [[nodiscard]] Result<void> checkSetpoints(const RobotState& state, const MotorSetpoints& setpoints);
 

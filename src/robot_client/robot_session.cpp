@@ -355,7 +355,7 @@ RequestResult RobotSession::request(const std::string& operation, const std::vec
       return notSent("'" + name + "' is no motor's name");
     const auto known = state();
     if (known && known->find(name) == nullptr) {
-      return notSent("there is no motor '" + name + "'; the motors are: " + known->motorNames());
+      return notSent(noMotor(*known, name));
     }
   }
   return request(operation, joined(motors), values, timeout);

@@ -15,6 +15,7 @@
 #include "app/result.hpp"
 #include "app/standard_output.hpp"
 #include "app/unique_fd.hpp"
+#include "spelling.hpp"
 
 /// Common part of programs that run until a signal ends them.
 namespace rc10 {
@@ -45,6 +46,10 @@ inline constexpr int kExitUsage = 2;
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
+    if (const auto word = misspelt(app, argc, argv); error.get_exit_code() != 0 && !word.empty()) {
+      std::fprintf(stderr, "%s: %s\n", app.get_name().c_str(), word.c_str());
+      return kExitUsage;
+    }
     return app.exit(error) == 0 ? kExitOk : kExitUsage;
   }
   return std::nullopt;

@@ -15,11 +15,13 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
 #include <CLI/CLI.hpp>
 
+#include "app/nearest.hpp"
 #include "app/result.hpp"
 #include "app/subnormals.hpp"
 #include "app/time.hpp"
@@ -74,7 +76,10 @@ Result<Place> placeOf(const RobotConfig& config, const std::string& argument) {
   const auto bus = std::find_if(config.buses.begin(), config.buses.end(),
                                 [&name](const BusConfig& other) { return other.name == name; });
   if (bus == config.buses.end()) {
-    return fail("--bus: " + config.file + " has no bus '" + name + "'; it has: " + busNames(config));
+    std::vector<std::string_view> names;
+    for (const auto& each : config.buses) names.emplace_back(each.name);
+    return fail("--bus: " + config.file + " has no bus '" + name + "'; it has: " + busNames(config) +
+                didYouMean(name, names));
   }
   Place place{&*bus, equals == std::string::npos ? bus->interface : argument.substr(equals + 1)};
   if (place.interface.empty()) {

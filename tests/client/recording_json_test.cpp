@@ -6,6 +6,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "app/event_code.hpp"
 #include "blackbox/memory_box.hpp"
 #include "client/recording_text.hpp"
 
@@ -202,6 +203,22 @@ TEST_F(RecordingJsonTest, TheSummaryCountsAndShowsTheLastEvents) {
   EXPECT_THAT(text, HasSubstr("1970-01-01 00:16:40.000000 to 1970-01-01 00:16:43.000000 UTC: 3.0 s"));
   EXPECT_THAT(text, ::testing::ContainsRegex("frames received +5\n"));
   EXPECT_THAT(text, ::testing::ContainsRegex("info +robot +RUN -> ESTOP"));
+}
+
+TEST_F(RecordingJsonTest, MissedTicksDoNotCrowdOutWhatHappened) {
+  auto out = box.handOff();
+  const auto write = [&out](EventCode code, std::int32_t value) {
+    blackbox::Event event;
+    event.header.id = static_cast<std::uint32_t>(code);
+    event.value = value;
+    out.write(event, sizeof event);
+  };
+  write(EventCode::kEstopInput, 2);
+  for (int i = 0; i < 20; ++i) write(EventCode::kTicksMissed, 3);
+  const auto text = client::recordingText(box.recording(), false);
+  EXPECT_THAT(text, HasSubstr("e-stop: the input is open"));
+  EXPECT_THAT(text, Not(HasSubstr("3 ticks missed")));
+  EXPECT_THAT(text, ::testing::ContainsRegex("ticks missed +60\n"));
 }
 
 }  // namespace

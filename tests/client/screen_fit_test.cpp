@@ -13,8 +13,10 @@ using testing::Not;
 using testing::StartsWith;
 
 Picture robotOf(std::size_t motors) {
-  Picture picture{
-      .text = "robot hero\nbus can0\nbus can1\nMOTOR  STATUS\n", .motors = motors, .below = "spark\n"};
+  Picture picture{.text = "robot hero\nbus can0\nbus can1\nMOTOR  STATUS\n",
+                  .motors = motors,
+                  .modules = {},
+                  .below = "spark\n"};
   for (std::size_t i = 0; i < motors; ++i) picture.text += "m" + std::to_string(i) + "  ACTIVE\n";
   return picture;
 }
@@ -24,7 +26,8 @@ std::size_t rowsOf(const std::string& text) {
 }
 
 std::string line(const std::string& text, std::size_t columns) {
-  return fitted({.text = text + "\n", .motors = 0, .below = {}}, {.columns = columns, .rows = 0});
+  return fitted({.text = text + "\n", .motors = 0, .modules = {}, .below = {}},
+                {.columns = columns, .rows = 0});
 }
 
 TEST(ScreenFit, WhereThereIsRoomNothingChanges) {
@@ -85,6 +88,17 @@ TEST(ScreenFit, OnFewRowsTheHeadlineTheNoticeAndWhatIsBelowRemain) {
     EXPECT_LT(rowsOf(shown), rows);
     EXPECT_THAT(shown, StartsWith("robot hero\n"));
   }
+}
+
+TEST(ScreenFit, ModulesMakeRoomBeforeAnyMotor) {
+  auto picture = robotOf(3);
+  for (int i = 0; i < 5; ++i) picture.modules += "module " + std::to_string(i) + "\n";
+  EXPECT_EQ(fitted(picture, {.columns = 80, .rows = 24}), picture.text + picture.modules + picture.below);
+  const auto text = fitted(picture, {.columns = 80, .rows = 12});
+  EXPECT_THAT(text, StartsWith(picture.text + "module 0\nmodule 1\n3 of 5 modules are not shown"));
+  EXPECT_THAT(text, testing::EndsWith("spark\n"));
+  EXPECT_EQ(rowsOf(text), 11U);
+  EXPECT_EQ(fitted(picture, {.columns = 80, .rows = 9}), picture.text + picture.below);
 }
 
 }  // namespace

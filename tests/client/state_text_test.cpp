@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "client/module_text.hpp"
 #include "fake_rc10d.hpp"
 #include "sample_messages.hpp"
 
@@ -144,6 +145,42 @@ TEST(DiagnosticsText, SaysThatNothingWasRefused) {
   diagnostics.refusal_count = 0;
   diagnostics.bus_count = 0;
   EXPECT_THAT(diagnosticsText(heroWelcome(), diagnostics), HasSubstr("refused commands: none\n"));
+}
+
+TEST(StateText, AnAngleIsShownBesideItsTarget) {
+  auto state = heroState();
+  auto& wheel = state.motors[0];
+  wheel.mode = ControlMode::kAngle;
+  wheel.target = -15.3;
+  wheel.angle_deg = 346.7F;
+  EXPECT_THAT(stateText(heroWelcome(), state, nullptr), HasSubstr("-15.3 deg  -13.3 deg  -13.3 deg"));
+  wheel.target = 370.0;
+  wheel.angle_deg = 9.0F;
+  EXPECT_THAT(stateText(heroWelcome(), state, nullptr), HasSubstr("370.0 deg  369.0 deg  9.0 deg"));
+  wheel.mode = ControlMode::kCoast;
+  wheel.angle_deg = 359.99F;
+  EXPECT_THAT(stateText(heroWelcome(), state, nullptr), HasSubstr("  0.0 deg"));
+}
+
+TEST(ModuleLines, TellWhoCommandsThemAndWhatTheyGive) {
+  ModuleView base{link::Name{"base"}, {}, {}};
+  base.info.type = "mecanum_chassis";
+  base.info.input_count = 1;
+  base.info.output_count = 1;
+  base.info.names[0] = "vx_m_s";
+  base.info.names[1] = "x_m";
+  base.state.values[0] = 0.5;
+  ModuleView buttons{link::Name{"buttons"}, {}, {}};
+  buttons.info.type = "gpio";
+  buttons.info.output_count = 1;
+  buttons.info.names[0] = "start";
+  buttons.state.values[0] = 1.0;
+  auto driven = base;
+  driven.state.owner = "\x1b[31mremote";
+  EXPECT_EQ(
+      moduleLines({base, buttons}),
+      "module base (mecanum_chassis)  commanded by nobody  x_m 0.50\nmodule buttons (gpio)  start 1.00\n");
+  EXPECT_EQ(moduleLines({driven}), "module base (mecanum_chassis)  commanded by '?[31mremote'  x_m 0.50\n");
 }
 
 }  // namespace

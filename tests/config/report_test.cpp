@@ -70,10 +70,10 @@ TEST(Report, PredictsTheLoadOfEachBus) {
 TEST(Report, ShowsIdsAndSlotsOfEachMotor) {
   EXPECT_THAT(wordsAfter(report(), "left"),
               ::testing::ElementsAre("M3508", "1", "0x201", "at", "1000", "Hz", "0x200", "slot", "1", "27",
-                                     "%", "normal", "19.203209", "at", "power-on", "20", "ms"));
+                                     "%", "normal", "19.2032", "at", "power-on", "20", "ms"));
   EXPECT_THAT(wordsAfter(report(), "right"),
               ::testing::ElementsAre("(optional)", "M3508", "2", "0x202", "at", "1000", "Hz", "0x200", "slot",
-                                     "2", "13.5", "%", "reversed", "19.203209", "on", "request", "20", "ms"));
+                                     "2", "13.5", "%", "reversed", "19.2032", "on", "request", "20", "ms"));
   EXPECT_THAT(wordsAfter(report(), "yaw"),
               ::testing::ElementsAre("GM6020", "5", "0x209", "at", "1000", "Hz", "0x2FF", "slot", "1", "27",
                                      "%", "normal", "1", "at", "123.4", "deg", "20", "ms"));

@@ -8,6 +8,8 @@
 
 #include "config/keys/key_table.hpp"
 #include "config/keys/motor_keys.hpp"
+#include "config/module_types.hpp"
+#include "config/motor_families.hpp"
 #include "config/report/report.hpp"
 #include "config_text.hpp"
 #include "fingerprint.hpp"
@@ -137,6 +139,32 @@ void expectKeysIn(const Section& section, const std::string& text) {
 
 TEST(ShippedConfigs, TheReferenceShowsEveryKey) {
   expectKeysIn(kRobotSection, contentOf("full_reference.yaml"));
+}
+
+/// From behind `title` up to the next title of its kind.
+std::string partOf(const std::string& text, const std::string& title) {
+  const auto start = text.find(title + "\n");
+  if (start == std::string::npos) return {};
+  const auto body = start + title.size();
+  return text.substr(body, text.find("#   - ", body) - body);
+}
+
+TEST(ShippedConfigs, TheReferenceShowsEveryKeyOfEveryFamilyAndModule) {
+  const auto text = contentOf("full_reference.yaml");
+  for (const auto& entry : motorFamilies()) {
+    const auto part = partOf(text, "#   - # " + std::string{entry.family->name()});
+    for (const auto& key : entry.family->keys()) {
+      // Of DJI, the motors of the example have them.
+      const bool shown = entry.family->name() == "DJI" ? showsKey(text, std::string{key.name})
+                                                       : showsKey(part, std::string{key.name});
+      EXPECT_TRUE(shown) << entry.family->name() << " " << key.name;
+    }
+  }
+  for (const auto* type : moduleTypes()) {
+    const auto part = partOf(text, "#   - type: " + std::string{type->name()});
+    for (const auto& key : type->keys())
+      EXPECT_TRUE(showsKey(part, std::string{key.name})) << type->name() << " " << key.name;
+  }
 }
 
 TEST(ShippedConfigs, TheReferenceShowsTheDefaults) {

@@ -216,5 +216,22 @@ TEST(YamlDocument, LargerThanTheLimitIsNotReadWhole) {
             file.path() + ": larger than 1024 KiB; this is no configuration\n");
 }
 
+TEST(YamlDocument, TellsErrorsAndWarningsInTheOrderOfTheFile) {
+  const auto outcome = parseRobotConfig(
+      "robot: hero\n"
+      "buses:\n"
+      "  - name: a\n"
+      "    type: sim\n"
+      "    motors:\n"
+      "      - {name: fast, model: M3508, id: 1, velocity_limit_rpm: 600}\n"
+      "      - {name: wrong, model: M3509, id: 2}\n",
+      "hero.yaml");
+  const auto text = outcome.text();
+  EXPECT_THAT(text, ::testing::StartsWith("hero.yaml:6:"));
+  EXPECT_THAT(text, ::testing::HasSubstr(": warning: buses[0].motors[0].velocity_limit_rpm: "));
+  EXPECT_THAT(text, ::testing::HasSubstr("\nhero.yaml:7:"));
+  EXPECT_THAT(text.substr(text.find('\n')), ::testing::Not(::testing::HasSubstr("warning")));
+}
+
 }  // namespace
 }  // namespace rc10::test::yaml_document_test

@@ -295,5 +295,16 @@ TEST_F(AdmissionTest, EveryReasonHasItsOwnWords) {
   EXPECT_EQ(words.count("unknown"), 0U);
 }
 
+TEST_F(AdmissionTest, NamesTheMotorAndTheModeForWhichAMessageIsRefused) {
+  EXPECT_EQ(
+      admit(linkCommand(++seq, now, {setpoint("left", kVelocity, 1.0), setpoint("right", kAngle, 1.0)})),
+      CommandRefusal::kUnsupportedMode);
+  EXPECT_EQ(admission.culprit(), "right: angle");
+  EXPECT_EQ(admit(one(setpoint("lift", kVelocity, 1.0))), CommandRefusal::kUnknownMotor);
+  EXPECT_EQ(admission.culprit(), "lift");
+  EXPECT_EQ(admit(good()), CommandRefusal::kNone);
+  EXPECT_EQ(admission.culprit(), "");
+}
+
 }  // namespace
 }  // namespace rc10::test::admission_test

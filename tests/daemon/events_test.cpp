@@ -25,7 +25,8 @@ constexpr std::array kCodes{
     EventCode::kModuleRefused,   EventCode::kGainChanged,    EventCode::kRobotState,
     EventCode::kTicksMissed,     EventCode::kCommandRefused, EventCode::kEstopInput,
     EventCode::kBusState,        EventCode::kBusAdvice,      EventCode::kForeignSender,
-    EventCode::kSerialPort,      EventCode::kDevice,         EventCode::kMovesAtRest};
+    EventCode::kSerialPort,      EventCode::kDevice,         EventCode::kMovesAtRest,
+    EventCode::kNeverHeard};
 
 template <typename Value, typename Extra = int>
 std::string words(EventCode code, Value value, Extra extra = {}) {
@@ -49,7 +50,7 @@ TEST(Events, EveryCodeHasWordsOfItsOwn) {
 
 TEST(Events, TheNumbersAreThoseOfTheContract) {
   constexpr std::array kNumbers{100, 101, 102, 103, 104, 105, 106, 107, 108, 109, 110,
-                                200, 201, 202, 203, 300, 301, 302, 310, 311, 111};
+                                200, 201, 202, 203, 300, 301, 302, 310, 311, 111, 112};
   static_assert(kNumbers.size() == kCodes.size());
   for (std::size_t i = 0; i < kCodes.size(); ++i) EXPECT_EQ(static_cast<int>(kCodes[i]), kNumbers[i]);
 }

@@ -216,7 +216,7 @@ TEST_F(LinkServerTest, ARefusedCommandIsToldInWordsButNotEveryTime) {
   ASSERT_TRUE(event);
   EXPECT_EQ(event->code, static_cast<std::int32_t>(EventCode::kCommandRefused));
   EXPECT_EQ(event->text.view(),
-            "command of 'planner' refused: unknown motor; `rc10ctl watch` shows the names");
+            "command of 'planner' refused: nobody: unknown motor; `rc10ctl watch` shows the names");
   EXPECT_FALSE(client->take<link::Event>());
   ASSERT_EQ(logged.size(), 1U);
 }

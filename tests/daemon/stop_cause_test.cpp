@@ -196,5 +196,23 @@ TEST_F(StopCauseTest, AgesOfWhatIsActedOnAreCountedForEachMotorThatFollowsATarge
   EXPECT_EQ(ages.feedback[kRight].count(), 0U) << "it has no target";
 }
 
+TEST(NeverHeardTest, ADriveThatNeverAnswersIsToldOnceWithWhatToCheck) {
+  VirtualRobot robot{twoWheelsAndYaw()};
+  robot.simBus().silence(kRight, true);
+  robot.run(2900);
+  const auto early = robot.events();
+  EXPECT_TRUE(std::none_of(early.begin(), early.end(),
+                           [](const Event& event) { return event.code == EventCode::kNeverHeard; }));
+  robot.run(3000);
+  std::vector<Event> missing;
+  for (const auto& event : robot.events()) {
+    if (event.code == EventCode::kNeverHeard) missing.push_back(event);
+  }
+  ASSERT_EQ(missing.size(), 1U);
+  EXPECT_EQ(missing[0].source, static_cast<std::int16_t>(kRight));
+  EXPECT_THAT(describe(missing[0]), HasSubstr("check its power"));
+  EXPECT_THAT(describe(missing[0]), HasSubstr("its id is 2"));
+}
+
 }  // namespace
 }  // namespace rc10::test::stop_cause_test

@@ -71,6 +71,35 @@ def test_rc10ctl_drives_and_lets_go(daemon: Daemon) -> None:
     daemon.wait_motor("wheel", lambda m: m["status"] == "READY", "is READY again")
 
 
+def test_a_set_that_is_not_obeyed_fails_and_says_who_is_in_the_way(daemon: Daemon) -> None:
+    daemon.must("enable", "wheel")
+    with daemon.drive("set", "wheel", "velocity", "60", "--for", "60s") as first:
+        daemon.wait_motor("wheel", turning(60), "turns at 60 rpm")
+        second = daemon.ctl("set", "wheel", "velocity", 30, "--for", "1s")
+        assert second.returncode == 1
+        assert "motor 'wheel' obeys another rc10ctl" in second.stderr
+        over = daemon.ctl("set", "wheel", "velocity", 30, "--for", "300ms", "--priority", 1)
+        assert over.returncode == 0, over.stderr
+        first.signal(signal.SIGINT)
+        assert first.wait() == 0
+
+
+def test_one_set_after_another_disturbs_neither(daemon: Daemon) -> None:
+    daemon.must("enable", "wheel")
+    for rpm in (30, 60, 30):
+        daemon.must("set", "wheel", "velocity", rpm, "--for", "250ms")
+
+
+def test_a_target_that_needs_a_reference_fails_without_one(daemon: Daemon) -> None:
+    with Daemon(ARM + "      - {name: loose, model: M3508, id: 4}\n") as robot:
+        robot.wait_ready()
+        robot.must("enable", "loose")
+        done = robot.ctl("set", "loose", "total_angle", 90, "--for", "300ms")
+        assert done.returncode == 1
+        assert "motor 'loose' did not take the total_angle target" in done.stderr
+        assert "the angle has no reference; set it with `zero`" in done.stderr
+
+
 LIFT = ARM + "      - {name: lift, model: GM6020, id: 5, on_timeout: hold}\n"
 
 

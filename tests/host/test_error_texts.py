@@ -20,6 +20,13 @@ TOO_MANY = [f"v{i}=1" for i in range(200)]
     [
         (["signal", "lift", *TOO_MANY], 2, "`rc10ctl modules` names them"),
         (["set", "wheel", "velocity", "nan"], 2, "such as `rc10ctl set wheel velocity 10`"),
+        (["enabel"], 2, "there is no verb 'enabel'; did you mean enable?"),
+        (["watch", "--onec"], 2, "there is no option '--onec'; did you mean --once?"),
+        (["set", "wheel", "velocty", "1"], 2, "did you mean velocity?"),
+        (["set", "whel", "velocity", "1"], 1, "did you mean wheel?"),
+        (["enable", "whel"], 1, "did you mean wheel?"),
+        (["watch", "--once", "--spark", "wheel.velocty"], 2, "did you mean velocity?"),
+        (["convert-gains", "--speed", "1", "2", "3", "--td-ratio", "x"], 2, "--td-ratio: 'x'"),
         (["blackbox", "--out", "/dev/null/out"], 1, "name another folder with --out"),
     ],
 )

@@ -56,7 +56,8 @@ TEST(ModuleDirectory, FindsAnInputByTheNamesOfModuleAndInput) {
 TEST(ModuleDirectory, SaysWhatThereIs) {
   const Probe base;
   const ModuleDirectory directory{{{"base", &base}}};
-  EXPECT_EQ(directory.findInput("bas.vx_m_s").error().message, "there is no module 'bas'; there are base");
+  EXPECT_EQ(directory.findInput("bas.vx_m_s").error().message,
+            "there is no module 'bas'; there are base; did you mean base?");
   EXPECT_EQ(directory.findInput("base.vx").error().message,
             "module 'base' has no input 'vx'; it has vx_m_s, wz_deg_s");
   EXPECT_EQ(directory.findInput("base").error().message,

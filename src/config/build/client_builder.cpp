@@ -7,8 +7,8 @@
 #include <string_view>
 #include <utility>
 
+#include "app/nearest.hpp"
 #include "config/build/motor_names.hpp"
-#include "config/yaml/nearest.hpp"
 
 namespace rc10 {
 namespace {

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "config/yaml/nearest.hpp"
+#include "app/nearest.hpp"
 
 namespace rc10 {
 
@@ -15,11 +15,10 @@ MotorNames::MotorNames(const std::vector<BusConfig>& buses) {
 std::optional<std::size_t> MotorNames::find(const GivenValue& given, Problems& problems) const {
   const auto found = std::find(names_.begin(), names_.end(), given.text());
   if (found != names_.end()) return static_cast<std::size_t>(found - names_.begin());
-  const auto meant = nearest(given.text(), {names_.begin(), names_.end()});
+  const auto meant = didYouMean(given.text(), {names_.begin(), names_.end()});
   problems.error(given.place(), given.path,
                  "there is no motor " + inQuotes(given.text()) +
-                     (meant.empty() ? "; name one of the motors of buses"
-                                    : "; did you mean " + std::string{meant} + "?"));
+                     (meant.empty() ? "; name one of the motors of buses" : meant));
   return std::nullopt;
 }
 

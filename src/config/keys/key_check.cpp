@@ -2,8 +2,8 @@
 
 #include <algorithm>
 
+#include "app/nearest.hpp"
 #include "config/keys/value_check.hpp"
-#include "config/yaml/nearest.hpp"
 #include "config/yaml/number_text.hpp"
 
 namespace rc10 {

@@ -9,8 +9,9 @@ namespace {
 
 constexpr double kMilliamperesPerAmpere = 1000.0;
 
-[[nodiscard]] Result<double> numberOf(const std::string& text) {
-  // As C++ writes them: 18.0f.
+}  // namespace
+
+Result<double> stm32Number(const std::string& text) {
   const bool suffixed = text.size() > 1 && (text.back() == 'f' || text.back() == 'F');
   auto number = suffixed ? text.substr(0, text.size() - 1) : text;
   if (!number.empty() && number.back() == '.') number += '0';
@@ -18,8 +19,6 @@ constexpr double kMilliamperesPerAmpere = 1000.0;
   if (!value || *value < 0.0) return fail("'" + text + "' is no number from 0 on");
   return *value;
 }
-
-}  // namespace
 
 Result<Stm32Pid> stm32Pid(std::span<const std::string> numbers) {
   if (numbers.size() < 3 || numbers.size() > 7) {
@@ -32,7 +31,7 @@ Result<Stm32Pid> stm32Pid(std::span<const std::string> numbers) {
                             &limits_integral, &pid.output_limit, &pid.deadband};
   for (std::size_t i = 0; i < numbers.size(); ++i) {
     const auto text = numbers[i] == "true" ? "1" : numbers[i] == "false" ? "0" : numbers[i];
-    const auto value = numberOf(text);
+    const auto value = stm32Number(text);
     if (!value) return tl::unexpected(value.error());
     *fields[i] = *value;
   }

@@ -24,6 +24,9 @@ struct Stm32Pid {
 
 /// From the numbers of the firmware's initialiser, in its order: kp, ki, kd, I_Outlimit, isIOutlimit,
 /// output_limit, deadband. Three at least.
+/// A number as C++ writes it, from 0 on: 18.0f.
+[[nodiscard]] Result<double> stm32Number(const std::string& text);
+
 [[nodiscard]] Result<Stm32Pid> stm32Pid(std::span<const std::string> numbers);
 
 /// The controller that does the same here, and what does not carry over, in words.

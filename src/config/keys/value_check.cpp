@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "config/yaml/nearest.hpp"
+#include "app/nearest.hpp"
 #include "config/yaml/number_text.hpp"
 #include "config/yaml/problem.hpp"
 
@@ -118,9 +118,9 @@ std::string useWords(const Range& range, std::string_view unit) {
 std::string notOneOf(std::string_view text, const std::vector<std::string_view>& choices) {
   const std::vector<std::string> words{choices.begin(), choices.end()};
   const bool is_word = text.size() > 1 && !parseNumber(text);
-  const auto meant = is_word ? nearest(text, choices) : std::string_view{};
+  const auto meant = is_word ? didYouMean(text, choices) : std::string{};
   return inQuotes(text) + " is not one of " + listWords(words) +
-         (meant.empty() ? "; use one of these" : "; did you mean " + std::string{meant} + "?");
+         (meant.empty() ? "; use one of these" : meant);
 }
 
 }  // namespace rc10

@@ -1,7 +1,10 @@
 #include "config/report/report.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstdio>
+#include <cstdlib>
 #include <map>
 #include <variant>
 #include <vector>
@@ -15,6 +18,13 @@
 
 namespace rc10 {
 namespace {
+
+/// With so many significant digits: a person reads it.
+std::string rounded(double value, int digits) {
+  std::array<char, 32> text{};
+  std::snprintf(text.data(), text.size(), "%.*g", digits, value);
+  return numberText(std::strtod(text.data(), nullptr));
+}
 
 std::string threadText(const ThreadConfig& thread) {
   return "SCHED_FIFO " + std::to_string(thread.priority) +
@@ -86,7 +96,7 @@ std::string modesOf(ModeSet set) {
 std::string limitText(const MotorConfig& motor) {
   const MotorTraits traits = motor.traits();
   const float limit = motor.settings.effort_limit;
-  return numberText(limit > 0.0F ? limit : traits.effort_full_scale) +
+  return rounded(static_cast<double>(limit > 0.0F ? limit : traits.effort_full_scale), 4) +
          (traits.effort == CommandUnit::kVolt ? " V" : " A");
 }
 
@@ -138,8 +148,7 @@ std::string wiringText(const BusConfig& bus, int rate_hz) {
     table.add({motor.name() + (motor.optional ? " (optional)" : ""), motor.settings.model,
                std::to_string(motor.settings.id), feedbackText(motor, use), commandText(motor, use),
                percentText(loads[i].worst_case), motor.settings.direction < 0 ? "reversed" : "normal",
-               numberText(static_cast<float>(gearRatio(motor))), zeroText(motor),
-               std::to_string(timeout) + " ms"});
+               rounded(gearRatio(motor), 6), zeroText(motor), std::to_string(timeout) + " ms"});
   }
   return table.text(2);
 }
@@ -197,7 +206,8 @@ std::string softLimitsText(const ShapingConfig& shaping) {
 }
 
 std::string overspeedText(const GuardConfig& guard) {
-  return guard.overspeed_rpm > 0.0F ? numberText(guard.overspeed_rpm) + " rpm" : "not watched";
+  return guard.overspeed_rpm > 0.0F ? rounded(static_cast<double>(guard.overspeed_rpm), 4) + " rpm"
+                                    : "not watched";
 }
 
 /// Fallbacks and travel limits of each motor.

@@ -25,13 +25,15 @@ std::vector<ConfigProblem> inFileOrder(std::vector<ConfigProblem> problems) {
 
 }  // namespace
 
-std::string toString(const ConfigProblem& problem) {
+std::string toString(const ConfigProblem& problem, std::string_view kind) {
   std::string text = problem.file;
   if (problem.place.line > 0) {
     text += ":" + std::to_string(problem.place.line) + ":" + std::to_string(problem.place.column);
   }
-  if (!problem.path.empty()) text += ": " + problem.path;
-  return text + ": " + problem.text;
+  text += ": ";
+  text += kind;
+  if (!problem.path.empty()) text += problem.path + ": ";
+  return text + problem.text;
 }
 
 void Problems::error(SourcePlace place, std::string path, std::string text) {

@@ -17,7 +17,8 @@ struct ConfigProblem {
 };
 
 /// `file:line:column: key.path: reason; fix`
-[[nodiscard]] std::string toString(const ConfigProblem& problem);
+/// `kind` stands after the place: "warning: ".
+[[nodiscard]] std::string toString(const ConfigProblem& problem, std::string_view kind = {});
 
 /// Collects problems. The same reason at the same place (a profile that ten motors use, an anchor with
 /// ten aliases) is one mistake to mend and is kept once, under its first path.

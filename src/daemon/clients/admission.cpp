@@ -60,7 +60,7 @@ const char* describe(CommandRefusal refusal) noexcept {
              "and a validity of 1 to 1000 ms";
     case CommandRefusal::kUnknownMotor: return "unknown motor; `rc10ctl watch` shows the names";
     case CommandRefusal::kUnknownMode: return "unknown mode";
-    case CommandRefusal::kUnsupportedMode: return "a motor's drive does not support the mode";
+    case CommandRefusal::kUnsupportedMode: return "the motor's drive does not support the mode";
     case CommandRefusal::kNotFinite: return "a value is not finite";
     case CommandRefusal::kExpired: return "older than its validity when it came in";
     case CommandRefusal::kOldSequence: return "its sequence number is not above the last of its session";
@@ -88,6 +88,7 @@ int Admission::indexOf(std::string_view name) const {
 
 CommandRefusal Admission::admit(const link::Command& message, const Speaker& speaker, MonotonicTime now,
                                 Command& out) {
+  culprit_.clear();
   const auto deadline = deadlineOf(message.received_ns, message.validity_ms, now);
   if (message.setpoint_count == 0 || message.setpoint_count > kMaxMotors || !deadline)
     return CommandRefusal::kMalformed;
@@ -96,7 +97,13 @@ CommandRefusal Admission::admit(const link::Command& message, const Speaker& spe
   out.count = message.setpoint_count;
   for (std::size_t i = 0; i < out.count; ++i) {
     const auto refusal = translate(message.setpoints[i], out.setpoints[i]);
-    if (refusal != CommandRefusal::kNone) return refusal;
+    if (refusal != CommandRefusal::kNone) {
+      const auto& setpoint = message.setpoints[i];
+      culprit_ = std::string{setpoint.motor.view()};
+      if (refusal != CommandRefusal::kUnknownMotor)
+        culprit_ += std::string{": "} + toString(setpoint.target.mode);
+      return refusal;
+    }
     cleared_field_ = cleared_field_ || hasUnused(message.setpoints[i].target);
     if (named.test(out.setpoints[i].motor)) return CommandRefusal::kMalformed;
     named.set(out.setpoints[i].motor);

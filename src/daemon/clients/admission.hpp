@@ -63,6 +63,9 @@ class Admission {
   /// Whether the last message that was accepted had a field that its mode does not use.
   [[nodiscard]] bool clearedField() const noexcept { return cleared_field_; }
 
+  /// "wheel: impedance": motor and mode for which the last message was refused; empty: not for one of them.
+  [[nodiscard]] const std::string& culprit() const noexcept { return culprit_; }
+
   /// Index of a motor, or -1.
   [[nodiscard]] int indexOf(std::string_view name) const;
 
@@ -83,6 +86,7 @@ class Admission {
   CommandBudget budget_;
   std::array<std::uint64_t, kCommandRefusalCount> refusals_{};
   bool cleared_field_ = false;
+  std::string culprit_;
 };
 
 }  // namespace rc10

@@ -7,6 +7,8 @@
 
 #include <fmt/format.h>
 
+#include "app/nearest.hpp"
+
 namespace rc10 {
 namespace {
 
@@ -39,7 +41,10 @@ Result<void> add(DriveWrite& write, const DriveSetup& setup, std::string_view na
   const auto found = std::find_if(setup.settings.begin(), setup.settings.end(),
                                   [name](const DriveSetting& each) { return each.name == name; });
   if (found == setup.settings.end()) {
-    return fail(fmt::format("there is no setting '{}'; there are: {}", name, namesOf(setup)));
+    std::vector<std::string_view> names;
+    for (const auto& setting : setup.settings) names.push_back(setting.name);
+    return fail(fmt::format("there is no setting '{}'; there are: {}{}", name, namesOf(setup),
+                            didYouMean(name, names)));
   }
   if (auto sound = check(*found, value); !sound) return sound;
   const auto index = static_cast<std::size_t>(found - setup.settings.begin());

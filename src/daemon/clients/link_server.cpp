@@ -330,7 +330,10 @@ void LinkServer::command(const link::Command& message, const Speaker& speaker) {
   admission_.count(outcome);
   if (outcome == CommandRefusal::kNotPermitted)
     return reportRefusal(outcome, message.client, admission_.whyNotPermitted());
-  if (outcome != CommandRefusal::kNone) return reportRefusal(outcome, message.client);
+  if (outcome != CommandRefusal::kNone) {
+    const auto& culprit = admission_.culprit();
+    return reportRefusal(outcome, message.client, culprit.empty() ? "" : culprit + ": " + describe(outcome));
+  }
   if (!admission_.clearedField()) return;
   admission_.count(CommandRefusal::kUnusedField);
   reportRefusal(CommandRefusal::kUnusedField, message.client);

@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include "app/nearest.hpp"
 #include "daemon/clients/drive_request.hpp"
 #include "daemon/clients/gain_request.hpp"
 
@@ -143,8 +144,11 @@ RequestDesk::Outcome RequestDesk::begin(const link::Request& request, const Spea
   if (!operation) {
     problem = fmt::format(
         "unknown operation '{}': there are enable, enable_alone, disable, estop, clear, zero, set_gains, "
-        "get_config, configure-drive and drive-settings",
-        request.operation.view());
+        "get_config, configure-drive and drive-settings{}",
+        request.operation.view(),
+        didYouMean(request.operation.view(),
+                   {"enable", "enable_alone", "disable", "estop", "clear", "zero", "set_gains", "get_config",
+                    "configure-drive", "drive-settings"}));
   } else if (*operation == Operation::kZero && request.target.view().empty()) {
     problem = "zero needs a motor: name it";
   } else if (!std::isfinite(value)) {
@@ -204,7 +208,8 @@ bool RequestDesk::parseMotors(const link::Request& request, MotorSet& motors, st
     rest = comma == std::string_view::npos ? std::string_view{} : rest.substr(comma + 1);
     const int index = admission_.indexOf(name);
     if (index < 0) {
-      problem = fmt::format("there is no motor '{}'; the motors are: {}", name, fmt::join(names_, ", "));
+      problem = fmt::format("there is no motor '{}'; the motors are: {}{}", name, fmt::join(names_, ", "),
+                            didYouMean(name, {names_.begin(), names_.end()}));
       return false;
     }
     motors.set(static_cast<std::size_t>(index));
@@ -222,7 +227,8 @@ Result<std::size_t> RequestDesk::theMotor(const link::Request& request) const {
   const int index = admission_.indexOf(name);
   if (index >= 0) return static_cast<std::size_t>(index);
   return tl::unexpected(
-      Error{fmt::format("name one motor, not '{}'; the motors are: {}", name, fmt::join(names_, ", "))});
+      Error{fmt::format("name one motor, not '{}'; the motors are: {}{}", name, fmt::join(names_, ", "),
+                        didYouMean(name, {names_.begin(), names_.end()}))});
 }
 
 RequestDesk::Outcome RequestDesk::tellSettings(const link::Request& request) const {

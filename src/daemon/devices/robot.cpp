@@ -133,6 +133,7 @@ Result<void> Robot::addMotor(const MotorConfig& config, std::size_t bus_index) {
        .standstill_rpm = config.standstill_rpm,
        .run_down = config.run_down,
        .optional = config.optional,
+       .id = config.settings.id,
        .steers = std::move(use.steers.empty() ? use.obeys : use.steers)});
   return {};
 }

@@ -42,6 +42,7 @@ class Robot {
     Duration run_down{};                ///< Without torque and feedback it turns no longer than this.
     bool optional = false;              ///< The robot may be enabled without it.
     bool homed = false;                 ///< A module finds its angle.
+    int id = 0;                         ///< As set on the drive.
     std::vector<FrameFilter> steers{};  ///< Frames that command its drive, whoever sends them.
   };
   struct BusEntry {

@@ -11,6 +11,9 @@ constexpr Duration kEnableTimeout = std::chrono::seconds{2};
 // A clear request goes out, and the answer comes back, at the slowest command_divider and feedback rate.
 constexpr Duration kClearPatience = std::chrono::milliseconds{250};
 
+// Drives that boot with the computer have answered by then.
+constexpr Duration kFirstAnswer = std::chrono::seconds{3};
+
 }  // namespace
 
 Axis::Axis(const Robot::MotorEntry& entry, const Robot::BusEntry& bus) noexcept
@@ -77,6 +80,15 @@ bool Axis::fresh(const Tick& tick) const noexcept {
 bool Axis::lost(const Tick& tick) const noexcept {
   if (fresh(tick)) return false;
   return bus_.held || motor_.feedback().samples == 0 || unheard_ticks_ > entry_.feedback_timeout_ticks;
+}
+
+// Of a bus that carries nothing the bus itself is the news.
+bool Axis::missesDrive(const Tick& tick) noexcept {
+  if (first_tick_ == MonotonicTime{}) first_tick_ = tick.now;
+  if (missed_ || motor_.feedback().samples > 0 || bus_.held || tick.now - first_tick_ < kFirstAnswer)
+    return false;
+  missed_ = true;
+  return true;
 }
 
 bool Axis::standsStill() const noexcept {

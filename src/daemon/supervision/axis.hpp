@@ -40,6 +40,9 @@ class Axis {
   [[nodiscard]] bool fresh(const Tick& tick) const noexcept;
   /// Not fresh, and not only because this thread did not run.
   [[nodiscard]] bool lost(const Tick& tick) const noexcept;
+  /// Once, some time after the first tick: its drive has not been heard yet.
+  [[nodiscard]] bool missesDrive(const Tick& tick) noexcept;
+  [[nodiscard]] int id() const noexcept { return entry_.id; }
   [[nodiscard]] bool standsStill() const noexcept;
   /// Why an e-stop must not end yet: it turns, or may do so.
   [[nodiscard]] Refusal unrest(const Tick& tick) const noexcept;
@@ -124,6 +127,8 @@ class Axis {
   MonotonicTime enable_deadline_;
   MonotonicTime clearing_until_{};  ///< Until then the drive's complaints are old ones.
   MonotonicTime last_skip_report_{};
+  MonotonicTime first_tick_{};
+  bool missed_ = false;  ///< missesDrive() has said so.
 };
 
 }  // namespace rc10

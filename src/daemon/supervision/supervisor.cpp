@@ -49,6 +49,8 @@ void Supervisor::watch(std::size_t motor, const Tick& tick) noexcept {
     transition(motor, MotorEvent::kFault, tick);
   };
   axis.listen(tick, simulation_late_);
+  if (axis.missesDrive(tick))
+    report({EventCode::kNeverHeard, Severity::kWarning, who, axis.id(), 0, tick.now});
   if (axis.fresh(tick)) transition(motor, MotorEvent::kFeedbackFresh, tick);
   if (axis.lost(tick)) transition(motor, MotorEvent::kFeedbackLost, tick);
   if (axis.losesReference(tick)) report({EventCode::kReferenceLost, Severity::kWarning, who, 0, 0, tick.now});

@@ -39,7 +39,7 @@ ExitCode checkInJson(const std::string& file, const ConfigOutcome& outcome) {
 ExitCode check(const Global& global, const std::string& file) {
   const auto outcome = loadRobotConfig(file);
   if (global.json) return checkInJson(file, outcome);
-  std::fputs((outcome.errorText() + outcome.warningText()).c_str(), stderr);
+  std::fputs(outcome.text().c_str(), stderr);
   if (!outcome.config) {
     std::fprintf(stderr, "%s: %zu error%s\n", file.c_str(), outcome.errors.size(),
                  outcome.errors.size() == 1 ? "" : "s");

@@ -15,10 +15,13 @@ namespace {
 struct Stm32Gains {
   std::vector<std::string> speed;
   std::vector<std::string> angle;
-  double td_ratio = 0.0;
-  double separation_deg = 0.0;
-  double tick_ms = 1.0;
+  std::string td_ratio = "0";
+  std::string separation_deg = "0";
+  std::string tick_ms = "1";
 };
+
+constexpr double kMinTickMs = 0.01;
+constexpr double kMaxTickMs = 100.0;
 
 ExitCode wrong(const std::string& what) { return complain({what}, ExitCode::kUsage); }
 
@@ -33,16 +36,23 @@ void put(client::Json& json, const ConvertedGains& gains) {
 ExitCode convert(const Global& global, const Stm32Gains& gains) {
   if (gains.speed.empty() && gains.angle.empty())
     return wrong("convert-gains needs --speed, --angle, or both");
+  const auto td_ratio = stm32Number(gains.td_ratio);
+  if (!td_ratio) return wrong("--td-ratio: " + td_ratio.error().message);
+  const auto separation_deg = stm32Number(gains.separation_deg);
+  if (!separation_deg) return wrong("--separation: " + separation_deg.error().message);
+  const auto tick_ms = stm32Number(gains.tick_ms);
+  if (!tick_ms) return wrong("--tick-ms: " + tick_ms.error().message);
+  if (*tick_ms < kMinTickMs || *tick_ms > kMaxTickMs) return wrong("--tick-ms: give 0.01 to 100");
   std::vector<ConvertedGains> sections;
   if (!gains.speed.empty()) {
     const auto pid = stm32Pid(gains.speed);
     if (!pid) return wrong("--speed: " + pid.error().message);
-    sections.push_back(namedGains(convertSpeedGains(*pid, gains.td_ratio, gains.tick_ms / 1000.0)));
+    sections.push_back(namedGains(convertSpeedGains(*pid, *td_ratio, *tick_ms / 1000.0)));
   }
   if (!gains.angle.empty()) {
     const auto pid = stm32Pid(gains.angle);
     if (!pid) return wrong("--angle: " + pid.error().message);
-    sections.push_back(namedGains(convertAngleGains(*pid, gains.separation_deg)));
+    sections.push_back(namedGains(convertAngleGains(*pid, *separation_deg)));
   }
   client::Json json{{"notes", client::Json::array()}};
   std::string text;
@@ -65,14 +75,13 @@ void addConvertGains(CLI::App& app, Action& action) {
   verb->add_option("--speed", gains->speed, "its PID_Incremental: output rpm to mA, as in PID_Param_Config")
       ->expected(3, 7)
       ->type_name(order);
-  verb->add_option("--td-ratio", gains->td_ratio, "its td_ratio")->check(CLI::NonNegativeNumber);
+  verb->add_option("--td-ratio", gains->td_ratio, "its td_ratio")->type_name("NUMBER");
   verb->add_option("--angle", gains->angle, "its PID_Position: deg to output rpm, as in PID_Param_Config")
       ->expected(3, 7)
       ->type_name(order);
   verb->add_option("--separation", gains->separation_deg, "its I_SeparaThreshold in degrees")
-      ->check(CLI::NonNegativeNumber);
-  verb->add_option("--tick-ms", gains->tick_ms, "how often its speed loop ran")
-      ->check(CLI::Range(0.01, 100.0));
+      ->type_name("DEG");
+  verb->add_option("--tick-ms", gains->tick_ms, "how often its speed loop ran")->type_name("MS");
   verb->callback(
       [&action, gains] { action = [gains](const Global& global) { return convert(global, *gains); }; });
 }

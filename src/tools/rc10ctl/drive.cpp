@@ -7,6 +7,7 @@
 #include <cstdio>
 #include <string>
 
+#include "app/event_code.hpp"
 #include "app/printable.hpp"
 #include "client/quantity_text.hpp"
 #include "client/request_call.hpp"
@@ -24,6 +25,8 @@ using std::chrono::steady_clock;
 constexpr Duration kReleasing = std::chrono::milliseconds{2 * kValidityMs};
 // Until then the state may not show our first setpoint yet.
 constexpr Duration kSettling = std::chrono::milliseconds{500};
+// States come often enough to show it within this time, though not soon enough to rely on it.
+constexpr Duration kLongEnough = std::chrono::milliseconds{200};
 constexpr Duration kProgressOnTerminal = std::chrono::milliseconds{100};
 constexpr Duration kProgressInFile = std::chrono::milliseconds{500};
 
@@ -115,6 +118,7 @@ class Driver {
       const auto now = steady_clock::now();
       if (now - start >= order_.time) break;
       if (now >= next) {
+        sent_before_ = setpoint_.target;
         if (order_.steer) {
           if (const auto end = order_.steer(setpoint_, *feed_.state())) {
             progress.show(line(), true);
@@ -128,11 +132,13 @@ class Driver {
       if (!feed_.pump()) return rc10dEnded().message;
       showEvents(progress);
       if (auto why = trouble(); !why.empty()) return why;
-      if (auto why = rival(steady_clock::now() - start); !why.empty()) return why;
+      if (auto why = refused(steady_clock::now() - start); !why.empty()) return why;
       progress.show(line(), false);
     }
     progress.show(line(), true);
-    return {};
+    // Too short a time to be sure about it otherwise.
+    const bool told = !refusal_.empty() || steady_clock::now() - start >= kLongEnough;
+    return motor() != nullptr && !interrupted() && !taken_ && told ? whyNotTaken() : std::string{};
   }
 
   // Coasts, and then gives the motor back: while a target is valid, a coasting one too, nobody else of our
@@ -191,12 +197,38 @@ class Driver {
     return motor() != nullptr ? obstacle(*feed_.state(), name_, *motor()) : std::string{};
   }
 
-  std::string rival(Duration elapsed) const {
-    if (motor() == nullptr || elapsed < kSettling) return {};
+  // Our target, or the one before it, is that of the motor; another rc10ctl has our name.
+  bool inForce() const {
+    const auto& now = *motor();
+    const auto is = [&now](const Target& target) {
+      const bool valued = target.mode != ControlMode::kCoast && target.mode != ControlMode::kBrake;
+      return now.mode == target.mode && (!valued || now.target == target.value);
+    };
+    return now.owner.view() == kClientName && (is(setpoint_.target) || is(sent_before_));
+  }
+
+  // Why the motor does not do what it is told; empty if it does.
+  std::string refused(Duration elapsed) {
+    if (motor() == nullptr) return {};
+    if (inForce()) {
+      taken_ = true;
+      in_force_at_ = elapsed;
+      refusal_.clear();
+    }
+    return elapsed - in_force_at_ < kSettling ? std::string{} : whyNotTaken();
+  }
+
+  std::string whyNotTaken() const {
+    const std::string why = refusal_.empty() ? std::string{} : " (" + refusal_ + ")";
     const auto owner = motor()->owner.view();
-    if (owner.empty() || owner == kClientName) return {};
-    return "motor '" + name_ + "' is held by '" + printable(owner) +
-           "': stop that program, or take over with a higher --priority";
+    const std::string asked = std::string(toString(setpoint_.target.mode));
+    if (owner == kClientName)
+      return "motor '" + name_ + "' obeys another rc10ctl, not this " + asked +
+             ": end that one, or take over with a higher --priority";
+    if (!owner.empty())
+      return "motor '" + name_ + "' is held by " + holder(owner) + ", or take over with a higher --priority";
+    return "motor '" + name_ + "' did not take the " + asked + " target" +
+           (why.empty() ? ": `rc10ctl stats` shows what was refused" : why);
   }
 
   void showEvents(Progress& progress) {
@@ -205,6 +237,11 @@ class Driver {
       const bool concerns_us = event.source.view() == name_ ? event.severity > Severity::kInfo
                                                             : event.severity > Severity::kWarning;
       if (!concerns_us) continue;
+      // What refused() reports in the end, with its cause.
+      if (event.source.view() == name_ && isRefusal(event.code)) {
+        refusal_ = printable(event.text.view());
+        continue;
+      }
       progress.note(std::string(toString(event.severity)) + ": " + printable(event.source.view()) + ": " +
                     printable(event.text.view()));
     }
@@ -223,11 +260,31 @@ class Driver {
     return limits.empty() ? text : text + "  limit: " + limits;
   }
 
+  // A module's name is not that of a program that one could end.
+  std::string holder(std::string_view owner) const {
+    const auto& welcome = rc10d_.welcome();
+    const auto count = std::min<std::size_t>(welcome.module_count, link::kMaxModules);
+    for (std::size_t i = 0; i < count; ++i) {
+      if (welcome.modules[i].view() == owner)
+        return "the module '" + printable(owner) + "': end what commands it (`rc10ctl modules`)";
+    }
+    return "'" + printable(owner) + "': stop that program";
+  }
+
+  static bool isRefusal(std::int32_t code) {
+    return code == static_cast<std::int32_t>(EventCode::kSetpointSkipped) ||
+           code == static_cast<std::int32_t>(EventCode::kNotOwner);
+  }
+
   LinkClient& rc10d_;
   const Drive& order_;
   Feed feed_;
   std::string name_;
   link::Setpoint setpoint_;  // as steered
+  Target sent_before_;       // the one before the last, which the state may still show
+  std::string refusal_;      // what rc10d said last about a target that did not act
+  bool taken_ = false;       // has been in force
+  Duration in_force_at_{0};  // since the start
   link::Command command_;
 };
 

@@ -9,6 +9,7 @@
 
 #include "app/standard_output.hpp"
 #include "rc10_version.hpp"
+#include "spelling.hpp"
 #include "verbs.hpp"
 
 namespace {
@@ -49,6 +50,8 @@ int run(int argc, char** argv) {
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
+    if (const auto word = rc10::misspelt(app, argc, argv); error.get_exit_code() != 0 && !word.empty())
+      return static_cast<int>(complain({word + "; `rc10ctl --help` has all"}, ExitCode::kUsage));
     return app.exit(error) == 0 ? 0 : static_cast<int>(ExitCode::kUsage);
   }
   if (global.json) complainInJson();

@@ -4,15 +4,19 @@
 #include <memory>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include <CLI/CLI.hpp>
 
+#include "app/event_code.hpp"
+#include "app/nearest.hpp"
 #include "app/printable.hpp"
 #include "client/duration_text.hpp"
 #include "client/module_text.hpp"
 #include "client/request_call.hpp"
 #include "client/text_table.hpp"
+#include "feed.hpp"
 #include "named_value.hpp"
 #include "verbs.hpp"
 
@@ -21,60 +25,8 @@ namespace {
 
 using std::chrono::steady_clock;
 
-constexpr Duration kModulesPatience = std::chrono::seconds{3};
-
-/// The modules of a robot, as far as they have told of themselves.
-class ModuleFeed {
- public:
-  explicit ModuleFeed(LinkClient& rc10d) : rc10d_(rc10d), buffer_(link::kMaxMessageSize) {
-    const auto& welcome = rc10d.welcome();
-    for (std::size_t i = 0; i < welcome.module_count; ++i)
-      modules_.push_back({welcome.modules[i], link::ModuleInfo{}, link::ModuleState{}});
-  }
-
-  /// Takes what has come. False: rc10d has ended.
-  [[nodiscard]] bool pump() {
-    for (;;) {
-      const auto received = rc10d_.receive(buffer_);
-      if (received.status == LinkClient::ReceiveStatus::kClosed) return false;
-      if (received.status == LinkClient::ReceiveStatus::kNothing) return true;
-      take(received.datagram);
-    }
-  }
-
-  /// Waits until each has told its state.
-  [[nodiscard]] Result<void> awaitAll() {
-    const auto deadline = steady_clock::now() + kModulesPatience;
-    while (!complete()) {
-      if (interrupted()) return fail("interrupted");
-      if (steady_clock::now() >= deadline)
-        return fail("rc10d sends nothing: is it stopped? See `systemctl status rc10d`");
-      waitReadable(rc10d_, deadline - steady_clock::now());
-      if (!pump()) return tl::unexpected(rc10dEnded());
-    }
-    return {};
-  }
-
-  [[nodiscard]] const std::vector<client::ModuleView>& modules() const noexcept { return modules_; }
-
- private:
-  void take(std::span<const std::byte> datagram) {
-    if (link::ModuleInfo info; link::open(datagram, info) && info.module < modules_.size()) {
-      modules_[info.module].info = info;
-    } else if (link::ModuleState state; link::open(datagram, state) && state.module < modules_.size()) {
-      modules_[state.module].state = state;
-    }
-  }
-
-  [[nodiscard]] bool complete() const {
-    return std::all_of(modules_.begin(), modules_.end(),
-                       [](const auto& module) { return module.state.mono_us != 0; });
-  }
-
-  LinkClient& rc10d_;
-  std::vector<std::byte> buffer_;
-  std::vector<client::ModuleView> modules_;
-};
+// Until then its state may not show our inputs yet.
+constexpr Duration kTakingOver = std::chrono::milliseconds{500};
 
 void printModules(const Global& global, const std::vector<client::ModuleView>& modules) {
   std::fputs((global.json ? client::modulesJson(modules) + "\n" : client::modulesText(modules)).c_str(),
@@ -84,8 +36,8 @@ void printModules(const Global& global, const std::vector<client::ModuleView>& m
 ExitCode modules(const Global& global) {
   auto rc10d = connect(global, link::kModules);
   if (!rc10d) return complain(rc10d.error(), ExitCode::kNoDaemon);
-  ModuleFeed feed{*rc10d};
-  if (const auto there = feed.awaitAll(); !there) return complain(there.error(), ExitCode::kFailed);
+  Feed feed{*rc10d};
+  if (const auto there = feed.awaitModules(); !there) return complain(there.error(), ExitCode::kFailed);
   printModules(global, feed.modules());
   return ExitCode::kOk;
 }
@@ -115,6 +67,29 @@ Result<link::Signals> signalsFrom(const SignalOptions& options) {
   return message;
 }
 
+std::vector<std::string_view> viewsOf(std::span<const link::Name> names) {
+  std::vector<std::string_view> views;
+  for (const auto& name : names) views.push_back(name.view());
+  return views;
+}
+
+/// Why the module does not do what it is told; empty if it does, as far as is known yet.
+std::string whyNotObeyed(const client::ModuleView& module, Feed& feed, Duration elapsed) {
+  const std::string name = printable(module.name.view());
+  for (const auto& event : feed.takeEvents()) {
+    if (event.code == static_cast<std::int32_t>(EventCode::kModuleRefused) &&
+        event.source.view() == module.name.view())
+      return "module '" + name + "': " + printable(event.text.view()) +
+             ": `rc10ctl watch` shows the owner of each motor; stop that program";
+  }
+  const auto owner = module.state.owner.view();
+  if (elapsed < kTakingOver || owner == kClientName) return {};
+  if (owner.empty())
+    return "module '" + name + "' takes none of these inputs: `rc10ctl stats` shows what was refused";
+  return "module '" + name + "' is commanded by '" + printable(owner) +
+         "': stop that program, or take over with a higher --priority";
+}
+
 /// Empty, or why this robot cannot take it.
 std::string whySignalsUnfit(const link::Signals& message, const std::vector<client::ModuleView>& modules) {
   std::string known;
@@ -129,17 +104,24 @@ std::string whySignalsUnfit(const link::Signals& message, const std::vector<clie
                                       [&](const auto& input) { return input.view() == value.name.view(); });
       if (found == inputs.end())
         return "module '" + std::string(message.module.view()) + "' has no input '" +
-               std::string(value.name.view()) + "'; it has: " + names;
+               std::string(value.name.view()) + "'; it has: " + names +
+               didYouMean(value.name.view(), viewsOf(inputs));
     }
     return {};
   }
-  return "there is no module '" + std::string(message.module.view()) + "'; there are: " + known;
+  std::vector<std::string_view> names;
+  for (const auto& module : modules) names.push_back(module.name.view());
+  return "there is no module '" + std::string(message.module.view()) + "'; there are: " + known +
+         printable(didYouMean(message.module.view(), names));
 }
 
-ExitCode repeat(const Global& global, LinkClient& rc10d, link::Signals& message, Duration time,
-                ModuleFeed& feed) {
+ExitCode repeat(const Global& global, LinkClient& rc10d, link::Signals& message, Duration time, Feed& feed) {
+  const auto module = std::find_if(feed.modules().begin(), feed.modules().end(), [&](const auto& each) {
+    return each.name.view() == message.module.view();
+  });
   const auto start = steady_clock::now();
   auto next = start;
+  bool obeyed = false;
   while (!interrupted() && steady_clock::now() - start < time) {
     if (const auto now = steady_clock::now(); now >= next) {
       message.received_ns = 0;  // the present time
@@ -150,8 +132,14 @@ ExitCode repeat(const Global& global, LinkClient& rc10d, link::Signals& message,
     }
     waitReadable(rc10d, std::min(next, start + time) - steady_clock::now());
     if (!feed.pump()) return complain(rc10dEnded(), ExitCode::kFailed);
+    obeyed = obeyed || module->state.owner.view() == kClientName;
+    if (const auto why = whyNotObeyed(*module, feed, steady_clock::now() - start); !why.empty())
+      return complain({why}, ExitCode::kFailed);
   }
-  printModules(global, feed.modules());
+  if (const auto why = whyNotObeyed(*module, feed, std::max<Duration>(time, kTakingOver));
+      !why.empty() && !obeyed && !interrupted())
+    return complain({why}, ExitCode::kFailed);
+  printModules(global, {*module});
   return ExitCode::kOk;
 }
 
@@ -162,10 +150,10 @@ ExitCode signal(const Global& global, const SignalOptions& options) {
   if (!time)
     return complain({"--for " + options.time + ": give a time like 2s, 500ms or 1min, at most a day"},
                     ExitCode::kUsage);
-  auto rc10d = connect(global, link::kModules);
+  auto rc10d = connect(global, link::kModules | link::kEvents);
   if (!rc10d) return complain(rc10d.error(), ExitCode::kNoDaemon);
-  ModuleFeed feed{*rc10d};
-  if (const auto there = feed.awaitAll(); !there) return complain(there.error(), ExitCode::kFailed);
+  Feed feed{*rc10d};
+  if (const auto there = feed.awaitModules(); !there) return complain(there.error(), ExitCode::kFailed);
   if (const auto why = whySignalsUnfit(*message, feed.modules()); !why.empty())
     return complain({why}, ExitCode::kFailed);
   return repeat(global, *rc10d, *message, *time, feed);

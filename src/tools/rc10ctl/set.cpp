@@ -1,15 +1,17 @@
-#include <algorithm>
 #include <cmath>
 #include <memory>
 #include <optional>
 #include <string>
+#include <string_view>
+#include <vector>
 
 #include <CLI/CLI.hpp>
 
-#include "app/printable.hpp"
+#include "app/nearest.hpp"
 #include "app/target.hpp"
 #include "ask.hpp"
 #include "client/duration_text.hpp"
+#include "client/find_motor.hpp"
 #include "client/text_table.hpp"
 #include "drive.hpp"
 #include "link/words.hpp"
@@ -33,10 +35,19 @@ struct SetOptions {
 
 constexpr std::uint32_t kAllModes = (1U << kControlModeCount) - 1U;
 
+std::vector<std::string_view> modeNames() {
+  std::vector<std::string_view> names;
+  for (unsigned mode = 0; mode < kControlModeCount; ++mode)
+    names.emplace_back(toString(static_cast<ControlMode>(mode)));
+  return names;
+}
+
 // Parses the options; needs no robot.
 Result<Drive> driveFrom(const SetOptions& options) {
   const auto mode = link::modeOf(options.mode);
-  if (!mode) return fail("'" + options.mode + "' is not a mode: use one of " + link::modeWords(kAllModes));
+  if (!mode)
+    return fail("'" + options.mode + "' is not a mode: use one of " + link::modeWords(kAllModes) +
+                didYouMean(options.mode, modeNames()));
   const bool needs_value = *mode != ControlMode::kCoast && *mode != ControlMode::kBrake;
   if (needs_value && !options.value) {
     return fail("mode " + options.mode + " needs a value: `rc10ctl set " + options.motor + " " +
@@ -75,20 +86,15 @@ Result<Drive> driveFrom(const SetOptions& options) {
 
 // Finds the motor; empty, or why this robot cannot do it.
 std::string whyDriveUnfit(Drive& order, const link::Welcome& welcome) {
-  const auto motors = std::span{welcome.motors}.first(welcome.motor_count);
   const auto name = order.setpoint.motor.view();
-  const auto found =
-      std::find_if(motors.begin(), motors.end(), [&](const auto& m) { return m.name.view() == name; });
-  if (found == motors.end()) {
-    std::string names;
-    for (const auto& motor : motors) names += (names.empty() ? "" : ", ") + printable(motor.name.view());
-    return "there is no motor '" + std::string(name) + "'; the motors are: " + names;
-  }
-  order.motor = static_cast<std::size_t>(found - motors.begin());
+  const auto found = client::findMotor(welcome, name);
+  if (!found) return found.error().message;
+  order.motor = *found;
   const auto mode = order.setpoint.target.mode;
-  if (mode != ControlMode::kCoast && (found->modes & (1U << static_cast<unsigned>(mode))) == 0) {
+  const auto modes = welcome.motors[*found].modes;
+  if (mode != ControlMode::kCoast && (modes & (1U << static_cast<unsigned>(mode))) == 0) {
     return "motor '" + std::string(name) + "' has no mode " + toString(mode) + "; it has " +
-           link::modeWords(found->modes);
+           link::modeWords(modes);
   }
   return {};
 }

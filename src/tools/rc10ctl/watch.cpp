@@ -65,7 +65,7 @@ class Screen {
     } else {
       // Plain tables one below the other.
       if (separate_ && !first_) std::fputs("\n", stdout);
-      std::fputs((picture.text + picture.below).c_str(), stdout);
+      std::fputs((picture.text + picture.modules + picture.below).c_str(), stdout);
     }
     first_ = false;
     std::fflush(stdout);
@@ -98,8 +98,10 @@ class Spark {
 client::Picture picture(const Global& global, const link::Welcome& welcome, const Feed& feed,
                         const std::optional<Spark>& spark) {
   if (global.json)
-    return {.text = client::stateJson(welcome, *feed.state()) + "\n", .motors = 0, .below = {}};
+    return {
+        .text = client::stateJson(welcome, *feed.state()) + "\n", .motors = 0, .modules = {}, .below = {}};
   std::string below;
+  std::string modules = client::moduleLines(feed.modules());
   if (spark) below += spark->line();
   const auto silent = steady_clock::now() - feed.stateTime();
   if (silent > kSilence) {
@@ -108,6 +110,7 @@ client::Picture picture(const Global& global, const link::Welcome& welcome, cons
   }
   return {.text = client::stateText(welcome, *feed.state(), feed.diagnostics(), coloured(STDOUT_FILENO)),
           .motors = std::min<std::size_t>(feed.state()->motor_count, welcome.motor_count),
+          .modules = std::move(modules),
           .below = std::move(below)};
 }
 
@@ -115,7 +118,7 @@ ExitCode watch(const Global& global, const WatchOptions& options) {
   if (!std::isfinite(options.hz)) return complain({"--hz: give a number from 0.1 to 100"}, ExitCode::kUsage);
   if (options.spark && global.json)
     return complain({"--spark draws for people: leave out --json, or --spark"}, ExitCode::kUsage);
-  auto rc10d = connect(global, link::kStates | link::kDiagnosticsFeed);
+  auto rc10d = connect(global, link::kStates | link::kDiagnosticsFeed | link::kModules);
   if (!rc10d) return complain(rc10d.error(), ExitCode::kNoDaemon);
   std::optional<Spark> spark;
   if (options.spark) {
@@ -129,7 +132,10 @@ ExitCode watch(const Global& global, const WatchOptions& options) {
     return interrupted() ? ExitCode::kOk : complain(there.error(), ExitCode::kFailed);
   }
   // Without them the first picture lacks the buses; they come twice a second.
-  if (!global.json) (void)feed.awaitDiagnostics();
+  if (!global.json) {
+    (void)feed.awaitDiagnostics();
+    (void)feed.awaitModules();
+  }
   Screen screen(global.json);
   const auto period = std::chrono::duration_cast<Duration>(std::chrono::duration<double>(1.0 / options.hz));
   auto next = steady_clock::now();

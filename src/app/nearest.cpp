@@ -1,4 +1,4 @@
-#include "config/yaml/nearest.hpp"
+#include "app/nearest.hpp"
 
 #include <algorithm>
 #include <cctype>
@@ -50,6 +50,11 @@ std::string_view nearest(std::string_view typed, const std::vector<std::string_v
     }
   }
   return best;
+}
+
+std::string didYouMean(std::string_view typed, const std::vector<std::string_view>& candidates) {
+  const auto meant = nearest(typed, candidates);
+  return meant.empty() ? std::string{} : "; did you mean " + std::string{meant} + "?";
 }
 
 }  // namespace rc10

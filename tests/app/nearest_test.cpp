@@ -1,0 +1,20 @@
+#include "app/nearest.hpp"
+
+#include <gtest/gtest.h>
+
+namespace rc10::test::nearest_test {
+namespace {
+
+TEST(Nearest, AWordThatIsNearIsOffered) {
+  EXPECT_EQ(didYouMean("enabel", {"disable", "enable", "estop"}), "; did you mean enable?");
+  EXPECT_EQ(didYouMean("Front-Left", {"rear_left", "front_left"}), "; did you mean front_left?");
+}
+
+TEST(Nearest, AWordThatIsNothingLikeThemIsNot) {
+  EXPECT_EQ(didYouMean("gripper", {"disable", "enable"}), "");
+  EXPECT_EQ(didYouMean("", {"enable"}), "");
+  EXPECT_EQ(didYouMean("enable", {}), "");
+}
+
+}  // namespace
+}  // namespace rc10::test::nearest_test
