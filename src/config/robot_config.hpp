@@ -98,7 +98,7 @@ enum class RealtimePolicy : std::uint8_t { kRequired, kPreferred };
 /// Of rc10-guard.
 enum class GuardPolicy : std::uint8_t { kRequired, kPreferred, kOff };
 
-/// What stops when a drive does not rest.
+/// Extent of the stop when a drive does not rest.
 enum class UnrestPolicy : std::uint8_t {
   kGroup,      ///< Its group.
   kEstop,      ///< The robot.

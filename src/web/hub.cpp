@@ -134,7 +134,7 @@ void Hub::ask(Page& page, const AskRobot& wanted) {
   if (!refused.empty()) page.socket->sendText(shared(responseMessage(wanted.seq, "refused", refused)));
 }
 
-// What all pages draw together.
+// Signals of all pages together.
 void Hub::chooseTraces() {
   std::vector<link::TraceSignal> all;
   for (const auto& page : pages_) {

@@ -20,7 +20,7 @@ Json namesOf(std::span<const link::Name> names) {
   return list;
 }
 
-// What the client's writers give, in an envelope.
+// JSON of the client's writers in an envelope.
 std::string wrapped(std::string_view type, const std::string& data) {
   return R"({"type":")" + std::string{type} + R"(","data":)" + data + "}";
 }

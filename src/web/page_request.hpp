@@ -39,7 +39,7 @@ struct AskRobot {
 
 using PageRequest = std::variant<ShowToken, ChooseView, AskRange, AskRobot>;
 
-/// What a stranger sent. The error is a sentence for him.
+/// A stranger's message. The error is a sentence for him.
 [[nodiscard]] Result<PageRequest> parsePageRequest(std::string_view text);
 
 }  // namespace rc10::web

@@ -13,7 +13,7 @@
 
 namespace rc10::web {
 
-/// What the server knows of the robot: one connection to rc10d for all pages. rc10d may end, and come back.
+/// The robot as the server knows it: one connection to rc10d for all pages. rc10d may end, and come back.
 class RobotFeed {
  public:
   /// Without a name: the only robot of this computer.

@@ -39,7 +39,7 @@ void TraceStore::choose(std::span<const link::TraceSignal> signals) {
     }
     order_.push_back(static_cast<std::size_t>(found - slots_.begin()));
   }
-  // What is not watched any more needs no room.
+  // A signal that is not watched any more needs no room.
   for (auto& slot : slots_) {
     if (!slot.current) slot = {};
   }

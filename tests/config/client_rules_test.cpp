@@ -1,4 +1,4 @@
-// Who may do what: `clients`, `tuning`, `clear`.
+// Rights of senders: `clients`, `tuning`, `clear`.
 
 #include <gmock/gmock.h>
 

@@ -306,7 +306,7 @@ TEST_F(RequestDeskTest, AnAnswerBelongsToItsSenderAndOperation) {
   (void)desk.finish(done(*begin(linkRequest(1, "enable")).order));
   EXPECT_TRUE(desk.begin(linkRequest(1, "enable"), {.connection = kConnection, .user = 1}).order);
   EXPECT_TRUE(begin(linkRequest(1, "clear")).order) << "a program that counts from 1 anew";
-  // What comes by LCM from another computer takes no answer away from a program of this one.
+  // A message by LCM from another computer takes no answer away from a program of this one.
   (void)desk.finish(done(*desk.begin(linkRequest(2, "enable"), {.way = Speaker::Way::kNetwork}).order));
   EXPECT_TRUE(desk.begin(linkRequest(2, "enable"), {.way = Speaker::Way::kLcm}).order);
 }

@@ -422,7 +422,7 @@ void Oracle::judgeForeign(std::size_t index, const MotorSnapshot& seen) {
   forget(motor.foreign);
 }
 
-// What its drive reports while nothing is asked of it, against the thresholds of the configuration.
+// Reports of its drive while nothing is asked of it, against the thresholds of the configuration.
 void Oracle::judgeRest(std::size_t index, const MotorSnapshot& seen) {
   auto& motor = motors_[index];
   const auto& rest = motor.config->rest;

@@ -1,4 +1,4 @@
-"""Who may do what, with two users and with LCM: `clients` of the configuration."""
+"""Rights of senders, with two users and with LCM: `clients` of the configuration."""
 
 from __future__ import annotations
 
@@ -43,7 +43,7 @@ def robot(clients: str = CLIENTS) -> Iterator[Daemon]:
 
 
 def ctl(daemon: Daemon, user: int, *words: str, groups: Sequence[int] = ()) -> str:
-    """What rc10ctl of this user says."""
+    """Output of rc10ctl as this user."""
     who = [f"--reuid={user}", f"--regid={user}"]
     who.append(f"--groups={','.join(map(str, groups))}" if groups else "--clear-groups")
     done = subprocess.run(

@@ -90,7 +90,7 @@ def test_one_set_after_another_disturbs_neither(daemon: Daemon) -> None:
         daemon.must("set", "wheel", "velocity", rpm, "--for", "250ms")
 
 
-def test_a_target_that_needs_a_reference_fails_without_one(daemon: Daemon) -> None:
+def test_a_target_that_needs_a_reference_fails_without_one() -> None:
     with Daemon(ARM + "      - {name: loose, model: M3508, id: 4}\n") as robot:
         robot.wait_ready()
         robot.must("enable", "loose")

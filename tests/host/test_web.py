@@ -231,7 +231,7 @@ def test_the_columns_of_a_view_follow_each_other_without_a_gap(web: Web) -> None
         missed = page.wait("diagnostics")["data"]["missed_ticks"]
         # Each tick is in a column; one column may hold two, when a tick is late, and the next none.
         assert filled >= columns - missed - columns // 4
-        # What was seen can be looked at again, in any width.
+        # All that was seen can be looked at again, in any width.
         assert end is not None
         page.send(type="range", first_column=(end - 400) // 8, column_us=8000, count=50)
         past = next(f for f in iter(lambda: page.wait_columns(5), None) if f.kind == 3)

@@ -89,7 +89,7 @@ def rename(old: str, new: str) -> None:
 
 
 def refused(config: Path, *, run_dir: Path | None = None) -> str:
-    """What a second rc10d says, which does not start."""
+    """Output of a second rc10d, which does not start."""
     env = {} if run_dir is None else {"RC10_RUN_DIR": str(run_dir)}
     with Proc(BIN / "rc10d", "-c", config, env=env) as second:
         assert second.wait(10.0) == 1

@@ -33,7 +33,7 @@ class InterfaceLockTest : public testing::Test {
   static std::string here(const std::string& robot) {
     return "robot '" + robot + "' (rc10d, pid " + std::to_string(::getpid()) + ")";
   }
-  /// What another process says of `check`, true or not.
+  /// Another process's view of `check`, true or not.
   template <typename Check>
   static bool elsewhere(Check check) {
     const pid_t child = ::fork();

@@ -337,7 +337,7 @@ TEST_P(GyroLag, IsTakenFromTheMotorTooWhenTheChassisTurns) {
   aim(40.0, 10.0);
   run(1500);
   chassis_deg_s_ = 180.0;
-  // What the chassis turns before the gyro tells it, and the motor's own time.
+  // The chassis' turn before the gyro tells it, and the motor's own time.
   EXPECT_LT(swingOver(3000), 180.0 * 0.001 * (lag + period + 6));
   EXPECT_NEAR(output(kLagMs), lag, 1.0) << "the chassis teaches nothing wrong";
   EXPECT_EQ(output(kAgrees), 1.0);

@@ -120,7 +120,7 @@ TEST_F(MotorGuardTest, ItIsAsWarmWhenItIsEnabledAgainAsTheTimeBetweenSays) {
   EXPECT_NEAR(step().derating, 0.65F, 0.001F);
 }
 
-// What a winding does around the threshold: told in whole degrees, with noise, heated by the square of the
+// A winding around the threshold: told in whole degrees, with noise, heated by the square of the
 // current that it is allowed, under a load that would take it to 110 C.
 TEST_F(MotorGuardTest, AroundItsThresholdAHotMotorIsInNoLimitCycle) {
   double winding_c = 70.0;

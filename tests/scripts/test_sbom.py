@@ -1,4 +1,4 @@
-"""What is written beside the packages: what is in them, and how to know that they are whole."""
+"""Files beside the packages: what is in them, and how to know that they are whole."""
 
 from __future__ import annotations
 

@@ -71,7 +71,7 @@ def chromium() -> Iterator[Browser]:
         browser.close()
 
 
-# What the browser says of a page: a script or a style that its policy forbids, a script that fails.
+# Complaints of the browser about a page: scripts and styles that its policy forbids, failures.
 EXPECTED = re.compile(r"WebSocket connection|ERR_CONNECTION_REFUSED")
 
 

@@ -40,7 +40,7 @@ struct Speaker {
   }
 };
 
-/// Who may do what: `clients`, `clear: local` and `tuning: locked`. Link thread only. A refusal is a text
+/// Rights of senders: `clients`, `clear: local` and `tuning: locked`. Link thread only. A refusal is a text
 /// that says who lacks which right, and which line of the file would grant it.
 class Permissions {
  public:

@@ -82,7 +82,8 @@ FrameVerdict LKTech_Motor::updateFeedback(const CanFrame& frame) noexcept {
     case lktech::Code::kAngle: acceptTurns(frame); break;
     case lktech::Code::kOn:
       break;  // the copy of our command
-    // What rc10d never says: another controller's command or question, and the drive's copy of it or answer.
+    // Frames that rc10d never sends: another controller's command or question, and the drive's copy of it or
+    // answer.
     default: return lktech::looksLikeCommand(frame.payload()) ? verdictOnCommand() : FrameVerdict::kAccepted;
   }
   return FrameVerdict::kAccepted;

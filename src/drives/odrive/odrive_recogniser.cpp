@@ -14,7 +14,7 @@ bool sane(float value) {
   return std::isfinite(value) && (value == 0.0F || (std::abs(value) > 1e-9F && std::abs(value) < 1e7F));
 }
 
-/// What it sends beside its estimates. 0x15 and 0x1C of firmware 0.5 are something else, but also such
+/// Messages beside its estimates. 0x15 and 0x1C of firmware 0.5 are something else, but also such
 /// numbers.
 bool isTelemetry(odrive::Message message, const CanFrame& frame) {
   const auto pair = odrive::decodePair(frame);

@@ -29,7 +29,7 @@ class RestCheck {
 
   /// Once a tick. `told`: to rest, since the last tick at least.
   [[nodiscard]] Verdict step(const MotorFeedback& feedback, bool told, float standstill_rpm) noexcept;
-  /// What was told may be told again.
+  /// Events that were told may be told again.
   void reset() noexcept;
 
  private:

@@ -237,7 +237,7 @@ class Driver {
       const bool concerns_us = event.source.view() == name_ ? event.severity > Severity::kInfo
                                                             : event.severity > Severity::kWarning;
       if (!concerns_us) continue;
-      // What refused() reports in the end, with its cause.
+      // A refusal, which refused() reports in the end with its cause.
       if (event.source.view() == name_ && isRefusal(event.code)) {
         refusal_ = printable(event.text.view());
         continue;
