@@ -29,11 +29,11 @@ using boost::system::error_code;
 
 constexpr std::chrono::milliseconds kTurn{10};
 constexpr std::chrono::seconds kRequestPatience{10};
-constexpr std::size_t kMaxHeader = 8 * 1024;
-constexpr std::size_t kMaxMessage = 64 * 1024;
+constexpr std::uint32_t kMaxHeader = 8U << 10U;
+constexpr std::size_t kMaxMessage = std::size_t{64} << 10U;
 // A page that is so far behind gets no picture until it has read; one so far behind is given up.
-constexpr std::size_t kBehindBytes = 256 * 1024;
-constexpr std::size_t kLostBytes = 4 * 1024 * 1024;
+constexpr std::size_t kBehindBytes = std::size_t{256} << 10U;
+constexpr std::size_t kLostBytes = std::size_t{4} << 20U;
 constexpr std::string_view kWebSocketPath = "/link";
 
 // Nothing but this server's own files, and no frame of another page.
@@ -184,7 +184,7 @@ class FileConnection final : public std::enable_shared_from_this<FileConnection>
   }
 
  private:
-  void handle(http::request<http::empty_body> request) {
+  void handle(const http::request<http::empty_body>& request) {
     const auto refused = refusal(callerOf(request, isLoopback(stream_.socket())), shared_.names);
     if (!refused.empty()) return answer(request, http::status::forbidden, refused);
     const auto path = viewOf(request.target()).substr(0, viewOf(request.target()).find('?'));

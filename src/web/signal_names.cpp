@@ -1,6 +1,7 @@
 #include "web/signal_names.hpp"
 
 #include <algorithm>
+#include <span>
 
 namespace rc10::web {
 namespace {

@@ -62,7 +62,7 @@ Result<std::string> readOrMakeToken(const std::string& path) {
   const UniqueFd existing{::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NOFOLLOW)};
   if (existing) return readToken(existing.get(), path);
   if (errno != ENOENT) return cannot(path, "cannot be read");
-  const auto token = makeToken();
+  auto token = makeToken();
   if (!token) return token;
   const UniqueFd made{
       ::open(path.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC | O_NOFOLLOW, S_IRUSR | S_IWUSR)};
