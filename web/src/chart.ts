@@ -14,6 +14,12 @@ function dashOf(i: number): number[] {
   return kDashes[Math.floor(i / kColours.length) % kDashes.length] ?? [];
 }
 
+// Of a picture that has no value yet.
+const kUnknown: uPlot.Range.MinMax = [0, 1];
+function isEmpty(min: number | null, max: number | null): boolean {
+  return min === null || max === null || !Number.isFinite(min) || !Number.isFinite(max);
+}
+
 export interface Kept {
   name: string;
   times: number[];
@@ -56,8 +62,11 @@ export function makeChart(target: HTMLElement, signals: string[], hooks: ChartHo
     series.push({ ...look, label: `${signal} min` }, { ...look, label: signal });
     bands.push({ series: [2 * i + 2, 2 * i + 1], fill: `${colourOf(i)}55` });
   });
-  const scales: uPlot.Scales = { x: { time: false } };
-  for (const unit of units) scales[unit] = { auto: true };
+  const scales: uPlot.Scales = {
+    x: { time: false, range: (_u, min, max) => (isEmpty(min, max) ? kUnknown : min === max ? [min, min + 1] : [min, max]) },
+  };
+  for (const unit of units)
+    scales[unit] = { range: (_u, min, max) => (isEmpty(min, max) ? kUnknown : uPlot.rangeNum(min, max, 0.1, true)) };
   const axis = { stroke: () => inkOf('--ink'), grid: { stroke: () => inkOf('--grid'), width: 1 }, ticks: { stroke: () => inkOf('--grid') } };
   const axes: uPlot.Axis[] = [
     { ...axis, values: (u, values) => values.map((v) => secondsBefore(u.scales['x']?.max ?? 0, v)) },
