@@ -89,7 +89,6 @@ FAMILIES = (
         commands="x0000(0[0-4A-D])0A#.*",
         # Its watchdog is asked for until it has tripped.
         enabling=(
-            "x0000010A#00000000",
             "x0000080A#FD003200200000",
             "x000008FD#0A01320020000001",
             "x0000010A#00000000",
