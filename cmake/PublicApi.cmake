@@ -5,6 +5,7 @@
 set(RC10_PUBLIC_LAYERS app bus motor module sim)
 
 set(RC10_PUBLIC_HEADERS
+  config/client_config.hpp
   config/gpio_config.hpp
   config/load_config.hpp
   config/module_types.hpp
