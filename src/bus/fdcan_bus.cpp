@@ -12,6 +12,21 @@ namespace rc10 {
 
 static_assert(SendBatch::kCapacity == fdCANbus::kMaxFramesPerTick);
 
+namespace {
+
+/// A frame of the last tick once more: a wire or a bridge that doubles frames is no other controller, and the
+/// drive is told nothing new.
+bool isDoubled(const CanFrame& frame, const SendBatch& batch) noexcept {
+  const auto sent = batch.cleared();
+  return std::any_of(sent.begin(), sent.end(), [&frame](const SendBatch::Entry& entry) {
+    const auto bytes = entry.frame.payload();
+    return entry.frame.id == frame.id &&
+           std::equal(bytes.begin(), bytes.end(), frame.payload().begin(), frame.payload().end());
+  });
+}
+
+}  // namespace
+
 fdCANbus::fdCANbus(std::string name, CanSocket socket)
     : name_(std::move(name)), socket_(std::move(socket)), batch_(std::make_unique<SendBatch>()) {
   packers_.reserve(kMaxDevices);
@@ -75,7 +90,7 @@ void fdCANbus::dispatch(const CanFrame& frame) noexcept {
     ++counters_.rx_foreign;
     last_foreign_ = {frame.id, frame.sent_here};
   }
-  if (foreign_ != nullptr) foreign_->onForeign(*this, frame);
+  if (foreign_ != nullptr && !isDoubled(frame, *batch_)) foreign_->onForeign(*this, frame);
 }
 
 bool fdCANbus::isRest(const CanFrame& frame) const noexcept {

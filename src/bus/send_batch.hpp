@@ -45,7 +45,14 @@ class SendBatch {
   /// errno of the last send() in which the kernel took nothing, else 0.
   [[nodiscard]] int error() const noexcept { return error_; }
 
-  void clear() noexcept { size_ = 0; }
+  void clear() noexcept {
+    cleared_ = size_;
+    size_ = 0;
+  }
+  /// The frames before the last clear(). Valid until the next add().
+  [[nodiscard]] std::span<const Entry> cleared() const noexcept {
+    return std::span(entries_).first(cleared_);
+  }
 
  private:
   std::array<Entry, kCapacity> entries_{};
@@ -53,6 +60,7 @@ class SendBatch {
   std::array<iovec, kCapacity> contents_{};
   std::array<mmsghdr, kCapacity> headers_{};
   std::size_t size_ = 0;
+  std::size_t cleared_ = 0;
   int error_ = 0;
 };
 

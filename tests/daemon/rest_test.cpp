@@ -400,6 +400,22 @@ TEST_F(RestOfARobotTest, AForeignFrameConcernsTheMotorsOfItsIdAlone) {
   EXPECT_THAT(describe(*found), ::testing::HasSubstr("(0x200) from another node"));
 }
 
+TEST_F(RestOfARobotTest, FramesOfOursThatTheWireDoublesAreNobodyElses) {
+  start();
+  for (int i = 0; i < 100; ++i) {
+    robot->command(kLeft, {.mode = ControlMode::kVelocity, .value = 60.0});
+    robot->command(kFar, {.mode = ControlMode::kVelocity, .value = 60.0});
+    robot->tick();
+    for (CanFrame frame : takeFrames(*robot)) {
+      frame.received = robot->now();
+      ASSERT_TRUE(robot->inboxes()[0].frames.push(frame));
+    }
+  }
+  EXPECT_EQ(status(kLeft), MotorStatus::kActive);
+  EXPECT_EQ(status(kFar), MotorStatus::kActive);
+  EXPECT_GT(robot->snapshot().buses[0].counters.rx_foreign, 100U) << "they are counted all the same";
+}
+
 TEST_F(RestOfARobotTest, HowManyForeignFramesAreAFaultIsAKey) {
   for (const auto& [keys, frames, stops] :
        {std::tuple{"foreign_frames: 0", 200, false}, std::tuple{"foreign_frames: 1", 1, true},
