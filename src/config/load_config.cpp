@@ -81,6 +81,7 @@ std::string ConfigOutcome::warningText() const { return listed(warnings, kWarnin
 
 std::string ConfigOutcome::text() const {
   std::vector<std::pair<const ConfigProblem*, std::string_view>> all;
+  all.reserve(errors.size() + warnings.size());
   for (const auto& problem : errors) all.emplace_back(&problem, "");
   for (const auto& problem : warnings) all.emplace_back(&problem, kWarning);
   std::stable_sort(all.begin(), all.end(), [](const auto& a, const auto& b) {

@@ -24,7 +24,8 @@ struct ProcessStat {
 // state is the third field and the start the 22nd.
 std::optional<ProcessStat> readStat(pid_t pid) {
   const auto text = readWholeFile("/proc/" + std::to_string(pid) + "/stat");
-  const auto name_end = text ? text->rfind(')') : std::string::npos;
+  if (!text) return std::nullopt;
+  const auto name_end = text->rfind(')');
   if (name_end == std::string::npos) return std::nullopt;
   std::istringstream fields(text->substr(name_end + 1));
   ProcessStat stat;

@@ -50,6 +50,7 @@ Result<SignalPlace> ModuleDirectory::find(std::string_view name,
                 didYouMean(signal_name, {signals.begin(), signals.end()}));
   }
   std::vector<std::string_view> modules;
+  modules.reserve(entries_.size());
   for (const auto& entry : entries_) modules.emplace_back(entry.name);
   return fail("there is no module '" + std::string{module_name} + "'; there are " + known +
               didYouMean(module_name, modules));

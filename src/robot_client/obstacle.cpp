@@ -17,6 +17,7 @@ namespace {
 
 std::string noMotor(const RobotState& state, const std::string& motor) {
   std::vector<std::string_view> names;
+  names.reserve(state.motors.size());
   for (const auto& each : state.motors) names.emplace_back(each.name);
   return "there is no motor '" + motor + "'; the motors are: " + state.motorNames() +
          didYouMean(motor, names);

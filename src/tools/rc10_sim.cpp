@@ -77,6 +77,7 @@ Result<Place> placeOf(const RobotConfig& config, const std::string& argument) {
                                 [&name](const BusConfig& other) { return other.name == name; });
   if (bus == config.buses.end()) {
     std::vector<std::string_view> names;
+    names.reserve(config.buses.size());
     for (const auto& each : config.buses) names.emplace_back(each.name);
     return fail("--bus: " + config.file + " has no bus '" + name + "'; it has: " + busNames(config) +
                 didYouMean(name, names));

@@ -138,8 +138,9 @@ void Hub::ask(Page& page, const AskRobot& wanted) {
 void Hub::chooseTraces() {
   std::vector<link::TraceSignal> all;
   for (const auto& page : pages_) {
-    if (!page->view) continue;
-    for (const auto& signal : page->view->signals) {
+    const auto& view = page->view;
+    if (!view) continue;
+    for (const auto& signal : view->signals) {
       if (std::find(all.begin(), all.end(), signal) == all.end()) all.push_back(signal);
     }
   }
@@ -194,9 +195,10 @@ void Hub::publishColumns(Page& page) {
 }
 
 void Hub::publishAnswers(Page& page) {
-  while (const auto answer = page.link->answer())
-    page.socket->sendText(shared(
-        responseMessage(answer->seq, statusWord(answer->response.status), answer->response.message.view())));
+  for (auto answer = page.link->answer(); answer.has_value(); answer = page.link->answer()) {
+    const auto& [seq, response] = *answer;
+    page.socket->sendText(shared(responseMessage(seq, statusWord(response.status), response.message.view())));
+  }
 }
 
 void Hub::tell(const std::string& message) {

@@ -33,7 +33,10 @@ class RobotFeed {
   /// Signals of each tick from now on.
   void choose(std::span<const link::TraceSignal> signals);
 
-  [[nodiscard]] const link::Welcome& welcome() const noexcept { return rc10d_->welcome(); }
+  /// Only while it is connected.
+  [[nodiscard]] const link::Welcome& welcome() const noexcept {
+    return rc10d_->welcome();  // NOLINT(bugprone-unchecked-optional-access)
+  }
   [[nodiscard]] std::vector<link::ModuleInfo> moduleInfos() const;
   [[nodiscard]] const std::vector<client::ModuleView>& modules() const noexcept { return modules_; }
   [[nodiscard]] const TraceStore& traces() const noexcept { return traces_; }

@@ -93,6 +93,7 @@ class ClientBuilder {
 
   std::optional<std::size_t> findModule(const GivenValue& given) {
     std::vector<std::string_view> names;
+    names.reserve(robot_.modules.size());
     for (const auto& module : robot_.modules) names.emplace_back(module.settings.name);
     const auto found = std::find(names.begin(), names.end(), given.text());
     if (found != names.end()) return static_cast<std::size_t>(found - names.begin());

@@ -40,6 +40,7 @@ std::string contactText(const EstopGpioConfig& contact) {
 /// "teleop (LCM): command, clear; anna (user): command; all others observe and stop"
 std::string clientsText(const RobotConfig& config) {
   std::string text;
+  if (!config.clients) return text;
   for (const auto& client : config.clients->entries) {
     std::vector<std::string> rights;
     for (std::size_t i = 0; i < kRightWords.size(); ++i)

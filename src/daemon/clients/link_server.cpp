@@ -119,7 +119,7 @@ void drainTimer(int fd) noexcept {
 
 }  // namespace
 
-LinkServer::LinkServer(LinkSocket socket, Sources sources, Permissions permissions, UniqueFd epoll,
+LinkServer::LinkServer(LinkSocket socket, Sources sources, const Permissions& permissions, UniqueFd epoll,
                        UniqueFd state_timer, UniqueFd slow_timer)
     : socket_(std::move(socket)),
       sources_(std::move(sources)),
@@ -146,9 +146,9 @@ Result<std::unique_ptr<LinkServer>> LinkServer::create(LinkSocket socket, Source
       !watch(epoll.get(), slow_timer.get(), kSlowTimer)) {
     return fail(fmt::format("link: epoll_ctl: {}", std::strerror(errno)));
   }
-  return std::unique_ptr<LinkServer>(new LinkServer(std::move(socket), std::move(sources),
-                                                    std::move(*permissions), std::move(epoll),
-                                                    std::move(state_timer), std::move(slow_timer)));
+  return std::unique_ptr<LinkServer>(new LinkServer(std::move(socket), std::move(sources), *permissions,
+                                                    std::move(epoll), std::move(state_timer),
+                                                    std::move(slow_timer)));
 }
 
 void LinkServer::run(const std::stop_token& stop) {

@@ -58,7 +58,7 @@ class LinkServer {
     bool is_gateway = false;  ///< It says for whom it speaks.
   };
 
-  LinkServer(LinkSocket socket, Sources sources, Permissions permissions, UniqueFd epoll,
+  LinkServer(LinkSocket socket, Sources sources, const Permissions& permissions, UniqueFd epoll,
              UniqueFd state_timer, UniqueFd slow_timer);
 
   void accept();

@@ -52,7 +52,7 @@ using Stream = std::unique_ptr<std::FILE, StreamCloser>;
 [[nodiscard]] std::string_view wordOf(Right right) { return kRightWords[static_cast<std::size_t>(right)]; }
 
 [[nodiscard]] std::string speakerWords(const Speaker& speaker, std::string_view client) {
-  const auto name = printable(client);
+  auto name = printable(client);
   switch (speaker.way) {
     case Speaker::Way::kSocket: return fmt::format("'{}' (user {})", name, speaker.user);
     case Speaker::Way::kLcm: return fmt::format("'{}' (LCM, this computer)", name);
@@ -104,8 +104,8 @@ GrantSet Permissions::ofUser(uid_t user, const std::vector<gid_t>& groups) const
   for (std::size_t i = 0; i < entries_.size(); ++i) {
     const auto& [config, id, motors, modules] = entries_[i];
     const bool is_user = config.by == ClientConfig::By::kUser && id == user;
-    const bool is_member =
-        config.by == ClientConfig::By::kGroup && std::find(groups.begin(), groups.end(), *id) != groups.end();
+    const bool is_member = config.by == ClientConfig::By::kGroup && id &&
+                           std::find(groups.begin(), groups.end(), *id) != groups.end();
     grants.set(i, is_user || is_member);
   }
   return grants;
@@ -121,6 +121,7 @@ GrantSet Permissions::ofLcmClient(std::string_view name) const {
 }
 
 std::string Permissions::at(int line) const { return fmt::format("{}:{}", rules_.file, line); }
+std::string Permissions::clientsPlace() const { return at(rules_.clients ? rules_.clients->line : 1); }
 
 std::string Permissions::whyNoName(std::string_view client) const {
   if (std::find(rules_.modules.begin(), rules_.modules.end(), client) == rules_.modules.end()) return {};
@@ -160,7 +161,7 @@ std::string Permissions::lacking(const Speaker& speaker, std::string_view client
     return fmt::format(
         "{} may observe and stop, not {}: nobody vouches for names there; run it on this "
         "computer ({})",
-        who, wordOf(right), at(rules_.clients->line));
+        who, wordOf(right), clientsPlace());
   }
   const Entry* with_right = nullptr;
   const Entry* any = nullptr;
@@ -183,7 +184,7 @@ std::string Permissions::lacking(const Speaker& speaker, std::string_view client
   return fmt::format("{} may observe and stop, not {} {}: add `- {{{}: {}, may: [{}]}}` to clients at {}",
                      who, wordOf(right), what, by_lcm ? "lcm" : "user",
                      by_lcm ? printable(client) : std::to_string(speaker.user), wordOf(right),
-                     at(rules_.clients->line));
+                     clientsPlace());
 }
 
 std::string Permissions::whyNoCommand(const Speaker& speaker, std::string_view client, const MotorSet& motors,

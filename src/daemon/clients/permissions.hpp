@@ -88,6 +88,7 @@ class Permissions {
                                     const std::string& what, const char* list,
                                     std::optional<std::int32_t> priority, bool has_place) const;
   [[nodiscard]] std::string at(int line) const;
+  [[nodiscard]] std::string clientsPlace() const;
 
   Rules rules_;
   std::vector<Entry> entries_;

@@ -39,8 +39,9 @@ Result<InterfaceLocks> InterfaceLocks::take(const RobotConfig& config, Source so
 Result<void> InterfaceLocks::check(const Robot& robot) const {
   for (std::size_t i = 0; i < robot.buses().size(); ++i) {
     const auto& entry = robot.buses()[i];
-    if (!locks_[i].held) continue;
-    const int locked = locks_[i].held->index();
+    const auto& held = locks_[i].held;
+    if (!held) continue;
+    const int locked = held->index();
     if (source_.bound(entry.bus->descriptor()) == locked &&
         (!entry.echo || source_.bound(entry.echo.get()) == locked))
       continue;
@@ -51,7 +52,7 @@ Result<void> InterfaceLocks::check(const Robot& robot) const {
 }
 
 Result<int> InterfaceLocks::takeAnew(std::size_t bus, const std::string& interface) {
-  const auto index = source_.find(interface);
+  auto index = source_.find(interface);
   if (!index) return index;
   auto& [held, next] = locks_[bus];
   if (next && next->index() != *index) next.reset();

@@ -72,7 +72,7 @@ void Supervisor::watchRest(std::size_t motor, const Tick& tick) noexcept {
   switch (axis.checkRest(tick)) {
     case RestCheck::Verdict::kRests: return;
     case RestCheck::Verdict::kGainsSpeed: {
-      const float rpm = std::round(axis.motor().feedback().velocity_rpm);
+      const double rpm = std::round(static_cast<double>(axis.motor().feedback().velocity_rpm));
       return report(
           {EventCode::kMovesAtRest, Severity::kInfo, who, saturatedRound<std::int32_t>(rpm), 0, tick.now});
     }

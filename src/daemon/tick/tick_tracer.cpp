@@ -17,8 +17,8 @@ constexpr std::array kReadables{
     Readable{"target", [](const MotorSnapshot& m, const Snapshot&) noexcept { return m.target.value; }},
     Readable{"target_shaped",
              [](const MotorSnapshot& m, const Snapshot&) noexcept { return m.target_shaped; }},
-    Readable{"command_value",
-             [](const MotorSnapshot& m, const Snapshot&) noexcept { return double{m.command_value}; }},
+    Readable{"command_value", [](const MotorSnapshot& m,
+                                 const Snapshot&) noexcept { return static_cast<double>(m.command_value); }},
     Readable{"feedback_age_us",
              [](const MotorSnapshot& m, const Snapshot& s) noexcept {
                return static_cast<double>(feedbackAgeUs(m.feedback, s.time));
@@ -31,8 +31,10 @@ constexpr std::array kReadables{
              [](const MotorSnapshot& m, const Snapshot& s) noexcept {
                return static_cast<double>(commandAgeUs(m, s.time));
              }},
-#define RC10_READABLE(type, name, initial) \
-  Readable{#name, [](const MotorSnapshot& m, const Snapshot&) noexcept { return double{m.feedback.name}; }},
+#define RC10_READABLE(type, name, initial)                               \
+  Readable{#name, [](const MotorSnapshot& m, const Snapshot&) noexcept { \
+             return static_cast<double>(m.feedback.name);                \
+           }},
     RC10_FEEDBACK_READINGS(RC10_READABLE)
 #undef RC10_READABLE
         Readable{"limits", [](const MotorSnapshot& m,

@@ -140,6 +140,7 @@ class Stop {
       }
     }
     std::vector<InterfaceStop> stops;
+    stops.reserve(frames_.size());
     for (auto& [interface, frames] : frames_) stops.emplace_back(interface, std::move(frames));
     send(stops);
     for (const auto& stop : stops) {

@@ -110,6 +110,7 @@ std::string whySignalsUnfit(const link::Signals& message, const std::vector<clie
     return {};
   }
   std::vector<std::string_view> names;
+  names.reserve(modules.size());
   for (const auto& module : modules) names.push_back(module.name.view());
   return "there is no module '" + std::string(message.module.view()) + "'; there are: " + known +
          printable(didYouMean(message.module.view(), names));
