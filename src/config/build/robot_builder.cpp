@@ -20,8 +20,9 @@ namespace {
 constexpr int kNanosecondsPerSecond = 1'000'000'000;
 
 /// Names that many robots have because the shipped examples have them.
-constexpr std::array<std::string_view, 7> kSharedNames{
-    "robot", "demo", "rc10d", "four_wheels_can0", "vcan_mixed", "many_families", "full_reference"};
+constexpr std::array<std::string_view, 8> kSharedNames{
+    "robot",      "demo",          "rc10d",          "four_wheels_can0",
+    "vcan_mixed", "many_families", "full_reference", "who_may_what"};
 
 bool isSharedName(std::string_view name) {
   return std::find(kSharedNames.begin(), kSharedNames.end(), name) != kSharedNames.end();
