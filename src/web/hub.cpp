@@ -195,9 +195,11 @@ void Hub::publishColumns(Page& page) {
 }
 
 void Hub::publishAnswers(Page& page) {
-  for (auto answer = page.link->answer(); answer.has_value(); answer = page.link->answer()) {
-    const auto& [seq, response] = *answer;
-    page.socket->sendText(shared(responseMessage(seq, statusWord(response.status), response.message.view())));
+  while (true) {
+    const auto answer = page.link->answer();
+    if (!answer) return;
+    page.socket->sendText(shared(
+        responseMessage(answer->seq, statusWord(answer->response.status), answer->response.message.view())));
   }
 }
 
