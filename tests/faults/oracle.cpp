@@ -110,7 +110,7 @@ void Oracle::foreign(std::size_t bus, const CanFrame& frame) {
       read = motor.strangers_wire->said(frame) != 0;
       moves = read && frame.type == FrameType::kData && !motor.strangers_wire->told().rests();
       read |= motor.wire->obeys(frame);
-    } catch (const Violation&) {  // what rc10d must never send, others may
+    } catch (const Violation&) {  // forbidden to rc10d, not to others
     }
     if (!read) continue;
     motor.perhaps_foreign.push_back(frame.received);

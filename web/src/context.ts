@@ -17,7 +17,7 @@ export function useStudio(): Studio {
   return studio;
 }
 
-/** What is known of the robot; draws the component anew when that changes. */
+/** Newest knowledge of the robot; the component is drawn anew when it changes. */
 export function useKnown(): Known {
   const { link } = useStudio();
   const [, draw] = useState(0);

@@ -30,7 +30,7 @@ function Value(props: { name: string; value: number | null; unit: string; digits
   );
 }
 
-/** What the shaft feels, in one word: hold and damp are no "ready". */
+/** Source of the torque, in one word: a motor that holds or damps is READY too. */
 function actingOf(motor: MotorState): string {
   if (motor.acting === 'nothing') return motor.status === 'ACTIVE' ? 'no torque' : '';
   return motor.acting === 'target' ? motor.mode : motor.acting;

@@ -282,7 +282,7 @@ class Driver {
   std::string name_;
   link::Setpoint setpoint_;  // as steered
   Target sent_before_;       // the one before the last, which the state may still show
-  std::string refusal_;      // what rc10d said last about a target that did not act
+  std::string refusal_;      // last refusal by rc10d of a target, in words
   bool taken_ = false;       // has been in force
   Duration in_force_at_{0};  // since the start
   link::Command command_;
