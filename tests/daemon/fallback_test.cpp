@@ -20,6 +20,7 @@ class FallbackTest : public ::testing::Test {
     auto config = twoWheelsAndYaw();
     config.buses[0].motors[kLeft].guard = guard;
     config.buses[0].motors[kLeft].fallback = fallback;
+    config.buses[0].motors[kLeft].shaping.soft_start_s = 0.2F;
     config.buses[0].motors[kLeft].simulated.load_torque_nm = load_torque_nm;
     robot = std::make_unique<VirtualRobot>(config);
     robot->run(5);
@@ -130,6 +131,23 @@ TEST_F(FallbackTest, ARampAfterATimeoutEndsWithTheNextTarget) {
   robot->hold(kLeft, kVelocity120, 500);
   EXPECT_EQ(robot->motor(kLeft).acting, Acting::kTarget);
   EXPECT_NEAR(rpm(), 120.0F, 3.0F);
+}
+
+TEST_F(FallbackTest, ARampWithinASoftStartLeadsToRest) {
+  start({.on_timeout = FallbackAction::kRamp, .ramp = 1s});
+  robot->order(Operation::kDisable);
+  robot->run(2);
+  robot->order(Operation::kEnable);
+  // It still turns, and is asked to turn the other way: not yet half way there, that ends.
+  robot->hold(kLeft, {.mode = ControlMode::kVelocity, .value = -120.0}, 60);
+  robot->run(50);
+  ASSERT_EQ(robot->motor(kLeft).acting, Acting::kRamp);
+  const float begun_rpm = std::fabs(rpm());
+  ASSERT_LT(begun_rpm, 60.0F);
+  for (int i = 0; i < 500; ++i) {
+    robot->tick();
+    ASSERT_LT(std::fabs(rpm()), begun_rpm + 10.0F);
+  }
 }
 
 TEST_F(FallbackTest, AMotorThatIsLostOnItsRampIsWithoutTorque) {

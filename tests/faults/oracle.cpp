@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <span>
 
 #include <fmt/format.h>
 
@@ -118,7 +119,17 @@ void Oracle::foreign(std::size_t bus, const CanFrame& frame) {
     command |= moves && motor.wire->toldOnceATick();
   }
   for (auto* motor : readers)
-    if (command) motor->foreign.push_back(frame.received);
+    if (command && !saidLately(*motor, frame)) motor->foreign.push_back(frame.received);
+}
+
+// A frame of ours that comes twice may be the wire's doing.
+bool Oracle::saidLately(const Motor& motor, const CanFrame& frame) {
+  const auto said = std::span{motor.last}.first(std::min(motor.last_count, motor.last.size()));
+  return std::any_of(said.begin(), said.end(), [&frame](const auto& before) {
+    const auto ours = before.second.payload();
+    return before.second.id == frame.id &&
+           std::equal(ours.begin(), ours.end(), frame.payload().begin(), frame.payload().end());
+  });
 }
 
 void Oracle::commanded(const Command& command) {
@@ -416,10 +427,11 @@ void Oracle::judgeForeign(std::size_t index, const MotorSnapshot& seen) {
   require(index, !there || !enough(motor.foreign) || seen.status == MotorStatus::kFault,
           "somebody else commands its drive, and it is not in FAULT");
   const auto forget = [&](std::deque<MonotonicTime>& times) {
-    while (!times.empty() && (lost(seen.status) || now_ - times.front() > limit.within)) times.pop_front();
+    while (!times.empty() && now_ - times.front() > limit.within) times.pop_front();
   };
   forget(motor.perhaps_foreign);
   forget(motor.foreign);
+  if (lost(seen.status)) motor.foreign.clear();  // what it was told meanwhile counts, or not
 }
 
 // Reports of its drive while nothing is asked of it, against the thresholds of the configuration.
@@ -440,16 +452,19 @@ void Oracle::judgeRest(std::size_t index, const MotorSnapshot& seen) {
   }
   if (sign != motor.torque_sign) {
     motor.torque_sign = sign;
-    motor.torque_since = feedback.received;
+    motor.torque_since = motor.torque_counts_since = feedback.received;
     motor.torque_samples = 0;
   }
   if (motor.new_sample && sign != 0.0) ++motor.torque_samples;
+  // A clear forgives what was before it.
+  if (motor.clear_asked) motor.torque_counts_since = feedback.received;
   const auto lasting = feedback.received - motor.torque_since;
   // The first sample may have come with the order.
   const auto slack = motor.config->feedback_timeout / 2 + 2 * config_.period();
   require(index, !newly || (sign != 0.0 && lasting >= rest.time - slack),
           "in FAULT for torque at rest that it does not report");
-  const bool proven = sign != 0.0 && motor.torque_samples > 4 && lasting > rest.time + slack;
+  const auto counts = feedback.received - motor.torque_counts_since;
+  const bool proven = sign != 0.0 && motor.torque_samples > 4 && counts > rest.time + slack;
   require(index, !proven || !fresh(motor) || lost(seen.status),
           "its drive reports torque at rest, and it is not in FAULT");
 }
@@ -491,6 +506,7 @@ void Oracle::judgeGroups(const Snapshot& snapshot) {
     bool faulted = false;
     group.stops_now = group.disabled_now = false;
     MotorSet active;
+    MotorSet enabling;  // it may have become ACTIVE within the tick
     MotorSet rearmed;
     for (std::size_t i = 0; i < motors_.size(); ++i) {
       if (!group.members.test(i)) continue;
@@ -498,6 +514,7 @@ void Oracle::judgeGroups(const Snapshot& snapshot) {
       const auto before = motor.status;
       const auto after = snapshot.motors[i].status;
       if (before == MotorStatus::kActive) active.set(i);
+      if (before == MotorStatus::kEnabling) enabling.set(i);
       disable_asked |= motor.disables_asked > 0;
       if (after == MotorStatus::kEnabling && !motor.enable_asked && before != MotorStatus::kEnabling)
         rearmed.set(i);
@@ -521,13 +538,16 @@ void Oracle::judgeGroups(const Snapshot& snapshot) {
     if (group.together && !alone) judgeTogether(group, snapshot);
     if (rearmed.any()) {
       for (std::size_t i = 0; i < motors_.size(); ++i) {
-        const bool left_out = group.may_rearm.test(i) && snapshot.motors[i].status == MotorStatus::kReady;
+        const bool left_out = group.must_rearm.test(i) && snapshot.motors[i].status == MotorStatus::kReady;
         require(i, !left_out, "its group was enabled again without it");
       }
       group.may_rearm.reset();
       ++visits_.rearmed;
     }
-    if (newly_lost && group.rearms && active.any()) group.may_rearm = active;
+    if (newly_lost && group.rearms && (active | enabling).any()) {
+      group.may_rearm = active | enabling | (active.any() ? MotorSet{} : group.may_rearm);
+      group.must_rearm = active;
+    }
     if (faulted || disable_asked || was_alone_ || estop_asked_ || snapshot.state != RobotStatus::kRun)
       group.may_rearm.reset();
   }
@@ -563,7 +583,7 @@ void Oracle::followActions(std::size_t index, const MotorSnapshot& seen) {
     Actions actions;
     const bool with_group = motor.group != kNoGroup && groups_[motor.group].disabled_now;
     const bool asked = motor.disables_asked > 0 || stop_asked_ || with_group;
-    motor.rests_with_group = with_group && motor.disables_asked == 0;
+    motor.rests_with_group = with_group && (motor.disables_asked == 0 || motor.enable_asked);
     if (asked) actions |= only(fallback.on_disable);
     if (motor.disables_asked > 1 || (motor.disables_asked > 0 && estop_asked_)) actions |= coast;
     if (estop_asked_ || (motor.group != kNoGroup && groups_[motor.group].stops_now))
@@ -576,8 +596,11 @@ void Oracle::followActions(std::size_t index, const MotorSnapshot& seen) {
   // Enabled and stopped within a tick.
   const bool stopped_with_group =
       motor.group != kNoGroup && (groups_[motor.group].stops_now || groups_[motor.group].disabled_now);
-  if (before == MotorStatus::kEnabling && stopped_with_group)
-    motor.actions |= only(fallback.on_estop) | only(fallback.on_disable);
+  if (before == MotorStatus::kEnabling && stopped_with_group) {
+    setActions(motor, motor.actions | only(fallback.on_estop) | only(fallback.on_disable));
+    motor.ends_at_standstill = true;
+    motor.rests_with_group = groups_[motor.group].disabled_now && motor.disables_asked == 0;
+  }
   if (motor.mode != ControlMode::kCoast) {  // its target has just gone
     auto actions = only(fallback.on_timeout);
     if (motor.coast_asked) actions |= coast;
@@ -587,7 +610,11 @@ void Oracle::followActions(std::size_t index, const MotorSnapshot& seen) {
   // A target that came and went within the tick cannot be; one that was taken back by COAST can.
   if (after == MotorStatus::kReady && motor.disables_asked > 0 && motor.disables_asked < 2 &&
       before == MotorStatus::kReady && !motor.enable_asked) {
-    if (!std::exchange(motor.rests_with_group, false)) setActions(motor, coast);
+    if (std::exchange(motor.rests_with_group, false)) {
+      motor.actions |= coast;
+    } else {
+      setActions(motor, coast);
+    }
   }
 }
 

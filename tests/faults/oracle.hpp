@@ -128,6 +128,7 @@ class Oracle {
     bool rests = false;        ///< As of the last tick.
     double torque_sign = 0.0;  ///< 0: there is no evidence.
     MonotonicTime torque_since{};
+    MonotonicTime torque_counts_since{};  ///< And since the last clear.
     int torque_samples = 0;
   };
   struct Group {
@@ -137,7 +138,8 @@ class Oracle {
     bool rearms = false;
     bool stops_now = false;     ///< Perhaps: since one is lost or was refused.
     bool disabled_now = false;  ///< Perhaps: since one was.
-    MotorSet may_rearm;         ///< Were ACTIVE when it stopped, and nothing has forbidden it since.
+    MotorSet may_rearm;   ///< Were ACTIVE, or about to be, when it stopped, and nothing forbids it since.
+    MotorSet must_rearm;  ///< Of them, those that were ACTIVE.
   };
 
   void judgeSnapshot(const Snapshot& snapshot, std::uint64_t periods);
@@ -165,6 +167,7 @@ class Oracle {
   void judgeAnswers();
   void count(const Snapshot& snapshot);
   void setActions(Motor& motor, Actions actions);
+  [[nodiscard]] static bool saidLately(const Motor& motor, const CanFrame& frame);
   [[nodiscard]] static Actions only(FallbackAction action);
   void followFeedback(const Snapshot& snapshot);
   [[nodiscard]] bool fresh(const Motor& motor) const;

@@ -27,10 +27,13 @@ constexpr double kAngleSlackDeg = 1.0;
 
 // A spring whose sum is at its limit is told a speed, and a place, on the way from the shaft's own to those
 // that were wanted.
+[[nodiscard]] bool followsShaft(const Told& told, double measured_rpm) {
+  return told.law == Told::Law::kSpring && told.velocity_rpm * measured_rpm >= 0.0 &&
+         std::fabs(told.velocity_rpm) <= std::fabs(measured_rpm) + told.velocity_step_rpm;
+}
+
 [[nodiscard]] bool slows(const Told& told, double measured_rpm) {
-  return told.law == Told::Law::kSpring && (told.stiff || told.sum * measured_rpm <= 0.0) &&
-         told.velocity_rpm * measured_rpm >= 0.0 &&
-         std::fabs(told.velocity_rpm) <= std::fabs(measured_rpm) + told.velocity_step_rpm &&
+  return followsShaft(told, measured_rpm) && (told.stiff || told.sum * measured_rpm <= 0.0) &&
          std::fabs(told.effort) <= told.effort_step;
 }
 
@@ -124,7 +127,7 @@ void Oracle::judgeLimits(std::size_t index) {
   const double measured_rpm = motor.wire->measured().velocity_rpm;
   const bool pushed_on = told.sum * std::copysign(1.0, measured_rpm) > rounded;
   const bool by_itself = std::fabs(told.effort) <= 2.0 * told.effort_step;
-  const bool brakes = told.law == Told::Law::kSpring && (!pushed_on || !by_itself) &&
+  const bool brakes = told.law == Told::Law::kSpring && (!pushed_on || !by_itself || told.stiff) &&
                       told.velocity_rpm * measured_rpm > 0.0;  // see slows(); a feed-forward is a hole
   const double fastest_rpm = brakes ? std::max(most_rpm, std::fabs(measured_rpm)) : most_rpm;
   require(index, std::fabs(told.velocity_rpm) <= fastest_rpm + slack_rpm, "beyond its velocity limit");
@@ -145,8 +148,8 @@ void Oracle::judgeTold(std::size_t index, const MotorSnapshot& seen) {
             "the snapshot says another command than the frame");
   }
   if (told.law == Told::Law::kSpring && of_effort && std::isfinite(told.sum)) {
-    require(index, std::fabs(value - told.sum) <= told.sum_step + told.effort_step,
-            "the snapshot says another sum than the frame");
+    if (std::fabs(value - told.sum) > told.sum_step + told.effort_step)
+      fail(index, fmt::format("the snapshot says another sum than the frame, {:.3f}", value));
   }
 }
 
@@ -216,7 +219,11 @@ void Oracle::judgeFeedForward(std::size_t index, double outwards) {
   ++visits_.bounded;
   require(index, outwards * told.effort <= 2.0 * told.effort_step,
           "a torque feed-forward pushes on beyond a soft limit");
-  if (told.law == Told::Law::kVelocity || slows(told, motors_[index].wire->measured().velocity_rpm)) return;
+  if (told.law == Told::Law::kVelocity) return;
+  // A spring that pulls back with all that it may is told a speed between the shaft's own and the one wanted.
+  const double measured_rpm = motors_[index].wire->measured().velocity_rpm;
+  const bool pulls_back = outwards * told.sum <= told.sum_step + told.effort_step;
+  if (followsShaft(told, measured_rpm) && pulls_back) return;
   require(index, outwards * told.velocity_rpm <= told.velocity_step_rpm,
           "a velocity feed-forward leads on beyond a soft limit");
 }

@@ -622,6 +622,21 @@ TEST(CubemarsMit, OutsideOfTheFieldAnAngleOnlyDamps) {
   EXPECT_NE(bench.motor().limits() & kLimitAngle, 0U);
 }
 
+TEST(CubemarsMit, OutsideOfTheFieldAnyDampingOpposesTheShaftWithAllThatIsAllowed) {
+  auto settings = mit();
+  settings.effort_limit = 4.0F;
+  for (const auto stiffness : {0.0F, 1.0F, 1e30F}) {
+    Mit bench(settings);
+    double rad = 11.0;
+    (void)bench.feedMit(rad);
+    while (rad < 14.0) (void)bench.feedMit(std::remainder(rad += 0.05, 25.0), 20.0);
+    const auto frame = bench.command(
+        {.mode = ControlMode::kImpedance, .stiffness_nm_per_rad = stiffness, .damping_nms_per_rad = 1e30F});
+    EXPECT_NEAR(bench.sumNm(frame, std::remainder(rad, 25.0), 20.0), -4.0 * 9 * 0.091, 0.2) << stiffness;
+    EXPECT_NEAR(bench.motor().commandValue(), -4.0F, 1e-3F) << stiffness;
+  }
+}
+
 TEST(CubemarsMit, APositionFieldThatIsCutOffLosesTheReference) {
   auto settings = mit();
   settings.zero_at_power_on = true;

@@ -277,6 +277,25 @@ TEST_F(TargetShaperTest, ASoftStartHoldsForFeedForwardAndSpring) {
   EXPECT_EQ(first.target.stiffness_nm_per_rad, 10.0F);
 }
 
+TEST_F(TargetShaperTest, ATargetThatChangesWithinASoftStartLeadsNowhereElse) {
+  configure({.soft_start_s = 0.1F});
+  shaper.restart();
+  feedback.velocity_rpm = -100.0F;
+  EXPECT_NEAR(valueAfter(50, ControlMode::kVelocity, 100.0), 0.0, 1e-3);
+  // A shaft that is told to stand still is not sent back to where the soft start began.
+  for (int i = 0; i < 100; ++i) EXPECT_NEAR(step(ControlMode::kVelocity, 0.0).target.value, 0.0, 1e-3);
+}
+
+TEST_F(TargetShaperTest, EnablingAnewStartsFromWhatIsMeasuredThen) {
+  configure({.soft_start_s = 0.1F});
+  shaper.restart();
+  feedback.velocity_rpm = -80.0F;
+  (void)valueAfter(200, ControlMode::kVelocity, 0.0);
+  feedback.velocity_rpm = 0.0F;
+  shaper.restart();  // and its mode stays: a ramp is in force on both sides
+  EXPECT_NEAR(step(ControlMode::kVelocity, 0.0).target.value, 0.0, 1e-3);
+}
+
 TEST_F(TargetShaperTest, ABrakeDoesNotStartSoftly) {
   configure({.soft_start_s = 0.1F});
   shaper.restart();

@@ -197,12 +197,14 @@ void Axis::order(RobotStatus robot, const Tick& tick) noexcept {
     motor_.order(kind);
     return;
   }
-  const Target target = ramps() ? Target{.mode = ControlMode::kVelocity, .value = fallback_.rampRpm(tick.now)}
-                                : motor_.target();
+  const bool stops = ramps();
+  const Target target =
+      stops ? Target{.mode = ControlMode::kVelocity, .value = fallback_.rampRpm(tick.now)} : motor_.target();
   // First, so that soft limits act in this tick already.
   motor_.restoreReference(target.mode);
-  const auto shaped =
-      shaper_.step(target, motor_.feedback(), {motor_.commandValue(), motor_.commandUnit()}, tick.dt_s);
+  const TargetShaper::InForce told{motor_.commandValue(), motor_.commandUnit()};
+  const auto shaped = stops ? shaper_.slowDown(target, motor_.feedback(), told, tick.dt_s)
+                            : shaper_.step(target, motor_.feedback(), told, tick.dt_s);
   limits_ |= shaped.limits;
   in_force_ = shaped.target;
   motor_.order(kind, shaped.target);
@@ -248,9 +250,8 @@ std::optional<MotorStatus> Axis::take(MotorEvent event, RobotStatus robot, const
     const auto& config = entry_.fallback;
     const bool asked = event == MotorEvent::kDisable || robot == RobotStatus::kStopping;
     const auto action = asked ? config.on_disable : config.on_estop;
-    fallback_.begin(action, asked ? Fallback::Until::kStandstill : Fallback::Until::kEnded,
-                    boundOf(action, event == MotorEvent::kEstop, config, motor_.driveFrames()), ramp(),
-                    tick.now);
+    beginFallback(action, asked ? Fallback::Until::kStandstill : Fallback::Until::kEnded,
+                  event == MotorEvent::kEstop, tick);
   }
   // Without feedback there is nothing to brake by.
   if (status_ == MotorStatus::kOffline || status_ == MotorStatus::kFault) fallback_.end();
@@ -331,13 +332,17 @@ void Axis::dropTarget() noexcept {
 
 void Axis::beginTimeoutFallback(StopCause cause, const Tick& tick) noexcept {
   stop_ = {cause};
-  const auto& config = entry_.fallback;
-  fallback_.begin(config.on_timeout, Fallback::Until::kEnded,
-                  boundOf(config.on_timeout, false, config, motor_.driveFrames()), ramp(), tick.now);
+  beginFallback(entry_.fallback.on_timeout, Fallback::Until::kEnded, false, tick);
 }
 
-Fallback::Ramp Axis::ramp() const noexcept {
-  return {static_cast<double>(motor_.feedback().velocity_rpm), entry_.fallback.ramp};
+// From what is measured, whatever the target was that it follows.
+void Axis::beginFallback(FallbackAction action, Fallback::Until until, bool estop,
+                         const Tick& tick) noexcept {
+  const auto& config = entry_.fallback;
+  const auto measured_rpm = static_cast<double>(motor_.feedback().velocity_rpm);
+  const Fallback::Ramp ramp{std::isfinite(measured_rpm) ? measured_rpm : 0.0, config.ramp};
+  fallback_.begin(action, until, boundOf(action, estop, config, motor_.driveFrames()), ramp, tick.now);
+  shaper_.reset();
 }
 
 }  // namespace rc10

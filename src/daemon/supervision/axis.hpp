@@ -100,11 +100,11 @@ class Axis {
   [[nodiscard]] bool ramps() const noexcept {
     return fallback_.kind() == FrameKind::kCommand && motor_.target().mode == ControlMode::kCoast;
   }
-  [[nodiscard]] Fallback::Ramp ramp() const noexcept;
   [[nodiscard]] bool heldWhileEnabling() const noexcept;
   [[nodiscard]] std::optional<SkipReason> tryTarget(const Target& target) noexcept;
   void dropTarget() noexcept;
   void beginTimeoutFallback(StopCause cause, const Tick& tick) noexcept;
+  void beginFallback(FallbackAction action, Fallback::Until until, bool estop, const Tick& tick) noexcept;
 
   const Robot::MotorEntry& entry_;
   const Robot::BusEntry& bus_;

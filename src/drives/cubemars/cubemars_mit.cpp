@@ -147,6 +147,9 @@ CubemarsMit::Law CubemarsMit::velocityLaw(double output_rpm, double torque_ff_nm
 CubemarsMit::Law CubemarsMit::angleLaw(const Target& target, double stiffness, double damping,
                                        bool bound_speed) noexcept {
   const double ff_nm = static_cast<double>(target.torque_ff_nm);
+  // As the frame can say them: the errors are bounded by these.
+  stiffness = std::clamp(stiffness, 0.0, CubemarsRanges::kStiffnessNmPerRad);
+  damping = std::clamp(damping, 0.0, CubemarsRanges::kDampingNmsPerRad);
   if (!inRange()) {
     // The command cannot say positions out there, and what the drive would make of one is not known.
     limits_ |= kLimitAngle;
@@ -156,8 +159,8 @@ CubemarsMit::Law CubemarsMit::angleLaw(const Target& target, double stiffness, d
   const double wanted_rad = drivePositionFor(target.value) * kRadPerDeg;
   Law law{.position_rad = std::clamp(wanted_rad, -reach_rad, reach_rad),
           .velocity_rad_s = driveRadS(boundRpm(static_cast<double>(target.velocity_ff_rpm))),
-          .stiffness_nm_per_rad = std::clamp(stiffness, 0.0, CubemarsRanges::kStiffnessNmPerRad),
-          .damping_nms_per_rad = std::clamp(damping, 0.0, CubemarsRanges::kDampingNmsPerRad),
+          .stiffness_nm_per_rad = stiffness,
+          .damping_nms_per_rad = damping,
           .torque_nm = torqueToDrive(ff_nm)};
   if (law.position_rad != wanted_rad) limits_ |= kLimitAngle;
   const auto limit_rpm = static_cast<double>(velocityLimitRpm());

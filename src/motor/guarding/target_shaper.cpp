@@ -44,17 +44,28 @@ TargetShaper::Shaped TargetShaper::step(const Target& target, const MotorFeedbac
   return out;
 }
 
-// In part, by the time since the motor was enabled. A spring is stiff at once, and begins where the shaft is.
+TargetShaper::Shaped TargetShaper::slowDown(const Target& target, const MotorFeedback& feedback,
+                                            InForce in_force, float dt_s) noexcept {
+  if (target.mode != mode_) begin(target.mode, feedback, in_force);
+  const auto out = shape(target, feedback, dt_s);
+  soft_ = value_;
+  return out;
+}
+
+// In part, by the time since the motor was enabled: from where it is on its way, so that a target that
+// changes meanwhile never leads back. A spring is stiff at once, and begins where the shaft is.
 Target TargetShaper::softened(Target asked, float dt_s) noexcept {
+  const double left = 1.0 - share_;
   share_ = std::min(1.0, share_ + static_cast<double>(dt_s / config_.soft_start_s));
   const bool moves = isEffort(mode_) || mode_ == ControlMode::kVelocity || needsReference(mode_);
   if (!moves) return asked;
-  const bool any_turn = mode_ == ControlMode::kAngle;
-  const double way = any_turn ? shortestAngle(start_, asked.value) : asked.value - start_;
-  asked.value = start_ + share_ * way;
-  if (any_turn) asked.value = wrapDegrees(asked.value);
   asked.velocity_ff_rpm *= static_cast<float>(share_);
   asked.torque_ff_nm *= static_cast<float>(share_);
+  if (!(share_ < 1.0)) return asked;
+  const bool any_turn = mode_ == ControlMode::kAngle;
+  const double way = any_turn ? shortestAngle(soft_, asked.value) : asked.value - soft_;
+  soft_ += way * (1.0 - (1.0 - share_) / left);
+  asked.value = any_turn ? wrapDegrees(soft_) : soft_;
   return asked;
 }
 
@@ -83,7 +94,7 @@ void TargetShaper::begin(ControlMode mode, const MotorFeedback& feedback, InForc
   if (mode == ControlMode::kVelocity) value_ = static_cast<double>(feedback.velocity_rpm);
   if (needsReference(mode)) value_ = feedback.total_angle_deg;
   if (!std::isfinite(value_)) value_ = 0.0;
-  start_ = value_;
+  soft_ = value_;
 }
 
 bool TargetShaper::bounded(const MotorFeedback& feedback) const noexcept {

@@ -49,12 +49,18 @@ class TargetShaper {
   /// `dt_s`: since the last step.
   [[nodiscard]] Shaped step(const Target& target, const MotorFeedback& feedback, InForce in_force,
                             float dt_s) noexcept;
+  /// The same for a stop, which is never soft.
+  [[nodiscard]] Shaped slowDown(const Target& target, const MotorFeedback& feedback, InForce in_force,
+                                float dt_s) noexcept;
   /// After a change of the angle loop's gain: see kApproachOfAngleGain.
   void setApproach(float rpm_per_deg) noexcept { config_.approach_rpm_per_deg = rpm_per_deg; }
   /// The next target starts from what is measured then.
   void reset() noexcept { mode_ = ControlMode::kCoast; }
-  /// The motor is being enabled: the next targets start softly.
-  void restart() noexcept { share_ = config_.soft_start_s > 0.0F ? 0.0 : 1.0; }
+  /// The motor is being enabled: the next targets start softly, from what is measured then.
+  void restart() noexcept {
+    reset();
+    share_ = config_.soft_start_s > 0.0F ? 0.0 : 1.0;
+  }
 
   /// Whether an angle target that follows none is close enough to the measured angle.
   [[nodiscard]] bool firstStepAllowed(const Target& asked, const MotorFeedback& feedback) const noexcept;
@@ -87,8 +93,8 @@ class TargetShaper {
   double value_ = 0.0;                      ///< The slewed target of that mode.
   double velocity_ff_rpm_ = 0.0;            ///< Slewed, too.
   double torque_ff_nm_ = 0.0;
-  double share_ = 1.0;  ///< Of the way from start_ to what is asked; 1: all.
-  double start_ = 0.0;  ///< Where a soft start begins, in the unit of the mode.
+  double share_ = 1.0;  ///< Of the soft start that is over; 1: all.
+  double soft_ = 0.0;   ///< Place of a soft start on its way to what is asked, in the unit of the mode.
 };
 
 }  // namespace rc10
