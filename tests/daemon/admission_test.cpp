@@ -131,10 +131,25 @@ TEST_F(AdmissionTest, AFeedForwardThatIsNotGivenIsNone) {
   EXPECT_EQ(out.setpoints[0].target.torque_ff_nm, 0.0F);
 }
 
-TEST_F(AdmissionTest, RefusesAnInfiniteFeedForward) {
-  auto message = good();
-  message.setpoints[0].target.torque_ff_nm = -kInfF;
-  EXPECT_EQ(admit(message), CommandRefusal::kNotFinite);
+TEST_F(AdmissionTest, RefusesInfinityInEveryField) {
+  constexpr double kInf = std::numeric_limits<double>::infinity();
+  for (const double sign : {1.0, -1.0}) {
+    const auto with = [&](auto set) {
+      auto message = one(setpoint("arm", kImpedance, 10.0));
+      message.setpoints[0].target.stiffness_nm_per_rad = 5.0F;
+      message.setpoints[0].target.damping_nms_per_rad = 0.5F;
+      set(message.setpoints[0].target);
+      return admit(message);
+    };
+    const auto infinite = static_cast<float>(sign) * kInfF;
+    EXPECT_EQ(with([](auto&) {}), CommandRefusal::kNone);
+    EXPECT_EQ(with([&](auto& target) { target.value = sign * kInf; }), CommandRefusal::kNotFinite);
+    EXPECT_EQ(with([&](auto& target) { target.velocity_ff_rpm = infinite; }), CommandRefusal::kNotFinite);
+    EXPECT_EQ(with([&](auto& target) { target.torque_ff_nm = infinite; }), CommandRefusal::kNotFinite);
+    EXPECT_EQ(with([&](auto& target) { target.stiffness_nm_per_rad = infinite; }),
+              CommandRefusal::kNotFinite);
+    EXPECT_EQ(with([&](auto& target) { target.damping_nms_per_rad = infinite; }), CommandRefusal::kNotFinite);
+  }
 }
 
 TEST_F(AdmissionTest, IgnoresTheValueOfModesThatHaveNone) {

@@ -96,6 +96,17 @@ TEST_F(FallbackTest, ABrakeInAnEstopDampsAfterItsTimeAndNeverCoasts) {
   EXPECT_NE(currentA(), 0.0F);
 }
 
+TEST_F(FallbackTest, ACoastThatComesInAnEstopDoesNotLetGoOfWhatIsHeld) {
+  start({.on_estop = FallbackAction::kHold, .hold_max = 5s}, 1.0F);
+  robot->exchange().estop.store(true);
+  robot->run(1000);
+  ASSERT_EQ(robot->motor(kLeft).acting, Acting::kHold);
+  const double held_deg = angleDeg();
+  robot->hold(kLeft, {.mode = ControlMode::kCoast}, 500);
+  EXPECT_EQ(robot->motor(kLeft).acting, Acting::kHold);
+  EXPECT_NEAR(angleDeg(), held_deg, 1.0);
+}
+
 TEST_F(FallbackTest, ARampTakesTheSpeedToZeroInItsTimeAndThenTheTorque) {
   start({.on_estop = FallbackAction::kRamp, .ramp = 1s});
   robot->exchange().estop.store(true);

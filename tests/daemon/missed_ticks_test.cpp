@@ -50,6 +50,20 @@ TEST_F(MissedTicksTest, AMotorThatIsSilentAfterAPauseIsLostOnceTenTicksHaveRun) 
   EXPECT_EQ(robot.motor(0).status, MotorStatus::kOffline);
 }
 
+TEST_F(MissedTicksTest, ALongPauseMovesATargetNoFartherThanFivePeriods) {
+  auto config = twoWheelsAndYaw();
+  config.buses[0].motors[0].shaping.velocity_slew_rpm_per_s = 1000.0F;
+  VirtualRobot slow{config};
+  slow.run(10);
+  ASSERT_EQ(slow.order(Operation::kEnable).motors[0], Refusal::kNone);
+  slow.hold(0, {.mode = ControlMode::kVelocity, .value = 400.0}, 100);
+  const double before_rpm = slow.motor(0).target_shaped;
+  slow.tick(3);
+  EXPECT_NEAR(slow.motor(0).target_shaped, before_rpm + 3.0, 1e-3);
+  slow.tick(40);
+  EXPECT_NEAR(slow.motor(0).target_shaped, before_rpm + 8.0, 1e-3);
+}
+
 TEST_F(MissedTicksTest, AMotorThatIsSilentIsLostAlsoIfEveryTickIsLate) {
   robot.run(100);
   ASSERT_EQ(robot.order(Operation::kEnable).motors[0], Refusal::kNone);

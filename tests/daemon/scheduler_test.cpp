@@ -311,6 +311,22 @@ TEST_F(SchedulerTest, StoppingSendsRestUntilItIsDone) {
   EXPECT_EQ(dynamic_cast<sim::DjiDrive&>(robot.simBus().drive(kLeft)).rawCommand(), 0);
 }
 
+TEST_F(SchedulerTest, AStopIsNoEstopAndEndsAsAStopWhateverIsAskedMeanwhile) {
+  robot.run(5);
+  robot.inboxes()[0].echo_available.store(true);  // it waits for echoes
+  robot.scheduler().beginStop();
+  robot.tick();
+  (void)robot.events();
+  robot.exchange().estop.store(true);
+  robot.tick();
+  EXPECT_EQ(robot.snapshot().state, RobotStatus::kStopping);
+  EXPECT_FALSE(reported(EventCode::kRobotState, -1));
+  EXPECT_EQ(robot.order(Operation::kEnable).motors[kLeft], Refusal::kStopping);
+  EXPECT_EQ(robot.motor(kLeft).status, MotorStatus::kReady);
+  (void)robot.order(Operation::kClear);
+  EXPECT_EQ(robot.snapshot().state, RobotStatus::kStopping);
+}
+
 TEST_F(SchedulerTest, StoppingWaitsForEchoesOfTheRestFrames) {
   robot.run(5);
   robot.inboxes()[0].echo_available.store(true);
