@@ -6,6 +6,7 @@
 #include "client/quantity_text.hpp"
 #include "client/state_text.hpp"
 #include "client/text_table.hpp"
+#include "link/late_causes.hpp"
 #include "link/words.hpp"
 
 namespace rc10::client {
@@ -31,6 +32,21 @@ std::string timesText(const link::Diagnostics& diagnostics) {
     if (each.count > 0) row(printable(each.name.view()), each.percentiles);
   }
   return table.text();
+}
+
+// A line for each cause that there was, with what helps against it.
+std::string lateTicksText(const link::Diagnostics& diagnostics) {
+  std::string text;
+  const auto counters = std::span{diagnostics.counters}.first(
+      std::min<std::size_t>(diagnostics.counter_count, link::kMaxCounters));
+  for (const auto& counter : counters) {
+    const auto words = std::find_if(kLateCauseWords.begin(), kLateCauseWords.end(),
+                                    [&](const auto& cause) { return cause.counter == counter.name.view(); });
+    if (words == kLateCauseWords.end() || counter.count == 0) continue;
+    text += std::string(words->counter) + " " + std::to_string(counter.count) + " (" +
+            std::string(words->advice) + ")\n";
+  }
+  return text;
 }
 
 std::string counterOrUnknown(std::int16_t value) { return value < 0 ? "-" : std::to_string(value); }
@@ -93,6 +109,7 @@ std::string diagnosticsText(const link::Welcome& welcome, const link::Diagnostic
   text += "missed ticks " + std::to_string(diagnostics.missed_ticks) + ", page faults " +
           std::to_string(diagnostics.page_faults) + ", events dropped " +
           std::to_string(diagnostics.events_dropped) + '\n';
+  text += lateTicksText(diagnostics);
   const auto buses =
       std::span{diagnostics.buses}.first(std::min<std::size_t>(diagnostics.bus_count, link::kMaxBuses));
   if (!buses.empty()) text += busesText(buses);

@@ -115,6 +115,7 @@ Result<void> Daemon::build() {
                                               .timing = sched_loop_->timing(),
                                               .robot = description_,
                                               .page_faults = [this] { return newPageFaults(); },
+                                              .tick_thread = tickThread(),
                                               .log = [this](const link::Event& e) { logEvent(*log_, e); },
                                               .housekeeping = [this] { feedWatchdog(); }});
   if (!link) return tl::unexpected(link.error());
@@ -324,6 +325,11 @@ Result<void> Daemon::startThreads() {
 
 std::uint64_t Daemon::newPageFaults() const {
   return pageFaults(rx_thread_.tid()) + pageFaults(sched_thread_.tid()) - page_faults_at_start_;
+}
+
+ThreadFacts Daemon::tickThread() const {
+  return {.waited = [this] { return waitedForCpu(sched_thread_.tid()); },
+          .page_faults = [this] { return pageFaults(sched_thread_.tid()); }};
 }
 
 void Daemon::feedWatchdog() {

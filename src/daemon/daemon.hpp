@@ -61,6 +61,7 @@ class Daemon {
   [[nodiscard]] std::unique_ptr<SpiKeeper> spiIo();
   void openBlackBox();
   [[nodiscard]] std::uint64_t newPageFaults() const;
+  [[nodiscard]] ThreadFacts tickThread() const;
   void feedWatchdog();
 
   RobotConfig config_;

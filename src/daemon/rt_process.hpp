@@ -1,9 +1,11 @@
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "app/result.hpp"
+#include "app/time.hpp"
 #include "app/unique_fd.hpp"
 
 namespace rc10 {
@@ -30,5 +32,8 @@ void forbidDumps() noexcept;
 
 /// Minor and major page faults of one thread of this process so far, from /proc.
 [[nodiscard]] std::uint64_t pageFaults(int tid) noexcept;
+/// Time for which a thread of this process was ready to run while others had its CPU. None: a kernel without
+/// CONFIG_SCHED_INFO.
+[[nodiscard]] std::optional<Duration> waitedForCpu(int tid) noexcept;
 
 }  // namespace rc10

@@ -140,6 +140,16 @@ TEST(DiagnosticsText, ShowsTimingBusesAndRefusals) {
             "note: not real-time: no permission\n");
 }
 
+TEST(DiagnosticsText, SaysWhyTicksWereLateAndWhatHelps) {
+  auto diagnostics = heroDiagnostics();
+  diagnostics.counter_count = 2;
+  diagnostics.counters[0] = {.name = link::Text<48>{"late ticks: CPU taken"}, .count = 7};
+  diagnostics.counters[1] = {.name = link::Text<48>{"late ticks: timer"}, .count = 0};
+  const auto text = diagnosticsText(heroWelcome(), diagnostics);
+  EXPECT_THAT(text, HasSubstr("late ticks: CPU taken 7 (others ran on its CPU"));
+  EXPECT_THAT(text, Not(HasSubstr("timer")));
+}
+
 TEST(DiagnosticsText, SaysThatNothingWasRefused) {
   auto diagnostics = heroDiagnostics();
   diagnostics.refusal_count = 0;

@@ -36,6 +36,18 @@ TEST(DurationHistogram, PercentilesAreRightToASixteenth) {
   EXPECT_EQ(histogram.percentile(1.0).count(), values.back());
 }
 
+TEST(DurationHistogram, TheSumOfTwoHasTheRecordsOfBoth) {
+  DurationHistogram sum;
+  DurationHistogram other;
+  for (int i = 0; i < 30; ++i) sum.record(std::chrono::microseconds{10});
+  for (int i = 0; i < 10; ++i) other.record(std::chrono::microseconds{1000});
+  sum.add(other);
+  EXPECT_EQ(sum.count(), 40U);
+  EXPECT_LT(sum.percentile(0.7), std::chrono::microseconds{12});
+  EXPECT_GT(sum.percentile(0.8), std::chrono::microseconds{900});
+  EXPECT_EQ(sum.max(), std::chrono::microseconds{1000});
+}
+
 TEST(DurationHistogram, TakesNegativeAndEnormousDurations) {
   DurationHistogram histogram;
   histogram.record(-5ns);

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include <map>
 #include <memory>
 
 #include "rc10_version.hpp"
@@ -32,7 +33,15 @@ class PublicationTest : public ::testing::Test {
     return *state_;
   }
   const link::Diagnostics& diagnostics() {
-    publication.fill(*diagnostics_, *snapshot, timing, ages, inboxes, admission, 17, 456);
+    publication.fill(*diagnostics_, *snapshot,
+                     {.timing = timing,
+                      .ages = ages,
+                      .state_ages = state_ages,
+                      .late = late,
+                      .inboxes = inboxes,
+                      .admission = admission,
+                      .page_faults = 17},
+                     456);
     return *diagnostics_;
   }
   std::int64_t refusals(std::string_view name) {
@@ -51,6 +60,8 @@ class PublicationTest : public ::testing::Test {
   std::unique_ptr<Snapshot> snapshot = std::make_unique<Snapshot>();
   std::unique_ptr<link::State> state_ = std::make_unique<link::State>();
   std::unique_ptr<link::Diagnostics> diagnostics_ = std::make_unique<link::Diagnostics>();
+  DurationHistogram state_ages;
+  LateTickCauses late;
   Publication publication{robot};
 };
 
@@ -152,6 +163,20 @@ TEST_F(PublicationTest, ARateIsMeasuredOverTheTimeThatPassed) {
   EXPECT_EQ(meter.update(MonotonicTime{10999ms}, 5000), 0.0F) << "not a second yet";
   EXPECT_FLOAT_EQ(meter.update(MonotonicTime{12s}, 4100), 2000.0F);
   EXPECT_FLOAT_EQ(meter.update(MonotonicTime{12500ms}, 9999), 2000.0F) << "kept until the next";
+}
+
+TEST_F(PublicationTest, DiagnosticsCountLateTicksByCause) {
+  LateTicks ticks;
+  const ThreadFacts thread{.waited = [] { return std::nullopt; }, .page_faults = [] { return 0U; }};
+  late.update(ticks, thread);
+  ticks.record(TickStep::kSend, 700us);
+  late.update(ticks, thread);
+  const auto& out = diagnostics();
+  std::map<std::string, std::int64_t> counted;
+  for (const auto& counter : std::span{out.counters}.first(out.counter_count))
+    counted[std::string(counter.name.view())] = counter.count;
+  EXPECT_EQ(counted.at("late ticks: sending"), 1);
+  EXPECT_EQ(counted.at("late ticks: timer"), 0);
 }
 
 TEST_F(PublicationTest, DiagnosticsCarryTimingAndCounts) {

@@ -27,6 +27,7 @@ constexpr int kSlowHz = 100;
 constexpr std::size_t kMaxUnsent = 128;
 constexpr unsigned kDiagnosticsEvery = kSlowHz / 2;    // 2 Hz
 constexpr unsigned kHousekeepingEvery = kSlowHz / 10;  // 10 Hz
+constexpr unsigned kLateCausesEvery = kSlowHz / 50;    // 50 Hz, some ten ticks
 // Refusals of one reason are told at most this often; all of them are counted.
 constexpr Duration kRefusalReportInterval = std::chrono::seconds{1};
 // epoll data: connections have their id, which starts at 1 and counts up.
@@ -171,6 +172,8 @@ void LinkServer::poll(int timeout_ms) {
       drainScheduler();
       sendUnsent();
       publishTrace();
+      if (slow_ticks_ % kLateCausesEvery == 0 && sources_.tick_thread.waited)
+        late_causes_.update(sources_.timing.late, sources_.tick_thread);
       if (++slow_ticks_ % kHousekeepingEvery == 0 && sources_.housekeeping) sources_.housekeeping();
       if (slow_ticks_ % kDiagnosticsEvery == 0) publishDiagnostics();
     } else {
@@ -443,7 +446,17 @@ void LinkServer::publishState() {
   const auto& snapshot = sources_.exchange.snapshot.read();
   publication_.fill(state_, snapshot, wallClockUs());
   publish(link::kStates, link::seal(state_));
+  recordAges(snapshot);
   publishModules(snapshot);
+}
+
+void LinkServer::recordAges(const Snapshot& snapshot) {
+  const auto now = monotonicNow();
+  for (std::size_t i = 0; i < snapshot.motor_count; ++i) {
+    const auto& motor = snapshot.motors[i];
+    if (motor.status != MotorStatus::kOffline && motor.feedback.samples > 0)
+      state_ages_.record(now - motor.feedback.received);
+  }
 }
 
 void LinkServer::publishModules(const Snapshot& snapshot) {
@@ -454,8 +467,14 @@ void LinkServer::publishModules(const Snapshot& snapshot) {
 }
 
 void LinkServer::publishDiagnostics() {
-  publication_.fill(diagnostics_, sources_.exchange.snapshot.read(), sources_.timing, sources_.exchange.ages,
-                    sources_.inboxes, admission_, sources_.page_faults ? sources_.page_faults() : 0,
+  publication_.fill(diagnostics_, sources_.exchange.snapshot.read(),
+                    {.timing = sources_.timing,
+                     .ages = sources_.exchange.ages,
+                     .state_ages = state_ages_,
+                     .late = late_causes_,
+                     .inboxes = sources_.inboxes,
+                     .admission = admission_,
+                     .page_faults = sources_.page_faults ? sources_.page_faults() : 0},
                     wallClockUs());
   publish(link::kDiagnosticsFeed, link::seal(diagnostics_));
 }

@@ -14,6 +14,7 @@
 #include "app/result.hpp"
 #include "app/unique_fd.hpp"
 #include "daemon/clients/admission.hpp"
+#include "daemon/clients/late_tick_causes.hpp"
 #include "daemon/clients/link_socket.hpp"
 #include "daemon/clients/publication.hpp"
 #include "daemon/clients/request_desk.hpp"
@@ -36,6 +37,7 @@ class LinkServer {
     const TickTiming& timing;
     const RobotDescription& robot;
     std::function<std::uint64_t()> page_faults;   ///< Of the real-time threads, after start.
+    ThreadFacts tick_thread{};                    ///< Of the scheduler thread.
     std::function<void(const link::Event&)> log;  ///< Every event, for the log.
     std::function<void()> housekeeping;           ///< Called ten times a second: the watchdog.
   };
@@ -82,6 +84,7 @@ class LinkServer {
   void drainScheduler();
   void publishState();
   void publishModules(const Snapshot& snapshot);
+  void recordAges(const Snapshot& snapshot);
   void publishDiagnostics();
   void publishTrace();
   void publish(std::uint32_t subscription, std::span<const std::byte> message);
@@ -104,6 +107,8 @@ class LinkServer {
   SignalAdmission signal_admission_;
   RequestDesk desk_;
   Publication publication_;
+  LateTickCauses late_causes_;
+  DurationHistogram state_ages_;  ///< Of the feedback in each state, when it is sent.
   TraceDesk trace_desk_;
   std::vector<Connection> connections_;
   std::uint64_t next_connection_ = 1;

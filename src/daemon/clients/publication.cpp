@@ -157,7 +157,7 @@ void Publication::fill(link::BusStatus& out, std::size_t bus, const Snapshot& sn
   out.restarts = static_cast<std::int64_t>(in.restarts);
 }
 
-void Publication::fillCounters(link::Diagnostics& out, const Snapshot& snapshot) {
+void Publication::fillCounters(link::Diagnostics& out, const Snapshot& snapshot, const LateTickCauses& late) {
   out.counter_count = 0;
   const auto add = [&out](std::string_view name, std::uint64_t count) {
     out.counters[out.counter_count].name = name;
@@ -166,9 +166,11 @@ void Publication::fillCounters(link::Diagnostics& out, const Snapshot& snapshot)
   };
   add("e-stops", snapshot.estops);
   add("commands expired in the ring", snapshot.expired_commands);
+  for (std::size_t i = 0; i < kLateCauses; ++i)
+    add(kLateCauseWords[i].counter, late.count(static_cast<LateCause>(i)));
 }
 
-void Publication::fillDurations(link::Diagnostics& out, const TickAges& ages) const {
+void Publication::fillDurations(link::Diagnostics& out, const Measured& measured) const {
   out.duration_count = 0;
   const auto add = [&out](std::string_view name, const DurationHistogram& histogram) {
     out.durations[out.duration_count].name = name;
@@ -176,22 +178,29 @@ void Publication::fillDurations(link::Diagnostics& out, const TickAges& ages) co
     out.durations[out.duration_count].percentiles = percentiles(histogram);
     ++out.duration_count;
   };
+  const auto& ages = measured.ages;
   add("command to frames", ages.command);
+  add("feedback to clients", measured.state_ages);
+  for (std::size_t bus = 0; bus < robot_.buses.size(); ++bus) {
+    DurationHistogram all;
+    for (std::size_t i = 0; i < ages.feedback.size(); ++i)
+      if (robot_.motors[i].bus == bus) all.add(ages.feedback[i]);
+    add("feedback at use, bus " + robot_.buses[bus].name, all);
+  }
   for (std::size_t i = 0; i < ages.feedback.size(); ++i)
     add("feedback at use: " + robot_.motors[i].name, ages.feedback[i]);
 }
 
-void Publication::fill(link::Diagnostics& out, const Snapshot& snapshot, const TickTiming& timing,
-                       const TickAges& ages, std::span<const BusInbox> inboxes, const Admission& admission,
-                       std::uint64_t page_faults, std::int64_t utime) {
+void Publication::fill(link::Diagnostics& out, const Snapshot& snapshot, const Measured& measured,
+                       std::int64_t utime) {
   out.utime = utime;
   out.mono_us = monoUs(snapshot.time);
   out.tick = static_cast<std::int64_t>(snapshot.tick);
   out.tick_period_us = 1'000'000 / robot_.rate_hz;
-  out.wake_latency = percentiles(timing.wake_latency);
-  out.tick_duration = percentiles(timing.duration);
+  out.wake_latency = percentiles(measured.timing.wake_latency);
+  out.tick_duration = percentiles(measured.timing.duration);
   out.missed_ticks = static_cast<std::int64_t>(snapshot.missed_ticks);
-  out.page_faults = static_cast<std::int64_t>(page_faults);
+  out.page_faults = static_cast<std::int64_t>(measured.page_faults);
   out.events_dropped = static_cast<std::int64_t>(snapshot.events_dropped);
   out.refusal_count = 0;
   const auto add = [&out](std::string_view name, std::uint64_t count) {
@@ -202,17 +211,17 @@ void Publication::fill(link::Diagnostics& out, const Snapshot& snapshot, const T
   for (std::size_t i = 1; i < kCommandRefusalCount; ++i) {
     const auto reason = static_cast<CommandRefusal>(i);
     // Expired on arrival and expired in the ring are one reason to a user.
-    add(toString(reason),
-        admission.counts()[i] + (reason == CommandRefusal::kExpired ? snapshot.expired_commands : 0));
+    add(toString(reason), measured.admission.counts()[i] +
+                              (reason == CommandRefusal::kExpired ? snapshot.expired_commands : 0));
   }
   add("not owner", snapshot.refused_commands + snapshot.refused_signals);
   add("setpoint skipped", snapshot.skipped_setpoints);
-  fillCounters(out, snapshot);
-  fillDurations(out, ages);
+  fillCounters(out, snapshot, measured.late);
+  fillDurations(out, measured);
   out.notice_count = static_cast<std::uint32_t>(std::min(robot_.notices.size(), link::kMaxNotices));
   for (std::size_t i = 0; i < out.notice_count; ++i) out.notices[i] = robot_.notices[i];
   out.bus_count = static_cast<std::uint32_t>(snapshot.bus_count);
-  for (std::size_t i = 0; i < snapshot.bus_count; ++i) fill(out.buses[i], i, snapshot, inboxes[i]);
+  for (std::size_t i = 0; i < snapshot.bus_count; ++i) fill(out.buses[i], i, snapshot, measured.inboxes[i]);
 }
 
 link::Event Publication::refusal(CommandRefusal reason, const link::Name& client, MonotonicTime now,

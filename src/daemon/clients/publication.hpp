@@ -8,6 +8,7 @@
 
 #include "app/time.hpp"
 #include "daemon/clients/admission.hpp"
+#include "daemon/clients/late_tick_causes.hpp"
 #include "daemon/exchange/rings.hpp"
 #include "daemon/exchange/robot_description.hpp"
 #include "daemon/exchange/snapshot.hpp"
@@ -32,23 +33,32 @@ class RateMeter {
 /// Turns snapshots and counters into the messages that clients get. Link thread only.
 class Publication {
  public:
+  /// Measurements and counts beside the snapshot.
+  struct Measured {
+    const TickTiming& timing;
+    const TickAges& ages;
+    const DurationHistogram& state_ages;  ///< Of feedback in a state, when that is sent.
+    const LateTickCauses& late;
+    std::span<const BusInbox> inboxes;
+    const Admission& admission;
+    std::uint64_t page_faults = 0;
+  };
+
   explicit Publication(const RobotDescription& robot) : robot_(robot) {}
 
   [[nodiscard]] link::Welcome welcome() const;
   [[nodiscard]] link::ModuleInfo moduleInfo(std::size_t module) const;
   void fill(link::State& state, const Snapshot& snapshot, std::int64_t utime);
   void fill(link::ModuleState& state, std::size_t module, const Snapshot& snapshot, std::int64_t utime) const;
-  void fill(link::Diagnostics& out, const Snapshot& snapshot, const TickTiming& timing, const TickAges& ages,
-            std::span<const BusInbox> inboxes, const Admission& admission, std::uint64_t page_faults,
-            std::int64_t utime);
+  void fill(link::Diagnostics& out, const Snapshot& snapshot, const Measured& measured, std::int64_t utime);
   /// A command message that admission refused.
   [[nodiscard]] static link::Event refusal(CommandRefusal reason, const link::Name& client, MonotonicTime now,
                                            std::int64_t utime, const std::string& why = {});
   [[nodiscard]] link::Event event(const Event& event, std::int64_t utime) const;
 
  private:
-  static void fillCounters(link::Diagnostics& out, const Snapshot& snapshot);
-  void fillDurations(link::Diagnostics& out, const TickAges& ages) const;
+  static void fillCounters(link::Diagnostics& out, const Snapshot& snapshot, const LateTickCauses& late);
+  void fillDurations(link::Diagnostics& out, const Measured& measured) const;
   void fill(link::BusStatus& out, std::size_t bus, const Snapshot& snapshot, const BusInbox& inbox);
 
   const RobotDescription& robot_;

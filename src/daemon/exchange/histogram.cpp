@@ -28,6 +28,16 @@ void DurationHistogram::record(Duration duration) noexcept {
   if (ns > max_ns_.load(std::memory_order_relaxed)) max_ns_.store(ns, std::memory_order_relaxed);
 }
 
+void DurationHistogram::add(const DurationHistogram& other) noexcept {
+  for (std::size_t i = 0; i < kBins; ++i) {
+    const auto more = other.bins_[i].load(std::memory_order_relaxed);
+    bins_[i].store(bins_[i].load(std::memory_order_relaxed) + more, std::memory_order_relaxed);
+  }
+  const auto most_ns =
+      std::max(max_ns_.load(std::memory_order_relaxed), other.max_ns_.load(std::memory_order_relaxed));
+  max_ns_.store(most_ns, std::memory_order_relaxed);
+}
+
 std::uint64_t DurationHistogram::count() const noexcept {
   std::uint64_t total = 0;
   for (const auto& bin : bins_) total += bin.load(std::memory_order_relaxed);

@@ -15,6 +15,8 @@ namespace rc10 {
 class DurationHistogram {
  public:
   void record(Duration duration) noexcept;
+  /// All that another has recorded so far.
+  void add(const DurationHistogram& other) noexcept;
 
   /// The upper edge of the bin that holds the given fraction (0 to 1) of all records; zero without any.
   [[nodiscard]] Duration percentile(double fraction) const noexcept;

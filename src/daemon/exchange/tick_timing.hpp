@@ -1,6 +1,7 @@
 #pragma once
 
 #include "daemon/exchange/histogram.hpp"
+#include "daemon/exchange/late_ticks.hpp"
 
 namespace rc10 {
 
@@ -8,6 +9,7 @@ namespace rc10 {
 struct TickTiming {
   DurationHistogram wake_latency;
   DurationHistogram duration;
+  LateTicks late;
 };
 
 }  // namespace rc10

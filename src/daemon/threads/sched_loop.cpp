@@ -3,6 +3,13 @@
 #include "daemon/exchange/clock.hpp"
 
 namespace rc10 {
+namespace {
+
+// A tick that begins a fifth of a period late, or takes half of one, is worth a reason.
+constexpr int kLateBegin = 5;
+constexpr int kLongTick = 2;
+
+}  // namespace
 
 Result<std::unique_ptr<SchedLoop>> SchedLoop::create(Scheduler& scheduler, const Settings& settings,
                                                      CanIntake* intake) {
@@ -20,18 +27,27 @@ void SchedLoop::run(const std::stop_token& stop) noexcept {
     if (periods == 0) continue;
     const MonotonicTime now = monotonicNow();
     // Against the first grid point that waits: a wake-up that missed ten ticks is ten periods late.
-    timing_.wake_latency.record(now - (planned + grid_.period));
+    const Duration late = now - (planned + grid_.period);
+    timing_.wake_latency.record(late);
+    if (late > grid_.period / kLateBegin) timing_.late.record(TickStep::kWake, late);
     planned += grid_.period * static_cast<std::int64_t>(periods);
     if (stop.stop_requested()) scheduler_.beginStop();
     if (const auto client = estops_.take()) scheduler_.stopFor({StopCause::kRequest, *client});
     if (intake_ != nullptr) intake_->drain(now);
     scheduler_.tick(now, periods);
-    watchDuration(monotonicNow() - now);
+    watchDuration(now, monotonicNow());
   }
 }
 
-void SchedLoop::watchDuration(Duration duration) noexcept {
+void SchedLoop::watchDuration(MonotonicTime woken, MonotonicTime done) noexcept {
+  const Duration duration = done - woken;
   timing_.duration.record(duration);
+  if (duration > grid_.period / kLongTick) {
+    TickMarks marks = scheduler_.marks();
+    marks.woken = woken;
+    marks.done = done;
+    timing_.late.record(marks.longest(), duration);
+  }
   if (duration <= grid_.period) return overload_.inTime();
   // A tick that the kernel cuts into lumps (RT throttling) is worse than none.
   if (overload_.overran(threadCpuTime())) {

@@ -42,7 +42,7 @@ class SchedLoop {
         intake_(intake),
         estops_(settings.estops),
         overload_(settings.grid.period, settings.overload) {}
-  void watchDuration(Duration duration) noexcept;
+  void watchDuration(MonotonicTime woken, MonotonicTime done) noexcept;
 
   Scheduler& scheduler_;
   TimeGrid grid_;

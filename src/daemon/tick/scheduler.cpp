@@ -49,18 +49,21 @@ void Scheduler::tick(MonotonicTime now, std::uint64_t periods) noexcept {
   }
   reportMissedTicks(tick);
   receive(tick);
+  marks_.received = clockOr(now);
   bus_watch_.decide(tick);
   stopForTheComputer(tick);
   supervisor_.receiveOrders(tick);
   if (stop_requested_) beginStop(tick);
   modules_.update(tick);
   driveDevices();
+  marks_.moved = clockOr(now);
   supervisor_.decide(tick);
   update(tick);
   pack(tick);
+  marks_.packed = clockOr(now);
   const bool only_rest = stop_requested_ && !supervisor_.fallbackActs();
   bus_watch_.send(tick, only_rest);
-  sent_ = clock_ != nullptr ? clock_() : now;
+  marks_.sent = clockOr(now);
   bus_watch_.update(tick);
   if (only_rest) watchStop();
   snapshot(tick);
@@ -168,7 +171,7 @@ void Scheduler::recordAges(const Snapshot& snapshot) noexcept {
 void Scheduler::snapshot(const Tick& tick) noexcept {
   auto& out = link_.snapshot.slot();
   out.time = tick.now;
-  out.sent = sent_;
+  out.sent = marks_.sent;
   out.tick = tick.index;
   out.missed_ticks = missed_ticks_;
   supervisor_.fillSnapshot(out);

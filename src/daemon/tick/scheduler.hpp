@@ -8,6 +8,7 @@
 
 #include "app/time.hpp"
 #include "daemon/devices/robot.hpp"
+#include "daemon/exchange/late_ticks.hpp"
 #include "daemon/exchange/rings.hpp"
 #include "daemon/recording/flight_recorder.hpp"
 #include "daemon/supervision/supervisor.hpp"
@@ -52,6 +53,8 @@ class Scheduler {
   [[nodiscard]] const Supervisor& supervisor() const noexcept { return supervisor_; }
   [[nodiscard]] std::uint64_t ticks() const noexcept { return ticks_.load(std::memory_order_relaxed); }
   [[nodiscard]] std::uint64_t missedTicks() const noexcept { return missed_ticks_; }
+  /// Of the last tick; `woken` and `done` are its caller's. Its own thread only.
+  [[nodiscard]] const TickMarks& marks() const noexcept { return marks_; }
 
  private:
   void receive(const Tick& tick) noexcept;
@@ -63,6 +66,9 @@ class Scheduler {
   void watchStop() noexcept;
   void snapshot(const Tick& tick) noexcept;
   void recordAges(const Snapshot& snapshot) noexcept;
+  [[nodiscard]] MonotonicTime clockOr(MonotonicTime now) const noexcept {
+    return clock_ != nullptr ? clock_() : now;
+  }
   void beat(const Tick& tick) noexcept;
   void stopForTheComputer(const Tick& tick) noexcept;
 
@@ -72,7 +78,7 @@ class Scheduler {
   Duration period_;
   FlightRecorder* recorder_;
   Clock clock_;
-  MonotonicTime sent_{};  ///< When the frames of this tick had left.
+  TickMarks marks_;
   Supervisor supervisor_;
   ModuleRunner modules_;
   BusWatch bus_watch_;

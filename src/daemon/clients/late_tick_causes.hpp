@@ -1,0 +1,40 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <functional>
+#include <optional>
+
+#include "app/time.hpp"
+#include "daemon/exchange/late_ticks.hpp"
+#include "link/late_causes.hpp"
+
+namespace rc10 {
+
+/// Knowledge of the kernel about a thread, since that began.
+struct ThreadFacts {
+  /// Ready to run while others had the CPU. None: the kernel does not say.
+  std::function<std::optional<Duration>()> waited;
+  std::function<std::uint64_t()> page_faults;
+};
+
+/// Counts late ticks by cause, from what the scheduler thread and the kernel have counted since the last
+/// call. Its windows must be short, some ten ticks: a thread waits a few microseconds before each tick. Link
+/// thread only.
+class LateTickCauses {
+ public:
+  void update(const LateTicks& late, const ThreadFacts& thread);
+
+  [[nodiscard]] std::uint64_t count(LateCause cause) const noexcept {
+    return counts_[static_cast<std::size_t>(cause)];
+  }
+
+ private:
+  std::array<LateTicks::Sum, kTickSteps> seen_{};
+  std::optional<Duration> waited_;
+  std::optional<std::uint64_t> page_faults_;
+  Duration waited_before_{};  ///< In the window before: a tick may be counted after its wait was.
+  std::array<std::uint64_t, kLateCauses> counts_{};
+};
+
+}  // namespace rc10

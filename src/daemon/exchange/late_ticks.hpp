@@ -1,0 +1,66 @@
+#pragma once
+
+#include <array>
+#include <atomic>
+#include <cstddef>
+#include <cstdint>
+
+#include "app/time.hpp"
+
+namespace rc10 {
+
+/// Part of a period, in order: waiting for the timer, frames and bytes in, orders and modules, motors, frames
+/// out, snapshot and recordings.
+enum class TickStep : std::uint8_t { kWake, kReceive, kModules, kControl, kSend, kPublish };
+inline constexpr std::size_t kTickSteps = 6;
+
+/// Times at which the steps of a tick were over.
+struct TickMarks {
+  MonotonicTime woken{};
+  MonotonicTime received{};
+  MonotonicTime moved{};
+  MonotonicTime packed{};
+  MonotonicTime sent{};
+  MonotonicTime done{};
+
+  /// The step of the tick that took longest; never kWake.
+  [[nodiscard]] constexpr TickStep longest() const noexcept {
+    const std::array<Duration, kTickSteps - 1> steps{received - woken, moved - received, packed - moved,
+                                                     sent - packed, done - sent};
+    std::size_t longest = 0;
+    for (std::size_t i = 1; i < steps.size(); ++i)
+      if (steps[i] > steps[longest]) longest = i;
+    return static_cast<TickStep>(longest + 1);
+  }
+};
+
+/// Ticks that began late or took long, by the step in which the time went. The scheduler thread writes, any
+/// thread reads.
+class LateTicks {
+ public:
+  struct Sum {
+    std::uint64_t ticks = 0;
+    Duration time{};  ///< By which they began late, or that they took.
+  };
+
+  void record(TickStep step, Duration time) noexcept {
+    // One writer: a plain load and store is enough.
+    auto& cell = cells_[static_cast<std::size_t>(step)];
+    cell.ns.store(cell.ns.load(std::memory_order_relaxed) + time.count(), std::memory_order_relaxed);
+    cell.ticks.store(cell.ticks.load(std::memory_order_relaxed) + 1, std::memory_order_release);
+  }
+  [[nodiscard]] Sum of(TickStep step) const noexcept {
+    const auto& cell = cells_[static_cast<std::size_t>(step)];
+    const auto ticks = cell.ticks.load(std::memory_order_acquire);
+    return {ticks, Duration{cell.ns.load(std::memory_order_relaxed)}};
+  }
+
+ private:
+  struct Cell {
+    std::atomic<std::uint64_t> ticks{0};
+    std::atomic<std::int64_t> ns{0};
+  };
+  std::array<Cell, kTickSteps> cells_{};
+};
+
+}  // namespace rc10

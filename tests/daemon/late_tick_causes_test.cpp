@@ -1,0 +1,134 @@
+#include "daemon/clients/late_tick_causes.hpp"
+
+#include <gtest/gtest.h>
+
+namespace rc10::test::late_tick_causes_test {
+namespace {
+
+using namespace std::chrono_literals;
+
+class LateTickCausesTest : public ::testing::Test {
+ protected:
+  LateTickCausesTest() { update(); }
+  /// A window in which the thread waited for its CPU as it always does.
+  void update(Duration waited_more = 30us) {
+    if (waited) *waited += waited_more;
+    causes.update(late, {.waited = [this] { return waited; }, .page_faults = [this] { return page_faults; }});
+  }
+  std::uint64_t others(LateCause cause) {
+    std::uint64_t sum = 0;
+    for (std::size_t i = 0; i < kLateCauses; ++i) sum += causes.count(static_cast<LateCause>(i));
+    return sum - causes.count(cause);
+  }
+
+  LateTicks late;
+  std::optional<Duration> waited{5ms};
+  std::uint64_t page_faults = 400;  // of the start
+  LateTickCauses causes;
+};
+
+TEST_F(LateTickCausesTest, AThreadThatWaitedForItsCpuLostItToOthers) {
+  late.record(TickStep::kWake, 900us);
+  update(880us);
+  EXPECT_EQ(causes.count(LateCause::kCpuTaken), 1U);
+  EXPECT_EQ(others(LateCause::kCpuTaken), 0U);
+}
+
+TEST_F(LateTickCausesTest, OneThatDidNotWasWokenLate) {
+  late.record(TickStep::kWake, 900us);
+  update();
+  EXPECT_EQ(causes.count(LateCause::kTimer), 1U);
+  EXPECT_EQ(others(LateCause::kTimer), 0U);
+}
+
+TEST_F(LateTickCausesTest, ALongTickHasTheCauseOfItsLongestStepUnlessTheCpuWasTaken) {
+  late.record(TickStep::kReceive, 700us);
+  update();
+  late.record(TickStep::kModules, 700us);
+  update();
+  late.record(TickStep::kControl, 700us);
+  update();
+  late.record(TickStep::kSend, 700us);
+  update();
+  late.record(TickStep::kPublish, 700us);
+  update();
+  for (const auto cause :
+       {LateCause::kReceive, LateCause::kModules, LateCause::kControl, LateCause::kSend, LateCause::kPublish})
+    EXPECT_EQ(causes.count(cause), 1U) << static_cast<int>(cause);
+  late.record(TickStep::kSend, 700us);
+  update(650us);
+  EXPECT_EQ(causes.count(LateCause::kSend), 1U);
+  EXPECT_EQ(causes.count(LateCause::kCpuTaken), 1U);
+}
+
+TEST_F(LateTickCausesTest, APageFaultIsTheCauseWhateverElseThereWas) {
+  late.record(TickStep::kControl, 5ms);
+  ++page_faults;
+  update(4ms);
+  EXPECT_EQ(causes.count(LateCause::kPageFault), 1U);
+  EXPECT_EQ(others(LateCause::kPageFault), 0U);
+}
+
+TEST_F(LateTickCausesTest, PageFaultsOfTheStartAreNoCause) {
+  late.record(TickStep::kWake, 900us);
+  update();
+  EXPECT_EQ(causes.count(LateCause::kPageFault), 0U);
+}
+
+// The tick is counted when it is over, its wait when it begins.
+TEST_F(LateTickCausesTest, AWaitThatWasSeenAWindowBeforeItsTickCounts) {
+  update(900us);
+  late.record(TickStep::kWake, 900us);
+  update();
+  EXPECT_EQ(causes.count(LateCause::kCpuTaken), 1U);
+}
+
+TEST_F(LateTickCausesTest, TheWaitOfOneLateTickIsNotCountedForTheNext) {
+  late.record(TickStep::kWake, 900us);
+  update(900us);
+  late.record(TickStep::kWake, 900us);
+  update();
+  EXPECT_EQ(causes.count(LateCause::kCpuTaken), 1U);
+  EXPECT_EQ(causes.count(LateCause::kTimer), 1U);
+}
+
+TEST_F(LateTickCausesTest, AKernelThatDoesNotTellLeavesTheStep) {
+  waited.reset();
+  update();
+  late.record(TickStep::kWake, 900us);
+  update();
+  EXPECT_EQ(causes.count(LateCause::kTimer), 1U);
+}
+
+TEST_F(LateTickCausesTest, EveryCauseHasACounterAndAdviceOfItsOwn) {
+  for (std::size_t i = 0; i < kLateCauses; ++i) {
+    EXPECT_EQ(kLateCauseWords[i].counter.substr(0, 12), "late ticks: ");
+    EXPECT_LE(kLateCauseWords[i].counter.size(), 48U);
+    EXPECT_FALSE(kLateCauseWords[i].advice.empty());
+    for (std::size_t j = 0; j < i; ++j) EXPECT_NE(kLateCauseWords[i].counter, kLateCauseWords[j].counter);
+  }
+}
+
+// ---- Steps
+
+TEST(TickMarksTest, TheLongestStepIsWhereTheTimeWent) {
+  const MonotonicTime begin{10ms};
+  const auto marks = [begin](std::array<int, 5> us) {
+    TickMarks out;
+    out.woken = begin;
+    out.received = out.woken + std::chrono::microseconds{us[0]};
+    out.moved = out.received + std::chrono::microseconds{us[1]};
+    out.packed = out.moved + std::chrono::microseconds{us[2]};
+    out.sent = out.packed + std::chrono::microseconds{us[3]};
+    out.done = out.sent + std::chrono::microseconds{us[4]};
+    return out.longest();
+  };
+  EXPECT_EQ(marks({9, 1, 2, 3, 4}), TickStep::kReceive);
+  EXPECT_EQ(marks({1, 9, 2, 3, 4}), TickStep::kModules);
+  EXPECT_EQ(marks({1, 2, 9, 3, 4}), TickStep::kControl);
+  EXPECT_EQ(marks({1, 2, 3, 9, 4}), TickStep::kSend);
+  EXPECT_EQ(marks({1, 2, 3, 4, 9}), TickStep::kPublish);
+}
+
+}  // namespace
+}  // namespace rc10::test::late_tick_causes_test
