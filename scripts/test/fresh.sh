@@ -75,6 +75,10 @@ pages() {
     step "docs/performance.md: measuring" timed "benchmarks" shown docs/performance.md 1
 }
 
+demo() {
+    in_root scripts/demo.sh --seconds 10 | tee "$scratch/shown"
+}
+
 gcc_11() {
     in_root apt-get -qq install --no-install-recommends --yes g++-11 || return
     # shellcheck disable=SC2016  # for the inner shell
@@ -92,7 +96,8 @@ if [ "$failed" -eq 0 ]; then
     case ${RC10_FRESH:-} in
         default | ci | all) test_set "$RC10_FRESH" ;;
         *)
-            step "scripts/demo.sh" timed "scripts/demo.sh, 10 s of it" in_root scripts/demo.sh --seconds 10
+            step "scripts/demo.sh" timed "scripts/demo.sh, 10 s of it" demo
+            step "it serves the page" grep -q 'http://localhost:' "$scratch/shown"
             if [ -z "${RC10_FRESH:-}" ]; then
                 test_set all
                 step "the build with GCC 11, and its demo" timed "build with GCC 11" gcc_11
