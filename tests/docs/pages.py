@@ -15,6 +15,13 @@ LINK = re.compile(r"\]\(([^()\s]+)\)")
 HEADING = re.compile(r"^#{1,6} +(.+?) *$", re.M)
 
 
+class Row(NamedTuple):
+    """Of a table."""
+
+    cells: int
+    code: list[str]  # the spans of code in it, sorted
+
+
 class Page(NamedTuple):
     path: Path
     text: str
@@ -37,6 +44,37 @@ class Page(NamedTuple):
             if match["kind"] in ("sh", "console"):
                 commands = [re.sub(r" *#.*", "", line) for line in lines]
                 found.append((f"{match['kind']} {match['note']}", commands))
+        return found
+
+    @property
+    def outline(self) -> list[int]:
+        """Level of each heading."""
+        return [len(match[1]) for match in re.finditer(r"^(#{1,6}) ", self.prose, re.M)]
+
+    @property
+    def other_code(self) -> list[str]:
+        """Fences that are neither for a shell nor drawn, without their comments."""
+        return [
+            re.sub(r"[ \t]*(?:#(?!include)|//).*", "", match["text"])
+            for match in FENCE.finditer(self.text)
+            if match["kind"] not in ("", "sh", "console")
+        ]
+
+    @property
+    def tables(self) -> list[list[Row]]:
+        """Rows of each table."""
+        found: list[list[Row]] = []
+        before = False
+        for line in self.prose.splitlines():
+            is_row = line.startswith("|")
+            if is_row:
+                if not before:
+                    found.append([])
+                cells = re.split(r"(?<!\\)\|", SPAN.sub(lambda span: "`" * len(span[2]), line))
+                found[-1].append(
+                    Row(len(cells) - 2, sorted(code for _, code in SPAN.findall(line)))
+                )
+            before = is_row
         return found
 
     @property

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import fnmatch
 import re
+from itertools import zip_longest
 from pathlib import Path
 
 import pytest
@@ -73,10 +74,72 @@ def original_of(page: Page) -> Page:
     return read(page.path.with_name(page.path.name.replace(".zh-CN", "")))
 
 
-def test_a_translation_has_the_commands_of_its_original() -> None:
-    assert len(TRANSLATED) >= 3
-    for page in TRANSLATED:
-        assert page.shell == original_of(page).shell, page.name
+by_translation = pytest.mark.parametrize("page", TRANSLATED, ids=[page.name for page in TRANSLATED])
+
+
+def differences(page: Page, original: Page) -> list[str]:
+    """Headings, code and tables that one of two languages has, and the other has not."""
+    found = []
+    if page.outline != original.outline:
+        found.append(f"headings {page.outline}, not {original.outline}")
+    if page.shell != original.shell:
+        found.append(f"commands {page.shell}, not {original.shell}")
+    for mine, its in zip_longest(page.other_code, original.other_code):
+        if mine != its:
+            found.append(f"code {mine!r}, not {its!r}")
+    for number, (mine, its) in enumerate(zip_longest(page.tables, original.tables, fillvalue=[])):
+        for row, (one, other) in enumerate(zip_longest(mine, its)):
+            if one != other:
+                found.append(f"table {number + 1}, row {row + 1}: {one}, not {other}")
+    return found
+
+
+@by_translation
+def test_a_translation_has_the_headings_code_and_tables_of_its_original(page: Page) -> None:
+    assert differences(page, original_of(page)) == []
+
+
+@by_translation
+def test_a_page_leads_to_its_other_language(page: Page) -> None:
+    assert page.path.name.replace(".zh-CN", "") in page.links
+
+
+def test_what_a_reader_of_chinese_needs_is_there_in_chinese() -> None:
+    names = {page.path.name.removesuffix(".zh-CN.md") for page in TRANSLATED}
+    assert names >= {
+        "README",
+        "quick-start",
+        "first-motor",
+        "studio",
+        "porting-from-stm32",
+        "robot-programs",
+        "tuning",
+        "troubleshooting",
+    }
+
+
+@pytest.mark.parametrize(
+    ("there", "here"),
+    [
+        ("# A\n## B\n", "# A\n"),
+        ("```sh\nrc10ctl list\n```\n", "```sh\nrc10ctl state\n```\n"),
+        ("```yaml\nid: 1\n```\n", "```yaml\nid: 2\n```\n"),
+        ("| a | b |\n|---|---|\n| `x` | y |\n", "| a | b |\n|---|---|\n| `z` | y |\n"),
+        ("| a | b |\n|---|---|\n| x | y |\n", "| a | b |\n|---|---|\n"),
+        ("| a | b |\n|---|---|\n", "| a |\n|---|\n"),
+    ],
+    ids=["heading", "command", "code", "code in a table", "row", "column"],
+)
+def test_a_difference_between_two_languages_is_found(there: str, here: str) -> None:
+    path = REPO / "docs/page.md"
+    assert differences(Page(path, here), Page(path, there)) != []
+
+
+def test_words_and_comments_may_differ() -> None:
+    path = REPO / "docs/page.md"
+    there = "# A\n```yaml\nid: 1  # one\n```\n| `x` | word |\n|---|---|\n"
+    here = "# 甲\n```yaml\nid: 1  # 一\n```\n| `x` | 词 |\n|---|---|\n"
+    assert differences(Page(path, here), Page(path, there)) == []
 
 
 def test_a_translation_has_the_robots_of_its_original() -> None:

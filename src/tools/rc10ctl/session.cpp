@@ -41,7 +41,10 @@ ExitCode complain(const Error& error, ExitCode code) {
 
 void complainInJson() { json_wanted = true; }
 
-Error rc10dEnded() { return {std::string("rc10d has ended: ") + client::kSeeItsLog}; }
+Error rc10dEnded() {
+  std::string what = "rc10d has ended: ";  // not in one expression: GCC 12 warns of a read beyond its end
+  return {what += client::kSeeItsLog};
+}
 
 bool interrupted() noexcept { return interrupt_seen != 0; }
 
