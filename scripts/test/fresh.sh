@@ -72,7 +72,7 @@ pages() {
     step "python/README.md: installing" shown python/README.md 1
     step "python/README.md: developing" shown python/README.md 2
     [ -n "${RC10_FRESH:-}" ] || step "CONTRIBUTING.md: building" shown CONTRIBUTING.md 1
-    step "docs/performance.md: measuring" timed "benchmarks" shown docs/performance.md 1
+    step "docs/measuring.md: measuring" timed "benchmarks" shown docs/measuring.md 1
 }
 
 demo() {

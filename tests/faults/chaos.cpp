@@ -94,6 +94,7 @@ void Chaos::start() {
   echoed_.reset();
   for (auto& inbox : robot_->inboxes()) inbox.echo_available.store(true);
   for (auto& client : clients_) client.motors.reset();
+  inputs_.assign(config_.modules.size(), {});
   tick_ = 0;
 }
 
@@ -109,6 +110,7 @@ void Chaos::tick(std::uint64_t periods) {
   for (const auto& client : clients_) {
     if (client.motors.any() && tick_ % client.every_ticks == 0) command(client);
   }
+  sendInputs();
   showContact();
   const Duration dt = config_.period() * static_cast<std::int64_t>(periods);
   simulate(dt);
@@ -305,6 +307,30 @@ void Chaos::command(const Client& client) {
   if (robot_->exchange().commands.push(command)) oracle_->commanded(command);
 }
 
+// Of one module: none any more, or what it can do, and beyond.
+void Chaos::chooseInputs() {
+  auto& inputs = inputs_[choices_.next(static_cast<std::uint32_t>(inputs_.size()))];
+  inputs.given = !choices_.oneIn(3);
+  inputs.values.fill(kNoSignal);
+  for (std::size_t i = 0; i < 4; ++i)
+    inputs.values[i] = choices_.of<double>({0.0, 1.0, -1.0, 0.3, 30.0, -200.0, 1e9, kNoSignal});
+}
+
+void Chaos::sendInputs() {
+  constexpr std::uint64_t kEveryTicks = 10;
+  if (tick_ % kEveryTicks != 0) return;
+  for (std::size_t module = 0; module < inputs_.size(); ++module) {
+    if (!inputs_[module].given) continue;
+    SignalMessage message;
+    message.client = link::Name{"driver"};
+    message.session = 9;
+    message.module = static_cast<std::uint16_t>(module);
+    message.deadline = robot_->now() + 50ms;
+    message.values = inputs_[module].values;
+    (void)robot_->exchange().signals.push(message);
+  }
+}
+
 void Chaos::order(Operation operation, MotorSet motors, double value) {
   if (oracle_->open() >= kMostOpen) return;
   Order order;
@@ -406,6 +432,10 @@ void Chaos::act(Action action) {
       break;
     }
     case Action::kProgram: {
+      if (!inputs_.empty() && choices_.oneIn(2)) {
+        chooseInputs();
+        break;
+      }
       auto& client = someClient();
       motors = client.motors = choices_.oneIn(6) ? MotorSet{} : someMotors();
       client.validity = std::chrono::milliseconds{choices_.of<int>({5, 20, 50, 100, 100, 300})};

@@ -88,6 +88,11 @@ class Chaos {
     Duration validity{};
     std::uint32_t every_ticks = 10;
   };
+  /// Inputs of a module, sent again and again while there are any.
+  struct Inputs {
+    bool given = false;
+    std::array<double, kMaxSignals> values{};
+  };
   struct Done {
     std::uint64_t tick = 0;
     Action action{};
@@ -109,6 +114,8 @@ class Chaos {
   void leaveQueue(std::size_t bus);
   void holdEchoes(std::size_t bus, std::uint64_t ticks, bool on_wire);
   void command(const Client& client);
+  void chooseInputs();
+  void sendInputs();
   void order(Operation operation, MotorSet motors, double value = 0.0);
   void stopAndStartAgain();
   void repair(std::size_t motor);
@@ -136,6 +143,7 @@ class Chaos {
   std::size_t seen_count_ = 0;
   std::array<CanFrame, 64> feedback_{};
   std::array<Client, 3> clients_{};
+  std::vector<Inputs> inputs_;      ///< By module.
   std::bitset<kMaxBuses> frozen_;   ///< Nothing is heard from it.
   std::bitset<kMaxBuses> blocked_;  ///< Nobody takes its frames.
   std::bitset<kMaxBuses> behind_;   ///< Frames from before are still in its queue.

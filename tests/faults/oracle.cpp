@@ -68,6 +68,18 @@ Oracle::Oracle(const RobotConfig& config) : config_(config) {
   }
 }
 
+namespace {
+
+// Modules ask anew in each tick, and what they ask for is valid for so long.
+constexpr Duration kModuleValidity = 20ms;
+
+[[nodiscard]] bool isModule(const RobotConfig& config, std::string_view name) {
+  return std::any_of(config.modules.begin(), config.modules.end(),
+                     [name](const ModuleConfig& module) { return module.settings.name == name; });
+}
+
+}  // namespace
+
 void Oracle::fail(const std::string& what) const { throw Violation(fmt::format("tick {}: {}", tick_, what)); }
 
 void Oracle::fail(std::size_t motor, const std::string& what) const {
@@ -197,6 +209,21 @@ bool Oracle::overdue(const Motor& motor) const {
   return held_.test(motor.bus) || !motor.reported || motor.unheard_ticks > patience_ticks;
 }
 
+// A module that has a motor has commanded it in this tick, or a few before; it may let go of it at any time.
+void Oracle::followModules(const Snapshot& snapshot) {
+  for (std::size_t i = 0; i < motors_.size(); ++i) {
+    auto& motor = motors_[i];
+    const bool owned = isModule(config_, snapshot.motors[i].owner.view());
+    if (owned) {
+      motor.driven_until = std::max(motor.driven_until, now_ + kModuleValidity);
+      motor.owned_until = std::max(motor.owned_until, now_ + kModuleValidity);
+      ++visits_.by_modules;
+    }
+    motor.coast_asked |= owned || motor.of_module;
+    motor.of_module = owned;
+  }
+}
+
 // A sample is a frame that could be one, and was one to rc10d: some motors wait for more before they
 // believe an angle.
 void Oracle::followFeedback(const Snapshot& snapshot) {
@@ -237,6 +264,7 @@ void Oracle::judge(const Snapshot& snapshot, std::uint64_t periods, std::bitset<
   now_ = snapshot.time;
   periods_ = periods;
   for (auto& motor : motors_) motor.told = motor.wire->told();  // a drive may have switched itself off
+  followModules(snapshot);
   followFeedback(snapshot);
   judgeSnapshot(snapshot, periods);
   judgeFrames(read);

@@ -78,6 +78,7 @@ class Oracle {
     std::unique_ptr<Wire> wire;
     std::unique_ptr<Wire> strangers_wire;  ///< Reads what somebody else sends to its drive.
     double limit = 0.0;                    ///< Of its effort.
+    bool of_module = false;                ///< A module commands it, too, while no client does.
     bool host_holds = false;               ///< Its hold is a loop of rc10d, of any effort,
     bool host_brakes = false;              ///< and so is its brake.
 
@@ -170,6 +171,7 @@ class Oracle {
   [[nodiscard]] static bool saidLately(const Motor& motor, const CanFrame& frame);
   [[nodiscard]] static Actions only(FallbackAction action);
   void followFeedback(const Snapshot& snapshot);
+  void followModules(const Snapshot& snapshot);
   [[nodiscard]] bool fresh(const Motor& motor) const;
   [[nodiscard]] bool overdue(const Motor& motor) const;
   [[nodiscard]] bool damps(const Motor& motor) const;

@@ -127,6 +127,39 @@ buses:
          angle_max_deg: 120, zero: power_on}
 groups:
   - {name: wheels, motors: [left_wheel, right_wheel], together: true, on_return: rearm_at_rest}
+)",
+                                                            R"(
+robot: parts
+buses:
+  - name: wheels
+    type: sim
+    motors:
+      - {name: front_left, model: M3508, id: 1, current_limit_a: 8, on_timeout: damp, on_disable: damp, on_estop: brake}
+      - {name: front_right, model: M3508, id: 2, current_limit_a: 8, on_timeout: damp, on_disable: damp, on_estop: brake}
+      - {name: rear_left, model: M3508, id: 3, current_limit_a: 8, on_timeout: damp, on_disable: damp, on_estop: brake}
+      - {name: rear_right, model: M3508, id: 4, current_limit_a: 8, on_timeout: damp, on_disable: damp, on_estop: brake}
+  - name: top
+    type: sim
+    motors:
+      - {name: feeder, model: M2006, id: 1, current_limit_a: 5, on_timeout: brake}
+      - {name: lift_left, model: RMD-X8-20, id: 22, current_limit_a: 6, velocity_limit_rpm: 60, on_timeout: hold,
+         on_disable: brake, on_estop: brake, hold_max_s: 1, command_divider: 2, zero: power_on}
+      - {name: lift_right, model: RMD-X8-20, id: 23, current_limit_a: 6, velocity_limit_rpm: 60, on_timeout: hold,
+         on_disable: brake, on_estop: brake, hold_max_s: 1, command_divider: 2, zero: power_on}
+modules:
+  - name: base
+    type: mecanum_chassis
+    wheels: {front_left: front_left, front_right: front_right, rear_left: rear_left, rear_right: rear_right}
+    wheel_radius_m: 0.076
+    track_m: 0.4
+    wheelbase_m: 0.4
+    max_speed_m_s: 2
+    max_turn_deg_s: 180
+    max_acceleration_m_s2: 3
+    max_turn_acceleration_deg_s2: 360
+    power_limit_w: 80
+  - {name: gun, type: feeder, motor: feeder, velocity_limit_rpm: 100}
+  - {name: lift, type: synchronised_pair, left: lift_left, right: lift_right, velocity_limit_rpm: 40}
 )"};
 
 }  // namespace

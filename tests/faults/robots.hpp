@@ -6,8 +6,8 @@
 
 namespace rc10::test {
 
-/// The robots of the chaos: each family, each way to control it, each fallback, each limit.
-inline constexpr std::size_t kRobotCount = 4;
+/// The robots of the chaos: each family, each way to control it, each fallback, each limit, modules.
+inline constexpr std::size_t kRobotCount = 5;
 [[nodiscard]] RobotConfig robotOf(std::size_t index);
 
 }  // namespace rc10::test

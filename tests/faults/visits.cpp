@@ -23,6 +23,7 @@ void Visits::add(const Visits& other) {
   stalls += other.stalls;
   probes += other.probes;
   unread_after_pauses += other.unread_after_pauses;
+  by_modules += other.by_modules;
   slewed += other.slewed;
   bounded += other.bounded;
   driven += other.driven;
@@ -61,6 +62,7 @@ std::string Visits::text() const {
     for (std::size_t law = 1; law < visited.laws.size(); ++law)
       out += fmt::format(" {} {}", wordOf(static_cast<Told::Law>(law)), visited.laws[law] / 1000);
   }
+  out += fmt::format("\nof modules, thousand ticks: {}", by_modules / 1000);
   out += fmt::format("\njudged, ticks: slew limits {}, soft limits {}", slewed, bounded);
   out += fmt::format("\nenabled alone, ticks: {}", alone);
   out += fmt::format("\nbuses without echoes: {}, probed {} times", stalls, probes);

@@ -25,6 +25,7 @@ struct Visits {
   std::array<std::uint64_t, 64> faults{};                        ///< How often each began.
   std::array<std::uint64_t, kFallbackWords.size()> fallbacks{};  ///< Ticks in which one gave torque.
   std::uint64_t driven = 0;                                      ///< And ticks in which a target did.
+  std::uint64_t by_modules = 0;                                  ///< Of motors that a module had.
   std::uint64_t alone = 0;  ///< Ticks in which one motor was enabled alone.
   std::uint64_t rearmed = 0;
   std::uint64_t stops = 0;

@@ -1,6 +1,6 @@
 """Why rc10ctl starts at once: few libraries, few system calls, nothing that waits.
 
-Its time is measured in docs/performance.md, and not asserted.
+Its time is measured in docs/measuring.md, and not asserted.
 """
 
 from __future__ import annotations
