@@ -3,6 +3,7 @@
 #include <fcntl.h>
 #include <linux/magic.h>
 #include <sys/mman.h>
+#include <sys/stat.h>
 #include <sys/statfs.h>
 #include <unistd.h>
 
@@ -12,6 +13,7 @@
 #include <cstdio>
 #include <cstring>
 #include <new>
+#include <utility>
 
 #include "blackbox/file_bytes.hpp"
 
@@ -56,9 +58,14 @@ Result<std::unique_ptr<BoxFile>> BoxFile::create(const std::string& path, Header
       shared ? ::mmap(nullptr, mapped, PROT_READ | PROT_WRITE, MAP_SHARED, fd.get(), 0)
              : ::mmap(nullptr, mapped, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
   if (memory == MAP_FAILED) return give_up(std::strerror(errno));
+  auto guard = std::make_unique<CutFileGuard>();
+  if (shared && !guard->watch(memory, mapped)) {
+    (void)::munmap(memory, mapped);
+    return give_up("no handler of SIGBUS could be installed");
+  }
   std::memset(memory, 0, mapped);  // every page is there before the first tick
   auto* const head = ::new (memory) FileHead{header, {}};
-  std::unique_ptr<BoxFile> box(new BoxFile(path, std::move(fd), head, mapped, shared));
+  std::unique_ptr<BoxFile> box(new BoxFile(path, std::move(fd), head, mapped, shared, std::move(guard)));
   if (auto written =
           writeAll(box->descriptor(), 0, {reinterpret_cast<const std::byte*>(box->head_), sizeof(FileHead)});
       !written) {
@@ -68,10 +75,42 @@ Result<std::unique_ptr<BoxFile>> BoxFile::create(const std::string& path, Header
   return box;
 }
 
-BoxFile::~BoxFile() { (void)::munmap(head_, mapped_); }
+BoxFile::BoxFile(std::string path, UniqueFd fd, FileHead* head, std::size_t mapped, bool shared,
+                 std::unique_ptr<CutFileGuard> guard) noexcept
+    : path_(std::move(path)),
+      fd_(std::move(fd)),
+      head_(head),
+      mapped_(mapped),
+      file_bytes_(head->header.file_bytes),
+      ring_offset_(head->header.ring_offset),
+      ring_bytes_(head->header.ring_bytes),
+      shared_(shared),
+      guard_(std::move(guard)) {}
+
+BoxFile::~BoxFile() {
+  guard_.reset();
+  (void)::munmap(head_, mapped_);
+}
+
+bool BoxFile::whole() noexcept {
+  struct stat info {};
+  const bool whole = !guard_->replaced() && ::fstat(fd_.get(), &info) == 0 &&
+                     info.st_size >= static_cast<off_t>(file_bytes_);
+  // The next write to its end would give it its size again, and not what was in it.
+  if (!whole) cut_.store(true, std::memory_order_relaxed);
+  return !cut_.load(std::memory_order_relaxed);
+}
 
 std::span<std::byte> BoxFile::ring() noexcept {
-  return {reinterpret_cast<std::byte*>(head_) + head_->header.ring_offset, head_->header.ring_bytes};
+  return {reinterpret_cast<std::byte*>(head_) + ring_offset_, ring_bytes_};
+}
+
+Result<void> BoxFile::end() {
+  std::atomic_ref(head_->control.ended).store(1, std::memory_order_release);
+  if (whole()) return publish();
+  const std::uint64_t ended = 1;
+  return writeAll(fd_.get(), offsetof(FileHead, control) + offsetof(Control, ended),
+                  {reinterpret_cast<const std::byte*>(&ended), sizeof ended});
 }
 
 Result<void> BoxFile::publish() {

@@ -19,36 +19,40 @@ constexpr std::size_t kDrainedAtOnce = std::size_t{64} * 1024;
 }  // namespace
 
 History::History(FileHead& head, std::span<const std::byte> ring, int fd)
-    : head_(head), ring_(ring), fd_(fd), old_(kDrainedAtOnce) {}
+    : control_(head.control),
+      ring_(ring),
+      fd_(fd),
+      offset_(head.header.history_offset),
+      room_(head.header.history_bytes),
+      tail_(head.control.tail),
+      oldest_(head.control.oldest),
+      old_(kDrainedAtOnce) {}
 
 Result<void> History::drain() {
-  auto& control = head_.control;
-  const std::uint64_t end = std::atomic_ref(control.head).load(std::memory_order_acquire);
+  const std::uint64_t end = std::atomic_ref(control_.head).load(std::memory_order_acquire);
   Result<void> outcome;
-  for (std::uint64_t tail = control.tail; tail < end && outcome;) {
-    const std::uint64_t next = broken_ ? end : std::min(end, tail + kDrainedAtOnce);
-    if (!broken_) outcome = store(tail, next);
+  while (tail_ < end && outcome) {
+    const std::uint64_t next = broken_ ? end : std::min(end, tail_ + kDrainedAtOnce);
+    if (!broken_) outcome = store(tail_, next);
     broken_ = broken_ || !outcome;
-    if (broken_) std::atomic_ref(control.oldest).store(next, std::memory_order_seq_cst);
-    tail = next;
+    if (broken_) std::atomic_ref(control_.oldest).store(oldest_ = next, std::memory_order_seq_cst);
+    tail_ = next;
     // Release: the scheduler may write there again, and a reader that sees this finds it in the history.
-    std::atomic_ref(control.tail).store(tail, std::memory_order_release);
+    std::atomic_ref(control_.tail).store(tail_, std::memory_order_release);
   }
   return outcome;
 }
 
 Result<void> History::store(std::uint64_t from, std::uint64_t to) {
-  const std::uint64_t room = head_.header.history_bytes;
-  if (to > room) {
-    if (auto forgotten = forgetBefore(to - room); !forgotten) return forgotten;
+  if (to > room_) {
+    if (auto forgotten = forgetBefore(to - room_); !forgotten) return forgotten;
   }
   while (from < to) {
     // Up to where either ring starts anew.
     const std::uint64_t at_ring = from & (ring_.size() - 1);
-    const std::uint64_t at_history = from % room;
-    const std::uint64_t bytes = std::min({to - from, ring_.size() - at_ring, room - at_history});
-    if (auto written = writeAll(fd_, head_.header.history_offset + at_history, ring_.subspan(at_ring, bytes));
-        !written) {
+    const std::uint64_t at_history = from % room_;
+    const std::uint64_t bytes = std::min({to - from, ring_.size() - at_ring, room_ - at_history});
+    if (auto written = writeAll(fd_, offset_ + at_history, ring_.subspan(at_ring, bytes)); !written) {
       return written;
     }
     from += bytes;
@@ -58,15 +62,13 @@ Result<void> History::store(std::uint64_t from, std::uint64_t to) {
 
 // Goes from record to record, so that the oldest that is left is a whole one.
 Result<void> History::forgetBefore(std::uint64_t position) {
-  auto& control = head_.control;
-  const std::uint64_t room = head_.header.history_bytes;
-  std::uint64_t oldest = control.oldest;
+  std::uint64_t oldest = oldest_;
   while (oldest < position) {
-    const std::uint64_t at = oldest % room;
+    const std::uint64_t at = oldest % room_;
     const std::uint64_t bytes = std::min<std::uint64_t>(
-        {position - oldest + sizeof(RecordHeader), old_.size(), room - at, control.tail - oldest});
+        {position - oldest + sizeof(RecordHeader), old_.size(), room_ - at, tail_ - oldest});
     const auto block = std::span(old_).first(bytes);
-    if (auto read = readAll(fd_, head_.header.history_offset + at, block); !read) return read;
+    if (auto read = readAll(fd_, offset_ + at, block); !read) return read;
     // Records begin at whole words, so their first two bytes are in one piece.
     const std::uint64_t start = oldest;
     while (oldest < position && oldest - start < bytes) {
@@ -76,7 +78,8 @@ Result<void> History::forgetBefore(std::uint64_t position) {
     }
   }
   // Before the first byte is overwritten: a reader, or one who reads after a crash, starts behind it.
-  std::atomic_ref(control.oldest).store(oldest, std::memory_order_seq_cst);
+  oldest_ = oldest;
+  std::atomic_ref(control_.oldest).store(oldest, std::memory_order_seq_cst);
   return {};
 }
 

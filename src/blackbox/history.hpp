@@ -20,14 +20,21 @@ class History {
 
   /// Moves everything there is. After an error the hand-off goes on, but there is no history any more.
   [[nodiscard]] Result<void> drain();
+  /// No history from now on; the hand-off goes on.
+  void giveUp() noexcept { broken_ = true; }
 
  private:
   [[nodiscard]] Result<void> store(std::uint64_t from, std::uint64_t to);
   [[nodiscard]] Result<void> forgetBefore(std::uint64_t position);
 
-  FileHead& head_;
+  Control& control_;
   std::span<const std::byte> ring_;
   int fd_;
+  // Own copies: what is mapped is gone when somebody cuts the file off.
+  std::uint64_t offset_;
+  std::uint64_t room_;
+  std::uint64_t tail_ = 0;
+  std::uint64_t oldest_ = 0;
   std::vector<std::byte> old_;
   bool broken_ = false;
 };

@@ -4,6 +4,8 @@
 
 #include <fcntl.h>
 #include <gmock/gmock.h>
+#include <signal.h>
+#include <sys/mman.h>
 #include <unistd.h>
 
 #include <atomic>
@@ -144,6 +146,55 @@ TEST_F(HistoryTest, WhenTheFileCannotBeWrittenTheHandOffGoesOn) {
   }
   EXPECT_EQ(file->head().control.dropped, 0U);
   EXPECT_TRUE(framesInFile().empty());
+}
+
+/// One who cuts off the file of a running rc10d: at nothing, in the middle of the ring, of the history.
+class CutFileTest : public HistoryInMemoryTest, public testing::WithParamInterface<off_t> {
+ protected:
+  void cut() { ASSERT_EQ(::truncate(file->path().c_str(), GetParam()), 0); }
+};
+
+TEST_P(CutFileTest, RecordingGoesOnWithoutAFileAndTheProcessLives) {
+  write(100);
+  drain();
+  EXPECT_TRUE(file->whole());
+  cut();
+  EXPECT_FALSE(file->whole());
+  for (int i = 0; i < 40; ++i) {
+    write(2000);
+    (void)history.drain();
+  }
+  EXPECT_FALSE(file->whole());
+  EXPECT_EQ(file->head().control.dropped, 0U) << "the hand-off goes on";
+  ASSERT_TRUE(file->end());
+}
+
+TEST_P(CutFileTest, OneThatHasItsSizeAgainIsReadAsWhatIsLeftOfIt) {
+  write(100);
+  drain();
+  cut();
+  ASSERT_EQ(::truncate(file->path().c_str(), static_cast<off_t>(kBytes)), 0);
+  for (int i = 0; i < 40; ++i) {
+    write(2000);
+    (void)history.drain();  // ends, whatever is in the file
+  }
+  EXPECT_LE(file->head().control.oldest, file->head().control.tail);
+}
+
+INSTANTIATE_TEST_SUITE_P(At, CutFileTest, testing::Values(0, 100'000, static_cast<off_t>(kBytes) - 4096));
+
+TEST(CutFileGuard, AFileThatIsCutOffElsewhereEndsTheProcessAsBefore) {
+  GTEST_FLAG_SET(death_test_style, "threadsafe");
+  TempDir dir("/dev/shm");
+  const auto file = blackbox::BoxFile::create(dir / "hero.blackbox", blackbox::Header{}, kBytes).value();
+  const UniqueFd other{::open((dir / "other").c_str(), O_RDWR | O_CREAT, 0600)};
+  ASSERT_EQ(::ftruncate(other.get(), 4096), 0);
+  void* const memory = ::mmap(nullptr, 4096, PROT_READ | PROT_WRITE, MAP_SHARED, other.get(), 0);
+  ASSERT_NE(memory, MAP_FAILED);
+  ASSERT_EQ(::ftruncate(other.get(), 0), 0);
+  EXPECT_EXIT(*static_cast<volatile char*>(memory) = 1, testing::KilledBySignal(SIGBUS), "");
+  EXPECT_EXIT(::raise(SIGBUS), testing::KilledBySignal(SIGBUS), "");
+  EXPECT_EQ(::munmap(memory, 4096), 0);
 }
 
 TEST_F(HistoryTest, NoRoomForTheFileIsAnErrorThatNamesIt) {

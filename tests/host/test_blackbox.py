@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import os
 import re
 import shutil
 import signal
@@ -12,7 +13,7 @@ from typing import Any
 
 import pytest
 from hostlib import Daemon, Program, eventually
-from hostlib.daemon import BIN, CONFIG
+from hostlib.daemon import BIN, CONFIG, motor_of
 
 Record = dict[str, Any]
 
@@ -204,3 +205,31 @@ def test_a_damaged_file_is_an_error_that_says_so(daemon: Daemon, tmp_path: Path)
         assert str(file) in ctl.stderr
         assert why in ctl.stderr
         assert ctl.stdout == ""
+
+
+@pytest.mark.parametrize("left", [0, 100_000])
+def test_a_box_that_somebody_cuts_off_ends_the_recording_and_not_the_torque(
+    daemon: Daemon, left: int
+) -> None:
+    daemon.must("enable", "wheel")
+    box = daemon.run_dir / "host.blackbox"
+    with daemon.drive("set", "wheel", "velocity", "60", "--for", "60s"):
+        daemon.wait_motor("wheel", lambda m: m["velocity_rpm"] > 50, "turns")
+        os.truncate(box, left)
+        daemon.program.wait_line(re.escape(f"somebody has cut off {box}: nothing is recorded"))
+        tick = daemon.state()["tick"]
+        eventually(lambda: daemon.state()["tick"] > tick + 2000, "two seconds more")
+        wheel = motor_of(daemon.state(), "wheel")
+        assert wheel["status"] == "ACTIVE"
+        assert wheel["velocity_rpm"] > 50
+        assert daemon.ctl("blackbox").returncode != 0
+        daemon.must("estop")
+    daemon.program.signal(signal.SIGTERM)
+    assert daemon.program.wait() == 0
+    output = daemon.program.output
+    assert output.count("somebody has cut off") == 1
+    assert "could not be copied" not in output
+    daemon.start()
+    daemon.wait_ready()
+    assert "ended without stopping" not in daemon.program.output
+    daemon.must("blackbox")

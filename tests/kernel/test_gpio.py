@@ -264,3 +264,94 @@ def test_the_e_stop_keeps_its_line_whatever_name_a_module_has_for_the_chip(tmp_p
             process.wait_line(f"pump: {label}:0: .*`gpioinfo` says who", 5.0)
             pin.set(True)
             process.wait_line("e-stop: the input is open", 5.0)
+
+
+def enabling_on(chip: str | Path) -> str:
+    return estop_on(chip).replace("estop_gpio", "enabling_gpio")
+
+
+@pytest.mark.parametrize("beside_a_button", [False, True])
+def test_letting_the_enabling_switch_go_ends_the_torque_at_once(
+    beside_a_button: bool, tmp_path: Path
+) -> None:
+    # Beside a button it is looked at every millisecond, after the wait for the button.
+    most = (5 if beside_a_button else 3) * MS
+    with Pin("hand") as hand, Pin("button") as button:
+        sections = [enabling_on(hand.chip), estop_on(button.chip)][: 1 + beside_a_button]
+        config = config_with(tmp_path, *sections)
+        with enabled(config) as (process, robot), Candump("vcan0") as bus:
+            drive(robot, 0.5, left=rc10.velocity_rpm(100))
+            assert any(commands(bus.frames(), C6XX_COMMAND)[-1].data)
+            let_go_ns = time.time_ns()
+            hand.set(True)
+            process.wait_line(f"{hand.chip}:0: e-stop: the enabling switch is released", 5.0)
+            process.wait_line("robot: RUN -> ESTOP", 5.0)
+            drive(robot, 0.1, left=rc10.velocity_rpm(100))
+            bus.stop()
+            later = [f for f in commands(bus.frames(), C6XX_COMMAND) if f.t_ns > let_go_ns + most]
+            assert len(later) > 50
+            assert not any(any(frame.data) for frame in later)
+
+
+def test_holding_the_enabling_switch_again_starts_nothing(tmp_path: Path) -> None:
+    with (
+        Pin() as hand,
+        enabled(config_with(tmp_path, enabling_on(hand.chip))) as (process, robot),
+    ):
+        drive(robot, 0.2, left=rc10.velocity_rpm(100))
+        hand.set(True)
+        process.wait_line("RUN -> ESTOP", 5.0)
+        refused = rc10ctl("clear")
+        assert refused.returncode != 0
+        assert "with an enabling switch hold it in the middle" in refused.stderr
+        with Candump("vcan0") as bus:
+            hand.set(False)
+            drive(robot, 0.3, left=rc10.velocity_rpm(100))
+            bus.stop()
+            sent = commands(bus.frames(), C6XX_COMMAND)
+            assert len(sent) > 200
+            assert not any(any(frame.data) for frame in sent)
+        assert rc10ctl("enable").returncode != 0, "still an e-stop"
+        drive(robot, 5.0, left=rc10.velocity_rpm(100))  # until it has run down
+        cleared = rc10ctl("clear")
+        assert cleared.returncode == 0, cleared.stderr
+        assert robot.motor("left").status == rc10.MotorStatus.READY
+        robot.enable()
+        drive(robot, 0.5, left=rc10.velocity_rpm(100))
+        assert abs(robot.motor("left").velocity_rpm - 100) < 5
+
+
+def test_a_squeeze_for_an_instant_is_not_missed(tmp_path: Path) -> None:
+    with Pin() as hand, enabled(config_with(tmp_path, enabling_on(hand.chip))) as (process, _):
+        hand.set(True)
+        time.sleep(0.003)
+        hand.set(False)
+        process.wait_line("the enabling switch is released or squeezed", 5.0)
+        process.wait_line("RUN -> ESTOP", 5.0)
+
+
+def test_an_enabling_switch_that_nobody_holds_or_reads_keeps_the_robot_stopped(
+    tmp_path: Path,
+) -> None:
+    live = SIM / "rc10" / "live"
+    with Pin(high=True) as hand:
+        with fakes(), daemon(config_with(tmp_path, enabling_on(hand.chip))) as process:
+            process.wait_line("RUN -> ESTOP", 5.0)
+            with client() as robot:
+                wait_status(robot, rc10.MotorStatus.READY)
+                with pytest.raises(rc10.RequestFailed, match="ESTOP"):
+                    robot.enable()
+        hand.set(False)
+        with enabled(config_with(tmp_path, enabling_on(hand.chip))) as (process, robot):
+            drive(robot, 0.2, left=rc10.velocity_rpm(100))
+            live.write_text("0")
+            process.wait_line("e-stop: the input cannot be read", 5.0)
+            process.wait_line("RUN -> ESTOP", 5.0)
+            assert rc10ctl("clear").returncode != 0
+        live.write_text("1")
+
+
+def test_a_missing_chip_of_the_enabling_switch_keeps_it_from_starting(tmp_path: Path) -> None:
+    refused = start_refused(config_with(tmp_path, enabling_on("gpiochip9")))
+    assert "enabling_gpio: gpiochip9" in refused
+    assert "`gpiodetect` lists the chips" in refused

@@ -91,6 +91,17 @@ BlackBox::BlackBox(const Settings& settings, std::string robot, std::unique_ptr<
 }
 
 void BlackBox::drain() {
+  if (!file_whole_) {
+    (void)history_.drain();  // nothing is kept; the hand-off goes on
+    return;
+  }
+  if (!file_->whole()) {
+    file_whole_ = false;
+    history_.giveUp();
+    log_->warn("somebody has cut off {}: nothing is recorded from now on. Restart rc10d to record again",
+               file_->path());
+    return;
+  }
   std::atomic_ref(file_->head().control.wall_offset_ns)
       .store(realtimeOffset().count(), std::memory_order_relaxed);
   auto stored = history_.drain();
@@ -128,6 +139,7 @@ void BlackBox::copyAside() {
 }
 
 void BlackBox::copy(const char* cause) {
+  if (!file_->whole()) return;  // told by drain()
   auto path = blackbox::keepCopy(file_->descriptor(), state_dir_, robot_, wallClockUs() / 1'000'000, cause);
   if (!path) {
     complain(std::string("the black box could not be copied (") + cause + "): " + path.error().message);
@@ -146,8 +158,7 @@ void BlackBox::complain(const std::string& why) {
 
 void BlackBox::end() {
   drain();
-  std::atomic_ref(file_->head().control.ended).store(1, std::memory_order_release);
-  (void)file_->publish();
+  (void)file_->end();
 }
 
 }  // namespace rc10

@@ -60,6 +60,7 @@ class BlackBox {
   std::shared_ptr<spdlog::logger> log_;
   bool complained_ = false;
   bool history_lost_ = false;
+  bool file_whole_ = true;  ///< Until somebody cuts it off. io thread's, at the end the main thread's.
 };
 
 }  // namespace rc10
