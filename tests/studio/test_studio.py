@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import hashlib
+import json
 import re
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -9,13 +11,13 @@ from typing import TYPE_CHECKING
 import pytest
 from hostlib.daemon import REPO
 from hostlib.program import eventually
-from playwright.sync_api import Browser, Page, expect
+from playwright.sync_api import Browser, Locator, Page, WebSocketRoute, expect
 
 if TYPE_CHECKING:
     from conftest import Studio
 
 PATIENCE_MS = 20_000.0
-TABS = ("overview", "plots", "events", "timing")
+TABS = ("overview", "match", "plots", "events", "timing")
 
 expect.set_options(timeout=PATIENCE_MS)
 
@@ -161,6 +163,105 @@ def test_timing_shows_the_latencies_that_rc10d_measures(page: Page) -> None:
     open_tab(page, "timing")
     expect(page.get_by_role("rowheader", name="Wake-up latency")).to_be_visible()
     expect(page.get_by_role("rowheader", name="Tick duration")).to_be_visible()
+
+
+def row_of(page: Page, name: str) -> Locator:
+    return page.locator(".checks tr", has=page.get_by_role("rowheader", name=name, exact=True))
+
+
+def as_on_a_good_computer(page: Page) -> None:
+    """The page is told of a robot with real drives on a computer that keeps time; all else is true."""
+
+    def amend(message: str | bytes) -> str | bytes:
+        if isinstance(message, bytes) or not message.startswith("{"):
+            return message
+        told = json.loads(message)
+        data = told.get("data", {})
+        if told["type"] == "state":
+            data["conditions"] = [word for word in data["conditions"] if word != "simulated"]
+            data["realtime"] = True
+        if told["type"] == "diagnostics":
+            data["missed_ticks"] = 0
+            data["notices"] = []
+        return json.dumps(told)
+
+    def relay(socket: WebSocketRoute) -> None:
+        server = socket.connect_to_server()
+        server.on_message(lambda message: socket.send(amend(message)))
+
+    page.route_web_socket("**/link", relay)
+    page.reload()
+    page.locator(".badge.live").wait_for()
+
+
+def test_before_a_match_each_row_says_what_is_wrong_and_its_remedy(
+    page: Page, studio: Studio
+) -> None:
+    open_tab(page, "match")
+    verdict = page.locator(".verdict")
+    expect(verdict).to_have_class(re.compile("bad"))
+    expect(row_of(page, "Real drives")).to_have_class("bad")
+    expect(row_of(page, "Real drives").locator(".remedy")).to_contain_text("type: sim")
+    expect(row_of(page, "Every motor heard")).to_have_class("good")
+    expect(row_of(page, "Every angle referenced")).to_have_class("good")
+    # Each row with something wrong has a remedy, and no other has.
+    expect(page.locator(".checks tr.bad .remedy")).to_have_count(
+        page.locator(".checks tr.bad").count()
+    )
+    expect(page.locator(".checks tr.good .remedy")).to_have_count(0)
+    notes = row_of(page, "Real time in order").locator(".notes p")
+    told = studio.daemon.stats()["notices"]
+    expect(notes).to_have_text([note.replace("`", "") for note in told])
+    # A hash that is another's, then that of the file that runs.
+    page.get_by_label("SHA-256").fill("0123456789abcdef")
+    expect(row_of(page, "File as committed")).to_have_class("bad")
+    running = hashlib.sha256(studio.daemon.config.read_bytes()).hexdigest()
+    page.get_by_label("SHA-256").fill(running.upper())
+    expect(row_of(page, "File as committed")).to_have_class("good")
+    page.get_by_label("SHA-256").fill(running[:4])
+    expect(row_of(page, "File as committed")).to_have_class("bad")
+    page.get_by_label("SHA-256").fill(running[:12])
+    expect(row_of(page, "File as committed")).to_have_class("good")
+    # Another file, in which the wheels are not referenced where they are.
+    studio.daemon.kill()
+    changed = studio.daemon.config.read_text().replace(", zero: power_on", "")
+    studio.daemon.config.write_text(changed)
+    studio.daemon.start()
+    studio.daemon.wait_ready()
+    expect(row_of(page, "File as committed")).to_have_class("bad")
+    unreferenced = row_of(page, "Every angle referenced")
+    expect(unreferenced.locator(".found")).to_have_text("wheel, other")
+    expect(unreferenced.locator(".remedy")).to_contain_text("rc10ctl zero")
+
+
+def test_before_a_match_the_page_is_green_only_when_every_row_is(
+    page: Page, studio: Studio
+) -> None:
+    as_on_a_good_computer(page)
+    open_tab(page, "match")
+    verdict = page.locator(".verdict")
+    expect(row_of(page, "E-stop tried since rc10d runs")).to_have_class("bad")
+    studio.daemon.must("estop")
+    expect(row_of(page, "Robot may move")).to_have_class("bad")
+    expect(row_of(page, "Robot may move").locator(".found")).to_contain_text("ESTOP")
+    studio.daemon.must("clear")
+    expect(row_of(page, "Robot may move")).to_have_class("good")
+    expect(row_of(page, "E-stop tried since rc10d runs")).to_have_class("good")
+    page.get_by_role("button", name="Remember the one that runs").click()
+    page.get_by_role("button", name="Count from here").click()
+    expect(verdict).to_have_text("✓ Ready for a match")
+    expect(verdict).to_have_class(re.compile("good"))
+    # The simulated winding has the warmth of a room, which is hot for whoever says so.
+    page.get_by_label("Hot above").fill("20")
+    expect(row_of(page, "Motors cool")).to_have_class("bad")
+    expect(verdict).to_have_text("✗ Not ready (1)")
+    page.get_by_label("Hot above").fill("60")
+    expect(verdict).to_have_class(re.compile("good"))
+    # The hash is remembered; without rc10d nothing is green.
+    page.reload()
+    expect(row_of(page, "File as committed")).to_have_class("good")
+    studio.daemon.kill()
+    expect(verdict).to_have_text("✗ Nothing is known of the robot")
 
 
 def test_language_favourites_and_part_are_remembered(page: Page) -> None:

@@ -38,6 +38,7 @@ export interface Robot {
     robot: string;
     version: string;
     config_hash: string;
+    pid: number;
     rate_hz: number;
     motors: MotorInfo[];
   };
