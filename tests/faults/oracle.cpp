@@ -354,8 +354,8 @@ void Oracle::judgeSnapshot(const Snapshot& snapshot, std::uint64_t periods) {
     const bool told = motor.wire->samplesAlways() || std::isfinite(feedback.velocity_rpm);
     const bool compared = told && feedback.received == motor.heard_at;
     // A shaft that a load spins up is told in float: so many rpm that 0.01 is below its resolution.
-    const double rounded_rpm =
-        std::fabs(motor.wire->measured().velocity_rpm) * double{std::numeric_limits<float>::epsilon()};
+    const double rounded_rpm = std::fabs(motor.wire->measured().velocity_rpm) *
+                               static_cast<double>(std::numeric_limits<float>::epsilon());
     require(i, !compared || off_rpm <= 0.01 + rounded_rpm + motor.wire->measured().velocity_step_rpm,
             "another speed than reported");
   }
