@@ -170,7 +170,7 @@ def row_of(page: Page, name: str) -> Locator:
 
 
 def as_on_a_good_computer(page: Page) -> None:
-    """The page is told of a robot with real drives on a computer that keeps time; all else is true."""
+    """The page is told of real drives and a computer that keeps time; all else is true."""
 
     def amend(message: str | bytes) -> str | bytes:
         if isinstance(message, bytes) or not message.startswith("{"):
