@@ -16,7 +16,7 @@ namespace {
 constexpr std::size_t kMostWatched = 8;
 
 struct WatchedMapping {
-  std::atomic<std::uintptr_t> begin{0};  ///< 0: a free place. Written last.
+  std::atomic<void*> begin{nullptr};  ///< Null: a free place. Written last.
   std::atomic<std::size_t> bytes{0};
   std::atomic<bool> replaced{false};
 };
@@ -26,14 +26,16 @@ struct sigaction inherited_action {};
 std::mutex watching;  // The handler takes no lock.
 
 // In the thread that touched the page, the scheduler's perhaps: one system call, no lock, no allocation.
-[[nodiscard]] bool replaceMapping(std::uintptr_t address) noexcept {
+[[nodiscard]] bool replaceMapping(const void* address) noexcept {
+  const auto at = reinterpret_cast<std::uintptr_t>(address);
   for (auto& mapping : watched_mappings) {
-    const auto begin = mapping.begin.load(std::memory_order_acquire);
+    void* const begin = mapping.begin.load(std::memory_order_acquire);
+    const auto first = reinterpret_cast<std::uintptr_t>(begin);
     const auto bytes = mapping.bytes.load(std::memory_order_relaxed);
-    if (begin == 0 || address < begin || address - begin >= bytes) continue;
+    if (begin == nullptr || at < first || at - first >= bytes) continue;
     mapping.replaced.store(true, std::memory_order_release);
-    return ::mmap(reinterpret_cast<void*>(begin), bytes, PROT_READ | PROT_WRITE,
-                  MAP_FIXED | MAP_PRIVATE | MAP_ANONYMOUS, -1, 0) != MAP_FAILED;
+    return ::mmap(begin, bytes, PROT_READ | PROT_WRITE, MAP_FIXED | MAP_PRIVATE | MAP_ANONYMOUS, -1, 0) !=
+           MAP_FAILED;
   }
   return false;
 }
@@ -41,7 +43,7 @@ std::mutex watching;  // The handler takes no lock.
 void onBusError(int number, siginfo_t* info, void* /*context*/) {
   const int error = errno;
   // A bad memory cell (BUS_MCEERR_AR) is the kernel's to punish.
-  if (info->si_code == BUS_ADRERR && replaceMapping(reinterpret_cast<std::uintptr_t>(info->si_addr))) {
+  if (info->si_code == BUS_ADRERR && replaceMapping(info->si_addr)) {
     errno = error;
     return;
   }
@@ -68,11 +70,11 @@ bool CutFileGuard::watch(void* memory, std::size_t bytes) noexcept {
   if (place_ != kNoPlace || !installHandler()) return false;
   for (std::size_t place = 0; place < watched_mappings.size(); ++place) {
     auto& mapping = watched_mappings[place];
-    if (mapping.begin.load(std::memory_order_relaxed) != 0) continue;
+    if (mapping.begin.load(std::memory_order_relaxed) != nullptr) continue;
     mapping.replaced.store(false, std::memory_order_relaxed);
     mapping.bytes.store(bytes, std::memory_order_relaxed);
     // Release: the handler sees the size, too.
-    mapping.begin.store(reinterpret_cast<std::uintptr_t>(memory), std::memory_order_release);
+    mapping.begin.store(memory, std::memory_order_release);
     place_ = place;
     return true;
   }
@@ -84,7 +86,7 @@ bool CutFileGuard::replaced() const noexcept {
 }
 
 CutFileGuard::~CutFileGuard() {
-  if (place_ != kNoPlace) watched_mappings[place_].begin.store(0, std::memory_order_release);
+  if (place_ != kNoPlace) watched_mappings[place_].begin.store(nullptr, std::memory_order_release);
 }
 
 }  // namespace rc10::blackbox
