@@ -1,4 +1,4 @@
-"""Charts of pages are drawn from the tables beside them."""
+"""Charts of pages are drawn from the tables beside them, wiring by its script."""
 
 from __future__ import annotations
 
@@ -10,12 +10,20 @@ from pages import REPO
 
 sys.path.insert(0, str(REPO / "scripts/lib"))
 from performance_charts import Chart, Group, charts, cost, families, svg
+from wiring_drawings import drawings
 
 
 @pytest.mark.parametrize("path", charts(), ids=lambda path: path.name)
 def test_a_chart_shows_its_table_as_it_is_now(path: Path) -> None:
     assert path.read_text(encoding="utf-8") == charts()[path], (
         "draw it anew: scripts/lib/performance_charts.py"
+    )
+
+
+@pytest.mark.parametrize("path", drawings(), ids=lambda path: path.name)
+def test_a_wiring_drawing_is_what_its_script_draws(path: Path) -> None:
+    assert path.read_text(encoding="utf-8") == drawings()[path], (
+        "draw it anew: scripts/lib/wiring_drawings.py"
     )
 
 

@@ -115,6 +115,8 @@ def test_what_a_reader_of_chinese_needs_is_there_in_chinese() -> None:
         "robot-programs",
         "tuning",
         "troubleshooting",
+        "safety",
+        "modules",
     }
 
 

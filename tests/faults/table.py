@@ -1,4 +1,4 @@
-"""Writes what the campaign has proven into a document, or compares it with what is there."""
+"""Writes what the campaign has proven into documents, or compares it with what is there."""
 
 from __future__ import annotations
 
@@ -30,29 +30,35 @@ def without_measurement(line: str) -> str:
     return " | ".join([*cells[:2], *cells[3:]])
 
 
-def main() -> int:
-    parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--write", action="store_true")
-    parser.add_argument("document", type=Path)
-    parser.add_argument("records", type=Path)
-    arguments = parser.parse_args()
-    text = arguments.document.read_text()
+def update(document: Path, new: list[str], *, write: bool) -> bool:
+    """Puts the table into the document, or tells what differs. False: it differs."""
+    text = document.read_text()
     found = re.search(f"{BEGIN}\n(.*?){END}", text, re.DOTALL)
     if found is None:
-        print(f"{arguments.document}: no {BEGIN} ... {END}")
-        return 1
-    new = table(rows(arguments.records))
-    if arguments.write:
+        print(f"{document}: no {BEGIN} ... {END}")
+        return False
+    if write:
         body = "\n".join(new) + "\n"
-        arguments.document.write_text(text[: found.start(1)] + body + text[found.end(1) :])
-        return 0
+        document.write_text(text[: found.start(1)] + body + text[found.end(1) :])
+        return True
     written = {without_measurement(line) for line in found[1].splitlines()}
     proven = {without_measurement(line) for line in new}
     for line in sorted(written - proven):
-        print(f"{arguments.document}: not proven by the campaign: {line}")
+        print(f"{document}: not proven by the campaign: {line}")
     for line in sorted(proven - written):
-        print(f"{arguments.document}: missing, use tests/faults/run --write: {line}")
-    return int(written != proven)
+        print(f"{document}: missing, use tests/faults/run --write: {line}")
+    return written == proven
+
+
+def main() -> int:
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--write", action="store_true")
+    parser.add_argument("records", type=Path)
+    parser.add_argument("documents", type=Path, nargs="+")
+    arguments = parser.parse_args()
+    new = table(rows(arguments.records))
+    right = [update(document, new, write=arguments.write) for document in arguments.documents]
+    return int(not all(right))
 
 
 if __name__ == "__main__":
