@@ -15,7 +15,11 @@ constexpr double kTwoPi = 2.0 * std::numbers::pi;
 
 MotorPhysics::MotorPhysics(const MotorParameters& parameters, double initial_angle_deg) noexcept
     : parameters_(parameters), temperature_c_(parameters.ambient_c) {
-  const double turns = initial_angle_deg / kDegPerTurn * parameters.gear_ratio;
+  place(initial_angle_deg);
+}
+
+void MotorPhysics::place(double output_deg) noexcept {
+  const double turns = output_deg / kDegPerTurn * parameters_.gear_ratio;
   rotor_turns_ = static_cast<std::int64_t>(std::floor(turns));
   rotor_fraction_ = turns - std::floor(turns);
 }
@@ -30,6 +34,7 @@ void MotorPhysics::step(const WindingCommand& command, Duration dt) noexcept {
 void MotorPhysics::substep(const WindingCommand& command, double dt_s) noexcept {
   stepCurrent(command, dt_s);
   stepMotion(dt_s);
+  stepStops();
   stepHeat(dt_s);
   stepSpeedMeasurement(dt_s);
 }
@@ -59,7 +64,10 @@ void MotorPhysics::stepMotion(double dt_s) noexcept {
   }
   const auto& p = parameters_;
   const double inertia = p.totalInertia();
-  const double torque_nm = outputTorqueNm() - p.output_load_nm;
+  double torque_nm = outputTorqueNm() - p.output_load_nm;
+  if (p.output_gravity_nm != 0.0) {
+    torque_nm -= p.output_gravity_nm * std::sin((outputAngleDeg() - p.output_hangs_at_deg) * kRadPerDeg);
+  }
   const double previous_rad_s = velocity_rad_s_;
 
   // Friction is implicit: viscous friction is stable for any step, and Coulomb friction takes away at
@@ -79,6 +87,17 @@ void MotorPhysics::stepMotion(double dt_s) noexcept {
     rotor_fraction_ = 0.0;
     ++rotor_turns_;
   }
+}
+
+// A stop is rigid and takes all of the speed: nothing bounces.
+void MotorPhysics::stepStops() noexcept {
+  const double angle_deg = outputAngleDeg();
+  const double within_deg =
+      std::clamp(angle_deg, parameters_.output_stop_min_deg, parameters_.output_stop_max_deg);
+  if (within_deg == angle_deg) return;
+  place(within_deg);
+  const bool outwards = (angle_deg > within_deg) == (velocity_rad_s_ > 0.0);
+  if (outwards) velocity_rad_s_ = 0.0;
 }
 
 void MotorPhysics::stepHeat(double dt_s) noexcept {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 
 #include "app/time.hpp"
 
@@ -29,6 +30,10 @@ struct MotorParameters {
   double output_viscous_nms_per_rad = 0.0;
   double output_coulomb_nm = 0.0;  ///< Also holds the shaft at rest.
   double output_load_nm = 0.0;     ///< Constant torque in the negative direction.
+  double output_gravity_nm = 0.0;  ///< Times the sine of the angle from where it hangs: negative direction.
+  double output_hangs_at_deg = 0.0;
+  double output_stop_min_deg = -std::numeric_limits<double>::infinity();
+  double output_stop_max_deg = std::numeric_limits<double>::infinity();
   double thermal_resistance_k_per_w = 0.0;
   double heat_capacity_j_per_k = 0.0;
   double ambient_c = kRoomC;
@@ -81,6 +86,8 @@ class MotorPhysics {
   void substep(const WindingCommand& command, double dt_s) noexcept;
   void stepCurrent(const WindingCommand& command, double dt_s) noexcept;
   void stepMotion(double dt_s) noexcept;
+  void stepStops() noexcept;
+  void place(double output_deg) noexcept;
   void stepHeat(double dt_s) noexcept;
   void stepSpeedMeasurement(double dt_s) noexcept;
 

@@ -53,7 +53,7 @@ MotorParameters servoParameters(const MotorTraits& traits, double gear_ratio,
   p.output_coulomb_nm = orDefault(load.coulomb_nm, 0.5 * friction_nm);
   p.output_viscous_nms_per_rad =
       orDefault(load.viscous_nms_per_rad, 0.5 * friction_nm * gear_ratio / no_load_rad_s);
-  p.output_load_nm = static_cast<double>(load.load_torque_nm);
+  hang(load, p);
 
   const double rated_a = kRatedShare * p.current_limit_a;
   p.thermal_resistance_k_per_w = (kWindingC - kRoomC) / (p.resistance_ohm * rated_a * rated_a);

@@ -11,6 +11,11 @@ struct MotorLoad {
   float viscous_nms_per_rad = std::numeric_limits<float>::quiet_NaN();  ///< NaN: the model's default.
   float coulomb_nm = std::numeric_limits<float>::quiet_NaN();           ///< NaN: the model's default.
   float load_torque_nm = 0.0F;  ///< Constant torque against which the motor works (a hanging weight).
+  float gravity_nm = 0.0F;      ///< An arm's: what holds it level. Against the motor beyond hangs_at_deg.
+  float hangs_at_deg = 0.0F;    ///< Where gravity leaves the arm at rest.
+  /// End stops: the shaft does not turn beyond them. NaN: none.
+  float stop_min_deg = std::numeric_limits<float>::quiet_NaN();
+  float stop_max_deg = std::numeric_limits<float>::quiet_NaN();
   float initial_angle_deg = 0.0F;
   bool stalled = false;      ///< The shaft does not turn.
   bool silent = false;       ///< The drive sends nothing.

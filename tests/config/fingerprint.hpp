@@ -48,8 +48,9 @@ inline void print(std::ostream& out, const MotorConfig& motor) {
   print(out, dji.loops.angle);
   const auto& load = motor.simulated;
   out << load.inertia_kg_m2 << ' ' << load.viscous_nms_per_rad << ' ' << load.coulomb_nm << ' '
-      << load.load_torque_nm << ' ' << load.initial_angle_deg << ' ' << load.stalled << ' ' << load.silent
-      << ' ' << load.lost_frames << '\n';
+      << load.load_torque_nm << ' ' << load.gravity_nm << ' ' << load.hangs_at_deg << ' ' << load.stop_min_deg
+      << ' ' << load.stop_max_deg << ' ' << load.initial_angle_deg << ' ' << load.stalled << ' '
+      << load.silent << ' ' << load.lost_frames << '\n';
 }
 
 }  // namespace detail

@@ -212,13 +212,19 @@ TEST(MotorRules, ASimulatedLoadIsTakenOver) {
   const auto load =
       motorOf(
           "{name: a, model: M3508, id: 1, simulated: {inertia_kg_m2: 0.01, viscous_nms_per_rad: 0.02, "
-          "coulomb_nm: 0.03, load_torque_nm: -2, initial_angle_deg: 30, stalled: true, silent: true, "
+          "coulomb_nm: 0.03, load_torque_nm: -2, gravity_nm: 4, "
+          "hangs_at_deg: -90, stop_min_deg: -100, stop_max_deg: 110, initial_angle_deg: 30, stalled: true, "
+          "silent: true, "
           "lost_frames: 0.5}}")
           .simulated;
   EXPECT_EQ(load.inertia_kg_m2, 0.01F);
   EXPECT_EQ(load.viscous_nms_per_rad, 0.02F);
   EXPECT_EQ(load.coulomb_nm, 0.03F);
   EXPECT_EQ(load.load_torque_nm, -2.0F);
+  EXPECT_EQ(load.gravity_nm, 4.0F);
+  EXPECT_EQ(load.hangs_at_deg, -90.0F);
+  EXPECT_EQ(load.stop_min_deg, -100.0F);
+  EXPECT_EQ(load.stop_max_deg, 110.0F);
   EXPECT_EQ(load.initial_angle_deg, 30.0F);
   EXPECT_TRUE(load.stalled);
   EXPECT_TRUE(load.silent);
@@ -227,6 +233,20 @@ TEST(MotorRules, ASimulatedLoadIsTakenOver) {
   EXPECT_THAT(
       errorsOfWheel("simulated: {lost_frames: 1.5}"),
       ElementsAre("hero.yaml:6:69: buses[0].motors[0].simulated.lost_frames: 1.5 is above 1; use 0 to 1"));
+}
+
+TEST(MotorRules, TheStopsOfASimulatedShaftAreInOrderAndAroundIt) {
+  EXPECT_THAT(errorsOfWheel("simulated: {stop_min_deg: 10, stop_max_deg: 10}"),
+              ElementsAre(testing::HasSubstr(
+                  "simulated.stop_max_deg: 10 deg is not above stop_min_deg (10); change one")));
+  EXPECT_THAT(errorsOfWheel("simulated: {stop_min_deg: 10}"),
+              ElementsAre(testing::HasSubstr(
+                  "simulated.stop_min_deg: the shaft begins at initial_angle_deg, beyond")));
+  EXPECT_THAT(errorsOfWheel("simulated: {stop_max_deg: 10, initial_angle_deg: 11}"),
+              ElementsAre(testing::HasSubstr(
+                  "simulated.initial_angle_deg: the shaft begins at initial_angle_deg, beyond")));
+  EXPECT_THAT(errorsOfWheel("simulated: {stop_min_deg: 0, stop_max_deg: 10, initial_angle_deg: 10}"),
+              ElementsAre());
 }
 
 TEST(MotorRules, AMotorKnowsWhereItStands) {

@@ -191,6 +191,43 @@ TEST(MotorPhysics, AHangingWeightFallsUnlessFrictionOrTorqueHoldsIt) {
   EXPECT_NEAR(balanced.outputAngleDeg(), 0.0, 1.0);
 }
 
+TEST(MotorPhysics, AnArmFallsToWhereItHangsAndNeedsItsGravityLevel) {
+  MotorLoad load;
+  load.inertia_kg_m2 = 0.05F;
+  load.viscous_nms_per_rad = 0.05F;
+  load.coulomb_nm = 0.0F;
+  load.gravity_nm = 0.6F;
+  load.hangs_at_deg = -90.0F;
+  MotorPhysics let_go{parameters(kM3508, load), 60.0};
+  let_go.step(amperes(0.0), 60s);
+  EXPECT_NEAR(let_go.outputAngleDeg(), -90.0, 1.0);
+
+  // Level is a quarter of a turn above: 2 A are the 0.6 N m that hold it there, and half of that at -60.
+  MotorPhysics level{parameters(kM3508, load), 0.0};
+  level.step(amperes(2.0), 300ms);
+  EXPECT_NEAR(level.outputAngleDeg(), 0.0, 1.0);
+  MotorPhysics halfway{parameters(kM3508, load), -60.0};
+  halfway.step(amperes(1.0), 300ms);
+  EXPECT_NEAR(halfway.outputAngleDeg(), -60.0, 1.0);
+}
+
+TEST(MotorPhysics, AStopHoldsTheShaftAndLetsItBack) {
+  MotorLoad load;
+  load.stop_min_deg = -20.0F;
+  load.stop_max_deg = 45.0F;
+  MotorPhysics motor{parameters(kM3508, load), 0.0};
+  for (int i = 0; i < 2000; ++i) {
+    motor.step(amperes(1.0), 1ms);
+    ASSERT_LE(motor.outputAngleDeg(), 45.0 + 1e-9);
+  }
+  EXPECT_NEAR(motor.outputAngleDeg(), 45.0, 1e-9);
+  EXPECT_EQ(motor.outputRpm(), 0.0);
+  motor.step(amperes(-1.0), 100ms);
+  EXPECT_LT(motor.outputAngleDeg(), 44.0);
+  motor.step(amperes(-1.0), 2s);
+  EXPECT_NEAR(motor.outputAngleDeg(), -20.0, 1e-9);
+}
+
 TEST(MotorPhysics, DrivenAboveItsNoLoadSpeedItBrakes) {
   MotorLoad load;
   load.load_torque_nm = -3.0F;  // drives in the positive direction

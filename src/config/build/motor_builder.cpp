@@ -34,10 +34,27 @@ void readSimulated(MotorReading& in) {
   simulated.read("viscous_nms_per_rad", load.viscous_nms_per_rad);
   simulated.read("coulomb_nm", load.coulomb_nm);
   simulated.read("load_torque_nm", load.load_torque_nm);
+  simulated.read("gravity_nm", load.gravity_nm);
+  simulated.read("hangs_at_deg", load.hangs_at_deg);
+  simulated.read("stop_min_deg", load.stop_min_deg);
+  simulated.read("stop_max_deg", load.stop_max_deg);
   simulated.read("initial_angle_deg", load.initial_angle_deg);
   simulated.read("stalled", load.stalled);
   simulated.read("silent", load.silent);
   simulated.read("lost_frames", load.lost_frames);
+
+  const auto stop_min = simulated.find("stop_min_deg");
+  const auto stop_max = simulated.find("stop_max_deg");
+  if (stop_min && stop_max && load.stop_min_deg >= load.stop_max_deg) {
+    in.problems.error(
+        stop_max->place(), stop_max->path,
+        stop_max->text() + " deg is not above stop_min_deg (" + stop_min->text() + "); change one of them");
+  } else if (load.initial_angle_deg < load.stop_min_deg || load.initial_angle_deg > load.stop_max_deg) {
+    const auto given = simulated.find("initial_angle_deg");
+    const auto& wrong = given ? given : load.initial_angle_deg < load.stop_min_deg ? stop_min : stop_max;
+    in.problems.error(wrong->place(), wrong->path,
+                      "the shaft begins at initial_angle_deg, beyond its stops; change one of them");
+  }
 }
 
 bool readModel(MotorReading& in) {

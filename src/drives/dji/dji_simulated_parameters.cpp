@@ -6,6 +6,7 @@
 #include <string_view>
 
 #include "app/units.hpp"
+#include "sim/drive.hpp"
 
 namespace rc10::sim {
 namespace {
@@ -106,7 +107,7 @@ MotorParameters parametersOf(const DjiModel& model, double gear_ratio, const Mot
   p.output_coulomb_nm = orDefault(load.coulomb_nm, 0.5 * rotor_friction_nm * gear_ratio);
   p.output_viscous_nms_per_rad =
       orDefault(load.viscous_nms_per_rad, 0.5 * rotor_friction_nm / no_load_rad_s * gear_ratio * gear_ratio);
-  p.output_load_nm = static_cast<double>(load.load_torque_nm);
+  hang(load, p);
 
   // At the rated current a motor stays just below the hottest its winding may be.
   p.thermal_resistance_k_per_w = (kWindingC - kRoomC) / (p.resistance_ohm * data.rated_a * data.rated_a);
