@@ -1,11 +1,11 @@
-"""A simulated shaft has gravity and end stops: a joint homes and soft limits hold without hardware."""
+"""A simulated shaft has gravity and end stops: a joint homes without hardware."""
 
 from __future__ import annotations
 
 from hostlib import Daemon
 from hostlib.daemon import ARM
 
-# Hangs at -90 degrees; its lower stop lies 30 degrees away, where gravity pulls with half of its 0.3 N m.
+# Hangs at -90 degrees; its lower stop lies 30 degrees away: gravity pulls with half of its 0.3 N m.
 SHOULDER = (
     ARM
     + """
