@@ -50,10 +50,11 @@ void readSimulated(MotorReading& in) {
         stop_max->place(), stop_max->path,
         stop_max->text() + " deg is not above stop_min_deg (" + stop_min->text() + "); change one of them");
   } else if (load.initial_angle_deg < load.stop_min_deg || load.initial_angle_deg > load.stop_max_deg) {
+    const char* stop = load.initial_angle_deg < load.stop_min_deg ? "stop_min_deg" : "stop_max_deg";
     const auto given = simulated.find("initial_angle_deg");
-    const auto& wrong = given ? given : load.initial_angle_deg < load.stop_min_deg ? stop_min : stop_max;
-    in.problems.error(wrong->place(), wrong->path,
-                      "the shaft begins at initial_angle_deg, beyond its stops; change one of them");
+    if (const auto wrong = given ? given : simulated.find(stop))
+      in.problems.error(wrong->place(), wrong->path,
+                        "the shaft begins at initial_angle_deg, beyond its stops; change one of them");
   }
 }
 
