@@ -238,6 +238,22 @@ TEST(DamiaoClosedLoop, ImpedanceIsAsStiffAsTold) {
   EXPECT_NEAR(shaftDeg(rig), 30.0 - 2.0 / 40.0 * 57.3, 0.3);
 }
 
+TEST(DamiaoClosedLoop, AnArmSagsByTheSineOfItsAngleAndAStopHoldsIt) {
+  auto rig = onlineRig(damiaoSettingsOf(), {.coulomb_nm = 0.0F, .gravity_nm = 2.0F, .stop_max_deg = 40.0F});
+  ASSERT_TRUE(rig.enable());
+  const auto spring_to = [&](double deg) {
+    rig.command({.mode = ControlMode::kImpedance,
+                 .value = deg,
+                 .stiffness_nm_per_rad = 40.0F,
+                 .damping_nms_per_rad = 1.0F});
+    rig.run(seconds{2});
+  };
+  spring_to(30.0);
+  EXPECT_NEAR(shaftDeg(rig), 30.0 - 2.0 * 0.477 / 40.0 * 57.3, 0.3);  // 0.477: the sine of what comes out
+  spring_to(60.0);
+  EXPECT_NEAR(shaftDeg(rig), 40.0, 1e-6);
+}
+
 TEST(DamiaoClosedLoop, TheCurrentLimitBoundsTheTorque) {
   for (const std::string control : {"mit", "force_position"}) {
     SCOPED_TRACE(control);

@@ -27,6 +27,18 @@ void readPlain(MotorReading& in) {
   in.settings.read("optional", in.draft.config.optional);
 }
 
+void checkStops(MotorReading& in, const Settings& simulated) {
+  const sim::MotorLoad& load = in.draft.config.simulated;
+  const bool below = load.initial_angle_deg < load.stop_min_deg;
+  const bool beyond = load.initial_angle_deg > load.stop_max_deg;
+  if (load.stop_min_deg >= load.stop_max_deg || (!below && !beyond)) return;
+  const auto initial = simulated.find("initial_angle_deg");
+  const auto wrong = initial ? initial : simulated.find(below ? "stop_min_deg" : "stop_max_deg");
+  if (!wrong) return;
+  in.problems.error(wrong->place(), wrong->path,
+                    "the shaft begins at initial_angle_deg, beyond its stops; change one of them");
+}
+
 void readSimulated(MotorReading& in) {
   const Settings simulated = in.settings.section("simulated");
   sim::MotorLoad& load = in.draft.config.simulated;
@@ -42,20 +54,8 @@ void readSimulated(MotorReading& in) {
   simulated.read("stalled", load.stalled);
   simulated.read("silent", load.silent);
   simulated.read("lost_frames", load.lost_frames);
-
-  const auto stop_min = simulated.find("stop_min_deg");
-  const auto stop_max = simulated.find("stop_max_deg");
-  if (stop_min && stop_max && load.stop_min_deg >= load.stop_max_deg) {
-    in.problems.error(
-        stop_max->place(), stop_max->path,
-        stop_max->text() + " deg is not above stop_min_deg (" + stop_min->text() + "); change one of them");
-  } else if (load.initial_angle_deg < load.stop_min_deg || load.initial_angle_deg > load.stop_max_deg) {
-    const char* stop = load.initial_angle_deg < load.stop_min_deg ? "stop_min_deg" : "stop_max_deg";
-    const auto given = simulated.find("initial_angle_deg");
-    if (const auto wrong = given ? given : simulated.find(stop))
-      in.problems.error(wrong->place(), wrong->path,
-                        "the shaft begins at initial_angle_deg, beyond its stops; change one of them");
-  }
+  in.refuseUnordered(simulated, "stop_min_deg", "stop_max_deg");
+  checkStops(in, simulated);
 }
 
 bool readModel(MotorReading& in) {

@@ -1,6 +1,8 @@
 #pragma once
 
+#include <limits>
 #include <string>
+#include <string_view>
 
 #include "config/check/motor_draft.hpp"
 #include "config/keys/settings.hpp"
@@ -37,6 +39,19 @@ struct MotorReading {
   }
   [[nodiscard]] double torqueNmPerA() const noexcept {
     return static_cast<double>(traits.torque_nm_per_a) / traits.gear_ratio * gear();
+  }
+
+  /// Of two angles of a section that are given, the upper one lies above.
+  void refuseUnordered(const Settings& section, std::string_view min_key, std::string_view max_key) {
+    float min_deg = std::numeric_limits<float>::quiet_NaN();
+    float max_deg = min_deg;
+    section.read(min_key, min_deg);
+    section.read(max_key, max_deg);
+    const auto given = section.find(max_key);
+    if (!given || !(min_deg >= max_deg)) return;  // NaN: not given
+    problems.error(given->place(), given->path,
+                   given->text() + " deg is not above " + std::string{min_key} + " (" +
+                       section.text(min_key) + "); change one of them");
   }
 };
 

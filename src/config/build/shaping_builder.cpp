@@ -49,13 +49,7 @@ void readShaping(MotorReading& in) {
     shaping.effort_per_nm = static_cast<float>(1.0 / in.torqueNmPerA());
   if (in.byVoltage() && in.noLoadRpm() > 0.0)
     shaping.effort_per_rpm = in.traits.effort_full_scale / static_cast<float>(in.noLoadRpm());
-  const auto max_deg = in.settings.find("angle_max_deg");
-  const auto min_deg = in.settings.find("angle_min_deg");
-  if (max_deg && min_deg && shaping.angle_min_deg >= shaping.angle_max_deg) {
-    in.problems.error(
-        max_deg->place(), max_deg->path,
-        max_deg->text() + " deg is not above angle_min_deg (" + min_deg->text() + "); change one of them");
-  }
+  in.refuseUnordered(in.settings, "angle_min_deg", "angle_max_deg");
 }
 
 }  // namespace rc10

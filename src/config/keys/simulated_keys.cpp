@@ -35,8 +35,8 @@ constexpr std::array kSimulatedKeys{
         .range = {.min = -1000, .max = 1000},
         .default_text = "0",
         .about =
-            "Of an arm: the torque that holds it level, a quarter of a turn from hangs_at_deg. On its way "
-            "up it needs the sine of the angle of that."},
+            "Of an arm: the torque that holds it level, a quarter of a turn from hangs_at_deg; elsewhere "
+            "times the sine of the angle from there."},
     Key{.name = "hangs_at_deg",
         .kind = kNumber,
         .unit = "deg",
@@ -52,7 +52,7 @@ constexpr std::array kSimulatedKeys{
         .kind = kNumber,
         .unit = "deg",
         .range = {.min = -360'000, .max = 360'000},
-        .about = "The same above. Default: none."},
+        .about = "End stop above, as stop_min_deg. Default: none."},
     Key{.name = "initial_angle_deg",
         .kind = kNumber,
         .unit = "deg",
