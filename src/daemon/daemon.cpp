@@ -140,7 +140,7 @@ Result<void> Daemon::createLoops(int estop_socket) {
   auto rx_loop = RxLoop::create(robot_->serialChannels(), drain);
   if (!rx_loop) return tl::unexpected(rx_loop.error());
   rx_loop_ = std::move(*rx_loop);
-  auto sim_loop = SimLoop::create(*robot_, grid);
+  auto sim_loop = SimLoop::create(*robot_, grid, exchange_.hands);
   if (!sim_loop) return tl::unexpected(sim_loop.error());
   sim_loop_ = std::move(*sim_loop);
   return {};
@@ -245,14 +245,21 @@ void Daemon::describeRobot() {
                                   static_cast<double>(bus.data_bitrate)});
   }
   std::size_t index = 0;
+  std::size_t port = 0;
   for (std::size_t bus = 0; bus < config_.buses.size(); ++bus) {
-    for (const auto& motor : config_.buses[bus].motors) {
+    const bool simulated = config_.buses[bus].type == BusType::kSimulated;
+    for (std::size_t drive = 0; drive < config_.buses[bus].motors.size(); ++drive) {
+      const auto& motor = config_.buses[bus].motors[drive];
       const auto& built = *robot_->motors()[index++].motor;
       const auto traits = motor.traits();
       description_.motors.push_back({motor.name(), std::string(built.modelName()), bus, motor.settings.id,
                                      built.modes(), motor.optional, traits.setup,
                                      MotorLoops{motor.settings.model, traits, motor.settings.loops}});
+      if (simulated)
+        description_.motors.back().simulated = {
+            .port = port, .drive = drive, .direction = motor.settings.direction};
     }
+    port += simulated ? 1 : 0;
   }
   describeModules();
 }

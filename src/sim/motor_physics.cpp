@@ -11,6 +11,11 @@ namespace {
 
 constexpr double kTwoPi = 2.0 * std::numbers::pi;
 
+// Estimate of a hand on a shaft: it pulls with all its torque where the shaft lags so much, and no faster
+// than the steps of the simulation can follow.
+constexpr double kHandLagDeg = 1.0;
+constexpr double kMostHandRadPerS = 400.0;
+
 }  // namespace
 
 MotorPhysics::MotorPhysics(const MotorParameters& parameters, double initial_angle_deg) noexcept
@@ -64,7 +69,7 @@ void MotorPhysics::stepMotion(double dt_s) noexcept {
   }
   const auto& p = parameters_;
   const double inertia = p.totalInertia();
-  double torque_nm = outputTorqueNm() - p.output_load_nm;
+  double torque_nm = outputTorqueNm() - p.output_load_nm + stepHand(dt_s);
   if (p.output_gravity_nm != 0.0) {
     torque_nm -= p.output_gravity_nm * std::sin((outputAngleDeg() - p.output_hangs_at_deg) * kRadPerDeg);
   }
@@ -87,6 +92,38 @@ void MotorPhysics::stepMotion(double dt_s) noexcept {
     rotor_fraction_ = 0.0;
     ++rotor_turns_;
   }
+}
+
+void MotorPhysics::take(const Hand& hand) noexcept {
+  const double from_deg = outputAngleDeg();
+  grip_ = {.held = true,
+           .at_deg = from_deg,
+           .to_deg = from_deg + hand.by_deg,
+           .rpm = std::copysign(hand.speed_rpm, hand.by_deg),
+           .torque_nm = hand.torque_nm,
+           .left_s = std::chrono::duration<double>(hand.hold + Hand::kSettle).count()};
+}
+
+// Critically damped spring between the shaft and a point that goes its way.
+double MotorPhysics::stepHand(double dt_s) noexcept {
+  if (!grip_.held) return 0.0;
+  const double way_deg = grip_.to_deg - grip_.at_deg;
+  const double step_deg = grip_.rpm * kDegPerTurn / 60.0 * dt_s;
+  const bool there = std::abs(way_deg) <= std::abs(step_deg);
+  grip_.at_deg = there ? grip_.to_deg : grip_.at_deg + step_deg;
+  if (there) {
+    grip_.left_s -= dt_s;
+    grip_.held = grip_.left_s > 0.0;
+  }
+  const double hand_rad_s = there ? 0.0 : grip_.rpm / kRpmPerRadPerS;
+  const double inertia = parameters_.totalInertia();
+  const double natural_rad_s =
+      std::min(std::sqrt(grip_.torque_nm / (kHandLagDeg * kRadPerDeg) / inertia), kMostHandRadPerS);
+  const double friction_nm = std::copysign(parameters_.output_coulomb_nm, grip_.rpm);
+  const double pull_nm =
+      inertia * natural_rad_s * natural_rad_s * (grip_.at_deg - outputAngleDeg()) * kRadPerDeg +
+      2.0 * inertia * natural_rad_s * (hand_rad_s - velocity_rad_s_) + (there ? 0.0 : friction_nm);
+  return std::clamp(pull_nm, -grip_.torque_nm, grip_.torque_nm);
 }
 
 // A stop is rigid and takes all of the speed: nothing bounces.

@@ -4,6 +4,7 @@
 #include <limits>
 
 #include "app/time.hpp"
+#include "sim/hand.hpp"
 
 namespace rc10::sim {
 
@@ -69,6 +70,10 @@ class MotorPhysics {
   void stall(bool stalled) noexcept { stalled_ = stalled; }
   [[nodiscard]] bool stalled() const noexcept { return stalled_; }
   void setTemperature(double temperature_c) noexcept { temperature_c_ = temperature_c; }
+  /// A hand takes the shaft; one that has it lets go.
+  void take(const Hand& hand) noexcept;
+  /// A hand has the shaft.
+  [[nodiscard]] bool held() const noexcept { return grip_.held; }
 
   /// The rotor's position is whole turns and a fraction in [0, 1), so that a long run loses nothing.
   [[nodiscard]] std::int64_t rotorTurns() const noexcept { return rotor_turns_; }
@@ -87,6 +92,7 @@ class MotorPhysics {
   void stepCurrent(const WindingCommand& command, double dt_s) noexcept;
   void stepMotion(double dt_s) noexcept;
   void stepStops() noexcept;
+  [[nodiscard]] double stepHand(double dt_s) noexcept;
   void place(double output_deg) noexcept;
   void stepHeat(double dt_s) noexcept;
   void stepSpeedMeasurement(double dt_s) noexcept;
@@ -99,6 +105,15 @@ class MotorPhysics {
   double current_a_ = 0.0;
   double temperature_c_ = 0.0;
   bool stalled_ = false;
+  struct Grip {
+    bool held = false;
+    double at_deg = 0.0;  ///< Where the hand is.
+    double to_deg = 0.0;
+    double rpm = 0.0;  ///< Signed.
+    double torque_nm = 0.0;
+    double left_s = 0.0;  ///< At its end.
+  };
+  Grip grip_;
 };
 
 }  // namespace rc10::sim

@@ -135,6 +135,10 @@ void SimBus::setTemperature(std::size_t index, double temperature_c) noexcept {
   nodes_[index].drive->physics().setTemperature(temperature_c);
 }
 
+void SimBus::turnByHand(std::size_t index, const Hand& hand) noexcept {
+  nodes_[index].drive->physics().take(hand);
+}
+
 void SimBus::setEncoderFault(std::size_t index, const Drive::EncoderFault& fault) noexcept {
   nodes_[index].drive->setEncoderFault(fault);
 }

@@ -72,6 +72,7 @@ class SimBus {
   void silence(std::size_t index, bool silent) noexcept;
   void loseFrames(std::size_t index, float fraction) noexcept;
   void setTemperature(std::size_t index, double temperature_c) noexcept;
+  void turnByHand(std::size_t index, const Hand& hand) noexcept;
   void setEncoderFault(std::size_t index, const Drive::EncoderFault& fault) noexcept;
 
  private:

@@ -105,8 +105,9 @@ struct Gates {
 };
 
 constexpr uid_t kAnna = 1000;
-constexpr std::array<std::pair<const char*, Right>, 5> kOperations{{{"enable", Right::kCommand},
+constexpr std::array<std::pair<const char*, Right>, 6> kOperations{{{"enable", Right::kCommand},
                                                                     {"enable_alone", Right::kCommand},
+                                                                    {"hand", Right::kCommand},
                                                                     {"disable", Right::kCommand},
                                                                     {"zero", Right::kCommand},
                                                                     {"clear", Right::kClear}}};

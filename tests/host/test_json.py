@@ -33,6 +33,7 @@ WORDS: dict[str, list[str | Path]] = {
     "signal": ["lift", "velocity_rpm=0", "--for", "50ms"],
     "gains": ["wheel"],
     "configure-drive": ["wheel", "--list"],
+    "hand": ["wheel", "--by", "5"],
     "check": [REPO / "config" / "demo.yaml"],
     "convert-gains": ["--speed", "18", "0.015", "0", "--angle", "30", "0", "1.1"],
     "blackbox": [],

@@ -1,9 +1,12 @@
-"""A simulated shaft has gravity and end stops: a joint homes without hardware."""
+"""A simulated shaft has gravity and end stops, and a hand turns it."""
 
 from __future__ import annotations
 
+import pytest
 from hostlib import Daemon
 from hostlib.daemon import ARM
+
+import rc10
 
 # Hangs at -90 degrees; its lower stop lies 30 degrees away: gravity pulls with half of its 0.3 N m.
 SHOULDER = (
@@ -49,3 +52,57 @@ def test_a_joint_homes_at_the_stop_of_its_simulated_shaft() -> None:
             lambda motor: abs(float(motor["total_angle_deg"])) < 1.0 and motor["velocity_rpm"] == 0,
             "lies on its stop",
         )
+
+
+# The second is mounted the other way round.
+WHEELS = (
+    ARM
+    + """
+      - {name: left, model: M3508, id: 1, zero: power_on, feedback_timeout_ms: 1000}
+      - {name: right, model: M3508, id: 2, direction: -1, zero: power_on, feedback_timeout_ms: 1000}
+"""
+)
+
+
+def angle(daemon: Daemon, motor: str) -> float:
+    return float(daemon.wait_motor(motor, lambda _: True, "is there")["total_angle_deg"])
+
+
+def end_of_the_hand(daemon: Daemon, motor: str, *options: object) -> float:
+    """The angle of a motor when a hand that turns it by 60 degrees is about to let go."""
+    done = daemon.ctl("hand", motor, "--by", 60, *options)
+    assert done.returncode == 0, done.stderr
+    return float(done.stdout.split(" -> ")[1].removesuffix(" deg\n"))
+
+
+@pytest.mark.parametrize("motor", ["left", "right"])
+def test_a_hand_turns_a_shaft_by_the_angle_that_its_motor_reports(motor: str) -> None:
+    with Daemon(WHEELS) as daemon:
+        daemon.wait_ready()
+        done = daemon.ctl("hand", motor, "--by", 90, "--rpm", 120)
+        assert done.returncode == 0, done.stderr
+        assert done.stdout.startswith(f"hand: turns {motor}\n{motor}: 0.0 deg -> ")
+        assert angle(daemon, motor) == pytest.approx(90, abs=3)
+        daemon.must("hand", motor, "--to", -45, "--rpm", 120)
+        assert angle(daemon, motor) == pytest.approx(-45, abs=3)
+
+
+def test_a_motor_that_holds_wins_against_a_weak_hand_and_loses_against_a_strong_one() -> None:
+    with Daemon(WHEELS) as daemon:
+        daemon.wait_ready()
+        daemon.must("enable", "left")
+        with daemon.drive("set", "left", "total_angle", "0", "--for", "60s"):
+            daemon.wait_motor("left", lambda motor: motor["mode"] == "total_angle", "holds")
+            assert abs(end_of_the_hand(daemon, "left", "--torque", 0.5)) < 10
+            assert end_of_the_hand(daemon, "left", "--torque", 30) > 40
+
+
+def test_a_program_turns_a_shaft_once_for_each_request() -> None:
+    with Daemon(WHEELS) as daemon, rc10.connect("host") as robot:
+        robot.wait_for_state()
+        robot.request("hand", "left", {"by_deg": 30, "speed_rpm": 120})
+        daemon.wait_motor(
+            "left", lambda motor: abs(float(motor["total_angle_deg"]) - 30) < 3, "was turned"
+        )
+        with pytest.raises(rc10.RequestRefused, match=r"speed_rpm: 0 is out of range; use 0\.1"):
+            robot.request("hand", "left", {"speed_rpm": 0})

@@ -309,5 +309,38 @@ TEST(MotorPhysics, SurvivesAnyLoadTheConfigurationAllows) {
   }
 }
 
+// A hand turns the shaft of a motor that has no current.
+TEST_P(EveryModel, AHandTurnsItByAnAngleAndLetsGoAtRest) {
+  for (const double by_deg : {90.0, -720.0}) {
+    MotorPhysics motor{parameters(model_), 10.0};
+    motor.take({.by_deg = by_deg, .speed_rpm = 60.0, .torque_nm = 5.0});
+    EXPECT_TRUE(motor.held());
+    int ticks = 0;
+    for (; motor.held() && ticks < 10'000; ++ticks) motor.step(amperes(0), 1ms);
+    // 360 deg/s, and the time to settle.
+    EXPECT_NEAR(ticks, std::abs(by_deg) / 0.36 + 300, 2);
+    EXPECT_NEAR(motor.outputAngleDeg(), 10.0 + by_deg, 0.5);
+    EXPECT_NEAR(motor.outputRpm(), 0.0, 0.5);
+  }
+}
+
+TEST_P(EveryModel, AHandNeverPullsHarderThanItsTorque) {
+  MotorPhysics motor{parameters(model_, {.coulomb_nm = 2.0F}), 0.0};
+  motor.take({.by_deg = 90.0, .speed_rpm = 60.0, .torque_nm = 1.9});
+  for (int i = 0; i < 1000; ++i) motor.step(amperes(0), 1ms);
+  EXPECT_EQ(motor.outputAngleDeg(), 0.0);
+}
+
+TEST(MotorPhysics, AHandHoldsAnArmAgainstGravityAndDropsItWhenItLetsGo) {
+  MotorPhysics motor{parameters(kM3508, {.coulomb_nm = 0.0F, .gravity_nm = 2.0F}), 0.0};
+  motor.take({.by_deg = 90.0, .speed_rpm = 60.0, .torque_nm = 5.0, .hold = 2s});
+  for (int i = 0; i < 2000; ++i) motor.step(amperes(0), 1ms);
+  EXPECT_NEAR(motor.outputAngleDeg(), 90.0, 1.0);
+  EXPECT_TRUE(motor.held());
+  for (int i = 0; i < 5000; ++i) motor.step(amperes(0), 1ms);
+  EXPECT_FALSE(motor.held());
+  EXPECT_LT(motor.outputAngleDeg(), 60.0);
+}
+
 }  // namespace
 }  // namespace rc10::test::motor_physics_test

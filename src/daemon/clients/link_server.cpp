@@ -91,6 +91,13 @@ constexpr std::uint64_t kSlowTimer = kListener - 2;
   return out;
 }
 
+[[nodiscard]] std::vector<std::optional<SimulatedDrive>> simulatedDrives(const RobotDescription& robot) {
+  std::vector<std::optional<SimulatedDrive>> out;
+  out.reserve(robot.motors.size());
+  for (const auto& motor : robot.motors) out.push_back(motor.simulated);
+  return out;
+}
+
 [[nodiscard]] Permissions::Rules rules(const RobotDescription& robot) {
   Permissions::Rules out{.clients = robot.clients,
                          .tuning_locked_at = robot.tuning_locked_at,
@@ -131,7 +138,7 @@ LinkServer::LinkServer(LinkSocket socket, Sources sources, const Permissions& pe
       admission_(traits(sources_.robot), permissions),
       signal_admission_(modules(sources_.robot), permissions),
       desk_(admission_, names(sources_.robot), optional(sources_.robot), setups(sources_.robot),
-            loops(sources_.robot)),
+            loops(sources_.robot), simulatedDrives(sources_.robot)),
       publication_(sources_.robot),
       trace_desk_(sources_.robot, sources_.exchange.trace) {}
 
@@ -369,7 +376,8 @@ void LinkServer::tell(link::Event message) {
 }
 
 void LinkServer::request(const link::Request& message, Connection& connection) {
-  auto outcome = desk_.begin(message, speakerOf(connection, message.client, message.origin));
+  const auto speaker = speakerOf(connection, message.client, message.origin);
+  auto outcome = desk_.begin(message, speaker);
   if (outcome.estop) {
     sources_.exchange.estop_client.slot() = message.client;
     sources_.exchange.estop_client.publish();
@@ -378,6 +386,12 @@ void LinkServer::request(const link::Request& message, Connection& connection) {
   if (outcome.order && !sources_.exchange.orders.push(*outcome.order)) {
     if (const auto failed = desk_.fail(outcome.order->id, "the scheduler does not take orders"))
       answer(*failed);
+  }
+  if (outcome.hand && sources_.exchange.hands.push(*outcome.hand)) {
+    desk_.handTaken(message, speaker, *outcome.response);
+  } else if (outcome.hand) {
+    outcome.response->status = link::ResponseStatus::kFailed;
+    outcome.response->message = std::string_view{"hand: too many at once: the simulation is behind"};
   }
   if (outcome.response) respond(connection, *outcome.response);
   if (outcome.not_permitted.empty()) return;

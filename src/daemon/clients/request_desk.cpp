@@ -8,6 +8,7 @@
 #include "app/nearest.hpp"
 #include "daemon/clients/drive_request.hpp"
 #include "daemon/clients/gain_request.hpp"
+#include "daemon/clients/hand_request.hpp"
 
 namespace rc10 {
 namespace {
@@ -93,13 +94,16 @@ template <typename Other>
 }  // namespace
 
 RequestDesk::RequestDesk(const Admission& motors, std::vector<std::string> motor_names, MotorSet optional,
-                         std::vector<const DriveSetup*> setups, std::vector<MotorLoops> loops)
+                         std::vector<const DriveSetup*> setups, std::vector<MotorLoops> loops,
+                         std::vector<std::optional<SimulatedDrive>> drives)
     : admission_(motors),
       names_(std::move(motor_names)),
       optional_(optional),
       setups_(std::move(setups)),
-      loops_(std::move(loops)) {
+      loops_(std::move(loops)),
+      drives_(std::move(drives)) {
   loops_.resize(names_.size());
+  drives_.resize(names_.size());
 }
 
 link::Response RequestDesk::respond(const link::Request& request, link::ResponseStatus status,
@@ -135,6 +139,7 @@ RequestDesk::Outcome RequestDesk::begin(const link::Request& request, const Spea
   std::string problem;
   if (request.operation.view() == kDriveSettings) return tellSettings(request);
   if (request.operation.view() == kGetConfigOperation) return tellConfig(request);
+  if (request.operation.view() == kHandOperation) return turnByHand(request, speaker);
   double value = 0.0;
   DriveWrite drive;
   GainChanges gains;
@@ -144,11 +149,11 @@ RequestDesk::Outcome RequestDesk::begin(const link::Request& request, const Spea
   if (!operation) {
     problem = fmt::format(
         "unknown operation '{}': there are enable, enable_alone, disable, estop, clear, zero, set_gains, "
-        "get_config, configure-drive and drive-settings{}",
+        "get_config, configure-drive, drive-settings and hand{}",
         request.operation.view(),
         didYouMean(request.operation.view(),
                    {"enable", "enable_alone", "disable", "estop", "clear", "zero", "set_gains", "get_config",
-                    "configure-drive", "drive-settings"}));
+                    "configure-drive", "drive-settings", kHandOperation}));
   } else if (*operation == Operation::kZero && request.target.view().empty()) {
     problem = "zero needs a motor: name it";
   } else if (!std::isfinite(value)) {
@@ -297,6 +302,31 @@ bool RequestDesk::parseChanges(const link::Request& request, GainChanges& change
   if (parsed) changes = *parsed;
   if (!parsed) problem = motor ? names_[*motor] + ": " + parsed.error().message : parsed.error().message;
   return parsed.has_value();
+}
+
+RequestDesk::Outcome RequestDesk::turnByHand(const link::Request& request, const Speaker& speaker) const {
+  Outcome outcome;
+  const auto refuse = [&](const std::string& why) {
+    outcome.response = respond(request, link::ResponseStatus::kRefused, why);
+    return outcome;
+  };
+  const auto motor = theMotor(request);
+  if (!motor) return refuse(motor.error().message);
+  outcome.not_permitted = admission_.permissions().whyNoRequest(
+      speaker, request.client.view(), Right::kCommand, MotorSet{}.set(*motor), false);
+  if (!outcome.not_permitted.empty()) return refuse(outcome.not_permitted);
+  const auto order = parseHand(request, names_[*motor], drives_[*motor]);
+  if (!order) return refuse(order.error().message);
+  outcome.hand = *order;
+  outcome.response =
+      respond(request, link::ResponseStatus::kOk, fmt::format("hand: turns {}", names_[*motor]));
+  return outcome;
+}
+
+// So that a repetition does not turn it twice.
+void RequestDesk::handTaken(const link::Request& request, const Speaker& speaker,
+                            const link::Response& response) {
+  remember(speaker.owner(), request, response);
 }
 
 // Orders are carried out in the order in which they were given, and so what is done to loops_ here is what

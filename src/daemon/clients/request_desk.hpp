@@ -10,6 +10,7 @@
 #include "app/result.hpp"
 #include "config/keys/loop_gains.hpp"
 #include "daemon/clients/admission.hpp"
+#include "daemon/exchange/hand_order.hpp"
 #include "daemon/exchange/orders.hpp"
 #include "link/link_protocol.hpp"
 
@@ -22,18 +23,23 @@ class RequestDesk {
  public:
   /// `optional`: motors that may fail to enable without the request failing. `setups`: what can be written to
   /// the drive of each motor; null or missing: nothing. `loops`: of each motor, as they are at the start;
-  /// missing: none.
+  /// missing: none. `drives`: of each motor, if it is simulated; missing: it is not.
   RequestDesk(const Admission& motors, std::vector<std::string> motor_names, MotorSet optional = {},
-              std::vector<const DriveSetup*> setups = {}, std::vector<MotorLoops> loops = {});
+              std::vector<const DriveSetup*> setups = {}, std::vector<MotorLoops> loops = {},
+              std::vector<std::optional<SimulatedDrive>> drives = {});
 
   struct Outcome {
     std::optional<Order> order;              ///< To be sent to the supervisor; answered by finish().
+    std::optional<HandOrder> hand;           ///< To be sent to the simulation; it answers nothing.
     std::optional<link::Response> response;  ///< To be sent back at once.
     bool estop = false;                      ///< Raise the e-stop flag too: the ring may be full.
     std::string not_permitted;               ///< Why, if that is the reason of the response.
   };
   /// finish() tells the speaker's connection back.
   [[nodiscard]] Outcome begin(const link::Request& request, const Speaker& speaker);
+
+  /// Outcome::hand was handed over, and its response is sent.
+  void handTaken(const link::Request& request, const Speaker& speaker, const link::Response& response);
 
   struct Answer {
     std::uint64_t connection = 0;
@@ -65,6 +71,7 @@ class RequestDesk {
   [[nodiscard]] bool isOfOneMotor(const link::Request& request, std::string& problem) const;
   [[nodiscard]] std::string driveOutcome(const Open& open, const OrderResult& result) const;
   [[nodiscard]] Result<std::size_t> motorWithGains(const link::Request& request) const;
+  [[nodiscard]] Outcome turnByHand(const link::Request& request, const Speaker& speaker) const;
   [[nodiscard]] Outcome tellConfig(const link::Request& request) const;
   [[nodiscard]] bool parseChanges(const link::Request& request, GainChanges& changes,
                                   std::string& problem) const;
@@ -88,6 +95,7 @@ class RequestDesk {
   MotorSet optional_;
   std::vector<const DriveSetup*> setups_;
   std::vector<MotorLoops> loops_;  ///< With the gains in force.
+  std::vector<std::optional<SimulatedDrive>> drives_;
   std::uint64_t next_order_id_ = 1;
   std::deque<Open> open_;
   std::deque<Remembered> answered_;  // newest last; bounded

@@ -10,6 +10,7 @@
 #include "bus/can_frame.hpp"
 #include "daemon/exchange/estop_contact.hpp"
 #include "daemon/exchange/events.hpp"
+#include "daemon/exchange/hand_order.hpp"
 #include "daemon/exchange/latest_value.hpp"
 #include "daemon/exchange/orders.hpp"
 #include "daemon/exchange/snapshot.hpp"
@@ -42,11 +43,14 @@ struct BusInbox {
 /// Events in words, for the link thread.
 using NoteRing = Ring<link::Event, 32>;
 
+using HandRing = Ring<HandOrder, 16>;
+
 /// Everything that crosses to and from the link thread.
 struct LinkExchange {
   Ring<Command, 64> commands;       // link -> scheduler
   Ring<Order, 64> orders;           // link -> scheduler
   Ring<SignalMessage, 64> signals;  // link -> scheduler
+  HandRing hands;                   // link -> sim
   Ring<Event, 16> refusals;         // link -> scheduler, for the black box: commands that admission refused
   Ring<OrderResult, 64> results;    // scheduler -> link
   Ring<Event, 1024> events;         // scheduler -> link

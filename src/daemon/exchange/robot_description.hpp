@@ -7,6 +7,7 @@
 
 #include "config/client_config.hpp"
 #include "config/keys/loop_gains.hpp"
+#include "daemon/exchange/hand_order.hpp"
 #include "daemon/exchange/snapshot.hpp"
 
 namespace rc10 {
@@ -31,6 +32,7 @@ struct RobotDescription {
     bool optional = false;              ///< May fail to enable.
     const DriveSetup* setup = nullptr;  ///< Settings that can be written to its drive; null: none.
     MotorLoops loops{};                 ///< As they are at the start.
+    std::optional<SimulatedDrive> simulated{};
   };
   struct Bus {
     std::string name;

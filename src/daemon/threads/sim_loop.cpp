@@ -17,16 +17,18 @@ TimeGrid SimLoop::gridBeside(const TimeGrid& scheduler) noexcept {
   return {period, scheduler.offset + period / 2};
 }
 
-Result<std::unique_ptr<SimLoop>> SimLoop::create(Robot& robot, const TimeGrid& scheduler) {
+Result<std::unique_ptr<SimLoop>> SimLoop::create(Robot& robot, const TimeGrid& scheduler, HandRing& hands) {
   auto timer = PeriodicTimer::create();
   if (!timer) return tl::unexpected(timer.error());
-  return std::unique_ptr<SimLoop>(new SimLoop(robot, gridBeside(scheduler), std::move(*timer)));
+  return std::unique_ptr<SimLoop>(new SimLoop(robot, gridBeside(scheduler), std::move(*timer), hands));
 }
 
 void SimLoop::run(const std::stop_token& stop) noexcept {
   timer_.start(grid_.next(monotonicNow()), grid_.period);
   while (!stop.stop_requested()) {
     if (timer_.wait() == 0) continue;
+    HandOrder order;
+    while (hands_.pop(order)) robot_.simPorts()[order.of.port]->bus().turnByHand(order.of.drive, order.hand);
     for (auto& port : robot_.simPorts()) {
       port->step(monotonicNow());
       port->sentAt(monotonicNow());

@@ -6,6 +6,7 @@
 #include "app/result.hpp"
 #include "app/time_grid.hpp"
 #include "daemon/devices/robot.hpp"
+#include "daemon/exchange/rings.hpp"
 #include "daemon/threads/periodic_timer.hpp"
 
 namespace rc10 {
@@ -17,18 +18,21 @@ class SimLoop {
   /// Steps for a scheduler's grid: a drive answers each tick before the next, and half a period off, so that
   /// its feedback does not race with the tick.
   [[nodiscard]] static TimeGrid gridBeside(const TimeGrid& scheduler) noexcept;
-  [[nodiscard]] static Result<std::unique_ptr<SimLoop>> create(Robot& robot, const TimeGrid& scheduler);
+  /// `hands`: for its drives. Outlives it.
+  [[nodiscard]] static Result<std::unique_ptr<SimLoop>> create(Robot& robot, const TimeGrid& scheduler,
+                                                               HandRing& hands);
 
   /// The thread's body.
   void run(const std::stop_token& stop) noexcept;
 
  private:
-  SimLoop(Robot& robot, TimeGrid grid, PeriodicTimer timer)
-      : robot_(robot), grid_(grid), timer_(std::move(timer)) {}
+  SimLoop(Robot& robot, TimeGrid grid, PeriodicTimer timer, HandRing& hands)
+      : robot_(robot), grid_(grid), timer_(std::move(timer)), hands_(hands) {}
 
   Robot& robot_;
   TimeGrid grid_;
   PeriodicTimer timer_;
+  HandRing& hands_;
 };
 
 }  // namespace rc10

@@ -45,7 +45,8 @@ int run(int argc, char** argv) {
   Action action;
   for (const auto add :
        {addList, addWatch, addStats, addRequests, addZero, addSet, addModules, addSignal, addGains,
-        addConfigureDrive, addCheck, addConvertGains, addBlackbox, addDoctor, addScan, addJog, addCommission})
+        addConfigureDrive, addCheck, addConvertGains, addBlackbox, addDoctor, addScan, addJog, addCommission,
+        addHand})
     add(app, action);
   try {
     app.parse(argc, argv);

@@ -31,5 +31,6 @@ void addDoctor(CLI::App& app, Action& action);
 void addScan(CLI::App& app, Action& action);
 void addJog(CLI::App& app, Action& action);
 void addCommission(CLI::App& app, Action& action);
+void addHand(CLI::App& app, Action& action);
 
 }  // namespace rc10::ctl

@@ -1,0 +1,20 @@
+#pragma once
+
+#include <optional>
+#include <string_view>
+
+#include "app/result.hpp"
+#include "daemon/exchange/hand_order.hpp"
+#include "link/link_protocol.hpp"
+
+namespace rc10 {
+
+/// The operation that turns a simulated shaft as a hand would.
+inline constexpr std::string_view kHandOperation = "hand";
+
+/// What the request asks of the drive of this motor; none: it is not simulated here. The error names the
+/// motor, the value and its range.
+[[nodiscard]] Result<HandOrder> parseHand(const link::Request& request, std::string_view motor,
+                                          const std::optional<SimulatedDrive>& drive);
+
+}  // namespace rc10
