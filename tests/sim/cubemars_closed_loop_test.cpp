@@ -74,6 +74,60 @@ TEST(CubemarsScale, AMitDriveOnAnotherSpeedScaleIsStoppedAtItsFirstMotion) {
   }
 }
 
+// Its field says 16.5 degrees, and its spring starts from 1449.
+TEST(CubemarsTurns, ADriveOnAnotherTurnOfItsFieldIsStoppedBeforeItGoesFar) {
+  for (const int direction : {1, -1}) {
+    sim::MotorLoad load;
+    load.initial_angle_deg = 1449.0F;
+    auto rig = rigOf(settingsOf({"AK80-9", "mit", 0.0, direction}), load);
+    rig.comeOnline();
+    ASSERT_TRUE(rig.enable());
+    const double from_deg = rig.drive().physics().outputAngleDeg();
+    rig.command({.mode = ControlMode::kTotalAngle, .value = rig.motor().feedback().total_angle_deg});
+    int ticks = 0;
+    for (; ticks < 100 && rig.motor().complaint().fault == FaultCode::kNone; ++ticks)
+      rig.run(milliseconds{1});
+    EXPECT_EQ(rig.motor().complaint().fault, FaultCode::kDriveSetting);
+    EXPECT_EQ(rig.motor().complaint().native_code, 0x4000'0000U);
+    EXPECT_LE(ticks, 8);
+    EXPECT_NEAR(rig.drive().physics().outputAngleDeg(), from_deg, 1.0);
+    EXPECT_FALSE(rig.motor().feedback().zeroed);
+    // After a clear it only damps.
+    rig.motor().order(FrameKind::kRest);
+    rig.motor().clearComplaint();
+    rig.run(seconds{1});
+    EXPECT_EQ(rig.motor().complaint().fault, FaultCode::kNone);
+    ASSERT_TRUE(rig.enable());
+    const double at_deg = rig.drive().physics().outputAngleDeg();
+    rig.command({.mode = ControlMode::kTotalAngle, .value = rig.motor().feedback().total_angle_deg + 20.0});
+    rig.run(milliseconds{300});
+    EXPECT_NEAR(rig.drive().physics().outputAngleDeg(), at_deg, 0.5);
+    EXPECT_NE(rig.motor().limits() & kLimitAngle, 0U);
+  }
+}
+
+TEST(CubemarsTurns, AfterASilenceOutsideOfItsFieldNoSpringIsTrusted) {
+  auto rig = rigOf(settingsOf({"AK80-9", "mit"}));
+  rig.comeOnline();
+  ASSERT_TRUE(rig.enable());
+  rig.command({.mode = ControlMode::kVelocity, .value = 200.0});
+  rig.run(seconds{2});
+  ASSERT_GT(rig.motor().feedback().total_angle_deg, 800.0);
+  rig.motor().order(FrameKind::kRest);
+  rig.run(seconds{2});
+  rig.cut(true);
+  rig.run(milliseconds{200});
+  rig.cut(false);
+  rig.motor().clearComplaint();
+  rig.run(milliseconds{50});
+  ASSERT_TRUE(rig.enable());
+  const double at_deg = rig.drive().physics().outputAngleDeg();
+  rig.command({.mode = ControlMode::kTotalAngle, .value = rig.motor().feedback().total_angle_deg + 20.0});
+  rig.run(milliseconds{300});
+  EXPECT_NEAR(rig.drive().physics().outputAngleDeg(), at_deg, 0.5);
+  EXPECT_EQ(rig.motor().complaint().fault, FaultCode::kNone);
+}
+
 TEST_P(CubemarsLoop, EnablingMovesNothing) {
   auto rig = rigOf(settingsOf(GetParam()));
   wakeUp(rig);

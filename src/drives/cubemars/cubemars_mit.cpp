@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
 
 #include "app/limits.hpp"
 #include "app/units.hpp"
@@ -20,6 +21,13 @@ constexpr int kMitAttempts = 6;  // the first, and five more
 // The answers to "no torque" and "enter", and one that was under way before them.
 constexpr std::uint64_t kAnswersToEnter = 3;
 constexpr double kMitDampShare = 0.25;  // damp is that much of the brake
+// Of the torque range. A spring towards a place that is a turn of the position field away pulls with more
+// than the whole; delay and resolution make far less.
+constexpr double kSpringMismatch = 0.6;
+// A stiff damping may pull otherwise for a sample, too, and then the other way.
+constexpr int kSamplesAgainst = 4;
+// Beside kDriveSetting: the drive's count of turns is another.
+constexpr std::uint32_t kOtherTurns = 0x4000'0000U;
 // Two samples at the very end of the field: it does not go round, it is cut off.
 constexpr int kSamplesAtEnd = 2;
 
@@ -82,6 +90,7 @@ FrameVerdict CubemarsMit::takeMitReport(const CanFrame& frame) noexcept {
   if (!report) return FrameVerdict::kMalformed;
   const bool anew = feedback_.samples == 0 || noticeRestart(frame.received);
   velocity_rad_s_ = report->velocity_rad_s;
+  watchSpring(*report);
   takePosition(frame.received, unwrapped(report->position_rad, anew) / kRadPerDeg);
   samples_at_end_ = report->at_end ? std::min(samples_at_end_ + 1, kSamplesAtEnd) : 0;
   if (samples_at_end_ == kSamplesAtEnd) loseReference();
@@ -98,6 +107,8 @@ FrameVerdict CubemarsMit::takeMitReport(const CanFrame& frame) noexcept {
 double CubemarsMit::unwrapped(double position_rad, bool anew) noexcept {
   const double span_rad = 2.0 * setup().ranges.position_rad;
   if (anew) {
+    // A drive that was not restarted still compares with the place where it is.
+    turns_unknown_ = turns_unknown_ || turns_ != 0;
     turns_ = 0;
   } else {
     const double step_rad = position_rad - position_rad_;
@@ -106,6 +117,33 @@ double CubemarsMit::unwrapped(double position_rad, bool anew) noexcept {
   }
   position_rad_ = position_rad;
   return position_rad + turns_ * span_rad;
+}
+
+// The position is told modulo its field, but compared with in full: at the first sample nobody knows on which
+// of its turns the drive is. If it is not the one of the field, its spring pulls the other way with all it
+// has.
+void CubemarsMit::watchSpring(const cubemars::MitReport& report) noexcept {
+  const double most_nm = setup().ranges.torque_nm;
+  // Between two frames it may still obey the one before.
+  std::array<double, 2> expected_nm{};
+  for (std::size_t i = 0; i < sent_.size(); ++i) {
+    const auto& law = sent_[i];
+    const double sum_nm = law.stiffness_nm_per_rad * (law.position_rad - report.position_rad) +
+                          law.damping_nms_per_rad * (law.velocity_rad_s - report.velocity_rad_s) +
+                          law.torque_nm;
+    expected_nm[i] = std::clamp(sum_nm, -most_nm, most_nm);
+  }
+  const bool springs = obeying() && sent_[0].stiffness_nm_per_rad > 0.0;
+  const auto [low_nm, high_nm] = std::minmax(expected_nm[0], expected_nm[1]);
+  int against = 0;
+  if (springs && report.torque_nm > high_nm + kSpringMismatch * most_nm) against = 1;
+  if (springs && report.torque_nm < low_nm - kSpringMismatch * most_nm) against = -1;
+  const bool goes_on = against * samples_against_ > 0;
+  samples_against_ =
+      std::clamp(goes_on ? samples_against_ + against : against, -kSamplesAgainst, kSamplesAgainst);
+  if (!pullsOtherwise()) return;
+  turns_unknown_ = true;
+  loseReference();
 }
 
 // ---- Command
@@ -256,6 +294,7 @@ std::size_t CubemarsMit::packCommand(const Tick& tick, std::span<CanFrame> out) 
   if (!due(tick)) return 0;
   if (!enabling() && !obeying()) return packRest(out);
   out[0] = enabling() ? no_torque : commandFrame(command_);
+  sent_ = {enabling() ? Law{} : command_, sent_[0]};
   return 1;
 }
 
@@ -293,8 +332,17 @@ SequenceProgress CubemarsMit::sequenceProgress() const noexcept {
 
 // ---- Complaints
 
+bool CubemarsMit::pullsOtherwise() const noexcept { return std::abs(samples_against_) == kSamplesAgainst; }
+
+DriveComplaint CubemarsMit::complaint() const noexcept {
+  const auto own = CubeMars_Motor::complaint();
+  if (own.fault == FaultCode::kNone && pullsOtherwise()) return {FaultCode::kDriveSetting, kOtherTurns};
+  return own;
+}
+
 void CubemarsMit::clearComplaint() noexcept {
   forgetStop();
+  samples_against_ = 0;
   clear_now_ = !v3_ && !obeying();
 }
 

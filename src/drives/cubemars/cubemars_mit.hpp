@@ -25,6 +25,7 @@ class CubemarsMit : public CubeMars_Motor {
   [[nodiscard]] SequenceProgress sequenceProgress() const noexcept override;
   /// V1 and V2: enters the mode without torque and leaves it again, which is what clears their errors.
   void clearComplaint() noexcept override;
+  [[nodiscard]] DriveComplaint complaint() const noexcept override;
 
   [[nodiscard]] std::span<const CanId> commandIds() const noexcept override;
   [[nodiscard]] std::size_t packCommand(const Tick& tick, std::span<CanFrame> out) noexcept override;
@@ -39,7 +40,9 @@ class CubemarsMit : public CubeMars_Motor {
   [[nodiscard]] double unwrapped(double position_rad, bool anew) noexcept;
   void stepEnabling(const Tick& tick) noexcept;
   [[nodiscard]] bool silent(const Tick& tick) const noexcept;
-  [[nodiscard]] bool inRange() const noexcept { return turns_ == 0 && !positionCutOff(); }
+  [[nodiscard]] bool inRange() const noexcept { return turns_ == 0 && !turns_unknown_ && !positionCutOff(); }
+  void watchSpring(const cubemars::MitReport& report) noexcept;
+  [[nodiscard]] bool pullsOtherwise() const noexcept;
   [[nodiscard]] Law lawOf(const Target& target) noexcept;
   [[nodiscard]] Law velocityLaw(double output_rpm, double torque_ff_nm, double gain) noexcept;
   [[nodiscard]] Law angleLaw(const Target& target, double stiffness, double damping,
@@ -60,10 +63,13 @@ class CubemarsMit : public CubeMars_Motor {
   // As the drive sees itself, from its last feedback.
   double position_rad_ = 0.0;
   double velocity_rad_s_ = 0.0;
-  int turns_ = 0;  ///< How often the position field has gone round: 0 within its range.
+  int turns_ = 0;               ///< How often the position field has gone round: 0 within its range.
+  bool turns_unknown_ = false;  ///< It was silent while outside of its range: restarted or not, nobody knows.
   int samples_at_end_ = 0;
 
-  Law command_{};  ///< Result of update().
+  Law command_{};              ///< Result of update().
+  std::array<Law, 2> sent_{};  ///< The last, and the one before.
+  int samples_against_ = 0;    ///< In a row, in which a spring pulled otherwise; the sign tells which way.
   EnableSequence<Step> sequence_;
   bool enter_now_ = false;
   bool clear_now_ = false;
