@@ -1,5 +1,5 @@
 #!/bin/bash
-# ten minutes of robot time full of random faults, in virtual time, judged after every tick (RC10_SOAK_HOURS a seed, RC10_SOAK_SEED)
+# ten minutes of robot time full of random faults and six of matches, in virtual time, judged after every tick (RC10_SOAK_HOURS a seed, RC10_SOAK_SEED, RC10_MATCH_HOURS)
 set -euo pipefail
 # shellcheck source=scripts/lib/results.sh
 . "$(dirname "${BASH_SOURCE[0]}")/../lib/results.sh"
@@ -8,16 +8,18 @@ need build test
 hours=${RC10_SOAK_HOURS:-0.084}
 # Always the same, so that a change is judged by what it changed; long_soak looks for what is new.
 seed=${RC10_SOAK_SEED:-2}
+match_hours=${RC10_MATCH_HOURS:-0.1}
 
 soak() {
     "$repo/build/dev/tests/rc10_soak" --hours "$hours" --seed "$1"
 }
 
-# Two seeds, side by side.
-if must_build dev rc10_soak; then
+# Two seeds, side by side, and after the shorter the matches.
+if must_build dev rc10_soak rc10_match; then
     soak "$seed" >"$scratch/other" 2>&1 &
     other=$!
     suite "rc10_soak, seed 1" soak 1
+    suite "rc10_match, seed $seed" "$repo/build/dev/tests/rc10_match" --hours "$match_hours" --seed "$seed"
     status=0
     wait "$other" || status=$?
     # shellcheck disable=SC2016  # for the inner shell

@@ -1,0 +1,495 @@
+#include "faults/match.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+#include <string_view>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "app/vocabulary.hpp"
+#include "config/load_config.hpp"
+#include "daemon/exchange/events.hpp"
+
+namespace rc10::test {
+namespace {
+
+using namespace std::chrono_literals;
+
+// A robot for a contest: all families, defaults wherever there is one, the reasons to stop that a team
+// switches on.
+constexpr std::string_view kRobot = R"(
+robot: match
+buses:
+  - name: chassis
+    type: sim
+    motors:
+      - {name: front_left, model: M3508, id: 1, on_timeout: damp, on_disable: damp, on_estop: brake, zero: power_on}
+      - {name: front_right, model: M3508, id: 2, on_timeout: damp, on_disable: damp, on_estop: brake, zero: power_on}
+      - {name: rear_left, model: M3508, id: 3, on_timeout: damp, on_disable: damp, on_estop: brake, zero: power_on}
+      - {name: rear_right, model: M3508, id: 4, on_timeout: damp, on_disable: damp, on_estop: brake, zero: power_on}
+      - {name: loader, model: M2006, id: 5, current_limit_a: 5, zero: power_on}
+  - name: turret
+    type: sim
+    motors:
+      - {name: yaw, model: GM6020, id: 5, on_timeout: hold, angle_slew_deg_per_s: 360,
+         following_error_deg: 45, angle_min_deg: -170, angle_max_deg: 170, temperature_derate_c: 80}
+      - {name: pitch, model: GM6020, id: 6, on_timeout: hold, angle_min_deg: -30, angle_max_deg: 40,
+         simulated: {gravity_nm: 0.3, hangs_at_deg: -90}}
+      - {name: flywheel_left, model: VESC, id: 10, pole_pairs: 7, velocity_limit_rpm: 3000, command_divider: 10,
+         on_estop: brake, on_disable: brake}
+      - {name: flywheel_right, model: VESC, id: 11, pole_pairs: 7, velocity_limit_rpm: 3000, direction: -1,
+         command_divider: 10, on_estop: brake, on_disable: brake}
+      - {name: belt, model: ODrive_S1, id: 3, torque_constant_nm_per_a: 0.0551, current_limit_a: 20,
+         velocity_limit_rpm: 600, command_divider: 10, feedback_hz: 100, on_estop: brake, on_disable: brake}
+  - name: arm
+    type: sim
+    motors:
+      - {name: shoulder, model: DM4340, id: 1, master_id: 17, on_timeout: hold, on_estop: damp,
+         on_disable: damp, command_divider: 5, angle_min_deg: -100, angle_max_deg: 100, following_error_deg: 45,
+         angle_slew_deg_per_s: 200, simulated: {gravity_nm: 3}}
+      - {name: elbow, model: DM4310, id: 2, master_id: 18, on_timeout: hold, on_estop: damp,
+         on_disable: damp, command_divider: 5, simulated: {gravity_nm: 1}}
+      - {name: wrist, model: RS00, id: 20, on_timeout: hold, command_divider: 10}
+      - {name: finger, model: AK80-9, protocol: mit, id: 21, on_timeout: hold, command_divider: 10}
+      - {name: lift_left, model: RMD-X8-20, id: 22, command_divider: 10, on_timeout: hold}
+      - {name: lift_right, model: RMD-X8-20, id: 23, command_divider: 10, on_timeout: hold}
+      - {name: pan, model: LK-MG5010E-i10, id: 5, command_divider: 10, on_timeout: hold}
+  - name: legs
+    type: sim
+    data_bitrate: 5000000
+    motors:
+      - {name: leg_left, model: moteus, id: 1, motor_kv_rpm_per_v: 100, command_divider: 2, on_timeout: hold}
+      - {name: leg_right, model: moteus, id: 2, motor_kv_rpm_per_v: 100, command_divider: 2, direction: -1,
+         on_timeout: hold}
+groups:
+  - {name: reach, motors: [shoulder, elbow], on_member_offline: stop_group}
+modules:
+  - name: base
+    type: mecanum_chassis
+    wheels: {front_left: front_left, front_right: front_right, rear_left: rear_left, rear_right: rear_right}
+    wheel_radius_m: 0.076
+    track_m: 0.4
+    wheelbase_m: 0.4
+    max_speed_m_s: 2
+    max_turn_deg_s: 180
+    max_acceleration_m_s2: 3
+    max_turn_acceleration_deg_s2: 360
+  - {name: gun, type: feeder, motor: loader, velocity_limit_rpm: 100}
+  - {name: lift, type: synchronised_pair, left: lift_left, right: lift_right, velocity_limit_rpm: 40}
+)";
+
+enum Module : std::uint16_t { kBase, kGun, kLift };
+
+/// What a motor's program asks, and what may push it. A share of what its motor can do: it is to win.
+struct Role {
+  std::string_view name;
+  ControlMode mode;
+  double reach;       ///< deg or rpm, both ways.
+  double most_per_s;  ///< Change of the target.
+  double push_nm;
+};
+constexpr auto kByModule = ControlMode::kCoast;
+constexpr std::array<Role, 19> kRoles{{{"front_left", kByModule, 0, 0, 1.5},
+                                       {"front_right", kByModule, 0, 0, 1.5},
+                                       {"rear_left", kByModule, 0, 0, 1.5},
+                                       {"rear_right", kByModule, 0, 0, 1.5},
+                                       {"loader", kByModule, 0, 0, 0.3},
+                                       {"yaw", ControlMode::kTotalAngle, 150, 200, 0.5},
+                                       {"pitch", ControlMode::kTotalAngle, 25, 100, 0.3},
+                                       {"flywheel_left", ControlMode::kVelocity, 2500, 2000, 0.1},
+                                       {"flywheel_right", ControlMode::kVelocity, 2500, 2000, 0.1},
+                                       {"belt", ControlMode::kVelocity, 400, 400, 0.2},
+                                       {"shoulder", ControlMode::kTotalAngle, 80, 120, 3},
+                                       {"elbow", ControlMode::kTotalAngle, 90, 150, 1},
+                                       {"wrist", ControlMode::kTotalAngle, 90, 150, 2},
+                                       {"finger", ControlMode::kTotalAngle, 60, 150, 2},
+                                       {"lift_left", kByModule, 0, 0, 1.5},
+                                       {"lift_right", kByModule, 0, 0, 1.5},
+                                       {"pan", ControlMode::kTotalAngle, 120, 150, 0.5},
+                                       {"leg_left", ControlMode::kTotalAngle, 90, 200, 0.3},
+                                       {"leg_right", ControlMode::kTotalAngle, 90, 200, 0.3}}};
+
+constexpr std::array<const char*, 10> kTroubleNames{"shove", "hand", "slope", "heat", "loose plug",
+                                                    "plug",  "bus",  "pause", "gap",  "e-stop"};
+// How often each is chosen. A hundred in all.
+constexpr std::array<std::uint8_t, 10> kTroubleWeights{30, 18, 8, 8, 8, 8, 2, 8, 8, 2};
+
+// Of what a plug or the button has stopped: a group's stop and a run-down come after it.
+constexpr auto kAftermath = 500ms;
+// From the operator's `enable` until every motor obeys.
+constexpr auto kBackWithin = 8s;
+constexpr auto kRecentLines = std::size_t{12};
+
+RobotConfig matchRobot() {
+  auto outcome = parseRobotConfig(kRobot, "match.yaml");
+  if (!outcome) throw std::runtime_error(outcome.errorText());
+  return std::move(*outcome.config);
+}
+
+}  // namespace
+
+Match::Match(Choices& choices) : choices_(choices), config_(matchRobot()), robot_(config_) {
+  static_assert(kTroubleNames.size() == kTroubles);
+  std::size_t motor = 0;
+  for (std::size_t bus = 0; bus < config_.buses.size(); ++bus) {
+    for (std::size_t drive = 0; drive < config_.buses[bus].motors.size(); ++drive, ++motor) {
+      const auto& role = kRoles.at(motor);
+      const auto& name = config_.buses[bus].motors[drive].settings.name;
+      if (role.name != name) throw std::runtime_error("match: no role for " + name);
+      Player player;
+      player.motor = motor;
+      player.bus = bus;
+      player.drive = drive;
+      player.target.mode = role.mode;
+      players_.push_back(player);
+    }
+  }
+  phase_ends_ = robot_.now() + 3s;
+  next_trouble_ = robot_.now() + 5s;
+}
+
+Duration Match::between(int least_ms, int most_ms) {
+  return std::chrono::milliseconds{least_ms} +
+         std::chrono::milliseconds{choices_.next(static_cast<std::uint32_t>(most_ms - least_ms + 1))};
+}
+
+Match::Player& Match::somebody() {
+  return players_[choices_.next(static_cast<std::uint32_t>(players_.size()))];
+}
+
+void Match::tick() {
+  std::uint64_t periods = 1;
+  if (robot_.now() >= next_trouble_) {
+    next_trouble_ = robot_.now() + between(200, 2500);
+    std::uint32_t left = choices_.next(100);
+    std::size_t which = 0;
+    while (left >= kTroubleWeights.at(which)) left -= kTroubleWeights.at(which++);
+    const auto trouble = static_cast<Trouble>(which);
+    if (trouble == Trouble::kPause) {
+      note("pause");
+      // Longer, and the drives' own watchdogs act: as they are to.
+      periods = choices_.of<std::uint64_t>({2, 3, 5, 10, 20, 30, 40});
+      lately_.push_back(fmt::format("{}: pause of {} ms", tick_, periods));
+    } else {
+      begin(trouble);
+    }
+  }
+  end();
+  operate();
+  drive();
+  robot_.exchange().estop_contact.show(robot_.now() < pressed_until_ ? ContactState::kOpen
+                                                                     : ContactState::kClosed);
+  robot_.tick(periods);
+  robot_time_ += config_.period() * static_cast<std::int64_t>(periods);
+  ++tick_;
+  OrderResult answer;
+  while (robot_.exchange().results.pop(answer)) {
+    std::string refused;
+    // A shaft that still turns, by a slope or a hand, keeps the e-stop: it is to.
+    if (std::any_of(answer.motors.begin(), answer.motors.end(),
+                    [](Refusal refusal) { return refusal == Refusal::kMoving; }))
+      all_well_ = {};
+    for (const auto& player : players_) {
+      const auto refusal = answer.motors.at(player.motor);
+      if (refusal != Refusal::kNone)
+        refused += fmt::format(" {} {},", kRoles.at(player.motor).name, static_cast<int>(refusal));
+    }
+    if (!refused.empty())
+      lately_.push_back(fmt::format("{}: request {} is refused, by Refusal:{}", tick_, answer.id, refused));
+  }
+  judge();
+  if (lately_.size() > 4 * kRecentLines) lately_.erase(lately_.begin(), lately_.end() - kRecentLines);
+}
+
+void Match::load(Player& player, double torque_nm, Duration time) {
+  auto load = config_.buses[player.bus].motors[player.drive].simulated;
+  load.load_torque_nm = static_cast<float>(torque_nm);
+  // setLoad() replaces all faults.
+  load.silent = robot_.now() < player.unplugged_until;
+  busOf(player).setLoad(player.drive, load);
+  player.loaded_until = robot_.now() + time;
+}
+
+void Match::excuse(std::size_t motor, MonotonicTime until) {
+  const auto name = [&](std::size_t m) -> Player& { return players_[m]; };
+  name(motor).excused_until = std::max(name(motor).excused_until, until);
+  for (const auto& group : config_.groups) {
+    if (std::find(group.motors.begin(), group.motors.end(), motor) == group.motors.end()) continue;
+    for (const auto other : group.motors)
+      name(other).excused_until = std::max(name(other).excused_until, until);
+  }
+}
+
+void Match::unplug(std::size_t index, Duration time) {
+  auto& player = players_[index];
+  player.unplugged_until = std::max(player.unplugged_until, robot_.now() + time);
+  busOf(player).silence(player.drive, true);
+  excuse(index, player.unplugged_until + kAftermath);
+}
+
+void Match::unplugUnnoticed(std::size_t motor) {
+  busOf(players_[motor]).silence(players_[motor].drive, true);
+}
+
+void Match::begin(Trouble trouble) {
+  auto& player = somebody();
+  const auto& role = kRoles.at(player.motor);
+  const double push = role.push_nm * static_cast<double>(50 + choices_.next(51)) / 100.0;
+  const double sign = choices_.oneIn(2) ? 1.0 : -1.0;
+  const auto name = kTroubleNames.at(static_cast<std::size_t>(trouble));
+  note(name);
+  std::string of{role.name};
+  switch (trouble) {
+    case Trouble::kShove:
+      // One at rest would turn on for long: nobody shoves a free wheel.
+      if (player.was_active) load(player, sign * push, between(50, 500));
+      break;
+    case Trouble::kHand:
+      busOf(player).turnByHand(player.drive, {.by_deg = sign * static_cast<double>(10 + choices_.next(170)),
+                                              .speed_rpm = static_cast<double>(5 + choices_.next(26)),
+                                              .torque_nm = push,
+                                              .hold = between(0, 1000)});
+      break;
+    case Trouble::kSlope: {
+      const auto time = between(5000, 30'000);
+      for (std::size_t wheel = 0; wheel < 4; ++wheel) load(players_[wheel], sign * push * 0.3, time);
+      of = "all wheels";
+      break;
+    }
+    case Trouble::kHeat:
+      busOf(player).setTemperature(player.drive, static_cast<double>(50 + choices_.next(26)));
+      break;
+    case Trouble::kLoose: player.loose_until = robot_.now() + between(500, 5000); break;
+    case Trouble::kPlug: unplug(player.motor, between(1, 3000)); break;
+    case Trouble::kBus: {
+      const auto time = between(100, 2000);
+      for (const auto& other : players_) {
+        if (other.bus == player.bus) unplug(other.motor, time);
+      }
+      of = config_.buses[player.bus].name;
+      break;
+    }
+    case Trouble::kGap:
+      silent_until_ = robot_.now() + between(30, 2500);
+      of = "programs";
+      break;
+    case Trouble::kEstop:
+      pressed_until_ = robot_.now() + between(200, 3000);
+      estop_excused_until_ = pressed_until_ + kAftermath;
+      of = "button";
+      break;
+    case Trouble::kPause:
+    case Trouble::kCount: break;
+  }
+  lately_.push_back(fmt::format("{}: {} of {}", tick_, name, of));
+}
+
+void Match::end() {
+  const auto now = robot_.now();
+  for (auto& player : players_) {
+    if (player.loaded_until != MonotonicTime{} && now >= player.loaded_until) {
+      load(player,
+           static_cast<double>(config_.buses[player.bus].motors[player.drive].simulated.load_torque_nm), 0s);
+      player.loaded_until = {};
+    }
+    // A contact that shakes: CAN sends again what is disturbed, so frames are lost in gaps or not at all.
+    if (now < player.loose_until && player.unplugged_until == MonotonicTime{} && choices_.oneIn(100)) {
+      player.unplugged_until = now + between(1, 10);
+      busOf(player).silence(player.drive, true);
+    }
+    if (player.unplugged_until != MonotonicTime{} && now >= player.unplugged_until) {
+      player.unplugged_until = {};
+      busOf(player).silence(player.drive, false);
+    }
+  }
+}
+
+// For the whole robot, or these.
+void Match::order(Operation operation, MotorSet motors) {
+  Order order;
+  order.id = ++orders_;
+  order.operation = operation;
+  order.motors = motors;
+  for (std::size_t i = 0; i < players_.size() && motors.none(); ++i) order.motors.set(i);
+  order.whole_robot = motors.none();
+  order.client = link::Name{"operator"};
+  (void)robot_.exchange().orders.push(order);
+}
+
+// Between two matches, where a gap has cost a motor its turn.
+void Match::reference() {
+  const auto& state = robot_.snapshot();
+  MotorSet lost;
+  for (const auto& player : players_) {
+    if (player.target.mode == ControlMode::kTotalAngle && !state.motors[player.motor].feedback.zeroed)
+      lost.set(player.motor);
+  }
+  if (lost.none()) return;
+  note("reference set");
+  order(Operation::kZero, lost);
+}
+
+// The operator: starts a match, ends it, and brings back what a plug or the button has stopped.
+void Match::operate() {
+  const auto now = robot_.now();
+  if (now >= phase_ends_) {
+    if (phase_ == Phase::kPit) {
+      note("match");
+      phase_ = Phase::kPlay;
+      phase_ends_ = now + 180s;
+      reference();
+      ask_again_ = now;
+      all_well_ = {};
+    } else {
+      phase_ = Phase::kPit;
+      phase_ends_ = now + between(5'000, 30'000);
+      order(Operation::kDisable);
+      for (auto& player : players_) excuse(player.motor, now + kAftermath);
+    }
+    lately_.push_back(fmt::format("{}: {}", tick_, phase_ == Phase::kPlay ? "play" : "pit"));
+  }
+  if (phase_ != Phase::kPlay || now < ask_again_) return;
+  ask_again_ = now + 1s;
+  const auto& state = robot_.snapshot();
+  bool plugged = now >= pressed_until_;
+  bool obey = state.state == RobotStatus::kRun;
+  for (const auto& player : players_) {
+    plugged = plugged && player.unplugged_until == MonotonicTime{};
+    obey = obey && state.motors[player.motor].status == MotorStatus::kActive;
+  }
+  if (!plugged || obey) {
+    all_well_ = {};
+    return;
+  }
+  if (all_well_ == MonotonicTime{}) all_well_ = now;
+  if (now - all_well_ > kBackWithin) {
+    std::string who;
+    for (const auto& player : players_) {
+      if (state.motors[player.motor].status != MotorStatus::kActive)
+        who +=
+            fmt::format(" {} {}", kRoles.at(player.motor).name, toString(state.motors[player.motor].status));
+    }
+    nuisance("does not come back by clear and enable:" + who);
+    all_well_ = now;
+  }
+  order(Operation::kClear);
+  order(Operation::kEnable);
+}
+
+// Goals within reach, and a target on its way there.
+void Match::aim(Player& player) {
+  const auto& role = kRoles.at(player.motor);
+  const auto now = robot_.now();
+  if (now >= player.next_goal) {
+    player.next_goal = now + between(300, 3000);
+    player.goal = role.reach * (static_cast<double>(choices_.next(201)) - 100.0) / 100.0;
+  }
+  constexpr double kEverySeconds = 0.02;
+  const double most = role.most_per_s * kEverySeconds;
+  player.target.value += std::clamp(player.goal - player.target.value, -most, most);
+}
+
+void Match::drive() {
+  const auto now = robot_.now();
+  if (now < next_drive_) return;
+  next_drive_ = now + 20ms;
+  if (phase_ != Phase::kPlay || now < silent_until_) return;
+  const auto& state = robot_.snapshot();
+  Command command;
+  command.client = link::Name{"program"};
+  command.session = 1;
+  command.received = now;
+  command.deadline = now + 100ms;
+  for (auto& player : players_) {
+    if (player.target.mode == kByModule) continue;
+    const auto& feedback = state.motors[player.motor].feedback;
+    // Where a program begins: at what it sees.
+    if (state.motors[player.motor].status != MotorStatus::kActive) {
+      const bool angle = player.target.mode == ControlMode::kTotalAngle;
+      player.target.value = angle && std::isfinite(feedback.total_angle_deg) ? feedback.total_angle_deg : 0.0;
+      continue;
+    }
+    aim(player);
+    command.setpoints.at(command.count++) = {static_cast<std::uint16_t>(player.motor), player.target};
+  }
+  (void)robot_.exchange().commands.push(command);
+
+  if (choices_.oneIn(50)) {
+    for (auto& share : chassis_) share = (static_cast<double>(choices_.next(201)) - 100.0) / 100.0;
+    lift_rpm_ = (static_cast<double>(choices_.next(61)) - 30.0);
+    feed_rpm_ = choices_.oneIn(2) ? 0.0 : 60.0;
+  }
+  const auto signal = [&](Module module, std::initializer_list<double> values) {
+    SignalMessage message;
+    message.client = link::Name{"program"};
+    message.session = 1;
+    message.module = module;
+    message.deadline = now + 100ms;
+    message.values.fill(kNoSignal);
+    std::copy(values.begin(), values.end(), message.values.begin());
+    (void)robot_.exchange().signals.push(message);
+  };
+  signal(kBase, {chassis_[0] * 1.5, chassis_[1] * 1.5, chassis_[2] * 120.0});
+  signal(kGun, {feed_rpm_});
+  signal(kLift, {lift_rpm_});
+}
+
+void Match::nuisance(const std::string& what) {
+  std::string text = fmt::format("tick {}: {}", tick_, what);
+  const auto first = lately_.size() > kRecentLines ? lately_.size() - kRecentLines : 0;
+  for (auto i = first; i < lately_.size(); ++i) text += "\n    before it, tick " + lately_[i];
+  nuisances_.push_back(std::move(text));
+}
+
+void Match::judge() {
+  const auto now = robot_.now();
+  const auto& state = robot_.snapshot();
+  const bool stopped = now < estop_excused_until_;
+  for (const auto& event : robot_.events()) {
+    if (event.severity != Severity::kInfo) lately_.push_back(fmt::format("{}: {}", tick_, describe(event)));
+  }
+  if (state.state != RobotStatus::kRun && !stopped && state.stop.cause != StopCause::kInput)
+    nuisance(fmt::format("the robot is in {}: {}", toString(state.state), toString(state.stop.cause)));
+  for (auto& player : players_) {
+    const auto& motor = state.motors[player.motor];
+    const bool active = motor.status == MotorStatus::kActive;
+    const bool excused = stopped || now < player.excused_until;
+    if (player.was_active && !active) {
+      note(excused ? "stop that was asked for" : "NUISANCE");
+      if (!excused)
+        nuisance(fmt::format("{} is {}: {}", kRoles.at(player.motor).name, toString(motor.status),
+                             toString(motor.stop.cause)));
+    }
+    const bool faulted = motor.status == MotorStatus::kFault;
+    // Also of one that rests: the operator would have to clear it. Silence is none.
+    if (faulted && !player.faulted && !player.was_active)
+      nuisance(fmt::format("{}, at rest, has a fault", kRoles.at(player.motor).name));
+    player.faulted = faulted;
+    player.was_active = active;
+    if (phase_ == Phase::kPlay) {
+      ++wanted_ticks_;
+      active_ticks_ += active ? 1 : 0;
+    }
+  }
+}
+
+std::uint64_t Match::times(const std::string& what) const {
+  const auto found = counts_.find(what);
+  return found == counts_.end() ? 0 : found->second;
+}
+
+double Match::activeShare() const noexcept {
+  return wanted_ticks_ == 0 ? 0.0 : static_cast<double>(active_ticks_) / static_cast<double>(wanted_ticks_);
+}
+
+std::string Match::text() const {
+  std::string out = "happened:";
+  for (const auto& [what, times] : counts_) out += fmt::format(" {} {},", what, times);
+  out.back() = '\n';
+  return out +
+         fmt::format("motors obeyed for {:.2f} % of the time that they were to\n", 100.0 * activeShare());
+}
+
+}  // namespace rc10::test

@@ -1,0 +1,116 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "daemon/virtual_robot.hpp"
+#include "faults/choices.hpp"
+
+namespace rc10::test {
+
+/// Matches and the time between them, with what happens to a sound robot of sane programs there: shoves,
+/// slopes, hands, hot motors, plugs pulled and put back, pauses of the computer, gaps in the radio link.
+/// Counts the stops that nobody asked for.
+class Match {
+ public:
+  explicit Match(Choices& choices);
+
+  void tick();
+  [[nodiscard]] Duration robotTime() const noexcept { return robot_time_; }
+
+  /// Each stop that no plug and nobody caused, with what was under way: none of them may be.
+  [[nodiscard]] const std::vector<std::string>& nuisances() const noexcept { return nuisances_; }
+  /// What happened how often, and how much of the time the motors obeyed.
+  [[nodiscard]] std::string text() const;
+  [[nodiscard]] std::uint64_t times(const std::string& what) const;
+  /// Ticks of motors that were ACTIVE, and of those that were to be.
+  [[nodiscard]] double activeShare() const noexcept;
+
+  /// For tests of the judge: this motor is unplugged, and the judge is not told.
+  void unplugUnnoticed(std::size_t motor);
+
+ private:
+  enum class Phase : std::uint8_t { kPit, kStart, kPlay };
+  enum class Trouble : std::uint8_t {
+    kShove,  ///< A load of some tenths of a second.
+    kHand,   ///< One of seconds.
+    kSlope,  ///< One of half a minute, on each wheel.
+    kHeat,   ///< A warm motor.
+    kLoose,  ///< Some of its frames are lost.
+    kPlug,   ///< Its drive is not heard.
+    kBus,    ///< Nobody on its bus is.
+    kPause,  ///< The computer stood still.
+    kGap,    ///< No command arrives.
+    kEstop,  ///< The button.
+    kCount,
+  };
+  static constexpr auto kTroubles = static_cast<std::size_t>(Trouble::kCount);
+  /// A motor that a program commands: where it is going.
+  struct Player {
+    std::size_t motor = 0;
+    std::size_t bus = 0;
+    std::size_t drive = 0;
+    bool by_module = false;
+    Target target;
+    double goal = 0.0;
+    double most_per_s = 0.0;  ///< Change of the target.
+    double reach = 0.0;       ///< The goals lie within it, both ways.
+    MonotonicTime next_goal{};
+    MonotonicTime loaded_until{};
+    MonotonicTime loose_until{};
+    MonotonicTime unplugged_until{};
+    MonotonicTime
+        excused_until{};  ///< It may stop, and be OFFLINE: its plug, or that of one it is grouped with.
+    bool was_active = false;
+    bool faulted = false;
+  };
+
+  void begin(Trouble trouble);
+  void end();
+  void load(Player& player, double torque_nm, Duration time);
+  void unplug(std::size_t player, Duration time);
+  void excuse(std::size_t motor, MonotonicTime until);
+  void drive();
+  void aim(Player& player);
+  void operate();
+  void order(Operation operation, MotorSet motors = {});
+  void reference();
+  void judge();
+  void nuisance(const std::string& what);
+  [[nodiscard]] Player& somebody();
+  [[nodiscard]] Duration between(int least_ms, int most_ms);
+  [[nodiscard]] sim::SimBus& busOf(const Player& player) { return robot_.simBus(player.bus); }
+  void note(const char* what) { ++counts_[what]; }
+
+  Choices& choices_;
+  RobotConfig config_;
+  VirtualRobot robot_;
+  std::vector<Player> players_;  ///< By motor.
+  std::array<double, 3> chassis_{};
+  double lift_rpm_ = 0.0;
+  double feed_rpm_ = 0.0;
+  MonotonicTime next_drive_{};
+  MonotonicTime next_trouble_{};
+  MonotonicTime silent_until_{};  ///< The programs' commands do not arrive.
+  MonotonicTime pressed_until_{};
+  MonotonicTime estop_excused_until_{};
+  MonotonicTime phase_ends_{};
+  MonotonicTime ask_again_{};
+  MonotonicTime all_well_{};  ///< Everything is plugged in, and the operator has asked, since.
+  Phase phase_ = Phase::kPit;
+  std::uint64_t orders_ = 0;
+  std::uint64_t tick_ = 0;
+  std::uint64_t active_ticks_ = 0;
+  std::uint64_t wanted_ticks_ = 0;
+  Duration robot_time_{};
+  std::map<std::string, std::uint64_t> counts_;
+  std::vector<std::string> nuisances_;
+  std::vector<std::string> lately_;  ///< The last things that happened.
+};
+
+}  // namespace rc10::test

@@ -1,0 +1,74 @@
+// Hours of matches, in virtual time: rc10_match --hours H --seed S [--jobs N]
+#include <chrono>
+#include <cstdint>
+#include <cstdio>
+#include <exception>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include <CLI/CLI.hpp>
+
+#include "faults/match.hpp"
+
+namespace {
+
+using namespace rc10;
+using namespace rc10::test;
+
+// So many are shown.
+constexpr std::size_t kMostShown = 10;
+
+struct Outcome {
+  std::uint64_t seed = 0;
+  std::string text;
+  std::vector<std::string> nuisances;
+};
+
+void play(Duration robot_time, Outcome& out) {
+  try {
+    SeededChoices choices{out.seed};
+    Match match{choices};
+    while (match.robotTime() < robot_time) match.tick();
+    out.nuisances = match.nuisances();
+    out.text = match.text();
+  } catch (const std::exception& problem) {
+    out.nuisances = {problem.what()};
+  }
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  double hours = 0.1;
+  std::uint64_t seed = 1;
+  unsigned jobs = 1;
+  CLI::App app{"Matches of a sound robot, in virtual time: a stop that nobody asked for is a failure"};
+  app.add_option("--hours", hours, "of robot time")->check(CLI::PositiveNumber);
+  app.add_option("--seed", seed, "of the first job; the others count on");
+  app.add_option("--jobs", jobs, "share the hours, each with a seed of its own")->check(CLI::Range(1, 64));
+  CLI11_PARSE(app, argc, argv);
+
+  const auto share =
+      std::chrono::duration_cast<Duration>(std::chrono::duration<double>(hours * 3600.0 / jobs));
+  std::vector<Outcome> outcomes(jobs);
+  std::vector<std::thread> threads;
+  for (unsigned i = 0; i < jobs; ++i) {
+    outcomes[i].seed = seed + i;
+    threads.emplace_back([share, &outcome = outcomes[i]] { play(share, outcome); });
+  }
+  for (auto& thread : threads) thread.join();
+
+  long failed = 0;
+  for (const auto& outcome : outcomes) {
+    std::printf("seed %llu, %s", static_cast<unsigned long long>(outcome.seed), outcome.text.c_str());
+    failed += outcome.nuisances.empty() ? 0 : 1;
+    for (std::size_t i = 0; i < outcome.nuisances.size() && i < kMostShown; ++i)
+      std::printf("FAILED seed %llu, %s\n", static_cast<unsigned long long>(outcome.seed),
+                  outcome.nuisances[i].c_str());
+    if (outcome.nuisances.size() > kMostShown)
+      std::printf("and %zu more\n", outcome.nuisances.size() - kMostShown);
+  }
+  std::printf("%ld passed, %ld failed, 0 skipped\n", static_cast<long>(jobs) - failed, failed);
+  return failed == 0 ? 0 : 1;
+}

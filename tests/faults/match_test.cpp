@@ -1,0 +1,36 @@
+#include "faults/match.hpp"
+
+#include <chrono>
+
+#include <gtest/gtest.h>
+
+namespace rc10::test::match_test {
+namespace {
+
+using namespace std::chrono_literals;
+
+TEST(MatchTest, ASoundRobotPlaysWithoutAStopThatNobodyAskedFor) {
+  SeededChoices choices{7};
+  Match match{choices};
+  while (match.robotTime() < 30s) match.tick();
+  EXPECT_TRUE(match.nuisances().empty()) << match.nuisances().front();
+  EXPECT_EQ(match.times("match"), 1U);
+  EXPECT_GT(match.times("shove"), 0U);
+  EXPECT_GT(match.activeShare(), 0.3);
+}
+
+TEST(MatchTest, TheJudgeSeesAStopThatNobodyAskedFor) {
+  constexpr std::size_t kBelt = 9;
+  SeededChoices choices{7};
+  Match match{choices};
+  while (match.robotTime() < 4500ms) match.tick();  // it plays, and no trouble has come yet
+  ASSERT_TRUE(match.nuisances().empty()) << match.nuisances().front();
+  match.unplugUnnoticed(kBelt);
+  while (match.robotTime() < 4900ms) match.tick();
+  ASSERT_EQ(match.nuisances().size(), 1U);
+  EXPECT_NE(match.nuisances().front().find("belt is OFFLINE: silence"), std::string::npos)
+      << match.nuisances().front();
+}
+
+}  // namespace
+}  // namespace rc10::test::match_test
