@@ -61,6 +61,8 @@ def number(value: float) -> str:
 
 def default_text(value: str | float) -> str:
     """As it would be written in YAML, where # begins a comment."""
+    if isinstance(value, float) and value.is_integer():
+        value = int(value)
     text = json.dumps(value)
     return text if text.startswith('"#') else text.strip('"')
 
@@ -94,7 +96,8 @@ class Tables:
         self.words = set(self.all_words())
 
     def is_module(self, name: str) -> bool:
-        return name.startswith("module_") and "type" in self.sections[name]["properties"]
+        # A part of a module may have a type, too.
+        return name.startswith("module_") and "priority" in self.sections[name]["properties"]
 
     def all_words(self) -> Iterator[str]:
         for section in self.sections.values():

@@ -14,6 +14,7 @@
 #include "module/led_strip.hpp"
 #include "module/rangefinder.hpp"
 #include "module/remote.hpp"
+#include "module/serial_link.hpp"
 #include "module/swerve_chassis.hpp"
 #include "module/synchronised_pair.hpp"
 
@@ -26,7 +27,7 @@ namespace {
       &mecanumChassisType(),   &omni3ChassisType(), &omni4ChassisType(), &differentialChassisType(),
       &swerveChassisType(),    &gimbalType(),       &feederType(),       &jointType(),
       &synchronisedPairType(), &remoteType(),       &imuType(),          &rangefinderType(),
-      &gpioModuleType(),       &ledStripType(),
+      &gpioModuleType(),       &ledStripType(),     &serialLinkType(),
   };
   return all;
 }

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "app/debouncer.hpp"
+#include "module/held_back.hpp"
 
 namespace rc10 {
 namespace {
@@ -87,8 +88,6 @@ constexpr std::array kGpioKeys{
               .about = "Lines that are driven.",
               .keys = kOutputKeys}};
 
-/// A program that sends too rarely has gaps: only after so long without a command has it let go.
-constexpr Duration kLetGo = std::chrono::seconds{1};
 /// Age at which a reading is void: a slow chip is read every few milliseconds, and one that hangs in a
 /// transfer reports no error. The distance is that of the grid, in which a computer that stood still
 /// as a whole is no silence.
@@ -164,10 +163,7 @@ class GpioModule : public Module_Base {
     bool active_low = false;
     bool safe = false;
     bool keeps_at_estop = false;
-    /// After a start, an e-stop or a loss of the lines, until it is commanded safe: who commands now may have
-    /// begun before, and does not know of it.
-    bool held_back = true;
-    std::optional<MonotonicTime> asked{};  ///< Last commanded otherwise than safe, or the start.
+    HeldBack held_back{};
   };
 
   void readInputs(const Tick& tick) noexcept {
@@ -196,15 +192,13 @@ class GpioModule : public Module_Base {
       auto& output = outputs_[i];
       const double asked = input(i);
       const bool wanted = std::isfinite(asked) ? asked >= 0.5 : output.safe;
-      if (wanted != output.safe || !output.asked) output.asked = tick.now;
-      // As a motor, it does not move by itself because somebody cleared the e-stop or plugged a cable in.
-      if (lost || (!running && !output.keeps_at_estop)) output.held_back = true;
-      const bool let_go = tick.now - *output.asked >= kLetGo;
-      if (running && image_->open && (let_go || (std::isfinite(asked) && wanted == output.safe)))
-        output.held_back = false;
-      held_back |= output.held_back;
-      in_vain |= running && output.held_back && wanted != output.safe;
-      const bool value = output.held_back ? output.safe : wanted;
+      const bool held = output.held_back.step(
+          {.given = std::isfinite(asked), .safe = wanted == output.safe},
+          {.usable = running && image_->open, .dropped = lost || (!running && !output.keeps_at_estop)},
+          tick.now);
+      held_back |= held;
+      in_vain |= running && held && wanted != output.safe;
+      const bool value = held ? output.safe : wanted;
       setLevel(image_->outputs, i, value);
       const bool driven = image_->open && !bit(image_->unwritten, i);
       setOutput(inputs_.size() + i, driven ? asNumber(value) : kNoSignal);

@@ -14,6 +14,7 @@
 #include "app/result.hpp"
 #include "app/time.hpp"
 #include "bus/i_protocol.hpp"
+#include "bus/serial_device.hpp"
 #include "bus/serial_format.hpp"
 #include "module/device_needs.hpp"
 #include "module/module_robot.hpp"
@@ -70,6 +71,8 @@ class Module_Base {
   /// Once, when it is built: the serial port that it wants; empty: none. It may keep a pointer to the
   /// protocol, which lives as long as the module.
   [[nodiscard]] virtual std::optional<SerialNeed> takeSerialNeed() { return std::nullopt; }
+  /// Once, when that port is built: for a module that sends. It lives as long as the module's updates.
+  virtual void useSerial(SerialDevice& /*device*/) noexcept {}
   /// The same for an SPI device, and for lines of a GPIO chip: the module may keep a pointer to the output or
   /// the image.
   [[nodiscard]] virtual std::optional<SpiNeed> takeSpiNeed() { return std::nullopt; }

@@ -102,6 +102,7 @@ void TextProtocol::parse_stream(std::span<const std::uint8_t> bytes, MonotonicTi
     const auto message = decodeText(line.content);
     if (!message) return ScanVerdict::kSkip;
     message_.set(*message, received);
+    if (listener_ != nullptr) listener_->onLine(*message, received);
     return ScanVerdict::kFrame;
   });
 }

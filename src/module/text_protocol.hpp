@@ -25,6 +25,16 @@ struct TextMessage {
   [[nodiscard]] std::string_view name() const noexcept { return {name_letters.data(), name_length}; }
 };
 
+/// Takes every line, in order: several may come in one tick.
+class TextListener {
+ public:
+  TextListener() = default;
+  TextListener(const TextListener&) = delete;
+  TextListener& operator=(const TextListener&) = delete;
+  virtual ~TextListener() = default;
+  virtual void onLine(const TextMessage& message, MonotonicTime received) noexcept = 0;
+};
+
 /// A line protocol for one's own boards, which a person can read and type, and the worked example of
 /// docs/serial-devices.md:
 ///
@@ -37,6 +47,9 @@ class TextProtocol final : public I_Protocol {
  public:
   static constexpr std::size_t kLongestLine = 120;  ///< With `$` and line feed.
 
+  /// `listener` outlives the protocol's last parse_stream().
+  explicit TextProtocol(TextListener* listener = nullptr) noexcept : listener_(listener) {}
+
   void parse_stream(std::span<const std::uint8_t> bytes, MonotonicTime received) noexcept override;
   /// `payload` is what stands between `$` and `*`.
   [[nodiscard]] std::size_t pack_frame(std::span<const std::uint8_t> payload,
@@ -47,6 +60,7 @@ class TextProtocol final : public I_Protocol {
   [[nodiscard]] const Stamped<TextMessage>& message() const noexcept { return message_; }
 
  private:
+  TextListener* listener_;
   FrameScanner<kLongestLine> scanner_;
   Stamped<TextMessage> message_;
 };

@@ -295,8 +295,9 @@ void Match::end() {
       player.loaded_until = {};
     }
     // A contact that shakes: CAN sends again what is disturbed, so frames are lost in gaps or not at all.
-    if (now < player.loose_until && player.unplugged_until == MonotonicTime{} && choices_.oneIn(100)) {
+    if (now < player.loose_until && now >= player.next_gap && player.unplugged_until == MonotonicTime{}) {
       player.unplugged_until = now + between(1, 10);
+      player.next_gap = player.unplugged_until + between(30, 300);
       busOf(player).silence(player.drive, true);
     }
     if (player.unplugged_until != MonotonicTime{} && now >= player.unplugged_until) {

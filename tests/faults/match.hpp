@@ -63,6 +63,7 @@ class Match {
     MonotonicTime next_goal{};
     MonotonicTime loaded_until{};
     MonotonicTime loose_until{};
+    MonotonicTime next_gap{};
     MonotonicTime unplugged_until{};
     MonotonicTime
         excused_until{};  ///< It may stop, and be OFFLINE: its plug, or that of one it is grouped with.

@@ -68,6 +68,13 @@ inline std::vector<ModuleCase> moduleCases() {
        {0x55, 0x53, 0, 0x10, 0, 0x20, 0, 0x30, 0, 0, 0x08}},
       {"gpio", 0, "chip: gpiochip0, outputs: [{name: valve, line: 6}]", {{"valve", 1.0}}},
       {"led_strip", 0, "device: /dev/spidev0.0, pixels: 30", {{"red", 255.0}}},
+      // $range,1.5*79 and a line feed.
+      {"serial_link",
+       0,
+       "port: /dev/rc10-none, protocol: text, receive: [{name: range_m, message: range}], send: [{name: claw, "
+       "message: set}]",
+       {{"claw", 1.0}},
+       {0x24, 0x72, 0x61, 0x6E, 0x67, 0x65, 0x2C, 0x31, 0x2E, 0x35, 0x2A, 0x37, 0x39, 0x0A}},
       {"rangefinder", 0, "port: /dev/rc10-none", {}, {0x59, 0x59, 0x7B, 0, 0x00, 0x02, 0, 0, 0x2F}},
   };
 }

@@ -163,11 +163,13 @@ Result<void> Robot::addModules(const RobotConfig& config) {
 Result<void> Robot::addSerialPorts() {
   std::vector<SerialChannel::Settings> ports;
   std::vector<std::unique_ptr<I_Protocol>> protocols;
+  std::vector<Module_Base*> users;
   for (auto& entry : modules_) {
     auto need = entry.module->takeSerialNeed();
     if (!need) continue;
     ports.push_back({.name = entry.name, .path = need->path, .format = need->format});
     protocols.push_back(std::move(need->protocol));
+    users.push_back(entry.module.get());
   }
   if (ports.empty()) return {};
   auto channels = SerialChannels::create(ports);
@@ -177,6 +179,7 @@ Result<void> Robot::addSerialPorts() {
     auto& channel = (*serial_channels_)[i];
     serial_devices_.push_back(
         {std::make_unique<SerialDevice>(ports[i].name, std::move(protocols[i]), channel.outbox), i});
+    users[i]->useSerial(*serial_devices_.back().device);
   }
   return {};
 }

@@ -1,0 +1,49 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <span>
+
+#include "app/time.hpp"
+#include "bus/i_protocol.hpp"
+#include "bus/serial_device.hpp"
+#include "module/link_field.hpp"
+
+namespace rc10 {
+
+/// What a serial link says and hears on its port: one of text, cobs, modbus. Scheduler thread only.
+class LinkCodec {
+ public:
+  LinkCodec() = default;
+  LinkCodec(const LinkCodec&) = delete;
+  LinkCodec& operator=(const LinkCodec&) = delete;
+  virtual ~LinkCodec() = default;
+
+  /// Once. The codec outlives it.
+  [[nodiscard]] virtual std::unique_ptr<I_Protocol> takeProtocol() = 0;
+  [[nodiscard]] virtual const ReceivedFields& received() const noexcept = 0;
+  /// One tick. `values` of the fields that are sent, in their order; `due`: it is time to send them.
+  virtual void step(SerialDevice& device, std::span<const double> values, bool due,
+                    MonotonicTime now) noexcept = 0;
+  /// Frames that were wrong, refused or not answered.
+  [[nodiscard]] virtual std::uint64_t errors() const noexcept = 0;
+};
+
+/// `received` and `sent`: checked by the module's type. Fields of one text or cobs message are sent together,
+/// a cobs message in the order of its fields.
+[[nodiscard]] std::unique_ptr<LinkCodec> makeTextCodec(std::vector<LinkField> received,
+                                                       std::vector<LinkField> sent);
+[[nodiscard]] std::unique_ptr<LinkCodec> makeCobsCodec(std::vector<LinkField> received,
+                                                       std::vector<LinkField> sent);
+
+struct ModbusLink {
+  std::uint8_t address = 1;
+  Duration frame_gap{};
+  Duration timeout{};
+  bool low_word_first = false;  ///< Of values in two registers.
+};
+[[nodiscard]] std::unique_ptr<LinkCodec> makeModbusCodec(const ModbusLink& link,
+                                                         std::vector<LinkField> received,
+                                                         std::vector<LinkField> sent);
+
+}  // namespace rc10

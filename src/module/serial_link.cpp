@@ -1,0 +1,474 @@
+#include "module/serial_link.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "module/cobs_protocol.hpp"
+#include "module/held_back.hpp"
+#include "module/link_codec.hpp"
+#include "module/modbus_rtu.hpp"
+#include "module/serial_keys.hpp"
+#include "module/text_protocol.hpp"
+
+namespace rc10 {
+namespace {
+
+using enum FamilyKey::Kind;
+
+// With the three signals of the link they fit into a module's outputs.
+constexpr double kMaxFields = 14;
+// So many fit into a line, each as long as it may be.
+constexpr std::size_t kMostSentInLine = 6;
+constexpr std::array<std::string_view, 3> kLinkSignals{"connected", "age_ms", "errors"};
+// A slave that is slow at 9600 baud; most answer within a few.
+constexpr Duration kModbusTimeout = std::chrono::milliseconds{50};
+/// As a GPIO module has it: so long without a tick, and the outputs are safe again.
+constexpr Duration kLongestGapOfTicks = std::chrono::milliseconds{200};
+
+constexpr std::array<std::string_view, 3> kLinkProtocols{"text", "cobs", "modbus"};
+constexpr std::array<std::string_view, 2> kWordOrders{"high_first", "low_first"};
+constexpr std::array<std::string_view, 2> kLinkAtEstop{"safe", "keep"};
+
+constexpr FamilyKey kFieldName{
+    .name = "name",
+    .kind = kText,
+    .required = true,
+    .about = "Name of its signal, unique in the module; best with its unit at the end.",
+    .pattern = "[a-z0-9_]{1,31}",
+    .words = "a name of a-z, 0-9 and _, at most 31 characters"};
+constexpr FamilyKey kMessage{.name = "message",
+                             .kind = kText,
+                             .about =
+                                 "text: the name of the line that it stands in. cobs: the number of the "
+                                 "message, 0 to 255; its fields follow each other in the order of this list.",
+                             .pattern = "[A-Za-z0-9_]{1,15}",
+                             .words = "a name of letters, digits and _, at most 15 characters"};
+constexpr FamilyKey kPlace{.name = "place",
+                           .kind = kInteger,
+                           .min = 1,
+                           .max = static_cast<double>(TextMessage::kMostValues),
+                           .default_text = "1",
+                           .about = "text: which of the line's numbers."};
+constexpr FamilyKey kRegister{
+    .name = "register",
+    .kind = kInteger,
+    .max = 65535,
+    .about = "modbus: its register, counted from 0; types of four bytes take the next as well."};
+constexpr FamilyKey kType{.name = "type",
+                          .kind = kChoice,
+                          .choices = kWireTypes,
+                          .default_text = "f32",
+                          .about = "cobs, modbus: the number on the wire. modbus has no u8 and i8."};
+constexpr FamilyKey kScale{.name = "scale",
+                           .kind = kNumber,
+                           .min = -1e9,
+                           .max = 1e9,
+                           .default_text = "1",
+                           .about = "Value of the signal for 1 on the wire; not 0."};
+
+constexpr std::array kReceiveKeys{
+    kFieldName,
+    kMessage,
+    kPlace,
+    kRegister,
+    FamilyKey{.name = "input_register",
+              .kind = kFlag,
+              .default_text = "false",
+              .about = "modbus: an input register (function 4), not a holding register (function 3)."},
+    kType,
+    kScale};
+
+constexpr std::array kSendKeys{
+    kFieldName,
+    kMessage,
+    kPlace,
+    kRegister,
+    kType,
+    kScale,
+    FamilyKey{.name = "min",
+              .kind = kNumber,
+              .min = -1e9,
+              .max = 1e9,
+              .default_text = "-1e9",
+              .about = "The signal is cut off below."},
+    FamilyKey{.name = "max",
+              .kind = kNumber,
+              .min = -1e9,
+              .max = 1e9,
+              .default_text = "1e9",
+              .about = "The signal is cut off above."},
+    FamilyKey{.name = "safe_value",
+              .kind = kNumber,
+              .min = -1e9,
+              .max = 1e9,
+              .default_text = "0",
+              .about = "What is sent at the start, while nobody commands it, and during an e-stop."},
+    FamilyKey{.name = "on_estop",
+              .kind = kChoice,
+              .choices = kLinkAtEstop,
+              .default_text = "safe",
+              .about =
+                  "safe: the safe value from the e-stop on, until it was commanded safe once after it. keep: "
+                  "obeys all the same, as a gripper that must not drop what it holds."}};
+
+constexpr std::array kLinkKeys{
+    kPortKey,
+    FamilyKey{.name = "protocol",
+              .kind = kChoice,
+              .choices = kLinkProtocols,
+              .required = true,
+              .about =
+                  "text: lines that a person can read and type. cobs: binary messages with a CRC. modbus: "
+                  "Modbus RTU, rc10d is the master."},
+    FamilyKey{.name = "baud",
+              .kind = kInteger,
+              .min = 1200,
+              .max = 4'000'000,
+              .default_text = "115200",
+              .about = "Baud rate, as set on the board."},
+    FamilyKey{.name = "format",
+              .kind = kText,
+              .default_text = "8N1",
+              .about = "Data bits, parity, stop bits.",
+              .pattern = "[5-8][NEO][12]",
+              .words = "8N1, 8E1 or the like"},
+    FamilyKey{
+        .name = "rate_hz",
+        .kind = kInteger,
+        .unit = "Hz",
+        .min = 1,
+        .max = 500,
+        .default_text = "50",
+        .about = "How often all fields are sent; modbus: how often all registers are written and read."},
+    FamilyKey{.name = "max_age_ms",
+              .kind = kInteger,
+              .unit = "ms",
+              .min = 5,
+              .max = 60'000,
+              .default_text = "200",
+              .about = "Older values mean nothing: the output is NaN."},
+    FamilyKey{.name = "address",
+              .kind = kInteger,
+              .min = 1,
+              .max = 247,
+              .default_text = "1",
+              .about = "modbus: of the slave."},
+    FamilyKey{.name = "word_order",
+              .kind = kChoice,
+              .choices = kWordOrders,
+              .default_text = "high_first",
+              .about = "modbus: of a value in two registers."},
+    FamilyKey{.name = "receive",
+              .kind = kRows,
+              .max = kMaxFields,
+              .about = "What the board sends.",
+              .keys = kReceiveKeys},
+    FamilyKey{.name = "send",
+              .kind = kRows,
+              .max = kMaxFields,
+              .about = "What the board is sent.",
+              .keys = kSendKeys}};
+
+/// A field that is sent, as an output that keeps to its safe value.
+struct LinkOutput {
+  double low = 0.0;
+  double high = 0.0;
+  double safe = 0.0;
+  bool keeps_at_estop = false;
+  HeldBack held_back{};
+};
+
+[[nodiscard]] LinkField fieldOf(const OwnValues& row) {
+  LinkField field;
+  field.name = row.text("name");
+  field.message = row.text("message");
+  field.place = static_cast<std::size_t>(row.integer("place") - 1);
+  field.reg = static_cast<std::uint16_t>(row.integer("register"));
+  field.input_register = row.given("input_register") && row.flag("input_register");
+  const auto type = std::find(kWireTypes.begin(), kWireTypes.end(), row.text("type"));
+  field.type = static_cast<WireType>(type - kWireTypes.begin());
+  field.scale = row.number("scale");
+  return field;
+}
+
+[[nodiscard]] std::vector<LinkField> fieldsOf(const OwnValues& own, std::string_view key) {
+  std::vector<LinkField> fields;
+  for (const auto& row : own.rows(key)) fields.push_back(fieldOf(row));
+  return fields;
+}
+
+[[nodiscard]] ModuleSignals linkSignals(const OwnValues& own) {
+  ModuleSignals signals;
+  for (const auto& row : own.rows("send")) signals.inputs.push_back(row.text("name"));
+  for (const auto& row : own.rows("receive")) signals.outputs.push_back(row.text("name"));
+  for (const auto& row : own.rows("send")) signals.outputs.push_back(row.text("name"));
+  for (const auto name : kLinkSignals) signals.outputs.emplace_back(name);
+  signals.events = {
+      {.text = "the board is silent: its values mean nothing; see its power, wires (TX to RX), baud rate and "
+               "protocol"},
+      {.text = "the board is back", .expected = true},
+      {.text =
+           "after a start, an e-stop or a loss of its line a field is sent with its safe value until it is "
+           "commanded so once, or not at all for 1 s",
+       .expected = true}};
+  return signals;
+}
+
+[[nodiscard]] std::unique_ptr<LinkCodec> codecOf(const OwnValues& own, const SerialFormat& format) {
+  auto received = fieldsOf(own, "receive");
+  auto sent = fieldsOf(own, "send");
+  const auto protocol = own.text("protocol");
+  if (protocol == "text") return makeTextCodec(std::move(received), std::move(sent));
+  if (protocol == "cobs") return makeCobsCodec(std::move(received), std::move(sent));
+  return makeModbusCodec({.address = static_cast<std::uint8_t>(own.integer("address")),
+                          .frame_gap = ModbusRtu::frameGap(format),
+                          .timeout = kModbusTimeout,
+                          .low_word_first = own.text("word_order") == "low_first"},
+                         std::move(received), std::move(sent));
+}
+
+class SerialLink : public Module_Base {
+ public:
+  SerialLink(const OwnValues& own, const SerialFormat& format)
+      : Module_Base(linkSignals(own)),
+        path_(own.text("port")),
+        format_(format),
+        period_(std::chrono::nanoseconds{std::chrono::seconds{1}} / own.integer("rate_hz")),
+        max_age_(std::chrono::milliseconds{own.integer("max_age_ms")}),
+        codec_(codecOf(own, format)) {
+    for (const auto& row : own.rows("send")) {
+      sent_.push_back({.low = row.number("min"),
+                       .high = row.number("max"),
+                       .safe = row.number("safe_value"),
+                       .keeps_at_estop = row.text("on_estop") == "keep"});
+    }
+    values_.resize(sent_.size());
+  }
+
+  [[nodiscard]] std::optional<SerialNeed> takeSerialNeed() override {
+    return SerialNeed{.path = path_, .format = format_, .protocol = codec_->takeProtocol()};
+  }
+  void useSerial(SerialDevice& device) noexcept override { device_ = &device; }
+
+  void update(const Tick& tick, ModuleRobot& robot) noexcept override {
+    const bool open = device_ != nullptr && device_->state() == SerialState::kOpen;
+    decideValues(tick, robot, open);
+    const bool due = tick.now >= next_;
+    if (due) next_ = next_ + period_ > tick.now ? next_ + period_ : tick.now + period_;
+    if (open) codec_->step(*device_, values_, due, tick.now);
+    tellReceived(tick, robot);
+    const std::size_t link = codec_->received().fields.size() + sent_.size();
+    setOutput(link, open ? 1.0 : 0.0);
+    setOutput(link + 2, static_cast<double>(codec_->errors()));
+  }
+
+ private:
+  enum LinkEvent : std::size_t { kSilent, kBack, kHeldBack };
+
+  void decideValues(const Tick& tick, ModuleRobot& robot, bool open) noexcept {
+    const bool running = robot.state() == RobotStatus::kRun;
+    const bool lost = (was_open_ && !open) || (last_tick_ && tick.now - *last_tick_ > kLongestGapOfTicks);
+    was_open_ = open;
+    last_tick_ = tick.now;
+    bool held_back = false;
+    bool in_vain = false;
+    const std::size_t first = codec_->received().fields.size();
+    for (std::size_t i = 0; i < sent_.size(); ++i) {
+      auto& output = sent_[i];
+      const bool given = std::isfinite(input(i));
+      const double wanted = given ? std::clamp(input(i), output.low, output.high) : output.safe;
+      const bool safe = wanted == output.safe;
+      const bool held = output.held_back.step(
+          {.given = given, .safe = safe},
+          {.usable = running && open, .dropped = lost || (!running && !output.keeps_at_estop)}, tick.now);
+      held_back |= held;
+      in_vain |= running && held && !safe;
+      values_[i] = held ? output.safe : wanted;
+      setOutput(first + i, open ? values_[i] : kNoSignal);
+    }
+    if (in_vain && !std::exchange(told_, true)) robot.report(kHeldBack);
+    if (!held_back) told_ = false;
+  }
+
+  void tellReceived(const Tick& tick, ModuleRobot& robot) noexcept {
+    const auto& readings = codec_->received().readings;
+    Duration oldest{};
+    bool fresh = !readings.empty();
+    for (std::size_t i = 0; i < readings.size(); ++i) {
+      const auto& reading = readings[i];
+      const Duration age = reading.received ? tick.now - *reading.received : Duration::max();
+      setOutput(i, age <= max_age_ ? reading.value : kNoSignal);
+      oldest = std::max(oldest, age);
+      fresh = fresh && age <= max_age_;
+    }
+    const bool known = !readings.empty() && oldest != Duration::max();
+    setOutput(readings.size() + sent_.size() + 1,
+              known ? std::chrono::duration<double, std::milli>(oldest).count() : kNoSignal);
+    if (fresh) {
+      if (silent_) robot.report(kBack);
+      silent_ = false;
+      heard_ = true;
+    } else if (heard_ && !silent_) {
+      silent_ = true;
+      robot.report(kSilent);
+    }
+  }
+
+  std::string path_;
+  SerialFormat format_;
+  Duration period_;
+  Duration max_age_;
+  std::unique_ptr<LinkCodec> codec_;
+  std::vector<LinkOutput> sent_;
+  std::vector<double> values_;  ///< Of them, in this tick.
+  SerialDevice* device_ = nullptr;
+  MonotonicTime next_{};
+  bool heard_ = false;
+  bool silent_ = false;
+  bool told_ = false;
+  bool was_open_ = false;
+  std::optional<MonotonicTime> last_tick_;
+};
+
+// ---- Checks
+
+[[nodiscard]] std::string placeOf(std::string_view list, std::size_t row, std::string_view key) {
+  return std::string{list} + "[" + std::to_string(row) + "]." + std::string{key} + ": ";
+}
+
+[[nodiscard]] Result<void> checkRow(const OwnValues& row, std::string_view protocol, std::string_view list,
+                                    std::size_t index) {
+  const auto wrong = [&](std::string_view key, const std::string& why) {
+    return fail(placeOf(list, index, key) + why);
+  };
+  if (row.number("scale") == 0.0) return wrong("scale", "0 makes every value 0; use another");
+  if (protocol == "modbus") {
+    if (!row.given("register"))
+      return wrong("register", "missing: protocol: modbus needs the register of each field");
+    const auto type = row.text("type");
+    if (type == "u8" || type == "i8")
+      return wrong("type", type + " is no register; use u16, i16, u32, i32 or f32");
+    const bool two = type != "u16" && type != "i16";
+    if (two && row.integer("register") == 65535)
+      return wrong("register", "65535 is the last, and " + type + " takes two");
+    return {};
+  }
+  if (!row.given("message"))
+    return wrong("message",
+                 "missing: protocol: " + std::string{protocol} + " needs the message of each field");
+  const auto message = row.text("message");
+  if (protocol == "cobs") {
+    const bool digits =
+        std::all_of(message.begin(), message.end(), [](char c) { return c >= '0' && c <= '9'; });
+    if (!digits || message.size() > 3 || std::stoi(message) > 255)
+      return wrong("message", "'" + message + "' is no number of a message; use 0 to 255");
+    return {};
+  }
+  if (list == "send" && row.integer("place") > static_cast<int>(kMostSentInLine))
+    return wrong("place", "a line that is sent has room for " + std::to_string(kMostSentInLine) +
+                              " numbers; use another message");
+  return {};
+}
+
+// Two fields in one place, and numbers of a line that no field gives.
+[[nodiscard]] Result<void> checkPlaces(const OwnValues& own, std::string_view protocol,
+                                       std::string_view list) {
+  const auto fields = fieldsOf(own, list);
+  for (std::size_t i = 0; i < fields.size(); ++i) {
+    for (std::size_t k = 0; k < i; ++k) {
+      const bool same_line = protocol == "text" && fields[k].message == fields[i].message;
+      if (same_line && fields[k].place == fields[i].place) {
+        return fail(placeOf(list, i, "place") + "'" + fields[k].name + "' has it already");
+      }
+      const auto words = [](const LinkField& field) { return bytesOf(field.type) > 2 ? 2 : 1; };
+      const bool overlap = protocol == "modbus" && fields[k].input_register == fields[i].input_register &&
+                           fields[k].reg < fields[i].reg + words(fields[i]) &&
+                           fields[i].reg < fields[k].reg + words(fields[k]);
+      if (overlap) return fail(placeOf(list, i, "register") + "'" + fields[k].name + "' has it already");
+    }
+    if (protocol != "text" || list != "send") continue;
+    for (std::size_t place = 0; place < fields[i].place; ++place) {
+      const bool given = std::any_of(fields.begin(), fields.end(), [&](const LinkField& other) {
+        return other.message == fields[i].message && other.place == place;
+      });
+      if (!given) {
+        return fail(placeOf(list, i, "place") + "no field is number " + std::to_string(place + 1) + " of '" +
+                    fields[i].message + "'");
+      }
+    }
+  }
+  return {};
+}
+
+[[nodiscard]] Result<void> checkLimits(const OwnValues& own) {
+  const auto& rows = own.rows("send");
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    const double low = rows[i].number("min");
+    const double high = rows[i].number("max");
+    const double safe = rows[i].number("safe_value");
+    if (low > high) return fail(placeOf("send", i, "min") + "it is above max");
+    if (safe < low || safe > high)
+      return fail(placeOf("send", i, "safe_value") + "it is not between min and max");
+  }
+  return {};
+}
+
+[[nodiscard]] Result<void> checkNames(const OwnValues& own) {
+  std::vector<std::string> names{kLinkSignals.begin(), kLinkSignals.end()};
+  for (const auto* list : {"receive", "send"}) {
+    const auto& rows = own.rows(list);
+    for (std::size_t i = 0; i < rows.size(); ++i) {
+      const auto name = rows[i].text("name");
+      if (std::find(names.begin(), names.end(), name) != names.end()) {
+        return fail(placeOf(list, i, "name") + "there is a signal '" + name +
+                    "' already; give each field another name");
+      }
+      names.push_back(name);
+    }
+  }
+  if (names.size() == kLinkSignals.size())
+    return fail("receive: there is no field; name at least one in receive or send");
+  return {};
+}
+
+class SerialLinkType : public ModuleType {
+ public:
+  [[nodiscard]] std::string_view name() const noexcept override { return "serial_link"; }
+  [[nodiscard]] std::string_view about() const noexcept override {
+    return "A board of one's own on a serial port: its fields are inputs and outputs.";
+  }
+  [[nodiscard]] std::span<const FamilyKey> keys() const noexcept override { return kLinkKeys; }
+
+  [[nodiscard]] Result<std::unique_ptr<Module_Base>> build(const ModuleSettings& settings,
+                                                           const RobotOutline& robot) const override {
+    const auto& own = settings.own;
+    const auto protocol = own.text("protocol");
+    if (auto names = checkNames(own); !names) return tl::unexpected(names.error());
+    for (const auto* list : {"receive", "send"}) {
+      const auto& rows = own.rows(list);
+      for (std::size_t i = 0; i < rows.size(); ++i) {
+        if (auto row = checkRow(rows[i], protocol, list, i); !row) return tl::unexpected(row.error());
+      }
+      if (auto places = checkPlaces(own, protocol, list); !places) return tl::unexpected(places.error());
+    }
+    if (auto limits = checkLimits(own); !limits) return tl::unexpected(limits.error());
+    const auto format = SerialFormat::make(own.integer("baud"), own.text("format"));
+    if (!format) return fail("format: " + format.error().message);
+    if (own.integer("rate_hz") > robot.tick_hz)
+      return fail("rate_hz: there are " + std::to_string(robot.tick_hz) + " ticks a second");
+    return std::make_unique<SerialLink>(own, *format);
+  }
+};
+
+}  // namespace
+
+const ModuleType& serialLinkType() noexcept {
+  static const SerialLinkType kType;
+  return kType;
+}
+
+}  // namespace rc10
