@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "client/find_motor.hpp"
 #include "web/page_messages.hpp"
 #include "web/signal_names.hpp"
 
@@ -14,6 +15,9 @@ constexpr std::uint64_t kConnectEvery = kTurnsPerSecond / 2;
 // 25 pictures a second: an eye sees no more of a curve.
 constexpr std::uint64_t kPublishEvery = kTurnsPerSecond / 25;
 
+// From the moment at which the page sent its renewal.
+constexpr Duration kHeldLease = std::chrono::milliseconds{150};
+
 PageSocket::Text shared(std::string text) { return std::make_shared<const std::string>(std::move(text)); }
 
 constexpr std::string_view statusWord(link::ResponseStatus status) {
@@ -23,6 +27,10 @@ constexpr std::string_view statusWord(link::ResponseStatus status) {
     case link::ResponseStatus::kFailed: break;
   }
   return "failed";
+}
+
+[[nodiscard]] std::span<const link::NamedValue> valuesOf(const link::Response& response) {
+  return std::span{response.values}.first(std::min<std::size_t>(response.value_count, link::kMaxValues));
 }
 
 }  // namespace
@@ -66,7 +74,7 @@ void Hub::greet(Page& page) {
   for (const auto& event : feed_.pastEvents()) page.socket->sendText(shared(eventMessage(event)));
 }
 
-void Hub::handle(PageSocket& socket, std::string_view message) {
+void Hub::handle(PageSocket& socket, std::string_view message, MonotonicTime now) {
   Page* page = pageOf(socket);
   if (page == nullptr) return;
   const auto request = parsePageRequest(message);
@@ -79,6 +87,8 @@ void Hub::handle(PageSocket& socket, std::string_view message) {
     greet(*page);
   } else if (const auto* robot = std::get_if<AskRobot>(&*request)) {
     ask(*page, *robot);
+  } else if (const auto* held = std::get_if<DriveMotor>(&*request)) {
+    drive(*page, *held, now);
   } else if (page->right == Right::kNothing) {
     page->socket->sendText(shared(responseMessage(0, "refused", "show the token first")));
   } else if (const auto* view = std::get_if<ChooseView>(&*request)) {
@@ -120,16 +130,38 @@ void Hub::answer(Page& page, const AskRange& wanted) {
 
 void Hub::ask(Page& page, const AskRobot& wanted) {
   const bool estop = wanted.operation == link::kEstopOperation;
-  std::string refused;
-  if (!estop && page.right != Right::kCommand) {
-    refused = page.right == Right::kNothing
-                  ? "show the token first"
-                  : "over a network without encryption a page looks and stops; open it "
-                    "on the robot itself or through a tunnel: ssh -L 8010:localhost:8010";
-  } else if (!feed_.connected()) {
-    refused = feed_.reason();
-  } else {
-    refused = page.link->ask(wanted, feed_.socketPath());
+  std::string refused = estop ? std::string{} : whyNotMoving(page);
+  if (refused.empty())
+    refused = feed_.connected() ? page.link->ask(wanted, feed_.socketPath()) : feed_.reason();
+  if (!refused.empty()) page.socket->sendText(shared(responseMessage(wanted.seq, "refused", refused)));
+}
+
+std::string Hub::whyNotMoving(const Page& page) const {
+  switch (page.right) {
+    case Right::kCommand: return {};
+    case Right::kNothing: return "show the token first";
+    case Right::kLook: break;
+  }
+  return "over a network without encryption a page looks and stops; open it on the robot itself or through a "
+         "tunnel: ssh -L 8010:localhost:8010";
+}
+
+// Each renewal is a command with what is left of its lease: nothing here repeats one.
+void Hub::drive(Page& page, const DriveMotor& wanted, MonotonicTime now) {
+  const auto age = page.renewals.ageOf(wanted.sent, now);
+  auto refused = whyNotMoving(page);
+  if (refused.empty() && !feed_.connected()) refused = feed_.reason();
+  if (refused.empty()) {
+    if (const auto motor = client::findMotor(feed_.welcome(), wanted.motor); !motor)
+      refused = motor.error().message;
+  }
+  // The end of a hold is a target too: what it says is safe however late it comes.
+  const auto left = wanted.held ? kHeldLease - age : kHeldLease;
+  const auto left_ms = static_cast<std::int32_t>(std::chrono::ceil<std::chrono::milliseconds>(left).count());
+  if (refused.empty() && left_ms > 0) {
+    auto told = wanted;
+    if (!wanted.held) told.value = 0.0;
+    refused = page.link->drive(told, left_ms, feed_.socketPath());
   }
   if (!refused.empty()) page.socket->sendText(shared(responseMessage(wanted.seq, "refused", refused)));
 }
@@ -198,8 +230,9 @@ void Hub::publishAnswers(Page& page) {
   while (true) {
     const auto answer = page.link->answer();
     if (!answer) return;
-    page.socket->sendText(shared(
-        responseMessage(answer->seq, statusWord(answer->response.status), answer->response.message.view())));
+    page.socket->sendText(
+        shared(responseMessage(answer->seq, statusWord(answer->response.status),
+                               answer->response.message.view(), valuesOf(answer->response))));
   }
 }
 

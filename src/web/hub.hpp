@@ -11,6 +11,7 @@
 #include "web/columns_frame.hpp"
 #include "web/page_link.hpp"
 #include "web/page_request.hpp"
+#include "web/renewal_age.hpp"
 #include "web/robot_feed.hpp"
 
 namespace rc10::web {
@@ -40,7 +41,7 @@ class Hub {
   /// A page has been opened; `socket` is told of until leave().
   void join(PageSocket& socket, bool loopback, std::string_view address);
   void leave(PageSocket& socket);
-  void handle(PageSocket& socket, std::string_view message);
+  void handle(PageSocket& socket, std::string_view message, MonotonicTime now);
 
   /// A hundred times a second.
   void turn();
@@ -55,6 +56,7 @@ class Hub {
     std::uint32_t view_number = 0;
     std::int64_t next_column = 0;
     std::unique_ptr<PageLink> link;
+    RenewalAge renewals;
   };
 
   [[nodiscard]] Page* pageOf(const PageSocket& socket) noexcept;
@@ -62,6 +64,8 @@ class Hub {
   void choose(Page& page, const ChooseView& wanted);
   void answer(Page& page, const AskRange& wanted);
   void ask(Page& page, const AskRobot& wanted);
+  void drive(Page& page, const DriveMotor& wanted, MonotonicTime now);
+  [[nodiscard]] std::string whyNotMoving(const Page& page) const;
   void chooseTraces();
   void watchRobot();
   void publish();

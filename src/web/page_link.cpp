@@ -17,14 +17,42 @@ constexpr Duration kPatience = std::chrono::milliseconds{200};
 PageLink::PageLink(std::string client_name)
     : client_name_(std::move(client_name)), session_(randomSession()), buffer_(link::kMaxMessageSize) {}
 
-std::string PageLink::ask(const AskRobot& request, const std::string& socket_path) {
-  if (!rc10d_) {
-    auto connection =
-        LinkClient::connect(socket_path, {.name = client_name_, .subscriptions = 0, .timeout = kPatience});
-    if (!connection) return connection.error().message;
-    rc10d_.emplace(std::move(*connection));
-    open_.clear();
+std::string PageLink::connect(const std::string& socket_path) {
+  if (rc10d_) return {};
+  auto connection =
+      LinkClient::connect(socket_path, {.name = client_name_, .subscriptions = 0, .timeout = kPatience});
+  if (!connection) return connection.error().message;
+  rc10d_.emplace(std::move(*connection));
+  open_.clear();
+  return {};
+}
+
+std::string PageLink::outcome(LinkClient::SendStatus status) {
+  switch (status) {
+    case LinkClient::SendStatus::kSent: return {};
+    case LinkClient::SendStatus::kBusy: return "rc10d does not read what it is asked";
+    case LinkClient::SendStatus::kClosed: break;
   }
+  rc10d_.reset();
+  return "rc10d has ended";
+}
+
+std::string PageLink::drive(const DriveMotor& wanted, std::int32_t validity_ms,
+                            const std::string& socket_path) {
+  if (auto why = connect(socket_path); !why.empty()) return why;
+  link::Command command;
+  command.client = client_name_;
+  command.session = session_;
+  command.seq = ++seq_;
+  command.validity_ms = validity_ms;
+  command.setpoint_count = 1;
+  command.setpoints[0].motor = wanted.motor;
+  command.setpoints[0].target = {.mode = wanted.mode, .value = wanted.value};
+  return outcome(rc10d_->send(command));  // NOLINT(bugprone-unchecked-optional-access)
+}
+
+std::string PageLink::ask(const AskRobot& request, const std::string& socket_path) {
+  if (auto why = connect(socket_path); !why.empty()) return why;
   const bool estop = request.operation == link::kEstopOperation;
   if (open_.size() >= kMostOpen && !estop) return "too many requests have no answer yet";
   link::Request message;
@@ -35,13 +63,9 @@ std::string PageLink::ask(const AskRobot& request, const std::string& socket_pat
   message.target = request.target;
   for (const auto& [name, value] : request.values)
     message.values[message.value_count++] = link::NamedValue{.name = std::string_view{name}, .value = value};
-  switch (rc10d_->send(message)) {
-    case LinkClient::SendStatus::kSent: open_.emplace_back(seq_, request.seq); return {};
-    case LinkClient::SendStatus::kBusy: return "rc10d does not read what it is asked";
-    case LinkClient::SendStatus::kClosed: break;
-  }
-  rc10d_.reset();
-  return "rc10d has ended";
+  auto why = outcome(rc10d_->send(message));  // NOLINT(bugprone-unchecked-optional-access)
+  if (why.empty()) open_.emplace_back(seq_, request.seq);
+  return why;
 }
 
 std::optional<PageLink::Answer> PageLink::answer() {

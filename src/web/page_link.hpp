@@ -21,6 +21,10 @@ class PageLink {
   /// Why it could not be sent; empty: it was.
   [[nodiscard]] std::string ask(const AskRobot& request, const std::string& socket_path);
 
+  /// A target for so long. Why it could not be sent; empty: it was.
+  [[nodiscard]] std::string drive(const DriveMotor& wanted, std::int32_t validity_ms,
+                                  const std::string& socket_path);
+
   struct Answer {
     std::int64_t seq = 0;  ///< The page's number.
     link::Response response;
@@ -31,6 +35,9 @@ class PageLink {
   void close() noexcept { rc10d_.reset(); }
 
  private:
+  [[nodiscard]] std::string connect(const std::string& socket_path);
+  [[nodiscard]] std::string outcome(LinkClient::SendStatus status);
+
   std::string client_name_;
   std::uint64_t session_;
   std::int64_t seq_ = 0;

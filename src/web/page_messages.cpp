@@ -84,8 +84,15 @@ std::string viewMessage(std::uint32_t view, const std::vector<std::string>& draw
                  {"dropped_ticks", dropped_ticks}});
 }
 
-std::string responseMessage(std::int64_t seq, std::string_view status, std::string_view message) {
-  return lineOf({{"type", "response"}, {"seq", seq}, {"status", status}, {"message", message}});
+std::string responseMessage(std::int64_t seq, std::string_view status, std::string_view message,
+                            std::span<const link::NamedValue> values) {
+  Json told = Json::object();
+  for (const auto& value : values) told[std::string{value.name.view()}] = value.value;
+  return lineOf({{"type", "response"},
+                 {"seq", seq},
+                 {"status", status},
+                 {"message", message},
+                 {"values", std::move(told)}});
 }
 
 }  // namespace rc10::web

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <string>
 #include <string_view>
 
@@ -28,7 +29,7 @@ inline constexpr int kPageProtocol = 1;
 [[nodiscard]] std::string viewMessage(std::uint32_t view, const std::vector<std::string>& drawn,
                                       const std::vector<std::string>& unknown, std::int64_t dropped_ticks);
 /// To a request of the page, by its own number.
-[[nodiscard]] std::string responseMessage(std::int64_t seq, std::string_view status,
-                                          std::string_view message);
+[[nodiscard]] std::string responseMessage(std::int64_t seq, std::string_view status, std::string_view message,
+                                          std::span<const link::NamedValue> values = {});
 
 }  // namespace rc10::web

@@ -1,5 +1,7 @@
 #include "web/page_request.hpp"
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 
@@ -19,6 +21,10 @@ constexpr double kMaxColumnUs = 60e6;
 constexpr double kMaxSpanUs = 3600e6;
 // Whole numbers beyond it are not exact in a page.
 constexpr double kMaxExact = 9007199254740991.0;
+// Modes that end where they are when they are let go; and far beyond what a motor does.
+constexpr std::array<std::string_view, 2> kHeldModes{toString(ControlMode::kVelocity),
+                                                     toString(ControlMode::kCurrent)};
+constexpr double kMostHeld = 1e6;
 
 const Received* memberOf(const Received& object, const char* key) {
   const auto found = object.find(key);
@@ -95,6 +101,31 @@ Result<PageRequest> operationOf(const Received& object) {
   return ask;
 }
 
+Result<PageRequest> driveOf(const Received& object) {
+  DriveMotor drive;
+  const auto seq = wholeOf(object, "seq", 0, kMaxExact);
+  const auto sent_us = wholeOf(object, "sent_us", 0, kMaxExact);
+  for (const auto* each : {&seq, &sent_us}) {
+    if (!*each) return tl::unexpected(each->error());
+  }
+  drive.seq = *seq;
+  drive.sent = std::chrono::microseconds{*sent_us};
+  drive.motor = textOf(object, "motor");
+  if (drive.motor.empty() || drive.motor.size() >= sizeof(link::Name))
+    return fail("'motor' is missing or too long");
+  const auto word = textOf(object, "mode");
+  const auto found = std::find(kHeldModes.begin(), kHeldModes.end(), word);
+  if (found == kHeldModes.end()) return fail("'mode' is velocity or current");
+  drive.mode = *found == kHeldModes[0] ? ControlMode::kVelocity : ControlMode::kCurrent;
+  const auto* value = memberOf(object, "value");
+  if (value == nullptr || !value->is_number()) return fail("'value' is missing");
+  drive.value = value->get<double>();
+  if (!(std::fabs(drive.value) <= kMostHeld)) return fail("'value' is out of range");
+  const auto* held = memberOf(object, "held");
+  drive.held = held != nullptr && held->is_boolean() && held->get<bool>();
+  return drive;
+}
+
 // An e-stop counts whatever else its message says, and if it says nothing that can be read.
 PageRequest estopOf(std::int64_t seq) {
   return AskRobot{.seq = seq, .operation = std::string{link::kEstopOperation}, .target = {}, .values = {}};
@@ -116,6 +147,7 @@ Result<PageRequest> parsePageRequest(std::string_view text) {
   if (type == "view") return viewOf(json);
   if (type == "range") return rangeOf(json);
   if (type == "request") return operationOf(json);
+  if (type == "drive") return driveOf(json);
   return fail("there is no message of this type");
 }
 

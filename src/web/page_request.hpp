@@ -8,6 +8,8 @@
 #include <vector>
 
 #include "app/result.hpp"
+#include "app/time.hpp"
+#include "app/vocabulary.hpp"
 
 namespace rc10::web {
 
@@ -37,7 +39,18 @@ struct AskRobot {
   std::vector<std::pair<std::string, double>> values;
 };
 
-using PageRequest = std::variant<ShowToken, ChooseView, AskRange, AskRobot>;
+/// Target of one motor while a pointer or a key is held: sent again and again, and once more when it is let
+/// go.
+struct DriveMotor {
+  std::int64_t seq = 0;  ///< The same of one hold.
+  std::string motor;
+  ControlMode mode{};
+  double value = 0.0;
+  Duration sent{};  ///< By the page's clock.
+  bool held = false;
+};
+
+using PageRequest = std::variant<ShowToken, ChooseView, AskRange, AskRobot, DriveMotor>;
 
 /// A stranger's message. The error is a sentence for him.
 [[nodiscard]] Result<PageRequest> parsePageRequest(std::string_view text);

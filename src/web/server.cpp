@@ -128,7 +128,8 @@ class PageConnection final : public PageSocket, public std::enable_shared_from_t
     socket_.async_read(buffer_, [self = shared_from_this()](error_code error, std::size_t) {
       if (error) return self->end();
       const auto data = self->buffer_.data();
-      self->shared_.hub.handle(*self, {static_cast<const char*>(data.data()), data.size()});
+      self->shared_.hub.handle(*self, {static_cast<const char*>(data.data()), data.size()},
+                               std::chrono::steady_clock::now());
       self->buffer_.consume(self->buffer_.size());
       self->read();
     });

@@ -1,4 +1,5 @@
 // Messages of a page of a stranger: parsed or refused in words, within the bounds that the hub relies on.
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <string_view>
@@ -27,6 +28,9 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     require(view->signals.size() <= link::kMaxTraceSignals && view->column_us > 0 && view->span_us >= 0);
   } else if (const auto* range = std::get_if<web::AskRange>(&*request)) {
     require(range->count >= 1 && range->count <= web::kMaxColumns && range->first_column >= 0);
+  } else if (const auto* drive = std::get_if<web::DriveMotor>(&*request)) {
+    require(std::isfinite(drive->value) && !drive->motor.empty() && drive->motor.size() < sizeof(link::Name));
+    require(drive->mode == ControlMode::kVelocity || drive->mode == ControlMode::kCurrent);
   } else if (const auto* ask = std::get_if<web::AskRobot>(&*request)) {
     require(ask->values.size() <= link::kMaxValues &&
             ask->operation.size() < sizeof(link::Request::operation));

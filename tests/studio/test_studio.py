@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from conftest import Studio
 
 PATIENCE_MS = 20_000.0
-TABS = ("overview", "match", "plots", "events", "timing")
+TABS = ("overview", "match", "plots", "move", "events", "timing")
 
 expect.set_options(timeout=PATIENCE_MS)
 

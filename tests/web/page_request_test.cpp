@@ -46,6 +46,21 @@ TEST(PageRequest, AnEstopCountsWhateverElseItsMessageSays) {
     EXPECT_EQ(parsed<AskRobot>(text).operation, "estop") << text;
 }
 
+TEST(PageRequest, AHeldMotorHasItsTargetAndTheTimeOfThePage) {
+  const auto drive = parsed<DriveMotor>(
+      R"({"type":"drive","seq":4,"motor":"yaw","mode":"velocity","value":-20.5,"sent_us":1500,"held":true})");
+  EXPECT_EQ(drive.seq, 4);
+  EXPECT_EQ(drive.motor, "yaw");
+  EXPECT_EQ(drive.mode, ControlMode::kVelocity);
+  EXPECT_EQ(drive.value, -20.5);
+  EXPECT_EQ(drive.sent, std::chrono::microseconds{1500});
+  EXPECT_TRUE(drive.held);
+  const auto let_go =
+      parsed<DriveMotor>(R"({"type":"drive","seq":4,"motor":"yaw","mode":"current","value":1,"sent_us":0})");
+  EXPECT_EQ(let_go.mode, ControlMode::kCurrent);
+  EXPECT_FALSE(let_go.held) << "what does not say that it is held is not";
+}
+
 TEST(PageRequest, WhatIsWrongIsRefusedInWords) {
   const std::string long_text(2000, 'x');
   for (const auto& text : std::initializer_list<std::string>{
@@ -56,6 +71,12 @@ TEST(PageRequest, WhatIsWrongIsRefusedInWords) {
            "{}",
            R"({"type":"shutdown"})",
            R"({"type":7})",
+           R"({"type":"drive","seq":1,"motor":"yaw","mode":"velocity","value":1})",
+           R"({"type":"drive","seq":1,"mode":"velocity","value":1,"sent_us":1})",
+           R"({"type":"drive","seq":1,"motor":"yaw","mode":"impedance","value":1,"sent_us":1})",
+           R"({"type":"drive","seq":1,"motor":"yaw","mode":"velocity","value":"1","sent_us":1})",
+           R"({"type":"drive","seq":1,"motor":"yaw","mode":"velocity","value":1e7,"sent_us":1})",
+           R"({"type":"drive","seq":-1,"motor":"yaw","mode":"velocity","value":1,"sent_us":1})",
            R"({"type":"view","view":1,"signals":"yaw","column_us":1000,"span_us":1})",
            R"({"type":"view","view":1,"signals":[1],"column_us":1000,"span_us":1})",
            R"({"type":"view","view":-1,"signals":[],"column_us":1000,"span_us":1})",

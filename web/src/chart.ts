@@ -1,6 +1,5 @@
 import uPlot from 'uplot';
 
-import { unitOf } from './numbers';
 
 // Okabe and Ito's colours, which colour-blind people tell apart; the line's pattern differs as well.
 const kColours = ['#0072b2', '#d55e00', '#009e73', '#cc79a7', '#56b4e9', '#e69f00', '#7f7f7f', '#b58900'];
@@ -39,6 +38,8 @@ export interface ChartHooks {
   onSelect: (from: number, to: number) => void;
   marks: () => Mark[];
   kept: () => Kept[];
+  /** Unit of a signal: those of one share an axis. */
+  unit: (signal: string) => string;
 }
 
 // As seen from the newest value.
@@ -54,11 +55,11 @@ function inkOf(name: string): string {
 
 /** Least and greatest values of each signal as a line with its band; an axis for each unit. */
 export function makeChart(target: HTMLElement, signals: string[], hooks: ChartHooks): uPlot {
-  const units = [...new Set(signals.map(unitOf))];
+  const units = [...new Set(signals.map(hooks.unit))];
   const series: uPlot.Series[] = [{}];
   const bands: uPlot.Band[] = [];
   signals.forEach((signal, i) => {
-    const look = { scale: unitOf(signal), stroke: colourOf(i), dash: dashOf(i), width: 1.5, points: { show: false } };
+    const look = { scale: hooks.unit(signal), stroke: colourOf(i), dash: dashOf(i), width: 1.5, points: { show: false } };
     series.push({ ...look, label: `${signal} min` }, { ...look, label: signal });
     bands.push({ series: [2 * i + 2, 2 * i + 1], fill: `${colourOf(i)}55` });
   });
@@ -97,7 +98,7 @@ export function makeChart(target: HTMLElement, signals: string[], hooks: ChartHo
             u.setSelect({ left: 0, top: 0, width: 0, height: 0 }, false);
           },
         ],
-        drawAxes: [(u) => drawKept(u, hooks.kept())],
+        drawAxes: [(u) => drawKept(u, hooks.kept(), hooks.unit)],
         draw: [(u) => drawMarks(u, hooks.marks())],
       },
     },
@@ -124,7 +125,7 @@ function clipped(u: uPlot, draw: (context: CanvasRenderingContext2D) => void): v
 }
 
 // The curve of before behind today's, ending where the picture ends.
-function drawKept(u: uPlot, kept: Kept[]): void {
+function drawKept(u: uPlot, kept: Kept[], unit: (signal: string) => string): void {
   const end = u.scales['x']?.max;
   if (end === undefined || end === null) return;
   clipped(u, (context) => {
@@ -132,7 +133,7 @@ function drawKept(u: uPlot, kept: Kept[]): void {
     context.lineWidth = 2 * devicePixelRatio;
     for (const trace of kept) {
       const last = trace.times[trace.times.length - 1] ?? 0;
-      const scale = unitOf(trace.name);
+      const scale = unit(trace.name);
       if (u.scales[scale] === undefined) continue;
       context.beginPath();
       let down = false;

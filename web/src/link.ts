@@ -40,6 +40,17 @@ export interface RobotRequest {
   values?: Record<string, number>;
 }
 
+/** A target of one motor while something is held. */
+export interface Held {
+  motor: string;
+  mode: 'velocity' | 'current';
+  value: number;
+}
+
+function failure(seq: number, message: string): Response {
+  return { type: 'response', seq, status: 'failed', message, values: {} };
+}
+
 export class Link {
   readonly known: Known = {
     connection: 'connecting',
@@ -101,14 +112,27 @@ export class Link {
         this.open.delete(seq);
         resolve(answer);
       };
-      const timer = setTimeout(
-        () => done({ type: 'response', seq, status: 'failed', message: 'no answer' }),
-        kAnswerPatienceMs,
-      );
+      const timer = setTimeout(() => done(failure(seq, 'no answer')), kAnswerPatienceMs);
       this.open.set(seq, done);
       if (!this.send({ type: 'request', seq, target: '', values: {}, ...request }))
-        done({ type: 'response', seq, status: 'failed', message: 'no connection' });
+          done(failure(seq, 'no connection'));
     });
+  }
+
+  /** A motor moves as long as this is renewed; each renewal counts for 150 ms from when it was sent. */
+  hold(target: Held, onRefused: (why: string) => void): { renew: () => boolean; release: () => void } {
+    const seq = ++this.seq;
+    const tell = (held: boolean) =>
+      this.send({ type: 'drive', seq, ...target, held, sent_us: Math.round(performance.now() * 1000) });
+    this.open.set(seq, (answer) => onRefused(answer.message));
+    tell(true);
+    return {
+      renew: () => tell(true),
+      release: () => {
+        this.open.delete(seq);
+        tell(false);
+      },
+    };
   }
 
   private send(message: object): boolean {
@@ -121,7 +145,7 @@ export class Link {
     this.known.connection = 'lost';
     this.known.state = null;
     for (const done of [...this.open.values()])
-      done({ type: 'response', seq: 0, status: 'failed', message: 'the connection was lost' });
+      done(failure(0, 'the connection was lost'));
     this.changed();
     setTimeout(() => this.connect(), this.pauseMs);
     this.pauseMs = Math.min(2 * this.pauseMs, kLongestPauseMs);

@@ -5,13 +5,14 @@ import { StudioContext, useKnown, useStored, useStudio } from './context';
 import { Events } from './events';
 import { Link } from './link';
 import { Match } from './match';
+import { Move } from './move';
 import { Overview } from './overview';
 import { Plots } from './plots';
 import { Stop } from './stop';
 import { Timing } from './timing';
 import { type Language, storeLanguage, storedLanguage, wordsOf } from './words';
 
-const kParts = { overview: Overview, match: Match, plots: Plots, events: Events, timing: Timing } as const;
+const kParts = { overview: Overview, match: Match, plots: Plots, move: Move, events: Events, timing: Timing } as const;
 type Part = keyof typeof kParts;
 
 function Header(props: { language: Language; onLanguage: (language: Language) => void }) {

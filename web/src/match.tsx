@@ -1,4 +1,5 @@
 import { useKnown, useStored, useStudio } from './context';
+import { NumberField } from './number_field';
 import type { Known } from './link';
 import { duration, number } from './numbers';
 import type { Diagnostics, Robot, State } from './protocol';
@@ -208,16 +209,7 @@ export function Match() {
       <div class="toolbar wishes">
         <label>
           {`${word('matchHot')} `}
-          <input
-            type="number"
-            min={20}
-            max={150}
-            value={hot_c}
-            onInput={(event) => {
-              const wanted = Number(event.currentTarget.value);
-              if (wanted > 0) setHot(wanted);
-            }}
-          />
+          <NumberField least={20} value={hot_c} onValue={(wanted) => wanted > 0 && setHot(wanted)} />
           {' °C'}
         </label>
         <label class="hash">

@@ -81,9 +81,21 @@ function firstChoice(known: ReturnType<typeof useKnown>): string[] {
 }
 
 export function Plots() {
-  const { link, word } = useStudio();
   const known = useKnown();
   const [stored, setChosen] = useStored<string[]>('signals', []);
+  const chosen = stored.length === 0 ? firstChoice(known) : stored;
+  return (
+    <div class="plots">
+      <SignalChooser chosen={chosen} onChoose={setChosen} />
+      <Curves signals={chosen} />
+    </div>
+  );
+}
+
+/** Curves of these signals, each tick in them, and what can be done with them. */
+export function Curves(props: { signals: string[]; unit?: (signal: string) => string }) {
+  const { link, word } = useStudio();
+  const known = useKnown();
   const [span_s, setSpan] = useStored('span_s', 10);
   const [frozen, setFrozen] = useState(false);
   const [points, setPoints] = useState<number[]>([]);
@@ -101,8 +113,9 @@ export function Plots() {
   keptNow.current = kept;
   frozenNow.current = frozen;
   const robotName = known.robot?.robot.robot ?? '';
-  const chosen = stored.length === 0 ? firstChoice(known) : stored;
-  const key = chosen.join(' ');
+  const chosen = props.signals;
+  const unit = props.unit ?? unitOf;
+  const key = chosen.map((name) => name + unit(name)).join(' ');
   const traces = useMemo(() => new Traces(() => origin.current), [key, span_s, robotName]);
 
   const columns = () => Math.min(2000, Math.max(200, Math.round(box.current?.clientWidth ?? 800)));
@@ -143,6 +156,7 @@ export function Plots() {
       chart.current = makeChart(target, answer.signals, {
         marks,
         kept: () => keptNow.current,
+        unit,
         onClick: (time) => setPoints((before) => (before.length >= 2 ? [time] : [...before, time])),
         onSelect: (from, to) => zoom(from, to),
       });
@@ -214,74 +228,71 @@ export function Plots() {
     setKept(drawn.map((name, i) => ({ name, times: [...traces.times], values: [...(traces.max[i] ?? [])] })));
 
   return (
-    <div class="plots">
-      <SignalChooser chosen={chosen} onChoose={setChosen} />
-      <div class="plot">
-        <div class="toolbar">
-          <label>
-            {`${word('span')} `}
-            <select value={span_s} onChange={(event) => setSpan(Number(event.currentTarget.value))}>
-              {kSpans_s.map((seconds) => (
-                <option key={seconds} value={seconds}>{`${seconds} s`}</option>
-              ))}
-            </select>
-          </label>
-          <button
-            type="button"
-            aria-pressed={frozen}
-            onClick={() => {
-              setFrozen(!frozen);
-              frozenNow.current = !frozen;
-              if (frozen) draw();
-            }}
-          >
-            {frozen ? word('go') : word('freeze')}
-          </button>
-          <button type="button" onClick={draw}>
-            {word('fit')}
-          </button>
-          <button type="button" onClick={kept.length > 0 ? () => setKept([]) : keep}>
-            {kept.length > 0 ? word('forget') : word('keep')}
-          </button>
-          <button type="button" onClick={csv}>
-            {word('csv')}
-          </button>
-          <button type="button" onClick={png}>
-            {word('png')}
-          </button>
-          {droppedTicks > 0 && <span class="hint">{`${droppedTicks} ${word('droppedTicks')}`}</span>}
-        </div>
-        <div class="chart" ref={box} />
-        <table class="legend">
-          <tbody>
-            {drawn.map((name, i) => {
-              const at = points.map((time) => valueAt(i, time));
-              const [a, b] = at;
-              const last = traces.max[i]?.[traces.times.length - 1] ?? null;
-              return (
-                <tr key={name}>
-                  <td>
-                    <span class="swatch" style={{ background: colourOf(i) }} />
-                    {name}
-                  </td>
-                  <td class="number">{`${number(last, 2)} ${unitOf(name)}`}</td>
-                  {at.map((value, n) => (
-                    <td key={n} class="number">{`${n === 0 ? 'A' : 'B'} ${number(value, 2)}`}</td>
-                  ))}
-                  {a !== undefined && b !== undefined && (
-                    <td class="number">{`Δ ${number(a === null || b === null ? null : b - a, 2)}`}</td>
-                  )}
-                </tr>
-              );
-            })}
-          </tbody>
-        </table>
-        <p class="hint">
-          {points.length === 2
-            ? `Δt ${number(((points[1] ?? 0) - (points[0] ?? 0)) * 1000, 1)} ms`
-            : word('cursor')}
-        </p>
+    <div class="plot">
+      <div class="toolbar">
+        <label>
+          {`${word('span')} `}
+          <select value={span_s} onChange={(event) => setSpan(Number(event.currentTarget.value))}>
+            {kSpans_s.map((seconds) => (
+              <option key={seconds} value={seconds}>{`${seconds} s`}</option>
+            ))}
+          </select>
+        </label>
+        <button
+          type="button"
+          aria-pressed={frozen}
+          onClick={() => {
+            setFrozen(!frozen);
+            frozenNow.current = !frozen;
+            if (frozen) draw();
+          }}
+        >
+          {frozen ? word('go') : word('freeze')}
+        </button>
+        <button type="button" onClick={draw}>
+          {word('fit')}
+        </button>
+        <button type="button" onClick={kept.length > 0 ? () => setKept([]) : keep}>
+          {kept.length > 0 ? word('forget') : word('keep')}
+        </button>
+        <button type="button" onClick={csv}>
+          {word('csv')}
+        </button>
+        <button type="button" onClick={png}>
+          {word('png')}
+        </button>
+        {droppedTicks > 0 && <span class="hint">{`${droppedTicks} ${word('droppedTicks')}`}</span>}
       </div>
+      <div class="chart" ref={box} />
+      <table class="legend">
+        <tbody>
+          {drawn.map((name, i) => {
+            const at = points.map((time) => valueAt(i, time));
+            const [a, b] = at;
+            const last = traces.max[i]?.[traces.times.length - 1] ?? null;
+            return (
+              <tr key={name}>
+                <td>
+                  <span class="swatch" style={{ background: colourOf(i) }} />
+                  {name}
+                </td>
+                <td class="number">{`${number(last, 2)} ${unit(name)}`}</td>
+                {at.map((value, n) => (
+                  <td key={n} class="number">{`${n === 0 ? 'A' : 'B'} ${number(value, 2)}`}</td>
+                ))}
+                {a !== undefined && b !== undefined && (
+                  <td class="number">{`Δ ${number(a === null || b === null ? null : b - a, 2)}`}</td>
+                )}
+              </tr>
+            );
+          })}
+        </tbody>
+      </table>
+      <p class="hint">
+        {points.length === 2
+          ? `Δt ${number(((points[1] ?? 0) - (points[0] ?? 0)) * 1000, 1)} ms`
+          : word('cursor')}
+      </p>
     </div>
   );
 }

@@ -160,6 +160,7 @@ export interface Response {
   seq: number;
   status: 'ok' | 'refused' | 'failed';
   message: string;
+  values: Record<string, number>;
 }
 
 export type ServerMessage =

@@ -1,0 +1,108 @@
+// Gains of the loops that rc10d closes: live, with what they were before, and the lines for the robot's file.
+import { useEffect, useState } from 'preact/hooks';
+
+import { useKnown, useStudio } from './context';
+import { NumberField } from './number_field';
+
+type Values = Record<string, number>;
+
+const same = (a: Values, b: Values) => Object.keys(a).every((key) => a[key] === b[key]);
+
+export function Gains(props: { motor: string }) {
+  const { link, word } = useStudio();
+  const known = useKnown();
+  const [inForce, setInForce] = useState<Values | null>(null);
+  const [wanted, setWanted] = useState<Values>({});
+  const [history, setHistory] = useState<Values[]>([]);
+  const [yaml, setYaml] = useState('');
+  const [told, setTold] = useState('');
+  const allowed = known.hello?.right === 'command';
+  const robot = known.robot?.robot.pid;
+
+  const load = async () => {
+    const answer = await link.ask({ operation: 'get_config', target: props.motor });
+    if (answer.status !== 'ok') {
+      setInForce(null);
+      setTold(answer.message);
+      return;
+    }
+    setTold('');
+    setInForce(answer.values);
+    setWanted(answer.values);
+    setYaml(answer.message);
+  };
+  useEffect(() => {
+    if (allowed) void load();
+  }, [props.motor, allowed, robot]);
+
+  const set = async (values: Values, before: Values | null) => {
+    const changed = Object.fromEntries(Object.entries(values).filter(([key, value]) => inForce?.[key] !== value));
+    const answer = await link.ask({ operation: 'set_gains', target: props.motor, values: changed });
+    if (answer.status !== 'ok') return setTold(answer.message);
+    if (before !== null) setHistory([before, ...history].slice(0, 20));
+    await load();
+  };
+
+  return (
+    <section class="card gains" aria-label={word('gains')}>
+      <h3>{word('gains')}</h3>
+      {inForce !== null && (
+        <form
+          onSubmit={(event) => {
+            event.preventDefault();
+            void set(wanted, inForce);
+          }}
+        >
+          <table>
+            <tbody>
+              {Object.entries(inForce).map(([key, value]) => (
+                <tr key={key}>
+                  <th scope="row">
+                    <label for={`gain-${key}`}>{key}</label>
+                  </th>
+                  <td>
+                    <NumberField
+                      id={`gain-${key}`}
+                      changed={wanted[key] !== value}
+                      value={wanted[key] ?? value}
+                      onValue={(number) => setWanted({ ...wanted, [key]: number })}
+                    />
+                  </td>
+                </tr>
+              ))}
+            </tbody>
+          </table>
+          <div class="toolbar">
+            <button type="submit" class="strong" disabled={!allowed || same(inForce, wanted)}>
+              {word('gainsApply')}
+            </button>
+            <button
+              type="button"
+              disabled={!allowed || history.length === 0}
+              onClick={() => {
+                const [before, ...rest] = history;
+                if (before === undefined) return;
+                setHistory(rest);
+                void set(before, null);
+              }}
+            >
+              {`${word('gainsUndo')}${history.length > 0 ? ` (${history.length})` : ''}`}
+            </button>
+            <button type="button" onClick={() => void navigator.clipboard?.writeText(yaml)}>
+              {word('gainsCopy')}
+            </button>
+          </div>
+          <details>
+            <summary>{word('gainsLines')}</summary>
+            <pre>{yaml}</pre>
+          </details>
+        </form>
+      )}
+      {told !== '' && (
+        <p class={inForce === null ? 'hint' : 'refused'} role="alert">
+          {told}
+        </p>
+      )}
+    </section>
+  );
+}
