@@ -62,12 +62,14 @@ export class Link {
     events: [],
   };
 
-  onColumns: (columns: Columns) => void = () => {};
+  /** Signals of the view that is drawn now. */
+  shown: string[] = [];
   onView: (view: ViewAnswer) => void = () => {};
 
   private socket: WebSocket | null = null;
   private pauseMs = kFirstPauseMs;
   private readonly listeners = new Set<Listener>();
+  private readonly columnListeners = new Set<(columns: Columns) => void>();
   private readonly open = new Map<number, (answer: Response) => void>();
   private seq = 0;
   private drawn = false;
@@ -89,6 +91,11 @@ export class Link {
   subscribe(listener: Listener): () => void {
     this.listeners.add(listener);
     return () => this.listeners.delete(listener);
+  }
+
+  addColumns(listener: (columns: Columns) => void): () => void {
+    this.columnListeners.add(listener);
+    return () => this.columnListeners.delete(listener);
   }
 
   showToken(token: string): void {
@@ -154,7 +161,7 @@ export class Link {
   private take(data: string | ArrayBuffer): void {
     if (typeof data !== 'string') {
       const columns = readColumns(data);
-      if (columns !== null) this.onColumns(columns);
+      if (columns !== null) for (const listener of [...this.columnListeners]) listener(columns);
       return;
     }
     const message = JSON.parse(data) as ServerMessage;
@@ -187,6 +194,7 @@ export class Link {
         known.events = [message, ...known.events].slice(0, kMaxEvents);
         break;
       case 'view':
+        this.shown = message.signals;
         this.onView(message);
         break;
       case 'response':

@@ -2,6 +2,7 @@
 import { useEffect, useRef, useState } from 'preact/hooks';
 
 import { Action } from './action';
+import { CapturePanel } from './capture';
 import { useKnown, useStored, useStudio } from './context';
 import { Gains } from './gains';
 import { unitOf } from './numbers';
@@ -209,7 +210,10 @@ export function Move() {
           )}
           <Gains key={`gains ${info.name}`} motor={info.name} />
         </div>
-        <Curves signals={signals} unit={unit} />
+        <div class="curves">
+          <Curves signals={signals} unit={unit} />
+          <CapturePanel motor={info.name} unit={unit} />
+        </div>
       </div>
     </>
   );

@@ -5,7 +5,7 @@ export function NumberField(props: {
   id?: string;
   label?: string;
   value: number;
-  least?: number;
+  least?: number | undefined;
   changed?: boolean;
   disabled?: boolean;
   onValue: (value: number) => void;

@@ -25,7 +25,7 @@ function allSignals(known: ReturnType<typeof useKnown>): { owner: string; names:
   ];
 }
 
-function download(name: string, content: Blob): void {
+export function download(name: string, content: Blob): void {
   const link = document.createElement('a');
   link.href = URL.createObjectURL(content);
   link.download = name;
@@ -106,6 +106,7 @@ export function Curves(props: { signals: string[]; unit?: (signal: string) => st
   const chart = useRef<uPlot | null>(null);
   const view = useRef(0);
   const origin = useRef(0);
+  const zoomed = useRef(-1);
   const pointsNow = useRef<number[]>([]);
   const keptNow = useRef<Kept[]>([]);
   const frozenNow = useRef(false);
@@ -161,11 +162,13 @@ export function Curves(props: { signals: string[]; unit?: (signal: string) => st
         onSelect: (from, to) => zoom(from, to),
       });
     };
-    link.onColumns = (received) => {
+    const forget = link.addColumns((received) => {
       if (received.kind === 'reset' && received.count > 0 && origin.current === 0)
         origin.current = received.first * received.columnUs;
       if (received.kind === 'next' && origin.current === 0) origin.current = received.first * received.columnUs;
       if (received.kind === 'range') {
+        // Of the last zoom, and of nobody else.
+        if (received.first !== zoomed.current) return;
         const fine = new Traces(() => origin.current);
         if (!fine.add({ ...received, kind: 'reset' }, number_, received.count)) return;
         chart.current?.setData(
@@ -175,11 +178,11 @@ export function Curves(props: { signals: string[]; unit?: (signal: string) => st
         return;
       }
       if (traces.add(received, number_, Math.ceil((60 * kUs) / received.columnUs)) && !frozenNow.current) draw();
-    };
+    });
     link.view(number_, chosen, columnUs, span_s * kUs);
     return () => {
       link.onView = () => {};
-      link.onColumns = () => {};
+      forget();
       link.view(++view.current, [], 1000, 0);
       chart.current?.destroy();
       chart.current = null;
@@ -192,6 +195,7 @@ export function Curves(props: { signals: string[]; unit?: (signal: string) => st
     frozenNow.current = true;
     const columnUs = Math.max(100, Math.round(((to - from) * kUs) / columns()));
     const first = Math.floor((from * kUs + origin.current) / columnUs);
+    zoomed.current = first;
     link.range(first, columnUs, Math.min(4096, Math.ceil(((to - from) * kUs) / columnUs)));
   };
 

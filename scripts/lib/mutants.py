@@ -1,0 +1,254 @@
+#!/usr/bin/python3
+"""Mutation testing of the safety core: small changes of its sources, which unit tests must notice.
+
+universalmutator makes the mutants of all files; a sample by seed is built and tested, each in a
+copy of the project. One that does not compile counts for nothing. Those that live are told, but
+for the ones that tests/mutants/equivalent.txt gives a reason for. The last line is "N passed,
+N failed, N skipped": one test, which fails below 95 % of the rest.
+"""
+
+from __future__ import annotations
+
+import argparse
+import concurrent.futures
+import contextlib
+import difflib
+import os
+import queue
+import random
+import shutil
+import signal
+import subprocess
+import sys
+import tempfile
+from pathlib import Path
+from typing import NamedTuple
+
+REPO = Path(__file__).resolve().parents[2]
+WORK = REPO / "build" / "mutants"
+LEAST_KILLED = 0.95
+# A mutant that never ends is noticed, too.
+TEST_PATIENCE_S = 180
+TESTS = ("motor_test", "daemon_test")
+FILES = (
+    "src/daemon/clients/admission.cpp",
+    "src/daemon/exchange/states.hpp",
+    "src/daemon/supervision/axis.cpp",
+    "src/daemon/supervision/foreign_watch.cpp",
+    "src/daemon/supervision/lease.hpp",
+    "src/daemon/supervision/supervisor.cpp",
+    "src/daemon/supervision/supervisor_alone.cpp",
+    "src/daemon/supervision/supervisor_groups.cpp",
+    "src/daemon/supervision/supervisor_orders.cpp",
+    "src/motor/angle_reference.cpp",
+    "src/motor/encoder.cpp",
+    "src/motor/first_angle.cpp",
+    "src/motor/guarding/fallback.hpp",
+    "src/motor/guarding/motor_guard.cpp",
+    "src/motor/guarding/rest_check.cpp",
+    "src/motor/guarding/target_shaper.cpp",
+)
+
+
+class Mutant(NamedTuple):
+    """One changed line of one file."""
+
+    file: str
+    line: int
+    before: str
+    after: str
+    text: str
+
+    def __str__(self) -> str:
+        return f"{self.file}:{self.line}\n  - {self.before}\n  + {self.after}"
+
+    @property
+    def key(self) -> tuple[str, str, str]:
+        """As equivalent.txt has it."""
+        return self.file, self.before, self.after
+
+
+def mutants_of(file: str, mutate: Path) -> list[Mutant]:
+    """Every mutant of one file that changes more than a comment."""
+    original = (REPO / file).read_text(encoding="utf-8")
+    found = []
+    with tempfile.TemporaryDirectory() as folder:
+        subprocess.run(
+            [mutate, REPO / file, "cpp", "--noCheck", "--mutantDir", folder],
+            check=True,
+            stdout=subprocess.DEVNULL,
+        )
+        for path in sorted(Path(folder).iterdir()):
+            text = path.read_text(encoding="utf-8")
+            changed = difference(original, text)
+            if changed is not None:
+                found.append(Mutant(file, *changed, text))
+    return found
+
+
+def difference(original: str, text: str) -> tuple[int, str, str] | None:
+    """Number, old and new text of the one line that differs; None: nothing but a comment."""
+    old, new = original.splitlines(), text.splitlines()
+    for tag, first, last, other_first, other_last in difflib.SequenceMatcher(
+        None, old, new, autojunk=False
+    ).get_opcodes():
+        if tag == "equal":
+            continue
+        before = " ".join(line.split("//")[0].strip() for line in old[first:last])
+        after = " ".join(line.split("//")[0].strip() for line in new[other_first:other_last])
+        return None if before == after or not before else (first + 1, before, after)
+    return None
+
+
+def equivalent() -> set[tuple[str, str, str]]:
+    """Those that are no other programs."""
+    known = set()
+    for line in (REPO / "tests/mutants/equivalent.txt").read_text(encoding="utf-8").splitlines():
+        if line and not line.startswith("#"):
+            file, before, after, _reason = line.split("\t")
+            known.add((file, before, after))
+    return known
+
+
+class Tree:
+    """A copy of the project with its tests, in which one mutant after the other is tried."""
+
+    def __init__(self, number: int) -> None:
+        self.root = WORK / f"tree-{number}"
+        self.build = WORK / f"build-{number}"
+        listed = subprocess.run(
+            ["git", "ls-files", "-co", "--exclude-standard", "-z"],
+            cwd=REPO,
+            check=True,
+            capture_output=True,
+        )
+        for name in listed.stdout.decode().split("\0"):
+            source, copy = REPO / name, self.root / name
+            if not name or not source.is_file():
+                continue
+            # What has not changed keeps its time: it is not compiled again.
+            if not copy.exists() or copy.read_bytes() != source.read_bytes():
+                copy.parent.mkdir(parents=True, exist_ok=True)
+                shutil.copyfile(source, copy)
+        options = {
+            "CMAKE_BUILD_TYPE": "Debug",
+            "CMAKE_CXX_FLAGS_DEBUG": "-O0",
+            "RC10_UNITY_BATCH": "1",
+            "RC10_TEST_LAYERS": "motor;daemon",
+            "RC10_WERROR": "OFF",
+        }
+        flags = [f"-D{key}={value}" for key, value in options.items()]
+        self.run(["cmake", "-G", "Ninja", "-S", self.root, "-B", self.build, *flags], check=True)
+
+    def run(
+        self, command: list[str | Path], check: bool = False, timeout_s: float | None = None
+    ) -> bool:
+        """Whether it succeeded in time."""
+        env = {**os.environ, "CCACHE_BASEDIR": str(self.root), "CCACHE_NOHASHDIR": "1"}
+        with subprocess.Popen(
+            command,
+            cwd=self.root,
+            env=env,
+            stdout=subprocess.PIPE,
+            stderr=subprocess.STDOUT,
+            start_new_session=True,
+        ) as running:
+            try:
+                output, _ = running.communicate(timeout=timeout_s)
+            except subprocess.TimeoutExpired:
+                with contextlib.suppress(ProcessLookupError):
+                    os.killpg(running.pid, signal.SIGKILL)
+                running.communicate()
+                return False
+        if check and running.returncode != 0:
+            sys.exit(output.decode(errors="replace"))
+        return running.returncode == 0
+
+    def compile(self, check: bool = False) -> bool:
+        """Builds the tests."""
+        return self.run(["ninja", "-C", self.build, *TESTS], check)
+
+    def passes(self, check: bool = False) -> bool:
+        """Whether all tests pass."""
+        return all(
+            self.run(
+                [self.build / "tests" / test, "--gtest_fail_fast", "--gtest_brief=1"],
+                check,
+                TEST_PATIENCE_S,
+            )
+            for test in TESTS
+        )
+
+    def judge(self, mutant: Mutant) -> str:
+        """`killed`, `lives`, or `invalid`: it does not compile."""
+        file = self.root / mutant.file
+        original = file.read_text(encoding="utf-8")
+        file.write_text(mutant.text, encoding="utf-8")
+        try:
+            if not self.compile():
+                return "invalid"
+            return "lives" if self.passes() else "killed"
+        finally:
+            file.write_text(original, encoding="utf-8")
+
+
+def arguments() -> argparse.Namespace:
+    """The command line."""
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--mutate", type=Path, required=True, help="universalmutator's program")
+    parser.add_argument("--count", type=int, default=400, help="mutants that compile")
+    parser.add_argument("--seed", type=int, default=1)
+    parser.add_argument("--jobs", type=int, default=2)
+    return parser.parse_args()
+
+
+def main() -> int:
+    """Tries a sample."""
+    given = arguments()
+    WORK.mkdir(parents=True, exist_ok=True)
+    everything = [mutant for file in FILES for mutant in mutants_of(file, given.mutate)]
+    known = equivalent()
+    candidates = [mutant for mutant in everything if mutant.key not in known]
+    # Some do not compile.
+    sample = random.Random(given.seed).sample(candidates, min(2 * given.count, len(candidates)))
+    print(
+        f"{len(everything)} mutants of {len(FILES)} files, {len(known)} known as equivalent",
+        flush=True,
+    )
+
+    trees: queue.Queue[Tree] = queue.Queue()
+    for number in range(given.jobs):
+        tree = Tree(number)
+        tree.compile(check=True)
+        tree.passes(check=True)
+        trees.put(tree)
+
+    counts = {"killed": 0, "lives": 0, "invalid": 0}
+
+    def judge(mutant: Mutant) -> tuple[Mutant, str]:
+        if counts["killed"] + counts["lives"] >= given.count:
+            return mutant, "enough"
+        tree = trees.get()
+        try:
+            return mutant, tree.judge(mutant)
+        finally:
+            trees.put(tree)
+
+    with concurrent.futures.ThreadPoolExecutor(given.jobs) as pool:
+        for mutant, verdict in pool.map(judge, sample):
+            if verdict == "enough":
+                continue
+            counts[verdict] += 1
+            if verdict == "lives":
+                print(f"lives: {mutant}", flush=True)
+    tried = counts["killed"] + counts["lives"]
+    share = counts["killed"] / tried if tried else 0.0
+    killed, invalid = counts["killed"], counts["invalid"]
+    print(f"{tried} tried, {killed} killed ({100 * share:.1f} %), {invalid} did not compile")
+    failed = share < LEAST_KILLED
+    print(f"{int(not failed)} passed, {int(failed)} failed, 0 skipped")
+    return int(failed)
+
+
+if __name__ == "__main__":
+    sys.exit(main())

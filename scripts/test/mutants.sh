@@ -1,0 +1,16 @@
+#!/bin/bash
+# small changes of the safety core, each of which the unit tests must notice: 400 of them by RC10_MUTANTS_SEED, about an hour (RC10_MUTANTS)
+set -euo pipefail
+# shellcheck source=scripts/lib/results.sh
+. "$(dirname "${BASH_SOURCE[0]}")/../lib/results.sh"
+
+need build test
+tools=$repo/build/mutants/tools
+if [ ! -x "$tools/bin/mutate" ]; then
+    /usr/bin/python3 -m venv "$tools"
+    "$tools/bin/python" -m pip --quiet --disable-pip-version-check install --require-hashes --no-deps \
+        --requirement "$repo/tests/mutants/requirements.txt"
+fi
+suite "mutants" "$repo/scripts/lib/mutants.py" --mutate "$tools/bin/mutate" --count "${RC10_MUTANTS:-400}" \
+    --seed "${RC10_MUTANTS_SEED:-1}" --jobs "${RC10_JOBS:-$(nproc)}"
+finish

@@ -1,0 +1,179 @@
+"""Captures on the page: armed, triggered, compared, saved and opened again."""
+
+from __future__ import annotations
+
+import json
+from typing import TYPE_CHECKING, Any
+
+import pytest
+from playwright.sync_api import Browser, Locator, Page, expect
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    from conftest import Studio
+
+PATIENCE_MS = 20_000.0
+
+expect.set_options(timeout=PATIENCE_MS)
+
+
+@pytest.fixture
+def panel(page: Page, studio: Studio) -> Locator:
+    """The captures of yaw, which is ACTIVE and held by nobody."""
+    page.locator("#tab-move").click()
+    page.get_by_label("Motor").select_option("yaw")
+    studio.daemon.must("enable", "yaw")
+    expect(page.locator(".badge.status")).to_have_text("ACTIVE")
+    found = page.locator(".captures")
+    expect(found.get_by_label("when").locator("option")).to_have_count(3)
+    return found
+
+
+def step(page: Page, panel: Locator) -> None:
+    """A step of 20 rpm, captured."""
+    before = panel.locator("tbody tr").count()
+    panel.get_by_role("button", name="Arm", exact=True).click()
+    expect(panel.get_by_role("status")).to_have_text("armed: waits for the trigger")
+    page.get_by_role("button", name="counter-clockwise", exact=True).hover()
+    page.mouse.down()
+    expect(panel.locator("tbody tr")).to_have_count(before + 1)
+    page.mouse.up()
+    expect(panel.get_by_role("button", name="Arm", exact=True)).to_be_visible()
+
+
+def saved(page: Page, panel: Locator, name: str = "Save") -> dict[str, Any]:
+    with page.expect_download() as download:
+        panel.get_by_role("button", name=name, exact=True).click()
+    content: dict[str, Any] = json.loads(download.value.path().read_text())
+    return content
+
+
+def test_a_step_is_captured_tick_by_tick_with_its_numbers_and_gains(
+    page: Page, panel: Locator
+) -> None:
+    step(page, panel)
+    row = panel.locator("tbody tr").first
+    expect(row).to_contain_text("0.0 → 20.0 rpm")
+    content = saved(page, panel)
+    [capture] = content["captures"]
+    assert content["format"] == "rc10 captures 1"
+    assert capture["signals"] == ["yaw.target_shaped", "yaw.velocity_rpm", "yaw.current_a"]
+    assert capture["units"] == ["rpm", "rpm", "A"]
+    assert capture["period_s"] == 0.001
+    assert capture["gains"]["velocity_pid.kp_a_per_rpm"] > 0
+    assert len(capture["config_hash"]) == 64
+    target, measured, _current = capture["values"]
+    assert len(target) == len(measured) == 1200
+    # The trigger is the tick in which the target crosses 5 rpm.
+    at = round(capture["pre_s"] / capture["period_s"])
+    assert target[at] >= 5
+    assert target[at - 1] is None or target[at - 1] < 5
+    assert max(value for value in measured if value is not None) >= 18
+
+
+def test_captures_lie_over_one_another_and_can_be_named_and_removed(
+    page: Page, panel: Locator
+) -> None:
+    step(page, panel)
+    step(page, panel)
+    expect(panel.locator(".overlay canvas")).to_be_visible()
+    first = panel.locator("tbody tr").first
+    first.get_by_label("name").fill("before")
+    first.get_by_label("name").blur()
+    expect(panel.get_by_role("checkbox", name="Show before")).to_be_checked()
+    panel.get_by_role("button", name="Remove before").click()
+    expect(panel.locator("tbody tr")).to_have_count(1)
+    # The browser keeps the other.
+    page.reload()
+    page.locator("#tab-move").click()
+    expect(page.locator(".captures tbody tr")).to_have_count(1)
+
+
+def test_a_file_is_opened_by_a_page_without_a_robot(
+    page: Page, panel: Locator, chromium: Browser, studio: Studio, tmp_path: Path
+) -> None:
+    step(page, panel)
+    file = tmp_path / "captures.json"
+    file.write_text(json.dumps(saved(page, panel)))
+    studio.daemon.must("disable")
+    context = chromium.new_context(locale="en-GB")
+    other = context.new_page()
+    other.goto(studio.url)
+    other.locator("#tab-move").click()
+    captures = other.locator(".captures")
+    expect(captures.locator("tbody tr")).to_have_count(0)
+    studio.daemon.kill()
+    expect(other.get_by_role("alert")).to_contain_text("rc10d is not running")
+    captures.locator("input[type=file]").set_input_files(file)
+    expect(captures.locator("tbody tr")).to_contain_text("0.0 → 20.0 rpm")
+    context.close()
+    studio.daemon.start()
+    studio.daemon.wait_ready()
+
+
+@pytest.mark.parametrize(
+    "content",
+    [
+        "",
+        "{}",
+        "[1]",
+        '{"format":"rc10 captures 1","captures":[{}]}',
+        '{"format":"rc10 captures 1","captures":[{"id":"<img src=x onerror=alert(1)>"}]}',
+        '{"format":"rc10 captures 1","captures":7}',
+    ],
+)
+def test_a_file_of_a_stranger_is_refused_in_words(
+    panel: Locator, tmp_path: Path, content: str
+) -> None:
+    file = tmp_path / "stranger.json"
+    file.write_text(content)
+    panel.locator("input[type=file]").set_input_files(file)
+    expect(panel.get_by_role("alert")).to_have_text("This is no file of captures.")
+    expect(panel.locator("tbody tr")).to_have_count(0)
+
+
+def test_names_of_a_strangers_file_are_text(panel: Locator, page: Page, tmp_path: Path) -> None:
+    hostile = '<img src=x onerror="window.hit=1">'
+    capture = {
+        "id": hostile,
+        "name": hostile,
+        "taken": hostile,
+        "robot": hostile,
+        "config_hash": "",
+        "gains": {hostile: 1},
+        "signals": [hostile, hostile],
+        "units": [hostile, hostile],
+        "period_s": 0.001,
+        "pre_s": 0.001,
+        "values": [[0, 1, 1], [0, 1, None]],
+    }
+    file = tmp_path / "hostile.json"
+    file.write_text(json.dumps({"format": "rc10 captures 1", "captures": [capture]}))
+    panel.locator("input[type=file]").set_input_files(file)
+    expect(panel.locator("tbody tr")).to_have_count(1)
+    assert page.evaluate("window.hit") is None
+
+
+def test_an_event_triggers_and_the_ticks_before_it_are_there(
+    page: Page, panel: Locator, studio: Studio
+) -> None:
+    panel.get_by_label("edge").select_option("event")
+    panel.get_by_role("button", name="Arm", exact=True).click()
+    expect(panel.get_by_role("status")).to_have_text("armed: waits for the trigger")
+    studio.daemon.must("estop")
+    expect(panel.locator("tbody tr")).to_have_count(1)
+    [capture] = saved(page, panel)["captures"]
+    assert capture["pre_s"] == pytest.approx(0.2, abs=0.002)
+    assert len(capture["values"][1]) == 1200
+
+
+def test_what_is_armed_can_be_disarmed(page: Page, panel: Locator) -> None:
+    panel.get_by_role("button", name="Arm", exact=True).click()
+    panel.get_by_role("button", name="Disarm", exact=True).click()
+    page.get_by_role("button", name="counter-clockwise", exact=True).hover()
+    page.mouse.down()
+    expect(page.locator(".jog.held")).to_be_visible()
+    page.wait_for_function("document.querySelectorAll('.legend .number').length >= 3")
+    page.mouse.up()
+    expect(panel.locator("tbody tr")).to_have_count(0)

@@ -1,0 +1,377 @@
+// Armed, it takes every tick around a trigger; what was taken lies over one another.
+import { useEffect, useRef, useState } from 'preact/hooks';
+import uPlot from 'uplot';
+
+import { type Capture, capturesIn, fileOf, responseOf, stepNumbers, timesOf } from './captures';
+import { colourOf } from './chart';
+import { useKnown, useStored, useStudio } from './context';
+import { NumberField } from './number_field';
+import { number } from './numbers';
+import { download } from './plots';
+import type { Columns } from './protocol';
+
+type Edge = 'rising' | 'falling' | 'event';
+
+interface Trigger {
+  edge: Edge;
+  level: number;
+  pre_s: number;
+  length_s: number;
+}
+const kFirst: Trigger = { edge: 'rising', level: 5, pre_s: 0.2, length_s: 1 };
+const kMost_s = 10;
+const kUs = 1e6;
+
+/** Captures in this browser; the oldest go when there is no room. */
+function useCaptures(): [Capture[], (captures: Capture[]) => void] {
+  const key = 'rc10.captures';
+  const [captures, set] = useState<Capture[]>(() => capturesIn(localStorage.getItem(key) ?? '') ?? []);
+  return [
+    captures,
+    (next) => {
+      for (let kept = next; ; kept = kept.slice(1)) {
+        try {
+          localStorage.setItem(key, fileOf(kept));
+          break;
+        } catch {
+          if (kept.length === 0) break;
+        }
+      }
+      set(next);
+    },
+  ];
+}
+
+/** First moment in these columns at which the signal crosses the level, in µs; null: none. */
+function crossing(columns: Columns, signal: number, trigger: Trigger, before: { value: number | null }): number | null {
+  for (let i = 0; i < columns.count; ++i) {
+    const low = columns.min[signal]?.[i] ?? NaN;
+    const high = columns.max[signal]?.[i] ?? NaN;
+    const was = before.value;
+    // No target is none that has been reached.
+    if (Number.isNaN(low)) before.value = trigger.edge === 'rising' ? -Infinity : Infinity;
+    else before.value = trigger.edge === 'rising' ? high : low;
+    if (Number.isNaN(low)) continue;
+    if (was === null) continue;
+    const crossed = trigger.edge === 'rising' ? was < trigger.level && high >= trigger.level : was > trigger.level && low <= trigger.level;
+    if (crossed) return (columns.first + i) * columns.columnUs;
+  }
+  return null;
+}
+
+/** What is taken: `trigger_us`, and the columns of one tick each that were asked for. */
+interface Taking {
+  trigger_us: number;
+  first: number;
+  count: number;
+  period_us: number;
+  exact: boolean;
+  /** When its columns were asked for last; 0: not yet. */
+  asked_ms: number;
+}
+const kAskAgainMs = 1000;
+
+function Overlay(props: { captures: Capture[]; colours: Map<string, string> }) {
+  const box = useRef<HTMLDivElement>(null);
+  useEffect(() => {
+    const target = box.current;
+    if (target === null || props.captures.length === 0) return;
+    const tables: uPlot.AlignedData[] = props.captures.map((capture) => [timesOf(capture), ...capture.values] as uPlot.AlignedData);
+    const data = uPlot.join(tables);
+    const ink = getComputedStyle(document.documentElement).getPropertyValue('--ink').trim();
+    const grid = getComputedStyle(document.documentElement).getPropertyValue('--grid').trim();
+    const units = [...new Set(props.captures.flatMap((capture) => capture.units))];
+    const series: uPlot.Series[] = [{}];
+    for (const capture of props.captures)
+      capture.signals.forEach((signal, i) =>
+        series.push({
+          label: signal,
+          scale: capture.units[i] ?? '',
+          stroke: props.colours.get(capture.id) ?? colourOf(0),
+          dash: i === 0 ? [6, 4] : i === responseOf(capture) ? [] : [2, 3],
+          width: i === responseOf(capture) ? 2 : 1,
+          points: { show: false },
+          spanGaps: true,
+        }),
+      );
+    const axis = { stroke: ink, grid: { stroke: grid, width: 1 }, ticks: { stroke: grid } };
+    const size = () => ({ width: Math.max(280, target.clientWidth), height: 320 });
+    const chart = new uPlot(
+      {
+        ...size(),
+        series,
+        scales: { x: { time: false } },
+        axes: [
+          { ...axis, values: (_u, values) => values.map((value) => `${value} s`) },
+          ...units.map((unit, i) => ({ ...axis, scale: unit, side: i % 2 === 0 ? 3 : 1, size: 64, label: unit, grid: { ...axis.grid, show: i === 0 } })),
+        ],
+        legend: { show: false },
+      },
+      data,
+      target,
+    );
+    const observer = new ResizeObserver(() => chart.setSize(size()));
+    observer.observe(target);
+    return () => {
+      observer.disconnect();
+      chart.destroy();
+    };
+  }, [props.captures]);
+  return <div class="overlay" ref={box} />;
+}
+
+export function CapturePanel(props: { motor: string; unit: (signal: string) => string }) {
+  const { link, word } = useStudio();
+  const known = useKnown();
+  const [trigger, setTrigger] = useStored<Trigger>('trigger', kFirst);
+  const [signal, setSignal] = useState(0);
+  const [captures, setCaptures] = useCaptures();
+  const [hidden, setHidden] = useState<string[]>([]);
+  const [state, setState] = useState<'idle' | 'armed' | 'waiting'>('idle');
+  const [told, setTold] = useState('');
+  const taking = useRef<Taking | null>(null);
+  const armedAtEvent = useRef(0);
+  // At once, where the state is drawn later.
+  const armed = useRef(false);
+  const chooser = useRef<HTMLInputElement>(null);
+  const names = link.shown;
+  const period_us = kUs / (known.robot?.robot.rate_hz ?? 1000);
+  const colours = new Map(captures.map((capture, i) => [capture.id, colourOf(i)]));
+  const latest = useRef({ captures, trigger, names });
+  latest.current = { captures, trigger, names };
+
+  const disarm = () => {
+    armed.current = false;
+    taking.current = null;
+    setState('idle');
+  };
+
+  const begin = (trigger_us: number, exact: boolean) => {
+    const { pre_s, length_s } = latest.current.trigger;
+    const first = Math.round((trigger_us - pre_s * kUs) / period_us);
+    taking.current = { trigger_us, first, count: Math.round(((pre_s + length_s) * kUs) / period_us), period_us, exact, asked_ms: 0 };
+    setState('waiting');
+  };
+
+  const take = async (columns: Columns, taken: Taking) => {
+    disarm();
+    const answer = await link.ask({ operation: 'get_config', target: props.motor });
+    const { pre_s, edge, level } = latest.current.trigger;
+    const values = columns.min.map((row) => [...row].map((value) => (Number.isNaN(value) ? null : value)));
+    // The column in which the trigger was seen is wider than a tick: the tick itself is looked for here.
+    let at = Math.round(pre_s * (kUs / period_us));
+    if (!taken.exact && edge !== 'event') {
+      const row = values[signal] ?? [];
+      const crosses = (i: number) => {
+        const was = row[i - 1];
+        const is = row[i];
+        if (was === undefined || is === undefined || is === null) return false;
+        return edge === 'rising' ? (was ?? -Infinity) < level && is >= level : (was ?? Infinity) > level && is <= level;
+      };
+      const found = row.findIndex((_, i) => i > 0 && crosses(i));
+      if (found > 0) at = found;
+    }
+    const capture: Capture = {
+      id: `${Date.now()}`,
+      name: `${props.motor} ${latest.current.captures.length + 1}`,
+      taken: new Date().toISOString(),
+      robot: known.robot?.robot.robot ?? '',
+      config_hash: known.robot?.robot.config_hash ?? '',
+      gains: answer.status === 'ok' ? answer.values : {},
+      signals: latest.current.names,
+      units: latest.current.names.map(props.unit),
+      period_s: period_us / kUs,
+      pre_s: at * (period_us / kUs),
+      values,
+    };
+    setCaptures([...latest.current.captures, capture]);
+  };
+
+  useEffect(() => {
+    if (state === 'idle') return;
+    const before = { value: null as number | null };
+    return link.addColumns((columns) => {
+      const now = taking.current;
+      if (columns.kind === 'range') {
+        if (now !== null && columns.first === now.first && columns.count === now.count) void take(columns, now);
+        return;
+      }
+      if (!armed.current) return;
+      const end_us = (columns.first + columns.count) * columns.columnUs;
+      if (now === null) {
+        const event = link.known.events.find((each) => each.severity !== 'info' && each.mono_us > armedAtEvent.current);
+        if (trigger.edge === 'event') {
+          if (event !== undefined) begin(event.mono_us, true);
+          return;
+        }
+        const at = crossing(columns, signal, trigger, before);
+        if (at !== null) begin(at, false);
+      } else if (end_us >= (now.first + now.count) * now.period_us + columns.columnUs) {
+        if (now.asked_ms !== 0 && performance.now() - now.asked_ms < kAskAgainMs) return;
+        now.asked_ms = performance.now();
+        link.range(now.first, now.period_us, now.count);
+      }
+    });
+  }, [state, signal, trigger]);
+  // Signals of another motor: what is under way means nothing any more.
+  useEffect(disarm, [props.motor, names.join(' ')]);
+
+  const arm = () => {
+    armedAtEvent.current = known.state?.data.mono_us ?? 0;
+    armed.current = true;
+    setTold('');
+    setState('armed');
+  };
+  const save = (which: Capture[]) => download('rc10-captures.json', new Blob([fileOf(which)], { type: 'application/json' }));
+  const open = async (file: File | undefined) => {
+    if (file === undefined) return;
+    const found = capturesIn(await file.text());
+    if (found === null) return setTold(word('captureNoFile'));
+    const ids = new Set(found.map((capture) => capture.id));
+    setTold('');
+    setCaptures([...captures.filter((capture) => !ids.has(capture.id)), ...found]);
+  };
+  const field = (key: 'level' | 'pre_s' | 'length_s', label: string, unit: string, least?: number) => (
+    <label>
+      {`${label} `}
+      <NumberField
+        least={least}
+        value={trigger[key]}
+        disabled={state !== 'idle'}
+        onValue={(value) => setTrigger({ ...trigger, [key]: key === 'level' ? value : Math.min(kMost_s, Math.max(0, value)) })}
+      />
+      {` ${unit}`}
+    </label>
+  );
+
+  return (
+    <section class="card captures" aria-label={word('captures')}>
+      <h3>{word('captures')}</h3>
+      <div class="toolbar">
+        <label>
+          {`${word('captureWhen')} `}
+          <select
+            value={signal}
+            disabled={state !== 'idle' || trigger.edge === 'event'}
+            onChange={(event) => setSignal(Number(event.currentTarget.value))}
+          >
+            {names.map((name, i) => (
+              <option key={name} value={i}>
+                {name}
+              </option>
+            ))}
+          </select>
+        </label>
+        <select
+          aria-label={word('captureEdge')}
+          value={trigger.edge}
+          disabled={state !== 'idle'}
+          onChange={(event) => setTrigger({ ...trigger, edge: event.currentTarget.value as Edge })}
+        >
+          <option value="rising">{word('captureRising')}</option>
+          <option value="falling">{word('captureFalling')}</option>
+          <option value="event">{word('captureEvent')}</option>
+        </select>
+        {trigger.edge !== 'event' && field('level', word('captureLevel'), props.unit(names[signal] ?? ''))}
+        {field('pre_s', word('capturePre'), 's', 0)}
+        {field('length_s', word('captureLength'), 's', 0)}
+        <button type="button" class="strong" aria-pressed={state !== 'idle'} disabled={known.state === null} onClick={() => (state === 'idle' ? arm() : disarm())}>
+          {state === 'idle' ? word('captureArm') : word('captureDisarm')}
+        </button>
+        <span class="hint" role="status">
+          {state === 'armed' ? word('captureArmed') : state === 'waiting' ? word('captureWaiting') : ''}
+        </span>
+      </div>
+      <div class="toolbar">
+        <button type="button" disabled={captures.length === 0} onClick={() => save(captures)}>
+          {word('captureSave')}
+        </button>
+        <button type="button" onClick={() => chooser.current?.click()}>
+          {word('captureOpen')}
+        </button>
+        <input
+          ref={chooser}
+          type="file"
+          accept="application/json,.json"
+          hidden
+          aria-label={word('captureOpen')}
+          onChange={(event) => {
+            void open(event.currentTarget.files?.[0]);
+            event.currentTarget.value = '';
+          }}
+        />
+        {told !== '' && (
+          <span class="refused" role="alert">
+            {told}
+          </span>
+        )}
+      </div>
+      {captures.length > 0 && (
+        <div class="scroll">
+          <table class="timing">
+            <thead>
+              <tr>
+                {(['captureName', 'captureStep', 'captureRise', 'captureOvershoot', 'captureSettling', 'captureError'] as const).map((key) => (
+                  <th key={key}>{word(key)}</th>
+                ))}
+                <th />
+              </tr>
+            </thead>
+            <tbody>
+              {captures.map((capture) => {
+                const step = stepNumbers(capture);
+                const unit = capture.units[0] ?? '';
+                const milliseconds = (value: number | null | undefined) =>
+                  value === null || value === undefined ? '–' : `${number(value * 1000, 0)} ms`;
+                return (
+                  <tr key={capture.id} title={`${capture.robot} ${capture.taken} ${capture.config_hash.slice(0, 12)}`}>
+                    <td>
+                      <label>
+                        <input
+                          type="checkbox"
+                          checked={!hidden.includes(capture.id)}
+                          onChange={() =>
+                            setHidden(hidden.includes(capture.id) ? hidden.filter((id) => id !== capture.id) : [...hidden, capture.id])
+                          }
+                          aria-label={`${word('show')} ${capture.name}`}
+                        />
+                        <span class="swatch" style={{ background: colours.get(capture.id) }} />
+                      </label>
+                      <input
+                        class="capture-name"
+                        aria-label={word('captureName')}
+                        value={capture.name}
+                        onInput={(event) =>
+                          setCaptures(captures.map((each) => (each.id === capture.id ? { ...each, name: event.currentTarget.value } : each)))
+                        }
+                      />
+                    </td>
+                    <td class="number">{step === null ? '–' : `${number(step.from, 1)} → ${number(step.to, 1)} ${unit}`}</td>
+                    <td class="number">{milliseconds(step?.rise_s)}</td>
+                    <td class="number">{step?.overshoot === null || step === null ? '–' : `${number(100 * step.overshoot, 1)} %`}</td>
+                    <td class="number">{milliseconds(step?.settling_s)}</td>
+                    <td class="number">{step === null ? '–' : `${number(step.error, 2)} ${unit}`}</td>
+                    <td>
+                      <button type="button" onClick={() => save([capture])} aria-label={`${word('captureSave')} ${capture.name}`}>
+                        ⤓
+                      </button>
+                      <button
+                        type="button"
+                        onClick={() => setCaptures(captures.filter((each) => each.id !== capture.id))}
+                        aria-label={`${word('captureRemove')} ${capture.name}`}
+                      >
+                        ✕
+                      </button>
+                    </td>
+                  </tr>
+                );
+              })}
+            </tbody>
+          </table>
+        </div>
+      )}
+      <Overlay captures={captures.filter((capture) => !hidden.includes(capture.id))} colours={colours} />
+      <p class="hint">{word('captureHint')}</p>
+    </section>
+  );
+}
