@@ -1,5 +1,5 @@
 #!/bin/bash
-# ten minutes of robot time full of random faults and six of matches, in virtual time, judged after every tick (RC10_SOAK_HOURS a seed, RC10_SOAK_SEED, RC10_MATCH_HOURS)
+# ten minutes of robot time full of random faults and three of matches, in virtual time, judged after every tick (RC10_SOAK_HOURS a seed, RC10_SOAK_SEED, RC10_MATCH_HOURS)
 set -euo pipefail
 # shellcheck source=scripts/lib/results.sh
 . "$(dirname "${BASH_SOURCE[0]}")/../lib/results.sh"
@@ -8,7 +8,7 @@ need build test
 hours=${RC10_SOAK_HOURS:-0.084}
 # Always the same, so that a change is judged by what it changed; long_soak looks for what is new.
 seed=${RC10_SOAK_SEED:-2}
-match_hours=${RC10_MATCH_HOURS:-0.1}
+match_hours=${RC10_MATCH_HOURS:-0.05}
 
 soak() {
     "$repo/build/dev/tests/rc10_soak" --hours "$hours" --seed "$1"

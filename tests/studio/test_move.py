@@ -236,6 +236,9 @@ def test_gains_are_applied_undone_and_kept_as_lines(moving: Page, studio: Studio
     apply = gains.get_by_role("button", name="Apply")
     expect(apply).to_be_disabled()
     field.fill("0.25")
+    lines = [copy.get_attribute("title") or "" for copy in gains.locator(".copy").all()]
+    assert lines[0].endswith("rc10ctl gains yaw velocity_pid.kp_a_per_rpm=0.25")
+    assert lines[1].endswith('robot.set_gains("yaw", {"velocity_pid.kp_a_per_rpm": 0.25})')
     apply.click()
     expect(gains.get_by_role("button", name="Undo (1)")).to_be_enabled()
     assert gain(studio) == 0.25

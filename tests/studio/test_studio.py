@@ -13,6 +13,8 @@ from hostlib.daemon import REPO
 from hostlib.program import eventually
 from playwright.sync_api import Browser, Locator, Page, WebSocketRoute, expect
 
+import rc10
+
 if TYPE_CHECKING:
     from conftest import Studio
 
@@ -279,9 +281,20 @@ def test_language_favourites_and_part_are_remembered(page: Page) -> None:
     expect(page.locator(".card.motor h3").first).to_have_text("yaw")
 
 
-def test_each_value_has_the_command_that_does_the_same(page: Page) -> None:
-    copy = page.get_by_role("article", name="wheel", exact=True).locator(".copy")
-    expect(copy).to_have_attribute("title", re.compile(r"rc10ctl enable wheel$"))
+def test_each_action_has_the_command_and_the_python_line_that_do_the_same(
+    page: Page, studio: Studio
+) -> None:
+    wheel = page.get_by_role("article", name="wheel", exact=True)
+    command, python = wheel.locator(".copy").all()
+    line = (command.get_attribute("title") or "").removeprefix("copy as a command: ")
+    assert line == "rc10ctl enable wheel"
+    studio.daemon.must(*line.split()[1:])
+    expect(wheel.locator(".badge.status")).to_have_text("ACTIVE")
+    line = (python.get_attribute("title") or "").removeprefix("copy as Python: ")
+    assert line == 'robot.disable("wheel")'
+    with rc10.connect("host") as robot:
+        exec(line, {"robot": robot})  # as a person would paste it
+    expect(wheel.locator(".badge.status")).to_have_text("READY")
 
 
 @pytest.mark.parametrize("scheme", ["light", "dark"])

@@ -9,6 +9,39 @@ export function commandOf(request: RobotRequest): string {
   return `rc10ctl ${request.operation}${target}`;
 }
 
+/** The line of a Python program that does the same, with `robot = rc10.connect(...)`. */
+export function pythonOf(request: RobotRequest): string {
+  const names = (request.target ?? '').split(',').filter((name) => name !== '').map((name) => `"${name}"`);
+  const values = Object.entries(request.values ?? {}).map(([key, value]) => `"${key}": ${value}`);
+  const last = values.length === 0 ? [] : [`{${values.join(', ')}}`];
+  return `robot.${request.operation}(${[...names, ...last].join(', ')})`;
+}
+
+/** Buttons that copy both. */
+export function CopyLines(props: { request: RobotRequest; command?: string }) {
+  const { word } = useStudio();
+  const lines: [string, string, string][] = [
+    ['❯_', word('copy'), props.command ?? commandOf(props.request)],
+    ['py', word('copyPython'), pythonOf(props.request)],
+  ];
+  return (
+    <>
+      {lines.map(([sign, what, line]) => (
+        <button
+          type="button"
+          key={sign}
+          class="copy"
+          title={`${what}: ${line}`}
+          aria-label={`${what}: ${line}`}
+          onClick={() => void navigator.clipboard?.writeText(line)}
+        >
+          {sign}
+        </button>
+      ))}
+    </>
+  );
+}
+
 /** A button that asks rc10d for something and says what it answered. */
 export function Action(props: { request: RobotRequest; label: string; strong?: boolean }) {
   const { link, word } = useStudio();
@@ -35,18 +68,7 @@ export function Action(props: { request: RobotRequest; label: string; strong?: b
       >
         {props.label}
       </button>
-      <button
-        type="button"
-        class="copy"
-        title={`${word('copy')}: ${commandOf(props.request)}`}
-        aria-label={`${word('copy')}: ${commandOf(props.request)}`}
-        onClick={() => void navigator.clipboard?.writeText(commandOf(props.request))}
-      >
-        <svg viewBox="0 0 16 16" aria-hidden="true">
-          <rect x="5" y="5" width="9" height="9" rx="1.5" />
-          <path d="M11 5V3.5A1.5 1.5 0 0 0 9.5 2h-6A1.5 1.5 0 0 0 2 3.5v6A1.5 1.5 0 0 0 3.5 11H5" />
-        </svg>
-      </button>
+      <CopyLines request={props.request} />
       {told !== null && (
         <span class="refused" role="alert" onClick={() => setTold(null)}>
           {told.message}

@@ -1,6 +1,7 @@
 // Gains of the loops that rc10d closes: live, with what they were before, and the lines for the robot's file.
 import { useEffect, useState } from 'preact/hooks';
 
+import { CopyLines } from './action';
 import { useKnown, useStudio } from './context';
 import { NumberField } from './number_field';
 
@@ -35,9 +36,10 @@ export function Gains(props: { motor: string }) {
     if (allowed) void load();
   }, [props.motor, allowed, robot]);
 
+  const changed = (values: Values) =>
+    Object.fromEntries(Object.entries(values).filter(([key, value]) => inForce?.[key] !== value));
   const set = async (values: Values, before: Values | null) => {
-    const changed = Object.fromEntries(Object.entries(values).filter(([key, value]) => inForce?.[key] !== value));
-    const answer = await link.ask({ operation: 'set_gains', target: props.motor, values: changed });
+    const answer = await link.ask({ operation: 'set_gains', target: props.motor, values: changed(values) });
     if (answer.status !== 'ok') return setTold(answer.message);
     if (before !== null) setHistory([before, ...history].slice(0, 20));
     await load();
@@ -88,6 +90,12 @@ export function Gains(props: { motor: string }) {
             >
               {`${word('gainsUndo')}${history.length > 0 ? ` (${history.length})` : ''}`}
             </button>
+            <CopyLines
+              request={{ operation: 'set_gains', target: props.motor, values: changed(wanted) }}
+              command={`rc10ctl gains ${props.motor} ${Object.entries(changed(wanted))
+                .map(([key, value]) => `${key}=${value}`)
+                .join(' ')}`.trim()}
+            />
             <button type="button" onClick={() => void navigator.clipboard?.writeText(yaml)}>
               {word('gainsCopy')}
             </button>
