@@ -1,5 +1,5 @@
 /* The board of docs/serial-devices.md, on a computer: it speaks on a serial port as the firmware would.
- *   board TEXT|COBS PORT        PORT: a serial port, or - for its standard input, both ways
+ *   board TEXT|COBS PORT        PORT: a serial port (115200 8N1), or - for its standard input, both ways
  * It sends its range and its claw's angle every 20 ms, and moves the claw where it is told; without a word for
  * 200 ms the claw goes to 0, whatever it was told. */
 #define _DEFAULT_SOURCE
@@ -7,6 +7,7 @@
 #include <poll.h>
 #include <stdlib.h>
 #include <string.h>
+#include <termios.h>
 #include <time.h>
 #include <unistd.h>
 
@@ -18,13 +19,22 @@ static void uart_write(const uint8_t *bytes, size_t size) {
   if (write(port, bytes, size) < 0) exit(0); /* unplugged */
 }
 
+/* A port of Linux passes on bytes as they are only when it is told so; a firmware's UART needs none of this. */
+static void make_raw(int descriptor) {
+  struct termios settings;
+  if (tcgetattr(descriptor, &settings) != 0) return;
+  cfmakeraw(&settings);
+  cfsetspeed(&settings, B115200);
+  tcsetattr(descriptor, TCSANOW, &settings);
+}
+
 static long now_ms(void) {
   struct timespec time;
   clock_gettime(CLOCK_MONOTONIC, &time);
   return time.tv_sec * 1000L + time.tv_nsec / 1000000L;
 }
 
-/* Messages of `protocol: cobs`: see the robot's file. */
+/* Messages of `protocol: cobs`, in the order of the fields in the robot's file (docs/serial-devices.md). */
 struct __attribute__((packed)) report {
   uint8_t number;
   uint16_t range_mm;
@@ -72,6 +82,7 @@ int main(int argc, char **argv) {
   const int cobs = strcmp(argv[1], "COBS") == 0;
   port = strcmp(argv[2], "-") == 0 ? STDIN_FILENO : open(argv[2], O_RDWR | O_NOCTTY);
   if (port < 0) return 1;
+  make_raw(port);
   for (long next_ms = now_ms();; next_ms += 20) {
     report(cobs);
     struct pollfd entry = {port, POLLIN, 0};

@@ -2,6 +2,7 @@
  *   struct __attribute__((packed)) { uint8_t number; int16_t angle; float speed; } state = {7, 900, 1.5f};
  *   rc10_cobs_put(&state, sizeof state, uart_write);
  *   if ((size = rc10_cobs_get(&frame, byte)) == sizeof command && frame.bytes[0] == 1) memcpy(&command, frame.bytes, size);
+ * `frame` is static or zeroed; the next byte may overwrite it: copy it before that.
  */
 #ifndef RC10_COBS_H
 #define RC10_COBS_H

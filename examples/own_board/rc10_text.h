@@ -1,6 +1,9 @@
 /* Text lines between a board and rc10d's module serial_link, `protocol: text`. C99, no allocation.
  *   rc10_text_put("range,1250", uart_write);                     sends $range,1250*55
  *   if (rc10_text_get(&line, byte)) sscanf(line.text, "claw,%f,%f", &angle_deg, &speed);
+ * Numbers are plain decimals (no exponent, no +, at most 15 digits), the line at most 120 bytes. `line` is
+ * static or zeroed; the next byte may overwrite its text: copy it before that. With newlib-nano %f needs
+ * `-u _printf_float -u _scanf_float`; or send whole tenths, with `scale: 0.1` in the robot's file.
  */
 #ifndef RC10_TEXT_H
 #define RC10_TEXT_H
@@ -23,7 +26,7 @@ static uint8_t rc10_text_sum(const char *text, size_t size) {
 
 /* `write`: your UART's. */
 static void rc10_text_put(const char *content, void (*write)(const uint8_t *bytes, size_t size)) {
-  char out[128];
+  char out[121]; /* rc10d drops a longer line */
   const int size = snprintf(out, sizeof out, "$%s*%02X\n", content, rc10_text_sum(content, strlen(content)));
   if (size > 0 && size < (int)sizeof out) write((const uint8_t *)out, (size_t)size);
 }

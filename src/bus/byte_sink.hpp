@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <span>
 
@@ -15,6 +16,8 @@ class ByteSink {
 
   /// Takes all the bytes, in order, or none of them: half a frame is worth nothing. Never waits.
   [[nodiscard]] virtual bool push(std::span<const std::uint8_t> bytes) noexcept = 0;
+  /// Bytes that were taken and have not been handed to the port yet.
+  [[nodiscard]] virtual std::size_t pending() const noexcept = 0;
 };
 
 }  // namespace rc10

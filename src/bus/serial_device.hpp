@@ -47,6 +47,9 @@ class SerialDevice {
   /// Sends the protocol's frame around `payload`. False: no such frame, or refused.
   bool sendFrame(std::span<const std::uint8_t> payload) noexcept;
 
+  /// Bytes that wait to be written: the line is slower than what is sent.
+  [[nodiscard]] std::size_t pendingBytes() const noexcept { return sink_.pending(); }
+
   void setState(SerialState state) noexcept { state_ = state; }
   [[nodiscard]] SerialState state() const noexcept { return state_; }
   /// All the chunks that were dropped on the way here since the start.

@@ -56,8 +56,9 @@ class CobsCodec final : public LinkCodec, public CobsListener {
     return protocol_->counters().checksum_errors + wrong_size_;
   }
 
-  void step(SerialDevice& device, std::span<const double> values, bool due, MonotonicTime) noexcept override {
-    if (!due) return;
+  void step(SerialDevice& device, std::span<const double> values, Round round,
+            MonotonicTime) noexcept override {
+    if (round == Round::kGoesOn) return;
     for (const auto& message : said_) {
       std::array<std::uint8_t, CobsProtocol::kLongestContent> content{};
       content[0] = message.number;

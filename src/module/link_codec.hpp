@@ -22,8 +22,13 @@ class LinkCodec {
   /// Once. The codec outlives it.
   [[nodiscard]] virtual std::unique_ptr<I_Protocol> takeProtocol() = 0;
   [[nodiscard]] virtual const ReceivedFields& received() const noexcept = 0;
-  /// One tick. `values` of the fields that are sent, in their order; `due`: it is time to send them.
-  virtual void step(SerialDevice& device, std::span<const double> values, bool due,
+  enum class Round : std::uint8_t {
+    kGoesOn,
+    kBegins,  ///< It is time to send all fields.
+    kUrgent,  ///< A field has become safe: what is sent comes first.
+  };
+  /// One tick. `values` of the fields that are sent, in their order.
+  virtual void step(SerialDevice& device, std::span<const double> values, Round round,
                     MonotonicTime now) noexcept = 0;
   /// Frames that were wrong, refused or not answered.
   [[nodiscard]] virtual std::uint64_t errors() const noexcept = 0;
@@ -38,8 +43,9 @@ class LinkCodec {
 
 struct ModbusLink {
   std::uint8_t address = 1;
+  Duration byte_time{};
   Duration frame_gap{};
-  Duration timeout{};
+  Duration timeout{};           ///< From the end of a question to the begin of its answer.
   bool low_word_first = false;  ///< Of values in two registers.
 };
 [[nodiscard]] std::unique_ptr<LinkCodec> makeModbusCodec(const ModbusLink& link,

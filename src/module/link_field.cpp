@@ -22,6 +22,23 @@ void writeInt(double value, std::span<std::uint8_t> bytes) noexcept {
 
 }  // namespace
 
+WireRange wireRange(WireType type) noexcept {
+  const auto of = []<typename T>(T) {
+    return WireRange{static_cast<double>(std::numeric_limits<T>::lowest()),
+                     static_cast<double>(std::numeric_limits<T>::max())};
+  };
+  switch (type) {
+    case WireType::kU8: return of(std::uint8_t{});
+    case WireType::kI8: return of(std::int8_t{});
+    case WireType::kU16: return of(std::uint16_t{});
+    case WireType::kI16: return of(std::int16_t{});
+    case WireType::kU32: return of(std::uint32_t{});
+    case WireType::kI32: return of(std::int32_t{});
+    case WireType::kF32: break;
+  }
+  return of(float{});
+}
+
 double readWire(WireType type, std::span<const std::uint8_t> bytes) noexcept {
   switch (type) {
     case WireType::kU8: return readInt<std::uint8_t>(bytes);

@@ -22,6 +22,16 @@ inline constexpr std::array<std::string_view, 7> kWireTypes{"u8", "i8", "u16", "
   return kBytes[static_cast<std::size_t>(type)];
 }
 
+struct WireRange {
+  double low;
+  double high;
+};
+[[nodiscard]] WireRange wireRange(WireType type) noexcept;
+
+/// Numbers of a text line: -999999999.9999
+inline constexpr double kMostInText = 999'999'999.0;
+inline constexpr std::size_t kLongestNumberInText = 15;
+
 /// Reads a number from its bytes, lowest first.
 [[nodiscard]] double readWire(WireType type, std::span<const std::uint8_t> bytes) noexcept;
 /// Writes it, rounded and cut off at the ends of its type; NaN: 0.

@@ -74,12 +74,15 @@ class ModbusCodec final : public LinkCodec {
     return counters.exceptions + counters.timeouts + modbus_->counters().checksum_errors;
   }
 
-  void step(SerialDevice& device, std::span<const double> values, bool due,
+  void step(SerialDevice& device, std::span<const double> values, Round round,
             MonotonicTime now) noexcept override {
     modbus_->update(now);
-    if (asked_ && modbus_->state() != ModbusState::kWaiting) takeAnswer();
-    if (due && next_ == exchanges_.size()) next_ = 0;  // a round that takes longer than its period goes on
-    if (next_ < exchanges_.size() && modbus_->state() != ModbusState::kWaiting) ask(device, values, now);
+    if (asked_ && modbus_->state() != ModbusState::kWaiting) takeAnswer(now);
+    if (round == Round::kUrgent) writes_first_ = true;
+    if (round != Round::kGoesOn && next_ == exchanges_.size()) next_ = 0;  // a longer round goes on
+    const bool free = modbus_->state() != ModbusState::kWaiting && now >= quiet_until_;
+    if (free && std::exchange(writes_first_, writes_first_ && !free)) next_ = 0;
+    if (free && next_ < exchanges_.size()) ask(device, values, now);
   }
 
  private:
@@ -101,14 +104,23 @@ class ModbusCodec final : public LinkCodec {
       request.values = std::span{registers}.first(at);
     }
     std::array<std::uint8_t, ModbusRtu::kLongestFrame> frame{};
-    const auto size = modbus_->begin(request, now, link_.timeout, frame);
+    const auto size = modbus_->begin(request, now, patience(exchange), frame);
     if (size == 0) return;  // the line is not silent yet
     (void)device.send(std::span<const std::uint8_t>{frame}.first(size));
     asked_ = true;
   }
 
-  void takeAnswer() noexcept {
+  // The bytes of question and answer are on the wire in it.
+  [[nodiscard]] Duration patience(const ModbusExchange& exchange) const noexcept {
+    constexpr int kFrameBytes =
+        9;  // of a write or a question, and what stands around the registers of an answer
+    return link_.timeout + link_.byte_time * (2 * kFrameBytes + 2 * exchange.count) + link_.frame_gap;
+  }
+
+  void takeAnswer(MonotonicTime now) noexcept {
     asked_ = false;
+    // A late answer does not say to which question: it is let pass before the next one.
+    if (modbus_->state() == ModbusState::kTimedOut) quiet_until_ = now + patience(exchanges_[next_]);
     const auto& exchange = exchanges_[next_];
     const bool read = next_++ >= writes_;
     if (!read || modbus_->state() != ModbusState::kDone) return;
@@ -147,6 +159,8 @@ class ModbusCodec final : public LinkCodec {
   std::size_t writes_ = 0;
   std::size_t next_ = 0;  ///< Of the round under way; at the end: it is over.
   bool asked_ = false;
+  bool writes_first_ = false;
+  MonotonicTime quiet_until_{};
   std::unique_ptr<ModbusRtu> owned_;
   ModbusRtu* modbus_;
 };

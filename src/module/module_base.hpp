@@ -65,6 +65,9 @@ class Module_Base {
   /// One tick. What it asks of `robot` acts in this tick.
   virtual void update(const Tick& tick, ModuleRobot& robot) noexcept = 0;
 
+  /// In each tick while rc10d stops: update() is not called any more.
+  virtual void rest(const Tick& /*tick*/) noexcept {}
+
   /// Once, when all modules are built: finds those that it sends to. The error begins with a key.
   [[nodiscard]] virtual Result<void> connect(const ModuleDirectory& others);
 

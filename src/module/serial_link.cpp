@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdio>
 #include <string>
 #include <utility>
 #include <vector>
@@ -24,8 +25,8 @@ constexpr double kMaxFields = 14;
 // So many fit into a line, each as long as it may be.
 constexpr std::size_t kMostSentInLine = 6;
 constexpr std::array<std::string_view, 3> kLinkSignals{"connected", "age_ms", "errors"};
-// A slave that is slow at 9600 baud; most answer within a few.
-constexpr Duration kModbusTimeout = std::chrono::milliseconds{50};
+// Of what the line carries: the rest is for a computer that was late.
+constexpr double kMostOfLine = 0.7;
 /// As a GPIO module has it: so long without a tick, and the outputs are safe again.
 constexpr Duration kLongestGapOfTicks = std::chrono::milliseconds{200};
 
@@ -157,6 +158,14 @@ constexpr std::array kLinkKeys{
               .max = 247,
               .default_text = "1",
               .about = "modbus: of the slave."},
+    FamilyKey{
+        .name = "timeout_ms",
+        .kind = kInteger,
+        .unit = "ms",
+        .min = 5,
+        .max = 5000,
+        .default_text = "50",
+        .about = "modbus: so long the slave may take before it answers; the bytes on the wire come on top."},
     FamilyKey{.name = "word_order",
               .kind = kChoice,
               .choices = kWordOrders,
@@ -201,6 +210,23 @@ struct LinkOutput {
   return fields;
 }
 
+struct Range {
+  double low;
+  double high;
+};
+// Of a signal, by what its field can say.
+[[nodiscard]] Range rangeOf(const OwnValues& row, std::string_view protocol) {
+  const double scale = row.number("scale");
+  const auto wire = protocol == "text" ? WireRange{-kMostInText, kMostInText} : wireRange(fieldOf(row).type);
+  return {std::min(wire.low * scale, wire.high * scale), std::max(wire.low * scale, wire.high * scale)};
+}
+
+[[nodiscard]] std::string brief(double value) {
+  std::array<char, 32> text{};
+  (void)std::snprintf(text.data(), text.size(), "%g", value);
+  return text.data();
+}
+
 [[nodiscard]] ModuleSignals linkSignals(const OwnValues& own) {
   ModuleSignals signals;
   for (const auto& row : own.rows("send")) signals.inputs.push_back(row.text("name"));
@@ -225,8 +251,9 @@ struct LinkOutput {
   if (protocol == "text") return makeTextCodec(std::move(received), std::move(sent));
   if (protocol == "cobs") return makeCobsCodec(std::move(received), std::move(sent));
   return makeModbusCodec({.address = static_cast<std::uint8_t>(own.integer("address")),
+                          .byte_time = format.byteTime(),
                           .frame_gap = ModbusRtu::frameGap(format),
-                          .timeout = kModbusTimeout,
+                          .timeout = std::chrono::milliseconds{own.integer("timeout_ms")},
                           .low_word_first = own.text("word_order") == "low_first"},
                          std::move(received), std::move(sent));
 }
@@ -241,12 +268,14 @@ class SerialLink : public Module_Base {
         max_age_(std::chrono::milliseconds{own.integer("max_age_ms")}),
         codec_(codecOf(own, format)) {
     for (const auto& row : own.rows("send")) {
-      sent_.push_back({.low = row.number("min"),
-                       .high = row.number("max"),
+      const auto range = rangeOf(row, own.text("protocol"));
+      sent_.push_back({.low = std::max(row.number("min"), range.low),
+                       .high = std::min(row.number("max"), range.high),
                        .safe = row.number("safe_value"),
                        .keeps_at_estop = row.text("on_estop") == "keep"});
     }
     values_.resize(sent_.size());
+    before_.resize(sent_.size());
   }
 
   [[nodiscard]] std::optional<SerialNeed> takeSerialNeed() override {
@@ -257,17 +286,40 @@ class SerialLink : public Module_Base {
   void update(const Tick& tick, ModuleRobot& robot) noexcept override {
     const bool open = device_ != nullptr && device_->state() == SerialState::kOpen;
     decideValues(tick, robot, open);
-    const bool due = tick.now >= next_;
-    if (due) next_ = next_ + period_ > tick.now ? next_ + period_ : tick.now + period_;
-    if (open) codec_->step(*device_, values_, due, tick.now);
+    send(tick, open);
     tellReceived(tick, robot);
     const std::size_t link = codec_->received().fields.size() + sent_.size();
     setOutput(link, open ? 1.0 : 0.0);
-    setOutput(link + 2, static_cast<double>(codec_->errors()));
+    setOutput(link + 2, static_cast<double>(codec_->errors() + skipped_));
+  }
+
+  // As outputs of a GPIO module: safe at the end, whatever on_estop says.
+  void rest(const Tick& tick) noexcept override {
+    for (std::size_t i = 0; i < sent_.size(); ++i) values_[i] = sent_[i].safe;
+    send(tick, device_ != nullptr && device_->state() == SerialState::kOpen);
   }
 
  private:
   enum LinkEvent : std::size_t { kSilent, kBack, kHeldBack };
+
+  void send(const Tick& tick, bool open) noexcept {
+    bool urgent = false;
+    for (std::size_t i = 0; i < sent_.size(); ++i)
+      urgent |= values_[i] == sent_[i].safe && before_[i] != values_[i];
+    auto round = tick.now >= next_ ? LinkCodec::Round::kBegins : LinkCodec::Round::kGoesOn;
+    if (urgent) round = LinkCodec::Round::kUrgent;
+    // No more than one round waits: what is old must not be sent before what is new.
+    if (open && round != LinkCodec::Round::kGoesOn && device_->pendingBytes() > 0) {
+      if (!urgent) ++skipped_;
+      if (!urgent) next_ = tick.now + period_;
+      round = LinkCodec::Round::kGoesOn;
+    }
+    if (round != LinkCodec::Round::kGoesOn) {
+      next_ = next_ + period_ > tick.now ? next_ + period_ : tick.now + period_;
+      if (open) before_ = values_;
+    }
+    if (open) codec_->step(*device_, values_, round, tick.now);
+  }
 
   void decideValues(const Tick& tick, ModuleRobot& robot, bool open) noexcept {
     const bool running = robot.state() == RobotStatus::kRun;
@@ -325,6 +377,8 @@ class SerialLink : public Module_Base {
   std::unique_ptr<LinkCodec> codec_;
   std::vector<LinkOutput> sent_;
   std::vector<double> values_;  ///< Of them, in this tick.
+  std::vector<double> before_;  ///< And as they were sent last.
+  std::uint64_t skipped_ = 0;   ///< Rounds that the line had no room for.
   SerialDevice* device_ = nullptr;
   MonotonicTime next_{};
   bool heard_ = false;
@@ -404,13 +458,18 @@ class SerialLink : public Module_Base {
   return {};
 }
 
-[[nodiscard]] Result<void> checkLimits(const OwnValues& own) {
+[[nodiscard]] Result<void> checkLimits(const OwnValues& own, std::string_view protocol) {
   const auto& rows = own.rows("send");
   for (std::size_t i = 0; i < rows.size(); ++i) {
     const double low = rows[i].number("min");
     const double high = rows[i].number("max");
     const double safe = rows[i].number("safe_value");
     if (low > high) return fail(placeOf("send", i, "min") + "it is above max");
+    const auto range = rangeOf(rows[i], protocol);
+    if (safe < range.low || safe > range.high) {
+      return fail(placeOf("send", i, "safe_value") + "the field can say " + brief(range.low) + " to " +
+                  brief(range.high) + "; use another type or scale");
+    }
     if (safe < low || safe > high)
       return fail(placeOf("send", i, "safe_value") + "it is not between min and max");
   }
@@ -435,6 +494,34 @@ class SerialLink : public Module_Base {
   return {};
 }
 
+// Bytes of all messages, each number as long as it may be.
+[[nodiscard]] std::size_t bytesOfRound(const OwnValues& own, std::string_view protocol) {
+  constexpr std::size_t kAround = 5;  // $*00 and the line feed; or number, CRC, stuffing and 0
+  std::vector<std::string> messages;
+  std::size_t bytes = 0;
+  for (const auto& field : fieldsOf(own, "send")) {
+    const bool text = protocol == "text";
+    bytes += text ? 1 + kLongestNumberInText : bytesOf(field.type);
+    if (std::find(messages.begin(), messages.end(), field.message) != messages.end()) continue;
+    messages.push_back(field.message);
+    bytes += kAround + (text ? field.message.size() : 0);
+  }
+  return bytes;
+}
+
+[[nodiscard]] Result<void> checkLoad(const OwnValues& own, std::string_view protocol,
+                                     const SerialFormat& format) {
+  if (protocol == "modbus") return {};  // each question waits for its answer
+  const std::size_t bytes = bytesOfRound(own, protocol);
+  const double round_s =
+      std::chrono::duration<double>(format.byteTime()).count() * static_cast<double>(bytes);
+  const double most_hz = bytes == 0 ? 1e9 : kMostOfLine / round_s;
+  if (own.integer("rate_hz") <= most_hz) return {};
+  return fail("rate_hz: the fields are up to " + std::to_string(bytes) + " bytes, and " + format.text() +
+              " carries them " + std::to_string(static_cast<int>(most_hz)) +
+              " times a second with some room; use a lower rate or a higher baud rate");
+}
+
 class SerialLinkType : public ModuleType {
  public:
   [[nodiscard]] std::string_view name() const noexcept override { return "serial_link"; }
@@ -455,11 +542,12 @@ class SerialLinkType : public ModuleType {
       }
       if (auto places = checkPlaces(own, protocol, list); !places) return tl::unexpected(places.error());
     }
-    if (auto limits = checkLimits(own); !limits) return tl::unexpected(limits.error());
+    if (auto limits = checkLimits(own, protocol); !limits) return tl::unexpected(limits.error());
     const auto format = SerialFormat::make(own.integer("baud"), own.text("format"));
     if (!format) return fail("format: " + format.error().message);
     if (own.integer("rate_hz") > robot.tick_hz)
       return fail("rate_hz: there are " + std::to_string(robot.tick_hz) + " ticks a second");
+    if (auto load = checkLoad(own, protocol, *format); !load) return tl::unexpected(load.error());
     return std::make_unique<SerialLink>(own, *format);
   }
 };

@@ -14,11 +14,8 @@
 namespace rc10 {
 namespace {
 
-// A number as text: -123456789.1234
-constexpr double kMostInText = 999'999'999.0;
 constexpr int kDecimals = 4;
 constexpr double kPerUnit = 10'000.0;
-constexpr std::size_t kLongestNumber = 15;
 
 /// The part of a line between `$` and `*`, in a fixed room.
 class LineWriter {
@@ -33,7 +30,7 @@ class LineWriter {
     if (!std::isfinite(value)) value = 0.0;
     const double bounded = std::clamp(value, -kMostInText, kMostInText);
     auto left = std::llround(std::fabs(bounded) * kPerUnit);
-    std::array<char, kLongestNumber> digits{};
+    std::array<char, kLongestNumberInText> digits{};
     std::size_t at = digits.size();
     for (int i = 0; i <= kDecimals || left > 0; ++i) {
       if (i == kDecimals) digits[--at] = '.';
@@ -73,8 +70,9 @@ class TextCodec final : public LinkCodec, public TextListener {
     return protocol_->counters().checksum_errors;
   }
 
-  void step(SerialDevice& device, std::span<const double> values, bool due, MonotonicTime) noexcept override {
-    if (!due) return;
+  void step(SerialDevice& device, std::span<const double> values, Round round,
+            MonotonicTime) noexcept override {
+    if (round == Round::kGoesOn) return;
     for (const auto& message : messages_) {
       std::array<double, TextMessage::kMostValues> numbers{};
       std::size_t count = 0;

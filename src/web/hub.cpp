@@ -88,7 +88,9 @@ void Hub::handle(PageSocket& socket, std::string_view message, MonotonicTime now
   } else if (const auto* robot = std::get_if<AskRobot>(&*request)) {
     ask(*page, *robot);
   } else if (const auto* held = std::get_if<DriveMotor>(&*request)) {
-    drive(*page, *held, now);
+    drive(*page, *held, page->renewals.ageOf(held->sent, now));
+  } else if (const auto* clock = std::get_if<TellClock>(&*request)) {
+    (void)page->renewals.ageOf(clock->sent, now);
   } else if (page->right == Right::kNothing) {
     page->socket->sendText(shared(responseMessage(0, "refused", "show the token first")));
   } else if (const auto* view = std::get_if<ChooseView>(&*request)) {
@@ -146,22 +148,25 @@ std::string Hub::whyNotMoving(const Page& page) const {
          "tunnel: ssh -L 8010:localhost:8010";
 }
 
-// Each renewal is a command with what is left of its lease: nothing here repeats one.
-void Hub::drive(Page& page, const DriveMotor& wanted, MonotonicTime now) {
-  const auto age = page.renewals.ageOf(wanted.sent, now);
+// Each renewal is a command with what is left of its lease: nothing here repeats one. The end of a hold says
+// what is safe, however late it comes.
+void Hub::drive(Page& page, const DriveMotor& wanted, Duration age) {
   auto refused = whyNotMoving(page);
   if (refused.empty() && !feed_.connected()) refused = feed_.reason();
   if (refused.empty()) {
     if (const auto motor = client::findMotor(feed_.welcome(), wanted.motor); !motor)
       refused = motor.error().message;
   }
-  // The end of a hold is a target too: what it says is safe however late it comes.
-  const auto left = wanted.held ? kHeldLease - age : kHeldLease;
-  const auto left_ms = static_cast<std::int32_t>(std::chrono::ceil<std::chrono::milliseconds>(left).count());
-  if (refused.empty() && left_ms > 0) {
+  // It may wait, and then nothing is left of this renewal; the next one finds it open.
+  const bool opens = !page.link->isOpen();
+  if (refused.empty()) refused = page.link->connect(feed_.socketPath());
+  const bool counts = !wanted.held || (age < kHeldLease && !opens);
+  if (refused.empty() && counts) {
     auto told = wanted;
     if (!wanted.held) told.value = 0.0;
-    refused = page.link->drive(told, left_ms, feed_.socketPath());
+    const auto left =
+        std::chrono::ceil<std::chrono::milliseconds>(wanted.held ? kHeldLease - age : kHeldLease);
+    refused = page.link->drive(told, static_cast<std::int32_t>(left.count()));
   }
   if (!refused.empty()) page.socket->sendText(shared(responseMessage(wanted.seq, "refused", refused)));
 }

@@ -64,7 +64,7 @@ class Hub {
   void choose(Page& page, const ChooseView& wanted);
   void answer(Page& page, const AskRange& wanted);
   void ask(Page& page, const AskRobot& wanted);
-  void drive(Page& page, const DriveMotor& wanted, MonotonicTime now);
+  void drive(Page& page, const DriveMotor& wanted, Duration age);
   [[nodiscard]] std::string whyNotMoving(const Page& page) const;
   void chooseTraces();
   void watchRobot();

@@ -37,9 +37,8 @@ std::string PageLink::outcome(LinkClient::SendStatus status) {
   return "rc10d has ended";
 }
 
-std::string PageLink::drive(const DriveMotor& wanted, std::int32_t validity_ms,
-                            const std::string& socket_path) {
-  if (auto why = connect(socket_path); !why.empty()) return why;
+std::string PageLink::drive(const DriveMotor& wanted, std::int32_t validity_ms) {
+  if (!rc10d_) return "rc10d has ended";
   link::Command command;
   command.client = client_name_;
   command.session = session_;
@@ -48,7 +47,7 @@ std::string PageLink::drive(const DriveMotor& wanted, std::int32_t validity_ms,
   command.setpoint_count = 1;
   command.setpoints[0].motor = wanted.motor;
   command.setpoints[0].target = {.mode = wanted.mode, .value = wanted.value};
-  return outcome(rc10d_->send(command));  // NOLINT(bugprone-unchecked-optional-access)
+  return outcome(rc10d_->send(command));
 }
 
 std::string PageLink::ask(const AskRobot& request, const std::string& socket_path) {

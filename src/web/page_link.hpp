@@ -21,9 +21,11 @@ class PageLink {
   /// Why it could not be sent; empty: it was.
   [[nodiscard]] std::string ask(const AskRobot& request, const std::string& socket_path);
 
+  [[nodiscard]] bool isOpen() const noexcept { return rc10d_.has_value(); }
+  /// Before drive(), which must not wait. Why there is no connection; empty: there is one.
+  [[nodiscard]] std::string connect(const std::string& socket_path);
   /// A target for so long. Why it could not be sent; empty: it was.
-  [[nodiscard]] std::string drive(const DriveMotor& wanted, std::int32_t validity_ms,
-                                  const std::string& socket_path);
+  [[nodiscard]] std::string drive(const DriveMotor& wanted, std::int32_t validity_ms);
 
   struct Answer {
     std::int64_t seq = 0;  ///< The page's number.
@@ -35,7 +37,6 @@ class PageLink {
   void close() noexcept { rc10d_.reset(); }
 
  private:
-  [[nodiscard]] std::string connect(const std::string& socket_path);
   [[nodiscard]] std::string outcome(LinkClient::SendStatus status);
 
   std::string client_name_;

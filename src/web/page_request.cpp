@@ -101,6 +101,12 @@ Result<PageRequest> operationOf(const Received& object) {
   return ask;
 }
 
+Result<PageRequest> clockOf(const Received& object) {
+  const auto sent_us = wholeOf(object, "sent_us", 0, kMaxExact);
+  if (!sent_us) return tl::unexpected(sent_us.error());
+  return TellClock{std::chrono::microseconds{*sent_us}};
+}
+
 Result<PageRequest> driveOf(const Received& object) {
   DriveMotor drive;
   const auto seq = wholeOf(object, "seq", 0, kMaxExact);
@@ -148,6 +154,7 @@ Result<PageRequest> parsePageRequest(std::string_view text) {
   if (type == "range") return rangeOf(json);
   if (type == "request") return operationOf(json);
   if (type == "drive") return driveOf(json);
+  if (type == "clock") return clockOf(json);
   return fail("there is no message of this type");
 }
 

@@ -50,7 +50,12 @@ struct DriveMotor {
   bool held = false;
 };
 
-using PageRequest = std::variant<ShowToken, ChooseView, AskRange, AskRobot, DriveMotor>;
+/// The page's clock, once a second.
+struct TellClock {
+  Duration sent{};
+};
+
+using PageRequest = std::variant<ShowToken, ChooseView, AskRange, AskRobot, DriveMotor, TellClock>;
 
 /// A stranger's message. The error is a sentence for him.
 [[nodiscard]] Result<PageRequest> parsePageRequest(std::string_view text);

@@ -46,6 +46,7 @@ class Outbox final : public ByteSink {
     bytes.insert(bytes.end(), more.begin(), more.end());
     return true;
   }
+  [[nodiscard]] std::size_t pending() const noexcept override { return bytes.size(); }
   std::vector<std::uint8_t> bytes;
   bool full = false;
 };

@@ -61,7 +61,14 @@ TEST_F(SchedulerTest, SkipsASetpointForAMotorThatIsNotActiveAndSaysSo) {
   robot.tick();
   EXPECT_EQ(robot.snapshot().skipped_setpoints, 1U);
   EXPECT_EQ(robot.motor(kLeft).target.mode, ControlMode::kCoast);
-  EXPECT_TRUE(reported(EventCode::kSetpointSkipped, kLeft));
+  const auto events = robot.events();
+  const auto found = std::find_if(events.begin(), events.end(),
+                                  [](const Event& e) { return e.code == EventCode::kSetpointSkipped; });
+  ASSERT_NE(found, events.end());
+  EXPECT_EQ(found->source, static_cast<std::int16_t>(kLeft));
+  // As docs/lcm.md says: the mode, plus 256 times the status.
+  EXPECT_EQ(found->extra,
+            static_cast<int>(ControlMode::kVelocity) + 256 * static_cast<int>(MotorStatus::kReady));
 }
 
 TEST_F(SchedulerTest, ReportsSkippedSetpointsAtMostOnceASecond) {

@@ -29,6 +29,8 @@ struct Sink : ByteSink {
     bytes.insert(bytes.end(), more.begin(), more.end());
     return true;
   }
+  std::size_t waiting = 0;
+  [[nodiscard]] std::size_t pending() const noexcept override { return waiting; }
 };
 
 struct Row {
@@ -75,6 +77,7 @@ ModuleSettings settingsOf(const std::string& protocol, const std::vector<Row>& r
   settings.own.set("rate_hz", rate_hz);
   settings.own.set("max_age_ms", 200.0);
   settings.own.set("address", 3.0);
+  settings.own.set("timeout_ms", 50.0);
   settings.own.set("word_order", std::string{"high_first"});
   std::vector<OwnValues> rows;
   for (const auto& row : receive) rows.push_back(valuesOf(row, false));
@@ -120,6 +123,14 @@ class Board {
     return module_->outputs()[static_cast<std::size_t>(found - names.begin())];
   }
   [[nodiscard]] FakeRobot& robot() { return robot_; }
+  /// Bytes that the line has not taken yet.
+  void jam(std::size_t bytes) { sink_.waiting = bytes; }
+  void rest(int ticks) {
+    for (int i = 0; i < ticks; ++i) {
+      now_ += 1ms;
+      module_->rest({.index = 0, .now = robot_.now() + now_, .dt_s = 0.001F});
+    }
+  }
   [[nodiscard]] SerialDevice& device() { return *device_; }
   [[nodiscard]] std::vector<std::size_t> takeEvents() { return std::exchange(events_, {}); }
 
@@ -129,6 +140,7 @@ class Board {
   std::unique_ptr<Module_Base> module_;
   std::unique_ptr<SerialDevice> device_;
   std::vector<std::size_t> events_;
+  Duration now_{};
 };
 
 /// "$range,1250*29\n" of "range,1250".
@@ -244,15 +256,56 @@ TEST(SerialLinkText, APortThatWasLostStartsWithSafeValues) {
   EXPECT_THAT(board.said(), HasSubstr(line("claw,0.0000,1.0000")));
 }
 
+TEST(SerialLinkText, ASafeValueIsSentAtOnceWhateverTheRate) {
+  Board board{settingsOf("text", {}, {{.name = "a", .message = "m"}}, 1)};
+  board.run(1001);
+  board.command({5.0});
+  board.run(1001);
+  EXPECT_THAT(board.said(), HasSubstr(line("m,5.0000")));
+  board.run(100);
+  EXPECT_EQ(board.said(), "");
+  board.robot().setState(RobotStatus::kEstop);
+  board.run();
+  EXPECT_EQ(board.said(), line("m,0.0000"));
+}
+
+TEST(SerialLinkText, ALineThatIsBehindGetsNoMoreAndThenWhatIsNew) {
+  Board board{settingsOf("text", {}, {{.name = "a", .message = "m"}})};
+  board.run(1001);
+  board.command({5.0});
+  board.run(20);
+  (void)board.said();
+  board.jam(200);
+  board.run(200);
+  EXPECT_EQ(board.said(), "") << "nothing is queued behind what waits";
+  EXPECT_GE(board.output("errors"), 9.0);
+  board.robot().setState(RobotStatus::kEstop);
+  board.run(5);
+  EXPECT_EQ(board.said(), "");
+  board.jam(0);
+  board.run();
+  EXPECT_EQ(board.said(), line("m,0.0000")) << "what is safe comes first";
+}
+
+TEST(SerialLinkText, AtTheEndOfTheProgramEveryFieldIsSafe) {
+  Board board{textLink()};
+  board.run(1001);
+  board.command({45.0, 2.0, 3.0});
+  board.run(20);
+  (void)board.said();
+  board.rest(1);
+  EXPECT_EQ(board.said(), line("claw,0.0000,1.0000") + line("lamp,0.0000"));
+}
+
 TEST(SerialLinkText, NumbersAreWrittenInFull) {
-  Board board{settingsOf("text", {}, {{.name = "a", .message = "m"}}, 1000)};
+  Board board{settingsOf("text", {}, {{.name = "a", .message = "m"}}, 250)};
   board.run(1001);
   for (const auto& [value, text] :
        {std::pair{-0.00004, "-0.0000"}, std::pair{123456.78915, "123456.7892"},
         std::pair{-1e9, "-999999999.0000"}, std::pair{9.99996, "10.0000"}, std::pair{-0.5, "-0.5000"}}) {
     (void)board.said();
     board.command({value});
-    board.run();
+    board.run(4);
     EXPECT_THAT(board.said(), HasSubstr("$m," + std::string{text} + "*")) << value;
   }
 }
@@ -376,9 +429,55 @@ TEST(SerialLinkModbus, WritesAndReadsItsRegistersInTurn) {
   EXPECT_DOUBLE_EQ(board.output("level"), 0x1234);
 }
 
+// Two questions that look alike: an answer does not say to which it belongs.
+TEST(SerialLinkModbus, ALateAnswerIsNotTakenForThatToTheNextQuestion) {
+  Board board{settingsOf(
+      "modbus", {{.name = "a", .reg = 0, .type = "u16"}, {.name = "b", .reg = 10, .type = "u16"}}, {})};
+  const auto question_a = modbusFrame({3, 3, 0, 0, 0, 1});
+  for (int i = 0; i < 100 && board.saidBytes() != question_a; ++i) board.run();
+  board.run(58);  // its time is over
+  board.hear(modbusFrame({3, 3, 2, 0x11, 0x11}));
+  board.run(1);
+  EXPECT_TRUE(std::isnan(board.output("a")));
+  board.run(100);
+  EXPECT_TRUE(std::isnan(board.output("b")));
+  EXPECT_EQ(board.saidBytes(), modbusFrame({3, 3, 0, 10, 0, 1})) << "asked when the late one has passed";
+  board.hear(modbusFrame({3, 3, 2, 0x22, 0x22}));
+  board.run(2);
+  EXPECT_DOUBLE_EQ(board.output("b"), 0x2222);
+  EXPECT_GE(board.output("errors"), 1.0);
+}
+
+TEST(SerialLinkModbus, AnEstopIsWrittenBeforeTheRoundGoesOn) {
+  Board board{modbusLink()};
+  board.run(1001);
+  const auto answerTo = [&](const Bytes& question) {
+    if (question[1] == 6) board.hear(question);
+    if (question[1] == 3) board.hear(modbusFrame({3, 3, 6, 0, 0, 0, 0, 0, 0}));
+    if (question[1] == 4) board.hear(modbusFrame({3, 4, 2, 0, 0}));
+  };
+  const auto next = [&] {
+    for (int i = 0; i < 200; ++i) {
+      const auto said = board.saidBytes();
+      if (!said.empty()) return said;
+      board.run();
+    }
+    return Bytes{0, 0};
+  };
+  board.command({7.0});
+  Bytes question;
+  for (int i = 0; i < 20 && question != modbusFrame({3, 6, 0, 100, 0, 7}); ++i) answerTo(question = next());
+  question = next();
+  ASSERT_EQ(question[1], 3);  // the round goes on with its reading
+  board.robot().setState(RobotStatus::kEstop);
+  board.run();
+  answerTo(question);
+  EXPECT_EQ(next(), modbusFrame({3, 6, 0, 100, 0, 0}));
+}
+
 TEST(SerialLinkModbus, ASlaveThatDoesNotAnswerIsAskedAgainAndCounted) {
   Board board{modbusLink()};
-  board.run(200);
+  board.run(600);
   EXPECT_GE(board.output("errors"), 3.0);
   EXPECT_TRUE(std::isnan(board.output("level")));
   EXPECT_FALSE(board.said().empty());
@@ -436,6 +535,10 @@ TEST(SerialLinkKeys, EachMistakeIsNamedWithItsPlace) {
             "send[0].safe_value: it is not between"}}) {
     EXPECT_THAT(errorOf(settingsOf(wrong.protocol, wrong.receive, wrong.send)), HasSubstr(wrong.error));
   }
+  EXPECT_THAT(errorOf(settingsOf("cobs", {}, {{.name = "a", .message = "1", .type = "u16", .safe = -10}})),
+              HasSubstr("send[0].safe_value: the field can say 0 to 65535"));
+  EXPECT_THAT(errorOf(settingsOf("text", {}, {{.name = "a", .message = "m"}}, 500)),
+              HasSubstr("rate_hz: the fields are up to 22 bytes, and 115200 8N1 carries them 366 times"));
   EXPECT_EQ(errorOf(settingsOf("modbus",
                                {{.name = "a", .reg = 1, .type = "u16"},
                                 {.name = "b", .reg = 1, .type = "u16", .input_register = true}},

@@ -51,6 +51,18 @@ TEST_F(TargetShaperTest, WithoutLimitsEveryTargetPassesAsItIs) {
   }
 }
 
+// Each way by itself: too fast, and too sudden.
+TEST_F(TargetShaperTest, AFeedForwardThatIsLimitedSaysSo) {
+  const Target moving{.mode = ControlMode::kTotalAngle, .velocity_ff_rpm = 20.0F};
+  configure({.velocity_slew_rpm_per_s = 1000.0F});
+  EXPECT_EQ(step(moving).limits, kLimitSlew);
+  configure({.angle_slew_deg_per_s = 60.0F});  // 10 rpm
+  feedback.total_angle_deg = 0.0;
+  const auto fast = step(moving);
+  EXPECT_EQ(fast.target.velocity_ff_rpm, 10.0F);
+  EXPECT_EQ(fast.limits, kLimitSlew);
+}
+
 TEST_F(TargetShaperTest, AVelocityTargetRisesFromTheMeasuredSpeedAtItsRate) {
   configure({.velocity_slew_rpm_per_s = 1000.0F});
   feedback.velocity_rpm = 50.0F;

@@ -106,6 +106,37 @@ TEST(CubemarsTurns, ADriveOnAnotherTurnOfItsFieldIsStoppedBeforeItGoesFar) {
   }
 }
 
+// At the end of such a step the drive gives far less than it is told: its back-EMF takes it away.
+TEST(CubemarsTurns, ALargeStepAtFullSpeedIsNoOtherTurn) {
+  for (const auto* model : {"AK80-9", "AK80-64", "AK10-9", "AK60-6", "AK70-10", "AK80-8"}) {
+    for (const double step_deg : {180.0, 360.0, -360.0}) {
+      auto rig = rigOf(settingsOf({model, "mit"}));
+      rig.comeOnline();
+      ASSERT_TRUE(rig.enable());
+      rig.command({.mode = ControlMode::kTotalAngle, .value = step_deg});
+      for (int i = 0; i < 1500; ++i) {
+        rig.run(milliseconds{1});
+        ASSERT_EQ(rig.motor().complaint().fault, FaultCode::kNone) << model << " " << step_deg << " " << i;
+      }
+    }
+  }
+}
+
+TEST(CubemarsTurns, ASoftSpringOnAnotherTurnIsSeenToo) {
+  sim::MotorLoad load;
+  load.initial_angle_deg = 1449.0F;
+  auto rig = rigOf(settingsOf({"AK80-9", "mit"}), load);
+  rig.comeOnline();
+  ASSERT_TRUE(rig.enable());
+  rig.command({.mode = ControlMode::kImpedance,
+               .value = rig.motor().feedback().total_angle_deg,
+               .stiffness_nm_per_rad = 0.4F,
+               .damping_nms_per_rad = 0.2F});
+  for (int ticks = 0; ticks < 50 && rig.motor().complaint().fault == FaultCode::kNone; ++ticks)
+    rig.run(milliseconds{1});
+  EXPECT_EQ(rig.motor().complaint().native_code, 0x4000'0000U);
+}
+
 TEST(CubemarsTurns, AfterASilenceOutsideOfItsFieldNoSpringIsTrusted) {
   auto rig = rigOf(settingsOf({"AK80-9", "mit"}));
   rig.comeOnline();

@@ -168,6 +168,28 @@ def test_an_event_triggers_and_the_ticks_before_it_are_there(
     assert len(capture["values"][1]) == 1200
 
 
+def test_a_long_capture_is_whole(page: Page, panel: Locator) -> None:
+    panel.get_by_label("after it").fill("4.2")
+    step(page, panel)
+    [capture] = saved(page, panel)["captures"]
+    measured = capture["values"][1]
+    assert len(measured) == 4400
+    # What comes in two pieces is joined without a gap.
+    assert [value for value in measured[4000:4200] if value is None] == []
+
+
+def test_an_angle_of_a_program_stands_on_the_axis_of_its_target(
+    page: Page, panel: Locator, studio: Studio
+) -> None:
+    page.get_by_label("angle targets").check()
+    expect(panel.get_by_label("when").locator("option")).to_have_count(4)
+    panel.get_by_label("level").fill("60")
+    panel.get_by_role("button", name="Arm", exact=True).click()
+    expect(panel.get_by_role("status")).to_have_text("armed: waits for the trigger")
+    with studio.daemon.drive("set", "yaw", "total_angle", "90", "--for", "60s"):
+        expect(panel.locator("tbody tr")).to_contain_text("→ 90.0 °")
+
+
 def test_what_is_armed_can_be_disarmed(page: Page, panel: Locator) -> None:
     panel.get_by_role("button", name="Arm", exact=True).click()
     panel.get_by_role("button", name="Disarm", exact=True).click()

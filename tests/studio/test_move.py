@@ -134,7 +134,13 @@ ENDS: dict[str, tuple[Callable[[Page], object], str]] = {
         ),
         "page was left",
     ),
-    "key": (
+    "another key": (
+        lambda page: page.evaluate(
+            "window.dispatchEvent(new KeyboardEvent('keydown', {key: ' ', bubbles: true}))"
+        ),
+        "something else was pressed",
+    ),
+    "the other arrow": (
         lambda page: page.evaluate(
             "document.querySelector('.jog-buttons')"
             ".dispatchEvent(new KeyboardEvent('keydown', {key: 'ArrowLeft', bubbles: true}))"
@@ -160,6 +166,39 @@ def test_it_is_let_go_by_all_that_is_not_holding(
     assert watch.oldest_us >= 0
 
 
+def test_a_key_is_let_go_wherever_the_focus_has_gone(
+    moving: Page, studio: Studio, watch: Watch
+) -> None:
+    button(moving).click()  # the focus is in a button of the group
+    rests(studio)
+    moving.keyboard.down("ArrowRight")
+    turns(studio)
+    moving.locator("#tab-move").focus()
+    rests(studio)
+    moving.keyboard.up("ArrowRight")
+    # And where the focus stays, a click beside it is another pointer.
+    button(moving).focus()
+    moving.keyboard.down("ArrowRight")
+    turns(studio)
+    moving.locator("h1").click()
+    rests(studio)
+    moving.keyboard.up("ArrowRight")
+    assert watch.oldest_us >= 0
+
+
+def test_only_the_first_button_of_a_mouse_holds(moving: Page, studio: Studio) -> None:
+    button(moving).hover()
+    moving.mouse.down(button="right")
+    moving.mouse.up(button="right")
+    press(moving)
+    turns(studio)
+    # No pointerup comes while another button is down.
+    moving.mouse.down(button="right")
+    rests(studio)
+    moving.mouse.up()
+    moving.mouse.up(button="right")
+
+
 def test_a_page_that_is_gone_lets_go(chromium: Browser, studio: Studio, watch: Watch) -> None:
     context = chromium.new_context()
     gone = context.new_page()
@@ -180,9 +219,9 @@ def test_a_page_that_stands_still_lets_go(moving: Page, studio: Studio, watch: W
     turns(studio)
     # Its timers stand still: nothing is renewed, and nobody says that it was let go.
     moving.evaluate("{ const end = performance.now() + 600; while (performance.now() < end); }")
-    studio.daemon.wait_motor("yaw", lambda m: m["acting"] in ("nothing", "target"), "it was let go")
-    moving.mouse.up()
     rests(studio)
+    expect(moving.locator(".jogs [role=status]")).to_contain_text("stood still")
+    moving.mouse.up()
     assert watch.oldest_us >= 0
 
 

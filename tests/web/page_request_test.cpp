@@ -61,6 +61,10 @@ TEST(PageRequest, AHeldMotorHasItsTargetAndTheTimeOfThePage) {
   EXPECT_FALSE(let_go.held) << "what does not say that it is held is not";
 }
 
+TEST(PageRequest, ThePageTellsItsClock) {
+  EXPECT_EQ(parsed<TellClock>(R"({"type":"clock","sent_us":2500000})").sent, std::chrono::milliseconds{2500});
+}
+
 TEST(PageRequest, WhatIsWrongIsRefusedInWords) {
   const std::string long_text(2000, 'x');
   for (const auto& text : std::initializer_list<std::string>{
@@ -71,6 +75,8 @@ TEST(PageRequest, WhatIsWrongIsRefusedInWords) {
            "{}",
            R"({"type":"shutdown"})",
            R"({"type":7})",
+           R"({"type":"clock"})",
+           R"({"type":"clock","sent_us":-1})",
            R"({"type":"drive","seq":1,"motor":"yaw","mode":"velocity","value":1})",
            R"({"type":"drive","seq":1,"mode":"velocity","value":1,"sent_us":1})",
            R"({"type":"drive","seq":1,"motor":"yaw","mode":"impedance","value":1,"sent_us":1})",

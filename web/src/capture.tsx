@@ -65,11 +65,19 @@ interface Taking {
   first: number;
   count: number;
   period_us: number;
-  exact: boolean;
-  /** When its columns were asked for last; 0: not yet. */
+  /** How far the tick of the trigger may lie from `trigger_us`. */
+  within_us: number;
+  names: string[];
+  units: string[];
+  gains: Promise<Record<string, number>>;
+  /** Values by signal, as far as they have come. */
+  values: (number | null)[][];
+  /** When columns were asked for last; 0: not yet. */
   asked_ms: number;
 }
 const kAskAgainMs = 1000;
+// rc10-web gives no more columns at a time.
+const kPiece = 4096;
 
 function Overlay(props: { captures: Capture[]; colours: Map<string, string> }) {
   const box = useRef<HTMLDivElement>(null);
@@ -130,12 +138,12 @@ export function CapturePanel(props: { motor: string; unit: (signal: string) => s
   const [state, setState] = useState<'idle' | 'armed' | 'waiting'>('idle');
   const [told, setTold] = useState('');
   const taking = useRef<Taking | null>(null);
-  const armedAtEvent = useRef(0);
+  const armedAt = useRef(0);
   // At once, where the state is drawn later.
   const armed = useRef(false);
   const chooser = useRef<HTMLInputElement>(null);
   const names = link.shown;
-  const period_us = kUs / (known.robot?.robot.rate_hz ?? 1000);
+  const period_us = Math.round(kUs / (known.robot?.robot.rate_hz ?? 1000));
   const colours = new Map(captures.map((capture, i) => [capture.id, colourOf(i)]));
   const latest = useRef({ captures, trigger, names });
   latest.current = { captures, trigger, names };
@@ -146,21 +154,46 @@ export function CapturePanel(props: { motor: string; unit: (signal: string) => s
     setState('idle');
   };
 
-  const begin = (trigger_us: number, exact: boolean) => {
+  const begin = (trigger_us: number, within_us: number) => {
     const { pre_s, length_s } = latest.current.trigger;
-    const first = Math.round((trigger_us - pre_s * kUs) / period_us);
-    taking.current = { trigger_us, first, count: Math.round(((pre_s + length_s) * kUs) / period_us), period_us, exact, asked_ms: 0 };
+    const asked = link.ask({ operation: 'get_config', target: props.motor });
+    taking.current = {
+      trigger_us,
+      first: Math.round((trigger_us - pre_s * kUs) / period_us),
+      count: Math.max(1, Math.round(((pre_s + length_s) * kUs) / period_us)),
+      period_us,
+      within_us,
+      names: latest.current.names,
+      units: latest.current.names.map(props.unit),
+      gains: asked.then((answer) => (answer.status === 'ok' ? answer.values : {})),
+      values: [],
+      asked_ms: 0,
+    };
     setState('waiting');
   };
 
-  const take = async (columns: Columns, taken: Taking) => {
+  const askNext = (now: Taking) => {
+    const got = now.values[0]?.length ?? 0;
+    now.asked_ms = performance.now();
+    link.range(now.first + got, now.period_us, Math.min(kPiece, now.count - got));
+  };
+
+  const collect = (columns: Columns, now: Taking) => {
+    if (columns.columnUs !== now.period_us || columns.first !== now.first + (now.values[0]?.length ?? 0)) return;
+    const piece = columns.min.map((row) => [...row].map((value) => (Number.isNaN(value) ? null : value)));
+    now.values = piece.map((row, i) => [...(now.values[i] ?? []), ...row]);
+    if ((now.values[0]?.length ?? 0) < now.count) askNext(now);
+    else void take(now);
+  };
+
+  const take = async (taken: Taking) => {
     disarm();
-    const answer = await link.ask({ operation: 'get_config', target: props.motor });
+    const gains = await taken.gains;
     const { pre_s, edge, level } = latest.current.trigger;
-    const values = columns.min.map((row) => [...row].map((value) => (Number.isNaN(value) ? null : value)));
+    const values = taken.values;
     // The column in which the trigger was seen is wider than a tick: the tick itself is looked for here.
     let at = Math.round(pre_s * (kUs / period_us));
-    if (!taken.exact && edge !== 'event') {
+    if (edge !== 'event') {
       const row = values[signal] ?? [];
       const crosses = (i: number) => {
         const was = row[i - 1];
@@ -168,7 +201,8 @@ export function CapturePanel(props: { motor: string; unit: (signal: string) => s
         if (was === undefined || is === undefined || is === null) return false;
         return edge === 'rising' ? (was ?? -Infinity) < level && is >= level : (was ?? Infinity) > level && is <= level;
       };
-      const found = row.findIndex((_, i) => i > 0 && crosses(i));
+      const reach = Math.ceil(taken.within_us / period_us) + 1;
+      const found = row.findIndex((_, i) => i > 0 && Math.abs(i - at) <= reach && crosses(i));
       if (found > 0) at = found;
     }
     const capture: Capture = {
@@ -177,9 +211,9 @@ export function CapturePanel(props: { motor: string; unit: (signal: string) => s
       taken: new Date().toISOString(),
       robot: known.robot?.robot.robot ?? '',
       config_hash: known.robot?.robot.config_hash ?? '',
-      gains: answer.status === 'ok' ? answer.values : {},
-      signals: latest.current.names,
-      units: latest.current.names.map(props.unit),
+      gains,
+      signals: taken.names,
+      units: taken.units,
       period_s: period_us / kUs,
       pre_s: at * (period_us / kUs),
       values,
@@ -193,23 +227,26 @@ export function CapturePanel(props: { motor: string; unit: (signal: string) => s
     return link.addColumns((columns) => {
       const now = taking.current;
       if (columns.kind === 'range') {
-        if (now !== null && columns.first === now.first && columns.count === now.count) void take(columns, now);
+        if (now !== null) collect(columns, now);
         return;
       }
       if (!armed.current) return;
+      // The past, drawn anew: no trigger is looked for in it.
+      if (columns.kind === 'reset') {
+        before.value = null;
+        return;
+      }
       const end_us = (columns.first + columns.count) * columns.columnUs;
       if (now === null) {
-        const event = link.known.events.find((each) => each.severity !== 'info' && each.mono_us > armedAtEvent.current);
+        const event = link.known.events.find((each) => each.severity !== 'info' && each.mono_us > armedAt.current);
         if (trigger.edge === 'event') {
-          if (event !== undefined) begin(event.mono_us, true);
+          if (event !== undefined) begin(event.mono_us, 0);
           return;
         }
         const at = crossing(columns, signal, trigger, before);
-        if (at !== null) begin(at, false);
+        if (at !== null && at > armedAt.current) begin(at, columns.columnUs);
       } else if (end_us >= (now.first + now.count) * now.period_us + columns.columnUs) {
-        if (now.asked_ms !== 0 && performance.now() - now.asked_ms < kAskAgainMs) return;
-        now.asked_ms = performance.now();
-        link.range(now.first, now.period_us, now.count);
+        if (now.asked_ms === 0 || performance.now() - now.asked_ms > kAskAgainMs) askNext(now);
       }
     });
   }, [state, signal, trigger]);
@@ -217,7 +254,7 @@ export function CapturePanel(props: { motor: string; unit: (signal: string) => s
   useEffect(disarm, [props.motor, names.join(' ')]);
 
   const arm = () => {
-    armedAtEvent.current = known.state?.data.mono_us ?? 0;
+    armedAt.current = known.state?.data.mono_us ?? 0;
     armed.current = true;
     setTold('');
     setState('armed');

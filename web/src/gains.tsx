@@ -1,11 +1,14 @@
 // Gains of the loops that rc10d closes: live, with what they were before, and the lines for the robot's file.
-import { useEffect, useState } from 'preact/hooks';
+import { useEffect, useRef, useState } from 'preact/hooks';
 
 import { CopyLines } from './action';
 import { useKnown, useStudio } from './context';
 import { NumberField } from './number_field';
 
 type Values = Record<string, number>;
+
+// docs/lcm.md
+const kGainChanged = 110;
 
 const same = (a: Values, b: Values) => Object.keys(a).every((key) => a[key] === b[key]);
 
@@ -17,8 +20,11 @@ export function Gains(props: { motor: string }) {
   const [history, setHistory] = useState<Values[]>([]);
   const [yaml, setYaml] = useState('');
   const [told, setTold] = useState('');
+  const shown = useRef<Values | null>(null);
   const allowed = known.hello?.right === 'command';
-  const robot = known.robot?.robot.pid;
+  // Told by another page or program, or another rc10d: what is shown here may be old.
+  const told_us = known.events.find((event) => event.code === kGainChanged && event.source === props.motor)?.mono_us;
+  const robot = known.robot;
 
   const load = async () => {
     const answer = await link.ask({ operation: 'get_config', target: props.motor });
@@ -28,20 +34,30 @@ export function Gains(props: { motor: string }) {
       return;
     }
     setTold('');
+    // What a person has typed meanwhile stays.
+    const before = shown.current;
+    setWanted((typed) =>
+      Object.fromEntries(
+        Object.entries(answer.values).map(([key, value]) => {
+          const kept = before?.[key] !== typed[key] ? typed[key] : undefined;
+          return [key, kept ?? value];
+        }),
+      ),
+    );
+    shown.current = answer.values;
     setInForce(answer.values);
-    setWanted(answer.values);
     setYaml(answer.message);
   };
   useEffect(() => {
     if (allowed) void load();
-  }, [props.motor, allowed, robot]);
+  }, [props.motor, allowed, robot, told_us]);
 
   const changed = (values: Values) =>
     Object.fromEntries(Object.entries(values).filter(([key, value]) => inForce?.[key] !== value));
-  const set = async (values: Values, before: Values | null) => {
+  const set = async (values: Values, then: () => void) => {
     const answer = await link.ask({ operation: 'set_gains', target: props.motor, values: changed(values) });
     if (answer.status !== 'ok') return setTold(answer.message);
-    if (before !== null) setHistory([before, ...history].slice(0, 20));
+    then();
     await load();
   };
 
@@ -52,7 +68,7 @@ export function Gains(props: { motor: string }) {
         <form
           onSubmit={(event) => {
             event.preventDefault();
-            void set(wanted, inForce);
+            void set(wanted, () => setHistory([inForce, ...history].slice(0, 20)));
           }}
         >
           <table>
@@ -84,8 +100,7 @@ export function Gains(props: { motor: string }) {
               onClick={() => {
                 const [before, ...rest] = history;
                 if (before === undefined) return;
-                setHistory(rest);
-                void set(before, null);
+                void set(before, () => setHistory(rest));
               }}
             >
               {`${word('gainsUndo')}${history.length > 0 ? ` (${history.length})` : ''}`}

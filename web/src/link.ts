@@ -47,6 +47,10 @@ export interface Held {
   value: number;
 }
 
+function now_us(): number {
+  return Math.round(performance.now() * 1000);
+}
+
 function failure(seq: number, message: string): Response {
   return { type: 'response', seq, status: 'failed', message, values: {} };
 }
@@ -72,6 +76,7 @@ export class Link {
   private readonly columnListeners = new Set<(columns: Columns) => void>();
   private readonly open = new Map<number, (answer: Response) => void>();
   private seq = 0;
+  private clock = 0;
   private drawn = false;
 
   connect(): void {
@@ -82,6 +87,10 @@ export class Link {
       this.pauseMs = kFirstPauseMs;
       const token = new URLSearchParams(location.hash.slice(1)).get('token') ?? location.hash.slice(1);
       if (token !== '') this.showToken(token);
+      // So that rc10-web knows how long a message of this page is under way.
+      clearInterval(this.clock);
+      this.clock = window.setInterval(() => this.send({ type: 'clock', sent_us: now_us() }), 1000);
+      this.send({ type: 'clock', sent_us: now_us() });
     };
     socket.onmessage = (message: MessageEvent<string | ArrayBuffer>) => this.take(message.data);
     socket.onclose = () => this.lost();
@@ -130,7 +139,7 @@ export class Link {
   hold(target: Held, onRefused: (why: string) => void): { renew: () => boolean; release: () => void } {
     const seq = ++this.seq;
     const tell = (held: boolean) =>
-      this.send({ type: 'drive', seq, ...target, held, sent_us: Math.round(performance.now() * 1000) });
+      this.send({ type: 'drive', seq, ...target, held, sent_us: now_us() });
     this.open.set(seq, (answer) => onRefused(answer.message));
     tell(true);
     return {

@@ -11,6 +11,7 @@ import { Curves } from './plots';
 
 // rc10-web gives each renewal a lease of 150 ms.
 const kRenewMs = 50;
+const kLeaseMs = 150;
 const kModes = ['velocity', 'current'] as const;
 type HeldMode = (typeof kModes)[number];
 const kUnits: Record<HeldMode, string> = { velocity: 'rpm', current: 'A' };
@@ -26,7 +27,11 @@ function Jog(props: { motor: string; modes: HeldMode[]; mode: HeldMode; onMode: 
   const [direction, setDirection] = useState(0);
   const [told, setTold] = useState('');
   const holder = useRef<Holder>(null);
+  const renewed = useRef(0);
   const timer = useRef(0);
+  const heldKey = useRef('');
+  // What has ended a hold begins none.
+  const ended = useRef(0);
   const release = useRef<() => void>(() => {});
   const chosen = props.mode;
   const motor = known.state?.data.motors.find((each) => each.name === props.motor);
@@ -37,6 +42,7 @@ function Jog(props: { motor: string; modes: HeldMode[]; mode: HeldMode; onMode: 
   const letGo = (why: string) => {
     if (holder.current === null) return;
     holder.current = null;
+    heldKey.current = '';
     clearInterval(timer.current);
     release.current();
     setDirection(0);
@@ -54,8 +60,13 @@ function Jog(props: { motor: string; modes: HeldMode[]; mode: HeldMode; onMode: 
     const target = { motor: props.motor, mode: chosen, value: sign * Math.abs(sizes[chosen]) };
     const held = link.hold(target, (why) => letGo(why));
     release.current = held.release;
+    renewed.current = performance.now();
     timer.current = window.setInterval(() => {
-      if (!held.renew()) letGo(word('jogLost'));
+      // A page that stood still has let go: nothing starts again by itself.
+      const late = performance.now() - renewed.current > kLeaseMs;
+      renewed.current = performance.now();
+      if (late) letGo(word('jogStill'));
+      else if (!held.renew()) letGo(word('jogLost'));
     }, kRenewMs);
   };
 
@@ -81,10 +92,29 @@ function Jog(props: { motor: string; modes: HeldMode[]; mode: HeldMode; onMode: 
   // Another finger, anywhere on the page.
   useEffect(() => {
     const finger = (event: PointerEvent) => {
-      if (typeof holder.current === 'number' && event.pointerId !== holder.current) letGo(word('jogSecond'));
+      if (holder.current === null || event.pointerId === holder.current) return;
+      ended.current = event.timeStamp;
+      letGo(word('jogSecond'));
     };
-    window.addEventListener('pointerdown', finger, { capture: true });
-    return () => window.removeEventListener('pointerdown', finger, { capture: true });
+    // And another key; any that comes up ends what a key holds, wherever the focus has gone.
+    const key = (event: KeyboardEvent) => {
+      if (holder.current === null || event.repeat || event.key === heldKey.current) return;
+      ended.current = event.timeStamp;
+      letGo(word('jogSecond'));
+    };
+    const keyUp = () => holder.current === 'key' && letGo('');
+    const focusGone = () => holder.current === 'key' && letGo(word('jogAway'));
+    const options = { capture: true };
+    window.addEventListener('pointerdown', finger, options);
+    window.addEventListener('keydown', key, options);
+    window.addEventListener('keyup', keyUp, options);
+    window.addEventListener('focusin', focusGone, options);
+    return () => {
+      window.removeEventListener('pointerdown', finger, options);
+      window.removeEventListener('keydown', key, options);
+      window.removeEventListener('keyup', keyUp, options);
+      window.removeEventListener('focusin', focusGone, options);
+    };
   }, [props.motor]);
 
   const button = (sign: number, label: string, key: string) => (
@@ -95,9 +125,12 @@ function Jog(props: { motor: string; modes: HeldMode[]; mode: HeldMode; onMode: 
       aria-label={label}
       title={`${label} (${key})`}
       onPointerDown={(event) => {
+        if (!event.isPrimary || event.button !== 0 || event.timeStamp === ended.current) return;
         event.currentTarget.setPointerCapture(event.pointerId);
         hold(event.pointerId, sign);
       }}
+      // Of a mouse with another button down, no pointerup tells that this one came up.
+      onPointerMove={(event) => holder.current === event.pointerId && event.buttons !== 1 && letGo('')}
       onPointerUp={() => letGo('')}
       onPointerCancel={() => letGo(word('jogAway'))}
       onLostPointerCapture={() => letGo('')}
@@ -145,10 +178,10 @@ function Jog(props: { motor: string; modes: HeldMode[]; mode: HeldMode; onMode: 
           const sign = keys[event.key];
           if (sign === undefined) return;
           event.preventDefault();
-          if (!event.repeat) hold('key', sign);
+          if (event.repeat || holder.current !== null || event.timeStamp === ended.current) return;
+          heldKey.current = event.key;
+          hold('key', sign);
         }}
-        onKeyUp={(event) => keys[event.key] !== undefined && letGo('')}
-        onBlur={() => holder.current === 'key' && letGo(word('jogAway'))}
       >
         {button(-1, word('jogNegative'), '←')}
         {button(1, word('jogPositive'), '→')}
@@ -165,6 +198,7 @@ export function Move() {
   const { word } = useStudio();
   const known = useKnown();
   const [stored, setMotor] = useStored('moveMotor', '');
+  const [angle, setAngle] = useStored('moveAngle', false);
   const [storedMode, setMode] = useStored<HeldMode>('jogMode', 'velocity');
   const infos = known.robot?.robot.motors ?? [];
   const info = infos.find((each) => each.name === stored) ?? infos[0];
@@ -172,9 +206,10 @@ export function Move() {
   if (info === undefined) return null;
   const modes = kModes.filter((each) => info.modes.includes(each));
   const mode = modes.includes(storedMode) ? storedMode : (modes[0] ?? 'velocity');
-  // What jog asks for stands on the axis of what it moves.
-  const unit = (signal: string) => (signal.endsWith('.target_shaped') ? kUnits[mode] : unitOf(signal));
-  const signals = ['target_shaped', 'velocity_rpm', 'current_a'].map((reading) => `${info.name}.${reading}`);
+  // A target stands on the axis of what it moves: what jog asks for, or an angle of a program.
+  const unit = (signal: string) => (signal.endsWith('.target_shaped') ? (angle ? '°' : kUnits[mode]) : unitOf(signal));
+  const readings = ['target_shaped', 'velocity_rpm', 'current_a', ...(angle ? ['total_angle_deg'] : [])];
+  const signals = readings.map((reading) => `${info.name}.${reading}`);
   return (
     <>
       <div class="toolbar">
@@ -211,6 +246,10 @@ export function Move() {
           <Gains key={`gains ${info.name}`} motor={info.name} />
         </div>
         <div class="curves">
+          <label class="hint">
+            <input type="checkbox" checked={angle} onChange={() => setAngle(!angle)} />
+            {` ${word('moveAngle')}`}
+          </label>
           <Curves signals={signals} unit={unit} />
           <CapturePanel motor={info.name} unit={unit} />
         </div>

@@ -29,6 +29,8 @@ class SerialOutbox final : public ByteSink {
 
   /// Scheduler thread only. One system call, which does not wait.
   [[nodiscard]] bool push(std::span<const std::uint8_t> bytes) noexcept override;
+  /// Scheduler thread only.
+  [[nodiscard]] std::size_t pending() const noexcept override { return kBytes - ring_.write_available(); }
   /// io thread only. Returns how many bytes it has written to `out`.
   [[nodiscard]] std::size_t pop(std::span<std::uint8_t> out) noexcept {
     return ring_.pop(out.data(), out.size());

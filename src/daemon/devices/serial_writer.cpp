@@ -1,6 +1,8 @@
 #include "daemon/devices/serial_writer.hpp"
 
 #include <sys/eventfd.h>
+#include <sys/ioctl.h>
+#include <termios.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -9,6 +11,20 @@
 #include "daemon/exchange/clock.hpp"
 
 namespace rc10 {
+
+namespace {
+
+// The driver holds no more of ours: what is old then would be sent before what is new, an e-stop's safe
+// values too.
+constexpr int kMostInDriver = 256;
+constexpr int kLookAgainMs = 2;
+
+[[nodiscard]] bool driverIsFull(int fd) noexcept {
+  int queued = 0;
+  return ::ioctl(fd, TIOCOUTQ, &queued) == 0 && queued >= kMostInDriver;
+}
+
+}  // namespace
 
 SerialWriter::SerialWriter(SerialChannels& channels)
     : channels_(channels), pending_(channels.size()), waits_(channels.size() + 1) {
@@ -21,11 +37,15 @@ void SerialWriter::serve(Duration duration) {
     flush();
     const auto left = std::chrono::ceil<std::chrono::milliseconds>(end - monotonicNow());
     if (left.count() <= 0) return;
+    auto patience_ms = static_cast<int>(left.count());
     for (std::size_t i = 0; i < channels_.size(); ++i) {
       const bool waits = pending_[i].begin < pending_[i].end;
-      waits_[i] = {.fd = waits ? channels_[i].fd.get() : -1, .events = POLLOUT, .revents = 0};
+      // It would say at once that there is room.
+      const bool full = waits && driverIsFull(channels_[i].fd.get());
+      if (full) patience_ms = std::min(patience_ms, kLookAgainMs);
+      waits_[i] = {.fd = waits && !full ? channels_[i].fd.get() : -1, .events = POLLOUT, .revents = 0};
     }
-    (void)::poll(waits_.data(), waits_.size(), static_cast<int>(left.count()));
+    (void)::poll(waits_.data(), waits_.size(), patience_ms);
   }
 }
 
@@ -47,6 +67,7 @@ void SerialWriter::flush() noexcept {
 bool SerialWriter::write(SerialChannel& channel, Pending& pending) noexcept {
   const bool open = channel.state.load(std::memory_order_acquire) == SerialState::kOpen;
   while (open && pending.begin < pending.end) {
+    if (driverIsFull(channel.fd.get())) return false;
     const ssize_t size =
         ::write(channel.fd.get(), pending.bytes.data() + pending.begin, pending.end - pending.begin);
     if (size < 0 && errno == EINTR) continue;

@@ -35,7 +35,10 @@ ModuleRunner::ModuleRunner(Robot& robot, Supervisor& supervisor, LinkExchange& l
 void ModuleRunner::update(const Tick& tick) noexcept {
   tick_ = tick;
   receive(tick);
-  if (supervisor_.robotState() == RobotStatus::kStopping) return;
+  if (supervisor_.robotState() == RobotStatus::kStopping) {
+    for (auto& entry : robot_.modules()) entry.module->rest(tick);
+    return;
+  }
   for (current_ = 0; current_ < controls_.size(); ++current_) {
     auto& module = *robot_.modules()[current_].module;
     auto& lease = controls_[current_].lease;

@@ -21,8 +21,8 @@ constexpr int kMitAttempts = 6;  // the first, and five more
 // The answers to "no torque" and "enter", and one that was under way before them.
 constexpr std::uint64_t kAnswersToEnter = 3;
 constexpr double kMitDampShare = 0.25;  // damp is that much of the brake
-// Of the torque range. A spring towards a place that is a turn of the position field away pulls with more
-// than the whole; delay and resolution make far less.
+// Of what a spring one turn of the field away pulls with, at most the whole range; delay and resolution make
+// less.
 constexpr double kSpringMismatch = 0.6;
 // A stiff damping may pull otherwise for a sample, too, and then the other way.
 constexpr int kSamplesAgainst = 4;
@@ -133,11 +133,15 @@ void CubemarsMit::watchSpring(const cubemars::MitReport& report) noexcept {
                           law.torque_nm;
     expected_nm[i] = std::clamp(sum_nm, -most_nm, most_nm);
   }
-  const bool springs = obeying() && sent_[0].stiffness_nm_per_rad > 0.0;
-  const auto [low_nm, high_nm] = std::minmax(expected_nm[0], expected_nm[1]);
+  const double stiffness = sent_[0].stiffness_nm_per_rad;
+  const bool springs = obeying() && stiffness > 0.0;
+  const double turn_nm = stiffness * 2.0 * setup().ranges.position_rad;
+  const double apart_nm = kSpringMismatch * std::min(most_nm, turn_nm);
+  // Torque that is missing is none the other way: near its highest speed a drive gives less than it is told.
+  const auto [low_nm, high_nm] = std::minmax({expected_nm[0], expected_nm[1], 0.0});
   int against = 0;
-  if (springs && report.torque_nm > high_nm + kSpringMismatch * most_nm) against = 1;
-  if (springs && report.torque_nm < low_nm - kSpringMismatch * most_nm) against = -1;
+  if (springs && report.torque_nm > high_nm + apart_nm) against = 1;
+  if (springs && report.torque_nm < low_nm - apart_nm) against = -1;
   const bool goes_on = against * samples_against_ > 0;
   samples_against_ =
       std::clamp(goes_on ? samples_against_ + against : against, -kSamplesAgainst, kSamplesAgainst);
