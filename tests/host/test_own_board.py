@@ -98,7 +98,7 @@ def claw(request: pytest.FixtureRequest, program: Path, tmp_path: Path) -> Itera
     port = Port(tmp_path / "robot")
     board = subprocess.Popen([program, request.param, "-"], stdin=port.board)
     os.close(port.board)
-    port.board = os.dup(port._robot)  # noqa: SLF001  # closed by unplug()
+    port.board = os.dup(port._robot)  # closed by unplug()
     try:
         with Daemon(robot(port.path, TEXT if request.param == "TEXT" else COBS)) as daemon:
             daemon.wait_ready()

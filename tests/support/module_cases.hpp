@@ -71,7 +71,8 @@ inline std::vector<ModuleCase> moduleCases() {
       // $range,1.5*79 and a line feed.
       {"serial_link",
        0,
-       "port: /dev/rc10-none, protocol: text, receive: [{name: range_m, message: range}], send: [{name: claw, "
+       "port: /dev/rc10-none, protocol: text, receive: [{name: range_m, message: range}], send: [{name: "
+       "claw, "
        "message: set}]",
        {{"claw", 1.0}},
        {0x24, 0x72, 0x61, 0x6E, 0x67, 0x65, 0x2C, 0x31, 0x2E, 0x35, 0x2A, 0x37, 0x39, 0x0A}},
