@@ -68,7 +68,7 @@ def angle(daemon: Daemon, motor: str) -> float:
     return float(daemon.wait_motor(motor, lambda _: True, "is there")["total_angle_deg"])
 
 
-def end_of_the_hand(daemon: Daemon, motor: str, *options: object) -> float:
+def end_of_the_hand(daemon: Daemon, motor: str, *options: str | float) -> float:
     """The angle of a motor when a hand that turns it by 60 degrees is about to let go."""
     done = daemon.ctl("hand", motor, "--by", 60, *options)
     assert done.returncode == 0, done.stderr

@@ -34,7 +34,7 @@ int run(int argc, char** argv) {
   web::ServerOptions options;
   std::string page = RC10_PAGE_FOLDER;
   std::string token_file;
-  CLI::App app{"The robot in a browser: serves the page, and is a client of rc10d"};
+  CLI::App app{"The robot in a browser: serves the page, and is a client of rc10d", "rc10-web"};
   app.set_version_flag("--version", std::string{"rc10-web "} + kVersion);
   app.add_option("--robot", options.robot, "The robot; needed only if several run on this computer");
   app.add_option("--listen", options.address, "Address to listen on; another than 127.0.0.1 needs the token")
