@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import pytest
 from hostlib import Daemon
-from hostlib.daemon import ARM
+from hostlib.daemon import ARM, REPO
+from hostlib.page import blocks_run_by, robots
 
 import rc10
 
@@ -106,3 +107,39 @@ def test_a_program_turns_a_shaft_once_for_each_request() -> None:
         )
         with pytest.raises(rc10.RequestRefused, match=r"speed_rpm: 0 is out of range; use 0\.1"):
             robot.request("hand", "left", {"speed_rpm": 0})
+
+
+def commands_of(page: str) -> list[list[str]]:
+    """The rc10ctl lines of a page that are marked as run here."""
+    lines = [
+        line.removeprefix("$ ").split("#")[0]
+        for block in blocks_run_by("tests/host/test_simulated_shafts.py", REPO / "docs" / page)
+        for line in block.text.splitlines()
+    ]
+    return [line.split()[1:] for line in lines if line.startswith("rc10ctl ")]
+
+
+def test_the_joint_of_modules_md_does_what_the_page_says() -> None:
+    [robot] = [
+        text for text in robots(REPO / "docs" / "modules.md") if text.startswith("robot: arm")
+    ]
+    with Daemon(robot.replace("id: 1", "id: 1\n        feedback_timeout_ms: 1000", 1)) as daemon:
+        daemon.wait_ready()
+        enable, home, move, disable = commands_of("modules.md")
+        daemon.must(*enable)
+        assert "homed = 1.000" in daemon.must(*home)
+        assert "move = 2.000" in daemon.must(*move)
+        daemon.must(*disable)
+        daemon.wait_motor(
+            "shoulder",
+            lambda motor: abs(float(motor["total_angle_deg"])) < 1.0 and motor["velocity_rpm"] == 0,
+            "has fallen onto its stop",
+        )
+
+
+def test_the_hand_of_rc10ctl_md_does_what_the_page_says() -> None:
+    with Daemon(WHEELS.replace("left", "wheel")) as daemon:
+        daemon.wait_ready()
+        [words] = commands_of("rc10ctl.md")
+        daemon.must(*words)
+        assert angle(daemon, "wheel") == pytest.approx(360, abs=3)
