@@ -126,7 +126,7 @@ class Tree:
             source, copy = REPO / name, self.root / name
             if not name or not source.is_file():
                 continue
-            # What has not changed keeps its time: it is not compiled again.
+            # Unchanged text keeps its time: it is not compiled again.
             if not copy.exists() or copy.read_bytes() != source.read_bytes():
                 copy.parent.mkdir(parents=True, exist_ok=True)
                 shutil.copyfile(source, copy)

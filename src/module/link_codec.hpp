@@ -11,7 +11,7 @@
 
 namespace rc10 {
 
-/// What a serial link says and hears on its port: one of text, cobs, modbus. Scheduler thread only.
+/// The protocol of a serial link on its port: one of text, cobs, modbus. Scheduler thread only.
 class LinkCodec {
  public:
   LinkCodec() = default;

@@ -82,7 +82,7 @@ modules:
 
 enum Module : std::uint16_t { kBase, kGun, kLift };
 
-/// What a motor's program asks, and what may push it. A share of what its motor can do: it is to win.
+/// One motor's program, and the push against it: a share of what the motor can do, so that the motor wins.
 struct Role {
   std::string_view name;
   ControlMode mode;

@@ -25,7 +25,7 @@ class Match {
 
   /// Each stop that no plug and nobody caused, with what was under way: none of them may be.
   [[nodiscard]] const std::vector<std::string>& nuisances() const noexcept { return nuisances_; }
-  /// What happened how often, and how much of the time the motors obeyed.
+  /// Each event's count, and the share of the time in which the motors obeyed.
   [[nodiscard]] std::string text() const;
   [[nodiscard]] std::uint64_t times(const std::string& what) const;
   /// Ticks of motors that were ACTIVE, and of those that were to be.

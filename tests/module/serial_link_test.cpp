@@ -111,7 +111,7 @@ class Board {
     const std::vector<double> inputs{values};
     module_->setInputs(inputs);
   }
-  /// What was sent since the last call.
+  /// The bytes sent since the last call.
   [[nodiscard]] std::string said() {
     const auto bytes = std::exchange(sink_.bytes, {});
     return {bytes.begin(), bytes.end()};

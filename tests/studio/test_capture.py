@@ -174,7 +174,7 @@ def test_a_long_capture_is_whole(page: Page, panel: Locator) -> None:
     [capture] = saved(page, panel)["captures"]
     measured = capture["values"][1]
     assert len(measured) == 4400
-    # What comes in two pieces is joined without a gap.
+    # Two pieces are joined without a gap.
     assert [value for value in measured[4000:4200] if value is None] == []
 
 

@@ -7,10 +7,11 @@ import threading
 from typing import TYPE_CHECKING
 
 import pytest
-from conftest import Studio
 from hostlib import Daemon
 from hostlib.daemon import CONFIG, Motor
 from playwright.sync_api import Browser, Locator, Page, expect
+
+from conftest import Studio
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator

@@ -323,7 +323,7 @@ RequestDesk::Outcome RequestDesk::turnByHand(const link::Request& request, const
   return outcome;
 }
 
-// So that a repetition does not turn it twice.
+// A repeated request is answered from here: it does not turn the joint twice.
 void RequestDesk::handTaken(const link::Request& request, const Speaker& speaker,
                             const link::Response& response) {
   remember(speaker.owner(), request, response);
