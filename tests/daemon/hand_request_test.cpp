@@ -74,10 +74,9 @@ TEST_F(HandDesk, ARequestThatWasTakenIsNotTakenAgain) {
   const auto request = handOf({{"by_deg", 90}});
   const auto first = desk.begin(request, speaker);
   ASSERT_TRUE(first.hand);
-  ASSERT_TRUE(first.response);
-  EXPECT_EQ(first.response->status, link::ResponseStatus::kOk);
+  EXPECT_EQ(first.hand->response.status, link::ResponseStatus::kOk);
   EXPECT_FALSE(first.order);
-  desk.handTaken(request, speaker, *first.response);
+  desk.handTaken(request, speaker, first.hand->response);
   const auto again = desk.begin(request, speaker);
   EXPECT_FALSE(again.hand);
   ASSERT_TRUE(again.response);

@@ -387,11 +387,15 @@ void LinkServer::request(const link::Request& message, Connection& connection) {
     if (const auto failed = desk_.fail(outcome.order->id, "the scheduler does not take orders"))
       answer(*failed);
   }
-  if (outcome.hand && sources_.exchange.hands.push(*outcome.hand)) {
-    desk_.handTaken(message, speaker, *outcome.response);
-  } else if (outcome.hand) {
-    outcome.response->status = link::ResponseStatus::kFailed;
-    outcome.response->message = std::string_view{"hand: too many at once: the simulation is behind"};
+  if (outcome.hand) {
+    auto& [order, response] = *outcome.hand;
+    if (sources_.exchange.hands.push(order)) {
+      desk_.handTaken(message, speaker, response);
+    } else {
+      response.status = link::ResponseStatus::kFailed;
+      response.message = std::string_view{"hand: too many at once: the simulation is behind"};
+    }
+    respond(connection, response);
   }
   if (outcome.response) respond(connection, *outcome.response);
   if (outcome.not_permitted.empty()) return;

@@ -317,9 +317,8 @@ RequestDesk::Outcome RequestDesk::turnByHand(const link::Request& request, const
   if (!outcome.not_permitted.empty()) return refuse(outcome.not_permitted);
   const auto order = parseHand(request, names_[*motor], drives_[*motor]);
   if (!order) return refuse(order.error().message);
-  outcome.hand = *order;
-  outcome.response =
-      respond(request, link::ResponseStatus::kOk, fmt::format("hand: turns {}", names_[*motor]));
+  outcome.hand = Hand{
+      *order, respond(request, link::ResponseStatus::kOk, fmt::format("hand: turns {}", names_[*motor]))};
   return outcome;
 }
 

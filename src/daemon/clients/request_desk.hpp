@@ -28,9 +28,13 @@ class RequestDesk {
               std::vector<const DriveSetup*> setups = {}, std::vector<MotorLoops> loops = {},
               std::vector<std::optional<SimulatedDrive>> drives = {});
 
+  struct Hand {
+    HandOrder order;
+    link::Response response;  ///< For an order that the simulation takes.
+  };
   struct Outcome {
     std::optional<Order> order;              ///< To be sent to the supervisor; answered by finish().
-    std::optional<HandOrder> hand;           ///< To be sent to the simulation; it answers nothing.
+    std::optional<Hand> hand;                ///< To be sent to the simulation; it answers nothing.
     std::optional<link::Response> response;  ///< To be sent back at once.
     bool estop = false;                      ///< Raise the e-stop flag too: the ring may be full.
     std::string not_permitted;               ///< Why, if that is the reason of the response.
@@ -38,7 +42,7 @@ class RequestDesk {
   /// finish() tells the speaker's connection back.
   [[nodiscard]] Outcome begin(const link::Request& request, const Speaker& speaker);
 
-  /// Outcome::hand was handed over, and its response is sent.
+  /// The simulation has taken the order of Outcome::hand, and its response is sent.
   void handTaken(const link::Request& request, const Speaker& speaker, const link::Response& response);
 
   struct Answer {
