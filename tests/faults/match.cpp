@@ -172,6 +172,12 @@ void Match::tick() {
       // Longer, and the drives' own watchdogs act: as they are to.
       periods = choices_.of<std::uint64_t>({2, 3, 5, 10, 20, 30, 40});
       lately_.push_back(fmt::format("{}: pause of {} ms", tick_, periods));
+      // A shaking contact does not wait for the daemon: a gap that ends within the pause ends here.
+      const auto back = robot_.now() + config_.period() * static_cast<std::int64_t>(periods);
+      for (auto& player : players_) {
+        if (player.unplugged_until != MonotonicTime{} && player.unplugged_until < back)
+          player.unplugged_until = robot_.now();
+      }
     } else {
       begin(trouble);
     }
