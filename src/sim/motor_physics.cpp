@@ -15,8 +15,6 @@ constexpr double kTwoPi = 2.0 * std::numbers::pi;
 // than the steps of the simulation can follow.
 constexpr double kHandLagDeg = 1.0;
 constexpr double kMostHandRadPerS = 400.0;
-// Of its speed, where it has fallen behind: a critically damped spring overshoots the speed by 1/e^2.
-constexpr double kMostCatchUp = 1.25;
 
 }  // namespace
 
@@ -125,12 +123,7 @@ double MotorPhysics::stepHand(double dt_s) noexcept {
   const double pull_nm =
       inertia * natural_rad_s * natural_rad_s * (grip_.at_deg - outputAngleDeg()) * kRadPerDeg +
       2.0 * inertia * natural_rad_s * (hand_rad_s - velocity_rad_s_) + (there ? 0.0 : friction_nm);
-  // A shaft that has run away is not whirled back: the pull ends at the hand's own speed.
-  const double most_rad_s = kMostCatchUp * std::abs(grip_.rpm) / kRpmPerRadPerS;
-  const auto most_nm = [&](double along_rad_s) {
-    return std::clamp((most_rad_s - along_rad_s) * inertia / dt_s, 0.0, grip_.torque_nm);
-  };
-  return std::clamp(pull_nm, -most_nm(-velocity_rad_s_), most_nm(velocity_rad_s_));
+  return std::clamp(pull_nm, -grip_.torque_nm, grip_.torque_nm);
 }
 
 // A stop is rigid and takes all of the speed: nothing bounces.
