@@ -13,7 +13,7 @@
 #include <string.h>
 
 typedef struct {
-  char text[120]; /* what stood between $ and *, when rc10_text_get() has returned 1 */
+  char text[120]; /* text between $ and *, once rc10_text_get() has returned 1 */
   uint8_t size;
   uint8_t in_line;
 } rc10_text_line;

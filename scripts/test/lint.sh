@@ -42,7 +42,7 @@ types_in() {
 comments_begin_with_a_noun() {
     local status=0
     git grep -nE '(//+[!<]?|/\*+|^ *\*|#|""") *(-+ )?(What|Who|Whoever|So that)\>' -- \
-        src tests bench examples cmake scripts python packaging systemd config CMakeLists.txt \
+        src tests bench examples cmake scripts python packaging systemd config web/src CMakeLists.txt \
         ':!scripts/test/*.sh' ':!tests/kernel/uml.config' ':!python/requirements.txt' ':!scripts/test/lint.sh' \
         || status=$?
     [ "$status" -eq 1 ]  # 0: there are some; more: git did not look

@@ -7,12 +7,13 @@
 
 namespace rc10 {
 
-/// Keeps an output at its safe value after a start, an e-stop or a loss of its line, until it is commanded so
-/// once: who commands now may have begun before, and does not know of it. As a motor, it does not move by
-/// itself because somebody cleared the e-stop or plugged a cable in.
+/// Interlock of an output: after a start, an e-stop or a loss of its line it keeps its safe value until it is
+/// commanded that value once. A program that went on commanding through the stop moves nothing when the
+/// e-stop is cleared or the cable is plugged in.
 class HeldBack {
  public:
-  /// A program that sends too rarely has gaps: only after so long without a command has it let go.
+  /// Time without a command after which a program has let go: shorter gaps are those of one that sends
+  /// rarely.
   static constexpr Duration kLetGo = std::chrono::seconds{1};
 
   struct Command {

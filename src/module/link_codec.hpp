@@ -19,13 +19,13 @@ class LinkCodec {
   LinkCodec& operator=(const LinkCodec&) = delete;
   virtual ~LinkCodec() = default;
 
-  /// Once. The codec outlives it.
+  /// The protocol for the port; called once. The codec outlives it.
   [[nodiscard]] virtual std::unique_ptr<I_Protocol> takeProtocol() = 0;
   [[nodiscard]] virtual const ReceivedFields& received() const noexcept = 0;
   enum class Round : std::uint8_t {
     kGoesOn,
     kBegins,  ///< It is time to send all fields.
-    kUrgent,  ///< A field has become safe: what is sent comes first.
+    kUrgent,  ///< A field has become safe: writes come first.
   };
   /// One tick. `values` of the fields that are sent, in their order.
   virtual void step(SerialDevice& device, std::span<const double> values, Round round,
@@ -45,8 +45,8 @@ struct ModbusLink {
   std::uint8_t address = 1;
   Duration byte_time{};
   Duration frame_gap{};
-  Duration timeout{};           ///< From the end of a question to the begin of its answer.
-  bool low_word_first = false;  ///< Of values in two registers.
+  Duration timeout{};           ///< From the end of a question to the start of its answer.
+  bool low_word_first = false;  ///< Word order of values in two registers.
 };
 [[nodiscard]] std::unique_ptr<LinkCodec> makeModbusCodec(const ModbusLink& link,
                                                          std::vector<LinkField> received,

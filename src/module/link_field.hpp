@@ -37,8 +37,8 @@ inline constexpr std::size_t kLongestNumberInText = 15;
 /// Writes it, rounded and cut off at the ends of its type; NaN: 0.
 void writeWire(WireType type, double value, std::span<std::uint8_t> bytes) noexcept;
 
-/// One field of a serial link, received or sent, as configured. Which of the places means something depends
-/// on the protocol.
+/// One field of a serial link, received or sent, as configured. Only the places of its
+/// protocol are used.
 struct LinkField {
   std::string name;
   std::string message;    ///< text, cobs: the message that it is part of.
@@ -49,7 +49,7 @@ struct LinkField {
   double scale = 1.0;  ///< Value of the signal for 1 on the wire.
 };
 
-/// The received ones with their latest values.
+/// Received fields with their latest values.
 struct ReceivedFields {
   struct Reading {
     double value = 0.0;

@@ -4,7 +4,7 @@
 
 namespace rc10 {
 
-/// The key of modules that sit on a serial port.
+/// Keys of modules that sit on a serial port.
 inline constexpr FamilyKey kPortKey{
     .name = "port",
     .kind = FamilyKey::Kind::kText,
@@ -12,5 +12,14 @@ inline constexpr FamilyKey kPortKey{
     .about = "The serial port. A name under /dev/serial/by-id stays the same whatever is plugged in first.",
     .pattern = "/[A-Za-z0-9_./:+-]{1,120}",
     .words = "an absolute path: /dev/ttyAMA0 or /dev/serial/by-id/..."};
+
+constexpr FamilyKey baudKey(std::string_view about) {
+  return {.name = "baud",
+          .kind = FamilyKey::Kind::kInteger,
+          .min = 1200,
+          .max = 4'000'000,
+          .default_text = "115200",
+          .about = about};
+}
 
 }  // namespace rc10

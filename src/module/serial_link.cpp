@@ -20,14 +20,14 @@ namespace {
 
 using enum FamilyKey::Kind;
 
-// With the three signals of the link they fit into a module's outputs.
+// Fields each way: with the three signals of the link they fit into a module's outputs.
 constexpr double kMaxFields = 14;
-// So many fit into a line, each as long as it may be.
+// Numbers of a text line that fit into it at their longest.
 constexpr std::size_t kMostSentInLine = 6;
 constexpr std::array<std::string_view, 3> kLinkSignals{"connected", "age_ms", "errors"};
-// Of what the line carries: the rest is for a computer that was late.
+// Share of the line's capacity that rounds may use: the rest is for a computer that was late.
 constexpr double kMostOfLine = 0.7;
-/// As a GPIO module has it: so long without a tick, and the outputs are safe again.
+// Gap of the ticks after which the outputs are safe again, as in a GPIO module.
 constexpr Duration kLongestGapOfTicks = std::chrono::milliseconds{200};
 
 constexpr std::array<std::string_view, 3> kLinkProtocols{"text", "cobs", "modbus"};
@@ -64,12 +64,11 @@ constexpr FamilyKey kType{.name = "type",
                           .choices = kWireTypes,
                           .default_text = "f32",
                           .about = "cobs, modbus: the number on the wire. modbus has no u8 and i8."};
-constexpr FamilyKey kScale{.name = "scale",
-                           .kind = kNumber,
-                           .min = -1e9,
-                           .max = 1e9,
-                           .default_text = "1",
-                           .about = "Value of the signal for 1 on the wire; not 0."};
+constexpr FamilyKey valueKey(std::string_view name, std::string_view default_text, std::string_view about) {
+  return {
+      .name = name, .kind = kNumber, .min = -1e9, .max = 1e9, .default_text = default_text, .about = about};
+}
+constexpr FamilyKey kScale = valueKey("scale", "1", "Value of the signal for 1 on the wire; not 0.");
 
 constexpr std::array kReceiveKeys{
     kFieldName,
@@ -90,24 +89,9 @@ constexpr std::array kSendKeys{
     kRegister,
     kType,
     kScale,
-    FamilyKey{.name = "min",
-              .kind = kNumber,
-              .min = -1e9,
-              .max = 1e9,
-              .default_text = "-1e9",
-              .about = "The signal is cut off below."},
-    FamilyKey{.name = "max",
-              .kind = kNumber,
-              .min = -1e9,
-              .max = 1e9,
-              .default_text = "1e9",
-              .about = "The signal is cut off above."},
-    FamilyKey{.name = "safe_value",
-              .kind = kNumber,
-              .min = -1e9,
-              .max = 1e9,
-              .default_text = "0",
-              .about = "What is sent at the start, while nobody commands it, and during an e-stop."},
+    valueKey("min", "-1e9", "The signal is cut off below."),
+    valueKey("max", "1e9", "The signal is cut off above."),
+    valueKey("safe_value", "0", "What is sent at the start, while nobody commands it, and during an e-stop."),
     FamilyKey{.name = "on_estop",
               .kind = kChoice,
               .choices = kLinkAtEstop,
@@ -125,12 +109,7 @@ constexpr std::array kLinkKeys{
               .about =
                   "text: lines that a person can read and type. cobs: binary messages with a CRC. modbus: "
                   "Modbus RTU, rc10d is the master."},
-    FamilyKey{.name = "baud",
-              .kind = kInteger,
-              .min = 1200,
-              .max = 4'000'000,
-              .default_text = "115200",
-              .about = "Baud rate, as set on the board."},
+    baudKey("Baud rate, as set on the board."),
     FamilyKey{.name = "format",
               .kind = kText,
               .default_text = "8N1",
@@ -214,7 +193,7 @@ struct Range {
   double low;
   double high;
 };
-// Of a signal, by what its field can say.
+// Range of a signal, by the range of its field.
 [[nodiscard]] Range rangeOf(const OwnValues& row, std::string_view protocol) {
   const double scale = row.number("scale");
   const auto wire = protocol == "text" ? WireRange{-kMostInText, kMostInText} : wireRange(fieldOf(row).type);
@@ -308,7 +287,7 @@ class SerialLink : public Module_Base {
       urgent |= values_[i] == sent_[i].safe && before_[i] != values_[i];
     auto round = tick.now >= next_ ? LinkCodec::Round::kBegins : LinkCodec::Round::kGoesOn;
     if (urgent) round = LinkCodec::Round::kUrgent;
-    // No more than one round waits: what is old must not be sent before what is new.
+    // At most one round waits: old values are not sent before new ones.
     if (open && round != LinkCodec::Round::kGoesOn && device_->pendingBytes() > 0) {
       if (!urgent) ++skipped_;
       if (!urgent) next_ = tick.now + period_;

@@ -148,8 +148,8 @@ std::string Hub::whyNotMoving(const Page& page) const {
          "tunnel: ssh -L 8010:localhost:8010";
 }
 
-// Each renewal is a command with what is left of its lease: nothing here repeats one. The end of a hold says
-// what is safe, however late it comes.
+// Each renewal is a command for the rest of its lease: nothing here repeats one. The end of a hold sends the
+// safe target, however late it comes.
 void Hub::drive(Page& page, const DriveMotor& wanted, Duration age) {
   auto refused = whyNotMoving(page);
   if (refused.empty() && !feed_.connected()) refused = feed_.reason();
@@ -157,7 +157,7 @@ void Hub::drive(Page& page, const DriveMotor& wanted, Duration age) {
     if (const auto motor = client::findMotor(feed_.welcome(), wanted.motor); !motor)
       refused = motor.error().message;
   }
-  // It may wait, and then nothing is left of this renewal; the next one finds it open.
+  // Connecting may outlast the lease of this renewal; the next one finds the connection open.
   const bool opens = !page.link->isOpen();
   if (refused.empty()) refused = page.link->connect(feed_.socketPath());
   const bool counts = !wanted.held || (age < kHeldLease && !opens);

@@ -21,7 +21,7 @@ constexpr double kMaxColumnUs = 60e6;
 constexpr double kMaxSpanUs = 3600e6;
 // Whole numbers beyond it are not exact in a page.
 constexpr double kMaxExact = 9007199254740991.0;
-// Modes that end where they are when they are let go; and far beyond what a motor does.
+// Modes in which the motor stays where it is when it is let go; and a bound far beyond any motor.
 constexpr std::array<std::string_view, 2> kHeldModes{toString(ControlMode::kVelocity),
                                                      toString(ControlMode::kCurrent)};
 constexpr double kMostHeld = 1e6;

@@ -42,7 +42,7 @@ struct AskRobot {
 /// Target of one motor while a pointer or a key is held: sent again and again, and once more when it is let
 /// go.
 struct DriveMotor {
-  std::int64_t seq = 0;  ///< The same of one hold.
+  std::int64_t seq = 0;  ///< One number for all renewals of a hold.
   std::string motor;
   ControlMode mode{};
   double value = 0.0;

@@ -113,10 +113,10 @@ constexpr std::array<Role, 19> kRoles{{{"front_left", kByModule, 0, 0, 1.5},
 
 constexpr std::array<const char*, 10> kTroubleNames{"shove", "hand", "slope", "heat", "loose plug",
                                                     "plug",  "bus",  "pause", "gap",  "e-stop"};
-// How often each is chosen. A hundred in all.
+// Weight of each in per cent.
 constexpr std::array<std::uint8_t, 10> kTroubleWeights{30, 18, 8, 8, 8, 8, 2, 8, 8, 2};
 
-// Of what a plug or the button has stopped: a group's stop and a run-down come after it.
+// Time after a plug or the button in which a group's stop and a run-down follow.
 constexpr auto kAftermath = 500ms;
 // From the operator's `enable` until every motor obeys.
 constexpr auto kBackWithin = 8s;
@@ -169,7 +169,7 @@ void Match::tick() {
     const auto trouble = static_cast<Trouble>(which);
     if (trouble == Trouble::kPause) {
       note("pause");
-      // Longer, and the drives' own watchdogs act: as they are to.
+      // In a longer pause the drives' own watchdogs act, as they are to.
       periods = choices_.of<std::uint64_t>({2, 3, 5, 10, 20, 30, 40});
       lately_.push_back(fmt::format("{}: pause of {} ms", tick_, periods));
       // A shaking contact does not wait for the daemon: a gap that ends within the pause ends here.
@@ -193,7 +193,7 @@ void Match::tick() {
   OrderResult answer;
   while (robot_.exchange().results.pop(answer)) {
     std::string refused;
-    // A shaft that still turns, by a slope or a hand, keeps the e-stop: it is to.
+    // A shaft that a slope or a hand still turns keeps the e-stop, as it is to.
     if (std::any_of(answer.motors.begin(), answer.motors.end(),
                     [](Refusal refusal) { return refusal == Refusal::kMoving; }))
       all_well_ = {};
@@ -249,7 +249,7 @@ void Match::begin(Trouble trouble) {
   std::string of{role.name};
   switch (trouble) {
     case Trouble::kShove:
-      // One at rest would turn on for long: nobody shoves a free wheel.
+      // A motor at rest is a free wheel, which would turn on for long.
       if (player.was_active) load(player, sign * push, between(50, 500));
       break;
     case Trouble::kHand:
@@ -300,7 +300,7 @@ void Match::end() {
            static_cast<double>(config_.buses[player.bus].motors[player.drive].simulated.load_torque_nm), 0s);
       player.loaded_until = {};
     }
-    // A contact that shakes: CAN sends again what is disturbed, so frames are lost in gaps or not at all.
+    // A shaking contact loses frames in gaps or not at all: CAN repeats disturbed ones.
     if (now < player.loose_until && now >= player.next_gap && player.unplugged_until == MonotonicTime{}) {
       player.unplugged_until = now + between(1, 10);
       player.next_gap = player.unplugged_until + between(30, 300);
@@ -313,7 +313,7 @@ void Match::end() {
   }
 }
 
-// For the whole robot, or these.
+// No motors: the whole robot.
 void Match::order(Operation operation, MotorSet motors) {
   Order order;
   order.id = ++orders_;
@@ -325,7 +325,7 @@ void Match::order(Operation operation, MotorSet motors) {
   (void)robot_.exchange().orders.push(order);
 }
 
-// Between two matches, where a gap has cost a motor its turn.
+// Angle references that a gap has cost are set again between two matches.
 void Match::reference() {
   const auto& state = robot_.snapshot();
   MotorSet lost;
@@ -412,7 +412,7 @@ void Match::drive() {
   for (auto& player : players_) {
     if (player.target.mode == kByModule) continue;
     const auto& feedback = state.motors[player.motor].feedback;
-    // Where a program begins: at what it sees.
+    // A program starts from the measured value.
     if (state.motors[player.motor].status != MotorStatus::kActive) {
       const bool angle = player.target.mode == ControlMode::kTotalAngle;
       player.target.value = angle && std::isfinite(feedback.total_angle_deg) ? feedback.total_angle_deg : 0.0;
@@ -470,7 +470,7 @@ void Match::judge() {
                              toString(motor.stop.cause)));
     }
     const bool faulted = motor.status == MotorStatus::kFault;
-    // Also of one that rests: the operator would have to clear it. Silence is none.
+    // A fault at rest counts, too: the operator would have to clear it. Silence is not a fault.
     if (faulted && !player.faulted && !player.was_active)
       nuisance(fmt::format("{}, at rest, has a fault", kRoles.at(player.motor).name));
     player.faulted = faulted;

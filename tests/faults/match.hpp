@@ -23,7 +23,7 @@ class Match {
   void tick();
   [[nodiscard]] Duration robotTime() const noexcept { return robot_time_; }
 
-  /// Each stop that no plug and nobody caused, with what was under way: none of them may be.
+  /// Each stop without a cause, with the events before it. A sound robot has none.
   [[nodiscard]] const std::vector<std::string>& nuisances() const noexcept { return nuisances_; }
   /// Each event's count, and the share of the time in which the motors obeyed.
   [[nodiscard]] std::string text() const;
@@ -37,13 +37,13 @@ class Match {
  private:
   enum class Phase : std::uint8_t { kPit, kStart, kPlay };
   enum class Trouble : std::uint8_t {
-    kShove,  ///< A load of some tenths of a second.
-    kHand,   ///< One of seconds.
-    kSlope,  ///< One of half a minute, on each wheel.
+    kShove,  ///< Load of some tenths of a second.
+    kHand,   ///< Load of seconds, toward an angle.
+    kSlope,  ///< Load of half a minute, on each wheel.
     kHeat,   ///< A warm motor.
     kLoose,  ///< Some of its frames are lost.
     kPlug,   ///< Its drive is not heard.
-    kBus,    ///< Nobody on its bus is.
+    kBus,    ///< No drive of its bus is heard.
     kPause,  ///< The computer stood still.
     kGap,    ///< No command arrives.
     kEstop,  ///< The button.

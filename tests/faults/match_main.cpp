@@ -1,14 +1,11 @@
 // Hours of matches, in virtual time: rc10_match --hours H --seed S [--jobs N]
-#include <chrono>
 #include <cstdint>
 #include <cstdio>
 #include <exception>
 #include <string>
-#include <thread>
 #include <vector>
 
-#include <CLI/CLI.hpp>
-
+#include "faults/jobs.hpp"
 #include "faults/match.hpp"
 
 namespace {
@@ -16,7 +13,7 @@ namespace {
 using namespace rc10;
 using namespace rc10::test;
 
-// So many are shown.
+// Longest list of stops that is shown.
 constexpr std::size_t kMostShown = 10;
 
 struct Outcome {
@@ -40,25 +37,12 @@ void play(Duration robot_time, Outcome& out) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  double hours = 0.1;
-  std::uint64_t seed = 1;
-  unsigned jobs = 1;
+  Jobs jobs{.hours = 0.1};
   CLI::App app{"Matches of a sound robot, in virtual time: a stop that nobody asked for is a failure"};
-  app.add_option("--hours", hours, "of robot time")->check(CLI::PositiveNumber);
-  app.add_option("--seed", seed, "of the first job; the others count on");
-  app.add_option("--jobs", jobs, "share the hours, each with a seed of its own")->check(CLI::Range(1, 64));
+  jobs.addTo(app);
   CLI11_PARSE(app, argc, argv);
 
-  const auto share =
-      std::chrono::duration_cast<Duration>(std::chrono::duration<double>(hours * 3600.0 / jobs));
-  std::vector<Outcome> outcomes(jobs);
-  std::vector<std::thread> threads;
-  for (unsigned i = 0; i < jobs; ++i) {
-    outcomes[i].seed = seed + i;
-    threads.emplace_back([share, &outcome = outcomes[i]] { play(share, outcome); });
-  }
-  for (auto& thread : threads) thread.join();
-
+  const auto outcomes = jobs.run<Outcome>(play);
   long failed = 0;
   for (const auto& outcome : outcomes) {
     std::printf("seed %llu, %s", static_cast<unsigned long long>(outcome.seed), outcome.text.c_str());
@@ -69,6 +53,6 @@ int main(int argc, char** argv) {
     if (outcome.nuisances.size() > kMostShown)
       std::printf("and %zu more\n", outcome.nuisances.size() - kMostShown);
   }
-  std::printf("%ld passed, %ld failed, 0 skipped\n", static_cast<long>(jobs) - failed, failed);
+  std::printf("%ld passed, %ld failed, 0 skipped\n", static_cast<long>(outcomes.size()) - failed, failed);
   return failed == 0 ? 0 : 1;
 }

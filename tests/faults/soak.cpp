@@ -5,12 +5,9 @@
 #include <cstdio>
 #include <exception>
 #include <string>
-#include <thread>
-#include <vector>
-
-#include <CLI/CLI.hpp>
 
 #include "faults/chaos.hpp"
+#include "faults/jobs.hpp"
 
 namespace {
 
@@ -39,25 +36,13 @@ void soak(Duration robot_time, Outcome& out) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  double hours = 1.0;
-  std::uint64_t seed = 1;
-  unsigned jobs = 1;
+  Jobs jobs{.hours = 1.0};
   CLI::App app{"Soak of the whole tick on simulated motors, in virtual time"};
-  app.add_option("--hours", hours, "of robot time")->check(CLI::PositiveNumber);
-  app.add_option("--seed", seed, "of the first job; the others count on");
-  app.add_option("--jobs", jobs, "share the hours, each with a seed of its own")->check(CLI::Range(1, 64));
+  jobs.addTo(app);
   CLI11_PARSE(app, argc, argv);
 
-  const auto share =
-      std::chrono::duration_cast<Duration>(std::chrono::duration<double>(hours * 3600.0 / jobs));
-  std::vector<Outcome> outcomes(jobs);
-  std::vector<std::thread> threads;
   const auto begin = std::chrono::steady_clock::now();
-  for (unsigned i = 0; i < jobs; ++i) {
-    outcomes[i].seed = seed + i;
-    threads.emplace_back([share, &outcome = outcomes[i]] { soak(share, outcome); });
-  }
-  for (auto& thread : threads) thread.join();
+  const auto outcomes = jobs.run<Outcome>(soak);
   const auto wall_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
 
   Visits all;
@@ -74,10 +59,11 @@ int main(int argc, char** argv) {
   std::printf("%s%llu ticks in %.1f s, %.0f a second\n", all.text().c_str(),
               static_cast<unsigned long long>(all.ticks), wall_s, static_cast<double>(all.ticks) / wall_s);
   // An hour reaches every motor, whatever the seed.
-  if (const auto idle = all.idle(); hours >= 1.0 && !idle.empty()) {
+  if (const auto idle = all.idle(); jobs.hours >= 1.0 && !idle.empty()) {
     ++failed;
     std::printf("FAILED never moved, so that nothing was judged: %s\n", idle.c_str());
   }
-  std::printf("%ld passed, %ld failed, 0 skipped\n", std::max(static_cast<long>(jobs) - failed, 0L), failed);
+  std::printf("%ld passed, %ld failed, 0 skipped\n",
+              std::max(static_cast<long>(outcomes.size()) - failed, 0L), failed);
   return failed == 0 ? 0 : 1;
 }

@@ -4,39 +4,12 @@
 #include <gtest/gtest.h>
 
 #include "serial_streams.hpp"
+#include "support/heard_cobs.hpp"
 
 namespace rc10::test::cobs_protocol_test {
 namespace {
 
-/// Collects what comes.
-struct Heard : CobsListener {
-  std::vector<Bytes> frames;
-  void onFrame(std::span<const std::uint8_t> content, MonotonicTime) noexcept override {
-    frames.emplace_back(content.begin(), content.end());
-  }
-};
-
-struct Pair : I_Protocol {
-  Heard heard;
-  CobsProtocol protocol{heard};
-  void parse_stream(std::span<const std::uint8_t> bytes, MonotonicTime received) noexcept override {
-    protocol.parse_stream(bytes, received);
-    counters_ = protocol.counters();
-  }
-  [[nodiscard]] std::size_t pack_frame(std::span<const std::uint8_t> payload,
-                                       std::span<std::uint8_t> out) const noexcept override {
-    return protocol.pack_frame(payload, out);
-  }
-  void restart() noexcept override { protocol.restart(); }
-};
-
-Bytes packed(const Bytes& content) {
-  Heard heard;
-  const CobsProtocol protocol{heard};
-  Bytes out(CobsProtocol::kLongestFrame);
-  out.resize(protocol.pack_frame(content, out));
-  return out;
-}
+Bytes packed(const Bytes& content) { return HeardCobs::packed(content); }
 
 TEST(CobsProtocol, PacksAsThePaperDoes) {
   // Content 07 00 and its CRC-16/MODBUS (E3 02: 0x02E3, by the sources of the CRC's own test): one zero
@@ -61,10 +34,10 @@ TEST(CobsProtocol, NoByteOfAFrameButItsLastIsZero) {
       ASSERT_EQ(frame.size(), size + 4);
       EXPECT_EQ(std::count(frame.begin(), frame.end(), std::uint8_t{0}), 1);
       EXPECT_EQ(frame.back(), 0);
-      Pair pair;
-      feed(pair, frame);
-      ASSERT_EQ(pair.heard.frames.size(), 1U) << size;
-      EXPECT_EQ(pair.heard.frames[0], content);
+      HeardCobs protocol;
+      feed(protocol, frame);
+      ASSERT_EQ(protocol.frames().size(), 1U) << size;
+      EXPECT_EQ(protocol.frames()[0], content);
     }
   }
 }
@@ -72,20 +45,18 @@ TEST(CobsProtocol, NoByteOfAFrameButItsLastIsZero) {
 TEST(CobsProtocol, RefusesWhatDoesNotFit) {
   EXPECT_TRUE(packed({}).empty());
   EXPECT_TRUE(packed(Bytes(CobsProtocol::kLongestContent + 1, 1)).empty());
-  Heard heard;
-  const CobsProtocol protocol{heard};
   Bytes small(7);
-  EXPECT_EQ(protocol.pack_frame(Bytes{1, 2, 3, 4}, small), 0U);
+  EXPECT_EQ(HeardCobs{}.pack_frame(Bytes{1, 2, 3, 4}, small), 0U);
 }
 
 TEST(CobsProtocol, TheSameForEverySplit) {
   const Bytes stream = joined({hex("AA BB 00"), packed({1, 0, 2}), hex("00 00"), packed({3}),
                                Bytes(200, 0x55), hex("00"), packed({4, 5})});
-  expectTheSameForEverySplit(
-      stream, [] { return std::make_unique<Pair>(); }, [](const Pair& pair) { return pair.heard.frames; });
-  Pair pair;
-  feed(pair, stream);
-  EXPECT_EQ(pair.heard.frames, (std::vector<Bytes>{{1, 0, 2}, {3}, {4, 5}}));
+  expectTheSameForEverySplit(stream, HeardCobs::make,
+                             [](const HeardCobs& protocol) { return protocol.frames(); });
+  HeardCobs protocol;
+  feed(protocol, stream);
+  EXPECT_EQ(protocol.frames(), (std::vector<Bytes>{{1, 0, 2}, {3}, {4, 5}}));
 }
 
 TEST(CobsProtocol, EachWrongByteIsNoticedByTheChecksumOrTheSize) {
@@ -94,22 +65,22 @@ TEST(CobsProtocol, EachWrongByteIsNoticedByTheChecksumOrTheSize) {
     for (int change = 1; change < 256; ++change) {
       Bytes wrong = frame;
       wrong[at] = static_cast<std::uint8_t>(wrong[at] ^ change);
-      Pair pair;
-      feed(pair, wrong);
-      feed(pair, hex("00"));
+      HeardCobs protocol;
+      feed(protocol, wrong);
+      feed(protocol, hex("00"));
       // An end that becomes 1 makes the frame a byte longer, and a CRC goes on over zeros: the size tells.
-      for (const auto& heard : pair.heard.frames) EXPECT_GT(heard.size(), 4U) << at << " " << change;
+      for (const auto& heard : protocol.frames()) EXPECT_GT(heard.size(), 4U) << at << " " << change;
     }
   }
 }
 
 TEST(CobsProtocol, ARestartForgetsTheBeginningOfAFrame) {
   const auto frame = packed({1, 2, 3});
-  Pair pair;
-  feed(pair, {frame.begin(), frame.begin() + 3});
-  pair.restart();
-  feed(pair, frame);
-  EXPECT_EQ(pair.heard.frames.size(), 1U);
+  HeardCobs protocol;
+  feed(protocol, {frame.begin(), frame.begin() + 3});
+  protocol.restart();
+  feed(protocol, frame);
+  EXPECT_EQ(protocol.frames().size(), 1U);
 }
 
 }  // namespace

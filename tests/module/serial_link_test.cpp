@@ -11,10 +11,10 @@
 
 #include "bus/serial_device.hpp"
 #include "fake_robot.hpp"
-#include "module/cobs_protocol.hpp"
 #include "module/link_field.hpp"
 #include "module/modbus_rtu.hpp"
 #include "serial_streams.hpp"
+#include "support/heard_cobs.hpp"
 
 namespace rc10::test::serial_link_test {
 namespace {
@@ -312,14 +312,7 @@ TEST(SerialLinkText, NumbersAreWrittenInFull) {
 
 // ---- cobs
 
-Bytes frameOf(const Bytes& content) {
-  struct Nobody : CobsListener {
-    void onFrame(std::span<const std::uint8_t>, MonotonicTime) noexcept override {}
-  } nobody;
-  Bytes out(CobsProtocol::kLongestFrame);
-  out.resize(CobsProtocol{nobody}.pack_frame(content, out));
-  return out;
-}
+Bytes frameOf(const Bytes& content) { return HeardCobs::packed(content); }
 
 TEST(SerialLinkCobs, FieldsFollowEachOtherInTheOrderOfTheList) {
   Board board{settingsOf("cobs",

@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 from hostlib import Daemon, Program, check_environment
 from hostlib.daemon import BIN, CONFIG, REPO
-from playwright.sync_api import Browser, Page, sync_playwright
+from playwright.sync_api import Browser, Page, expect, sync_playwright
 
 # Debian's Chromium, which asks nobody on the internet for anything.
 CHROMIUM = "/usr/bin/chromium"
@@ -23,6 +23,7 @@ QUIET = (
     "--disable-sync",
 )
 PATIENCE_MS = 20_000.0
+expect.set_options(timeout=PATIENCE_MS)
 
 
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
@@ -92,3 +93,13 @@ def page(chromium: Browser, studio: Studio) -> Iterator[Page]:
     yield opened
     context.close()
     assert [text for text in problems if not EXPECTED.search(text)] == []
+
+
+@pytest.fixture
+def moving(page: Page, studio: Studio) -> Page:
+    """The part "Move" with yaw, which is ACTIVE."""
+    page.locator("#tab-move").click()
+    page.get_by_label("Motor").select_option("yaw")
+    studio.daemon.must("enable", "yaw")
+    expect(page.locator(".badge.status")).to_have_text("ACTIVE")
+    return page

@@ -13,19 +13,11 @@ if TYPE_CHECKING:
 
     from conftest import Studio
 
-PATIENCE_MS = 20_000.0
-
-expect.set_options(timeout=PATIENCE_MS)
-
 
 @pytest.fixture
-def panel(page: Page, studio: Studio) -> Locator:
+def panel(moving: Page) -> Locator:
     """The captures of yaw, which is ACTIVE and held by nobody."""
-    page.locator("#tab-move").click()
-    page.get_by_label("Motor").select_option("yaw")
-    studio.daemon.must("enable", "yaw")
-    expect(page.locator(".badge.status")).to_have_text("ACTIVE")
-    found = page.locator(".captures")
+    found = moving.locator(".captures")
     expect(found.get_by_label("when").locator("option")).to_have_count(3)
     return found
 

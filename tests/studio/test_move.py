@@ -16,21 +16,8 @@ from conftest import Studio
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
 
-PATIENCE_MS = 20_000.0
 # rc10-web's lease, and a tick in which it ends.
 LEASE_US = 150_000 + 1_000
-
-expect.set_options(timeout=PATIENCE_MS)
-
-
-@pytest.fixture
-def moving(page: Page, studio: Studio) -> Page:
-    """The part "Move" with yaw, which is ACTIVE."""
-    page.locator("#tab-move").click()
-    page.get_by_label("Motor").select_option("yaw")
-    studio.daemon.must("enable", "yaw")
-    expect(page.locator(".badge.status")).to_have_text("ACTIVE")
-    return page
 
 
 def button(page: Page) -> Locator:

@@ -6,7 +6,6 @@ import hashlib
 import json
 import re
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 import pytest
 from hostlib.daemon import REPO
@@ -14,14 +13,9 @@ from hostlib.program import eventually
 from playwright.sync_api import Browser, Locator, Page, WebSocketRoute, expect
 
 import rc10
+from conftest import PATIENCE_MS, Studio
 
-if TYPE_CHECKING:
-    from conftest import Studio
-
-PATIENCE_MS = 20_000.0
 TABS = ("overview", "match", "plots", "move", "events", "timing")
-
-expect.set_options(timeout=PATIENCE_MS)
 
 
 def open_tab(page: Page, name: str) -> None:

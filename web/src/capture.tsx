@@ -59,20 +59,20 @@ function crossing(columns: Columns, signal: number, trigger: Trigger, before: { 
   return null;
 }
 
-/** What is taken: `trigger_us`, and the columns of one tick each that were asked for. */
+/** Capture under way: the trigger, and the columns of one tick each that rc10-web is asked for. */
 interface Taking {
   trigger_us: number;
   first: number;
   count: number;
   period_us: number;
-  /** How far the tick of the trigger may lie from `trigger_us`. */
+  /** Largest distance of the trigger's tick from `trigger_us`. */
   within_us: number;
   names: string[];
   units: string[];
   gains: Promise<Record<string, number>>;
   /** Values by signal, as far as they have come. */
   values: (number | null)[][];
-  /** When columns were asked for last; 0: not yet. */
+  /** Time of the last request for columns; 0: none yet. */
   asked_ms: number;
 }
 const kAskAgainMs = 1000;

@@ -18,7 +18,7 @@ export interface Capture {
   values: (number | null)[][];
 }
 
-/** What a step looks like; null: there is none. */
+/** Measures of a step response; null: the capture has no step. */
 export interface StepNumbers {
   from: number;
   to: number;
@@ -32,7 +32,7 @@ const kFormat = 'rc10 captures 1';
 const kMostSamples = 20_000;
 const kMostSignals = 32;
 const kMostCaptures = 200;
-/** Of a step: settled within this share. */
+/** Tolerance of the settling time, as a share of the step. */
 const kSettled = 0.05 + 1e-9;
 
 export function fileOf(captures: Capture[]): string {

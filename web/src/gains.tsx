@@ -34,7 +34,7 @@ export function Gains(props: { motor: string }) {
       return;
     }
     setTold('');
-    // What a person has typed meanwhile stays.
+    // Text that a person has typed meanwhile stays.
     const before = shown.current;
     setWanted((typed) =>
       Object.fromEntries(

@@ -87,7 +87,7 @@ export class Link {
       this.pauseMs = kFirstPauseMs;
       const token = new URLSearchParams(location.hash.slice(1)).get('token') ?? location.hash.slice(1);
       if (token !== '') this.showToken(token);
-      // So that rc10-web knows how long a message of this page is under way.
+      // rc10-web measures the delay of this page's messages by it.
       clearInterval(this.clock);
       this.clock = window.setInterval(() => this.send({ type: 'clock', sent_us: now_us() }), 1000);
       this.send({ type: 'clock', sent_us: now_us() });

@@ -17,7 +17,7 @@ type HeldMode = (typeof kModes)[number];
 const kUnits: Record<HeldMode, string> = { velocity: 'rpm', current: 'A' };
 const kFirst: Record<HeldMode, number> = { velocity: 20, current: 0.5 };
 
-/** What holds it now: a pointer by its number, or a key. */
+/** Holder of the button: a pointer by its number, or a key. */
 type Holder = number | 'key' | null;
 
 function Jog(props: { motor: string; modes: HeldMode[]; mode: HeldMode; onMode: (mode: HeldMode) => void }) {
@@ -30,7 +30,7 @@ function Jog(props: { motor: string; modes: HeldMode[]; mode: HeldMode; onMode: 
   const renewed = useRef(0);
   const timer = useRef(0);
   const heldKey = useRef('');
-  // What has ended a hold begins none.
+  // The pointer or key that ended a hold begins none.
   const ended = useRef(0);
   const release = useRef<() => void>(() => {});
   const chosen = props.mode;

@@ -41,7 +41,7 @@ struct MotorReading {
     return static_cast<double>(traits.torque_nm_per_a) / traits.gear_ratio * gear();
   }
 
-  /// Of two angles of a section that are given, the upper one lies above.
+  /// Refuses a section whose upper angle is not above its lower one; one that is not given is not checked.
   void refuseUnordered(const Settings& section, std::string_view min_key, std::string_view max_key) {
     float min_deg = std::numeric_limits<float>::quiet_NaN();
     float max_deg = min_deg;

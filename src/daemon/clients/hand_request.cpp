@@ -18,7 +18,7 @@ struct HandValue {
   double high;
   double otherwise;
 };
-// A hand turns a shaft some turns, not for minutes, and is no machine.
+// Ranges of a person's hand: some turns, not minutes.
 constexpr std::array<HandValue, 4> kValues{{{"by_deg", -36'000.0, 36'000.0, 0.0},
                                             {"speed_rpm", 0.1, 600.0, 30.0},
                                             {"torque_nm", 0.01, 1000.0, 5.0},

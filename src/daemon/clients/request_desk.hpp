@@ -23,7 +23,7 @@ class RequestDesk {
  public:
   /// `optional`: motors that may fail to enable without the request failing. `setups`: what can be written to
   /// the drive of each motor; null or missing: nothing. `loops`: of each motor, as they are at the start;
-  /// missing: none. `drives`: of each motor, if it is simulated; missing: it is not.
+  /// missing: none. `drives`: the simulated drive of each motor; null or missing: the motor is not simulated.
   RequestDesk(const Admission& motors, std::vector<std::string> motor_names, MotorSet optional = {},
               std::vector<const DriveSetup*> setups = {}, std::vector<MotorLoops> loops = {},
               std::vector<std::optional<SimulatedDrive>> drives = {});

@@ -14,8 +14,7 @@ namespace rc10 {
 
 namespace {
 
-// The driver holds no more of ours: what is old then would be sent before what is new, an e-stop's safe
-// values too.
+// Most bytes of ours in the driver's queue: an e-stop's safe values wait behind them.
 constexpr int kMostInDriver = 256;
 constexpr int kLookAgainMs = 2;
 
@@ -40,7 +39,7 @@ void SerialWriter::serve(Duration duration) {
     auto patience_ms = static_cast<int>(left.count());
     for (std::size_t i = 0; i < channels_.size(); ++i) {
       const bool waits = pending_[i].begin < pending_[i].end;
-      // It would say at once that there is room.
+      // poll() reports room at once, although this limit is reached: such a port is looked at again later.
       const bool full = waits && driverIsFull(channels_[i].fd.get());
       if (full) patience_ms = std::min(patience_ms, kLookAgainMs);
       waits_[i] = {.fd = waits && !full ? channels_[i].fd.get() : -1, .events = POLLOUT, .revents = 0};

@@ -21,12 +21,12 @@ constexpr int kMitAttempts = 6;  // the first, and five more
 // The answers to "no torque" and "enter", and one that was under way before them.
 constexpr std::uint64_t kAnswersToEnter = 3;
 constexpr double kMitDampShare = 0.25;  // damp is that much of the brake
-// Of what a spring one turn of the field away pulls with, at most the whole range; delay and resolution make
-// less.
+// Share of the torque of a spring one turn of the field away (at most the whole range) that counts as a pull
+// the other way: delay and resolution of the report hide the rest.
 constexpr double kSpringMismatch = 0.6;
-// A stiff damping may pull otherwise for a sample, too, and then the other way.
+// Samples in a row: a stiff damping pulls the other way for one sample alone.
 constexpr int kSamplesAgainst = 4;
-// Beside kDriveSetting: the drive's count of turns is another.
+// Detail of kDriveSetting: the drive counts its turns otherwise.
 constexpr std::uint32_t kOtherTurns = 0x4000'0000U;
 // Two samples at the very end of the field: it does not go round, it is cut off.
 constexpr int kSamplesAtEnd = 2;
@@ -107,7 +107,7 @@ FrameVerdict CubemarsMit::takeMitReport(const CanFrame& frame) noexcept {
 double CubemarsMit::unwrapped(double position_rad, bool anew) noexcept {
   const double span_rad = 2.0 * setup().ranges.position_rad;
   if (anew) {
-    // A drive that was not restarted still compares with the place where it is.
+    // A drive that was not restarted still counts the turns outside of the field.
     turns_unknown_ = turns_unknown_ || turns_ != 0;
     turns_ = 0;
   } else {
@@ -119,12 +119,12 @@ double CubemarsMit::unwrapped(double position_rad, bool anew) noexcept {
   return position_rad + turns_ * span_rad;
 }
 
-// The position is told modulo its field, but compared with in full: at the first sample nobody knows on which
-// of its turns the drive is. If it is not the one of the field, its spring pulls the other way with all it
-// has.
+// The drive reports its position modulo the field, but its spring acts on the whole position. The first
+// sample does not tell on which turn the drive is; on another turn than the field's the spring pulls the
+// other way with full torque.
 void CubemarsMit::watchSpring(const cubemars::MitReport& report) noexcept {
   const double most_nm = setup().ranges.torque_nm;
-  // Between two frames it may still obey the one before.
+  // A report between two frames may still show the law of the one before.
   std::array<double, 2> expected_nm{};
   for (std::size_t i = 0; i < sent_.size(); ++i) {
     const auto& law = sent_[i];
@@ -137,7 +137,7 @@ void CubemarsMit::watchSpring(const cubemars::MitReport& report) noexcept {
   const bool springs = obeying() && stiffness > 0.0;
   const double turn_nm = stiffness * 2.0 * setup().ranges.position_rad;
   const double apart_nm = kSpringMismatch * std::min(most_nm, turn_nm);
-  // Torque that is missing is none the other way: near its highest speed a drive gives less than it is told.
+  // Too little torque is not torque the other way: near its no-load speed a drive gives less than it is told.
   const auto [low_nm, high_nm] = std::minmax({expected_nm[0], expected_nm[1], 0.0});
   int against = 0;
   if (springs && report.torque_nm > high_nm + apart_nm) against = 1;

@@ -63,13 +63,13 @@ class CubemarsMit : public CubeMars_Motor {
   // As the drive sees itself, from its last feedback.
   double position_rad_ = 0.0;
   double velocity_rad_s_ = 0.0;
-  int turns_ = 0;               ///< How often the position field has gone round: 0 within its range.
-  bool turns_unknown_ = false;  ///< It was silent while outside of its range: restarted or not, nobody knows.
+  int turns_ = 0;               ///< Wraps of the position field; 0: within its range.
+  bool turns_unknown_ = false;  ///< Silent while outside of its range, and maybe restarted.
   int samples_at_end_ = 0;
 
   Law command_{};              ///< Result of update().
   std::array<Law, 2> sent_{};  ///< The last, and the one before.
-  int samples_against_ = 0;    ///< In a row, in which a spring pulled otherwise; the sign tells which way.
+  int samples_against_ = 0;    ///< In a row, of a spring that pulls the other way; signed by its torque.
   EnableSequence<Step> sequence_;
   bool enter_now_ = false;
   bool clear_now_ = false;
