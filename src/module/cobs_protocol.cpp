@@ -44,8 +44,10 @@ void CobsProtocol::parse_stream(std::span<const std::uint8_t> bytes, MonotonicTi
 void CobsProtocol::take(MonotonicTime received) noexcept {
   const std::size_t stuffed = size_;
   const bool too_long = too_long_;
+  const bool from_its_start = seen_delimiter_;
   size_ = 0;
   too_long_ = false;
+  seen_delimiter_ = true;
   if (stuffed == 0) {  // a zero between frames
     ++counters_.resync_bytes;
     return;
@@ -57,7 +59,7 @@ void CobsProtocol::take(MonotonicTime received) noexcept {
   }
   const auto content = std::span<const std::uint8_t>{buffer_}.first(size - kCrcBytes);
   if (crc16Modbus(content) != readLittleEndian<std::uint16_t>(buffer_, content.size())) {
-    ++counters_.checksum_errors;
+    if (from_its_start) ++counters_.checksum_errors;
     counters_.resync_bytes += stuffed + 1;
     return;
   }
@@ -94,6 +96,7 @@ void CobsProtocol::restart() noexcept {
   counters_.resync_bytes += size_;
   size_ = 0;
   too_long_ = false;
+  seen_delimiter_ = false;
 }
 
 }  // namespace rc10

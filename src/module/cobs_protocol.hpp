@@ -43,6 +43,7 @@ class CobsProtocol final : public I_Protocol {
   std::array<std::uint8_t, kLongestFrame> buffer_{};
   std::size_t size_ = 0;  ///< Since the last 0.
   bool too_long_ = false;
+  bool seen_delimiter_ = false;  ///< Until then a frame may have begun before the port was opened: no error.
 };
 
 }  // namespace rc10

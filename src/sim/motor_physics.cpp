@@ -11,8 +11,8 @@ namespace {
 
 constexpr double kTwoPi = 2.0 * std::numbers::pi;
 
-// Estimate of a hand on a shaft: it pulls with all its torque where the shaft lags so much, and no faster
-// than the steps of the simulation can follow.
+// Estimate of a hand on a shaft: it pulls with all its torque where the shaft lags so much, and follows no
+// faster than the steps of the simulation can.
 constexpr double kHandLagDeg = 1.0;
 constexpr double kMostHandRadPerS = 400.0;
 
@@ -96,33 +96,54 @@ void MotorPhysics::stepMotion(double dt_s) noexcept {
 
 void MotorPhysics::take(const Hand& hand) noexcept {
   const double from_deg = outputAngleDeg();
+  const double most_deg_s = hand.speed_rpm * kDegPerTurn / 60.0;
+  // Half of its torque is left for friction and the load.
+  const double acceleration_deg_s2 = std::min(most_deg_s / std::chrono::duration<double>(Hand::kRamp).count(),
+                                              0.5 * hand.torque_nm / parameters_.totalInertia() / kRadPerDeg);
+  const double moving_s = std::abs(hand.by_deg) / most_deg_s + most_deg_s / acceleration_deg_s2;
   grip_ = {.held = true,
            .at_deg = from_deg,
            .to_deg = from_deg + hand.by_deg,
-           .rpm = std::copysign(hand.speed_rpm, hand.by_deg),
+           .most_deg_s = most_deg_s,
+           .acceleration_deg_s2 = acceleration_deg_s2,
            .torque_nm = hand.torque_nm,
-           .left_s = std::chrono::duration<double>(hand.hold + Hand::kSettle).count()};
+           .left_s = moving_s + std::chrono::duration<double>(hand.hold + Hand::kSettle).count()};
 }
 
-// Critically damped spring between the shaft and a point that goes its way.
+void MotorPhysics::moveHand(double dt_s) noexcept {
+  const double way_deg = grip_.to_deg - grip_.at_deg;
+  // As fast as it can still stop from.
+  const double most_deg_s =
+      std::min(grip_.most_deg_s, std::sqrt(2.0 * grip_.acceleration_deg_s2 * std::abs(way_deg)));
+  const double gained_deg_s = std::abs(grip_.deg_s) + grip_.acceleration_deg_s2 * dt_s;
+  grip_.deg_s = std::copysign(std::min(gained_deg_s, most_deg_s), way_deg);
+  if (std::abs(way_deg) <= std::abs(grip_.deg_s) * dt_s) {
+    grip_.at_deg = grip_.to_deg;
+    grip_.deg_s = 0.0;
+  } else {
+    grip_.at_deg += grip_.deg_s * dt_s;
+  }
+}
+
+// Critically damped spring between the shaft and a point that goes its way. Where it would be stretched
+// beyond the hand's torque the hand slips, so that no shaft is whirled back over the turns that it ran away.
 double MotorPhysics::stepHand(double dt_s) noexcept {
   if (!grip_.held) return 0.0;
-  const double way_deg = grip_.to_deg - grip_.at_deg;
-  const double step_deg = grip_.rpm * kDegPerTurn / 60.0 * dt_s;
-  const bool there = std::abs(way_deg) <= std::abs(step_deg);
-  grip_.at_deg = there ? grip_.to_deg : grip_.at_deg + step_deg;
-  if (there) {
-    grip_.left_s -= dt_s;
-    grip_.held = grip_.left_s > 0.0;
-  }
-  const double hand_rad_s = there ? 0.0 : grip_.rpm / kRpmPerRadPerS;
+  grip_.left_s -= dt_s;
+  grip_.held = grip_.left_s > 0.0;
+  moveHand(dt_s);
   const double inertia = parameters_.totalInertia();
   const double natural_rad_s =
       std::min(std::sqrt(grip_.torque_nm / (kHandLagDeg * kRadPerDeg) / inertia), kMostHandRadPerS);
-  const double friction_nm = std::copysign(parameters_.output_coulomb_nm, grip_.rpm);
-  const double pull_nm =
-      inertia * natural_rad_s * natural_rad_s * (grip_.at_deg - outputAngleDeg()) * kRadPerDeg +
-      2.0 * inertia * natural_rad_s * (hand_rad_s - velocity_rad_s_) + (there ? 0.0 : friction_nm);
+  const double stiffness_nm_per_rad = inertia * natural_rad_s * natural_rad_s;
+  const double most_lag_deg = grip_.torque_nm / stiffness_nm_per_rad / kRadPerDeg;
+  const double angle_deg = outputAngleDeg();
+  grip_.at_deg = std::clamp(grip_.at_deg, angle_deg - most_lag_deg, angle_deg + most_lag_deg);
+  const double friction_nm =
+      grip_.deg_s == 0.0 ? 0.0 : std::copysign(parameters_.output_coulomb_nm, grip_.deg_s);
+  const double pull_nm = stiffness_nm_per_rad * (grip_.at_deg - angle_deg) * kRadPerDeg +
+                         2.0 * inertia * natural_rad_s * (grip_.deg_s * kRadPerDeg - velocity_rad_s_) +
+                         friction_nm;
   return std::clamp(pull_nm, -grip_.torque_nm, grip_.torque_nm);
 }
 

@@ -93,6 +93,7 @@ class MotorPhysics {
   void stepMotion(double dt_s) noexcept;
   void stepStops() noexcept;
   [[nodiscard]] double stepHand(double dt_s) noexcept;
+  void moveHand(double dt_s) noexcept;
   void place(double output_deg) noexcept;
   void stepHeat(double dt_s) noexcept;
   void stepSpeedMeasurement(double dt_s) noexcept;
@@ -109,9 +110,11 @@ class MotorPhysics {
     bool held = false;
     double at_deg = 0.0;  ///< Where the hand is.
     double to_deg = 0.0;
-    double rpm = 0.0;  ///< Signed.
+    double deg_s = 0.0;  ///< Signed.
+    double most_deg_s = 0.0;
+    double acceleration_deg_s2 = 0.0;
     double torque_nm = 0.0;
-    double left_s = 0.0;  ///< At its end.
+    double left_s = 0.0;  ///< Until it lets go.
   };
   Grip grip_;
 };

@@ -10,7 +10,7 @@ from pathlib import Path
 
 import pytest
 from hostlib import Daemon, Motor, Program, eventually
-from hostlib.daemon import ARM
+from hostlib.daemon import ARM, motor_of
 
 import rc10
 
@@ -82,6 +82,21 @@ def test_a_set_that_is_not_obeyed_fails_and_says_who_is_in_the_way(daemon: Daemo
         assert over.returncode == 0, over.stderr
         first.signal(signal.SIGINT)
         assert first.wait() == 0
+
+
+def test_a_set_that_its_computer_holds_up_goes_on(daemon: Daemon) -> None:
+    daemon.must("enable", "wheel")
+    with daemon.drive("set", "wheel", "velocity", "60", "--for", "60s") as setting:
+        daemon.wait_motor("wheel", turning(60), "turns at 60 rpm")
+        setting.signal(signal.SIGSTOP)
+        held_up = daemon.state()["tick"]
+        daemon.wait_state(lambda state: state["tick"] > held_up + 700, "its target has lapsed")
+        assert motor_of(daemon.state(), "wheel")["owner"] == ""
+        setting.signal(signal.SIGCONT)
+        daemon.wait_motor("wheel", turning(60), "turns again")
+        assert setting.running
+        setting.signal(signal.SIGINT)
+        assert setting.wait() == 0
 
 
 def test_one_set_after_another_disturbs_neither(daemon: Daemon) -> None:

@@ -74,6 +74,23 @@ TEST(CobsProtocol, EachWrongByteIsNoticedByTheChecksumOrTheSize) {
   }
 }
 
+TEST(CobsProtocol, AFrameThatHadBegunBeforeThePortWasOpenedIsNoError) {
+  const auto frame = packed({1, 2, 3});
+  const Bytes tail{frame.begin() + 2, frame.end()};
+  HeardCobs protocol;
+  for (const bool reopened : {false, true}) {
+    if (reopened) protocol.restart();
+    feed(protocol, tail);
+    feed(protocol, frame);
+    EXPECT_EQ(protocol.counters().checksum_errors, 0U);
+  }
+  EXPECT_EQ(protocol.frames(), (std::vector<Bytes>{{1, 2, 3}, {1, 2, 3}}));
+  Bytes wrong = frame;
+  wrong[1] ^= 0x40U;
+  feed(protocol, wrong);
+  EXPECT_EQ(protocol.counters().checksum_errors, 1U);
+}
+
 TEST(CobsProtocol, ARestartForgetsTheBeginningOfAFrame) {
   const auto frame = packed({1, 2, 3});
   HeardCobs protocol;

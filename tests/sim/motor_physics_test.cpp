@@ -317,8 +317,8 @@ TEST_P(EveryModel, AHandTurnsItByAnAngleAndLetsGoAtRest) {
     EXPECT_TRUE(motor.held());
     int ticks = 0;
     for (; motor.held() && ticks < 10'000; ++ticks) motor.step(amperes(0), 1ms);
-    // 360 deg/s, and the time to settle.
-    EXPECT_NEAR(ticks, std::abs(by_deg) / 0.36 + 300, 2);
+    // 360 deg/s, the time to get there, and to settle.
+    EXPECT_NEAR(ticks, std::abs(by_deg) / 0.36 + 100 + 300, 2);
     EXPECT_NEAR(motor.outputAngleDeg(), 10.0 + by_deg, 0.5);
     EXPECT_NEAR(motor.outputRpm(), 0.0, 0.5);
   }
@@ -329,6 +329,32 @@ TEST_P(EveryModel, AHandNeverPullsHarderThanItsTorque) {
   motor.take({.by_deg = 90.0, .speed_rpm = 60.0, .torque_nm = 1.9});
   for (int i = 0; i < 1000; ++i) motor.step(amperes(0), 1ms);
   EXPECT_EQ(motor.outputAngleDeg(), 0.0);
+}
+
+TEST_P(EveryModel, AFastHandDoesNotGoBeyondItsEnd) {
+  MotorPhysics motor{parameters(model_), 0.0};
+  motor.take({.by_deg = 360.0, .speed_rpm = 300.0, .torque_nm = 5.0});
+  double furthest_deg = 0.0;
+  while (motor.held()) {
+    motor.step(amperes(0), 1ms);
+    furthest_deg = std::max(furthest_deg, motor.outputAngleDeg());
+  }
+  EXPECT_LT(furthest_deg, 365.0);
+  EXPECT_NEAR(motor.outputAngleDeg(), 360.0, 1.0);
+}
+
+// The motor runs from the hand and then lets go.
+TEST_P(EveryModel, AHandDoesNotWhirlAShaftBackThatRanAway) {
+  MotorPhysics motor{parameters(model_), 0.0};
+  motor.take({.by_deg = 90.0, .speed_rpm = 30.0, .torque_nm = 0.2, .hold = 10s});
+  for (int i = 0; i < 500; ++i) motor.step(amperes(fullCurrent(model_)), 1ms);
+  ASSERT_GT(motor.outputAngleDeg(), 180.0);
+  double fastest_back_rpm = 0.0;
+  while (motor.held()) {
+    motor.step(amperes(0), 1ms);
+    fastest_back_rpm = std::max(fastest_back_rpm, -motor.outputRpm());
+  }
+  EXPECT_LE(fastest_back_rpm, 45.0);
 }
 
 TEST(MotorPhysics, AHandHoldsAnArmAgainstGravityAndDropsItWhenItLetsGo) {

@@ -23,8 +23,6 @@ using std::chrono::steady_clock;
 
 // A lease that is let go ends within a tick or two; one that is not, within its validity.
 constexpr Duration kReleasing = std::chrono::milliseconds{2 * kValidityMs};
-// Until then the state may not show our first setpoint yet.
-constexpr Duration kSettling = std::chrono::milliseconds{500};
 // States come often enough to show it within this time, though not soon enough to rely on it.
 constexpr Duration kLongEnough = std::chrono::milliseconds{200};
 constexpr Duration kProgressOnTerminal = std::chrono::milliseconds{100};
@@ -126,13 +124,14 @@ class Driver {
           }
         }
         if (!send(setpoint_)) return rc10dEnded().message;
+        unheeded_.sent();
         next = std::max(next + kSendPeriod, now);
       }
       waitReadable(rc10d_, std::min(next, start + order_.time) - steady_clock::now());
       if (!feed_.pump()) return rc10dEnded().message;
       showEvents(progress);
       if (auto why = trouble(); !why.empty()) return why;
-      if (auto why = refused(steady_clock::now() - start); !why.empty()) return why;
+      if (auto why = refused(); !why.empty()) return why;
       progress.show(line(), false);
     }
     progress.show(line(), true);
@@ -208,14 +207,14 @@ class Driver {
   }
 
   // Why the motor does not do what it is told; empty if it does.
-  std::string refused(Duration elapsed) {
+  std::string refused() {
     if (motor() == nullptr) return {};
     if (inForce()) {
       taken_ = true;
-      in_force_at_ = elapsed;
+      unheeded_.heeded();
       refusal_.clear();
     }
-    return elapsed - in_force_at_ < kSettling ? std::string{} : whyNotTaken();
+    return unheeded_.tooOften() ? whyNotTaken() : std::string{};
   }
 
   std::string whyNotTaken() const {
@@ -284,7 +283,7 @@ class Driver {
   Target sent_before_;       // the one before the last, which the state may still show
   std::string refusal_;      // last refusal by rc10d of a target, in words
   bool taken_ = false;       // has been in force
-  Duration in_force_at_{0};  // since the start
+  Unheeded unheeded_;
   link::Command command_;
 };
 

@@ -28,7 +28,9 @@ struct HandOptions {
   double hold_s = 0.0;
 };
 
-// After its way the hand brings the shaft to rest; before this is over it is read,
+// The hand takes so long more, to reach its speed and to come to rest from it.
+constexpr double kRampS = 0.1;
+// After its way it brings the shaft to rest; before this is over it is read,
 constexpr double kSettledS = 0.2;
 // and after this it has let go.
 constexpr double kLetGoS = 0.2;
@@ -70,7 +72,7 @@ ExitCode hand(const Global& global, const HandOptions& options) {
   if (const auto asked = ask(global, "hand", {options.motor}, values); asked != ExitCode::kOk) return asked;
   constexpr double kDegPerSPerRpm = 6.0;
   const double way_s = std::abs(by_deg) / (options.speed_rpm * kDegPerSPerRpm);
-  bool there = watch(*rc10d, feed, way_s + options.hold_s + kSettledS);
+  bool there = watch(*rc10d, feed, way_s + kRampS + options.hold_s + kSettledS);
   const double after_deg = feed.state()->motors[*motor].total_angle_deg;
   there = there && watch(*rc10d, feed, kLetGoS);
   if (!there) return interrupted() ? ExitCode::kFailed : complain(rc10dEnded(), ExitCode::kFailed);

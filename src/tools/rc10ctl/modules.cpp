@@ -25,9 +25,6 @@ namespace {
 
 using std::chrono::steady_clock;
 
-// Until then its state may not show our inputs yet.
-constexpr Duration kTakingOver = std::chrono::milliseconds{500};
-
 void printModules(const Global& global, const std::vector<client::ModuleView>& modules) {
   std::fputs((global.json ? client::modulesJson(modules) + "\n" : client::modulesText(modules)).c_str(),
              stdout);
@@ -73,8 +70,9 @@ std::vector<std::string_view> viewsOf(std::span<const link::Name> names) {
   return views;
 }
 
-/// Why the module does not do what it is told; empty if it does, as far as is known yet.
-std::string whyNotObeyed(const client::ModuleView& module, Feed& feed, Duration elapsed) {
+/// Why the module does not do what it is told; empty if it does. `certain`: its state shows our inputs by
+/// now, if it takes them.
+std::string whyNotObeyed(const client::ModuleView& module, Feed& feed, bool certain) {
   const std::string name = printable(module.name.view());
   for (const auto& event : feed.takeEvents()) {
     if (event.code == static_cast<std::int32_t>(EventCode::kModuleRefused) &&
@@ -83,7 +81,7 @@ std::string whyNotObeyed(const client::ModuleView& module, Feed& feed, Duration 
              ": `rc10ctl watch` shows the owner of each motor; stop that program";
   }
   const auto owner = module.state.owner.view();
-  if (elapsed < kTakingOver || owner == kClientName) return {};
+  if (!certain || owner == kClientName) return {};
   if (owner.empty())
     return "module '" + name + "' takes none of these inputs: `rc10ctl stats` shows what was refused";
   return "module '" + name + "' is commanded by '" + printable(owner) +
@@ -123,22 +121,26 @@ ExitCode repeat(const Global& global, LinkClient& rc10d, link::Signals& message,
   const auto start = steady_clock::now();
   auto next = start;
   bool obeyed = false;
+  Unheeded unheeded;
   while (!interrupted() && steady_clock::now() - start < time) {
     if (const auto now = steady_clock::now(); now >= next) {
       message.received_ns = 0;  // the present time
       ++message.seq;
       if (rc10d.send(message) == LinkClient::SendStatus::kClosed)
         return complain(rc10dEnded(), ExitCode::kFailed);
+      unheeded.sent();
       next = std::max(next + kSendPeriod, now);
     }
     waitReadable(rc10d, std::min(next, start + time) - steady_clock::now());
     if (!feed.pump()) return complain(rc10dEnded(), ExitCode::kFailed);
-    obeyed = obeyed || module->state.owner.view() == kClientName;
-    if (const auto why = whyNotObeyed(*module, feed, steady_clock::now() - start); !why.empty())
+    if (module->state.owner.view() == kClientName) {
+      obeyed = true;
+      unheeded.heeded();
+    }
+    if (const auto why = whyNotObeyed(*module, feed, unheeded.tooOften()); !why.empty())
       return complain({why}, ExitCode::kFailed);
   }
-  if (const auto why = whyNotObeyed(*module, feed, std::max<Duration>(time, kTakingOver));
-      !why.empty() && !obeyed && !interrupted())
+  if (const auto why = whyNotObeyed(*module, feed, true); !why.empty() && !obeyed && !interrupted())
     return complain({why}, ExitCode::kFailed);
   printModules(global, {*module});
   return ExitCode::kOk;

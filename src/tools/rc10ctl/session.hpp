@@ -26,6 +26,20 @@ inline constexpr const char* kClientName = "rc10ctl";
 inline constexpr Duration kSendPeriod = std::chrono::milliseconds{20};
 inline constexpr std::int32_t kValidityMs = 100;
 
+/// Whether commands that are sent again and again stay without effect. Counts them: a pause of either
+/// program, however long, is no refusal.
+class Unheeded {
+ public:
+  void sent() noexcept { ++since_heeded_; }
+  void heeded() noexcept { since_heeded_ = 0; }
+  /// More than a state may need to show the first one, or another target in force: 500 ms of commands.
+  [[nodiscard]] bool tooOften() const noexcept { return since_heeded_ > kMost; }
+
+ private:
+  static constexpr int kMost = 25;
+  int since_heeded_ = 0;
+};
+
 /// The link socket of the rc10d that the options mean.
 [[nodiscard]] Result<std::string> socketOf(const Global& global);
 
