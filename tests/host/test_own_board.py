@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from pathlib import Path
 
 MOTOR = "      - {name: wheel, model: M3508, id: 1, feedback_timeout_ms: 1000}\n"
-# A busy computer may hold the port's thread up for longer than the 20 ms of the default rate: a round left out.
+# Slow: a busy computer may hold the port up for longer than the 20 ms of the default rate.
 TEXT = """
     protocol: text
     rate_hz: 10
