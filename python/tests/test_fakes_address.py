@@ -1,4 +1,4 @@
-"""Ids, groups and slots of PROTOCOLS.md 1.1 to 1.3."""
+"""Ids, groups and slots of DJI drives: manuals of C620 V1.01, C610 and GM6020 v1.2."""
 
 from __future__ import annotations
 

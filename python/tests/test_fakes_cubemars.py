@@ -1,4 +1,4 @@
-"""The vectors of PROTOCOLS.md 4.4, and what an AK drive does with them."""
+"""Vectors from the AK series module driver manual V1.0.8, and what an AK drive does with them."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The vectors of PROTOCOLS.md 3.6, and what its rules say of a drive."""
+"""Vectors and rules from the manuals DM-J4310-2EC V1.2 and DM-J3507-2EC V1.1."""
 
 from __future__ import annotations
 

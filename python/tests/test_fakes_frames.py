@@ -1,4 +1,4 @@
-"""The vectors of PROTOCOLS.md 1.4, and the limits of its fields."""
+"""Vectors from the manuals of C620 V1.01, C610 and GM6020 v1.2, and the limits of their fields."""
 
 from __future__ import annotations
 

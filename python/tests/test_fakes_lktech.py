@@ -1,4 +1,4 @@
-"""The vectors of PROTOCOLS.md 8.3, and what a drive does."""
+"""Vectors from LK-Tech's motor CAN protocol V2.35, and what a drive does."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The vectors of PROTOCOLS.md 6.5, and what a moteus does with its modes and its watchdog."""
+"""Vectors from moteus@db1a762, docs/protocol/can.md; modes and watchdog."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The vectors of PROTOCOLS.md 8.4, and what a drive does."""
+"""Vectors from the MyActuator Motion Protocol V4.2, and what a drive does."""
 
 from __future__ import annotations
 

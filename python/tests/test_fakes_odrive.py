@@ -1,4 +1,4 @@
-"""The vectors of PROTOCOLS.md 7.2, and what a fake ODrive axis does."""
+"""Vectors from ODrive@f9b5419c, docs/can-protocol.rst, and what a fake axis does."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The vectors of PROTOCOLS.md 5.7, and what a drive does."""
+"""Vectors from the manuals RS00 to RS06, EL05 and CyberGear, and what a drive does."""
 
 from __future__ import annotations
 

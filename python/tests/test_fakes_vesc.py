@@ -1,4 +1,4 @@
-"""The vectors of PROTOCOLS.md 2.7, and what a VESC does by itself."""
+"""Vectors from vedderb/bldc@b9d287b, documentation/comm_can.md, and what a VESC does by itself."""
 
 from __future__ import annotations
 

@@ -48,6 +48,18 @@ comments_begin_with_a_noun() {
     [ "$status" -eq 1 ]  # 0: there are some; more: git did not look
 }
 
+# A page that no reader of a clone has proves nothing. Pages of makers are theirs.
+named_pages_are_tracked() {
+    local makers='can|comm_can|registers|socketcan' tracked named
+    tracked=$(git ls-files '*.md' | sed 's|.*/||' | sort -u) || return
+    named=$(git grep -hoE '[A-Za-z0-9_.-]*[A-Za-z0-9_-]\.md\>' -- . ':!tests/docs' | grep -vE '^\.|^-' | sort -u) || return
+    named=$(comm -23 <(grep -vxE "($makers)\.md" <<<"$named") - <<<"$tracked")
+    [ -n "$named" ] || return 0
+    echo "named, and not tracked by git:"
+    git grep -nwFf - -- . ':!tests/docs' <<<"$named"
+    return 1
+}
+
 # A source that .gitignore hides is compiled here and missing in every clone.
 git_sees_each_source() {
     [ -e .git ] || return 0
@@ -60,6 +72,7 @@ git_sees_each_source() {
 step "git sees each source" git_sees_each_source
 step clang-format format_cpp
 step "comments begin with a noun" comments_begin_with_a_noun
+step "named pages are tracked" named_pages_are_tracked
 step shellcheck shell
 # Its scripts have no extension, and are not found by themselves.
 bench_scripts=(path_latency table peers/run)

@@ -11,7 +11,7 @@ namespace {
 using namespace std::chrono_literals;
 using Switch = Dr16Input::Switch;
 
-// PROTOCOLS 11.1, computed independently.
+// RoboMaster Development-Board-C-Examples, remote_control.c; computed independently.
 const Bytes kGolden = hex("00 64 0B A5 01 78 FB FF 0A 00 00 00 01 00 11 00 00 04");
 const Dr16Input kGoldenInput{.right_horizontal = 0,
                              .right_vertical = -660,

@@ -17,7 +17,7 @@ using ::testing::IsEmpty;
 constexpr auto kTimeout = 50ms;
 const ModbusRequest kTwoRegisters{
     .address = 1, .function = ModbusFunction::kReadHolding, .first = 0, .count = 2};
-const Bytes kAnswer3000 = hex("01 03 04 00 00 0B B8 FD 71");  // PROTOCOLS 11.4
+const Bytes kAnswer3000 = hex("01 03 04 00 00 0B B8 FD 71");  // A long of 3000; its CRC by libmodbus.
 
 /// With its checksum.
 Bytes frame(const std::string& text) {

@@ -10,7 +10,7 @@ namespace {
 
 using namespace std::chrono_literals;
 
-// PROTOCOLS 11.2, computed independently: channel 1 at 173, 2 at 1812, the others at 992; failsafe.
+// Betaflight, sbus.c; computed independently: channel 1 at 173, 2 at 1812, the others at 992; failsafe.
 const Bytes kGolden = hex("0F AD A0 38 F8 C0 07 3E F0 81 0F 7C E0 03 1F F8 C0 07 3E F0 81 0F 7C 08 00");
 
 SbusInput goldenInput() {

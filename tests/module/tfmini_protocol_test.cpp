@@ -12,7 +12,7 @@ namespace {
 
 using namespace std::chrono_literals;
 
-// PROTOCOLS 11.5, computed independently.
+// Data sheet SJ-PM-TFmini-S, computed independently.
 const Bytes k123Centimetres = hex("59 59 7B 00 F4 01 60 09 8B");  // strength 500, 44.0 degC
 const Bytes kTooWeak = hex("59 59 FF FF 3C 00 60 09 55");         // strength 60
 

@@ -1,5 +1,5 @@
-// The frames of the manuals and of PROTOCOLS 5.7, both ways. Values were computed independently of this
-// driver.
+// Frames of the manuals (RS00 to RS06, EL05 and CyberGear), both ways. Values were computed by hand,
+// independently of this driver.
 #include <array>
 #include <cstdint>
 #include <numbers>

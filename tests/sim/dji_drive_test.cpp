@@ -53,7 +53,7 @@ DJI_Motor decoder(const DriveConfig& config) {
   return DJI_Motor{motor};
 }
 
-// The vectors of PROTOCOLS.md section 1.4.
+// Vectors computed by hand from the manuals of C620 V1.01, C610 and GM6020 v1.2.
 TEST(DjiDrive, DecodesTheC620CommandVector) {
   const auto command = frame(0x200, {0x20, 0x00, 0xF0, 0x00, 0x00, 0x00, 0x40, 0x00});
   EXPECT_NEAR(currentAfter(config(kM3508, 1), command), 10.0, 1e-3);

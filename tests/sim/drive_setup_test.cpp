@@ -115,7 +115,7 @@ TEST_F(DriveSetupTest, ADamiaoRegisterIsWrittenReadBackAndStored) {
   begin("timeout_ms", 100, true);
   EXPECT_EQ(finish(), Progress::kDone);
   const auto frames = sent();
-  EXPECT_THAT(frames, Contains("7FF#02005509D0070000")) << "PROTOCOLS: TIMEOUT = 2000 x 50 us";
+  EXPECT_THAT(frames, Contains("7FF#02005509D0070000")) << "DM-J manuals: TIMEOUT = 2000 x 50 us";
   EXPECT_THAT(frames, Contains("7FF#0200330900000000"));
   EXPECT_THAT(frames, Contains("7FF#0200AA0100000000"));
 }
@@ -242,7 +242,7 @@ TEST_F(DriveSetupTest, AMyActuatorAnswersWithACopyOfWhatItStored) {
   useMyActuator();
   begin("timeout_ms", 1000, true);
   EXPECT_EQ(finish(), Progress::kDone);
-  EXPECT_THAT(sent(), Contains("144#B3000000E8030000")) << "PROTOCOLS: 1000 ms";
+  EXPECT_THAT(sent(), Contains("144#B3000000E8030000")) << "Motion Protocol V4.2: 1000 ms";
 }
 
 TEST_F(DriveSetupTest, AMyActuatorAccelerationIsReadBack) {

@@ -29,8 +29,8 @@ struct DriveConfig {
 
 /// A DJI drive with its motor: takes the real command frames and gives the real feedback frames.
 ///
-/// It keeps obeying the last command when commands stop: no watchdog is documented for any DJI drive
-/// (PROTOCOLS.md 1.3), and the daemon must be safe with the worse of the two possibilities.
+/// It keeps obeying the last command when commands stop: the manuals (C620 V1.01, C610, GM6020 v1.2) know no
+/// watchdog, and the daemon must be safe with the worse of the two possibilities.
 class DjiDrive : public Drive {
  public:
   /// The error names the drive, the field and the allowed range.

@@ -1,4 +1,4 @@
-"""A fake CubeMars AK drive, from the description of its protocols (PROTOCOLS.md, section 4)."""
+"""A fake CubeMars AK drive, from the AK series module driver manual V1.0.8."""
 
 from __future__ import annotations
 

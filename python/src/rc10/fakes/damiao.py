@@ -108,7 +108,8 @@ class DamiaoModel:
     inertia_kg_m2: float
 
 
-# PROTOCOLS.md 3.4 and Seeed's table; inertias are the rotors' behind their gear, doubled.
+# Manuals, Seeed's table (docs/motors/damiao.md, "Sources"); inertias of the rotors behind
+# their gear, doubled.
 MODELS = {
     "DM3507": DamiaoModel(12.566, 50, 5, 7, 0.5439, 10.261194, 460, 8.5e-4),
     "DM4310": DamiaoModel(12.5, 30, 10, 10, 0.945, 10.261194, 200, 3.6e-3),

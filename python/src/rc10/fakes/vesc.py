@@ -1,4 +1,4 @@
-"""A fake VESC, written from the description of its CAN protocol (PROTOCOLS.md, section 2)."""
+"""A fake VESC, from the description of its protocol: bldc@b9d287b, documentation/comm_can.md."""
 
 from __future__ import annotations
 
