@@ -33,7 +33,7 @@ USES = {
     "guard": {"link", "bus", "app"},
     "gateway": {"client", "link", "app"},
     "web": {"client", "link", "app"},
-    "daemon": {"blackbox", "config", "drives", "sim", "module", "motor", "bus", "link", "app"},
+    "daemon": {"blackbox", "config", "sim", "module", "motor", "bus", "link", "app"},
     "robot_client": {"app"},
     "tools": {
         "guard",

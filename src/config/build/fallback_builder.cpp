@@ -12,18 +12,18 @@
 namespace rc10 {
 namespace {
 
-[[nodiscard]] FallbackAction fallbackOf(MotorReading& in, std::string_view key) {
+[[nodiscard]] FallbackAction fallbackOf(MotorParse& in, std::string_view key) {
   const auto word = std::find(kFallbackWords.begin(), kFallbackWords.end(), in.settings.text(key));
   if (word == kFallbackWords.end()) return FallbackAction::kCoast;
   return static_cast<FallbackAction>(word - kFallbackWords.begin());
 }
 
-[[nodiscard]] bool able(const MotorReading& in, FallbackAction action) {
+[[nodiscard]] bool able(const MotorParse& in, FallbackAction action) {
   if (action == FallbackAction::kRamp) return in.traits.modes.contains(ControlMode::kVelocity);
   return in.traits.frames.of(frameKindOf(action)) != Provision::kUnsupported;
 }
 
-void checkFallback(MotorReading& in, std::string_view key) {
+void checkFallback(MotorParse& in, std::string_view key) {
   const auto given = in.settings.find(key);
   if (!given || able(in, fallbackOf(in, key))) return;
   std::vector<std::string> possible;
@@ -35,14 +35,14 @@ void checkFallback(MotorReading& in, std::string_view key) {
                         listWords(possible, " or "));
 }
 
-void readSeconds(MotorReading& in, std::string_view key, Duration& time) {
+void readSeconds(MotorParse& in, std::string_view key, Duration& time) {
   const auto given_s = in.settings.number(key);
   if (given_s) time = std::chrono::milliseconds{static_cast<std::int64_t>(*given_s * 1000.0)};
 }
 
 }  // namespace
 
-void readFallbacks(MotorReading& in) {
+void readFallbacks(MotorParse& in) {
   FallbackConfig& fallback = in.draft.config.fallback;
   fallback.on_timeout = fallbackOf(in, "on_timeout");
   fallback.on_disable = fallbackOf(in, "on_disable");

@@ -1,10 +1,10 @@
 #pragma once
 
-#include "config/build/motor_reading.hpp"
+#include "config/build/motor_parse.hpp"
 
 namespace rc10 {
 
 /// on_timeout, on_disable and on_estop, as far as the drive can.
-void readFallbacks(MotorReading& in);
+void readFallbacks(MotorParse& in);
 
 }  // namespace rc10

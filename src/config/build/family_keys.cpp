@@ -14,7 +14,7 @@ namespace rc10 {
 namespace {
 
 /// Families share the names of keys, not always their ranges.
-bool ownRange(MotorReading& in, const FamilyKey& key, const GivenValue& given) {
+bool ownRange(MotorParse& in, const FamilyKey& key, const GivenValue& given) {
   if (key.kind == FamilyKey::Kind::kChoice) {
     if (std::find(key.choices.begin(), key.choices.end(), given.text()) != key.choices.end()) return true;
     const std::vector<std::string> words{key.choices.begin(), key.choices.end()};
@@ -33,7 +33,7 @@ bool ownRange(MotorReading& in, const FamilyKey& key, const GivenValue& given) {
   return false;
 }
 
-bool readOwnKey(MotorReading& in, const FamilyKey& key) {
+bool readOwnKey(MotorParse& in, const FamilyKey& key) {
   const auto given = in.settings.find(key.name);
   if (!given && in.settings.mentions(key.name)) return false;  // refused already
   if (!given && key.required) {
@@ -53,7 +53,7 @@ bool readOwnKey(MotorReading& in, const FamilyKey& key) {
   return !given || ownRange(in, key, *given);
 }
 
-void refuseForeignKey(MotorReading& in, const FamilyKey& key, const MotorFamily& other,
+void refuseForeignKey(MotorParse& in, const FamilyKey& key, const MotorFamily& other,
                       std::set<std::string_view>& refused) {
   const auto own = in.draft.config.family->keys();
   const bool known =
@@ -67,7 +67,7 @@ void refuseForeignKey(MotorReading& in, const FamilyKey& key, const MotorFamily&
 
 }  // namespace
 
-bool readOwnKeys(MotorReading& in) {
+bool readOwnKeys(MotorParse& in) {
   bool complete = true;
   std::set<std::string_view> refused;
   for (const FamilyKey& key : in.draft.config.family->keys()) complete &= readOwnKey(in, key);
@@ -77,7 +77,7 @@ bool readOwnKeys(MotorReading& in) {
   return complete;
 }
 
-bool checkOwnKeys(MotorReading& in) {
+bool checkOwnKeys(MotorParse& in) {
   in.settings.read(in.effortKey(), in.motor().effort_limit);
   in.settings.read("velocity_limit_rpm", in.motor().velocity_limit_rpm);
   in.settings.read("command_divider", in.motor().command_divider);

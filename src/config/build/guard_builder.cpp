@@ -27,7 +27,7 @@ constexpr Duration kRestTime = std::chrono::milliseconds{100};
 constexpr int kFastCurrentHz = 50;
 
 // A limit that trips on what is asked for would be of no use.
-void checkOverspeed(MotorReading& in) {
+void checkOverspeed(MotorParse& in) {
   const auto given = in.settings.find("overspeed_rpm");
   const double target_rpm = static_cast<double>(in.motor().velocity_limit_rpm);
   if (!given || static_cast<double>(in.draft.config.guard.overspeed_rpm) > target_rpm) return;
@@ -36,7 +36,7 @@ void checkOverspeed(MotorReading& in) {
                         " rpm; raise it, or lower velocity_limit_rpm");
 }
 
-void checkTemperatures(MotorReading& in) {
+void checkTemperatures(MotorParse& in) {
   const GuardConfig& guard = in.draft.config.guard;
   const auto derate = in.settings.find("temperature_derate_c");
   const auto trip = in.settings.find("temperature_trip_c");
@@ -49,7 +49,7 @@ void checkTemperatures(MotorReading& in) {
 }
 
 // Without it a step of the target is at once a following error.
-void checkFollowingError(MotorReading& in) {
+void checkFollowingError(MotorParse& in) {
   const auto given = in.settings.find("following_error_deg");
   if (!given || in.settings.mentions("angle_slew_deg_per_s")) return;
   in.problems.error(
@@ -57,7 +57,7 @@ void checkFollowingError(MotorReading& in) {
       "needs angle_slew_deg_per_s: without it every step of the target would be a fault; add it");
 }
 
-void readRest(MotorReading& in) {
+void readRest(MotorParse& in) {
   RestConfig& rest = in.draft.config.rest;
   rest.gained_rpm = in.draft.config.guard.runaway_rpm;
   rest.current_a = kRest * in.traits.signed_a;
@@ -75,7 +75,7 @@ void readRest(MotorReading& in) {
 
 }  // namespace
 
-void readGuard(MotorReading& in) {
+void readGuard(MotorParse& in) {
   GuardConfig& guard = in.draft.config.guard;
   guard.overspeed_rpm = static_cast<float>(kOverspeed * in.noLoadRpm());
   guard.stall_rpm = static_cast<float>(kStall * in.noLoadRpm());

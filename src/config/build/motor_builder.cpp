@@ -8,7 +8,7 @@
 #include "config/build/family_keys.hpp"
 #include "config/build/guard_builder.hpp"
 #include "config/build/loop_builder.hpp"
-#include "config/build/motor_reading.hpp"
+#include "config/build/motor_parse.hpp"
 #include "config/build/shaping_builder.hpp"
 #include "config/keys/need_check.hpp"
 #include "config/keys/value_check.hpp"
@@ -21,13 +21,13 @@ namespace {
 constexpr Duration kFreshEnough = std::chrono::milliseconds{20};
 constexpr int kPeriodsToStale = 4;
 
-void readPlain(MotorReading& in) {
+void readPlain(MotorParse& in) {
   in.settings.read("name", in.motor().name);
   in.settings.read("direction", in.motor().direction);
   in.settings.read("optional", in.draft.config.optional);
 }
 
-void checkStops(MotorReading& in, const Settings& simulated) {
+void checkStops(MotorParse& in, const Settings& simulated) {
   const sim::MotorLoad& load = in.draft.config.simulated;
   const bool below = load.initial_angle_deg < load.stop_min_deg;
   const bool beyond = load.initial_angle_deg > load.stop_max_deg;
@@ -39,7 +39,7 @@ void checkStops(MotorReading& in, const Settings& simulated) {
                     "the shaft begins at initial_angle_deg, beyond its stops; change one of them");
 }
 
-void readSimulated(MotorReading& in) {
+void readSimulated(MotorParse& in) {
   const Settings simulated = in.settings.section("simulated");
   sim::MotorLoad& load = in.draft.config.simulated;
   simulated.read("inertia_kg_m2", load.inertia_kg_m2);
@@ -58,14 +58,14 @@ void readSimulated(MotorReading& in) {
   checkStops(in, simulated);
 }
 
-bool readModel(MotorReading& in) {
+bool readModel(MotorParse& in) {
   in.motor().model = in.settings.text("model");
   const auto* entry = findFamily(in.motor().model);
   in.draft.config.family = entry != nullptr ? entry->family : nullptr;
   return entry != nullptr;
 }
 
-bool readId(MotorReading& in) {
+bool readId(MotorParse& in) {
   const auto id = in.settings.find("id");
   if (!id) return false;
   in.draft.id_place = id->place();
@@ -79,7 +79,7 @@ bool readId(MotorReading& in) {
   return false;
 }
 
-void checkKeys(MotorReading& in) {
+void checkKeys(MotorParse& in) {
   const bool has_loops = in.traits.host_loops != nullptr;
   const bool shares = !in.draft.config.family->busUse(in.motor()).layout.empty();
   const MotorNature nature{in.motor().model, in.traits, in.knowsItsAngle(),
@@ -88,7 +88,7 @@ void checkKeys(MotorReading& in) {
   if (has_loops) checkNeeds(in.settings.section("velocity_pid"), kVelocityPidSection, nature, in.problems);
 }
 
-void readEffortLimit(MotorReading& in) {
+void readEffortLimit(MotorParse& in) {
   const char* key = in.effortKey();
   const float full_scale = in.traits.effort_full_scale;
   in.settings.read(key, in.motor().effort_limit);
@@ -101,7 +101,7 @@ void readEffortLimit(MotorReading& in) {
                         numberText(range.max) + "; " + useWords(range, ""));
 }
 
-void readZero(MotorReading& in) {
+void readZero(MotorParse& in) {
   in.motor().zero_at_power_on = in.settings.text("zero") == "power_on";
   if (!in.knowsItsAngle()) return;
   in.settings.read("zero_deg", in.motor().zero_deg);
@@ -110,14 +110,14 @@ void readZero(MotorReading& in) {
   in.problems.error(zero_deg->place(), zero_deg->path, "excludes zero: power_on; keep one of them");
 }
 
-void readLoops(MotorReading& in) {
+void readLoops(MotorParse& in) {
   in.settings.read("velocity_limit_rpm", in.motor().velocity_limit_rpm);
   if (in.traits.host_loops == nullptr) return;
   in.motor().loops = buildLoops(in.settings, *in.traits.host_loops, in.byVoltage());
   in.motor().velocity_limit_rpm = in.motor().loops.velocity_limit_rpm;
 }
 
-void readRates(MotorReading& in) {
+void readRates(MotorParse& in) {
   in.settings.read("command_divider", in.motor().command_divider);
   in.motor().feedback_hz =
       in.traits.asked ? std::max(1, in.motor().tick_hz / in.motor().command_divider) : in.traits.feedback_hz;
@@ -139,7 +139,7 @@ void readRates(MotorReading& in) {
                         std::to_string(in.traits.max_feedback_hz) + " Hz");
 }
 
-void checkFeedback(MotorReading& in) {
+void checkFeedback(MotorParse& in) {
   const auto period = std::chrono::duration_cast<Duration>(std::chrono::seconds{1}) / in.motor().feedback_hz;
   const auto given = in.settings.find("feedback_timeout_ms");
   if (!given || in.draft.config.feedback_timeout >= 2 * period) return;
@@ -149,7 +149,7 @@ void checkFeedback(MotorReading& in) {
                         " Hz; use at least " + std::to_string((2000 + rate_hz - 1) / rate_hz) + " ms");
 }
 
-void checkVelocityLimit(MotorReading& in) {
+void checkVelocityLimit(MotorParse& in) {
   const auto given = in.settings.find("velocity_limit_rpm");
   const double no_load_rpm = in.noLoadRpm();
   const bool known = in.traits.no_load_rpm > 0.0F;
@@ -160,7 +160,7 @@ void checkVelocityLimit(MotorReading& in) {
                           numberText(std::round(no_load_rpm)) + " rpm)");
 }
 
-void build(MotorReading& in, int tick_hz) {
+void build(MotorParse& in, int tick_hz) {
   in.motor().tick_hz = tick_hz;
   readPlain(in);
   readSimulated(in);
@@ -189,7 +189,7 @@ MotorDraft buildMotor(const Settings& settings, const SourcePlace& place, const 
   MotorDraft draft;
   draft.config.place = place;
   draft.path = path;
-  MotorReading in{settings, draft, problems};
+  MotorParse in{settings, draft, problems};
   build(in, tick_hz);
   return draft;
 }

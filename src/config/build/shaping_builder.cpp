@@ -18,7 +18,7 @@ constexpr double kSoftStartMs = 200.0;
 
 }  // namespace
 
-void readShaping(MotorReading& in) {
+void readShaping(MotorParse& in) {
   ShapingConfig& shaping = in.draft.config.shaping;
   in.settings.read(in.byVoltage() ? "voltage_slew_v_per_s" : "current_slew_a_per_s",
                    shaping.effort_slew_per_s);

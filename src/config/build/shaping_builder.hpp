@@ -1,10 +1,10 @@
 #pragma once
 
-#include "config/build/motor_reading.hpp"
+#include "config/build/motor_parse.hpp"
 
 namespace rc10 {
 
 /// Slew and soft limits, and how a target approaches them.
-void readShaping(MotorReading& in);
+void readShaping(MotorParse& in);
 
 }  // namespace rc10

@@ -17,9 +17,9 @@ Result<void> LKTech_Group::registerMotor(LKTech_Motor& motor) {
 }
 
 std::size_t LKTech_Group::packCommand(const Tick& /*tick*/, std::span<CanFrame> out) noexcept {
-  const bool told = std::any_of(slots_.begin(), slots_.end(),
-                                [](const auto* motor) { return motor != nullptr && motor->told(); });
-  if (out.empty() || !told) return 0;
+  const bool due = std::any_of(slots_.begin(), slots_.end(),
+                               [](const auto* motor) { return motor != nullptr && motor->isDue(); });
+  if (out.empty() || !due) return 0;
   std::array<int, lktech::kGroupSize> raw{};
   for (std::size_t slot = 0; slot < raw.size(); ++slot) {
     if (slots_[slot] != nullptr) raw[slot] = slots_[slot]->rawCurrent();

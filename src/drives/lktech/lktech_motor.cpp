@@ -174,8 +174,8 @@ void LKTech_Motor::update(const Tick& tick) noexcept {
   if (std::exchange(clear_, false)) outbox_.add(lktech::request(id_, lktech::Code::kClear));
   // A drive that is just starting must not find an angle of its former life waiting for it.
   if (!heard_ || tick.now - *heard_ > kLktechRestartSilence) counted_ = false;
-  told_ = due(tick);
-  if (!told_) return;
+  due_ = due(tick);
+  if (!due_) return;
 
   switch (ordered()) {
     case FrameKind::kRest:

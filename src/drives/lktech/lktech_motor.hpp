@@ -37,9 +37,9 @@ class LKTech_Motor final : public SoloMotor {
   // For its group.
   [[nodiscard]] int driveId() const noexcept { return id_; }
   [[nodiscard]] bool grouped() const noexcept { return grouped_; }
-  /// Result of update() in the drive's unit; whether it leaves in this tick.
+  /// Result of update() in the drive's unit; isDue(): it leaves in this tick.
   [[nodiscard]] int rawCurrent() const noexcept { return raw_current_; }
-  [[nodiscard]] bool told() const noexcept { return told_; }
+  [[nodiscard]] bool isDue() const noexcept { return due_; }
 
  private:
   enum class Step : std::uint8_t { kStatus, kTurnOn, kTurns, kObey };
@@ -73,7 +73,7 @@ class LKTech_Motor final : public SoloMotor {
 
   FrameOutbox outbox_;
   int raw_current_ = 0;
-  bool told_ = false;
+  bool due_ = false;
   MonotonicTime next_query_{};
   bool ask_turns_ = false;  ///< Next; else the status.
   bool clear_ = false;

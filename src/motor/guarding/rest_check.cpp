@@ -15,8 +15,8 @@ void RestCheck::reset() noexcept {
   told_ = false;
   sign_ = 0.0F;
   samples_ = 0;
-  driven_told_ = false;
-  gain_told_ = false;
+  driven_reported_ = false;
+  gain_reported_ = false;
 }
 
 RestCheck::Verdict RestCheck::step(const MotorFeedback& feedback, bool told, float standstill_rpm) noexcept {
@@ -52,22 +52,23 @@ bool RestCheck::driven(const MotorFeedback& feedback, float standstill_rpm) noex
     sign_ = sign;
     since_ = feedback.received;
     samples_ = 0;
-    if (sign == 0.0F) driven_told_ = false;
+    if (sign == 0.0F) driven_reported_ = false;
   }
   if (sign == 0.0F) return false;
   samples_ = std::min(samples_ + 1, kFewestSamples);
-  if (driven_told_ || samples_ < kFewestSamples || feedback.received - since_ < config_.time) return false;
-  driven_told_ = true;
+  if (driven_reported_ || samples_ < kFewestSamples || feedback.received - since_ < config_.time)
+    return false;
+  driven_reported_ = true;
   return true;
 }
 
 bool RestCheck::gains(const MotorFeedback& feedback, float standstill_rpm) noexcept {
   const float speed_rpm = std::fabs(feedback.velocity_rpm);
   if (std::isnan(slowest_rpm_) || speed_rpm < slowest_rpm_) slowest_rpm_ = speed_rpm;
-  if (speed_rpm < standstill_rpm) gain_told_ = false;
-  if (gain_told_ || !(config_.gained_rpm > 0.0F) || !(speed_rpm > slowest_rpm_ + config_.gained_rpm))
+  if (speed_rpm < standstill_rpm) gain_reported_ = false;
+  if (gain_reported_ || !(config_.gained_rpm > 0.0F) || !(speed_rpm > slowest_rpm_ + config_.gained_rpm))
     return false;
-  gain_told_ = true;
+  gain_reported_ = true;
   return true;
 }
 

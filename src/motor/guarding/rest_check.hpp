@@ -11,7 +11,7 @@ namespace rc10 {
 struct RestConfig {
   float current_a = 0.0F;   ///< More than this is torque; 0: not watched, its feedback cannot tell.
   Duration time{};          ///< So long in a row.
-  float gained_rpm = 0.0F;  ///< Speed gained at rest that is worth telling; 0: none is.
+  float gained_rpm = 0.0F;  ///< Speed gained at rest that is worth a report; 0: none is.
 };
 
 /// Compares what a drive is told with what it reports while it is told to rest. Torque is a current that
@@ -21,15 +21,15 @@ class RestCheck {
  public:
   enum class Verdict : std::uint8_t {
     kRests,
-    kGainsSpeed,  ///< Something drives the shaft; told once, until it stands still.
-    kDriven,      ///< Its drive does; told once, until it has rested.
+    kGainsSpeed,  ///< Something drives the shaft; reported once, until it stands still.
+    kDriven,      ///< Its drive does; reported once, until it has rested.
   };
 
   explicit RestCheck(const RestConfig& config) noexcept : config_(config) {}
 
   /// Once a tick. `told`: to rest, since the last tick at least.
   [[nodiscard]] Verdict step(const MotorFeedback& feedback, bool told, float standstill_rpm) noexcept;
-  /// Events that were told may be told again.
+  /// Verdicts that were reported may be reported again.
   void reset() noexcept;
 
  private:
@@ -43,9 +43,9 @@ class RestCheck {
   float sign_ = 0.0F;       ///< Of the current since `since_`; 0: it rests.
   MonotonicTime since_{};
   int samples_ = 0;  ///< Since then.
-  bool driven_told_ = false;
+  bool driven_reported_ = false;
   float slowest_rpm_ = 0.0F;  ///< Since it was told to rest.
-  bool gain_told_ = false;
+  bool gain_reported_ = false;
 };
 
 }  // namespace rc10

@@ -12,7 +12,7 @@
 namespace rc10 {
 
 /// One motor's settings on their way into its draft: what the parts of buildMotor() share.
-struct MotorReading {
+struct MotorParse {
   const Settings& settings;
   MotorDraft& draft;
   Problems& problems;
