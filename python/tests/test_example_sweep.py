@@ -43,7 +43,7 @@ def test_the_bandwidth_of_a_first_order_is_its_corner() -> None:
     assert math.isnan(bandwidth_hz(frequencies[:5], response[:5]))
 
 
-def test_plot_and_table(tmp_path: Path) -> None:
+def test_the_plot_has_gain_and_phase(tmp_path: Path) -> None:
     frequencies = np.array(frequencies_hz(1, 20, 5))
     assert frequencies[[0, -1]] == pytest.approx([1, 20])
     response = np.array([first_order(f) for f in frequencies])

@@ -67,5 +67,5 @@ def test_what_never_settles_scores_as_the_whole_time() -> None:
     assert score(metrics, SECONDS) > SECONDS
 
 
-def test_the_line_for_the_configuration() -> None:
+def test_gains_are_written_as_the_configuration_has_them() -> None:
     assert Gains(0.25, 3.0).yaml() == "velocity_pid: {kp_a_per_rpm: 0.25, ki_a_per_rpm_s: 3}"

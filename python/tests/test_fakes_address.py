@@ -16,7 +16,9 @@ C6XX = ("M3508", "M2006")
     ("motor_id", "command_id", "slot"),
     [(i, 0x200, i - 1) for i in (1, 2, 3, 4)] + [(i, 0x1FF, i - 5) for i in (5, 6, 7, 8)],
 )
-def test_c620_and_c610(model: str, motor_id: int, command_id: int, slot: int) -> None:
+def test_c620_and_c610_share_their_ids(
+    model: str, motor_id: int, command_id: int, slot: int
+) -> None:
     address = MotorSpec.parse(f"{model}:{motor_id}").address
     assert (address.command_id, address.slot) == (command_id, slot)
     assert address.feedback_id == 0x200 + motor_id
@@ -26,7 +28,9 @@ def test_c620_and_c610(model: str, motor_id: int, command_id: int, slot: int) ->
     ("kind", "low", "high"), [(":voltage", 0x1FF, 0x2FF), (":current", 0x1FE, 0x2FE)]
 )
 @pytest.mark.parametrize("motor_id", range(1, 8))
-def test_gm6020(motor_id: int, kind: str, low: int, high: int) -> None:
+def test_gm6020_commands_and_feedback_have_their_ids(
+    motor_id: int, kind: str, low: int, high: int
+) -> None:
     address = MotorSpec.parse(f"GM6020:{motor_id}{kind}").address
     assert address.command_id == (low if motor_id <= 4 else high)
     assert address.slot == (motor_id - 1) % 4

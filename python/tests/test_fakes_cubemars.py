@@ -47,7 +47,9 @@ def run(fake: FakeCubeMars, seconds: float) -> list[can.Message]:
         (0x668, "00 0D BB A0 01 F4 01 2C", 90.0),
     ],
 )
-def test_servo_command_vectors(arbitration_id: int, data: str, command: float) -> None:
+def test_servo_commands_are_those_of_the_manual(
+    arbitration_id: int, data: str, command: float
+) -> None:
     fake = drive("AK80-9:104")
     assert fake.decode_command(frame(arbitration_id, data))
     assert fake.command == pytest.approx(command)
@@ -62,7 +64,7 @@ def test_an_origin_is_one_byte() -> None:
     assert fake.angle_deg == 0.0
 
 
-def test_servo_feedback_vector() -> None:
+def test_servo_feedback_is_that_of_the_manual() -> None:
     fake = drive("AK80-9:104")
     fake.angle_rad = math.radians(123.4)
     fake.speed_rad_s = -2500 / (21 * 9) * math.tau / 60
@@ -74,14 +76,14 @@ def test_servo_feedback_vector() -> None:
     assert message.data == bytes.fromhex("04D2FF0602372A00")
 
 
-def test_mit_command_vector() -> None:
+def test_a_mit_command_is_decoded_as_in_the_manual() -> None:
     fake = drive("AK80-9:104:mit")
     assert fake.decode_command(order(0x68, ENTER))
     assert fake.decode_command(frame(0x68, "85 1E 82 81 99 33 38 E3", extended=False))
     assert fake.mit == pytest.approx((0.49992, 0.98901, 49.9389, 1.0, 2.0), abs=1e-4)
 
 
-def test_v3_command_vector_has_another_order() -> None:
+def test_a_v3_command_has_another_order() -> None:
     fake = drive("AK10-9-V3:104:mit_v3")
     assert fake.decode_command(frame(0x868, "19 93 33 85 17 84 88 4B"))
     position, velocity, stiffness, damping, torque = fake.mit
@@ -92,7 +94,7 @@ def test_v3_command_vector_has_another_order() -> None:
     assert torque == pytest.approx(2.0, abs=0.027)
 
 
-def test_mit_answer_vector() -> None:
+def test_a_mit_answer_is_that_of_the_manual() -> None:
     fake = drive("AK80-9:104:mit")
     fake.angle_rad = 3.00015
     fake.speed_rad_s = -0.005
@@ -214,7 +216,7 @@ def test_drives_of_both_kinds_share_a_bus() -> None:
 
 
 @pytest.mark.parametrize("name", CUBEMARS_MODELS)
-def test_names(name: str) -> None:
+def test_every_model_is_named_by_its_id(name: str) -> None:
     spec = family_spec(f"{name}:3")
     assert isinstance(spec, CubeMarsSpec)
     assert spec.name == f"{name}:3"

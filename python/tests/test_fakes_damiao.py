@@ -57,7 +57,7 @@ def enable(fake: FakeDamiao, mode: int = 1) -> None:
     assert fake.status == ENABLED
 
 
-def test_the_mit_vector() -> None:
+def test_a_mit_command_is_decoded_as_in_the_manual() -> None:
     fake = drive()
     enable(fake)
     tell(fake, 0x001, "8A 3C 77 70 A3 19 9A 65")
@@ -68,7 +68,7 @@ def test_the_mit_vector() -> None:
     assert fake.target.torque_nm == pytest.approx(2.99634, abs=1e-5)
 
 
-def test_the_all_zero_vector_is_almost_no_torque() -> None:
+def test_a_command_of_zeros_is_almost_no_torque() -> None:
     fake = drive()
     enable(fake)
     tell(fake, 0x001, "7F FF 7F F0 00 00 07 FF")
@@ -78,7 +78,7 @@ def test_the_all_zero_vector_is_almost_no_torque() -> None:
     assert fake.speed_rad_s == 0.0
 
 
-def test_the_vectors_of_the_other_modes() -> None:
+def test_commands_of_other_modes_are_decoded() -> None:
     fake = drive()
     enable(fake, 2)
     tell(fake, 0x101, "00 00 C0 3F 00 00 40 40")
@@ -95,7 +95,7 @@ def test_the_vectors_of_the_other_modes() -> None:
     assert fake.target.current_pu == pytest.approx(0.25)
 
 
-def test_the_feedback_vectors() -> None:
+def test_feedback_is_that_of_the_manual() -> None:
     fake = drive()
     enable(fake)
     fake.angle_rad, fake.speed_rad_s = -3.14164 + 1e-5, 3.99267 + 1e-5
@@ -109,7 +109,7 @@ def test_the_feedback_vectors() -> None:
     assert lost.feedback()[0] == 0xD2
 
 
-def test_the_register_vectors() -> None:
+def test_registers_are_read_and_written_as_in_the_manual() -> None:
     fake = drive()
     assert tell(fake, 0x7FF, "01 00 33 15 00 00 00 00") == ["011#0100331500004841"]
     assert tell(fake, 0x7FF, "01 00 55 0A 02 00 00 00") == ["011#0100550A02000000"]

@@ -49,7 +49,9 @@ def frame(arbitration_id: int, data: str, **flags: bool) -> can.Message:
         (0x1FE, "00 00 20 00 00 00 40 00", {"GM6020:2": 1.5, "GM6020:4": 3.0}),
     ],
 )
-def test_command_vectors(arbitration_id: int, data: str, expected: dict[str, float]) -> None:
+def test_commands_are_those_of_the_manuals(
+    arbitration_id: int, data: str, expected: dict[str, float]
+) -> None:
     for text, command in expected.items():
         fake = motor(text)
         assert fake.decode_command(frame(arbitration_id, data))
@@ -73,7 +75,7 @@ def test_the_last_two_bytes_of_the_short_groups_are_nobodys() -> None:
         ("GM6020:7", 2048, 120, 0.75, 37.9, 0x20B, "08 00 00 78 10 00 26 00"),
     ],
 )
-def test_feedback_vectors(
+def test_feedback_is_that_of_the_manuals(
     text: str,
     rotor_count: int,
     rotor_rpm: float,
@@ -94,7 +96,7 @@ def test_feedback_vectors(
     assert message.data == bytes.fromhex(data)
 
 
-def test_output_values_of_the_vectors() -> None:
+def test_output_values_are_behind_the_gear() -> None:
     fake = motor("M3508:3")
     fake.speed_rad_s = -16.3597
     assert fake.velocity_rpm == pytest.approx(-156.2239, abs=1e-3)

@@ -101,7 +101,7 @@ def test_the_documents_reply() -> None:
     assert bytes(answer.data) == bytes.fromhex("2404000A005000000170FF230D181400")
 
 
-def test_stop_and_brake_and_the_shortest_query() -> None:
+def test_a_drive_brakes_stops_and_answers_the_shortest_query() -> None:
     fake = enabled()
     fake.decode_command(frame("01000F"))
     assert fake.mode == BRAKE

@@ -39,7 +39,7 @@ def run(fake: FakeOdrive, seconds: float) -> None:
         fake.step(0.001)
 
 
-def test_set_input_pos_vector() -> None:
+def test_a_position_comes_with_its_feed_forwards() -> None:
     fake = axis()
     assert fake.decode_command(frame(0x06C, "00 00 20 40 DC 05 06 FF"))
     assert fake.input_pos == 2.5
@@ -47,14 +47,14 @@ def test_set_input_pos_vector() -> None:
     assert fake.input_torque == pytest.approx(-0.25)
 
 
-def test_set_input_vel_vector() -> None:
+def test_a_velocity_comes_with_its_torque() -> None:
     fake = axis()
     assert fake.decode_command(frame(0x06D, "00 00 80 C0 CD CC CC 3D"))
     assert fake.input_vel == -4.0
     assert fake.input_torque == pytest.approx(0.1)
 
 
-def test_set_axis_state_and_controller_mode_vectors() -> None:
+def test_axis_states_and_control_modes_are_numbers() -> None:
     fake = axis()
     assert fake.decode_command(frame(0x06B, "03 00 00 00 05 00 00 00"))
     assert (fake.control_mode, fake.input_mode) == (POSITION, 5)
@@ -62,7 +62,7 @@ def test_set_axis_state_and_controller_mode_vectors() -> None:
     assert fake.axis_state == CLOSED_LOOP
 
 
-def test_heartbeat_vector_of_v3() -> None:
+def test_a_heartbeat_of_v3_has_errors_and_flags() -> None:
     fake = axis("ODrive_v3:3")
     fake.errors = 0x40
     fake.motor_failed = fake.controller_failed = True
@@ -71,7 +71,7 @@ def test_heartbeat_vector_of_v3() -> None:
     assert message.data == bytes.fromhex("40 00 00 00 01 01 00 01")
 
 
-def test_heartbeat_vector_of_firmware_06() -> None:
+def test_a_heartbeat_of_firmware_06_has_its_active_errors() -> None:
     fake = axis("ODrive_S1:3")
     fake.errors = 0x100
     message = fake.heartbeat()
@@ -79,7 +79,7 @@ def test_heartbeat_vector_of_firmware_06() -> None:
     assert message.data == bytes.fromhex("00 01 00 00 01 00 00 00")
 
 
-def test_encoder_estimates_vector() -> None:
+def test_encoder_estimates_are_turns_and_turns_per_second() -> None:
     fake = axis()
     fake.turns = -0.125
     fake.speed_rad_s = 3.5 * 6.283185307179586
@@ -167,7 +167,7 @@ def test_a_watchdog_expires_without_frames(text: str, bit: int) -> None:
     assert (fake.axis_state, fake.errors) == (IDLE, bit)
 
 
-def test_estop_and_restart() -> None:
+def test_an_estop_is_an_error_that_a_restart_ends() -> None:
     fake = axis()
     close_loop(fake)
     fake.decode_command(frame(0x062, ""))

@@ -50,7 +50,7 @@ def run(drive: FakeRobStride, seconds: float) -> None:
 ENABLE, STOP, CLEAR = 0x0300FD7F, 0x0400FD7F, "01" + "00" * 7
 
 
-def test_an_operation_command() -> None:
+def test_an_operation_command_has_its_torque_in_the_id() -> None:
     drive = fake()
     ask(drive, ENABLE)
     (answer,) = ask(drive, 0x0192487F, "8A 2E 7F FF 0F 5C 33 33")
@@ -63,7 +63,7 @@ def test_an_operation_command() -> None:
     assert answer.arbitration_id == 0x02807FFD
 
 
-def test_feedback_of_a_running_drive() -> None:
+def test_feedback_of_a_running_drive_is_that_of_the_manual() -> None:
     drive = fake()
     ask(drive, ENABLE)
     drive.position_rad, drive.speed_rad_s = -1.5, 2.0
@@ -95,7 +95,7 @@ def test_an_unknown_parameter_is_refused() -> None:
     assert answer.arbitration_id == 0x11017FFD
 
 
-def test_writes() -> None:
+def test_a_written_parameter_is_read_back() -> None:
     drive = fake()
     ask(drive, 0x1200FD7F, "16 70 00 00 C3 F5 48 40")
     assert drive.parameter(0x7016) == pytest.approx(3.14, abs=1e-6)
@@ -113,7 +113,7 @@ def test_the_id_is_answered_to_everyone() -> None:
     assert answer.arbitration_id == 0x00007FFE
 
 
-def test_zero() -> None:
+def test_set_zero_makes_the_present_angle_zero() -> None:
     drive = fake()
     drive.position_rad = 2.0
     ask(drive, 0x0600FD7F, CLEAR)
@@ -138,7 +138,7 @@ def test_frames_of_others_do_nothing(message: can.Message) -> None:
     assert not drive.enabled
 
 
-def test_the_watchdog() -> None:
+def test_a_drive_stops_when_its_watchdog_trips() -> None:
     drive = fake()
     ask(drive, 0x1200FD7F, "28 70 00 00 D0 07 00 00")
     ask(drive, ENABLE)
@@ -213,7 +213,7 @@ def test_power_away_forgets() -> None:
 
 
 @pytest.mark.parametrize("name", MODELS)
-def test_names(name: str) -> None:
+def test_every_model_is_named_by_its_id(name: str) -> None:
     spec = family_spec(f"{name}:3")
     assert isinstance(spec, RobStrideSpec)
     assert spec.name == f"{name}:3"

@@ -47,7 +47,9 @@ def run(vesc: FakeVesc, seconds: float, *, again: can.Message | None = None) -> 
         (0x101, "00 00 03 E8 00 00 00 00", 1, 65536.0),
     ],
 )
-def test_command_vectors(arbitration_id: int, data: str, packet: int, value: float) -> None:
+def test_commands_are_those_of_the_firmware(
+    arbitration_id: int, data: str, packet: int, value: float
+) -> None:
     vesc = FakeVesc(arbitration_id & 0xFF)
     assert vesc.decode_command(frame(arbitration_id, data))
     assert vesc.packet == packet

@@ -62,7 +62,7 @@ def test_a_program_with_a_long_name_is_called_as_much_of_it_as_there_is_room_for
 
 
 @pytest.mark.netns
-def test_a_session_over_multicast() -> None:
+def test_a_session_runs_over_multicast() -> None:
     with ThreadedDaemon("demo") as daemon:
         daemon.deaf_to_requests = 2
         with rc10.connect("demo", client="tester", priority=3, at_end="coast") as robot:

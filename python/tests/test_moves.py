@@ -65,7 +65,7 @@ def test_its_target_is_sent_again_while_the_program_receives(
     assert all(setpoints(c)["wheel"] == (setpoint_t.MODE_TOTAL_ANGLE, 720) for c in daemon.commands)
 
 
-def test_the_shortest_way_round(robot: rc10.Robot, daemon: MovingDaemon) -> None:
+def test_a_move_goes_the_shortest_way_round(robot: rc10.Robot, daemon: MovingDaemon) -> None:
     robot.wait_for_state()
     daemon.angle_deg = 0.5
     assert robot.move_to("wheel", 359.5, tolerance_deg=2, shortest_way=True).result()

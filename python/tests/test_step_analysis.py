@@ -26,7 +26,7 @@ def second_order(damping: float, omega_rad_s: float) -> NDArray[np.float64]:
     return np.where(TIME_S < 0, 0.0, 1.0 - decay * np.sin(phase))
 
 
-def test_first_order() -> None:
+def test_a_first_order_lag_has_its_known_figures() -> None:
     tau_s = 0.1
     found = analyse(TIME_S, first_order(tau_s), 0, 1)
     assert found.rise_time_s == pytest.approx(tau_s * math.log(9), rel=1e-3)
@@ -48,7 +48,7 @@ def test_second_order_overshoots_by_the_formula(damping: float) -> None:
     assert 0.5 * envelope_s < found.settling_time_s <= envelope_s
 
 
-def test_rise_time_of_the_usual_approximation() -> None:
+def test_the_rise_time_is_that_of_the_usual_approximation() -> None:
     # (2.16 zeta + 0.60) / omega for 0.3 < zeta < 0.8 (R. Dorf, Modern Control Systems).
     found = analyse(TIME_S, second_order(0.5, 10.0), 0, 1)
     assert found.rise_time_s == pytest.approx((2.16 * 0.5 + 0.6) / 10.0, rel=0.03)

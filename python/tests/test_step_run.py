@@ -90,7 +90,9 @@ def values(commands: list[command_t]) -> list[float]:
     return found
 
 
-def test_a_step_of_the_velocity(robot: rc10.Robot, daemon: LaggingDaemon) -> None:
+def test_a_step_of_the_velocity_is_measured_there_and_goes_back(
+    robot: rc10.Robot, daemon: LaggingDaemon
+) -> None:
     result = run_step(robot, plan())
     assert result.signal == "velocity_rpm"
     assert result.metrics.rise_time_s == pytest.approx(TAU_S * math.log(9), rel=0.02)
@@ -137,7 +139,7 @@ def test_a_motor_that_was_active_stays_so(link: VirtualLink, daemon: LaggingDaem
     assert daemon.operations() == []
 
 
-def test_an_angle_on_the_shortest_way(robot: rc10.Robot, daemon: LaggingDaemon) -> None:
+def test_an_angle_goes_the_shortest_way(robot: rc10.Robot, daemon: LaggingDaemon) -> None:
     # It stands at 10 degrees, one turn on.
     result = run_step(robot, plan(rc10.Mode.ANGLE, 340))
     assert result.signal == "total_angle_deg"
@@ -153,7 +155,7 @@ def test_an_angle_relative_to_where_it_stands(robot: rc10.Robot, daemon: Lagging
     assert values(daemon.commands) == [370, 280, 370]
 
 
-def test_a_current(robot: rc10.Robot, daemon: LaggingDaemon) -> None:
+def test_a_current_steps_from_its_base(robot: rc10.Robot, daemon: LaggingDaemon) -> None:
     result = run_step(robot, plan(rc10.Mode.CURRENT, -1.5, base=0.5))
     assert result.signal == "current_a"
     assert values(daemon.commands) == [0.5, -1.5, 0.5]
@@ -302,14 +304,14 @@ def result(robot: rc10.Robot, daemon: LaggingDaemon) -> StepResult:
     return run_step(robot, plan())
 
 
-def test_the_table(result: StepResult) -> None:
+def test_the_table_has_figures_and_limits(result: StepResult) -> None:
     text = text_of(result)
     assert text.startswith("demo, wheel: velocity from 0 to 100 rpm\n")
     assert "  rise time (10-90 %)   0.11" in text
     assert "  limits that acted     current (100% of the time)" in text
 
 
-def test_the_figure(result: StepResult, tmp_path: Path) -> None:
+def test_the_figure_has_velocity_and_current(result: StepResult, tmp_path: Path) -> None:
     figure = figure_of(result)
     assert [axes.get_ylabel() for axes in figure.axes] == ["velocity (rpm)", "current (A)"]
     save_png(figure, tmp_path / "step.png")

@@ -48,6 +48,14 @@ comments_begin_with_a_noun() {
     [ "$status" -eq 1 ]  # 0: there are some; more: git did not look
 }
 
+# "Velocity" does not say what is true of it.
+test_names_are_sentences() {
+    local status=0
+    git grep -nE '^ *TEST(_F|_P)?\(\w+, *[A-Z]?[a-z0-9]+\)|^ *(async )?def test_[a-z0-9]+\(' -- \
+        tests python examples bench || status=$?
+    [ "$status" -eq 1 ]
+}
+
 # A page that no reader of a clone has proves nothing. Pages of makers are theirs.
 named_pages_are_tracked() {
     local makers='can|comm_can|registers|socketcan' tracked named
@@ -72,6 +80,7 @@ git_sees_each_source() {
 step "git sees each source" git_sees_each_source
 step clang-format format_cpp
 step "comments begin with a noun" comments_begin_with_a_noun
+step "test names are sentences" test_names_are_sentences
 step "named pages are tracked" named_pages_are_tracked
 step shellcheck shell
 # Its scripts have no extension, and are not found by themselves.

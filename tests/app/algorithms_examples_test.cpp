@@ -23,19 +23,19 @@
 namespace rc10::test::algorithms_examples_test {
 namespace {
 
-TEST(AlgorithmsExamples, Feedforward) {
+TEST(AlgorithmsExamples, AFeedforwardAddsSpeedFrictionAndGravity) {
   const Feedforward feedforward({.per_rpm = 0.01F, .friction = 0.3F, .gravity = 4.0F, .gravity_deg = 90.0F});
   const float current_a = feedforward.output({.angle_deg = 90.0, .velocity_rpm = 20.0F});
   EXPECT_NEAR(current_a, 4.5F, 1e-4F);
 }
 
-TEST(AlgorithmsExamples, Impedance) {
+TEST(AlgorithmsExamples, ASpringPullsTowardsItsAngleAndDamps) {
   const Impedance spring({.stiffness_nm_per_rad = 20.0F, .damping_nms_per_rad = 0.5F});
   const float torque_nm = spring.torque({.angle_deg = 30.0}, {.angle_deg = 25.0, .velocity_rpm = 2.0F});
   EXPECT_NEAR(torque_nm, 1.6406F, 1e-3F);
 }
 
-TEST(AlgorithmsExamples, SCurve) {
+TEST(AlgorithmsExamples, AnSCurveEndsAtItsTargetInTheTimeOfItsLimits) {
   std::vector<double> reference;
   SCurveProfile lift({.velocity = 360.0, .acceleration = 1800.0, .jerk = 18'000.0});  // degrees
   lift.reset(10.0);
@@ -47,27 +47,27 @@ TEST(AlgorithmsExamples, SCurve) {
   EXPECT_NEAR(static_cast<double>(reference.size()), 1000.0 * (710.0 / 360.0 + 0.2 + 0.1), 2.0);
 }
 
-TEST(AlgorithmsExamples, Slew) {
+TEST(AlgorithmsExamples, ASlewLimiterRisesByItsRate) {
   SlewLimiter throttle({.away_per_s = 3.0, .towards_per_s = 6.0});  // brakes harder than it accelerates
   const double speed_m_s = throttle.step(2.0, 0.01F);
   EXPECT_NEAR(speed_m_s, 0.03, 1e-6);
 }
 
-TEST(AlgorithmsExamples, Filters) {
+TEST(AlgorithmsExamples, FiltersPassTheirFirstValue) {
   ButterworthLowPass smooth(40.0);
   Notch resonance({.centre_hz = 85.0, .width_hz = 15.0});
   const double clean = resonance.step(smooth.step(12.5, 0.001F), 0.001F);
   EXPECT_EQ(clean, 12.5);
 }
 
-TEST(AlgorithmsExamples, Encoder) {
+TEST(AlgorithmsExamples, AnEncoderPllTurnsAcrossTheEndOfItsRange) {
   EncoderPll pll({.bandwidth_rad_s = 100.0, .circular_period_deg = 360.0});
   (void)pll.step(359.9, 0.001F);  // the first sample only sets the angle
   const double velocity_rpm = pll.step(0.1, 0.001F).velocity_rpm;
   EXPECT_GT(velocity_rpm, 0.0);
 }
 
-TEST(AlgorithmsExamples, Kalman) {
+TEST(AlgorithmsExamples, AKalmanFilterTakesAMeasurementWithinItsGate) {
   KalmanFilter<2, 1> height(Eigen::Vector2d(0.5, 0.0), Eigen::Matrix2d::Identity());  // m, m/s
   const Eigen::Matrix2d drift{{1.0, 0.01}, {0.0, 1.0}};
   (void)height.predict(drift, 1e-4 * Eigen::Matrix2d::Identity());
@@ -77,7 +77,7 @@ TEST(AlgorithmsExamples, Kalman) {
   EXPECT_NEAR(height.state()(0), 0.52, 1e-3);
 }
 
-TEST(AlgorithmsExamples, Chassis) {
+TEST(AlgorithmsExamples, AMecanumChassisComesAsFarAsItsWheelsRoll) {
   PlanarOdometry odometry;
   const MecanumKinematics chassis({.wheel_radius_m = 0.076, .half_track_m = 0.25, .half_wheelbase_m = 0.2});
   const Twist2D wanted = worldToBody({.vx_m_s = 1.0, .wz_deg_s = 90.0}, odometry.pose().heading_deg);
@@ -86,7 +86,7 @@ TEST(AlgorithmsExamples, Chassis) {
   EXPECT_NEAR(pose.x_m, 0.001, 1e-6);
 }
 
-TEST(AlgorithmsExamples, Swerve) {
+TEST(AlgorithmsExamples, ASwerveModuleRollsBackwardsInsteadOfTurning) {
   const SwerveModules measured{};
   const SwerveKinematics swerve({.wheel_radius_m = 0.05, .half_track_m = 0.3, .half_wheelbase_m = 0.3});
   SwerveModules modules = swerve.inverse({.vx_m_s = -1.0}, measured);
@@ -95,7 +95,7 @@ TEST(AlgorithmsExamples, Swerve) {
   EXPECT_EQ(modules.front_left.angle_deg, 0.0);
 }
 
-TEST(AlgorithmsExamples, Transforms) {
+TEST(AlgorithmsExamples, TransformsLeadFromTheCameraToTheField) {
   const PlanarOdometry odometry({.x_m = 2.0, .y_m = 1.0, .heading_deg = 90.0});
   const HomogeneousTransform2D world_to_base(odometry.pose());
   const HomogeneousTransform2D base_to_camera(0.3, 0.0, 180.0);

@@ -49,7 +49,7 @@ def test_a_lower_thread_that_keeps_the_cpu_does_not_delay_ticks(wheels: Cost) ->
         assert beside.lateness_us[share] <= 1.6 * wheels.lateness_us[share], share
 
 
-def test_by_timerfd_it_would() -> None:
+def test_by_timerfd_a_tick_would_be_late() -> None:
     """The guest shows what the test before is about."""
     late = measure(DJI, settings="scheduler: {timer: timerfd}", hog_us=HOG_US)
     assert late.lateness_us["p99"] > HOG_US / 2

@@ -210,7 +210,7 @@ TEST_F(ConfigureDriveTest, TheMotorIsNotEnabledMeanwhile) {
   EXPECT_EQ(answer().motors[0], Refusal::kNone);
 }
 
-TEST_F(ConfigureDriveTest, OneDriveAtATime) {
+TEST_F(ConfigureDriveTest, OneDriveIsConfiguredAtATime) {
   robot.run(100);
   ask();
   robot.tick();

@@ -20,7 +20,7 @@ class EstopDatagramsTest : public ::testing::Test {
   link::EstopDatagram client = link::EstopDatagram::to(socket.path());
 };
 
-TEST_F(EstopDatagramsTest, NobodyAsked) { EXPECT_FALSE(estops.take()); }
+TEST_F(EstopDatagramsTest, NothingIsTakenWhenNobodyAsked) { EXPECT_FALSE(estops.take()); }
 
 TEST_F(EstopDatagramsTest, TheOneWhoAskedIsNamed) {
   ASSERT_TRUE(client.send("pult"));

@@ -120,7 +120,7 @@ TEST_F(SetGainsTest, OtherGainsAreInForceInTheNextTickAndAreTold) {
   EXPECT_EQ(valuesIn(answer(ask(kGetConfigOperation, "wheel"))).at("angle_pid.kp_rpm_per_deg"), 4.0);
 }
 
-TEST_F(SetGainsTest, AllOfARequestOrNothing) {
+TEST_F(SetGainsTest, ARequestActsWholeOrNotAtAll) {
   const auto before = gainOf(loops(), LoopGain::kVelocityKp);
   EXPECT_THAT(refusal(ask(kSetGainsOperation, "wheel", {{"velocity.kp", 0.5}, {"velocity.ki", -1.0}})),
               HasSubstr("wheel: velocity_pid.ki_a_per_rpm_s: -1 is below 0 A/(rpm s); use "));

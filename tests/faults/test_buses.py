@@ -93,7 +93,7 @@ def test_a_node_floods_the_bus() -> None:
         ("20000040#0000000000000000", "bus-off"),
     ],
 )
-def test_an_error_frame(frame: str, state: str) -> None:
+def test_an_error_frame_sets_the_state_of_its_bus_alone(frame: str, state: str) -> None:
     with robot_under_test() as (process, robot, log):
         drive(robot, log, 0.3, left=rc10.velocity_rpm(60), other=rc10.velocity_rpm(60))
         run("cansend", FRONT, frame)

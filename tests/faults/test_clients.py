@@ -83,7 +83,7 @@ def wait_refusals(robot: rc10.Robot, reason: str, at_least: int) -> int:
         assert time.monotonic() < deadline, f"{reason}: {count}"
 
 
-def test_garbage() -> None:
+def test_garbage_stops_no_motor() -> None:
     noise = random.Random(1)
     with robot_under_test() as (_, robot, log):
         stranger = Stranger()

@@ -63,7 +63,7 @@ def drive_until(
         (Fault.HOT, 101, "winding at 101 C", FAULT, 2, rc10.velocity_rpm(60), 3),
     ],
 )
-def test_a_broken_drive(
+def test_a_broken_drive_is_noticed_and_rests(
     kind: Fault,
     argument: int,
     words: str,

@@ -84,7 +84,9 @@ def moving(family: Family, frames: list[Frame]) -> list[Frame]:
         and not (wrong is Wrong.RESTARTED and family.name.startswith("CubeMars"))
     ],
 )
-def test_a_drive_in_motion(family: Family, wrong: Wrong, tmp_path: Path) -> None:
+def test_a_drive_that_breaks_in_motion_is_noticed(
+    family: Family, wrong: Wrong, tmp_path: Path
+) -> None:
     config = write_config(tmp_path, f"name: motor, {family.keys}", bus=family.bus)
     target = next(t for t in family.targets if t.mode == "velocity")
     with Candump("vcan0") as bus, running(config, family.fake):
@@ -126,7 +128,7 @@ def test_a_drive_in_motion(family: Family, wrong: Wrong, tmp_path: Path) -> None
         wait_status("ACTIVE")
 
 
-def test_a_drive_with_another_id(family: Family, tmp_path: Path) -> None:
+def test_a_drive_with_another_id_is_offline(family: Family, tmp_path: Path) -> None:
     config = write_config(tmp_path, f"name: motor, {family.keys}", bus=family.bus)
     other = re.sub(r":(\d+)", lambda found: f":{int(found[1]) % 31 + 1}", family.fake, count=1)
     with Candump("vcan0") as bus, running(config, other):

@@ -145,7 +145,7 @@ def test_the_link_socket_is_misused() -> None:
         )
 
 
-def test_an_estop_while_driving() -> None:
+def test_an_estop_while_driving_rests_all_motors() -> None:
     with robot_under_test() as (_, robot, log):
         start_ns = time.time_ns()
         stop_ns = 0

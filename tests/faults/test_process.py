@@ -163,7 +163,7 @@ def test_the_wall_clock_is_set_back_an_hour() -> None:
         proven("wall clock set back an hour", "nothing changes", None, None, 0)
 
 
-def test_a_second_daemon_on_the_interface() -> None:
+def test_a_second_daemon_on_the_interface_is_refused() -> None:
     with robot_under_test() as (_, robot, log):
         other = Path("/tmp/second.yaml")
         other.write_text(CONFIG.read_text().replace("robot: faults", "robot: second"))

@@ -441,7 +441,7 @@ buses:
 YAW = 5
 
 
-def test_a_power_cycle_at_each_place_of_the_travel(tmp_path: Path) -> None:
+def test_a_power_cycle_keeps_the_angle_at_each_place_of_the_travel(tmp_path: Path) -> None:
     path = tmp_path / "robot.yaml"
     path.write_text(ABSOLUTE)
     # Of the frames only those of M3508 are judged by the witness: the other bus must miss no tick.

@@ -30,7 +30,7 @@ def rc10d(*words: str | Path) -> subprocess.CompletedProcess[str]:
     )
 
 
-def test_version() -> None:
+def test_the_version_is_printed() -> None:
     done = rc10d("--version")
     assert done.returncode == 0
     assert re.fullmatch(r"rc10d \d+\.\d+\.\d+\n", done.stdout)
@@ -97,7 +97,7 @@ def test_a_missing_configuration_is_named(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("words", [[], ["--no-such-option"], ["--check"]])
-def test_bad_usage(words: list[str]) -> None:
+def test_bad_usage_ends_with_status_2(words: list[str]) -> None:
     done = rc10d(*words)
     assert done.returncode == 2
     assert done.stderr

@@ -116,7 +116,7 @@ def test_without_namespaces_it_drives_through_the_link_socket(tmp_path: Path) ->
         assert_gone(run_dir)
 
 
-def test_bad_usage() -> None:
+def test_bad_usage_ends_with_status_2() -> None:
     with demo("--seconds", "soon") as shown:
         assert shown.wait() == 2
         assert "usage" in shown.output

@@ -49,7 +49,7 @@ TEST(CobsProtocol, RefusesWhatDoesNotFit) {
   EXPECT_EQ(HeardCobs{}.pack_frame(Bytes{1, 2, 3, 4}, small), 0U);
 }
 
-TEST(CobsProtocol, TheSameForEverySplit) {
+TEST(CobsProtocol, EverySplitGivesTheSameFrames) {
   const Bytes stream = joined({hex("AA BB 00"), packed({1, 0, 2}), hex("00 00"), packed({3}),
                                Bytes(200, 0x55), hex("00"), packed({4, 5})});
   expectTheSameForEverySplit(stream, HeardCobs::make,

@@ -122,7 +122,7 @@ TEST_F(ModbusRtuTest, WithoutAnAnswerTheQuestionIsGivenUp) {
   EXPECT_EQ(modbus.counters().resync_bytes, kAnswer3000.size());
 }
 
-TEST_F(ModbusRtuTest, OneQuestionAtATime) {
+TEST_F(ModbusRtuTest, OneQuestionIsUnderWayAtATime) {
   (void)begin(kTwoRegisters);
   EXPECT_THAT(begin(kTwoRegisters), IsEmpty());
   answer(kAnswer3000);

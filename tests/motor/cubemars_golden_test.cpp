@@ -41,7 +41,7 @@ CanFrame servoSends(const Target& target, MotorSettings settings) {
 
 MotorSettings servo() { return cubemarsSettings("AK80-9", 104); }
 
-TEST(CubemarsGolden, ServoCurrent) {
+TEST(CubemarsGolden, AServoCurrentIsInMilliamperes) {
   expectFrame(servoSends({.mode = ControlMode::kCurrent, .value = -3.5}, servo()), {0x168, true}, "FFFFF254");
 }
 
@@ -51,19 +51,19 @@ TEST(CubemarsGolden, ServoVelocityIsInElectricalTurns) {
   expectFrame(servoSends({.mode = ControlMode::kVelocity, .value = rpm}, servo()), {0x368, true}, "00002710");
 }
 
-TEST(CubemarsGolden, ServoPosition) {
+TEST(CubemarsGolden, AServoPositionIsInTenThousandthsOfADegree) {
   expectFrame(servoSends({.mode = ControlMode::kTotalAngle, .value = 180.0}, servo()), {0x468, true},
               "001B7740");
 }
 
-TEST(CubemarsGolden, ServoPositionWithSpeedAndAcceleration) {
+TEST(CubemarsGolden, AServoPositionCarriesItsSpeedAndAcceleration) {
   auto settings = cubemarsSettings("AK80-9", 104, {{"acceleration_limit_rpm_per_s", 3000.0 / 189.0}});
   settings.velocity_limit_rpm = 5000.0F / 189.0F;
   expectFrame(servoSends({.mode = ControlMode::kTotalAngle, .value = 90.0}, settings), {0x668, true},
               "000DBBA001F4012C");
 }
 
-TEST(CubemarsGolden, ServoFeedback) {
+TEST(CubemarsGolden, ServoFeedbackTellsAngleSpeedCurrentAndTemperature) {
   const auto settings = servo();
   CubemarsServo motor(settings, setupOf(settings));
   const CanFrame frame = frameOf({0x2968, true}, "04D2FF0602372A00");
@@ -88,7 +88,7 @@ constexpr cubemars::MitCommand kSetpoint{.position_rad = 0.5,
                                          .damping_nms_per_rad = 1.0,
                                          .torque_nm = 2.0};
 
-TEST(CubemarsGolden, MitCommand) {
+TEST(CubemarsGolden, AMitCommandHasTheBytesOfTheManual) {
   const CubemarsRanges ranges = findCubemarsModel("AK80-9")->ranges;
   expectFrame(cubemars::mitFrame(0x68, ranges, kSetpoint), {0x68, false}, "851E8281993338E3");
 }
@@ -100,12 +100,12 @@ TEST(CubemarsGolden, TheSpeedScaleOfAnAk606EndsAt45RadPerSecond) {
   expectFrame(cubemars::mitFrame(1, ranges, {.velocity_rad_s = 22.5}), {1, false}, "7FFFBFF0000007FF");
 }
 
-TEST(CubemarsGolden, MitCommandOfAV3DriveHasAnotherOrder) {
+TEST(CubemarsGolden, AMitCommandOfAV3DriveHasAnotherOrder) {
   const CubemarsRanges ranges = findCubemarsModel("AK10-9-V3")->ranges;
   expectFrame(cubemars::mitV3Frame(0x68, ranges, kSetpoint), {0x868, true}, "199333851784884B");
 }
 
-TEST(CubemarsGolden, MitCommandOutOfAMotor) {
+TEST(CubemarsGolden, AMotorSendsTheMitCommandOfTheManual) {
   auto settings = cubemarsSettings("AK80-9", 0x68, {{"protocol", std::string{"mit"}}});
   CubemarsMit motor(settings, setupOf(settings));
   // At 0.5 rad nothing of it is bounded: the drive's sum is 2 N·m and 1 N·m/(rad/s).
@@ -131,7 +131,7 @@ TEST(CubemarsGolden, MitCommandOutOfAMotor) {
   EXPECT_NEAR(((out[0].data[6] & 0xF) << 8) + out[0].data[7], 0x8E3, 1);
 }
 
-TEST(CubemarsGolden, MitReply) {
+TEST(CubemarsGolden, AMitReplyTellsAngleSpeedTorqueAndTemperature) {
   auto settings = cubemarsSettings("AK80-9", 104, {{"protocol", std::string{"mit"}}});
   CubemarsMit motor(settings, setupOf(settings));
   const CanFrame reply = frameOf({0, false}, "689EB87FF8004600");
@@ -148,7 +148,7 @@ TEST(CubemarsGolden, MitReply) {
   EXPECT_NEAR(before - motor.feedback().total_angle_deg, (3.00011 + 0.00019) * 180.0 / 3.14159265, 0.02);
 }
 
-TEST(CubemarsGolden, OrdersOfMitMode) {
+TEST(CubemarsGolden, OrdersOfMitModeAreThoseOfTheManual) {
   expectFrame(cubemars::mitOrderFrame(1, cubemars::MitOrder::kEnter), {1, false}, "FFFFFFFFFFFFFFFC");
   expectFrame(cubemars::mitOrderFrame(1, cubemars::MitOrder::kExit), {1, false}, "FFFFFFFFFFFFFFFD");
 }

@@ -25,7 +25,7 @@ Bytes bytes(const Payload& payload) {
 constexpr double rpmOf(double rad_s) { return rad_s * 9.549296585513721; }
 constexpr double degOf(double rad) { return rad * 57.29577951308232; }
 
-TEST(DamiaoGolden, MitCommand) {
+TEST(DamiaoGolden, AMitCommandHasTheBytesOfTheManual) {
   const auto payload = damiao::mit({.position_rad = 1.0,
                                     .velocity_rad_s = -2.0,
                                     .kp_nm_per_rad = 20.0,
@@ -41,7 +41,7 @@ TEST(DamiaoGolden, MitCommand) {
   EXPECT_NEAR(back.torque_nm, 2.99634, 1e-5);
 }
 
-TEST(DamiaoGolden, MitCommandOfNothing) {
+TEST(DamiaoGolden, AMitCommandOfNothingDecodesToLessThanAStepOfSpeedAndTorque) {
   const auto payload = damiao::mit({}, kDm4310);
   EXPECT_EQ(bytes(payload), (Bytes{0x7F, 0xFF, 0x7F, 0xF0, 0x00, 0x00, 0x07, 0xFF}));
   const auto back = damiao::readMit(payload, kDm4310);
@@ -59,7 +59,7 @@ TEST(DamiaoGolden, TheMotorsIdleFrameIsThat) {
   EXPECT_EQ(bytesOf(sent[0]), (Bytes{0x7F, 0xFF, 0x7F, 0xF0, 0x00, 0x00, 0x07, 0xFF}));
 }
 
-TEST(DamiaoGolden, EnableDisableAndClear) {
+TEST(DamiaoGolden, EnableDisableAndClearAreThoseOfTheManual) {
   EXPECT_EQ(bytes(damiao::special(damiao::Special::kEnable)),
             (Bytes{0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFC}));
   EXPECT_EQ(bytes(damiao::special(damiao::Special::kDisable)),
@@ -68,7 +68,7 @@ TEST(DamiaoGolden, EnableDisableAndClear) {
             (Bytes{0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFB}));
 }
 
-TEST(DamiaoGolden, PositionAndVelocity) {
+TEST(DamiaoGolden, APositionIsSentWithItsVelocity) {
   EXPECT_EQ(bytes(damiao::positionVelocity(1.5F, 3.0F)),
             (Bytes{0x00, 0x00, 0xC0, 0x3F, 0x00, 0x00, 0x40, 0x40}));
   auto settings = damiaoSettingsOf("DM4310", "position_velocity");
@@ -83,7 +83,7 @@ TEST(DamiaoGolden, PositionAndVelocity) {
   EXPECT_EQ(bytesOf(sent[0]), (Bytes{0x00, 0x00, 0xC0, 0x3F, 0x00, 0x00, 0x40, 0x40}));
 }
 
-TEST(DamiaoGolden, Velocity) {
+TEST(DamiaoGolden, AVelocityIsSentInRadiansPerSecond) {
   DamiaoDesk desk(damiaoSettingsOf("DM4310", "velocity"));
   ASSERT_TRUE(desk.enable());
   desk.command({.mode = ControlMode::kVelocity, .value = -60.0});
@@ -93,7 +93,7 @@ TEST(DamiaoGolden, Velocity) {
   EXPECT_EQ(bytesOf(sent[0]), (Bytes{0xDB, 0x0F, 0xC9, 0xC0}));  // -2 pi rad/s
 }
 
-TEST(DamiaoGolden, ForceAndPosition) {
+TEST(DamiaoGolden, APositionIsSentWithItsForce) {
   EXPECT_EQ(bytes(damiao::forcePosition(0.75F, 5.0, 0.25)),
             (Bytes{0x00, 0x00, 0x40, 0x3F, 0xF4, 0x01, 0xC4, 0x09}));
   auto settings = damiaoSettingsOf("DM4310", "force_position");
@@ -108,7 +108,7 @@ TEST(DamiaoGolden, ForceAndPosition) {
   EXPECT_EQ(bytesOf(sent[0]), (Bytes{0x00, 0x00, 0x40, 0x3F, 0xF4, 0x01, 0xC4, 0x09}));
 }
 
-TEST(DamiaoGolden, FeedbackOfAnEnabledDrive) {
+TEST(DamiaoGolden, FeedbackOfAnEnabledDriveIsInTheUsersUnits) {
   DamiaoDesk desk(damiaoSettingsOf());
   ASSERT_EQ(desk.give({0x11, 0x5F, 0xD4, 0x91, 0x06, 0xFF, 0x24, 0x1F}), FrameVerdict::kAccepted);
   const auto& feedback = desk.motor().feedback();
@@ -125,14 +125,14 @@ TEST(DamiaoGolden, FeedbackOfAnEnabledDrive) {
   EXPECT_EQ(bytes(damiao::writeState(1, state)), (Bytes{0x11, 0x5F, 0xD4, 0x91, 0x06, 0xFF, 0x24, 0x1F}));
 }
 
-TEST(DamiaoGolden, FeedbackOfADriveWhoseWatchdogHasTripped) {
+TEST(DamiaoGolden, FeedbackTellsThatTheWatchdogHasTripped) {
   DamiaoDesk desk(damiaoSettingsOf("DM4310", "mit", 2));
   ASSERT_EQ(desk.give({0xD2, 0x7F, 0xFF, 0x7F, 0xF7, 0xFF, 0x28, 0x28}), FrameVerdict::kAccepted);
   EXPECT_EQ(desk.motor().complaint().fault, FaultCode::kDriveCommunication);
   EXPECT_EQ(desk.motor().complaint().native_code, 0xDU);
 }
 
-TEST(DamiaoGolden, Registers) {
+TEST(DamiaoGolden, RegistersAreReadAndWrittenAsInTheManual) {
   EXPECT_EQ(bytes(damiao::readRegister(1, damiao::Register::kPMax)),
             (Bytes{0x01, 0x00, 0x33, 0x15, 0x00, 0x00, 0x00, 0x00}));
   EXPECT_EQ(bytes(damiao::writeRegister(1, damiao::Register::kControlMode, 2)),

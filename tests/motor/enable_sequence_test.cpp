@@ -79,7 +79,7 @@ TEST_F(EnableSequenceTest, BeginsAnewAfterAFailure) {
   EXPECT_TRUE(sequence.asks(at(1)));
 }
 
-TEST(DriveDuty, OfEveryKindOfFrame) {
+TEST(DriveDuty, EveryKindOfFrameHasADuty) {
   for (const auto kind : {FrameKind::kRest, FrameKind::kPoll, FrameKind::kDisable}) {
     EXPECT_EQ(dutyOf(kind), DriveDuty::kRest);
   }

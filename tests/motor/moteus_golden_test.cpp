@@ -61,7 +61,7 @@ TEST(MoteusGolden, IdsAreThoseOfTheVendor) {
   EXPECT_EQ(moteus::replyId(0x13, 2), (CanId{0x130200, true}));
 }
 
-TEST(MoteusGolden, TheLibrarysPositionCommandWithItsQuery) {
+TEST(MoteusGolden, APositionCommandIsThatOfTheLibrary) {
   const CanFrame frame = writer()
                              .write(moteus::Type::kInt8, kMode, {10.0})
                              .write(moteus::Type::kFloat, kCommandPosition, {1.0, 2.0})
@@ -86,7 +86,7 @@ TEST(MoteusGolden, TheLibrarysPositionCommandWithItsQuery) {
 }
 
 // The document's text has the torque's sign wrong; its bytes are -176.
-TEST(MoteusGolden, TheDocumentsCommandInInt16) {
+TEST(MoteusGolden, ACommandInInt16IsThatOfTheDocument) {
   const CanFrame frame = writer()
                              .write(moteus::Type::kInt8, kMode, {10.0})
                              .write(moteus::Type::kInt16, kCommandPosition, {0.0096, 0.072, -1.76})
@@ -96,7 +96,7 @@ TEST(MoteusGolden, TheDocumentsCommandInInt16) {
   EXPECT_EQ(bytes(frame), bytes(kInt16Command));
 }
 
-TEST(MoteusGolden, TheDocumentsReplyInInt16) {
+TEST(MoteusGolden, AReplyInInt16IsThatOfTheDocument) {
   const CanFrame frame = writer()
                              .reply(moteus::Type::kInt16, kMode, {10.0, 0.008, 0.064, -1.44})
                              .reply(moteus::Type::kInt8, kVoltage, {12.0, 20.0, 0.0})
@@ -111,12 +111,12 @@ TEST(MoteusGolden, TheDocumentsReplyInInt16) {
                            {Kind::kReply, kFault, 0.0}});
 }
 
-TEST(MoteusGolden, StopAndBrake) {
+TEST(MoteusGolden, StopAndBrakeAreThoseOfTheDocument) {
   EXPECT_EQ(bytes(writer().write(moteus::Type::kInt8, kMode, {0.0}).frame()), bytes("010000"));
   EXPECT_EQ(bytes(writer().write(moteus::Type::kInt8, kMode, {15.0}).frame()), bytes("01000F"));
 }
 
-TEST(MoteusGolden, TheShortestQueryAndItsReply) {
+TEST(MoteusGolden, TheShortestQueryAndItsReplyAreThoseOfTheDocument) {
   EXPECT_EQ(bytes(writer().read(moteus::Type::kInt8, kMode).read(moteus::Type::kInt8, kFault).frame()),
             bytes("1100110F"));
   expectRows("210000210F00", {{Kind::kReply, kMode, 0}, {Kind::kReply, kFault, 0}});

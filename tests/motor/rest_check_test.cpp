@@ -46,7 +46,9 @@ TEST_F(RestCheckTest, ACurrentAlongTheMotionForSoLongIsTorque) {
   EXPECT_EQ(came_after, 102) << "101 samples span 100 ms; the first comes with the order";
 }
 
-TEST_F(RestCheckTest, TheOtherWayRoundToo) { EXPECT_EQ(run(300, -1.5F, -200.0F), Verdict::kDriven); }
+TEST_F(RestCheckTest, ADriveThatDrivesBackwardsIsFoundToo) {
+  EXPECT_EQ(run(300, -1.5F, -200.0F), Verdict::kDriven);
+}
 
 TEST_F(RestCheckTest, ACurrentAtStandstillIsTorque) {
   EXPECT_EQ(run(300, 1.5F, 0.0F), Verdict::kDriven);

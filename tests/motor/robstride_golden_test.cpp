@@ -29,7 +29,7 @@ void expectFrame(const CanFrame& frame, std::uint32_t id, const Bytes& data) {
 
 CanFrame frameOf(std::uint32_t id, const Bytes& data) { return makeClassicFrame({id, true}, data); }
 
-TEST(RobStrideGolden, OperationModeCommand) {
+TEST(RobStrideGolden, AnOperationCommandHasItsTorqueInTheId) {
   expectFrame(codec("RS00").operate({.position_rad = 1.0,
                                      .velocity_rad_s = 0.0,
                                      .stiffness_nm_per_rad = 30.0,
@@ -38,7 +38,7 @@ TEST(RobStrideGolden, OperationModeCommand) {
               0x0192487F, {0x8A, 0x2E, 0x7F, 0xFF, 0x0F, 0x5C, 0x33, 0x33});
 }
 
-TEST(RobStrideGolden, EnableAndStop) {
+TEST(RobStrideGolden, EnableAndStopAreThoseOfTheManual) {
   expectFrame(codec("RS00").enable(), 0x0300FD7F, {});
   expectFrame(codec("RS00").stop(), 0x0400FD7F, {});
   expectFrame(codec("RS00").stop(true), 0x0400FD7F, {1});
@@ -53,13 +53,13 @@ TEST(RobStrideGolden, ParameterWritesAreLittleEndian) {
               {0x28, 0x70, 0, 0, 0xD0, 0x07, 0, 0});
 }
 
-TEST(RobStrideGolden, ParameterReadAsTheVendorPrintsIt) {
+TEST(RobStrideGolden, AParameterIsReadAsTheVendorPrintsIt) {
   expectFrame(codec("RS00").read(0x701E), 0x1100FD7F, {0x1E, 0x70});
   expectFrame(codec("RS00").parameter(0x701E, 0x41F00000, true), 0x11007FFD,
               {0x1E, 0x70, 0, 0, 0, 0, 0xF0, 0x41});
 }
 
-TEST(RobStrideGolden, Feedback) {
+TEST(RobStrideGolden, FeedbackTellsAngleSpeedTorqueAndTemperature) {
   const auto seen =
       codec("RS00").feedback(frameOf(0x02807FFD, {0x70, 0xB9, 0x87, 0xC1, 0x86, 0x65, 0x01, 0x38}));
   EXPECT_NEAR(seen.position_rad, -1.50011, 1e-5);
@@ -71,7 +71,7 @@ TEST(RobStrideGolden, Feedback) {
   expectFrame(codec("RS00").answer(seen), 0x02807FFD, {0x70, 0xB9, 0x87, 0xC1, 0x86, 0x65, 0x01, 0x38});
 }
 
-TEST(RobStrideGolden, FeedbackWithFaults) {
+TEST(RobStrideGolden, FeedbackTellsItsFaults) {
   const auto seen =
       codec("RS00", 1).feedback(frameOf(0x020501FD, {0x7F, 0xFF, 0x7F, 0xFF, 0x7F, 0xFF, 0x05, 0xAF}));
   EXPECT_EQ(seen.mode, 0);
