@@ -7,7 +7,7 @@
 
 #include "daemon/virtual_robot.hpp"
 
-namespace rc10::test::fault_test {
+namespace rc10::test::axis_fault_test {
 namespace {
 
 using namespace std::chrono_literals;
@@ -225,4 +225,4 @@ TEST_F(FaultTest, AFirstAngleTooFarAwayIsSkippedAndALaterOneIsNot) {
 }
 
 }  // namespace
-}  // namespace rc10::test::fault_test
+}  // namespace rc10::test::axis_fault_test

@@ -8,7 +8,7 @@
 #include "config/load_config.hpp"
 #include "daemon/virtual_robot.hpp"
 
-namespace rc10::test::turn_test {
+namespace rc10::test::axis_turn_test {
 namespace {
 
 struct Subject {
@@ -135,4 +135,4 @@ modules:
 }
 
 }  // namespace
-}  // namespace rc10::test::turn_test
+}  // namespace rc10::test::axis_turn_test

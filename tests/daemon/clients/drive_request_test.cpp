@@ -16,7 +16,7 @@
 #include "drives/damiao/damiao_setup.hpp"
 #include "drives/myactuator/myactuator_setup.hpp"
 
-namespace rc10::test::configure_drive_test {
+namespace rc10::test::drive_request_test {
 namespace {
 
 using link::ResponseStatus;
@@ -236,4 +236,4 @@ TEST_F(ConfigureDriveTest, ADriveWithoutSettingsIsRefused) {
 }
 
 }  // namespace
-}  // namespace rc10::test::configure_drive_test
+}  // namespace rc10::test::drive_request_test

@@ -17,7 +17,7 @@
 #include "daemon/virtual_robot.hpp"
 #include "link/words.hpp"
 
-namespace rc10::test::set_gains_test {
+namespace rc10::test::gain_request_test {
 namespace {
 
 using link::ResponseStatus;
@@ -280,4 +280,4 @@ TEST_F(SetGainsTest, TheApproachToASoftLimitIsThatOfTheNewGain) {
 }
 
 }  // namespace
-}  // namespace rc10::test::set_gains_test
+}  // namespace rc10::test::gain_request_test

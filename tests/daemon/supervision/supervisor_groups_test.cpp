@@ -7,7 +7,7 @@
 
 #include "daemon/virtual_robot.hpp"
 
-namespace rc10::test::group_test {
+namespace rc10::test::supervisor_groups_test {
 namespace {
 
 constexpr std::size_t kLeft = 0;
@@ -310,4 +310,4 @@ TEST_F(TogetherTest, AMemberIsEnabledAloneWithoutTheOthers) {
 }
 
 }  // namespace
-}  // namespace rc10::test::group_test
+}  // namespace rc10::test::supervisor_groups_test

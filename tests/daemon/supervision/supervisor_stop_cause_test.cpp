@@ -7,7 +7,7 @@
 
 #include "daemon/virtual_robot.hpp"
 
-namespace rc10::test::stop_cause_test {
+namespace rc10::test::supervisor_stop_cause_test {
 namespace {
 
 using ::testing::Contains;
@@ -215,4 +215,4 @@ TEST(NeverHeardTest, ADriveThatNeverAnswersIsToldOnceWithWhatToCheck) {
 }
 
 }  // namespace
-}  // namespace rc10::test::stop_cause_test
+}  // namespace rc10::test::supervisor_stop_cause_test

@@ -6,7 +6,7 @@
 
 #include "daemon/virtual_robot.hpp"
 
-namespace rc10::test::fallback_test {
+namespace rc10::test::axis_fallback_test {
 namespace {
 
 using namespace std::chrono_literals;
@@ -357,4 +357,4 @@ TEST_F(FallbackTest, AHoldAtTheEndOfTheProcessLetsGoAfterASecond) {
 }
 
 }  // namespace
-}  // namespace rc10::test::fallback_test
+}  // namespace rc10::test::axis_fallback_test

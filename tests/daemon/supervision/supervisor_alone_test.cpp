@@ -9,7 +9,7 @@
 #include "blackbox/memory_box.hpp"
 #include "daemon/virtual_robot.hpp"
 
-namespace rc10::test::enable_alone_test {
+namespace rc10::test::supervisor_alone_test {
 namespace {
 
 using ::testing::Contains;
@@ -259,4 +259,4 @@ TEST_F(EnableAloneInAGroupTest, AMemberThatWasLostDoesNotComeBackByItself) {
 }
 
 }  // namespace
-}  // namespace rc10::test::enable_alone_test
+}  // namespace rc10::test::supervisor_alone_test

@@ -18,7 +18,7 @@
 #include "daemon/virtual_robot.hpp"
 #include "link/words.hpp"
 
-namespace rc10::test::rest_test {
+namespace rc10::test::axis_rest_test {
 namespace {
 
 using namespace std::chrono_literals;
@@ -469,4 +469,4 @@ TEST(RestKeys, ADriveThatCannotTellTakesNoneAndTheReportSaysSo) {
 }
 
 }  // namespace
-}  // namespace rc10::test::rest_test
+}  // namespace rc10::test::axis_rest_test
