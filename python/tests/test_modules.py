@@ -52,6 +52,8 @@ def test_the_state_has_its_owner_its_outputs_and_its_age(
     assert base.state.age_s == pytest.approx(0.25)
     with pytest.raises(KeyError, match="no output 'y'; there are x_m, vx_m_s"):
         _ = base.state["y"]
+    with pytest.raises(KeyError, match=r"did you mean vx_m_s\?"):
+        _ = base.state["vx_ms"]
 
 
 def test_one_module_is_one_object(robot: rc10.Robot) -> None:
@@ -81,3 +83,12 @@ def test_waits_for_what_the_module_says(robot: rc10.Robot, link: VirtualLink) ->
     assert base.wait_for_state()["x_m"] == 1.5
     link.after(0.2, lambda: publisher.publish(state("", x_m=2.5)))
     assert base.wait_for_state()["x_m"] == 2.5
+
+
+def test_a_misspelt_module_is_told_with_those_that_are_heard(
+    robot: rc10.Robot, link: VirtualLink
+) -> None:
+    publisher = rc10.Publisher(link, "demo.v1.base.state", signals_t)
+    link.after(0.05, lambda: publisher.publish(state("", x_m=1.5)))
+    with pytest.raises(rc10.Timeout, match=r"heard of robot 'demo': base; did you mean base\?"):
+        robot.module("bsae").wait_for_state(0.1)

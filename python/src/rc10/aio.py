@@ -92,7 +92,8 @@ class AsyncModule(Module):
             Timeout: none came; the message says what to check.
         """
         known = self._subscriber.count
-        state = await self._robot._until(lambda: self._newer(known), timeout_s)
+        with self._listening():
+            state = await self._robot._until(lambda: self._newer(known), timeout_s)
         if state is None:
             raise self._nothing(timeout_s)
         return state

@@ -44,8 +44,8 @@ class Link(Protocol):
             How many were handled.
         """
 
-    def robots(self) -> AbstractContextManager[set[str]]:
-        """Collects the names of the robots whose states come while it is pumped."""
+    def between(self, before: str, after: str) -> AbstractContextManager[set[str]]:
+        """Collects the middles of the channels of this form that come while it is pumped."""
 
     def fileno(self) -> int:
         """A descriptor that is readable while a message waits."""
@@ -105,12 +105,12 @@ class LcmLink:
         return handled
 
     @contextmanager
-    def robots(self) -> Iterator[set[str]]:
-        """Collects the names of the robots whose states come while it is pumped."""
+    def between(self, before: str, after: str) -> Iterator[set[str]]:
+        """Collects the middles of the channels of this form that come while it is pumped."""
         heard: set[str] = set()
-        suffix = ".v1.state"
         subscription = self.lcm.subscribe(
-            f".*{re.escape(suffix)}", lambda channel, _: heard.add(channel[: -len(suffix)])
+            f"{re.escape(before)}.+{re.escape(after)}",
+            lambda channel, _: heard.add(channel[len(before) : -len(after)]),
         )
         try:
             yield heard

@@ -4,15 +4,17 @@ from __future__ import annotations
 
 import math
 import time
+from contextlib import contextmanager
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Callable
 
 from rc10.errors import NotReceived, Timeout
 from rc10.lcm_types.signals_t import signals_t
+from rc10.spelling import did_you_mean
 from rc10.topics import Publisher, Subscriber
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Iterator, Mapping
 
     from rc10.identity import Identity
     from rc10.link import Link
@@ -43,7 +45,10 @@ class ModuleState:
             KeyError: the module has no such output; the message says what it has.
         """
         if name not in self.outputs:
-            raise KeyError(f"no output {name!r}; there are {', '.join(self.outputs)}")
+            raise KeyError(
+                f"no output {name!r}; there are {', '.join(self.outputs)}"
+                f"{did_you_mean(name, self.outputs)}"
+            )
         return self.outputs[name]
 
 
@@ -58,6 +63,9 @@ class Module:
         self, robot: str, name: str, link: Link, identity: Identity, priority: int
     ) -> None:
         self.name = name
+        self._robot_name = robot
+        self._link = link
+        self._heard: set[str] = set()
         self._identity = identity
         self._priority = priority
         self._now = link.now
@@ -118,11 +126,25 @@ class Module:
         """The outputs, when more than `known` messages of them have come."""
         return self.state if self._subscriber.count > known else None
 
+    @contextmanager
+    def _listening(self) -> Iterator[None]:
+        """Notes which modules there are, as long as nothing is known of this one."""
+        if self._subscriber.count > 0:
+            yield
+            return
+        with self._link.between(f"{self._robot_name}.v1.", ".state") as heard:
+            self._heard = heard
+            yield
+
     def _nothing(self, timeout_s: float) -> Timeout:
-        return Timeout(
-            f"nothing of module '{self.name}' within {timeout_s:g} s: "
-            "`rc10ctl modules` shows which there are, and whether rc10d runs"
-        )
+        what = f"nothing of module '{self.name}' within {timeout_s:g} s"
+        if self._heard and self.name not in self._heard:
+            heard = sorted(self._heard)
+            return Timeout(
+                f"{what}; heard of robot '{self._robot_name}': {', '.join(heard)}"
+                f"{did_you_mean(self.name, heard)}"
+            )
+        return Timeout(f"{what}: `rc10ctl modules` shows which there are, and whether rc10d runs")
 
 
 class WaitingModule(Module):
@@ -140,11 +162,12 @@ class WaitingModule(Module):
         """
         known = self._subscriber.count
         deadline_s = self._now() + timeout_s
-        while True:
-            left_s = deadline_s - self._now()
-            self._spin(max(0.0, left_s))
-            state = self._newer(known)
-            if state is not None:
-                return state
-            if left_s <= 0:
-                raise self._nothing(timeout_s)
+        with self._listening():
+            while True:
+                left_s = deadline_s - self._now()
+                self._spin(max(0.0, left_s))
+                state = self._newer(known)
+                if state is not None:
+                    return state
+                if left_s <= 0:
+                    raise self._nothing(timeout_s)

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 from rc10.errors import MissingPackage, UnknownMotor
 from rc10.recorder import TIMES
 from rc10.signals import SIGNALS, Signal
+from rc10.spelling import did_you_mean
 
 try:
     import numpy as np
@@ -49,6 +50,7 @@ class MotorRecording:
         except KeyError:
             raise AttributeError(
                 f"a motor has no signal '{name}'; it has: {', '.join(SIGNALS)}"
+                f"{did_you_mean(name, SIGNALS)}"
             ) from None
 
     def __dir__(self) -> list[str]:
@@ -132,6 +134,7 @@ class Recording:
         except KeyError:
             raise UnknownMotor(
                 f"'{name}' was not recorded; there are: {', '.join(self.motors) or 'none'}"
+                f"{did_you_mean(name, self.motors)}"
             ) from None
 
     def signal(self, name: str) -> FloatArray:

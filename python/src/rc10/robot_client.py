@@ -344,7 +344,7 @@ class RobotClient:
         if self._inbox.state is not None:
             yield
             return
-        with self._link.robots() as heard:
+        with self._link.between("", ".v1.state") as heard:
             self._heard = heard
             yield
 

@@ -8,6 +8,7 @@ from contextlib import ExitStack
 from pathlib import Path
 from typing import TYPE_CHECKING, Protocol
 
+from rc10.arguments import Parser
 from rc10.command_line import run
 from rc10.errors import Rc10Error
 from rc10.export.log import LogReader
@@ -33,7 +34,7 @@ class _Sink(Protocol):
 
 def main() -> None:
     """Runs the tool."""
-    parser = argparse.ArgumentParser(
+    parser = Parser(
         prog="python -m rc10.export",
         description="Turns a log of lcm-logger into MCAP and CSV.",
         epilog=_EPILOG,

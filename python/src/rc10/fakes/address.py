@@ -7,6 +7,7 @@ from enum import Enum
 from typing import TYPE_CHECKING
 
 from rc10.fakes.models import GM6020, MODELS
+from rc10.spelling import not_one_of
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
@@ -88,7 +89,7 @@ class MotorSpec:
         name, *rest = text.split(":")
         model = MODELS.get(name)
         if model is None:
-            raise ValueError(f"{text!r}: {name!r} is not one of {', '.join(MODELS)}")
+            raise ValueError(not_one_of(text, name, MODELS))
         if len(rest) not in (1, 2) or not rest[0].isdecimal():
             raise ValueError(f"{text!r}: give {name}:ID or {name}:ID:voltage")
         try:

@@ -11,12 +11,14 @@ from typing import TYPE_CHECKING
 
 import can
 
+from rc10.arguments import Parser
 from rc10.fakes.address import MotorSpec, check_collisions
 from rc10.fakes.drives import Drives
 from rc10.fakes.families import FAMILIES, family_spec
 from rc10.fakes.models import GM6020
 from rc10.fakes.motor import FakeMotor
 from rc10.fakes.runner import MAX_RATE_HZ, Runner
+from rc10.spelling import did_you_mean
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -63,8 +65,8 @@ def _rate(text: str) -> float:
     return rate_hz
 
 
-def _parser() -> argparse.ArgumentParser:
-    parser = argparse.ArgumentParser(
+def _parser() -> Parser:
+    parser = Parser(
         prog="python -m rc10.fakes",
         description="Fake motors on a CAN bus.",
         epilog=_EPILOG,
@@ -115,7 +117,10 @@ def build_drives(options: argparse.Namespace) -> Drives:
     names = [spec.name for spec in options.motor]
     for name in (*loads_nm, *angles_deg):
         if name not in names:
-            raise ValueError(f"{name}: no such motor here; there are {', '.join(names)}")
+            raise ValueError(
+                f"{name}: no such motor here; there are {', '.join(names)}"
+                f"{did_you_mean(name, names)}"
+            )
     timeout_ms = options.command_timeout_ms
     # Where the rotor of a geared motor stands when power comes on says nothing about its output.
     generator = random.Random(options.seed)

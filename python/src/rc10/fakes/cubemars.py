@@ -13,6 +13,7 @@ import can
 
 from rc10.fakes.fake import EXTENDED
 from rc10.fakes.servo import ReplyAddress
+from rc10.spelling import not_one_of
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -142,14 +143,14 @@ class CubeMarsSpec:
         name, *rest = text.split(":")
         model = CUBEMARS_MODELS.get(name)
         if model is None:
-            raise ValueError(f"{text!r}: {name!r} is not one of {', '.join(CUBEMARS_MODELS)}")
+            raise ValueError(not_one_of(text, name, CUBEMARS_MODELS))
         if len(rest) not in (1, 2) or not rest[0].isdecimal():
             raise ValueError(f"{text!r}: give {name}:ID or {name}:ID:PROTOCOL")
         try:
             protocol = Protocol(rest[1]) if len(rest) == 2 else Protocol.SERVO
         except ValueError:
-            known = ", ".join(each.value for each in Protocol)
-            raise ValueError(f"{text!r}: {rest[1]!r} is not one of {known}") from None
+            known = [each.value for each in Protocol]
+            raise ValueError(not_one_of(text, rest[1], known)) from None
         return cls(model, int(rest[0]), protocol)
 
     def make(self, *, initial_angle_deg: float = 0.0, load_nm: float = 0.0) -> FakeCubeMars:

@@ -10,6 +10,8 @@ from typing import TYPE_CHECKING
 
 import can
 
+from rc10.spelling import not_one_of
+
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
@@ -165,7 +167,7 @@ class DamiaoSpec:
         """
         model, *rest = text.split(":")
         if model not in MODELS:
-            raise ValueError(f"{text!r}: {model!r} is not one of {', '.join(MODELS)}")
+            raise ValueError(not_one_of(text, model, MODELS))
         if len(rest) not in (1, 2) or not all(part.isdecimal() for part in rest):
             raise ValueError(f"{text!r}: give {model}:ID or {model}:ID:MASTER_ID")
         can_id = int(rest[0])

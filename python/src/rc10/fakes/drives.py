@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 from rc10.fakes.address import check_collisions
 from rc10.fakes.fake import EXTENDED
+from rc10.spelling import did_you_mean
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence
@@ -51,7 +52,10 @@ class Drives:
         self._drop = {name: p for name, p in (drop or {}).items() if p > 0}
         for name in (*self._silent_after_s, *self._drop):
             if name not in self.sent:
-                raise ValueError(f"{name}: no such motor here; there are {', '.join(self.sent)}")
+                raise ValueError(
+                    f"{name}: no such motor here; there are {', '.join(self.sent)}"
+                    f"{did_you_mean(name, self.sent)}"
+                )
         for name, probability in self._drop.items():
             if probability > 1:
                 raise ValueError(f"{name}: drop = {probability} is not within 0 to 1")

@@ -10,6 +10,8 @@ from typing import TYPE_CHECKING
 
 import can
 
+from rc10.spelling import not_one_of
+
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
@@ -141,7 +143,7 @@ class OdriveSpec:
         """
         model, *rest = text.split(":")
         if model not in MODELS:
-            raise ValueError(f"{text!r}: {model!r} is not one of {', '.join(MODELS)}")
+            raise ValueError(not_one_of(text, model, MODELS))
         if len(rest) != 1 or not rest[0].isdecimal():
             raise ValueError(f"{text!r}: give {model}:NODE")
         if not 0 <= int(rest[0]) <= 62:

@@ -6,6 +6,8 @@ import math
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, ClassVar, Generic, Protocol, TypeVar
 
+from rc10.spelling import not_one_of
+
 if TYPE_CHECKING:
     import can
     from typing_extensions import Self
@@ -149,7 +151,7 @@ class ModelAtId(Generic[_Model]):
         by_name = {model.name: model for model in cls.models}
         name, *rest = text.split(":")
         if name not in by_name:
-            raise ValueError(f"{text!r}: {name!r} is not one of {', '.join(by_name)}")
+            raise ValueError(not_one_of(text, name, by_name))
         if len(rest) != 1 or not rest[0].isdecimal():
             raise ValueError(f"{text!r}: give {name}:ID")
         if not 1 <= int(rest[0]) <= cls.max_id:

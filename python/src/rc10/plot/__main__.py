@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import argparse
 
+from rc10.arguments import Parser
 from rc10.client import connect
 from rc10.command_line import add_robot_arguments, add_signals_argument, find_robot, run
 from rc10.signals import Signal
@@ -16,7 +17,7 @@ _EPILOG = """\
 
 def main() -> None:
     """Runs the tool."""
-    parser = argparse.ArgumentParser(
+    parser = Parser(
         prog="python -m rc10.plot",
         description="Shows signals of a robot while they come, in a window or as a picture.",
         epilog=_EPILOG,

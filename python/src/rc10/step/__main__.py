@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import argparse
 
+from rc10.arguments import Parser
 from rc10.client import connect
 from rc10.command_line import add_robot_arguments, check_writable, find_robot, run
 from rc10.printable import printable
@@ -23,7 +24,7 @@ enabled it. Ctrl-C lets go at once.
 
 def main() -> None:
     """Runs the tool."""
-    parser = argparse.ArgumentParser(
+    parser = Parser(
         prog="python -m rc10.step",
         description="Runs a step on a live motor and judges how it follows.",
         epilog=_EPILOG,

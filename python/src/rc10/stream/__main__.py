@@ -5,6 +5,7 @@ from __future__ import annotations
 import argparse
 from typing import TYPE_CHECKING
 
+from rc10.arguments import Parser
 from rc10.client import connect
 from rc10.command_line import add_robot_arguments, add_signals_argument, find_robot, run
 from rc10.errors import Timeout
@@ -27,7 +28,7 @@ _SILENCE_S = 5.0
 
 def main() -> None:
     """Runs the tool."""
-    parser = argparse.ArgumentParser(
+    parser = Parser(
         prog="python -m rc10.stream",
         description="Sends signals of a robot to VOFA+, a frame for each state.",
         epilog=_EPILOG,
