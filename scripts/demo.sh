@@ -8,6 +8,8 @@ set -euo pipefail
 here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
 # shellcheck source=scripts/lib/project.sh
 . "$here/lib/project.sh"
+# shellcheck source=scripts/lib/nearest.sh
+. "$here/lib/nearest.sh"
 # shellcheck source=scripts/lib/progress.sh
 . "$here/lib/progress.sh"
 
@@ -26,7 +28,11 @@ while [ $# -gt 0 ]; do
     case $1 in
         --seconds) seconds=${2:-} && shift ;;
         -h | --help) usage && exit ;;
-        *) usage >&2 && exit 2 ;;
+        *)
+            echo "demo: no option '$1'$(did_you_mean "$1" --seconds --help)" >&2
+            usage >&2
+            exit 2
+            ;;
     esac
     [[ $seconds =~ ^[0-9]+$ ]] || { usage >&2 && exit 2; }
     seconds=$((10#$seconds))

@@ -4,6 +4,8 @@
 # --list: installs nothing, and prints the packages.
 # --may-ask: installs nothing, but lets sudo ask for the password now, if something is missing.
 set -euo pipefail
+# shellcheck source=scripts/lib/nearest.sh
+. "$(dirname "${BASH_SOURCE[0]}")/lib/nearest.sh"
 
 declare -A packages=(
     [build]="g++ cmake ninja-build pkg-config ccache git python3 python3-venv iproute2
@@ -62,7 +64,7 @@ wanted=()
 for group in "$@"; do
     case $group in -h | --help) usage && exit ;; esac
     if [ -z "${packages[$group]:-}" ]; then
-        echo "install-deps: no group '$group'" >&2
+        echo "install-deps: no group '$group'$(did_you_mean "$group" "${groups[@]}" --list --may-ask)" >&2
         usage >&2
         exit 2
     fi

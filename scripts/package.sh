@@ -7,6 +7,8 @@ set -euo pipefail
 
 # shellcheck source=scripts/lib/project.sh
 . "$(dirname "${BASH_SOURCE[0]}")/lib/project.sh"
+# shellcheck source=scripts/lib/nearest.sh
+. "$repo/scripts/lib/nearest.sh"
 
 preset=package wheel=yes run=()
 for option in "$@"; do
@@ -16,6 +18,7 @@ for option in "$@"; do
         *)
             echo "usage: scripts/package.sh [--arm64] [--no-wheel]"
             [[ $option =~ ^(-h|--help)$ ]] && exit
+            echo "package: no option '$option'$(did_you_mean "$option" --arm64 --no-wheel)" >&2
             exit 2
             ;;
     esac

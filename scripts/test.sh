@@ -7,6 +7,8 @@ set -euo pipefail
 here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
 # shellcheck source=scripts/lib/project.sh
 . "$here/lib/project.sh"
+# shellcheck source=scripts/lib/nearest.sh
+. "$here/lib/nearest.sh"
 # shellcheck source=scripts/lib/progress.sh
 . "$here/lib/progress.sh"
 
@@ -43,7 +45,7 @@ for part in "${@:-default}"; do
         -h | --help) usage && exit ;;
         *)
             if [[ $part == *' '* || " ${parts[*]} " != *" $part "* ]]; then
-                echo "test.sh: no part '$part'" >&2
+                echo "test.sh: no part '$part'$(did_you_mean "$part" "${parts[@]}" default ci all nightly)" >&2
                 usage >&2
                 exit 2
             fi

@@ -12,7 +12,7 @@ all=("$repo/python/requirements-dev.txt" "$repo/scripts/requirements.txt")
 
 case ${1:-all} in
     client | all) wanted=${1:-all} ;;
-    *) echo "usage: scripts/venv.sh [client]" >&2 && exit 2 ;;
+    *) echo "venv: no part '$1': usage: scripts/venv.sh [client]" >&2 && exit 2 ;;
 esac
 
 # Debian's own, not one that a version manager put first on PATH.

@@ -10,7 +10,7 @@ tools=$repo/build/web-tools
 
 case ${1:-} in
     '' | check) what=${1:-page} ;;
-    *) echo "usage: scripts/web.sh [check]" >&2 && exit 2 ;;
+    *) echo "web: no part '$1': usage: scripts/web.sh [check]" >&2 && exit 2 ;;
 esac
 
 # A hash of all that the page is made from.
