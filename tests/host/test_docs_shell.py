@@ -14,7 +14,7 @@ from typing import NamedTuple
 import pytest
 from hostlib import eventually
 from hostlib.daemon import REPO
-from hostlib.page import blocks, robots
+from hostlib.page import blocks
 from hostlib.reader import Command, Reader, commands, headings
 
 DEMO = REPO / "config" / "demo.yaml"
@@ -40,12 +40,6 @@ buses:
       - {name: yaw, model: GM6020, id: 1, current_limit_a: 20}
       - {name: roll, model: M3508, id: 5}
 """
-# Of a page without hardware.
-SIMULATED = {
-    "interface: can0": "type: sim",
-    "realtime: required": "realtime: preferred",
-    "zero: power_on}": "zero: power_on, feedback_timeout_ms: 1000}",
-}
 MULTICAST = ("239.255.76.67/32", "dev", "lo", "src", "127.0.0.1")
 
 
@@ -54,13 +48,6 @@ class Scene(NamedTuple):
 
     robot: str = ""  # that runs already
     files: Mapping[str, str] = {}
-
-
-def bench() -> str:
-    (text,) = robots(REPO / "docs" / "first-motor.md")
-    for old, new in SIMULATED.items():
-        text = text.replace(old, new)
-    return text
 
 
 def lift() -> str:
@@ -72,7 +59,6 @@ SCENES = {
     "README.md": Scene(robot=DEMO.read_text(), files={"bad.yaml": WRONG}),
     "docs/adding-a-motor.md": Scene(),
     "docs/blackbox.md": Scene(robot=DEMO.read_text()),
-    "docs/first-motor.md": Scene(files={"bench.yaml": bench()}),
     "docs/modules.md": Scene(robot=lift()),
     "docs/porting-from-stm32.md": Scene(),
     "docs/quick-start.md": Scene(),
@@ -82,7 +68,7 @@ SCENES = {
 # They add the route of the multicast.
 WITH_ROUTE = {"docs/quick-start.md", "python/README.md"}
 # Pages that a test of their own reads.
-READ_ELSEWHERE = {"docs/python.md", "docs/tuning.md"}
+READ_ELSEWHERE = {"docs/first-motor.md", "docs/python.md", "docs/tuning.md"}
 SHELL = {"sh", "console"}
 # Whose Python is a program beside the commands.
 WITH_PROGRAMS = {"README.md", "python/README.md"}

@@ -10,7 +10,8 @@ from typing import TYPE_CHECKING
 import pytest
 from guestlib import Candump, link_add, link_delete, wait_for
 from hostlib.page import Block, blocks, blocks_run_by, robots
-from hostlib.reader import Command, Reader, commands
+from hostlib.reader import Command, Reader, commands, only_command
+from hostlib.shown import assert_shown
 from hostlib.terminal import Terminal
 from rig import REPO
 from stage import Stage, motor
@@ -23,8 +24,6 @@ if TYPE_CHECKING:
 
 DOCS = REPO / "docs"
 HERE = str(Path(__file__).relative_to(REPO))
-NUMBER = re.compile(r"-?\d+(\.\d+)?")
-CLEAR_LINE = "\x1b[K"
 HERO = """
 robot: hero
 realtime: preferred
@@ -79,28 +78,6 @@ class Hand:
         self.left_deg -= turn_deg
 
 
-def lines_of(text: str) -> list[str]:
-    """Without what differs from run to run: numbers, and the columns that they widen."""
-    lines = text.replace(CLEAR_LINE, "").splitlines()
-    return [" ".join(NUMBER.sub("#", line).split()) for line in lines if line.strip()]
-
-
-def assert_shown(command: Command, said: str) -> None:
-    """Every line of the page stands there; "..." is what the page leaves out."""
-    printed = lines_of(said)
-    for line in lines_of(command.output):
-        start, left_out, _ = line.partition("...")
-        if left_out:
-            assert any(other.startswith(start) for other in printed), f"{line}\n{said}"
-        else:
-            assert line in printed, f"{line}\n{said}"
-
-
-def only_command(block: Block) -> Command:
-    (command,) = commands(block)
-    return command
-
-
 def printed_by(reader: Reader, command: Command, status: int = 0) -> str:
     done = reader.shell(command.text)
     assert done.returncode == status, f"{command.text}\n{done.stdout}{done.stderr}"
@@ -136,7 +113,7 @@ def test_the_first_motor_is_found_commissioned_and_turned(reader: Reader, tmp_pa
     page = DOCS / "first-motor.md"
     (robot,) = robots(page)
     (tmp_path / "bench.yaml").write_text(robot)
-    check, start, turn = (b for b in blocks(page) if b.kind in ("sh", "console"))
+    check, start, watch, turn = (b for b in blocks(page) if b.kind in ("sh", "console"))
     ready, scan, commission = mine("first-motor.md")
     reader.read(check)
     assert "can0 link: up" in found_by_doctor(reader, only_command(ready))
@@ -146,6 +123,7 @@ def test_the_first_motor_is_found_commissioned_and_turned(reader: Reader, tmp_pa
         stage.things.append(hand)
         assert_shown(only_command(scan), printed_by(reader, only_command(scan)))
         reader.read(start)
+        reader.read(watch)
         spin = only_command(commission)
         with Terminal(["bash", "-ec", reader.script(spin.text)], reader.env()) as person:
             person.answer("Press Enter", "")

@@ -71,6 +71,11 @@ def commands(block: Block) -> Iterator[Command]:
             yield Command(text, "")
 
 
+def only_command(block: Block) -> Command:
+    (command,) = commands(block)
+    return command
+
+
 class Reader:
     """Leaving the `with` statement ends what still runs."""
 
@@ -80,7 +85,7 @@ class Reader:
         self.run_dir = Path(tempfile.mkdtemp(prefix="rc10-page-", dir="/dev/shm"))
         self.replace = {RUN_DIR: str(self.run_dir)}
         self._typed_before = [f"export RC10_RUN_DIR={self.run_dir} RC10_STATE_DIR={self.run_dir}"]
-        self._servers: list[Program] = []
+        self.servers: list[Program] = []
         self._status = 0
         for name in ("config", "docs", "examples", "python"):
             (folder / name).symlink_to(REPO / name)
@@ -97,7 +102,7 @@ class Reader:
         return self
 
     def __exit__(self, *_: object) -> None:
-        for server in self._servers:
+        for server in self.servers:
             server.stop()
         shutil.rmtree(self.run_dir)
 
@@ -121,7 +126,7 @@ class Reader:
     def serve(self, text: str) -> None:
         """Starts it in a terminal of its own, and waits until every motor is READY."""
         server = Program("bash", "-ec", self.script(f"exec {text}"), env=self.env())
-        self._servers.append(server)
+        self.servers.append(server)
         if text.startswith("rc10-sim"):
             server.wait_line("^ready", PATIENCE_S)
         else:
@@ -149,7 +154,7 @@ class Reader:
         ended = (done.returncode != 0) == command.fails
         told = command.complaints <= {*said.splitlines()}
         other = sorted(command.headings - headings(said))
-        logs = "\n".join(server.output for server in self._servers)
+        logs = "\n".join(server.output for server in self.servers)
         assert ended, f"{command.text}: status {done.returncode}\n{said}\n{logs}"
         assert told, f"{command.text}: without {command.complaints}\n{said}"
         assert not other, f"{command.text}: shown, but not printed: {other}\n{said}"

@@ -40,12 +40,16 @@ class Terminal:
         self._process.wait()
         os.close(self._master)
 
-    def answer(self, question: str, words: str) -> None:
-        """Waits until the question stands there, behind what was answered before, and types."""
+    def see(self, words: str) -> None:
+        """Waits until they stand there, behind what was seen before."""
         deadline = time.monotonic() + PATIENCE_S
-        while (at := self.text.find(question, self._seen)) < 0:
-            assert self._read(deadline), f"without '{question}':\n{self.text}"
-        self._seen = at + len(question)
+        while (at := self.text.find(words, self._seen)) < 0:
+            assert self._read(deadline), f"without '{words}':\n{self.text}"
+        self._seen = at + len(words)
+
+    def answer(self, question: str, words: str) -> None:
+        """Waits for the question, and types."""
+        self.see(question)
         os.write(self._master, f"{words}\n".encode())
 
     def end(self) -> int:
