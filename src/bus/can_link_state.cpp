@@ -14,6 +14,7 @@
 #include <span>
 
 #include "app/unique_fd.hpp"
+#include "bus/interface_names.hpp"
 #include "bus/netlink_attributes.hpp"
 
 // Not by libsocketcan: can_get_state() of 0.0.12 waits for ever when the interface vanishes meanwhile (it
@@ -118,7 +119,10 @@ void readController(Bytes can, CanLink& link) {
 tl::unexpected<Error> canLinkFailure(const std::string& interface, const std::string& what, int error,
                                      const std::string& fix) {
   std::string remedy = fix;
-  if (error == ENODEV) remedy = "; `ip link` lists what there is. A HAT needs its device tree overlay";
+  if (error == ENODEV) {
+    remedy =
+        similarInterface(interface) + "; `ip link` lists what there is. A HAT needs its device tree overlay";
+  }
   return fail("CAN interface '" + interface + "': cannot " + what + ": " + std::strerror(error) + remedy);
 }
 

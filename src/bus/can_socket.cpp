@@ -16,6 +16,8 @@
 #include <utility>
 #include <vector>
 
+#include "bus/interface_names.hpp"
+
 namespace rc10 {
 namespace {
 
@@ -61,7 +63,8 @@ Result<Interface> findInterface(int fd, const std::string& name) {
   std::copy(name.begin(), name.end(), std::begin(request.ifr_name));
   Interface found;
   if (::ioctl(fd, SIOCGIFINDEX, &request) != 0) {
-    return fail("CAN interface '" + name + "': " + std::strerror(errno) +
+    const std::string reason = std::strerror(errno);
+    return fail("CAN interface '" + name + "': " + reason + similarInterface(name) +
                 "; `ip link` lists what there is. A HAT needs its device tree overlay; a virtual interface " +
                 "is made with `ip link add dev " + name + " type vcan && ip link set up " + name + "`");
   }

@@ -28,7 +28,7 @@ constexpr int kOk = 0;
 constexpr int kStartFailed = 1;
 constexpr int kBadUsageOrConfig = 2;
 
-/// "; did you mean --check?" for the first option that is none.
+/// "there is no option '--chekc'; did you mean --check?" for the first word that means nothing.
 std::string optionHint(const CLI::App& app, int argc, const char* const* argv) {
   std::vector<std::string> known;
   for (const auto* option : app.get_options()) {
@@ -38,6 +38,10 @@ std::string optionHint(const CLI::App& app, int argc, const char* const* argv) {
     const std::string name{std::string_view{argv[i]}.substr(0, std::string_view{argv[i]}.find('='))};
     if (name.rfind("--", 0) != 0 || std::find(known.begin(), known.end(), name) != known.end()) continue;
     return "there is no option '" + printable(name) + "'" + didYouMean(name, {known.begin(), known.end()});
+  }
+  for (const auto& word : app.remaining()) {
+    const auto meant = didYouMean("--" + word, {known.begin(), known.end()});
+    if (!meant.empty()) return "there is no verb '" + printable(word) + "'" + meant;
   }
   return {};
 }

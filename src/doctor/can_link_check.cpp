@@ -226,7 +226,7 @@ Finding checkCoalescing(const CanLinkFacts& facts) {
 
 Findings checkCanLink(const CanLinkFacts& facts) {
   if (!facts.link) {
-    return {fault(about(facts, "link"), "there is no such interface",
+    return {fault(about(facts, "link"), "there is no such interface" + facts.similar,
                   "`ip link` lists what there is. A HAT needs its overlay in /boot/firmware/config.txt "
                   "(docs/can-setup.md); "
                   "to try without hardware: sudo ip link add " +

@@ -19,6 +19,7 @@ struct Coalescing {
 struct CanLinkFacts {
   std::string interface;
   std::optional<CanLink> link;  ///< Empty: there is none of this name.
+  std::string similar;          ///< Then: "; did you mean can0?", or nothing.
   std::string driver;           ///< "mcp251xfd"; empty: virtual.
   std::optional<Coalescing> coalescing;
   CanLinkSettings wanted;  ///< A bit rate of 0: no configuration was given.

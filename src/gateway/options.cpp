@@ -2,6 +2,9 @@
 
 #include <string_view>
 
+#include "app/nearest.hpp"
+#include "app/printable.hpp"
+
 namespace rc10::gateway {
 
 const char* helpText() noexcept {
@@ -38,7 +41,10 @@ Result<Options> parseOptions(int argc, char** argv) {
                   : name == "--socket" ? &options.socket
                   : name == "--url"    ? &options.url
                                        : nullptr;
-    if (field == nullptr) return fail("unknown argument '" + std::string(argv[i]) + "'; see rc10-lcm --help");
+    if (field == nullptr)
+      return fail("unknown argument '" + printable(argv[i]) + "'" +
+                  didYouMean(name, {"--robot", "--socket", "--url", "--version", "--help"}) +
+                  "; see rc10-lcm --help");
     if (!value && i + 1 < argc) value = argv[++i];
     if (!value || value->empty()) return fail(std::string(name) + " needs a value; see rc10-lcm --help");
     *field = *value;

@@ -15,7 +15,7 @@ struct FamilyKey {
     kFlag,
     kChoice,
     // Of modules only:
-    kText,     ///< As `pattern` says.
+    kText,     ///< As `pattern` says; without one, of 1 to 128 characters.
     kMotor,    ///< The name of a motor.
     kSection,  ///< A map with `keys`.
     kRows,     ///< A list of such maps, from `min` to `max` of them.
@@ -32,7 +32,7 @@ struct FamilyKey {
   std::string_view about;  ///< For people; one key of one name says the same in every family.
   std::span<const FamilyKey> keys{};
   std::string_view pattern{};  ///< Of the whole text: what ECMAScript and POSIX extended have in common.
-  std::string_view words{};    ///< The pattern in words: completes "use ...".
+  std::string_view words{};    ///< The pattern in words: completes "use ..."; empty: the pattern itself.
 };
 
 }  // namespace rc10

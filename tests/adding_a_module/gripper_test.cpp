@@ -22,9 +22,6 @@ using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 
-// Before the first configuration, as a main() would.
-const bool kAdded = addModuleType(gripperType()).has_value();
-
 ModuleSettings settings() {
   ModuleSettings settings;
   settings.name = "hand";
@@ -33,6 +30,35 @@ ModuleSettings settings() {
   settings.own.set("still_ms", 100.0);
   return settings;
 }
+
+/// A type with texts.
+class Labelled : public ModuleType {
+ public:
+  [[nodiscard]] std::string_view name() const noexcept override { return "labelled"; }
+  [[nodiscard]] std::string_view about() const noexcept override { return "Has texts."; }
+  [[nodiscard]] std::span<const FamilyKey> keys() const noexcept override {
+    static constexpr std::array kKeys{
+        FamilyKey{.name = "label", .kind = FamilyKey::Kind::kText, .about = "Any text."},
+        FamilyKey{.name = "code",
+                  .kind = FamilyKey::Kind::kText,
+                  .default_text = "A1",
+                  .about = "A letter and a digit.",
+                  .pattern = "[A-Z][0-9]"}};
+    return kKeys;
+  }
+  [[nodiscard]] Result<std::unique_ptr<Module_Base>> build(const ModuleSettings& /*settings*/,
+                                                           const RobotOutline& robot) const override {
+    return gripperType().build(settings(), robot);
+  }
+};
+
+const ModuleType& labelledType() {
+  static const Labelled kType;
+  return kType;
+}
+
+// Before the first configuration, as a main() would.
+const bool kAdded = addModuleType(gripperType()).has_value() && addModuleType(labelledType()).has_value();
 
 TEST(Gripper, ClosesUntilItHoldsSomethingAndSaysSoOnce) {
   FakeRobot robot{1};
@@ -89,6 +115,26 @@ TEST(Gripper, ItsKeysAreAsStrictAsAllOthers) {
       "  - {name: arm, type: sim, motors: [{name: claw, model: M2006, id: 1}]}\n",
       "hero.yaml");
   EXPECT_THAT(loaded.errorText(), HasSubstr("modules[0].grip_ma: unknown key; did you mean grip_a?"));
+}
+
+std::string errorsOfLabelled(const std::string& keys) {
+  return parseRobotConfig(
+             "robot: hero\nmodules:\n  - {name: tag, type: labelled" + keys +
+                 "}\nbuses:\n  - {name: arm, type: sim, motors: [{name: claw, model: M2006, id: 1}]}\n",
+             "hero.yaml")
+      .errorText();
+}
+
+TEST(ModuleKey, OfATextWithoutAPatternTakesAnyTextAndSaysHowLong) {
+  EXPECT_EQ(errorsOfLabelled(", label: 'front, left!'"), "");
+  EXPECT_THAT(errorsOfLabelled(", label: ''"),
+              HasSubstr("'' is not accepted; use a text of 1 to 128 characters"));
+}
+
+TEST(ModuleKey, OfAPatternWithoutWordsShowsThePattern) {
+  EXPECT_EQ(errorsOfLabelled(", code: B2"), "");
+  EXPECT_THAT(errorsOfLabelled(", code: b2"),
+              HasSubstr("'b2' is not accepted; use a text of the form [A-Z][0-9]"));
 }
 
 TEST(Gripper, ANameThatIsTakenIsRefused) {

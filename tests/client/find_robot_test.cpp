@@ -12,12 +12,25 @@ namespace {
 
 using testing::HasSubstr;
 
-TEST(FindRobot, TakesTheNamedOneWithoutLooking) {
+TEST(FindRobot, TakesTheNamedOneWithoutAsking) {
   TemporaryRunDir dir;
+  (void)dir.listen("hero");
   const auto found = findRobot("hero");
   ASSERT_TRUE(found);
   EXPECT_EQ(found->robot, "hero");
   EXPECT_EQ(found->path, dir.path() + "/hero.sock");
+}
+
+TEST(FindRobot, SuggestsTheRobotThatRunsForANameThatNoneHas) {
+  TemporaryRunDir dir;
+  const auto sentry = dir.listen("sentry");
+  const auto hero = dir.listen("hero");
+  (void)dir.listen("infantry");
+  const auto found = findRobot("heor");
+  ASSERT_FALSE(found);
+  EXPECT_THAT(found.error().message, HasSubstr("rc10d is not running for robot 'heor' (no socket "));
+  EXPECT_THAT(found.error().message,
+              testing::EndsWith("; robots that run here: hero, sentry; did you mean hero?"));
 }
 
 TEST(FindRobot, RefusesANameThatIsAPath) {

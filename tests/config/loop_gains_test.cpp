@@ -115,6 +115,8 @@ TEST(LoopGains, WhatIsNoGainOfThisMotorSaysWhatIs) {
   EXPECT_THAT(whyNot("colour", 1, loops), HasSubstr("known here: velocity_pid.kp_a_per_rpm, "));
   EXPECT_THAT(whyNot("torque.kp", 1, loops),
               HasSubstr("there is no loop 'torque'; use velocity_pid or angle_pid"));
+  EXPECT_THAT(whyNot("velocity.kpp", 1, loops), EndsWith("did you mean kp_a_per_rpm?"));
+  EXPECT_THAT(whyNot("velocty.kp", 1, loops), EndsWith("angle_pid; did you mean velocity?"));
   EXPECT_THAT(whyNot("derivative_filter_hz", 1, loops),
               HasSubstr("write velocity_pid.derivative_filter_hz or angle_pid.derivative_filter_hz"));
   EXPECT_THAT(whyNot("velocity_pid.kp_v_per_rpm", 1, loops), HasSubstr("is told amperes; use kp_a_per_rpm"));

@@ -75,6 +75,10 @@ TEST(Profile, MustExist) {
                   "'profiles:'"));
 }
 
+TEST(Profile, WhoseNameAMotorMisspellsIsNotCalledUnused) {
+  EXPECT_THAT(warningsOf(robotWithProfile("{model: M3508}", "{name: a, id: 1, profile: weel}")), IsEmpty());
+}
+
 TEST(Profile, HasNoKeysThatBelongToOneMotor) {
   EXPECT_THAT(errorsOf(robotWithProfile("{model: M3508, id: 1, name: a, profile: wheel}",
                                         "{name: a, id: 1, profile: wheel}"))

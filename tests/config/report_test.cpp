@@ -47,8 +47,25 @@ TEST(Report, SaysHowTheRobotRuns) {
                                   "realtime   preferred\n"
                                   "guard      preferred\n"
                                   "scheduler  1000 Hz, SCHED_FIFO 50, CPU 3\n"
-                                  "receive    by the tick; serial ports SCHED_FIFO 65, any CPU\n"
+                                  "receive    by the tick\n"
                                   "lcm        udpm://239.255.76.67:7667?ttl=0, state at 100 Hz\n"));
+}
+
+TEST(Report, NamesTheThreadOfSerialPortsWhereThereAreSome) {
+  const std::string imu = "modules: [{name: imu, type: imu, protocol: hipnuc, port: /dev/ttyUSB0}]\n";
+  const auto loaded = parseRobotConfig(kRobot + imu, "hero.yaml");
+  ASSERT_TRUE(loaded.config) << loaded.errorText();
+  EXPECT_THAT(describe(*loaded.config), HasSubstr("by the tick; serial ports SCHED_FIFO 65, any CPU\n"));
+}
+
+TEST(Report, RoundsNumbers) {
+  const std::string robot =
+      "robot: hero\nbuses:\n  - name: a\n    type: sim\n    motors:\n"
+      "      - {name: arm, model: DM4310, id: 3, master_id: 19, command_divider: 3}\n"
+      "      - {name: wheel, model: M3508, id: 1, velocity_pid: {kp_a_per_rpm: 0.333333333}}\n";
+  const auto text = describe(parseRobotConfig(robot, "hero.yaml").config.value());
+  EXPECT_THAT(text, HasSubstr("0x003 at 333.3 Hz "));
+  EXPECT_THAT(text, HasSubstr("position, kp 0.333333, ki 1.6, kd 0 "));
 }
 
 TEST(Report, SaysWhichInterfacesItSetsUp) {

@@ -33,7 +33,8 @@ TEST(GatewayOptions, AreReadInBothForms) {
 }
 
 TEST(GatewayOptions, SayWhatIsWrong) {
-  EXPECT_THAT(parse({"--robto", "hero"}).error().message, HasSubstr("unknown argument '--robto'"));
+  EXPECT_THAT(parse({"--robto", "hero"}).error().message,
+              HasSubstr("unknown argument '--robto'; did you mean --robot?"));
   EXPECT_THAT(parse({"hero"}).error().message, HasSubstr("unknown argument 'hero'"));
   EXPECT_THAT(parse({"--robot"}).error().message, HasSubstr("--robot needs a value"));
   EXPECT_THAT(parse({"--url="}).error().message, HasSubstr("--url needs a value"));

@@ -101,3 +101,24 @@ def test_bad_usage_ends_with_status_2(words: list[str]) -> None:
     done = rc10d(*words)
     assert done.returncode == 2
     assert done.stderr
+
+
+@pytest.mark.parametrize(
+    ("words", "told"),
+    [
+        (["--chekc"], "there is no option '--chekc'; did you mean --check?"),
+        (["check", EXAMPLES[0]], "there is no verb 'check'; did you mean --check?"),
+    ],
+)
+def test_the_option_that_was_meant_is_told(words: list[str | Path], told: str) -> None:
+    done = rc10d(*words)
+    assert done.returncode == 2
+    assert told in done.stderr
+
+
+def test_the_guard_tells_the_option_that_was_meant() -> None:
+    done = subprocess.run(
+        [BIN / "rc10-guard", "--until-unusd"], capture_output=True, text=True, check=False
+    )
+    assert done.returncode == 2
+    assert "did you mean --until-unused?" in done.stderr

@@ -38,6 +38,18 @@ def test_bad_usage_is_refused(words: list[str], tmp_path: Path) -> None:
     assert "--help" in done.stderr
 
 
+def test_what_was_meant_is_told(tmp_path: Path) -> None:
+    (tmp_path / "hero").mkdir()
+    (tmp_path / "hero" / "rest-frames").write_text("nocan9 200#00\n")
+    done = rc10_stop("--forec", run_dir=tmp_path)
+    assert "'--forec' is no robot and no option; did you mean --force?" in done.stderr
+    done = rc10_stop("heor", run_dir=tmp_path)
+    assert done.returncode == 2
+    assert done.stderr.endswith("; robots that ran here: hero; did you mean hero?\n")
+    done = rc10_stop("--file", run_dir=tmp_path)
+    assert "--file needs a FILE" in done.stderr
+
+
 def test_a_robot_that_never_ran_is_named(tmp_path: Path) -> None:
     done = rc10_stop("hero", run_dir=tmp_path)
     assert done.returncode == 2

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <variant>
 
+#include "app/nearest.hpp"
 #include "config/keys/key_check.hpp"
 #include "config/keys/need_check.hpp"
 #include "config/keys/value_check.hpp"
@@ -97,22 +98,27 @@ Result<Asked> asked(std::string_view name) {
   const auto loop = loopNamed(name.substr(0, dot));
   if (!loop.empty()) return Asked{name, loop, name.substr(dot + 1)};
   return fail(excerpt(name) + ": there is no loop " + inQuotes(name.substr(0, dot)) +
-              "; use velocity_pid or angle_pid");
+              "; use velocity_pid or angle_pid" +
+              didYouMean(name.substr(0, dot), {kVelocity, kAngle, "velocity", "angle"}));
 }
 
 std::string whyUnknown(const Asked& asked, const MotorLoops& loops) {
   const bool of_motor = asked.loop.empty() && findKey(kMotorSection, asked.key) != nullptr;
   const bool of_loop = !asked.loop.empty() && findKey(sectionOf(asked.loop), asked.key) != nullptr;
   if (of_motor || of_loop) return std::string{kAtStartOnly};
-  std::vector<std::string> paths;
-  std::vector<std::string_view> known;
+  std::vector<std::string> written;
+  std::vector<std::string_view> names;
+  std::vector<std::string_view> briefs;
   for (const auto& gain : gainKeysOf(loops)) {
     if (!asked.loop.empty() && asked.loop != gain.loop) continue;
-    known.push_back(gain.key->name);
-    paths.push_back(gain.path());
+    names.push_back(gain.key->name);
+    briefs.push_back(gain.brief);
+    written.push_back(asked.loop.empty() ? gain.path() : std::string{gain.key->name});
   }
-  if (asked.loop.empty()) return unknownKeyWords(asked.key, known, {paths.begin(), paths.end()});
-  return unknownKeyWords(asked.key, known, known);
+  const std::vector<std::string_view> listed{written.begin(), written.end()};
+  // "velocity.kpp": brief names have a loop.
+  const bool is_brief = !asked.loop.empty() && nearest(asked.key, names).empty();
+  return unknownKeyWords(asked.key, is_brief ? briefs : names, listed);
 }
 
 /// The one gain of this motor that is meant.

@@ -15,6 +15,7 @@ namespace {
 using enum ValueKind;
 
 constexpr TextForm kMotorName{"[a-z0-9_]{1,31}", "the name of a motor"};
+constexpr TextForm kAnyText{".{1,128}", "a text of 1 to 128 characters"};
 
 constexpr std::array kCommonKeys{
     Key{.name = "name",
@@ -71,7 +72,7 @@ class TypeTables {
       case FamilyKey::Kind::kFlag: made.kind = kBoolean; break;
       case FamilyKey::Kind::kChoice: break;
       case FamilyKey::Kind::kMotor: made.form = &kMotorName; break;
-      case FamilyKey::Kind::kText: made.form = &forms_.emplace_back(TextForm{key.pattern, key.words}); break;
+      case FamilyKey::Kind::kText: made.form = &formOf(key); break;
       case FamilyKey::Kind::kSection:
       case FamilyKey::Kind::kRows:
         made.kind = key.kind == FamilyKey::Kind::kRows ? kSectionList : kSection;
@@ -79,6 +80,13 @@ class TypeTables {
         break;
     }
     return made;
+  }
+
+  [[nodiscard]] const TextForm& formOf(const FamilyKey& key) {
+    if (key.pattern.empty()) return kAnyText;
+    if (!key.words.empty()) return forms_.emplace_back(TextForm{key.pattern, key.words});
+    return forms_.emplace_back(
+        TextForm{key.pattern, words_.emplace_back("a text of the form " + std::string{key.pattern})});
   }
 
   [[nodiscard]] const Section& nested(const FamilyKey& key, const std::string& where) {
@@ -92,6 +100,7 @@ class TypeTables {
   std::string_view type_name_;
   std::deque<Tables> tables_;  // they point into each other
   std::deque<TextForm> forms_;
+  std::deque<std::string> words_;
 };
 
 bool module_keys_made = false;

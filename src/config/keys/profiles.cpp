@@ -23,6 +23,7 @@ std::optional<Settings> Profiles::settingsOf(const YamlNode& motor, const std::s
   if (!name) return own.mentions("profile") ? std::nullopt : std::optional{own};
   const YamlNode* profile = profiles_ == nullptr ? nullptr : profiles_->find(name->text());
   if (profile == nullptr) {
+    misspelt_ = true;
     std::vector<std::string_view> known;
     if (profiles_ != nullptr) {
       for (const auto& entry : profiles_->entries) known.push_back(entry.key.text);
@@ -38,7 +39,8 @@ std::optional<Settings> Profiles::settingsOf(const YamlNode& motor, const std::s
 }
 
 void Profiles::checkUse(Problems& problems) const {
-  if (profiles_ == nullptr) return;
+  // A profile whose name a motor misspells is used.
+  if (profiles_ == nullptr || misspelt_) return;
   for (const auto& entry : profiles_->entries) {
     if (used_.count(entry.key.text) != 0) continue;
     problems.warning(entry.key.place, joinPath(kProfiles, entry.key.text),

@@ -27,6 +27,7 @@ class Profiles {
  private:
   const YamlNode* profiles_ = nullptr;
   std::set<std::string> used_;
+  bool misspelt_ = false;
 };
 
 }  // namespace rc10

@@ -15,20 +15,33 @@
 #include "config/yaml/number_text.hpp"
 #include "config/yaml/problem.hpp"
 #include "drives/dji/dji_family.hpp"
+#include "module/serial_keys.hpp"
 
 namespace rc10 {
 namespace {
 
 /// With so many significant digits: a person reads it.
-std::string rounded(double value, int digits) {
+std::string rounded(double value, int digits = 6) {
   std::array<char, 32> text{};
   std::snprintf(text.data(), text.size(), "%.*g", digits, value);
   return numberText(std::strtod(text.data(), nullptr));
 }
 
+std::string rounded(float value) { return rounded(static_cast<double>(value)); }
+
 std::string threadText(const ThreadConfig& thread) {
   return "SCHED_FIFO " + std::to_string(thread.priority) +
          (thread.cpu ? ", CPU " + std::to_string(*thread.cpu) : ", any CPU");
+}
+
+bool hasSerialPorts(const RobotConfig& config) {
+  return std::any_of(config.modules.begin(), config.modules.end(),
+                     [](const ModuleConfig& module) { return module.settings.own.given(kPortKey.name); });
+}
+
+std::string receiveText(const RobotConfig& config) {
+  if (config.receive != ReceivePolicy::kTick) return "rx thread, " + threadText(config.rx);
+  return hasSerialPorts(config) ? "by the tick; serial ports " + threadText(config.rx) : "by the tick";
 }
 
 std::string contactText(const EstopGpioConfig& contact) {
@@ -63,9 +76,7 @@ std::string robotText(const RobotConfig& config) {
                       : config.guard == GuardPolicy::kRequired ? "required"
                                                                : "preferred"});
   table.add({"scheduler", std::to_string(config.rate_hz) + " Hz, " + threadText(config.scheduler)});
-  table.add({"receive", config.receive == ReceivePolicy::kTick
-                            ? "by the tick; serial ports " + threadText(config.rx)
-                            : "rx thread, " + threadText(config.rx)});
+  table.add({"receive", receiveText(config)});
   table.add({"lcm", config.lcm.enabled
                         ? config.lcm.url + ", state at " + std::to_string(config.lcm.state_hz) + " Hz"
                         : std::string{"off"}});
@@ -109,7 +120,7 @@ std::string zeroText(const MotorConfig& motor) {
   const MotorTraits traits = motor.traits();
   if (motor.settings.zero_at_power_on) return "at power-on";
   if (traits.absolute && gearRatio(motor) == traits.gear_ratio)
-    return "at " + numberText(motor.settings.zero_deg) + " deg";
+    return "at " + rounded(motor.settings.zero_deg) + " deg";
   return "on request";
 }
 
@@ -128,7 +139,7 @@ std::string commandText(const MotorConfig& motor, const BusUse& use) {
   if (motor.family == &djiFamily()) {
     return idsText(use.commands) + " slot " + std::to_string(commandSlot(djiConfig(settings)) + 1);
   }
-  const std::string rate = numberText(static_cast<double>(settings.tick_hz) / settings.command_divider);
+  const std::string rate = rounded(static_cast<double>(settings.tick_hz) / settings.command_divider, 4);
   return idsText(use.commands) + " at " + rate + " Hz";
 }
 
@@ -156,7 +167,7 @@ std::string wiringText(const BusConfig& bus, int rate_hz) {
 
 template <typename Pid>
 std::string gains(const Pid& pid) {
-  return "kp " + numberText(pid.kp) + ", ki " + numberText(pid.ki) + ", kd " + numberText(pid.kd);
+  return "kp " + rounded(pid.kp) + ", ki " + rounded(pid.ki) + ", kd " + rounded(pid.kd);
 }
 
 std::string velocityLoopText(const CascadeConfig& loops) {
@@ -167,7 +178,7 @@ std::string velocityLoopText(const CascadeConfig& loops) {
 
 std::string angleLoopText(const CascadeConfig& loops) {
   const float limit_rpm = loops.angle.output_limit;
-  return gains(loops.angle) + (limit_rpm > 0.0F ? ", up to " + numberText(limit_rpm) + " rpm" : "");
+  return gains(loops.angle) + (limit_rpm > 0.0F ? ", up to " + rounded(limit_rpm) + " rpm" : "");
 }
 
 std::string loopsText(const BusConfig& bus) {
@@ -177,7 +188,7 @@ std::string loopsText(const BusConfig& bus) {
     const CascadeConfig& loops = motor.settings.loops;
     const float limit_rpm = motor.settings.velocity_limit_rpm;
     const bool on_host = motor.traits().host_loops != nullptr;
-    table.add({motor.name(), limitText(motor), limit_rpm > 0.0F ? numberText(limit_rpm) + " rpm" : "its own",
+    table.add({motor.name(), limitText(motor), limit_rpm > 0.0F ? rounded(limit_rpm) + " rpm" : "its own",
                on_host ? velocityLoopText(loops) : "its own", on_host ? angleLoopText(loops) : "its own"});
   }
   return table.text(2);
@@ -193,16 +204,16 @@ std::string estopText(const MotorConfig& motor) {
   const auto bound = boundOf(fallback.on_estop, true, fallback, motor.traits().frames);
   auto text = fallbackText(fallback.on_estop);
   if (fallback.on_estop == FallbackAction::kRamp)
-    return text + ", after " + numberText(std::chrono::duration<double>(fallback.ramp).count()) + " s coast";
+    return text + ", after " + rounded(std::chrono::duration<double>(fallback.ramp).count()) + " s coast";
   if (!bound.most || bound.then == frameKindOf(fallback.on_estop)) return text;
   const double seconds = std::chrono::duration<double>(*bound.most).count();
   const char* then = bound.then == FrameKind::kDamp ? " s damp" : " s brake";
-  return text + ", after " + numberText(seconds) + then;
+  return text + ", after " + rounded(seconds) + then;
 }
 
 std::string softLimitsText(const ShapingConfig& shaping) {
   if (!std::isfinite(shaping.angle_min_deg) && !std::isfinite(shaping.angle_max_deg)) return "none";
-  const auto end = [](double deg) { return std::isfinite(deg) ? numberText(deg) : std::string{"any"}; };
+  const auto end = [](double deg) { return std::isfinite(deg) ? rounded(deg) : std::string{"any"}; };
   return end(shaping.angle_min_deg) + " to " + end(shaping.angle_max_deg) + " deg";
 }
 

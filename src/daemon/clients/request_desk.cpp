@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include <fmt/format.h>
 
@@ -20,6 +21,7 @@ constexpr std::size_t kMaxRemembered = 64;
 constexpr std::size_t kMaxOpen = 64;
 // Each gain is an event: those of one tick must leave room for others in their ring.
 constexpr std::ptrdiff_t kMaxOpenGains = 8;
+constexpr std::string_view kAngle = "angle_deg";
 constexpr std::string_view kEnableAloneOperation = "enable_alone";
 
 [[nodiscard]] std::optional<Operation> operationNamed(std::string_view word) {
@@ -143,8 +145,13 @@ RequestDesk::Outcome RequestDesk::begin(const link::Request& request, const Spea
   double value = 0.0;
   DriveWrite drive;
   GainChanges gains;
+  std::optional<std::string_view> unknown_value;
   for (std::size_t i = 0; i < request.value_count; ++i) {
-    if (request.values[i].name.view() == "angle_deg") value = request.values[i].value;
+    if (request.values[i].name.view() == kAngle) {
+      value = request.values[i].value;
+    } else {
+      unknown_value = request.values[i].name.view();
+    }
   }
   if (!operation) {
     problem = fmt::format(
@@ -156,6 +163,10 @@ RequestDesk::Outcome RequestDesk::begin(const link::Request& request, const Spea
                     "configure-drive", "drive-settings", kHandOperation}));
   } else if (*operation == Operation::kZero && request.target.view().empty()) {
     problem = "zero needs a motor: name it";
+  } else if (*operation == Operation::kZero && unknown_value) {
+    // Without its value the angle would be 0, silently.
+    problem = fmt::format("zero: there is no value '{}': it takes angle_deg{}", *unknown_value,
+                          didYouMean(*unknown_value, {kAngle}));
   } else if (!std::isfinite(value)) {
     problem = "angle_deg is not a finite number";
   } else if (*operation == Operation::kZero && std::fabs(value) > kFarthestZeroDeg) {

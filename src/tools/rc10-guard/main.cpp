@@ -14,6 +14,7 @@
 #include <string>
 #include <string_view>
 
+#include "app/nearest.hpp"
 #include "app/printable.hpp"
 #include "app/standard_output.hpp"
 #include "guard/guard_server.hpp"
@@ -114,7 +115,8 @@ int main(int argc, char** argv) {
       return rc10::statusOfOutput("rc10-guard", kOk);
     }
     if (word != "--until-unused") {
-      tell("'" + std::string(word) + "' is no option; --help lists them");
+      tell("'" + std::string(word) + "' is no option" +
+           rc10::didYouMean(word, {"--until-unused", "--help", "--version"}) + "; --help lists them");
       return kBadUsage;
     }
     until_unused = true;

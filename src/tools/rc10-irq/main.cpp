@@ -15,6 +15,7 @@
 
 #include <CLI/CLI.hpp>
 
+#include "app/nearest.hpp"
 #include "app/result.hpp"
 #include "can_link_watch.hpp"
 #include "doctor/interrupt_threads.hpp"
@@ -98,8 +99,9 @@ Result<void> watch(const Options& options, const ThreadPriorities& priorities) {
 Result<void> checkPresence(const Options& options, const std::vector<std::string>& present) {
   for (const auto& interface : options.interfaces) {
     if (std::find(present.begin(), present.end(), interface) != present.end()) continue;
-    return fail(interface +
-                ": there is no such CAN interface; `ip link` lists what there is, and --watch waits for it");
+    return fail(interface + ": there is no such CAN interface" +
+                didYouMean(interface, {present.begin(), present.end()}) +
+                "; `ip link` lists what there is, and --watch waits for it");
   }
   if (present.empty()) return fail("this computer has no CAN interface; --watch waits for one");
   return {};

@@ -2,6 +2,7 @@
 // left in a file, and knows nothing else: no configuration, no protocol, no threads.
 
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <exception>
 #include <filesystem>
@@ -13,6 +14,8 @@
 #include <thread>
 #include <vector>
 
+#include "app/nearest.hpp"
+#include "app/printable.hpp"
 #include "app/standard_output.hpp"
 #include "app/whole_file.hpp"
 #include "bus/frame_text.hpp"
@@ -52,14 +55,17 @@ Exit status: 0 every frame was accepted, 1 an interface failed, or was left out 
 2 bad usage or file.
 )";
 
+constexpr std::array<std::string_view, 5> kOptions{"--file", "--all", "--force", "--help", "--version"};
+
 struct Options {
   std::vector<std::string> files;
+  std::string robot;  ///< If one was named.
   bool all = false;
   bool force = false;
 };
 
 int complain(const std::string& message) {
-  std::cerr << "rc10-stop: " << message << '\n';
+  std::cerr << "rc10-stop: " << printable(message) << '\n';
   return kBadUsageOrFile;
 }
 
@@ -68,16 +74,33 @@ bool isRobotName(std::string_view name) {
          name.find_first_not_of("abcdefghijklmnopqrstuvwxyz0123456789_-") == std::string_view::npos;
 }
 
-/// The files of every robot that ever ran here.
-std::vector<std::string> allFiles() {
-  std::vector<std::string> files;
+/// Every robot that ever ran here.
+std::vector<std::string> allRobots() {
+  std::vector<std::string> robots;
   std::error_code none;
   for (const auto& entry : std::filesystem::directory_iterator(link::runDir(), none)) {
-    auto file = link::restFramesPath(link::runDir(), entry.path().filename().string());
-    if (std::filesystem::exists(file, none)) files.push_back(std::move(file));
+    auto robot = entry.path().filename().string();
+    if (std::filesystem::exists(link::restFramesPath(link::runDir(), robot), none))
+      robots.push_back(std::move(robot));
   }
-  std::sort(files.begin(), files.end());
+  std::sort(robots.begin(), robots.end());
+  return robots;
+}
+
+std::vector<std::string> filesOf(const std::vector<std::string>& robots) {
+  std::vector<std::string> files;
+  files.reserve(robots.size());
+  for (const auto& robot : robots) files.push_back(link::restFramesPath(link::runDir(), robot));
   return files;
+}
+
+/// "; robots that ran here: hero; did you mean hero?" for one that has left no file.
+std::string othersThan(const std::string& robot) {
+  const auto robots = allRobots();
+  if (robots.empty() || std::find(robots.begin(), robots.end(), robot) != robots.end()) return {};
+  std::string names;
+  for (const auto& other : robots) names += (names.empty() ? "" : ", ") + other;
+  return "; robots that ran here: " + names + didYouMean(robot, {robots.begin(), robots.end()});
 }
 
 /// Nothing: the message has been printed.
@@ -94,11 +117,16 @@ std::optional<Options> parse(const std::vector<std::string>& words) {
     } else if (word == "--file" && i + 1 < words.size()) {
       options.files.push_back(words[++i]);
       ++choices;
+    } else if (word == "--file") {
+      complain("--file needs a FILE; --help explains");
+      return std::nullopt;
     } else if (isRobotName(word) && word.front() != '-') {
       options.files.push_back(link::restFramesPath(link::runDir(), word));
+      options.robot = word;
       ++choices;
     } else {
-      complain("'" + word + "' is no robot and no option; --help lists them");
+      complain("'" + word + "' is no robot and no option" +
+               didYouMean(word, {kOptions.begin(), kOptions.end()}) + "; --help lists them");
       return std::nullopt;
     }
   }
@@ -106,7 +134,7 @@ std::optional<Options> parse(const std::vector<std::string>& words) {
     complain("name one robot, or --file FILE, or --all; --help explains");
     return std::nullopt;
   }
-  if (options.all) options.files = allFiles();
+  if (options.all) options.files = filesOf(allRobots());
   return options;
 }
 
@@ -136,7 +164,8 @@ class Stop {
       if (file) {
         add(*file);
       } else {
-        status_ = complain(file.error().message);  // the other robots have their drives too
+        // The other robots have their drives too.
+        status_ = complain(file.error().message + (options_.robot.empty() ? "" : othersThan(options_.robot)));
       }
     }
     std::vector<InterfaceStop> stops;

@@ -7,6 +7,7 @@
 #include <sys/socket.h>
 
 #include "app/unique_fd.hpp"
+#include "bus/interface_names.hpp"
 
 namespace rc10::ctl {
 namespace {
@@ -28,7 +29,11 @@ std::optional<doctor::Coalescing> readCoalescing(const std::string& interface) {
 doctor::CanLinkFacts readLink(const doctor::HostFiles& files, const std::string& interface) {
   doctor::CanLinkFacts facts;
   facts.interface = interface;
-  if (auto link = readCanLink(interface)) facts.link = std::move(*link);
+  if (auto link = readCanLink(interface)) {
+    facts.link = std::move(*link);
+  } else {
+    facts.similar = similarInterface(interface);
+  }
   facts.driver = files.linkedName("/sys/class/net/" + interface + "/device/driver");
   facts.coalescing = readCoalescing(interface);
   return facts;

@@ -15,6 +15,7 @@
 #include "client/text_table.hpp"
 #include "drive.hpp"
 #include "link/words.hpp"
+#include "spelling.hpp"
 #include "verbs.hpp"
 
 namespace rc10::ctl {
@@ -125,7 +126,7 @@ void addSet(CLI::App& app, Action& action) {
       ->type_name("TIME")
       ->capture_default_str();
   verb->add_option("--then", options->then, "its end: timeout (its on_timeout), coast or disable")
-      ->check(CLI::IsMember({"timeout", "coast", "disable"}))
+      ->check(oneOf({"timeout", "coast", "disable"}))
       ->type_name("END")
       ->capture_default_str();
   verb->add_option("--priority", options->priority, "a higher one takes the motor over from a lower one");

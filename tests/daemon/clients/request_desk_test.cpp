@@ -93,6 +93,13 @@ TEST_F(RequestDeskTest, ZeroCarriesItsAngle) {
   EXPECT_EQ(begin(linkRequest(2, "zero", "left")).order->value, 0.0);
 }
 
+TEST_F(RequestDeskTest, ZeroWithAMisspeltAngleIsNoZeroAt0) {
+  auto request = zero(1, "left", 90.0);
+  request.values[0].name = "angel_deg";
+  EXPECT_THAT(refusal(request),
+              HasSubstr("there is no value 'angel_deg': it takes angle_deg; did you mean angle_deg?"));
+}
+
 TEST_F(RequestDeskTest, ZeroNeedsAMotor) {
   EXPECT_THAT(refusal(linkRequest(1, "zero")), HasSubstr("name it"));
 }
