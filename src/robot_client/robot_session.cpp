@@ -239,8 +239,7 @@ double RobotSession::moduleOutput(const std::string& module, std::string_view ou
 }
 
 Result<void> RobotSession::waitForModule(const std::string& module, Duration timeout) {
-  if (!status_) return status_;
-  if (link_.inHandler()) return fail("waitForState() in a callback would wait for itself");
+  if (const auto may = mayWait(module + ".waitForState()"); !may) return may;
   const auto& inbox = inboxOf(module);
   if (inbox.waitForNext(timeout)) return {};
   if (inbox.foreign()) foreign(outgoing_.channel(module) + ".state");
@@ -295,11 +294,16 @@ void RobotSession::tell(News&& news) {
   for (const auto& problem : news.problems) problems_.tell(problem);
 }
 
+Result<void> RobotSession::mayWait(const std::string& call) const {
+  if (!status_) return status_;
+  if (link_.inHandler()) return fail(call + " in a callback would wait for itself");
+  return {};
+}
+
 // ---- states ----------------------------------------------------------------------------------------------
 
 Result<void> RobotSession::waitForState(Duration timeout) {
-  if (!status_) return status_;
-  if (link_.inHandler()) return fail("waitForState() in a callback would wait for itself");
+  if (const auto may = mayWait("waitForState()"); !may) return may;
   {
     Lock lock(mutex_);
     const auto known = newest_.received();
@@ -363,8 +367,7 @@ RequestResult RobotSession::request(const std::string& operation, const std::vec
 
 RequestResult RobotSession::request(const std::string& operation, const std::string& target,
                                     const std::map<std::string, double>& values, Duration timeout) {
-  if (!status_) return notSent(status_.error().message);
-  if (link_.inHandler()) return notSent(operation + " waits for an answer: not in a callback");
+  if (const auto may = mayWait(operation); !may) return notSent(may.error().message);
   const auto deadline = timeNow() + timeout;
   std::optional<response_t> answer;
   {

@@ -90,6 +90,8 @@ class RobotSession {
   void sendLoop();
   void tell(News&& news);
   [[nodiscard]] const ModuleInbox& inboxOf(const std::string& module);
+  /// Receiving is on the thread of callbacks: a call that waits for a message is refused there.
+  [[nodiscard]] Result<void> mayWait(const std::string& call) const;
   [[nodiscard]] std::string whatToCheck();
   [[nodiscard]] std::vector<MotorReason> reasonsIn(const std::string& message);
 

@@ -68,7 +68,7 @@ tl::expected<std::vector<std::byte>, ServiceError> ServiceCaller::call(std::span
                                                                        std::int64_t response_type,
                                                                        const CallOptions& options) {
   Impl& my = *impl_;
-  if (my.link.inHandler()) return error(Kind::kNotSent, "a call waits for an answer: not in a callback");
+  if (my.link.inHandler()) return error(Kind::kNotSent, "a call in a callback would wait for itself");
   service_request_t message{};
   const auto wall = std::chrono::system_clock::now().time_since_epoch();
   message.utime = std::chrono::duration_cast<std::chrono::microseconds>(wall).count();
