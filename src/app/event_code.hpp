@@ -33,6 +33,9 @@ enum class EventCode : std::int32_t {
                          ///< extra: foreignFrame()
   kSerialPort = 310,     ///< a serial port came, went or cannot be opened; from the io thread, in words
   kDevice = 311,  ///< an SPI device or the lines of a GPIO chip came, went or cannot be opened; in words
+  kOtherDefinitions = 400,  ///< rc10-lcm: a client was built from other .lcm files
+  kMalformed = 401,         ///< rc10-lcm: a message that is not understood
+  kLinkBusy = 402,          ///< rc10-lcm: rc10d does not take the commands: dropped
 };
 
 /// Why a setpoint of an accepted message did not act.

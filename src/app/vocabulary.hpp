@@ -3,6 +3,8 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
+#include <string_view>
 
 namespace rc10 {
 
@@ -97,6 +99,22 @@ enum LimitFlag : std::uint32_t {
   kLimitStall = 1U << 5U,
 };
 
+/// Of a request: request_t.lcm, and the black box, which holds the number.
+enum class Operation : std::uint8_t {
+  kEnable = 0,
+  kDisable = 1,
+  kEstop = 2,
+  kClear = 3,
+  kZero = 4,
+  kConfigure = 5,
+  kSetGains = 6,
+  kEnableAlone = 7,    ///< One motor, and no other until it is not ACTIVE any more.
+  kGetConfig = 8,      ///< The gains in force.
+  kDriveSettings = 9,  ///< Settings that kConfigure can write.
+  kHand = 10,          ///< Turns a simulated shaft as a hand would.
+};
+inline constexpr int kOperationCount = 11;
+
 /// event_t.lcm.
 enum class Severity : std::uint8_t { kInfo = 0, kWarning = 1, kError = 2 };
 
@@ -115,9 +133,13 @@ inline constexpr std::array kBusStateWords{"active", "warning", "passive", "bus-
                                            "down",   "gone",    "silent",  "stalled"};
 inline constexpr std::array kCommandUnitWords{"", "A", "V", "native"};
 inline constexpr std::array kLimitWords{"current", "velocity", "angle", "temperature", "slew", "stall"};
+inline constexpr std::array kOperationWords{"enable",     "disable",         "estop",     "clear",
+                                            "zero",       "configure-drive", "set_gains", "enable_alone",
+                                            "get_config", "drive-settings",  "hand"};
 inline constexpr std::array kSeverityWords{"info", "warning", "error"};
 static_assert(kControlModeWords.size() == kControlModeCount && kControlModeUnits.size() == kControlModeCount);
 static_assert(kMotorStatusWords.size() == kMotorStatusCount);
+static_assert(kOperationWords.size() == kOperationCount);
 
 namespace detail {
 template <std::size_t N, typename Number>
@@ -149,6 +171,19 @@ template <std::size_t N, typename Number>
 }
 [[nodiscard]] constexpr const char* toString(CommandUnit unit) noexcept {
   return detail::word(kCommandUnitWords, unit, "unknown");
+}
+[[nodiscard]] constexpr const char* toString(Operation operation) noexcept {
+  return detail::word(kOperationWords, operation, "unknown");
+}
+[[nodiscard]] constexpr std::optional<Operation> operationNamed(std::string_view word) noexcept {
+  for (std::size_t i = 0; i < kOperationWords.size(); ++i) {
+    if (word == kOperationWords[i]) return static_cast<Operation>(i);
+  }
+  return std::nullopt;
+}
+/// Takes the torque away: carried out however late it comes and however often.
+[[nodiscard]] constexpr bool stops(Operation operation) noexcept {
+  return operation == Operation::kEstop || operation == Operation::kDisable;
 }
 [[nodiscard]] constexpr const char* toString(Severity severity) noexcept {
   return detail::word(kSeverityWords, severity, "unknown");

@@ -180,8 +180,8 @@ static_assert(link::kMaxSignals <= 32, "a bit each");
   return offsetof(Signals, values) + count * sizeof(double);
 }
 
-/// A request that reached the scheduler; `flags` is the operation: enable, disable, estop, clear, zero,
-/// configure-drive, set_gains, enable_alone. `source` is 1 if it named no motor: it was meant for the robot.
+/// A request that reached the scheduler; `flags` is the Operation. `source` is 1 if it named no motor: it was
+/// meant for the robot.
 struct Order {
   static constexpr auto kType = RecordType::kOrder;
   RecordHeader header;

@@ -37,7 +37,8 @@ LinkClient::SendStatus LinkClient::send(link::Command& command) noexcept {
 }
 
 LinkClient::SendStatus LinkClient::send(link::Request& request) noexcept {
-  if (request.operation.view() == link::kEstopOperation) (void)estopWay().send(request.client.view());
+  if (operationNamed(request.operation.view()) == Operation::kEstop)
+    (void)estopWay().send(request.client.view());
   if (request.received_ns == 0) request.received_ns = nowNs();
   return sendBytes(link::seal(request));
 }

@@ -14,8 +14,6 @@ namespace {
 using namespace blackbox;
 
 constexpr std::array kVerdicts{"applied", "expired", "not owner"};
-constexpr std::array kOperations{"enable", "disable",         "estop",     "clear",
-                                 "zero",   "configure-drive", "set_gains", "enable_alone"};
 
 template <std::size_t N>
 [[nodiscard]] const char* word(const std::array<const char*, N>& words, std::size_t index) {
@@ -88,7 +86,7 @@ class Writer {
 
   void add(const Order& r) {
     json_["kind"] = "request";
-    json_["operation"] = word(kOperations, r.header.flags);
+    json_["operation"] = toString(static_cast<Operation>(r.header.flags));
     Json motors = Json::array();
     for (std::size_t i = 0; i < recording_.header().motor_count; ++i) {
       if ((r.motors[i / 64] >> (i % 64) & 1U) != 0) motors.push_back(recording_.motorName(i));

@@ -43,7 +43,7 @@ bool decodeEstop(std::span<const std::byte> bytes, link::Request& request) noexc
   const auto session = reader.number<std::uint64_t>();
   const auto seq = reader.number<std::int64_t>();
   const auto operation = reader.anyText();
-  if (operation != link::kEstopOperation) return false;
+  if (operationNamed(operation) != Operation::kEstop) return false;
   request.client = client;  // cut off, where it is too long
   request.session = session;
   request.seq = seq;

@@ -4,13 +4,6 @@
 #include <chrono>
 
 namespace rc10::gateway {
-namespace {
-
-bool stops(std::string_view operation) noexcept {
-  return operation == link::kEstopOperation || operation == "disable";
-}
-
-}  // namespace
 
 Inlet::Inlet(LinkClient& rc10d, Outlet& outlet) : rc10d_(rc10d), outlet_(outlet) {
   const std::string prefix = std::string(rc10d.welcome().robot.view()) + ".v1.";
@@ -63,7 +56,8 @@ bool Inlet::request(const UdpmDatagram& datagram, MonotonicTime received, Monoto
     if (identified) refuse(std::string("the request ") + inWords(defect));
     return true;
   }
-  if (now - received > kMaxRequestAge && !stops(request_.operation.view())) {
+  const auto operation = operationNamed(request_.operation.view());
+  if (now - received > kMaxRequestAge && !(operation && stops(*operation))) {
     ++counters_.stale_requests;
     const auto age_ms = std::chrono::duration_cast<std::chrono::milliseconds>(now - received).count();
     refuse("the request is " + std::to_string(age_ms) + " ms old, since rc10-lcm did not run: ask again");
@@ -90,7 +84,7 @@ bool Inlet::sent(LinkClient::SendStatus status, std::uint64_t& counter, Monotoni
     case LinkClient::SendStatus::kSent: ++counter; return true;
     case LinkClient::SendStatus::kBusy:
       ++counters_.busy;
-      report(GatewayEvent::kLinkBusy, Severity::kWarning,
+      report(EventCode::kLinkBusy, Severity::kWarning,
              "rc10d does not take commands fast enough: they are dropped", now);
       return true;
     case LinkClient::SendStatus::kClosed: return false;
@@ -114,19 +108,18 @@ void Inlet::reportDefect(Defect defect, std::string_view channel, MonotonicTime 
                            : channel == request_channel_ ? "request_t"
                                                          : "signals_t";
   if (defect == Defect::kOtherDefinitions) {
-    report(GatewayEvent::kOtherDefinitions, Severity::kError,
+    report(EventCode::kOtherDefinitions, Severity::kError,
            "a client on channel " + std::string(channel) + " uses other definitions of " + type +
                ": regenerate its types from the lcm_types of rc10d " + version_,
            now);
     return;
   }
-  report(GatewayEvent::kMalformed, Severity::kWarning,
+  report(EventCode::kMalformed, Severity::kWarning,
          "a message on channel " + std::string(channel) + ' ' + verdict + " it " + inWords(defect), now);
 }
 
-void Inlet::report(GatewayEvent code, Severity severity, std::string text, MonotonicTime now) {
-  const auto index =
-      static_cast<std::size_t>(code) - static_cast<std::size_t>(GatewayEvent::kOtherDefinitions);
+void Inlet::report(EventCode code, Severity severity, std::string text, MonotonicTime now) {
+  const auto index = static_cast<std::size_t>(code) - static_cast<std::size_t>(EventCode::kOtherDefinitions);
   const auto held_back = throttles_[index].pass(now);
   if (!held_back) return;
   if (*held_back > 0) text += " (" + std::to_string(*held_back) + " more since the last report)";

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "app/event_code.hpp"
 #include "app/time.hpp"
 #include "client/link_client.hpp"
 #include "gateway/convert.hpp"
@@ -13,13 +14,6 @@
 #include "gateway/udpm_datagram.hpp"
 
 namespace rc10::gateway {
-
-/// event_t.code of what the gateway itself reports (docs/lcm.md).
-enum class GatewayEvent : std::int32_t {
-  kOtherDefinitions = 400,  ///< A client was built from other .lcm files.
-  kMalformed = 401,         ///< A message that is not understood.
-  kLinkBusy = 402,          ///< rc10d does not take the commands: dropped.
-};
 
 /// From LCM to rc10d: decodes what comes on <robot>.v1.command, .request and those of the modules and passes
 /// on what is whole, each with the time at which this host received it.
@@ -56,7 +50,7 @@ class Inlet {
   void refuse(const std::string& reason);
   void reportDefect(Defect defect, std::string_view channel, MonotonicTime now,
                     const char* verdict = "is refused:");
-  void report(GatewayEvent code, Severity severity, std::string text, MonotonicTime now);
+  void report(EventCode code, Severity severity, std::string text, MonotonicTime now);
 
   LinkClient& rc10d_;
   Outlet& outlet_;
@@ -67,7 +61,7 @@ class Inlet {
   link::Command command_;
   link::Signals signals_;
   link::Request request_;
-  std::array<Throttle, 3> throttles_;  // one per GatewayEvent
+  std::array<Throttle, 3> throttles_;  // one per event of the gateway
   Counters counters_;
 };
 

@@ -76,7 +76,8 @@ bool openEstop(std::span<const std::byte> datagram, Request& request) noexcept {
   std::memcpy(static_cast<void*>(&request), datagram.data(), kNeeded);
   request.target = "";
   request.value_count = 0;
-  return request.header.type == MessageType::kRequest && request.operation.view() == kEstopOperation;
+  return request.header.type == MessageType::kRequest &&
+         operationNamed(request.operation.view()) == Operation::kEstop;
 }
 
 bool readHeader(std::span<const std::byte> datagram, Header& header) noexcept {

@@ -51,9 +51,6 @@ using Name = Text<32>;
 /// The name in the hello of rc10-lcm.
 inline constexpr std::string_view kGatewayClient = "rc10-lcm";
 
-/// The operation of a request that stops every motor. It is never refused.
-inline constexpr std::string_view kEstopOperation = "estop";
-
 enum class MessageType : std::uint32_t {
   // client to rc10d
   kHello = 1,

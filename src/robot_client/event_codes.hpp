@@ -7,11 +7,11 @@
 namespace rc10 {
 inline namespace robot_client {
 
-// rc10d's events about setpoints and commands that do not act: docs/lcm.md.
+// Events about setpoints and commands that do not act: docs/lcm.md.
 inline constexpr std::int32_t kSetpointSkipped = static_cast<std::int32_t>(EventCode::kSetpointSkipped);
 inline constexpr std::int32_t kNotOwner = static_cast<std::int32_t>(EventCode::kNotOwner);
 inline constexpr std::int32_t kCommandRefused = static_cast<std::int32_t>(EventCode::kCommandRefused);
-inline constexpr std::int32_t kOtherDefinitions = 400;  // of rc10-lcm
+inline constexpr std::int32_t kOtherDefinitions = static_cast<std::int32_t>(EventCode::kOtherDefinitions);
 
 }  // namespace robot_client
 }  // namespace rc10

@@ -37,7 +37,7 @@ RequestResult Robot::disable(const std::vector<std::string>& motors, Duration ti
   return session_->disable(motors, timeout);
 }
 RequestResult Robot::clear(const std::vector<std::string>& motors, Duration timeout) const {
-  return session_->request("clear", motors, {}, timeout);
+  return session_->request(Operation::kClear, motors, {}, timeout);
 }
 RequestResult Robot::request(const std::string& operation, const std::string& target,
                              const std::map<std::string, double>& values, Duration timeout) const {
@@ -87,16 +87,16 @@ MotorState Motor::state() const {
 RequestResult Motor::enable(Duration timeout) const { return session_->enable({name_}, timeout); }
 RequestResult Motor::disable(Duration timeout) const { return session_->disable({name_}, timeout); }
 RequestResult Motor::clear(Duration timeout) const {
-  return session_->request("clear", std::vector{name_}, {}, timeout);
+  return session_->request(Operation::kClear, std::vector{name_}, {}, timeout);
 }
 RequestResult Motor::zero(Degrees angle, Duration timeout) const {
-  return session_->request("zero", std::vector{name_}, {{"angle_deg", angle.value}}, timeout);
+  return session_->request(Operation::kZero, std::vector{name_}, {{"angle_deg", angle.value}}, timeout);
 }
 RequestResult Motor::gains(Duration timeout) const {
-  return session_->request("get_config", std::vector{name_}, {}, timeout);
+  return session_->request(Operation::kGetConfig, std::vector{name_}, {}, timeout);
 }
 RequestResult Motor::setGains(const std::map<std::string, double>& gains, Duration timeout) const {
-  return session_->request("set_gains", std::vector{name_}, gains, timeout);
+  return session_->request(Operation::kSetGains, std::vector{name_}, gains, timeout);
 }
 
 }  // namespace robot_client

@@ -260,7 +260,7 @@ void RobotSession::resend(MonotonicTime now, News& news) {
   moves_.onTime(now, news.moves);
   for (const auto& message : held_.takeDue(now)) (void)publishCommand(message);
   if (const auto number = estop_.due(now)) {
-    (void)outgoing_.request(*number, "estop", "", {});
+    (void)outgoing_.request(*number, toString(Operation::kEstop), "", {});
     estop_.sent(*number, now);
   }
 }
@@ -351,7 +351,7 @@ void RobotSession::onEvent(std::function<void(const Event&)> callback) {
 
 // ---- requests --------------------------------------------------------------------------------------------
 
-RequestResult RobotSession::request(const std::string& operation, const std::vector<std::string>& motors,
+RequestResult RobotSession::request(Operation operation, const std::vector<std::string>& motors,
                                     const std::map<std::string, double>& values, Duration timeout) {
   for (const auto& name : motors) {
     // An empty name would be understood as "all", a comma as two names.
@@ -362,7 +362,7 @@ RequestResult RobotSession::request(const std::string& operation, const std::vec
       return notSent(noMotor(*known, name));
     }
   }
-  return request(operation, joined(motors), values, timeout);
+  return request(toString(operation), joined(motors), values, timeout);
 }
 
 RequestResult RobotSession::request(const std::string& operation, const std::string& target,
@@ -406,7 +406,7 @@ RequestResult RobotSession::enable(const std::vector<std::string>& motors, Durat
     if (motors.empty()) leaving_.enabled_all = true;
     leaving_.enabled.insert(motors.begin(), motors.end());
   }
-  auto answer = request("enable", motors, {}, timeout);
+  auto answer = request(Operation::kEnable, motors, {}, timeout);
   // The next state may have been taken before.
   if (answer || answer.error().kind == RequestError::Kind::kFailed) {
     Lock lock(mutex_);
@@ -421,7 +421,7 @@ RequestResult RobotSession::disable(const std::vector<std::string>& motors, Dura
     for (const auto& motor : motors) held_.release(motor);
     if (motors.empty()) held_.releaseAll();
   }
-  auto answer = request("disable", motors, {}, timeout);
+  auto answer = request(Operation::kDisable, motors, {}, timeout);
   if (answer) {
     const Lock lock(mutex_);
     if (motors.empty()) {
@@ -440,7 +440,7 @@ Result<void> RobotSession::estop(Duration timeout) {
   const auto under_way = estop_.number();
   const auto number = under_way ? *under_way : outgoing_.nextNumber();
   estop_.sent(number, timeNow());
-  auto sent = outgoing_.request(number, "estop", "", {});
+  auto sent = outgoing_.request(number, toString(Operation::kEstop), "", {});
   wake_sender_.notify_all();
   if (!sent) return sent;
   if (link_.inHandler()) return {};
@@ -486,7 +486,8 @@ Result<void> RobotSession::close() {
   tell(std::move(news));
   Result<void> done;
   if (disable_all || !disable.empty()) {
-    const auto answer = request("disable", disable_all ? "" : joined(disable), {}, kRelease);
+    const auto answer =
+        request(toString(Operation::kDisable), disable_all ? "" : joined(disable), {}, kRelease);
     if (!answer) done = fail("motors may still be enabled: " + answer.error().message);
   }
   subscriptions_.clear();

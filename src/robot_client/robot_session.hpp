@@ -53,7 +53,7 @@ class RobotSession {
 
   RequestResult enable(const std::vector<std::string>& motors, Duration timeout);
   RequestResult disable(const std::vector<std::string>& motors, Duration timeout);
-  RequestResult request(const std::string& operation, const std::vector<std::string>& motors,
+  RequestResult request(Operation operation, const std::vector<std::string>& motors,
                         const std::map<std::string, double>& values, Duration timeout);
   RequestResult request(const std::string& operation, const std::string& target,
                         const std::map<std::string, double>& values, Duration timeout);

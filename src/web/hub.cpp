@@ -131,7 +131,7 @@ void Hub::answer(Page& page, const AskRange& wanted) {
 }
 
 void Hub::ask(Page& page, const AskRobot& wanted) {
-  const bool estop = wanted.operation == link::kEstopOperation;
+  const bool estop = operationNamed(wanted.operation) == Operation::kEstop;
   std::string refused = estop ? std::string{} : whyNotMoving(page);
   if (refused.empty())
     refused = feed_.connected() ? page.link->ask(wanted, feed_.socketPath()) : feed_.reason();

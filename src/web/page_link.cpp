@@ -52,7 +52,7 @@ std::string PageLink::drive(const DriveMotor& wanted, std::int32_t validity_ms) 
 
 std::string PageLink::ask(const AskRobot& request, const std::string& socket_path) {
   if (auto why = connect(socket_path); !why.empty()) return why;
-  const bool estop = request.operation == link::kEstopOperation;
+  const bool estop = operationNamed(request.operation) == Operation::kEstop;
   if (open_.size() >= kMostOpen && !estop) return "too many requests have no answer yet";
   link::Request message;
   message.client = client_name_;

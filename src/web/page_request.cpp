@@ -134,7 +134,7 @@ Result<PageRequest> driveOf(const Received& object) {
 
 // An e-stop counts whatever else its message says, and if it says nothing that can be read.
 PageRequest estopOf(std::int64_t seq) {
-  return AskRobot{.seq = seq, .operation = std::string{link::kEstopOperation}, .target = {}, .values = {}};
+  return AskRobot{.seq = seq, .operation = toString(Operation::kEstop), .target = {}, .values = {}};
 }
 
 }  // namespace
@@ -147,7 +147,8 @@ Result<PageRequest> parsePageRequest(std::string_view text) {
     return fail("a message is one JSON object");
   }
   const auto type = textOf(json, "type");
-  if (type == link::kEstopOperation || textOf(json, "operation") == link::kEstopOperation)
+  if (operationNamed(type) == Operation::kEstop ||
+      operationNamed(textOf(json, "operation")) == Operation::kEstop)
     return estopOf(wholeOf(json, "seq", 0, kMaxExact).value_or(0));
   if (type == "token") return ShowToken{textOf(json, "token")};
   if (type == "view") return viewOf(json);

@@ -13,6 +13,7 @@ TEST(Vocabulary, NumbersOfOtherProgramsHaveAWordToo) {
     EXPECT_NE(toString(static_cast<BusState>(number)), nullptr);
     EXPECT_NE(toString(static_cast<CommandUnit>(number)), nullptr);
     EXPECT_NE(toString(static_cast<Severity>(number)), nullptr);
+    EXPECT_NE(toString(static_cast<Operation>(number)), nullptr);
     EXPECT_NE(unitOf(static_cast<ControlMode>(number)), nullptr);
   }
   EXPECT_STREQ(toString(MotorStatus{200}), "UNKNOWN");
@@ -28,6 +29,15 @@ TEST(Vocabulary, WordsAreInTheOrderOfTheNumbers) {
   EXPECT_STREQ(toString(BusState::kStalled), "stalled");
   EXPECT_STREQ(toString(CommandUnit::kNative), "native");
   EXPECT_STREQ(toString(Severity::kError), "error");
+  EXPECT_STREQ(toString(Operation::kConfigure), "configure-drive");
+  EXPECT_STREQ(toString(Operation::kEnableAlone), "enable_alone");
+  EXPECT_STREQ(toString(Operation::kHand), "hand");
+}
+
+TEST(Vocabulary, EachOperationIsFoundByItsWordAlone) {
+  for (std::size_t i = 0; i < kOperationWords.size(); ++i)
+    EXPECT_EQ(operationNamed(kOperationWords[i]), static_cast<Operation>(i));
+  for (const auto* word : {"", "Enable", "enable ", "unknown"}) EXPECT_FALSE(operationNamed(word)) << word;
 }
 
 TEST(Vocabulary, UnitsAreThoseOfTheTargets) {

@@ -10,10 +10,6 @@
 
 namespace rc10 {
 
-/// The operation that writes to a drive, and the one that tells what can be written.
-inline constexpr std::string_view kConfigureDrive = "configure-drive";
-inline constexpr std::string_view kDriveSettings = "drive-settings";
-
 /// Settings that can be written, one a line with its range; then the tool for all others.
 [[nodiscard]] std::string settingsText(const DriveSetup& setup);
 

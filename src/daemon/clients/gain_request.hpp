@@ -9,10 +9,6 @@
 
 namespace rc10 {
 
-/// The operation that changes gains while the motor runs, and the one that tells those in force.
-inline constexpr std::string_view kSetGainsOperation = "set_gains";
-inline constexpr std::string_view kGetConfigOperation = "get_config";
-
 /// The named values of a request, all of them or the first error.
 [[nodiscard]] Result<GainChanges> parseGains(const link::Request& request, const MotorLoops& loops);
 

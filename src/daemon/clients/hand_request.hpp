@@ -9,9 +9,6 @@
 
 namespace rc10 {
 
-/// The operation that turns a simulated shaft as a hand would.
-inline constexpr std::string_view kHandOperation = "hand";
-
 /// The hand that a request sets on the drive of this motor; no drive: the motor is not simulated here. The
 /// error names the motor, the value and its range.
 [[nodiscard]] Result<HandOrder> parseHand(const link::Request& request, std::string_view motor,

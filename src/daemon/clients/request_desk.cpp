@@ -22,18 +22,11 @@ constexpr std::size_t kMaxOpen = 64;
 // Each gain is an event: those of one tick must leave room for others in their ring.
 constexpr std::ptrdiff_t kMaxOpenGains = 8;
 constexpr std::string_view kAngle = "angle_deg";
-constexpr std::string_view kEnableAloneOperation = "enable_alone";
 
-[[nodiscard]] std::optional<Operation> operationNamed(std::string_view word) {
-  if (word == "enable") return Operation::kEnable;
-  if (word == kEnableAloneOperation) return Operation::kEnableAlone;
-  if (word == "disable") return Operation::kDisable;
-  if (word == link::kEstopOperation) return Operation::kEstop;
-  if (word == "clear") return Operation::kClear;
-  if (word == "zero") return Operation::kZero;
-  if (word == kSetGainsOperation) return Operation::kSetGains;
-  if (word == kConfigureDrive) return Operation::kConfigure;
-  return std::nullopt;
+// "enable, disable, … and hand".
+[[nodiscard]] std::string operationsInWords() {
+  const auto last = kOperationWords.end() - 1;
+  return fmt::format("{} and {}", fmt::join(kOperationWords.begin(), last, ", "), *last);
 }
 
 [[nodiscard]] const char* inWords(Refusal refusal) {
@@ -88,7 +81,10 @@ template <typename Other>
     case Operation::kEnableAlone:
     case Operation::kDisable:
     case Operation::kEstop:
-    case Operation::kZero: break;
+    case Operation::kZero:
+    case Operation::kGetConfig:
+    case Operation::kDriveSettings:
+    case Operation::kHand: break;
   }
   return Right::kCommand;
 }
@@ -128,20 +124,20 @@ RequestDesk::Outcome RequestDesk::begin(const link::Request& request, const Spea
   const auto* known = remembered(asker, request);
   auto* open = openRepetition(asker, request);
   // An answer from memory stops nothing.
-  const bool stops = operation == Operation::kEstop || operation == Operation::kDisable;
-  if (known != nullptr && !stops) {
+  const bool anew = operation && stops(*operation);
+  if (known != nullptr && !anew) {
     outcome.response = *known;
     return outcome;
   }
-  if (open != nullptr && !stops) {
+  if (open != nullptr && !anew) {
     open->connection = speaker.connection;  // a repetition: answered when the first is
     return outcome;
   }
   MotorSet motors;
   std::string problem;
-  if (request.operation.view() == kDriveSettings) return tellSettings(request);
-  if (request.operation.view() == kGetConfigOperation) return tellConfig(request);
-  if (request.operation.view() == kHandOperation) return turnByHand(request, speaker);
+  if (operation == Operation::kDriveSettings) return tellSettings(request);
+  if (operation == Operation::kGetConfig) return tellConfig(request);
+  if (operation == Operation::kHand) return turnByHand(request, speaker);
   double value = 0.0;
   DriveWrite drive;
   GainChanges gains;
@@ -154,13 +150,9 @@ RequestDesk::Outcome RequestDesk::begin(const link::Request& request, const Spea
     }
   }
   if (!operation) {
-    problem = fmt::format(
-        "unknown operation '{}': there are enable, enable_alone, disable, estop, clear, zero, set_gains, "
-        "get_config, configure-drive, drive-settings and hand{}",
-        request.operation.view(),
-        didYouMean(request.operation.view(),
-                   {"enable", "enable_alone", "disable", "estop", "clear", "zero", "set_gains", "get_config",
-                    "configure-drive", "drive-settings", kHandOperation}));
+    problem =
+        fmt::format("unknown operation '{}': there are {}{}", request.operation.view(), operationsInWords(),
+                    didYouMean(request.operation.view(), {kOperationWords.begin(), kOperationWords.end()}));
   } else if (*operation == Operation::kZero && request.target.view().empty()) {
     problem = "zero needs a motor: name it";
   } else if (*operation == Operation::kZero && unknown_value) {
@@ -394,12 +386,13 @@ std::optional<RequestDesk::Answer> RequestDesk::finish(const OrderResult& result
   const auto found =
       std::find_if(open_.begin(), open_.end(), [&](const Open& open) { return open.order_id == result.id; });
   if (found == open_.end()) return std::nullopt;
+  const auto operation = operationNamed(found->request.operation.view());
   std::size_t failed = 0;
   std::size_t needed_failed = 0;  // without those that may fail
   for (std::size_t i = 0; i < names_.size(); ++i) {
     if (!found->motors.test(i) || result.motors[i] == Refusal::kNone) continue;
     ++failed;
-    if (found->request.operation.view() != "enable" || !optional_.test(i)) ++needed_failed;
+    if (operation != Operation::kEnable || !optional_.test(i)) ++needed_failed;
   }
   const auto total = found->motors.count();
   auto status = link::ResponseStatus::kOk;
@@ -411,13 +404,13 @@ std::optional<RequestDesk::Answer> RequestDesk::finish(const OrderResult& result
   if (stays) message = fmt::format("{}: nothing done", found->request.operation.view());
   if (needed_failed != 0) status = link::ResponseStatus::kFailed;
   if (failed != 0) message += " (" + reasons(found->motors, result) + ")";
-  if (found->request.operation.view() == kConfigureDrive) message = driveOutcome(*found, result);
+  if (operation == Operation::kConfigure) message = driveOutcome(*found, result);
   if (result.refused) {
     status = link::ResponseStatus::kRefused;
     message = "too many enable requests at once: wait for the answers";
   }
   Answer answer{found->connection, respond(found->request, status, message)};
-  if (found->request.operation.view() == kSetGainsOperation) finishGains(*found, result, answer.response);
+  if (operation == Operation::kSetGains) finishGains(*found, result, answer.response);
   remember(found->asker, found->request, answer.response);
   open_.erase(found);
   return answer;

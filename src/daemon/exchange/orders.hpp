@@ -7,6 +7,7 @@
 
 #include "app/target.hpp"
 #include "app/time.hpp"
+#include "app/vocabulary.hpp"
 #include "link/link_protocol.hpp"
 #include "module/module_base.hpp"
 #include "module/robot_status.hpp"
@@ -35,17 +36,6 @@ struct Command {
   MonotonicTime deadline;  ///< That plus its validity.
   std::size_t count = 0;
   std::array<Setpoint, kMaxMotors> setpoints;
-};
-
-enum class Operation : std::uint8_t {
-  kEnable,
-  kDisable,
-  kEstop,
-  kClear,
-  kZero,
-  kConfigure,
-  kSetGains,
-  kEnableAlone,  ///< One motor, and no other until it is not ACTIVE any more.
 };
 
 /// A request that passed the link thread, for the supervisor.

@@ -128,7 +128,10 @@ void Supervisor::carryOut(const Order& order, const Tick& tick) noexcept {
       case Operation::kZero: result.motors[motor] = axes_[motor].zero(order); break;
       case Operation::kSetGains: result.motors[motor] = setGains(motor, order, tick); break;
       case Operation::kEstop:
-      case Operation::kConfigure: break;
+      case Operation::kConfigure:
+      case Operation::kGetConfig:
+      case Operation::kDriveSettings:
+      case Operation::kHand: break;
     }
   }
   if (waiting.any()) {

@@ -13,7 +13,7 @@
 namespace rc10::ctl {
 namespace {
 
-Result<link::Request> robotRequest(const std::string& operation, const std::vector<std::string>& motors,
+Result<link::Request> robotRequest(Operation operation, const std::vector<std::string>& motors,
                                    const std::vector<link::NamedValue>& values) {
   std::string target;
   for (const auto& motor : motors) {
@@ -25,7 +25,7 @@ Result<link::Request> robotRequest(const std::string& operation, const std::vect
   link::Request request;
   if (target.size() >= sizeof(request.target))
     return fail("too many motors at once: name none for all, or do it in parts");
-  request.operation = operation;
+  request.operation = toString(operation);
   request.target = target;
   request.value_count = static_cast<std::uint32_t>(std::min(values.size(), link::kMaxValues));
   std::copy_n(values.begin(), request.value_count, request.values.begin());
@@ -40,24 +40,25 @@ void printAnswerText(const std::string& message, Values values) {
     std::printf("%s = %g\n", printable(value.name.view()).c_str(), value.value);
 }
 
-void printAnswerJson(const std::string& operation, const std::string& message, Values values) {
+void printAnswerJson(Operation operation, const std::string& message, Values values) {
   client::Json json = client::Json::object();
   for (const auto& value : values) json[std::string{value.name.view()}] = value.value;
   std::puts(
-      client::lineOf({{"operation", operation}, {"message", message}, {"values", std::move(json)}}).c_str());
+      client::lineOf({{"operation", toString(operation)}, {"message", message}, {"values", std::move(json)}})
+          .c_str());
 }
 
 // Past connections that are all taken and an rc10d that answers nobody. False: it was no e-stop, or is not
 // under way.
-bool sendEstop(const Global& global, const std::string& operation) {
-  if (operation != link::kEstopOperation) return false;
+bool sendEstop(const Global& global, Operation operation) {
+  if (operation != Operation::kEstop) return false;
   const auto path = socketOf(global);
   return path && link::EstopDatagram::to(*path).send(kClientName);
 }
 
 }  // namespace
 
-ExitCode ask(const Global& global, const std::string& operation, const std::vector<std::string>& motors,
+ExitCode ask(const Global& global, Operation operation, const std::vector<std::string>& motors,
              const std::vector<link::NamedValue>& values) {
   const auto request = robotRequest(operation, motors, values);
   if (!request) return complain(request.error(), ExitCode::kUsage);

@@ -3,13 +3,13 @@
 #include <string>
 #include <vector>
 
+#include "app/vocabulary.hpp"
 #include "session.hpp"
 
 namespace rc10::ctl {
 
 /// Sends one request for the named motors (none: all), waits for its answer and prints it.
-[[nodiscard]] ExitCode ask(const Global& global, const std::string& operation,
-                           const std::vector<std::string>& motors,
+[[nodiscard]] ExitCode ask(const Global& global, Operation operation, const std::vector<std::string>& motors,
                            const std::vector<link::NamedValue>& values = {});
 
 }  // namespace rc10::ctl

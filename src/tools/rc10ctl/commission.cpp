@@ -126,12 +126,13 @@ class Commissioning {
                 static_cast<double>(seconds(kSpinTime)), options_.over_speed_rpm);
     if (waitLine(feed_) != options_.motor) return complain({"nothing was enabled"}, ExitCode::kFailed);
     // From here on rc10d enables nothing else, until this one is disabled.
-    if (const auto enabled = ask(global_, "enable_alone", {options_.motor}); enabled != ExitCode::kOk)
+    if (const auto enabled = ask(global_, Operation::kEnableAlone, {options_.motor});
+        enabled != ExitCode::kOk)
       return enabled;
     awaitActive();
     client::FirstSpin seen(options_.over_speed_rpm);
     const auto outcome = drive(rc10d_, order(seen));
-    const auto disabled = ask(global_, "disable", {options_.motor});
+    const auto disabled = ask(global_, Operation::kDisable, {options_.motor});
     if (interrupted()) {
       const bool rests = disabled == ExitCode::kOk;
       return complain(

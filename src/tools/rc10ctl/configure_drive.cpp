@@ -50,10 +50,10 @@ Result<link::Request> configureRequest(const ConfigureOptions& options) {
     return fail("'" + options.motor + "' is not the name of a motor: see `rc10ctl list`");
   request.target = options.motor;
   if (options.list) {
-    request.operation = std::string_view{"drive-settings"};
+    request.operation = toString(Operation::kDriveSettings);
     return request;
   }
-  request.operation = std::string_view{"configure-drive"};
+  request.operation = toString(Operation::kConfigure);
   if (options.settings.empty())
     return fail("name a setting: `rc10ctl configure-drive " + options.motor +
                 " --list` tells which there are");

@@ -38,7 +38,7 @@ Result<link::Request> gainsRequest(const GainsOptions& options) {
   if (options.motor.empty() || options.motor.size() >= sizeof(link::Name))
     return fail("'" + options.motor + "' is not the name of a motor: see `rc10ctl list`");
   request.target = options.motor;
-  request.operation = std::string_view{options.settings.empty() ? "get_config" : "set_gains"};
+  request.operation = toString(options.settings.empty() ? Operation::kGetConfig : Operation::kSetGains);
   if (options.settings.size() > link::kMaxValues) return fail("too many gains at once: do it in parts");
   for (const auto& text : options.settings) {
     const auto value = namedValue(text, "velocity.kp=0.8");

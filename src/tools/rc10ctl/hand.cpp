@@ -69,7 +69,8 @@ ExitCode hand(const Global& global, const HandOptions& options) {
   const std::vector<link::NamedValue> values{value("by_deg", by_deg), value("speed_rpm", options.speed_rpm),
                                              value("torque_nm", options.torque_nm),
                                              value("hold_s", options.hold_s)};
-  if (const auto asked = ask(global, "hand", {options.motor}, values); asked != ExitCode::kOk) return asked;
+  if (const auto asked = ask(global, Operation::kHand, {options.motor}, values); asked != ExitCode::kOk)
+    return asked;
   constexpr double kDegPerSPerRpm = 6.0;
   const double way_s = std::abs(by_deg) / (options.speed_rpm * kDegPerSPerRpm);
   bool there = watch(*rc10d, feed, way_s + kRampS + options.hold_s + kSettledS);

@@ -109,7 +109,7 @@ ExitCode set(const Global& global, const SetOptions& options) {
     return complain({why}, ExitCode::kFailed);
   const auto done = drive(*rc10d, *order);
   if (order->then != Then::kDisable) return done;
-  const auto disabled = ask(global, "disable", {options.motor});
+  const auto disabled = ask(global, Operation::kDisable, {options.motor});
   return done == ExitCode::kOk ? disabled : done;
 }
 

@@ -23,7 +23,7 @@ void addZero(CLI::App& app, Action& action) {
   verb->callback([&action, options] {
     action = [options](const Global& global) {
       const link::NamedValue angle{.name = std::string_view{"angle_deg"}, .value = options->angle_deg};
-      return ask(global, "zero", {options->motor}, {angle});
+      return ask(global, Operation::kZero, {options->motor}, {angle});
     };
   });
 }

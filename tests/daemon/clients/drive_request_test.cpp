@@ -26,7 +26,7 @@ using Values = std::initializer_list<std::pair<std::string_view, double>>;
 class DriveRequestTest : public ::testing::Test {
  protected:
   link::Request ask(std::string_view motor, Values values) {
-    auto request = linkRequest(++seq_, kConfigureDrive, motor);
+    auto request = linkRequest(++seq_, toString(Operation::kConfigure), motor);
     for (const auto& [name, value] : values) request.values[request.value_count++] = {name, value};
     return request;
   }
@@ -120,7 +120,8 @@ TEST_F(DriveRequestTest, IsAnsweredWithWhatCouldNotBeDone) {
 }
 
 TEST_F(DriveRequestTest, TheSettingsOfADriveAreTold) {
-  const auto outcome = desk.begin(linkRequest(100, kDriveSettings, "arm"), {.connection = 1});
+  const auto outcome =
+      desk.begin(linkRequest(100, toString(Operation::kDriveSettings), "arm"), {.connection = 1});
   ASSERT_TRUE(outcome.response);
   EXPECT_EQ(outcome.response->status, ResponseStatus::kOk);
   EXPECT_THAT(std::string(outcome.response->message.view()), HasSubstr("master_id 0 to 2046, whole\n"));

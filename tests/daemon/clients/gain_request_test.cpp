@@ -64,7 +64,7 @@ class SetGainsTest : public ::testing::Test {
     return done ? done->response : link::Response{};
   }
   link::Response set(Values values, std::string_view motor = "wheel") {
-    return answer(ask(kSetGainsOperation, motor, values));
+    return answer(ask(toString(Operation::kSetGains), motor, values));
   }
   std::string refusal(const link::Request& request) {
     const auto response = answer(request);
@@ -98,7 +98,7 @@ class SetGainsTest : public ::testing::Test {
 };
 
 TEST_F(SetGainsTest, TheGainsInForceAreTold) {
-  const auto response = answer(ask(kGetConfigOperation, "wheel"));
+  const auto response = answer(ask(toString(Operation::kGetConfig), "wheel"));
   EXPECT_EQ(response.status, ResponseStatus::kOk);
   const auto values = valuesIn(response);
   EXPECT_EQ(values.size(), 15U);
@@ -117,23 +117,26 @@ TEST_F(SetGainsTest, OtherGainsAreInForceInTheNextTickAndAreTold) {
   EXPECT_EQ(valuesIn(response).at("velocity_pid.kp_a_per_rpm"), 0.3) << "as it was written, not as a float";
   EXPECT_EQ(std::get<PID_Position::Config>(loops().velocity).kp, 0.3F);
   EXPECT_EQ(loops().angle.kp, 4.0F);
-  EXPECT_EQ(valuesIn(answer(ask(kGetConfigOperation, "wheel"))).at("angle_pid.kp_rpm_per_deg"), 4.0);
+  EXPECT_EQ(valuesIn(answer(ask(toString(Operation::kGetConfig), "wheel"))).at("angle_pid.kp_rpm_per_deg"),
+            4.0);
 }
 
 TEST_F(SetGainsTest, ARequestActsWholeOrNotAtAll) {
   const auto before = gainOf(loops(), LoopGain::kVelocityKp);
-  EXPECT_THAT(refusal(ask(kSetGainsOperation, "wheel", {{"velocity.kp", 0.5}, {"velocity.ki", -1.0}})),
-              HasSubstr("wheel: velocity_pid.ki_a_per_rpm_s: -1 is below 0 A/(rpm s); use "));
-  EXPECT_THAT(refusal(ask(kSetGainsOperation, "wheel", {{"velocity.kp", 0.5}, {"kp_a_per_rpm", 0.6}})),
-              HasSubstr("given twice"));
-  EXPECT_THAT(refusal(ask(kSetGainsOperation, "wheel")), HasSubstr("name a gain"));
+  EXPECT_THAT(
+      refusal(ask(toString(Operation::kSetGains), "wheel", {{"velocity.kp", 0.5}, {"velocity.ki", -1.0}})),
+      HasSubstr("wheel: velocity_pid.ki_a_per_rpm_s: -1 is below 0 A/(rpm s); use "));
+  EXPECT_THAT(
+      refusal(ask(toString(Operation::kSetGains), "wheel", {{"velocity.kp", 0.5}, {"kp_a_per_rpm", 0.6}})),
+      HasSubstr("given twice"));
+  EXPECT_THAT(refusal(ask(toString(Operation::kSetGains), "wheel")), HasSubstr("name a gain"));
   robot.run(3);
   EXPECT_EQ(gainOf(loops(), LoopGain::kVelocityKp), before);
 }
 
 TEST_F(SetGainsTest, AMotorWhoseDriveClosesTheLoopsSaysSo) {
-  for (const auto& request :
-       {ask(kSetGainsOperation, "arm", {{"velocity.kp", 1.0}}), ask(kGetConfigOperation, "arm")})
+  for (const auto& request : {ask(toString(Operation::kSetGains), "arm", {{"velocity.kp", 1.0}}),
+                              ask(toString(Operation::kGetConfig), "arm")})
     EXPECT_THAT(refusal(request), HasSubstr("arm: rc10d closes no loop of the DM4310: its drive does"));
   Order order;
   order.id = 77;
@@ -149,14 +152,15 @@ TEST_F(SetGainsTest, AMotorWhoseDriveClosesTheLoopsSaysSo) {
 
 TEST_F(SetGainsTest, NamesOneMotor) {
   for (const auto* target : {"", "wheel,arm", "leg"}) {
-    EXPECT_THAT(refusal(ask(kGetConfigOperation, target)), HasSubstr("the motors are: wheel, arm"));
-    EXPECT_THAT(refusal(ask(kSetGainsOperation, target, {{"velocity.kp", 1.0}})),
+    EXPECT_THAT(refusal(ask(toString(Operation::kGetConfig), target)),
+                HasSubstr("the motors are: wheel, arm"));
+    EXPECT_THAT(refusal(ask(toString(Operation::kSetGains), target, {{"velocity.kp", 1.0}})),
                 HasSubstr("the motors are: wheel, arm"));
   }
 }
 
 TEST_F(SetGainsTest, ARepeatedRequestIsCarriedOutOnce) {
-  const auto request = ask(kSetGainsOperation, "wheel", {{"velocity.kp", 0.5}});
+  const auto request = ask(toString(Operation::kSetGains), "wheel", {{"velocity.kp", 0.5}});
   const auto first = answer(request);
   (void)set({{"velocity.kp", 0.7}});
   const auto again = answer(request);
@@ -165,9 +169,11 @@ TEST_F(SetGainsTest, ARepeatedRequestIsCarriedOutOnce) {
 }
 
 TEST_F(SetGainsTest, OrdersOfOneTickFollowOneAnother) {
-  const auto first = desk.begin(ask(kSetGainsOperation, "wheel", {{"velocity.kp", 0.5}}), {.connection = 1});
-  const auto second = desk.begin(
-      ask(kSetGainsOperation, "wheel", {{"velocity.kp", 0.6}, {"velocity.ki", 2.0}}), {.connection = 1});
+  const auto first =
+      desk.begin(ask(toString(Operation::kSetGains), "wheel", {{"velocity.kp", 0.5}}), {.connection = 1});
+  const auto second =
+      desk.begin(ask(toString(Operation::kSetGains), "wheel", {{"velocity.kp", 0.6}, {"velocity.ki", 2.0}}),
+                 {.connection = 1});
   robot.exchange().orders.push(*first.order);
   robot.exchange().orders.push(*second.order);
   robot.tick();
@@ -180,11 +186,12 @@ TEST_F(SetGainsTest, OrdersOfOneTickFollowOneAnother) {
 
 TEST_F(SetGainsTest, AFloodOfThemIsRefused) {
   for (int i = 0; i < 8; ++i) {
-    EXPECT_TRUE(
-        desk.begin(ask(kSetGainsOperation, "wheel", {{"velocity.kp", 0.1 * i}}), {.connection = 1}).order);
+    EXPECT_TRUE(desk.begin(ask(toString(Operation::kSetGains), "wheel", {{"velocity.kp", 0.1 * i}}),
+                           {.connection = 1})
+                    .order);
   }
   const auto outcome =
-      desk.begin(ask(kSetGainsOperation, "wheel", {{"velocity.kp", 1.0}}), {.connection = 1});
+      desk.begin(ask(toString(Operation::kSetGains), "wheel", {{"velocity.kp", 1.0}}), {.connection = 1});
   ASSERT_TRUE(outcome.response);
   EXPECT_THAT(std::string(outcome.response->message.view()), HasSubstr("wait for the answers"));
   EXPECT_TRUE(desk.begin(ask("disable", "wheel"), {.connection = 1}).order) << "other requests are taken";
@@ -195,8 +202,9 @@ TEST_F(SetGainsTest, AMotorThatTurnsGoesOnWithoutABump) {
   turn(60.0, 1000);
   ASSERT_NEAR(robot.motor(0).feedback.velocity_rpm, 60.0F, 3.0F);
   const float before = effort();
-  const auto outcome = desk.begin(
-      ask(kSetGainsOperation, "wheel", {{"velocity.ki", 20.0}, {"velocity.kp", 0.5}}), {.connection = 1});
+  const auto outcome =
+      desk.begin(ask(toString(Operation::kSetGains), "wheel", {{"velocity.ki", 20.0}, {"velocity.kp", 0.5}}),
+                 {.connection = 1});
   robot.exchange().orders.push(*outcome.order);
   turn(60.0, 1);
   EXPECT_NEAR(effort(), before, 0.25F);

@@ -19,7 +19,7 @@ link::Request handOf(std::initializer_list<std::pair<const char*, double>> value
   request.client = std::string_view{"person"};
   request.session = 1;
   request.seq = 1;
-  request.operation = kHandOperation;
+  request.operation = toString(Operation::kHand);
   request.target = std::string_view{motor};
   for (const auto& [name, value] : values)
     request.values.at(request.value_count++) = {.name = std::string_view{name}, .value = value};
