@@ -20,9 +20,10 @@ namespace {
 constexpr int kNanosecondsPerSecond = 1'000'000'000;
 
 /// Names that many robots have because the shipped examples have them.
-constexpr std::array<std::string_view, 8> kSharedNames{
+constexpr std::array<std::string_view, 11> kSharedNames{
     "robot",      "demo",          "rc10d",          "four_wheels_can0",
-    "vcan_mixed", "many_families", "full_reference", "who_may_what"};
+    "vcan_mixed", "many_families", "full_reference", "who_may_what",
+    "gripper",    "acme",          "small"};
 
 bool isSharedName(std::string_view name) {
   return std::find(kSharedNames.begin(), kSharedNames.end(), name) != kSharedNames.end();
