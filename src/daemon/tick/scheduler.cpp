@@ -48,7 +48,7 @@ void Scheduler::tick(MonotonicTime now, std::uint64_t periods) noexcept {
     unreported_missed_ticks_ += periods - 1;
   }
   reportMissedTicks(tick);
-  receive(tick);
+  receive();
   marks_.received = clockOr(now);
   bus_watch_.decide(tick);
   stopForTheComputer(tick);
@@ -107,7 +107,7 @@ void Scheduler::reportMissedTicks(const Tick& tick) noexcept {
   next_missed_report_ = tick.now + kMissedReportInterval;
 }
 
-void Scheduler::receive(const Tick&) noexcept {
+void Scheduler::receive() noexcept {
   for (std::size_t i = 0; i < robot_.buses().size(); ++i) {
     auto& bus = *robot_.buses()[i].bus;
     // Only what is there now: a flooded bus must not lengthen the tick without bound.

@@ -57,7 +57,7 @@ class Scheduler {
   [[nodiscard]] const TickMarks& marks() const noexcept { return marks_; }
 
  private:
-  void receive(const Tick& tick) noexcept;
+  void receive() noexcept;
   void driveDevices() noexcept;
   void update(const Tick& tick) noexcept;
   void pack(const Tick& tick) noexcept;

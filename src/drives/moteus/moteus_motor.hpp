@@ -79,7 +79,6 @@ class Moteus_Motor final : public SoloMotor {
   void updateSequence(const Tick& tick) noexcept;
   void enter(Step step, const Tick& tick) noexcept;
   void fail(FaultCode why, std::uint32_t native) noexcept;
-  void updateActive(const Tick& tick) noexcept;
   [[nodiscard]] Send restSend(const Tick& tick) const noexcept;
   void coast() noexcept;
   void follow(const Target& target, const Tick& tick) noexcept;

@@ -46,20 +46,20 @@ FrameVerdict VESC_Motor::updateFeedback(const CanFrame& frame) noexcept {
   if (frame.length != vesc::kStatusLength) return FrameVerdict::kMalformed;
   switch (packet) {
     case vesc::Packet::kStatus1: takeStatus1(frame); break;
-    case vesc::Packet::kStatus2: telemetry_.status2 = vesc::decodeStatus2(frame); break;
-    case vesc::Packet::kStatus3: telemetry_.status3 = vesc::decodeStatus3(frame); break;
     case vesc::Packet::kStatus4:
-      telemetry_.status4 = vesc::decodeStatus4(frame);
-      feedback_.temperature_c =
-          options_.motor_temperature ? telemetry_.status4.motor_c : telemetry_.status4.drive_c;
+      status4_ = vesc::decodeStatus4(frame);
+      feedback_.temperature_c = options_.motor_temperature ? status4_.motor_c : status4_.drive_c;
       if (options_.angle == VescAngle::kEncoder) takeEncoder(frame);
       break;
     case vesc::Packet::kStatus5:
       if (options_.angle == VescAngle::kTachometer) takeSteps(frame);
-      telemetry_.status5 = vesc::decodeStatus5(frame);
-      feedback_.voltage_v = telemetry_.status5.input_v;
+      status5_ = vesc::decodeStatus5(frame);
+      feedback_.voltage_v = status5_.input_v;
       break;
-    case vesc::Packet::kStatus6: telemetry_.status6 = vesc::decodeStatus6(frame); break;
+    // Consumption and analogue inputs: signs of life, no feedback of the shaft.
+    case vesc::Packet::kStatus2:
+    case vesc::Packet::kStatus3:
+    case vesc::Packet::kStatus6: break;
     default: return FrameVerdict::kMalformed;
   }
   return FrameVerdict::kAccepted;
@@ -67,7 +67,7 @@ FrameVerdict VESC_Motor::updateFeedback(const CanFrame& frame) noexcept {
 
 void VESC_Motor::takeStatus1(const CanFrame& frame) noexcept {
   const vesc::Status1 status = vesc::decodeStatus1(frame);
-  telemetry_.status1 = status;
+  status1_ = status;
   status1_at_ = frame.received;
   status1_seen_ = true;
   const double rotor_rpm = static_cast<double>(status.erpm) / options_.pole_pairs;
@@ -110,11 +110,11 @@ void VESC_Motor::takeSteps(const CanFrame& frame) noexcept {
   }
   // Modulo 2^32, as the drive counts.
   const auto moved = static_cast<std::int32_t>(static_cast<std::uint32_t>(steps) -
-                                               static_cast<std::uint32_t>(telemetry_.status5.steps));
+                                               static_cast<std::uint32_t>(status5_.steps));
   const Duration gap = frame.received - feedback_.received;
   const double gap_s = static_cast<double>(seconds(std::clamp(gap, Duration::zero(), kRestartGap)));
   const double period_s = static_cast<double>(seconds(feedbackPeriod()));
-  const double erpm = std::abs(static_cast<double>(telemetry_.status1.erpm));
+  const double erpm = std::abs(static_cast<double>(status1_.erpm));
   const double span_s = gap_s + period_s;
   const double fastest_steps_per_s =
       (erpm + kErpmPerS * span_s) * kStepsPerElectricalTurn / kSecondsPerMinute;
@@ -125,7 +125,7 @@ void VESC_Motor::takeSteps(const CanFrame& frame) noexcept {
 }
 
 void VESC_Motor::takeEncoder(const CanFrame& frame) noexcept {
-  const double now_deg = static_cast<double>(telemetry_.status4.position_deg);
+  const double now_deg = static_cast<double>(status4_.position_deg);
   if (!position_seen_) {
     const double moved = feedback_.samples == 0 ? now_deg : shortestAngle(position_deg_, now_deg);
     takePosition(frame.received, moved, false);
@@ -133,7 +133,7 @@ void VESC_Motor::takeEncoder(const CanFrame& frame) noexcept {
   }
   const Duration gap = frame.received - feedback_.received;
   // Where the speed has taken it, then the nearest such angle.
-  const double rotor_rpm = static_cast<double>(telemetry_.status1.erpm) / options_.pole_pairs;
+  const double rotor_rpm = static_cast<double>(status1_.erpm) / options_.pole_pairs;
   const double gap_s = static_cast<double>(seconds(std::clamp(gap, Duration::zero(), kRestartGap)));
   const double expected = rotor_rpm / options_.position_divider * kDegPerSPerRpm * gap_s;
   const double off = shortestAngle(position_deg_ + expected, now_deg);

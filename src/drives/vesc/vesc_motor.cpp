@@ -254,7 +254,7 @@ void VESC_Motor::damp() noexcept {
 
 bool VESC_Motor::standsStill() noexcept {
   if (!(options_.handbrake_current_a > 0.0F) || silent() || !status1_seen_) return false;
-  const auto erpm = std::abs(static_cast<std::int64_t>(telemetry_.status1.erpm));
+  const auto erpm = std::abs(static_cast<std::int64_t>(status1_.erpm));
   return erpm <= (locked_ ? kSlippedErpm : kStillErpm);
 }
 

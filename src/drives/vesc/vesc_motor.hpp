@@ -39,16 +39,6 @@ class VESC_Motor : public SoloMotor {
   }
   void retune(const CascadeConfig& loops) noexcept override;
 
-  /// Content of the status frames beyond MotorFeedback. Zeros until the first one.
-  struct Telemetry {
-    vesc::Status1 status1;
-    vesc::Status2 status2;
-    vesc::Status3 status3;
-    vesc::Status4 status4;
-    vesc::Status5 status5;
-    vesc::Status6 status6;
-  };
-  [[nodiscard]] const Telemetry& telemetry() const noexcept { return telemetry_; }
   [[nodiscard]] bool watchdogProven() const noexcept { return inquiry_.watchdogProven(); }
 
  private:
@@ -86,7 +76,10 @@ class VESC_Motor : public SoloMotor {
   Duration patience_;        ///< Older feedback than this closes no loop.
   std::array<FrameFilter, 8> filters_;
   std::array<CanId, 10> command_ids_;
-  Telemetry telemetry_;
+  // The last of each.
+  vesc::Status1 status1_;
+  vesc::Status4 status4_;
+  vesc::Status5 status5_;
   VescInquiry inquiry_;
   CascadeConfig loops_;
   PID_Position angle_loop_;
