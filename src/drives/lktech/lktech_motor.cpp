@@ -182,10 +182,7 @@ void LKTech_Motor::update(const Tick& tick) noexcept {
     case FrameKind::kDisable: return release();
     case FrameKind::kPoll: release(); break;
     case FrameKind::kEnable: runSequence(tick); break;
-    default:
-      // A drive that has stopped stays so until the client enables it.
-      counted_&& complaint().fault == FaultCode::kNone ? follow(target) : release();
-      break;
+    default: follow(target); break;
   }
   sendQueries(tick);
 }
@@ -210,6 +207,8 @@ int LKTech_Motor::rawOf(double amperes) const noexcept {
 }
 
 void LKTech_Motor::follow(const Target& target) noexcept {
+  // A drive that has stopped stays so until the client enables it.
+  if (!counted_ || complaint().fault != FaultCode::kNone) return release();
   // In a group there is nothing but currents. And no loop of the drive may run when no current is allowed.
   const bool loops = !grouped_ && effortLimit() > 0.0F;
   switch (loops ? target.mode : ControlMode::kCurrent) {
