@@ -103,15 +103,11 @@ class AcmeFamily final : public MotorFamily {
   }
 };
 
-[[nodiscard]] double rotorTurns(const MotorSettings& settings, const MotorTraits& traits) noexcept {
-  return settings.gear_ratio > 0.0 ? settings.gear_ratio : traits.gear_ratio;
-}
-
 }  // namespace
 
 // The drive reports its rotor: so many of its turns are one of the output shaft.
 ACME_Motor::ACME_Motor(const MotorSettings& settings, const MotorTraits& traits)
-    : SoloMotor(settings, traits, rotorTurns(settings, traits)),
+    : SoloMotor(settings, traits, gearRatioOf(settings, traits)),
       filters_{FrameFilter{.id = feedbackId(settings.id)}},
       command_ids_{commandId(settings.id)} {}
 

@@ -61,4 +61,11 @@ struct MotorSettings {
   OwnValues own;
 };
 
+/// Rotor turns per turn of the output shaft: as configured, or the model's own. Of settings and traits, or of
+/// a family's own structs with these members.
+template <typename Settings, typename Traits>
+[[nodiscard]] constexpr double gearRatioOf(const Settings& settings, const Traits& model) noexcept {
+  return settings.gear_ratio > 0.0 ? settings.gear_ratio : model.gear_ratio;
+}
+
 }  // namespace rc10

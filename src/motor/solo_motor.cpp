@@ -18,7 +18,7 @@ namespace {
 }  // namespace
 
 double driveTurns(const MotorSettings& settings, const MotorTraits& traits) noexcept {
-  return settings.gear_ratio > 0.0 ? settings.gear_ratio / traits.gear_ratio : 1.0;
+  return gearRatioOf(settings, traits) / traits.gear_ratio;
 }
 
 MotorSettings withFeedbackOfCommands(MotorSettings settings, int commands) {
@@ -31,7 +31,7 @@ SoloMotor::SoloMotor(const MotorSettings& settings, const MotorTraits& traits, d
     : Motor_Base(settings.name),
       model_(settings.model),
       traits_(traits),
-      gear_ratio_(settings.gear_ratio > 0.0 ? settings.gear_ratio : traits.gear_ratio),
+      gear_ratio_(gearRatioOf(settings, traits)),
       drive_per_output_(settings.direction < 0 ? -drive_turns : drive_turns),
       effort_limit_(settings.effort_limit > 0.0F ? settings.effort_limit : traits.effort_full_scale),
       velocity_limit_rpm_(settings.velocity_limit_rpm),

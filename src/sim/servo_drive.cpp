@@ -66,7 +66,7 @@ ServoDrive::ServoDrive(const MotorSettings& settings, const MotorTraits& traits,
                        std::vector<FrameFilter> sends)
     : name_(settings.name),
       traits_(traits),
-      gear_ratio_(settings.gear_ratio > 0.0 ? settings.gear_ratio : traits.gear_ratio),
+      gear_ratio_(gearRatioOf(settings, traits)),
       drive_per_output_(gear_ratio_ / traits.gear_ratio),
       load_(load),
       sends_(std::move(sends)),

@@ -25,13 +25,8 @@ struct MotorParse {
   [[nodiscard]] const char* effortKey() const noexcept {
     return byVoltage() ? "voltage_limit_v" : "current_limit_a";
   }
-  [[nodiscard]] bool knowsItsAngle() const noexcept {
-    const bool own_gear = motor().gear_ratio == 0.0 || motor().gear_ratio == traits.gear_ratio;
-    return traits.absolute && own_gear;
-  }
-  [[nodiscard]] double gear() const noexcept {
-    return motor().gear_ratio > 0.0 ? motor().gear_ratio : traits.gear_ratio;
-  }
+  [[nodiscard]] bool knowsItsAngle() const noexcept { return traits.absolute && gear() == traits.gear_ratio; }
+  [[nodiscard]] double gear() const noexcept { return gearRatioOf(motor(), traits); }
   /// Of a model whose speed nobody knows: what the user allows, or 0.
   [[nodiscard]] double noLoadRpm() const noexcept {
     if (traits.no_load_rpm <= 0.0F) return static_cast<double>(motor().velocity_limit_rpm);

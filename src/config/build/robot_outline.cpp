@@ -8,8 +8,7 @@ RobotOutline outlineOf(const RobotConfig& robot) {
   for (const auto& bus : robot.buses) {
     for (const auto& motor : bus.motors) {
       const auto traits = motor.traits();
-      const double gear_ratio =
-          motor.settings.gear_ratio > 0.0 ? motor.settings.gear_ratio : traits.gear_ratio;
+      const double gear_ratio = gearRatioOf(motor.settings, traits);
       const auto no_load_rpm =
           static_cast<float>(static_cast<double>(traits.no_load_rpm) * traits.gear_ratio / gear_ratio);
       const float limit_rpm = motor.settings.velocity_limit_rpm;

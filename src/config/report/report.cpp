@@ -112,9 +112,7 @@ std::string limitText(const MotorConfig& motor) {
          (traits.effort == CommandUnit::kVolt ? " V" : " A");
 }
 
-double gearRatio(const MotorConfig& motor) {
-  return motor.settings.gear_ratio > 0.0 ? motor.settings.gear_ratio : motor.traits().gear_ratio;
-}
+double gearRatio(const MotorConfig& motor) { return gearRatioOf(motor.settings, motor.traits()); }
 
 std::string zeroText(const MotorConfig& motor) {
   const MotorTraits traits = motor.traits();

@@ -163,8 +163,7 @@ std::string digits(double value) {
 /// Error if a gain at the output shaft exceeds the range of the drive's field.
 Result<void> checkGain(const MotorSettings& settings, std::string_view key, double most) {
   const auto* model = findDamiaoModel(settings.model);
-  const double gear =
-      settings.gear_ratio > 0.0 && model != nullptr ? settings.gear_ratio / model->gear_ratio : 1.0;
+  const double gear = model != nullptr ? gearRatioOf(settings, *model) / model->gear_ratio : 1.0;
   const double most_at_shaft = most * gear * gear;
   if (settings.own.number(key) <= most_at_shaft) return {};
   return fail(std::string(key) + ": the drive takes at most " + digits(most_at_shaft));
@@ -239,7 +238,7 @@ DamiaoSettings damiaoSettings(const MotorSettings& settings) {
     const double value = own.number(key);
     return value > 0.0 ? value : otherwise;
   };
-  const double own_gear = settings.gear_ratio > 0.0 ? settings.gear_ratio / model.gear_ratio : 1.0;
+  const double own_gear = gearRatioOf(settings, model) / model.gear_ratio;
   const double gain = own_gear * own_gear;
   const double steps = own.number("watchdog_ms") / damiao::kTimeoutStepMs;
   return {.master_id = static_cast<std::uint32_t>(own.integer("master_id")) & kStandardIdMask,

@@ -6,6 +6,7 @@
 #include "app/angle.hpp"
 #include "app/units.hpp"
 #include "bus/byte_order.hpp"
+#include "motor/motor_settings.hpp"
 
 namespace rc10 {
 namespace {
@@ -27,7 +28,7 @@ DJI_Motor::DJI_Motor(const DjiMotorConfig& config)
       model_(config.model),
       id_(config.id),
       command_(config.command),
-      gear_ratio_(config.gear_ratio > 0.0 ? config.gear_ratio : config.model->gear_ratio),
+      gear_ratio_(gearRatioOf(config, *config.model)),
       direction_(config.direction < 0 ? -1 : 1),
       effort_limit_(config.effort_limit > 0.0F ? config.effort_limit : table().full_scale),
       absolute_(model_->absolute_output && gear_ratio_ == model_->gear_ratio),

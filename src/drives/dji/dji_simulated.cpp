@@ -8,6 +8,7 @@
 
 #include "drives/dji/dji_family.hpp"
 #include "drives/dji/dji_simulated_parameters.hpp"
+#include "motor/motor_settings.hpp"
 
 namespace rc10::sim {
 namespace {
@@ -24,10 +25,6 @@ void writeInt16(std::array<std::uint8_t, kFrameLength>& data, std::size_t at, do
       static_cast<std::int16_t>(std::lround(std::clamp<double>(value, Limits::min(), Limits::max()))));
   data[at] = static_cast<std::uint8_t>(raw >> 8U);
   data[at + 1] = static_cast<std::uint8_t>(raw & 0xFFU);
-}
-
-double gearOf(const DriveConfig& config) noexcept {
-  return config.gear_ratio > 0.0 ? config.gear_ratio : config.model->gear_ratio;
 }
 
 }  // namespace
@@ -55,7 +52,7 @@ DjiDrive::DjiDrive(const DriveConfig& config)
       model_(config.model),
       id_(config.id),
       command_(config.command),
-      gear_ratio_(gearOf(config)),
+      gear_ratio_(gearRatioOf(config, *config.model)),
       sends_{FrameFilter{.id = feedbackId()}},
       load_(config.load),
       physics_(parametersOf(*config.model, gear_ratio_, config.load),

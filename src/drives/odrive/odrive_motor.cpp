@@ -43,7 +43,7 @@ bool isFinite(const odrive::Pair& pair) noexcept {
 }  // namespace
 
 ODrive_Motor::ODrive_Motor(const MotorSettings& settings, const MotorTraits& traits)
-    : SoloMotor(settings, traits, settings.gear_ratio > 0.0 ? settings.gear_ratio : traits.gear_ratio),
+    : SoloMotor(settings, traits, gearRatioOf(settings, traits)),
       node_(settings.id),
       firmware_(findOdriveModel(settings.model) != nullptr ? findOdriveModel(settings.model)->firmware
                                                            : OdriveFirmware::k06),

@@ -50,7 +50,7 @@ std::array<CanId, 10> commandIdsOf(int id) {
 
 /// With a divider the drive's position loop counts turns of what stands behind that gear.
 double reportedTurns(const MotorSettings& settings, const VescOptions& options) {
-  const double gear = settings.gear_ratio > 0.0 ? settings.gear_ratio : 1.0;
+  const double gear = gearRatioOf(settings, vescTraits(options));
   return options.angle == VescAngle::kEncoder ? gear / options.position_divider : gear;
 }
 

@@ -43,7 +43,7 @@ Json motorJson(const MotorConfig& motor, const BusLoad& load) {
           {"optional", motor.optional},
           {"modes", modesJson(traits.modes)},
           {"direction", settings.direction},
-          {"gear_ratio", settings.gear_ratio > 0.0 ? settings.gear_ratio : traits.gear_ratio},
+          {"gear_ratio", gearRatioOf(settings, traits)},
           {limit, shortest(effort)},
           {"velocity_limit_rpm", positiveOrNull(settings.velocity_limit_rpm)},
           {"overspeed_rpm", positiveOrNull(motor.guard.overspeed_rpm)},
