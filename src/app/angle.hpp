@@ -2,18 +2,19 @@
 
 #include <cmath>
 #include <concepts>
-#include <numbers>
+
+#include "app/units.hpp"
 
 namespace rc10 {
 
 template <std::floating_point T>
 [[nodiscard]] constexpr T toRadians(T angle_deg) noexcept {
-  return angle_deg * (std::numbers::pi_v<T> / T{180});
+  return angle_deg * static_cast<T>(kRadPerDeg);
 }
 
 template <std::floating_point T>
 [[nodiscard]] constexpr T toDegrees(T angle_rad) noexcept {
-  return angle_rad * (T{180} / std::numbers::pi_v<T>);
+  return angle_rad * static_cast<T>(kDegPerRad);
 }
 
 /// `angle` in [0, period). A NaN stays NaN, an infinity becomes one.
@@ -35,6 +36,11 @@ template <std::floating_point T>
 [[nodiscard]] inline float wrapDegreesToFloat(double angle_deg) noexcept {
   const auto wrapped_deg = static_cast<float>(wrapDegrees(angle_deg));
   return wrapped_deg < 360.0F ? wrapped_deg : 0.0F;
+}
+
+/// The angle in [-180, 180]: half a turn keeps its sign. Without rounding; NaN for a NaN or an infinity.
+[[nodiscard]] inline double wrapHalfTurn(double angle_deg) noexcept {
+  return std::remainder(angle_deg, kDegPerTurn);
 }
 
 /// The shortest way from `from` to `to` on a circle, in [-period/2, period/2), whatever turn the two

@@ -2,7 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
+
+#include "app/units.hpp"
 
 namespace rc10 {
 
@@ -14,7 +15,7 @@ struct WheelScale {
 
   [[nodiscard]] static WheelScale ofRadius(double radius_m) noexcept {
     if (!(radius_m > 0.0) || !std::isfinite(radius_m)) return {};
-    const double m_s_per_rpm = 2.0 * std::numbers::pi * radius_m / 60.0;
+    const double m_s_per_rpm = kRadPerSPerRpm * radius_m;
     if (!std::isnormal(m_s_per_rpm)) return {};
     return {.rpm_per_m_s = 1.0 / m_s_per_rpm, .m_s_per_rpm = m_s_per_rpm};
   }
@@ -74,7 +75,7 @@ template <WheelSet Wheels>
 /// nothing to the noise and quantisation of measured velocities. dt of 0, below, or NaN: 0.
 [[nodiscard]] inline double meanRpm(double angle_before_deg, double angle_deg, float dt_s) noexcept {
   if (!(dt_s > 0.0F)) return 0.0;
-  return (angle_deg - angle_before_deg) / (6.0 * static_cast<double>(dt_s));
+  return (angle_deg - angle_before_deg) / (kDegPerSPerRpm * static_cast<double>(dt_s));
 }
 
 }  // namespace rc10

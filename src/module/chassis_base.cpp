@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <numbers>
 
+#include "app/angle.hpp"
 #include "app/limits.hpp"
 #include "app/units.hpp"
 #include "module/module_type.hpp"
@@ -167,7 +167,7 @@ Twist2D Chassis_Base::wanted(const ModuleRobot& robot) const noexcept {
     twist = seenFrom(-gimbal_deg, twist);
   }
   if (finiteOr0(input(kTurnAfter)) >= 0.5 && std::isfinite(gimbal_deg))
-    twist.wz_deg_s += follow_gain_per_s_ * std::remainder(gimbal_deg, kDegPerTurn);
+    twist.wz_deg_s += follow_gain_per_s_ * wrapHalfTurn(gimbal_deg);
   return twist;
 }
 
@@ -239,7 +239,7 @@ double Chassis_Base::power(const ModuleRobot& robot) const noexcept {
   for (const auto motor : motors_) {
     const auto& feedback = robot.feedback(motor);
     const double torque_nm = static_cast<double>(feedback.torque_nm);
-    const double speed_rad_s = static_cast<double>(feedback.velocity_rpm) * 2.0 * std::numbers::pi / 60.0;
+    const double speed_rad_s = static_cast<double>(feedback.velocity_rpm) * kRadPerSPerRpm;
     power_w += std::max(0.0, torque_nm * speed_rad_s) + loss_w_per_nm2_ * torque_nm * torque_nm;
   }
   return power_w;

@@ -6,6 +6,7 @@
 #include <optional>
 #include <string>
 
+#include "app/angle.hpp"
 #include "app/limits.hpp"
 #include "app/motion_match.hpp"
 #include "app/units.hpp"
@@ -129,7 +130,7 @@ class Gimbal : public Module_Base {
     const double yaw_deg = stabilised ? imu_yaw_deg : static_cast<double>(yaw.angle_deg);
     const double imu_pitch_deg = read(robot, kImuPitch);
     const bool by_imu_pitch = std::isfinite(imu_pitch_deg);
-    const double motor_pitch_deg = std::remainder(static_cast<double>(pitch.angle_deg), kDegPerTurn);
+    const double motor_pitch_deg = wrapHalfTurn(static_cast<double>(pitch.angle_deg));
     const double pitch_deg = by_imu_pitch ? imu_pitch_deg : motor_pitch_deg;
     const bool ready = robot.obeys(yaw_motor_) && robot.obeys(pitch_motor_) && yaw.zeroed && pitch.zeroed;
     // Another frame, another angle: it goes on looking where it looks.
@@ -146,11 +147,10 @@ class Gimbal : public Module_Base {
     if (ready && was_commanded_)
       follow(tick, robot, {yaw_deg, stabilised ? carried_.degPerSecond() : kNoSignal}, pitch_deg);
     holdOn(ready, tick, robot);
-    setOutput(kOutYaw, std::remainder(yaw_deg, kDegPerTurn));
+    setOutput(kOutYaw, wrapHalfTurn(yaw_deg));
     setOutput(kOutPitch, pitch_deg);
-    setOutput(kRelativeYaw,
-              yaw.zeroed ? std::remainder(static_cast<double>(yaw.angle_deg), kDegPerTurn) : kNoSignal);
-    setOutput(kTargetYaw, std::remainder(yaw_.target(), kDegPerTurn));
+    setOutput(kRelativeYaw, yaw.zeroed ? wrapHalfTurn(static_cast<double>(yaw.angle_deg)) : kNoSignal);
+    setOutput(kTargetYaw, wrapHalfTurn(yaw_.target()));
     setOutput(kTargetPitch, pitch_.target());
     setOutput(kStabilised, stabilised ? 1.0 : 0.0);
     setOutput(kImuLagMs, lagMs());

@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "app/angle.hpp"
 #include "app/units.hpp"
 
 namespace rc10 {
@@ -29,14 +30,14 @@ class GimbalAxis {
   void turn(double rate_deg_s, float dt_s) noexcept {
     const double most_deg_s = config_.velocity_limit_rpm * kDegPerSPerRpm;
     target_deg_ += std::fmax(-most_deg_s, std::fmin(most_deg_s, rate_deg_s)) * static_cast<double>(dt_s);
-    if (config_.circular) target_deg_ = std::remainder(target_deg_, kDegPerTurn);
+    if (config_.circular) target_deg_ = wrapHalfTurn(target_deg_);
   }
   [[nodiscard]] double target() const noexcept { return target_deg_; }
 
   /// `rate_deg_s`: how fast the target itself moves.
   [[nodiscard]] double velocityRpm(const Measured& measured, double rate_deg_s) const noexcept {
     double missing_deg = target_deg_ - measured.angle_deg;
-    if (config_.circular) missing_deg = std::remainder(missing_deg, kDegPerTurn);
+    if (config_.circular) missing_deg = wrapHalfTurn(missing_deg);
     const double wanted_deg_s = rate_deg_s + config_.gain_per_s * missing_deg;
     const double carried_deg_s = std::isfinite(measured.carried_deg_s) ? measured.carried_deg_s : 0.0;
     const double rpm = (wanted_deg_s - carried_deg_s) / kDegPerSPerRpm;

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <string>
 
+#include "app/angle.hpp"
 #include "app/units.hpp"
 #include "module/hipnuc_protocol.hpp"
 #include "module/serial_keys.hpp"
@@ -95,7 +96,7 @@ class Imu : public Module_Base {
     std::array<double, kAxes> values{};
     values.fill(kNoSignal);
     const Duration age = protocol_ != nullptr ? readStream(values, tick) : readInputs(values);
-    values[kYaw] = std::remainder(values[kYaw] + yaw_offset_deg_, kDegPerTurn);
+    values[kYaw] = wrapHalfTurn(values[kYaw] + yaw_offset_deg_);
     const bool fresh = age <= max_age_;
     if (fresh) {
       if (silent_) robot.report(kBack);

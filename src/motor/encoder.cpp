@@ -10,8 +10,8 @@ namespace {
 double longestSpacingSeconds(const Encoder::Config& config, double bound) noexcept {
   const double left = bound - Encoder::predictionErrorTurns(config, Duration{0});
   if (left <= 0.0) return 0.0;
-  const double a = static_cast<double>(config.max_acceleration_rpm_per_s) / 60.0 / 4.0;
-  const double b = static_cast<double>(config.velocity_error_rpm) / 60.0;
+  const double a = static_cast<double>(config.max_acceleration_rpm_per_s) / kRpmPerTurnPerS / 4.0;
+  const double b = static_cast<double>(config.velocity_error_rpm) / kRpmPerTurnPerS;
   // a t^2 + b t = left, in the form that also holds for a = 0; an hour if nothing bounds it.
   const double denominator = b + std::sqrt(b * b + 4.0 * a * left);
   constexpr double kHour = 3600.0;

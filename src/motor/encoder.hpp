@@ -4,6 +4,7 @@
 #include <cstdint>
 
 #include "app/time.hpp"
+#include "app/units.hpp"
 
 namespace rc10 {
 
@@ -36,9 +37,9 @@ class Encoder {
                                                              Duration spacing) noexcept {
     const double t_s = std::chrono::duration<double>(spacing).count();
     const double stamp_s = std::chrono::duration<double>(config.stamp_error).count();
-    const double acceleration = static_cast<double>(config.max_acceleration_rpm_per_s) / 60.0;
-    const double velocity_error = static_cast<double>(config.velocity_error_rpm) / 60.0;
-    const double velocity = static_cast<double>(config.max_velocity_rpm) / 60.0;
+    const double acceleration = static_cast<double>(config.max_acceleration_rpm_per_s) / kRpmPerTurnPerS;
+    const double velocity_error = static_cast<double>(config.velocity_error_rpm) / kRpmPerTurnPerS;
+    const double velocity = static_cast<double>(config.max_velocity_rpm) / kRpmPerTurnPerS;
     return acceleration * t_s * t_s / 4.0 + velocity_error * t_s + velocity * stamp_s;
   }
   /// Whether counting stays exact, and is known to be, over `lost_frames` in a row that never arrive.

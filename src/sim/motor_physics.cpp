@@ -96,7 +96,7 @@ void MotorPhysics::stepMotion(double dt_s) noexcept {
 
 void MotorPhysics::take(const Hand& hand) noexcept {
   const double from_deg = outputAngleDeg();
-  const double most_deg_s = hand.speed_rpm * kDegPerTurn / 60.0;
+  const double most_deg_s = hand.speed_rpm * kDegPerSPerRpm;
   // Half of its torque is left for friction and the load.
   const double acceleration_deg_s2 = std::min(most_deg_s / std::chrono::duration<double>(Hand::kRamp).count(),
                                               0.5 * hand.torque_nm / parameters_.totalInertia() / kRadPerDeg);

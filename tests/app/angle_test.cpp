@@ -45,6 +45,16 @@ TEST(Angle, TakesTheShortWayAcrossZero) {
   EXPECT_DOUBLE_EQ(shortestAngle(5.0, 725.0), 0.0);
 }
 
+TEST(Angle, WrapsIntoHalfATurnEitherWayWithoutRounding) {
+  EXPECT_EQ(wrapHalfTurn(190.0), -170.0);
+  EXPECT_EQ(wrapHalfTurn(-190.0), 170.0);
+  EXPECT_EQ(wrapHalfTurn(180.0), 180.0);
+  EXPECT_EQ(wrapHalfTurn(-180.0), -180.0);
+  EXPECT_EQ(wrapHalfTurn(0x1p-40), 0x1p-40);
+  EXPECT_EQ(wrapHalfTurn(360.0 * 0x1p30 + 90.0), 90.0);
+  EXPECT_TRUE(std::isnan(wrapHalfTurn(std::numeric_limits<double>::infinity())));
+}
+
 TEST(Angle, NotANumberStaysNotANumber) {
   EXPECT_TRUE(std::isnan(wrapDegrees(std::numeric_limits<double>::quiet_NaN())));
 }

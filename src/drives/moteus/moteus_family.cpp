@@ -7,6 +7,7 @@
 #include <string>
 #include <string_view>
 
+#include "app/units.hpp"
 #include "drives/moteus/moteus_model.hpp"
 #include "drives/moteus/moteus_motor.hpp"
 
@@ -67,7 +68,7 @@ constexpr std::array kMoteusKeys{
 constexpr float kFullScaleA = 100.0F;
 
 // Torque constant times Kv, for a star winding. Source: fw/bldc_servo.cc, UpdateConfig().
-constexpr double kTorqueFactor = 1.5 / std::numbers::sqrt3 * 30.0 / std::numbers::pi;
+constexpr double kTorqueFactor = 1.5 / std::numbers::sqrt3 * kRpmPerRadPerS;
 
 constexpr DriveFrames kMoteusFrames{.rest = Provision::kFrame,
                                     .poll = Provision::kFrame,

@@ -1,4 +1,5 @@
 #include "drives/moteus/moteus_simulated.hpp"
+#include "app/angle.hpp"
 #include "app/units.hpp"
 #include "drives/moteus/moteus_family.hpp"
 
@@ -42,9 +43,6 @@ constexpr std::uint8_t kReadOnly = 2;
   const auto counts = static_cast<float>(std::round(item.value / scale));
   return static_cast<double>(counts * static_cast<float>(scale));
 }
-
-/// Where it is at power-up is known within one turn of the rotor.
-[[nodiscard]] double withinTurn(double deg) noexcept { return std::remainder(deg, kDegPerTurn); }
 
 }  // namespace
 
@@ -347,10 +345,11 @@ void MoteusDrive::restart() noexcept {
   fault_ = 0;
   clock_ = Duration::zero();
   release();
+  // Where it is at power-up is known within one turn of the rotor.
   if (home_state_ == 2) {
-    zeroAt(withinTurn(driveAngleDeg()));
+    zeroAt(wrapHalfTurn(driveAngleDeg()));
   } else {
-    zeroAt(withinTurn(driveAngleDeg() * traits().gear_ratio) / traits().gear_ratio);
+    zeroAt(wrapHalfTurn(driveAngleDeg() * traits().gear_ratio) / traits().gear_ratio);
   }
 }
 

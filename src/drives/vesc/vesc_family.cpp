@@ -7,6 +7,7 @@
 #include <string>
 #include <string_view>
 
+#include "app/units.hpp"
 #include "drives/vesc/vesc_motor.hpp"
 
 // Source, unless another is named: vedderb/bldc@b9d287b, its defaults in motor/mcconf_default.h and
@@ -138,7 +139,7 @@ constexpr CascadeConfig kAngleLoop{
 
 // The q current of a VESC is the peak of the phase current: Kt = 1.5 * pole pairs * flux linkage, and KV (of
 // the peak between two phases) = 60 / (sqrt(3) * 2 pi * pole pairs * flux linkage).
-constexpr double kTorqueTimesKv = 1.5 * 60.0 / (std::numbers::sqrt3 * 2.0 * std::numbers::pi);
+constexpr double kTorqueTimesKv = 1.5 / std::numbers::sqrt3 * kRpmPerRadPerS;
 static_assert(kTorqueTimesKv > 8.269 && kTorqueTimesKv < 8.271);
 
 Provision holdOf(const VescOptions& options) {

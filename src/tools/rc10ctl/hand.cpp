@@ -9,6 +9,7 @@
 
 #include <CLI/CLI.hpp>
 
+#include "app/units.hpp"
 #include "ask.hpp"
 #include "client/find_motor.hpp"
 #include "client/json_line.hpp"
@@ -71,7 +72,6 @@ ExitCode hand(const Global& global, const HandOptions& options) {
                                              value("hold_s", options.hold_s)};
   if (const auto asked = ask(global, Operation::kHand, {options.motor}, values); asked != ExitCode::kOk)
     return asked;
-  constexpr double kDegPerSPerRpm = 6.0;
   const double way_s = std::abs(by_deg) / (options.speed_rpm * kDegPerSPerRpm);
   bool there = watch(*rc10d, feed, way_s + kRampS + options.hold_s + kSettledS);
   const double after_deg = feed.state()->motors[*motor].total_angle_deg;
