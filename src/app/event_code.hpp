@@ -27,6 +27,7 @@ enum class EventCode : std::int32_t {
   kTicksMissed = 201,     ///< value: how many
   kCommandRefused = 202,  ///< admission refused a command message
   kEstopInput = 203,      ///< value: the ContactState of the e-stop input
+  kModeInput = 204,       ///< value: the ContactState of the mode input
   kBusState = 300,        ///< value: new BusState, extra: old one
   kBusAdvice = 301,  ///< what rc10d did about a bus, or what a person has to do; from the io thread, in words
   kForeignSender = 302,  ///< somebody else sends a command id of ours; value: frames since the last report,

@@ -18,6 +18,7 @@ enum class FaultCode : std::int32_t {
   kRunaway = 7,
   kNotAtRest = 8,        ///< Its drive has torque though it is told to rest.
   kForeignCommands = 9,  ///< Somebody else commands its drive.
+  kReducedSpeed = 10,    ///< Faster than reduced_velocity_rpm while the mode input is open.
   // Reported by the drive: every family maps its own codes to these.
   kDriveOverVoltage = 32,
   kDriveUnderVoltage = 33,

@@ -72,6 +72,7 @@ enum class StopCause : std::uint8_t {
 enum Condition : std::uint32_t {
   kConditionSimulated = 1U << 0U,
   kConditionInputOpen = 1U << 1U,
+  kConditionReduced = 1U << 2U,
 };
 
 /// bus_state_t.lcm.
@@ -128,7 +129,7 @@ inline constexpr std::array kActingWords{"nothing", "target", "hold", "damp", "b
 inline constexpr std::array kStopCauseWords{"",      "request", "estop",   "fault",     "silence",
                                             "group", "timeout", "refused", "reference", "shutdown",
                                             "input", "guard",   "overload"};
-inline constexpr std::array kConditionWords{"simulated", "input-open"};
+inline constexpr std::array kConditionWords{"simulated", "input-open", "reduced"};
 inline constexpr std::array kBusStateWords{"active", "warning", "passive", "bus-off",
                                            "down",   "gone",    "silent",  "stalled"};
 inline constexpr std::array kCommandUnitWords{"", "A", "V", "native"};

@@ -46,6 +46,7 @@ std::string headline(const link::Welcome& welcome, const link::State& state,
   text += state.realtime != 0 ? "" : "  NOT REAL-TIME";
   text += (state.conditions & kConditionSimulated) != 0 ? "  SIMULATED" : "";
   text += (state.conditions & kConditionInputOpen) != 0 ? "  E-STOP INPUT OPEN" : "";
+  text += (state.conditions & kConditionReduced) != 0 ? "  REDUCED SPEED" : "";
   text += "  tick " + std::to_string(state.tick);
   if (diagnostics != nullptr) {
     text += "  wake-up p99 " + quantity(static_cast<double>(diagnostics->wake_latency.p99_us), 0, "us");

@@ -26,8 +26,8 @@ struct GpioPin {
   }
 };
 
-/// A normally closed contact: closed is well, open is an emergency stop.
-struct EstopGpioConfig {
+/// A contact that is closed while all is well: open, a broken wire and an unreadable chip are one.
+struct ContactGpioConfig {
   GpioPin pin;
   bool closed_is_low = true;  ///< The contact goes to ground; else to the supply.
   bool internal_bias = true;  ///< The chip's own resistor pulls an open wire to the other level.

@@ -11,6 +11,7 @@
 #include "module/module_type.hpp"
 #include "motor/guarding/fallback.hpp"
 #include "motor/guarding/motor_guard.hpp"
+#include "motor/guarding/reduced_motion.hpp"
 #include "motor/guarding/rest_check.hpp"
 #include "motor/guarding/target_shaper.hpp"
 #include "motor/motor_family.hpp"
@@ -32,6 +33,7 @@ struct MotorConfig {
   GuardConfig guard{};
   RestConfig rest{};
   ShapingConfig shaping{};
+  ReducedConfig reduced{};
   FallbackConfig fallback{};
   float standstill_rpm = 10.0F;                ///< Slower than this it stands still.
   Duration run_down{std::chrono::seconds{5}};  ///< Without torque it turns no longer than this.
@@ -142,8 +144,9 @@ struct RobotConfig {
   std::optional<ClientsConfig> clients;  ///< None: everybody may do everything.
   ForbiddenAt tuning_locked_at = 0;      ///< Line of `tuning: locked`.
   ForbiddenAt clear_local_at = 0;        ///< Line of `clear: local`.
-  std::optional<EstopGpioConfig> estop_gpio;
-  std::optional<EstopGpioConfig> enabling_gpio;  ///< Of a three-position enabling switch.
+  std::optional<ContactGpioConfig> estop_gpio;
+  std::optional<ContactGpioConfig> enabling_gpio;  ///< Of a three-position enabling switch.
+  std::optional<ContactGpioConfig> mode_gpio;  ///< Closed: full speed; open: reduced.
   std::optional<HeartbeatGpioConfig> heartbeat_gpio;
   int blackbox_mib = 16;  ///< 0: none.
   std::vector<BusConfig> buses;

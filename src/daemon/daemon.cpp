@@ -238,6 +238,7 @@ void Daemon::describeRobot() {
   description_.state_hz = config_.lcm.state_hz;
   if (config_.estop_gpio) description_.estop_input = config_.estop_gpio->pin.name();
   if (config_.enabling_gpio) description_.enabling_input = config_.enabling_gpio->pin.name();
+  if (config_.mode_gpio) description_.mode_input = config_.mode_gpio->pin.name();
   for (const auto& bus : config_.buses) {
     const auto load = predictLoad(bus, config_.rate_hz);
     description_.buses.push_back({bus.name, bus.interface, static_cast<double>(bus.bitrate),

@@ -76,6 +76,16 @@ namespace {
   }
 }
 
+[[nodiscard]] const char* modeInputText(std::int32_t state) noexcept {
+  switch (state) {
+    case 1: return "the mode input is closed: full speed and current again, within a second";
+    case 2: return "reduced speed and current: the mode input is open";
+    case 3:
+      return "reduced speed and current: the mode input cannot be read: the chip is gone or does not answer";
+    default: return "mode input unknown";
+  }
+}
+
 // `0x200) from another node on the bus`. `extra`: the id, plus 2^29 if it is extended, plus 2^30 if it was
 // sent on this computer.
 [[nodiscard]] std::string foreignId(std::int32_t extra) {
@@ -164,6 +174,7 @@ std::string eventText(std::int32_t code, std::int32_t value, std::int32_t extra,
     case kTicksMissed: return std::to_string(value) + " ticks missed";
     case kCommandRefused: return refused(value, client);
     case kEstopInput: return estopInputText(value);
+    case kModeInput: return modeInputText(value);
     case kBusState: return "bus " + busStateText(value) + " (was " + busStateText(extra) + ")";
     case kBusAdvice: return "bus restarted, or in need of help";
     case kForeignSender: return foreignSender(value, extra);

@@ -109,6 +109,9 @@ std::string faultText(std::int32_t fault) {
              "and "
              "the drive";
     case kForeignCommands: return "another controller commands its drive; stop one of the two";
+    case kReducedSpeed:
+      return "too fast for reduced mode: faster than reduced_velocity_rpm allows; see its load, and "
+             "reduced_within_ms";
     case kDriveOverVoltage: return "the drive reports over-voltage; see the supply, and what brakes into it";
     case kDriveUnderVoltage: return "the drive reports under-voltage; see battery and power cable";
     case kDriveOverCurrent: return "the drive reports over-current";

@@ -76,6 +76,12 @@ TEST(StateText, SaysWhoStoppedTheRobotAndThatItIsSimulated) {
   EXPECT_THAT(text, Not(HasSubstr("\x1b")));
 }
 
+TEST(StateText, SaysThatSpeedAndCurrentAreReduced) {
+  auto state = heroState();
+  state.conditions = kConditionReduced;
+  EXPECT_THAT(stateText(heroWelcome(), state, nullptr), HasSubstr("  REDUCED SPEED  tick"));
+}
+
 TEST(StateText, DoesWithoutDiagnostics) {
   auto state = heroState();
   state.robot_state = RobotStatus::kEstop;

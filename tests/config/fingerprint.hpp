@@ -44,6 +44,8 @@ inline void print(std::ostream& out, const MotorConfig& motor) {
   out << shaping.effort_slew_per_s << ' ' << shaping.velocity_slew_rpm_per_s << ' '
       << shaping.angle_slew_deg_per_s << ' ' << shaping.angle_min_deg << ' ' << shaping.angle_max_deg << ' '
       << shaping.max_first_step_deg << ' ' << shaping.soft_start_s << '\n';
+  out << motor.reduced.velocity_rpm << ' ' << motor.reduced.within.count() << ' '
+      << motor.reduced.effort_share << '\n';
   std::visit([&out](const auto& pid) { print(out, pid); }, dji.loops.velocity);
   print(out, dji.loops.angle);
   const auto& load = motor.simulated;
@@ -65,9 +67,10 @@ inline std::string fingerprint(const RobotConfig& config) {
       << config.phase_of_period << ' ' << config.rx_lead.count() << ' ' << config.overload.count() << ' '
       << config.rx.priority << ' ' << config.rx.cpu.value_or(-1) << ' ' << config.lcm.enabled << ' '
       << config.lcm.url << ' ' << config.lcm.state_hz << ' ' << config.blackbox_mib << '\n';
-  if (const auto& estop = config.estop_gpio) {
-    out << "estop " << estop->pin.name() << ' ' << estop->closed_is_low << ' ' << estop->internal_bias
-        << '\n';
+  for (const auto& contact : {config.estop_gpio, config.enabling_gpio, config.mode_gpio}) {
+    if (contact)
+      out << contact->pin.name() << ' ' << contact->closed_is_low << ' ' << contact->internal_bias;
+    out << '\n';
   }
   if (const auto& heartbeat = config.heartbeat_gpio) {
     out << "heartbeat " << heartbeat->pin.name() << ' ' << heartbeat->period.count() << ' '

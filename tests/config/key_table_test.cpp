@@ -113,8 +113,14 @@ Pair robotsWith(const Section& section, const Key& key) {
     return {robotAfter("robot: hero\n"), robotAfter("robot: hero\n" + name + ": {" + given + "}\n")};
   }
   if (name.ends_with("_gpio")) {
-    const std::string pin = "robot: hero\n" + name + ": {chip: gpiochip0, line: 17";
-    return {robotAfter(pin + "}\n"), robotAfter(pin + ", " + given + "}\n")};
+    // An input that reduces nothing is refused.
+    const std::string robot = robotWith(motorFor(key.needs) + ", reduced_velocity_rpm: 30}");
+    const std::string mode = "mode_gpio: {chip: gpiochip0, line: 18}\n";
+    const std::string pin = name + ": {chip: gpiochip0, line: 17";
+    const auto with = [&](const std::string& input) {
+      return robot + (name == "mode_gpio" ? "" : mode) + input + "}\n";
+    };
+    return {with(pin), with(pin + ", " + given)};
   }
   if (name.starts_with("bus")) {
     const auto bus = [](const std::string& keys) {

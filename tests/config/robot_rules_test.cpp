@@ -41,7 +41,8 @@ TEST(RobotRules, AnUnknownKeyIsRefusedWithTheNearestOne) {
       ElementsAre(
           "hero.yaml:2:1: wheels: unknown key; known here: robot, realtime, guard, on_unrest, receive, "
           "scheduler, rx, lcm, clients, tuning, clear, "
-          "estop_gpio, enabling_gpio, heartbeat_gpio, blackbox_mib, profiles, buses, groups and modules"));
+          "estop_gpio, enabling_gpio, mode_gpio, heartbeat_gpio, blackbox_mib, profiles, buses, groups and "
+          "modules"));
 }
 
 TEST(RobotRules, AValueOfTheWrongKindIsRefusedWithTheRightOne) {

@@ -355,3 +355,54 @@ def test_a_missing_chip_of_the_enabling_switch_keeps_it_from_starting(tmp_path: 
     refused = start_refused(config_with(tmp_path, enabling_on("gpiochip9")))
     assert "enabling_gpio: gpiochip9" in refused
     assert "`gpiodetect` lists the chips" in refused
+
+
+def reduced_on(folder: Path, chip: str | Path) -> Path:
+    """The wheels may turn at 30 rpm while the contact is open."""
+    config = config_with(folder, estop_on(chip).replace("estop_gpio", "mode_gpio"))
+    text = config.read_text()
+    assert text.count("model: M3508") == 2
+    config.write_text(
+        text.replace("model: M3508", "model: M3508, reduced_velocity_rpm: 30, reduced_current_a: 5")
+    )
+    return config
+
+
+def test_an_open_mode_input_slows_a_fast_shaft_and_closing_it_makes_no_jump(tmp_path: Path) -> None:
+    with Pin("door") as door, enabled(reduced_on(tmp_path, door.chip)) as (process, robot):
+        drive(robot, 1.0, left=rc10.velocity_rpm(200))
+        assert abs(robot.motor("left").velocity_rpm - 200) < 5
+        door.set(True)
+        process.wait_line(f"{door.chip}:0: reduced speed and current: the mode input is open", 5.0)
+        states = drive(robot, 1.5, left=rc10.velocity_rpm(200))
+        assert states[-1].conditions & rc10.Condition.REDUCED
+        assert all(state.state is rc10.RobotStatus.RUN for state in states)
+        assert abs(robot.motor("left").velocity_rpm - 30) < 5
+        assert "REDUCED SPEED" in rc10ctl("watch", "--once").stdout
+
+        door.set(False)
+        process.wait_line("the mode input is closed: full speed and current again", 5.0)
+        speeds = [
+            state.motors["left"].velocity_rpm
+            for state in drive(robot, 2.0, left=rc10.velocity_rpm(200))
+        ]
+        # 450 rpm a second, and the state comes every 5 ms; drive() sees every second one.
+        assert max(b - a for a, b in itertools.pairwise(speeds)) < 20
+        assert abs(robot.motor("left").velocity_rpm - 200) < 5
+
+
+def test_a_mode_input_that_cannot_be_read_reduces(tmp_path: Path) -> None:
+    live = SIM / "door" / "live"
+    with Pin("door") as door:
+        with enabled(reduced_on(tmp_path, door.chip)) as (process, robot):
+            drive(robot, 1.0, left=rc10.velocity_rpm(200))
+            live.write_text("0")
+            process.wait_line("reduced speed and current: the mode input cannot be read", 5.0)
+            drive(robot, 1.5, left=rc10.velocity_rpm(200))
+            assert abs(robot.motor("left").velocity_rpm - 30) < 5
+        live.write_text("1")
+
+
+def test_a_missing_chip_of_the_mode_input_keeps_it_from_starting(tmp_path: Path) -> None:
+    refused = start_refused(reduced_on(tmp_path, "gpiochip9"))
+    assert "mode_gpio: gpiochip9" in refused

@@ -121,6 +121,8 @@ class Condition(IntFlag):
     """Some bus of it has simulated drives."""
     INPUT_OPEN = robot_state_t.CONDITION_INPUT_OPEN
     """The e-stop input is open, or cannot be read."""
+    REDUCED = robot_state_t.CONDITION_REDUCED
+    """The mode input is open, or cannot be read: speed and current are reduced."""
 
 
 _ENUMERATIONS: Mapping[str, Callable[[int], IntEnum | IntFlag]] = {

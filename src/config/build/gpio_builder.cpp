@@ -1,6 +1,7 @@
 #include "config/build/gpio_builder.hpp"
 
 #include <algorithm>
+#include <array>
 #include <string>
 
 namespace rc10 {
@@ -16,7 +17,7 @@ GpioPin readPin(const Settings& settings) {
   return pin;
 }
 
-EstopGpioConfig readEstop(const Settings& settings) {
+ContactGpioConfig readContact(const Settings& settings) {
   return {.pin = readPin(settings),
           .closed_is_low = settings.text("closed_level") != "high",
           .internal_bias = settings.text("bias") != "external"};
@@ -51,27 +52,37 @@ HeartbeatGpioConfig readHeartbeat(const Settings& settings, int rate_hz, Problem
 }  // namespace
 
 void buildGpio(const Settings& top, RobotConfig& robot, Problems& problems) {
-  if (top.find("estop_gpio")) robot.estop_gpio = readEstop(top.section("estop_gpio"));
-  if (const auto enabling = top.find("enabling_gpio")) {
-    robot.enabling_gpio = readEstop(top.section("enabling_gpio"));
-    if (robot.estop_gpio && robot.estop_gpio->pin == robot.enabling_gpio->pin) {
-      problems.error(enabling->place(), enabling->path,
-                     robot.enabling_gpio->pin.name() +
-                         " is the line of estop_gpio: each contact needs its "
-                         "own; use another line");
+  struct Contact {
+    const char* key;
+    std::optional<ContactGpioConfig>& config;
+  };
+  const std::array contacts{Contact{"estop_gpio", robot.estop_gpio},
+                            Contact{"enabling_gpio", robot.enabling_gpio},
+                            Contact{"mode_gpio", robot.mode_gpio}};
+  const auto owner = [&contacts](const GpioPin& pin) -> const char* {
+    for (const auto& contact : contacts)
+      if (contact.config && contact.config->pin == pin) return contact.key;
+    return nullptr;
+  };
+  for (const auto& contact : contacts) {
+    const auto given = top.find(contact.key);
+    if (!given) continue;
+    const auto config = readContact(top.section(contact.key));
+    if (const char* other = owner(config.pin)) {
+      problems.error(
+          given->place(), given->path,
+          config.pin.name() + " is the line of " + other + ": each contact needs its own; use another line");
     }
+    contact.config = config;
   }
   const auto given = top.find("heartbeat_gpio");
   if (!given) return;
   robot.heartbeat_gpio = readHeartbeat(top.section("heartbeat_gpio"), robot.rate_hz, problems);
-  const auto is_its_line = [&](const std::optional<EstopGpioConfig>& input) {
-    return input && input->pin == robot.heartbeat_gpio->pin;
-  };
-  if (!is_its_line(robot.estop_gpio) && !is_its_line(robot.enabling_gpio)) return;
-  problems.error(given->place(), given->path,
-                 robot.heartbeat_gpio->pin.name() + " is the line of " +
-                     (is_its_line(robot.estop_gpio) ? "estop_gpio" : "enabling_gpio") +
-                     ": an output that switches itself; use another line");
+  if (const char* other = owner(robot.heartbeat_gpio->pin)) {
+    problems.error(given->place(), given->path,
+                   robot.heartbeat_gpio->pin.name() + " is the line of " + other +
+                       ": an output that switches itself; use another line");
+  }
 }
 
 }  // namespace rc10

@@ -9,6 +9,7 @@
 #include "config/build/guard_builder.hpp"
 #include "config/build/loop_builder.hpp"
 #include "config/build/motor_parse.hpp"
+#include "config/build/reduced_builder.hpp"
 #include "config/build/shaping_builder.hpp"
 #include "config/keys/need_check.hpp"
 #include "config/keys/value_check.hpp"
@@ -180,6 +181,7 @@ void build(MotorParse& in, int tick_hz) {
   readGuard(in);
   readFallbacks(in);
   readShaping(in);
+  readReduced(in);
 }
 
 }  // namespace

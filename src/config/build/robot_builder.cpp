@@ -11,6 +11,7 @@
 #include "config/build/implied_groups.hpp"
 #include "config/build/lcm_url.hpp"
 #include "config/build/module_builder.hpp"
+#include "config/build/reduced_builder.hpp"
 #include "config/keys/profiles.hpp"
 #include "config/keys/settings.hpp"
 
@@ -63,6 +64,7 @@ class RobotBuilder {
     buildGpio(top_, robot_, problems_);
     top_.read("blackbox_mib", robot_.blackbox_mib);
     readBuses();
+    checkModeInput(top_, robot_, problems_);
     robot_.groups = buildGroups(top_, robot_.buses, problems_);
     robot_.modules = buildModules(top_, robot_.buses, problems_);
     addImpliedGroups(robot_);

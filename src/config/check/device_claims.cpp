@@ -8,6 +8,7 @@ namespace rc10 {
 DeviceClaims::DeviceClaims(const RobotConfig& robot) {
   if (robot.estop_gpio) claimLine("", robot.estop_gpio->pin, "estop_gpio");
   if (robot.enabling_gpio) claimLine("", robot.enabling_gpio->pin, "enabling_gpio");
+  if (robot.mode_gpio) claimLine("", robot.mode_gpio->pin, "mode_gpio");
   if (robot.heartbeat_gpio) claimLine("", robot.heartbeat_gpio->pin, "heartbeat_gpio");
 }
 

@@ -26,7 +26,7 @@ constexpr Key kLineKey{.name = "line",
                        .required = true,
                        .about = "Line of the chip. On a Raspberry Pi the BCM number: 17 is GPIO17, pin 11."};
 
-constexpr std::array kEstopKeys{
+constexpr std::array kContactKeys{
     kChipKey, kLineKey,
     Key{.name = "closed_level",
         .kind = kText,
@@ -60,11 +60,14 @@ constexpr std::array kHeartbeatKeys{
 
 }  // namespace
 
-constexpr Section kEstopGpioSection{"estop_gpio", kEstopKeys,
+constexpr Section kEstopGpioSection{"estop_gpio", kContactKeys,
                                     "An emergency-stop contact on a GPIO line, normally closed."};
 constexpr Section kEnablingGpioSection{
-    "enabling_gpio", kEstopKeys,
+    "enabling_gpio", kContactKeys,
     "The contact of a three-position enabling switch on a GPIO line, closed in the middle position alone."};
+constexpr Section kModeGpioSection{
+    "mode_gpio", kContactKeys,
+    "A contact on a GPIO line that is open while a person is near, as that of a guard door."};
 constexpr Section kHeartbeatGpioSection{"heartbeat_gpio", kHeartbeatKeys,
                                         "A GPIO line that toggles while the scheduler ticks."};
 

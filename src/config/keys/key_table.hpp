@@ -96,6 +96,7 @@ struct Section {
 extern const Section kRobotSection;
 extern const Section kEstopGpioSection;
 extern const Section kEnablingGpioSection;
+extern const Section kModeGpioSection;
 extern const Section kHeartbeatGpioSection;
 extern const Section kClientSection;
 extern const Section kBusSection;

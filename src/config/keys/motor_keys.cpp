@@ -88,6 +88,38 @@ constexpr std::array kMotorKeys{
         .range = {.min = 0, .max = 100'000, .above_min = true},
         .about = "Three samples faster than this are a fault. Must be above velocity_limit_rpm. Default: 1.5 "
                  "times the model's no-load speed."},
+    Key{.name = "reduced_velocity_rpm",
+        .kind = kNumber,
+        .unit = "rpm",
+        .range = {.min = 0, .max = 100'000, .above_min = true},
+        .about = "Bounds the speed in every mode while the contact of mode_gpio is open. Must be below "
+                 "velocity_limit_rpm. A shaft a quarter faster, and 2 % of the no-load speed, is a fault "
+                 "after reduced_within_ms. Default: the speed is not reduced."},
+    Key{.name = "reduced_within_ms",
+        .kind = kInteger,
+        .unit = "ms",
+        .range = {.min = 20, .max = 60'000},
+        .default_text = "1000",
+        .about = "Time to come down to reduced_velocity_rpm: along velocity_slew_rpm_per_s, without one in "
+                 "half of it."},
+    Key{.name = "reduced_current_a",
+        .kind = kNumber,
+        .unit = "A",
+        .range = {.min = 0, .max = kByModel, .above_min = true},
+        .needs = kNeedsCurrent,
+        .twin = "reduced_voltage_v",
+        .about =
+            "In place of current_limit_a while the contact of mode_gpio is open, once the shaft has come "
+            "down. Default: not reduced."},
+    Key{.name = "reduced_voltage_v",
+        .kind = kNumber,
+        .unit = "V",
+        .range = {.min = 0, .max = kByModel, .above_min = true},
+        .needs = kNeedsVoltage,
+        .twin = "reduced_current_a",
+        .about =
+            "In place of voltage_limit_v while the contact of mode_gpio is open, once the shaft has come "
+            "down. Default: not reduced."},
     Key{.name = "temperature_derate_c",
         .kind = kNumber,
         .unit = "C",

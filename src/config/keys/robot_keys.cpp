@@ -175,6 +175,11 @@ constexpr std::array kRobotKeys{
         .kind = kSection,
         .section = &kEnablingGpioSection,
         .about = "An enabling switch on a GPIO line: released or squeezed, it is an e-stop. Default: none."},
+    Key{.name = "mode_gpio",
+        .kind = kSection,
+        .section = &kModeGpioSection,
+        .about = "A contact on a GPIO line that is open while a person is near: each motor has its "
+                 "reduced_velocity_rpm and reduced_current_a then. Default: none."},
     Key{.name = "heartbeat_gpio",
         .kind = kSection,
         .section = &kHeartbeatGpioSection,

@@ -44,7 +44,7 @@ std::string receiveText(const RobotConfig& config) {
   return hasSerialPorts(config) ? "by the tick; serial ports " + threadText(config.rx) : "by the tick";
 }
 
-std::string contactText(const EstopGpioConfig& contact) {
+std::string contactText(const ContactGpioConfig& contact) {
   return contact.pin.name() + ", closed contact reads " + (contact.closed_is_low ? "low" : "high") + ", " +
          (contact.internal_bias ? "internal " : "external ") +
          (contact.closed_is_low ? "pull-up" : "pull-down");
@@ -85,6 +85,7 @@ std::string robotText(const RobotConfig& config) {
   if (config.clear_local_at != 0) table.add({"clear", "from this computer only"});
   if (config.estop_gpio) table.add({"e-stop input", contactText(*config.estop_gpio)});
   if (config.enabling_gpio) table.add({"enabling switch", contactText(*config.enabling_gpio)});
+  if (config.mode_gpio) table.add({"mode input", contactText(*config.mode_gpio)});
   if (const auto& heartbeat = config.heartbeat_gpio) {
     const auto period = std::chrono::duration_cast<std::chrono::milliseconds>(heartbeat->period).count();
     const auto rests = heartbeat->rests_in_estop_after;
@@ -105,10 +106,11 @@ std::string modesOf(ModeSet set) {
   return listWords(modes, ", ");
 }
 
-std::string limitText(const MotorConfig& motor) {
+/// `share`: of the limit.
+std::string limitText(const MotorConfig& motor, double share = 1.0) {
   const MotorTraits traits = motor.traits();
   const float limit = motor.settings.effort_limit;
-  return rounded(static_cast<double>(limit > 0.0F ? limit : traits.effort_full_scale), 4) +
+  return rounded(share * static_cast<double>(limit > 0.0F ? limit : traits.effort_full_scale), 4) +
          (traits.effort == CommandUnit::kVolt ? " V" : " A");
 }
 
@@ -220,6 +222,28 @@ std::string overspeedText(const GuardConfig& guard) {
                                     : "not watched";
 }
 
+/// "60 rpm within 1000 ms, 5 A".
+std::string reducedText(const MotorConfig& motor) {
+  const ReducedConfig& reduced = motor.reduced;
+  std::string text;
+  if (reduced.velocity_rpm > 0.0F)
+    text = numberText(static_cast<double>(reduced.velocity_rpm)) + " rpm within " +
+           std::to_string(reduced.within / std::chrono::milliseconds{1}) + " ms";
+  if (reduced.effort_share < 1.0F)
+    text += (text.empty() ? "" : ", ") + limitText(motor, static_cast<double>(reduced.effort_share));
+  return text.empty() ? "not reduced" : text;
+}
+
+/// While a person is near; empty without a mode input.
+std::string reducedText(const RobotConfig& config) {
+  if (!config.mode_gpio) return {};
+  std::string text = "\nwhile the mode input is open:\n";
+  TextTable table;
+  for (const auto& bus : config.buses)
+    for (const auto& motor : bus.motors) table.add({motor.name(), reducedText(motor)});
+  return text + table.text(2);
+}
+
 /// Fallbacks and travel limits of each motor.
 std::string safetyText(const BusConfig& bus) {
   TextTable table;
@@ -324,7 +348,8 @@ std::string restText(const RobotConfig& config) {
 std::string describe(const RobotConfig& config) {
   std::string text = robotText(config);
   for (const auto& bus : config.buses) text += busText(bus, config.rate_hz);
-  return text + groupsText(config) + modulesText(config) + watchdogText(config) + restText(config);
+  return text + reducedText(config) + groupsText(config) + modulesText(config) + watchdogText(config) +
+         restText(config);
 }
 
 }  // namespace rc10

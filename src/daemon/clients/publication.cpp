@@ -96,8 +96,7 @@ void Publication::fill(link::State& state, const Snapshot& snapshot, std::int64_
   state.stopped_by = snapshot.stop.by;
   state.stopped_mono_us = monoUs(snapshot.stopped);
   state.estop_count = static_cast<std::int32_t>(snapshot.estops);
-  state.conditions =
-      (robot_.simulated() ? kConditionSimulated : 0U) | (snapshot.input_open ? kConditionInputOpen : 0U);
+  state.conditions = (robot_.simulated() ? kConditionSimulated : 0U) | snapshot.conditions;
   state.motor_count = static_cast<std::uint32_t>(snapshot.motor_count);
   for (std::size_t i = 0; i < snapshot.motor_count; ++i) {
     const auto& in = snapshot.motors[i];
@@ -249,6 +248,8 @@ link::Event Publication::event(const Event& event, std::int64_t utime) const {
   if (event.code == EventCode::kEstopInput) {
     const bool enabling = event.value == static_cast<std::int32_t>(ContactState::kReleased);
     out.source = enabling || robot_.estop_input.empty() ? robot_.enabling_input : robot_.estop_input;
+  } else if (event.code == EventCode::kModeInput) {
+    out.source = robot_.mode_input;
   } else if (event.source < 0) {
     out.source = "robot";
   } else if (isOfBus(event.code)) {

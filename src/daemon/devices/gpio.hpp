@@ -3,7 +3,7 @@
 #include <optional>
 
 #include "app/time.hpp"
-#include "daemon/exchange/estop_contact.hpp"
+#include "daemon/exchange/safety_contact.hpp"
 
 namespace rc10 {
 

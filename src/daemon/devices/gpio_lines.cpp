@@ -141,7 +141,7 @@ class GpioOutput final : public DigitalOutput {
   Line line_;
 };
 
-[[nodiscard]] int biasOf(const EstopGpioConfig& config) noexcept {
+[[nodiscard]] int biasOf(const ContactGpioConfig& config) noexcept {
   if (!config.internal_bias) return GPIOD_LINE_REQUEST_FLAG_BIAS_DISABLE;
   // An open wire must read as open.
   return config.closed_is_low ? GPIOD_LINE_REQUEST_FLAG_BIAS_PULL_UP : GPIOD_LINE_REQUEST_FLAG_BIAS_PULL_DOWN;
@@ -188,7 +188,7 @@ class KernelGpio final : public GpioSystem {
 
 std::unique_ptr<GpioSystem> kernelGpio() { return std::make_unique<KernelGpio>(); }
 
-Result<std::unique_ptr<ContactInput>> openContact(const EstopGpioConfig& config, const char* key) {
+Result<std::unique_ptr<ContactInput>> openContact(const ContactGpioConfig& config, const char* key) {
   const std::string consumer = std::string("rc10d ") + key;
   auto line = findLine(key, config.pin);
   if (!line) return tl::unexpected(line.error());

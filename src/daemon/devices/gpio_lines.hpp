@@ -12,7 +12,7 @@ namespace rc10 {
 
 /// Takes the line as an input with both edges; without waiting, where the chip has no interrupts. The error
 /// says what is wrong (chip, rights, line in use) and what to do. Main thread only.
-[[nodiscard]] Result<std::unique_ptr<ContactInput>> openContact(const EstopGpioConfig& config,
+[[nodiscard]] Result<std::unique_ptr<ContactInput>> openContact(const ContactGpioConfig& config,
                                                                 const char* key = "estop_gpio");
 
 /// Takes the line as an output, low.

@@ -129,6 +129,7 @@ Result<void> Robot::addMotor(const MotorConfig& config, std::size_t bus_index) {
        .guard = config.guard,
        .rest = config.rest,
        .shaping = config.shaping,
+       .reduced = config.reduced,
        .fallback = config.fallback,
        .standstill_rpm = config.standstill_rpm,
        .run_down = config.run_down,

@@ -37,6 +37,7 @@ class Robot {
     GuardConfig guard{};
     RestConfig rest{};
     ShapingConfig shaping{};
+    ReducedConfig reduced{};
     FallbackConfig fallback{};
     float standstill_rpm = 0.0F;
     Duration run_down{};                ///< Without torque and feedback it turns no longer than this.

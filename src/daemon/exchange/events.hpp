@@ -6,7 +6,7 @@
 #include "app/event_code.hpp"
 #include "app/time.hpp"
 #include "bus/can_frame.hpp"
-#include "daemon/exchange/estop_contact.hpp"
+#include "daemon/exchange/safety_contact.hpp"
 #include "link/link_protocol.hpp"
 
 namespace rc10 {
@@ -32,6 +32,12 @@ inline constexpr Duration kReportInterval = std::chrono::seconds{1};
 [[nodiscard]] inline Event estopInputEvent(ContactState state, MonotonicTime now) noexcept {
   const auto severity = state == ContactState::kClosed ? Severity::kInfo : Severity::kError;
   return {EventCode::kEstopInput, severity, -1, static_cast<std::int32_t>(state), 0, now};
+}
+
+/// The mode input has changed.
+[[nodiscard]] inline Event modeInputEvent(ContactState state, MonotonicTime now) noexcept {
+  const auto severity = state == ContactState::kUnreadable ? Severity::kError : Severity::kInfo;
+  return {EventCode::kModeInput, severity, -1, static_cast<std::int32_t>(state), 0, now};
 }
 
 /// The last foreign frame, for kForeignSender: its id, and whether it came from this computer.

@@ -8,11 +8,11 @@
 
 #include "bus/bus_health.hpp"
 #include "bus/can_frame.hpp"
-#include "daemon/exchange/estop_contact.hpp"
 #include "daemon/exchange/events.hpp"
 #include "daemon/exchange/hand_order.hpp"
 #include "daemon/exchange/latest_value.hpp"
 #include "daemon/exchange/orders.hpp"
+#include "daemon/exchange/safety_contact.hpp"
 #include "daemon/exchange/snapshot.hpp"
 #include "daemon/exchange/tick_ages.hpp"
 #include "daemon/exchange/tick_trace.hpp"
@@ -62,7 +62,8 @@ struct LinkExchange {
   /// Beside the ring, so that an e-stop gets through when the ring is full.
   std::atomic<bool> estop{false};
   LatestValue<link::Name> estop_client;  ///< The one that asked for it; published before.
-  EstopContact estop_contact;            // gpio -> scheduler
+  SafetyContact estop_contact;           // gpio -> scheduler
+  SafetyContact mode_contact;            // gpio -> scheduler
   std::atomic<bool> guard_lost{false};   // main -> scheduler: rc10-guard has ended
 };
 

@@ -142,7 +142,7 @@ void FlightRecorder::states(const Snapshot& snapshot) noexcept {
     record.header.time_ns = nowNs();
     record.header.flags = static_cast<std::uint8_t>(snapshot.state);
     record.header.source = static_cast<std::uint8_t>(snapshot.stop.cause);
-    record.header.id = snapshot.input_open ? kConditionInputOpen : 0U;
+    record.header.id = snapshot.conditions;
     record.tick = snapshot.tick;
     record.missed_ticks = snapshot.missed_ticks;
     record.estops = snapshot.estops;

@@ -1,5 +1,6 @@
 #include "daemon/supervision/axis.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 namespace rc10 {
@@ -22,6 +23,7 @@ Axis::Axis(const Robot::MotorEntry& entry, const Robot::BusEntry& bus) noexcept
       motor_(*entry.motor),
       guard_(entry.guard),
       rest_(entry.rest),
+      reduced_(entry.reduced),
       shaper_(entry.shaping) {}
 
 void Axis::fill(MotorSnapshot& snapshot) const noexcept {
@@ -140,11 +142,13 @@ std::optional<MotorEvent> Axis::endsEnabling(const Tick& tick) const noexcept {
   return std::nullopt;
 }
 
-bool Axis::trips(const Tick& tick) noexcept {
+bool Axis::trips(bool reduced, const Tick& tick) noexcept {
   limits_ = 0;
   // A fallback that brakes or holds after an e-stop is a loop as well.
   const bool moves = status_ == MotorStatus::kActive ||
                      (status_ == MotorStatus::kReady && fallback_.acts()) || heldWhileEnabling();
+  const bool too_fast = reduced_.step(reduced, moves, motor_.feedback(), tick);
+  shaper_.setCeiling(reduced_.ceilingRpm());
   if (!moves) {
     guard_.reset();
     return false;
@@ -156,9 +160,12 @@ bool Axis::trips(const Tick& tick) noexcept {
                                     .limits = motor_.limits(),
                                     .now = tick.now});
   limits_ = verdict.limits;
-  motor_.derate(verdict.derating);
-  if (verdict.fault == FaultCode::kNone) return false;
-  fault_ = verdict.fault;
+  motor_.derate(std::min(verdict.derating, reduced_.effortShare()));
+  const auto fault = verdict.fault != FaultCode::kNone ? verdict.fault
+                     : too_fast                        ? FaultCode::kReducedSpeed
+                                                       : FaultCode::kNone;
+  if (fault == FaultCode::kNone) return false;
+  fault_ = fault;
   return true;
 }
 

@@ -56,7 +56,8 @@ class Axis {
   /// The end of an enable sequence.
   [[nodiscard]] std::optional<MotorEvent> endsEnabling(const Tick& tick) const noexcept;
   /// Limits and derating of this tick. A fault that the guard sees: fault() from now on.
-  [[nodiscard]] bool trips(const Tick& tick) noexcept;
+  /// `reduced`: the mode input asks for reduced speed and effort.
+  [[nodiscard]] bool trips(bool reduced, const Tick& tick) noexcept;
   /// Whether its drive rests, while it is told to. RestCheck::Verdict::kDriven: fault() from now on, unless
   /// it is in FAULT for another reason.
   [[nodiscard]] RestCheck::Verdict checkRest(const Tick& tick) noexcept;
@@ -111,6 +112,7 @@ class Axis {
   Motor_Base& motor_;
   MotorGuard guard_;
   RestCheck rest_;
+  ReducedMotion reduced_;
   TargetShaper shaper_;
   Fallback fallback_;
   Lease lease_;      ///< Whose target is in force, and until when.

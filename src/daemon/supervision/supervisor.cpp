@@ -56,7 +56,7 @@ void Supervisor::watch(std::size_t motor, const Tick& tick) noexcept {
   if (axis.losesReference(tick)) report({EventCode::kReferenceLost, Severity::kWarning, who, 0, 0, tick.now});
   if (const auto complaint = axis.complains(tick)) fault(static_cast<std::int32_t>(complaint->native_code));
   if (const auto end = axis.endsEnabling(tick)) transition(motor, *end, tick);
-  if (axis.trips(tick)) fault(0);
+  if (axis.trips(reduced_, tick)) fault(0);
   if (const auto by = foreign_.takeover(motor); by && axis.yields()) fault(*by);
   watchRest(motor, tick);
   if (axis.lapses(tick)) {
@@ -176,12 +176,16 @@ void Supervisor::report(Event event) noexcept {
   if (!link_.events.push(event)) ++events_dropped_;
 }
 
+std::uint32_t Supervisor::conditions() const noexcept {
+  return (link_.estop_contact.open() ? kConditionInputOpen : 0U) | (reduced_ ? kConditionReduced : 0U);
+}
+
 void Supervisor::fillSnapshot(Snapshot& snapshot) const noexcept {
   snapshot.state = state_;
   snapshot.stop = stop_;
   snapshot.stopped = stopped_;
   snapshot.estops = estops_;
-  snapshot.input_open = link_.estop_contact.open();
+  snapshot.conditions = conditions();
   snapshot.expired_commands = expired_commands_;
   snapshot.refused_commands = refused_commands_;
   snapshot.skipped_setpoints = skipped_setpoints_;

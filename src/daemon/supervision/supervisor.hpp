@@ -92,6 +92,7 @@ class Supervisor {
     MonotonicTime deadline;
   };
 
+  [[nodiscard]] std::uint32_t conditions() const noexcept;
   [[nodiscard]] bool mayCommand(const Command& command, const Lease::Holder& sender,
                                 const Tick& tick) noexcept;
   void apply(const Command& command, const Tick& tick) noexcept;
@@ -163,6 +164,7 @@ class Supervisor {
   bool simulation_late_ = false;
   bool heartbeat_rests_ = false;
   bool estop_asked_ = false;  ///< In this tick, until decide().
+  bool reduced_ = false;      ///< The mode input is open, or was since the last tick.
   MonotonicTime client_heard_{};
   std::uint64_t expired_commands_ = 0;
   std::uint64_t refused_commands_ = 0;

@@ -9,7 +9,10 @@ namespace rc10 {
 void Supervisor::receiveOrders(const Tick& tick) noexcept {
   const auto contact = link_.estop_contact.look(tick.dt_s);
   if (contact.news) report(estopInputEvent(*contact.news, tick.now));
-  if (contact.stop) estop({StopCause::kInput}, tick);
+  if (contact.opened) estop({StopCause::kInput}, tick);
+  const auto mode = link_.mode_contact.look(tick.dt_s);
+  if (mode.news) report(modeInputEvent(*mode.news, tick.now));
+  reduced_ = mode.opened;
   if (link_.estop.exchange(false, std::memory_order_acquire))
     estop({StopCause::kRequest, link_.estop_client.read()}, tick);
   // Only what is there now: a client that floods the ring must not lengthen the tick without bound.

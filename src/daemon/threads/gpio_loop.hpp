@@ -15,17 +15,18 @@
 
 namespace rc10 {
 
-/// The gpio thread: watches the e-stop input, and toggles the heartbeat while the scheduler ticks. The
-/// scheduler never waits for a chip, which may sit behind a slow bus.
+/// The gpio thread: watches the e-stop input and the mode input, and toggles the heartbeat while the
+/// scheduler ticks. The scheduler never waits for a chip, which may sit behind a slow bus.
 class GpioLoop {
  public:
   /// Opens what is configured; nullptr where nothing is. A safety input that is missing is an error.
   [[nodiscard]] static Result<std::unique_ptr<GpioLoop>> create(const RobotConfig& config,
                                                                 LinkExchange& link);
 
-  /// Each may be missing. `enabling`: the contact of an enabling switch.
+  /// Each may be missing. `enabling`: the contact of an enabling switch; `mode`: the one that is open while
+  /// speed and current are to be reduced.
   GpioLoop(std::unique_ptr<ContactInput> contact, std::optional<Heartbeat> heartbeat, LinkExchange& link,
-           std::unique_ptr<ContactInput> enabling = nullptr);
+           std::unique_ptr<ContactInput> enabling = nullptr, std::unique_ptr<ContactInput> mode = nullptr);
 
   /// The thread's body.
   void run(const std::stop_token& stop, const Scheduler& scheduler) noexcept;
@@ -43,6 +44,7 @@ class GpioLoop {
 
   std::unique_ptr<ContactInput> contact_;
   std::unique_ptr<ContactInput> enabling_;
+  std::unique_ptr<ContactInput> mode_;
   std::optional<Heartbeat> heartbeat_;
   LinkExchange& link_;
   std::atomic<bool> heartbeat_failed_{false};

@@ -8,8 +8,6 @@
 namespace rc10 {
 namespace {
 
-// One strange sample is not a speed.
-constexpr int kFastSamples = 3;
 // A motor at rest sends the same frame for ever; one that is told a current does not for so long.
 constexpr Duration kFrozenTime = std::chrono::milliseconds{200};
 

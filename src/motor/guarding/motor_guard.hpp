@@ -8,6 +8,9 @@
 
 namespace rc10 {
 
+/// Too fast in so many samples in a row: one strange sample is not a speed.
+inline constexpr int kFastSamples = 3;
+
 /// Limits of a motor beyond which it is stopped. At the output shaft; 0: not watched.
 struct GuardConfig {
   float overspeed_rpm = 0.0F;

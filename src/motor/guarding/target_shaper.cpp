@@ -107,15 +107,22 @@ TargetShaper::Envelope TargetShaper::envelope(double total_angle_deg) const noex
           std::max(0.0, (config_.angle_max_deg - total_angle_deg) * slope)};
 }
 
+TargetShaper::Envelope TargetShaper::allowedSpeeds(const MotorFeedback& feedback) const noexcept {
+  if (!bounded(feedback)) return {-ceiling_rpm_, ceiling_rpm_};
+  const Envelope soft = envelope(feedback.total_angle_deg);
+  return {std::max(soft.low_rpm, -ceiling_rpm_), std::min(soft.high_rpm, ceiling_rpm_)};
+}
+
 bool TargetShaper::slew(double goal, float per_second, float dt_s) noexcept {
   return slewTowards(goal, static_cast<double>(per_second), dt_s, value_);
 }
 
 // The velocity of a trajectory: no faster than the angle may move, and no jump.
 std::uint32_t TargetShaper::shapeVelocityFf(Target& asked, float dt_s) noexcept {
-  const double most_rpm = config_.angle_slew_deg_per_s > 0.0F
-                              ? static_cast<double>(config_.angle_slew_deg_per_s) / kDegPerSPerRpm
-                              : std::numeric_limits<double>::infinity();
+  const double most_rpm =
+      config_.angle_slew_deg_per_s > 0.0F
+          ? std::min(ceiling_rpm_, static_cast<double>(config_.angle_slew_deg_per_s) / kDegPerSPerRpm)
+          : ceiling_rpm_;
   const auto wanted_rpm = static_cast<double>(asked.velocity_ff_rpm);
   const double goal_rpm = std::clamp(wanted_rpm, -most_rpm, most_rpm);
   const bool slewed =
@@ -124,19 +131,23 @@ std::uint32_t TargetShaper::shapeVelocityFf(Target& asked, float dt_s) noexcept 
   return slewed || goal_rpm != wanted_rpm ? kLimitSlew : 0U;
 }
 
-// A feed-forward is an effort as any other: it rises at the rate of one, and fades towards a soft limit.
+// A feed-forward is an effort as any other: it rises at the rate of one, and fades towards a soft limit; and
+// towards the ceiling, where no loop holds the speed against it.
 std::uint32_t TargetShaper::shapeTorqueFf(Target& asked, const MotorFeedback& feedback, float dt_s) noexcept {
   const auto per_nm = static_cast<double>(config_.effort_per_nm);
   const double nm_per_s = per_nm > 0.0 ? static_cast<double>(config_.effort_slew_per_s) / per_nm : 0.0;
   std::uint32_t limits = 0;
   if (slewTowards(static_cast<double>(asked.torque_ff_nm), nm_per_s, dt_s, torque_ff_nm_))
     limits = kLimitSlew;
-  if (torque_ff_nm_ != 0.0 && bounded(feedback)) {
+  const bool free = reduced() && asked.mode == ControlMode::kImpedance;
+  if (torque_ff_nm_ != 0.0 && (free || bounded(feedback))) {
     const double sign = std::copysign(1.0, torque_ff_nm_);
-    const double most_nm = mostTorqueFf(asked, feedback, sign);
+    const Envelope allowed = free ? allowedSpeeds(feedback) : envelope(feedback.total_angle_deg);
+    const double allowed_rpm = sign > 0.0 ? allowed.high_rpm : allowed.low_rpm;
+    const double most_nm = mostTorqueFf(asked, feedback, allowed_rpm, sign);
     if (std::fabs(torque_ff_nm_) > most_nm) {
       torque_ff_nm_ = sign * most_nm;
-      limits |= kLimitAngle;
+      limits |= limitOf(allowed_rpm);
     }
   }
   asked.torque_ff_nm = static_cast<float>(torque_ff_nm_);
@@ -144,10 +155,8 @@ std::uint32_t TargetShaper::shapeTorqueFf(Target& asked, const MotorFeedback& fe
 }
 
 // The most in the direction of `sign`. Below 0 it brakes: where a spring may be too soft to do it.
-double TargetShaper::mostTorqueFf(const Target& asked, const MotorFeedback& feedback,
+double TargetShaper::mostTorqueFf(const Target& asked, const MotorFeedback& feedback, double allowed_rpm,
                                   double sign) const noexcept {
-  const Envelope allowed = envelope(feedback.total_angle_deg);
-  const double allowed_rpm = sign > 0.0 ? allowed.high_rpm : allowed.low_rpm;
   double most_nm = 0.0;
   if (config_.effort_per_nm > 0.0F) {
     most_nm = sign * effortFor(allowed_rpm, feedback) / static_cast<double>(config_.effort_per_nm);
@@ -167,15 +176,24 @@ TargetShaper::Shaped TargetShaper::shapeEffort(Target asked, const MotorFeedback
   const double per_s = scale * static_cast<double>(config_.effort_slew_per_s);
   Shaped out{asked, slewTowards(asked.value, per_s, dt_s, value_) ? kLimitSlew : 0U};
   out.target.value = value_;
-  if (!bounded(feedback)) return out;
+  if (!bounded(feedback) && !reduced()) return out;
   // A push outwards fades as the speed nears what is allowed, and brakes beyond it. A push inwards always
   // acts.
-  const Envelope allowed = envelope(feedback.total_angle_deg);
-  const double inside = std::clamp(value_, scale * effortFor(allowed.low_rpm, feedback),
-                                   scale * effortFor(allowed.high_rpm, feedback));
-  if (inside != value_) out.limits |= kLimitAngle;
+  const Envelope allowed = allowedSpeeds(feedback);
+  const double inside = std::clamp(value_, scale * effortTowards(allowed.low_rpm, -1.0, feedback),
+                                   scale * effortTowards(allowed.high_rpm, 1.0, feedback));
+  if (inside != value_) out.limits |= limitOf(inside < value_ ? allowed.high_rpm : allowed.low_rpm);
   out.target.value = inside;
   return out;
+}
+
+// Of a drive whose speed per effort nobody knows, a ceiling only ends what drives the shaft beyond it.
+double TargetShaper::effortTowards(double allowed_rpm, double sign,
+                                   const MotorFeedback& feedback) const noexcept {
+  const bool known = config_.approach_effort_per_rpm > 0.0F || config_.effort_per_rpm > 0.0F;
+  if (known || bounded(feedback)) return effortFor(allowed_rpm, feedback);
+  const bool slower = sign * (allowed_rpm - static_cast<double>(feedback.velocity_rpm)) > 0.0;
+  return slower ? sign * std::numeric_limits<double>::infinity() : 0.0;
 }
 
 double TargetShaper::effortFor(double allowed_rpm, const MotorFeedback& feedback) const noexcept {
@@ -187,10 +205,10 @@ double TargetShaper::effortFor(double allowed_rpm, const MotorFeedback& feedback
 TargetShaper::Shaped TargetShaper::shapeVelocity(Target asked, const MotorFeedback& feedback,
                                                  float dt_s) noexcept {
   Shaped out{asked, slew(asked.value, config_.velocity_slew_rpm_per_s, dt_s) ? kLimitSlew : 0U};
-  if (bounded(feedback)) {
-    const Envelope allowed = envelope(feedback.total_angle_deg);
+  if (bounded(feedback) || reduced()) {
+    const Envelope allowed = allowedSpeeds(feedback);
     const double inside = std::clamp(value_, allowed.low_rpm, allowed.high_rpm);
-    if (inside != value_) out.limits |= kLimitAngle;
+    if (inside != value_) out.limits |= limitOf(inside);
     value_ = inside;
   }
   out.target.value = value_;
@@ -209,11 +227,16 @@ double TargetShaper::reachable(double goal_deg, bool any_turn) const noexcept {
 TargetShaper::Shaped TargetShaper::shapeAngle(Target asked, const MotorFeedback& feedback,
                                               float dt_s) noexcept {
   const bool limited = bounded(feedback);
-  if (!limited && !(config_.angle_slew_deg_per_s > 0.0F)) return {asked, 0};
-  // From here on in multi-turn angles: the shortest way may lead through what is not allowed.
   const bool any_turn = asked.mode == ControlMode::kAngle;
+  if (!limited && !reduced() && !(config_.angle_slew_deg_per_s > 0.0F)) {
+    const double here_deg = feedback.total_angle_deg;
+    value_ = any_turn ? here_deg + shortestAngle(here_deg, asked.value) : asked.value;
+    return {asked, 0};
+  }
+  // From here on in multi-turn angles: the shortest way may lead through what is not allowed.
   const double goal = any_turn ? value_ + shortestAngle(value_, asked.value) : asked.value;
   const double allowed = limited ? reachable(goal, any_turn) : goal;
+  const double before_deg = value_;
   Shaped out{asked, 0};
   if (any_turn ? wrapDegrees(allowed) != wrapDegrees(goal) : allowed != goal) {
     out.limits |= kLimitAngle;
@@ -226,7 +249,33 @@ TargetShaper::Shaped TargetShaper::shapeAngle(Target asked, const MotorFeedback&
   if (slew(allowed, config_.angle_slew_deg_per_s, dt_s)) out.limits |= kLimitSlew;
   if (any_turn) out.target.mode = ControlMode::kTotalAngle;
   out.target.value = value_;
+  if (reduced()) out.limits |= shorten(out.target, before_deg, feedback, dt_s);
   return out;
+}
+
+// Under a ceiling the angle moves no faster than that, and a shaft that does is not led farther than its loop
+// makes of the ceiling: less far while the ceiling comes down. One that is pushed the other way keeps its
+// whole spring.
+std::uint32_t TargetShaper::shorten(Target& shaped, double before_deg, const MotorFeedback& feedback,
+                                    float dt_s) noexcept {
+  const double asked_deg = value_;
+  const double most_deg = ceiling_rpm_ * kDegPerSPerRpm * static_cast<double>(dt_s);
+  value_ = std::clamp(value_, before_deg - most_deg, before_deg + most_deg);
+  const double rpm_per_deg = static_cast<double>(config_.approach_rpm_per_deg / kApproachOfAngleGain);
+  double ahead_deg = value_ - feedback.total_angle_deg;
+  const double towards_rpm = std::copysign(1.0, ahead_deg) * static_cast<double>(feedback.velocity_rpm);
+  if (rpm_per_deg > 0.0 && towards_rpm > ceiling_rpm_ / 2) {
+    const double lead_deg = ceiling_rpm_ / rpm_per_deg;
+    ahead_deg = std::clamp(ahead_deg, -lead_deg, lead_deg);
+    value_ = feedback.total_angle_deg + ahead_deg;
+  }
+  shaped.value = value_;
+  // The speed that the angle leads to and that of the trajectory are one.
+  const auto ff_rpm = static_cast<double>(shaped.velocity_ff_rpm);
+  const double sign = std::copysign(1.0, ff_rpm);
+  const double left_rpm = std::max(ceiling_rpm_ - sign * ahead_deg * rpm_per_deg, 0.0);
+  if (std::fabs(ff_rpm) > left_rpm) shaped.velocity_ff_rpm = static_cast<float>(sign * left_rpm);
+  return value_ != asked_deg || std::fabs(ff_rpm) > left_rpm ? kLimitVelocity : 0U;
 }
 
 }  // namespace rc10

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cmath>
 #include <cstdint>
 #include <limits>
 
@@ -54,6 +55,9 @@ class TargetShaper {
                                 float dt_s) noexcept;
   /// After a change of the angle loop's gain: see kApproachOfAngleGain.
   void setApproach(float rpm_per_deg) noexcept { config_.approach_rpm_per_deg = rpm_per_deg; }
+  /// Speed that no target of any mode leads beyond; infinite: none. A shaft that is faster is braked by
+  /// targets of a speed or an angle, and by efforts.
+  void setCeiling(double rpm) noexcept { ceiling_rpm_ = rpm; }
   /// The next target starts from what is measured then.
   void reset() noexcept { mode_ = ControlMode::kCoast; }
   /// The motor is being enabled: the next targets start softly, from what is measured then.
@@ -73,6 +77,18 @@ class TargetShaper {
   };
   [[nodiscard]] bool bounded(const MotorFeedback& feedback) const noexcept;
   [[nodiscard]] Envelope envelope(double total_angle_deg) const noexcept;
+  [[nodiscard]] bool reduced() const noexcept { return std::isfinite(ceiling_rpm_); }
+  /// Of the soft limits, where there are any, and the ceiling.
+  [[nodiscard]] Envelope allowedSpeeds(const MotorFeedback& feedback) const noexcept;
+  /// Limit whose allowed speed this is.
+  [[nodiscard]] LimitFlag limitOf(double allowed_rpm) const noexcept {
+    return std::fabs(allowed_rpm) == ceiling_rpm_ ? kLimitVelocity : kLimitAngle;
+  }
+  /// The most in the direction of `sign`, for an effort without soft limits.
+  [[nodiscard]] double effortTowards(double allowed_rpm, double sign,
+                                     const MotorFeedback& feedback) const noexcept;
+  [[nodiscard]] std::uint32_t shorten(Target& shaped, double before_deg, const MotorFeedback& feedback,
+                                      float dt_s) noexcept;
   [[nodiscard]] double effortFor(double allowed_rpm, const MotorFeedback& feedback) const noexcept;
   [[nodiscard]] double reachable(double goal_deg, bool any_turn) const noexcept;
   void begin(ControlMode mode, const MotorFeedback& feedback, InForce in_force) noexcept;
@@ -82,7 +98,7 @@ class TargetShaper {
   [[nodiscard]] std::uint32_t shapeVelocityFf(Target& asked, float dt_s) noexcept;
   [[nodiscard]] std::uint32_t shapeTorqueFf(Target& asked, const MotorFeedback& feedback,
                                             float dt_s) noexcept;
-  [[nodiscard]] double mostTorqueFf(const Target& asked, const MotorFeedback& feedback,
+  [[nodiscard]] double mostTorqueFf(const Target& asked, const MotorFeedback& feedback, double allowed_rpm,
                                     double sign) const noexcept;
   [[nodiscard]] Shaped shapeEffort(Target asked, const MotorFeedback& feedback, float dt_s) noexcept;
   [[nodiscard]] Shaped shapeVelocity(Target asked, const MotorFeedback& feedback, float dt_s) noexcept;
@@ -93,6 +109,7 @@ class TargetShaper {
   double value_ = 0.0;                      ///< The slewed target of that mode.
   double velocity_ff_rpm_ = 0.0;            ///< Slewed, too.
   double torque_ff_nm_ = 0.0;
+  double ceiling_rpm_ = std::numeric_limits<double>::infinity();
   double share_ = 1.0;  ///< Of the soft start that is over; 1: all.
   double soft_ = 0.0;   ///< Place of a soft start on its way to what is asked, in the unit of the mode.
 };

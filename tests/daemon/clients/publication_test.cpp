@@ -289,6 +289,13 @@ TEST_F(PublicationTest, AnEventNamesItsSource) {
   EXPECT_EQ(source(EventCode::kForeignSender, 0), "chassis");
 }
 
+TEST_F(PublicationTest, AnEventOfAnInputNamesItsLine) {
+  robot.estop_input = "gpiochip0:17";
+  robot.mode_input = "gpiochip0:23";
+  EXPECT_EQ(publication.event(modeInputEvent(ContactState::kOpen, {}), 1).source.view(), "gpiochip0:23");
+  EXPECT_EQ(publication.event(estopInputEvent(ContactState::kOpen, {}), 1).source.view(), "gpiochip0:17");
+}
+
 TEST_F(PublicationTest, AnEventCarriesItsTimeSeverityCodeAndWords) {
   const auto event =
       publication.event({EventCode::kTicksMissed, Severity::kWarning, -1, 12, 0, MonotonicTime{2s}}, 789);

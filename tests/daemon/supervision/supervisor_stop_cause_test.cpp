@@ -119,7 +119,7 @@ TEST_F(StopCauseTest, TheInputIsACauseOfItsOwn) {
   robot.exchange().estop_contact.show(ContactState::kOpen);
   robot.tick();
   EXPECT_EQ(robot.snapshot().stop.cause, StopCause::kInput);
-  EXPECT_TRUE(robot.snapshot().input_open);
+  EXPECT_TRUE(robot.snapshot().conditions & kConditionInputOpen);
   EXPECT_THAT(told(), Contains("RUN -> ESTOP (the e-stop input)"));
 }
 

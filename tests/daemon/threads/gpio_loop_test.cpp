@@ -193,7 +193,7 @@ TEST(GpioLoop, AnEnablingSwitchAloneIsWaitedFor) {
   GpioLoop loop{nullptr, std::nullopt, exchange, std::make_unique<FakeContact>(switch_)};
   loop.turn(MonotonicTime{1s}, 1);
   EXPECT_THAT(switch_.waits, ElementsAre(10ms));
-  EXPECT_FALSE(exchange.estop_contact.look(0.001F).stop);
+  EXPECT_FALSE(exchange.estop_contact.look(0.001F).opened);
   switch_.now = kOpen;
   loop.turn(MonotonicTime{2s}, 2);
   EXPECT_EQ(exchange.estop_contact.look(0.001F).news, kReleased);
@@ -213,10 +213,45 @@ TEST(GpioLoop, BesideTheButtonNeitherWaitsLong) {
 TEST(GpioLoop, AMissingEnablingSwitchIsAnErrorThatNamesItsKey) {
   LinkExchange exchange;
   RobotConfig config;
-  config.enabling_gpio = EstopGpioConfig{.pin = {"no_such_chip", 22}};
+  config.enabling_gpio = ContactGpioConfig{.pin = {"no_such_chip", 22}};
   const auto loop = GpioLoop::create(config, exchange);
   ASSERT_FALSE(loop);
   EXPECT_THAT(loop.error().message, HasSubstr("enabling_gpio: no_such_chip:22: "));
+}
+
+TEST(GpioLoop, TheModeInputAloneIsWaitedForAndStopsNothing) {
+  LinkExchange exchange;
+  FakeContact::State door;
+  GpioLoop loop{nullptr, std::nullopt, exchange, nullptr, std::make_unique<FakeContact>(door)};
+  door.now = kOpen;
+  loop.turn(MonotonicTime{1s}, 1);
+  EXPECT_THAT(door.waits, ElementsAre(10ms));
+  EXPECT_EQ(exchange.mode_contact.look(0.001F).news, kOpen);
+  EXPECT_FALSE(exchange.estop_contact.look(0.001F).opened);
+}
+
+TEST(GpioLoop, BesideTheButtonTheModeInputDoesNotDelayIt) {
+  LinkExchange exchange;
+  FakeContact::State input;
+  FakeContact::State door;
+  GpioLoop loop{std::make_unique<FakeContact>(input), std::nullopt, exchange, nullptr,
+                std::make_unique<FakeContact>(door)};
+  loop.turn(MonotonicTime{1s}, 1);
+  EXPECT_THAT(input.waits, ElementsAre(1ms));
+  EXPECT_THAT(door.waits, ElementsAre(0ms));
+  input.now = kOpen;
+  loop.turn(MonotonicTime{2s}, 2);
+  EXPECT_TRUE(exchange.estop_contact.look(0.001F).opened);
+  EXPECT_FALSE(exchange.mode_contact.look(0.001F).opened);
+}
+
+TEST(GpioLoop, AMissingModeInputIsAnErrorThatNamesItsKey) {
+  LinkExchange exchange;
+  RobotConfig config;
+  config.mode_gpio = ContactGpioConfig{.pin = {"no_such_chip", 23}};
+  const auto loop = GpioLoop::create(config, exchange);
+  ASSERT_FALSE(loop);
+  EXPECT_THAT(loop.error().message, HasSubstr("mode_gpio: no_such_chip:23: "));
 }
 
 TEST(GpioLoop, LooksAtTheInputAlsoWhenNothingChanges) {
@@ -264,7 +299,7 @@ TEST(GpioLoop, WithoutConfigurationThereIsNoThread) {
 TEST(GpioLoop, AMissingSafetyInputIsAnErrorThatNamesTheRemedy) {
   LinkExchange exchange;
   RobotConfig config;
-  config.estop_gpio = EstopGpioConfig{.pin = {"no_such_chip", 17}};
+  config.estop_gpio = ContactGpioConfig{.pin = {"no_such_chip", 17}};
   const auto loop = GpioLoop::create(config, exchange);
   ASSERT_FALSE(loop);
   EXPECT_THAT(loop.error().message, HasSubstr("estop_gpio: no_such_chip:17: "));

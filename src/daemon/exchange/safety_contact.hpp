@@ -6,7 +6,7 @@
 
 namespace rc10 {
 
-/// State of the e-stop input.
+/// State of a contact of the safety circuit, closed while all is well.
 enum class ContactState : std::uint8_t {
   kAbsent,      ///< None is configured.
   kClosed,      ///< All is well.
@@ -15,10 +15,10 @@ enum class ContactState : std::uint8_t {
   kReleased,    ///< The enabling switch is released or squeezed.
 };
 
-/// The e-stop input, and the enabling switch, on their way from the thread that watches it to the scheduler.
-/// Neither side waits. An opening is never missed, however short; and silence of the watcher counts as
-/// unreadable.
-class EstopContact {
+/// A contact on its way from the thread that watches it to the scheduler: the e-stop input with the enabling
+/// switch, or the mode input. Neither side waits. An opening is never missed, however short; and silence of
+/// the watcher counts as unreadable.
+class SafetyContact {
  public:
   /// The watcher looks far more often; in ticks that were executed, so that a computer that stood still
   /// as a whole is no silence.
@@ -35,7 +35,7 @@ class EstopContact {
   }
 
   struct View {
-    bool stop = false;                 ///< Open now, or since the last look.
+    bool opened = false;               ///< Open now, or since the last look.
     std::optional<ContactState> news;  ///< Change, for the event.
   };
   /// Once in each tick. Scheduler thread only.

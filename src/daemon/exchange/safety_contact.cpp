@@ -1,10 +1,10 @@
-#include "daemon/exchange/estop_contact.hpp"
+#include "daemon/exchange/safety_contact.hpp"
 
 #include <utility>
 
 namespace rc10 {
 
-EstopContact::View EstopContact::look(float dt_s) noexcept {
+SafetyContact::View SafetyContact::look(float dt_s) noexcept {
   const auto sightings = sightings_.load(std::memory_order_acquire);
   const auto openings = openings_.load(std::memory_order_relaxed);
   auto state = state_.load(std::memory_order_relaxed);
@@ -16,8 +16,8 @@ EstopContact::View EstopContact::look(float dt_s) noexcept {
   const bool opened = openings != std::exchange(seen_openings_, openings);
 
   View view;
-  view.stop = open_ || opened;
-  const auto shown = view.stop && !open_ ? opened_as_.load(std::memory_order_relaxed) : state;
+  view.opened = open_ || opened;
+  const auto shown = view.opened && !open_ ? opened_as_.load(std::memory_order_relaxed) : state;
   if (shown != std::exchange(told_, shown)) view.news = shown;
   return view;
 }

@@ -1,0 +1,59 @@
+#pragma once
+
+#include <cstdint>
+#include <limits>
+
+#include "app/time.hpp"
+#include "motor/motor_base.hpp"
+
+namespace rc10 {
+
+/// Limits of a motor while a person is near: SLS, safely-limited speed, of IEC 61800-5-2, without its safety
+/// integrity. At the output shaft.
+struct ReducedConfig {
+  float velocity_rpm = 0.0F;                 ///< 0: the speed is not reduced.
+  float effort_share = 1.0F;                 ///< Of the effort limit; 1: not reduced.
+  Duration within{std::chrono::seconds{1}};  ///< A shaft that is faster after that is a fault.
+  float slew_rpm_per_s = 0.0F;               ///< On the way down; 0: half of `within`.
+  float tolerance_rpm = 0.0F;                ///< Of the monitored speed, above velocity_rpm.
+  float full_rpm = 0.0F;                     ///< From here the speed is limited no more.
+
+  [[nodiscard]] bool any() const noexcept { return velocity_rpm > 0.0F || effort_share < 1.0F; }
+};
+
+/// Speed and effort that one motor may have: reduced at once or along a ramp, full again within kLift.
+/// Scheduler thread only.
+class ReducedMotion {
+ public:
+  /// Longer than a step through a light curtain's edge: nothing gains speed in a jump.
+  static constexpr float kLiftSeconds = 1.0F;
+
+  explicit ReducedMotion(const ReducedConfig& config) noexcept : config_(config) {}
+
+  /// Once a tick. `moves`: the motor follows a target or a fallback; the monitored time begins with that, or
+  /// with `reduced`. True: it is faster than it may be, after the monitored time.
+  [[nodiscard]] bool step(bool reduced, bool moves, const MotorFeedback& feedback, const Tick& tick) noexcept;
+
+  /// Bound of every target's speed; infinite: none.
+  [[nodiscard]] double ceilingRpm() const noexcept { return ceiling_rpm_; }
+  /// For Motor_Base::derate().
+  [[nodiscard]] float effortShare() const noexcept { return share_; }
+
+ private:
+  void begin(float speed_rpm, MonotonicTime now) noexcept;
+  void reduce(float speed_rpm, const Tick& tick) noexcept;
+  void lift(float dt_s) noexcept;
+  [[nodiscard]] bool tooFast(const MotorFeedback& feedback) noexcept;
+
+  ReducedConfig config_;
+  double ceiling_rpm_ = std::numeric_limits<double>::infinity();
+  double fall_rpm_per_s_ = 0.0;
+  float share_ = 1.0F;
+  bool acts_ = false;        ///< Reduced, of a motor that moves.
+  bool comes_down_ = false;  ///< Faster than it may be, within the monitored time.
+  MonotonicTime since_{};
+  std::uint64_t samples_ = 0;
+  int fast_samples_ = 0;
+};
+
+}  // namespace rc10

@@ -1,0 +1,290 @@
+// The mode input: reduced speed and current while a person is near, on a whole simulated robot.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <memory>
+#include <string>
+
+#include "config/load_config.hpp"
+#include "daemon/exchange/events.hpp"
+#include "daemon/virtual_robot.hpp"
+
+namespace rc10::test::supervisor_reduced_mode_test {
+namespace {
+
+using enum ContactState;
+using ::testing::HasSubstr;
+
+constexpr std::size_t kWheel = 0;
+constexpr Target kFast{.mode = ControlMode::kVelocity, .value = 400.0};
+
+/// One M3508; what a tick may change of its speed tells a ramp from a jump.
+class ReducedModeTest : public ::testing::Test {
+ protected:
+  void start(const std::string& keys, const std::string& model = "M3508, id: 1, zero: power_on") {
+    auto outcome = parseRobotConfig(
+        "robot: reduced\nrealtime: preferred\nmode_gpio: {chip: gpiochip0, line: 1}\nbuses:\n"
+        "  - name: bench\n    type: sim\n    motors:\n      - {name: wheel, model: " +
+            model + ", " + keys + "}\n",
+        "reduced.yaml");
+    ASSERT_TRUE(outcome.config) << outcome.errorText();
+    robot = std::make_unique<VirtualRobot>(*outcome.config);
+    see(kClosed);
+    for (int i = 0; i < 5; ++i) tick();
+    enable();
+  }
+  /// Some drives are asked for their settings first.
+  void enable() {
+    for (int attempt = 0; attempt < 5 && status() != MotorStatus::kActive; ++attempt) {
+      Order order;
+      order.operation = Operation::kEnable;
+      order.motors.set(kWheel);
+      order.id = static_cast<std::uint64_t>(attempt) + 1;
+      robot->exchange().orders.push(order);
+      for (int i = 0; i < 1000 && status() != MotorStatus::kActive; ++i) tick();
+      OrderResult answer;
+      while (robot->exchange().results.pop(answer)) continue;
+    }
+    ASSERT_EQ(status(), MotorStatus::kActive);
+  }
+  void see(ContactState state) { contact = state; }
+  void tick() {
+    if (watched) robot->exchange().mode_contact.show(contact);
+    robot->tick();
+  }
+  void follow(const Target& target, int ticks) {
+    for (int i = 0; i < ticks; ++i) {
+      robot->command(kWheel, target);
+      tick();
+    }
+  }
+  /// The largest speed meanwhile.
+  float fastestWhile(const Target& target, int ticks) {
+    float fastest = 0.0F;
+    for (int i = 0; i < ticks; ++i) {
+      robot->command(kWheel, target);
+      tick();
+      fastest = std::max(fastest, std::fabs(rpm()));
+    }
+    return fastest;
+  }
+  float rpm() { return robot->motor(kWheel).feedback.velocity_rpm; }
+  MotorStatus status() { return robot->motor(kWheel).status; }
+  bool reduced() { return (robot->snapshot().conditions & kConditionReduced) != 0; }
+
+  std::unique_ptr<VirtualRobot> robot;
+  ContactState contact = kClosed;
+  bool watched = true;
+};
+
+TEST_F(ReducedModeTest, WhileTheContactIsClosedNothingIsReduced) {
+  start("reduced_velocity_rpm: 60");
+  follow(kFast, 2000);
+  EXPECT_NEAR(rpm(), 400.0F, 8.0F);
+  EXPECT_FALSE(reduced());
+}
+
+TEST_F(ReducedModeTest, AFastShaftComesDownAlongARampWithinHalfOfTheTime) {
+  start("reduced_velocity_rpm: 60, reduced_within_ms: 800");
+  follow(kFast, 2000);
+  see(kOpen);
+  follow(kFast, 200);
+  EXPECT_TRUE(reduced());
+  EXPECT_NEAR(rpm(), 230.0F, 25.0F) << "half-way down in half of the ramp's time";
+  EXPECT_NE(robot->motor(kWheel).limits & kLimitVelocity, 0U);
+  EXPECT_NEAR(robot->motor(kWheel).target_shaped, 230.0, 5.0);
+  EXPECT_EQ(robot->motor(kWheel).target.value, 400.0) << "as it was asked for";
+  follow(kFast, 600);
+  EXPECT_NEAR(rpm(), 60.0F, 4.0F);
+  EXPECT_LT(fastestWhile(kFast, 3000), 66.0F);
+  EXPECT_EQ(status(), MotorStatus::kActive);
+}
+
+TEST_F(ReducedModeTest, TheSlewLimitIsTheRamp) {
+  start("reduced_velocity_rpm: 60, velocity_slew_rpm_per_s: 1000, reduced_within_ms: 1000");
+  follow(kFast, 3000);
+  see(kOpen);
+  follow(kFast, 170);
+  EXPECT_NEAR(rpm(), 230.0F, 25.0F);
+}
+
+TEST_F(ReducedModeTest, WhoCannotBeReadOrIsNotWatchedIsReduced) {
+  start("reduced_velocity_rpm: 60");
+  see(kUnreadable);
+  tick();
+  EXPECT_TRUE(reduced());
+  see(kClosed);
+  tick();
+  EXPECT_FALSE(reduced());
+  watched = false;
+  follow(kFast, 250);
+  EXPECT_TRUE(reduced()) << "nobody looks any more";
+  follow(kFast, 1000);
+  EXPECT_NEAR(rpm(), 60.0F, 4.0F);
+}
+
+TEST_F(ReducedModeTest, FullSpeedComesBackWithoutAJump) {
+  start("reduced_velocity_rpm: 60");
+  see(kOpen);
+  follow(kFast, 2000);
+  ASSERT_NEAR(rpm(), 60.0F, 4.0F);
+  see(kClosed);
+  float before = rpm();
+  float largest_step = 0.0F;
+  for (int i = 0; i < 50; ++i) {
+    follow(kFast, 20);
+    largest_step = std::max(largest_step, rpm() - before);
+    before = rpm();
+  }
+  // From 60 to 480 rpm within a second: 8.4 rpm in 20 ms.
+  EXPECT_LT(largest_step, 12.0F);
+  follow(kFast, 500);
+  EXPECT_NEAR(rpm(), 400.0F, 8.0F);
+}
+
+TEST_F(ReducedModeTest, ACrossingOfAnInstantCounts) {
+  start("reduced_velocity_rpm: 60");
+  robot->exchange().mode_contact.show(kOpen);
+  robot->exchange().mode_contact.show(kClosed);
+  robot->tick();
+  EXPECT_TRUE(reduced());
+}
+
+TEST_F(ReducedModeTest, AShaftThatStaysFastIsAFaultAfterTheTime) {
+  // The current does not suffice to brake what it has brought up to speed.
+  start(
+      "reduced_velocity_rpm: 60, reduced_within_ms: 500, current_limit_a: 2, simulated: {inertia_kg_m2: "
+      "0.3}");
+  for (int i = 0; i < 30'000 && rpm() < 150.0F; ++i) follow(kFast, 1);
+  ASSERT_GE(rpm(), 150.0F);
+  (void)robot->events();
+  see(kOpen);
+  follow({.mode = ControlMode::kVelocity}, 490);
+  EXPECT_EQ(status(), MotorStatus::kActive) << "the time is not over";
+  follow({.mode = ControlMode::kVelocity}, 20);
+  EXPECT_EQ(status(), MotorStatus::kFault);
+  EXPECT_EQ(robot->motor(kWheel).fault, FaultCode::kReducedSpeed);
+  std::string told;
+  for (const auto& event : robot->events()) told += describe(event) + '\n';
+  EXPECT_THAT(told, HasSubstr("reduced speed and current: the mode input is open"));
+  EXPECT_THAT(told, HasSubstr("too fast for reduced mode: faster than reduced_velocity_rpm allows"));
+}
+
+TEST_F(ReducedModeTest, AMotorThatIsEnabledMeanwhileHasTheTimeFromThenOn) {
+  start("reduced_velocity_rpm: 60, reduced_within_ms: 500, simulated: {inertia_kg_m2: 0.02}");
+  follow(kFast, 3000);
+  Order order;
+  order.operation = Operation::kDisable;
+  order.motors.set(kWheel);
+  order.id = 1;
+  robot->exchange().orders.push(order);
+  see(kOpen);
+  for (int i = 0; i < 600; ++i) tick();
+  ASSERT_EQ(status(), MotorStatus::kReady);
+  ASSERT_GT(rpm(), 100.0F) << "it runs down without torque";
+  enable();
+  follow(kFast, 700);
+  EXPECT_EQ(status(), MotorStatus::kActive);
+  EXPECT_NEAR(rpm(), 60.0F, 4.0F);
+}
+
+TEST_F(ReducedModeTest, ACurrentTargetGainsNoMoreSpeedThanThat) {
+  start("reduced_velocity_rpm: 60");
+  const Target push{.mode = ControlMode::kCurrent, .value = 3.0};
+  see(kOpen);
+  EXPECT_LT(fastestWhile(push, 3000), 75.0F);
+  EXPECT_EQ(status(), MotorStatus::kActive);
+  see(kClosed);
+  follow(push, 3000);
+  EXPECT_GT(rpm(), 200.0F);
+}
+
+TEST_F(ReducedModeTest, AnAngleTargetIsApproachedSlowly) {
+  start("reduced_velocity_rpm: 30, reduced_within_ms: 400");
+  const Target far{.mode = ControlMode::kTotalAngle, .value = 3600.0};
+  follow(far, 300);
+  ASSERT_GT(rpm(), 150.0F) << "on its way at full speed";
+  see(kOpen);
+  follow(far, 400);
+  EXPECT_LT(fastestWhile(far, 2000), 36.0F);
+  EXPECT_GT(rpm(), 20.0F) << "it still goes there";
+  EXPECT_EQ(status(), MotorStatus::kActive);
+}
+
+TEST_F(ReducedModeTest, AnAngleTargetThatBeginsMeanwhileNeverOvershootsTheSpeed) {
+  start("reduced_velocity_rpm: 30");
+  see(kOpen);
+  tick();
+  EXPECT_LT(fastestWhile({.mode = ControlMode::kTotalAngle, .value = 720.0}, 4500), 36.0F);
+  EXPECT_NEAR(robot->motor(kWheel).feedback.total_angle_deg, 720.0, 2.0);
+  EXPECT_LT(fastestWhile({.mode = ControlMode::kAngle, .value = 180.0}, 3000), 36.0F);
+  EXPECT_NEAR(robot->motor(kWheel).feedback.angle_deg, 180.0F, 2.0F);
+}
+
+TEST_F(ReducedModeTest, ATrajectorysSpeedCountsIn) {
+  start("reduced_velocity_rpm: 30");
+  see(kOpen);
+  tick();
+  const Target led{.mode = ControlMode::kTotalAngle, .value = 7200.0, .velocity_ff_rpm = 200.0F};
+  EXPECT_LT(fastestWhile(led, 3000), 36.0F);
+}
+
+TEST_F(ReducedModeTest, TheCurrentIsReducedOnceTheShaftIsSlow) {
+  start("reduced_velocity_rpm: 60, reduced_current_a: 1, simulated: {inertia_kg_m2: 0.03}");
+  follow(kFast, 3000);
+  see(kOpen);
+  float most_a = 0.0F;
+  for (int i = 0; i < 1000; ++i) {
+    follow(kFast, 1);
+    if (std::fabs(rpm()) > 100.0F) most_a = std::max(most_a, std::fabs(robot->motor(kWheel).command_value));
+  }
+  EXPECT_GT(most_a, 1.5F) << "all there is to brake with";
+  const Target back{.mode = ControlMode::kVelocity, .value = -60.0};
+  for (int i = 0; i < 500; ++i) {
+    follow(back, 1);
+    ASSERT_LE(std::fabs(robot->motor(kWheel).command_value), 1.0F);
+  }
+}
+
+TEST_F(ReducedModeTest, TheCurrentAloneIsReducedAtOnceAndComesBackWithinASecond) {
+  start("reduced_current_a: 1, simulated: {stalled: true}");
+  follow(kFast, 500);
+  ASSERT_GT(robot->motor(kWheel).command_value, 10.0F);
+  see(kOpen);
+  follow(kFast, 1);
+  EXPECT_LE(robot->motor(kWheel).command_value, 1.0F);
+  see(kClosed);
+  follow(kFast, 100);
+  EXPECT_LE(robot->motor(kWheel).command_value, 3.1F);
+  follow(kFast, 1000);
+  EXPECT_GT(robot->motor(kWheel).command_value, 10.0F);
+}
+
+TEST_F(ReducedModeTest, AMotorWithoutReducedLimitsIsAsAlways) {
+  start("reduced_current_a: 5");
+  see(kOpen);
+  follow(kFast, 2000);
+  EXPECT_NEAR(rpm(), 400.0F, 8.0F);
+}
+
+/// Drives that close the loop themselves are told less.
+class ReducedDriveTest : public ReducedModeTest, public ::testing::WithParamInterface<const char*> {};
+
+TEST_P(ReducedDriveTest, IsToldNoMoreThanTheReducedSpeed) {
+  start("reduced_velocity_rpm: 20", GetParam());
+  follow({.mode = ControlMode::kVelocity, .value = 60.0}, 2000);
+  ASSERT_GT(rpm(), 50.0F);
+  see(kOpen);
+  follow({.mode = ControlMode::kVelocity, .value = 60.0}, 1000);
+  EXPECT_EQ(status(), MotorStatus::kActive);
+  EXPECT_LT(fastestWhile({.mode = ControlMode::kVelocity, .value = 60.0}, 1000), 25.0F);
+}
+
+INSTANTIATE_TEST_SUITE_P(Families, ReducedDriveTest,
+                         ::testing::Values("GM6020, id: 6, command: voltage",
+                                           "DM8009, id: 2, master_id: 18, control: velocity", "RS00, id: 3",
+                                           "AK80-9, id: 5", "RMD-X8-20, id: 11", "LK-MG5010E-i10, id: 12"));
+
+}  // namespace
+}  // namespace rc10::test::supervisor_reduced_mode_test
