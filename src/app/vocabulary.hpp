@@ -73,6 +73,7 @@ enum Condition : std::uint32_t {
   kConditionSimulated = 1U << 0U,
   kConditionInputOpen = 1U << 1U,
   kConditionReduced = 1U << 2U,
+  kConditionTuningLocked = 1U << 3U,
 };
 
 /// bus_state_t.lcm.
@@ -129,7 +130,7 @@ inline constexpr std::array kActingWords{"nothing", "target", "hold", "damp", "b
 inline constexpr std::array kStopCauseWords{"",      "request", "estop",   "fault",     "silence",
                                             "group", "timeout", "refused", "reference", "shutdown",
                                             "input", "guard",   "overload"};
-inline constexpr std::array kConditionWords{"simulated", "input-open", "reduced"};
+inline constexpr std::array kConditionWords{"simulated", "input-open", "reduced", "tuning-locked"};
 inline constexpr std::array kBusStateWords{"active", "warning", "passive", "bus-off",
                                            "down",   "gone",    "silent",  "stalled"};
 inline constexpr std::array kCommandUnitWords{"", "A", "V", "native"};

@@ -47,6 +47,7 @@ std::string headline(const link::Welcome& welcome, const link::State& state,
   text += (state.conditions & kConditionSimulated) != 0 ? "  SIMULATED" : "";
   text += (state.conditions & kConditionInputOpen) != 0 ? "  E-STOP INPUT OPEN" : "";
   text += (state.conditions & kConditionReduced) != 0 ? "  REDUCED SPEED" : "";
+  text += (state.conditions & kConditionTuningLocked) != 0 ? "  TUNING LOCKED" : "";
   text += "  tick " + std::to_string(state.tick);
   if (diagnostics != nullptr) {
     text += "  wake-up p99 " + quantity(static_cast<double>(diagnostics->wake_latency.p99_us), 0, "us");

@@ -82,6 +82,13 @@ TEST(StateText, SaysThatSpeedAndCurrentAreReduced) {
   EXPECT_THAT(stateText(heroWelcome(), state, nullptr), HasSubstr("  REDUCED SPEED  tick"));
 }
 
+TEST(StateText, SaysThatTuningIsLocked) {
+  auto state = heroState();
+  state.conditions = kConditionTuningLocked;
+  EXPECT_THAT(stateText(heroWelcome(), state, nullptr), HasSubstr("  TUNING LOCKED  tick"));
+  EXPECT_EQ(link::conditionWords(state.conditions), "tuning-locked");
+}
+
 TEST(StateText, DoesWithoutDiagnostics) {
   auto state = heroState();
   state.robot_state = RobotStatus::kEstop;

@@ -122,4 +122,7 @@ def test_locked_tuning_is_told() -> None:
         assert refused.returncode != 0
         assert "`tuning: locked` at " in refused.stderr
         daemon.must("gains", "wheel")
+        assert "  TUNING LOCKED  " in daemon.must("watch", "--once")
+        with rc10.connect("host", client="teleop") as client:
+            assert rc10.Condition.TUNING_LOCKED in client.wait_for_state(10.0).conditions
         daemon.must("enable", "wheel")

@@ -33,6 +33,7 @@ function Header(props: { language: Language; onLanguage: (language: Language) =>
       {data?.conditions.includes('simulated') === true && <span class="badge">{word('simulated')}</span>}
       {data?.conditions.includes('input-open') === true && <span class="badge limit">{word('inputOpen')}</span>}
       {data?.conditions.includes('reduced') === true && <span class="badge limit">{word('reducedSpeed')}</span>}
+      {data?.conditions.includes('tuning-locked') === true && <span class="badge">{word('tuningLocked')}</span>}
       {data !== undefined && !data.realtime && <span class="badge">{word('notRealtime')}</span>}
       <span class="grow" />
       <button

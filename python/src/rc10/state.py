@@ -123,6 +123,8 @@ class Condition(IntFlag):
     """The e-stop input is open, or cannot be read."""
     REDUCED = robot_state_t.CONDITION_REDUCED
     """The mode input is open, or cannot be read: speed and current are reduced."""
+    TUNING_LOCKED = robot_state_t.CONDITION_TUNING_LOCKED
+    """`tuning: locked`: nobody changes gains or the settings of drives."""
 
 
 _ENUMERATIONS: Mapping[str, Callable[[int], IntEnum | IntFlag]] = {

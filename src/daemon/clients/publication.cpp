@@ -96,7 +96,8 @@ void Publication::fill(link::State& state, const Snapshot& snapshot, std::int64_
   state.stopped_by = snapshot.stop.by;
   state.stopped_mono_us = monoUs(snapshot.stopped);
   state.estop_count = static_cast<std::int32_t>(snapshot.estops);
-  state.conditions = (robot_.simulated() ? kConditionSimulated : 0U) | snapshot.conditions;
+  state.conditions = (robot_.simulated() ? kConditionSimulated : 0U) |
+                     (robot_.tuning_locked_at != 0 ? kConditionTuningLocked : 0U) | snapshot.conditions;
   state.motor_count = static_cast<std::uint32_t>(snapshot.motor_count);
   for (std::size_t i = 0; i < snapshot.motor_count; ++i) {
     const auto& in = snapshot.motors[i];

@@ -132,6 +132,14 @@ TEST_F(PublicationTest, ARobotThatIsNotRealTimeSaysSoInEveryState) {
   EXPECT_EQ(state().realtime, 0);
 }
 
+TEST_F(PublicationTest, LockedTuningIsAConditionInEveryState) {
+  robot.buses[1].interface = "can1";
+  snapshot->conditions = kConditionReduced;
+  EXPECT_EQ(state().conditions, kConditionReduced);
+  robot.tuning_locked_at = 3;
+  EXPECT_EQ(state().conditions, kConditionReduced | kConditionTuningLocked);
+}
+
 TEST_F(PublicationTest, WithoutAnySampleThereIsNoAge) { EXPECT_EQ(state().motors[0].feedback_age_us, -1); }
 
 TEST_F(PublicationTest, AnAgeIsNeverNegativeAndNeverOverflows) {
