@@ -58,8 +58,7 @@ constexpr double kAngleSlackDeg = 1.0;
 
 // It is told something in its turn only, of ticks in which its bus carries frames.
 bool Oracle::mayLag(const Motor& motor, std::uint64_t ticks) {
-  const auto turns = static_cast<std::uint64_t>(motor.wire->turnsToRest());
-  const auto lag_ticks = turns * static_cast<std::uint64_t>(motor.config->settings.command_divider);
+  const auto lag_ticks = static_cast<std::uint64_t>(motor.config->settings.command_divider);
   return std::min(ticks, motor.carried_ticks) < lag_ticks;
 }
 

@@ -89,8 +89,6 @@ class Wire {
   [[nodiscard]] virtual bool idlesAtRest() const { return true; }
   /// Exactly one frame tells it something in each tick.
   [[nodiscard]] virtual bool toldOnceATick() const { return false; }
-  /// Turns in which it is told something until it certainly rests, the first of them included.
-  [[nodiscard]] virtual int turnsToRest() const { return 1; }
   /// Of a damp that is an effort: how much of it a speed makes; kUnsaid: the drive damps by itself.
   [[nodiscard]] virtual double dampPerRpm() const { return kUnsaid; }
 

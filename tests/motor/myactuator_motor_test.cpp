@@ -22,11 +22,15 @@ namespace {
 
 using myactuator::Code;
 using testing::Contains;
+using testing::Each;
 using testing::ElementsAre;
 using testing::Not;
 using testing::StartsWith;
+using testing::UnorderedElementsAre;
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
+const std::string kOff = "141#8000000000000000";
+const std::string kRead = "141#9C00000000000000";
 
 MotorSettings settingsOf(std::string model = "RMD-X8-25") {
   MotorSettings settings;
@@ -99,16 +103,45 @@ TEST_F(MyActuatorMotor, RestsWithTheOutputOffBeforeItHasHeardAnything) {
 }
 
 TEST_F(MyActuatorMotor, PollingTurnsTheOutputOffFirstAndAsksForTheAngleEveryTime) {
+  comeOnline();
   motor_.order(FrameKind::kPoll);
   const auto first = tick();
-  EXPECT_EQ(first.at(0), "141#8000000000000000");
+  EXPECT_EQ(first.at(0), kOff);
   EXPECT_THAT(first, Contains("141#9200000000000000"));
-  const auto second = tick();
-  const auto third = tick();
-  EXPECT_NE(second.at(0), third.at(0)) << "output off and reading take turns";
-  for (const auto& frame : {second.at(0), third.at(0)}) {
-    EXPECT_TRUE(frame == "141#8000000000000000" || frame == "141#9C00000000000000") << frame;
+  hear(frameOf("241#8000000000000000"));
+  for (int i = 0; i < 20; ++i) {
+    const auto second = tick();
+    const auto third = tick();
+    EXPECT_THAT((std::vector{second.at(0), third.at(0)}), UnorderedElementsAre(kOff, kRead)) << "by turns";
   }
+}
+
+TEST_F(MyActuatorMotor, PollingTurnsTheOutputOffInEachTurnUntilTheDriveHasAnsweredIt) {
+  comeOnline();
+  for (int before = 0; before < 4; ++before) {
+    (void)told({.mode = ControlMode::kVelocity, .value = 100.0});
+    if (before % 2 != 0) (void)tick();
+    if (before / 2 != 0) hear(frameOf("241#8000000000000000"));  // the answer to another poll
+    motor_.order(FrameKind::kPoll);
+    int readings = 0;
+    for (int turn = 0; turn < 10; ++turn) {
+      const auto sent = tick();
+      EXPECT_EQ(sent.at(0), kOff) << before << ", turn " << turn;
+      readings += static_cast<int>(std::count(sent.begin(), sent.end(), kRead));
+    }
+    EXPECT_GE(readings, 4) << "it is read all the same";
+    hear(frameOf("241#8000000000000000"));
+    EXPECT_NE(tick().at(0), tick().at(0));
+  }
+}
+
+TEST_F(MyActuatorMotor, AfterASilenceAPollTurnsTheOutputOffAnew) {
+  comeOnline();
+  motor_.order(FrameKind::kPoll);
+  (void)tick();
+  hear(frameOf("241#8000000000000000"));
+  pass(std::chrono::milliseconds{200});
+  for (int turn = 0; turn < 4; ++turn) EXPECT_EQ(tick().at(0), kOff) << turn;
 }
 
 TEST_F(MyActuatorMotor, PollingTurnsTheOutputOffInItsFirstTurnWhenThatComesLater) {
@@ -218,8 +251,9 @@ TEST_F(MyActuatorMotor, ARestartWhileItWasToObeyIsAComplaintAndTheReferenceIsLos
   hear(angleReply(500));  // within a turn of the rotor after the restart
   EXPECT_TRUE(motor_.feedback().zeroed) << "not taken yet";
   EXPECT_EQ(motor_.feedback().total_angle_deg, 0.0);
-  for (const auto& frame : tick())
-    EXPECT_THAT(frame, Not(StartsWith("141#A"))) << "told nothing until it is known";
+  const auto sent = tick();
+  EXPECT_EQ(sent.at(0), kOff) << "its last command may act on";
+  EXPECT_THAT(sent, Each(Not(StartsWith("141#A")))) << "told nothing else until it is known";
   hear(uptimeReply(150));
   EXPECT_EQ(motor_.complaint().fault, FaultCode::kDriveStopped);
   EXPECT_FALSE(motor_.feedback().zeroed);

@@ -83,7 +83,8 @@ FrameVerdict MyActuator_Motor::updateFeedback(const CanFrame& frame) noexcept {
     case myactuator::Code::kStatus: acceptStatus(frame); break;
     case myactuator::Code::kUptime: acceptUptime(frame); break;
     case myactuator::Code::kReleaseBrake: answered(Step::kReleaseBrake); break;
-    default: break;  // the copy of a shutdown; the reply to another controller's question
+    case myactuator::Code::kShutdown: off_answered_ = polled_; break;
+    default: break;  // the reply to another controller's question
   }
   return FrameVerdict::kAccepted;
 }
@@ -202,29 +203,34 @@ void MyActuator_Motor::update(const Tick& tick) noexcept {
       setCommand(0.0, CommandUnit::kNone);
       outbox_.add(myactuator::request(id_, myactuator::Code::kShutdown));
       return;
-    case FrameKind::kPoll:
-      // Output off first, then in turns with that what it measures.
-      setCommand(0.0, CommandUnit::kNone);
-      outbox_.add(myactuator::request(id_, polled_before && turns_due_ % 2 != 0
-                                               ? myactuator::Code::kReading
-                                               : myactuator::Code::kShutdown));
-      break;
+    case FrameKind::kPoll: poll(polled_before); break;
     case FrameKind::kEnable:
       setCommand(0.0, CommandUnit::kNone);
       runSequence(tick);
       break;
     default:
-      // After a restart of the drive its angles are unknown, and it is told nothing. A drive that has stopped
+      // After a silence its angles may be unknown, and its last command may act on. A drive that has stopped
       // stays so until the client enables it.
-      if (restarted_ || silence_stopped_) {
+      if (!running_ || restarted_ || silence_stopped_) {
+        setCommand(0.0, CommandUnit::kNone);
         outbox_.add(myactuator::request(id_, myactuator::Code::kShutdown));
-      } else if (running_) {
+      } else {
         follow(target);
       }
       break;
   }
   if (ask_angle) outbox_.add(myactuator::request(id_, myactuator::Code::kAngle));
   sendQueries(tick);
+}
+
+// Output off in every turn until the drive has answered it, as either frame may be lost; then in turns with
+// that what it measures.
+void MyActuator_Motor::poll(bool polled_before) noexcept {
+  off_answered_ = off_answered_ && polled_before && running_;
+  setCommand(0.0, CommandUnit::kNone);
+  const bool reads = polled_before && turns_due_ % 2 != 0;
+  if (!reads || !off_answered_) outbox_.add(myactuator::request(id_, myactuator::Code::kShutdown));
+  if (reads) outbox_.add(myactuator::request(id_, myactuator::Code::kReading));
 }
 
 void MyActuator_Motor::sendQueries(const Tick& tick) noexcept {

@@ -50,6 +50,7 @@ class MyActuator_Motor final : public SoloMotor {
   void answered(Step step) noexcept;
 
   void sendCommand(const CanFrame& frame) noexcept;
+  void poll(bool polled_before) noexcept;
   void sendQueries(const Tick& tick) noexcept;
   void runSequence(const Tick& tick) noexcept;
   void beginSequence() noexcept;
@@ -74,6 +75,7 @@ class MyActuator_Motor final : public SoloMotor {
   std::optional<CanFrame> last_command_;
   std::uint64_t turns_due_ = 0;  ///< Ticks in which it was told something.
   bool polled_ = false;          ///< In the last of them FrameKind::kPoll was ordered.
+  bool off_answered_ = false;    ///< The drive has answered, in this poll, that its output is off.
   MonotonicTime next_query_{};
   bool ask_uptime_ = false;  ///< Next; else the status.
   bool reset_ = false;       ///< The drive is to be restarted with the next frames.

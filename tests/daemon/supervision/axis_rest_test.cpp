@@ -190,6 +190,37 @@ TEST_P(RestTest, ADriveThatRestsIsNoneHoweverItTurns) {
   }
 }
 
+TEST_P(RestTest, ARestFrameThatIsLostIsRepeatedInTheNextTick) {
+  const auto& physics = robot.simBus().drive(kMotor).physics();
+  for (const auto operation : {Operation::kDisable, Operation::kEstop}) {
+    for (const int more_ticks : {0, 1}) {  // drives that speak when asked are asked by turns
+      ASSERT_TRUE(enable());
+      robot.simBus().stall(0, true);
+      robot.hold(kMotor, turning(), 400 + more_ticks);
+      const double pushed_a = std::fabs(physics.currentA());
+      ASSERT_GT(pushed_a, 0.1);
+      Order order;
+      order.operation = operation;
+      order.motors.set(kMotor);
+      ASSERT_TRUE(robot.exchange().orders.push(order));
+      robot.tick();
+      ASSERT_FALSE(takeFrames(robot).empty());
+      robot.tick();
+      carry(takeFrames(robot));
+      for (int i = 0; i < 10; ++i) {  // less than the time-out of any drive
+        robot.tick();
+        (void)takeFrames(robot);
+      }
+      EXPECT_LT(std::fabs(physics.currentA()), 0.05 * pushed_a) << more_ticks;
+      robot.simBus().stall(0, false);
+      robot.run(100);
+      OrderResult answered;
+      while (robot.exchange().results.pop(answered)) continue;
+      robot.order(Operation::kClear);
+    }
+  }
+}
+
 TEST_P(RestTest, SomebodyElsesCommandsAreAFaultAndRestGoesOnBeingSent) {
   ASSERT_TRUE(enable());
   robot.hold(kMotor, turning(), 200);

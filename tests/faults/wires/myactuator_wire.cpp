@@ -59,8 +59,6 @@ class MyactuatorWire final : public Wire {
   }
 
   [[nodiscard]] Told told() const override { return told_; }
-  /// Every other frame asks; the one that switches it off may have been lost.
-  [[nodiscard]] int turnsToRest() const override { return 2; }
 
  private:
   void saidRequest(const CanFrame& frame) {
