@@ -1,6 +1,6 @@
 #pragma once
 
-#include "config/build/motor_reading.hpp"
+#include "config/build/motor_parse.hpp"
 #include "config/keys/settings.hpp"
 #include "config/yaml/problem.hpp"
 
