@@ -3,15 +3,15 @@
 #include <net/if.h>
 
 #include <algorithm>
-#include <array>
-#include <cstdio>
 #include <optional>
+
+#include "app/hex_text.hpp"
 
 namespace rc10 {
 namespace {
 
-constexpr std::size_t kStandardDigits = 3;
-constexpr std::size_t kExtendedDigits = 8;
+constexpr unsigned kStandardDigits = 3;
+constexpr unsigned kExtendedDigits = 8;
 constexpr unsigned kBitRateSwitch = 1;
 
 std::string excerpt(std::string_view text) { return "'" + std::string{text.substr(0, 200)} + "'"; }
@@ -32,12 +32,6 @@ std::optional<std::uint32_t> number(std::string_view digits) noexcept {
     value = value << 4U | *next;
   }
   return digits.empty() ? std::nullopt : std::optional{value};
-}
-
-std::string hex(const char* format, std::uint32_t value) {
-  std::array<char, 16> text{};
-  std::snprintf(text.data(), text.size(), format, static_cast<unsigned>(value));
-  return text.data();
 }
 
 Result<CanId> parseId(std::string_view digits) {
@@ -76,9 +70,9 @@ Result<AddressedFrame> parseLine(std::string_view line) {
 }  // namespace
 
 std::string frameText(const CanFrame& frame) {
-  std::string text = hex(frame.id.extended ? "%08X" : "%03X", frame.id.value) + "#";
-  if (frame.fd) text += hex("#%X", frame.bit_rate_switch ? kBitRateSwitch : 0);
-  for (const std::uint8_t byte : frame.payload()) text += hex("%02X", byte);
+  std::string text = hexDigits(frame.id.value, frame.id.extended ? kExtendedDigits : kStandardDigits) + "#";
+  if (frame.fd) text += '#' + hexDigits(frame.bit_rate_switch ? kBitRateSwitch : 0, 1);
+  for (const std::uint8_t byte : frame.payload()) text += hexDigits(byte, 2);
   return text;
 }
 

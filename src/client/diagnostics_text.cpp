@@ -3,9 +3,9 @@
 #include <vector>
 
 #include "app/printable.hpp"
+#include "app/text_table.hpp"
 #include "client/quantity_text.hpp"
 #include "client/state_text.hpp"
-#include "client/text_table.hpp"
 #include "link/late_causes.hpp"
 #include "link/words.hpp"
 

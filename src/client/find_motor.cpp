@@ -5,7 +5,6 @@
 
 #include "app/nearest.hpp"
 #include "app/printable.hpp"
-#include "client/text_table.hpp"
 
 namespace rc10::client {
 namespace {

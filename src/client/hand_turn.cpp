@@ -6,7 +6,6 @@
 #include "app/printable.hpp"
 #include "app/units.hpp"
 #include "client/quantity_text.hpp"
-#include "client/text_table.hpp"
 
 namespace rc10::client {
 namespace {

@@ -8,7 +8,6 @@
 #include "app/nearest.hpp"
 #include "app/printable.hpp"
 #include "client/find_motor.hpp"
-#include "client/text_table.hpp"
 #include "link/motor_readings.hpp"
 
 namespace rc10::client {

@@ -8,8 +8,8 @@
 
 #include "app/event_code.hpp"
 #include "app/printable.hpp"
+#include "app/text_table.hpp"
 #include "client/quantity_text.hpp"
-#include "client/text_table.hpp"
 #include "link/event_text.hpp"
 #include "link/words.hpp"
 

@@ -5,9 +5,9 @@
 
 #include "app/angle.hpp"
 #include "app/printable.hpp"
+#include "app/style.hpp"
+#include "app/text_table.hpp"
 #include "client/quantity_text.hpp"
-#include "client/style.hpp"
-#include "client/text_table.hpp"
 #include "link/words.hpp"
 
 namespace rc10::client {
@@ -70,19 +70,19 @@ std::string busLine(const link::BusStatus& bus) {
 }
 
 std::string_view styleOf(const link::MotorState& motor) {
-  if (motor.status == MotorStatus::kFault) return kBad;
+  if (motor.status == MotorStatus::kFault) return style::kBad;
   if (motor.status == MotorStatus::kOffline || motor.limits != 0) return kDoubtful;
-  return motor.status == MotorStatus::kActive ? kGood : std::string_view{};
+  return motor.status == MotorStatus::kActive ? style::kGood : std::string_view{};
 }
 
 std::string_view styleOf(const link::State& state) {
-  if (state.robot_state != RobotStatus::kRun) return kBad;
+  if (state.robot_state != RobotStatus::kRun) return style::kBad;
   return state.realtime == 0 ? kDoubtful : std::string_view{};
 }
 
 // The first state is that of a healthy bus.
 std::string_view styleOf(const link::BusStatus& bus) {
-  if (bus.state != BusState::kActive) return bus.state == BusState::kWarning ? kDoubtful : kBad;
+  if (bus.state != BusState::kActive) return bus.state == BusState::kWarning ? style::kDoubtful : style::kBad;
   return bus.rx_dropped + bus.tx_dropped != 0 ? kDoubtful : std::string_view{};
 }
 
@@ -131,10 +131,10 @@ std::string listText(const link::Welcome& welcome) {
 std::string stateText(const link::Welcome& welcome, const link::State& state,
                       const link::Diagnostics* diagnostics, bool colour) {
   const auto style = [colour](const auto& what) { return colour ? styleOf(what) : std::string_view{}; };
-  std::string text = styled(headline(welcome, state, diagnostics), style(state));
+  std::string text = style::styled(headline(welcome, state, diagnostics), style(state));
   if (diagnostics != nullptr) {
     for (std::size_t i = 0; i < std::min<std::size_t>(diagnostics->bus_count, link::kMaxBuses); ++i) {
-      text += styled(busLine(diagnostics->buses[i]), style(diagnostics->buses[i]));
+      text += style::styled(busLine(diagnostics->buses[i]), style(diagnostics->buses[i]));
     }
   }
   TextTable table({{"MOTOR"},

@@ -1,16 +1,13 @@
 #include "daemon/daemon_main.hpp"
 
-#include <algorithm>
 #include <iostream>
 #include <optional>
 #include <string>
 #include <string_view>
-#include <vector>
 
 #include <CLI/CLI.hpp>
 
-#include "app/nearest.hpp"
-#include "app/printable.hpp"
+#include "app/spelling.hpp"
 #include "config/load_config.hpp"
 #include "config/report/report.hpp"
 #include "config/report/schema.hpp"
@@ -27,24 +24,6 @@ namespace {
 constexpr int kOk = 0;
 constexpr int kStartFailed = 1;
 constexpr int kBadUsageOrConfig = 2;
-
-/// "there is no option '--chekc'; did you mean --check?" for the first word that means nothing.
-std::string optionHint(const CLI::App& app, int argc, const char* const* argv) {
-  std::vector<std::string> known;
-  for (const auto* option : app.get_options()) {
-    for (const auto& name : option->get_lnames()) known.push_back("--" + name);
-  }
-  for (int i = 1; i < argc; ++i) {
-    const std::string name{std::string_view{argv[i]}.substr(0, std::string_view{argv[i]}.find('='))};
-    if (name.rfind("--", 0) != 0 || std::find(known.begin(), known.end(), name) != known.end()) continue;
-    return "there is no option '" + printable(name) + "'" + didYouMean(name, {known.begin(), known.end()});
-  }
-  for (const auto& word : app.remaining()) {
-    const auto meant = didYouMean("--" + word, {known.begin(), known.end()});
-    if (!meant.empty()) return "there is no verb '" + printable(word) + "'" + meant;
-  }
-  return {};
-}
 
 /// Loads a configuration and prints everything that is wrong with it.
 std::optional<RobotConfig> load(const std::string& file) {
@@ -94,7 +73,7 @@ int daemonMain(int argc, char** argv) {
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
-    if (const auto hint = optionHint(app, argc, argv); error.get_exit_code() != 0 && !hint.empty()) {
+    if (const auto hint = misspelt(app, argc, argv); error.get_exit_code() != 0 && !hint.empty()) {
       std::cerr << "rc10d: " << hint << '\n';
       return kBadUsageOrConfig;
     }

@@ -3,18 +3,17 @@
 #include <algorithm>
 
 #include "app/printable.hpp"
+#include "app/style.hpp"
 #include "client/json_line.hpp"
-#include "client/style.hpp"
-#include "client/text_table.hpp"
 
 namespace rc10::doctor {
 namespace {
 
 std::string_view styleOf(Verdict verdict) {
   switch (verdict) {
-    case Verdict::kPass: return client::kGood;
-    case Verdict::kWarn: return client::kDoubtful;
-    case Verdict::kFail: return client::kBad;
+    case Verdict::kPass: return style::kGood;
+    case Verdict::kWarn: return style::kDoubtful;
+    case Verdict::kFail: return style::kBad;
   }
   return {};
 }
@@ -25,7 +24,7 @@ double micros(Duration duration) { return static_cast<double>(duration.count()) 
 
 std::string text(const Finding& finding, bool colour) {
   const std::string mark =
-      client::styled(word(finding.verdict), colour ? styleOf(finding.verdict) : std::string_view{});
+      style::styled(word(finding.verdict), colour ? styleOf(finding.verdict) : std::string_view{});
   // Names of interfaces and threads come from the computer, not from us.
   std::string text = mark + "  " + printable(finding.what) + ": " + printable(finding.why) + "\n";
   if (!finding.fix.empty()) text += "      fix: " + printable(finding.fix) + "\n";

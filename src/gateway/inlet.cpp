@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <chrono>
 
+#include "app/utime.hpp"
+
 namespace rc10::gateway {
 
 Inlet::Inlet(LinkClient& rc10d, Outlet& outlet) : rc10d_(rc10d), outlet_(outlet) {
@@ -124,8 +126,7 @@ void Inlet::report(EventCode code, Severity severity, std::string text, Monotoni
   if (!held_back) return;
   if (*held_back > 0) text += " (" + std::to_string(*held_back) + " more since the last report)";
   link::Event event;
-  const auto wall = std::chrono::system_clock::now().time_since_epoch();
-  event.utime = std::chrono::duration_cast<std::chrono::microseconds>(wall).count();
+  event.utime = utimeOf(std::chrono::system_clock::now());
   event.mono_us = std::chrono::duration_cast<std::chrono::microseconds>(now.time_since_epoch()).count();
   event.severity = severity;
   event.code = static_cast<std::int32_t>(code);

@@ -1,18 +1,9 @@
 #include "gateway/outlet.hpp"
 
-#include <chrono>
-
+#include "app/utime.hpp"
 #include "link/link_message.hpp"
 
 namespace rc10::gateway {
-namespace {
-
-std::int64_t wallClockUs() noexcept {
-  const auto now = std::chrono::system_clock::now().time_since_epoch();
-  return std::chrono::duration_cast<std::chrono::microseconds>(now).count();
-}
-
-}  // namespace
 
 Outlet::Outlet(const link::Welcome& welcome, LcmPublisher& publisher)
     : welcome_(welcome), publisher_(publisher) {
@@ -82,7 +73,7 @@ void Outlet::publish(const link::Event& event) {
 }
 
 void Outlet::publish(const link::Response& response) {
-  convert(response, wallClockUs(), response_);
+  convert(response, utimeOf(std::chrono::system_clock::now()), response_);
   send(response_channel_, response_);
 }
 

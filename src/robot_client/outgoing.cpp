@@ -1,5 +1,6 @@
 #include "robot_client/outgoing.hpp"
 
+#include "app/utime.hpp"
 #include "rc10/command_t.hpp"
 #include "rc10/request_t.hpp"
 #include "rc10/signals_t.hpp"
@@ -8,14 +9,6 @@
 
 namespace rc10 {
 inline namespace robot_client {
-namespace {
-
-[[nodiscard]] std::int64_t wallUs() {
-  const auto wall = std::chrono::system_clock::now().time_since_epoch();
-  return std::chrono::duration_cast<std::chrono::microseconds>(wall).count();
-}
-
-}  // namespace
 
 std::string joined(const std::vector<std::string>& names) {
   std::string text;
@@ -32,7 +25,7 @@ Outgoing::Outgoing(LcmLink link, std::string robot, std::string client, int prio
 
 Result<void> Outgoing::command(const MotorSetpoints& setpoints, std::chrono::milliseconds validity) {
   command_t message;
-  message.utime = wallUs();
+  message.utime = utimeOf(std::chrono::system_clock::now());
   message.client = client_;
   message.session = session_;
   message.seq = nextNumber();
@@ -45,7 +38,7 @@ Result<void> Outgoing::command(const MotorSetpoints& setpoints, std::chrono::mil
 
 Result<void> Outgoing::inputs(const std::string& module, const Signals& inputs, const SendOptions& options) {
   signals_t message;
-  message.utime = wallUs();
+  message.utime = utimeOf(std::chrono::system_clock::now());
   message.client = client_;
   message.session = session_;
   message.seq = nextNumber();
@@ -62,7 +55,7 @@ Result<void> Outgoing::inputs(const std::string& module, const Signals& inputs, 
 Result<void> Outgoing::request(std::int64_t number, const std::string& operation, const std::string& target,
                                const std::map<std::string, double>& values) {
   request_t message;
-  message.utime = wallUs();
+  message.utime = utimeOf(std::chrono::system_clock::now());
   message.client = client_;
   message.session = session_;
   message.seq = number;

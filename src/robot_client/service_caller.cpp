@@ -4,6 +4,7 @@
 #include <mutex>
 #include <optional>
 
+#include "app/utime.hpp"
 #include "rc10/service_client.hpp"
 #include "rc10/service_request_t.hpp"
 #include "rc10/service_response_t.hpp"
@@ -70,8 +71,7 @@ tl::expected<std::vector<std::byte>, ServiceError> ServiceCaller::call(std::span
   Impl& my = *impl_;
   if (my.link.inHandler()) return error(Kind::kNotSent, "a call in a callback would wait for itself");
   service_request_t message{};
-  const auto wall = std::chrono::system_clock::now().time_since_epoch();
-  message.utime = std::chrono::duration_cast<std::chrono::microseconds>(wall).count();
+  message.utime = utimeOf(std::chrono::system_clock::now());
   message.client = my.client;
   message.session = my.session;
   message.timeout_ms = static_cast<std::int32_t>(options.timeout.count());

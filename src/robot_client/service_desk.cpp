@@ -10,6 +10,7 @@
 #include <tuple>
 
 #include "app/time.hpp"
+#include "app/utime.hpp"
 #include "rc10/service_request_t.hpp"
 #include "rc10/service_response_t.hpp"
 #include "rc10/service_server.hpp"
@@ -29,8 +30,7 @@ constexpr std::size_t kMaxRemembered = 64;
 
 [[nodiscard]] service_response_t answerTo(const service_request_t& request) {
   service_response_t response{};
-  const auto wall = std::chrono::system_clock::now().time_since_epoch();
-  response.utime = std::chrono::duration_cast<std::chrono::microseconds>(wall).count();
+  response.utime = utimeOf(std::chrono::system_clock::now());
   response.client = request.client;
   response.session = request.session;
   response.seq = request.seq;

@@ -13,9 +13,9 @@
 #include <CLI/CLI.hpp>
 
 #include "app/result.hpp"
+#include "app/spelling.hpp"
 #include "app/standard_output.hpp"
 #include "app/unique_fd.hpp"
-#include "spelling.hpp"
 
 /// Common part of programs that run until a signal ends them.
 namespace rc10 {

@@ -2,8 +2,8 @@
 
 #include <gmock/gmock.h>
 
+#include "app/style.hpp"
 #include "client/sparkline.hpp"
-#include "client/style.hpp"
 
 namespace rc10::client::screen_fit_test {
 namespace {
@@ -57,10 +57,11 @@ TEST(ScreenFit, MarksOfASparklineCountOnceAndStayWhole) {
 }
 
 TEST(ScreenFit, ColoursHaveNoWidthAndEndBehindTheCut) {
-  const auto red = styled("yaw FAULT", kBad);
+  const auto red = style::styled("yaw FAULT", style::kBad);
   EXPECT_EQ(line(red, 10), red + "\n");
-  EXPECT_EQ(line(red, 4), styled("yaw", kBad) + "\n");
-  EXPECT_EQ(line("ab" + styled("cd", kGood) + "ef", 4), "ab" + styled("c", kGood) + "\n");
+  EXPECT_EQ(line(red, 4), style::styled("yaw", style::kBad) + "\n");
+  EXPECT_EQ(line("ab" + style::styled("cd", style::kGood) + "ef", 4),
+            "ab" + style::styled("c", style::kGood) + "\n");
 }
 
 TEST(ScreenFit, ASequenceThatDoesNotEndIsNotReadBeyondTheLine) {

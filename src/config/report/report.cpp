@@ -9,9 +9,9 @@
 #include <variant>
 #include <vector>
 
+#include "app/text_table.hpp"
 #include "config/check/bus_load_check.hpp"
 #include "config/check/drive_ids.hpp"
-#include "config/report/text_table.hpp"
 #include "config/yaml/number_text.hpp"
 #include "config/yaml/problem.hpp"
 #include "drives/dji/dji_family.hpp"
@@ -69,7 +69,7 @@ std::string clientsText(const RobotConfig& config) {
 
 std::string robotText(const RobotConfig& config) {
   const bool required = config.realtime == RealtimePolicy::kRequired;
-  TextTable table;
+  TextTable table({{""}, {""}});
   table.add({"robot", config.robot + " (" + excerpt(config.file) + ")"});
   table.add({"realtime", required ? "required" : "preferred"});
   table.add({"guard", config.guard == GuardPolicy::kOff        ? "off: nobody rests the drives if rc10d dies"
@@ -94,7 +94,7 @@ std::string robotText(const RobotConfig& config) {
                                              " ms after an e-stop"
                                        : std::string{", also in an e-stop"})});
   }
-  return table.text(0);
+  return table.text();
 }
 
 std::string modesOf(ModeSet set) {
@@ -149,8 +149,16 @@ std::string feedbackText(const MotorConfig& motor, const BusUse& use) {
 }
 
 std::string wiringText(const BusConfig& bus, int rate_hz) {
-  TextTable table;
-  table.add({"motor", "model", "id", "feedback", "command", "load", "direction", "gear", "zero", "timeout"});
+  TextTable table({{"motor"},
+                   {"model"},
+                   {"id"},
+                   {"feedback"},
+                   {"command"},
+                   {"load"},
+                   {"direction"},
+                   {"gear"},
+                   {"zero"},
+                   {"timeout"}});
   const auto loads = predictLoadByMotor(bus, rate_hz);
   for (std::size_t i = 0; i < bus.motors.size(); ++i) {
     const auto& motor = bus.motors[i];
@@ -182,8 +190,7 @@ std::string angleLoopText(const CascadeConfig& loops) {
 }
 
 std::string loopsText(const BusConfig& bus) {
-  TextTable table;
-  table.add({"motor", "limit", "velocity", "velocity loop", "angle loop"});
+  TextTable table({{"motor"}, {"limit"}, {"velocity"}, {"velocity loop"}, {"angle loop"}});
   for (const auto& motor : bus.motors) {
     const CascadeConfig& loops = motor.settings.loops;
     const float limit_rpm = motor.settings.velocity_limit_rpm;
@@ -246,8 +253,7 @@ std::string reducedText(const RobotConfig& config) {
 
 /// Fallbacks and travel limits of each motor.
 std::string safetyText(const BusConfig& bus) {
-  TextTable table;
-  table.add({"motor", "time-out", "disable", "e-stop", "over-speed", "soft limits"});
+  TextTable table({{"motor"}, {"time-out"}, {"disable"}, {"e-stop"}, {"over-speed"}, {"soft limits"}});
   for (const auto& motor : bus.motors) {
     table.add({motor.name(), fallbackText(motor.fallback.on_timeout), fallbackText(motor.fallback.on_disable),
                estopText(motor), overspeedText(motor.guard), softLimitsText(motor.shaping)});

@@ -2,6 +2,8 @@
 
 #include <ctime>
 
+#include "app/utime.hpp"
+
 namespace rc10 {
 
 MonotonicTime monotonicNow() noexcept {
@@ -9,11 +11,7 @@ MonotonicTime monotonicNow() noexcept {
   return std::chrono::steady_clock::now();
 }
 
-std::int64_t wallClockUs() noexcept {
-  return std::chrono::duration_cast<std::chrono::microseconds>(
-             std::chrono::system_clock::now().time_since_epoch())
-      .count();
-}
+std::int64_t wallClockUs() noexcept { return utimeOf(std::chrono::system_clock::now()); }
 
 Duration threadCpuTime() noexcept {
   timespec time{};

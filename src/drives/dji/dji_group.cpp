@@ -2,18 +2,13 @@
 
 #include <algorithm>
 
+#include "app/hex_text.hpp"
+
 namespace rc10 {
 namespace {
 
 constexpr std::size_t kSlots = 4;
 constexpr std::array<std::uint32_t, 5> kCommandIds{0x200, 0x1FF, 0x2FF, 0x1FE, 0x2FE};
-
-std::string hex(std::uint32_t id) {
-  constexpr std::string_view kDigits = "0123456789ABCDEF";
-  std::string text = "0x";
-  for (int shift = 8; shift >= 0; shift -= 4) text += kDigits[(id >> static_cast<unsigned>(shift)) & 0xFU];
-  return text;
-}
 
 /// C620 and C610 drives share a protocol; GM6020 has one of its own.
 bool isGM6020(const DJI_Motor& motor) noexcept { return motor.model().absolute_output; }
@@ -27,7 +22,8 @@ CanFrame emptyFrame(CanId id) noexcept {
 
 }  // namespace
 
-DJI_Group::DJI_Group(CanId command_id) : ids_{command_id}, name_("DJI group " + hex(command_id.value)) {}
+DJI_Group::DJI_Group(CanId command_id)
+    : ids_{command_id}, name_("DJI group 0x" + hexDigits(command_id.value, 3)) {}
 
 Result<void> DJI_Group::registerMotor(DJI_Motor& motor) {
   const CanId id = ids_[0];
@@ -35,7 +31,7 @@ Result<void> DJI_Group::registerMotor(DJI_Motor& motor) {
   if (id.extended || std::find(kCommandIds.begin(), kCommandIds.end(), id.value) == kCommandIds.end()) {
     return fail(who + "no DJI drive listens to this id; they do to 0x200, 0x1FF, 0x2FF, 0x1FE and 0x2FE");
   }
-  if (motor.commandId() != id) return fail(who + "it listens to " + hex(motor.commandId().value));
+  if (motor.commandId() != id) return fail(who + "it listens to 0x" + hexDigits(motor.commandId().value, 3));
   for (const DJI_Motor* member : slots_) {
     if (member == nullptr) continue;
     if (member == &motor) return fail(who + "it is registered already");

@@ -7,7 +7,6 @@
 #include "app/printable.hpp"
 #include "client/json_line.hpp"
 #include "client/request_call.hpp"
-#include "client/text_table.hpp"
 #include "link/estop_datagram.hpp"
 
 namespace rc10::ctl {

@@ -17,7 +17,6 @@
 #include "client/first_spin.hpp"
 #include "client/hand_turn.hpp"
 #include "client/quantity_text.hpp"
-#include "client/text_table.hpp"
 #include "drive.hpp"
 #include "feed.hpp"
 #include "link/words.hpp"

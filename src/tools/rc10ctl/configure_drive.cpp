@@ -15,7 +15,6 @@
 #include "app/printable.hpp"
 #include "client/json_line.hpp"
 #include "client/request_call.hpp"
-#include "client/text_table.hpp"
 #include "verbs.hpp"
 
 namespace rc10::ctl {

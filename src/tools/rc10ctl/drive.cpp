@@ -12,7 +12,6 @@
 #include "client/quantity_text.hpp"
 #include "client/request_call.hpp"
 #include "client/state_text.hpp"
-#include "client/text_table.hpp"
 #include "feed.hpp"
 #include "link/words.hpp"
 

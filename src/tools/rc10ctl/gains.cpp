@@ -9,9 +9,9 @@
 #include <CLI/CLI.hpp>
 
 #include "app/printable.hpp"
+#include "app/text_table.hpp"
 #include "client/json_line.hpp"
 #include "client/request_call.hpp"
-#include "client/text_table.hpp"
 #include "config/yaml/number_text.hpp"
 #include "named_value.hpp"
 #include "verbs.hpp"
@@ -89,9 +89,8 @@ void printGainsJson(const Shown& shown) {
 }
 
 void printTable(const Shown& shown) {
-  using Align = client::TextTable::Align;
-  client::TextTable table(
-      {{"GAIN"}, {shown.before ? "BEFORE" : "VALUE", Align::kRight}, {"AFTER", Align::kRight}});
+  using Align = TextTable::Align;
+  TextTable table({{"GAIN"}, {shown.before ? "BEFORE" : "VALUE", Align::kRight}, {"AFTER", Align::kRight}});
   for (std::size_t i = 0; i < shown.gains.size(); ++i) {
     const double now = shown.gains[i].value;
     const double then = shown.before && i < shown.before->size() ? (*shown.before)[i].value : now;

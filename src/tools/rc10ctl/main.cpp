@@ -7,9 +7,9 @@
 
 #include <CLI/CLI.hpp>
 
+#include "app/spelling.hpp"
 #include "app/standard_output.hpp"
 #include "rc10_version.hpp"
-#include "spelling.hpp"
 #include "verbs.hpp"
 
 namespace {

@@ -15,7 +15,6 @@
 #include "client/duration_text.hpp"
 #include "client/module_text.hpp"
 #include "client/request_call.hpp"
-#include "client/text_table.hpp"
 #include "feed.hpp"
 #include "named_value.hpp"
 #include "verbs.hpp"

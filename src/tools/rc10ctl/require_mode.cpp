@@ -1,7 +1,6 @@
 #include "require_mode.hpp"
 
 #include "app/printable.hpp"
-#include "client/text_table.hpp"
 #include "config/keys/mode_setting.hpp"
 #include "link/words.hpp"
 

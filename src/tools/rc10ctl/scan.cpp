@@ -14,12 +14,12 @@
 
 #include <CLI/CLI.hpp>
 
+#include "app/text_table.hpp"
 #include "bus/can_link_state.hpp"
 #include "bus/can_socket.hpp"
 #include "bus/wire_frame.hpp"
 #include "client/json_line.hpp"
 #include "client/quantity_text.hpp"
-#include "client/text_table.hpp"
 #include "config/check/drive_ids.hpp"
 #include "link/interface_lock.hpp"
 #include "survey/bus_survey.hpp"
@@ -137,10 +137,8 @@ class Scanner {
 
 void printSightingsText(const std::vector<Sighting>& sightings, const survey::Asking& asking) {
   const auto rows = rowsOf(sightings);
-  client::TextTable table({{"KIND"},
-                           {"ID", client::TextTable::Align::kRight},
-                           {"FRAMES", client::TextTable::Align::kRight},
-                           {"FRAME IDS"}});
+  TextTable table(
+      {{"KIND"}, {"ID", TextTable::Align::kRight}, {"FRAMES", TextTable::Align::kRight}, {"FRAME IDS"}});
   for (const auto& [drive, row] : rows)
     table.add({drive.first,
                drive.second != 0 || drive.first == drive_kind::kVesc ? std::to_string(drive.second) : "",

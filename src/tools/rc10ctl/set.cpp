@@ -12,10 +12,9 @@
 #include "ask.hpp"
 #include "client/duration_text.hpp"
 #include "client/find_motor.hpp"
-#include "client/text_table.hpp"
 #include "drive.hpp"
 #include "link/words.hpp"
-#include "spelling.hpp"
+#include "one_of.hpp"
 #include "verbs.hpp"
 
 namespace rc10::ctl {

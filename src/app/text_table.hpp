@@ -5,10 +5,10 @@
 #include <string_view>
 #include <vector>
 
-namespace rc10::client {
+namespace rc10 {
 
 /// Columns of plain text, as wide as their widest cell, two spaces apart. Columns in which every cell is
-/// empty are left out.
+/// empty are left out; without titles there is no head.
 class TextTable {
  public:
   enum class Align : unsigned char { kLeft, kRight };
@@ -21,11 +21,12 @@ class TextTable {
 
   /// `style` goes before the line and a reset behind it, of no width: a terminal's colour.
   void add(std::vector<std::string> cells, std::string_view style = {});
-  [[nodiscard]] std::string text() const;
+  /// Each line indented by `indent` spaces; none at their ends.
+  [[nodiscard]] std::string text(std::size_t indent = 0) const;
 
  private:
   [[nodiscard]] std::size_t width(std::size_t column) const;
-  [[nodiscard]] std::string line(const std::vector<std::size_t>& widths,
+  [[nodiscard]] std::string line(std::size_t indent, const std::vector<std::size_t>& widths,
                                  const std::vector<std::string>& cells) const;
 
   std::vector<Column> columns_;
@@ -33,4 +34,4 @@ class TextTable {
   std::vector<std::string> styles_;  // of each row; mostly empty
 };
 
-}  // namespace rc10::client
+}  // namespace rc10

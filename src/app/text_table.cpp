@@ -1,10 +1,10 @@
-#include "client/text_table.hpp"
+#include "app/text_table.hpp"
 
 #include <algorithm>
 
-#include "client/style.hpp"
+#include "app/style.hpp"
 
-namespace rc10::client {
+namespace rc10 {
 namespace {
 
 // Characters, not bytes, of UTF-8.
@@ -27,7 +27,7 @@ std::size_t TextTable::width(std::size_t column) const {
   return widest == 0 ? 0 : std::max(widest, length(columns_[column].title));
 }
 
-std::string TextTable::line(const std::vector<std::size_t>& widths,
+std::string TextTable::line(std::size_t indent, const std::vector<std::size_t>& widths,
                             const std::vector<std::string>& cells) const {
   std::string text;
   for (std::size_t i = 0; i < columns_.size(); ++i) {
@@ -37,19 +37,22 @@ std::string TextTable::line(const std::vector<std::size_t>& widths,
     text += columns_[i].align == Align::kRight ? padding + cells[i] : cells[i] + padding;
   }
   text.erase(text.find_last_not_of(' ') + 1);
-  return text + '\n';
+  return std::string(indent, ' ') + text + '\n';
 }
 
-std::string TextTable::text() const {
+std::string TextTable::text(std::size_t indent) const {
   std::vector<std::size_t> widths;
   std::vector<std::string> titles;
   for (std::size_t i = 0; i < columns_.size(); ++i) {
     widths.push_back(width(i));
     titles.push_back(columns_[i].title);
   }
-  std::string text = line(widths, titles);
-  for (std::size_t i = 0; i < rows_.size(); ++i) text += client::styled(line(widths, rows_[i]), styles_[i]);
+  const bool headed =
+      std::any_of(titles.begin(), titles.end(), [](const auto& title) { return !title.empty(); });
+  std::string text = headed ? line(indent, widths, titles) : std::string{};
+  for (std::size_t i = 0; i < rows_.size(); ++i)
+    text += style::styled(line(indent, widths, rows_[i]), styles_[i]);
   return text;
 }
 
-}  // namespace rc10::client
+}  // namespace rc10

@@ -4,7 +4,7 @@
 #include <string_view>
 
 /// Escape sequences, for terminals with colours only.
-namespace rc10::client {
+namespace rc10::style {
 
 inline constexpr std::string_view kGood = "\x1b[32m";
 inline constexpr std::string_view kDoubtful = "\x1b[33m";
@@ -19,4 +19,4 @@ inline constexpr std::string_view kBad = "\x1b[1;31m";
   return line ? text + '\n' : text;
 }
 
-}  // namespace rc10::client
+}  // namespace rc10::style

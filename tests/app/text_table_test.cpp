@@ -1,13 +1,10 @@
-#include "client/text_table.hpp"
-
-#include <cmath>
-#include <limits>
+#include "app/text_table.hpp"
 
 #include <gtest/gtest.h>
 
-#include "client/quantity_text.hpp"
+#include "app/style.hpp"
 
-namespace rc10::client::test::text_table_test {
+namespace rc10::test::text_table_test {
 namespace {
 
 using Align = TextTable::Align;
@@ -48,32 +45,18 @@ TEST(TextTable, FillsShortRows) {
   EXPECT_EQ(table.text(), "A  B\n1\n1  2\n");
 }
 
-TEST(Quantity, IsShort) {
-  EXPECT_EQ(quantity(12.345, 1, "rpm"), "12.3 rpm");
-  EXPECT_EQ(quantity(12.345, 1, ""), "12.3");
-  EXPECT_EQ(number(-0.04, 1), "0.0");
-  EXPECT_EQ(number(-0.06, 1), "-0.1");
-  EXPECT_EQ(percent(0.614), "61 %");
+TEST(TextTable, HasNoHeadWithoutTitlesAndIsIndented) {
+  TextTable table({{""}, {""}});
+  table.add({"robot", "hero"});
+  table.add({"guard", "off"});
+  EXPECT_EQ(table.text(2), "  robot  hero\n  guard  off\n");
 }
 
-TEST(Quantity, ThatIsNotReportedIsADash) {
-  EXPECT_EQ(quantity(std::nan(""), 1, "rpm"), "-");
-  EXPECT_EQ(percent(std::nan("")), "-");
-}
-
-TEST(Quantity, OfAnySizeIsText) {
-  EXPECT_EQ(number(1e300, 1), "1e+300");
-  EXPECT_EQ(number(std::numeric_limits<double>::infinity(), 1), "inf");
-  EXPECT_EQ(number(-std::numeric_limits<double>::infinity(), 1), "-inf");
-}
-
-TEST(Age, ChoosesItsUnit) {
-  EXPECT_EQ(age(-1), "-");
-  EXPECT_EQ(age(0), "0.0 ms");
-  EXPECT_EQ(age(420), "0.4 ms");
-  EXPECT_EQ(age(83'200), "83 ms");
-  EXPECT_EQ(age(12'400'000), "12 s");
+TEST(TextTable, AStyleEndsWithItsLine) {
+  TextTable table({{"NAME"}});
+  table.add({"a"}, style::kBad);
+  EXPECT_EQ(table.text(), "NAME\n" + std::string{style::kBad} + "a\x1b[0m\n");
 }
 
 }  // namespace
-}  // namespace rc10::client::test::text_table_test
+}  // namespace rc10::test::text_table_test
