@@ -50,23 +50,19 @@ Text text(Input& input) {
   return input.take<Text>();
 }
 
-const RobotConfig& robot() {
-  static const RobotConfig kConfig = parseRobotConfig(std::string{kRobot}, "fuzz.yaml").config.value();
-  return kConfig;
-}
-
-std::vector<KnownMotor> motors() {
-  std::vector<KnownMotor> known;
-  for (const auto& motor : robot().buses[0].motors)
-    known.push_back({motor.settings.name, ModeSet{ControlMode::kVelocity, ControlMode::kAngle}});
-  return known;
-}
-
-std::vector<MotorLoops> loops() {
-  std::vector<MotorLoops> all;
-  for (const auto& motor : robot().buses[0].motors)
-    all.push_back({motor.settings.model, motor.traits(), motor.settings.loops});
-  return all;
+RobotDescription described() {
+  const auto config = parseRobotConfig(std::string{kRobot}, "fuzz.yaml").config.value();
+  RobotDescription robot;
+  for (const auto& motor : config.buses[0].motors) {
+    auto& known = robot.motors.emplace_back();
+    known.name = motor.settings.name;
+    known.modes = ModeSet{ControlMode::kVelocity, ControlMode::kAngle};
+    known.loops = {motor.settings.model, motor.traits(), motor.settings.loops};
+  }
+  auto& base = robot.modules.emplace_back();
+  base.name = "base";
+  base.signals.inputs = {"speed"};
+  return robot;
 }
 
 /// The parts of the link thread, and the inputs of a stranger.
@@ -165,9 +161,10 @@ class Desk {
       require(std::isfinite(value.value));
   }
 
-  Admission admission_{motors()};
-  SignalAdmission signals_{{{"base", {"speed"}}}};
-  RequestDesk desk_{admission_, {"wheel", "arm", "turret"}, {}, {}, loops()};
+  RobotDescription robot_ = described();
+  Admission admission_{robot_};
+  SignalAdmission signals_{robot_};
+  RequestDesk desk_{admission_, robot_};
   std::vector<std::uint64_t> open_;
 };
 

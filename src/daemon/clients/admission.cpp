@@ -76,9 +76,10 @@ const char* describe(CommandRefusal refusal) noexcept {
   return toString(refusal);
 }
 
-Admission::Admission(std::vector<KnownMotor> motors, Permissions permissions)
-    : motors_(std::move(motors)), permissions_(std::move(permissions)) {
-  for (std::size_t i = 0; i < motors_.size(); ++i) index_.emplace(motors_[i].name, static_cast<int>(i));
+Admission::Admission(const RobotDescription& robot, Permissions permissions)
+    : robot_(robot), permissions_(std::move(permissions)) {
+  for (std::size_t i = 0; i < robot.motors.size(); ++i)
+    index_.emplace(robot.motors[i].name, static_cast<int>(i));
 }
 
 int Admission::indexOf(std::string_view name) const {
@@ -132,7 +133,7 @@ CommandRefusal Admission::translate(const link::Setpoint& in, Command::Setpoint&
   if (motor < 0) return CommandRefusal::kUnknownMotor;
   const auto mode = in.target.mode;
   if (static_cast<int>(mode) >= kControlModeCount) return CommandRefusal::kUnknownMode;
-  if (mode != ControlMode::kCoast && !motors_[static_cast<std::size_t>(motor)].modes.contains(mode)) {
+  if (mode != ControlMode::kCoast && !robot_.motors[static_cast<std::size_t>(motor)].modes.contains(mode)) {
     return CommandRefusal::kUnsupportedMode;
   }
   if (!finite(in.target)) return CommandRefusal::kNotFinite;

@@ -5,7 +5,6 @@
 #include <string>
 #include <string_view>
 #include <unordered_map>
-#include <vector>
 
 #include "app/target.hpp"
 #include "app/time.hpp"
@@ -14,6 +13,7 @@
 #include "daemon/clients/session_numbers.hpp"
 #include "daemon/clients/validity.hpp"
 #include "daemon/exchange/orders.hpp"
+#include "daemon/exchange/robot_description.hpp"
 #include "link/link_protocol.hpp"
 
 namespace rc10 {
@@ -41,16 +41,11 @@ inline constexpr std::size_t kCommandRefusalCount = 13;
 /// Cause and remedy.
 [[nodiscard]] const char* describe(CommandRefusal refusal) noexcept;
 
-/// Motor, as admission knows it.
-struct KnownMotor {
-  std::string name;
-  ModeSet modes;
-};
-
 /// Checks command messages before they reach the scheduler. Link thread only; the time is an argument.
 class Admission {
  public:
-  explicit Admission(std::vector<KnownMotor> motors, Permissions permissions = {});
+  /// The robot outlives it.
+  explicit Admission(const RobotDescription& robot, Permissions permissions = {});
 
   /// Translates a message; on refusal `out` is unspecified. `now` is CLOCK_MONOTONIC.
   [[nodiscard]] CommandRefusal admit(const link::Command& message, const Speaker& speaker, MonotonicTime now,
@@ -78,7 +73,7 @@ class Admission {
  private:
   [[nodiscard]] CommandRefusal translate(const link::Setpoint& in, Command::Setpoint& out) const;
 
-  std::vector<KnownMotor> motors_;
+  const RobotDescription& robot_;
   Permissions permissions_;
   std::string not_permitted_;
   std::unordered_map<std::string, int> index_;

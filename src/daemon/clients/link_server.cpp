@@ -1,12 +1,10 @@
 #include "daemon/clients/link_server.hpp"
 
-#include <fcntl.h>
 #include <sys/epoll.h>
 #include <sys/socket.h>
 #include <sys/timerfd.h>
 #include <unistd.h>
 
-#include <algorithm>
 #include <cerrno>
 #include <cstring>
 
@@ -17,14 +15,11 @@
 namespace rc10 {
 namespace {
 
-constexpr std::size_t kMaxConnections = 16;
 constexpr int kMaxLinkEvents = 16;
 // Taken from one client before the others have their turn.
 constexpr int kDatagramsPerTurn = 32;
 // Answers and events leave at this rate, whatever state_hz is.
 constexpr int kSlowHz = 100;
-// More than a client may have under way: it asks on and on, and reads nothing.
-constexpr std::size_t kMaxUnsent = 128;
 constexpr unsigned kDiagnosticsEvery = kSlowHz / 2;    // 2 Hz
 constexpr unsigned kHousekeepingEvery = kSlowHz / 10;  // 10 Hz
 constexpr unsigned kLateCausesEvery = kSlowHz / 50;    // 50 Hz, some ten ticks
@@ -43,81 +38,16 @@ constexpr std::uint64_t kSlowTimer = kListener - 2;
   return timer;
 }
 
-[[nodiscard]] bool watch(int epoll, int fd, std::uint64_t key) noexcept {
-  epoll_event event{};
-  event.events = EPOLLIN;
-  event.data.u64 = key;
-  return epoll_ctl(epoll, EPOLL_CTL_ADD, fd, &event) == 0;
-}
-
-[[nodiscard]] std::vector<KnownMotor> traits(const RobotDescription& robot) {
-  std::vector<KnownMotor> out;
-  out.reserve(robot.motors.size());
-  for (const auto& motor : robot.motors) out.push_back({motor.name, motor.modes});
-  return out;
-}
-
-[[nodiscard]] std::vector<KnownModule> modules(const RobotDescription& robot) {
-  std::vector<KnownModule> out;
-  out.reserve(robot.modules.size());
-  for (const auto& module : robot.modules) out.push_back({module.name, module.signals.inputs});
-  return out;
-}
-
-[[nodiscard]] std::vector<std::string> names(const RobotDescription& robot) {
-  std::vector<std::string> out;
-  out.reserve(robot.motors.size());
-  for (const auto& motor : robot.motors) out.push_back(motor.name);
-  return out;
-}
-
-[[nodiscard]] MotorSet optional(const RobotDescription& robot) {
-  MotorSet out;
-  for (std::size_t i = 0; i < robot.motors.size(); ++i) out.set(i, robot.motors[i].optional);
-  return out;
-}
-
-[[nodiscard]] std::vector<const DriveSetup*> setups(const RobotDescription& robot) {
-  std::vector<const DriveSetup*> out;
-  out.reserve(robot.motors.size());
-  for (const auto& motor : robot.motors) out.push_back(motor.setup);
-  return out;
-}
-
-[[nodiscard]] std::vector<MotorLoops> loops(const RobotDescription& robot) {
-  std::vector<MotorLoops> out;
-  out.reserve(robot.motors.size());
-  for (const auto& motor : robot.motors) out.push_back(motor.loops);
-  return out;
-}
-
-[[nodiscard]] std::vector<std::optional<SimulatedDrive>> simulatedDrives(const RobotDescription& robot) {
-  std::vector<std::optional<SimulatedDrive>> out;
-  out.reserve(robot.motors.size());
-  for (const auto& motor : robot.motors) out.push_back(motor.simulated);
-  return out;
-}
-
 [[nodiscard]] Permissions::Rules rules(const RobotDescription& robot) {
   Permissions::Rules out{.clients = robot.clients,
                          .tuning_locked_at = robot.tuning_locked_at,
                          .clear_local_at = robot.clear_local_at,
                          .file = robot.config_file,
-                         .motors = names(robot),
+                         .motors = {},
                          .modules = {}};
+  for (const auto& motor : robot.motors) out.motors.push_back(motor.name);
   for (const auto& module : robot.modules) out.modules.push_back(module.name);
   return out;
-}
-
-// Primary and supplementary. A process in more groups than these is known by its user and primary group.
-[[nodiscard]] std::vector<gid_t> groupsOf(int fd, gid_t primary) {
-  constexpr std::size_t kMaxGroups = 256;
-  std::vector<gid_t> groups(kMaxGroups);
-  socklen_t size = static_cast<socklen_t>(groups.size() * sizeof(gid_t));
-  const bool known = ::getsockopt(fd, SOL_SOCKET, SO_PEERGROUPS, groups.data(), &size) == 0;
-  groups.resize(known ? size / sizeof(gid_t) : 0);
-  groups.push_back(primary);
-  return groups;
 }
 
 void drainTimer(int fd) noexcept {
@@ -128,35 +58,29 @@ void drainTimer(int fd) noexcept {
 }  // namespace
 
 LinkServer::LinkServer(LinkSocket socket, Sources sources, const Permissions& permissions, UniqueFd epoll,
-                       UniqueFd state_timer, UniqueFd slow_timer)
-    : socket_(std::move(socket)),
-      sources_(std::move(sources)),
+                       Timers timers)
+    : sources_(std::move(sources)),
       epoll_(std::move(epoll)),
-      state_timer_(std::move(state_timer)),
-      slow_timer_(std::move(slow_timer)),
-      spare_(::open("/dev/null", O_RDONLY | O_CLOEXEC)),
-      admission_(traits(sources_.robot), permissions),
-      signal_admission_(modules(sources_.robot), permissions),
-      desk_(admission_, names(sources_.robot), optional(sources_.robot), setups(sources_.robot),
-            loops(sources_.robot), simulatedDrives(sources_.robot)),
-      publication_(sources_.robot),
-      trace_desk_(sources_.robot, sources_.exchange.trace) {}
+      timers_(std::move(timers)),
+      admission_(sources_.robot, permissions),
+      signal_admission_(sources_.robot, permissions),
+      desk_(admission_, sources_.robot),
+      connections_(std::move(socket), epoll_.get(), admission_.permissions()),
+      feeds_(sources_, connections_) {}
 
 Result<std::unique_ptr<LinkServer>> LinkServer::create(LinkSocket socket, Sources sources) {
   auto permissions = Permissions::resolve(rules(sources.robot));
   if (!permissions) return tl::unexpected(permissions.error());
   UniqueFd epoll{epoll_create1(EPOLL_CLOEXEC)};
-  UniqueFd state_timer = makeTimer(sources.robot.state_hz);
-  UniqueFd slow_timer = makeTimer(kSlowHz);
-  if (!epoll || !state_timer || !slow_timer) return fail(fmt::format("link: {}", std::strerror(errno)));
-  if (!watch(epoll.get(), socket.descriptor(), kListener) ||
-      !watch(epoll.get(), state_timer.get(), kStateTimer) ||
-      !watch(epoll.get(), slow_timer.get(), kSlowTimer)) {
+  Timers timers{.state = makeTimer(sources.robot.state_hz), .slow = makeTimer(kSlowHz)};
+  if (!epoll || !timers.state || !timers.slow) return fail(fmt::format("link: {}", std::strerror(errno)));
+  if (!watchDescriptor(epoll.get(), socket.descriptor(), kListener) ||
+      !watchDescriptor(epoll.get(), timers.state.get(), kStateTimer) ||
+      !watchDescriptor(epoll.get(), timers.slow.get(), kSlowTimer)) {
     return fail(fmt::format("link: epoll_ctl: {}", std::strerror(errno)));
   }
   return std::unique_ptr<LinkServer>(new LinkServer(std::move(socket), std::move(sources), *permissions,
-                                                    std::move(epoll), std::move(state_timer),
-                                                    std::move(slow_timer)));
+                                                    std::move(epoll), std::move(timers)));
 }
 
 void LinkServer::run(const std::stop_token& stop) {
@@ -172,47 +96,29 @@ void LinkServer::poll(int timeout_ms) {
     if (key == kListener) {
       accept();
     } else if (key == kStateTimer) {
-      drainTimer(state_timer_.get());
-      publishState();
+      drainTimer(timers_.state.get());
+      feeds_.publishState();
     } else if (key == kSlowTimer) {
-      drainTimer(slow_timer_.get());
-      drainScheduler();
-      sendUnsent();
-      publishTrace();
-      if (slow_ticks_ % kLateCausesEvery == 0 && sources_.tick_thread.waited)
-        late_causes_.update(sources_.timing.late, sources_.tick_thread);
-      if (++slow_ticks_ % kHousekeepingEvery == 0 && sources_.housekeeping) sources_.housekeeping();
-      if (slow_ticks_ % kDiagnosticsEvery == 0) publishDiagnostics();
-    } else {
+      drainTimer(timers_.slow.get());
+      slowTick();
+    } else if (auto* connection = connections_.find(key)) {
       // Looked up anew: an earlier event of this batch may have closed it.
-      const auto found = std::find_if(connections_.begin(), connections_.end(),
-                                      [key](const auto& c) { return c.id == key; });
-      if (found != connections_.end()) receive(static_cast<std::size_t>(found - connections_.begin()));
+      receive(*connection);
     }
   }
 }
 
-void LinkServer::accept() {
-  for (;;) {
-    UniqueFd fd{::accept4(socket_.descriptor(), nullptr, nullptr, SOCK_NONBLOCK | SOCK_CLOEXEC)};
-    if (!fd && (errno == EMFILE || errno == ENFILE)) return refuseForWantOfDescriptors();
-    if (!fd) return;
-    if (connections_.size() >= kMaxConnections && !dropSilentConnection())
-      continue;  // closed: the client sees it
-    Connection connection;
-    connection.id = next_connection_++;
-    connection.speaker = speakerOf(fd.get(), connection.id);
-    connection.fd = std::move(fd);
-    if (watch(epoll_.get(), connection.fd.get(), connection.id))
-      connections_.push_back(std::move(connection));
-  }
+void LinkServer::slowTick() {
+  drainScheduler();
+  for (const auto id : connections_.sendUnsent()) feeds_.forget(id);
+  feeds_.publishTrace();
+  if (slow_ticks_ % kLateCausesEvery == 0) feeds_.countLateTicks();
+  if (++slow_ticks_ % kHousekeepingEvery == 0 && sources_.housekeeping) sources_.housekeeping();
+  if (slow_ticks_ % kDiagnosticsEvery == 0) feeds_.publishDiagnostics(admission_);
 }
 
-// One that stayed in the queue would wake this thread again and again, and wait for ever.
-void LinkServer::refuseForWantOfDescriptors() {
-  spare_.reset();
-  UniqueFd{::accept4(socket_.descriptor(), nullptr, nullptr, SOCK_CLOEXEC)}.reset();
-  spare_ = UniqueFd{::open("/dev/null", O_RDONLY | O_CLOEXEC)};
+void LinkServer::accept() {
+  if (connections_.accept()) return;
   const auto now = monotonicNow();
   if (!sources_.log || now < next_descriptor_report_) return;
   next_descriptor_report_ = now + kRefusalReportInterval;
@@ -225,43 +131,14 @@ void LinkServer::refuseForWantOfDescriptors() {
   sources_.log(event);
 }
 
-Speaker LinkServer::speakerOf(int fd, std::uint64_t connection) const {
-  ucred peer{.pid = 0, .uid = static_cast<uid_t>(-1), .gid = static_cast<gid_t>(-1)};
-  socklen_t size = sizeof peer;
-  (void)::getsockopt(fd, SOL_SOCKET, SO_PEERCRED, &peer, &size);
-  return {.connection = connection,
-          .way = Speaker::Way::kSocket,
-          .user = peer.uid,
-          .grants = admission_.permissions().ofUser(peer.uid, groupsOf(fd, peer.gid))};
-}
-
-Speaker LinkServer::speakerOf(const Connection& connection, const link::Name& client,
-                              link::Origin origin) const {
-  if (!connection.is_gateway) return connection.speaker;
-  const bool here = origin == link::Origin::kThisComputer;
-  return {.connection = connection.id,
-          .way = here ? Speaker::Way::kLcm : Speaker::Way::kNetwork,
-          .user = connection.speaker.user,
-          .grants = here ? admission_.permissions().ofLcmClient(client.view()) : GrantSet{}};
-}
-
-// Connections without a hello must not keep the others out.
-bool LinkServer::dropSilentConnection() {
-  const auto oldest =
-      std::find_if(connections_.begin(), connections_.end(), [](const auto& c) { return !c.welcomed; });
-  if (oldest == connections_.end()) return false;
-  connections_.erase(oldest);  // it has asked for nothing yet
-  return true;
-}
-
-void LinkServer::receive(std::size_t index) {
+void LinkServer::receive(Connection& connection) {
   for (int i = 0; i < kDatagramsPerTurn; ++i) {
-    auto& connection = connections_[index];
     const auto size = ::recv(connection.fd.get(), buffer_.data(), buffer_.size(), MSG_DONTWAIT | MSG_TRUNC);
     if (size < 0 && (errno == EAGAIN || errno == EINTR)) return;
     const bool fits = size > 0 && static_cast<std::size_t>(size) <= buffer_.size();
     if (!fits || !handle(connection, {buffer_.data(), static_cast<std::size_t>(size)})) {
-      close(index);
+      feeds_.forget(connection.id);
+      connections_.close(connection.id);
       return;
     }
   }
@@ -274,7 +151,7 @@ bool LinkServer::handle(Connection& connection, std::span<const std::byte> datag
   if (!link::readHeader(datagram, header)) return obeyEstop(datagram, connection);
   if (header.type == link::MessageType::kCommand) {
     if (link::open(datagram, command_)) {
-      command(command_, speakerOf(connection, command_.client, command_.origin));
+      command(command_, connections_.speakerOf(connection, command_.client, command_.origin));
     } else {
       admission_.count(CommandRefusal::kMalformed);
       reportRefusal(CommandRefusal::kMalformed, connection.client);
@@ -283,7 +160,7 @@ bool LinkServer::handle(Connection& connection, std::span<const std::byte> datag
   }
   if (header.type == link::MessageType::kSignals) {
     if (link::open(datagram, signals_)) {
-      signals(signals_, speakerOf(connection, signals_.client, signals_.origin));
+      signals(signals_, connections_.speakerOf(connection, signals_.client, signals_.origin));
     } else {
       admission_.count(CommandRefusal::kMalformed);
       reportRefusal(CommandRefusal::kMalformed, connection.client);
@@ -299,7 +176,7 @@ bool LinkServer::handle(Connection& connection, std::span<const std::byte> datag
   if (header.type == link::MessageType::kTraceChoice) {
     link::TraceChoice message;
     if (!link::open(datagram, message)) return false;
-    chooseTrace(message, connection);
+    feeds_.chooseTrace(message, connection);
     return true;
   }
   return false;
@@ -320,16 +197,8 @@ bool LinkServer::welcome(Connection& connection, std::span<const std::byte> data
   connection.is_gateway =
       connection.speaker.user == ::geteuid() && hello.client.view() == link::kGatewayClient;
   connection.subscriptions = hello.subscriptions;
-  // The answer carries our version; a client of another version reads it there and says so.
-  auto message = publication_.welcome();
-  send(connection, link::seal(message));
   connection.welcomed = hello.protocol_version == link::kProtocolVersion;
-  if (connection.welcomed && (connection.subscriptions & link::kModules) != 0) {
-    for (std::size_t i = 0; i < sources_.robot.modules.size(); ++i) {
-      auto info = publication_.moduleInfo(i);
-      send(connection, link::seal(info));
-    }
-  }
+  feeds_.greet(connection);
   return connection.welcomed;
 }
 
@@ -367,16 +236,11 @@ void LinkServer::reportRefusal(CommandRefusal reason, const link::Name& client, 
   // To clients not through the scheduler, which never saw the command; but it alone writes the black box.
   (void)sources_.exchange.refusals.push({EventCode::kCommandRefused, Severity::kWarning, -1,
                                          static_cast<std::int32_t>(reason), 0, now, client});
-  tell(Publication::refusal(reason, client, now, wallClockUs(), why));
-}
-
-void LinkServer::tell(link::Event message) {
-  publish(link::kEvents, link::seal(message));
-  if (sources_.log) sources_.log(message);
+  feeds_.tell(Publication::refusal(reason, client, now, wallClockUs(), why));
 }
 
 void LinkServer::request(const link::Request& message, Connection& connection) {
-  const auto speaker = speakerOf(connection, message.client, message.origin);
+  const auto speaker = connections_.speakerOf(connection, message.client, message.origin);
   auto outcome = desk_.begin(message, speaker);
   if (outcome.estop) {
     sources_.exchange.estop_client.slot() = message.client;
@@ -395,54 +259,17 @@ void LinkServer::request(const link::Request& message, Connection& connection) {
       response.status = link::ResponseStatus::kFailed;
       response.message = std::string_view{"hand: too many at once: the simulation is behind"};
     }
-    respond(connection, response);
+    Connections::respond(connection, response);
   }
-  if (outcome.response) respond(connection, *outcome.response);
+  if (outcome.response) Connections::respond(connection, *outcome.response);
   if (outcome.not_permitted.empty()) return;
   admission_.count(CommandRefusal::kNotPermitted);
   reportRefusal(CommandRefusal::kNotPermitted, message.client, outcome.not_permitted);
 }
 
 void LinkServer::answer(const RequestDesk::Answer& answer) {
-  for (auto& connection : connections_) {
-    if (connection.id == answer.connection) respond(connection, answer.response);
-  }
-}
-
-void LinkServer::respond(Connection& connection, link::Response response) {
-  if (connection.unsent.empty() && send(connection, link::seal(response))) return;
-  connection.unsent.push_back(std::move(response));
-}
-
-void LinkServer::sendUnsent() {
-  for (std::size_t i = connections_.size(); i-- > 0;) {
-    auto& unsent = connections_[i].unsent;
-    while (!unsent.empty() && send(connections_[i], link::seal(unsent.front()))) unsent.pop_front();
-    // It sees the end of the connection, and knows that answers are missing.
-    if (unsent.size() > kMaxUnsent) close(i);
-  }
-}
-
-void LinkServer::chooseTrace(const link::TraceChoice& message, const Connection& connection) {
-  publishTrace();  // the last rows of the choice before
-  trace_desk_.choose(connection.id, message);
-  trace_desk_.fillChoice(trace_);
-  send(connection, link::seal(trace_));
-}
-
-void LinkServer::publishTrace() {
-  while (!trace_desk_.idle() && trace_desk_.fill(trace_)) {
-    const auto message = link::seal(trace_);
-    for (const auto& connection : connections_) {
-      if (trace_desk_.isWatching(connection.id)) send(connection, message);
-    }
-  }
-}
-
-void LinkServer::close(std::size_t index) {
-  trace_desk_.forget(connections_[index].id);
-  connections_.erase(connections_.begin() +
-                     static_cast<std::ptrdiff_t>(index));  // epoll forgets a closed descriptor
+  if (auto* connection = connections_.find(answer.connection))
+    Connections::respond(*connection, answer.response);
 }
 
 void LinkServer::drainScheduler() {
@@ -450,64 +277,7 @@ void LinkServer::drainScheduler() {
   while (sources_.exchange.results.pop(result)) {
     if (const auto done = desk_.finish(result)) answer(*done);
   }
-  Event event;
-  while (sources_.exchange.events.pop(event)) {
-    tell(publication_.event(event, wallClockUs()));
-  }
-  link::Event note;
-  while (sources_.exchange.notes.pop(note)) tell(note);
-  while (sources_.exchange.line_notes.pop(note)) tell(note);
-}
-
-void LinkServer::publishState() {
-  if (!sources_.exchange.snapshot.everPublished()) return;  // a robot without motors would be a lie
-  const auto& snapshot = sources_.exchange.snapshot.read();
-  publication_.fill(state_, snapshot, wallClockUs());
-  publish(link::kStates, link::seal(state_));
-  recordAges(snapshot);
-  publishModules(snapshot);
-}
-
-void LinkServer::recordAges(const Snapshot& snapshot) {
-  const auto now = monotonicNow();
-  for (std::size_t i = 0; i < snapshot.motor_count; ++i) {
-    const auto& motor = snapshot.motors[i];
-    if (motor.status != MotorStatus::kOffline && motor.feedback.samples > 0)
-      state_ages_.record(now - motor.feedback.received);
-  }
-}
-
-void LinkServer::publishModules(const Snapshot& snapshot) {
-  for (std::size_t i = 0; i < snapshot.module_count; ++i) {
-    publication_.fill(module_state_, i, snapshot, state_.utime);
-    publish(link::kModules, link::seal(module_state_));
-  }
-}
-
-void LinkServer::publishDiagnostics() {
-  publication_.fill(diagnostics_, sources_.exchange.snapshot.read(),
-                    {.timing = sources_.timing,
-                     .ages = sources_.exchange.ages,
-                     .state_ages = state_ages_,
-                     .late = late_causes_,
-                     .inboxes = sources_.inboxes,
-                     .admission = admission_,
-                     .page_faults = sources_.page_faults ? sources_.page_faults() : 0},
-                    wallClockUs());
-  publish(link::kDiagnosticsFeed, link::seal(diagnostics_));
-}
-
-void LinkServer::publish(std::uint32_t subscription, std::span<const std::byte> message) {
-  for (const auto& connection : connections_) {
-    if (connection.welcomed && (connection.subscriptions & subscription) != 0) send(connection, message);
-  }
-}
-
-bool LinkServer::send(const Connection& connection, std::span<const std::byte> message) noexcept {
-  // A client that does not read loses messages; the next state supersedes the lost one. One that is gone
-  // needs none.
-  return ::send(connection.fd.get(), message.data(), message.size(), MSG_DONTWAIT | MSG_NOSIGNAL) >= 0 ||
-         (errno != EAGAIN && errno != ENOBUFS);
+  feeds_.publishEvents();
 }
 
 }  // namespace rc10

@@ -17,7 +17,6 @@ namespace {
 // As far as soft limits go (angle_min_deg).
 constexpr double kFarthestZeroDeg = 1e6;
 
-constexpr std::size_t kMaxRemembered = 64;
 constexpr std::size_t kMaxOpen = 64;
 // Each gain is an event: those of one tick must leave room for others in their ring.
 constexpr std::ptrdiff_t kMaxOpenGains = 8;
@@ -66,12 +65,6 @@ constexpr std::string_view kAngle = "angle_deg";
   return "unknown reason";
 }
 
-template <typename Other>
-[[nodiscard]] bool sameNumber(const link::Request& request, const Other& other) {
-  return request.session == other.session && request.seq == other.seq &&
-         request.client.view() == other.client.view();
-}
-
 [[nodiscard]] Right rightFor(Operation operation) {
   switch (operation) {
     case Operation::kClear: return Right::kClear;
@@ -91,17 +84,10 @@ template <typename Other>
 
 }  // namespace
 
-RequestDesk::RequestDesk(const Admission& motors, std::vector<std::string> motor_names, MotorSet optional,
-                         std::vector<const DriveSetup*> setups, std::vector<MotorLoops> loops,
-                         std::vector<std::optional<SimulatedDrive>> drives)
-    : admission_(motors),
-      names_(std::move(motor_names)),
-      optional_(optional),
-      setups_(std::move(setups)),
-      loops_(std::move(loops)),
-      drives_(std::move(drives)) {
-  loops_.resize(names_.size());
-  drives_.resize(names_.size());
+RequestDesk::RequestDesk(const Admission& admission, const RobotDescription& robot)
+    : admission_(admission), robot_(robot) {
+  loops_.reserve(robot.motors.size());
+  for (const auto& motor : robot.motors) loops_.push_back(motor.loops);
 }
 
 link::Response RequestDesk::respond(const link::Request& request, link::ResponseStatus status,
@@ -121,7 +107,7 @@ RequestDesk::Outcome RequestDesk::begin(const link::Request& request, const Spea
   // An e-stop is an e-stop, whatever else the message says, and however often it comes.
   outcome.estop = operation == Operation::kEstop;
   const auto asker = speaker.owner();
-  const auto* known = remembered(asker, request);
+  const auto* known = answered_.find(asker, request);
   auto* open = openRepetition(asker, request);
   // An answer from memory stops nothing.
   const bool anew = operation && stops(*operation);
@@ -133,68 +119,78 @@ RequestDesk::Outcome RequestDesk::begin(const link::Request& request, const Spea
     open->connection = speaker.connection;  // a repetition: answered when the first is
     return outcome;
   }
-  MotorSet motors;
-  std::string problem;
   if (operation == Operation::kDriveSettings) return tellSettings(request);
   if (operation == Operation::kGetConfig) return tellConfig(request);
   if (operation == Operation::kHand) return turnByHand(request, speaker);
-  double value = 0.0;
-  DriveWrite drive;
-  GainChanges gains;
+  auto order = operation ? orderOf(request, *operation) : tl::unexpected(unknownOperation(request));
+  if (!order) {
+    outcome.response = respond(request, link::ResponseStatus::kRefused, order.error().message);
+    answered_.remember(asker, request, *outcome.response);
+    return outcome;
+  }
+  if (!outcome.estop) {
+    outcome.not_permitted = admission_.permissions().whyNoRequest(
+        speaker, request.client.view(), rightFor(*operation), order->motors, order->whole_robot);
+  }
+  if (!outcome.not_permitted.empty()) {
+    // Not remembered: another rule may be in force when it is repeated.
+    outcome.response = respond(request, link::ResponseStatus::kRefused, outcome.not_permitted);
+    return outcome;
+  }
+  order->id = next_order_id_++;
+  order->repeated = known != nullptr || open != nullptr;
+  open_.push_back({speaker.connection, asker, request, *order});
+  outcome.order = *order;
+  return outcome;
+}
+
+Error RequestDesk::unknownOperation(const link::Request& request) {
+  const auto word = request.operation.view();
+  return Error{fmt::format("unknown operation '{}': there are {}{}", word, operationsInWords(),
+                           didYouMean(word, {kOperationWords.begin(), kOperationWords.end()}))};
+}
+
+Result<Order> RequestDesk::orderOf(const link::Request& request, Operation operation) const {
+  Order order{.operation = operation,
+              .motors = {},
+              .client = request.client,
+              .whole_robot = request.target.view().empty()};
+  const auto refuse = [](std::string why) { return tl::unexpected(Error{std::move(why)}); };
   std::optional<std::string_view> unknown_value;
   for (std::size_t i = 0; i < request.value_count; ++i) {
     if (request.values[i].name.view() == kAngle) {
-      value = request.values[i].value;
+      order.value = request.values[i].value;
     } else {
       unknown_value = request.values[i].name.view();
     }
   }
-  if (!operation) {
-    problem =
-        fmt::format("unknown operation '{}': there are {}{}", request.operation.view(), operationsInWords(),
-                    didYouMean(request.operation.view(), {kOperationWords.begin(), kOperationWords.end()}));
-  } else if (*operation == Operation::kZero && request.target.view().empty()) {
-    problem = "zero needs a motor: name it";
-  } else if (*operation == Operation::kZero && unknown_value) {
-    // Without its value the angle would be 0, silently.
-    problem = fmt::format("zero: there is no value '{}': it takes angle_deg{}", *unknown_value,
-                          didYouMean(*unknown_value, {kAngle}));
-  } else if (!std::isfinite(value)) {
-    problem = "angle_deg is not a finite number";
-  } else if (*operation == Operation::kZero && std::fabs(value) > kFarthestZeroDeg) {
-    problem = fmt::format("angle_deg: {} is out of range; use -1000000 to 1000000", value);
-  } else if (!mayOpen(request.client.view())) {
-    problem = "too many requests at once: wait for the answers";
-  } else if (parseMotors(request, motors, problem) &&
-             (*operation != Operation::kEnableAlone || isOfOneMotor(request, problem)) &&
-             (*operation != Operation::kConfigure || parseDrive(request, drive, problem)) &&
-             (*operation != Operation::kSetGains || parseChanges(request, gains, problem))) {
-    const bool whole_robot = request.target.view().empty();
-    if (!outcome.estop) {
-      outcome.not_permitted = admission_.permissions().whyNoRequest(
-          speaker, request.client.view(), rightFor(*operation), motors, whole_robot);
-    }
-    if (!outcome.not_permitted.empty()) {
-      // Not remembered: another rule may be in force when it is repeated.
-      outcome.response = respond(request, link::ResponseStatus::kRefused, outcome.not_permitted);
-      return outcome;
-    }
-    const std::uint64_t id = next_order_id_++;
-    open_.push_back({id, speaker.connection, asker, request, motors, drive, gains});
-    outcome.order = Order{.id = id,
-                          .operation = *operation,
-                          .motors = motors,
-                          .value = value,
-                          .drive = drive,
-                          .gains = gains,
-                          .client = request.client,
-                          .whole_robot = whole_robot,
-                          .repeated = known != nullptr || open != nullptr};
-    return outcome;
+  const bool zeroes = operation == Operation::kZero;
+  if (zeroes && order.whole_robot) return refuse("zero needs a motor: name it");
+  // Without its value the angle would be 0, silently.
+  if (zeroes && unknown_value)
+    return refuse(fmt::format("zero: there is no value '{}': it takes angle_deg{}", *unknown_value,
+                              didYouMean(*unknown_value, {kAngle})));
+  if (!std::isfinite(order.value)) return refuse("angle_deg is not a finite number");
+  if (zeroes && std::fabs(order.value) > kFarthestZeroDeg)
+    return refuse(fmt::format("angle_deg: {} is out of range; use -1000000 to 1000000", order.value));
+  if (!mayOpen(request.client.view())) return refuse("too many requests at once: wait for the answers");
+  const auto motors = motorsOf(request);
+  if (!motors) return tl::unexpected(motors.error());
+  order.motors = *motors;
+  if (operation == Operation::kEnableAlone) {
+    if (const auto motor = theMotor(request); !motor) return tl::unexpected(motor.error());
   }
-  outcome.response = respond(request, link::ResponseStatus::kRefused, problem);
-  remember(asker, request, *outcome.response);
-  return outcome;
+  if (operation == Operation::kConfigure) {
+    const auto drive = driveWriteOf(request);
+    if (!drive) return tl::unexpected(drive.error());
+    order.drive = *drive;
+  }
+  if (operation == Operation::kSetGains) {
+    const auto gains = changesOf(request);
+    if (!gains) return tl::unexpected(gains.error());
+    order.gains = *gains;
+  }
+  return order;
 }
 
 // No more than what is left for the others: there is room for a newcomer, whoever floods.
@@ -204,11 +200,17 @@ bool RequestDesk::mayOpen(std::string_view client) const {
   return static_cast<std::size_t>(own) + open_.size() < kMaxOpen;
 }
 
-bool RequestDesk::parseMotors(const link::Request& request, MotorSet& motors, std::string& problem) const {
+std::string RequestDesk::theMotorsAre(std::string_view typed) const {
+  std::vector<std::string_view> names;
+  for (const auto& motor : robot_.motors) names.emplace_back(motor.name);
+  return fmt::format("the motors are: {}{}", fmt::join(names, ", "), didYouMean(typed, names));
+}
+
+Result<MotorSet> RequestDesk::motorsOf(const link::Request& request) const {
+  MotorSet motors;
   std::string_view rest = request.target.view();
   if (rest.empty()) {
-    for (std::size_t i = 0; i < names_.size(); ++i) motors.set(i);
-    return true;
+    for (std::size_t i = 0; i < robot_.motors.size(); ++i) motors.set(i);
   }
   while (!rest.empty()) {
     const auto comma = rest.find(',');
@@ -216,27 +218,24 @@ bool RequestDesk::parseMotors(const link::Request& request, MotorSet& motors, st
     rest = comma == std::string_view::npos ? std::string_view{} : rest.substr(comma + 1);
     const int index = admission_.indexOf(name);
     if (index < 0) {
-      problem = fmt::format("there is no motor '{}'; the motors are: {}{}", name, fmt::join(names_, ", "),
-                            didYouMean(name, {names_.begin(), names_.end()}));
-      return false;
+      return tl::unexpected(Error{fmt::format("there is no motor '{}'; {}", name, theMotorsAre(name))});
     }
     motors.set(static_cast<std::size_t>(index));
   }
-  return true;
+  return motors;
 }
 
 const DriveSetup& RequestDesk::setupOf(std::size_t motor) const {
   static constexpr DriveSetup kNone{};
-  return motor < setups_.size() && setups_[motor] != nullptr ? *setups_[motor] : kNone;
+  const auto* setup = robot_.motors[motor].setup;
+  return setup != nullptr ? *setup : kNone;
 }
 
 Result<std::size_t> RequestDesk::theMotor(const link::Request& request) const {
   const auto name = request.target.view();
   const int index = admission_.indexOf(name);
   if (index >= 0) return static_cast<std::size_t>(index);
-  return tl::unexpected(
-      Error{fmt::format("name one motor, not '{}'; the motors are: {}{}", name, fmt::join(names_, ", "),
-                        didYouMean(name, {names_.begin(), names_.end()}))});
+  return tl::unexpected(Error{fmt::format("name one motor, not '{}'; {}", name, theMotorsAre(name))});
 }
 
 RequestDesk::Outcome RequestDesk::tellSettings(const link::Request& request) const {
@@ -247,36 +246,28 @@ RequestDesk::Outcome RequestDesk::tellSettings(const link::Request& request) con
   return outcome;
 }
 
-bool RequestDesk::parseDrive(const link::Request& request, DriveWrite& drive, std::string& problem) const {
+Result<DriveWrite> RequestDesk::driveWriteOf(const link::Request& request) const {
   const auto motor = theMotor(request);
-  const auto write = motor ? parseDriveWrite(request, setupOf(*motor)) : tl::unexpected(motor.error());
-  if (write) drive = *write;
-  if (!write) problem = write.error().message;
-  return write.has_value();
-}
-
-bool RequestDesk::isOfOneMotor(const link::Request& request, std::string& problem) const {
-  const auto motor = theMotor(request);
-  if (!motor) problem = motor.error().message;
-  return motor.has_value();
+  if (!motor) return tl::unexpected(motor.error());
+  return parseDriveWrite(request, setupOf(*motor));
 }
 
 std::string RequestDesk::driveOutcome(const Open& open, const OrderResult& result) const {
   const auto motor = theMotor(open.request).value_or(0);
   const auto& setup = setupOf(motor);
   switch (result.motors[motor]) {
-    case Refusal::kNone: return fmt::format("{}: {}", names_[motor], wordsOf(open.drive, setup));
+    case Refusal::kNone: return fmt::format("{}: {}", nameOf(motor), wordsOf(open.order.drive, setup));
     case Refusal::kNotConfirmed:
-      return fmt::format("{}: {}: {}", names_[motor], settingAt(open.drive, setup, result.drive_value),
+      return fmt::format("{}: {}: {}", nameOf(motor), settingAt(open.order.drive, setup, result.drive_value),
                          inWords(Refusal::kNotConfirmed));
-    default: return fmt::format("{}: {}", names_[motor], inWords(result.motors[motor]));
+    default: return fmt::format("{}: {}", nameOf(motor), inWords(result.motors[motor]));
   }
 }
 
 Result<std::size_t> RequestDesk::motorWithGains(const link::Request& request) const {
   auto motor = theMotor(request);
   if (!motor) return motor;
-  if (auto has = checkHasGains(names_[*motor], loops_[*motor]); !has) return tl::unexpected(has.error());
+  if (auto has = checkHasGains(nameOf(*motor), loops_[*motor]); !has) return tl::unexpected(has.error());
   return motor;
 }
 
@@ -292,19 +283,16 @@ RequestDesk::Outcome RequestDesk::tellConfig(const link::Request& request) const
   return outcome;
 }
 
-bool RequestDesk::parseChanges(const link::Request& request, GainChanges& changes,
-                               std::string& problem) const {
-  const auto motor = motorWithGains(request);
+Result<GainChanges> RequestDesk::changesOf(const link::Request& request) const {
   const auto open =
-      std::count_if(open_.begin(), open_.end(), [](const Open& each) { return each.gains.count > 0; });
-  if (open >= kMaxOpenGains) {
-    problem = "too many changes of gains at once: wait for the answers";
-    return false;
-  }
-  const auto parsed = motor ? parseGains(request, loops_[*motor]) : tl::unexpected(motor.error());
-  if (parsed) changes = *parsed;
-  if (!parsed) problem = motor ? names_[*motor] + ": " + parsed.error().message : parsed.error().message;
-  return parsed.has_value();
+      std::count_if(open_.begin(), open_.end(), [](const Open& each) { return each.order.gains.count > 0; });
+  if (open >= kMaxOpenGains)
+    return tl::unexpected(Error{"too many changes of gains at once: wait for the answers"});
+  const auto motor = motorWithGains(request);
+  if (!motor) return tl::unexpected(motor.error());
+  const auto changes = parseGains(request, loops_[*motor]);
+  if (!changes) return tl::unexpected(Error{nameOf(*motor) + ": " + changes.error().message});
+  return *changes;
 }
 
 RequestDesk::Outcome RequestDesk::turnByHand(const link::Request& request, const Speaker& speaker) const {
@@ -318,17 +306,17 @@ RequestDesk::Outcome RequestDesk::turnByHand(const link::Request& request, const
   outcome.not_permitted = admission_.permissions().whyNoRequest(
       speaker, request.client.view(), Right::kCommand, MotorSet{}.set(*motor), false);
   if (!outcome.not_permitted.empty()) return refuse(outcome.not_permitted);
-  const auto order = parseHand(request, names_[*motor], drives_[*motor]);
+  const auto order = parseHand(request, nameOf(*motor), robot_.motors[*motor].simulated);
   if (!order) return refuse(order.error().message);
   outcome.hand = Hand{
-      *order, respond(request, link::ResponseStatus::kOk, fmt::format("hand: turns {}", names_[*motor]))};
+      *order, respond(request, link::ResponseStatus::kOk, fmt::format("hand: turns {}", nameOf(*motor)))};
   return outcome;
 }
 
 // A repeated request is answered from here: it does not turn the joint twice.
 void RequestDesk::handTaken(const link::Request& request, const Speaker& speaker,
                             const link::Response& response) {
-  remember(speaker.owner(), request, response);
+  answered_.remember(speaker.owner(), request, response);
 }
 
 // Orders are carried out in the order in which they were given, and so what is done to loops_ here is what
@@ -336,19 +324,19 @@ void RequestDesk::handTaken(const link::Request& request, const Speaker& speaker
 void RequestDesk::finishGains(const Open& open, const OrderResult& result, link::Response& response) {
   const auto motor = theMotor(open.request).value_or(0);
   if (result.motors[motor] != Refusal::kNone) {
-    response.message = fmt::format("{}: {}", names_[motor], inWords(result.motors[motor]));
+    response.message = fmt::format("{}: {}", nameOf(motor), inWords(result.motors[motor]));
     return;
   }
   response.message =
-      fmt::format("{}: {}; until rc10d restarts", names_[motor], applyGains(open.gains, loops_[motor]));
+      fmt::format("{}: {}; until rc10d restarts", nameOf(motor), applyGains(open.order.gains, loops_[motor]));
   tellGains(loops_[motor], response);
 }
 
 // With the motors that are in the way by their names.
 std::string RequestDesk::reasonOf(Refusal reason, const MotorSet& in_the_way) const {
   std::vector<std::string_view> names;
-  for (std::size_t i = 0; i < names_.size(); ++i) {
-    if (in_the_way.test(i)) names.emplace_back(names_[i]);
+  for (std::size_t i = 0; i < robot_.motors.size(); ++i) {
+    if (in_the_way.test(i)) names.emplace_back(nameOf(i));
   }
   const std::string them = fmt::format("{}", fmt::join(names, " "));
   switch (reason) {
@@ -367,13 +355,13 @@ std::string RequestDesk::reasonOf(Refusal reason, const MotorSet& in_the_way) co
 std::string RequestDesk::reasons(const MotorSet& motors, const OrderResult& result) const {
   std::string text;
   MotorSet named;
-  for (std::size_t first = 0; first < names_.size(); ++first) {
+  for (std::size_t first = 0; first < robot_.motors.size(); ++first) {
     const auto reason = result.motors[first];
     if (!motors.test(first) || reason == Refusal::kNone || named.test(first)) continue;
     std::vector<std::string> who;
-    for (std::size_t i = first; i < names_.size(); ++i) {
+    for (std::size_t i = first; i < robot_.motors.size(); ++i) {
       if (!motors.test(i) || result.motors[i] != reason) continue;
-      who.push_back(names_[i]);
+      who.push_back(nameOf(i));
       named.set(i);
     }
     text += fmt::format("{}{}: {}", text.empty() ? "" : "; ", fmt::join(who, ", "),
@@ -384,17 +372,17 @@ std::string RequestDesk::reasons(const MotorSet& motors, const OrderResult& resu
 
 std::optional<RequestDesk::Answer> RequestDesk::finish(const OrderResult& result) {
   const auto found =
-      std::find_if(open_.begin(), open_.end(), [&](const Open& open) { return open.order_id == result.id; });
+      std::find_if(open_.begin(), open_.end(), [&](const Open& open) { return open.order.id == result.id; });
   if (found == open_.end()) return std::nullopt;
-  const auto operation = operationNamed(found->request.operation.view());
+  const auto operation = found->order.operation;
   std::size_t failed = 0;
   std::size_t needed_failed = 0;  // without those that may fail
-  for (std::size_t i = 0; i < names_.size(); ++i) {
-    if (!found->motors.test(i) || result.motors[i] == Refusal::kNone) continue;
+  for (std::size_t i = 0; i < robot_.motors.size(); ++i) {
+    if (!found->order.motors.test(i) || result.motors[i] == Refusal::kNone) continue;
     ++failed;
-    if (operation != Operation::kEnable || !optional_.test(i)) ++needed_failed;
+    if (operation != Operation::kEnable || !robot_.motors[i].optional) ++needed_failed;
   }
-  const auto total = found->motors.count();
+  const auto total = found->order.motors.count();
   auto status = link::ResponseStatus::kOk;
   std::string message =
       fmt::format("{}: {} of {} motors", found->request.operation.view(), total - failed, total);
@@ -403,7 +391,7 @@ std::optional<RequestDesk::Answer> RequestDesk::finish(const OrderResult& result
   });
   if (stays) message = fmt::format("{}: nothing done", found->request.operation.view());
   if (needed_failed != 0) status = link::ResponseStatus::kFailed;
-  if (failed != 0) message += " (" + reasons(found->motors, result) + ")";
+  if (failed != 0) message += " (" + reasons(found->order.motors, result) + ")";
   if (operation == Operation::kConfigure) message = driveOutcome(*found, result);
   if (result.refused) {
     status = link::ResponseStatus::kRefused;
@@ -411,14 +399,14 @@ std::optional<RequestDesk::Answer> RequestDesk::finish(const OrderResult& result
   }
   Answer answer{found->connection, respond(found->request, status, message)};
   if (operation == Operation::kSetGains) finishGains(*found, result, answer.response);
-  remember(found->asker, found->request, answer.response);
+  answered_.remember(found->asker, found->request, answer.response);
   open_.erase(found);
   return answer;
 }
 
 std::optional<RequestDesk::Answer> RequestDesk::fail(std::uint64_t order_id, const std::string& reason) {
   const auto found =
-      std::find_if(open_.begin(), open_.end(), [&](const Open& open) { return open.order_id == order_id; });
+      std::find_if(open_.begin(), open_.end(), [&](const Open& open) { return open.order.id == order_id; });
   if (found == open_.end()) return std::nullopt;
   // Not remembered: the same request may succeed when it is repeated.
   Answer answer{found->connection, respond(found->request, link::ResponseStatus::kFailed, reason)};
@@ -426,25 +414,9 @@ std::optional<RequestDesk::Answer> RequestDesk::fail(std::uint64_t order_id, con
   return answer;
 }
 
-void RequestDesk::remember(std::uint64_t asker, const link::Request& request,
-                           const link::Response& response) {
-  answered_.push_back({asker, request.operation, response});
-  if (answered_.size() > kMaxRemembered) answered_.pop_front();
-}
-
-const link::Response* RequestDesk::remembered(std::uint64_t asker, const link::Request& request) const {
-  // The newest: what stops is answered anew each time.
-  const auto found = std::find_if(answered_.rbegin(), answered_.rend(), [&](const Remembered& each) {
-    return each.asker == asker && sameNumber(request, each.response) &&
-           each.operation.view() == request.operation.view();
-  });
-  return found == answered_.rend() ? nullptr : &found->response;
-}
-
 RequestDesk::Open* RequestDesk::openRepetition(std::uint64_t asker, const link::Request& request) {
   const auto found = std::find_if(open_.begin(), open_.end(), [&](const Open& each) {
-    return each.asker == asker && sameNumber(request, each.request) &&
-           each.request.operation.view() == request.operation.view();
+    return each.asker == asker && repeats(request, each.request);
   });
   return found == open_.end() ? nullptr : &*found;
 }

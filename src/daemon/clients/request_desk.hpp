@@ -10,8 +10,10 @@
 #include "app/result.hpp"
 #include "config/keys/loop_gains.hpp"
 #include "daemon/clients/admission.hpp"
+#include "daemon/clients/answered_requests.hpp"
 #include "daemon/exchange/hand_order.hpp"
 #include "daemon/exchange/orders.hpp"
+#include "daemon/exchange/robot_description.hpp"
 #include "link/link_protocol.hpp"
 
 namespace rc10 {
@@ -21,12 +23,8 @@ namespace rc10 {
 /// again; one that stops is carried out again. Link thread only.
 class RequestDesk {
  public:
-  /// `optional`: motors that may fail to enable without the request failing. `setups`: what can be written to
-  /// the drive of each motor; null or missing: nothing. `loops`: of each motor, as they are at the start;
-  /// missing: none. `drives`: the simulated drive of each motor; null or missing: the motor is not simulated.
-  RequestDesk(const Admission& motors, std::vector<std::string> motor_names, MotorSet optional = {},
-              std::vector<const DriveSetup*> setups = {}, std::vector<MotorLoops> loops = {},
-              std::vector<std::optional<SimulatedDrive>> drives = {});
+  /// Both outlive it.
+  RequestDesk(const Admission& admission, const RobotDescription& robot);
 
   struct Hand {
     HandOrder order;
@@ -55,54 +53,48 @@ class RequestDesk {
   [[nodiscard]] std::optional<Answer> fail(std::uint64_t order_id, const std::string& reason);
 
  private:
+  /// A request whose order is under way.
   struct Open {
-    std::uint64_t order_id = 0;
     std::uint64_t connection = 0;
     std::uint64_t asker = 0;
     link::Request request;
-    MotorSet motors;
-    DriveWrite drive;
-    GainChanges gains;
+    Order order;
   };
 
+  [[nodiscard]] static Error unknownOperation(const link::Request& request);
+  /// The order that a request becomes, without its id; or what is wrong with the request.
+  [[nodiscard]] Result<Order> orderOf(const link::Request& request, Operation operation) const;
   [[nodiscard]] bool mayOpen(std::string_view client) const;
-  [[nodiscard]] bool parseMotors(const link::Request& request, MotorSet& motors, std::string& problem) const;
-  /// The motor that a request about one drive names, or what is wrong.
+  [[nodiscard]] Result<MotorSet> motorsOf(const link::Request& request) const;
+  /// The motor that a request about one drive names.
   [[nodiscard]] Result<std::size_t> theMotor(const link::Request& request) const;
-  [[nodiscard]] const DriveSetup& setupOf(std::size_t motor) const;
-  [[nodiscard]] Outcome tellSettings(const link::Request& request) const;
-  [[nodiscard]] bool parseDrive(const link::Request& request, DriveWrite& drive, std::string& problem) const;
-  [[nodiscard]] bool isOfOneMotor(const link::Request& request, std::string& problem) const;
-  [[nodiscard]] std::string driveOutcome(const Open& open, const OrderResult& result) const;
   [[nodiscard]] Result<std::size_t> motorWithGains(const link::Request& request) const;
-  [[nodiscard]] Outcome turnByHand(const link::Request& request, const Speaker& speaker) const;
+  [[nodiscard]] Result<DriveWrite> driveWriteOf(const link::Request& request) const;
+  [[nodiscard]] Result<GainChanges> changesOf(const link::Request& request) const;
+
+  [[nodiscard]] Outcome tellSettings(const link::Request& request) const;
   [[nodiscard]] Outcome tellConfig(const link::Request& request) const;
-  [[nodiscard]] bool parseChanges(const link::Request& request, GainChanges& changes,
-                                  std::string& problem) const;
+  [[nodiscard]] Outcome turnByHand(const link::Request& request, const Speaker& speaker) const;
+
+  [[nodiscard]] std::string driveOutcome(const Open& open, const OrderResult& result) const;
   void finishGains(const Open& open, const OrderResult& result, link::Response& response);
   [[nodiscard]] std::string reasonOf(Refusal reason, const MotorSet& in_the_way) const;
   [[nodiscard]] std::string reasons(const MotorSet& motors, const OrderResult& result) const;
   [[nodiscard]] static link::Response respond(const link::Request& request, link::ResponseStatus status,
                                               const std::string& message);
-  struct Remembered {
-    std::uint64_t asker = 0;
-    link::Text<32> operation;
-    link::Response response;
-  };
 
-  void remember(std::uint64_t asker, const link::Request& request, const link::Response& response);
-  [[nodiscard]] const link::Response* remembered(std::uint64_t asker, const link::Request& request) const;
+  [[nodiscard]] const std::string& nameOf(std::size_t motor) const { return robot_.motors[motor].name; }
+  /// "the motors are: left, right; did you mean left?"
+  [[nodiscard]] std::string theMotorsAre(std::string_view typed) const;
+  [[nodiscard]] const DriveSetup& setupOf(std::size_t motor) const;
   [[nodiscard]] Open* openRepetition(std::uint64_t asker, const link::Request& request);
 
   const Admission& admission_;
-  std::vector<std::string> names_;
-  MotorSet optional_;
-  std::vector<const DriveSetup*> setups_;
-  std::vector<MotorLoops> loops_;  ///< With the gains in force.
-  std::vector<std::optional<SimulatedDrive>> drives_;
+  const RobotDescription& robot_;
+  std::vector<MotorLoops> loops_;  ///< Of each motor, with the gains in force.
   std::uint64_t next_order_id_ = 1;
   std::deque<Open> open_;
-  std::deque<Remembered> answered_;  // newest last; bounded
+  AnsweredRequests answered_;
 };
 
 }  // namespace rc10

@@ -11,29 +11,30 @@ namespace rc10 {
 static_assert(kMaxMessageSignals == kMaxSignals && kMaxMessageSignals == link::kMaxSignals);
 static_assert(kMaxNameBytes + 1 == sizeof(link::Name));
 
-SignalAdmission::SignalAdmission(std::vector<KnownModule> modules, Permissions permissions)
-    : modules_(std::move(modules)), permissions_(std::move(permissions)), sessions_(modules_.size()) {}
+SignalAdmission::SignalAdmission(const RobotDescription& robot, Permissions permissions)
+    : robot_(robot), permissions_(std::move(permissions)), sessions_(robot.modules.size()) {}
 
 CommandRefusal SignalAdmission::admit(const link::Signals& message, const Speaker& speaker, MonotonicTime now,
                                       SignalMessage& out) {
-  const auto known = std::find_if(modules_.begin(), modules_.end(), [&](const KnownModule& module) {
-    return module.name == message.module.view();
-  });
-  if (known == modules_.end()) return CommandRefusal::kUnknownModule;
+  const auto& modules = robot_.modules;
+  const auto known = std::find_if(modules.begin(), modules.end(),
+                                  [&](const auto& module) { return module.name == message.module.view(); });
+  if (known == modules.end()) return CommandRefusal::kUnknownModule;
   const auto deadline = deadlineOf(message.received_ns, message.validity_ms, now);
   if (message.value_count == 0 || message.value_count > kMaxSignals || !deadline)
     return CommandRefusal::kMalformed;
+  const auto& inputs = known->signals.inputs;
   out.values.fill(kNoSignal);
   for (std::size_t i = 0; i < message.value_count; ++i) {
     const auto& given = message.values[i];
-    const auto input = std::find(known->inputs.begin(), known->inputs.end(), given.name.view());
-    if (input == known->inputs.end()) return CommandRefusal::kUnknownSignal;
+    const auto input = std::find(inputs.begin(), inputs.end(), given.name.view());
+    if (input == inputs.end()) return CommandRefusal::kUnknownSignal;
     if (!std::isfinite(given.value)) return CommandRefusal::kNotFinite;
-    double& place = out.values[static_cast<std::size_t>(input - known->inputs.begin())];
+    double& place = out.values[static_cast<std::size_t>(input - inputs.begin())];
     if (!std::isnan(place)) return CommandRefusal::kMalformed;
     place = given.value;
   }
-  const auto module = static_cast<std::size_t>(known - modules_.begin());
+  const auto module = static_cast<std::size_t>(known - modules.begin());
   const auto client = message.client.view();
   not_permitted_ = permissions_.whyNoSignals(speaker, client, module, message.priority);
   if (!not_permitted_.empty()) return CommandRefusal::kNotPermitted;

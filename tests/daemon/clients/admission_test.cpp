@@ -6,6 +6,7 @@
 #include <set>
 #include <string>
 
+#include "daemon/described_robot.hpp"
 #include "daemon/link_messages.hpp"
 
 namespace rc10::test::admission_test {
@@ -32,9 +33,15 @@ class AdmissionTest : public ::testing::Test {
   MonotonicTime now{1000s};
   std::int64_t seq = 0;
   Command out;
-  Admission admission{{{"left", ModeSet{kCurrent, kVelocity, kAngle}},
-                       {"right", ModeSet{kCurrent, kVelocity, kBrake}},
-                       {"arm", ModeSet{kImpedance}}}};
+  static RobotDescription described() {
+    auto robot = describedRobot({"left", "right", "arm"});
+    robot.motors[0].modes = ModeSet{kCurrent, kVelocity, kAngle};
+    robot.motors[1].modes = ModeSet{kCurrent, kVelocity, kBrake};
+    robot.motors[2].modes = ModeSet{kImpedance};
+    return robot;
+  }
+  RobotDescription robot = described();
+  Admission admission{robot};
 };
 
 TEST_F(AdmissionTest, TranslatesNamesModesAndValues) {

@@ -11,6 +11,7 @@
 #include "config/load_config.hpp"
 #include "daemon/clients/drive_request.hpp"
 #include "daemon/clients/request_desk.hpp"
+#include "daemon/described_robot.hpp"
 #include "daemon/link_messages.hpp"
 #include "daemon/virtual_robot.hpp"
 #include "drives/damiao/damiao_setup.hpp"
@@ -39,8 +40,15 @@ class DriveRequestTest : public ::testing::Test {
   }
   std::string refusal(Values values) { return refusal(ask("arm", values)); }
 
-  Admission admission{{{"arm", {}}, {"hip", {}}, {"wheel", {}}}};
-  RequestDesk desk{admission, {"arm", "hip", "wheel"}, {}, {&damiaoSetup(), &myactuatorSetup(), nullptr}};
+  static RobotDescription described() {
+    auto robot = describedRobot({"arm", "hip", "wheel"});
+    robot.motors[0].setup = &damiaoSetup();
+    robot.motors[1].setup = &myactuatorSetup();
+    return robot;
+  }
+  RobotDescription robot = described();
+  Admission admission{robot};
+  RequestDesk desk{admission, robot};
 
  private:
   std::int64_t seq_ = 0;

@@ -37,11 +37,14 @@ RobotConfig wheelAndArm() {
   return outcome.config.value_or(twoWheelsAndYaw());
 }
 
-std::vector<MotorLoops> loopsIn(const RobotConfig& config) {
-  std::vector<MotorLoops> loops;
-  for (const auto& motor : config.buses[0].motors)
-    loops.push_back({motor.settings.model, motor.traits(), motor.settings.loops});
-  return loops;
+RobotDescription descriptionOf(const RobotConfig& config) {
+  RobotDescription robot;
+  for (const auto& motor : config.buses[0].motors) {
+    auto& described = robot.motors.emplace_back();
+    described.name = motor.name();
+    described.loops = {motor.settings.model, motor.traits(), motor.settings.loops};
+  }
+  return robot;
 }
 
 /// A wheel with loops in rc10d and an arm without; the desk, the scheduler and the drives.
@@ -90,8 +93,9 @@ class SetGainsTest : public ::testing::Test {
   MemoryBox box;
   FlightRecorder recorder{box.handOff()};
   VirtualRobot robot{config, &recorder};
-  Admission admission{{{"wheel", {}}, {"arm", {}}}};
-  RequestDesk desk{admission, {"wheel", "arm"}, {}, {}, loopsIn(config)};
+  RobotDescription description = descriptionOf(config);
+  Admission admission{description};
+  RequestDesk desk{admission, description};
 
  private:
   std::int64_t seq_ = 0;

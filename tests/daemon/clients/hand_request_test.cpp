@@ -7,6 +7,7 @@
 #include <gtest/gtest.h>
 
 #include "daemon/clients/request_desk.hpp"
+#include "daemon/described_robot.hpp"
 
 namespace rc10::test::hand_request_test {
 namespace {
@@ -65,8 +66,15 @@ TEST(HandRequest, RefusesARealDrive) {
 
 class HandDesk : public testing::Test {
  protected:
-  Admission admission{{{"left", {}}, {"right", {}}, {"yaw", {}}}};
-  RequestDesk desk{admission, {"left", "right", "yaw"}, {}, {}, {}, {SimulatedDrive{}, kSecond}};
+  static RobotDescription described() {
+    auto robot = describedRobot({"left", "right", "yaw"});
+    robot.motors[0].simulated = SimulatedDrive{};
+    robot.motors[1].simulated = kSecond;
+    return robot;
+  }
+  RobotDescription robot = described();
+  Admission admission{robot};
+  RequestDesk desk{admission, robot};
   Speaker speaker{.connection = 7};
 };
 

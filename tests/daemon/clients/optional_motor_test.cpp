@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "daemon/clients/request_desk.hpp"
+#include "daemon/described_robot.hpp"
 #include "daemon/link_messages.hpp"
 
 namespace rc10::test::optional_motor_test {
@@ -21,8 +22,14 @@ class OptionalMotorTest : public ::testing::Test {
     return desk.finish(result).value().response;
   }
 
-  Admission admission{{{"wheel", {}}, {"spare", {}}}};
-  RequestDesk desk{admission, {"wheel", "spare"}, MotorSet{0b10}};
+  static RobotDescription described() {
+    auto robot = describedRobot({"wheel", "spare"});
+    robot.motors[1].optional = true;
+    return robot;
+  }
+  RobotDescription robot = described();
+  Admission admission{robot};
+  RequestDesk desk{admission, robot};
   std::int64_t seq = 0;
 };
 

@@ -11,6 +11,7 @@
 
 #include "daemon/clients/request_desk.hpp"
 #include "daemon/clients/signal_admission.hpp"
+#include "daemon/described_robot.hpp"
 #include "daemon/link_messages.hpp"
 #include "daemon/temp_dir.hpp"
 
@@ -97,9 +98,16 @@ struct Gates {
   MonotonicTime now{1000s};
   std::int64_t seq = 0;
   Permissions permissions;
-  Admission admission{{{"left", {}}, {"right", {}}, {"yaw", {}}}, permissions};
-  SignalAdmission signal_admission{{{"base", {"speed"}}, {"arm", {"speed"}}}, permissions};
-  RequestDesk desk{admission, {"left", "right", "yaw"}};
+  static RobotDescription described() {
+    auto robot = describedRobot({"left", "right", "yaw"});
+    addModule(robot, "base", {"speed"});
+    addModule(robot, "arm", {"speed"});
+    return robot;
+  }
+  RobotDescription robot = described();
+  Admission admission{robot, permissions};
+  SignalAdmission signal_admission{robot, permissions};
+  RequestDesk desk{admission, robot};
   Command accepted;
   SignalMessage accepted_signals;
 };

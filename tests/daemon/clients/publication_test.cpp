@@ -56,7 +56,7 @@ class PublicationTest : public ::testing::Test {
   TickTiming timing;
   TickAges ages;
   std::array<BusInbox, kMaxBuses> inboxes;
-  Admission admission{{}};
+  Admission admission{robot};
   std::unique_ptr<Snapshot> snapshot = std::make_unique<Snapshot>();
   std::unique_ptr<link::State> state_ = std::make_unique<link::State>();
   std::unique_ptr<link::Diagnostics> diagnostics_ = std::make_unique<link::Diagnostics>();

@@ -9,6 +9,7 @@
 #include <limits>
 #include <utility>
 
+#include "daemon/described_robot.hpp"
 #include "daemon/link_messages.hpp"
 
 namespace rc10::test::request_desk_test {
@@ -46,8 +47,9 @@ class RequestDeskTest : public ::testing::Test {
     return request;
   }
 
-  Admission admission{{{"left", {}}, {"right", {}}, {"yaw", {}}}};
-  RequestDesk desk{admission, {"left", "right", "yaw"}};
+  RobotDescription robot = describedRobot({"left", "right", "yaw"});
+  Admission admission{robot};
+  RequestDesk desk{admission, robot};
 };
 
 TEST_F(RequestDeskTest, EveryOperationBecomesItsOrder) {

@@ -5,6 +5,8 @@
 
 #include <gtest/gtest.h>
 
+#include "daemon/described_robot.hpp"
+
 namespace rc10::test::signal_admission_test {
 namespace {
 
@@ -34,7 +36,14 @@ class SignalAdmissionTest : public ::testing::Test {
     return admission_.admit(message, {}, now, out_);
   }
 
-  SignalAdmission admission_{{{"base", {"vx_m_s", "vy_m_s"}}, {"arm", {"angle_deg"}}}};
+  static RobotDescription described() {
+    RobotDescription robot;
+    addModule(robot, "base", {"vx_m_s", "vy_m_s"});
+    addModule(robot, "arm", {"angle_deg"});
+    return robot;
+  }
+  RobotDescription robot_ = described();
+  SignalAdmission admission_{robot_};
   SignalMessage out_;
 };
 

@@ -1,0 +1,133 @@
+#include "daemon/clients/connections.hpp"
+
+#include <fcntl.h>
+#include <sys/epoll.h>
+#include <sys/socket.h>
+
+#include <algorithm>
+#include <cerrno>
+
+namespace rc10 {
+namespace {
+
+constexpr std::size_t kMaxConnections = 16;
+// More than a client may have under way: it asks on and on, and reads nothing.
+constexpr std::size_t kMaxUnsent = 128;
+
+[[nodiscard]] UniqueFd spareDescriptor() { return UniqueFd{::open("/dev/null", O_RDONLY | O_CLOEXEC)}; }
+
+// Primary and supplementary. A process in more groups than these is known by its user and primary group.
+[[nodiscard]] std::vector<gid_t> groupsOf(int fd, gid_t primary) {
+  constexpr std::size_t kMaxGroups = 256;
+  std::vector<gid_t> groups(kMaxGroups);
+  socklen_t size = static_cast<socklen_t>(groups.size() * sizeof(gid_t));
+  const bool known = ::getsockopt(fd, SOL_SOCKET, SO_PEERGROUPS, groups.data(), &size) == 0;
+  groups.resize(known ? size / sizeof(gid_t) : 0);
+  groups.push_back(primary);
+  return groups;
+}
+
+}  // namespace
+
+bool watchDescriptor(int epoll, int fd, std::uint64_t key) noexcept {
+  epoll_event event{};
+  event.events = EPOLLIN;
+  event.data.u64 = key;
+  return epoll_ctl(epoll, EPOLL_CTL_ADD, fd, &event) == 0;
+}
+
+Connections::Connections(LinkSocket socket, int epoll, const Permissions& permissions)
+    : socket_(std::move(socket)), epoll_(epoll), permissions_(permissions), spare_(spareDescriptor()) {}
+
+bool Connections::accept() {
+  for (;;) {
+    UniqueFd fd{::accept4(socket_.descriptor(), nullptr, nullptr, SOCK_NONBLOCK | SOCK_CLOEXEC)};
+    if (!fd && (errno == EMFILE || errno == ENFILE)) {
+      refuseForWantOfDescriptors();
+      return false;
+    }
+    if (!fd) return true;
+    if (all_.size() >= kMaxConnections && !dropSilent()) continue;  // closed: the client sees it
+    Connection connection;
+    connection.id = next_id_++;
+    connection.speaker = speakerOf(fd.get(), connection.id);
+    connection.fd = std::move(fd);
+    if (watchDescriptor(epoll_, connection.fd.get(), connection.id)) all_.push_back(std::move(connection));
+  }
+}
+
+// One that stayed in the queue would wake this thread again and again, and wait for ever.
+void Connections::refuseForWantOfDescriptors() {
+  spare_.reset();
+  UniqueFd{::accept4(socket_.descriptor(), nullptr, nullptr, SOCK_CLOEXEC)}.reset();
+  spare_ = spareDescriptor();
+}
+
+// Connections without a hello must not keep the others out.
+bool Connections::dropSilent() {
+  const auto oldest = std::find_if(all_.begin(), all_.end(), [](const auto& c) { return !c.welcomed; });
+  if (oldest == all_.end()) return false;
+  all_.erase(oldest);  // it has asked for nothing yet
+  return true;
+}
+
+Connection* Connections::find(std::uint64_t id) noexcept {
+  const auto found = std::find_if(all_.begin(), all_.end(), [id](const auto& c) { return c.id == id; });
+  return found != all_.end() ? &*found : nullptr;
+}
+
+// epoll forgets a closed descriptor.
+void Connections::close(std::uint64_t id) {
+  std::erase_if(all_, [id](const auto& connection) { return connection.id == id; });
+}
+
+Speaker Connections::speakerOf(int fd, std::uint64_t connection) const {
+  ucred peer{.pid = 0, .uid = static_cast<uid_t>(-1), .gid = static_cast<gid_t>(-1)};
+  socklen_t size = sizeof peer;
+  (void)::getsockopt(fd, SOL_SOCKET, SO_PEERCRED, &peer, &size);
+  return {.connection = connection,
+          .way = Speaker::Way::kSocket,
+          .user = peer.uid,
+          .grants = permissions_.ofUser(peer.uid, groupsOf(fd, peer.gid))};
+}
+
+Speaker Connections::speakerOf(const Connection& connection, const link::Name& client,
+                               link::Origin origin) const {
+  if (!connection.is_gateway) return connection.speaker;
+  const bool here = origin == link::Origin::kThisComputer;
+  return {.connection = connection.id,
+          .way = here ? Speaker::Way::kLcm : Speaker::Way::kNetwork,
+          .user = connection.speaker.user,
+          .grants = here ? permissions_.ofLcmClient(client.view()) : GrantSet{}};
+}
+
+bool Connections::send(const Connection& connection, std::span<const std::byte> message) noexcept {
+  // A client that does not read loses messages; the next state supersedes the lost one. One that is gone
+  // needs none.
+  return ::send(connection.fd.get(), message.data(), message.size(), MSG_DONTWAIT | MSG_NOSIGNAL) >= 0 ||
+         (errno != EAGAIN && errno != ENOBUFS);
+}
+
+void Connections::respond(Connection& connection, link::Response response) {
+  if (connection.unsent.empty() && send(connection, link::seal(response))) return;
+  connection.unsent.push_back(std::move(response));
+}
+
+void Connections::publish(std::uint32_t subscription, std::span<const std::byte> message) const {
+  for (const auto& connection : all_) {
+    if (connection.welcomed && (connection.subscriptions & subscription) != 0) send(connection, message);
+  }
+}
+
+std::vector<std::uint64_t> Connections::sendUnsent() {
+  std::vector<std::uint64_t> overfull;
+  for (auto& connection : all_) {
+    auto& unsent = connection.unsent;
+    while (!unsent.empty() && send(connection, link::seal(unsent.front()))) unsent.pop_front();
+    if (unsent.size() > kMaxUnsent) overfull.push_back(connection.id);
+  }
+  for (const auto id : overfull) close(id);
+  return overfull;
+}
+
+}  // namespace rc10

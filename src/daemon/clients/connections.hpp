@@ -1,0 +1,73 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <deque>
+#include <span>
+#include <vector>
+
+#include "app/unique_fd.hpp"
+#include "daemon/clients/link_socket.hpp"
+#include "daemon/clients/permissions.hpp"
+#include "link/link_message.hpp"
+
+namespace rc10 {
+
+/// A client of the link.
+struct Connection {
+  std::uint64_t id = 0;  ///< Starts at 1 and counts up.
+  UniqueFd fd;
+  link::Name client;
+  std::uint32_t subscriptions = 0;
+  bool welcomed = false;
+  std::deque<link::Response> unsent{};  ///< Answers that found no room; the oldest first.
+  Speaker speaker{};
+  bool is_gateway = false;  ///< It says for whom it speaks.
+};
+
+/// Makes epoll report `key` when there is something to read.
+[[nodiscard]] bool watchDescriptor(int epoll, int fd, std::uint64_t key) noexcept;
+
+/// Clients' connections, and what is sent to them: what a client does not read is dropped, but answers wait
+/// until they fill their room. Link thread only.
+class Connections {
+ public:
+  /// epoll reports what a client sends by the id of its connection.
+  Connections(LinkSocket socket, int epoll, const Permissions& permissions);
+
+  /// Takes those that wait. False: one was sent away, since there are no descriptors left.
+  [[nodiscard]] bool accept();
+  /// Null: it has been closed.
+  [[nodiscard]] Connection* find(std::uint64_t id) noexcept;
+  void close(std::uint64_t id);
+
+  /// Sender of a message that came over this connection.
+  [[nodiscard]] Speaker speakerOf(const Connection& connection, const link::Name& client,
+                                  link::Origin origin) const;
+
+  /// False: there was no room.
+  static bool send(const Connection& connection, std::span<const std::byte> message) noexcept;
+  /// Hands an answer over, or keeps it.
+  static void respond(Connection& connection, link::Response response);
+  /// To all that subscribed.
+  void publish(std::uint32_t subscription, std::span<const std::byte> message) const;
+  /// Answers that have found no room until now. Returns the clients that have left too many of them: each
+  /// sees the end of its connection, and knows that answers are missing.
+  [[nodiscard]] std::vector<std::uint64_t> sendUnsent();
+
+  [[nodiscard]] const std::vector<Connection>& all() const noexcept { return all_; }
+
+ private:
+  [[nodiscard]] bool dropSilent();
+  void refuseForWantOfDescriptors();
+  [[nodiscard]] Speaker speakerOf(int fd, std::uint64_t connection) const;
+
+  LinkSocket socket_;
+  int epoll_;
+  const Permissions& permissions_;
+  UniqueFd spare_;  ///< Given up for an instant to refuse a client when there are no descriptors left.
+  std::vector<Connection> all_;
+  std::uint64_t next_id_ = 1;
+};
+
+}  // namespace rc10
