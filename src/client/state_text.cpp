@@ -71,19 +71,19 @@ std::string busLine(const link::BusStatus& bus) {
 
 std::string_view styleOf(const link::MotorState& motor) {
   if (motor.status == MotorStatus::kFault) return style::kBad;
-  if (motor.status == MotorStatus::kOffline || motor.limits != 0) return kDoubtful;
+  if (motor.status == MotorStatus::kOffline || motor.limits != 0) return style::kDoubtful;
   return motor.status == MotorStatus::kActive ? style::kGood : std::string_view{};
 }
 
 std::string_view styleOf(const link::State& state) {
   if (state.robot_state != RobotStatus::kRun) return style::kBad;
-  return state.realtime == 0 ? kDoubtful : std::string_view{};
+  return state.realtime == 0 ? style::kDoubtful : std::string_view{};
 }
 
 // The first state is that of a healthy bus.
 std::string_view styleOf(const link::BusStatus& bus) {
   if (bus.state != BusState::kActive) return bus.state == BusState::kWarning ? style::kDoubtful : style::kBad;
-  return bus.rx_dropped + bus.tx_dropped != 0 ? kDoubtful : std::string_view{};
+  return bus.rx_dropped + bus.tx_dropped != 0 ? style::kDoubtful : std::string_view{};
 }
 
 // The angle in the turn of its target: -15.3, not 344.7 beside a target of -15.
