@@ -7,8 +7,8 @@
 
 namespace rc10 {
 
-void AngleReference::update(double position_deg, bool may_restart) noexcept {
-  if (!begun_ || (turn_unclear_ && may_restart)) {
+void AngleReference::update(double position_deg, bool may_restart, bool may_return) noexcept {
+  if (!begun_ || (turn_unclear_ && may_restart) || (lost_ && may_return)) {
     const bool power_on = config_.zero_at_power_on;
     const bool absolute = config_.absolute && !power_on;
     // The number of turns at power-up says nothing.
@@ -18,6 +18,7 @@ void AngleReference::update(double position_deg, bool may_restart) noexcept {
     known_ = (absolute && first_deg) || power_on;
     turn_unclear_ = !first_deg;
     begun_ = true;
+    lost_ = false;
   }
   position_deg_ = position_deg;
 }
@@ -27,13 +28,19 @@ bool AngleReference::setZero(double angle_deg) noexcept {
   offset_deg_ = angle_deg - position_deg_;
   known_ = true;
   turn_unclear_ = false;
+  lost_ = false;
   return true;
 }
 
 void AngleReference::lose() noexcept {
   known_ = false;
   turn_unclear_ = false;
-  if (config_.absolute && !config_.zero_at_power_on) begun_ = false;
+  lost_ = config_.absolute && !config_.zero_at_power_on;
+}
+
+void AngleReference::doubtTurn() noexcept {
+  const bool limited = std::isfinite(config_.travel.min_deg) && std::isfinite(config_.travel.max_deg);
+  if (begun_ && limited && config_.absolute) lose();
 }
 
 }  // namespace rc10

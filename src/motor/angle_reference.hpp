@@ -17,13 +17,17 @@ class AngleReference {
 
   explicit AngleReference(const Config& config) noexcept : config_(config) {}
 
-  /// `may_restart`: nothing follows the angle, so it may jump once its turn is clear.
-  void update(double position_deg, bool may_restart = true) noexcept;
+  /// `may_restart`: nothing follows the angle, so it may jump once its turn is clear. `may_return`: nor after
+  /// it was lost.
+  void update(double position_deg, bool may_restart = true, bool may_return = true) noexcept;
   /// The present position reads `angle_deg` from now on. False before the first update().
   bool setZero(double angle_deg) noexcept;
   /// The drive may have lost turns: the angle goes on, but without a known reference. An absolute drive
-  /// starts again as at power-up.
+  /// starts again as at power-up, once it may.
   void lose() noexcept;
+  /// The shaft may have been turned while the drive was off. With a travel an absolute drive starts again as
+  /// at power-up; without one there is no wrong turn, and it goes on.
+  void doubtTurn() noexcept;
 
   [[nodiscard]] bool known() const noexcept { return known_; }
   /// Absolute, but its travel does not say on which turn.
@@ -39,6 +43,7 @@ class AngleReference {
   bool begun_ = false;
   bool known_ = false;
   bool turn_unclear_ = false;
+  bool lost_ = false;  ///< Absolute only.
   double position_deg_ = 0.0;
   double offset_deg_ = 0.0;
 };

@@ -55,7 +55,8 @@ void SoloMotor::acceptSample(MonotonicTime received, double drive_position_deg) 
 }
 
 void SoloMotor::takeAngle(double drive_position_deg) noexcept {
-  reference_.update(toOutput(drive_position_deg), !obeying());
+  // An angle that is followed must not leap by turns, for an absolute drive neither: it stays lost.
+  reference_.update(toOutput(drive_position_deg), !obeying(), !obeying() || !follows_angle_);
   feedback_.total_angle_deg = reference_.totalAngleDeg();
   feedback_.angle_deg = wrapDegreesToFloat(feedback_.total_angle_deg);
   feedback_.zeroed = reference_.known();
@@ -76,6 +77,11 @@ void SoloMotor::loseReference() noexcept {
   holding_ = false;
 }
 
+void SoloMotor::doubtTurn() noexcept {
+  reference_.doubtTurn();
+  feedback_.zeroed = reference_.known();
+}
+
 bool SoloMotor::setZero(double angle_deg) noexcept {
   if (!reference_.setZero(angle_deg)) return false;
   feedback_.total_angle_deg = reference_.totalAngleDeg();
@@ -87,6 +93,12 @@ bool SoloMotor::setZero(double angle_deg) noexcept {
 }
 
 Target SoloMotor::wanted() noexcept {
+  const Target target = resolved();
+  follows_angle_ = needsReference(target.mode);
+  return target;
+}
+
+Target SoloMotor::resolved() noexcept {
   const FrameKind kind = ordered();
   begins_ = std::exchange(told_, kind) != kind;
   if (!obeying()) speed_scale_.reset();

@@ -65,6 +65,8 @@ class SoloMotor : public Motor_Base, public CommandPacker {
   void compareSpeedAnew() noexcept { speed_scale_.reset(); }
   /// The drive was restarted or turns may have gone uncounted.
   void loseReference() noexcept;
+  /// It may have been off, and turned meanwhile, though its count goes on.
+  void doubtTurn() noexcept;
 
   /// The order has DriveDuty::kObey.
   [[nodiscard]] bool obeying() const noexcept { return dutyOf(ordered()) == DriveDuty::kObey; }
@@ -111,6 +113,8 @@ class SoloMotor : public Motor_Base, public CommandPacker {
   [[nodiscard]] Duration tickPeriod() const noexcept { return tick_period_; }
 
  private:
+  [[nodiscard]] Target resolved() noexcept;
+
   std::string model_;
   MotorTraits traits_;
   double gear_ratio_;
@@ -127,6 +131,7 @@ class SoloMotor : public Motor_Base, public CommandPacker {
   FrameKind told_ = FrameKind::kRest;  ///< The order of the last tick.
   bool begins_ = false;
   bool holding_ = false;
+  bool follows_angle_ = false;  ///< What it was told in the last tick.
   double hold_deg_ = 0.0;
   float command_value_ = 0.0F;
   CommandUnit command_unit_ = CommandUnit::kNone;

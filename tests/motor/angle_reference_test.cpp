@@ -65,5 +65,36 @@ TEST(AngleReference, AnAbsoluteEncoderFindsItsReferenceAgain) {
   EXPECT_DOUBLE_EQ(reference.totalAngleDeg(), 11.0);
 }
 
+TEST(AngleReference, AShaftThatMayHaveBeenTurnedIsWhereItsTravelSays) {
+  AngleReference arm({.absolute = true, .travel = {-90.0, 200.0}});
+  arm.update(-145.0);
+  EXPECT_DOUBLE_EQ(arm.totalAngleDeg(), 215.0);
+  arm.doubtTurn();
+  EXPECT_FALSE(arm.known());
+  arm.update(-110.0);
+  EXPECT_TRUE(arm.known());
+  EXPECT_DOUBLE_EQ(arm.totalAngleDeg(), -110.0) << "250 is beyond its travel";
+  AngleReference wheel({.absolute = true});
+  wheel.update(10.0);
+  wheel.update(730.0);
+  wheel.doubtTurn();
+  wheel.update(731.0);
+  EXPECT_TRUE(wheel.known());
+  EXPECT_EQ(wheel.totalAngleDeg(), 731.0);
+}
+
+TEST(AngleReference, AnAbsoluteAngleThatIsFollowedGoesOnWithoutItsReference) {
+  AngleReference reference({.absolute = true});
+  reference.update(10.0);
+  reference.update(730.0, false, false);
+  reference.lose();
+  reference.update(731.0, false, false);
+  EXPECT_FALSE(reference.known());
+  EXPECT_EQ(reference.totalAngleDeg(), 731.0) << "no leap of two turns";
+  reference.update(731.0, false, true);
+  EXPECT_TRUE(reference.known());
+  EXPECT_DOUBLE_EQ(reference.totalAngleDeg(), 11.0);
+}
+
 }  // namespace
 }  // namespace rc10::angle_reference_test

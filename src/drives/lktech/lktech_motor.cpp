@@ -151,7 +151,9 @@ void LKTech_Motor::acceptTurns(const CanFrame& frame) noexcept {
       position_deg_ = angle_deg + shortestAngle(angle_deg, encoderDeg(*encoder_));
       shift_deg_ = 0.0;
     } else {
+      // Within half a turn of its last count it may have been restarted all the same.
       position_deg_ += shortestAngle(position_deg_, encoderDeg(*encoder_));
+      doubtTurn();
     }
     counted_ = true;
     was_counted_ = true;
