@@ -32,7 +32,7 @@ class MotorGuardTest : public ::testing::Test {
     return guard.step({.feedback = feedback,
                        .target = target,
                        .effort = effort_a,
-                       .unit = CommandUnit::kAmpere,
+                       .unit = unit,
                        .limits = limits,
                        .now = now});
   }
@@ -41,6 +41,7 @@ class MotorGuardTest : public ::testing::Test {
   MotorFeedback feedback = seen(100.0F, 30.0F);
   Target target;
   float effort_a = 0.0F;
+  CommandUnit unit = CommandUnit::kAmpere;
   MotorGuard guard{{.overspeed_rpm = 700.0F,
                     .temperature_derate_c = 80.0F,
                     .temperature_trip_c = 100.0F,
@@ -251,6 +252,28 @@ TEST_F(MotionGuardTest, GainingSpeedAgainstAllTheTorqueIsARunaway) {
   EXPECT_EQ(run(10, kLimitCurrent), FaultCode::kNone);
   feedback.velocity_rpm = -58.0F;
   feedback.current_a = 20.0F;
+  EXPECT_EQ(run(10, kLimitCurrent), FaultCode::kNone);
+  feedback.velocity_rpm = -59.0F;
+  EXPECT_EQ(run(1, kLimitCurrent), FaultCode::kRunaway);
+}
+
+TEST_F(MotionGuardTest, TheTargetOfADrivesOwnLoopIsNoTorque) {
+  unit = CommandUnit::kNative;
+  effort_a = 199.0F;  // deg
+  feedback.current_a = -10.0F;
+  for (int rpm = 0; rpm > -100; --rpm) {
+    feedback.velocity_rpm = static_cast<float>(rpm);
+    EXPECT_EQ(run(1, kLimitCurrent), FaultCode::kNone) << "its current drives it there";
+  }
+  feedback.current_a = kNotReported;
+  EXPECT_EQ(run(100, kLimitCurrent), FaultCode::kNone);
+}
+
+TEST_F(MotionGuardTest, InADrivesOwnLoopItsCurrentTellsOfARunaway) {
+  unit = CommandUnit::kNative;
+  effort_a = -30.0F;
+  feedback.current_a = 20.0F;
+  feedback.velocity_rpm = -10.0F;
   EXPECT_EQ(run(10, kLimitCurrent), FaultCode::kNone);
   feedback.velocity_rpm = -59.0F;
   EXPECT_EQ(run(1, kLimitCurrent), FaultCode::kRunaway);

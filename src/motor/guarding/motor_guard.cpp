@@ -110,7 +110,10 @@ bool MotorGuard::frozen(const Observation& seen, bool new_sample) noexcept {
 bool MotorGuard::runsAway(const Observation& seen) noexcept {
   if (!(config_.runaway_rpm > 0.0F)) return false;
   const float velocity_rpm = seen.feedback.velocity_rpm;
-  const bool opposed = (seen.limits & kLimitCurrent) != 0 && seen.effort * velocity_rpm < 0.0F;
+  // A target of the drive's own loop says nothing about its torque: -16 deg from 215 is 199.
+  const bool of_effort = seen.unit == CommandUnit::kAmpere || seen.unit == CommandUnit::kVolt;
+  const float effort = of_effort ? seen.effort : seen.feedback.current_a;
+  const bool opposed = (seen.limits & kLimitCurrent) != 0 && effort * velocity_rpm < 0.0F;
   if (opposed && !opposed_) opposed_rpm_ = std::fabs(velocity_rpm);
   opposed_ = opposed;
   if (!opposed) return false;
