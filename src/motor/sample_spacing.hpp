@@ -1,8 +1,18 @@
 #pragma once
 
+#include <algorithm>
+#include <chrono>
+
 #include "app/time.hpp"
 
 namespace rc10 {
+
+/// The longest that two samples can have been apart. Stamps of frames that waited for others come bunched:
+/// for a bound on how far a shaft may have turned.
+[[nodiscard]] constexpr Duration longestApart(Duration gap, Duration period) noexcept {
+  constexpr Duration kWaited = std::chrono::milliseconds{5};
+  return std::max(gap, Duration::zero()) + period + kWaited;
+}
 
 /// The spacing of the samples a loop advances on. Samples beat against the tick and arrive with
 /// jitter: a loop that used the tick's dt, or the raw stamps, would see velocities between zero and

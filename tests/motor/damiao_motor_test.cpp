@@ -236,6 +236,22 @@ TEST(DamiaoMotor, AGapInWhichAWrapMayHideLosesTheReferenceUntilTheDriveTellsItsC
   EXPECT_FALSE(desk.motor().feedback().zeroed);
 }
 
+TEST(DamiaoMotor, FramesThatWaitedAndComeAtOnceAreNoJump) {
+  auto settings = damiaoSettingsOf("DM4310");
+  settings.feedback_hz = 50;
+  DamiaoDesk desk(settings);
+  desk.motor().order(FrameKind::kPoll);
+  desk.run(3);
+  (void)desk.feed(stateAt(0.0, 30.0, 0));
+  ASSERT_TRUE(desk.motor().setZero(0.0));
+  for (int i = 1; i <= 40; ++i) {
+    if (i % 5 == 0) (void)desk.tick(milliseconds{100});
+    (void)desk.feed(stateAt(std::remainder(0.6 * i, 25.0), 30.0, 0));
+  }
+  EXPECT_EQ(desk.motor().feedback().jumps, 0U);
+  EXPECT_NEAR(desk.motor().feedback().total_angle_deg, 24.0 * kDegPerRad, 0.5);
+}
+
 TEST(DamiaoMotor, AJumpWhileEnabledIsCountedAndOneAtRestIsARestart) {
   EnabledDesk desk;
   desk.motor().order(FrameKind::kIdle);

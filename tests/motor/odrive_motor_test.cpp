@@ -543,6 +543,20 @@ TEST_F(OdriveMotor, APositionThatItCannotHaveReachedIsAJump) {
   EXPECT_FALSE(motor_->feedback().zeroed);
 }
 
+TEST_F(OdriveMotor, FramesThatWaitedAndComeAtOnceAreNoJump) {
+  auto settings = odriveSettings();
+  settings.feedback_hz = 100;
+  make(settings);
+  sample(0.0F, 80.0F);
+  motor_->setZero(0.0);
+  for (int i = 1; i <= 50; ++i) {
+    if (i % 5 == 0) now_ += 50ms;
+    sample(0.8F * static_cast<float>(i), 80.0F);
+  }
+  EXPECT_EQ(motor_->feedback().jumps, 0U);
+  EXPECT_TRUE(motor_->feedback().zeroed);
+}
+
 TEST_F(OdriveMotor, TargetsComeBackFromTheirFramesOverTheWholeRange) {
   std::mt19937 random(20261121);
   std::uniform_real_distribution<double> gear(0.2, 50.0);

@@ -348,6 +348,67 @@ TEST_F(VescMotorTest, TheEncoderIsAbsoluteAndCountsTurns) {
   EXPECT_TRUE(motor.feedback().zeroed);
 }
 
+/// Turns of an encoder at a steady speed of the rotor, 500 Hz, one of 20 frames lost, each stamped up to
+/// `late` after it was sent.
+struct Counted {
+  double off_deg = 0.0;  ///< Largest, while the reference was known.
+  int losses = 0;
+};
+Counted countTurns(double rotor_rpm, std::chrono::microseconds late, unsigned seed) {
+  auto settings = vescSettings({{"ask_status", 0.0}, {"angle", kEncoder}});
+  settings.feedback_hz = 500;
+  VESC_Motor motor(settings);
+  std::mt19937 random(seed);
+  std::uniform_int_distribution<std::int64_t> wait_us(0, late.count());
+  std::uniform_int_distribution<int> lottery(1, 20);
+  Counted counted;
+  MonotonicTime received{std::chrono::hours{1}};
+  const MonotonicTime begin = received;
+  double reference_deg = 0.0;
+  for (int i = 0; i < 5000; ++i) {
+    const MonotonicTime sent = begin + i * milliseconds{2};
+    received = std::max(received, sent + std::chrono::microseconds{wait_us(random)});
+    if (i > 0 && lottery(random) == 1) continue;
+    CanFrame speed = vescFrame(0x907, "0000000000000000");
+    writeBigEndian<std::int32_t>(speed.data, 0, static_cast<std::int32_t>(std::lround(rotor_rpm * 7.0)));
+    speed.received = received;
+    EXPECT_EQ(motor.updateFeedback(speed), FrameVerdict::kAccepted);
+    const double deg = rotor_rpm * kDegPerSPerRpm * 0.002 * i;
+    CanFrame angle = vescFrame(0x1007, "0000000000000000");
+    const double within_deg = deg - 360.0 * std::floor(deg / 360.0);
+    writeBigEndian<std::int16_t>(angle.data, 6, static_cast<std::int16_t>(std::lround(within_deg * 50.0)));
+    angle.received = received;
+    EXPECT_EQ(motor.updateFeedback(angle), FrameVerdict::kAccepted);
+    const auto& feedback = motor.feedback();
+    if (i == 0) {
+      reference_deg = feedback.total_angle_deg;
+      // Unless it follows an angle, it takes the one within a turn again.
+      motor.order(FrameKind::kCommand, {.mode = ControlMode::kTotalAngle});
+      motor.update(Tick{});
+    }
+    if (!feedback.zeroed) {  // as a client that tells it anew
+      ++counted.losses;
+      EXPECT_TRUE(motor.setZero(reference_deg + deg));
+    }
+    counted.off_deg = std::max(counted.off_deg, std::abs(feedback.total_angle_deg - reference_deg - deg));
+  }
+  return counted;
+}
+
+TEST(VescEncoder, StampsThatAreLateCostNoTurn) {
+  for (const double rpm : {0.0, 100.0, 3000.0, -5000.0, 12'000.0, -20'000.0, 30'000.0, 45'000.0}) {
+    for (const unsigned seed : {1U, 2U, 3U}) {
+      const auto counted = countTurns(rpm, std::chrono::microseconds{1900}, seed);
+      EXPECT_LT(counted.off_deg, 1.0) << rpm;
+      // Turns of a whole period: nobody could tell one period from two.
+      if (std::abs(rpm) < 25'000.0) {
+        EXPECT_EQ(counted.losses, 0) << rpm;
+      }
+    }
+  }
+  EXPECT_GT(countTurns(30'000.0, std::chrono::microseconds{1900}, 1).losses, 0) << "it is told";
+}
+
 TEST_F(VescMotorTest, ANativePositionGoesTheWayThatIsMeantOverTurns) {
   makeWith({{"angle", kEncoder}});
   status(0);

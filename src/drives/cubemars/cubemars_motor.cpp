@@ -6,6 +6,7 @@
 
 #include "app/units.hpp"
 #include "drives/cubemars/cubemars_family.hpp"
+#include "motor/sample_spacing.hpp"
 
 namespace rc10 {
 namespace {
@@ -15,8 +16,6 @@ constexpr Duration kStartUp = std::chrono::milliseconds{100};
 constexpr int kCubemarsGapPeriods = 3;  // so many feedback periods are no gap
 // Above the no-load speed: a load that drives, a full battery, another winding of the same name.
 constexpr double kReach = 1.5;
-// Stamps of frames that waited for others come bunched.
-constexpr double kBunchedSeconds = 0.005;
 constexpr double kPositionErrorDeg = 1.0;
 
 }  // namespace
@@ -39,9 +38,8 @@ bool CubeMars_Motor::noticeRestart(MonotonicTime received) noexcept {
 
 void CubeMars_Motor::takePosition(MonotonicTime received, double drive_deg) noexcept {
   if (feedback_.samples > 0) {
-    const double passed_s =
-        std::max(std::chrono::duration<double>(received - feedback_.received).count(), 0.0);
-    const double reach_deg = reach_deg_per_s_ * (passed_s + kBunchedSeconds) + kPositionErrorDeg;
+    const Duration apart = longestApart(received - feedback_.received, feedbackPeriod());
+    const double reach_deg = reach_deg_per_s_ * static_cast<double>(seconds(apart)) + kPositionErrorDeg;
     if (std::fabs(drive_deg - last_drive_deg_) > reach_deg) {
       ++feedback_.jumps;
       loseReference();

@@ -50,7 +50,7 @@ Damiao_Motor::Damiao_Motor(const MotorSettings& settings)
                              ? static_cast<double>(traits().no_load_rpm) * kRadPerSPerRpm
                              : own_.scale.v_max_rad_s)),
       heard_within_(kPositionAskedEvery + 2 * std::max(settings.command_divider, 1) * tickPeriod()),
-      position_(own_.scale, fastest(settings, own_.scale)),
+      position_(own_.scale, fastest(settings, own_.scale), feedbackPeriod()),
       enabling_({.id = settings.id, .control = own_.control, .timeout = own_.timeout, .scale = own_.scale}),
       setup_codec_(settings.id, own_.can_fd) {
   restCommand();

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "drives/damiao/damiao_frames.hpp"
+#include "motor/sample_spacing.hpp"
 
 namespace rc10 {
 namespace {
@@ -10,9 +11,7 @@ namespace {
 constexpr std::int64_t kWrap = 65536;
 // Of half the range: beyond, the shorter way round may be the wrong one.
 constexpr double kSureShare = 0.8;
-// Time stamps are off by less than a millisecond; a few are free, so that noise is no jump.
-constexpr double kStampErrorSeconds = 0.005;
-constexpr double kSlackRad = 0.1;
+constexpr double kSlackRad = 0.1;  // noise
 // Between the register and the feedback next to it the motor turns on.
 constexpr double kAskedApartSeconds = 0.05;
 // No count of a drive is as large; keeps garbage from overflowing.
@@ -20,8 +19,8 @@ constexpr double kFarthestCountRad = 1e7;
 
 }  // namespace
 
-DamiaoPosition::DamiaoPosition(const DamiaoScale& scale, double fastest_rad_s) noexcept
-    : scale_(scale), fastest_rad_s_(fastest_rad_s), step_rad_(damiao::positionStep(scale)) {}
+DamiaoPosition::DamiaoPosition(const DamiaoScale& scale, double fastest_rad_s, Duration period) noexcept
+    : scale_(scale), fastest_rad_s_(fastest_rad_s), period_(period), step_rad_(damiao::positionStep(scale)) {}
 
 double DamiaoPosition::rad() const noexcept {
   return static_cast<double>(code_) * step_rad_ - scale_.p_max_rad;
@@ -39,10 +38,12 @@ DamiaoPosition::Step DamiaoPosition::take(std::uint16_t code, MonotonicTime rece
     received_ = received;
     return Step::kFollows;
   }
-  const double gap_s = std::fabs(std::chrono::duration<double>(received - received_).count());
+  const Duration gap = received - received_;
+  const double gap_s = std::fabs(std::chrono::duration<double>(gap).count());
   received_ = received;
   const auto moved = static_cast<std::int16_t>(static_cast<std::uint16_t>(code - code_));
-  const double reach_rad = fastest_rad_s_ * (gap_s + kStampErrorSeconds) + kSlackRad;
+  const double reach_rad =
+      fastest_rad_s_ * static_cast<double>(seconds(longestApart(gap, period_))) + kSlackRad;
   Step step = Step::kFollows;
   if (std::fabs(moved * step_rad_) > reach_rad) step = Step::kJumped;
   if (fastest_rad_s_ * gap_s > kSureShare * scale_.p_max_rad) step = Step::kLost;

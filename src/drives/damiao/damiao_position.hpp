@@ -19,8 +19,8 @@ class DamiaoPosition {
     kJumped,  ///< Farther than the motor can have turned: the drive was restarted, or its encoder slipped.
   };
 
-  /// `fastest_rad_s`: of the drive's output, and some more.
-  DamiaoPosition(const DamiaoScale& scale, double fastest_rad_s) noexcept;
+  /// `fastest_rad_s`: of the drive's output, and some more. `period`: of its feedback.
+  DamiaoPosition(const DamiaoScale& scale, double fastest_rad_s, Duration period) noexcept;
 
   /// The position in feedback. Unless it follows, the wrap is unknown from now on.
   Step take(std::uint16_t code, MonotonicTime received) noexcept;
@@ -40,6 +40,7 @@ class DamiaoPosition {
  private:
   DamiaoScale scale_;
   double fastest_rad_s_;
+  Duration period_;
   double step_rad_;
   bool begun_ = false;
   bool known_ = false;

@@ -5,6 +5,7 @@
 
 #include "app/limits.hpp"
 #include "app/units.hpp"
+#include "motor/sample_spacing.hpp"
 
 namespace rc10 {
 namespace {
@@ -104,7 +105,8 @@ FrameVerdict ODrive_Motor::acceptHeartbeat(const CanFrame& frame) noexcept {
 
 bool ODrive_Motor::isJump(MonotonicTime received, double turns, double turns_per_s) const noexcept {
   if (!position_known_) return false;
-  const double dt_s = std::max(0.0, std::chrono::duration<double>(received - feedback_.received).count());
+  const auto dt_s =
+      static_cast<double>(seconds(longestApart(received - feedback_.received, feedbackPeriod())));
   const double fastest = std::max(std::abs(turns_per_s), std::abs(turns_per_s_));
   return std::abs(turns - turns_) > kJumpTurns + 1.5 * fastest * dt_s;
 }

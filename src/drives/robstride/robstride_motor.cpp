@@ -8,6 +8,7 @@
 #include "app/units.hpp"
 #include "bus/byte_order.hpp"
 #include "drives/robstride/robstride_family.hpp"
+#include "motor/sample_spacing.hpp"
 
 namespace rc10 {
 namespace {
@@ -193,8 +194,8 @@ void RobStride_Motor::trackPosition(const robstride::Feedback& seen, MonotonicTi
   if (wraps() && moved > kScaleRad / 2) moved -= kScaleRad;
   if (wraps() && moved < -kScaleRad / 2) moved += kScaleRad;
   const Duration gap = std::max(received - feedback_.received, Duration::zero());
-  const double reach =
-      kJumpSlackRad + kJumpFactor * model_->velocity_range_rad_s * static_cast<double>(seconds(gap));
+  const double reach = kJumpSlackRad + kJumpFactor * model_->velocity_range_rad_s *
+                                           static_cast<double>(seconds(longestApart(gap, feedbackPeriod())));
   const bool jumped = std::abs(moved) > reach;
   if (jumped) ++feedback_.jumps;
   // At its end a scale that does not wrap says no more than that.

@@ -21,6 +21,10 @@ constexpr Duration kRestartGap = milliseconds{300};
 constexpr double kStepSlack = 12.0;
 constexpr double kErpmPerS = 500'000.0;  // a bare rotor at full current; estimated, generous
 constexpr double kAmbiguousDeg = 120.0;
+// Stamps are late by less.
+constexpr Duration kLatestStamp = milliseconds{2};
+// So far from where a changing speed has taken it may the encoder be.
+constexpr double kExplainedDeg = 60.0;
 
 }  // namespace
 
@@ -112,16 +116,44 @@ void VESC_Motor::takeSteps(const CanFrame& frame) noexcept {
   const auto moved = static_cast<std::int32_t>(static_cast<std::uint32_t>(steps) -
                                                static_cast<std::uint32_t>(status5_.steps));
   const Duration gap = frame.received - feedback_.received;
-  const double gap_s = static_cast<double>(seconds(std::clamp(gap, Duration::zero(), kRestartGap)));
-  const double period_s = static_cast<double>(seconds(feedbackPeriod()));
+  const auto span_s =
+      static_cast<double>(seconds(longestApart(std::min(gap, kRestartGap), feedbackPeriod())));
   const double erpm = std::abs(static_cast<double>(status1_.erpm));
-  const double span_s = gap_s + period_s;
   const double fastest_steps_per_s =
       (erpm + kErpmPerS * span_s) * kStepsPerElectricalTurn / kSecondsPerMinute;
   const bool jumped = std::abs(static_cast<double>(moved)) > kStepSlack + fastest_steps_per_s * span_s;
   const bool doubtful = gapTooLong(gap) || jumped;
   if (jumped && !gapTooLong(gap)) ++feedback_.jumps;
   takePosition(frame.received, doubtful ? 0.0 : moved * deg_per_step, !doubtful);
+}
+
+// Where the speed has taken it, then the nearest such angle.
+VESC_Motor::Way VESC_Motor::wayOver(double now_deg, Duration spacing) const noexcept {
+  const double rotor_rpm = static_cast<double>(status1_.erpm) / options_.pole_pairs;
+  const double expected =
+      rotor_rpm / options_.position_divider * kDegPerSPerRpm * std::chrono::duration<double>(spacing).count();
+  const double off = shortestAngle(position_deg_ + expected, now_deg);
+  return {.moved = expected + off, .off = std::abs(off)};
+}
+
+// In truth samples lie whole periods apart: the spacing at which speed and angle agree best. Where another
+// one explains the angle with another number of turns, it is in doubt.
+VESC_Motor::Way VESC_Motor::wayTo(double now_deg, Duration gap) const noexcept {
+  const Duration period = feedbackPeriod();
+  const auto first = std::max<Duration::rep>(1, (gap - kLatestStamp + period) / period);
+  const auto last = (gap + kLatestStamp) / period;
+  if (first > last) return wayOver(now_deg, gap);
+  Way best = wayOver(now_deg, first * period);
+  for (auto periods = first + 1; periods <= last; ++periods) {
+    const Way other = wayOver(now_deg, periods * period);
+    if (other.off < best.off) best = other;
+  }
+  for (auto periods = first; periods <= last; ++periods) {
+    const Way other = wayOver(now_deg, periods * period);
+    const bool other_turn = std::abs(other.moved - best.moved) > kDegPerTurn / 2.0;
+    best.doubtful = best.doubtful || (other_turn && other.off <= kExplainedDeg);
+  }
+  return best;
 }
 
 void VESC_Motor::takeEncoder(const CanFrame& frame) noexcept {
@@ -132,14 +164,9 @@ void VESC_Motor::takeEncoder(const CanFrame& frame) noexcept {
     return;
   }
   const Duration gap = frame.received - feedback_.received;
-  // Where the speed has taken it, then the nearest such angle.
-  const double rotor_rpm = static_cast<double>(status1_.erpm) / options_.pole_pairs;
-  const double gap_s = static_cast<double>(seconds(std::clamp(gap, Duration::zero(), kRestartGap)));
-  const double expected = rotor_rpm / options_.position_divider * kDegPerSPerRpm * gap_s;
-  const double off = shortestAngle(position_deg_ + expected, now_deg);
-  const bool doubtful = gapTooLong(gap) || std::abs(off) > kAmbiguousDeg;
-  const double moved = gapTooLong(gap) ? shortestAngle(position_deg_, now_deg) : expected + off;
-  takePosition(frame.received, moved, !doubtful);
+  if (gapTooLong(gap)) return takePosition(frame.received, shortestAngle(position_deg_, now_deg), false);
+  const Way way = wayTo(now_deg, std::max(gap, Duration::zero()));
+  takePosition(frame.received, way.moved, !way.doubtful && way.off <= kAmbiguousDeg);
 }
 
 void VESC_Motor::restarted() noexcept {

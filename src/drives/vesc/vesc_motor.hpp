@@ -51,6 +51,14 @@ class VESC_Motor : public SoloMotor {
   void takePosition(MonotonicTime received, double moved_deg, bool known) noexcept;
   void takeSteps(const CanFrame& frame) noexcept;
   void takeEncoder(const CanFrame& frame) noexcept;
+  /// Degrees of the drive's encoder since the last sample.
+  struct Way {
+    double moved = 0.0;
+    double off = 0.0;  ///< How far that is from where the speed has taken it.
+    bool doubtful = false;
+  };
+  [[nodiscard]] Way wayTo(double now_deg, Duration gap) const noexcept;
+  [[nodiscard]] Way wayOver(double now_deg, Duration spacing) const noexcept;
   void restarted() noexcept;
   [[nodiscard]] bool gapTooLong(Duration gap) const noexcept;
 
