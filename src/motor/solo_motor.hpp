@@ -131,7 +131,7 @@ class SoloMotor : public Motor_Base, public CommandPacker {
   FrameKind told_ = FrameKind::kRest;  ///< The order of the last tick.
   bool begins_ = false;
   bool holding_ = false;
-  bool follows_angle_ = false;  ///< What it was told in the last tick.
+  bool follows_angle_ = false;  ///< By the target of the last tick.
   double hold_deg_ = 0.0;
   float command_value_ = 0.0F;
   CommandUnit command_unit_ = CommandUnit::kNone;

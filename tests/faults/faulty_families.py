@@ -1,6 +1,7 @@
 """One fake drive of any family that does wrong things when told so, by a frame that no robot uses.
 
-FAULT_ID carries one byte, a Wrong.
+FAULT_ID carries one byte, a Wrong. Arguments: the interface, the drive, and the angle of its shaft
+in degrees.
 """
 
 from __future__ import annotations
@@ -99,7 +100,7 @@ class FaultyDrive(Drives):
 
 
 def main() -> None:
-    interface, name = sys.argv[1:]
+    interface, name, angle_deg = sys.argv[1:]
     stopped = False
 
     def stop(_number: int, _frame: FrameType | None) -> None:
@@ -108,7 +109,7 @@ def main() -> None:
 
     signal.signal(signal.SIGTERM, stop)
     spec: Any = _motor(name)
-    drive = FaultyDrive(spec.make(initial_angle_deg=0.0, load_nm=0.0))
+    drive = FaultyDrive(spec.make(initial_angle_deg=float(angle_deg), load_nm=0.0))
     with can.Bus(interface="socketcan", channel=interface, fd=drive.fd) as bus:
         runner = Runner(bus, drive)
         print("ready", flush=True)

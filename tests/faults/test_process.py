@@ -15,14 +15,15 @@ from faultrig import (
     FRONT,
     REAR,
     TICK_NS,
+    client,
     drive,
     drives,
     proven,
     robot_under_test,
     witness,
 )
-from guestlib import run, wait_for
-from rig import BIN, currents
+from guestlib import Proc, run, wait_for
+from rig import BIN, BUILD, currents, wait_status
 
 import rc10
 
@@ -143,6 +144,37 @@ def test_the_daemon_stalls(stall_ms: int) -> None:
             None,
             None,
             0,
+        )
+
+
+def test_ticks_that_compute_for_longer_than_their_period(tmp_path: Path) -> None:
+    busy = tmp_path / "busy"
+    library = BUILD / "tests" / "librc10_busy_ticks.so"
+    preload = {"LD_PRELOAD": str(library), "RC10_BUSY_TICKS": str(busy)}
+    daemon = Proc(BIN / "rc10d", "-c", CONFIG, env=preload)
+    with drives(), witness() as log, daemon, client() as robot:
+        wait_status(robot, rc10.MotorStatus.READY)
+        robot.enable()
+        drive(robot, log, 0.3, left=rc10.velocity_rpm(60), other=rc10.velocity_rpm(60))
+        # Nobody else gets the one CPU of this guest: a shorter one would lapse.
+        robot.command(left=rc10.velocity_rpm(60), other=rc10.velocity_rpm(60), validity_ms=500)
+        begun_ns = time.time_ns()
+        log.driven(begun_ns, begun_ns, "left", "other", validity_ms=500)
+        busy.touch()
+        time.sleep(0.2)
+        busy.unlink()
+        state = robot.wait_for_state(5.0)
+        assert state.estopped
+        assert state.stop_cause is rc10.StopCause.OVERLOAD
+        last_ns = max(log.last_torque_ns("left"), log.last_torque_ns("other"))
+        wait_for(lambda: len(log.frames(FRONT, last_ns)) > 50, 5.0)
+        log.check(other_bus=None)
+        proven(
+            "ticks that each compute for 24 ms",
+            "e-stop (`overload`) once they have used `scheduler.overload_ms`",
+            begun_ns,
+            last_ns,
+            200,
         )
 
 

@@ -24,6 +24,7 @@ from faultrig import (
     drive,
     drives,
     proven,
+    robot_under_test,
     witness,
 )
 from faulty_drives import Fault
@@ -39,6 +40,8 @@ if TYPE_CHECKING:
     from guestlib import Proc
 
 LEFT, RIGHT, ARM = 1, 2, 3
+TOTAL_ANGLE = 4  # of command_t
+HOMING_FAILED = 3  # a joint's state
 ACTIVE, READY = rc10.MotorStatus.ACTIVE, rc10.MotorStatus.READY
 OFFLINE, FAULT = rc10.MotorStatus.OFFLINE, rc10.MotorStatus.FAULT
 NOT_AT_REST, FOREIGN = 8, 9
@@ -389,6 +392,66 @@ def test_every_field_is_bounded(tmp_path: Path) -> None:
         log.check()
 
 
+# ---- Places that no motor reaches, the end of a program, and no reason to stop
+
+
+def test_places_beyond_all_reach_are_refused() -> None:
+    with robot_under_test() as (_, robot, log):
+        robot.disable()
+        wait_for(has(robot, "left", READY), 2.0)
+        before_deg = robot.wait_for_state(1.0).motors["left"].total_angle_deg
+        for place in ("1e17", "1e300"):
+            assert ctl("zero", "left", place).returncode != 0
+        after_deg = robot.wait_for_state(1.0).motors["left"].total_angle_deg
+        assert after_deg == pytest.approx(before_deg, abs=1)
+        nothing("`zero` at 1e17 deg", "refused")
+        robot.enable()
+        stranger = Stranger()
+        for value in (1e17, -1e300):
+            for _ in range(10):
+                stranger.command("left", TOTAL_ANGLE, value)
+                time.sleep(0.01)
+        assert log.last_torque_ns("left") == 0
+        log.check()
+        nothing("an angle target of 1e17 deg", "skipped, counted, told")
+
+
+def test_the_end_of_a_program_is_a_timeout() -> None:
+    with robot_under_test() as (_, robot, log):
+        break_drive(ARM, Fault.PUSHED, 20)
+
+        def holds() -> bool:
+            state = robot.wait_for_state(1.0).motors["arm"]
+            return state.acting is rc10.Acting.BRAKE and abs(state.velocity_rpm) < 10
+
+        with client("program") as program:
+            drive(program, log, 0.3, arm=rc10.velocity_rpm(30))
+        wait_for(holds, 1.0)
+        nothing("a program ends in good order", "`on_timeout` holds the load")
+        assert ctl("set", "arm", "velocity", "30", "--for", "300ms").returncode == 0
+        wait_for(holds, 1.0)
+        time.sleep(0.3)
+        assert all(currents(f)[2] for f in log.frames(FRONT)[-200:]), "it is never let go"
+        log.check()
+        nothing("`rc10ctl set ... --for` ends", "`on_timeout` holds the load")
+
+
+def test_what_only_turns_a_motor_is_no_reason_to_stop() -> None:
+    with robot_under_test() as (_, robot, log):
+        # Enabled without a target, then disabled: 1.5 N m at the output, to and fro.
+        for status in (ACTIVE, READY):
+            for torque in (150, -150, 150, 0):
+                break_drive(LEFT, Fault.PUSHED, torque)
+                time.sleep(0.4)
+            assert abs(robot.wait_for_state(1.0).motors["left"].total_angle_deg) > 30, "it turned"
+            assert robot.wait_for_state(1.0).motors["left"].status is status
+            robot.disable()
+            time.sleep(0.5)
+        assert not robot.wait_for_state(1.0).estopped
+        log.check()
+        nothing("a hand turns a motor that rests, enabled or not", "no stop")
+
+
 # ---- Modules
 
 
@@ -421,6 +484,35 @@ def test_a_module_acts_for_nobody_no_longer_than_its_time(tmp_path: Path) -> Non
             log.last_torque_ns("left"),
             1060,
         )
+
+
+def test_homing_takes_no_balance_for_the_stop(tmp_path: Path) -> None:
+    joint = (
+        "modules:\n"
+        "  - {name: lift, type: joint, motor: left, homing: stop, homing_timeout_s: 4,\n"
+        "     max_velocity_deg_s: 90, max_acceleration_deg_s2: 360, on_silence: hold}\n"
+    )
+    unknown = {"id: 1, zero: power_on, current_limit_a: 10}": "id: 1, current_limit_a: 10}"}
+    with robot_with(tmp_path, unknown, joint) as (_, robot, log):
+        robot.enable()
+        lift = robot.module("lift")
+        start_ns = time.time_ns()
+        # At 5 rpm towards the stop it stands still where the load eats 0.9 of its 1 A: in mid-air.
+        break_drive(LEFT, Fault.PUSHED, 27)
+        stood = 0
+        for t_s in robot.rate(100):
+            lift.send(home=1)
+            left = robot.motor("left")
+            stood += abs(left.velocity_rpm) < 1 and abs(left.current_a) > 0.7
+            if t_s > 1.0 and lift.state["state"] == HOMING_FAILED:
+                break
+            assert t_s < 10.0, lift.state
+        log.driven(start_ns, time.time_ns(), "left", validity_ms=200)
+        assert stood >= 15, "of 100 a second: it pushed in vain"
+        assert lift.state["homed"] == 0.0
+        assert not robot.wait_for_state(1.0).motors["left"].zeroed
+        log.check()
+        nothing("homing against a load that balances its current", "it fails; no reference")
 
 
 # ---- The turn at power-up
