@@ -391,6 +391,7 @@ TEST(CubemarsServo, AModelWithUnsignedCurrentReportsNone) {
 
 TEST(CubemarsServo, EveryErrorOfTheDriveIsAComplaint) {
   Servo bench(servo());
+  ASSERT_GE(cubemarsFaults().size(), 5U);
   for (const auto& fault : cubemarsFaults()) {
     (void)bench.feedServo(0.0, 0.0, 0.0, 30, static_cast<std::uint8_t>(fault.native));
     EXPECT_EQ(bench.motor().complaint().fault, fault.fault) << fault.words;

@@ -77,7 +77,9 @@ TEST(DamiaoMotor, ADriveThatTheSequenceHasNotEnabledGetsNoTargets) {
   for (const auto kind :
        {FrameKind::kIdle, FrameKind::kBrake, FrameKind::kHold, FrameKind::kDamp, FrameKind::kRest}) {
     desk.motor().order(kind);
-    for (const auto& frame : desk.tick()) EXPECT_TRUE(isDisable(frame));
+    const auto sent = desk.tick();
+    ASSERT_FALSE(sent.empty());
+    for (const auto& frame : sent) EXPECT_TRUE(isDisable(frame));
   }
   (void)desk.feed(stateAt(0.0, 0.0, 1));  // somebody else has enabled it
   desk.command({.mode = ControlMode::kCurrent, .value = 5.0});
@@ -361,7 +363,9 @@ TEST(DamiaoMotor, AMotorThatIsHeldIsNotLetGoToBeEnabledAgain) {
   desk.motor().order(FrameKind::kHold);
   desk.run(5);
   desk.motor().order(FrameKind::kEnable);
-  for (const auto& frame : desk.tickAnswered()) EXPECT_FALSE(isDisable(frame));
+  const auto sent = desk.tickAnswered();
+  ASSERT_FALSE(sent.empty());
+  for (const auto& frame : sent) EXPECT_FALSE(isDisable(frame));
   EXPECT_EQ(desk.motor().sequenceProgress(), SequenceProgress::kDone);
 }
 

@@ -202,6 +202,7 @@ TEST(DjiReference, TheZeroOfAReversedAbsoluteEncoderIsTheAngleItUsedToRead) {
   DJI_Motor before(config);
   DjiFeeder(before).feed({.position = 2048});
   config.zero_deg = before.getAngle().value;
+  ASSERT_GT(config.zero_deg, 1.0);
   DJI_Motor after(config);
   DjiFeeder(after).feed({.position = 2048});
   EXPECT_NEAR(after.getTotalAngle().value, 0.0, 1e-4);

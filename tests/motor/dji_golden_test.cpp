@@ -51,7 +51,9 @@ void checkCommand(std::istream& line) {
   const CanFrame expected = parseFrame(text);
   DJI_Group group(expected.id);
   std::vector<std::unique_ptr<DJI_Motor>> motors;
-  for (const auto& [id, effort] : parseValues(line)) {
+  const Values efforts = parseValues(line);
+  ASSERT_FALSE(efforts.empty());
+  for (const auto& [id, effort] : efforts) {
     motors.push_back(std::make_unique<DJI_Motor>(djiConfig(*model, std::stoi(id), kind)));
     ASSERT_TRUE(group.registerMotor(*motors.back()));
     motors.back()->order(FrameKind::kCommand);
@@ -98,6 +100,7 @@ void checkFeedback(std::istream& line) {
   ASSERT_TRUE(motor.matchesFrame(frame));
   ASSERT_EQ(motor.updateFeedback(frame), FrameVerdict::kAccepted);
   const Values values = parseValues(line);
+  ASSERT_FALSE(values.empty());
   for (const auto& [name, expected] : values) {
     if (name == "rotor_deg") continue;  // moves the motor: last
     if (std::isnan(expected)) {

@@ -77,6 +77,7 @@ TEST(DjiGroup, RestFramesAreZeroWhateverTheMembersDo) {
   ASSERT_TRUE(group.registerMotor(motor));
   command(motor, 20_A);
   std::array<CanFrame, 1> out{};
+  out[0].data.fill(0xFF);
   ASSERT_EQ(group.packRest(out), 1U);
   EXPECT_EQ(out[0].length, 8);
   for (const auto byte : out[0].data) EXPECT_EQ(byte, 0);

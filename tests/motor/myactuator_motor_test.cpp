@@ -285,6 +285,7 @@ TEST_F(MyActuatorMotor, TheRunTimeMayWrapWithoutBeingARestart) {
 
 TEST_F(MyActuatorMotor, EveryKnownErrorHasItsFaultCode) {
   comeOnline();
+  ASSERT_GE(myactuatorFaults().size(), 8U);
   for (const DriveFault& fault : myactuatorFaults()) {
     CanFrame frame = frameOf("241#9A1E0000E0010000");
     writeLittleEndian(frame.data, 6, static_cast<std::uint16_t>(fault.native));
@@ -566,6 +567,7 @@ TEST_F(MyActuatorMotor, SpeedsAndAnglesSurviveTheWayThereAndBack) {
 
 TEST(MyactuatorFamily, KnowsItsModelsAndWhatTheyNeed) {
   const auto& family = myactuatorFamily();
+  ASSERT_GE(family.models().size(), 10U);
   for (const auto model : family.models()) {
     const auto traits = family.traits(model, ownDefaults(family));
     EXPECT_EQ(traits.max_id, 32);

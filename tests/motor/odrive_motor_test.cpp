@@ -229,12 +229,15 @@ TEST_F(OdriveMotor, EnablingAsksForTorqueControlAndLimitsBeforeClosedLoop) {
   EXPECT_EQ(frames[3].data[0], 8);
   EXPECT_EQ(motor_->sequenceProgress(), SequenceProgress::kPending);
   // Until it is done nothing but 0 N·m.
+  int told = 0;
   for (int i = 0; i < 50; ++i) {
     for (const auto& frame : tick()) {
       EXPECT_EQ(odrive::messageOf(frame.id), odrive::Message::kSetInputTorque);
       EXPECT_EQ(numberAt(frame, 0), 0.0F);
+      ++told;
     }
   }
+  EXPECT_EQ(told, 50);
   heartbeat(0, 8);
   tick();
   EXPECT_EQ(motor_->sequenceProgress(), SequenceProgress::kDone);
@@ -446,6 +449,7 @@ TEST_F(OdriveMotor, EveryKnownErrorHasAFaultAndAnyOtherIsAFaultToo) {
   for (const auto* model : {"ODrive_S1", "ODrive_v3"}) {
     make(odriveSettings(model));
     const auto firmware = findOdriveModel(model)->firmware;
+    ASSERT_GE(odriveFaults(firmware).size(), 10U);
     for (const auto& row : odriveFaults(firmware)) {
       heartbeat(row.native, 1);
       EXPECT_EQ(motor_->complaint().fault, row.fault) << row.words;
@@ -613,6 +617,8 @@ TEST_F(OdriveMotor, TelemetryThatIsOffIsNotReported) {
 
 TEST_F(OdriveMotor, ItsBusUseCoversAllThatItSendsAndHears) {
   const auto use = odriveFamily().busUse(odriveSettings());
+  ASSERT_FALSE(motor_->filters().empty());
+  ASSERT_FALSE(motor_->commandIds().empty());
   for (const auto& filter : motor_->filters()) {
     EXPECT_TRUE(accepts(use.sends.front(), makeClassicFrame(filter.id, {})));
   }

@@ -93,8 +93,10 @@ double torqueOf(const robstride::Operation& told, double position_rad, double ve
 TEST(RobStrideMotor, RestIsAStopFromTheFirstTickOnAndNeedsNoFeedback) {
   RobStride_Motor motor(robStrideSettings("RS03", 5));
   std::array<CanFrame, 4> out{};
+  out[0].data.fill(0xFF);
   ASSERT_EQ(motor.packRest(out), 2U);
   EXPECT_EQ(out[0].id.value, 0x0400FD05U);
+  EXPECT_EQ(out[0].length, 8);
   for (const auto byte : out[0].payload()) EXPECT_EQ(byte, 0);
   EXPECT_EQ(out[1].id, motor.commandIds().front());  // whose echo is watched
   EXPECT_EQ(motor.packRest(std::span{out}.first(1)), 1U);
@@ -614,12 +616,15 @@ TEST(RobStrideMotor, ASettingThatTheDriveDoesNotKeepFailsTheEnabling) {
   Bench bench(robStrideSettings("RS00"));
   bench.tick(FrameKind::kEnable);
   bench.say({.mode = 0});
+  int asked = 0;
   for (int i = 0; i < 400; ++i) {
     for (const auto& frame : bench.tick()) {
       EXPECT_NE(typeOf(frame), 3U);
       if (typeOf(frame) == 17) bench.parameter(robstride::parameter::kRunMode, 2);
+      asked += typeOf(frame) == 17 ? 1 : 0;
     }
   }
+  EXPECT_GT(asked, 0);
   EXPECT_EQ(bench.motor.sequenceProgress(), SequenceProgress::kFailed);
 }
 
@@ -636,13 +641,16 @@ TEST(RobStrideMotor, NoFrameEverSavesOrChangesASettingForGood) {
     Bench bench(controlled(control));
     for (const auto kind : {FrameKind::kPoll, FrameKind::kEnable, FrameKind::kIdle, FrameKind::kCommand,
                             FrameKind::kBrake, FrameKind::kRest, FrameKind::kDisable}) {
+      int told = 0;
       for (int i = 0; i < 60; ++i) {
         bench.run();
         for (const auto& frame : bench.tick(kind)) {
           const auto type = typeOf(frame);
           EXPECT_TRUE(type == 1 || type == 3 || type == 4 || type == 17 || type == 18) << type;
+          ++told;
         }
       }
+      EXPECT_GT(told, 0) << control;
     }
   }
 }

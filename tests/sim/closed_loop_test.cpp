@@ -161,7 +161,10 @@ TEST_P(ClosedLoop, TurnsAreCountedExactlyOverAMinuteAtFullSpeedWithLosses) {
 TEST_P(ClosedLoop, RestLeavesTheMotorWithoutTorque) {
   SimRig rig{config()};
   rig.run(20ms);
+  (void)velocityTo(rig, 100.0, 20ms);
+  ASSERT_GT(rig.truth(kMotor).currentA(), 0.1) << "it speeds up";
   (void)velocityTo(rig, 100.0, 1s);
+  ASSERT_GT(rig.truth(kMotor).outputRpm(), 50.0);
   rig.motor(kMotor).order(FrameKind::kRest);
   rig.run(20ms);
   EXPECT_NEAR(rig.truth(kMotor).currentA(), 0.0,

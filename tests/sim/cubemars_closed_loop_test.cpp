@@ -237,11 +237,15 @@ TEST_P(CubemarsLoop, AFaultIsAComplaintAndAfterItEnablingAndMovingGoOn) {
   wakeUp(rig);
   rig.command({.mode = ControlMode::kVelocity, .value = 40.0});
   rig.run(seconds{1});
+  rig.stall(true);
+  rig.run(milliseconds{100});
+  ASSERT_GT(rig.currentA(), 1.0);
   rig.drive().fault(4);
   rig.run(milliseconds{20});
   EXPECT_EQ(rig.motor().complaint().fault, FaultCode::kDriveUnderVoltage);
   EXPECT_EQ(rig.motor().complaint().native_code, 4U);
   EXPECT_NEAR(rig.drive().physics().currentA(), 0.0, 0.1) << "the drive has let go";
+  rig.stall(false);
   rig.motor().order(rig.motor().driveFrames().poll == Provision::kFrame ? FrameKind::kPoll
                                                                         : FrameKind::kRest);
   rig.run(seconds{1});
@@ -273,12 +277,15 @@ TEST_P(CubemarsLoop, ARestartOfTheDriveIsNoticed) {
 }
 
 TEST_P(CubemarsLoop, RestHasNoTorqueWhateverWasBefore) {
-  auto rig = rigOf(settingsOf(GetParam()));
-  wakeUp(rig);
   for (const auto mode : {ControlMode::kCurrent, ControlMode::kVelocity, ControlMode::kTotalAngle}) {
+    auto rig = rigOf(settingsOf(GetParam()));
+    wakeUp(rig);
     rig.command({.mode = mode, .value = 30.0});
     rig.run(milliseconds{100});
     EXPECT_GT(std::abs(rig.drive().physics().outputRpm()), 1.0) << "it obeyed before";
+    rig.stall(true);
+    rig.run(milliseconds{20});
+    ASSERT_GT(rig.currentA(), 0.2);
     rig.motor().order(FrameKind::kRest);
     rig.run(milliseconds{20});
     EXPECT_NEAR(rig.drive().physics().currentA(), 0.0, 0.02);

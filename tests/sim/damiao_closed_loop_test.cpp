@@ -141,6 +141,7 @@ INSTANTIATE_TEST_SUITE_P(Models, DamiaoMounted,
                          [](const auto& each) { return std::string{each.param.name}; });
 
 TEST(DamiaoClosedLoop, EveryModelEnablesAndTurns) {
+  ASSERT_GE(damiaoModelNames().size(), 10U);
   for (const auto name : damiaoModelNames()) {
     SCOPED_TRACE(name);
     auto rig = onlineRig(damiaoSettingsOf(std::string{name}, "velocity"));
@@ -350,11 +351,14 @@ TEST(DamiaoClosedLoop, ARestartIsNoticedAndGetsNoTarget) {
   EXPECT_EQ(rig.motor().complaint().fault, FaultCode::kDriveStopped);
   (void)rig.takeSent();
   rig.run(milliseconds{20});
+  int told = 0;
   for (const auto& frame : rig.takeSent()) {
     if (frame.id.value == 1) {
       EXPECT_EQ(frame.data[7], 0xFD);
+      ++told;
     }
   }
+  EXPECT_EQ(told, 20);
   EXPECT_TRUE(released(rig));
   rig.motor().order(FrameKind::kPoll);
   rig.run(seconds{1});
@@ -451,8 +455,11 @@ TEST(DamiaoClosedLoop, SpeaksCanFdIfTheDriveDoes) {
   rig.command({.mode = ControlMode::kVelocity, .value = 30.0});
   rig.run(seconds{1});
   EXPECT_GT(rig.drive().physics().outputRpm(), 20.0);
-  for (const auto& frame : rig.takeSent()) EXPECT_TRUE(frame.fd && frame.bit_rate_switch);
-  for (const auto& frame : rig.takeReceived()) EXPECT_TRUE(frame.fd);
+  const auto sent = rig.takeSent();
+  const auto received = rig.takeReceived();
+  EXPECT_GT(std::min(sent.size(), received.size()), 1000U);
+  for (const auto& frame : sent) EXPECT_TRUE(frame.fd && frame.bit_rate_switch);
+  for (const auto& frame : received) EXPECT_TRUE(frame.fd);
 }
 
 }  // namespace

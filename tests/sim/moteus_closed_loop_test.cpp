@@ -170,6 +170,9 @@ TEST(MoteusClosedLoop, AFaultIsReportedAndStaysUntilItIsCleared) {
   ASSERT_TRUE(rig.start());
   rig.command({.mode = ControlMode::kVelocity, .value = 100.0});
   rig.run(100ms);
+  rig.stall(true);
+  rig.run(50ms);
+  ASSERT_GT(std::abs(rig.currentA()), 0.1);
   rig.drive().fault(35);
   rig.run(3ms);
   EXPECT_EQ(rig.motor().complaint().fault, FaultCode::kDriveEncoder);
@@ -178,6 +181,7 @@ TEST(MoteusClosedLoop, AFaultIsReportedAndStaysUntilItIsCleared) {
   EXPECT_EQ(rig.moteus().mode(), moteus::Mode::kFault) << "polling does not clear it";
   EXPECT_EQ(rig.motor().complaint().fault, FaultCode::kDriveEncoder);
   EXPECT_NEAR(rig.currentA(), 0.0, 1e-3);
+  rig.stall(false);
   EXPECT_FALSE(rig.enable());
   EXPECT_EQ(rig.moteus().mode(), moteus::Mode::kFault) << "nor does enabling";
 
@@ -422,8 +426,11 @@ TEST(MoteusClosedLoop, RestTakesTheTorqueAwayWhateverTheState) {
   for (const auto mode : {ControlMode::kVelocity, ControlMode::kCurrent, ControlMode::kBrake}) {
     Rig rig;
     ASSERT_TRUE(rig.start());
-    rig.command({.mode = mode, .value = mode == ControlMode::kCurrent ? 2.0 : 200.0});
-    rig.run(100ms);
+    rig.command({.mode = ControlMode::kVelocity, .value = 200.0});
+    rig.run(300ms);
+    rig.command({.mode = mode, .value = mode == ControlMode::kCurrent ? 2.0 : 400.0});
+    rig.run(10ms);
+    ASSERT_GT(std::abs(rig.currentA()), 0.1) << "a torque, to speed it up or to brake it";
     std::array<CanFrame, kMaxFramesPerPacker> out{};
     ASSERT_EQ(rig.motor().packRest(out), 1U);
     rig.drive().receive(out[0]);

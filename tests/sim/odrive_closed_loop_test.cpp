@@ -152,8 +152,11 @@ TEST_P(OdriveLoop, RestHasNoTorqueWhateverWasBefore) {
                              Target{.mode = ControlMode::kTotalAngle, .value = 720.0},
                              Target{.mode = ControlMode::kCurrent, .value = 2.0}}) {
     ASSERT_TRUE(rig_->enable());
+    rig_->stall(true);
     command(target, 100ms);
+    ASSERT_GT(std::abs(currentA()), 0.5) << "it obeyed before";
     rest(50ms);
+    rig_->stall(false);
     EXPECT_NEAR(currentA(), 0.0, 1e-6);
     EXPECT_EQ(drive_->state(), odrive::AxisState::kIdle);
     rest();
@@ -180,6 +183,9 @@ TEST_P(OdriveLoop, ItsWatchdogStopsItWhenTheBusIsCut) {
   drive_->setWatchdog(100ms);
   command({.mode = ControlMode::kVelocity, .value = 200.0}, 500ms);
   EXPECT_EQ(fault(), FaultCode::kNone);
+  rig_->stall(true);
+  rig_->run(50ms);
+  ASSERT_GT(std::abs(currentA()), 0.5);
   rig_->cut(true);
   rig_->run(150ms);
   EXPECT_EQ(drive_->state(), odrive::AxisState::kIdle);

@@ -275,6 +275,10 @@ TEST(RobStrideClosedLoop, ARestartIsNoticedAndNothingMovesUntilEnabledAnew) {
   ASSERT_TRUE(rig.enable());
   rig.command({.mode = ControlMode::kTotalAngle, .value = 10.0});
   rig.run(seconds{1});
+  rig.stall(true);
+  rig.command({.mode = ControlMode::kTotalAngle, .value = 20.0});
+  rig.run(milliseconds{50});
+  ASSERT_GT(rig.drive().physics().outputTorqueNm(), 0.1);
   rig.drive().restart();
   rig.run(milliseconds{3});
   EXPECT_EQ(rig.fault(), FaultCode::kDriveStopped);

@@ -28,6 +28,12 @@ class SoloRig {
   [[nodiscard]] std::vector<CanFrame> takeSent() { return std::exchange(sent_, {}); }
   /// Every frame that the drive sent since the last call.
   [[nodiscard]] std::vector<CanFrame> takeReceived() { return std::exchange(received_, {}); }
+  /// Against a wall: as much torque as there is.
+  void stall(bool stalled) {
+    auto load = drive_->load();
+    load.stalled = stalled;
+    drive_->setLoad(load);
+  }
   /// Nothing passes in either direction, from now on.
   void cut(bool cut) { cut_ = cut; }
 
@@ -112,6 +118,9 @@ void expectNoTorqueAtRestAndPoll(MakeRig makeRig, const Target& before) {
     rig.command(before);
     rig.run(std::chrono::milliseconds{300});
     ASSERT_GT(std::abs(rig.drive().physics().outputRpm()), 1.0) << "it obeyed before";
+    rig.stall(true);
+    rig.run(std::chrono::milliseconds{50});
+    ASSERT_GT(rig.currentA(), 0.2);
     rig.motor().order(kind);
     rig.run(std::chrono::milliseconds{20});
     EXPECT_LT(std::abs(rig.currentA()), 0.02);

@@ -145,11 +145,14 @@ TEST(VescClosedLoop, NothingMovesBeforeTheFirstCommandAfterEnabling) {
   ASSERT_TRUE(rig.enable());
   rig.motor().order(FrameKind::kIdle);
   rig.run(100ms);
+  int told = 0;
   for (const auto& frame : rig.takeSent()) {
     if (frame.id == vesc::canId(vesc::Packet::kProcessShortBuffer, 7)) continue;
     EXPECT_EQ(frame.id, vesc::canId(vesc::Packet::kSetCurrent, 7));
     EXPECT_EQ(frame.data, CanFrame{}.data);
+    ++told;
   }
+  EXPECT_GE(told, 100);
   EXPECT_NEAR(rig.drive().physics().outputAngleDeg(), 0.0, 1e-6);
 }
 
@@ -160,6 +163,9 @@ TEST(VescClosedLoop, RestLetsTheMotorGoInEveryMode) {
     ASSERT_TRUE(rig.enable());
     rig.command({.mode = mode, .value = mode == ControlMode::kDuty ? 0.4 : 900.0});
     rig.run(300ms);
+    rig.stall(true);
+    rig.run(100ms);
+    ASSERT_GT(rig.currentA(), 1.0) << "it obeyed before";
     rig.motor().order(FrameKind::kRest);
     rig.run(10ms);
     EXPECT_NEAR(rig.drive().physics().currentA(), 0.0, 0.01);
@@ -171,11 +177,15 @@ TEST(VescClosedLoop, AFaultIsToldAndTheDriveClearsItItself) {
   ASSERT_TRUE(rig.enable());
   rig.command({.mode = ControlMode::kVelocity, .value = 800.0});
   rig.run(500ms);
+  rig.stall(true);
+  rig.run(100ms);
+  ASSERT_GT(rig.currentA(), 1.0);
   rig.drive().fault(4);
   rig.run(250ms);
   EXPECT_EQ(rig.motor().complaint().fault, FaultCode::kDriveOverCurrent);
   EXPECT_EQ(rig.motor().complaint().native_code, 4U);
   EXPECT_NEAR(rig.drive().physics().currentA(), 0.0, 0.01);
+  rig.stall(false);
   rig.motor().order(FrameKind::kEnable);
   rig.run(100ms);
   EXPECT_EQ(rig.motor().sequenceProgress(), SequenceProgress::kFailed);
@@ -214,8 +224,10 @@ TEST(VescClosedLoop, TheWatchdogStopsAMotorThatIsToldNothing) {
   rig.command({.mode = ControlMode::kVelocity, .value = 800.0});
   rig.run(500ms);
   rig.cut(true);
+  rig.stall(true);
   rig.run(900ms);
   EXPECT_FALSE(driveOf(rig).timedOut());
+  EXPECT_GT(rig.currentA(), 1.0);
   rig.run(200ms);
   EXPECT_TRUE(driveOf(rig).timedOut());
   EXPECT_NEAR(rig.drive().physics().currentA(), 0.0, 0.01);
