@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import signal
+import subprocess
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -13,6 +14,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterator
 
 HERE = Path(__file__).parent
+MULTICAST = ("239.255.76.67/32", "dev", "lo", "src", "127.0.0.1")
 
 # A shell that runs this in the background ignores Ctrl-C, and programs inherit that.
 signal.signal(signal.SIGINT, signal.default_int_handler)
@@ -31,3 +33,11 @@ def daemon() -> Iterator[Daemon]:
     with Daemon() as daemon:
         daemon.wait_ready()
         yield daemon
+
+
+@pytest.fixture
+def no_route() -> Iterator[None]:
+    """The reader adds the route of the multicast."""
+    subprocess.run(["ip", "route", "del", *MULTICAST], check=True)
+    yield
+    subprocess.run(["ip", "route", "replace", *MULTICAST], check=True)

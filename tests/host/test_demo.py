@@ -11,6 +11,8 @@ from pathlib import Path
 import pytest
 from hostlib import Program, eventually, processes_of
 from hostlib.daemon import BUILD, REPO
+from hostlib.page import blocks_run_by
+from hostlib.shown import missing_lines
 
 ENV = {"RC10_BUILD": str(BUILD), "RC10_VENV": str(Path(sys.prefix))}
 SUMMARY = re.compile(r"^rc10d: \d+ ticks, \d+ missed; wake latency", re.M)
@@ -52,6 +54,8 @@ def test_it_drives_for_some_seconds_and_sums_up() -> None:
         assert errors.keys() == set(MOTORS)
         assert float(errors["front_left"]) < 20
         assert SUMMARY.search(shown.output)
+        (printed,) = blocks_run_by("tests/host/test_demo.py", REPO / "docs" / "quick-start.md")
+        assert missing_lines(printed.text, shown.output) == []
         assert "\x1b" not in shown.output
         assert_gone(run_dir)
 

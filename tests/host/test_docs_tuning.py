@@ -8,6 +8,7 @@ import pytest
 from hostlib import Daemon
 from hostlib.daemon import REPO
 from hostlib.page import blocks, robots, run
+from hostlib.shown import rows_missing
 
 
 # Some programs, on a machine that may be busy.
@@ -15,11 +16,15 @@ from hostlib.page import blocks, robots, run
 def test_everything_that_it_shows_works(tmp_path: Path) -> None:
     page = REPO / "docs" / "tuning.md"
     (robot,) = robots(page)
-    shown = [block for block in blocks(page) if block.kind == "sh"]
-    assert len(shown) == 3
+    shown = [block for block in blocks(page) if block.kind in ("sh", "text")]
+    assert len(shown) == 7
+    printed = ""
     with Daemon(robot) as daemon:
         daemon.wait_ready()
         for block in shown:
-            run(block, daemon, tmp_path)
-    for picture in ("step.png", "angle.png"):
+            if block.kind == "text":
+                assert rows_missing(block.text, printed) == [], printed
+            else:
+                printed = run(block, daemon, tmp_path)
+    for picture in ("step.png", "angle.png", "bode.png"):
         assert (tmp_path / picture).read_bytes().startswith(b"\x89PNG")

@@ -11,6 +11,7 @@ from pathlib import Path
 import pytest
 from hostlib import Daemon, Program
 from hostlib.daemon import REPO
+from hostlib.page import blocks_run_by
 
 LANGUAGES = REPO / "examples" / "languages"
 NEEDED = {"c": "gcc", "cpp": "g++", "python": "lcm-gen", "java": "javac"}
@@ -62,3 +63,22 @@ def test_a_program_enables_turns_prints_and_lets_go(
     with Program(program, "host", "jaw", "60", env=env) as hello:
         assert hello.wait(PATIENCE_S) == 1, hello.output
         assert "there is no motor 'jaw'" in hello.output
+
+
+def test_what_the_page_shows_turns_a_motor(tmp_path: Path) -> None:
+    missing = [tool for tool in NEEDED.values() if shutil.which(tool) is None]
+    if missing:
+        pytest.skip(f"no {', '.join(missing)}: scripts/install-deps.sh languages")
+    (block,) = blocks_run_by("tests/host/test_languages.py", REPO / "docs" / "lcm.md")
+    with Daemon((REPO / "config" / "demo.yaml").read_text()) as daemon:
+        daemon.wait_ready()
+        done = subprocess.run(
+            ["bash", "-ec", block.text.replace("/tmp/languages", str(tmp_path))],
+            cwd=REPO,
+            env={**os.environ, "PYTHON": sys.executable, "LCM_GEN": "/usr/bin/lcm-gen"},
+            capture_output=True,
+            text=True,
+            check=False,
+        )
+    assert done.returncode == 0, done.stdout + done.stderr
+    assert "front_left status 3 owner 'hello-java'" in done.stdout

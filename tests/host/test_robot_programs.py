@@ -2,10 +2,17 @@
 
 from __future__ import annotations
 
+import os
 import signal
+import subprocess
+from typing import TYPE_CHECKING
 
 from hostlib import Daemon, Program
-from hostlib.daemon import BIN
+from hostlib.daemon import BIN, REPO
+from hostlib.page import blocks_run_by
+
+if TYPE_CHECKING:
+    from pathlib import Path
 
 
 def hello_motor(*words: str) -> Program:
@@ -44,3 +51,19 @@ def test_a_cpp_program_says_what_is_wrong(daemon: Daemon) -> None:
     with hello_motor("host", "yaw") as program:
         assert program.wait() == 1
         assert "yaw: the robot is in ESTOP: clear it first" in program.output
+
+
+def test_the_page_s_lines_make_types_for_both_languages(tmp_path: Path) -> None:
+    (block,) = blocks_run_by("tests/host/test_robot_programs.py", REPO / "docs/robot-programs.md")
+    (tmp_path / "pose_t.lcm").write_text("struct pose_t { double x_m; double y_m; }\n")
+    (tmp_path / "bin").mkdir()
+    # Debian's: a Python environment may have one of its own.
+    (tmp_path / "bin" / "lcm-gen").symlink_to("/usr/bin/lcm-gen")
+    subprocess.run(
+        ["bash", "-ec", block.text],
+        cwd=tmp_path,
+        env={**os.environ, "PATH": f"{tmp_path}/bin:{os.environ['PATH']}"},
+        check=True,
+    )
+    assert (tmp_path / "generated" / "pose_t.hpp").is_file()
+    assert (tmp_path / "generated" / "pose_t.py").is_file()

@@ -12,6 +12,9 @@ from pathlib import Path
 import pytest
 from hostlib import Daemon, Program, eventually
 from hostlib.daemon import BIN, REPO, State
+from hostlib.page import Block, blocks_run_by
+from hostlib.reader import Reader, commands
+from hostlib.terminal import Terminal
 
 import rc10
 
@@ -50,15 +53,20 @@ def port(tmp_path: Path) -> Path:
     return tmp_path / "remote"
 
 
-@pytest.fixture
-def small(port: Path) -> Iterator[Daemon]:
-    """The robot of the example, all its motors READY."""
+def robot(port: Path) -> str:
+    """The robot of the example, with its remote at this port."""
     text = (EXAMPLE / "robot.yaml").read_text()
     example_port = "/tmp/small_robot_remote"
     assert example_port in text
     # A busy machine stops for long: neither a drive nor the remote may seem lost by that.
     patient = re.sub(r"(feedback_timeout_ms|lost_ms): 500", r"\1: 1000", text)
-    with Daemon(patient.replace(example_port, str(port))) as daemon:
+    return patient.replace(example_port, str(port))
+
+
+@pytest.fixture
+def small(port: Path) -> Iterator[Daemon]:
+    """The robot of the example, all its motors READY."""
+    with Daemon(robot(port)) as daemon:
         daemon.wait_ready()
         yield daemon
 
@@ -102,6 +110,30 @@ def test_it_does_its_mission_also_after_the_remote_was_lost(
         state = small.wait_motor("feeder_wheel", lambda m: abs(m["velocity_rpm"]) < 1, "rests")
         assert state["total_angle_deg"] > 100
         small.wait_motor("yaw", lambda m: abs(m["angle_deg"] - 30) < 3, "is held by the gimbal")
+
+
+@pytest.mark.usefixtures("no_route")
+def test_what_its_page_shows_leads_to_a_mission(port: Path, tmp_path: Path) -> None:
+    (block,) = blocks_run_by("tests/host/test_small_robot.py", EXAMPLE / "README.md")
+    *start, remote, program = (command.text for command in commands(block))
+    (tmp_path / "small.yaml").write_text(robot(port))
+    with Reader(tmp_path) as reader:
+        reader.replace |= {
+            "$(mktemp -d)": str(reader.run_dir),
+            "examples/small_robot/robot.yaml": "small.yaml",
+        }
+        reader.read(Block("sh", "\n".join(start)))
+
+        def terminal(text: str) -> Terminal:
+            return Terminal(["bash", "-ec", reader.script(f"exec {text}")], reader.env())
+
+        with terminal(f"{remote} {port}") as person, terminal(program) as robot_program:
+            person.see("type up, down, off or on")
+            reader.wait_printed("rc10ctl modules", "left_switch = -1")
+            person.type("up")
+            robot_program.see("WAIT_ARMED -> DRIVE")
+            person.type("off")
+            robot_program.see("-> SAFE: the remote is lost")
 
 
 @pytest.mark.parametrize("language", PROGRAMS)

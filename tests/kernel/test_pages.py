@@ -78,6 +78,19 @@ class Hand:
         self.left_deg -= turn_deg
 
 
+# Pages of whose blocks the tests below choose by the command.
+CHOSEN = {
+    "rc10ctl.md": ("rc10ctl scan", "rc10ctl doctor", "rc10-stop"),
+    "realtime.md": ("rc10ctl doctor",),
+}
+
+
+@pytest.mark.parametrize("page", CHOSEN)
+def test_no_command_of_a_page_is_left(page: str) -> None:
+    shown = [command.text for block in mine(page) for command in commands(block)]
+    assert [text for text in shown if not any(word in text for word in CHOSEN[page])] == []
+
+
 def printed_by(reader: Reader, command: Command, status: int = 0) -> str:
     done = reader.shell(command.text)
     assert done.returncode == status, f"{command.text}\n{done.stdout}{done.stderr}"

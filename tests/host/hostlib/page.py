@@ -53,8 +53,8 @@ def robots(page: Path) -> list[str]:
     return found
 
 
-def run(block: Block, daemon: Daemon, folder: Path) -> None:
-    """Runs Python or shell in the folder; it must succeed."""
+def run(block: Block, daemon: Daemon, folder: Path) -> str:
+    """Runs Python or shell in the folder, which must succeed; what it printed."""
     if not (folder / "python").exists():
         os.symlink(REPO / "python", folder / "python")
     python = os.path.dirname(sys.executable)
@@ -64,3 +64,4 @@ def run(block: Block, daemon: Daemon, folder: Path) -> None:
         [*command, block.text], cwd=folder, env=env, capture_output=True, text=True, check=False
     )
     assert done.returncode == 0, f"{block.text}\n{done.stdout}{done.stderr}"
+    return done.stdout

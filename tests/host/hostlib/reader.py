@@ -86,6 +86,8 @@ class Reader:
         self.replace = {RUN_DIR: str(self.run_dir)}
         self._typed_before = [f"export RC10_RUN_DIR={self.run_dir} RC10_STATE_DIR={self.run_dir}"]
         self.servers: list[Program] = []
+        # By the commands of the block that was read last.
+        self._printed: list[Program | str] = []
         self._status = 0
         for name in ("config", "docs", "examples", "python"):
             (folder / name).symlink_to(REPO / name)
@@ -108,6 +110,7 @@ class Reader:
 
     def read(self, block: Block) -> None:
         """Types each command of the block; each must end as the page says."""
+        self._printed = []
         for command in commands(block):
             text = command.text
             for old, new in self.replace.items():
@@ -127,6 +130,7 @@ class Reader:
         """Starts it in a terminal of its own, and waits until every motor is READY."""
         server = Program("bash", "-ec", self.script(f"exec {text}"), env=self.env())
         self.servers.append(server)
+        self._printed.append(server)
         if text.startswith("rc10-sim"):
             server.wait_line("^ready", PATIENCE_S)
         else:
@@ -150,6 +154,7 @@ class Reader:
         while STILL_TURNING in done.stderr:
             done = self.shell(command.text)
         self._status = done.returncode
+        self._printed.append(done.stdout + done.stderr)
         said = (done.stdout + done.stderr).replace(str(self.run_dir), "/run/rc10d")
         ended = (done.returncode != 0) == command.fails
         told = command.complaints <= {*said.splitlines()}
@@ -158,6 +163,16 @@ class Reader:
         assert ended, f"{command.text}: status {done.returncode}\n{said}\n{logs}"
         assert told, f"{command.text}: without {command.complaints}\n{said}"
         assert not other, f"{command.text}: shown, but not printed: {other}\n{said}"
+
+    @property
+    def printed(self) -> str:
+        """By the commands of the block that was read last, with the run folder of the pages."""
+        texts = [each if isinstance(each, str) else each.output for each in self._printed]
+        return "\n".join(texts).replace(str(self.run_dir), "/run/user/1000/rc10")
+
+    def wait_printed(self, text: str, words: str) -> None:
+        """Types the command until it prints the words."""
+        eventually(lambda: words in self.shell(text).stdout, f"{text}: {words}")
 
     def ready(self) -> bool:
         states = self.shell("rc10ctl watch --json --count 1").stdout

@@ -1,4 +1,4 @@
-"""What a page shows of a command's output, against what the command printed."""
+"""Output that a page shows, against what was printed."""
 
 from __future__ import annotations
 
@@ -10,6 +10,8 @@ if TYPE_CHECKING:
 
 NUMBER = re.compile(r"-?\d+(\.\d+)?")
 CLEAR_LINE = "\x1b[K"
+# Two spaces are between the columns of a report; a colon ends a title.
+ROW = re.compile(r"^ *(\S+(?: \S+)*?)(?:  +|: )\S")
 
 
 def lines_of(text: str) -> list[str]:
@@ -18,17 +20,32 @@ def lines_of(text: str) -> list[str]:
     return [" ".join(NUMBER.sub("#", line).split()) for line in lines if line.strip()]
 
 
-def assert_shown(command: Command, said: str) -> None:
-    """Every line of the page stands there; "..." is what the page leaves out."""
-    assert_lines(command.output, said)
-
-
-def assert_lines(shown: str, said: str) -> None:
-    """The same for a block that shows an output alone."""
+def missing_lines(shown: str, said: str) -> list[str]:
+    """Lines of the page that were not printed; "..." is what the page leaves out."""
     printed = lines_of(said)
+    missing = []
     for line in lines_of(shown):
         start, left_out, _ = line.partition("...")
-        if left_out:
-            assert any(other.startswith(start) for other in printed), f"{line}\n{said}"
-        else:
-            assert line in printed, f"{line}\n{said}"
+        there = any(other.startswith(start) for other in printed) if left_out else line in printed
+        if not there:
+            missing.append(line)
+    return missing
+
+
+def assert_shown(command: Command, said: str) -> None:
+    """Every line that the page shows of it was printed."""
+    missing = missing_lines(command.output, said)
+    assert missing == [], said
+
+
+def rows_missing(shown: str, said: str) -> list[str]:
+    """The same for a report, of whose rows the first cell is enough."""
+    cells = {cell for line in said.splitlines() if (cell := _first_cell(line))}
+    rows = [line for line in shown.splitlines() if _first_cell(line) not in cells]
+    return missing_lines("\n".join(rows), said)
+
+
+def _first_cell(line: str) -> str:
+    """Without its numbers; empty for what is no row."""
+    row = ROW.match(line)
+    return NUMBER.sub("#", row[1]) if row else ""

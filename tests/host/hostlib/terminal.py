@@ -50,6 +50,9 @@ class Terminal:
     def answer(self, question: str, words: str) -> None:
         """Waits for the question, and types."""
         self.see(question)
+        self.type(words)
+
+    def type(self, words: str) -> None:
         os.write(self._master, f"{words}\n".encode())
 
     def end(self) -> int:
