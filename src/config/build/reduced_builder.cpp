@@ -16,13 +16,13 @@ constexpr float kTolerance = 0.25F;
 constexpr float kFullOfReduced = 4.0F;
 
 /// Fastest speed of a target.
-float fullRpm(const MotorReading& in) {
+float fullRpm(const MotorParse& in) {
   if (in.motor().velocity_limit_rpm > 0.0F) return in.motor().velocity_limit_rpm;
   if (in.noLoadRpm() > 0.0) return static_cast<float>(in.noLoadRpm());
   return kFullOfReduced * in.draft.config.reduced.velocity_rpm;
 }
 
-void readVelocity(MotorReading& in) {
+void readVelocity(MotorParse& in) {
   ReducedConfig& reduced = in.draft.config.reduced;
   const auto given = in.settings.find("reduced_velocity_rpm");
   if (!given) return;
@@ -51,7 +51,7 @@ void readVelocity(MotorReading& in) {
                         "): each change would be a fault; raise one of the two");
 }
 
-void readEffort(MotorReading& in) {
+void readEffort(MotorParse& in) {
   const char* key = in.byVoltage() ? "reduced_voltage_v" : "reduced_current_a";
   const auto given = in.settings.find(key);
   if (!given) return;
@@ -69,7 +69,7 @@ void readEffort(MotorReading& in) {
 
 }  // namespace
 
-void readReduced(MotorReading& in) {
+void readReduced(MotorParse& in) {
   readVelocity(in);
   readEffort(in);
 }

@@ -7,7 +7,7 @@
 namespace rc10 {
 
 /// Limits while a person is near; after the motor's other limits.
-void readReduced(MotorReading& in);
+void readReduced(MotorParse& in);
 
 /// A mode input without any reduced limit, and reduced limits without a mode input.
 void checkModeInput(const Settings& top, const RobotConfig& robot, Problems& problems);

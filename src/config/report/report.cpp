@@ -245,7 +245,7 @@ std::string reducedText(const MotorConfig& motor) {
 std::string reducedText(const RobotConfig& config) {
   if (!config.mode_gpio) return {};
   std::string text = "\nwhile the mode input is open:\n";
-  TextTable table;
+  TextTable table({{""}, {""}});
   for (const auto& bus : config.buses)
     for (const auto& motor : bus.motors) table.add({motor.name(), reducedText(motor)});
   return text + table.text(2);
