@@ -201,12 +201,13 @@ Subscription LcmLink::subscribe(const std::string& channel, Handler handler) con
                       })};
 }
 
-Subscription LcmLink::subscribePattern(const std::string& pattern,
+Subscription LcmLink::subscribeBetween(const std::string& before, const std::string& after,
                                        std::function<void(const std::string& channel)> handler) const {
-  return Subscription{Impl::subscribe(
-      impl_, pattern, [handler = std::move(handler)](const std::string& channel, std::span<const std::byte>) {
-        handler(channel);
-      })};
+  return Subscription{
+      Impl::subscribe(impl_, literal(before) + "[^.]+" + literal(after),
+                      [handler = std::move(handler)](const std::string& channel, std::span<const std::byte>) {
+                        handler(channel);
+                      })};
 }
 
 bool LcmLink::inHandler() const noexcept { return std::this_thread::get_id() == impl_->thread.get_id(); }

@@ -4,11 +4,12 @@
 
 #include <algorithm>
 
+#include "app/nearest.hpp"
 #include "robot_client/convert.hpp"
 #include "robot_client/event_codes.hpp"
 #include "robot_client/motor_reasons.hpp"
+#include "robot_client/names_heard.hpp"
 #include "robot_client/obstacle.hpp"
-#include "robot_client/robots_heard.hpp"
 #include "robot_client/session_options.hpp"
 
 namespace rc10 {
@@ -233,7 +234,10 @@ ModuleState RobotSession::moduleState(const std::string& module) { return inboxO
 double RobotSession::moduleOutput(const std::string& module, std::string_view output) {
   const auto state = moduleState(module);
   if (state && state.outputs.find(output) == state.outputs.end()) {
-    problems_.tell(module + " has no output '" + std::string(output) + "'; there are " + state.outputNames());
+    std::vector<std::string_view> names;
+    for (const auto& [name, value] : state.outputs) names.emplace_back(name);
+    problems_.tell(module + " has no output '" + std::string(output) + "'; there are " + state.outputNames() +
+                   didYouMean(output, names));
   }
   return state[output];
 }
@@ -241,8 +245,13 @@ double RobotSession::moduleOutput(const std::string& module, std::string_view ou
 Result<void> RobotSession::waitForModule(const std::string& module, Duration timeout) {
   if (const auto may = mayWait(module + ".waitForState()"); !may) return may;
   const auto& inbox = inboxOf(module);
+  NamesHeard modules(link_, outgoing_.channel(""), ".state");
   if (inbox.waitForNext(timeout)) return {};
   if (inbox.foreign()) foreign(outgoing_.channel(module) + ".state");
+  if (const auto names = modules.names(kListen); !names.empty() && names.count(module) == 0) {
+    return fail("nothing of module '" + module + "' within " + inMs(timeout) + ". Heard here: module " +
+                listOf(names) + didYouMean(module, {names.begin(), names.end()}));
+  }
   return fail("nothing of module '" + module + "' within " + inMs(timeout) +
               ": `rc10ctl modules` shows which there are. " + whatToCheck());
 }
@@ -323,8 +332,8 @@ std::string RobotSession::whatToCheck() {
       return "Its state arrives, so rc10d runs and is heard: see rc10d's log for the reason.";
     }
   }
-  if (const auto names = RobotsHeard(link_).names(kListen); !names.empty()) {
-    return "Heard here: robot " + names + ": is the name right?";
+  if (const auto names = NamesHeard(link_, "", ".v1.state").names(kListen); !names.empty()) {
+    return "Heard here: robot " + listOf(names) + ": is the name right?";
   }
   return "Check: is rc10d running (rc10ctl list)? Is its robot called '" + name_ +
          "' (robot: in its configuration)? Does multicast stay on this computer: 'ip route get "

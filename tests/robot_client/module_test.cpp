@@ -128,6 +128,9 @@ TEST_F(ModuleTest, AnOutputOfAnotherNameIsTold) {
   EXPECT_THAT(base_.output("x"), IsNan());
   ASSERT_EQ(problems().size(), 1U);
   EXPECT_EQ(problems()[0], "base has no output 'x'; there are x_m, y_m");
+  EXPECT_THAT(base_.output("x_mm"), IsNan());
+  ASSERT_EQ(problems().size(), 2U);
+  EXPECT_EQ(problems()[1], "base has no output 'x_mm'; there are x_m, y_m; did you mean x_m?");
 }
 
 TEST_F(ModuleTest, WhatNoModuleTakesIsNotSent) {
@@ -142,6 +145,19 @@ TEST_F(ModuleTest, WhatNoModuleTakesIsNotSent) {
   ASSERT_TRUE(base_.send({{"vx_m_s", 1.0}}));
   EXPECT_EQ(inputs(1).size(), 1U);
   EXPECT_GE(problems().size(), 5U) << "each is told, also to a program that does not look";
+}
+
+TEST_F(ModuleTest, AMisspeltNameIsToldWithThoseThatAreHeard) {
+  std::promise<void> stop;
+  auto stopped = stop.get_future().share();
+  std::thread publishing([&] {
+    while (stopped.wait_for(2ms) == std::future_status::timeout) publish({{"x_m", 1.5}});
+  });
+  const auto missing = robot_.module("bsae").waitForState(50ms);
+  stop.set_value();
+  publishing.join();
+  ASSERT_FALSE(missing);
+  EXPECT_THAT(missing.error().message, HasSubstr("Heard here: module 'base'; did you mean base?"));
 }
 
 TEST_F(ModuleTest, WaitsForWhatTheModuleSays) {

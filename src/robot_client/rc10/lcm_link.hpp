@@ -78,8 +78,9 @@ class LcmLink {
   }
 
  private:
-  friend class RobotsHeard;
-  [[nodiscard]] Subscription subscribePattern(const std::string& pattern,
+  friend class NamesHeard;
+  /// Channels with one word between these.
+  [[nodiscard]] Subscription subscribeBetween(const std::string& before, const std::string& after,
                                               std::function<void(const std::string& channel)> handler) const;
 
   struct Impl;
