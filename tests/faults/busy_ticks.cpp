@@ -20,12 +20,12 @@ long now() noexcept {
 }  // namespace
 
 /// Last call of each tick, once for each bus.
-extern "C" int sendmmsg(int fd, mmsghdr* messages, unsigned count, int flags) {
+extern "C" int sendmmsg(int fd, mmsghdr* vmessages, unsigned vlen, int flags) {
   using Send = int (*)(int, mmsghdr*, unsigned, int);
-  static const auto send = reinterpret_cast<Send>(dlsym(RTLD_NEXT, "sendmmsg"));
-  static const char* const when = std::getenv("RC10_BUSY_TICKS");
-  const int sent = send(fd, messages, count, flags);
-  if (when == nullptr || access(when, F_OK) != 0) return sent;
+  static const auto kSend = reinterpret_cast<Send>(dlsym(RTLD_NEXT, "sendmmsg"));
+  static const char* const kWhen = std::getenv("RC10_BUSY_TICKS");
+  const int sent = kSend(fd, vmessages, vlen, flags);
+  if (kWhen == nullptr || access(kWhen, F_OK) != 0) return sent;
   for (const long end = now() + kBusyNs; now() < end;) continue;
   return sent;
 }
