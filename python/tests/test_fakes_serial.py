@@ -81,9 +81,17 @@ def test_a_port_is_there_while_it_is_plugged_and_hangs_up_when_it_is_pulled(
 
 
 def test_a_port_that_nobody_reads_loses_bytes_instead_of_waiting(tmp_path: Path) -> None:
-    with FakePort(tmp_path / "device") as port:
-        for _ in range(100):
+    path = tmp_path / "device"
+    with FakePort(path) as port:
+        host = os.open(path, os.O_RDWR | os.O_NOCTTY)
+        for _ in range(200):
             port.send(bytes(1000))
+        received = b""
+        while b"again" not in received:
+            port.send(b"again")
+            received += os.read(host, 4096)
+        assert 1000 <= received.index(b"again") < 200_000
+        os.close(host)
 
 
 @pytest.mark.parametrize("stick", [-2.0, 2.0])

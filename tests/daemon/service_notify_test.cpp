@@ -8,6 +8,8 @@
 
 #include <array>
 #include <cstddef>
+#include <filesystem>
+#include <iterator>
 
 #include "app/unique_fd.hpp"
 #include "daemon/temp_dir.hpp"
@@ -36,6 +38,11 @@ class Systemd {
  private:
   UniqueFd fd_;
 };
+
+std::ptrdiff_t openFds() {
+  using Directory = std::filesystem::directory_iterator;
+  return std::distance(Directory{"/proc/self/fd"}, Directory{});
+}
 
 class ServiceNotifyTest : public ::testing::Test {
  protected:
@@ -71,15 +78,28 @@ TEST_F(ServiceNotifyTest, DoesNothingWhenNotRunBySystemd) {
 }
 
 TEST_F(ServiceNotifyTest, IgnoresAnAddressThatIsNoSocketPath) {
+  const Systemd systemd(dir / "notify");
+  const auto before = openFds();
   for (const auto& path : {std::string{}, std::string{"relative"}, "/" + std::string(200, 'x')}) {
     setSocket(path);
-    notifyService("READY=1");  // does not crash
+    notifyService("READY=1");
+    EXPECT_EQ(openFds(), before) << path;
   }
+  EXPECT_EQ(systemd.take(), "");
+  setSocket(dir / "notify");
+  notifyService("WATCHDOG=1");
+  EXPECT_EQ(systemd.take(), "WATCHDOG=1");
 }
 
-TEST_F(ServiceNotifyTest, NobodyWhoListensIsNoHarm) {
+TEST_F(ServiceNotifyTest, AMessageToNobodyIsLostAndTheNextIsHeard) {
   setSocket(dir / "nobody");
+  const auto before = openFds();
   notifyService("READY=1");
+  EXPECT_EQ(openFds(), before);
+  const Systemd systemd(dir / "nobody");
+  notifyService("WATCHDOG=1");
+  EXPECT_EQ(systemd.take(), "WATCHDOG=1");
+  EXPECT_EQ(systemd.take(), "");
 }
 
 TEST_F(ServiceNotifyTest, NeverWaitsForOneThatDoesNotRead) {

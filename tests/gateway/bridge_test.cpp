@@ -121,6 +121,29 @@ TEST_F(Bridge, RefusesARequestThatWaitedTooLong) {
   EXPECT_EQ(inlet_.counters().stale_requests, 1U);
 }
 
+TEST_F(Bridge, PassesARequestOnThatIsAsOldAsItMayBe) {
+  auto enable = requestWith(0);
+  enable.operation = "enable";
+  EXPECT_TRUE(arrive("hero.v1.request", encoded(enable), Inlet::kMaxRequestAge));
+  link::Request request;
+  ASSERT_TRUE(rc10d_.receive(request));
+  EXPECT_EQ(request.operation.view(), "enable");
+  EXPECT_TRUE(arrive("hero.v1.request", encoded(enable), Inlet::kMaxRequestAge + 1ns));
+  EXPECT_TRUE(rc10d_.receiveBytes().empty());
+}
+
+TEST_F(Bridge, PassesOnWhatStopsMotorsHoweverLongItWaited) {
+  for (const std::string operation : {"estop", "disable"}) {
+    auto stop = requestWith(0);
+    stop.operation = operation;
+    EXPECT_TRUE(arrive("hero.v1.request", encoded(stop), 1h));
+    link::Request request;
+    ASSERT_TRUE(rc10d_.receive(request));
+    EXPECT_EQ(request.operation.view(), operation);
+  }
+  EXPECT_EQ(inlet_.counters().stale_requests, 0U);
+}
+
 TEST_F(Bridge, SaysOfEachMessageWhetherThisComputerSentIt) {
   using link::Origin;
   const auto send = [&](const char* channel, const Bytes& bytes, Origin origin) {

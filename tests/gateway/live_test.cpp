@@ -62,7 +62,8 @@ TEST(LiveGateway, CommandsThatWaitedWhileItWasStoppedKeepTheirAge) {
       client.command(seq);
     }
     const auto after = nowNs();
-    std::this_thread::sleep_for(500ms);
+    while (nowNs() <= after + 2 * kPlay_ns)
+      std::this_thread::sleep_for(1ms);  // so the time of reading is another
     gateway.resume();
     for (std::int64_t seq = 1; seq <= 3; ++seq) {
       link::Command command;
@@ -77,33 +78,6 @@ TEST(LiveGateway, CommandsThatWaitedWhileItWasStoppedKeepTheirAge) {
     link::Command command;
     ASSERT_TRUE(gateway.rc10d().await(command));
     EXPECT_GE(command.received_ns, later - kPlay_ns);
-  });
-}
-
-TEST(LiveGateway, RefusesARequestThatWaitedWhileItWasStopped) {
-  inPrivateNetwork([] {
-    ASSERT_TRUE(addLcmRoute());
-    GatewayProcess gateway;
-    LcmClient client;
-    client.subscribe("hero.v1.response");
-    gateway.awaitReady(client);
-    gateway.stop();
-    auto enable = requestWith(0);
-    enable.operation = "enable";
-    client.publish("hero.v1.request", encoded(enable));
-    auto estop = requestWith(0);
-    estop.operation = "estop";
-    estop.seq = 6;
-    client.publish("hero.v1.request", encoded(estop));
-    std::this_thread::sleep_for(1200ms);
-    gateway.resume();
-    response_t response{};
-    ASSERT_TRUE(client.await("hero.v1.response", response));
-    EXPECT_EQ(response.seq, 5);
-    EXPECT_EQ(response.status, +response_t::STATUS_REFUSED);
-    link::Request request;
-    ASSERT_TRUE(gateway.rc10d().await(request));
-    EXPECT_EQ(request.operation.view(), "estop");
   });
 }
 
