@@ -21,11 +21,8 @@ from rc10.fakes.moteus import (
     TIMEOUT,
     FakeMoteus,
     MoteusSpec,
-    ProtocolError,
-    pad,
-    parse,
-    reply,
 )
+from rc10.fakes.moteus_frames import ProtocolError, pad, parse, reply
 from rc10.fakes.port import SocketPort
 
 QUERY = "1100 1F01 1504 130D"

@@ -68,6 +68,17 @@ named_pages_are_tracked() {
     return 1
 }
 
+# A file with one idea is short.
+sources_are_short() {
+    local most=500 long
+    # Two modules that are one class each.
+    local exempt='src/daemon/clients/link_server.cpp src/module/serial_link.cpp'
+    long=$(git ls-files -z src tests python scripts web/src bench examples cmake \
+        | grep -zE '\.(cpp|hpp|py|sh|ts|tsx|css|cmake)$' | xargs -0 wc -l \
+        | awk -v most="$most" '$1 > most && $2 != "total" {print $2}' | grep -vwF "${exempt// /$'\n'}") || return 0
+    echo "longer than $most lines:" && echo "$long" && return 1
+}
+
 # A source that .gitignore hides is compiled here and missing in every clone.
 git_sees_each_source() {
     [ -e .git ] || return 0
@@ -81,6 +92,7 @@ step "git sees each source" git_sees_each_source
 step clang-format format_cpp
 step "comments begin with a noun" comments_begin_with_a_noun
 step "test names are sentences" test_names_are_sentences
+step "sources are short" sources_are_short
 step "named pages are tracked" named_pages_are_tracked
 step shellcheck shell
 # Its scripts have no extension, and are not found by themselves.

@@ -9,76 +9,13 @@
 #include <fmt/format.h>
 
 #include "app/vocabulary.hpp"
-#include "config/load_config.hpp"
 #include "daemon/exchange/events.hpp"
+#include "faults/robots.hpp"
 
 namespace rc10::test {
 namespace {
 
 using namespace std::chrono_literals;
-
-// A robot for a contest: all families, defaults wherever there is one, the reasons to stop that a team
-// switches on.
-constexpr std::string_view kRobot = R"(
-robot: match
-buses:
-  - name: chassis
-    type: sim
-    motors:
-      - {name: front_left, model: M3508, id: 1, on_timeout: damp, on_disable: damp, on_estop: brake, zero: power_on}
-      - {name: front_right, model: M3508, id: 2, on_timeout: damp, on_disable: damp, on_estop: brake, zero: power_on}
-      - {name: rear_left, model: M3508, id: 3, on_timeout: damp, on_disable: damp, on_estop: brake, zero: power_on}
-      - {name: rear_right, model: M3508, id: 4, on_timeout: damp, on_disable: damp, on_estop: brake, zero: power_on}
-      - {name: loader, model: M2006, id: 5, current_limit_a: 5, zero: power_on}
-  - name: turret
-    type: sim
-    motors:
-      - {name: yaw, model: GM6020, id: 5, on_timeout: hold, angle_slew_deg_per_s: 360,
-         following_error_deg: 45, angle_min_deg: -170, angle_max_deg: 170, temperature_derate_c: 80}
-      - {name: pitch, model: GM6020, id: 6, on_timeout: hold, angle_min_deg: -30, angle_max_deg: 40,
-         simulated: {gravity_nm: 0.3, hangs_at_deg: -90}}
-      - {name: flywheel_left, model: VESC, id: 10, pole_pairs: 7, velocity_limit_rpm: 3000, command_divider: 10,
-         on_estop: brake, on_disable: brake}
-      - {name: flywheel_right, model: VESC, id: 11, pole_pairs: 7, velocity_limit_rpm: 3000, direction: -1,
-         command_divider: 10, on_estop: brake, on_disable: brake}
-      - {name: belt, model: ODrive_S1, id: 3, torque_constant_nm_per_a: 0.0551, current_limit_a: 20,
-         velocity_limit_rpm: 600, command_divider: 10, feedback_hz: 100, on_estop: brake, on_disable: brake}
-  - name: arm
-    type: sim
-    motors:
-      - {name: shoulder, model: DM4340, id: 1, master_id: 17, on_timeout: hold, on_estop: damp,
-         on_disable: damp, command_divider: 5, angle_min_deg: -100, angle_max_deg: 100, following_error_deg: 45,
-         angle_slew_deg_per_s: 200, simulated: {gravity_nm: 3}}
-      - {name: elbow, model: DM4310, id: 2, master_id: 18, on_timeout: hold, on_estop: damp,
-         on_disable: damp, command_divider: 5, simulated: {gravity_nm: 1}}
-      - {name: wrist, model: RS00, id: 20, on_timeout: hold, command_divider: 10}
-      - {name: finger, model: AK80-9, protocol: mit, id: 21, on_timeout: hold, command_divider: 10}
-      - {name: lift_left, model: RMD-X8-20, id: 22, command_divider: 10, on_timeout: hold}
-      - {name: lift_right, model: RMD-X8-20, id: 23, command_divider: 10, on_timeout: hold}
-      - {name: pan, model: LK-MG5010E-i10, id: 5, command_divider: 10, on_timeout: hold}
-  - name: legs
-    type: sim
-    data_bitrate: 5000000
-    motors:
-      - {name: leg_left, model: moteus, id: 1, motor_kv_rpm_per_v: 100, command_divider: 2, on_timeout: hold}
-      - {name: leg_right, model: moteus, id: 2, motor_kv_rpm_per_v: 100, command_divider: 2, direction: -1,
-         on_timeout: hold}
-groups:
-  - {name: reach, motors: [shoulder, elbow], on_member_offline: stop_group}
-modules:
-  - name: base
-    type: mecanum_chassis
-    wheels: {front_left: front_left, front_right: front_right, rear_left: rear_left, rear_right: rear_right}
-    wheel_radius_m: 0.076
-    track_m: 0.4
-    wheelbase_m: 0.4
-    max_speed_m_s: 2
-    max_turn_deg_s: 180
-    max_acceleration_m_s2: 3
-    max_turn_acceleration_deg_s2: 360
-  - {name: gun, type: feeder, motor: loader, velocity_limit_rpm: 100}
-  - {name: lift, type: synchronised_pair, left: lift_left, right: lift_right, velocity_limit_rpm: 40}
-)";
 
 enum Module : std::uint16_t { kBase, kGun, kLift };
 
@@ -121,12 +58,6 @@ constexpr auto kAftermath = 500ms;
 // From the operator's `enable` until every motor obeys.
 constexpr auto kBackWithin = 8s;
 constexpr auto kRecentLines = std::size_t{12};
-
-RobotConfig matchRobot() {
-  auto outcome = parseRobotConfig(kRobot, "match.yaml");
-  if (!outcome) throw std::runtime_error(outcome.errorText());
-  return std::move(*outcome.config);
-}
 
 }  // namespace
 

@@ -14,14 +14,14 @@ namespace {
 
 using namespace std::chrono_literals;
 
-// A stop lets fallbacks act for so long (docs/safety.md), then rests, and ends at the latest after so many
-// ticks of rest.
+// Time of fallbacks in a stop (docs/safety.md), and the ticks of rest after it, at
+// the most.
 constexpr Duration kLongestFallback = 1s;
 constexpr std::uint64_t kMostRestTicks = 50;
-// Requests are answered at the latest after so many ticks: an enable request waits two seconds for the
+// Ticks until a request is answered at the latest: an enable request waits two seconds for the
 // drives.
 constexpr std::uint64_t kLongestAnswerTicks = 2'100;
-// So many ticks without an echo are a stall, and a stalled bus is probed so often (docs/can-setup.md).
+// Ticks without an echo that are a stall, and the period of probes of a stalled bus (docs/can-setup.md).
 constexpr std::uint64_t kStalledTicks = 5;
 constexpr Duration kProbeInterval = 50ms;
 [[nodiscard]] std::string describe(const Told& told) {
@@ -29,10 +29,6 @@ constexpr Duration kProbeInterval = 50ms;
       "{}: effort {:.3f}, sum {:.3f}, {:.2f} rpm, {:.2f} deg ahead, {}{}at most {:.3f} and {:.1f} rpm",
       wordOf(told.law), told.effort, told.sum, told.velocity_rpm, told.ahead_deg, told.stiff ? "stiff, " : "",
       told.damped ? "damped, " : "", told.most_effort, told.most_rpm);
-}
-
-[[nodiscard]] bool lost(MotorStatus status) {
-  return status == MotorStatus::kOffline || status == MotorStatus::kFault;
 }
 
 }  // namespace
@@ -70,7 +66,7 @@ Oracle::Oracle(const RobotConfig& config) : config_(config) {
 
 namespace {
 
-// Modules ask anew in each tick, and what they ask for is valid for so long.
+// Validity of what modules ask for, anew in each tick.
 constexpr Duration kModuleValidity = 20ms;
 
 [[nodiscard]] bool isModule(const RobotConfig& config, std::string_view name) {
@@ -111,7 +107,7 @@ void Oracle::heard(std::size_t bus, const CanFrame& frame) {
   }
 }
 
-// Of drives that are told something once a tick every frame is a command; in others there are questions, too.
+// Every frame to a drive that is told something once a tick is a command; others get questions, too.
 void Oracle::foreign(std::size_t bus, const CanFrame& frame) {
   std::vector<Motor*> readers;
   bool command = false;
@@ -306,7 +302,7 @@ void Oracle::judge(const Snapshot& snapshot, std::uint64_t periods, std::bitset<
   held_ = known_down_ | off_ | stalled_;
 }
 
-// A bus whose frames are not echoed is stalled: after so many ticks, until an echo comes or it was taken
+// A bus whose frames are not echoed is stalled: after kStalledTicks, until an echo comes or it was taken
 // down.
 void Oracle::followEchoes(const Snapshot& snapshot) {
   for (std::size_t bus = 0; bus < config_.buses.size(); ++bus) {
@@ -353,7 +349,7 @@ void Oracle::judgeSnapshot(const Snapshot& snapshot, std::uint64_t periods) {
         std::fabs(static_cast<double>(feedback.velocity_rpm) - motor.wire->measured().velocity_rpm);
     const bool told = motor.wire->samplesAlways() || std::isfinite(feedback.velocity_rpm);
     const bool compared = told && feedback.received == motor.heard_at;
-    // A shaft that a load spins up is told in float: so many rpm that 0.01 is below its resolution.
+    // A shaft that a load spins up is told in float: 0.01 rpm is below its resolution then.
     const double rounded_rpm = std::fabs(motor.wire->measured().velocity_rpm) *
                                static_cast<double>(std::numeric_limits<float>::epsilon());
     require(i, !compared || off_rpm <= 0.01 + rounded_rpm + motor.wire->measured().velocity_step_rpm,
@@ -408,242 +404,6 @@ void Oracle::judgeProbe(std::size_t bus) {
   for (std::size_t i = 0; i < motors_.size(); ++i)
     require(i, motors_[i].bus != bus || motors_[i].told.rests(),
             "a stalled bus is probed with something else than rest");
-}
-
-void Oracle::judgeStatus(std::size_t index, const MotorSnapshot& seen, RobotStatus robot) {
-  const auto& motor = motors_[index];
-  const auto before = motor.status;
-  const auto after = seen.status;
-  require(index, !overdue(motor) || lost(after), "stale feedback, and neither OFFLINE nor FAULT");
-  require(index, !fresh(motor) || after != MotorStatus::kOffline, "OFFLINE with fresh feedback");
-  const bool between = !fresh(motor) && !overdue(motor);
-  require(index, !between || after != MotorStatus::kOffline || lost(before),
-          "OFFLINE before its feedback could be read");
-  require(index, !between || before != MotorStatus::kOffline || lost(after), "back without feedback");
-  if (before == MotorStatus::kFault && after != MotorStatus::kFault) {
-    require(index, motor.clear_asked, "left FAULT unasked");
-  }
-  if (after == MotorStatus::kActive && before != MotorStatus::kActive) {
-    require(index, before == MotorStatus::kEnabling, "ACTIVE without enabling");
-  }
-  if (after == MotorStatus::kEnabling && before != MotorStatus::kEnabling && !motor.enable_asked) {
-    const bool rearms = motor.group != kNoGroup && groups_[motor.group].may_rearm.test(index);
-    require(index, rearms, "enabled itself");
-  }
-  if (now_ >= motor.owned_until) require(index, seen.owner.view().empty(), "owned by a client that is gone");
-  if (after == MotorStatus::kActive || after == MotorStatus::kEnabling)
-    require(index, robot == RobotStatus::kRun, "enabled although the robot is stopped");
-  if (seen.target.mode != ControlMode::kCoast) {
-    require(index, after == MotorStatus::kActive, "a target although it is not ACTIVE");
-    require(index, now_ < motor.driven_until, "a target without a valid command");
-  }
-}
-
-// Three within the time end ACTIVE, READY and ENABLING, and fewer do not.
-void Oracle::judgeForeign(std::size_t index, const MotorSnapshot& seen) {
-  auto& motor = motors_[index];
-  const auto& limit = config_.buses[motor.bus].foreign;
-  const auto enough = [&limit](const std::deque<MonotonicTime>& times) {
-    const auto frames = static_cast<std::size_t>(limit.frames);
-    for (std::size_t i = frames - 1; i < times.size(); ++i)
-      if (times[i] - times[i - frames + 1] <= limit.within) return true;
-    return false;
-  };
-  const bool newly = seen.fault == FaultCode::kForeignCommands && motor.fault != seen.fault;
-  require(index, !newly || enough(motor.perhaps_foreign), "in FAULT for commands that nobody has sent");
-  const bool there = !lost(motor.status) && seen.status != MotorStatus::kOffline;
-  require(index, !there || !enough(motor.foreign) || seen.status == MotorStatus::kFault,
-          "somebody else commands its drive, and it is not in FAULT");
-  const auto forget = [&](std::deque<MonotonicTime>& times) {
-    while (!times.empty() && now_ - times.front() > limit.within) times.pop_front();
-  };
-  forget(motor.perhaps_foreign);
-  forget(motor.foreign);
-  if (lost(seen.status)) motor.foreign.clear();  // what it was told meanwhile counts, or not
-}
-
-// Reports of its drive while nothing is asked of it, against the thresholds of the configuration.
-void Oracle::judgeRest(std::size_t index, const MotorSnapshot& seen) {
-  auto& motor = motors_[index];
-  const auto& rest = motor.config->rest;
-  const auto& feedback = seen.feedback;
-  const bool rested =
-      std::exchange(motor.rests, seen.acting == Acting::kNothing && seen.status != MotorStatus::kEnabling &&
-                                     (motor.wire->idlesAtRest() || seen.status != MotorStatus::kActive)) &&
-      fresh(motor);
-  const bool newly = seen.fault == FaultCode::kNotAtRest && motor.fault != seen.fault;
-  double sign = 0.0;
-  if (rested && std::fabs(feedback.current_a) > rest.current_a && rest.current_a > 0.0F) {
-    const bool stands = std::fabs(feedback.velocity_rpm) < motor.config->standstill_rpm;
-    if (stands || feedback.current_a * feedback.velocity_rpm > 0.0F)
-      sign = std::copysign(1.0, static_cast<double>(feedback.current_a));
-  }
-  if (sign != motor.torque_sign) {
-    motor.torque_sign = sign;
-    motor.torque_since = motor.torque_counts_since = feedback.received;
-    motor.torque_samples = 0;
-  }
-  if (motor.new_sample && sign != 0.0) ++motor.torque_samples;
-  // A clear forgives what was before it.
-  if (motor.clear_asked) motor.torque_counts_since = feedback.received;
-  const auto lasting = feedback.received - motor.torque_since;
-  // The first sample may have come with the order.
-  const auto slack = motor.config->feedback_timeout / 2 + 2 * config_.period();
-  require(index, !newly || (sign != 0.0 && lasting >= rest.time - slack),
-          "in FAULT for torque at rest that it does not report");
-  const auto counts = feedback.received - motor.torque_counts_since;
-  const bool proven = sign != 0.0 && motor.torque_samples > 4 && counts > rest.time + slack;
-  require(index, !proven || !fresh(motor) || lost(seen.status),
-          "its drive reports torque at rest, and it is not in FAULT");
-}
-
-// As long as a motor that was enabled alone is ENABLING or ACTIVE, no other is.
-void Oracle::judgeAlone(const Snapshot& snapshot) {
-  const bool stopped = estop_asked_ || stop_asked_;
-  was_alone_ = alone_.has_value();
-  // It may have ended within the tick, and begun anew as one of many.
-  if (alone_ && (stopped || motors_[*alone_].disables_asked > 0)) alone_.reset();
-  for (std::size_t i = 0; i < motors_.size(); ++i) {
-    const auto& motor = motors_[i];
-    const bool rearms = motor.group != kNoGroup && groups_[motor.group].may_rearm.test(i);
-    const bool begun = !isOn(motor.status) && isOn(snapshot.motors[i].status);
-    if (begun && motor.alone_asked && !rearms) alone_ = i;
-  }
-  for (std::size_t i = 0; i < motors_.size(); ++i) {
-    auto& motor = motors_[i];
-    motor.perhaps_alone = (motor.perhaps_alone || motor.alone_asked) && isOn(snapshot.motors[i].status);
-  }
-  if (alone_ && !isOn(snapshot.motors[*alone_].status)) alone_.reset();
-  if (!alone_) return;
-  was_alone_ = true;
-  ++visits_.alone;
-  for (std::size_t i = 0; i < motors_.size(); ++i)
-    require(i, i == *alone_ || !isOn(snapshot.motors[i].status),
-            "enabled beside a motor that is enabled alone");
-}
-
-// All or none: while a required member is missing, and in the tick in which one leaves, none is on. A motor
-// that is enabled alone needs no group.
-void Oracle::judgeGroups(const Snapshot& snapshot) {
-  for (auto& group : groups_) {
-    bool missing = false;
-    bool newly_lost = false;
-    bool refused = false;
-    bool leaves = false;
-    bool disable_asked = false;
-    bool faulted = false;
-    group.stops_now = group.disabled_now = false;
-    MotorSet active;
-    MotorSet enabling;  // it may have become ACTIVE within the tick
-    MotorSet rearmed;
-    for (std::size_t i = 0; i < motors_.size(); ++i) {
-      if (!group.members.test(i)) continue;
-      const auto& motor = motors_[i];
-      const auto before = motor.status;
-      const auto after = snapshot.motors[i].status;
-      if (before == MotorStatus::kActive) active.set(i);
-      if (before == MotorStatus::kEnabling) enabling.set(i);
-      disable_asked |= motor.disables_asked > 0;
-      if (after == MotorStatus::kEnabling && !motor.enable_asked && before != MotorStatus::kEnabling)
-        rearmed.set(i);
-      if (!group.required.test(i)) continue;
-      missing |= lost(after);
-      faulted |= after == MotorStatus::kFault;
-      newly_lost |= lost(after) && !lost(before);
-      refused |= before == MotorStatus::kEnabling && !isOn(after) && motor.disables_asked == 0;
-      leaves |= isOn(before) && (!isOn(after) || motor.disables_asked > 0);
-      group.disabled_now |= motor.disables_asked > 0 && (isOn(before) || motor.enable_asked);
-    }
-    bool alone = alone_ && group.members.test(*alone_);
-    for (std::size_t i = 0; i < motors_.size(); ++i)
-      alone |= group.members.test(i) && motors_[i].perhaps_alone;
-    group.stops_now = newly_lost || refused;
-    for (std::size_t i = 0; i < motors_.size(); ++i) {
-      if (!group.members.test(i) || alone || !isOn(snapshot.motors[i].status)) continue;
-      require(i, !missing, "enabled although a motor of its group is missing");
-      require(i, !leaves || was_alone_, "enabled although its group has stopped");
-    }
-    if (group.together && !alone) judgeTogether(group, snapshot);
-    if (rearmed.any()) {
-      for (std::size_t i = 0; i < motors_.size(); ++i) {
-        const bool left_out = group.must_rearm.test(i) && snapshot.motors[i].status == MotorStatus::kReady;
-        require(i, !left_out, "its group was enabled again without it");
-      }
-      group.may_rearm.reset();
-      ++visits_.rearmed;
-    }
-    if (newly_lost && group.rearms && (active | enabling).any()) {
-      group.may_rearm = active | enabling | (active.any() ? MotorSet{} : group.may_rearm);
-      group.must_rearm = active;
-    }
-    if (faulted || disable_asked || was_alone_ || estop_asked_ || snapshot.state != RobotStatus::kRun)
-      group.may_rearm.reset();
-  }
-}
-
-void Oracle::judgeTogether(const Group& group, const Snapshot& snapshot) {
-  bool whole = true;
-  bool asked = true;
-  for (std::size_t i = 0; i < motors_.size(); ++i) {
-    if (!group.required.test(i)) continue;
-    whole = whole && snapshot.motors[i].status == MotorStatus::kActive;
-    asked = asked && (motors_[i].enable_asked || isOn(motors_[i].status) || group.may_rearm.test(i));
-  }
-  for (std::size_t i = 0; i < motors_.size(); ++i) {
-    if (!group.members.test(i)) continue;
-    require(i, whole || snapshot.motors[i].target.mode == ControlMode::kCoast,
-            "a target although its group is not enabled as a whole");
-    const bool begun = !isOn(motors_[i].status) && isOn(snapshot.motors[i].status);
-    require(i, asked || !begun, "enabled without its group");
-  }
-}
-
-// Permitted action of a motor without a target, from now on.
-void Oracle::followActions(std::size_t index, const MotorSnapshot& seen) {
-  auto& motor = motors_[index];
-  const auto& fallback = motor.config->fallback;
-  const auto coast = only(FallbackAction::kCoast);
-  const auto before = motor.status;
-  const auto after = seen.status;
-  if (lost(after) || lost(before)) return setActions(motor, coast);
-  if (seen.target.mode != ControlMode::kCoast) return setActions(motor, only(fallback.on_timeout));
-  if (before == MotorStatus::kActive && after != MotorStatus::kActive) {
-    Actions actions;
-    const bool with_group = motor.group != kNoGroup && groups_[motor.group].disabled_now;
-    const bool asked = motor.disables_asked > 0 || stop_asked_ || with_group;
-    motor.rests_with_group = with_group && (motor.disables_asked == 0 || motor.enable_asked);
-    if (asked) actions |= only(fallback.on_disable);
-    if (motor.disables_asked > 1 || (motor.disables_asked > 0 && estop_asked_)) actions |= coast;
-    if (estop_asked_ || (motor.group != kNoGroup && groups_[motor.group].stops_now))
-      actions |= only(fallback.on_estop);
-    require(index, actions.any(), "no longer ACTIVE for no reason");
-    setActions(motor, actions);
-    motor.ends_at_standstill = asked;
-    return;
-  }
-  // Enabled and stopped within a tick.
-  const bool stopped_with_group =
-      motor.group != kNoGroup && (groups_[motor.group].stops_now || groups_[motor.group].disabled_now);
-  if (before == MotorStatus::kEnabling && stopped_with_group) {
-    setActions(motor, motor.actions | only(fallback.on_estop) | only(fallback.on_disable));
-    motor.ends_at_standstill = true;
-    motor.rests_with_group = groups_[motor.group].disabled_now && motor.disables_asked == 0;
-  }
-  if (motor.mode != ControlMode::kCoast) {  // its target has just gone
-    auto actions = only(fallback.on_timeout);
-    if (motor.coast_asked) actions |= coast;
-    return setActions(motor, actions);
-  }
-  if (motor.coast_asked || motor.disables_asked > 0) motor.actions |= coast;
-  // A target that came and went within the tick cannot be; one that was taken back by COAST can.
-  if (after == MotorStatus::kReady && motor.disables_asked > 0 && motor.disables_asked < 2 &&
-      before == MotorStatus::kReady && !motor.enable_asked) {
-    if (std::exchange(motor.rests_with_group, false)) {
-      motor.actions |= coast;
-    } else {
-      setActions(motor, coast);
-    }
-  }
 }
 
 void Oracle::judgeStop(std::bitset<kMaxBuses> read, bool stopped) {

@@ -19,6 +19,10 @@
 
 namespace rc10::test {
 
+[[nodiscard]] constexpr bool lost(MotorStatus status) noexcept {
+  return status == MotorStatus::kOffline || status == MotorStatus::kFault;
+}
+
 /// Judges every tick by what was sent to the robot and what came out on its buses. Knows the configuration
 /// and the documents, and nothing of the supervisor's code; of the snapshot it trusts nothing that the
 /// frames could contradict.
@@ -77,7 +81,7 @@ class Oracle {
     std::size_t group = kNoGroup;
     std::unique_ptr<Wire> wire;
     std::unique_ptr<Wire> strangers_wire;  ///< Reads what somebody else sends to its drive.
-    double limit = 0.0;                    ///< Of its effort.
+    double limit = 0.0;                    ///< Limit of its effort.
     bool of_module = false;                ///< A module commands it, too, while no client does.
     bool host_holds = false;               ///< Its hold is a loop of rc10d, of any effort,
     bool host_brakes = false;              ///< and so is its brake.
@@ -91,7 +95,7 @@ class Oracle {
     std::uint64_t unheard_ticks = 0;  ///< Ticks that ran since its last sample of then.
     // Its commands.
     MonotonicTime driven_until{};  ///< The latest deadline of a command that moves.
-    MonotonicTime owned_until{};   ///< Of any command.
+    MonotonicTime owned_until{};   ///< Deadline of any command.
     bool coast_asked = false;      ///< Since the last tick, as are the next four.
     bool enable_asked = false;     ///< Alone or not.
     bool alone_asked = false;      ///< And not the other way as well.
@@ -140,7 +144,7 @@ class Oracle {
     bool stops_now = false;     ///< Perhaps: since one is lost or was refused.
     bool disabled_now = false;  ///< Perhaps: since one was.
     MotorSet may_rearm;   ///< Were ACTIVE, or about to be, when it stopped, and nothing forbids it since.
-    MotorSet must_rearm;  ///< Of them, those that were ACTIVE.
+    MotorSet must_rearm;  ///< Those of them that were ACTIVE.
   };
 
   void judgeSnapshot(const Snapshot& snapshot, std::uint64_t periods);
@@ -201,10 +205,10 @@ class Oracle {
   bool stop_asked_ = false;
   MonotonicTime stopping_since_{};
   std::uint64_t ticks_stopping_ = 0;
-  std::uint64_t ticks_over_ = 0;  ///< Of them, those after the fallbacks.
+  std::uint64_t ticks_over_ = 0;  ///< Those of them after the fallbacks.
   bool rested_ = false;
   bool contact_open_ = false;
-  std::uint64_t periods_ = 1;  ///< Of this tick.
+  std::uint64_t periods_ = 1;  ///< Periods of this tick.
   std::bitset<kMaxBuses> down_;
   std::bitset<kMaxBuses> known_down_;  ///< As of the end of the last tick.
   std::bitset<kMaxBuses> off_;         ///< Its controller is bus-off.

@@ -8,9 +8,9 @@
 #include <string>
 
 #include "bus/byte_order.hpp"
-#include "drives/odrive/odrive_family.hpp"
 #include "drives/odrive/odrive_motor.hpp"
 #include "motor_orders.hpp"
+#include "support/odrive_settings.hpp"
 
 namespace {
 
@@ -20,25 +20,6 @@ using fuzz::require;
 
 constexpr float kTorqueLimitNm = 1.001F;      // 20 A at 0.05 N·m/A, before the gear
 constexpr float kSpeedLimit = 25.01F * 3.0F;  // 1500 rpm behind the largest gear here
-
-MotorSettings makeSettings(const char* model, int node) {
-  MotorSettings settings;
-  settings.name = model;
-  settings.model = model;
-  settings.id = node;
-  settings.gear_ratio = 1.0;
-  settings.effort_limit = 20.0F;
-  settings.velocity_limit_rpm = 1500.0F;
-  settings.feedback_hz = 1000;
-  settings.own.set("torque_constant_nm_per_a", 0.05);
-  settings.own.set("telemetry_hz", 100.0);
-  settings.own.set("iq_reversed", 0.0);
-  return settings;
-}
-
-std::unique_ptr<ODrive_Motor> makeMotor(const MotorSettings& settings) {
-  return std::make_unique<ODrive_Motor>(settings, odriveFamily().traits(settings.model, settings.own));
-}
 
 void checkReadings(const ODrive_Motor& motor) {
   const MotorFeedback& feedback = motor.feedback();
@@ -103,12 +84,13 @@ CanFrame takeFrame(Input& input) {
 }  // namespace
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-  auto geared = makeSettings("ODrive_S1", 3);
+  auto geared = test::odriveSettings("ODrive_S1", 3);
   geared.gear_ratio = 3.0;
   geared.direction = -1;
-  auto old = makeSettings("ODrive_v3", 62);
+  auto old = test::odriveSettings("ODrive_v3", 62);
   old.command_divider = 3;
-  const std::array<std::unique_ptr<ODrive_Motor>, 2> motors{makeMotor(geared), makeMotor(old)};
+  const std::array<std::unique_ptr<ODrive_Motor>, 2> motors{test::odriveMotor(geared),
+                                                            test::odriveMotor(old)};
   const std::array<int, 2> nodes{3, 62};
 
   Input input(data, size);

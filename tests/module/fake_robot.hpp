@@ -21,7 +21,7 @@ class FakeRobot : public ModuleRobot {
     MotorStatus status = MotorStatus::kActive;
     bool obeys = true;
     bool heard = true;             ///< A sample comes with each update.
-    std::optional<Target> target;  ///< Of the last update; empty: none.
+    std::optional<Target> target;  ///< Target of the last update; empty: none.
   };
   struct Asked {
     RobotRequest request{};
@@ -57,7 +57,7 @@ class FakeRobot : public ModuleRobot {
     module.update(tick_, *this);
   }
 
-  /// From now on no client has been heard for so long.
+  /// Silence of all clients from now on.
   void silenceClients(Duration silent) { clients_silent_ = silent; }
   [[nodiscard]] std::size_t largestRequest() const { return largest_request_; }
   /// In the last update.

@@ -112,7 +112,7 @@ class Joint : public ::testing::Test {
   std::vector<std::size_t> events_;
   double stop_deg_ = -1e6;
   double gravity_a_ = 0.0;  ///< Away from the stop.
-  double gets_ = 1.0;       ///< Of the current that it is told.
+  double gets_ = 1.0;       ///< Share of the current that it is told.
   double rpm_ = 0.0;
   bool blocked_ = false;
   bool switch_heard_ = true;

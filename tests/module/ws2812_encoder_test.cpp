@@ -96,9 +96,9 @@ TEST(Ws2812Encoder, LevelsLastAsLongAsTheDataSheetWants) {
       const double high_us = all[i].us;
       const double low_us = i + 2 < all.size() ? all[i + 1].us : 1.25 - high_us;
       EXPECT_NEAR(high_us + low_us, 1.25, 1e-6);
-      // Of the WS2812B: 0.4 and 0.8 us, +-0.15 us.
+      // Timing of the WS2812B: 0.4 and 0.8 us, +-0.15 us.
       EXPECT_THAT(high_us, high_us > 0.6 ? AllOf(Ge(0.65), Le(0.95)) : AllOf(Ge(0.25), Le(0.55)));
-      // Of the WS2812B-V5 as well.
+      // Timing of the WS2812B-V5 as well.
       if (rate == Rate::k4Bits) {
         EXPECT_THAT(high_us, high_us > 0.6 ? AllOf(Ge(0.58), Le(1.0)) : AllOf(Ge(0.22), Le(0.38)));
       }

@@ -74,7 +74,7 @@ class LKTechMotor : public testing::Test {
     for (std::size_t i = 0; i < count; ++i) sent.push_back(textOf(out[i]));
     return sent;
   }
-  /// A drive that is on, at this angle of its encoder, after so many turns of the output.
+  /// A drive that is on, at this angle of its encoder, after these turns of the output.
   void comeOnline(std::uint16_t encoder = 0x2000, int turns = 0) {
     hear(
         frameOf("141#9A1E6009640000"

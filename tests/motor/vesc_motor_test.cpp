@@ -2,84 +2,16 @@
 #include <cmath>
 #include <limits>
 #include <random>
-#include <vector>
 
 #include <gtest/gtest.h>
 
-#include "app/angle.hpp"
-#include "bus/byte_order.hpp"
-#include "drives/vesc/vesc_family.hpp"
+#include "motor/vesc_bench.hpp"
 #include "support/alloc_guard.hpp"
-#include "support/vesc_motors.hpp"
 
 namespace rc10::test::vesc_motor_test {
 namespace {
 
-using std::chrono::milliseconds;
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
-const std::string kNone{"none"};
-const std::string kEncoder{"encoder"};
-
-/// One VESC, ticks and frames by hand.
-class VescMotorTest : public ::testing::Test {
- protected:
-  VESC_Motor& make(const MotorSettings& settings) {
-    motor_ = std::make_unique<VESC_Motor>(settings);
-    return *motor_;
-  }
-  VESC_Motor& makeWith(const std::vector<std::pair<std::string, OwnValues::Value>>& own = {}) {
-    auto with = own;
-    with.insert(with.begin(), {"ask_status", 0.0});
-    return make(vescSettings(with));
-  }
-  std::vector<CanFrame> tick(Duration dt = milliseconds{1}) {
-    tick_.now += dt;
-    ++tick_.index;
-    motor_->update(tick_);
-    std::array<CanFrame, kMaxFramesPerPacker> out{};
-    const auto count = motor_->packCommand(tick_, out);
-    return {out.begin(), out.begin() + static_cast<std::ptrdiff_t>(count)};
-  }
-  FrameVerdict give(CanFrame frame) {
-    frame.received = tick_.now;
-    return motor_->matchesFrame(frame) ? motor_->updateFeedback(frame) : FrameVerdict::kMalformed;
-  }
-  void status(std::int32_t erpm, double current_a = 0.0, double duty = 0.0) {
-    CanFrame frame = vescFrame(0x907, "0000000000000000");
-    writeBigEndian<std::int32_t>(frame.data, 0, erpm);
-    writeBigEndian<std::int16_t>(frame.data, 4, static_cast<std::int16_t>(std::lround(current_a * 10.0)));
-    writeBigEndian<std::int16_t>(frame.data, 6, static_cast<std::int16_t>(std::lround(duty * 1000.0)));
-    ASSERT_EQ(give(frame), FrameVerdict::kAccepted);
-  }
-  void steps(std::int32_t count) {
-    CanFrame frame = vescFrame(0x1B07, "0000000000F00000");
-    writeBigEndian<std::int32_t>(frame.data, 0, count);
-    ASSERT_EQ(give(frame), FrameVerdict::kAccepted);
-  }
-  void encoder(double deg) {
-    CanFrame frame = vescFrame(0x1007, "0000000000000000");
-    writeBigEndian<std::int16_t>(frame.data, 6, static_cast<std::int16_t>(std::lround(deg * 50.0)));
-    ASSERT_EQ(give(frame), FrameVerdict::kAccepted);
-  }
-  /// The command for this target in one tick: the raw value, and its packet.
-  std::int32_t sent(const Target& target) {
-    motor_->order(FrameKind::kCommand, target);
-    return sent();
-  }
-  std::int32_t sent() {
-    const auto frames = tick();
-    EXPECT_EQ(frames.size(), 1U);
-    if (frames.empty()) return 0;
-    EXPECT_EQ(frames[0].length, 4);
-    EXPECT_EQ(frames[0].id.value & 0xFFU, 7U);
-    packet_ = static_cast<vesc::Packet>(frames[0].id.value >> 8U);
-    return readBigEndian<std::int32_t>(frames[0].payload(), 0);
-  }
-
-  std::unique_ptr<VESC_Motor> motor_;
-  Tick tick_{.index = 0, .now = MonotonicTime{std::chrono::hours{1}}};
-  vesc::Packet packet_ = vesc::Packet::kPing;
-};
+using namespace vesc_bench;
 
 TEST_F(VescMotorTest, AtFirstAndAtRestItSendsNoCurrent) {
   auto& motor = makeWith();
@@ -268,160 +200,6 @@ TEST_F(VescMotorTest, TheSignOfTheCurrentIsThatOfTheTorque) {
   EXPECT_LT(reversed.feedback().velocity_rpm, 0.0F);
 }
 
-TEST_F(VescMotorTest, TheTachometerCountsTurnsThroughTheEndOfItsRange) {
-  auto settings = vescSettings({{"ask_status", 0.0}});
-  settings.gear_ratio = 2.0;
-  settings.zero_at_power_on = true;
-  auto& motor = make(settings);
-  status(42'000);  // 6000 rpm: 42 steps in 10 ms
-  steps(std::numeric_limits<std::int32_t>::max() - 20);
-  tick(milliseconds{10});
-  status(42'000);
-  steps(std::numeric_limits<std::int32_t>::min() + 21);
-  EXPECT_NEAR(motor.feedback().total_angle_deg, 180.0, 1e-6);
-  EXPECT_TRUE(motor.feedback().zeroed);
-  EXPECT_EQ(motor.feedback().jumps, 0U);
-}
-
-TEST_F(VescMotorTest, AJumpOfTheTachometerIsCountedAndTheReferenceIsLost) {
-  auto& motor = makeWith();
-  status(0);
-  steps(1000);
-  ASSERT_TRUE(motor.setZero(10.0));
-  tick(milliseconds{10});
-  status(0);
-  steps(5);
-  EXPECT_EQ(motor.feedback().jumps, 1U);
-  EXPECT_FALSE(motor.feedback().zeroed);
-  EXPECT_NEAR(motor.feedback().total_angle_deg, 10.0, 1e-9);
-}
-
-TEST_F(VescMotorTest, ALongGapLosesTheReferenceWithoutAJump) {
-  auto& motor = makeWith();
-  status(0);
-  steps(1000);
-  ASSERT_TRUE(motor.setZero(10.0));
-  tick(milliseconds{400});
-  steps(3);
-  EXPECT_EQ(motor.feedback().jumps, 0U);
-  EXPECT_FALSE(motor.feedback().zeroed);
-  EXPECT_NEAR(motor.feedback().total_angle_deg, 10.0, 1e-9);
-}
-
-TEST_F(VescMotorTest, ADriveThatStartsAgainWhileItIsToObeyComplains) {
-  auto& motor = makeWith();
-  status(0);
-  steps(1000);
-  ASSERT_TRUE(motor.setZero(10.0));
-  motor.order(FrameKind::kRest);
-  tick();
-  ASSERT_EQ(give(vescFrame(0x3907, "3630")), FrameVerdict::kAccepted);
-  EXPECT_EQ(motor.complaint().fault, FaultCode::kNone);  // nobody cares
-  EXPECT_FALSE(motor.feedback().zeroed);
-  motor.order(FrameKind::kCommand);
-  tick();
-  ASSERT_EQ(give(vescFrame(0x3907, "3630")), FrameVerdict::kAccepted);
-  EXPECT_EQ(motor.complaint().fault, FaultCode::kDriveStopped);
-  motor.order(FrameKind::kRest);
-  tick();
-  motor.order(FrameKind::kCommand);
-  tick();
-  EXPECT_EQ(motor.complaint().fault, FaultCode::kNone);
-  steps(0);
-  EXPECT_NEAR(motor.feedback().total_angle_deg, 10.0, 1e-9);
-}
-
-TEST_F(VescMotorTest, TheEncoderIsAbsoluteAndCountsTurns) {
-  auto settings = vescSettings({{"ask_status", 0.0}, {"angle", kEncoder}});
-  settings.zero_deg = 100.0;
-  auto& motor = make(settings);
-  status(21'000);  // 3000 rpm: 180 deg in 10 ms
-  encoder(190.0);
-  EXPECT_TRUE(motor.feedback().zeroed);
-  EXPECT_NEAR(motor.feedback().total_angle_deg, 90.0, 0.02);
-  for (int i = 1; i <= 4; ++i) {
-    tick(milliseconds{10});
-    status(21'000);
-    encoder(wrapDegrees(190.0 + 180.0 * i));
-  }
-  EXPECT_NEAR(motor.feedback().total_angle_deg, 90.0 + 720.0, 0.05);
-  EXPECT_TRUE(motor.feedback().zeroed);
-}
-
-/// Turns of an encoder at a steady speed of the rotor, 500 Hz, one of 20 frames lost, each stamped up to
-/// `late` after it was sent.
-struct Counted {
-  double off_deg = 0.0;  ///< Largest, while the reference was known.
-  int losses = 0;
-};
-Counted countTurns(double rotor_rpm, std::chrono::microseconds late, unsigned seed) {
-  auto settings = vescSettings({{"ask_status", 0.0}, {"angle", kEncoder}});
-  settings.feedback_hz = 500;
-  VESC_Motor motor(settings);
-  std::mt19937 random(seed);
-  std::uniform_int_distribution<std::int64_t> wait_us(0, late.count());
-  std::uniform_int_distribution<int> lottery(1, 20);
-  Counted counted;
-  MonotonicTime received{std::chrono::hours{1}};
-  const MonotonicTime begin = received;
-  double reference_deg = 0.0;
-  for (int i = 0; i < 5000; ++i) {
-    const MonotonicTime sent = begin + i * milliseconds{2};
-    received = std::max(received, sent + std::chrono::microseconds{wait_us(random)});
-    if (i > 0 && lottery(random) == 1) continue;
-    CanFrame speed = vescFrame(0x907, "0000000000000000");
-    writeBigEndian<std::int32_t>(speed.data, 0, static_cast<std::int32_t>(std::lround(rotor_rpm * 7.0)));
-    speed.received = received;
-    EXPECT_EQ(motor.updateFeedback(speed), FrameVerdict::kAccepted);
-    const double deg = rotor_rpm * kDegPerSPerRpm * 0.002 * i;
-    CanFrame angle = vescFrame(0x1007, "0000000000000000");
-    const double within_deg = deg - 360.0 * std::floor(deg / 360.0);
-    writeBigEndian<std::int16_t>(angle.data, 6, static_cast<std::int16_t>(std::lround(within_deg * 50.0)));
-    angle.received = received;
-    EXPECT_EQ(motor.updateFeedback(angle), FrameVerdict::kAccepted);
-    const auto& feedback = motor.feedback();
-    if (i == 0) {
-      reference_deg = feedback.total_angle_deg;
-      // Unless it follows an angle, it takes the one within a turn again.
-      motor.order(FrameKind::kCommand, {.mode = ControlMode::kTotalAngle});
-      motor.update(Tick{});
-    }
-    if (!feedback.zeroed) {  // as a client that tells it anew
-      ++counted.losses;
-      EXPECT_TRUE(motor.setZero(reference_deg + deg));
-    }
-    counted.off_deg = std::max(counted.off_deg, std::abs(feedback.total_angle_deg - reference_deg - deg));
-  }
-  return counted;
-}
-
-TEST(VescEncoder, StampsThatAreLateCostNoTurn) {
-  for (const double rpm : {0.0, 100.0, 3000.0, -5000.0, 12'000.0, -20'000.0, 30'000.0, 45'000.0}) {
-    for (const unsigned seed : {1U, 2U, 3U}) {
-      const auto counted = countTurns(rpm, std::chrono::microseconds{1900}, seed);
-      EXPECT_LT(counted.off_deg, 1.0) << rpm;
-      // Turns of a whole period: nobody could tell one period from two.
-      if (std::abs(rpm) < 25'000.0) {
-        EXPECT_EQ(counted.losses, 0) << rpm;
-      }
-    }
-  }
-  EXPECT_GT(countTurns(30'000.0, std::chrono::microseconds{1900}, 1).losses, 0) << "it is told";
-}
-
-TEST_F(VescMotorTest, ANativePositionGoesTheWayThatIsMeantOverTurns) {
-  makeWith({{"angle", kEncoder}});
-  status(0);
-  encoder(300.0);                                                                   // reads -60
-  EXPECT_EQ(sent({.mode = ControlMode::kTotalAngle, .value = 700.0}), 30'000'000);  // 90 deg ahead
-  EXPECT_EQ(packet_, vesc::Packet::kSetPosition);
-  EXPECT_EQ(sent({.mode = ControlMode::kTotalAngle, .value = -700.0}), 210'000'000);
-  EXPECT_EQ(sent({.mode = ControlMode::kAngle, .value = 310.0}), 310'000'000);
-  tick(milliseconds{300});
-  EXPECT_EQ(sent({.mode = ControlMode::kAngle, .value = 310.0}), 0);  // no fresh feedback
-  EXPECT_EQ(packet_, vesc::Packet::kSetCurrent);
-}
-
 TEST_F(VescMotorTest, OnlyAnAngleLoopOnTheHostTakesOtherGains) {
   EXPECT_EQ(makeWith({{"angle", kEncoder}}).hostLoops(), nullptr);
   auto& motor = makeWith();
@@ -548,61 +326,6 @@ TEST_F(VescMotorTest, CommandsKeepTheirRhythm) {
     EXPECT_EQ(frames.empty(), tick_.index % 10 != 3);
   }
   EXPECT_EQ(count, 10);
-}
-
-TEST(VescFamily, EveryKeyHasANameAndWords) {
-  for (const FamilyKey& key : vescFamily().keys()) {
-    EXPECT_FALSE(key.name.empty());
-    EXPECT_FALSE(key.about.empty()) << key.name;
-    EXPECT_TRUE(key.required || !key.default_text.empty()) << key.name;
-  }
-}
-
-TEST(VescFamily, ImpossibleSettingsAreRefusedWithTheirKey) {
-  auto settings = vescSettings();
-  EXPECT_TRUE(vescFamily().check(settings));
-  settings.feedback_hz = 20;
-  EXPECT_EQ(vescFamily().check(settings).error().message.find("feedback_hz: "), 0U);
-  settings = vescSettings({{"host_id", 7.0}});
-  EXPECT_EQ(vescFamily().check(settings).error().message.find("host_id: "), 0U);
-  settings = vescSettings({{"handbrake_current_a", 5.0}});
-  EXPECT_EQ(vescFamily().check(settings).error().message.find("handbrake_current_a: "), 0U);
-}
-
-TEST(VescFamily, TheModesFollowFromTheSourceOfTheAngle) {
-  const auto& family = vescFamily();
-  EXPECT_TRUE(family.traits("VESC", vescSettings().own).modes.contains(ControlMode::kTotalAngle));
-  EXPECT_FALSE(
-      family.traits("VESC", vescSettings({{"angle", kNone}}).own).modes.contains(ControlMode::kAngle));
-  EXPECT_TRUE(family.traits("VESC", vescSettings({{"angle", kEncoder}}).own).absolute);
-  EXPECT_EQ(family.traits("VESC", vescSettings({{"angle", kEncoder}}).own).host_loops, nullptr);
-}
-
-TEST(VescFamily, TellsWhatTheDriveSendsAndObeys) {
-  const auto use = vescFamily().busUse(vescSettings());
-  const auto obeys = [&use](CanFrame frame) {
-    return std::any_of(use.obeys.begin(), use.obeys.end(),
-                       [&](const auto& filter) { return accepts(filter, frame); });
-  };
-  EXPECT_TRUE(obeys(vesc::makeCommand(vesc::Packet::kSetErpm, 7, 0)));
-  EXPECT_TRUE(obeys(vesc::makeCommand(vesc::Packet::kSetErpm, 255, 0)));
-  EXPECT_FALSE(obeys(vesc::makeCommand(vesc::Packet::kSetErpm, 8, 0)));
-  EXPECT_FALSE(obeys(vescFrame(0x10007, "00000000")));
-  EXPECT_EQ(use.sends.size(), 8U);
-}
-
-TEST(VescFamily, SeveralDrivesShareABusAndTheHostId) {
-  auto bus = fdCANbus::adopt("can0", UniqueFd{}, false);
-  BusParts parts(*bus);
-  auto first = vescFamily().build(vescSettings(), parts);
-  ASSERT_TRUE(first) << first.error().message;
-  auto settings = vescSettings();
-  settings.name = "other";
-  settings.id = 8;
-  auto second = vescFamily().build(settings, parts);
-  ASSERT_TRUE(second) << second.error().message;
-  settings.name = "third";
-  EXPECT_FALSE(vescFamily().build(settings, parts));
 }
 
 }  // namespace

@@ -56,7 +56,7 @@ class ModuleTest : public testing::Test {
     ASSERT_EQ(future.wait_for(kPatience), std::future_status::ready);
   }
 
-  /// The messages to the module, once there are so many.
+  /// The messages to the module, once there are as many.
   std::vector<signals_t> inputs(std::size_t count) {
     std::unique_lock lock(mutex_);
     EXPECT_TRUE(changed_.wait_for(lock, kPatience, [&] { return inputs_.size() >= count; }));

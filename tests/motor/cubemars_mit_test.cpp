@@ -1,0 +1,309 @@
+#include <array>
+#include <chrono>
+#include <cmath>
+#include <limits>
+#include <random>
+
+#include <gtest/gtest.h>
+
+#include "motor/cubemars_bench.hpp"
+
+namespace rc10::test::cubemars_mit_test {
+namespace {
+
+using namespace cubemars_bench;
+
+// --- MIT -----------------------------------------------------------------------------------------------
+
+TEST(CubemarsMit, RestAndPollLeaveTheMode) {
+  Mit bench(mit());
+  std::array<CanFrame, 4> out{};
+  ASSERT_EQ(bench.motor().packRest(out), 1U);
+  EXPECT_TRUE(isExit(out[0]));
+  for (const auto kind : {FrameKind::kRest, FrameKind::kPoll, FrameKind::kDisable}) {
+    const auto frames = bench.tick(kind);
+    ASSERT_EQ(frames.size(), 1U);
+    EXPECT_TRUE(isExit(frames[0]));
+  }
+}
+
+TEST(CubemarsMit, IdleHasNoGainsAndNoTorque) {
+  Mit bench(mit());
+  (void)bench.feedMit(1.0, 3.0);
+  const auto frames = bench.tick(FrameKind::kIdle);
+  ASSERT_EQ(frames.size(), 1U);
+  const auto command = bench.decode(frames[0]);
+  EXPECT_EQ(command.stiffness_nm_per_rad, 0.0);
+  EXPECT_EQ(command.damping_nms_per_rad, 0.0);
+  EXPECT_NEAR(command.torque_nm, 0.0, 0.005);
+}
+
+TEST(CubemarsMit, EntersTheModeWithoutTorqueAndIsDoneWhenTheDriveHasAnswered) {
+  Mit bench(mit());
+  (void)bench.feedMit(0.0);
+  auto frames = bench.tick(FrameKind::kEnable);
+  ASSERT_EQ(frames.size(), 2U);
+  EXPECT_EQ(bench.decode(frames[0]).stiffness_nm_per_rad, 0.0) << "what it finds when it enters";
+  EXPECT_TRUE(isEnter(frames[1]));
+  EXPECT_EQ(bench.motor().sequenceProgress(), SequenceProgress::kPending);
+  (void)bench.feedMit(0.0);
+  (void)bench.feedMit(0.0);
+  frames = bench.tick();
+  EXPECT_EQ(bench.motor().sequenceProgress(), SequenceProgress::kPending)
+      << "one of the two may be the answer to an older frame";
+  ASSERT_EQ(frames.size(), 1U);
+  EXPECT_EQ(bench.decode(frames[0]).stiffness_nm_per_rad, 0.0);
+  (void)bench.feedMit(0.0);
+  (void)bench.tick();
+  EXPECT_EQ(bench.motor().sequenceProgress(), SequenceProgress::kDone);
+}
+
+TEST(CubemarsMit, AnUnansweredEnterIsSentAgainFiveTimesAndThenHasFailed) {
+  Mit bench(mit());
+  (void)bench.feedMit(0.0);
+  int entered = 0;
+  for (int i = 0; i < 400 && bench.motor().sequenceProgress() != SequenceProgress::kFailed; ++i) {
+    for (const auto& frame : bench.tick(FrameKind::kEnable)) entered += isEnter(frame) ? 1 : 0;
+    bench.pass(milliseconds{1});
+  }
+  EXPECT_EQ(entered, 6);
+  EXPECT_EQ(bench.motor().sequenceProgress(), SequenceProgress::kFailed);
+  (void)bench.tick(FrameKind::kPoll);
+  (void)bench.tick(FrameKind::kEnable);
+  EXPECT_EQ(bench.motor().sequenceProgress(), SequenceProgress::kPending) << "it starts anew";
+}
+
+TEST(CubemarsMit, ADriveWithAnErrorIsNotEnabled) {
+  Mit bench(mit());
+  (void)bench.feedMit(0.0, 0.0, 0.0, 3);
+  for (int i = 0; i < 10; ++i) {
+    (void)bench.tick(FrameKind::kEnable);
+    (void)bench.feedMit(0.0, 0.0, 0.0, 3);
+  }
+  EXPECT_EQ(bench.motor().sequenceProgress(), SequenceProgress::kPending);
+  EXPECT_EQ(bench.motor().complaint().fault, FaultCode::kDriveOverVoltage);
+}
+
+TEST(CubemarsMit, ClearingEntersWithoutTorqueAndLeavesAgain) {
+  Mit bench(mit());
+  (void)bench.feedMit(0.0, 0.0, 0.0, 2);
+  (void)bench.tick(FrameKind::kPoll);
+  bench.motor().clearComplaint();
+  const auto frames = bench.tick();
+  ASSERT_EQ(frames.size(), 3U);
+  EXPECT_EQ(bench.decode(frames[0]).stiffness_nm_per_rad, 0.0);
+  EXPECT_TRUE(isEnter(frames[1]));
+  EXPECT_TRUE(isExit(frames[2]));
+  EXPECT_TRUE(isExit(bench.tick().front())) << "once only";
+}
+
+TEST(CubemarsMit, CurrentIsTorqueOfTheModelsConstant) {
+  Mit bench(mit());
+  (void)bench.feedMit(0.0);
+  const auto command = bench.decode(bench.command({.mode = ControlMode::kCurrent, .value = 5.0}));
+  EXPECT_NEAR(command.torque_nm, 5.0 * 9 * 0.091, 0.01);
+  EXPECT_EQ(command.stiffness_nm_per_rad, 0.0);
+  EXPECT_EQ(command.damping_nms_per_rad, 0.0);
+  EXPECT_NEAR(bench.motor().commandValue(), 5.0, 1e-4);
+}
+
+TEST(CubemarsMit, TheDrivesSumStaysWithinTheLimitInEveryMode) {
+  auto settings = mit({{"angle_stiffness_nm_per_rad", 200.0}});
+  settings.effort_limit = 4.0F;
+  const double limit_nm = 4.0 * 9 * 0.091;
+  std::mt19937 random(7);
+  std::uniform_real_distribution<double> position(-12.0, 12.0);
+  std::uniform_real_distribution<double> velocity(-45.0, 45.0);
+  std::uniform_real_distribution<double> value(-600.0, 600.0);
+  std::uniform_real_distribution<float> gain(0.0F, 400.0F);
+  for (int i = 0; i < 5000; ++i) {
+    Mit bench(settings);
+    const double rad = position(random);
+    const double rad_s = velocity(random);
+    (void)bench.feedMit(rad, rad_s);
+    for (const auto mode : {ControlMode::kCurrent, ControlMode::kVelocity, ControlMode::kTotalAngle,
+                            ControlMode::kImpedance, ControlMode::kBrake}) {
+      const Target target{.mode = mode,
+                          .value = value(random),
+                          .velocity_ff_rpm = static_cast<float>(value(random)),
+                          .torque_ff_nm = static_cast<float>(value(random)),
+                          .stiffness_nm_per_rad = gain(random),
+                          .damping_nms_per_rad = gain(random) / 100.0F};
+      const auto frame = bench.command(target);
+      // The fields have steps, of commands and of the feedback that they were made from.
+      const auto c = bench.decode(frame);
+      const double steps_nm = 0.009 + 0.037 * c.damping_nms_per_rad + 0.001 * c.stiffness_nm_per_rad +
+                              0.1222 * std::abs(c.position_rad - rad) +
+                              0.0013 * std::abs(c.velocity_rad_s - rad_s);
+      ASSERT_LE(std::abs(bench.sumNm(frame, rad, rad_s)), limit_nm + steps_nm) << static_cast<int>(mode);
+      ASSERT_LE(std::abs(bench.motor().commandValue()), 4.0F * 1.0001F);
+    }
+  }
+}
+
+TEST(CubemarsMit, AnAngleIsApproachedNoFasterThanTheLimit) {
+  auto settings = mit({{"angle_stiffness_nm_per_rad", 40.0}, {"angle_damping_nms_per_rad", 2.0}});
+  settings.velocity_limit_rpm = 30.0F;
+  Mit bench(settings);
+  (void)bench.feedMit(0.0);
+  const auto command = bench.decode(bench.command({.mode = ControlMode::kTotalAngle, .value = 300.0}));
+  EXPECT_NEAR(command.position_rad * 40.0 / 2.0, kPi, 0.02);  // 30 rpm
+  EXPECT_NE(bench.motor().limits() & kLimitVelocity, 0U);
+}
+
+TEST(CubemarsMit, GainsAndTorqueCountAtTheShaftBehindTheGear) {
+  auto settings = mit();
+  settings.gear_ratio = 18.0;  // 2 behind the drive's own 9
+  settings.direction = -1;
+  Mit bench(settings);
+  (void)bench.feedMit(0.0);
+  const auto command = bench.decode(bench.command({.mode = ControlMode::kImpedance,
+                                                   .value = 0.0,
+                                                   .velocity_ff_rpm = 3.0F,
+                                                   .torque_ff_nm = 4.0F,
+                                                   .stiffness_nm_per_rad = 40.0F,
+                                                   .damping_nms_per_rad = 2.0F}));
+  EXPECT_NEAR(command.stiffness_nm_per_rad, 10.0, 0.13);
+  EXPECT_NEAR(command.damping_nms_per_rad, 0.5, 0.002);
+  EXPECT_NEAR(command.torque_nm, -2.0, 0.01);
+  EXPECT_NEAR(command.velocity_rad_s, -6.0 * kPi / 30.0, 0.03);
+}
+
+TEST(CubemarsMit, CountsTheTurnsOfItsPositionField) {
+  Mit bench(mit());
+  double rad = 0.0;
+  (void)bench.feedMit(0.0);
+  for (int i = 0; i < 4000; ++i) {
+    rad += 0.01;
+    (void)bench.feedMit(std::remainder(rad, 25.0), 10.0);
+  }
+  EXPECT_NEAR(bench.motor().feedback().total_angle_deg, 40.0 * 180.0 / kPi, 0.1);
+  for (int i = 0; i < 8000; ++i) {
+    rad -= 0.01;
+    (void)bench.feedMit(std::remainder(rad, 25.0), -10.0);
+  }
+  EXPECT_NEAR(bench.motor().feedback().total_angle_deg, -40.0 * 180.0 / kPi, 0.1);
+  EXPECT_EQ(bench.motor().feedback().jumps, 0U);
+}
+
+TEST(CubemarsMit, OutsideOfTheFieldAnAngleOnlyDamps) {
+  Mit bench(mit());
+  double rad = 11.0;
+  (void)bench.feedMit(rad);
+  while (rad < 14.0) (void)bench.feedMit(std::remainder(rad += 0.05, 25.0));
+  const auto command = bench.decode(bench.command({.mode = ControlMode::kTotalAngle, .value = 0.0}));
+  EXPECT_EQ(command.stiffness_nm_per_rad, 0.0);
+  EXPECT_GT(command.damping_nms_per_rad, 0.0);
+  EXPECT_NE(bench.motor().limits() & kLimitAngle, 0U);
+}
+
+TEST(CubemarsMit, OutsideOfTheFieldAnyDampingOpposesTheShaftWithAllThatIsAllowed) {
+  auto settings = mit();
+  settings.effort_limit = 4.0F;
+  for (const auto stiffness : {0.0F, 1.0F, 1e30F}) {
+    Mit bench(settings);
+    double rad = 11.0;
+    (void)bench.feedMit(rad);
+    while (rad < 14.0) (void)bench.feedMit(std::remainder(rad += 0.05, 25.0), 20.0);
+    const auto frame = bench.command(
+        {.mode = ControlMode::kImpedance, .stiffness_nm_per_rad = stiffness, .damping_nms_per_rad = 1e30F});
+    EXPECT_NEAR(bench.sumNm(frame, std::remainder(rad, 25.0), 20.0), -4.0 * 9 * 0.091, 0.2) << stiffness;
+    EXPECT_NEAR(bench.motor().commandValue(), -4.0F, 1e-3F) << stiffness;
+  }
+}
+
+TEST(CubemarsMit, APositionFieldThatIsCutOffLosesTheReference) {
+  auto settings = mit();
+  settings.zero_at_power_on = true;
+  Mit bench(settings);
+  (void)bench.feedMit(12.49);
+  (void)bench.feedMit(12.5);
+  EXPECT_TRUE(bench.motor().feedback().zeroed);
+  (void)bench.feedMit(12.5);
+  EXPECT_FALSE(bench.motor().feedback().zeroed);
+}
+
+TEST(CubemarsMit, WithoutFreshFeedbackNothingButNoTorqueIsSent) {
+  Mit bench(mit());
+  const Target target{.mode = ControlMode::kVelocity, .value = 60.0};
+  EXPECT_EQ(bench.decode(bench.command(target)).damping_nms_per_rad, 0.0);
+  (void)bench.feedMit(0.0);
+  EXPECT_GT(bench.decode(bench.command(target)).damping_nms_per_rad, 0.0);
+  bench.pass(milliseconds{101});
+  EXPECT_EQ(bench.decode(bench.command(target)).damping_nms_per_rad, 0.0);
+}
+
+TEST(CubemarsMit, HugeAndMissingNumbersAreHarmless) {
+  Mit bench(mit());
+  (void)bench.feedMit(1.0, 2.0);
+  const double huge = std::numeric_limits<double>::max();
+  const float huge_f = std::numeric_limits<float>::max();
+  for (const double value : {huge, -huge, std::nan(""), std::numeric_limits<double>::infinity()}) {
+    for (const float extra : {huge_f, -huge_f, NAN, INFINITY}) {
+      for (int mode = 0; mode < kControlModeCount; ++mode) {
+        const auto frame = bench.command({.mode = static_cast<ControlMode>(mode),
+                                          .value = value,
+                                          .velocity_ff_rpm = extra,
+                                          .torque_ff_nm = extra,
+                                          .stiffness_nm_per_rad = extra,
+                                          .damping_nms_per_rad = extra});
+        ASSERT_TRUE(std::isfinite(bench.motor().commandValue()));
+        ASSERT_LE(std::abs(bench.sumNm(frame, 1.0, 2.0)), 18.0 * 1.05) << mode;
+      }
+    }
+  }
+}
+
+TEST(CubemarsMit, AnswersComeFromIdZeroOrFromItsOwnAndBelongToItByTheirFirstByte) {
+  Mit bench(mit());
+  CanFrame reply = bench.mitReply(0.0, 0.0, 0.0, 0);
+  EXPECT_TRUE(bench.motor().matchesFrame(reply));
+  reply.id.value = 5;
+  EXPECT_TRUE(bench.motor().matchesFrame(reply));
+  reply.id.value = 6;
+  EXPECT_FALSE(bench.motor().matchesFrame(reply));
+  reply.id.value = 0;
+  reply.data[0] = 6;
+  EXPECT_FALSE(bench.motor().matchesFrame(reply));
+  reply.data[0] = 5;
+  reply.length = 7;
+  ASSERT_TRUE(bench.motor().matchesFrame(reply));
+  EXPECT_EQ(bench.motor().updateFeedback(reply), FrameVerdict::kMalformed);
+  reply.length = 6;  // the oldest firmware: no temperature, no error
+  EXPECT_EQ(bench.motor().updateFeedback(reply), FrameVerdict::kAccepted);
+  EXPECT_TRUE(std::isnan(bench.motor().feedback().temperature_c));
+  EXPECT_EQ(bench.motor().filters().size(), 2U);
+}
+
+TEST(CubemarsMitV3, RestIsSaidInBothProtocols) {
+  Mit bench(mitV3());
+  std::array<CanFrame, 4> out{};
+  ASSERT_EQ(bench.motor().packRest(out), 2U);
+  EXPECT_EQ(out[0].id, (CanId{0x805, true}));
+  EXPECT_EQ(bench.decode(out[0]).stiffness_nm_per_rad, 0.0);
+  EXPECT_EQ(bench.decode(out[0]).damping_nms_per_rad, 0.0);
+  EXPECT_TRUE(isCurrentZero(out[1]));
+  EXPECT_EQ(bench.motor().sequenceProgress(), SequenceProgress::kDone) << "it needs no enabling";
+}
+
+TEST(CubemarsMitV3, ItsFeedbackIsThatOfTheServoProtocol) {
+  Mit bench(mitV3());
+  ASSERT_TRUE(bench.motor().matchesFrame(bench.servoFrame(0, 0, 0, 0, 0)));
+  (void)bench.feedServo(0.0);
+  (void)bench.feedServo(3.0, 168.0 * 5.0, 2.0, 41);
+  EXPECT_NEAR(bench.motor().feedback().total_angle_deg, 3.0, 1e-9);
+  EXPECT_NEAR(bench.motor().feedback().velocity_rpm, 5.0, 1e-3);
+  EXPECT_NEAR(bench.motor().feedback().torque_nm, 2.0 * 1.0566, 1e-3);
+  EXPECT_EQ(bench.motor().feedback().temperature_c, 41.0F);
+}
+
+TEST(CubemarsMitV3, BeyondTheReachOfItsCommandsAnAngleOnlyDamps) {
+  Mit bench(mitV3());
+  (void)bench.feedServo(800.0);  // 12.5 rad are 716 degrees
+  const auto command = bench.decode(bench.command({.mode = ControlMode::kTotalAngle, .value = 0.0}));
+  EXPECT_EQ(command.stiffness_nm_per_rad, 0.0);
+  EXPECT_GT(command.damping_nms_per_rad, 0.0);
+}
+
+}  // namespace
+}  // namespace rc10::test::cubemars_mit_test

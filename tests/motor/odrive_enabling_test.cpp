@@ -1,0 +1,95 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "motor/odrive_bench.hpp"
+
+namespace rc10::test::odrive_enabling_test {
+namespace {
+
+using namespace odrive_bench;
+
+TEST_F(OdriveMotor, EnablingAsksForTorqueControlAndLimitsBeforeClosedLoop) {
+  heartbeat(0, 1);
+  sample();
+  motor_->order(FrameKind::kEnable);
+  EXPECT_EQ(motor_->sequenceProgress(), SequenceProgress::kPending);
+  expectRest(tick());
+  const auto frames = tick();
+  EXPECT_THAT(messages(frames),
+              testing::ElementsAre(odrive::Message::kSetInputTorque, odrive::Message::kSetControllerMode,
+                                   odrive::Message::kSetLimits, odrive::Message::kSetAxisState));
+  EXPECT_EQ(numberAt(frames[0], 0), 0.0F);
+  EXPECT_EQ(frames[1].data[0], 1);
+  EXPECT_EQ(frames[1].data[4], 1);
+  EXPECT_FLOAT_EQ(numberAt(frames[2], 0), 25.0F);
+  EXPECT_FLOAT_EQ(numberAt(frames[2], 4), 20.0F);
+  EXPECT_EQ(frames[3].data[0], 8);
+  EXPECT_EQ(motor_->sequenceProgress(), SequenceProgress::kPending);
+  // Until it is done nothing but 0 N·m.
+  int told = 0;
+  for (int i = 0; i < 50; ++i) {
+    for (const auto& frame : tick()) {
+      EXPECT_EQ(odrive::messageOf(frame.id), odrive::Message::kSetInputTorque);
+      EXPECT_EQ(numberAt(frame, 0), 0.0F);
+      ++told;
+    }
+  }
+  EXPECT_EQ(told, 50);
+  heartbeat(0, 8);
+  tick();
+  EXPECT_EQ(motor_->sequenceProgress(), SequenceProgress::kDone);
+}
+
+TEST_F(OdriveMotor, AnOldHeartbeatDoesNotFinishEnabling) {
+  heartbeat(0, 8);
+  now_ += 1ms;
+  motor_->order(FrameKind::kEnable);
+  for (int i = 0; i < 20; ++i) tick();
+  EXPECT_EQ(motor_->sequenceProgress(), SequenceProgress::kPending);
+}
+
+TEST_F(OdriveMotor, ADriveInAnotherStateIsMadeIdleFirst) {
+  heartbeat(0, 8);
+  sample();
+  motor_->order(FrameKind::kEnable);
+  for (int i = 0; i < 20; ++i) expectRest(tick());
+  heartbeat(0, 1);
+  EXPECT_EQ(tick().size(), 4U);
+}
+
+TEST_F(OdriveMotor, UnansweredStepsAreAskedFiveTimesAndThenFail) {
+  heartbeat(0, 1);
+  motor_->order(FrameKind::kEnable);
+  int asked = 0;
+  for (int i = 0; i < 2000 && motor_->sequenceProgress() == SequenceProgress::kPending; ++i) {
+    for (const auto& frame : tick()) {
+      asked += odrive::messageOf(frame.id) == odrive::Message::kSetAxisState && frame.data[0] == 8 ? 1 : 0;
+    }
+  }
+  EXPECT_EQ(motor_->sequenceProgress(), SequenceProgress::kFailed);
+  EXPECT_EQ(asked, 5);
+  expectRest(tick());
+}
+
+TEST_F(OdriveMotor, EnablingFailsAtOnceOnAnErrorAndClearsNone) {
+  heartbeat(0x100, 1);
+  motor_->order(FrameKind::kEnable);
+  for (int i = 0; i < 3; ++i) {
+    for (const auto& frame : tick()) EXPECT_NE(odrive::messageOf(frame.id), odrive::Message::kClearErrors);
+  }
+  EXPECT_EQ(motor_->sequenceProgress(), SequenceProgress::kFailed);
+}
+
+TEST_F(OdriveMotor, EnablingBeginsAnewAfterAnotherOrder) {
+  enable();
+  motor_->order(FrameKind::kRest);
+  expectRest(tick());
+  heartbeat(0, 1);
+  motor_->order(FrameKind::kEnable);
+  EXPECT_EQ(motor_->sequenceProgress(), SequenceProgress::kPending);
+  tick();
+  EXPECT_EQ(motor_->sequenceProgress(), SequenceProgress::kPending);
+}
+
+}  // namespace
+}  // namespace rc10::test::odrive_enabling_test

@@ -1,0 +1,146 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "robot_rig.hpp"
+
+namespace rc10 {
+inline namespace robot_client {
+namespace test::robot_moves_test {
+namespace {
+
+using namespace std::chrono_literals;
+using namespace rc10::literals;
+using testing::Contains;
+using testing::HasSubstr;
+using testing::IsEmpty;
+using Outcome = MoveResult::Outcome;
+
+// ---- moves
+
+TEST_F(RobotTest, AMoveIsDoneWhenTheMotorIsThere) {
+  connectEnabled();
+  auto move = robot_->motor("lift").moveTo(720_deg, 2_deg, kPatience);
+  ASSERT_TRUE(rc10d_.awaitCommands(1));
+  {
+    const std::lock_guard lock(rc10d_.mutex);
+    fakeMotor("lift").total_angle_deg = 719.0;
+  }
+  see(200ms);
+  see(100ms);
+  see(100ms);
+  const auto result = move.get();
+  EXPECT_EQ(result.outcome, Outcome::kDone) << result.reason;
+  EXPECT_EQ(result.angle_deg, 719.0);
+}
+
+TEST_F(RobotTest, AMoveThatCannotBeginHasFailedAtOnce) {
+  connect();
+  see();
+  auto move = robot_->motor("lift").moveTo(720_deg);
+  const auto result = move.get();
+  EXPECT_EQ(result.outcome, Outcome::kFailed);
+  EXPECT_EQ(result.reason, "lift is READY: enable it first");
+}
+
+TEST_F(RobotTest, AMoveTimesOut) {
+  connectEnabled();
+  const auto result = robot_->motor("lift").moveTo(720_deg, 2_deg, 10ms).get();
+  EXPECT_EQ(result.outcome, Outcome::kTimeout) << result.reason;
+}
+
+TEST_F(RobotTest, AnotherTargetEndsAMove) {
+  connectEnabled();
+  auto move = robot_->motor("lift").moveTo(720_deg, 2_deg, kPatience);
+  ASSERT_TRUE(robot_->motor("lift").brake());
+  const auto result = move.get();
+  EXPECT_EQ(result.outcome, Outcome::kFailed);
+  EXPECT_EQ(result.reason, "lift was given another target");
+}
+
+TEST_F(RobotTest, AFaultEndsAMove) {
+  connectEnabled();
+  auto move = robot_->motor("lift").moveTo(720_deg, 2_deg, kPatience);
+  {
+    const std::lock_guard lock(rc10d_.mutex);
+    fakeMotor("lift").status = motor_state_t::STATUS_FAULT;
+    fakeMotor("lift").fault_text = "stalled";
+  }
+  see(500ms);
+  EXPECT_THAT(move.get().reason, HasSubstr("in FAULT (stalled)"));
+}
+
+TEST_F(RobotTest, LeavingEndsAMove) {
+  connectEnabled();
+  auto move = robot_->motor("lift").moveTo(720_deg, 2_deg, kPatience);
+  robot_.reset();
+  EXPECT_THAT(move.get().reason, HasSubstr("let go of the robot"));
+}
+
+// ---- leaving
+
+TEST_F(RobotTest, LeavingIsATimeoutAtOnce) {
+  connect();
+  ASSERT_TRUE(robot_->enable({"lift", "wheel"}));
+  ASSERT_TRUE(robot_->motor("wheel").setTargetRPM(60_rpm));
+  ASSERT_TRUE(rc10d_.awaitCommands(1));
+  ASSERT_TRUE(robot_->close());
+  ASSERT_TRUE(rc10d_.awaitCommand([](const command_t& command) { return command.validity_ms == 1; }));
+  const auto last = rc10d_.commands().back();
+  ASSERT_EQ(last.setpoint_count, 1);
+  EXPECT_EQ(last.setpoints[0].mode, +setpoint_t::MODE_VELOCITY)
+      << "COAST would leave on_timeout nothing to do";
+  EXPECT_EQ(last.setpoints[0].value, 60.0);
+  EXPECT_THAT(rc10d_.operations(), Not(Contains(HasSubstr("disable"))));
+}
+
+TEST_F(RobotTest, LeavingEndsNoTargetThatIsNotHeldAnyMore) {
+  connect();
+  ASSERT_TRUE(robot_->enable({"wheel"}));
+  ASSERT_TRUE(robot_->motor("wheel").setTargetRPM(60_rpm));
+  ASSERT_TRUE(robot_->motor("wheel").coast());
+  ASSERT_TRUE(rc10d_.awaitCommand(
+      [](const command_t& command) { return command.setpoints[0].mode == +setpoint_t::MODE_COAST; }));
+  const auto sent = rc10d_.commands().size();
+  ASSERT_TRUE(robot_->close());
+  EXPECT_EQ(rc10d_.commands().size(), sent);
+}
+
+TEST_F(RobotTest, LeavingMayDisableAndNothingElse) {
+  auto leaving = options();
+  leaving.at_end = AtEnd::kDisable;
+  connect(leaving);
+  ASSERT_TRUE(robot_->enable({"wheel"}));
+  ASSERT_TRUE(robot_->motor("wheel").setTargetRPM(60_rpm));
+  ASSERT_TRUE(robot_->close());
+  EXPECT_THAT(rc10d_.operations(), Contains("disable wheel"));
+  for (const auto& command : rc10d_.commands()) EXPECT_NE(command.setpoints[0].mode, +setpoint_t::MODE_COAST);
+}
+
+TEST_F(RobotTest, LeavingMayCoastAndDisable) {
+  auto leaving = options();
+  leaving.at_end = AtEnd::kCoast;
+  connect(leaving);
+  ASSERT_TRUE(robot_->enable({"lift", "wheel"}));
+  ASSERT_TRUE(robot_->motor("wheel").setTargetRPM(60_rpm));
+  ASSERT_TRUE(rc10d_.awaitCommands(1));
+  ASSERT_TRUE(robot_->close());
+  const auto last = rc10d_.commands().back();
+  ASSERT_EQ(last.setpoint_count, 1);
+  EXPECT_EQ(last.setpoints[0].motor, "wheel");
+  EXPECT_EQ(last.setpoints[0].mode, +setpoint_t::MODE_COAST);
+  EXPECT_THAT(rc10d_.operations(), Contains("disable lift,wheel"));
+  EXPECT_FALSE(robot_->motor("wheel").setTargetRPM(60_rpm));
+  EXPECT_EQ(rc10d_.commands().back().seq, last.seq);
+}
+
+TEST_F(RobotTest, LeavingDisablesNothingThatItHasNotEnabled) {
+  connect();
+  see();
+  ASSERT_TRUE(robot_->close());
+  EXPECT_THAT(rc10d_.operations(), IsEmpty());
+}
+
+}  // namespace
+}  // namespace test::robot_moves_test
+}  // namespace robot_client
+}  // namespace rc10
