@@ -105,7 +105,7 @@ class AcmeFamily final : public MotorFamily {
 
 }  // namespace
 
-// The drive reports its rotor: so many of its turns are one of the output shaft.
+// Rotor turns for one turn of the output shaft: the drive reports its rotor.
 ACME_Motor::ACME_Motor(const MotorSettings& settings, const MotorTraits& traits)
     : SoloMotor(settings, traits, gearRatioOf(settings, traits)),
       filters_{FrameFilter{.id = feedbackId(settings.id)}},

@@ -48,8 +48,8 @@ class ACME_Motor : public rc10::SoloMotor {
   std::array<rc10::CanId, 1> command_ids_;
   Mode mode_ = Mode::kOff;
   double current_a_ = 0.0;
-  double velocity_rpm_ = 0.0;  ///< Of the rotor.
-  std::uint8_t flags_ = 0;     ///< Of the last feedback.
+  double velocity_rpm_ = 0.0;  ///< Velocity of the rotor.
+  std::uint8_t flags_ = 0;     ///< Flags of the last feedback.
   bool clear_ = false;         ///< The next frame clears the fault.
 };
 

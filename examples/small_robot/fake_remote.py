@@ -15,7 +15,7 @@ import time
 import tty
 from pathlib import Path
 
-PERIOD_S = 0.014  # a DR16 sends so often
+PERIOD_S = 0.014  # period of a DR16
 CENTRE = 1024
 UP, DOWN, MIDDLE = 1, 2, 3
 

@@ -42,9 +42,9 @@ constexpr double kNearly = 0.2;       // of a shot: the ball has left by then
 
 constexpr auto kPeriod = 20ms;
 constexpr auto kValidity = 200ms;   // some periods: a message may get lost
-constexpr auto kForgotten = 500ms;  // idle for so long, the feeder has no shot left to fire
+constexpr auto kForgotten = 500ms;  // idle time after which the feeder has no shot left
 constexpr auto kSilence = 500ms;    // older than this nothing is believed
-constexpr auto kPatience = 15s;     // no state of the mission takes so long
+constexpr auto kPatience = 15s;     // time limit of a state of the mission
 
 constexpr const char* kClient = "small-robot";
 constexpr std::array kModules{"remote", "base", "gimbal", "feeder"};
@@ -136,7 +136,7 @@ class SmallRobot {
     (void)gimbal_.send({{"yaw_deg", kYawDeg}, {"pitch_deg", kPitchDeg}}, {.validity = kValidity});
   }
 
-  /// Why the robot must not go on; empty: all is well.
+  /// Reason why the robot must not go on; empty: all is well.
   [[nodiscard]] std::string findTrouble() const {
     const auto state = robot_.state();
     if (!state || state->age() > kSilence) return "no news of rc10d";

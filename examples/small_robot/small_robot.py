@@ -33,9 +33,9 @@ NEARLY = 0.2  # of a shot: the ball has left by then
 
 RATE_HZ = 50
 VALIDITY_MS = 200  # some periods: a message may get lost
-FORGOTTEN_S = 0.5  # idle for so long, the feeder has no shot left to fire
+FORGOTTEN_S = 0.5  # idle time after which the feeder has no shot left
 SILENCE_S = 0.5  # older than this nothing is believed
-PATIENCE_S = 15.0  # no state of the mission takes so long
+PATIENCE_S = 15.0  # time limit of a state of the mission
 
 CLIENT = "small-robot"
 MODULES = ("remote", "base", "gimbal", "feeder")
@@ -158,7 +158,7 @@ class SmallRobot:
         self.gimbal.send(yaw_deg=YAW_DEG, pitch_deg=PITCH_DEG, validity_ms=VALIDITY_MS)
 
     def find_trouble(self) -> str:
-        """Why the robot must not go on; empty: all is well."""
+        """Reason why the robot must not go on; empty: all is well."""
         state = self.robot.state
         if state.age_s > SILENCE_S:
             return "no news of rc10d"

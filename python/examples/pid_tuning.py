@@ -30,13 +30,13 @@ if TYPE_CHECKING:
 _PULSE_S = 0.12
 # The first part of a pulse: the current rises.
 _RISING_S = 0.02
-# An overshoot of so many percent is as bad as a second more of settling.
+# Percent of overshoot that are as bad as a second of settling.
 _PERCENT_PER_S = 50.0
 
 
 @dataclass(frozen=True)
 class Gains:
-    """Of the velocity loop, under the names of the configuration."""
+    """Gains of the velocity loop, under the names of the configuration."""
 
     kp_a_per_rpm: float
     ki_a_per_rpm_s: float

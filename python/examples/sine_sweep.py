@@ -28,7 +28,7 @@ if TYPE_CHECKING:
 _COMMAND_HZ = 200.0
 _HIGHEST_HZ = 20.0
 _VALIDITY_MS = 100
-# Of each frequency: the beginning is the transient.
+# Shortest sine of each frequency: its beginning is the transient.
 _SETTLE_PERIODS, _PERIODS, _LEAST_S = 1, 4, 0.4
 # Tries of a run that a busy computer has disturbed.
 _TRIES = 3

@@ -25,9 +25,9 @@ class FakeDaemon:
     link: LcmLink
     motors: tuple[str, ...] = ("wheel", "yaw", "left-arm")
     deaf_to_requests: int = 0
-    """How many receptions of requests are lost."""
+    """Number of requests lost on the way here."""
     lost_answers: int = 0
-    """How many answers are lost."""
+    """Number of answers lost."""
     shows_estop: bool = True
     verdicts: dict[str, tuple[int, str]] = field(default_factory=dict)
     """By operation, the status and message of the answer; OK without one."""

@@ -29,7 +29,7 @@ class PartCost:
 
 @dataclass(frozen=True)
 class SetCost:
-    """How long a set of parts took from the command to the result, packages included."""
+    """Time that a set of parts took from the command to the result, packages included."""
 
     cold_s: float
     warm_s: float

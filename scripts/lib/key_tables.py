@@ -27,7 +27,7 @@ from typing import Any, NamedTuple
 SCHEMA = "config/rc10d.schema.json"
 TABLE = re.compile(r"(<!-- keys: (?P<of>[^>]+?) -->\n)(?P<table>.*?)(<!-- end of keys -->)", re.S)
 HEAD = "| key | unit | values | default | meaning |\n|---|---|---|---|---|\n"
-# Of what src/config/report/schema.cpp makes of a key.
+# Words for what src/config/report/schema.cpp makes of a key.
 VALUES = re.compile(r" Values: (.+)\.$")
 UNIT = re.compile(r" Unit: (.+?)\.$")
 DEFAULT = re.compile(r" ?Default: ((?:[^.]|\.(?=\S))+)\.")

@@ -36,7 +36,7 @@ TOLD = re.compile(r"^(SKIPPED|NOTE) .*", re.MULTILINE)
 
 # These run what the dev build has made.
 TESTS_OF_DEV = {"unit", "kernel", "host", "faults", "vm", "soak", "web"}
-# How many cores a part keeps busy; 0: it waits most of its time. All others use every core.
+# Cores that a part keeps busy; 0: it waits most of its time. All others use every core.
 CORES = {"host": 0, "pages": 1, "lint": 1, "web": 1, "vm": 1, "package": 1}
 ALL_CORES = os.cpu_count() or 1
 
@@ -131,7 +131,7 @@ def end_group(process: subprocess.Popen[bytes]) -> None:
 
 
 def kill_what_is_left(process: subprocess.Popen[bytes], grace_s: float = 5.0) -> None:
-    """Of the group whose leader has ended."""
+    """End of the processes of a group whose leader has ended."""
     deadline = time.monotonic() + grace_s
     with contextlib.suppress(ProcessLookupError):
         while time.monotonic() < deadline:

@@ -55,7 +55,7 @@ def digest_of_inputs(tool: bytes, entry: dict[str, str]) -> str | None:
     texts = (read_by_tidy(path.read_text()) for path in sorted(own) if REPO / "src" in path.parents)
     # Comments leave empty lines and other line numbers.
     preprocessed = re.sub(rb"^(# \d+ .*)?\n", b"", done.stdout, flags=re.MULTILINE)
-    # Of a clone's folder only what is below it.
+    # Paths below a clone's folder.
     command = os.fsencode(" ".join(words)).replace(os.fsencode(REPO), b"")
     inputs = [tool, command, settings, preprocessed, *map(str.encode, texts)]
     return hashlib.sha256(b"\0".join(inputs)).hexdigest()
@@ -148,7 +148,7 @@ def says_the_same(old: str, new: str) -> bool:
 
 
 def changed_files(since: str) -> set[Path]:
-    """Of the C++ files those that differ from a commit by more than includes and comments.
+    """C++ files that differ from a commit by more than includes and comments.
 
     A file that was only moved says nothing new.
     """

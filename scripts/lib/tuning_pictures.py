@@ -32,7 +32,7 @@ SECONDS = 1.0
 CURRENT_A = (-11.0, 11.0)
 DPI = 85
 PATIENCE_S = 20.0
-# A computer that pauses in a step spoils it: the best of so many. States come every 5 ms.
+# Steps of which the best is shown: a computer that pauses spoils one. States come every 5 ms.
 TRIES, WHOLE_S = 10, 0.007
 STANDS_RPM = 0.05
 
@@ -179,7 +179,7 @@ class Robot:
 
 
 def draw(picture: Picture, steps: list[Step]) -> None:
-    """How each followed above, the current that it took below."""
+    """Curves of each: position above, current below."""
     figure = Figure(figsize=(8.2, 3.2), layout="constrained")
     axes = figure.subplots(
         2, len(steps), sharex=True, sharey="row", squeeze=False, height_ratios=(2, 1)

@@ -78,7 +78,7 @@ class Drawing:
         self.wire((x, middle + 14), (x, bottom))
 
     def contact(self, x: int, y: int, kind: str = "wire", *, closed: bool) -> None:
-        """Of 50 px, from left to right. Drawn as it is without a hand on it and without power."""
+        """Contact of 50 px, from left to right. Drawn without a hand on it and without power."""
         self.dot(x, y)
         self.dot(x + 50, y)
         self.wire((x, y), (x + 50, y - (7 if closed else 20)), kind=kind)

@@ -24,7 +24,7 @@ class Debouncer {
 
  private:
   Duration lasting_;
-  MonotonicTime since_{};  ///< Of `latest_`.
+  MonotonicTime since_{};  ///< Time since which it is `latest_`.
   bool known_ = false;
   bool latest_ = false;
   bool value_ = false;

@@ -39,7 +39,7 @@ enum class EventCode : std::int32_t {
   kLinkBusy = 402,          ///< rc10-lcm: rc10d does not take the commands: dropped
 };
 
-/// Why a setpoint of an accepted message did not act.
+/// Reason why a setpoint of an accepted message did not act.
 enum class SkipReason : std::int32_t {
   kNotActive,
   kNoReference,
@@ -49,7 +49,7 @@ enum class SkipReason : std::int32_t {
   kGroup,      ///< Not every motor of its group is ACTIVE, and they act together only.
 };
 
-/// Why a group has stopped.
+/// Reason why a group has stopped.
 enum class GroupStop : std::int32_t {
   kLost,      ///< `source` is offline or in fault.
   kDisabled,  ///< `source` was disabled.

@@ -4,8 +4,8 @@
 
 namespace rc10 {
 
-/// Why a motor is in FAULT. The numbers are part of the LCM contract (motor_state_t.fault, docs/lcm.md)
-/// and never change; link::faultText() has the words.
+/// Reason why a motor is in FAULT. The numbers are part of the LCM contract (motor_state_t.fault,
+/// docs/lcm.md) and never change; link::faultText() has the words.
 enum class FaultCode : std::int32_t {
   kNone = 0,
   // Found by rc10d.

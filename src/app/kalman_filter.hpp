@@ -67,7 +67,7 @@ class KalmanFilter {
 
   [[nodiscard]] const State& state() const noexcept { return state_; }
   [[nodiscard]] const StateMatrix& covariance() const noexcept { return covariance_; }
-  /// Of the last measurement, taken or not: how far it was from what was expected.
+  /// Distance of the last measurement, taken or not, from the expected one.
   [[nodiscard]] double normalisedInnovationSquared() const noexcept { return normalised_innovation_squared_; }
 
  private:

@@ -13,7 +13,7 @@ constexpr double kChangeSeconds = 0.025;
 constexpr double kMemorySeconds = 0.5;
 // A value that is told again is a new one after this time: a shaft may stand still.
 constexpr double kRepeatSeconds = 0.025;
-// Of the motor's energy. A vehicle that carries the shaft leaves 1, an exact match noise.
+// Share of the motor's energy. A vehicle that carries the shaft leaves 1, an exact match noise.
 constexpr double kTight = 0.2;
 // The same, of the worst candidate less the best: at an even acceleration each lag fits as well.
 constexpr double kDistinct = 0.2;

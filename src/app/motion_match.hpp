@@ -16,7 +16,7 @@ class MotionMatch {
 
   struct Config {
     double enough = 1.0;  ///< Integral over time of the motor's squared change before a judgement, unit^2 s.
-    double circular_period = 0.0;  ///< Of angles; 0: the signals do not wrap.
+    double circular_period = 0.0;  ///< Period of angles; 0: the signals do not wrap.
   };
 
   explicit MotionMatch(const Config& config) noexcept : config_(config) {}
@@ -45,9 +45,9 @@ class MotionMatch {
   };
   /// Sums over changes of the recent past, for one candidate.
   struct Candidate {
-    double energy = 0.0;    ///< Of the motor's changes.
-    double same = 0.0;      ///< Of the sensor's less the motor's.
-    double opposite = 0.0;  ///< Of the sensor's plus the motor's.
+    double energy = 0.0;    ///< Energy of the motor's changes.
+    double same = 0.0;      ///< Energy of the sensor's less the motor's.
+    double opposite = 0.0;  ///< Energy of the sensor's plus the motor's.
   };
 
   [[nodiscard]] const Moment& ago(std::size_t ticks) const noexcept {

@@ -8,7 +8,7 @@ namespace {
 
 // Long against the sample period, short against a change of load.
 constexpr float kNoiseSeconds = 0.2F;
-// Of the range of outputs: a measurement that leaps is no noise.
+// Share of the range of outputs: a measurement that leaps is no noise.
 constexpr float kMostNoise = 0.1F;
 
 }  // namespace

@@ -51,7 +51,7 @@ struct Pose2D {
   return seenFrom(heading_deg, world);
 }
 
-/// How the world sees what the robot with this heading drives. Not finite: rest.
+/// Velocity in the world of a robot with this heading. Not finite: rest.
 [[nodiscard]] inline Twist2D bodyToWorld(const Twist2D& body, double heading_deg) noexcept {
   return seenFrom(-heading_deg, body);
 }

@@ -7,7 +7,7 @@
 
 namespace rc10 {
 
-/// Why something that happens before the first tick failed: cause, place and fix, in words.
+/// Failure before the first tick: cause, place and fix, in words.
 /// The real-time threads never make one.
 struct Error {
   std::string message;

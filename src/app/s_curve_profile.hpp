@@ -59,7 +59,7 @@ class SCurveProfile {
 
   Limits limits_;
   ProfileState state_;
-  double target_ = 0.0;  ///< Of the last step().
+  double target_ = 0.0;  ///< Target of the last step().
   double ahead_ = 0.0;   ///< From it to the position: what the position of state_ has no digits for.
 };
 

@@ -6,7 +6,7 @@ namespace rc10 {
 /// time a reference must go on from where it was, not jump to where it would be.
 inline constexpr float kMaxStepSeconds = 0.1F;
 
-/// How far to step: at most kMaxStepSeconds. 0 for a dt of 0, below, or NaN: time stands still.
+/// Step: at most kMaxStepSeconds. 0 for a dt of 0, below, or NaN: time stands still.
 [[nodiscard]] constexpr double stepSeconds(float dt_s) noexcept {
   if (!(dt_s > 0.0F)) return 0.0;
   return static_cast<double>(dt_s < kMaxStepSeconds ? dt_s : kMaxStepSeconds);

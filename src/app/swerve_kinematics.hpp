@@ -56,7 +56,7 @@ class SwerveKinematics {
   double rest_below_m_s_;
 };
 
-/// How a module gets to what it should do: it turns at most 90 degrees, backwards rolling where that is
+/// Way of a module to its command: it turns at most 90 degrees, backwards rolling where that is
 /// the shorter way, and rolls only with the part of the speed that already points the right way
 /// (cosine of what is left to turn), so that the robot does not drive off its path meanwhile.
 [[nodiscard]] SwerveModule steered(const SwerveModule& wanted, double measured_angle_deg) noexcept;

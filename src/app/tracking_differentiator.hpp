@@ -29,7 +29,7 @@ class TrackingDifferentiator {
  private:
   float bandwidth_rad_s_;
   State state_;
-  double target_ = 0.0;      ///< Of the last step.
+  double target_ = 0.0;      ///< Target of the last step.
   double distance_ = 0.0;    ///< From it to the value.
   double rate_per_s_ = 0.0;  ///< The state's, with all its digits.
 };

@@ -10,7 +10,7 @@ namespace rc10 {
 
 // Numbers and words of the protocol: those of lcm_types/, of rc10ctl, of the black box and of the log.
 
-/// How a target is meant: setpoint_t.lcm.
+/// Meaning of a target: setpoint_t.lcm.
 enum class ControlMode : std::uint8_t {
   kCoast = 0,
   kCurrent = 1,     ///< A
@@ -51,7 +51,7 @@ enum class Acting : std::uint8_t {
   kRamp = 5,  ///< A velocity that falls to 0.
 };
 
-/// Why a motor does not obey, or the robot does not run: motor_state_t.lcm.
+/// Reason why a motor does not obey, or the robot does not run: motor_state_t.lcm.
 enum class StopCause : std::uint8_t {
   kNone = 0,
   kRequest = 1,
@@ -190,7 +190,7 @@ template <std::size_t N, typename Number>
 [[nodiscard]] constexpr const char* toString(Severity severity) noexcept {
   return detail::word(kSeverityWords, severity, "unknown");
 }
-/// Of a target of this mode; "" where there is none.
+/// Unit of a target of this mode; "" where there is none.
 [[nodiscard]] constexpr const char* unitOf(ControlMode mode) noexcept {
   return detail::word(kControlModeUnits, mode, "");
 }

@@ -20,7 +20,7 @@
 namespace rc10::blackbox {
 namespace {
 
-// Four seconds of eight motors at 1 kHz: so long the io thread may be kept from running.
+// Four seconds of eight motors at 1 kHz, the longest pause of the io thread.
 constexpr std::uint64_t kRingBytes = std::uint64_t{1} << 20U;
 
 [[nodiscard]] Error trouble(const std::string& path, const char* why) { return {path + ": " + why}; }

@@ -62,7 +62,7 @@ struct Header {
   link::Name robot;
   link::Text<32> program_version;
   link::Text<72> config_hash;  ///< SHA-256 of the configuration file, in hexadecimal digits.
-  link::Text<32> cause;        ///< Of a copy: why it was made. Empty: not a copy.
+  link::Text<32> cause;        ///< Cause of a copy. Empty: not a copy.
   std::array<BusInfo, link::kMaxBuses> buses;
   std::array<MotorInfo, link::kMaxMotors> motors;
   std::array<ModuleInfo, link::kMaxModules> modules;
@@ -175,7 +175,7 @@ struct Signals {
 };
 static_assert(link::kMaxSignals <= 32, "a bit each");
 
-/// Bytes of a record with so many inputs.
+/// Bytes of a record with this number of inputs.
 [[nodiscard]] constexpr std::size_t signalsBytes(std::size_t count) noexcept {
   return offsetof(Signals, values) + count * sizeof(double);
 }

@@ -94,7 +94,7 @@ Result<void> takeImage(int fd, const Sink& sink, const std::function<void(Header
   head.control = now;
   head.control.head = std::max(*end, *tail);
   head.control.tail = *tail;
-  // Ahead of the end: it took so long that all of it was overwritten.
+  // Ahead of the end: all of it was overwritten meanwhile.
   head.control.oldest = std::min(*oldest, head.control.head);
   if (amend) amend(header);
   return sink(0, {reinterpret_cast<const std::byte*>(&head), sizeof head});

@@ -8,7 +8,7 @@
 
 namespace rc10 {
 
-/// How the configuration wants a CAN controller.
+/// Settings of a CAN controller in the configuration.
 struct CanLinkSettings {
   int bitrate = 0;                 ///< bit/s
   int data_bitrate = 0;            ///< bit/s of CAN FD's data phase; 0: a classic bus.

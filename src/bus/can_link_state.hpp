@@ -18,7 +18,7 @@ struct CanLink {
   std::string kind;                           ///< "can": a controller; "vcan", "vxcan": none.
   std::optional<std::uint32_t> bitrate;       ///< bit/s; empty: never set.
   std::optional<double> sample_point;         ///< Share of the bit, 0 to 1.
-  std::optional<std::uint32_t> data_bitrate;  ///< Of FD's data phase.
+  std::optional<std::uint32_t> data_bitrate;  ///< Data bitrate of FD's data phase.
   std::optional<double> data_sample_point;
   std::uint32_t restart_ms = 0;  ///< The driver's automatic restart after bus-off; 0: none.
   std::optional<bool> bus_off;

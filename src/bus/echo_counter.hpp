@@ -18,7 +18,7 @@ class EchoCounter {
 
   struct Count {
     std::size_t messages = 0;   ///< kBatch: there may be more.
-    std::size_t confirmed = 0;  ///< Of these, sent on this computer.
+    std::size_t confirmed = 0;  ///< Frames of these that were sent on this computer.
   };
   /// One system call. Never blocks.
   [[nodiscard]] Count take() noexcept;

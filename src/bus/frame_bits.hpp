@@ -73,7 +73,7 @@ namespace detail {
   return {frame.id.extended, frame.fd, frame.bit_rate_switch, payload};
 }
 
-/// How long the bits occupy the bus, rounded up to a nanosecond.
+/// Time for which the bits occupy the bus, rounded up to a nanosecond.
 [[nodiscard]] Duration frameTime(FrameBits bits, BitRates rates) noexcept;
 
 }  // namespace rc10

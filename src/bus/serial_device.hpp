@@ -23,7 +23,7 @@ enum class SerialState : std::uint8_t {
 struct SerialCounters {
   std::uint64_t bytes_in = 0;
   std::uint64_t chunks = 0;
-  std::uint64_t dropped_chunks = 0;  ///< The scheduler did not run for so long that the ring was full.
+  std::uint64_t dropped_chunks = 0;  ///< The ring was full: the scheduler did not run.
   std::uint64_t bytes_out = 0;       ///< Handed over to be written.
   std::uint64_t refused_bytes = 0;   ///< Not sent: the port is absent, or the queue is full.
 };
@@ -58,7 +58,7 @@ class SerialDevice {
 
   /// When the latest chunk was read; meaningless before the first.
   [[nodiscard]] MonotonicTime lastReceived() const noexcept { return last_received_; }
-  /// How long nothing has come, frame or not. Duration::max() if nothing ever has.
+  /// Silence, frame or not. Duration::max() if nothing ever has.
   [[nodiscard]] Duration age(MonotonicTime now) const noexcept;
 
  private:

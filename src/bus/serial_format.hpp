@@ -11,7 +11,7 @@ namespace rc10 {
 
 enum class Parity : std::uint8_t { kNone, kEven, kOdd };
 
-/// How bytes look on the wire.
+/// Form of bytes on the wire.
 struct SerialFormat {
   int baud = 115200;  ///< bit/s; any, not only those of the list in termios.
   int data_bits = 8;  ///< 5 to 8
@@ -24,7 +24,7 @@ struct SerialFormat {
 
   /// "115200 8N1"
   [[nodiscard]] std::string text() const;
-  /// Of one byte with its start, parity and stop bits.
+  /// Time of one byte with its start, parity and stop bits.
   [[nodiscard]] Duration byteTime() const noexcept;
 
   friend bool operator==(const SerialFormat&, const SerialFormat&) = default;

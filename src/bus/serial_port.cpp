@@ -121,7 +121,7 @@ Result<void> setFormat(int fd, const std::string& path, const SerialFormat& form
   return {};
 }
 
-// Of FTDI adapters it lowers the latency timer from 16 ms to 1 ms; of UARTs it wakes the reader at once.
+// Low latency: on FTDI adapters a latency timer of 1 ms instead of 16; on UARTs it wakes the reader at once.
 // Other drivers do not know it, and are quick.
 void askForLowLatency(int fd) {
   serial_struct settings{};

@@ -9,7 +9,7 @@
 
 namespace rc10 {
 
-/// How SocketCAN writes a frame: a struct can_frame (16 bytes) or a struct canfd_frame (72 bytes). The
+/// Form of a frame in SocketCAN: a struct can_frame (16 bytes) or a struct canfd_frame (72 bytes). The
 /// first is a prefix of the second, so one buffer serves for both and the size tells them apart.
 static_assert(offsetof(can_frame, data) == offsetof(canfd_frame, data));
 static_assert(offsetof(can_frame, len) == offsetof(canfd_frame, len));

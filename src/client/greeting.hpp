@@ -10,7 +10,7 @@
 #include "app/unique_fd.hpp"
 #include "link/link_protocol.hpp"
 
-/// How a connection to rc10d begins, and what to tell a user for whom it does not.
+/// Begin of a connection to rc10d, and words for a user for whom it fails.
 namespace rc10::client {
 
 using Deadline = std::chrono::steady_clock::time_point;

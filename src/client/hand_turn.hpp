@@ -18,7 +18,7 @@ struct HandTurn {
   };
   Outcome outcome = Outcome::kGood;
   std::size_t moved = 0;      ///< The motor that moved most, its place in Welcome.
-  double turned_deg = 0.0;    ///< How far it says it turned.
+  double turned_deg = 0.0;    ///< Turn that it reports.
   double ratio_factor = 1.0;  ///< kWrongRatio: what the configured gear ratio has to be multiplied by.
 };
 

@@ -27,7 +27,7 @@ class JogKeys {
 /// held.
 class JogSpeed {
  public:
-  /// `dead_man`: so long after the last key the motor stands.
+  /// `dead_man`: time from the last key until the motor stands.
   JogSpeed(double speed_rpm, double most_rpm, Duration dead_man)
       : speed_rpm_(std::min(speed_rpm, most_rpm)), most_rpm_(most_rpm), dead_man_(dead_man) {}
 

@@ -5,7 +5,7 @@
 
 namespace rc10::client {
 
-/// Of a terminal. 0: not known, no bound.
+/// Size of a terminal. 0: not known, no bound.
 struct ScreenSize {
   std::size_t columns = 0;
   std::size_t rows = 0;

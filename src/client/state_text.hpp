@@ -15,7 +15,7 @@ namespace rc10::client {
 [[nodiscard]] std::string stateText(const link::Welcome& welcome, const link::State& state,
                                     const link::Diagnostics* diagnostics, bool colour = false);
 
-/// How late and how loaded the robot is.
+/// Lateness and load of the robot.
 [[nodiscard]] std::string diagnosticsText(const link::Welcome& welcome, const link::Diagnostics& diagnostics);
 
 /// The measured counterpart of a mode's target: the current for CURRENT, an angle for the angle modes, the

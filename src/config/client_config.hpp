@@ -26,7 +26,7 @@ struct ClientConfig {
     kUser,     ///< Name or number of the user at the other end of the link socket.
     kGroup,    ///< The same of one of the user's groups.
   };
-  int line = 0;  ///< Of the file.
+  int line = 0;  ///< Line in the file.
   By by = By::kUser;
   std::string who;
   std::array<bool, kRightWords.size()> rights{};

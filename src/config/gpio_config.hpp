@@ -36,8 +36,8 @@ struct ContactGpioConfig {
 /// An output that toggles while the scheduler ticks.
 struct HeartbeatGpioConfig {
   GpioPin pin;
-  Duration period{std::chrono::milliseconds{20}};  ///< Of the square wave.
-  std::optional<Duration> rests_in_estop_after;    ///< Of the e-stop; none: it goes on.
+  Duration period{std::chrono::milliseconds{20}};  ///< Period of the square wave.
+  std::optional<Duration> rests_in_estop_after;    ///< Time after the e-stop; none: it goes on.
 };
 
 }  // namespace rc10

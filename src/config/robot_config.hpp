@@ -59,7 +59,7 @@ struct BusConfig {
   BusType type = BusType::kSocketCan;
   std::string interface;  ///< SocketCAN only.
   int bitrate = 1'000'000;
-  int data_bitrate = 0;       ///< Of the data phase of CAN FD frames; 0: a classic bus.
+  int data_bitrate = 0;       ///< Data bitrate of the data phase of CAN FD frames; 0: a classic bus.
   double sample_point = 0.0;  ///< Share of the bit, 0 to 1; 0: what the kernel chooses.
   double data_sample_point = 0.0;
   bool manage_link = false;  ///< rc10d sets the bit rate and takes the interface down and up.
@@ -97,7 +97,7 @@ struct ModuleConfig {
 };
 
 enum class RealtimePolicy : std::uint8_t { kRequired, kPreferred };
-/// Of rc10-guard.
+/// Settings of rc10-guard.
 enum class GuardPolicy : std::uint8_t { kRequired, kPreferred, kOff };
 
 /// Extent of the stop when a drive does not rest.
@@ -107,7 +107,7 @@ enum class UnrestPolicy : std::uint8_t {
   kHeartbeat,  ///< The robot, and the heartbeat, so that a relay cuts the power.
 };
 
-/// Of the scheduler's thread.
+/// Settings of the scheduler's thread.
 enum class TimerPolicy : std::uint8_t { kAuto, kTimerfd, kNanosleep };
 /// The reader of the CAN sockets.
 enum class ReceivePolicy : std::uint8_t { kTick, kThread };
@@ -154,7 +154,7 @@ struct RobotConfig {
   std::vector<ModuleConfig> modules;
 
   [[nodiscard]] Duration period() const noexcept { return std::chrono::nanoseconds{1'000'000'000 / rate_hz}; }
-  /// Of the ticks' grid, after multiples of period().
+  /// Phase of the ticks' grid, after multiples of period().
   [[nodiscard]] Duration phase() const noexcept {
     return Duration{static_cast<Duration::rep>(phase_of_period * static_cast<double>(period().count()))};
   }

@@ -8,8 +8,8 @@
 namespace rc10::doctor {
 namespace {
 
-// Of a bit. CiA 102 has 87.5 %, the kernel takes 75 % above 800 kbit/s, 80 % below it, 87.5 % below 500
-// kbit/s.
+// Sample point, as a share of a bit. CiA 102 has 87.5 %, the kernel takes 75 % above 800 kbit/s, 80 % below
+// it, 87.5 % below 500 kbit/s.
 constexpr double kEarliestSample = 0.70;
 constexpr double kLatestSample = 0.90;
 constexpr double kUsualSample = 0.80;

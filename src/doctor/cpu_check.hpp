@@ -11,7 +11,7 @@ namespace rc10::doctor {
 struct CpuFacts {
   std::vector<int> online;
   std::vector<int> isolated;
-  std::vector<std::string> governors;  ///< Of the CPUs that change their frequency, each word once.
+  std::vector<std::string> governors;  ///< Governors of the CPUs that change their frequency, each word once.
 };
 
 [[nodiscard]] CpuFacts readCpus(const HostFiles& files);

@@ -34,7 +34,7 @@ struct PriorityChange {
                                                           int priority, const HostFiles& files,
                                                           const std::vector<Process>& processes);
 
-/// Why an interface has fewer threads than one may expect, for people; empty: it has them.
+/// Reason why an interface has fewer threads than one may expect, for people; empty: it has them.
 [[nodiscard]] std::string missingThreads(const std::string& interface, const HostFiles& files,
                                          const std::vector<Process>& processes);
 

@@ -7,16 +7,16 @@
 
 namespace rc10::doctor {
 
-/// How late a thread woke up, measured here or by a running rc10d.
+/// Lateness of a thread's wake-ups, measured here or by a running rc10d.
 struct LatencyFacts {
-  Duration period{};  ///< Of the ticks.
+  Duration period{};  ///< Period of the ticks.
   Duration p50{};
   Duration p99{};
   Duration p999{};
   Duration max{};
   std::uint64_t wake_ups = 0;  ///< 0: not known.
   bool realtime = true;        ///< With SCHED_FIFO, as rc10d's scheduler.
-  std::string refused;         ///< Why not with SCHED_FIFO; empty if so.
+  std::string refused;         ///< Reason why not with SCHED_FIFO; empty if so.
   std::string by;              ///< "the latency test" or "rc10d itself".
 };
 

@@ -8,8 +8,8 @@
 
 namespace rc10::doctor {
 
-/// How late a thread woke up, in whole microseconds. All memory is there from the beginning: a real-time
-/// thread may record.
+/// Lateness of a thread's wake-ups, in whole microseconds. All memory is there from the beginning: a
+/// real-time thread may record.
 class LatencyHistogram {
  public:
   LatencyHistogram() : bins_(kBins, 0) {}
@@ -21,7 +21,7 @@ class LatencyHistogram {
   /// The latency that the given share (0 to 1) of all stays below or at.
   [[nodiscard]] Duration percentile(double share) const noexcept;
 
-  /// A row of the histogram for people: so many were below or at this and above the row before.
+  /// A row of the histogram for people: the count at or below this and above the row before.
   struct Row {
     std::int64_t up_to_us = 0;  ///< 0: above all others.
     std::uint64_t count = 0;

@@ -13,7 +13,7 @@ struct Process {
   std::string name;     ///< Up to Linux 5.16, and of a program always, its first 15 characters.
   bool kernel = false;  ///< A thread of the kernel.
   bool fifo = false;    ///< SCHED_FIFO or SCHED_RR.
-  int priority = 0;     ///< Of a fifo one.
+  int priority = 0;     ///< Priority of a fifo one.
 };
 
 [[nodiscard]] std::vector<Process> readProcesses(const HostFiles& files);

@@ -30,7 +30,7 @@ inline constexpr std::size_t kMaxIncoming = std::size_t{16} * 1024;
 struct RequestDecoding {
   Defect defect = Defect::kNone;
   bool identified = false;          ///< Client, session and seq are those of the sender: it can be answered.
-  Defect forgiven = Defect::kNone;  ///< Of an e-stop, which counts whatever else its message says.
+  Defect forgiven = Defect::kNone;  ///< Defect of an e-stop, which counts whatever else its message says.
 };
 [[nodiscard]] RequestDecoding decode(std::span<const std::byte> bytes, link::Request& request) noexcept;
 

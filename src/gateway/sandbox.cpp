@@ -97,7 +97,7 @@ std::optional<uid_t> idOfUser(const std::string& name) {
   return std::nullopt;
 }
 
-// Of root; without a user of its own, `nobody`, who owns no file.
+// Rights of root; without a user of its own, `nobody`, who owns no file.
 Result<void> leaveRoot() {
   if (::geteuid() != 0) return {};
   constexpr const char* kUser = "rc10-lcm";

@@ -10,7 +10,7 @@ namespace rc10::gateway {
 /// Lets one report a second pass and counts the rest.
 class Throttle {
  public:
-  /// How many reports were held back since the last that passed; empty: hold this one back too.
+  /// Number of reports held back since the last that passed; empty: hold this one back too.
   [[nodiscard]] std::optional<std::uint64_t> pass(MonotonicTime now) noexcept {
     if (passed_once_ && now - last_ < kInterval) {
       ++held_back_;

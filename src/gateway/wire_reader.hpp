@@ -9,7 +9,7 @@
 
 namespace rc10::gateway {
 
-/// Why bytes from a stranger are not the message they should be.
+/// Reason why bytes from a stranger are not the message they should be.
 enum class Defect : std::uint8_t {
   kNone,
   kTooLarge,          ///< More bytes than any message of the type has.
@@ -48,7 +48,7 @@ class WireReader {
   /// The bytes of a string up to its first 0, whatever its length and its end say; it points into the bytes.
   [[nodiscard]] std::string_view anyText() noexcept;
 
-  /// How many elements an array has, at most `max`.
+  /// Number of an array's elements, at most `max`.
   [[nodiscard]] std::uint32_t count(std::uint32_t max) noexcept;
 
   void end() noexcept {

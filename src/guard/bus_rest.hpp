@@ -13,7 +13,7 @@ namespace rc10::guard {
 /// The rest frames of one interface, sent until the bus has carried them. Never waits: who calls step() does.
 class BusRest {
  public:
-  /// The bus has carried every frame so often: one copy may meet a drive that just resets.
+  /// Copies of every frame on the bus: one may meet a drive that just resets.
   static constexpr std::size_t kRounds = 3;
 
   BusRest(std::string interface, std::vector<CanFrame> frames);

@@ -17,7 +17,7 @@ namespace {
 
 // More are no rc10d.
 constexpr std::size_t kMaxVisitors = 8;
-// One that was started for an rc10d that never came looks so often whether it is used.
+// Period at which one that was started for an rc10d that never came looks whether it is used.
 constexpr Duration kLongestWait = std::chrono::seconds{10};
 constexpr Duration kStep = std::chrono::milliseconds{Standstill::kStepMs};
 

@@ -15,7 +15,7 @@ struct GuardHello {
   static constexpr int kVersion = 1;
 
   std::string robot;
-  std::uint32_t standstill_ms = 0;  ///< Without a tick for so long rc10d stands still. Range 1 to 60,000.
+  std::uint32_t standstill_ms = 0;  ///< Silence of ticks at which rc10d stands still. Range 1 to 60,000.
   std::string rest_frames;
 };
 

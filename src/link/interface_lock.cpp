@@ -78,7 +78,7 @@ Result<InterfaceLock> InterfaceLock::take(int index, const std::string& interfac
       return fail("cannot lock CAN interface '" + interface + "': " + std::strerror(error));
     return fail(interface + " is driven by " + wordsOf(index) + "; stop it first");
   }
-  // Of this process alone: names of others that begin alike do not matter.
+  // Names of this process alone: those of others that begin alike do not matter.
   UniqueFd words =
       bindName(lockName(index) + "/robot '" + robot + "' (rc10d, pid " + std::to_string(::getpid()) + ")");
   return InterfaceLock{index, std::move(lock), std::move(words)};

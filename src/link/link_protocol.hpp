@@ -71,7 +71,7 @@ enum class MessageType : std::uint32_t {
 
 struct Header {
   MessageType type{};
-  std::uint32_t size = 0;  ///< Of the whole message, which is also the datagram's.
+  std::uint32_t size = 0;  ///< Size of the whole message, which is also the datagram's.
 };
 
 /// Messages that a client subscribes to besides the answers to its requests.

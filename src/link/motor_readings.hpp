@@ -4,7 +4,7 @@
 // its name, of motor_state_t.lcm, a key of rc10ctl's JSON and a signal of its verbs. READING(type, name,
 // initial); NaN: the drive does not report it.
 
-/// Of MotorFeedback, by its names there.
+/// Readings of MotorFeedback, by its names there.
 #define RC10_FEEDBACK_READINGS(READING) \
   READING(double, total_angle_deg, 0.0) \
   READING(float, angle_deg, 0.0F)       \
@@ -14,7 +14,7 @@
   READING(float, voltage_v, 0.0F)       \
   READING(float, temperature_c, 0.0F)
 
-/// Of the tick, and of the daemon's other threads.
+/// Readings of the tick, and of the daemon's other threads.
 #define RC10_TICK_READINGS(READING)                 \
   READING(double, target, 0.0)                      \
   READING(double, target_shaped, 0.0)               \

@@ -29,9 +29,8 @@ enum class TraceSource : std::uint16_t { kMotor = 0, kModule = 1 };
 /// One number of each tick.
 struct TraceSignal {
   TraceSource source{};
-  std::uint16_t index = 0;  ///< Of the motor or the module in Welcome.
-  std::uint16_t value =
-      0;  ///< Of a motor: its place in kTraceReadings. Of a module: its output, by ModuleInfo.
+  std::uint16_t index = 0;  ///< Index of the motor or the module in Welcome.
+  std::uint16_t value = 0;  ///< Place in kTraceReadings, for a motor; output, for a module, by ModuleInfo.
 
   friend bool operator==(const TraceSignal&, const TraceSignal&) = default;
 };

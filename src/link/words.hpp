@@ -19,7 +19,7 @@ namespace rc10::link {
 
 /// The limits that act (MotorState::limits), separated by commas: "current,stall".
 [[nodiscard]] std::string limitWords(std::uint32_t limits);
-/// Why a motor does not obey, or the robot does not run, in words: "asked for by 'teleop'". For
+/// Reason why a motor does not obey, or the robot does not run, in words: "asked for by 'teleop'". For
 /// kNone only by whom, or nothing.
 [[nodiscard]] std::string stopText(StopCause cause, std::string_view stopped_by);
 /// The conditions of a robot, separated by commas: "simulated".

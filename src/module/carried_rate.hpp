@@ -8,7 +8,7 @@
 
 namespace rc10 {
 
-/// How fast the base of an axis turns: what a gyro on the axis says, less the motor's speed at the same
+/// Rate of the base of an axis: what a gyro on the axis says, less the motor's speed at the same
 /// instant. A late gyro against the speed of now would be positive feedback: a limit cycle from about 8 ms.
 /// Until the lag is known a low-pass keeps it stable; a first motion of some degrees shows the lag.
 class CarriedRate {

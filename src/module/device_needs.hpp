@@ -57,7 +57,8 @@ struct GpioNeed {
   std::string chip;  ///< Name, path or label.
   std::vector<Input> inputs;
   std::vector<Output> outputs;
-  std::uint32_t safe_levels = 0;  ///< Of the outputs: when they are opened, at the end, and when ticks stop.
+  std::uint32_t safe_levels =
+      0;  ///< Levels of the outputs when they are opened, at the end, and when ticks stop.
   std::unique_ptr<GpioImage> image;
 };
 

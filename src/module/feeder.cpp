@@ -9,7 +9,7 @@ namespace {
 
 using enum FamilyKey::Kind;
 
-// Of the velocity that is asked for: slower than this it does not move.
+// Share of the velocity that is asked for: slower than this it does not move.
 constexpr double kMoves = 0.2;
 // More than any magazine holds: a count that leaps farther is a mistake of its sender.
 constexpr double kMostShots = 1000.0;

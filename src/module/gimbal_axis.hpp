@@ -17,7 +17,7 @@ class GimbalAxis {
     bool circular = true;  ///< The shortest way round.
   };
   struct Measured {
-    double angle_deg = 0.0;      ///< Of the world, or of the chassis.
+    double angle_deg = 0.0;      ///< Angle of the world, or of the chassis.
     double carried_deg_s = 0.0;  ///< NaN: not known, nothing is taken off.
   };
 

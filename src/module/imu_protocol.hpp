@@ -7,7 +7,7 @@
 
 namespace rc10 {
 
-/// How fast the sensor turns, about its own axes.
+/// Rates of the sensor about its own axes.
 struct ImuRates {
   float x_deg_s = 0.0F;
   float y_deg_s = 0.0F;

@@ -6,13 +6,13 @@
 namespace rc10 {
 namespace {
 
-// Of the homing velocity: slower than this it stands still.
+// Share of the homing velocity: slower than this it stands still.
 constexpr double kStill = 0.1;
 // The full current pushes until this part of the velocity is missing.
 constexpr double kFullPush = 0.5;
-// Of the homing current: as much must be measured at the stop. Drives are some percent off.
+// Share of the homing current: as much must be measured at the stop. Drives are some percent off.
 constexpr double kPressed = 0.7;
-// Of the homing velocity, on the second way.
+// Share of the homing velocity, on the second way.
 constexpr double kSlower = 0.5;
 
 }  // namespace

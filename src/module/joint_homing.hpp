@@ -25,7 +25,7 @@ class JointHoming {
     double tolerance_deg = 1.0;  ///< Between the two meetings with the stop.
     /// From the end to the far soft limit; infinite: not known.
     double travel_deg = std::numeric_limits<double>::infinity();
-    Duration stopped{};  ///< Standing still for so long is the stop.
+    Duration stopped{};  ///< Standstill that is the stop.
     Duration timeout{};
   };
   struct Measured {

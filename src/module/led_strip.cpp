@@ -112,7 +112,7 @@ constexpr std::array kLedStripKeys{
               .about = "Shown while no motor is ACTIVE.",
               .keys = kDisabledKeys}};
 
-/// Of the robot, the most important last: the numbers of the output `state`.
+/// States of the robot, the most important last: the numbers of the output `state`.
 enum class Shown : std::uint8_t { kDisabled, kEnabled, kFault, kEstop };
 
 ModuleSignals stripSignals() {

@@ -157,7 +157,7 @@ class ModbusCodec final : public LinkCodec {
   std::vector<LinkField> sent_;
   std::vector<ModbusExchange> exchanges_;  ///< Writes first.
   std::size_t writes_ = 0;
-  std::size_t next_ = 0;  ///< Of the round under way; at the end: it is over.
+  std::size_t next_ = 0;  ///< Next question of the round under way; at its end: over.
   bool asked_ = false;
   bool writes_first_ = false;
   MonotonicTime quiet_until_{};

@@ -97,7 +97,7 @@ class ModbusRtu final : public I_Protocol {
   Duration frame_gap_;
   FrameScanner<kLongestFrame> scanner_;
   ModbusState state_ = ModbusState::kIdle;
-  // Of the question under way.
+  // State of the question under way.
   std::array<std::uint8_t, 6>
       head_{};  // address, function, first register, count or value: as a write is answered
   std::uint16_t count_ = 0;

@@ -15,7 +15,7 @@
 
 namespace rc10 {
 
-/// Of keys that name an input or an output of another module.
+/// Names in keys that name an input or an output of another module.
 inline constexpr std::string_view kSignalPattern = "[a-z0-9_]{1,31}\\.[a-z0-9_]{1,31}";
 inline constexpr std::string_view kSignalWords = "MODULE.SIGNAL, for example imu.yaw_deg";
 
@@ -38,8 +38,8 @@ struct RobotOutline {
 /// One module as configured.
 struct ModuleSettings {
   std::string name;
-  int priority = 0;  ///< Of its targets and of what it sends.
-  OwnValues own;     ///< Of the type's keys; motors and modules as their places.
+  int priority = 0;  ///< Priority of its targets and of what it sends.
+  OwnValues own;     ///< Values of the type's keys; motors and modules as their places.
 };
 
 /// A type of module, as written under `type`: all that the rest of the program needs to know of it.
@@ -60,7 +60,7 @@ class ModuleType {
   [[nodiscard]] virtual bool homes(const ModuleSettings& /*settings*/, std::size_t /*motor*/) const {
     return false;
   }
-  /// How the motors that its keys name depend on each other: they are a group, whether the robot declares one
+  /// Dependence of the motors that its keys name: they are a group, whether the robot declares one
   /// or not.
   enum class Coupling : std::uint8_t {
     kNone,

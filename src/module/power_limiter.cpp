@@ -6,11 +6,11 @@
 namespace rc10 {
 namespace {
 
-// How fast the factor changes for each part of the limit that is missing or left: down within 50 ms at twice
+// Rate of the factor for each part of the limit that is missing or left: down within 50 ms at twice
 // the limit, up more slowly, so that it does not hunt.
 constexpr double kDownPerS = 20.0;
 constexpr double kUpPerS = 2.0;
-// How fast it comes down to what the power predicts: motors follow what they are told in a few milliseconds.
+// Rate of the factor towards the power's forecast: motors follow what they are told in a few milliseconds.
 constexpr double kPredictSeconds = 0.005;
 // So far ahead the power is predicted from how it grows.
 constexpr double kAheadSeconds = 0.01;

@@ -5,7 +5,7 @@ namespace rc10 {
 /// Scales a motion down while it takes more power than it may. Pure: the power comes in.
 class PowerLimiter {
  public:
-  /// Of the motion that is wanted, along it: 1 is all of it.
+  /// Shares of the wanted motion, along it: 1 is all of it.
   struct Shares {
     double told = 0.0;  ///< As the motors are told now; how far it is ahead is what they push for.
     double measured = 0.0;
@@ -23,7 +23,7 @@ class PowerLimiter {
  private:
   double limit_w_;
   double factor_ = 1.0;
-  double power_w_ = 0.0;         ///< Of the last step.
+  double power_w_ = 0.0;         ///< Power of the last step.
   double growth_w_per_s_ = 0.0;  ///< Smoothed.
 };
 

@@ -271,7 +271,7 @@ class Remote : public Module_Base {
   std::vector<Constant> constants_;
   std::unique_ptr<RemoteChannels> channels_;
   std::vector<double> values_;
-  std::vector<bool> was_active_;        ///< Of each motor, since the switch went up.
+  std::vector<bool> was_active_;        ///< Motors that were ACTIVE since the switch went up.
   std::vector<std::size_t> to_enable_;  ///< Room for the motors of one request.
 
   int was_heard_ = -1;  ///< -1: never.

@@ -30,7 +30,7 @@ class RemoteChannels {
   /// Once: for the port. The channels go on reading it.
   [[nodiscard]] virtual std::unique_ptr<I_Protocol> takeProtocol() = 0;
 
-  /// How long nothing has come that the remote itself sent; Duration::max() if nothing ever has.
+  /// Silence of the remote itself; Duration::max() if nothing ever has.
   [[nodiscard]] virtual Duration age(MonotonicTime now) const noexcept = 0;
   /// The receiver says that it has lost its remote.
   [[nodiscard]] virtual bool saysLost() const noexcept = 0;

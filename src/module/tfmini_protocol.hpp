@@ -13,9 +13,10 @@ namespace rc10 {
 /// One measurement.
 struct TfminiRange {
   float distance_m = 0.0F;     ///< Meaningless unless valid.
-  std::uint16_t strength = 0;  ///< Of the reflected light.
-  float temperature_c = 0.0F;  ///< Of TFmini-S and TFmini Plus; the first TFmini sends something else here.
-  bool valid = false;          ///< Enough light came back, and not too much.
+  std::uint16_t strength = 0;  ///< Strength of the reflected light.
+  float temperature_c =
+      0.0F;  ///< Temperature of TFmini-S and TFmini Plus; the first TFmini sends something else here.
+  bool valid = false;  ///< Enough light came back, and not too much.
 };
 
 /// Benewake's TFmini, TFmini-S and TFmini Plus: 115200 baud 8N1, 100 frames of 9 bytes a second. Source:

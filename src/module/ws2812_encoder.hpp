@@ -14,7 +14,7 @@ namespace rc10 {
 /// becomes several SPI bits, high and then low. Pure.
 class Ws2812Encoder {
  public:
-  /// How many SPI bits one bit of a colour has, and so how fast they go.
+  /// SPI bits for one bit of a colour, and their rate.
   enum class Rate : std::uint8_t {
     k3Bits,  ///< 2.4 MHz.
     k4Bits,  ///< 3.2 MHz: also right for the newer chips.
@@ -27,7 +27,7 @@ class Ws2812Encoder {
   Ws2812Encoder(Rate rate, std::string_view order) noexcept;
 
   [[nodiscard]] static std::size_t bytesFor(Rate rate, std::size_t pixels) noexcept;
-  /// The most pixels that fit into so many bytes.
+  /// The most pixels that fit into this number of bytes.
   [[nodiscard]] static std::size_t pixelsIn(Rate rate, std::size_t bytes) noexcept;
 
   /// `scale`: of the brightness, 0 to 1. `out` has bytesFor() the pixels; returns that, or 0 and writes

@@ -10,7 +10,7 @@ constexpr int kSettingTries = 5;
 constexpr int kStoringTries = 3;
 constexpr Duration kSettling = std::chrono::milliseconds{10};
 constexpr Duration kSettingPatience = std::chrono::milliseconds{50};
-// A drive at rest is told something in every tick or two. One that has not answered for so long does not
+// A drive at rest is told something in every tick or two. One that has not answered in this time does not
 // answer to this id any more.
 constexpr Duration kSilence = std::chrono::milliseconds{250};
 // Damiao: 40 to 100 ms.
@@ -44,7 +44,7 @@ void DriveConfiguring::onFrame(const CanFrame& frame) noexcept {
   if (phase_ == Phase::kSaving) {
     saved_ = saved_ || codec_.saysSaved(frame);
   } else if (phase_ == Phase::kWritten || phase_ == Phase::kRead) {
-    // Of a drive that tells by its answer to the reading, the answer to the writing is none.
+    // A drive that tells by its answer to the reading gives no answer to the writing that counts.
     if (const auto reading = codec_.reading(value().setting, frame)) reading_ = reading;
   }
 }

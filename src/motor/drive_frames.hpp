@@ -40,7 +40,7 @@ enum class DriveDuty : std::uint8_t {
   return DriveDuty::kRest;
 }
 
-/// How a family provides one kind of frame.
+/// Provision of one kind of frame by a family.
 enum class Provision : std::uint8_t {
   kUnsupported,  ///< It cannot; asking for it in the configuration is an error.
   kNothing,      ///< Nothing needs to be sent: the kind is fulfilled at once.
@@ -76,7 +76,7 @@ struct DriveFrames {
   }
 };
 
-/// How far the enable or disable sequence has come.
+/// Progress of the enable or disable sequence.
 enum class SequenceProgress : std::uint8_t { kDone, kPending, kFailed };
 
 }  // namespace rc10

@@ -22,7 +22,7 @@ class EnableRhythm {
 
   /// Is the step to be asked for now? Counts it; fails where that would be once too often.
   [[nodiscard]] bool asks(MonotonicTime now) noexcept;
-  /// The last question, too, has gone unanswered for so long.
+  /// The last question, too, has gone unanswered for its time.
   [[nodiscard]] bool exhausted(MonotonicTime now) const noexcept;
   void finish() noexcept { progress_ = SequenceProgress::kDone; }
   void fail() noexcept { progress_ = SequenceProgress::kFailed; }

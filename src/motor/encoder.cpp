@@ -20,7 +20,7 @@ double longestSpacingSeconds(const Encoder::Config& config, double bound) noexce
 
 // Beyond this a jump cannot be told from a wrap.
 constexpr double kLargestNoticedTurns = 0.45;
-// Of the encoder itself: quantisation and eccentricity.
+// Margin for the encoder itself: quantisation and eccentricity.
 constexpr double kJumpMarginTurns = 0.02;
 constexpr Duration::rep kMostLatePeriods = 2;
 

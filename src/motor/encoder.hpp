@@ -23,7 +23,7 @@ class Encoder {
  public:
   struct Config {
     std::int32_t counts_per_turn = 8192;
-    float max_velocity_rpm = 0.0F;  ///< Of the encoder's shaft.
+    float max_velocity_rpm = 0.0F;  ///< Largest speed of the encoder's shaft.
     float max_acceleration_rpm_per_s = 0.0F;
     float velocity_error_rpm = 0.0F;  ///< Largest error of the reported speed, its delay included.
     Duration stamp_error{};           ///< Largest error of the spacing of two receive times.
@@ -32,7 +32,7 @@ class Encoder {
 
   explicit Encoder(const Config& config) noexcept;
 
-  /// How wrong the prediction can be, in turns, when two samples are `spacing` apart in truth.
+  /// Error bound of the prediction, in turns, when two samples are `spacing` apart in truth.
   [[nodiscard]] static constexpr double predictionErrorTurns(const Config& config,
                                                              Duration spacing) noexcept {
     const double t_s = std::chrono::duration<double>(spacing).count();
@@ -60,7 +60,7 @@ class Encoder {
   /// A gap was too long to know the number of turns. Stays until acknowledgeLoss().
   [[nodiscard]] bool referenceLost() const noexcept { return reference_lost_; }
   void acknowledgeLoss() noexcept { reference_lost_ = false; }
-  /// How often the number of turns was lost.
+  /// Number of losses of the turns.
   [[nodiscard]] std::uint64_t losses() const noexcept { return losses_; }
   /// Samples farther from the one before than the shaft can have turned, at the speeds that both
   /// report. Each loses the reference. Not noticed at speeds where late stamps could explain it.
@@ -94,7 +94,7 @@ class Encoder {
   std::int32_t raw_counts_ = 0;
   float velocity_rpm_ = 0.0F;
   MonotonicTime received_;
-  Duration late_{};  ///< Of the last stamp, as far as is known.
+  Duration late_{};  ///< Delay of the last stamp, as far as is known.
   bool has_sample_ = false;
   bool reference_lost_ = false;
 };

@@ -16,7 +16,7 @@ class FrameOutbox {
   void add(const CanFrame& frame) noexcept {
     if (count_ < frames_.size()) frames_[count_++] = frame;
   }
-  /// How many there was room for.
+  /// Number for which there was room.
   std::size_t copyTo(std::span<CanFrame> out) const noexcept {
     const std::size_t count = std::min(count_, out.size());
     std::copy_n(frames_.begin(), count, out.begin());

@@ -21,7 +21,7 @@ inline constexpr float kNotReported = std::numeric_limits<float>::quiet_NaN();
 
 /// The last known state of a motor, at the output shaft, in the users' units. NaN: not reported.
 struct MotorFeedback {
-  MonotonicTime received;          ///< Of the last accepted frame.
+  MonotonicTime received;          ///< Time of the last accepted frame.
   std::uint64_t samples = 0;       ///< Frames accepted since start; 0: nothing here is known yet.
   std::uint64_t jumps = 0;         ///< Samples whose angle the motor cannot have reached.
   float angle_deg = kNotReported;  ///< [0, 360)

@@ -22,20 +22,20 @@ namespace rc10 {
 struct MotorTraits {
   int min_id = 1;
   int max_id = 127;
-  double gear_ratio = 1.0;                    ///< Of the model itself.
+  double gear_ratio = 1.0;                    ///< Gear ratio of the model itself.
   CommandUnit effort = CommandUnit::kAmpere;  ///< Unit of effort_limit: A or V.
   float effort_full_scale = 0.0F;             ///< The largest effort that the drive can be told.
   float torque_nm_per_a = 0.0F;               ///< 0: unknown.
   float no_load_rpm = 0.0F;                   ///< At its nominal voltage; 0: unknown.
   float nominal_v = 24.0F;
-  float rotor_inertia_kg_m2 = 0.0F;   ///< Of the rotor itself; 0: unknown.
+  float rotor_inertia_kg_m2 = 0.0F;   ///< Inertia of the rotor itself; 0: unknown.
   float phase_resistance_ohm = 0.0F;  ///< 0: unknown.
   bool absolute = false;              ///< Knows its output angle at power-up, behind its own gear.
   bool reports_temperature = true;
   bool scaled_speed = false;  ///< Its speed is a share of a range that depends on the model.
   float frozen_a = 0.0F;      ///< Full scale of the current that it reports; 0: it reports none.
   float signed_a = 0.0F;      ///< Full scale of a current with the sign of the torque; 0: it reports none.
-  int signed_current_hz = 0;  ///< How often it reports that; 0: with each feedback.
+  int signed_current_hz = 0;  ///< Rate at which it reports that; 0: with each feedback.
   int feedback_hz = 1000;     ///< If nobody says otherwise.
   int min_feedback_hz = 1;
   int max_feedback_hz = 1000;
@@ -46,7 +46,7 @@ struct MotorTraits {
   ModeSet modes;
   DriveFrames frames;
   const CascadeConfig* host_loops = nullptr;  ///< Defaults of its loops on the host; null: it has none.
-  bool own_velocity_loop = false;             ///< Of host_loops only the angle loop acts.
+  bool own_velocity_loop = false;             ///< The angle loop alone of host_loops acts.
   const DriveSetup* setup = nullptr;          ///< Settings that can be written; null: none.
 };
 
@@ -59,8 +59,8 @@ struct BusUse {
   };
   std::vector<FrameFilter> sends;  ///< Every frame that the drive may send.
   std::vector<FrameFilter> obeys;  ///< Every frame that it takes as meant for it.
-  /// Of those, what moves, brakes, enables or stops it: another sender of these commands our drive. Empty:
-  /// all. Questions and settings are none.
+  /// Those of them that move, brake, enable or stop it: another sender of these commands our drive.
+  /// Empty: all. Questions and settings are none.
   std::vector<FrameFilter> steers;
   std::vector<Stream> feedback;  ///< Its usual traffic while it is enabled.
   std::vector<Stream> commands;

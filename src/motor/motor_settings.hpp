@@ -53,9 +53,9 @@ struct MotorSettings {
   double zero_deg = 0.0;            ///< Output angle of an absolute encoder that is to read 0.
   bool zero_at_power_on = false;    ///< The position of the first sample is 0.
   Travel travel{};                  ///< Tells the turn of an absolute encoder at power-up.
-  CascadeConfig loops;              ///< Of the host; meaningless where MotorTraits has none.
+  CascadeConfig loops;              ///< Loops of the host; meaningless where MotorTraits has none.
   int feedback_hz = 0;              ///< As set on the drive, or as often as it is asked.
-  int tick_hz = 1000;               ///< Of the scheduler.
+  int tick_hz = 1000;               ///< Tick rate of the scheduler.
   int command_divider = 1;          ///< It is told something in every n-th tick.
   int command_phase = 0;            ///< In which of those ticks: 0 to n - 1.
   OwnValues own;

@@ -8,7 +8,7 @@ namespace {
 
 constexpr float kShortest = 0.1F;  // periods
 constexpr float kLongest = 5.0F;   // periods
-// Of the period's low-pass, per take: about 30 samples, long against jitter, short against a warm-up.
+// Weight of the period's low-pass, per take: about 30 samples, long against jitter, short against a warm-up.
 constexpr float kSmoothing = 0.03F;
 
 }  // namespace

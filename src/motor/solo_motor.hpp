@@ -91,7 +91,7 @@ class SoloMotor : public Motor_Base, public CommandPacker {
   [[nodiscard]] bool due(const Tick& tick) const noexcept;
 
   // A target within the limits of the motor; what they cut off is told in limits_. Not a number: 0.
-  /// Of the mode kCurrent, with the feed-forward that comes with any mode. A at the motor.
+  /// Current of the mode kCurrent, with the feed-forward that comes with any mode. A at the motor.
   [[nodiscard]] double currentWithinLimit(const Target& target) noexcept;
   [[nodiscard]] double rpmWithinLimit(double output_rpm) noexcept;
   /// The same, where the drive itself ends at `drive_limit_rpm` of the output shaft.
@@ -109,7 +109,7 @@ class SoloMotor : public Motor_Base, public CommandPacker {
   [[nodiscard]] float torqueNmPerA() const noexcept { return torque_nm_per_a_; }
   /// 0: none.
   [[nodiscard]] float velocityLimitRpm() const noexcept { return velocity_limit_rpm_; }
-  /// How long one tick is.
+  /// Period of a tick.
   [[nodiscard]] Duration tickPeriod() const noexcept { return tick_period_; }
 
  private:
@@ -140,7 +140,7 @@ class SoloMotor : public Motor_Base, public CommandPacker {
 /// Turns of a drive's own output, on which it reports, per turn of the output shaft.
 [[nodiscard]] double driveTurns(const MotorSettings& settings, const MotorTraits& traits) noexcept;
 
-/// Of a drive that speaks when it is told something, and tells its angle once in `commands`.
+/// Use of the bus by a drive that speaks when it is told something, and tells its angle once in `commands`.
 [[nodiscard]] MotorSettings withFeedbackOfCommands(MotorSettings settings, int commands);
 
 /// Registers both halves of a motor with its bus: what most families build() with.

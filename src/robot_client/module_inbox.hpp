@@ -39,7 +39,7 @@ class ModuleInboxes {
   std::map<std::string, std::unique_ptr<const ModuleInbox>> inboxes_;
 };
 
-/// Why no module can be given these inputs: how many they are, or a number that is not finite.
+/// Obstacle of these inputs for any module: their count, or a number that is not finite.
 [[nodiscard]] Result<void> checkInputs(const std::string& module, const Signals& inputs,
                                        const SendOptions& options);
 

@@ -58,7 +58,7 @@ void sleepUntil(MonotonicTime due) {
          std::to_string(cpus - 1) + ", and the task may be kept off some";
 }
 
-/// Of the calling thread.
+/// Settings of the calling thread.
 [[nodiscard]] std::string apply(const TaskOptions& options) {
   pthread_setname_np(pthread_self(), options.name.substr(0, 15).c_str());
   std::string problem = applyCpu(options);
@@ -108,7 +108,7 @@ Result<void> RtosTask::launch(std::function<void(std::stop_token)> body) {
   stop_ = std::stop_source{};
   cycles_.store(0);
   overruns_.store(0);
-  // Of both threads: neither knows which is the last to let go of the promises.
+  // State of both threads: neither knows which is the last to let go of the promises.
   const auto start = std::make_shared<Start>(Start{this, std::move(body), {}, {}});
   auto set_up = start->set_up.get_future();
   auto handed = std::make_unique<std::shared_ptr<Start>>(start);

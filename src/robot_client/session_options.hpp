@@ -8,7 +8,7 @@
 namespace rc10 {
 inline namespace robot_client {
 
-/// Why a program cannot command a robot of this name with these options.
+/// Reason why a program cannot command a robot of this name with these options.
 [[nodiscard]] Result<void> checkSession(const std::string& robot, const RobotOptions& options);
 
 /// The program's name, where the options name no client.

@@ -11,7 +11,7 @@ struct Hand {
   double by_deg = 0.0;     ///< From where the shaft is when it is taken.
   double speed_rpm = 0.0;  ///< On the way, from kRamp on; above 0.
   double torque_nm = 0.0;  ///< It pulls no harder, and a motor that holds may win; above 0.
-  Duration hold{};         ///< It stays there so long, beside kSettle, before it lets go.
+  Duration hold{};         ///< Time there, beside kSettle, before it lets go.
 
   /// It takes so long to reach its speed, and to come to rest from it; longer where its torque is too small.
   static constexpr Duration kRamp{std::chrono::milliseconds{100}};

@@ -8,7 +8,7 @@
 
 namespace rc10::sim {
 
-inline constexpr double kRoomC = 25.0;  ///< Of all the manuals' figures.
+inline constexpr double kRoomC = 25.0;  ///< Room temperature of all the manuals' figures.
 /// Highest permissible: DJI's M3508 V1.0 and GM6020 v1.2.
 inline constexpr double kWindingC = 125.0;
 /// The drives do not say how they filter the speed they report; within what the Encoder allows (2 ms).
@@ -23,11 +23,11 @@ struct MotorParameters {
   double resistance_ohm = 0.0;       ///< As the supply sees it: the slope of speed over torque.
   double current_limit_a = 0.0;      ///< The drive's maximum.
   double supply_v = 24.0;
-  double current_lag_s = 0.0;  ///< Of the drive's current loop.
+  double current_lag_s = 0.0;  ///< Current lag of the drive's current loop.
   double winding_lag_s = 0.0;  ///< L/R: how the current follows a commanded voltage.
-  double speed_lag_s = 0.0;    ///< Of the drive's speed measurement.
+  double speed_lag_s = 0.0;    ///< Speed lag of the drive's speed measurement.
   double inertia_kg_m2 = 0.0;
-  double output_inertia_kg_m2 = 0.0;  ///< Of the load alone.
+  double output_inertia_kg_m2 = 0.0;  ///< Inertia of the load alone.
   double output_viscous_nms_per_rad = 0.0;
   double output_coulomb_nm = 0.0;  ///< Also holds the shaft at rest.
   double output_load_nm = 0.0;     ///< Constant torque in the negative direction.
@@ -83,7 +83,7 @@ class MotorPhysics {
   [[nodiscard]] double outputAngleDeg() const noexcept;    ///< Multi-turn; 0 is 0, not the start.
   [[nodiscard]] double outputRpm() const noexcept;
   [[nodiscard]] double currentA() const noexcept { return current_a_; }
-  [[nodiscard]] double outputTorqueNm() const noexcept;  ///< Of the motor, friction not subtracted.
+  [[nodiscard]] double outputTorqueNm() const noexcept;  ///< Torque of the motor, friction not subtracted.
   [[nodiscard]] double temperatureC() const noexcept { return temperature_c_; }
   [[nodiscard]] double kineticEnergyJ() const noexcept;
 

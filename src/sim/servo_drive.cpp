@@ -14,7 +14,7 @@ constexpr double kVelocityBandwidthRadS = 120.0;
 constexpr double kPositionGainPerS = 20.0;
 constexpr double kCurrentLagSeconds = 0.0003;
 constexpr double kWindingLagSeconds = 0.0005;
-// Of full scale, for what a model's table leaves open.
+// Share of full scale, for what a model's table leaves open.
 constexpr double kFrictionShare = 0.02;
 constexpr double kRatedShare = 0.4;
 constexpr double kMechanicalLagSeconds = 0.03;

@@ -17,7 +17,7 @@
 
 namespace rc10::sim {
 
-/// How to make one drive, as often as wanted. The error names the drive and the fix.
+/// Factory of one drive, for any number of calls. The error names the drive and the fix.
 using DriveRecipe = std::function<Result<std::unique_ptr<Drive>>()>;
 
 /// Drives and properties of one simulated bus.

@@ -16,7 +16,7 @@ namespace {
 // reads.
 constexpr int kMostReads = 16;
 
-// Of the drives that talk unasked.
+// Period of the drives that talk unasked.
 constexpr Duration kPeriod = std::chrono::milliseconds{1};
 // A step of up to this is one: all of its feedback periods come to one frame each.
 constexpr Duration kLate = kPeriod * 3 / 2;

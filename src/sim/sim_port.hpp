@@ -16,7 +16,7 @@
 
 namespace rc10::sim {
 
-/// How the other end learns when a frame was on the bus.
+/// Time stamps of frames for the other end.
 enum class Stamps : unsigned char {
   kKernel,  ///< By the kernel's stamp: SocketCAN. After a late step each drive speaks once.
   kOwn,     ///< It stands behind each frame, as StampedFrame: a late step is made up for.
@@ -31,7 +31,7 @@ class SimPort {
   /// A step longer than this simulates only this much: after a stop (a debugger, a suspended machine) the
   /// motors go on from where they were.
   static constexpr Duration kLongestStep{std::chrono::seconds{1}};
-  /// The same with Stamps::kOwn: the ring of frames of a bus with eight motors has room for so long.
+  /// The same with Stamps::kOwn: the ring of frames of a bus with eight motors has room for it.
   static constexpr Duration kLongestMadeUpFor{std::chrono::milliseconds{100}};
   /// Frames that leave later than this after their step began carry stamps that are too late, by more than a
   /// drive's encoder counting allows for: the motors stand still for that time instead.

@@ -15,7 +15,7 @@ namespace rc10::survey {
 /// About one sighting; empty: there is nothing to be done.
 [[nodiscard]] std::string adviceFor(const Sighting& sighting, const std::vector<Sighting>& all);
 
-/// How a bus was asked.
+/// Options with which a bus was asked.
 struct Asking {
   bool listen_only = false;
   std::set<int> spared;  ///< Nodes of ODrives with extended ids that some questions would have commanded.

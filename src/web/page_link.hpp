@@ -18,13 +18,13 @@ class PageLink {
  public:
   explicit PageLink(std::string client_name);
 
-  /// Why it could not be sent; empty: it was.
+  /// Reason why it could not be sent; empty: it was.
   [[nodiscard]] std::string ask(const AskRobot& request, const std::string& socket_path);
 
   [[nodiscard]] bool isOpen() const noexcept { return rc10d_.has_value(); }
   /// Before drive(), which must not wait. Why there is no connection; empty: there is one.
   [[nodiscard]] std::string connect(const std::string& socket_path);
-  /// A target for so long. Why it could not be sent; empty: it was.
+  /// A target for this validity. The reason why it could not be sent; empty: it was.
   [[nodiscard]] std::string drive(const DriveMotor& wanted, std::int32_t validity_ms);
 
   struct Answer {

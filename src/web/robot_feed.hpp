@@ -22,7 +22,7 @@ class RobotFeed {
   /// Connects, if it is not connected.
   void connect();
   [[nodiscard]] bool connected() const noexcept { return rc10d_.has_value(); }
-  /// Why it is not.
+  /// Reason why it is not.
   [[nodiscard]] const std::string& reason() const noexcept { return reason_; }
   /// The socket that it is connected to, for connections of the pages' own.
   [[nodiscard]] const std::string& socketPath() const noexcept { return path_; }

@@ -16,10 +16,10 @@ struct ServerOptions {
   std::uint16_t port = 8010;
   HostNames names;                   ///< Besides addresses and localhost.
   std::optional<std::string> robot;  ///< None: the only one of this computer.
-  std::string token;                 ///< Of pages on other computers; empty: there are none.
+  std::string token;                 ///< Token of pages on other computers; empty: there are none.
 };
 
-/// HTTP and WebSocket for the page, in one thread: at most so many connections, each with bounded room.
+/// HTTP and WebSocket for the page, in one thread: a bounded number of connections, each with bounded room.
 class Server {
  public:
   static constexpr std::size_t kMaxConnections = 64;

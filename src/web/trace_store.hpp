@@ -11,10 +11,10 @@
 namespace rc10::web {
 
 /// The chosen signals of the last minute, each tick, and their least and greatest values in columns of any
-/// width. A row is kept for so long that a page may look back at what it has seen.
+/// width. Rows are kept for a page that looks back at what it has seen.
 class TraceStore {
  public:
-  /// Room for so many rows; the oldest make way.
+  /// Room, in rows; the oldest make way.
   explicit TraceStore(std::size_t rows);
 
   /// The signals of the rows that follow. What was there before of a signal stays.

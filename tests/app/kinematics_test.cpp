@@ -17,7 +17,7 @@ namespace {
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kRadiusM = 0.076;
-/// Of a wheel whose tread moves at 1 m/s.
+/// Speed of a wheel whose tread moves at 1 m/s.
 constexpr double kRpm = 60.0 / (2.0 * std::numbers::pi * kRadiusM);
 
 MecanumKinematics mecanum() {

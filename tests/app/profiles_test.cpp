@@ -315,7 +315,7 @@ TYPED_TEST(Profiles, AStateThatIsNotFiniteIsRefused) {
   EXPECT_TRUE(profile.restsAt(3.0));
 }
 
-/// How long from rest to rest.
+/// Time from rest to rest.
 template <typename Profile>
 double secondsFor(const Limits& limits, double way) {
   auto profile = make<Profile>(limits);

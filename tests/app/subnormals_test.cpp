@@ -11,7 +11,7 @@
 namespace rc10::test::subnormals_test {
 namespace {
 
-// Of this thread, at run time.
+// Result of this thread, at run time.
 float halfOfTheSmallest() {
   volatile float smallest = std::numeric_limits<float>::min();
   return smallest * 0.5F;

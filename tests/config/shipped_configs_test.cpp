@@ -163,7 +163,7 @@ TEST(ShippedConfigs, TheReferenceShowsEveryKeyOfEveryFamilyAndModule) {
   for (const auto& entry : motorFamilies()) {
     const auto part = partOf(text, "#   - # " + std::string{entry.family->name()});
     for (const auto& key : entry.family->keys()) {
-      // Of DJI, the motors of the example have them.
+      // The motors of the example with such keys are DJI's.
       const bool shown = entry.family->name() == "DJI" ? showsKey(text, std::string{key.name})
                                                        : showsKey(part, std::string{key.name});
       EXPECT_TRUE(shown) << entry.family->name() << " " << key.name;

@@ -12,8 +12,8 @@ namespace rc10::test {
 /// An SPI device that remembers what was sent, and may be missing or fail.
 struct FakeSpi {
   std::vector<std::vector<std::uint8_t>> sent;
-  std::string missing;  ///< Why it cannot be opened; empty: it can.
-  int error = 0;        ///< Of every transfer; 0: it succeeds.
+  std::string missing;  ///< Reason why it cannot be opened; empty: it can.
+  int error = 0;        ///< Error of every transfer; 0: it succeeds.
   int opened = 0;
   std::uint32_t speed_hz = 0;
 

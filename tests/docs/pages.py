@@ -16,7 +16,7 @@ HEADING = re.compile(r"^#{1,6} +(.+?) *$", re.M)
 
 
 class Row(NamedTuple):
-    """Of a table."""
+    """Cells of a table."""
 
     cells: int
     code: list[str]  # the spans of code in it, sorted
@@ -107,7 +107,7 @@ def read(path: Path) -> Page:
 
 @cache
 def anchors(path: Path) -> frozenset[str]:
-    """Of the headings, as GitHub makes them."""
+    """Anchors of the headings, as GitHub makes them."""
     seen: dict[str, int] = {}
     found = set()
     for heading in HEADING.findall(read(path).prose):

@@ -39,7 +39,7 @@ class Chaos {
   [[nodiscard]] std::uint64_t ticks() const noexcept { return visits_.ticks + oracle_->visits().ticks; }
   [[nodiscard]] Duration robotTime() const noexcept { return robot_time_; }
   [[nodiscard]] Visits visits() const;
-  /// How often each thing was done.
+  /// Count of each action.
   [[nodiscard]] std::string actionsText() const;
   /// The last things that were done, one a line.
   [[nodiscard]] std::string history() const;
@@ -157,7 +157,7 @@ class Chaos {
   std::bitset<kMaxBuses> echoed_;  ///< Since the last tick.
   std::array<std::uint64_t, kMaxBuses>
       watched_before_{};       ///< Frames whose echoes are watched, before this tick.
-  bool contact_open_ = false;  ///< Of the e-stop input.
+  bool contact_open_ = false;  ///< State of the e-stop input.
   std::uint64_t orders_ = 0;
   std::uint64_t tick_ = 0;
   Duration robot_time_{};

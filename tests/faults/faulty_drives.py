@@ -37,7 +37,7 @@ class Fault(IntEnum):
     HOT = 5  # argument: deg C
     STALLED = 6
     SHORT = 7  # frames of 7 bytes
-    REBOOT = 8  # no frame for so many ms, then on with no command
+    REBOOT = 8  # no frame for this number of ms, then on with no command
     DEAF = 9  # goes on with its last command: its receiving line is off; argument: 1: blocked, too
     PUSHED = 10  # argument: hundredths of N m of a load from outside
     PARKED = 11  # argument: deg; switched off, turned there by hand, switched on 100 ms later

@@ -47,7 +47,7 @@ _CODES = {
 }
 
 
-# How long a restarted drive says nothing; the others are back at once, which is harder to notice.
+# Silence of a restarted drive; the others are back at once, which is harder to notice.
 _BOOT_S = {"lktech": 0.3}
 
 

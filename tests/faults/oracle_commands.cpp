@@ -11,15 +11,15 @@ namespace {
 
 using namespace std::chrono_literals;
 
-// A stop lets fallbacks act for so long (docs/safety.md), then rests.
+// Time of fallbacks in a stop (docs/safety.md); then it rests.
 constexpr Duration kLongestFallback = 1s;
-// A loop may take so long to turn its effort round: it starts without a jump.
+// Ticks in which a loop turns its effort round: it starts without a jump.
 constexpr int kUnbrakedTicks = 300;
-constexpr double kFast = 0.3;  ///< Of the no-load speed: a brake must oppose this.
+constexpr double kFast = 0.3;  ///< Share of the no-load speed: a brake must oppose this.
 
-// Of the time of a ramp and of the full speed: feedback is younger or older than what the oracle sees.
+// Share of the time of a ramp and of the full speed: feedback is younger or older than what the oracle sees.
 constexpr double kRampSlack = 0.1;
-// After its time a ramp has the motor stand still for so long, and a frame may be on its way.
+// Standstill that a ramp waits for after its time; and a frame may be on its way.
 constexpr Duration kRampEnd = 260ms;
 
 // An angle may be so far beyond a soft limit: rounding, and what the shaft has moved since the sample.
@@ -251,7 +251,7 @@ bool Oracle::ramps(const Motor& motor) const {
   const double left = 1.0 - static_cast<double>(seconds(now_ - motor.acts_since)) /
                                 static_cast<double>(seconds(motor.config->fallback.ramp));
   const double most_rpm = std::fabs(motor.rpm_when_it_began) * std::max(left + kRampSlack, 0.0);
-  // Of some models the no-load speed is not known.
+  // The no-load speed of some models is not known.
   const float full_rpm =
       std::max(motor.config->traits().no_load_rpm, motor.config->settings.velocity_limit_rpm);
   const double slack_rpm = motor.told.velocity_step_rpm + kRampSlack * static_cast<double>(full_rpm);

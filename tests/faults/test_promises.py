@@ -536,7 +536,7 @@ YAW = 5
 def test_a_power_cycle_keeps_the_angle_at_each_place_of_the_travel(tmp_path: Path) -> None:
     path = tmp_path / "robot.yaml"
     path.write_text(ABSOLUTE)
-    # Of the frames only those of M3508 are judged by the witness: the other bus must miss no tick.
+    # The witness judges the frames of M3508 alone: the other bus must miss no tick.
     with drives("GM6020:5"), witness() as log, daemon(path), client() as robot:
         wait_status(robot, READY)
         for place in (-90, -45, 0, 90, 179, 181, 190, 200, 215, -110):

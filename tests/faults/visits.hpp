@@ -11,21 +11,21 @@
 
 namespace rc10::test {
 
-/// Of one motor: what it was told.
+/// Counts of one motor: what it was told.
 struct MotorVisits {
   std::uint64_t active = 0;             ///< Ticks.
   std::array<std::uint64_t, 7> laws{};  ///< Ticks not at rest, by Told::Law.
 };
 
-/// How often each state was seen: what the chaos has reached.
+/// Counts of states seen: the chaos's reach.
 struct Visits {
   std::uint64_t ticks = 0;
   std::array<std::uint64_t, 3> robot{};                          ///< Ticks by RobotStatus.
   std::array<std::uint64_t, kMotorStatusCount> status{};         ///< Ticks of motors.
-  std::array<std::uint64_t, 64> faults{};                        ///< How often each began.
+  std::array<std::uint64_t, 64> faults{};                        ///< Number of times each began.
   std::array<std::uint64_t, kFallbackWords.size()> fallbacks{};  ///< Ticks in which one gave torque.
   std::uint64_t driven = 0;                                      ///< And ticks in which a target did.
-  std::uint64_t by_modules = 0;                                  ///< Of motors that a module had.
+  std::uint64_t by_modules = 0;                                  ///< Ticks of motors that a module had.
   std::uint64_t alone = 0;  ///< Ticks in which one motor was enabled alone.
   std::uint64_t rearmed = 0;
   std::uint64_t stops = 0;

@@ -52,7 +52,7 @@ struct Told {
 struct Heard {
   double velocity_rpm = 0.0;
   double temperature_c = 0.0;
-  double velocity_step_rpm = 0.0;  ///< How well the speed is told.
+  double velocity_step_rpm = 0.0;  ///< Resolution of the speed.
 };
 
 /// A stiffness, a damping and a torque, at the drive's own output: the MIT law of five makers.
@@ -107,7 +107,7 @@ class Wire {
   }
   [[nodiscard]] double rpmOfRadPerS(double drive_rad_s) const noexcept;
   [[nodiscard]] double degOfRad(double drive_rad) const noexcept;
-  /// Of fields with these steps, when the drive was last seen at this place, with this speed.
+  /// Spring of fields with these steps, when the drive was last seen at this place, with this speed.
   [[nodiscard]] Told springOf(const MitFields& fields, const MitFields& steps, double position_rad,
                               double velocity_rad_s) const noexcept;
   [[noreturn]] void refuse(const CanFrame& frame, const char* why) const;

@@ -104,7 +104,7 @@ class GatewayProcess {
     for (int attempt = 0; attempt < 200; ++attempt) {
       client.command(0);
       if (!rc10d_.await(command, 50)) continue;
-      // Of the attempts some may be on their way still; this one comes behind them.
+      // Some attempts may be on their way still; this one comes behind them.
       client.command(kLastAttempt);
       while (command.seq != kLastAttempt && rc10d_.await(command)) {
       }

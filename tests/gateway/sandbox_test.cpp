@@ -233,7 +233,7 @@ TEST(Sandbox, HasNothingOfTheKernelThatLcmDoesNotTake) {
 }
 
 #ifdef __x86_64__
-// Of 32 bits, where the numbers mean other calls: 1 is exit().
+// Calls of 32 bits, where the numbers mean other calls: 1 is exit().
 TEST(Sandbox, HasNoSystemCallsOfAnotherArchitecture) {
   const int status = statusInSandbox([] {
     asm volatile("int $0x80" ::"a"(1), "b"(0) : "memory");

@@ -17,7 +17,7 @@ import rc10
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
 
-# Of no account: the kernel asks for none.
+# User of no account: the kernel asks for none.
 ANNA, BEN, DRIVERS = 4321, 4322, 4400
 
 CLIENTS = f"""

@@ -1,4 +1,4 @@
-"""How rc10d starts, stops, and gets out of the way of another."""
+"""Start and stop of rc10d, and a second one on its interfaces."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Why rc10ctl starts at once: few libraries, few system calls, nothing that waits.
+"""Start of rc10ctl at once: few libraries, few system calls, nothing that waits.
 
 Its time is measured in docs/measuring.md, and not asserted.
 """

@@ -17,7 +17,7 @@ BUSES = 2
 FULL_READ = " = 64"
 
 CALL = re.compile(r"^(\w+)\((\w+)")
-# Of strace itself; a process that was stopped and goes on (signal(7)) is in its call once more.
+# Lines of strace itself; a process that was stopped and goes on (signal(7)) is in its call again.
 NO_CALL = re.compile(r"^strace:|^--- |^restart_syscall\(|.* = -1 EINTR |.* = \? ERESTART")
 
 

@@ -26,7 +26,7 @@ from websockets.exceptions import ConnectionClosed, InvalidStatus
 from websockets.sync.client import ClientConnection, connect
 from websockets.typing import Origin
 
-# Of this namespace, and no loopback: a page that is opened by it seems to be on another computer.
+# Address of this namespace, and no loopback: a page opened by it seems to be on another computer.
 ELSEWHERE = "10.10.10.1"
 PAGE = "<!doctype html><title>page</title>"
 HEADER = struct.Struct("<BBHIIIdd")

@@ -93,7 +93,7 @@ def text_of(frame: Frame) -> str:
 
 
 def wire_seconds(frames: Iterable[Frame]) -> float:
-    """How long they hold a wire of 1 Mbit/s, FD data at 5 Mbit/s, without stuff bits."""
+    """Time for which they hold a wire of 1 Mbit/s, FD data at 5 Mbit/s, without stuff bits."""
     return sum(_wire_us(frame) for frame in frames) * 1e-6
 
 

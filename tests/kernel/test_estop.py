@@ -1,4 +1,4 @@
-"""How soon an e-stop is on the wire, by the socket that needs no thread but the scheduler's."""
+"""Delay of an e-stop to the wire, by the socket that needs no thread but the scheduler's."""
 
 from __future__ import annotations
 

@@ -76,7 +76,7 @@ FAMILIES = (
             # Loops of the host: the first slot has what they want, the others nobody has.
             Target("angle", 90, "200#(?!0000)....000000000000", near=3),
             Target("velocity", 60, "200#(?!0000)....000000000000", near=3),
-            # Of 16384 for 20 A.
+            # Counts, of 16384 for 20 A.
             Target("current", 1, "200#0333000000000000", near=0.3, seconds=0.1),
         ),
         rest=("200#0000000000000000",),

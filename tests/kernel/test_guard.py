@@ -100,7 +100,7 @@ def test_a_death_ends_in_rest(required: Path, number: signal.Signals) -> None:
         for command in COMMAND_IDS:
             after = [f for f in commands(bus.frames(), command) if f.t_ns > since_ns]
             first = next(i for i, f in enumerate(after) if currents(f) == REST)
-            # Of motors that had no current, rc10d itself may have sent the first.
+            # The first rest of motors that had no current may be rc10d's own.
             sent = [currents(f) for f in after[first:]]
             assert sent in ([REST] * 3, [REST] * 4)
         assert any("rc10d has died" in line for line in told(process))

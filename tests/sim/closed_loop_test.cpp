@@ -23,7 +23,7 @@ struct Case {
   DjiCommand command;
 };
 
-/// How a value went to its target.
+/// Course of a value to its target.
 class Approach {
  public:
   Approach(double target, double start, double tolerance)

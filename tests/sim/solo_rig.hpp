@@ -51,7 +51,7 @@ class SoloRig {
     motor_->setTarget(target);
   }
 
-  /// The enable sequence, as the supervisor runs it: at most so long. True: the motor says it is done.
+  /// The enable sequence, as the supervisor runs it, within a time limit. True: the motor says it is done.
   bool enable(Duration patience = std::chrono::seconds{1}) {
     motor_->order(FrameKind::kEnable);
     for (const MonotonicTime end = now_ + patience; now_ < end;) {

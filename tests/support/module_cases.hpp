@@ -11,7 +11,7 @@ namespace rc10::test {
 struct ModuleCase {
   std::string type;
   int motors = 0;    ///< M3508 called m0, m1, ...
-  std::string keys;  ///< Of the module, in YAML.
+  std::string keys;  ///< Keys of the module, in YAML.
   std::vector<std::pair<std::string, double>> inputs{};
   std::vector<std::uint8_t> frame{};  ///< Frame of its serial device.
 

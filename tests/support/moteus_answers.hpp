@@ -21,7 +21,7 @@ struct MoteusAnswer {
   double current_a = 0.0;
   double voltage_v = 24.0;
   double temperature_c = 30.0;
-  Duration clock_late{};  ///< How much less than ours its clock shows.
+  Duration clock_late{};  ///< Lag of its clock behind ours.
   std::optional<int> version{};
   std::optional<double> timeout_s{};
 };

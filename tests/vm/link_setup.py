@@ -1,4 +1,4 @@
-"""How somebody other than rc10d sets up a CAN controller, and sees how it is set up."""
+"""Set-up of a CAN controller by somebody other than rc10d, and a look at it."""
 
 from __future__ import annotations
 

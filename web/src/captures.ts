@@ -12,7 +12,7 @@ export interface Capture {
   signals: string[];
   units: string[];
   period_s: number;
-  /** The trigger is so long after the first value. */
+  /** Time of the trigger after the first value. */
   pre_s: number;
   /** By signal and tick; null: not known. */
   values: (number | null)[][];
@@ -113,7 +113,7 @@ export function responseOf(capture: Capture): number {
   return capture.units.findIndex((unit, i) => i > 0 && unit === capture.units[0]);
 }
 
-/** Of the first signal as the target, and the next of its unit as the answer. */
+/** Capture of the first signal as the target, and the next of its unit as the answer. */
 export function stepNumbers(capture: Capture): StepNumbers | null {
   const answer = responseOf(capture);
   const target = capture.values[0] ?? [];

@@ -13,7 +13,7 @@ function dashOf(i: number): number[] {
   return kDashes[Math.floor(i / kColours.length) % kDashes.length] ?? [];
 }
 
-// Of a picture that has no value yet.
+// Placeholder of a picture that has no value yet.
 const kUnknown: uPlot.Range.MinMax = [0, 1];
 function isEmpty(min: number | null, max: number | null): boolean {
   return min === null || max === null || !Number.isFinite(min) || !Number.isFinite(max);

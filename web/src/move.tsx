@@ -129,7 +129,7 @@ function Jog(props: { motor: string; modes: HeldMode[]; mode: HeldMode; onMode: 
         event.currentTarget.setPointerCapture(event.pointerId);
         hold(event.pointerId, sign);
       }}
-      // Of a mouse with another button down, no pointerup tells that this one came up.
+      // With another button of the mouse down, no pointerup tells that this one came up.
       onPointerMove={(event) => holder.current === event.pointerId && event.buttons !== 1 && letGo('')}
       onPointerUp={() => letGo('')}
       onPointerCancel={() => letGo(word('jogAway'))}

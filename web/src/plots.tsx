@@ -167,7 +167,7 @@ export function Curves(props: { signals: string[]; unit?: (signal: string) => st
         origin.current = received.first * received.columnUs;
       if (received.kind === 'next' && origin.current === 0) origin.current = received.first * received.columnUs;
       if (received.kind === 'range') {
-        // Of the last zoom, and of nobody else.
+        // The answer to the last zoom, not to another's.
         if (received.first !== zoomed.current) return;
         const fine = new Traces(() => origin.current);
         if (!fine.add({ ...received, kind: 'reset' }, number_, received.count)) return;

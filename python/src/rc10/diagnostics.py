@@ -1,4 +1,4 @@
-"""How late and how loaded the daemon is, `<robot>.v1.diagnostics`."""
+"""Lateness and load of the daemon, `<robot>.v1.diagnostics`."""
 
 from __future__ import annotations
 

@@ -9,7 +9,7 @@ from rc10.lcm_types.event_t import event_t
 
 
 class Severity(IntEnum):
-    """How bad an event is."""
+    """Severity of an event."""
 
     INFO = event_t.SEVERITY_INFO
     WARNING = event_t.SEVERITY_WARNING

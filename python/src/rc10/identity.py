@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import secrets
 
-# Of a name on the daemon's side; the daemon would refuse what a longer one says.
+# Size limit of a name on the daemon's side; the daemon would refuse what a longer one says.
 MAX_CLIENT_BYTES = 31
 
 

@@ -63,7 +63,7 @@ class Inbox:
         self._states_seen = 0
         count = self._link.pump(timeout_s)
         if self._states_seen >= STATE_QUEUE:
-            # The caller was away for so long that LCM's queue filled up, and a full queue drops
+            # LCM's queue filled up while the caller was away, and a full queue drops
             # the newest. All that was in it is old: a live one is worth a short wait.
             self._states_seen = 0
             deadline_s = self._link.now() + _WAIT_FOR_LIVE_S

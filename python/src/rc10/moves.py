@@ -23,7 +23,7 @@ _SILENCE_S = 1.0
 
 
 class MoveOutcome(Enum):
-    """How a move ended."""
+    """Outcome of a move."""
 
     DONE = "done"
     """It stands within the tolerance."""
@@ -35,7 +35,7 @@ class MoveOutcome(Enum):
 
 @dataclass(frozen=True)
 class MoveResult:
-    """How a move ended; true when it is done."""
+    """Outcome of a move; true when it is done."""
 
     outcome: MoveOutcome
     reason: str

@@ -37,7 +37,7 @@ class Order:
             self.refusal = event.text
 
     def not_obeyed(self, motor: MotorState) -> str:
-        """Why the motor does not follow it, in words; empty if it does."""
+        """Reason why the motor does not follow it, in words; empty if it does."""
         ours = motor.owner == self.client
         if ours and motor.mode is self.setpoint.mode and motor.target == self.setpoint.value:
             return ""
@@ -58,7 +58,7 @@ class Order:
 
 
 def obstacle(state: RobotState, motor: MotorState) -> str:
-    """Why a motor would not act on a target, in words that tell what to do; empty if it would."""
+    """Reason why a motor would not act on a target, and what to do; empty if it would."""
     if state.status is RobotStatus.ESTOP:
         return "the robot is in ESTOP: clear it, then enable the motors"
     if state.status is RobotStatus.STOPPING:
@@ -76,7 +76,7 @@ def obstacle(state: RobotState, motor: MotorState) -> str:
 
 
 def without_reference(motor: MotorState) -> str:
-    """Why a motor would not go to an angle though it obeys; empty if it would."""
+    """Reason why a motor would not go to an angle though it obeys; empty if it would."""
     if not motor.zeroed:
         return (
             f"{motor.name} has no reference for angles: home it, or zero it while it is disabled, "

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from rc10.recording import Recording
     from rc10.state import RobotState
 
-# Of every sample: what says when it was.
+# Times of every sample.
 TIMES = ("mono_us", "utime", "tick")
 
 

@@ -39,12 +39,12 @@ AtEnd = Literal["timeout", "disable", "coast"]
 REPEAT_REQUEST_S = 0.1
 # An emergency stop is worth the traffic.
 REPEAT_ESTOP_S = 0.02
-# How long leaving may take: the lease of a client that is gone lapses by itself.
+# Time that leaving may take: the lease of a client that is gone lapses by itself.
 RELEASE_TIMEOUT_S = 0.5
-# While the program receives, the target of a move is sent so often, and acts for so long.
+# Period and validity of a move's target while the program receives.
 RESEND_S = 0.02
 _MOVE_VALIDITY_MS = 100
-# Of the daemon, for a message that says 0.
+# Validity that the daemon gives a message that says 0.
 DEFAULT_VALIDITY_MS = 50
 # A state younger than this proves that the daemon runs and is heard.
 _LIVE_S = 1.0

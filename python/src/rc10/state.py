@@ -82,7 +82,7 @@ class Acting(IntEnum):
 
 
 class StopCause(IntEnum):
-    """Why a motor does not obey, or the robot does not run."""
+    """Reason why a motor does not obey, or the robot does not run."""
 
     NONE = motor_state_t.STOP_NONE
     REQUEST = motor_state_t.STOP_REQUEST
@@ -159,7 +159,7 @@ class MotorState:
     acting: Acting
     """Source of what the shaft feels."""
     stop_cause: StopCause
-    """Why it stopped obeying; NONE while it obeys."""
+    """Reason why it stopped obeying; NONE while it obeys."""
     stopped_by: str
     """The client, module or motor that stopped it, where there is one."""
     owner: str
@@ -181,7 +181,7 @@ class MotorState:
     feedback_age_us: int
     """Since the last feedback frame; -1: none yet."""
     feedback_age_at_use_us: int
-    """Of the feedback that the tick's frames were computed from, when they left."""
+    """Age of the feedback that the tick's frames were computed from, when they left."""
     command_age_us: int
     """Since the host received the command in force; -1: none is."""
     feedback_hz: float
@@ -215,7 +215,7 @@ class RobotState:
     realtime: bool
     """The real-time set-up is complete; if not, Diagnostics.notices says why."""
     stop_cause: StopCause
-    """Why it is not in RUN."""
+    """Reason why it is not in RUN."""
     stopped_by: str
     """The client or module that asked for that, where there is one."""
     stopped_mono_us: int
@@ -224,7 +224,7 @@ class RobotState:
     """E-stops since start."""
     conditions: Condition
     version: str
-    """Of rc10d."""
+    """Version of rc10d."""
     config_hash: str
     """SHA-256 of the configuration file as rc10d read it, as sha256sum prints it."""
     motors: Mapping[str, MotorState]

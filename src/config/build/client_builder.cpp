@@ -110,7 +110,7 @@ class ClientBuilder {
   MotorNames motor_names_;
 };
 
-// Of the key itself: its list begins in the next line.
+// Line of the key itself: its list begins in the next line.
 int lineOfKey(const Settings& top, std::string_view key, int otherwise) {
   for (const auto& layer : top.layers()) {
     for (const auto& entry : layer.map->entries)

@@ -8,20 +8,20 @@
 namespace rc10 {
 namespace {
 
-// Of the no-load speed at 24 V: out of reach for the drive alone; and slower than a turning motor's noise.
+// Shares of the no-load speed at 24 V: above what the drive alone can reach; below a turning motor's noise.
 constexpr double kOverspeed = 1.5;
 constexpr double kStall = 0.02;
 // Against all its torque: more than a load or another robot that pushes adds.
 constexpr double kRunaway = 0.1;
-// Of full scale: what a drive's current may be off by while it is in order.
+// Share of full scale: error of the current of a drive in order.
 constexpr float kFrozen = 0.05F;
 // GM6020 manual: it warns above 100 C, its winding stands 125 C; the C620 warns from 125 C.
 constexpr float kDerateC = 80.0F;
 constexpr float kTripC = 100.0F;
 constexpr double kFollowingErrorMs = 200.0;
-// Of the largest current that a drive reports: the offset and noise of its measurement stay below.
+// Share of the largest reported current: offset and noise of its measurement stay below.
 constexpr float kRest = 0.05F;
-// Of the limit: a drive that goes on with its last command may go on with that.
+// Share of the current limit: a drive that repeats its last command may exceed it.
 constexpr float kRestOfLimit = 0.5F;
 constexpr Duration kRestTime = std::chrono::milliseconds{100};
 constexpr int kFastCurrentHz = 50;

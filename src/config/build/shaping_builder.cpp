@@ -10,7 +10,7 @@ namespace {
 // no-load speed over which the effort comes down.
 constexpr float kNativeApproach = 2.0F;
 constexpr float kFullEffort = 0.2F;
-// Of an encoder that may be a turn astray, where nothing makes the way there slow: farther is a matter of
+// First step of an encoder that may be a turn astray, where nothing slows the way: farther is a matter of
 // turns.
 constexpr double kFirstStepDeg = 180.0;
 // A gimbal and a wheel live with it, and a hand has time.

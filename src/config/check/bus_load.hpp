@@ -6,7 +6,7 @@
 
 namespace rc10 {
 
-/// How full a bus will be, both directions together, as fractions of its bit rate. The real load lies
+/// Load of a bus, both directions together, as fractions of its bit rate. The real load lies
 /// between the two: it depends on the bits that are sent.
 struct BusLoad {
   double unstuffed = 0.0;   ///< Not a single stuff bit.

@@ -28,10 +28,11 @@ struct Range {
   bool above_min = false;  ///< The minimum itself is not allowed.
 };
 
-/// How a text is to look: for the loader, for messages and for editors.
+/// Form of a text: for the loader, for messages and for editors.
 struct TextForm {
-  std::string_view pattern;  ///< Of the whole text: what ECMAScript and POSIX extended have in common.
-  std::string_view words;    ///< Completes "use ...".
+  std::string_view
+      pattern;             ///< Pattern of the whole text: what ECMAScript and POSIX extended have in common.
+  std::string_view words;  ///< Completes "use ...".
 };
 
 /// Condition of a key that exists for some motors only.
@@ -60,15 +61,15 @@ struct SectionTypes {
 struct Key {
   std::string_view name{};
   ValueKind kind = ValueKind::kText;
-  std::string_view unit{};         ///< Of numbers; the name of the key ends with it.
-  Range range{};                   ///< Of numbers, and of the number of items.
-  const TextForm* form = nullptr;  ///< Of texts, of those in kTextList, of the names in kNamedSections.
+  std::string_view unit{};         ///< Unit of numbers; the name of the key ends with it.
+  Range range{};                   ///< Range of numbers, and of the number of items.
+  const TextForm* form = nullptr;  ///< Form of texts, of those in kTextList, of the names in kNamedSections.
   std::vector<std::string_view> (*choices)() = nullptr;  ///< The only values there are.
   std::span<const std::string_view> words{};             ///< The same, for keys of a family.
   const Section* section = nullptr;                      ///< Keys of the sections.
-  const SectionTypes* types = nullptr;                   ///< Of kTypedSections.
+  const SectionTypes* types = nullptr;                   ///< Types of kTypedSections.
   bool required = false;
-  std::uint16_t needs = 0;          ///< Of Need.
+  std::uint16_t needs = 0;          ///< Set of Need.
   std::string_view twin{};          ///< The key to use where `needs` is not met.
   std::string_view default_text{};  ///< As it would be written; empty: see `about`.
   std::string_view about{};         ///< For people.
@@ -81,7 +82,7 @@ struct Key {
 
 /// The keys of one map.
 struct Section {
-  std::string_view name;  ///< Of its definition in the schema.
+  std::string_view name;  ///< Name of its definition in the schema.
   std::span<const Key> fixed_keys;
   std::string_view about;
   std::span<const Key> (*made_keys)() = nullptr;  ///< In place of fixed_keys, where families add theirs.

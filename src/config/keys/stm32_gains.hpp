@@ -52,7 +52,7 @@ struct ConvertedGains {
     std::string_view comment;
   };
   std::string section;  ///< "velocity_pid"
-  std::string type;     ///< Of the controller; empty: there is one only.
+  std::string type;     ///< Type of the controller; empty: there is one only.
   std::vector<Gain> gains;
   float current_limit_a = 0.0F;  ///< Beside the section; 0: none.
   std::vector<std::string> notes;

@@ -25,7 +25,7 @@ bool skip(std::string_view& text, std::string_view any_of) {
   return true;
 }
 
-/// How much of the front of the text is a JSON number (RFC 8259, section 6).
+/// Length of the JSON number at the front of the text (RFC 8259, section 6).
 std::size_t numberLength(const std::string_view whole) {
   std::string_view rest = whole;
   skip(rest, "-");

@@ -24,7 +24,7 @@ struct ConfigProblem {
 /// ten aliases) is one mistake to mend and is kept once, under its first path.
 class Problems {
  public:
-  static constexpr std::size_t kMost = 500;  ///< After so many nothing more is kept: it is no config.
+  static constexpr std::size_t kMost = 500;  ///< Problems kept; a text with more is no config.
 
   explicit Problems(std::string file) : file_(std::move(file)) {}
 

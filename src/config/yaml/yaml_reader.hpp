@@ -13,7 +13,7 @@ namespace rc10 {
 struct YamlLimits {
   static constexpr std::size_t kDepth = 16;        ///< Maps and lists inside each other.
   static constexpr std::size_t kNodes = 20'000;    ///< Values and keys; an alias counts as all it stands for.
-  static constexpr std::size_t kTextBytes = 1024;  ///< Of one value or key.
+  static constexpr std::size_t kTextBytes = 1024;  ///< Size limit of one value or key.
 };
 
 /// Reads exactly one YAML document. Nothing, and at least one error, if it is not YAML, empty, several

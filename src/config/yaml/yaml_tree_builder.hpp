@@ -45,7 +45,7 @@ class YamlTreeBuilder : public YAML::EventHandler {
   struct Open {
     YamlNode node;
     YAML::anchor_t anchor = 0;
-    std::optional<YamlNode> key;  ///< Of a map: read, its value is still to come.
+    std::optional<YamlNode> key;  ///< Key of a map: read, its value is still to come.
   };
 
   void begin(YamlNode node, YAML::anchor_t anchor);

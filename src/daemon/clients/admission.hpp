@@ -18,7 +18,7 @@
 
 namespace rc10 {
 
-/// Why a command message was refused. A message is refused whole.
+/// Reason why a command message was refused. A message is refused whole.
 enum class CommandRefusal : std::uint8_t {
   kNone,
   kMalformed,  ///< No setpoints, one motor twice, or a validity out of range.

@@ -8,7 +8,7 @@ namespace {
 
 // A burst after a pause of the computer or of a network: two milliseconds' worth, as much as the ring holds.
 constexpr double kMostTokens = 2.0 * CommandBudget::kSetpointsPerMs;
-// A client that was silent for so long leaves its share to the others.
+// Silence after which a client leaves its share to the others.
 constexpr Duration kSilent = std::chrono::milliseconds{100};
 constexpr std::size_t kMaxAccounts = 64;
 

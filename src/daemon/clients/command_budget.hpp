@@ -15,11 +15,11 @@ class CommandBudget {
  public:
   /// Setpoints per millisecond, of all clients together.
   static constexpr double kSetpointsPerMs = 1024.0;
-  /// A message costs as much as so many setpoints, or as its own if those are more: 32 messages a
+  /// Least cost of a message, in setpoints; its own if those are more: 32 messages a
   /// millisecond, half the ring.
   static constexpr std::size_t kLeastCost = 32;
 
-  /// Whether the client may send so many setpoints now; if so, they are taken.
+  /// Whether the client may send this number of setpoints now; if so, they are taken.
   [[nodiscard]] bool spend(std::string_view client, std::size_t setpoints, MonotonicTime now);
 
  private:

@@ -18,7 +18,7 @@ namespace rc10 {
 /// Every gain in force under its key.
 void tellGains(const MotorLoops& loops, link::Response& response);
 
-/// Why no gain of such a motor can be set or told; an error if rc10d closes no loop of it.
+/// Reason why no gain of such a motor can be set or told; an error if rc10d closes no loop of it.
 [[nodiscard]] Result<void> checkHasGains(std::string_view motor, const MotorLoops& loops);
 
 }  // namespace rc10

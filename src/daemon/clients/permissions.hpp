@@ -24,7 +24,7 @@ using GrantSet = std::bitset<kMaxClientEntries>;
 /// Sender of a message, as far as the kernel and the gateway vouch for it.
 struct Speaker {
   enum class Way : std::uint8_t {
-    kSocket,   ///< Of the link; the kernel has told the user.
+    kSocket,   ///< Peer of the link socket; the kernel has told the user.
     kLcm,      ///< LCM on this computer; the name is the message's own.
     kNetwork,  ///< LCM from another computer: anybody.
   };
@@ -75,7 +75,7 @@ class Permissions {
  private:
   struct Entry {
     ClientConfig config;
-    std::optional<std::uint32_t> id;  ///< Of the user or group.
+    std::optional<std::uint32_t> id;  ///< Id of the user or group.
     MotorSet motors;
     std::bitset<link::kMaxModules> modules;
   };

@@ -37,7 +37,7 @@ class Publication {
   struct Measured {
     const TickTiming& timing;
     const TickAges& ages;
-    const DurationHistogram& state_ages;  ///< Of feedback in a state, when that is sent.
+    const DurationHistogram& state_ages;  ///< Ages of feedback in a state, when that is sent.
     const LateTickCauses& late;
     std::span<const BusInbox> inboxes;
     const Admission& admission;

@@ -35,7 +35,7 @@ class RequestDesk {
     std::optional<Hand> hand;                ///< To be sent to the simulation; it answers nothing.
     std::optional<link::Response> response;  ///< To be sent back at once.
     bool estop = false;                      ///< Raise the e-stop flag too: the ring may be full.
-    std::string not_permitted;               ///< Why, if that is the reason of the response.
+    std::string not_permitted;               ///< Cause, if that is the reason of the response.
   };
   /// finish() tells the speaker's connection back.
   [[nodiscard]] Outcome begin(const link::Request& request, const Speaker& speaker);

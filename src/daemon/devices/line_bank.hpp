@@ -17,7 +17,7 @@ namespace rc10 {
 class LineBank {
  public:
   struct Settings {
-    std::string name;  ///< Of the module.
+    std::string name;  ///< Name of the module.
     std::string chip;
     std::vector<GpioNeed::Input> inputs;
     std::vector<GpioNeed::Output> outputs;

@@ -14,7 +14,7 @@ class RetryPace {
  public:
   static constexpr Duration kFirstWait = std::chrono::milliseconds{50};
   static constexpr Duration kLongestWait = std::chrono::seconds{1};
-  /// A device that was open for so long is well: if it goes, it is tried again at once.
+  /// Time open after which a device is well: if it goes, it is tried again at once.
   static constexpr Duration kWellAfter = std::chrono::seconds{5};
 
   [[nodiscard]] bool due(MonotonicTime now) const noexcept { return now >= next_; }

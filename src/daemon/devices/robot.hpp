@@ -32,7 +32,7 @@ class Robot {
     std::unique_ptr<Motor_Base> motor;
     std::size_t bus = 0;
     Duration feedback_timeout{};
-    /// Without feedback for so many ticks that ran, too, before it counts as lost.
+    /// Ticks that ran without feedback, too, before it counts as lost.
     std::uint64_t feedback_timeout_ticks = 0;
     GuardConfig guard{};
     RestConfig rest{};

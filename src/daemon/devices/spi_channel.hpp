@@ -15,7 +15,7 @@ namespace rc10 {
 /// the newest. Neither waits.
 struct SpiChannel {
   struct Settings {
-    std::string name;  ///< Of the module.
+    std::string name;  ///< Name of the module.
     std::string path;
     std::uint32_t speed_hz = 0;
     std::vector<std::uint8_t> rest;  ///< Sent at the end, and while no frames come.

@@ -27,7 +27,7 @@ class SpiKeeper {
   using Open =
       std::function<Result<std::unique_ptr<SpiPort>>(const std::string& path, std::uint32_t speed_hz)>;
 
-  /// After so many turns without a new frame what is shown is old: the rest frame is sent. In turns, so that
+  /// Turns without a new frame after which the rest frame is sent. In turns, so that
   /// a computer that stood still as a whole is no silence.
   static constexpr int kSilentTurns = 100;
 

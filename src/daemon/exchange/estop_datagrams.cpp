@@ -12,7 +12,7 @@ std::optional<link::Name> EstopDatagrams::take() const noexcept {
     std::array<char, sizeof(link::Name)> text{};
     const ssize_t size = ::recv(fd_, text.data(), text.size(), MSG_DONTWAIT);
     if (size < 0) break;
-    // Of several the first; an empty datagram is an e-stop too.
+    // The first of several; an empty datagram is an e-stop too.
     if (!client) client = link::Name{std::string_view{text.data(), static_cast<std::size_t>(size)}};
   }
   return client;

@@ -50,7 +50,7 @@ struct Order {
   GainChanges gains{};       ///< kSetGains: of the one motor.
   link::Name client{};       ///< The one that asked.
   bool whole_robot = false;  ///< Named no motor. Only such a kClear ends an e-stop.
-  bool repeated = false;     ///< Of a request that was taken before: one more kDisable it is not.
+  bool repeated = false;     ///< Repetition of a request that was taken before: it is not one more kDisable.
 
   [[nodiscard]] bool fromModule() const noexcept { return id == kFromModule; }
 };
@@ -65,7 +65,7 @@ struct SignalMessage {
   std::array<double, kMaxSignals> values{};  ///< By input; NaN: not given.
 };
 
-/// Why an order did not reach a motor.
+/// Reason why an order did not reach a motor.
 enum class Refusal : std::uint8_t {
   kNone,
   kOffline,  ///< No feedback.

@@ -40,7 +40,7 @@ struct RobotDescription {
     double bitrate = 1e6;
     float predicted_load = 0.0F;
     float predicted_load_worst = 0.0F;
-    double data_bitrate = 0.0;  ///< Of CAN FD's data phase; 0: a classic bus.
+    double data_bitrate = 0.0;  ///< Data bitrate of CAN FD's data phase; 0: a classic bus.
   };
   struct Module {
     std::string name;

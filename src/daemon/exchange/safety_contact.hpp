@@ -48,7 +48,7 @@ class SafetyContact {
   std::atomic<ContactState> opened_as_{ContactState::kOpen};  // the watcher's; ordered by sightings_
   std::atomic<std::uint32_t> openings_{0};
   std::atomic<std::uint32_t> sightings_{0};
-  // Of the scheduler.
+  // Counts of the scheduler.
   std::uint32_t seen_openings_ = 0;
   std::uint32_t seen_sightings_ = 0;
   float silence_s_ = 0.0F;

@@ -21,9 +21,9 @@ struct MotorSnapshot {
   MotorFeedback feedback;
   Target target;
   double target_shaped = std::numeric_limits<double>::quiet_NaN();  ///< As it acts; NaN: none does.
-  MonotonicTime command_received{};                                 ///< Of the command in force; 0: none is.
+  MonotonicTime command_received{};  ///< Time of the command in force; 0: none is.
   Acting acting = Acting::kNothing;
-  Stop stop;  ///< Why it does not obey.
+  Stop stop;  ///< Reason why it does not obey.
   float command_value = 0.0F;
   std::uint32_t limits = 0;
   FaultCode fault = FaultCode::kNone;
@@ -76,7 +76,7 @@ struct Snapshot {
   std::uint64_t refused_signals = 0;    ///< A module was held by another client, or the message was old.
   std::uint64_t events_dropped = 0;
   RobotStatus state = RobotStatus::kRun;
-  Stop stop;                ///< Why it is not in RUN,
+  Stop stop;                ///< Reason why it is not in RUN,
   MonotonicTime stopped{};  ///< and since when; 0: it is.
   std::uint32_t estops = 0;
   std::uint32_t conditions = 0;  ///< Of Condition, as far as they may change.

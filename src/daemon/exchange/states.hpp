@@ -49,13 +49,13 @@ inline constexpr auto kMotorTransitions = [] {
   return detail::kMotorTransitions[row][column];
 }
 
-/// Why something stopped, and who had it stop: a client or module, or the motor for which a group stopped.
+/// Reason of a stop, and who asked for it: a client or module, or the motor for which a group stopped.
 struct Stop {
   StopCause cause = StopCause::kNone;
   link::Name by{};
 };
 
-/// Why such an event stops a motor that was on.
+/// Reason why such an event stops a motor that was on.
 [[nodiscard]] constexpr StopCause causeOf(MotorEvent event, RobotStatus robot) noexcept {
   switch (event) {
     case MotorEvent::kFeedbackLost: return StopCause::kSilence;

@@ -5,7 +5,7 @@
 
 namespace rc10 {
 
-/// How late ticks start and how long they take.
+/// Lateness and duration of ticks.
 struct TickTiming {
   DurationHistogram wake_latency;
   DurationHistogram duration;

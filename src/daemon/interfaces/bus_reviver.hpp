@@ -31,7 +31,7 @@ class BusReviver {
   std::span<BusInbox> inboxes_;
   Notes notes_;
   InterfaceLocks& locks_;
-  std::array<std::string, kMaxBuses> told_{};  ///< Why a bus could not be had, as told last.
+  std::array<std::string, kMaxBuses> told_{};  ///< Reason why a bus could not be had, as told last.
 };
 
 }  // namespace rc10

@@ -20,7 +20,7 @@
 namespace rc10 {
 namespace {
 
-// Of each robot: 160 MiB with files of the default size.
+// Copies kept of each robot: 160 MiB with files of the default size.
 constexpr std::size_t kCopiesKept = 10;
 constexpr Duration kCopyLookInterval = std::chrono::milliseconds{50};
 

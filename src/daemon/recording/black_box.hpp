@@ -20,8 +20,8 @@ struct RobotDescription;
 class BlackBox {
  public:
   struct Settings {
-    std::string run_dir;    ///< Of the file.
-    std::string state_dir;  ///< Of the copies.
+    std::string run_dir;    ///< Folder of the file.
+    std::string state_dir;  ///< Folder of the copies.
     int mib = 16;
   };
 

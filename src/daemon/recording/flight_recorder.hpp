@@ -17,7 +17,7 @@ namespace rc10 {
 
 class Robot;
 
-/// Why the recording is worth keeping.
+/// Reason why the recording is worth keeping.
 enum class CopyCause : std::uint32_t { kFault = 1, kEstop = 2 };
 
 /// Writes down what happens in each tick: frames, commands, requests, events and states. Scheduler thread

@@ -84,7 +84,7 @@ bool Axis::lost(const Tick& tick) const noexcept {
   return bus_.held || motor_.feedback().samples == 0 || unheard_ticks_ > entry_.feedback_timeout_ticks;
 }
 
-// Of a bus that carries nothing the bus itself is the news.
+// A bus that carries nothing is itself the news, not its motors.
 bool Axis::missesDrive(const Tick& tick) noexcept {
   if (first_tick_ == MonotonicTime{}) first_tick_ = tick.now;
   if (missed_ || motor_.feedback().samples > 0 || bus_.held || tick.now - first_tick_ < kFirstAnswer)

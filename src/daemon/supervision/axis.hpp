@@ -25,7 +25,7 @@ class Axis {
   [[nodiscard]] Motor_Base& motor() const noexcept { return motor_; }
   [[nodiscard]] MotorStatus status() const noexcept { return status_; }
   [[nodiscard]] FaultCode fault() const noexcept { return fault_; }
-  /// Why it does not obey.
+  /// Reason why it does not obey.
   [[nodiscard]] const Stop& stop() const noexcept { return stop_; }
   [[nodiscard]] bool fallbackActs() const noexcept { return fallback_.acts(); }
   [[nodiscard]] FallbackAction timeoutAction() const noexcept { return entry_.fallback.on_timeout; }
@@ -44,7 +44,7 @@ class Axis {
   [[nodiscard]] bool missesDrive(const Tick& tick) noexcept;
   [[nodiscard]] int id() const noexcept { return entry_.id; }
   [[nodiscard]] bool standsStill() const noexcept;
-  /// Why an e-stop must not end yet: it turns, or may do so.
+  /// Reason why an e-stop must not end yet: it turns, or may do so.
   [[nodiscard]] Refusal unrest(const Tick& tick) const noexcept;
 
   // ---- Once a tick
@@ -122,7 +122,7 @@ class Axis {
   Stop stop_;
   std::uint32_t limits_ = 0;         ///< Active limits, as the guard reports them.
   bool reference_known_ = false;     ///< In the last tick.
-  std::uint64_t samples_ = 0;        ///< Of its feedback, when it was last heard.
+  std::uint64_t samples_ = 0;        ///< Count of its feedback, when it was last heard.
   std::uint64_t unheard_ticks_ = 0;  ///< Since then.
   bool on_when_heard_ = false;       ///< ENABLING or ACTIVE at that time.
   MonotonicTime enabling_since_;

@@ -30,7 +30,7 @@ void ForeignWatch::count(std::size_t motor, const ForeignLimit& limit, const Can
   const auto frames = static_cast<std::size_t>(limit.frames);
   auto& oldest = watched.received[watched.count % frames];
   const bool enough = ++watched.count >= frames;
-  // The place of the newest is the one of the first of so many.
+  // The ring's next slot holds the oldest of the last `frames` times.
   const auto& first = frames == 1 ? frame.received : watched.received[watched.count % frames];
   oldest = frame.received;
   if (enough && frame.received - first <= limit.within)

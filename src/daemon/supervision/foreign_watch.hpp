@@ -25,7 +25,7 @@ class ForeignWatch final : public ForeignListener {
 
  private:
   struct Watched {
-    std::array<MonotonicTime, ForeignLimit::kMost> received{};  ///< Of the last frames, in turn.
+    std::array<MonotonicTime, ForeignLimit::kMost> received{};  ///< Times of the last frames, in turn.
     std::size_t count = 0;
     std::optional<std::int32_t> takeover;
   };

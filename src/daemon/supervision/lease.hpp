@@ -40,7 +40,7 @@ class Lease {
 
   /// Empty when nobody has it.
   [[nodiscard]] const link::Name& client() const noexcept { return holder_.client; }
-  /// Of the command in force; 0 when there is none.
+  /// Time of the command in force; 0 when there is none.
   [[nodiscard]] MonotonicTime received() const noexcept { return term_.received; }
 
  private:

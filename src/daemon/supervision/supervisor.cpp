@@ -8,7 +8,7 @@
 namespace rc10 {
 namespace {
 
-// A simulation that does nothing for so long has ended, and its drives are silent.
+// Pause of a simulation after which it has ended, and its drives are silent.
 constexpr Duration kDeadSimulation = std::chrono::seconds{1};
 
 }  // namespace

@@ -26,8 +26,8 @@ class Supervisor {
 
   /// Takes everything the link has sent. Called after this tick's feedback was decoded.
   void receiveOrders(const Tick& tick) noexcept;
-  /// The targets of a module, as a client's command. Called between the two. False: refused, since somebody
-  /// else commands one of the motors.
+  /// The targets of a module, as a client's command. Called between receiveOrders() and decide(). False:
+  /// refused, since somebody else commands one of the motors.
   bool takeModuleCommand(const Command& command, const Tick& tick) noexcept;
   /// A request of a module; it sees the outcome in the motors.
   void takeModuleOrder(const Order& order, const Tick& tick) noexcept;
@@ -101,9 +101,9 @@ class Supervisor {
   void carryOut(const Order& order, const Tick& tick) noexcept;
   /// `asked`: all motors that the request names.
   [[nodiscard]] Refusal enable(std::size_t motor, const MotorSet& asked, const Tick& tick) noexcept;
-  /// Why it cannot be enabled, whatever its group says.
+  /// Reason why it cannot be enabled, whatever its group says.
   [[nodiscard]] Refusal ownRefusal(std::size_t motor) const noexcept;
-  /// Why its group does not let it be enabled.
+  /// Reason why its group does not let it be enabled.
   [[nodiscard]] Refusal groupRefusal(std::size_t motor, const MotorSet& asked) const noexcept;
   [[nodiscard]] Refusal enableAlone(std::size_t motor, const Tick& tick) noexcept;
   /// The motors that keep this one from being enabled, alone or at all.
@@ -150,7 +150,7 @@ class Supervisor {
   FlightRecorder* recorder_;
   ForeignWatch foreign_;
   RobotStatus state_ = RobotStatus::kRun;
-  Stop stop_;                ///< Why not in RUN,
+  Stop stop_;                ///< Reason why it is not in RUN,
   MonotonicTime stopped_{};  ///< and since when.
   std::uint32_t estops_ = 0;
   std::vector<Axis> axes_;

@@ -7,7 +7,7 @@
 namespace rc10 {
 namespace {
 
-// Motors that stood still for so long are at rest.
+// Standstill after which motors are at rest.
 constexpr Duration kAtRest = std::chrono::milliseconds{300};
 
 [[nodiscard]] std::int16_t firstOf(const MotorSet& motors) noexcept {

@@ -22,18 +22,18 @@ namespace rc10 {
 /// chip, and the e-stop input, which has a thread of its own, does not either.
 class LineLoop {
  public:
-  /// Inputs are looked at so often.
+  /// Period at which inputs are read.
   static constexpr Duration kLookInterval = std::chrono::milliseconds{1};
   /// Outputs alone need no looks; a silent scheduler must be noticed all the same.
   static constexpr Duration kIdleInterval = std::chrono::milliseconds{20};
-  /// Without a tick for so long outputs go to their safe values. In this thread's own turns, so that a
+  /// Silence of ticks after which outputs go to their safe values. In this thread's own turns, so that a
   /// computer that stood still as a whole is no silence.
   static constexpr Duration kMaxSilence = std::chrono::milliseconds{200};
   /// So many bad turns in a row, and the lines are given back. A disturbance of an I2C bus (a valve or a
   /// motor that switches) spoils one or two; letting go for that would drop what a valve holds. A chip that
   /// is gone is noticed within 5 ms all the same, and meanwhile every output is tried again in every turn.
   static constexpr int kMaxBadTurns = 5;
-  /// A chip that fails now and then is told so often, with how often it failed.
+  /// Period at which a chip that fails now and then is reported, with its count of failures.
   static constexpr Duration kTellBadTurns = std::chrono::seconds{1};
 
   LineLoop(LineBanks& banks, std::unique_ptr<GpioSystem> gpio, LinkExchange& exchange);

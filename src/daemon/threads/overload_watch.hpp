@@ -15,7 +15,7 @@ class OverloadWatch {
 
   /// After a tick that took longer than its period. `cpu_time`: the thread's, so far. True: overloaded.
   [[nodiscard]] constexpr bool overran(Duration cpu_time) noexcept {
-    // Of the first of several the start is not known.
+    // The start of the first of several overruns is not known.
     const Duration used = last_cpu_time_ ? cpu_time - *last_cpu_time_ : Duration::zero();
     over_ = used > period_ ? over_ + used : Duration::zero();
     last_cpu_time_ = cpu_time;

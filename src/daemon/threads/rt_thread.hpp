@@ -12,7 +12,7 @@
 
 namespace rc10 {
 
-/// How a thread wants to run.
+/// Scheduling of a thread.
 struct RtSettings {
   std::string name;        ///< As `ps -T` shows it, at most 15 characters.
   int priority = 0;        ///< SCHED_FIFO; 0: SCHED_OTHER.

@@ -39,7 +39,7 @@ class Scheduler {
   /// The rest frames of the stop have reached the wire, as far as that can be known, or it took too long.
   [[nodiscard]] bool stopped() const noexcept { return stopped_; }
 
-  /// The heartbeat is to end so long after the beginning of an e-stop, until that is cleared. Before the
+  /// Time from the beginning of an e-stop to the end of the heartbeat, until that is cleared. Before the
   /// first tick.
   void restHeartbeatAfter(std::optional<Duration> estop) noexcept { heartbeat_rests_after_ = estop; }
   /// Before the first tick. The page, which rc10-guard reads and writes, outlives this.
@@ -53,7 +53,7 @@ class Scheduler {
   [[nodiscard]] const Supervisor& supervisor() const noexcept { return supervisor_; }
   [[nodiscard]] std::uint64_t ticks() const noexcept { return ticks_.load(std::memory_order_relaxed); }
   [[nodiscard]] std::uint64_t missedTicks() const noexcept { return missed_ticks_; }
-  /// Of the last tick; `woken` and `done` are its caller's. Its own thread only.
+  /// Times of the last tick; `woken` and `done` are its caller's. Its own thread only.
   [[nodiscard]] const TickMarks& marks() const noexcept { return marks_; }
 
  private:

@@ -128,7 +128,7 @@ constexpr ModeSet kMitModes{ControlMode::kCoast, ControlMode::kCurrent,    Contr
 // Commands of the servo protocol are 0 to 8 in bits 8 and up; more is no command.
 constexpr std::uint32_t kServoCommandMask = 0x1FFF'F0FFU;
 
-/// How often what is told leaves, and for drives that only answer also what comes back.
+/// Rate of commands, and of the answers of drives that only answer.
 double commandsPerSecond(const MotorSettings& settings) {
   return static_cast<double>(settings.tick_hz) / std::max(settings.command_divider, 1);
 }

@@ -23,7 +23,7 @@ enum class ServoCommand : std::uint32_t {
   kMit = 8,
 };
 inline constexpr std::uint32_t kServoFeedback = 0x29;
-inline constexpr double kLargestErpm = 100'000.0;  ///< Of the velocity command: the manual's range.
+inline constexpr double kLargestErpm = 100'000.0;  ///< Range of the velocity command by the manual.
 
 [[nodiscard]] constexpr CanId servoId(ServoCommand command, int motor_id) noexcept {
   return {static_cast<std::uint32_t>(command) << 8U | static_cast<std::uint32_t>(motor_id), true};

@@ -13,7 +13,7 @@ namespace {
 
 // No start-up time is published. Its boot loader and the encoder's start take longer than this.
 constexpr Duration kStartUp = std::chrono::milliseconds{100};
-constexpr int kCubemarsGapPeriods = 3;  // so many feedback periods are no gap
+constexpr int kCubemarsGapPeriods = 3;  // feedback periods that are no gap
 // Above the no-load speed: a load that drives, a full battery, another winding of the same name.
 constexpr double kReach = 1.5;
 constexpr double kPositionErrorDeg = 1.0;

@@ -9,9 +9,9 @@
 
 namespace rc10 {
 
-/// How a Damiao drive is enabled: it is disabled, tells the scales of its frames, takes its control mode and
-/// its watchdog and tells both back, tells its position, and only then is enabled. Every register is written
-/// to RAM only. Scheduler thread only.
+/// Enable sequence of a Damiao drive: it is disabled, tells the scales of its frames, takes its control mode
+/// and its watchdog and tells both back, tells its position, and only then is enabled. Every register is
+/// written to RAM only. Scheduler thread only.
 class DamiaoEnabling {
  public:
   struct Plan {

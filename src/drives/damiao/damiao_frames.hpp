@@ -15,7 +15,7 @@ namespace rc10::damiao {
 // Everything is at the drive's own output: rad, rad/s, Nm.
 
 inline constexpr std::uint32_t kRegisterId = 0x7FF;
-/// Of a received id a drive looks at these bits only, to see whether it is meant (manual, "Feedback
+/// Bits of a received id by which a drive sees whether it is meant (manual, "Feedback
 /// Mechanism"): it answers whatever frame has its id there.
 inline constexpr std::uint32_t kAddressMask = 0x0FF;
 /// The low nibble of byte 0 of feedback is the id; the other is the status. Ids above 15 spoil the status.
@@ -127,7 +127,7 @@ using Payload = std::array<std::uint8_t, 8>;
 [[nodiscard]] std::uint32_t bitsOf(float value) noexcept;
 [[nodiscard]] float floatOf(std::uint32_t bits) noexcept;
 
-/// Of a temperature byte: the drive casts a float to it, so cold comes as the two's complement.
+/// Value of a temperature byte: the drive casts a float to it, so cold comes as the two's complement.
 [[nodiscard]] float temperature(std::uint8_t byte) noexcept;
 
 /// Fault of a status; kNone below kFirstFault.

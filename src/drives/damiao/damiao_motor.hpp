@@ -75,7 +75,7 @@ class Damiao_Motor : public SoloMotor {
   DamiaoSetupCodec setup_codec_;
   DriveConfiguring configuring_{setup_codec_};
   CanFrame command_;
-  double measured_rad_s_ = 0.0;  ///< Of the drive.
+  double measured_rad_s_ = 0.0;  ///< Speed of the drive.
   std::uint8_t status_ = damiao::kStatusDisabled;
   bool armed_ = false;    ///< Enabled by the sequence, and neither rested nor stopped since.
   bool stopped_ = false;  ///< Not enabled, though it was to obey.

@@ -9,7 +9,7 @@ namespace rc10 {
 namespace {
 
 constexpr std::int64_t kWrap = 65536;
-// Of half the range: beyond, the shorter way round may be the wrong one.
+// Share of half the range: beyond, the shorter way round may be the wrong one.
 constexpr double kSureShare = 0.8;
 constexpr double kSlackRad = 0.1;  // noise
 // Between the register and the feedback next to it the motor turns on.

@@ -7,11 +7,11 @@ namespace {
 
 using damiao::Register;
 
-/// How a setting stands in its register. Numbers and ranges: DM-J manuals of 2026, "Register List".
+/// Form of a setting in its register. Numbers and ranges: DM-J manuals of 2026, "Register List".
 struct SettingRegister {
   Register address;
   bool whole = false;     ///< An unsigned integer; else a float.
-  double per_unit = 1.0;  ///< Of the register, for one of the setting.
+  double per_unit = 1.0;  ///< Units of the register for one of the setting.
 };
 
 constexpr std::array kDamiaoSettings{

@@ -97,7 +97,7 @@ class DJI_Motor : public Motor_Base {
   double reference_deg_ = 0.0;
   double hold_deg_ = 0.0;
   bool holding_ = false;
-  std::uint64_t hold_losses_ = 0;  ///< Of the encoder, when the hold began.
+  std::uint64_t hold_losses_ = 0;  ///< Losses of the encoder, when the hold began.
   float silence_s_ = 0.0F;         ///< Ticks since the last sample, in seconds.
   float effort_ = 0.0F;
 };

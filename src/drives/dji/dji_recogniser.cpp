@@ -11,7 +11,7 @@ namespace {
 // C620 and C610 cannot be told apart by their frames: where one has the temperature the other has nothing.
 constexpr std::string_view kC6xx = "DJI M3508 or M2006";
 constexpr std::string_view kGm6020 = "DJI GM6020";
-// Of their encoders: the angle is 0 to 8191.
+// Counts of their encoders: the angle is 0 to 8191.
 constexpr unsigned kDjiCounts = 8192;
 
 }  // namespace

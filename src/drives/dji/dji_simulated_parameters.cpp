@@ -64,7 +64,7 @@ constexpr std::array kMotorData{MotorData{.model = "M3508",
                                           .heat_capacity_j_per_k = 150.0,
                                           .load_ratio = 25.0}};
 
-// Of the power a motor draws without load, the part that is friction at the shaft; the rest is the drive's
+// Share of friction at the shaft in the power a motor draws without load; the rest is the drive's
 // own and iron losses. Estimated: an M3508 then starts to turn at 0.37 A and an M2006 at 0.46 A.
 constexpr double kNoLoadFrictionShare = 0.6;
 

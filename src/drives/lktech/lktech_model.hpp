@@ -11,7 +11,7 @@ namespace rc10 {
 struct LktechModel {
   std::string_view name;
   double gear_ratio = 1.0;
-  double amperes_per_raw = 0.0;        ///< Of commands and replies.
+  double amperes_per_raw = 0.0;        ///< Size of a count in commands and replies.
   float peak_current_a = 0.0F;         ///< At the peak torque.
   float rotor_torque_nm_per_a = 0.0F;  ///< 0: unknown. Times the gear at the output.
 };

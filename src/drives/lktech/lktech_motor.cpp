@@ -108,7 +108,7 @@ void LKTech_Motor::acceptReading(const CanFrame& frame) noexcept {
     next_query_ = {};
   }
   if (counted_ && encoder_) {
-    // As it turned before and turns now, so far has it come meanwhile: then the nearest such angle.
+    // Way at the mean of the speeds before and now; the turn is that of the nearest such angle.
     const float mean_rpm =
         0.5F * (std::isnan(rpm_before) ? feedback_.velocity_rpm : rpm_before) + 0.5F * feedback_.velocity_rpm;
     const double expected_deg = position_deg_ + toDrive(static_cast<double>(mean_rpm)) * kDegPerSPerRpm *

@@ -81,7 +81,7 @@ class LKTech_Motor final : public SoloMotor {
   // Readings of the drive.
   std::optional<MonotonicTime> heard_;
   std::optional<std::uint16_t> encoder_;
-  double position_deg_ = 0.0;  ///< Of the drive's output, in the drive's own count of turns.
+  double position_deg_ = 0.0;  ///< Position of the drive's output, in the drive's own count of turns.
   double shift_deg_ = 0.0;     ///< The drive's multi-turn angle less that.
   bool counted_ = false;       ///< The turns are known, and since then it has not been silent.
   bool was_counted_ = false;   ///< They were before the last silence.

@@ -17,7 +17,7 @@ constexpr std::uint32_t kMaxCount = 64;  // more registers than a frame has byte
 
 constexpr std::array<std::size_t, 4> kBytes{1, 2, 4, 4};
 
-// Of an 8, 16 and 32 bit integer: docs/protocol/registers.md, "Mappings".
+// Scale of an 8, 16 and 32 bit integer: docs/protocol/registers.md, "Mappings".
 struct Scale {
   double int8, int16, int32;
 };

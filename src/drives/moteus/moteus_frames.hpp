@@ -87,10 +87,10 @@ enum class Mode : std::uint8_t {
   kBrake = 15,
 };
 
-/// How a value is on the wire. Integers count the unit of their register; their lowest value is NaN.
+/// Type of a value on the wire. Integers count the unit of their register; their lowest value is NaN.
 enum class Type : std::uint8_t { kInt8, kInt16, kInt32, kFloat };
 
-/// How much one count is, in rev, rev/s, rev/s², N·m, A, V, °C, s, or 1.
+/// Size of one count, in rev, rev/s, rev/s², N·m, A, V, °C, s, or 1.
 [[nodiscard]] double scaleOf(Register reg, Type type) noexcept;
 
 /// The id of what the host (source 0) sends to a drive, with the bit that asks for an answer.

@@ -35,7 +35,8 @@ class Moteus_Motor final : public SoloMotor {
 
  private:
   static constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
-  /// Its position register goes round after so many. Source: fw/bldc_servo_structs.h, control_position_raw.
+  /// Revolutions after which its position register goes round. Source: fw/bldc_servo_structs.h,
+  /// control_position_raw.
   static constexpr double kRangeRev = 65536.0;
 
   /// Values of an answer to this driver's questions. Units of the drive.
@@ -117,7 +118,7 @@ class Moteus_Motor final : public SoloMotor {
   bool engaged_ = false;
   bool clearing_ = false;
   DriveComplaint lost_;               ///< It left its mode while it was to obey.
-  DriveComplaint refused_;            ///< Why enabling failed.
+  DriveComplaint refused_;            ///< Reason why enabling failed.
   std::optional<double> course_rev_;  ///< Velocity: where the shaft should be by now.
 };
 

@@ -21,7 +21,7 @@ constexpr double kAccelerationRevPerS2 = 50.0;  // servo.default_accel_limit
 constexpr double kFastestRevPerS = 500.0;       // servo.max_velocity
 // Gate driver on, then 256 samples of the current offsets at 30 kHz. Source: fw/bldc_servo.cc.
 constexpr Duration kSwitchTime = std::chrono::milliseconds{10};
-// Of gains that somebody has tuned for the load.
+// Bandwidth of gains that somebody has tuned for the load.
 constexpr double kBandwidthRadS = 120.0;
 constexpr std::uint32_t kEverybody = 0x7F;
 constexpr std::uint32_t kFirstLimit = 96;  // codes from here on bound the output and are no faults

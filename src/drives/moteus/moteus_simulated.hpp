@@ -91,8 +91,8 @@ class MoteusDrive final : public ServoDrive {
   int home_state_ = 1;
   int version_ = 5;
   Duration clock_{};
-  Duration switching_{};  ///< How long it has been on its way from stopped to a mode.
-  double left_s_ = 0.0;   ///< Until its watchdog; NaN: none.
+  Duration switching_{};                                          ///< Time on its way from stopped to a mode.
+  double left_s_ = 0.0;                                           ///< Until its watchdog; NaN: none.
   double course_rev_ = std::numeric_limits<double>::quiet_NaN();  ///< Where its controller holds the shaft.
   double course_rev_s_ = 0.0;
 };

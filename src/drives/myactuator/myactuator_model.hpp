@@ -12,7 +12,7 @@ namespace rc10 {
 struct MyactuatorModel {
   std::string_view name;
   double gear_ratio = 1.0;
-  float peak_current_a = 0.0F;   ///< Of a phase, at the peak torque.
+  float peak_current_a = 0.0F;   ///< Peak current of a phase, at the peak torque.
   float torque_nm_per_a = 0.0F;  ///< 0: unknown.
   float rated_rpm = 0.0F;        ///< 0: unknown.
   float nominal_v = 48.0F;

@@ -38,7 +38,7 @@ class ODrive_Motor : public SoloMotor {
   void clearComplaint() noexcept override;
 
  private:
-  /// Of the enable sequence.
+  /// Step of the enable sequence.
   enum class Step : std::uint8_t { kToIdle, kToClosedLoop };
 
   FrameVerdict acceptHeartbeat(const CanFrame& frame) noexcept;

@@ -9,7 +9,7 @@ namespace rc10 {
 /// RobStride and CyberGear, on their private protocol.
 [[nodiscard]] const MotorFamily& robstrideFamily() noexcept;
 
-/// How a drive is told what to do: a choice for the motor's whole life, because a drive changes its run mode
+/// Control of a drive: a choice for the motor's whole life, because a drive changes its run mode
 /// only while it is stopped.
 enum class RobstrideControl : std::uint8_t {
   kOperation,  ///< Stiffness, damping and torque in every frame.

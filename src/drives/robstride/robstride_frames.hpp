@@ -88,7 +88,7 @@ struct Codec {
   [[nodiscard]] CanFrame write(std::uint16_t index, std::uint32_t bits) const noexcept;
   [[nodiscard]] CanFrame write(std::uint16_t index, float value) const noexcept;
 
-  /// Of a frame of 8 bytes.
+  /// Feedback in a frame of 8 bytes.
   [[nodiscard]] Feedback feedback(const CanFrame& frame) const noexcept;
 
   // The drive's side. Of `told`, raw_position is not used.

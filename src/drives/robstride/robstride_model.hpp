@@ -26,7 +26,7 @@ struct RobstrideModel {
   std::uint8_t position_run_mode = 0;  ///< Value of run_mode that follows position references.
   bool cyber_gear = false;             ///< Numbers some faults differently.
 
-  /// Of the phase current's peak value, in which the drives count.
+  /// Torque for an ampere of the phase current's peak value, in which the drives count.
   [[nodiscard]] double torqueNmPerA() const noexcept;
 };
 

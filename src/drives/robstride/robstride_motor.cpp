@@ -17,8 +17,8 @@ namespace parameter = robstride::parameter;
 
 constexpr std::size_t kLength = 8;
 
-// Half the scale passes in 250 ms at the highest speed; and a drive that was silent for so long may have been
-// without power.
+// Half the scale passes in 250 ms at the highest speed; and a drive that was silent for that time may have
+// been without power.
 constexpr Duration kLongestGap = std::chrono::milliseconds{200};
 // Between two samples it cannot have moved further than at this multiple of its highest speed, plus what the
 // time stamps are wrong by.

@@ -76,7 +76,7 @@ class RobStride_Motor : public SoloMotor {
   const RobstrideModel* model_;
   robstride::Codec codec_;
   RobstrideControl control_;
-  double angle_stiffness_;  ///< Of the drive's output, as all of these.
+  double angle_stiffness_;  ///< Stiffness at the drive's output, as all of these.
   double angle_damping_;
   double velocity_gain_;
   std::array<FrameFilter, 5> filters_;
@@ -87,7 +87,7 @@ class RobStride_Motor : public SoloMotor {
 
   robstride::Feedback seen_;
   std::uint32_t fault_word_ = 0;
-  double position_rad_ = 0.0;      ///< Of the drive's output, over turns.
+  double position_rad_ = 0.0;      ///< Position of the drive's output, over turns.
   double scale_offset_rad_ = 0.0;  ///< The drive's own count of turns is this much more.
   bool angles_in_doubt_ = false;   ///< Until the next enabling.
   bool clear_ordered_ = false;

@@ -11,7 +11,7 @@ namespace {
 
 // A float keeps 0.01 rad up to here.
 constexpr double kFarthestReferenceRad = 1e5;
-// Of the braking torque.
+// Share of the braking torque.
 constexpr double kOperationDampShare = 0.2;
 constexpr double kScaleEndSlackRad = 1e-3;
 

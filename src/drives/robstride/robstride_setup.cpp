@@ -10,12 +10,12 @@ namespace {
 
 namespace parameter = robstride::parameter;
 
-/// How a setting stands in its parameter; manuals, "Readable and writable single parameters".
+/// Form of a setting in its parameter; manuals, "Readable and writable single parameters".
 struct SettingParameter {
   std::uint16_t index = 0;  ///< 0: the id, which has a frame of its own.
   bool whole = false;       ///< An unsigned integer; else a float.
   double per_unit = 1.0;
-  double at_zero = 0.0;  ///< Of the parameter, for a setting of 0.
+  double at_zero = 0.0;  ///< Value of the parameter for a setting of 0.
 };
 
 constexpr std::array kRobstrideSettings{

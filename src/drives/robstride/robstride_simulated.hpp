@@ -28,7 +28,7 @@ class RobstrideDrive final : public ServoDrive {
   struct Parameter {
     std::uint16_t index = 0;
     bool integer = false;
-    double limit = 0.0;  ///< Of a number: +-; a limit's own number is never negative.
+    double limit = 0.0;  ///< Limit of a number: +-; a limit's own number is never negative.
     std::uint32_t bits = 0;
     std::uint32_t at_power_up = 0;  ///< As stored in its flash.
   };

@@ -74,13 +74,13 @@ inline constexpr std::size_t kStatusLength = 8;
 struct Status1 {
   std::int32_t erpm = 0;
   float current_a = 0.0F;  ///< Positive when the motor takes power, negative when it gives power back.
-  float duty = 0.0F;       ///< Of the sign of the voltage.
+  float duty = 0.0F;       ///< Duty cycle with the sign of the voltage.
 };
 struct Status4 {
   float drive_c = 0.0F;  ///< The transistors.
   float motor_c = 0.0F;  ///< Meaningless without a sensor.
   float input_a = 0.0F;
-  float position_deg = 0.0F;  ///< Of its position loop, [0, 360).
+  float position_deg = 0.0F;  ///< Position of its position loop, [0, 360).
 };
 struct Status5 {
   std::int32_t steps = 0;  ///< 6 per electrical turn, counting on over turns.

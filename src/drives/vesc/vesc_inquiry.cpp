@@ -9,7 +9,7 @@ using std::chrono::milliseconds;
 constexpr Duration kAskEvery = milliseconds{100};
 constexpr Duration kAskWhileEnabling = milliseconds{50};
 constexpr int kMaxUnanswered = 5;
-// So long it is told to rest before it is told nothing, and so long an enabled drive has to hear us.
+// Time of rest before the silence, and of an enabled drive to hear us.
 constexpr Duration kRestFirst = milliseconds{100};
 constexpr Duration kMustHaveHeard = milliseconds{300};
 

@@ -102,7 +102,7 @@ class VESC_Motor : public SoloMotor {
   bool locked_ = false;  ///< The handbrake holds.
   bool looping_ = false;
   bool limited_ = false;            ///< The angle loop runs into the velocity limit.
-  double position_deg_ = 0.0;       ///< Of the drive, going on over turns.
+  double position_deg_ = 0.0;       ///< Position of the drive, going on over turns.
   double loop_position_deg_ = 0.0;  ///< Output, at the last step of the angle loop.
   double loop_rpm_ = 0.0;
 };

@@ -57,7 +57,7 @@ struct FallbackBound {
 /// The fallback that is in force for one motor, if any. Scheduler thread only.
 class Fallback {
  public:
-  /// How long it acts.
+  /// Time for which it acts.
   enum class Until : std::uint8_t { kEnded, kStandstill };
 
   /// Way to rest of FallbackAction::kRamp: SS1 of IEC 61800-5-2 by time.
@@ -100,7 +100,7 @@ class Fallback {
   }
 
  private:
-  // Still for so long, it is not on its way back from an overshoot.
+  // Standstill after which it is not on its way back from an overshoot.
   static constexpr Duration kSettled = std::chrono::milliseconds{300};
 
   // A motor that lags behind its ramp has this time to come to rest.

@@ -35,13 +35,13 @@ class MotorGuard {
     const Target& target;  ///< In force since the last tick.
     float effort = 0.0F;   ///< Last command to the drive.
     CommandUnit unit = CommandUnit::kNone;
-    std::uint32_t limits = 0;  ///< Of the last update().
+    std::uint32_t limits = 0;  ///< Limits of the last update().
     MonotonicTime now;
   };
   struct Verdict {
     FaultCode fault = FaultCode::kNone;
     float derating = 1.0F;     ///< For Motor_Base::derate().
-    std::uint32_t limits = 0;  ///< Of LimitFlag: what acts or is noticed right now.
+    std::uint32_t limits = 0;  ///< Set of LimitFlag: what acts or is noticed right now.
   };
 
   explicit MotorGuard(const GuardConfig& config) noexcept : config_(config) {}
@@ -52,7 +52,7 @@ class MotorGuard {
   [[nodiscard]] const GuardConfig& config() const noexcept { return config_; }
 
  private:
-  /// How long something has been so.
+  /// Time for which a condition has held.
   class Lasting {
    public:
     void reset() noexcept { since_ = MonotonicTime{}; }

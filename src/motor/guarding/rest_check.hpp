@@ -40,7 +40,7 @@ class RestCheck {
   RestConfig config_;
   bool told_ = false;
   std::uint64_t seen_ = 0;  ///< Samples when it was last looked at.
-  float sign_ = 0.0F;       ///< Of the current since `since_`; 0: it rests.
+  float sign_ = 0.0F;       ///< Sign of the current since `since_`; 0: it rests.
   MonotonicTime since_{};
   int samples_ = 0;  ///< Since then.
   bool driven_reported_ = false;

@@ -13,7 +13,7 @@ namespace rc10 {
 /// inertia it was tuned for still stops before the limit.
 inline constexpr float kApproachOfAngleGain = 0.5F;
 
-/// How fast a target may change and where it may lead. At the output shaft; 0: no slew limit.
+/// Slew limit and range of a target. At the output shaft; 0: no slew limit.
 struct ShapingConfig {
   float effort_slew_per_s = 0.0F;  ///< A/s or V/s, as the drive is commanded.
   float velocity_slew_rpm_per_s = 0.0F;
@@ -37,7 +37,7 @@ class TargetShaper {
  public:
   struct Shaped {
     Target target;
-    std::uint32_t limits = 0;  ///< Of LimitFlag.
+    std::uint32_t limits = 0;  ///< Set of LimitFlag.
   };
 
   explicit TargetShaper(const ShapingConfig& config) noexcept : config_(config) {}
@@ -105,7 +105,7 @@ class TargetShaper {
   [[nodiscard]] Shaped shapeAngle(Target asked, const MotorFeedback& feedback, float dt_s) noexcept;
 
   ShapingConfig config_;
-  ControlMode mode_ = ControlMode::kCoast;  ///< Of the last step.
+  ControlMode mode_ = ControlMode::kCoast;  ///< Mode of the last step.
   double value_ = 0.0;                      ///< The slewed target of that mode.
   double velocity_ff_rpm_ = 0.0;            ///< Slewed, too.
   double torque_ff_nm_ = 0.0;

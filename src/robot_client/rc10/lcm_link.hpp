@@ -45,7 +45,7 @@ class LcmLink {
   /// whether it works.
   explicit LcmLink(const std::string& url = {});
 
-  /// Why there is no LCM, and what to do about it.
+  /// Reason why there is no LCM, and what to do about it.
   [[nodiscard]] Result<void> status() const;
 
   /// Sends without waiting for anybody. An error is local: nobody tells whether a message was received.

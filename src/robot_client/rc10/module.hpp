@@ -20,9 +20,9 @@ class RobotSession;
 /// Values by name, with their units in the names: {{"vx_m_s", 0.5}, {"wz_deg_s", 30}}.
 using Signals = std::map<std::string, double, std::less<>>;
 
-/// How inputs are given.
+/// Options of inputs.
 struct SendOptions {
-  /// How long they hold, from when rc10d receives them: 1 to 1000 ms; 0: its default, 50.
+  /// Validity, from when rc10d receives them: 1 to 1000 ms; 0: its default, 50.
   std::chrono::milliseconds validity{0};
   /// Against other clients of the module; without one: that of the Robot.
   std::optional<int> priority{};

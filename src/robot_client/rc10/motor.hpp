@@ -60,7 +60,7 @@ class Motor {
   [[nodiscard]] std::future<MoveResult> moveToAngle(Degrees angle, Degrees tolerance = Degrees{1.0},
                                                     Duration timeout = std::chrono::seconds{5}) const;
 
-  /// Of the newest state; before the first: OFFLINE, and NaN in all readings.
+  /// State of the newest state; before the first: OFFLINE, and NaN in all readings.
   [[nodiscard]] MotorState state() const;
 
   // Requests: as in Robot, for this motor.

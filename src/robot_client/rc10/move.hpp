@@ -9,7 +9,7 @@
 namespace rc10 {
 inline namespace robot_client {
 
-/// How a moveTo() ended.
+/// Outcome of a moveTo().
 struct MoveResult {
   enum class Outcome {
     kDone,     ///< It stands within the tolerance. The target is held on.

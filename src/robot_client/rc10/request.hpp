@@ -9,7 +9,7 @@
 namespace rc10 {
 inline namespace robot_client {
 
-/// Why one motor of a request was not done.
+/// Reason why one motor of a request was not done.
 struct MotorReason {
   std::string motor;
   std::string reason;
@@ -18,7 +18,7 @@ struct MotorReason {
 /// rc10d's answer to a request that it has carried out.
 struct Response {
   std::string message;                   ///< In words: "enable: 6 of 7 motors (...)".
-  std::vector<MotorReason> not_done;     ///< Of motors that may fail (`optional` in the configuration).
+  std::vector<MotorReason> not_done;     ///< Motors that may fail (`optional` in the configuration).
   std::map<std::string, double> values;  ///< Named with their units.
 };
 

@@ -30,13 +30,13 @@ enum class AtEnd : std::uint8_t {
 struct RobotOptions {
   std::string client{};  ///< Name shown as the owner of a motor; empty: the program's.
   int priority = 0;      ///< A client with a higher one takes motors over from a lower one.
-  /// A target acts so long after rc10d has received it: 1 to 1000 ms. So long a motor goes on when the
+  /// Validity of a target, from when rc10d received it: 1 to 1000 ms. A motor goes on for it when the
   /// program has died.
   std::chrono::milliseconds validity{100};
-  /// How often held targets are sent again; 0: never, each acts for its validity.
+  /// Rate at which held targets are sent again; 0: never, each acts for its validity.
   std::chrono::milliseconds resend{20};
   /// If not 0: held targets are let go of when the program has neither set a target, nor given a module
-  /// inputs, nor called alive() for so long. For programs with a loop: one that hangs would otherwise hold
+  /// inputs, nor called alive() for this time. For programs with a loop: one that hangs would otherwise hold
   /// its motors for ever.
   std::chrono::milliseconds alive_within{0};
   AtEnd at_end = AtEnd::kTimeout;  ///< Done by close() and the destructor.

@@ -33,7 +33,7 @@ struct MotorState {
   double target_shaped = kUnknown;          ///< As limits and slew let it act; NaN unless it acts.
   std::string owner{};                      ///< The client whose target is in force, empty without one.
   Acting acting = Acting::kNothing;         ///< Source of what the shaft feels.
-  StopCause stop_cause = StopCause::kNone;  ///< Why it stopped obeying; kNone while it obeys.
+  StopCause stop_cause = StopCause::kNone;  ///< Reason why it stopped obeying; kNone while it obeys.
   std::string stopped_by{};                 ///< The client, module or motor that stopped it, if any.
   bool zeroed = false;                      ///< The angle has a known reference.
 
@@ -60,12 +60,12 @@ struct RobotState {
   std::int64_t tick = 0;     ///< Ticks since start.
   RobotStatus status = RobotStatus::kRun;
   bool realtime = false;  ///< The real-time set-up is complete; `rc10ctl stats` says what is not.
-  StopCause stop_cause = StopCause::kNone;  ///< Why it is not in RUN,
+  StopCause stop_cause = StopCause::kNone;  ///< Reason why it is not in RUN,
   std::string stopped_by;                   ///< the client or module that asked for that, if any,
   std::int64_t stopped_mono_us = 0;         ///< and since when, as mono_us; 0 in RUN.
   std::int32_t estop_count = 0;             ///< Since start.
   std::uint32_t conditions = 0;             ///< Bits of Condition.
-  std::string version;                      ///< Of rc10d.
+  std::string version;                      ///< Version of rc10d.
   std::string config_hash;                  ///< SHA-256 of its configuration file, as sha256sum prints it.
   std::vector<MotorState> motors;
   MonotonicTime taken;  ///< When rc10d took it, on this computer's clock.

@@ -18,10 +18,10 @@ namespace rc10 {
 inline namespace robot_client {
 
 struct CallOptions {
-  /// How long to wait for the answer. A call that has waited longer at the server is not carried out.
+  /// Time-out of the answer. A call that has waited longer at the server is not carried out.
   std::chrono::milliseconds timeout{1000};
-  /// A call or its answer can be lost: LCM is UDP. It is sent again so often, under the same number, so that
-  /// it is carried out once.
+  /// A call or its answer can be lost: LCM is UDP. It is sent again at this period, under the same number, so
+  /// that it is carried out once.
   std::chrono::milliseconds repeat{100};
 };
 

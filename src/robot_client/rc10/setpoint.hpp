@@ -17,7 +17,7 @@ using Mode = ControlMode;
 
 /// Addition to a loop's output. 0: none.
 struct FeedForward {
-  Rpm velocity{};          ///< Of the trajectory, added to the angle loop's output.
+  Rpm velocity{};          ///< Velocity of the trajectory, added to the angle loop's output.
   double torque_nm = 0.0;  ///< At the output shaft, added after the loops.
 };
 
@@ -57,7 +57,7 @@ struct Setpoint {
   /// -1 to 1.
   [[nodiscard]] static Setpoint duty(double duty) { return make(Mode::kDuty, duty); }
 
-  /// Why no motor can be given this: a number that is not finite, or outside the range of its mode.
+  /// Reason why no motor can be given this: a number that is not finite, or outside the range of its mode.
   [[nodiscard]] Result<void> check() const;
 
  private:

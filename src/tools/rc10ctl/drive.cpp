@@ -27,7 +27,7 @@ constexpr Duration kLongEnough = std::chrono::milliseconds{200};
 constexpr Duration kProgressOnTerminal = std::chrono::milliseconds{100};
 constexpr Duration kProgressInFile = std::chrono::milliseconds{500};
 
-// Why the motor cannot take setpoints, and what to do; empty if it can.
+// Reason why the motor cannot take setpoints, and what to do; empty if it can.
 std::string obstacle(const link::State& state, const std::string& name, const link::MotorState& motor) {
   if (state.robot_state != RobotStatus::kRun) {
     return std::string("the robot is in ") + toString(state.robot_state) +

@@ -11,7 +11,7 @@ namespace rc10::ctl {
 
 struct LatencyTest {
   Duration time{};
-  TimeGrid grid;     ///< Of the ticks.
+  TimeGrid grid;     ///< Grid of the ticks.
   int priority = 0;  ///< SCHED_FIFO
   std::optional<int> cpu;
 };

@@ -9,7 +9,7 @@ using namespace std::chrono_literals;
 
 class CommandBudgetTest : public ::testing::Test {
  protected:
-  /// Messages that go through of so many in this millisecond.
+  /// Number of these messages that go through in this millisecond.
   int send(std::string_view client, int messages, std::size_t setpoints) {
     int sent = 0;
     for (int i = 0; i < messages; ++i) sent += budget.spend(client, setpoints, now) ? 1 : 0;

@@ -13,7 +13,7 @@ constexpr std::size_t kThings = 7;
 
 class SampleTurnsTest : public ::testing::Test {
  protected:
-  /// How many are due at this time.
+  /// Number due at this time.
   std::size_t advance(Duration time) {
     turns.advance(MonotonicTime{1h + time}, kThings);
     std::size_t due = 0;

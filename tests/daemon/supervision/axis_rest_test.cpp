@@ -111,7 +111,7 @@ class RestTest : public ::testing::TestWithParam<Subject> {
   void carry(const std::vector<CanFrame>& frames) {
     for (const auto& frame : frames) robot.simBus().receive(frame);
   }
-  /// Its targets in so many ticks of being driven.
+  /// Its targets in this number of ticks of being driven.
   std::vector<CanFrame> commandsOf(int ticks) {
     std::vector<CanFrame> all;
     for (int i = 0; i < ticks; ++i) {

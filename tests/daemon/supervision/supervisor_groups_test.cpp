@@ -50,7 +50,7 @@ class GroupTest : public ::testing::Test {
     }
   }
   MotorStatus status(std::size_t motor) { return robot->motor(motor).status; }
-  /// Feedback of the bus of `left` is missing for so long.
+  /// Feedback of the bus of `left` is missing for this time.
   void losePower(int ticks) {
     robot->freezeBus(0, true);
     robot->run(ticks);

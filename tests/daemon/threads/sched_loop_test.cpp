@@ -17,7 +17,7 @@ namespace {
 
 using namespace std::chrono_literals;
 
-// The scheduler reads its clock at the end of so many steps of a tick, and each reading takes its share.
+// Steps of a tick at whose end the scheduler reads its clock; each reading takes its share.
 constexpr int kReadingsPerTick = 4;
 std::atomic<Duration> load{};
 std::atomic<int> readings_left{};
@@ -56,7 +56,7 @@ class SchedLoopTest : public ::testing::Test {
         loop->timing().late.of(TickStep::kControl).ticks + loop->timing().late.of(TickStep::kSend).ticks;
     exchange.events.consume_all([&](const Event& event) { events.push_back(event); });
   }
-  /// Of the whole robot.
+  /// Stop of the whole robot.
   [[nodiscard]] std::vector<StopCause> stops() const {
     std::vector<StopCause> causes;
     for (const Event& event : events) {

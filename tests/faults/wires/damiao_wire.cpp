@@ -62,7 +62,7 @@ class DamiaoWire final : public Wire {
 
   [[nodiscard]] Told told() const override { return told_; }
   [[nodiscard]] bool idlesAtRest() const override { return mode_ == 1; }
-  // Of another of its modes.
+  // Command of another of its modes.
   [[nodiscard]] bool obeys(const CanFrame& frame) const override {
     return !frame.id.extended && frame.id.value < 0x400 &&
            (frame.id.value & 0xFFU) == static_cast<std::uint32_t>(id());

@@ -25,7 +25,7 @@ constexpr double kStopped = 0.0;
 constexpr double kPosition = 10.0;
 constexpr double kBrake = 15.0;
 
-/// Of an 8, 16 and 32 bit integer.
+/// Scale of an 8, 16 and 32 bit integer.
 [[nodiscard]] std::array<double, 3> scalesOf(std::uint32_t reg) {
   switch (reg) {
     case 0x001:

@@ -22,7 +22,7 @@ class VescWire final : public Wire {
       if (!plainFrame(frame, 7) || frame.data[2] != 50) refuse(frame, "a command in a buffer");
       return kAllBytes;
     }
-    // Of 6 bytes and more firmware >= 6.00 takes the first for something else.
+    // In frames of 6 bytes and more firmware >= 6.00 takes the first for something else.
     if (!plainFrame(frame, 4)) refuse(frame, "a command frame of another form");
     const auto raw = static_cast<double>(int32Of(bigEndian(frame, 0, 4)));
     const double share_a = raw * 1e-5 * static_cast<double>(options_.motor_current_max_a);

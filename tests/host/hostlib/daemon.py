@@ -59,7 +59,7 @@ buses:
 
 
 def check_environment() -> str | None:
-    """Why the tests cannot run, None when they can."""
+    """Reason why the tests cannot run, None when they can."""
     missing = [name for name in ("rc10d", "rc10-lcm", "rc10ctl") if not (BIN / name).exists()]
     if missing:
         return f"not in {BIN}: {', '.join(missing)}"

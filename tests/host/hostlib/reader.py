@@ -59,7 +59,7 @@ def headings(output: str) -> set[str]:
 
 
 def commands(block: Block) -> Iterator[Command]:
-    """Of `sh` each line, of `console` what stands behind a prompt."""
+    """Each line of `sh`; of `console` what stands behind a prompt."""
     if block.kind == "console":
         for part in re.split(r"^\$ ", block.text, flags=re.M)[1:]:
             text, _, output = part.partition("\n")

@@ -73,7 +73,7 @@ class Fake(Protocol):
 
     @property
     def velocity_rpm(self) -> float:
-        """Of the output shaft."""
+        """Velocity of the output shaft."""
 
     @property
     def angle_deg(self) -> float:

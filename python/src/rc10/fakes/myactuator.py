@@ -115,7 +115,7 @@ class FakeMyActuator(AnsweringDrive):
         self._silence_s = 0.0
         self._stopped_by_silence = False
         self._run_time_s = 0.0
-        # Of position (up, down) and velocity (up, down), deg/s².
+        # Accelerations of position (up, down) and velocity (up, down), deg/s².
         self._accelerations = [1000] * 4
 
     @property

@@ -178,7 +178,7 @@ class FakeRobStride:
 
     @property
     def velocity_rpm(self) -> float:
-        """Of the output shaft."""
+        """Velocity of the output shaft."""
         return self.speed_rad_s * _RPM_PER_RAD_S
 
     @property

@@ -209,7 +209,7 @@ class AnsweringDrive:
 
     @property
     def velocity_rpm(self) -> float:
-        """Of the output shaft."""
+        """Velocity of the output shaft."""
         return self.servo.speed_deg_s / 6.0
 
     @property

@@ -43,7 +43,7 @@ class StepMetrics:
     settling_time_s: float
     """After this it stays within the tolerance of the target."""
     tolerance: float
-    """Of settling_time_s, as a part of the step: 0.02 is ±2 %."""
+    """Tolerance band of settling_time_s, as a part of the step: 0.02 is ±2 %."""
     steady: float
     """The mean over the last fifth of the time."""
 

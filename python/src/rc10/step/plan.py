@@ -28,7 +28,7 @@ class StepPlan:
     """The target before the step and after it; angles: where the motor stands."""
     before_s: float = 0.25
     seconds: float = 1.5
-    """How long the step lasts."""
+    """Duration of the step."""
     tolerance: float = 0.02
     """When it counts as settled, as a part of the step; between 0 and 1."""
     enable: bool = False

@@ -17,14 +17,14 @@ if TYPE_CHECKING:
     from rc10.recording import Recording
     from rc10.step.plan import StepPlan
 
-# So often the target is sent, and so long it acts: a machine that pauses must not end a step.
+# Period and validity of the target: a machine that pauses must not end a step.
 _COMMAND_HZ = 100.0
 _VALIDITY_MS = 150
 # For the first target on its way; after that a state has to show it.
 _ON_ITS_WAY_S = 0.5
-# No state for so long: rc10d or its gateway has ended.
+# Silence of states after which rc10d or its gateway has ended.
 _SILENCE_S = 1.0
-# How long it may take to come back to where it was, and how near it has to get.
+# Time limit and tolerance of the way back to where it was.
 _RETURN_S = 2.0
 _RETURNED = 0.05
 
@@ -47,7 +47,7 @@ class StepResult:
 
     plan: StepPlan
     recording: Recording
-    """Of this motor; time 0 is the step."""
+    """Recording of this motor; time 0 is the step."""
     signal: str
     """The name of what followed the target."""
     metrics: StepMetrics
