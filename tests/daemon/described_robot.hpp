@@ -10,7 +10,7 @@
 
 namespace rc10::test {
 
-/// What the link thread knows of a robot with these motors.
+/// A robot with these motors, as the link thread knows it.
 inline RobotDescription describedRobot(std::initializer_list<std::string_view> motors) {
   RobotDescription robot;
   for (const auto name : motors) robot.motors.emplace_back().name = name;

@@ -26,7 +26,7 @@ void AnsweredRequests::remember(std::uint64_t asker, const link::Request& reques
 }
 
 const link::Response* AnsweredRequests::find(std::uint64_t asker, const link::Request& request) const {
-  // What stops is answered anew each time.
+  // The newest: a request that stops is answered anew each time.
   const auto found = std::find_if(answered_.rbegin(), answered_.rend(), [&](const Answered& each) {
     return each.asker == asker && sameNumber(request, each.response) &&
            each.operation.view() == request.operation.view();

@@ -25,7 +25,7 @@ class Feeds {
 
   void publishState();
   void publishDiagnostics(const Admission& admission);
-  /// What the scheduler and other threads have told.
+  /// Events of the scheduler, and notes of other threads.
   void publishEvents();
   /// Rows that were recorded since.
   void publishTrace();
