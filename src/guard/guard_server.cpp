@@ -19,6 +19,9 @@ namespace {
 constexpr std::size_t kMaxVisitors = 8;
 // Period at which one that was started for an rc10d that never came looks whether it is used.
 constexpr Duration kLongestWait = std::chrono::seconds{10};
+constexpr std::string_view kNoDescriptors =
+    "no file descriptors left: an rc10d was sent away, which nobody watches now; raise the limit "
+    "(LimitNOFILE= of the unit, `ulimit -n`)";
 constexpr Duration kStep = std::chrono::milliseconds{Standstill::kStepMs};
 
 void answer(int connection, std::string_view text) noexcept {
@@ -55,7 +58,7 @@ std::vector<std::string> GuardServer::serve(const sigset_t& signals_while_waitin
   // A death is acted upon at once; steps have their time.
   if (due || std::any_of(deaths, deaths + static_cast<std::ptrdiff_t>(robots_.size()), died)) step(news);
   if (ready == 0) return news;
-  if (wait_for[0].revents != 0) welcome();
+  if (wait_for[0].revents != 0) welcome(news);
   hear(news);
   return news;
 }
@@ -73,9 +76,11 @@ void GuardServer::step(std::vector<std::string>& news) {
   std::erase_if(robots_, [](const auto& robot) { return robot.over(); });
 }
 
-void GuardServer::welcome() {
+void GuardServer::welcome(std::vector<std::string>& news) {
   auto visitor = socket_.accept();
-  if (visitor && visitors_.size() < kMaxVisitors) visitors_.push_back(std::move(visitor));
+  if (visitor.sent_away) news.emplace_back(kNoDescriptors);
+  if (visitor.connection && visitors_.size() < kMaxVisitors)
+    visitors_.push_back(std::move(visitor.connection));
 }
 
 void GuardServer::hear(std::vector<std::string>& news) {

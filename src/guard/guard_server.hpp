@@ -27,7 +27,7 @@ class GuardServer {
   [[nodiscard]] bool rests() const noexcept;
 
  private:
-  void welcome();
+  void welcome(std::vector<std::string>& news);
   void hear(std::vector<std::string>& news);
   void step(std::vector<std::string>& news);
 

@@ -19,6 +19,8 @@ constexpr int kBacklog = 8;
 
 tl::unexpected<Error> failure(const std::string& path) { return fail(path + ": " + std::strerror(errno)); }
 
+UniqueFd spareDescriptor() noexcept { return UniqueFd{::open("/dev/null", O_RDONLY | O_CLOEXEC)}; }
+
 bool mayHaveAGuard(int connection) noexcept {
   ucred peer{};
   socklen_t size = sizeof peer;
@@ -46,7 +48,8 @@ Result<GuardSocket> GuardSocket::listen(const std::string& run_dir) {
     return failure(path);
   guard.path_ = path;
   (void)::chmod(path.c_str(), 0600);
-  if (::listen(guard.socket_.get(), kBacklog) != 0) return failure(path);
+  guard.spare_ = spareDescriptor();
+  if (!guard.spare_ || ::listen(guard.socket_.get(), kBacklog) != 0) return failure(path);
   return guard;
 }
 
@@ -54,10 +57,18 @@ GuardSocket::~GuardSocket() {
   if (socket_) (void)::unlink(path_.c_str());
 }
 
-UniqueFd GuardSocket::accept() const noexcept {
-  UniqueFd connection{::accept4(socket_.get(), nullptr, nullptr, SOCK_NONBLOCK | SOCK_CLOEXEC)};
-  if (connection && !mayHaveAGuard(connection.get())) connection.reset();
-  return connection;
+GuardSocket::Accepted GuardSocket::accept() noexcept {
+  Accepted accepted{.connection =
+                        UniqueFd{::accept4(socket_.get(), nullptr, nullptr, SOCK_NONBLOCK | SOCK_CLOEXEC)}};
+  if (!accepted.connection && (errno == EMFILE || errno == ENFILE)) {
+    // One that stayed in the queue would wake a thread above all others again and again.
+    spare_.reset();
+    accepted.sent_away =
+        static_cast<bool>(UniqueFd{::accept4(socket_.get(), nullptr, nullptr, SOCK_CLOEXEC)});
+    spare_ = spareDescriptor();
+  }
+  if (accepted.connection && !mayHaveAGuard(accepted.connection.get())) accepted.connection.reset();
+  return accepted;
 }
 
 }  // namespace rc10::guard

@@ -22,14 +22,19 @@ class GuardSocket {
   ~GuardSocket();
 
   [[nodiscard]] int descriptor() const noexcept { return socket_.get(); }
-  /// A connection that waits, of a process that may have a guard. Never waits.
-  [[nodiscard]] UniqueFd accept() const noexcept;
+  struct Accepted {
+    UniqueFd connection;     ///< Of a process that may have a guard; empty: there is none.
+    bool sent_away = false;  ///< One was, since there are no file descriptors left.
+  };
+  /// A connection that waits. Never waits itself.
+  [[nodiscard]] Accepted accept() noexcept;
 
  private:
   GuardSocket() = default;
 
   UniqueFd lock_;
   UniqueFd socket_;
+  UniqueFd spare_;  ///< Given up for an instant to send a visitor away when there are no descriptors left.
   std::string path_;
 };
 

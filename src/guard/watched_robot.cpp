@@ -14,7 +14,10 @@ namespace rc10::guard {
 Result<WatchedRobot> WatchedRobot::from(link::DescriptorMessage message) {
   const auto hello = link::parseGuardHello(message.text);
   if (!hello) return tl::unexpected(hello.error());
-  if (message.descriptors.size() != 2) return fail("the hello of rc10d has not two descriptors");
+  if (message.descriptors.size() != 2)
+    return fail(
+        "the hello of rc10d came without its two descriptors: other versions, or no file descriptors left "
+        "(LimitNOFILE= of the unit, `ulimit -n`)");
   auto page = link::SharedGuardPage::map(std::move(message.descriptors[0]));
   if (!page) return tl::unexpected(page.error());
   const auto frames = parseFrameList(hello->rest_frames);

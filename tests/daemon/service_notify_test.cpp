@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 #include <stdlib.h>
+#include <sys/resource.h>
 #include <sys/socket.h>
 #include <sys/un.h>
 #include <unistd.h>
@@ -60,6 +61,22 @@ TEST_F(ServiceNotifyTest, SendsOneMessageForEachState) {
   EXPECT_EQ(systemd.take(), "READY=1");
   EXPECT_EQ(systemd.take(), "WATCHDOG=1");
   EXPECT_EQ(systemd.take(), "");
+}
+
+TEST_F(ServiceNotifyTest, FeedsTheWatchdogWithoutDescriptors) {
+  const Systemd systemd(dir / "notify");
+  setSocket(dir / "notify");
+  notifyService("READY=1");
+  rlimit before{};
+  ASSERT_EQ(::getrlimit(RLIMIT_NOFILE, &before), 0);
+  const int highest = ::dup(0);
+  ::close(highest);
+  const rlimit none{.rlim_cur = static_cast<rlim_t>(highest), .rlim_max = before.rlim_max};
+  ASSERT_EQ(::setrlimit(RLIMIT_NOFILE, &none), 0);
+  notifyService("WATCHDOG=1");
+  ASSERT_EQ(::setrlimit(RLIMIT_NOFILE, &before), 0);
+  EXPECT_EQ(systemd.take(), "READY=1");
+  EXPECT_EQ(systemd.take(), "WATCHDOG=1");
 }
 
 TEST_F(ServiceNotifyTest, KnowsTheAbstractNamespace) {

@@ -3,9 +3,14 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <sys/resource.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
 #include <filesystem>
 
 #include "link/run_dir.hpp"
+#include "link/unix_address.hpp"
 
 namespace rc10::guard::test::guard_socket_test {
 namespace {
@@ -54,6 +59,34 @@ TEST_F(GuardSocketTest, IsForItsOwnUserAlone) {
   const auto guard = GuardSocket::listen(dir);
   const auto mode = std::filesystem::status(link::guardSocketPath(dir)).permissions();
   EXPECT_EQ(mode, std::filesystem::perms::owner_read | std::filesystem::perms::owner_write);
+}
+
+TEST_F(GuardSocketTest, WithoutDescriptorsAVisitorIsSentAwayAndTheNextIsServed) {
+  auto guard = GuardSocket::listen(dir);
+  ASSERT_TRUE(guard);
+  const auto address = link::unixAddress(link::guardSocketPath(dir));
+  const auto visit = [&address] {
+    UniqueFd visitor{::socket(AF_UNIX, SOCK_SEQPACKET | SOCK_CLOEXEC, 0)};
+    EXPECT_EQ(::connect(visitor.get(), reinterpret_cast<const sockaddr*>(&*address), sizeof *address), 0);
+    return visitor;
+  };
+  const auto late = visit();
+  rlimit before{};
+  ASSERT_EQ(::getrlimit(RLIMIT_NOFILE, &before), 0);
+  const int highest = ::dup(0);
+  ::close(highest);
+  const rlimit none{.rlim_cur = static_cast<rlim_t>(highest), .rlim_max = before.rlim_max};
+  ASSERT_EQ(::setrlimit(RLIMIT_NOFILE, &none), 0);
+  const auto refused = guard->accept();
+  const auto empty = guard->accept();
+  ASSERT_EQ(::setrlimit(RLIMIT_NOFILE, &before), 0);
+  EXPECT_FALSE(refused.connection);
+  EXPECT_TRUE(refused.sent_away);
+  EXPECT_FALSE(empty.sent_away) << "nobody waits any more, and nothing wakes the guard";
+  char byte = 0;
+  EXPECT_EQ(::recv(late.get(), &byte, 1, 0), 0) << "it is told by its end";
+  const auto next = visit();
+  EXPECT_TRUE(guard->accept().connection);
 }
 
 TEST_F(GuardSocketTest, AFolderThatCannotBeMadeIsNamed) {

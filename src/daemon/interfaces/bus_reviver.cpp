@@ -6,7 +6,9 @@
 #include <sys/socket.h>
 #include <unistd.h>
 
+#include <cerrno>
 #include <cstring>
+#include <optional>
 #include <string>
 #include <utility>
 
@@ -15,15 +17,24 @@
 namespace rc10 {
 namespace {
 
-[[nodiscard]] CanLinkState linkStateOf(const std::string& interface) noexcept {
-  const UniqueFd any{::socket(AF_UNIX, SOCK_DGRAM | SOCK_CLOEXEC, 0)};  // any socket answers SIOCGIFFLAGS
+// None: the kernel does not say, which is no loss of the interface.
+[[nodiscard]] std::optional<CanLinkState> linkStateOf(int socket, const std::string& interface) noexcept {
   ifreq request{};
   interface.copy(request.ifr_name, IFNAMSIZ - 1);
-  if (!any || ::ioctl(any.get(), SIOCGIFFLAGS, &request) != 0) return CanLinkState::kGone;
+  if (::ioctl(socket, SIOCGIFFLAGS, &request) != 0)
+    return errno == ENODEV || errno == ENXIO ? std::optional{CanLinkState::kGone} : std::nullopt;
   return (request.ifr_flags & IFF_UP) != 0 ? CanLinkState::kUp : CanLinkState::kDown;
 }
 
 }  // namespace
+
+BusReviver::BusReviver(Robot& robot, std::span<BusInbox> inboxes, LinkExchange& exchange,
+                       InterfaceLocks& locks)
+    : robot_(robot),
+      inboxes_(inboxes),
+      notes_(exchange.notes, EventCode::kBusAdvice),
+      locks_(locks),
+      asks_(::socket(AF_UNIX, SOCK_DGRAM | SOCK_CLOEXEC, 0)) {}
 
 std::bitset<kMaxBuses> BusReviver::check(MonotonicTime now) noexcept {
   std::bitset<kMaxBuses> came_up;
@@ -31,7 +42,9 @@ std::bitset<kMaxBuses> BusReviver::check(MonotonicTime now) noexcept {
     const auto& entry = robot_.buses()[i];
     if (entry.interface.empty()) continue;
     auto& link = inboxes_[i].link;
-    const CanLinkState seen = linkStateOf(entry.interface);
+    const auto told = linkStateOf(asks_.get(), entry.interface);
+    if (!told) continue;
+    const CanLinkState seen = *told;
     CanLinkState before = link.load(std::memory_order_relaxed);
     // A socket that lost its interface stays dead when one of that name comes back.
     if (before == CanLinkState::kGone && seen != CanLinkState::kGone && !reopen(i, now)) continue;

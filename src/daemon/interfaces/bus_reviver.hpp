@@ -5,6 +5,7 @@
 #include <span>
 #include <string>
 
+#include "app/unique_fd.hpp"
 #include "daemon/devices/robot.hpp"
 #include "daemon/exchange/note.hpp"
 #include "daemon/exchange/rings.hpp"
@@ -17,8 +18,7 @@ namespace rc10 {
 /// real-time threads need not know. io thread only.
 class BusReviver {
  public:
-  BusReviver(Robot& robot, std::span<BusInbox> inboxes, LinkExchange& exchange, InterfaceLocks& locks)
-      : robot_(robot), inboxes_(inboxes), notes_(exchange.notes, EventCode::kBusAdvice), locks_(locks) {}
+  BusReviver(Robot& robot, std::span<BusInbox> inboxes, LinkExchange& exchange, InterfaceLocks& locks);
 
   /// Looks at every interface once. To be called some 20 times a second. Returns the buses that have come up:
   /// also those that were down so briefly that only their socket knew.
@@ -31,6 +31,7 @@ class BusReviver {
   std::span<BusInbox> inboxes_;
   Notes notes_;
   InterfaceLocks& locks_;
+  UniqueFd asks_;  ///< Any socket answers for an interface. Kept: later there may be no descriptor left.
   std::array<std::string, kMaxBuses> told_{};  ///< Reason why a bus could not be had, as told last.
 };
 

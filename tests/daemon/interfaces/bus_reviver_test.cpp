@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 #include <net/if.h>
 #include <sys/ioctl.h>
+#include <sys/resource.h>
 #include <sys/socket.h>
 
 #include <cstring>
@@ -54,6 +55,20 @@ TEST_F(BusReviverTest, ShowsWhetherAnInterfaceIsUp) {
   setInterface("lo");
   inboxes[0].link = stateOfLoopback() == CanLinkState::kUp ? CanLinkState::kDown : CanLinkState::kUp;
   reviver.check(monotonicNow());
+  EXPECT_EQ(link(), stateOfLoopback());
+}
+
+TEST_F(BusReviverTest, WithoutDescriptorsNoInterfaceIsGone) {
+  setInterface("lo");
+  inboxes[0].link = stateOfLoopback();
+  rlimit before{};
+  ASSERT_EQ(::getrlimit(RLIMIT_NOFILE, &before), 0);
+  const int highest = ::dup(0);
+  ::close(highest);
+  const rlimit none{.rlim_cur = static_cast<rlim_t>(highest), .rlim_max = before.rlim_max};
+  ASSERT_EQ(::setrlimit(RLIMIT_NOFILE, &none), 0);
+  reviver.check(monotonicNow());
+  ASSERT_EQ(::setrlimit(RLIMIT_NOFILE, &before), 0);
   EXPECT_EQ(link(), stateOfLoopback());
 }
 

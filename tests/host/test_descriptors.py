@@ -1,0 +1,223 @@
+"""Out of file descriptors, a program does its work or says what is wrong with a non-zero exit."""
+
+from __future__ import annotations
+
+import contextlib
+import http.client
+import os
+import signal
+import socket
+import subprocess
+import sys
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import pytest
+from hostlib import Daemon
+from hostlib.daemon import BIN
+from hostlib.program import Program, eventually
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+# From what a loader needs to what every program has enough of.
+LIMITS = range(3, 24)
+
+
+def limited(limit: int, *command: str | Path, env: dict[str, str]) -> tuple[int, str, str]:
+    """Exit status and output of a program that may have so many descriptors."""
+    done = subprocess.run(
+        ["prlimit", f"--nofile={limit}", "--", *map(str, command)],
+        env={**os.environ, **env},
+        stdin=subprocess.DEVNULL,
+        capture_output=True,
+        text=True,
+        timeout=60,
+        check=False,
+    )
+    return done.returncode, done.stdout, done.stderr
+
+
+def judge(limit: int, outcome: tuple[int, str, str], expected: str) -> bool:
+    """Whether it did its work; if not, it has said why."""
+    status, output, errors = outcome
+    assert status >= 0, f"{limit} descriptors: killed by {signal.Signals(-status).name}: {errors}"
+    if status == 0:
+        assert expected in output + errors, (
+            f"{limit} descriptors: no work and no complaint: {output}"
+        )
+        return True
+    assert errors.strip(), f"{limit} descriptors: status {status} without a word"
+    return False
+
+
+@pytest.mark.parametrize(
+    ("words", "expected"),
+    [
+        (("list",), "wheel"),
+        (("watch", "--once"), "wheel"),
+        (("stats",), "wake-up"),
+        (("enable", "wheel"), "enable: 1 of 1"),
+        (("gains", "wheel"), "velocity_pid"),
+        (("set", "wheel", "velocity", "10", "--for", "20ms"), ""),
+        (("check", "/dev/null"), ""),
+    ],
+    ids=lambda value: value[0] if isinstance(value, tuple) else "",
+)
+def test_rc10ctl_does_it_or_says_why_not(
+    daemon: Daemon, words: tuple[str, ...], expected: str
+) -> None:
+    daemon.must("enable", "wheel")
+    done = [
+        judge(limit, limited(limit, BIN / "rc10ctl", *words, env=daemon.env), expected)
+        for limit in LIMITS
+    ]
+    assert not done[0], "three are stdin, stdout and stderr"
+    assert done[-1] or words[0] == "check"
+
+
+def test_an_estop_with_few_descriptors_is_one_or_fails_loudly() -> None:
+    with Daemon() as daemon:
+        daemon.wait_ready()
+        for limit in LIMITS:
+            count = daemon.state()["estop_count"]
+            status, _, errors = limited(limit, BIN / "rc10ctl", "estop", env=daemon.env)
+            assert status >= 0
+            if status == 0:
+                daemon.wait_state(lambda s, before=count: s["estop_count"] > before, "stopped")
+                daemon.must("clear")
+            else:
+                assert errors.strip()
+        assert status == 0
+
+
+CLIENT = """
+import sys, rc10
+with rc10.connect("host", client="few") as robot:
+    print(robot.wait_for_state(10.0).status.name)
+"""
+
+
+def test_a_python_program_sees_the_state_or_an_error_with_the_cause(daemon: Daemon) -> None:
+    seen = [
+        judge(limit, limited(limit, sys.executable, "-c", CLIENT, env=daemon.env), "RUN")
+        for limit in (6, 7, 8, 9, 10, 12, 16, 24)
+    ]
+    assert seen[-1]
+
+
+def test_a_cpp_program_moves_the_motor_or_says_why_not(daemon: Daemon) -> None:
+    moved = [
+        judge(
+            limit,
+            limited(limit, BIN / "hello_motor", "host", "yaw", "20", env=daemon.env),
+            "yaw stands",
+        )
+        for limit in (3, 4, 5, 6, 8, 24)
+    ]
+    assert not moved[0]
+    assert moved[-1]
+
+
+def test_a_gateway_without_descriptors_says_so_and_ends_or_tries_again(daemon: Daemon) -> None:
+    for limit in range(3, 12):
+        with Program(
+            BIN / "rc10-lcm", "--url", "udpm://239.255.76.67:7668?ttl=0",
+            env=daemon.env, prefix=("prlimit", f"--nofile={limit}", "--"),
+        ) as gateway:  # fmt: skip
+            ended = eventually(
+                lambda gateway=gateway: not gateway.running or "rc10-lcm: " in gateway.output,
+                f"{limit} descriptors: it works, complains or ends",
+            )
+            assert ended
+            if gateway.running:
+                gateway.signal(signal.SIGTERM)
+                assert gateway.wait() == 0
+            else:
+                assert gateway.wait() > 0
+                assert gateway.output
+    assert "LCM on 239.255.76.67:7668" in gateway.output
+
+
+def test_rc10_web_without_descriptors_says_so_at_its_start(daemon: Daemon, tmp_path: Path) -> None:
+    (tmp_path / "index.html").write_text("page")
+    for limit in LIMITS:
+        with Program(
+            BIN / "rc10-web", "--port", "0", "--page", tmp_path,
+            env=daemon.env, prefix=("prlimit", f"--nofile={limit}", "--"),
+        ) as web:  # fmt: skip
+            eventually(
+                lambda web=web: not web.running or "http://" in web.output,
+                f"{limit} descriptors: it serves or ends",
+            )
+            if not web.running:
+                assert web.wait() > 0
+                assert web.output
+    assert web.output
+
+
+@contextlib.contextmanager
+def visitors(port: int, most: int) -> Iterator[list[socket.socket]]:
+    """Connections that ask for nothing."""
+    sockets: list[socket.socket] = []
+    try:
+        address = ("127.0.0.1", port)
+        sockets.extend(socket.create_connection(address, timeout=5.0) for _ in range(most))
+        yield sockets
+    finally:
+        for one in sockets:
+            one.close()
+
+
+def test_rc10_web_serves_again_when_descriptors_are_free(daemon: Daemon, tmp_path: Path) -> None:
+    (tmp_path / "index.html").write_text("page")
+    with Program(
+        BIN / "rc10-web", "--port", "0", "--page", tmp_path,
+        env=daemon.env, prefix=("prlimit", "--nofile=20", "--"),
+    ) as web:  # fmt: skip
+        port = int(web.wait_line(r"http://localhost:(\d+)")[1])
+        with visitors(port, 30):
+            eventually(
+                lambda: len(list(Path(f"/proc/{web.pid}/fd").iterdir())) >= 20, "no descriptor left"
+            )
+            # It waits instead of asking again and again.
+            before = cpu_ticks(web.pid)
+            start = daemon.state()["tick"]
+            daemon.wait_state(lambda state: state["tick"] > start + 1000, "a second later")
+            assert cpu_ticks(web.pid) - before < 50
+        page = eventually(lambda: answer(port), "it serves again")
+        assert page == "page"
+
+
+def cpu_ticks(pid: int) -> int:
+    """Hundredths of a second of CPU time."""
+    words = Path(f"/proc/{pid}/stat").read_text().rsplit(")", 1)[1].split()
+    return int(words[11]) + int(words[12])
+
+
+def answer(port: int) -> str:
+    with contextlib.suppress(OSError, http.client.HTTPException):
+        connection = http.client.HTTPConnection("127.0.0.1", port, timeout=5.0)
+        connection.request("GET", "/")
+        return connection.getresponse().read().decode()
+    return ""
+
+
+def test_a_guard_without_descriptors_does_not_start_or_sends_rc10d_away_in_words(
+    tmp_path: Path,
+) -> None:
+    for limit in LIMITS:
+        with Program(
+            BIN / "rc10-guard", "--until-unused",
+            env={"RC10_RUN_DIR": str(tmp_path)}, prefix=("prlimit", f"--nofile={limit}", "--"),
+        ) as guard:  # fmt: skip
+            eventually(
+                lambda guard=guard: not guard.running or (tmp_path / "guard.socket").exists(),
+                f"{limit} descriptors: it listens or ends",
+            )
+            if not guard.running:
+                assert guard.wait() > 0
+                assert guard.output
+            else:
+                guard.signal(signal.SIGTERM)
+                assert guard.wait() == 0
