@@ -376,7 +376,7 @@ def test_an_open_mode_input_slows_a_fast_shaft_and_closing_it_makes_no_jump(tmp_
         process.wait_line(f"{door.chip}:0: reduced speed and current: the mode input is open", 5.0)
         states = drive(robot, 1.5, left=rc10.velocity_rpm(200))
         assert states[-1].conditions & rc10.Condition.REDUCED
-        assert all(state.state is rc10.RobotStatus.RUN for state in states)
+        assert all(state.status is rc10.RobotStatus.RUN for state in states)
         assert abs(robot.motor("left").velocity_rpm - 30) < 5
         assert "REDUCED SPEED" in rc10ctl("watch", "--once").stdout
 

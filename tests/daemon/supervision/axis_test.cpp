@@ -38,7 +38,7 @@ class AxisTest : public ::testing::Test {
     if (axis_.fresh(tick)) (void)axis_.take(MotorEvent::kFeedbackFresh, RobotStatus::kRun, {}, tick);
     if (axis_.lost(tick)) (void)axis_.take(MotorEvent::kFeedbackLost, RobotStatus::kRun, {}, tick);
     if (const auto end = axis_.endsEnabling(tick)) (void)axis_.take(*end, RobotStatus::kRun, {}, tick);
-    (void)axis_.trips(tick);
+    (void)axis_.trips(false, tick);
     lapsed_ = axis_.lapses(tick);
     axis_.order(RobotStatus::kRun, tick);
     axis_.motor().update(tick);
