@@ -5,6 +5,7 @@
 
 #include "client/module_text.hpp"
 #include "fake_rc10d.hpp"
+#include "link/words.hpp"
 #include "sample_messages.hpp"
 
 namespace rc10::client::test::state_text_test {
@@ -86,7 +87,7 @@ TEST(StateText, SaysThatTuningIsLocked) {
   auto state = heroState();
   state.conditions = kConditionTuningLocked;
   EXPECT_THAT(stateText(heroWelcome(), state, nullptr), HasSubstr("  TUNING LOCKED  tick"));
-  EXPECT_EQ(link::conditionWords(state.conditions), "tuning-locked");
+  EXPECT_EQ(link::conditionWords(kConditionTuningLocked), "tuning-locked");
 }
 
 TEST(StateText, DoesWithoutDiagnostics) {
