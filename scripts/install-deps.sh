@@ -11,7 +11,7 @@ declare -A packages=(
     [build]="g++ cmake ninja-build pkg-config ccache git python3 python3-venv iproute2
         libyaml-cpp-dev libspdlog-dev libfmt-dev liblcm-dev liblcm-bin libexpected-dev
         libcli11-dev libboost-dev libseccomp-dev libgpiod-dev libsocketcan-dev libmnl-dev libmd-dev
-        nlohmann-json3-dev libeigen3-dev"
+        libqrencode-dev nlohmann-json3-dev libeigen3-dev"
     [test]="libgtest-dev libgmock-dev libbenchmark-dev strace procps util-linux groff-base mount can-utils jq"
     [languages]="make liblcm-java default-jdk-headless"
     [lint]="clang-16 clang-tidy-16 clang-format-16 libclang-rt-16-dev shellcheck systemd udev"

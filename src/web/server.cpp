@@ -203,6 +203,7 @@ class FileConnection final : public std::enable_shared_from_this<FileConnection>
   void answer(const http::request<http::empty_body>& request, http::status status, std::string_view body,
               std::string_view type = "text/plain; charset=utf-8") {
     response_ = {status, request.version()};
+    response_.set(http::field::server, "rc10-web");  // rc10ctl web looks for it
     response_.set(http::field::content_type, beast::string_view{type.data(), type.size()});
     response_.set(http::field::cache_control, "no-cache");
     response_.set("Content-Security-Policy", beast::string_view{kPolicy.data(), kPolicy.size()});

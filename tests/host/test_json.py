@@ -43,7 +43,7 @@ WORDS: dict[str, list[str | Path]] = {
     "commission": ["wheel"],
 }
 # Verbs that have to fail here.
-FAILS: dict[str, list[str | Path]] = {"scan": ["nocan0"]}
+FAILS: dict[str, list[str | Path]] = {"scan": ["nocan0"], "web": ["--port", "1"]}
 
 
 @pytest.fixture(scope="module")

@@ -36,8 +36,9 @@ def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
 class Studio:
     """rc10d, rc10-web, and the address of the page."""
 
-    def __init__(self, daemon: Daemon) -> None:
+    def __init__(self, daemon: Daemon, *words: str) -> None:
         self.daemon = daemon
+        self.words = words
         self.start()
 
     def start(self, port: int = 0) -> None:
@@ -47,18 +48,25 @@ class Studio:
             REPO / "build" / "web",
             "--port",
             str(port),
+            *self.words,
             env=self.daemon.env,
         )
-        told = self.web.wait_line(r"http://localhost:(\d+)/$")
+        told = self.web.wait_line(r"http://[^:]+:(\d+)/(?:#\w+)?$")
         self.port = int(told[1])
         self.url = f"http://localhost:{self.port}/"
 
 
 @pytest.fixture
-def studio() -> Iterator[Studio]:
+def words() -> tuple[str, ...]:
+    """More words for rc10-web: a file of tests may have others."""
+    return ()
+
+
+@pytest.fixture
+def studio(words: tuple[str, ...]) -> Iterator[Studio]:
     with Daemon(CONFIG.format(realtime="preferred")) as daemon:
         daemon.wait_ready()
-        running = Studio(daemon)
+        running = Studio(daemon, *words)
         yield running
         running.web.stop()
 

@@ -6,7 +6,7 @@
 
 #include <CLI/CLI.hpp>
 
-#include "link/run_dir.hpp"
+#include "client/page_token.hpp"
 #include "program.hpp"
 #include "rc10_version.hpp"
 #include "web/server.hpp"
@@ -51,7 +51,7 @@ int run(int argc, char** argv) {
   }
   const bool others = options.address != "127.0.0.1" && options.address != "::1";
   if (others) {
-    auto token = web::readOrMakeToken(token_file.empty() ? link::runDir() + "/web-token" : token_file);
+    auto token = web::readOrMakeToken(token_file.empty() ? client::pageTokenPath() : token_file);
     if (!token) return complain(token.error());
     options.token = std::move(*token);
   }

@@ -32,5 +32,6 @@ void addScan(CLI::App& app, Action& action);
 void addJog(CLI::App& app, Action& action);
 void addCommission(CLI::App& app, Action& action);
 void addHand(CLI::App& app, Action& action);
+void addWeb(CLI::App& app, Action& action);
 
 }  // namespace rc10::ctl

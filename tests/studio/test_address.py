@@ -1,0 +1,64 @@
+"""The picture that rc10ctl web draws, read as a phone reads it."""
+
+from __future__ import annotations
+
+import os
+import subprocess
+
+import pytest
+from hostlib.daemon import BIN, REPO
+from playwright.sync_api import Browser, expect
+
+from conftest import PATIENCE_MS, Studio
+
+# Of a network that nobody has; on loopback, so that it stays here.
+ELSEWHERE = "198.51.100.7"
+# Half blocks to an image, light where there is ink, and what a reader finds in it.
+READ = """([lines]) => {
+  const size = 8;
+  const width = lines[0].length;
+  const data = new Uint8ClampedArray(4 * width * size * 2 * lines.length * size).fill(255);
+  for (let y = 0; y < 2 * lines.length * size; ++y)
+    for (let x = 0; x < width * size; ++x) {
+      const row = Math.floor(y / size);
+      const ink = lines[row >> 1][Math.floor(x / size)];
+      const light = ink === '█' || ink === (row % 2 === 0 ? '▀' : '▄');
+      data.fill(light ? 255 : 0, 4 * (y * width * size + x), 4 * (y * width * size + x) + 3);
+    }
+  return jsQR(data, width * size, 2 * lines.length * size)?.data ?? null;
+}"""
+
+
+@pytest.fixture
+def words() -> tuple[str, ...]:
+    """For others too."""
+    subprocess.run(["ip", "address", "replace", f"{ELSEWHERE}/32", "dev", "lo"], check=True)
+    return ("--listen", "0.0.0.0")
+
+
+def test_a_phone_that_reads_the_code_looks_at_the_robot(chromium: Browser, studio: Studio) -> None:
+    told = subprocess.run(
+        [BIN / "rc10ctl", "web", "--port", str(studio.port)],
+        env={**os.environ, **studio.daemon.env, "LC_ALL": "C.UTF-8"},
+        capture_output=True,
+        text=True,
+        check=True,
+    ).stdout
+    urls = [line.removeprefix("on others: ") for line in told.splitlines() if "on others" in line]
+    picture = [line for line in told.splitlines() if set(line) <= set(" ▀▄█")]
+    context = chromium.new_context(viewport={"width": 390, "height": 844}, locale="en-GB")
+    context.set_default_timeout(PATIENCE_MS)
+    page = context.new_page()
+    page.evaluate((REPO / "web" / "node_modules" / "jsqr" / "dist" / "jsQR.js").read_text())
+    assert page.evaluate(READ, [picture]) == urls[0]
+    (url,) = [url for url in urls if ELSEWHERE in url]
+    asked: list[str] = []
+    page.on("request", lambda request: asked.append(request.url))
+    page.goto(url)
+    expect(page.locator(".badge.connection")).to_have_text("live")
+    expect(page.get_by_role("article", name="wheel", exact=True)).to_be_visible()
+    expect(page.get_by_text("looks and stops only")).to_be_visible()
+    # The token is in no address that the browser asks for.
+    token = url.split("#")[1]
+    assert [one for one in asked if token in one.split("#")[0]] == []
+    context.close()
