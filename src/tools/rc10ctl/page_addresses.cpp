@@ -56,8 +56,7 @@ bool wait(int socket, short events, Clock::time_point end) {
 // Another program may have the port: rc10-web names itself.
 bool serves(const Address& address) {
   const auto end = Clock::now() + kPatience;
-  const UniqueFd socket{
-      ::socket(address.where.ss_family, SOCK_STREAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0)};
+  const UniqueFd socket{::socket(address.where.ss_family, SOCK_STREAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0)};
   if (!socket) return false;
   (void)::connect(socket.get(), reinterpret_cast<const sockaddr*>(&address.where), address.size);
   int error = 0;
@@ -65,8 +64,7 @@ bool serves(const Address& address) {
   if (!wait(socket.get(), POLLOUT, end) ||
       ::getsockopt(socket.get(), SOL_SOCKET, SO_ERROR, &error, &size) != 0 || error != 0)
     return false;
-  const std::string request =
-      "HEAD / HTTP/1.1\r\nHost: " + address.text + "\r\nConnection: close\r\n\r\n";
+  const std::string request = "HEAD / HTTP/1.1\r\nHost: " + address.text + "\r\nConnection: close\r\n\r\n";
   if (::send(socket.get(), request.data(), request.size(), MSG_NOSIGNAL) !=
       static_cast<ssize_t>(request.size()))
     return false;

@@ -28,7 +28,8 @@ struct Options {
   std::optional<std::string> token_file;
 };
 
-// That of the service, which is there while it runs; else that of an rc10-web by hand, which RC10_RUN_DIR means.
+// That of the service, which is there while it runs; else that of an rc10-web by hand, which RC10_RUN_DIR
+// means.
 Result<std::string> token(const Options& options) {
   const bool by_hand = std::getenv("RC10_RUN_DIR") != nullptr;
   std::string path = options.token_file.value_or(by_hand ? client::pageTokenPath() : kServiceToken);
@@ -40,7 +41,8 @@ Result<std::string> token(const Options& options) {
   if (!found && ::geteuid() != 0 && ::access(path.c_str(), R_OK) != 0)
     return fail(path + ", the token of other computers, is for its owner alone: `sudo rc10ctl web`");
   if (!found) return tl::unexpected(found.error());
-  if (!*found) return fail("there is no token in " + path + ": name the file that rc10-web has, with --token-file");
+  if (!*found)
+    return fail("there is no token in " + path + ": name the file that rc10-web has, with --token-file");
   return std::move(**found);
 }
 
@@ -75,7 +77,8 @@ ExitCode web(const Global& global, const Options& options) {
   }
   const auto here = found.here ? "http://localhost:" + port + "/" : std::string{};
   if (global.json && !no_token) {
-    std::puts(client::lineOf({{"here", here.empty() ? client::Json(nullptr) : client::Json(here)}, {"others", urls}})
+    std::puts(client::lineOf(
+                  {{"here", here.empty() ? client::Json(nullptr) : client::Json(here)}, {"others", urls}})
                   .c_str());
     return ExitCode::kOk;
   }
@@ -96,7 +99,8 @@ void addWeb(CLI::App& app, Action& action) {
   auto* verb = app.add_subcommand("web", "the address of the robot's page, as a QR code too");
   verb->add_option("--port", options->port, "that of rc10-web")->type_name("N")->capture_default_str();
   verb->add_option("--token-file", options->token_file, "that of rc10-web")->type_name("FILE");
-  verb->callback([&action, options] { action = [options](const Global& global) { return web(global, *options); }; });
+  verb->callback(
+      [&action, options] { action = [options](const Global& global) { return web(global, *options); }; });
 }
 
 }  // namespace rc10::ctl
