@@ -77,6 +77,7 @@ Result<void> Daemon::build() {
   // First what makes this the only rc10d of its robot and of its interfaces: another one must not notice.
   auto socket = LinkSocket::listen(link::runDir(), config_.robot);
   if (!socket) return tl::unexpected(socket.error());
+  keepLog(*log_, link::logPath(link::runDir(), config_.robot));
   auto locks = InterfaceLocks::take(config_);
   if (!locks) return tl::unexpected(locks.error());
   interface_locks_ = std::move(*locks);

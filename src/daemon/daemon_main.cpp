@@ -1,9 +1,9 @@
 #include "daemon/daemon_main.hpp"
 
 #include <iostream>
-#include <optional>
 #include <string>
 
+#include <fmt/format.h>
 #include <CLI/CLI.hpp>
 
 #include "app/spelling.hpp"
@@ -12,6 +12,7 @@
 #include "config/report/schema.hpp"
 #include "daemon/daemon.hpp"
 #include "daemon/log.hpp"
+#include "daemon/refusal.hpp"
 #include "daemon/rt_process.hpp"
 #include "daemon/signal_inbox.hpp"
 #include "rc10_version.hpp"
@@ -24,18 +25,21 @@ constexpr int kOk = 0;
 constexpr int kStartFailed = 1;
 constexpr int kBadUsageOrConfig = 2;
 
-/// Loads a configuration and prints everything that is wrong with it.
-std::optional<RobotConfig> load(const std::string& file) {
+/// Loads a configuration and prints everything that is wrong with it. Without a configuration: the words.
+tl::expected<RobotConfig, std::string> load(const std::string& file) {
   auto outcome = loadRobotConfig(file);
-  std::cerr << outcome.text();
+  auto told = outcome.text();
   if (!outcome.config) {
     const auto count = outcome.errors.size();
-    std::cerr << file << ": " << count << (count == 1 ? " error\n" : " errors\n");
+    told += fmt::format("{}: {} error{}\n", file, count, count == 1 ? "" : "s");
   }
-  return std::move(outcome.config);
+  std::cerr << told;
+  if (!outcome.config) return tl::unexpected(std::move(told));
+  return std::move(*outcome.config);
 }
 
 int run(RobotConfig config) {
+  const std::string file = config.file;
   SignalInbox signals;  // before the log, which starts a thread
   // A debugger and a core file need what this forbids.
   if (config.guard != GuardPolicy::kOff) forbidDumps();
@@ -43,8 +47,10 @@ int run(RobotConfig config) {
   Daemon daemon(std::move(config), log);
   if (const auto started = daemon.start(); !started) {
     std::cerr << "rc10d: " << started.error().message << '\n';
+    leaveRefusal(file, file + ": " + started.error().message + "\n");
     return kStartFailed;
   }
+  takeRefusalBack(file);
   daemon.waitForSignal(signals);
   daemon.stop();
   return kOk;
@@ -88,7 +94,10 @@ int daemonMain(int argc, char** argv) {
     return kBadUsageOrConfig;
   }
   auto config = load(*check_option ? check_file : config_file);
-  if (!config) return kBadUsageOrConfig;
+  if (!config) {
+    if (!*check_option) leaveRefusal(config_file, config.error());
+    return kBadUsageOrConfig;
+  }
   if (*check_option) {
     std::cout << describe(*config);
     return kOk;

@@ -15,6 +15,7 @@
 
 #include "app/printable.hpp"
 #include "daemon/exchange/events.hpp"
+#include "daemon/log_file.hpp"
 
 namespace rc10 {
 namespace {
@@ -55,15 +56,25 @@ class UnblockedStderr final : public spdlog::sinks::stderr_color_sink_st {
 
 std::shared_ptr<spdlog::logger> makeLog() {
   static const auto kPool = std::make_shared<spdlog::details::thread_pool>(kQueue, 1);
-  auto sink = std::make_shared<UnblockedStderr>();
-  auto log = std::make_shared<spdlog::async_logger>("rc10d", std::move(sink), kPool,
-                                                    spdlog::async_overflow_policy::overrun_oldest);
+  auto file = std::make_shared<LogFile>();
+  auto log = std::make_shared<spdlog::async_logger>(
+      "rc10d", spdlog::sinks_init_list{std::make_shared<UnblockedStderr>(), file}, kPool,
+      spdlog::async_overflow_policy::overrun_oldest);
   const bool journal = std::getenv("JOURNAL_STREAM") != nullptr;
   auto formatter = std::make_unique<spdlog::pattern_formatter>();
   formatter->add_flag<PrintableText>('*').set_pattern(journal ? "%*" : "[%H:%M:%S.%e] %^%l%$ %*");
   log->set_formatter(std::move(formatter));
+  auto dated = std::make_unique<spdlog::pattern_formatter>();
+  dated->add_flag<PrintableText>('*').set_pattern("%Y-%m-%d %H:%M:%S.%e %l %*");
+  file->set_formatter(std::move(dated));
   log->flush_on(spdlog::level::info);
   return log;
+}
+
+void keepLog(const spdlog::logger& log, const std::string& path) {
+  for (const auto& sink : log.sinks()) {
+    if (auto* file = dynamic_cast<LogFile*>(sink.get())) file->keepIn(path);
+  }
 }
 
 void logEvent(spdlog::logger& log, const link::Event& event) {

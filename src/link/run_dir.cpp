@@ -55,6 +55,14 @@ std::string restFramesPath(const std::string& run_dir, const std::string& robot)
   return run_dir + "/" + robot + "/rest-frames";
 }
 
+std::string logPath(const std::string& run_dir, const std::string& robot) {
+  return run_dir + "/" + robot + ".log";
+}
+
+std::string refusalPath(const std::string& run_dir, const std::string& config_file) {
+  return run_dir + "/" + std::filesystem::path(config_file).stem().string() + ".refusal";
+}
+
 std::string guardSocketPath(const std::string& run_dir) { return run_dir + "/guard.socket"; }
 
 }  // namespace rc10::link

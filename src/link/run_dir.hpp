@@ -25,8 +25,15 @@ namespace rc10::link {
 /// Where rc10d leaves the rest frames of a robot's drives for rc10-stop: <run_dir>/<robot>/rest-frames.
 [[nodiscard]] std::string restFramesPath(const std::string& run_dir, const std::string& robot);
 
+/// The end of a robot's log, for rc10-web after rc10d's end: <run_dir>/<robot>.log; what came before is in
+/// <run_dir>/<robot>.log.1.
+[[nodiscard]] std::string logPath(const std::string& run_dir, const std::string& robot);
+
+/// Why rc10d did not start with a file, until it does: <run_dir>/<name of the file>.refusal.
+[[nodiscard]] std::string refusalPath(const std::string& run_dir, const std::string& config_file);
+
 /// Where rc10-guard listens: <run_dir>/guard.socket. No robot has a file of this name: its files
-/// end in ".sock", ".estop" and ".lock", and its name has no dot.
+/// end in ".sock", ".estop", ".lock" and ".log", and its name has no dot.
 [[nodiscard]] std::string guardSocketPath(const std::string& run_dir);
 
 }  // namespace rc10::link

@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "client/find_motor.hpp"
+#include "link/run_dir.hpp"
 #include "web/page_messages.hpp"
 #include "web/signal_names.hpp"
 
@@ -36,7 +37,7 @@ constexpr std::string_view statusWord(link::ResponseStatus status) {
 }  // namespace
 
 Hub::Hub(std::optional<std::string> robot, std::string token)
-    : feed_(std::move(robot)), token_(std::move(token)) {}
+    : robot_(std::move(robot)), feed_(robot_), token_(std::move(token)) {}
 
 Hub::Page* Hub::pageOf(const PageSocket& socket) noexcept {
   const auto found =
@@ -67,7 +68,7 @@ void Hub::greet(Page& page) {
   page.socket->sendText(shared(helloMessage(page.right, page.name)));
   if (page.right == Right::kNothing) return;
   if (!feed_.connected()) {
-    page.socket->sendText(shared(downMessage(feed_.reason())));
+    page.socket->sendText(shared(downNow()));
     return;
   }
   page.socket->sendText(shared(robotMessage(feed_)));
@@ -193,18 +194,26 @@ void Hub::turn() {
 void Hub::watchRobot() {
   if (!feed_.connected() && turns_ % kConnectEvery == 0) {
     feed_.connect();
-    if (!feed_.connected() && feed_.reason() != std::exchange(told_reason_, feed_.reason()))
-      tell(downMessage(feed_.reason()));
+    if (!feed_.connected()) tellDown();
   }
   if (feed_.connected() && !feed_.receive()) {
-    told_reason_ = feed_.reason();
     for (const auto& page : pages_) {
       page->link->close();
       page->view.reset();  // its signals were those of that robot: the page chooses anew
     }
-    tell(downMessage(feed_.reason()));
+    told_down_.clear();
+    tellDown();
   }
   if (feed_.takeRobotIsNew()) tell(robotMessage(feed_));
+}
+
+std::string Hub::downNow() const {
+  return downMessage(feed_.reason(), readDaemonEnd(link::runDir(), robot_));
+}
+
+// Again when more is known of it.
+void Hub::tellDown() {
+  if (auto now = downNow(); now != told_down_) tell(told_down_ = std::move(now));
 }
 
 void Hub::publish() {

@@ -65,20 +65,23 @@ class Hub {
   void answer(Page& page, const AskRange& wanted);
   void ask(Page& page, const AskRobot& wanted);
   void drive(Page& page, const DriveMotor& wanted, Duration age);
+  [[nodiscard]] std::string downNow() const;
   [[nodiscard]] std::string whyNotMoving(const Page& page) const;
   void chooseTraces();
   void watchRobot();
+  void tellDown();
   void publish();
   void publishColumns(Page& page);
   void publishAnswers(Page& page);
   void tell(const std::string& message);
 
+  std::optional<std::string> robot_;
   RobotFeed feed_;
   std::string token_;
   std::vector<std::unique_ptr<Page>> pages_;
   std::uint64_t opened_ = 0;
   std::uint64_t turns_ = 0;
-  std::string told_reason_;
+  std::string told_down_;
 };
 
 }  // namespace rc10::web

@@ -36,7 +36,14 @@ std::string helloMessage(Right right, std::string_view session_name) {
                  {"name", session_name}});
 }
 
-std::string downMessage(std::string_view reason) { return lineOf({{"type", "down"}, {"reason", reason}}); }
+std::string downMessage(std::string_view reason, const DaemonEnd& end) {
+  return lineOf({{"type", "down"},
+                 {"reason", reason},
+                 {"refusal", end.refusal},
+                 {"refused_at", end.refused_at},
+                 {"log", end.log},
+                 {"logged_at", end.logged_at}});
+}
 
 std::string robotMessage(const RobotFeed& feed) {
   Json modules = Json::array();

@@ -7,6 +7,7 @@
 
 #include "link/link_protocol.hpp"
 #include "web/access.hpp"
+#include "web/daemon_end.hpp"
 #include "web/robot_feed.hpp"
 
 namespace rc10::web {
@@ -19,7 +20,7 @@ inline constexpr int kPageProtocol = 1;
 
 [[nodiscard]] std::string helloMessage(Right right, std::string_view session_name);
 /// rc10d is not there, and why.
-[[nodiscard]] std::string downMessage(std::string_view reason);
+[[nodiscard]] std::string downMessage(std::string_view reason, const DaemonEnd& end);
 /// The robot: motors, modules with their inputs and outputs, readings of each tick.
 [[nodiscard]] std::string robotMessage(const RobotFeed& feed);
 [[nodiscard]] std::string stateMessage(const RobotFeed& feed, const link::State& state);

@@ -284,6 +284,49 @@ def test_it_lives_when_rc10d_ends_says_so_and_finds_it_again(web: Web, daemon: D
         assert page.ask("enable", "wheel")["status"] == "ok"
 
 
+def test_while_rc10d_is_down_its_last_words_and_the_mistakes_of_its_file_are_told(
+    web: Web, daemon: Daemon
+) -> None:
+    with web.page() as page:
+        page.wait("state")
+        daemon.kill()
+        down = page.wait("down", lambda told: "robot 'host' runs" in told["log"])
+        assert down["refusal"] == ""
+        sound = daemon.config.read_text()
+        daemon.config.write_text(sound.replace("id: 2", "id: 1"))
+        check = subprocess.run(
+            [BIN / "rc10d", "--check", daemon.config], capture_output=True, text=True
+        )
+        daemon.start()
+        assert daemon.program.wait() == 2
+        down = page.wait("down", lambda told: told["refusal"] != "")
+        assert down["refusal"] == check.stderr
+        assert "robot 'host' runs" in down["log"]
+        # A page that comes later is told the same.
+        with web.page() as later:
+            assert later.wait("down")["refusal"] == check.stderr
+        daemon.config.write_text(sound)
+        daemon.start()
+        daemon.wait_ready()
+        page.wait("robot")
+        daemon.program.stop()
+        down = page.wait("down", lambda told: "stopping" in told["log"])
+        assert down["refusal"] == ""
+
+
+def test_a_second_rc10d_of_a_robot_leaves_the_log_of_the_first_alone(daemon: Daemon) -> None:
+    log = daemon.run_dir / "host.log"
+    before = log.stat().st_ino
+    second = Program(BIN / "rc10d", "-c", daemon.config, env=daemon.env)
+    assert second.wait() == 1
+    assert log.stat().st_ino == before
+    assert "already has a running rc10d" in (daemon.run_dir / "robot.refusal").read_text()
+    # Nor does a check leave anything.
+    (daemon.run_dir / "robot.refusal").unlink()
+    subprocess.run([BIN / "rc10d", "--check", "/dev/null"], env={**os.environ, **daemon.env})
+    assert list(daemon.run_dir.glob("*.refusal")) == []
+
+
 def test_what_is_no_message_is_refused_and_what_is_too_large_ends_the_page(web: Web) -> None:
     with web.page() as page:
         page.wait("hello")

@@ -104,6 +104,31 @@ def test_when_rc10d_ends_the_page_says_why_and_it_comes_back_by_itself(
 
 def columns_of(page: Page) -> int:
     """Non-empty points of the first curve, as the page would save them."""
+def test_while_rc10d_is_down_the_page_has_its_log_and_the_mistakes_of_its_file(
+    page: Page, studio: Studio
+) -> None:
+    studio.daemon.kill()
+    notice = page.get_by_role("region", name="rc10d is not running")
+    expect(notice.get_by_label("End of its log")).to_contain_text("robot 'host' runs")
+    expect(notice.get_by_text("It refused to start")).to_have_count(0)
+    sound = studio.daemon.config.read_text()
+    studio.daemon.config.write_text(sound.replace("model: M3508", "model: M3509"))
+    studio.daemon.start()
+    assert studio.daemon.program.wait() == 2
+    mistakes = notice.get_by_label("It refused to start")
+    expect(mistakes).to_contain_text("M3509")
+    expect(mistakes).to_contain_text("did you mean")
+    # The log is folded away then, and opens.
+    expect(notice.get_by_label("End of its log")).to_be_hidden()
+    notice.get_by_text("End of its log").click()
+    expect(notice.get_by_label("End of its log")).to_be_visible()
+    assert page.evaluate("document.documentElement.scrollWidth <= innerWidth")
+    studio.daemon.config.write_text(sound)
+    studio.daemon.start()
+    studio.daemon.wait_ready()
+    expect(notice).to_have_count(0)
+
+
     with page.expect_download() as saved:
         page.get_by_role("button", name="CSV").click()
     lines = Path(saved.value.path()).read_text().splitlines()

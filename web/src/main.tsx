@@ -2,6 +2,7 @@ import { render } from 'preact';
 import { useEffect, useMemo, useState } from 'preact/hooks';
 
 import { StudioContext, useKnown, useStored, useStudio } from './context';
+import { DownNotice } from './down';
 import { Events } from './events';
 import { Link } from './link';
 import { Match } from './match';
@@ -88,12 +89,7 @@ function Body() {
           </button>
         ))}
       </nav>
-      {known.down !== null && (
-        <div class="down" role="alert">
-          <strong>{word('down')}</strong>
-          <pre>{known.down.reason}</pre>
-        </div>
-      )}
+      {known.down !== null && <DownNotice down={known.down} />}
       <main id="part" role="tabpanel" aria-labelledby={`tab-${part}`}>
         <Shown />
       </main>

@@ -15,6 +15,13 @@ export interface Hello {
 export interface Down {
   type: 'down';
   reason: string;
+  /** Mistakes for which the last start was refused; empty: it was not. */
+  refusal: string;
+  /** Seconds since 1970. */
+  refused_at: number;
+  /** The last lines of the last run. */
+  log: string;
+  logged_at: number;
 }
 
 export interface MotorInfo {
