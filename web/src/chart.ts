@@ -9,7 +9,7 @@ export function colourOf(i: number): string {
   return kColours[i % kColours.length] ?? '#0072b2';
 }
 
-function dashOf(i: number): number[] {
+export function dashOf(i: number): number[] {
   return kDashes[Math.floor(i / kColours.length) % kDashes.length] ?? [];
 }
 
@@ -17,6 +17,11 @@ function dashOf(i: number): number[] {
 const kUnknown: uPlot.Range.MinMax = [0, 1];
 function isEmpty(min: number | null, max: number | null): boolean {
   return min === null || max === null || !Number.isFinite(min) || !Number.isFinite(max);
+}
+
+/** Range of an axis: from the least value to the greatest, with some room. */
+export function around(_u: uPlot, min: number | null, max: number | null): uPlot.Range.MinMax {
+  return min === null || max === null || isEmpty(min, max) ? kUnknown : uPlot.rangeNum(min, max, 0.1, true);
 }
 
 export interface Kept {
@@ -49,7 +54,7 @@ function secondsBefore(end: number, time: number): string {
   return `${seconds.toFixed(digits).replace('-', '−')} s`;
 }
 
-function inkOf(name: string): string {
+export function inkOf(name: string): string {
   return getComputedStyle(document.documentElement).getPropertyValue(name).trim();
 }
 
@@ -66,8 +71,7 @@ export function makeChart(target: HTMLElement, signals: string[], hooks: ChartHo
   const scales: uPlot.Scales = {
     x: { time: false, range: (_u, min, max) => (isEmpty(min, max) ? kUnknown : min === max ? [min, min + 1] : [min, max]) },
   };
-  for (const unit of units)
-    scales[unit] = { range: (_u, min, max) => (isEmpty(min, max) ? kUnknown : uPlot.rangeNum(min, max, 0.1, true)) };
+  for (const unit of units) scales[unit] = { range: around };
   const axis = { stroke: () => inkOf('--ink'), grid: { stroke: () => inkOf('--grid'), width: 1 }, ticks: { stroke: () => inkOf('--grid') } };
   const axes: uPlot.Axis[] = [
     { ...axis, values: (u, values) => values.map((v) => secondsBefore(u.scales['x']?.max ?? 0, v)) },
@@ -114,7 +118,7 @@ export function makeChart(target: HTMLElement, signals: string[], hooks: ChartHo
   return chart;
 }
 
-function clipped(u: uPlot, draw: (context: CanvasRenderingContext2D) => void): void {
+export function clipped(u: uPlot, draw: (context: CanvasRenderingContext2D) => void): void {
   const { ctx, bbox } = u;
   ctx.save();
   ctx.beginPath();

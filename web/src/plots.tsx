@@ -1,9 +1,11 @@
+import type { ComponentChildren } from 'preact';
 import { useEffect, useMemo, useRef, useState } from 'preact/hooks';
 import type uPlot from 'uplot';
 
 import { type Kept, type Mark, colourOf, makeChart } from './chart';
 import { useKnown, useStored, useStudio } from './context';
 import { number, unitOf } from './numbers';
+import { type Shown, SidePlots } from './side_plots';
 import { Traces } from './traces';
 
 const kMostSignals = 12;
@@ -87,13 +89,17 @@ export function Plots() {
   return (
     <div class="plots">
       <SignalChooser chosen={chosen} onChoose={setChosen} />
-      <Curves signals={chosen} />
+      <Curves signals={chosen} below={(shown) => <SidePlots shown={shown} />} />
     </div>
   );
 }
 
 /** Curves of these signals, each tick in them, and what can be done with them. */
-export function Curves(props: { signals: string[]; unit?: (signal: string) => string }) {
+export function Curves(props: {
+  signals: string[];
+  unit?: (signal: string) => string;
+  below?: (shown: Shown) => ComponentChildren;
+}) {
   const { link, word } = useStudio();
   const known = useKnown();
   const [span_s, setSpan] = useStored('span_s', 10);
@@ -231,6 +237,12 @@ export function Curves(props: { signals: string[]; unit?: (signal: string) => st
   const keep = () =>
     setKept(drawn.map((name, i) => ({ name, times: [...traces.times], values: [...(traces.max[i] ?? [])] })));
 
+  const shownWindow = () => {
+    const x = chart.current?.scales['x'];
+    if (x?.min === undefined || x.max === undefined || origin.current === 0) return null;
+    return { from_us: x.min * kUs + origin.current, to_us: x.max * kUs + origin.current };
+  };
+
   return (
     <div class="plot">
       <div class="toolbar">
@@ -297,6 +309,7 @@ export function Curves(props: { signals: string[]; unit?: (signal: string) => st
           ? `Δt ${number(((points[1] ?? 0) - (points[0] ?? 0)) * 1000, 1)} ms`
           : word('cursor')}
       </p>
+      {props.below?.({ signals: drawn, unit, window: shownWindow })}
     </div>
   );
 }
