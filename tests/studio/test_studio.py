@@ -5,6 +5,7 @@ from __future__ import annotations
 import hashlib
 import json
 import re
+import signal
 from pathlib import Path
 
 import pytest
@@ -15,6 +16,7 @@ from playwright.sync_api import Browser, Locator, Page, WebSocketRoute, expect
 import rc10
 from conftest import PATIENCE_MS, Studio
 
+REMEDY = REPO / "web" / "src" / "remedy.tsx"
 TABS = ("overview", "match", "plots", "move", "events", "timing")
 
 
@@ -102,8 +104,6 @@ def test_when_rc10d_ends_the_page_says_why_and_it_comes_back_by_itself(
     expect(page.locator(".events tr", has_text="wheel").first).to_be_visible()
 
 
-def columns_of(page: Page) -> int:
-    """Non-empty points of the first curve, as the page would save them."""
 def test_while_rc10d_is_down_the_page_has_its_log_and_the_mistakes_of_its_file(
     page: Page, studio: Studio
 ) -> None:
@@ -129,6 +129,8 @@ def test_while_rc10d_is_down_the_page_has_its_log_and_the_mistakes_of_its_file(
     expect(notice).to_have_count(0)
 
 
+def columns_of(page: Page) -> int:
+    """Non-empty points of the first curve, as the page would save them."""
     with page.expect_download() as saved:
         page.get_by_role("button", name="CSV").click()
     lines = Path(saved.value.path()).read_text().splitlines()
@@ -298,6 +300,77 @@ def test_language_favourites_and_part_are_remembered(page: Page) -> None:
     assert page.evaluate("document.documentElement.lang") == "zh"
     open_tab(page, "overview")
     expect(page.locator(".card.motor h3").first).to_have_text("yaw")
+
+
+def test_the_layout_is_remembered_for_each_robot_by_its_name(page: Page, studio: Studio) -> None:
+    wheel = page.get_by_role("article", name="wheel", exact=True)
+    buses = page.get_by_role("button", name="Buses")
+    page.get_by_role("button", name="favourite yaw").click()
+    page.get_by_role("button", name="Compact").click()
+    buses.click()
+    expect(wheel.get_by_text("temperature")).to_have_count(0)
+    expect(page.locator(".card.bus")).to_have_count(0)
+    page.reload()
+    expect(page.locator(".card.motor h3").first).to_have_text("yaw")
+    expect(wheel.get_by_text("temperature")).to_have_count(0)
+    expect(page.locator(".card.bus")).to_have_count(0)
+    # Another robot has its own, and the first one's is still there.
+    own = studio.daemon.config.read_text()
+    for name, folded in (("guest", False), ("host", True)):
+        studio.daemon.program.stop()
+        studio.daemon.config.write_text(own.replace("robot: host", f"robot: {name}"))
+        studio.daemon.start()
+        expect(page.locator(".top h1")).to_have_text(name)
+        expect(buses).to_have_attribute("aria-expanded", "false" if folded else "true")
+        expect(page.locator(".card.motor h3").first).to_have_text("yaw" if folded else "wheel")
+
+
+def test_an_event_leads_to_its_remedy_on_a_page_of_the_robot(page: Page, studio: Studio) -> None:
+    open_tab(page, "events")
+    studio.daemon.must("enable", "wheel")
+    # Of the motor's status nothing is to be mended.
+    row = page.locator(".events tr", has_text="ACTIVE").first
+    expect(row).to_be_visible()
+    expect(row.get_by_role("link")).to_have_count(0)
+    with studio.daemon.drive("set", "wheel", "velocity", 60, "--for", "60s") as drive:
+        studio.daemon.wait_motor("wheel", lambda motor: motor["owner"] == "rc10ctl", "driven")
+        drive.signal(signal.SIGKILL)
+    stopped = page.locator(".events tr", has_text="no valid command any more").first
+    with page.context.expect_page() as opened:
+        stopped.get_by_role("link", name="What to do").click()
+    docs = opened.value
+    expect(docs.locator("tr:target")).to_contain_text("the program sends too seldom")
+    assert docs.url.startswith(f"{studio.url}docs/troubleshooting.html#row-")
+    place = docs.url.split("#")[1]
+    # In Chinese the same place.
+    page.get_by_role("button", name="中文").click()
+    link = stopped.get_by_role("link", name="怎么办")
+    assert link.get_attribute("href") == f"/docs/troubleshooting.zh.html#{place}"
+    docs.goto(f"{studio.url}docs/troubleshooting.zh.html#{place}")
+    expect(docs.locator("tr:target")).to_contain_text("no valid command any more")
+    docs.close()
+
+
+@pytest.mark.parametrize("width", [390, 1280])
+@pytest.mark.parametrize("name", ["troubleshooting.html", "troubleshooting.zh.html"])
+def test_the_page_of_remedies_has_each_section_and_can_be_read(
+    chromium: Browser, studio: Studio, name: str, width: int
+) -> None:
+    context = chromium.new_context(viewport={"width": width, "height": 844})
+    page = context.new_page()
+    problems: list[str] = []
+    page.on("console", lambda message: problems.append(message.text))
+    page.goto(f"{studio.url}docs/{name}")
+    sections = re.findall(r"^  \d+: '([a-z0-9-]+)',$", REMEDY.read_text(), re.MULTILINE)
+    assert len(sections) > 10
+    for section in {*sections, "a-motor-is-offline", "fault"}:
+        expect(page.locator(f"h2#{section}")).to_have_count(1)
+    assert page.evaluate("document.documentElement.scrollWidth <= innerWidth")
+    page.evaluate((REPO / "web" / "node_modules" / "axe-core" / "axe.min.js").read_text())
+    found = page.evaluate("axe.run().then((result) => result.violations)")
+    assert [one["id"] for one in found if one["impact"] in ("serious", "critical")] == []
+    assert problems == []
+    context.close()
 
 
 def test_each_action_has_the_command_and_the_python_line_that_do_the_same(

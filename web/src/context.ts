@@ -2,11 +2,12 @@ import { createContext } from 'preact';
 import { useContext, useEffect, useState } from 'preact/hooks';
 
 import type { Known, Link } from './link';
-import type { Word } from './words';
+import type { Language, Word } from './words';
 
 export interface Studio {
   link: Link;
   word: (word: Word) => string;
+  language: Language;
 }
 
 export const StudioContext = createContext<Studio | null>(null);
@@ -25,21 +26,32 @@ export function useKnown(): Known {
   return link.known;
 }
 
+function stored<T>(key: string, initial: T): T {
+  try {
+    const text = localStorage.getItem(`rc10.${key}`);
+    return text === null ? initial : (JSON.parse(text) as T);
+  } catch {
+    return initial;
+  }
+}
+
 /** A value that this browser remembers. */
 export function useStored<T>(key: string, initial: T): [T, (value: T) => void] {
-  const [value, setValue] = useState<T>(() => {
-    try {
-      const stored = localStorage.getItem(`rc10.${key}`);
-      return stored === null ? initial : (JSON.parse(stored) as T);
-    } catch {
-      return initial;
-    }
-  });
+  const [held, hold] = useState<{ key: string; value: T }>(() => ({ key, value: stored(key, initial) }));
+  // Another key, such as that of another robot, has another value.
+  const now = held.key === key ? held : { key, value: stored(key, initial) };
+  if (now !== held) hold(now);
   return [
-    value,
-    (next) => {
-      setValue(next);
-      localStorage.setItem(`rc10.${key}`, JSON.stringify(next));
+    now.value,
+    (value) => {
+      hold({ key, value });
+      localStorage.setItem(`rc10.${key}`, JSON.stringify(value));
     },
   ];
+}
+
+/** The same of each robot, by its name. */
+export function useStoredOfRobot<T>(key: string, initial: T): [T, (value: T) => void] {
+  const robot = useKnown().robot?.robot.robot ?? '';
+  return useStored(`${robot}/${key}`, initial);
 }

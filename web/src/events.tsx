@@ -1,4 +1,5 @@
 import { useKnown, useStored, useStudio } from './context';
+import { Remedy } from './remedy';
 
 export function Events() {
   const { word } = useStudio();
@@ -25,7 +26,9 @@ export function Events() {
                 <span class={`badge ${event.severity}`}>{event.severity}</span>
               </td>
               <td class="source">{event.source}</td>
-              <td>{event.text}</td>
+              <td>
+                {event.text} <Remedy event={event} />
+              </td>
             </tr>
           ))}
         </tbody>

@@ -100,7 +100,7 @@ function Body() {
 function Page() {
   const [language, setLanguage] = useState<Language>(storedLanguage);
   const link = useMemo(() => new Link(), []);
-  const studio = useMemo(() => ({ link, word: wordsOf(language) }), [link, language]);
+  const studio = useMemo(() => ({ link, word: wordsOf(language), language }), [link, language]);
   useEffect(() => link.connect(), [link]);
   useEffect(() => storeLanguage(language), [language]);
   // A phone is felt, too.

@@ -1,5 +1,7 @@
+import type { ComponentChildren } from 'preact';
+
 import { Action } from './action';
-import { useKnown, useStored, useStudio } from './context';
+import { useKnown, useStoredOfRobot, useStudio } from './context';
 import { duration, number, percent, signedAngle, unitOf, unitOfMode } from './numbers';
 import type { Bus, ModuleState, MotorInfo, MotorState } from './protocol';
 
@@ -36,7 +38,7 @@ function actingOf(motor: MotorState): string {
   return motor.acting === 'target' ? motor.mode : motor.acting;
 }
 
-function MotorCard(props: { info: MotorInfo; motor: MotorState; favourite: boolean; onFavourite: () => void }) {
+function MotorCard(props: { info: MotorInfo; motor: MotorState; compact: boolean; favourite: boolean; onFavourite: () => void }) {
   const { word } = useStudio();
   const { info, motor } = props;
   const unit = unitOfMode(motor.mode);
@@ -76,12 +78,16 @@ function MotorCard(props: { info: MotorInfo; motor: MotorState; favourite: boole
         {follows && <Value name={word('target')} value={target} unit={unit} />}
         {follows && unit !== '' && <Value name={word('measured')} value={measuredOf(motor)} unit={unit} />}
         <Value name="velocity" value={motor.velocity_rpm} unit="rpm" />
-        <Value name="angle" value={motor.zeroed ? motor.total_angle_deg : signedAngle(motor.angle_deg)} unit="°" />
-        <Value name="current" value={motor.current_a} unit="A" digits={2} />
-        <Value name="temperature" value={motor.temperature_c} unit="°C" digits={0} />
+        {!props.compact && (
+          <>
+            <Value name="angle" value={motor.zeroed ? motor.total_angle_deg : signedAngle(motor.angle_deg)} unit="°" />
+            <Value name="current" value={motor.current_a} unit="A" digits={2} />
+            <Value name="temperature" value={motor.temperature_c} unit="°C" digits={0} />
+          </>
+        )}
       </div>
       <footer>
-        <span>{`${word('age')} ${duration(motor.feedback_age_us)}`}</span>
+        {!props.compact && <span>{`${word('age')} ${duration(motor.feedback_age_us)}`}</span>}
         <span>{`${word('owner')} ${motor.owner === '' ? word('nobody') : motor.owner}`}</span>
         <span class="actions">
           {motor.status === 'ACTIVE' || motor.status === 'ENABLING' ? (
@@ -153,10 +159,33 @@ function ModuleCard(props: { module: ModuleState }) {
   );
 }
 
+/** Cards under a title that folds them away. */
+function Section(props: { name: 'motors' | 'modules' | 'buses'; children: ComponentChildren }) {
+  const { word } = useStudio();
+  const [folded, setFolded] = useStoredOfRobot<string[]>('folded', []);
+  const open = !folded.includes(props.name);
+  return (
+    <section>
+      <h2>
+        <button
+          type="button"
+          class="fold"
+          aria-expanded={open}
+          onClick={() => setFolded(open ? [...folded, props.name] : folded.filter((name) => name !== props.name))}
+        >
+          {`${open ? '▾' : '▸'} ${word(props.name)}`}
+        </button>
+      </h2>
+      {open && <div class="cards">{props.children}</div>}
+    </section>
+  );
+}
+
 export function Overview() {
   const { word } = useStudio();
   const known = useKnown();
-  const [favourites, setFavourites] = useStored<string[]>('favourites', []);
+  const [favourites, setFavourites] = useStoredOfRobot<string[]>('favourites', []);
+  const [compact, setCompact] = useStoredOfRobot('compact', false);
   const infos = known.robot?.robot.motors ?? [];
   const motors = known.state?.data.motors ?? [];
   const rows = infos
@@ -174,15 +203,18 @@ export function Overview() {
         <Action request={{ operation: 'enable' }} label={word('enableAll')} />
         <Action request={{ operation: 'disable' }} label={word('disableAll')} />
         <Action request={{ operation: 'clear' }} label={word('clear')} />
+        <button type="button" aria-pressed={compact} onClick={() => setCompact(!compact)}>
+          {word('compact')}
+        </button>
         {known.hello?.right === 'look' && <span class="hint">{word('lookOnly')}</span>}
       </div>
-      <h2>{word('motors')}</h2>
-      <div class="cards">
+      <Section name="motors">
         {ordered.map(({ info, motor }) => (
           <MotorCard
             key={info.name}
             info={info}
             motor={motor}
+            compact={compact}
             favourite={favourites.includes(info.name)}
             onFavourite={() =>
               setFavourites(
@@ -193,19 +225,19 @@ export function Overview() {
             }
           />
         ))}
-      </div>
-      {modules.length > 0 && <h2>{word('modules')}</h2>}
-      <div class="cards">
-        {modules.map((module) => (
-          <ModuleCard key={module.name} module={module} />
-        ))}
-      </div>
-      <h2>{word('buses')}</h2>
-      <div class="cards">
+      </Section>
+      {modules.length > 0 && (
+        <Section name="modules">
+          {modules.map((module) => (
+            <ModuleCard key={module.name} module={module} />
+          ))}
+        </Section>
+      )}
+      <Section name="buses">
         {buses.map((bus) => (
           <BusCard key={bus.name} bus={bus} />
         ))}
-      </div>
+      </Section>
     </>
   );
 }
