@@ -107,12 +107,8 @@ Result<UniqueFd> openSocket(const std::string& socket_path, Deadline deadline) {
   return socket;
 }
 
-Result<std::unique_ptr<link::Welcome>> greet(int socket, const std::string& socket_path,
-                                             std::string_view client, std::uint32_t subscriptions,
+Result<std::unique_ptr<link::Welcome>> greet(int socket, const std::string& socket_path, link::Hello hello,
                                              Deadline deadline) {
-  link::Hello hello;
-  hello.subscriptions = subscriptions;
-  hello.client = client;
   const auto bytes = link::seal(hello);
   if (::send(socket, bytes.data(), bytes.size(), MSG_NOSIGNAL) < 0) {
     const bool closed = errno == EPIPE || errno == ECONNRESET;

@@ -25,7 +25,6 @@ using Deadline = std::chrono::steady_clock::time_point;
 
 /// Says Hello on a connected socket and waits for the Welcome.
 [[nodiscard]] Result<std::unique_ptr<link::Welcome>> greet(int socket, const std::string& socket_path,
-                                                           std::string_view client,
-                                                           std::uint32_t subscriptions, Deadline deadline);
+                                                           link::Hello hello, Deadline deadline);
 
 }  // namespace rc10::client

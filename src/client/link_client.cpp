@@ -26,7 +26,11 @@ Result<LinkClient> LinkClient::connect(const std::string& socket_path, const Opt
 Result<LinkClient> LinkClient::adopt(UniqueFd connected, const std::string& socket_path,
                                      const Options& options) {
   const auto deadline = std::chrono::steady_clock::now() + options.timeout;
-  auto welcome = client::greet(connected.get(), socket_path, options.name, options.subscriptions, deadline);
+  link::Hello hello;
+  hello.subscriptions = options.subscriptions;
+  hello.client = options.name;
+  hello.token = options.token;
+  auto welcome = client::greet(connected.get(), socket_path, hello, deadline);
   if (!welcome) return tl::unexpected(welcome.error());
   return LinkClient{std::move(connected), socket_path, std::move(*welcome)};
 }

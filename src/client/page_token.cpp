@@ -1,6 +1,7 @@
 #include "client/page_token.hpp"
 
 #include <fcntl.h>
+#include <sys/random.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -29,6 +30,18 @@ Result<std::optional<std::string>> cannotRead(const std::string& path) {
 }
 
 }  // namespace
+
+Result<std::string> makePageToken() {
+  // 32 signs: each byte gives one without a bias.
+  constexpr std::string_view kSigns = "abcdefghijkmnpqrstuvwxyz23456789";
+  static_assert(kSigns.size() == 32);
+  std::array<unsigned char, kPageTokenLength> random{};
+  if (::getrandom(random.data(), random.size(), 0) != static_cast<ssize_t>(random.size()))
+    return fail(std::string{"no random numbers: "} + std::strerror(errno));
+  std::string token;
+  for (const auto byte : random) token += kSigns[byte % kSigns.size()];
+  return token;
+}
 
 std::string pageTokenPath() { return link::runDir() + "/web-token"; }
 

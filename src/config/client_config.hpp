@@ -25,6 +25,7 @@ struct ClientConfig {
     kLcmName,  ///< Client name of a message on LCM that was sent on this computer.
     kUser,     ///< Name or number of the user at the other end of the link socket.
     kGroup,    ///< The same of one of the user's groups.
+    kToken,    ///< SHA-256 of a token that a client of the link socket shows.
   };
   int line = 0;  ///< Line in the file.
   By by = By::kUser;

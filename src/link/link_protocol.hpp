@@ -16,7 +16,7 @@
 /// host's byte order. Both ends are of the same build; Hello refuses others.
 namespace rc10::link {
 
-inline constexpr std::uint32_t kProtocolVersion = 3;
+inline constexpr std::uint32_t kProtocolVersion = 4;
 inline constexpr std::size_t kMaxMotors = 128;
 inline constexpr std::size_t kMaxBuses = 4;
 inline constexpr std::size_t kMaxModules = 16;
@@ -89,6 +89,7 @@ struct Hello {
   std::uint32_t protocol_version = kProtocolVersion;
   std::uint32_t subscriptions = 0;
   Name client;
+  Text<40> token;  ///< The client has the rights of its entry of `clients` too; mostly empty.
 };
 
 struct MotorInfo {

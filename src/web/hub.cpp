@@ -85,6 +85,8 @@ void Hub::handle(PageSocket& socket, std::string_view message, MonotonicTime now
   }
   if (const auto* shown = std::get_if<ShowToken>(&*request)) {
     page->right = rightOf(page->loopback, shown->token, token_);
+    // From another computer it is for looking, and has come in the clear.
+    if (page->loopback) page->link->showToken(shown->token);
     greet(*page);
   } else if (const auto* robot = std::get_if<AskRobot>(&*request)) {
     ask(*page, *robot);

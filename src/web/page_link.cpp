@@ -17,10 +17,16 @@ constexpr Duration kPatience = std::chrono::milliseconds{200};
 PageLink::PageLink(std::string client_name)
     : client_name_(std::move(client_name)), session_(randomSession()), buffer_(link::kMaxMessageSize) {}
 
+void PageLink::showToken(std::string token) {
+  if (token == token_) return;
+  token_ = std::move(token);
+  close();
+}
+
 std::string PageLink::connect(const std::string& socket_path) {
   if (rc10d_) return {};
-  auto connection =
-      LinkClient::connect(socket_path, {.name = client_name_, .subscriptions = 0, .timeout = kPatience});
+  auto connection = LinkClient::connect(
+      socket_path, {.name = client_name_, .subscriptions = 0, .token = token_, .timeout = kPatience});
   if (!connection) return connection.error().message;
   rc10d_.emplace(std::move(*connection));
   open_.clear();

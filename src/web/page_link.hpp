@@ -18,6 +18,9 @@ class PageLink {
  public:
   explicit PageLink(std::string client_name);
 
+  /// Shows the token of an entry of `clients`: the link is opened anew with it.
+  void showToken(std::string token);
+
   /// Reason why it could not be sent; empty: it was.
   [[nodiscard]] std::string ask(const AskRobot& request, const std::string& socket_path);
 
@@ -40,6 +43,7 @@ class PageLink {
   [[nodiscard]] std::string outcome(LinkClient::SendStatus status);
 
   std::string client_name_;
+  std::string token_;
   std::uint64_t session_;
   std::int64_t seq_ = 0;
   std::optional<LinkClient> rc10d_;

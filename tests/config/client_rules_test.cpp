@@ -75,6 +75,14 @@ TEST(ClientRules, ExactlyOneSaysWhoseRightsTheyAre) {
               ElementsAre(HasSubstr("clients[0]: says twice whose rights these are")));
 }
 
+TEST(ClientRules, ATokenIsGivenByItsHashAlone) {
+  const std::string hash(64, 'a');
+  EXPECT_EQ(clientOf("{token: " + hash + ", may: [command]}").by, ClientConfig::By::kToken);
+  EXPECT_EQ(clientOf("{token: " + hash + ", may: [command]}").who, hash);
+  EXPECT_THAT(errorsOf(robotWithClients("  - {token: abcdefghijkmnpqrstuvwxyz23456789, may: [command]}\n")),
+              ElementsAre(HasSubstr("rc10ctl web --new-token")));
+}
+
 TEST(ClientRules, MistakesAreToldWithTheirPlace) {
   EXPECT_THAT(errorsOf(robotWithClients("  - {lcm: a, may: [comand]}\n")),
               ElementsAre(HasSubstr("did you mean command?")));

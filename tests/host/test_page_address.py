@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import hashlib
 import json
 import os
+import re
 import socket
 import subprocess
 from typing import TYPE_CHECKING
@@ -79,6 +81,22 @@ def test_a_token_that_is_not_there_or_open_to_others_is_said(robot: Daemon, tmp_
         assert "chmod 600" in exposed.stderr
         for done in (missing, exposed):
             assert token not in done.stdout + done.stderr
+
+
+def test_a_new_token_comes_with_the_line_of_its_entry(robot: Daemon) -> None:
+    words = robot.must("web", "--new-token", "--port", 8011)
+    told = json.loads(robot.must("web", "--new-token", "--port", 8011, "--json"))
+    address, token = told["url"].split("#")
+    assert address == "http://localhost:8011/"
+    assert told["sha256"] == hashlib.sha256(token.encode()).hexdigest()
+    (token,) = re.findall(r"http://localhost:8011/#(\w{32})\n", words)
+    entry = re.search(r"- (\{token: .*\})\n", words)
+    assert entry is not None
+    assert hashlib.sha256(token.encode()).hexdigest() in entry[1]
+    robot.config.with_name("tokens.yaml").write_text(
+        robot.config.read_text() + f"\nclients: [{entry[1]}]\n"
+    )
+    assert "(token): command" in robot.must("check", robot.config.with_name("tokens.yaml"))
 
 
 def test_a_terminal_without_utf_8_gets_the_address_alone(robot: Daemon, tmp_path: Path) -> None:

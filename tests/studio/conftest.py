@@ -63,8 +63,14 @@ def words() -> tuple[str, ...]:
 
 
 @pytest.fixture
-def studio(words: tuple[str, ...]) -> Iterator[Studio]:
-    with Daemon(CONFIG.format(realtime="preferred")) as daemon:
+def robot() -> str:
+    """The robot's file: a file of tests may have another."""
+    return CONFIG.format(realtime="preferred")
+
+
+@pytest.fixture
+def studio(words: tuple[str, ...], robot: str) -> Iterator[Studio]:
+    with Daemon(robot) as daemon:
         daemon.wait_ready()
         running = Studio(daemon, *words)
         yield running

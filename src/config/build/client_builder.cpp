@@ -40,10 +40,11 @@ class ClientBuilder {
   void readWho(const Settings& settings, const YamlNode& node, const std::string& path,
                ClientConfig& client) {
     int given = 0;
-    constexpr std::array<std::pair<std::string_view, ClientConfig::By>, 3> kWays{
+    constexpr std::array<std::pair<std::string_view, ClientConfig::By>, 4> kWays{
         {{"lcm", ClientConfig::By::kLcmName},
          {"user", ClientConfig::By::kUser},
-         {"group", ClientConfig::By::kGroup}}};
+         {"group", ClientConfig::By::kGroup},
+         {"token", ClientConfig::By::kToken}}};
     for (const auto& [key, by] : kWays) {
       if (settings.mentions(key)) ++given;
       const auto who = settings.find(key);
@@ -54,10 +55,9 @@ class ClientBuilder {
     }
     if (given == 1) return;
     problems_.error(node.place, path,
-                    given == 0
-                        ? "says not whose rights these are; add one of lcm, user and group"
-                        : "says twice whose rights these are; keep one of lcm, user and group, and make "
-                          "an entry for each other");
+                    given == 0 ? "says not whose rights these are; add one of lcm, user, group and token"
+                               : "says twice whose rights these are; keep one of lcm, user, group and token, "
+                                 "and make an entry for each other");
   }
 
   void checkLcmName(const GivenValue& who) {

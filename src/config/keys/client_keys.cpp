@@ -12,6 +12,9 @@ constexpr TextForm kLcmName{"[A-Za-z0-9_.:+-]{1,31}",
 constexpr TextForm kAccount{"[A-Za-z_][A-Za-z0-9_.-]{0,31}|[0-9]{1,9}",
                             "a name of /etc/passwd or /etc/group, or a number"};
 
+constexpr TextForm kTokenHash{"[0-9a-f]{64}",
+                              "64 hexadecimal digits, as `rc10ctl web --new-token` prints them"};
+
 std::vector<std::string_view> operations() { return {"observe", "command", "clear", "tune", "configure"}; }
 
 constexpr std::array kClientKeys{
@@ -25,6 +28,11 @@ constexpr std::array kClientKeys{
         .about =
             "User at the other end of the link socket (rc10ctl), as the kernel tells it: name or number."},
     Key{.name = "group", .kind = kText, .form = &kAccount, .about = "The same of one of the user's groups."},
+    Key{.name = "token",
+        .kind = kText,
+        .form = &kTokenHash,
+        .about = "SHA-256 of a token, which a page of rc10-web on this computer shows behind the # of its "
+                 "address. Its rights add to those of the user that rc10-web runs as."},
     Key{.name = "may",
         .kind = kTextList,
         .range = {.min = 1, .max = 5},
@@ -53,7 +61,7 @@ constexpr std::array kClientKeys{
 
 }  // namespace
 
-constexpr Section kClientSection{"client", kClientKeys,
-                                 "Rights of one client: exactly one of lcm, user and group says whose."};
+constexpr Section kClientSection{
+    "client", kClientKeys, "Rights of one client: exactly one of lcm, user, group and token says whose."};
 
 }  // namespace rc10

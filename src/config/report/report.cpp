@@ -50,6 +50,9 @@ std::string contactText(const ContactGpioConfig& contact) {
          (contact.closed_is_low ? "pull-up" : "pull-down");
 }
 
+// Digits of a hash by which a person tells it from others.
+constexpr std::size_t kHashDigits = 8;
+
 /// "teleop (LCM): command, clear; anna (user): command; all others observe and stop"
 std::string clientsText(const RobotConfig& config) {
   std::string text;
@@ -58,10 +61,11 @@ std::string clientsText(const RobotConfig& config) {
     std::vector<std::string> rights;
     for (std::size_t i = 0; i < kRightWords.size(); ++i)
       if (client.rights[i]) rights.emplace_back(kRightWords[i]);
-    const char* by = client.by == ClientConfig::By::kLcmName ? "LCM"
-                     : client.by == ClientConfig::By::kUser  ? "user"
-                                                             : "group";
-    text += client.who + " (" + by + "): " + (rights.empty() ? "observe" : listWords(rights, ", ")) +
+    constexpr std::array kWays{"LCM", "user", "group", "token"};
+    const char* by = kWays[static_cast<std::size_t>(client.by)];
+    const bool token = client.by == ClientConfig::By::kToken;
+    text += (token ? client.who.substr(0, kHashDigits) + "…" : client.who) + " (" + by +
+            "): " + (rights.empty() ? "observe" : listWords(rights, ", ")) +
             (client.all_motors ? "; " : ", in part; ");
   }
   return text + "all others observe and stop";

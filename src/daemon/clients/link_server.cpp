@@ -197,6 +197,11 @@ bool LinkServer::welcome(Connection& connection, std::span<const std::byte> data
   connection.is_gateway =
       connection.speaker.user == ::geteuid() && hello.client.view() == link::kGatewayClient;
   connection.subscriptions = hello.subscriptions;
+  if (const auto token = hello.token.view(); !token.empty() && !connection.is_gateway) {
+    const auto granted = admission_.permissions().ofToken(token);
+    connection.speaker.grants |= granted;
+    connection.speaker.unknown_token = granted.none();
+  }
   connection.welcomed = hello.protocol_version == link::kProtocolVersion;
   feeds_.greet(connection);
   return connection.welcomed;

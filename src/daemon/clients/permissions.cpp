@@ -11,6 +11,7 @@
 #include <fmt/format.h>
 
 #include "app/printable.hpp"
+#include "config/sha256.hpp"
 
 namespace rc10 {
 namespace {
@@ -54,7 +55,9 @@ using Stream = std::unique_ptr<std::FILE, StreamCloser>;
 [[nodiscard]] std::string speakerWords(const Speaker& speaker, std::string_view client) {
   auto name = printable(client);
   switch (speaker.way) {
-    case Speaker::Way::kSocket: return fmt::format("'{}' (user {})", name, speaker.user);
+    case Speaker::Way::kSocket:
+      return fmt::format("'{}' (user {}{})", name, speaker.user,
+                         speaker.unknown_token ? ", its token is in no entry of `clients`" : "");
     case Speaker::Way::kLcm: return fmt::format("'{}' (LCM, this computer)", name);
     case Speaker::Way::kNetwork: return fmt::format("'{}' (LCM, another computer)", name);
   }
@@ -84,7 +87,7 @@ Result<Permissions> Permissions::resolve(Rules rules, const std::string& etc) {
     if (client.all_modules) entry.modules.set();
     for (const auto motor : client.motors) entry.motors.set(motor);
     for (const auto module : client.modules) entry.modules.set(module);
-    if (client.by != ClientConfig::By::kLcmName) {
+    if (client.by == ClientConfig::By::kUser || client.by == ClientConfig::By::kGroup) {
       entry.id = accountId(client, etc);
       const bool user = client.by == ClientConfig::By::kUser;
       if (!entry.id) {
@@ -107,6 +110,16 @@ GrantSet Permissions::ofUser(uid_t user, const std::vector<gid_t>& groups) const
     const bool is_member = config.by == ClientConfig::By::kGroup && id &&
                            std::find(groups.begin(), groups.end(), *id) != groups.end();
     grants.set(i, is_user || is_member);
+  }
+  return grants;
+}
+
+GrantSet Permissions::ofToken(std::string_view token) const {
+  GrantSet grants;
+  const auto hash = sha256(token);
+  for (std::size_t i = 0; i < entries_.size(); ++i) {
+    const auto& config = entries_[i].config;
+    grants.set(i, config.by == ClientConfig::By::kToken && config.who == hash);
   }
   return grants;
 }

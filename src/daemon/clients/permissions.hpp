@@ -32,6 +32,7 @@ struct Speaker {
   Way way = Way::kSocket;
   uid_t user = 0;
   GrantSet grants{};
+  bool unknown_token = false;  ///< It has shown one of no entry.
 
   /// Owner of sessions, and of answers that are remembered: the user, so that one who comes back finds them;
   /// of what comes by LCM all that is sent there, over ends of the gateway.
@@ -60,6 +61,8 @@ class Permissions {
   [[nodiscard]] static Result<Permissions> resolve(Rules rules, const std::string& etc = "/etc");
 
   [[nodiscard]] GrantSet ofUser(uid_t user, const std::vector<gid_t>& groups) const;
+  /// `token`: as it was shown.
+  [[nodiscard]] GrantSet ofToken(std::string_view token) const;
   [[nodiscard]] GrantSet ofLcmClient(std::string_view name) const;
 
   // Empty: allowed.

@@ -12,6 +12,7 @@
 
 #include "client/json_line.hpp"
 #include "client/page_token.hpp"
+#include "config/sha256.hpp"
 #include "page_addresses.hpp"
 #include "qr_picture.hpp"
 #include "terminal.hpp"
@@ -26,6 +27,7 @@ constexpr const char* kServiceToken = "/run/rc10-web/token";
 struct Options {
   std::uint16_t port = 8010;
   std::optional<std::string> token_file;
+  bool new_token = false;
 };
 
 // That of the service, which is there while it runs; else that of an rc10-web by hand, which RC10_RUN_DIR
@@ -56,6 +58,21 @@ void showCode(const std::string& url) {
     return;
   }
   std::fputs(picture->lines.c_str(), stdout);
+}
+
+// For the robot's file and for a person; it is written nowhere.
+ExitCode newToken(const Global& global, const Options& options) {
+  const auto token = client::makePageToken();
+  if (!token) return complain(token.error(), ExitCode::kFailed);
+  const auto url = "http://localhost:" + std::to_string(options.port) + "/#" + *token;
+  const auto hash = sha256(*token);
+  if (global.json) {
+    std::puts(client::lineOf({{"url", url}, {"sha256", hash}}).c_str());
+  } else {
+    std::printf("for clients in the robot's file:  - {token: %s, may: [command]}\n", hash.c_str());
+    std::printf("the page with these rights:       %s\n", url.c_str());
+  }
+  return ExitCode::kOk;
 }
 
 ExitCode web(const Global& global, const Options& options) {
@@ -99,8 +116,12 @@ void addWeb(CLI::App& app, Action& action) {
   auto* verb = app.add_subcommand("web", "the address of the robot's page, as a QR code too");
   verb->add_option("--port", options->port, "that of rc10-web")->type_name("N")->capture_default_str();
   verb->add_option("--token-file", options->token_file, "that of rc10-web")->type_name("FILE");
-  verb->callback(
-      [&action, options] { action = [options](const Global& global) { return web(global, *options); }; });
+  verb->add_flag("--new-token", options->new_token, "makes a token for an entry of `clients`");
+  verb->callback([&action, options] {
+    action = [options](const Global& global) {
+      return options->new_token ? newToken(global, *options) : web(global, *options);
+    };
+  });
 }
 
 }  // namespace rc10::ctl

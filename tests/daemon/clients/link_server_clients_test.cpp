@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <unistd.h>
 
+#include "config/sha256.hpp"
 #include "daemon/link_rig.hpp"
 
 namespace rc10::test::link_server_clients_test {
@@ -49,6 +50,16 @@ class LinkServerClientsTest : public LinkRig {
     EXPECT_TRUE(client->take<link::Welcome>());
     return client;
   }
+  std::unique_ptr<TestClient> joinWith(std::string_view token, std::string_view name = "web-1") {
+    auto client = std::make_unique<TestClient>(path);
+    link::Hello hello;
+    hello.client = name;
+    hello.token = token;
+    EXPECT_TRUE(client->send(hello));
+    pump();
+    EXPECT_TRUE(client->take<link::Welcome>());
+    return client;
+  }
   bool obeyed(TestClient& client, Origin origin, std::string_view name = "planner") {
     auto message = velocityCommand(++seq_);
     message.client = name;
@@ -71,6 +82,33 @@ class LinkServerClientsTest : public LinkRig {
 
 std::string me() { return std::to_string(::geteuid()); }
 std::string somebodyElse() { return std::to_string(::geteuid() + 1); }
+
+TEST_F(LinkServerClientsTest, ATokenGivesTheRightsOfItsEntry) {
+  constexpr std::string_view kToken = "abcdefghijkmnpqrstuvwxyz23456789";
+  start(commander(ClientConfig::By::kToken, sha256(kToken)));
+  EXPECT_TRUE(obeyed(*joinWith(kToken), Origin::kElsewhere));
+  EXPECT_FALSE(obeyed(*joinWith({}), Origin::kElsewhere));
+  EXPECT_FALSE(obeyed(*joinWith(kToken.substr(1)), Origin::kElsewhere));
+  EXPECT_FALSE(obeyed(*joinWith(sha256(kToken)), Origin::kElsewhere)) << "the hash in the file is no token";
+}
+
+TEST_F(LinkServerClientsTest, ATokenAddsToTheRightsOfTheUser) {
+  start(commander(ClientConfig::By::kUser, me()));
+  EXPECT_TRUE(obeyed(*joinWith("abcdefghijkmnpqrstuvwxyz23456789"), Origin::kElsewhere));
+}
+
+TEST_F(LinkServerClientsTest, TheGatewayHasNoToken) {
+  constexpr std::string_view kToken = "abcdefghijkmnpqrstuvwxyz23456789";
+  start(commander(ClientConfig::By::kToken, sha256(kToken)));
+  EXPECT_FALSE(obeyed(*joinWith(kToken, link::kGatewayClient), Origin::kThisComputer));
+}
+
+TEST_F(LinkServerClientsTest, ATokenOfNoEntryIsNamedInTheRefusal) {
+  start(commander(ClientConfig::By::kToken, sha256("another")));
+  const auto response = answer(*joinWith("abcdefghijkmnpqrstuvwxyz23456789"), "enable");
+  ASSERT_TRUE(response);
+  EXPECT_THAT(std::string{response->message.view()}, HasSubstr("its token is in no entry of `clients`"));
+}
 
 TEST_F(LinkServerClientsTest, TheKernelSaysWhoAClientOfTheSocketIs) {
   start(commander(ClientConfig::By::kUser, me()));

@@ -1,0 +1,66 @@
+"""`clients` of the robot's file, by the token that a page shows."""
+
+from __future__ import annotations
+
+import hashlib
+
+import pytest
+from hostlib.daemon import CONFIG
+from playwright.sync_api import Browser, Page, expect
+
+from conftest import PATIENCE_MS, Studio
+
+TOKEN = "wheelsonly22222222222222222222ab"
+CLIENTS = f"""
+clients:
+  - {{token: {hashlib.sha256(TOKEN.encode()).hexdigest()}, may: [command], motors: [wheel]}}
+"""
+
+
+@pytest.fixture
+def robot() -> str:
+    return CONFIG.format(realtime="preferred") + CLIENTS
+
+
+def opened(chromium: Browser, url: str) -> Page:
+    context = chromium.new_context(viewport={"width": 1280, "height": 860}, locale="en-GB")
+    context.set_default_timeout(PATIENCE_MS)
+    page = context.new_page()
+    page.goto(url)
+    page.get_by_role("article", name="wheel", exact=True).wait_for()
+    return page
+
+
+def enable(page: Page, motor: str) -> None:
+    card = page.get_by_role("article", name=motor, exact=True)
+    card.get_by_role("button", name="Enable", exact=True).click()
+
+
+def test_a_page_has_the_rights_of_its_token_and_without_one_it_looks_and_stops(
+    chromium: Browser, studio: Studio
+) -> None:
+    without = opened(chromium, studio.url)
+    enable(without, "wheel")
+    refused = without.get_by_role("article", name="wheel", exact=True).get_by_role("alert")
+    expect(refused).to_contain_text("may observe and stop, not command wheel")
+    shows = opened(chromium, f"{studio.url}#{TOKEN}")
+    enable(shows, "wheel")
+    studio.daemon.wait_motor("wheel", lambda motor: motor["status"] == "ACTIVE", "enabled")
+    enable(shows, "yaw")
+    refused = shows.get_by_role("article", name="yaw", exact=True).get_by_role("alert")
+    expect(refused).to_contain_text("may not command yaw: add it to `motors` at")
+    line = 1 + studio.daemon.config.read_text().splitlines().index(CLIENTS.splitlines()[2])
+    expect(refused).to_contain_text(f"robot.yaml:{line}")
+    # An e-stop needs no right.
+    without.get_by_role("button", name="STOP").click()
+    studio.daemon.wait_state(lambda state: state["state"] == "ESTOP", "it is stopped")
+    for page in (without, shows):
+        page.context.close()
+
+
+def test_a_token_of_no_entry_is_named_in_the_refusal(chromium: Browser, studio: Studio) -> None:
+    page = opened(chromium, f"{studio.url}#{TOKEN[::-1]}")
+    enable(page, "wheel")
+    refused = page.get_by_role("article", name="wheel", exact=True).get_by_role("alert")
+    expect(refused).to_contain_text("its token is in no entry of `clients`")
+    page.context.close()
