@@ -60,6 +60,7 @@ ROOMS = {
         "build": {"", "check", "keys", "yaml"},
         "report": {"", "check", "keys", "yaml"},
     },
+    "client": {"motion": {""}},
     "daemon": {
         "exchange": set[str](),
         "devices": {"exchange"},

@@ -9,6 +9,7 @@
 
 #include "app/event_code.hpp"
 #include "app/printable.hpp"
+#include "client/obstacle.hpp"
 #include "client/quantity_text.hpp"
 #include "client/request_call.hpp"
 #include "client/state_text.hpp"
@@ -26,24 +27,6 @@ constexpr Duration kReleasing = std::chrono::milliseconds{2 * kValidityMs};
 constexpr Duration kLongEnough = std::chrono::milliseconds{200};
 constexpr Duration kProgressOnTerminal = std::chrono::milliseconds{100};
 constexpr Duration kProgressInFile = std::chrono::milliseconds{500};
-
-// Reason why the motor cannot take setpoints, and what to do; empty if it can.
-std::string obstacle(const link::State& state, const std::string& name, const link::MotorState& motor) {
-  if (state.robot_state != RobotStatus::kRun) {
-    return std::string("the robot is in ") + toString(state.robot_state) +
-           ": `rc10ctl clear`, then `rc10ctl enable " + name + "`";
-  }
-  const std::string is = "motor '" + name + "' is " + toString(motor.status);
-  switch (motor.status) {
-    case MotorStatus::kActive: return {};
-    case MotorStatus::kOffline:
-      return is + ": check its power, wiring and id, then `rc10ctl enable " + name + "`";
-    case MotorStatus::kFault:
-      return is + " (" + link::faultText(motor.fault) + "): `rc10ctl clear " + name +
-             "`, then `rc10ctl enable " + name + "`";
-    default: return is + ": `rc10ctl enable " + name + "`";
-  }
-}
 
 class Progress {
  public:
@@ -192,7 +175,7 @@ class Driver {
   }
 
   std::string trouble() const {
-    return motor() != nullptr ? obstacle(*feed_.state(), name_, *motor()) : std::string{};
+    return motor() != nullptr ? client::obstacle(*feed_.state(), name_, *motor()) : std::string{};
   }
 
   // Our target, or the one before it, is that of the motor; another rc10ctl has our name.
@@ -224,7 +207,8 @@ class Driver {
       return "motor '" + name_ + "' obeys another rc10ctl, not this " + asked +
              ": end that one, or take over with a higher --priority";
     if (!owner.empty())
-      return "motor '" + name_ + "' is held by " + holder(owner) + ", or take over with a higher --priority";
+      return "motor '" + name_ + "' is held by " + client::holder(rc10d_.welcome(), owner) +
+             ", or take over with a higher --priority";
     return "motor '" + name_ + "' did not take the " + asked + " target" +
            (why.empty() ? ": `rc10ctl stats` shows what was refused" : why);
   }
@@ -256,17 +240,6 @@ class Driver {
     text += "  current " + client::quantity(static_cast<double>(motor()->current_a), 2, "A");
     const std::string limits = link::limitWords(motor()->limits);
     return limits.empty() ? text : text + "  limit: " + limits;
-  }
-
-  // A module's name is not that of a program that one could end.
-  std::string holder(std::string_view owner) const {
-    const auto& welcome = rc10d_.welcome();
-    const auto count = std::min<std::size_t>(welcome.module_count, link::kMaxModules);
-    for (std::size_t i = 0; i < count; ++i) {
-      if (welcome.modules[i].view() == owner)
-        return "the module '" + printable(owner) + "': end what commands it (`rc10ctl modules`)";
-    }
-    return "'" + printable(owner) + "': stop that program";
   }
 
   static bool isRefusal(std::int32_t code) {

@@ -1,0 +1,139 @@
+#include "client/motion/excitation.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+#include <string>
+
+#include "client/quantity_text.hpp"
+
+namespace rc10::client {
+namespace {
+
+constexpr std::array kExcitationWords{std::string_view{"step"}, std::string_view{"ramp"},
+                                      std::string_view{"sweep"}, std::string_view{"multisine"}};
+constexpr double kTurnRad = 2.0 * std::numbers::pi;
+// Lowest frequency: a period within a test.
+constexpr double kLowestHz = 0.05;
+// Fewer periods leave no mean over segments, and without a mean every coherence is 1.
+constexpr double kLeastPeriods = 4.0;
+
+Result<void> sinesFit(const ExcitationSettings& settings) {
+  const double from_hz = settings.from_hz;
+  const double to_hz = settings.to_hz;
+  const double time_s = settings.time_s;
+  if (!(from_hz >= kLowestHz && to_hz > from_hz && to_hz <= Excitation::kHighestHz))
+    return fail("from " + number(from_hz, 2) + " Hz to " + number(to_hz, 2) +
+                " Hz: give two frequencies from " + number(kLowestHz, 2) + " to " +
+                number(Excitation::kHighestHz, 0) + " Hz, the lower one first");
+  if (time_s * from_hz < kLeastPeriods)
+    return fail("a time of " + number(time_s, 2) + " s has no " + number(kLeastPeriods, 0) + " periods of " +
+                number(from_hz, 2) + " Hz: give " + number(kLeastPeriods / from_hz, 1) +
+                " s or more, or a higher lowest frequency");
+  if (settings.kind == ExcitationKind::kMultisine && to_hz < 2.0 * from_hz)
+    return fail("a multisine has lines at multiples of the lowest frequency: give a highest one of " +
+                number(2.0 * from_hz, 2) + " Hz or more");
+  return {};
+}
+
+}  // namespace
+
+std::optional<ExcitationKind> excitationOf(std::string_view word) noexcept {
+  const auto found = std::find(kExcitationWords.begin(), kExcitationWords.end(), word);
+  if (found == kExcitationWords.end()) return std::nullopt;
+  return static_cast<ExcitationKind>(found - kExcitationWords.begin());
+}
+
+const char* toString(ExcitationKind kind) noexcept {
+  return kExcitationWords[static_cast<std::size_t>(kind)].data();
+}
+
+Result<Excitation> Excitation::of(const ExcitationSettings& settings) {
+  if (!std::isfinite(settings.base)) return fail("the base is no finite number: give one such as 0");
+  if (!std::isfinite(settings.amplitude) || settings.amplitude == 0.0)
+    return fail("an amplitude of " + number(settings.amplitude, 2) +
+                " moves nothing: give a finite number such as 60");
+  if (!(settings.time_s >= 0.05 && settings.time_s <= kLongestS))
+    return fail("a time of " + number(settings.time_s, 2) + " s: give 0.05 to " + number(kLongestS, 0) +
+                " s");
+  if (settings.kind == ExcitationKind::kRamp) {
+    if (!(std::isfinite(settings.rate_per_s) && settings.rate_per_s > 0.0))
+      return fail("a ramp needs a rate above 0, in units of its amplitude for each second, such as 100");
+    const double rising_s = std::abs(settings.amplitude) / settings.rate_per_s;
+    if (rising_s > settings.time_s)
+      return fail("a ramp of " + number(settings.rate_per_s, 2) + " a second takes " + number(rising_s, 2) +
+                  " s for its amplitude: give a longer time than " + number(settings.time_s, 2) +
+                  " s, or a higher rate");
+  }
+  if (settings.kind == ExcitationKind::kSweep || settings.kind == ExcitationKind::kMultisine) {
+    if (const auto fit = sinesFit(settings); !fit) return tl::unexpected(fit.error());
+  }
+  return Excitation(settings);
+}
+
+Excitation::Excitation(const ExcitationSettings& settings) : settings_(settings) {
+  if (settings_.kind != ExcitationKind::kMultisine) return;
+  const auto lines = static_cast<std::size_t>(settings_.to_hz / settings_.from_hz + 1e-9);
+  // Schroeder 1970, "Synthesis of low-peak-factor signals": phases for lines of equal power.
+  for (std::size_t k = 0; k < lines; ++k)
+    phases_rad_.push_back(-std::numbers::pi * static_cast<double>(k) * static_cast<double>(k + 1) /
+                          static_cast<double>(lines));
+  line_amplitude_ = 1.0;
+  // The peak is found between the samples that a client sends too.
+  const auto samples = static_cast<int>(40 * lines);
+  double peak = 0.0;
+  for (int i = 0; i < samples; ++i)
+    peak = std::max(peak, std::abs(multisineAt(static_cast<double>(i) / samples / settings_.from_hz)));
+  line_amplitude_ = settings_.amplitude / peak;
+}
+
+double Excitation::valueAt(double time_s) const noexcept {
+  const double since_s = std::min(time_s - kLeadS, settings_.time_s);
+  if (since_s < 0.0) return settings_.base;
+  double beside = settings_.amplitude;
+  switch (settings_.kind) {
+    case ExcitationKind::kStep: break;
+    case ExcitationKind::kRamp:
+      beside = std::copysign(std::min(std::abs(beside), settings_.rate_per_s * since_s), beside);
+      break;
+    case ExcitationKind::kSweep: beside = sweepAt(since_s); break;
+    case ExcitationKind::kMultisine: beside = multisineAt(since_s); break;
+  }
+  return settings_.base + beside;
+}
+
+double Excitation::sweepAt(double time_s) const noexcept {
+  const double from_hz = settings_.from_hz;
+  double turns = 0.0;
+  if (settings_.linear) {
+    turns = (from_hz + 0.5 * (settings_.to_hz - from_hz) * time_s / settings_.time_s) * time_s;
+  } else {
+    const double growth = std::log(settings_.to_hz / from_hz);
+    turns = from_hz * settings_.time_s / growth * std::expm1(growth * time_s / settings_.time_s);
+  }
+  return settings_.amplitude * std::sin(kTurnRad * turns);
+}
+
+double Excitation::multisineAt(double time_s) const noexcept {
+  double sum = 0.0;
+  for (std::size_t k = 0; k < phases_rad_.size(); ++k)
+    sum += std::cos(kTurnRad * settings_.from_hz * static_cast<double>(k + 1) * time_s + phases_rad_[k]);
+  return line_amplitude_ * sum;
+}
+
+bool Excitation::spansFrequencies() const noexcept {
+  return settings_.kind == ExcitationKind::kSweep || settings_.kind == ExcitationKind::kMultisine;
+}
+
+double Excitation::lowest() const noexcept {
+  const double low = spansFrequencies() ? -std::abs(settings_.amplitude) : std::min(0.0, settings_.amplitude);
+  return settings_.base + low;
+}
+
+double Excitation::highest() const noexcept {
+  const double high = spansFrequencies() ? std::abs(settings_.amplitude) : std::max(0.0, settings_.amplitude);
+  return settings_.base + high;
+}
+
+}  // namespace rc10::client

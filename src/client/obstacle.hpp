@@ -1,0 +1,17 @@
+#pragma once
+
+#include <string>
+#include <string_view>
+
+#include "link/link_protocol.hpp"
+
+namespace rc10::client {
+
+/// Why the motor cannot take setpoints, and the remedy; empty if it can.
+[[nodiscard]] std::string obstacle(const link::State& state, const std::string& name,
+                                   const link::MotorState& motor);
+
+/// The owner of a motor, with the way to end it: a module's name is not that of a program.
+[[nodiscard]] std::string holder(const link::Welcome& welcome, std::string_view owner);
+
+}  // namespace rc10::client
