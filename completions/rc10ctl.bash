@@ -39,7 +39,7 @@ _rc10ctl() {
     done
     COMPREPLY=()
     case $before in
-        --config | --socket | --out)
+        --config | --socket | --out | --csv | --bode)
             mapfile -t COMPREPLY < <(compgen -f -- "$word")
             return
             ;;
@@ -61,6 +61,13 @@ _rc10ctl() {
                 else
                     words='coast current velocity angle total_angle impedance voltage duty brake'
                 fi
+                ;;
+            test-motion)
+                case $before in
+                    test-motion) words=$(_rc10ctl_motors "$program" "${robot[@]}") ;;
+                    --mode) words='velocity total_angle current' ;;
+                    *) words='step ramp sweep multisine' ;;
+                esac
                 ;;
             gains)
                 if [ "$before" = gains ]; then

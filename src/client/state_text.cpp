@@ -163,4 +163,16 @@ std::string stateText(const link::Welcome& welcome, const link::State& state,
   return text + table.text();
 }
 
+const char* whatActs(Acting acting) noexcept {
+  switch (acting) {
+    case Acting::kHold: return "holds its place (on_timeout)";
+    case Acting::kDamp: return "is damped (on_timeout)";
+    case Acting::kBrake: return "brakes (on_timeout)";
+    case Acting::kRamp: return "comes to rest along a ramp (on_timeout)";
+    case Acting::kTarget: return "obeys another target";
+    case Acting::kNothing: break;
+  }
+  return "coasts";
+}
+
 }  // namespace rc10::client

@@ -24,4 +24,7 @@ namespace rc10::client {
 /// The unit of measured().
 [[nodiscard]] const char* measuredUnit(ControlMode mode) noexcept;
 
+/// Behaviour of a motor that nobody commands any more: "holds its place (on_timeout)".
+[[nodiscard]] const char* whatActs(Acting acting) noexcept;
+
 }  // namespace rc10::client

@@ -28,7 +28,7 @@ std::string refusal(const ExcitationSettings& settings) {
 double peakOf(const Excitation& excitation) {
   double peak = 0.0;
   for (double t = kLeadS; t < excitation.timeS(); t += 1e-4)
-    peak = std::max(peak, std::abs(excitation.valueAt(t) - excitation.settings().base));
+    peak = std::max(peak, std::abs(excitation.valueAt(t, 0.0) - excitation.settings().base));
   return peak;
 }
 
@@ -40,19 +40,27 @@ TEST(Excitation, EachKindHasItsWord) {
 
 TEST(Excitation, AStepStandsAtItsBaseAndThenAtItsHeight) {
   const auto step = made({.kind = Kind::kStep, .base = 10.0, .amplitude = -60.0, .time_s = 1.0});
-  EXPECT_EQ(step.valueAt(0.0), 10.0);
-  EXPECT_EQ(step.valueAt(kLeadS - 1e-6), 10.0);
-  EXPECT_EQ(step.valueAt(kLeadS), -50.0);
-  EXPECT_EQ(step.valueAt(100.0), -50.0);
+  EXPECT_EQ(step.valueAt(0.5 * kLeadS, 0.0), 10.0);
+  EXPECT_EQ(step.valueAt(kLeadS - 1e-6, 0.0), 10.0);
+  EXPECT_EQ(step.valueAt(kLeadS, 0.0), -50.0);
+  EXPECT_EQ(step.valueAt(100.0, 0.0), -50.0);
   EXPECT_EQ(step.timeS(), kLeadS + 1.0);
   EXPECT_EQ(step.lowest(), -50.0);
   EXPECT_EQ(step.highest(), 10.0);
 }
 
+TEST(Excitation, TheBaseIsApproachedFromWhereTheMotorIsWithoutAJump) {
+  const auto step = made({.base = 10.0, .amplitude = 60.0, .time_s = 1.0});
+  EXPECT_EQ(step.valueAt(0.0, -30.0), -30.0);
+  EXPECT_EQ(step.valueAt(-1.0, -30.0), -30.0);
+  EXPECT_DOUBLE_EQ(step.valueAt(0.25 * kLeadS, -30.0), -10.0);
+  EXPECT_NEAR(step.valueAt(1e-3, -30.0), -30.0, 1e-3);
+}
+
 TEST(Excitation, ARampRisesAtItsRateAndStays) {
   const auto ramp = made({.kind = Kind::kRamp, .amplitude = -60.0, .time_s = 2.0, .rate_per_s = 100.0});
-  EXPECT_DOUBLE_EQ(ramp.valueAt(kLeadS + 0.3), -30.0);
-  EXPECT_EQ(ramp.valueAt(kLeadS + 1.0), -60.0);
+  EXPECT_DOUBLE_EQ(ramp.valueAt(kLeadS + 0.3, 0.0), -30.0);
+  EXPECT_EQ(ramp.valueAt(kLeadS + 1.0, 0.0), -60.0);
 }
 
 TEST(Excitation, ALogarithmicSweepHasTheGeometricMeanInItsMiddleAndALinearOneTheMean) {
@@ -66,7 +74,8 @@ TEST(Excitation, ALogarithmicSweepHasTheGeometricMeanInItsMiddleAndALinearOneThe
                              .linear = linear});
     int crossings = 0;
     for (double t = 0.0; t < part * 20.0; t += 1e-4)
-      crossings += sweep.valueAt(kLeadS + t) < 0.0 && sweep.valueAt(kLeadS + t + 1e-4) >= 0.0 ? 1 : 0;
+      crossings +=
+          sweep.valueAt(kLeadS + t, 0.0) < 0.0 && sweep.valueAt(kLeadS + t + 1e-4, 0.0) >= 0.0 ? 1 : 0;
     return crossings;
   };
   // f(t) = 16^(t / 20): 20 / ln 16 * (16^part - 1) turns. Linear: t + 15 t^2 / 40.
@@ -88,7 +97,7 @@ TEST(Excitation, SinesStayWithinTheirAmplitude) {
 TEST(Excitation, AMultisineRepeatsItselfWithTheLowestFrequency) {
   const auto sines = made({.kind = Kind::kMultisine, .amplitude = 1.0, .time_s = 10.0, .from_hz = 2.0});
   for (double t = 0.0; t < 0.5; t += 0.013)
-    EXPECT_NEAR(sines.valueAt(kLeadS + t), sines.valueAt(kLeadS + t + 0.5), 1e-9);
+    EXPECT_NEAR(sines.valueAt(kLeadS + t, 0.0), sines.valueAt(kLeadS + t + 0.5, 0.0), 1e-9);
 }
 
 TEST(Excitation, SchroederPhasesKeepThePeakOfAMultisineLow) {
@@ -96,7 +105,7 @@ TEST(Excitation, SchroederPhasesKeepThePeakOfAMultisineLow) {
   const auto sines =
       made({.kind = Kind::kMultisine, .amplitude = 1.0, .time_s = 4.0, .from_hz = 1.0, .to_hz = 20.0});
   double squares = 0.0;
-  for (int i = 0; i < 4000; ++i) squares += std::pow(sines.valueAt(kLeadS + i * 1e-3), 2.0);
+  for (int i = 0; i < 4000; ++i) squares += std::pow(sines.valueAt(kLeadS + i * 1e-3, 0.0), 2.0);
   EXPECT_LT(1.0 / std::sqrt(squares / 4000.0), 2.0);
 }
 

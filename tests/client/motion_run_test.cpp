@@ -50,7 +50,7 @@ class Robot {
   MotionRun& test() { return test_; }
   std::int64_t ticks() const { return tick_; }
 
-  // What a test disturbs.
+  // Disturbed by the tests.
   std::string owner;
   double time_constant_s = 0.03;
   double angle_deg = 500.0;
@@ -201,6 +201,24 @@ TEST(MotionRun, EachCriterionLetsTheMotorGo) {
   settings = stepTo(60.0);
   settings.criteria.limits_abort = true;
   EXPECT_EQ(disturbed([](Robot& r) { r.limits = kLimitCurrent; }, settings).criterion, Criterion::kLimit);
+}
+
+TEST(MotionRun, ALimitThatActsInTheLeadIsASoftStart) {
+  auto settings = stepTo(60.0);
+  settings.criteria.limits_abort = true;
+  auto robot = robotFor(settings);
+  robot.run(5s, [](Robot& r) { r.limits = r.ticks() < 300 ? double{kLimitSlew} : 0.0; });
+  EXPECT_FALSE(robot.test().aborted());
+  EXPECT_EQ(reportOf(robot.test()).limits, 0U);
+}
+
+TEST(MotionRun, AMotorThatTurnsIsBroughtToTheBaseFirst) {
+  auto robot = robotFor(stepTo(60.0));
+  robot.velocity_rpm = 80.0;
+  robot.run(5s);
+  ASSERT_FALSE(robot.test().aborted());
+  EXPECT_EQ(robot.test().curve().front().target, 80.0);
+  EXPECT_NEAR(reportOf(robot.test()).step->rise_s, 0.03 * std::log(9.0), 2e-3);
 }
 
 TEST(MotionRun, ACriterionIsJudgedInEachTick) {

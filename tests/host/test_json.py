@@ -43,7 +43,12 @@ WORDS: dict[str, list[str | Path]] = {
     "commission": ["wheel"],
 }
 # Verbs that have to fail here.
-FAILS: dict[str, list[str | Path]] = {"scan": ["nocan0"], "web": ["--port", "1"]}
+FAILS: dict[str, list[str | Path]] = {
+    "scan": ["nocan0"],
+    # Not enabled.
+    "test-motion": ["other", "step", "5", "--max-current", "5"],
+    "web": ["--port", "1"],
+}
 
 
 @pytest.fixture(scope="module")

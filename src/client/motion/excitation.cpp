@@ -88,9 +88,9 @@ Excitation::Excitation(const ExcitationSettings& settings) : settings_(settings)
   line_amplitude_ = settings_.amplitude / peak;
 }
 
-double Excitation::valueAt(double time_s) const noexcept {
+double Excitation::valueAt(double time_s, double start) const noexcept {
   const double since_s = std::min(time_s - kLeadS, settings_.time_s);
-  if (since_s < 0.0) return settings_.base;
+  if (since_s < 0.0) return approachAt(time_s, start);
   double beside = settings_.amplitude;
   switch (settings_.kind) {
     case ExcitationKind::kStep: break;
@@ -101,6 +101,12 @@ double Excitation::valueAt(double time_s) const noexcept {
     case ExcitationKind::kMultisine: beside = multisineAt(since_s); break;
   }
   return settings_.base + beside;
+}
+
+// Half a cosine: without a jump of the value or its slope.
+double Excitation::approachAt(double time_s, double start) const noexcept {
+  const double part = std::clamp(time_s / (0.5 * kLeadS), 0.0, 1.0);
+  return start + (settings_.base - start) * 0.5 * (1.0 - std::cos(std::numbers::pi * part));
 }
 
 double Excitation::sweepAt(double time_s) const noexcept {

@@ -30,8 +30,9 @@ struct ExcitationSettings {
 /// A target as a function of time, and nothing else.
 class Excitation {
  public:
-  /// Time at the base before anything moves: the response begins from rest.
-  static constexpr double kLeadS = 0.25;
+  /// Time before the excitation: half of it from where the motor is to the base, half at the base, so that
+  /// the response begins from a steady state. rc10d's soft start of a new owner is over by then.
+  static constexpr double kLeadS = 1.0;
   static constexpr double kLongestS = 120.0;
   /// A client sends a target every 2 ms; a sine needs ten of them.
   static constexpr double kHighestHz = 50.0;
@@ -39,9 +40,10 @@ class Excitation {
   /// The error names the setting, its range and an example.
   [[nodiscard]] static Result<Excitation> of(const ExcitationSettings& settings);
 
-  [[nodiscard]] double valueAt(double time_s) const noexcept;
+  /// `start`: the value from which the base is approached.
+  [[nodiscard]] double valueAt(double time_s, double start) const noexcept;
   [[nodiscard]] double timeS() const noexcept { return kLeadS + settings_.time_s; }
-  /// Bounds of valueAt().
+  /// Bounds of valueAt() after the lead.
   [[nodiscard]] double lowest() const noexcept;
   [[nodiscard]] double highest() const noexcept;
   [[nodiscard]] const ExcitationSettings& settings() const noexcept { return settings_; }
@@ -51,6 +53,7 @@ class Excitation {
  private:
   explicit Excitation(const ExcitationSettings& settings);
 
+  [[nodiscard]] double approachAt(double time_s, double start) const noexcept;
   [[nodiscard]] double sweepAt(double time_s) const noexcept;
   [[nodiscard]] double multisineAt(double time_s) const noexcept;
 

@@ -17,6 +17,8 @@ using Complex = std::complex<double>;
 constexpr double kPeriodsInSegment = 2.0;
 // An input weaker than this share of its strongest line is leakage.
 constexpr double kLeastInput = 1e-6;
+// Nothing has followed an input whose output has less than this share of its power: -120 dB.
+constexpr double kLeastOutput = 1e-12;
 // Less of the output than this is explained: the point shows noise, and no crossing is read from it.
 constexpr double kLeastCoherence = 0.5;
 
@@ -93,7 +95,7 @@ FrequencyResponse estimateResponse(std::span<const double> input, std::span<cons
     if (frequency_hz < band.from_hz - 0.5 * bin_hz || frequency_hz > band.to_hz + 0.5 * bin_hz) continue;
     if (!isLine(frequency_hz, bin_hz, band.line_distance_hz)) continue;
     const double powers = sums.input[k] * sums.output[k];
-    if (sums.input[k] < kLeastInput * strongest || !(powers > 0.0)) continue;
+    if (sums.input[k] < kLeastInput * strongest || !(sums.output[k] > kLeastOutput * sums.input[k])) continue;
     response.push_back({frequency_hz, sums.cross[k] / sums.input[k], std::norm(sums.cross[k]) / powers});
   }
   return response;

@@ -176,11 +176,14 @@ MotionReport reportOf(const MotionRun& test) {
   const auto& curve = test.curve();
   MotionReport report;
   report.ticks = curve.size();
-  report.following =
-      followingError(seriesOf(curve, &CurveSample::target), seriesOf(curve, &CurveSample::measured));
+  const auto lead_end = std::find_if(curve.begin(), curve.end(),
+                                     [](const auto& sample) { return sample.time_s >= Excitation::kLeadS; });
+  const Curve excited(lead_end, curve.end());
+  const auto targets = seriesOf(excited, &CurveSample::target);
+  report.following = followingError(targets, seriesOf(excited, &CurveSample::measured));
   report.largest_velocity_rpm = largest(curve, &CurveSample::velocity_rpm);
   report.largest_current_a = largest(curve, &CurveSample::current_a);
-  for (const auto& sample : curve) report.limits |= sample.limits;
+  for (const auto& sample : excited) report.limits |= sample.limits;
   if (test.aborted()) return report;  // of a part of the excitation nothing else can be told
   report.step = stepOf(test);
   report.response = responseOf(test);

@@ -16,10 +16,10 @@ namespace rc10::client {
 /// Numbers of a test, for as far as it went.
 struct MotionReport {
   std::size_t ticks = 0;
-  FollowingError following;
+  FollowingError following;  ///< After the lead.
   double largest_velocity_rpm = std::numeric_limits<double>::quiet_NaN();
   double largest_current_a = std::numeric_limits<double>::quiet_NaN();
-  std::uint32_t limits = 0;  ///< That acted in any tick.
+  std::uint32_t limits = 0;  ///< That acted in any tick after the lead.
   std::optional<StepResponse> step;
   FrequencyResponse response;  ///< Sweep and multisine: measured value over shaped target.
   double bandwidth_hz = std::numeric_limits<double>::quiet_NaN();

@@ -8,6 +8,7 @@
 #include <string_view>
 
 #include "app/event_code.hpp"
+#include "app/limits.hpp"
 #include "app/printable.hpp"
 #include "client/find_motor.hpp"
 #include "client/obstacle.hpp"
@@ -133,7 +134,9 @@ void MotionRun::take(const Row& row) {
   if (!ours) return abort(withText(Criterion::kOwnership, {}));
   curve_.push_back(row.sample);
   curve_.back().time_s = static_cast<double>(row.mono_us - taken_us_) / 1e6;
-  if (const auto found = judge(settings_.criteria, row.sample, start_deg_)) abort(*found);
+  CurveSample judged = row.sample;
+  if (curve_.back().time_s < Excitation::kLeadS) judged.limits = 0;  // a soft start is no disturbance
+  if (const auto found = judge(settings_.criteria, judged, start_deg_)) abort(*found);
 }
 
 bool MotionRun::isOurs(const Row& row) const noexcept {
@@ -231,7 +234,7 @@ std::optional<Abort> MotionRun::silence(MonotonicTime now) const {
 }
 
 MotionRun::Order MotionRun::orderAt(double time_s, MonotonicTime now) {
-  const double value = origin_ + excitation_.valueAt(time_s);
+  const double value = origin_ + excitation_.valueAt(time_s, start_value_);
   sent_.push_back({now, value});
   while (now - sent_.front().time > kSentKept) sent_.pop_front();
   return {.target = {.mode = settings_.mode, .value = value}};
@@ -246,6 +249,7 @@ std::optional<MotionRun::Order> MotionRun::order(MonotonicTime now) {
     if (!newest_ || !motorKnown()) return std::nullopt;
     start_deg_ = newest_->sample.total_angle_deg;
     if (settings_.mode == ControlMode::kTotalAngle) origin_ = start_deg_;
+    if (settings_.mode == ControlMode::kVelocity) start_value_ = finiteOr0(newest_->sample.velocity_rpm);
     start_ = now;
     phase_ = Phase::kRunning;
     return orderAt(0.0, now);

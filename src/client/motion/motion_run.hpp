@@ -63,6 +63,8 @@ class MotionRun {
   /// The ticks in which its target was in force.
   [[nodiscard]] const Curve& curve() const noexcept { return curve_; }
   [[nodiscard]] const MotionSettings& settings() const noexcept { return settings_; }
+  /// Its place in Welcome and State.
+  [[nodiscard]] std::size_t motor() const noexcept { return motor_; }
   /// Added to the values of the excitation.
   [[nodiscard]] double origin() const noexcept { return origin_; }
   [[nodiscard]] double tickS() const noexcept { return 1.0 / welcome_.rate_hz; }
@@ -107,6 +109,7 @@ class MotionRun {
   MonotonicTime start_{};
   MonotonicTime let_go_{};
   double origin_ = 0.0;
+  double start_value_ = 0.0;  ///< Of the excitation, from which it approaches its base.
   double start_deg_ = 0.0;
   std::optional<link::State> state_;
   bool untraced_ = false;  ///< rc10d traces not all of the signals: other clients have its room.

@@ -84,7 +84,9 @@ class Driver {
     if (order_.then == Then::kCoast) letGo();
     if (order_.then == Then::kTimeout) lapse();
     if (!why.empty()) return complain({why}, ExitCode::kFailed);
-    if (order_.then != Then::kDisable) std::printf("%s %s\n", name_.c_str(), whatItDoes());
+    if (order_.then != Then::kDisable)
+      std::printf("%s %s\n", name_.c_str(),
+                  client::whatActs(motor() != nullptr ? motor()->acting : Acting::kNothing));
     return ExitCode::kOk;
   }
 
@@ -148,18 +150,6 @@ class Driver {
       if (motor() == nullptr || motor()->owner.view() != kClientName) return;
       waitReadable(rc10d_, end - now);
     }
-  }
-
-  const char* whatItDoes() const {
-    switch (motor() != nullptr ? motor()->acting : Acting::kNothing) {
-      case Acting::kHold: return "holds its place (on_timeout)";
-      case Acting::kDamp: return "is damped (on_timeout)";
-      case Acting::kBrake: return "brakes (on_timeout)";
-      case Acting::kRamp: return "comes to rest along a ramp (on_timeout)";
-      case Acting::kTarget: return "obeys another target";
-      case Acting::kNothing: break;
-    }
-    return "coasts";
   }
 
   bool send(const link::Setpoint& setpoint) {

@@ -45,7 +45,7 @@ int run(int argc, char** argv) {
   Action action;
   for (const auto add : {addList, addWatch, addStats, addRequests, addZero, addSet, addModules, addSignal,
                          addGains, addConfigureDrive, addCheck, addConvertGains, addBlackbox, addDoctor,
-                         addScan, addJog, addCommission, addHand, addWeb})
+                         addScan, addJog, addCommission, addTestMotion, addHand, addWeb})
     add(app, action);
   try {
     app.parse(argc, argv);

@@ -31,6 +31,7 @@ void addDoctor(CLI::App& app, Action& action);
 void addScan(CLI::App& app, Action& action);
 void addJog(CLI::App& app, Action& action);
 void addCommission(CLI::App& app, Action& action);
+void addTestMotion(CLI::App& app, Action& action);
 void addHand(CLI::App& app, Action& action);
 void addWeb(CLI::App& app, Action& action);
 

@@ -1,0 +1,320 @@
+"""rc10ctl test-motion: steps, ramps and sines on simulated motors, and each of their ends."""
+
+from __future__ import annotations
+
+import csv
+import json
+import shlex
+import signal
+from typing import TYPE_CHECKING, Any
+
+import pytest
+from hostlib import Daemon
+from hostlib.daemon import ARM, BIN, REPO
+from hostlib.page import blocks_run_by, robots, run
+
+from rc10.motion_test import MotionAborted, run_motion_test
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterator
+    from pathlib import Path
+
+    from hostlib import Motor, Program
+
+# As docs/tuning.md has it; its feedback may be as old as a busy machine makes it.
+ROBOT = (
+    ARM
+    + """
+      - {name: wheel, model: M3508, id: 1, zero: power_on, feedback_timeout_ms: 1000,
+         current_limit_a: 10, simulated: {inertia_kg_m2: 0.01}}
+      - {name: lift, model: M3508, id: 2, zero: power_on, feedback_timeout_ms: 1000,
+         on_timeout: hold, simulated: {inertia_kg_m2: 0.01}}
+  - name: joint
+    type: sim
+    motors:
+      - {name: elbow, model: DM4310, id: 2, master_id: 18, feedback_timeout_ms: 1000,
+         simulated: {inertia_kg_m2: 0.01}}
+"""
+)
+# A pause of the machine is no old feedback.
+PATIENT = ("--max-feedback-age", "2s")
+STEP = ("step", 60, "--max-current", 12, *PATIENT)
+LONG = (*STEP, "--for", "60s")
+
+
+@pytest.fixture(scope="module")
+def robot() -> Iterator[Daemon]:
+    with Daemon(ROBOT) as daemon:
+        daemon.wait_ready()
+        yield daemon
+
+
+@pytest.fixture(autouse=True)
+def _enabled(robot: Daemon) -> None:
+    robot.must("clear")
+    robot.must("enable", "wheel", "lift", "elbow")
+
+
+def result_of(robot: Daemon, *words: str | float | Path) -> dict[str, Any]:
+    result: dict[str, Any] = json.loads(robot.must("test-motion", *words, "--json"))
+    assert result["abort"] is None
+    return result
+
+
+def aborted(robot: Daemon, *words: str | float) -> tuple[dict[str, Any], str]:
+    """The abort of a test that must fail, and the words on stderr."""
+    done = robot.ctl("test-motion", *words, "--json")
+    assert done.returncode == 1, done.stdout
+    result = json.loads(done.stdout)
+    assert done.stderr == f"rc10ctl: {result['error']}\n"
+    return result["abort"], done.stderr
+
+
+def without_torque(motor: Motor) -> bool:
+    return {"owner": "", "acting": "nothing", "command_value": 0}.items() <= motor.items()
+
+
+def test_a_step_of_a_dji_motor_has_its_numbers_and_its_curve(robot: Daemon, tmp_path: Path) -> None:
+    table = tmp_path / "step.csv"
+    step = result_of(robot, "wheel", *STEP, "--csv", table)
+    numbers = step["step"]
+    # Those of docs/tuning.md.
+    assert 0.0 < numbers["rise_s"] < 0.15
+    assert numbers["overshoot_percent"] == pytest.approx(8.6, abs=3.0)
+    assert numbers["rise_s"] < numbers["settling_s"] < 1.0
+    assert abs(numbers["steady_error"]) < 1.0
+    assert step["limits"] == ["current"]
+    with table.open(encoding="utf-8") as file:
+        rows = list(csv.DictReader(file))
+    assert len(rows) == step["ticks"] > 1000
+    assert float(rows[-1]["target"]) == 60.0
+    assert max(float(row["velocity_rpm"]) for row in rows) == pytest.approx(
+        numbers["peak"], rel=1e-6
+    )
+    robot.wait_motor("wheel", without_torque, "coasts")
+
+
+def test_an_angle_of_a_damiao_joint_steps_from_where_it_stands(robot: Daemon) -> None:
+    words = ("--mode", "total_angle", "--max-speed", 300, "--max-current", 20, *PATIENT)
+    for _ in range(2):
+        step = result_of(robot, "elbow", "step", 20, *words)
+        assert step["step"]["peak"] == pytest.approx(step["origin"] + 20.0, abs=3.0)
+        assert step["unit"] == "deg"
+
+
+def test_a_ramp_is_followed_with_an_error(robot: Daemon) -> None:
+    ramp = result_of(
+        robot, "wheel", "ramp", -60, "--rate", 60, "--for", "2s", "--max-current", 12, *PATIENT
+    )
+    assert ramp["step"] is None
+    assert 0.0 < ramp["following_error"]["rms"] < ramp["following_error"]["max"] < 20.0
+
+
+@pytest.mark.parametrize("kind", ["sweep", "multisine"])
+def test_sines_give_the_bandwidth_and_a_bode_table(
+    robot: Daemon, tmp_path: Path, kind: str
+) -> None:
+    table = tmp_path / "bode.csv"
+    sines = ("--base", 60, "--max-current", 12, "--bode", table, *PATIENT)
+    found = result_of(robot, "wheel", kind, 20, *sines)
+    # That of python/examples/sine_sweep.py in docs/tuning.md.
+    assert found["bandwidth_hz"] == pytest.approx(7.3, abs=1.0)
+    assert 50.0 < found["phase_margin_deg"] < 100.0
+    points = found["response"]
+    at_5_hz = min(points, key=lambda point: abs(point["frequency_hz"] - 5.0))
+    assert at_5_hz["coherence"] > 0.8
+    assert at_5_hz["phase_deg"] == pytest.approx(-49.0, abs=10.0)
+    assert len(table.read_text().splitlines()) == len(points) + 1
+
+
+def test_the_numbers_are_printed_for_a_person(robot: Daemon) -> None:
+    told = robot.must("test-motion", "wheel", *STEP)
+    assert told.startswith("wheel: velocity, step of 60.00 rpm\n")
+    for name in ("rise (10 to 90 %)", "overshoot", "settling (to 2 %)", "following error"):
+        assert f"\n{name} " in told
+    assert told.endswith("wheel coasts\n")
+
+
+@pytest.mark.parametrize(
+    ("words", "criterion", "limit", "remedy"),
+    [
+        (("--max-angle", 20), "angle", 20, "wider corridor"),
+        (("--max-speed", 61), "velocity", 61, "higher limit of the speed"),
+        (("--max-current", 2), "current", 2, "higher limit of the current"),
+        (("--stop-at-limits",), "limit", None, "(current): a smaller amplitude"),
+    ],
+)
+def test_each_bound_ends_the_test_and_lets_the_motor_go(
+    robot: Daemon, words: tuple[str | float, ...], criterion: str, limit: float, remedy: str
+) -> None:
+    rest = words if "--max-current" in words else ("--max-current", 12, *words)
+    abort, told = aborted(robot, "wheel", "step", 60, *PATIENT, *rest)
+    assert abort["criterion"] == criterion
+    assert abort["limit"] == limit
+    if limit is not None:
+        assert abort["value"] > limit
+    assert f"test of wheel ended by {criterion} after " in told
+    assert remedy in told
+    assert "; wheel coasts" in told
+    robot.wait_motor("wheel", without_torque, "coasts")
+
+
+def test_the_end_is_the_on_timeout_of_the_motor(robot: Daemon) -> None:
+    _, told = aborted(robot, "lift", "step", 60, *PATIENT, "--max-current", 2)
+    assert "; lift holds its place (on_timeout)" in told
+    robot.wait_motor(
+        "lift", lambda motor: motor["acting"] == "hold" and motor["owner"] == "", "is held"
+    )
+
+
+def ended_by(
+    robot: Daemon, disturb: Callable[[Program], object], patience: tuple[str, ...] = PATIENT
+) -> str:
+    """What test-motion says when this is done while the wheel turns."""
+    words = ("step", "60", "--max-current", "12", "--for", "60s", *patience)
+    with robot.drive("test-motion", "wheel", *words) as test:
+        robot.wait_motor("wheel", lambda motor: float(motor["velocity_rpm"]) > 50.0, "turns")
+        disturb(test)
+        assert test.wait() == 1
+        return test.output
+
+
+def test_another_client_that_takes_the_motor_is_named(robot: Daemon) -> None:
+    def take_over(_: Program) -> None:
+        robot.must("set", "wheel", "velocity", 30, "--for", "1s", "--priority", 1)
+
+    told = ended_by(robot, take_over)
+    assert "ended by ownership after " in told
+
+
+def test_a_motor_that_is_disabled_ends_the_test(robot: Daemon) -> None:
+    told = ended_by(robot, lambda _: robot.must("disable", "wheel"))
+    assert "ended by status after " in told
+    assert "motor 'wheel' is READY: `rc10ctl enable wheel`" in told
+
+
+def test_an_estop_ends_the_test(robot: Daemon) -> None:
+    told = ended_by(robot, lambda _: robot.must("estop"))
+    assert "ended by status after " in told
+    assert "the robot is in ESTOP" in told
+    # Not cleared before.
+    robot.wait_motor("wheel", lambda motor: motor["velocity_rpm"] == 0, "stands")
+
+
+def test_ctrl_c_ends_the_test_and_lets_the_motor_go(robot: Daemon) -> None:
+    told = ended_by(robot, lambda test: test.signal(signal.SIGINT))
+    assert "ended by interrupted after " in told
+    robot.wait_motor("wheel", without_torque, "coasts")
+
+
+def test_a_test_that_is_killed_leaves_no_torque(robot: Daemon) -> None:
+    with robot.drive("test-motion", "wheel", *(str(word) for word in LONG)) as test:
+        robot.wait_motor("wheel", lambda motor: float(motor["velocity_rpm"]) > 50.0, "turns")
+        test.signal(signal.SIGKILL)
+        test.wait()
+    robot.wait_motor("wheel", without_torque, "coasts")
+
+
+def test_feedback_that_grows_old_ends_the_test(robot: Daemon) -> None:
+    try:
+        told = ended_by(
+            robot,
+            lambda _: robot.program.signal(signal.SIGSTOP),
+            ("--max-feedback-age", "300ms"),
+        )
+    finally:
+        robot.program.signal(signal.SIGCONT)
+    assert "ended by feedback_age after " in told
+    assert "ms beyond 300.00 ms: check the wiring" in told
+    robot.wait_motor("wheel", without_torque, "coasts")
+
+
+def test_the_end_of_rc10d_ends_the_test() -> None:
+    with Daemon(ROBOT) as daemon:
+        daemon.wait_ready()
+        daemon.must("enable", "wheel")
+        told = ended_by(daemon, lambda _: daemon.kill())
+        assert "ended by connection after " in told
+        assert "rc10d has ended" in told
+
+
+def test_a_motor_that_is_not_active_is_not_moved(robot: Daemon) -> None:
+    robot.must("disable", "wheel")
+    abort, told = aborted(robot, "wheel", *STEP)
+    assert abort["criterion"] == "status"
+    assert "`rc10ctl enable wheel`" in told
+
+
+@pytest.mark.parametrize(
+    ("words", "told"),
+    [
+        (("wheel", "step", 60), "--max-current"),
+        (("wheel", "step", 60, "--max-current", 0), "current has no limit"),
+        (("wheel", "step", 60, "--max-current", 2, "--max-speed", 30), "beyond its limits"),
+        (("wheel", "step", 1, "--max-current", 2, "--mode", "current"), "needs --max-speed"),
+        (("wheel", "step", 1, "--max-current", 2, "--mode", "duty"), "--mode"),
+        (("wheel", "ramp", 60, "--max-current", 2), "needs a rate"),
+        (("wheel", "step", 60, "--max-current", 2, "--rate", 5), "is for a ramp"),
+        (("wheel", "sweep", 20, "--max-current", 2, "--to", 90), "0.05 to 50 Hz"),
+        (("wheel", "wave", 20, "--max-current", 2), "step"),
+    ],
+)
+def test_a_test_without_sense_is_refused_before_anything_moves(
+    robot: Daemon, words: tuple[str | float, ...], told: str
+) -> None:
+    done = robot.ctl("test-motion", *words)
+    assert done.returncode == 2
+    assert told in done.stderr
+
+
+def test_a_file_that_cannot_be_written_is_named_before_anything_moves(robot: Daemon) -> None:
+    done = robot.ctl("test-motion", "wheel", *STEP, "--csv", "/nowhere/step.csv")
+    assert done.returncode == 1
+    assert "/nowhere/step.csv cannot be written" in done.stderr
+    assert robot.state()["motors"][0]["owner"] == ""
+
+
+def test_the_pages_show_what_runs(robot: Daemon, tmp_path: Path) -> None:
+    for page in ("python.md", "rc10ctl.md"):
+        for block in blocks_run_by("tests/host/test_motion.py", REPO / "docs" / page):
+            if block.kind == "python":
+                run(block, robot, tmp_path)
+                continue
+            command, *shown = block.text.removeprefix("$ ").splitlines()
+            told = robot.must(*shlex.split(command)[1:-1], tmp_path / "step.csv")
+            assert [line[:22] for line in told.splitlines()] == [line[:22] for line in shown]
+
+
+@pytest.mark.parametrize("page", ["tuning.md", "tuning.zh-CN.md"])
+def test_the_page_on_tuning_shows_what_runs(page: str, tmp_path: Path) -> None:
+    (config,) = robots(REPO / "docs" / page)
+    with Daemon(config) as daemon:
+        daemon.wait_ready()
+        for block in blocks_run_by("tests/host/test_motion.py", REPO / "docs" / page):
+            run(block, daemon, tmp_path)
+    assert (tmp_path / "bode.csv").exists()
+
+
+@pytest.fixture
+def program(robot: Daemon, monkeypatch: pytest.MonkeyPatch) -> str:
+    """Path of rc10ctl, in the robot's environment."""
+    for name, value in robot.env.items():
+        monkeypatch.setenv(name, value)
+    return str(BIN / "rc10ctl")
+
+
+def test_python_runs_the_same_test(program: str) -> None:
+    result = run_motion_test(
+        "wheel", "step", 60, max_current_a=12, max_feedback_age_s=2, program=program
+    )
+    assert result.step is not None
+    assert result.step.overshoot_percent == pytest.approx(8.6, abs=3.0)
+    assert result.following_error_rms > 0.0
+    assert len(result.curve["time_s"]) == result.ticks
+
+
+def test_python_raises_the_criterion(program: str) -> None:
+    with pytest.raises(MotionAborted, match="higher limit of the current") as raised:
+        run_motion_test("wheel", "step", 60, max_current_a=2, max_feedback_age_s=2, program=program)
+    assert raised.value.criterion == "current"
+    assert raised.value.value > raised.value.limit == 2.0
