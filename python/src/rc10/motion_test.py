@@ -94,7 +94,7 @@ def run_motion_test(
     max_speed_rpm: float | None = None,
     min_angle_deg: float | None = None,
     max_angle_deg: float | None = None,
-    max_feedback_age_s: float = 0.1,
+    max_feedback_age_s: float = 0.2,
     stop_at_limits: bool = False,
     priority: int = 0,
     robot: str | None = None,

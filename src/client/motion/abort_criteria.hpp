@@ -18,7 +18,7 @@ struct AbortCriteria {
   double angle_max_deg = std::numeric_limits<double>::infinity();
   double velocity_max_rpm = std::numeric_limits<double>::infinity();
   double current_max_a = 0.0;
-  double feedback_age_max_us = 100'000.0;
+  double feedback_age_max_us = 200'000.0;
   bool limits_abort = false;  ///< A limit that acts ends the test: beyond it nothing is linear.
 };
 

@@ -197,10 +197,9 @@ std::string MotionRun::whoHasIt() const {
   if (taken_tick_ == 0)
     return name + " did not take the target" +
            (refusal_.empty() ? ": `rc10ctl stats` shows what was refused" : " (" + refusal_ + ")");
-  return owner.empty()
-             ? "the target lapsed: this computer was too busy to renew it within 100 ms: end other programs, "
-               "and see `rc10ctl doctor`"
-             : name + " obeys another program of this name: end that one";
+  return owner.empty() ? "the target lapsed: this computer was too busy to renew it within " +
+                             std::to_string(kValidityMs) + " ms: end other programs, and see `rc10ctl doctor`"
+                       : name + " obeys another program of this name: end that one";
 }
 
 std::optional<Abort> MotionRun::whyNotBegin(MonotonicTime now) const {

@@ -32,8 +32,9 @@ struct MotionSettings {
 class MotionRun {
  public:
   static constexpr Duration kSendPeriod = std::chrono::milliseconds{2};
-  /// So long after the last target of a client that has died the motor is let go.
-  static constexpr std::int32_t kValidityMs = 100;
+  /// So long after the last target of a client that has died the motor is let go; longer than a busy computer
+  /// keeps the client from its processor.
+  static constexpr std::int32_t kValidityMs = 200;
 
   /// The error says why the test must not begin: no such motor or mode, or a target beyond the criteria.
   [[nodiscard]] static Result<MotionRun> of(const link::Welcome& welcome, const MotionSettings& settings);

@@ -39,7 +39,7 @@ struct TestMotionOptions {
   std::optional<double> max_speed_rpm;
   std::optional<double> min_angle_deg;
   std::optional<double> max_angle_deg;
-  std::string max_feedback_age = "100ms";
+  std::string max_feedback_age = "200ms";
   bool stop_at_limits = false;
   int priority = 0;
   std::string csv;
