@@ -37,7 +37,7 @@ ROBOT = (
 """
 )
 # A pause of the machine is no old feedback.
-PATIENT = ("--max-feedback-age", "2s")
+PATIENT = ("--max-feedback-age", "2s", "--dead-man-ms", 1000)
 STEP = ("step", 60, "--max-current", 12, *PATIENT)
 LONG = (*STEP, "--for", "60s")
 
@@ -168,10 +168,10 @@ def test_the_end_is_the_on_timeout_of_the_motor(robot: Daemon) -> None:
 
 
 def ended_by(
-    robot: Daemon, disturb: Callable[[Program], object], patience: tuple[str, ...] = PATIENT
+    robot: Daemon, disturb: Callable[[Program], object], patience: tuple[str | float, ...] = PATIENT
 ) -> str:
     """What test-motion says when this is done while the wheel turns."""
-    words = ("step", "60", "--max-current", "12", "--for", "60s", *patience)
+    words: tuple[str | float, ...] = ("step", 60, "--max-current", 12, "--for", "60s", *patience)
     with robot.drive("test-motion", "wheel", *words) as test:
         robot.wait_motor("wheel", lambda motor: float(motor["velocity_rpm"]) > 50.0, "turns")
         disturb(test)
@@ -220,12 +220,12 @@ def test_feedback_that_grows_old_ends_the_test(robot: Daemon) -> None:
         told = ended_by(
             robot,
             lambda _: robot.program.signal(signal.SIGSTOP),
-            ("--max-feedback-age", "300ms"),
+            ("--max-feedback-age", "500ms", "--dead-man-ms", "1000"),
         )
     finally:
         robot.program.signal(signal.SIGCONT)
     assert "ended by feedback_age after " in told
-    assert "ms beyond 300.00 ms: check the wiring" in told
+    assert "ms beyond 500.00 ms: check the wiring" in told
     robot.wait_motor("wheel", without_torque, "coasts")
 
 
@@ -278,8 +278,8 @@ def patient_blocks(page: str) -> list[Block]:
     """What a page shows, for a machine that pauses."""
     found = blocks_run_by("tests/host/test_motion.py", REPO / "docs" / page)
     for bound, patience in (
-        ("--max-current", "--max-feedback-age 2s --max-current"),
-        ("max_current_a", "max_feedback_age_s=2, max_current_a"),
+        ("--max-current", "--dead-man-ms 1000 --max-feedback-age 2s --max-current"),
+        ("max_current_a", "dead_man_ms=1000, max_feedback_age_s=2, max_current_a"),
     ):
         found = [block._replace(text=block.text.replace(bound, patience)) for block in found]
     return found
@@ -314,7 +314,13 @@ def program(robot: Daemon, monkeypatch: pytest.MonkeyPatch) -> str:
 
 def test_python_runs_the_same_test(program: str) -> None:
     result = run_motion_test(
-        "wheel", "step", 60, max_current_a=12, max_feedback_age_s=2, program=program
+        "wheel",
+        "step",
+        60,
+        max_current_a=12,
+        max_feedback_age_s=2,
+        dead_man_ms=1000,
+        program=program,
     )
     assert result.step is not None
     assert result.step.overshoot_percent == pytest.approx(8.6, abs=3.0)
@@ -324,6 +330,14 @@ def test_python_runs_the_same_test(program: str) -> None:
 
 def test_python_raises_the_criterion(program: str) -> None:
     with pytest.raises(MotionAborted, match="higher limit of the current") as raised:
-        run_motion_test("wheel", "step", 60, max_current_a=2, max_feedback_age_s=2, program=program)
+        run_motion_test(
+            "wheel",
+            "step",
+            60,
+            max_current_a=2,
+            max_feedback_age_s=2,
+            dead_man_ms=1000,
+            program=program,
+        )
     assert raised.value.criterion == "current"
     assert raised.value.value > raised.value.limit == 2.0

@@ -96,6 +96,7 @@ def run_motion_test(
     max_angle_deg: float | None = None,
     max_feedback_age_s: float = 0.2,
     stop_at_limits: bool = False,
+    dead_man_ms: int = 200,
     priority: int = 0,
     robot: str | None = None,
     program: str = "rc10ctl",
@@ -119,6 +120,7 @@ def run_motion_test(
         max_angle_deg: from where the motor stands.
         max_feedback_age_s: of the motor's feedback, as it arrives here.
         stop_at_limits: let go too when a limit of the motor acts.
+        dead_man_ms: let go so long after the last word of a program that died.
         priority: a higher one takes the motor over from a lower one.
         robot: needed only if several run on this computer.
         program: rc10ctl, or its path.
@@ -130,6 +132,7 @@ def run_motion_test(
     words = [program, "test-motion", "--json", f"--max-current={max_current_a!r}"]
     words += [f"--mode={mode}", f"--base={base!r}", f"--from={from_hz!r}", f"--to={to_hz!r}"]
     words += [f"--max-feedback-age={max_feedback_age_s!r}", f"--priority={priority}"]
+    words += [f"--dead-man-ms={dead_man_ms}"]
     chosen = {
         "for": seconds,
         "rate": rate_per_s,

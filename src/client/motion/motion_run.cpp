@@ -197,9 +197,10 @@ std::string MotionRun::whoHasIt() const {
   if (taken_tick_ == 0)
     return name + " did not take the target" +
            (refusal_.empty() ? ": `rc10ctl stats` shows what was refused" : " (" + refusal_ + ")");
-  return owner.empty() ? "the target lapsed: this computer was too busy to renew it within " +
-                             std::to_string(kValidityMs) + " ms: end other programs, and see `rc10ctl doctor`"
-                       : name + " obeys another program of this name: end that one";
+  return owner.empty()
+             ? "the target lapsed: this computer was too busy to renew it within " +
+                   std::to_string(settings_.validity_ms) + " ms: end other programs, and see `rc10ctl doctor`"
+             : name + " obeys another program of this name: end that one";
 }
 
 std::optional<Abort> MotionRun::whyNotBegin(MonotonicTime now) const {
@@ -236,7 +237,7 @@ MotionRun::Order MotionRun::orderAt(double time_s, MonotonicTime now) {
   const double value = origin_ + excitation_.valueAt(time_s, start_value_);
   sent_.push_back({now, value});
   while (now - sent_.front().time > kSentKept) sent_.pop_front();
-  return {.target = {.mode = settings_.mode, .value = value}};
+  return {.target = {.mode = settings_.mode, .value = value}, .validity_ms = settings_.validity_ms};
 }
 
 std::optional<MotionRun::Order> MotionRun::order(MonotonicTime now) {

@@ -24,6 +24,9 @@ struct MotionSettings {
   ControlMode mode = ControlMode::kVelocity;
   ExcitationSettings excitation;
   AbortCriteria criteria;
+  /// So long after the last target of a client that has died, or that a busy computer keeps from its
+  /// processor, the motor is let go.
+  std::int32_t validity_ms = 200;
 };
 
 /// Runs a test of motion over a connection that is not its own: takes what rc10d sends, says what to send.
@@ -32,9 +35,6 @@ struct MotionSettings {
 class MotionRun {
  public:
   static constexpr Duration kSendPeriod = std::chrono::milliseconds{2};
-  /// So long after the last target of a client that has died the motor is let go; longer than a busy computer
-  /// keeps the client from its processor.
-  static constexpr std::int32_t kValidityMs = 200;
 
   /// The error says why the test must not begin: no such motor or mode, or a target beyond the criteria.
   [[nodiscard]] static Result<MotionRun> of(const link::Welcome& welcome, const MotionSettings& settings);
@@ -50,7 +50,7 @@ class MotionRun {
 
   struct Order {
     Target target;
-    std::int32_t validity_ms = kValidityMs;
+    std::int32_t validity_ms = 0;
   };
   /// The target to be sent now; nothing: none is due.
   [[nodiscard]] std::optional<Order> order(MonotonicTime now);

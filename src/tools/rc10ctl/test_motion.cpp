@@ -5,6 +5,7 @@
 #include <fstream>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -41,6 +42,7 @@ struct TestMotionOptions {
   std::optional<double> max_angle_deg;
   std::string max_feedback_age = "200ms";
   bool stop_at_limits = false;
+  int dead_man_ms = 200;
   int priority = 0;
   std::string csv;
   std::string bode;
@@ -112,7 +114,8 @@ Result<client::MotionSettings> settingsIn(const TestMotionOptions& options) {
                                 .motor = options.motor,
                                 .mode = mode,
                                 .excitation = *excitation,
-                                .criteria = *criteria};
+                                .criteria = *criteria,
+                                .validity_ms = options.dead_man_ms};
 }
 
 // Between the run and the connection.
@@ -301,6 +304,11 @@ void addCriteria(CLI::App& verb, TestMotionOptions& options) {
       ->type_name("TIME")
       ->capture_default_str();
   verb.add_flag("--stop-at-limits", options.stop_at_limits, "lets go too when a limit of the motor acts");
+  verb.add_option("--dead-man-ms", options.dead_man_ms,
+                  "so long after its last word, when it has died or had no processor")
+      ->check(CLI::Range(20, 1000))
+      ->type_name("MS")
+      ->capture_default_str();
 }
 
 }  // namespace
