@@ -22,6 +22,8 @@ inline constexpr std::uint32_t kFormatVersion = 3;
 /// Records are a whole number of these.
 inline constexpr std::size_t kWord = 8;
 inline constexpr std::size_t kMaxRecordBytes = 255 * kWord;
+/// The largest file that `blackbox_mib` allows.
+inline constexpr std::uint64_t kMaxFileBytes = std::uint64_t{256} << 20U;
 
 struct BusInfo {
   link::Name name;
@@ -190,7 +192,13 @@ struct Order {
   link::Name client;
 };
 
-/// `id` is the code of event_t.lcm, `source` the motor or bus, `flags` the severity.
+// Whose event it is, by its code (docs/lcm.md): of a module, of a bus from kFirstBusEvent on, else of a
+// motor.
+inline constexpr std::uint32_t kFirstModuleEvent = 108;
+inline constexpr std::uint32_t kLastModuleEvent = 109;
+inline constexpr std::uint32_t kFirstBusEvent = 300;
+
+/// `id` is the code of event_t.lcm, `source` the motor, module or bus, `flags` the severity.
 struct Event {
   static constexpr auto kType = RecordType::kEvent;
   RecordHeader header;

@@ -7,6 +7,8 @@
 #include <cerrno>
 #include <cstddef>
 #include <cstring>
+#include <memory>
+#include <utility>
 
 #include "app/unique_fd.hpp"
 #include "blackbox/file_bytes.hpp"
@@ -15,8 +17,7 @@ namespace rc10::blackbox {
 namespace {
 
 constexpr std::size_t kReadAtOnce = std::size_t{64} * 1024;
-// The largest file that `blackbox_mib` allows.
-constexpr std::uint64_t kMaxFileBytes = std::uint64_t{256} << 20U;
+static_assert(kReadAtOnce >= ImageReader::kLeastPiece);
 
 template <typename T>
 [[nodiscard]] Result<void> readObject(int fd, std::uint64_t offset, T& out) {
@@ -34,17 +35,6 @@ template <typename T>
     if (auto read = readObject(fd, offset, again); !read) return tl::unexpected(read.error());
   } while (word != again);
   return word;
-}
-
-[[nodiscard]] Result<void> copyRegion(int fd, std::uint64_t offset, std::uint64_t bytes, const Sink& sink) {
-  std::vector<std::byte> buffer(kReadAtOnce);
-  for (const std::uint64_t end = offset + bytes; offset < end;) {
-    const auto piece = std::span(buffer).first(std::min<std::uint64_t>(kReadAtOnce, end - offset));
-    if (auto read = readAll(fd, offset, piece); !read) return read;
-    if (auto taken = sink(offset, piece); !taken) return taken;
-    offset += piece.size();
-  }
-  return {};
 }
 
 }  // namespace
@@ -67,14 +57,18 @@ Result<void> checkHeader(const Header& header) {
   return {};
 }
 
-// The order makes it whole. The scheduler can overwrite of the ring only what was before `tail`, so what was
-// read of it before `tail` is good from `tail` on. The io thread moves `oldest` before it overwrites, so what
-// was read of the history before `oldest` is good from `oldest` on.
-Result<void> takeImage(int fd, const Sink& sink, const std::function<void(Header&)>& amend) {
+ImageReader::ImageReader(int fd, const Header& header, std::uint64_t end) noexcept
+    : fd_(fd),
+      history_offset_(header.history_offset),
+      file_bytes_(header.file_bytes),
+      end_(end),
+      at_(header.ring_offset) {}
+
+Result<ImageReader> ImageReader::open(int fd) {
   FileHead head;
   if (auto read = readObject(fd, 0, head); !read) return fail("this is no black box of rc10d");
-  auto& header = head.header;
-  if (auto checked = checkHeader(header); !checked) return checked;
+  const auto& header = head.header;
+  if (auto checked = checkHeader(header); !checked) return tl::unexpected(checked.error());
   struct stat info {};
   if (::fstat(fd, &info) != 0) return fail(std::strerror(errno));
   if (static_cast<std::uint64_t>(info.st_size) < header.file_bytes) {
@@ -83,21 +77,56 @@ Result<void> takeImage(int fd, const Sink& sink, const std::function<void(Header
   }
   const auto end = readWord(fd, offsetof(Control, head));
   if (!end) return tl::unexpected(end.error());
-  if (auto copied = copyRegion(fd, header.ring_offset, header.ring_bytes, sink); !copied) return copied;
-  const auto tail = readWord(fd, offsetof(Control, tail));
-  if (!tail) return tl::unexpected(tail.error());
-  if (auto copied = copyRegion(fd, header.history_offset, header.history_bytes, sink); !copied) return copied;
-  Control now;
-  if (auto read = readObject(fd, offsetof(FileHead, control), now); !read) return read;
-  const auto oldest = readWord(fd, offsetof(Control, oldest));
+  return ImageReader{fd, header, *end};
+}
+
+// The order makes it whole. The scheduler can overwrite of the ring only what was before `tail`, so what was
+// read of it before `tail` is good from `tail` on. The io thread moves `oldest` before it overwrites, so what
+// was read of the history before `oldest` is good from `oldest` on.
+Result<ImageReader::Piece> ImageReader::next(std::span<std::byte> buffer) {
+  if (at_ == file_bytes_) return beginning(buffer);
+  if (at_ == history_offset_) {
+    const auto tail = readWord(fd_, offsetof(Control, tail));
+    if (!tail) return tl::unexpected(tail.error());
+    tail_ = *tail;
+  }
+  const auto end = at_ < history_offset_ ? history_offset_ : file_bytes_;
+  const auto piece = buffer.first(std::min<std::uint64_t>(buffer.size(), end - at_));
+  if (auto read = readAll(fd_, at_, piece); !read) return tl::unexpected(read.error());
+  return Piece{std::exchange(at_, at_ + piece.size()), piece};
+}
+
+Result<ImageReader::Piece> ImageReader::beginning(std::span<std::byte> buffer) {
+  const auto head = buffer.first(sizeof(FileHead));
+  if (auto read = readAll(fd_, 0, head); !read) return tl::unexpected(read.error());
+  const auto oldest = readWord(fd_, offsetof(Control, oldest));
   if (!oldest) return tl::unexpected(oldest.error());
-  head.control = now;
-  head.control.head = std::max(*end, *tail);
-  head.control.tail = *tail;
-  // Ahead of the end: all of it was overwritten meanwhile.
-  head.control.oldest = std::min(*oldest, head.control.head);
-  if (amend) amend(header);
-  return sink(0, {reinterpret_cast<const std::byte*>(&head), sizeof head});
+  Control control;
+  const auto place = head.subspan(offsetof(FileHead, control));
+  std::memcpy(&control, place.data(), sizeof control);
+  control.head = std::max(end_, tail_);
+  control.tail = tail_;
+  // Ahead of the end: it took so long that all of it was overwritten.
+  control.oldest = std::min(*oldest, control.head);
+  std::memcpy(place.data(), &control, sizeof control);
+  return Piece{0, head};
+}
+
+Result<void> takeImage(int fd, const Sink& sink, const std::function<void(Header&)>& amend) {
+  auto reader = ImageReader::open(fd);
+  if (!reader) return tl::unexpected(reader.error());
+  std::vector<std::byte> buffer(kReadAtOnce);
+  for (;;) {
+    const auto piece = reader->next(buffer);
+    if (!piece) return tl::unexpected(piece.error());
+    if (piece->offset == 0 && amend) {
+      const auto header = std::make_unique<Header>();
+      std::memcpy(header.get(), buffer.data(), sizeof(Header));
+      amend(*header);
+      std::memcpy(buffer.data(), header.get(), sizeof(Header));
+    }
+    if (auto taken = sink(piece->offset, piece->bytes); !taken || piece->offset == 0) return taken;
+  }
 }
 
 Result<std::vector<std::byte>> readImage(const std::string& path) {

@@ -139,15 +139,11 @@ bool Recording::simulated() const noexcept {
 }
 
 std::string_view Recording::sourceName(const Event& event) const noexcept {
-  // docs/lcm.md
-  constexpr std::uint32_t kFirstModuleCode = 108;
-  constexpr std::uint32_t kLastModuleCode = 109;
-  constexpr std::uint32_t kFirstBusCode = 300;
   if (event.header.source == kNoSource) return "robot";
-  if (event.header.id >= kFirstModuleCode && event.header.id <= kLastModuleCode) {
+  if (event.header.id >= kFirstModuleEvent && event.header.id <= kLastModuleEvent) {
     return moduleName(event.header.source);
   }
-  return event.header.id >= kFirstBusCode ? busName(event.header.source) : motorName(event.header.source);
+  return event.header.id >= kFirstBusEvent ? busName(event.header.source) : motorName(event.header.source);
 }
 
 std::string_view Recording::interfaceName(std::size_t index) const noexcept {

@@ -2,9 +2,11 @@
 
 #include <array>
 
+#include "app/vocabulary.hpp"
 #include "client/candump_line.hpp"
 #include "client/json_line.hpp"
 #include "client/recording_text.hpp"
+#include "client/recording_words.hpp"
 #include "link/event_text.hpp"
 #include "link/words.hpp"
 
@@ -12,8 +14,6 @@ namespace rc10::client {
 namespace {
 
 using namespace blackbox;
-
-constexpr std::array kVerdicts{"applied", "expired", "not owner"};
 
 template <std::size_t N>
 [[nodiscard]] const char* word(const std::array<const char*, N>& words, std::size_t index) {
@@ -45,7 +45,7 @@ class Writer {
 
   void add(const Command& r) {
     json_["kind"] = "command";
-    json_["verdict"] = word(kVerdicts, r.header.flags);
+    json_["verdict"] = word(kVerdictWords, r.header.flags);
     json_["client"] = r.client.view();
     json_["session"] = r.session;
     json_["priority"] = r.priority;
@@ -69,7 +69,7 @@ class Writer {
 
   void add(const Signals& r) {
     json_["kind"] = "signals";
-    json_["verdict"] = word(kVerdicts, r.header.flags);
+    json_["verdict"] = word(kVerdictWords, r.header.flags);
     json_["module"] = recording_.moduleName(r.header.source);
     json_["client"] = r.client.view();
     json_["session"] = r.session;
