@@ -2,7 +2,7 @@
 #
 #   rc10_drives_motors      what commands a drive. It sees no simulation
 #   rc10_drives_by_frames   what stands at the other end of the wire: simulated drives, and what recognises one on a
-#                           bus. Of the first it sees frames, models and families alone: no mistake of a motor repeats itself
+#                           bus and words its frames. Of the first it sees frames, models and families alone: no mistake of a motor repeats itself
 #   rc10_drives             the list of families
 #
 # An include root with links to the headers that a target may see makes the wrong include a compiler's error.
@@ -10,7 +10,7 @@
 set(drives_folder "${PROJECT_SOURCE_DIR}/src/drives")
 file(GLOB drives_sources CONFIGURE_DEPENDS "${drives_folder}/*/*.cpp")
 file(GLOB_RECURSE drives_headers RELATIVE "${drives_folder}" CONFIGURE_DEPENDS "${drives_folder}/*.hpp")
-set(drives_far_side "_(simulated[a-z_]*|recogniser)\\.[ch]pp$")
+set(drives_far_side "_(simulated[a-z_]*|recogniser|wording)\\.[ch]pp$")
 
 # rc10_drives_side(<target> SOURCES <file>... SEES <header>... USES <layer>...)
 function(rc10_drives_side target)
@@ -38,7 +38,7 @@ rc10_drives_side(rc10_drives_motors SOURCES ${motor_sources} SEES ${motor_header
 set(far_sources ${drives_sources})
 list(FILTER far_sources INCLUDE REGEX "${drives_far_side}")
 set(far_headers ${drives_headers})
-list(FILTER far_headers INCLUDE REGEX "${drives_far_side}|_(frames|model|family)\\.hpp$|^recogniser\\.hpp$")
+list(FILTER far_headers INCLUDE REGEX "${drives_far_side}|_(frames|model|family)\\.hpp$|^(recogniser|wording)\\.hpp$")
 rc10_drives_side(rc10_drives_by_frames SOURCES ${far_sources} SEES ${far_headers} USES sim motor bus app)
 target_link_libraries(rc10_drives_by_frames PUBLIC $<LINK_ONLY:rc10_drives_motors>)
 

@@ -14,4 +14,5 @@ set(RC10_PUBLIC_HEADERS
   config/yaml/problem.hpp
   daemon/daemon_main.hpp
   drives/families.hpp
-  drives/recogniser.hpp)
+  drives/recogniser.hpp
+  drives/wording.hpp)

@@ -5,44 +5,53 @@
 #include "drives/cubemars/cubemars_family.hpp"
 #include "drives/cubemars/cubemars_recogniser.hpp"
 #include "drives/cubemars/cubemars_simulated.hpp"
+#include "drives/cubemars/cubemars_wording.hpp"
 #include "drives/damiao/damiao_family.hpp"
 #include "drives/damiao/damiao_recogniser.hpp"
 #include "drives/damiao/damiao_simulated.hpp"
+#include "drives/damiao/damiao_wording.hpp"
 #include "drives/dji/dji_family.hpp"
 #include "drives/dji/dji_recogniser.hpp"
 #include "drives/dji/dji_simulated.hpp"
+#include "drives/dji/dji_wording.hpp"
 #include "drives/lktech/lktech_family.hpp"
 #include "drives/lktech/lktech_recogniser.hpp"
 #include "drives/lktech/lktech_simulated.hpp"
+#include "drives/lktech/lktech_wording.hpp"
 #include "drives/moteus/moteus_family.hpp"
 #include "drives/moteus/moteus_recogniser.hpp"
 #include "drives/moteus/moteus_simulated.hpp"
+#include "drives/moteus/moteus_wording.hpp"
 #include "drives/myactuator/myactuator_family.hpp"
 #include "drives/myactuator/myactuator_recogniser.hpp"
 #include "drives/myactuator/myactuator_simulated.hpp"
+#include "drives/myactuator/myactuator_wording.hpp"
 #include "drives/odrive/odrive_family.hpp"
 #include "drives/odrive/odrive_recogniser.hpp"
 #include "drives/odrive/odrive_simulated.hpp"
+#include "drives/odrive/odrive_wording.hpp"
 #include "drives/robstride/robstride_family.hpp"
 #include "drives/robstride/robstride_recogniser.hpp"
 #include "drives/robstride/robstride_simulated.hpp"
+#include "drives/robstride/robstride_wording.hpp"
 #include "drives/vesc/vesc_family.hpp"
 #include "drives/vesc/vesc_recogniser.hpp"
 #include "drives/vesc/vesc_simulated.hpp"
+#include "drives/vesc/vesc_wording.hpp"
 
 namespace rc10 {
 
 std::span<const FamilyEntry> builtInFamilies() {
   static const std::array kFamilies{
-      FamilyEntry{&djiFamily(), sim::makeDjiDrive, recogniseDji},
-      FamilyEntry{&vescFamily(), sim::makeVescDrive, recogniseVesc},
-      FamilyEntry{&damiaoFamily(), sim::makeDamiaoDrive, recogniseDamiao},
-      FamilyEntry{&robstrideFamily(), sim::makeRobstrideDrive, recogniseRobstride},
-      FamilyEntry{&cubemarsFamily(), sim::makeCubemarsDrive, recogniseCubemars},
-      FamilyEntry{&moteusFamily(), sim::makeMoteusDrive, recogniseMoteus},
-      FamilyEntry{&odriveFamily(), sim::makeOdriveDrive, recogniseOdrive},
-      FamilyEntry{&myactuatorFamily(), sim::makeMyactuatorDrive, recogniseMyactuator},
-      FamilyEntry{&lktechFamily(), sim::makeLktechDrive, recogniseLktech},
+      FamilyEntry{&djiFamily(), sim::makeDjiDrive, recogniseDji, wordDji},
+      FamilyEntry{&vescFamily(), sim::makeVescDrive, recogniseVesc, wordVesc},
+      FamilyEntry{&damiaoFamily(), sim::makeDamiaoDrive, recogniseDamiao, wordDamiao},
+      FamilyEntry{&robstrideFamily(), sim::makeRobstrideDrive, recogniseRobstride, wordRobstride},
+      FamilyEntry{&cubemarsFamily(), sim::makeCubemarsDrive, recogniseCubemars, wordCubemars},
+      FamilyEntry{&moteusFamily(), sim::makeMoteusDrive, recogniseMoteus, wordMoteus},
+      FamilyEntry{&odriveFamily(), sim::makeOdriveDrive, recogniseOdrive, wordOdrive},
+      FamilyEntry{&myactuatorFamily(), sim::makeMyactuatorDrive, recogniseMyactuator, wordMyactuator},
+      FamilyEntry{&lktechFamily(), sim::makeLktechDrive, recogniseLktech, wordLktech},
   };
   return kFamilies;
 }

@@ -4,6 +4,7 @@
 #include <span>
 
 #include "drives/recogniser.hpp"
+#include "drives/wording.hpp"
 #include "motor/motor_family.hpp"
 #include "sim/drive.hpp"
 
@@ -17,6 +18,8 @@ struct FamilyEntry {
                                           const sim::MotorLoad& load) = nullptr;
   /// Guess of `rc10ctl scan` about a frame's sender; null: scan does not know this family.
   Recogniser recognise = nullptr;
+  /// Its frames in words, for those who read a recording; null: they stay numbers.
+  Wording word = nullptr;
 };
 
 /// The families of rc10d: the one place where a new one is entered.

@@ -32,7 +32,7 @@ USES = {
     "doctor": {"client", "link", "bus", "app"},
     "guard": {"link", "bus", "app"},
     "gateway": {"client", "link", "app"},
-    "web": {"client", "link", "app"},
+    "web": {"survey", "client", "blackbox", "link", "bus", "app"},
     "daemon": {"blackbox", "config", "sim", "module", "motor", "bus", "link", "app"},
     "robot_client": {"app"},
     "tools": {
@@ -77,8 +77,8 @@ ABOVE_ROOMS = {"config/load_config.hpp"}
 # Families of drives know what all have in common, and no other family. A simulated drive and a
 # recogniser see no motor, and a motor neither of them.
 FAMILIES = "drives"
-SIMULATED = re.compile(r"_(simulated|recogniser)")
-OF_SIMULATED = re.compile(r"_(simulated\w*|recogniser|frames|model|family)\.hpp$|/recogniser\.hpp$")
+SIMULATED = re.compile(r"_(simulated|recogniser|wording)")
+OF_SIMULATED = re.compile(r"_(simulated\w*|recogniser|wording|frames|model|family)\.hpp$|/(recogniser|wording)\.hpp$")
 
 # Plain objects: no threads, locks, atomics or logging; who uses them decides about those.
 PLAIN = ("app", "bus", "motor", "drives", "module")

@@ -1,0 +1,13 @@
+#pragma once
+
+#include <string>
+#include <string_view>
+
+#include "drives/wording.hpp"
+
+namespace rc10 {
+
+/// See Wording.
+[[nodiscard]] std::string wordOdrive(const CanFrame& frame, std::string_view model, bool sent);
+
+}  // namespace rc10
