@@ -17,9 +17,10 @@ struct View {
 };
 
 enum class FrameKind : std::uint8_t {
-  kNext = 1,   ///< The columns after those of the frame before.
-  kReset = 2,  ///< The first of a view: what was drawn before is void.
-  kRange = 3,  ///< An answer to a question about the past.
+  kNext = 1,       ///< The columns after those of the frame before.
+  kReset = 2,      ///< The first of a view: what was drawn before is void.
+  kRange = 3,      ///< An answer to a question about the past.
+  kRecording = 4,  ///< No columns: see pieceFrame().
 };
 
 inline constexpr std::uint8_t kFrameVersion = 1;

@@ -36,8 +36,11 @@ constexpr std::string_view statusWord(link::ResponseStatus status) {
 
 }  // namespace
 
-Hub::Hub(std::optional<std::string> robot, std::string token)
-    : robot_(std::move(robot)), feed_(robot_), token_(std::move(token)) {}
+Hub::Hub(std::optional<std::string> robot, std::string token, Recordings recordings)
+    : robot_(std::move(robot)),
+      feed_(robot_),
+      token_(std::move(token)),
+      recordings_(std::move(recordings)) {}
 
 Hub::Page* Hub::pageOf(const PageSocket& socket) noexcept {
   const auto found =
@@ -100,7 +103,37 @@ void Hub::handle(PageSocket& socket, std::string_view message, MonotonicTime now
     choose(*page, *view);
   } else if (const auto* range = std::get_if<AskRange>(&*request)) {
     answer(*page, *range);
+  } else if (const auto* files = std::get_if<AskRecordings>(&*request)) {
+    page->socket->sendText(shared(recordingsMessage(files->seq, recordings_.list())));
+  } else if (const auto* recording = std::get_if<AskRecording>(&*request)) {
+    open(*page, *recording);
+  } else if (const auto* piece = std::get_if<AskPiece>(&*request)) {
+    sendPiece(*page, *piece);
+  } else if (const auto* words = std::get_if<AskWords>(&*request)) {
+    page->socket->sendText(shared(wordsMessage(*words)));
   }
+}
+
+void Hub::open(Page& page, const AskRecording& wanted) {
+  page.recording.reset();
+  page.recording_number = wanted.number;
+  auto opened = recordings_.open(wanted.name);
+  if (!opened)
+    return page.socket->sendText(shared(responseMessage(wanted.number, "failed", opened.error().message)));
+  page.recording = std::move(*opened);
+  sendPiece(page, AskPiece{wanted.number});
+}
+
+// A page asks for each piece when it has the one before: so one that reads slowly holds no memory here.
+void Hub::sendPiece(Page& page, const AskPiece& wanted) {
+  if (!page.recording || page.recording_number != wanted.number) return;
+  bool last = false;
+  auto frame = pieceFrame(page.recording->reader, wanted.number, last);
+  if (frame)
+    page.socket->sendBinary(std::move(*frame));
+  else
+    page.socket->sendText(shared(responseMessage(wanted.number, "failed", frame.error().message)));
+  if (last || !frame) page.recording.reset();
 }
 
 void Hub::choose(Page& page, const ChooseView& wanted) {

@@ -11,6 +11,7 @@
 #include "web/columns_frame.hpp"
 #include "web/page_link.hpp"
 #include "web/page_request.hpp"
+#include "web/recordings.hpp"
 #include "web/renewal_age.hpp"
 #include "web/robot_feed.hpp"
 
@@ -36,7 +37,7 @@ class PageSocket {
 /// ask.
 class Hub {
  public:
-  Hub(std::optional<std::string> robot, std::string token);
+  Hub(std::optional<std::string> robot, std::string token, Recordings recordings);
 
   /// A page has been opened; `socket` is told of until leave().
   void join(PageSocket& socket, bool loopback, std::string_view address);
@@ -57,6 +58,8 @@ class Hub {
     std::int64_t next_column = 0;
     std::unique_ptr<PageLink> link;
     RenewalAge renewals;
+    std::optional<OpenRecording> recording;
+    std::uint32_t recording_number = 0;
   };
 
   [[nodiscard]] Page* pageOf(const PageSocket& socket) noexcept;
@@ -64,6 +67,8 @@ class Hub {
   void choose(Page& page, const ChooseView& wanted);
   void answer(Page& page, const AskRange& wanted);
   void ask(Page& page, const AskRobot& wanted);
+  void open(Page& page, const AskRecording& wanted);
+  void sendPiece(Page& page, const AskPiece& wanted);
   void drive(Page& page, const DriveMotor& wanted, Duration age);
   [[nodiscard]] std::string downNow() const;
   [[nodiscard]] std::string whyNotMoving(const Page& page) const;
@@ -78,6 +83,7 @@ class Hub {
   std::optional<std::string> robot_;
   RobotFeed feed_;
   std::string token_;
+  Recordings recordings_;
   std::vector<std::unique_ptr<Page>> pages_;
   std::uint64_t opened_ = 0;
   std::uint64_t turns_ = 0;

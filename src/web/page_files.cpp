@@ -50,6 +50,10 @@ Result<PageFiles> PageFiles::read(const std::string& folder) {
   return page;
 }
 
+void PageFiles::add(std::string path, PageFile file) {
+  files_.insert_or_assign(std::move(path), std::move(file));
+}
+
 const PageFile* PageFiles::find(std::string_view path) const {
   const auto file = files_.find(path == "/" ? std::string_view{"/index.html"} : path);
   return file == files_.end() ? nullptr : &file->second;

@@ -18,6 +18,8 @@ class PageFiles {
  public:
   [[nodiscard]] static Result<PageFiles> read(const std::string& folder);
 
+  /// One that is made, and in no folder.
+  void add(std::string path, PageFile file);
   /// By the path of a URL, "/" for index.html; null: there is none.
   [[nodiscard]] const PageFile* find(std::string_view path) const;
 

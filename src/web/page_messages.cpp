@@ -3,10 +3,13 @@
 #include <algorithm>
 #include <span>
 
+#include "bus/frame_text.hpp"
 #include "client/json_line.hpp"
 #include "client/module_text.hpp"
 #include "client/state_json.hpp"
+#include "link/event_text.hpp"
 #include "rc10_version.hpp"
+#include "survey/frame_words.hpp"
 
 namespace rc10::web {
 namespace {
@@ -89,6 +92,26 @@ std::string viewMessage(std::uint32_t view, const std::vector<std::string>& draw
                  {"signals", drawn},
                  {"unknown", unknown},
                  {"dropped_ticks", dropped_ticks}});
+}
+
+std::string recordingsMessage(std::int64_t seq, const std::vector<RecordingFile>& files) {
+  Json list = Json::array();
+  for (const auto& file : files)
+    list.push_back({{"name", file.name}, {"changed_us", file.changed_us}, {"live", file.live}});
+  return lineOf({{"type", "recordings"}, {"seq", seq}, {"recordings", std::move(list)}});
+}
+
+std::string wordsMessage(const AskWords& asked) {
+  Json events = Json::array();
+  for (const auto& event : asked.events)
+    events.push_back(link::eventText(event.code, event.value, event.extra, event.client));
+  Json frames = Json::array();
+  for (const auto& [bus, sent, text] : asked.frames) {
+    const auto frame = parseFrameText(text);
+    frames.push_back(frame ? survey::frameWords(*frame, asked.buses[bus], sent) : std::string{});
+  }
+  return lineOf(
+      {{"type", "words"}, {"seq", asked.seq}, {"events", std::move(events)}, {"frames", std::move(frames)}});
 }
 
 std::string responseMessage(std::int64_t seq, std::string_view status, std::string_view message,

@@ -8,6 +8,8 @@
 #include "link/link_protocol.hpp"
 #include "web/access.hpp"
 #include "web/daemon_end.hpp"
+#include "web/page_request.hpp"
+#include "web/recordings.hpp"
 #include "web/robot_feed.hpp"
 
 namespace rc10::web {
@@ -29,6 +31,9 @@ inline constexpr int kPageProtocol = 1;
 /// Names of the signals of a view that are drawn, in the order of its frames, and those that are not.
 [[nodiscard]] std::string viewMessage(std::uint32_t view, const std::vector<std::string>& drawn,
                                       const std::vector<std::string>& unknown, std::int64_t dropped_ticks);
+[[nodiscard]] std::string recordingsMessage(std::int64_t seq, const std::vector<RecordingFile>& files);
+/// Words for the numbers of a recording, in the order of the question; "": not known.
+[[nodiscard]] std::string wordsMessage(const AskWords& asked);
 /// To a request of the page, by its own number.
 [[nodiscard]] std::string responseMessage(std::int64_t seq, std::string_view status, std::string_view message,
                                           std::span<const link::NamedValue> values = {});

@@ -132,6 +132,85 @@ Result<PageRequest> driveOf(const Received& object) {
   return drive;
 }
 
+Result<PageRequest> recordingOf(const Received& object) {
+  const auto number = wholeOf(object, "number", 0, std::numeric_limits<std::uint32_t>::max());
+  if (!number) return tl::unexpected(number.error());
+  AskRecording ask{.number = static_cast<std::uint32_t>(*number), .name = textOf(object, "name")};
+  if (ask.name.empty()) return fail("'name' is missing");
+  return ask;
+}
+
+Result<PageRequest> pieceOf(const Received& object) {
+  const auto number = wholeOf(object, "number", 0, std::numeric_limits<std::uint32_t>::max());
+  if (!number) return tl::unexpected(number.error());
+  return AskPiece{static_cast<std::uint32_t>(*number)};
+}
+
+Result<PageRequest> recordingsOf(const Received& object) {
+  const auto seq = wholeOf(object, "seq", 0, kMaxExact);
+  if (!seq) return tl::unexpected(seq.error());
+  return AskRecordings{*seq};
+}
+
+bool isWhole32(const Received& value) {
+  return value.is_number_integer() && value.get<double>() >= std::numeric_limits<std::int32_t>::min() &&
+         value.get<double>() <= std::numeric_limits<std::int32_t>::max();
+}
+
+// Rows of an array, at most so many; null: there is none, or it is too long.
+const Received* rowsOf(const Received& object, const char* key, std::size_t most) {
+  const auto* rows = memberOf(object, key);
+  return rows != nullptr && rows->is_array() && rows->size() <= most ? rows : nullptr;
+}
+
+bool addEvent(const Received& row, std::vector<AskWords::Event>& events) {
+  if (!row.is_array() || row.size() != 4 || !row[3].is_string()) return false;
+  if (!isWhole32(row[0]) || !isWhole32(row[1]) || !isWhole32(row[2])) return false;
+  events.push_back({row[0].get<std::int32_t>(), row[1].get<std::int32_t>(), row[2].get<std::int32_t>(),
+                    row[3].get<std::string>()});
+  return true;
+}
+
+bool addFrame(const Received& row, std::size_t buses, std::vector<AskWords::Frame>& frames) {
+  if (!row.is_array() || row.size() != 3 || !row[0].is_number_unsigned() || !row[1].is_boolean() ||
+      !row[2].is_string())
+    return false;
+  const auto bus = row[0].get<std::uint64_t>();
+  if (bus >= buses) return false;
+  frames.push_back({static_cast<std::size_t>(bus), row[1].get<bool>(), row[2].get<std::string>()});
+  return true;
+}
+
+bool addModels(const Received& row, std::vector<std::vector<std::string>>& buses) {
+  if (!row.is_array() || row.size() > link::kMaxMotors) return false;
+  buses.emplace_back();
+  for (const auto& model : row) {
+    if (!model.is_string()) return false;
+    buses.back().push_back(model.get<std::string>());
+  }
+  return true;
+}
+
+Result<PageRequest> wordsOf(const Received& object) {
+  AskWords ask;
+  const auto seq = wholeOf(object, "seq", 0, kMaxExact);
+  if (!seq) return tl::unexpected(seq.error());
+  ask.seq = *seq;
+  const auto* events = rowsOf(object, "events", AskWords::kMost);
+  const auto* frames = rowsOf(object, "frames", AskWords::kMost);
+  const auto* buses = rowsOf(object, "buses", link::kMaxBuses);
+  if (events == nullptr || frames == nullptr || buses == nullptr)
+    return fail("'events', 'frames' or 'buses' is missing or too long");
+  const bool good =
+      std::all_of(events->begin(), events->end(),
+                  [&](const auto& row) { return addEvent(row, ask.events); }) &&
+      std::all_of(buses->begin(), buses->end(), [&](const auto& row) { return addModels(row, ask.buses); }) &&
+      std::all_of(frames->begin(), frames->end(),
+                  [&](const auto& row) { return addFrame(row, ask.buses.size(), ask.frames); });
+  if (!good) return fail("a row of 'events', 'frames' or 'buses' is none");
+  return ask;
+}
+
 // An e-stop counts whatever else its message says, and if it says nothing that can be read.
 PageRequest estopOf(std::int64_t seq) {
   return AskRobot{.seq = seq, .operation = toString(Operation::kEstop), .target = {}, .values = {}};
@@ -156,6 +235,10 @@ Result<PageRequest> parsePageRequest(std::string_view text) {
   if (type == "request") return operationOf(json);
   if (type == "drive") return driveOf(json);
   if (type == "clock") return clockOf(json);
+  if (type == "recordings") return recordingsOf(json);
+  if (type == "recording") return recordingOf(json);
+  if (type == "piece") return pieceOf(json);
+  if (type == "words") return wordsOf(json);
   return fail("there is no message of this type");
 }
 

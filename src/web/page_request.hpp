@@ -55,7 +55,42 @@ struct TellClock {
   Duration sent{};
 };
 
-using PageRequest = std::variant<ShowToken, ChooseView, AskRange, AskRobot, DriveMotor, TellClock>;
+/// The names of the recordings of this computer.
+struct AskRecordings {
+  std::int64_t seq = 0;
+};
+/// A recording, of which the first piece follows. What was asked for before is given up.
+struct AskRecording {
+  std::uint32_t number = 0;
+  std::string name;
+};
+/// The next piece of it.
+struct AskPiece {
+  std::uint32_t number = 0;
+};
+
+/// Words for the numbers of a recording that the page has.
+struct AskWords {
+  static constexpr std::size_t kMost = 256;  ///< Events, and frames.
+  struct Event {
+    std::int32_t code = 0;
+    std::int32_t value = 0;
+    std::int32_t extra = 0;
+    std::string client;
+  };
+  struct Frame {
+    std::size_t bus = 0;  ///< Place in `buses`.
+    bool sent = false;
+    std::string text;  ///< As candump writes it: "201#0011223344556677".
+  };
+  std::int64_t seq = 0;
+  std::vector<Event> events;
+  std::vector<std::vector<std::string>> buses;  ///< The models of the drives of each bus.
+  std::vector<Frame> frames;
+};
+
+using PageRequest = std::variant<ShowToken, ChooseView, AskRange, AskRobot, DriveMotor, TellClock,
+                                 AskRecordings, AskRecording, AskPiece, AskWords>;
 
 /// A stranger's message. The error is a sentence for him.
 [[nodiscard]] Result<PageRequest> parsePageRequest(std::string_view text);

@@ -239,7 +239,9 @@ using namespace serving;
 class Server::Parts {
  public:
   Parts(const ServerOptions& options, PageFiles files)
-      : shared_{.files = std::move(files), .names = options.names, .hub = Hub{options.robot, options.token}},
+      : shared_{.files = std::move(files),
+                .names = options.names,
+                .hub = Hub{options.robot, options.token, options.recordings}},
         acceptor_(context_),
         signals_(context_, SIGINT, SIGTERM),
         timer_(context_) {}

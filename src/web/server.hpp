@@ -6,8 +6,11 @@
 #include <string>
 
 #include "app/result.hpp"
+#include "blackbox/places.hpp"
+#include "link/run_dir.hpp"
 #include "web/access.hpp"
 #include "web/page_files.hpp"
+#include "web/recordings.hpp"
 
 namespace rc10::web {
 
@@ -17,6 +20,7 @@ struct ServerOptions {
   HostNames names;                   ///< Besides addresses and localhost.
   std::optional<std::string> robot;  ///< None: the only one of this computer.
   std::string token;                 ///< Token of pages on other computers; empty: there are none.
+  Recordings recordings{link::runDir(), blackbox::stateDir()};
 };
 
 /// HTTP and WebSocket for the page, in one thread: a bounded number of connections, each with bounded room.

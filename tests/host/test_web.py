@@ -30,6 +30,7 @@ from websockets.typing import Origin
 ELSEWHERE = "10.10.10.1"
 PAGE = "<!doctype html><title>page</title>"
 HEADER = struct.Struct("<BBHIIIdd")
+PIECE = 4
 
 
 @dataclass
@@ -47,6 +48,7 @@ class Columns:
     def read(data: bytes) -> Columns:
         version, kind, signals, count, view, _, first, column_us = HEADER.unpack_from(data)
         assert version == 1
+        assert kind != PIECE
         assert len(data) == HEADER.size + signals * count * 8
         values = struct.unpack_from(f"<{signals * count * 2}f", data, HEADER.size)
         rows = [list(values[i * count : (i + 1) * count]) for i in range(2 * signals)]
@@ -79,6 +81,26 @@ class Page:
             if isinstance(message, dict) and message["type"] == kind and wanted(message):
                 return message
         raise AssertionError(f"no such {kind}")
+
+    def recording(self, name: str) -> bytes:
+        """All pieces of a recording, each asked for when the one before has come."""
+        self.seq += 1
+        self.send(type="recording", number=self.seq, name=name)
+        file = bytearray()
+        while True:
+            data = self.connection.recv(timeout=PATIENCE_S)
+            if isinstance(data, str) and json.loads(data)["type"] == "response":
+                raise AssertionError(data)
+            if isinstance(data, str) or data[1] != PIECE:
+                continue
+            _, _, _, count, number, _, offset, total = HEADER.unpack_from(data)
+            assert number == self.seq
+            assert len(data) == HEADER.size + count
+            file = file or bytearray(int(total))
+            file[int(offset) : int(offset) + count] = data[HEADER.size :]
+            if offset == 0:
+                return bytes(file)
+            self.send(type="piece", number=number)
 
     def wait_columns(self, view: int) -> Columns:
         while True:
@@ -253,12 +275,15 @@ def test_a_page_from_elsewhere_needs_the_token_looks_and_stops(
             assert page.ask("enable")["message"] == "show the token first"
             page.send(type="view", view=1, signals=["wheel.target"], column_us=1000, span_us=0)
             assert page.wait("response")["status"] == "refused"
+            page.send(type="recording", number=1, name="host.blackbox")
+            assert page.wait("response")["message"] == "show the token first"
             page.send(type="token", token="a" * 32)
             assert page.wait("hello")["right"] == "nothing"
             page.send(type="token", token=server.token)
             assert page.wait("hello")["right"] == "look"
             page.wait("state")
             assert "tunnel" in page.ask("enable")["message"]
+            assert page.recording("host.blackbox").startswith(b"RC10BOX1")
         # An e-stop needs no right, and no readable message.
         with server.page(ELSEWHERE) as page:
             page.wait("hello")
@@ -266,6 +291,58 @@ def test_a_page_from_elsewhere_needs_the_token_looks_and_stops(
             daemon.wait_state(lambda state: state["state"] == "ESTOP", "it is stopped")
         with server.page() as page:
             assert page.wait("hello")["right"] == "command"
+
+
+def test_a_page_gets_the_recording_of_the_robot_that_runs_and_of_the_one_that_has_ended(
+    web: Web, daemon: Daemon, tmp_path: Path
+) -> None:
+    daemon.must("enable", "wheel")
+
+    def events(name: str, page: Page) -> list[str]:
+        (tmp_path / "got.blackbox").write_bytes(page.recording(name))
+        lines = map(
+            json.loads, daemon.must("blackbox", tmp_path / "got.blackbox", "--json").splitlines()
+        )
+        return [line["text"] for line in lines if line["kind"] == "event"]
+
+    with web.page() as page:
+        page.send(type="recordings", seq=3)
+        told = page.wait("recordings")
+        assert (told["seq"], [file["name"] for file in told["recordings"]]) == (
+            3,
+            ["host.blackbox"],
+        )
+        assert told["recordings"][0]["live"] is True
+        assert "ENABLING -> ACTIVE" in events("host.blackbox", page)
+        daemon.kill()
+        assert "ENABLING -> ACTIVE" in events("host.blackbox", page)
+        for name in ("../host.blackbox", "robot.yaml", "host.sock"):
+            page.send(type="recording", number=99, name=name)
+            refused = page.wait("response")
+            assert (refused["status"], refused["seq"]) == ("failed", 99)
+            assert "no such recording" in refused["message"]
+
+
+def test_numbers_of_a_recording_come_back_in_words(web: Web) -> None:
+    layout = json.loads(web.get("/recording-format.json").read())
+    assert layout["magic"] == "RC10BOX1"
+    with web.page() as page:
+        page.send(
+            type="words",
+            seq=4,
+            events=[[201, 7, 0, ""], [104, 0, 0, "\x1b[31m"], [9999, 1, 2, ""]],
+            buses=[["M3508"], []],
+            frames=[
+                [0, True, "200#2000F00000004000"],
+                [1, True, "200#2000F00000004000"],
+                [0, False, "x"],
+            ],
+        )
+        words = page.wait("words")
+    assert words["seq"] == 4
+    assert words["events"][0] == "7 ticks missed"
+    assert words["events"][2] == "event 9999"
+    assert words["frames"] == ["DJI command of 1 to 4: 10 A, -5 A, 0 A, 20 A", "", ""]
 
 
 def test_it_lives_when_rc10d_ends_says_so_and_finds_it_again(web: Web, daemon: Daemon) -> None:

@@ -17,7 +17,7 @@ import rc10
 from conftest import PATIENCE_MS, Studio
 
 REMEDY = REPO / "web" / "src" / "remedy.tsx"
-TABS = ("overview", "match", "plots", "move", "events", "timing")
+TABS = ("overview", "match", "plots", "move", "events", "blackbox", "timing")
 
 
 def open_tab(page: Page, name: str) -> None:

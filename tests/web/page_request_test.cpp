@@ -65,6 +65,27 @@ TEST(PageRequest, ThePageTellsItsClock) {
   EXPECT_EQ(parsed<TellClock>(R"({"type":"clock","sent_us":2500000})").sent, std::chrono::milliseconds{2500});
 }
 
+TEST(PageRequest, ARecordingIsAskedForByItsNameAndThenPieceByPiece) {
+  EXPECT_EQ(parsed<AskRecordings>(R"({"type":"recordings","seq":5})").seq, 5);
+  const auto recording = parsed<AskRecording>(R"({"type":"recording","number":6,"name":"hero.blackbox"})");
+  EXPECT_EQ(recording.number, 6U);
+  EXPECT_EQ(recording.name, "hero.blackbox");
+  EXPECT_EQ(parsed<AskPiece>(R"({"type":"piece","number":6})").number, 6U);
+}
+
+TEST(PageRequest, WordsAreAskedForEventsAndFrames) {
+  const auto words = parsed<AskWords>(
+      R"({"type":"words","seq":2,"events":[[101,3,-1,"teleop"]],"buses":[["M3508","GM6020"]],)"
+      R"("frames":[[0,true,"200#00"]]})");
+  ASSERT_EQ(words.events.size(), 1U);
+  EXPECT_EQ(words.events[0].extra, -1);
+  EXPECT_EQ(words.events[0].client, "teleop");
+  ASSERT_EQ(words.frames.size(), 1U);
+  EXPECT_TRUE(words.frames[0].sent);
+  EXPECT_EQ(words.frames[0].text, "200#00");
+  EXPECT_THAT(words.buses[words.frames[0].bus], ::testing::ElementsAre("M3508", "GM6020"));
+}
+
 TEST(PageRequest, WhatIsWrongIsRefusedInWords) {
   const std::string long_text(2000, 'x');
   for (const auto& text : std::initializer_list<std::string>{
@@ -76,6 +97,20 @@ TEST(PageRequest, WhatIsWrongIsRefusedInWords) {
            R"({"type":"shutdown"})",
            R"({"type":7})",
            R"({"type":"clock"})",
+           R"({"type":"recordings"})",
+           R"({"type":"recording","number":1})",
+           R"({"type":"recording","number":-1,"name":"a"})",
+           R"({"type":"piece"})",
+           R"({"type":"words","seq":1})",
+           R"({"type":"words","seq":1,"events":{},"buses":[],"frames":[]})",
+           R"({"type":"words","seq":1,"events":[[1,2,3]],"buses":[],"frames":[]})",
+           R"({"type":"words","seq":1,"events":[[1,2,3,4]],"buses":[],"frames":[]})",
+           R"({"type":"words","seq":1,"events":[[1,2,1e10,"a"]],"buses":[],"frames":[]})",
+           R"({"type":"words","seq":1,"events":[[1,2,99999999999,"a"]],"buses":[],"frames":[]})",
+           R"({"type":"words","seq":1,"events":[],"buses":[],"frames":[[0,true,"200#"]]})",
+           R"({"type":"words","seq":1,"events":[],"buses":[[]],"frames":[[-1,true,"200#"]]})",
+           R"({"type":"words","seq":1,"events":[],"buses":[[1]],"frames":[]})",
+           R"({"type":"words","seq":1,"events":[],"buses":[[],[],[],[],[]],"frames":[]})",
            R"({"type":"clock","sent_us":-1})",
            R"({"type":"drive","seq":1,"motor":"yaw","mode":"velocity","value":1})",
            R"({"type":"drive","seq":1,"mode":"velocity","value":1,"sent_us":1})",

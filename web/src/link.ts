@@ -5,6 +5,9 @@ import {
   type Diagnostics,
   type Down,
   type Hello,
+  type Piece,
+  type RecordedWords,
+  type RecordingFile,
   type Response,
   type Robot,
   type RobotEvent,
@@ -13,6 +16,7 @@ import {
   type ViewAnswer,
   kProtocol,
   readColumns,
+  readPiece,
 } from './protocol';
 
 export type Connection = 'connecting' | 'live' | 'lost';
@@ -31,6 +35,7 @@ const kMaxEvents = 500;
 const kFirstPauseMs = 500;
 const kLongestPauseMs = 5000;
 const kAnswerPatienceMs = 6000;
+const kMostRecordingBytes = 256 * 1024 * 1024;
 
 type Listener = () => void;
 
@@ -75,6 +80,8 @@ export class Link {
   private readonly listeners = new Set<Listener>();
   private readonly columnListeners = new Set<(columns: Columns) => void>();
   private readonly open = new Map<number, (answer: Response) => void>();
+  private readonly asked = new Map<number, (answer: RecordingFile[] | RecordedWords | null) => void>();
+  private onPiece: (piece: Piece | string) => void = () => {};
   private seq = 0;
   private clock = 0;
   private drawn = false;
@@ -151,6 +158,58 @@ export class Link {
     };
   }
 
+  /** Null: no answer. */
+  recordings(): Promise<RecordingFile[] | null> {
+    return this.askFor<RecordingFile[]>({ type: 'recordings' });
+  }
+
+  /** Words for numbers of a recording; null: no answer. */
+  words(of: { events: [number, number, number, string][]; buses: string[][]; frames: [number, boolean, string][] }): Promise<RecordedWords | null> {
+    return this.askFor<RecordedWords>({ type: 'words', ...of });
+  }
+
+  /** A recording of the robot's computer; a text says why not. Another one ends this one. */
+  recording(name: string, onShare: (share: number) => void): Promise<Uint8Array<ArrayBuffer> | string> {
+    const number = ++this.seq;
+    return new Promise((resolve) => {
+      this.onPiece('');
+      let file: Uint8Array<ArrayBuffer> | null = null;
+      let got = 0;
+      const done = (result: Uint8Array<ArrayBuffer> | string) => {
+        this.open.delete(number);
+        this.onPiece = () => {};
+        resolve(result);
+      };
+      this.open.set(number, (answer) => done(answer.message));
+      this.onPiece = (piece) => {
+        if (typeof piece === 'string') return done(piece);
+        if (piece.number !== number) return;
+        if (!(piece.total <= kMostRecordingBytes && piece.offset + piece.bytes.length <= piece.total)) return done('');
+        file ??= new Uint8Array(piece.total);
+        file.set(piece.bytes, piece.offset);
+        if (piece.offset === 0) return done(file);
+        got += piece.bytes.length;
+        onShare(got / piece.total);
+        this.send({ type: 'piece', number });
+      };
+      if (!this.send({ type: 'recording', number, name })) done('no connection');
+    });
+  }
+
+  private askFor<Answer extends RecordingFile[] | RecordedWords>(message: object): Promise<Answer | null> {
+    const seq = ++this.seq;
+    return new Promise((resolve) => {
+      const done = (answer: RecordingFile[] | RecordedWords | null) => {
+        clearTimeout(timer);
+        this.asked.delete(seq);
+        resolve(answer as Answer | null);
+      };
+      const timer = setTimeout(() => done(null), kAnswerPatienceMs);
+      this.asked.set(seq, done);
+      if (!this.send({ ...message, seq })) done(null);
+    });
+  }
+
   private send(message: object): boolean {
     if (this.socket?.readyState !== WebSocket.OPEN) return false;
     this.socket.send(JSON.stringify(message));
@@ -162,6 +221,7 @@ export class Link {
     this.known.state = null;
     for (const done of [...this.open.values()])
       done(failure(0, 'the connection was lost'));
+    for (const done of [...this.asked.values()]) done(null);
     this.changed();
     setTimeout(() => this.connect(), this.pauseMs);
     this.pauseMs = Math.min(2 * this.pauseMs, kLongestPauseMs);
@@ -169,6 +229,8 @@ export class Link {
 
   private take(data: string | ArrayBuffer): void {
     if (typeof data !== 'string') {
+      const piece = readPiece(data);
+      if (piece !== null) return this.onPiece(piece);
       const columns = readColumns(data);
       if (columns !== null) for (const listener of [...this.columnListeners]) listener(columns);
       return;
@@ -206,6 +268,12 @@ export class Link {
         this.shown = message.signals;
         this.onView(message);
         break;
+      case 'recordings':
+        this.asked.get(message.seq)?.(message.recordings);
+        return;
+      case 'words':
+        this.asked.get(message.seq)?.(message);
+        return;
       case 'response':
         this.open.get(message.seq)?.(message);
         break;

@@ -1,6 +1,7 @@
 import { render } from 'preact';
 import { useEffect, useMemo, useState } from 'preact/hooks';
 
+import { BlackBox } from './blackbox';
 import { StudioContext, useKnown, useStored, useStudio } from './context';
 import { DownNotice } from './down';
 import { Events } from './events';
@@ -13,7 +14,7 @@ import { Stop } from './stop';
 import { Timing } from './timing';
 import { type Language, storeLanguage, storedLanguage, wordsOf } from './words';
 
-const kParts = { overview: Overview, match: Match, plots: Plots, move: Move, events: Events, timing: Timing } as const;
+const kParts = { overview: Overview, match: Match, plots: Plots, move: Move, events: Events, blackbox: BlackBox, timing: Timing } as const;
 type Part = keyof typeof kParts;
 
 function Header(props: { language: Language; onLanguage: (language: Language) => void }) {

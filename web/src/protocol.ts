@@ -170,6 +170,27 @@ export interface Response {
   values: Record<string, number>;
 }
 
+/** A recording on the robot's computer. */
+export interface RecordingFile {
+  name: string;
+  changed_us: number;
+  live: boolean;
+}
+
+export interface Recordings {
+  type: 'recordings';
+  seq: number;
+  recordings: RecordingFile[];
+}
+
+/** Words for the numbers of a recording, in the order of the question; "": not known. */
+export interface RecordedWords {
+  type: 'words';
+  seq: number;
+  events: string[];
+  frames: string[];
+}
+
 export type ServerMessage =
   | Hello
   | Down
@@ -178,6 +199,8 @@ export type ServerMessage =
   | Diagnostics
   | RobotEvent
   | ViewAnswer
+  | Recordings
+  | RecordedWords
   | Response;
 
 export type FrameKind = 'next' | 'reset' | 'range';
@@ -220,5 +243,28 @@ export function readColumns(buffer: ArrayBuffer): Columns | null {
     count,
     min,
     max,
+  };
+}
+
+/** A piece of a recording; the one at 0 is the last. */
+export interface Piece {
+  number: number;
+  offset: number;
+  total: number;
+  bytes: Uint8Array;
+}
+const kPieceKind = 4;
+
+/** Null: no piece, or one whose length is wrong. */
+export function readPiece(buffer: ArrayBuffer): Piece | null {
+  if (buffer.byteLength < kHeaderBytes) return null;
+  const data = new DataView(buffer);
+  if (data.getUint8(0) !== 1 || data.getUint8(1) !== kPieceKind) return null;
+  if (buffer.byteLength !== kHeaderBytes + data.getUint32(4, true)) return null;
+  return {
+    number: data.getUint32(8, true),
+    offset: data.getFloat64(16, true),
+    total: data.getFloat64(24, true),
+    bytes: new Uint8Array(buffer, kHeaderBytes),
   };
 }

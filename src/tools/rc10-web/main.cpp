@@ -7,6 +7,8 @@
 #include <CLI/CLI.hpp>
 
 #include "client/page_token.hpp"
+#include "client/recording_format.hpp"
+#include "link/run_dir.hpp"
 #include "program.hpp"
 #include "rc10_version.hpp"
 #include "web/server.hpp"
@@ -57,6 +59,7 @@ int run(int argc, char** argv) {
   }
   auto files = web::PageFiles::read(page);
   if (!files) return complain(files.error());
+  files->add("/recording-format.json", {client::recordingFormatJson(), "application/json"});
   auto server = web::Server::listen(options, std::move(*files));
   if (!server) return complain(server.error());
   std::printf("rc10-web: http://%s:%u/%s%s\n", others ? hostName().c_str() : "localhost", (*server)->port(),
