@@ -1,0 +1,158 @@
+"""Drives of every family: commanded by somebody else, taken for another, turned while off."""
+# run-guest: --timeout 900
+
+from __future__ import annotations
+
+import math
+import re
+import time
+from typing import TYPE_CHECKING
+
+import pytest
+from family_rig import motors, rc10ctl, setting, text_of, wait_status, write_config
+from faultrig import ctl, proven
+from guestlib import Candump, Frame, run, wait_for
+from rig import MS
+from test_families import FAMILIES, Family
+from test_family_faults import SUBJECTS, moving, powered, rc10d, running
+
+if TYPE_CHECKING:
+    import contextlib
+    from pathlib import Path
+
+    from guestlib import Proc
+
+
+# ---- Somebody else
+
+NOT_ITS_SCALE, FOREIGN = 43, 9
+
+
+def sendable(frame: Frame) -> str:
+    """As cansend takes it."""
+    number = f"{frame.id:08X}" if frame.ext else f"{frame.id:03X}"
+    return f"{number}{'##1' if frame.fd else '#'}{frame.data.hex().upper()}"
+
+
+@pytest.mark.parametrize(
+    "family", [f for f in FAMILIES if f.name in SUBJECTS], ids=lambda family: family.name
+)
+def test_somebody_else_commands_a_drive(family: Family, tmp_path: Path) -> None:
+    config = write_config(tmp_path, f"name: motor, {family.keys}", bus=family.bus)
+    target = next(t for t in family.targets if t.mode == "velocity")
+    with Candump("vcan0") as bus, running(config, family.fake):
+        wait_status("READY")
+        rc10ctl("enable")
+        wait_status("ACTIVE")
+
+        def driven(value: float) -> contextlib.AbstractContextManager[Proc]:
+            wait_for(lambda: not any(state["owner"] for state in motors()), 2.0, "a free motor")
+            return setting("motor", target.mode, value, 30.0)
+
+        # As another controller that follows the same protocol: with commands for another speed.
+        with driven(target.value):
+            time.sleep(0.5)
+            theirs = moving(family, bus.frames())[-1]
+        with driven(target.value / 2):
+            time.sleep(0.5)
+            foreign_ns = time.time_ns()
+            for _ in range(3):
+                run("cansend", "vcan0", sendable(theirs))
+            wait_for(lambda: motors()[0]["status"] == "FAULT", 5.0, "FAULT", poll_s=0.05)
+        assert motors()[0]["fault"] == FOREIGN
+        time.sleep(0.3)
+        seen = [f for f in bus.frames() if f.t_ns >= foreign_ns]
+        ours = [f for f in moving(family, seen) if f.data != theirs.data]
+        rested = [f for f in seen if any(re.fullmatch(r, text_of(f)) for r in family.rest)]
+        assert rested[-1].t_ns > foreign_ns + 250 * MS, "rest goes on being sent"
+        proven(
+            f"{family.name}: three foreign commands within 100 ms",
+            "FAULT 9; rest goes on being sent",
+            foreign_ns,
+            max((f.t_ns for f in ours), default=foreign_ns),
+            25,
+        )
+
+
+# ---- Taken for another
+
+
+@pytest.mark.parametrize(
+    ("name", "fake"), [("RobStride", "RS05:127"), ("CubeMars in MIT mode", "AK80-6:5:mit")]
+)
+def test_a_drive_with_the_scale_of_another_model(name: str, fake: str, tmp_path: Path) -> None:
+    family = next(f for f in FAMILIES if f.name == name)
+    config = write_config(tmp_path, f"name: motor, {family.keys}", bus=family.bus)
+    with Candump("vcan0") as bus, running(config, fake):
+        wait_status("READY")
+        rc10ctl("enable")
+        wait_status("ACTIVE")
+        begun_ns = time.time_ns()
+        with setting("motor", "velocity", 60, 30.0):
+            wait_for(lambda: motors()[0]["status"] == "FAULT", 5.0, "FAULT", poll_s=0.05)
+        assert motors()[0]["fault"] == NOT_ITS_SCALE
+        time.sleep(0.3)
+        told = moving(family, [f for f in bus.frames() if f.t_ns >= begun_ns])
+        proven(
+            f"{name}: speeds and torques on the scale of another model",
+            "FAULT 43 in the first motion",
+            begun_ns,
+            max(f.t_ns for f in told),
+            1000,
+        )
+
+
+def test_a_drive_that_says_it_has_another_scale_is_not_enabled(tmp_path: Path) -> None:
+    family = next(f for f in FAMILIES if f.name == "Damiao")
+    config = write_config(tmp_path, f"name: motor, {family.keys}", bus=family.bus)
+    with Candump("vcan0") as bus, running(config, "DM4340:1"):
+        wait_status("READY")
+        assert ctl("--robot", "families", "enable").returncode == 1
+        assert motors()[0]["status"] == "FAULT"
+        # Of what moves it: enabling has none before the scale is known.
+        assert not any(text_of(f).startswith("001#") for f in moving(family, bus.frames()))
+    proven("Damiao: drive with the scale of another model", "not enabled", None, None, 0)
+
+
+# ---- The turn at power-up
+
+ABSOLUTE = {
+    "Damiao": ("DM4310:1", "model: DM4310, id: 1, master_id: 17"),
+    "MyActuator": ("RMD-X8-25:1", "model: RMD-X8-25, id: 1, absolute_encoder: true"),
+    "LK-Tech": ("LK-MG5010E-i10:5", "model: LK-MG5010E-i10, id: 5"),
+}
+PLACES_DEG = (-90, 0, 179, 181, 200, 215, -110)
+
+
+@pytest.mark.parametrize("name", ABSOLUTE)
+def test_a_power_cycle_at_each_place_of_the_travel_of_a_drive(name: str, tmp_path: Path) -> None:
+    fake, keys = ABSOLUTE[name]
+    travel = "angle_min_deg: -90, angle_max_deg: 200"
+    config = write_config(tmp_path, f"name: motor, {keys}, {travel}")
+    with rc10d(config):
+        for place in PLACES_DEG:
+            # Switched off, and turned by hand meanwhile: it knows its angle within a turn.
+            with powered(fake, math.remainder(place, 360)):
+                wait_status("READY")
+                # Some drives have to be asked for it.
+                wait_for(lambda: motors()[0]["zeroed"], 1.0, f"on its turn at {place}", 0.05)
+                motor = motors()[0]
+                assert abs(motor["total_angle_deg"] - place) < 1, (place, motor["total_angle_deg"])
+                rc10ctl("enable")
+                wait_status("ACTIVE")
+                aim_deg = min(max(place, -89), 199)
+                with setting("motor", "total_angle", aim_deg, 0.3) as hand:
+                    hand.wait(10.0)
+                moved_deg = motors()[0]["total_angle_deg"] - place
+                assert abs(moved_deg) < 30, (place, moved_deg)
+                rc10ctl("disable")
+                wait_status("READY")
+            time.sleep(1.0)  # no drive is off and on again sooner
+            wait_status("OFFLINE")
+    proven(
+        f"{name}: power cycle at {len(PLACES_DEG)} places of -90 to 200 deg and beyond",
+        "on its turn; no way round",
+        None,
+        None,
+        0,
+    )
