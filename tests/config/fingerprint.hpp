@@ -68,8 +68,7 @@ inline std::string fingerprint(const RobotConfig& config) {
       << config.rx.priority << ' ' << config.rx.cpu.value_or(-1) << ' ' << config.lcm.enabled << ' '
       << config.lcm.url << ' ' << config.lcm.state_hz << ' ' << config.blackbox_mib << '\n';
   for (const auto& contact : {config.estop_gpio, config.enabling_gpio, config.mode_gpio}) {
-    if (contact)
-      out << contact->pin.name() << ' ' << contact->closed_is_low << ' ' << contact->internal_bias;
+    if (contact) out << contact->pin.name() << ' ' << contact->closed_is_low << ' ' << contact->internal_bias;
     out << '\n';
   }
   if (const auto& heartbeat = config.heartbeat_gpio) {

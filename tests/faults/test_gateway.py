@@ -3,6 +3,8 @@
 
 from __future__ import annotations
 
+import contextlib
+import math
 import random
 import re
 import socket
@@ -10,6 +12,7 @@ import struct
 import time
 from pathlib import Path
 
+import pytest
 from faultrig import (
     FRONT,
     TICK_NS,
@@ -25,6 +28,7 @@ from guestlib import run
 from rig import gateway_pid
 
 import rc10
+from rc10.lcm_types import named_value_t, request_t
 
 WITHIN = VALIDITY_MS + 1
 SOCKET = "/run/rc10d/faults.sock"
@@ -161,3 +165,59 @@ def test_an_estop_while_driving_rests_all_motors() -> None:
         log.driven(start_ns, stop_ns, "left", "right", validity_ms=10)
         log.check()
         proven("e-stop through LCM", "rest, latched", stop_ns, log.last_torque_ns("left"), 10)
+
+
+@pytest.mark.parametrize("kept", ["16 idle clients keep every seat", "the gateway is killed"])
+def test_an_estop_gets_in(kept: str) -> None:
+    """By the datagram socket, whoever is there and whoever is not."""
+    with robot_under_test() as (_, robot, log), contextlib.ExitStack() as guests:
+        drive(robot, log, 0.2, left=rc10.velocity_rpm(60))
+        if kept.startswith("16"):
+            for _ in range(16):
+                link = guests.enter_context(socket.socket(socket.AF_UNIX, socket.SOCK_SEQPACKET))
+                link.connect(SOCKET)
+        start_ns = time.time_ns()
+        robot.command(left=rc10.velocity_rpm(60), validity_ms=500)
+        time.sleep(0.05)
+        if not kept.startswith("16"):
+            run("kill", "-KILL", str(gateway_pid()))
+        with socket.socket(socket.AF_UNIX, socket.SOCK_DGRAM) as way:
+            way.connect(SOCKET.replace(".sock", ".estop"))
+            asked_ns = time.time_ns()
+            way.send(b"pult")
+        time.sleep(0.1)
+        log.driven(start_ns, asked_ns, "left", validity_ms=5)
+        log.check()
+        proven(f"e-stop while {kept}", "rest, latched", asked_ns, log.last_torque_ns("left"), 2)
+
+
+def test_an_estop_whose_message_is_nonsense_otherwise() -> None:
+    with robot_under_test() as (_, robot, log):
+        start_ns = time.time_ns()
+        robot.command(left=rc10.velocity_rpm(60), validity_ms=500)
+        time.sleep(0.05)
+        message = request_t()
+        message.session, message.seq, message.client = 77, 1, "x" * 200
+        message.operation, message.target = "estop", "nobody" * 100
+        message.value_count = 17
+        message.values = [value(f"v{i}", math.nan) for i in range(17)]
+        asked_ns = time.time_ns()
+        Stranger().bytes(message.encode(), "faults.v1.request")
+        time.sleep(0.1)
+        assert robot.wait_for_state(5.0).estopped
+        log.driven(start_ns, asked_ns, "left", validity_ms=10)
+        log.check()
+        proven(
+            "e-stop with a name of 200 bytes, a target of 600 and 17 values",
+            "rest, latched",
+            asked_ns,
+            log.last_torque_ns("left"),
+            10,
+        )
+
+
+def value(name: str, number: float) -> named_value_t:
+    """One value of a request."""
+    named = named_value_t()
+    named.name, named.value = name, number
+    return named

@@ -3,8 +3,11 @@
 
 from __future__ import annotations
 
+import contextlib
+import os
 import re
 import signal
+import socket
 import subprocess
 import time
 from pathlib import Path
@@ -16,6 +19,7 @@ from faultrig import (
     REAR,
     TICK_NS,
     client,
+    ctl,
     drive,
     drives,
     proven,
@@ -27,6 +31,8 @@ from rig import BIN, BUILD, currents, wait_status
 
 import rc10
 
+SOCKET = "/run/rc10d/faults.sock"
+
 
 @pytest.mark.parametrize(
     ("number", "words"),
@@ -35,6 +41,8 @@ import rc10
         (signal.SIGHUP, "SIGHUP: its terminal is closed"),
         (signal.SIGTSTP, "SIGTSTP: Ctrl-Z"),
         (signal.SIGQUIT, "SIGQUIT: Ctrl-\\"),
+        (signal.SIGUSR1, "SIGUSR1 of a script that means another program"),
+        (signal.SIGXCPU, "SIGXCPU: a limit of CPU time"),
         (signal.SIGALRM, "SIGALRM, as every other signal that would end the process"),
     ],
 )
@@ -55,6 +63,90 @@ def test_a_signal_is_the_orderly_stop(number: signal.Signals, words: str) -> Non
             2,
         )
         assert ended_ns - asked_ns < 2_000_000_000
+
+
+@pytest.mark.parametrize(
+    ("number", "words"),
+    [
+        (signal.SIGTTIN, "SIGTTIN: in the background of its terminal"),
+        (signal.SIGTTOU, "SIGTTOU: its log in the background of its terminal"),
+        (signal.SIGXFSZ, "SIGXFSZ: a limit of file size"),
+        (signal.SIGPIPE, "SIGPIPE: nobody reads its log"),
+    ],
+)
+def test_a_signal_that_ends_nothing(number: signal.Signals, words: str) -> None:
+    with robot_under_test() as (process, robot, log):
+        start_ns = time.time_ns()
+        for t_s in robot.rate(100):
+            if t_s >= 0.6:
+                break
+            robot.command(left=rc10.velocity_rpm(60), validity_ms=40)
+            if abs(t_s - 0.3) < 0.005:
+                process.signal(number)
+                sent_ns = time.time_ns()
+        last_ns = time.time_ns()
+        log.driven(start_ns, last_ns, "left")
+        assert all(currents(f)[0] for f in log.frames(FRONT, sent_ns) if f.t_ns < last_ns)
+        assert robot.motor("left").status is rc10.MotorStatus.ACTIVE
+        log.check(other_bus=FRONT)
+        log.check()
+        proven(words, "the motors go on", None, None, 0)
+
+
+def test_a_hangup_that_nohup_ignores() -> None:
+    config = str(CONFIG)
+    with drives(), witness() as log, Proc("nohup", BIN / "rc10d", "-c", config) as process:
+        process.wait_line("robot '.*' runs", 10.0)
+        with client() as robot:
+            wait_status(robot, rc10.MotorStatus.READY)
+            robot.enable()
+            drive(robot, log, 0.2, left=rc10.velocity_rpm(60))
+            process.signal(signal.SIGHUP)
+            last_ns = drive(robot, log, 0.3, left=rc10.velocity_rpm(60))
+            assert log.last_torque_ns("left") >= last_ns - 2 * TICK_NS
+            log.check()
+        assert process.stop() == 0
+    proven("SIGHUP of a daemon that nohup started", "the motors go on", None, None, 0)
+
+
+def limit_descriptors(pid: int) -> None:
+    """From now on the process has no descriptor more than it has."""
+    used = 1 + max(int(number.name) for number in Path(f"/proc/{pid}/fd").iterdir())
+    run("prlimit", f"--pid={pid}", f"--nofile={used}:{used}")
+
+
+def test_the_daemon_has_no_descriptors_left() -> None:
+    with robot_under_test() as (process, robot, log):
+        drive(robot, log, 0.2, left=rc10.velocity_rpm(60))
+        limit_descriptors(process.pid)
+        # Sixteen, for there may be gaps among its numbers.
+        with contextlib.ExitStack() as guests:
+            for _ in range(16):
+                link = guests.enter_context(socket.socket(socket.AF_UNIX, socket.SOCK_SEQPACKET))
+                link.connect(SOCKET)
+            last_ns = drive(robot, log, 0.3, left=rc10.velocity_rpm(60))
+            assert log.last_torque_ns("left") >= last_ns - 2 * TICK_NS
+            assert "no file descriptors left: a client was sent away" in process.output()
+            start_ns = time.time_ns()
+            robot.command(left=rc10.velocity_rpm(60), validity_ms=500)
+            time.sleep(0.05)
+            asked_ns = time.time_ns()
+            done = ctl("estop")
+            # By the datagram; a client that could confirm it is sent away.
+            assert done.returncode == 3, done.stderr
+            assert "the e-stop was sent and is not confirmed" in done.stderr
+            time.sleep(0.05)
+        assert robot.wait_for_state(5.0).estopped
+        log.driven(start_ns, asked_ns, "left", validity_ms=500)
+        last_ns = log.last_torque_ns("left")
+        log.check()
+        proven(
+            "rc10d has no file descriptors left",
+            "new clients are sent away in words; the motors go on; an e-stop gets in, unconfirmed",
+            asked_ns,
+            last_ns,
+            30,
+        )
 
 
 @pytest.mark.parametrize("number", [signal.SIGKILL, signal.SIGSEGV, signal.SIGABRT])
@@ -215,6 +307,42 @@ def test_a_second_daemon_on_the_interface_is_refused() -> None:
         assert len(log.frames(FRONT, start_ns)) > 190
         proven(
             "a second rc10d on an interface",
+            "it refuses to start; the first misses no tick",
+            None,
+            None,
+            0,
+        )
+
+
+@pytest.mark.parametrize("way", ["another run folder", "another name of the interface"])
+def test_a_second_daemon_by_another_way(way: str, tmp_path: Path) -> None:
+    with robot_under_test() as (_, robot, log):
+        other = tmp_path / "second.yaml"
+        text = CONFIG.read_text().replace("robot: faults", "robot: second")
+        environment = dict(os.environ)
+        if way == "another run folder":
+            environment["RC10_RUN_DIR"] = str(tmp_path / "run")
+        else:
+            run("ip", "link", "property", "add", "dev", FRONT, "altname", "front0")
+            text = text.replace(FRONT, "front0")
+        other.write_text(text)
+        start_ns = time.time_ns()
+        second = subprocess.run(
+            [str(BIN / "rc10d"), "-c", str(other)],
+            capture_output=True,
+            text=True,
+            check=False,
+            timeout=60,
+            env=environment,
+        )
+        assert second.returncode == 1
+        assert "is driven by robot 'faults'" in second.stdout + second.stderr
+        drive(robot, log, 0.2, left=rc10.velocity_rpm(60))
+        log.check(other_bus=FRONT)
+        log.check()
+        assert len(log.frames(FRONT, start_ns)) > 190
+        proven(
+            f"a second rc10d on an interface, by {way}",
             "it refuses to start; the first misses no tick",
             None,
             None,
