@@ -21,8 +21,8 @@ namespace {
 // Until then its first target is in force, and rc10d has sent its first rows.
 constexpr Duration kUntilTaken = std::chrono::milliseconds{500};
 constexpr Duration kUntilTraced = std::chrono::seconds{3};
-// A lease that lapses is gone from the states within this time; a busy computer tells no more.
-constexpr Duration kUntilLetGo = std::chrono::milliseconds{200};
+// The next state shows that a lease has lapsed; without states nothing is told.
+constexpr Duration kUntilLetGo = std::chrono::seconds{2};
 constexpr Duration kSentKept = std::chrono::seconds{1};
 
 // A row has these at their places in Trace::signals.

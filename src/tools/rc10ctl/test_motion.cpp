@@ -141,8 +141,10 @@ class MotionSession {
     }
   }
 
-  /// What acts on the motor, by the newest state.
-  [[nodiscard]] Acting acting() const noexcept { return acting_; }
+  /// What the motor does now, by the newest state.
+  [[nodiscard]] const char* whatMotorDoes() const noexcept {
+    return held_ ? "is let go as soon as rc10d goes on" : client::whatActs(acting_);
+  }
 
  private:
   // False: rc10d has ended.
@@ -159,7 +161,9 @@ class MotionSession {
     if (link::open(datagram, trace_)) {
       run_.take(trace_);
     } else if (link::open(datagram, state_)) {
-      acting_ = run_.motor() < state_.motor_count ? state_.motors[run_.motor()].acting : Acting::kNothing;
+      const bool known = run_.motor() < state_.motor_count;
+      acting_ = known ? state_.motors[run_.motor()].acting : Acting::kNothing;
+      held_ = known && state_.motors[run_.motor()].owner.view() == command_.client.view();
       run_.take(state_);
     } else if (link::Event event; link::open(datagram, event)) {
       run_.take(event);
@@ -182,6 +186,7 @@ class MotionSession {
   link::Trace trace_;
   link::State state_;
   Acting acting_{};
+  bool held_ = false;  // its target is in force still
 };
 
 // Opened before anything moves; without a path there is none.
@@ -211,13 +216,13 @@ std::string title(const client::MotionSettings& settings) {
 }
 
 // What was wrong, or nothing.
-std::string verdict(const client::MotionRun& run, Acting acting) {
+std::string verdict(const client::MotionRun& run, const char* doing) {
   const auto& abort = run.aborted();
   if (!abort) return {};
   const bool moved = !run.curve().empty();
   return "test of " + run.settings().motor + " ended by " + toString(abort->criterion) +
          (moved ? " after " + client::quantity(run.curve().back().time_s, 3, "s") : "") + ": " + abort->text +
-         (moved ? "; " + run.settings().motor + " " + client::whatActs(acting) : "");
+         (moved ? "; " + run.settings().motor + " " + doing : "");
 }
 
 // One object, with what was measured until an abort too.
@@ -242,7 +247,7 @@ ExitCode testMotion(const Global& global, const TestMotionOptions& options) {
   MotionSession session(*rc10d, *run, options.priority);
   session.run();
   const auto report = client::reportOf(*run);
-  const auto why = verdict(*run, session.acting());
+  const auto why = verdict(*run, session.whatMotorDoes());
   if (global.json)
     printJson(report, *run, why);
   else
@@ -254,7 +259,7 @@ ExitCode testMotion(const Global& global, const TestMotionOptions& options) {
     std::fprintf(stderr, "rc10ctl: %s\n", why.c_str());
     return ExitCode::kFailed;
   }
-  if (!global.json) std::printf("%s %s\n", options.motor.c_str(), client::whatActs(session.acting()));
+  if (!global.json) std::printf("%s %s\n", options.motor.c_str(), session.whatMotorDoes());
   return ExitCode::kOk;
 }
 
