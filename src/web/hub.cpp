@@ -37,10 +37,7 @@ constexpr std::string_view statusWord(link::ResponseStatus status) {
 }  // namespace
 
 Hub::Hub(std::optional<std::string> robot, std::string token, Recordings recordings)
-    : robot_(std::move(robot)),
-      feed_(robot_),
-      token_(std::move(token)),
-      recordings_(std::move(recordings)) {}
+    : robot_(std::move(robot)), feed_(robot_), token_(std::move(token)), recordings_(std::move(recordings)) {}
 
 Hub::Page* Hub::pageOf(const PageSocket& socket) noexcept {
   const auto found =

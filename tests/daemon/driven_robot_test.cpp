@@ -6,8 +6,8 @@
 #include <gmock/gmock.h>
 
 #include "config/load_config.hpp"
+#include "daemon/virtual_robot.hpp"
 #include "module/dbus_protocol.hpp"
-#include "virtual_robot.hpp"
 
 namespace rc10::test::driven_robot_test {
 namespace {

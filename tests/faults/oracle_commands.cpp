@@ -50,10 +50,6 @@ constexpr double kAngleSlackDeg = 1.0;
   return to_a_place && (by_itself || slows(told, measured_rpm));
 }
 
-[[nodiscard]] bool lost(MotorStatus status) {
-  return status == MotorStatus::kOffline || status == MotorStatus::kFault;
-}
-
 }  // namespace
 
 // It is told something in its turn only, of ticks in which its bus carries frames.

@@ -34,13 +34,12 @@ static_assert(!TakesBareNumbers<Motor_Base>);
 static_assert(!MixesUnits<Motor_Base>);
 static_assert(TakesQuantities<Motor_Base>);
 
-DJI_Motor wheel() {
-  return DJI_Motor{
-      DjiMotorConfig{.name = "wheel", .model = &kM3508, .id = 1, .loops = kM3508.current.default_loops}};
+M3508 wheel() {
+  return M3508{DjiMotorConfig{.name = "wheel", .id = 1, .loops = kM3508.current.default_loops}};
 }
 
 TEST(MotorBase, QuantitiesBecomeTargetsInTheProjectsUnits) {
-  DJI_Motor motor = wheel();
+  M3508 motor = wheel();
   EXPECT_TRUE(motor.setTargetCurrent(500_mA));
   EXPECT_EQ(motor.target().mode, ControlMode::kCurrent);
   EXPECT_DOUBLE_EQ(motor.target().value, 0.5);
@@ -54,7 +53,7 @@ TEST(MotorBase, QuantitiesBecomeTargetsInTheProjectsUnits) {
 }
 
 TEST(MotorBase, RefusesAModeTheMotorLacksAndKeepsTheOldTarget) {
-  DJI_Motor motor = wheel();
+  M3508 motor = wheel();
   ASSERT_TRUE(motor.setTargetRPM(50_rpm));
   for (const auto mode : {ControlMode::kVoltage, ControlMode::kDuty, ControlMode::kImpedance}) {
     EXPECT_FALSE(motor.setTarget({.mode = mode, .value = 1.0})) << toString(mode);
@@ -65,7 +64,7 @@ TEST(MotorBase, RefusesAModeTheMotorLacksAndKeepsTheOldTarget) {
 }
 
 TEST(MotorBase, RefusesNumbersThatAreNotFinite) {
-  DJI_Motor motor = wheel();
+  M3508 motor = wheel();
   constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
   EXPECT_FALSE(motor.setTargetRPM(Rpm{kNan}));
   EXPECT_FALSE(motor.setTargetCurrent(Amperes{std::numeric_limits<double>::infinity()}));
@@ -78,7 +77,7 @@ TEST(MotorBase, RefusesNumbersThatAreNotFinite) {
 }
 
 TEST(MotorBase, AFeedForwardThatIsNotGivenIsZero) {
-  DJI_Motor motor = wheel();
+  M3508 motor = wheel();
   EXPECT_TRUE(motor.setTarget({.mode = ControlMode::kVelocity,
                                .value = 1.0,
                                .velocity_ff_rpm = kNotReported,
@@ -88,7 +87,7 @@ TEST(MotorBase, AFeedForwardThatIsNotGivenIsZero) {
 }
 
 TEST(MotorBase, RestsUntilOrderedOtherwise) {
-  DJI_Motor motor = wheel();
+  M3508 motor = wheel();
   EXPECT_EQ(motor.ordered(), FrameKind::kRest);
   EXPECT_EQ(motor.target().mode, ControlMode::kCoast);
 }

@@ -1,4 +1,5 @@
 #include <limits>
+#include <random>
 
 #include <gtest/gtest.h>
 

@@ -108,6 +108,17 @@ TEST(VescGolden, StatusFramesHaveTheValuesOfTheDocuments) {
   const auto five = vesc::decodeStatus5(vescFrame(0x1B07, "0000313801E10000"));
   EXPECT_EQ(five.steps, 12600);
   EXPECT_FLOAT_EQ(five.input_v, 48.1F);
+  const auto six = vesc::decodeStatus6(vescFrame(0x3A07, "06720CE4000001F4"));
+  EXPECT_FLOAT_EQ(six.adc1_v, 1.65F);
+  EXPECT_FLOAT_EQ(six.adc2_v, 3.3F);
+  EXPECT_FLOAT_EQ(six.adc3_v, 0.0F);
+  EXPECT_FLOAT_EQ(six.ppm, 0.5F);
+  const auto two = vesc::decodeStatus2(vescFrame(0xE07, "0000303900002710"));
+  EXPECT_DOUBLE_EQ(two.charge_used_ah, 1.2345);
+  EXPECT_DOUBLE_EQ(two.charge_returned_ah, 1.0);
+  const auto three = vesc::decodeStatus3(vescFrame(0xF07, "0001E240FFFFFFFF"));
+  EXPECT_DOUBLE_EQ(three.energy_used_wh, 12.3456);
+  EXPECT_DOUBLE_EQ(three.energy_returned_wh, -0.0001);
 }
 
 TEST(VescGolden, AHundredTurnsOfTwentyOnePolePairsAreAHundredTurns) {

@@ -8,8 +8,8 @@
 #include <string_view>
 #include <vector>
 
+#include "app/text_table.hpp"
 #include "client/quantity_text.hpp"
-#include "client/text_table.hpp"
 #include "link/words.hpp"
 
 namespace rc10::client {

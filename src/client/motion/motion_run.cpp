@@ -10,9 +10,9 @@
 #include "app/event_code.hpp"
 #include "app/limits.hpp"
 #include "app/printable.hpp"
+#include "app/text_table.hpp"
 #include "client/find_motor.hpp"
 #include "client/obstacle.hpp"
-#include "client/text_table.hpp"
 #include "link/words.hpp"
 
 namespace rc10::client {

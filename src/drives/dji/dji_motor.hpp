@@ -102,4 +102,18 @@ class DJI_Motor : public Motor_Base {
   float effort_ = 0.0F;
 };
 
+/// The three models under the users' names: `M3508 wheel{config}`. They differ only in their table.
+class M3508 : public DJI_Motor {
+ public:
+  explicit M3508(DjiMotorConfig config) : DJI_Motor((config.model = &kM3508, config)) {}
+};
+class M2006 : public DJI_Motor {
+ public:
+  explicit M2006(DjiMotorConfig config) : DJI_Motor((config.model = &kM2006, config)) {}
+};
+class GM6020 : public DJI_Motor {
+ public:
+  explicit GM6020(DjiMotorConfig config) : DJI_Motor((config.model = &kGM6020, config)) {}
+};
+
 }  // namespace rc10

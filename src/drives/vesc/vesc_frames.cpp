@@ -17,6 +17,10 @@ float scaled16(const CanFrame& frame, std::size_t at, float per_unit) noexcept {
   return static_cast<float>(readBigEndian<std::int16_t>(frame.payload(), at)) / per_unit;
 }
 
+double scaled32(const CanFrame& frame, std::size_t at, double per_unit) noexcept {
+  return static_cast<double>(readBigEndian<std::int32_t>(frame.payload(), at)) / per_unit;
+}
+
 }  // namespace
 
 std::int32_t toRaw(double value, double scale) noexcept {
@@ -57,6 +61,14 @@ Status1 decodeStatus1(const CanFrame& frame) noexcept {
           .duty = scaled16(frame, 6, 1000.0F)};
 }
 
+Status2 decodeStatus2(const CanFrame& frame) noexcept {
+  return {.charge_used_ah = scaled32(frame, 0, 1e4), .charge_returned_ah = scaled32(frame, 4, 1e4)};
+}
+
+Status3 decodeStatus3(const CanFrame& frame) noexcept {
+  return {.energy_used_wh = scaled32(frame, 0, 1e4), .energy_returned_wh = scaled32(frame, 4, 1e4)};
+}
+
 Status4 decodeStatus4(const CanFrame& frame) noexcept {
   return {.drive_c = scaled16(frame, 0, 10.0F),
           .motor_c = scaled16(frame, 2, 10.0F),
@@ -66,6 +78,13 @@ Status4 decodeStatus4(const CanFrame& frame) noexcept {
 
 Status5 decodeStatus5(const CanFrame& frame) noexcept {
   return {.steps = readBigEndian<std::int32_t>(frame.payload(), 0), .input_v = scaled16(frame, 4, 10.0F)};
+}
+
+Status6 decodeStatus6(const CanFrame& frame) noexcept {
+  return {.adc1_v = scaled16(frame, 0, 1000.0F),
+          .adc2_v = scaled16(frame, 2, 1000.0F),
+          .adc3_v = scaled16(frame, 4, 1000.0F),
+          .ppm = scaled16(frame, 6, 1000.0F)};
 }
 
 }  // namespace rc10::vesc

@@ -76,6 +76,14 @@ struct Status1 {
   float current_a = 0.0F;  ///< Positive when the motor takes power, negative when it gives power back.
   float duty = 0.0F;       ///< Duty cycle with the sign of the voltage.
 };
+struct Status2 {
+  double charge_used_ah = 0.0;
+  double charge_returned_ah = 0.0;
+};
+struct Status3 {
+  double energy_used_wh = 0.0;
+  double energy_returned_wh = 0.0;
+};
 struct Status4 {
   float drive_c = 0.0F;  ///< The transistors.
   float motor_c = 0.0F;  ///< Meaningless without a sensor.
@@ -86,8 +94,17 @@ struct Status5 {
   std::int32_t steps = 0;  ///< 6 per electrical turn, counting on over turns.
   float input_v = 0.0F;
 };
+struct Status6 {
+  float adc1_v = 0.0F;
+  float adc2_v = 0.0F;
+  float adc3_v = 0.0F;
+  float ppm = 0.0F;
+};
 [[nodiscard]] Status1 decodeStatus1(const CanFrame& frame) noexcept;
+[[nodiscard]] Status2 decodeStatus2(const CanFrame& frame) noexcept;
+[[nodiscard]] Status3 decodeStatus3(const CanFrame& frame) noexcept;
 [[nodiscard]] Status4 decodeStatus4(const CanFrame& frame) noexcept;
 [[nodiscard]] Status5 decodeStatus5(const CanFrame& frame) noexcept;
+[[nodiscard]] Status6 decodeStatus6(const CanFrame& frame) noexcept;
 
 }  // namespace rc10::vesc

@@ -43,9 +43,10 @@ int run(int argc, char** argv) {
   app.add_flag("--json", global.json,
                "answers, and says what went wrong, in JSON, one object a line; not set, jog, commission");
   Action action;
-  for (const auto add : {addList, addWatch, addStats, addRequests, addZero, addSet, addModules, addSignal,
-                         addGains, addConfigureDrive, addCheck, addConvertGains, addBlackbox, addDoctor,
-                         addScan, addJog, addCommission, addTestMotion, addHand, addWeb})
+  for (const auto add :
+       {addList,   addWatch, addStats,          addRequests,   addZero,         addSet,      addModules,
+        addSignal, addGains, addConfigureDrive, addCheck,      addConvertGains, addBlackbox, addDoctor,
+        addScan,   addJog,   addCommission,     addTestMotion, addHand,         addWeb})
     add(app, action);
   try {
     app.parse(argc, argv);

@@ -6,7 +6,7 @@
 #include <gmock/gmock.h>
 
 #include "blackbox/memory_box.hpp"
-#include "virtual_robot.hpp"
+#include "daemon/virtual_robot.hpp"
 
 namespace rc10::test::module_runner_test {
 namespace {
