@@ -101,7 +101,7 @@ enum LimitFlag : std::uint32_t {
   kLimitStall = 1U << 5U,
 };
 
-/// Of a request: request_t.lcm, and the black box, which holds the number.
+/// Operation of a request: request_t.lcm, and the black box, which holds the number.
 enum class Operation : std::uint8_t {
   kEnable = 0,
   kDisable = 1,

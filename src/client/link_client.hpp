@@ -22,7 +22,7 @@ class LinkClient {
   struct Options {
     std::string_view name;            ///< Name of the client in rc10d's log and as the owner of motors.
     std::uint32_t subscriptions = 0;  ///< link::Subscription bits.
-    std::string_view token = {};      ///< Of an entry of `clients`.
+    std::string_view token = {};      ///< Token of an entry of `clients`.
     Duration timeout{std::chrono::seconds{1}};
   };
 

@@ -7,7 +7,7 @@
 
 namespace rc10::client {
 
-/// Why the motor cannot take setpoints, and the remedy; empty if it can.
+/// Reason why the motor cannot take setpoints, and the remedy; empty if it can.
 [[nodiscard]] std::string obstacle(const link::State& state, const std::string& name,
                                    const link::MotorState& motor);
 

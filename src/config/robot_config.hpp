@@ -145,7 +145,7 @@ struct RobotConfig {
   ForbiddenAt tuning_locked_at = 0;      ///< Line of `tuning: locked`.
   ForbiddenAt clear_local_at = 0;        ///< Line of `clear: local`.
   std::optional<ContactGpioConfig> estop_gpio;
-  std::optional<ContactGpioConfig> enabling_gpio;  ///< Of a three-position enabling switch.
+  std::optional<ContactGpioConfig> enabling_gpio;  ///< Contact of a three-position enabling switch.
   std::optional<ContactGpioConfig> mode_gpio;      ///< Closed: full speed; open: reduced.
   std::optional<HeartbeatGpioConfig> heartbeat_gpio;
   int blackbox_mib = 16;  ///< 0: none.

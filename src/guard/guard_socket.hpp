@@ -23,7 +23,7 @@ class GuardSocket {
 
   [[nodiscard]] int descriptor() const noexcept { return socket_.get(); }
   struct Accepted {
-    UniqueFd connection;     ///< Of a process that may have a guard; empty: there is none.
+    UniqueFd connection;     ///< Connection of a process that may have a guard; empty: there is none.
     bool sent_away = false;  ///< One was, since there are no file descriptors left.
   };
   /// A connection that waits. Never waits itself.

@@ -29,7 +29,7 @@ namespace rc10::link {
 /// <run_dir>/<robot>.log.1.
 [[nodiscard]] std::string logPath(const std::string& run_dir, const std::string& robot);
 
-/// Why rc10d did not start with a file, until it does: <run_dir>/<name of the file>.refusal.
+/// Reason why rc10d did not start with a file, until it does: <run_dir>/<name of the file>.refusal.
 [[nodiscard]] std::string refusalPath(const std::string& run_dir, const std::string& config_file);
 
 /// Where rc10-guard listens: <run_dir>/guard.socket. No robot has a file of this name: its files

@@ -14,7 +14,7 @@ struct FamilyKey {
     kInteger,
     kFlag,
     kChoice,
-    // Of modules only:
+    // For modules only:
     kText,     ///< As `pattern` says; without one, of 1 to 128 characters.
     kMotor,    ///< The name of a motor.
     kSection,  ///< A map with `keys`.
@@ -31,7 +31,7 @@ struct FamilyKey {
   bool required = false;
   std::string_view about;  ///< For people; one key of one name says the same in every family.
   std::span<const FamilyKey> keys{};
-  std::string_view pattern{};  ///< Of the whole text: what ECMAScript and POSIX extended have in common.
+  std::string_view pattern{};  ///< Pattern of the whole text, common to ECMAScript and POSIX extended.
   std::string_view words{};    ///< The pattern in words: completes "use ..."; empty: the pattern itself.
 };
 

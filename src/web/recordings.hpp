@@ -15,7 +15,7 @@ namespace rc10::web {
 struct RecordingFile {
   std::string name;
   std::int64_t changed_us = 0;  ///< Since 1970.
-  bool live = false;            ///< Of the run folder: rc10d is writing it, or wrote it last.
+  bool live = false;            ///< In the run folder: rc10d is writing it, or wrote it last.
 };
 
 /// A recording on its way to a page.

@@ -45,6 +45,10 @@ NOT_RUN = {
         "docs/python.md",
         "import numpy as np\nimport rc10\nfrom my_policy",
     ): "a policy of one's own",
+    (
+        "docs/tuning.md",
+        "as_shipped: velocity, multisine",
+    ): "tests/host/test_motion.py runs the command; the figures are this computer's",
     ("docs/robot-programs.md", "lift = robot.move_to"): "python/tests/test_moves.py",
     (
         "docs/robot-programs.md",
@@ -83,7 +87,7 @@ BLOCKS = [
 
 
 def reason(block: Block) -> str:
-    """Why nothing runs it; empty: it is not on the list."""
+    """The reason why nothing runs it; empty: it is not on the list."""
     whys = [
         why
         for (page, first), why in NOT_RUN.items()

@@ -109,7 +109,7 @@ def test_a_drive_that_says_it_has_another_scale_is_not_enabled(tmp_path: Path) -
         wait_status("READY")
         assert ctl("--robot", "families", "enable").returncode == 1
         assert motors()[0]["status"] == "FAULT"
-        # Of what moves it: enabling has none before the scale is known.
+        # A command that moves it: enabling has none before the scale is known.
         assert not any(text_of(f).startswith("001#") for f in moving(family, bus.frames()))
     proven("Damiao: drive with the scale of another model", "not enabled", None, None, 0)
 

@@ -1,4 +1,4 @@
-"""Who may do what: identities, rights, replayed and forged messages."""
+"""Rights of clients: identities, rights, replayed and forged messages."""
 # run-guest: --timeout 900
 
 from __future__ import annotations

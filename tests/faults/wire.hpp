@@ -89,7 +89,7 @@ class Wire {
   [[nodiscard]] virtual bool idlesAtRest() const { return true; }
   /// Exactly one frame tells it something in each tick.
   [[nodiscard]] virtual bool toldOnceATick() const { return false; }
-  /// Of a damp that is an effort: how much of it a speed makes; kUnsaid: the drive damps by itself.
+  /// Effort for each rpm of a damp that is an effort; kUnsaid: the drive damps by itself.
   [[nodiscard]] virtual double dampPerRpm() const { return kUnsaid; }
 
  protected:

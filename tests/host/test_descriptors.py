@@ -9,6 +9,7 @@ import signal
 import socket
 import subprocess
 import sys
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -18,7 +19,9 @@ from hostlib.daemon import BIN
 from hostlib.program import Program, eventually
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Callable, Iterator
+
+    from hostlib.daemon import State
 
 # From what a loader needs to what every program has enough of.
 LIMITS = range(3, 24)
@@ -36,6 +39,14 @@ def limited(limit: int, *command: str | Path, env: dict[str, str]) -> tuple[int,
         check=False,
     )
     return done.returncode, done.stdout, done.stderr
+
+
+def stopped_since(count: int) -> Callable[[State], bool]:
+    return lambda state: bool(state["estop_count"] > count)
+
+
+def ends_or_says(program: Program, words: str) -> Callable[[], bool]:
+    return lambda: not program.running or words in program.output
 
 
 def judge(limit: int, outcome: tuple[int, str, str], expected: str) -> bool:
@@ -84,7 +95,7 @@ def test_an_estop_with_few_descriptors_is_one_or_fails_loudly() -> None:
             status, _, errors = limited(limit, BIN / "rc10ctl", "estop", env=daemon.env)
             assert status >= 0
             if status == 0:
-                daemon.wait_state(lambda s, before=count: s["estop_count"] > before, "stopped")
+                daemon.wait_state(stopped_since(count), "stopped")
                 daemon.must("clear")
             else:
                 assert errors.strip()
@@ -126,7 +137,7 @@ def test_a_gateway_without_descriptors_says_so_and_ends_or_tries_again(daemon: D
             env=daemon.env, prefix=("prlimit", f"--nofile={limit}", "--"),
         ) as gateway:  # fmt: skip
             ended = eventually(
-                lambda gateway=gateway: not gateway.running or "rc10-lcm: " in gateway.output,
+                ends_or_says(gateway, "rc10-lcm: "),
                 f"{limit} descriptors: it works, complains or ends",
             )
             assert ended
@@ -147,7 +158,7 @@ def test_rc10_web_without_descriptors_says_so_at_its_start(daemon: Daemon, tmp_p
             env=daemon.env, prefix=("prlimit", f"--nofile={limit}", "--"),
         ) as web:  # fmt: skip
             eventually(
-                lambda web=web: not web.running or "http://" in web.output,
+                ends_or_says(web, "http://"),
                 f"{limit} descriptors: it serves or ends",
             )
             if not web.running:
@@ -206,13 +217,14 @@ def answer(port: int) -> str:
 def test_a_guard_without_descriptors_does_not_start_or_sends_rc10d_away_in_words(
     tmp_path: Path,
 ) -> None:
+    served = tmp_path / "guard.socket"
     for limit in LIMITS:
         with Program(
             BIN / "rc10-guard", "--until-unused",
             env={"RC10_RUN_DIR": str(tmp_path)}, prefix=("prlimit", f"--nofile={limit}", "--"),
         ) as guard:  # fmt: skip
             eventually(
-                lambda guard=guard: not guard.running or (tmp_path / "guard.socket").exists(),
+                partial(lambda program: not program.running or served.exists(), guard),
                 f"{limit} descriptors: it listens or ends",
             )
             if not guard.running:

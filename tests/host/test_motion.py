@@ -81,7 +81,7 @@ def test_a_step_of_a_dji_motor_has_its_numbers_and_its_curve(robot: Daemon, tmp_
     table = tmp_path / "step.csv"
     step = result_of(robot, "wheel", *STEP, "--csv", table)
     numbers = step["step"]
-    # How good they are depends on the machine here; tests/client has systems with known answers.
+    # Their quality depends on the machine here; tests/client has systems with known answers.
     assert numbers["rise_s"] > 0.0
     assert numbers["overshoot_percent"] == pytest.approx(
         100.0 * max(0.0, numbers["peak"] / 60.0 - 1.0)
@@ -172,7 +172,7 @@ def test_the_end_is_the_on_timeout_of_the_motor(robot: Daemon) -> None:
 def ended_by(
     robot: Daemon, disturb: Callable[[Program], object], patience: tuple[str | float, ...] = ROOM
 ) -> str:
-    """What test-motion says when this is done while the wheel turns."""
+    """The output of test-motion when this is done while the wheel turns."""
     words: tuple[str | float, ...] = ("step", 60, "--max-current", 12, "--for", "60s", *patience)
     with robot.drive("test-motion", "wheel", *words) as test:
         robot.wait_motor("wheel", lambda motor: float(motor["velocity_rpm"]) > 50.0, "turns")
@@ -277,7 +277,7 @@ def test_a_file_that_cannot_be_written_is_named_before_anything_moves(robot: Dae
 
 
 def patient_blocks(page: str) -> list[Block]:
-    """What a page shows, for a machine that pauses."""
+    """The words of a page, for a machine that pauses."""
     found = blocks_run_by("tests/host/test_motion.py", REPO / "docs" / page)
     for bound, patience in (
         (

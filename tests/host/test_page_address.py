@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterator
     from pathlib import Path
 
-# Of a network that nobody has; on loopback, so that it stays here.
+# Addresses of a network that nobody has; on loopback, so that it stays here.
 ELSEWHERE = "198.51.100.7"
 
 

@@ -78,7 +78,9 @@ ABOVE_ROOMS = {"config/load_config.hpp"}
 # recogniser see no motor, and a motor neither of them.
 FAMILIES = "drives"
 SIMULATED = re.compile(r"_(simulated|recogniser|wording)")
-OF_SIMULATED = re.compile(r"_(simulated\w*|recogniser|wording|frames|model|family)\.hpp$|/(recogniser|wording)\.hpp$")
+OF_SIMULATED = re.compile(
+    r"_(simulated\w*|recogniser|wording|frames|model|family)\.hpp$|/(recogniser|wording)\.hpp$"
+)
 
 # Plain objects: no threads, locks, atomics or logging; who uses them decides about those.
 PLAIN = ("app", "bus", "motor", "drives", "module")

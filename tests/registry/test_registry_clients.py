@@ -41,7 +41,7 @@ def said_by(client: str) -> dict[str, Any]:
     return said
 
 
-def test_moteus() -> None:
+def test_moteus_turns_its_drive() -> None:
     said = said_by("moteus")
     assert said["modes"] == [0, 10, 0]
     assert said["faults"] == [0, 0, 0]
@@ -60,7 +60,7 @@ def test_damiao_motor() -> None:
     assert abs(said["stopped"]["torq"]) < 0.05
 
 
-def test_motorbridge() -> None:
+def test_motorbridge_turns_drives_of_three_families() -> None:
     said = said_by("motorbridge")
     assert said["damiao_ranges"] == pytest.approx([12.5, 30.0, 10.0])
     assert said["damiao"]["rad_s"] == pytest.approx(3.0, abs=0.3)

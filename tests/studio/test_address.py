@@ -11,7 +11,7 @@ from playwright.sync_api import Browser, expect
 
 from conftest import PATIENCE_MS, Studio
 
-# Of a network that nobody has; on loopback, so that it stays here.
+# Addresses of a network that nobody has; on loopback, so that it stays here.
 ELSEWHERE = "198.51.100.7"
 # Half blocks to an image, light where there is ink, and what a reader finds in it.
 READ = """([lines]) => {

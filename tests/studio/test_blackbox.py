@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterator
     from pathlib import Path
 
-# Of src/blackbox/format.hpp: magic, version, pid, file_bytes.
+# Offsets in src/blackbox/format.hpp: magic, version, pid, file_bytes.
 VERSION_AT = 8
 FILE_BYTES_AT = 16
 

@@ -7,6 +7,7 @@ import math
 import re
 import struct
 from collections.abc import Callable
+from typing import Any
 
 import pytest
 from playwright.sync_api import Page, WebSocketRoute, expect
@@ -17,7 +18,7 @@ NONE = "\N{EN DASH}"
 MINUS = "\N{MINUS SIGN}"
 XY = f"X{NONE}Y"
 
-# Of a signal by its place, at a time in seconds.
+# Values of a signal by its place, at a time in seconds.
 Signal = Callable[[int, float], float]
 
 
@@ -26,7 +27,7 @@ def answer_the_past(page: Page, signal: Signal) -> None:
 
     def relay(socket: WebSocketRoute) -> None:
         server = socket.connect_to_server()
-        view = {"view": 0, "signals": []}
+        view: dict[str, Any] = {"view": 0, "signals": []}
 
         def handle(message: str | bytes) -> None:
             told = json.loads(message)

@@ -328,7 +328,7 @@ def test_the_layout_is_remembered_for_each_robot_by_its_name(page: Page, studio:
 def test_an_event_leads_to_its_remedy_on_a_page_of_the_robot(page: Page, studio: Studio) -> None:
     open_tab(page, "events")
     studio.daemon.must("enable", "wheel")
-    # Of the motor's status nothing is to be mended.
+    # In the motor's status nothing is to be mended.
     row = page.locator(".events tr", has_text="ACTIVE").first
     expect(row).to_be_visible()
     expect(row.get_by_role("link")).to_have_count(0)

@@ -40,7 +40,7 @@ TEST(FrameWords, FamiliesThatAreNotOnTheBusSayNothing) {
   EXPECT_EQ(words("203#1000F44806662D00", {"no such model"}), "");
 }
 
-TEST(FrameWords, Vesc) {
+TEST(FrameWords, AVescSaysItsStatusAndItsCommand) {
   EXPECT_EQ(words("00000968#0000271000640064", {"VESC"}),
             "VESC 104 status 1: velocity 10000 erpm, current 10 A, duty 0.1");
   EXPECT_EQ(words("00000101#00002710", {"VESC"}, true), "VESC 1 command: current 10 A");

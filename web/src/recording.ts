@@ -5,7 +5,7 @@ import { type Field, type RecordingFormat, type Structure, numberAt, textAt } fr
 /** The file as a whole is none that can be read. */
 export interface Refusal {
   why: 'empty' | 'no_recording' | 'version' | 'too_large' | 'too_short' | 'header';
-  /** Of `header`: the field, its value and the largest that is possible. */
+  /** A place in `header`: the field, its value and the largest that is possible. */
   field?: string;
   found?: number;
   most?: number;
@@ -99,7 +99,7 @@ export class Recording {
   readonly damages: Damage[] = [];
   /** All damages, also those that are not listed. */
   damageCount = 0;
-  /** Of all records, in the order of time: µs since the first of them. */
+  /** Times of all records, in order: µs since the first of them. */
   times: Float64Array;
   /** CLOCK_MONOTONIC of the first record, in ns. */
   first_ns = 0;

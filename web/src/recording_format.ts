@@ -6,7 +6,7 @@ export interface Field {
   /** Bytes from the beginning of its structure. */
   at: number;
   type: 'u8' | 'u16' | 'u32' | 'u64' | 'i8' | 'i16' | 'i32' | 'i64' | 'f32' | 'f64' | 'text';
-  /** Of one element. */
+  /** Size of one element. */
   bytes: number;
   count: number;
 }

@@ -59,7 +59,7 @@ export interface EventRow {
   value: number;
   extra: number;
   client: string;
-  /** Of a module, in its own words; "": rc10-web has them. */
+  /** Words of a module, its own; "": rc10-web has them. */
   text: string;
 }
 

@@ -13,7 +13,7 @@ if TYPE_CHECKING:
 
 
 class Parser(argparse.ArgumentParser):
-    """Of a tool: it parses sys.argv."""
+    """The parser of a tool: it parses sys.argv."""
 
     def error(self, message: str) -> NoReturn:
         """Ends the program with status 2; an option that does not exist is told before all else."""

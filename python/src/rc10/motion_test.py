@@ -174,7 +174,7 @@ def _result_of(words: list[str]) -> dict[str, Any]:
         raise Rc10Error(
             f"{words[0]} is not installed here: install rc10d's package, or give program="
         ) from error
-    # What rc10ctl does not understand is told on stderr alone.
+    # A mistake of usage is told on stderr alone.
     result: dict[str, Any] = json.loads(done.stdout or "{}")
     said = result.get("error") or done.stderr.strip().removeprefix("rc10ctl: ")
     if abort := result.get("abort"):

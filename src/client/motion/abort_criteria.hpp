@@ -47,7 +47,7 @@ struct Abort {
   std::string text;  ///< Cause and remedy.
 };
 
-/// Why this test must not begin: its target alone would leave the bounds, or a bound is none.
+/// Reason why this test must not begin: its target alone would leave the bounds, or a bound is none.
 [[nodiscard]] Result<void> admits(const AbortCriteria& criteria, const Excitation& excitation,
                                   ControlMode mode);
 

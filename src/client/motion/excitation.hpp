@@ -21,7 +21,7 @@ struct ExcitationSettings {
   double base = 0.0;        ///< Target before the excitation, and the centre of sines.
   double amplitude = 0.0;   ///< Height of a step or ramp, with its sign; peak of sines.
   double time_s = 1.5;      ///< Duration of the excitation, after the lead.
-  double rate_per_s = 0.0;  ///< Of a ramp.
+  double rate_per_s = 0.0;  ///< Slope of a ramp.
   double from_hz = 1.0;     ///< Lowest frequency; the distance of a multisine's lines too.
   double to_hz = 20.0;
   bool linear = false;  ///< Sweep: the frequency rises by equal amounts, not by equal ratios.
@@ -58,7 +58,7 @@ class Excitation {
   [[nodiscard]] double multisineAt(double time_s) const noexcept;
 
   ExcitationSettings settings_;
-  std::vector<double> phases_rad_;  ///< Of a multisine's lines.
+  std::vector<double> phases_rad_;  ///< Phases of a multisine's lines.
   double line_amplitude_ = 0.0;
 };
 

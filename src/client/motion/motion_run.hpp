@@ -59,7 +59,7 @@ class MotionRun {
 
   /// The motor has been let go, or is another's.
   [[nodiscard]] bool over() const noexcept { return phase_ == Phase::kOver; }
-  /// Why it ended before its time.
+  /// Reason why it ended before its time.
   [[nodiscard]] const std::optional<Abort>& aborted() const noexcept { return abort_; }
   /// The ticks in which its target was in force.
   [[nodiscard]] const Curve& curve() const noexcept { return curve_; }
@@ -110,7 +110,7 @@ class MotionRun {
   MonotonicTime start_{};
   MonotonicTime let_go_{};
   double origin_ = 0.0;
-  double start_value_ = 0.0;  ///< Of the excitation, from which it approaches its base.
+  double start_value_ = 0.0;  ///< Value of the excitation, from which it approaches its base.
   double start_deg_ = 0.0;
   std::optional<link::State> state_;
   bool untraced_ = false;  ///< rc10d traces not all of the signals: other clients have its room.

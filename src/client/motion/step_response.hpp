@@ -20,7 +20,7 @@ struct StepResponse {
 [[nodiscard]] StepResponse judgeStep(std::span<const double> time_s, std::span<const double> response,
                                      double start, double target);
 
-/// Of target less response; NaN samples are left out.
+/// Error of target less response; NaN samples are left out.
 struct FollowingError {
   double rms = std::numeric_limits<double>::quiet_NaN();
   double max = std::numeric_limits<double>::quiet_NaN();  ///< The largest magnitude.

@@ -27,7 +27,7 @@ struct MotorParse {
   }
   [[nodiscard]] bool knowsItsAngle() const noexcept { return traits.absolute && gear() == traits.gear_ratio; }
   [[nodiscard]] double gear() const noexcept { return gearRatioOf(motor(), traits); }
-  /// Of a model whose speed nobody knows: what the user allows, or 0.
+  /// For a model of unknown speed: the limit of the user, or 0.
   [[nodiscard]] double noLoadRpm() const noexcept {
     if (traits.no_load_rpm <= 0.0F) return static_cast<double>(motor().velocity_limit_rpm);
     return static_cast<double>(traits.no_load_rpm) * traits.gear_ratio / gear();

@@ -12,7 +12,7 @@ namespace {
 
 // A loop overshoots its target, and measured speeds are noisy.
 constexpr float kTolerance = 0.25F;
-// Of a motor whose fastest speed nobody knows.
+// For a motor of unknown fastest speed.
 constexpr float kFullOfReduced = 4.0F;
 
 /// Fastest speed of a target.

@@ -45,7 +45,7 @@ class Feeds {
   Connections& connections_;
   Publication publication_;
   LateTickCauses late_causes_;
-  DurationHistogram state_ages_;  ///< Of the feedback in each state, when it is sent.
+  DurationHistogram state_ages_;  ///< Age of the feedback in each state, when it is sent.
   TraceDesk trace_desk_;
   // One of each large message, filled in anew for every publication.
   link::State state_;

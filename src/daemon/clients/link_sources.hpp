@@ -18,8 +18,8 @@ struct LinkSources {
   std::span<const BusInbox> inboxes;
   const TickTiming& timing;
   const RobotDescription& robot;
-  std::function<std::uint64_t()> page_faults;   ///< Of the real-time threads, after start.
-  ThreadFacts tick_thread{};                    ///< Of the scheduler thread.
+  std::function<std::uint64_t()> page_faults;   ///< Page faults of the real-time threads, after start.
+  ThreadFacts tick_thread{};                    ///< Facts of the scheduler thread.
   std::function<void(const link::Event&)> log;  ///< Every event, for the log.
   std::function<void()> housekeeping;           ///< Called ten times a second: the watchdog.
 };

@@ -91,7 +91,7 @@ class RequestDesk {
 
   const Admission& admission_;
   const RobotDescription& robot_;
-  std::vector<MotorLoops> loops_;  ///< Of each motor, with the gains in force.
+  std::vector<MotorLoops> loops_;  ///< Loops of each motor, with the gains in force.
   std::uint64_t next_order_id_ = 1;
   std::deque<Open> open_;
   AnsweredRequests answered_;

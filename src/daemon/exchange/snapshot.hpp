@@ -79,7 +79,7 @@ struct Snapshot {
   Stop stop;                ///< Reason why it is not in RUN,
   MonotonicTime stopped{};  ///< and since when; 0: it is.
   std::uint32_t estops = 0;
-  std::uint32_t conditions = 0;  ///< Of Condition, as far as they may change.
+  std::uint32_t conditions = 0;  ///< Bits of Condition, as far as they may change.
   std::size_t motor_count = 0;
   std::size_t bus_count = 0;
   std::array<MotorSnapshot, kMaxMotors> motors;

@@ -54,7 +54,7 @@ class VESC_Motor : public SoloMotor {
   /// Degrees of the drive's encoder since the last sample.
   struct Way {
     double moved = 0.0;
-    double off = 0.0;  ///< How far that is from where the speed has taken it.
+    double off = 0.0;  ///< Distance from where the speed has taken it.
     bool doubtful = false;
   };
   [[nodiscard]] Way wayTo(double now_deg, Duration gap) const noexcept;

@@ -12,10 +12,10 @@ namespace rc10 {
 /// integrity. At the output shaft.
 struct ReducedConfig {
   float velocity_rpm = 0.0F;                 ///< 0: the speed is not reduced.
-  float effort_share = 1.0F;                 ///< Of the effort limit; 1: not reduced.
+  float effort_share = 1.0F;                 ///< Share of the effort limit; 1: not reduced.
   Duration within{std::chrono::seconds{1}};  ///< A shaft that is faster after that is a fault.
   float slew_rpm_per_s = 0.0F;               ///< On the way down; 0: half of `within`.
-  float tolerance_rpm = 0.0F;                ///< Of the monitored speed, above velocity_rpm.
+  float tolerance_rpm = 0.0F;                ///< Tolerance of the monitored speed, above velocity_rpm.
   float full_rpm = 0.0F;                     ///< From here the speed is limited no more.
 
   [[nodiscard]] bool any() const noexcept { return velocity_rpm > 0.0F || effort_share < 1.0F; }

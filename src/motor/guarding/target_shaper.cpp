@@ -187,7 +187,7 @@ TargetShaper::Shaped TargetShaper::shapeEffort(Target asked, const MotorFeedback
   return out;
 }
 
-// Of a drive whose speed per effort nobody knows, a ceiling only ends what drives the shaft beyond it.
+// For a drive of unknown speed per effort, a ceiling only ends what drives the shaft beyond it.
 double TargetShaper::effortTowards(double allowed_rpm, double sign,
                                    const MotorFeedback& feedback) const noexcept {
   const bool known = config_.approach_effort_per_rpm > 0.0F || config_.effort_per_rpm > 0.0F;

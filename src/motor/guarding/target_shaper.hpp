@@ -78,7 +78,7 @@ class TargetShaper {
   [[nodiscard]] bool bounded(const MotorFeedback& feedback) const noexcept;
   [[nodiscard]] Envelope envelope(double total_angle_deg) const noexcept;
   [[nodiscard]] bool reduced() const noexcept { return std::isfinite(ceiling_rpm_); }
-  /// Of the soft limits, where there are any, and the ceiling.
+  /// Bounds of the soft limits, where there are any, and of the ceiling.
   [[nodiscard]] Envelope allowedSpeeds(const MotorFeedback& feedback) const noexcept;
   /// Limit whose allowed speed this is.
   [[nodiscard]] LimitFlag limitOf(double allowed_rpm) const noexcept {
@@ -110,7 +110,7 @@ class TargetShaper {
   double velocity_ff_rpm_ = 0.0;            ///< Slewed, too.
   double torque_ff_nm_ = 0.0;
   double ceiling_rpm_ = std::numeric_limits<double>::infinity();
-  double share_ = 1.0;  ///< Of the soft start that is over; 1: all.
+  double share_ = 1.0;  ///< Share of the soft start that is over; 1: all.
   double soft_ = 0.0;   ///< Place of a soft start on its way to what is asked, in the unit of the mode.
 };
 

@@ -178,7 +178,7 @@ class Driver {
     return now.owner.view() == kClientName && (is(setpoint_.target) || is(sent_before_));
   }
 
-  // Why the motor does not do what it is told; empty if it does.
+  // Reason why the motor does not do what it is told; empty if it does.
   std::string refused() {
     if (motor() == nullptr) return {};
     if (inForce()) {

@@ -141,7 +141,7 @@ class MotionSession {
     }
   }
 
-  /// What the motor does now, by the newest state.
+  /// The motor's action by the newest state.
   [[nodiscard]] const char* whatMotorDoes() const noexcept {
     return held_ ? "is let go as soon as rc10d goes on" : client::whatActs(acting_);
   }
@@ -215,7 +215,7 @@ std::string title(const client::MotionSettings& settings) {
   return text;
 }
 
-// What was wrong, or nothing.
+// The mistake, or nothing.
 std::string verdict(const client::MotionRun& run, const char* doing) {
   const auto& abort = run.aborted();
   if (!abort) return {};

@@ -11,7 +11,6 @@ from typing import TYPE_CHECKING
 import can
 
 from rc10.fakes.damiao_model import MODELS
-
 from rc10.spelling import not_one_of
 
 if TYPE_CHECKING:
