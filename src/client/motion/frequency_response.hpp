@@ -39,7 +39,8 @@ struct FrequencyBand {
 /// Where the gain of a closed loop falls below -3 dB for the first time; NaN: nowhere in the response.
 [[nodiscard]] double bandwidthHz(const FrequencyResponse& closed_loop);
 
-/// Margins of the open loop L that closed_loop = L / (1 + L) has. NaN: the crossing lies outside of the response.
+/// Margins of the open loop L that closed_loop = L / (1 + L) has. NaN: the crossing lies outside of the
+/// response.
 struct StabilityMargins {
   double gain_db = std::numeric_limits<double>::quiet_NaN();
   double gain_at_hz = std::numeric_limits<double>::quiet_NaN();  ///< Its phase is -180 degrees there.

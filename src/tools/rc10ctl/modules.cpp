@@ -69,8 +69,8 @@ std::vector<std::string_view> viewsOf(std::span<const link::Name> names) {
   return views;
 }
 
-/// Reason why the module does not do what it is told; empty if it does. `certain`: its state shows our inputs by
-/// now, if it takes them.
+/// Reason why the module does not do what it is told; empty if it does. `certain`: its state shows our inputs
+/// by now, if it takes them.
 std::string whyNotObeyed(const client::ModuleView& module, Feed& feed, bool certain) {
   const std::string name = printable(module.name.view());
   for (const auto& event : feed.takeEvents()) {
