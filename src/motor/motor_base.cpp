@@ -2,6 +2,8 @@
 
 #include <cmath>
 
+#include "app/limits.hpp"
+
 namespace rc10 {
 namespace {
 
@@ -31,6 +33,15 @@ bool Motor_Base::setTarget(const Target& target) noexcept {
   if (!normalise(accepted.stiffness_nm_per_rad) || !normalise(accepted.damping_nms_per_rad)) return false;
   target_ = accepted;
   return true;
+}
+
+void Motor_Base::order(FrameKind kind, const Target& in_force) noexcept {
+  ordered_ = kind;
+  Target& target = in_force_.emplace(in_force);
+  for (float* field : {&target.velocity_ff_rpm, &target.torque_ff_nm, &target.stiffness_nm_per_rad,
+                       &target.damping_nms_per_rad}) {
+    *field = finiteOr0(*field);
+  }
 }
 
 bool Motor_Base::setTargetCurrent(Amperes current) noexcept {

@@ -61,11 +61,9 @@ class Motor_Base : public FrameListener {
     ordered_ = kind;
     in_force_.reset();
   }
-  /// The same, with a target that setTarget() took, as bounded by the guards, for update() to follow.
-  void order(FrameKind kind, const Target& in_force) noexcept {
-    ordered_ = kind;
-    in_force_ = in_force;
-  }
+  /// The same, with the target as bounded by the guards, for update() to follow. NaN in an optional field
+  /// becomes 0, as in setTarget().
+  void order(FrameKind kind, const Target& in_force) noexcept;
   [[nodiscard]] FrameKind ordered() const noexcept { return ordered_; }
 
   /// Before a target of this mode is shaped and followed: a motor whose encoder is absolute, and which may

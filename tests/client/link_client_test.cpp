@@ -1,6 +1,8 @@
 #include "client/link_client.hpp"
 
 #include <chrono>
+#include <cstdint>
+#include <string>
 #include <thread>
 
 #include <gmock/gmock.h>
@@ -15,6 +17,10 @@ namespace {
 using testing::HasSubstr;
 
 constexpr auto kShort = std::chrono::milliseconds{50};
+
+std::string versionWords(std::uint32_t theirs) {
+  return "link version " + std::to_string(theirs) + ", not " + std::to_string(link::kProtocolVersion);
+}
 
 std::int64_t nowNs() { return Duration{std::chrono::steady_clock::now().time_since_epoch()}.count(); }
 
@@ -63,7 +69,7 @@ TEST(LinkClientGreeting, OfAnotherVersionNamesBothVersions) {
   welcome.protocol_version = link::kProtocolVersion + 7;
   rc10d.send(welcome);
   const auto error = greetingError(rc10d);
-  EXPECT_THAT(error, HasSubstr("link version 10, not 3"));
+  EXPECT_THAT(error, HasSubstr(versionWords(link::kProtocolVersion + 7)));
   EXPECT_THAT(error, HasSubstr("install both from the same"));
 }
 
@@ -71,12 +77,12 @@ TEST(LinkClientGreeting, OfAnotherVersionWithAnotherWelcomeIsUnderstoodAllTheSam
   FakeRc10d rc10d;
   struct {
     link::Header header{link::MessageType::kWelcome, 20};
-    std::uint32_t version = 4;
+    std::uint32_t version = link::kProtocolVersion + 1;
     std::array<char, 8> news{};
   } other;
   static_assert(sizeof(other) == 20);
   rc10d.sendBytes(std::as_bytes(std::span{&other, 1}));
-  EXPECT_THAT(greetingError(rc10d), HasSubstr("link version 4, not 3"));
+  EXPECT_THAT(greetingError(rc10d), HasSubstr(versionWords(link::kProtocolVersion + 1)));
 }
 
 TEST(LinkClientGreeting, LargerThanAnyKnownWelcomeIsAnotherVersion) {
@@ -87,7 +93,7 @@ TEST(LinkClientGreeting, LargerThanAnyKnownWelcomeIsAnotherVersion) {
   const std::uint32_t version = 1;
   std::memcpy(bytes.data() + sizeof(header), &version, sizeof(version));
   rc10d.sendBytes(bytes);
-  EXPECT_THAT(greetingError(rc10d), HasSubstr("link version 1, not 3"));
+  EXPECT_THAT(greetingError(rc10d), HasSubstr(versionWords(1)));
 }
 
 TEST(LinkClientGreeting, OfSomethingElseIsNotAWelcome) {

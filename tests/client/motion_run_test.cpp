@@ -143,7 +143,7 @@ Robot robotFor(const MotionSettings& settings) {
 /// The abort of a step that this disturbs when the motor turns; the motor has been let go.
 Abort disturbed(const std::function<void(Robot&)>& disturb, MotionSettings settings = stepTo(60.0)) {
   auto robot = robotFor(settings);
-  robot.run(3s, [&](Robot& r) {
+  robot.run(6s, [&](Robot& r) {
     if (r.velocity_rpm > 50.0) disturb(r);
   });
   EXPECT_TRUE(robot.test().over());

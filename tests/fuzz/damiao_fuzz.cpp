@@ -141,7 +141,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
       switch ((action >> 2U) % 9U) {
         case 0: pair.motor.order(static_cast<FrameKind>(input.take<std::uint8_t>() % 9U)); break;
         case 1: (void)pair.motor.setTarget(fuzz::takeTarget(input)); break;
-        case 2: pair.motor.order(FrameKind::kCommand, fuzz::takeOrdered(input)); break;
+        case 2: pair.motor.order(FrameKind::kCommand, fuzz::takeTarget(input)); break;
         case 3: (void)pair.motor.setZero(input.take<double>()); break;
         case 4: pair.motor.derate(input.take<float>()); break;
         case 5: pair.motor.clearComplaint(); break;

@@ -2,7 +2,6 @@
 
 #include <cstdint>
 
-#include "app/limits.hpp"
 #include "fuzz_input.hpp"
 #include "motor/motor_base.hpp"
 
@@ -19,23 +18,13 @@ inline Target takeTarget(Input& input) {
   return target;
 }
 
-/// The same with the optional fields as setTarget() leaves them, to be followed.
-inline Target takeOrdered(Input& input) {
-  Target target = takeTarget(input);
-  for (float* field : {&target.velocity_ff_rpm, &target.torque_ff_nm, &target.stiffness_nm_per_rad,
-                       &target.damping_nms_per_rad}) {
-    *field = finiteOr0(*field);
-  }
-  return target;
-}
-
 /// One of the things that the daemon does to a motor, by `which` modulo `choices`. False: none of them, the
 /// rest of the choices is the caller's.
 inline bool giveOrder(Motor_Base& motor, Input& input, unsigned which, unsigned choices = 8) {
   switch (which % choices) {
     case 0: motor.order(static_cast<FrameKind>(input.take<std::uint8_t>() % 9U)); return true;
     case 1: (void)motor.setTarget(takeTarget(input)); return true;
-    case 2: motor.order(FrameKind::kCommand, takeOrdered(input)); return true;
+    case 2: motor.order(FrameKind::kCommand, takeTarget(input)); return true;
     case 3: (void)motor.setZero(input.take<double>()); return true;
     case 4: motor.derate(input.take<float>()); return true;
     case 5: motor.clearComplaint(); return true;

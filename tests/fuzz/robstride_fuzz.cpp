@@ -93,7 +93,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     switch (action % 8U) {
       case 0: motor.order(static_cast<FrameKind>(input.take<std::uint8_t>() % 9U)); break;
       case 1: (void)motor.setTarget(fuzz::takeTarget(input)); break;
-      case 2: motor.order(FrameKind::kCommand, fuzz::takeOrdered(input)); break;
+      case 2: motor.order(FrameKind::kCommand, fuzz::takeTarget(input)); break;
       case 3: motor.derate(input.take<float>()); break;
       case 4:
         (void)motor.setZero(input.take<double>());
