@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cmath>
 #include <memory>
 #include <optional>
@@ -8,17 +9,30 @@
 #include <CLI/CLI.hpp>
 
 #include "app/nearest.hpp"
+#include "app/printable.hpp"
 #include "app/target.hpp"
 #include "ask.hpp"
 #include "client/duration_text.hpp"
 #include "client/find_motor.hpp"
 #include "drive.hpp"
 #include "link/words.hpp"
-#include "one_of.hpp"
 #include "verbs.hpp"
 
 namespace rc10::ctl {
 namespace {
+
+// For a word that is one of a few.
+[[nodiscard]] CLI::Validator oneOf(const std::vector<std::string>& words) {
+  std::string list;
+  for (const auto& word : words) list += (list.empty() ? "" : ",") + word;
+  return CLI::Validator(
+      [words, list](std::string& word) {
+        if (std::find(words.begin(), words.end(), word) != words.end()) return std::string{};
+        return "'" + printable(word) + "' is not one of " + list +
+               didYouMean(word, {words.begin(), words.end()});
+      },
+      "{" + list + "}");
+}
 
 struct SetOptions {
   std::string motor;
