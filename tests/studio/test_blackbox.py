@@ -123,7 +123,7 @@ def test_a_recording_is_shown_and_scrubbing_moves_the_values(
     assert value_of(part, "wheel", "velocity_rpm") == pytest.approx(
         before["velocity_rpm"], abs=0.06
     )
-    assert value_of(part, "wheel", "velocity_rpm") > 50
+    assert value_of(part, "wheel", "velocity_rpm") > 5
     # The chart has the chosen signals; another one is chosen.
     expect(part.locator(".legend tr")).to_have_count(2)
     part.get_by_role("group", name="yaw").get_by_label("angle_deg", exact=True).check()
