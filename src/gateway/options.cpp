@@ -6,6 +6,18 @@
 #include "app/printable.hpp"
 
 namespace rc10::gateway {
+namespace {
+
+std::string unknownArgument(std::string_view word, std::string_view name) {
+  std::string text = "unknown argument '";
+  text += printable(word);
+  text += "'";
+  text += didYouMean(name, {"--robot", "--socket", "--url", "--version", "--help"});
+  text += "; see rc10-lcm --help";
+  return text;
+}
+
+}  // namespace
 
 const char* helpText() noexcept {
   return "Usage: rc10-lcm [--robot NAME] [--socket PATH] [--url URL]\n"
@@ -41,10 +53,7 @@ Result<Options> parseOptions(int argc, char** argv) {
                   : name == "--socket" ? &options.socket
                   : name == "--url"    ? &options.url
                                        : nullptr;
-    if (field == nullptr)
-      return fail("unknown argument '" + printable(argv[i]) + "'" +
-                  didYouMean(name, {"--robot", "--socket", "--url", "--version", "--help"}) +
-                  "; see rc10-lcm --help");
+    if (field == nullptr) return fail(unknownArgument(argv[i], name));
     if (!value && i + 1 < argc) value = argv[++i];
     if (!value || value->empty()) return fail(std::string(name) + " needs a value; see rc10-lcm --help");
     *field = *value;

@@ -243,7 +243,7 @@ double RobotSession::moduleOutput(const std::string& module, std::string_view ou
 }
 
 Result<void> RobotSession::waitForModule(const std::string& module, Duration timeout) {
-  if (const auto may = mayWait(module + ".waitForState()"); !may) return may;
+  if (auto may = mayWait(module + ".waitForState()"); !may) return may;
   const auto& inbox = inboxOf(module);
   NamesHeard modules(link_, outgoing_.channel(""), ".state");
   if (inbox.waitForNext(timeout)) return {};
@@ -312,7 +312,7 @@ Result<void> RobotSession::mayWait(const std::string& call) const {
 // ---- states ----------------------------------------------------------------------------------------------
 
 Result<void> RobotSession::waitForState(Duration timeout) {
-  if (const auto may = mayWait("waitForState()"); !may) return may;
+  if (auto may = mayWait("waitForState()"); !may) return may;
   {
     Lock lock(mutex_);
     const auto known = newest_.received();
@@ -376,7 +376,7 @@ RequestResult RobotSession::request(Operation operation, const std::vector<std::
 
 RequestResult RobotSession::request(const std::string& operation, const std::string& target,
                                     const std::map<std::string, double>& values, Duration timeout) {
-  if (const auto may = mayWait(operation); !may) return notSent(may.error().message);
+  if (auto may = mayWait(operation); !may) return notSent(may.error().message);
   const auto deadline = timeNow() + timeout;
   std::optional<response_t> answer;
   {

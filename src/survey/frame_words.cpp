@@ -17,7 +17,7 @@ std::string frameWords(const CanFrame& frame, std::span<const std::string> model
       if (std::find(models.begin(), models.end(), model) == models.end()) continue;
       auto words = entry.word(frame, model, sent);
       if (words.empty()) continue;
-      words = std::string{entry.family->name()} + " " + words;
+      words.insert(0, " ").insert(0, entry.family->name());
       if (std::find(readings.begin(), readings.end(), words) == readings.end())
         readings.push_back(std::move(words));
     }

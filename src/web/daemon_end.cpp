@@ -20,7 +20,7 @@ namespace fs = std::filesystem;
 constexpr off_t kMostBytes = off_t{16} << 10U;
 constexpr std::ptrdiff_t kMostLines = 60;
 // Lines of the log that a refused start may still write.
-constexpr std::int64_t kSameStart_s = 10;
+constexpr std::int64_t kSameStartSeconds = 10;
 
 struct FoundText {
   std::string text;
@@ -49,7 +49,7 @@ std::optional<FoundText> endOf(const std::string& path) {
   return FoundText{std::move(text), status.st_mtim};
 }
 
-std::string lastLines(std::string text) {
+std::string lastLines(const std::string& text) {
   std::size_t begin = text.size();
   for (std::ptrdiff_t lines = 0; begin > 0 && lines <= kMostLines; ++lines)
     begin = text.rfind('\n', begin - 1) == std::string::npos ? 0 : text.rfind('\n', begin - 1);
@@ -86,7 +86,7 @@ DaemonEnd readDaemonEnd(const std::string& run_dir, const std::optional<std::str
   }
   const auto refusal = endOf(newest(run_dir, ".refusal"));
   // One from before the last run says nothing about its end.
-  if (refusal && refusal->written.tv_sec + kSameStart_s >= end.logged_at) {
+  if (refusal && refusal->written.tv_sec + kSameStartSeconds >= end.logged_at) {
     end.refusal = refusal->text;
     end.refused_at = refusal->written.tv_sec;
   }

@@ -15,7 +15,7 @@ namespace rc10::web {
 Result<std::string> readOrMakeToken(const std::string& path) {
   auto existing = client::readPageToken(path);
   if (!existing) return tl::unexpected(existing.error());
-  if (*existing) return std::move(**existing);
+  if (auto& known = *existing) return std::move(*known);
   auto token = client::makePageToken();
   if (!token) return token;
   const UniqueFd made{

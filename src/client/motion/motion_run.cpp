@@ -106,7 +106,8 @@ MotionRun::Row MotionRun::rowOf(const link::Trace& trace, const link::TraceRow& 
                  .current_a = value("current_a"),
                  .feedback_age_us = value("feedback_age_us"),
                  .limits = static_cast<std::uint32_t>(value("limits"))};
-  read.sample.measured = read.sample.*measuredMember(settings_.mode);
+  const auto measured = measuredMember(settings_.mode);
+  if (measured != nullptr) read.sample.measured = read.sample.*measured;
   read.status = static_cast<MotorStatus>(value("status"));
   read.acting = static_cast<Acting>(value("acting"));
   return read;
@@ -147,7 +148,7 @@ bool MotionRun::isOurs(const Row& row) const noexcept {
 
 void MotionRun::take(const link::State& state) {
   state_ = state;
-  if (!motorKnown()) return;
+  if (knownMotor() == nullptr) return;
   const auto owner = state.motors[motor_].owner.view();
   const bool ours = owner == settings_.client;
   if (phase_ == Phase::kRunning && taken_tick_ != 0 && state.tick > taken_tick_) {
@@ -182,8 +183,8 @@ void MotionRun::finish() {
   phase_ = Phase::kOver;
   if (!abort_ || !abort_->text.empty()) return;
   // Told by the newest state, which may have come after the tick that ended it.
-  if (motorKnown() && abort_->criterion == Criterion::kStatus)
-    abort_->text = obstacle(*state_, settings_.motor, state_->motors[motor_]);
+  if (const auto* motor = knownMotor(); motor != nullptr && state_ && abort_->criterion == Criterion::kStatus)
+    abort_->text = obstacle(*state_, settings_.motor, *motor);
   if (abort_->criterion == Criterion::kOwnership) abort_->text = whoHasIt();
   if (abort_->text.empty())
     abort_->text = "motor '" + settings_.motor + "' did not obey for some ticks: see `rc10ctl watch`";
@@ -191,7 +192,8 @@ void MotionRun::finish() {
 
 std::string MotionRun::whoHasIt() const {
   const std::string name = "motor '" + settings_.motor + "'";
-  const auto owner = motorKnown() ? state_->motors[motor_].owner.view() : std::string_view{};
+  const auto* motor = knownMotor();
+  const auto owner = motor != nullptr ? motor->owner.view() : std::string_view{};
   if (!owner.empty() && owner != settings_.client)
     return name + " is held by " + holder(welcome_, owner) + ", or take over with a higher priority";
   if (taken_tick_ == 0)
@@ -208,8 +210,8 @@ std::optional<Abort> MotionRun::whyNotBegin(MonotonicTime now) const {
     return withText(Criterion::kConnection,
                     "rc10d traces " + std::to_string(link::kMaxTraceSignals) +
                         " signals at most, and other clients have chosen theirs: close plots of the page");
-  if (motorKnown()) {
-    const auto why = obstacle(*state_, settings_.motor, state_->motors[motor_]);
+  if (const auto* motor = knownMotor(); motor != nullptr && state_) {
+    const auto why = obstacle(*state_, settings_.motor, *motor);
     if (!why.empty()) return withText(Criterion::kStatus, why);
     if (newest_ && settings_.mode == ControlMode::kTotalAngle &&
         !std::isfinite(newest_->sample.total_angle_deg))
@@ -227,6 +229,7 @@ std::optional<Abort> MotionRun::silence(MonotonicTime now) const {
     if (now - start_ < kUntilTaken) return std::nullopt;
     return withText(Criterion::kOwnership, {});
   }
+  if (!newest_) return std::nullopt;
   CurveSample last = newest_->sample;
   last.feedback_age_us += static_cast<double>(asUs(now) - newest_->mono_us);
   if (last.feedback_age_us <= settings_.criteria.feedback_age_max_us) return std::nullopt;
@@ -246,7 +249,7 @@ std::optional<MotionRun::Order> MotionRun::order(MonotonicTime now) {
     if (const auto why = whyNotBegin(now)) abort(*why);
     if (phase_ == Phase::kOver) return std::nullopt;
     due_ = now + kSendPeriod;
-    if (!newest_ || !motorKnown()) return std::nullopt;
+    if (!newest_ || knownMotor() == nullptr) return std::nullopt;
     start_deg_ = newest_->sample.total_angle_deg;
     if (settings_.mode == ControlMode::kTotalAngle) origin_ = start_deg_;
     if (settings_.mode == ControlMode::kVelocity) start_value_ = finiteOr0(newest_->sample.velocity_rpm);

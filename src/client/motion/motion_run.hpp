@@ -90,12 +90,15 @@ class MotionRun {
 
   [[nodiscard]] Row rowOf(const link::Trace& trace, const link::TraceRow& row) const;
   void take(const Row& row);
-  void abort(const Abort& abort);
+  void abort(const Abort& found);
   [[nodiscard]] bool isOurs(const Row& row) const noexcept;
   [[nodiscard]] std::optional<Abort> whyNotBegin(MonotonicTime now) const;
   [[nodiscard]] std::optional<Abort> silence(MonotonicTime now) const;
   [[nodiscard]] std::string whoHasIt() const;
-  [[nodiscard]] bool motorKnown() const noexcept { return state_ && motor_ < state_->motor_count; }
+  /// The motor in the newest state; null: no state has it.
+  [[nodiscard]] const link::MotorState* knownMotor() const noexcept {
+    return state_ && motor_ < state_->motor_count ? &state_->motors[motor_] : nullptr;
+  }
   [[nodiscard]] Order orderAt(double time_s, MonotonicTime now);
   void finish();
 

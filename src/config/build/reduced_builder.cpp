@@ -43,8 +43,8 @@ void readVelocity(MotorParse& in) {
       static_cast<double>((reduced.full_rpm - reduced.velocity_rpm) / reduced.slew_rpm_per_s);
   if (down_s <= static_cast<double>(seconds(reduced.within))) return;
   const auto within = in.settings.find("reduced_within_ms");
-  const auto& wrong = within ? within : given;
-  in.problems.error(wrong->place(), wrong->path,
+  const auto& wrong = within ? *within : *given;
+  in.problems.error(wrong.place(), wrong.path,
                     "velocity_slew_rpm_per_s needs " + numberText(std::ceil(down_s * 1000.0)) +
                         " ms from full to reduced speed, more than reduced_within_ms (" +
                         std::to_string(reduced.within / std::chrono::milliseconds{1}) +

@@ -122,8 +122,9 @@ RequestDesk::Outcome RequestDesk::begin(const link::Request& request, const Spea
   if (operation == Operation::kDriveSettings) return tellSettings(request);
   if (operation == Operation::kGetConfig) return tellConfig(request);
   if (operation == Operation::kHand) return turnByHand(request, speaker);
-  auto order = operation ? orderOf(request, *operation) : tl::unexpected(unknownOperation(request));
-  if (!order) {
+  auto order =
+      operation ? orderOf(request, *operation) : Result<Order>{tl::unexpected(unknownOperation(request))};
+  if (!operation || !order) {
     outcome.response = respond(request, link::ResponseStatus::kRefused, order.error().message);
     answered_.remember(asker, request, *outcome.response);
     return outcome;
@@ -202,6 +203,7 @@ bool RequestDesk::mayOpen(std::string_view client) const {
 
 std::string RequestDesk::theMotorsAre(std::string_view typed) const {
   std::vector<std::string_view> names;
+  names.reserve(robot_.motors.size());
   for (const auto& motor : robot_.motors) names.emplace_back(motor.name);
   return fmt::format("the motors are: {}{}", fmt::join(names, ", "), didYouMean(typed, names));
 }

@@ -24,7 +24,9 @@ std::string damiaoCommand(const CanFrame& frame, const DamiaoScale& scale) {
   const auto mode = static_cast<DamiaoControl>((frame.id.value >> 8U) + 1U);
   if (id < 1 || id > damiao::kMaxId || frame.id.value > 0x3FF) return {};
   if (mode == DamiaoControl::kVelocity)
-    return FrameWords{id, "command"}.add("velocity", readLittleEndian<float>(payload, 0), "rad/s").take();
+    return FrameWords{id, "command"}
+        .add("velocity", static_cast<double>(readLittleEndian<float>(payload, 0)), "rad/s")
+        .take();
   if (payload.size() != 8) return {};
   if (std::all_of(payload.begin(), payload.end() - 1, [](std::uint8_t byte) { return byte == 0xFF; })) {
     switch (static_cast<damiao::Special>(payload[7])) {
@@ -36,11 +38,13 @@ std::string damiaoCommand(const CanFrame& frame, const DamiaoScale& scale) {
   }
   if (mode == DamiaoControl::kPositionVelocity)
     return FrameWords{id, "command"}
-        .add("position", readLittleEndian<float>(payload, 0), "rad")
-        .add("at most", readLittleEndian<float>(payload, 4), "rad/s")
+        .add("position", static_cast<double>(readLittleEndian<float>(payload, 0)), "rad")
+        .add("at most", static_cast<double>(readLittleEndian<float>(payload, 4)), "rad/s")
         .take();
   if (mode == DamiaoControl::kForcePosition)
-    return FrameWords{id, "command"}.add("position", readLittleEndian<float>(payload, 0), "rad").take();
+    return FrameWords{id, "command"}
+        .add("position", static_cast<double>(readLittleEndian<float>(payload, 0)), "rad")
+        .take();
   const auto mit = damiao::readMit(payload.first<8>(), scale);
   return FrameWords{id, "MIT command"}
       .add("position", mit.position_rad, "rad")

@@ -59,13 +59,14 @@ double defaultTimeS(const client::ExcitationSettings& excitation) {
 }
 
 Result<client::ExcitationSettings> excitationIn(const TestMotionOptions& options) {
-  client::ExcitationSettings excitation{.kind = *client::excitationOf(options.kind),
-                                        .base = options.base,
-                                        .amplitude = options.amplitude,
-                                        .rate_per_s = options.rate_per_s.value_or(0.0),
-                                        .from_hz = options.from_hz,
-                                        .to_hz = options.to_hz,
-                                        .linear = options.linear};
+  client::ExcitationSettings excitation{
+      .kind = client::excitationOf(options.kind).value_or(client::ExcitationKind::kStep),
+      .base = options.base,
+      .amplitude = options.amplitude,
+      .rate_per_s = options.rate_per_s.value_or(0.0),
+      .from_hz = options.from_hz,
+      .to_hz = options.to_hz,
+      .linear = options.linear};
   if (options.rate_per_s && excitation.kind != client::ExcitationKind::kRamp)
     return fail("--rate is for a ramp, not for a " + options.kind + ": leave it out");
   excitation.time_s = defaultTimeS(excitation);
@@ -102,7 +103,7 @@ Result<client::AbortCriteria> criteriaIn(const TestMotionOptions& options, Contr
 }
 
 Result<client::MotionSettings> settingsIn(const TestMotionOptions& options) {
-  const auto mode = *link::modeOf(options.mode);
+  const auto mode = link::modeOf(options.mode).value_or(ControlMode::kVelocity);
   const auto excitation = excitationIn(options);
   if (!excitation) return tl::unexpected(excitation.error());
   const auto shape = client::Excitation::of(*excitation);

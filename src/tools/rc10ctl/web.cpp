@@ -43,9 +43,10 @@ Result<std::string> token(const Options& options) {
   if (!found && ::geteuid() != 0 && ::access(path.c_str(), R_OK) != 0)
     return fail(path + ", the token of other computers, is for its owner alone: `sudo rc10ctl web`");
   if (!found) return tl::unexpected(found.error());
-  if (!*found)
+  auto& token = *found;
+  if (!token)
     return fail("there is no token in " + path + ": name the file that rc10-web has, with --token-file");
-  return std::move(**found);
+  return std::move(*token);
 }
 
 void showCode(const std::string& url) {
@@ -89,7 +90,9 @@ ExitCode web(const Global& global, const Options& options) {
     const auto shown = token(options);
     if (!shown) no_token = shown.error();
     for (const auto& address : found.others) {
-      if (shown) urls.push_back("http://" + address + ":" + port + "/#" + *shown);
+      if (!shown) continue;
+      auto& url = urls.emplace_back("http://");
+      url.append(address).append(":").append(port).append("/#").append(*shown);
     }
   }
   const auto here = found.here ? "http://localhost:" + port + "/" : std::string{};
