@@ -39,6 +39,7 @@ def test_who_may_not_command_a_motor_is_told_with_the_line_that_would_grant_it()
 def test_a_request_names_the_motors_that_it_left_out() -> None:
     silent = DEMO.replace("initial_angle_deg: 30}", "initial_angle_deg: 30, silent: true}")
     with Daemon(silent) as daemon:
+        daemon.wait_up()
         daemon.wait_motor("feeder", lambda motor: motor["status"] == "READY", "is there")
         done = daemon.ctl("enable")
         assert done.returncode == 1

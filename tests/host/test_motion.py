@@ -54,6 +54,8 @@ def robot() -> Iterator[Daemon]:
 
 @pytest.fixture(autouse=True)
 def _enabled(robot: Daemon) -> None:
+    # An e-stop is not cleared before, and a wheel that still turns is not moved by the test.
+    robot.wait_motors(lambda motor: abs(float(motor["velocity_rpm"])) < 1.0, "all stand still")
     robot.must("clear")
     robot.must("enable", "wheel", "lift", "elbow")
 

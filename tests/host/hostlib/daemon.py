@@ -137,12 +137,16 @@ class Daemon:
         """Starts an rc10ctl that runs on."""
         return Program(BIN / "rc10ctl", *(str(word) for word in words), env=self.env)
 
-    def wait_ready(self) -> State:
-        """Waits until it serves its socket and hears every drive."""
+    def wait_up(self) -> None:
+        """Waits until it serves its socket."""
         eventually(
             lambda: not self.program.running or self.ctl("list").returncode == 0, "rc10ctl list"
         )
         assert self.program.running, self.program.output
+
+    def wait_ready(self) -> State:
+        """Waits until it serves its socket and hears every drive."""
+        self.wait_up()
         return self.wait_motors(lambda motor: motor["status"] == "READY")
 
     def state(self) -> State:
