@@ -2,7 +2,6 @@
 
 #include <gtest/gtest.h>
 #include <stdlib.h>
-#include <sys/resource.h>
 #include <sys/socket.h>
 #include <sys/un.h>
 #include <unistd.h>
@@ -14,6 +13,7 @@
 
 #include "app/unique_fd.hpp"
 #include "daemon/temp_dir.hpp"
+#include "support/without_descriptors.hpp"
 
 namespace rc10::test::service_notify_test {
 namespace {
@@ -67,14 +67,10 @@ TEST_F(ServiceNotifyTest, FeedsTheWatchdogWithoutDescriptors) {
   const Systemd systemd(dir / "notify");
   setSocket(dir / "notify");
   notifyService("READY=1");
-  rlimit before{};
-  ASSERT_EQ(::getrlimit(RLIMIT_NOFILE, &before), 0);
-  const int highest = ::dup(0);
-  ::close(highest);
-  const rlimit none{.rlim_cur = static_cast<rlim_t>(highest), .rlim_max = before.rlim_max};
-  ASSERT_EQ(::setrlimit(RLIMIT_NOFILE, &none), 0);
-  notifyService("WATCHDOG=1");
-  ASSERT_EQ(::setrlimit(RLIMIT_NOFILE, &before), 0);
+  {
+    const WithoutDescriptors none;
+    notifyService("WATCHDOG=1");
+  }
   EXPECT_EQ(systemd.take(), "READY=1");
   EXPECT_EQ(systemd.take(), "WATCHDOG=1");
 }

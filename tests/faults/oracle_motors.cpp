@@ -55,7 +55,8 @@ void Oracle::judgeForeign(std::size_t index, const MotorSnapshot& seen) {
   };
   forget(motor.perhaps_foreign);
   forget(motor.foreign);
-  if (lost(seen.status)) motor.foreign.clear();  // what it was told meanwhile counts, or not
+  // Frames seen by a lost motor may or may not have been counted.
+  if (lost(seen.status)) motor.foreign.clear();
 }
 
 // Reports of its drive while nothing is asked of it, against the thresholds of the configuration.

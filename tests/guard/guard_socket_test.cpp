@@ -3,14 +3,15 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <sys/resource.h>
 #include <sys/socket.h>
 #include <unistd.h>
 
 #include <filesystem>
+#include <optional>
 
 #include "link/run_dir.hpp"
 #include "link/unix_address.hpp"
+#include "support/without_descriptors.hpp"
 
 namespace rc10::guard::test::guard_socket_test {
 namespace {
@@ -71,15 +72,11 @@ TEST_F(GuardSocketTest, WithoutDescriptorsAVisitorIsSentAwayAndTheNextIsServed) 
     return visitor;
   };
   const auto late = visit();
-  rlimit before{};
-  ASSERT_EQ(::getrlimit(RLIMIT_NOFILE, &before), 0);
-  const int highest = ::dup(0);
-  ::close(highest);
-  const rlimit none{.rlim_cur = static_cast<rlim_t>(highest), .rlim_max = before.rlim_max};
-  ASSERT_EQ(::setrlimit(RLIMIT_NOFILE, &none), 0);
+  std::optional<rc10::test::WithoutDescriptors> none;
+  none.emplace();
   const auto refused = guard->accept();
   const auto empty = guard->accept();
-  ASSERT_EQ(::setrlimit(RLIMIT_NOFILE, &before), 0);
+  none.reset();
   EXPECT_FALSE(refused.connection);
   EXPECT_TRUE(refused.sent_away);
   EXPECT_FALSE(empty.sent_away) << "nobody waits any more, and nothing wakes the guard";

@@ -157,8 +157,7 @@ class TestAJointAndAFeeder:
         assert axes.arm_deg == pytest.approx(90.0, abs=1.0)
         true = seen["deg"]
         wanted += [90.0] * len(true)
-        # The first message is there within two ticks, and the drive lags: 180 deg/s times 2 ms and
-        # what the loops leave.
+        # Tolerance: two ticks of latency at 180 deg/s, and the following error of the loops.
         assert max(abs(at - should) for at, should in zip(true, wanted, strict=False)) < 1.0
 
     def test_a_joint_stops_at_its_soft_limit(self, axes: Axes) -> None:

@@ -32,6 +32,14 @@ class VescMotorTest : public ::testing::Test {
     with.insert(with.begin(), {"ask_status", 0.0});
     return make(vescSettings(with));
   }
+  /// At rest, its tachometer at 1000 steps.
+  VESC_Motor& makeZeroedAt(double angle_deg) {
+    auto& motor = makeWith();
+    status(0);
+    steps(1000);
+    EXPECT_TRUE(motor.setZero(angle_deg));
+    return motor;
+  }
   std::vector<CanFrame> tick(Duration dt = milliseconds{1}) {
     tick_.now += dt;
     ++tick_.index;

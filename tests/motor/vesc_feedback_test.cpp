@@ -26,10 +26,7 @@ TEST_F(VescMotorTest, TheTachometerCountsTurnsThroughTheEndOfItsRange) {
 }
 
 TEST_F(VescMotorTest, AJumpOfTheTachometerIsCountedAndTheReferenceIsLost) {
-  auto& motor = makeWith();
-  status(0);
-  steps(1000);
-  ASSERT_TRUE(motor.setZero(10.0));
+  auto& motor = makeZeroedAt(10.0);
   tick(milliseconds{10});
   status(0);
   steps(5);
@@ -39,10 +36,7 @@ TEST_F(VescMotorTest, AJumpOfTheTachometerIsCountedAndTheReferenceIsLost) {
 }
 
 TEST_F(VescMotorTest, ALongGapLosesTheReferenceWithoutAJump) {
-  auto& motor = makeWith();
-  status(0);
-  steps(1000);
-  ASSERT_TRUE(motor.setZero(10.0));
+  auto& motor = makeZeroedAt(10.0);
   tick(milliseconds{400});
   steps(3);
   EXPECT_EQ(motor.feedback().jumps, 0U);
@@ -51,10 +45,7 @@ TEST_F(VescMotorTest, ALongGapLosesTheReferenceWithoutAJump) {
 }
 
 TEST_F(VescMotorTest, ADriveThatStartsAgainWhileItIsToObeyComplains) {
-  auto& motor = makeWith();
-  status(0);
-  steps(1000);
-  ASSERT_TRUE(motor.setZero(10.0));
+  auto& motor = makeZeroedAt(10.0);
   motor.order(FrameKind::kRest);
   tick();
   ASSERT_EQ(give(vescFrame(0x3907, "3630")), FrameVerdict::kAccepted);

@@ -2,7 +2,7 @@
 import { useEffect, useMemo, useRef, useState } from 'preact/hooks';
 
 import { MomentTables } from './blackbox_moment';
-import { RecordedPlot, SignalChoice } from './blackbox_plot';
+import { RecordedPlot } from './blackbox_plot';
 import { useKnown, useStored, useStudio } from './context';
 import { number } from './numbers';
 import type { RecordingFile } from './protocol';
@@ -10,6 +10,7 @@ import type { Moment, Summary } from './recording_look';
 import { RecordingReader } from './recording_reader';
 import { damageText, notReadText } from './recording_told';
 import { RecordedWordBook } from './recorded_words';
+import { SignalChooser } from './signal_chooser';
 
 /** A recording and the place in it, also while another part of the page is shown. */
 interface Opened {
@@ -258,7 +259,7 @@ export function BlackBox() {
           <SummaryCard name={opened.name} summary={opened.summary} />
           <Scrubber opened={opened} moment={moment} onAt={move} />
           <div class="plots">
-            <SignalChoice owners={opened.summary.signals} chosen={chosen} onChoose={setChosen} />
+            <SignalChooser owners={opened.summary.signals} chosen={chosen} onChoose={setChosen} />
             <RecordedPlot
               signals={chosen}
               moment={moment}

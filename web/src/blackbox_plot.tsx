@@ -1,47 +1,13 @@
-// Curves of a recording, and the choice of its signals.
-import { useEffect, useRef, useState } from 'preact/hooks';
+// Curves of a recording.
+import { useEffect, useRef } from 'preact/hooks';
 import type uPlot from 'uplot';
 
 import { type Mark, colourOf, makeChart } from './chart';
 import { useStudio } from './context';
 import { number, unitOf } from './numbers';
-import type { Moment, Summary } from './recording_look';
+import type { Moment } from './recording_look';
 
-const kMostSignals = 12;
 const kUs = 1e6;
-
-export function SignalChoice(props: { owners: Summary['signals']; chosen: string[]; onChoose: (names: string[]) => void }) {
-  const { word } = useStudio();
-  const [filter, setFilter] = useState('');
-  const { chosen } = props;
-  const toggle = (name: string) => props.onChoose(chosen.includes(name) ? chosen.filter((each) => each !== name) : [...chosen, name]);
-  return (
-    <details class="chooser" open>
-      <summary>{`${word('signals')} (${chosen.length})`}</summary>
-      <input type="search" placeholder="velocity" aria-label={word('choose')} value={filter} onInput={(event) => setFilter(event.currentTarget.value)} />
-      {props.owners.map(({ owner, names }) => {
-        const shown = names.filter((name) => name.includes(filter) || chosen.includes(name));
-        if (shown.length === 0) return null;
-        return (
-          <fieldset key={owner}>
-            <legend>{owner}</legend>
-            {shown.map((name) => (
-              <label key={name}>
-                <input
-                  type="checkbox"
-                  checked={chosen.includes(name)}
-                  disabled={!chosen.includes(name) && chosen.length >= kMostSignals}
-                  onChange={() => toggle(name)}
-                />
-                {name.slice(owner.length + 1)}
-              </label>
-            ))}
-          </fieldset>
-        );
-      })}
-    </details>
-  );
-}
 
 interface Picture {
   signals: string[];

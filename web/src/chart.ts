@@ -13,7 +13,7 @@ export function dashOf(i: number): number[] {
   return kDashes[Math.floor(i / kColours.length) % kDashes.length] ?? [];
 }
 
-// Placeholder of a picture that has no value yet.
+// Range of an axis without values.
 const kUnknown: uPlot.Range.MinMax = [0, 1];
 function isEmpty(min: number | null, max: number | null): boolean {
   return min === null || max === null || !Number.isFinite(min) || !Number.isFinite(max);

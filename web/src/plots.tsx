@@ -6,13 +6,13 @@ import { type Kept, type Mark, colourOf, makeChart } from './chart';
 import { useKnown, useStored, useStudio } from './context';
 import { number, unitOf } from './numbers';
 import { type Shown, SidePlots } from './side_plots';
+import { type SignalsOf, SignalChooser } from './signal_chooser';
 import { Traces } from './traces';
 
-const kMostSignals = 12;
 const kSpans_s = [2, 5, 10, 30, 60];
 const kUs = 1e6;
 
-function allSignals(known: ReturnType<typeof useKnown>): { owner: string; names: string[] }[] {
+function allSignals(known: ReturnType<typeof useKnown>): SignalsOf[] {
   const robot = known.robot;
   if (robot === null) return [];
   return [
@@ -35,48 +35,6 @@ export function download(name: string, content: Blob): void {
   setTimeout(() => URL.revokeObjectURL(link.href), 1000);
 }
 
-function SignalChooser(props: { chosen: string[]; onChoose: (names: string[]) => void }) {
-  const { word } = useStudio();
-  const known = useKnown();
-  const [filter, setFilter] = useState('');
-  const toggle = (name: string) =>
-    props.onChoose(
-      props.chosen.includes(name) ? props.chosen.filter((n) => n !== name) : [...props.chosen, name],
-    );
-  return (
-    <details class="chooser" open>
-      <summary>{`${word('signals')} (${props.chosen.length})`}</summary>
-      <input
-        type="search"
-        placeholder="velocity"
-        aria-label={word('choose')}
-        value={filter}
-        onInput={(event) => setFilter(event.currentTarget.value)}
-      />
-      {allSignals(known).map(({ owner, names }) => {
-        const shown = names.filter((name) => name.includes(filter) || props.chosen.includes(name));
-        if (shown.length === 0) return null;
-        return (
-          <fieldset key={owner}>
-            <legend>{owner}</legend>
-            {shown.map((name) => (
-              <label key={name}>
-                <input
-                  type="checkbox"
-                  checked={props.chosen.includes(name)}
-                  disabled={!props.chosen.includes(name) && props.chosen.length >= kMostSignals}
-                  onChange={() => toggle(name)}
-                />
-                {name.slice(owner.length + 1)}
-              </label>
-            ))}
-          </fieldset>
-        );
-      })}
-    </details>
-  );
-}
-
 function firstChoice(known: ReturnType<typeof useKnown>): string[] {
   const motor = known.robot?.robot.motors[0]?.name;
   return motor === undefined ? [] : [`${motor}.velocity_rpm`, `${motor}.current_a`];
@@ -88,7 +46,7 @@ export function Plots() {
   const chosen = stored.length === 0 ? firstChoice(known) : stored;
   return (
     <div class="plots">
-      <SignalChooser chosen={chosen} onChoose={setChosen} />
+      <SignalChooser owners={allSignals(known)} chosen={chosen} onChoose={setChosen} />
       <Curves signals={chosen} below={(shown) => <SidePlots shown={shown} />} />
     </div>
   );

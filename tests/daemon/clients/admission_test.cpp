@@ -29,6 +29,12 @@ class AdmissionTest : public ::testing::Test {
     return linkCommand(++seq, now, {setpoint});
   }
   [[nodiscard]] link::Command good() { return one(setpoint("left", kVelocity, 120.0)); }
+  [[nodiscard]] link::Command spring() {
+    auto message = one(setpoint("arm", kImpedance, 10.0));
+    message.setpoints[0].target.stiffness_nm_per_rad = 5.0F;
+    message.setpoints[0].target.damping_nms_per_rad = 0.5F;
+    return message;
+  }
 
   MonotonicTime now{1000s};
   std::int64_t seq = 0;
@@ -142,9 +148,7 @@ TEST_F(AdmissionTest, RefusesInfinityInEveryField) {
   constexpr double kInf = std::numeric_limits<double>::infinity();
   for (const double sign : {1.0, -1.0}) {
     const auto with = [&](auto set) {
-      auto message = one(setpoint("arm", kImpedance, 10.0));
-      message.setpoints[0].target.stiffness_nm_per_rad = 5.0F;
-      message.setpoints[0].target.damping_nms_per_rad = 0.5F;
+      auto message = spring();
       set(message.setpoints[0].target);
       return admit(message);
     };
@@ -175,9 +179,7 @@ TEST_F(AdmissionTest, StiffnessAndDampingMayBeNanWhereTheyMeanNothing) {
 }
 
 TEST_F(AdmissionTest, ImpedanceNeedsFiniteStiffnessAndDamping) {
-  auto message = one(setpoint("arm", kImpedance, 10.0));
-  message.setpoints[0].target.stiffness_nm_per_rad = 5.0F;
-  message.setpoints[0].target.damping_nms_per_rad = 0.5F;
+  auto message = spring();
   ASSERT_EQ(admit(message), CommandRefusal::kNone);
   EXPECT_EQ(out.setpoints[0].target.stiffness_nm_per_rad, 5.0F);
   EXPECT_EQ(out.setpoints[0].target.damping_nms_per_rad, 0.5F);

@@ -12,7 +12,17 @@ namespace {
 
 using ::testing::HasSubstr;
 
-class LinkServerTest : public LinkRig {};
+class LinkServerTest : public LinkRig {
+ protected:
+  void sendFiveToNobody(TestClient& client) {
+    for (int i = 1; i <= 5; ++i) {
+      auto unknown = velocityCommand(i);
+      unknown.setpoints[0].motor = "nobody";
+      EXPECT_TRUE(client.send(unknown));
+    }
+    pump();
+  }
+};
 
 TEST_F(LinkServerTest, AHelloIsAnsweredWithWhatTheRobotIs) {
   TestClient client(path);
@@ -206,12 +216,7 @@ TEST_F(LinkServerTest, NotesOfTheIoThreadAreEventsToo) {
 
 TEST_F(LinkServerTest, ARefusedCommandIsToldInWordsButNotEveryTime) {
   auto client = join(link::kEvents);
-  for (int i = 1; i <= 5; ++i) {
-    auto unknown = velocityCommand(i);
-    unknown.setpoints[0].motor = "nobody";
-    ASSERT_TRUE(client->send(unknown));
-  }
-  pump();
+  sendFiveToNobody(*client);
   const auto event = client->take<link::Event>();
   ASSERT_TRUE(event);
   EXPECT_EQ(event->code, static_cast<std::int32_t>(EventCode::kCommandRefused));
@@ -223,12 +228,7 @@ TEST_F(LinkServerTest, ARefusedCommandIsToldInWordsButNotEveryTime) {
 
 TEST_F(LinkServerTest, ARefusedCommandGoesIntoTheBlackBoxAsItIsTold) {
   auto client = join(link::kEvents);
-  for (int i = 1; i <= 5; ++i) {
-    auto unknown = velocityCommand(i);
-    unknown.setpoints[0].motor = "nobody";
-    ASSERT_TRUE(client->send(unknown));
-  }
-  pump();
+  sendFiveToNobody(*client);
   Event event;
   ASSERT_TRUE(exchange.refusals.pop(event));
   EXPECT_EQ(event.code, EventCode::kCommandRefused);

@@ -5,7 +5,6 @@
 #include <gtest/gtest.h>
 #include <net/if.h>
 #include <sys/ioctl.h>
-#include <sys/resource.h>
 #include <sys/socket.h>
 
 #include <cstring>
@@ -15,6 +14,7 @@
 #include "daemon/interfaces/can_intake.hpp"
 
 #include "daemon/virtual_robot.hpp"
+#include "support/without_descriptors.hpp"
 
 namespace rc10::test::bus_reviver_test {
 namespace {
@@ -61,14 +61,10 @@ TEST_F(BusReviverTest, ShowsWhetherAnInterfaceIsUp) {
 TEST_F(BusReviverTest, WithoutDescriptorsNoInterfaceIsGone) {
   setInterface("lo");
   inboxes[0].link = stateOfLoopback();
-  rlimit before{};
-  ASSERT_EQ(::getrlimit(RLIMIT_NOFILE, &before), 0);
-  const int highest = ::dup(0);
-  ::close(highest);
-  const rlimit none{.rlim_cur = static_cast<rlim_t>(highest), .rlim_max = before.rlim_max};
-  ASSERT_EQ(::setrlimit(RLIMIT_NOFILE, &none), 0);
-  reviver.check(monotonicNow());
-  ASSERT_EQ(::setrlimit(RLIMIT_NOFILE, &before), 0);
+  {
+    const WithoutDescriptors none;
+    reviver.check(monotonicNow());
+  }
   EXPECT_EQ(link(), stateOfLoopback());
 }
 
