@@ -303,8 +303,15 @@ def find_in_order(wanted: Iterable[str], texts: list[str]) -> list[str]:
     return [pattern for pattern in wanted if not any(re.fullmatch(pattern, text) for text in rest)]
 
 
+def without_cut_round(family: Family, texts: list[str]) -> list[str]:
+    """The recorder may have been stopped amid a round of rest frames: that round left out."""
+    begun = [re.fullmatch(pattern, texts[-1]) is not None for pattern in family.rest]
+    return texts[: len(texts) - 1 - begun.index(True)] if any(begun[:-1]) else texts
+
+
 def assert_rest(family: Family, texts: list[str]) -> None:
     """Nothing but rest, and whole rounds of it at the end."""
+    assert texts
     for text in texts:
         assert any(re.fullmatch(pattern, text) for pattern in family.rest), text
     last = texts[-len(family.rest) :]
@@ -341,7 +348,8 @@ def test_it_is_enabled_follows_its_targets_and_is_left_at_rest(
         rc10ctl("disable")
         released_ns = time.time_ns()
         bus.wait_frame(lambda frame: frame.t_ns > released_ns + 100 * MS)
-        assert_rest(family, told([frame for frame in bus.frames() if frame.t_ns > released_ns]))
+        resting = told([frame for frame in bus.frames() if frame.t_ns > released_ns])
+        assert_rest(family, without_cut_round(family, resting))
 
         rc10ctl("enable")
         wait_status("ACTIVE")
@@ -380,7 +388,8 @@ def test_a_stalled_bus_is_seen_and_comes_back_with_rest(family: Family, tmp_path
             wait_status("READY")
             bus.stop()
         texts = [text_of(frame) for frame in bus.frames()]
-        assert_rest(family, [text for text in texts if re.fullmatch(family.commands, text)])
+        sent = [text for text in texts if re.fullmatch(family.commands, text)]
+        assert_rest(family, without_cut_round(family, sent))
 
 
 def assert_loads_agree(stats: dict[str, Any], load: float) -> None:
