@@ -19,6 +19,7 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Callable
 
 import numpy as np
+from numpy.typing import NDArray
 
 import rc10
 from rc10.step.plan import StepPlan
@@ -30,8 +31,16 @@ if TYPE_CHECKING:
 _PULSE_S = 0.12
 # The first part of a pulse: the current rises.
 _RISING_S = 0.02
+# States of a pulse that make a line: half of those that 100 Hz give.
+_LEAST_SAMPLES = 5
+# Standard error of what the two pulses differ by, as a part of it.
+_SLOPE_TOLERANCE = 0.1
+# Tries of the pulses that a busy computer has disturbed.
+_TRIES = 5
 # Percent of overshoot that are as bad as a second of settling.
 _PERCENT_PER_S = 50.0
+
+Floats = NDArray[np.float64]
 
 
 @dataclass(frozen=True)
@@ -104,19 +113,44 @@ def search(
     return best, least
 
 
-def acceleration(robot: rc10.Robot, motor: str, current_a: float) -> float:
-    """Returns by how many rpm/s the motor accelerates for each ampere; it has to be ACTIVE."""
+def slope(time_s: Floats, velocity_rpm: Floats) -> tuple[float, float]:
+    """Returns the slope of a line through these, rpm/s, and its standard error (infinite: none)."""
+    if len(time_s) < _LEAST_SAMPLES:
+        return math.nan, math.inf
+    line, covariance = np.polyfit(time_s, velocity_rpm, 1, cov=True)
+    return float(line[0]), math.sqrt(covariance[0, 0])
 
-    def slope(current: float) -> float:
-        plan = StepPlan(motor, rc10.Mode.CURRENT, current, seconds=_PULSE_S, before_s=0.05)
-        recording = run_step(robot, plan).recording
-        _stop(robot, motor)
-        used = (recording.time_s >= _RISING_S) & (recording.time_s <= _PULSE_S)
-        velocity = recording.motor(motor).velocity_rpm[used]
-        return float(np.polyfit(recording.time_s[used], velocity, 1)[0])
 
-    # Both are above the friction, which is the same in both.
-    return (slope(2.0 * current_a) - slope(current_a)) / current_a
+def acceleration(slope_of: Callable[[float], tuple[float, float]], current_a: float) -> float:
+    """Returns by how many rpm/s the motor accelerates for each ampere.
+
+    Args:
+        slope_of: runs a pulse of so many amperes and returns the slope of its speed, and the error.
+        current_a: of the smaller pulse. Both are above the friction, which is the same in both.
+
+    Raises:
+        ValueError: the speeds do not lie on lines, or do not differ, however often it is tried.
+    """
+    for _ in range(_TRIES):
+        (low, low_error), (high, high_error) = slope_of(current_a), slope_of(2.0 * current_a)
+        error = math.hypot(low_error, high_error)
+        # A busy computer loses states, or a target lapses in the pulse.
+        if error < _SLOPE_TOLERANCE * (high - low):
+            return (high - low) / current_a
+    raise ValueError(
+        f"{current_a:g} A accelerate the motor by {low:.3g} rpm/s and {2 * current_a:g} A by "
+        f"{high:.3g}, within {error:.2g}: does it turn freely, is the current above its friction, "
+        "is the computer busy?"
+    )
+
+
+def _pulse(robot: rc10.Robot, motor: str, current_a: float) -> tuple[float, float]:
+    """Gives a pulse to the motor, which has to be ACTIVE; returns the slope and its error."""
+    plan = StepPlan(motor, rc10.Mode.CURRENT, current_a, seconds=_PULSE_S, before_s=0.05)
+    recording = run_step(robot, plan).recording
+    _stop(robot, motor)
+    used = (recording.time_s >= _RISING_S) & (recording.time_s <= _PULSE_S)
+    return slope(recording.time_s[used], recording.motor(motor).velocity_rpm[used])
 
 
 def _stop(robot: rc10.Robot, motor: str) -> None:
@@ -149,7 +183,7 @@ def set_gains(robot: rc10.Robot, motor: str, gains: Gains) -> rc10.Gains:
 
 def tune(robot: rc10.Robot, options: argparse.Namespace) -> None:
     """Does all of it, and prints it."""
-    b = acceleration(robot, options.motor, options.current)
+    b = acceleration(lambda current: _pulse(robot, options.motor, current), options.current)
     print(f"{options.motor} accelerates by {b:.0f} rpm/s for each ampere")
     gains = suggest(b, options.time_constant)
     print(f"suggested: {gains.yaml()}")

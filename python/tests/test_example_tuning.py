@@ -7,7 +7,7 @@ import math
 import numpy as np
 import pytest
 
-from pid_tuning import Gains, score, search, suggest
+from pid_tuning import Floats, Gains, acceleration, score, search, slope, suggest
 from rc10.step.analysis import StepMetrics, analyse
 
 ACCELERATION_RPM_S_PER_A = 200.0
@@ -46,6 +46,31 @@ def test_the_suggestion_is_critically_damped() -> None:
 def test_a_motor_that_does_not_accelerate_is_no_start(acceleration: float) -> None:
     with pytest.raises(ValueError, match="does it turn freely"):
         suggest(acceleration, 0.03)
+
+
+def test_the_slope_of_a_pulse_has_an_error_that_a_gap_or_a_lapse_makes_large() -> None:
+    time_s: Floats = np.linspace(0.02, 0.11, 10, dtype=np.float64)
+    assert slope(time_s, 300.0 * time_s) == pytest.approx((300.0, 0.0), abs=1e-6)
+    assert slope(time_s[:4], 300.0 * time_s[:4])[1] == math.inf
+    lapsed: Floats = np.minimum(time_s, 0.05, dtype=np.float64) * 300.0
+    assert slope(time_s, lapsed)[1] > 20.0
+
+
+def test_disturbed_pulses_are_given_again() -> None:
+    pulses: list[float] = []
+
+    def slope_of(current_a: float) -> tuple[float, float]:
+        pulses.append(current_a)
+        busy = len(pulses) <= 3
+        return (-150.0, 90.0) if busy else (200.0 * current_a - 30.0, 2.0)
+
+    assert acceleration(slope_of, 1.5) == pytest.approx(200.0)
+    assert pulses == [1.5, 3.0] * 3
+
+
+def test_pulses_that_never_differ_are_told_with_what_to_look_at() -> None:
+    with pytest.raises(ValueError, match=r"does it turn freely.* is the computer busy"):
+        acceleration(lambda _: (5.0, 3.0), 1.0)
 
 
 def test_the_search_improves_and_keeps_to_its_tries() -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import ctypes
 import signal
 import subprocess
 from pathlib import Path
@@ -18,6 +19,19 @@ MULTICAST = ("239.255.76.67/32", "dev", "lo", "src", "127.0.0.1")
 
 # A shell that runs this in the background ignores Ctrl-C, and programs inherit that.
 signal.signal(signal.SIGINT, signal.default_int_handler)
+
+
+CLONE_NEWNET = 0x40000000  # <linux/sched.h>
+
+
+def pytest_configure(config: pytest.Config) -> None:
+    """Each worker of pytest-xdist has a network of its own: one robot is not heard by another."""
+    if not hasattr(config, "workerinput"):
+        return
+    if ctypes.CDLL(None, use_errno=True).unshare(CLONE_NEWNET) != 0:
+        raise OSError(ctypes.get_errno(), "a network namespace for a worker")
+    subprocess.run(["ip", "link", "set", "lo", "up"], check=True)
+    subprocess.run(["ip", "route", "add", *MULTICAST], check=True)
 
 
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
