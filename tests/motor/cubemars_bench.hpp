@@ -89,7 +89,7 @@ class Bench {
   void pass(Duration duration) { now_ += duration; }
 
   /// The fields of a MIT command, as numbers.
-  [[nodiscard]] cubemars::MitCommand decode(const CanFrame& frame) const {
+  [[nodiscard]] SpringLaw decode(const CanFrame& frame) const {
     const auto& d = frame.data;
     const auto number = [](unsigned code, double low, double high, double last) {
       return low + (high - low) * code / last;

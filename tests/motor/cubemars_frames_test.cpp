@@ -25,11 +25,11 @@ TEST(CubemarsFrames, MitCommandsKeepTheirValuesToOneStep) {
       return std::uniform_real_distribution<double>(low, high)(random);
     };
     for (int i = 0; i < 500; ++i) {
-      const cubemars::MitCommand wanted{.position_rad = any(-r.position_rad, r.position_rad),
-                                        .velocity_rad_s = any(-r.velocity_rad_s, r.velocity_rad_s),
-                                        .stiffness_nm_per_rad = any(0, 500),
-                                        .damping_nms_per_rad = any(0, 5),
-                                        .torque_nm = any(-r.torque_nm, r.torque_nm)};
+      const SpringLaw wanted{.position_rad = any(-r.position_rad, r.position_rad),
+                             .velocity_rad_s = any(-r.velocity_rad_s, r.velocity_rad_s),
+                             .stiffness_nm_per_rad = any(0, 500),
+                             .damping_nms_per_rad = any(0, 5),
+                             .torque_nm = any(-r.torque_nm, r.torque_nm)};
       const auto got =
           bench.decode(model.v3 ? cubemars::mitV3Frame(9, r, wanted) : cubemars::mitFrame(9, r, wanted));
       ASSERT_NEAR(got.position_rad, wanted.position_rad, 2.01 * r.position_rad / 65535);

@@ -82,11 +82,11 @@ TEST(CubemarsGolden, ServoFeedbackTellsAngleSpeedCurrentAndTemperature) {
   EXPECT_NEAR(before - motor.feedback().total_angle_deg, 123.4, 1e-9);
 }
 
-constexpr cubemars::MitCommand kSetpoint{.position_rad = 0.5,
-                                         .velocity_rad_s = 1.0,
-                                         .stiffness_nm_per_rad = 50.0,
-                                         .damping_nms_per_rad = 1.0,
-                                         .torque_nm = 2.0};
+constexpr SpringLaw kSetpoint{.position_rad = 0.5,
+                              .velocity_rad_s = 1.0,
+                              .stiffness_nm_per_rad = 50.0,
+                              .damping_nms_per_rad = 1.0,
+                              .torque_nm = 2.0};
 
 TEST(CubemarsGolden, AMitCommandHasTheBytesOfTheManual) {
   const CubemarsRanges ranges = findCubemarsModel("AK80-9")->ranges;

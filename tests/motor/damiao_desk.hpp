@@ -23,7 +23,7 @@ inline bool isSpecial(const CanFrame& frame, damiao::Special command) {
 
 inline bool isDisable(const CanFrame& frame) { return isSpecial(frame, damiao::Special::kDisable); }
 
-inline damiao::MitCommand mitOf(const std::vector<CanFrame>& sent) {
+inline SpringLaw mitOf(const std::vector<CanFrame>& sent) {
   EXPECT_GE(sent.size(), 1U);
   if (sent.empty()) return {};  // a question about a register may follow
   return damiao::readMit(std::span(sent[0].data).first<8>(), kDm4310);

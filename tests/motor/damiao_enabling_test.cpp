@@ -109,7 +109,7 @@ TEST(DamiaoMotor, WithoutItsCountAMitDriveIsEnabledAndAPositionDriveIsNot) {
   mit.xout_rad = std::numeric_limits<float>::quiet_NaN();
   EXPECT_TRUE(mit.enable());
   mit.command({.mode = ControlMode::kImpedance, .value = 0.0, .stiffness_nm_per_rad = 50.0F});
-  EXPECT_EQ(mitOf(mit.tick()).kp_nm_per_rad, 0.0);
+  EXPECT_EQ(mitOf(mit.tick()).stiffness_nm_per_rad, 0.0);
   DamiaoDesk position(damiaoSettingsOf("DM4310", "position_velocity"));
   position.xout_rad = std::numeric_limits<float>::quiet_NaN();
   EXPECT_FALSE(position.enable());

@@ -28,16 +28,16 @@ constexpr double degOf(double rad) { return rad * 57.29577951308232; }
 TEST(DamiaoGolden, AMitCommandHasTheBytesOfTheManual) {
   const auto payload = damiao::mit({.position_rad = 1.0,
                                     .velocity_rad_s = -2.0,
-                                    .kp_nm_per_rad = 20.0,
-                                    .kd_nms_per_rad = 0.5,
+                                    .stiffness_nm_per_rad = 20.0,
+                                    .damping_nms_per_rad = 0.5,
                                     .torque_nm = 3.0},
                                    kDm4310);
   EXPECT_EQ(bytes(payload), (Bytes{0x8A, 0x3C, 0x77, 0x70, 0xA3, 0x19, 0x9A, 0x65}));
   const auto back = damiao::readMit(payload, kDm4310);
   EXPECT_NEAR(back.position_rad, 0.99966, 1e-5);
   EXPECT_NEAR(back.velocity_rad_s, -2.0, 1e-5);
-  EXPECT_NEAR(back.kp_nm_per_rad, 19.9023, 1e-4);
-  EXPECT_NEAR(back.kd_nms_per_rad, 0.49939, 1e-5);
+  EXPECT_NEAR(back.stiffness_nm_per_rad, 19.9023, 1e-4);
+  EXPECT_NEAR(back.damping_nms_per_rad, 0.49939, 1e-5);
   EXPECT_NEAR(back.torque_nm, 2.99634, 1e-5);
 }
 

@@ -46,8 +46,8 @@ TEST(DamiaoMotor, ImpedanceIsSentAsTold) {
   const auto command = mitOf(desk.tick());
   EXPECT_NEAR(command.position_rad, 20.0 / 57.29578, 0.001);
   EXPECT_NEAR(command.velocity_rad_s, 10.0 * 0.1047198, 0.02);
-  EXPECT_NEAR(command.kp_nm_per_rad, 12.0, 0.13);
-  EXPECT_NEAR(command.kd_nms_per_rad, 0.7, 0.002);
+  EXPECT_NEAR(command.stiffness_nm_per_rad, 12.0, 0.13);
+  EXPECT_NEAR(command.damping_nms_per_rad, 0.7, 0.002);
   EXPECT_NEAR(command.torque_nm, 0.3, 0.006);
 }
 
@@ -64,8 +64,8 @@ TEST(DamiaoMotor, AGearBehindTheDriveCountsOnceForAnglesAndSquaredForGains) {
                 .damping_nms_per_rad = 2.0F});
   const auto command = mitOf(desk.tick());
   EXPECT_NEAR(command.position_rad, -20.0 / 57.29578, 0.001);
-  EXPECT_NEAR(command.kp_nm_per_rad, 10.0, 0.13);
-  EXPECT_NEAR(command.kd_nms_per_rad, 0.5, 0.002);
+  EXPECT_NEAR(command.stiffness_nm_per_rad, 10.0, 0.13);
+  EXPECT_NEAR(command.damping_nms_per_rad, 0.5, 0.002);
   EXPECT_NEAR(command.torque_nm, -0.5, 0.006);
   (void)desk.feed(stateAt(0.0, 4.0));
   EXPECT_NEAR(static_cast<double>(desk.motor().feedback().velocity_rpm), -2.0 * 9.549, 0.1);
@@ -82,8 +82,8 @@ TEST(DamiaoMotor, BrakeDampAndHoldAreAllWithinTheTorqueLimit) {
       (void)desk.feed(stateAt(0.0, rad_s));
       const auto command = mitOf(desk.tick());
       const double at_rad = damiao::fromCode(damiao::toCode(0.0, 12.5, 16), 12.5, 16);
-      const double nm = command.kp_nm_per_rad * (command.position_rad - at_rad) +
-                        command.kd_nms_per_rad * (command.velocity_rad_s - rad_s) + command.torque_nm;
+      const double nm = command.stiffness_nm_per_rad * (command.position_rad - at_rad) +
+                        command.damping_nms_per_rad * (command.velocity_rad_s - rad_s) + command.torque_nm;
       EXPECT_LE(std::fabs(nm), 0.5 * 0.945 + 0.05);
       if (kind != FrameKind::kIdle) {
         EXPECT_LT(nm * rad_s, 0.0) << "against the motion";
@@ -129,8 +129,8 @@ TEST(DamiaoMotor, NoMitTargetWhateverItIsAsksForMoreThanTheLimit) {
                     .stiffness_nm_per_rad = static_cast<float>(odd()),
                     .damping_nms_per_rad = static_cast<float>(odd())});
       const auto c = mitOf(desk.tick());
-      const double nm = c.kp_nm_per_rad * (c.position_rad - at_rad) +
-                        c.kd_nms_per_rad * (c.velocity_rad_s - at_rad_s) + c.torque_nm;
+      const double nm = c.stiffness_nm_per_rad * (c.position_rad - at_rad) +
+                        c.damping_nms_per_rad * (c.velocity_rad_s - at_rad_s) + c.torque_nm;
       // A step of the position at full stiffness is 0.19 Nm, one of the speed at full damping 0.07 Nm.
       ASSERT_LE(std::fabs(nm), limit_nm + 0.3);
       ASSERT_TRUE(std::isfinite(desk.motor().commandValue()));
@@ -187,16 +187,16 @@ TEST(DamiaoMotor, EveryMitCommandComesBackWithinOneStep) {
   std::mt19937 generator(3);
   std::uniform_real_distribution<double> share(0.0, 1.0);
   for (int i = 0; i < 100'000; ++i) {
-    const damiao::MitCommand sent{.position_rad = 25.0 * share(generator) - 12.5,
-                                  .velocity_rad_s = 60.0 * share(generator) - 30.0,
-                                  .kp_nm_per_rad = 500.0 * share(generator),
-                                  .kd_nms_per_rad = 5.0 * share(generator),
-                                  .torque_nm = 20.0 * share(generator) - 10.0};
+    const SpringLaw sent{.position_rad = 25.0 * share(generator) - 12.5,
+                         .velocity_rad_s = 60.0 * share(generator) - 30.0,
+                         .stiffness_nm_per_rad = 500.0 * share(generator),
+                         .damping_nms_per_rad = 5.0 * share(generator),
+                         .torque_nm = 20.0 * share(generator) - 10.0};
     const auto back = damiao::readMit(damiao::mit(sent, kDm4310), kDm4310);
     ASSERT_NEAR(back.position_rad, sent.position_rad, 25.0 / 65535);
     ASSERT_NEAR(back.velocity_rad_s, sent.velocity_rad_s, 60.0 / 4095);
-    ASSERT_NEAR(back.kp_nm_per_rad, sent.kp_nm_per_rad, 500.0 / 4095);
-    ASSERT_NEAR(back.kd_nms_per_rad, sent.kd_nms_per_rad, 5.0 / 4095);
+    ASSERT_NEAR(back.stiffness_nm_per_rad, sent.stiffness_nm_per_rad, 500.0 / 4095);
+    ASSERT_NEAR(back.damping_nms_per_rad, sent.damping_nms_per_rad, 5.0 / 4095);
     ASSERT_NEAR(back.torque_nm, sent.torque_nm, 20.0 / 4095);
   }
 }

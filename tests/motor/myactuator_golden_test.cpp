@@ -27,11 +27,11 @@ TEST(MyActuatorGolden, RequestsAreThePublishedFrames) {
 }
 
 TEST(MyActuatorGolden, TheMotionCommandIsThePublishedFrame) {
-  EXPECT_EQ(textOf(motionCommand(1, {.angle_rad = 10.0002,
+  EXPECT_EQ(textOf(motionCommand(1, {.position_rad = 10.0002,
                                      .velocity_rad_s = 1.0220,
                                      .stiffness_nm_per_rad = 10.0122,
                                      .damping_nms_per_rad = 1.0,
-                                     .torque_ff_nm = 10.0044})),
+                                     .torque_nm = 10.0044})),
             "401#E66682E052333B55");
 }
 

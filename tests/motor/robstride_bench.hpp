@@ -58,7 +58,7 @@ class Bench {
     frame.received = now;
     return motor.updateFeedback(frame);
   }
-  robstride::Operation operation(const Target& target) {
+  SpringLaw operation(const Target& target) {
     for (const auto& frame : tick(FrameKind::kCommand, target)) {
       if (typeOf(frame) == 1) return codec.operation(frame);
     }
@@ -78,7 +78,7 @@ inline MotorSettings controlled(std::string control, std::string_view model = "R
   return settings;
 }
 
-inline double torqueOf(const robstride::Operation& told, double position_rad, double velocity_rad_s) {
+inline double torqueOf(const SpringLaw& told, double position_rad, double velocity_rad_s) {
   return told.stiffness_nm_per_rad * (told.position_rad - position_rad) +
          told.damping_nms_per_rad * (told.velocity_rad_s - velocity_rad_s) + told.torque_nm;
 }

@@ -176,7 +176,7 @@ TEST(RobStrideMotor, EveryValueOnTheScalesComesBack) {
                                  .drive_id = kDrive,
                                  .host_id = kHost};
     for (int i = 0; i < 500; ++i) {
-      const robstride::Operation wanted{
+      const SpringLaw wanted{
           .position_rad = share(random) * model.position_range_rad,
           .velocity_rad_s = share(random) * model.velocity_range_rad_s,
           .stiffness_nm_per_rad = std::abs(share(random)) * model.stiffness_range_nm_per_rad,

@@ -55,7 +55,7 @@ struct MitCodes {
   std::uint32_t torque;
 };
 
-[[nodiscard]] MitCodes toCodes(const CubemarsRanges& r, const MitCommand& c) noexcept {
+[[nodiscard]] MitCodes toCodes(const CubemarsRanges& r, const SpringLaw& c) noexcept {
   return {.position =
               toCode(finiteOr0(within(c.position_rad, r.position_rad)), -r.position_rad, r.position_rad, 16),
           .velocity = toCode(finiteOr0(within(c.velocity_rad_s, r.velocity_rad_s)), -r.velocity_rad_s,
@@ -123,7 +123,7 @@ std::optional<ServoReport> readServoReport(const CanFrame& frame) noexcept {
   return report;
 }
 
-CanFrame mitFrame(int motor_id, const CubemarsRanges& ranges, const MitCommand& command) noexcept {
+CanFrame mitFrame(int motor_id, const CubemarsRanges& ranges, const SpringLaw& command) noexcept {
   const MitCodes codes = toCodes(ranges, command);
   std::array<std::uint8_t, 8> data{};
   data[0] = byte(codes.position >> 8U);
@@ -133,7 +133,7 @@ CanFrame mitFrame(int motor_id, const CubemarsRanges& ranges, const MitCommand& 
   return makeClassicFrame(mitId(motor_id), data);
 }
 
-CanFrame mitV3Frame(int motor_id, const CubemarsRanges& ranges, const MitCommand& command) noexcept {
+CanFrame mitV3Frame(int motor_id, const CubemarsRanges& ranges, const SpringLaw& command) noexcept {
   const MitCodes codes = toCodes(ranges, command);
   std::array<std::uint8_t, 8> data{};
   writePair(data, 0, codes.stiffness, codes.damping);

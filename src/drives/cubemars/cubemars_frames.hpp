@@ -5,6 +5,7 @@
 
 #include "bus/can_frame.hpp"
 #include "drives/cubemars/cubemars_model.hpp"
+#include "motor/spring_law.hpp"
 
 namespace rc10::cubemars {
 
@@ -58,18 +59,11 @@ struct ServoReport {
 /// Nothing if the frame cannot be one: its id is not looked at.
 [[nodiscard]] std::optional<ServoReport> readServoReport(const CanFrame& frame) noexcept;
 
-/// The five numbers of a MIT command, at the drive's own output.
-struct MitCommand {
-  double position_rad = 0.0;
-  double velocity_rad_s = 0.0;
-  double stiffness_nm_per_rad = 0.0;
-  double damping_nms_per_rad = 0.0;
-  double torque_nm = 0.0;
-};
+/// A MIT command: its law at the drive's own output.
 [[nodiscard]] CanFrame mitFrame(int motor_id, const CubemarsRanges& ranges,
-                                const MitCommand& command) noexcept;
+                                const SpringLaw& command) noexcept;
 [[nodiscard]] CanFrame mitV3Frame(int motor_id, const CubemarsRanges& ranges,
-                                  const MitCommand& command) noexcept;
+                                  const SpringLaw& command) noexcept;
 
 /// FF FF FF FF FF FF FF and one of these.
 enum class MitOrder : std::uint8_t { kEnter = 0xFC, kExit = 0xFD, kZero = 0xFE };

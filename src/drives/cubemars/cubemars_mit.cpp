@@ -127,10 +127,7 @@ void CubemarsMit::watchSpring(const cubemars::MitReport& report) noexcept {
   // A report between two frames may still show the law of the one before.
   std::array<double, 2> expected_nm{};
   for (std::size_t i = 0; i < sent_.size(); ++i) {
-    const auto& law = sent_[i];
-    const double sum_nm = law.stiffness_nm_per_rad * (law.position_rad - report.position_rad) +
-                          law.damping_nms_per_rad * (law.velocity_rad_s - report.velocity_rad_s) +
-                          law.torque_nm;
+    const double sum_nm = torqueNm(sent_[i], {report.position_rad, report.velocity_rad_s});
     expected_nm[i] = std::clamp(sum_nm, -most_nm, most_nm);
   }
   const double stiffness = sent_[0].stiffness_nm_per_rad;
@@ -179,49 +176,41 @@ double CubemarsMit::boundRpm(double wanted_rpm) noexcept {
   return rpmWithinLimit(wanted_rpm, setup().ranges.velocity_rad_s / std::fabs(driveRadS(1.0)));
 }
 
-CubemarsMit::Law CubemarsMit::velocityLaw(double output_rpm, double torque_ff_nm, double gain) noexcept {
+SpringLaw CubemarsMit::velocityLaw(double output_rpm, double torque_ff_nm, double gain) noexcept {
   return {.velocity_rad_s = driveRadS(boundRpm(output_rpm)),
           .damping_nms_per_rad = gain,
           .torque_nm = torqueToDrive(torque_ff_nm)};
 }
 
 // `stiffness` and `damping` at the drive's output.
-CubemarsMit::Law CubemarsMit::angleLaw(const Target& target, double stiffness, double damping,
-                                       bool bound_speed) noexcept {
+SpringLaw CubemarsMit::angleLaw(const Target& target, double stiffness, double damping,
+                                bool bound_speed) noexcept {
   const double ff_nm = static_cast<double>(target.torque_ff_nm);
-  // As the frame can say them: the errors are bounded by these.
-  stiffness = std::clamp(stiffness, 0.0, CubemarsRanges::kStiffnessNmPerRad);
-  damping = std::clamp(damping, 0.0, CubemarsRanges::kDampingNmsPerRad);
   if (!inRange()) {
     // The command cannot say positions out there, and what the drive would make of one is not known.
     limits_ |= kLimitAngle;
-    return velocityLaw(0.0, 0.0, std::max(damping, velocity_gain_));
+    return velocityLaw(0.0, 0.0,
+                       std::max(std::min(damping, CubemarsRanges::kDampingNmsPerRad), velocity_gain_));
   }
   const double reach_rad = setup().ranges.position_rad;
   const double wanted_rad = drivePositionFor(target.value) * kRadPerDeg;
-  Law law{.position_rad = std::clamp(wanted_rad, -reach_rad, reach_rad),
-          .velocity_rad_s = driveRadS(boundRpm(static_cast<double>(target.velocity_ff_rpm))),
-          .stiffness_nm_per_rad = stiffness,
-          .damping_nms_per_rad = damping,
-          .torque_nm = torqueToDrive(ff_nm)};
+  SpringLaw law{.position_rad = std::clamp(wanted_rad, -reach_rad, reach_rad),
+                .velocity_rad_s = driveRadS(boundRpm(static_cast<double>(target.velocity_ff_rpm))),
+                .stiffness_nm_per_rad = stiffness,
+                .damping_nms_per_rad = damping,
+                .torque_nm = torqueToDrive(ff_nm)};
   if (law.position_rad != wanted_rad) limits_ |= kLimitAngle;
-  const auto limit_rpm = static_cast<double>(velocityLimitRpm());
-  if (bound_speed && limit_rpm > 0.0 && law.stiffness_nm_per_rad > 0.0 && law.damping_nms_per_rad > 0.0) {
-    // Against the damping the position error drives it at this speed: stiffness / damping * error.
-    const double per_s = law.stiffness_nm_per_rad / law.damping_nms_per_rad;
-    const double limit_rad_s = std::fabs(driveRadS(limit_rpm));
-    const double lead_rad_s = (law.position_rad - position_rad_) * per_s;
-    const double bounded =
-        std::clamp(lead_rad_s, -limit_rad_s - law.velocity_rad_s, limit_rad_s - law.velocity_rad_s);
-    if (bounded != lead_rad_s) {
-      law.position_rad = position_rad_ + bounded / per_s;
-      limits_ |= kLimitVelocity;
-    }
+  // As the frame can say them: the errors are bounded by these.
+  boundGains(law, CubemarsRanges::kStiffnessNmPerRad, CubemarsRanges::kDampingNmsPerRad);
+  const double limit_rad_s = std::fabs(driveRadS(static_cast<double>(velocityLimitRpm())));
+  if (bound_speed && limit_rad_s > 0.0 &&
+      boundLead(law, measured(), -limit_rad_s - law.velocity_rad_s, limit_rad_s - law.velocity_rad_s)) {
+    limits_ |= kLimitVelocity;
   }
   return law;
 }
 
-CubemarsMit::Law CubemarsMit::lawOf(const Target& target) noexcept {
+SpringLaw CubemarsMit::lawOf(const Target& target) noexcept {
   const double ff_nm = static_cast<double>(target.torque_ff_nm);
   switch (target.mode) {
     case ControlMode::kCurrent: {
@@ -245,30 +234,17 @@ CubemarsMit::Law CubemarsMit::lawOf(const Target& target) noexcept {
   return {};
 }
 
-// Both errors and the torque shrink together until the drive's sum is within the limit: the sign of each
-// part stays, and the damping too.
-void CubemarsMit::send(const Law& wanted_law) noexcept {
+void CubemarsMit::send(const SpringLaw& wanted_law) noexcept {
   // The sum is bounded by the range of the field.
   const double most_nm = setup().ranges.torque_nm;
-  Law law = wanted_law;
-  law.torque_nm = std::clamp(law.torque_nm, -most_nm, most_nm);
-  if (law.torque_nm != wanted_law.torque_nm) limits_ |= kLimitCurrent;
-  command_ = law;
-  const double position_error = law.position_rad - position_rad_;
-  const double velocity_error = law.velocity_rad_s - velocity_rad_s_;
-  const double sum_nm =
-      law.stiffness_nm_per_rad * position_error + law.damping_nms_per_rad * velocity_error + law.torque_nm;
+  command_ = wanted_law;
+  command_.torque_nm = std::clamp(command_.torque_nm, -most_nm, most_nm);
+  if (command_.torque_nm != wanted_law.torque_nm) limits_ |= kLimitCurrent;
   const double limit_nm =
       std::fabs(torqueToDrive(static_cast<double>(effortLimit()) * static_cast<double>(torqueNmPerA())));
-  const bool bounded = std::fabs(sum_nm) > limit_nm;
-  const double share = bounded ? limit_nm / std::fabs(sum_nm) : 1.0;
-  if (bounded) {
-    command_.position_rad = position_rad_ + share * position_error;
-    command_.velocity_rad_s = velocity_rad_s_ + share * velocity_error;
-    command_.torque_nm = share * law.torque_nm;
-    limits_ |= kLimitCurrent;
-  }
-  setCommand(torqueToOutput(share * sum_nm) / static_cast<double>(torqueNmPerA()), CommandUnit::kAmpere);
+  if (boundTorque(command_, measured(), limit_nm, SpringYield::kErrors)) limits_ |= kLimitCurrent;
+  setCommand(torqueToOutput(torqueNm(command_, measured())) / static_cast<double>(torqueNmPerA()),
+             CommandUnit::kAmpere);
 }
 
 void CubemarsMit::release() noexcept {
@@ -278,7 +254,7 @@ void CubemarsMit::release() noexcept {
 
 // ---- Packing
 
-CanFrame CubemarsMit::commandFrame(const Law& law) const noexcept {
+CanFrame CubemarsMit::commandFrame(const SpringLaw& law) const noexcept {
   return v3_ ? cubemars::mitV3Frame(driveId(), setup().ranges, law)
              : cubemars::mitFrame(driveId(), setup().ranges, law);
 }
@@ -298,7 +274,7 @@ std::size_t CubemarsMit::packCommand(const Tick& tick, std::span<CanFrame> out) 
   if (!due(tick)) return 0;
   if (!enabling() && !obeying()) return packRest(out);
   out[0] = enabling() ? no_torque : commandFrame(command_);
-  sent_ = {enabling() ? Law{} : command_, sent_[0]};
+  sent_ = {enabling() ? SpringLaw{} : command_, sent_[0]};
   return 1;
 }
 

@@ -32,8 +32,6 @@ class CubemarsMit : public CubeMars_Motor {
   [[nodiscard]] std::size_t packRest(std::span<CanFrame> out) const noexcept override;
 
  private:
-  /// A command at the drive's output, whose velocity and position errors are not yet bounded.
-  using Law = cubemars::MitCommand;
   enum class Step : std::uint8_t { kEnter };
 
   [[nodiscard]] FrameVerdict takeMitReport(const CanFrame& frame) noexcept;
@@ -43,15 +41,16 @@ class CubemarsMit : public CubeMars_Motor {
   [[nodiscard]] bool inRange() const noexcept { return turns_ == 0 && !turns_unknown_ && !positionCutOff(); }
   void watchSpring(const cubemars::MitReport& report) noexcept;
   [[nodiscard]] bool pullsOtherwise() const noexcept;
-  [[nodiscard]] Law lawOf(const Target& target) noexcept;
-  [[nodiscard]] Law velocityLaw(double output_rpm, double torque_ff_nm, double gain) noexcept;
-  [[nodiscard]] Law angleLaw(const Target& target, double stiffness, double damping,
-                             bool bound_speed) noexcept;
-  void send(const Law& wanted_law) noexcept;
+  [[nodiscard]] SpringLaw lawOf(const Target& target) noexcept;
+  [[nodiscard]] SpringLaw velocityLaw(double output_rpm, double torque_ff_nm, double gain) noexcept;
+  [[nodiscard]] SpringLaw angleLaw(const Target& target, double stiffness, double damping,
+                                   bool bound_speed) noexcept;
+  void send(const SpringLaw& wanted_law) noexcept;
   void release() noexcept;
   [[nodiscard]] double boundRpm(double wanted_rpm) noexcept;
   [[nodiscard]] double driveRadS(double output_rpm) const noexcept;
-  [[nodiscard]] CanFrame commandFrame(const Law& law) const noexcept;
+  [[nodiscard]] SpringState measured() const noexcept { return {position_rad_, velocity_rad_s_}; }
+  [[nodiscard]] CanFrame commandFrame(const SpringLaw& law) const noexcept;
 
   bool v3_;
   std::array<FrameFilter, 2> filters_;
@@ -67,9 +66,9 @@ class CubemarsMit : public CubeMars_Motor {
   bool turns_unknown_ = false;  ///< Silent while outside of its range, and maybe restarted.
   int samples_at_end_ = 0;
 
-  Law command_{};              ///< Result of update().
-  std::array<Law, 2> sent_{};  ///< The last, and the one before.
-  int samples_against_ = 0;    ///< In a row, of a spring that pulls the other way; signed by its torque.
+  SpringLaw command_{};              ///< Result of update().
+  std::array<SpringLaw, 2> sent_{};  ///< The last, and the one before.
+  int samples_against_ = 0;  ///< In a row, of a spring that pulls the other way; signed by its torque.
   EnableSequence<Step> sequence_;
   bool enter_now_ = false;
   bool clear_now_ = false;

@@ -44,13 +44,13 @@ Payload special(Special command) noexcept {
   return {0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, static_cast<std::uint8_t>(command)};
 }
 
-Payload mit(const MitCommand& command, const DamiaoScale& scale) noexcept {
+Payload mit(const SpringLaw& command, const DamiaoScale& scale) noexcept {
   const auto gain = [](double value, double most) { return whole(value / most * full(12) + 1e-9, full(12)); };
   const auto position = toCode(command.position_rad, scale.p_max_rad, 16);
   const auto velocity = toCode(command.velocity_rad_s, scale.v_max_rad_s, 12);
   const auto torque = toCode(command.torque_nm, scale.t_max_nm, 12);
-  const auto kp = gain(command.kp_nm_per_rad, kKpMax);
-  const auto kd = gain(command.kd_nms_per_rad, kKdMax);
+  const auto kp = gain(command.stiffness_nm_per_rad, kKpMax);
+  const auto kd = gain(command.damping_nms_per_rad, kKdMax);
   Payload out{};
   writeBigEndian(out, 0, position);
   out[2] = static_cast<std::uint8_t>(velocity >> 4U);
@@ -62,12 +62,12 @@ Payload mit(const MitCommand& command, const DamiaoScale& scale) noexcept {
   return out;
 }
 
-MitCommand readMit(std::span<const std::uint8_t, 8> payload, const DamiaoScale& scale) noexcept {
+SpringLaw readMit(std::span<const std::uint8_t, 8> payload, const DamiaoScale& scale) noexcept {
   const auto at = [payload](std::size_t byte) { return static_cast<unsigned>(payload[byte]); };
   return {.position_rad = fromCode(readBigEndian<std::uint16_t>(payload, 0), scale.p_max_rad, 16),
           .velocity_rad_s = fromCode(at(2) << 4U | at(3) >> 4U, scale.v_max_rad_s, 12),
-          .kp_nm_per_rad = ((at(3) & 0xFU) << 8U | at(4)) * kKpMax / full(12),
-          .kd_nms_per_rad = (at(5) << 4U | at(6) >> 4U) * kKdMax / full(12),
+          .stiffness_nm_per_rad = ((at(3) & 0xFU) << 8U | at(4)) * kKpMax / full(12),
+          .damping_nms_per_rad = (at(5) << 4U | at(6) >> 4U) * kKdMax / full(12),
           .torque_nm = fromCode((at(6) & 0xFU) << 8U | at(7), scale.t_max_nm, 12)};
 }
 

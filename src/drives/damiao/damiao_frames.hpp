@@ -8,6 +8,7 @@
 #include "bus/can_frame.hpp"
 #include "drives/damiao/damiao_model.hpp"
 #include "motor/fault_code.hpp"
+#include "motor/spring_law.hpp"
 
 namespace rc10::damiao {
 
@@ -62,15 +63,6 @@ inline constexpr std::uint8_t kFirstFault = 2;
 /// The last byte of a frame of seven FF.
 enum class Special : std::uint8_t { kClear = 0xFB, kEnable = 0xFC, kDisable = 0xFD, kZero = 0xFE };
 
-/// Control law of the drive: torque = kp * (position - its own) + kd * (velocity - its own) + torque.
-struct MitCommand {
-  double position_rad = 0.0;
-  double velocity_rad_s = 0.0;
-  double kp_nm_per_rad = 0.0;
-  double kd_nms_per_rad = 0.0;
-  double torque_nm = 0.0;
-};
-
 /// Feedback as it was sent, unscaled.
 struct State {
   std::uint8_t status = 0;
@@ -104,8 +96,8 @@ using Payload = std::array<std::uint8_t, 8>;
 
 // 8 bytes each.
 [[nodiscard]] Payload special(Special command) noexcept;
-[[nodiscard]] Payload mit(const MitCommand& command, const DamiaoScale& scale) noexcept;
-[[nodiscard]] MitCommand readMit(std::span<const std::uint8_t, 8> payload, const DamiaoScale& scale) noexcept;
+[[nodiscard]] Payload mit(const SpringLaw& command, const DamiaoScale& scale) noexcept;
+[[nodiscard]] SpringLaw readMit(std::span<const std::uint8_t, 8> payload, const DamiaoScale& scale) noexcept;
 [[nodiscard]] Payload positionVelocity(float position_rad, float limit_rad_s) noexcept;
 /// `current_pu`: of the drive's maximum, 0 to 1.
 [[nodiscard]] Payload forcePosition(float position_rad, double limit_rad_s, double current_pu) noexcept;

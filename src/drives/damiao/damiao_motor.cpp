@@ -168,10 +168,10 @@ void Damiao_Motor::restCommand() noexcept {
   setCommand(0.0, CommandUnit::kNone);
 }
 
-damiao::MitCommand Damiao_Motor::mitLaw(const Target& target) const noexcept {
-  damiao::MitCommand law;
+SpringLaw Damiao_Motor::mitLaw(const Target& target) const noexcept {
+  SpringLaw law;
   if (ordered() == FrameKind::kDamp) {
-    law.kd_nms_per_rad = damp_nms_per_rad_;
+    law.damping_nms_per_rad = damp_nms_per_rad_;
     return law;
   }
   // Gains are at the output shaft; an own gear behind the drive counts squared.
@@ -182,19 +182,19 @@ damiao::MitCommand Damiao_Motor::mitLaw(const Target& target) const noexcept {
     case ControlMode::kCurrent:
       law.torque_nm = torqueToDrive(target.value * static_cast<double>(torqueNmPerA())) + ff_nm;
       break;
-    case ControlMode::kBrake: law.kd_nms_per_rad = own_.gains.velocity_damping_nms_per_rad / gear; break;
+    case ControlMode::kBrake: law.damping_nms_per_rad = own_.gains.velocity_damping_nms_per_rad / gear; break;
     case ControlMode::kVelocity:
-      law.kd_nms_per_rad = own_.gains.velocity_damping_nms_per_rad / gear;
+      law.damping_nms_per_rad = own_.gains.velocity_damping_nms_per_rad / gear;
       law.velocity_rad_s = toDrive(target.value) * kRadPerSPerRpm;
       law.torque_nm = ff_nm;
       break;
     case ControlMode::kTotalAngle:
     case ControlMode::kImpedance: {
       const bool given = target.mode == ControlMode::kImpedance;
-      law.kp_nm_per_rad =
+      law.stiffness_nm_per_rad =
           (given ? static_cast<double>(target.stiffness_nm_per_rad) : own_.gains.angle_stiffness_nm_per_rad) /
           gear;
-      law.kd_nms_per_rad =
+      law.damping_nms_per_rad =
           (given ? static_cast<double>(target.damping_nms_per_rad) : own_.gains.angle_damping_nms_per_rad) /
           gear;
       law.position_rad = drivePositionFor(target.value) * kRadPerDeg;
@@ -211,12 +211,11 @@ void Damiao_Motor::mitCommand(const Target& target) noexcept {
   const DamiaoMitBounds bounds{.scale = own_.scale,
                                .torque_nm = torqueLimitNm(),
                                .velocity_rad_s = velocityLimitRpm() > 0.0F ? fastestRadS() : 0.0,
-                               .position_rad = position_.rad(),
-                               .measured_rad_s = measured_rad_s_,
+                               .measured = {position_.rad(), measured_rad_s_},
                                .position_known = position_.known()};
   const auto command = boundedMit(mitLaw(target), bounds, limits_);
   command_ = frameOf(command_ids_[0], damiao::mit(command, own_.scale));
-  const double torque_nm = torqueToOutput(mitTorqueNm(command, bounds));
+  const double torque_nm = torqueToOutput(torqueNm(command, bounds.measured));
   setCommand(torque_nm / static_cast<double>(torqueNmPerA()), CommandUnit::kAmpere);
 }
 

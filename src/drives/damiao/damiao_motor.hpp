@@ -56,7 +56,7 @@ class Damiao_Motor : public SoloMotor {
   void velocityCommand(const Target& target) noexcept;
   void positionCommand(const Target& target) noexcept;
 
-  [[nodiscard]] damiao::MitCommand mitLaw(const Target& target) const noexcept;
+  [[nodiscard]] SpringLaw mitLaw(const Target& target) const noexcept;
   [[nodiscard]] double torqueLimitNm() const noexcept;
   /// Bounds every velocity; the scale's if there is none.
   [[nodiscard]] double fastestRadS() const noexcept;

@@ -164,8 +164,8 @@ void DamiaoDrive::follow() noexcept {
   const double rpm = s.velocity_rad_s * kRpmPerRadPerS;
   switch (s.control) {
     case DamiaoControl::kMit:
-      impedance(s.mit.position_rad * kDegPerRad, s.mit.velocity_rad_s * kRpmPerRadPerS, s.mit.kp_nm_per_rad,
-                s.mit.kd_nms_per_rad, s.mit.torque_nm);
+      impedance(s.mit.position_rad * kDegPerRad, s.mit.velocity_rad_s * kRpmPerRadPerS,
+                s.mit.stiffness_nm_per_rad, s.mit.damping_nms_per_rad, s.mit.torque_nm);
       break;
     case DamiaoControl::kVelocity: velocity(rpm); break;
     // A limit of 0 is a standstill; to the loops below it would be none.

@@ -37,7 +37,7 @@ class DamiaoDrive : public ServoDrive {
   /// A target, kept until it is told another or disabled.
   struct Setpoint {
     DamiaoControl control = DamiaoControl::kMit;
-    damiao::MitCommand mit;
+    SpringLaw mit;
     double position_rad = 0.0;
     double velocity_rad_s = 0.0;
     double current_pu = 0.0;

@@ -49,8 +49,8 @@ std::string damiaoCommand(const CanFrame& frame, const DamiaoScale& scale) {
   return FrameWords{id, "MIT command"}
       .add("position", mit.position_rad, "rad")
       .add("velocity", mit.velocity_rad_s, "rad/s")
-      .add("kp", mit.kp_nm_per_rad)
-      .add("kd", mit.kd_nms_per_rad)
+      .add("kp", mit.stiffness_nm_per_rad)
+      .add("kd", mit.damping_nms_per_rad)
       .add("torque", mit.torque_nm, "Nm")
       .add("scale of the position", scale.p_max_rad, "rad")
       .take();

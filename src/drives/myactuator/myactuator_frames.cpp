@@ -58,13 +58,13 @@ CanFrame positionCommand(int id, double angle_deg, double limit_deg_s) noexcept 
   return frame;
 }
 
-CanFrame motionCommand(int id, const Motion& motion) noexcept {
+CanFrame motionCommand(int id, const SpringLaw& motion) noexcept {
   CanFrame frame = empty(kMotionBase + static_cast<std::uint32_t>(id));
-  const auto angle = pack(motion.angle_rad, -kMotionAngleRad, kMotionAngleRad, 16);
+  const auto angle = pack(motion.position_rad, -kMotionAngleRad, kMotionAngleRad, 16);
   const auto velocity = pack(motion.velocity_rad_s, -kMotionVelocityRadS, kMotionVelocityRadS, 12);
   const auto stiffness = pack(motion.stiffness_nm_per_rad, 0.0, kMotionStiffness, 12);
   const auto damping = pack(motion.damping_nms_per_rad, 0.0, kMotionDamping, 12);
-  const auto torque = pack(motion.torque_ff_nm, -kMotionTorqueNm, kMotionTorqueNm, 12);
+  const auto torque = pack(motion.torque_nm, -kMotionTorqueNm, kMotionTorqueNm, 12);
   writeBigEndian(frame.data, 0, static_cast<std::uint16_t>(angle));
   // Twelve bits each: velocity and stiffness, then damping and torque.
   const std::uint32_t first = velocity << 12U | stiffness;

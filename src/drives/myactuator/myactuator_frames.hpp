@@ -4,6 +4,7 @@
 #include <span>
 
 #include "bus/can_frame.hpp"
+#include "motor/spring_law.hpp"
 
 /// The frames of MyActuator's drives, protocol V3 to V4.2: standard ids, classic, 8 bytes, little endian; the
 /// motion mode alone is packed big endian. Angles and speeds are those of the drive's output.
@@ -48,14 +49,6 @@ enum class Code : std::uint8_t {
 /// `limit_deg_s` is never sent as 0, which would mean no limit.
 [[nodiscard]] CanFrame positionCommand(int id, double angle_deg, double limit_deg_s) noexcept;
 
-/// Torque = stiffness * (angle - its own) + damping * (velocity - its own) + torque_ff.
-struct Motion {
-  double angle_rad = 0.0;
-  double velocity_rad_s = 0.0;
-  double stiffness_nm_per_rad = 0.0;
-  double damping_nms_per_rad = 0.0;
-  double torque_ff_nm = 0.0;
-};
 // V4.2, 5.1: one set of ranges for all models.
 inline constexpr double kMotionAngleRad = 12.5;
 inline constexpr double kMotionVelocityRadS = 45.0;
@@ -64,7 +57,7 @@ inline constexpr double kMotionStiffness = 500.0;
 inline constexpr double kMotionDamping = 5.0;
 
 /// Values out of range are clamped.
-[[nodiscard]] CanFrame motionCommand(int id, const Motion& motion) noexcept;
+[[nodiscard]] CanFrame motionCommand(int id, const SpringLaw& motion) noexcept;
 
 // Replies. The payload has 8 bytes.
 [[nodiscard]] inline Code codeOf(std::span<const std::uint8_t> payload) noexcept {

@@ -294,15 +294,13 @@ void MyActuator_Motor::followAngle(double total_angle_deg) noexcept {
 void MyActuator_Motor::followImpedance(const Target& target) noexcept {
   const double drive_deg = drivePositionFor(target.value) -
                            static_cast<double>(angle_raw_ - raw_angle_.value_or(0)) * myactuator::kDegPerRaw;
-  const double measured_deg = static_cast<double>(raw_angle_.value_or(0)) * myactuator::kDegPerRaw;
   const double turns = toDrive(1.0);
   const double per_drive = 1.0 / (turns * turns);
-  myactuator::Motion motion{
-      .angle_rad = finiteOr0(drive_deg) * kRadPerDeg,
-      .velocity_rad_s = toDrive(static_cast<double>(target.velocity_ff_rpm)) * kRadPerSPerRpm,
-      .stiffness_nm_per_rad = std::max(static_cast<double>(target.stiffness_nm_per_rad), 0.0) * per_drive,
-      .damping_nms_per_rad = std::max(static_cast<double>(target.damping_nms_per_rad), 0.0) * per_drive,
-      .torque_ff_nm = torqueToDrive(static_cast<double>(target.torque_ff_nm))};
+  SpringLaw motion{.position_rad = finiteOr0(drive_deg) * kRadPerDeg,
+                   .velocity_rad_s = toDrive(static_cast<double>(target.velocity_ff_rpm)) * kRadPerSPerRpm,
+                   .stiffness_nm_per_rad = static_cast<double>(target.stiffness_nm_per_rad) * per_drive,
+                   .damping_nms_per_rad = static_cast<double>(target.damping_nms_per_rad) * per_drive,
+                   .torque_nm = torqueToDrive(static_cast<double>(target.torque_ff_nm))};
   if (const double limit = std::abs(toDrive(static_cast<double>(velocityLimitRpm()))) * kRadPerSPerRpm;
       limit > 0.0) {
     const double bounded = std::clamp(motion.velocity_rad_s, -limit, limit);
@@ -311,16 +309,14 @@ void MyActuator_Motor::followImpedance(const Target& target) noexcept {
   }
   // Outside its range of angles the drive would pull towards the end of the range: then without a spring.
   const bool outside = feedback_.samples == 0 || !std::isfinite(drive_deg) ||
-                       std::abs(motion.angle_rad) > myactuator::kMotionAngleRad ||
-                       std::abs(measured_deg * kRadPerDeg) > myactuator::kMotionAngleRad;
+                       std::abs(motion.position_rad) > myactuator::kMotionAngleRad ||
+                       std::abs(measuredDeg() * kRadPerDeg) > myactuator::kMotionAngleRad;
   if (outside) {
     limits_ |= kLimitAngle;
-    motion.angle_rad = 0.0;
+    motion.position_rad = 0.0;
     motion.stiffness_nm_per_rad = 0.0;
   }
-  const double measured_rad_s =
-      toDrive(finiteOr0(static_cast<double>(feedback_.velocity_rpm))) * kRadPerSPerRpm;
-  sendMotion(motion.angle_rad - measured_deg * kRadPerDeg, motion.velocity_rad_s - measured_rad_s, motion);
+  sendMotion(motion);
 }
 
 // As a shorted winding would: the full torque at the speed without load.
@@ -329,33 +325,20 @@ void MyActuator_Motor::damp() noexcept {
   const double full_nm = static_cast<double>(traits().effort_full_scale * traits().torque_nm_per_a);
   const double damping =
       no_load_rad_s > 0.0 ? std::min(full_nm / no_load_rad_s, myactuator::kMotionDamping) : kUnknownDamping;
-  const double measured_rad_s =
-      toDrive(finiteOr0(static_cast<double>(feedback_.velocity_rpm))) * kRadPerSPerRpm;
-  sendMotion(0.0, -measured_rad_s, {.damping_nms_per_rad = damping});
+  sendMotion({.damping_nms_per_rad = damping});
 }
 
-// The drive computes the torque; from what it measured last we know which, and weaken all of it alike when
-// that would be too much.
-void MyActuator_Motor::sendMotion(double error_rad, double velocity_error_rad_s,
-                                  const myactuator::Motion& wanted) noexcept {
-  myactuator::Motion motion = wanted;
-  motion.stiffness_nm_per_rad = std::min(motion.stiffness_nm_per_rad, myactuator::kMotionStiffness);
-  motion.damping_nms_per_rad = std::min(motion.damping_nms_per_rad, myactuator::kMotionDamping);
-  motion.torque_ff_nm =
-      std::clamp(motion.torque_ff_nm, -myactuator::kMotionTorqueNm, myactuator::kMotionTorqueNm);
-  const double torque_nm = motion.stiffness_nm_per_rad * error_rad +
-                           motion.damping_nms_per_rad * velocity_error_rad_s + motion.torque_ff_nm;
+void MyActuator_Motor::sendMotion(SpringLaw motion) noexcept {
+  boundGains(motion, myactuator::kMotionStiffness, myactuator::kMotionDamping);
+  motion.torque_nm = std::clamp(motion.torque_nm, -myactuator::kMotionTorqueNm, myactuator::kMotionTorqueNm);
+  const SpringState measured{
+      .position_rad = measuredDeg() * kRadPerDeg,
+      .velocity_rad_s = toDrive(finiteOr0(static_cast<double>(feedback_.velocity_rpm))) * kRadPerSPerRpm};
   const double limit_nm = torqueToDrive(static_cast<double>(effortLimit() * torqueNmPerA()));
   const double bound_nm = std::min(std::abs(limit_nm), myactuator::kMotionTorqueNm);
-  double scale = 1.0;
-  if (std::abs(torque_nm) > bound_nm) {
-    scale = bound_nm / std::abs(torque_nm);
-    limits_ |= kLimitCurrent;
-  }
-  motion.stiffness_nm_per_rad *= scale;
-  motion.damping_nms_per_rad *= scale;
-  motion.torque_ff_nm *= scale;
-  setCommand(torqueToOutput(torque_nm * scale) / static_cast<double>(torqueNmPerA()), CommandUnit::kNative);
+  if (boundTorque(motion, measured, bound_nm, SpringYield::kGains)) limits_ |= kLimitCurrent;
+  setCommand(torqueToOutput(torqueNm(motion, measured)) / static_cast<double>(torqueNmPerA()),
+             CommandUnit::kNative);
   last_command_.reset();
   outbox_.add(myactuator::motionCommand(id_, motion));
 }

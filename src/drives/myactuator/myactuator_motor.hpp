@@ -61,7 +61,12 @@ class MyActuator_Motor final : public SoloMotor {
   void followAngle(double total_angle_deg) noexcept;
   void followImpedance(const Target& target) noexcept;
   void damp() noexcept;
-  void sendMotion(double error_rad, double velocity_error_rad_s, const myactuator::Motion& wanted) noexcept;
+  /// Bounded by what it measured last.
+  void sendMotion(SpringLaw motion) noexcept;
+  /// The drive's own multi-turn angle.
+  [[nodiscard]] double measuredDeg() const noexcept {
+    return static_cast<double>(raw_angle_.value_or(0)) * myactuator::kDegPerRaw;
+  }
 
   int id_;
   MyactuatorSetupCodec setup_codec_{id_};

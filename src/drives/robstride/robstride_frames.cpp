@@ -45,7 +45,7 @@ constexpr std::uint32_t kCyberGearOverload = 0xFF00U;
 
 }  // namespace
 
-CanFrame Codec::operate(const Operation& wanted) const noexcept {
+CanFrame Codec::operate(const SpringLaw& wanted) const noexcept {
   const double torque = model->torque_range_nm;
   std::array<std::uint8_t, 8> data{};
   writeBigEndian(data, 0, toRaw(wanted.position_rad, -position_range_rad, position_range_rad));
@@ -97,7 +97,7 @@ Feedback Codec::feedback(const CanFrame& frame) const noexcept {
   return seen;
 }
 
-Operation Codec::operation(const CanFrame& frame) const noexcept {
+SpringLaw Codec::operation(const CanFrame& frame) const noexcept {
   const auto bytes = frame.payload();
   return {.position_rad = fromRaw(readBigEndian<std::uint16_t>(bytes, 0), position_range_rad),
           .velocity_rad_s = fromRaw(readBigEndian<std::uint16_t>(bytes, 2), model->velocity_range_rad_s),

@@ -7,6 +7,7 @@
 #include "bus/can_frame.hpp"
 #include "drives/robstride/robstride_model.hpp"
 #include "motor/fault_code.hpp"
+#include "motor/spring_law.hpp"
 
 namespace rc10::robstride {
 
@@ -51,16 +52,6 @@ inline constexpr std::uint32_t kTimeoutPerMs = 20;
           true};
 }
 
-/// Control law of the operation mode: torque = stiffness * (position - its own) + damping * (velocity - its
-/// own) + torque_nm.
-struct Operation {
-  double position_rad = 0.0;
-  double velocity_rad_s = 0.0;
-  double stiffness_nm_per_rad = 0.0;
-  double damping_nms_per_rad = 0.0;
-  double torque_nm = 0.0;
-};
-
 struct Feedback {
   std::uint16_t raw_position = 0;
   double position_rad = 0.0;
@@ -80,7 +71,7 @@ struct Codec {
   int host_id = 0;
 
   /// Beyond the ends of a scale: its end. NaN: 0.
-  [[nodiscard]] CanFrame operate(const Operation& wanted) const noexcept;
+  [[nodiscard]] CanFrame operate(const SpringLaw& wanted) const noexcept;
   [[nodiscard]] CanFrame enable() const noexcept;
   [[nodiscard]] CanFrame stop(bool clear_faults = false) const noexcept;
   [[nodiscard]] CanFrame read(std::uint16_t index) const noexcept;
@@ -92,7 +83,7 @@ struct Codec {
   [[nodiscard]] Feedback feedback(const CanFrame& frame) const noexcept;
 
   // The drive's side. Of `told`, raw_position is not used.
-  [[nodiscard]] Operation operation(const CanFrame& frame) const noexcept;
+  [[nodiscard]] SpringLaw operation(const CanFrame& frame) const noexcept;
   [[nodiscard]] CanFrame answer(const Feedback& told) const noexcept;
   [[nodiscard]] CanFrame parameter(std::uint16_t index, std::uint32_t bits, bool known) const noexcept;
   [[nodiscard]] CanFrame fault(std::uint32_t fault_word) const noexcept;

@@ -56,7 +56,9 @@ class RobStride_Motor : public SoloMotor {
   [[nodiscard]] double scaleEndRad() const noexcept;  ///< As far as operation mode can be told to go.
   [[nodiscard]] bool positionOnScale() const noexcept;
   [[nodiscard]] double positionRadFor(double total_angle_deg) const noexcept;
-  [[nodiscard]] double outputTorqueOf(const robstride::Operation& wanted) const noexcept;
+  [[nodiscard]] SpringState measured() const noexcept {
+    return {position_rad_ + scale_offset_rad_, seen_.velocity_rad_s};
+  }
 
   void takeFeedback(const robstride::Feedback& seen, MonotonicTime received) noexcept;
   void takeParameter(const CanFrame& frame) noexcept;
@@ -68,8 +70,8 @@ class RobStride_Motor : public SoloMotor {
   void planVelocity(const Target& target) noexcept;
   void planPosition(const Target& target) noexcept;
   [[nodiscard]] double clampVelocity(double rad_s) noexcept;
-  void limitApproach(robstride::Operation& wanted) noexcept;
-  void limitTorque(robstride::Operation& wanted) noexcept;
+  void limitApproach(SpringLaw& wanted) noexcept;
+  void limitTorque(SpringLaw& wanted) noexcept;
 
   [[nodiscard]] std::size_t packReference(const Tick& tick, std::span<CanFrame> out) noexcept;
 
@@ -93,7 +95,7 @@ class RobStride_Motor : public SoloMotor {
   bool clear_ordered_ = false;
   bool clear_sent_ = false;
 
-  robstride::Operation operation_;
+  SpringLaw operation_;
   Reference reference_;
   bool brake_held_ = false;
   double brake_deg_ = 0.0;

@@ -52,7 +52,7 @@ double RobStride_Motor::clampVelocity(double rad_s) noexcept {
 }
 
 void RobStride_Motor::planOperation(const Target& target) noexcept {
-  robstride::Operation wanted;
+  SpringLaw wanted;
   const double square = ratio() * ratio();
   const bool knows_itself = feedback_.samples > 0;
   const auto take_feed_forward = [&] {
@@ -102,31 +102,19 @@ void RobStride_Motor::planOperation(const Target& target) noexcept {
   if (target.mode == ControlMode::kTotalAngle) limitApproach(wanted);
   limitTorque(wanted);
   operation_ = wanted;
-  setCommand(outputTorqueOf(wanted) / static_cast<double>(torqueNmPerA()), CommandUnit::kAmpere);
+  setCommand(torqueToOutput(torqueNm(wanted, measured())) / static_cast<double>(torqueNmPerA()),
+             CommandUnit::kAmpere);
 }
 
-double RobStride_Motor::outputTorqueOf(const robstride::Operation& wanted) const noexcept {
-  double torque_nm = wanted.torque_nm;
-  if (feedback_.samples > 0) {
-    torque_nm += wanted.stiffness_nm_per_rad * (wanted.position_rad - position_rad_ - scale_offset_rad_) +
-                 wanted.damping_nms_per_rad * (wanted.velocity_rad_s - seen_.velocity_rad_s);
-  }
-  return torqueToOutput(torque_nm);
-}
-
-// The spring pulls as fast as the damping lets it: a target further away would be faster than allowed.
-void RobStride_Motor::limitApproach(robstride::Operation& wanted) noexcept {
-  if (velocityLimitRpm() <= 0.0F || wanted.stiffness_nm_per_rad <= 0.0) return;
+void RobStride_Motor::limitApproach(SpringLaw& wanted) noexcept {
+  if (velocityLimitRpm() <= 0.0F) return;
   const double limit = limitRadS();
-  const double per_speed = wanted.damping_nms_per_rad / wanted.stiffness_nm_per_rad;
-  const double here = position_rad_ + scale_offset_rad_;
-  const double near = std::clamp(wanted.position_rad, here - per_speed * (limit + wanted.velocity_rad_s),
-                                 here + per_speed * (limit - wanted.velocity_rad_s));
-  if (near != wanted.position_rad) limits_ |= kLimitVelocity;
-  wanted.position_rad = near;
+  if (boundLead(wanted, measured(), -limit - wanted.velocity_rad_s, limit - wanted.velocity_rad_s)) {
+    limits_ |= kLimitVelocity;
+  }
 }
 
-void RobStride_Motor::limitTorque(robstride::Operation& wanted) noexcept {
+void RobStride_Motor::limitTorque(SpringLaw& wanted) noexcept {
   const double limit = limitNm();
   // The gains as they arrive: on a coarse scale they differ enough to matter.
   const auto arriving = codec_.operation(codec_.operate(wanted));
@@ -135,18 +123,7 @@ void RobStride_Motor::limitTorque(robstride::Operation& wanted) noexcept {
   const double feed_forward = finiteOr0(std::clamp(wanted.torque_nm, -limit, limit));
   if (feed_forward != wanted.torque_nm) limits_ |= kLimitCurrent;
   wanted.torque_nm = feed_forward;
-  if (wanted.stiffness_nm_per_rad <= 0.0 && wanted.damping_nms_per_rad <= 0.0) return;
-
-  const double torque_nm = torqueToDrive(outputTorqueOf(wanted));
-  const double allowed = std::clamp(torque_nm, -limit, limit);
-  if (allowed == torque_nm) return;
-  limits_ |= kLimitCurrent;
-  const double excess = torque_nm - allowed;
-  if (wanted.stiffness_nm_per_rad > 0.0) {
-    wanted.position_rad -= excess / wanted.stiffness_nm_per_rad;
-  } else {
-    wanted.velocity_rad_s -= excess / wanted.damping_nms_per_rad;
-  }
+  if (boundTorque(wanted, measured(), limit, SpringYield::kTarget)) limits_ |= kLimitCurrent;
 }
 
 void RobStride_Motor::planCurrent(const Target& target) noexcept {

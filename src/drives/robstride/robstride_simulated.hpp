@@ -49,7 +49,7 @@ class RobstrideDrive final : public ServoDrive {
   robstride::Codec codec_;
   std::array<Parameter, kParameters> parameters_;
   bool running_ = false;
-  robstride::Operation operation_;
+  SpringLaw operation_;
   std::uint32_t fault_word_ = 0;
   std::uint8_t status_bits_ = 0;
   Duration heard_at_{};

@@ -1,0 +1,49 @@
+#pragma once
+
+#include <cstdint>
+
+namespace rc10 {
+
+/// Control law that a drive computes by itself, at its own output ("MIT", operation or motion control):
+/// torque = stiffness * (position - its own) + damping * (velocity - its own) + torque.
+/// Nothing but the drive's current bounds that sum, so the numbers that it is told have to.
+struct SpringLaw {
+  double position_rad = 0.0;
+  double velocity_rad_s = 0.0;
+  double stiffness_nm_per_rad = 0.0;
+  double damping_nms_per_rad = 0.0;
+  double torque_nm = 0.0;
+};
+
+/// The drive's output as it was measured last, in the drive's own count.
+struct SpringState {
+  double position_rad = 0.0;
+  double velocity_rad_s = 0.0;
+};
+
+/// Part of a law that gives way to a bound of its torque.
+enum class SpringYield : std::uint8_t {
+  kErrors,  ///< Both errors and the torque shrink together: damping stays as stiff as it was.
+  kGains,   ///< Stiffness, damping and torque shrink together: position and velocity stay as they were asked.
+  kTarget,  ///< The position, or without stiffness the velocity, comes nearer: the torque stays.
+};
+
+/// Torque that the drive makes of a law. A part without a gain is 0.
+[[nodiscard]] double torqueNm(const SpringLaw& law, const SpringState& at) noexcept;
+
+/// Gains between 0 and those that a frame can say; not a number: 0.
+void boundGains(SpringLaw& law, double stiffness_nm_per_rad, double damping_nms_per_rad) noexcept;
+
+// Each returns whether it changed the law.
+
+/// Position so near that the speed at which spring and damper balance is between `low_rad_s` and `high_rad_s`
+/// beyond the law's own velocity. Nothing without damping.
+[[nodiscard]] bool boundLead(SpringLaw& law, const SpringState& at, double low_rad_s,
+                             double high_rad_s) noexcept;
+/// Spring and damper each within +-`most_nm`: neither uses up what the other has.
+[[nodiscard]] bool boundParts(SpringLaw& law, const SpringState& at, double most_nm) noexcept;
+/// The sum within +-`most_nm`, from what was measured last.
+[[nodiscard]] bool boundTorque(SpringLaw& law, const SpringState& at, double most_nm,
+                               SpringYield yields) noexcept;
+
+}  // namespace rc10
