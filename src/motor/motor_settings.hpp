@@ -68,4 +68,11 @@ template <typename Settings, typename Traits>
   return settings.gear_ratio > 0.0 ? settings.gear_ratio : model.gear_ratio;
 }
 
+/// Effort limit of a motor: as configured, or the full scale of its model. A or V. Of settings, or of a
+/// family's own struct with this member.
+template <typename Settings>
+[[nodiscard]] constexpr float effortLimitOf(const Settings& settings, float full_scale) noexcept {
+  return settings.effort_limit > 0.0F ? settings.effort_limit : full_scale;
+}
+
 }  // namespace rc10

@@ -33,7 +33,7 @@ SoloMotor::SoloMotor(const MotorSettings& settings, const MotorTraits& traits, d
       traits_(traits),
       gear_ratio_(gearRatioOf(settings, traits)),
       drive_per_output_(settings.direction < 0 ? -drive_turns : drive_turns),
-      effort_limit_(settings.effort_limit > 0.0F ? settings.effort_limit : traits.effort_full_scale),
+      effort_limit_(effortLimitOf(settings, traits.effort_full_scale)),
       velocity_limit_rpm_(settings.velocity_limit_rpm),
       torque_nm_per_a_(traits.torque_nm_per_a * static_cast<float>(gear_ratio_ / traits.gear_ratio)),
       tick_period_(periodOf(settings.tick_hz)),

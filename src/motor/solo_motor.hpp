@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cmath>
 #include <string>
 
 #include "app/limits.hpp"
@@ -105,6 +106,13 @@ class SoloMotor : public Motor_Base, public CommandPacker {
 
   [[nodiscard]] const MotorTraits& traits() const noexcept { return traits_; }
   [[nodiscard]] float effortLimit() const noexcept { return effort_limit_ * derating(); }
+  /// The same as torque: at the output shaft, and at the drive's own output. 0 where N·m/A are unknown.
+  [[nodiscard]] double torqueLimitNm() const noexcept {
+    return static_cast<double>(effortLimit()) * static_cast<double>(torqueNmPerA());
+  }
+  [[nodiscard]] double driveTorqueLimitNm() const noexcept {
+    return std::abs(torqueToDrive(torqueLimitNm()));
+  }
   /// A at the motor to N·m at the output shaft; the drive's current and this sign agree.
   [[nodiscard]] float torqueNmPerA() const noexcept { return torque_nm_per_a_; }
   /// 0: none.

@@ -57,7 +57,7 @@ void readEffort(MotorParse& in) {
   if (!given) return;
   float effort = 0.0F;
   in.settings.read(key, effort);
-  const float limit = in.motor().effort_limit > 0.0F ? in.motor().effort_limit : in.traits.effort_full_scale;
+  const float limit = effortLimitOf(in.motor(), in.traits.effort_full_scale);
   if (effort < limit) {
     in.draft.config.reduced.effort_share = effort / limit;
     return;

@@ -113,9 +113,8 @@ std::string modesOf(ModeSet set) {
 /// `share`: of the limit.
 std::string limitText(const MotorConfig& motor, double share = 1.0) {
   const MotorTraits traits = motor.traits();
-  const float limit = motor.settings.effort_limit;
-  return rounded(share * static_cast<double>(limit > 0.0F ? limit : traits.effort_full_scale), 4) +
-         (traits.effort == CommandUnit::kVolt ? " V" : " A");
+  const float limit = effortLimitOf(motor.settings, traits.effort_full_scale);
+  return rounded(share * static_cast<double>(limit), 4) + (traits.effort == CommandUnit::kVolt ? " V" : " A");
 }
 
 double gearRatio(const MotorConfig& motor) { return gearRatioOf(motor.settings, motor.traits()); }

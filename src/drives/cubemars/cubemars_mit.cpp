@@ -240,9 +240,7 @@ void CubemarsMit::send(const SpringLaw& wanted_law) noexcept {
   command_ = wanted_law;
   command_.torque_nm = std::clamp(command_.torque_nm, -most_nm, most_nm);
   if (command_.torque_nm != wanted_law.torque_nm) limits_ |= kLimitCurrent;
-  const double limit_nm =
-      std::fabs(torqueToDrive(static_cast<double>(effortLimit()) * static_cast<double>(torqueNmPerA())));
-  if (boundTorque(command_, measured(), limit_nm, SpringYield::kErrors)) limits_ |= kLimitCurrent;
+  if (boundTorque(command_, measured(), driveTorqueLimitNm(), SpringYield::kErrors)) limits_ |= kLimitCurrent;
   setCommand(torqueToOutput(torqueNm(command_, measured())) / static_cast<double>(torqueNmPerA()),
              CommandUnit::kAmpere);
 }

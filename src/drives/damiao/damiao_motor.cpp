@@ -153,10 +153,6 @@ void Damiao_Motor::update(const Tick& tick) noexcept {
   }
 }
 
-double Damiao_Motor::torqueLimitNm() const noexcept {
-  return std::min(static_cast<double>(effortLimit() * traits().torque_nm_per_a), own_.scale.t_max_nm);
-}
-
 double Damiao_Motor::fastestRadS() const noexcept {
   const double limit_rad_s = std::fabs(toDrive(static_cast<double>(velocityLimitRpm()))) * kRadPerSPerRpm;
   return limit_rad_s > 0.0 ? std::min(limit_rad_s, own_.scale.v_max_rad_s) : own_.scale.v_max_rad_s;
@@ -209,7 +205,7 @@ SpringLaw Damiao_Motor::mitLaw(const Target& target) const noexcept {
 
 void Damiao_Motor::mitCommand(const Target& target) noexcept {
   const DamiaoMitBounds bounds{.scale = own_.scale,
-                               .torque_nm = torqueLimitNm(),
+                               .torque_nm = std::min(driveTorqueLimitNm(), own_.scale.t_max_nm),
                                .velocity_rad_s = velocityLimitRpm() > 0.0F ? fastestRadS() : 0.0,
                                .measured = {position_.rad(), measured_rad_s_},
                                .position_known = position_.known()};

@@ -57,7 +57,6 @@ class Damiao_Motor : public SoloMotor {
   void positionCommand(const Target& target) noexcept;
 
   [[nodiscard]] SpringLaw mitLaw(const Target& target) const noexcept;
-  [[nodiscard]] double torqueLimitNm() const noexcept;
   /// Bounds every velocity; the scale's if there is none.
   [[nodiscard]] double fastestRadS() const noexcept;
   [[nodiscard]] CanFrame frameOf(CanId id, std::span<const std::uint8_t> payload) const noexcept;

@@ -30,7 +30,7 @@ DJI_Motor::DJI_Motor(const DjiMotorConfig& config)
       command_(config.command),
       gear_ratio_(gearRatioOf(config, *config.model)),
       direction_(config.direction < 0 ? -1 : 1),
-      effort_limit_(config.effort_limit > 0.0F ? config.effort_limit : table().full_scale),
+      effort_limit_(effortLimitOf(config, table().full_scale)),
       absolute_(model_->absolute_output && gear_ratio_ == model_->gear_ratio),
       zero_at_power_on_(config.zero_at_power_on),
       zero_deg_(config.zero_deg),

@@ -113,10 +113,6 @@ void Moteus_Motor::follow(const Target& target, const Tick& tick) noexcept {
   }
 }
 
-double Moteus_Motor::torqueLimitNm() const noexcept {
-  return static_cast<double>(effortLimit()) * std::abs(static_cast<double>(torqueNmPerA()));
-}
-
 double Moteus_Motor::boundedTorqueNm(double torque_nm) noexcept {
   const double limit_nm = torqueLimitNm();
   if (std::abs(torque_nm) > limit_nm) limits_ |= kLimitCurrent;
@@ -188,7 +184,7 @@ CanFrame Moteus_Motor::motionFrame() const noexcept {
     frame.write(moteus::Type::kInt8, kKpScale, {0.0, motion_.damped ? 1.0 : 0.0})
         .write(moteus::Type::kInt8, kIlimitScale, {0.0});
   }
-  frame.write(moteus::Type::kFloat, kMaxTorque, {std::abs(torqueToDrive(torqueLimitNm()))})
+  frame.write(moteus::Type::kFloat, kMaxTorque, {driveTorqueLimitNm()})
       .write(moteus::Type::kInt16, kTimeout, {watchdog_s_});
   // Negative: without limits, position and velocity act at once. Not written: as configured in the drive.
   if (!motion_.profile) {

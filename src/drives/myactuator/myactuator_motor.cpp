@@ -334,8 +334,7 @@ void MyActuator_Motor::sendMotion(SpringLaw motion) noexcept {
   const SpringState measured{
       .position_rad = measuredDeg() * kRadPerDeg,
       .velocity_rad_s = toDrive(finiteOr0(static_cast<double>(feedback_.velocity_rpm))) * kRadPerSPerRpm};
-  const double limit_nm = torqueToDrive(static_cast<double>(effortLimit() * torqueNmPerA()));
-  const double bound_nm = std::min(std::abs(limit_nm), myactuator::kMotionTorqueNm);
+  const double bound_nm = std::min(driveTorqueLimitNm(), myactuator::kMotionTorqueNm);
   if (boundTorque(motion, measured, bound_nm, SpringYield::kGains)) limits_ |= kLimitCurrent;
   setCommand(torqueToOutput(torqueNm(motion, measured)) / static_cast<double>(torqueNmPerA()),
              CommandUnit::kNative);

@@ -209,7 +209,7 @@ void ODrive_Motor::follow(const Target& target) noexcept {
 }
 
 double ODrive_Motor::limitedTorque(double nm) noexcept {
-  const double limit_nm = static_cast<double>(effortLimit()) * static_cast<double>(torqueNmPerA());
+  const double limit_nm = torqueLimitNm();
   if (!(std::abs(nm) > limit_nm)) return std::isnan(nm) ? 0.0 : nm;
   limits_ |= kLimitCurrent;
   return std::copysign(limit_nm, nm);

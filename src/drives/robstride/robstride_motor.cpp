@@ -125,7 +125,7 @@ RobStride_Motor::RobStride_Motor(const MotorSettings& settings)
 double RobStride_Motor::ratio() const noexcept { return std::abs(toDrive(1.0)); }
 
 double RobStride_Motor::limitNm() const noexcept {
-  return std::min(static_cast<double>(effortLimit()) * model_->torqueNmPerA(), model_->torque_range_nm);
+  return std::min(driveTorqueLimitNm(), model_->torque_range_nm);
 }
 
 double RobStride_Motor::limitRadS() const noexcept {

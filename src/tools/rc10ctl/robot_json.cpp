@@ -35,7 +35,7 @@ std::string_view word(FallbackAction action) { return kFallbackWords[static_cast
 Json motorJson(const MotorConfig& motor, const BusLoad& load) {
   const MotorTraits traits = motor.traits();
   const auto& settings = motor.settings;
-  const float effort = settings.effort_limit > 0.0F ? settings.effort_limit : traits.effort_full_scale;
+  const float effort = effortLimitOf(settings, traits.effort_full_scale);
   const char* const limit = traits.effort == CommandUnit::kVolt ? "voltage_limit_v" : "current_limit_a";
   return {{"name", motor.name()},
           {"model", settings.model},
