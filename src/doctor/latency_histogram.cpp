@@ -15,41 +15,22 @@ constexpr double kBarWidth = 40.0;
 
 }  // namespace
 
-void LatencyHistogram::record(Duration late) noexcept {
-  late = std::max(late, Duration{0});
-  // Rounded up: a row must not promise more than was measured.
-  const auto us = std::chrono::ceil<std::chrono::microseconds>(late).count();
-  ++bins_[std::min(static_cast<std::size_t>(us), kBins - 1)];
-  ++count_;
-  max_ = std::max(max_, late);
-}
-
-Duration LatencyHistogram::percentile(double share) const noexcept {
-  const auto wanted = static_cast<std::uint64_t>(std::ceil(share * static_cast<double>(count_)));
-  std::uint64_t seen = 0;
-  for (std::size_t us = 0; us < bins_.size(); ++us) {
-    seen += bins_[us];
-    if (seen >= wanted) return std::min<Duration>(std::chrono::microseconds{us}, max_);
+std::vector<LatencyRow> rows(const LatencyHistogram& histogram) {
+  std::vector<LatencyRow> rows;
+  std::uint64_t below = 0;
+  for (const auto edge_us : kEdgesUs) {
+    const auto up_to = histogram.countUpTo(std::chrono::microseconds{edge_us});
+    rows.push_back({edge_us, up_to - below});
+    below = up_to;
   }
-  return max_;
-}
-
-std::vector<LatencyHistogram::Row> LatencyHistogram::rows() const {
-  std::vector<Row> rows;
-  std::size_t us = 0;
-  for (const auto edge : kEdgesUs) {
-    Row row{edge, 0};
-    for (; us <= static_cast<std::size_t>(edge) && us < bins_.size() - 1; ++us) row.count += bins_[us];
-    rows.push_back(row);
-  }
-  rows.push_back({0, bins_.back()});
+  rows.push_back({0, histogram.count() - below});
   while (!rows.empty() && rows.back().count == 0) rows.pop_back();
   return rows;
 }
 
 std::string text(const LatencyHistogram& histogram) {
   std::string text;
-  for (const auto& row : histogram.rows()) {
+  for (const auto& row : rows(histogram)) {
     const double share =
         static_cast<double>(row.count) / static_cast<double>(std::max<std::uint64_t>(histogram.count(), 1));
     // One mark at least for any count.

@@ -48,11 +48,11 @@ std::string json(const Finding& finding) {
 }
 
 std::string json(const LatencyHistogram& histogram) {
-  client::Json rows = client::Json::array();
-  for (const auto& row : histogram.rows())
-    rows.push_back({{"up_to_us", row.up_to_us != 0 ? client::Json(row.up_to_us) : client::Json(nullptr)},
+  client::Json list = client::Json::array();
+  for (const auto& row : rows(histogram))
+    list.push_back({{"up_to_us", row.up_to_us != 0 ? client::Json(row.up_to_us) : client::Json(nullptr)},
                     {"count", row.count}});
-  return client::lineOf({{"histogram", std::move(rows)},
+  return client::lineOf({{"histogram", std::move(list)},
                          {"wake_ups", histogram.count()},
                          {"p50_us", micros(histogram.percentile(0.5))},
                          {"p99_us", micros(histogram.percentile(0.99))},

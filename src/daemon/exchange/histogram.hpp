@@ -1,37 +1,23 @@
 #pragma once
 
-#include <array>
 #include <atomic>
-#include <bit>
-#include <cstddef>
 #include <cstdint>
 
-#include "app/time.hpp"
+#include "app/duration_histogram.hpp"
 
 namespace rc10 {
 
-/// A histogram of durations with 16 bins per octave: a percentile is right to 1/16 of its value.
-/// One writer, which never waits; any thread may read while it writes.
-class DurationHistogram {
+/// Counter with one writer, which never waits; any thread may read while it writes. A plain load and store is
+/// enough, and cheaper than a locked add.
+class SharedCount {
  public:
-  void record(Duration duration) noexcept;
-  /// All that another has recorded so far.
-  void add(const DurationHistogram& other) noexcept;
-
-  /// The upper edge of the bin that holds the given fraction (0 to 1) of all records; zero without any.
-  [[nodiscard]] Duration percentile(double fraction) const noexcept;
-  [[nodiscard]] Duration max() const noexcept { return Duration{max_ns_.load(std::memory_order_relaxed)}; }
-  [[nodiscard]] std::uint64_t count() const noexcept;
+  [[nodiscard]] std::uint64_t get() const noexcept { return value_.load(std::memory_order_relaxed); }
+  void set(std::uint64_t value) noexcept { value_.store(value, std::memory_order_relaxed); }
 
  private:
-  static constexpr unsigned kBinsPerOctave = 16;
-  static constexpr std::size_t kBins = std::size_t{kBinsPerOctave} * 32;  // to 2^35 ns, 34 s
-
-  [[nodiscard]] static std::size_t binOf(std::uint64_t ns) noexcept;
-  [[nodiscard]] static std::uint64_t upperEdge(std::size_t bin) noexcept;
-
-  std::array<std::atomic<std::uint64_t>, kBins> bins_{};
-  std::atomic<std::int64_t> max_ns_{0};
+  std::atomic<std::uint64_t> value_{0};
 };
+
+using DurationHistogram = BasicDurationHistogram<SharedCount>;
 
 }  // namespace rc10

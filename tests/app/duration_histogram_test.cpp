@@ -1,23 +1,24 @@
-#include "daemon/exchange/histogram.hpp"
+#include "app/duration_histogram.hpp"
 
 #include <gtest/gtest.h>
 
 #include <random>
 #include <vector>
 
-namespace rc10::histogram_test {
+namespace rc10::duration_histogram_test {
 namespace {
 
 using namespace std::chrono_literals;
+using Histogram = BasicDurationHistogram<PlainCount>;
 
 TEST(DurationHistogram, IsZeroWithoutRecords) {
-  const DurationHistogram histogram;
+  const Histogram histogram;
   EXPECT_EQ(histogram.percentile(0.99), 0ns);
   EXPECT_EQ(histogram.count(), 0U);
 }
 
 TEST(DurationHistogram, PercentilesAreRightToASixteenth) {
-  DurationHistogram histogram;
+  Histogram histogram;
   std::vector<std::int64_t> values;
   std::mt19937_64 random(7);
   std::lognormal_distribution<double> latency(10.0, 2.0);
@@ -37,8 +38,8 @@ TEST(DurationHistogram, PercentilesAreRightToASixteenth) {
 }
 
 TEST(DurationHistogram, TheSumOfTwoHasTheRecordsOfBoth) {
-  DurationHistogram sum;
-  DurationHistogram other;
+  Histogram sum;
+  Histogram other;
   for (int i = 0; i < 30; ++i) sum.record(std::chrono::microseconds{10});
   for (int i = 0; i < 10; ++i) other.record(std::chrono::microseconds{1000});
   sum.add(other);
@@ -49,7 +50,7 @@ TEST(DurationHistogram, TheSumOfTwoHasTheRecordsOfBoth) {
 }
 
 TEST(DurationHistogram, TakesNegativeAndEnormousDurations) {
-  DurationHistogram histogram;
+  Histogram histogram;
   histogram.record(-5ns);
   histogram.record(1h);
   EXPECT_EQ(histogram.count(), 2U);
@@ -57,5 +58,15 @@ TEST(DurationHistogram, TakesNegativeAndEnormousDurations) {
   EXPECT_EQ(histogram.max(), 1h);
 }
 
+TEST(DurationHistogram, CountsUpToALimitWhatIsSurelyNotAboveIt) {
+  Histogram histogram;
+  for (int us = 1; us <= 100; ++us) histogram.record(std::chrono::microseconds{us});
+  histogram.record(1h);
+  EXPECT_LE(histogram.countUpTo(50us), 50U);
+  EXPECT_GE(histogram.countUpTo(50us), 46U);
+  EXPECT_EQ(histogram.countUpTo(10ms), 100U);
+  EXPECT_EQ(histogram.countUpTo(2h), 100U);
+}
+
 }  // namespace
-}  // namespace rc10::histogram_test
+}  // namespace rc10::duration_histogram_test
