@@ -186,8 +186,11 @@ void Daemon::superviseGuard() {
 std::unique_ptr<SerialIo> Daemon::serialIo() {
   auto* lines = robot_->serialChannels();
   if (lines == nullptr) return nullptr;
-  auto serial =
-      std::make_unique<SerialIo>(SerialIo{SerialReviver{*lines, *rx_loop_, exchange_}, SerialWriter{*lines}});
+  SerialReviver::Watch watch = [rx = rx_loop_.get()](std::size_t channel) {
+    return rx->watchSerial(channel);
+  };
+  auto serial = std::make_unique<SerialIo>(
+      SerialIo{SerialReviver{*lines, std::move(watch), exchange_}, SerialWriter{*lines}});
   serial->reviver.check(monotonicNow());  // what is there is open before the first tick
   return serial;
 }

@@ -50,6 +50,9 @@ class SerialRig {
   }
 
   void check(Duration later = {}) { reviver.check(now += later); }
+  [[nodiscard]] SerialReviver::Watch watch() const {
+    return [loop = rx.get()](std::size_t channel) { return loop->watchSerial(channel); };
+  }
 
   /// Lets the RX loop run until `done`. A pseudo terminal hands bytes over in its own time.
   [[nodiscard]] bool pump(const std::function<bool()>& done) {
@@ -80,7 +83,7 @@ class SerialRig {
   std::array<BusInbox, kMaxBuses> inboxes;
   LinkExchange exchange;
   std::unique_ptr<RxLoop> rx = RxLoop::create(channels.get()).value();
-  SerialReviver reviver{*channels, *rx, exchange};
+  SerialReviver reviver{*channels, watch(), exchange};
   SerialWriter writer{*channels};
   SerialDevice device{"imu", std::make_unique<RecordingProtocol>(), channel.outbox};
   RecordingProtocol& protocol = static_cast<RecordingProtocol&>(device.protocol());

@@ -10,7 +10,7 @@
 #include "app/time.hpp"
 #include "bus/fdcan_bus.hpp"
 #include "daemon/exchange/orders.hpp"
-#include "daemon/exchange/states.hpp"
+#include "daemon/exchange/stop.hpp"
 #include "motor/guarding/motor_guard.hpp"
 
 namespace rc10 {

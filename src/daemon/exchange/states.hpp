@@ -4,7 +4,6 @@
 #include <cstdint>
 
 #include "app/vocabulary.hpp"
-#include "link/link_protocol.hpp"
 
 namespace rc10 {
 
@@ -48,12 +47,6 @@ inline constexpr auto kMotorTransitions = [] {
   if (row >= kMotorStatusCount || column >= kMotorEventCount) return MotorStatus::kFault;
   return detail::kMotorTransitions[row][column];
 }
-
-/// Reason of a stop, and who asked for it: a client or module, or the motor for which a group stopped.
-struct Stop {
-  StopCause cause = StopCause::kNone;
-  link::Name by{};
-};
 
 /// Reason why such an event stops a motor that was on.
 [[nodiscard]] constexpr StopCause causeOf(MotorEvent event, RobotStatus robot) noexcept {

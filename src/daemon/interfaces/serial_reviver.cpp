@@ -61,7 +61,7 @@ Result<void> SerialReviver::open(SerialChannel& channel, std::size_t index) {
   }
   channel.opening.fetch_add(1, std::memory_order_relaxed);
   channel.state.store(SerialState::kOpen, std::memory_order_release);
-  if (rx_.watchSerial(index)) return {};
+  if (watch_(index)) return {};
   channel.state.store(SerialState::kAbsent, std::memory_order_relaxed);
   return fail(fmt::format("serial port '{}': epoll_ctl: {}", channel.settings.path, std::strerror(errno)));
 }

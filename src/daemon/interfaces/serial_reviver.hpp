@@ -1,7 +1,9 @@
 #pragma once
 
 #include <cstddef>
+#include <functional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "app/time.hpp"
@@ -11,7 +13,6 @@
 #include "daemon/exchange/events.hpp"
 #include "daemon/exchange/note.hpp"
 #include "daemon/exchange/rings.hpp"
-#include "daemon/interfaces/rx_loop.hpp"
 
 namespace rc10 {
 
@@ -20,9 +21,12 @@ namespace rc10 {
 /// and the main thread before there is one.
 class SerialReviver {
  public:
-  SerialReviver(SerialChannels& channels, RxLoop& rx, LinkExchange& exchange)
+  /// Has an opened port read until it is gone: RxLoop::watchSerial(). errno says why not.
+  using Watch = std::function<bool(std::size_t channel)>;
+
+  SerialReviver(SerialChannels& channels, Watch watch, LinkExchange& exchange)
       : channels_(channels),
-        rx_(rx),
+        watch_(std::move(watch)),
         notes_(exchange.notes, EventCode::kSerialPort),
         ports_(channels.size()) {}
 
@@ -40,7 +44,7 @@ class SerialReviver {
   [[nodiscard]] Result<void> open(SerialChannel& channel, std::size_t index);
 
   SerialChannels& channels_;
-  RxLoop& rx_;
+  Watch watch_;
   Notes notes_;
   std::vector<Port> ports_;
 };

@@ -9,6 +9,7 @@
 #include "daemon/exchange/orders.hpp"
 #include "daemon/exchange/snapshot.hpp"
 #include "daemon/exchange/states.hpp"
+#include "daemon/exchange/stop.hpp"
 #include "daemon/supervision/lease.hpp"
 #include "motor/guarding/fallback.hpp"
 

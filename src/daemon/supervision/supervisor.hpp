@@ -11,6 +11,7 @@
 #include "daemon/exchange/rings.hpp"
 #include "daemon/exchange/snapshot.hpp"
 #include "daemon/exchange/states.hpp"
+#include "daemon/exchange/stop.hpp"
 #include "daemon/recording/flight_recorder.hpp"
 #include "daemon/supervision/axis.hpp"
 #include "daemon/supervision/foreign_watch.hpp"

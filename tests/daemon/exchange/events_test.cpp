@@ -8,8 +8,8 @@
 #include <string>
 
 #include "app/target.hpp"
+#include "app/vocabulary.hpp"
 #include "bus/bus_health.hpp"
-#include "daemon/exchange/states.hpp"
 
 namespace rc10::test::events_test {
 namespace {

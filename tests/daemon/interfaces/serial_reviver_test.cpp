@@ -156,7 +156,7 @@ TEST_F(SerialReviverTest, APortOfSomeoneElseIsWaitedFor) {
 
 TEST_F(SerialReviverTest, WithoutPortsThereIsNothingToDo) {
   const auto none = SerialChannels::create({}).value();
-  SerialReviver idle{*none, *rx, exchange};
+  SerialReviver idle{*none, watch(), exchange};
   idle.check(now);
   SerialWriter{*none}.flush();
   EXPECT_THAT(events(), IsEmpty());

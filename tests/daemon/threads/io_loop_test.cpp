@@ -29,7 +29,7 @@ TEST(IoLoop, LooksAfterSerialPorts) {
   SerialRig rig;
   rig.plugIn();
   auto serial = std::make_unique<SerialIo>(
-      SerialIo{SerialReviver{*rig.channels, *rig.rx, rig.exchange}, SerialWriter{*rig.channels}});
+      SerialIo{SerialReviver{*rig.channels, rig.watch(), rig.exchange}, SerialWriter{*rig.channels}});
   InterfaceLocks locks;
   IoLoop loop{BusReviver{*rig.robot, rig.inboxes, rig.exchange, locks},
               CanLinkKeeper{*rig.robot, rig.inboxes, rig.exchange}, nullptr, std::move(serial)};
