@@ -32,7 +32,7 @@ TEST_PATIENCE_S = 180
 TESTS = ("motor_test", "daemon_test")
 FILES = (
     "src/daemon/clients/admission.cpp",
-    "src/daemon/exchange/states.hpp",
+    "src/daemon/supervision/states.hpp",
     "src/daemon/supervision/axis.cpp",
     "src/daemon/supervision/foreign_watch.cpp",
     "src/daemon/supervision/lease.hpp",

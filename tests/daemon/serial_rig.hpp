@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
+#include "daemon/devices/serial_reviver.hpp"
 #include "daemon/devices/serial_writer.hpp"
-#include "daemon/interfaces/serial_reviver.hpp"
 #include "daemon/temp_dir.hpp"
 #include "daemon/virtual_robot.hpp"
 #include "support/pty.hpp"

@@ -8,9 +8,9 @@
 #include "daemon/exchange/events.hpp"
 #include "daemon/exchange/orders.hpp"
 #include "daemon/exchange/snapshot.hpp"
-#include "daemon/exchange/states.hpp"
 #include "daemon/exchange/stop.hpp"
 #include "daemon/supervision/lease.hpp"
+#include "daemon/supervision/states.hpp"
 #include "motor/guarding/fallback.hpp"
 
 namespace rc10 {

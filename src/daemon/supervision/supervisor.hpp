@@ -10,12 +10,12 @@
 #include "daemon/exchange/orders.hpp"
 #include "daemon/exchange/rings.hpp"
 #include "daemon/exchange/snapshot.hpp"
-#include "daemon/exchange/states.hpp"
 #include "daemon/exchange/stop.hpp"
 #include "daemon/recording/flight_recorder.hpp"
 #include "daemon/supervision/axis.hpp"
 #include "daemon/supervision/foreign_watch.hpp"
 #include "daemon/supervision/lease.hpp"
+#include "daemon/supervision/states.hpp"
 
 namespace rc10 {
 

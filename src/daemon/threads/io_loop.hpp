@@ -3,11 +3,11 @@
 #include <memory>
 #include <stop_token>
 
+#include "daemon/devices/serial_reviver.hpp"
 #include "daemon/devices/serial_writer.hpp"
 #include "daemon/devices/spi_keeper.hpp"
 #include "daemon/interfaces/bus_reviver.hpp"
 #include "daemon/interfaces/can_link_keeper.hpp"
-#include "daemon/interfaces/serial_reviver.hpp"
 #include "daemon/recording/black_box.hpp"
 
 namespace rc10 {

@@ -1,5 +1,5 @@
 // Real ports: pseudo terminals that are pulled and plugged in.
-#include "daemon/interfaces/serial_reviver.hpp"
+#include "daemon/devices/serial_reviver.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

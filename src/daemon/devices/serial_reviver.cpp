@@ -1,4 +1,4 @@
-#include "daemon/interfaces/serial_reviver.hpp"
+#include "daemon/devices/serial_reviver.hpp"
 
 #include <fcntl.h>
 #include <unistd.h>

@@ -1,4 +1,4 @@
-#include "daemon/interfaces/rx_loop.hpp"
+#include "daemon/threads/rx_loop.hpp"
 
 #include <sys/socket.h>
 

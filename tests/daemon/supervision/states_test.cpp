@@ -1,4 +1,4 @@
-#include "daemon/exchange/states.hpp"
+#include "daemon/supervision/states.hpp"
 
 #include <gtest/gtest.h>
 
