@@ -7,25 +7,25 @@ namespace shop {
 namespace {
 
 using namespace rc10;
-using enum FamilyKey::Kind;
+using enum OwnKey::Kind;
 
 // 1. The keys: strict, with a unit, a range and a sentence for people.
 constexpr std::array kKeys{
-    FamilyKey{.name = "motor", .kind = kMotor, .required = true, .about = "The motor; positive closes."},
-    FamilyKey{.name = "grip_a",
-              .kind = kNumber,
-              .unit = "A",
-              .max = 20,
-              .above_min = true,
-              .default_text = "1",
-              .about = "Current that closes and holds."},
-    FamilyKey{.name = "still_ms",
-              .kind = kInteger,
-              .unit = "ms",
-              .min = 20,
-              .max = 5000,
-              .default_text = "100",
-              .about = "Not moving for so long while it closes: it holds something."}};
+    OwnKey{.name = "motor", .kind = kMotor, .required = true, .about = "The motor; positive closes."},
+    OwnKey{.name = "grip_a",
+           .kind = kNumber,
+           .unit = "A",
+           .max = 20,
+           .above_min = true,
+           .default_text = "1",
+           .about = "Current that closes and holds."},
+    OwnKey{.name = "still_ms",
+           .kind = kInteger,
+           .unit = "ms",
+           .min = 20,
+           .max = 5000,
+           .default_text = "100",
+           .about = "Not moving for so long while it closes: it holds something."}};
 
 // 2. What it takes, gives and reports.
 enum Input : std::size_t { kClose };
@@ -75,7 +75,7 @@ class GripperType : public ModuleType {
   [[nodiscard]] std::string_view about() const noexcept override {
     return "Closes until it holds something.";
   }
-  [[nodiscard]] std::span<const FamilyKey> keys() const noexcept override { return kKeys; }
+  [[nodiscard]] std::span<const OwnKey> keys() const noexcept override { return kKeys; }
   [[nodiscard]] Result<std::unique_ptr<Module_Base>> build(const ModuleSettings& settings,
                                                            const RobotOutline& robot) const override {
     if (auto able = robot.require(ControlMode::kCurrent, settings.own.motor("motor"), "motor"); !able)

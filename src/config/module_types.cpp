@@ -40,7 +40,7 @@ Result<void> addModuleType(const ModuleType& type) {
   const std::string who = "module type '" + std::string{type.name()} + "': ";
   if (moduleKeysMade()) return fail(who + "a configuration has been read already; add types before that");
   if (findModuleType(type.name()) != nullptr) return fail(who + "there is one of that name; give it another");
-  for (const FamilyKey& key : type.keys()) {
+  for (const OwnKey& key : type.keys()) {
     if (isCommonModuleKey(key.name)) {
       return fail(who + "every module has a key '" + std::string{key.name} + "'; give it another name");
     }

@@ -27,7 +27,7 @@ Result<void> addMotorFamily(const FamilyEntry& entry) {
                   std::string{other->family->name()} + "'; give it another name");
     }
   }
-  for (const FamilyKey& key : entry.family->keys()) {
+  for (const OwnKey& key : entry.family->keys()) {
     if (isCommonMotorKey(key.name)) {
       return fail(who + "every motor has a key '" + std::string{key.name} + "'; give it another name");
     }

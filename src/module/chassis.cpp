@@ -12,7 +12,7 @@
 namespace rc10 {
 namespace {
 
-using enum FamilyKey::Kind;
+using enum OwnKey::Kind;
 
 constexpr std::array kThree{motorKey("left", "Its motor. Positive pushes the robot round counter-clockwise."),
                             motorKey("right", "Its motor."),
@@ -23,7 +23,7 @@ constexpr std::array<std::string_view, 2> kMiddles{"rear", "front"};
 
 template <typename Kinematics, typename Wheels>
 Result<std::unique_ptr<Module_Base>> make(const OwnValues& own, const RobotOutline& robot,
-                                          std::span<const FamilyKey> names, const Kinematics& kinematics) {
+                                          std::span<const OwnKey> names, const Kinematics& kinematics) {
   const auto motors = motorsOf(own, "wheels", names, ControlMode::kVelocity, robot);
   if (!motors) return tl::unexpected(motors.error());
   const auto limit_rpm = wheelLimit(own, *motors, robot);
@@ -40,7 +40,7 @@ class CornerChassisType : public ChassisType {
   CornerChassisType(std::string_view name, std::string_view about) : name_(name), about_(about) {}
   [[nodiscard]] std::string_view name() const noexcept override { return name_; }
   [[nodiscard]] std::string_view about() const noexcept override { return about_; }
-  [[nodiscard]] std::span<const FamilyKey> keys() const noexcept override {
+  [[nodiscard]] std::span<const OwnKey> keys() const noexcept override {
     static const auto kAll = withCommonKeys(
         {wheelsKey("wheels", kCornerKeys), kWheelRadiusKey, kTrackKey, kWheelbaseKey, kWheelLimitKey});
     return kAll;
@@ -64,15 +64,15 @@ class Omni3ChassisType : public ChassisType {
   [[nodiscard]] std::string_view about() const noexcept override {
     return "Three omni wheels at 120 degrees: drives in every direction.";
   }
-  [[nodiscard]] std::span<const FamilyKey> keys() const noexcept override {
+  [[nodiscard]] std::span<const OwnKey> keys() const noexcept override {
     static const auto kAll =
         withCommonKeys({wheelsKey("wheels", kThree), kWheelRadiusKey,
                         lengthKey("centre_distance_m", "From the middle of the robot to each wheel."),
-                        FamilyKey{.name = "middle_wheel",
-                                  .kind = kChoice,
-                                  .choices = kMiddles,
-                                  .default_text = "rear",
-                                  .about = "Where the wheel on the centre line is."},
+                        OwnKey{.name = "middle_wheel",
+                               .kind = kChoice,
+                               .choices = kMiddles,
+                               .default_text = "rear",
+                               .about = "Where the wheel on the centre line is."},
                         kWheelLimitKey});
     return kAll;
   }
@@ -93,7 +93,7 @@ class DifferentialChassisType : public ChassisType {
   [[nodiscard]] std::string_view about() const noexcept override {
     return "A driven wheel or track on each side: drives forward and turns.";
   }
-  [[nodiscard]] std::span<const FamilyKey> keys() const noexcept override {
+  [[nodiscard]] std::span<const OwnKey> keys() const noexcept override {
     static const auto kAll =
         withCommonKeys({wheelsKey("wheels", kSides), kWheelRadiusKey, kTrackKey, kWheelLimitKey});
     return kAll;

@@ -12,75 +12,74 @@
 namespace rc10 {
 namespace {
 
-using enum FamilyKey::Kind;
+using enum OwnKey::Kind;
 
 // Wheels whose feedback is older say nothing about the motion.
 constexpr Duration kFresh = std::chrono::milliseconds{100};
 
 constexpr std::array kChassisKeys{
-    FamilyKey{.name = "max_speed_m_s",
-              .kind = kNumber,
-              .unit = "m/s",
-              .max = 100,
-              .above_min = true,
-              .required = true,
-              .about = "Bound of the velocity, in every direction."},
-    FamilyKey{.name = "max_turn_deg_s",
-              .kind = kNumber,
-              .unit = "deg/s",
-              .max = 100'000,
-              .above_min = true,
-              .required = true,
-              .about = "Bound of the turn rate."},
-    FamilyKey{.name = "max_acceleration_m_s2",
-              .kind = kNumber,
-              .unit = "m/s^2",
-              .max = 1000,
-              .above_min = true,
-              .required = true,
-              .about = "How fast the velocity that the wheels are told may change; as a vector, so that the "
-                       "path is not bent."},
-    FamilyKey{.name = "max_turn_acceleration_deg_s2",
-              .kind = kNumber,
-              .unit = "deg/s^2",
-              .max = 1'000'000,
-              .above_min = true,
-              .required = true,
-              .about = "How fast the turn rate may change."},
-    FamilyKey{
-        .name = "heading",
-        .kind = kText,
-        .about = "The output of another module that is the robot's heading in deg: for twists in the world's "
-                 "frame and for odometry. Default: the odometry's own.",
-        .pattern = kSignalPattern,
-        .words = kSignalWords},
-    FamilyKey{
-        .name = "follow",
-        .kind = kText,
-        .about =
-            "The output of another module that is the angle of a gimbal to the front of the chassis, deg: "
-            "for twists in the gimbal's frame, and for turning after it.",
-        .pattern = kSignalPattern,
-        .words = kSignalWords},
-    FamilyKey{.name = "follow_gain_per_s",
-              .kind = kNumber,
-              .unit = "1/s",
-              .max = 100,
-              .default_text = "5",
-              .about = "How fast it turns after the gimbal: deg/s for each degree."},
-    FamilyKey{.name = "power_limit_w",
-              .kind = kNumber,
-              .unit = "W",
-              .max = 100'000,
-              .default_text = "0",
-              .about = "The motion is slowed while the wheels take more: torque times speed, plus "
-                       "loss_w_per_nm2. 0: no limit."},
-    FamilyKey{.name = "loss_w_per_nm2",
-              .kind = kNumber,
-              .unit = "W/Nm^2",
-              .max = 1000,
-              .default_text = "0",
-              .about = "Heat in the windings, for power_limit_w: W for each Nm squared of each wheel."}};
+    OwnKey{.name = "max_speed_m_s",
+           .kind = kNumber,
+           .unit = "m/s",
+           .max = 100,
+           .above_min = true,
+           .required = true,
+           .about = "Bound of the velocity, in every direction."},
+    OwnKey{.name = "max_turn_deg_s",
+           .kind = kNumber,
+           .unit = "deg/s",
+           .max = 100'000,
+           .above_min = true,
+           .required = true,
+           .about = "Bound of the turn rate."},
+    OwnKey{.name = "max_acceleration_m_s2",
+           .kind = kNumber,
+           .unit = "m/s^2",
+           .max = 1000,
+           .above_min = true,
+           .required = true,
+           .about = "How fast the velocity that the wheels are told may change; as a vector, so that the "
+                    "path is not bent."},
+    OwnKey{.name = "max_turn_acceleration_deg_s2",
+           .kind = kNumber,
+           .unit = "deg/s^2",
+           .max = 1'000'000,
+           .above_min = true,
+           .required = true,
+           .about = "How fast the turn rate may change."},
+    OwnKey{.name = "heading",
+           .kind = kText,
+           .about =
+               "The output of another module that is the robot's heading in deg: for twists in the world's "
+               "frame and for odometry. Default: the odometry's own.",
+           .pattern = kSignalPattern,
+           .words = kSignalWords},
+    OwnKey{.name = "follow",
+           .kind = kText,
+           .about =
+               "The output of another module that is the angle of a gimbal to the front of the chassis, deg: "
+               "for twists in the gimbal's frame, and for turning after it.",
+           .pattern = kSignalPattern,
+           .words = kSignalWords},
+    OwnKey{.name = "follow_gain_per_s",
+           .kind = kNumber,
+           .unit = "1/s",
+           .max = 100,
+           .default_text = "5",
+           .about = "How fast it turns after the gimbal: deg/s for each degree."},
+    OwnKey{.name = "power_limit_w",
+           .kind = kNumber,
+           .unit = "W",
+           .max = 100'000,
+           .default_text = "0",
+           .about = "The motion is slowed while the wheels take more: torque times speed, plus "
+                    "loss_w_per_nm2. 0: no limit."},
+    OwnKey{.name = "loss_w_per_nm2",
+           .kind = kNumber,
+           .unit = "W/Nm^2",
+           .max = 1000,
+           .default_text = "0",
+           .about = "Heat in the windings, for power_limit_w: W for each Nm squared of each wheel."}};
 
 enum ChassisInput : std::size_t { kVx, kVy, kWz, kFrame, kTurnAfter, kX, kY, kHeading };
 enum ChassisOutput : std::size_t { kOutX, kOutY, kOutHeading, kOutVx, kOutVy, kOutWz, kOutPower, kOutFactor };
@@ -108,7 +107,7 @@ Result<void> find(std::optional<SignalPlace>& place, const std::string& name, co
 
 }  // namespace
 
-std::span<const FamilyKey> Chassis_Base::commonKeys() noexcept { return kChassisKeys; }
+std::span<const OwnKey> Chassis_Base::commonKeys() noexcept { return kChassisKeys; }
 
 Chassis_Base::Chassis_Base(const OwnValues& own, std::vector<std::size_t> motors)
     : Module_Base(chassisSignals()),

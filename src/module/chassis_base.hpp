@@ -13,8 +13,8 @@
 #include "module/module_base.hpp"
 #include "module/module_type.hpp"
 #include "module/power_limiter.hpp"
-#include "motor/family_key.hpp"
 #include "motor/motor_settings.hpp"
+#include "motor/own_key.hpp"
 
 namespace rc10 {
 
@@ -25,7 +25,7 @@ namespace rc10 {
 class Chassis_Base : public Module_Base {
  public:
   /// The keys that every chassis has; a type's own come behind them.
-  [[nodiscard]] static std::span<const FamilyKey> commonKeys() noexcept;
+  [[nodiscard]] static std::span<const OwnKey> commonKeys() noexcept;
 
   /// `own` has the values of commonKeys(); `motors` are all that it drives.
   Chassis_Base(const OwnValues& own, std::vector<std::size_t> motors);

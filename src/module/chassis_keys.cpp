@@ -8,15 +8,15 @@
 
 namespace rc10 {
 
-std::vector<FamilyKey> withCommonKeys(std::initializer_list<FamilyKey> own) {
-  std::vector<FamilyKey> all{own};
+std::vector<OwnKey> withCommonKeys(std::initializer_list<OwnKey> own) {
+  std::vector<OwnKey> all{own};
   const auto common = Chassis_Base::commonKeys();
   all.insert(all.end(), common.begin(), common.end());
   return all;
 }
 
 Result<std::vector<std::size_t>> motorsOf(const OwnValues& own, std::string_view key,
-                                          std::span<const FamilyKey> names, ControlMode mode,
+                                          std::span<const OwnKey> names, ControlMode mode,
                                           const RobotOutline& robot) {
   const auto& section = own.section(key);
   std::vector<std::size_t> motors;

@@ -13,34 +13,34 @@ namespace rc10 {
 
 // Keys that chassis with different wheels share.
 
-constexpr FamilyKey motorKey(std::string_view name, std::string_view about) {
-  return {.name = name, .kind = FamilyKey::Kind::kMotor, .required = true, .about = about};
+constexpr OwnKey motorKey(std::string_view name, std::string_view about) {
+  return {.name = name, .kind = OwnKey::Kind::kMotor, .required = true, .about = about};
 }
-constexpr FamilyKey lengthKey(std::string_view name, std::string_view about) {
+constexpr OwnKey lengthKey(std::string_view name, std::string_view about) {
   return {.name = name,
-          .kind = FamilyKey::Kind::kNumber,
+          .kind = OwnKey::Kind::kNumber,
           .unit = "m",
           .max = 10,
           .above_min = true,
           .required = true,
           .about = about};
 }
-constexpr FamilyKey wheelsKey(std::string_view name, std::span<const FamilyKey> wheels) {
+constexpr OwnKey wheelsKey(std::string_view name, std::span<const OwnKey> wheels) {
   return {.name = name,
-          .kind = FamilyKey::Kind::kSection,
+          .kind = OwnKey::Kind::kSection,
           .required = true,
           .about = "The motor of each wheel, by its place.",
           .keys = wheels};
 }
 
-inline constexpr FamilyKey kWheelRadiusKey = lengthKey("wheel_radius_m", "Radius of the wheels.");
-inline constexpr FamilyKey kTrackKey =
+inline constexpr OwnKey kWheelRadiusKey = lengthKey("wheel_radius_m", "Radius of the wheels.");
+inline constexpr OwnKey kTrackKey =
     lengthKey("track_m", "From the middle of the left wheels to that of the right ones.");
-inline constexpr FamilyKey kWheelbaseKey =
+inline constexpr OwnKey kWheelbaseKey =
     lengthKey("wheelbase_m", "From the axles in front to those at the rear.");
-inline constexpr FamilyKey kWheelLimitKey{
+inline constexpr OwnKey kWheelLimitKey{
     .name = "wheel_limit_rpm",
-    .kind = FamilyKey::Kind::kNumber,
+    .kind = OwnKey::Kind::kNumber,
     .unit = "rpm",
     .max = 100'000,
     .above_min = true,
@@ -51,12 +51,12 @@ inline constexpr std::array kCornerKeys{
     motorKey("rear_left", "Its motor."), motorKey("rear_right", "Its motor.")};
 
 /// The keys of one type, then those of every chassis.
-[[nodiscard]] std::vector<FamilyKey> withCommonKeys(std::initializer_list<FamilyKey> own);
+[[nodiscard]] std::vector<OwnKey> withCommonKeys(std::initializer_list<OwnKey> own);
 
 /// The motors in the section `key` of `own`, in the order of `names`; each may be there once, and takes
 /// targets of this mode.
 [[nodiscard]] Result<std::vector<std::size_t>> motorsOf(const OwnValues& own, std::string_view key,
-                                                        std::span<const FamilyKey> names, ControlMode mode,
+                                                        std::span<const OwnKey> names, ControlMode mode,
                                                         const RobotOutline& robot);
 
 /// wheel_limit_rpm, or what the slowest of the motors can be told.

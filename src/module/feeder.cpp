@@ -7,7 +7,7 @@
 namespace rc10 {
 namespace {
 
-using enum FamilyKey::Kind;
+using enum OwnKey::Kind;
 
 // Share of the velocity that is asked for: slower than this it does not move.
 constexpr double kMoves = 0.2;
@@ -15,51 +15,49 @@ constexpr double kMoves = 0.2;
 constexpr double kMostShots = 1000.0;
 
 constexpr std::array kFeederKeys{
-    FamilyKey{
+    OwnKey{
         .name = "motor", .kind = kMotor, .required = true, .about = "The motor; it needs velocity targets."},
-    FamilyKey{.name = "velocity_limit_rpm",
-              .kind = kNumber,
-              .unit = "rpm",
-              .max = 100'000,
-              .above_min = true,
-              .required = true,
-              .about = "No velocity target is higher; single shots are fed at this velocity."},
-    FamilyKey{.name = "deg_per_shot",
-              .kind = kNumber,
-              .unit = "deg",
-              .max = 3600,
-              .above_min = true,
-              .default_text = "45",
-              .about = "Turn of the output shaft for one shot: 360 by the number of pockets."},
-    FamilyKey{
-        .name = "jam_ms",
-        .kind = kInteger,
-        .unit = "ms",
-        .min = 10,
-        .max = 5000,
-        .default_text = "200",
-        .about =
-            "Not moving for so long while it should is a jam. Must be shorter than the motor's stall_ms."},
-    FamilyKey{.name = "reverse_rpm",
-              .kind = kNumber,
-              .unit = "rpm",
-              .max = 100'000,
-              .above_min = true,
-              .default_text = "30",
-              .about = "Velocity of the way back."},
-    FamilyKey{.name = "reverse_ms",
-              .kind = kInteger,
-              .unit = "ms",
-              .min = 10,
-              .max = 5000,
-              .default_text = "200",
-              .about = "How long it goes back."},
-    FamilyKey{
-        .name = "retries",
-        .kind = kInteger,
-        .max = 100,
-        .default_text = "3",
-        .about = "So many times in a row it tries again; then it gives up until nobody asks any more."}};
+    OwnKey{.name = "velocity_limit_rpm",
+           .kind = kNumber,
+           .unit = "rpm",
+           .max = 100'000,
+           .above_min = true,
+           .required = true,
+           .about = "No velocity target is higher; single shots are fed at this velocity."},
+    OwnKey{.name = "deg_per_shot",
+           .kind = kNumber,
+           .unit = "deg",
+           .max = 3600,
+           .above_min = true,
+           .default_text = "45",
+           .about = "Turn of the output shaft for one shot: 360 by the number of pockets."},
+    OwnKey{.name = "jam_ms",
+           .kind = kInteger,
+           .unit = "ms",
+           .min = 10,
+           .max = 5000,
+           .default_text = "200",
+           .about =
+               "Not moving for so long while it should is a jam. Must be shorter than the motor's stall_ms."},
+    OwnKey{.name = "reverse_rpm",
+           .kind = kNumber,
+           .unit = "rpm",
+           .max = 100'000,
+           .above_min = true,
+           .default_text = "30",
+           .about = "Velocity of the way back."},
+    OwnKey{.name = "reverse_ms",
+           .kind = kInteger,
+           .unit = "ms",
+           .min = 10,
+           .max = 5000,
+           .default_text = "200",
+           .about = "How long it goes back."},
+    OwnKey{.name = "retries",
+           .kind = kInteger,
+           .max = 100,
+           .default_text = "3",
+           .about = "So many times in a row it tries again; then it gives up until nobody asks any more."}};
 
 ModuleSignals feederSignals() {
   return {.inputs = {"velocity_rpm", "shots"},
@@ -209,7 +207,7 @@ class FeederType : public ModuleType {
   [[nodiscard]] std::string_view about() const noexcept override {
     return "Pushes balls or discs forward; frees itself when it is jammed.";
   }
-  [[nodiscard]] std::span<const FamilyKey> keys() const noexcept override { return kFeederKeys; }
+  [[nodiscard]] std::span<const OwnKey> keys() const noexcept override { return kFeederKeys; }
 
   [[nodiscard]] Result<std::unique_ptr<Module_Base>> build(const ModuleSettings& settings,
                                                            const RobotOutline& robot) const override {

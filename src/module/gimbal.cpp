@@ -16,16 +16,16 @@
 namespace rc10 {
 namespace {
 
-using enum FamilyKey::Kind;
+using enum OwnKey::Kind;
 
-constexpr FamilyKey signalKey(std::string_view name, std::string_view about) {
+constexpr OwnKey signalKey(std::string_view name, std::string_view about) {
   return {.name = name, .kind = kText, .about = about, .pattern = kSignalPattern, .words = kSignalWords};
 }
-constexpr FamilyKey reversedKey(std::string_view name, std::string_view about) {
+constexpr OwnKey reversedKey(std::string_view name, std::string_view about) {
   return {.name = name, .kind = kFlag, .default_text = "false", .about = about};
 }
-constexpr FamilyKey limitKey(std::string_view name, double value_if_not, std::string_view default_text,
-                             std::string_view about) {
+constexpr OwnKey limitKey(std::string_view name, double value_if_not, std::string_view default_text,
+                          std::string_view about) {
   return {.name = name,
           .kind = kNumber,
           .unit = "deg",
@@ -36,16 +36,16 @@ constexpr FamilyKey limitKey(std::string_view name, double value_if_not, std::st
 }
 
 constexpr std::array kGimbalKeys{
-    FamilyKey{.name = "yaw",
-              .kind = kMotor,
-              .required = true,
-              .about = "The motor that turns about the vertical; it needs velocity targets and an absolute "
-                       "angle, 0 where "
-                       "the gimbal looks to the front of the chassis."},
-    FamilyKey{.name = "pitch",
-              .kind = kMotor,
-              .required = true,
-              .about = "The motor that lifts; the same, 0 where it looks level, positive where it looks up."},
+    OwnKey{.name = "yaw",
+           .kind = kMotor,
+           .required = true,
+           .about = "The motor that turns about the vertical; it needs velocity targets and an absolute "
+                    "angle, 0 where "
+                    "the gimbal looks to the front of the chassis."},
+    OwnKey{.name = "pitch",
+           .kind = kMotor,
+           .required = true,
+           .about = "The motor that lifts; the same, 0 where it looks level, positive where it looks up."},
     signalKey("imu_yaw",
               "The yaw of an inertial sensor on the gimbal, deg. Default: none; it holds to the chassis."),
     signalKey("imu_yaw_rate", "Its rate, deg/s: with it the turning of the chassis is taken off at once."),
@@ -57,27 +57,27 @@ constexpr std::array kGimbalKeys{
                 "The sensor's pitch is positive where it looks down: its y axis points to the left."),
     limitKey("pitch_min_deg", 90, "-20", "No lower does it look."),
     limitKey("pitch_max_deg", 90, "30", "Nor higher."),
-    FamilyKey{.name = "gain_per_s",
-              .kind = kNumber,
-              .unit = "1/s",
-              .max = 100,
-              .above_min = true,
-              .default_text = "10",
-              .about = "Of both axes: deg/s for each degree that is missing."},
-    FamilyKey{.name = "velocity_limit_rpm",
-              .kind = kNumber,
-              .unit = "rpm",
-              .max = 1000,
-              .above_min = true,
-              .default_text = "60",
-              .about = "No axis is told more."},
-    FamilyKey{.name = "silence_max_s",
-              .kind = kNumber,
-              .unit = "s",
-              .max = 3600,
-              .default_text = "10",
-              .about = "So long it holds its direction when nobody commands it; then its motors do their "
-                       "on_timeout."}};
+    OwnKey{.name = "gain_per_s",
+           .kind = kNumber,
+           .unit = "1/s",
+           .max = 100,
+           .above_min = true,
+           .default_text = "10",
+           .about = "Of both axes: deg/s for each degree that is missing."},
+    OwnKey{.name = "velocity_limit_rpm",
+           .kind = kNumber,
+           .unit = "rpm",
+           .max = 1000,
+           .above_min = true,
+           .default_text = "60",
+           .about = "No axis is told more."},
+    OwnKey{.name = "silence_max_s",
+           .kind = kNumber,
+           .unit = "s",
+           .max = 3600,
+           .default_text = "10",
+           .about = "So long it holds its direction when nobody commands it; then its motors do their "
+                    "on_timeout."}};
 
 ModuleSignals gimbalSignals() {
   return {
@@ -285,7 +285,7 @@ class GimbalType : public ModuleType {
   [[nodiscard]] std::string_view about() const noexcept override {
     return "Yaw and pitch that look in one direction of the world.";
   }
-  [[nodiscard]] std::span<const FamilyKey> keys() const noexcept override { return kGimbalKeys; }
+  [[nodiscard]] std::span<const OwnKey> keys() const noexcept override { return kGimbalKeys; }
 
   [[nodiscard]] Result<std::unique_ptr<Module_Base>> build(const ModuleSettings& settings,
                                                            const RobotOutline& robot) const override {

@@ -12,81 +12,80 @@
 namespace rc10 {
 namespace {
 
-using enum FamilyKey::Kind;
+using enum OwnKey::Kind;
 
 // With `connected` they fit into a module's outputs.
 constexpr double kMaxLines = 15;
 constexpr std::string_view kConnectedSignal = "connected";
 
-constexpr FamilyKey kLineName{.name = "name",
-                              .kind = kText,
-                              .required = true,
-                              .about = "Name of its signal, unique in the module.",
-                              .pattern = "[a-z0-9_]{1,31}",
-                              .words = "a name of a-z, 0-9 and _, at most 31 characters"};
-constexpr FamilyKey kLine{
-    .name = "line",
-    .kind = kInteger,
-    .max = 1023,
-    .required = true,
-    .about = "Line of the chip. On a Raspberry Pi the BCM number: 17 is GPIO17, pin 11."};
-constexpr FamilyKey kActiveLow{.name = "active_low",
-                               .kind = kFlag,
-                               .default_text = "false",
-                               .about = "The signal is 1 while the line is low."};
+constexpr OwnKey kLineName{.name = "name",
+                           .kind = kText,
+                           .required = true,
+                           .about = "Name of its signal, unique in the module.",
+                           .pattern = "[a-z0-9_]{1,31}",
+                           .words = "a name of a-z, 0-9 and _, at most 31 characters"};
+constexpr OwnKey kLine{.name = "line",
+                       .kind = kInteger,
+                       .max = 1023,
+                       .required = true,
+                       .about = "Line of the chip. On a Raspberry Pi the BCM number: 17 is GPIO17, pin 11."};
+constexpr OwnKey kActiveLow{.name = "active_low",
+                            .kind = kFlag,
+                            .default_text = "false",
+                            .about = "The signal is 1 while the line is low."};
 
 constexpr std::array<std::string_view, 4> kBiases{"as_is", "none", "pull_up", "pull_down"};
 
 constexpr std::array kInputKeys{
     kLineName, kLine, kActiveLow,
-    FamilyKey{.name = "bias",
-              .kind = kChoice,
-              .choices = kBiases,
-              .default_text = "as_is",
-              .about = "The chip's own resistor. as_is: as the board or its device tree has set it."},
-    FamilyKey{.name = "debounce_ms",
-              .kind = kInteger,
-              .unit = "ms",
-              .max = 1000,
-              .default_text = "5",
-              .about = "A new level counts once it has lasted for so long. 0: at once."}};
+    OwnKey{.name = "bias",
+           .kind = kChoice,
+           .choices = kBiases,
+           .default_text = "as_is",
+           .about = "The chip's own resistor. as_is: as the board or its device tree has set it."},
+    OwnKey{.name = "debounce_ms",
+           .kind = kInteger,
+           .unit = "ms",
+           .max = 1000,
+           .default_text = "5",
+           .about = "A new level counts once it has lasted for so long. 0: at once."}};
 
 constexpr std::array<std::string_view, 2> kAtEstop{"safe", "keep"};
 
 constexpr std::array kOutputKeys{
     kLineName, kLine, kActiveLow,
-    FamilyKey{.name = "safe_value",
-              .kind = kInteger,
-              .max = 1,
-              .default_text = "0",
-              .about = "What it is at the start, while nobody commands it, and at the end."},
-    FamilyKey{.name = "on_estop",
-              .kind = kChoice,
-              .choices = kAtEstop,
-              .default_text = "safe",
-              .about =
-                  "safe: the safe value from the e-stop on, until it was commanded safe once after it. keep: "
-                  "obeys all the same, as a gripper that must not drop what it holds."}};
+    OwnKey{.name = "safe_value",
+           .kind = kInteger,
+           .max = 1,
+           .default_text = "0",
+           .about = "What it is at the start, while nobody commands it, and at the end."},
+    OwnKey{.name = "on_estop",
+           .kind = kChoice,
+           .choices = kAtEstop,
+           .default_text = "safe",
+           .about =
+               "safe: the safe value from the e-stop on, until it was commanded safe once after it. keep: "
+               "obeys all the same, as a gripper that must not drop what it holds."}};
 
 constexpr std::array kGpioKeys{
-    FamilyKey{.name = "chip",
-              .kind = kText,
-              .required = true,
-              .about =
-                  "GPIO chip: its name (gpiochip0) or its label (pinctrl-rp1), which stays the same when the "
-                  "numbers change.",
-              .pattern = "[A-Za-z0-9_.:/@-]{1,64}",
-              .words = "name or label of a GPIO chip, as `gpiodetect` shows it"},
-    FamilyKey{.name = "inputs",
-              .kind = kRows,
-              .max = kMaxLines,
-              .about = "Lines that are read.",
-              .keys = kInputKeys},
-    FamilyKey{.name = "outputs",
-              .kind = kRows,
-              .max = kMaxLines,
-              .about = "Lines that are driven.",
-              .keys = kOutputKeys}};
+    OwnKey{.name = "chip",
+           .kind = kText,
+           .required = true,
+           .about =
+               "GPIO chip: its name (gpiochip0) or its label (pinctrl-rp1), which stays the same when the "
+               "numbers change.",
+           .pattern = "[A-Za-z0-9_.:/@-]{1,64}",
+           .words = "name or label of a GPIO chip, as `gpiodetect` shows it"},
+    OwnKey{.name = "inputs",
+           .kind = kRows,
+           .max = kMaxLines,
+           .about = "Lines that are read.",
+           .keys = kInputKeys},
+    OwnKey{.name = "outputs",
+           .kind = kRows,
+           .max = kMaxLines,
+           .about = "Lines that are driven.",
+           .keys = kOutputKeys}};
 
 /// Age at which a reading is void: a slow chip is read every few milliseconds, and one that hangs in a
 /// transfer reports no error. The distance is that of the grid, in which a computer that stood still
@@ -230,7 +229,7 @@ class GpioModuleType : public ModuleType {
   [[nodiscard]] std::string_view about() const noexcept override {
     return "Switches and valves on lines of a GPIO chip.";
   }
-  [[nodiscard]] std::span<const FamilyKey> keys() const noexcept override { return kGpioKeys; }
+  [[nodiscard]] std::span<const OwnKey> keys() const noexcept override { return kGpioKeys; }
 
   [[nodiscard]] Result<std::unique_ptr<Module_Base>> build(const ModuleSettings& settings,
                                                            const RobotOutline&) const override {

@@ -14,37 +14,37 @@
 namespace rc10 {
 namespace {
 
-using enum FamilyKey::Kind;
+using enum OwnKey::Kind;
 
 constexpr std::array<std::string_view, 3> kImuProtocols{"witmotion", "hipnuc", "inputs"};
 
-constexpr FamilyKey optionalPort() {
-  FamilyKey key = kPortKey;
+constexpr OwnKey optionalPort() {
+  OwnKey key = kPortKey;
   key.required = false;
   return key;
 }
 
 constexpr std::array kImuKeys{
-    FamilyKey{.name = "protocol",
-              .kind = kChoice,
-              .choices = kImuProtocols,
-              .required = true,
-              .about = "witmotion or hipnuc on a serial port; inputs: another program gives the values."},
+    OwnKey{.name = "protocol",
+           .kind = kChoice,
+           .choices = kImuProtocols,
+           .required = true,
+           .about = "witmotion or hipnuc on a serial port; inputs: another program gives the values."},
     optionalPort(), baudKey("Baud rate, as set on the sensor. WitMotion leaves the factory with 9600."),
-    FamilyKey{.name = "max_age_ms",
-              .kind = kInteger,
-              .unit = "ms",
-              .min = 5,
-              .max = 5000,
-              .default_text = "50",
-              .about = "Older values mean nothing: the outputs are NaN."},
-    FamilyKey{.name = "yaw_offset_deg",
-              .kind = kNumber,
-              .unit = "deg",
-              .min = -360,
-              .max = 360,
-              .default_text = "0",
-              .about = "Added to the yaw."}};
+    OwnKey{.name = "max_age_ms",
+           .kind = kInteger,
+           .unit = "ms",
+           .min = 5,
+           .max = 5000,
+           .default_text = "50",
+           .about = "Older values mean nothing: the outputs are NaN."},
+    OwnKey{.name = "yaw_offset_deg",
+           .kind = kNumber,
+           .unit = "deg",
+           .min = -360,
+           .max = 360,
+           .default_text = "0",
+           .about = "Added to the yaw."}};
 
 // The inputs, and the first outputs.
 enum Axis : std::size_t { kYaw, kPitch, kRoll, kYawRate, kPitchRate, kRollRate, kAccX, kAccY, kAccZ, kAxes };
@@ -162,7 +162,7 @@ class ImuType : public ModuleType {
   [[nodiscard]] std::string_view about() const noexcept override {
     return "An inertial sensor: angles, rates and acceleration.";
   }
-  [[nodiscard]] std::span<const FamilyKey> keys() const noexcept override { return kImuKeys; }
+  [[nodiscard]] std::span<const OwnKey> keys() const noexcept override { return kImuKeys; }
 
   [[nodiscard]] Result<std::unique_ptr<Module_Base>> build(const ModuleSettings& settings,
                                                            const RobotOutline&) const override {

@@ -14,7 +14,7 @@
 namespace rc10 {
 namespace {
 
-using enum FamilyKey::Kind;
+using enum OwnKey::Kind;
 
 constexpr Duration kFrameInterval = std::chrono::nanoseconds{1'000'000'000 / 30};
 
@@ -23,34 +23,34 @@ constexpr std::array<std::string_view, 6> kOrders{"grb", "rgb", "brg", "bgr", "g
 constexpr std::array<std::string_view, 2> kSpeeds{"3200000", "2400000"};
 
 /// The keys of what is shown in one state, with their defaults.
-constexpr std::array<FamilyKey, 4> effectKeys(std::string_view pattern, std::string_view colour,
-                                              std::string_view second_colour, std::string_view period_ms) {
+constexpr std::array<OwnKey, 4> effectKeys(std::string_view pattern, std::string_view colour,
+                                           std::string_view second_colour, std::string_view period_ms) {
   return {
-      FamilyKey{.name = "pattern",
-                .kind = kChoice,
-                .choices = kPatterns,
-                .default_text = pattern,
-                .about = "steady; blink: both colours in turn; breathe: from one to the other and back; run: "
-                         "a quarter of the strip runs over the second colour."},
-      FamilyKey{.name = "colour",
-                .kind = kText,
-                .default_text = colour,
-                .about = "What is seen.",
-                .pattern = kColourPattern,
-                .words = kColourWords},
-      FamilyKey{.name = "second_colour",
-                .kind = kText,
-                .default_text = second_colour,
-                .about = "The other one of blink, breathe and run.",
-                .pattern = kColourPattern,
-                .words = kColourWords},
-      FamilyKey{.name = "period_ms",
-                .kind = kInteger,
-                .unit = "ms",
-                .min = 100,
-                .max = 60'000,
-                .default_text = period_ms,
-                .about = "Of blink, breathe and run."}};
+      OwnKey{.name = "pattern",
+             .kind = kChoice,
+             .choices = kPatterns,
+             .default_text = pattern,
+             .about = "steady; blink: both colours in turn; breathe: from one to the other and back; run: "
+                      "a quarter of the strip runs over the second colour."},
+      OwnKey{.name = "colour",
+             .kind = kText,
+             .default_text = colour,
+             .about = "What is seen.",
+             .pattern = kColourPattern,
+             .words = kColourWords},
+      OwnKey{.name = "second_colour",
+             .kind = kText,
+             .default_text = second_colour,
+             .about = "The other one of blink, breathe and run.",
+             .pattern = kColourPattern,
+             .words = kColourWords},
+      OwnKey{.name = "period_ms",
+             .kind = kInteger,
+             .unit = "ms",
+             .min = 100,
+             .max = 60'000,
+             .default_text = period_ms,
+             .about = "Of blink, breathe and run."}};
 }
 
 // More than three flashes a second may harm people with epilepsy (WCAG 2.1, 2.3.1): 400 ms is 2.5 of them.
@@ -61,56 +61,55 @@ constexpr auto kEnabledKeys = effectKeys("steady", "green", "black", "1000");
 constexpr auto kDisabledKeys = effectKeys("breathe", "#404060", "#040408", "4000");
 
 constexpr std::array kLedStripKeys{
-    FamilyKey{.name = "device",
-              .kind = kText,
-              .required = true,
-              .about = "The SPI device whose data line (MOSI) goes to the strip; one strip each.",
-              .pattern = "/dev/[A-Za-z0-9_./:+-]{1,120}",
-              .words = "a path under /dev: /dev/spidev0.0"},
-    FamilyKey{.name = "pixels",
-              .kind = kInteger,
-              .min = 1,
-              .max = 1000,
-              .required = true,
-              .about = "LEDs on the strip: up to 321, or 435 with speed_hz: 2400000, which is what spidev "
-                       "sends at once."},
-    FamilyKey{.name = "colour_order",
-              .kind = kChoice,
-              .choices = kOrders,
-              .default_text = "grb",
-              .about = "The order in which the strip takes the colours."},
-    FamilyKey{
-        .name = "speed_hz",
-        .kind = kChoice,
-        .unit = "Hz",
-        .choices = kSpeeds,
-        .default_text = "3200000",
-        .about =
-            "Of the SPI bus. 3200000 suits every WS2812B; 2400000 needs a quarter less bytes, for longer "
-            "strips of the older chips."},
-    FamilyKey{.name = "brightness_limit",
-              .kind = kNumber,
-              .max = 1,
-              .above_min = true,
-              .default_text = "0.25",
-              .about = "Nothing is brighter. A pixel takes up to 60 mA at 5 V when it is white and at 1."},
-    FamilyKey{
+    OwnKey{.name = "device",
+           .kind = kText,
+           .required = true,
+           .about = "The SPI device whose data line (MOSI) goes to the strip; one strip each.",
+           .pattern = "/dev/[A-Za-z0-9_./:+-]{1,120}",
+           .words = "a path under /dev: /dev/spidev0.0"},
+    OwnKey{.name = "pixels",
+           .kind = kInteger,
+           .min = 1,
+           .max = 1000,
+           .required = true,
+           .about = "LEDs on the strip: up to 321, or 435 with speed_hz: 2400000, which is what spidev "
+                    "sends at once."},
+    OwnKey{.name = "colour_order",
+           .kind = kChoice,
+           .choices = kOrders,
+           .default_text = "grb",
+           .about = "The order in which the strip takes the colours."},
+    OwnKey{.name = "speed_hz",
+           .kind = kChoice,
+           .unit = "Hz",
+           .choices = kSpeeds,
+           .default_text = "3200000",
+           .about =
+               "Of the SPI bus. 3200000 suits every WS2812B; 2400000 needs a quarter less bytes, for longer "
+               "strips of the older chips."},
+    OwnKey{.name = "brightness_limit",
+           .kind = kNumber,
+           .max = 1,
+           .above_min = true,
+           .default_text = "0.25",
+           .about = "Nothing is brighter. A pixel takes up to 60 mA at 5 V when it is white and at 1."},
+    OwnKey{
         .name = "status_pixels",
         .kind = kInteger,
         .max = 1000,
         .default_text = "0",
         .about = "So many pixels from the beginning show the state of the robot, whatever the inputs say."},
-    FamilyKey{.name = "estop", .kind = kSection, .about = "Shown in an e-stop.", .keys = kEstopKeys},
-    FamilyKey{
+    OwnKey{.name = "estop", .kind = kSection, .about = "Shown in an e-stop.", .keys = kEstopKeys},
+    OwnKey{
         .name = "fault", .kind = kSection, .about = "Shown while a motor has a fault.", .keys = kFaultKeys},
-    FamilyKey{.name = "enabled",
-              .kind = kSection,
-              .about = "Shown while a motor is ACTIVE or about to be.",
-              .keys = kEnabledKeys},
-    FamilyKey{.name = "disabled",
-              .kind = kSection,
-              .about = "Shown while no motor is ACTIVE.",
-              .keys = kDisabledKeys}};
+    OwnKey{.name = "enabled",
+           .kind = kSection,
+           .about = "Shown while a motor is ACTIVE or about to be.",
+           .keys = kEnabledKeys},
+    OwnKey{.name = "disabled",
+           .kind = kSection,
+           .about = "Shown while no motor is ACTIVE.",
+           .keys = kDisabledKeys}};
 
 /// States of the robot, the most important last: the numbers of the output `state`.
 enum class Shown : std::uint8_t { kDisabled, kEnabled, kFault, kEstop };
@@ -122,11 +121,11 @@ ModuleSignals stripSignals() {
 }
 
 /// As written, or its default: a section that was not written has none.
-[[nodiscard]] std::string textOf(const OwnValues& section, const FamilyKey& key) {
+[[nodiscard]] std::string textOf(const OwnValues& section, const OwnKey& key) {
   return section.given(key.name) ? section.text(key.name) : std::string{key.default_text};
 }
 
-[[nodiscard]] LedEffect effectOf(const OwnValues& section, const std::array<FamilyKey, 4>& keys) {
+[[nodiscard]] LedEffect effectOf(const OwnValues& section, const std::array<OwnKey, 4>& keys) {
   const auto word = std::find(kPatterns.begin(), kPatterns.end(), textOf(section, keys[0]));
   const int period_ms = section.given(keys[3].name) ? section.integer(keys[3].name)
                                                     : std::stoi(std::string{keys[3].default_text});
@@ -237,7 +236,7 @@ class LedStripType : public ModuleType {
   [[nodiscard]] std::string_view about() const noexcept override {
     return "WS2812 pixels on an SPI bus that show the state of the robot.";
   }
-  [[nodiscard]] std::span<const FamilyKey> keys() const noexcept override { return kLedStripKeys; }
+  [[nodiscard]] std::span<const OwnKey> keys() const noexcept override { return kLedStripKeys; }
 
   [[nodiscard]] Result<std::unique_ptr<Module_Base>> build(const ModuleSettings& settings,
                                                            const RobotOutline&) const override {

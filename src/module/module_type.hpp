@@ -10,8 +10,8 @@
 #include "app/result.hpp"
 #include "app/target.hpp"
 #include "module/module_base.hpp"
-#include "motor/family_key.hpp"
 #include "motor/motor_settings.hpp"
+#include "motor/own_key.hpp"
 
 namespace rc10 {
 
@@ -55,7 +55,7 @@ class ModuleType {
   [[nodiscard]] virtual std::string_view name() const noexcept = 0;
   /// One sentence, for people.
   [[nodiscard]] virtual std::string_view about() const noexcept = 0;
-  [[nodiscard]] virtual std::span<const FamilyKey> keys() const noexcept = 0;
+  [[nodiscard]] virtual std::span<const OwnKey> keys() const noexcept = 0;
   /// Whether it finds the angle of this motor once that is enabled.
   [[nodiscard]] virtual bool homes(const ModuleSettings& /*settings*/, std::size_t /*motor*/) const {
     return false;

@@ -9,23 +9,23 @@
 namespace rc10 {
 namespace {
 
-using enum FamilyKey::Kind;
+using enum OwnKey::Kind;
 
 constexpr std::array<std::string_view, 2> kUnits{"cm", "mm"};
 
 constexpr std::array kRangefinderKeys{kPortKey,
-                                      FamilyKey{.name = "unit",
-                                                .kind = kChoice,
-                                                .choices = kUnits,
-                                                .default_text = "cm",
-                                                .about = "What the sensor is set to send."},
-                                      FamilyKey{.name = "max_age_ms",
-                                                .kind = kInteger,
-                                                .unit = "ms",
-                                                .min = 5,
-                                                .max = 5000,
-                                                .default_text = "50",
-                                                .about = "Older values mean nothing: the output is NaN."}};
+                                      OwnKey{.name = "unit",
+                                             .kind = kChoice,
+                                             .choices = kUnits,
+                                             .default_text = "cm",
+                                             .about = "What the sensor is set to send."},
+                                      OwnKey{.name = "max_age_ms",
+                                             .kind = kInteger,
+                                             .unit = "ms",
+                                             .min = 5,
+                                             .max = 5000,
+                                             .default_text = "50",
+                                             .about = "Older values mean nothing: the output is NaN."}};
 
 class Rangefinder : public Module_Base {
  public:
@@ -66,7 +66,7 @@ class RangefinderType : public ModuleType {
  public:
   [[nodiscard]] std::string_view name() const noexcept override { return "rangefinder"; }
   [[nodiscard]] std::string_view about() const noexcept override { return "A TFmini laser rangefinder."; }
-  [[nodiscard]] std::span<const FamilyKey> keys() const noexcept override { return kRangefinderKeys; }
+  [[nodiscard]] std::span<const OwnKey> keys() const noexcept override { return kRangefinderKeys; }
 
   [[nodiscard]] Result<std::unique_ptr<Module_Base>> build(const ModuleSettings& settings,
                                                            const RobotOutline&) const override {

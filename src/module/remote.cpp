@@ -13,7 +13,7 @@
 namespace rc10 {
 namespace {
 
-using enum FamilyKey::Kind;
+using enum OwnKey::Kind;
 
 // So long after the arm switch motors are cleared and enabled as they become ready; what fails later stays
 // down until the driver uses the switch again.
@@ -25,87 +25,87 @@ constexpr std::string_view kChannelPattern = "[a-z0-9_]{1,31}";
 constexpr std::array<std::string_view, 2> kRemoteProtocols{"dbus", "sbus"};
 
 constexpr std::array kStickKeys{
-    FamilyKey{.name = "channel",
-              .kind = kText,
-              .required = true,
-              .about = "The channel: see docs/modules.md for the names.",
-              .pattern = kChannelPattern,
-              .words = "the name of a channel"},
-    FamilyKey{.name = "to",
-              .kind = kText,
-              .required = true,
-              .about = "The input of another module.",
-              .pattern = kSignalPattern,
-              .words = kSignalWords},
-    FamilyKey{.name = "scale",
-              .kind = kNumber,
-              .min = -1e6,
-              .max = 1e6,
-              .default_text = "1",
-              .about = "Value of the input at full deflection."},
-    FamilyKey{.name = "deadband",
-              .kind = kNumber,
-              .max = 0.9,
-              .default_text = "0.05",
-              .about = "A smaller deflection is 0; beyond it the value begins at 0."}};
+    OwnKey{.name = "channel",
+           .kind = kText,
+           .required = true,
+           .about = "The channel: see docs/modules.md for the names.",
+           .pattern = kChannelPattern,
+           .words = "the name of a channel"},
+    OwnKey{.name = "to",
+           .kind = kText,
+           .required = true,
+           .about = "The input of another module.",
+           .pattern = kSignalPattern,
+           .words = kSignalWords},
+    OwnKey{.name = "scale",
+           .kind = kNumber,
+           .min = -1e6,
+           .max = 1e6,
+           .default_text = "1",
+           .about = "Value of the input at full deflection."},
+    OwnKey{.name = "deadband",
+           .kind = kNumber,
+           .max = 0.9,
+           .default_text = "0.05",
+           .about = "A smaller deflection is 0; beyond it the value begins at 0."}};
 
-constexpr std::array kConstantKeys{FamilyKey{.name = "to",
-                                             .kind = kText,
-                                             .required = true,
-                                             .about = "The input of another module.",
-                                             .pattern = kSignalPattern,
-                                             .words = kSignalWords},
-                                   FamilyKey{.name = "value",
-                                             .kind = kNumber,
-                                             .min = -1e6,
-                                             .max = 1e6,
-                                             .required = true,
-                                             .about = "Its value while the remote commands."}};
+constexpr std::array kConstantKeys{OwnKey{.name = "to",
+                                          .kind = kText,
+                                          .required = true,
+                                          .about = "The input of another module.",
+                                          .pattern = kSignalPattern,
+                                          .words = kSignalWords},
+                                   OwnKey{.name = "value",
+                                          .kind = kNumber,
+                                          .min = -1e6,
+                                          .max = 1e6,
+                                          .required = true,
+                                          .about = "Its value while the remote commands."}};
 
 constexpr std::array kRemoteKeys{
     kPortKey,
-    FamilyKey{.name = "protocol",
-              .kind = kChoice,
-              .choices = kRemoteProtocols,
-              .required = true,
-              .about = "Of the receiver: dbus (DJI DR16, 100000 8E1) or sbus (100000 8E2). Both need an "
-                       "inverter before an ordinary UART."},
-    FamilyKey{.name = "lost_ms",
-              .kind = kInteger,
-              .unit = "ms",
-              .min = 20,
-              .max = 5000,
-              .default_text = "100",
-              .about = "Without a frame for so long, or when the receiver says so, the remote is lost: it "
-                       "commands nothing."},
-    FamilyKey{.name = "disable_s",
-              .kind = kNumber,
-              .unit = "s",
-              .max = 3600,
-              .default_text = "1",
-              .about = "Lost for so long, every motor is disabled."},
-    FamilyKey{.name = "arm_channel",
-              .kind = kText,
-              .about = "The switch that enables the robot when it goes up, and disables it when it goes "
-                       "down. Default: none; it commands whenever it is heard.",
-              .pattern = kChannelPattern,
-              .words = "the name of a channel"},
-    FamilyKey{.name = "arm_above",
-              .kind = kNumber,
-              .min = -1,
-              .max = 1,
-              .default_text = "0.5",
-              .about = "Above this the switch is up."},
-    FamilyKey{.name = "sticks",
-              .kind = kRows,
-              .max = 30,
-              .about = "What the channels command.",
-              .keys = kStickKeys},
-    FamilyKey{.name = "constants",
-              .kind = kRows,
-              .max = 30,
-              .about = "What it gives beside its channels while it commands.",
-              .keys = kConstantKeys}};
+    OwnKey{.name = "protocol",
+           .kind = kChoice,
+           .choices = kRemoteProtocols,
+           .required = true,
+           .about = "Of the receiver: dbus (DJI DR16, 100000 8E1) or sbus (100000 8E2). Both need an "
+                    "inverter before an ordinary UART."},
+    OwnKey{.name = "lost_ms",
+           .kind = kInteger,
+           .unit = "ms",
+           .min = 20,
+           .max = 5000,
+           .default_text = "100",
+           .about = "Without a frame for so long, or when the receiver says so, the remote is lost: it "
+                    "commands nothing."},
+    OwnKey{.name = "disable_s",
+           .kind = kNumber,
+           .unit = "s",
+           .max = 3600,
+           .default_text = "1",
+           .about = "Lost for so long, every motor is disabled."},
+    OwnKey{.name = "arm_channel",
+           .kind = kText,
+           .about = "The switch that enables the robot when it goes up, and disables it when it goes "
+                    "down. Default: none; it commands whenever it is heard.",
+           .pattern = kChannelPattern,
+           .words = "the name of a channel"},
+    OwnKey{.name = "arm_above",
+           .kind = kNumber,
+           .min = -1,
+           .max = 1,
+           .default_text = "0.5",
+           .about = "Above this the switch is up."},
+    OwnKey{.name = "sticks",
+           .kind = kRows,
+           .max = 30,
+           .about = "What the channels command.",
+           .keys = kStickKeys},
+    OwnKey{.name = "constants",
+           .kind = kRows,
+           .max = 30,
+           .about = "What it gives beside its channels while it commands.",
+           .keys = kConstantKeys}};
 
 ModuleSignals remoteSignals(const RemoteChannels& channels) {
   ModuleSignals signals;
@@ -299,7 +299,7 @@ class RemoteType : public ModuleType {
   [[nodiscard]] std::string_view about() const noexcept override {
     return "The driver's remote control: commands other modules and enables the robot.";
   }
-  [[nodiscard]] std::span<const FamilyKey> keys() const noexcept override { return kRemoteKeys; }
+  [[nodiscard]] std::span<const OwnKey> keys() const noexcept override { return kRemoteKeys; }
 
   [[nodiscard]] Result<std::unique_ptr<Module_Base>> build(const ModuleSettings& settings,
                                                            const RobotOutline& robot) const override {

@@ -18,7 +18,7 @@
 namespace rc10 {
 namespace {
 
-using enum FamilyKey::Kind;
+using enum OwnKey::Kind;
 
 // Fields each way: with the three signals of the link they fit into a module's outputs.
 constexpr double kMaxFields = 14;
@@ -34,51 +34,51 @@ constexpr std::array<std::string_view, 3> kLinkProtocols{"text", "cobs", "modbus
 constexpr std::array<std::string_view, 2> kWordOrders{"high_first", "low_first"};
 constexpr std::array<std::string_view, 2> kLinkAtEstop{"safe", "keep"};
 
-constexpr FamilyKey kFieldName{
+constexpr OwnKey kFieldName{
     .name = "name",
     .kind = kText,
     .required = true,
     .about = "Name of its signal, unique in the module; best with its unit at the end.",
     .pattern = "[a-z0-9_]{1,31}",
     .words = "a name of a-z, 0-9 and _, at most 31 characters"};
-constexpr FamilyKey kMessage{.name = "message",
-                             .kind = kText,
-                             .about =
-                                 "text: the name of the line that it stands in. cobs: the number of the "
-                                 "message, 0 to 255; its fields follow each other in the order of this list.",
-                             .pattern = "[A-Za-z0-9_]{1,15}",
-                             .words = "a name of letters, digits and _, at most 15 characters"};
-constexpr FamilyKey kPlace{.name = "place",
-                           .kind = kInteger,
-                           .min = 1,
-                           .max = static_cast<double>(TextMessage::kMostValues),
-                           .default_text = "1",
-                           .about = "text: which of the line's numbers."};
-constexpr FamilyKey kRegister{
+constexpr OwnKey kMessage{.name = "message",
+                          .kind = kText,
+                          .about =
+                              "text: the name of the line that it stands in. cobs: the number of the "
+                              "message, 0 to 255; its fields follow each other in the order of this list.",
+                          .pattern = "[A-Za-z0-9_]{1,15}",
+                          .words = "a name of letters, digits and _, at most 15 characters"};
+constexpr OwnKey kPlace{.name = "place",
+                        .kind = kInteger,
+                        .min = 1,
+                        .max = static_cast<double>(TextMessage::kMostValues),
+                        .default_text = "1",
+                        .about = "text: which of the line's numbers."};
+constexpr OwnKey kRegister{
     .name = "register",
     .kind = kInteger,
     .max = 65535,
     .about = "modbus: its register, counted from 0; types of four bytes take the next as well."};
-constexpr FamilyKey kType{.name = "type",
-                          .kind = kChoice,
-                          .choices = kWireTypes,
-                          .default_text = "f32",
-                          .about = "cobs, modbus: the number on the wire. modbus has no u8 and i8."};
-constexpr FamilyKey valueKey(std::string_view name, std::string_view default_text, std::string_view about) {
+constexpr OwnKey kType{.name = "type",
+                       .kind = kChoice,
+                       .choices = kWireTypes,
+                       .default_text = "f32",
+                       .about = "cobs, modbus: the number on the wire. modbus has no u8 and i8."};
+constexpr OwnKey valueKey(std::string_view name, std::string_view default_text, std::string_view about) {
   return {
       .name = name, .kind = kNumber, .min = -1e9, .max = 1e9, .default_text = default_text, .about = about};
 }
-constexpr FamilyKey kScale = valueKey("scale", "1", "Value of the signal for 1 on the wire; not 0.");
+constexpr OwnKey kScale = valueKey("scale", "1", "Value of the signal for 1 on the wire; not 0.");
 
 constexpr std::array kReceiveKeys{
     kFieldName,
     kMessage,
     kPlace,
     kRegister,
-    FamilyKey{.name = "input_register",
-              .kind = kFlag,
-              .default_text = "false",
-              .about = "modbus: an input register (function 4), not a holding register (function 3)."},
+    OwnKey{.name = "input_register",
+           .kind = kFlag,
+           .default_text = "false",
+           .about = "modbus: an input register (function 4), not a holding register (function 3)."},
     kType,
     kScale};
 
@@ -92,52 +92,50 @@ constexpr std::array kSendKeys{
     valueKey("min", "-1e9", "The signal is cut off below."),
     valueKey("max", "1e9", "The signal is cut off above."),
     valueKey("safe_value", "0", "What is sent at the start, while nobody commands it, and during an e-stop."),
-    FamilyKey{.name = "on_estop",
-              .kind = kChoice,
-              .choices = kLinkAtEstop,
-              .default_text = "safe",
-              .about =
-                  "safe: the safe value from the e-stop on, until it was commanded safe once after it. keep: "
-                  "obeys all the same, as a gripper that must not drop what it holds."}};
+    OwnKey{.name = "on_estop",
+           .kind = kChoice,
+           .choices = kLinkAtEstop,
+           .default_text = "safe",
+           .about =
+               "safe: the safe value from the e-stop on, until it was commanded safe once after it. keep: "
+               "obeys all the same, as a gripper that must not drop what it holds."}};
 
 constexpr std::array kLinkKeys{
     kPortKey,
-    FamilyKey{.name = "protocol",
-              .kind = kChoice,
-              .choices = kLinkProtocols,
-              .required = true,
-              .about =
-                  "text: lines that a person can read and type. cobs: binary messages with a CRC. modbus: "
-                  "Modbus RTU, rc10d is the master."},
+    OwnKey{.name = "protocol",
+           .kind = kChoice,
+           .choices = kLinkProtocols,
+           .required = true,
+           .about = "text: lines that a person can read and type. cobs: binary messages with a CRC. modbus: "
+                    "Modbus RTU, rc10d is the master."},
     baudKey("Baud rate, as set on the board."),
-    FamilyKey{.name = "format",
-              .kind = kText,
-              .default_text = "8N1",
-              .about = "Data bits, parity, stop bits.",
-              .pattern = "[5-8][NEO][12]",
-              .words = "8N1, 8E1 or the like"},
-    FamilyKey{
-        .name = "rate_hz",
-        .kind = kInteger,
-        .unit = "Hz",
-        .min = 1,
-        .max = 500,
-        .default_text = "50",
-        .about = "How often all fields are sent; modbus: how often all registers are written and read."},
-    FamilyKey{.name = "max_age_ms",
-              .kind = kInteger,
-              .unit = "ms",
-              .min = 5,
-              .max = 60'000,
-              .default_text = "200",
-              .about = "Older values mean nothing: the output is NaN."},
-    FamilyKey{.name = "address",
-              .kind = kInteger,
-              .min = 1,
-              .max = 247,
-              .default_text = "1",
-              .about = "modbus: of the slave."},
-    FamilyKey{
+    OwnKey{.name = "format",
+           .kind = kText,
+           .default_text = "8N1",
+           .about = "Data bits, parity, stop bits.",
+           .pattern = "[5-8][NEO][12]",
+           .words = "8N1, 8E1 or the like"},
+    OwnKey{.name = "rate_hz",
+           .kind = kInteger,
+           .unit = "Hz",
+           .min = 1,
+           .max = 500,
+           .default_text = "50",
+           .about = "How often all fields are sent; modbus: how often all registers are written and read."},
+    OwnKey{.name = "max_age_ms",
+           .kind = kInteger,
+           .unit = "ms",
+           .min = 5,
+           .max = 60'000,
+           .default_text = "200",
+           .about = "Older values mean nothing: the output is NaN."},
+    OwnKey{.name = "address",
+           .kind = kInteger,
+           .min = 1,
+           .max = 247,
+           .default_text = "1",
+           .about = "modbus: of the slave."},
+    OwnKey{
         .name = "timeout_ms",
         .kind = kInteger,
         .unit = "ms",
@@ -145,21 +143,21 @@ constexpr std::array kLinkKeys{
         .max = 5000,
         .default_text = "50",
         .about = "modbus: so long the slave may take before it answers; the bytes on the wire come on top."},
-    FamilyKey{.name = "word_order",
-              .kind = kChoice,
-              .choices = kWordOrders,
-              .default_text = "high_first",
-              .about = "modbus: of a value in two registers."},
-    FamilyKey{.name = "receive",
-              .kind = kRows,
-              .max = kMaxFields,
-              .about = "What the board sends.",
-              .keys = kReceiveKeys},
-    FamilyKey{.name = "send",
-              .kind = kRows,
-              .max = kMaxFields,
-              .about = "What the board is sent.",
-              .keys = kSendKeys}};
+    OwnKey{.name = "word_order",
+           .kind = kChoice,
+           .choices = kWordOrders,
+           .default_text = "high_first",
+           .about = "modbus: of a value in two registers."},
+    OwnKey{.name = "receive",
+           .kind = kRows,
+           .max = kMaxFields,
+           .about = "What the board sends.",
+           .keys = kReceiveKeys},
+    OwnKey{.name = "send",
+           .kind = kRows,
+           .max = kMaxFields,
+           .about = "What the board is sent.",
+           .keys = kSendKeys}};
 
 /// A field that is sent, as an output that keeps to its safe value.
 struct LinkOutput {
@@ -507,7 +505,7 @@ class SerialLinkType : public ModuleType {
   [[nodiscard]] std::string_view about() const noexcept override {
     return "A board of one's own on a serial port: its fields are inputs and outputs.";
   }
-  [[nodiscard]] std::span<const FamilyKey> keys() const noexcept override { return kLinkKeys; }
+  [[nodiscard]] std::span<const OwnKey> keys() const noexcept override { return kLinkKeys; }
 
   [[nodiscard]] Result<std::unique_ptr<Module_Base>> build(const ModuleSettings& settings,
                                                            const RobotOutline& robot) const override {

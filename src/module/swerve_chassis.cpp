@@ -86,7 +86,7 @@ class SwerveChassisType : public ChassisType {
   [[nodiscard]] std::string_view about() const noexcept override {
     return "Four steered and driven wheels: drives in every direction.";
   }
-  [[nodiscard]] std::span<const FamilyKey> keys() const noexcept override {
+  [[nodiscard]] std::span<const OwnKey> keys() const noexcept override {
     static const auto kAll = withCommonKeys({wheelsKey("drive", kCornerKeys), wheelsKey("steer", kCornerKeys),
                                              kWheelRadiusKey, kTrackKey, kWheelbaseKey, kWheelLimitKey});
     return kAll;

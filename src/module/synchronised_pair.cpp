@@ -7,15 +7,15 @@
 namespace rc10 {
 namespace {
 
-using enum FamilyKey::Kind;
+using enum OwnKey::Kind;
 
 constexpr std::array kPairKeys{
-    FamilyKey{.name = "left",
-              .kind = kMotor,
-              .required = true,
-              .about = "One of the two motors; both need velocity and total_angle targets, and a reference."},
-    FamilyKey{.name = "right", .kind = kMotor, .required = true, .about = "The other."},
-    FamilyKey{
+    OwnKey{.name = "left",
+           .kind = kMotor,
+           .required = true,
+           .about = "One of the two motors; both need velocity and total_angle targets, and a reference."},
+    OwnKey{.name = "right", .kind = kMotor, .required = true, .about = "The other."},
+    OwnKey{
         .name = "max_difference_deg",
         .kind = kNumber,
         .unit = "deg",
@@ -23,20 +23,20 @@ constexpr std::array kPairKeys{
         .above_min = true,
         .default_text = "10",
         .about = "Farther apart than this the pair rests, until both were disabled and are enabled again."},
-    FamilyKey{.name = "correction_rpm_per_deg",
-              .kind = kNumber,
-              .unit = "rpm/deg",
-              .max = 1000,
-              .default_text = "0.5",
-              .about = "Velocity by which each motor is drawn to the middle of both, for each degree that it "
-                       "is away from it."},
-    FamilyKey{.name = "velocity_limit_rpm",
-              .kind = kNumber,
-              .unit = "rpm",
-              .max = 100'000,
-              .above_min = true,
-              .required = true,
-              .about = "No velocity target is higher."}};
+    OwnKey{.name = "correction_rpm_per_deg",
+           .kind = kNumber,
+           .unit = "rpm/deg",
+           .max = 1000,
+           .default_text = "0.5",
+           .about = "Velocity by which each motor is drawn to the middle of both, for each degree that it "
+                    "is away from it."},
+    OwnKey{.name = "velocity_limit_rpm",
+           .kind = kNumber,
+           .unit = "rpm",
+           .max = 100'000,
+           .above_min = true,
+           .required = true,
+           .about = "No velocity target is higher."}};
 
 ModuleSignals pairSignals() {
   return {
@@ -104,7 +104,7 @@ class SynchronisedPairType : public ModuleType {
   [[nodiscard]] std::string_view about() const noexcept override {
     return "Two motors that move one thing and must stay together.";
   }
-  [[nodiscard]] std::span<const FamilyKey> keys() const noexcept override { return kPairKeys; }
+  [[nodiscard]] std::span<const OwnKey> keys() const noexcept override { return kPairKeys; }
 
   [[nodiscard]] Coupling coupling() const noexcept override { return Coupling::kTogether; }
 

@@ -11,9 +11,9 @@
 #include "bus/fdcan_bus.hpp"
 #include "bus/frame_bits.hpp"
 #include "motor/drive_setup.hpp"
-#include "motor/family_key.hpp"
 #include "motor/motor_base.hpp"
 #include "motor/motor_settings.hpp"
+#include "motor/own_key.hpp"
 
 namespace rc10 {
 
@@ -104,7 +104,7 @@ class MotorFamily {
   [[nodiscard]] virtual std::string_view name() const noexcept = 0;
   /// As written in the configuration; no two families share one.
   [[nodiscard]] virtual std::span<const std::string_view> models() const noexcept = 0;
-  [[nodiscard]] virtual std::span<const FamilyKey> keys() const noexcept { return {}; }
+  [[nodiscard]] virtual std::span<const OwnKey> keys() const noexcept { return {}; }
   /// `model` is one of models(); `own` has all of keys().
   [[nodiscard]] virtual MotorTraits traits(std::string_view model, const OwnValues& own) const = 0;
   /// Conditions beyond the ranges of single keys. The error begins with the key: "master_id: ...".

@@ -36,14 +36,14 @@ class Labelled : public ModuleType {
  public:
   [[nodiscard]] std::string_view name() const noexcept override { return "labelled"; }
   [[nodiscard]] std::string_view about() const noexcept override { return "Has texts."; }
-  [[nodiscard]] std::span<const FamilyKey> keys() const noexcept override {
+  [[nodiscard]] std::span<const OwnKey> keys() const noexcept override {
     static constexpr std::array kKeys{
-        FamilyKey{.name = "label", .kind = FamilyKey::Kind::kText, .about = "Any text."},
-        FamilyKey{.name = "code",
-                  .kind = FamilyKey::Kind::kText,
-                  .default_text = "A1",
-                  .about = "A letter and a digit.",
-                  .pattern = "[A-Z][0-9]"}};
+        OwnKey{.name = "label", .kind = OwnKey::Kind::kText, .about = "Any text."},
+        OwnKey{.name = "code",
+               .kind = OwnKey::Kind::kText,
+               .default_text = "A1",
+               .about = "A letter and a digit.",
+               .pattern = "[A-Z][0-9]"}};
     return kKeys;
   }
   [[nodiscard]] Result<std::unique_ptr<Module_Base>> build(const ModuleSettings& /*settings*/,

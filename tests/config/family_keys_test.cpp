@@ -14,10 +14,10 @@ namespace {
 
 using ::testing::HasSubstr;
 
-std::string valueOf(const FamilyKey& key) {
-  if (key.kind == FamilyKey::Kind::kChoice) return std::string{key.choices.front()};
-  if (key.kind == FamilyKey::Kind::kFlag) return "true";
-  if (key.kind == FamilyKey::Kind::kInteger) return numberText(key.above_min ? key.min + 1 : key.min);
+std::string valueOf(const OwnKey& key) {
+  if (key.kind == OwnKey::Kind::kChoice) return std::string{key.choices.front()};
+  if (key.kind == OwnKey::Kind::kFlag) return "true";
+  if (key.kind == OwnKey::Kind::kInteger) return numberText(key.above_min ? key.min + 1 : key.min);
   return numberText(key.above_min ? std::min(key.max, key.min + 1.0) : key.min);
 }
 
@@ -25,7 +25,7 @@ std::string valueOf(const FamilyKey& key) {
 std::string motorWith(const MotorFamily& family, const std::string& more = "") {
   std::string text = "{name: a, model: " + std::string{family.models().front()} +
                      ", id: 1, current_limit_a: 1, velocity_limit_rpm: 100";
-  for (const FamilyKey& key : family.keys()) {
+  for (const OwnKey& key : family.keys()) {
     if (key.required) text += ", " + std::string{key.name} + ": " + valueOf(key);
   }
   return text + more + "}";
@@ -51,14 +51,14 @@ TEST(FamilyKeys, AMotorOfEveryFamilyNeedsNoMoreThanWhatItRequires) {
 
 TEST(FamilyKeys, HaveTheDefaultsThatTheyShow) {
   for (const auto& entry : motorFamilies()) {
-    for (const FamilyKey& key : entry.family->keys()) {
+    for (const OwnKey& key : entry.family->keys()) {
       if (key.default_text.empty()) continue;
       const auto bare = parseRobotConfig(robotOf(*entry.family), "bare.yaml");
       ASSERT_TRUE(bare.config) << bare.errorText();
       const std::string text{key.default_text};
-      if (key.kind == FamilyKey::Kind::kChoice) {
+      if (key.kind == OwnKey::Kind::kChoice) {
         EXPECT_EQ(ownOf(bare).text(key.name), text) << key.name;
-      } else if (key.kind == FamilyKey::Kind::kFlag) {
+      } else if (key.kind == OwnKey::Kind::kFlag) {
         EXPECT_EQ(ownOf(bare).flag(key.name), text == "true") << key.name;
       } else {
         EXPECT_EQ(ownOf(bare).number(key.name), std::stod(text)) << key.name;
@@ -73,11 +73,11 @@ TEST(FamilyKeys, HaveTheDefaultsThatTheyShow) {
 
 TEST(FamilyKeys, MeanNothingForOtherFamilies) {
   for (const auto& entry : motorFamilies()) {
-    for (const FamilyKey& key : entry.family->keys()) {
+    for (const OwnKey& key : entry.family->keys()) {
       for (const auto& other : motorFamilies()) {
         const auto own = other.family->keys();
         const bool known =
-            std::any_of(own.begin(), own.end(), [&](const FamilyKey& mine) { return mine.name == key.name; });
+            std::any_of(own.begin(), own.end(), [&](const OwnKey& mine) { return mine.name == key.name; });
         if (known) continue;
         const auto outcome = parseRobotConfig(
             robotOf(*other.family, ", " + std::string{key.name} + ": " + valueOf(key)), "hero.yaml");
@@ -89,9 +89,9 @@ TEST(FamilyKeys, MeanNothingForOtherFamilies) {
 
 TEST(FamilyKeys, OfOneNameAreOfOneKindAndUnit) {
   for (const auto& entry : motorFamilies()) {
-    for (const FamilyKey& key : entry.family->keys()) {
+    for (const OwnKey& key : entry.family->keys()) {
       for (const auto& other : motorFamilies()) {
-        for (const FamilyKey& same : other.family->keys()) {
+        for (const OwnKey& same : other.family->keys()) {
           if (same.name != key.name) continue;
           EXPECT_EQ(same.kind, key.kind) << key.name;
           EXPECT_EQ(same.unit, key.unit) << key.name;
@@ -111,7 +111,7 @@ TEST(FamilyKeys, StandOnThePageOfTheirFamily) {
     std::ostringstream text;
     text << std::ifstream{std::string{RC10_SOURCE_DIR} + "/" + file}.rdbuf();
     ASSERT_FALSE(text.str().empty()) << file;
-    for (const FamilyKey& key : entry.family->keys()) {
+    for (const OwnKey& key : entry.family->keys()) {
       EXPECT_THAT(text.str(), HasSubstr(std::string{key.name})) << file;
     }
     for (const auto model : entry.family->models())

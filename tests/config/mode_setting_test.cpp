@@ -25,7 +25,7 @@ TEST(ModeSetting, EveryModelWithAChoiceCanBeGivenACurrent) {
   for (const auto& entry : motorFamilies()) {
     for (const auto model : entry.family->models()) {
       bool chooses = false;
-      for (const FamilyKey& key : entry.family->keys()) chooses |= !key.choices.empty();
+      for (const OwnKey& key : entry.family->keys()) chooses |= !key.choices.empty();
       EXPECT_EQ(settingForMode(model, ControlMode::kCurrent).empty(), !chooses) << model;
     }
   }

@@ -77,8 +77,8 @@ TEST(ModuleRules, TheSchemaHasATableForEachType) {
     EXPECT_THAT(schema, HasSubstr("\"module_" + std::string{type->name()} + "\""));
 }
 
-void expectKeysOn(const std::string& page, std::span<const FamilyKey> keys, std::string_view type) {
-  for (const FamilyKey& key : keys) {
+void expectKeysOn(const std::string& page, std::span<const OwnKey> keys, std::string_view type) {
+  for (const OwnKey& key : keys) {
     EXPECT_THAT(page, HasSubstr("`" + std::string{key.name} + "`")) << type;
     expectKeysOn(page, key.keys, type);
   }

@@ -33,7 +33,7 @@ YamlNode schemaTree() {
 
 OwnValues defaultsOf(const MotorFamily& family) {
   OwnValues own;
-  for (const FamilyKey& key : family.keys()) own.set(key.name, std::string{key.default_text});
+  for (const OwnKey& key : family.keys()) own.set(key.name, std::string{key.default_text});
   return own;
 }
 
@@ -115,7 +115,7 @@ TEST(Schema, TellsOfEachFamilyItsOwnKeysAndRefusesThoseOfOthers) {
     if (title == nullptr) continue;
     ++families;
     for (const auto& entry : motorFamilies()) {
-      for (const FamilyKey& key : entry.family->keys()) {
+      for (const OwnKey& key : entry.family->keys()) {
         const std::string name{key.name};
         const YamlNode* own = at(rule, {"then", "properties", name});
         ASSERT_NE(own, nullptr) << name;

@@ -8,7 +8,7 @@ namespace {
 using namespace vesc_bench;
 
 TEST(VescFamily, EveryKeyHasANameAndWords) {
-  for (const FamilyKey& key : vescFamily().keys()) {
+  for (const OwnKey& key : vescFamily().keys()) {
     EXPECT_FALSE(key.name.empty());
     EXPECT_FALSE(key.about.empty()) << key.name;
     EXPECT_TRUE(key.required || !key.default_text.empty()) << key.name;

@@ -32,7 +32,7 @@ MotorSettings settingsOf(const MotorFamily& family, std::string_view model, int 
   settings.model = model;
   settings.id = id;
   for (const auto& key : family.keys()) {
-    if (key.kind == FamilyKey::Kind::kChoice) {
+    if (key.kind == OwnKey::Kind::kChoice) {
       settings.own.set(key.name, std::string(key.default_text));
     } else if (!key.default_text.empty()) {
       settings.own.set(key.name, key.default_text == "true"    ? 1.0

@@ -23,9 +23,9 @@ inline MotorSettings cubemarsSettings(std::string_view model, int id, const OwnK
   settings.id = id;
   for (const auto& key : cubemarsFamily().keys()) {
     const std::string text{key.default_text};
-    if (key.kind == FamilyKey::Kind::kChoice) {
+    if (key.kind == OwnKey::Kind::kChoice) {
       settings.own.set(key.name, text);
-    } else if (key.kind == FamilyKey::Kind::kFlag) {
+    } else if (key.kind == OwnKey::Kind::kFlag) {
       settings.own.set(key.name, text == "true" ? 1.0 : 0.0);
     } else {
       settings.own.set(key.name, std::strtod(text.c_str(), nullptr));

@@ -10,11 +10,11 @@ namespace rc10::test {
 /// All of a family's own keys with their defaults, as the configuration fills them in.
 inline OwnValues ownDefaults(const MotorFamily& family) {
   OwnValues own;
-  for (const FamilyKey& key : family.keys()) {
+  for (const OwnKey& key : family.keys()) {
     const std::string text{key.default_text};
-    if (key.kind == FamilyKey::Kind::kChoice) {
+    if (key.kind == OwnKey::Kind::kChoice) {
       own.set(key.name, text);
-    } else if (key.kind == FamilyKey::Kind::kFlag) {
+    } else if (key.kind == OwnKey::Kind::kFlag) {
       own.set(key.name, text == "true" ? 1.0 : 0.0);
     } else {
       own.set(key.name, std::strtod(text.c_str(), nullptr));

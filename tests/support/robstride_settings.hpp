@@ -15,7 +15,7 @@ inline MotorSettings robStrideSettings(std::string_view model, int id = 127) {
   settings.model = std::string{model};
   settings.id = id;
   for (const auto& key : robstrideFamily().keys()) {
-    if (key.kind == FamilyKey::Kind::kChoice) {
+    if (key.kind == OwnKey::Kind::kChoice) {
       settings.own.set(key.name, std::string{key.default_text});
     } else {
       settings.own.set(key.name, std::stod(std::string{key.default_text}));

@@ -18,11 +18,11 @@ inline MotorSettings vescSettings(const std::vector<std::pair<std::string, OwnVa
   settings.model = "VESC";
   settings.id = 7;
   settings.feedback_hz = 100;
-  for (const FamilyKey& key : vescFamily().keys()) {
+  for (const OwnKey& key : vescFamily().keys()) {
     const std::string text{key.default_text};
-    if (key.kind == FamilyKey::Kind::kChoice) {
+    if (key.kind == OwnKey::Kind::kChoice) {
       settings.own.set(key.name, text);
-    } else if (key.kind == FamilyKey::Kind::kFlag) {
+    } else if (key.kind == OwnKey::Kind::kFlag) {
       settings.own.set(key.name, text == "true" ? 1.0 : 0.0);
     } else {
       settings.own.set(key.name, std::strtod(text.c_str(), nullptr));

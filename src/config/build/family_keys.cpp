@@ -14,8 +14,8 @@ namespace rc10 {
 namespace {
 
 /// Families share the names of keys, not always their ranges.
-bool ownRange(MotorParse& in, const FamilyKey& key, const GivenValue& given) {
-  if (key.kind == FamilyKey::Kind::kChoice) {
+bool ownRange(MotorParse& in, const OwnKey& key, const GivenValue& given) {
+  if (key.kind == OwnKey::Kind::kChoice) {
     if (std::find(key.choices.begin(), key.choices.end(), given.text()) != key.choices.end()) return true;
     const std::vector<std::string> words{key.choices.begin(), key.choices.end()};
     in.problems.error(given.place(), given.path,
@@ -23,7 +23,7 @@ bool ownRange(MotorParse& in, const FamilyKey& key, const GivenValue& given) {
                           listWords(words, " or "));
     return false;
   }
-  if (key.kind == FamilyKey::Kind::kFlag) return true;
+  if (key.kind == OwnKey::Kind::kFlag) return true;
   const double value = in.motor().own.number(key.name);
   if (value <= key.max && (key.above_min ? value > key.min : value >= key.min)) return true;
   const Range range{.min = key.min, .max = key.max, .above_min = key.above_min};
@@ -33,7 +33,7 @@ bool ownRange(MotorParse& in, const FamilyKey& key, const GivenValue& given) {
   return false;
 }
 
-bool readOwnKey(MotorParse& in, const FamilyKey& key) {
+bool readOwnKey(MotorParse& in, const OwnKey& key) {
   const auto given = in.settings.find(key.name);
   if (!given && in.settings.mentions(key.name)) return false;  // refused already
   if (!given && key.required) {
@@ -42,9 +42,9 @@ bool readOwnKey(MotorParse& in, const FamilyKey& key) {
     return false;
   }
   const std::string text = given ? given->text() : std::string{key.default_text};
-  if (key.kind == FamilyKey::Kind::kChoice) {
+  if (key.kind == OwnKey::Kind::kChoice) {
     in.motor().own.set(key.name, text);
-  } else if (key.kind == FamilyKey::Kind::kFlag) {
+  } else if (key.kind == OwnKey::Kind::kFlag) {
     in.motor().own.set(key.name, text == "true" ? 1.0 : 0.0);
   } else {
     const auto value = parseNumber(text);
@@ -53,11 +53,11 @@ bool readOwnKey(MotorParse& in, const FamilyKey& key) {
   return !given || ownRange(in, key, *given);
 }
 
-void refuseForeignKey(MotorParse& in, const FamilyKey& key, const MotorFamily& other,
+void refuseForeignKey(MotorParse& in, const OwnKey& key, const MotorFamily& other,
                       std::set<std::string_view>& refused) {
   const auto own = in.draft.config.family->keys();
   const bool known =
-      std::any_of(own.begin(), own.end(), [&](const FamilyKey& mine) { return mine.name == key.name; });
+      std::any_of(own.begin(), own.end(), [&](const OwnKey& mine) { return mine.name == key.name; });
   const auto given = known ? std::nullopt : in.settings.find(key.name);
   if (!given || !refused.insert(key.name).second) return;
   in.problems.error(given->place(), given->path,
@@ -70,9 +70,9 @@ void refuseForeignKey(MotorParse& in, const FamilyKey& key, const MotorFamily& o
 bool readOwnKeys(MotorParse& in) {
   bool complete = true;
   std::set<std::string_view> refused;
-  for (const FamilyKey& key : in.draft.config.family->keys()) complete &= readOwnKey(in, key);
+  for (const OwnKey& key : in.draft.config.family->keys()) complete &= readOwnKey(in, key);
   for (const auto& other : motorFamilies()) {
-    for (const FamilyKey& key : other.family->keys()) refuseForeignKey(in, key, *other.family, refused);
+    for (const OwnKey& key : other.family->keys()) refuseForeignKey(in, key, *other.family, refused);
   }
   return complete;
 }

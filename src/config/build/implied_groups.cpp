@@ -6,11 +6,11 @@
 namespace rc10 {
 namespace {
 
-void collectMotors(const OwnValues& own, std::span<const FamilyKey> keys, std::vector<std::size_t>& motors) {
-  for (const FamilyKey& key : keys) {
-    const bool nested = key.kind == FamilyKey::Kind::kSection || key.kind == FamilyKey::Kind::kRows;
+void collectMotors(const OwnValues& own, std::span<const OwnKey> keys, std::vector<std::size_t>& motors) {
+  for (const OwnKey& key : keys) {
+    const bool nested = key.kind == OwnKey::Kind::kSection || key.kind == OwnKey::Kind::kRows;
     if (!own.given(key.name)) continue;
-    if (key.kind == FamilyKey::Kind::kMotor) motors.push_back(own.motor(key.name));
+    if (key.kind == OwnKey::Kind::kMotor) motors.push_back(own.motor(key.name));
     if (!nested) continue;
     for (const OwnValues& row : own.rows(key.name)) collectMotors(row, key.keys, motors);
   }

@@ -45,11 +45,11 @@ class ModuleBuilder {
         inQuotes(name.text()) + " is a channel of the robot itself; give the module another name");
   }
 
-  OwnValues read(const Settings& given, std::span<const FamilyKey> keys) {
+  OwnValues read(const Settings& given, std::span<const OwnKey> keys) {
     OwnValues values;
-    for (const FamilyKey& key : keys) {
+    for (const OwnKey& key : keys) {
       const auto written = given.find(key.name);
-      const bool nested = key.kind == FamilyKey::Kind::kSection || key.kind == FamilyKey::Kind::kRows;
+      const bool nested = key.kind == OwnKey::Kind::kSection || key.kind == OwnKey::Kind::kRows;
       if (nested) {
         if (written) values.set(key.name, readNested(*written, key));
       } else if (written) {
@@ -61,9 +61,8 @@ class ModuleBuilder {
     return values;
   }
 
-  std::vector<OwnValues> readNested(const GivenValue& written, const FamilyKey& key) {
-    if (key.kind == FamilyKey::Kind::kSection)
-      return {read(Settings{{{written.node, written.path}}}, key.keys)};
+  std::vector<OwnValues> readNested(const GivenValue& written, const OwnKey& key) {
+    if (key.kind == OwnKey::Kind::kSection) return {read(Settings{{{written.node, written.path}}}, key.keys)};
     std::vector<OwnValues> rows;
     for (std::size_t i = 0; i < written.node->items.size(); ++i) {
       const YamlNode& item = written.node->items[i];
@@ -72,12 +71,12 @@ class ModuleBuilder {
     return rows;
   }
 
-  void setValue(OwnValues& values, const FamilyKey& key, const std::string& text, const GivenValue* written) {
+  void setValue(OwnValues& values, const OwnKey& key, const std::string& text, const GivenValue* written) {
     switch (key.kind) {
-      case FamilyKey::Kind::kFlag: return values.set(key.name, text == "true" ? 1.0 : 0.0);
-      case FamilyKey::Kind::kChoice:
-      case FamilyKey::Kind::kText: return values.set(key.name, text);
-      case FamilyKey::Kind::kMotor:
+      case OwnKey::Kind::kFlag: return values.set(key.name, text == "true" ? 1.0 : 0.0);
+      case OwnKey::Kind::kChoice:
+      case OwnKey::Kind::kText: return values.set(key.name, text);
+      case OwnKey::Kind::kMotor:
         if (written == nullptr) return;
         if (const auto motor = motor_names_.find(*written, problems_))
           values.set(key.name, static_cast<double>(*motor));

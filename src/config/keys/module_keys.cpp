@@ -41,7 +41,7 @@ class TypeTables {
       if (key.name == "type") key.words = {&type_name_, 1};
       own.keys.push_back(key);
     }
-    for (const FamilyKey& key : type.keys()) own.keys.push_back(convert(key, own.name));
+    for (const OwnKey& key : type.keys()) own.keys.push_back(convert(key, own.name));
     own.section = Section{own.name, own.keys, type.about()};
   }
   TypeTables(const TypeTables&) = delete;
@@ -58,7 +58,7 @@ class TypeTables {
     Section section;
   };
 
-  [[nodiscard]] Key convert(const FamilyKey& key, const std::string& where) {
+  [[nodiscard]] Key convert(const OwnKey& key, const std::string& where) {
     Key made{.name = key.name,
              .unit = key.unit,
              .range = {.min = key.min, .max = key.max, .above_min = key.above_min},
@@ -67,32 +67,32 @@ class TypeTables {
              .default_text = key.default_text,
              .about = key.about};
     switch (key.kind) {
-      case FamilyKey::Kind::kNumber: made.kind = kNumber; break;
-      case FamilyKey::Kind::kInteger: made.kind = kInteger; break;
-      case FamilyKey::Kind::kFlag: made.kind = kBoolean; break;
-      case FamilyKey::Kind::kChoice: break;
-      case FamilyKey::Kind::kMotor: made.form = &kMotorName; break;
-      case FamilyKey::Kind::kText: made.form = &formOf(key); break;
-      case FamilyKey::Kind::kSection:
-      case FamilyKey::Kind::kRows:
-        made.kind = key.kind == FamilyKey::Kind::kRows ? kSectionList : kSection;
+      case OwnKey::Kind::kNumber: made.kind = kNumber; break;
+      case OwnKey::Kind::kInteger: made.kind = kInteger; break;
+      case OwnKey::Kind::kFlag: made.kind = kBoolean; break;
+      case OwnKey::Kind::kChoice: break;
+      case OwnKey::Kind::kMotor: made.form = &kMotorName; break;
+      case OwnKey::Kind::kText: made.form = &formOf(key); break;
+      case OwnKey::Kind::kSection:
+      case OwnKey::Kind::kRows:
+        made.kind = key.kind == OwnKey::Kind::kRows ? kSectionList : kSection;
         made.section = &nested(key, where);
         break;
     }
     return made;
   }
 
-  [[nodiscard]] const TextForm& formOf(const FamilyKey& key) {
+  [[nodiscard]] const TextForm& formOf(const OwnKey& key) {
     if (key.pattern.empty()) return kAnyText;
     if (!key.words.empty()) return forms_.emplace_back(TextForm{key.pattern, key.words});
     return forms_.emplace_back(
         TextForm{key.pattern, words_.emplace_back("a text of the form " + std::string{key.pattern})});
   }
 
-  [[nodiscard]] const Section& nested(const FamilyKey& key, const std::string& where) {
+  [[nodiscard]] const Section& nested(const OwnKey& key, const std::string& where) {
     Tables& inner = tables_.emplace_back();
     inner.name = where + "_" + std::string{key.name};
-    for (const FamilyKey& own : key.keys) inner.keys.push_back(convert(own, inner.name));
+    for (const OwnKey& own : key.keys) inner.keys.push_back(convert(own, inner.name));
     inner.section = Section{inner.name, inner.keys, key.about};
     return inner.section;
   }

@@ -31,7 +31,7 @@ constexpr Range kSlew{.min = 0, .max = 1'000'000, .above_min = true};
 constexpr Range kSoftLimit{.min = -1'000'000, .max = 1'000'000};
 
 /// The first three belong to one motor; the rest may also stand in a profile.
-constexpr std::size_t kOwnKeys = 3;
+constexpr std::size_t kKeysOfOneMotor = 3;
 
 constexpr std::array kMotorKeys{
     Key{.name = "name",
@@ -337,26 +337,26 @@ constexpr std::array kMotorKeys{
         .about = "What hangs on the shaft when the motor is simulated (a bus of type sim, or rc10-sim), and "
                  "what is wrong with it."}};
 
-[[nodiscard]] ValueKind valueKindOf(FamilyKey::Kind kind) {
+[[nodiscard]] ValueKind valueKindOf(OwnKey::Kind kind) {
   switch (kind) {
-    case FamilyKey::Kind::kNumber: return kNumber;
-    case FamilyKey::Kind::kInteger: return kInteger;
-    case FamilyKey::Kind::kFlag: return kBoolean;
+    case OwnKey::Kind::kNumber: return kNumber;
+    case OwnKey::Kind::kInteger: return kInteger;
+    case OwnKey::Kind::kFlag: return kBoolean;
     default: break;  // the others are those of modules
   }
   return kText;
 }
 
 /// A key that one or more families have: what the loader accepts of it before it knows the model.
-struct OwnKey {
-  FamilyKey key;
+struct JoinedKey {
+  OwnKey key;
   std::vector<std::string_view> choices;
   std::string about;
 
-  OwnKey(const FamilyKey& first, std::string_view family)
+  JoinedKey(const OwnKey& first, std::string_view family)
       : key(first), choices(first.choices.begin(), first.choices.end()), about(aboutOf(first, family)) {}
 
-  void join(const FamilyKey& other, std::string_view family) {
+  void join(const OwnKey& other, std::string_view family) {
     key.min = std::min(key.min, other.min);
     key.max = std::max(key.max, other.max);
     key.above_min = key.above_min && other.above_min;
@@ -376,7 +376,7 @@ struct OwnKey {
   }
 
  private:
-  [[nodiscard]] static std::string aboutOf(const FamilyKey& key, std::string_view family) {
+  [[nodiscard]] static std::string aboutOf(const OwnKey& key, std::string_view family) {
     std::string text = std::string{family} + ": " + std::string{key.about};
     if (!text.ends_with('.')) text += '.';
     return text;
@@ -388,16 +388,16 @@ class MotorKeys {
  public:
   MotorKeys() : keys_(kMotorKeys.begin(), kMotorKeys.end()) {
     for (const auto& entry : motorFamilies()) {
-      for (const FamilyKey& key : entry.family->keys()) add(key, entry.family->name());
+      for (const OwnKey& key : entry.family->keys()) add(key, entry.family->name());
     }
-    for (const OwnKey& own : own_) keys_.push_back(own.made());
+    for (const JoinedKey& own : own_) keys_.push_back(own.made());
   }
   [[nodiscard]] std::span<const Key> all() const noexcept { return keys_; }
 
  private:
-  void add(const FamilyKey& key, std::string_view family) {
-    const auto found =
-        std::find_if(own_.begin(), own_.end(), [&](const OwnKey& own) { return own.key.name == key.name; });
+  void add(const OwnKey& key, std::string_view family) {
+    const auto found = std::find_if(own_.begin(), own_.end(),
+                                    [&](const JoinedKey& own) { return own.key.name == key.name; });
     if (found != own_.end()) {
       found->join(key, family);
     } else {
@@ -405,7 +405,7 @@ class MotorKeys {
     }
   }
 
-  std::vector<OwnKey> own_;
+  std::vector<JoinedKey> own_;
   std::vector<Key> keys_;
 };
 
@@ -417,11 +417,11 @@ bool motor_keys_made = false;
   return kKeys.all();
 }
 
-[[nodiscard]] std::span<const Key> profileKeys() { return motorKeys().subspan(kOwnKeys); }
+[[nodiscard]] std::span<const Key> profileKeys() { return motorKeys().subspan(kKeysOfOneMotor); }
 
 }  // namespace
 
-Key motorKeyOf(const FamilyKey& key) {
+Key motorKeyOf(const OwnKey& key) {
   return {.name = key.name,
           .kind = valueKindOf(key.kind),
           .unit = key.unit,

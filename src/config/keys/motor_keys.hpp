@@ -3,12 +3,12 @@
 #include <string_view>
 
 #include "config/keys/key_table.hpp"
-#include "motor/family_key.hpp"
+#include "motor/own_key.hpp"
 
 namespace rc10 {
 
 /// A key of one family, as the tables have it. Whether it is required, the family asks by itself.
-[[nodiscard]] Key motorKeyOf(const FamilyKey& key);
+[[nodiscard]] Key motorKeyOf(const OwnKey& key);
 
 /// Whether every motor has this key, whatever its family.
 [[nodiscard]] bool isCommonMotorKey(std::string_view name);

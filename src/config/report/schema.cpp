@@ -191,7 +191,7 @@ class SchemaWriter {
 
   void writeModel(const MotorFamily& family, std::string_view model) {
     OwnValues own;
-    for (const FamilyKey& key : family.keys()) own.set(key.name, std::string{key.default_text});
+    for (const OwnKey& key : family.keys()) own.set(key.name, std::string{key.default_text});
     const MotorTraits traits = family.traits(model, own);
     json_.object();
     writeIf("model", model);
@@ -220,12 +220,12 @@ class SchemaWriter {
     json_.endObject();
     json_.key("then").object().key("properties").object();
     std::set<std::string_view> written;
-    for (const FamilyKey& key : family.keys()) {
+    for (const OwnKey& key : family.keys()) {
       writeKey(motorKeyOf(key));
       written.insert(key.name);
     }
     for (const auto& other : motorFamilies()) {
-      for (const FamilyKey& key : other.family->keys()) {
+      for (const OwnKey& key : other.family->keys()) {
         if (written.insert(key.name).second) json_.key(key.name).boolean(false);
       }
     }
@@ -247,7 +247,7 @@ class SchemaWriter {
 
   void writeRequiredOwn(const MotorFamily& family) {
     std::vector<std::string_view> names;
-    for (const FamilyKey& key : family.keys()) {
+    for (const OwnKey& key : family.keys()) {
       if (key.required) names.push_back(key.name);
     }
     if (!names.empty()) writeRequired(names);

@@ -15,69 +15,65 @@ using damiao::kKpMax;
 constexpr double kLongestWatchdogMs = 10'000.0;
 
 constexpr std::array kDamiaoKeys{
-    FamilyKey{
+    OwnKey{
         .name = "master_id",
-        .kind = FamilyKey::Kind::kInteger,
+        .kind = OwnKey::Kind::kInteger,
         .min = 0,
         .max = 2047,
         .required = true,
         .about = "The id on which the drive answers, as set on it (Master ID); by custom its own id + 16."},
-    FamilyKey{
-        .name = "control",
-        .kind = FamilyKey::Kind::kChoice,
-        .choices = kDamiaoControlNames,
-        .default_text = "mit",
-        .about = "The drive's control mode, set when it is enabled. Decides which modes the motor has."},
-    FamilyKey{.name = "watchdog_ms",
-              .kind = FamilyKey::Kind::kInteger,
-              .unit = "ms",
-              .min = 5,
-              .max = kLongestWatchdogMs,
-              .default_text = "100",
-              .about = "The drive's own watchdog: it lets go by itself after so long without a command. At "
-                       "least three commands long; set when it is enabled."},
-    FamilyKey{
-        .name = "p_max_rad",
-        .unit = "rad",
-        .max = 1000,
-        .above_min = true,
-        .about = "PMAX as set on the drive, if otherwise than the model's own. Default: the model's own."},
-    FamilyKey{
-        .name = "v_max_rad_s",
-        .unit = "rad/s",
-        .max = 1000,
-        .above_min = true,
-        .about = "VMAX as set on the drive, if otherwise than the model's own. Default: the model's own."},
-    FamilyKey{
-        .name = "t_max_nm",
-        .unit = "Nm",
-        .max = 1000,
-        .above_min = true,
-        .about = "TMAX as set on the drive, if otherwise than the model's own. Default: the model's own."},
-    FamilyKey{.name = "velocity_damping_nms_per_rad",
-              .unit = "Nms/rad",
-              .max = 100'000,
-              .above_min = true,
-              .about = "Control mit: torque per difference of speed in modes velocity and brake. DM4310: 1. "
-                       "Default: the model's own."},
-    FamilyKey{.name = "angle_stiffness_nm_per_rad",
-              .unit = "Nm/rad",
-              .max = 10'000'000,
-              .above_min = true,
-              .about = "Control mit: torque per difference of angle in modes angle, total_angle and the "
-                       "fallback hold. DM4310: 20. Default: the model's own."},
-    FamilyKey{
+    OwnKey{.name = "control",
+           .kind = OwnKey::Kind::kChoice,
+           .choices = kDamiaoControlNames,
+           .default_text = "mit",
+           .about = "The drive's control mode, set when it is enabled. Decides which modes the motor has."},
+    OwnKey{.name = "watchdog_ms",
+           .kind = OwnKey::Kind::kInteger,
+           .unit = "ms",
+           .min = 5,
+           .max = kLongestWatchdogMs,
+           .default_text = "100",
+           .about = "The drive's own watchdog: it lets go by itself after so long without a command. At "
+                    "least three commands long; set when it is enabled."},
+    OwnKey{.name = "p_max_rad",
+           .unit = "rad",
+           .max = 1000,
+           .above_min = true,
+           .about = "PMAX as set on the drive, if otherwise than the model's own. Default: the model's own."},
+    OwnKey{.name = "v_max_rad_s",
+           .unit = "rad/s",
+           .max = 1000,
+           .above_min = true,
+           .about = "VMAX as set on the drive, if otherwise than the model's own. Default: the model's own."},
+    OwnKey{.name = "t_max_nm",
+           .unit = "Nm",
+           .max = 1000,
+           .above_min = true,
+           .about = "TMAX as set on the drive, if otherwise than the model's own. Default: the model's own."},
+    OwnKey{.name = "velocity_damping_nms_per_rad",
+           .unit = "Nms/rad",
+           .max = 100'000,
+           .above_min = true,
+           .about = "Control mit: torque per difference of speed in modes velocity and brake. DM4310: 1. "
+                    "Default: the model's own."},
+    OwnKey{.name = "angle_stiffness_nm_per_rad",
+           .unit = "Nm/rad",
+           .max = 10'000'000,
+           .above_min = true,
+           .about = "Control mit: torque per difference of angle in modes angle, total_angle and the "
+                    "fallback hold. DM4310: 20. Default: the model's own."},
+    OwnKey{
         .name = "angle_damping_nms_per_rad",
         .unit = "Nms/rad",
         .max = 100'000,
         .above_min = true,
         .about =
             "Control mit: torque against the speed in the same modes. DM4310: 1. Default: the model's own."},
-    FamilyKey{.name = "can_fd",
-              .kind = FamilyKey::Kind::kFlag,
-              .default_text = "false",
-              .about = "CAN FD frames with bit rate switch: the drive's baud rate is above 1 Mbit/s, and it "
-                       "answers in such frames only."},
+    OwnKey{.name = "can_fd",
+           .kind = OwnKey::Kind::kFlag,
+           .default_text = "false",
+           .about = "CAN FD frames with bit rate switch: the drive's baud rate is above 1 Mbit/s, and it "
+                    "answers in such frames only."},
 };
 
 constexpr DriveFrames driveFrames(DamiaoControl control) {
@@ -113,7 +109,7 @@ class DamiaoFamily final : public MotorFamily {
   [[nodiscard]] std::span<const std::string_view> models() const noexcept override {
     return damiaoModelNames();
   }
-  [[nodiscard]] std::span<const FamilyKey> keys() const noexcept override { return kDamiaoKeys; }
+  [[nodiscard]] std::span<const OwnKey> keys() const noexcept override { return kDamiaoKeys; }
   [[nodiscard]] MotorTraits traits(std::string_view name, const OwnValues& own) const override;
   [[nodiscard]] Result<void> check(const MotorSettings& settings) const override;
   [[nodiscard]] BusUse busUse(const MotorSettings& settings) const override;

@@ -12,12 +12,12 @@ namespace {
 
 constexpr std::array<std::string_view, 2> kCommands{"current", "voltage"};
 constexpr std::array kDjiKeys{
-    FamilyKey{.name = "command",
-              .kind = FamilyKey::Kind::kChoice,
-              .choices = kCommands,
-              .default_text = "current",
-              .about = "What the drive is told. voltage: GM6020 only. GM6020 current: newer firmware, with "
-                       "'current ring' enabled in RoboMaster Assistant."}};
+    OwnKey{.name = "command",
+           .kind = OwnKey::Kind::kChoice,
+           .choices = kCommands,
+           .default_text = "current",
+           .about = "What the drive is told. voltage: GM6020 only. GM6020 current: newer firmware, with "
+                    "'current ring' enabled in RoboMaster Assistant."}};
 
 // Every DJI frame, either direction.
 constexpr FrameShape kShape{.extended = false, .fd = false, .bit_rate_switch = false, .length = 8};
@@ -34,7 +34,7 @@ class DjiFamily final : public MotorFamily {
     static const std::array<std::string_view, 3> kNames{kM3508.name, kM2006.name, kGM6020.name};
     return kNames;
   }
-  [[nodiscard]] std::span<const FamilyKey> keys() const noexcept override { return kDjiKeys; }
+  [[nodiscard]] std::span<const OwnKey> keys() const noexcept override { return kDjiKeys; }
 
   [[nodiscard]] MotorTraits traits(std::string_view name, const OwnValues& own) const override {
     const DjiModel& model = *findDjiModel(name);

@@ -10,14 +10,14 @@
 namespace rc10 {
 namespace {
 
-constexpr std::array<FamilyKey, 3> kLktechKeys{{
+constexpr std::array<OwnKey, 3> kLktechKeys{{
     {.name = "group",
-     .kind = FamilyKey::Kind::kFlag,
+     .kind = OwnKey::Kind::kFlag,
      .default_text = "false",
      .about = "Currents of the ids 1 to 4 go together in the frame 0x280; current and coast targets only, no "
               "brake and no hold."},
     {.name = "torque_nm_per_a",
-     .kind = FamilyKey::Kind::kNumber,
+     .kind = OwnKey::Kind::kNumber,
      .unit = "Nm/A",
      .min = 0,
      .max = 100,
@@ -25,7 +25,7 @@ constexpr std::array<FamilyKey, 3> kLktechKeys{{
      .about = "Torque at the drive's output for each ampere; 0.81 for MF9025 with the winding 35T. 0: the "
               "model's own."},
     {.name = "encoder_bits",
-     .kind = FamilyKey::Kind::kInteger,
+     .kind = OwnKey::Kind::kInteger,
      .min = 14,
      .max = 16,
      .default_text = "16",
@@ -47,7 +47,7 @@ class LktechFamily final : public MotorFamily {
   [[nodiscard]] std::span<const std::string_view> models() const noexcept override {
     return lktechModelNames();
   }
-  [[nodiscard]] std::span<const FamilyKey> keys() const noexcept override { return kLktechKeys; }
+  [[nodiscard]] std::span<const OwnKey> keys() const noexcept override { return kLktechKeys; }
 
   [[nodiscard]] MotorTraits traits(std::string_view name, const OwnValues& own) const override {
     const LktechModel* const found = findLktechModel(name);

@@ -14,54 +14,54 @@
 namespace rc10 {
 namespace {
 
-using Kind = FamilyKey::Kind;
+using Kind = OwnKey::Kind;
 
 constexpr std::array<std::string_view, 1> kMoteusModels{"moteus"};
 
 constexpr std::array kMoteusKeys{
-    FamilyKey{.name = "motor_kv_rpm_per_v",
-              .kind = Kind::kNumber,
-              .unit = "rpm/V",
-              .min = 0.0,
-              .max = 10'000.0,
-              .above_min = true,
-              .required = true,
-              .about = "motor.Kv of the drive, as its calibration has found it. Amperes become torque with "
-                       "8.27 / Kv Nm/A, as in the drive."},
-    FamilyKey{.name = "rotor_to_output_ratio",
-              .kind = Kind::kNumber,
-              .min = 0.0,
-              .max = 10.0,
-              .above_min = true,
-              .default_text = "1",
-              .about = "motor_position.rotor_to_output_ratio of the drive: 0.1 for a 10:1 gear that it "
-                       "counts in its position. A gear that the drive knows nothing of goes into gear_ratio, "
-                       "which is always that of all gears."},
-    FamilyKey{
-        .name = "absolute",
-        .kind = Kind::kFlag,
-        .default_text = "false",
-        .about = "The drive knows its output angle at power-up: a direct drive, or an encoder on the output. "
-                 "Enabling checks its home state: 2 (output), or 1 (rotor) for a direct drive."},
-    FamilyKey{.name = "watchdog_ms",
-              .kind = Kind::kInteger,
-              .unit = "ms",
-              .min = 10,
-              .max = 1000,
-              .default_text = "100",
-              .about = "The drive's own watchdog: without a command for so long it stops by itself. At least "
-                       "three commands long."},
-    FamilyKey{.name = "can_prefix",
-              .kind = Kind::kInteger,
-              .min = 0,
-              .max = 0x1FFF,
-              .default_text = "0",
-              .about = "can.prefix of the drive: keeps its ids apart from those of other families."},
-    FamilyKey{.name = "bit_rate_switch",
-              .kind = Kind::kFlag,
-              .default_text = "true",
-              .about = "Send the data at the data bit rate. false: all at the nominal one, for a cable or "
-                       "transceiver that is too slow for it."}};
+    OwnKey{.name = "motor_kv_rpm_per_v",
+           .kind = Kind::kNumber,
+           .unit = "rpm/V",
+           .min = 0.0,
+           .max = 10'000.0,
+           .above_min = true,
+           .required = true,
+           .about = "motor.Kv of the drive, as its calibration has found it. Amperes become torque with "
+                    "8.27 / Kv Nm/A, as in the drive."},
+    OwnKey{.name = "rotor_to_output_ratio",
+           .kind = Kind::kNumber,
+           .min = 0.0,
+           .max = 10.0,
+           .above_min = true,
+           .default_text = "1",
+           .about = "motor_position.rotor_to_output_ratio of the drive: 0.1 for a 10:1 gear that it "
+                    "counts in its position. A gear that the drive knows nothing of goes into gear_ratio, "
+                    "which is always that of all gears."},
+    OwnKey{.name = "absolute",
+           .kind = Kind::kFlag,
+           .default_text = "false",
+           .about =
+               "The drive knows its output angle at power-up: a direct drive, or an encoder on the output. "
+               "Enabling checks its home state: 2 (output), or 1 (rotor) for a direct drive."},
+    OwnKey{.name = "watchdog_ms",
+           .kind = Kind::kInteger,
+           .unit = "ms",
+           .min = 10,
+           .max = 1000,
+           .default_text = "100",
+           .about = "The drive's own watchdog: without a command for so long it stops by itself. At least "
+                    "three commands long."},
+    OwnKey{.name = "can_prefix",
+           .kind = Kind::kInteger,
+           .min = 0,
+           .max = 0x1FFF,
+           .default_text = "0",
+           .about = "can.prefix of the drive: keeps its ids apart from those of other families."},
+    OwnKey{.name = "bit_rate_switch",
+           .kind = Kind::kFlag,
+           .default_text = "true",
+           .about = "Send the data at the data bit rate. false: all at the nominal one, for a cable or "
+                    "transceiver that is too slow for it."}};
 
 // The factory's servo.max_current_A: 100 A (r4.5, r4.8, r4.11, n1), 20 A (c1), 120 A (x1), the drive's own
 // bound in any case. Source: fw/bldc_servo_structs.h.
@@ -87,7 +87,7 @@ class MoteusFamily final : public MotorFamily {
  public:
   [[nodiscard]] std::string_view name() const noexcept override { return "moteus"; }
   [[nodiscard]] std::span<const std::string_view> models() const noexcept override { return kMoteusModels; }
-  [[nodiscard]] std::span<const FamilyKey> keys() const noexcept override { return kMoteusKeys; }
+  [[nodiscard]] std::span<const OwnKey> keys() const noexcept override { return kMoteusKeys; }
 
   [[nodiscard]] MotorTraits traits(std::string_view /*model*/, const OwnValues& own) const override {
     const double gear_ratio = 1.0 / moteusSettings(own).rotor_to_output_ratio;

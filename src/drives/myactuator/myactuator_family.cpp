@@ -8,16 +8,16 @@
 namespace rc10 {
 namespace {
 
-constexpr std::array<FamilyKey, 4> kMyactuatorKeys{{
+constexpr std::array<OwnKey, 4> kMyactuatorKeys{{
     {.name = "angle_divider",
-     .kind = FamilyKey::Kind::kInteger,
+     .kind = OwnKey::Kind::kInteger,
      .min = 1,
      .max = 100,
      .default_text = "1",
      .about = "The angle (0x92) is asked for with every n-th command: it is a request of its own. The "
               "feedback rate is that of the angles."},
     {.name = "torque_nm_per_a",
-     .kind = FamilyKey::Kind::kNumber,
+     .kind = OwnKey::Kind::kNumber,
      .unit = "Nm/A",
      .min = 0,
      .max = 100,
@@ -25,11 +25,11 @@ constexpr std::array<FamilyKey, 4> kMyactuatorKeys{{
      .about = "Torque at the drive's output for each ampere. RMD-X without it: no impedance, no damp, no "
               "torque reading. 0: the model's own."},
     {.name = "absolute_encoder",
-     .kind = FamilyKey::Kind::kFlag,
+     .kind = OwnKey::Kind::kFlag,
      .default_text = "false",
      .about = "The drive has a second encoder and knows the angle of its output after power-up."},
     {.name = "release_brake",
-     .kind = FamilyKey::Kind::kFlag,
+     .kind = OwnKey::Kind::kFlag,
      .default_text = "false",
      .about =
          "Enabling opens the drive's holding brake (0x77). The drive opens it by itself for velocity and "
@@ -55,7 +55,7 @@ class MyactuatorFamily final : public MotorFamily {
   [[nodiscard]] std::span<const std::string_view> models() const noexcept override {
     return myactuatorModelNames();
   }
-  [[nodiscard]] std::span<const FamilyKey> keys() const noexcept override { return kMyactuatorKeys; }
+  [[nodiscard]] std::span<const OwnKey> keys() const noexcept override { return kMyactuatorKeys; }
 
   [[nodiscard]] MotorTraits traits(std::string_view name, const OwnValues& own) const override {
     const MyactuatorModel* const found = findMyactuatorModel(name);

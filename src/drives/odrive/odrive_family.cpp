@@ -10,7 +10,7 @@
 namespace rc10 {
 namespace {
 
-using Kind = FamilyKey::Kind;
+using Kind = OwnKey::Kind;
 
 constexpr double kHeartbeatHz = 10.0;
 constexpr double kLimitsHz = 2.0;
@@ -19,28 +19,28 @@ constexpr int kHighestNode = 62;
 constexpr CanId kAddressBroadcast{0x7E6, false};
 
 constexpr std::array kOdriveKeys{
-    FamilyKey{.name = "torque_constant_nm_per_a",
-              .kind = Kind::kNumber,
-              .unit = "Nm/A",
-              .min = 0.0,
-              .max = 100.0,
-              .above_min = true,
-              .required = true,
-              .about = "Torque per ampere of the motor itself, the same as motor.config.torque_constant on "
-                       "the drive (8.27 divided by its KV). Targets in A are sent as torque."},
-    FamilyKey{.name = "telemetry_hz",
-              .kind = Kind::kInteger,
-              .unit = "Hz",
-              .min = 0.0,
-              .max = 100.0,
-              .default_text = "0",
-              .about = "How often the drive sends current or torque, temperature and bus voltage, as set on "
-                       "it. 0: these are not reported."},
-    FamilyKey{.name = "iq_reversed",
-              .kind = Kind::kFlag,
-              .default_text = "false",
-              .about = "ODrive v3 only: the calibration found encoder.config.direction = -1, so its current "
-                       "counts the other way."},
+    OwnKey{.name = "torque_constant_nm_per_a",
+           .kind = Kind::kNumber,
+           .unit = "Nm/A",
+           .min = 0.0,
+           .max = 100.0,
+           .above_min = true,
+           .required = true,
+           .about = "Torque per ampere of the motor itself, the same as motor.config.torque_constant on "
+                    "the drive (8.27 divided by its KV). Targets in A are sent as torque."},
+    OwnKey{.name = "telemetry_hz",
+           .kind = Kind::kInteger,
+           .unit = "Hz",
+           .min = 0.0,
+           .max = 100.0,
+           .default_text = "0",
+           .about = "How often the drive sends current or torque, temperature and bus voltage, as set on "
+                    "it. 0: these are not reported."},
+    OwnKey{.name = "iq_reversed",
+           .kind = Kind::kFlag,
+           .default_text = "false",
+           .about = "ODrive v3 only: the calibration found encoder.config.direction = -1, so its current "
+                    "counts the other way."},
 };
 
 // Loops run on the drive. Damping has no mode of its own there, nor has an impedance.
@@ -62,7 +62,7 @@ class OdriveFamily : public MotorFamily {
   [[nodiscard]] std::span<const std::string_view> models() const noexcept override {
     return odriveModelNames();
   }
-  [[nodiscard]] std::span<const FamilyKey> keys() const noexcept override { return kOdriveKeys; }
+  [[nodiscard]] std::span<const OwnKey> keys() const noexcept override { return kOdriveKeys; }
 
   [[nodiscard]] MotorTraits traits(std::string_view model, const OwnValues& own) const override {
     const auto* row = findOdriveModel(model);

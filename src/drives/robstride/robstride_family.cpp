@@ -13,60 +13,60 @@ namespace {
 constexpr std::array<std::string_view, 4> kControls{"operation", "current", "velocity", "position"};
 
 constexpr std::array kRobstrideKeys{
-    FamilyKey{.name = "host_id",
-              .kind = FamilyKey::Kind::kInteger,
-              .min = 1,
-              .max = 254,
-              .default_text = "253",
-              .about = "The id to which the drive answers; no drive on the bus may have it."},
-    FamilyKey{.name = "control",
-              .kind = FamilyKey::Kind::kChoice,
-              .choices = kControls,
-              .default_text = "operation",
-              .about = "operation: stiffness, damping and torque in every frame. Or one of the drive's own "
-                       "current, velocity and position loops."},
-    FamilyKey{.name = "position_range_rad",
-              .kind = FamilyKey::Kind::kNumber,
-              .unit = "rad",
-              .min = 0,
-              .max = 13,
-              .default_text = "0",
-              .about =
-                  "End of the drive's position scale. 0: the model's own, 12.57, CyberGear 12.5. Write 12.5 "
-                  "for RS firmware before 0.0.2.6 (RS02: up to 0.2.2.11): else angles are 0.5 % too large."},
-    FamilyKey{
+    OwnKey{.name = "host_id",
+           .kind = OwnKey::Kind::kInteger,
+           .min = 1,
+           .max = 254,
+           .default_text = "253",
+           .about = "The id to which the drive answers; no drive on the bus may have it."},
+    OwnKey{.name = "control",
+           .kind = OwnKey::Kind::kChoice,
+           .choices = kControls,
+           .default_text = "operation",
+           .about = "operation: stiffness, damping and torque in every frame. Or one of the drive's own "
+                    "current, velocity and position loops."},
+    OwnKey{.name = "position_range_rad",
+           .kind = OwnKey::Kind::kNumber,
+           .unit = "rad",
+           .min = 0,
+           .max = 13,
+           .default_text = "0",
+           .about =
+               "End of the drive's position scale. 0: the model's own, 12.57, CyberGear 12.5. Write 12.5 "
+               "for RS firmware before 0.0.2.6 (RS02: up to 0.2.2.11): else angles are 0.5 % too large."},
+    OwnKey{
         .name = "angle_stiffness_nm_per_rad",
-        .kind = FamilyKey::Kind::kNumber,
+        .kind = OwnKey::Kind::kNumber,
         .unit = "Nm/rad",
         .min = 0,
         .max = 1e6,
         .default_text = "0",
         .about =
             "Torque per angle error of angle targets, control operation. 0: full torque at half a radian."},
-    FamilyKey{.name = "angle_damping_nms_per_rad",
-              .kind = FamilyKey::Kind::kNumber,
-              .unit = "Nms/rad",
-              .min = 0,
-              .max = 1e5,
-              .default_text = "0",
-              .about = "Torque per speed error of angle targets, control operation. 0: 0.035 s times the "
-                       "default stiffness."},
-    FamilyKey{.name = "velocity_gain_nms_per_rad",
-              .kind = FamilyKey::Kind::kNumber,
-              .unit = "Nms/rad",
-              .min = 0,
-              .max = 1e5,
-              .default_text = "0",
-              .about = "Torque per speed error of velocity targets and brake, control operation; damp has a "
-                       "fifth of it. 0: full torque at 5 rad/s, or the scale's end."},
-    FamilyKey{.name = "watchdog_ms",
-              .kind = FamilyKey::Kind::kInteger,
-              .unit = "ms",
-              .min = 0,
-              .max = 5000,
-              .default_text = "200",
-              .about = "The drive's own watchdog: it goes without torque after so long without a frame; set "
-                       "and read back when it is enabled. 0: leave the drive's setting alone."},
+    OwnKey{.name = "angle_damping_nms_per_rad",
+           .kind = OwnKey::Kind::kNumber,
+           .unit = "Nms/rad",
+           .min = 0,
+           .max = 1e5,
+           .default_text = "0",
+           .about = "Torque per speed error of angle targets, control operation. 0: 0.035 s times the "
+                    "default stiffness."},
+    OwnKey{.name = "velocity_gain_nms_per_rad",
+           .kind = OwnKey::Kind::kNumber,
+           .unit = "Nms/rad",
+           .min = 0,
+           .max = 1e5,
+           .default_text = "0",
+           .about = "Torque per speed error of velocity targets and brake, control operation; damp has a "
+                    "fifth of it. 0: full torque at 5 rad/s, or the scale's end."},
+    OwnKey{.name = "watchdog_ms",
+           .kind = OwnKey::Kind::kInteger,
+           .unit = "ms",
+           .min = 0,
+           .max = 5000,
+           .default_text = "200",
+           .about = "The drive's own watchdog: it goes without torque after so long without a frame; set "
+                    "and read back when it is enabled. 0: leave the drive's setting alone."},
 };
 
 constexpr double kShortestPositionRangeRad = 12.0;
@@ -106,7 +106,7 @@ class RobstrideFamily final : public MotorFamily {
   [[nodiscard]] std::span<const std::string_view> models() const noexcept override {
     return robstrideModelNames();
   }
-  [[nodiscard]] std::span<const FamilyKey> keys() const noexcept override { return kRobstrideKeys; }
+  [[nodiscard]] std::span<const OwnKey> keys() const noexcept override { return kRobstrideKeys; }
 
   [[nodiscard]] MotorTraits traits(std::string_view name, const OwnValues& own) const override {
     const auto& model = *findRobstrideModel(name);

@@ -15,7 +15,7 @@
 namespace rc10 {
 namespace {
 
-using Kind = FamilyKey::Kind;
+using Kind = OwnKey::Kind;
 
 constexpr std::array<std::string_view, 1> kVescModels{"VESC"};
 constexpr int kAsksPerSecond = 10;
@@ -26,35 +26,35 @@ constexpr std::array<std::string_view, 3> kAngles{"tachometer", "encoder", "none
 constexpr std::array<std::string_view, 3> kStops{"regulate", "coast", "brake"};
 constexpr std::array<std::string_view, 2> kTemperatures{"drive", "motor"};
 
-constexpr std::array<FamilyKey, 14> kVescKeys{
-    FamilyKey{.name = "pole_pairs",
-              .kind = Kind::kInteger,
-              .min = 1,
-              .max = 100,
-              .required = true,
-              .about = "Of the motor: half its number of magnets"},
-    FamilyKey{.name = "angle",
-              .kind = Kind::kChoice,
-              .choices = kAngles,
-              .default_text = "tachometer",
-              .about = "What the angle comes from: tachometer (STATUS_5, angle loop on the host), encoder "
-                       "(STATUS_4, the drive's own position loop) or none: no angle is reported."},
-    FamilyKey{.name = "position_divider",
-              .kind = Kind::kNumber,
-              .min = 0,
-              .max = 1000,
-              .above_min = true,
-              .default_text = "1",
-              .about = "With angle: encoder: Position Angle Division, as set in VESC Tool"},
-    FamilyKey{.name = "speed_ramp_erpm_per_s",
-              .kind = Kind::kNumber,
-              .unit = "ERPM/s",
-              .min = 0,
-              .max = 10'000'000,
-              .above_min = true,
-              .default_text = "25000",  // MCCONF_S_PID_RAMP_ERPMS_S
-              .about = "With angle: tachometer: the ramp of the drive's speed loop, as set in VESC Tool"},
-    FamilyKey{
+constexpr std::array<OwnKey, 14> kVescKeys{
+    OwnKey{.name = "pole_pairs",
+           .kind = Kind::kInteger,
+           .min = 1,
+           .max = 100,
+           .required = true,
+           .about = "Of the motor: half its number of magnets"},
+    OwnKey{.name = "angle",
+           .kind = Kind::kChoice,
+           .choices = kAngles,
+           .default_text = "tachometer",
+           .about = "What the angle comes from: tachometer (STATUS_5, angle loop on the host), encoder "
+                    "(STATUS_4, the drive's own position loop) or none: no angle is reported."},
+    OwnKey{.name = "position_divider",
+           .kind = Kind::kNumber,
+           .min = 0,
+           .max = 1000,
+           .above_min = true,
+           .default_text = "1",
+           .about = "With angle: encoder: Position Angle Division, as set in VESC Tool"},
+    OwnKey{.name = "speed_ramp_erpm_per_s",
+           .kind = Kind::kNumber,
+           .unit = "ERPM/s",
+           .min = 0,
+           .max = 10'000'000,
+           .above_min = true,
+           .default_text = "25000",  // MCCONF_S_PID_RAMP_ERPMS_S
+           .about = "With angle: tachometer: the ramp of the drive's speed loop, as set in VESC Tool"},
+    OwnKey{
         .name = "velocity_zero",
         .kind = Kind::kChoice,
         .choices = kStops,
@@ -62,68 +62,68 @@ constexpr std::array<FamilyKey, 14> kVescKeys{
         .about =
             "What a velocity of 0 means: regulate (the drive's speed loop, which lets go below its minimum "
             "ERPM), coast or brake"},
-    FamilyKey{.name = "motor_current_max_a",
-              .kind = Kind::kNumber,
-              .unit = "A",
-              .min = 0,
-              .max = 2000,
-              .above_min = true,
-              .default_text = "60",  // MCCONF_L_CURRENT_MAX
-              .about = "Motor Current Max, as set in VESC Tool: full scale of currents, the most that the "
-                       "motor is told."},
-    FamilyKey{
+    OwnKey{.name = "motor_current_max_a",
+           .kind = Kind::kNumber,
+           .unit = "A",
+           .min = 0,
+           .max = 2000,
+           .above_min = true,
+           .default_text = "60",  // MCCONF_L_CURRENT_MAX
+           .about = "Motor Current Max, as set in VESC Tool: full scale of currents, the most that the "
+                    "motor is told."},
+    OwnKey{
         .name = "relative_current",
         .kind = Kind::kFlag,
         .default_text = "false",
         .about = "Send currents as a share of motor_current_max_a; the drive scales them by its own limits."},
-    FamilyKey{.name = "brake_current_a",
-              .kind = Kind::kNumber,
-              .unit = "A",
-              .min = 0,
-              .max = 2000,
-              .default_text = "10",
-              .about = "How hard it brakes, within the current limit"},
-    FamilyKey{.name = "handbrake_current_a",
-              .kind = Kind::kNumber,
-              .unit = "A",
-              .min = 0,
-              .max = 2000,
-              .default_text = "0",
-              .about = "With it a braked motor is held at standstill, by a current that flows all the time. "
-                       "0: no handbrake."},
-    FamilyKey{.name = "kv_rpm_per_v",
-              .kind = Kind::kNumber,
-              .unit = "rpm/V",
-              .min = 0,
-              .max = 20000,
-              .default_text = "0",
-              .about = "KV of the motor, as printed on it: for torques, guards and damp. Torque per ampere "
-                       "is 8.27 / KV (peak phase current, as VESC counts it). 0: unknown."},
-    FamilyKey{.name = "supply_v",
-              .kind = Kind::kNumber,
-              .unit = "V",
-              .min = 0,
-              .max = 200,
-              .above_min = true,
-              .default_text = "24",
-              .about = "Of the battery: with kv_rpm_per_v it gives the no-load speed."},
-    FamilyKey{.name = "temperature",
-              .kind = Kind::kChoice,
-              .choices = kTemperatures,
-              .default_text = "drive",
-              .about = "Which temperature is reported and watched: of the drive (its transistors), or of the "
-                       "motor (only with a sensor)."},
-    FamilyKey{.name = "ask_status",
-              .kind = Kind::kFlag,
-              .default_text = "true",
-              .about = "Ask the drive for its faults and its watchdog, 10 times a second. false: no faults "
-                       "are seen, the watchdog is not looked at, there is no enable sequence."},
-    FamilyKey{.name = "host_id",
-              .kind = Kind::kInteger,
-              .min = 0,
-              .max = 254,
-              .default_text = "253",
-              .about = "The controller id of rc10d itself, for the answers; no drive may have it."},
+    OwnKey{.name = "brake_current_a",
+           .kind = Kind::kNumber,
+           .unit = "A",
+           .min = 0,
+           .max = 2000,
+           .default_text = "10",
+           .about = "How hard it brakes, within the current limit"},
+    OwnKey{.name = "handbrake_current_a",
+           .kind = Kind::kNumber,
+           .unit = "A",
+           .min = 0,
+           .max = 2000,
+           .default_text = "0",
+           .about = "With it a braked motor is held at standstill, by a current that flows all the time. "
+                    "0: no handbrake."},
+    OwnKey{.name = "kv_rpm_per_v",
+           .kind = Kind::kNumber,
+           .unit = "rpm/V",
+           .min = 0,
+           .max = 20000,
+           .default_text = "0",
+           .about = "KV of the motor, as printed on it: for torques, guards and damp. Torque per ampere "
+                    "is 8.27 / KV (peak phase current, as VESC counts it). 0: unknown."},
+    OwnKey{.name = "supply_v",
+           .kind = Kind::kNumber,
+           .unit = "V",
+           .min = 0,
+           .max = 200,
+           .above_min = true,
+           .default_text = "24",
+           .about = "Of the battery: with kv_rpm_per_v it gives the no-load speed."},
+    OwnKey{.name = "temperature",
+           .kind = Kind::kChoice,
+           .choices = kTemperatures,
+           .default_text = "drive",
+           .about = "Which temperature is reported and watched: of the drive (its transistors), or of the "
+                    "motor (only with a sensor)."},
+    OwnKey{.name = "ask_status",
+           .kind = Kind::kFlag,
+           .default_text = "true",
+           .about = "Ask the drive for its faults and its watchdog, 10 times a second. false: no faults "
+                    "are seen, the watchdog is not looked at, there is no enable sequence."},
+    OwnKey{.name = "host_id",
+           .kind = Kind::kInteger,
+           .min = 0,
+           .max = 254,
+           .default_text = "253",
+           .about = "The controller id of rc10d itself, for the answers; no drive may have it."},
 };
 
 constexpr ModeSet kVescModes{ControlMode::kCoast, ControlMode::kCurrent, ControlMode::kVelocity,
@@ -152,7 +152,7 @@ class VescFamily final : public MotorFamily {
  public:
   [[nodiscard]] std::string_view name() const noexcept override { return "VESC"; }
   [[nodiscard]] std::span<const std::string_view> models() const noexcept override { return kVescModels; }
-  [[nodiscard]] std::span<const FamilyKey> keys() const noexcept override { return kVescKeys; }
+  [[nodiscard]] std::span<const OwnKey> keys() const noexcept override { return kVescKeys; }
 
   [[nodiscard]] MotorTraits traits(std::string_view /*model*/, const OwnValues& own) const override {
     return vescTraits(VescOptions{own});

@@ -40,7 +40,7 @@ class ScriptedType : public ModuleType {
   explicit ScriptedType(Body body = {}) : body_(std::move(body)) {}
   [[nodiscard]] std::string_view name() const noexcept override { return "scripted"; }
   [[nodiscard]] std::string_view about() const noexcept override { return "What a test says."; }
-  [[nodiscard]] std::span<const FamilyKey> keys() const noexcept override { return {}; }
+  [[nodiscard]] std::span<const OwnKey> keys() const noexcept override { return {}; }
   [[nodiscard]] Result<std::unique_ptr<Module_Base>> build(const ModuleSettings&,
                                                            const RobotOutline&) const override {
     return std::make_unique<Scripted>(body_);

@@ -8,7 +8,7 @@ namespace rc10 {
 
 /// A key of the configuration that only one family's motors have, or one type of module. Names end with their
 /// unit.
-struct FamilyKey {
+struct OwnKey {
   enum class Kind : std::uint8_t {
     kNumber,
     kInteger,
@@ -30,7 +30,7 @@ struct FamilyKey {
   std::string_view default_text{};  ///< As it would be written; empty: `required`, or what `about` says.
   bool required = false;
   std::string_view about;  ///< For people; one key of one name says the same in every family.
-  std::span<const FamilyKey> keys{};
+  std::span<const OwnKey> keys{};
   std::string_view pattern{};  ///< Pattern of the whole text, common to ECMAScript and POSIX extended.
   std::string_view words{};    ///< The pattern in words: completes "use ..."; empty: the pattern itself.
 };
