@@ -13,8 +13,8 @@
 #include "module/module_base.hpp"
 #include "module/module_type.hpp"
 #include "module/power_limiter.hpp"
-#include "motor/motor_settings.hpp"
 #include "motor/own_key.hpp"
+#include "motor/own_values.hpp"
 
 namespace rc10 {
 

@@ -10,8 +10,8 @@
 #include "app/result.hpp"
 #include "app/target.hpp"
 #include "module/module_base.hpp"
-#include "motor/motor_settings.hpp"
 #include "motor/own_key.hpp"
+#include "motor/own_values.hpp"
 
 namespace rc10 {
 

@@ -6,8 +6,10 @@
 #include "app/limits.hpp"
 #include "bus/command_packer.hpp"
 #include "motor/angle_reference.hpp"
+#include "motor/bus_parts.hpp"
 #include "motor/motor_base.hpp"
-#include "motor/motor_family.hpp"
+#include "motor/motor_settings.hpp"
+#include "motor/motor_traits.hpp"
 #include "motor/speed_scale_check.hpp"
 
 namespace rc10 {

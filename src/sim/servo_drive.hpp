@@ -4,7 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "motor/motor_family.hpp"
+#include "motor/motor_settings.hpp"
+#include "motor/motor_traits.hpp"
 #include "sim/drive.hpp"
 
 namespace rc10::sim {

@@ -7,7 +7,7 @@
 #include "app/result.hpp"
 #include "config/keys/key_table.hpp"
 #include "motor/loop_gain.hpp"
-#include "motor/motor_family.hpp"
+#include "motor/motor_traits.hpp"
 
 namespace rc10 {
 

@@ -1,4 +1,4 @@
-#include "motor/motor_settings.hpp"
+#include "motor/own_values.hpp"
 
 #include <algorithm>
 

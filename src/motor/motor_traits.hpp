@@ -1,0 +1,42 @@
+#pragma once
+
+#include "motor/drive_frames.hpp"
+#include "motor/drive_setup.hpp"
+#include "motor/motor_base.hpp"
+
+namespace rc10 {
+
+/// Data of one model for configuration, guards and simulation. Torque and speed at the output shaft of the
+/// model's own gear.
+struct MotorTraits {
+  int min_id = 1;
+  int max_id = 127;
+  double gear_ratio = 1.0;                    ///< Gear ratio of the model itself.
+  CommandUnit effort = CommandUnit::kAmpere;  ///< Unit of effort_limit: A or V.
+  float effort_full_scale = 0.0F;             ///< The largest effort that the drive can be told.
+  float torque_nm_per_a = 0.0F;               ///< 0: unknown.
+  float no_load_rpm = 0.0F;                   ///< At its nominal voltage; 0: unknown.
+  float nominal_v = 24.0F;
+  float rotor_inertia_kg_m2 = 0.0F;   ///< Inertia of the rotor itself; 0: unknown.
+  float phase_resistance_ohm = 0.0F;  ///< 0: unknown.
+  bool absolute = false;              ///< Knows its output angle at power-up, behind its own gear.
+  bool reports_temperature = true;
+  bool scaled_speed = false;  ///< Its speed is a share of a range that depends on the model.
+  float frozen_a = 0.0F;      ///< Full scale of the current that it reports; 0: it reports none.
+  float signed_a = 0.0F;      ///< Full scale of a current with the sign of the torque; 0: it reports none.
+  int signed_current_hz = 0;  ///< Rate at which it reports that; 0: with each feedback.
+  int feedback_hz = 1000;     ///< If nobody says otherwise.
+  int min_feedback_hz = 1;
+  int max_feedback_hz = 1000;
+  bool asked = false;        ///< Speaks only when told something: its feedback comes at the command rate.
+  bool fd = false;           ///< Speaks CAN FD.
+  bool classic_only = true;  ///< An FD frame on its bus is an error to it.
+  bool watchdog = false;  ///< Stops by itself when commands stay away: its own, set or verified by enabling.
+  ModeSet modes;
+  DriveFrames frames;
+  const CascadeConfig* host_loops = nullptr;  ///< Defaults of its loops on the host; null: it has none.
+  bool own_velocity_loop = false;             ///< The angle loop alone of host_loops acts.
+  const DriveSetup* setup = nullptr;          ///< Settings that can be written; null: none.
+};
+
+}  // namespace rc10
