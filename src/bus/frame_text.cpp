@@ -95,6 +95,11 @@ Result<CanFrame> parseFrameText(std::string_view text) {
   return frame;
 }
 
+std::string idText(CanId id) {
+  return id.extended ? "0x" + hexDigits(id.value, kExtendedDigits) + " (extended)"
+                     : "0x" + hexDigits(id.value, kStandardDigits);
+}
+
 std::string frameListText(const std::vector<AddressedFrame>& frames) {
   std::string text;
   for (const auto& [interface, frame] : frames) text += interface + " " + frameText(frame) + "\n";

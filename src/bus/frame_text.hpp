@@ -13,7 +13,10 @@ namespace rc10 {
 /// "00000901#", FD "123##1AABB" with the flags (1: bit rate switch) in the first digit. Allocates.
 [[nodiscard]] std::string frameText(const CanFrame& frame);
 
-/// The other way round. The error says what is wrong with the text.
+/// An id for messages: "0x1FF", or "0x00000901 (extended)". Allocates.
+[[nodiscard]] std::string idText(CanId id);
+
+/// The other way round of frameText(). The error says what is wrong with the text.
 [[nodiscard]] Result<CanFrame> parseFrameText(std::string_view text);
 
 /// A frame and where it is to go.

@@ -25,6 +25,7 @@ struct BusUse {
   std::vector<Stream> commands;
   /// Drives with the same layout may share command frames (four DJI currents in one); empty: shares none.
   std::string_view layout{};
+  int slot = 0;  ///< Place of its command in such a frame, from 1; 0: its frames are its own.
 };
 
 }  // namespace rc10

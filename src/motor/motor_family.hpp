@@ -3,10 +3,13 @@
 #include <memory>
 #include <span>
 #include <string_view>
+#include <vector>
 
 #include "app/result.hpp"
 #include "motor/bus_parts.hpp"
 #include "motor/bus_use.hpp"
+#include "motor/id_conflict.hpp"
+#include "motor/key_bound.hpp"
 #include "motor/motor_base.hpp"
 #include "motor/motor_settings.hpp"
 #include "motor/motor_traits.hpp"
@@ -32,6 +35,13 @@ class MotorFamily {
   [[nodiscard]] virtual MotorTraits traits(std::string_view model, const OwnValues& own) const = 0;
   /// Conditions beyond the ranges of single keys. The error begins with the key: "master_id: ...".
   [[nodiscard]] virtual Result<void> check(const MotorSettings& settings) const;
+  /// The only bit rate that its drives know; 0: any.
+  [[nodiscard]] virtual int bitrate() const noexcept { return 0; }
+  /// Judge of the ids of its motors on one bus, with remedies of its own; null: they are compared by
+  /// busUse().
+  [[nodiscard]] virtual IdJudge idJudge() const noexcept { return nullptr; }
+  /// Bounds of single keys that a model has; what check() and traits() say does not follow from them.
+  [[nodiscard]] virtual std::vector<KeyBound> keyBounds(std::string_view /*model*/) const { return {}; }
   /// `settings` has passed check().
   [[nodiscard]] virtual BusUse busUse(const MotorSettings& settings) const = 0;
   /// Builds the motor and registers its halves with the bus. The error names the motor.

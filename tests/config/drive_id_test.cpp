@@ -2,8 +2,8 @@
 
 #include <gmock/gmock.h>
 
-#include "config/check/drive_ids.hpp"
 #include "config_text.hpp"
+#include "drives/dji/dji_motor.hpp"
 
 namespace rc10::test::drive_id_test {
 namespace {
@@ -93,9 +93,9 @@ TEST(DriveIds, AreThoseThatTheMotorsUse) {
                                     .command = command,
                                     .loops = model->command(command).default_loops};
         const DJI_Motor motor{config};
-        EXPECT_EQ(commandId(config), motor.commandId().value);
-        EXPECT_EQ(feedbackId(config), motor.filters()[0].id.value);
-        EXPECT_EQ(commandSlot(config), motor.slot());
+        EXPECT_EQ(djiCommandId(*model, command, id), motor.commandId());
+        EXPECT_EQ(djiFeedbackId(*model, id), motor.filters()[0].id);
+        EXPECT_EQ(djiSlot(id), motor.slot());
       }
     }
   }

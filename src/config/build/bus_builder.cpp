@@ -5,14 +5,9 @@
 #include "config/check/bus_id_check.hpp"
 #include "config/check/bus_load_check.hpp"
 #include "config/check/drive_id_check.hpp"
-#include "drives/dji/dji_family.hpp"
 
 namespace rc10 {
 namespace {
-
-constexpr int kDjiBitrate = 1'000'000;  // C620, C610 and GM6020 know no other
-
-[[nodiscard]] bool isDji(const MotorDraft& motor) { return motor.config.family == &djiFamily(); }
 
 /// Motors that are not told something in every tick take turns.
 void spreadPhases(std::vector<MotorDraft>& motors) {
@@ -96,11 +91,18 @@ void BusBuilder::checkInterface(const Settings& settings, const BusConfig& bus, 
 void BusBuilder::checkBitrate(const Settings& settings, BusConfig& bus,
                               const std::vector<MotorDraft>& motors) {
   const auto bitrate = settings.find("bitrate");
-  if (!bitrate || bus.bitrate == kDjiBitrate || std::none_of(motors.begin(), motors.end(), isDji)) return;
+  const auto only = [](const MotorDraft& motor) {
+    return motor.config.family != nullptr ? motor.config.family->bitrate() : 0;
+  };
+  const auto motor = std::find_if(motors.begin(), motors.end(), [&](const MotorDraft& draft) {
+    return only(draft) != 0 && only(draft) != bus.bitrate;
+  });
+  if (!bitrate || motor == motors.end()) return;
+  const std::string rate = std::to_string(only(*motor));
   problems_.error(
       bitrate->place(), bitrate->path,
-      "DJI drives speak " + std::to_string(kDjiBitrate) + " bit/s only; use " + std::to_string(kDjiBitrate));
-  bus.bitrate = kDjiBitrate;
+      std::string{motor->config.family->name()} + " drives speak " + rate + " bit/s only; use " + rate);
+  bus.bitrate = only(*motor);
 }
 
 std::vector<MotorDraft> BusBuilder::buildMotors(const Settings& settings) {

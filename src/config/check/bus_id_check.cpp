@@ -4,8 +4,7 @@
 #include <optional>
 #include <string>
 
-#include "config/check/drive_ids.hpp"
-#include "drives/dji/dji_family.hpp"
+#include "bus/frame_text.hpp"
 
 namespace rc10 {
 namespace {
@@ -15,11 +14,12 @@ constexpr std::size_t kMostProposals = 8;
 struct Device {
   const MotorDraft* draft = nullptr;
   BusUse use;
-  bool dji = false;
+
+  [[nodiscard]] const MotorFamily& family() const noexcept { return *draft->config.family; }
 };
 
 [[nodiscard]] Device deviceOf(const MotorDraft& draft) {
-  return {&draft, draft.config.family->busUse(draft.config.settings), draft.config.family == &djiFamily()};
+  return {&draft, draft.config.family->busUse(draft.config.settings)};
 }
 
 /// An id that satisfies both filters, for the message.
@@ -46,7 +46,7 @@ struct Device {
 
 /// Conflict of two devices on one bus, without their names; empty: none.
 [[nodiscard]] std::string clash(const Device& a, const Device& b) {
-  if (a.dji && b.dji) return {};
+  if (&a.family() == &b.family() && a.family().idJudge() != nullptr) return {};
   if (const auto id = common(a.use.sends, b.use.sends)) return "both answer with " + idText(*id);
   const auto one_way = [](const Device& from, const Device& to) -> std::string {
     const std::string names = "'" + from.draft->config.name() + "'";
@@ -120,10 +120,15 @@ class BusIdCheck {
     if (fd == devices_.end()) return;
     const MotorDraft& fast = *fd->draft;
     if (bus_.data_bitrate == 0) {
+      const int delivered = fast.config.traits().data_bitrate;
+      const std::string hint = delivered == 0 ? std::string{}
+                                              : " (" + std::string{fast.config.family->name()} + ": " +
+                                                    std::to_string(delivered) + ")";
       problems_.error(fast.config.place, fast.path,
                       nameOf(fast) +
                           " speaks CAN FD and the bus is a classic one; add data_bitrate to the bus, "
-                          "as it is set on the drive and on the interface (moteus: 5000000)");
+                          "as it is set on the drive and on the interface" +
+                          hint);
       return;
     }
     for (const auto& device : devices_) {

@@ -7,8 +7,8 @@
 
 namespace rc10 {
 
-/// DJI drives on one bus that would answer with one id, or read one command frame in two ways. Looks at
-/// complete drafts only.
+/// Motors of one family on one bus whose ids do not go together: of families that judge that themselves
+/// (MotorFamily::idJudge()). Looks at complete drafts only.
 void checkDriveIds(const std::vector<MotorDraft>& motors, Problems& problems);
 
 }  // namespace rc10

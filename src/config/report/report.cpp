@@ -10,11 +10,10 @@
 #include <vector>
 
 #include "app/text_table.hpp"
+#include "bus/frame_text.hpp"
 #include "config/check/bus_load_check.hpp"
-#include "config/check/drive_ids.hpp"
 #include "config/yaml/number_text.hpp"
 #include "config/yaml/problem.hpp"
-#include "drives/dji/dji_family.hpp"
 #include "module/serial_keys.hpp"
 
 namespace rc10 {
@@ -139,9 +138,7 @@ std::string idsText(const std::vector<BusUse::Stream>& streams) {
 
 std::string commandText(const MotorConfig& motor, const BusUse& use) {
   const auto& settings = motor.settings;
-  if (motor.family == &djiFamily()) {
-    return idsText(use.commands) + " slot " + std::to_string(commandSlot(djiConfig(settings)) + 1);
-  }
+  if (use.slot != 0) return idsText(use.commands) + " slot " + std::to_string(use.slot);
   const std::string rate = rounded(static_cast<double>(settings.tick_hz) / settings.command_divider, 4);
   return idsText(use.commands) + " at " + rate + " Hz";
 }

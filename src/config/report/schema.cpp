@@ -10,7 +10,6 @@
 #include "config/keys/motor_keys.hpp"
 #include "config/motor_families.hpp"
 #include "config/report/json_writer.hpp"
-#include "drives/dji/dji_family.hpp"
 
 namespace rc10 {
 namespace {
@@ -204,7 +203,7 @@ class SchemaWriter {
         .number(traits.max_id)
         .endObject();
     json_.key("gear_ratio").object().key("default").number(traits.gear_ratio).endObject();
-    if (&family == &djiFamily()) writeDji(*findDjiModel(model));
+    for (const KeyBound& bound : family.keyBounds(model)) writeBound(bound);
     json_.endObject().endObject().endObject();
   }
 
@@ -234,15 +233,14 @@ class SchemaWriter {
     json_.endObject().endObject();
   }
 
-  void writeDji(const DjiModel& model) {
-    writeMaximum("current_limit_a", static_cast<double>(model.current.full_scale));
-    if (model.voltage.exists()) {
-      writeMaximum("voltage_limit_v", static_cast<double>(model.voltage.full_scale));
-    } else {
-      json_.key("command").object().key("const").text("current").endObject();
-      json_.key("voltage_limit_v").boolean(false);
+  void writeBound(const KeyBound& bound) {
+    switch (bound.kind) {
+      case KeyBound::Kind::kMost: writeMaximum(bound.key, bound.most); break;
+      case KeyBound::Kind::kOnly:
+        json_.key(bound.key).object().key("const").text(bound.only).endObject();
+        break;
+      case KeyBound::Kind::kNone: json_.key(bound.key).boolean(false); break;
     }
-    if (!model.absolute_output) json_.key("zero_deg").boolean(false);
   }
 
   void writeRequiredOwn(const MotorFamily& family) {

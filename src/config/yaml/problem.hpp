@@ -4,6 +4,7 @@
 #include <string_view>
 #include <vector>
 
+#include "app/list_words.hpp"
 #include "config/robot_config.hpp"
 
 namespace rc10 {
@@ -53,8 +54,5 @@ class Problems {
 [[nodiscard]] std::string excerpt(std::string_view text);
 /// The same in quotes.
 [[nodiscard]] std::string inQuotes(std::string_view text);
-/// "a, b and c"
-[[nodiscard]] std::string listWords(const std::vector<std::string>& words,
-                                    std::string_view last_joint = " and ");
 
 }  // namespace rc10

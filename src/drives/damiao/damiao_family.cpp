@@ -141,6 +141,7 @@ MotorTraits DamiaoFamily::traits(std::string_view name, const OwnValues& own) co
   traits.scaled_speed = true;
   traits.asked = true;
   traits.fd = can_fd;
+  traits.data_bitrate = can_fd ? 5'000'000 : 0;
   traits.classic_only = !can_fd;
   traits.watchdog = true;
   traits.modes = modes(control);

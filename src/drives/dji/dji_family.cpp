@@ -5,6 +5,7 @@
 #include <string>
 
 #include "drives/dji/dji_group.hpp"
+#include "drives/dji/dji_ids.hpp"
 #include "drives/dji/dji_motor.hpp"
 
 namespace rc10 {
@@ -18,6 +19,8 @@ constexpr std::array kDjiKeys{
            .default_text = "current",
            .about = "What the drive is told. voltage: GM6020 only. GM6020 current: newer firmware, with "
                     "'current ring' enabled in RoboMaster Assistant."}};
+
+constexpr int kDjiBitrate = 1'000'000;  // C620, C610 and GM6020 know no other
 
 // Every DJI frame, either direction.
 constexpr FrameShape kShape{.extended = false, .fd = false, .bit_rate_switch = false, .length = 8};
@@ -73,11 +76,27 @@ class DjiFamily final : public MotorFamily {
                 " obeys currents only; remove it, or write command: current");
   }
 
+  [[nodiscard]] int bitrate() const noexcept override { return kDjiBitrate; }
+  [[nodiscard]] IdJudge idJudge() const noexcept override { return djiIdConflicts; }
+  [[nodiscard]] std::vector<KeyBound> keyBounds(std::string_view name) const override {
+    const DjiModel& model = *findDjiModel(name);
+    std::vector<KeyBound> bounds{
+        {.key = "current_limit_a", .most = static_cast<double>(model.current.full_scale)}};
+    if (model.voltage.exists()) {
+      bounds.push_back({.key = "voltage_limit_v", .most = static_cast<double>(model.voltage.full_scale)});
+    } else {
+      bounds.push_back({.key = "command", .kind = KeyBound::Kind::kOnly, .only = "current"});
+      bounds.push_back({.key = "voltage_limit_v", .kind = KeyBound::Kind::kNone});
+    }
+    if (!model.absolute_output) bounds.push_back({.key = "zero_deg", .kind = KeyBound::Kind::kNone});
+    return bounds;
+  }
+
   [[nodiscard]] BusUse busUse(const MotorSettings& settings) const override {
     const DjiMotorConfig config = djiConfig(settings);
     const DjiModel& model = *config.model;
-    const CanId sends{model.feedback_id_base + static_cast<std::uint32_t>(config.id), false};
-    const CanId obeys{model.command(config.command).command_ids[config.id > 4 ? 1 : 0], false};
+    const CanId sends = djiFeedbackId(model, config.id);
+    const CanId obeys = djiCommandId(model, config.command, config.id);
     const bool gimbal = config.model == &kGM6020;
     BusUse use;
     use.sends = {FrameFilter{.id = sends}};
@@ -85,6 +104,7 @@ class DjiFamily final : public MotorFamily {
     use.feedback = {{sends, kShape, static_cast<double>(settings.feedback_hz)}};
     use.commands = {{obeys, kShape, static_cast<double>(settings.tick_hz)}};
     use.layout = gimbal ? "GM6020 commands" : "C620 and C610 currents";
+    use.slot = djiSlot(config.id) + 1;
     return use;
   }
 

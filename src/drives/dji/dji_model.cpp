@@ -148,4 +148,12 @@ const DjiModel* findDjiModel(std::string_view name) noexcept {
 
 std::array<const DjiModel*, 3> djiModels() noexcept { return {&kM3508, &kM2006, &kGM6020}; }
 
+CanId djiFeedbackId(const DjiModel& model, int id) noexcept {
+  return {model.feedback_id_base + static_cast<std::uint32_t>(id), false};
+}
+
+CanId djiCommandId(const DjiModel& model, DjiCommand command, int id) noexcept {
+  return {model.command(command).command_ids[id > 4 ? 1 : 0], false};
+}
+
 }  // namespace rc10

@@ -5,6 +5,7 @@
 #include <string>
 #include <string_view>
 
+#include "bus/can_frame.hpp"
 #include "motor/cascade.hpp"
 #include "motor/drive_frames.hpp"
 #include "motor/encoder.hpp"
@@ -67,6 +68,11 @@ extern const DjiModel kGM6020;
 
 /// All models, for messages and tests.
 [[nodiscard]] std::array<const DjiModel*, 3> djiModels() noexcept;
+
+// Ids of a drive on its bus, and the place of its command in a frame of four: 0 to 3.
+[[nodiscard]] CanId djiFeedbackId(const DjiModel& model, int id) noexcept;
+[[nodiscard]] CanId djiCommandId(const DjiModel& model, DjiCommand command, int id) noexcept;
+[[nodiscard]] constexpr int djiSlot(int id) noexcept { return (id - 1) % 4; }
 
 struct DjiMotorConfig {
   std::string name;

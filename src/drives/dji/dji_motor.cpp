@@ -35,9 +35,7 @@ DJI_Motor::DJI_Motor(const DjiMotorConfig& config)
       zero_at_power_on_(config.zero_at_power_on),
       zero_deg_(config.zero_deg),
       travel_(config.travel),
-      filters_{FrameFilter{.id = {model_->feedback_id_base + static_cast<std::uint32_t>(id_), false},
-                           .mask = kStandardIdMask,
-                           .discriminator = {}}},
+      filters_{FrameFilter{.id = djiFeedbackId(*model_, id_), .mask = kStandardIdMask, .discriminator = {}}},
       encoder_(model_->encoder),
       loops_(config.loops),
       spacing_(std::chrono::milliseconds{1}),
@@ -226,7 +224,7 @@ CommandUnit DJI_Motor::commandUnit() const noexcept {
   return command_ == DjiCommand::kCurrent ? CommandUnit::kAmpere : CommandUnit::kVolt;
 }
 
-CanId DJI_Motor::commandId() const noexcept { return {table().command_ids[id_ > 4 ? 1 : 0], false}; }
+CanId DJI_Motor::commandId() const noexcept { return djiCommandId(*model_, command_, id_); }
 
 std::int16_t DJI_Motor::rawCommand() const noexcept {
   const auto full_scale = static_cast<float>(table().raw_full_scale);

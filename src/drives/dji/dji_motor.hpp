@@ -53,7 +53,7 @@ class DJI_Motor : public Motor_Base {
   [[nodiscard]] int driveId() const noexcept { return id_; }
   /// The id of the frame that carries this motor's command, and its slot in it (0-3).
   [[nodiscard]] CanId commandId() const noexcept;
-  [[nodiscard]] int slot() const noexcept { return (id_ - 1) % 4; }
+  [[nodiscard]] int slot() const noexcept { return djiSlot(id_); }
   /// Result of update() in the drive's unit: direction applied, clamped to full scale.
   [[nodiscard]] std::int16_t rawCommand() const noexcept;
 

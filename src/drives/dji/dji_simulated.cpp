@@ -62,20 +62,16 @@ DjiDrive::DjiDrive(const DriveConfig& config)
       command_ == DjiCommand::kVoltage ? WindingCommand::Kind::kVoltage : WindingCommand::Kind::kCurrent;
 }
 
-CanId DjiDrive::commandId() const noexcept {
-  return {model_->command(command_).command_ids[id_ <= 4 ? 0 : 1], false};
-}
+CanId DjiDrive::commandId() const noexcept { return djiCommandId(*model_, command_, id_); }
 
-CanId DjiDrive::feedbackId() const noexcept {
-  return {static_cast<std::uint32_t>(model_->feedback_id_base + id_), false};
-}
+CanId DjiDrive::feedbackId() const noexcept { return djiFeedbackId(*model_, id_); }
 
 void DjiDrive::receive(const CanFrame& frame) noexcept {
   const bool mine =
       frame.type == FrameType::kData && !frame.fd && frame.length == kFrameLength && frame.id == commandId();
   if (!mine) return;
   const auto& table = model_->command(command_);
-  raw_command_ = readInt16(frame, 2 * static_cast<std::size_t>((id_ - 1) % 4));
+  raw_command_ = readInt16(frame, 2 * static_cast<std::size_t>(djiSlot(id_)));
   // Beyond full scale the current or supply limit cuts off.
   winding_.value = static_cast<double>(table.full_scale) * raw_command_ / table.raw_full_scale;
 }

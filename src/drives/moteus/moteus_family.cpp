@@ -106,6 +106,7 @@ class MoteusFamily final : public MotorFamily {
     traits.absolute = own.flag("absolute");
     traits.asked = true;
     traits.fd = true;
+    traits.data_bitrate = 5'000'000;
     traits.classic_only = false;
     traits.watchdog = true;
     traits.modes = ModeSet{ControlMode::kCoast, ControlMode::kCurrent,    ControlMode::kVelocity,
