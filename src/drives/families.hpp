@@ -20,6 +20,11 @@ struct FamilyEntry {
   Recogniser recognise = nullptr;
   /// Its frames in words, for those who read a recording; null: they stay numbers.
   Wording word = nullptr;
+  /// Questions for `rc10ctl scan`; null: none of its questions is safe on a bus of unknown drives.
+  const ScanQuestions* questions = nullptr;
+  /// Drive that would obey the question of another family; null: none of this family would.
+  ObeyedBy obeyed_by = nullptr;
+  bool only_answers = false;  ///< Its drives speak only when they are told something.
 };
 
 /// The families of rc10d: the one place where a new one is entered.

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "drives/odrive/odrive_frames.hpp"
+#include "drives/families.hpp"
 
 namespace rc10::survey {
 
@@ -30,21 +30,14 @@ void BusSurvey::take(const CanFrame& frame) {
 
 namespace {
 
-// ODrive's come every 100 ms unless somebody wants them oftener. Feedback of a DJI motor at rest looks the
-// same, and comes 1000 times a second.
-constexpr float kMostHeartbeatsHz = 150.0F;
-
-bool isOdrive(const DriveGuess& guess) {
-  return guess.kind == drive_kind::kOdrive || guess.kind == drive_kind::kOdriveExtended;
-}
-bool isOdriveHeartbeat(CanId id) { return odrive::messageOf(id) == odrive::Message::kHeartbeat; }
-
 void dropTooFrequent(Sighting& sighting, Duration listened) {
+  if (listened <= Duration{0}) return;
   const bool others = std::any_of(sighting.guesses.begin(), sighting.guesses.end(),
-                                  [](const DriveGuess& g) { return !isOdrive(g); });
-  const bool often =
-      listened > Duration{0} && static_cast<float>(sighting.frames) > kMostHeartbeatsHz * seconds(listened);
-  if (others && often && isOdriveHeartbeat(sighting.id)) std::erase_if(sighting.guesses, isOdrive);
+                                  [](const DriveGuess& guess) { return guess.most_hz == 0.0F; });
+  if (!others) return;
+  std::erase_if(sighting.guesses, [&](const DriveGuess& guess) {
+    return guess.most_hz > 0.0F && static_cast<float>(sighting.frames) > guess.most_hz * seconds(listened);
+  });
 }
 
 }  // namespace
@@ -66,18 +59,18 @@ std::vector<Sighting> BusSurvey::sightings(Duration listened) const {
   return sightings;
 }
 
-int BusSurvey::commandedBy(const CanFrame& query) const {
-  if (!query.id.extended) return 0;
-  const int node = static_cast<int>(query.id.value >> odrive::kMessageBits);
-  const auto heartbeat = (query.id.value >> odrive::kMessageBits << odrive::kMessageBits) |
-                         static_cast<std::uint32_t>(odrive::Message::kHeartbeat);
-  const auto found = heard_.find({true, heartbeat});
-  if (found == heard_.end()) return 0;
-  const auto& guesses = found->second.guesses;
-  const bool odrive = std::any_of(guesses.begin(), guesses.end(), [](const auto& guess) {
-    return guess.first.kind == drive_kind::kOdriveExtended;
-  });
-  return odrive ? node : 0;
+std::string BusSurvey::commandedBy(const CanFrame& query) const {
+  for (const auto& entry : builtInFamilies()) {
+    const auto obeying = entry.obeyed_by != nullptr ? entry.obeyed_by(query.id) : std::nullopt;
+    if (!obeying) continue;
+    const auto found = heard_.find({obeying->shown.extended, obeying->shown.value});
+    if (found == heard_.end()) continue;
+    const auto& guesses = found->second.guesses;
+    const bool shown = std::any_of(guesses.begin(), guesses.end(),
+                                   [&](const auto& guess) { return guess.first == obeying->drive; });
+    if (shown) return std::string{obeying->name} + " " + std::to_string(obeying->drive.id);
+  }
+  return {};
 }
 
 }  // namespace rc10::survey

@@ -35,9 +35,9 @@ class BusSurvey {
   /// nothing.
   [[nodiscard]] std::vector<Sighting> sightings(Duration listened = {}) const;
 
-  /// The ODrive with extended ids, by its node, that would take this query for a command of its own: one
-  /// whose heartbeat may have been heard. 0: none.
-  [[nodiscard]] int commandedBy(const CanFrame& query) const;
+  /// The drive that would take this query for a command of its own, in words, if it may have been heard: "an
+  /// ODrive with extended ids, node 136". Empty: none.
+  [[nodiscard]] std::string commandedBy(const CanFrame& query) const;
 
  private:
   struct Heard {

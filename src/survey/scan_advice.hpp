@@ -9,8 +9,8 @@
 /// Advice about the frames heard on a bus, in words for people.
 namespace rc10::survey {
 
-/// A VESC with this sighting's id has answered our question, and sends nothing by itself.
-[[nodiscard]] bool isSilentVesc(const Sighting& sighting, const std::vector<Sighting>& all);
+/// The drive of this sighting has answered our question, and sends nothing by itself.
+[[nodiscard]] bool isSilent(const Sighting& sighting, const std::vector<Sighting>& all);
 
 /// About one sighting; empty: there is nothing to be done.
 [[nodiscard]] std::string adviceFor(const Sighting& sighting, const std::vector<Sighting>& all);
@@ -18,7 +18,8 @@ namespace rc10::survey {
 /// Options with which a bus was asked.
 struct Asking {
   bool listen_only = false;
-  std::set<int> spared;  ///< Nodes of ODrives with extended ids that some questions would have commanded.
+  std::set<std::string>
+      spared;  ///< Drives that some questions would have commanded: BusSurvey::commandedBy().
 };
 
 /// About the bus as a whole: why drives may be missing.

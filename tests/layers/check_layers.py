@@ -82,6 +82,11 @@ OF_SIMULATED = re.compile(
     r"_(simulated\w*|recogniser|wording|frames|model|family)\.hpp$|/(recogniser|wording)\.hpp$"
 )
 
+# These ask the family, through drives/families.hpp, and know none by its name; the texts of keys,
+# which people read, may.
+BLIND = ("config", "survey")
+SEEING = ("config/keys/",)
+
 # Plain objects: no threads, locks, atomics or logging; who uses them decides about those.
 PLAIN = ("app", "bus", "motor", "drives", "module")
 NOT_IN_PLAIN = re.compile(
@@ -162,6 +167,18 @@ def bad_room(layer: str, room: str, file: Path, name: str) -> str | None:
     return f'"{name}": of its layer {layer}/{room}/ may use {names}'
 
 
+def named_family(layer: str, file: str, text: str, families: list[str]) -> str | None:
+    """Says which family of drives a line of a layer that is to know none of them names."""
+    if layer not in BLIND:
+        return None
+    if file.startswith(SEEING) and not INCLUDE.match(text):
+        text = STRING_OR_COMMENT.sub("", text)
+    named = next((name for name in families if name in text.lower()), None)
+    if named is None:
+        return None
+    return f"{named}: {layer}/ knows no family by its name; ask MotorFamily or FamilyEntry"
+
+
 def without_comments(text: str) -> list[str]:
     """The lines of a source, each where it was; one that goes on in the next is one."""
 
@@ -171,8 +188,11 @@ def without_comments(text: str) -> list[str]:
     return STRING_OR_COMMENT.sub(blank, text.replace("\\\n", " ")).splitlines()
 
 
-def violations_in(file: Path, layer: str, room: str) -> Iterator[Violation]:
+def violations_in(file: Path, layer: str, room: str, families: list[str]) -> Iterator[Violation]:
+    place = "/".join(part for part in (layer, room, file.name) if part)
     for number, text in enumerate(without_comments(file.read_text(encoding="utf-8")), 1):
+        if named := named_family(layer, place, text, families):
+            yield Violation(file, number, named)
         if include := INCLUDE.match(text):
             what = bad_include(layer, include[1], include[2])
             if what is None:
@@ -186,6 +206,7 @@ def violations_in(file: Path, layer: str, room: str) -> Iterator[Violation]:
 
 
 def violations(src: Path) -> Iterator[Violation]:
+    families = sorted(path.name for path in (src / FAMILIES).glob("*") if path.is_dir())
     for file in sorted(path for path in src.rglob("*") if path.is_file()):
         layer, *rooms = file.relative_to(src).parts[:-1] or [file.name]
         if file.suffix not in SUFFIXES:
@@ -199,7 +220,7 @@ def violations(src: Path) -> Iterator[Violation]:
         room = rooms[0] if rooms else ""
         if room and layer in ROOMS and room not in ROOMS[layer]:
             yield Violation(file, 1, f"{layer}/{room}/ is no room of {layer}/")
-        yield from violations_in(file, layer, room)
+        yield from violations_in(file, layer, room, families)
 
 
 def main() -> int:

@@ -82,6 +82,39 @@ def test_lets_the_allowed_pass(tmp_path: Path, file: str, text: str) -> None:
     assert check(tmp_path, file, text) == []
 
 
+@pytest.mark.parametrize(
+    ("file", "text"),
+    [
+        ("config/report/a.cpp", '#include "drives/vesc/vesc_family.hpp"'),
+        ("config/keys/a.cpp", '#include "drives/vesc/vesc_family.hpp"'),
+        ("config/build/a.cpp", "const bool mine = isVesc(motor);"),
+        ("config/keys/a.cpp", "const bool mine = isVesc(motor);"),
+        ("survey/a.cpp", 'say("VESC id " + id);'),
+    ],
+)
+def test_finds_a_family_by_its_name(tmp_path: Path, file: str, text: str) -> None:
+    check(tmp_path, "drives/vesc/vesc_family.hpp", "#pragma once\n")
+    found = check(tmp_path, file, f"#pragma once\n{text}\n")
+    assert len(found) == 1
+    assert "vesc" in found[0]
+
+
+@pytest.mark.parametrize(
+    ("file", "text"),
+    [
+        ("config/keys/a.cpp", 'Key{.about = "Set on the drive (VESC: VESC Tool)."}'),
+        ("survey/a.cpp", "// To a VESC it is packet 0xFD."),
+        ("survey/a.cpp", '#include "drives/families.hpp"'),
+        ("tools/a.cpp", "const bool mine = isVesc(motor);"),
+    ],
+)
+def test_lets_families_be_named_in_texts_of_keys_and_comments(
+    tmp_path: Path, file: str, text: str
+) -> None:
+    check(tmp_path, "drives/vesc/vesc_family.hpp", "#pragma once\n")
+    assert check(tmp_path, file, text) == []
+
+
 def test_the_order_has_no_cycles() -> None:
     # A layer's own headers are below its rooms where a room may include them.
     rooms = [{"": set[str](), **graph} for graph in ROOMS.values()]

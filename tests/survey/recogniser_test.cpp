@@ -181,16 +181,16 @@ TEST(BusSurvey, AQueryThatAnOdriveWouldObeyIsKnown) {
   const auto spared = [&survey] {
     std::vector<std::uint32_t> ids;
     for (const auto& query : harmlessQueries())
-      if (survey.commandedBy(query) != 0) ids.push_back(query.id.value);
+      if (!survey.commandedBy(query).empty()) ids.push_back(query.id.value);
     return ids;
   };
   EXPECT_THAT(spared(), IsEmpty());
   survey.take(frame("00001101#0000000001000000"));  // node 136, where the PING of VESC 2 is the e-stop
   EXPECT_EQ(spared().size(), 32U);
   EXPECT_EQ(spared().front(), 0x1100U);
-  EXPECT_EQ(survey.commandedBy(frame("00001102#FE")), 136);
+  EXPECT_EQ(survey.commandedBy(frame("00001102#FE")), "an ODrive with extended ids, node 136");
   survey.take(frame("0000FD01#0000000008000000"));  // node 2024, which would be told a position of zero
-  EXPECT_EQ(survey.commandedBy(frame("0000FD0C#0000000000000000")), 2024);
+  EXPECT_EQ(survey.commandedBy(frame("0000FD0C#0000000000000000")), "an ODrive with extended ids, node 2024");
   EXPECT_EQ(spared().size(), 32U + 31U);
 }
 

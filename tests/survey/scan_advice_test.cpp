@@ -10,6 +10,7 @@ namespace {
 using ::testing::AllOf;
 using ::testing::HasSubstr;
 using ::testing::SizeIs;
+using ::testing::StartsWith;
 
 std::vector<Sighting> heard(std::initializer_list<const char*> frames) {
   BusSurvey survey;
@@ -24,7 +25,7 @@ constexpr const char* kStatusOf104 = "00000968#0000271000640064";
 TEST(ScanAdvice, AVescThatOnlyAnswersIsToldToSendItsStatus) {
   const auto all = heard({kPong42});
   ASSERT_THAT(all, SizeIs(1));
-  EXPECT_TRUE(isSilentVesc(all[0], all));
+  EXPECT_TRUE(isSilent(all[0], all));
   EXPECT_THAT(adviceFor(all[0], all), AllOf(HasSubstr("VESC id 42 answers but sends no status"),
                                             HasSubstr("CAN Status Rate 1 = 100 Hz")));
 }
@@ -39,7 +40,7 @@ TEST(ScanAdvice, AnotherVescsStatusIsNotItsOwn) {
   const auto all = heard({kPong42, kStatusOf104});
   ASSERT_THAT(all, SizeIs(2));
   EXPECT_EQ(adviceFor(all[0], all), "");
-  EXPECT_TRUE(isSilentVesc(all[1], all));
+  EXPECT_TRUE(isSilent(all[1], all));
 }
 
 TEST(ScanAdvice, WhatIsAmbiguousOrUnknownIsToldSo) {
@@ -55,10 +56,17 @@ TEST(ScanAdvice, OfASilentBusTheWiringIsToBeChecked) {
 }
 
 TEST(ScanAdvice, WhoWasNotAskedIsTold) {
-  const auto advice = adviceForBus(heard({kPong42}), {.listen_only = true, .spared = {136}});
+  const auto advice = adviceForBus(
+      heard({kPong42}), {.listen_only = true, .spared = {"an ODrive with extended ids, node 136"}});
   ASSERT_THAT(advice, SizeIs(3));
-  EXPECT_THAT(advice[0], HasSubstr("node 136"));
-  EXPECT_THAT(advice[2], HasSubstr("--listen-only"));
+  EXPECT_EQ(
+      advice[0],
+      "not all VESC, RobStride and CyberGear ids were asked: an ODrive with extended ids, node 136, would "
+      "take the questions for commands");
+  EXPECT_THAT(advice[1], StartsWith("Damiao, LK-Tech, MyActuator and moteus drives speak only when"));
+  EXPECT_EQ(
+      advice[2],
+      "Nothing was asked (--listen-only): VESC as delivered, RobStride and CyberGear may be silent too.");
 }
 
 }  // namespace

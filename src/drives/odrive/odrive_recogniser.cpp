@@ -8,6 +8,9 @@ namespace rc10 {
 namespace {
 
 constexpr std::uint8_t kOdriveLastState = 14;
+// They come every 100 ms unless somebody wants them oftener. Feedback of a DJI motor at rest looks the same,
+// and comes 1000 times a second.
+constexpr float kMostHeartbeatsHz = 150.0F;
 
 /// Numbers that a shaft can have: bytes of another protocol read as floats are seldom.
 bool sane(float value) {
@@ -40,7 +43,7 @@ void addStandard(const CanFrame& frame, std::vector<DriveGuess>& guesses) {
   if (message == odrive::Message::kHeartbeat) {
     const auto beat = odrive::decodeHeartbeat(frame);
     if (beat && static_cast<std::uint8_t>(beat->state) <= kOdriveLastState)
-      guesses.push_back({drive_kind::kOdrive, node});
+      guesses.push_back({.kind = drive_kind::kOdrive, .id = node, .most_hz = kMostHeartbeatsHz});
   }
   if (message == odrive::Message::kEncoderEstimates) {
     const auto pair = odrive::decodePair(frame);
@@ -58,8 +61,9 @@ void addExtended(const CanFrame& frame, std::vector<DriveGuess>& guesses) {
   if (!beat || beat->byte5 > kHighestCode || beat->byte6 > kHighestCode) return;
   const auto state = static_cast<std::uint8_t>(beat->state);
   if (state >= static_cast<std::uint8_t>(odrive::AxisState::kIdle) && state <= kOdriveLastState)
-    guesses.push_back(
-        {drive_kind::kOdriveExtended, static_cast<int>(frame.id.value >> odrive::kMessageBits)});
+    guesses.push_back({.kind = drive_kind::kOdriveExtended,
+                       .id = static_cast<int>(frame.id.value >> odrive::kMessageBits),
+                       .most_hz = kMostHeartbeatsHz});
 }
 
 }  // namespace
@@ -67,6 +71,16 @@ void addExtended(const CanFrame& frame, std::vector<DriveGuess>& guesses) {
 void recogniseOdrive(const CanFrame& frame, std::vector<DriveGuess>& guesses) {
   addStandard(frame, guesses);
   addExtended(frame, guesses);
+}
+
+std::optional<Obeying> odriveObeying(CanId question) {
+  if (!question.extended) return std::nullopt;
+  const std::uint32_t node = question.value >> odrive::kMessageBits;
+  const std::uint32_t heartbeat =
+      node << odrive::kMessageBits | static_cast<std::uint32_t>(odrive::Message::kHeartbeat);
+  return Obeying{.drive = {drive_kind::kOdriveExtended, static_cast<int>(node)},
+                 .shown = {heartbeat, true},
+                 .name = "an ODrive with extended ids, node"};
 }
 
 }  // namespace rc10

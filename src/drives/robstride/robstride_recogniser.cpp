@@ -1,5 +1,6 @@
 #include "drives/robstride/robstride_recogniser.hpp"
 
+#include <array>
 #include <string_view>
 
 #include "drives/robstride/robstride_frames.hpp"
@@ -8,8 +9,27 @@ namespace rc10 {
 namespace {
 
 constexpr std::string_view kRobstride = "RobStride or CyberGear";
+// The host's id is part of the safety: see survey/harmless_queries.hpp.
+constexpr std::uint32_t kRobstrideScanHost = 0xFD;
+constexpr int kRobstrideScanIds = 127;
+constexpr std::array<std::string_view, 2> kRobstrideAsked{"RobStride", "CyberGear"};
+
+std::vector<CanFrame> robstrideIdQuestions() {
+  std::vector<CanFrame> questions;
+  const std::array<std::uint8_t, 8> nothing{};
+  for (int id = 1; id <= kRobstrideScanIds; ++id)
+    questions.push_back(
+        makeClassicFrame(robstride::canId(robstride::Type::kGetId, kRobstrideScanHost, id), nothing));
+  return questions;
+}
 
 }  // namespace
+
+const ScanQuestions& robstrideQuestions() noexcept {
+  static constexpr ScanQuestions kQuestions{
+      .asked = kRobstrideAsked, .silent = kRobstrideAsked, .frames = robstrideIdQuestions};
+  return kQuestions;
+}
 
 // The drive's id is in the second byte of the id, that of the host in the first.
 void recogniseRobstride(const CanFrame& frame, std::vector<DriveGuess>& guesses) {

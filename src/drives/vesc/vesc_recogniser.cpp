@@ -1,8 +1,36 @@
 #include "drives/vesc/vesc_recogniser.hpp"
 
+#include <array>
+
 #include "drives/vesc/vesc_frames.hpp"
 
 namespace rc10 {
+namespace {
+
+// The host's id is part of the safety: see survey/harmless_queries.hpp.
+constexpr std::uint8_t kVescScanHost = 0xFE;
+constexpr int kVescScanIds = 254;  // 254 is ours, 255 all of them
+constexpr std::array<std::string_view, 1> kVescAsked{"VESC"};
+constexpr std::array<std::string_view, 1> kVescMaybeSilent{"VESC as delivered"};
+constexpr std::string_view kVescSilent =
+    "in VESC Tool, App Settings, General: CAN Status Rate 1 = 100 Hz, CAN Status Messages 1 = Status 1 and "
+    "Status 5; write the settings (docs/motors/vesc.md)";
+
+std::vector<CanFrame> vescPings() {
+  std::vector<CanFrame> pings;
+  const std::array<std::uint8_t, 1> who{kVescScanHost};
+  for (int id = 0; id < kVescScanIds; ++id)
+    pings.push_back(makeClassicFrame(vesc::canId(vesc::Packet::kPing, id), who));
+  return pings;
+}
+
+}  // namespace
+
+const ScanQuestions& vescQuestions() noexcept {
+  static constexpr ScanQuestions kQuestions{
+      .asked = kVescAsked, .silent = kVescMaybeSilent, .frames = vescPings};
+  return kQuestions;
+}
 
 void recogniseVesc(const CanFrame& frame, std::vector<DriveGuess>& guesses) {
   if (!frame.id.extended || frame.fd || frame.id.value > 0xFFFF) return;
@@ -18,7 +46,9 @@ void recogniseVesc(const CanFrame& frame, std::vector<DriveGuess>& guesses) {
       if (frame.length == vesc::kStatusLength) guesses.push_back({drive_kind::kVesc, id});
       return;
     case vesc::Packet::kPong:  // to who asked; the drive's id is the first byte
-      if (frame.length >= 1) guesses.push_back({drive_kind::kVesc, frame.data[0]});
+      if (frame.length >= 1) {
+        guesses.push_back({.kind = drive_kind::kVesc, .id = frame.data[0], .silent = kVescSilent});
+      }
       return;
     case vesc::Packet::kSetDuty:
     case vesc::Packet::kSetCurrent:

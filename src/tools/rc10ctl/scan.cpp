@@ -87,8 +87,8 @@ class Scanner {
     if (options_.listen_only) return why;
     for (const auto& query : survey::harmlessQueries()) {
       if (!why.empty() || interrupted()) return why;
-      if (const int node = survey_.commandedBy(query); node != 0) {
-        spared_.insert(node);
+      if (auto drive = survey_.commandedBy(query); !drive.empty()) {
+        spared_.insert(std::move(drive));
         continue;
       }
       why = send(query);
@@ -98,8 +98,8 @@ class Scanner {
   }
 
   [[nodiscard]] const survey::BusSurvey& survey() const noexcept { return survey_; }
-  /// Nodes of ODrives with extended ids to which some questions would have been commands.
-  [[nodiscard]] const std::set<int>& spared() const noexcept { return spared_; }
+  /// Drives to which some questions would have been commands.
+  [[nodiscard]] const std::set<std::string>& spared() const noexcept { return spared_; }
 
  private:
   std::string listen(Duration time) {
@@ -132,7 +132,7 @@ class Scanner {
   CanSocket socket_;
   const ScanOptions& options_;
   survey::BusSurvey survey_;
-  std::set<int> spared_;
+  std::set<std::string> spared_;
 };
 
 void printSightingsText(const std::vector<Sighting>& sightings, const survey::Asking& asking) {
