@@ -35,8 +35,8 @@ inline MotorSettings cubemarsSettings(std::string_view model, int id, const OwnK
   return settings;
 }
 
-inline CubemarsSetup setupOf(const MotorSettings& settings) {
-  return cubemarsSetup(settings.model, settings.own);
+inline CubemarsSettings setupOf(const MotorSettings& settings) {
+  return cubemarsSettings(settings.model, settings.own);
 }
 
 }  // namespace rc10::test

@@ -140,40 +140,40 @@ class CubemarsFamily final : public MotorFamily {
   }
   [[nodiscard]] std::span<const OwnKey> keys() const noexcept override { return kCubemarsKeys; }
   [[nodiscard]] MotorTraits traits(std::string_view model, const OwnValues& own) const override {
-    return cubemarsTraits(cubemarsSetup(model, own));
+    return cubemarsTraits(cubemarsSettings(model, own));
   }
 
   [[nodiscard]] Result<void> check(const MotorSettings& settings) const override {
-    const auto setup = cubemarsSetup(settings.model, settings.own);
-    const std::string model{setup.model->name};
-    if (setup.protocol == CubemarsProtocol::kMitV3 && !setup.model->v3) {
+    const auto own = cubemarsSettings(settings.model, settings.own);
+    const std::string model{own.model->name};
+    if (own.protocol == CubemarsProtocol::kMitV3 && !own.model->v3) {
       return fail("protocol: the " + model + " is no V3 drive: write mit, or " + model + "-V3 as the model");
     }
-    if (setup.protocol == CubemarsProtocol::kMit && setup.model->v3) {
+    if (own.protocol == CubemarsProtocol::kMit && own.model->v3) {
       return fail("protocol: a V3 drive like the " + model + " does not understand mit: write mit_v3");
     }
-    if (setup.protocol == CubemarsProtocol::kMit && settings.own.text("position_basis") != "output") {
+    if (own.protocol == CubemarsProtocol::kMit && settings.own.text("position_basis") != "output") {
       return fail("position_basis: the protocol mit has positions of the output: leave the key out");
     }
     return {};
   }
 
   [[nodiscard]] BusUse busUse(const MotorSettings& settings) const override {
-    const auto setup = cubemarsSetup(settings.model, settings.own);
+    const auto own = cubemarsSettings(settings.model, settings.own);
     const double told = commandsPerSecond(settings);
     BusUse use;
-    if (setup.protocol == CubemarsProtocol::kMit) {
-      const PayloadDiscriminator own{.value = static_cast<std::uint8_t>(settings.id)};
+    if (own.protocol == CubemarsProtocol::kMit) {
+      const PayloadDiscriminator sender{.value = static_cast<std::uint8_t>(settings.id)};
       const CanId id = cubemars::mitId(settings.id);
-      use.sends = {{.id = {0, false}, .mask = kStandardIdMask, .discriminator = own},
-                   {.id = id, .mask = kStandardIdMask, .discriminator = own}};
+      use.sends = {{.id = {0, false}, .mask = kStandardIdMask, .discriminator = sender},
+                   {.id = id, .mask = kStandardIdMask, .discriminator = sender}};
       use.obeys = {{.id = id, .mask = kStandardIdMask}};
       use.commands = {{.id = id, .shape = {.length = 8}, .per_second = told}};
       use.feedback = {{.id = {0, false}, .shape = {.length = 8}, .per_second = told}};
       return use;
     }
-    const auto traits = cubemarsTraits(setup);
-    const bool servo = setup.protocol == CubemarsProtocol::kServo;
+    const auto traits = cubemarsTraits(own);
+    const bool servo = own.protocol == CubemarsProtocol::kServo;
     const int feedback_hz = settings.feedback_hz > 0 ? settings.feedback_hz : traits.feedback_hz;
     const CanId feedback_id = cubemars::servoFeedbackId(settings.id);
     const CanId command_id = cubemars::servoId(
@@ -190,33 +190,33 @@ class CubemarsFamily final : public MotorFamily {
 
   [[nodiscard]] Result<std::unique_ptr<Motor_Base>> build(const MotorSettings& settings,
                                                           BusParts& parts) const override {
-    const auto setup = cubemarsSetup(settings.model, settings.own);
-    if (setup.protocol == CubemarsProtocol::kServo) {
-      return registerSolo(std::make_unique<CubemarsServo>(settings, setup), parts);
+    const auto own = cubemarsSettings(settings.model, settings.own);
+    if (own.protocol == CubemarsProtocol::kServo) {
+      return registerSolo(std::make_unique<CubemarsServo>(settings, own), parts);
     }
-    return registerSolo(std::make_unique<CubemarsMit>(settings, setup), parts);
+    return registerSolo(std::make_unique<CubemarsMit>(settings, own), parts);
   }
 };
 
 }  // namespace
 
-MotorTraits cubemarsTraits(const CubemarsSetup& setup) {
-  const CubemarsModel& model = *setup.model;
-  const bool mit = setup.protocol == CubemarsProtocol::kMit;
-  const bool servo = setup.protocol == CubemarsProtocol::kServo;
+MotorTraits cubemarsTraits(const CubemarsSettings& own) {
+  const CubemarsModel& model = *own.model;
+  const bool mit = own.protocol == CubemarsProtocol::kMit;
+  const bool servo = own.protocol == CubemarsProtocol::kServo;
   MotorTraits traits;
   traits.min_id = 1;
   traits.max_id = 254;  // 255 is everybody in the VESC firmware that the servo mode comes from
   traits.gear_ratio = model.gear_ratio;
   traits.effort = CommandUnit::kAmpere;
   // The end of the MIT torque range in amperes; what the motor can do in the other protocols as well.
-  const auto full_nm = static_cast<float>(setup.ranges.torque_nm);
-  traits.effort_full_scale = std::min(full_nm / setup.torque_nm_per_a, kLargestServoA);
-  traits.torque_nm_per_a = setup.torque_nm_per_a;
+  const auto full_nm = static_cast<float>(own.ranges.torque_nm);
+  traits.effort_full_scale = std::min(full_nm / own.torque_nm_per_a, kLargestServoA);
+  traits.torque_nm_per_a = own.torque_nm_per_a;
   traits.no_load_rpm = model.no_load_rpm;
   traits.nominal_v = model.nominal_v;
   traits.phase_resistance_ohm = model.phase_resistance_ohm;
-  traits.absolute = setup.output_encoder;
+  traits.absolute = own.output_encoder;
   traits.reports_temperature = true;
   traits.frozen_a = mit || model.signed_current ? traits.effort_full_scale : 0.0F;
   traits.signed_a = traits.frozen_a;

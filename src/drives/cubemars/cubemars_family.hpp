@@ -8,6 +8,6 @@ namespace rc10 {
 /// The family "CubeMars": AK drives in servo mode, MIT mode, and MIT mode of V3 drives.
 [[nodiscard]] const MotorFamily& cubemarsFamily() noexcept;
 
-[[nodiscard]] MotorTraits cubemarsTraits(const CubemarsSetup& setup);
+[[nodiscard]] MotorTraits cubemarsTraits(const CubemarsSettings& own);
 
 }  // namespace rc10

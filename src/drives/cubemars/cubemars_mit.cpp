@@ -33,9 +33,9 @@ constexpr int kSamplesAtEnd = 2;
 
 }  // namespace
 
-CubemarsMit::CubemarsMit(const MotorSettings& settings, const CubemarsSetup& setup)
-    : CubeMars_Motor(settings, setup),
-      v3_(setup.protocol == CubemarsProtocol::kMitV3),
+CubemarsMit::CubemarsMit(const MotorSettings& settings, const CubemarsSettings& own)
+    : CubeMars_Motor(settings, own),
+      v3_(own.protocol == CubemarsProtocol::kMitV3),
       angle_stiffness_(settings.own.number("angle_stiffness_nm_per_rad")),
       angle_damping_(settings.own.number("angle_damping_nms_per_rad")),
       velocity_gain_(settings.own.number("velocity_gain_nms_per_rad")),
@@ -48,10 +48,10 @@ CubemarsMit::CubemarsMit(const MotorSettings& settings, const CubemarsSetup& set
   } else {
     // Which of the two ids answers come from depends on the firmware (cubemars_driver_node). The first
     // byte tells whose they are.
-    const PayloadDiscriminator own{.byte_index = 0, .mask = 0xFF, .value = id};
+    const PayloadDiscriminator sender{.byte_index = 0, .mask = 0xFF, .value = id};
     filters_ = {
-        FrameFilter{.id = {0, false}, .mask = kStandardIdMask, .discriminator = own},
-        FrameFilter{.id = cubemars::mitId(settings.id), .mask = kStandardIdMask, .discriminator = own}};
+        FrameFilter{.id = {0, false}, .mask = kStandardIdMask, .discriminator = sender},
+        FrameFilter{.id = cubemars::mitId(settings.id), .mask = kStandardIdMask, .discriminator = sender}};
     command_ids_.fill(cubemars::mitId(settings.id));
   }
 }
@@ -80,13 +80,13 @@ FrameVerdict CubemarsMit::updateFeedback(const CanFrame& frame) noexcept {
     position_rad_ = lastDriveDeg() * kRadPerDeg;
     velocity_rad_s_ = driveRadS(static_cast<double>(feedback_.velocity_rpm));
     // Its feedback goes farther than its commands.
-    turns_ = std::fabs(position_rad_) > setup().ranges.position_rad ? 1 : 0;
+    turns_ = std::fabs(position_rad_) > own().ranges.position_rad ? 1 : 0;
   }
   return verdict;
 }
 
 FrameVerdict CubemarsMit::takeMitReport(const CanFrame& frame) noexcept {
-  const auto report = cubemars::readMitReport(frame, setup().ranges);
+  const auto report = cubemars::readMitReport(frame, own().ranges);
   if (!report) return FrameVerdict::kMalformed;
   const bool anew = feedback_.samples == 0 || noticeRestart(frame.received);
   velocity_rad_s_ = report->velocity_rad_s;
@@ -105,7 +105,7 @@ FrameVerdict CubemarsMit::takeMitReport(const CanFrame& frame) noexcept {
 // The field goes round at its ends (TMotorCANControl and others count its turns). Half of it is far more
 // than an output shaft turns between two answers.
 double CubemarsMit::unwrapped(double position_rad, bool anew) noexcept {
-  const double span_rad = 2.0 * setup().ranges.position_rad;
+  const double span_rad = 2.0 * own().ranges.position_rad;
   if (anew) {
     // A drive that was not restarted still counts the turns outside of the field.
     turns_unknown_ = turns_unknown_ || turns_ != 0;
@@ -123,7 +123,7 @@ double CubemarsMit::unwrapped(double position_rad, bool anew) noexcept {
 // sample does not tell on which turn the drive is; on another turn than the field's the spring pulls the
 // other way with full torque.
 void CubemarsMit::watchSpring(const cubemars::MitReport& report) noexcept {
-  const double most_nm = setup().ranges.torque_nm;
+  const double most_nm = own().ranges.torque_nm;
   // A report between two frames may still show the law of the one before.
   std::array<double, 2> expected_nm{};
   for (std::size_t i = 0; i < sent_.size(); ++i) {
@@ -132,7 +132,7 @@ void CubemarsMit::watchSpring(const cubemars::MitReport& report) noexcept {
   }
   const double stiffness = sent_[0].stiffness_nm_per_rad;
   const bool springs = obeying() && stiffness > 0.0;
-  const double turn_nm = stiffness * 2.0 * setup().ranges.position_rad;
+  const double turn_nm = stiffness * 2.0 * own().ranges.position_rad;
   const double apart_nm = kSpringMismatch * std::min(most_nm, turn_nm);
   // Too little torque is not torque the other way: near its no-load speed a drive gives less than it is told.
   const auto [low_nm, high_nm] = std::minmax({expected_nm[0], expected_nm[1], 0.0});
@@ -173,7 +173,7 @@ double CubemarsMit::driveRadS(double output_rpm) const noexcept {
 }
 
 double CubemarsMit::boundRpm(double wanted_rpm) noexcept {
-  return rpmWithinLimit(wanted_rpm, setup().ranges.velocity_rad_s / std::fabs(driveRadS(1.0)));
+  return rpmWithinLimit(wanted_rpm, own().ranges.velocity_rad_s / std::fabs(driveRadS(1.0)));
 }
 
 SpringLaw CubemarsMit::velocityLaw(double output_rpm, double torque_ff_nm, double gain) noexcept {
@@ -192,7 +192,7 @@ SpringLaw CubemarsMit::angleLaw(const Target& target, double stiffness, double d
     return velocityLaw(0.0, 0.0,
                        std::max(std::min(damping, CubemarsRanges::kDampingNmsPerRad), velocity_gain_));
   }
-  const double reach_rad = setup().ranges.position_rad;
+  const double reach_rad = own().ranges.position_rad;
   const double wanted_rad = drivePositionFor(target.value) * kRadPerDeg;
   SpringLaw law{.position_rad = std::clamp(wanted_rad, -reach_rad, reach_rad),
                 .velocity_rad_s = driveRadS(boundRpm(static_cast<double>(target.velocity_ff_rpm))),
@@ -236,7 +236,7 @@ SpringLaw CubemarsMit::lawOf(const Target& target) noexcept {
 
 void CubemarsMit::send(const SpringLaw& wanted_law) noexcept {
   // The sum is bounded by the range of the field.
-  const double most_nm = setup().ranges.torque_nm;
+  const double most_nm = own().ranges.torque_nm;
   command_ = wanted_law;
   command_.torque_nm = std::clamp(command_.torque_nm, -most_nm, most_nm);
   if (command_.torque_nm != wanted_law.torque_nm) limits_ |= kLimitCurrent;
@@ -253,8 +253,8 @@ void CubemarsMit::release() noexcept {
 // ---- Packing
 
 CanFrame CubemarsMit::commandFrame(const SpringLaw& law) const noexcept {
-  return v3_ ? cubemars::mitV3Frame(driveId(), setup().ranges, law)
-             : cubemars::mitFrame(driveId(), setup().ranges, law);
+  return v3_ ? cubemars::mitV3Frame(driveId(), own().ranges, law)
+             : cubemars::mitFrame(driveId(), own().ranges, law);
 }
 
 std::size_t CubemarsMit::packCommand(const Tick& tick, std::span<CanFrame> out) noexcept {

@@ -16,7 +16,7 @@ namespace rc10 {
 class CubemarsMit : public CubeMars_Motor {
  public:
   /// `settings` has passed its family's check().
-  CubemarsMit(const MotorSettings& settings, const CubemarsSetup& setup);
+  CubemarsMit(const MotorSettings& settings, const CubemarsSettings& own);
 
   [[nodiscard]] std::span<const FrameFilter> filters() const noexcept override;
   [[nodiscard]] bool matchesFrame(const CanFrame& frame) const noexcept override;

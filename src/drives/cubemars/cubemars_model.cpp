@@ -124,23 +124,23 @@ const CubemarsModel* findCubemarsModel(std::string_view name) noexcept {
   return findModel(kCubemarsModels, name);
 }
 
-CubemarsSetup cubemarsSetup(std::string_view model_name, const OwnValues& own) {
+CubemarsSettings cubemarsSettings(std::string_view model_name, const OwnValues& own) {
   const CubemarsModel* found = findCubemarsModel(model_name);
   const CubemarsModel& model = found == nullptr ? kCubemarsModels.front() : *found;
-  CubemarsSetup setup{.model = &model, .ranges = model.ranges};
+  CubemarsSettings settings{.model = &model, .ranges = model.ranges};
   const std::string protocol = own.text("protocol");
-  if (protocol == "mit") setup.protocol = CubemarsProtocol::kMit;
-  if (protocol == "mit_v3") setup.protocol = CubemarsProtocol::kMitV3;
-  setup.pole_pairs = own.integer("pole_pairs") > 0 ? own.integer("pole_pairs") : model.pole_pairs;
+  if (protocol == "mit") settings.protocol = CubemarsProtocol::kMit;
+  if (protocol == "mit_v3") settings.protocol = CubemarsProtocol::kMitV3;
+  settings.pole_pairs = own.integer("pole_pairs") > 0 ? own.integer("pole_pairs") : model.pole_pairs;
   const auto torque_constant = static_cast<float>(own.number("torque_constant_nm_per_a"));
-  setup.torque_nm_per_a = (torque_constant > 0.0F ? torque_constant : model.rotor_torque_nm_per_a) *
-                          static_cast<float>(model.gear_ratio);
+  settings.torque_nm_per_a = (torque_constant > 0.0F ? torque_constant : model.rotor_torque_nm_per_a) *
+                             static_cast<float>(model.gear_ratio);
   if (const double range = own.number("velocity_range_rad_s"); range > 0.0)
-    setup.ranges.velocity_rad_s = range;
-  if (const double range = own.number("torque_range_nm"); range > 0.0) setup.ranges.torque_nm = range;
-  setup.message_deg_per_deg = messageDegPerDeg(model, setup.pole_pairs, own.text("position_basis"));
-  setup.output_encoder = own.flag("output_encoder");
-  return setup;
+    settings.ranges.velocity_rad_s = range;
+  if (const double range = own.number("torque_range_nm"); range > 0.0) settings.ranges.torque_nm = range;
+  settings.message_deg_per_deg = messageDegPerDeg(model, settings.pole_pairs, own.text("position_basis"));
+  settings.output_encoder = own.flag("output_encoder");
+  return settings;
 }
 
 std::span<const DriveFault> cubemarsFaults() noexcept { return kCubemarsFaults; }

@@ -45,7 +45,7 @@ struct CubemarsModel {
 [[nodiscard]] const CubemarsModel* findCubemarsModel(std::string_view name) noexcept;
 
 /// A model as it is configured: its table with what the keys change of it.
-struct CubemarsSetup {
+struct CubemarsSettings {
   const CubemarsModel* model = nullptr;
   CubemarsProtocol protocol = CubemarsProtocol::kServo;
   CubemarsRanges ranges;
@@ -56,7 +56,7 @@ struct CubemarsSetup {
 };
 
 /// `model` is one of cubemarsModels(), `own` has all of the family's keys.
-[[nodiscard]] CubemarsSetup cubemarsSetup(std::string_view model, const OwnValues& own);
+[[nodiscard]] CubemarsSettings cubemarsSettings(std::string_view model, const OwnValues& own);
 
 /// Native error codes. The words are those of docs/motors/cubemars.md.
 [[nodiscard]] std::span<const DriveFault> cubemarsFaults() noexcept;

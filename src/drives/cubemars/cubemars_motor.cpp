@@ -20,12 +20,12 @@ constexpr double kPositionErrorDeg = 1.0;
 
 }  // namespace
 
-CubeMars_Motor::CubeMars_Motor(const MotorSettings& settings, const CubemarsSetup& setup)
-    : SoloMotor(settings, cubemarsTraits(setup), driveTurns(settings, cubemarsTraits(setup))),
-      setup_(setup),
+CubeMars_Motor::CubeMars_Motor(const MotorSettings& settings, const CubemarsSettings& own)
+    : SoloMotor(settings, cubemarsTraits(own), driveTurns(settings, cubemarsTraits(own))),
+      own_(own),
       id_(settings.id),
       longest_gap_(std::max(kStartUp, kCubemarsGapPeriods * feedbackPeriod())),
-      reach_deg_per_s_(kReach * static_cast<double>(setup.model->no_load_rpm) * kDegPerSPerRpm) {}
+      reach_deg_per_s_(kReach * static_cast<double>(own.model->no_load_rpm) * kDegPerSPerRpm) {}
 
 // ---- Feedback
 
@@ -53,13 +53,13 @@ FrameVerdict CubeMars_Motor::takeServoReport(const CanFrame& frame) noexcept {
   const auto report = cubemars::readServoReport(frame);
   if (!report) return FrameVerdict::kMalformed;
   (void)noticeRestart(frame.received);
-  takePosition(frame.received, report->degrees / setup_.message_deg_per_deg);
+  takePosition(frame.received, report->degrees / own_.message_deg_per_deg);
   // At the end of the field nobody knows where the shaft is, nor how far it went on its way back.
   position_cut_off_ = report->position_cut_off;
   if (position_cut_off_) loseReference();
-  const double drive_rpm = report->erpm / (setup_.model->gear_ratio * std::max(setup_.pole_pairs, 1));
+  const double drive_rpm = report->erpm / (own_.model->gear_ratio * std::max(own_.pole_pairs, 1));
   feedback_.velocity_rpm = static_cast<float>(toOutput(drive_rpm));
-  if (setup_.model->signed_current) {
+  if (own_.model->signed_current) {
     feedback_.current_a = direction() * static_cast<float>(report->amperes);
     feedback_.torque_nm = feedback_.current_a * torqueNmPerA();
   }

@@ -17,9 +17,9 @@ class CubeMars_Motor : public SoloMotor {
   [[nodiscard]] DriveComplaint complaint() const noexcept override;
 
  protected:
-  CubeMars_Motor(const MotorSettings& settings, const CubemarsSetup& setup);
+  CubeMars_Motor(const MotorSettings& settings, const CubemarsSettings& own);
 
-  [[nodiscard]] const CubemarsSetup& setup() const noexcept { return setup_; }
+  [[nodiscard]] const CubemarsSettings& own() const noexcept { return own_; }
   [[nodiscard]] int driveId() const noexcept { return id_; }
   /// The feedback of a drive with this id; whether it is whole is for updateFeedback() to see. A simulated
   /// drive on a virtual bus is on this computer too.
@@ -46,7 +46,7 @@ class CubeMars_Motor : public SoloMotor {
   void forgetStop() noexcept { stopped_ = false; }
 
  private:
-  CubemarsSetup setup_;
+  CubemarsSettings own_;
   int id_;
   Duration longest_gap_;
   double reach_deg_per_s_;  ///< No position changes faster.

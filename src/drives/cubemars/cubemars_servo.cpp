@@ -16,8 +16,8 @@ constexpr double kLargestPlanErpm = 327'670.0;
 
 }  // namespace
 
-CubemarsServo::CubemarsServo(const MotorSettings& settings, const CubemarsSetup& setup)
-    : CubeMars_Motor(settings, setup),
+CubemarsServo::CubemarsServo(const MotorSettings& settings, const CubemarsSettings& own)
+    : CubeMars_Motor(settings, own),
       filters_{FrameFilter{.id = cubemars::servoFeedbackId(settings.id)}},
       command_ids_{cubemars::servoId(ServoCommand::kCurrent, settings.id),
                    cubemars::servoId(ServoCommand::kDuty, settings.id),
@@ -90,7 +90,7 @@ void CubemarsServo::prepareBrake() noexcept {
 }
 
 double CubemarsServo::erpmOf(double output_rpm) const noexcept {
-  return toDrive(output_rpm) * setup().model->gear_ratio * std::max(setup().pole_pairs, 1);
+  return toDrive(output_rpm) * own().model->gear_ratio * std::max(own().pole_pairs, 1);
 }
 
 void CubemarsServo::prepareVelocity(double wanted_rpm) noexcept {
@@ -108,7 +108,7 @@ void CubemarsServo::prepareAngle(double total_angle_deg) noexcept {
     return;
   }
   const double target_deg = std::clamp(total_angle_deg, -kMostDeg, kMostDeg);
-  const double wanted_deg = drivePositionFor(target_deg) * setup().message_deg_per_deg;
+  const double wanted_deg = drivePositionFor(target_deg) * own().message_deg_per_deg;
   const double degrees = std::clamp(wanted_deg, -kLargestMessageDeg, kLargestMessageDeg);
   if (degrees != wanted_deg) limits_ |= kLimitAngle;
   const auto limit_rpm = static_cast<double>(velocityLimitRpm());
@@ -120,7 +120,7 @@ void CubemarsServo::prepareAngle(double total_angle_deg) noexcept {
   } else {
     next_ = cubemars::positionFrame(driveId(), degrees);
   }
-  const double cut_off_deg = toOutput((wanted_deg - degrees) / setup().message_deg_per_deg);
+  const double cut_off_deg = toOutput((wanted_deg - degrees) / own().message_deg_per_deg);
   setCommand(std::clamp(target_deg - cut_off_deg, -kMostDeg, kMostDeg), CommandUnit::kNative);
 }
 

@@ -14,7 +14,7 @@ namespace rc10 {
 class CubemarsServo : public CubeMars_Motor {
  public:
   /// `settings` has passed its family's check().
-  CubemarsServo(const MotorSettings& settings, const CubemarsSetup& setup);
+  CubemarsServo(const MotorSettings& settings, const CubemarsSettings& own);
 
   [[nodiscard]] std::span<const FrameFilter> filters() const noexcept override { return filters_; }
   [[nodiscard]] bool matchesFrame(const CanFrame& frame) const noexcept override;

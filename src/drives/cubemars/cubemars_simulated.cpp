@@ -20,10 +20,10 @@ constexpr Duration kCommandTimeout = std::chrono::milliseconds{1000};
 constexpr Duration kCubemarsFaultStop = std::chrono::milliseconds{500};
 constexpr Duration kStartUp = std::chrono::milliseconds{300};  // assumed
 
-std::vector<FrameFilter> cubemarsSends(const MotorSettings& settings, const CubemarsSetup& setup) {
-  if (setup.protocol != CubemarsProtocol::kMit) return {{.id = cubemars::servoFeedbackId(settings.id)}};
-  const PayloadDiscriminator own{.value = static_cast<std::uint8_t>(settings.id)};
-  return {{.id = {0, false}, .mask = kStandardIdMask, .discriminator = own}};
+std::vector<FrameFilter> cubemarsSends(const MotorSettings& settings, const CubemarsSettings& own) {
+  if (own.protocol != CubemarsProtocol::kMit) return {{.id = cubemars::servoFeedbackId(settings.id)}};
+  const PayloadDiscriminator sender{.value = static_cast<std::uint8_t>(settings.id)};
+  return {{.id = {0, false}, .mask = kStandardIdMask, .discriminator = sender}};
 }
 
 double scaled(std::uint32_t code, double low, double high, double last_code) noexcept {
@@ -41,31 +41,32 @@ std::int16_t int16Of(double value, double limit) noexcept {
 
 }  // namespace
 
-CubemarsDrive::CubemarsDrive(const MotorSettings& settings, const CubemarsSetup& setup, const MotorLoad& load)
-    : ServoDrive(settings, cubemarsTraits(setup), load, cubemarsSends(settings, setup)),
-      setup_(setup),
+CubemarsDrive::CubemarsDrive(const MotorSettings& settings, const CubemarsSettings& own,
+                             const MotorLoad& load)
+    : ServoDrive(settings, cubemarsTraits(own), load, cubemarsSends(settings, own)),
+      own_(own),
       id_(settings.id) {
   const int hz = settings.feedback_hz > 0 ? settings.feedback_hz : traits().feedback_hz;
   feedback_period_ = std::chrono::duration_cast<Duration>(std::chrono::seconds{1}) / std::max(hz, 1);
 }
 
 Duration CubemarsDrive::feedbackPeriod() const noexcept {
-  return setup_.protocol == CubemarsProtocol::kMit ? Duration::zero() : feedback_period_;
+  return own_.protocol == CubemarsProtocol::kMit ? Duration::zero() : feedback_period_;
 }
 
 std::size_t CubemarsDrive::feedback(std::span<CanFrame> out) noexcept {
-  if (setup_.protocol == CubemarsProtocol::kMit || off() || out.empty()) return 0;
+  if (own_.protocol == CubemarsProtocol::kMit || off() || out.empty()) return 0;
   out[0] = servoFeedback();
   return 1;
 }
 
 double CubemarsDrive::rpmOf(double erpm) const noexcept {
-  return erpm / (setup_.model->gear_ratio * setup_.pole_pairs);
+  return erpm / (own_.model->gear_ratio * own_.pole_pairs);
 }
 
 void CubemarsDrive::receive(const CanFrame& frame) noexcept {
   if (frame.type != FrameType::kData || frame.fd || off()) return;
-  if (setup_.protocol == CubemarsProtocol::kMit) {
+  if (own_.protocol == CubemarsProtocol::kMit) {
     if (frame.id == CanId{static_cast<std::uint32_t>(id_), false} && frame.length == 8) receiveMit(frame);
   } else if (frame.id.extended && (frame.id.value & 0xFFU) == static_cast<std::uint32_t>(id_)) {
     receiveServo(frame);
@@ -76,7 +77,7 @@ void CubemarsDrive::receiveServo(const CanFrame& frame) noexcept {
   constexpr std::array<std::size_t, 9> kLengths{4, 4, 4, 4, 4, 1, 8, 9, 8};  // 7 is no command
   const std::uint32_t command = frame.id.value >> 8U;
   if (command >= kLengths.size() || frame.length < kLengths[command]) return;
-  if (command == 8 && setup_.protocol != CubemarsProtocol::kMitV3) return;
+  if (command == 8 && own_.protocol != CubemarsProtocol::kMitV3) return;
   last_command_ = elapsed();
   if (error_ != 0) return;
   const auto bytes = frame.payload();
@@ -85,7 +86,7 @@ void CubemarsDrive::receiveServo(const CanFrame& frame) noexcept {
     case 0: voltage(std::clamp(value / 1e5, -1.0, 1.0) * static_cast<double>(traits().nominal_v)); break;
     case 1: current(std::clamp(value / 1e3, -60.0, 60.0)); break;
     case 2: {
-      const double nm = value / 1e3 * static_cast<double>(setup_.torque_nm_per_a);
+      const double nm = value / 1e3 * static_cast<double>(own_.torque_nm_per_a);
       if (nm > 0.0) {
         velocity(0.0, 0.0, nm);
       } else {
@@ -109,7 +110,7 @@ void CubemarsDrive::receiveServo(const CanFrame& frame) noexcept {
 }
 
 void CubemarsDrive::setDrivePosition(double message_deg, double limit_rpm) noexcept {
-  position(message_deg / setup_.message_deg_per_deg, limit_rpm);
+  position(message_deg / own_.message_deg_per_deg, limit_rpm);
 }
 
 void CubemarsDrive::receiveMit(const CanFrame& frame) noexcept {
@@ -134,7 +135,7 @@ void CubemarsDrive::receiveMit(const CanFrame& frame) noexcept {
 
 void CubemarsDrive::obeyMit(std::uint32_t position, std::uint32_t velocity, std::uint32_t stiffness,
                             std::uint32_t damping, std::uint32_t torque) noexcept {
-  const auto& r = setup_.ranges;
+  const auto& r = own_.ranges;
   const auto both = [](std::uint32_t code, double reach, double last) {
     return scaled(code, -reach, reach, last);
   };
@@ -145,7 +146,7 @@ void CubemarsDrive::obeyMit(std::uint32_t position, std::uint32_t velocity, std:
 
 void CubemarsDrive::step(Duration dt) noexcept {
   ServoDrive::step(dt);
-  if (setup_.protocol == CubemarsProtocol::kMit) return;
+  if (own_.protocol == CubemarsProtocol::kMit) return;
   if (elapsed() - last_command_ > kCommandTimeout) release();
   if (error_ != 0 && elapsed() >= error_until_) error_ = 0;
 }
@@ -155,8 +156,8 @@ void CubemarsDrive::restart() noexcept {
   entered_ = false;
   error_ = 0;
   boots_until_ = elapsed() + kStartUp;
-  if (setup_.output_encoder) return;
-  const double rotor_turn_deg = kDegPerTurn / setup_.model->gear_ratio;
+  if (own_.output_encoder) return;
+  const double rotor_turn_deg = kDegPerTurn / own_.model->gear_ratio;
   zeroAt(std::remainder(driveAngleDeg(), rotor_turn_deg));
 }
 
@@ -168,9 +169,9 @@ void CubemarsDrive::fault(std::uint32_t native_code) noexcept {
 
 CanFrame CubemarsDrive::servoFeedback() const noexcept {
   std::array<std::uint8_t, 8> data{};
-  const double amperes = setup_.model->signed_current ? currentA() : std::fabs(currentA());
-  const double erpm = driveRpm() * setup_.model->gear_ratio * setup_.pole_pairs;
-  writeBigEndian(data, 0, int16Of(driveAngleDeg() * setup_.message_deg_per_deg * 10.0, 32000.0));
+  const double amperes = own_.model->signed_current ? currentA() : std::fabs(currentA());
+  const double erpm = driveRpm() * own_.model->gear_ratio * own_.pole_pairs;
+  writeBigEndian(data, 0, int16Of(driveAngleDeg() * own_.message_deg_per_deg * 10.0, 32000.0));
   writeBigEndian(data, 2, int16Of(erpm / 10.0, 32000.0));
   writeBigEndian(data, 4, int16Of(amperes * 100.0, 32000.0));
   data[6] = static_cast<std::uint8_t>(std::lround(std::clamp(physics().temperatureC(), -20.0, 127.0)));
@@ -179,7 +180,7 @@ CanFrame CubemarsDrive::servoFeedback() const noexcept {
 }
 
 CanFrame CubemarsDrive::mitReply() const noexcept {
-  const auto& r = setup_.ranges;
+  const auto& r = own_.ranges;
   std::array<std::uint8_t, 8> data{};
   // The position goes round at the ends of its field.
   const double rad = std::remainder(driveAngleDeg() * kRadPerDeg, 2.0 * r.position_rad);
@@ -197,7 +198,7 @@ CanFrame CubemarsDrive::mitReply() const noexcept {
 }
 
 std::unique_ptr<Drive> makeCubemarsDrive(const MotorSettings& settings, const MotorLoad& load) {
-  return std::make_unique<CubemarsDrive>(settings, cubemarsSetup(settings.model, settings.own), load);
+  return std::make_unique<CubemarsDrive>(settings, cubemarsSettings(settings.model, settings.own), load);
 }
 
 }  // namespace rc10::sim

@@ -12,7 +12,7 @@ namespace rc10::sim {
 /// the motor class packs with, except for ids and field ranges.
 class CubemarsDrive : public ServoDrive {
  public:
-  CubemarsDrive(const MotorSettings& settings, const CubemarsSetup& setup, const MotorLoad& load);
+  CubemarsDrive(const MotorSettings& settings, const CubemarsSettings& own, const MotorLoad& load);
 
   void receive(const CanFrame& frame) noexcept override;
   void step(Duration dt) noexcept override;
@@ -35,7 +35,7 @@ class CubemarsDrive : public ServoDrive {
   [[nodiscard]] bool off() const noexcept { return elapsed() < boots_until_; }
   [[nodiscard]] double rpmOf(double erpm) const noexcept;
 
-  CubemarsSetup setup_;
+  CubemarsSettings own_;
   int id_;
   Duration feedback_period_;
   bool entered_ = false;  ///< MIT: obeys.

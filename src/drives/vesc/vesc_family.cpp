@@ -142,10 +142,10 @@ constexpr CascadeConfig kAngleLoop{
 constexpr double kTorqueTimesKv = 1.5 / std::numbers::sqrt3 * kRpmPerRadPerS;
 static_assert(kTorqueTimesKv > 8.269 && kTorqueTimesKv < 8.271);
 
-Provision holdOf(const VescOptions& options) {
-  if (options.angle == VescAngle::kTachometer) return Provision::kHostLoop;
-  if (options.angle == VescAngle::kEncoder) return Provision::kFrame;
-  return options.handbrake_current_a > 0.0F ? Provision::kFrame : Provision::kUnsupported;
+Provision holdOf(const VescSettings& own) {
+  if (own.angle == VescAngle::kTachometer) return Provision::kHostLoop;
+  if (own.angle == VescAngle::kEncoder) return Provision::kFrame;
+  return own.handbrake_current_a > 0.0F ? Provision::kFrame : Provision::kUnsupported;
 }
 
 class VescFamily final : public MotorFamily {
@@ -155,16 +155,16 @@ class VescFamily final : public MotorFamily {
   [[nodiscard]] std::span<const OwnKey> keys() const noexcept override { return kVescKeys; }
 
   [[nodiscard]] MotorTraits traits(std::string_view /*model*/, const OwnValues& own) const override {
-    return vescTraits(VescOptions{own});
+    return vescTraits(vescSettings(own));
   }
 
   [[nodiscard]] Result<void> check(const MotorSettings& settings) const override {
-    const VescOptions options{settings.own};
-    if (options.host_id == settings.id) {
-      return fail("host_id: " + std::to_string(options.host_id) + " is this drive's own id; give a free one");
+    const VescSettings own = vescSettings(settings.own);
+    if (own.host_id == settings.id) {
+      return fail("host_id: " + std::to_string(own.host_id) + " is this drive's own id; give a free one");
     }
-    if (options.angle != VescAngle::kTachometer) return {};
-    if (options.handbrake_current_a > 0.0F) {
+    if (own.angle != VescAngle::kTachometer) return {};
+    if (own.handbrake_current_a > 0.0F) {
       return fail(
           "handbrake_current_a: not with angle: tachometer, which does not count while the handbrake "
           "holds; write angle: encoder or angle: none");
@@ -177,12 +177,12 @@ class VescFamily final : public MotorFamily {
   }
 
   [[nodiscard]] BusUse busUse(const MotorSettings& settings) const override {
-    const VescOptions options{settings.own};
+    const VescSettings own = vescSettings(settings.own);
     const auto exactly = [&settings](vesc::Packet packet) {
       return FrameFilter{.id = vesc::canId(packet, settings.id)};
     };
     const FrameFilter answers{
-        .id = vesc::canId(vesc::Packet::kProcessShortBuffer, options.host_id),
+        .id = vesc::canId(vesc::Packet::kProcessShortBuffer, own.host_id),
         .discriminator = PayloadDiscriminator{.value = static_cast<std::uint8_t>(settings.id)}};
     BusUse use;
     use.sends = {exactly(vesc::Packet::kStatus1),    exactly(vesc::Packet::kStatus2),
@@ -208,13 +208,13 @@ class VescFamily final : public MotorFamily {
                               .per_second = fast ? rate_hz : static_cast<double>(kVescSlowHz)});
     };
     status(vesc::Packet::kStatus1, true);
-    status(vesc::Packet::kStatus4, options.angle == VescAngle::kEncoder);
-    status(vesc::Packet::kStatus5, options.angle == VescAngle::kTachometer);
+    status(vesc::Packet::kStatus4, own.angle == VescAngle::kEncoder);
+    status(vesc::Packet::kStatus5, own.angle == VescAngle::kTachometer);
     use.commands.push_back(
         {.id = vesc::canId(vesc::Packet::kSetCurrent, settings.id),
          .shape = {.extended = true, .length = 4},
          .per_second = static_cast<double>(settings.tick_hz) / std::max(settings.command_divider, 1)});
-    if (options.ask_status) {
+    if (own.ask_status) {
       use.feedback.push_back(
           {.id = answers.id, .shape = {.extended = true, .length = 8}, .per_second = kAsksPerSecond});
       use.commands.push_back({.id = vesc::canId(vesc::Packet::kProcessShortBuffer, settings.id),
@@ -233,40 +233,40 @@ class VescFamily final : public MotorFamily {
 
 }  // namespace
 
-MotorTraits vescTraits(const VescOptions& options) {
+MotorTraits vescTraits(const VescSettings& own) {
   MotorTraits traits;
   traits.min_id = 0;
   traits.max_id = 254;
   traits.gear_ratio = 1.0;
   traits.effort = CommandUnit::kAmpere;
-  traits.effort_full_scale = options.motor_current_max_a;
-  if (options.kv_rpm_per_v > 0.0) {
-    traits.torque_nm_per_a = static_cast<float>(kTorqueTimesKv / options.kv_rpm_per_v);
-    traits.no_load_rpm = static_cast<float>(options.kv_rpm_per_v * options.supply_v);
+  traits.effort_full_scale = own.motor_current_max_a;
+  if (own.kv_rpm_per_v > 0.0) {
+    traits.torque_nm_per_a = static_cast<float>(kTorqueTimesKv / own.kv_rpm_per_v);
+    traits.no_load_rpm = static_cast<float>(own.kv_rpm_per_v * own.supply_v);
   }
-  traits.nominal_v = static_cast<float>(options.supply_v);
-  traits.absolute = options.angle == VescAngle::kEncoder && options.position_divider == 1.0;
+  traits.nominal_v = static_cast<float>(own.supply_v);
+  traits.absolute = own.angle == VescAngle::kEncoder && own.position_divider == 1.0;
   traits.feedback_hz = 50;  // APPCONF_CAN_STATUS_RATE_1
-  traits.min_feedback_hz = options.angle == VescAngle::kTachometer ? kVescLoopMinHz : 1;
+  traits.min_feedback_hz = own.angle == VescAngle::kTachometer ? kVescLoopMinHz : 1;
   traits.max_feedback_hz = 1000;  // the setting goes higher, the bus does not
   // Its own limits may keep the current below what it is told: that is no frozen reading.
   traits.frozen_a = 0.0F;
-  traits.signed_a = options.motor_current_max_a;
+  traits.signed_a = own.motor_current_max_a;
   traits.asked = false;
-  traits.watchdog = options.ask_status;
-  traits.modes = options.angle == VescAngle::kNone ? kVescModes : kVescModesWithAngle;
+  traits.watchdog = own.ask_status;
+  traits.modes = own.angle == VescAngle::kNone ? kVescModes : kVescModesWithAngle;
   static constexpr DriveSetup kSetup{.tool = "VESC Tool (the simple CAN commands write no settings)"};
   traits.setup = &kSetup;
   traits.frames = {.rest = Provision::kFrame,
                    .poll = Provision::kNothing,
                    .idle = Provision::kFrame,
                    // The share of the current limit that the speed has of the no-load speed.
-                   .damp = options.kv_rpm_per_v > 0.0 ? Provision::kHostLoop : Provision::kUnsupported,
+                   .damp = own.kv_rpm_per_v > 0.0 ? Provision::kHostLoop : Provision::kUnsupported,
                    .brake = Provision::kFrame,
-                   .hold = holdOf(options),
-                   .enable = options.ask_status ? Provision::kFrame : Provision::kNothing,
+                   .hold = holdOf(own),
+                   .enable = own.ask_status ? Provision::kFrame : Provision::kNothing,
                    .disable = Provision::kNothing};
-  traits.host_loops = options.angle == VescAngle::kTachometer ? &kAngleLoop : nullptr;
+  traits.host_loops = own.angle == VescAngle::kTachometer ? &kAngleLoop : nullptr;
   traits.own_velocity_loop = true;
   return traits;
 }

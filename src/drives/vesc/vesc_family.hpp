@@ -8,6 +8,6 @@ namespace rc10 {
 /// VESC drives.
 [[nodiscard]] const MotorFamily& vescFamily() noexcept;
 
-[[nodiscard]] MotorTraits vescTraits(const VescOptions& options);
+[[nodiscard]] MotorTraits vescTraits(const VescSettings& own);
 
 }  // namespace rc10

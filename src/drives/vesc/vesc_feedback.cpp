@@ -52,11 +52,11 @@ FrameVerdict VESC_Motor::updateFeedback(const CanFrame& frame) noexcept {
     case vesc::Packet::kStatus1: takeStatus1(frame); break;
     case vesc::Packet::kStatus4:
       status4_ = vesc::decodeStatus4(frame);
-      feedback_.temperature_c = options_.motor_temperature ? status4_.motor_c : status4_.drive_c;
-      if (options_.angle == VescAngle::kEncoder) takeEncoder(frame);
+      feedback_.temperature_c = own_.motor_temperature ? status4_.motor_c : status4_.drive_c;
+      if (own_.angle == VescAngle::kEncoder) takeEncoder(frame);
       break;
     case vesc::Packet::kStatus5:
-      if (options_.angle == VescAngle::kTachometer) takeSteps(frame);
+      if (own_.angle == VescAngle::kTachometer) takeSteps(frame);
       status5_ = vesc::decodeStatus5(frame);
       feedback_.voltage_v = status5_.input_v;
       break;
@@ -74,7 +74,7 @@ void VESC_Motor::takeStatus1(const CanFrame& frame) noexcept {
   status1_ = status;
   status1_at_ = frame.received;
   status1_seen_ = true;
-  const double rotor_rpm = static_cast<double>(status.erpm) / options_.pole_pairs;
+  const double rotor_rpm = static_cast<double>(status.erpm) / own_.pole_pairs;
   feedback_.velocity_rpm = static_cast<float>(rotor_rpm / rotor_per_output_);
   // The sign of the reported current is that of the power: sign(vq * iq). The duty has the sign of vq, so
   // their product has that of iq, the torque. The speed stands in for a duty too small to be told.
@@ -82,7 +82,7 @@ void VESC_Motor::takeStatus1(const CanFrame& frame) noexcept {
   const float drive_a = way < 0.0F ? -status.current_a : status.current_a;
   feedback_.current_a = drive_a * direction();
   if (torqueNmPerA() > 0.0F) feedback_.torque_nm = feedback_.current_a * torqueNmPerA();
-  if (options_.angle != VescAngle::kNone) return;
+  if (own_.angle != VescAngle::kNone) return;
   feedback_.received = frame.received;
   ++feedback_.samples;
 }
@@ -107,7 +107,7 @@ void VESC_Motor::takePosition(MonotonicTime received, double moved_deg, bool kno
 
 void VESC_Motor::takeSteps(const CanFrame& frame) noexcept {
   const std::int32_t steps = vesc::decodeStatus5(frame).steps;
-  const double deg_per_step = kDegPerTurn / (kStepsPerElectricalTurn * options_.pole_pairs);
+  const double deg_per_step = kDegPerTurn / (kStepsPerElectricalTurn * own_.pole_pairs);
   if (!position_seen_) {
     takePosition(frame.received, feedback_.samples == 0 ? steps * deg_per_step : 0.0, false);
     return;
@@ -129,9 +129,9 @@ void VESC_Motor::takeSteps(const CanFrame& frame) noexcept {
 
 // Where the speed has taken it, then the nearest such angle.
 VESC_Motor::Way VESC_Motor::wayOver(double now_deg, Duration spacing) const noexcept {
-  const double rotor_rpm = static_cast<double>(status1_.erpm) / options_.pole_pairs;
+  const double rotor_rpm = static_cast<double>(status1_.erpm) / own_.pole_pairs;
   const double expected =
-      rotor_rpm / options_.position_divider * kDegPerSPerRpm * std::chrono::duration<double>(spacing).count();
+      rotor_rpm / own_.position_divider * kDegPerSPerRpm * std::chrono::duration<double>(spacing).count();
   const double off = shortestAngle(position_deg_ + expected, now_deg);
   return {.moved = expected + off, .off = std::abs(off)};
 }

@@ -61,21 +61,22 @@ VescStop stopOf(const std::string& text) {
 
 }  // namespace
 
-VescOptions::VescOptions(const OwnValues& own)
-    : pole_pairs(own.integer("pole_pairs")),
-      angle(angleOf(own.text("angle"))),
-      position_divider(own.number("position_divider")),
-      speed_ramp_erpm_per_s(own.number("speed_ramp_erpm_per_s")),
-      velocity_zero(stopOf(own.text("velocity_zero"))),
-      motor_current_max_a(static_cast<float>(own.number("motor_current_max_a"))),
-      relative_current(own.flag("relative_current")),
-      brake_current_a(static_cast<float>(own.number("brake_current_a"))),
-      handbrake_current_a(static_cast<float>(own.number("handbrake_current_a"))),
-      kv_rpm_per_v(own.number("kv_rpm_per_v")),
-      supply_v(own.number("supply_v")),
-      motor_temperature(own.text("temperature") == "motor"),
-      ask_status(own.flag("ask_status")),
-      host_id(own.integer("host_id")) {}
+VescSettings vescSettings(const OwnValues& own) {
+  return {.pole_pairs = own.integer("pole_pairs"),
+          .angle = angleOf(own.text("angle")),
+          .position_divider = own.number("position_divider"),
+          .speed_ramp_erpm_per_s = own.number("speed_ramp_erpm_per_s"),
+          .velocity_zero = stopOf(own.text("velocity_zero")),
+          .motor_current_max_a = static_cast<float>(own.number("motor_current_max_a")),
+          .relative_current = own.flag("relative_current"),
+          .brake_current_a = static_cast<float>(own.number("brake_current_a")),
+          .handbrake_current_a = static_cast<float>(own.number("handbrake_current_a")),
+          .kv_rpm_per_v = own.number("kv_rpm_per_v"),
+          .supply_v = own.number("supply_v"),
+          .motor_temperature = own.text("temperature") == "motor",
+          .ask_status = own.flag("ask_status"),
+          .host_id = own.integer("host_id")};
+}
 
 FaultCode vescFault(std::uint8_t native_code) noexcept {
   return native_code < kVescFaults.size() ? kVescFaults[native_code] : FaultCode::kDriveOther;

@@ -17,25 +17,24 @@ enum class VescAngle : std::uint8_t {
 /// Meaning of a velocity of 0.
 enum class VescStop : std::uint8_t { kRegulate, kCoast, kBrake };
 
-/// The values of the family's own keys.
-struct VescOptions {
-  explicit VescOptions(const OwnValues& own);
-
-  int pole_pairs;
-  VescAngle angle;
-  double position_divider;
-  double speed_ramp_erpm_per_s;
-  VescStop velocity_zero;
-  float motor_current_max_a;
-  bool relative_current;
-  float brake_current_a;
-  float handbrake_current_a;  ///< 0: no handbrake.
-  double kv_rpm_per_v;        ///< 0: unknown.
-  double supply_v;
-  bool motor_temperature;  ///< Else the drive's.
-  bool ask_status;
-  int host_id;
+/// Settings of one VESC, from its own keys.
+struct VescSettings {
+  int pole_pairs = 0;
+  VescAngle angle = VescAngle::kTachometer;
+  double position_divider = 0.0;
+  double speed_ramp_erpm_per_s = 0.0;
+  VescStop velocity_zero = VescStop::kRegulate;
+  float motor_current_max_a = 0.0F;
+  bool relative_current = false;
+  float brake_current_a = 0.0F;
+  float handbrake_current_a = 0.0F;  ///< 0: no handbrake.
+  double kv_rpm_per_v = 0.0;         ///< 0: unknown.
+  double supply_v = 0.0;
+  bool motor_temperature = false;  ///< Else the drive's.
+  bool ask_status = false;
+  int host_id = 0;
 };
+[[nodiscard]] VescSettings vescSettings(const OwnValues& own);
 
 /// Fault of a native code; kDriveOther for an unknown one.
 [[nodiscard]] FaultCode vescFault(std::uint8_t native_code) noexcept;

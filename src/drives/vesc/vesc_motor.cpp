@@ -24,13 +24,13 @@ constexpr std::int32_t kSlippedErpm = 450;
 // SET_POS goes the shortest way round: the drive is told no more than this ahead of where it is.
 constexpr double kLeadDeg = 90.0;
 
-std::array<FrameFilter, 8> filtersOf(int id, const VescOptions& options) {
+std::array<FrameFilter, 8> filtersOf(int id, const VescSettings& own) {
   const auto exactly = [id](vesc::Packet packet) { return FrameFilter{.id = vesc::canId(packet, id)}; };
   return {exactly(vesc::Packet::kStatus1), exactly(vesc::Packet::kStatus2), exactly(vesc::Packet::kStatus3),
           exactly(vesc::Packet::kStatus4), exactly(vesc::Packet::kStatus5), exactly(vesc::Packet::kStatus6),
           exactly(vesc::Packet::kNotifyBoot),
           // Every drive answers to the one host id, with its own in the first byte.
-          FrameFilter{.id = vesc::canId(vesc::Packet::kProcessShortBuffer, options.host_id),
+          FrameFilter{.id = vesc::canId(vesc::Packet::kProcessShortBuffer, own.host_id),
                       .discriminator = PayloadDiscriminator{
                           .byte_index = 0, .mask = 0xFF, .value = static_cast<std::uint8_t>(id)}}};
 }
@@ -49,21 +49,21 @@ std::array<CanId, 10> commandIdsOf(int id) {
 }
 
 /// With a divider the drive's position loop counts turns of what stands behind that gear.
-double reportedTurns(const MotorSettings& settings, const VescOptions& options) {
-  const double gear = gearRatioOf(settings, vescTraits(options));
-  return options.angle == VescAngle::kEncoder ? gear / options.position_divider : gear;
+double reportedTurns(const MotorSettings& settings, const VescSettings& own) {
+  const double gear = gearRatioOf(settings, vescTraits(own));
+  return own.angle == VescAngle::kEncoder ? gear / own.position_divider : gear;
 }
 
 }  // namespace
 
 VESC_Motor::VESC_Motor(const MotorSettings& settings)
-    : SoloMotor(settings, vescTraits(VescOptions{settings.own}),
-                reportedTurns(settings, VescOptions{settings.own})),
-      options_(settings.own),
+    : SoloMotor(settings, vescTraits(vescSettings(settings.own)),
+                reportedTurns(settings, vescSettings(settings.own))),
+      own_(vescSettings(settings.own)),
       id_(settings.id),
       rotor_per_output_(get_GearRatio() * static_cast<double>(direction())),
       patience_(std::max(kShortestPatience, kPatiencePeriods * feedbackPeriod())),
-      filters_(filtersOf(settings.id, options_)),
+      filters_(filtersOf(settings.id, own_)),
       command_ids_(commandIdsOf(settings.id)),
       inquiry_(kWatchdogSilence),
       loops_(settings.loops),
@@ -91,19 +91,19 @@ void VESC_Motor::update(const Tick& tick) noexcept {
   limits_ = 0;
   const FrameKind kind = ordered();
   if (!obeying()) restarted_ = false;
-  if (options_.ask_status) inquiry_.update(tick, kind);
+  if (own_.ask_status) inquiry_.update(tick, kind);
 
   const Target target = wanted();
-  const bool loops = options_.angle == VescAngle::kTachometer && (target.mode == ControlMode::kTotalAngle) &&
+  const bool loops = own_.angle == VescAngle::kTachometer && (target.mode == ControlMode::kTotalAngle) &&
                      kind != FrameKind::kDamp;
   if (!loops || begins()) looping_ = false;
   const bool brakes = target.mode == ControlMode::kBrake || kind == FrameKind::kHold ||
-                      (target.mode == ControlMode::kVelocity && options_.velocity_zero == VescStop::kBrake);
+                      (target.mode == ControlMode::kVelocity && own_.velocity_zero == VescStop::kBrake);
   if (!brakes) locked_ = false;
 
   if (kind == FrameKind::kDamp) {
     damp();
-  } else if (kind == FrameKind::kHold && options_.angle == VescAngle::kNone) {
+  } else if (kind == FrameKind::kHold && own_.angle == VescAngle::kNone) {
     brake();
   } else {
     obey(target);
@@ -134,8 +134,8 @@ void VESC_Motor::release() noexcept {
 
 VESC_Motor::Command VESC_Motor::currentCommand(vesc::Packet absolute, vesc::Packet relative,
                                                double drive_a) const noexcept {
-  if (!options_.relative_current) return {absolute, vesc::toRaw(drive_a, vesc::kPerAmpere)};
-  const double share = std::clamp(drive_a / static_cast<double>(options_.motor_current_max_a), -1.0, 1.0);
+  if (!own_.relative_current) return {absolute, vesc::toRaw(drive_a, vesc::kPerAmpere)};
+  const double share = std::clamp(drive_a / static_cast<double>(own_.motor_current_max_a), -1.0, 1.0);
   return {relative, vesc::toRaw(share, vesc::kPerShare)};
 }
 
@@ -155,11 +155,11 @@ void VESC_Motor::setVelocity(double rpm) noexcept {
     release();
     return;
   }
-  const double raw_per_rpm = rotor_per_output_ * options_.pole_pairs * vesc::kPerErpm;
+  const double raw_per_rpm = rotor_per_output_ * own_.pole_pairs * vesc::kPerErpm;
   const double bounded =
       rpmWithinLimit(rpm, std::numeric_limits<std::int32_t>::max() / std::abs(raw_per_rpm));
   command_ = {vesc::Packet::kSetErpm,
-              vesc::toRaw(bounded * rotor_per_output_ * options_.pole_pairs, vesc::kPerErpm)};
+              vesc::toRaw(bounded * rotor_per_output_ * own_.pole_pairs, vesc::kPerErpm)};
   setCommand(bounded, CommandUnit::kNative);
 }
 
@@ -181,8 +181,8 @@ void VESC_Motor::followVelocity(const Target& target) noexcept {
     locked_ = false;
     return;
   }
-  if (options_.velocity_zero == VescStop::kCoast) release();
-  if (options_.velocity_zero == VescStop::kBrake) brake();
+  if (own_.velocity_zero == VescStop::kCoast) release();
+  if (own_.velocity_zero == VescStop::kBrake) brake();
 }
 
 void VESC_Motor::followAngle(const Target& target) noexcept {
@@ -191,7 +191,7 @@ void VESC_Motor::followAngle(const Target& target) noexcept {
     release();
     return;
   }
-  if (options_.angle == VescAngle::kEncoder) {
+  if (own_.angle == VescAngle::kEncoder) {
     setPosition(target.value);
     return;
   }
@@ -219,8 +219,7 @@ void VESC_Motor::followAngle(const Target& target) noexcept {
 
 /// From this speed the drive's ramp stops the motor within the error, with half of it left for delays.
 float VESC_Motor::stoppableRpm(float error_deg) const noexcept {
-  const double ramp_rpm_per_s =
-      options_.speed_ramp_erpm_per_s / (options_.pole_pairs * std::abs(rotor_per_output_));
+  const double ramp_rpm_per_s = own_.speed_ramp_erpm_per_s / (own_.pole_pairs * std::abs(rotor_per_output_));
   const double ramp_deg_per_s2 = 0.5 * ramp_rpm_per_s * kDegPerSPerRpm;
   return static_cast<float>(std::sqrt(2.0 * ramp_deg_per_s2 * std::abs(static_cast<double>(error_deg))) /
                             kDegPerSPerRpm);
@@ -253,7 +252,7 @@ void VESC_Motor::damp() noexcept {
 }
 
 bool VESC_Motor::standsStill() noexcept {
-  if (!(options_.handbrake_current_a > 0.0F) || silent() || !status1_seen_) return false;
+  if (!(own_.handbrake_current_a > 0.0F) || silent() || !status1_seen_) return false;
   const auto erpm = std::abs(static_cast<std::int64_t>(status1_.erpm));
   return erpm <= (locked_ ? kSlippedErpm : kStillErpm);
 }
@@ -261,7 +260,7 @@ bool VESC_Motor::standsStill() noexcept {
 /// A brake current slows down and holds nothing; at standstill the handbrake holds, if there is one.
 void VESC_Motor::brake() noexcept {
   locked_ = standsStill();
-  const float wanted_a = locked_ ? options_.handbrake_current_a : options_.brake_current_a;
+  const float wanted_a = locked_ ? own_.handbrake_current_a : own_.brake_current_a;
   const double amperes = static_cast<double>(std::min(wanted_a, effortLimit()));
   command_ =
       locked_
@@ -275,10 +274,10 @@ void VESC_Motor::brake() noexcept {
 std::size_t VESC_Motor::packCommand(const Tick& tick, std::span<CanFrame> out) noexcept {
   std::size_t count = 0;
   // Asked first: a drive that has timed out says so before the next command reaches it.
-  if (options_.ask_status && inquiry_.question() != 0 && count < out.size()) {
-    out[count++] = vesc::makeQuestion(id_, options_.host_id, inquiry_.question());
+  if (own_.ask_status && inquiry_.question() != 0 && count < out.size()) {
+    out[count++] = vesc::makeQuestion(id_, own_.host_id, inquiry_.question());
   }
-  const bool silence = options_.ask_status && inquiry_.silence();
+  const bool silence = own_.ask_status && inquiry_.silence();
   if (!silence && due(tick) && count < out.size()) {
     out[count++] = vesc::makeCommand(command_.packet, id_, command_.raw);
   }
@@ -294,8 +293,7 @@ std::size_t VESC_Motor::packRest(std::span<CanFrame> out) const noexcept {
 // ---- Enabling
 
 SequenceProgress VESC_Motor::sequenceProgress() const noexcept {
-  return options_.ask_status && ordered() == FrameKind::kEnable ? inquiry_.progress()
-                                                                : SequenceProgress::kDone;
+  return own_.ask_status && ordered() == FrameKind::kEnable ? inquiry_.progress() : SequenceProgress::kDone;
 }
 
 // ---- Complaints

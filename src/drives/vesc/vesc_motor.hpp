@@ -35,7 +35,7 @@ class VESC_Motor : public SoloMotor {
   [[nodiscard]] DriveComplaint complaint() const noexcept override;
   bool setZero(double angle_deg) noexcept override;
   [[nodiscard]] const CascadeConfig* hostLoops() const noexcept override {
-    return options_.angle == VescAngle::kTachometer ? &loops_ : nullptr;
+    return own_.angle == VescAngle::kTachometer ? &loops_ : nullptr;
   }
   void retune(const CascadeConfig& loops) noexcept override;
 
@@ -78,7 +78,7 @@ class VESC_Motor : public SoloMotor {
   [[nodiscard]] bool silent() const noexcept;
   [[nodiscard]] bool standsStill() noexcept;
 
-  VescOptions options_;
+  VescSettings own_;
   int id_;
   double rotor_per_output_;  ///< Signed by the direction.
   Duration patience_;        ///< Older feedback than this closes no loop.

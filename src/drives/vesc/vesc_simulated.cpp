@@ -25,8 +25,6 @@ constexpr double kRampErpmPerS = 25'000.0;           // MCCONF_S_PID_RAMP_ERPMS_
 constexpr double kBrakeFadeRpm = 5.0;                // a brake current fades out with the speed
 constexpr std::uint8_t kGetValuesSelective = 50;
 
-VescOptions optionsOf(const MotorSettings& settings) { return VescOptions{settings.own}; }
-
 std::vector<FrameFilter> vescSends(const MotorSettings& settings) {
   std::vector<FrameFilter> sends;
   for (const auto packet :
@@ -34,7 +32,7 @@ std::vector<FrameFilter> vescSends(const MotorSettings& settings) {
     sends.push_back({.id = vesc::canId(packet, settings.id)});
   }
   // Its answers go to whoever asked: here that is the host.
-  sends.push_back({.id = vesc::canId(vesc::Packet::kProcessShortBuffer, optionsOf(settings).host_id),
+  sends.push_back({.id = vesc::canId(vesc::Packet::kProcessShortBuffer, vescSettings(settings.own).host_id),
                    .discriminator = PayloadDiscriminator{.value = static_cast<std::uint8_t>(settings.id)}});
   return sends;
 }
@@ -46,8 +44,8 @@ std::int16_t raw16(double value, double per_unit) noexcept {
 }  // namespace
 
 VescDrive::VescDrive(const MotorSettings& settings, const MotorLoad& load)
-    : ServoDrive(settings, vescTraits(optionsOf(settings)), load, vescSends(settings)),
-      options_(settings.own),
+    : ServoDrive(settings, vescTraits(vescSettings(settings.own)), load, vescSends(settings)),
+      own_(vescSettings(settings.own)),
       id_(settings.id),
       period_(Duration{std::chrono::seconds{1}} /
               std::max(settings.feedback_hz > 0 ? settings.feedback_hz : 50, 1)),
@@ -83,7 +81,7 @@ void VescDrive::command(vesc::Packet packet, const CanFrame& frame) noexcept {
   const bool padded = packet == vesc::Packet::kSetCurrent && frame.length >= 6;
   const double amperes = number(padded ? 2 : 0, vesc::kPerAmpere);
   const double share = number(0, vesc::kPerShare);
-  const double most = static_cast<double>(options_.motor_current_max_a);
+  const double most = static_cast<double>(own_.motor_current_max_a);
   switch (packet) {
     case vesc::Packet::kSetDuty:
     case vesc::Packet::kSetCurrent:
@@ -117,11 +115,11 @@ void VescDrive::command(vesc::Packet packet, const CanFrame& frame) noexcept {
     case vesc::Packet::kSetErpm:
       regulating_ = true;
       if (!was_regulating) speed_rpm_ = rotorRpm();
-      command_rpm_ = number(0, vesc::kPerErpm) / options_.pole_pairs;
+      command_rpm_ = number(0, vesc::kPerErpm) / own_.pole_pairs;
       break;
     case vesc::Packet::kSetPosition: {
       const double way = shortestAngle(encoderDeg(), number(0, vesc::kPerDegree));
-      position(driveAngleDeg() + way * options_.position_divider);
+      position(driveAngleDeg() + way * own_.position_divider);
       break;
     }
     default: break;
@@ -148,9 +146,9 @@ void VescDrive::stepBrake() noexcept {
 }
 
 void VescDrive::stepSpeed(Duration dt) noexcept {
-  const double ramp = kRampErpmPerS / options_.pole_pairs * std::chrono::duration<double>(dt).count();
+  const double ramp = kRampErpmPerS / own_.pole_pairs * std::chrono::duration<double>(dt).count();
   speed_rpm_ += std::clamp(command_rpm_ - speed_rpm_, -ramp, ramp);
-  if (std::abs(speed_rpm_) * options_.pole_pairs < kMinErpm) {
+  if (std::abs(speed_rpm_) * own_.pole_pairs < kMinErpm) {
     release();
   } else {
     velocity(speed_rpm_);
@@ -185,11 +183,11 @@ double VescDrive::dutyNow() const noexcept {
 
 /// Input of its position loop: the rotor's angle, or that angle after the divider.
 double VescDrive::encoderDeg() const noexcept {
-  return wrapDegrees(driveAngleDeg() / options_.position_divider - divided_zero_deg_);
+  return wrapDegrees(driveAngleDeg() / own_.position_divider - divided_zero_deg_);
 }
 
 std::int64_t VescDrive::stepsNow() const noexcept {
-  return static_cast<std::int64_t>(std::floor(driveAngleDeg() * options_.pole_pairs / 60.0));
+  return static_cast<std::int64_t>(std::floor(driveAngleDeg() * own_.pole_pairs / 60.0));
 }
 
 CanFrame VescDrive::status(vesc::Packet packet) const noexcept {
@@ -198,7 +196,7 @@ CanFrame VescDrive::status(vesc::Packet packet) const noexcept {
     const double duty = dutyNow();
     // The sign of the power.
     const double current_a = duty * currentA() < 0.0 ? -std::abs(currentA()) : std::abs(currentA());
-    writeBigEndian<std::int32_t>(payload, 0, static_cast<std::int32_t>(rotorRpm() * options_.pole_pairs));
+    writeBigEndian<std::int32_t>(payload, 0, static_cast<std::int32_t>(rotorRpm() * own_.pole_pairs));
     writeBigEndian<std::int16_t>(payload, 4, raw16(current_a, 10.0));
     writeBigEndian<std::int16_t>(payload, 6, raw16(duty, 1000.0));
   } else if (packet == vesc::Packet::kStatus4) {
@@ -223,8 +221,8 @@ std::size_t VescDrive::feedback(std::span<CanFrame> out) noexcept {
     if (count < out.size()) out[count++] = status(packet);
   };
   send(vesc::Packet::kStatus1);
-  if (slow || options_.angle == VescAngle::kEncoder) send(vesc::Packet::kStatus4);
-  if (slow || options_.angle == VescAngle::kTachometer) send(vesc::Packet::kStatus5);
+  if (slow || own_.angle == VescAngle::kEncoder) send(vesc::Packet::kStatus4);
+  if (slow || own_.angle == VescAngle::kTachometer) send(vesc::Packet::kStatus5);
   return count;
 }
 
@@ -238,8 +236,8 @@ void VescDrive::restart() noexcept {
   commanded_ = elapsed();
   steps_zero_ = stepsNow();
   // With a divider it cannot know the turn it is in.
-  if (options_.position_divider != 1.0) {
-    divided_zero_deg_ = (driveAngleDeg() - wrapDegrees(driveAngleDeg())) / options_.position_divider;
+  if (own_.position_divider != 1.0) {
+    divided_zero_deg_ = (driveAngleDeg() - wrapDegrees(driveAngleDeg())) / own_.position_divider;
   }
 }
 

@@ -39,7 +39,7 @@ class VescDrive : public ServoDrive {
   [[nodiscard]] std::int64_t stepsNow() const noexcept;
   [[nodiscard]] CanFrame status(vesc::Packet packet) const noexcept;
 
-  VescOptions options_;
+  VescSettings own_;
   int id_;
   Duration period_;
   Duration watchdog_{std::chrono::seconds{1}};

@@ -18,7 +18,7 @@ constexpr double kDampingMax = 5.0;
 class CubemarsWire final : public Wire {
  public:
   explicit CubemarsWire(const MotorConfig& config)
-      : Wire(config), setup_(cubemarsSetup(config.settings.model, config.settings.own)) {
+      : Wire(config), setup_(cubemarsSettings(config.settings.model, config.settings.own)) {
     own_id_ = static_cast<std::uint32_t>(id());
     mit_ = setup_.protocol == CubemarsProtocol::kMit;
   }
@@ -141,7 +141,7 @@ class CubemarsWire final : public Wire {
     return erpm / (setup_.model->gear_ratio * std::max(setup_.pole_pairs, 1)) / perOutput();
   }
 
-  CubemarsSetup setup_;
+  CubemarsSettings setup_;
   std::uint32_t own_id_ = 0;
   bool mit_ = false;
   bool on_ = false;

@@ -10,7 +10,7 @@ namespace {
 
 class VescWire final : public Wire {
  public:
-  explicit VescWire(const MotorConfig& config) : Wire(config), options_(config.settings.own) {
+  explicit VescWire(const MotorConfig& config) : Wire(config), options_(vescSettings(config.settings.own)) {
     const double gear = config.settings.gear_ratio > 0.0 ? config.settings.gear_ratio : 1.0;
     rpm_per_erpm_ = direction() / (options_.pole_pairs * gear);
   }
@@ -73,7 +73,7 @@ class VescWire final : public Wire {
     told_.most_effort = amperes;
   }
 
-  VescOptions options_;
+  VescSettings options_;
   double rpm_per_erpm_ = 1.0;
   Told told_;
 };
