@@ -39,7 +39,7 @@ CubemarsMit::CubemarsMit(const MotorSettings& settings, const CubemarsSettings& 
       angle_stiffness_(settings.own.number("angle_stiffness_nm_per_rad")),
       angle_damping_(settings.own.number("angle_damping_nms_per_rad")),
       velocity_gain_(settings.own.number("velocity_gain_nms_per_rad")),
-      sequence_(kMitStepPatience, kMitAttempts) {
+      enabling_(kMitStepPatience, kMitAttempts) {
   const auto id = static_cast<std::uint8_t>(settings.id);
   if (v3_) {
     filters_.fill(FrameFilter{.id = cubemars::servoFeedbackId(settings.id)});
@@ -158,7 +158,7 @@ void CubemarsMit::update(const Tick& tick) noexcept {
   limits_ = 0;
   enter_now_ = false;
   const Target target = wanted();
-  if (!v3_ && enabling()) stepEnabling(tick);
+  if (!v3_ && enabling()) runEnabling(tick);
   const bool damps = ordered() == FrameKind::kDamp;
   const bool coasts = target.mode == ControlMode::kCoast && !damps;
   if (coasts || silent(tick) || !std::isfinite(target.value)) {
@@ -292,20 +292,20 @@ std::size_t CubemarsMit::packRest(std::span<CanFrame> out) const noexcept {
 
 // Nothing in an answer says whether the drive has entered the mode; that it answers, and without an error,
 // is all there is to see.
-void CubemarsMit::stepEnabling(const Tick& tick) noexcept {
+void CubemarsMit::runEnabling(const Tick& tick) noexcept {
   if (begins()) {
-    sequence_.begin(Step::kEnter);
+    enabling_.begin(Step::kEnter);
     forgetStop();
   }
-  const bool answered = sequence_.awaits() && feedback_.samples >= samples_before_ + kAnswersToEnter;
-  if (answered && error() == 0) sequence_.finish();
-  const bool first = !sequence_.awaits();
-  enter_now_ = sequence_.asks(tick.now);
+  const bool answered = enabling_.awaits() && feedback_.samples >= samples_before_ + kAnswersToEnter;
+  if (answered && error() == 0) enabling_.finish();
+  const bool first = !enabling_.awaits();
+  enter_now_ = enabling_.asks(tick.now);
   if (enter_now_ && first) samples_before_ = feedback_.samples;
 }
 
 SequenceProgress CubemarsMit::sequenceProgress() const noexcept {
-  return v3_ ? SequenceProgress::kDone : progressOf(sequence_.progress());
+  return v3_ ? SequenceProgress::kDone : progressOf(enabling_.progress());
 }
 
 // ---- Complaints

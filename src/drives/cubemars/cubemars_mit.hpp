@@ -36,7 +36,7 @@ class CubemarsMit : public CubeMars_Motor {
 
   [[nodiscard]] FrameVerdict takeMitReport(const CanFrame& frame) noexcept;
   [[nodiscard]] double unwrapped(double position_rad, bool anew) noexcept;
-  void stepEnabling(const Tick& tick) noexcept;
+  void runEnabling(const Tick& tick) noexcept;
   [[nodiscard]] bool silent(const Tick& tick) const noexcept;
   [[nodiscard]] bool inRange() const noexcept { return turns_ == 0 && !turns_unknown_ && !positionCutOff(); }
   void watchSpring(const cubemars::MitReport& report) noexcept;
@@ -69,7 +69,7 @@ class CubemarsMit : public CubeMars_Motor {
   SpringLaw command_{};              ///< Result of update().
   std::array<SpringLaw, 2> sent_{};  ///< The last, and the one before.
   int samples_against_ = 0;  ///< In a row, of a spring that pulls the other way; signed by its torque.
-  EnableSequence<Step> sequence_;
+  EnableSequence<Step> enabling_;
   bool enter_now_ = false;
   bool clear_now_ = false;
   std::uint64_t samples_before_ = 0;  ///< Heard when it was first told to enter.

@@ -44,47 +44,47 @@ void CubemarsServo::update(const Tick& /*tick*/) noexcept {
   const Target target = wanted();
   const bool nothing_left = !(effortLimit() > 0.0F);
   if (ordered() == FrameKind::kDamp && !nothing_left) {
-    prepareDamp();
+    damp();
   } else if (nothing_left || !std::isfinite(target.value)) {
     if (target.mode != ControlMode::kCoast) limits_ |= kLimitCurrent;
-    prepareRest();
+    release();
   } else {
-    prepare(target);
+    follow(target);
   }
 }
 
-void CubemarsServo::prepare(const Target& target) noexcept {
+void CubemarsServo::follow(const Target& target) noexcept {
   switch (target.mode) {
-    case ControlMode::kCurrent: prepareCurrent(target); break;
-    case ControlMode::kVelocity: prepareVelocity(target.value); break;
-    case ControlMode::kTotalAngle: prepareAngle(target.value); break;
-    case ControlMode::kDuty: prepareDuty(target.value); break;
-    case ControlMode::kBrake: prepareBrake(); break;
+    case ControlMode::kCurrent: followCurrent(target); break;
+    case ControlMode::kVelocity: followVelocity(target.value); break;
+    case ControlMode::kTotalAngle: followAngle(target.value); break;
+    case ControlMode::kDuty: followDuty(target.value); break;
+    case ControlMode::kBrake: brake(); break;
     case ControlMode::kCoast:
     case ControlMode::kAngle:  // wanted() has made it a total angle
     case ControlMode::kImpedance:
-    case ControlMode::kVoltage: prepareRest(); break;
+    case ControlMode::kVoltage: release(); break;
   }
 }
 
-void CubemarsServo::prepareRest() noexcept {
+void CubemarsServo::release() noexcept {
   next_ = cubemars::currentFrame(driveId(), 0.0);
   setCommand(0.0, CommandUnit::kAmpere);
 }
 
 // Duty 0 shorts the winding: a torque against the motion in proportion to the speed, with no feedback needed.
-void CubemarsServo::prepareDamp() noexcept {
+void CubemarsServo::damp() noexcept {
   next_ = cubemars::dutyFrame(driveId(), 0.0);
   setCommand(0.0, CommandUnit::kNative);
 }
 
-void CubemarsServo::prepareCurrent(const Target& target) noexcept {
+void CubemarsServo::followCurrent(const Target& target) noexcept {
   const double amperes = currentWithinLimit(target);
   next_ = cubemars::currentFrame(driveId(), amperes * static_cast<double>(direction()));
   setCommand(amperes, CommandUnit::kAmpere);
 }
 
-void CubemarsServo::prepareBrake() noexcept {
+void CubemarsServo::brake() noexcept {
   next_ = cubemars::brakeFrame(driveId(), std::min(brake_a_, static_cast<double>(effortLimit())));
   setCommand(0.0, CommandUnit::kNative);
 }
@@ -93,7 +93,7 @@ double CubemarsServo::erpmOf(double output_rpm) const noexcept {
   return toDrive(output_rpm) * own().model->gear_ratio * std::max(own().pole_pairs, 1);
 }
 
-void CubemarsServo::prepareVelocity(double wanted_rpm) noexcept {
+void CubemarsServo::followVelocity(double wanted_rpm) noexcept {
   const double rpm = rpmWithinLimit(wanted_rpm, cubemars::kLargestErpm / std::fabs(erpmOf(1.0)));
   next_ = cubemars::velocityFrame(driveId(), erpmOf(rpm));
   setCommand(rpm, CommandUnit::kNative);
@@ -101,9 +101,9 @@ void CubemarsServo::prepareVelocity(double wanted_rpm) noexcept {
 
 // Without a limit the drive follows each new target at once, which is what a stream of targets wants. With
 // one it plans its way to the target.
-void CubemarsServo::prepareAngle(double total_angle_deg) noexcept {
+void CubemarsServo::followAngle(double total_angle_deg) noexcept {
   if (positionCutOff()) {  // any target would be a jump back
-    prepareBrake();
+    brake();
     limits_ |= kLimitAngle;
     return;
   }
@@ -124,7 +124,7 @@ void CubemarsServo::prepareAngle(double total_angle_deg) noexcept {
   setCommand(std::clamp(target_deg - cut_off_deg, -kMostDeg, kMostDeg), CommandUnit::kNative);
 }
 
-void CubemarsServo::prepareDuty(double duty) noexcept {
+void CubemarsServo::followDuty(double duty) noexcept {
   const double bounded = std::clamp(duty, -1.0, 1.0);
   next_ = cubemars::dutyFrame(driveId(), bounded * static_cast<double>(direction()));
   setCommand(bounded, CommandUnit::kNative);

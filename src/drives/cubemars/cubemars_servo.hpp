@@ -29,14 +29,14 @@ class CubemarsServo : public CubeMars_Motor {
   void clearComplaint() noexcept override { forgetStop(); }
 
  private:
-  void prepare(const Target& target) noexcept;
-  void prepareRest() noexcept;
-  void prepareDamp() noexcept;
-  void prepareCurrent(const Target& target) noexcept;
-  void prepareBrake() noexcept;
-  void prepareVelocity(double wanted_rpm) noexcept;
-  void prepareAngle(double total_angle_deg) noexcept;
-  void prepareDuty(double duty) noexcept;
+  void follow(const Target& target) noexcept;
+  void release() noexcept;
+  void damp() noexcept;
+  void followCurrent(const Target& target) noexcept;
+  void brake() noexcept;
+  void followVelocity(double wanted_rpm) noexcept;
+  void followAngle(double total_angle_deg) noexcept;
+  void followDuty(double duty) noexcept;
   [[nodiscard]] double erpmOf(double output_rpm) const noexcept;
 
   std::array<FrameFilter, 1> filters_;

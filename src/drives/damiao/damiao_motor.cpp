@@ -53,7 +53,7 @@ Damiao_Motor::Damiao_Motor(const MotorSettings& settings)
       position_(own_.scale, fastest(settings, own_.scale), feedbackPeriod()),
       enabling_({.id = settings.id, .control = own_.control, .timeout = own_.timeout, .scale = own_.scale}),
       setup_codec_(settings.id, own_.can_fd) {
-  restCommand();
+  release();
 }
 
 // ---- Feedback
@@ -139,17 +139,17 @@ void Damiao_Motor::update(const Tick& tick) noexcept {
   limits_ = 0;
   Target target = wanted();
   if (!std::isfinite(target.value)) target = Target{};
-  followSequence(tick);
+  runEnabling(tick);
   if (obeying() && !armed_ && status_ < damiao::kFirstFault) stopped_ = true;
   if (!armed_) {
-    restCommand();
+    release();
     return;
   }
   switch (own_.control) {
-    case DamiaoControl::kMit: mitCommand(target); break;
-    case DamiaoControl::kVelocity: velocityCommand(target); break;
+    case DamiaoControl::kMit: followMit(target); break;
+    case DamiaoControl::kVelocity: followVelocity(target); break;
     case DamiaoControl::kPositionVelocity:
-    case DamiaoControl::kForcePosition: positionCommand(target); break;
+    case DamiaoControl::kForcePosition: followAngle(target); break;
   }
 }
 
@@ -158,7 +158,7 @@ double Damiao_Motor::fastestRadS() const noexcept {
   return limit_rad_s > 0.0 ? std::min(limit_rad_s, own_.scale.v_max_rad_s) : own_.scale.v_max_rad_s;
 }
 
-void Damiao_Motor::restCommand() noexcept {
+void Damiao_Motor::release() noexcept {
   command_ = specialFrame(Special::kDisable);
   stay_rad_.reset();
   setCommand(0.0, CommandUnit::kNone);
@@ -203,7 +203,7 @@ SpringLaw Damiao_Motor::mitLaw(const Target& target) const noexcept {
   return law;
 }
 
-void Damiao_Motor::mitCommand(const Target& target) noexcept {
+void Damiao_Motor::followMit(const Target& target) noexcept {
   const DamiaoMitBounds bounds{.scale = own_.scale,
                                .torque_nm = std::min(driveTorqueLimitNm(), own_.scale.t_max_nm),
                                .velocity_rad_s = velocityLimitRpm() > 0.0F ? fastestRadS() : 0.0,
@@ -215,7 +215,7 @@ void Damiao_Motor::mitCommand(const Target& target) noexcept {
   setCommand(torque_nm / static_cast<double>(torqueNmPerA()), CommandUnit::kAmpere);
 }
 
-void Damiao_Motor::velocityCommand(const Target& target) noexcept {
+void Damiao_Motor::followVelocity(const Target& target) noexcept {
   const double wanted_rad_s =
       target.mode == ControlMode::kVelocity ? toDrive(target.value) * kRadPerSPerRpm : 0.0;
   const double rad_s = std::clamp(wanted_rad_s, -fastestRadS(), fastestRadS());
@@ -224,7 +224,7 @@ void Damiao_Motor::velocityCommand(const Target& target) noexcept {
   setCommand(toOutput(rad_s) / kRadPerSPerRpm, CommandUnit::kNative);
 }
 
-void Damiao_Motor::positionCommand(const Target& target) noexcept {
+void Damiao_Motor::followAngle(const Target& target) noexcept {
   const bool moves = target.mode == ControlMode::kTotalAngle && position_.known();
   double rad = 0.0;
   if (moves) {
@@ -302,7 +302,7 @@ std::size_t Damiao_Motor::packRest(std::span<CanFrame> out) const noexcept {
 
 // ---- Enabling
 
-void Damiao_Motor::followSequence(const Tick& tick) noexcept {
+void Damiao_Motor::runEnabling(const Tick& tick) noexcept {
   if (!enabling()) {
     if (!obeying()) armed_ = false;
     return;

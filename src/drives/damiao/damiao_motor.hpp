@@ -47,14 +47,14 @@ class Damiao_Motor : public SoloMotor {
  private:
   void takeState(const damiao::State& state, MonotonicTime received) noexcept;
   void takeReply(const damiao::RegisterReply& reply) noexcept;
-  void followSequence(const Tick& tick) noexcept;
+  void runEnabling(const Tick& tick) noexcept;
   [[nodiscard]] bool asksPosition(const Tick& tick) noexcept;
 
   // Each writes command_.
-  void restCommand() noexcept;
-  void mitCommand(const Target& target) noexcept;
-  void velocityCommand(const Target& target) noexcept;
-  void positionCommand(const Target& target) noexcept;
+  void release() noexcept;
+  void followMit(const Target& target) noexcept;
+  void followVelocity(const Target& target) noexcept;
+  void followAngle(const Target& target) noexcept;
 
   [[nodiscard]] SpringLaw mitLaw(const Target& target) const noexcept;
   /// Bounds every velocity; the scale's if there is none.

@@ -44,7 +44,7 @@ LKTech_Motor::LKTech_Motor(const MotorSettings& settings, const MotorTraits& tra
       filters_{FrameFilter{.id = {lktech::kBaseId + static_cast<std::uint32_t>(id_), false},
                            .mask = kStandardIdMask}},
       command_ids_{filters_[0].id},
-      sequence_(kLktechStepPatience, kLktechStepTries) {}
+      enabling_(kLktechStepPatience, kLktechStepTries) {}
 
 // ---- Feedback
 
@@ -72,14 +72,14 @@ FrameVerdict LKTech_Motor::updateFeedback(const CanFrame& frame) noexcept {
     case lktech::Code::kVelocity:
     case lktech::Code::kPosition:
       if (!isReply(frame)) return verdictOnCommand();
-      acceptReading(frame);
+      takeReading(frame);
       break;
     case lktech::Code::kStatus:
     case lktech::Code::kClear:
       if (!isReply(frame)) return verdictOnCommand();
-      acceptStatus(frame);
+      takeStatus(frame);
       break;
-    case lktech::Code::kAngle: acceptTurns(frame); break;
+    case lktech::Code::kAngle: takeTurns(frame); break;
     case lktech::Code::kOn:
       break;  // the copy of our command
     // Frames that rc10d never sends: another controller's command or question, and the drive's copy of it or
@@ -93,7 +93,7 @@ double LKTech_Motor::encoderDeg(std::uint16_t raw) const noexcept {
   return static_cast<double>(raw & encoder_mask_) * kDegPerTurn / (static_cast<double>(encoder_mask_) + 1.0);
 }
 
-void LKTech_Motor::acceptReading(const CanFrame& frame) noexcept {
+void LKTech_Motor::takeReading(const CanFrame& frame) noexcept {
   const auto reading = lktech::decodeReading(frame.payload());
   const Duration silence = heard_ ? frame.received - *heard_ : Duration::max();
   heard_ = frame.received;
@@ -120,7 +120,7 @@ void LKTech_Motor::acceptReading(const CanFrame& frame) noexcept {
   if (lktech::codeOf(frame.payload()) == lktech::Code::kCurrent) answered(Step::kObey);
 }
 
-void LKTech_Motor::acceptStatus(const CanFrame& frame) noexcept {
+void LKTech_Motor::takeStatus(const CanFrame& frame) noexcept {
   const auto status = lktech::decodeStatus(frame.payload());
   feedback_.temperature_c = static_cast<float>(status.temperature_c);
   feedback_.voltage_v = static_cast<float>(status.voltage_v);
@@ -130,7 +130,7 @@ void LKTech_Motor::acceptStatus(const CanFrame& frame) noexcept {
   if (!off_) answered(Step::kStatus);
 }
 
-void LKTech_Motor::acceptTurns(const CanFrame& frame) noexcept {
+void LKTech_Motor::takeTurns(const CanFrame& frame) noexcept {
   const std::int32_t raw = lktech::decodeAngle(frame.payload());
   // A request says 0; the drive says it too when it is there, but then again and again.
   zero_angles_ = lktech::looksLikeCommand(frame.payload()) ? zero_angles_ + 1 : 0;
@@ -145,7 +145,7 @@ void LKTech_Motor::acceptTurns(const CanFrame& frame) noexcept {
     if (lost) {
       loseReference();
       restarted_ = restarted_ || obeying();
-      if (enabling()) beginSequence();
+      if (enabling()) beginEnabling();
     }
     if (lost || !was_counted_) {
       position_deg_ = angle_deg + shortestAngle(angle_deg, encoderDeg(*encoder_));
@@ -172,7 +172,7 @@ void LKTech_Motor::update(const Tick& tick) noexcept {
   outbox_.clear();
   limits_ = 0;
   const Target target = wanted();
-  if (enabling() && begins()) beginSequence();
+  if (enabling() && begins()) beginEnabling();
   if (std::exchange(clear_, false)) outbox_.add(lktech::request(id_, lktech::Code::kClear));
   // A drive that is just starting must not find an angle of its former life waiting for it.
   if (!heard_ || tick.now - *heard_ > kLktechRestartSilence) counted_ = false;
@@ -183,7 +183,7 @@ void LKTech_Motor::update(const Tick& tick) noexcept {
     case FrameKind::kRest:
     case FrameKind::kDisable: return release();
     case FrameKind::kPoll: release(); break;
-    case FrameKind::kEnable: runSequence(tick); break;
+    case FrameKind::kEnable: runEnabling(tick); break;
     default: follow(target); break;
   }
   sendQueries(tick);
@@ -280,13 +280,13 @@ std::size_t LKTech_Motor::packRest(std::span<CanFrame> out) const noexcept {
 
 // ---- Enabling
 
-void LKTech_Motor::beginSequence() noexcept {
-  sequence_.begin(Step::kStatus);
+void LKTech_Motor::beginEnabling() noexcept {
+  enabling_.begin(Step::kStatus);
   restarted_ = false;
 }
 
 void LKTech_Motor::sendStep() noexcept {
-  switch (sequence_.step()) {
+  switch (enabling_.step()) {
     case Step::kStatus: return outbox_.add(lktech::request(id_, lktech::Code::kStatus));
     case Step::kTurnOn:
       outbox_.add(lktech::request(id_, lktech::Code::kOn));
@@ -296,24 +296,24 @@ void LKTech_Motor::sendStep() noexcept {
   }
 }
 
-void LKTech_Motor::runSequence(const Tick& tick) noexcept {
+void LKTech_Motor::runEnabling(const Tick& tick) noexcept {
   release();
-  if (sequence_.asks(tick.now)) sendStep();
+  if (enabling_.asks(tick.now)) sendStep();
 }
 
 void LKTech_Motor::answered(Step step) noexcept {
-  if (!sequenceRuns() || !sequence_.awaits(step)) return;
+  if (!sequenceRuns() || !enabling_.awaits(step)) return;
   switch (step) {
     case Step::kStatus:
-      if (errors_ != 0) return sequence_.fail();
-      return sequence_.next(off_ ? Step::kTurnOn : Step::kTurns);
-    case Step::kTurnOn: return sequence_.next(Step::kTurns);
-    case Step::kTurns: return sequence_.next(Step::kObey);
-    case Step::kObey: return sequence_.finish();
+      if (errors_ != 0) return enabling_.fail();
+      return enabling_.next(off_ ? Step::kTurnOn : Step::kTurns);
+    case Step::kTurnOn: return enabling_.next(Step::kTurns);
+    case Step::kTurns: return enabling_.next(Step::kObey);
+    case Step::kObey: return enabling_.finish();
   }
 }
 
-SequenceProgress LKTech_Motor::sequenceProgress() const noexcept { return progressOf(sequence_.progress()); }
+SequenceProgress LKTech_Motor::sequenceProgress() const noexcept { return progressOf(enabling_.progress()); }
 
 // ---- Complaints
 

@@ -46,16 +46,16 @@ class LKTech_Motor final : public SoloMotor {
 
   [[nodiscard]] bool isReply(const CanFrame& frame) const noexcept;
   [[nodiscard]] FrameVerdict verdictOnCommand() const noexcept;
-  void acceptReading(const CanFrame& frame) noexcept;
-  void acceptStatus(const CanFrame& frame) noexcept;
-  void acceptTurns(const CanFrame& frame) noexcept;
+  void takeReading(const CanFrame& frame) noexcept;
+  void takeStatus(const CanFrame& frame) noexcept;
+  void takeTurns(const CanFrame& frame) noexcept;
   void answered(Step step) noexcept;
   [[nodiscard]] double encoderDeg(std::uint16_t raw) const noexcept;
 
   void sendCurrent(int raw) noexcept;
   void sendQueries(const Tick& tick) noexcept;
-  void runSequence(const Tick& tick) noexcept;
-  void beginSequence() noexcept;
+  void runEnabling(const Tick& tick) noexcept;
+  void beginEnabling() noexcept;
   void sendStep() noexcept;
   void follow(const Target& target) noexcept;
   void followCurrent(const Target& target) noexcept;
@@ -90,7 +90,7 @@ class LKTech_Motor final : public SoloMotor {
   std::uint8_t errors_ = 0;
   bool restarted_ = false;  ///< While it was to obey: it has lost its turns.
 
-  EnableSequence<Step> sequence_;
+  EnableSequence<Step> enabling_;
 };
 
 }  // namespace rc10

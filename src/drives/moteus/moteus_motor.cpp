@@ -58,7 +58,7 @@ void Moteus_Motor::update(const Tick& tick) noexcept {
   if (!enabling()) step_ = Step::kNone;
   if (kind != FrameKind::kCommand || target.mode != ControlMode::kVelocity) course_rev_.reset();
   setCommand(0.0, CommandUnit::kNone);
-  if (enabling()) return updateSequence(tick);
+  if (enabling()) return runEnabling(tick);
   if (!obeying()) {
     engaged_ = false;
     lost_ = {};
@@ -72,7 +72,7 @@ void Moteus_Motor::update(const Tick& tick) noexcept {
     send_ = restSend(tick);
     return;
   }
-  coast();
+  release();
   if (kind == FrameKind::kDamp) {
     motion_.damped = true;
   } else {
@@ -91,7 +91,7 @@ Moteus_Motor::Send Moteus_Motor::restSend(const Tick& tick) const noexcept {
 
 /// Position mode without any torque; its controller stays where the shaft is, so that whatever comes next
 /// begins there.
-void Moteus_Motor::coast() noexcept {
+void Moteus_Motor::release() noexcept {
   send_ = Send::kMotion;
   motion_ = {};
   if (feedback_.samples > 0) motion_.position_rev = onWire(position_rev_);
@@ -106,7 +106,7 @@ void Moteus_Motor::follow(const Target& target, const Tick& tick) noexcept {
   }
   if (feedback_.samples == 0 || std::isnan(target.value)) return;
   switch (target.mode) {
-    case ControlMode::kCurrent: return followTorque(target);
+    case ControlMode::kCurrent: return followCurrent(target);
     case ControlMode::kVelocity: return followVelocity(target, tick);
     case ControlMode::kTotalAngle: return followAngle(target);
     default: return;
@@ -131,7 +131,7 @@ double Moteus_Motor::onWire(double position_rev) noexcept {
 }
 
 // Not the drive's current mode: its watchdog acts in position mode alone (fw/bldc_servo_control.h).
-void Moteus_Motor::followTorque(const Target& target) noexcept {
+void Moteus_Motor::followCurrent(const Target& target) noexcept {
   const auto limit_a = static_cast<double>(effortLimit());
   const double wanted_a = std::clamp(target.value, -limit_a, limit_a);
   if (std::abs(target.value) > limit_a) limits_ |= kLimitCurrent;
@@ -248,7 +248,7 @@ void Moteus_Motor::fail(FaultCode why, std::uint32_t native) noexcept {
 }
 
 // No EnableSequence: every frame is a question, so only time ends a step.
-void Moteus_Motor::updateSequence(const Tick& tick) noexcept {
+void Moteus_Motor::runEnabling(const Tick& tick) noexcept {
   if (step_ == Step::kNone) {
     engaged_ = false;
     lost_ = {};
@@ -285,7 +285,7 @@ void Moteus_Motor::updateSequence(const Tick& tick) noexcept {
       fail(FaultCode::kDriveSetting, static_cast<std::uint32_t>(moteus::Register::kTimeout));
     }
   }
-  coast();
+  release();
   if (step_ == Step::kIdentify) send_ = Send::kIdentify;
   if (step_ == Step::kFailed) send_ = restSend(tick);
   if (step_ == Step::kVerify && tick.index % 2 == 0) send_ = Send::kVerify;  // between: feeds the watchdog

@@ -77,13 +77,13 @@ class Moteus_Motor final : public SoloMotor {
   void takeState(const Reading& reading) noexcept;
   void drop(FaultCode why, std::uint32_t native) noexcept;
 
-  void updateSequence(const Tick& tick) noexcept;
+  void runEnabling(const Tick& tick) noexcept;
   void enter(Step step, const Tick& tick) noexcept;
   void fail(FaultCode why, std::uint32_t native) noexcept;
   [[nodiscard]] Send restSend(const Tick& tick) const noexcept;
-  void coast() noexcept;
+  void release() noexcept;
   void follow(const Target& target, const Tick& tick) noexcept;
-  void followTorque(const Target& target) noexcept;
+  void followCurrent(const Target& target) noexcept;
   void followVelocity(const Target& target, const Tick& tick) noexcept;
   void followAngle(const Target& target) noexcept;
   [[nodiscard]] double boundedTorqueNm(double torque_nm) noexcept;

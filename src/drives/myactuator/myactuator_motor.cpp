@@ -54,7 +54,7 @@ MyActuator_Motor::MyActuator_Motor(const MotorSettings& settings, const MotorTra
                            .discriminator = PayloadDiscriminator{.value = static_cast<std::uint8_t>(id_)}}},
       command_ids_{CanId{myactuator::kRequestBase + static_cast<std::uint32_t>(id_), false},
                    CanId{myactuator::kMotionBase + static_cast<std::uint32_t>(id_), false}},
-      sequence_(kMyactuatorStepPatience, kMyactuatorStepTries) {}
+      enabling_(kMyactuatorStepPatience, kMyactuatorStepTries) {}
 
 // ---- Feedback
 
@@ -65,7 +65,7 @@ bool MyActuator_Motor::matchesFrame(const CanFrame& frame) const noexcept {
 
 FrameVerdict MyActuator_Motor::updateFeedback(const CanFrame& frame) noexcept {
   if (frame.type != FrameType::kData || frame.fd || frame.length == 0) return FrameVerdict::kMalformed;
-  if (frame.id == filters_[1].id) return acceptMotion(frame);
+  if (frame.id == filters_[1].id) return takeMotion(frame);
   const myactuator::Code code = myactuator::codeOf(frame.payload());
   if (code == myactuator::Code::kSilenceStopped) {
     silence_stopped_ = silence_stopped_ || obeying();
@@ -78,10 +78,10 @@ FrameVerdict MyActuator_Motor::updateFeedback(const CanFrame& frame) noexcept {
     case myactuator::Code::kReading:
     case myactuator::Code::kCurrent:
     case myactuator::Code::kVelocity:
-    case myactuator::Code::kPosition: acceptReading(frame); break;
-    case myactuator::Code::kAngle: return acceptAngle(frame);
-    case myactuator::Code::kStatus: acceptStatus(frame); break;
-    case myactuator::Code::kUptime: acceptUptime(frame); break;
+    case myactuator::Code::kPosition: takeReading(frame); break;
+    case myactuator::Code::kAngle: return takeAngleReply(frame);
+    case myactuator::Code::kStatus: takeStatus(frame); break;
+    case myactuator::Code::kUptime: takeUptime(frame); break;
     case myactuator::Code::kReleaseBrake: answered(Step::kReleaseBrake); break;
     case myactuator::Code::kShutdown: off_answered_ = polled_; break;
     default: break;  // the reply to another controller's question
@@ -105,7 +105,7 @@ bool MyActuator_Motor::isCopyOfRequest(const CanFrame& frame) const noexcept {
          std::equal(frame.data.begin(), frame.data.begin() + frame.length, last_command_->data.begin());
 }
 
-void MyActuator_Motor::acceptReading(const CanFrame& frame) noexcept {
+void MyActuator_Motor::takeReading(const CanFrame& frame) noexcept {
   if (isCopyOfRequest(frame)) {
     silence_stopped_ = silence_stopped_ || obeying();
     return;
@@ -123,7 +123,7 @@ void MyActuator_Motor::takeSpeed(double output_rpm, bool of_motion) noexcept {
   feedback_.velocity_rpm = static_cast<float>(output_rpm);
 }
 
-FrameVerdict MyActuator_Motor::acceptAngle(const CanFrame& frame) noexcept {
+FrameVerdict MyActuator_Motor::takeAngleReply(const CanFrame& frame) noexcept {
   // A copy of the request says 0. There is only one of them at a time.
   const bool zero = allZero(frame);
   if (zero && !std::exchange(zero_before_, true)) return FrameVerdict::kAccepted;
@@ -144,7 +144,7 @@ FrameVerdict MyActuator_Motor::acceptAngle(const CanFrame& frame) noexcept {
   return FrameVerdict::kAccepted;
 }
 
-void MyActuator_Motor::acceptStatus(const CanFrame& frame) noexcept {
+void MyActuator_Motor::takeStatus(const CanFrame& frame) noexcept {
   if (allZero(frame)) return;  // a copy: a drive that answers has a voltage
   const auto status = myactuator::decodeStatus(frame.payload());
   feedback_.temperature_c = static_cast<float>(status.temperature_c);
@@ -153,7 +153,7 @@ void MyActuator_Motor::acceptStatus(const CanFrame& frame) noexcept {
   answered(Step::kStatus);
 }
 
-void MyActuator_Motor::acceptUptime(const CanFrame& frame) noexcept {
+void MyActuator_Motor::takeUptime(const CanFrame& frame) noexcept {
   const std::uint32_t uptime_ms = myactuator::decodeUptimeMs(frame.payload());
   if (uptime_ms == 0) return;  // a copy
   if (uptime_ms_) {
@@ -164,7 +164,7 @@ void MyActuator_Motor::acceptUptime(const CanFrame& frame) noexcept {
       loseReference();
       raw_angle_.reset();
       restarted_ = restarted_ || obeying();
-      if (enabling()) beginSequence();
+      if (enabling()) beginEnabling();
     }
   }
   uptime_ms_ = uptime_ms;
@@ -173,7 +173,7 @@ void MyActuator_Motor::acceptUptime(const CanFrame& frame) noexcept {
   answered(Step::kUptime);
 }
 
-FrameVerdict MyActuator_Motor::acceptMotion(const CanFrame& frame) noexcept {
+FrameVerdict MyActuator_Motor::takeMotion(const CanFrame& frame) noexcept {
   if (frame.length != myactuator::kLength || frame.data[0] != id_) return FrameVerdict::kMalformed;
   watchSilence(frame.received);
   const auto reading = myactuator::decodeMotion(frame.payload());
@@ -189,7 +189,7 @@ void MyActuator_Motor::update(const Tick& tick) noexcept {
   outbox_.clear();
   limits_ = 0;
   const Target target = wanted();
-  if (enabling() && begins()) beginSequence();
+  if (enabling() && begins()) beginEnabling();
   if (std::exchange(reset_, false)) outbox_.add(myactuator::request(id_, myactuator::Code::kReset));
   // A drive that is just starting must not find an angle of its former life waiting for it.
   if (!heard_ || tick.now - *heard_ > kMyactuatorRestartSilence) running_ = false;
@@ -206,7 +206,7 @@ void MyActuator_Motor::update(const Tick& tick) noexcept {
     case FrameKind::kPoll: poll(polled_before); break;
     case FrameKind::kEnable:
       setCommand(0.0, CommandUnit::kNone);
-      runSequence(tick);
+      runEnabling(tick);
       break;
     default:
       // After a silence its angles may be unknown, and its last command may act on. A drive that has stopped
@@ -363,14 +363,14 @@ std::size_t MyActuator_Motor::packRest(std::span<CanFrame> out) const noexcept {
 
 // ---- Enabling
 
-void MyActuator_Motor::beginSequence() noexcept {
-  sequence_.begin(Step::kStatus);
+void MyActuator_Motor::beginEnabling() noexcept {
+  enabling_.begin(Step::kStatus);
   restarted_ = false;
   silence_stopped_ = false;
 }
 
 CanFrame MyActuator_Motor::stepFrame() const noexcept {
-  switch (sequence_.step()) {
+  switch (enabling_.step()) {
     case Step::kStatus: return myactuator::request(id_, myactuator::Code::kStatus);
     case Step::kUptime: return myactuator::request(id_, myactuator::Code::kUptime);
     case Step::kReleaseBrake: return myactuator::request(id_, myactuator::Code::kReleaseBrake);
@@ -379,31 +379,31 @@ CanFrame MyActuator_Motor::stepFrame() const noexcept {
   return myactuator::currentCommand(id_, 0.0);
 }
 
-void MyActuator_Motor::runSequence(const Tick& tick) noexcept {
-  if (sequence_.failed()) return outbox_.add(myactuator::request(id_, myactuator::Code::kShutdown));
+void MyActuator_Motor::runEnabling(const Tick& tick) noexcept {
+  if (enabling_.failed()) return outbox_.add(myactuator::request(id_, myactuator::Code::kShutdown));
   // Until then it may be following what it was told last.
-  const bool follows = sequence_.at(Step::kStatus) || sequence_.at(Step::kUptime);
+  const bool follows = enabling_.at(Step::kStatus) || enabling_.at(Step::kUptime);
   if (follows) outbox_.add(myactuator::request(id_, myactuator::Code::kShutdown));
   // Done: no torque until the first command.
-  if (!sequence_.done() && !sequence_.asks(tick.now)) return;
-  if (sequence_.step() == Step::kObey) return sendCommand(stepFrame());
+  if (!enabling_.done() && !enabling_.asks(tick.now)) return;
+  if (enabling_.step() == Step::kObey) return sendCommand(stepFrame());
   outbox_.add(stepFrame());
 }
 
 void MyActuator_Motor::answered(Step step) noexcept {
-  if (!sequenceRuns() || !sequence_.awaits(step)) return;
+  if (!sequenceRuns() || !enabling_.awaits(step)) return;
   switch (step) {
     case Step::kStatus:
-      if (errors_ != 0) return sequence_.fail();
-      return sequence_.next(Step::kUptime);
-    case Step::kUptime: return sequence_.next(release_brake_ ? Step::kReleaseBrake : Step::kObey);
-    case Step::kReleaseBrake: return sequence_.next(Step::kObey);
-    case Step::kObey: return sequence_.finish();
+      if (errors_ != 0) return enabling_.fail();
+      return enabling_.next(Step::kUptime);
+    case Step::kUptime: return enabling_.next(release_brake_ ? Step::kReleaseBrake : Step::kObey);
+    case Step::kReleaseBrake: return enabling_.next(Step::kObey);
+    case Step::kObey: return enabling_.finish();
   }
 }
 
 SequenceProgress MyActuator_Motor::sequenceProgress() const noexcept {
-  return progressOf(sequence_.progress());
+  return progressOf(enabling_.progress());
 }
 
 // ---- Complaints

@@ -39,12 +39,12 @@ class MyActuator_Motor final : public SoloMotor {
  private:
   enum class Step : std::uint8_t { kStatus, kUptime, kReleaseBrake, kObey };
 
-  void acceptReading(const CanFrame& frame) noexcept;
+  void takeReading(const CanFrame& frame) noexcept;
   void takeSpeed(double output_rpm, bool of_motion) noexcept;
-  FrameVerdict acceptAngle(const CanFrame& frame) noexcept;
-  void acceptStatus(const CanFrame& frame) noexcept;
-  void acceptUptime(const CanFrame& frame) noexcept;
-  FrameVerdict acceptMotion(const CanFrame& frame) noexcept;
+  FrameVerdict takeAngleReply(const CanFrame& frame) noexcept;
+  void takeStatus(const CanFrame& frame) noexcept;
+  void takeUptime(const CanFrame& frame) noexcept;
+  FrameVerdict takeMotion(const CanFrame& frame) noexcept;
   [[nodiscard]] bool isCopyOfRequest(const CanFrame& frame) const noexcept;
   void watchSilence(MonotonicTime received) noexcept;
   void answered(Step step) noexcept;
@@ -52,8 +52,8 @@ class MyActuator_Motor final : public SoloMotor {
   void sendCommand(const CanFrame& frame) noexcept;
   void poll(bool polled_before) noexcept;
   void sendQueries(const Tick& tick) noexcept;
-  void runSequence(const Tick& tick) noexcept;
-  void beginSequence() noexcept;
+  void runEnabling(const Tick& tick) noexcept;
+  void beginEnabling() noexcept;
   [[nodiscard]] CanFrame stepFrame() const noexcept;
   void follow(const Target& target) noexcept;
   void followCurrent(const Target& target) noexcept;
@@ -98,7 +98,7 @@ class MyActuator_Motor final : public SoloMotor {
   bool restarted_ = false;        ///< While it was to obey.
   bool silence_stopped_ = false;  ///< Its protection against silence struck while it was to obey.
 
-  EnableSequence<Step> sequence_;
+  EnableSequence<Step> enabling_;
 };
 
 }  // namespace rc10

@@ -50,7 +50,7 @@ ODrive_Motor::ODrive_Motor(const MotorSettings& settings, const MotorTraits& tra
                                                            : OdriveFirmware::k06),
       iq_sign_(settings.own.flag("iq_reversed") ? -1.0F : 1.0F),
       filter_count_(firmware_ == OdriveFirmware::k06 ? 5 : 4),
-      sequence_(kAskAgain, kMostAsks),
+      enabling_(kAskAgain, kMostAsks),
       input_(odrive::setInputTorque(node_, 0.0F)) {
   using enum odrive::Message;
   const bool v05 = firmware_ == OdriveFirmware::k05;
@@ -74,9 +74,9 @@ bool ODrive_Motor::matchesFrame(const CanFrame& frame) const noexcept {
 
 FrameVerdict ODrive_Motor::updateFeedback(const CanFrame& frame) noexcept {
   switch (odrive::messageOf(frame.id)) {
-    case odrive::Message::kHeartbeat: return acceptHeartbeat(frame);
-    case odrive::Message::kEncoderEstimates: return acceptEstimates(frame);
-    default: return acceptTelemetry(frame);
+    case odrive::Message::kHeartbeat: return takeHeartbeat(frame);
+    case odrive::Message::kEncoderEstimates: return takeEstimates(frame);
+    default: return takeTelemetry(frame);
   }
 }
 
@@ -92,7 +92,7 @@ void ODrive_Motor::forgetPosition() noexcept {
   position_known_ = false;
 }
 
-FrameVerdict ODrive_Motor::acceptHeartbeat(const CanFrame& frame) noexcept {
+FrameVerdict ODrive_Motor::takeHeartbeat(const CanFrame& frame) noexcept {
   const auto heartbeat = odrive::decodeHeartbeat(frame);
   if (!heartbeat) return FrameVerdict::kMalformed;
   hear(frame.received);
@@ -111,7 +111,7 @@ bool ODrive_Motor::isJump(MonotonicTime received, double turns, double turns_per
   return std::abs(turns - turns_) > kJumpTurns + 1.5 * fastest * dt_s;
 }
 
-FrameVerdict ODrive_Motor::acceptEstimates(const CanFrame& frame) noexcept {
+FrameVerdict ODrive_Motor::takeEstimates(const CanFrame& frame) noexcept {
   const auto estimates = odrive::decodePair(frame);
   if (!estimates || !isFinite(*estimates)) return FrameVerdict::kMalformed;
   hear(frame.received);
@@ -137,7 +137,7 @@ FrameVerdict ODrive_Motor::acceptEstimates(const CanFrame& frame) noexcept {
   return FrameVerdict::kAccepted;
 }
 
-FrameVerdict ODrive_Motor::acceptTelemetry(const CanFrame& frame) noexcept {
+FrameVerdict ODrive_Motor::takeTelemetry(const CanFrame& frame) noexcept {
   const auto pair = odrive::decodePair(frame);
   if (!pair) return FrameVerdict::kMalformed;
   const auto message = odrive::messageOf(frame.id);
@@ -183,7 +183,7 @@ void ODrive_Motor::update(const Tick& tick) noexcept {
   const Target target = wanted();
   // Abandoned while a step was asked for: nothing of it may leave later.
   ask_ = false;
-  if (enabling()) runSequence(tick);
+  if (enabling()) runEnabling(tick);
   watchState();
   if (obeying()) {
     follow(target);
@@ -203,8 +203,8 @@ void ODrive_Motor::follow(const Target& target) noexcept {
   switch (target.mode) {
     case ControlMode::kVelocity: return followVelocity(target.value, target.torque_ff_nm);
     case ControlMode::kBrake: return followVelocity(0.0, 0.0F);
-    case ControlMode::kTotalAngle: return followPosition(target);
-    default: return followTorque(target);
+    case ControlMode::kTotalAngle: return followAngle(target);
+    default: return followCurrent(target);
   }
 }
 
@@ -215,7 +215,7 @@ double ODrive_Motor::limitedTorque(double nm) noexcept {
   return std::copysign(limit_nm, nm);
 }
 
-void ODrive_Motor::followTorque(const Target& target) noexcept {
+void ODrive_Motor::followCurrent(const Target& target) noexcept {
   double nm = 0.0;
   if (target.mode == ControlMode::kCurrent) {
     nm = limitedTorque(target.value * static_cast<double>(torqueNmPerA()) +
@@ -235,9 +235,9 @@ void ODrive_Motor::followVelocity(double rpm, float torque_ff_nm) noexcept {
   setCommand(allowed_rpm, CommandUnit::kNative);
 }
 
-void ODrive_Motor::followPosition(const Target& target) noexcept {
+void ODrive_Motor::followAngle(const Target& target) noexcept {
   const double wanted_turns = drivePositionFor(target.value) / kDegPerTurn;
-  if (std::isnan(wanted_turns)) return followTorque(Target{});
+  if (std::isnan(wanted_turns)) return followCurrent(Target{});
   const double turns = std::clamp(wanted_turns, -kFarthestTurns, kFarthestTurns);
   const bool reaches = turns == wanted_turns;
   if (!reaches) limits_ |= kLimitAngle;
@@ -274,7 +274,7 @@ CanFrame ODrive_Motor::limitsFrame() const noexcept {
 
 std::size_t ODrive_Motor::packCommand(const Tick& tick, std::span<CanFrame> out) noexcept {
   FrameOutbox frames;
-  if (enabling() && ask_ && sequence_.at(Step::kToClosedLoop)) {
+  if (enabling() && ask_ && enabling_.at(Step::kToClosedLoop)) {
     frames.add(odrive::setInputTorque(node_, 0.0F));
     frames.add(odrive::setControllerMode(node_, odrive::ControlMode::kTorque));
     frames.add(limitsFrame());
@@ -300,7 +300,7 @@ std::size_t ODrive_Motor::packCommand(const Tick& tick, std::span<CanFrame> out)
       limits_sent_at_ = tick.now;
     }
     frames.add(input_);
-  } else if (enabling() && (sequence_.at(Step::kToClosedLoop) || sequence_.done())) {
+  } else if (enabling() && (enabling_.at(Step::kToClosedLoop) || enabling_.done())) {
     frames.add(input_);  // 0 N·m: it also keeps the drive's watchdog content.
   } else {
     std::array<CanFrame, 2> rest{};
@@ -322,27 +322,27 @@ bool ODrive_Motor::stateSince(odrive::AxisState state, MonotonicTime since) cons
   return heartbeat_ && heartbeat_->state == state && heartbeat_at_ >= since;
 }
 
-void ODrive_Motor::runSequence(const Tick& tick) noexcept {
-  if (begins()) sequence_.begin(Step::kToIdle);
+void ODrive_Motor::runEnabling(const Tick& tick) noexcept {
+  if (begins()) enabling_.begin(Step::kToIdle);
   const bool well = !heartbeat_ || odriveErrors(firmware_, *heartbeat_) == 0;
-  if (sequence_.awaits(Step::kToIdle)) {
+  if (enabling_.awaits(Step::kToIdle)) {
     if (!well) {
-      sequence_.fail();
-    } else if (stateSince(odrive::AxisState::kIdle, sequence_.askedFirst() - kYoungHeartbeat)) {
-      sequence_.next(Step::kToClosedLoop);
+      enabling_.fail();
+    } else if (stateSince(odrive::AxisState::kIdle, enabling_.askedFirst() - kYoungHeartbeat)) {
+      enabling_.next(Step::kToClosedLoop);
     }
   }
-  if (sequence_.awaits(Step::kToClosedLoop) && heartbeat_ && heartbeat_at_ >= sequence_.askedFirst()) {
+  if (enabling_.awaits(Step::kToClosedLoop) && heartbeat_ && heartbeat_at_ >= enabling_.askedFirst()) {
     if (!well) {
-      sequence_.fail();
+      enabling_.fail();
     } else if (heartbeat_->state == odrive::AxisState::kClosedLoop) {
-      sequence_.finish();
+      enabling_.finish();
     }
   }
-  ask_ = sequence_.asks(tick.now);
+  ask_ = enabling_.asks(tick.now);
 }
 
-SequenceProgress ODrive_Motor::sequenceProgress() const noexcept { return progressOf(sequence_.progress()); }
+SequenceProgress ODrive_Motor::sequenceProgress() const noexcept { return progressOf(enabling_.progress()); }
 
 // ---- Complaints
 

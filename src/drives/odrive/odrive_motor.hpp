@@ -41,21 +41,21 @@ class ODrive_Motor : public SoloMotor {
   /// Step of the enable sequence.
   enum class Step : std::uint8_t { kToIdle, kToClosedLoop };
 
-  FrameVerdict acceptHeartbeat(const CanFrame& frame) noexcept;
-  FrameVerdict acceptEstimates(const CanFrame& frame) noexcept;
-  FrameVerdict acceptTelemetry(const CanFrame& frame) noexcept;
+  FrameVerdict takeHeartbeat(const CanFrame& frame) noexcept;
+  FrameVerdict takeEstimates(const CanFrame& frame) noexcept;
+  FrameVerdict takeTelemetry(const CanFrame& frame) noexcept;
   void hear(MonotonicTime received) noexcept;
   void forgetPosition() noexcept;
   [[nodiscard]] bool isJump(MonotonicTime received, double turns, double turns_per_s) const noexcept;
 
-  void runSequence(const Tick& tick) noexcept;
+  void runEnabling(const Tick& tick) noexcept;
   [[nodiscard]] bool stateSince(odrive::AxisState state, MonotonicTime since) const noexcept;
   void watchState() noexcept;
 
   void follow(const Target& target) noexcept;
-  void followTorque(const Target& target) noexcept;
+  void followCurrent(const Target& target) noexcept;
   void followVelocity(double rpm, float torque_ff_nm) noexcept;
-  void followPosition(const Target& target) noexcept;
+  void followAngle(const Target& target) noexcept;
   [[nodiscard]] double limitedTorque(double nm) noexcept;  ///< At the output shaft.
   void setInput(odrive::ControlMode mode, const CanFrame& input) noexcept;
   void refreshLimits(const Tick& tick) noexcept;
@@ -82,7 +82,7 @@ class ODrive_Motor : public SoloMotor {
   MonotonicTime voltage_at_;
 
   // Enabling.
-  EnableSequence<Step> sequence_;
+  EnableSequence<Step> enabling_;
   bool ask_ = false;  ///< The step's frames are sent in this tick.
   bool stopped_ = false;
 

@@ -65,10 +65,10 @@ class RobStride_Motor : public SoloMotor {
   void trackPosition(const robstride::Feedback& seen, MonotonicTime received) noexcept;
   void doubtAngles() noexcept;
 
-  void planOperation(const Target& target) noexcept;
-  void planCurrent(const Target& target) noexcept;
-  void planVelocity(const Target& target) noexcept;
-  void planPosition(const Target& target) noexcept;
+  void followOperation(const Target& target) noexcept;
+  void followCurrent(const Target& target) noexcept;
+  void followVelocity(const Target& target) noexcept;
+  void followAngle(const Target& target) noexcept;
   [[nodiscard]] double clampVelocity(double rad_s) noexcept;
   void limitApproach(SpringLaw& wanted) noexcept;
   void limitTorque(SpringLaw& wanted) noexcept;

@@ -37,10 +37,10 @@ void RobStride_Motor::update(const Tick& /*tick*/) noexcept {
   operation_ = {};
   reference_ = {};
   switch (control_) {
-    case RobstrideControl::kOperation: planOperation(target); break;
-    case RobstrideControl::kCurrent: planCurrent(target); break;
-    case RobstrideControl::kVelocity: planVelocity(target); break;
-    case RobstrideControl::kPosition: planPosition(target); break;
+    case RobstrideControl::kOperation: followOperation(target); break;
+    case RobstrideControl::kCurrent: followCurrent(target); break;
+    case RobstrideControl::kVelocity: followVelocity(target); break;
+    case RobstrideControl::kPosition: followAngle(target); break;
   }
 }
 
@@ -51,7 +51,7 @@ double RobStride_Motor::clampVelocity(double rad_s) noexcept {
   return clamped;
 }
 
-void RobStride_Motor::planOperation(const Target& target) noexcept {
+void RobStride_Motor::followOperation(const Target& target) noexcept {
   SpringLaw wanted;
   const double square = ratio() * ratio();
   const bool knows_itself = feedback_.samples > 0;
@@ -126,14 +126,14 @@ void RobStride_Motor::limitTorque(SpringLaw& wanted) noexcept {
   if (boundTorque(wanted, measured(), limit, SpringYield::kTarget)) limits_ |= kLimitCurrent;
 }
 
-void RobStride_Motor::planCurrent(const Target& target) noexcept {
+void RobStride_Motor::followCurrent(const Target& target) noexcept {
   if (target.mode == ControlMode::kCurrent) {
     reference_.value = static_cast<float>(currentWithinLimit(target)) * direction();
   }
   setCommand(static_cast<double>(reference_.value * direction()), CommandUnit::kAmpere);
 }
 
-void RobStride_Motor::planVelocity(const Target& target) noexcept {
+void RobStride_Motor::followVelocity(const Target& target) noexcept {
   if (target.mode == ControlMode::kVelocity) {
     reference_.value = static_cast<float>(clampVelocity(toDrive(target.value) / kRpmPerRadPerS));
   }
@@ -142,7 +142,7 @@ void RobStride_Motor::planVelocity(const Target& target) noexcept {
   setCommand(toOutput(static_cast<double>(reference_.value)) * kRpmPerRadPerS, CommandUnit::kNative);
 }
 
-void RobStride_Motor::planPosition(const Target& target) noexcept {
+void RobStride_Motor::followAngle(const Target& target) noexcept {
   const bool follows = target.mode == ControlMode::kTotalAngle || target.mode == ControlMode::kBrake;
   double wanted_deg = feedback_.total_angle_deg;
   if (target.mode == ControlMode::kTotalAngle) wanted_deg = target.value;

@@ -106,11 +106,11 @@ void VESC_Motor::update(const Tick& tick) noexcept {
   } else if (kind == FrameKind::kHold && own_.angle == VescAngle::kNone) {
     brake();
   } else {
-    obey(target);
+    follow(target);
   }
 }
 
-void VESC_Motor::obey(const Target& target) noexcept {
+void VESC_Motor::follow(const Target& target) noexcept {
   // Too hot for any current: the drive's own loops cannot be given less.
   if (!(effortLimit() > 0.0F) && target.mode != ControlMode::kCoast) {
     limits_ |= kLimitCurrent;
@@ -121,7 +121,7 @@ void VESC_Motor::obey(const Target& target) noexcept {
     case ControlMode::kCurrent: followCurrent(target); return;
     case ControlMode::kVelocity: followVelocity(target); return;
     case ControlMode::kTotalAngle: followAngle(target); return;
-    case ControlMode::kDuty: setDuty(target.value); return;
+    case ControlMode::kDuty: followDuty(target.value); return;
     case ControlMode::kBrake: brake(); return;
     default: release(); return;
   }
@@ -163,7 +163,7 @@ void VESC_Motor::setVelocity(double rpm) noexcept {
   setCommand(bounded, CommandUnit::kNative);
 }
 
-void VESC_Motor::setDuty(double duty) noexcept {
+void VESC_Motor::followDuty(double duty) noexcept {
   if (!std::isfinite(duty)) {
     release();
     return;

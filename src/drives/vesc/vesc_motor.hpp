@@ -62,12 +62,12 @@ class VESC_Motor : public SoloMotor {
   void restarted() noexcept;
   [[nodiscard]] bool gapTooLong(Duration gap) const noexcept;
 
-  void obey(const Target& target) noexcept;
+  void follow(const Target& target) noexcept;
   void release() noexcept;
   void followCurrent(const Target& target) noexcept;
   void setVelocity(double rpm) noexcept;
   void setPosition(double total_angle_deg) noexcept;
-  void setDuty(double duty) noexcept;
+  void followDuty(double duty) noexcept;
   void damp() noexcept;
   void brake() noexcept;
   void followVelocity(const Target& target) noexcept;
