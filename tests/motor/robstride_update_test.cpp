@@ -8,7 +8,7 @@
 
 #include "motor/robstride_bench.hpp"
 
-namespace rc10::test::robstride_plan_test {
+namespace rc10::test::robstride_update_test {
 namespace {
 
 using namespace robstride_bench;
@@ -233,4 +233,4 @@ TEST(RobStrideMotor, ThePositionModeGoesBeyondTheScaleOfFeedback) {
 }
 
 }  // namespace
-}  // namespace rc10::test::robstride_plan_test
+}  // namespace rc10::test::robstride_update_test
