@@ -62,6 +62,8 @@ class LinkClient {
   /// Opens the way of that datagram now and not when the first e-stop is sent: for a process that may open
   /// nothing later.
   void prepareEstop() noexcept;
+  /// That datagram alone, for one whose own connection found no room. False: there is no way for it.
+  [[nodiscard]] bool sendEstop(std::string_view client) noexcept { return estopWay().send(client); }
   [[nodiscard]] SendStatus send(link::Signals& signals) noexcept;
   [[nodiscard]] SendStatus send(link::TraceChoice& choice) noexcept;
 

@@ -165,10 +165,14 @@ void Hub::answer(Page& page, const AskRange& wanted) {
 
 void Hub::ask(Page& page, const AskRobot& wanted) {
   const bool estop = operationNamed(wanted.operation) == Operation::kEstop;
+  // Before the page's own connection, which is there for the answer: all may be taken, or rc10d busy.
+  const bool under_way = estop && feed_.estop(page.name);
   std::string refused = estop ? std::string{} : whyNotMoving(page);
   if (refused.empty())
     refused = feed_.connected() ? page.link->ask(wanted, feed_.socketPath()) : feed_.reason();
-  if (!refused.empty()) page.socket->sendText(shared(responseMessage(wanted.seq, "refused", refused)));
+  if (refused.empty()) return;
+  if (under_way) refused.insert(0, "the e-stop was sent and is not confirmed: ");
+  page.socket->sendText(shared(responseMessage(wanted.seq, under_way ? "failed" : "refused", refused)));
 }
 
 std::string Hub::whyNotMoving(const Page& page) const {

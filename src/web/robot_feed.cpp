@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "client/find_robot.hpp"
+#include "link/estop_datagram.hpp"
 
 namespace rc10::web {
 namespace {
@@ -56,6 +57,12 @@ bool RobotFeed::receive() {
     take(received.datagram);
   }
   return rc10d_.has_value();
+}
+
+bool RobotFeed::estop(std::string_view client) {
+  if (rc10d_ && rc10d_->sendEstop(client)) return true;
+  const auto found = findRobot(robot_);
+  return found && link::EstopDatagram::to(found->path).send(client);
 }
 
 void RobotFeed::forget() {

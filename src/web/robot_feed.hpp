@@ -5,6 +5,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "client/link_client.hpp"
@@ -30,6 +31,8 @@ class RobotFeed {
 
   /// Takes everything that has arrived. False: rc10d has ended.
   [[nodiscard]] bool receive();
+  /// An e-stop past connections, which may all be taken, for one of the pages. False: no rc10d takes it.
+  [[nodiscard]] bool estop(std::string_view client);
   /// Signals of each tick from now on.
   void choose(std::span<const link::TraceSignal> signals);
 

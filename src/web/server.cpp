@@ -34,6 +34,10 @@ constexpr std::size_t kMaxMessage = std::size_t{64} << 10U;
 // A page that is so far behind gets no picture until it has read; one so far behind is given up.
 constexpr std::size_t kBehindBytes = std::size_t{256} << 10U;
 constexpr std::size_t kLostBytes = std::size_t{4} << 20U;
+// All pages together; with more, each that is behind is given up. The unit has 64 MiB (MemoryMax).
+constexpr std::size_t kMostWaiting = std::size_t{16} << 20U;
+// Memory of a waiting message beside its bytes.
+constexpr std::size_t kMessageRoom = 128;
 constexpr std::string_view kWebSocketPath = "/link";
 
 // Nothing but this server's own files, and no frame of another page.
@@ -72,6 +76,7 @@ struct Shared {
   HostNames names;
   Hub hub;
   std::size_t connections = 0;
+  std::size_t waiting_bytes = 0;  ///< Room of all messages that were not sent yet.
 };
 
 /// One place among the connections, for as long as it lives.
@@ -95,6 +100,9 @@ class PageConnection final : public PageSocket, public std::enable_shared_from_t
  public:
   PageConnection(tcp::socket socket, Shared& shared, Place place)
       : socket_(std::move(socket)), shared_(shared), place_(std::move(place)) {}
+  PageConnection(const PageConnection&) = delete;
+  PageConnection& operator=(const PageConnection&) = delete;
+  ~PageConnection() override { shared_.waiting_bytes -= waiting_bytes_; }
 
   void accept(const http::request<http::empty_body>& request) {
     auto& tcp_socket = beast::get_lowest_layer(socket_).socket();
@@ -114,7 +122,10 @@ class PageConnection final : public PageSocket, public std::enable_shared_from_t
   void sendText(Text text) override { enqueue(std::move(text)); }
   void sendBinary(std::vector<std::byte> frame) override { enqueue(std::move(frame)); }
   [[nodiscard]] bool behind() const override { return waiting_bytes_ > kBehindBytes; }
-  void close() override { beast::get_lowest_layer(socket_).close(); }
+  void close() override {
+    closed_ = true;
+    beast::get_lowest_layer(socket_).close();
+  }
 
  private:
   using Message = std::variant<Text, std::vector<std::byte>>;
@@ -135,10 +146,15 @@ class PageConnection final : public PageSocket, public std::enable_shared_from_t
     });
   }
 
+  static std::size_t roomOf(const Message& message) { return bytesOf(message).size() + kMessageRoom; }
+
   void enqueue(Message message) {
-    waiting_bytes_ += bytesOf(message).size();
+    if (closed_) return;
+    waiting_bytes_ += roomOf(message);
+    shared_.waiting_bytes += roomOf(message);
     queue_.push_back(std::move(message));
-    if (waiting_bytes_ > kLostBytes) return close();
+    const bool crowded = shared_.waiting_bytes > kMostWaiting;
+    if (waiting_bytes_ > kLostBytes || (crowded && behind())) return close();
     if (queue_.size() == 1) write();
   }
 
@@ -146,7 +162,9 @@ class PageConnection final : public PageSocket, public std::enable_shared_from_t
     socket_.text(std::holds_alternative<Text>(queue_.front()));
     socket_.async_write(bytesOf(queue_.front()), [self = shared_from_this()](error_code error, std::size_t) {
       if (error) return self->end();
-      self->waiting_bytes_ -= bytesOf(self->queue_.front()).size();
+      const auto sent = roomOf(self->queue_.front());
+      self->waiting_bytes_ -= sent;
+      self->shared_.waiting_bytes -= sent;
       self->queue_.pop_front();
       if (!self->queue_.empty()) self->write();
     });
@@ -165,6 +183,7 @@ class PageConnection final : public PageSocket, public std::enable_shared_from_t
   std::size_t waiting_bytes_ = 0;
   bool loopback_ = false;
   bool joined_ = false;
+  bool closed_ = false;
   std::string address_;
 };
 
@@ -293,8 +312,8 @@ class Server::Parts {
 
   static constexpr std::chrono::milliseconds kRetry{100};
 
+  Shared shared_;  // outlives the connections that wait in the context
   asio::io_context context_{1};
-  Shared shared_;
   tcp::acceptor acceptor_;
   asio::signal_set signals_;
   asio::steady_timer timer_;

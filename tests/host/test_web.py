@@ -8,6 +8,7 @@ import json
 import math
 import os
 import re
+import signal
 import socket
 import stat
 import struct
@@ -30,6 +31,10 @@ from websockets.typing import Origin
 ELSEWHERE = "10.10.10.1"
 PAGE = "<!doctype html><title>page</title>"
 HEADER = struct.Struct("<BBHIIIdd")
+# More than rc10d has.
+SEATS = 20
+# Nearly as many as rc10-web lets in.
+STRANGERS = 60
 PIECE = 4
 
 
@@ -293,6 +298,37 @@ def test_a_page_from_elsewhere_needs_the_token_looks_and_stops(
             assert page.wait("hello")["right"] == "command"
 
 
+def test_an_estop_of_a_page_gets_in_when_every_seat_at_rc10d_is_taken(
+    web: Web, daemon: Daemon
+) -> None:
+    daemon.must("enable")
+    # A page takes a seat when it first asks for something.
+    ask = {"type": "request", "seq": 1, "operation": "disable", "target": "yaw", "client": "x" * 99}
+    with web.page() as page, contextlib.ExitStack() as others:
+        name = page.wait("hello")["name"]
+        for _ in range(SEATS):
+            others.enter_context(open_and_never_read(web.port, json.dumps(ask)))
+        eventually(lambda: daemon.ctl("list").returncode != 0, "every seat is taken")
+        told = page.ask("estop")
+        assert told["status"] == "failed"
+        assert told["message"].startswith("the e-stop was sent and is not confirmed: ")
+        stopped = page.wait("state", lambda state: state["data"]["state"] == "ESTOP")
+        assert stopped["data"]["stopped_by"] == name
+
+
+def test_an_estop_of_a_page_gets_in_while_rc10d_answers_nobody(web: Web, daemon: Daemon) -> None:
+    daemon.must("enable")
+    with web.page() as page:
+        page.wait("state")
+        daemon.program.signal(signal.SIGSTOP)
+        try:
+            told = page.ask("estop")
+        finally:
+            daemon.program.signal(signal.SIGCONT)
+        assert told["message"].startswith("the e-stop was sent and is not confirmed: ")
+        page.wait("state", lambda state: state["data"]["state"] == "ESTOP")
+
+
 def test_a_page_gets_the_recording_of_the_robot_that_runs_and_of_the_one_that_has_ended(
     web: Web, daemon: Daemon, tmp_path: Path
 ) -> None:
@@ -430,11 +466,15 @@ def test_what_is_no_message_is_refused_and_what_is_too_large_ends_the_page(web: 
     assert web.get("/").status == 200
 
 
-def resident_kib(pid: int) -> int:
+def resident_kib(pid: int, which: str = "VmRSS") -> int:
     status = Path(f"/proc/{pid}/status").read_text()
-    found = re.search(r"VmRSS:\s+(\d+) kB", status)
+    found = re.search(rf"{which}:\s+(\d+) kB", status)
     assert found is not None
     return int(found[1])
+
+
+def peak_resident_kib(pid: int) -> int:
+    return resident_kib(pid, "VmHWM")
 
 
 def open_and_never_read(port: int, message: str) -> socket.socket:
@@ -465,6 +505,27 @@ def test_a_page_that_does_not_read_slows_nobody_and_takes_bounded_room(web: Web)
         while seen < 3000:
             seen += len(quick.wait_columns(2).least[0])
         assert resident_kib(web.program.pid) < 64 * 1024
+
+
+def test_strangers_that_do_not_read_take_bounded_room_together(web: Web) -> None:
+    # Short, and answered each time with all that a page needs for its first picture.
+    text = b'{"type":"token"}'
+    question = bytes((0x81, 0x80 | len(text))) + bytes(4) + text
+    with contextlib.ExitStack() as strangers, web.page() as page:
+        page.wait("state")
+        opened = [
+            strangers.enter_context(open_and_never_read(web.port, "x" * 126))
+            for _ in range(STRANGERS)
+        ]
+        # In turns, until each is given up: what the kernel keeps for it is full before.
+        while opened:
+            for stranger in list(opened):
+                try:
+                    stranger.sendall(question * 1000)
+                except ConnectionError:
+                    opened.remove(stranger)
+        assert page.ask("enable", "wheel")["status"] == "ok"
+        assert peak_resident_kib(web.program.pid) < 64 * 1024
 
 
 def test_connections_are_bounded_and_their_places_come_back(web: Web) -> None:
