@@ -331,15 +331,14 @@ def test_a_recording_sticks_out_nowhere_and_all_can_use_it(
     context.close()
 
 
-@pytest.fixture(scope="module")
-def parser(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """The reader of the page by itself, without the page."""
-    entry = tmp_path_factory.mktemp("parser") / "parser.js"
+def bundle(folder: Path, source: str) -> Path:
+    """A part of the page by itself, as the global name `parser`."""
+    entry = folder / "parser.js"
     [esbuild] = (REPO / "web" / "node_modules" / "@esbuild").glob("*/bin/esbuild")
     subprocess.run(
         [
             esbuild,
-            REPO / "web" / "src" / "recording.ts",
+            REPO / "web" / "src" / source,
             "--bundle",
             "--format=iife",
             "--global-name=parser",
@@ -349,6 +348,12 @@ def parser(tmp_path_factory: pytest.TempPathFactory) -> Path:
         check=True,
     )
     return entry
+
+
+@pytest.fixture(scope="module")
+def parser(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """The reader of the page without the page."""
+    return bundle(tmp_path_factory.mktemp("parser"), "recording.ts")
 
 
 @pytest.fixture
@@ -487,6 +492,41 @@ def test_whatever_is_done_to_the_bytes_of_a_file_its_reader_ends_and_says_what_i
     assert outcomes["most"] <= len(box.bytes) / 16
 
 
+@pytest.mark.parametrize("bits", [52, 53, 63])
+def test_positions_that_a_page_has_no_exact_numbers_for_do_not_keep_it_reading(
+    reader: Page, studio: Studio, box: Box, tmp_path: Path, bits: int
+) -> None:
+    content = box.bytes
+    # A history of an odd size ends between two numbers of this size.
+    for name in ("history_bytes", "file_bytes"):
+        at = field_at(studio, "header", name)
+        [size] = struct.unpack_from("<Q", content, at)
+        content = patched(content, at, struct.pack("<Q", size - 5))
+    [history] = struct.unpack_from("<Q", content, field_at(studio, "header", "history_bytes"))
+    step = 1 << (bits - 52)
+    begin = next(
+        place
+        for place in range(1 << bits, 2 << bits, step)
+        if 0 < history - place % history <= max(1, step // 2)
+    )
+    end = begin + max(64, step)
+    control = format_of(studio)["control_at"]
+    for name, place in (("oldest", begin), ("tail", end), ("head", end)):
+        at = control + field_at(studio, "control", name)
+        content = patched(content, at, struct.pack("<Q", place))
+    file = tmp_path / "far.blackbox"
+    file.write_bytes(content)
+    reader.locator("input").set_input_files(file)
+    found = reader.evaluate(
+        """async () => {
+            const r = new parser.Recording(format, await bytes());
+            return {size: r.size, damages: r.damages.map((damage) => damage.what)};
+        }"""
+    )
+    assert ("positions" in found["damages"]) == (bits > 52)
+    assert found["size"] <= len(content) / 16
+
+
 def test_of_a_file_that_is_cut_off_all_that_is_left_is_read(
     reader: Page, studio: Studio, box: Box, tmp_path: Path
 ) -> None:
@@ -507,3 +547,31 @@ def test_of_a_file_that_is_cut_off_all_that_is_left_is_read(
         left = max(0, share * whole - begin) / (whole - begin)
         assert size == pytest.approx(left * (len(box.records) - 1), rel=0.05)
     assert sizes[0] == len(box.records) - 1
+
+
+def test_a_question_that_comes_while_another_file_is_read_is_answered(
+    chromium: Browser, studio: Studio, box: Box, tmp_path: Path
+) -> None:
+    # The page asks for nothing more until it has the answer.
+    context = chromium.new_context(bypass_csp=True)
+    context.set_default_timeout(PATIENCE_MS)
+    page = context.new_page()
+    page.goto(studio.url)
+    page.add_script_tag(path=bundle(tmp_path, "recording_reader.ts"))
+    found = page.evaluate(
+        """async ([text, patience_ms]) => {
+            const file = new Blob([Uint8Array.from(atob(text), (c) => c.charCodeAt(0))]);
+            const reader = new parser.RecordingReader();
+            const look = {from_us: 0, to_us: 1e6, columns: 100, signals: [], at_us: 1e6,
+                          filter: '', problems: false};
+            const opening = reader.open(file);
+            const early = reader.look(look);
+            const {robot} = await opening;
+            const silence = new Promise((r) => setTimeout(r, patience_ms, 'no answer'));
+            return {robot, early: await Promise.race([early, silence]),
+                    later: (await reader.look(look)).motors.length};
+        }""",
+        [base64.b64encode(box.bytes).decode(), PATIENCE_MS / 2],
+    )
+    assert found == {"robot": "host", "early": None, "later": 3}
+    context.close()

@@ -294,11 +294,13 @@ export class Recording {
   private takeStream(file: Uint8Array, head: DataView, sizes: Sizes): Run[] {
     const control = (name: string) => controlNumber(this.format, head, name);
     const [begin, tail, end] = [control('oldest'), control('tail'), control('head')];
-    // Both rings begin with a record, whatever is missing before them.
+    // Both rings begin with a record, whatever is missing before them. Positions beyond the exact numbers would
+    // never be passed.
     const parts: { offset: number; size: number; from: number; to: number; synced: boolean }[] = [];
     const history = { offset: sizes.historyOffset, size: sizes.historyBytes };
     const ring = { offset: sizes.ringOffset, size: sizes.ringBytes };
     const fits =
+      Number.isSafeInteger(end) &&
       tail <= end && end - tail <= ring.size && begin <= end && (begin >= tail || tail - begin <= history.size);
     if (fits) {
       if (begin < tail) parts.push({ ...history, from: begin, to: tail, synced: true });

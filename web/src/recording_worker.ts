@@ -38,6 +38,8 @@ kThread.onmessage = async (message) => {
   try {
     if ('open' in message.data) kThread.postMessage({ order, summary: await open(message.data.open) });
     else if (recording !== null && format !== null) kThread.postMessage({ order, moment: momentOf(recording, format, message.data.look) });
+    // Each question has an answer: this one was meant for the file before.
+    else kThread.postMessage({ order, failed: '' });
   } catch (error) {
     if (error instanceof RecordingError) kThread.postMessage({ order, refusal: error.refusal });
     else kThread.postMessage({ order, failed: String(error) });
