@@ -331,14 +331,18 @@ def test_a_recording_sticks_out_nowhere_and_all_can_use_it(
     context.close()
 
 
-def bundle(folder: Path, source: str) -> Path:
-    """A part of the page by itself, as the global name `parser`."""
+def bundle(folder: Path, *sources: str) -> Path:
+    """Parts of the page by themselves, as the global name `parser`."""
+    whole = folder / "all.ts"
+    whole.write_text(
+        "".join(f"export * from '{REPO / 'web' / 'src' / source}';\n" for source in sources)
+    )
     entry = folder / "parser.js"
     [esbuild] = (REPO / "web" / "node_modules" / "@esbuild").glob("*/bin/esbuild")
     subprocess.run(
         [
             esbuild,
-            REPO / "web" / "src" / source,
+            whole,
             "--bundle",
             "--format=iife",
             "--global-name=parser",
@@ -353,7 +357,7 @@ def bundle(folder: Path, source: str) -> Path:
 @pytest.fixture(scope="module")
 def parser(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """The reader of the page without the page."""
-    return bundle(tmp_path_factory.mktemp("parser"), "recording.ts")
+    return bundle(tmp_path_factory.mktemp("parser"), "recording", "record_order")
 
 
 @pytest.fixture
@@ -527,6 +531,54 @@ def test_positions_that_a_page_has_no_exact_numbers_for_do_not_keep_it_reading(
     assert found["size"] <= len(content) / 16
 
 
+def test_records_in_any_disorder_are_put_in_order_in_a_bounded_number_of_steps(
+    reader: Page, box: Box, tmp_path: Path
+) -> None:
+    file = tmp_path / "host.blackbox"
+    file.write_bytes(box.bytes)
+    reader.locator("input").set_input_files(file)
+    found = reader.evaluate(
+        """async () => {
+            const whole = await bytes();
+            const good = new parser.Recording(format, whole);
+            const view = new DataView(whole.buffer);
+            // Lower halves of times: all records are within four seconds, none where it was.
+            const orders = {
+                scattered: (i) => Math.imul(i + 1, 2654435761) >>> 0,
+                backwards: (i) => good.size - i,
+                halves: (i) => (i % 2) * good.size + i,
+                saw: (i) => (i % 1000) * 1000,
+                equal: () => 7,
+            };
+            const stepsOf = (times) => parser.sortByTime(times, new Uint32Array(times.length));
+            const offsets = good.offsets.slice().sort();
+            const found = {size: good.size, orders: []};
+            found.own = stepsOf(Float64Array.from(offsets, (offset) => good.timeAt(offset)));
+            // Of their times: a record may go on at the beginning of the ring.
+            const places = Array.from(offsets, (offset) => good.fileAt(offset + 8));
+            for (const [name, time] of Object.entries(orders)) {
+                for (const [i, place] of places.entries()) view.setUint32(place, time(i), true);
+                const steps = stepsOf(Float64Array.from(places, (_, i) => time(i)));
+                const r = new parser.Recording(format, whole);
+                const inOrder = (at) => r.times[at - 1] < r.times[at] ||
+                    (r.times[at - 1] === r.times[at] && r.offsets[at - 1] < r.offsets[at]);
+                let wrong = 0;
+                for (let i = 1; i < r.size; ++i) wrong += inOrder(i) ? 0 : 1;
+                found.orders.push({name, steps, size: r.size, wrong,
+                                   all: new Set(r.offsets).size === r.size});
+            }
+            return found;
+        }"""
+    )
+    size = found["size"]
+    assert size > 10_000
+    assert found["own"] <= 16 * size
+    for order in found["orders"]:
+        assert (order["wrong"], order["all"], order["size"]) == (0, True, size), order
+        # Each record moves at most once for each doubling; four more find the places to merge.
+        assert order["steps"] <= size * (math.ceil(math.log2(size)) + 4), order
+
+
 def test_of_a_file_that_is_cut_off_all_that_is_left_is_read(
     reader: Page, studio: Studio, box: Box, tmp_path: Path
 ) -> None:
@@ -557,7 +609,7 @@ def test_a_question_that_comes_while_another_file_is_read_is_answered(
     context.set_default_timeout(PATIENCE_MS)
     page = context.new_page()
     page.goto(studio.url)
-    page.add_script_tag(path=bundle(tmp_path, "recording_reader.ts"))
+    page.add_script_tag(path=bundle(tmp_path, "recording_reader"))
     found = page.evaluate(
         """async ([text, patience_ms]) => {
             const file = new Blob([Uint8Array.from(atob(text), (c) => c.charCodeAt(0))]);

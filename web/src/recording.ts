@@ -1,6 +1,7 @@
 // A recording of rc10d out of a file of anybody: every length is checked before it counts, and what is whole is shown.
 
 import { type Field, type RecordingFormat, type Structure, numberAt, textAt } from './recording_format';
+import { sortByTime } from './record_order';
 
 /** The file as a whole is none that can be read. */
 export interface Refusal {
@@ -448,32 +449,6 @@ function bitCount(bits: number): number {
   let count = 0;
   for (let rest = bits >>> 0; rest !== 0; rest >>>= 1) count += rest & 1;
   return count;
-}
-
-// Frames have the time at which the kernel got them, which is shortly before their tick's: few have far to go.
-function sortByTime(times: Float64Array, offsets: Uint32Array): void {
-  let moves = 64 * times.length + 1024;
-  for (let i = 1; i < times.length; ++i) {
-    const time = times[i] ?? 0;
-    const offset = offsets[i] ?? 0;
-    let to = i;
-    while (to > 0 && (times[to - 1] ?? 0) > time && moves > 0) {
-      times[to] = times[to - 1] ?? 0;
-      offsets[to] = offsets[to - 1] ?? 0;
-      --to;
-      --moves;
-    }
-    times[to] = time;
-    offsets[to] = offset;
-    if (moves === 0) return sortAnyhow(times, offsets);
-  }
-}
-
-function sortAnyhow(times: Float64Array, offsets: Uint32Array): void {
-  const order = Uint32Array.from({ length: times.length }, (_, i) => i);
-  order.sort((a, b) => (times[a] ?? 0) - (times[b] ?? 0) || a - b);
-  times.set(Float64Array.from(order, (i) => times[i] ?? 0));
-  offsets.set(Uint32Array.from(order, (i) => offsets[i] ?? 0));
 }
 
 interface Sizes {
