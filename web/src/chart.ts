@@ -1,5 +1,6 @@
 import uPlot from 'uplot';
 
+import { type Curve, drawCurves } from './curves';
 
 // Okabe and Ito's colours, which colour-blind people tell apart; the line's pattern differs as well.
 const kColours = ['#0072b2', '#d55e00', '#009e73', '#cc79a7', '#56b4e9', '#e69f00', '#7f7f7f', '#b58900'];
@@ -62,12 +63,21 @@ export function inkOf(name: string): string {
 export function makeChart(target: HTMLElement, signals: string[], hooks: ChartHooks): uPlot {
   const units = [...new Set(signals.map(hooks.unit))];
   const series: uPlot.Series[] = [{}];
-  const bands: uPlot.Band[] = [];
-  signals.forEach((signal, i) => {
-    const look = { scale: hooks.unit(signal), stroke: colourOf(i), dash: dashOf(i), width: 1.5, points: { show: false } };
+  signals.forEach((signal) => {
+    // Their curves are drawn by curves.ts.
+    const look = { scale: hooks.unit(signal), paths: () => null, points: { show: false } };
     series.push({ ...look, label: `${signal} min` }, { ...look, label: signal });
-    bands.push({ series: [2 * i + 2, 2 * i + 1], fill: `${colourOf(i)}55` });
   });
+  const curves = (u: uPlot): Curve[] =>
+    signals.map((signal, i) => ({
+      low: u.data[2 * i + 1] ?? [],
+      high: u.data[2 * i + 2] ?? [],
+      scale: hooks.unit(signal),
+      colour: colourOf(i),
+      band: `${colourOf(i)}55`,
+      dash: dashOf(i).map((length) => length * devicePixelRatio),
+      width: 1.5 * devicePixelRatio,
+    }));
   const scales: uPlot.Scales = {
     x: { time: false, range: (_u, min, max) => (isEmpty(min, max) ? kUnknown : min === max ? [min, min + 1] : [min, max]) },
   };
@@ -89,7 +99,6 @@ export function makeChart(target: HTMLElement, signals: string[], hooks: ChartHo
       width: Math.max(280, target.clientWidth),
       height: Math.max(240, target.clientHeight),
       series,
-      bands,
       scales,
       axes,
       legend: { show: false },
@@ -103,7 +112,7 @@ export function makeChart(target: HTMLElement, signals: string[], hooks: ChartHo
           },
         ],
         drawAxes: [(u) => drawKept(u, hooks.kept(), hooks.unit)],
-        draw: [(u) => drawMarks(u, hooks.marks())],
+        draw: [(u) => clipped(u, () => drawCurves(u, curves(u))), (u) => drawMarks(u, hooks.marks())],
       },
     },
     [[], ...signals.flatMap(() => [[], []])] as unknown as uPlot.AlignedData,
@@ -131,29 +140,13 @@ export function clipped(u: uPlot, draw: (context: CanvasRenderingContext2D) => v
 // The curve of before behind today's, ending where the picture ends.
 function drawKept(u: uPlot, kept: Kept[], unit: (signal: string) => string): void {
   const end = u.scales['x']?.max;
-  if (end === undefined || end === null) return;
-  clipped(u, (context) => {
-    context.strokeStyle = inkOf('--kept');
-    context.lineWidth = 2 * devicePixelRatio;
+  if (end === undefined || end === null || kept.length === 0) return;
+  const colour = inkOf('--kept');
+  clipped(u, () => {
     for (const trace of kept) {
       const last = trace.times[trace.times.length - 1] ?? 0;
-      const scale = unit(trace.name);
-      if (u.scales[scale] === undefined) continue;
-      context.beginPath();
-      let down = false;
-      trace.times.forEach((time, i) => {
-        const value = trace.values[i];
-        if (value === null || value === undefined) {
-          down = false;
-          return;
-        }
-        const x = u.valToPos(time - last + end, 'x', true);
-        const y = u.valToPos(value, scale, true);
-        if (down) context.lineTo(x, y);
-        else context.moveTo(x, y);
-        down = true;
-      });
-      context.stroke();
+      const look = { scale: unit(trace.name), colour, band: colour, dash: [], width: 2 * devicePixelRatio };
+      drawCurves(u, [{ ...look, low: trace.values, high: trace.values }], trace.times, end - last);
     }
   });
 }

@@ -69,6 +69,7 @@ export function Curves(props: {
   const box = useRef<HTMLDivElement>(null);
   const chart = useRef<uPlot | null>(null);
   const view = useRef(0);
+  const waiting = useRef(0);
   const origin = useRef(0);
   const zoomed = useRef(-1);
   const pointsNow = useRef<number[]>([]);
@@ -84,6 +85,15 @@ export function Curves(props: {
   const traces = useMemo(() => new Traces(() => origin.current), [key, span_s, robotName]);
 
   const columns = () => Math.min(2000, Math.max(200, Math.round(box.current?.clientWidth ?? 800)));
+
+  // A picture for each that the screen shows, however often something comes.
+  const drawSoon = () => {
+    if (waiting.current !== 0) return;
+    waiting.current = requestAnimationFrame(() => {
+      waiting.current = 0;
+      if (!frozenNow.current) draw();
+    });
+  };
 
   const draw = () => {
     const u = chart.current;
@@ -141,7 +151,7 @@ export function Curves(props: {
         );
         return;
       }
-      if (traces.add(received, number_, Math.ceil((60 * kUs) / received.columnUs)) && !frozenNow.current) draw();
+      if (traces.add(received, number_, Math.ceil((60 * kUs) / received.columnUs)) && !frozenNow.current) drawSoon();
     });
     link.view(number_, chosen, columnUs, span_s * kUs);
     return () => {
