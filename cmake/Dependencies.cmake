@@ -23,8 +23,10 @@ pkg_check_modules(LIBMD REQUIRED IMPORTED_TARGET libmd)
 add_library(rc10::md ALIAS PkgConfig::LIBMD)
 pkg_check_modules(LIBMNL REQUIRED IMPORTED_TARGET libmnl)
 add_library(rc10::mnl ALIAS PkgConfig::LIBMNL)
-pkg_check_modules(LIBQRENCODE REQUIRED IMPORTED_TARGET libqrencode)
-add_library(rc10::qrencode ALIAS PkgConfig::LIBQRENCODE)
+# Its header alone: rc10ctl loads libqrencode.so.4 where it draws a code.
+pkg_check_modules(LIBQRENCODE REQUIRED "libqrencode>=4" "libqrencode<5")
+add_library(rc10::qrencode INTERFACE IMPORTED)
+target_include_directories(rc10::qrencode INTERFACE ${LIBQRENCODE_INCLUDE_DIRS})
 
 # lcm.pc requires glib's .pc files, which liblcm-dev does not depend on.
 find_path(LCM_INCLUDE_DIR lcm/lcm.h REQUIRED)

@@ -40,7 +40,8 @@ set(CPACK_DEBIAN_DAEMON_DESCRIPTION "The daemon, which turns a Linux computer wi
 controller of a robot: closed loops at 1 kHz for DJI, VESC, Damiao, RobStride,
 CubeMars, moteus, ODrive, MyActuator and LK-Tech drives, safe by default. With
 the LCM gateway, the command line tool rc10ctl and simulated drives.")
-set(CPACK_DEBIAN_DAEMON_PACKAGE_DEPENDS "iproute2, systemd")
+# libqrencode4: rc10ctl loads it when it draws a code.
+set(CPACK_DEBIAN_DAEMON_PACKAGE_DEPENDS "iproute2, libqrencode4, systemd")
 set(CPACK_DEBIAN_DAEMON_PACKAGE_RECOMMENDS can-utils)
 set(CPACK_DEBIAN_DAEMON_PACKAGE_CONTROL_EXTRA
     "${scripts}/preinst;${scripts}/postinst;${scripts}/prerm;${scripts}/postrm;${scripts}/conffiles")

@@ -1,5 +1,7 @@
 #include "qr_picture.hpp"
 
+#include <dlfcn.h>
+
 #include <array>
 #include <memory>
 #include <string_view>
@@ -13,16 +15,25 @@ namespace {
 constexpr int kQuietZone = 4;
 // By the upper module, then the lower one; set: light.
 constexpr std::array<std::array<std::string_view, 2>, 2> kBlocks{{{" ", "▄"}, {"▀", "█"}}};
+constexpr const char* kLibrary = "libqrencode.so.4";
 
-struct CodeFree {
-  void operator()(QRcode* code) const noexcept { QRcode_free(code); }
+struct LibraryClose {
+  void operator()(void* library) const noexcept { (void)::dlclose(library); }
 };
 
 }  // namespace
 
-std::optional<QrPicture> qrPicture(const std::string& text, bool coloured) {
-  const std::unique_ptr<QRcode, CodeFree> code{QRcode_encodeString8bit(text.c_str(), 0, QR_ECLEVEL_L)};
-  if (!code) return std::nullopt;
+Result<QrPicture> qrPicture(const std::string& text, bool coloured) {
+  // Here and not by the linker: every start of rc10ctl would load it.
+  const std::unique_ptr<void, LibraryClose> library{::dlopen(kLibrary, RTLD_NOW | RTLD_LOCAL)};
+  const auto encode = library ? ::dlsym(library.get(), "QRcode_encodeString8bit") : nullptr;
+  const auto release = library ? ::dlsym(library.get(), "QRcode_free") : nullptr;
+  if (encode == nullptr || release == nullptr)
+    return fail(std::string{"it needs "} + kLibrary + ", of Debian's package libqrencode4");
+  const std::unique_ptr<QRcode, decltype(&QRcode_free)> code{
+      reinterpret_cast<decltype(&QRcode_encodeString8bit)>(encode)(text.c_str(), 0, QR_ECLEVEL_L),
+      reinterpret_cast<decltype(&QRcode_free)>(release)};
+  if (!code) return fail("the address is too long for one");
   const int width = code->width;
   const auto light = [&](int x, int y) {
     const bool inside = x >= 0 && y >= 0 && x < width && y < width;

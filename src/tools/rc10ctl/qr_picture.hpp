@@ -1,8 +1,9 @@
 #pragma once
 
 #include <cstddef>
-#include <optional>
 #include <string>
+
+#include "app/result.hpp"
 
 namespace rc10::ctl {
 
@@ -12,7 +13,7 @@ struct QrPicture {
   std::string lines;
 };
 
-/// None: it is too long for one. `coloured`: white on black whatever the terminal's colours are.
-[[nodiscard]] std::optional<QrPicture> qrPicture(const std::string& text, bool coloured);
+/// `coloured`: white on black whatever the terminal's colours are.
+[[nodiscard]] Result<QrPicture> qrPicture(const std::string& text, bool coloured);
 
 }  // namespace rc10::ctl

@@ -53,7 +53,10 @@ void showCode(const std::string& url) {
   if (!utf8()) return;
   const auto picture = qrPicture(url, coloured(STDOUT_FILENO));
   const auto screen = screenSize(STDOUT_FILENO);
-  if (!picture) return;
+  if (!picture) {
+    std::printf("No QR code: %s.\n", picture.error().message.c_str());
+    return;
+  }
   if (screen.columns != 0 && screen.columns < picture->columns) {
     std::printf("The terminal is too narrow for the QR code: %zu columns.\n", picture->columns);
     return;
