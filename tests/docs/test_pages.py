@@ -117,6 +117,7 @@ def test_what_a_reader_of_chinese_needs_is_there_in_chinese() -> None:
         "troubleshooting",
         "safety",
         "modules",
+        "serial-devices",
     }
 
 
