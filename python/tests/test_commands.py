@@ -109,6 +109,8 @@ def test_a_command_must_say_something(robot: rc10.Robot) -> None:
         robot.command({"yaw": rc10.coast()}, yaw=rc10.brake())
     with pytest.raises(ValueError, match="validity_ms = -1"):
         robot.command(yaw=rc10.brake(), validity_ms=-1)
+    with pytest.raises(ValueError, match="validity_ms = 1001 is out of range; use 1 to 1000"):
+        robot.command(yaw=rc10.brake(), validity_ms=1001)
 
 
 def test_a_command_to_a_motor_that_was_never_active_raises_and_sends_nothing(

@@ -70,6 +70,8 @@ def test_what_no_module_takes_is_not_sent(robot: rc10.Robot, link: VirtualLink) 
         base.send(vx_m_s=math.nan)
     with pytest.raises(ValueError, match="validity_ms = -1"):
         base.send(vx_m_s=1, validity_ms=-1)
+    with pytest.raises(ValueError, match="validity_ms = 1001"):
+        base.send(vx_m_s=1, validity_ms=1001)
     robot.spin()
     assert seen == []
 

@@ -218,6 +218,7 @@ def test_events_are_taken_once(robot: rc10.Robot, daemon: FakeDaemon) -> None:
     events = robot.events()
     assert [event.text for event in events] == ["first", "second"]
     assert events[0].severity is rc10.Severity.WARNING
+    assert str(events[0]) == "WARNING wheel: first"
     assert (events[0].source, events[0].code) == ("wheel", 42)
     assert robot.events() == []
 

@@ -42,10 +42,6 @@ NOT_RUN = {
     # Programs.
     ("docs/porting-from-stm32.md", "// firmware"): "two programs side by side",
     (
-        "docs/python.md",
-        "import numpy as np\nimport rc10\nfrom my_policy",
-    ): "a policy of one's own",
-    (
         "docs/tuning.md",
         "as_shipped: velocity, multisine",
     ): "tests/host/test_motion.py runs the command; the figures are this computer's",

@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, fields
-from enum import IntEnum
 from types import MappingProxyType
 from typing import TYPE_CHECKING
 
 from rc10.lcm_types.bus_state_t import bus_state_t
+from rc10.words import Word
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from rc10.lcm_types.diagnostics_t import diagnostics_t
 
 
-class BusStatus(IntEnum):
+class BusStatus(Word):
     """State of one bus."""
 
     ACTIVE = bus_state_t.STATE_ACTIVE

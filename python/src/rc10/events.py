@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from enum import IntEnum
 
 from rc10.lcm_types.event_t import event_t
+from rc10.printable import printable
+from rc10.words import Word
 
 
-class Severity(IntEnum):
+class Severity(Word):
     """Severity of an event."""
 
     INFO = event_t.SEVERITY_INFO
@@ -31,6 +32,10 @@ class Event:
     client: str
     """The client or module whose request or command it was, empty without one."""
     text: str
+
+    def __str__(self) -> str:
+        """Returns it in a line, as the log has it: `WARNING lift: no valid command any more`."""
+        return printable(f"{self.severity} {self.source}: {self.text}")
 
     @classmethod
     def from_lcm(cls, message: event_t) -> Event:

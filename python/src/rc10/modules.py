@@ -12,6 +12,7 @@ from rc10.errors import NotReceived, Timeout
 from rc10.lcm_types.signals_t import signals_t
 from rc10.spelling import did_you_mean
 from rc10.topics import Publisher, Subscriber
+from rc10.validity import check_validity
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
@@ -88,8 +89,7 @@ class Module:
         """
         if not 0 < len(inputs) <= _MAX_SIGNALS:
             raise ValueError(f"a module takes 1 to {_MAX_SIGNALS} inputs, not {len(inputs)}")
-        if not 0 <= validity_ms < 2**31:
-            raise ValueError(f"validity_ms = {validity_ms} is out of range")
+        check_validity(validity_ms)
         for name, value in inputs.items():
             if not math.isfinite(value):
                 raise ValueError(f"{name} = {value} is not finite: leave it out, or give a number")

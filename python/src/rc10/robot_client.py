@@ -20,6 +20,7 @@ from rc10.recorder import Recorder
 from rc10.requests import Requests
 from rc10.setpoints import Mode, Setpoint, angle_deg, coast, total_angle_deg
 from rc10.spelling import did_you_mean, meant
+from rc10.validity import DEFAULT_VALIDITY_MS, check_validity
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping
@@ -44,8 +45,6 @@ RELEASE_TIMEOUT_S = 0.5
 # Period and validity of a move's target while the program receives.
 RESEND_S = 0.02
 _MOVE_VALIDITY_MS = 100
-# Validity that the daemon gives a message that says 0.
-DEFAULT_VALIDITY_MS = 50
 # A state younger than this proves that the daemon runs and is heard.
 _LIVE_S = 1.0
 
@@ -218,8 +217,7 @@ class RobotClient:
         orders.update(by_name)
         if not orders:
             raise ValueError("a command needs at least one setpoint")
-        if not 0 <= validity_ms < 2**31:
-            raise ValueError(f"validity_ms = {validity_ms} is out of range")
+        check_validity(validity_ms)
         for name, setpoint in orders.items():
             if not isinstance(setpoint, Setpoint):
                 raise TypeError(

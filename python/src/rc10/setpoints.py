@@ -8,16 +8,16 @@ from __future__ import annotations
 import math
 import numbers
 from dataclasses import dataclass
-from enum import IntEnum
 
 from rc10.errors import InvalidSetpoint
 from rc10.lcm_types.setpoint_t import setpoint_t
+from rc10.words import Word
 
 _FLOAT32_MAX = 3.4028234663852886e38
 _IMPEDANCE_ONLY = ("stiffness_nm_per_rad", "damping_nms_per_rad")
 
 
-class Mode(IntEnum):
+class Mode(Word):
     """Meaning of a setpoint's value."""
 
     COAST = setpoint_t.MODE_COAST

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field, fields
-from enum import IntEnum, IntFlag
 from functools import cache
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Callable
@@ -13,12 +12,13 @@ from rc10.lcm_types.motor_state_t import motor_state_t
 from rc10.lcm_types.robot_state_t import robot_state_t
 from rc10.setpoints import Mode
 from rc10.spelling import did_you_mean
+from rc10.words import Word, WordSet
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
 
-class RobotStatus(IntEnum):
+class RobotStatus(Word):
     """State of the whole robot."""
 
     RUN = robot_state_t.STATE_RUN
@@ -27,7 +27,7 @@ class RobotStatus(IntEnum):
     STOPPING = robot_state_t.STATE_STOPPING
 
 
-class MotorStatus(IntEnum):
+class MotorStatus(Word):
     """State of one motor."""
 
     OFFLINE = motor_state_t.STATUS_OFFLINE
@@ -41,7 +41,7 @@ class MotorStatus(IntEnum):
     """Latched until cleared."""
 
 
-class Limit(IntFlag):
+class Limit(WordSet):
     """Limits that act right now; they are not faults."""
 
     CURRENT = motor_state_t.LIMIT_CURRENT
@@ -52,7 +52,7 @@ class Limit(IntFlag):
     STALL = motor_state_t.LIMIT_STALL
 
 
-class CommandUnit(IntEnum):
+class CommandUnit(Word):
     """Unit of MotorState.command_value."""
 
     NONE = motor_state_t.UNIT_NONE
@@ -62,7 +62,7 @@ class CommandUnit(IntEnum):
     """The drive closes the loop: the unit of the mode."""
 
 
-class Acting(IntEnum):
+class Acting(Word):
     """Source of the torque that a shaft feels."""
 
     NOTHING = motor_state_t.ACTING_NOTHING
@@ -81,7 +81,7 @@ class Acting(IntEnum):
         return cls.UNKNOWN
 
 
-class StopCause(IntEnum):
+class StopCause(Word):
     """Reason why a motor does not obey, or the robot does not run."""
 
     NONE = motor_state_t.STOP_NONE
@@ -114,7 +114,7 @@ class StopCause(IntEnum):
         return cls.UNKNOWN
 
 
-class Condition(IntFlag):
+class Condition(WordSet):
     """Conditions of the whole robot."""
 
     SIMULATED = robot_state_t.CONDITION_SIMULATED
@@ -127,7 +127,7 @@ class Condition(IntFlag):
     """`tuning: locked`: nobody changes gains or the settings of drives."""
 
 
-_ENUMERATIONS: Mapping[str, Callable[[int], IntEnum | IntFlag]] = {
+_ENUMERATIONS: Mapping[str, Callable[[int], Word | WordSet]] = {
     "status": MotorStatus,
     "limits": Limit,
     "mode": Mode,
