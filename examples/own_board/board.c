@@ -78,10 +78,16 @@ static void report(int cobs) {
 }
 
 int main(int argc, char **argv) {
-  if (argc != 3) return 2;
-  const int cobs = strcmp(argv[1], "COBS") == 0;
+  const int cobs = argc == 3 && strcmp(argv[1], "COBS") == 0;
+  if (argc != 3 || (!cobs && strcmp(argv[1], "TEXT") != 0)) {
+    fprintf(stderr, "usage: board TEXT|COBS PORT     PORT: a serial port, or - for standard input\n");
+    return 2;
+  }
   port = strcmp(argv[2], "-") == 0 ? STDIN_FILENO : open(argv[2], O_RDWR | O_NOCTTY);
-  if (port < 0) return 1;
+  if (port < 0) {
+    perror(argv[2]);
+    return 1;
+  }
   make_raw(port);
   for (long next_ms = now_ms();; next_ms += 20) {
     report(cobs);

@@ -2,7 +2,8 @@
 
     python fake_remote.py [PATH]       PATH: the `port` of the module `remote`
 
-Type: `up` and `down` move the arm switch (the left one), `off` and `on` are the remote's power.
+Type: `up` and `down` move the arm switch (the left one), `off` and `on` are the remote's power,
+`right_y=0.5` holds a stick there (right_x, right_y, left_x, left_y, wheel; -1 to 1).
 """
 
 from __future__ import annotations
@@ -16,17 +17,31 @@ import tty
 from pathlib import Path
 
 PERIOD_S = 0.014  # period of a DR16
-CENTRE = 1024
+CENTRE, FULL = 1024, 660
 UP, DOWN, MIDDLE = 1, 2, 3
 
 
-def frame(left_switch: int) -> bytes:
-    """The 18 bytes of DBUS: sticks and wheel in the middle, no mouse, no keys."""
-    bits = 0
-    for channel in range(4):
-        bits |= CENTRE << (11 * channel)
+def frame(left_switch: int, sticks: dict[str, float]) -> bytes:
+    """The 18 bytes of DBUS: no mouse, no keys."""
+    right_x, right_y, left_x, left_y, wheel = (
+        CENTRE + round(FULL * value) for value in sticks.values()
+    )
+    bits = right_x | right_y << 11 | left_x << 22 | left_y << 33
     bits |= MIDDLE << 44 | left_switch << 46
-    return bits.to_bytes(6, "little") + bytes(10) + CENTRE.to_bytes(2, "little")
+    return bits.to_bytes(6, "little") + bytes(10) + wheel.to_bytes(2, "little")
+
+
+def move(sticks: dict[str, float], word: str) -> bool:
+    """Puts a stick where `right_y=0.5` says; False: it says something else."""
+    name, _, number = word.partition("=")
+    try:
+        value = float(number)
+    except ValueError:
+        return False
+    if name not in sticks or not -1 <= value <= 1:
+        return False
+    sticks[name] = value
+    return True
 
 
 def play(path: Path) -> None:
@@ -36,8 +51,9 @@ def play(path: Path) -> None:
     os.set_blocking(master, False)
     path.unlink(missing_ok=True)
     path.symlink_to(os.ttyname(slave))
-    print(f"{path} is {os.ttyname(slave)}; type up, down, off or on", flush=True)
+    print(f"{path} is {os.ttyname(slave)}; type up, down, off, on or right_y=0.5", flush=True)
     switch, powered = DOWN, True
+    sticks = dict.fromkeys(("right_x", "right_y", "left_x", "left_y", "wheel"), 0.0)
     words = selectors.DefaultSelector()
     words.register(sys.stdin, selectors.EVENT_READ)
     next_s = time.monotonic()
@@ -47,7 +63,7 @@ def play(path: Path) -> None:
             if powered:
                 # Bytes that nobody reads are lost, as on a wire.
                 with contextlib.suppress(BlockingIOError):
-                    os.write(master, frame(switch))
+                    os.write(master, frame(switch, sticks))
             while (left_s := next_s - time.monotonic()) > 0:
                 if not words.select(left_s):
                     break
@@ -64,8 +80,9 @@ def play(path: Path) -> None:
                             powered = False
                         case "on":
                             powered = True
-                        case _:
-                            print(f"{word!r} is neither up, down, off nor on", flush=True)
+                        case _ if not move(sticks, word):
+                            known = f"up, down, off, on, and {', '.join(sticks)}=-1 to 1"
+                            print(f"{word!r} is unknown; there are {known}", flush=True)
     finally:
         path.unlink(missing_ok=True)
 

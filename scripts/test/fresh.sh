@@ -69,6 +69,7 @@ pages() {
     step "docs/quick-start.md: without the demo" timed "quick start, section 2" shown docs/quick-start.md 2
     step "docs/quick-start.md: rc10-sim" shown docs/quick-start.md 3
     step "docs/python.md: installing" timed "Python package" shown docs/python.md 1
+    step "docs/robot-programs.md: installing" shown docs/robot-programs.md 1
     step "python/README.md: installing" shown python/README.md 1
     step "python/README.md: developing" shown python/README.md 2
     [ -n "${RC10_FRESH:-}" ] || step "CONTRIBUTING.md: building" shown CONTRIBUTING.md 1

@@ -112,6 +112,17 @@ def test_it_does_its_mission_also_after_the_remote_was_lost(
         small.wait_motor("yaw", lambda m: abs(m["angle_deg"] - 30) < 3, "is held by the gimbal")
 
 
+def test_a_stick_is_held_where_it_was_typed(small: Daemon, port: Path) -> None:
+    with Remote(port) as remote:
+        wait_heard(small)
+        remote.type("right_y=0.5")
+        eventually(lambda: "right_y = 0.500" in small.must("modules"), "the stick is heard")
+        remote.type("right_y=1.5")  # beyond its travel
+        remote.type("left_x=-1")
+        eventually(lambda: "left_x = -1.000" in small.must("modules"), "the other is heard")
+        assert "right_y = 0.500" in small.must("modules")
+
+
 @pytest.mark.usefixtures("no_route")
 def test_what_its_page_shows_leads_to_a_mission(port: Path, tmp_path: Path) -> None:
     (block,) = blocks_run_by("tests/host/test_small_robot.py", EXAMPLE / "README.md")
@@ -128,7 +139,7 @@ def test_what_its_page_shows_leads_to_a_mission(port: Path, tmp_path: Path) -> N
             return Terminal(["bash", "-ec", reader.script(f"exec {text}")], reader.env())
 
         with terminal(f"{remote} {port}") as person, terminal(program) as robot_program:
-            person.see("type up, down, off or on")
+            person.see("type up, down, off, on or right_y=0.5")
             reader.wait_printed("rc10ctl modules", "left_switch = -1")
             person.type("up")
             robot_program.see("WAIT_ARMED -> DRIVE")
