@@ -224,9 +224,20 @@ def test_codes_come_back_within_a_step(limit: float, bits: int) -> None:
         assert abs(from_code(to_code(value, limit, bits), limit, bits) - value) <= step * 1.001
 
 
+def test_above_1_mbit_it_speaks_fd_and_else_it_does_not_hear_fd() -> None:
+    fast, classic = drive("DM4310:1:17:fd"), drive("DM4310:1:17")
+    question = frame(0x001, DISABLE, is_fd=True, bitrate_switch=True)
+    assert fast.decode_command(question)
+    (answer,) = fast.frames()
+    assert answer.is_fd
+    assert answer.bitrate_switch
+    assert not classic.decode_command(question)
+    assert list(classic.frames()) == []
+
+
 @pytest.mark.parametrize(
     "text",
-    ["DM9999:1", "DM4310", "DM4310:0", "DM4310:16", "DM4310:x", "DM4310:1:257", "DM4310:1:2047"],
+    ["DM9999:1", "DM4310", "DM4310:0", "DM4310:16", "DM4310:x", "DM4310:1:257", "DM4310:1:2047", "DM4310:1:fd"],
 )
 def test_drives_that_there_cannot_be_are_refused(text: str) -> None:
     with pytest.raises(ValueError, match=text.split(":")[0]):

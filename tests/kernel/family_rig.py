@@ -18,9 +18,10 @@ if TYPE_CHECKING:
 ROBOT = "families"
 
 
-def write_config(folder: Path, *motors: str, bus: str = "") -> Path:
+def write_config(folder: Path, *motors: str, bus: str = "", rate_hz: int = 1000) -> Path:
     """A robot on vcan0; `motors` are the keys of each, `bus` more keys of the bus."""
-    lines = [f"robot: {ROBOT}", "realtime: preferred", "buses:"]
+    lines = [f"robot: {ROBOT}", "realtime: preferred", f"scheduler: {{rate_hz: {rate_hz}}}"]
+    lines += ["buses:"]
     lines += ["  - name: wire", "    type: socketcan", "    interface: vcan0"]
     lines += [f"    {key}" for key in bus.splitlines()]
     lines += ["    motors:", *(f"      - {{{motor}}}" for motor in motors)]
@@ -30,9 +31,10 @@ def write_config(folder: Path, *motors: str, bus: str = "") -> Path:
 
 
 @contextlib.contextmanager
-def running(config: Path, *drives: str) -> Iterator[Proc]:
-    """The drives as fakes, and rc10d, until every motor is READY."""
+def running(config: Path, *drives: str, rate_hz: int = 1000) -> Iterator[Proc]:
+    """The drives as fakes, and rc10d, until every motor is READY. `rate_hz`: of the fakes."""
     command = [sys.executable, "-m", "rc10.fakes", "--interface", "socketcan", "--channel", "vcan0"]
+    command += ["--rate-hz", str(rate_hz)]
     for drive in drives:
         command += ["--motor", drive]
     with Proc(*command) as fakes:

@@ -106,11 +106,15 @@ class DamiaoAddress:
 
 @dataclass(frozen=True)
 class DamiaoSpec:
-    """A drive as it is asked for: "DM4310:1", or "DM4310:1:0" with the master id 0."""
+    """A drive as it is asked for: "DM4310:1", or "DM4310:1:0" with the master id 0.
+
+    "DM4310:1:17:fd": its CAN baud is above 1 Mbit/s, so that it answers in CAN FD frames.
+    """
 
     model: str
     can_id: int
     master_id: int
+    fd: bool = False
 
     @property
     def name(self) -> str:
@@ -124,7 +128,7 @@ class DamiaoSpec:
 
     @classmethod
     def parse(cls, text: str) -> DamiaoSpec:
-        """Reads MODEL:ID or MODEL:ID:MASTER; by custom the master id is 16 above the id.
+        """Reads MODEL:ID[:MASTER[:fd]]; by custom the master id is 16 above the id.
 
         Raises:
             ValueError: it is something else, or there is no such drive.
@@ -132,15 +136,18 @@ class DamiaoSpec:
         model, *rest = text.split(":")
         if model not in MODELS:
             raise ValueError(not_one_of(text, model, MODELS))
+        fd = rest[2:] == ["fd"]
+        if fd:
+            rest.pop()
         if len(rest) not in (1, 2) or not all(part.isdecimal() for part in rest):
-            raise ValueError(f"{text!r}: give {model}:ID or {model}:ID:MASTER_ID")
+            raise ValueError(f"{text!r}: give {model}:ID, {model}:ID:MASTER_ID or that with :fd")
         can_id = int(rest[0])
         master_id = int(rest[1]) if len(rest) == 2 else can_id + 16
         if not 1 <= can_id <= 15:
             raise ValueError(f"{text}: ids of Damiao drives are 1 to 15")
         if not 0 <= master_id < REGISTER_ID or master_id & 0xFF == can_id:
             raise ValueError(f"{text}: {master_id} is no master id of a drive with the id {can_id}")
-        return cls(model, can_id, master_id)
+        return cls(model, can_id, master_id, fd)
 
     def make(self, *, initial_angle_deg: float, load_nm: float) -> FakeDamiao:
         """Returns the drive."""
@@ -274,6 +281,11 @@ class FakeDamiao:
         return self.target.position_rad
 
     @property
+    def fd(self) -> bool:
+        """Whether it speaks CAN FD."""
+        return self.spec.fd
+
+    @property
     def _no_load_rad_s(self) -> float:
         return self.model.no_load_rpm / _RPM_PER_RAD_S
 
@@ -284,6 +296,8 @@ class FakeDamiao:
             Whether it was for this drive.
         """
         if message.is_extended_id or message.is_error_frame or message.is_remote_frame:
+            return False
+        if message.is_fd and not self.fd:
             return False
         data = bytes(message.data).ljust(8, b"\0")
         if message.arbitration_id == REGISTER_ID:
@@ -412,7 +426,13 @@ class FakeDamiao:
         """Yields its answers to what it was sent; it never speaks unasked."""
         waiting, self._waiting = self._waiting, []
         for data in waiting:
-            yield can.Message(arbitration_id=self.spec.master_id, is_extended_id=False, data=data)
+            yield can.Message(
+                arbitration_id=self.spec.master_id,
+                is_extended_id=False,
+                is_fd=self.fd,
+                bitrate_switch=self.fd,
+                data=data,
+            )
 
     def fail(self, code: int) -> None:
         """Latches a fault."""
