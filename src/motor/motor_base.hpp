@@ -75,6 +75,8 @@ class Motor_Base : public FrameListener {
 
   /// Computes what the drive is to be told, from the order, the target and the feedback.
   virtual void update(const Tick& tick) noexcept = 0;
+  /// Whether its drive is told in this tick what update() computed. Sequences may disregard it.
+  [[nodiscard]] virtual bool due(const Tick&) const noexcept { return true; }
 
   // Readings at the output shaft; NaN when the drive does not report it.
   [[nodiscard]] Rpm getRPM() const noexcept { return Rpm{static_cast<double>(feedback_.velocity_rpm)}; }

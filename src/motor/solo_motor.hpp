@@ -32,6 +32,7 @@ class SoloMotor : public Motor_Base, public CommandPacker {
   [[nodiscard]] float commandValue() const noexcept override { return command_value_; }
   [[nodiscard]] CommandUnit commandUnit() const noexcept override { return command_unit_; }
   bool setZero(double angle_deg) noexcept override;
+  [[nodiscard]] bool due(const Tick& tick) const noexcept final;
 
  protected:
   /// `drive_turns`: turns of what the drive reports per turn of the output shaft. get_GearRatio() where it
@@ -89,9 +90,6 @@ class SoloMotor : public Motor_Base, public CommandPacker {
   /// it began for kHold (kTotalAngle), else kCoast. kAngle (shortest way) is resolved to the total angle.
   /// To be called once in each update().
   [[nodiscard]] Target wanted() noexcept;
-
-  /// Whether it is told something in this tick. Sequences may disregard it.
-  [[nodiscard]] bool due(const Tick& tick) const noexcept;
 
   // A target within the limits of the motor; what they cut off is told in limits_. Not a number: 0.
   /// Current of the mode kCurrent, with the feed-forward that comes with any mode. A at the motor.

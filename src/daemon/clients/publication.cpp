@@ -171,6 +171,8 @@ void Publication::fillCounters(link::Diagnostics& out, const Snapshot& snapshot,
 }
 
 void Publication::fillDurations(link::Diagnostics& out, const Measured& measured) const {
+  constexpr std::size_t kOfAll = 3;  // commands, those of further clients, states
+  static_assert(kOfAll + ClientAges::kNamed + kMaxBuses + kMaxMotors <= link::kMaxDurations);
   out.duration_count = 0;
   const auto add = [&out](std::string_view name, const DurationHistogram& histogram) {
     out.durations[out.duration_count].name = name;
@@ -180,6 +182,9 @@ void Publication::fillDurations(link::Diagnostics& out, const Measured& measured
   };
   const auto& ages = measured.ages;
   add("command to frames", ages.command);
+  for (std::size_t i = 0; i < ages.clients.count(); ++i)
+    add("command of " + std::string(ages.clients.name(i).view()), ages.clients.of(i));
+  if (ages.clients.ofOthers().max() > Duration{}) add("command of further clients", ages.clients.ofOthers());
   add("feedback to clients", measured.state_ages);
   for (std::size_t bus = 0; bus < robot_.buses.size(); ++bus) {
     DurationHistogram all;

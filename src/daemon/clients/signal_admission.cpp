@@ -44,6 +44,7 @@ CommandRefusal SignalAdmission::admit(const link::Signals& message, const Speake
   out.client = message.client;
   out.session = message.session;
   out.priority = message.priority;
+  out.received = receivedAt(message.received_ns, now);
   out.deadline = *deadline;
   switch (sessions_[module].accept(speaker.owner(), client, message.session, message.seq)) {
     case SessionNumbers::Verdict::kNew: return CommandRefusal::kNone;

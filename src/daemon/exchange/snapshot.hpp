@@ -21,7 +21,7 @@ struct MotorSnapshot {
   MotorFeedback feedback;
   Target target;
   double target_shaped = std::numeric_limits<double>::quiet_NaN();  ///< As it acts; NaN: none does.
-  MonotonicTime command_received{};  ///< Time of the command in force; 0: none is.
+  MonotonicTime command_received{};  ///< Time of the command in force, a module's: its tick; 0: none is.
   Acting acting = Acting::kNothing;
   Stop stop;  ///< Reason why it does not obey.
   float command_value = 0.0F;
@@ -60,7 +60,8 @@ struct BusSnapshot {
 inline constexpr std::size_t kMaxModules = link::kMaxModules;
 
 struct ModuleSnapshot {
-  link::Name owner;  ///< Client that gives its inputs; empty: none.
+  link::Name owner;                 ///< Client that gives its inputs; empty: none.
+  MonotonicTime inputs_received{};  ///< Of the newest, another module's: its tick; 0: none are in force.
   std::array<double, kMaxSignals> outputs{};
 };
 

@@ -74,7 +74,7 @@ void ModuleRunner::take(const SignalMessage& message, const Tick& tick) noexcept
     ++refused_signals_;
     return;
   }
-  control.lease.take(sender, {tick.now, message.deadline});
+  control.lease.take(sender, {message.received, message.deadline});
   robot_.modules()[message.module].module->setInputs(message.values);
 }
 
@@ -102,6 +102,7 @@ void ModuleRunner::handOver(const Tick& tick) noexcept {
     message.session = from.session;
     message.priority = from.priority;
     message.module = static_cast<std::uint16_t>(module);
+    message.received = tick.now;
     message.deadline = tick.now + kModuleValidity;
     take(message, tick);
   }
@@ -186,6 +187,7 @@ void ModuleRunner::fillSnapshot(Snapshot& snapshot) const noexcept {
   for (std::size_t i = 0; i < controls_.size(); ++i) {
     auto& out = snapshot.modules[i];
     out.owner = controls_[i].lease.client();
+    out.inputs_received = controls_[i].lease.received();
     const auto outputs = robot_.modules()[i].module->outputs();
     std::copy(outputs.begin(), outputs.end(), out.outputs.begin());
   }

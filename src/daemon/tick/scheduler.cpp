@@ -157,15 +157,30 @@ void Scheduler::watchStop() noexcept {
   stopped_ = (rest_ticks_ >= kMinRestTicks && echoed) || given_up;
 }
 
-void Scheduler::recordAges(const Snapshot& snapshot) noexcept {
+// What a module commands is as old as its tick: the client's message to the module is counted instead.
+void Scheduler::recordAges(const Snapshot& snapshot, const Tick& tick) noexcept {
+  const auto isNews = [&tick](MonotonicTime received, MonotonicTime last) {
+    return received != last && received != tick.now;
+  };
   for (std::size_t i = 0; i < snapshot.motor_count; ++i) {
     const auto& motor = snapshot.motors[i];
     if (motor.acting != Acting::kTarget) continue;
     link_.ages.feedback[i].record(snapshot.sent - motor.feedback.received);
-    if (motor.command_received == commands_[i]) continue;
+    if (!isNews(motor.command_received, commands_[i]) || !robot_.motors()[i].motor->due(tick)) continue;
     commands_[i] = motor.command_received;
-    link_.ages.command.record(snapshot.sent - motor.command_received);
+    recordCommandAge(motor.owner, snapshot.sent - motor.command_received);
   }
+  for (std::size_t i = 0; i < snapshot.module_count; ++i) {
+    const auto& module = snapshot.modules[i];
+    if (module.owner.view().empty() || !isNews(module.inputs_received, inputs_[i])) continue;
+    inputs_[i] = module.inputs_received;
+    recordCommandAge(module.owner, snapshot.sent - module.inputs_received);
+  }
+}
+
+void Scheduler::recordCommandAge(const link::Name& client, Duration age) noexcept {
+  link_.ages.command.record(age);
+  link_.ages.clients.record(client, age);
 }
 
 void Scheduler::snapshot(const Tick& tick) noexcept {
@@ -186,7 +201,7 @@ void Scheduler::snapshot(const Tick& tick) noexcept {
                     .error_frames = bus.health().errorFrames(),
                     .restarts = bus.health().restarts()};
   }
-  recordAges(out);
+  recordAges(out, tick);
   if (recorder_ != nullptr) recorder_->states(out);
   trace(out, link_.trace);
   link_.snapshot.publish();

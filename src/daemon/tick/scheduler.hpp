@@ -65,7 +65,8 @@ class Scheduler {
   void beginStop(const Tick& tick) noexcept;
   void watchStop() noexcept;
   void snapshot(const Tick& tick) noexcept;
-  void recordAges(const Snapshot& snapshot) noexcept;
+  void recordAges(const Snapshot& snapshot, const Tick& tick) noexcept;
+  void recordCommandAge(const link::Name& client, Duration age) noexcept;
   [[nodiscard]] MonotonicTime clockOr(MonotonicTime now) const noexcept {
     return clock_ != nullptr ? clock_() : now;
   }
@@ -82,7 +83,8 @@ class Scheduler {
   Supervisor supervisor_;
   ModuleRunner modules_;
   BusWatch bus_watch_;
-  std::array<MonotonicTime, kMaxMotors> commands_{};  ///< By motor: receipt of the last that acted.
+  std::array<MonotonicTime, kMaxMotors> commands_{};  ///< By motor: receipt of the last that was sent.
+  std::array<MonotonicTime, kMaxModules> inputs_{};   ///< By module: receipt of its last inputs.
   std::atomic<std::uint64_t> ticks_{0};               // read by the link thread, for the watchdog
   std::atomic<std::uint64_t> beats_{0};               // read by the gpio thread
   std::optional<Duration> heartbeat_rests_after_;

@@ -6,6 +6,9 @@
 
 #include <map>
 #include <memory>
+#include <span>
+#include <string>
+#include <vector>
 
 #include "rc10_version.hpp"
 
@@ -13,6 +16,7 @@ namespace rc10::test::publication_test {
 namespace {
 
 using namespace std::chrono_literals;
+using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 
 class PublicationTest : public ::testing::Test {
@@ -125,6 +129,23 @@ TEST_F(PublicationTest, TheStateCarriesTheSnapshotOfTheTick) {
   EXPECT_EQ(shown.temperature_c, 6.0F);
   EXPECT_EQ(shown.command_value, 2.5F);
   EXPECT_EQ(shown.owner.view(), "planner");
+}
+
+TEST_F(PublicationTest, AgesOfCommandsAreToldByClient) {
+  ages.clients.record(link::Name{"teleop"}, 2ms);
+  ages.clients.record(link::Name{"planner"}, 3ms);
+  const auto named = [this] {
+    const auto& out = diagnostics();
+    std::vector<std::string> names;
+    for (const auto& each : std::span{out.durations}.first(out.duration_count))
+      if (each.name.view().starts_with("command of ")) names.emplace_back(each.name.view());
+    return names;
+  };
+  EXPECT_THAT(named(), ElementsAre("command of teleop", "command of planner"));
+  for (std::size_t i = 0; i < ClientAges::kNamed; ++i)
+    ages.clients.record(link::Name{"script" + std::to_string(i)}, 1ms);
+  EXPECT_EQ(named().size(), ClientAges::kNamed + 1);
+  EXPECT_EQ(named().back(), "command of further clients");
 }
 
 TEST_F(PublicationTest, ARobotThatIsNotRealTimeSaysSoInEveryState) {

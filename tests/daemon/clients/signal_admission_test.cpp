@@ -54,6 +54,7 @@ TEST_F(SignalAdmissionTest, NamesBecomePlacesAndTheRestIsNotGiven) {
   EXPECT_TRUE(std::isnan(out_.values[1]));
   EXPECT_EQ(out_.client.view(), "planner");
   EXPECT_EQ(out_.priority, 4);
+  EXPECT_EQ(out_.received, kNow);
   EXPECT_EQ(out_.deadline, kNow + 50ms);
 }
 

@@ -184,18 +184,6 @@ TEST_F(StopCauseTest, TheAgeOfACommandIsCountedFromItsReceipt) {
   EXPECT_EQ(commandAgeUs(robot.motor(kLeft), robot.now()), -1) << "none is in force";
 }
 
-TEST_F(StopCauseTest, AgesOfWhatIsActedOnAreCountedForEachMotorThatFollowsATarget) {
-  const auto& ages = robot.exchange().ages;
-  ASSERT_EQ(ages.feedback.size(), 3U);
-  const auto ticks = ages.feedback[kLeft].count();
-  const auto commands = ages.command.count();
-  robot.command(kLeft, kVelocity60);
-  robot.run(10);
-  EXPECT_EQ(ages.feedback[kLeft].count(), ticks + 10);
-  EXPECT_EQ(ages.command.count(), commands + 1) << "once for a command";
-  EXPECT_EQ(ages.feedback[kRight].count(), 0U) << "it has no target";
-}
-
 TEST(NeverHeardTest, ADriveThatNeverAnswersIsToldOnceWithWhatToCheck) {
   VirtualRobot robot{twoWheelsAndYaw()};
   robot.simBus().silence(kRight, true);

@@ -71,6 +71,7 @@ class ModuleRunnerTest : public ::testing::Test {
     message.client = client;
     message.session = 7;
     message.priority = priority;
+    message.received = robot_->now();
     message.deadline = robot_->now() + validity;
     message.values.fill(kNoSignal);
     message.values[0] = value;
@@ -160,6 +161,21 @@ TEST_F(ModuleRunnerTest, InputsHoldUntilTheirValidityEnds) {
   robot_->run(10);
   EXPECT_TRUE(std::isnan(seen()));
   EXPECT_EQ(robot_->snapshot().modules[0].owner.view(), "");
+}
+
+TEST_F(ModuleRunnerTest, TheAgeOfAClientsInputsIsCountedAndNotThatOfTheModulesTargets) {
+  const ScriptedType type{[](const Tick&, ModuleRobot& robot) { robot.setTarget(0, rpm(50.0)); }};
+  start({{&type, 0}});
+  enable();
+  const auto& ages = robot_->exchange().ages;
+  robot_->run(10);
+  EXPECT_EQ(ages.command.count(), 0U);
+  signal("planner", 0, 12.0);
+  robot_->run(10);
+  EXPECT_EQ(ages.command.count(), 1U) << "once for a message";
+  EXPECT_EQ(ages.command.max(), 1ms);
+  ASSERT_EQ(ages.clients.count(), 1U);
+  EXPECT_EQ(ages.clients.name(0).view(), "planner");
 }
 
 TEST_F(ModuleRunnerTest, ARemoteBeatsAPlannerInTheNextTick) {

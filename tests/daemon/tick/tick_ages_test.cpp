@@ -1,0 +1,77 @@
+// Ages of what a tick acts on, when its frames leave.
+#include <gtest/gtest.h>
+
+#include "config/load_config.hpp"
+#include "daemon/virtual_robot.hpp"
+
+namespace rc10::test::tick_ages_test {
+namespace {
+
+using namespace std::chrono_literals;
+
+constexpr std::size_t kLeft = 0;
+constexpr std::size_t kRight = 1;
+constexpr Target kVelocity60{.mode = ControlMode::kVelocity, .value = 60.0};
+
+RobotConfig toldEveryFifthTick() {
+  auto outcome = parseRobotConfig(
+      "robot: arm\nrealtime: preferred\nbuses:\n  - name: bench\n    type: sim\n    motors:\n"
+      "      - {name: joint, model: DM4310, id: 1, master_id: 17, command_divider: 5}\n",
+      "arm.yaml");
+  EXPECT_TRUE(outcome.config) << outcome.errorText();
+  return outcome.config.value_or(twoWheelsAndYaw());
+}
+
+class TickAgesTest : public ::testing::Test {
+ protected:
+  void enable() {
+    robot.run(50);
+    robot.order(Operation::kEnable);
+    ASSERT_EQ(robot.motor(kLeft).status, MotorStatus::kActive);
+  }
+
+  VirtualRobot robot{twoWheelsAndYaw()};
+  const TickAges& ages = robot.exchange().ages;
+};
+
+TEST_F(TickAgesTest, ThatOfFeedbackIsCountedInEachTickOfAMotorThatFollowsATarget) {
+  enable();
+  ASSERT_EQ(ages.feedback.size(), 3U);
+  robot.command(kLeft, kVelocity60);
+  robot.run(10);
+  EXPECT_EQ(ages.feedback[kLeft].count(), 10U);
+  EXPECT_EQ(ages.feedback[kRight].count(), 0U) << "it has no target";
+}
+
+TEST_F(TickAgesTest, ThatOfACommandIsCountedOnceForEachMotorAndUnderItsClient) {
+  enable();
+  robot.commandAs("teleop", 0, kLeft, kVelocity60);
+  robot.run(10);
+  robot.commandAs("planner", 0, kRight, kVelocity60);
+  robot.run(10);
+  EXPECT_EQ(ages.command.count(), 2U);
+  EXPECT_EQ(ages.command.max(), 1ms);
+  ASSERT_EQ(ages.clients.count(), 2U);
+  EXPECT_EQ(ages.clients.name(0).view(), "teleop");
+  EXPECT_EQ(ages.clients.of(0).count(), 1U);
+  EXPECT_EQ(ages.clients.name(1).view(), "planner");
+}
+
+TEST(CommandAge, EndsInTheTickThatTellsTheDrive) {
+  VirtualRobot robot{toldEveryFifthTick()};
+  robot.run(200);
+  robot.order(Operation::kEnable);
+  ASSERT_EQ(robot.motor(0).status, MotorStatus::kActive);
+  const auto& ages = robot.exchange().ages;
+  for (int i = 0; i < 5; ++i) {  // one at each distance from that tick
+    const auto before = ages.command.count();
+    robot.command(0, kVelocity60);
+    for (int ticks = 0; ages.command.count() == before && ticks < 10; ++ticks) robot.tick();
+    robot.run(i);
+  }
+  EXPECT_EQ(ages.command.count(), 5U);
+  EXPECT_EQ(ages.command.max(), 5ms);
+}
+
+}  // namespace
+}  // namespace rc10::test::tick_ages_test
