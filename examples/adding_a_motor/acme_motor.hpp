@@ -2,6 +2,7 @@
 
 #include <array>
 
+#include "motor/motor_family.hpp"
 #include "motor/solo_motor.hpp"
 
 namespace acme {

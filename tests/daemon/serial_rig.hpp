@@ -10,6 +10,7 @@
 #include "daemon/devices/serial_reviver.hpp"
 #include "daemon/devices/serial_writer.hpp"
 #include "daemon/temp_dir.hpp"
+#include "daemon/threads/rx_loop.hpp"
 #include "daemon/virtual_robot.hpp"
 #include "support/pty.hpp"
 
@@ -51,7 +52,7 @@ class SerialRig {
 
   void check(Duration later = {}) { reviver.check(now += later); }
   [[nodiscard]] SerialReviver::Watch watch() const {
-    return [loop = rx.get()](std::size_t channel) { return loop->watchSerial(channel); };
+    return [loop = rx.get()](std::size_t index) { return loop->watchSerial(index); };
   }
 
   /// Lets the RX loop run until `done`. A pseudo terminal hands bytes over in its own time.

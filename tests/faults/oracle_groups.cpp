@@ -1,6 +1,7 @@
 // Rules for groups, for a motor enabled alone, and for the actions that a motor may be doing.
 #include <utility>
 
+#include "daemon/supervision/states.hpp"
 #include "faults/oracle.hpp"
 
 namespace rc10::test {

@@ -6,6 +6,7 @@
 
 #include "bus/wire_frame.hpp"
 #include "daemon/exchange/clock.hpp"
+#include "daemon/interfaces/can_intake.hpp"
 #include "daemon/serial_rig.hpp"
 #include "support/alloc_guard.hpp"
 
