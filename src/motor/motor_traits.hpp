@@ -30,7 +30,7 @@ struct MotorTraits {
   int max_feedback_hz = 1000;
   bool asked = false;        ///< Speaks only when told something: its feedback comes at the command rate.
   bool fd = false;           ///< Speaks CAN FD.
-  int data_bitrate = 0;      ///< Of its CAN FD, as delivered; 0: unknown.
+  int data_bitrate = 0;      ///< Data phase of its CAN FD, as delivered; 0: unknown.
   bool classic_only = true;  ///< An FD frame on its bus is an error to it.
   bool watchdog = false;  ///< Stops by itself when commands stay away: its own, set or verified by enabling.
   ModeSet modes;
