@@ -1,4 +1,4 @@
-"""Forged messages of another computer change nothing; with ttl=1 the network is meant."""
+"""Forged messages of another computer change nothing of a robot that is here."""
 
 from __future__ import annotations
 
@@ -19,9 +19,12 @@ import socket, struct
 udp = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
 udp.setsockopt(socket.IPPROTO_IP, socket.IP_MULTICAST_IF, socket.inet_aton("10.9.0.2"))
 for number in range(20):
-    message = b"LC02" + struct.pack(">I", number) + b"{CHANNEL}\\0" + b"forged"
-    udp.sendto(message, ("10.9.0.1", 7667))
-    udp.sendto(message, ("{GROUP}", 7667))
+    text = b"{CHANNEL}\\0" + b"forged"
+    whole = b"LC02" + struct.pack(">I", number) + text
+    fragment = b"LC03" + struct.pack(">IIIHH", number, 6, 0, 0, 1) + text
+    for message in (whole, fragment):
+        udp.sendto(message, ("10.9.0.1", 7667))
+        udp.sendto(message, ("{GROUP}", 7667))
 """
 
 
@@ -35,7 +38,8 @@ class OtherComputer:
     def __init__(self) -> None:
         steps = f"echo; read go; {wire('far', 2)}; echo; read go"
         # With its end the wire would be gone.
-        begin = f"{steps}; {sys.executable} -c '{FORGE}'; echo; read go"
+        attack = f"{sys.executable} -c '{FORGE}'; echo; read go"
+        begin = f"{steps}; {attack}; {attack}"
         self._shell = subprocess.Popen(
             ["unshare", "--net", "sh", "-ec", begin],
             stdin=subprocess.PIPE,
@@ -74,28 +78,32 @@ def run(command: str) -> None:
 
 @pytest.mark.netns(route=False)
 @pytest.mark.parametrize(
-    ("way", "url", "heard"),
+    ("way", "url", "before"),
     [
         ("lo src 127.0.0.1", None, {b"own"}),
         # Its own multicast leaves by the wire then, and comes back as a copy.
         ("near", None, {b"own"}),
         ("near", f"udpm://{GROUP}:7667?ttl=0", {b"own"}),
+        # The robot may be elsewhere, until it is heard here.
         ("near", f"udpm://{GROUP}:7667?ttl=1", {b"own", b"forged"}),
+        ("lo src 127.0.0.1", f"udpm://{GROUP}:7667?ttl=1", {b"own"}),
     ],
 )
 def test_a_forged_message_of_another_computer_changes_nothing(
-    way: str, url: str | None, heard: set[bytes]
+    way: str, url: str | None, before: set[bytes]
 ) -> None:
     other = OtherComputer()  # no fixture: that would be outside of the namespace
     run(f"ip route add {GROUP}/32 dev {way}")
     received: list[bytes] = []
     link = LcmLink(url)
     link.subscribe(CHANNEL, received.append, 100)
-    other.attack()
-    link.publish(CHANNEL, b"own")
-    while b"own" not in received:
-        assert link.pump(20.0) > 0
-    assert set(received) == heard
+    for word, heard in ((b"own", before), (b"last", {b"last"})):
+        received.clear()
+        other.attack()
+        link.publish(CHANNEL, word)
+        while word not in received:
+            assert link.pump(20.0) > 0
+        assert set(received) == heard
     link.close()
     other.close()
 

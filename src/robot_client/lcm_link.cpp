@@ -6,12 +6,12 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <array>
 #include <atomic>
 #include <cctype>
 #include <cstdlib>
 #include <iterator>
 #include <mutex>
+#include <string_view>
 #include <thread>
 
 #include <pthread.h>
@@ -97,6 +97,11 @@ struct LcmLink::Impl {
   UniqueFd ended;
   std::mutex mutex;
   std::vector<std::shared_ptr<Subscription::Handler>> handlers;
+  struct Witness {
+    std::string robot;
+    UniqueFd heard;
+  };
+  std::vector<Witness> witnesses;
   std::thread thread;
 
   explicit Impl(const std::string& url) : lcm(lcm_create(url.empty() ? nullptr : url.c_str())) {
@@ -126,14 +131,38 @@ struct LcmLink::Impl {
   }
 
   void receive() {
-    std::array<pollfd, 3> fds{pollfd{lcm_get_fileno(lcm), POLLIN, 0}, pollfd{stop.get(), POLLIN, 0},
-                              pollfd{ended.get(), POLLIN, 0}};
+    std::vector<pollfd> fds;
     while (true) {
+      fds.assign({pollfd{lcm_get_fileno(lcm), POLLIN, 0}, pollfd{stop.get(), POLLIN, 0},
+                  pollfd{ended.get(), POLLIN, 0}});
+      {
+        const std::lock_guard lock(mutex);
+        for (const auto& witness : witnesses) fds.push_back({witness.heard.get(), POLLIN, 0});
+      }
       if (::poll(fds.data(), fds.size(), -1) < 0) continue;  // a signal
       if (fds[1].revents != 0) return;
+      // First, so that nothing of others comes after it.
+      for (std::size_t i = 3; i < fds.size(); ++i)
+        if (fds[i].revents != 0) isHere(fds[i].fd);
       if (fds[0].revents != 0) lcm_handle(lcm);
       if (fds[2].revents != 0) forgetEnded();
     }
+  }
+
+  // A robot whose state is subscribed to.
+  void watch(const std::string& robot) {
+    const std::lock_guard lock(mutex);
+    for (const auto& witness : witnesses)
+      if (witness.robot == robot) return;
+    if (auto heard = datagrams.witnessOf(robot)) witnesses.push_back({robot, std::move(heard)});
+  }
+
+  void isHere(int heard) {
+    const std::lock_guard lock(mutex);
+    const auto witness = std::find_if(witnesses.begin(), witnesses.end(),
+                                      [&](const auto& one) { return one.heard.get() == heard; });
+    datagrams.isHere(witness->robot);
+    witnesses.erase(witness);
   }
 
   // By this thread alone, between two messages: liblcm 1.3 loses a handler that another thread unsubscribes
@@ -194,6 +223,11 @@ Result<void> LcmLink::publish(const std::string& channel, std::span<const std::b
 }
 
 Subscription LcmLink::subscribe(const std::string& channel, Handler handler) const {
+  constexpr std::string_view kState = ".v1.state";
+  if (impl_->status && channel.ends_with(kState)) {
+    impl_->watch(channel.substr(0, channel.size() - kState.size()));
+    notify(impl_->ended.get());  // for the thread to wait for it, too
+  }
   return Subscription{
       Impl::subscribe(impl_, literal(channel),
                       [handler = std::move(handler)](const std::string&, std::span<const std::byte> message) {

@@ -14,12 +14,15 @@
 #include <chrono>
 #include <cstddef>
 #include <cstdlib>
+#include <cstring>
 #include <future>
 #include <memory>
+#include <mutex>
 #include <optional>
 #include <set>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "app/unique_fd.hpp"
@@ -91,12 +94,12 @@ class OtherComputer {
     awaitOrder();
     if (std::system(wire("far", "2").c_str()) != 0) ::_exit(1);
     report('w');
-    awaitOrder();
-    send("10.9.0.1");
-    send("239.255.76.67");
-    report('a');
-    awaitOrder();  // with its end the wire would be gone
-    ::_exit(0);
+    for (;;) {
+      awaitOrder();  // with its end the wire would be gone
+      send("10.9.0.1");
+      send("239.255.76.67");
+      report('a');
+    }
   }
   static void send(const char* to) {
     const UniqueFd udp{::socket(AF_INET, SOCK_DGRAM, 0)};
@@ -106,11 +109,14 @@ class OtherComputer {
     address.sin_family = AF_INET;
     address.sin_port = htons(7667);
     address.sin_addr.s_addr = ::inet_addr(to);
-    const std::string message("LC02\0\0\0\0demo.v1.state\0forged", 28);
+    // Whole, and in one fragment.
+    const std::array messages{std::string("LC02\0\0\0\0demo.v1.state\0forged", 28),
+                              std::string("LC03\0\0\0\0\0\0\0\6\0\0\0\0\0\0\0\1demo.v1.state\0forged", 40)};
     for (int i = 0; i < 20; ++i) {
-      if (::sendto(udp.get(), message.data(), message.size(), 0, reinterpret_cast<sockaddr*>(&address),
-                   sizeof address) < 0)
-        ::_exit(1);
+      for (const auto& message : messages)
+        if (::sendto(udp.get(), message.data(), message.size(), 0, reinterpret_cast<sockaddr*>(&address),
+                     sizeof address) < 0)
+          ::_exit(1);
     }
   }
 
@@ -119,31 +125,64 @@ class OtherComputer {
   pid_t child_ = 0;
 };
 
-/// Words that a program hears while another computer forges messages.
-std::set<std::string> heard(const std::string& url, const std::string& way) {
+/// Words that a program hears while another computer forges messages, before its robot's first own one and
+/// after.
+struct Heard {
+  std::set<std::string> before;
+  std::set<std::string> after;
+};
+
+Heard heard(const std::string& url, const std::string& way) {
   OtherComputer other;
   EXPECT_EQ(std::system(("ip route add 239.255.76.67/32 dev " + way).c_str()), 0);
   const LcmLink link(url);
+  std::mutex mutex;
   std::set<std::string> words;
   std::promise<void> own;
+  std::promise<void> last;
   const auto subscription = link.subscribe("demo.v1.state", [&](std::span<const std::byte> message) {
     const std::string word(reinterpret_cast<const char*>(message.data()), message.size());
-    if (words.insert(word).second && word == "own") own.set_value();
+    const std::lock_guard lock(mutex);
+    const bool is_new = words.insert(word).second;
+    if (is_new && word == "own") own.set_value();
+    if (is_new && word == "last") last.set_value();
   });
+  const auto publish = [&](const char* word, std::promise<void>& until) {
+    EXPECT_TRUE(link.publish("demo.v1.state", std::as_bytes(std::span(word, std::strlen(word)))));
+    EXPECT_EQ(until.get_future().wait_for(kPatience), std::future_status::ready);
+    const std::lock_guard lock(mutex);
+    return std::exchange(words, {});
+  };
   other.attack();
-  EXPECT_TRUE(link.publish("demo.v1.state", std::as_bytes(std::span("own", 3))));
-  EXPECT_EQ(own.get_future().wait_for(kPatience), std::future_status::ready);
-  return words;
+  Heard found;
+  found.before = publish("own", own);
+  other.attack();
+  found.after = publish("last", last);
+  return found;
 }
 
 TEST(LcmLink, ForgedMessagesOfAnotherComputerChangeNothing) {
   using private_network::inPrivateNetwork;
-  inPrivateNetwork([] { EXPECT_EQ(heard("", "lo src 127.0.0.1"), std::set<std::string>{"own"}); });
+  const auto nothing_forged = [](const std::string& url, const std::string& way) {
+    const auto found = heard(url, way);
+    EXPECT_EQ(found.before, std::set<std::string>{"own"});
+    EXPECT_EQ(found.after, std::set<std::string>{"last"});
+  };
+  inPrivateNetwork([&] { nothing_forged("", "lo src 127.0.0.1"); });
   // Its own multicast leaves by the wire, and comes back as a copy.
-  inPrivateNetwork([] { EXPECT_EQ(heard("", "near"), std::set<std::string>{"own"}); });
-  inPrivateNetwork([] {
-    EXPECT_EQ(heard("udpm://239.255.76.67:7667?ttl=1", "near"), (std::set<std::string>{"forged", "own"}))
-        << "with ttl=1 the network is meant";
+  inPrivateNetwork([&] { nothing_forged("", "near"); });
+}
+
+TEST(LcmLink, OverTheNetworkOfARobotThatIsHereNobodyElseSpeaks) {
+  private_network::inPrivateNetwork([] {
+    const auto found = heard("udpm://239.255.76.67:7667?ttl=1", "near");
+    EXPECT_EQ(found.before, (std::set<std::string>{"forged", "own"})) << "the robot may be elsewhere";
+    EXPECT_EQ(found.after, std::set<std::string>{"last"});
+  });
+  // Not by another interface than that of the group.
+  private_network::inPrivateNetwork([] {
+    const auto found = heard("udpm://239.255.76.67:7667?ttl=1", "lo src 127.0.0.1");
+    EXPECT_EQ(found.before, std::set<std::string>{"own"});
   });
 }
 

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Callable, Protocol
 import lcm
 
 from rc10.errors import LinkError
-from rc10.own_datagrams import descriptors, keep_others_out, stays_on_this_computer
+from rc10.own_datagrams import OwnDatagrams, descriptors
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -26,6 +26,7 @@ _MAX_PER_PUMP = 4096
 
 # A signal that comes just before a sleep, or to LCM's thread, does not end it; Ctrl-C has to.
 _LONGEST_SLEEP_S = 0.2
+_STATE = ".v1.state"
 
 
 class Link(Protocol):
@@ -74,8 +75,7 @@ class LcmLink:
             self._lcm.fileno()  # opens what receives
         except (RuntimeError, OSError) as error:
             raise LinkError(_start_failure(url)) from error
-        if stays_on_this_computer(_effective(url)):
-            keep_others_out(descriptors() - before)
+        self._own = OwnDatagrams(_effective(url), descriptors() - before)
 
     @property
     def lcm(self) -> lcm.LCM:
@@ -90,6 +90,8 @@ class LcmLink:
 
     def subscribe(self, channel: str, handler: Callable[[bytes], None], capacity: int) -> None:
         """Has pump() call `handler`; at most about `capacity` messages wait for it."""
+        if channel.endswith(_STATE):
+            self._own.watch(channel[: -len(_STATE)])
         # LCM takes a regular expression, and the dots of a channel name would match anything.
         subscription = self.lcm.subscribe(re.escape(channel), lambda _, data: handler(data))
         subscription.set_queue_capacity(capacity)
@@ -97,8 +99,10 @@ class LcmLink:
     def pump(self, timeout_s: float) -> int:
         """Waits at most `timeout_s` for a message, then handles all that wait."""
         handled = 0
+        self._own.look()
         ready = self._wait(max(0.0, timeout_s))
         while ready and handled < _MAX_PER_PUMP:
+            self._own.look()  # first, so that nothing of others comes after it
             self.lcm.handle()
             handled += 1
             ready = self._readable(0.0)
@@ -128,6 +132,7 @@ class LcmLink:
 
     def close(self) -> None:
         """Frees the sockets and ends LCM's receiving thread."""
+        self._own.close()
         self._lcm = None
 
     def _wait(self, timeout_s: float) -> bool:
