@@ -94,10 +94,15 @@ std::string ConfigOutcome::text() const {
 }
 
 ConfigOutcome loadRobotConfig(const std::string& path) {
-  return outcomeOf(path, [&](Problems& problems) -> std::optional<RobotConfig> {
-    const auto text = readSource(path, problems);
-    return text ? parse(*text, path, problems) : std::nullopt;
+  std::string source;
+  auto outcome = outcomeOf(path, [&](Problems& problems) -> std::optional<RobotConfig> {
+    auto text = readSource(path, problems);
+    if (!text) return std::nullopt;
+    source = std::move(*text);
+    return parse(source, path, problems);
   });
+  outcome.source = std::move(source);
+  return outcome;
 }
 
 ConfigOutcome parseRobotConfig(std::string_view text, std::string file_name) {

@@ -15,6 +15,7 @@ struct ConfigOutcome {
   std::optional<RobotConfig> config;    ///< Absent exactly if there are errors.
   std::vector<ConfigProblem> errors;    ///< In the order of the file.
   std::vector<ConfigProblem> warnings;  ///< Worth printing; the robot works.
+  std::string source;                   ///< Bytes that loadRobotConfig() read.
 
   [[nodiscard]] explicit operator bool() const noexcept { return config.has_value(); }
   /// One problem a line, each with a line feed.

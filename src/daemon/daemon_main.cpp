@@ -10,6 +10,7 @@
 #include "config/load_config.hpp"
 #include "config/report/report.hpp"
 #include "config/report/schema.hpp"
+#include "config/report/template.hpp"
 #include "daemon/daemon.hpp"
 #include "daemon/log.hpp"
 #include "daemon/refusal.hpp"
@@ -25,21 +26,26 @@ constexpr int kOk = 0;
 constexpr int kStartFailed = 1;
 constexpr int kBadUsageOrConfig = 2;
 
-/// Loads a configuration and prints everything that is wrong with it. Without a configuration: the words.
-tl::expected<RobotConfig, std::string> load(const std::string& file) {
-  auto outcome = loadRobotConfig(file);
-  auto told = outcome.text();
-  if (!outcome.config) {
-    const auto count = outcome.errors.size();
-    told += fmt::format("{}: {} error{}\n", file, count, count == 1 ? "" : "s");
+struct Loaded {
+  ConfigOutcome outcome;
+  std::string told;  ///< Its problems, as they were printed.
+};
+
+/// Loads a configuration and prints everything that is wrong with it.
+Loaded load(const std::string& file) {
+  Loaded loaded{.outcome = loadRobotConfig(file), .told = {}};
+  loaded.told = loaded.outcome.text();
+  if (!loaded.outcome.config) {
+    const auto count = loaded.outcome.errors.size();
+    loaded.told += fmt::format("{}: {} error{}\n", file, count, count == 1 ? "" : "s");
   }
-  std::cerr << told;
-  if (!outcome.config) return tl::unexpected(std::move(told));
-  return std::move(*outcome.config);
+  std::cerr << loaded.told;
+  return loaded;
 }
 
-int run(RobotConfig config) {
+int run(RobotConfig config, const std::string& source) {
   const std::string file = config.file;
+  const std::string robot = config.robot;
   SignalInbox signals;  // before the log, which starts a thread
   // A debugger and a core file need what this forbids.
   if (config.guard != GuardPolicy::kOff) forbidDumps();
@@ -47,10 +53,11 @@ int run(RobotConfig config) {
   Daemon daemon(std::move(config), log);
   if (const auto started = daemon.start(); !started) {
     std::cerr << "rc10d: " << started.error().message << '\n';
-    leaveRefusal(file, file + ": " + started.error().message + "\n");
+    leaveRefusal(file, file + ": " + started.error().message + "\n", source);
     return kStartFailed;
   }
   takeRefusalBack(file);
+  leaveConfig(robot, source);
   daemon.waitForSignal(signals);
   daemon.stop();
   return kOk;
@@ -66,6 +73,7 @@ int daemonMain(int argc, char** argv) {
   std::string config_file;
   std::string check_file;
   bool schema = false;
+  bool init = false;
   auto* run_option =
       app.add_option("-c,--config", config_file, "run the robot that FILE describes")->type_name("FILE");
   auto* check_option =
@@ -74,6 +82,7 @@ int daemonMain(int argc, char** argv) {
           ->excludes(run_option);
   auto* schema_option =
       app.add_flag("--schema", schema, "print the JSON schema of the configuration, and exit");
+  auto* init_option = app.add_flag("--init", init, "print a configuration to begin with, and exit");
   app.set_version_flag("--version", std::string("rc10d ") + kVersion);
   try {
     app.parse(argc, argv);
@@ -89,20 +98,24 @@ int daemonMain(int argc, char** argv) {
     std::cout << configSchema();
     return kOk;
   }
+  if (*init_option) {
+    std::cout << configTemplate();
+    return kOk;
+  }
   if (config_file.empty() && check_file.empty()) {
     std::cerr << "rc10d: nothing to do: give -c FILE to run a robot or --check FILE to check one\n";
     return kBadUsageOrConfig;
   }
-  auto config = load(*check_option ? check_file : config_file);
-  if (!config) {
-    if (!*check_option) leaveRefusal(config_file, config.error());
+  auto [outcome, told] = load(*check_option ? check_file : config_file);
+  if (!outcome.config) {
+    if (!*check_option) leaveRefusal(config_file, told, outcome.source);
     return kBadUsageOrConfig;
   }
   if (*check_option) {
-    std::cout << describe(*config);
+    std::cout << describe(*outcome.config);
     return kOk;
   }
-  return run(std::move(*config));
+  return run(std::move(*outcome.config), outcome.source);
 }
 
 }  // namespace rc10

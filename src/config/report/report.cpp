@@ -136,17 +136,23 @@ std::string idsText(const std::vector<BusUse::Stream>& streams) {
   return idText(ids.front()) + (ids.size() > 1 ? " and " + std::to_string(ids.size() - 1) + " more" : "");
 }
 
-std::string commandText(const MotorConfig& motor, const BusUse& use) {
+}  // namespace
+
+std::string motorCommandText(const MotorConfig& motor) {
   const auto& settings = motor.settings;
+  const BusUse use = motor.family->busUse(settings);
   if (use.slot != 0) return idsText(use.commands) + " slot " + std::to_string(use.slot);
   const std::string rate = rounded(static_cast<double>(settings.tick_hz) / settings.command_divider, 4);
   return idsText(use.commands) + " at " + rate + " Hz";
 }
 
-std::string feedbackText(const MotorConfig& motor, const BusUse& use) {
+std::string motorFeedbackText(const MotorConfig& motor) {
+  const BusUse use = motor.family->busUse(motor.settings);
   const std::string rate = std::to_string(motor.settings.feedback_hz) + " Hz";
   return idsText(use.feedback) + (motor.traits().asked ? ", its answers" : " at " + rate);
 }
+
+namespace {
 
 std::string wiringText(const BusConfig& bus, int rate_hz) {
   TextTable table({{"motor"},
@@ -164,9 +170,8 @@ std::string wiringText(const BusConfig& bus, int rate_hz) {
     const auto& motor = bus.motors[i];
     const auto timeout =
         std::chrono::duration_cast<std::chrono::milliseconds>(motor.feedback_timeout).count();
-    const BusUse use = motor.family->busUse(motor.settings);
     table.add({motor.name() + (motor.optional ? " (optional)" : ""), motor.settings.model,
-               std::to_string(motor.settings.id), feedbackText(motor, use), commandText(motor, use),
+               std::to_string(motor.settings.id), motorFeedbackText(motor), motorCommandText(motor),
                percentText(loads[i].worst_case), motor.settings.direction < 0 ? "reversed" : "normal",
                rounded(gearRatio(motor), 6), zeroText(motor), std::to_string(timeout) + " ms"});
   }
@@ -205,8 +210,9 @@ std::string fallbackText(FallbackAction action) {
   return std::string{kFallbackWords[static_cast<std::size_t>(action)]};
 }
 
-/// With what it becomes in the end.
-std::string estopText(const MotorConfig& motor) {
+}  // namespace
+
+std::string motorEstopText(const MotorConfig& motor) {
   const auto& fallback = motor.fallback;
   const auto bound = boundOf(fallback.on_estop, true, fallback, motor.traits().frames);
   auto text = fallbackText(fallback.on_estop);
@@ -217,6 +223,8 @@ std::string estopText(const MotorConfig& motor) {
   const char* then = bound.then == FrameKind::kDamp ? " s damp" : " s brake";
   return text + ", after " + rounded(seconds) + then;
 }
+
+namespace {
 
 std::string softLimitsText(const ShapingConfig& shaping) {
   if (!std::isfinite(shaping.angle_min_deg) && !std::isfinite(shaping.angle_max_deg)) return "none";
@@ -256,7 +264,7 @@ std::string safetyText(const BusConfig& bus) {
   TextTable table({{"motor"}, {"time-out"}, {"disable"}, {"e-stop"}, {"over-speed"}, {"soft limits"}});
   for (const auto& motor : bus.motors) {
     table.add({motor.name(), fallbackText(motor.fallback.on_timeout), fallbackText(motor.fallback.on_disable),
-               estopText(motor), overspeedText(motor.guard), softLimitsText(motor.shaping)});
+               motorEstopText(motor), overspeedText(motor.guard), softLimitsText(motor.shaping)});
   }
   return table.text(2);
 }
