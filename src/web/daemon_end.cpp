@@ -1,21 +1,15 @@
 #include "web/daemon_end.hpp"
 
-#include <fcntl.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
 #include <algorithm>
-#include <filesystem>
-#include <string_view>
-#include <system_error>
 
-#include "app/unique_fd.hpp"
 #include "link/run_dir.hpp"
+#include "web/left_files.hpp"
 
 namespace rc10::web {
 namespace {
-
-namespace fs = std::filesystem;
 
 constexpr off_t kMostBytes = off_t{16} << 10U;
 constexpr std::ptrdiff_t kMostLines = 60;
@@ -27,19 +21,9 @@ struct FoundText {
   timespec written{};
 };
 
-bool isNewer(const timespec& a, const timespec& b) {
-  return a.tv_sec != b.tv_sec ? a.tv_sec > b.tv_sec : a.tv_nsec > b.tv_nsec;
-}
-
-UniqueFd openText(const std::string& path, struct stat& status) {
-  UniqueFd file{::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK)};
-  if (!file || ::fstat(file.get(), &status) != 0 || !S_ISREG(status.st_mode)) return {};
-  return file;
-}
-
 std::optional<FoundText> endOf(const std::string& path) {
   struct stat status {};
-  const auto file = openText(path, status);
+  const auto file = openLeftFile(path, status);
   if (!file) return std::nullopt;
   const auto begin = std::max<off_t>(0, status.st_size - kMostBytes);
   std::string text(static_cast<std::size_t>(status.st_size - begin), '\0');
@@ -56,35 +40,18 @@ std::string lastLines(const std::string& text) {
   return begin == 0 ? text : text.substr(begin + 1);
 }
 
-// The newest file of this ending.
-std::string newest(const std::string& run_dir, std::string_view ending) {
-  std::string found;
-  timespec written{};
-  std::error_code error;
-  for (fs::directory_iterator entry(run_dir, error), end; !error && entry != end; entry.increment(error)) {
-    if (entry->path().extension() != ending) continue;
-    struct stat status {};
-    const auto path = entry->path().string();
-    if (::lstat(path.c_str(), &status) != 0 || !S_ISREG(status.st_mode)) continue;
-    if (!found.empty() && !isNewer(status.st_mtim, written)) continue;
-    found = path;
-    written = status.st_mtim;
-  }
-  return found;
-}
-
 }  // namespace
 
 DaemonEnd readDaemonEnd(const std::string& run_dir, const std::optional<std::string>& robot) {
   DaemonEnd end;
   const bool named = robot && !robot->empty() && robot->find('/') == std::string::npos;
-  const auto path = named ? link::logPath(run_dir, *robot) : newest(run_dir, ".log");
+  const auto path = named ? link::logPath(run_dir, *robot) : newestLeftFile(run_dir, ".log");
   if (const auto log = endOf(path)) {
     const auto before = endOf(path + ".1");
     end.log = lastLines((before ? before->text : std::string{}) + log->text);
     end.logged_at = log->written.tv_sec;
   }
-  const auto refusal = endOf(newest(run_dir, ".refusal"));
+  const auto refusal = endOf(newestLeftFile(run_dir, ".refusal"));
   // One from before the last run says nothing about its end.
   if (refusal && refusal->written.tv_sec + kSameStartSeconds >= end.logged_at) {
     end.refusal = refusal->text;

@@ -5,7 +5,9 @@
 
 #include "client/find_motor.hpp"
 #include "link/run_dir.hpp"
+#include "web/checked_config.hpp"
 #include "web/page_messages.hpp"
+#include "web/running_config.hpp"
 #include "web/signal_names.hpp"
 
 namespace rc10::web {
@@ -51,7 +53,8 @@ void Hub::join(PageSocket& socket, bool loopback, std::string_view address) {
   page->loopback = loopback;
   page->right = rightOf(loopback, {}, token_);
   // As the owner of a motor and in rc10d's log.
-  page->name = "web-" + std::to_string(++opened_) + " " + std::string{address};
+  page->number = ++opened_;
+  page->name = "web-" + std::to_string(page->number) + " " + std::string{address};
   page->name.resize(std::min(page->name.size(), sizeof(link::Name) - 1));
   page->link = std::make_unique<PageLink>(page->name);
   greet(*page);
@@ -59,6 +62,7 @@ void Hub::join(PageSocket& socket, bool loopback, std::string_view address) {
 }
 
 void Hub::leave(PageSocket& socket) {
+  if (const auto* page = pageOf(socket); page != nullptr) configs_.forget(page->number);
   std::erase_if(pages_, [&](const auto& page) { return page->socket == &socket; });
   chooseTraces();
 }
@@ -108,6 +112,49 @@ void Hub::handle(PageSocket& socket, std::string_view message, MonotonicTime now
     sendPiece(*page, *piece);
   } else if (const auto* words = std::get_if<AskWords>(&*request)) {
     page->socket->sendText(shared(wordsMessage(*words)));
+  } else if (const auto* config = std::get_if<AskConfig>(&*request)) {
+    showConfigTo(*page, *config);
+  } else if (const auto* check_config = std::get_if<CheckConfig>(&*request)) {
+    check(*page, *check_config);
+  }
+}
+
+// A token that has come in the clear shows nothing.
+void Hub::showConfigTo(const Page& page, const AskConfig& wanted) {
+  auto found = feed_.connected()
+                   ? readRunningConfig(link::runDir(), std::string{feed_.welcome().robot.view()},
+                                       std::string{feed_.welcome().config_hash.view()})
+                   : readLastConfig(link::runDir(), robot_);
+  if (found.text.empty())
+    return page.socket->sendText(shared(responseMessage(
+        wanted.seq, "failed", "rc10d left no copy of its file in the run folder: open the file instead")));
+  auto token = page.loopback ? page.link->token() : std::string{};
+  if (token.find('\n') != std::string::npos) token.clear();
+  configs_.ask({.page = page.number,
+                .seq = wanted.seq,
+                .head = configHead(wanted.seq, found.of),
+                .work = shownConfigJson,
+                .input = token + "\n" + found.text});
+}
+
+void Hub::check(const Page& page, CheckConfig wanted) {
+  const auto overtaken = configs_.ask({.page = page.number,
+                                       .seq = wanted.seq,
+                                       .head = checkedConfigHead(wanted.seq),
+                                       .work = checkedConfigJson,
+                                       .input = std::move(wanted.text)});
+  if (overtaken)
+    page.socket->sendText(shared(responseMessage(*overtaken, "refused", "a newer text is checked instead")));
+}
+
+void Hub::answerConfigs() {
+  const auto answer = configs_.turn(std::chrono::steady_clock::now());
+  if (!answer) return;
+  for (const auto& page : pages_) {
+    if (page->number != answer->page) continue;
+    page->socket->sendText(
+        shared(answer->message ? *answer->message
+                               : responseMessage(answer->seq, "failed", answer->message.error().message)));
   }
 }
 
@@ -225,6 +272,7 @@ void Hub::turn() {
   watchRobot();
   if (turns_++ % kPublishEvery == 0) publish();
   for (const auto& page : pages_) publishAnswers(*page);
+  answerConfigs();
 }
 
 void Hub::watchRobot() {

@@ -9,6 +9,7 @@
 
 #include "web/access.hpp"
 #include "web/columns_frame.hpp"
+#include "web/config_desk.hpp"
 #include "web/page_link.hpp"
 #include "web/page_request.hpp"
 #include "web/recordings.hpp"
@@ -50,6 +51,7 @@ class Hub {
  private:
   struct Page {
     PageSocket* socket = nullptr;
+    std::uint64_t number = 0;
     bool loopback = false;
     Right right = Right::kNothing;
     std::string name;
@@ -70,6 +72,9 @@ class Hub {
   void open(Page& page, const AskRecording& wanted);
   void sendPiece(Page& page, const AskPiece& wanted);
   void drive(Page& page, const DriveMotor& wanted, Duration age);
+  void showConfigTo(const Page& page, const AskConfig& wanted);
+  void check(const Page& page, CheckConfig wanted);
+  void answerConfigs();
   [[nodiscard]] std::string downNow() const;
   [[nodiscard]] std::string whyNotMoving(const Page& page) const;
   void chooseTraces();
@@ -84,6 +89,7 @@ class Hub {
   RobotFeed feed_;
   std::string token_;
   Recordings recordings_;
+  ConfigDesk configs_;
   std::vector<std::unique_ptr<Page>> pages_;
   std::uint64_t opened_ = 0;
   std::uint64_t turns_ = 0;

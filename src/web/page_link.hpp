@@ -20,6 +20,7 @@ class PageLink {
 
   /// Shows the token of an entry of `clients`: the link is opened anew with it.
   void showToken(std::string token);
+  [[nodiscard]] const std::string& token() const noexcept { return token_; }
 
   /// Reason why it could not be sent; empty: it was.
   [[nodiscard]] std::string ask(const AskRobot& request, const std::string& socket_path);

@@ -114,6 +114,15 @@ std::string wordsMessage(const AskWords& asked) {
       {{"type", "words"}, {"seq", asked.seq}, {"events", std::move(events)}, {"frames", std::move(frames)}});
 }
 
+std::string configHead(std::int64_t seq, std::string_view of) {
+  return R"({"type":"config","seq":)" + std::to_string(seq) + R"(,"of":")" + std::string{of} +
+         R"(","config":)";
+}
+
+std::string checkedConfigHead(std::int64_t seq) {
+  return R"({"type":"config_checked","seq":)" + std::to_string(seq) + R"(,"checked":)";
+}
+
 std::string responseMessage(std::int64_t seq, std::string_view status, std::string_view message,
                             std::span<const link::NamedValue> values) {
   Json told = Json::object();

@@ -34,6 +34,10 @@ inline constexpr int kPageProtocol = 1;
 [[nodiscard]] std::string recordingsMessage(std::int64_t seq, const std::vector<RecordingFile>& files);
 /// Words for the numbers of a recording, in the order of the question; "": not known.
 [[nodiscard]] std::string wordsMessage(const AskWords& asked);
+/// The robot's file, and whether a text would be accepted: all but the answer of the ConfigDesk and a
+/// bracket.
+[[nodiscard]] std::string configHead(std::int64_t seq, std::string_view of);
+[[nodiscard]] std::string checkedConfigHead(std::int64_t seq);
 /// To a request of the page, by its own number.
 [[nodiscard]] std::string responseMessage(std::int64_t seq, std::string_view status, std::string_view message,
                                           std::span<const link::NamedValue> values = {});

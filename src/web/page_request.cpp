@@ -211,6 +211,24 @@ Result<PageRequest> wordsOf(const Received& object) {
   return ask;
 }
 
+Result<PageRequest> configOf(const Received& object) {
+  const auto seq = wholeOf(object, "seq", 0, kMaxExact);
+  if (!seq) return tl::unexpected(seq.error());
+  return AskConfig{*seq};
+}
+
+Result<PageRequest> configCheckOf(const Received& object) {
+  const auto seq = wholeOf(object, "seq", 0, kMaxExact);
+  if (!seq) return tl::unexpected(seq.error());
+  const auto* text = memberOf(object, "text");
+  if (text == nullptr || !text->is_string()) return fail("'text' is missing");
+  CheckConfig check{.seq = *seq, .text = text->get<std::string>()};
+  if (check.text.size() > CheckConfig::kMostBytes)
+    return fail("a page checks at most " + std::to_string(CheckConfig::kMostBytes / 1024) +
+                " KiB: check a longer file with `rc10d --check`");
+  return check;
+}
+
 // An e-stop counts whatever else its message says, and if it says nothing that can be read.
 PageRequest estopOf(std::int64_t seq) {
   return AskRobot{.seq = seq, .operation = toString(Operation::kEstop), .target = {}, .values = {}};
@@ -239,6 +257,8 @@ Result<PageRequest> parsePageRequest(std::string_view text) {
   if (type == "recording") return recordingOf(json);
   if (type == "piece") return pieceOf(json);
   if (type == "words") return wordsOf(json);
+  if (type == "config") return configOf(json);
+  if (type == "config_check") return configCheckOf(json);
   return fail("there is no message of this type");
 }
 

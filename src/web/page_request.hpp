@@ -89,8 +89,19 @@ struct AskWords {
   std::vector<Frame> frames;
 };
 
+/// The text of the robot's file.
+struct AskConfig {
+  std::int64_t seq = 0;
+};
+/// Whether rc10d would accept this text.
+struct CheckConfig {
+  static constexpr std::size_t kMostBytes = std::size_t{128} << 10U;
+  std::int64_t seq = 0;
+  std::string text;
+};
+
 using PageRequest = std::variant<ShowToken, ChooseView, AskRange, AskRobot, DriveMotor, TellClock,
-                                 AskRecordings, AskRecording, AskPiece, AskWords>;
+                                 AskRecordings, AskRecording, AskPiece, AskWords, AskConfig, CheckConfig>;
 
 /// A stranger's message. The error is a sentence for him.
 [[nodiscard]] Result<PageRequest> parsePageRequest(std::string_view text);

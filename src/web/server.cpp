@@ -30,7 +30,8 @@ using boost::system::error_code;
 constexpr std::chrono::milliseconds kTurn{10};
 constexpr std::chrono::seconds kRequestPatience{10};
 constexpr std::uint32_t kMaxHeader = 8U << 10U;
-constexpr std::size_t kMaxMessage = std::size_t{64} << 10U;
+// The text of a configuration, each byte of it escaped.
+constexpr std::size_t kMaxMessage = 2 * CheckConfig::kMostBytes + 1024;
 // A page that is so far behind gets no picture until it has read; one so far behind is given up.
 constexpr std::size_t kBehindBytes = std::size_t{256} << 10U;
 constexpr std::size_t kLostBytes = std::size_t{4} << 20U;

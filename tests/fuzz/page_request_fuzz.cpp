@@ -34,6 +34,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   } else if (const auto* words = std::get_if<web::AskWords>(&*request)) {
     require(words->events.size() <= web::AskWords::kMost && words->frames.size() <= web::AskWords::kMost);
     for (const auto& frame : words->frames) require(frame.bus < words->buses.size());
+  } else if (const auto* check = std::get_if<web::CheckConfig>(&*request)) {
+    require(check->text.size() <= web::CheckConfig::kMostBytes && check->seq >= 0);
   } else if (const auto* ask = std::get_if<web::AskRobot>(&*request)) {
     require(ask->values.size() <= link::kMaxValues &&
             ask->operation.size() < sizeof(link::Request::operation));

@@ -282,6 +282,9 @@ def test_a_page_from_elsewhere_needs_the_token_looks_and_stops(
             assert page.wait("response")["status"] == "refused"
             page.send(type="recording", number=1, name="host.blackbox")
             assert page.wait("response")["message"] == "show the token first"
+            for kind in ("config", "config_check"):
+                page.send(type=kind, seq=1, text="robot: host\n")
+                assert page.wait("response")["message"] == "show the token first"
             page.send(type="token", token="a" * 32)
             assert page.wait("hello")["right"] == "nothing"
             page.send(type="token", token=server.token)
@@ -289,6 +292,11 @@ def test_a_page_from_elsewhere_needs_the_token_looks_and_stops(
             page.wait("state")
             assert "tunnel" in page.ask("enable")["message"]
             assert page.recording("host.blackbox").startswith(b"RC10BOX1")
+            # Looking is enough to read and to check.
+            page.send(type="config", seq=7)
+            assert page.wait("config")["config"]["text"] == daemon.config.read_text()
+            page.send(type="config_check", seq=8, text=daemon.config.read_text())
+            assert page.wait("config_checked")["checked"]["robot"]["name"] == "host"
         # An e-stop needs no right, and no readable message.
         with server.page(ELSEWHERE) as page:
             page.wait("hello")
@@ -448,7 +456,7 @@ def test_what_is_no_message_is_refused_and_what_is_too_large_ends_the_page(web: 
             assert page.wait("response")["status"] == "refused"
         page.connection.send(b"\xff\xfe" * 100)
         assert page.wait("response")["status"] == "refused"
-        page.connection.send("x" * 100_000)
+        page.connection.send("x" * 300_000)
         with pytest.raises(ConnectionClosed):
             page.wait("never")
     for junk_bytes in (

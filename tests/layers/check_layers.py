@@ -32,7 +32,7 @@ USES = {
     "doctor": {"client", "link", "bus", "app"},
     "guard": {"link", "bus", "app"},
     "gateway": {"client", "link", "app"},
-    "web": {"survey", "client", "blackbox", "link", "bus", "app"},
+    "web": {"survey", "client", "config", "blackbox", "link", "bus", "app"},
     "daemon": {"blackbox", "config", "sim", "module", "motor", "bus", "link", "app"},
     "robot_client": {"app"},
     "tools": {

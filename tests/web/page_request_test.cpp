@@ -2,6 +2,7 @@
 
 #include <random>
 #include <string>
+#include <variant>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -141,6 +142,24 @@ TEST(PageRequest, WhatIsWrongIsRefusedInWords) {
   std::string many = R"({"type":"view","view":1,"column_us":1000,"span_us":1,"signals":["a")";
   for (int i = 0; i < 40; ++i) many += R"(,"a")";
   EXPECT_FALSE(parsePageRequest(many + "]}"));
+}
+
+TEST(PageRequest, ATextToCheckHasANumberAndABound) {
+  const auto asked = parsePageRequest(R"({"type":"config_check","seq":4,"text":"on_estop: \"estop\"\n"})");
+  ASSERT_TRUE(asked);
+  const auto* check = std::get_if<CheckConfig>(&*asked);
+  ASSERT_NE(check, nullptr);
+  EXPECT_EQ(check->seq, 4);
+  EXPECT_EQ(check->text, "on_estop: \"estop\"\n");
+  const auto of_size = [](std::size_t size) {
+    return R"({"type":"config_check","seq":4,"text":")" + std::string(size, 'x') + "\"}";
+  };
+  EXPECT_TRUE(parsePageRequest(of_size(CheckConfig::kMostBytes)));
+  EXPECT_FALSE(parsePageRequest(of_size(CheckConfig::kMostBytes + 1)));
+  for (const std::string text :
+       {R"({"type":"config"})", R"({"type":"config_check","text":""})", R"({"type":"config_check","seq":1})",
+        R"({"type":"config_check","seq":1,"text":[]})"})
+    EXPECT_FALSE(parsePageRequest(text)) << text;
 }
 
 TEST(PageRequest, NeitherDeepNorRandomTextDoesHarm) {

@@ -8,6 +8,8 @@
 
 #include "client/page_token.hpp"
 #include "client/recording_format.hpp"
+#include "config/report/schema.hpp"
+#include "config/report/template.hpp"
 #include "link/run_dir.hpp"
 #include "program.hpp"
 #include "rc10_version.hpp"
@@ -60,6 +62,8 @@ int run(int argc, char** argv) {
   auto files = web::PageFiles::read(page);
   if (!files) return complain(files.error());
   files->add("/recording-format.json", {client::recordingFormatJson(), "application/json"});
+  files->add("/rc10d.schema.json", {configSchema(), "application/json"});
+  files->add("/template.yaml", {std::string{configTemplate()}, "text/plain; charset=utf-8"});
   auto server = web::Server::listen(options, std::move(*files));
   if (!server) return complain(server.error());
   std::printf("rc10-web: http://%s:%u/%s%s\n", others ? hostName().c_str() : "localhost", (*server)->port(),

@@ -1,0 +1,96 @@
+#include "web/checked_config.hpp"
+
+#include <algorithm>
+#include <vector>
+
+#include "client/json_line.hpp"
+#include "config/check/bus_load.hpp"
+#include "config/load_config.hpp"
+#include "config/report/report.hpp"
+#include "web/hidden_tokens.hpp"
+
+namespace rc10::web {
+namespace {
+
+using client::Json;
+
+Json problemsJson(const std::vector<ConfigProblem>& problems) {
+  Json list = Json::array();
+  for (const auto& problem : problems) {
+    list.push_back({{"line", problem.place.line},
+                    {"column", problem.place.column},
+                    {"path", problem.path},
+                    {"text", problem.text}});
+  }
+  return list;
+}
+
+Json checkedMotorJson(const MotorConfig& motor, const BusLoad& load) {
+  const auto word = [](FallbackAction action) { return kFallbackWords[static_cast<std::size_t>(action)]; };
+  return {{"name", motor.name()},
+          {"model", motor.settings.model},
+          {"id", motor.settings.id},
+          {"command", motorCommandText(motor)},
+          {"feedback", motorFeedbackText(motor)},
+          {"load", load.worst_case},
+          {"on_timeout", word(motor.fallback.on_timeout)},
+          {"on_disable", word(motor.fallback.on_disable)},
+          {"on_estop", motorEstopText(motor)}};
+}
+
+Json checkedBusJson(const BusConfig& bus, int rate_hz) {
+  const auto loads = predictLoadByMotor(bus, rate_hz);
+  Json motors = Json::array();
+  for (std::size_t i = 0; i < bus.motors.size(); ++i)
+    motors.push_back(checkedMotorJson(bus.motors[i], loads[i]));
+  const auto load = predictLoad(bus, rate_hz);
+  return {{"name", bus.name},           {"interface", bus.type == BusType::kSimulated ? "" : bus.interface},
+          {"bitrate", bus.bitrate},     {"data_bitrate", bus.data_bitrate},
+          {"load", load.unstuffed},     {"load_worst", load.worst_case},
+          {"motors", std::move(motors)}};
+}
+
+Json checkedGroupsJson(const RobotConfig& config) {
+  std::vector<std::string> names;
+  for (const auto& bus : config.buses) {
+    for (const auto& motor : bus.motors) names.push_back(motor.name());
+  }
+  Json groups = Json::array();
+  for (const auto& group : config.groups) {
+    Json members = Json::array();
+    for (const auto motor : group.motors) members.push_back(names[motor]);
+    groups.push_back({{"name", group.name},
+                      {"motors", std::move(members)},
+                      {"rearms_at_rest", group.on_return == GroupConfig::Return::kRearmAtRest},
+                      {"together", group.together},
+                      {"implied", group.implied}});
+  }
+  return groups;
+}
+
+Json checkedRobotJson(const RobotConfig& config) {
+  Json buses = Json::array();
+  for (const auto& bus : config.buses) buses.push_back(checkedBusJson(bus, config.rate_hz));
+  return {{"name", config.robot},
+          {"buses", std::move(buses)},
+          {"groups", checkedGroupsJson(config)},
+          {"report", describe(config)}};
+}
+
+}  // namespace
+
+std::string checkedConfigJson(std::string_view text) {
+  const auto outcome = parseRobotConfig(withHashes(std::string{text}), "robot.yaml");
+  return client::lineOf({{"errors", problemsJson(outcome.errors)},
+                         {"warnings", problemsJson(outcome.warnings)},
+                         {"robot", outcome.config ? checkedRobotJson(*outcome.config) : Json(nullptr)}});
+}
+
+std::string shownConfigJson(std::string_view token_and_text) {
+  const auto end = std::min(token_and_text.find('\n'), token_and_text.size());
+  const auto text = token_and_text.substr(std::min(end + 1, token_and_text.size()));
+  const auto shown = showConfig(text, token_and_text.substr(0, end));
+  return client::lineOf({{"text", shown.text}, {"hidden", shown.hidden}, {"why", shown.why}});
+}
+
+}  // namespace rc10::web
