@@ -30,6 +30,7 @@ NOT_RUN = {
     ("docs/can-setup.md", "[Service]"): "a unit of the user's own",
     ("docs/installing.md", "# sudo systemctl edit rc10d"): "a unit of the user's own",
     ("docs/studio.md", "[Service]"): "a unit of the user's own",
+    ("docs/studio.md", "rc10d --check robot.yaml"): "a file of an installed robot",
     ("docs/studio.md", "rc10-web "): "a service; tests/host/test_web.py runs rc10-web",
     ("docs/serial-devices.md", "ls -l /dev/serial/by-id"): "a real serial port",
     (

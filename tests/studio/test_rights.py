@@ -11,9 +11,12 @@ from playwright.sync_api import Browser, Page, expect
 from conftest import PATIENCE_MS, Studio
 
 TOKEN = "wheelsonly22222222222222222222ab"
+CONFIGURES = "configures3333333333333333333333"
+HASHES = [hashlib.sha256(token.encode()).hexdigest() for token in (TOKEN, CONFIGURES)]
 CLIENTS = f"""
 clients:
-  - {{token: {hashlib.sha256(TOKEN.encode()).hexdigest()}, may: [command], motors: [wheel]}}
+  - {{token: {HASHES[0]}, may: [command], motors: [wheel]}}
+  - {{token: {HASHES[1]}, may: [configure]}}
 """
 
 
@@ -63,4 +66,22 @@ def test_a_token_of_no_entry_is_named_in_the_refusal(chromium: Browser, studio: 
     enable(page, "wheel")
     refused = page.get_by_role("article", name="wheel", exact=True).get_by_role("alert")
     expect(refused).to_contain_text("its token is in no entry of `clients`")
+    page.context.close()
+
+
+@pytest.mark.parametrize(("token", "shown"), [("", False), (TOKEN, False), (CONFIGURES, True)])
+def test_hashes_of_tokens_are_shown_only_to_one_that_may_configure(
+    chromium: Browser, studio: Studio, token: str, shown: bool
+) -> None:
+    page = opened(chromium, f"{studio.url}#{token}")
+    sent: list[str] = []
+    page.on("websocket", lambda link: link.on("framereceived", lambda data: sent.append(str(data))))
+    page.reload()
+    page.locator("#tab-configuration").click()
+    text = page.get_by_label("Text of the configuration")
+    expect(text).to_contain_text(HASHES[0] if shown else "token: hidden-01-")
+    expect(page.locator(".verdict-badge")).to_contain_text("rc10d accepts it")
+    expect(page.locator(".notice", has_text="hidden-01-")).to_have_count(0 if shown else 1)
+    if not shown:
+        assert not [data for data in sent for secret in HASHES if secret in data]
     page.context.close()

@@ -17,7 +17,7 @@ import rc10
 from conftest import PATIENCE_MS, Studio
 
 REMEDY = REPO / "web" / "src" / "remedy.tsx"
-TABS = ("overview", "match", "plots", "move", "events", "blackbox", "timing")
+TABS = ("overview", "match", "plots", "move", "events", "blackbox", "timing", "configuration")
 
 
 def open_tab(page: Page, name: str) -> None:
@@ -408,6 +408,9 @@ def test_nothing_overlaps_or_sticks_out_and_all_can_use_it(
     page.evaluate(axe)
     for tab in TABS:
         open_tab(page, tab)
+        if tab == "configuration":
+            page.locator(".cm-line").first.wait_for()
+            page.locator(".bus-plan").first.wait_for()
         # Drawn twice, with what the tab has asked for.
         page.evaluate("new Promise((r) => requestAnimationFrame(() => requestAnimationFrame(r)))")
         assert page.evaluate("document.documentElement.scrollWidth <= innerWidth"), tab

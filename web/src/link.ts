@@ -1,7 +1,9 @@
 // The connection to rc10-web: it comes back by itself, and what the page knows of the robot is here.
 
 import {
+  type CheckedConfig,
   type Columns,
+  type ConfigFile,
   type Diagnostics,
   type Down,
   type Hello,
@@ -81,6 +83,7 @@ export class Link {
   private readonly columnListeners = new Set<(columns: Columns) => void>();
   private readonly open = new Map<number, (answer: Response) => void>();
   private readonly asked = new Map<number, (answer: RecordingFile[] | RecordedWords | null) => void>();
+  private readonly configs = new Map<number, (answer: ConfigFile | CheckedConfig) => void>();
   private onPiece: (piece: Piece | string) => void = () => {};
   private seq = 0;
   private clock = 0;
@@ -196,6 +199,30 @@ export class Link {
     });
   }
 
+  /** The robot's file; a text says why not. */
+  config(): Promise<ConfigFile | string> {
+    return this.askOrHear<ConfigFile>({ type: 'config' });
+  }
+
+  /** Whether rc10d would accept this text; a text says why nobody knows. */
+  checkConfig(text: string): Promise<CheckedConfig | string> {
+    return this.askOrHear<CheckedConfig>({ type: 'config_check', text });
+  }
+
+  private askOrHear<Answer extends ConfigFile | CheckedConfig>(message: object): Promise<Answer | string> {
+    const seq = ++this.seq;
+    return new Promise((resolve) => {
+      const done = (answer: ConfigFile | CheckedConfig | string) => {
+        this.open.delete(seq);
+        this.configs.delete(seq);
+        resolve(answer as Answer | string);
+      };
+      this.configs.set(seq, done);
+      this.open.set(seq, (answer) => done(answer.message));
+      if (!this.send({ ...message, seq })) done('no connection');
+    });
+  }
+
   private askFor<Answer extends RecordingFile[] | RecordedWords>(message: object): Promise<Answer | null> {
     const seq = ++this.seq;
     return new Promise((resolve) => {
@@ -273,6 +300,10 @@ export class Link {
         return;
       case 'words':
         this.asked.get(message.seq)?.(message);
+        return;
+      case 'config':
+      case 'config_checked':
+        this.configs.get(message.seq)?.(message);
         return;
       case 'response':
         this.open.get(message.seq)?.(message);

@@ -2,6 +2,7 @@ import { render } from 'preact';
 import { useEffect, useMemo, useState } from 'preact/hooks';
 
 import { BlackBox } from './blackbox';
+import { Configuration } from './config';
 import { StudioContext, useKnown, useStored, useStudio } from './context';
 import { DownNotice } from './down';
 import { Events } from './events';
@@ -14,7 +15,7 @@ import { Stop } from './stop';
 import { Timing } from './timing';
 import { type Language, storeLanguage, storedLanguage, wordsOf } from './words';
 
-const kParts = { overview: Overview, match: Match, plots: Plots, move: Move, events: Events, blackbox: BlackBox, timing: Timing } as const;
+const kParts = { overview: Overview, match: Match, plots: Plots, move: Move, events: Events, blackbox: BlackBox, timing: Timing, configuration: Configuration } as const;
 type Part = keyof typeof kParts;
 
 function Header(props: { language: Language; onLanguage: (language: Language) => void }) {

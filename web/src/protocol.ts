@@ -191,7 +191,69 @@ export interface RecordedWords {
   frames: string[];
 }
 
+/** The robot's file as rc10-web knows it. */
+export interface ConfigFile {
+  type: 'config';
+  seq: number;
+  of: 'running' | 'last' | 'refused';
+  /** `hidden`: tokens that are not shown; `why`: nothing is, and why. */
+  config: { text: string; hidden: number; why: string };
+}
+
+export interface ConfigProblem {
+  /** From 1; 0: of the file as a whole. */
+  line: number;
+  column: number;
+  path: string;
+  text: string;
+}
+
+export interface CheckedMotor {
+  name: string;
+  model: string;
+  id: number;
+  command: string;
+  feedback: string;
+  load: number;
+  on_timeout: string;
+  on_disable: string;
+  on_estop: string;
+}
+
+export interface CheckedBus {
+  name: string;
+  /** "": simulated. */
+  interface: string;
+  bitrate: number;
+  /** 0: a classic bus. */
+  data_bitrate: number;
+  load: number;
+  load_worst: number;
+  motors: CheckedMotor[];
+}
+
+export interface CheckedGroup {
+  name: string;
+  motors: string[];
+  rearms_at_rest: boolean;
+  together: boolean;
+  implied: boolean;
+}
+
+/** Verdict of rc10d on a text. */
+export interface CheckedConfig {
+  type: 'config_checked';
+  seq: number;
+  checked: {
+    errors: ConfigProblem[];
+    warnings: ConfigProblem[];
+    robot: { name: string; buses: CheckedBus[]; groups: CheckedGroup[]; report: string } | null;
+  };
+}
+
 export type ServerMessage =
+  | ConfigFile
+  | CheckedConfig
   | Hello
   | Down
   | Robot

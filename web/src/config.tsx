@@ -1,0 +1,308 @@
+// Part "Configuration": the robot's file in an editor, with what rc10d would say to it.
+import { useEffect, useRef, useState } from 'preact/hooks';
+
+import type { ConfigEditor } from './config_editor';
+import { CheckedTables } from './config_tables';
+import { ConfigSchema, type KeyHelp, type Schema } from './config_schema';
+import { useStudio } from './context';
+import type { CheckedConfig, ConfigFile, ConfigProblem } from './protocol';
+import type { Word } from './words';
+
+type Checked = CheckedConfig['checked'];
+type Robot = NonNullable<Checked['robot']>;
+
+/** The text and what is known of it, also while another part of the page is shown. */
+interface Draft {
+  text: string;
+  /** As it was loaded. */
+  loaded: string;
+  from: string;
+  hidden: number;
+}
+const kDraft: Draft = { text: '', loaded: '', from: '', hidden: 0 };
+
+const kPauseMs = 250;
+const kMostBytes = 128 * 1024;
+const kSources: Record<ConfigFile['of'], Word> = { running: 'configRunning', last: 'configLast', refused: 'configRefused' };
+const kEditor = '/editor.js';
+
+let schema: Promise<ConfigSchema | null> | null = null;
+function loadSchema(): Promise<ConfigSchema | null> {
+  schema ??= fetch('/rc10d.schema.json')
+    .then(async (answer) => (answer.ok ? new ConfigSchema((await answer.json()) as Schema) : null))
+    .catch(() => null);
+  return schema;
+}
+
+function bytesOf(text: string): number {
+  return new TextEncoder().encode(text).length;
+}
+
+/** Verdict of rc10d on the text, soon after it has changed; the newest text is checked, no other. */
+function useChecked(text: string): { checked: Checked | null; robot: Robot | null; why: string; busy: boolean } {
+  const { link, word } = useStudio();
+  const [checked, setChecked] = useState<Checked | null>(null);
+  const [robot, setRobot] = useState<Robot | null>(null);
+  const [why, setWhy] = useState('');
+  const [busy, setBusy] = useState(false);
+  const wanted = useRef<string | null>(null);
+  const asking = useRef(false);
+
+  useEffect(() => {
+    wanted.current = text === '' ? null : text;
+    setBusy(text !== '');
+    if (text === '') return setChecked(null);
+    const timer = setTimeout(async () => {
+      if (asking.current) return;
+      asking.current = true;
+      while (wanted.current !== null) {
+        const next: string = wanted.current;
+        const answer = bytesOf(next) > kMostBytes ? word('configTooLarge') : await link.checkConfig(next);
+        if (wanted.current === next) wanted.current = null;
+        // The lines of a text that has changed since are others.
+        if (wanted.current !== null) continue;
+        setWhy(typeof answer === 'string' ? answer : '');
+        setChecked(typeof answer === 'string' ? null : answer.checked);
+        if (typeof answer !== 'string' && answer.checked.robot !== null) setRobot(answer.checked.robot);
+        setBusy(false);
+      }
+      asking.current = false;
+    }, kPauseMs);
+    return () => clearTimeout(timer);
+  }, [text, link]);
+  return { checked, robot, why, busy };
+}
+
+function Verdict(props: { checked: Checked | null; why: string; busy: boolean }) {
+  const { word } = useStudio();
+  const { checked, why, busy } = props;
+  let words = busy ? word('configChecking') : word('configUnknown');
+  let look = '';
+  if (!busy && checked !== null) {
+    const { errors, warnings } = checked;
+    words = errors.length === 0 ? word('configGood') : `${word('errors')}: ${errors.length}`;
+    if (warnings.length > 0) words += ` · ${word('configWarnings')}: ${warnings.length}`;
+    look = errors.length > 0 ? 'error' : warnings.length > 0 ? 'warning' : 'live';
+  }
+  return (
+    <>
+      <span class={`badge verdict-badge ${look}`} role="status">
+        {words}
+      </span>
+      {!busy && why !== '' && <span class="refused">{why}</span>}
+    </>
+  );
+}
+
+function Problems(props: { checked: Checked; onGo: (problem: ConfigProblem) => void }) {
+  const { word } = useStudio();
+  const { errors, warnings } = props.checked;
+  const all = [
+    ...errors.map((problem) => ({ problem, severity: 'error' })),
+    ...warnings.map((problem) => ({ problem, severity: 'warning' })),
+  ].sort((a, b) => a.problem.line - b.problem.line || a.problem.column - b.problem.column);
+  if (all.length === 0) return null;
+  return (
+    <section class="card config-problems" aria-label={word('configProblems')}>
+      <ul>
+        {all.map(({ problem, severity }, i) => (
+          <li key={i} class={severity}>
+            <button type="button" class="when" onClick={() => props.onGo(problem)}>
+              {problem.line === 0 ? word('configWhole') : `${problem.line}:${problem.column}`}
+            </button>
+            <span class={`badge ${severity}`}>{severity}</span> {problem.path !== '' && <code>{problem.path}</code>} {problem.text}
+          </li>
+        ))}
+      </ul>
+    </section>
+  );
+}
+
+function range(help: KeyHelp): string {
+  if (help.words.length > 0) return help.words.join(' | ');
+  if (help.least !== null && help.most !== null) return `${help.least} … ${help.most}`;
+  if (help.least !== null) return `≥ ${help.least}`;
+  return help.most === null ? '' : `≤ ${help.most}`;
+}
+
+function HelpCard(props: { help: KeyHelp | null; about: string }) {
+  const { word } = useStudio();
+  const { help, about } = props;
+  return (
+    <section class="card config-help" aria-label={word('configHelp')}>
+      {help === null ? (
+        <p class="hint">{about === '' ? word('configHelpNone') : about}</p>
+      ) : (
+        <>
+          <h3>
+            <code>{help.key}</code>
+          </h3>
+          <p lang="en">{help.about}</p>
+          <p class="hint">
+            {[
+              range(help) === '' ? '' : `${word('configValues')}: ${range(help)}`,
+              help.initial === null ? '' : `${word('configDefault')}: ${help.initial}`,
+              help.required ? word('configRequired') : '',
+            ]
+              .filter((each) => each !== '')
+              .join(' · ')}
+          </p>
+        </>
+      )}
+    </section>
+  );
+}
+
+function save(name: string, text: string): void {
+  const link = document.createElement('a');
+  link.href = URL.createObjectURL(new Blob([text], { type: 'application/yaml' }));
+  link.download = name;
+  link.click();
+  URL.revokeObjectURL(link.href);
+}
+
+function Install() {
+  const { word } = useStudio();
+  return (
+    <details class="notes">
+      <summary>{word('configInstall')}</summary>
+      <p>{word('configInstallHint')}</p>
+      <pre tabIndex={0} aria-label={word('configInstall')}>
+        {'rc10d --check robot.yaml\nsudo install -m 644 --backup=numbered robot.yaml /etc/rc10d/robot.yaml\nsudo systemctl restart rc10d'}
+      </pre>
+      <p>{word('configInstallStop')}</p>
+    </details>
+  );
+}
+
+export function Configuration() {
+  const { link, word } = useStudio();
+  const [draft, setDraft] = useState<Draft>(kDraft);
+  const [told, setTold] = useState('');
+  const [help, setHelp] = useState<{ key: KeyHelp | null; about: string }>({ key: null, about: '' });
+  const place = useRef<HTMLDivElement>(null);
+  const chooser = useRef<HTMLInputElement>(null);
+  const editor = useRef<ConfigEditor | null>(null);
+  const [ready, setReady] = useState(false);
+  const known = useRef<ConfigSchema | null>(null);
+  const { checked, robot, why, busy } = useChecked(draft.text);
+
+  const change = (next: Partial<Draft>) => setDraft({ ...Object.assign(kDraft, next) });
+
+  const load = (text: string, from: string, hidden: number) => {
+    setTold('');
+    // The editor tells of its text itself.
+    change({ loaded: text, text, from, hidden });
+    if (editor.current !== null && editor.current.text() !== text) editor.current.replace(text);
+  };
+  const loadRobots = async () => {
+    const answer = await link.config();
+    if (typeof answer === 'string') return setTold(answer);
+    if (answer.config.why !== '') return setTold(answer.config.why);
+    load(answer.config.text, word(kSources[answer.of]), answer.config.hidden);
+  };
+  const loadTemplate = async () => {
+    const answer = await fetch('/template.yaml');
+    load(await answer.text(), word('configTemplate'), 0);
+  };
+  const loadFile = async (file: File | null | undefined) => {
+    if (file === null || file === undefined) return;
+    if (file.size > kMostBytes) return setTold(word('configTooLarge'));
+    load(await file.text(), file.name, 0);
+  };
+
+  useEffect(() => {
+    let gone = false;
+    void loadSchema().then((found) => {
+      known.current = found;
+    });
+    void (import(kEditor) as Promise<typeof import('./config_editor')>)
+      .then(({ makeEditor }) => {
+        if (gone || place.current === null) return;
+        editor.current = makeEditor({
+          parent: place.current,
+          text: kDraft.text,
+          label: word('configText'),
+          onText: (text) => change({ text }),
+          onCursor: (text, at) => {
+            const found = known.current?.help(text, at);
+            setHelp({ key: found?.key ?? null, about: found?.about ?? '' });
+          },
+          suggest: (text, at) => known.current?.help(text, at) ?? { from: at, suggestions: [] },
+        });
+        setReady(true);
+        if (kDraft.from === '' && kDraft.text === '') void loadRobots();
+      })
+      .catch((error: unknown) => setTold(`${word('configNoEditor')} ${String(error)}`));
+    return () => {
+      gone = true;
+      editor.current?.close();
+      editor.current = null;
+    };
+  }, []);
+
+  useEffect(() => {
+    if (!ready || busy) return;
+    const marks = (severity: 'error' | 'warning') => (problem: ConfigProblem) => ({
+      line: problem.line,
+      column: problem.column,
+      text: problem.path === '' ? problem.text : `${problem.path}: ${problem.text}`,
+      severity,
+    });
+    editor.current?.mark([...(checked?.errors ?? []).map(marks('error')), ...(checked?.warnings ?? []).map(marks('warning'))]);
+  }, [ready, busy, checked]);
+
+  return (
+    <div
+      onDragOver={(event) => event.preventDefault()}
+      onDrop={(event) => {
+        event.preventDefault();
+        void loadFile(event.dataTransfer?.files[0]);
+      }}
+    >
+      <div class="toolbar">
+        <button type="button" onClick={() => void loadRobots()}>
+          {word('configRobot')}
+        </button>
+        <button type="button" onClick={() => void loadTemplate()}>
+          {word('configTemplate')}
+        </button>
+        <button type="button" onClick={() => chooser.current?.click()}>
+          {word('configOpen')}
+        </button>
+        <input
+          ref={chooser}
+          type="file"
+          accept=".yaml,.yml"
+          aria-label={word('configOpen')}
+          hidden
+          onChange={(event) => {
+            void loadFile(event.currentTarget.files?.[0]);
+            event.currentTarget.value = '';
+          }}
+        />
+        <button type="button" disabled={draft.text === ''} onClick={() => save(`${robot?.name ?? 'robot'}.yaml`, draft.text)}>
+          {word('configDownload')}
+        </button>
+        <span class="hint">{draft.from}</span>
+        {draft.text !== draft.loaded && <span class="badge">{word('configChanged')}</span>}
+        <Verdict checked={checked} why={why} busy={busy} />
+      </div>
+      {told !== '' && (
+        <p class="refused" role="alert">
+          {told}
+        </p>
+      )}
+      {draft.hidden > 0 && <p class="notice">{word('configHidden')}</p>}
+      <div class="config">
+        <div class="config-editor" ref={place} />
+        <div class="config-side">
+          <HelpCard help={help.key} about={help.about} />
+          {checked !== null && !busy && <Problems checked={checked} onGo={(problem) => editor.current?.goTo(problem.line, problem.column)} />}
+        </div>
+      </div>
+      {robot !== null && <CheckedTables robot={robot} old={checked === null || checked.robot === null} />}
+      <Install />
+    </div>
+  );
+}
