@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include "daemon/supervision/states.hpp"
 #include "faults/oracle.hpp"
 
 namespace rc10::test {
