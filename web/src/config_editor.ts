@@ -1,6 +1,6 @@
 // The editor of the part "Configuration": CodeMirror, in a bundle of its own, which is loaded with that part.
 import { type CompletionContext, type CompletionResult, autocompletion, completionKeymap } from '@codemirror/autocomplete';
-import { defaultKeymap, history, historyKeymap } from '@codemirror/commands';
+import { defaultKeymap, history, historyKeymap, isolateHistory } from '@codemirror/commands';
 import { type Diagnostic, lintGutter, setDiagnostics } from '@codemirror/lint';
 import { EditorState } from '@codemirror/state';
 import { Decoration, EditorView, MatchDecorator, ViewPlugin, type ViewUpdate, highlightActiveLine, keymap, lineNumbers } from '@codemirror/view';
@@ -103,7 +103,7 @@ export function makeEditor(options: EditorOptions): ConfigEditor {
         autocompletion({ override: [completionOf(options)], icons: false, compareCompletions: () => 0 }),
         // Tab leaves the editor, as everywhere on the page.
         keymap.of([...completionKeymap, ...defaultKeymap, ...historyKeymap]),
-        EditorView.contentAttributes.of({ 'aria-label': options.label, spellcheck: 'false', autocapitalize: 'off' }),
+        EditorView.contentAttributes.of({ 'aria-label': options.label, tabindex: '0' }),
         EditorView.updateListener.of((update) => {
           if (update.docChanged) options.onText(update.state.doc.toString());
           if (update.docChanged || update.selectionSet) options.onCursor(update.state.doc.toString(), update.state.selection.main.head);
@@ -117,7 +117,13 @@ export function makeEditor(options: EditorOptions): ConfigEditor {
   };
   return {
     text: () => view.state.doc.toString(),
-    replace: (text) => view.dispatch({ changes: { from: 0, to: view.state.doc.length, insert: text }, selection: { anchor: 0 }, scrollIntoView: true }),
+    replace: (text) =>
+      view.dispatch({
+        changes: { from: 0, to: view.state.doc.length, insert: text },
+        selection: { anchor: 0 },
+        scrollIntoView: true,
+        annotations: isolateHistory.of('full'),
+      }),
     mark: (marks) => {
       const diagnostics = marks.map((mark): Diagnostic => {
         const from = at(mark.line, mark.column);
