@@ -5,7 +5,8 @@ scripts/demo.sh                                    # in another terminal; it pri
 .venv/bin/python scripts/lib/studio_pictures.py [http://localhost:8010/]
 
 The picture of the part Move needs a robot whose motors nobody commands: in place of the demo
-`rc10d -c config/demo.yaml` and `rc10-web`, and the word `move` behind the address.
+`rc10d -c config/demo.yaml` and `rc10-web`, and the word `move` behind the address. The word
+`configuration` there makes only the picture of that part.
 """
 
 from __future__ import annotations
@@ -29,6 +30,7 @@ def pictures_of_the_demo(page: Page) -> None:
     page.locator("#tab-plots").click()
     page.wait_for_timeout(SPAN_MS)
     page.screenshot(path=IMAGES / "studio-plot.png")
+    picture_of_the_configuration(page)
 
 
 def picture_of_a_held_motor(page: Page) -> None:
@@ -44,10 +46,32 @@ def picture_of_a_held_motor(page: Page) -> None:
     page.mouse.up()
 
 
+def picture_of_the_configuration(page: Page) -> None:
+    """Two wheels with one id: the message at its line, the key's help, the buses."""
+    page.locator("#tab-configuration").click()
+    page.locator(".cm-line", has_text="name: front_right").click()
+    page.keyboard.press("Home")
+    for _ in range(len("- {name: front_right, profile: wheel, id: ")):
+        page.keyboard.press("ArrowRight")
+    page.keyboard.press("Shift+ArrowRight")
+    page.keyboard.type("1")
+    page.locator(".config-problems").wait_for()
+    page.set_viewport_size({"width": 1280, "height": 1020})
+    page.evaluate(
+        """() => {
+          const editor = document.querySelector('.config-editor').shadowRoot;
+          editor.querySelector('.cm-scroller').scrollLeft = 0;
+        }"""
+    )
+    page.screenshot(path=IMAGES / "studio-configuration.png")
+
+
 def main() -> None:
     """Takes the pictures of what runs there."""
     address = sys.argv[1] if len(sys.argv) > 1 else "http://localhost:8010/"
-    take = picture_of_a_held_motor if sys.argv[2:] == ["move"] else pictures_of_the_demo
+    take = {"move": picture_of_a_held_motor, "configuration": picture_of_the_configuration}.get(
+        sys.argv[2] if len(sys.argv) > 2 else "", pictures_of_the_demo
+    )
     with sync_playwright() as playwright:
         browser = playwright.chromium.launch(executable_path=CHROMIUM, args=[*OPTIONS])
         page = browser.new_page(viewport={"width": 1280, "height": 800}, locale="en-GB")
