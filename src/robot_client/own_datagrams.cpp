@@ -51,8 +51,8 @@ void attach(int socket, Program& program) noexcept {
   (void)::setsockopt(socket, SOL_SOCKET, SO_ATTACH_FILTER, &filter, sizeof filter);
 }
 
-// What was sent on this computer goes on to `then`, `length` steps long; all else behind it. It comes by the
-// loopback interface; or by another one, as a copy of a multicast that left by it.
+// Datagrams that were sent on this computer go on to `then`; all others behind it. They come by the loopback
+// interface, or by another one, as copies of a multicast that left by it.
 void ifOwn(Program& program, const Program& then) {
   constexpr auto kIndex = static_cast<std::uint32_t>(SKF_AD_OFF + SKF_AD_IFINDEX);
   constexpr auto kType = static_cast<std::uint32_t>(SKF_AD_OFF + SKF_AD_PKTTYPE);

@@ -154,7 +154,7 @@ def body(data: bytes) -> bytes:
 
 
 def forged_words(wiretap: Wiretap) -> list[bytes]:
-    """What rc10d would say: that the robot is stopped, its motors fast, and all requests done."""
+    """Words as rc10d's: the robot is stopped, its motors fast, and all requests done."""
     state = robot_state_t.decode(body(wiretap.wait("host.v1.state")))
     state.state = robot_state_t.STATE_ESTOP
     state.stopped_by = "forged"

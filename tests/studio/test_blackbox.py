@@ -554,7 +554,7 @@ def test_records_in_any_disorder_are_put_in_order_in_a_bounded_number_of_steps(
             const offsets = good.offsets.slice().sort();
             const found = {size: good.size, orders: []};
             found.own = stepsOf(Float64Array.from(offsets, (offset) => good.timeAt(offset)));
-            // Of their times: a record may go on at the beginning of the ring.
+            // Places of their times: a record may go on at the beginning of the ring.
             const places = Array.from(offsets, (offset) => good.fileAt(offset + 8));
             for (const [name, time] of Object.entries(orders)) {
                 for (const [i, place] of places.entries()) view.setUint32(place, time(i), true);

@@ -14,7 +14,7 @@ export interface Curve {
   width: number;
 }
 
-/** What a curve is in one column of pixels, from above; `joined`: the curve goes on from the column before. */
+/** A curve in one column of pixels, from above; `joined`: the curve goes on from the column before. */
 interface Column {
   x: number;
   top: number;
