@@ -31,8 +31,9 @@ USES = {
     "client": {"blackbox", "link", "app"},
     "doctor": {"client", "link", "bus", "app"},
     "guard": {"link", "bus", "app"},
-    "gateway": {"client", "link", "app"},
-    "web": {"survey", "client", "config", "blackbox", "link", "bus", "app"},
+    "sandbox": {"app"},
+    "gateway": {"sandbox", "client", "link", "app"},
+    "web": {"sandbox", "survey", "client", "config", "blackbox", "link", "bus", "app"},
     "daemon": {"blackbox", "config", "sim", "module", "motor", "bus", "link", "app"},
     "robot_client": {"app"},
     "tools": {

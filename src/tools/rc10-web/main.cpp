@@ -6,6 +6,7 @@
 
 #include <CLI/CLI.hpp>
 
+#include "blackbox/places.hpp"
 #include "client/page_token.hpp"
 #include "client/recording_format.hpp"
 #include "config/report/schema.hpp"
@@ -13,6 +14,7 @@
 #include "link/run_dir.hpp"
 #include "program.hpp"
 #include "rc10_version.hpp"
+#include "web/sandbox.hpp"
 #include "web/server.hpp"
 #include "web/token.hpp"
 
@@ -49,7 +51,8 @@ int run(int argc, char** argv) {
   app.add_option("--token-file", token_file, "File of the token; default: web-token in rc10d's run folder");
   if (const auto status = parseCommandLine(app, argc, argv)) return *status;
 
-  if (const auto host = hostName(); !host.empty()) {
+  const auto host = hostName();
+  if (!host.empty()) {
     options.names.push_back(host);
     options.names.push_back(host + ".local");
   }
@@ -66,7 +69,9 @@ int run(int argc, char** argv) {
   files->add("/template.yaml", {std::string{configTemplate()}, "text/plain; charset=utf-8"});
   auto server = web::Server::listen(options, std::move(*files));
   if (!server) return complain(server.error());
-  std::printf("rc10-web: http://%s:%u/%s%s\n", others ? hostName().c_str() : "localhost", (*server)->port(),
+  if (const auto done = web::enterSandbox({link::runDir(), blackbox::stateDir()}); !done)
+    return complain(done.error());
+  std::printf("rc10-web: http://%s:%u/%s%s\n", others ? host.c_str() : "localhost", (*server)->port(),
               others ? "#" : "", options.token.c_str());
   std::fflush(stdout);
   (*server)->run();
