@@ -77,7 +77,15 @@ _rc10ctl() {
                     compopt -o nospace 2>/dev/null || true
                 fi
                 ;;
-            enable | disable | clear | zero | jog | commission | configure-drive) words=$(_rc10ctl_motors "$program" "${robot[@]}") ;;
+            load)
+                if [ "$before" = load ]; then
+                    words=$(_rc10ctl_motors "$program" "${robot[@]}")
+                else
+                    words='inertia_kg_m2= viscous_nms_per_rad= coulomb_nm= load_torque_nm= gravity_nm= payload_kg= payload_at_m='
+                    compopt -o nospace 2>/dev/null || true
+                fi
+                ;;
+            enable | disable | clear | zero | jog | commission | configure-drive | hand) words=$(_rc10ctl_motors "$program" "${robot[@]}") ;;
         esac
     fi
     mapfile -t COMPREPLY < <(compgen -W "$words" -- "$word")

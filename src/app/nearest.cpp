@@ -49,7 +49,15 @@ std::string_view nearest(std::string_view typed, const std::vector<std::string_v
       best_distance = distance;
     }
   }
-  return best;
+  if (!best.empty()) return best;
+  // The last words left out, often the unit: `track` of track_m.
+  std::size_t longer = 0;
+  for (const auto candidate : candidates) {
+    if (!plain(candidate).starts_with(wanted + "_")) continue;
+    best = candidate;
+    ++longer;
+  }
+  return longer == 1 ? best : std::string_view{};
 }
 
 std::string didYouMean(std::string_view typed, const std::vector<std::string_view>& candidates) {

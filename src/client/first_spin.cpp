@@ -22,6 +22,7 @@ bool FirstSpin::goesOn(const link::MotorState& motor) noexcept {
   const bool slow = std::abs(velocity_rpm_) <= over_speed_rpm_;
   fast_ = std::abs(velocity_rpm_) > over_speed_rpm_;
   if (begins) turned_soon_ = fast_;
+  at_limit_ = (motor.limits & kLimitAngle) != 0;
   return slow && std::isfinite(turned_deg_) && !angle_lost_;
 }
 
@@ -31,7 +32,8 @@ FirstSpin::Outcome FirstSpin::outcome() const noexcept {
   if (turned_soon_) return Outcome::kTurnedSoon;
   // Fast enough is enough, however short the way.
   if (fast_ && velocity_rpm_ * turned_deg_ <= 0.0) return Outcome::kDisagree;
-  if (!fast_ && std::abs(turned_deg_) < kLeastTurnDeg) return Outcome::kNotMoved;
+  if (!fast_ && std::abs(turned_deg_) < kLeastTurnDeg)
+    return at_limit_ ? Outcome::kAtLimit : Outcome::kNotMoved;
   return turned_deg_ > 0.0 ? Outcome::kRight : Outcome::kWrongWay;
 }
 
@@ -48,6 +50,11 @@ std::string text(const FirstSpin& spin, const std::string& motor) {
     case FirstSpin::Outcome::kNotMoved:
       return turned +
              " with a positive current: it did not move: is it blocked, or the current too small (--limit)?";
+    case FirstSpin::Outcome::kAtLimit:
+      return turned +
+             " with a positive current: its soft limits (angle_min_deg, angle_max_deg) hold it: turn it by "
+             "hand "
+             "into its travel, and commission again";
     case FirstSpin::Outcome::kTurnedSoon:
       return motor + " turned with " + speed +
              " when the current began: let it come to rest, and commission again";

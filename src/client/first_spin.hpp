@@ -14,6 +14,7 @@ class FirstSpin {
     kRight,       ///< It turned the way of the current.
     kWrongWay,    ///< The drive's current has the other sign than its encoder.
     kNotMoved,    ///< By no more than noise, play in the gear, or a shaft that was let go.
+    kAtLimit,     ///< The same, and a soft limit of its angle acts.
     kTurnedSoon,  ///< Too fast before the current could have done it.
     kDisagree,    ///< Its speed has one sign, its angle the other.
     kUnknown,     ///< No speed, or no angle.
@@ -39,6 +40,7 @@ class FirstSpin {
   double turned_deg_ = 0.0;
   double velocity_rpm_ = 0.0;
   bool fast_ = false;
+  bool at_limit_ = false;
   bool turned_soon_ = false;
   bool angle_lost_ = false;
 };

@@ -1,7 +1,9 @@
 #include "client/module_text.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <span>
+#include <string_view>
 
 #include "app/printable.hpp"
 #include "client/json_line.hpp"
@@ -25,6 +27,12 @@ std::string joined(std::span<const link::Name> names) {
   std::string text;
   for (const auto& name : names) text += (text.empty() ? "" : " ") + printable(name.view());
   return text.empty() ? "none" : text;
+}
+
+// Mouse and keys of a remote at rest: dozens, which would hide the rest of the line.
+bool untouched(const ModuleView& module, std::string_view name, double value) {
+  return module.info.type.view() == "remote" && (name.starts_with("key_") || name.starts_with("mouse_")) &&
+         !(std::abs(value) > 0.0);
 }
 
 }  // namespace
@@ -54,8 +62,13 @@ std::string moduleLines(const std::vector<ModuleView>& modules) {
     if (!inputs(module).empty())
       text += owner.empty() ? "commanded by nobody  " : "commanded by '" + printable(owner) + "'  ";
     const auto names = outputs(module);
-    for (std::size_t i = 0; i < names.size(); ++i)
-      text += (i == 0 ? "" : "  ") + printable(names[i].view()) + " " + number(module.state.values[i], 2);
+    std::string_view gap;
+    for (std::size_t i = 0; i < names.size(); ++i) {
+      const double value = module.state.values[i];
+      if (untouched(module, names[i].view(), value)) continue;
+      text += std::string{gap} + printable(names[i].view()) + " " + number(value, 2);
+      gap = "  ";
+    }
     text += '\n';
   }
   return text;

@@ -18,9 +18,10 @@ struct ModuleView {
 /// values.
 [[nodiscard]] std::string modulesText(const std::vector<ModuleView>& modules);
 
-/// The same as one line of JSON. An output without meaning is null.
-/// A line for each: who commands it, and its outputs.
+/// A line for each: who commands it, and its outputs; mouse and keys of a remote while they are not 0.
 [[nodiscard]] std::string moduleLines(const std::vector<ModuleView>& modules);
+
+/// The same as one line of JSON. An output without meaning is null.
 [[nodiscard]] std::string modulesJson(const std::vector<ModuleView>& modules);
 
 }  // namespace rc10::client

@@ -15,6 +15,7 @@
 #include "motor/guarding/rest_check.hpp"
 #include "motor/guarding/target_shaper.hpp"
 #include "motor/motor_family.hpp"
+#include "sim/load_change.hpp"
 #include "sim/sim_config.hpp"
 
 namespace rc10 {
@@ -39,6 +40,7 @@ struct MotorConfig {
   Duration run_down{std::chrono::seconds{5}};  ///< Without torque it turns no longer than this.
   bool optional = false;
   sim::MotorLoad simulated;  ///< Used on a simulated bus and by rc10-sim.
+  sim::LoadPlan load_plan;   ///< The same.
 
   [[nodiscard]] MotorTraits traits() const { return family->traits(settings.model, settings.own); }
   [[nodiscard]] const std::string& name() const noexcept { return settings.name; }

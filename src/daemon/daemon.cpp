@@ -141,7 +141,7 @@ Result<void> Daemon::createLoops(int estop_socket) {
   auto rx_loop = RxLoop::create(robot_->serialChannels(), drain);
   if (!rx_loop) return tl::unexpected(rx_loop.error());
   rx_loop_ = std::move(*rx_loop);
-  auto sim_loop = SimLoop::create(*robot_, grid, exchange_.hands);
+  auto sim_loop = SimLoop::create(*robot_, grid, exchange_.shafts);
   if (!sim_loop) return tl::unexpected(sim_loop.error());
   sim_loop_ = std::move(*sim_loop);
   return {};
@@ -261,8 +261,10 @@ void Daemon::describeRobot() {
                                      built.modes(), motor.optional, traits.setup,
                                      MotorLoops{motor.settings.model, traits, motor.settings.loops}});
       if (simulated)
-        description_.motors.back().simulated = {
-            .port = port, .drive = drive, .direction = motor.settings.direction};
+        description_.motors.back().simulated = {.port = port,
+                                                .drive = drive,
+                                                .direction = motor.settings.direction,
+                                                .payload_at_m = motor.simulated.payload_at_m};
     }
     port += simulated ? 1 : 0;
   }

@@ -62,7 +62,7 @@ class Drive {
   virtual void fault(std::uint32_t /*native_code*/) noexcept {}
 };
 
-/// The load of the shaft, beside inertia and friction, which have defaults of the model.
+/// The load of the shaft, beside friction and own inertia, which have defaults of the model.
 void hang(const MotorLoad& load, MotorParameters& parameters) noexcept;
 
 /// Plausibility of a load. The error names the motor.

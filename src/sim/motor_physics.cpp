@@ -15,12 +15,22 @@ constexpr double kTwoPi = 2.0 * std::numbers::pi;
 // faster than the steps of the simulation can.
 constexpr double kHandLagDeg = 1.0;
 constexpr double kMostHandRadPerS = 400.0;
+// A shaft that still turns when it should be let go (heavy, or led faster than its motor's no-load speed)
+// is led on, for so long at most: let go, it would run away.
+constexpr double kLedOnS = 5.0;
+constexpr double kAtRestRadPerS = 0.05;  // half a rpm
 
 }  // namespace
 
 MotorPhysics::MotorPhysics(const MotorParameters& parameters, double initial_angle_deg) noexcept
     : parameters_(parameters), temperature_c_(parameters.ambient_c) {
   place(initial_angle_deg);
+}
+
+void MotorPhysics::setParameters(const MotorParameters& parameters) noexcept {
+  const double before = parameters_.totalInertia();
+  parameters_ = parameters;
+  velocity_rad_s_ *= std::min(before / parameters_.totalInertia(), 1.0);
 }
 
 void MotorPhysics::place(double output_deg) noexcept {
@@ -130,7 +140,8 @@ void MotorPhysics::moveHand(double dt_s) noexcept {
 double MotorPhysics::stepHand(double dt_s) noexcept {
   if (!grip_.held) return 0.0;
   grip_.left_s -= dt_s;
-  grip_.held = grip_.left_s > 0.0;
+  const bool turns = std::abs(velocity_rad_s_) > kAtRestRadPerS;
+  grip_.held = grip_.left_s > 0.0 || (turns && grip_.left_s > -kLedOnS);
   moveHand(dt_s);
   const double inertia = parameters_.totalInertia();
   const double natural_rad_s =

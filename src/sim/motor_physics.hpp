@@ -63,8 +63,9 @@ class MotorPhysics {
   /// Advances by `dt` with the command held.
   void step(const WindingCommand& command, Duration dt) noexcept;
 
-  /// Another load or friction from now on; motion, current and heat stay as they are.
-  void setParameters(const MotorParameters& parameters) noexcept { parameters_ = parameters; }
+  /// Another load or friction from now on; angle, current and heat stay as they are. Added inertia is at rest
+  /// and slows the shaft; inertia that leaves takes its momentum along.
+  void setParameters(const MotorParameters& parameters) noexcept;
   [[nodiscard]] const MotorParameters& parameters() const noexcept { return parameters_; }
   /// A stalled shaft does not turn, whatever the torque.
   void stall(bool stalled) noexcept { stalled_ = stalled; }

@@ -48,7 +48,13 @@ SimBus::SimBus(const SimBusConfig& config) {
     const auto phase_ns = uniform(random) * static_cast<double>(config.phase_spread.count());
     auto drive = std::move(recipe().value());
     const Duration first = drive->feedbackPeriod() + Duration{std::llround(phase_ns)};
-    nodes_.push_back({std::move(drive), random, first});
+    const std::size_t place = nodes_.size();
+    const MotorLoad load = drive->load();
+    nodes_.push_back({.drive = std::move(drive),
+                      .random = random,
+                      .next_feedback = first,
+                      .at_start = load,
+                      .plan = place < config.plans.size() ? config.plans[place] : LoadPlan{}});
   }
 }
 
@@ -62,11 +68,29 @@ std::size_t SimBus::step(MonotonicTime now, Duration dt, std::span<CanFrame> out
   std::array<CanFrame, Drive::kMaxFrames> frames;
   for (Node& node : nodes_) {
     giveOut(node, std::span(frames).first(node.drive->answers(frames)), now, out, count);
+    followPlan(node);
     node.drive->step(dt);
     if (!isDue(node)) continue;
     giveOut(node, std::span(frames).first(node.drive->feedback(frames)), now, out, count);
   }
   return count;
+}
+
+// A change counts from the begin of the step in which it is due.
+void SimBus::followPlan(Node& node) const noexcept {
+  const auto& [steps, repeat] = node.plan;
+  const auto change = [&](const LoadChange& by) {
+    node.drive->setLoad(by.of(node.drive->load(), node.at_start));
+  };
+  while (!steps.empty()) {
+    const bool over = node.next_change == steps.size();
+    if (over && repeat <= Duration::zero()) return;
+    const Duration due = node.plan_begun + (over ? repeat : steps[node.next_change].after);
+    if (elapsed_ < due) return;
+    change(over ? LoadChange{.back = true} : steps[node.next_change].change);
+    node.plan_begun = over ? due : node.plan_begun;
+    node.next_change = over ? 0 : node.next_change + 1;
+  }
 }
 
 void SimBus::giveOut(Node& node, std::span<const CanFrame> frames, MonotonicTime now, std::span<CanFrame> out,
@@ -114,6 +138,11 @@ std::optional<std::size_t> SimBus::indexOf(std::string_view name) const noexcept
 
 void SimBus::setLoad(std::size_t index, const MotorLoad& load) noexcept {
   nodes_[index].drive->setLoad(load);
+}
+
+void SimBus::changeLoad(std::size_t index, const LoadChange& change) noexcept {
+  Node& node = nodes_[index];
+  node.drive->setLoad(change.of(node.drive->load(), node.at_start));
 }
 
 template <typename T>

@@ -14,6 +14,7 @@
 #include "app/time.hpp"
 #include "bus/can_frame.hpp"
 #include "sim/drive.hpp"
+#include "sim/load_change.hpp"
 
 namespace rc10::sim {
 
@@ -23,6 +24,7 @@ using DriveRecipe = std::function<Result<std::unique_ptr<Drive>>()>;
 /// Drives and properties of one simulated bus.
 struct SimBusConfig {
   std::vector<DriveRecipe> drives;
+  std::vector<LoadPlan> plans;  ///< Of the drives, by place; further drives have none.
   std::uint64_t seed = 1;
   /// Drive n starts to talk up to this much later than the first, by the seed: at most a quarter
   /// of the feedback period. Shows only in steps that are shorter still.
@@ -67,7 +69,8 @@ class SimBus {
   [[nodiscard]] const Counters& counters() const noexcept { return counters_; }
 
   // Faults, at any time between two steps.
-  void setLoad(std::size_t index, const MotorLoad& load) noexcept;  ///< Replaces all faults as well.
+  void setLoad(std::size_t index, const MotorLoad& load) noexcept;        ///< Replaces all faults as well.
+  void changeLoad(std::size_t index, const LoadChange& change) noexcept;  ///< Faults stay.
   void stall(std::size_t index, bool stalled) noexcept;
   void silence(std::size_t index, bool silent) noexcept;
   void loseFrames(std::size_t index, float fraction) noexcept;
@@ -80,9 +83,14 @@ class SimBus {
     std::unique_ptr<Drive> drive;
     std::mt19937_64 random;  // its own: one drive's faults do not change another's
     Duration next_feedback;  // after the first step began
+    MotorLoad at_start;
+    LoadPlan plan;
+    std::size_t next_change = 0;
+    Duration plan_begun{};  // after the first step began
   };
 
   [[nodiscard]] bool isDue(Node& node) noexcept;
+  void followPlan(Node& node) const noexcept;
   [[nodiscard]] static bool losesFrame(Node& node) noexcept;
   void giveOut(Node& node, std::span<const CanFrame> frames, MonotonicTime now, std::span<CanFrame> out,
                std::size_t& count) noexcept;

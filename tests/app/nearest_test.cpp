@@ -10,6 +10,12 @@ TEST(Nearest, AWordThatIsNearIsOffered) {
   EXPECT_EQ(didYouMean("Front-Left", {"rear_left", "front_left"}), "; did you mean front_left?");
 }
 
+TEST(Nearest, AWordWithoutItsUnitIsOfferedTheOneThatHasIt) {
+  EXPECT_EQ(didYouMean("inertia", {"inertia_kg_m2", "coulomb_nm"}), "; did you mean inertia_kg_m2?");
+  EXPECT_EQ(didYouMean("track", {"track_m", "wheelbase_m"}), "; did you mean track_m?");
+  EXPECT_EQ(didYouMean("stop", {"stop_min_deg", "stop_max_deg"}), "");
+}
+
 TEST(Nearest, AWordThatIsNothingLikeThemIsNot) {
   EXPECT_EQ(didYouMean("gripper", {"disable", "enable"}), "");
   EXPECT_EQ(didYouMean("", {"enable"}), "");

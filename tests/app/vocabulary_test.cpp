@@ -31,7 +31,7 @@ TEST(Vocabulary, WordsAreInTheOrderOfTheNumbers) {
   EXPECT_STREQ(toString(Severity::kError), "error");
   EXPECT_STREQ(toString(Operation::kConfigure), "configure-drive");
   EXPECT_STREQ(toString(Operation::kEnableAlone), "enable_alone");
-  EXPECT_STREQ(toString(Operation::kHand), "hand");
+  EXPECT_STREQ(toString(Operation::kLoad), "load");
 }
 
 TEST(Vocabulary, EachOperationIsFoundByItsWordAlone) {

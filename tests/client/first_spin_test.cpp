@@ -89,6 +89,15 @@ TEST_F(FirstSpinTest, AStalledMotorHasNotMoved) {
   EXPECT_THAT(words(), HasSubstr("it did not move: is it blocked, or the current too small (--limit)?"));
 }
 
+TEST_F(FirstSpinTest, AMotorThatASoftLimitHoldsIsToldToBeTurnedBack) {
+  auto held = state({402.7, 0.0F});
+  held.limits = kLimitAngle;
+  EXPECT_TRUE(first.goesOn(held));
+  EXPECT_TRUE(first.goesOn(held));
+  EXPECT_EQ(first.outcome(), Outcome::kAtLimit);
+  EXPECT_THAT(words(), HasSubstr("its soft limits (angle_min_deg, angle_max_deg) hold it: turn it by hand"));
+}
+
 TEST_F(FirstSpinTest, AShaftThatTurnsBeforeTheCurrentBeginsSaysNothing) {
   for (const float velocity_rpm : {90.0F, -90.0F}) {
     first = FirstSpin{60.0};

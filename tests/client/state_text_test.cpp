@@ -3,6 +3,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <limits>
+
 #include "client/module_text.hpp"
 #include "fake_rc10d.hpp"
 #include "link/words.hpp"
@@ -205,6 +207,20 @@ TEST(ModuleLines, TellWhoCommandsThemAndWhatTheyGive) {
       moduleLines({base, buttons}),
       "module base (mecanum_chassis)  commanded by nobody  x_m 0.50\nmodule buttons (gpio)  start 1.00\n");
   EXPECT_EQ(moduleLines({driven}), "module base (mecanum_chassis)  commanded by '?[31mremote'  x_m 0.50\n");
+}
+
+TEST(ModuleLines, LeaveOutMouseAndKeysOfARemoteThatNobodyTouches) {
+  ModuleView remote{link::Name{"remote"}, {}, {}};
+  remote.info.type = "remote";
+  remote.info.output_count = 4;
+  remote.info.names[0] = "connected";
+  remote.info.names[1] = "mouse_x";
+  remote.info.names[2] = "key_w";
+  remote.info.names[3] = "key_s";
+  remote.state.values[0] = 1.0;
+  remote.state.values[1] = std::numeric_limits<double>::quiet_NaN();
+  remote.state.values[2] = 1.0;
+  EXPECT_EQ(moduleLines({remote}), "module remote (remote)  connected 1.00  key_w 1.00\n");
 }
 
 }  // namespace

@@ -52,7 +52,13 @@ inline void print(std::ostream& out, const MotorConfig& motor) {
   out << load.inertia_kg_m2 << ' ' << load.viscous_nms_per_rad << ' ' << load.coulomb_nm << ' '
       << load.load_torque_nm << ' ' << load.gravity_nm << ' ' << load.hangs_at_deg << ' ' << load.stop_min_deg
       << ' ' << load.stop_max_deg << ' ' << load.initial_angle_deg << ' ' << load.stalled << ' '
-      << load.silent << ' ' << load.lost_frames << '\n';
+      << load.silent << ' ' << load.lost_frames << ' ' << load.payload_kg << ' ' << load.payload_at_m << '\n';
+  for (const auto& step : motor.load_plan.steps) {
+    out << step.after.count();
+    for (const auto& value : step.change.values) out << ' ' << value.value_or(-1.0F);
+    out << '\n';
+  }
+  out << motor.load_plan.repeat.count() << '\n';
 }
 
 }  // namespace detail

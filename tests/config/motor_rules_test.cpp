@@ -212,7 +212,7 @@ TEST(MotorRules, ASimulatedLoadIsTakenOver) {
   const auto load =
       motorOf(
           "{name: a, model: M3508, id: 1, simulated: {inertia_kg_m2: 0.01, viscous_nms_per_rad: 0.02, "
-          "coulomb_nm: 0.03, load_torque_nm: -2, gravity_nm: 4, "
+          "coulomb_nm: 0.03, load_torque_nm: -2, gravity_nm: 4, payload_kg: 1.5, payload_at_m: 0.25, "
           "hangs_at_deg: -90, stop_min_deg: -100, stop_max_deg: 110, initial_angle_deg: 30, stalled: true, "
           "silent: true, "
           "lost_frames: 0.5}}")
@@ -223,6 +223,8 @@ TEST(MotorRules, ASimulatedLoadIsTakenOver) {
   EXPECT_EQ(load.load_torque_nm, -2.0F);
   EXPECT_EQ(load.gravity_nm, 4.0F);
   EXPECT_EQ(load.hangs_at_deg, -90.0F);
+  EXPECT_EQ(load.payload_kg, 1.5F);
+  EXPECT_EQ(load.payload_at_m, 0.25F);
   EXPECT_EQ(load.stop_min_deg, -100.0F);
   EXPECT_EQ(load.stop_max_deg, 110.0F);
   EXPECT_EQ(load.initial_angle_deg, 30.0F);
@@ -246,6 +248,51 @@ TEST(MotorRules, TheStopsOfASimulatedShaftAreInOrderAndAroundIt) {
               ElementsAre(testing::HasSubstr(
                   "simulated.initial_angle_deg: the shaft begins at initial_angle_deg, beyond")));
   EXPECT_THAT(errorsOfWheel("simulated: {stop_min_deg: 0, stop_max_deg: 10, initial_angle_deg: 10}"),
+              ElementsAre());
+}
+
+TEST(MotorRules, ChangesOfALoadAreTakenOver) {
+  const auto plan =
+      motorOf(
+          "{name: a, model: M3508, id: 1, simulated: {payload_at_m: 0.3, changes: [{after_s: 0.5, "
+          "payload_kg: 2}, {after_s: 3, payload_kg: 0, coulomb_nm: 0.1}], changes_repeat_s: 4}}")
+          .load_plan;
+  ASSERT_EQ(plan.steps.size(), 2U);
+  EXPECT_EQ(plan.steps[0].after, std::chrono::milliseconds{500});
+  const sim::MotorLoad start{.inertia_kg_m2 = 0.01F, .coulomb_nm = 0.03F, .payload_at_m = 0.3F};
+  const auto first = plan.steps[0].change.of(start, start);
+  EXPECT_EQ(first.payload_kg, 2.0F);
+  EXPECT_EQ(first.coulomb_nm, 0.03F);
+  const auto second = plan.steps[1].change.of(first, start);
+  EXPECT_EQ(second.payload_kg, 0.0F);
+  EXPECT_EQ(second.coulomb_nm, 0.1F);
+  EXPECT_EQ(plan.repeat, std::chrono::seconds{4});
+  EXPECT_TRUE(motorOf("{name: a, model: M3508, id: 1}").load_plan.steps.empty());
+}
+
+TEST(MotorRules, ChangesOfALoadComeInTheOrderOfTimeAndChangeSomething) {
+  const auto changes = [](const std::string& text) { return errorsOfWheel("simulated: {" + text + "}"); };
+  EXPECT_THAT(changes("changes: [{after_s: 2}]"),
+              ElementsAre(testing::HasSubstr("simulated.changes[0]: changes nothing; add what changes")));
+  EXPECT_THAT(changes("changes: [{after_s: 2, coulomb_nm: 1}, {after_s: 2, coulomb_nm: 2}]"),
+              ElementsAre(testing::HasSubstr("changes[1].after_s: 2 s is not after the change before it")));
+  EXPECT_THAT(changes("changes: [{after_s: 2, coulomb_nm: 1}], changes_repeat_s: 2"),
+              ElementsAre(testing::HasSubstr("changes_repeat_s: 2 s is not after the last change")));
+  EXPECT_THAT(changes("changes_repeat_s: 2"),
+              ElementsAre(testing::HasSubstr("changes_repeat_s: there are no changes to repeat")));
+  EXPECT_THAT(changes("changes: [{after_s: 2, coulomb_nm: 101}]"),
+              ElementsAre(testing::HasSubstr("changes[0].coulomb_nm: 101 is above 100 N m; use 0 to 100")));
+  EXPECT_THAT(changes("changes: [{after_s: 2, stalled: true}]"),
+              ElementsAre(testing::HasSubstr("changes[0].stalled: unknown key")));
+}
+
+TEST(MotorRules, APayloadHasAnArm) {
+  EXPECT_THAT(
+      errorsOfWheel("simulated: {payload_kg: 1}"),
+      ElementsAre(testing::HasSubstr("simulated.payload_kg: has no arm to hang on; add payload_at_m")));
+  EXPECT_THAT(errorsOfWheel("simulated: {changes: [{after_s: 1, payload_kg: 1}]}"),
+              ElementsAre(testing::HasSubstr("changes[0].payload_kg: has no arm to hang on")));
+  EXPECT_THAT(errorsOfWheel("simulated: {payload_at_m: 0.2, changes: [{after_s: 1, payload_kg: 1}]}"),
               ElementsAre());
 }
 

@@ -32,6 +32,8 @@ TOO_MANY = [f"v{i}=1" for i in range(200)]
         (["gains", "wheel", "velocity.kpp=1"], 1, "did you mean kp_a_per_rpm?"),
         (["signal", "lift", "velocity_rpm=1"], 1, "there is no module 'lift'"),
         (["hand", "whel", "--by", "90"], 1, "did you mean wheel?"),
+        (["load", "whel", "coulomb_nm=1"], 1, "did you mean wheel?"),
+        (["set", "wheel", "impedance", "10"], 2, "impedance without --stiffness, --damping or"),
         (["jog", "whel"], 1, "did you mean wheel?"),
         (["zero", "whel"], 1, "did you mean wheel?"),
         (["commission", "whel"], 1, "did you mean wheel?"),

@@ -34,6 +34,7 @@ WORDS: dict[str, list[str | Path]] = {
     "gains": ["wheel"],
     "configure-drive": ["wheel", "--list"],
     "hand": ["wheel", "--by", "5"],
+    "load": ["wheel", "coulomb_nm=0.1"],
     "check": [REPO / "config" / "demo.yaml"],
     "convert-gains": ["--speed", "18", "0.015", "0", "--angle", "30", "0", "1.1"],
     "blackbox": [],

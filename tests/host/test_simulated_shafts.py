@@ -1,10 +1,12 @@
-"""A simulated shaft has gravity and end stops, and a hand turns it."""
+"""A simulated shaft has gravity, end stops and a load that changes, and a hand turns it."""
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+
 import pytest
 from hostlib import Daemon
-from hostlib.daemon import ARM, REPO
+from hostlib.daemon import ARM, REPO, Motor
 from hostlib.page import blocks_run_by, robots
 
 import rc10
@@ -63,6 +65,13 @@ WHEELS = (
       - {name: right, model: M3508, id: 2, direction: -1, zero: power_on, feedback_timeout_ms: 1000}
 """
 )
+
+
+@pytest.fixture(scope="module")
+def wheels() -> Iterator[Daemon]:
+    with Daemon(WHEELS) as daemon:
+        daemon.wait_ready()
+        yield daemon
 
 
 def angle(daemon: Daemon, motor: str) -> float:
@@ -140,6 +149,76 @@ def test_the_joint_of_modules_md_does_what_the_page_says() -> None:
 def test_the_hand_of_rc10ctl_md_does_what_the_page_says() -> None:
     with Daemon(WHEELS.replace("left", "wheel")) as daemon:
         daemon.wait_ready()
-        [words] = commands_of("rc10ctl.md")
+        [words, *_] = commands_of("rc10ctl.md")
         daemon.must(*words)
         assert angle(daemon, "wheel") == pytest.approx(360, abs=3)
+
+
+def test_the_loads_of_rc10ctl_md_are_answered_as_the_page_says() -> None:
+    page = REPO / "docs" / "rc10ctl.md"
+    shown = blocks_run_by("tests/host/test_simulated_shafts.py", page)[-1].text.splitlines()
+    with Daemon(WHEELS.replace("left", "wheel")) as daemon:
+        daemon.wait_ready()
+        for command, answer in zip(shown[::2], shown[1::2], strict=True):
+            assert daemon.must(*command.split()[2:]) == f"{answer}\n"
+
+
+# Level at 0, so that a payload pulls with all of its torque: 0.5 kg at 0.2 m are 3.3 A.
+LEVEL_ARM = (
+    ARM
+    + """
+      - name: shoulder
+        model: M3508
+        id: 1
+        zero: power_on
+        feedback_timeout_ms: 1000
+        simulated: {hangs_at_deg: -90, payload_at_m: 0.2, coulomb_nm: 0.1,
+                    inertia_kg_m2: 0.02CHANGES}
+"""
+)
+
+
+def current(motor: Motor) -> float:
+    return float(motor["current_a"])
+
+
+def test_a_motor_that_holds_carries_what_its_arm_picks_up_until_it_is_put_down() -> None:
+    with Daemon(LEVEL_ARM.replace("CHANGES", "")) as daemon:
+        daemon.wait_ready()
+        daemon.must("enable", "shoulder")
+        with daemon.drive("set", "shoulder", "total_angle", "0", "--for", "60s"):
+            daemon.wait_motor("shoulder", lambda m: m["mode"] == "total_angle", "holds")
+            daemon.must("load", "shoulder", "payload_kg=0.5")
+            daemon.wait_motor("shoulder", lambda m: current(m) > 2.8, "carries")
+            daemon.must("load", "shoulder", "--reset")
+            daemon.wait_motor("shoulder", lambda m: abs(current(m)) < 0.6, "carries nothing")
+
+
+def test_the_load_of_a_file_changes_by_itself() -> None:
+    changes = ", changes: [{after_s: 0.5, payload_kg: 0.5}], changes_repeat_s: 1.5"
+    with Daemon(LEVEL_ARM.replace("CHANGES", changes)) as daemon:
+        daemon.wait_ready()
+        daemon.must("enable", "shoulder")
+        with daemon.drive("set", "shoulder", "total_angle", "0", "--for", "60s"):
+            for _ in range(2):
+                daemon.wait_motor("shoulder", lambda m: current(m) > 2.8, "carries")
+                daemon.wait_motor("shoulder", lambda m: abs(current(m)) < 0.6, "carries nothing")
+
+
+@pytest.mark.parametrize(
+    ("words", "status", "answer"),
+    [
+        (["coulomb_nm=-1"], 1, "load: coulomb_nm: -1 is below 0 N m; use 0 to 100"),
+        (["coulomb=1"], 1, "did you mean coulomb_nm?"),
+        (["payload_kg=1"], 1, "has no arm to hang on; give payload_at_m too"),
+        (["payload_kg"], 2, "payload_kg=0.5"),
+        ([], 2, "load: say what changes, such as payload_kg=0.5, or --reset"),
+        (["payload_kg=1", "--reset"], 2, "load: say what changes"),
+    ],
+)
+def test_a_load_that_cannot_be_is_refused_in_words(
+    wheels: Daemon, words: list[str], status: int, answer: str
+) -> None:
+    done = wheels.ctl("load", "left", *words)
+    assert done.returncode == status
+    assert answer in done.stderr

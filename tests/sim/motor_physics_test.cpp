@@ -357,6 +357,26 @@ TEST_P(EveryModel, AHandDoesNotWhirlAShaftBackThatRanAway) {
   EXPECT_LE(fastest_back_rpm, 45.0);
 }
 
+// Above its no-load speed a motor brakes: the shaft comes late, and is led to its end all the same.
+TEST_P(EveryModel, AHandLetsGoOfALateShaftWhenItIsAtRest) {
+  MotorParameters slow = parameters(model_);
+  slow.back_emf_vs_per_rad *= 10.0;
+  MotorPhysics motor{slow, 0.0};
+  motor.take({.by_deg = 360.0, .speed_rpm = 300.0, .torque_nm = 1.5});
+  while (motor.held()) motor.step(amperes(0), 1ms);
+  EXPECT_NEAR(motor.outputAngleDeg(), 360.0, 2.0);
+  EXPECT_NEAR(motor.outputRpm(), 0.0, 1.0);
+}
+
+TEST(MotorPhysics, AHandGivesUpOnAShaftThatItsMotorKeepsTurning) {
+  MotorPhysics motor{parameters(kM3508), 0.0};
+  motor.take({.by_deg = 30.0, .speed_rpm = 60.0, .torque_nm = 0.2});
+  int ticks = 0;
+  for (; motor.held() && ticks < 20'000; ++ticks) motor.step(amperes(5.0), 1ms);
+  EXPECT_LT(ticks, 7000);  // 1.2 s of its own, and kLedOnS
+  EXPECT_GT(motor.outputRpm(), 100.0);
+}
+
 TEST(MotorPhysics, AHandHoldsAnArmAgainstGravityAndDropsItWhenItLetsGo) {
   MotorPhysics motor{parameters(kM3508, {.coulomb_nm = 0.0F, .gravity_nm = 2.0F}), 0.0};
   motor.take({.by_deg = 90.0, .speed_rpm = 60.0, .torque_nm = 5.0, .hold = 2s});
@@ -366,6 +386,32 @@ TEST(MotorPhysics, AHandHoldsAnArmAgainstGravityAndDropsItWhenItLetsGo) {
   for (int i = 0; i < 5000; ++i) motor.step(amperes(0), 1ms);
   EXPECT_FALSE(motor.held());
   EXPECT_LT(motor.outputAngleDeg(), 60.0);
+}
+
+TEST(MotorPhysics, APayloadAddsItsWeightAndItsInertia) {
+  MotorLoad load{.inertia_kg_m2 = 0.01F, .coulomb_nm = 0.0F, .gravity_nm = 0.5F};
+  const MotorParameters bare = parameters(kM3508, load);
+  load.payload_kg = 2.0F;
+  load.payload_at_m = 0.25F;
+  const MotorParameters loaded = parameters(kM3508, load);
+  EXPECT_NEAR(loaded.output_gravity_nm - bare.output_gravity_nm, 2.0 * 9.80665 * 0.25, 1e-6);
+  EXPECT_NEAR(loaded.totalInertia() - bare.totalInertia(), 2.0 * 0.25 * 0.25, 1e-9);
+}
+
+TEST(MotorPhysics, AddedInertiaSlowsTheShaftAndInertiaThatLeavesDoesNot) {
+  const MotorLoad light{.inertia_kg_m2 = 0.01F, .viscous_nms_per_rad = 0.0F, .coulomb_nm = 0.0F};
+  MotorLoad heavy = light;
+  heavy.inertia_kg_m2 = 0.05F;
+  MotorPhysics motor{parameters(kM3508, light), 0.0};
+  for (int i = 0; i < 50; ++i) motor.step(amperes(5.0), 1ms);
+  const double before_rpm = motor.outputRpm();
+  const double momentum = parameters(kM3508, light).totalInertia() * before_rpm;
+  ASSERT_GT(before_rpm, 1.0);
+  motor.setParameters(parameters(kM3508, heavy));
+  EXPECT_NEAR(parameters(kM3508, heavy).totalInertia() * motor.outputRpm(), momentum, 1e-9);
+  const double heavy_rpm = motor.outputRpm();
+  motor.setParameters(parameters(kM3508, light));
+  EXPECT_EQ(motor.outputRpm(), heavy_rpm);
 }
 
 }  // namespace

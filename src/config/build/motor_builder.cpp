@@ -11,6 +11,7 @@
 #include "config/build/motor_parse.hpp"
 #include "config/build/reduced_builder.hpp"
 #include "config/build/shaping_builder.hpp"
+#include "config/build/simulated_builder.hpp"
 #include "config/keys/need_check.hpp"
 #include "config/keys/value_check.hpp"
 #include "config/motor_families.hpp"
@@ -26,37 +27,6 @@ void readPlain(MotorParse& in) {
   in.settings.read("name", in.motor().name);
   in.settings.read("direction", in.motor().direction);
   in.settings.read("optional", in.draft.config.optional);
-}
-
-void checkStops(MotorParse& in, const Settings& simulated) {
-  const sim::MotorLoad& load = in.draft.config.simulated;
-  const bool below = load.initial_angle_deg < load.stop_min_deg;
-  const bool beyond = load.initial_angle_deg > load.stop_max_deg;
-  if (load.stop_min_deg >= load.stop_max_deg || (!below && !beyond)) return;
-  const auto initial = simulated.find("initial_angle_deg");
-  const auto wrong = initial ? initial : simulated.find(below ? "stop_min_deg" : "stop_max_deg");
-  if (!wrong) return;
-  in.problems.error(wrong->place(), wrong->path,
-                    "the shaft begins at initial_angle_deg, beyond its stops; change one of them");
-}
-
-void readSimulated(MotorParse& in) {
-  const Settings simulated = in.settings.section("simulated");
-  sim::MotorLoad& load = in.draft.config.simulated;
-  simulated.read("inertia_kg_m2", load.inertia_kg_m2);
-  simulated.read("viscous_nms_per_rad", load.viscous_nms_per_rad);
-  simulated.read("coulomb_nm", load.coulomb_nm);
-  simulated.read("load_torque_nm", load.load_torque_nm);
-  simulated.read("gravity_nm", load.gravity_nm);
-  simulated.read("hangs_at_deg", load.hangs_at_deg);
-  simulated.read("stop_min_deg", load.stop_min_deg);
-  simulated.read("stop_max_deg", load.stop_max_deg);
-  simulated.read("initial_angle_deg", load.initial_angle_deg);
-  simulated.read("stalled", load.stalled);
-  simulated.read("silent", load.silent);
-  simulated.read("lost_frames", load.lost_frames);
-  in.refuseUnordered(simulated, "stop_min_deg", "stop_max_deg");
-  checkStops(in, simulated);
 }
 
 bool readModel(MotorParse& in) {

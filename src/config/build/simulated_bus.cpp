@@ -25,7 +25,10 @@ namespace {
 sim::SimBusConfig simulatedBus(const BusConfig& config) {
   sim::SimBusConfig out;
   out.seed = config.sim_seed;
-  for (const auto& motor : config.motors) out.drives.push_back(recipeOf(motor));
+  for (const auto& motor : config.motors) {
+    out.drives.push_back(recipeOf(motor));
+    out.plans.push_back(motor.load_plan);
+  }
   return out;
 }
 

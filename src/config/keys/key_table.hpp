@@ -108,6 +108,7 @@ extern const Section kProfileSection;
 extern const Section kVelocityPidSection;
 extern const Section kAnglePidSection;
 extern const Section kSimulatedSection;
+extern const Section kLoadChangeSection;
 
 /// Names of motors, buses and profiles.
 extern const TextForm kNameForm;

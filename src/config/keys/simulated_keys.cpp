@@ -1,4 +1,5 @@
 #include <array>
+#include <cstddef>
 
 #include "config/keys/key_table.hpp"
 
@@ -7,7 +8,8 @@ namespace {
 
 using enum ValueKind;
 
-constexpr std::array kSimulatedKeys{
+/// Figures that may change while the motor runs.
+constexpr std::array kFigures{
     Key{.name = "inertia_kg_m2",
         .kind = kNumber,
         .unit = "kg m2",
@@ -37,12 +39,52 @@ constexpr std::array kSimulatedKeys{
         .about =
             "Of an arm: the torque that holds it level, a quarter of a turn from hangs_at_deg; elsewhere "
             "times the sine of the angle from there."},
+    Key{.name = "payload_kg",
+        .kind = kNumber,
+        .unit = "kg",
+        .range = {.min = 0, .max = 1000},
+        .default_text = "0",
+        .about = "Weight that the arm carries: adds to gravity_nm and inertia_kg_m2."},
+    Key{.name = "payload_at_m",
+        .kind = kNumber,
+        .unit = "m",
+        .range = {.min = 0, .max = 10},
+        .default_text = "0",
+        .about = "Distance of the payload from the shaft."}};
+
+constexpr Key kAfter{.name = "after_s",
+                     .kind = kNumber,
+                     .unit = "s",
+                     .range = {.min = 0, .max = 100'000},
+                     .required = true,
+                     .about = "Since the start of the simulation, or since the changes began anew."};
+
+constexpr auto changeKeys() {
+  std::array<Key, kFigures.size() + 1> keys{kAfter};
+  for (std::size_t i = 0; i < kFigures.size(); ++i) {
+    keys[i + 1] = kFigures[i];
+    keys[i + 1].default_text = {};
+    keys[i + 1].about = "As in simulated, from then on. Default: as before.";
+  }
+  return keys;
+}
+
+constexpr auto kChangeKeys = changeKeys();
+
+}  // namespace
+
+constexpr Section kLoadChangeSection{"load_change", kChangeKeys,
+                                     "A change of the load on a simulated motor's shaft."};
+
+namespace {
+
+constexpr std::array kOthers{
     Key{.name = "hangs_at_deg",
         .kind = kNumber,
         .unit = "deg",
         .range = {.min = -360'000, .max = 360'000},
         .default_text = "0",
-        .about = "Where the arm of gravity_nm hangs at rest."},
+        .about = "Where the arm of gravity_nm and payload_kg hangs at rest."},
     Key{.name = "stop_min_deg",
         .kind = kNumber,
         .unit = "deg",
@@ -71,7 +113,27 @@ constexpr std::array kSimulatedKeys{
         .kind = kNumber,
         .range = {.min = 0, .max = 1},
         .default_text = "0",
-        .about = "Fraction of the feedback frames that are lost."}};
+        .about = "Fraction of the feedback frames that are lost."},
+    Key{.name = "changes",
+        .kind = kSectionList,
+        .range = {.min = 1, .max = 64},
+        .section = &kLoadChangeSection,
+        .about = "Changes of the load while the motor runs, in the order of time. By hand: `rc10ctl load`."},
+    Key{.name = "changes_repeat_s",
+        .kind = kNumber,
+        .unit = "s",
+        .range = {.min = 0, .max = 100'000, .above_min = true},
+        .about = "So often the load is as at the start again and the changes begin anew; above the last "
+                 "after_s. Default: once."}};
+
+constexpr auto simulatedKeys() {
+  std::array<Key, kFigures.size() + kOthers.size()> keys{};
+  for (std::size_t i = 0; i < kFigures.size(); ++i) keys[i] = kFigures[i];
+  for (std::size_t i = 0; i < kOthers.size(); ++i) keys[kFigures.size() + i] = kOthers[i];
+  return keys;
+}
+
+constexpr auto kSimulatedKeys = simulatedKeys();
 
 }  // namespace
 

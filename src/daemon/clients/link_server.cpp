@@ -256,13 +256,13 @@ void LinkServer::request(const link::Request& message, Connection& connection) {
     if (const auto failed = desk_.fail(outcome.order->id, "the scheduler does not take orders"))
       answer(*failed);
   }
-  if (outcome.hand) {
-    auto& [order, response] = *outcome.hand;
-    if (sources_.exchange.hands.push(order)) {
-      desk_.handTaken(message, speaker, response);
+  if (outcome.shaft) {
+    auto& [order, response] = *outcome.shaft;
+    if (sources_.exchange.shafts.push(order)) {
+      desk_.shaftTaken(message, speaker, response);
     } else {
       response.status = link::ResponseStatus::kFailed;
-      response.message = std::string_view{"hand: too many at once: the simulation is behind"};
+      response.message = std::string_view{"too many requests at once: the simulation is behind"};
     }
     Connections::respond(connection, response);
   }

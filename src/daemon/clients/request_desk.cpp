@@ -9,7 +9,7 @@
 #include "app/nearest.hpp"
 #include "daemon/clients/drive_request.hpp"
 #include "daemon/clients/gain_request.hpp"
-#include "daemon/clients/hand_request.hpp"
+#include "daemon/clients/shaft_request.hpp"
 
 namespace rc10 {
 namespace {
@@ -22,7 +22,7 @@ constexpr std::size_t kMaxOpen = 64;
 constexpr std::ptrdiff_t kMaxOpenGains = 8;
 constexpr std::string_view kAngle = "angle_deg";
 
-// "enable, disable, … and hand".
+// "enable, disable, … and load".
 [[nodiscard]] std::string operationsInWords() {
   const auto last = kOperationWords.end() - 1;
   return fmt::format("{} and {}", fmt::join(kOperationWords.begin(), last, ", "), *last);
@@ -77,7 +77,8 @@ constexpr std::string_view kAngle = "angle_deg";
     case Operation::kZero:
     case Operation::kGetConfig:
     case Operation::kDriveSettings:
-    case Operation::kHand: break;
+    case Operation::kHand:
+    case Operation::kLoad: break;
   }
   return Right::kCommand;
 }
@@ -121,7 +122,8 @@ RequestDesk::Outcome RequestDesk::begin(const link::Request& request, const Spea
   }
   if (operation == Operation::kDriveSettings) return tellSettings(request);
   if (operation == Operation::kGetConfig) return tellConfig(request);
-  if (operation == Operation::kHand) return turnByHand(request, speaker);
+  if (operation == Operation::kHand || operation == Operation::kLoad)
+    return actOnShaft(*operation, request, speaker);
   auto order =
       operation ? orderOf(request, *operation) : Result<Order>{tl::unexpected(unknownOperation(request))};
   if (!operation || !order) {
@@ -297,7 +299,8 @@ Result<GainChanges> RequestDesk::changesOf(const link::Request& request) const {
   return *changes;
 }
 
-RequestDesk::Outcome RequestDesk::turnByHand(const link::Request& request, const Speaker& speaker) const {
+RequestDesk::Outcome RequestDesk::actOnShaft(Operation operation, const link::Request& request,
+                                             const Speaker& speaker) const {
   Outcome outcome;
   const auto refuse = [&](const std::string& why) {
     outcome.response = respond(request, link::ResponseStatus::kRefused, why);
@@ -308,16 +311,18 @@ RequestDesk::Outcome RequestDesk::turnByHand(const link::Request& request, const
   outcome.not_permitted = admission_.permissions().whyNoRequest(
       speaker, request.client.view(), Right::kCommand, MotorSet{}.set(*motor), false);
   if (!outcome.not_permitted.empty()) return refuse(outcome.not_permitted);
-  const auto order = parseHand(request, nameOf(*motor), robot_.motors[*motor].simulated);
+  const auto& drive = robot_.motors[*motor].simulated;
+  const auto order = operation == Operation::kHand ? parseHand(request, nameOf(*motor), drive)
+                                                   : parseLoad(request, nameOf(*motor), drive);
   if (!order) return refuse(order.error().message);
-  outcome.hand = Hand{
-      *order, respond(request, link::ResponseStatus::kOk, fmt::format("hand: turns {}", nameOf(*motor)))};
+  outcome.shaft =
+      Shaft{*order, respond(request, link::ResponseStatus::kOk, shaftInWords(*order, nameOf(*motor)))};
   return outcome;
 }
 
 // A repeated request is answered from here: it does not turn the joint twice.
-void RequestDesk::handTaken(const link::Request& request, const Speaker& speaker,
-                            const link::Response& response) {
+void RequestDesk::shaftTaken(const link::Request& request, const Speaker& speaker,
+                             const link::Response& response) {
   answered_.remember(speaker.owner(), request, response);
 }
 

@@ -11,9 +11,9 @@
 #include "config/keys/loop_gains.hpp"
 #include "daemon/clients/admission.hpp"
 #include "daemon/clients/answered_requests.hpp"
-#include "daemon/exchange/hand_order.hpp"
 #include "daemon/exchange/orders.hpp"
 #include "daemon/exchange/robot_description.hpp"
+#include "daemon/exchange/shaft_order.hpp"
 #include "link/link_protocol.hpp"
 
 namespace rc10 {
@@ -26,13 +26,13 @@ class RequestDesk {
   /// Both outlive it.
   RequestDesk(const Admission& admission, const RobotDescription& robot);
 
-  struct Hand {
-    HandOrder order;
+  struct Shaft {
+    ShaftOrder order;
     link::Response response;  ///< For an order that the simulation takes.
   };
   struct Outcome {
     std::optional<Order> order;              ///< To be sent to the supervisor; answered by finish().
-    std::optional<Hand> hand;                ///< To be sent to the simulation; it answers nothing.
+    std::optional<Shaft> shaft;              ///< To be sent to the simulation; it answers nothing.
     std::optional<link::Response> response;  ///< To be sent back at once.
     bool estop = false;                      ///< Raise the e-stop flag too: the ring may be full.
     std::string not_permitted;               ///< Cause, if that is the reason of the response.
@@ -40,8 +40,8 @@ class RequestDesk {
   /// finish() tells the speaker's connection back.
   [[nodiscard]] Outcome begin(const link::Request& request, const Speaker& speaker);
 
-  /// The simulation has taken the order of Outcome::hand, and its response is sent.
-  void handTaken(const link::Request& request, const Speaker& speaker, const link::Response& response);
+  /// The simulation has taken the order of Outcome::shaft, and its response is sent.
+  void shaftTaken(const link::Request& request, const Speaker& speaker, const link::Response& response);
 
   struct Answer {
     std::uint64_t connection = 0;
@@ -74,7 +74,9 @@ class RequestDesk {
 
   [[nodiscard]] Outcome tellSettings(const link::Request& request) const;
   [[nodiscard]] Outcome tellConfig(const link::Request& request) const;
-  [[nodiscard]] Outcome turnByHand(const link::Request& request, const Speaker& speaker) const;
+  /// A hand, or another load.
+  [[nodiscard]] Outcome actOnShaft(Operation operation, const link::Request& request,
+                                   const Speaker& speaker) const;
 
   [[nodiscard]] std::string driveOutcome(const Open& open, const OrderResult& result) const;
   void finishGains(const Open& open, const OrderResult& result, link::Response& response);

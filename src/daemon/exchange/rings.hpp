@@ -9,10 +9,10 @@
 #include "bus/bus_health.hpp"
 #include "bus/can_frame.hpp"
 #include "daemon/exchange/events.hpp"
-#include "daemon/exchange/hand_order.hpp"
 #include "daemon/exchange/latest_value.hpp"
 #include "daemon/exchange/orders.hpp"
 #include "daemon/exchange/safety_contact.hpp"
+#include "daemon/exchange/shaft_order.hpp"
 #include "daemon/exchange/snapshot.hpp"
 #include "daemon/exchange/tick_ages.hpp"
 #include "daemon/exchange/tick_trace.hpp"
@@ -43,14 +43,14 @@ struct BusInbox {
 /// Events in words, for the link thread.
 using NoteRing = Ring<link::Event, 32>;
 
-using HandRing = Ring<HandOrder, 16>;
+using ShaftRing = Ring<ShaftOrder, 16>;
 
 /// Everything that crosses to and from the link thread.
 struct LinkExchange {
   Ring<Command, 64> commands;       // link -> scheduler
   Ring<Order, 64> orders;           // link -> scheduler
   Ring<SignalMessage, 64> signals;  // link -> scheduler
-  HandRing hands;                   // link -> sim
+  ShaftRing shafts;                 // link -> sim
   Ring<Event, 16> refusals;         // link -> scheduler, for the black box: commands that admission refused
   Ring<OrderResult, 64> results;    // scheduler -> link
   Ring<Event, 1024> events;         // scheduler -> link

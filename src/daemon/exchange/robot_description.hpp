@@ -7,7 +7,7 @@
 
 #include "config/client_config.hpp"
 #include "config/keys/loop_gains.hpp"
-#include "daemon/exchange/hand_order.hpp"
+#include "daemon/exchange/shaft_order.hpp"
 #include "daemon/exchange/snapshot.hpp"
 
 namespace rc10 {

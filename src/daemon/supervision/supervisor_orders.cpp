@@ -134,7 +134,8 @@ void Supervisor::carryOut(const Order& order, const Tick& tick) noexcept {
       case Operation::kConfigure:
       case Operation::kGetConfig:
       case Operation::kDriveSettings:
-      case Operation::kHand: break;
+      case Operation::kHand:
+      case Operation::kLoad: break;
     }
   }
   if (waiting.any()) {

@@ -18,21 +18,23 @@ class SimLoop {
   /// Steps for a scheduler's grid: a drive answers each tick before the next, and half a period off, so that
   /// its feedback does not race with the tick.
   [[nodiscard]] static TimeGrid gridBeside(const TimeGrid& scheduler) noexcept;
-  /// `hands`: for its drives. Outlives it.
+  /// `shafts`: orders for its drives. Outlives it.
   [[nodiscard]] static Result<std::unique_ptr<SimLoop>> create(Robot& robot, const TimeGrid& scheduler,
-                                                               HandRing& hands);
+                                                               ShaftRing& shafts);
 
   /// The thread's body.
   void run(const std::stop_token& stop) noexcept;
 
  private:
-  SimLoop(Robot& robot, TimeGrid grid, PeriodicTimer timer, HandRing& hands)
-      : robot_(robot), grid_(grid), timer_(std::move(timer)), hands_(hands) {}
+  SimLoop(Robot& robot, TimeGrid grid, PeriodicTimer timer, ShaftRing& shafts)
+      : robot_(robot), grid_(grid), timer_(std::move(timer)), shafts_(shafts) {}
+
+  void act(const ShaftOrder& order) noexcept;
 
   Robot& robot_;
   TimeGrid grid_;
   PeriodicTimer timer_;
-  HandRing& hands_;
+  ShaftRing& shafts_;
 };
 
 }  // namespace rc10

@@ -35,6 +35,9 @@ constexpr double kRampS = 0.1;
 constexpr double kSettledS = 0.2;
 // and after this it has let go.
 constexpr double kLetGoS = 0.2;
+// A shaft that comes late is led on until it is at rest, for so long at most.
+constexpr double kLedOnS = 5.0;
+constexpr double kAtRestRpm = 0.5;
 
 [[nodiscard]] link::NamedValue value(std::string_view name, double number) {
   return {.name = name, .value = number};
@@ -74,6 +77,10 @@ ExitCode hand(const Global& global, const HandOptions& options) {
     return asked;
   const double way_s = std::abs(by_deg) / (options.speed_rpm * kDegPerSPerRpm);
   bool there = watch(*rc10d, feed, way_s + kRampS + options.hold_s + kSettledS);
+  for (double late_s = 0.0; there && late_s < kLedOnS; late_s += kSettledS) {
+    if (std::abs(static_cast<double>(feed.state()->motors[*motor].velocity_rpm)) <= kAtRestRpm) break;
+    there = watch(*rc10d, feed, kSettledS);
+  }
   const double after_deg = feed.state()->motors[*motor].total_angle_deg;
   there = there && watch(*rc10d, feed, kLetGoS);
   if (!there) return interrupted() ? ExitCode::kFailed : complain(rc10dEnded(), ExitCode::kFailed);

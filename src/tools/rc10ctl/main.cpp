@@ -46,7 +46,7 @@ int run(int argc, char** argv) {
   for (const auto add :
        {addList,   addWatch, addStats,          addRequests,   addZero,         addSet,      addModules,
         addSignal, addGains, addConfigureDrive, addCheck,      addConvertGains, addBlackbox, addDoctor,
-        addScan,   addJog,   addCommission,     addTestMotion, addHand,         addWeb})
+        addScan,   addJog,   addCommission,     addTestMotion, addHand,         addLoad,     addWeb})
     add(app, action);
   try {
     app.parse(argc, argv);

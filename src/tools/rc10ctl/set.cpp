@@ -78,6 +78,11 @@ Result<Drive> driveFrom(const SetOptions& options) {
     return fail("--torque-ff is not for " + options.mode + ": leave it out");
   if (!used.spring && (options.stiffness_nm_per_rad != 0.0F || options.damping_nms_per_rad != 0.0F))
     return fail("--stiffness and --damping are for impedance, not for " + options.mode + ": leave them out");
+  if (used.spring && options.stiffness_nm_per_rad == 0.0F && options.damping_nms_per_rad == 0.0F &&
+      options.torque_ff_nm == 0.0F) {
+    return fail("impedance without --stiffness, --damping or --torque-ff has no torque: `rc10ctl set " +
+                options.motor + " impedance 10 --stiffness 2 --damping 0.1`");
+  }
   const auto time = client::parseDuration(options.time);
   if (!time) return fail("--for " + options.time + ": give a time like 2s, 500ms or 1min, at most a day");
   if (options.motor.size() >= sizeof(link::Name))

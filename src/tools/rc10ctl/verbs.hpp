@@ -33,6 +33,7 @@ void addJog(CLI::App& app, Action& action);
 void addCommission(CLI::App& app, Action& action);
 void addTestMotion(CLI::App& app, Action& action);
 void addHand(CLI::App& app, Action& action);
+void addLoad(CLI::App& app, Action& action);
 void addWeb(CLI::App& app, Action& action);
 
 }  // namespace rc10::ctl

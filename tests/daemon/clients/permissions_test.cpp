@@ -113,9 +113,10 @@ struct Gates {
 };
 
 constexpr uid_t kAnna = 1000;
-constexpr std::array<std::pair<const char*, Right>, 6> kOperations{{{"enable", Right::kCommand},
+constexpr std::array<std::pair<const char*, Right>, 7> kOperations{{{"enable", Right::kCommand},
                                                                     {"enable_alone", Right::kCommand},
                                                                     {"hand", Right::kCommand},
+                                                                    {"load", Right::kCommand},
                                                                     {"disable", Right::kCommand},
                                                                     {"zero", Right::kCommand},
                                                                     {"clear", Right::kClear}}};

@@ -1,0 +1,10 @@
+#pragma once
+
+#include "config/build/motor_parse.hpp"
+
+namespace rc10 {
+
+/// The section `simulated`: the load of a simulated shaft and its changes.
+void readSimulated(MotorParse& in);
+
+}  // namespace rc10
