@@ -35,6 +35,6 @@ def test_a_set_prints_bits_without_a_word_as_a_number() -> None:
 
 
 def test_a_word_is_the_number_that_it_was() -> None:
-    assert MotorStatus.ACTIVE == 3
+    assert int(MotorStatus.ACTIVE) == 3
     assert {3: "on"}[MotorStatus.ACTIVE] == "on"
     assert MotorStatus(3) is MotorStatus.ACTIVE

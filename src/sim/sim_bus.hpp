@@ -24,7 +24,7 @@ using DriveRecipe = std::function<Result<std::unique_ptr<Drive>>()>;
 /// Drives and properties of one simulated bus.
 struct SimBusConfig {
   std::vector<DriveRecipe> drives;
-  std::vector<LoadPlan> plans;  ///< Of the drives, by place; further drives have none.
+  std::vector<LoadPlan> plans;  ///< By place of the drive; further drives have none.
   std::uint64_t seed = 1;
   /// Drive n starts to talk up to this much later than the first, by the seed: at most a quarter
   /// of the feedback period. Shows only in steps that are shorter still.

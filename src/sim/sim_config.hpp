@@ -13,7 +13,7 @@ struct MotorLoad {
   float load_torque_nm = 0.0F;  ///< Constant torque against which the motor works (a hanging weight).
   float gravity_nm = 0.0F;      ///< An arm's: what holds it level. Against the motor beyond hangs_at_deg.
   float hangs_at_deg = 0.0F;    ///< Where gravity leaves the arm at rest.
-  float payload_kg = 0.0F;      ///< What that arm carries, beside gravity_nm and inertia_kg_m2.
+  float payload_kg = 0.0F;      ///< Weight that the arm carries, beside gravity_nm and inertia_kg_m2.
   float payload_at_m = 0.0F;    ///< Its distance from the shaft.
   /// End stops: the shaft does not turn beyond them. NaN: none.
   float stop_min_deg = std::numeric_limits<float>::quiet_NaN();
