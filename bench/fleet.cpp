@@ -70,21 +70,26 @@ void putBigEndian(CanFrame& frame, std::size_t at, std::int32_t value) noexcept 
 }  // namespace
 
 Fleet::Fleet(const Shape& shape)
-    : robot_(must(Robot::build(robotConfig(shape)))),
+    : robot_(makeRobot(shape)),
       scheduler_(*robot_, inboxes_, exchange_, kPeriod),
       supervisor_(*robot_, exchange_) {
-  if (shape.family == Family::kWide) addWideMotors(shape);
   makeFrames(shape);
 }
 
-void Fleet::addWideMotors(const Shape& shape) {
+std::unique_ptr<Robot> Fleet::makeRobot(const Shape& shape) {
+  auto robot = must(Robot::build(robotConfig(shape)));
+  if (shape.family == Family::kWide) addWideMotors(*robot, shape);
+  return robot;
+}
+
+void Fleet::addWideMotors(Robot& robot, const Shape& shape) {
   constexpr std::size_t kGroup = 4;
   for (std::size_t b = 0; b < shape.buses; ++b) {
     std::array<int, 2> ends{};
     if (::socketpair(AF_UNIX, SOCK_SEQPACKET | SOCK_CLOEXEC, 0, ends.data()) != 0) die("no socket pair");
     far_ends_.emplace_back(ends[1]);
-    robot_->buses().push_back({.bus = fdCANbus::adopt("bus" + std::to_string(b), UniqueFd{ends[0]}, true)});
-    auto& bus = *robot_->buses().back().bus;
+    robot.buses().push_back({.bus = fdCANbus::adopt("bus" + std::to_string(b), UniqueFd{ends[0]}, true)});
+    auto& bus = *robot.buses().back().bus;
     std::vector<WideMotor*> motors;
     for (std::size_t i = 0; i < shape.motors_per_bus; ++i) {
       const CanId feedback_id{0x201U + static_cast<std::uint32_t>(i), false};
@@ -92,7 +97,7 @@ void Fleet::addWideMotors(const Shape& shape) {
           std::make_unique<WideMotor>(djiConfig(wheel(b * shape.motors_per_bus + i, 1)), feedback_id);
       must(bus.registerMotor(*motor));
       motors.push_back(motor.get());
-      robot_->motors().push_back(
+      robot.motors().push_back(
           {.motor = std::move(motor), .bus = b, .feedback_timeout = std::chrono::milliseconds{20}});
     }
     for (std::size_t first = 0; first < motors.size(); first += kGroup) {

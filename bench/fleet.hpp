@@ -64,14 +64,15 @@ class Fleet {
   [[nodiscard]] std::uint64_t droppedFrames() const noexcept;
 
  private:
-  void addWideMotors(const Shape& shape);
+  [[nodiscard]] std::unique_ptr<Robot> makeRobot(const Shape& shape);
+  void addWideMotors(Robot& robot, const Shape& shape);
   void makeFrames(const Shape& shape);
   void orderEnable();
   [[nodiscard]] bool allObey() const noexcept;
 
-  std::unique_ptr<Robot> robot_;
   std::vector<std::unique_ptr<WideGroup>> groups_;
   std::vector<UniqueFd> far_ends_;
+  std::unique_ptr<Robot> robot_;  // complete before the scheduler and the supervisor see it
   std::array<BusInbox, kMaxBuses> inboxes_;
   LinkExchange exchange_;
   Scheduler scheduler_;

@@ -23,10 +23,16 @@ constexpr double kLargestNoticedTurns = 0.45;
 // Margin for the encoder itself: quantisation and eccentricity.
 constexpr double kJumpMarginTurns = 0.02;
 constexpr Duration::rep kMostLatePeriods = 2;
+constexpr double kMostTurns = 1e9;
+constexpr double kTurnsPerNsPerRpm = 1.0 / (kRpmPerTurnPerS * 1e9);
 
 }  // namespace
 
-Encoder::Encoder(const Config& config) noexcept : config_(config) {
+Encoder::Encoder(const Config& config) noexcept
+    : config_(config),
+      turns_per_count_(1.0 / static_cast<double>(config.counts_per_turn)),
+      error_per_ns2_(static_cast<double>(config.max_acceleration_rpm_per_s) * kTurnsPerNsPerRpm * 1e-9 / 4.0),
+      error_per_ns_(static_cast<double>(config.velocity_error_rpm) * kTurnsPerNsPerRpm) {
   const double spacing_s = longestSpacingSeconds(config, kHalfTurn);
   // The stamps may make the spacing look shorter than it is.
   longest_gap_ =
@@ -50,23 +56,21 @@ bool Encoder::jumped(double residual_turns, float velocity_rpm, Duration gap) co
   return explained < kLargestNoticedTurns && std::fabs(residual_turns) > explained;
 }
 
-Encoder::Step Encoder::stepOver(std::int64_t moved, double mean_rpm, Duration spacing) const noexcept {
-  const auto turn = static_cast<double>(config_.counts_per_turn);
-  const double predicted = mean_rpm / 60e9 * static_cast<double>(spacing.count()) * turn;
+Encoder::Step Encoder::stepOver(std::int64_t moved, double turns_per_ns, Duration spacing) const noexcept {
+  const double predicted = turns_per_ns * static_cast<double>(spacing.count());
+  const double ahead = predicted - static_cast<double>(moved) * turns_per_count_;
   // A speed beyond all reason must not overflow the conversion.
-  const double turns = std::clamp((predicted - static_cast<double>(moved)) / turn, -1e9, 1e9);
-  moved += static_cast<std::int64_t>(turns + (turns < 0.0 ? -0.5 : 0.5)) * config_.counts_per_turn;
-  Config moving = config_;
-  moving.stamp_error = Duration{0};
-  Step step{.moved = moved, .residual = (predicted - static_cast<double>(moved)) / turn};
-  step.explained = std::fabs(step.residual) <= predictionErrorTurns(moving, spacing) + kJumpMarginTurns;
+  if (!(std::fabs(ahead) < kMostTurns)) return {.moved = moved, .residual = ahead};
+  const auto whole = static_cast<std::int64_t>(ahead + (ahead < 0.0 ? -0.5 : 0.5));
+  Step step{.moved = moved + whole * config_.counts_per_turn, .residual = ahead - static_cast<double>(whole)};
+  step.explained = std::fabs(step.residual) <= errorTurns(spacing) + kJumpMarginTurns;
   return step;
 }
 
 // By the stamps, and by whole periods from what they say down to two less: of these, the number of turns that
 // speed and position agree on.
-Encoder::Step Encoder::chooseStep(std::int64_t moved, double mean_rpm, Duration gap) noexcept {
-  Step chosen = stepOver(moved, mean_rpm, gap);
+Encoder::Step Encoder::chooseStep(std::int64_t moved, double turns_per_ns, Duration gap) noexcept {
+  Step chosen = stepOver(moved, turns_per_ns, gap);
   const Duration period = config_.sample_period;
   if (period <= Duration{0}) return chosen;
   const Duration arrived = gap + late_;
@@ -75,7 +79,7 @@ Encoder::Step Encoder::chooseStep(std::int64_t moved, double mean_rpm, Duration 
   bool agreed = true;
   Duration late = late_;
   for (auto periods = std::max<Duration::rep>(0, most - kMostLatePeriods); periods <= most; ++periods) {
-    const Step other = stepOver(moved, mean_rpm, periods * period);
+    const Step other = stepOver(moved, turns_per_ns, periods * period);
     unsure = unsure || other.moved != chosen.moved;
     if (!other.explained) continue;
     if (chosen.explained && other.moved != chosen.moved) agreed = false;
@@ -97,10 +101,11 @@ bool Encoder::update(std::int32_t raw_counts, float velocity_rpm, MonotonicTime 
   } else {
     const Duration gap = std::max(Duration{0}, received - received_);  // stamps may swap, time does not
     const bool countable = gap <= longest_gap_;
-    const double mean_rpm = 0.5 * (static_cast<double>(velocity_rpm_) + static_cast<double>(velocity_rpm));
+    const double both_rpm = static_cast<double>(velocity_rpm_) + static_cast<double>(velocity_rpm);
+    const double turns_per_ns = both_rpm * (0.5 * kTurnsPerNsPerRpm);
     const std::int64_t moved = raw_counts - raw_counts_;
     // Too far apart, the nearest wrap keeps the position within the turn right.
-    const Step step = countable ? chooseStep(moved, mean_rpm, gap) : stepOver(moved, 0.0, gap);
+    const Step step = countable ? chooseStep(moved, turns_per_ns, gap) : stepOver(moved, 0.0, gap);
     total_counts_ += step.moved;
     if (!countable) late_ = Duration{0};
     const bool leapt = countable && !step.explained && jumped(step.residual, velocity_rpm, gap);

@@ -82,11 +82,19 @@ class Encoder {
   };
 
   void loseReference() noexcept;
-  [[nodiscard]] Step stepOver(std::int64_t moved, double mean_rpm, Duration spacing) const noexcept;
-  [[nodiscard]] Step chooseStep(std::int64_t moved, double mean_rpm, Duration gap) noexcept;
+  [[nodiscard]] Step stepOver(std::int64_t moved, double turns_per_ns, Duration spacing) const noexcept;
+  [[nodiscard]] Step chooseStep(std::int64_t moved, double turns_per_ns, Duration gap) noexcept;
+  /// predictionErrorTurns() without an error of the stamps.
+  [[nodiscard]] double errorTurns(Duration spacing) const noexcept {
+    const auto ns = static_cast<double>(spacing.count());
+    return (error_per_ns2_ * ns + error_per_ns_) * ns;
+  }
   [[nodiscard]] bool jumped(double residual_turns, float velocity_rpm, Duration gap) const noexcept;
 
   Config config_;
+  double turns_per_count_;
+  double error_per_ns2_;  ///< Turns: of the acceleration,
+  double error_per_ns_;   ///< and of the reported speed.
   Duration longest_gap_{};
   std::uint64_t losses_ = 0;
   std::uint64_t jumps_ = 0;

@@ -96,6 +96,8 @@ void Supervisor::watchSimulation(const Tick& tick) noexcept {
 }
 
 void Supervisor::transition(std::size_t motor, MotorEvent event, const Tick& tick) noexcept {
+  const auto status = axes_[motor].status();
+  if (next(status, event) == status) return;  // as in nearly every tick
   transition(motor, event, {causeOf(event, state_)}, tick);
 }
 
