@@ -40,11 +40,12 @@ std::string lateTicksText(const link::Diagnostics& diagnostics) {
   const auto counters = std::span{diagnostics.counters}.first(
       std::min<std::size_t>(diagnostics.counter_count, link::kMaxCounters));
   for (const auto& counter : counters) {
-    const auto words = std::find_if(kLateCauseWords.begin(), kLateCauseWords.end(),
-                                    [&](const auto& cause) { return cause.counter == counter.name.view(); });
+    const auto name = counter.name.view();
+    const auto* words = std::find_if(kLateCauseWords.begin(), kLateCauseWords.end(),
+                                     [name](const auto& cause) { return cause.counter == name; });
+    if (name.starts_with(kTakenByWords.counter)) words = &kTakenByWords;
     if (words == kLateCauseWords.end() || counter.count == 0) continue;
-    text += std::string(words->counter) + " " + std::to_string(counter.count) + " (" +
-            std::string(words->advice) + ")\n";
+    text += printable(name) + " " + std::to_string(counter.count) + " (" + std::string(words->advice) + ")\n";
   }
   return text;
 }

@@ -333,6 +333,7 @@ Result<void> Daemon::startThreads() {
   }
   if (!started) return started;
   page_faults_at_start_ = pageFaults(rx_thread_.tid()) + pageFaults(sched_thread_.tid());
+  cpu_rivals_.setThread(sched_thread_.tid());
   return startThread(link_thread_, {"link", 0, {}},
                      [this](const std::stop_token& stop) { link_->run(stop); });
 }
@@ -341,9 +342,10 @@ std::uint64_t Daemon::newPageFaults() const {
   return pageFaults(rx_thread_.tid()) + pageFaults(sched_thread_.tid()) - page_faults_at_start_;
 }
 
-ThreadFacts Daemon::tickThread() const {
+ThreadFacts Daemon::tickThread() {
   return {.waited = [this] { return waitedForCpu(sched_thread_.tid()); },
-          .page_faults = [this] { return pageFaults(sched_thread_.tid()); }};
+          .page_faults = [this] { return pageFaults(sched_thread_.tid()); },
+          .rivals = &cpu_rivals_};
 }
 
 void Daemon::feedWatchdog() {

@@ -61,7 +61,7 @@ class Daemon {
   [[nodiscard]] std::unique_ptr<SpiKeeper> spiIo();
   void openBlackBox();
   [[nodiscard]] std::uint64_t newPageFaults() const;
-  [[nodiscard]] ThreadFacts tickThread() const;
+  [[nodiscard]] ThreadFacts tickThread();
   void feedWatchdog();
 
   RobotConfig config_;
@@ -82,6 +82,7 @@ class Daemon {
   std::unique_ptr<GpioLoop> gpio_loop_;
   std::unique_ptr<LineLoop> line_loop_;  // null: no module has GPIO lines
   std::unique_ptr<IoLoop> io_loop_;
+  CpuRivals cpu_rivals_{config_.scheduler.priority};  // the link thread's
   std::unique_ptr<LinkServer> link_;
   std::unique_ptr<GatewayProcess> gateway_;
   Watchdog watchdog_;

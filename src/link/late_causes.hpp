@@ -41,4 +41,10 @@ inline constexpr std::array<LateCauseWords, kLateCauses> kLateCauseWords{{
     {"late ticks: publishing", "the snapshot and the black box took long: a lower rate_hz, or a faster CPU"},
 }};
 
+/// Begin of a counter that ends with the name of a thread.
+inline constexpr LateCauseWords kTakenByWords{
+    "late ticks: CPU taken by ",
+    "a real-time thread of rc10d's priority or above: lower it (`chrt`), or keep a CPU for rc10d "
+    "(docs/realtime.md)"};
+
 }  // namespace rc10

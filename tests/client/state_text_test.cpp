@@ -158,11 +158,14 @@ TEST(DiagnosticsText, ShowsTimingBusesAndRefusals) {
 
 TEST(DiagnosticsText, SaysWhyTicksWereLateAndWhatHelps) {
   auto diagnostics = heroDiagnostics();
-  diagnostics.counter_count = 2;
+  diagnostics.counter_count = 3;
   diagnostics.counters[0] = {.name = link::Text<48>{"late ticks: CPU taken"}, .count = 7};
   diagnostics.counters[1] = {.name = link::Text<48>{"late ticks: timer"}, .count = 0};
+  diagnostics.counters[2] = {.name = link::Text<48>{"late ticks: CPU taken by irq/57-spi0.0"}, .count = 3};
   const auto text = diagnosticsText(heroWelcome(), diagnostics);
   EXPECT_THAT(text, HasSubstr("late ticks: CPU taken 7 (others ran on its CPU"));
+  EXPECT_THAT(text,
+              HasSubstr("late ticks: CPU taken by irq/57-spi0.0 3 (a real-time thread of rc10d's priority"));
   EXPECT_THAT(text, Not(HasSubstr("timer")));
 }
 

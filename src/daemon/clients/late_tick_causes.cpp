@@ -1,7 +1,13 @@
 #include "daemon/clients/late_tick_causes.hpp"
 
+#include <algorithm>
+
 namespace rc10 {
 namespace {
+
+// Rivals cost some reads of files in each window: they are watched from the first late tick that had its CPU
+// taken until there was none for so long, 10 s.
+constexpr int kWatchedWindows = 500;
 
 [[nodiscard]] LateCause causeOf(TickStep step) noexcept {
   switch (step) {
@@ -33,17 +39,42 @@ void LateTickCauses::update(const LateTicks& late, const ThreadFacts& thread) {
   waited_ = waited_in_all;
   const Duration waited_lately = waited + waited_before_;
   waited_before_ = any == 0 ? waited : Duration{};
+  const bool taken = any > 0 && 4 * waited_lately >= 3 * time;
+  const auto taker = takerOf(taken, waited_lately, thread.rivals);
   // Costlier to ask for; the first time, for those of the start.
   if (any == 0 && page_faults_) return;
   const auto page_faults = thread.page_faults();
   const bool faulted = page_faults_ && page_faults > *page_faults_;
   page_faults_ = page_faults;
-  const bool taken = 4 * waited_lately >= 3 * time;
+  if (taken && !faulted) return countTaken(taker, any);
   for (std::size_t i = 0; i < kTickSteps; ++i) {
-    const auto cause = faulted ? LateCause::kPageFault
-                       : taken ? LateCause::kCpuTaken
-                               : causeOf(static_cast<TickStep>(i));
+    const auto cause = faulted ? LateCause::kPageFault : causeOf(static_cast<TickStep>(i));
     counts_[static_cast<std::size_t>(cause)] += ticks[i];
+  }
+}
+
+// Empty: not known. Half of the wait is enough: others may have had the rest.
+std::string LateTickCauses::takerOf(bool taken, Duration waited, CpuRivals* rivals) {
+  if (rivals == nullptr) return {};
+  if (taken) watched_windows_ = kWatchedWindows;
+  if (watched_windows_ == 0) return {};
+  if (--watched_windows_ == 0) {
+    rivals->forget();
+    return {};
+  }
+  const bool known = rivals->look();
+  return known && taken ? rivals->busiest(waited / 2) : std::string{};
+}
+
+void LateTickCauses::countTaken(const std::string& taker, std::uint64_t ticks) {
+  const auto known = std::find_if(takers_.begin(), takers_.end(),
+                                  [&taker](const Taker& each) { return each.name == taker; });
+  if (known != takers_.end()) {
+    known->count += ticks;
+  } else if (!taker.empty() && takers_.size() < kMaxTakers) {
+    takers_.push_back({taker, ticks});
+  } else {
+    counts_[static_cast<std::size_t>(LateCause::kCpuTaken)] += ticks;
   }
 }
 

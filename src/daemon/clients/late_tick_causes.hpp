@@ -4,8 +4,11 @@
 #include <cstdint>
 #include <functional>
 #include <optional>
+#include <string>
+#include <vector>
 
 #include "app/time.hpp"
+#include "daemon/clients/cpu_rivals.hpp"
 #include "daemon/exchange/late_ticks.hpp"
 #include "link/late_causes.hpp"
 
@@ -16,6 +19,7 @@ struct ThreadFacts {
   /// Ready to run while others had the CPU. None: the kernel does not say.
   std::function<std::optional<Duration>()> waited;
   std::function<std::uint64_t()> page_faults;
+  CpuRivals* rivals = nullptr;  ///< Threads that may take its CPU. None: nobody is named.
 };
 
 /// Counts late ticks by cause, from what the scheduler thread and the kernel have counted since the last
@@ -29,12 +33,25 @@ class LateTickCauses {
     return counts_[static_cast<std::size_t>(cause)];
   }
 
+  /// Late ticks whose CPU a thread is known to have taken; they are not among kCpuTaken.
+  struct Taker {
+    std::string name;
+    std::uint64_t count = 0;
+  };
+  static constexpr std::size_t kMaxTakers = 4;
+  [[nodiscard]] const std::vector<Taker>& takers() const noexcept { return takers_; }
+
  private:
+  [[nodiscard]] std::string takerOf(bool taken, Duration waited, CpuRivals* rivals);
+  void countTaken(const std::string& taker, std::uint64_t ticks);
+
   std::array<LateTicks::Sum, kTickSteps> seen_{};
   std::optional<Duration> waited_;
   std::optional<std::uint64_t> page_faults_;
   Duration waited_before_{};  ///< In the window before: a tick may be counted after its wait was.
   std::array<std::uint64_t, kLateCauses> counts_{};
+  int watched_windows_ = 0;  ///< For so many more the rivals are watched.
+  std::vector<Taker> takers_;
 };
 
 }  // namespace rc10

@@ -158,6 +158,7 @@ void Publication::fill(link::BusStatus& out, std::size_t bus, const Snapshot& sn
 }
 
 void Publication::fillCounters(link::Diagnostics& out, const Snapshot& snapshot, const LateTickCauses& late) {
+  static_assert(2 + kLateCauses + LateTickCauses::kMaxTakers <= link::kMaxCounters);
   out.counter_count = 0;
   const auto add = [&out](std::string_view name, std::uint64_t count) {
     out.counters[out.counter_count].name = name;
@@ -168,6 +169,7 @@ void Publication::fillCounters(link::Diagnostics& out, const Snapshot& snapshot,
   add("commands expired in the ring", snapshot.expired_commands);
   for (std::size_t i = 0; i < kLateCauses; ++i)
     add(kLateCauseWords[i].counter, late.count(static_cast<LateCause>(i)));
+  for (const auto& taker : late.takers()) add(std::string(kTakenByWords.counter) + taker.name, taker.count);
 }
 
 void Publication::fillDurations(link::Diagnostics& out, const Measured& measured) const {
