@@ -64,6 +64,12 @@ def families(text: str) -> Chart:
     return Chart("CPU time of a tick, median", "µs", [], groups)
 
 
+def peers(text: str) -> Chart:
+    _, *rows = rows_below(text, "drives")
+    groups = [Group(f"{row[0]}, {row[1]}", [number(row[2])]) for row in rows if number(row[2])]
+    return Chart("CPU time in each millisecond, median", "µs", [], groups)
+
+
 def text_at(x: float, y: float, text: str, more: str = "") -> str:
     return f'<text x="{x:.0f}" y="{y:.0f}"{more}>{escape(text)}</text>'
 
@@ -103,6 +109,7 @@ def charts() -> dict[Path, str]:
     return {
         IMAGES / "performance-cost.svg": svg(cost(text)),
         IMAGES / "performance-families.svg": svg(families(text)),
+        IMAGES / "performance-peers.svg": svg(peers(text)),
     }
 
 

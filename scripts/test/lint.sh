@@ -97,7 +97,7 @@ step "sources are short" sources_are_short
 step "named pages are tracked" named_pages_are_tracked
 step shellcheck shell
 # Its scripts have no extension, and are not found by themselves.
-bench_scripts=(path_latency table viewers peers/run)
+bench_scripts=(path_latency table viewers peers/run peers/wall)
 step "ruff check" python ruff check python tests scripts examples bench "${bench_scripts[@]/#/bench/}"
 step "ruff format" python ruff format --check --quiet python tests scripts examples bench "${bench_scripts[@]/#/bench/}"
 step "mypy, python" types_in python

@@ -9,7 +9,7 @@ import pytest
 from pages import REPO
 
 sys.path.insert(0, str(REPO / "scripts/lib"))
-from performance_charts import Chart, Group, charts, cost, families, svg
+from performance_charts import Chart, Group, charts, cost, families, peers, svg
 from wiring_drawings import drawings
 
 
@@ -35,6 +35,8 @@ def test_tables_are_read_with_what_they_lack() -> None:
         "| robot | motors | frames | tick |\n|---|---|---|---|\n| DJI | 4 | 4.0, 1.0 | 1.1 µs |\n"
     )
     assert families(text).groups == [Group("DJI, 4 motors", [1.1])]
+    text = "| drives | program | CPU |\n|---|---|---|\n| 4 X | a | 38 µs |\n| 4 X | b | – |\n"
+    assert peers(text).groups == [Group("4 X, a", [38.0])]
 
 
 def test_a_bar_is_as_long_as_its_value_says() -> None:

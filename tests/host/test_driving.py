@@ -71,6 +71,27 @@ def test_rc10ctl_drives_and_lets_go(daemon: Daemon) -> None:
     daemon.wait_motor("wheel", lambda m: m["status"] == "READY", "is READY again")
 
 
+def test_the_age_of_commands_is_told_for_each_client(daemon: Daemon) -> None:
+    def commands_of(client: str) -> int:
+        ages = daemon.stats()["durations_us"].get(f"command of {client}", {"count": 0})
+        return int(ages["count"])
+
+    daemon.must("enable", "wheel")
+    with daemon.drive("set", "wheel", "velocity", "60", "--for", "60s"):
+        eventually(lambda: commands_of("rc10ctl") > 10, "ten commands of rc10ctl")
+    with rc10.connect("host", client="teleop") as robot:
+        robot.wait_for_state()
+
+        def commanded() -> bool:
+            robot.command(wheel=rc10.velocity_rpm(60))
+            return commands_of("teleop") > 3
+
+        eventually(commanded, "commands of a Python program")
+    shown = daemon.must("stats")
+    assert "command of rc10ctl " in shown
+    assert "command of teleop " in shown
+
+
 def test_a_set_that_is_not_obeyed_fails_and_says_who_is_in_the_way(daemon: Daemon) -> None:
     daemon.must("enable", "wheel")
     with daemon.drive("set", "wheel", "velocity", "60", "--for", "60s") as first:

@@ -1,0 +1,23 @@
+"""The programs that are measured."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+from pathlib import Path
+
+REPO = Path(__file__).resolve().parents[2]
+
+
+def programs(built: Path | None, *targets: str) -> Path:
+    """The build tree that is given; without one, that of the preset `bench`, with these in it."""
+    if built is not None:
+        return built
+    tree = REPO / "build" / "bench"
+    print(f"-- building {', '.join(targets)}", file=sys.stderr, flush=True)
+    for words in (
+        ["cmake", "--preset", "bench", "-S", str(REPO)],
+        ["cmake", "--build", str(tree), "--target", *targets],
+    ):
+        subprocess.run(words, check=True, stdout=sys.stderr)
+    return tree
