@@ -63,6 +63,14 @@ TEST(Excitation, ARampRisesAtItsRateAndStays) {
   EXPECT_EQ(ramp.valueAt(kLeadS + 1.0, 0.0), -60.0);
 }
 
+TEST(Excitation, ASweepEndsWithoutAJumpAndRestsForAPeriodOfItsLowestFrequency) {
+  const auto sweep = made({.kind = Kind::kSweep, .base = 10.0, .amplitude = 20.0, .time_s = 4.3});
+  EXPECT_DOUBLE_EQ(sweep.timeS(), kLeadS + 6.0);
+  for (double t = kLeadS; t < sweep.timeS(); t += 1e-4)
+    ASSERT_LT(std::abs(sweep.valueAt(t + 1e-4, 0.0) - sweep.valueAt(t, 0.0)), 0.3) << t;
+  for (double t = kLeadS + 4.3 + 0.025; t < sweep.timeS(); t += 1e-3) ASSERT_EQ(sweep.valueAt(t, 0.0), 10.0);
+}
+
 TEST(Excitation, ALogarithmicSweepHasTheGeometricMeanInItsMiddleAndALinearOneTheMean) {
   // Counted by turns of the sine: zero crossings upwards up to the middle, of those up to the end.
   const auto turns = [](bool linear, double part) {

@@ -281,6 +281,22 @@ TEST(MotionRun, AMotorThatIsHeldByAnotherIsNotMoved) {
   EXPECT_EQ(robot.orders_after_abort, 0);
 }
 
+TEST(MotionRun, AnEstopBeforeTheFirstTargetIsTakenIsToldAsOne) {
+  for (const bool traced : {true, false}) {
+    auto robot = robotFor(stepTo(60.0));
+    robot.obeys = false;
+    robot.run(5s, [&](Robot& r) {
+      if (r.ticks() != 45) return;
+      r.robot = RobotStatus::kEstop;
+      if (traced) r.status = MotorStatus::kReady;
+    });
+    ASSERT_TRUE(robot.test().over());
+    EXPECT_EQ(robot.test().aborted()->criterion, Criterion::kStatus);
+    EXPECT_THAT(robot.test().aborted()->text, HasSubstr("the robot is in ESTOP: `rc10ctl clear`"));
+    EXPECT_EQ(robot.orders_after_abort, 0);
+  }
+}
+
 TEST(MotionRun, ARefusalIsGivenAsTheReason) {
   auto robot = robotFor(stepTo(60.0));
   robot.obeys = false;

@@ -192,6 +192,17 @@ def test_another_client_that_takes_the_motor_is_named(robot: Daemon) -> None:
     assert "ended by ownership after " in told
 
 
+def test_an_estop_in_the_first_instants_of_a_test_is_told_as_one(robot: Daemon) -> None:
+    for _ in range(3):
+        robot.must("enable", "wheel")
+        with robot.drive("test-motion", "wheel", *STEP) as test:
+            robot.must("estop")
+            assert test.wait() == 1
+            assert "ended by status" in test.output
+            assert "the robot is in ESTOP" in test.output
+        robot.must("clear")
+
+
 def test_a_motor_that_is_disabled_ends_the_test(robot: Daemon) -> None:
     told = ended_by(robot, lambda _: robot.must("disable", "wheel"))
     assert "ended by status after " in told

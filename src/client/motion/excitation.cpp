@@ -89,15 +89,16 @@ Excitation::Excitation(const ExcitationSettings& settings) : settings_(settings)
 }
 
 double Excitation::valueAt(double time_s, double start) const noexcept {
-  const double since_s = std::min(time_s - kLeadS, settings_.time_s);
-  if (since_s < 0.0) return approachAt(time_s, start);
+  const double after_lead_s = time_s - kLeadS;
+  if (after_lead_s < 0.0) return approachAt(time_s, start);
+  const double since_s = std::min(after_lead_s, settings_.time_s);
   double beside = settings_.amplitude;
   switch (settings_.kind) {
     case ExcitationKind::kStep: break;
     case ExcitationKind::kRamp:
       beside = std::copysign(std::min(std::abs(beside), settings_.rate_per_s * since_s), beside);
       break;
-    case ExcitationKind::kSweep: beside = sweepAt(since_s); break;
+    case ExcitationKind::kSweep: beside = sweepAt(after_lead_s); break;
     case ExcitationKind::kMultisine: beside = multisineAt(since_s); break;
   }
   return settings_.base + beside;
@@ -109,16 +110,31 @@ double Excitation::approachAt(double time_s, double start) const noexcept {
   return start + (settings_.base - start) * 0.5 * (1.0 - std::cos(std::numbers::pi * part));
 }
 
-double Excitation::sweepAt(double time_s) const noexcept {
+// Windows of the estimate are two periods of the lowest frequency long and overlap by one. The highest
+// frequencies, in the flank of the last one, would be off by decibels: one period of rest brings them into
+// the middle of a window, and no part of the sweep is left over.
+double Excitation::timeS() const noexcept {
+  if (settings_.kind != ExcitationKind::kSweep) return kLeadS + settings_.time_s;
+  return kLeadS + (std::ceil(settings_.time_s * settings_.from_hz - 1e-9) + 1.0) / settings_.from_hz;
+}
+
+double Excitation::sweepTurns(double time_s) const noexcept {
   const double from_hz = settings_.from_hz;
-  double turns = 0.0;
   if (settings_.linear) {
-    turns = (from_hz + 0.5 * (settings_.to_hz - from_hz) * time_s / settings_.time_s) * time_s;
-  } else {
-    const double growth = std::log(settings_.to_hz / from_hz);
-    turns = from_hz * settings_.time_s / growth * std::expm1(growth * time_s / settings_.time_s);
+    return (from_hz + 0.5 * (settings_.to_hz - from_hz) * time_s / settings_.time_s) * time_s;
   }
-  return settings_.amplitude * std::sin(kTurnRad * turns);
+  const double growth = std::log(settings_.to_hz / from_hz);
+  return from_hz * settings_.time_s / growth * std::expm1(growth * time_s / settings_.time_s);
+}
+
+// It goes on at its highest frequency to the next half turn: the target does not jump to the base.
+double Excitation::sweepAt(double time_s) const noexcept {
+  const double over_s = time_s - settings_.time_s;
+  if (over_s <= 0.0) return settings_.amplitude * std::sin(kTurnRad * sweepTurns(time_s));
+  const double last_turns = sweepTurns(settings_.time_s);
+  const double turns = last_turns + over_s * settings_.to_hz;
+  const double end_turns = 0.5 * std::ceil(2.0 * last_turns - 1e-9);
+  return turns < end_turns ? settings_.amplitude * std::sin(kTurnRad * turns) : 0.0;
 }
 
 double Excitation::multisineAt(double time_s) const noexcept {

@@ -42,7 +42,8 @@ class Excitation {
 
   /// `start`: the value from which the base is approached.
   [[nodiscard]] double valueAt(double time_s, double start) const noexcept;
-  [[nodiscard]] double timeS() const noexcept { return kLeadS + settings_.time_s; }
+  /// With the lead, and after a sweep the time at the base in which its end is still measured.
+  [[nodiscard]] double timeS() const noexcept;
   /// Bounds of valueAt() after the lead.
   [[nodiscard]] double lowest() const noexcept;
   [[nodiscard]] double highest() const noexcept;
@@ -55,6 +56,7 @@ class Excitation {
 
   [[nodiscard]] double approachAt(double time_s, double start) const noexcept;
   [[nodiscard]] double sweepAt(double time_s) const noexcept;
+  [[nodiscard]] double sweepTurns(double time_s) const noexcept;
   [[nodiscard]] double multisineAt(double time_s) const noexcept;
 
   ExcitationSettings settings_;

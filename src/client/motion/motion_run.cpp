@@ -130,8 +130,9 @@ void MotionRun::take(const Row& row) {
     taken_tick_ = row.tick;
     taken_us_ = row.mono_us;
   }
-  if (taken_tick_ == 0) return;
+  // It was ACTIVE when the first target left: an e-stop may come before that is taken.
   if (row.status != MotorStatus::kActive) return abort(withText(Criterion::kStatus, {}));
+  if (taken_tick_ == 0) return;
   if (!ours) return abort(withText(Criterion::kOwnership, {}));
   curve_.push_back(row.sample);
   curve_.back().time_s = static_cast<double>(row.mono_us - taken_us_) / 1e6;
@@ -151,10 +152,10 @@ void MotionRun::take(const link::State& state) {
   if (knownMotor() == nullptr) return;
   const auto owner = state.motors[motor_].owner.view();
   const bool ours = owner == settings_.client;
-  if (phase_ == Phase::kRunning && taken_tick_ != 0 && state.tick > taken_tick_) {
+  if (phase_ == Phase::kRunning && (taken_tick_ == 0 || state.tick > taken_tick_)) {
     if (state.motors[motor_].status != MotorStatus::kActive || state.robot_state != RobotStatus::kRun)
       abort(withText(Criterion::kStatus, {}));
-    else if (!ours)
+    else if (taken_tick_ != 0 && !ours)
       abort(withText(Criterion::kOwnership, {}));
   }
   if (phase_ == Phase::kLettingGo && !ours) finish();
