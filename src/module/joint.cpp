@@ -16,6 +16,8 @@ namespace {
 
 using enum OwnKey::Kind;
 
+// Way of a shaft in the tick after it was zeroed, and far below any error of another reference.
+constexpr double kZeroedWithinDeg = 10.0;
 constexpr std::array<std::string_view, 3> kHomings{"none", "stop", "switch"};
 constexpr std::array<std::string_view, 2> kOnSilence{"hold", "let_go"};
 
@@ -152,7 +154,10 @@ ModuleSignals jointSignals() {
           {.text = "homing failed: it stood still, but not at the stop: nearer than where it began, at two "
                    "places, without the full current, or farther than the travel; see what is in its "
                    "way, homing_current_a against gravity and friction, and homing_tolerance_deg"},
-          {.text = "no client has been heard for silence_max_s: it holds no longer"}}};
+          {.text = "no client has been heard for silence_max_s: it holds no longer"},
+          {.text =
+               "homing failed: with this zero part of the motor's travel (angle_min_deg to angle_max_deg) "
+               "would lie beyond the positions that its drive can be told; see docs/safety.md"}}};
 }
 
 /// The reference that runs ahead of the motor: with or without limited jerk.
@@ -246,7 +251,16 @@ class Joint : public Module_Base {
  private:
   enum Input : std::size_t { kAngleDeg, kHome };
   enum Output : std::size_t { kState, kMove, kMeasured, kReference, kHomed };
-  enum EventPlace : std::size_t { kIsHomed, kNotHomed, kNotReached, kBeyond, kNoSwitch, kNoStop, kSilent };
+  enum EventPlace : std::size_t {
+    kIsHomed,
+    kNotHomed,
+    kNotReached,
+    kBeyond,
+    kNoSwitch,
+    kNoStop,
+    kSilent,
+    kNoReach
+  };
 
   enum class State { kIdle, kHoming, kFollowing, kHomingFailed };
   enum class Move { kNone, kUnderWay, kDone, kFailed };
@@ -276,7 +290,10 @@ class Joint : public Module_Base {
       return;
     }
     if (zero_asked_) {
-      // The zero of the tick before is in force: from here the angle means something.
+      // The zero of the tick before is in force, unless the motor refused it: from here the angle means
+      // something.
+      if (!feedback.zeroed || std::fabs(feedback.total_angle_deg - home_angle_deg_) > kZeroedWithinDeg)
+        return failHoming(kNoReach, robot);
       robot.report(kIsHomed);
       beginFollowing(feedback);
       follow(feedback, tick, robot);

@@ -374,8 +374,14 @@ void Oracle::judgeRobotState(const Snapshot& snapshot) {
   for (std::size_t i = 0; i < motors_.size(); ++i) {
     const auto most_rpm = static_cast<double>(motors_[i].config->standstill_rpm);
     const auto& measured = motors_[i].wire->measured();
+    // docs/safety.md: one that its fallback still resists after its time to run down is pulled, by a slope or
+    // a load, and does not keep the e-stop.
+    const auto acting = snapshot.motors[i].acting;
+    const bool resisted = acting == Acting::kDamp || acting == Acting::kBrake || acting == Acting::kHold;
+    const bool pulled = resisted && now_ - motors_[i].acts_since >= motors_[i].config->run_down;
     require(i,
-            overdue(motors_[i]) || std::fabs(measured.velocity_rpm) <= most_rpm + measured.velocity_step_rpm,
+            overdue(motors_[i]) || pulled ||
+                std::fabs(measured.velocity_rpm) <= most_rpm + measured.velocity_step_rpm,
             "an e-stop was cleared while it turns");
     require(i, !overdue(motors_[i]) || !mayTurn(i, snapshot.motors[i].feedback),
             "an e-stop was cleared while it may still turn");

@@ -80,7 +80,7 @@ class Joint : public ::testing::Test {
     auto& motor = robot_.motor(0);
     auto& feedback = motor.feedback;
     for (const auto& asked : robot_.asked()) {
-      if (asked.request != RobotRequest::kZero) continue;
+      if (asked.request != RobotRequest::kZero || !zeroes_) continue;
       stop_deg_ += asked.angle_deg - feedback.total_angle_deg;
       feedback.total_angle_deg = asked.angle_deg;
       feedback.zeroed = true;
@@ -107,6 +107,7 @@ class Joint : public ::testing::Test {
   double moved() { return module_->outputs()[1]; }
   double angle() { return robot_.motor(0).feedback.total_angle_deg; }
 
+  bool zeroes_ = true;
   FakeRobot robot_{1};
   std::unique_ptr<Module_Base> module_;
   std::vector<std::size_t> events_;
@@ -277,6 +278,24 @@ TEST_F(Joint, FindsItsReferenceAtAStop) {
   ask(-10.0);
   run(3000);
   EXPECT_EQ(angle(), -10.0);
+}
+
+TEST_F(Joint, AZeroThatItsMotorRefusesIsNoHome) {
+  auto own = settings();
+  own.own.set("homing", std::string{"stop"});
+  for (const bool known : {true, false}) {
+    build(own);
+    events_.clear();
+    robot_.motor(0).feedback.zeroed = known;
+    robot_.motor(0).feedback.total_angle_deg = 1000.0;
+    stop_deg_ = 980.0;
+    zeroes_ = false;
+    ask(kNoSignal, 1.0);
+    run(5100);
+    EXPECT_EQ(state(), kHomingFailed);
+    EXPECT_THAT(events_, ElementsAre(7U));
+    EXPECT_FALSE(robot_.motor(0).target.has_value());
+  }
 }
 
 TEST_F(Joint, AStandstillThatGravityMakesIsNotTheStop) {

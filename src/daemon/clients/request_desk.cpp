@@ -61,6 +61,11 @@ constexpr std::string_view kAngle = "angle_deg";
     case Refusal::kTurnUnclear:
       return "its turn is unclear: turn it by hand into its travel (angle_min_deg to angle_max_deg); with a "
              "travel of a turn or more set its angle, rc10ctl zero";
+    case Refusal::kOutOfReach:
+      return "with this zero part of its travel (angle_min_deg to angle_max_deg) would lie beyond the "
+             "positions "
+             "that its drive can be told: turn it back towards the drive's own 0, near which most drives are "
+             "when they are switched on; or the drive has not told its count of turns yet: try again";
   }
   return "unknown reason";
 }

@@ -97,9 +97,14 @@ bool Axis::standsStill() const noexcept {
   return std::fabs(motor_.feedback().velocity_rpm) < entry_.standstill_rpm;
 }
 
-// The last speed of a motor that was on says nothing: it may have begun to move since.
+// The last speed of a motor that was on says nothing: it may have begun to move since. One that its fallback
+// resists, and that turns on after its time to run down, is pulled by a slope or a load: waiting does not end
+// that, and the fallback goes on acting after the e-stop.
 Refusal Axis::unrest(const Tick& tick) const noexcept {
-  if (!lost(tick)) return standsStill() ? Refusal::kNone : Refusal::kMoving;
+  if (!lost(tick)) {
+    const bool pulled = fallback_.actsFor(entry_.run_down, tick.now);
+    return standsStill() || pulled ? Refusal::kNone : Refusal::kMoving;
+  }
   const auto& feedback = motor_.feedback();
   if (feedback.samples == 0 || (standsStill() && !on_when_heard_)) return Refusal::kNone;
   return tick.now - feedback.received < entry_.run_down ? Refusal::kMayTurn : Refusal::kNone;
@@ -324,7 +329,8 @@ Refusal Axis::zero(const Order& order) noexcept {
     case MotorStatus::kReady:
     case MotorStatus::kFault: break;
   }
-  return motor_.setZero(order.value) ? Refusal::kNone : Refusal::kNoPosition;
+  if (motor_.setZero(order.value)) return Refusal::kNone;
+  return motor_.feedback().samples == 0 ? Refusal::kNoPosition : Refusal::kOutOfReach;
 }
 
 void Axis::retune(const CascadeConfig& loops) noexcept {

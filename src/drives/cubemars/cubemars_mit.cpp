@@ -39,6 +39,7 @@ CubemarsMit::CubemarsMit(const MotorSettings& settings, const CubemarsSettings& 
       angle_stiffness_(settings.own.number("angle_stiffness_nm_per_rad")),
       angle_damping_(settings.own.number("angle_damping_nms_per_rad")),
       velocity_gain_(settings.own.number("velocity_gain_nms_per_rad")),
+      travel_(settings.travel),
       enabling_(kMitStepPatience, kMitAttempts) {
   const auto id = static_cast<std::uint8_t>(settings.id);
   if (v3_) {
@@ -147,6 +148,22 @@ void CubemarsMit::watchSpring(const cubemars::MitReport& report) noexcept {
   loseReference();
 }
 
+// A turn of the field that is not known makes every angle wrong, but a wheel without limits may count anew.
+bool CubemarsMit::setZero(double angle_deg) noexcept {
+  const bool limited = std::isfinite(travel_.min_deg) || std::isfinite(travel_.max_deg);
+  const double ratio = toDrive(1.0);
+  const double reach_deg = springReach(angle_stiffness_) / kRadPerDeg;
+  const bool unknown = turns_unknown_ || positionCutOff();
+  if (limited && (unknown || !reachesTravel(travel_, angle_deg, lastDriveDeg(), ratio, reach_deg)))
+    return false;
+  return CubeMars_Motor::setZero(angle_deg);
+}
+
+double CubemarsMit::springReach(double stiffness_nm_per_rad) const noexcept {
+  return springReachRad(own().ranges.position_rad, std::min(driveTorqueLimitNm(), own().ranges.torque_nm),
+                        stiffness_nm_per_rad);
+}
+
 // ---- Command
 
 // The bounds of a command are computed from the feedback: it must not be old.
@@ -161,6 +178,7 @@ void CubemarsMit::update(const Tick& tick) noexcept {
   if (!v3_ && enabling()) runEnabling(tick);
   const bool damps = ordered() == FrameKind::kDamp;
   const bool coasts = target.mode == ControlMode::kCoast && !damps;
+  if (target.mode != ControlMode::kTotalAngle && target.mode != ControlMode::kImpedance) reach_.release();
   if (coasts || silent(tick) || !std::isfinite(target.value)) {
     release();
   } else {
@@ -192,7 +210,7 @@ SpringLaw CubemarsMit::angleLaw(const Target& target, double stiffness, double d
     return velocityLaw(0.0, 0.0,
                        std::max(std::min(damping, CubemarsRanges::kDampingNmsPerRad), velocity_gain_));
   }
-  const double reach_rad = own().ranges.position_rad;
+  const double reach_rad = reach_.step(springReach(stiffness), position_rad_);
   const double wanted_rad = drivePositionFor(target.value) * kRadPerDeg;
   SpringLaw law{.position_rad = std::clamp(wanted_rad, -reach_rad, reach_rad),
                 .velocity_rad_s = driveRadS(boundRpm(static_cast<double>(target.velocity_ff_rpm))),

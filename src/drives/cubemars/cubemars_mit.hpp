@@ -4,6 +4,7 @@
 
 #include "drives/cubemars/cubemars_motor.hpp"
 #include "motor/enable_sequence.hpp"
+#include "motor/position_reach.hpp"
 
 namespace rc10 {
 
@@ -30,6 +31,7 @@ class CubemarsMit : public CubeMars_Motor {
   [[nodiscard]] std::span<const CanId> commandIds() const noexcept override;
   [[nodiscard]] std::size_t packCommand(const Tick& tick, std::span<CanFrame> out) noexcept override;
   [[nodiscard]] std::size_t packRest(std::span<CanFrame> out) const noexcept override;
+  bool setZero(double angle_deg) noexcept override;
 
  private:
   enum class Step : std::uint8_t { kEnter };
@@ -39,6 +41,8 @@ class CubemarsMit : public CubeMars_Motor {
   void runEnabling(const Tick& tick) noexcept;
   [[nodiscard]] bool silent(const Tick& tick) const noexcept;
   [[nodiscard]] bool inRange() const noexcept { return turns_ == 0 && !turns_unknown_ && !positionCutOff(); }
+  /// Bound of targets, as a position of the drive, with this stiffness at its output.
+  [[nodiscard]] double springReach(double stiffness_nm_per_rad) const noexcept;
   void watchSpring(const cubemars::MitReport& report) noexcept;
   [[nodiscard]] bool pullsOtherwise() const noexcept;
   [[nodiscard]] SpringLaw lawOf(const Target& target) noexcept;
@@ -65,6 +69,8 @@ class CubemarsMit : public CubeMars_Motor {
   int turns_ = 0;               ///< Wraps of the position field; 0: within its range.
   bool turns_unknown_ = false;  ///< Silent while outside of its range, and maybe restarted.
   int samples_at_end_ = 0;
+  Travel travel_;
+  SpringReach reach_;
 
   SpringLaw command_{};              ///< Result of update().
   std::array<SpringLaw, 2> sent_{};  ///< The last, and the one before.

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "motor/position_reach.hpp"
+
 namespace rc10 {
 namespace {
 
@@ -27,6 +29,7 @@ CubemarsServo::CubemarsServo(const MotorSettings& settings, const CubemarsSettin
                    cubemars::servoId(ServoCommand::kPositionVelocity, settings.id)},
       brake_a_(settings.own.number("brake_current_a")),
       acceleration_rpm_per_s_(settings.own.number("acceleration_limit_rpm_per_s")),
+      travel_(settings.travel),
       next_(cubemars::currentFrame(settings.id, 0.0)) {}
 
 // ---- Feedback
@@ -36,6 +39,14 @@ bool CubemarsServo::matchesFrame(const CanFrame& frame) const noexcept {
 }
 
 FrameVerdict CubemarsServo::updateFeedback(const CanFrame& frame) noexcept { return takeServoReport(frame); }
+
+bool CubemarsServo::setZero(double angle_deg) noexcept {
+  const bool limited = std::isfinite(travel_.min_deg) || std::isfinite(travel_.max_deg);
+  const double reach_deg = kLargestMessageDeg / own().message_deg_per_deg;
+  const bool reaches =
+      !positionCutOff() && reachesTravel(travel_, angle_deg, lastDriveDeg(), toDrive(1.0), reach_deg);
+  return (!limited || reaches) && CubeMars_Motor::setZero(angle_deg);
+}
 
 // ---- Command
 

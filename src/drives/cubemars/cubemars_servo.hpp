@@ -3,6 +3,7 @@
 #include <array>
 
 #include "drives/cubemars/cubemars_motor.hpp"
+#include "motor/first_angle.hpp"
 
 namespace rc10 {
 
@@ -27,6 +28,7 @@ class CubemarsServo : public CubeMars_Motor {
 
   /// Nothing clears a servo drive's error but the end of its cause. Forgets that it has stopped.
   void clearComplaint() noexcept override { forgetStop(); }
+  bool setZero(double angle_deg) noexcept override;
 
  private:
   void follow(const Target& target) noexcept;
@@ -43,6 +45,7 @@ class CubemarsServo : public CubeMars_Motor {
   std::array<CanId, 6> command_ids_;
   double brake_a_;
   double acceleration_rpm_per_s_;
+  Travel travel_;
   CanFrame next_;  ///< Result of update().
 };
 

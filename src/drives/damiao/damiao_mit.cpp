@@ -32,7 +32,8 @@ SpringLaw boundedMit(SpringLaw law, const DamiaoMitBounds& bounds, std::uint32_t
   if (law.stiffness_nm_per_rad > 0.0 && !reachable) limits |= kLimitAngle;
   if (!reachable || !std::isfinite(law.position_rad)) law.stiffness_nm_per_rad = 0.0;
   if (law.stiffness_nm_per_rad > 0.0) {
-    law.position_rad = within(law.position_rad, bounds.scale.p_max_rad, kLimitAngle, limits);
+    const double reach_rad = std::min(bounds.reach_rad, bounds.scale.p_max_rad);
+    law.position_rad = within(law.position_rad, reach_rad, kLimitAngle, limits);
     if (bounds.velocity_rad_s > 0.0 && boundLead(law, bounds.measured, -fastest_rad_s, fastest_rad_s)) {
       limits |= kLimitVelocity;
     }

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 
 #include "drives/damiao/damiao_frames.hpp"
 
@@ -13,6 +14,8 @@ struct DamiaoMitBounds {
   double velocity_rad_s = 0.0;  ///< 0: none but the scale's.
   SpringState measured;         ///< The position: the drive's own count.
   bool position_known = false;
+  double reach_rad =
+      std::numeric_limits<double>::infinity();  ///< Bound of targets, beside that of the scale.
 };
 
 /// A MIT command that makes the drive give no more than its bounds by the last measurement. `limits` collects

@@ -51,6 +51,7 @@ Damiao_Motor::Damiao_Motor(const MotorSettings& settings)
                              : own_.scale.v_max_rad_s)),
       heard_within_(kPositionAskedEvery + 2 * std::max(settings.command_divider, 1) * tickPeriod()),
       position_(own_.scale, fastest(settings, own_.scale), feedbackPeriod()),
+      travel_(settings.travel),
       enabling_({.id = settings.id, .control = own_.control, .timeout = own_.timeout, .scale = own_.scale}),
       setup_codec_(settings.id, own_.can_fd) {
   release();
@@ -130,7 +131,22 @@ void Damiao_Motor::takeReply(const damiao::RegisterReply& reply) noexcept {
 }
 
 bool Damiao_Motor::setZero(double angle_deg) noexcept {
-  return position_.known() && SoloMotor::setZero(angle_deg);
+  return position_.known() && reachesTravelAt(angle_deg) && SoloMotor::setZero(angle_deg);
+}
+
+double Damiao_Motor::torqueLimitNm() const noexcept {
+  return std::min(driveTorqueLimitNm(), own_.scale.t_max_nm);
+}
+
+double Damiao_Motor::springReach(double stiffness_nm_per_rad) const noexcept {
+  return springReachRad(own_.scale.p_max_rad, torqueLimitNm(), stiffness_nm_per_rad);
+}
+
+bool Damiao_Motor::reachesTravelAt(double angle_deg) const noexcept {
+  if (own_.control != DamiaoControl::kMit) return true;
+  const double gear = toDrive(1.0);
+  const double reach_rad = springReach(own_.gains.angle_stiffness_nm_per_rad / (gear * gear));
+  return reachesTravel(travel_, angle_deg, position_.rad() / kRadPerDeg, gear, reach_rad / kRadPerDeg);
 }
 
 // ---- Command
@@ -160,6 +176,7 @@ double Damiao_Motor::fastestRadS() const noexcept {
 
 void Damiao_Motor::release() noexcept {
   command_ = specialFrame(Special::kDisable);
+  reach_.release();
   stay_rad_.reset();
   setCommand(0.0, CommandUnit::kNone);
 }
@@ -204,12 +221,17 @@ SpringLaw Damiao_Motor::mitLaw(const Target& target) const noexcept {
 }
 
 void Damiao_Motor::followMit(const Target& target) noexcept {
-  const DamiaoMitBounds bounds{.scale = own_.scale,
-                               .torque_nm = std::min(driveTorqueLimitNm(), own_.scale.t_max_nm),
-                               .velocity_rad_s = velocityLimitRpm() > 0.0F ? fastestRadS() : 0.0,
-                               .measured = {position_.rad(), measured_rad_s_},
-                               .position_known = position_.known()};
-  const auto command = boundedMit(mitLaw(target), bounds, limits_);
+  const auto law = mitLaw(target);
+  DamiaoMitBounds bounds{.scale = own_.scale,
+                         .torque_nm = torqueLimitNm(),
+                         .velocity_rad_s = velocityLimitRpm() > 0.0F ? fastestRadS() : 0.0,
+                         .measured = {position_.rad(), measured_rad_s_},
+                         .position_known = position_.known()};
+  if (law.stiffness_nm_per_rad > 0.0)
+    bounds.reach_rad = reach_.step(springReach(law.stiffness_nm_per_rad), position_.rad());
+  else
+    reach_.release();
+  const auto command = boundedMit(law, bounds, limits_);
   command_ = frameOf(command_ids_[0], damiao::mit(command, own_.scale));
   const double torque_nm = torqueToOutput(torqueNm(command, bounds.measured));
   setCommand(torque_nm / static_cast<double>(torqueNmPerA()), CommandUnit::kAmpere);

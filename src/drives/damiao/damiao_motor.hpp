@@ -12,6 +12,7 @@
 #include "drives/damiao/damiao_position.hpp"
 #include "drives/damiao/damiao_setup.hpp"
 #include "motor/drive_configuring.hpp"
+#include "motor/position_reach.hpp"
 #include "motor/solo_motor.hpp"
 
 namespace rc10 {
@@ -57,6 +58,10 @@ class Damiao_Motor : public SoloMotor {
   void followAngle(const Target& target) noexcept;
 
   [[nodiscard]] SpringLaw mitLaw(const Target& target) const noexcept;
+  /// Bound of targets, as a position of the drive, with this stiffness at its output.
+  [[nodiscard]] double springReach(double stiffness_nm_per_rad) const noexcept;
+  [[nodiscard]] bool reachesTravelAt(double angle_deg) const noexcept;
+  [[nodiscard]] double torqueLimitNm() const noexcept;
   /// Bounds every velocity; the scale's if there is none.
   [[nodiscard]] double fastestRadS() const noexcept;
   [[nodiscard]] CanFrame frameOf(CanId id, std::span<const std::uint8_t> payload) const noexcept;
@@ -70,6 +75,8 @@ class Damiao_Motor : public SoloMotor {
   Duration heard_within_;  ///< A drive silent for longer is not asked for a register as well.
 
   DamiaoPosition position_;
+  Travel travel_;
+  SpringReach reach_;
   DamiaoEnabling enabling_;
   DamiaoSetupCodec setup_codec_;
   DriveConfiguring configuring_{setup_codec_};

@@ -76,7 +76,8 @@ RobStride_Motor::RobStride_Motor(const MotorSettings& settings)
                fromDrive(robstride::Type::kFault, codec_.drive_id, codec_.host_id),
                // The CyberGear's manual has the two ids of a fault frame the other way round.
                fromDrive(robstride::Type::kFault, codec_.host_id, codec_.drive_id)},
-      command_ids_{codec_.read(0).id, codec_.write(0, 0.0F).id} {
+      command_ids_{codec_.read(0).id, codec_.write(0, 0.0F).id},
+      travel_(settings.travel) {
   const double square = ratio() * ratio();
   const double torque = model_->torque_range_nm;
   angle_stiffness_ = settings.own.number("angle_stiffness_nm_per_rad") / square;
@@ -202,6 +203,15 @@ void RobStride_Motor::trackPosition(const robstride::Feedback& seen, MonotonicTi
   const bool at_end = !wraps() && (seen.raw_position == 0 || seen.raw_position == 0xFFFF);
   if (gap > kLongestGap || jumped || at_end) doubtAngles();
   position_rad_ += moved;
+}
+
+bool RobStride_Motor::setZero(double angle_deg) noexcept {
+  const double reach_rad = springReachRad(scaleEndRad(), limitNm(), angle_stiffness_);
+  const double here_rad = position_rad_ + scale_offset_rad_;
+  const bool reaches =
+      control_ != RobstrideControl::kOperation ||
+      reachesTravel(travel_, angle_deg, here_rad * kDegPerRad, toDrive(1.0), reach_rad * kDegPerRad);
+  return reaches && SoloMotor::setZero(angle_deg);
 }
 
 void RobStride_Motor::doubtAngles() noexcept {

@@ -9,6 +9,7 @@
 #include "drives/robstride/robstride_model.hpp"
 #include "drives/robstride/robstride_setup.hpp"
 #include "motor/drive_configuring.hpp"
+#include "motor/position_reach.hpp"
 #include "motor/solo_motor.hpp"
 
 namespace rc10 {
@@ -40,6 +41,7 @@ class RobStride_Motor : public SoloMotor {
   [[nodiscard]] SequenceProgress sequenceProgress() const noexcept override;
   [[nodiscard]] DriveComplaint complaint() const noexcept override;
   void clearComplaint() noexcept override { clear_ordered_ = true; }
+  bool setZero(double angle_deg) noexcept override;
   [[nodiscard]] DriveConfiguring* driveConfiguring() noexcept override { return &configuring_; }
 
  private:
@@ -97,6 +99,8 @@ class RobStride_Motor : public SoloMotor {
 
   SpringLaw operation_;
   Reference reference_;
+  Travel travel_;
+  SpringReach reach_;
   bool brake_held_ = false;
   double brake_deg_ = 0.0;
   float limit_sent_a_ = -1.0F;

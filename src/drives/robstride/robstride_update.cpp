@@ -94,10 +94,13 @@ void RobStride_Motor::followOperation(const Target& target) noexcept {
     limits_ |= kLimitAngle;
     wanted = {.damping_nms_per_rad = std::max(wanted.damping_nms_per_rad, angle_damping_)};
   }
-  const double end = scaleEndRad();
-  if (std::abs(wanted.position_rad) > end) {
-    limits_ |= kLimitAngle;
+  if (wanted.stiffness_nm_per_rad > 0.0) {
+    const double reach = springReachRad(scaleEndRad(), limitNm(), wanted.stiffness_nm_per_rad);
+    const double end = std::min(reach_.step(reach, position_rad_ + scale_offset_rad_), scaleEndRad());
+    if (std::abs(wanted.position_rad) > end) limits_ |= kLimitAngle;
     wanted.position_rad = std::clamp(wanted.position_rad, -end, end);
+  } else {
+    reach_.release();
   }
   if (target.mode == ControlMode::kTotalAngle) limitApproach(wanted);
   limitTorque(wanted);
