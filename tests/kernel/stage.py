@@ -38,13 +38,16 @@ class Stage:
         things: what else time passes for, after the drives.
 
     Args:
-        drives: by the name of the interface: the fake motors.
+        drives: by the name of the interface: the fake motors, or what speaks for them.
     """
 
-    def __init__(self, drives: Mapping[str, Sequence[Fake]]) -> None:
+    def __init__(self, drives: Mapping[str, Sequence[Fake] | Drives]) -> None:
         self.powered = True
         self.things: list[Thing] = []
-        self._drives = {iface: Drives(motors) for iface, motors in drives.items()}
+        self._drives = {
+            iface: motors if isinstance(motors, Drives) else Drives(motors)
+            for iface, motors in drives.items()
+        }
         self._stopped = threading.Event()
         self._thread = threading.Thread(target=self._run, name="stage")
         self._failure: BaseException | None = None
