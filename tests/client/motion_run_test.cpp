@@ -368,6 +368,53 @@ TEST(MotionRun, WhatCannotBeTestedIsRefusedBefore) {
               HasSubstr("leave the base out"));
 }
 
+TEST(MotionRun, ACommandThatIsNotPermittedIsNamedWithTheLineThatGrantsIt) {
+  auto robot = robotFor(stepTo(60.0));
+  robot.obeys = false;
+  link::Event event;
+  event.code = static_cast<std::int32_t>(EventCode::kCommandRefused);
+  event.source = "robot";
+  event.client = "another";
+  event.text = "somebody else's";
+  robot.run(3s, [&](Robot& r) {
+    event.client = r.ticks() == 100 ? "tester" : "another";
+    event.text = r.ticks() == 100 ? "add it to `motors` at robot.yaml:12" : "somebody else's";
+    r.test().take(event);
+  });
+  ASSERT_TRUE(robot.test().aborted());
+  EXPECT_EQ(robot.test().aborted()->criterion, Criterion::kOwnership);
+  EXPECT_THAT(robot.test().aborted()->text, HasSubstr("robot.yaml:12"));
+}
+
+TEST(MotionRun, ASilenceIsNamed) {
+  const auto abort = disturbed([](Robot& r) { r.test().end(Criterion::kSilence, "no word"); });
+  EXPECT_STREQ(toString(abort.criterion), "silence");
+  EXPECT_EQ(abort.text, "no word");
+}
+
+TEST(MotionReport, AStepOfTheCurrentHasTheAccelerationOnceItHasRisen) {
+  auto settings = stepTo(2.0);
+  settings.mode = ControlMode::kCurrent;
+  settings.excitation.time_s = 0.12;
+  settings.criteria.velocity_max_rpm = 1000.0;
+  auto welcome = welcomeOfTwo();
+  welcome.motors[1].modes = ModeSet(ControlMode::kCurrent).bits();
+  auto test = MotionRun::of(welcome, settings);
+  ASSERT_TRUE(test) << test.error().message;
+  Robot robot(*test);
+  // It rises for 15 ms, and then gains 172 rpm/s for each ampere.
+  int ticks = 0;
+  robot.run(5s, [&](Robot& r) {
+    r.time_constant_s = INFINITY;
+    if (r.target == 2.0 && ++ticks > 15) r.velocity_rpm += 2.0 * 0.172;
+  });
+  ASSERT_FALSE(robot.test().aborted()) << robot.test().aborted()->text;
+  const auto report = reportOf(robot.test());
+  EXPECT_NEAR(report.acceleration_rpm_per_s, 344.0, 0.1);
+  EXPECT_THAT(text(report, robot.test()), HasSubstr("acceleration          344.0 rpm/s\n"));
+  EXPECT_EQ(jsonOf(report, robot.test())["acceleration_rpm_per_s"], report.acceleration_rpm_per_s);
+}
+
 TEST(MotionReport, AnAbortIsTheFirstThingThatJsonTells) {
   auto settings = stepTo(60.0);
   settings.criteria.velocity_max_rpm = 60.0;

@@ -70,6 +70,8 @@ class MotionResult:
     limits: tuple[str, ...]
     """Limits of the motor that acted."""
     step: StepNumbers | None
+    acceleration_rpm_per_s: float
+    """Of a step of the current, once it has risen."""
     bandwidth_hz: float
     phase_margin_deg: float
     gain_margin_db: float
@@ -159,6 +161,7 @@ def run_motion_test(
         following_error_max=_number(result["following_error"]["max"]),
         limits=tuple(result["limits"]),
         step=step and StepNumbers(**{name: _number(value) for name, value in step.items()}),
+        acceleration_rpm_per_s=_number(result["acceleration_rpm_per_s"]),
         bandwidth_hz=_number(result["bandwidth_hz"]),
         phase_margin_deg=_number(result["phase_margin_deg"]),
         gain_margin_db=_number(result["gain_margin_db"]),

@@ -11,7 +11,7 @@ namespace rc10::client {
 namespace {
 
 constexpr std::array kCriterionWords{"angle",     "velocity", "current",    "feedback_age", "limit",
-                                     "ownership", "status",   "connection", "interrupted"};
+                                     "ownership", "status",   "connection", "interrupted",  "silence"};
 
 constexpr double kNoNumber = std::numeric_limits<double>::quiet_NaN();
 

@@ -32,10 +32,11 @@ enum class Criterion : std::uint8_t {
   kStatus,     ///< The motor or the robot does not obey.
   kConnection,
   kInterrupted,
+  kSilence,  ///< Nobody has said for its time that the test may go on.
 };
 
 /// "angle", "velocity", "current", "feedback_age", "limit", "ownership", "status", "connection",
-/// "interrupted"
+/// "interrupted", "silence"
 [[nodiscard]] const char* toString(Criterion criterion) noexcept;
 
 /// End of a test before its time.

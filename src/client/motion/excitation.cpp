@@ -2,9 +2,13 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
+#include <complex>
 #include <numbers>
 #include <string>
+
+#include <unsupported/Eigen/FFT>
 
 #include "client/quantity_text.hpp"
 
@@ -35,6 +39,20 @@ Result<void> sinesFit(const ExcitationSettings& settings) {
     return fail("a multisine has lines at multiples of the lowest frequency: give a highest one of " +
                 number(2.0 * from_hz, 2) + " Hz or more");
   return {};
+}
+
+// Largest magnitude of lines of height 1 within a period, between the samples that a client sends too.
+double peakOf(const std::vector<double>& phases_rad) {
+  const std::size_t samples = std::bit_ceil(40 * phases_rad.size());
+  std::vector<std::complex<double>> lines(samples);
+  for (std::size_t k = 0; k < phases_rad.size(); ++k) lines[k + 1] = std::polar(1.0, phases_rad[k]);
+  std::vector<std::complex<double>> period;
+  Eigen::FFT<double> fft;
+  fft.SetFlag(Eigen::FFT<double>::Unscaled);
+  fft.inv(period, lines);
+  double peak = 0.0;
+  for (const auto& value : period) peak = std::max(peak, std::abs(value.real()));
+  return peak;
 }
 
 }  // namespace
@@ -79,13 +97,7 @@ Excitation::Excitation(const ExcitationSettings& settings) : settings_(settings)
   for (std::size_t k = 0; k < lines; ++k)
     phases_rad_.push_back(-std::numbers::pi * static_cast<double>(k) * static_cast<double>(k + 1) /
                           static_cast<double>(lines));
-  line_amplitude_ = 1.0;
-  // The peak is found between the samples that a client sends too.
-  const auto samples = static_cast<int>(40 * lines);
-  double peak = 0.0;
-  for (int i = 0; i < samples; ++i)
-    peak = std::max(peak, std::abs(multisineAt(static_cast<double>(i) / samples / settings_.from_hz)));
-  line_amplitude_ = settings_.amplitude / peak;
+  line_amplitude_ = settings_.amplitude / peakOf(phases_rad_);
 }
 
 double Excitation::valueAt(double time_s, double start) const noexcept {

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstdio>
 #include <initializer_list>
+#include <span>
 #include <string_view>
 #include <vector>
 
@@ -36,18 +37,51 @@ double largest(const Curve& curve, double CurveSample::*member) {
   return most;
 }
 
+// The first tick of a step; the end of the curve: it is none, or did not get there.
+Curve::const_iterator stepIn(const MotionRun& test) {
+  const auto& excitation = test.settings().excitation;
+  const auto& curve = test.curve();
+  if (excitation.kind != ExcitationKind::kStep) return curve.end();
+  const double target = test.origin() + excitation.base + excitation.amplitude;
+  return std::find_if(curve.begin(), curve.end(),
+                      [target](const auto& sample) { return sample.target == target; });
+}
+
 std::optional<StepResponse> stepOf(const MotionRun& test) {
   const auto& excitation = test.settings().excitation;
-  if (excitation.kind != ExcitationKind::kStep) return std::nullopt;
   const double start = test.origin() + excitation.base;
   const double target = start + excitation.amplitude;
   const auto& curve = test.curve();
-  const auto begin = std::find_if(curve.begin(), curve.end(),
-                                  [target](const auto& sample) { return sample.target == target; });
+  const auto begin = stepIn(test);
   if (begin == curve.end()) return std::nullopt;
   auto times = seriesOf(curve, &CurveSample::time_s);
   for (auto& time_s : times) time_s -= begin->time_s;
   return judgeStep(times, seriesOf(curve, &CurveSample::measured), start, target);
+}
+
+// Slope of the velocity by least squares, from when the current has risen.
+double accelerationOf(const MotionRun& test) {
+  constexpr double kRisingS = 0.02;
+  const auto begin = stepIn(test);
+  if (begin == test.curve().end() || test.settings().mode != ControlMode::kCurrent)
+    return std::numeric_limits<double>::quiet_NaN();
+  double count = 0.0;
+  double time = 0.0;
+  double velocity = 0.0;
+  double squares = 0.0;
+  double products = 0.0;
+  for (const auto& sample : std::span(begin, test.curve().end())) {
+    const double time_s = sample.time_s - begin->time_s - kRisingS;
+    if (time_s < 0.0 || !std::isfinite(sample.velocity_rpm)) continue;
+    count += 1.0;
+    time += time_s;
+    velocity += sample.velocity_rpm;
+    squares += time_s * time_s;
+    products += time_s * sample.velocity_rpm;
+  }
+  const double spread = squares - time * time / count;
+  if (!(spread > 0.0)) return std::numeric_limits<double>::quiet_NaN();
+  return (products - time * velocity / count) / spread;
 }
 
 // On the grid of the ticks from this time on: a tick that is missing is put between its neighbours.
@@ -186,6 +220,7 @@ MotionReport reportOf(const MotionRun& test) {
   for (const auto& sample : excited) report.limits |= sample.limits;
   if (test.aborted()) return report;  // of a part of the excitation nothing else can be told
   report.step = stepOf(test);
+  report.acceleration_rpm_per_s = accelerationOf(test);
   report.response = responseOf(test);
   report.bandwidth_hz = bandwidthHz(report.response);
   report.margins = stabilityMargins(report.response);
@@ -202,6 +237,8 @@ std::string text(const MotionReport& report, const MotionRun& test) {
     lines += nameAnd("settling (to 2 %)", quantity(step.settling_s, 3, "s"));
     lines += nameAnd("steady error", quantity(step.steady_error, 2, unit));
   }
+  if (!std::isnan(report.acceleration_rpm_per_s))
+    lines += nameAnd("acceleration", quantity(report.acceleration_rpm_per_s, 1, "rpm/s"));
   lines += nameAnd("following error", "rms " + quantity(report.following.rms, 2, unit) + ", largest " +
                                           quantity(report.following.max, 2, unit));
   lines += nameAnd("largest speed", quantity(report.largest_velocity_rpm, 1, "rpm"));
@@ -225,6 +262,7 @@ Json jsonOf(const MotionReport& report, const MotionRun& test) {
           {"largest_current_a", report.largest_current_a},
           {"limits", listOf(link::limitWords(report.limits))},
           {"step", stepJson(report.step)},
+          {"acceleration_rpm_per_s", report.acceleration_rpm_per_s},
           {"bandwidth_hz", report.bandwidth_hz},
           {"phase_margin_deg", report.margins.phase_deg},
           {"phase_margin_at_hz", report.margins.phase_at_hz},

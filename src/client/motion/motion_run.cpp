@@ -165,6 +165,9 @@ void MotionRun::take(const link::Event& event) {
   const bool refusal = event.code == static_cast<std::int32_t>(EventCode::kSetpointSkipped) ||
                        event.code == static_cast<std::int32_t>(EventCode::kNotOwner);
   if (refusal && event.source.view() == settings_.motor) refusal_ = printable(event.text.view());
+  // Not permitted, for one: the text has the line that would grant it.
+  const bool admission = event.code == static_cast<std::int32_t>(EventCode::kCommandRefused);
+  if (admission && event.client.view() == settings_.client) refusal_ = printable(event.text.view());
 }
 
 void MotionRun::end(Criterion criterion, const std::string& text) {

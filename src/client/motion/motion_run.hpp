@@ -45,7 +45,7 @@ class MotionRun {
   void take(const link::Trace& trace);
   void take(const link::State& state);
   void take(const link::Event& event);
-  /// Ends it: Ctrl-C, or rc10d is gone.
+  /// Ends it: Ctrl-C, a page that was left, or rc10d is gone.
   void end(Criterion criterion, const std::string& text);
 
   struct Order {
@@ -69,6 +69,8 @@ class MotionRun {
   /// Added to the values of the excitation.
   [[nodiscard]] double origin() const noexcept { return origin_; }
   [[nodiscard]] double tickS() const noexcept { return 1.0 / welcome_.rate_hz; }
+  /// Its time if nothing ends it before.
+  [[nodiscard]] double timeS() const noexcept { return excitation_.timeS(); }
 
  private:
   enum class Phase : std::uint8_t { kPreparing, kRunning, kLettingGo, kOver };

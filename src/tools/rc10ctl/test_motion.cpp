@@ -1,22 +1,19 @@
-#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <cstdio>
 #include <fstream>
 #include <memory>
 #include <optional>
-#include <span>
 #include <string>
-#include <vector>
 
 #include <CLI/CLI.hpp>
 
 #include "client/duration_text.hpp"
+#include "client/motion/motion_plan.hpp"
 #include "client/motion/motion_report.hpp"
 #include "client/motion/motion_run.hpp"
+#include "client/motion/motion_session.hpp"
 #include "client/quantity_text.hpp"
-#include "client/request_call.hpp"
-#include "client/state_text.hpp"
 #include "link/words.hpp"
 #include "verbs.hpp"
 
@@ -48,147 +45,43 @@ struct TestMotionOptions {
   std::string bode;
 };
 
-// Share of the amplitude beside the target that the angle and the speed of a sound loop may take.
-constexpr double kRoom = 0.5;
-
-// Ten periods give a mean of nine segments.
-double defaultTimeS(const client::ExcitationSettings& excitation) {
-  using Kind = client::ExcitationKind;
-  const bool sines = excitation.kind == Kind::kSweep || excitation.kind == Kind::kMultisine;
-  return sines ? std::max(10.0, 10.0 / excitation.from_hz) : 1.5;
-}
-
-Result<client::ExcitationSettings> excitationIn(const TestMotionOptions& options) {
-  client::ExcitationSettings excitation{
-      .kind = client::excitationOf(options.kind).value_or(client::ExcitationKind::kStep),
-      .base = options.base,
-      .amplitude = options.amplitude,
-      .rate_per_s = options.rate_per_s.value_or(0.0),
-      .from_hz = options.from_hz,
-      .to_hz = options.to_hz,
-      .linear = options.linear};
-  if (options.rate_per_s && excitation.kind != client::ExcitationKind::kRamp)
+Result<client::MotionPlan> planIn(const TestMotionOptions& options) {
+  const auto mode = link::modeOf(options.mode).value_or(ControlMode::kVelocity);
+  if (options.rate_per_s && options.kind != toString(client::ExcitationKind::kRamp))
     return fail("--rate is for a ramp, not for a " + options.kind + ": leave it out");
-  excitation.time_s = defaultTimeS(excitation);
+  if (mode != ControlMode::kVelocity && !options.max_speed_rpm)
+    return fail("a test in mode " + options.mode + " needs --max-speed RPM: beyond it the motor is let go");
+  const auto age = client::parseDuration(options.max_feedback_age);
+  if (!age) return fail("--max-feedback-age " + options.max_feedback_age + ": give a time like 100ms");
+  client::MotionPlan plan{.motor = options.motor,
+                          .kind = client::excitationOf(options.kind).value_or(client::ExcitationKind::kStep),
+                          .mode = mode,
+                          .amplitude = options.amplitude,
+                          .base = options.base,
+                          .rate_per_s = options.rate_per_s,
+                          .from_hz = options.from_hz,
+                          .to_hz = options.to_hz,
+                          .linear = options.linear,
+                          .max_current_a = options.max_current_a,
+                          .max_speed_rpm = options.max_speed_rpm,
+                          .min_angle_deg = options.min_angle_deg,
+                          .max_angle_deg = options.max_angle_deg,
+                          .max_feedback_age_s = std::chrono::duration<double>(*age).count(),
+                          .stop_at_limits = options.stop_at_limits,
+                          .dead_man_ms = options.dead_man_ms};
   if (options.time) {
     const auto time = client::parseDuration(*options.time);
     if (!time) return fail("--for " + *options.time + ": give a time like 2s or 500ms");
-    excitation.time_s = std::chrono::duration<double>(*time).count();
+    plan.time_s = std::chrono::duration<double>(*time).count();
   }
-  return excitation;
-}
-
-Result<client::AbortCriteria> criteriaIn(const TestMotionOptions& options, ControlMode mode,
-                                         const client::Excitation& excitation) {
-  const auto age = client::parseDuration(options.max_feedback_age);
-  if (!age) return fail("--max-feedback-age " + options.max_feedback_age + ": give a time like 100ms");
-  client::AbortCriteria criteria;
-  criteria.current_max_a = options.max_current_a;
-  criteria.feedback_age_max_us = std::chrono::duration<double, std::micro>(*age).count();
-  criteria.limits_abort = options.stop_at_limits;
-  const double room = kRoom * std::abs(options.amplitude);
-  if (mode == ControlMode::kVelocity) {
-    criteria.velocity_max_rpm = std::max(-excitation.lowest(), excitation.highest()) + room;
-  } else if (!options.max_speed_rpm) {
-    return fail("a test in mode " + options.mode + " needs --max-speed RPM: beyond it the motor is let go");
-  }
-  if (mode == ControlMode::kTotalAngle) {
-    criteria.angle_min_deg = excitation.lowest() - room;
-    criteria.angle_max_deg = excitation.highest() + room;
-  }
-  criteria.velocity_max_rpm = options.max_speed_rpm.value_or(criteria.velocity_max_rpm);
-  criteria.angle_min_deg = options.min_angle_deg.value_or(criteria.angle_min_deg);
-  criteria.angle_max_deg = options.max_angle_deg.value_or(criteria.angle_max_deg);
-  return criteria;
+  return plan;
 }
 
 Result<client::MotionSettings> settingsIn(const TestMotionOptions& options) {
-  const auto mode = link::modeOf(options.mode).value_or(ControlMode::kVelocity);
-  const auto excitation = excitationIn(options);
-  if (!excitation) return tl::unexpected(excitation.error());
-  const auto shape = client::Excitation::of(*excitation);
-  if (!shape) return tl::unexpected(shape.error());
-  const auto criteria = criteriaIn(options, mode, *shape);
-  if (!criteria) return tl::unexpected(criteria.error());
-  if (const auto fit = client::admits(*criteria, *shape, mode); !fit) return tl::unexpected(fit.error());
-  return client::MotionSettings{.client = kClientName,
-                                .motor = options.motor,
-                                .mode = mode,
-                                .excitation = *excitation,
-                                .criteria = *criteria,
-                                .validity_ms = options.dead_man_ms};
+  const auto plan = planIn(options);
+  if (!plan) return tl::unexpected(plan.error());
+  return client::settingsOf(*plan, kClientName);
 }
-
-// Between the run and the connection.
-class MotionSession {
- public:
-  MotionSession(LinkClient& rc10d, client::MotionRun& run, std::int32_t priority)
-      : rc10d_(rc10d), run_(run), buffer_(link::kMaxMessageSize) {
-    command_.client = run.settings().client;
-    command_.session = randomSession();
-    command_.priority = priority;
-    command_.setpoint_count = 1;
-    command_.setpoints[0].motor = run.settings().motor;
-  }
-
-  void run() {
-    auto choice = run_.choice();
-    (void)rc10d_.send(choice);
-    while (!run_.over()) {
-      if (!receive()) run_.end(client::Criterion::kConnection, rc10dEnded().message);
-      if (interrupted()) run_.end(client::Criterion::kInterrupted, "interrupted before its end");
-      if (const auto order = run_.order(steady_clock::now())) send(*order);
-      waitReadable(rc10d_, run_.due() - steady_clock::now());
-    }
-  }
-
-  /// The motor's action by the newest state.
-  [[nodiscard]] const char* whatMotorDoes() const noexcept {
-    return held_ ? "is let go as soon as rc10d goes on" : client::whatActs(acting_);
-  }
-
- private:
-  // False: rc10d has ended.
-  [[nodiscard]] bool receive() {
-    for (;;) {
-      const auto received = rc10d_.receive(buffer_);
-      if (received.status == LinkClient::ReceiveStatus::kClosed) return false;
-      if (received.status == LinkClient::ReceiveStatus::kNothing) return true;
-      take(received.datagram);
-    }
-  }
-
-  void take(std::span<const std::byte> datagram) {
-    if (link::open(datagram, trace_)) {
-      run_.take(trace_);
-    } else if (link::open(datagram, state_)) {
-      const bool known = run_.motor() < state_.motor_count;
-      acting_ = known ? state_.motors[run_.motor()].acting : Acting::kNothing;
-      held_ = known && state_.motors[run_.motor()].owner.view() == command_.client.view();
-      run_.take(state_);
-    } else if (link::Event event; link::open(datagram, event)) {
-      run_.take(event);
-    }
-  }
-
-  // One that is lost is followed by another, or lapses.
-  void send(const client::MotionRun::Order& order) {
-    command_.setpoints[0].target = order.target;
-    command_.validity_ms = order.validity_ms;
-    command_.received_ns = 0;  // the present time
-    ++command_.seq;
-    (void)rc10d_.send(command_);
-  }
-
-  LinkClient& rc10d_;
-  client::MotionRun& run_;
-  std::vector<std::byte> buffer_;
-  link::Command command_;
-  link::Trace trace_;
-  link::State state_;
-  Acting acting_{};
-  bool held_ = false;  // its target is in force still
-};
 
 // Opened before anything moves; without a path there is none.
 class OutputFile {
@@ -245,8 +138,13 @@ ExitCode testMotion(const Global& global, const TestMotionOptions& options) {
   for (const auto* file : {&csv, &bode}) {
     if (!file->isOpen()) return complain({file->path() + " cannot be written"}, ExitCode::kFailed);
   }
-  MotionSession session(*rc10d, *run, options.priority);
-  session.run();
+  client::MotionSession session(*rc10d, *run, options.priority);
+  while (!run->over()) {
+    session.receive();
+    if (interrupted()) run->end(client::Criterion::kInterrupted, "interrupted before its end");
+    session.send(steady_clock::now());
+    waitReadable(*rc10d, run->due() - steady_clock::now());
+  }
   const auto report = client::reportOf(*run);
   const auto why = verdict(*run, session.whatMotorDoes());
   if (global.json)
