@@ -1,28 +1,11 @@
 #include "web/columns_frame.hpp"
 
 #include <algorithm>
-#include <bit>
-#include <cstring>
+
+#include "web/frame_writer.hpp"
 
 namespace rc10::web {
 namespace {
-
-static_assert(std::endian::native == std::endian::little, "the frame is written as memory is");
-
-class Writer {
- public:
-  explicit Writer(std::size_t size) { bytes_.reserve(size); }
-  template <typename Number>
-  void add(Number number) {
-    const auto at = bytes_.size();
-    bytes_.resize(at + sizeof number);
-    std::memcpy(bytes_.data() + at, &number, sizeof number);
-  }
-  [[nodiscard]] std::vector<std::byte> take() { return std::move(bytes_); }
-
- private:
-  std::vector<std::byte> bytes_;
-};
 
 constexpr std::size_t kHeaderSize = 32;
 
@@ -31,7 +14,7 @@ constexpr std::size_t kHeaderSize = 32;
 std::vector<std::byte> columnsFrame(const TraceStore& store, const View& view, FrameKind kind,
                                     std::uint32_t view_number, std::int64_t first, std::size_t count) {
   count = std::min(count, kMaxColumns);
-  Writer out{kHeaderSize + view.signals.size() * count * 2 * sizeof(float)};
+  FrameWriter out{kHeaderSize + view.signals.size() * count * 2 * sizeof(float)};
   out.add(kFrameVersion);
   out.add(kind);
   out.add(static_cast<std::uint16_t>(view.signals.size()));

@@ -21,6 +21,7 @@ enum class FrameKind : std::uint8_t {
   kReset = 2,      ///< The first of a view: what was drawn before is void.
   kRange = 3,      ///< An answer to a question about the past.
   kRecording = 4,  ///< No columns: see pieceFrame().
+  kCurve = 5,      ///< Ticks of a test of motion: see curveFrame().
 };
 
 inline constexpr std::uint8_t kFrameVersion = 1;

@@ -62,7 +62,10 @@ void Hub::join(PageSocket& socket, bool loopback, std::string_view address) {
 }
 
 void Hub::leave(PageSocket& socket) {
-  if (const auto* page = pageOf(socket); page != nullptr) configs_.forget(page->number);
+  if (auto* page = pageOf(socket); page != nullptr) {
+    configs_.forget(page->number);
+    dropEvaluation(*page);
+  }
   std::erase_if(pages_, [&](const auto& page) { return page->socket == &socket; });
   chooseTraces();
 }
@@ -98,6 +101,13 @@ void Hub::handle(PageSocket& socket, std::string_view message, MonotonicTime now
     drive(*page, *held, page->renewals.ageOf(held->sent, now));
   } else if (const auto* clock = std::get_if<TellClock>(&*request)) {
     (void)page->renewals.ageOf(clock->sent, now);
+  } else if (const auto* test = std::get_if<StartTest>(&*request)) {
+    begin(*page, *test, now, page->renewals.ageOf(test->sent, now));
+  } else if (const auto* renewal = std::get_if<RenewTest>(&*request)) {
+    const auto age = page->renewals.ageOf(renewal->sent, now);
+    if (page->test && page->test->seq() == renewal->seq) page->test->renew(now, age);
+  } else if (const auto* end = std::get_if<EndTest>(&*request)) {
+    if (page->test && page->test->seq() == end->seq) page->test->end(end->why);
   } else if (page->right == Right::kNothing) {
     page->socket->sendText(shared(responseMessage(0, "refused", "show the token first")));
   } else if (const auto* view = std::get_if<ChooseView>(&*request)) {
@@ -116,6 +126,8 @@ void Hub::handle(PageSocket& socket, std::string_view message, MonotonicTime now
     showConfigTo(*page, *config);
   } else if (const auto* check_config = std::get_if<CheckConfig>(&*request)) {
     check(*page, *check_config);
+  } else if (const auto* curve = std::get_if<AskCurve>(&*request)) {
+    sendCurve(*page, *curve);
   }
 }
 
@@ -255,6 +267,61 @@ void Hub::drive(Page& page, const DriveMotor& wanted, Duration age) {
   if (!refused.empty()) page.socket->sendText(shared(responseMessage(wanted.seq, "refused", refused)));
 }
 
+void Hub::begin(Page& page, const StartTest& wanted, MonotonicTime now, Duration age) {
+  auto refused = whyNotMoving(page);
+  if (refused.empty() && !feed_.connected()) refused = feed_.reason();
+  if (refused.empty() && page.test) refused = "a test of this page goes on: stop it first";
+  if (refused.empty()) {
+    auto test = PageTest::begin(
+        wanted, {.client = page.name, .token = page.link->token(), .socket_path = feed_.socketPath()}, now,
+        age);
+    if (test) {
+      dropEvaluation(page);
+      page.test = std::move(*test);
+    } else {
+      refused = test.error().message;
+    }
+  }
+  if (!refused.empty()) page.socket->sendText(shared(responseMessage(wanted.seq, "refused", refused)));
+}
+
+// The last piece is the end of it here.
+void Hub::sendCurve(Page& page, const AskCurve& wanted) {
+  if (!page.evaluation || page.evaluation->seq() != wanted.seq) return;
+  page.socket->sendBinary(curveFrame(page.evaluation->curve(), wanted.seq, wanted.first));
+  if (wanted.first + kMaxCurveTicks >= page.evaluation->curve().size()) dropEvaluation(page);
+}
+
+void Hub::dropEvaluation(Page& page) {
+  if (page.evaluation) unwanted_.push_back(std::move(page.evaluation));
+}
+
+bool Hub::isTesting() const noexcept {
+  return std::any_of(pages_.begin(), pages_.end(), [](const auto& page) { return page->test != nullptr; });
+}
+
+void Hub::runTests(MonotonicTime now) {
+  for (const auto& page : pages_) {
+    if (!page->test) continue;
+    page->test->turn(now);
+    if (!page->test->isRunning()) page->evaluation = std::make_unique<TestEvaluation>(std::move(page->test));
+  }
+}
+
+void Hub::publishTests() {
+  for (const auto& page : pages_) {
+    if (page->test) {
+      const auto& run = page->test->run();
+      const double time_s = run.curve().empty() ? 0.0 : run.curve().back().time_s;
+      if (!page->socket->behind())
+        page->socket->sendText(shared(testMessage(page->test->seq(), time_s, run.timeS())));
+    }
+    if (!page->evaluation) continue;
+    if (auto message = page->evaluation->message()) page->socket->sendText(shared(std::move(*message)));
+  }
+  std::erase_if(unwanted_, [](const auto& evaluation) { return evaluation->isDone(); });
+}
+
 // Signals of all pages together.
 void Hub::chooseTraces() {
   std::vector<link::TraceSignal> all;
@@ -310,6 +377,7 @@ void Hub::publish() {
     }
   }
   for (const auto& page : pages_) publishColumns(*page);
+  publishTests();
 }
 
 void Hub::publishColumns(Page& page) {

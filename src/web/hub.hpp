@@ -12,6 +12,7 @@
 #include "web/config_desk.hpp"
 #include "web/page_link.hpp"
 #include "web/page_request.hpp"
+#include "web/page_test.hpp"
 #include "web/recordings.hpp"
 #include "web/renewal_age.hpp"
 #include "web/robot_feed.hpp"
@@ -47,6 +48,9 @@ class Hub {
 
   /// A hundred times a second.
   void turn();
+  /// Tests of motion run: runTests() is to be called every client::MotionRun::kSendPeriod.
+  [[nodiscard]] bool isTesting() const noexcept;
+  void runTests(MonotonicTime now);
 
  private:
   struct Page {
@@ -62,6 +66,8 @@ class Hub {
     RenewalAge renewals;
     std::optional<OpenRecording> recording;
     std::uint32_t recording_number = 0;
+    std::unique_ptr<PageTest> test;
+    std::unique_ptr<TestEvaluation> evaluation;
   };
 
   [[nodiscard]] Page* pageOf(const PageSocket& socket) noexcept;
@@ -75,6 +81,10 @@ class Hub {
   void showConfigTo(const Page& page, const AskConfig& wanted);
   void check(const Page& page, CheckConfig wanted);
   void answerConfigs();
+  void begin(Page& page, const StartTest& wanted, MonotonicTime now, Duration age);
+  void sendCurve(Page& page, const AskCurve& wanted);
+  void dropEvaluation(Page& page);
+  void publishTests();
   [[nodiscard]] std::string downNow() const;
   [[nodiscard]] std::string whyNotMoving(const Page& page) const;
   void chooseTraces();
@@ -94,6 +104,8 @@ class Hub {
   std::uint64_t opened_ = 0;
   std::uint64_t turns_ = 0;
   std::string told_down_;
+  /// Of pages that are gone, or have begun another test: their threads end by themselves.
+  std::vector<std::unique_ptr<TestEvaluation>> unwanted_;
 };
 
 }  // namespace rc10::web

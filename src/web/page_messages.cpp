@@ -1,6 +1,7 @@
 #include "web/page_messages.hpp"
 
 #include <algorithm>
+#include <array>
 #include <span>
 
 #include "bus/frame_text.hpp"
@@ -10,6 +11,8 @@
 #include "link/event_text.hpp"
 #include "rc10_version.hpp"
 #include "survey/frame_words.hpp"
+#include "web/columns_frame.hpp"
+#include "web/frame_writer.hpp"
 
 namespace rc10::web {
 namespace {
@@ -132,6 +135,42 @@ std::string responseMessage(std::int64_t seq, std::string_view status, std::stri
                  {"status", status},
                  {"message", message},
                  {"values", std::move(told)}});
+}
+
+std::string testMessage(std::int64_t seq, double time_s, double lasts_s) {
+  return lineOf({{"type", "test"}, {"seq", seq}, {"time_s", time_s}, {"lasts_s", lasts_s}});
+}
+
+std::string testDoneMessage(std::int64_t seq, const client::MotionReport& report,
+                            const client::MotionRun& run, std::string_view doing) {
+  return lineOf({{"type", "test_done"},
+                 {"seq", seq},
+                 {"time_s", run.curve().empty() ? 0.0 : run.curve().back().time_s},
+                 {"doing", doing},
+                 {"report", client::jsonOf(report, run)}});
+}
+
+std::vector<std::byte> curveFrame(const client::Curve& curve, std::int64_t seq, std::size_t first) {
+  using client::CurveSample;
+  constexpr std::array kColumns{&CurveSample::time_s,          &CurveSample::target,
+                                &CurveSample::target_shaped,   &CurveSample::measured,
+                                &CurveSample::total_angle_deg, &CurveSample::velocity_rpm,
+                                &CurveSample::current_a,       &CurveSample::feedback_age_us};
+  const std::size_t begin = std::min(first, curve.size());
+  const auto ticks = std::span{curve}.subspan(begin, std::min(kMaxCurveTicks, curve.size() - begin));
+  FrameWriter out{32 + (kColumns.size() + 1) * ticks.size() * sizeof(double)};
+  out.add(kFrameVersion);
+  out.add(FrameKind::kCurve);
+  out.add(static_cast<std::uint16_t>(kColumns.size() + 1));
+  out.add(static_cast<std::uint32_t>(ticks.size()));
+  out.add(std::uint64_t{0});
+  out.add(static_cast<double>(seq));
+  out.add(static_cast<double>(begin));
+  for (const auto column : kColumns) {
+    for (const auto& tick : ticks) out.add(tick.*column);
+  }
+  for (const auto& tick : ticks) out.add(static_cast<double>(tick.limits));
+  return out.take();
 }
 
 }  // namespace rc10::web

@@ -1,10 +1,15 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <span>
 #include <string>
 #include <string_view>
+#include <vector>
 
+#include "client/motion/curve.hpp"
+#include "client/motion/motion_report.hpp"
+#include "client/motion/motion_run.hpp"
 #include "link/link_protocol.hpp"
 #include "web/access.hpp"
 #include "web/daemon_end.hpp"
@@ -16,7 +21,7 @@ namespace rc10::web {
 
 /// Version of the messages between this server and its page, which come from one package: a page that was
 /// loaded before an upgrade loads itself anew.
-inline constexpr int kPageProtocol = 1;
+inline constexpr int kPageProtocol = 2;
 
 // Messages to a page, one JSON object each with its "type".
 
@@ -41,5 +46,18 @@ inline constexpr int kPageProtocol = 1;
 /// To a request of the page, by its own number.
 [[nodiscard]] std::string responseMessage(std::int64_t seq, std::string_view status, std::string_view message,
                                           std::span<const link::NamedValue> values = {});
+
+/// A test of motion goes on.
+[[nodiscard]] std::string testMessage(std::int64_t seq, double time_s, double lasts_s);
+/// It is over, with its numbers as `rc10ctl test-motion --json` has them, and what its motor does.
+[[nodiscard]] std::string testDoneMessage(std::int64_t seq, const client::MotionReport& report,
+                                          const client::MotionRun& run, std::string_view doing);
+
+/// Binary frame with ticks of a curve from `first` on, kMaxCurveTicks at most, little-endian: version u8,
+/// kind u8, columns u16, ticks u32, 0 u32, 0 u32, the test's number f64, first f64; then all of each column,
+/// f64: those of `rc10ctl test-motion --csv`.
+inline constexpr std::size_t kMaxCurveTicks = 4096;
+[[nodiscard]] std::vector<std::byte> curveFrame(const client::Curve& curve, std::int64_t seq,
+                                                std::size_t first);
 
 }  // namespace rc10::web

@@ -4,10 +4,13 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <optional>
 
 #include <nlohmann/json.hpp>
 
+#include "app/printable.hpp"
 #include "link/link_protocol.hpp"
+#include "link/words.hpp"
 #include "web/columns_frame.hpp"
 
 namespace rc10::web {
@@ -229,6 +232,147 @@ Result<PageRequest> configCheckOf(const Received& object) {
   return check;
 }
 
+// Keys of a test's message: one that is not known might have been a bound.
+constexpr std::array<std::string_view, 22> kTestKeys{"type",
+                                                     "schema",
+                                                     "seq",
+                                                     "sent_us",
+                                                     "motor",
+                                                     "kind",
+                                                     "mode",
+                                                     "amplitude",
+                                                     "base",
+                                                     "seconds",
+                                                     "rate_per_s",
+                                                     "from_hz",
+                                                     "to_hz",
+                                                     "linear",
+                                                     "max_current_a",
+                                                     "max_speed_rpm",
+                                                     "min_angle_deg",
+                                                     "max_angle_deg",
+                                                     "max_feedback_age_ms",
+                                                     "stop_at_limits",
+                                                     "dead_man_ms",
+                                                     "priority"};
+// Far beyond any motor, and so are its ranges: those of a test are the library's.
+constexpr double kMostNumber = 1e9;
+constexpr double kMostPriority = 1e6;
+constexpr std::size_t kMostKey = 40;
+
+/// Members of one message, and the first mistake in them.
+class Members {
+ public:
+  explicit Members(const Received& object) : object_(object) {}
+
+  double number(const char* key) {
+    const auto found = optionalNumber(key);
+    if (!found) wrong(key, "a number");
+    return found.value_or(0.0);
+  }
+  double number(const char* key, double otherwise) { return optionalNumber(key).value_or(otherwise); }
+  // Missing or null: it has its default.
+  std::optional<double> optionalNumber(const char* key) {
+    const auto* member = memberOf(object_, key);
+    if (member == nullptr || member->is_null()) return std::nullopt;
+    const double value = member->is_number() ? member->get<double>() : std::nan("");
+    if (std::fabs(value) <= kMostNumber) return value;
+    wrong(key, "a number");
+    return std::nullopt;
+  }
+  std::int64_t whole(const char* key, double least, double most, double otherwise) {
+    const double value = number(key, otherwise);
+    if (!(value >= least && value <= most)) wrong(key, "a number in its range");
+    return value >= least && value <= most ? static_cast<std::int64_t>(value) : 0;
+  }
+  bool flag(const char* key) {
+    const auto* member = memberOf(object_, key);
+    if (member != nullptr && !member->is_boolean()) wrong(key, "true or false");
+    return member != nullptr && member->is_boolean() && member->get<bool>();
+  }
+  void wrong(const char* key, const char* wanted) {
+    if (mistake_.empty()) mistake_ = std::string{"'"} + key + "' is not " + wanted;
+  }
+  [[nodiscard]] const std::string& mistake() const noexcept { return mistake_; }
+
+ private:
+  const Received& object_;
+  std::string mistake_;
+};
+
+client::MotionPlan planOf(const Received& object, Members& members) {
+  client::MotionPlan plan;
+  plan.motor = textOf(object, "motor");
+  if (plan.motor.empty() || plan.motor.size() >= sizeof(link::Name)) members.wrong("motor", "a motor's name");
+  const auto kind = client::excitationOf(textOf(object, "kind"));
+  if (!kind) members.wrong("kind", "step, ramp, sweep or multisine");
+  plan.kind = kind.value_or(plan.kind);
+  const auto mode = link::modeOf(textOf(object, "mode"));
+  if (!mode) members.wrong("mode", "velocity, total_angle or current");
+  plan.mode = mode.value_or(plan.mode);
+  plan.amplitude = members.number("amplitude");
+  plan.base = members.number("base", plan.base);
+  plan.time_s = members.optionalNumber("seconds");
+  plan.rate_per_s = members.optionalNumber("rate_per_s");
+  plan.from_hz = members.number("from_hz", plan.from_hz);
+  plan.to_hz = members.number("to_hz", plan.to_hz);
+  plan.linear = members.flag("linear");
+  plan.max_current_a = members.number("max_current_a");
+  plan.max_speed_rpm = members.optionalNumber("max_speed_rpm");
+  plan.min_angle_deg = members.optionalNumber("min_angle_deg");
+  plan.max_angle_deg = members.optionalNumber("max_angle_deg");
+  plan.max_feedback_age_s = members.number("max_feedback_age_ms", plan.max_feedback_age_s * 1e3) / 1e3;
+  plan.stop_at_limits = members.flag("stop_at_limits");
+  plan.dead_man_ms =
+      static_cast<std::int32_t>(members.whole("dead_man_ms", 0, kMostNumber, plan.dead_man_ms));
+  return plan;
+}
+
+Result<PageRequest> testOf(const Received& object) {
+  const auto schema = wholeOf(object, "schema", 0, kMaxExact);
+  if (!schema || *schema != StartTest::kSchema)
+    return fail("'schema' of a test is " + std::to_string(StartTest::kSchema) +
+                " here: load the page anew, it is of another version of rc10-web");
+  for (const auto& [key, value] : object.items()) {
+    if (std::find(kTestKeys.begin(), kTestKeys.end(), key) == kTestKeys.end())
+      return fail("a test has no '" + printable(key.substr(0, kMostKey)) + "'");
+  }
+  const auto seq = wholeOf(object, "seq", 0, kMaxExact);
+  const auto sent_us = wholeOf(object, "sent_us", 0, kMaxExact);
+  for (const auto* each : {&seq, &sent_us}) {
+    if (!*each) return tl::unexpected(each->error());
+  }
+  Members members(object);
+  StartTest test{.seq = *seq, .sent = std::chrono::microseconds{*sent_us}, .plan = planOf(object, members)};
+  test.priority = static_cast<std::int32_t>(members.whole("priority", -kMostPriority, kMostPriority, 0));
+  if (!members.mistake().empty()) return fail(members.mistake());
+  return test;
+}
+
+Result<PageRequest> renewalOf(const Received& object) {
+  const auto seq = wholeOf(object, "seq", 0, kMaxExact);
+  const auto sent_us = wholeOf(object, "sent_us", 0, kMaxExact);
+  for (const auto* each : {&seq, &sent_us}) {
+    if (!*each) return tl::unexpected(each->error());
+  }
+  return RenewTest{*seq, std::chrono::microseconds{*sent_us}};
+}
+
+Result<PageRequest> endOf(const Received& object) {
+  const auto seq = wholeOf(object, "seq", 0, kMaxExact);
+  if (!seq) return tl::unexpected(seq.error());
+  return EndTest{*seq, textOf(object, "why") == "left" ? TestEnd::kLeft : TestEnd::kStopped};
+}
+
+Result<PageRequest> curveOf(const Received& object) {
+  const auto seq = wholeOf(object, "seq", 0, kMaxExact);
+  const auto first = wholeOf(object, "first", 0, std::numeric_limits<std::uint32_t>::max());
+  for (const auto* each : {&seq, &first}) {
+    if (!*each) return tl::unexpected(each->error());
+  }
+  return AskCurve{*seq, static_cast<std::uint32_t>(*first)};
+}
+
 // An e-stop counts whatever else its message says, and if it says nothing that can be read.
 PageRequest estopOf(std::int64_t seq) {
   return AskRobot{.seq = seq, .operation = toString(Operation::kEstop), .target = {}, .values = {}};
@@ -259,6 +403,10 @@ Result<PageRequest> parsePageRequest(std::string_view text) {
   if (type == "words") return wordsOf(json);
   if (type == "config") return configOf(json);
   if (type == "config_check") return configCheckOf(json);
+  if (type == "test") return testOf(json);
+  if (type == "test_renewal") return renewalOf(json);
+  if (type == "test_end") return endOf(json);
+  if (type == "curve") return curveOf(json);
   return fail("there is no message of this type");
 }
 

@@ -10,6 +10,7 @@
 #include "app/result.hpp"
 #include "app/time.hpp"
 #include "app/vocabulary.hpp"
+#include "client/motion/motion_plan.hpp"
 
 namespace rc10::web {
 
@@ -100,8 +101,32 @@ struct CheckConfig {
   std::string text;
 };
 
+/// A test of motion. It goes on as long as the page says so.
+struct StartTest {
+  static constexpr std::int64_t kSchema = 1;
+  std::int64_t seq = 0;  ///< One number for all that concerns this test.
+  Duration sent{};       ///< By the page's clock.
+  client::MotionPlan plan;
+  std::int32_t priority = 0;
+};
+struct RenewTest {
+  std::int64_t seq = 0;
+  Duration sent{};
+};
+enum class TestEnd : std::uint8_t { kStopped, kLeft };
+struct EndTest {
+  std::int64_t seq = 0;
+  TestEnd why{};
+};
+/// Ticks of the curve of the last test, from this one on.
+struct AskCurve {
+  std::int64_t seq = 0;
+  std::uint32_t first = 0;
+};
+
 using PageRequest = std::variant<ShowToken, ChooseView, AskRange, AskRobot, DriveMotor, TellClock,
-                                 AskRecordings, AskRecording, AskPiece, AskWords, AskConfig, CheckConfig>;
+                                 AskRecordings, AskRecording, AskPiece, AskWords, AskConfig, CheckConfig,
+                                 StartTest, RenewTest, EndTest, AskCurve>;
 
 /// A stranger's message. The error is a sentence for him.
 [[nodiscard]] Result<PageRequest> parsePageRequest(std::string_view text);

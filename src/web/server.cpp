@@ -306,8 +306,21 @@ class Server::Parts {
     timer_.async_wait([this, due](error_code error) {
       if (error) return;
       shared_.hub.turn();
+      if (shared_.hub.isTesting() && !testing_) runTests(std::chrono::steady_clock::now());
       // Turns that were missed are not made up for.
       turn(std::max(due + kTurn, std::chrono::steady_clock::now()));
+    });
+  }
+
+  void runTests(std::chrono::steady_clock::time_point due) {
+    testing_ = shared_.hub.isTesting();
+    if (!testing_) return;
+    test_timer_.expires_at(due);
+    test_timer_.async_wait([this, due](error_code error) {
+      if (error) return;
+      const auto now = std::chrono::steady_clock::now();
+      shared_.hub.runTests(now);
+      runTests(std::max(due + client::MotionRun::kSendPeriod, now));
     });
   }
 
@@ -319,6 +332,8 @@ class Server::Parts {
   asio::signal_set signals_;
   asio::steady_timer timer_;
   asio::steady_timer pause_{context_};
+  asio::steady_timer test_timer_{context_};
+  bool testing_ = false;
 };
 
 Server::Server(std::unique_ptr<Parts> parts) : parts_(std::move(parts)) {}

@@ -5,6 +5,7 @@
 #include <string_view>
 #include <variant>
 
+#include "client/motion/motion_plan.hpp"
 #include "fuzz_input.hpp"
 #include "link/link_protocol.hpp"
 #include "web/columns_frame.hpp"
@@ -31,6 +32,13 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   } else if (const auto* drive = std::get_if<web::DriveMotor>(&*request)) {
     require(std::isfinite(drive->value) && !drive->motor.empty() && drive->motor.size() < sizeof(link::Name));
     require(drive->mode == ControlMode::kVelocity || drive->mode == ControlMode::kCurrent);
+  } else if (const auto* test = std::get_if<web::StartTest>(&*request)) {
+    require(!test->plan.motor.empty() && test->plan.motor.size() < sizeof(link::Name));
+    const auto settings = client::settingsOf(test->plan, "page");
+    if (settings) {
+      require(settings->validity_ms >= 20 && settings->validity_ms <= 1000);
+      require(std::isfinite(settings->criteria.velocity_max_rpm) && settings->criteria.current_max_a > 0.0);
+    }
   } else if (const auto* words = std::get_if<web::AskWords>(&*request)) {
     require(words->events.size() <= web::AskWords::kMost && words->frames.size() <= web::AskWords::kMost);
     for (const auto& frame : words->frames) require(frame.bus < words->buses.size());

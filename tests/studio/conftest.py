@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 from hostlib import Daemon, Program, check_environment
 from hostlib.daemon import BIN, CONFIG, REPO
-from playwright.sync_api import Browser, Page, expect, sync_playwright
+from playwright.sync_api import Browser, Page, Playwright, expect, sync_playwright
 
 # Debian's Chromium, which asks nobody on the internet for anything.
 CHROMIUM = "/usr/bin/chromium"
@@ -78,12 +78,17 @@ def studio(words: tuple[str, ...], robot: str) -> Iterator[Studio]:
 
 
 @pytest.fixture(scope="session")
-def chromium() -> Iterator[Browser]:
+def playwright() -> Iterator[Playwright]:
     assert Path(CHROMIUM).exists(), "scripts/install-deps.sh web"
     with sync_playwright() as playwright:
-        browser = playwright.chromium.launch(executable_path=CHROMIUM, args=[*QUIET])
-        yield browser
-        browser.close()
+        yield playwright
+
+
+@pytest.fixture(scope="session")
+def chromium(playwright: Playwright) -> Iterator[Browser]:
+    browser = playwright.chromium.launch(executable_path=CHROMIUM, args=[*QUIET])
+    yield browser
+    browser.close()
 
 
 # Complaints of the browser about a page: scripts and styles that its policy forbids, failures.

@@ -17,7 +17,17 @@ import rc10
 from conftest import PATIENCE_MS, Studio
 
 REMEDY = REPO / "web" / "src" / "remedy.tsx"
-TABS = ("overview", "match", "plots", "move", "events", "blackbox", "timing", "configuration")
+TABS = (
+    "overview",
+    "match",
+    "plots",
+    "move",
+    "tune",
+    "events",
+    "blackbox",
+    "timing",
+    "configuration",
+)
 
 
 def open_tab(page: Page, name: str) -> None:

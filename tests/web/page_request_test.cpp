@@ -87,6 +87,72 @@ TEST(PageRequest, WordsAreAskedForEventsAndFrames) {
   EXPECT_THAT(words.buses[words.frames[0].bus], ::testing::ElementsAre("M3508", "GM6020"));
 }
 
+std::string testWith(const std::string& more) {
+  return R"({"type":"test","schema":1,"seq":7,"sent_us":1500,"motor":"wheel","kind":"sweep","mode":"velocity",)"
+         R"("amplitude":20,"max_current_a":12)" +
+         more + "}";
+}
+
+TEST(PageRequest, ATestOfMotionHasItsShapeItsBoundsAndTheTimeOfThePage) {
+  const auto test = parsed<StartTest>(
+      testWith(R"(,"base":-60.5,"seconds":12,"from_hz":2,"to_hz":30,"linear":true,"max_speed_rpm":100,)"
+               R"("min_angle_deg":-5,"max_angle_deg":null,"max_feedback_age_ms":150,"stop_at_limits":true,)"
+               R"("dead_man_ms":300,"priority":2)"));
+  EXPECT_EQ(test.seq, 7);
+  EXPECT_EQ(test.sent, std::chrono::microseconds{1500});
+  EXPECT_EQ(test.plan.motor, "wheel");
+  EXPECT_EQ(test.plan.kind, client::ExcitationKind::kSweep);
+  EXPECT_EQ(test.plan.mode, ControlMode::kVelocity);
+  EXPECT_EQ(test.plan.amplitude, 20.0);
+  EXPECT_EQ(test.plan.base, -60.5);
+  EXPECT_EQ(test.plan.time_s, 12.0);
+  EXPECT_EQ(test.plan.rate_per_s, std::nullopt);
+  EXPECT_EQ(test.plan.from_hz, 2.0);
+  EXPECT_EQ(test.plan.to_hz, 30.0);
+  EXPECT_TRUE(test.plan.linear);
+  EXPECT_EQ(test.plan.max_current_a, 12.0);
+  EXPECT_EQ(test.plan.max_speed_rpm, 100.0);
+  EXPECT_EQ(test.plan.min_angle_deg, -5.0);
+  EXPECT_EQ(test.plan.max_angle_deg, std::nullopt);
+  EXPECT_EQ(test.plan.max_feedback_age_s, 0.15);
+  EXPECT_TRUE(test.plan.stop_at_limits);
+  EXPECT_EQ(test.plan.dead_man_ms, 300);
+  EXPECT_EQ(test.priority, 2);
+  // As rc10ctl has them.
+  const auto bare = parsed<StartTest>(testWith(""));
+  EXPECT_EQ(bare.plan.dead_man_ms, 200);
+  EXPECT_EQ(bare.plan.max_feedback_age_s, 0.2);
+}
+
+TEST(PageRequest, ATestIsRenewedEndedAndItsCurveAskedForByItsNumber) {
+  const auto renewal = parsed<RenewTest>(R"({"type":"test_renewal","seq":7,"sent_us":9})");
+  EXPECT_EQ(renewal.seq, 7);
+  EXPECT_EQ(renewal.sent, std::chrono::microseconds{9});
+  EXPECT_EQ(parsed<EndTest>(R"({"type":"test_end","seq":7,"why":"left"})").why, TestEnd::kLeft);
+  EXPECT_EQ(parsed<EndTest>(R"({"type":"test_end","seq":7})").why, TestEnd::kStopped);
+  EXPECT_EQ(parsed<AskCurve>(R"({"type":"curve","seq":7,"first":4096})").first, 4096U);
+}
+
+TEST(PageRequest, ATestWithAWordThatIsNotKnownIsRefusedForItMayHaveBeenABound) {
+  const auto mistake = [](const std::string& text) {
+    const auto request = parsePageRequest(text);
+    return request ? std::string{} : request.error().message;
+  };
+  using ::testing::HasSubstr;
+  EXPECT_THAT(mistake(testWith(R"(,"max_sped_rpm":100)")), HasSubstr("a test has no 'max_sped_rpm'"));
+  EXPECT_THAT(mistake(testWith(R"(,"max_speed_rpm":"100")")), HasSubstr("'max_speed_rpm' is not a number"));
+  EXPECT_THAT(mistake(testWith(R"(,"linear":1)")), HasSubstr("'linear' is not true or false"));
+  EXPECT_THAT(mistake(testWith(R"(,"dead_man_ms":1e12)")), HasSubstr("'dead_man_ms' is not a number"));
+  EXPECT_THAT(mistake(testWith(R"(,"kind":"wave")")), HasSubstr("'kind' is not step"));
+  EXPECT_THAT(mistake(R"({"type":"test","schema":2,"seq":7,"sent_us":1})"), HasSubstr("load the page anew"));
+  EXPECT_THAT(mistake(R"({"type":"test","seq":7,"sent_us":1})"), HasSubstr("'schema' of a test is 1"));
+  EXPECT_THAT(mistake(R"({"type":"test","schema":1,"seq":7,"sent_us":1,"motor":"wheel","kind":"step"})"),
+              HasSubstr("'mode' is not"));
+  EXPECT_THAT(mistake(R"({"type":"test","schema":1,"seq":7,"sent_us":1,"motor":"wheel","kind":"step",)"
+                      R"("mode":"velocity","amplitude":1})"),
+              HasSubstr("'max_current_a' is not a number"));
+}
+
 TEST(PageRequest, WhatIsWrongIsRefusedInWords) {
   const std::string long_text(2000, 'x');
   for (const auto& text : std::initializer_list<std::string>{
@@ -113,6 +179,11 @@ TEST(PageRequest, WhatIsWrongIsRefusedInWords) {
            R"({"type":"words","seq":1,"events":[],"buses":[[1]],"frames":[]})",
            R"({"type":"words","seq":1,"events":[],"buses":[[],[],[],[],[]],"frames":[]})",
            R"({"type":"clock","sent_us":-1})",
+           R"({"type":"test_renewal","seq":7})",
+           R"({"type":"test_renewal","sent_us":7})",
+           R"({"type":"test_end"})",
+           R"({"type":"curve","seq":7,"first":-1})",
+           R"({"type":"curve","seq":7})",
            R"({"type":"drive","seq":1,"motor":"yaw","mode":"velocity","value":1})",
            R"({"type":"drive","seq":1,"mode":"velocity","value":1,"sent_us":1})",
            R"({"type":"drive","seq":1,"motor":"yaw","mode":"impedance","value":1,"sent_us":1})",

@@ -18,11 +18,11 @@ export function pythonOf(request: RobotRequest): string {
 }
 
 /** Buttons that copy both. */
-export function CopyLines(props: { request: RobotRequest; command?: string }) {
+export function CopyLines(props: { request: RobotRequest; command?: string; python?: string }) {
   const { word } = useStudio();
   const lines: [string, string, string][] = [
     ['❯_', word('copy'), props.command ?? commandOf(props.request)],
-    ['py', word('copyPython'), pythonOf(props.request)],
+    ['py', word('copyPython'), props.python ?? pythonOf(props.request)],
   ];
   return (
     <>

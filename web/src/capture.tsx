@@ -79,7 +79,8 @@ const kAskAgainMs = 1000;
 // rc10-web gives no more columns at a time.
 const kPiece = 4096;
 
-function Overlay(props: { captures: Capture[]; colours: Map<string, string> }) {
+/** Captures over one another, at the moment of their triggers. */
+export function Overlay(props: { captures: Capture[]; colours: Map<string, string> }) {
   const box = useRef<HTMLDivElement>(null);
   useEffect(() => {
     const target = box.current;

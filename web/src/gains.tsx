@@ -2,7 +2,7 @@
 import { useEffect, useRef, useState } from 'preact/hooks';
 
 import { CopyLines } from './action';
-import { useKnown, useStudio } from './context';
+import { useKnown, useStoredOfRobot, useStudio } from './context';
 import { NumberField } from './number_field';
 
 type Values = Record<string, number>;
@@ -12,12 +12,28 @@ const kGainChanged = 110;
 
 const same = (a: Values, b: Values) => Object.keys(a).every((key) => a[key] === b[key]);
 
-export function Gains(props: { motor: string }) {
+/** A change, with what was in force before it. */
+interface Change {
+  at: string;
+  /** Process of rc10d: another one has the gains of its file. */
+  pid: number;
+  before: Values;
+  set: Values;
+}
+const kMostChanges = 20;
+
+const listed = (values: Values) =>
+  Object.entries(values)
+    .map(([key, value]) => `${key}=${value}`)
+    .join(' ');
+
+/** `proposed`: values that are entered, and not in force until they are applied. */
+export function Gains(props: { motor: string; proposed?: Values | null }) {
   const { link, word } = useStudio();
   const known = useKnown();
   const [inForce, setInForce] = useState<Values | null>(null);
   const [wanted, setWanted] = useState<Values>({});
-  const [history, setHistory] = useState<Values[]>([]);
+  const [changes, setHistory] = useStoredOfRobot<Change[]>(`gains/${props.motor}`, []);
   const [yaml, setYaml] = useState('');
   const [told, setTold] = useState('');
   const shown = useRef<Values | null>(null);
@@ -25,6 +41,8 @@ export function Gains(props: { motor: string }) {
   // Told by another page or program, or another rc10d: what is shown here may be old.
   const told_us = known.events.find((event) => event.code === kGainChanged && event.source === props.motor)?.mono_us;
   const robot = known.robot;
+  const pid = robot?.robot.pid ?? 0;
+  const history = changes.filter((change) => change.pid === pid);
 
   const load = async () => {
     const answer = await link.ask({ operation: 'get_config', target: props.motor });
@@ -52,6 +70,10 @@ export function Gains(props: { motor: string }) {
     if (allowed) void load();
   }, [props.motor, allowed, robot, told_us]);
 
+  useEffect(() => {
+    if (props.proposed) setWanted((typed) => ({ ...typed, ...props.proposed }));
+  }, [props.proposed]);
+
   const changed = (values: Values) =>
     Object.fromEntries(Object.entries(values).filter(([key, value]) => inForce?.[key] !== value));
   const set = async (values: Values, then: () => void) => {
@@ -68,7 +90,8 @@ export function Gains(props: { motor: string }) {
         <form
           onSubmit={(event) => {
             event.preventDefault();
-            void set(wanted, () => setHistory([inForce, ...history].slice(0, 20)));
+            const change = { at: new Date().toISOString(), pid, before: inForce, set: changed(wanted) };
+            void set(wanted, () => setHistory([change, ...history].slice(0, kMostChanges)));
           }}
         >
           <table>
@@ -98,18 +121,16 @@ export function Gains(props: { motor: string }) {
               type="button"
               disabled={!allowed || history.length === 0}
               onClick={() => {
-                const [before, ...rest] = history;
-                if (before === undefined) return;
-                void set(before, () => setHistory(rest));
+                const [last, ...rest] = history;
+                if (last === undefined) return;
+                void set(last.before, () => setHistory(rest));
               }}
             >
               {`${word('gainsUndo')}${history.length > 0 ? ` (${history.length})` : ''}`}
             </button>
             <CopyLines
               request={{ operation: 'set_gains', target: props.motor, values: changed(wanted) }}
-              command={`rc10ctl gains ${props.motor} ${Object.entries(changed(wanted))
-                .map(([key, value]) => `${key}=${value}`)
-                .join(' ')}`.trim()}
+              command={`rc10ctl gains ${props.motor} ${listed(changed(wanted))}`.trim()}
             />
             <button type="button" onClick={() => void navigator.clipboard?.writeText(yaml)}>
               {word('gainsCopy')}
@@ -119,6 +140,27 @@ export function Gains(props: { motor: string }) {
             <summary>{word('gainsLines')}</summary>
             <pre>{yaml}</pre>
           </details>
+          {history.length > 0 && (
+            <details>
+              <summary>{word('gainsHistory')}</summary>
+              <ol class="history">
+                {history.map((change, i) => (
+                  <li key={change.at}>
+                    <span class="hint">{new Date(change.at).toLocaleTimeString()}</span>
+                    {` ${listed(change.set)} `}
+                    <button
+                      type="button"
+                      disabled={!allowed}
+                      title={listed(change.before)}
+                      onClick={() => void set(change.before, () => setHistory(history.slice(i + 1)))}
+                    >
+                      {word('gainsBefore')}
+                    </button>
+                  </li>
+                ))}
+              </ol>
+            </details>
+          )}
         </form>
       )}
       {told !== '' && (

@@ -4,6 +4,7 @@ import {
   type CheckedConfig,
   type Columns,
   type ConfigFile,
+  type CurvePiece,
   type Diagnostics,
   type Down,
   type Hello,
@@ -15,9 +16,11 @@ import {
   type RobotEvent,
   type ServerMessage,
   type State,
+  type TestDone,
   type ViewAnswer,
   kProtocol,
   readColumns,
+  readCurve,
   readPiece,
 } from './protocol';
 
@@ -54,6 +57,13 @@ export interface Held {
   value: number;
 }
 
+/** End of a test: its report and each tick of its curve, or why it did not begin. */
+export type TestOutcome = { done: TestDone; curve: number[][] } | { refused: string };
+
+/** rc10-web refuses tests of another one. */
+const kTestSchema = 1;
+const kRenewTestMs = 50;
+
 function now_us(): number {
   return Math.round(performance.now() * 1000);
 }
@@ -85,6 +95,8 @@ export class Link {
   private readonly asked = new Map<number, (answer: RecordingFile[] | RecordedWords | null) => void>();
   private readonly configs = new Map<number, (answer: ConfigFile | CheckedConfig) => void>();
   private onPiece: (piece: Piece | string) => void = () => {};
+  private test: { seq: number; onTime: (time_s: number, lasts_s: number) => void; onDone: (done: TestDone) => void } | null = null;
+  private onCurve: (piece: CurvePiece) => void = () => {};
   private seq = 0;
   private clock = 0;
   private drawn = false;
@@ -159,6 +171,60 @@ export class Link {
         tell(false);
       },
     };
+  }
+
+  /**
+   * A test of motion. It goes on as long as this page says so, and ends when the page is hidden; end() stops it. The
+   * curve is asked for piece by piece.
+   */
+  runTest(
+    message: object,
+    onTime: (time_s: number, lasts_s: number) => void,
+  ): { end: (why: 'stopped' | 'left') => void; outcome: Promise<TestOutcome> } {
+    const seq = ++this.seq;
+    const end = (why: 'stopped' | 'left') => void this.send({ type: 'test_end', seq, why });
+    const hidden = () => document.hidden && end('left');
+    const left = () => end('left');
+    document.addEventListener('visibilitychange', hidden);
+    window.addEventListener('pagehide', left);
+    const renewals = window.setInterval(() => this.send({ type: 'test_renewal', seq, sent_us: now_us() }), kRenewTestMs);
+    const over = () => {
+      clearInterval(renewals);
+      document.removeEventListener('visibilitychange', hidden);
+      window.removeEventListener('pagehide', left);
+    };
+    const outcome = new Promise<TestOutcome>((resolve) => {
+      const finish = (result: TestOutcome) => {
+        over();
+        this.open.delete(seq);
+        this.test = null;
+        this.onCurve = () => {};
+        resolve(result);
+      };
+      this.open.set(seq, (answer) => finish({ refused: answer.message }));
+      this.test = {
+        seq,
+        onTime,
+        onDone: (done) => {
+          over();
+          const curve: number[][] = [];
+          const ticks = () => curve[0]?.length ?? 0;
+          if (done.report.ticks === 0) return finish({ done, curve });
+          this.onCurve = (piece) => {
+            if (piece.seq !== seq || piece.first !== ticks()) return;
+            piece.columns.forEach((column, i) => {
+              const values = (curve[i] ??= []);
+              for (const value of column) values.push(value);
+            });
+            if (ticks() >= done.report.ticks || piece.columns[0]?.length === 0) finish({ done, curve });
+            else this.send({ type: 'curve', seq, first: ticks() });
+          };
+          this.send({ type: 'curve', seq, first: 0 });
+        },
+      };
+      if (!this.send({ type: 'test', schema: kTestSchema, seq, sent_us: now_us(), ...message })) finish({ refused: 'no connection' });
+    });
+    return { end, outcome };
   }
 
   /** Null: no answer. */
@@ -258,6 +324,8 @@ export class Link {
     if (typeof data !== 'string') {
       const piece = readPiece(data);
       if (piece !== null) return this.onPiece(piece);
+      const curve = readCurve(data);
+      if (curve !== null) return this.onCurve(curve);
       const columns = readColumns(data);
       if (columns !== null) for (const listener of [...this.columnListeners]) listener(columns);
       return;
@@ -304,6 +372,12 @@ export class Link {
       case 'config':
       case 'config_checked':
         this.configs.get(message.seq)?.(message);
+        return;
+      case 'test':
+        if (this.test?.seq === message.seq) this.test.onTime(message.time_s, message.lasts_s);
+        return;
+      case 'test_done':
+        if (this.test?.seq === message.seq) this.test.onDone(message);
         return;
       case 'response':
         this.open.get(message.seq)?.(message);

@@ -13,9 +13,13 @@ import { Overview } from './overview';
 import { Plots } from './plots';
 import { Stop } from './stop';
 import { Timing } from './timing';
+import { Tune } from './tune';
 import { type Language, storeLanguage, storedLanguage, wordsOf } from './words';
 
-const kParts = { overview: Overview, match: Match, plots: Plots, move: Move, events: Events, blackbox: BlackBox, timing: Timing, configuration: Configuration } as const;
+const kParts = {
+  overview: Overview, match: Match, plots: Plots, move: Move, tune: Tune, events: Events, blackbox: BlackBox, timing: Timing,
+  configuration: Configuration,
+} as const;
 type Part = keyof typeof kParts;
 
 function Header(props: { language: Language; onLanguage: (language: Language) => void }) {

@@ -1,8 +1,8 @@
 // One motor by hand: a held button moves it, its curves and its gains beside it.
 import { useEffect, useRef, useState } from 'preact/hooks';
 
-import { Action } from './action';
 import { CapturePanel } from './capture';
+import { useChosenMotor } from './chosen_motor';
 import { useKnown, useStored, useStudio } from './context';
 import { Gains } from './gains';
 import { unitOf } from './numbers';
@@ -196,13 +196,9 @@ function Jog(props: { motor: string; modes: HeldMode[]; mode: HeldMode; onMode: 
 
 export function Move() {
   const { word } = useStudio();
-  const known = useKnown();
-  const [stored, setMotor] = useStored('moveMotor', '');
+  const { info, bar } = useChosenMotor();
   const [angle, setAngle] = useStored('moveAngle', false);
   const [storedMode, setMode] = useStored<HeldMode>('jogMode', 'velocity');
-  const infos = known.robot?.robot.motors ?? [];
-  const info = infos.find((each) => each.name === stored) ?? infos[0];
-  const motor = known.state?.data.motors.find((each) => each.name === info?.name);
   if (info === undefined) return null;
   const modes = kModes.filter((each) => info.modes.includes(each));
   const mode = modes.includes(storedMode) ? storedMode : (modes[0] ?? 'velocity');
@@ -212,30 +208,7 @@ export function Move() {
   const signals = readings.map((reading) => `${info.name}.${reading}`);
   return (
     <>
-      <div class="toolbar">
-        <label>
-          {`${word('motor')} `}
-          <select value={info.name} onChange={(event) => setMotor(event.currentTarget.value)}>
-            {infos.map((each) => (
-              <option key={each.name}>{each.name}</option>
-            ))}
-          </select>
-        </label>
-        {motor !== undefined && (
-          <>
-            <span class={`badge status ${motor.status.toLowerCase()}`}>{motor.status}</span>
-            <span class="hint">{`${word('owner')} ${motor.owner === '' ? word('nobody') : motor.owner}`}</span>
-            {motor.status === 'ACTIVE' || motor.status === 'ENABLING' ? (
-              <Action request={{ operation: 'disable', target: info.name }} label={word('disable')} />
-            ) : motor.status === 'FAULT' ? (
-              <Action request={{ operation: 'clear', target: info.name }} label={word('clear')} />
-            ) : (
-              <Action request={{ operation: 'enable', target: info.name }} label={word('enable')} />
-            )}
-            {motor.fault_text !== '' && <span class="refused">{motor.fault_text}</span>}
-          </>
-        )}
-      </div>
+      {bar}
       <div class="move">
         <div class="side">
           {modes.length > 0 ? (

@@ -1,5 +1,37 @@
 import { useEffect, useState } from 'preact/hooks';
 
+/** A number that may be left out: null, and `otherwise` tells what counts then. */
+export function OptionalField(props: {
+  label: string;
+  value: number | null;
+  otherwise: string;
+  required?: boolean;
+  disabled?: boolean;
+  onValue: (value: number | null) => void;
+}) {
+  const shown = props.value === null ? '' : String(props.value);
+  const [text, setText] = useState(shown);
+  useEffect(() => {
+    if (text.trim() === '' ? props.value !== null : Number(text) !== props.value) setText(shown);
+  }, [props.value]);
+  return (
+    <input
+      type="number"
+      step="any"
+      aria-label={props.label}
+      placeholder={props.otherwise}
+      required={props.required}
+      value={text}
+      disabled={props.disabled}
+      onInput={(event) => {
+        setText(event.currentTarget.value);
+        const value = event.currentTarget.valueAsNumber;
+        props.onValue(Number.isFinite(value) ? value : null);
+      }}
+    />
+  );
+}
+
 /** A number that a person types: pictures of the robot that are drawn meanwhile leave the text as it is. */
 export function NumberField(props: {
   id?: string;

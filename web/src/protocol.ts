@@ -1,6 +1,8 @@
 // Messages between rc10-web and this page; src/web/page_messages.hpp and columns_frame.hpp are their other end.
 
-export const kProtocol = 1;
+import type { TestReport } from './motion_test';
+
+export const kProtocol = 2;
 
 export type Right = 'nothing' | 'look' | 'command';
 
@@ -251,6 +253,22 @@ export interface CheckedConfig {
   };
 }
 
+export interface TestGoesOn {
+  type: 'test';
+  seq: number;
+  time_s: number;
+  lasts_s: number;
+}
+
+export interface TestDone {
+  type: 'test_done';
+  seq: number;
+  time_s: number;
+  /** What the motor does now. */
+  doing: string;
+  report: TestReport;
+}
+
 export type ServerMessage =
   | ConfigFile
   | CheckedConfig
@@ -263,6 +281,8 @@ export type ServerMessage =
   | ViewAnswer
   | Recordings
   | RecordedWords
+  | TestGoesOn
+  | TestDone
   | Response;
 
 export type FrameKind = 'next' | 'reset' | 'range';
@@ -328,5 +348,28 @@ export function readPiece(buffer: ArrayBuffer): Piece | null {
     offset: data.getFloat64(16, true),
     total: data.getFloat64(24, true),
     bytes: new Uint8Array(buffer, kHeaderBytes),
+  };
+}
+
+/** Ticks of the curve of a test, by column. */
+export interface CurvePiece {
+  seq: number;
+  first: number;
+  columns: Float64Array[];
+}
+const kCurveKind = 5;
+
+/** Null: no piece of a curve, or one whose length is wrong. */
+export function readCurve(buffer: ArrayBuffer): CurvePiece | null {
+  if (buffer.byteLength < kHeaderBytes) return null;
+  const data = new DataView(buffer);
+  if (data.getUint8(0) !== 1 || data.getUint8(1) !== kCurveKind) return null;
+  const columns = data.getUint16(2, true);
+  const ticks = data.getUint32(4, true);
+  if (buffer.byteLength !== kHeaderBytes + columns * ticks * 8) return null;
+  return {
+    seq: data.getFloat64(16, true),
+    first: data.getFloat64(24, true),
+    columns: Array.from({ length: columns }, (_, i) => new Float64Array(buffer, kHeaderBytes + i * ticks * 8, ticks)),
   };
 }

@@ -1,0 +1,83 @@
+#include "web/page_test.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <utility>
+
+#include "web/page_messages.hpp"
+
+namespace rc10::web {
+namespace {
+
+constexpr Duration kOpeningPatience = std::chrono::milliseconds{200};
+
+}  // namespace
+
+Result<std::unique_ptr<PageTest>> PageTest::begin(const StartTest& wanted, const Opening& opening,
+                                                  MonotonicTime now, Duration age) {
+  const auto settings = client::settingsOf(wanted.plan, opening.client);
+  if (!settings) return tl::unexpected(settings.error());
+  auto connection = LinkClient::connect(opening.socket_path, {.name = opening.client,
+                                                              .subscriptions = link::kStates | link::kEvents,
+                                                              .token = opening.token,
+                                                              .timeout = kOpeningPatience});
+  if (!connection) return tl::unexpected(connection.error());
+  auto run = client::MotionRun::of(connection->welcome(), *settings);
+  if (!run) return tl::unexpected(run.error());
+  std::unique_ptr<PageTest> test(new PageTest(wanted, std::move(*connection), std::move(*run)));
+  test->renew(now, age);
+  return test;
+}
+
+PageTest::PageTest(const StartTest& wanted, LinkClient rc10d, client::MotionRun run)
+    : seq_(wanted.seq),
+      patience_(std::chrono::milliseconds{wanted.plan.dead_man_ms}),
+      rc10d_(std::move(rc10d)),
+      run_(std::move(run)),
+      session_(rc10d_, run_, wanted.priority) {}
+
+PageTest::~PageTest() {
+  end(TestEnd::kLeft);
+  turn(std::chrono::steady_clock::now());
+}
+
+void PageTest::renew(MonotonicTime now, Duration age) noexcept {
+  until_ = std::max(until_, now + patience_ - age);
+}
+
+void PageTest::end(TestEnd why) {
+  run_.end(client::Criterion::kInterrupted,
+           why == TestEnd::kStopped ? "stopped on the page"
+                                    : "the page was hidden or left: keep it in front until the end");
+}
+
+// A silence is told before what rc10d tells of its consequence.
+void PageTest::turn(MonotonicTime now) {
+  if (now >= until_) {
+    const auto ms = std::chrono::duration_cast<std::chrono::milliseconds>(patience_).count();
+    run_.end(client::Criterion::kSilence,
+             "no word from the page for " + std::to_string(ms) +
+                 " ms: close other programs there, use a better network, or allow a "
+                 "longer silence");
+  }
+  session_.receive();
+  session_.send(now, until_);
+}
+
+TestEvaluation::TestEvaluation(std::unique_ptr<PageTest> test)
+    : seq_(test->seq()), run_(std::make_shared<const client::MotionRun>(test->run())) {
+  message_ = std::async(std::launch::async, [seq = seq_, run = run_, doing = test->whatMotorDoes()] {
+    return testDoneMessage(seq, client::reportOf(*run), *run, doing);
+  });
+}
+
+bool TestEvaluation::isDone() const {
+  return !message_.valid() || message_.wait_for(std::chrono::seconds{0}) == std::future_status::ready;
+}
+
+std::optional<std::string> TestEvaluation::message() {
+  if (!message_.valid() || !isDone()) return std::nullopt;
+  return message_.get();
+}
+
+}  // namespace rc10::web
