@@ -104,7 +104,7 @@ class Hub {
   std::uint64_t opened_ = 0;
   std::uint64_t turns_ = 0;
   std::string told_down_;
-  /// Of pages that are gone, or have begun another test: their threads end by themselves.
+  /// Results for pages that are gone or have begun another test: their threads end by themselves.
   std::vector<std::unique_ptr<TestEvaluation>> unwanted_;
 };
 

@@ -264,7 +264,7 @@ export interface TestDone {
   type: 'test_done';
   seq: number;
   time_s: number;
-  /** What the motor does now. */
+  /** Behaviour of the motor now, in words. */
   doing: string;
   report: TestReport;
 }

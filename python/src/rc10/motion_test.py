@@ -71,7 +71,7 @@ class MotionResult:
     """Limits of the motor that acted."""
     step: StepNumbers | None
     acceleration_rpm_per_s: float
-    """Of a step of the current, once it has risen."""
+    """Slope of the velocity in a step of the current, once that has risen; else NaN."""
     bandwidth_hz: float
     phase_margin_deg: float
     gain_margin_db: float

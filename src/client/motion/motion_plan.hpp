@@ -19,7 +19,7 @@ struct MotionPlan {
   double amplitude = 0.0;
   double base = 0.0;
   std::optional<double> time_s = {};      ///< 1.5 s; sines ten periods of the lowest frequency, 10 to 120 s.
-  std::optional<double> rate_per_s = {};  ///< Of a ramp.
+  std::optional<double> rate_per_s = {};  ///< Slope of a ramp.
   double from_hz = 1.0;
   double to_hz = 20.0;
   bool linear = false;

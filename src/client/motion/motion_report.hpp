@@ -21,7 +21,7 @@ struct MotionReport {
   double largest_current_a = std::numeric_limits<double>::quiet_NaN();
   std::uint32_t limits = 0;  ///< That acted in any tick after the lead.
   std::optional<StepResponse> step;
-  /// Of a step of the current, once the current has risen: what a motor that turns freely gains in speed.
+  /// Slope of the velocity in a step of the current, once that has risen.
   double acceleration_rpm_per_s = std::numeric_limits<double>::quiet_NaN();
   FrequencyResponse response;  ///< Sweep and multisine: measured value over shaped target.
   double bandwidth_hz = std::numeric_limits<double>::quiet_NaN();
