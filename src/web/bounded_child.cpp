@@ -6,11 +6,14 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <cerrno>
 #include <csignal>
 #include <cstring>
+#include <string_view>
 #include <utility>
+#include <vector>
 
 #include "app/sanitizers.hpp"
 
@@ -21,39 +24,42 @@ constexpr int kGood = 0;
 constexpr int kNoAnswer = 1;
 
 void limit(__rlimit_resource resource, rlim_t most) {
-  const rlimit bound{.rlim_cur = most, .rlim_max = most};
+  rlimit bound{};
+  if (::getrlimit(resource, &bound) != 0) ::_exit(kNoAnswer);
+  bound.rlim_max = std::min(bound.rlim_max, most);
+  bound.rlim_cur = bound.rlim_max;
   // Without its bounds the text of a stranger is not touched.
   if (::setrlimit(resource, &bound) != 0) ::_exit(kNoAnswer);
 }
 
-// The first to go when memory runs out.
-void offerMemory() {
-  const UniqueFd file{::open("/proc/self/oom_score_adj", O_WRONLY | O_CLOEXEC)};
-  if (file) (void)!::write(file.get(), "1000", 4);
+// All but one; a sanitizer reports on the standard ones.
+void closeOthers(int kept) {
+  const int first = kSanitized ? STDERR_FILENO + 1 : STDIN_FILENO;
+  const auto descriptor = static_cast<unsigned>(kept);
+  if (kept > first) (void)::close_range(static_cast<unsigned>(first), descriptor - 1, 0);
+  (void)::close_range(std::max(descriptor + 1, static_cast<unsigned>(first)), ~0U, 0);
 }
 
 void shutIn(int answers, const ChildLimits& limits) {
-  for (const int each : {SIGINT, SIGTERM, SIGPIPE}) (void)std::signal(each, SIG_DFL);
+  for (const int each : {SIGINT, SIGTERM, SIGPIPE, SIGALRM}) (void)std::signal(each, SIG_DFL);
   (void)::prctl(PR_SET_PDEATHSIG, SIGKILL);
-  offerMemory();
-  // The only descriptor, and no room for another one.
-  if (::dup2(answers, STDIN_FILENO) < 0) ::_exit(kNoAnswer);
-  (void)::close_range(kSanitized ? STDERR_FILENO + 1 : STDIN_FILENO + 1, ~0U, 0);
+  (void)::alarm(static_cast<unsigned>(limits.patience.count()));
+  closeOthers(answers);
   limit(RLIMIT_CORE, 0);
   limit(RLIMIT_FSIZE, 0);
   limit(RLIMIT_CPU, limits.cpu_s);
   // A sanitizer opens files and has a shadow of the whole memory.
   if (kSanitized) return;
-  limit(RLIMIT_NOFILE, 1);
+  limit(RLIMIT_NOFILE, 0);
   limit(RLIMIT_AS, limits.memory_bytes);
 }
 
-[[noreturn]] void answerAndEnd(BoundedChild::Work work, std::string_view input) {
+[[noreturn]] void answerAndEnd(const BoundedChild::Work& work, int answers) {
   try {
-    const auto answer = work(input);
+    const auto answer = work();
     std::string_view left = answer;
     while (!left.empty()) {
-      const auto written = ::write(STDIN_FILENO, left.data(), left.size());
+      const auto written = ::write(answers, left.data(), left.size());
       if (written <= 0) ::_exit(kNoAnswer);
       left.remove_prefix(static_cast<std::size_t>(written));
     }
@@ -65,7 +71,8 @@ void shutIn(int answers, const ChildLimits& limits) {
 }
 
 std::string endOf(int status) {
-  if (WIFSIGNALED(status) && (WTERMSIG(status) == SIGXCPU || WTERMSIG(status) == SIGKILL))
+  if (WIFSIGNALED(status) &&
+      (WTERMSIG(status) == SIGXCPU || WTERMSIG(status) == SIGKILL || WTERMSIG(status) == SIGALRM))
     return "the text takes too much time or memory; shorten it";
   return "the text cannot be read: the process that read it ended without an answer; shorten it";
 }
@@ -84,8 +91,7 @@ BoundedChild::BoundedChild(BoundedChild&& other) noexcept
 
 BoundedChild::~BoundedChild() { end(); }
 
-Result<BoundedChild> BoundedChild::start(Work work, std::string_view input, MonotonicTime now,
-                                         const ChildLimits& limits) {
+Result<BoundedChild> BoundedChild::start(const Work& work, MonotonicTime now, const ChildLimits& limits) {
   std::array<int, 2> ends{-1, -1};
   if (::pipe2(ends.data(), O_CLOEXEC) != 0) return fail(std::string{"no pipe: "} + std::strerror(errno));
   UniqueFd answers{ends[0]};
@@ -96,16 +102,18 @@ Result<BoundedChild> BoundedChild::start(Work work, std::string_view input, Mono
   if (pid < 0) return fail(std::string{"no process: "} + std::strerror(errno));
   if (pid == 0) {
     shutIn(told.get(), limits);
-    answerAndEnd(work, input);
+    answerAndEnd(work, told.get());
   }
   return BoundedChild{pid, std::move(answers), now + limits.patience, limits.answer_bytes};
 }
 
+// Never waits: what has not ended yet is reaped with a later one.
 void BoundedChild::end() noexcept {
   if (pid_ < 0) return;
-  (void)::kill(pid_, SIGKILL);
-  (void)::waitpid(pid_, nullptr, 0);
-  pid_ = -1;
+  answers_ = UniqueFd{};
+  static std::vector<pid_t> given_up;
+  given_up.push_back(std::exchange(pid_, -1));
+  std::erase_if(given_up, [](pid_t pid) { return ::waitpid(pid, nullptr, WNOHANG) != 0; });
 }
 
 // False: the child has closed its end.

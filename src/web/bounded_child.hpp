@@ -4,9 +4,9 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <string>
-#include <string_view>
 
 #include "app/result.hpp"
 #include "app/time.hpp"
@@ -16,18 +16,20 @@ namespace rc10::web {
 
 struct ChildLimits {
   std::uint64_t cpu_s = 2;
-  Duration patience = std::chrono::seconds{10};  ///< The processor may be busy.
-  std::uint64_t memory_bytes = std::uint64_t{256} << 20U;
+  std::chrono::seconds patience{10};                       ///< The processor may be busy.
+  std::uint64_t memory_bytes = std::uint64_t{160} << 20U;  ///< Less where the server's own bound is lower.
   std::size_t answer_bytes = std::size_t{2} << 20U;
 };
 
-/// Work on the text of a stranger, in a process of its own: it has no file and can open none, and neither its
-/// crash nor its time nor its memory is the server's. Only for a process with one thread.
+/// Work beside the server, in a process of its own: it has no file and can open none, and neither its crash
+/// nor its time nor its memory is the server's. It needs no signal to end: one that is given up ends with the
+/// server, at its next write or at its own bounds. Only for a process with one thread.
 class BoundedChild {
  public:
-  using Work = std::string (*)(std::string_view input);
+  /// Of a copy of the server's memory as it is at the start.
+  using Work = std::function<std::string()>;
 
-  [[nodiscard]] static Result<BoundedChild> start(Work work, std::string_view input, MonotonicTime now,
+  [[nodiscard]] static Result<BoundedChild> start(const Work& work, MonotonicTime now,
                                                   const ChildLimits& limits = {});
   BoundedChild(BoundedChild&& other) noexcept;
   BoundedChild& operator=(BoundedChild&&) = delete;

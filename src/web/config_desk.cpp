@@ -35,7 +35,7 @@ std::optional<ConfigDesk::Answer> ConfigDesk::turn(MonotonicTime now) {
   if (waiting_.empty()) return std::nullopt;
   asked_ = std::move(waiting_.front());
   waiting_.pop_front();
-  auto child = BoundedChild::start(asked_->work, asked_->input, now);
+  auto child = BoundedChild::start([&] { return asked_->work(asked_->input); }, now);
   if (child) {
     child_.emplace(std::move(*child));
     return std::nullopt;

@@ -4,6 +4,7 @@
 #include <deque>
 #include <optional>
 #include <string>
+#include <string_view>
 
 #include "app/result.hpp"
 #include "app/time.hpp"
@@ -14,11 +15,12 @@ namespace rc10::web {
 /// Questions of pages about configurations: one after the other, each in a process of its own.
 class ConfigDesk {
  public:
+  using Work = std::string (*)(std::string_view input);
   struct Question {
     std::uint64_t page = 0;  ///< Number of the page.
     std::int64_t seq = 0;
     std::string head;  ///< Message to the page, up to the JSON of the answer.
-    BoundedChild::Work work = nullptr;
+    Work work = nullptr;
     std::string input;
   };
   struct Answer {

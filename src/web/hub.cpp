@@ -62,10 +62,7 @@ void Hub::join(PageSocket& socket, bool loopback, std::string_view address) {
 }
 
 void Hub::leave(PageSocket& socket) {
-  if (auto* page = pageOf(socket); page != nullptr) {
-    configs_.forget(page->number);
-    dropEvaluation(*page);
-  }
+  if (const auto* page = pageOf(socket); page != nullptr) configs_.forget(page->number);
   std::erase_if(pages_, [&](const auto& page) { return page->socket == &socket; });
   chooseTraces();
 }
@@ -276,7 +273,7 @@ void Hub::begin(Page& page, const StartTest& wanted, MonotonicTime now, Duration
         wanted, {.client = page.name, .token = page.link->token(), .socket_path = feed_.socketPath()}, now,
         age);
     if (test) {
-      dropEvaluation(page);
+      page.evaluation.reset();
       page.test = std::move(*test);
     } else {
       refused = test.error().message;
@@ -289,11 +286,7 @@ void Hub::begin(Page& page, const StartTest& wanted, MonotonicTime now, Duration
 void Hub::sendCurve(Page& page, const AskCurve& wanted) {
   if (!page.evaluation || page.evaluation->seq() != wanted.seq) return;
   page.socket->sendBinary(curveFrame(page.evaluation->curve(), wanted.seq, wanted.first));
-  if (wanted.first + kMaxCurveTicks >= page.evaluation->curve().size()) dropEvaluation(page);
-}
-
-void Hub::dropEvaluation(Page& page) {
-  if (page.evaluation) unwanted_.push_back(std::move(page.evaluation));
+  if (wanted.first + kMaxCurveTicks >= page.evaluation->curve().size()) page.evaluation.reset();
 }
 
 bool Hub::isTesting() const noexcept {
@@ -304,11 +297,14 @@ void Hub::runTests(MonotonicTime now) {
   for (const auto& page : pages_) {
     if (!page->test) continue;
     page->test->turn(now);
-    if (!page->test->isRunning()) page->evaluation = std::make_unique<TestEvaluation>(std::move(page->test));
+    if (!page->test->isRunning()) {
+      page->evaluation = std::make_unique<TestEvaluation>(*page->test, now);
+      page->test.reset();
+    }
   }
 }
 
-void Hub::publishTests() {
+void Hub::publishTests(MonotonicTime now) {
   for (const auto& page : pages_) {
     if (page->test) {
       const auto& run = page->test->run();
@@ -317,9 +313,8 @@ void Hub::publishTests() {
         page->socket->sendText(shared(testMessage(page->test->seq(), time_s, run.timeS())));
     }
     if (!page->evaluation) continue;
-    if (auto message = page->evaluation->message()) page->socket->sendText(shared(std::move(*message)));
+    if (auto message = page->evaluation->message(now)) page->socket->sendText(shared(std::move(*message)));
   }
-  std::erase_if(unwanted_, [](const auto& evaluation) { return evaluation->isDone(); });
 }
 
 // Signals of all pages together.
@@ -377,7 +372,7 @@ void Hub::publish() {
     }
   }
   for (const auto& page : pages_) publishColumns(*page);
-  publishTests();
+  publishTests(std::chrono::steady_clock::now());
 }
 
 void Hub::publishColumns(Page& page) {

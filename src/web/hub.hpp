@@ -83,8 +83,7 @@ class Hub {
   void answerConfigs();
   void begin(Page& page, const StartTest& wanted, MonotonicTime now, Duration age);
   void sendCurve(Page& page, const AskCurve& wanted);
-  void dropEvaluation(Page& page);
-  void publishTests();
+  void publishTests(MonotonicTime now);
   [[nodiscard]] std::string downNow() const;
   [[nodiscard]] std::string whyNotMoving(const Page& page) const;
   void chooseTraces();
@@ -104,8 +103,6 @@ class Hub {
   std::uint64_t opened_ = 0;
   std::uint64_t turns_ = 0;
   std::string told_down_;
-  /// Results for pages that are gone or have begun another test: their threads end by themselves.
-  std::vector<std::unique_ptr<TestEvaluation>> unwanted_;
 };
 
 }  // namespace rc10::web

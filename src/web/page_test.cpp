@@ -10,6 +10,7 @@ namespace rc10::web {
 namespace {
 
 constexpr Duration kOpeningPatience = std::chrono::milliseconds{200};
+constexpr ChildLimits kEvaluation{.cpu_s = 20, .patience = std::chrono::seconds{60}};
 
 }  // namespace
 
@@ -64,20 +65,28 @@ void PageTest::turn(MonotonicTime now) {
   session_.send(now, until_);
 }
 
-TestEvaluation::TestEvaluation(std::unique_ptr<PageTest> test)
-    : seq_(test->seq()), run_(std::make_shared<const client::MotionRun>(test->run())) {
-  message_ = std::async(std::launch::async, [seq = seq_, run = run_, doing = test->whatMotorDoes()] {
-    return testDoneMessage(seq, client::reportOf(*run), *run, doing);
-  });
+TestEvaluation::TestEvaluation(const PageTest& test, MonotonicTime now)
+    : seq_(test.seq()),
+      run_(test.run()),
+      doing_(test.whatMotorDoes()),
+      deadline_(now + kEvaluation.patience) {}
+
+std::string TestEvaluation::done(const client::MotionReport& report) const {
+  return testDoneMessage(seq_, report, run_, doing_);
 }
 
-bool TestEvaluation::isDone() const {
-  return !message_.valid() || message_.wait_for(std::chrono::seconds{0}) == std::future_status::ready;
-}
-
-std::optional<std::string> TestEvaluation::message() {
-  if (!message_.valid() || !isDone()) return std::nullopt;
-  return message_.get();
+// As many processes as the service has room for: the others wait for theirs.
+std::optional<std::string> TestEvaluation::message(MonotonicTime now) {
+  if (told_) return std::nullopt;
+  if (!child_) {
+    auto started = BoundedChild::start([this] { return done(client::reportOf(run_)); }, now, kEvaluation);
+    if (started) child_.emplace(std::move(*started));
+  }
+  auto answer = child_ ? child_->poll(now) : std::nullopt;
+  if (!answer && now < deadline_) return std::nullopt;
+  told_ = true;
+  child_.reset();
+  return answer && *answer ? std::move(**answer) : done({.ticks = run_.curve().size()});
 }
 
 }  // namespace rc10::web

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <cstdint>
-#include <future>
 #include <memory>
 #include <optional>
 #include <string>
@@ -12,6 +11,7 @@
 #include "client/motion/motion_report.hpp"
 #include "client/motion/motion_run.hpp"
 #include "client/motion/motion_session.hpp"
+#include "web/bounded_child.hpp"
 #include "web/page_request.hpp"
 
 namespace rc10::web {
@@ -56,23 +56,26 @@ class PageTest {
   client::MotionSession session_;
 };
 
-/// The numbers of a test that is over, computed beside the server's thread: a long curve takes seconds, and
-/// STOP must not wait for them.
+/// The numbers of a test that is over, computed in a process beside the server's: a long curve takes seconds,
+/// and STOP must not wait for them.
 class TestEvaluation {
  public:
-  explicit TestEvaluation(std::unique_ptr<PageTest> test);
+  TestEvaluation(const PageTest& test, MonotonicTime now);
 
-  /// The message for the page, once; nothing: not yet.
-  [[nodiscard]] std::optional<std::string> message();
+  /// The message for the page, once; nothing: not yet. Without its numbers if there is no process for them.
+  [[nodiscard]] std::optional<std::string> message(MonotonicTime now);
   [[nodiscard]] std::int64_t seq() const noexcept { return seq_; }
-  /// It may be destroyed without a wait.
-  [[nodiscard]] bool isDone() const;
-  [[nodiscard]] const client::Curve& curve() const noexcept { return run_->curve(); }
+  [[nodiscard]] const client::Curve& curve() const noexcept { return run_.curve(); }
 
  private:
+  [[nodiscard]] std::string done(const client::MotionReport& report) const;
+
   std::int64_t seq_;
-  std::shared_ptr<const client::MotionRun> run_;
-  std::future<std::string> message_;
+  client::MotionRun run_;
+  const char* doing_;
+  MonotonicTime deadline_;
+  bool told_ = false;
+  std::optional<BoundedChild> child_;
 };
 
 }  // namespace rc10::web

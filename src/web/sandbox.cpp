@@ -2,9 +2,12 @@
 
 #include <fcntl.h>
 #include <linux/capability.h>
+#include <sched.h>
 #include <sys/ioctl.h>
+#include <sys/prctl.h>
 #include <sys/socket.h>
 
+#include <csignal>
 #include <cstdint>
 
 #include "sandbox/file_view.hpp"
@@ -37,6 +40,18 @@ void allowRc10d(sandbox::SystemCalls& calls) {
       {SCMP_SYS(connect), SCMP_SYS(clock_nanosleep), SCMP_SYS(clock_nanosleep_time64), SCMP_SYS(nanosleep)});
 }
 
+// A process for a page's text or curve, which has no more than this one and bounds itself
+// (bounded_child.cpp). No thread, no program, and no signal to anybody.
+void allowChildren(sandbox::SystemCalls& calls) {
+  using sandbox::argument;
+  constexpr std::uint32_t kFork = CLONE_CHILD_CLEARTID | CLONE_CHILD_SETTID | SIGCHLD;  // fork() of glibc
+  calls.allow(SCMP_SYS(clone), argument(0, kFork));
+  calls.allow(SCMP_SYS(prctl), argument(0, PR_SET_PDEATHSIG));
+  calls.allow(SCMP_SYS(prlimit64), argument(0, 0));  // its own
+  calls.allow({SCMP_SYS(alarm), SCMP_SYS(close_range), SCMP_SYS(pipe2), SCMP_SYS(set_robust_list),
+               SCMP_SYS(setitimer), SCMP_SYS(wait4)});
+}
+
 // Folders of rc10d and its recordings.
 void allowReading(sandbox::SystemCalls& calls) {
   using sandbox::argument;
@@ -64,6 +79,7 @@ Result<void> enterSandbox(const std::vector<std::string>& folders) {
   allowServing(calls);
   allowRc10d(calls);
   allowReading(calls);
+  allowChildren(calls);
   return calls.keepToThese();
 }
 

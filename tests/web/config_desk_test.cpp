@@ -19,7 +19,7 @@ std::string never(std::string_view) {
 class ConfigDeskTest : public ::testing::Test {
  protected:
   static ConfigDesk::Question question(std::uint64_t page, std::int64_t seq, const std::string& text,
-                                       BoundedChild::Work work = echo) {
+                                       ConfigDesk::Work work = echo) {
     return {.page = page, .seq = seq, .head = "{\"of\":", .work = work, .input = text};
   }
   ConfigDesk::Answer next() {

@@ -28,6 +28,7 @@
 #include "app/unique_fd.hpp"
 #include "app/whole_file.hpp"
 #include "support/escapes.hpp"
+#include "web/bounded_child.hpp"
 
 namespace rc10::web::test::sandbox_test {
 namespace {
@@ -151,6 +152,18 @@ TEST_F(WebSandbox, BoundsItsMemory) {
   });
 }
 #endif
+
+TEST_F(WebSandbox, WorksInAProcessOfItsOwnThatIsBounded) {
+  inSandbox(enter, [] {
+    const MonotonicTime now{};
+    auto child = BoundedChild::start([] { return std::string{"an answer"}; }, now);
+    for (int i = 0; child && i < 10'000; ++i) {
+      if (const auto answer = child->poll(now)) return *answer && **answer == "an answer";
+      (void)::poll(nullptr, 0, 1);
+    }
+    return false;
+  });
+}
 
 TEST_F(WebSandbox, AbortsAsOtherProgramsDo) {
   const int status = statusInSandbox(enter, []() -> bool { std::abort(); });
