@@ -1,11 +1,12 @@
 """One fake drive of any family that does wrong things when told so, by a frame that no robot uses.
 
-FAULT_ID carries one byte, a Wrong. Arguments: the interface, the drive, and the angle of its shaft
-in degrees.
+FAULT_ID carries one byte, a Wrong; PARKED has an angle of the shaft after it, signed 16 bit, deg.
+Arguments: the interface and the drive.
 """
 
 from __future__ import annotations
 
+import math
 import signal
 import sys
 from enum import IntEnum
@@ -18,6 +19,7 @@ from rc10.fakes.drives import Drives
 from rc10.fakes.runner import Runner
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
     from types import FrameType
 
     from rc10.fakes.fake import Fake
@@ -32,6 +34,7 @@ class Wrong(IntEnum):
     SILENT = 1
     RESTARTED = 2
     FAULTED = 3
+    PARKED = 4  # switched off, turned there by hand, switched on a second later
 
 
 # The family's own code of a fault that it reports and that `clear` ends.
@@ -49,16 +52,25 @@ _CODES = {
 
 # Silence of a restarted drive; the others are back at once, which is harder to notice.
 _BOOT_S = {"lktech": 0.3}
+# No drive is off and on again sooner.
+_OFF_S = 1.0
 
 
 class FaultyDrive(Drives):
     """One drive, which listens to FAULT_ID, too."""
 
-    def __init__(self, motor: Fake) -> None:
-        super().__init__([motor])
-        self._motor: Any = motor
+    def __init__(self, make: Callable[[float], Fake]) -> None:
+        super().__init__([make(0.0)])
+        self._make = make
+        self._motor: Any = self.motors[0]
         self._silent = False
         self._off_s = 0.0
+
+    def _park(self, angle_deg: int) -> None:
+        # One turn of its encoder is all that it knows.
+        self._motor = self._make(math.remainder(angle_deg, 360))
+        self._off_s = _OFF_S
+        super().__init__([self._motor])
 
     @property
     def command_ids(self) -> list[int]:
@@ -66,14 +78,16 @@ class FaultyDrive(Drives):
 
     def receive(self, message: can.Message) -> None:
         if message.arbitration_id == FAULT_ID and not message.is_extended_id:
-            self._order(Wrong(message.data[0]))
+            self._order(Wrong(message.data[0]), bytes(message.data[1:]))
         else:
             super().receive(message)
 
-    def _order(self, wrong: Wrong) -> None:
+    def _order(self, wrong: Wrong, argument: bytes) -> None:
         self._silent = wrong is Wrong.SILENT
         family = type(self._motor).__module__.rpartition(".")[2]
-        if wrong is Wrong.RESTARTED:
+        if wrong is Wrong.PARKED:
+            self._park(int.from_bytes(argument, signed=True))
+        elif wrong is Wrong.RESTARTED:
             restart = getattr(self._motor, "restart", None) or self._motor.reboot
             restart()
             self._off_s = _BOOT_S.get(family, 0.0)
@@ -100,7 +114,7 @@ class FaultyDrive(Drives):
 
 
 def main() -> None:
-    interface, name, angle_deg = sys.argv[1:]
+    interface, name = sys.argv[1:]
     stopped = False
 
     def stop(_number: int, _frame: FrameType | None) -> None:
@@ -109,7 +123,7 @@ def main() -> None:
 
     signal.signal(signal.SIGTERM, stop)
     spec: Any = _motor(name)
-    drive = FaultyDrive(spec.make(initial_angle_deg=float(angle_deg), load_nm=0.0))
+    drive = FaultyDrive(lambda angle_deg: spec.make(initial_angle_deg=angle_deg, load_nm=0.0))
     with can.Bus(interface="socketcan", channel=interface, fd=drive.fd) as bus:
         runner = Runner(bus, drive)
         print("ready", flush=True)

@@ -49,9 +49,9 @@ def family(request: pytest.FixtureRequest) -> Family:
 
 
 @contextlib.contextmanager
-def powered(fake: str, angle_deg: float = 0.0) -> Iterator[None]:
-    """The drive has power. With one encoder turn for all it knows, its shaft is at this angle."""
-    with Proc(sys.executable, HERE / "faulty_families.py", "vcan0", fake, str(angle_deg)) as drive:
+def powered(fake: str) -> Iterator[None]:
+    """The drive has power."""
+    with Proc(sys.executable, HERE / "faulty_families.py", "vcan0", fake) as drive:
         drive.wait_line("^ready", 30.0)
         yield
 
@@ -69,9 +69,10 @@ def rc10d(config: Path) -> Iterator[None]:
         yield
 
 
-def happens(wrong: Wrong) -> int:
+def happens(wrong: Wrong, angle_deg: int = 0) -> int:
     """Orders it; returns when, in ns of the wall clock."""
-    run("cansend", "vcan0", f"{FAULT_ID:03X}#{wrong:02X}")
+    argument = angle_deg.to_bytes(2, signed=True).hex() if wrong is Wrong.PARKED else ""
+    run("cansend", "vcan0", f"{FAULT_ID:03X}#{wrong:02X}{argument}")
     return time.time_ns()
 
 

@@ -3,7 +3,6 @@
 
 from __future__ import annotations
 
-import math
 import re
 import time
 from typing import TYPE_CHECKING
@@ -11,10 +10,11 @@ from typing import TYPE_CHECKING
 import pytest
 from family_rig import motors, rc10ctl, setting, text_of, wait_status, write_config
 from faultrig import ctl, proven
+from faulty_families import Wrong
 from guestlib import Candump, Frame, run, wait_for
 from rig import MS
-from test_families import FAMILIES, Family
-from test_family_faults import SUBJECTS, moving, powered, rc10d, running
+from test_families import FAMILIES, FD_BUS, Family
+from test_family_faults import SUBJECTS, happens, moving, running
 
 if TYPE_CHECKING:
     import contextlib
@@ -117,38 +117,61 @@ def test_a_drive_that_says_it_has_another_scale_is_not_enabled(tmp_path: Path) -
 # ---- The turn at power-up
 
 ABSOLUTE = {
-    "Damiao": ("DM4310:1", "model: DM4310, id: 1, master_id: 17"),
-    "MyActuator": ("RMD-X8-25:1", "model: RMD-X8-25, id: 1, absolute_encoder: true"),
-    "LK-Tech": ("LK-MG5010E-i10:5", "model: LK-MG5010E-i10, id: 5"),
+    "Damiao": ("DM4310:1", "model: DM4310, id: 1, master_id: 17", ""),
+    "MyActuator": ("RMD-X8-25:1", "model: RMD-X8-25, id: 1, absolute_encoder: true", ""),
+    "LK-Tech": ("LK-MG5010E-i10:5", "model: LK-MG5010E-i10, id: 5", ""),
+    "RobStride": ("RS00:127", "model: RS00, id: 127", ""),
+    "CubeMars in servo mode": ("AK80-9:5", "model: AK80-9, id: 5, output_encoder: true", ""),
+    "CubeMars in MIT mode": (
+        "AK80-9:5:mit",
+        "model: AK80-9, id: 5, protocol: mit, output_encoder: true",
+        "",
+    ),
+    "moteus": (
+        "moteus:1",
+        "model: moteus, id: 1, motor_kv_rpm_per_v: 304, absolute: true",
+        FD_BUS,
+    ),
+    "VESC": (
+        "VESC:10:encoder",
+        (
+            "model: VESC, id: 10, pole_pairs: 7, feedback_hz: 100, velocity_limit_rpm: 600, "
+            "angle: encoder"
+        ),
+        "",
+    ),
 }
 PLACES_DEG = (-90, 0, 179, 181, 200, 215, -110)
+GAP_DEG = 235  # the middle of what the travel leaves of a turn
 
 
 @pytest.mark.parametrize("name", ABSOLUTE)
 def test_a_power_cycle_at_each_place_of_the_travel_of_a_drive(name: str, tmp_path: Path) -> None:
-    fake, keys = ABSOLUTE[name]
+    fake, keys, bus = ABSOLUTE[name]
     travel = "angle_min_deg: -90, angle_max_deg: 200"
-    config = write_config(tmp_path, f"name: motor, {keys}, {travel}")
-    with rc10d(config):
+    config = write_config(tmp_path, f"name: motor, {keys}, {travel}", bus=bus)
+    with running(config, fake):
         for place in PLACES_DEG:
-            # Switched off, and turned by hand meanwhile: it knows its angle within a turn.
-            with powered(fake, math.remainder(place, 360)):
-                wait_status("READY")
-                # Some drives have to be asked for it.
-                wait_for(lambda: motors()[0]["zeroed"], 1.0, f"on its turn at {place}", 0.05)
-                motor = motors()[0]
-                assert abs(motor["total_angle_deg"] - place) < 1, (place, motor["total_angle_deg"])
-                rc10ctl("enable")
-                wait_status("ACTIVE")
-                aim_deg = min(max(place, -89), 199)
-                with setting("motor", "total_angle", aim_deg, 0.3) as hand:
-                    hand.wait(10.0)
-                moved_deg = motors()[0]["total_angle_deg"] - place
-                assert abs(moved_deg) < 30, (place, moved_deg)
-                rc10ctl("disable")
-                wait_status("READY")
-            time.sleep(1.0)  # no drive is off and on again sooner
-            wait_status("OFFLINE")
+            # It knows its angle within a turn.
+            _power_cycle(place)
+            # Some drives have to be asked for it.
+            wait_for(lambda: motors()[0]["zeroed"], 1.0, f"on its turn at {place}", 0.1)
+            motor = motors()[0]
+            assert abs(motor["total_angle_deg"] - place) < 1, (place, motor["total_angle_deg"])
+            rc10ctl("enable")
+            aim_deg = min(max(place, -89), 199)
+            with setting("motor", "total_angle", aim_deg, 0.3) as hand:
+                assert hand.wait(10.0) == 0, hand.output()
+            moved_deg = motors()[0]["total_angle_deg"] - place
+            assert abs(moved_deg) < 30, (place, moved_deg)
+            rc10ctl("disable")
+        _power_cycle(GAP_DEG)
+        time.sleep(0.5)
+        assert not motors()[0]["zeroed"]
+        refused = ctl("--robot", "families", "enable")
+        assert refused.returncode == 1
+        assert "its turn is unclear" in refused.stderr
+        assert motors()[0]["status"] == "READY"
     proven(
         f"{name}: power cycle at {len(PLACES_DEG)} places of -90 to 200 deg and beyond",
         "on its turn; no way round",
@@ -156,3 +179,12 @@ def test_a_power_cycle_at_each_place_of_the_travel_of_a_drive(name: str, tmp_pat
         None,
         0,
     )
+    proven(
+        f"{name}: power cycle in the middle of the gap of that travel", "not enabled", None, None, 0
+    )
+
+
+def _power_cycle(place_deg: int) -> None:
+    happens(Wrong.PARKED, place_deg)
+    wait_for(lambda: motors()[0]["status"] == "OFFLINE", 1.0, "OFFLINE", 0.2)
+    wait_status("READY")

@@ -61,9 +61,10 @@ class VescAddress:
 
 @dataclass(frozen=True)
 class VescSpec:
-    """A VESC as it is asked for: "VESC:7"."""
+    """A VESC as it is asked for: "VESC:7", or with an encoder "VESC:7:encoder"."""
 
     motor_id: int
+    encoder: bool = False
 
     @property
     def name(self) -> str:
@@ -77,19 +78,21 @@ class VescSpec:
 
     @classmethod
     def parse(cls, text: str) -> VescSpec:
-        """Reads VESC:ID.
+        """Reads VESC:ID or VESC:ID:encoder.
 
         Raises:
             ValueError: it is something else, or no VESC has that id.
         """
-        model, _, motor_id = text.partition(":")
-        if model != "VESC" or not motor_id.isdecimal() or int(motor_id) > 254:
-            raise ValueError(f"{text!r}: give VESC:ID, with an id of 0 to 254")
-        return cls(int(motor_id))
+        model, _, rest = text.partition(":")
+        motor_id, colon, encoder = rest.partition(":")
+        known = encoder == "encoder" if colon else True
+        if model != "VESC" or not known or not motor_id.isdecimal() or int(motor_id) > 254:
+            raise ValueError(f"{text!r}: give VESC:ID or VESC:ID:encoder, with an id of 0 to 254")
+        return cls(int(motor_id), encoder=bool(colon))
 
     def make(self, *, initial_angle_deg: float, load_nm: float) -> FakeVesc:
         """Returns the drive."""
-        vesc = FakeVesc(self.motor_id)
+        vesc = FakeVesc(self.motor_id, encoder=self.encoder)
         vesc.angle_rad = math.radians(initial_angle_deg)
         vesc.load_nm = load_nm
         return vesc
@@ -114,6 +117,7 @@ class FakeVesc:
         pole_pairs: of the motor.
         rate_hz: of STATUS and STATUS_5; STATUS_4 comes 5 times a second.
         timeout_s: of its watchdog; 0: it has none.
+        encoder: STATUS_4, which has the angle within a turn, comes at rate_hz instead of STATUS_5.
     """
 
     def __init__(
@@ -123,12 +127,13 @@ class FakeVesc:
         pole_pairs: int = 7,
         rate_hz: float = 100.0,
         timeout_s: float = TIMEOUT_S,
+        encoder: bool = False,
     ) -> None:
         if not 0 <= motor_id <= 254:
             raise ValueError(f"VESC:{motor_id}: a VESC has the ids 0 to 254")
         if pole_pairs < 1:
             raise ValueError(f"VESC:{motor_id}: {pole_pairs} pole pairs are too few")
-        self.spec = VescSpec(motor_id)
+        self.spec = VescSpec(motor_id, encoder)
         self.name = self.spec.name
         self.motor_id = motor_id
         self.pole_pairs = pole_pairs
@@ -299,10 +304,16 @@ class FakeVesc:
         if self._fast_in_s <= 1e-6:
             self._fast_in_s += self._period_s
             self._send(STATUS, self.motor_id, self.status())
-            self._send(STATUS_5, self.motor_id, self.status_5())
+            if self.spec.encoder:
+                self._send(STATUS_4, self.motor_id, self.status_4())
+            else:
+                self._send(STATUS_5, self.motor_id, self.status_5())
         if self._slow_in_s <= 1e-6:
             self._slow_in_s += 0.2
-            self._send(STATUS_4, self.motor_id, self.status_4())
+            if self.spec.encoder:
+                self._send(STATUS_5, self.motor_id, self.status_5())
+            else:
+                self._send(STATUS_4, self.motor_id, self.status_4())
 
     def status(self) -> bytes:
         """The payload of STATUS. The current has the sign of the power."""
