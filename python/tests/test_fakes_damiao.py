@@ -237,7 +237,16 @@ def test_above_1_mbit_it_speaks_fd_and_else_it_does_not_hear_fd() -> None:
 
 @pytest.mark.parametrize(
     "text",
-    ["DM9999:1", "DM4310", "DM4310:0", "DM4310:16", "DM4310:x", "DM4310:1:257", "DM4310:1:2047", "DM4310:1:fd"],
+    [
+        "DM9999:1",
+        "DM4310",
+        "DM4310:0",
+        "DM4310:16",
+        "DM4310:x",
+        "DM4310:1:257",
+        "DM4310:1:2047",
+        "DM4310:1:fd",
+    ],
 )
 def test_drives_that_there_cannot_be_are_refused(text: str) -> None:
     with pytest.raises(ValueError, match=text.split(":")[0]):

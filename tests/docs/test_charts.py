@@ -35,7 +35,7 @@ def test_tables_are_read_with_what_they_lack() -> None:
         "| robot | motors | frames | tick |\n|---|---|---|---|\n| DJI | 4 | 4.0, 1.0 | 1.1 µs |\n"
     )
     assert families(text).groups == [Group("DJI, 4 motors", [1.1])]
-    text = "| drives | program | CPU |\n|---|---|---|\n| 4 X | a | 38 µs |\n| 4 X | b | – |\n"
+    text = "| drives | program | CPU |\n|---|---|---|\n| 4 X | a | 38 µs |\n| 4 X | b | none |\n"
     assert peers(text).groups == [Group("4 X, a", [38.0])]
 
 

@@ -39,7 +39,7 @@ class Wire(NamedTuple):
 
     @property
     def period_ns(self) -> int:
-        """Of the commands to a drive."""
+        """Spacing of the commands to a drive."""
         return self.divider * 1_000_000_000 // self.rate_hz
 
     def write(self, folder: Path) -> Path:

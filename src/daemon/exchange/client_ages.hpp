@@ -28,7 +28,7 @@ class ClientAges {
 
   /// Clients with a histogram of their own, in the order of their first command.
   [[nodiscard]] std::size_t count() const noexcept { return count_.load(std::memory_order_acquire); }
-  /// Of an index below count().
+  /// `client`: below count(), as in of().
   [[nodiscard]] const link::Name& name(std::size_t client) const noexcept { return names_[client]; }
   [[nodiscard]] const DurationHistogram& of(std::size_t client) const noexcept { return ages_[client]; }
   [[nodiscard]] const DurationHistogram& ofOthers() const noexcept { return others_; }

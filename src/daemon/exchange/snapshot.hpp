@@ -61,7 +61,7 @@ inline constexpr std::size_t kMaxModules = link::kMaxModules;
 
 struct ModuleSnapshot {
   link::Name owner;                 ///< Client that gives its inputs; empty: none.
-  MonotonicTime inputs_received{};  ///< Of the newest, another module's: its tick; 0: none are in force.
+  MonotonicTime inputs_received{};  ///< Time of the newest, a module's: its tick; 0: none act.
   std::array<double, kMaxSignals> outputs{};
 };
 

@@ -157,7 +157,7 @@ void Scheduler::watchStop() noexcept {
   stopped_ = (rest_ticks_ >= kMinRestTicks && echoed) || given_up;
 }
 
-// What a module commands is as old as its tick: the client's message to the module is counted instead.
+// Targets of a module are as old as its tick: the client's message to the module is counted instead.
 void Scheduler::recordAges(const Snapshot& snapshot, const Tick& tick) noexcept {
   const auto isNews = [&tick](MonotonicTime received, MonotonicTime last) {
     return received != last && received != tick.now;
