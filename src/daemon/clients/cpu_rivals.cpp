@@ -2,7 +2,6 @@
 
 #include <sched.h>
 
-#include <algorithm>
 #include <cstdio>
 #include <fstream>
 #include <sstream>
@@ -14,6 +13,8 @@ namespace {
 
 // Some 10 us each.
 constexpr int kProcessesPerWindow = 20;
+// New ones are found after so many windows, 2 s.
+constexpr int kWindowsPerSearch = 100;
 
 [[nodiscard]] bool isNumber(const std::string& text) noexcept {
   return !text.empty() && text.find_first_not_of("0123456789") == std::string::npos;
@@ -31,6 +32,23 @@ constexpr int kProcessesPerWindow = 20;
   if (std::sscanf(firstLine(schedstat).c_str(), "%lld", &used_ns) != 1) return std::nullopt;
   return Duration{used_ns};
 }
+
+/// Word number `field` of proc(5)'s stat, of which the name in parentheses, which may hold anything, is the
+/// second.
+[[nodiscard]] std::optional<int> wordOf(const std::string& stat, int field) {
+  const auto close = stat.rfind(')');
+  if (close == std::string::npos) return std::nullopt;
+  std::istringstream words(stat.substr(close + 1));
+  std::string skipped;
+  for (int word = 3; word < field; ++word) words >> skipped;
+  int value = 0;
+  if (!(words >> value)) return std::nullopt;
+  return value;
+}
+
+constexpr int kProcessorField = 39;
+constexpr int kPriorityField = 40;
+constexpr int kPolicyField = 41;
 
 }  // namespace
 
@@ -50,19 +68,23 @@ bool CpuRivals::look() {
     return false;
   }
   for (auto& rival : rivals_) {
-    const auto used = usedBy(rival.schedstat);
+    const auto used = usedBy(rival.task / "schedstat");
     rival.before = std::exchange(rival.lately, used && rival.used ? *used - *rival.used : Duration{});
     rival.used = used;
   }
-  windows_ = std::min(windows_ + 1, 3);
-  return windows_ == 3;
+  if (++windows_ > kWindowsPerSearch) forget();
+  return windows_ >= 3;
 }
 
 std::string CpuRivals::busiest(Duration least) const {
-  const auto sum = [](const Rival& rival) { return rival.lately + rival.before; };
-  const auto most = std::max_element(rivals_.begin(), rivals_.end(),
-                                     [&sum](const Rival& a, const Rival& b) { return sum(a) < sum(b); });
-  return most != rivals_.end() && sum(*most) >= least ? most->name : std::string{};
+  const auto cpu = wordOf(firstLine(own_stat_), kProcessorField);
+  const Rival* most = nullptr;
+  for (const auto& rival : rivals_) {
+    const Duration used = rival.lately + rival.before;
+    if (used < least || (most != nullptr && used <= most->lately + most->before)) continue;
+    if (wordOf(firstLine(rival.task / "stat"), kProcessorField) == cpu) most = &rival;
+  }
+  return most != nullptr ? most->name : std::string{};
 }
 
 void CpuRivals::findSome() {
@@ -83,23 +105,19 @@ void CpuRivals::findSome() {
 }
 
 void CpuRivals::take(const std::filesystem::path& task) {
-  if (task.filename() == std::to_string(tid_)) return;
+  if (task.filename() == std::to_string(tid_)) {
+    own_stat_ = task / "stat";
+    return;
+  }
   const std::string stat = firstLine(task / "stat");
-  // proc(5): the name in parentheses may hold anything; behind it field 3 and so on, 40 and 41 of which are
-  // priority and policy.
   const auto open = stat.find('(');
   const auto close = stat.rfind(')');
-  if (open == std::string::npos || close == std::string::npos || close < open) return;
-  std::istringstream fields(stat.substr(close + 1));
-  std::string skipped;
-  for (int field = 3; field < 40; ++field) fields >> skipped;
-  int priority = 0;
-  int policy = 0;
-  if (!(fields >> priority >> policy)) return;
-  const bool fixed = policy == SCHED_FIFO || policy == SCHED_RR;
-  const bool precedes = policy == SCHED_DEADLINE || (fixed && priority >= priority_);
-  if (precedes)
-    rivals_.push_back({.schedstat = task / "schedstat", .name = stat.substr(open + 1, close - open - 1)});
+  const auto priority = wordOf(stat, kPriorityField);
+  const auto policy = wordOf(stat, kPolicyField);
+  if (open == std::string::npos || close < open || !priority || !policy) return;
+  const bool fixed = *policy == SCHED_FIFO || *policy == SCHED_RR;
+  if (*policy == SCHED_DEADLINE || (fixed && *priority >= priority_))
+    rivals_.push_back({.task = task, .name = stat.substr(open + 1, close - open - 1)});
 }
 
 }  // namespace rc10

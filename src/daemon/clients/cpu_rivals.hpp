@@ -23,14 +23,15 @@ class CpuRivals {
   /// Once in each window. Finds the rivals anew first, some processes in each call, so that none takes long;
   /// then notes what they use. True: it did, in this window and the one before.
   bool look();
-  /// The rival that used most, in the last two windows; empty if it used less than `least`.
+  /// The rival that used most in the last two windows and ran last on the thread's CPU; empty if it used less
+  /// than `least`.
   [[nodiscard]] std::string busiest(Duration least) const;
   /// The next look() finds them anew.
   void forget();
 
  private:
   struct Rival {
-    std::filesystem::path schedstat;
+    std::filesystem::path task;  ///< Its folder.
     std::string name;
     std::optional<Duration> used{};  ///< Since it began.
     Duration lately{};               ///< In the last window,
@@ -43,6 +44,7 @@ class CpuRivals {
   int tid_ = 0;
   int priority_;
   std::filesystem::path proc_;
+  std::filesystem::path own_stat_;
   std::optional<std::filesystem::directory_iterator> left_;  ///< Processes to be searched.
   bool found_ = false;
   int windows_ = 0;

@@ -21,10 +21,12 @@ constexpr int kOther = 0;
 /// The files of threads under /proc, as a test writes them.
 class Proc {
  public:
-  void thread(int tid, const std::string& name, int priority, int policy) const {
+  void thread(int tid, const std::string& name, int priority, int policy, int cpu = 2) const {
     std::string stat = std::to_string(tid) + " (" + name + ") S";
-    for (int field = 4; field < 40; ++field) stat += " 7";
-    write(tid, "stat", stat + " " + std::to_string(priority) + " " + std::to_string(policy) + " 0 0\n");
+    for (int field = 4; field < 39; ++field) stat += " 7";
+    write(tid, "stat",
+          stat + " " + std::to_string(cpu) + " " + std::to_string(priority) + " " + std::to_string(policy) +
+              " 0 0\n");
     used(tid, 0ms);
   }
   void used(int tid, Duration time) const {
@@ -79,6 +81,24 @@ TEST_F(CpuRivalsTest, RemembersTheWindowBeforeAndNoMore) {
   EXPECT_EQ(rivals.busiest(2ms), "migration/0 (odd)");
   rivals.look();
   EXPECT_EQ(rivals.busiest(2ms), "");
+}
+
+TEST_F(CpuRivalsTest, AThreadOnAnotherCpuTookNothing) {
+  settle();
+  proc.thread(8, "migration/1", 99, kFifo, 1);
+  proc.used(8, 5ms);
+  proc.used(7, 3ms);
+  rivals.look();
+  EXPECT_EQ(rivals.busiest(2ms), "irq/57-spi0.0");
+}
+
+TEST_F(CpuRivalsTest, AThreadThatCameLaterIsFoundInTime) {
+  settle();
+  proc.thread(300, "new", 80, kFifo);
+  for (int i = 0; i < 150; ++i) rivals.look();
+  proc.used(300, 5ms);
+  rivals.look();
+  EXPECT_EQ(rivals.busiest(1ms), "new");
 }
 
 TEST_F(CpuRivalsTest, AThreadThatEndsIsNoMistake) {
