@@ -59,7 +59,7 @@ TEST(ModuleDirectory, SaysWhatThereIs) {
   EXPECT_EQ(directory.findInput("bas.vx_m_s").error().message,
             "there is no module 'bas'; there are base; did you mean base?");
   EXPECT_EQ(directory.findInput("base.vx").error().message,
-            "module 'base' has no input 'vx'; it has vx_m_s, wz_deg_s");
+            "module 'base' has no input 'vx'; it has vx_m_s, wz_deg_s; did you mean vx_m_s?");
   EXPECT_EQ(directory.findInput("base").error().message,
             "module 'base' has no input ''; it has vx_m_s, wz_deg_s");
   EXPECT_EQ(directory.findOutput("base.vx_m_s").error().message,

@@ -127,7 +127,7 @@ TEST_F(ModuleTest, AnOutputOfAnotherNameIsTold) {
   EXPECT_TRUE(problems().empty());
   EXPECT_THAT(base_.output("x"), IsNan());
   ASSERT_EQ(problems().size(), 1U);
-  EXPECT_EQ(problems()[0], "base has no output 'x'; there are x_m, y_m");
+  EXPECT_EQ(problems()[0], "base has no output 'x'; there are x_m, y_m; did you mean x_m?");
   EXPECT_THAT(base_.output("x_mm"), IsNan());
   ASSERT_EQ(problems().size(), 2U);
   EXPECT_EQ(problems()[1], "base has no output 'x_mm'; there are x_m, y_m; did you mean x_m?");
