@@ -26,7 +26,7 @@ struct ChildLimits {
 /// server, at its next write or at its own bounds. Only for a process with one thread.
 class BoundedChild {
  public:
-  /// Of a copy of the server's memory as it is at the start.
+  /// A function that sees a copy of the server's memory as it is at the start.
   using Work = std::function<std::string()>;
 
   [[nodiscard]] static Result<BoundedChild> start(const Work& work, MonotonicTime now,

@@ -119,7 +119,7 @@ modules:
   - {name: belt, type: feeder, motor: left, velocity_limit_rpm: 60}
 """
 LOST_MS = 100  # its default
-# What it gave is in force for 20 ms, and what the feeder told the motor for another 20.
+# Its inputs are in force for 20 ms, and the feeder's target of the motor for another 20.
 REST_MS = LOST_MS + 20 + 20 + 1
 
 

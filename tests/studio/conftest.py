@@ -10,6 +10,7 @@ import pytest
 from hostlib import Daemon, Program, check_environment
 from hostlib.daemon import BIN, CONFIG, REPO
 from playwright.sync_api import Browser, Page, Playwright, expect, sync_playwright
+from recorded import Box, record
 
 # Debian's Chromium, which asks nobody on the internet for anything.
 CHROMIUM = "/usr/bin/chromium"
@@ -93,6 +94,12 @@ def chromium(playwright: Playwright) -> Iterator[Browser]:
 
 # Complaints of the browser about a page: scripts and styles that its policy forbids, failures.
 EXPECTED = re.compile(r"WebSocket connection|ERR_CONNECTION_REFUSED")
+
+
+@pytest.fixture(scope="session")
+def box() -> Box:
+    """The recording that the tests of the black box read, damage and forge."""
+    return record()
 
 
 @pytest.fixture

@@ -92,7 +92,7 @@ def sweep(form: Locator, studio: Studio) -> None:
     form.get_by_label("lasts").fill("60")
     start(form)
     studio.daemon.wait_motor("wheel", lambda m: float(m["velocity_rpm"]) > 50.0, "turns")
-    expect(form.get_by_role("timer")).to_contain_text("/ 61.0 s")
+    expect(form.get_by_role("timer")).to_contain_text("/ 62.0 s")
 
 
 def test_a_step_has_its_numbers_beside_its_curve_and_its_csv(page: Page, form: Locator) -> None:
