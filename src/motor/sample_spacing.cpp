@@ -1,6 +1,7 @@
 #include "motor/sample_spacing.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 namespace rc10 {
 namespace {
@@ -23,8 +24,7 @@ void SampleSpacing::add(Duration spacing) noexcept {
 float SampleSpacing::take() noexcept {
   if (pending_samples_ == 0) return 0.0F;
   // Lost frames make the spacing a multiple of the period, late ones do not change how many there are.
-  const auto rounded = static_cast<float>(static_cast<int>(pending_s_ / period_s_ + 0.5F));
-  const float periods = std::max(rounded, 1.0F);
+  const float periods = std::max(std::round(pending_s_ / period_s_), 1.0F);
   const float measured_s = std::clamp(pending_s_ / periods, kShortest * nominal_s_, kLongest * nominal_s_);
   period_s_ += (measured_s - period_s_) * kSmoothing;
   pending_s_ = 0.0F;

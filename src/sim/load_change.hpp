@@ -34,7 +34,7 @@ struct LoadChange {
     for (std::size_t i = 0; i < kLoadFigures.size(); ++i) {
       const auto field = kLoadFigures[i].field;
       if (back) load.*field = at_start.*field;
-      if (values[i]) load.*field = *values[i];
+      if (const auto& value = values[i]) load.*field = *value;
     }
     return load;
   }

@@ -44,9 +44,9 @@ std::optional<ConfigDesk::Answer> ConfigDesk::turn(MonotonicTime now) {
 }
 
 ConfigDesk::Answer ConfigDesk::answered(Result<std::string> json) {
-  Answer answer{.page = asked_->page, .seq = asked_->seq, .message = std::move(json)};
-  if (answer.message) *answer.message = asked_->head + *answer.message + "}";
-  asked_.reset();
+  const auto asked = std::exchange(asked_, std::nullopt).value_or(Question{});
+  Answer answer{.page = asked.page, .seq = asked.seq, .message = std::move(json)};
+  if (answer.message) *answer.message = asked.head + *answer.message + "}";
   return answer;
 }
 

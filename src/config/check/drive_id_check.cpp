@@ -17,6 +17,7 @@ void checkFamily(const MotorFamily& family, const std::vector<MotorDraft>& motor
   }
   for (const auto& conflict : family.idJudge()(settings)) {
     std::vector<std::string> names;
+    names.reserve(conflict.motors.size());
     for (const auto place : conflict.motors) names.push_back(nameOf(*drafts[place]));
     const MotorDraft& blamed = *drafts[conflict.blamed];
     problems.error(blamed.id_place, joinPath(blamed.path, "id"), listWords(names) + " " + conflict.text);

@@ -86,6 +86,7 @@ Result<ShaftOrder> parseLoad(const link::Request& request, std::string_view moto
     const Key* key = figure == figures.end() ? nullptr : findKey(kLoadChangeSection, figure->name);
     if (key == nullptr) {
       std::vector<std::string_view> names;
+      names.reserve(figures.size());
       for (const auto& each : figures) names.push_back(each.name);
       return fail(fmt::format("load: there is no value '{}': {}{}", value.name.view(), fmt::join(names, ", "),
                               didYouMean(value.name.view(), names)));

@@ -159,20 +159,20 @@ void Scheduler::watchStop() noexcept {
 
 // Targets of a module are as old as its tick: the client's message to the module is counted instead.
 void Scheduler::recordAges(const Snapshot& snapshot, const Tick& tick) noexcept {
-  const auto isNews = [&tick](MonotonicTime received, MonotonicTime last) {
+  const auto is_news = [&tick](MonotonicTime received, MonotonicTime last) {
     return received != last && received != tick.now;
   };
   for (std::size_t i = 0; i < snapshot.motor_count; ++i) {
     const auto& motor = snapshot.motors[i];
     if (motor.acting != Acting::kTarget) continue;
     link_.ages.feedback[i].record(snapshot.sent - motor.feedback.received);
-    if (!isNews(motor.command_received, commands_[i]) || !robot_.motors()[i].motor->due(tick)) continue;
+    if (!is_news(motor.command_received, commands_[i]) || !robot_.motors()[i].motor->due(tick)) continue;
     commands_[i] = motor.command_received;
     recordCommandAge(motor.owner, snapshot.sent - motor.command_received);
   }
   for (std::size_t i = 0; i < snapshot.module_count; ++i) {
     const auto& module = snapshot.modules[i];
-    if (module.owner.view().empty() || !isNews(module.inputs_received, inputs_[i])) continue;
+    if (module.owner.view().empty() || !is_news(module.inputs_received, inputs_[i])) continue;
     inputs_[i] = module.inputs_received;
     recordCommandAge(module.owner, snapshot.sent - module.inputs_received);
   }

@@ -18,6 +18,7 @@ constexpr std::string_view kVescSilent =
 
 std::vector<CanFrame> vescPings() {
   std::vector<CanFrame> pings;
+  pings.reserve(kVescScanIds);
   const std::array<std::uint8_t, 1> who{kVescScanHost};
   for (int id = 0; id < kVescScanIds; ++id)
     pings.push_back(makeClassicFrame(vesc::canId(vesc::Packet::kPing, id), who));
