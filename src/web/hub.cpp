@@ -93,7 +93,7 @@ void Hub::handle(PageSocket& socket, std::string_view message, MonotonicTime now
     if (page->loopback) page->link->showToken(shown->token);
     greet(*page);
   } else if (const auto* robot = std::get_if<AskRobot>(&*request)) {
-    ask(*page, *robot);
+    ask(*page, *robot, now);
   } else if (const auto* held = std::get_if<DriveMotor>(&*request)) {
     drive(*page, *held, page->renewals.ageOf(held->sent, now));
   } else if (const auto* clock = std::get_if<TellClock>(&*request)) {
@@ -219,13 +219,13 @@ void Hub::answer(Page& page, const AskRange& wanted) {
                                        wanted.first_column, wanted.count));
 }
 
-void Hub::ask(Page& page, const AskRobot& wanted) {
+void Hub::ask(Page& page, const AskRobot& wanted, MonotonicTime now) {
   const bool estop = operationNamed(wanted.operation) == Operation::kEstop;
   // Before the page's own connection, which is there for the answer: all may be taken, or rc10d busy.
   const bool under_way = estop && feed_.estop(page.name);
   std::string refused = estop ? std::string{} : whyNotMoving(page);
   if (refused.empty())
-    refused = feed_.connected() ? page.link->ask(wanted, feed_.socketPath()) : feed_.reason();
+    refused = feed_.connected() ? page.link->ask(wanted, feed_.socketPath(), now) : feed_.reason();
   if (refused.empty()) return;
   if (under_way) refused.insert(0, "the e-stop was sent and is not confirmed: ");
   page.socket->sendText(shared(responseMessage(wanted.seq, under_way ? "failed" : "refused", refused)));
@@ -389,7 +389,7 @@ void Hub::publishColumns(Page& page) {
 
 void Hub::publishAnswers(Page& page) {
   while (true) {
-    const auto answer = page.link->answer();
+    const auto answer = page.link->answer(std::chrono::steady_clock::now());
     if (!answer) return;
     page.socket->sendText(
         shared(responseMessage(answer->seq, statusWord(answer->response.status),

@@ -74,7 +74,7 @@ class Hub {
   void greet(Page& page);
   void choose(Page& page, const ChooseView& wanted);
   void answer(Page& page, const AskRange& wanted);
-  void ask(Page& page, const AskRobot& wanted);
+  void ask(Page& page, const AskRobot& wanted, MonotonicTime now);
   void open(Page& page, const AskRecording& wanted);
   void sendPiece(Page& page, const AskPiece& wanted);
   void drive(Page& page, const DriveMotor& wanted, Duration age);

@@ -11,6 +11,9 @@ namespace {
 // A page that asks for more has not waited for an answer.
 constexpr std::size_t kMostOpen = 16;
 constexpr Duration kPatience = std::chrono::milliseconds{200};
+// rc10d answers within ticks. Whoever presses STOP is told soon that nobody has heard it.
+constexpr Duration kAnswerPatience = std::chrono::seconds{5};
+constexpr Duration kEstopPatience = std::chrono::milliseconds{500};
 
 }  // namespace
 
@@ -29,7 +32,6 @@ std::string PageLink::connect(const std::string& socket_path) {
       socket_path, {.name = client_name_, .subscriptions = 0, .token = token_, .timeout = kPatience});
   if (!connection) return connection.error().message;
   rc10d_.emplace(std::move(*connection));
-  open_.clear();
   return {};
 }
 
@@ -56,7 +58,7 @@ std::string PageLink::drive(const DriveMotor& wanted, std::int32_t validity_ms) 
   return outcome(rc10d_->send(command));
 }
 
-std::string PageLink::ask(const AskRobot& request, const std::string& socket_path) {
+std::string PageLink::ask(const AskRobot& request, const std::string& socket_path, MonotonicTime now) {
   if (auto why = connect(socket_path); !why.empty()) return why;
   const bool estop = operationNamed(request.operation) == Operation::kEstop;
   if (open_.size() >= kMostOpen && !estop) return "too many requests have no answer yet";
@@ -69,11 +71,16 @@ std::string PageLink::ask(const AskRobot& request, const std::string& socket_pat
   for (const auto& [name, value] : request.values)
     message.values[message.value_count++] = link::NamedValue{.name = std::string_view{name}, .value = value};
   auto why = outcome(rc10d_->send(message));  // NOLINT(bugprone-unchecked-optional-access)
-  if (why.empty()) open_.emplace_back(seq_, request.seq);
+  if (why.empty()) open_.push_back({.number = seq_, .seq = request.seq, .estop = estop, .sent = now});
   return why;
 }
 
-std::optional<PageLink::Answer> PageLink::answer() {
+std::optional<PageLink::Answer> PageLink::answer(MonotonicTime now) {
+  auto answer = answerOfRc10d();
+  return answer ? answer : answerInItsPlace(now);
+}
+
+std::optional<PageLink::Answer> PageLink::answerOfRc10d() {
   while (rc10d_) {
     const auto received = rc10d_->receive(buffer_);
     if (received.status == LinkClient::ReceiveStatus::kNothing) return std::nullopt;
@@ -84,13 +91,27 @@ std::optional<PageLink::Answer> PageLink::answer() {
     Answer answer;
     if (!link::open(received.datagram, answer.response) || answer.response.session != session_) continue;
     const auto found = std::find_if(open_.begin(), open_.end(),
-                                    [&](const auto& o) { return o.first == answer.response.seq; });
+                                    [&](const auto& o) { return o.number == answer.response.seq; });
     if (found == open_.end()) continue;
-    answer.seq = found->second;
+    answer.seq = found->seq;
     open_.erase(found);
     return answer;
   }
   return std::nullopt;
+}
+
+std::optional<PageLink::Answer> PageLink::answerInItsPlace(MonotonicTime now) {
+  const auto found = std::find_if(open_.begin(), open_.end(), [&](const auto& o) {
+    return !rc10d_ || now - o.sent >= (o.estop ? kEstopPatience : kAnswerPatience);
+  });
+  if (found == open_.end()) return std::nullopt;
+  Answer answer{.seq = found->seq, .response = {}};
+  answer.response.status = link::ResponseStatus::kFailed;
+  std::string why = rc10d_ ? "rc10d does not answer" : "the connection to rc10d ended before the answer";
+  if (found->estop) why.insert(0, "the e-stop was sent and is not confirmed: ");
+  answer.response.message = std::string_view{why};
+  open_.erase(found);
+  return answer;
 }
 
 }  // namespace rc10::web

@@ -4,9 +4,9 @@
 #include <cstdint>
 #include <optional>
 #include <string>
-#include <utility>
 #include <vector>
 
+#include "app/time.hpp"
 #include "client/link_client.hpp"
 #include "web/page_request.hpp"
 
@@ -22,8 +22,8 @@ class PageLink {
   void showToken(std::string token);
   [[nodiscard]] const std::string& token() const noexcept { return token_; }
 
-  /// Reason why it could not be sent; empty: it was.
-  [[nodiscard]] std::string ask(const AskRobot& request, const std::string& socket_path);
+  /// Reason why it could not be sent; empty: it was, and an answer() comes, from rc10d or for it.
+  [[nodiscard]] std::string ask(const AskRobot& request, const std::string& socket_path, MonotonicTime now);
 
   [[nodiscard]] bool isOpen() const noexcept { return rc10d_.has_value(); }
   /// Before drive(), which must not wait. Why there is no connection; empty: there is one.
@@ -35,20 +35,30 @@ class PageLink {
     std::int64_t seq = 0;  ///< The page's number.
     link::Response response;
   };
-  /// The next answer that is there; nothing: none.
-  [[nodiscard]] std::optional<Answer> answer();
+  /// The next answer that is there; nothing: none. A request that rc10d leaves without one fails in its
+  /// place.
+  [[nodiscard]] std::optional<Answer> answer(MonotonicTime now);
   /// rc10d has ended.
   void close() noexcept { rc10d_.reset(); }
 
  private:
+  struct Open {
+    std::int64_t number = 0;  ///< Of this link.
+    std::int64_t seq = 0;     ///< Of the page.
+    bool estop = false;
+    MonotonicTime sent;
+  };
+
   [[nodiscard]] std::string outcome(LinkClient::SendStatus status);
+  [[nodiscard]] std::optional<Answer> answerOfRc10d();
+  [[nodiscard]] std::optional<Answer> answerInItsPlace(MonotonicTime now);
 
   std::string client_name_;
   std::string token_;
   std::uint64_t session_;
   std::int64_t seq_ = 0;
   std::optional<LinkClient> rc10d_;
-  std::vector<std::pair<std::int64_t, std::int64_t>> open_;  ///< Numbers here, and of the page.
+  std::vector<Open> open_;
   std::vector<std::byte> buffer_;
 };
 

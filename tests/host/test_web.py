@@ -337,6 +337,39 @@ def test_an_estop_of_a_page_gets_in_while_rc10d_answers_nobody(web: Web, daemon:
         page.wait("state", lambda state: state["data"]["state"] == "ESTOP")
 
 
+def test_a_page_that_has_asked_before_hears_that_rc10d_does_not_answer(
+    web: Web, daemon: Daemon
+) -> None:
+    with web.page() as page:
+        assert page.ask("enable", "wheel")["status"] == "ok"
+        daemon.program.signal(signal.SIGSTOP)
+        try:
+            told = page.ask("estop")
+        finally:
+            daemon.program.signal(signal.SIGCONT)
+        assert told["status"] == "failed"
+        assert told["message"] == (
+            "the e-stop was sent and is not confirmed: rc10d does not answer"
+        )
+        page.wait("state", lambda state: state["data"]["state"] == "ESTOP")
+
+
+def test_a_request_that_dies_with_rc10d_has_failed(web: Web, daemon: Daemon) -> None:
+    with web.page() as page:
+        assert page.ask("enable", "wheel")["status"] == "ok"
+        daemon.program.signal(signal.SIGSTOP)
+        page.send(type="request", seq=77, operation="disable", target="wheel", values={})
+        # The page's own connection serves one message after the other.
+        page.send(type="recordings", seq=78)
+        page.wait("recordings")
+        daemon.kill()
+        told = page.wait("response", lambda answer: answer["seq"] == 77)
+        assert (told["status"], told["message"]) == (
+            "failed",
+            "the connection to rc10d ended before the answer",
+        )
+
+
 def test_a_page_gets_the_recording_of_the_robot_that_runs_and_of_the_one_that_has_ended(
     web: Web, daemon: Daemon, tmp_path: Path
 ) -> None:

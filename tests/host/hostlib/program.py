@@ -90,7 +90,10 @@ class Program:
             return "\n".join(self._lines)
 
     def signal(self, number: signal.Signals) -> None:
+        """Sends it; after SIGSTOP, none of its threads runs on."""
         self._process.send_signal(number)
+        if number == signal.SIGSTOP:
+            os.waitid(os.P_PID, self.pid, os.WSTOPPED | os.WEXITED | os.WNOWAIT)
 
     def interrupt(self) -> None:
         """As Ctrl-C does: to every process of the group."""
