@@ -4,9 +4,9 @@
 #include <vector>
 
 #include "client/json_line.hpp"
-#include "config/check/bus_load.hpp"
 #include "config/load_config.hpp"
 #include "config/report/report.hpp"
+#include "config/report/robot_json.hpp"
 #include "web/hidden_tokens.hpp"
 
 namespace rc10::web {
@@ -39,33 +39,14 @@ Json checkedMotorJson(const MotorConfig& motor, const BusLoad& load) {
 }
 
 Json checkedBusJson(const BusConfig& bus, int rate_hz) {
-  const auto loads = predictLoadByMotor(bus, rate_hz);
-  Json motors = Json::array();
-  for (std::size_t i = 0; i < bus.motors.size(); ++i)
-    motors.push_back(checkedMotorJson(bus.motors[i], loads[i]));
   const auto load = predictLoad(bus, rate_hz);
-  return {{"name", bus.name},           {"interface", bus.type == BusType::kSimulated ? "" : bus.interface},
-          {"bitrate", bus.bitrate},     {"data_bitrate", bus.data_bitrate},
-          {"load", load.unstuffed},     {"load_worst", load.worst_case},
-          {"motors", std::move(motors)}};
-}
-
-Json checkedGroupsJson(const RobotConfig& config) {
-  std::vector<std::string> names;
-  for (const auto& bus : config.buses) {
-    for (const auto& motor : bus.motors) names.push_back(motor.name());
-  }
-  Json groups = Json::array();
-  for (const auto& group : config.groups) {
-    Json members = Json::array();
-    for (const auto motor : group.motors) members.push_back(names[motor]);
-    groups.push_back({{"name", group.name},
-                      {"motors", std::move(members)},
-                      {"rearms_at_rest", group.on_return == GroupConfig::Return::kRearmAtRest},
-                      {"together", group.together},
-                      {"implied", group.implied}});
-  }
-  return groups;
+  return {{"name", bus.name},
+          {"interface", bus.type == BusType::kSimulated ? "" : bus.interface},
+          {"bitrate", bus.bitrate},
+          {"data_bitrate", bus.data_bitrate},
+          {"load", load.unstuffed},
+          {"load_worst", load.worst_case},
+          {"motors", motorsJson(bus, rate_hz, checkedMotorJson)}};
 }
 
 Json checkedRobotJson(const RobotConfig& config) {
@@ -73,7 +54,7 @@ Json checkedRobotJson(const RobotConfig& config) {
   for (const auto& bus : config.buses) buses.push_back(checkedBusJson(bus, config.rate_hz));
   return {{"name", config.robot},
           {"buses", std::move(buses)},
-          {"groups", checkedGroupsJson(config)},
+          {"groups", groupsJson(config)},
           {"report", describe(config)}};
 }
 

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <string>
 
-#include "config/check/bus_load.hpp"
+#include "config/report/robot_json.hpp"
 
 namespace rc10::ctl {
 namespace {
@@ -60,9 +60,6 @@ Json motorJson(const MotorConfig& motor, const BusLoad& load) {
 }
 
 Json busJson(const BusConfig& bus, int rate_hz) {
-  const auto loads = predictLoadByMotor(bus, rate_hz);
-  Json motors = Json::array();
-  for (std::size_t i = 0; i < bus.motors.size(); ++i) motors.push_back(motorJson(bus.motors[i], loads[i]));
   const auto load = predictLoad(bus, rate_hz);
   const bool simulated = bus.type == BusType::kSimulated;
   return {{"name", bus.name},
@@ -72,25 +69,7 @@ Json busJson(const BusConfig& bus, int rate_hz) {
           {"manage_link", bus.manage_link},
           {"predicted_load", load.unstuffed},
           {"predicted_load_worst", load.worst_case},
-          {"motors", std::move(motors)}};
-}
-
-Json groupsJson(const RobotConfig& config) {
-  std::vector<std::string> names;
-  for (const auto& bus : config.buses) {
-    for (const auto& motor : bus.motors) names.push_back(motor.name());
-  }
-  Json groups = Json::array();
-  for (const auto& group : config.groups) {
-    Json members = Json::array();
-    for (const auto motor : group.motors) members.push_back(names[motor]);
-    groups.push_back({{"name", group.name},
-                      {"motors", std::move(members)},
-                      {"rearms_at_rest", group.on_return == GroupConfig::Return::kRearmAtRest},
-                      {"together", group.together},
-                      {"implied", group.implied}});
-  }
-  return groups;
+          {"motors", motorsJson(bus, rate_hz, motorJson)}};
 }
 
 Json modulesJson(const RobotConfig& config) {
