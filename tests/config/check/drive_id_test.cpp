@@ -2,7 +2,7 @@
 
 #include <gmock/gmock.h>
 
-#include "config_text.hpp"
+#include "config/config_text.hpp"
 #include "drives/dji/dji_motor.hpp"
 
 namespace rc10::test::drive_id_test {

@@ -4,7 +4,7 @@
 
 #include <gmock/gmock.h>
 
-#include "config_text.hpp"
+#include "config/config_text.hpp"
 
 namespace rc10::test::loop_rules_test {
 namespace {

@@ -6,7 +6,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "fake_rc10d.hpp"
+#include "client/fake_rc10d.hpp"
 
 namespace rc10::client::test::motion_session_test {
 namespace {

@@ -1,7 +1,7 @@
 // Devices and lines that two modules want.
 #include <gmock/gmock.h>
 
-#include "config_text.hpp"
+#include "config/config_text.hpp"
 
 namespace rc10::test::device_claims_test {
 namespace {

@@ -5,9 +5,9 @@
 
 #include <gmock/gmock.h>
 
+#include "config/config_text.hpp"
 #include "config/module_types.hpp"
 #include "config/report/schema.hpp"
-#include "config_text.hpp"
 
 namespace rc10::test::module_rules_test {
 namespace {

@@ -9,9 +9,9 @@
 #include <gmock/gmock.h>
 #include <unistd.h>
 
+#include "config/config_text.hpp"
 #include "config/yaml/source_text.hpp"
 #include "config/yaml/yaml_reader.hpp"
-#include "config_text.hpp"
 
 namespace rc10::test::yaml_document_test {
 namespace {

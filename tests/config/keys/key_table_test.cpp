@@ -8,9 +8,9 @@
 
 #include <gmock/gmock.h>
 
+#include "config/config_text.hpp"
+#include "config/fingerprint.hpp"
 #include "config/keys/value_check.hpp"
-#include "config_text.hpp"
-#include "fingerprint.hpp"
 
 namespace rc10::test::key_table_test {
 namespace {

@@ -8,7 +8,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "config_text.hpp"
+#include "config/config_text.hpp"
 
 namespace rc10::test::loop_gains_test {
 namespace {

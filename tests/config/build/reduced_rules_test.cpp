@@ -2,8 +2,8 @@
 
 #include <gmock/gmock.h>
 
+#include "config/config_text.hpp"
 #include "config/report/report.hpp"
-#include "config_text.hpp"
 
 namespace rc10::test::reduced_rules_test {
 namespace {

@@ -5,9 +5,9 @@
 
 #include <gmock/gmock.h>
 
+#include "config/config_text.hpp"
 #include "config/motor_families.hpp"
 #include "config/yaml/number_text.hpp"
-#include "config_text.hpp"
 
 namespace rc10::test::family_keys_test {
 namespace {

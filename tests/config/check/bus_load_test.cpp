@@ -2,7 +2,7 @@
 
 #include <gmock/gmock.h>
 
-#include "config_text.hpp"
+#include "config/config_text.hpp"
 
 namespace rc10::test::bus_load_test {
 namespace {

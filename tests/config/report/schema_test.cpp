@@ -5,11 +5,11 @@
 
 #include <gmock/gmock.h>
 
+#include "config/config_text.hpp"
 #include "config/keys/key_table.hpp"
 #include "config/keys/settings.hpp"
 #include "config/motor_families.hpp"
 #include "config/yaml/yaml_reader.hpp"
-#include "config_text.hpp"
 
 namespace rc10::test::schema_test {
 namespace {

@@ -1,7 +1,7 @@
 // Drives of different families on one bus that would take each other's frames for their own.
 #include <gmock/gmock.h>
 
-#include "config_text.hpp"
+#include "config/config_text.hpp"
 
 namespace rc10::test::bus_id_test {
 namespace {
