@@ -7,18 +7,10 @@
 namespace rc10 {
 namespace {
 
-constexpr std::size_t kSlots = 4;
 constexpr std::array<std::uint32_t, 5> kCommandIds{0x200, 0x1FF, 0x2FF, 0x1FE, 0x2FE};
 
 /// C620 and C610 drives share a protocol; GM6020 has one of its own.
 bool isGM6020(const DJI_Motor& motor) noexcept { return motor.model().absolute_output; }
-
-CanFrame emptyFrame(CanId id) noexcept {
-  CanFrame frame;
-  frame.id = id;
-  frame.length = 2 * kSlots;
-  return frame;
-}
 
 }  // namespace
 
@@ -50,16 +42,14 @@ Result<void> DJI_Group::registerMotor(DJI_Motor& motor) {
 
 std::size_t DJI_Group::packCommand(const Tick& /*tick*/, std::span<CanFrame> out) noexcept {
   if (out.empty()) return 0;
-  CanFrame& frame = out.front();
-  frame = emptyFrame(ids_[0]);
+  std::array<std::int16_t, dji::kGroupSize> raw{};
   bool any = false;
-  for (std::size_t slot = 0; slot < kSlots; ++slot) {
+  for (std::size_t slot = 0; slot < slots_.size(); ++slot) {
     if (slots_[slot] == nullptr) continue;
     any = true;
-    const auto raw = static_cast<std::uint16_t>(slots_[slot]->rawCommand());
-    frame.data[2 * slot] = static_cast<std::uint8_t>(raw >> 8U);
-    frame.data[2 * slot + 1] = static_cast<std::uint8_t>(raw & 0xFFU);
+    raw[slot] = slots_[slot]->rawCommand();
   }
+  out.front() = dji::groupCommand(ids_[0], raw);
   return any ? 1 : 0;
 }
 
@@ -67,7 +57,7 @@ std::size_t DJI_Group::packRest(std::span<CanFrame> out) const noexcept {
   const bool any =
       std::any_of(slots_.begin(), slots_.end(), [](const auto* motor) { return motor != nullptr; });
   if (out.empty() || !any) return 0;
-  out.front() = emptyFrame(ids_[0]);
+  out.front() = dji::groupCommand(ids_[0], {});
   return 1;
 }
 

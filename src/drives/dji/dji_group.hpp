@@ -5,6 +5,7 @@
 
 #include "app/result.hpp"
 #include "bus/command_packer.hpp"
+#include "drives/dji/dji_frames.hpp"
 #include "drives/dji/dji_motor.hpp"
 
 namespace rc10 {
@@ -28,7 +29,7 @@ class DJI_Group : public CommandPacker {
  private:
   std::array<CanId, 1> ids_;
   std::string name_;
-  std::array<DJI_Motor*, 4> slots_{};
+  std::array<DJI_Motor*, dji::kGroupSize> slots_{};
 };
 
 }  // namespace rc10

@@ -5,14 +5,12 @@
 
 #include "app/angle.hpp"
 #include "app/units.hpp"
-#include "bus/byte_order.hpp"
+#include "drives/dji/dji_frames.hpp"
 #include "motor/motor_settings.hpp"
 
 namespace rc10 {
 namespace {
 
-constexpr std::size_t kFeedbackLength = 8;
-constexpr std::int32_t kCountsPerTurn = 8192;
 // Host loops must not act on old feedback even if nobody else notices. Far above any spacing that
 // the supervisor accepts as fresh.
 constexpr float kLongestSilenceSeconds = 0.1F;
@@ -39,7 +37,7 @@ DJI_Motor::DJI_Motor(const DjiMotorConfig& config)
       encoder_(model_->encoder),
       loops_(config.loops),
       spacing_(std::chrono::milliseconds{1}),
-      degrees_per_count_(direction_ * kDegPerTurn / (kCountsPerTurn * gear_ratio_)),
+      degrees_per_count_(direction_ * kDegPerTurn / (dji::kCountsPerTurn * gear_ratio_)),
       rpm_per_raw_(static_cast<float>(direction_ / gear_ratio_)),
       amperes_per_raw_(static_cast<float>(direction_) * model_->feedback_full_scale_a /
                        static_cast<float>(model_->feedback_raw_full_scale)),
@@ -55,23 +53,21 @@ bool DJI_Motor::matchesFrame(const CanFrame& frame) const noexcept {
 }
 
 FrameVerdict DJI_Motor::updateFeedback(const CanFrame& frame) noexcept {
-  if (frame.type != FrameType::kData || frame.fd || frame.length != kFeedbackLength) {
+  if (frame.type != FrameType::kData || frame.fd || frame.length != dji::kLength) {
     return FrameVerdict::kMalformed;
   }
-  const std::int16_t rotor_rpm = readBigEndian<std::int16_t>(frame.payload(), 2);
-  if (!encoder_.update(readBigEndian<std::uint16_t>(frame.payload(), 0), rotor_rpm, frame.received))
-    return FrameVerdict::kMalformed;
+  const auto told = dji::decodeFeedback(frame.payload());
+  if (!encoder_.update(told.encoder, told.rotor_rpm, frame.received)) return FrameVerdict::kMalformed;
 
   const bool first = feedback_.samples == 0;
   spacing_.add(first ? Duration{0} : frame.received - feedback_.received);
   feedback_.received = frame.received;
   ++feedback_.samples;
   feedback_.jumps = encoder_.jumps();
-  feedback_.velocity_rpm = static_cast<float>(rotor_rpm) * rpm_per_raw_;
-  feedback_.current_a =
-      static_cast<float>(readBigEndian<std::int16_t>(frame.payload(), 4)) * amperes_per_raw_;
+  feedback_.velocity_rpm = static_cast<float>(told.rotor_rpm) * rpm_per_raw_;
+  feedback_.current_a = static_cast<float>(told.current_raw) * amperes_per_raw_;
   feedback_.torque_nm = feedback_.current_a * torque_nm_per_a_;
-  if (model_->reports_temperature) feedback_.temperature_c = static_cast<float>(frame.data[6]);
+  if (model_->reports_temperature) feedback_.temperature_c = static_cast<float>(told.temperature_c);
 
   if (first) {
     const double reported_deg = static_cast<double>(encoder_.totalCounts()) * degrees_per_count_;

@@ -2,7 +2,7 @@
 
 #include <string_view>
 
-#include "bus/byte_order.hpp"
+#include "drives/dji/dji_frames.hpp"
 #include "drives/dji/dji_model.hpp"
 
 namespace rc10 {
@@ -11,17 +11,15 @@ namespace {
 // C620 and C610 cannot be told apart by their frames: where one has the temperature the other has nothing.
 constexpr std::string_view kC6xx = "DJI M3508 or M2006";
 constexpr std::string_view kGm6020 = "DJI GM6020";
-// Counts of their encoders: the angle is 0 to 8191.
-constexpr unsigned kDjiCounts = 8192;
 
 }  // namespace
 
 // Feedback at 0x200 + id, of GM6020 at 0x204 + id; commands at the ids of the tables.
 void recogniseDji(const CanFrame& frame, std::vector<DriveGuess>& guesses) {
-  if (frame.id.extended || frame.length != 8 || frame.fd) return;
+  if (frame.id.extended || frame.length != dji::kLength || frame.fd) return;
   const auto of = [&](const DjiModel& model, std::string_view kind) {
     const int id = static_cast<int>(frame.id.value) - model.feedback_id_base;
-    if (id >= 1 && id <= model.max_id && readBigEndian<std::uint16_t>(frame.payload(), 0) < kDjiCounts)
+    if (id >= 1 && id <= model.max_id && dji::decodeFeedback(frame.payload()).encoder < dji::kCountsPerTurn)
       guesses.push_back({kind, id});
     const auto commands = {model.current.command_ids, model.voltage.command_ids};
     for (const auto& ids : commands) {

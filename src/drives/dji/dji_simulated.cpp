@@ -1,30 +1,22 @@
 #include "drives/dji/dji_simulated.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 #include <utility>
 
 #include "drives/dji/dji_family.hpp"
+#include "drives/dji/dji_frames.hpp"
 #include "drives/dji/dji_simulated_parameters.hpp"
 #include "motor/motor_settings.hpp"
 
 namespace rc10::sim {
 namespace {
 
-constexpr std::uint8_t kFrameLength = 8;  // of commands and feedback alike
-
-std::int16_t readInt16(const CanFrame& frame, std::size_t at) noexcept {
-  return static_cast<std::int16_t>(static_cast<std::uint16_t>(frame.data[at] << 8U | frame.data[at + 1]));
-}
-
-void writeInt16(std::array<std::uint8_t, kFrameLength>& data, std::size_t at, double value) noexcept {
-  using Limits = std::numeric_limits<std::int16_t>;
-  const auto raw = static_cast<std::uint16_t>(
-      static_cast<std::int16_t>(std::lround(std::clamp<double>(value, Limits::min(), Limits::max()))));
-  data[at] = static_cast<std::uint8_t>(raw >> 8U);
-  data[at + 1] = static_cast<std::uint8_t>(raw & 0xFFU);
+template <typename Int>
+Int nearest(double value) noexcept {
+  using Limits = std::numeric_limits<Int>;
+  return static_cast<Int>(std::lround(std::clamp<double>(value, Limits::min(), Limits::max())));
 }
 
 }  // namespace
@@ -68,10 +60,10 @@ CanId DjiDrive::feedbackId() const noexcept { return djiFeedbackId(*model_, id_)
 
 void DjiDrive::receive(const CanFrame& frame) noexcept {
   const bool mine =
-      frame.type == FrameType::kData && !frame.fd && frame.length == kFrameLength && frame.id == commandId();
+      frame.type == FrameType::kData && !frame.fd && frame.length == dji::kLength && frame.id == commandId();
   if (!mine) return;
   const auto& table = model_->command(command_);
-  raw_command_ = readInt16(frame, 2 * static_cast<std::size_t>(djiSlot(id_)));
+  raw_command_ = dji::decodeCommand(frame.payload(), static_cast<std::size_t>(djiSlot(id_)));
   // Beyond full scale the current or supply limit cuts off.
   winding_.value = static_cast<double>(table.full_scale) * raw_command_ / table.raw_full_scale;
 }
@@ -90,20 +82,17 @@ std::size_t DjiDrive::feedback(std::span<CanFrame> out) noexcept {
 
 CanFrame DjiDrive::feedbackFrame() const noexcept {
   if (encoder_fault_.frozen) return frozen_;
-  std::array<std::uint8_t, kFrameLength> data{};
   const double sign = encoder_fault_.reversed ? -1.0 : 1.0;
   const double turns = sign * physics_.rotorFraction() + encoder_fault_.slip_turns;
-  const int counts_per_turn = model_->encoder.counts_per_turn;
-  const auto counts = std::floor((turns - std::floor(turns)) * counts_per_turn);
-  writeInt16(data, 0, std::min(counts, counts_per_turn - 1.0));
-  writeInt16(data, 2, sign * physics_.measuredRotorRpm());
-  writeInt16(data, 4,
-             physics_.currentA() / static_cast<double>(model_->feedback_full_scale_a) *
-                 model_->feedback_raw_full_scale);
-  if (model_->reports_temperature) {
-    data[6] = static_cast<std::uint8_t>(std::lround(std::clamp(physics_.temperatureC(), 0.0, 255.0)));
-  }
-  return makeClassicFrame(feedbackId(), data);
+  const auto counts = std::floor((turns - std::floor(turns)) * dji::kCountsPerTurn);
+  const double current_share = physics_.currentA() / static_cast<double>(model_->feedback_full_scale_a);
+  return dji::feedbackFrame(
+      feedbackId(),
+      {.encoder = nearest<std::uint16_t>(std::min(counts, dji::kCountsPerTurn - 1.0)),
+       .rotor_rpm = nearest<std::int16_t>(sign * physics_.measuredRotorRpm()),
+       .current_raw = nearest<std::int16_t>(current_share * model_->feedback_raw_full_scale),
+       .temperature_c =
+           model_->reports_temperature ? nearest<std::uint8_t>(physics_.temperatureC()) : std::uint8_t{0}});
 }
 
 void DjiDrive::setLoad(const MotorLoad& load) noexcept {
