@@ -51,7 +51,7 @@ DaemonEnd readDaemonEnd(const std::string& run_dir, const std::optional<std::str
     end.log = lastLines((before ? before->text : std::string{}) + log->text);
     end.logged_at = log->written.tv_sec;
   }
-  const auto refusal = endOf(newestLeftFile(run_dir, ".refusal"));
+  const auto refusal = endOf(newestLeftFile(run_dir, ".refusal", robot));
   // One from before the last run says nothing about its end.
   if (refusal && refusal->written.tv_sec + kSameStartSeconds >= end.logged_at) {
     end.refusal = refusal->text;

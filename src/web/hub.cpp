@@ -98,6 +98,7 @@ void Hub::handle(PageSocket& socket, std::string_view message, MonotonicTime now
     drive(*page, *held, page->renewals.ageOf(held->sent, now));
   } else if (const auto* clock = std::get_if<TellClock>(&*request)) {
     (void)page->renewals.ageOf(clock->sent, now);
+    if (!page->socket->behind()) page->socket->sendText(shared(clockMessage()));
   } else if (const auto* test = std::get_if<StartTest>(&*request)) {
     begin(*page, *test, now, page->renewals.ageOf(test->sent, now));
   } else if (const auto* renewal = std::get_if<RenewTest>(&*request)) {

@@ -2,6 +2,7 @@
 
 #include <sys/stat.h>
 
+#include <optional>
 #include <string>
 #include <string_view>
 
@@ -12,8 +13,17 @@ namespace rc10::web {
 /// A file that rc10d left in its run folder: a regular one and no link, or none.
 [[nodiscard]] UniqueFd openLeftFile(const std::string& path, struct stat& status);
 
-/// The newest file of this ending; empty: none.
-[[nodiscard]] std::string newestLeftFile(const std::string& run_dir, std::string_view ending);
+/// Bytes of such a file, if it is no larger than a configuration may be, and when it was written.
+struct LeftText {
+  std::string text;
+  timespec written{};
+};
+[[nodiscard]] std::optional<LeftText> readLeft(const std::string& path);
+
+/// The newest file of this ending; empty: none. With a robot, those of a start are passed over whose text of the
+/// configuration names another one.
+[[nodiscard]] std::string newestLeftFile(const std::string& run_dir, std::string_view ending,
+                                         const std::optional<std::string>& robot = std::nullopt);
 
 [[nodiscard]] bool isNewer(const timespec& a, const timespec& b) noexcept;
 

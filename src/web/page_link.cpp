@@ -1,6 +1,7 @@
 #include "web/page_link.hpp"
 
 #include <algorithm>
+#include <chrono>
 #include <utility>
 
 #include "client/request_call.hpp"
@@ -11,6 +12,9 @@ namespace {
 // A page that asks for more has not waited for an answer.
 constexpr std::size_t kMostOpen = 16;
 constexpr Duration kPatience = std::chrono::milliseconds{200};
+// All pages wait while an rc10d is asked that does not answer: the renewals of a jog must not ask it in a row
+// before the STOP behind them.
+constexpr Duration kPause = std::chrono::milliseconds{500};
 // rc10d answers within ticks. Whoever presses STOP is told soon that nobody has heard it.
 constexpr Duration kAnswerPatience = std::chrono::seconds{5};
 constexpr Duration kEstopPatience = std::chrono::milliseconds{500};
@@ -23,14 +27,19 @@ PageLink::PageLink(std::string client_name)
 void PageLink::showToken(std::string token) {
   if (token == token_) return;
   token_ = std::move(token);
+  next_try_ = {};
   close();
 }
 
 std::string PageLink::connect(const std::string& socket_path) {
   if (rc10d_) return {};
+  if (std::chrono::steady_clock::now() < next_try_) return why_not_;
   auto connection = LinkClient::connect(
       socket_path, {.name = client_name_, .subscriptions = 0, .token = token_, .timeout = kPatience});
-  if (!connection) return connection.error().message;
+  if (!connection) {
+    next_try_ = std::chrono::steady_clock::now() + kPause;
+    return why_not_ = connection.error().message;
+  }
   rc10d_.emplace(std::move(*connection));
   return {};
 }

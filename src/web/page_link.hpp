@@ -26,7 +26,8 @@ class PageLink {
   [[nodiscard]] std::string ask(const AskRobot& request, const std::string& socket_path, MonotonicTime now);
 
   [[nodiscard]] bool isOpen() const noexcept { return rc10d_.has_value(); }
-  /// Before drive(), which must not wait. Why there is no connection; empty: there is one.
+  /// Before drive(), which must not wait. Why there is no connection; empty: there is one. For half a second after
+  /// a failure it is that one again.
   [[nodiscard]] std::string connect(const std::string& socket_path);
   /// A target for this validity. The reason why it could not be sent; empty: it was.
   [[nodiscard]] std::string drive(const DriveMotor& wanted, std::int32_t validity_ms);
@@ -58,6 +59,8 @@ class PageLink {
   std::uint64_t session_;
   std::int64_t seq_ = 0;
   std::optional<LinkClient> rc10d_;
+  MonotonicTime next_try_{};  ///< Until then why_not_ holds.
+  std::string why_not_;
   std::vector<Open> open_;
   std::vector<std::byte> buffer_;
 };

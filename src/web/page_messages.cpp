@@ -126,6 +126,8 @@ std::string checkedConfigHead(std::int64_t seq) {
   return R"({"type":"config_checked","seq":)" + std::to_string(seq) + R"(,"checked":)";
 }
 
+std::string clockMessage() { return lineOf({{"type", "clock"}}); }
+
 std::string responseMessage(std::int64_t seq, std::string_view status, std::string_view message,
                             std::span<const link::NamedValue> values) {
   Json told = Json::object();

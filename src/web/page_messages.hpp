@@ -43,6 +43,8 @@ inline constexpr int kPageProtocol = 2;
 /// bracket.
 [[nodiscard]] std::string configHead(std::int64_t seq, std::string_view of);
 [[nodiscard]] std::string checkedConfigHead(std::int64_t seq);
+/// To the clock of a page: it knows by that that somebody listens.
+[[nodiscard]] std::string clockMessage();
 /// To a request of the page, by its own number.
 [[nodiscard]] std::string responseMessage(std::int64_t seq, std::string_view status, std::string_view message,
                                           std::span<const link::NamedValue> values = {});

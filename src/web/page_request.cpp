@@ -199,8 +199,8 @@ Result<PageRequest> wordsOf(const Received& object) {
   const auto seq = wholeOf(object, "seq", 0, kMaxExact);
   if (!seq) return tl::unexpected(seq.error());
   ask.seq = *seq;
-  const auto* events = rowsOf(object, "events", AskWords::kMost);
-  const auto* frames = rowsOf(object, "frames", AskWords::kMost);
+  const auto* events = rowsOf(object, "events", AskWords::kMostEvents);
+  const auto* frames = rowsOf(object, "frames", AskWords::kMostFrames);
   const auto* buses = rowsOf(object, "buses", link::kMaxBuses);
   if (events == nullptr || frames == nullptr || buses == nullptr)
     return fail("'events', 'frames' or 'buses' is missing or too long");

@@ -72,7 +72,9 @@ struct AskPiece {
 
 /// Words for the numbers of a recording that the page has.
 struct AskWords {
-  static constexpr std::size_t kMost = 256;  ///< Events, and frames.
+  static constexpr std::size_t kMostEvents = 256;
+  /// All pages wait for the words of a frame, 0.2 to 0.3 ms each.
+  static constexpr std::size_t kMostFrames = 64;
   struct Event {
     std::int32_t code = 0;
     std::int32_t value = 0;

@@ -40,7 +40,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
       require(std::isfinite(settings->criteria.velocity_max_rpm) && settings->criteria.current_max_a > 0.0);
     }
   } else if (const auto* words = std::get_if<web::AskWords>(&*request)) {
-    require(words->events.size() <= web::AskWords::kMost && words->frames.size() <= web::AskWords::kMost);
+    require(words->events.size() <= web::AskWords::kMostEvents &&
+            words->frames.size() <= web::AskWords::kMostFrames);
     for (const auto& frame : words->frames) require(frame.bus < words->buses.size());
   } else if (const auto* check = std::get_if<web::CheckConfig>(&*request)) {
     require(check->text.size() <= web::CheckConfig::kMostBytes && check->seq >= 0);

@@ -7,7 +7,7 @@ import subprocess
 
 import pytest
 from hostlib.daemon import BIN, REPO
-from playwright.sync_api import Browser, expect
+from playwright.sync_api import Browser, Page, expect
 
 from conftest import PATIENCE_MS, Studio
 
@@ -62,3 +62,47 @@ def test_a_phone_that_reads_the_code_looks_at_the_robot(chromium: Browser, studi
     token = url.split("#")[1]
     assert [one for one in asked if token in one.split("#")[0]] == []
     context.close()
+
+
+def elsewhere(chromium: Browser, studio: Studio, fragment: str = "") -> Page:
+    context = chromium.new_context(viewport={"width": 390, "height": 844}, locale="en-GB")
+    context.set_default_timeout(PATIENCE_MS)
+    page = context.new_page()
+    page.goto(f"http://{ELSEWHERE}:{studio.port}/{fragment}")
+    return page
+
+
+def test_a_wrong_token_is_said_to_be_wrong_and_the_right_one_outlives_the_connection(
+    chromium: Browser, studio: Studio
+) -> None:
+    page = elsewhere(chromium, studio)
+    expect(page.get_by_role("alert")).to_have_count(0)
+    page.get_by_label("Token").fill("wrong")
+    page.get_by_role("button", name="Show").click()
+    expect(page.get_by_role("alert")).to_have_text("This is not its token.")
+    page.get_by_label("Token").fill((studio.daemon.run_dir / "web-token").read_text().strip())
+    page.get_by_role("button", name="Show").click()
+    wheel = page.get_by_role("article", name="wheel", exact=True)
+    expect(wheel).to_be_visible()
+    # As after a walk out of the network's reach: nobody types it again.
+    studio.web.stop()
+    expect(wheel).to_have_count(0)
+    studio.start(studio.port)
+    expect(wheel).to_be_visible()
+    page.context.close()
+
+
+def test_lines_are_copied_without_encryption_too_and_the_page_says_so(
+    chromium: Browser, studio: Studio
+) -> None:
+    token = (studio.daemon.run_dir / "web-token").read_text().strip()
+    page = elsewhere(chromium, studio, f"#{token}")
+    assert page.evaluate("isSecureContext") is False
+    wheel = page.get_by_role("article", name="wheel", exact=True)
+    wheel.locator(".copy").first.click()
+    expect(wheel.locator(".copied").first).to_have_text("copied")
+    page.locator("#tab-plots").click()
+    field = page.get_by_label("Choose up to 12 signals")
+    field.press("Control+v")
+    expect(field).to_have_value("rc10ctl enable wheel")
+    page.context.close()

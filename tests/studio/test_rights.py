@@ -85,3 +85,22 @@ def test_hashes_of_tokens_are_shown_only_to_one_that_may_configure(
     if not shown:
         assert not [data for data in sent for secret in HASHES if secret in data]
     page.context.close()
+
+
+def test_a_held_button_without_the_right_says_why_nothing_moves(
+    chromium: Browser, studio: Studio
+) -> None:
+    shows = opened(chromium, f"{studio.url}#{TOKEN}")
+    enable(shows, "wheel")
+    studio.daemon.wait_motor("wheel", lambda motor: motor["status"] == "ACTIVE", "enabled")
+    without = opened(chromium, studio.url)
+    without.locator("#tab-move").click()
+    without.get_by_label("Motor").select_option("wheel")
+    without.get_by_role("button", name="counter-clockwise", exact=True).hover()
+    without.mouse.down()
+    told = without.locator(".jogs [role=status]")
+    expect(told).to_contain_text("let go: rc10d does not take this page’s commands")
+    expect(told).to_contain_text("may observe and stop, not command wheel")
+    without.mouse.up()
+    for page in (shows, without):
+        page.context.close()

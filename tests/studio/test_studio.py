@@ -185,6 +185,20 @@ def test_curves_have_every_tick_and_are_frozen_measured_and_saved(
     expect(page.get_by_role("button", name="Forget kept")).to_be_visible()
 
 
+def test_a_picture_that_was_waiting_draws_nothing_into_the_chart_of_other_signals(
+    page: Page,
+) -> None:
+    # Pictures come so late that the answer for the next signals is there before.
+    page.evaluate("() => { window.requestAnimationFrame = (f) => setTimeout(f, 400); }")
+    open_tab(page, "plots")
+    wheel = page.get_by_role("group", name="wheel", exact=True)
+    for count, name in enumerate(("torque_nm", "voltage_v", "temperature_c"), start=3):
+        wheel.get_by_label(name, exact=True).check()
+        expect(page.locator(".legend tr")).to_have_count(count)
+    # The fixture looks for errors of the page.
+    expect(page.locator(".legend tr").last).to_contain_text(re.compile(r"\d °C"))
+
+
 def test_events_are_told_in_words_and_can_be_sifted(page: Page, studio: Studio) -> None:
     open_tab(page, "events")
     studio.daemon.must("enable", "wheel")
@@ -359,6 +373,15 @@ def test_an_event_leads_to_its_remedy_on_a_page_of_the_robot(page: Page, studio:
     docs.goto(f"{studio.url}docs/troubleshooting.zh.html#{place}")
     expect(docs.locator("tr:target")).to_contain_text("no valid command any more")
     docs.close()
+
+
+def test_every_event_that_is_no_mere_news_has_a_remedy() -> None:
+    table = (REPO / "docs" / "lcm.md").read_text().split("## event_t")[1].split("\n## ")[0]
+    rows = re.findall(r"^\| (\d+) \| .* \| (.+) \| .* \|$", table, re.MULTILINE)
+    assert len(rows) > 20
+    # A motor's status has its remedies by its words.
+    wanted = {code for code, severity in rows if re.search("warning|error", severity)} - {"100"}
+    assert wanted - set(re.findall(r"^  (\d+): '", REMEDY.read_text(), re.MULTILINE)) == set()
 
 
 @pytest.mark.parametrize("width", [390, 1280])

@@ -77,6 +77,24 @@ TEST_F(DaemonEndTest, ARefusalFromBeforeTheLastRunIsOver) {
   EXPECT_THAT(end().refusal, IsEmpty());
 }
 
+TEST_F(DaemonEndTest, ARefusalOfAnotherRobotIsNotThatOfTheNamedOne) {
+  write("rear.refused", "# rear\nrobot: 'rear'  # its name\nbuses: [\n", 2000);
+  write("rear.refusal", "rear.yaml: 1 error\n", 2000);
+  EXPECT_EQ(end().refusal, "rear.yaml: 1 error\n");
+  EXPECT_EQ(end("rear").refusal, "rear.yaml: 1 error\n");
+  EXPECT_THAT(end("front").refusal, IsEmpty());
+  write("front.refused", "robot: front\n", 1000);
+  write("front.refusal", "front.yaml: 2 errors\n", 1000);
+  EXPECT_EQ(end("front").refusal, "front.yaml: 2 errors\n") << "an older one, and its own";
+}
+
+TEST_F(DaemonEndTest, ARefusalThatNamesNoRobotMayBeOfAny) {
+  write("robot.refusal", "robot.yaml: 1 error\n", 2000);
+  EXPECT_EQ(end("front").refusal, "robot.yaml: 1 error\n");
+  write("robot.refused", "  robot: rear\n", 2000);
+  EXPECT_EQ(end("front").refusal, "robot.yaml: 1 error\n");
+}
+
 TEST_F(DaemonEndTest, LinksAndWhatIsNoFileAreNotRead) {
   write("secret", "secret\n");
   ASSERT_EQ(::symlink((dir / "secret").c_str(), (dir / "robot.log").c_str()), 0);

@@ -87,6 +87,17 @@ TEST(PageRequest, WordsAreAskedForEventsAndFrames) {
   EXPECT_THAT(words.buses[words.frames[0].bus], ::testing::ElementsAre("M3508", "GM6020"));
 }
 
+std::string framesAsked(std::size_t count) {
+  std::string frames;
+  for (std::size_t i = 0; i < count; ++i) frames += (i == 0 ? "" : ",") + std::string{R"([0,true,"200#00"])"};
+  return R"({"type":"words","seq":2,"events":[],"buses":[["M3508"]],"frames":[)" + frames + "]}";
+}
+
+TEST(PageRequest, WordsOfMoreFramesThanPagesMayWaitForAreRefused) {
+  EXPECT_EQ(parsed<AskWords>(framesAsked(AskWords::kMostFrames)).frames.size(), AskWords::kMostFrames);
+  EXPECT_FALSE(parsePageRequest(framesAsked(AskWords::kMostFrames + 1)));
+}
+
 std::string testWith(const std::string& more) {
   return R"({"type":"test","schema":1,"seq":7,"sent_us":1500,"motor":"wheel","kind":"sweep","mode":"velocity",)"
          R"("amplitude":20,"max_current_a":12)" +

@@ -49,6 +49,13 @@ TEST_F(RunningConfigTest, WithoutARobotTheRefusedFileComesBeforeAnOlderOne) {
   EXPECT_EQ(readLastConfig(run.path(), std::nullopt).text, "mended");
 }
 
+TEST_F(RunningConfigTest, ARefusedFileOfAnotherRobotIsNotThatOfTheNamedOne) {
+  leave("hero.config", "robot: hero\n", 20);
+  leave("sentry.refused", "robot: sentry\n");
+  EXPECT_EQ(readLastConfig(run.path(), "hero").text, "robot: hero\n");
+  EXPECT_EQ(readLastConfig(run.path(), "sentry").of, "refused");
+}
+
 TEST_F(RunningConfigTest, NeitherALinkNorAPipeNorAPathIsRead) {
   leave("secret", "secret");
   std::filesystem::create_symlink(run / "secret", run / "hero.config");

@@ -1,5 +1,6 @@
 import { useState } from 'preact/hooks';
 
+import { CopyButton } from './clipboard';
 import { useKnown, useStudio } from './context';
 import type { RobotRequest } from './link';
 
@@ -27,16 +28,9 @@ export function CopyLines(props: { request: RobotRequest; command?: string; pyth
   return (
     <>
       {lines.map(([sign, what, line]) => (
-        <button
-          type="button"
-          key={sign}
-          class="copy"
-          title={`${what}: ${line}`}
-          aria-label={`${what}: ${line}`}
-          onClick={() => void navigator.clipboard?.writeText(line)}
-        >
+        <CopyButton key={sign} class="copy" label={`${what}: ${line}`} text={line}>
           {sign}
-        </button>
+        </CopyButton>
       ))}
     </>
   );

@@ -22,7 +22,10 @@ function isEmpty(min: number | null, max: number | null): boolean {
 
 /** Range of an axis: from the least value to the greatest, with some room. */
 export function around(_u: uPlot, min: number | null, max: number | null): uPlot.Range.MinMax {
-  return min === null || max === null || isEmpty(min, max) ? kUnknown : uPlot.rangeNum(min, max, 0.1, true);
+  if (min === null || max === null || isEmpty(min, max)) return kUnknown;
+  // A constant lies in the middle, a zero too.
+  if (min === max) return [min - Math.max(1, Math.abs(min) / 10), max + Math.max(1, Math.abs(max) / 10)];
+  return uPlot.rangeNum(min, max, 0.1, true);
 }
 
 export interface Kept {

@@ -2,6 +2,7 @@
 import { useEffect, useRef, useState } from 'preact/hooks';
 
 import { CopyLines } from './action';
+import { CopyButton } from './clipboard';
 import { useKnown, useStoredOfRobot, useStudio } from './context';
 import { NumberField } from './number_field';
 
@@ -132,9 +133,7 @@ export function Gains(props: { motor: string; proposed?: Values | null }) {
               request={{ operation: 'set_gains', target: props.motor, values: changed(wanted) }}
               command={`rc10ctl gains ${props.motor} ${listed(changed(wanted))}`.trim()}
             />
-            <button type="button" onClick={() => void navigator.clipboard?.writeText(yaml)}>
-              {word('gainsCopy')}
-            </button>
+            <CopyButton text={yaml}>{word('gainsCopy')}</CopyButton>
           </div>
           <details>
             <summary>{word('gainsLines')}</summary>

@@ -24,11 +24,14 @@ import {
   readPiece,
 } from './protocol';
 
-export type Connection = 'connecting' | 'live' | 'lost';
+/** silent: rc10-web answers, and nothing comes of rc10d, or only what is old. */
+export type Connection = 'connecting' | 'live' | 'silent' | 'lost';
 
 export interface Known {
   connection: Connection;
   hello: Hello | null;
+  /** The answer to a token that was shown: it is not rc10-web's. */
+  tokenRefused: boolean;
   down: Down | null;
   robot: Robot | null;
   state: State | null;
@@ -40,6 +43,11 @@ const kMaxEvents = 500;
 const kFirstPauseMs = 500;
 const kLongestPauseMs = 5000;
 const kAnswerPatienceMs = 6000;
+// Beats, not milliseconds: a browser that stood still has heard nothing, and nobody was silent. States come 25 times
+// a second, and rc10-web answers each beat.
+const kBeatMs = 500;
+const kSilentBeats = 4;
+const kLostBeats = 8;
 const kMostRecordingBytes = 256 * 1024 * 1024;
 
 type Listener = () => void;
@@ -76,6 +84,7 @@ export class Link {
   readonly known: Known = {
     connection: 'connecting',
     hello: null,
+    tokenRefused: false,
     down: null,
     robot: null,
     state: null,
@@ -98,21 +107,27 @@ export class Link {
   private test: { seq: number; onTime: (time_s: number, lasts_s: number) => void; onDone: (done: TestDone) => void } | null = null;
   private onCurve: (piece: CurvePiece) => void = () => {};
   private seq = 0;
-  private clock = 0;
+  private token: string | null = null;
+  // Of this connection: a greeting comes first, and one in answer to each token.
+  private greetings = 0;
+  private tokens = 0;
+  private beats = 0;
+  private unheardBeats = 0;
+  private statelessBeats = 0;
   private drawn = false;
 
   connect(): void {
     const scheme = location.protocol === 'https:' ? 'wss' : 'ws';
     const socket = new WebSocket(`${scheme}://${location.host}/link`);
     socket.binaryType = 'arraybuffer';
+    this.unheardBeats = 0;
+    if (this.beats === 0) this.beats = window.setInterval(() => this.beat(), kBeatMs);
     socket.onopen = () => {
       this.pauseMs = kFirstPauseMs;
-      const token = new URLSearchParams(location.hash.slice(1)).get('token') ?? location.hash.slice(1);
+      this.greetings = this.tokens = 0;
+      const token = this.token ?? new URLSearchParams(location.hash.slice(1)).get('token') ?? location.hash.slice(1);
       if (token !== '') this.showToken(token);
-      // rc10-web measures the delay of this page's messages by it.
-      clearInterval(this.clock);
-      this.clock = window.setInterval(() => this.send({ type: 'clock', sent_us: now_us() }), 1000);
-      this.send({ type: 'clock', sent_us: now_us() });
+      this.tellClock();
     };
     socket.onmessage = (message: MessageEvent<string | ArrayBuffer>) => this.take(message.data);
     socket.onclose = () => this.lost();
@@ -129,8 +144,10 @@ export class Link {
     return () => this.columnListeners.delete(listener);
   }
 
+  /** Also after a connection that was lost. */
   showToken(token: string): void {
-    this.send({ type: 'token', token });
+    this.token = token;
+    if (this.send({ type: 'token', token })) ++this.tokens;
   }
 
   view(view: number, signals: string[], columnUs: number, spanUs: number): void {
@@ -303,6 +320,29 @@ export class Link {
     });
   }
 
+  /** rc10-web measures the delay of this page's messages by it, and answers. */
+  private tellClock(): void {
+    this.send({ type: 'clock', sent_us: now_us() });
+  }
+
+  /** A cable that is out closes no connection: silence does. */
+  private beat(): void {
+    const { socket, known } = this;
+    if (socket === null) return;
+    if (++this.unheardBeats > kLostBeats) {
+      this.socket = socket.onopen = socket.onmessage = socket.onclose = null;
+      socket.close();
+      return this.lost();
+    }
+    const awaited = known.connection === 'live' && known.robot !== null && known.down === null;
+    if (awaited && ++this.statelessBeats > kSilentBeats) {
+      known.state = null;
+      known.connection = 'silent';
+      this.changed();
+    }
+    this.tellClock();
+  }
+
   private send(message: object): boolean {
     if (this.socket?.readyState !== WebSocket.OPEN) return false;
     this.socket.send(JSON.stringify(message));
@@ -321,6 +361,7 @@ export class Link {
   }
 
   private take(data: string | ArrayBuffer): void {
+    this.unheardBeats = 0;
     if (typeof data !== 'string') {
       const piece = readPiece(data);
       if (piece !== null) return this.onPiece(piece);
@@ -337,6 +378,8 @@ export class Link {
         // A page from before an upgrade.
         if (message.protocol !== kProtocol) return location.reload();
         known.hello = message;
+        known.tokenRefused = message.right === 'nothing' && this.tokens > 0 && this.greetings >= this.tokens;
+        ++this.greetings;
         known.connection = 'live';
         known.events = [];
         known.robot = null;
@@ -344,14 +387,18 @@ export class Link {
       case 'down':
         known.down = message;
         known.state = null;
+        known.connection = 'live';
         break;
       case 'robot':
+        this.statelessBeats = 0;
         known.robot = message;
         known.down = null;
         break;
       case 'state':
+        this.statelessBeats = 0;
         known.state = message;
         known.down = null;
+        known.connection = 'live';
         break;
       case 'diagnostics':
         known.diagnostics = message;
@@ -378,6 +425,8 @@ export class Link {
         return;
       case 'test_done':
         if (this.test?.seq === message.seq) this.test.onDone(message);
+        return;
+      case 'clock':
         return;
       case 'response':
         this.open.get(message.seq)?.(message);

@@ -26,7 +26,7 @@ function Header(props: { language: Language; onLanguage: (language: Language) =>
   const { word } = useStudio();
   const known = useKnown();
   const data = known.state?.data;
-  const connection = known.connection === 'live' ? 'live' : known.connection === 'lost' ? 'lost' : 'connecting';
+  const { connection } = known;
   return (
     <header class="top">
       <h1>{known.robot?.robot.robot ?? 'rc10'}</h1>
@@ -74,6 +74,11 @@ function Body() {
           {word('token')} <input value={token} onInput={(event) => setToken(event.currentTarget.value)} autocomplete="off" />
         </label>
         <button type="submit">{word('show')}</button>
+        {known.tokenRefused && (
+          <p class="refused" role="alert">
+            {word('tokenWrong')}
+          </p>
+        )}
       </form>
     );
   }

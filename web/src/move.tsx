@@ -12,6 +12,10 @@ import { Curves } from './plots';
 // rc10-web gives each renewal a lease of 150 ms.
 const kRenewMs = 50;
 const kLeaseMs = 150;
+// By then a state from after the first of them has come: a second.
+const kTakenRenewals = 20;
+// A command of a client was refused.
+const kCommandRefused = 202;
 const kModes = ['velocity', 'current'] as const;
 type HeldMode = (typeof kModes)[number];
 const kUnits: Record<HeldMode, string> = { velocity: 'rpm', current: 'A' };
@@ -37,7 +41,16 @@ function Jog(props: { motor: string; modes: HeldMode[]; mode: HeldMode; onMode: 
   const motor = known.state?.data.motors.find((each) => each.name === props.motor);
   const ready = motor?.status === 'ACTIVE' && known.hello?.right === 'command';
   const owner = motor?.owner ?? '';
-  const other = owner !== '' && owner !== known.hello?.name ? owner : '';
+  const ownerNow = useRef(owner);
+  ownerNow.current = owner;
+  const name = known.hello?.name ?? '';
+  const other = owner !== '' && owner !== name ? owner : '';
+
+  // rc10d answers no command: its events say what became of it.
+  const whyNotTaken = () => {
+    const refusal = link.known.events.find((event) => event.code === kCommandRefused && event.text.includes(name));
+    return refusal === undefined ? word('jogNotTaken') : `${word('jogNotTaken')} ${refusal.text}`;
+  };
 
   const letGo = (why: string) => {
     if (holder.current === null) return;
@@ -61,12 +74,14 @@ function Jog(props: { motor: string; modes: HeldMode[]; mode: HeldMode; onMode: 
     const held = link.hold(target, (why) => letGo(why));
     release.current = held.release;
     renewed.current = performance.now();
+    let renewals = 0;
     timer.current = window.setInterval(() => {
       // A page that stood still has let go: nothing starts again by itself.
       const late = performance.now() - renewed.current > kLeaseMs;
       renewed.current = performance.now();
       if (late) letGo(word('jogStill'));
       else if (!held.renew()) letGo(word('jogLost'));
+      else if (++renewals > kTakenRenewals && ownerNow.current !== name) letGo(whyNotTaken());
     }, kRenewMs);
   };
 

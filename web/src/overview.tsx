@@ -33,8 +33,8 @@ function Value(props: { name: string; value: number | null; unit: string; digits
 }
 
 /** Source of the torque, in one word: a motor that holds or damps is READY too. */
-function actingOf(motor: MotorState): string {
-  if (motor.acting === 'nothing') return motor.status === 'ACTIVE' ? 'no torque' : '';
+function actingOf(motor: MotorState, noTorque: string): string {
+  if (motor.acting === 'nothing') return motor.status === 'ACTIVE' ? noTorque : '';
   return motor.acting === 'target' ? motor.mode : motor.acting;
 }
 
@@ -45,6 +45,7 @@ function MotorCard(props: { info: MotorInfo; motor: MotorState; compact: boolean
   const target = motor.mode === 'angle' ? signedAngle(motor.target) : motor.target;
   const follows = motor.acting === 'target';
   const torque = motor.acting !== 'nothing';
+  const acting = actingOf(motor, word('noTorque'));
   return (
     <article class={`card motor ${motor.status.toLowerCase()} ${torque ? 'torque' : ''}`} aria-label={info.name}>
       <header>
@@ -52,7 +53,7 @@ function MotorCard(props: { info: MotorInfo; motor: MotorState; compact: boolean
           type="button"
           class="favourite"
           aria-pressed={props.favourite}
-          aria-label={`favourite ${info.name}`}
+          aria-label={`${word('favourite')} ${info.name}`}
           onClick={props.onFavourite}
         >
           {props.favourite ? '★' : '☆'}
@@ -62,7 +63,7 @@ function MotorCard(props: { info: MotorInfo; motor: MotorState; compact: boolean
       </header>
       <div class="badges">
         <span class={`badge status ${motor.status.toLowerCase()}`}>{motor.status}</span>
-        {actingOf(motor) !== '' && <span class="badge acting">{actingOf(motor)}</span>}
+        {acting !== '' && <span class="badge acting">{acting}</span>}
         {motor.limits.map((limit) => (
           <span class="badge limit" key={limit}>{`⚠ ${limit}`}</span>
         ))}
@@ -77,12 +78,12 @@ function MotorCard(props: { info: MotorInfo; motor: MotorState; compact: boolean
       <div class="values">
         {follows && <Value name={word('target')} value={target} unit={unit} />}
         {follows && unit !== '' && <Value name={word('measured')} value={measuredOf(motor)} unit={unit} />}
-        <Value name="velocity" value={motor.velocity_rpm} unit="rpm" />
+        <Value name={word('velocity')} value={motor.velocity_rpm} unit="rpm" />
         {!props.compact && (
           <>
-            <Value name="angle" value={motor.zeroed ? motor.total_angle_deg : signedAngle(motor.angle_deg)} unit="°" />
-            <Value name="current" value={motor.current_a} unit="A" digits={2} />
-            <Value name="temperature" value={motor.temperature_c} unit="°C" digits={0} />
+            <Value name={word('angle')} value={motor.zeroed ? motor.total_angle_deg : signedAngle(motor.angle_deg)} unit="°" />
+            <Value name={word('current')} value={motor.current_a} unit="A" digits={2} />
+            <Value name={word('temperature')} value={motor.temperature_c} unit="°C" digits={0} />
           </>
         )}
       </div>

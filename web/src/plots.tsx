@@ -97,7 +97,8 @@ export function Curves(props: {
 
   const draw = () => {
     const u = chart.current;
-    if (u === null) return;
+    // A picture that was waiting is of other signals than the chart that came since.
+    if (u === null || u.series.length !== 1 + 2 * traces.min.length) return;
     const data = [traces.times, ...traces.min.flatMap((min, i) => [min, traces.max[i] ?? []])];
     u.batch(() => {
       u.setData(data as unknown as uPlot.AlignedData, false);

@@ -269,6 +269,11 @@ export interface TestDone {
   report: TestReport;
 }
 
+/** The answer to a beat of this page. */
+interface Clock {
+  type: 'clock';
+}
+
 export type ServerMessage =
   | ConfigFile
   | CheckedConfig
@@ -283,6 +288,7 @@ export type ServerMessage =
   | RecordedWords
   | TestGoesOn
   | TestDone
+  | Clock
   | Response;
 
 export type FrameKind = 'next' | 'reset' | 'range';

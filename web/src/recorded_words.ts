@@ -6,8 +6,9 @@ import type { Link } from './link';
 import type { EventRow, FrameRow } from './recording_look';
 
 const kMostKept = 4000;
-// As AskWords::kMost of rc10-web.
-const kMostAsked = 256;
+// As AskWords::kMostEvents and kMostFrames of rc10-web: its other pages wait for the answer.
+const kMostEvents = 256;
+const kMostFrames = 64;
 
 /** Words that are known, by the numbers that they are for. */
 export class RecordedWordBook {
@@ -28,12 +29,12 @@ export class RecordedWordBook {
     return this.known.get(frameKey(row)) ?? '';
   }
 
-  /** Asks for what is missing; true: there is more than before. */
+  /** Asks for a piece of what is missing; true: there is more than before. */
   async learn(events: EventRow[], frames: FrameRow[]): Promise<boolean> {
-    const missing = <Row>(rows: Row[], keyOf: (row: Row) => string): [string, Row][] =>
-      [...new Map(rows.map((row): [string, Row] => [keyOf(row), row]))].filter(([key]) => !this.known.has(key)).slice(0, kMostAsked);
-    const wantedEvents = missing(events.filter((row) => row.text === ''), eventKey);
-    const wantedFrames = missing(frames.filter((row) => row.bus < this.models.length), frameKey);
+    const missing = <Row>(rows: Row[], keyOf: (row: Row) => string, most: number): [string, Row][] =>
+      [...new Map(rows.map((row): [string, Row] => [keyOf(row), row]))].filter(([key]) => !this.known.has(key)).slice(0, most);
+    const wantedEvents = missing(events.filter((row) => row.text === ''), eventKey, kMostEvents);
+    const wantedFrames = missing(frames.filter((row) => row.bus < this.models.length), frameKey, kMostFrames);
     if (wantedEvents.length + wantedFrames.length === 0) return false;
     const answer = await this.link.words({
       events: wantedEvents.map(([, row]) => [row.code, row.value, row.extra, row.client]),
@@ -61,9 +62,10 @@ export function useWords(book: RecordedWordBook, events: EventRow[], frames: Fra
   const [, draw] = useState(0);
   useEffect(() => {
     let gone = false;
-    void book.learn(events, frames).then((more) => {
-      if (more && !gone) draw((n) => n + 1);
-    });
+    const learn = async () => {
+      while (!gone && (await book.learn(events, frames))) if (!gone) draw((n) => n + 1);
+    };
+    void learn();
     return () => {
       gone = true;
     };

@@ -1,6 +1,7 @@
 import { useEffect, useRef, useState } from 'preact/hooks';
 
 import { useKnown, useStudio } from './context';
+import type { State } from './protocol';
 
 const kConfirmPatienceMs = 1000;
 const kTwiceMs = 600;
@@ -14,9 +15,15 @@ export function Stop() {
   const [asked, setAsked] = useState<Asked>('no');
   const timer = useRef(0);
   const lastEscape = useRef(-Infinity);
+  const lastPress = useRef(-Infinity);
+  const before = useRef<State | null>(null);
   const stopped = known.connection === 'live' && known.state !== null && known.state.data.state !== 'RUN';
+  // Of a robot that stood in ESTOP already, a state from after the press.
+  const confirmed = stopped && (asked === 'no' || known.state !== before.current);
 
-  const press = () => {
+  const press = (event: Event) => {
+    lastPress.current = event.timeStamp;
+    before.current = link.known.state;
     void link.ask({ operation: 'estop' });
     setAsked('asked');
     clearTimeout(timer.current);
@@ -24,15 +31,15 @@ export function Stop() {
   };
 
   useEffect(() => {
-    if (!stopped) return;
+    if (!confirmed) return;
     clearTimeout(timer.current);
     setAsked('no');
-  }, [stopped]);
+  }, [confirmed, asked]);
 
   useEffect(() => {
     const onKey = (event: KeyboardEvent) => {
       if (event.key !== 'Escape' || event.repeat) return;
-      if (event.timeStamp - lastEscape.current < kTwiceMs) press();
+      if (event.timeStamp - lastEscape.current < kTwiceMs) press(event);
       lastEscape.current = event.timeStamp;
     };
     window.addEventListener('keydown', onKey, { capture: true });
@@ -41,11 +48,19 @@ export function Stop() {
 
   return (
     <div class="stop">
-      <button type="button" class="stop-button" title={word('stopHint')} onPointerDown={press} onKeyDown={(e) => e.key === 'Enter' && press()}>
+      <button
+        type="button"
+        class="stop-button"
+        title={word('stopHint')}
+        onPointerDown={press}
+        onKeyDown={(event) => (event.key === 'Enter' || event.key === ' ') && !event.repeat && press(event)}
+        // Of a screen reader or by voice: a click that no pointer and no key came before.
+        onClick={(event) => event.timeStamp - lastPress.current > kTwiceMs && press(event)}
+      >
         {word('stop')}
       </button>
-      <span class={`stop-told ${asked}`} role="status" aria-live="assertive">
-        {asked === 'unconfirmed' ? word('stopUnconfirmed') : stopped ? word('stopConfirmed') : asked === 'asked' ? word('stopAsked') : ''}
+      <span class={`stop-told ${confirmed ? 'no' : asked}`} role="status" aria-live="assertive">
+        {confirmed ? word('stopConfirmed') : asked === 'unconfirmed' ? word('stopUnconfirmed') : asked === 'asked' ? word('stopAsked') : ''}
       </span>
     </div>
   );
