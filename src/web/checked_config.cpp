@@ -33,6 +33,9 @@ Json checkedMotorJson(const MotorConfig& motor, const BusLoad& load) {
           {"command", motorCommandText(motor)},
           {"feedback", motorFeedbackText(motor)},
           {"load", load.worst_case},
+          {"direction", motor.settings.direction},
+          {"gear_ratio", gearRatioOf(motor.settings, motor.traits())},
+          {"zero", motorZeroText(motor)},
           {"on_timeout", word(motor.fallback.on_timeout)},
           {"on_disable", word(motor.fallback.on_disable)},
           {"on_estop", motorEstopText(motor)}};

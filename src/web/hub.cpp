@@ -62,7 +62,10 @@ void Hub::join(PageSocket& socket, bool loopback, std::string_view address) {
 }
 
 void Hub::leave(PageSocket& socket) {
-  if (const auto* page = pageOf(socket); page != nullptr) configs_.forget(page->number);
+  if (auto* page = pageOf(socket); page != nullptr) {
+    configs_.forget(page->number);
+    disableAlone(*page);
+  }
   std::erase_if(pages_, [&](const auto& page) { return page->socket == &socket; });
   chooseTraces();
 }
@@ -227,9 +230,36 @@ void Hub::ask(Page& page, const AskRobot& wanted, MonotonicTime now) {
   std::string refused = estop ? std::string{} : whyNotMoving(page);
   if (refused.empty())
     refused = feed_.connected() ? page.link->ask(wanted, feed_.socketPath(), now) : feed_.reason();
-  if (refused.empty()) return;
+  if (refused.empty()) {
+    const auto operation = operationNamed(wanted.operation);
+    if (operation == Operation::kEnableAlone || operation == Operation::kDisable) {
+      page.alone = operation == Operation::kEnableAlone ? wanted.target : std::string{};
+      page.alone_on = false;
+    }
+    return;
+  }
   if (under_way) refused.insert(0, "the e-stop was sent and is not confirmed: ");
   page.socket->sendText(shared(responseMessage(wanted.seq, under_way ? "failed" : "refused", refused)));
+}
+
+// Another's disable ends it as this page's does: what is enabled later is not this page's.
+void Hub::watchAlone(Page& page, const link::State& state) const {
+  if (page.alone.empty()) return;
+  const auto motor = client::findMotor(feed_.welcome(), page.alone);
+  if (!motor) return page.alone.clear();
+  const auto status = state.motors[*motor].status;
+  const bool on = status == MotorStatus::kEnabling || status == MotorStatus::kActive;
+  if (page.alone_on && !on) page.alone.clear();
+  page.alone_on = on;
+}
+
+// A motor that its page enabled alone stays enabled for nobody when that page has gone.
+void Hub::disableAlone(Page& page) {
+  if (page.alone.empty() || !feed_.connected()) return;
+  AskRobot disable;
+  disable.operation = toString(Operation::kDisable);
+  disable.target = page.alone;
+  (void)page.link->ask(disable, feed_.socketPath());
 }
 
 std::string Hub::whyNotMoving(const Page& page) const {
@@ -369,6 +399,7 @@ void Hub::publish() {
   if (const auto* state = feed_.takeState(); state != nullptr && !pages_.empty()) {
     const auto text = shared(stateMessage(feed_, *state));
     for (const auto& page : pages_) {
+      watchAlone(*page, *state);
       if (page->right != Right::kNothing && !page->socket->behind()) page->socket->sendText(text);
     }
   }

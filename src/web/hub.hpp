@@ -66,6 +66,8 @@ class Hub {
     RenewalAge renewals;
     std::optional<OpenRecording> recording;
     std::uint32_t recording_number = 0;
+    std::string alone;      ///< Motor that it has enabled alone; empty: none.
+    bool alone_on = false;  ///< A state has shown that motor ENABLING or ACTIVE.
     std::unique_ptr<PageTest> test;
     std::unique_ptr<TestEvaluation> evaluation;
   };
@@ -92,6 +94,8 @@ class Hub {
   void publish();
   void publishColumns(Page& page);
   void publishAnswers(Page& page);
+  void watchAlone(Page& page, const link::State& state) const;
+  void disableAlone(Page& page);
   void tell(const std::string& message);
 
   std::optional<std::string> robot_;

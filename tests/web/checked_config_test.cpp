@@ -23,7 +23,7 @@ const std::string kRobot =
     "  - name: chassis\n"
     "    type: sim\n"
     "    motors:\n"
-    "      - {name: left, model: M3508, id: 1, on_estop: ramp}\n"
+    "      - {name: left, model: M3508, id: 1, on_estop: ramp, direction: -1, gear_ratio: 1, zero: power_on}\n"
     "      - {name: right, model: M3508, id: 2}\n"
     "groups:\n"
     "  - {name: wheels, motors: [left, right], on_return: rearm_at_rest}\n";
@@ -41,6 +41,16 @@ TEST(CheckedConfig, SaysOfEachMotorItsIdsItsLoadAndItsEstop) {
   EXPECT_EQ(robot["groups"][0]["motors"], json::parse(R"(["left", "right"])"));
   EXPECT_EQ(robot["groups"][0]["rearms_at_rest"], true);
   EXPECT_THAT(robot["report"].get<std::string>(), HasSubstr("bus chassis: simulated"));
+}
+
+TEST(CheckedConfig, SaysOfEachMotorItsDirectionItsGearAndItsZero) {
+  const auto motors = checked(kRobot)["robot"]["buses"][0]["motors"];
+  EXPECT_EQ(motors[0]["direction"], -1);
+  EXPECT_EQ(motors[0]["gear_ratio"], 1.0);
+  EXPECT_EQ(motors[0]["zero"], "at power-on");
+  EXPECT_EQ(motors[1]["direction"], 1);
+  EXPECT_NEAR(motors[1]["gear_ratio"].get<double>(), 19.2, 0.1);
+  EXPECT_EQ(motors[1]["zero"], "on request");
 }
 
 TEST(CheckedConfig, EachMistakeHasItsPlaceAndTheWordsOfTheChecker) {

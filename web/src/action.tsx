@@ -18,6 +18,12 @@ export function pythonOf(request: RobotRequest): string {
   return `robot.${request.operation}(${[...names, ...last].join(', ')})`;
 }
 
+/** The same for an operation that has no method of its own. */
+export function requestPython(request: RobotRequest): string {
+  const values = Object.entries(request.values ?? {}).map(([key, value]) => `"${key}": ${value}`);
+  return `robot.request("${request.operation}", "${request.target ?? ''}"${values.length === 0 ? '' : `, {${values.join(', ')}}`})`;
+}
+
 /** Buttons that copy both. */
 export function CopyLines(props: { request: RobotRequest; command?: string; python?: string }) {
   const { word } = useStudio();

@@ -1,6 +1,7 @@
 // Part "Configuration": the robot's file in an editor, with what rc10d would say to it.
 import { useEffect, useRef, useState } from 'preact/hooks';
 
+import { type Draft, kDraft } from './config_draft';
 import type { ConfigEditor } from './config_editor';
 import { CheckedTables } from './config_tables';
 import { ConfigSchema, type KeyHelp, type Schema } from './config_schema';
@@ -10,16 +11,6 @@ import type { Word } from './words';
 
 type Checked = CheckedConfig['checked'];
 type Robot = NonNullable<Checked['robot']>;
-
-/** The text and what is known of it, also while another part of the page is shown. */
-interface Draft {
-  text: string;
-  /** As it was loaded. */
-  loaded: string;
-  from: string;
-  hidden: number;
-}
-const kDraft: Draft = { text: '', loaded: '', from: '', hidden: 0 };
 
 const kPauseMs = 250;
 const kMostBytes = 128 * 1024;

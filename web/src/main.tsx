@@ -2,6 +2,7 @@ import { render } from 'preact';
 import { useEffect, useMemo, useState } from 'preact/hooks';
 
 import { BlackBox } from './blackbox';
+import { Commission } from './commission';
 import { Configuration } from './config';
 import { StudioContext, useKnown, useStored, useStudio } from './context';
 import { DownNotice } from './down';
@@ -17,7 +18,7 @@ import { Tune } from './tune';
 import { type Language, storeLanguage, storedLanguage, wordsOf } from './words';
 
 const kParts = {
-  overview: Overview, match: Match, plots: Plots, move: Move, tune: Tune, events: Events, blackbox: BlackBox, timing: Timing,
+  overview: Overview, match: Match, plots: Plots, commission: Commission, move: Move, tune: Tune, events: Events, blackbox: BlackBox, timing: Timing,
   configuration: Configuration,
 } as const;
 type Part = keyof typeof kParts;

@@ -217,6 +217,10 @@ export interface CheckedMotor {
   command: string;
   feedback: string;
   load: number;
+  direction: number;
+  gear_ratio: number;
+  /** "at power-on", "at 0 deg" of an absolute encoder, "on request". */
+  zero: string;
   on_timeout: string;
   on_disable: string;
   on_estop: string;

@@ -1,5 +1,6 @@
 // The page in English and Chinese. Words of the protocol (READY, hold, ...) stay as rc10ctl and the log have them.
 
+import { kCommissionChinese, kCommissionEnglish } from './words_commission';
 import { kTuneChinese, kTuneEnglish } from './words_tune';
 
 const kEnglish = {
@@ -256,6 +257,7 @@ const kEnglish = {
   configInstall: 'To install it',
   configInstallHint: 'This page writes nothing on the robot. Download the file, take it there, and:',
   configInstallStop: 'The restart is a stop: the motors come to rest and must be enabled again.',
+  ...kCommissionEnglish,
   ...kTuneEnglish,
 } as const;
 
@@ -515,6 +517,7 @@ const kChinese: Record<Word, string> = {
   configInstall: '如何安装',
   configInstallHint: '本页不在机器人上写任何东西。请下载文件，拷到机器人上，然后：',
   configInstallStop: '重启即停止：电机停止出力，须重新使能。',
+  ...kCommissionChinese,
   ...kTuneChinese,
 };
 

@@ -118,14 +118,6 @@ std::string limitText(const MotorConfig& motor, double share = 1.0) {
 
 double gearRatio(const MotorConfig& motor) { return gearRatioOf(motor.settings, motor.traits()); }
 
-std::string zeroText(const MotorConfig& motor) {
-  const MotorTraits traits = motor.traits();
-  if (motor.settings.zero_at_power_on) return "at power-on";
-  if (traits.absolute && gearRatio(motor) == traits.gear_ratio)
-    return "at " + rounded(motor.settings.zero_deg) + " deg";
-  return "on request";
-}
-
 /// "0x201", "0x00000901 (extended) and 3 more".
 std::string idsText(const std::vector<BusUse::Stream>& streams) {
   std::vector<CanId> ids;
@@ -137,6 +129,14 @@ std::string idsText(const std::vector<BusUse::Stream>& streams) {
 }
 
 }  // namespace
+
+std::string motorZeroText(const MotorConfig& motor) {
+  const MotorTraits traits = motor.traits();
+  if (motor.settings.zero_at_power_on) return "at power-on";
+  if (traits.absolute && gearRatio(motor) == traits.gear_ratio)
+    return "at " + rounded(motor.settings.zero_deg) + " deg";
+  return "on request";
+}
 
 std::string motorCommandText(const MotorConfig& motor) {
   const auto& settings = motor.settings;
@@ -173,7 +173,7 @@ std::string wiringText(const BusConfig& bus, int rate_hz) {
     table.add({motor.name() + (motor.optional ? " (optional)" : ""), motor.settings.model,
                std::to_string(motor.settings.id), motorFeedbackText(motor), motorCommandText(motor),
                percentText(loads[i].worst_case), motor.settings.direction < 0 ? "reversed" : "normal",
-               rounded(gearRatio(motor), 6), zeroText(motor), std::to_string(timeout) + " ms"});
+               rounded(gearRatio(motor), 6), motorZeroText(motor), std::to_string(timeout) + " ms"});
   }
   return table.text(2);
 }

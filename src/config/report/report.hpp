@@ -14,6 +14,8 @@ namespace rc10 {
 [[nodiscard]] std::string motorCommandText(const MotorConfig& motor);
 /// "0x201 at 1000 Hz": frames in which it reports.
 [[nodiscard]] std::string motorFeedbackText(const MotorConfig& motor);
+/// Zero of its angle: "at power-on", "at 0 deg" of an absolute encoder, "on request".
+[[nodiscard]] std::string motorZeroText(const MotorConfig& motor);
 /// `on_estop`, with what it becomes in the end: "damp, after 1 s coast".
 [[nodiscard]] std::string motorEstopText(const MotorConfig& motor);
 

@@ -1,0 +1,54 @@
+// Keys of a motor in the text of a robot's file.
+import { type YamlEntry, type YamlValue, placeIn, textAt } from './yaml_places';
+
+const items = (value: YamlValue | null | undefined) => (value?.kind === 'list' ? value.items : []);
+const under = (map: YamlValue, key: string) => map.entries.find((entry) => entry.key === key)?.value;
+
+function motorIn(text: string, name: string): YamlValue | undefined {
+  const { root } = placeIn(text, -1);
+  return items(under(root, 'buses'))
+    .flatMap((bus) => items(under(bus, 'motors')))
+    .find((motor) => textAt(motor, 'name') === name);
+}
+
+/** Begin and end of a scalar's text behind its key. */
+function valueAt(text: string, entry: YamlEntry): [number, number] | null {
+  const rest = text.slice(entry.to);
+  const before = /^["']?\s*:[ \t]*/.exec(rest)?.[0].length;
+  if (before === undefined || entry.value?.kind !== 'scalar') return null;
+  const quoted = /^(["'])[^\n]*?\1/.exec(rest.slice(before))?.[0].length;
+  return [entry.to + before, entry.to + before + (quoted ?? entry.value.text.length)];
+}
+
+function isFlow(text: string, map: YamlValue): boolean {
+  const first = map.entries[0];
+  return first !== undefined && text.slice(0, first.from).trimEnd().endsWith('{');
+}
+
+function withKey(text: string, name: string, key: string, value: string): string | null {
+  const motor = motorIn(text, name);
+  const entry = motor?.entries.find((each) => each.key === key);
+  const named = motor?.entries.find((each) => each.key === 'name');
+  if (motor === undefined || named === undefined) return null;
+  if (entry !== undefined) {
+    const place = valueAt(text, entry);
+    return place === null ? null : text.slice(0, place[0]) + value + text.slice(place[1]);
+  }
+  const after = valueAt(text, named);
+  if (after === null) return null;
+  if (isFlow(text, motor)) return `${text.slice(0, after[1])}, ${key}: ${value}${text.slice(after[1])}`;
+  const lineEnd = text.indexOf('\n', after[1]);
+  const at = lineEnd < 0 ? text.length : lineEnd;
+  const column = named.from - (text.lastIndexOf('\n', named.from - 1) + 1);
+  return `${text.slice(0, at)}\n${' '.repeat(column)}${key}: ${value}${text.slice(at)}`;
+}
+
+/** The text with these keys of a motor; null: the motor was not found in it. Comments and order stay. */
+export function withMotorKeys(text: string, name: string, keys: Record<string, number>): string | null {
+  let changed: string | null = text;
+  for (const [key, value] of Object.entries(keys)) {
+    if (changed === null) return null;
+    changed = withKey(changed, name, key, String(value));
+  }
+  return changed;
+}
