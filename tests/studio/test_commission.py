@@ -9,8 +9,7 @@ from pathlib import Path
 
 import pytest
 from hostlib.daemon import ARM
-from hostlib.program import eventually
-from playwright.sync_api import Browser, Locator, Page, Playwright, expect
+from playwright.sync_api import Locator, Page, Playwright, expect
 
 from conftest import CHROMIUM, PATIENCE_MS, QUIET, Studio
 
@@ -168,3 +167,146 @@ def test_a_joint_ends_in_limits_and_a_zero_for_the_file(
     editor = page.get_by_label("Text of the configuration")
     expect(editor).to_contain_text(re.compile(r"name: elbow, .*angle_max_deg: "))
     expect(page.locator(".verdict-badge")).to_contain_text("rc10d accepts it")
+
+
+def spinning(page: Page, studio: Studio) -> None:
+    """The wheel in its first spin, under a finger that stays."""
+    page.locator("#tab-commission").click()
+    choose(page, "wheel")
+    go_to(page, "First spin")
+    card = page.locator(".card.step")
+    press(card, "Enable it alone")
+    expect(card).to_contain_text("no other motor can be enabled")
+    refused = studio.daemon.ctl("enable", "elbow")
+    assert "locked while" in refused.stdout + refused.stderr
+    button = card.get_by_role("button", name="Hold to spin")
+    expect(button).to_be_enabled()
+    button.hover()
+    page.mouse.down()
+    studio.daemon.wait_motor(
+        "wheel",
+        lambda m: m["acting"] == "target" and str(m["owner"]).startswith("web-"),
+        "it is in the spin",
+    )
+
+
+ENDS = {
+    "release": lambda page: page.mouse.up(),
+    "another part": lambda page: page.locator("#tab-events").click(),
+    "another step": lambda page: go_to(page, "Zero"),
+    "another motor": lambda page: choose(page, "elbow"),
+    "blur": lambda page: page.evaluate("window.dispatchEvent(new Event('blur'))"),
+    "another key": lambda page: page.keyboard.press("x"),
+    "reload": lambda page: page.reload(),
+}
+
+
+@pytest.mark.parametrize("end", list(ENDS))
+def test_a_spin_ends_disabled_by_all_that_is_not_holding(
+    page: Page, studio: Studio, card: Locator, end: str
+) -> None:
+    expect(card).to_be_visible()
+    spinning(page, studio)
+    ENDS[end](page)
+    rests(studio, "wheel")
+    page.mouse.up()
+    studio.daemon.must("enable", "elbow")
+
+
+def test_a_browser_that_is_killed_in_the_spin_leaves_rest_and_no_lock(
+    playwright: Playwright, studio: Studio, tmp_path: Path
+) -> None:
+    context = playwright.chromium.launch_persistent_context(
+        str(tmp_path), executable_path=CHROMIUM, args=[*QUIET], locale="en-GB"
+    )
+    page = context.pages[0]
+    page.set_default_timeout(PATIENCE_MS)
+    page.goto(studio.url)
+    spinning(page, studio)
+    os.kill(int((tmp_path / "SingletonLock").readlink().name.split("-")[-1]), signal.SIGKILL)
+    rests(studio, "wheel")
+    studio.daemon.must("enable", "elbow")
+
+
+def test_a_server_that_is_killed_in_the_spin_leaves_no_torque(
+    page: Page, studio: Studio, card: Locator
+) -> None:
+    expect(card).to_be_visible()
+    spinning(page, studio)
+    studio.web.signal(signal.SIGKILL)
+    studio.daemon.wait_motor(
+        "wheel", lambda m: m["acting"] == "nothing" and m["owner"] == "", "it is let go"
+    )
+    page.mouse.up()
+
+
+def test_what_was_found_is_there_after_a_reload_and_old_with_another_run(
+    page: Page, studio: Studio, card: Locator
+) -> None:
+    choose(page, "wheel")
+    press(card, re.compile("say id 1"))
+    go_to(page, "Zero")
+    press(card, "Set")
+    expect(told(card)).to_contain_text("reads 0.0°")
+    page.reload()
+    expect(told(card)).to_contain_text("reads 0.0°")
+    steps = page.get_by_role("list", name="Commission")
+    expect(steps.locator(".sign.good")).to_have_count(2)
+    # It counts from another zero, and the id is that of the same file.
+    studio.daemon.program.stop()
+    studio.daemon.start()
+    studio.daemon.wait_ready()
+    expect(steps.locator(".sign.old")).to_have_count(1)
+    expect(steps.locator(".sign.good")).to_have_count(1)
+    expect(card).to_contain_text("repeat it")
+    press(page.locator("main"), "Begin anew")
+    expect(steps.locator(".sign.old")).to_have_count(0)
+
+
+class TestAWrongFile:
+    """Wrong direction, wrong ratio, swapped names, a fallback that keeps torque."""
+
+    @pytest.fixture
+    def robot(self) -> str:
+        wheel = WHEEL.replace("id: 1,", "id: 1, gear_ratio: 36, on_timeout: brake,")
+        return ARM + wheel + "      - {name: other, model: M3508, id: 2, feedback_timeout_ms: 1000}\n"
+
+    def test_a_turn_by_hand_finds_it_and_the_lines_mend_it(
+        self, page: Page, studio: Studio, card: Locator
+    ) -> None:
+        choose(page, "wheel")
+        go_to(page, "Direction")
+        # Its hand turns the other way, and as far as the file's ratio makes of it.
+        press(card, "Begin")
+        for _ in range(2):
+            by_hand(studio, card, "wheel", "−90°", -90)
+        press(card, "The mark is back")
+        expect(told(card)).to_contain_text("instead of 360°")
+        expect(told(card)).to_contain_text(re.compile(r"multiply gear_ratio by 0\.(49|50)\d"))
+        go_to(page, "Lines")
+        lines = card.get_by_label("Lines for the file, of", exact=True)
+        expect(lines).to_have_text(re.compile(r"^direction: -1\ngear_ratio: 18(\.\d+)?$"))
+        press(card, "Put them into the Configuration")
+        editor = page.get_by_label("Text of the configuration")
+        expect(editor).to_contain_text("name: wheel, direction: -1")
+        expect(editor).to_contain_text(re.compile(r"gear_ratio: 18(\.\d+)?, on_timeout"))
+        expect(page.locator(".verdict-badge")).to_contain_text("rc10d accepts it")
+
+    def test_another_motor_that_turned_is_named(
+        self, page: Page, studio: Studio, card: Locator
+    ) -> None:
+        choose(page, "wheel")
+        go_to(page, "Direction")
+        press(card, "Begin")
+        studio.daemon.must("hand", "other", "--by", 360, "--rpm", 60)
+        expect(card.locator(".live-angle")).to_have_text("0.0°")
+        press(card, "The mark is back")
+        expect(told(card)).to_contain_text(re.compile(r"other turned by 3\d\d\.\d°, and wheel did not"))
+
+    def test_it_does_not_spin_while_its_time_out_would_keep_torque(
+        self, page: Page, card: Locator
+    ) -> None:
+        choose(page, "wheel")
+        go_to(page, "First spin")
+        expect(card.get_by_role("alert")).to_contain_text("on_timeout: brake")
+        expect(card.get_by_role("button", name="Hold to spin")).to_have_count(0)

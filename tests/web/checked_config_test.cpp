@@ -23,7 +23,8 @@ const std::string kRobot =
     "  - name: chassis\n"
     "    type: sim\n"
     "    motors:\n"
-    "      - {name: left, model: M3508, id: 1, on_estop: ramp, direction: -1, gear_ratio: 1, zero: power_on}\n"
+    "      - {name: left, model: M3508, id: 1, on_estop: ramp, direction: -1,\n"
+    "         gear_ratio: 1, zero: power_on}\n"
     "      - {name: right, model: M3508, id: 2}\n"
     "groups:\n"
     "  - {name: wheels, motors: [left, right], on_return: rearm_at_rest}\n";
