@@ -13,7 +13,7 @@ import pytest
 import rc10
 from fake_daemon import FakeDaemon, setpoints
 from rc10 import aio
-from rc10.lcm_types import response_t, robot_state_t, setpoint_t, signals_t
+from rc10.lcm_types import request_t, response_t, robot_state_t, setpoint_t, signals_t
 from rc10.link import LcmLink
 
 # Long enough for any machine; nothing waits for it when all is well.
@@ -139,6 +139,29 @@ async def test_requests_at_the_same_time_get_their_own_answers(
     assert isinstance(enabled, rc10.Response)
     assert isinstance(zeroed, rc10.RequestFailed)
     assert str(zeroed) == "zero yaw: failed: yaw: no feedback"
+
+
+def test_a_refused_enable_forgets_no_other_that_was_asked_for_at_the_same_time() -> None:
+    class Choosy(ObedientDaemon):
+        def _execute(self, request: request_t) -> response_t:
+            refuses = request.operation == "enable" and request.target == "yaw"
+            verdict = (response_t.STATUS_REFUSED, "not that one")
+            self.verdicts = {"enable": verdict} if refuses else {}
+            return super()._execute(request)
+
+    async def main() -> None:
+        link = LcmLink("memq://")
+        daemon = Choosy("demo", link)
+        async with aio.Robot("demo", link, client="tester", at_end="disable") as robot:
+            outcomes = await asyncio.gather(
+                robot.enable("yaw", timeout_s=PATIENCE_S),
+                robot.enable("wheel", timeout_s=PATIENCE_S),
+                return_exceptions=True,
+            )
+        assert [type(outcome) for outcome in outcomes] == [rc10.RequestRefused, rc10.Response]
+        assert daemon.operations() == ["enable yaw", "enable wheel", "disable wheel"]
+
+    asyncio.run(main())
 
 
 @in_loop

@@ -54,6 +54,15 @@ def test_a_failure_has_the_words_of_the_server(
         client.call(counter(-1))
 
 
+@pytest.mark.usefixtures("doubler")
+def test_a_program_with_a_long_name_is_a_client_all_the_same(
+    link: VirtualLink, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("sys.argv", ["/opt/robot/drives_the_chassis_to_the_next_dock.py"])
+    client = rc10.ServiceClient(link, "double", counter_t, named_value_t)
+    assert client.call(counter(2)).value == 4.0
+
+
 def test_no_answer_says_what_to_check(
     client: rc10.ServiceClient[counter_t, named_value_t], link: VirtualLink
 ) -> None:

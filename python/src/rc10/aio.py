@@ -17,9 +17,9 @@ import asyncio
 import logging
 from typing import TYPE_CHECKING, TypeVar
 
-from rc10.client import client_name
 from rc10.errors import LinkError, Rc10Error, Timeout
 from rc10.gains import gains_in
+from rc10.identity import client_name
 from rc10.link import LcmLink, Link
 from rc10.modules import Module
 from rc10.rate import Grid

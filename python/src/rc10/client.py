@@ -3,13 +3,11 @@
 from __future__ import annotations
 
 import logging
-import sys
-from pathlib import Path
 from typing import TYPE_CHECKING
 
 from rc10.errors import Rc10Error, Timeout
 from rc10.gains import gains_in
-from rc10.identity import shortened
+from rc10.identity import client_name
 from rc10.link import LcmLink, Link
 from rc10.modules import WaitingModule
 from rc10.rate import Rate
@@ -35,11 +33,6 @@ if TYPE_CHECKING:
     from rc10.state import RobotState
 
 _log = logging.getLogger("rc10")
-
-
-def client_name(client: str | None) -> str:
-    """Returns `client`, or the program's name, as much of it as a client may have."""
-    return client or shortened(Path(sys.argv[0]).stem) or "python"
 
 
 def connect(

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import secrets
+import sys
+from pathlib import Path
 
 # Size limit of a name on the daemon's side; the daemon would refuse what a longer one says.
 MAX_CLIENT_BYTES = 31
@@ -11,6 +13,11 @@ MAX_CLIENT_BYTES = 31
 def shortened(client: str) -> str:
     """Returns as much of a name as a client may have."""
     return client.encode()[:MAX_CLIENT_BYTES].decode(errors="ignore")
+
+
+def client_name(client: str | None) -> str:
+    """Returns `client`, or the program's name, as much of it as a client may have."""
+    return client or shortened(Path(sys.argv[0]).stem) or "python"
 
 
 class Identity:

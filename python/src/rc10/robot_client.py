@@ -275,14 +275,15 @@ class RobotClient:
     def _enabling(self, names: Names | None) -> Iterator[str]:
         """Gives the target of an enable request, and notes what has to be undone on leaving."""
         chosen = self._choose(names)
-        before = set(self._enabled)
+        # Of this request alone: another may be answered meanwhile.
+        noted = set(chosen or [_ALL]) - self._enabled
         # Noted before it is known to have worked: on leaving, one motor too many to disable
         # does no harm, and one too few does.
-        self._enabled.update(chosen or [_ALL])
+        self._enabled |= noted
         try:
             yield ",".join(chosen)
         except RequestRefused:
-            self._enabled = before
+            self._enabled -= noted
             raise
         # The state that shows it may come after the answer.
         state = self._inbox.state

@@ -3,14 +3,12 @@
 from __future__ import annotations
 
 import struct
-import sys
 import time
 from collections import OrderedDict
-from pathlib import Path
 from typing import TYPE_CHECKING, Any, Callable, Generic, TypeVar
 
 from rc10.errors import ServiceFailed, ServiceRefused, ServiceTimeout
-from rc10.identity import Identity
+from rc10.identity import Identity, client_name
 from rc10.lcm_types.service_request_t import service_request_t
 from rc10.lcm_types.service_response_t import service_response_t
 
@@ -111,7 +109,7 @@ class ServiceClient(Generic[RequestT, ResponseT]):
         self._link = link
         self._response_type: Any = response_type
         self._types = (fingerprint(request_type), fingerprint(response_type))
-        self._identity = Identity(client or Path(sys.argv[0]).stem or "python")
+        self._identity = Identity(client_name(client))
         self._open: int | None = None
         self._answer: service_response_t | None = None
         self._foreign = False
