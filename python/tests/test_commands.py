@@ -167,6 +167,25 @@ def test_a_mode_that_rc10d_has_refused_raises_when_it_is_asked_for_again(
     with pytest.raises(rc10.CommandRefused, match="wheel: impedance"):
         robot.command(wheel=stiff)
     robot.command(wheel=rc10.velocity_rpm(1))
+    daemon.publish_event(
+        "command of 'tester' refused: wheel: velocity: a value is not finite", 202, "tester"
+    )
+    robot.spin()
+    robot.command(wheel=rc10.velocity_rpm(1))
+    with pytest.raises(rc10.CommandRefused, match="wheel: impedance"):
+        robot.command(wheel=stiff)
+
+
+def test_a_refused_message_is_logged_once_in_the_words_of_rc10d(
+    robot: rc10.Robot, daemon: FakeDaemon, caplog: pytest.LogCaptureFixture
+) -> None:
+    text = "command of 'tester' refused: the module has no input of that name"
+    robot.module("base").send(vx=0.5)
+    for client in ("another", "tester", "tester"):
+        daemon.publish_event(text, code=202, client=client)
+    daemon.publish_event("another event", client="tester")
+    robot.spin()
+    assert caplog.messages == [f"rc10d says: wheel: {text}"]
 
 
 def test_a_misspelt_motor_is_suggested(robot: rc10.Robot, daemon: FakeDaemon) -> None:

@@ -51,6 +51,14 @@ def test_without_names_they_are_all_motors(ready: rc10.Robot) -> None:
     assert ready.joints().names == ("wheel", "yaw", "left-arm")
 
 
+def test_a_name_alone_is_one_motor(ready: rc10.Robot, daemon: LegDaemon) -> None:
+    assert ready.joints("wheel").names == ("wheel",)
+    with ready.recorder("wheel") as recorder:
+        daemon.publish_state()
+        ready.spin()
+    assert list(recorder.recording().motors) == ["wheel"]
+
+
 def test_gains_make_springs_and_dampers(ready: rc10.Robot, daemon: LegDaemon) -> None:
     ready.joints(LEG).command(q=[math.pi, 0], dq=0.0, kp=[20, 30], kd=0.5, tau=[0, 1])
     ready.spin()

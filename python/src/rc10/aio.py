@@ -34,7 +34,7 @@ from rc10.robot_client import (
 )
 
 if TYPE_CHECKING:
-    from collections.abc import AsyncIterator, Iterable, Mapping
+    from collections.abc import AsyncIterator, Mapping
     from types import TracebackType
     from typing import Callable
 
@@ -220,7 +220,7 @@ class Robot(RobotClient):
         """Returns an iterator for a control loop: `async for t_s in robot.rate(100)`."""
         return Rate(hz, self._link.now)
 
-    async def record(self, seconds: float, motors: Iterable[str] | None = None) -> Recording:
+    async def record(self, seconds: float, motors: Names | None = None) -> Recording:
         """Waits for so long and returns every state of it as NumPy arrays.
 
         Other tasks may command motors meanwhile. Args and errors are those of

@@ -22,7 +22,7 @@ from rc10.robot_client import (
 )
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Mapping
+    from collections.abc import Mapping
     from types import TracebackType
 
     from rc10.events import Event
@@ -182,14 +182,14 @@ class Robot(RobotClient):
             self._modules[name] = WaitingModule(self._module_parts(name), self.spin)
         return self._modules[name]
 
-    def record(self, seconds: float, motors: Iterable[str] | None = None) -> Recording:
+    def record(self, seconds: float, motors: Names | None = None) -> Recording:
         """Receives for so long and returns every state of it as NumPy arrays.
 
         To command motors meanwhile, write a loop of your own in a `with robot.recorder()`.
 
         Args:
             seconds: how long.
-            motors: their names; None for all.
+            motors: one name or several; None for all.
 
         Raises:
             MissingPackage: NumPy is not installed.

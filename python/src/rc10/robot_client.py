@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import logging
 import re
 import time
 from contextlib import contextmanager
@@ -16,6 +17,7 @@ from rc10.lcm_types.setpoint_t import setpoint_t
 from rc10.link import MULTICAST_GROUP, ROUTE_COMMAND, Link
 from rc10.moves import Move
 from rc10.orders import obstacle, without_reference
+from rc10.printable import printable
 from rc10.recorder import Recorder
 from rc10.requests import Requests
 from rc10.setpoints import Mode, Setpoint, angle_deg, coast, total_angle_deg
@@ -31,6 +33,8 @@ if TYPE_CHECKING:
     from rc10.joints import Joints
     from rc10.modules import ModuleParts
     from rc10.state import MotorState, RobotState
+
+_log = logging.getLogger("rc10")
 
 Names = Union[str, "Iterable[str]"]
 AtEnd = Literal["timeout", "disable", "coast"]
@@ -51,8 +55,12 @@ _LIVE_S = 1.0
 # Among names of motors; no motor's name is empty.
 _ALL = ""
 
-# Event of a command message that rc10d refused: docs/lcm.md.
-_MESSAGE_REFUSED = 202
+# Events of targets and inputs that another client's stand in the way of, and of messages that rc10d
+# refused: docs/lcm.md.
+_REFUSED = (104, 202)
+_UNSUPPORTED = re.compile(
+    r"refused: (?P<motor>[^ :]+): (?P<mode>\w+): the motor's drive does not support the mode"
+)
 
 # LCM allows 63 characters for a channel, and ".v1.diagnostics" takes 15 of them.
 _MAX_NAME = 48
@@ -101,9 +109,11 @@ class RobotClient:
         # To be undone on leaving.
         self._commanded: set[str] = set()
         self._enabled: set[str] = set()
-        # Motors that were ACTIVE, and rc10d's words about a mode that it refused.
+        # Motors that were ACTIVE, rc10d's words about modes that their drives do not have, and all
+        # of its words that were logged.
         self._was_active: set[str] = set()
-        self._unsupported = ""
+        self._unsupported: dict[tuple[str, str], str] = {}
+        self._told: set[str] = set()
         # Robots that were heard while the first state was waited for.
         self._heard: set[str] = set()
         # The last setpoint of each motor, and until when it acts.
@@ -157,13 +167,13 @@ class RobotClient:
             raise NotReceived("no diagnostics yet: they come twice a second; call spin()")
         return self._inbox.diagnostics
 
-    def recorder(self, motors: Iterable[str] | None = None) -> Recorder:
+    def recorder(self, motors: Names | None = None) -> Recorder:
         """Returns a recorder of every state, for a `with` statement around your own loop.
 
         Args:
-            motors: their names; None for all.
+            motors: one name or several; None for all.
         """
-        return Recorder(self._name, self._inbox, motors)
+        return Recorder(self._name, self._inbox, _listed(motors))
 
     @contextmanager
     def states_to(self, listener: Callable[[RobotState], None]) -> Iterator[None]:
@@ -231,11 +241,11 @@ class RobotClient:
         self._commanded.update(orders)
         self._publish_command(orders, validity_ms)
 
-    def joints(self, names: Iterable[str] | None = None) -> Joints:
+    def joints(self, names: Names | None = None) -> Joints:
         """Returns motors as NumPy arrays in radians: `.q`, `.dq`, `.tau`, `.command(q=...)`.
 
         Args:
-            names: of the motors, in the order of the arrays; None for all that the state has.
+            names: one name, or several in the order of the arrays; None for all that the state has.
 
         Raises:
             MissingPackage: NumPy is not installed.
@@ -244,7 +254,7 @@ class RobotClient:
         """
         from rc10.joints import Joints
 
-        chosen = list(self.state.motors if names is None else names)
+        chosen = list(self.state.motors if names is None else _listed(names) or ())
         self._check_known(chosen)
         return Joints(self, chosen)
 
@@ -369,8 +379,12 @@ class RobotClient:
     # ---- within ------------------------------------------------------------------------------
 
     def _on_event(self, event: Event) -> None:
-        if event.code == _MESSAGE_REFUSED and event.client == self.client:
-            self._unsupported = event.text
+        if event.client == self.client and event.code in _REFUSED:
+            if found := _UNSUPPORTED.search(event.text):
+                self._unsupported[found["motor"], found["mode"]] = event.text
+            if event.text not in self._told:
+                self._told.add(event.text)
+                _log.warning("rc10d says: %s", printable(f"{event.source}: {event.text}"))
         for move in self._moves.values():
             move.on_event(event)
 
@@ -447,8 +461,8 @@ class RobotClient:
     def _check_obeyed(self, orders: Mapping[str, Setpoint]) -> None:
         """Refuses what would do nothing, and would say so nowhere near the caller's line."""
         for name, setpoint in orders.items():
-            if f"refused: {name}: {setpoint.mode.name.lower()}:" in self._unsupported:
-                raise CommandRefused(self._unsupported)
+            if said := self._unsupported.get((name, setpoint.mode.name.lower())):
+                raise CommandRefused(said)
         new = [
             name
             for name, setpoint in orders.items()
@@ -491,6 +505,11 @@ class RobotClient:
             f"'{self._name}' (robot: in its configuration)? Does multicast stay on this computer:"
             f" 'ip route get {MULTICAST_GROUP}' must say 'dev lo', else run: {ROUTE_COMMAND}"
         )
+
+
+def _listed(names: Names | None) -> Iterable[str] | None:
+    """A name alone is a list of one, not of its letters."""
+    return [names] if isinstance(names, str) else names
 
 
 def _hindered(state: RobotState, motor: MotorState) -> str:
