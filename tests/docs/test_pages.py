@@ -113,6 +113,7 @@ def test_what_a_reader_of_chinese_needs_is_there_in_chinese() -> None:
         "studio",
         "porting-from-stm32",
         "robot-programs",
+        "python",
         "tuning",
         "troubleshooting",
         "safety",
