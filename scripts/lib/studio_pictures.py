@@ -4,8 +4,8 @@
 scripts/demo.sh                                    # in another terminal; it prints the address
 .venv/bin/python scripts/lib/studio_pictures.py [http://localhost:8010/]
 
-The picture of the part Move needs a robot whose motors nobody commands: in place of the demo
-`rc10d -c config/demo.yaml` and `rc10-web`, and the word `move` behind the address. The word
+The pictures of the parts Move and Tune need a robot whose motors nobody commands: in place of the demo
+`rc10d -c config/demo.yaml` and `rc10-web`, and the word `move` or `tune` behind the address. The word
 `configuration` there makes only the picture of that part.
 """
 
@@ -46,6 +46,28 @@ def picture_of_a_held_motor(page: Page) -> None:
     page.mouse.up()
 
 
+def picture_of_a_test(page: Page) -> None:
+    """The part Tune after two steps with different gains."""
+    page.locator("#tab-tune").click()
+    page.get_by_role("combobox", name="Motor").select_option("yaw")
+    page.get_by_role("button", name="Enable", exact=True).click()
+    page.locator(".badge.active").wait_for()
+    form = page.get_by_role("region", name="Test of motion")
+    form.get_by_label("current at most").fill("3")
+    kp = page.get_by_label("velocity_pid.kp", exact=False).first
+    for gain in ("", "0.02"):
+        if gain:
+            kp.fill(gain)
+            page.get_by_role("button", name="Apply").click()
+        form.get_by_role("button", name="Start", exact=True).click()
+        form.get_by_role("status").filter(has_text="Done").wait_for(timeout=4 * SPAN_MS)
+        page.wait_for_timeout(SETTLE_MS)
+    page.set_viewport_size({"width": 1280, "height": 1020})
+    page.get_by_role("region", name="Tests", exact=True).scroll_into_view_if_needed()
+    page.wait_for_timeout(SETTLE_MS)
+    page.screenshot(path=IMAGES / "studio-tune.png")
+
+
 def picture_of_the_configuration(page: Page) -> None:
     """Two wheels with one id: the message at its line, the key's help, the buses."""
     page.locator("#tab-configuration").click()
@@ -69,7 +91,11 @@ def picture_of_the_configuration(page: Page) -> None:
 def main() -> None:
     """Takes the pictures of what runs there."""
     address = sys.argv[1] if len(sys.argv) > 1 else "http://localhost:8010/"
-    take = {"move": picture_of_a_held_motor, "configuration": picture_of_the_configuration}.get(
+    take = {
+        "move": picture_of_a_held_motor,
+        "tune": picture_of_a_test,
+        "configuration": picture_of_the_configuration,
+    }.get(
         sys.argv[2] if len(sys.argv) > 2 else "", pictures_of_the_demo
     )
     with sync_playwright() as playwright:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import contextlib
+import functools
 import hashlib
 import json
 import re
@@ -410,7 +412,7 @@ def test_each_action_has_the_command_and_the_python_line_that_do_the_same(
     page: Page, studio: Studio
 ) -> None:
     wheel = page.get_by_role("article", name="wheel", exact=True)
-    command, python = wheel.locator(".copy").all()
+    command, python = wheel.locator(".actions .copy").all()
     line = (command.get_attribute("title") or "").removeprefix("copy as a command: ")
     assert line == "rc10ctl enable wheel"
     studio.daemon.must(*line.split()[1:])
@@ -420,6 +422,29 @@ def test_each_action_has_the_command_and_the_python_line_that_do_the_same(
     with rc10.connect("host") as robot:
         exec(line, {"robot": robot})  # as a person would paste it
     expect(wheel.locator(".badge.status")).to_have_text("READY")
+
+
+def hears_diagnostics(robot: rc10.Robot) -> bool:
+    robot.spin(0.1)
+    with contextlib.suppress(rc10.NotReceived):
+        return bool(robot.diagnostics.buses)
+    return False
+
+
+def test_each_value_has_the_lines_that_show_it(
+    page: Page, studio: Studio, capsys: pytest.CaptureFixture[str]
+) -> None:
+    for name, shown in (("wheel", "wheel"), ("chassis", "chassis")):
+        card = page.get_by_role("article", name=name, exact=True)
+        command, python = card.locator("footer .copy").all()[:2]
+        line = (command.get_attribute("title") or "").removeprefix("copy as a command: ")
+        assert shown in studio.daemon.must(*line.split()[1:])
+        line = (python.get_attribute("title") or "").removeprefix("copy as Python: ")
+        with rc10.connect("host") as robot:
+            robot.wait_for_state()
+            eventually(functools.partial(hears_diagnostics, robot), "diagnostics came")
+            exec(line, {"robot": robot})  # as a person would paste it
+        assert shown in capsys.readouterr().out
 
 
 @pytest.mark.parametrize("scheme", ["light", "dark"])

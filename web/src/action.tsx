@@ -25,11 +25,11 @@ export function requestPython(request: RobotRequest): string {
 }
 
 /** Buttons that copy both. */
-export function CopyLines(props: { request: RobotRequest; command?: string; python?: string }) {
+export function CopyLines(props: { request: RobotRequest; command?: string; python?: string } | { command: string; python: string }) {
   const { word } = useStudio();
   const lines: [string, string, string][] = [
-    ['❯_', word('copy'), props.command ?? commandOf(props.request)],
-    ['py', word('copyPython'), props.python ?? pythonOf(props.request)],
+    ['❯_', word('copy'), 'request' in props ? (props.command ?? commandOf(props.request)) : props.command],
+    ['py', word('copyPython'), 'request' in props ? (props.python ?? pythonOf(props.request)) : props.python],
   ];
   return (
     <>

@@ -1,6 +1,6 @@
 import type { ComponentChildren } from 'preact';
 
-import { Action } from './action';
+import { Action, CopyLines } from './action';
 import { useKnown, useStoredOfRobot, useStudio } from './context';
 import { duration, number, percent, signedAngle, unitOf, unitOfMode } from './numbers';
 import type { Bus, ModuleState, MotorInfo, MotorState } from './protocol';
@@ -88,7 +88,12 @@ function MotorCard(props: { info: MotorInfo; motor: MotorState; compact: boolean
         )}
       </div>
       <footer>
-        {!props.compact && <span>{`${word('age')} ${duration(motor.feedback_age_us)}`}</span>}
+        {!props.compact && (
+          <span class="of-values">
+            {`${word('age')} ${duration(motor.feedback_age_us)} `}
+            <CopyLines command="rc10ctl watch --once" python={`print(robot.motor("${info.name}"))`} />
+          </span>
+        )}
         <span>{`${word('owner')} ${motor.owner === '' ? word('nobody') : motor.owner}`}</span>
         <span class="actions">
           {motor.status === 'ACTIVE' || motor.status === 'ENABLING' ? (
@@ -134,6 +139,7 @@ function BusCard(props: { bus: Bus }) {
         <span>{`${word('errors')} ${bus.error_frames}`}</span>
         <span>{`${word('dropped')} ${bus.tx_dropped + bus.rx_dropped}`}</span>
         <span>{`${word('foreign')} ${bus.rx_foreign}`}</span>
+        <CopyLines command="rc10ctl stats" python="print(robot.diagnostics)" />
       </footer>
     </article>
   );
@@ -155,6 +161,7 @@ function ModuleCard(props: { module: ModuleState }) {
       </div>
       <footer>
         <span>{`${word('owner')} ${module.owner === '' ? word('nobody') : module.owner}`}</span>
+        <CopyLines command="rc10ctl modules" python={`print(robot.module("${module.name}").state)`} />
       </footer>
     </article>
   );
