@@ -6,17 +6,22 @@ import os
 import re
 import signal
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import pytest
-from hostlib.daemon import ARM
+from hostlib.daemon import ARM, REPO
 from playwright.sync_api import Locator, Page, Playwright, expect
 
 from conftest import CHROMIUM, PATIENCE_MS, QUIET, Studio
 
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+MINUS = "\u2212"
 # Feedback may be as old as a busy machine makes it.
 WHEEL = """
-      - {name: wheel, model: M3508, id: 1, zero: power_on, feedback_timeout_ms: 1000, current_limit_a: 5,
-         simulated: {inertia_kg_m2: 0.01}}
+      - {name: wheel, model: M3508, id: 1, zero: power_on, feedback_timeout_ms: 1000,
+         current_limit_a: 5, simulated: {inertia_kg_m2: 0.01}}
 """
 JOINT = """
       - {name: elbow, model: DM4310, id: 3, master_id: 19, feedback_timeout_ms: 1000,
@@ -56,13 +61,16 @@ def angle(studio: Studio, motor: str) -> float:
     return float(next(each for each in motors if each["name"] == motor)["total_angle_deg"])
 
 
-def by_hand(studio: Studio, card: Locator, motor: str, button: str, deg: float) -> None:
-    """The simulated hand, until it has let go."""
+def by_hand(studio: Studio, card: Locator, motor: str, deg: int) -> None:
+    """The simulated hand, of a shaft that stands, until it has let go."""
+    studio.daemon.wait_motor(motor, lambda m: abs(float(m["velocity_rpm"])) < 0.5, "it stands")
     to_deg = angle(studio, motor) + deg
-    press(card, button)
+    press(card, f"{'+' if deg > 0 else MINUS}{abs(deg)}°")
     studio.daemon.wait_motor(
         motor,
-        lambda m: abs(float(m["total_angle_deg"]) - to_deg) < 4 and abs(float(m["velocity_rpm"])) < 0.5,
+        lambda m: (
+            abs(float(m["total_angle_deg"]) - to_deg) < 4 and abs(float(m["velocity_rpm"])) < 0.5
+        ),
         "the hand has turned it",
     )
 
@@ -94,7 +102,7 @@ def held(page: Page, studio: Studio, card: Locator, motor: str, label: str, word
 
 def turned_by_hand(studio: Studio, card: Locator, motor: str) -> None:
     press(card, "Begin")
-    by_hand(studio, card, motor, "+360°", 360)
+    by_hand(studio, card, motor, 360)
     press(card, "The mark is back")
 
 
@@ -138,22 +146,20 @@ def test_a_joint_ends_in_limits_and_a_zero_for_the_file(
     press(card, "Set")
     expect(told(card)).to_contain_text("zero_deg in the file keeps it")
     press(card, "Next")
-    by_hand(studio, card, "elbow", "−90°", -90)
+    by_hand(studio, card, "elbow", -90)
     press(card, "Lower end is here")
     for _ in range(2):
-        by_hand(studio, card, "elbow", "+90°", 90)
+        by_hand(studio, card, "elbow", 90)
     press(card, "Upper end is here")
     press(card, "Take both")
     expect(told(card)).to_contain_text("travel")
     expect(card).to_contain_text("right turn at power-up")
-    by_hand(studio, card, "elbow", "−90°", -90)
+    by_hand(studio, card, "elbow", -90)
     press(card, "Next")
     card.get_by_label("current", exact=True).fill("0.5")
     held(page, studio, card, "elbow", "Hold to spin", "the right way")
     go_to(page, "Limits")
-    now = angle(studio, "elbow")
-    by_hand(studio, card, "elbow", "−15°", -15)
-    assert angle(studio, "elbow") < now
+    by_hand(studio, card, "elbow", -15)
     go_to(page, "First step")
     held(page, studio, card, "elbow", "Hold to step", "deg")
     press(card, "Next")
@@ -190,7 +196,7 @@ def spinning(page: Page, studio: Studio) -> None:
     )
 
 
-ENDS = {
+ENDS: dict[str, Callable[[Page], object]] = {
     "release": lambda page: page.mouse.up(),
     "another part": lambda page: page.locator("#tab-events").click(),
     "another step": lambda page: go_to(page, "Zero"),
@@ -240,6 +246,25 @@ def test_a_server_that_is_killed_in_the_spin_leaves_no_torque(
     page.mouse.up()
 
 
+@pytest.mark.parametrize("width", [390, 1280])
+def test_each_step_fits_and_all_can_use_it(page: Page, card: Locator, width: int) -> None:
+    page.set_viewport_size({"width": width, "height": 860})
+    page.evaluate((REPO / "web" / "node_modules" / "axe-core" / "axe.min.js").read_text())
+    for step in page.get_by_role("list", name="Commission").get_by_role("button").all():
+        step.click()
+        expect(card).to_have_attribute("aria-label", step.inner_text()[1:].strip())
+        assert page.evaluate("document.documentElement.scrollWidth <= innerWidth"), (
+            step.inner_text()
+        )
+        found = page.evaluate("axe.run().then((result) => result.violations)")
+        serious = [
+            (one["id"], [node["html"] for node in one["nodes"]][:3])
+            for one in found
+            if one["impact"] in ("serious", "critical")
+        ]
+        assert serious == [], step.inner_text()
+
+
 def test_what_was_found_is_there_after_a_reload_and_old_with_another_run(
     page: Page, studio: Studio, card: Locator
 ) -> None:
@@ -269,7 +294,9 @@ class TestAWrongFile:
     @pytest.fixture
     def robot(self) -> str:
         wheel = WHEEL.replace("id: 1,", "id: 1, gear_ratio: 36, on_timeout: brake,")
-        return ARM + wheel + "      - {name: other, model: M3508, id: 2, feedback_timeout_ms: 1000}\n"
+        return (
+            ARM + wheel + "      - {name: other, model: M3508, id: 2, feedback_timeout_ms: 1000}\n"
+        )
 
     def test_a_turn_by_hand_finds_it_and_the_lines_mend_it(
         self, page: Page, studio: Studio, card: Locator
@@ -279,7 +306,7 @@ class TestAWrongFile:
         # Its hand turns the other way, and as far as the file's ratio makes of it.
         press(card, "Begin")
         for _ in range(2):
-            by_hand(studio, card, "wheel", "−90°", -90)
+            by_hand(studio, card, "wheel", -90)
         press(card, "The mark is back")
         expect(told(card)).to_contain_text("instead of 360°")
         expect(told(card)).to_contain_text(re.compile(r"multiply gear_ratio by 0\.(49|50)\d"))
@@ -301,7 +328,9 @@ class TestAWrongFile:
         studio.daemon.must("hand", "other", "--by", 360, "--rpm", 60)
         expect(card.locator(".live-angle")).to_have_text("0.0°")
         press(card, "The mark is back")
-        expect(told(card)).to_contain_text(re.compile(r"other turned by 3\d\d\.\d°, and wheel did not"))
+        expect(told(card)).to_contain_text(
+            re.compile(r"other turned by 3\d\d\.\d°, and wheel did not")
+        )
 
     def test_it_does_not_spin_while_its_time_out_would_keep_torque(
         self, page: Page, card: Locator

@@ -23,6 +23,7 @@ TABS = (
     "overview",
     "match",
     "plots",
+    "commission",
     "move",
     "tune",
     "events",

@@ -56,7 +56,7 @@ function useRunning(): Running | null {
   return running;
 }
 
-/** What a step is given. */
+/** Motor, its record and its report, for a step. */
 export interface StepProps {
   motor: string;
   record: CommissionRecord;

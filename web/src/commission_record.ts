@@ -23,7 +23,7 @@ export interface Finding {
 /** Keys of the motor in the robot's file that the steps have found. */
 export type Lines = Partial<Record<'direction' | 'gear_ratio' | 'zero_deg' | 'angle_min_deg' | 'angle_max_deg', number>>;
 
-/** What this browser keeps of a motor: nothing of it acts. */
+/** Record of a motor in this browser: nothing of it acts. */
 export interface CommissionRecord {
   shown: Step;
   found: Partial<Record<Measured, Finding>>;

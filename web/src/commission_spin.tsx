@@ -8,7 +8,7 @@ import type { TestOutcome } from './link';
 import { type TestPlan, testCommand, testPython } from './motion_test';
 import { isOn } from './commission_record';
 
-/** What keeps a motor without torque when its page is gone. */
+/** Fallbacks that keep no torque when the page is gone. */
 const kLettingGo = ['coast', 'damp'];
 
 export function AloneTest(props: {
@@ -52,9 +52,11 @@ export function AloneTest(props: {
     },
     [props.motor],
   );
-  const over = (outcome: TestOutcome) => {
+  // Once: a second disable would let go of what its on_disable holds.
+  const rest = () => {
+    if (!mine.current) return;
+    mine.current = false;
     void ask('disable');
-    props.onOutcome(outcome);
   };
 
   if (keeps) {
@@ -93,7 +95,17 @@ export function AloneTest(props: {
         )}
       </div>
       <div class="toolbar">
-        <HeldTest motor={props.motor} plan={props.plan} label={props.label} ready={alone && motor?.status === 'ACTIVE'} onEnd={over} />
+        <HeldTest
+          motor={props.motor}
+          plan={props.plan}
+          label={props.label}
+          ready={alone && motor?.status === 'ACTIVE'}
+          onLetGo={rest}
+          onEnd={(outcome) => {
+            rest();
+            props.onOutcome(outcome);
+          }}
+        />
         <CopyLines
           request={{ operation: 'test', target: props.motor }}
           command={testCommand(props.motor, props.plan)}

@@ -7,8 +7,8 @@ import { type TestPlan, planOf } from './motion_test';
 
 type End = (why: 'stopped' | 'left') => void;
 
-/** Its motor is ACTIVE when it begins; `onEnd`: it is over, or did not begin. */
-export function HeldTest(props: { motor: string; plan: TestPlan; label: string; ready: boolean; onEnd: (outcome: TestOutcome) => void }) {
+/** Its motor is ACTIVE when it begins; `onLetGo`: at once, before the numbers; `onEnd`: it is over, or did not begin. */
+export function HeldTest(props: { motor: string; plan: TestPlan; label: string; ready: boolean; onLetGo: () => void; onEnd: (outcome: TestOutcome) => void }) {
   const { link, word } = useStudio();
   const known = useKnown();
   const [time, setTime] = useState<string | null>(null);
@@ -19,8 +19,10 @@ export function HeldTest(props: { motor: string; plan: TestPlan; label: string; 
   const allowed = props.ready && known.hello?.right === 'command' && known.connection === 'live';
 
   const letGo = (why: 'stopped' | 'left') => {
-    end.current?.(why);
     heldKey.current = '';
+    if (end.current === null) return;
+    end.current(why);
+    props.onLetGo();
   };
 
   const begin = async () => {

@@ -95,7 +95,7 @@ export const kCommissionEnglish = {
 } as const;
 
 export const kCommissionChinese: Record<keyof typeof kCommissionEnglish, string> = {
-  commission: '首次调试',
+  commission: '试车',
   comBus: '总线、名称、ID',
   comHandStep: '方向（手转）',
   comZeroStep: '零位与圈数',
@@ -157,7 +157,7 @@ export const kCommissionChinese: Record<keyof typeof kCommissionEnglish, string>
   comNotAlone: '由别处使能：请先失能',
   comAloneHint: '手放在断电开关上。松开、按其他键或触点、Esc、切换部分、隐藏或关闭页面都会结束并失能。每次结束都记入事件。',
   comKeepsTorque: '没有命令时此电机会保持出力，本页消失后也一样：',
-  comKeepsTorqueMend: '首次调试请改写为',
+  comKeepsTorqueMend: '试车时请改写为',
   comTimeoutUnknown: '本页不知道它的 on_timeout：请确认是 coast。',
   comNoCurrent: '它没有 current 模式，而首次转动需要它。请暂时在文件中写一个有此模式的 control（见 docs/motors），重启 rc10d 后再来。',
   comSpinCurrent: '电流',
@@ -176,7 +176,7 @@ export const kCommissionChinese: Record<keyof typeof kCommissionEnglish, string>
   comStepHold: '按住做阶跃',
   comStepGood: '{motor} 达到 {reached}（目标 {wanted} {unit}）：上升 {rise} ms，超调 {overshoot} %，调节 {settling} ms，最大 {current} A',
   comStepBad: '{motor} 达到 {reached}（目标 {wanted} {unit}，最大 {current} A）：请调参，或提高电流',
-  comReport: '首次调试报告',
+  comReport: '试车报告',
   comLines: '文件中的行，电机',
   comNoLines: '文件无需更改。',
   comPut: '放入配置编辑器',
