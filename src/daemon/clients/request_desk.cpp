@@ -17,7 +17,6 @@ namespace {
 // As far as soft limits go (angle_min_deg).
 constexpr double kFarthestZeroDeg = 1e6;
 
-constexpr std::size_t kMaxOpen = 64;
 // Each gain is an event: those of one tick must leave room for others in their ring.
 constexpr std::ptrdiff_t kMaxOpenGains = 8;
 constexpr std::string_view kAngle = "angle_deg";
@@ -205,7 +204,7 @@ Result<Order> RequestDesk::orderOf(const link::Request& request, Operation opera
 bool RequestDesk::mayOpen(std::string_view client) const {
   const auto own = std::count_if(open_.begin(), open_.end(),
                                  [client](const Open& open) { return open.request.client.view() == client; });
-  return static_cast<std::size_t>(own) + open_.size() < kMaxOpen;
+  return static_cast<std::size_t>(own) + open_.size() < kMaxOpenRequests;
 }
 
 std::string RequestDesk::theMotorsAre(std::string_view typed) const {

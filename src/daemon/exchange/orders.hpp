@@ -23,6 +23,9 @@ using MotorSet = std::bitset<kMaxMotors>;
 /// Bound of the work in a tick: with these applied, the commands that follow wait for the next one.
 inline constexpr std::size_t kSetpointsPerTick = 1024;
 
+/// Requests of all clients that are under way at the same time.
+inline constexpr std::size_t kMaxOpenRequests = 64;
+
 /// A command message that passed admission, with motors as indices. All setpoints act in one tick.
 struct Command {
   struct Setpoint {

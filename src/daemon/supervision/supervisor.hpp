@@ -113,6 +113,8 @@ class Supervisor {
   void disable(std::size_t motor, const Order& order, const Tick& tick) noexcept;
   void clear(std::size_t motor, const Tick& tick) noexcept;
   void answer(const OrderResult& result) noexcept;
+  /// Null: there is none left.
+  [[nodiscard]] PendingOrder* freePlace() noexcept;
   [[nodiscard]] Refusal setGains(std::size_t motor, const Order& order, const Tick& tick) noexcept;
   /// `why`: kNone and who cleared it for RUN.
   void setRobotState(RobotStatus state, const Stop& why, const Tick& tick) noexcept;
@@ -155,7 +157,7 @@ class Supervisor {
   MonotonicTime stopped_{};  ///< and since when.
   std::uint32_t estops_ = 0;
   std::vector<Axis> axes_;
-  std::array<PendingOrder, 8> pending_{};
+  std::array<PendingOrder, kMaxOpenRequests> pending_{};
   std::vector<Group> groups_;
   std::vector<std::size_t> group_of_;  ///< By motor; kNoGroup: none.
   std::optional<Configuring> configuring_;

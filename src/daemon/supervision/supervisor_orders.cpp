@@ -106,6 +106,14 @@ void Supervisor::carryOut(const Order& order, const Tick& tick) noexcept {
   OrderResult result;
   result.id = order.id;
   MotorSet waiting;
+  const bool enables = order.operation == Operation::kEnable || order.operation == Operation::kEnableAlone;
+  // Modules wait for no answer.
+  auto* const place = enables && !order.fromModule() ? freePlace() : nullptr;
+  if (enables && !order.fromModule() && place == nullptr) {
+    result.refused = true;
+    answer(result);
+    return;
+  }
   if (order.operation == Operation::kEstop) {
     estop({StopCause::kRequest, order.client}, tick);
   } else if (order.operation == Operation::kClear && state_ == RobotStatus::kEstop && order.whole_robot &&
@@ -138,16 +146,14 @@ void Supervisor::carryOut(const Order& order, const Tick& tick) noexcept {
       case Operation::kLoad: break;
     }
   }
-  if (waiting.any()) {
-    const auto place =
-        std::find_if(pending_.begin(), pending_.end(), [](const auto& p) { return !p.in_use; });
-    if (place != pending_.end()) {
-      *place = PendingOrder{result, waiting, true};
-      return;
-    }
-    result.refused = true;  // more enable requests under way than anyone sends
-  }
-  answer(result);
+  if (waiting.none()) return answer(result);
+  if (place != nullptr) *place = PendingOrder{result, waiting, true};
+}
+
+Supervisor::PendingOrder* Supervisor::freePlace() noexcept {
+  const auto place =
+      std::find_if(pending_.begin(), pending_.end(), [](const auto& pending) { return !pending.in_use; });
+  return place != pending_.end() ? &*place : nullptr;
 }
 
 void Supervisor::estop(const Stop& why, const Tick& tick) noexcept {

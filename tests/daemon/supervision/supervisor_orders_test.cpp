@@ -1,0 +1,77 @@
+// Requests that are under way at the same time.
+
+#include <algorithm>
+#include <vector>
+
+#include <gmock/gmock.h>
+
+#include "daemon/virtual_robot.hpp"
+
+namespace rc10::test::supervisor_orders_test {
+namespace {
+
+using ::testing::AllOf;
+using ::testing::Each;
+using ::testing::Field;
+using ::testing::SizeIs;
+
+constexpr std::size_t kLeft = 0;
+constexpr std::size_t kRight = 1;
+
+class OpenRequestsTest : public ::testing::Test {
+ protected:
+  OpenRequestsTest() { robot.run(5); }
+
+  /// All of them before the next tick.
+  void askToEnable(std::size_t motor, std::size_t times, std::uint64_t first_id) {
+    for (std::size_t i = 0; i < times; ++i) {
+      Order order;
+      order.id = first_id == Order::kFromModule ? first_id : first_id + i;
+      order.operation = Operation::kEnable;
+      order.motors.set(motor);
+      ASSERT_TRUE(robot.exchange().orders.push(order));
+    }
+  }
+  std::vector<OrderResult> answers() {
+    std::vector<OrderResult> all;
+    robot.exchange().results.consume_all([&](const OrderResult& result) { all.push_back(result); });
+    return all;
+  }
+  MotorStatus status(std::size_t motor) { return robot.motor(motor).status; }
+
+  VirtualRobot robot{twoWheelsAndYaw()};
+};
+
+TEST_F(OpenRequestsTest, AsManyEnableRequestsAsClientsMayHaveAreAllAnsweredWhenTheMotorIsActive) {
+  askToEnable(kLeft, kMaxOpenRequests, 1);
+  robot.run(5);
+  EXPECT_EQ(status(kLeft), MotorStatus::kActive);
+  EXPECT_THAT(answers(), AllOf(SizeIs(kMaxOpenRequests), Each(Field(&OrderResult::refused, false))));
+}
+
+TEST_F(OpenRequestsTest, OneMoreIsRefusedAndEnablesNothing) {
+  askToEnable(kLeft, kMaxOpenRequests, 1);
+  robot.tick();
+  ASSERT_EQ(status(kLeft), MotorStatus::kEnabling);
+  askToEnable(kRight, 1, 1000);
+  robot.run(5);
+  EXPECT_EQ(status(kRight), MotorStatus::kReady);
+  const auto all = answers();
+  const auto last =
+      std::find_if(all.begin(), all.end(), [](const auto& answer) { return answer.id == 1000; });
+  ASSERT_NE(last, all.end());
+  EXPECT_TRUE(last->refused);
+}
+
+TEST_F(OpenRequestsTest, ThoseOfModulesTakeNoPlaceOfAClients) {
+  askToEnable(kLeft, kMaxOpenRequests, Order::kFromModule);
+  robot.tick();
+  ASSERT_EQ(status(kLeft), MotorStatus::kEnabling);
+  askToEnable(kRight, 1, 1000);
+  robot.run(5);
+  EXPECT_EQ(status(kRight), MotorStatus::kActive);
+  EXPECT_THAT(answers(), AllOf(SizeIs(1), Each(Field(&OrderResult::refused, false))));
+}
+
+}  // namespace
+}  // namespace rc10::test::supervisor_orders_test
