@@ -1,6 +1,8 @@
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
+#include <optional>
 
 #include "app/time.hpp"
 #include "motor/fault_code.hpp"
@@ -52,17 +54,27 @@ class MotorGuard {
   [[nodiscard]] const GuardConfig& config() const noexcept { return config_; }
 
  private:
-  /// Time for which a condition has held.
+  /// Time for which a condition has held while somebody looked: of a pause of the process little counts.
   class Lasting {
    public:
-    void reset() noexcept { since_ = MonotonicTime{}; }
+    void reset() noexcept { held_.reset(); }
     [[nodiscard]] bool step(bool so, MonotonicTime now, Duration enough) noexcept {
-      if (!so || since_ == MonotonicTime{}) since_ = now;
-      return so && now - since_ >= enough;
+      const Duration since_step = std::min(now - stepped_at_, kLongestStep);
+      stepped_at_ = now;
+      if (!so) {
+        held_.reset();
+        return false;
+      }
+      held_ = held_ ? *held_ + since_step : Duration{0};
+      return *held_ >= enough;
     }
 
    private:
-    MonotonicTime since_{};
+    // Two periods of the slowest rate_hz.
+    static constexpr Duration kLongestStep = std::chrono::milliseconds{20};
+
+    std::optional<Duration> held_;
+    MonotonicTime stepped_at_{};
   };
 
   [[nodiscard]] FaultCode motionFault(const Observation& seen, bool new_sample) noexcept;

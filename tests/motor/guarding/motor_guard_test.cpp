@@ -209,6 +209,24 @@ TEST_F(MotionGuardTest, FarFromTheTargetForLongEnoughIsAFault) {
   EXPECT_EQ(run(1), FaultCode::kFollowingError);
 }
 
+// The state in which it stood still is not seen: the motor may have been elsewhere.
+TEST_F(MotionGuardTest, APauseOfTheProcessIsNoTimeFarFromTheTarget) {
+  target = {.mode = ControlMode::kTotalAngle, .value = 16.0};
+  EXPECT_EQ(run(10), FaultCode::kNone);
+  now += 500ms;
+  EXPECT_EQ(run(1), FaultCode::kNone);
+  EXPECT_EQ(run(100), FaultCode::kFollowingError);
+}
+
+TEST_F(MotionGuardTest, APauseOfTheProcessIsNoTimeWithFrozenReadings) {
+  effort_a = 5.0F;
+  EXPECT_EQ(run(3), FaultCode::kNone);
+  now += 1s;
+  EXPECT_EQ(tickOnly().fault, FaultCode::kNone);
+  EXPECT_EQ(run(1), FaultCode::kNone);
+  EXPECT_EQ(run(200), FaultCode::kFrozen);
+}
+
 TEST_F(MotionGuardTest, NearTheTargetNowAndThenIsNone) {
   target = {.mode = ControlMode::kTotalAngle, .value = 16.0};
   for (int i = 0; i < 10; ++i) {
