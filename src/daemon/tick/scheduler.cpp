@@ -69,7 +69,10 @@ void Scheduler::tick(MonotonicTime now, std::uint64_t periods) noexcept {
   snapshot(tick);
   beat(tick);
   ticks_.store(tick.index + 1, std::memory_order_relaxed);
-  if (guard_ != nullptr) guard_->ticks.store(tick.index + 1, std::memory_order_release);
+  if (guard_ == nullptr) return;
+  guard_->ticks.store(tick.index + 1, std::memory_order_release);
+  // In the last tick: by the time that the main thread has its turn, the guard may have missed ticks.
+  if (stopped_) guard_->ended.store(true, std::memory_order_release);
 }
 
 // Reasons to stop that neither a client nor the e-stop input has given.

@@ -345,6 +345,21 @@ TEST_F(SchedulerTest, StoppingWaitsForEchoesOfTheRestFrames) {
   EXPECT_TRUE(robot.scheduler().stopped());
 }
 
+TEST_F(SchedulerTest, TheLastTickTellsTheGuardThatTheEndIsInOrder) {
+  link::GuardPage page;
+  robot.scheduler().watchedBy(page);
+  robot.run(5);
+  robot.inboxes()[0].echo_available.store(true);
+  robot.scheduler().beginStop();
+  robot.run(10);
+  ASSERT_FALSE(robot.scheduler().stopped());
+  EXPECT_FALSE(page.ended) << "rest frames are still on their way";
+  robot.inboxes()[0].confirmed.fetch_add(10);
+  robot.tick();
+  ASSERT_TRUE(robot.scheduler().stopped());
+  EXPECT_TRUE(page.ended);
+}
+
 TEST_F(SchedulerTest, EveryCommandIdLeavesInEveryTick) {
   robot.run(100);
   // M3508 1 and 2 share 0x200; GM6020 5 has 0x2FE.
