@@ -4,7 +4,6 @@
 #include <linux/netlink.h>
 #include <net/if.h>
 #include <netinet/in.h>
-#include <pwd.h>
 #include <sys/ioctl.h>
 #include <sys/prctl.h>
 #include <sys/socket.h>
@@ -13,11 +12,8 @@
 #include <cerrno>
 #include <csignal>
 #include <cstdint>
-#include <cstdio>
-#include <memory>
-#include <optional>
-#include <string>
 
+#include "app/account_ids.hpp"
 #include "sandbox/rights.hpp"
 #include "sandbox/system_calls.hpp"
 
@@ -26,25 +22,12 @@ namespace {
 
 constexpr sandbox::Bounds kBounds{.memory_bytes = rlim_t{256} << 20U, .files = 32};
 
-struct FileCloser {
-  void operator()(std::FILE* file) const noexcept { (void)std::fclose(file); }
-};
-
-// Read from the file: getpwnam() would load modules of NSS.
-std::optional<uid_t> idOfUser(const std::string& name) {
-  const std::unique_ptr<std::FILE, FileCloser> file(std::fopen("/etc/passwd", "re"));
-  if (!file) return std::nullopt;
-  while (const passwd* entry = ::fgetpwent(file.get()))
-    if (entry->pw_name == name) return entry->pw_uid;
-  return std::nullopt;
-}
-
 // Rights of root; without a user of its own, `nobody`, who owns no file.
 Result<void> leaveRoot() {
   if (::geteuid() != 0) return {};
   constexpr const char* kUser = "rc10-lcm";
   constexpr uid_t kNobody = 65534;
-  const auto user = idOfUser(kUser).value_or(kNobody);
+  const auto user = userId(kUser).value_or(kNobody);
   if (::setgroups(0, nullptr) == 0 && ::setresgid(user, user, user) == 0 &&
       ::setresuid(user, user, user) == 0)
     return {};

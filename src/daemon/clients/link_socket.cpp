@@ -1,20 +1,17 @@
 #include "daemon/clients/link_socket.hpp"
 
 #include <fcntl.h>
-#include <grp.h>
 #include <sys/file.h>
 #include <sys/socket.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
 #include <cerrno>
-#include <cstdio>
 #include <cstring>
-#include <memory>
-#include <optional>
 
 #include <fmt/format.h>
 
+#include "app/account_ids.hpp"
 #include "link/run_dir.hpp"
 #include "link/unix_address.hpp"
 
@@ -23,22 +20,10 @@ namespace {
 
 constexpr int kBacklog = 16;
 
-struct FileCloser {
-  void operator()(std::FILE* file) const noexcept { (void)std::fclose(file); }
-};
-
-// Read from the file: getgrnam() would load NSS modules into locked memory.
-[[nodiscard]] std::optional<gid_t> groupId(const std::string& name) {
-  const std::unique_ptr<std::FILE, FileCloser> file(std::fopen("/etc/group", "re"));
-  if (!file) return std::nullopt;
-  while (const group* entry = ::fgetgrent(file.get())) {
-    if (entry->gr_name == name) return entry->gr_gid;
-  }
-  return std::nullopt;
-}
-
 [[nodiscard]] Result<UniqueFd> takeLock(const std::string& path, const std::string& robot) {
-  UniqueFd lock{::open(path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW, 0644)};
+  // flock() asks for no right but to open the file: others could hold it, and keep rc10d from starting.
+  UniqueFd lock{::open(path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW, 0600)};
+  if (lock) (void)::fchmod(lock.get(), 0600);  // left by an older version
   if (!lock) return fail(fmt::format("{}: {}", path, std::strerror(errno)));
   if (::flock(lock.get(), LOCK_EX | LOCK_NB) != 0) {
     char holder[16] = {};

@@ -1,53 +1,23 @@
 #include "daemon/clients/permissions.hpp"
 
-#include <grp.h>
-#include <pwd.h>
-
 #include <algorithm>
 #include <charconv>
-#include <cstdio>
-#include <memory>
 
 #include <fmt/format.h>
 
+#include "app/account_ids.hpp"
 #include "app/printable.hpp"
 #include "config/sha256.hpp"
 
 namespace rc10 {
 namespace {
 
-struct StreamCloser {
-  void operator()(std::FILE* file) const noexcept { (void)std::fclose(file); }
-};
-using Stream = std::unique_ptr<std::FILE, StreamCloser>;
-
-// Read from the file: getpwnam() would load NSS modules into locked memory.
-[[nodiscard]] std::optional<std::uint32_t> userId(const std::string& etc, const std::string& name) {
-  const Stream file(std::fopen((etc + "/passwd").c_str(), "re"));
-  while (file) {
-    const passwd* entry = ::fgetpwent(file.get());
-    if (entry == nullptr) break;
-    if (entry->pw_name == name) return entry->pw_uid;
-  }
-  return std::nullopt;
-}
-
-[[nodiscard]] std::optional<std::uint32_t> groupNumber(const std::string& etc, const std::string& name) {
-  const Stream file(std::fopen((etc + "/group").c_str(), "re"));
-  while (file) {
-    const group* entry = ::fgetgrent(file.get());
-    if (entry == nullptr) break;
-    if (entry->gr_name == name) return entry->gr_gid;
-  }
-  return std::nullopt;
-}
-
 [[nodiscard]] std::optional<std::uint32_t> accountId(const ClientConfig& client, const std::string& etc) {
   std::uint32_t number = 0;
   const char* end = client.who.data() + client.who.size();
   const auto parsed = std::from_chars(client.who.data(), end, number);
   if (parsed.ec == std::errc{} && parsed.ptr == end) return number;
-  return client.by == ClientConfig::By::kUser ? userId(etc, client.who) : groupNumber(etc, client.who);
+  return client.by == ClientConfig::By::kUser ? userId(client.who, etc) : groupId(client.who, etc);
 }
 
 [[nodiscard]] std::string_view wordOf(Right right) { return kRightWords[static_cast<std::size_t>(right)]; }

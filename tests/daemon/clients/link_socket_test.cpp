@@ -5,6 +5,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <filesystem>
 #include <fstream>
 
 #include "daemon/link_rig.hpp"
@@ -86,6 +87,16 @@ TEST_F(LinkSocketTest, ASocketFileLeftByOneThatWasKilledIsReplaced) {
   EXPECT_TRUE(accepts(*socket));
   EXPECT_THAT(LinkSocket::listen(dir.path(), "hero").error().message,
               HasSubstr("pid " + std::to_string(::getpid()) + ")"));
+}
+
+TEST_F(LinkSocketTest, NobodyElseMayOpenTheLockAndSoHoldIt) {
+  { std::ofstream(dir / "hero.lock") << "1"; }
+  std::filesystem::permissions(dir / "hero.lock", std::filesystem::perms{0644});
+  const auto hero = LinkSocket::listen(dir.path(), "hero");
+  const auto sentry = LinkSocket::listen(dir.path(), "sentry");
+  ASSERT_TRUE(hero && sentry);
+  EXPECT_EQ(std::filesystem::status(dir / "hero.lock").permissions(), std::filesystem::perms{0600});
+  EXPECT_EQ(std::filesystem::status(dir / "sentry.lock").permissions(), std::filesystem::perms{0600});
 }
 
 TEST_F(LinkSocketTest, MakesTheFolder) { EXPECT_TRUE(LinkSocket::listen(dir / "run", "hero")); }
