@@ -2,6 +2,7 @@ from __future__ import annotations
 
 import logging
 import math
+from dataclasses import replace
 
 import pytest
 
@@ -228,3 +229,23 @@ def test_spin_waits_no_longer_than_asked(robot: rc10.Robot, link: VirtualLink) -
     assert robot.spin(0.25) == 0
     assert link.now() - before_s == pytest.approx(0.25)
     assert robot.spin(-1.0) == 0
+
+
+def test_a_state_prints_as_a_line_for_each_motor(robot: rc10.Robot, daemon: FakeDaemon) -> None:
+    daemon.active = {"wheel"}
+    daemon.publish_state()
+    state = robot.wait_for_state()
+    assert str(state).splitlines() == [
+        "RUN, tick 1",
+        "  wheel ACTIVE COAST: 12.5 rpm, 0.0 deg, 0.00 A",
+        "  yaw READY COAST: 12.5 rpm, 0.0 deg, 0.00 A",
+        "  left-arm READY COAST: 12.5 rpm, 0.0 deg, 0.00 A",
+    ]
+    turning = replace(
+        state.motor("wheel"), mode=rc10.Mode.VELOCITY, target=60.0, owner="x", current_a=math.nan
+    )
+    assert str(turning) == "wheel ACTIVE VELOCITY 60 rpm: 12.5 rpm, 0.0 deg"
+    stopped = replace(state, status=rc10.RobotStatus.ESTOP, stop_cause=rc10.StopCause.REQUEST)
+    assert str(replace(stopped, stopped_by="\x1bx")).startswith("ESTOP REQUEST ?x, tick 1\n")
+    held = replace(state.motor("yaw"), acting=rc10.Acting.HOLD, stop_cause=rc10.StopCause.ESTOP)
+    assert str(held) == "yaw READY HOLD: 12.5 rpm, 0.0 deg, 0.00 A (ESTOP)"

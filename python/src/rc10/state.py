@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, field, fields
 from functools import cache
 from types import MappingProxyType
@@ -10,6 +11,7 @@ from typing import TYPE_CHECKING, Callable
 from rc10.errors import UnknownMotor
 from rc10.lcm_types.motor_state_t import motor_state_t
 from rc10.lcm_types.robot_state_t import robot_state_t
+from rc10.printable import printable
 from rc10.setpoints import Mode
 from rc10.spelling import did_you_mean
 from rc10.words import Word, WordSet
@@ -186,6 +188,25 @@ class MotorState:
     """Since the host received the command in force; -1: none is."""
     feedback_hz: float
 
+    def __str__(self) -> str:
+        """Returns it in a line: `wheel ACTIVE VELOCITY 60 rpm: 59.8 rpm, 151.2 deg, 0.45 A`."""
+        unit = self.mode.unit
+        target = f" {self.target:g}{' ' + unit if unit else ''}" if self.owner else ""
+        why = self.fault_text or ("" if self.stop_cause is StopCause.NONE else str(self.stop_cause))
+        measured = (
+            f"{number:.{places}f} {of}"
+            for number, places, of in (
+                (self.velocity_rpm, 1, "rpm"),
+                (self.total_angle_deg, 1, "deg"),
+                (self.current_a, 2, "A"),
+            )
+            if not math.isnan(number)
+        )
+        plain = self.acting in (Acting.NOTHING, Acting.TARGET)
+        does = f"{self.mode}{target}" if plain else str(self.acting)
+        line = f"{self.name} {self.status} {does}: {', '.join(measured)}"
+        return printable(f"{line} ({why})" if why else line)
+
     # Each field has the name that it has in motor_state_t.
     @classmethod
     def from_lcm(cls, message: motor_state_t) -> MotorState:
@@ -231,6 +252,12 @@ class RobotState:
     taken_at_s: float = field(compare=False)
     """When the daemon took this state, on this program's clock."""
     _now: Callable[[], float] = field(repr=False, compare=False)
+
+    def __str__(self) -> str:
+        """Returns the robot's status in a line, and each motor in one of its own."""
+        why = "" if self.stop_cause is StopCause.NONE else f" {self.stop_cause} {self.stopped_by}"
+        head = printable(f"{self.status}{why}".rstrip() + f", tick {self.tick}")
+        return "\n".join([head, *(f"  {motor}" for motor in self.motors.values())])
 
     @property
     def age_s(self) -> float:
