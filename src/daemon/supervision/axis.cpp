@@ -36,8 +36,11 @@ void Axis::fill(MotorSnapshot& snapshot) const noexcept {
   snapshot.status = status_;
   snapshot.owner = lease_.client();
   snapshot.acting = acting();
-  snapshot.target_shaped =
-      snapshot.acting == Acting::kTarget ? in_force_.value : std::numeric_limits<double>::quiet_NaN();
+  // A speed that bounds an effort is not in the unit of the target.
+  const bool same_unit = needsReference(motor_.target().mode) || in_force_.mode == motor_.target().mode;
+  snapshot.target_shaped = snapshot.acting == Acting::kTarget && same_unit
+                               ? in_force_.value
+                               : std::numeric_limits<double>::quiet_NaN();
   snapshot.command_received = lease_.received();
   snapshot.stop = stop_;
 }

@@ -99,9 +99,10 @@ bool MotorGuard::fallsBehind(const Observation& seen) noexcept {
 
 // A drive whose readings stand still, to the last bit, while its current should be another.
 bool MotorGuard::frozen(const Observation& seen, bool new_sample) noexcept {
-  if (!(config_.frozen_a > 0.0F) || seen.unit != CommandUnit::kAmpere) return false;
+  if (!(config_.frozen_a > 0.0F)) return false;
   if (new_sample) unchanged_ = last_.samples > 0 && sameReadings(last_, seen.feedback);
-  const bool off = std::fabs(seen.effort - seen.feedback.current_a) > config_.frozen_a;
+  const bool off = seen.unit == CommandUnit::kAmpere &&
+                   std::fabs(seen.effort - seen.feedback.current_a) > config_.frozen_a;
   return frozen_.step(unchanged_ && off, seen.now, kFrozenTime);
 }
 

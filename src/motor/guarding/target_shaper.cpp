@@ -3,12 +3,20 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "app/angle.hpp"
 #include "app/units.hpp"
 
 namespace rc10 {
 namespace {
+
+// Time within which a torque feed-forward comes back that was taken away for the speed.
+constexpr double kFeedForwardBackSeconds = 0.5;
+// Effort outwards fades over this speed, where the effort that keeps a lower one is not known.
+constexpr double kEffortFadesRpm = 20.0;
+// Share of the allowed speed below which an effort acts again, after the speed was bounded.
+constexpr double kEffortAgainShare = 0.8;
 
 [[nodiscard]] bool isEffort(ControlMode mode) noexcept {
   return mode == ControlMode::kCurrent || mode == ControlMode::kVoltage || mode == ControlMode::kDuty;
@@ -84,6 +92,7 @@ TargetShaper::Shaped TargetShaper::shape(const Target& target, const MotorFeedba
 // From what acts, in the unit of the mode: the last command may have been a speed.
 void TargetShaper::begin(ControlMode mode, const MotorFeedback& feedback, InForce in_force) noexcept {
   mode_ = mode;
+  speed_bounds_effort_ = false;
   value_ = velocity_ff_rpm_ = torque_ff_nm_ = 0.0;
   if (mode == ControlMode::kCurrent) {
     const bool told = in_force.unit == CommandUnit::kAmpere;
@@ -107,9 +116,13 @@ TargetShaper::Envelope TargetShaper::envelope(double total_angle_deg) const noex
           std::max(0.0, (config_.angle_max_deg - total_angle_deg) * slope)};
 }
 
+TargetShaper::Envelope TargetShaper::softEnvelope(const MotorFeedback& feedback) const noexcept {
+  constexpr double kNone = std::numeric_limits<double>::infinity();
+  return bounded(feedback) ? envelope(feedback.total_angle_deg) : Envelope{-kNone, kNone};
+}
+
 TargetShaper::Envelope TargetShaper::allowedSpeeds(const MotorFeedback& feedback) const noexcept {
-  if (!bounded(feedback)) return {-ceiling_rpm_, ceiling_rpm_};
-  const Envelope soft = envelope(feedback.total_angle_deg);
+  const Envelope soft = softEnvelope(feedback);
   return {std::max(soft.low_rpm, -ceiling_rpm_), std::min(soft.high_rpm, ceiling_rpm_)};
 }
 
@@ -131,39 +144,58 @@ std::uint32_t TargetShaper::shapeVelocityFf(Target& asked, float dt_s) noexcept 
   return slewed || goal_rpm != wanted_rpm ? kLimitSlew : 0U;
 }
 
-// A feed-forward is an effort as any other: it rises at the rate of one, and fades towards a soft limit; and
-// towards the ceiling, where no loop holds the speed against it.
+// A feed-forward is an effort as any other: it rises at the rate of one, and fades towards a soft limit and
+// towards the ceiling. An impedance has no loop that holds the speed: there it brakes what its spring drives
+// too fast, too.
 std::uint32_t TargetShaper::shapeTorqueFf(Target& asked, const MotorFeedback& feedback, float dt_s) noexcept {
   const auto per_nm = static_cast<double>(config_.effort_per_nm);
   const double nm_per_s = per_nm > 0.0 ? static_cast<double>(config_.effort_slew_per_s) / per_nm : 0.0;
   std::uint32_t limits = 0;
   if (slewTowards(static_cast<double>(asked.torque_ff_nm), nm_per_s, dt_s, torque_ff_nm_))
     limits = kLimitSlew;
-  const bool free = reduced() && asked.mode == ControlMode::kImpedance;
-  if (torque_ff_nm_ != 0.0 && (free || bounded(feedback))) {
-    const double sign = std::copysign(1.0, torque_ff_nm_);
-    const Envelope allowed = free ? allowedSpeeds(feedback) : envelope(feedback.total_angle_deg);
-    const double allowed_rpm = sign > 0.0 ? allowed.high_rpm : allowed.low_rpm;
-    const double most_nm = mostTorqueFf(asked, feedback, allowed_rpm, sign);
-    if (std::fabs(torque_ff_nm_) > most_nm) {
-      torque_ff_nm_ = sign * most_nm;
-      limits |= limitOf(allowed_rpm);
+  if (bounded(feedback) || reduced()) {
+    const bool springs = asked.mode == ControlMode::kImpedance;
+    const Envelope allowed = springs ? allowedSpeeds(feedback) : softEnvelope(feedback);
+    double low_nm = -mostTorqueFf(springs, feedback, allowed.low_rpm, -1.0);
+    double high_nm = mostTorqueFf(springs, feedback, allowed.high_rpm, 1.0);
+    if (reduced() && !springs) {
+      const double most_nm = torqueUnderCeiling(feedback, dt_s);
+      low_nm = std::max(low_nm, -most_nm);
+      high_nm = std::min(high_nm, most_nm);
     }
+    const double inside_nm = std::clamp(torque_ff_nm_, low_nm, std::max(low_nm, high_nm));
+    if (inside_nm != torque_ff_nm_)
+      limits |= limitOf(inside_nm < torque_ff_nm_ ? allowed.high_rpm : allowed.low_rpm);
+    torque_ff_nm_ = inside_nm;
   }
   asked.torque_ff_nm = static_cast<float>(torque_ff_nm_);
   return limits;
 }
 
 // The most in the direction of `sign`. Below 0 it brakes: where a spring may be too soft to do it.
-double TargetShaper::mostTorqueFf(const Target& asked, const MotorFeedback& feedback, double allowed_rpm,
+double TargetShaper::mostTorqueFf(bool springs, const MotorFeedback& feedback, double allowed_rpm,
                                   double sign) const noexcept {
   double most_nm = 0.0;
-  if (config_.effort_per_nm > 0.0F) {
+  if (!std::isfinite(allowed_rpm)) {
+    most_nm = std::numeric_limits<double>::infinity();
+  } else if (config_.effort_per_nm > 0.0F) {
     most_nm = sign * effortFor(allowed_rpm, feedback) / static_cast<double>(config_.effort_per_nm);
   } else if (sign * (allowed_rpm - static_cast<double>(feedback.velocity_rpm)) > 0.0) {
     most_nm = std::numeric_limits<double>::infinity();
   }
-  return asked.mode == ControlMode::kImpedance ? most_nm : std::max(most_nm, 0.0);
+  return springs ? most_nm : std::max(most_nm, 0.0);
+}
+
+// All of it at standstill, so that a load is held; none at the ceiling: the loop keeps that speed. What was
+// taken away comes back slowly, or a light shaft would be driven back and forth.
+double TargetShaper::torqueUnderCeiling(const MotorFeedback& feedback, float dt_s) noexcept {
+  if (!(config_.effort_per_nm > 0.0F)) return std::numeric_limits<double>::infinity();
+  const auto full_nm = static_cast<double>(config_.effort_full_scale / config_.effort_per_nm);
+  const double towards_rpm = std::copysign(1.0, torque_ff_nm_) * static_cast<double>(feedback.velocity_rpm);
+  const double share = std::clamp(1.0 - towards_rpm / ceiling_rpm_, 0.0, 1.0);
+  const double back_nm = full_nm * static_cast<double>(dt_s) / kFeedForwardBackSeconds;
+  ceiling_nm_ = std::min(share * full_nm, ceiling_nm_ + back_nm);
+  return ceiling_nm_;
 }
 
 TargetShaper::Shaped TargetShaper::shapeEffort(Target asked, const MotorFeedback& feedback,
@@ -177,6 +209,8 @@ TargetShaper::Shaped TargetShaper::shapeEffort(Target asked, const MotorFeedback
   Shaped out{asked, slewTowards(asked.value, per_s, dt_s, value_) ? kLimitSlew : 0U};
   out.target.value = value_;
   if (!bounded(feedback) && !reduced()) return out;
+  const bool known = config_.approach_effort_per_rpm > 0.0F || config_.effort_per_rpm > 0.0F;
+  if (!known && config_.has_velocity_loop) return boundBySpeed(out, feedback);
   // A push outwards fades as the speed nears what is allowed, and brakes beyond it. A push inwards always
   // acts.
   const Envelope allowed = allowedSpeeds(feedback);
@@ -187,7 +221,30 @@ TargetShaper::Shaped TargetShaper::shapeEffort(Target asked, const MotorFeedback
   return out;
 }
 
-// For a drive of unknown speed per effort, a ceiling only ends what drives the shaft beyond it.
+// Of a drive of unknown speed per effort, which has a loop of the speed: that brakes a shaft that is faster
+// than allowed, until it is clearly slower.
+TargetShaper::Shaped TargetShaper::boundBySpeed(Shaped out, const MotorFeedback& feedback) noexcept {
+  const Envelope allowed = allowedSpeeds(feedback);
+  const auto rpm = static_cast<double>(feedback.velocity_rpm);
+  const double share = speed_bounds_effort_ ? kEffortAgainShare : 1.0;
+  const bool high = rpm > share * allowed.high_rpm && rpm > 0.0;
+  const bool low = rpm < share * allowed.low_rpm && rpm < 0.0;
+  speed_bounds_effort_ = high || low;
+  if (speed_bounds_effort_) {
+    const double most_rpm = high ? allowed.high_rpm : allowed.low_rpm;
+    out.limits |= limitOf(most_rpm);
+    out.target = Target{.mode = ControlMode::kVelocity, .value = most_rpm};
+    return out;
+  }
+  const double outward_rpm = std::fabs(value_ > 0.0 ? allowed.high_rpm : allowed.low_rpm);
+  if (!reduced() && outward_rpm < kEffortFadesRpm) {
+    out.target.value = value_ * outward_rpm / kEffortFadesRpm;
+    if (value_ != 0.0) out.limits |= kLimitAngle;
+  }
+  return out;
+}
+
+// Of one without: soft limits leave no push outwards, a ceiling only ends what drives the shaft beyond it.
 double TargetShaper::effortTowards(double allowed_rpm, double sign,
                                    const MotorFeedback& feedback) const noexcept {
   const bool known = config_.approach_effort_per_rpm > 0.0F || config_.effort_per_rpm > 0.0F;
@@ -254,8 +311,9 @@ TargetShaper::Shaped TargetShaper::shapeAngle(Target asked, const MotorFeedback&
 }
 
 // Under a ceiling the angle moves no faster than that, and a shaft that does is not led farther than its loop
-// makes of the ceiling: less far while the ceiling comes down. One that is pushed the other way keeps its
-// whole spring.
+// makes of the ceiling: less far while the ceiling comes down. One that is pushed the other way, or lags,
+// keeps its whole spring; where the ceiling comes, what was far ahead is not. A loop of a speed below that of
+// the angle holds a load by itself, and is never led farther.
 std::uint32_t TargetShaper::shorten(Target& shaped, double before_deg, const MotorFeedback& feedback,
                                     float dt_s) noexcept {
   const double asked_deg = value_;
@@ -264,7 +322,8 @@ std::uint32_t TargetShaper::shorten(Target& shaped, double before_deg, const Mot
   const double rpm_per_deg = static_cast<double>(config_.approach_rpm_per_deg / kApproachOfAngleGain);
   double ahead_deg = value_ - feedback.total_angle_deg;
   const double towards_rpm = std::copysign(1.0, ahead_deg) * static_cast<double>(feedback.velocity_rpm);
-  if (rpm_per_deg > 0.0 && towards_rpm > ceiling_rpm_ / 2) {
+  const bool begins = std::exchange(enters_, false);
+  if (rpm_per_deg > 0.0 && (begins || config_.lead_is_speed || towards_rpm > ceiling_rpm_ / 2)) {
     const double lead_deg = ceiling_rpm_ / rpm_per_deg;
     ahead_deg = std::clamp(ahead_deg, -lead_deg, lead_deg);
     value_ = feedback.total_angle_deg + ahead_deg;

@@ -25,6 +25,8 @@ struct ShapingConfig {
   float effort_per_rpm = 0.0F;           ///< Effort that only keeps up a speed: 0 for A, back-EMF for V.
   float effort_per_nm = 0.0F;            ///< A per N·m: of a torque feed-forward. 0: unknown.
   float effort_full_scale = 0.0F;        ///< Effort of a duty of 1. 0: unknown.
+  bool has_velocity_loop = false;        ///< The motor can be told a speed.
+  bool lead_is_speed = false;            ///< What an angle is ahead is a speed, and another loop's matter.
   double max_first_step_deg = std::numeric_limits<double>::infinity();
   float soft_start_s = 0.0F;  ///< The first target after enabling comes into force over this time.
 };
@@ -57,7 +59,12 @@ class TargetShaper {
   void setApproach(float rpm_per_deg) noexcept { config_.approach_rpm_per_deg = rpm_per_deg; }
   /// Speed that no target of any mode leads beyond; infinite: none. A shaft that is faster is braked by
   /// targets of a speed or an angle, and by efforts.
-  void setCeiling(double rpm) noexcept { ceiling_rpm_ = rpm; }
+  void setCeiling(double rpm) noexcept {
+    const bool comes = std::isfinite(rpm) && !reduced();
+    if (comes) ceiling_nm_ = std::fabs(torque_ff_nm_);
+    enters_ = std::isfinite(rpm) && (enters_ || comes);
+    ceiling_rpm_ = rpm;
+  }
   /// The next target starts from what is measured then.
   void reset() noexcept { mode_ = ControlMode::kCoast; }
   /// The motor is being enabled: the next targets start softly, from what is measured then.
@@ -78,6 +85,7 @@ class TargetShaper {
   [[nodiscard]] bool bounded(const MotorFeedback& feedback) const noexcept;
   [[nodiscard]] Envelope envelope(double total_angle_deg) const noexcept;
   [[nodiscard]] bool reduced() const noexcept { return std::isfinite(ceiling_rpm_); }
+  [[nodiscard]] Envelope softEnvelope(const MotorFeedback& feedback) const noexcept;
   /// Bounds of the soft limits, where there are any, and of the ceiling.
   [[nodiscard]] Envelope allowedSpeeds(const MotorFeedback& feedback) const noexcept;
   /// Limit whose allowed speed this is.
@@ -98,8 +106,10 @@ class TargetShaper {
   [[nodiscard]] std::uint32_t shapeVelocityFf(Target& asked, float dt_s) noexcept;
   [[nodiscard]] std::uint32_t shapeTorqueFf(Target& asked, const MotorFeedback& feedback,
                                             float dt_s) noexcept;
-  [[nodiscard]] double mostTorqueFf(const Target& asked, const MotorFeedback& feedback, double allowed_rpm,
+  [[nodiscard]] double mostTorqueFf(bool springs, const MotorFeedback& feedback, double allowed_rpm,
                                     double sign) const noexcept;
+  [[nodiscard]] double torqueUnderCeiling(const MotorFeedback& feedback, float dt_s) noexcept;
+  [[nodiscard]] Shaped boundBySpeed(Shaped out, const MotorFeedback& feedback) noexcept;
   [[nodiscard]] Shaped shapeEffort(Target asked, const MotorFeedback& feedback, float dt_s) noexcept;
   [[nodiscard]] Shaped shapeVelocity(Target asked, const MotorFeedback& feedback, float dt_s) noexcept;
   [[nodiscard]] Shaped shapeAngle(Target asked, const MotorFeedback& feedback, float dt_s) noexcept;
@@ -110,8 +120,11 @@ class TargetShaper {
   double velocity_ff_rpm_ = 0.0;            ///< Slewed, too.
   double torque_ff_nm_ = 0.0;
   double ceiling_rpm_ = std::numeric_limits<double>::infinity();
-  double share_ = 1.0;  ///< Share of the soft start that is over; 1: all.
-  double soft_ = 0.0;   ///< Place of a soft start on its way to what is asked, in the unit of the mode.
+  double ceiling_nm_ = 0.0;           ///< Torque feed-forward that the ceiling leaves.
+  bool speed_bounds_effort_ = false;  ///< In place of an effort a speed is told.
+  bool enters_ = false;               ///< A ceiling has come, and no angle was led under it.
+  double share_ = 1.0;                ///< Share of the soft start that is over; 1: all.
+  double soft_ = 0.0;  ///< Place of a soft start on its way to what is asked, in the unit of the mode.
 };
 
 }  // namespace rc10
