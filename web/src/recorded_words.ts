@@ -29,7 +29,7 @@ export class RecordedWordBook {
     return this.known.get(frameKey(row)) ?? '';
   }
 
-  /** Asks for a piece of what is missing; true: there is more than before. */
+  /** Asks for what is missing, of as many rows as rc10-web answers; true: there is more than before. */
   async learn(events: EventRow[], frames: FrameRow[]): Promise<boolean> {
     const missing = <Row>(rows: Row[], keyOf: (row: Row) => string, most: number): [string, Row][] =>
       [...new Map(rows.map((row): [string, Row] => [keyOf(row), row]))].filter(([key]) => !this.known.has(key)).slice(0, most);
@@ -62,10 +62,9 @@ export function useWords(book: RecordedWordBook, events: EventRow[], frames: Fra
   const [, draw] = useState(0);
   useEffect(() => {
     let gone = false;
-    const learn = async () => {
-      while (!gone && (await book.learn(events, frames))) if (!gone) draw((n) => n + 1);
-    };
-    void learn();
+    void book.learn(events, frames).then((more) => {
+      if (more && !gone) draw((n) => n + 1);
+    });
     return () => {
       gone = true;
     };
