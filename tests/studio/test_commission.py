@@ -175,12 +175,23 @@ def test_a_joint_ends_in_limits_and_a_zero_for_the_file(
     expect(page.locator(".verdict-badge")).to_contain_text("rc10d accepts it")
 
 
+def ready_to_spin(page: Page, studio: Studio, card: Locator) -> None:
+    choose(page, "wheel")
+    go_to(page, "First spin")
+    expect(card.get_by_role("alert")).to_contain_text("Direction, by hand · Limits, by hand")
+    go_to(page, "Limits")
+    press(card, "It has no ends")
+    go_to(page, "Direction")
+    turned_by_hand(studio, card, "wheel")
+    expect(told(card)).to_contain_text("are right")
+    go_to(page, "First spin")
+
+
 def spinning(page: Page, studio: Studio) -> None:
     """The wheel in its first spin, under a finger that stays."""
     page.locator("#tab-commission").click()
-    choose(page, "wheel")
-    go_to(page, "First spin")
     card = page.locator(".card.step")
+    ready_to_spin(page, studio, card)
     press(card, "Enable it alone")
     expect(card).to_contain_text("no other motor can be enabled")
     refused = studio.daemon.ctl("enable", "elbow")
@@ -333,9 +344,43 @@ class TestAWrongFile:
         )
 
     def test_it_does_not_spin_while_its_time_out_would_keep_torque(
-        self, page: Page, card: Locator
+        self, page: Page, studio: Studio, card: Locator
     ) -> None:
-        choose(page, "wheel")
-        go_to(page, "First spin")
+        ready_to_spin(page, studio, card)
         expect(card.get_by_role("alert")).to_contain_text("on_timeout: brake")
         expect(card.get_by_role("button", name="Hold to spin")).to_have_count(0)
+
+
+@pytest.mark.parametrize("direction", [1, -1])
+@pytest.mark.parametrize("model", ["DM4310, id: 3, master_id: 19", "GM6020, id: 5"])
+class TestTheZeroOfAnAbsoluteEncoder:
+    """Its line for the file, by a second run of rc10d in which the shaft stands as in the first."""
+
+    @pytest.fixture
+    def robot(self, model: str, direction: int) -> str:
+        return (
+            ARM
+            + f"""
+      - {{name: wheel, model: {model}, direction: {direction}, zero_deg: 20,
+         feedback_timeout_ms: 1000, simulated: {{initial_angle_deg: 50}}}}
+"""
+        )
+
+    def test_the_line_keeps_it(self, page: Page, studio: Studio, card: Locator) -> None:
+        go_to(page, "Zero")
+        # The second one counts from the first.
+        for deg in ("15", "-70"):
+            card.get_by_label("It stands at").fill(deg)
+            press(card, "Set")
+            expect(told(card)).to_contain_text(
+                f"reads {deg.replace('-', MINUS)}.0° there now; zero_deg"
+            )
+            expect(card.locator(".live-angle")).to_have_text(f"{deg.replace('-', MINUS)}.0°")
+        go_to(page, "Lines")
+        line = card.get_by_label("Lines for the file, of", exact=True).inner_text()
+        text = studio.daemon.config.read_text()
+        studio.daemon.program.stop()
+        studio.daemon.config.write_text(text.replace("zero_deg: 20", line))
+        studio.daemon.start()
+        studio.daemon.wait_ready()
+        assert abs(angle(studio, "wheel") + 70) < 0.5

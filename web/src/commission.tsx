@@ -8,13 +8,14 @@ import {
   type Judged,
   type Measured,
   type Step,
-  absoluteZero,
   holdsNow,
   isOn,
   judgeSpin,
   judgeStep,
   kFirstRecord,
+  kNeeds,
   kSteps,
+  linesOf,
 } from './commission_record';
 import { AloneTest } from './commission_spin';
 import { BusStep, HandStep, LimitsStep, ZeroStep } from './commission_steps';
@@ -213,8 +214,8 @@ export function Commission() {
     keep(newest.current);
   };
   const checked = running?.robot?.buses.flatMap((bus) => bus.motors).find((each) => each.name === motor) ?? null;
-  const absolute = absoluteZero(checked) !== null;
-  const record = { ...kFirstRecord, ...kept };
+  const holds = (step: Measured, of = kept) => holdsNow(step, of.found[step], robot);
+  const record = { ...kFirstRecord, ...kept, lines: linesOf(kept.lines, holds) };
   const props: StepProps = {
     motor,
     record,
@@ -224,14 +225,10 @@ export function Commission() {
       const before = newest.current;
       const finding = { at: new Date().toISOString(), hash: robot.robot.config_hash, pid: robot.robot.pid, ...judged };
       const found = { ...before.found, [step]: finding };
-      const next = { ...before.lines, ...lines };
-      // Limits count from the zero.
-      if (step === 'zero') {
-        delete found.limits;
-        delete next.angle_min_deg;
-        delete next.angle_max_deg;
-      }
-      set({ found, lines: next, ...(step === 'zero' ? { low_deg: null, high_deg: null } : {}) });
+      // What this step found before is over, and limits count from the zero.
+      if (step === 'zero') delete found.limits;
+      const kept_lines = linesOf(before.lines, (each) => each !== step && holds(each, { ...before, found }));
+      set({ found, lines: { ...kept_lines, ...lines }, ...(step === 'zero' ? { low_deg: null, high_deg: null } : {}) });
     },
   };
   const shown: Step = kSteps.includes(record.shown) ? record.shown : 'bus';
@@ -239,11 +236,12 @@ export function Commission() {
   const sign = (step: Step) => {
     const finding = step === 'end' ? undefined : record.found[step];
     if (step === 'end' || finding === undefined) return ['○', ''] as const;
-    if (!holdsNow(step, finding, robot, absolute)) return ['↺', 'old'] as const;
+    if (!holds(step)) return ['↺', 'old'] as const;
     return finding.good ? (['✓', 'good'] as const) : (['✗', 'bad'] as const);
   };
   const finding = shown === 'end' ? undefined : record.found[shown];
   const modes = info.modes;
+  const missing = (kNeeds[shown] ?? []).filter((step) => record.found[step]?.good !== true || !holds(step));
   const onTimeout = checked?.on_timeout ?? null;
   return (
     <>
@@ -282,9 +280,14 @@ export function Commission() {
           {shown === 'hand' && <HandStep {...props} />}
           {shown === 'zero' && <ZeroStep {...props} />}
           {shown === 'limits' && <LimitsStep {...props} />}
-          {shown === 'spin' && <SpinStep {...props} modes={modes} onTimeout={onTimeout} />}
-          {shown === 'step' && <FirstStep {...props} modes={modes} onTimeout={onTimeout} />}
-          {shown === 'end' && <CommissionEnd {...props} robot={robot} info={info} text={running?.text ?? null} absolute={absolute} />}
+          {missing.length > 0 && (
+            <p class="notice" role="alert">
+              {`${word('comFirst')} ${missing.map((step) => word(kStepWords[step])).join(' · ')}`}
+            </p>
+          )}
+          {shown === 'spin' && missing.length === 0 && <SpinStep {...props} modes={modes} onTimeout={onTimeout} />}
+          {shown === 'step' && missing.length === 0 && <FirstStep {...props} modes={modes} onTimeout={onTimeout} />}
+          {shown === 'end' && <CommissionEnd {...props} robot={robot} info={info} text={running?.text ?? null} />}
           {finding !== undefined && (
             <div class={`told ${finding.good ? 'good' : 'bad'}`} role="status">
               <strong>{`${finding.good ? '✓' : '✗'} ${filled(word(finding.word), finding.values)}`}</strong>

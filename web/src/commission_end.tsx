@@ -10,7 +10,7 @@ import type { MotorInfo, Robot } from './protocol';
 import { filled, kStepWords } from './words_commission';
 import { withMotorKeys } from './yaml_motor';
 
-export function CommissionEnd(props: StepProps & { robot: Robot; info: MotorInfo; text: string | null; absolute: boolean }) {
+export function CommissionEnd(props: StepProps & { robot: Robot; info: MotorInfo; text: string | null }) {
   const { word } = useStudio();
   const [told, setTold] = useState('');
   const { record, robot, info } = props;
@@ -19,7 +19,7 @@ export function CommissionEnd(props: StepProps & { robot: Robot; info: MotorInfo
   const rows = kSteps.flatMap((step) => {
     if (step === 'end') return [];
     const finding = record.found[step];
-    const now = holdsNow(step, finding, robot, props.absolute);
+    const now = holdsNow(step, finding, robot);
     const sign = finding === undefined ? '○' : !now ? '↺' : finding.good ? '✓' : '✗';
     const text = finding === undefined ? word('comNotDone') : `${filled(word(finding.word), finding.values)}${now ? '' : ` ${word('comOld')}`}`;
     return [{ step, sign, text, at: finding === undefined ? '' : new Date(finding.at).toLocaleString(undefined, { hour12: false }) }];

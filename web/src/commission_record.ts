@@ -51,10 +51,26 @@ export const kFirstRecord: CommissionRecord = {
 };
 
 /** Found with the file that runs; the zero and what counts from it in this run of rc10d, too. */
-export function holdsNow(step: Measured, finding: Finding | undefined, robot: Robot, absolute: boolean): boolean {
+export function holdsNow(step: Measured, finding: Finding | undefined, robot: Robot): boolean {
   if (finding === undefined || finding.hash !== robot.robot.config_hash) return false;
-  return absolute || (step !== 'zero' && step !== 'limits') || finding.pid === robot.robot.pid;
+  return (step !== 'zero' && step !== 'limits') || finding.pid === robot.robot.pid;
 }
+
+const kFoundBy: Record<keyof Lines, Measured> = {
+  direction: 'hand',
+  gear_ratio: 'hand',
+  zero_deg: 'zero',
+  angle_min_deg: 'limits',
+  angle_max_deg: 'limits',
+};
+
+/** Lines of the findings for which this holds. */
+export function linesOf(lines: Lines, holds: (step: Measured) => boolean): Lines {
+  return Object.fromEntries(Object.entries(lines).filter(([key]) => holds(kFoundBy[key as keyof Lines])));
+}
+
+/** Steps that must be right before one that moves the motor. */
+export const kNeeds: Partial<Record<Step, Measured[]>> = { spin: ['hand', 'limits'], step: ['hand', 'limits', 'spin'] };
 
 export type Judged = Pick<Finding, 'good' | 'word' | 'values'> & { lines?: Lines };
 

@@ -202,11 +202,13 @@ export function ZeroStep(props: StepProps) {
     setTold(answer.status === 'ok' ? '' : answer.message);
     if (answer.status !== 'ok') return;
     const kept = absolute !== null && now_deg !== null;
+    // The file's zero, or the one that this page has set in this run of rc10d.
+    const from = record.lines.zero_deg ?? absolute ?? 0;
     props.onFound('zero', {
       good: true,
       word: kept ? 'comZeroAbsolute' : 'comZeroGood',
       values: { motor: props.motor, before: number(now_deg), deg: number(record.zero_deg) },
-      ...(kept ? { lines: { zero_deg: zeroLine(absolute, now_deg, record.zero_deg) } } : {}),
+      ...(kept ? { lines: { zero_deg: zeroLine(from, now_deg, record.zero_deg) } } : {}),
     });
   };
   const kind = absolute !== null ? word('comZeroIsAbsolute') : checked?.zero === 'at power-on' ? word('comZeroIsPowerOn') : word('comZeroIsRequest');
@@ -290,8 +292,7 @@ export function LimitsStep(props: StepProps) {
         <button
           type="button"
           onClick={() => {
-            const { angle_min_deg: _low, angle_max_deg: _high, ...lines } = record.lines;
-            props.onSet({ low_deg: null, high_deg: null, lines });
+            props.onSet({ low_deg: null, high_deg: null });
             props.onFound('limits', { good: true, word: 'comLimitsSkipped', values: { motor: props.motor } });
           }}
         >
