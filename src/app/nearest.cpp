@@ -35,6 +35,17 @@ std::size_t editDistance(const std::string& a, const std::string& b) {
   return distance.back();
 }
 
+/// The one candidate that has more words behind these, often the unit: `track` of track_m.
+std::string_view onlyLonger(const std::string& wanted, const std::vector<std::string_view>& candidates) {
+  std::string_view found;
+  for (const auto candidate : candidates) {
+    if (!plain(candidate).starts_with(wanted + "_")) continue;
+    if (!found.empty()) return {};
+    found = candidate;
+  }
+  return found;
+}
+
 }  // namespace
 
 std::string_view nearest(std::string_view typed, const std::vector<std::string_view>& candidates) {
@@ -49,15 +60,11 @@ std::string_view nearest(std::string_view typed, const std::vector<std::string_v
       best_distance = distance;
     }
   }
-  if (!best.empty()) return best;
-  // The last words left out, often the unit: `track` of track_m.
-  std::size_t longer = 0;
-  for (const auto candidate : candidates) {
-    if (!plain(candidate).starts_with(wanted + "_")) continue;
-    best = candidate;
-    ++longer;
+  // angle_min is angle_min_deg, not angle_pid.
+  if (best_distance > 1) {
+    if (const auto longer = onlyLonger(wanted, candidates); !longer.empty()) return longer;
   }
-  return longer == 1 ? best : std::string_view{};
+  return best;
 }
 
 std::string didYouMean(std::string_view typed, const std::vector<std::string_view>& candidates) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cctype>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -74,6 +75,70 @@ template <typename App>
     }
   }
   return {};
+}
+
+namespace spelling_detail {
+
+inline std::string inCapitals(std::string word) {
+  for (char& c : word) c = static_cast<char>(std::toupper(static_cast<unsigned char>(c)));
+  return word;
+}
+
+/// "rc10ctl set MOTOR MODE [VALUE]": what stands in its place, and the options that have to be given.
+template <typename App>
+std::string usageOf(const App& app) {
+  std::string usage;
+  for (const auto* each = &app; each != nullptr; each = each->get_parent())
+    usage = each->get_name() + (usage.empty() ? "" : " ") + usage;
+  for (const auto* option : app.get_options()) {
+    const std::string type = option->get_type_name();
+    const bool own_type = type.find_first_of("=|:{") == std::string::npos || type == "NAME=NUMBER";
+    if (!option->get_positional()) {
+      if (option->get_required()) usage += " " + option->get_name() + " " + type;
+      continue;
+    }
+    const bool generic = type.empty() || type == "TEXT" || type == "FLOAT" || type == "INT" || type == "UINT";
+    std::string word = generic || !own_type ? inCapitals(option->get_single_name()) : type;
+    if (option->get_expected_max() > 1) word += "...";
+    usage += option->get_required() ? " " + word : " [" + word + "]";
+  }
+  return usage;
+}
+
+/// Whether CLI11 says so: its error has the name of the program, not of its kind.
+inline bool isWordTooMany(std::string_view said) {
+  return said.substr(0, said.find(" argument")) == "The following";
+}
+
+/// What the parser says of a number, or of a word too many, as people say it.
+inline std::string inWords(const std::string& kind, const std::string& said) {
+  const auto colon = said.find(": ");
+  if (colon == std::string::npos) return said;
+  const std::string rest = said.substr(colon + 2);
+  if (isWordTooMany(said)) return "one word too many: " + rest;
+  const auto equals = rest.find(" = ");
+  if (kind != "ConversionError" || equals == std::string::npos) return said;
+  return rest.substr(0, equals) + ": '" + rest.substr(equals + 3) + "' is no number; units are not written";
+}
+
+}  // namespace spelling_detail
+
+/// What is wrong with a command line that `error` ended, and how it is written: "motor is required; usage:
+/// `rc10ctl zero MOTOR [ANGLE]`".
+template <typename App, typename Error>
+[[nodiscard]] std::string usageError(const App& app, const Error& error, int argc, const char* const* argv) {
+  using namespace spelling_detail;
+  const auto verbs = app.get_subcommands();
+  const App& verb = verbs.empty() ? app : *verbs.front();
+  const std::string help =
+      "; `" + app.get_name() + (verbs.empty() ? "" : " " + verb.get_name()) + " --help` has all";
+  if (const auto word = misspelt(app, argc, argv); !word.empty()) return word + help;
+  std::string said = printable(inWords(error.get_name(), error.what()));
+  if (verbs.empty() && error.get_name() == "RequiredError" && app.get_require_subcommand_min() > 0)
+    return "say what to do, such as `" + app.get_name() + " " +
+           app.get_subcommands([](const App*) { return true; }).front()->get_name() + "`" + help;
+  if (!verbs.empty()) said += "; usage: `" + usageOf(verb) + "`";
+  return said + help;
 }
 
 }  // namespace rc10

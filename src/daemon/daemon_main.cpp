@@ -69,7 +69,8 @@ int daemonMain(int argc, char** argv) {
   configureMemory();
   CLI::App app{
       "Real-time motor daemon: drives the motors of one robot over CAN, commanded through LCM.\n"
-      "Exit status: 0 stopped by a signal, 1 could not start, 2 bad usage or configuration."};
+      "Exit status: 0 stopped by a signal, 1 could not start, 2 bad usage or configuration.",
+      "rc10d"};
   std::string config_file;
   std::string check_file;
   bool schema = false;
@@ -87,11 +88,11 @@ int daemonMain(int argc, char** argv) {
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
-    if (const auto hint = misspelt(app, argc, argv); error.get_exit_code() != 0 && !hint.empty()) {
-      std::cerr << "rc10d: " << hint << '\n';
-      return kBadUsageOrConfig;
-    }
-    return app.exit(error) == 0 ? kOk : kBadUsageOrConfig;
+    if (error.get_exit_code() == 0) return app.exit(error);
+    const bool extra = error.get_exit_code() == static_cast<int>(CLI::ExitCodes::ExtrasError);
+    std::cerr << "rc10d: " << usageError(app, error, argc, argv)
+              << (extra ? "; -c FILE runs a robot, --check FILE checks one" : "") << '\n';
+    return kBadUsageOrConfig;
   }
 
   if (*schema_option) {

@@ -46,12 +46,9 @@ inline constexpr int kExitUsage = 2;
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
-    if (const auto word = misspelt(app, argc, argv); error.get_exit_code() != 0 && !word.empty()) {
-      std::fprintf(stderr, "%s: %s\nRun with --help for more information.\n", app.get_name().c_str(),
-                   word.c_str());
-      return kExitUsage;
-    }
-    return app.exit(error) == 0 ? kExitOk : kExitUsage;
+    if (error.get_exit_code() == 0) return app.exit(error);
+    std::fprintf(stderr, "%s: %s\n", app.get_name().c_str(), usageError(app, error, argc, argv).c_str());
+    return kExitUsage;
   }
   return std::nullopt;
 }

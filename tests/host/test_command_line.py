@@ -108,6 +108,7 @@ def test_bad_usage_ends_with_status_2(words: list[str]) -> None:
     [
         (["--chekc"], "there is no option '--chekc'; did you mean --check?"),
         (["check", EXAMPLES[0]], "there is no verb 'check'; did you mean --check?"),
+        ([EXAMPLES[0]], "; -c FILE runs a robot, --check FILE checks one"),
     ],
 )
 def test_the_option_that_was_meant_is_told(words: list[str | Path], told: str) -> None:

@@ -78,7 +78,12 @@ def test_only_what_moves_a_motor_before_the_eyes_of_a_person_has_no_json() -> No
 
 @pytest.mark.parametrize("verb", verbs())
 def test_every_verb_answers_in_json_or_refuses_it(lift: Daemon, verb: str) -> None:
+    if verb == "signal":
+        lift.must("clear")
+        lift.must("enable", "wheel", "other")
     done = lift.ctl(verb, *{**WORDS, **FAILS}[verb], "--json")
+    if verb == "signal":
+        lift.must("disable", "wheel", "other")
     told = objects(done.stdout)
     assert told, done.stderr
     if verb in without_json():

@@ -3,21 +3,9 @@
 #include <algorithm>
 #include <set>
 
+#include "config/module_motors.hpp"
+
 namespace rc10 {
-namespace {
-
-void collectMotors(const OwnValues& own, std::span<const OwnKey> keys, std::vector<std::size_t>& motors) {
-  for (const OwnKey& key : keys) {
-    const bool nested = key.kind == OwnKey::Kind::kSection || key.kind == OwnKey::Kind::kRows;
-    if (!own.given(key.name)) continue;
-    if (key.kind == OwnKey::Kind::kMotor) motors.push_back(own.motor(key.name));
-    if (!nested) continue;
-    for (const OwnValues& row : own.rows(key.name)) collectMotors(row, key.keys, motors);
-  }
-}
-
-}  // namespace
-
 void addImpliedGroups(RobotConfig& robot) {
   std::set<std::size_t> taken;
   for (const auto& group : robot.groups) taken.insert(group.motors.begin(), group.motors.end());
@@ -29,8 +17,7 @@ void addImpliedGroups(RobotConfig& robot) {
     group.on_return = GroupConfig::Return::kRearmAtRest;
     group.together = module.type->coupling() == ModuleType::Coupling::kTogether;
     group.implied = true;
-    std::vector<std::size_t> motors;
-    collectMotors(module.settings.own, module.type->keys(), motors);
+    const auto motors = motorsNamedBy(module);
     std::copy_if(motors.begin(), motors.end(), std::back_inserter(group.motors),
                  [&taken](std::size_t motor) { return taken.insert(motor).second; });
     std::sort(group.motors.begin(), group.motors.end());

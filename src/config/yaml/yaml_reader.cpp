@@ -1,8 +1,10 @@
 #include "config/yaml/yaml_reader.hpp"
 
+#include <algorithm>
 #include <exception>
 #include <sstream>
 #include <string>
+#include <string_view>
 
 #include <yaml-cpp/exceptions.h>
 #include <yaml-cpp/parser.h>
@@ -12,9 +14,21 @@
 namespace rc10 {
 namespace {
 
+/// Whether the line, counted from 1, is indented by a tab.
+bool indentedByTab(std::string_view text, int line) {
+  for (; line > 1 && !text.empty(); --line)
+    text.remove_prefix(std::min(text.find('\n'), text.size() - 1) + 1);
+  return text.substr(0, text.find_first_not_of(" \t")).find('\t') != std::string_view::npos;
+}
+
 /// The position is yaml-cpp's; where it stopped is often just after the mistake.
-void reportSyntax(const YAML::Exception& thrown, Problems& problems) {
-  problems.error(placeOf(thrown.mark), "",
+void reportSyntax(const YAML::Exception& thrown, std::string_view text, Problems& problems) {
+  const SourcePlace place = placeOf(thrown.mark);
+  if (indentedByTab(text, place.line)) {
+    problems.error(place, "", "not YAML: a tab in front of this line; indent with spaces");
+    return;
+  }
+  problems.error(place, "",
                  "not YAML: " + thrown.msg +
                      "; look here and at the line above for a missing colon, quote, bracket or space");
 }
@@ -27,7 +41,7 @@ void readDocuments(std::string_view text, YamlTreeBuilder& builder, Problems& pr
     }
   } catch (const YAML::Exception& thrown) {
     // Beyond a limit the reason has been given; yaml-cpp's own depth guard adds nothing to it.
-    if (!problems.hasErrors()) reportSyntax(thrown, problems);
+    if (!problems.hasErrors()) reportSyntax(thrown, text, problems);
   } catch (const std::exception& thrown) {
     problems.error({}, "", std::string{"cannot be read: "} + thrown.what());
   }

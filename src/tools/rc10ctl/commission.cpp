@@ -112,7 +112,9 @@ class Commissioning {
     const auto turn = client::judgeHandTurn(before, *feed_.state(), motor_);
     const auto words = client::text(turn, rc10d_.welcome(), motor_);
     if (turn.outcome != client::HandTurn::Outcome::kGood) {
-      (void)complain({words + "; then restart rc10d and commission again"}, ExitCode::kFailed);
+      const bool file_is_wrong = turn.outcome != client::HandTurn::Outcome::kNotTurned;
+      (void)complain({words + (file_is_wrong ? "; then restart rc10d and" : " Then") + " commission again"},
+                     ExitCode::kFailed);
       return false;
     }
     std::printf("   %s\n", words.c_str());

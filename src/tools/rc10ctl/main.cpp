@@ -51,9 +51,8 @@ int run(int argc, char** argv) {
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
-    if (const auto word = rc10::misspelt(app, argc, argv); error.get_exit_code() != 0 && !word.empty())
-      return static_cast<int>(complain({word + "; `rc10ctl --help` has all"}, ExitCode::kUsage));
-    return app.exit(error) == 0 ? 0 : static_cast<int>(ExitCode::kUsage);
+    if (error.get_exit_code() == 0) return app.exit(error);
+    return static_cast<int>(complain({rc10::usageError(app, error, argc, argv)}, ExitCode::kUsage));
   }
   if (global.json) complainInJson();
   const std::string verb = app.get_subcommands().front()->get_name();

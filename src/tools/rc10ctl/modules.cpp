@@ -14,9 +14,12 @@
 #include "app/printable.hpp"
 #include "client/duration_text.hpp"
 #include "client/module_text.hpp"
+#include "client/obstacle.hpp"
 #include "client/request_call.hpp"
+#include "config/module_motors.hpp"
 #include "feed.hpp"
 #include "named_value.hpp"
+#include "running_config.hpp"
 #include "verbs.hpp"
 
 namespace rc10::ctl {
@@ -87,6 +90,47 @@ std::string whyNotObeyed(const client::ModuleView& module, Feed& feed, bool cert
          "': stop that program, or take over with a higher --priority";
 }
 
+/// The motors that the module drives, by the file with which the robot started; none if that cannot be read.
+std::vector<std::size_t> motorsOf(const Global& global, const link::Welcome& welcome,
+                                  std::string_view module) {
+  const auto config = runningConfig(global, welcome);
+  if (!config) return {};
+  for (const auto& each : config->modules) {
+    if (each.settings.name != module) continue;
+    auto motors = motorsNamedBy(each);
+    motors.erase(std::remove_if(motors.begin(), motors.end(),
+                                [&](std::size_t motor) { return motor >= welcome.motor_count; }),
+                 motors.end());
+    return motors;
+  }
+  return {};
+}
+
+/// Reason why the module moves nothing though it takes its inputs, and the remedy; empty if it can.
+std::string whyAtRest(const client::ModuleView& module, const std::vector<std::size_t>& motors,
+                      const link::Welcome& welcome, const link::State* state) {
+  if (state == nullptr) return {};
+  std::string ready;
+  std::string other;
+  for (const auto motor : motors) {
+    const auto& reading = state->motors[motor];
+    const std::string name = printable(welcome.motors[motor].name.view());
+    const auto why = client::obstacle(*state, name, reading);
+    if (why.empty()) continue;
+    if (reading.status == MotorStatus::kReady)
+      ready += " " + name;
+    else if (other.empty())
+      other = why;
+  }
+  if (ready.empty() && other.empty()) return {};
+  const std::string what =
+      "module '" + printable(module.name.view()) + "' takes its inputs and moves nothing: ";
+  if (state->robot_state != RobotStatus::kRun)
+    return what + "the robot is in " + toString(state->robot_state) +
+           ": `rc10ctl clear`, then `rc10ctl enable" + ready + "`";
+  return what + (other.empty() ? "not enabled: `rc10ctl enable" + ready + "`" : other);
+}
+
 /// Empty, or why this robot cannot take it.
 std::string whySignalsUnfit(const link::Signals& message, const std::vector<client::ModuleView>& modules) {
   std::string known;
@@ -101,7 +145,7 @@ std::string whySignalsUnfit(const link::Signals& message, const std::vector<clie
                                       [&](const auto& input) { return input.view() == value.name.view(); });
       if (found == inputs.end())
         return "module '" + std::string(message.module.view()) + "' has no input '" +
-               std::string(value.name.view()) + "'; it has: " + names +
+               std::string(value.name.view()) + "'; it has " + (names.empty() ? "none" : names) +
                didYouMean(value.name.view(), viewsOf(inputs));
     }
     return {};
@@ -141,6 +185,11 @@ ExitCode repeat(const Global& global, LinkClient& rc10d, link::Signals& message,
   }
   if (const auto why = whyNotObeyed(*module, feed, true); !why.empty() && !obeyed && !interrupted())
     return complain({why}, ExitCode::kFailed);
+  const auto motors = motorsOf(global, rc10d.welcome(), message.module.view());
+  if (const auto there = feed.awaitState(); !there) return complain(there.error(), ExitCode::kFailed);
+  if (const auto why = whyAtRest(*module, motors, rc10d.welcome(), feed.state());
+      !why.empty() && !interrupted())
+    return complain({why}, ExitCode::kFailed);
   printModules(global, {*module});
   return ExitCode::kOk;
 }
@@ -152,7 +201,7 @@ ExitCode signal(const Global& global, const SignalOptions& options) {
   if (!time)
     return complain({"--for " + options.time + ": give a time like 2s, 500ms or 1min, at most a day"},
                     ExitCode::kUsage);
-  auto rc10d = connect(global, link::kModules | link::kEvents);
+  auto rc10d = connect(global, link::kModules | link::kEvents | link::kStates);
   if (!rc10d) return complain(rc10d.error(), ExitCode::kNoDaemon);
   Feed feed{*rc10d};
   if (const auto there = feed.awaitModules(); !there) return complain(there.error(), ExitCode::kFailed);

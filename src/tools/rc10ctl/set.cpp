@@ -2,6 +2,7 @@
 #include <cmath>
 #include <memory>
 #include <optional>
+#include <sstream>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -16,6 +17,7 @@
 #include "client/find_motor.hpp"
 #include "drive.hpp"
 #include "link/words.hpp"
+#include "running_config.hpp"
 #include "verbs.hpp"
 
 namespace rc10::ctl {
@@ -118,12 +120,30 @@ std::string whyDriveUnfit(Drive& order, const link::Welcome& welcome) {
   return {};
 }
 
+// A current in milliamperes would act as the whole limit at once; empty, or the limit that it passes.
+std::string whyTooMuch(const Global& global, const Drive& order, const link::Welcome& welcome) {
+  if (order.setpoint.target.mode != ControlMode::kCurrent) return {};
+  const auto config = runningConfig(global, welcome);
+  const auto* motor = config ? motorAt(*config, order.motor) : nullptr;
+  if (motor == nullptr) return {};
+  const MotorTraits traits = motor->traits();
+  if (traits.effort != CommandUnit::kAmpere) return {};
+  const float limit_a = effortLimitOf(motor->settings, traits.effort_full_scale);
+  if (!(limit_a > 0.0F) || std::abs(order.setpoint.target.value) <= static_cast<double>(limit_a)) return {};
+  std::ostringstream text;
+  text << order.setpoint.target.value << " A is beyond the current_limit_a of " << motor->name() << ", "
+       << limit_a << " A: give amperes, " << limit_a << " at most";
+  return text.str();
+}
+
 ExitCode set(const Global& global, const SetOptions& options) {
   auto order = driveFrom(options);
   if (!order) return complain(order.error(), ExitCode::kUsage);
   auto rc10d = connect(global, link::kStates | link::kEvents);
   if (!rc10d) return complain(rc10d.error(), ExitCode::kNoDaemon);
   if (const auto why = whyDriveUnfit(*order, rc10d->welcome()); !why.empty())
+    return complain({why}, ExitCode::kFailed);
+  if (const auto why = whyTooMuch(global, *order, rc10d->welcome()); !why.empty())
     return complain({why}, ExitCode::kFailed);
   const auto done = drive(*rc10d, *order);
   if (order->then != Then::kDisable) return done;

@@ -55,10 +55,10 @@ TEST(YamlDocument, MayBeJson) {
 }
 
 TEST(YamlDocument, SaysWhereTheSyntaxBreaks) {
-  EXPECT_THAT(
-      errorsOf("robot: hero\n\tlcm: 3\n"),
-      ElementsAre("hero.yaml:2:1: not YAML: illegal tab when looking for indentation; look here and at "
-                  "the line above for a missing colon, quote, bracket or space"));
+  EXPECT_THAT(errorsOf("robot: hero\n\tlcm: 3\n"),
+              ElementsAre("hero.yaml:2:1: not YAML: a tab in front of this line; indent with spaces"));
+  EXPECT_THAT(errorsOf("robot: hero\nbuses:\n\t- name: chassis\n"),
+              ElementsAre("hero.yaml:3:2: not YAML: a tab in front of this line; indent with spaces"));
   EXPECT_THAT(errorsOf("robot: hero\n buses: []\n"),
               ElementsAre("hero.yaml:2:7: not YAML: illegal map value; look here and at the line above for a "
                           "missing colon, quote, bracket or space"));
