@@ -5,6 +5,7 @@ import math
 import pytest
 
 import rc10
+from fake_daemon import FakeDaemon
 from rc10.lcm_types import signals_t
 from virtual_link import VirtualLink
 
@@ -54,6 +55,30 @@ def test_the_state_has_its_owner_its_outputs_and_its_age(
         _ = base.state["y"]
     with pytest.raises(KeyError, match=r"did you mean vx_m_s\?"):
         _ = base.state["vx_ms"]
+
+
+def test_inputs_for_a_module_that_is_not_there_are_told_once(
+    robot: rc10.Robot, daemon: FakeDaemon, link: VirtualLink, caplog: pytest.LogCaptureFixture
+) -> None:
+    there, missing = robot.module("base"), robot.module("bsae")
+    for _ in range(40):
+        daemon.publish_state()
+        rc10.Publisher(link, "demo.v1.base.state", signals_t).publish(state("tester", x_m=0))
+        robot.spin()
+        there.send(vx_m_s=1)
+        missing.send(vx_m_s=1)
+        link.pass_time(0.1)
+    (told,) = caplog.messages
+    assert told.startswith("robot 'demo' is heard, and nothing of module 'bsae' to which inputs")
+
+
+def test_a_module_of_a_robot_that_is_not_heard_is_not_called_missing(
+    robot: rc10.Robot, link: VirtualLink, caplog: pytest.LogCaptureFixture
+) -> None:
+    for _ in range(40):
+        robot.module("base").send(vx_m_s=1)
+        link.pass_time(0.1)
+    assert caplog.messages == []
 
 
 def test_one_module_is_one_object(robot: rc10.Robot) -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import logging
 import math
 import time
 from contextlib import contextmanager
@@ -19,6 +20,8 @@ if TYPE_CHECKING:
 
     from rc10.identity import Identity
     from rc10.link import Link
+
+_log = logging.getLogger("rc10")
 
 _MAX_SIGNALS = 32
 
@@ -53,15 +56,25 @@ class ModuleState:
         return self.outputs[name]
 
 
-# The name of the robot and of the module, the transport, who sends, with which priority.
-ModuleParts = tuple[str, str, "Link", "Identity", int]
+# The name of the robot and of the module, the transport, who sends, with which priority, and
+# whether the robot is heard.
+ModuleParts = tuple[str, str, "Link", "Identity", int, Callable[[], bool]]
+
+# A module's outputs come as often as the robot's state.
+_SILENT_S = 1.0
 
 
 class Module:
     """One module of a robot; Robot.module() makes it. Belongs to the robot's thread."""
 
     def __init__(
-        self, robot: str, name: str, link: Link, identity: Identity, priority: int
+        self,
+        robot: str,
+        name: str,
+        link: Link,
+        identity: Identity,
+        priority: int,
+        robot_heard: Callable[[], bool],
     ) -> None:
         self.name = name
         self._robot_name = robot
@@ -69,6 +82,8 @@ class Module:
         self._heard: set[str] = set()
         self._identity = identity
         self._priority = priority
+        self._robot_heard = robot_heard
+        self._sent_in_vain_s: float | None = None
         self._now = link.now
         self._publisher = Publisher(link, f"{robot}.v1.{name}", signals_t)
         self._subscriber = Subscriber(link, f"{robot}.v1.{name}.state", signals_t)
@@ -104,6 +119,7 @@ class Module:
         message.names = list(inputs)
         message.values = [float(value) for value in inputs.values()]
         self._publisher.publish(message)
+        self._tell_if_missing()
 
     @property
     def state(self) -> ModuleState:
@@ -121,6 +137,21 @@ class Module:
         message = latest.message
         outputs = dict(zip(message.names, message.values))
         return ModuleState(outputs, message.client, latest.received_s, self._now)
+
+    def _tell_if_missing(self) -> None:
+        """Logs once that a robot which is heard does not seem to have this module."""
+        if self._subscriber.count or not self._robot_heard():
+            self._sent_in_vain_s = None
+        elif self._sent_in_vain_s is None:
+            self._sent_in_vain_s = self._now()
+        elif self._now() - self._sent_in_vain_s > _SILENT_S:
+            self._sent_in_vain_s = math.inf
+            _log.warning(
+                "robot '%s' is heard, and nothing of module '%s' to which inputs are sent: "
+                "`rc10ctl modules` shows which there are",
+                self._robot_name,
+                self.name,
+            )
 
     def _newer(self, known: int) -> ModuleState | None:
         """The outputs, when more than `known` messages of them have come."""

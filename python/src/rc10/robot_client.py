@@ -485,7 +485,11 @@ class RobotClient:
         return ""
 
     def _module_parts(self, module: str) -> ModuleParts:
-        return self._name, module, self._link, self._identity, self._priority
+        def heard() -> bool:
+            state = self._inbox.state
+            return state is not None and state.age_s < _LIVE_S
+
+        return self._name, module, self._link, self._identity, self._priority, heard
 
     def _check_open(self) -> None:
         if self._closed:
