@@ -20,6 +20,7 @@ template <std::floating_point T>
 /// `angle` in [0, period). A NaN stays NaN, an infinity becomes one.
 template <std::floating_point T>
 [[nodiscard]] inline T wrapPeriod(T angle, T period) noexcept {
+  if (angle > T{0} && angle < period) return angle;
   const T wrapped = angle - period * std::floor(angle / period);
   // Rounding may leave a tiny negative angle, or turn one into the period itself.
   if (wrapped >= period || wrapped < T{0}) return T{0};

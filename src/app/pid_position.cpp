@@ -6,6 +6,17 @@
 #include "app/angle.hpp"
 
 namespace rc10 {
+namespace {
+
+// In any of the units: far below the resolution of a drive, and reached a quarter of a second after a start.
+constexpr float kFaded = 1e-6F;
+
+[[nodiscard]] float faded(float value, float fade) noexcept {
+  const float left = value * fade;
+  return std::fabs(left) < kFaded ? 0.0F : left;
+}
+
+}  // namespace
 
 float PID_Position::errorOf(float target, float measured) const noexcept {
   if (config_.circular_period > 0.0F) {
@@ -41,9 +52,11 @@ float PID_Position::stepError(float error, float measured_change, float dt_s, Ou
   if (!(dt_s > 0.0F)) return state_.output;
   const float dt = std::min(dt_s, kMaxStepSeconds);
 
-  const float fade = kStartGlideSeconds / (kStartGlideSeconds + dt);
-  state_.glide *= fade;
-  state_.output_offset *= fade;
+  if (state_.glide != 0.0F || state_.output_offset != 0.0F) {  // over a while after a start
+    const float fade = kStartGlideSeconds / (kStartGlideSeconds + dt);
+    state_.glide = faded(state_.glide, fade);
+    state_.output_offset = faded(state_.output_offset, fade);
+  }
   state_.whole_error = saturate(error + state_.glide);
   const float e = afterDeadband(state_.whole_error);
   if (!state_.running) {

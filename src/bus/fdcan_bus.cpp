@@ -133,9 +133,10 @@ void fdCANbus::packRest() noexcept {
 
 template <typename Pack>
 void fdCANbus::packAll(Pack pack) noexcept {
+  std::array<CanFrame, kMaxFramesPerPacker>
+      frames{};  // once: a packer writes the whole of each of its frames
   for (std::size_t i = 0; i < packers_.size(); ++i) {
     const std::size_t packer = (first_packer_ + i) % packers_.size();
-    std::array<CanFrame, kMaxFramesPerPacker> frames{};
     const std::size_t count = std::min(pack(*packers_[packer], std::span<CanFrame>(frames)), frames.size());
     if (count > batch_->room()) {  // half a sequence is worse than none
       counters_.tx_dropped += count;

@@ -89,7 +89,10 @@ Result<void> FrameTable::add(FrameListener& device) {
       insertStandard(filter, self);
     }
   }
-  devices_[size_++] = {&device, device.filters()};
+  const auto filters = device.filters();
+  const bool by_id = std::none_of(filters.begin(), filters.end(),
+                                  [](const FrameFilter& filter) { return filter.discriminator.has_value(); });
+  devices_[size_++] = {&device, filters, by_id};
   return {};
 }
 
@@ -132,9 +135,12 @@ FrameTable::DeviceSet FrameTable::candidates(CanId id) const noexcept {
 
 FrameListener* FrameTable::find(const CanFrame& frame) const noexcept {
   if (frame.type != FrameType::kData) return nullptr;
+  // The table of standard ids is exact: it says all that a filter without a discriminator would.
+  const bool exact = !frame.id.extended && frame.id.value <= kStandardIdMask;
   for (DeviceSet left = candidates(frame.id); left != 0; left &= left - 1) {
     const Device& device = devices_[static_cast<std::size_t>(std::countr_zero(left))];
-    const bool accepted = std::any_of(device.filters.begin(), device.filters.end(),
+    const bool accepted = (exact && device.by_id) ||
+                          std::any_of(device.filters.begin(), device.filters.end(),
                                       [&frame](const FrameFilter& filter) { return accepts(filter, frame); });
     if (accepted && device.listener->matchesFrame(frame)) return device.listener;
   }

@@ -38,6 +38,7 @@ class FrameTable {
   struct Device {
     FrameListener* listener = nullptr;
     std::span<const FrameFilter> filters;
+    bool by_id = true;  ///< No filter looks at the payload.
   };
   struct Slot {
     std::uint32_t key = 0;  // id & mask

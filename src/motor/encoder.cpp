@@ -26,6 +26,8 @@ constexpr Duration::rep kMostLatePeriods = 2;
 constexpr double kMostTurns = 1e9;
 constexpr double kTurnsPerNsPerRpm = 1.0 / (kRpmPerTurnPerS * 1e9);
 
+double nanoseconds(Duration spacing) noexcept { return static_cast<double>(spacing.count()); }
+
 }  // namespace
 
 Encoder::Encoder(const Config& config) noexcept
@@ -47,30 +49,29 @@ void Encoder::loseReference() noexcept {
 
 // Stamps may be late by as much as a gap that is still counted over: a paused receiver reads many samples
 // at once. Up to there speed explains the difference.
-bool Encoder::jumped(double residual_turns, float velocity_rpm, Duration gap) const noexcept {
+bool Encoder::jumped(double off_turns, float velocity_rpm, Duration gap) const noexcept {
   const double fastest_rpm = static_cast<double>(std::max(std::fabs(velocity_rpm), std::fabs(velocity_rpm_)));
   Config moving = config_;
   moving.max_velocity_rpm = static_cast<float>(fastest_rpm);
   moving.stamp_error = longest_gap_;
   const double explained = predictionErrorTurns(moving, gap + 2 * config_.stamp_error) + kJumpMarginTurns;
-  return explained < kLargestNoticedTurns && std::fabs(residual_turns) > explained;
+  return explained < kLargestNoticedTurns && off_turns > explained;
 }
 
-Encoder::Step Encoder::stepOver(std::int64_t moved, double turns_per_ns, Duration spacing) const noexcept {
-  const double predicted = turns_per_ns * static_cast<double>(spacing.count());
-  const double ahead = predicted - static_cast<double>(moved) * turns_per_count_;
+inline Encoder::Step Encoder::stepOver(double moved_turns, double turns_per_ns,
+                                       double spacing_ns) const noexcept {
+  const double ahead = turns_per_ns * spacing_ns - moved_turns;
   // A speed beyond all reason must not overflow the conversion.
-  if (!(std::fabs(ahead) < kMostTurns)) return {.moved = moved, .residual = ahead};
-  const auto whole = static_cast<std::int64_t>(ahead + (ahead < 0.0 ? -0.5 : 0.5));
-  Step step{.moved = moved + whole * config_.counts_per_turn, .residual = ahead - static_cast<double>(whole)};
-  step.explained = std::fabs(step.residual) <= errorTurns(spacing) + kJumpMarginTurns;
-  return step;
+  if (!(std::fabs(ahead) < kMostTurns)) return {.turns = 0, .off = std::fabs(ahead), .explained = false};
+  const auto turns = static_cast<std::int64_t>(ahead + std::copysign(0.5, ahead));
+  const double off = std::fabs(ahead - static_cast<double>(turns));
+  return {.turns = turns, .off = off, .explained = off <= errorTurns(spacing_ns) + kJumpMarginTurns};
 }
 
 // By the stamps, and by whole periods from what they say down to two less: of these, the number of turns that
 // speed and position agree on.
-Encoder::Step Encoder::chooseStep(std::int64_t moved, double turns_per_ns, Duration gap) noexcept {
-  Step chosen = stepOver(moved, turns_per_ns, gap);
+Encoder::Step Encoder::chooseStep(double moved_turns, double turns_per_ns, Duration gap) noexcept {
+  Step chosen = stepOver(moved_turns, turns_per_ns, nanoseconds(gap));
   const Duration period = config_.sample_period;
   if (period <= Duration{0}) return chosen;
   const Duration arrived = gap + late_;
@@ -78,14 +79,18 @@ Encoder::Step Encoder::chooseStep(std::int64_t moved, double turns_per_ns, Durat
   bool unsure = false;
   bool agreed = true;
   Duration late = late_;
-  for (auto periods = std::max<Duration::rep>(0, most - kMostLatePeriods); periods <= most; ++periods) {
-    const Step other = stepOver(moved, turns_per_ns, periods * period);
-    unsure = unsure || other.moved != chosen.moved;
+  const auto least = std::max<Duration::rep>(0, most - kMostLatePeriods);
+  for (Duration spacing = least * period; spacing <= most * period; spacing += period) {
+    const Step other = stepOver(moved_turns, turns_per_ns, nanoseconds(spacing));
+    const bool differs = other.turns != chosen.turns;
+    unsure = unsure || differs;
     if (!other.explained) continue;
-    if (chosen.explained && other.moved != chosen.moved) agreed = false;
-    if (chosen.explained && std::fabs(other.residual) > std::fabs(chosen.residual)) continue;
+    if (chosen.explained) {
+      agreed = agreed && !differs;
+      if (other.off > chosen.off) continue;
+    }
     chosen = other;
-    late = arrived - periods * period;
+    late = arrived - spacing;
   }
   chosen.in_doubt = unsure && !(chosen.explained && agreed);
   // Clocks drift: what is not seen again is forgotten.
@@ -103,12 +108,14 @@ bool Encoder::update(std::int32_t raw_counts, float velocity_rpm, MonotonicTime 
     const bool countable = gap <= longest_gap_;
     const double both_rpm = static_cast<double>(velocity_rpm_) + static_cast<double>(velocity_rpm);
     const double turns_per_ns = both_rpm * (0.5 * kTurnsPerNsPerRpm);
-    const std::int64_t moved = raw_counts - raw_counts_;
+    const std::int32_t moved = raw_counts - raw_counts_;
+    const double moved_turns = static_cast<double>(moved) * turns_per_count_;
     // Too far apart, the nearest wrap keeps the position within the turn right.
-    const Step step = countable ? chooseStep(moved, turns_per_ns, gap) : stepOver(moved, 0.0, gap);
-    total_counts_ += step.moved;
+    const Step step =
+        countable ? chooseStep(moved_turns, turns_per_ns, gap) : stepOver(moved_turns, 0.0, 0.0);
+    total_counts_ += moved + step.turns * config_.counts_per_turn;
     if (!countable) late_ = Duration{0};
-    const bool leapt = countable && !step.explained && jumped(step.residual, velocity_rpm, gap);
+    const bool leapt = countable && !step.explained && jumped(step.off, velocity_rpm, gap);
     if (leapt) ++jumps_;
     if (!countable || step.in_doubt || leapt) loseReference();
   }

@@ -75,21 +75,20 @@ class Encoder {
 
   /// Turns of one step, and how sure they are.
   struct Step {
-    std::int64_t moved = 0;  ///< Counts.
-    double residual = 0.0;   ///< Turns that the prediction was off.
+    std::int64_t turns = 0;  ///< Whole ones, beside the difference of the two positions.
+    double off = 0.0;        ///< Turns that the prediction was off, to either side.
     bool explained = false;  ///< By the speeds, at a spacing that the stamps allow.
     bool in_doubt = false;   ///< Another spacing would be another number of turns.
   };
 
   void loseReference() noexcept;
-  [[nodiscard]] Step stepOver(std::int64_t moved, double turns_per_ns, Duration spacing) const noexcept;
-  [[nodiscard]] Step chooseStep(std::int64_t moved, double turns_per_ns, Duration gap) noexcept;
+  [[nodiscard]] Step stepOver(double moved_turns, double turns_per_ns, double spacing_ns) const noexcept;
+  [[nodiscard]] Step chooseStep(double moved_turns, double turns_per_ns, Duration gap) noexcept;
   /// predictionErrorTurns() without an error of the stamps.
-  [[nodiscard]] double errorTurns(Duration spacing) const noexcept {
-    const auto ns = static_cast<double>(spacing.count());
-    return (error_per_ns2_ * ns + error_per_ns_) * ns;
+  [[nodiscard]] double errorTurns(double spacing_ns) const noexcept {
+    return (error_per_ns2_ * spacing_ns + error_per_ns_) * spacing_ns;
   }
-  [[nodiscard]] bool jumped(double residual_turns, float velocity_rpm, Duration gap) const noexcept;
+  [[nodiscard]] bool jumped(double off_turns, float velocity_rpm, Duration gap) const noexcept;
 
   Config config_;
   double turns_per_count_;

@@ -38,6 +38,10 @@ bool Motor_Base::setTarget(const Target& target) noexcept {
 void Motor_Base::order(FrameKind kind, const Target& in_force) noexcept {
   ordered_ = kind;
   Target& target = in_force_.emplace(in_force);
+  // Finite only if each of them is, as nearly always.
+  if (std::isfinite(target.velocity_ff_rpm + target.torque_ff_nm + target.stiffness_nm_per_rad +
+                    target.damping_nms_per_rad))
+    return;
   target.velocity_ff_rpm = finiteOr0(target.velocity_ff_rpm);
   target.torque_ff_nm = finiteOr0(target.torque_ff_nm);
   target.stiffness_nm_per_rad = finiteOr0(target.stiffness_nm_per_rad);

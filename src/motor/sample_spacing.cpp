@@ -24,7 +24,7 @@ void SampleSpacing::add(Duration spacing) noexcept {
 float SampleSpacing::take() noexcept {
   if (pending_samples_ == 0) return 0.0F;
   // Lost frames make the spacing a multiple of the period, late ones do not change how many there are.
-  const float periods = std::max(std::round(pending_s_ / period_s_), 1.0F);
+  const float periods = pending_s_ < 1.5F * period_s_ ? 1.0F : std::round(pending_s_ / period_s_);
   const float measured_s = std::clamp(pending_s_ / periods, kShortest * nominal_s_, kLongest * nominal_s_);
   period_s_ += (measured_s - period_s_) * kSmoothing;
   pending_s_ = 0.0F;

@@ -126,6 +126,14 @@ TEST(PidPosition, StartsFromTheOutputInForceAndThenActsOnTheFullError) {
   EXPECT_GT(pid.state().output, 100.0F);
 }
 
+TEST(PidPosition, NothingIsLeftOfAStartAfterAThirdOfASecond) {
+  PID_Position pid({.kp = 1.0F});
+  pid.start(7.0F, 20.0F, 380.0F);
+  for (int i = 0; i < 333; ++i) (void)pid.step(380.0F, 20.0F, kDt);
+  EXPECT_EQ(pid.state().glide, 0.0F);
+  EXPECT_EQ(pid.state().output_offset, 0.0F);
+}
+
 TEST(PidPosition, StartWithoutAnIntegralDoesNotKeepAnOffset) {
   PID_Position pid({.kp = 1.0F});
   pid.start(5.0F, 0.0F, 0.0F);

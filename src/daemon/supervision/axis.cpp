@@ -217,7 +217,9 @@ void Axis::order(RobotStatus robot, const Tick& tick) noexcept {
       stops ? Target{.mode = ControlMode::kVelocity, .value = fallback_.rampRpm(tick.now)} : motor_.target();
   // First, so that soft limits act in this tick already.
   motor_.restoreReference(target.mode);
-  const TargetShaper::InForce told{motor_.commandValue(), motor_.commandUnit()};
+  const auto told = shaper_.follows(target.mode)
+                        ? TargetShaper::InForce{}
+                        : TargetShaper::InForce{motor_.commandValue(), motor_.commandUnit()};
   const auto shaped = stops ? shaper_.slowDown(target, motor_.feedback(), told, tick.dt_s)
                             : shaper_.step(target, motor_.feedback(), told, tick.dt_s);
   limits_ |= shaped.limits;
@@ -226,18 +228,19 @@ void Axis::order(RobotStatus robot, const Tick& tick) noexcept {
 }
 
 FrameKind Axis::frameKind(RobotStatus robot) const noexcept {
-  const bool polls = motor_.driveFrames().poll == Provision::kFrame && robot != RobotStatus::kStopping;
-  const auto rest = polls ? FrameKind::kPoll : FrameKind::kRest;
   switch (status_) {
     case MotorStatus::kEnabling: return heldWhileEnabling() ? fallback_.kind() : FrameKind::kEnable;
     case MotorStatus::kActive:
       if (motor_.target().mode != ControlMode::kCoast) return FrameKind::kCommand;
       return fallback_.acts() ? fallback_.kind() : FrameKind::kIdle;
-    case MotorStatus::kReady: return fallback_.acts() ? fallback_.kind() : rest;
+    case MotorStatus::kReady:
+      if (fallback_.acts()) return fallback_.kind();
+      break;
     case MotorStatus::kOffline:
     case MotorStatus::kFault: break;
   }
-  return rest;
+  const bool polls = motor_.driveFrames().poll == Provision::kFrame && robot != RobotStatus::kStopping;
+  return polls ? FrameKind::kPoll : FrameKind::kRest;
 }
 
 // A drive that needs no enabling is not let go for the tick in which its motor becomes ACTIVE.

@@ -39,7 +39,8 @@ void ForeignWatch::count(std::size_t motor, const ForeignLimit& limit, const Can
 
 std::optional<std::int32_t> ForeignWatch::takeover(std::size_t motor) noexcept {
   auto& watched = watched_[motor];
-  if (watched.takeover) watched.count = 0;
+  if (!watched.takeover) return std::nullopt;
+  watched.count = 0;
   return std::exchange(watched.takeover, std::nullopt);
 }
 

@@ -51,8 +51,11 @@ void Supervisor::watch(std::size_t motor, const Tick& tick) noexcept {
   axis.listen(tick, simulation_late_);
   if (axis.missesDrive(tick))
     report({EventCode::kNeverHeard, Severity::kWarning, who, axis.id(), 0, tick.now});
-  if (axis.fresh(tick)) transition(motor, MotorEvent::kFeedbackFresh, tick);
-  if (axis.lost(tick)) transition(motor, MotorEvent::kFeedbackLost, tick);
+  if (axis.fresh(tick)) {
+    transition(motor, MotorEvent::kFeedbackFresh, tick);
+  } else if (axis.lost(tick)) {
+    transition(motor, MotorEvent::kFeedbackLost, tick);
+  }
   if (axis.losesReference(tick)) report({EventCode::kReferenceLost, Severity::kWarning, who, 0, 0, tick.now});
   if (const auto complaint = axis.complains(tick)) fault(static_cast<std::int32_t>(complaint->native_code));
   if (const auto end = axis.endsEnabling(tick)) transition(motor, *end, tick);
@@ -93,12 +96,6 @@ void Supervisor::watchSimulation(const Tick& tick) noexcept {
   simulation_late_ =
       steps != 0 && steps == simulation_steps_ && tick.now - simulation_stepped_at_ < kDeadSimulation;
   simulation_steps_ = steps;
-}
-
-void Supervisor::transition(std::size_t motor, MotorEvent event, const Tick& tick) noexcept {
-  const auto status = axes_[motor].status();
-  if (next(status, event) == status) return;  // as in nearly every tick
-  transition(motor, event, {causeOf(event, state_)}, tick);
 }
 
 void Supervisor::transition(std::size_t motor, MotorEvent event, const Stop& why, const Tick& tick) noexcept {

@@ -121,7 +121,11 @@ class Supervisor {
   /// In every state: it also vetoes a kClear of this tick.
   void estop(const Stop& why, const Tick& tick) noexcept;
   /// `why`: of an event that stops a motor; by default what the event says.
-  void transition(std::size_t motor, MotorEvent event, const Tick& tick) noexcept;
+  void transition(std::size_t motor, MotorEvent event, const Tick& tick) noexcept {
+    const auto status = axes_[motor].status();
+    if (next(status, event) == status) return;  // as in nearly every tick
+    transition(motor, event, {causeOf(event, state_)}, tick);
+  }
   void transition(std::size_t motor, MotorEvent event, const Stop& why, const Tick& tick) noexcept;
   void watch(std::size_t motor, const Tick& tick) noexcept;
   void watchRest(std::size_t motor, const Tick& tick) noexcept;

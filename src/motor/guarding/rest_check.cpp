@@ -20,12 +20,12 @@ void RestCheck::reset() noexcept {
 }
 
 RestCheck::Verdict RestCheck::step(const MotorFeedback& feedback, bool told, float standstill_rpm) noexcept {
-  const bool begins = told && !told_;
-  told_ = told;
   if (!told) {
-    reset();
+    if (told_) reset();
     return Verdict::kRests;
   }
+  const bool begins = !told_;
+  told_ = true;
   if (begins) {
     seen_ = feedback.samples;
     slowest_rpm_ = std::fabs(feedback.velocity_rpm);

@@ -45,7 +45,7 @@ bool TargetShaper::firstStepAllowed(const Target& asked, const MotorFeedback& fe
 
 TargetShaper::Shaped TargetShaper::step(const Target& target, const MotorFeedback& feedback, InForce in_force,
                                         float dt_s) noexcept {
-  if (target.mode != mode_) begin(target.mode, feedback, in_force);
+  if (!follows(target.mode)) begin(target.mode, feedback, in_force);
   if (!(share_ < 1.0)) return shape(target, feedback, dt_s);
   auto out = shape(softened(target, dt_s), feedback, dt_s);
   out.limits |= kLimitSlew;
@@ -54,7 +54,7 @@ TargetShaper::Shaped TargetShaper::step(const Target& target, const MotorFeedbac
 
 TargetShaper::Shaped TargetShaper::slowDown(const Target& target, const MotorFeedback& feedback,
                                             InForce in_force, float dt_s) noexcept {
-  if (target.mode != mode_) begin(target.mode, feedback, in_force);
+  if (!follows(target.mode)) begin(target.mode, feedback, in_force);
   const auto out = shape(target, feedback, dt_s);
   soft_ = value_;
   return out;
@@ -106,10 +106,6 @@ void TargetShaper::begin(ControlMode mode, const MotorFeedback& feedback, InForc
   soft_ = value_;
 }
 
-bool TargetShaper::bounded(const MotorFeedback& feedback) const noexcept {
-  return feedback.zeroed && (std::isfinite(config_.angle_min_deg) || std::isfinite(config_.angle_max_deg));
-}
-
 TargetShaper::Envelope TargetShaper::envelope(double total_angle_deg) const noexcept {
   const auto slope = static_cast<double>(config_.approach_rpm_per_deg);
   return {std::min(0.0, (config_.angle_min_deg - total_angle_deg) * slope),
@@ -132,6 +128,7 @@ bool TargetShaper::slew(double goal, float per_second, float dt_s) noexcept {
 
 // The velocity of a trajectory: no faster than the angle may move, and no jump.
 std::uint32_t TargetShaper::shapeVelocityFf(Target& asked, float dt_s) noexcept {
+  if (asked.velocity_ff_rpm == 0.0F && velocity_ff_rpm_ == 0.0) return 0;
   const double most_rpm =
       config_.angle_slew_deg_per_s > 0.0F
           ? std::min(ceiling_rpm_, static_cast<double>(config_.angle_slew_deg_per_s) / kDegPerSPerRpm)
@@ -148,6 +145,7 @@ std::uint32_t TargetShaper::shapeVelocityFf(Target& asked, float dt_s) noexcept 
 // towards the ceiling. An impedance has no loop that holds the speed: there it brakes what its spring drives
 // too fast, too.
 std::uint32_t TargetShaper::shapeTorqueFf(Target& asked, const MotorFeedback& feedback, float dt_s) noexcept {
+  if (asked.torque_ff_nm == 0.0F && torque_ff_nm_ == 0.0) return 0;
   const auto per_nm = static_cast<double>(config_.effort_per_nm);
   const double nm_per_s = per_nm > 0.0 ? static_cast<double>(config_.effort_slew_per_s) / per_nm : 0.0;
   std::uint32_t limits = 0;

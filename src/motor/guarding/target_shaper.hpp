@@ -42,13 +42,18 @@ class TargetShaper {
     std::uint32_t limits = 0;  ///< Set of LimitFlag.
   };
 
-  explicit TargetShaper(const ShapingConfig& config) noexcept : config_(config) {}
+  explicit TargetShaper(const ShapingConfig& config) noexcept
+      : config_(config),
+        soft_limits_(std::isfinite(config.angle_min_deg) || std::isfinite(config.angle_max_deg)) {}
 
   /// Last command to the drive.
   struct InForce {
     float value = 0.0F;
     CommandUnit unit = CommandUnit::kNone;
   };
+  /// Whether a target of this mode goes on from the last step. One that does not begins from `in_force`,
+  /// which is of no use otherwise.
+  [[nodiscard]] bool follows(ControlMode mode) const noexcept { return mode == mode_; }
   /// `dt_s`: since the last step.
   [[nodiscard]] Shaped step(const Target& target, const MotorFeedback& feedback, InForce in_force,
                             float dt_s) noexcept;
@@ -82,7 +87,9 @@ class TargetShaper {
     double low_rpm;
     double high_rpm;
   };
-  [[nodiscard]] bool bounded(const MotorFeedback& feedback) const noexcept;
+  [[nodiscard]] bool bounded(const MotorFeedback& feedback) const noexcept {
+    return soft_limits_ && feedback.zeroed;
+  }
   [[nodiscard]] Envelope envelope(double total_angle_deg) const noexcept;
   [[nodiscard]] bool reduced() const noexcept { return std::isfinite(ceiling_rpm_); }
   [[nodiscard]] Envelope softEnvelope(const MotorFeedback& feedback) const noexcept;
@@ -115,6 +122,7 @@ class TargetShaper {
   [[nodiscard]] Shaped shapeAngle(Target asked, const MotorFeedback& feedback, float dt_s) noexcept;
 
   ShapingConfig config_;
+  bool soft_limits_;                        ///< On one side at least.
   ControlMode mode_ = ControlMode::kCoast;  ///< Mode of the last step.
   double value_ = 0.0;                      ///< The slewed target of that mode.
   double velocity_ff_rpm_ = 0.0;            ///< Slewed, too.
