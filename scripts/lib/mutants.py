@@ -45,8 +45,10 @@ FILES = (
     "src/motor/first_angle.cpp",
     "src/motor/guarding/fallback.hpp",
     "src/motor/guarding/motor_guard.cpp",
+    "src/motor/guarding/reduced_motion.cpp",
     "src/motor/guarding/rest_check.cpp",
     "src/motor/guarding/target_shaper.cpp",
+    "src/motor/spring_law.cpp",
 )
 
 

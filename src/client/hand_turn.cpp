@@ -14,7 +14,7 @@ namespace {
 constexpr double kNothingDeg = 20.0;
 // A hand stops within some 20 degrees of a mark; the ratios of gearboxes of one size differ by more (1, 19.2,
 // 36).
-constexpr double kHandError = 0.15;
+constexpr double kHandError = 0.1;
 
 double turned(const link::State& before, const link::State& after, std::size_t motor) {
   const double difference = after.motors[motor].total_angle_deg - before.motors[motor].total_angle_deg;

@@ -75,14 +75,11 @@ float Cascade::step(const Target& target, const Measured& measured, float dt_s, 
     reset();
     return 0.0F;
   }
-  // An angle within the turn and one over many are one loop: soft limits and the mode input lead the one as
-  // the other.
-  const auto mode = target.mode == ControlMode::kAngle ? ControlMode::kTotalAngle : target.mode;
-  const bool fresh = active_mode_ != mode;
+  const bool fresh = active_mode_ != target.mode;
   if (fresh) {
     angle_.reset();
     last_total_angle_deg_ = measured.total_angle_deg;
-    active_mode_ = mode;
+    active_mode_ = target.mode;
   }
   const float velocity_target = velocityTarget(target, measured, dt_s);
   last_total_angle_deg_ = measured.total_angle_deg;

@@ -24,6 +24,7 @@ HandTurn turn(double first_deg, double second_deg) {
 TEST(HandTurn, OneTurnCounterClockwiseOfTheRightMotorIsGood) {
   EXPECT_EQ(turn(355.0, 2.0).outcome, Outcome::kGood);
   EXPECT_EQ(turn(330.0, 2.0).outcome, Outcome::kGood);
+  EXPECT_EQ(turn(390.0, 2.0).outcome, Outcome::kGood);
 }
 
 TEST(HandTurn, ATouchIsNoTurn) { EXPECT_EQ(turn(5.0, -3.0).outcome, Outcome::kNotTurned); }
@@ -37,6 +38,11 @@ TEST(HandTurn, AnotherMotorThatTurnsHasTheWrongName) {
 TEST(HandTurn, ClockwiseIsTheWrongSign) {
   EXPECT_EQ(turn(-360.0, 0.0).outcome, Outcome::kWrongSign);
   EXPECT_THAT(text(turn(-360.0, 0.0), heroWelcome(), 0), HasSubstr("direction: -1"));
+}
+
+TEST(HandTurn, AnEighthOfATurnTooMuchIsNoWholeTurn) {
+  EXPECT_EQ(turn(402.7, 0.0).outcome, Outcome::kWrongRatio);
+  EXPECT_EQ(turn(317.0, 0.0).outcome, Outcome::kWrongRatio);
 }
 
 TEST(HandTurn, AnotherAngleSaysTheRatio) {

@@ -16,17 +16,18 @@ namespace {
 using namespace std::chrono_literals;
 
 constexpr std::array<std::string_view, static_cast<std::size_t>(Chaos::Action::kCount)> kNames{
-    "nothing",      "command",        "program",    "enable",     "enable alone", "disable", "clear",
-    "zero",         "estop",          "repair",     "silence",    "lose",         "stall",   "heat",
-    "encoder",      "load",           "freeze bus", "block bus",  "hold echoes",  "link",    "controller",
-    "e-stop input", "foreign frames", "flood bus",  "fill rings", "miss ticks",   "stop",    "crash"};
+    "nothing",     "command",    "program",    "enable",       "enable alone", "disable",
+    "clear",       "zero",       "estop",      "repair",       "silence",      "lose",
+    "stall",       "heat",       "encoder",    "load",         "freeze bus",   "block bus",
+    "hold echoes", "link",       "controller", "e-stop input", "mode input",   "foreign frames",
+    "flood bus",   "fill rings", "miss ticks", "stop",         "crash"};
 
 // The request desk has no more under way.
 constexpr std::size_t kMostOpen = 64;
 
 // Weights of the actions: what brings a robot to work more often than what stops it.
 constexpr std::array<std::uint8_t, static_cast<std::size_t>(Chaos::Action::kCount)> kWeights{
-    16, 24, 50, 38, 2, 4, 26, 5, 2, 36, 4, 3, 4, 3, 4, 4, 2, 2, 4, 3, 3, 3, 4, 1, 1, 5, 1, 1};
+    16, 24, 50, 38, 2, 4, 26, 5, 2, 36, 4, 3, 4, 3, 4, 4, 2, 2, 4, 3, 3, 3, 5, 4, 1, 1, 5, 1, 1};
 
 [[nodiscard]] Chaos::Action choose(Choices& choices) {
   constexpr std::uint32_t kSum = [] {
@@ -87,7 +88,7 @@ void Chaos::start() {
   blocked_.reset();
   behind_.reset();
   seen_count_ = 0;
-  contact_open_ = false;
+  contact_open_ = mode_open_ = false;
   queues_ = {};
   echoed_.reset();
   for (auto& inbox : robot_->inboxes()) inbox.echo_available.store(true);

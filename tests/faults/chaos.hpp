@@ -67,6 +67,7 @@ class Chaos {
     kLink,
     kController,
     kContact,
+    kModeContact,
     kForeignFrames,
     kFloodBus,
     kFillRings,
@@ -158,6 +159,7 @@ class Chaos {
   std::array<std::uint64_t, kMaxBuses>
       watched_before_{};       ///< Frames whose echoes are watched, before this tick.
   bool contact_open_ = false;  ///< State of the e-stop input.
+  bool mode_open_ = false;     ///< And of the mode input.
   std::uint64_t orders_ = 0;
   std::uint64_t tick_ = 0;
   Duration robot_time_{};

@@ -68,6 +68,8 @@ void Chaos::errorFrame(std::size_t bus, std::uint32_t which) {
 void Chaos::showContact() {
   robot_->exchange().estop_contact.show(contact_open_ ? ContactState::kOpen : ContactState::kClosed);
   oracle_->contact(contact_open_);
+  robot_->exchange().mode_contact.show(mode_open_ ? ContactState::kOpen : ContactState::kClosed);
+  oracle_->modeInput(mode_open_);
 }
 
 void Chaos::stopAndStartAgain() {
@@ -152,7 +154,7 @@ void Chaos::act(Action action) {
       if (motors == everyone) {
         frozen_.reset();
         blocked_.reset();
-        contact_open_ = false;
+        contact_open_ = mode_open_ = false;
         for (std::size_t bus = 0; bus < wires_.size(); ++bus) leaveQueue(bus);
         for (std::size_t bus = 0; bus < wires_.size(); ++bus) {
           errorFrame(bus, 1);
@@ -232,6 +234,11 @@ void Chaos::act(Action action) {
         robot_->exchange().estop_contact.show(ContactState::kOpen);
         oracle_->estopped();
       }
+      break;
+    case Action::kModeContact:
+      value = choices_.next(3);
+      mode_open_ = value != 0.0;
+      if (value == 2.0) robot_->exchange().mode_contact.show(ContactState::kUnreadable);
       break;
     case Action::kForeignFrames: {
       const auto bus = choices_.next(buses);

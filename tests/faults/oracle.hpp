@@ -53,6 +53,11 @@ class Oracle {
     contact_open_ = open;
     if (open) estop_asked_ = true;
   }
+  /// The mode input in this tick.
+  void modeInput(bool open) {
+    if (open && !mode_open_) mode_open_since_ = now_;
+    mode_open_ = open;
+  }
   void stopBegun() { stop_asked_ = true; }
   /// For tests of the oracle itself: once this motor is told something that is not rest, it believes that
   /// nothing else is told to it any more.
@@ -126,6 +131,8 @@ class Oracle {
     bool was_hot = false;            ///< Its limit may still be reduced.
     bool cooled = false;             ///< And that ended in this tick.
     int unbraked_ticks = 0;
+    MonotonicTime active_since{};  ///< Without a break.
+    int fast_samples = 0;          ///< In a row, in reduced mode after its time.
     // Somebody else's commands: frames that may be some, and those that are.
     std::deque<MonotonicTime> perhaps_foreign;
     std::deque<MonotonicTime> foreign;
@@ -168,6 +175,7 @@ class Oracle {
   void judgeSlew(std::size_t index, const MotorSnapshot& seen);
   void judgeFeedForward(std::size_t index, double outwards);
   void judgeSoftLimits(std::size_t index, const MotorSnapshot& seen);
+  void judgeReduced(std::size_t index, const MotorSnapshot& seen);
   void judgeStop(std::bitset<kMaxBuses> read, bool stopped);
   void judgeAnswers();
   void count(const Snapshot& snapshot);
@@ -208,6 +216,8 @@ class Oracle {
   std::uint64_t ticks_over_ = 0;  ///< Those of them after the fallbacks.
   bool rested_ = false;
   bool contact_open_ = false;
+  bool mode_open_ = false;
+  MonotonicTime mode_open_since_{};
   std::uint64_t periods_ = 1;  ///< Periods of this tick.
   std::bitset<kMaxBuses> down_;
   std::bitset<kMaxBuses> known_down_;  ///< As of the end of the last tick.

@@ -23,6 +23,9 @@ constexpr double kRampSlack = 0.1;
 // Standstill that a ramp waits for after its time; and a frame may be on its way.
 constexpr Duration kRampEnd = 260ms;
 
+// Time beyond `reduced_within_ms` for a drive that is told something in some ticks only.
+constexpr Duration kReducedSlack = 100ms;
+
 // An angle may be so far beyond a soft limit: rounding, and what the shaft has moved since the sample.
 constexpr double kAngleSlackDeg = 1.0;
 
@@ -88,6 +91,7 @@ void Oracle::judgeCommand(std::size_t index, const MotorSnapshot& seen) {
   judgeLimits(index);
   judgeTold(index, seen);
   judgeSlew(index, seen);
+  judgeReduced(index, seen);
   if (lost(seen.status)) {
     require(index, mayLag(motor, motor.lost_ticks) || motor.told.rests(), "a command that is not rest");
     return;
@@ -201,9 +205,41 @@ void Oracle::judgeSoftLimits(std::size_t index, const MotorSnapshot& seen) {
   const bool follows_speed = seen.target.mode == ControlMode::kVelocity && told.law == Told::Law::kVelocity;
   if ((!above && !below) || (!follows_effort && !follows_speed)) return;
   ++visits_.bounded;
-  const double push = follows_effort ? told.effort : told.velocity_rpm;
-  const double step = follows_effort ? told.effort_step : told.velocity_step_rpm;
+  // A drive whose speed of an effort is not known is told a speed in its place.
+  const bool by_speed = told.law == Told::Law::kVelocity;
+  const double push = by_speed ? told.velocity_rpm : told.effort;
+  const double step = by_speed ? told.velocity_step_rpm : told.effort_step;
   require(index, !(above && push > step) && !(below && push < -step), "it is pushed on beyond a soft limit");
+}
+
+// While the mode input is open, and the motor has had its time to come down: no more speed and effort are
+// told than its file says, and it stays ACTIVE at none above.
+void Oracle::judgeReduced(std::size_t index, const MotorSnapshot& seen) {
+  auto& motor = motors_[index];
+  const auto& reduced = motor.config->reduced;
+  if (seen.status != MotorStatus::kActive) motor.active_since = now_;
+  const MonotonicTime since = std::max(mode_open_since_, motor.active_since);
+  if (!reduced.any() || !mode_open_ || now_ - since < reduced.within + kReducedSlack) {
+    motor.fast_samples = 0;
+    return;
+  }
+  const auto most_rpm = static_cast<double>(reduced.velocity_rpm);
+  if (most_rpm > 0.0 && motor.new_sample) {
+    const bool fast = std::fabs(seen.feedback.velocity_rpm) > reduced.velocity_rpm + reduced.tolerance_rpm;
+    motor.fast_samples = fast ? motor.fast_samples + 1 : 0;
+    require(index, motor.fast_samples <= kFastSamples + 2, "it goes on, faster than reduced mode allows");
+  }
+  if (motor.frames == 0) return;
+  ++visits_.reduced;
+  const auto& told = motor.told;
+  const bool by_speed = most_rpm > 0.0 && told.law == Told::Law::kVelocity;
+  require(index,
+          !by_speed || std::fabs(told.velocity_rpm) <= most_rpm + told.velocity_step_rpm + 1e-4 * most_rpm,
+          "told more than its reduced speed");
+  const double most = motor.limit * static_cast<double>(reduced.effort_share);
+  const bool by_effort = told.law == Told::Law::kEffort;
+  require(index, !by_effort || std::fabs(told.effort) <= most + told.effort_step + 1e-4 * motor.limit,
+          "told more than its reduced effort");
 }
 
 // A field beside a speed, a place or a spring moves the shaft, too.

@@ -26,6 +26,7 @@ void Visits::add(const Visits& other) {
   by_modules += other.by_modules;
   slewed += other.slewed;
   bounded += other.bounded;
+  reduced += other.reduced;
   driven += other.driven;
   alone += other.alone;
   rearmed += other.rearmed;
@@ -63,7 +64,8 @@ std::string Visits::text() const {
       out += fmt::format(" {} {}", wordOf(static_cast<Told::Law>(law)), visited.laws[law] / 1000);
   }
   out += fmt::format("\nof modules, thousand ticks: {}", by_modules / 1000);
-  out += fmt::format("\njudged, ticks: slew limits {}, soft limits {}", slewed, bounded);
+  out += fmt::format("\njudged, ticks: slew limits {}, soft limits {}, reduced mode {}", slewed, bounded,
+                     reduced);
   out += fmt::format("\nenabled alone, ticks: {}", alone);
   out += fmt::format("\nbuses without echoes: {}, probed {} times", stalls, probes);
   out += fmt::format("\nticks of motors that only a pause made stale: {}", unread_after_pauses);

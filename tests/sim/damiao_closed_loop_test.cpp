@@ -287,6 +287,17 @@ TEST(DamiaoClosedLoop, TheVelocityLimitBoundsAnAngleAndASpeed) {
   }
 }
 
+TEST(DamiaoClosedLoop, TheSpeedOfATrajectoryCountsInTheVelocityLimit) {
+  auto settings = damiaoSettingsOf("DM4310", "mit");
+  settings.velocity_limit_rpm = 30.0F;
+  auto rig = onlineRig(settings);
+  ASSERT_TRUE(rig.enable());
+  double fastest_rpm = 0.0;
+  rig.command({.mode = ControlMode::kTotalAngle, .value = 360.0, .velocity_ff_rpm = 30.0F});
+  rig.run(seconds{1}, [&] { fastest_rpm = std::max(fastest_rpm, rig.drive().physics().outputRpm()); });
+  EXPECT_LT(fastest_rpm, 35.0);
+}
+
 TEST(DamiaoClosedLoop, AHeldMotorResistsALoad) {
   for (const std::string control : {"mit", "position_velocity", "force_position"}) {
     SCOPED_TRACE(control);

@@ -34,12 +34,14 @@ SpringLaw boundedMit(SpringLaw law, const DamiaoMitBounds& bounds, std::uint32_t
   if (law.stiffness_nm_per_rad > 0.0) {
     const double reach_rad = std::min(bounds.reach_rad, bounds.scale.p_max_rad);
     law.position_rad = within(law.position_rad, reach_rad, kLimitAngle, limits);
-    if (bounds.velocity_rad_s > 0.0 && boundLead(law, bounds.measured, -fastest_rad_s, fastest_rad_s)) {
-      limits |= kLimitVelocity;
-    }
   }
   if (law.damping_nms_per_rad > 0.0) {
     law.velocity_rad_s = within(law.velocity_rad_s, fastest_rad_s, kLimitVelocity, limits);
+  }
+  // The speed that the spring leads to and that of the trajectory are one.
+  if (bounds.velocity_rad_s > 0.0 && boundLead(law, bounds.measured, -fastest_rad_s - law.velocity_rad_s,
+                                               fastest_rad_s - law.velocity_rad_s)) {
+    limits |= kLimitVelocity;
   }
   if (boundParts(law, bounds.measured, most_nm)) limits |= kLimitCurrent;
   if (boundTorque(law, bounds.measured, most_nm, SpringYield::kErrors)) limits |= kLimitCurrent;

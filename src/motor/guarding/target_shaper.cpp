@@ -6,11 +6,15 @@
 #include <utility>
 
 #include "app/angle.hpp"
+#include "app/limits.hpp"
 #include "app/units.hpp"
 
 namespace rc10 {
 namespace {
 
+// Share of the way ahead that is left where a ceiling comes: springs make three times the speed of it that is
+// assumed of a drive's loop.
+constexpr double kFirstLeadShare = 0.25;
 // Time within which a torque feed-forward comes back that was taken away for the speed.
 constexpr double kFeedForwardBackSeconds = 0.5;
 // Effort outwards fades over this speed, where the effort that keeps a lower one is not known.
@@ -232,6 +236,9 @@ TargetShaper::Shaped TargetShaper::boundBySpeed(Shaped out, const MotorFeedback&
     const double most_rpm = high ? allowed.high_rpm : allowed.low_rpm;
     out.limits |= limitOf(most_rpm);
     out.target = Target{.mode = ControlMode::kVelocity, .value = most_rpm};
+    // It goes on from what is measured then.
+    if (mode_ == ControlMode::kCurrent && config_.effort_slew_per_s > 0.0F)
+      value_ = finiteOr0(static_cast<double>(feedback.current_a));
     return out;
   }
   const double outward_rpm = std::fabs(value_ > 0.0 ? allowed.high_rpm : allowed.low_rpm);
@@ -322,7 +329,8 @@ std::uint32_t TargetShaper::shorten(Target& shaped, double before_deg, const Mot
   const double towards_rpm = std::copysign(1.0, ahead_deg) * static_cast<double>(feedback.velocity_rpm);
   const bool begins = std::exchange(enters_, false);
   if (rpm_per_deg > 0.0 && (begins || config_.lead_is_speed || towards_rpm > ceiling_rpm_ / 2)) {
-    const double lead_deg = ceiling_rpm_ / rpm_per_deg;
+    const double far_deg = ceiling_rpm_ / rpm_per_deg;
+    const double lead_deg = begins && std::fabs(ahead_deg) > far_deg ? kFirstLeadShare * far_deg : far_deg;
     ahead_deg = std::clamp(ahead_deg, -lead_deg, lead_deg);
     value_ = feedback.total_angle_deg + ahead_deg;
   }

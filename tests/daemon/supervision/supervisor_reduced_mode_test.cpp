@@ -2,6 +2,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <memory>
 #include <string>
@@ -267,6 +268,125 @@ TEST_F(ReducedModeTest, AMotorWithoutReducedLimitsIsAsAlways) {
   follow(kFast, 2000);
   EXPECT_NEAR(rpm(), 400.0F, 8.0F);
 }
+
+TEST_F(ReducedModeTest, ATorqueFeedForwardDrivesNothingBeyondIt) {
+  start("reduced_velocity_rpm: 20");
+  see(kOpen);
+  tick();
+  EXPECT_LT(fastestWhile({.mode = ControlMode::kVelocity, .value = 20.0, .torque_ff_nm = 30.0F}, 2000),
+            27.0F);
+  EXPECT_LT(fastestWhile({.mode = ControlMode::kTotalAngle, .value = 7200.0, .torque_ff_nm = 30.0F}, 2000),
+            27.0F);
+  EXPECT_EQ(status(), MotorStatus::kActive);
+}
+
+TEST_F(ReducedModeTest, AVescThatLetsGoBelowItsOwnMinimumIsNotToldMoreAndMore) {
+  start("reduced_velocity_rpm: 20, zero: power_on",
+        "VESC, id: 10, pole_pairs: 7, motor_current_max_a: 40, current_limit_a: 30, feedback_hz: 200");
+  see(kOpen);
+  tick();
+  EXPECT_LT(fastestWhile({.mode = ControlMode::kTotalAngle, .value = 1000.0}, 2000), 25.0F);
+  EXPECT_LE(robot->motor(kWheel).command_value, 20.0F);
+}
+
+TEST_F(ReducedModeTest, ACurrentOfADriveOfUnknownSpeedIsBrakedByItsLoop) {
+  start("reduced_velocity_rpm: 20, zero: power_on", "LK-MG5010E-i10, id: 12");
+  const Target push{.mode = ControlMode::kCurrent, .value = 5.0};
+  follow(push, 400);
+  ASSERT_GT(rpm(), 200.0F);
+  see(kOpen);
+  follow(push, 1000);
+  EXPECT_LT(fastestWhile(push, 1000), 27.0F);
+  EXPECT_EQ(status(), MotorStatus::kActive);
+}
+
+/// Drives with springs and angle loops of their own, which hurry to what they were told.
+class ReducedAngleTest : public ReducedModeTest, public ::testing::WithParamInterface<const char*> {
+ protected:
+  /// The fastest that the shaft gets without torque from here on: what it has gained already.
+  float speedGained() { return fastestWhile({}, 60); }
+};
+
+TEST_P(ReducedAngleTest, AWayThatHasJustBegunGainsNoSpeed) {
+  const Target far{.mode = ControlMode::kTotalAngle, .value = 3600.0};
+  start("reduced_velocity_rpm: 20, zero: power_on", GetParam());
+  follow(far, 4);
+  const float gained_rpm = speedGained();
+  start("reduced_velocity_rpm: 20, zero: power_on", GetParam());
+  follow(far, 4);
+  see(kOpen);
+  EXPECT_LT(fastestWhile(far, 3000), std::max(1.1F * gained_rpm + 3.0F, 27.0F));
+  EXPECT_GT(robot->motor(kWheel).feedback.total_angle_deg, 100.0) << "it still goes there";
+  EXPECT_EQ(status(), MotorStatus::kActive);
+}
+
+TEST_P(ReducedAngleTest, AHeldLoadIsNotDropped) {
+  start("reduced_velocity_rpm: 20, zero: power_on, simulated: {gravity_nm: 1, hangs_at_deg: -90}",
+        GetParam());
+  const Target held{.mode = ControlMode::kTotalAngle};
+  follow(held, 2000);
+  const double before_deg = robot->motor(kWheel).feedback.total_angle_deg;
+  see(kOpen);
+  for (int i = 0; i < 1000; ++i) {
+    follow(held, 1);
+    ASSERT_NEAR(robot->motor(kWheel).feedback.total_angle_deg, before_deg, 2.0);
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Families, ReducedAngleTest,
+                         ::testing::Values("M3508, id: 1", "DM4310, id: 2, master_id: 18", "RS00, id: 3",
+                                           "AK80-9, id: 5", "AK80-9, protocol: mit, id: 5",
+                                           "RMD-X8-20, id: 11", "LK-MG5010E-i10, id: 12"));
+
+/// Soft limits, for targets that have no loop of the speed.
+class SoftLimitOfADriveTest : public ReducedModeTest, public ::testing::WithParamInterface<const char*> {
+ protected:
+  void startAtMinus85() {
+    start("reduced_velocity_rpm: 20, zero: power_on, angle_min_deg: -90, angle_max_deg: 90", GetParam());
+    follow({.mode = ControlMode::kTotalAngle, .value = -85.0}, 1500);
+    ASSERT_NEAR(angleDeg(), -85.0, 1.0);
+  }
+  double angleDeg() { return robot->motor(kWheel).feedback.total_angle_deg; }
+  double farthestWhile(const Target& target, int ticks) {
+    double farthest_deg = angleDeg();
+    for (int i = 0; i < ticks; ++i) {
+      follow(target, 1);
+      farthest_deg = std::max(farthest_deg, angleDeg());
+    }
+    return farthest_deg;
+  }
+};
+
+TEST_P(SoftLimitOfADriveTest, ACurrentStopsThereAndOneOfAFastShaftToo) {
+  startAtMinus85();
+  const Target push{.mode = ControlMode::kCurrent, .value = 3.0};
+  const double farthest_deg = farthestWhile(push, 2000);
+  EXPECT_GT(farthest_deg, 80.0) << "the current acts within the travel";
+  EXPECT_LT(farthest_deg, 95.0);
+  EXPECT_EQ(status(), MotorStatus::kActive);
+  startAtMinus85();
+  for (int i = 0; i < 1500 && angleDeg() < 0.0; ++i)
+    follow({.mode = ControlMode::kVelocity, .value = 200.0}, 1);
+  EXPECT_LT(farthestWhile(push, 1500), 95.0);
+}
+
+INSTANTIATE_TEST_SUITE_P(Families, SoftLimitOfADriveTest,
+                         ::testing::Values("LK-MG5010E-i10, id: 12", "RMD-X8-20, id: 11",
+                                           "AK80-9, protocol: mit, id: 5", "RS00, id: 3"));
+
+class SoftLimitOfASpringTest : public SoftLimitOfADriveTest {};
+
+TEST_P(SoftLimitOfASpringTest, ASpringWithoutDampingDoesNotSwingBeyond) {
+  startAtMinus85();
+  EXPECT_LT(
+      farthestWhile({.mode = ControlMode::kImpedance, .value = 85.0, .stiffness_nm_per_rad = 10.0F}, 2500),
+      100.0);
+  EXPECT_EQ(status(), MotorStatus::kActive);
+}
+
+INSTANTIATE_TEST_SUITE_P(Families, SoftLimitOfASpringTest,
+                         ::testing::Values("DM4310, id: 2, master_id: 18", "AK80-9, protocol: mit, id: 5",
+                                           "RS00, id: 3"));
 
 /// Drives that close the loop themselves are told less.
 class ReducedDriveTest : public ReducedModeTest, public ::testing::WithParamInterface<const char*> {};

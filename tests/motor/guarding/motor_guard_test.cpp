@@ -256,6 +256,16 @@ TEST_F(MotionGuardTest, ABlockedMotorWhoseCurrentIsAsCommandedIsNotFrozen) {
   EXPECT_EQ(run(1000), FaultCode::kNone);
 }
 
+TEST_F(MotionGuardTest, ACurrentAfterAnAngleThatWasHeldIsNotFrozen) {
+  EXPECT_EQ(run(1), FaultCode::kNone);
+  unit = CommandUnit::kNative;
+  EXPECT_EQ(run(1000), FaultCode::kNone);
+  unit = CommandUnit::kAmpere;
+  effort_a = 5.0F;
+  EXPECT_EQ(run(199), FaultCode::kNone) << "the current has its time from now on";
+  EXPECT_EQ(run(3), FaultCode::kFrozen);
+}
+
 TEST_F(MotionGuardTest, ReadingsThatChangeByOneBitAreNotFrozen) {
   effort_a = 5.0F;
   for (int i = 0; i < 500; ++i) {

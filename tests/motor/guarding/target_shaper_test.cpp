@@ -145,6 +145,78 @@ TEST_F(TargetShaperTest, ATorqueBesideASoftSpringBrakesBeforeASoftLimit) {
   EXPECT_NEAR(static_cast<double>(out.target.torque_ff_nm), -0.5, 1e-6);
 }
 
+// As a client asks for one that only pulls, without damping.
+TEST_F(TargetShaperTest, ASpringThatIsTooFastForASoftLimitIsBrakedAndOneThatIsSlowIsNot) {
+  auto config = soft;
+  config.effort_per_nm = 2.0F;
+  configure(config);
+  at(80.0);  // 20 rpm are allowed
+  const Target spring{.mode = ControlMode::kImpedance, .value = 85.0, .stiffness_nm_per_rad = 10.0F};
+  EXPECT_EQ(step(spring).target.torque_ff_nm, 0.0F);
+  feedback.velocity_rpm = -100.0F;
+  EXPECT_EQ(step(spring).target.torque_ff_nm, 0.0F) << "far from the other limit";
+  feedback.velocity_rpm = 25.0F;
+  const auto out = step(spring);
+  EXPECT_NEAR(static_cast<double>(out.target.torque_ff_nm), -0.5, 1e-6);
+  EXPECT_EQ(out.limits, kLimitAngle);
+}
+
+TEST_F(TargetShaperTest, ATorqueFeedForwardHoldsALoadUnderACeilingAndDrivesNothingBeyondIt) {
+  configure({.effort_per_nm = 2.0F, .effort_full_scale = 20.0F});
+  const Target held{.mode = ControlMode::kVelocity, .value = 60.0, .torque_ff_nm = 8.0F};
+  (void)step(held);
+  shaper.setCeiling(20.0);
+  EXPECT_EQ(step(held).target.torque_ff_nm, 8.0F) << "a load that is held is not dropped";
+  feedback.velocity_rpm = -30.0F;
+  EXPECT_EQ(step(held).target.torque_ff_nm, 8.0F) << "nor while it sinks";
+  feedback.velocity_rpm = 20.0F;
+  const auto fast = step(held);
+  EXPECT_EQ(fast.target.torque_ff_nm, 0.0F);
+  EXPECT_NE(fast.limits & kLimitVelocity, 0U);
+  feedback.velocity_rpm = 0.0F;
+  EXPECT_NEAR(static_cast<double>(step(held).target.torque_ff_nm), 0.02, 1e-6) << "and comes back slowly";
+}
+
+TEST_F(TargetShaperTest, WhereTheEffortOfASpeedIsUnknownTheLoopOfTheDriveBrakes) {
+  auto config = soft;
+  config.approach_effort_per_rpm = 0.0F;
+  config.has_velocity_loop = true;
+  configure(config);
+  EXPECT_EQ(step(ControlMode::kCurrent, 3.0).target.value, 3.0) << "far from the limit it acts";
+  at(80.0);  // 20 rpm are allowed
+  feedback.velocity_rpm = 25.0F;
+  const auto fast = step(ControlMode::kCurrent, 3.0);
+  EXPECT_EQ(fast.target.mode, ControlMode::kVelocity);
+  EXPECT_EQ(fast.target.value, 20.0);
+  EXPECT_EQ(fast.limits, kLimitAngle);
+  feedback.velocity_rpm = 17.0F;
+  EXPECT_EQ(step(ControlMode::kCurrent, 3.0).target.mode, ControlMode::kVelocity) << "clearly slower";
+  feedback.velocity_rpm = 15.0F;
+  EXPECT_EQ(step(ControlMode::kCurrent, 3.0).target.mode, ControlMode::kCurrent);
+  at(85.0);
+  feedback.velocity_rpm = 0.0F;
+  EXPECT_EQ(step(ControlMode::kCurrent, 3.0).target.value, 1.5);
+  at(95.0);
+  EXPECT_EQ(step(ControlMode::kCurrent, 3.0).target.value, 0.0);
+  EXPECT_EQ(step(ControlMode::kCurrent, -3.0).target.value, -3.0) << "back is always allowed";
+}
+
+TEST_F(TargetShaperTest, UnderACeilingASpeedLoopIsLedNoFartherThoughTheShaftLags) {
+  configure({.approach_rpm_per_deg = 2.0F, .lead_is_speed = true});
+  shaper.setCeiling(20.0);
+  EXPECT_NEAR(valueAfter(1000, ControlMode::kTotalAngle, 720.0), 5.0, 1e-9);
+  configure({.approach_rpm_per_deg = 2.0F});
+  shaper.setCeiling(20.0);
+  EXPECT_NEAR(valueAfter(1000, ControlMode::kTotalAngle, 720.0), 120.0, 0.5) << "a spring holds a load by it";
+}
+
+TEST_F(TargetShaperTest, AWayThatHasJustBegunWhenACeilingComesGainsNoSpeed) {
+  configure({.approach_rpm_per_deg = 2.0F});
+  EXPECT_EQ(step(ControlMode::kTotalAngle, 720.0).target.value, 720.0);
+  shaper.setCeiling(20.0);
+  EXPECT_NEAR(step(ControlMode::kTotalAngle, 720.0).target.value, 1.25, 1e-9);
+}
+
 TEST_F(TargetShaperTest, AnAngleTargetStartsWhereTheMotorIsAndArrivesExactly) {
   configure({.angle_slew_deg_per_s = 100.0F});
   at(30.0);
