@@ -64,7 +64,7 @@ enum class StopCause : std::uint8_t {
   kReference = 8,  ///< Its angle has lost the reference.
   kShutdown = 9,
   kInput = 10,     ///< The e-stop input.
-  kGuard = 11,     ///< rc10-guard told the drives to rest, or has ended.
+  kGuard = 11,     ///< rc10-guard told the drives to rest, has ended, or stands still.
   kOverload = 12,  ///< The ticks took longer than their period.
 };
 

@@ -47,9 +47,9 @@ int run(RobotConfig config, const std::string& source) {
   const std::string file = config.file;
   const std::string robot = config.robot;
   SignalInbox signals;  // before the log, which starts a thread
+  const auto log = makeLog();  // while /proc is open to it
   // A debugger and a core file need what this forbids.
   if (config.guard != GuardPolicy::kOff) forbidDumps();
-  const auto log = makeLog();
   Daemon daemon(std::move(config), log);
   if (const auto started = daemon.start(); !started) {
     std::cerr << "rc10d: " << started.error().message << '\n';

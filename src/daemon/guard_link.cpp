@@ -87,6 +87,7 @@ Result<void> GuardLink::connect() {
 }
 
 Result<void> GuardLink::sayHello(int connection) {
+  page_->beats.store(0, std::memory_order_relaxed);  // of another guard
   const std::array descriptors{page_.descriptor(), self_.get()};
   if (!link::sendWithDescriptors(connection, link::guardHelloText(settings_.hello), descriptors))
     return fail(fmt::format("rc10-guard cannot be told what to watch: {}", std::strerror(errno)));
@@ -104,7 +105,7 @@ void GuardLink::reap() noexcept {
 GuardLink::News GuardLink::supervise(MonotonicTime now) {
   reap();
   if (connection_) {
-    if (!readable(connection_.get(), Duration{0})) return {};
+    if (!readable(connection_.get(), Duration{0})) return watchBeats(now);
     connection_.reset();  // the guard says nothing more: this is its end
     next_try_ = now;
     return {.lost = true, .text = "rc10-guard has ended: nobody watches rc10d; e-stop"};
@@ -112,7 +113,27 @@ GuardLink::News GuardLink::supervise(MonotonicTime now) {
   if (now < next_try_) return {};
   next_try_ = now + kRetry;
   const auto connected = connect();
+  beats_ = {};
   return {.text = connected ? "rc10-guard watches again" : connected.error().message};
+}
+
+// The connection stays: a guard that goes on watches as before.
+GuardLink::News GuardLink::watchBeats(MonotonicTime now) {
+  switch (beats_.look(page_->beats.load(std::memory_order_relaxed), now)) {
+    case GuardBeats::News::kNone: break;
+    case GuardBeats::News::kGoesOn: return {.text = "rc10-guard goes on, and watches again"};
+    case GuardBeats::News::kStandsStill: {
+      ucred guard{};
+      socklen_t size = sizeof guard;
+      (void)::getsockopt(connection_.get(), SOL_SOCKET, SO_PEERCRED, &guard, &size);
+      return {
+          .lost = true,
+          .text = fmt::format("rc10-guard (pid {0}) stands still: nobody watches rc10d; e-stop. Let it go on "
+                              "(`kill -CONT {0}`), or kill it: another one is started",
+                              guard.pid)};
+    }
+  }
+  return {};
 }
 
 void GuardLink::end() noexcept {

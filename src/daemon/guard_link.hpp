@@ -8,6 +8,7 @@
 #include "app/result.hpp"
 #include "app/time.hpp"
 #include "app/unique_fd.hpp"
+#include "daemon/guard_beats.hpp"
 #include "link/guard_hello.hpp"
 #include "link/guard_page.hpp"
 
@@ -35,10 +36,10 @@ class GuardLink {
   [[nodiscard]] int descriptor() const noexcept { return connection_.get(); }
 
   struct News {
-    bool lost = false;  ///< The guard has just ended: the robot is to be stopped.
+    bool lost = false;  ///< The guard has just ended, or stands still: the robot is to be stopped.
     std::string text;   ///< To be logged; empty: nothing.
   };
-  /// Notices the end of the guard, and gets another one.
+  /// Notices the end of the guard, and gets another one; notices that it stands still.
   [[nodiscard]] News supervise(MonotonicTime now);
 
   /// The drives are at rest: the guard has nothing to do any more.
@@ -49,6 +50,7 @@ class GuardLink {
       : settings_(std::move(settings)), page_(std::move(page)), self_(std::move(self)) {}
   [[nodiscard]] Result<void> connect();
   [[nodiscard]] Result<void> sayHello(int connection);
+  [[nodiscard]] News watchBeats(MonotonicTime now);
   void reap() noexcept;
 
   Settings settings_;
@@ -57,6 +59,7 @@ class GuardLink {
   UniqueFd connection_;  ///< Without: nobody watches.
   pid_t child_ = 0;      ///< A guard that we have started.
   MonotonicTime next_try_{};
+  GuardBeats beats_;
 };
 
 }  // namespace rc10

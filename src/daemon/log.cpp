@@ -3,6 +3,7 @@
 #include <poll.h>
 #include <unistd.h>
 
+#include <cstdio>
 #include <cstdlib>
 #include <ctime>
 #include <memory>
@@ -11,9 +12,11 @@
 #include <spdlog/async.h>
 #include <spdlog/async_logger.h>
 #include <spdlog/pattern_formatter.h>
-#include <spdlog/sinks/stdout_color_sinks.h>
+#include <spdlog/sinks/ansicolor_sink.h>
 
 #include "app/printable.hpp"
+#include "app/stderr_lines.hpp"
+#include "app/unique_fd.hpp"
 #include "daemon/exchange/events.hpp"
 #include "daemon/log_file.hpp"
 
@@ -36,14 +39,27 @@ class PrintableText final : public spdlog::custom_flag_formatter {
   }
 };
 
-// Stderr that nobody reads, as a pipe that is full, holds up neither the log nor whoever waits for its end:
-// it gets its time once, and until it takes lines again they are left out.
-class UnblockedStderr final : public spdlog::sinks::stderr_color_sink_st {
+using ColorSink = spdlog::sinks::ansicolor_sink<spdlog::details::console_nullmutex>;
+
+// Of the process, as stderr is.
+std::FILE* unblockedStderr() {
+  UniqueFd terminal = unblockedTerminal(STDERR_FILENO);
+  std::FILE* const file = terminal ? ::fdopen(terminal.get(), "w") : nullptr;
+  if (file == nullptr) return stderr;
+  (void)terminal.release();
+  return file;
+}
+
+// Stderr that nobody reads, as a pipe that is full or a terminal that hangs, holds up neither the log nor
+// whoever waits for its end: it gets its time once, and until it takes lines again they are left out.
+class UnblockedStderr final : public ColorSink {
  public:
+  UnblockedStderr() : ColorSink(unblockedStderr(), spdlog::color_mode::automatic) {}
+
   void log(const spdlog::details::log_msg& message) override {
     pollfd stderr_takes{.fd = STDERR_FILENO, .events = POLLOUT, .revents = 0};
     taken_ = ::poll(&stderr_takes, 1, taken_ ? kPatienceMs : 0) > 0;
-    if (taken_) spdlog::sinks::stderr_color_sink_st::log(message);
+    if (taken_) ColorSink::log(message);
   }
 
  private:

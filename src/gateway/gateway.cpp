@@ -4,7 +4,7 @@
 
 #include <algorithm>
 #include <chrono>
-#include <cstdio>
+#include <utility>
 
 #include "app/printable.hpp"
 
@@ -21,11 +21,12 @@ constexpr Duration kRouteCheck = std::chrono::seconds{2};
 
 }  // namespace
 
-Gateway::Gateway(LinkClient rc10d, const UdpmUrl& url)
+Gateway::Gateway(LinkClient rc10d, const UdpmUrl& url, StderrLines lines)
     : rc10d_(std::move(rc10d)),
       url_(url),
       outlet_(rc10d_.welcome(), *this),
       inlet_(rc10d_, outlet_),
+      lines_(std::move(lines)),
       link_buffer_(link::kMaxMessageSize) {}
 
 void Gateway::run(const volatile std::sig_atomic_t& stop) {
@@ -116,7 +117,7 @@ Result<void> Gateway::openTransport(const ClockSample& now) {
 void Gateway::logOnce(const std::string& text) {
   if (text == last_log_) return;
   last_log_ = text;
-  std::fprintf(stderr, "rc10-lcm: %s\n", printable(text).c_str());
+  (void)lines_.tell("rc10-lcm: " + printable(text));
 }
 
 }  // namespace rc10::gateway

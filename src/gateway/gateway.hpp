@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "app/stderr_lines.hpp"
 #include "client/link_client.hpp"
 #include "gateway/clock_sample.hpp"
 #include "gateway/inlet.hpp"
@@ -20,7 +21,7 @@ namespace rc10::gateway {
 /// The loop of rc10-lcm: one thread between rc10d's link socket and LCM. Nothing in it waits but poll().
 class Gateway : private LcmPublisher {
  public:
-  Gateway(LinkClient rc10d, const UdpmUrl& url);
+  Gateway(LinkClient rc10d, const UdpmUrl& url, StderrLines lines = StderrLines{});
 
   /// Until rc10d ends or `stop` is set. While LCM cannot be reached it tries again and says why on stderr.
   void run(const volatile std::sig_atomic_t& stop);
@@ -51,6 +52,7 @@ class Gateway : private LcmPublisher {
   ClockSample empty_;  // see wakeUp()
   MonotonicTime next_check_{};
   Duration pause_ = std::chrono::seconds{1};  // before the next attempt
+  StderrLines lines_;
   std::string last_log_;
   std::array<std::byte, kMaxIncoming + kMaxOverhead + 1> datagram_{};
   std::vector<std::byte> link_buffer_;

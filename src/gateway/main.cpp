@@ -6,6 +6,7 @@
 #include <string>
 
 #include "app/standard_output.hpp"
+#include "app/stderr_lines.hpp"
 #include "client/find_robot.hpp"
 #include "client/link_client.hpp"
 #include "gateway/gateway.hpp"
@@ -33,7 +34,8 @@ void catchSignals() {
   // Those of a terminal, too: rc10d ends by them in order, and must find the gateway neither stopped nor
   // dumping.
   for (const int signal : {SIGTERM, SIGINT, SIGHUP, SIGQUIT, SIGTSTP}) ::sigaction(signal, &action, nullptr);
-  ::signal(SIGPIPE, SIG_IGN);  // a closed stderr
+  // Of a line on stderr: a closed pipe, a file at its limit (ulimit -f), a terminal with `stty tostop`.
+  for (const int signal : {SIGPIPE, SIGXFSZ, SIGTTOU, SIGTTIN}) ::signal(signal, SIG_IGN);
 }
 
 Result<LinkClient> connect(const gateway::Options& options) {
@@ -82,8 +84,9 @@ int main(int argc, char** argv) {
   const auto url = urlOf(*options, rc10d->welcome());
   if (!url) return complain(url.error(), kUsage);
   rc10d->prepareEstop();
+  StderrLines lines;  // before /proc is closed
   if (const auto done = gateway::enterSandbox(rc10d->welcome().pid); !done)
     return complain(done.error(), kFailed);
-  std::make_unique<gateway::Gateway>(std::move(*rc10d), *url)->run(stop_requested);
+  std::make_unique<gateway::Gateway>(std::move(*rc10d), *url, std::move(lines))->run(stop_requested);
   return kOk;
 }

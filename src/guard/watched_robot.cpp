@@ -48,6 +48,7 @@ bool WatchedRobot::hasDied() const noexcept {
 
 std::string WatchedRobot::step() {
   if (over_) return {};
+  page_->beats.fetch_add(1, std::memory_order_relaxed);
   const bool died = !dead_ && hasDied();
   dead_ = dead_ || died;
   // Read after the death: what rc10d wrote before it counts.

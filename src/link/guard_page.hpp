@@ -14,7 +14,11 @@ struct GuardPage {
   std::atomic<std::uint64_t> ticks{0};  ///< rc10d: executed ticks. 0: no drive has been commanded yet.
   std::atomic<bool> ended{false};       ///< rc10d: an orderly end; its drives are at rest.
   std::atomic<bool> acted{false};       ///< Guard: it sent rest frames; rc10d answers with an e-stop.
+  std::atomic<std::uint32_t> beats{0};  ///< Guard: its wake-ups; rc10d sees whether it runs.
 };
+// An rc10d and a guard of different versions share it during an upgrade.
+static_assert(sizeof(GuardPage) == 16);
+static_assert(std::atomic<std::uint32_t>::is_always_lock_free);
 static_assert(std::atomic<std::uint64_t>::is_always_lock_free && std::atomic<bool>::is_always_lock_free);
 
 /// The memory behind a GuardPage: mapped as long as the object lives.

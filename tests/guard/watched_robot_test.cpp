@@ -51,6 +51,14 @@ class WatchedRobotTest : public testing::Test {
   link::SharedGuardPage page;
 };
 
+TEST_F(WatchedRobotTest, EachStepIsABeatForRc10d) {
+  auto robot = watched();
+  EXPECT_THAT(robot.step(), IsEmpty());
+  EXPECT_EQ(page->beats.load(), 1U);
+  EXPECT_THAT(robot.step(), IsEmpty());
+  EXPECT_EQ(page->beats.load(), 2U);
+}
+
 TEST_F(WatchedRobotTest, ADeathAmongTicksIsAnsweredInTheSameStep) {
   auto robot = watched();
   page->ticks.store(1);

@@ -2,14 +2,20 @@
 
 from __future__ import annotations
 
+import contextlib
 import os
+import pty
 import re
 import signal
+import subprocess
 from pathlib import Path
 
 import pytest
 from hostlib import Daemon, Program, eventually
 from hostlib.daemon import BIN
+from hostlib.program import PATIENCE_S
+
+import rc10
 
 SUMMARY = re.compile(r"(\d+) ticks, (\d+) missed; wake latency .* max (\d+) us")
 
@@ -60,6 +66,49 @@ def test_a_signal_about_a_file_or_terminal_is_told_and_ends_nothing(
     tick = daemon.state()["tick"]
     state = daemon.wait_state(lambda s: s["tick"] > tick + 20, "ticks on")
     assert state["motors"][0]["status"] == "ACTIVE"
+
+
+@pytest.mark.parametrize("number", [signal.SIGXFSZ, signal.SIGTTIN, signal.SIGTTOU])
+def test_a_signal_about_a_file_or_terminal_leaves_the_gateway_at_work(
+    daemon: Daemon, number: signal.Signals
+) -> None:
+    """As of a line of its own, with `ulimit -f` or `stty tostop`."""
+    before = daemon.processes()
+    with rc10.connect("host", client="test") as robot:
+        robot.wait_for_state()
+        os.killpg(daemon.program.pid, number)
+        robot.enable("wheel")
+    assert daemon.processes() == before
+
+
+def test_a_terminal_that_hangs_holds_up_neither_the_log_nor_the_end() -> None:
+    master, terminal = pty.openpty()
+    os.set_blocking(terminal, False)
+    with contextlib.suppress(BlockingIOError):
+        while True:
+            os.write(terminal, b"x" * 1024)
+    os.set_blocking(terminal, True)
+    os.read(master, 4096)  # room for some lines
+    with Daemon() as daemon:
+        daemon.program.stop()
+        program = subprocess.Popen(
+            [BIN / "rc10d", "-c", daemon.config],
+            env={**os.environ, **daemon.env},
+            stderr=terminal,
+            start_new_session=True,
+        )
+        log = daemon.run_dir / "host.log"
+
+        def fills() -> bool:
+            program.send_signal(signal.SIGXFSZ)  # a line
+            return log.read_text().count("SIGXFSZ") > 100
+
+        eventually(lambda: daemon.ctl("list").returncode == 0, "it runs")
+        eventually(fills, "more lines than have room")
+        program.terminate()
+        assert program.wait(PATIENCE_S) == 0
+    os.close(master)
+    os.close(terminal)
 
 
 def test_nohup_lets_it_outlive_its_terminal(daemon: Daemon) -> None:

@@ -9,6 +9,7 @@ from pathlib import Path
 import pytest
 from hostlib import Daemon
 from hostlib.daemon import BIN
+from hostlib.program import PATIENCE_S, full_pipe
 
 
 def rc10_stop(*words: str | Path, run_dir: Path) -> subprocess.CompletedProcess[str]:
@@ -83,3 +84,24 @@ def test_a_robot_of_simulated_motors_has_no_rest_frames(daemon: Daemon) -> None:
     assert all(line.startswith("#") for line in file.read_text().splitlines())
     done = rc10_stop("host", run_dir=daemon.run_dir)
     assert (done.returncode, done.stderr) == (0, "")
+
+
+@pytest.mark.parametrize("reader", ["gone", "asleep"])
+def test_a_complaint_that_nobody_reads_ends_or_holds_up_nothing(
+    reader: str, tmp_path: Path
+) -> None:
+    """Other drives still wait for their frames."""
+    (tmp_path / "hero").mkdir()
+    (tmp_path / "hero" / "rest-frames").write_text("no frame\n")
+    with full_pipe() as full:
+        read, closed = os.pipe()
+        os.close(read)
+        done = subprocess.run(
+            [BIN / "rc10-stop", "--all"],
+            stderr=closed if reader == "gone" else full,
+            timeout=PATIENCE_S,
+            check=False,
+            env={**os.environ, "RC10_RUN_DIR": str(tmp_path)},
+        )
+        os.close(closed)
+    assert done.returncode == 2

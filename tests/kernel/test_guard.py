@@ -156,6 +156,24 @@ def test_the_end_of_the_guard_is_an_estop_and_another_one_comes(required: Path) 
         assert ms_to_rest(bus, since_ns) < LIMIT_MS
 
 
+def test_a_guard_that_stands_still_is_an_estop(required: Path) -> None:
+    with driven(required) as (process, robot, bus):
+        run("kill", "-STOP", *guards())
+        stopped_s = time.monotonic()
+        wait_for(lambda: robot.wait_for_state(5.0).status is rc10.RobotStatus.ESTOP, 5.0)
+        assert 0.9 < time.monotonic() - stopped_s < 1.3
+        assert robot.state is not None
+        assert robot.state.stop_cause is rc10.StopCause.GUARD
+        process.wait_line(rf"rc10-guard \(pid {guards()[0]}\) stands still", 5.0)
+        run("kill", "-CONT", *guards())
+        process.wait_line("rc10-guard goes on, and watches again", 5.0)
+        go_on(robot)
+        drive(robot, 0.2, left=rc10.velocity_rpm(100))
+        since_ns = time.time_ns()
+        process.signal(signal.SIGKILL)
+        assert ms_to_rest(bus, since_ns) < LIMIT_MS
+
+
 def test_an_orderly_life_is_never_disturbed(required: Path) -> None:
     with fakes():
         for _ in range(5):

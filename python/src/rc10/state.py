@@ -105,7 +105,7 @@ class StopCause(Word):
     INPUT = motor_state_t.STOP_INPUT
     """The e-stop input."""
     GUARD = motor_state_t.STOP_GUARD
-    """rc10-guard told the drives to rest, or has ended."""
+    """rc10-guard told the drives to rest, has ended, or stands still."""
     OVERLOAD = motor_state_t.STOP_OVERLOAD
     """The ticks took longer than their period."""
     UNKNOWN = -1

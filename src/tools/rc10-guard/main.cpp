@@ -6,6 +6,7 @@
 #include <sys/prctl.h>
 #include <csignal>
 
+#include <algorithm>
 #include <array>
 #include <cerrno>
 #include <cstdio>
@@ -17,6 +18,7 @@
 #include "app/nearest.hpp"
 #include "app/printable.hpp"
 #include "app/standard_output.hpp"
+#include "app/stderr_lines.hpp"
 #include "guard/guard_server.hpp"
 #include "guard/guard_socket.hpp"
 #include "link/run_dir.hpp"
@@ -35,6 +37,8 @@ constexpr int kPriority = 80;
 constexpr int kLastSteps = 1000 / static_cast<int>(Standstill::kStepMs);
 
 constexpr std::array kEnding{SIGTERM, SIGINT, SIGHUP, SIGQUIT};
+// Its own, and those that nobody can ignore.
+constexpr std::array kFaults{SIGSEGV, SIGBUS, SIGILL, SIGFPE, SIGABRT, SIGTRAP, SIGSYS, SIGKILL, SIGSTOP};
 
 constexpr std::string_view kHelp = R"(usage: rc10-guard [--until-unused]
 
@@ -52,22 +56,28 @@ Exit status: 0 ended by a signal or unused, 1 could not start, 2 bad usage.
 
 volatile std::sig_atomic_t ending = 0;
 
-void tell(const std::string& line) {
-  std::fprintf(stderr, "rc10-guard: %s\n", rc10::printable(line).c_str());
+const StderrLines& lines() {
+  static const StderrLines kLines;
+  return kLines;
 }
 
-/// The signals that end it act only while it waits. The mask for that.
+// Nobody watches while a guard waits for the reader of a line.
+void tell(const std::string& line) { (void)lines().tell("rc10-guard: " + rc10::printable(line)); }
+
+/// The signals that end it act only while it waits; the mask for that is returned. Any other is no reason to
+/// leave the drives, as of a line on a file at its limit (ulimit -f) or on a terminal with `stty tostop`.
 sigset_t catchSignals() noexcept {
   struct sigaction action {};
   action.sa_handler = [](int) { ending = 1; };
+  for (int signal = 1; signal <= SIGRTMAX; ++signal) {
+    if (std::find(kFaults.begin(), kFaults.end(), signal) == kFaults.end()) ::signal(signal, SIG_IGN);
+  }
   sigset_t blocked;
   ::sigemptyset(&blocked);
   for (const int signal : kEnding) {
     ::sigaction(signal, &action, nullptr);
     ::sigaddset(&blocked, signal);
   }
-  ::signal(SIGPIPE, SIG_IGN);
-  ::signal(SIGTSTP, SIG_IGN);
   sigset_t before;
   ::sigprocmask(SIG_BLOCK, &blocked, &before);
   return before;
@@ -85,6 +95,7 @@ void becomeRealTime() {
 
 int run(bool until_unused) {
   const sigset_t while_waiting = catchSignals();
+  (void)lines();  // while /proc is open to it
   (void)::prctl(PR_SET_DUMPABLE, 0);
   auto socket = GuardSocket::listen(link::runDir());
   if (!socket) {

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <chrono>
+#include <csignal>
 #include <exception>
 #include <filesystem>
 #include <iostream>
@@ -17,6 +18,7 @@
 #include "app/nearest.hpp"
 #include "app/printable.hpp"
 #include "app/standard_output.hpp"
+#include "app/stderr_lines.hpp"
 #include "app/whole_file.hpp"
 #include "bus/frame_text.hpp"
 #include "interface_stop.hpp"
@@ -64,9 +66,17 @@ struct Options {
   bool force = false;
 };
 
+// Other drives still wait for their frames: nobody waits for the reader of a line.
 int complain(const std::string& message) {
-  std::cerr << "rc10-stop: " << printable(message) << '\n';
+  static const StderrLines kLines;
+  (void)kLines.tell("rc10-stop: " + printable(message));
   return kBadUsageOrFile;
+}
+
+// It ends by itself, within 0.3 s: a closed terminal, Ctrl-C or a reader that has gone come too early.
+void ignoreSignals() noexcept {
+  for (const int signal : {SIGHUP, SIGINT, SIGQUIT, SIGTERM, SIGTSTP, SIGPIPE, SIGTTIN, SIGTTOU, SIGXFSZ})
+    ::signal(signal, SIG_IGN);
 }
 
 bool isRobotName(std::string_view name) {
@@ -159,6 +169,7 @@ class Stop {
   explicit Stop(const Options& options) : options_(options) {}
 
   int run() {
+    ignoreSignals();
     for (const auto& path : options_.files) {
       const auto file = load(path);
       if (file) {
