@@ -103,10 +103,14 @@ def test_a_terminal_that_hangs_holds_up_neither_the_log_nor_the_end() -> None:
             program.send_signal(signal.SIGXFSZ)  # a line
             return log.read_text().count("SIGXFSZ") > 100
 
-        eventually(lambda: daemon.ctl("list").returncode == 0, "it runs")
-        eventually(fills, "more lines than have room")
-        program.terminate()
-        assert program.wait(PATIENCE_S) == 0
+        try:
+            eventually(lambda: daemon.ctl("list").returncode == 0, "it runs")
+            eventually(fills, "more lines than have room")
+            program.terminate()
+            assert program.wait(PATIENCE_S) == 0
+        finally:
+            program.kill()
+            program.wait()
     os.close(master)
     os.close(terminal)
 
