@@ -38,6 +38,9 @@ Result<void> makeRunDir(const std::string& dir, uid_t user) {
   if (!folder || ::fstat(folder.get(), &status) != 0)
     return fail(dir + " is no folder of its own (a link, or a file): " + kRemedy);
   if ((status.st_mode & S_IWOTH) != 0) return fail(dir + ": every user may write to it: " + kRemedy);
+  // A group of the same number is its user's alone.
+  if ((status.st_mode & S_IWGRP) != 0 && status.st_gid != status.st_uid)
+    return fail(dir + ": its group may write to it, and so replace sockets: `chmod g-w " + dir + "`");
   const bool ours = status.st_uid == 0 || status.st_uid == user;
   // One that systemd made for the service belongs to the user rc10, in a folder of root's.
   if (!ours && !isRootsAlone(std::filesystem::path(dir).parent_path()))

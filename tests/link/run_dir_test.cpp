@@ -55,6 +55,18 @@ TEST(MakeRunDir, RefusesOneThatEveryUserMayWriteTo) {
   EXPECT_THAT(refusal(folder.path()), HasSubstr("every user may write to it: set RC10_RUN_DIR"));
 }
 
+TEST(MakeRunDir, RefusesOneThatAGroupOfOthersMayWriteTo) {
+  const rc10::test::TempDir folder;
+  // It takes root to give a folder away.
+  const bool given = ::chown(folder.path().c_str(), static_cast<uid_t>(-1), ::geteuid() + 1) == 0;
+  const bool of_others = given || ::getegid() != ::geteuid();
+  ASSERT_EQ(::chmod(folder.path().c_str(), 0770), 0);
+  EXPECT_THAT(refusal(folder.path()),
+              of_others ? testing::Matcher<std::string>(HasSubstr("replace sockets: `chmod g-w ")) : "");
+  ASSERT_EQ(::chmod(folder.path().c_str(), 0750), 0);
+  EXPECT_EQ(refusal(folder.path()), "");
+}
+
 TEST(MakeRunDir, RefusesALinkAndAFile) {
   const rc10::test::TempDir folder;
   ASSERT_EQ(::symlink("/tmp", (folder / "link").c_str()), 0);

@@ -11,6 +11,8 @@ namespace rc10 {
 namespace {
 
 constexpr std::size_t kMaxConnections = 16;
+// One more, which only rc10-lcm keeps: on it hangs all of LCM.
+constexpr std::size_t kGatewaySeats = 1;
 // More than a client may have under way: it asks on and on, and reads nothing.
 constexpr std::size_t kMaxUnsent = 128;
 
@@ -47,7 +49,8 @@ bool Connections::accept() {
       return false;
     }
     if (!fd) return true;
-    if (all_.size() >= kMaxConnections && !dropSilent()) continue;  // closed: the client sees it
+    if (all_.size() >= kMaxConnections + kGatewaySeats && !dropSilent())
+      continue;  // closed: the client sees it
     Connection connection;
     connection.id = next_id_++;
     connection.speaker = speakerOf(fd.get(), connection.id);
@@ -69,6 +72,13 @@ bool Connections::dropSilent() {
   if (oldest == all_.end()) return false;
   all_.erase(oldest);  // it has asked for nothing yet
   return true;
+}
+
+bool Connections::seat(const Connection& connection) const noexcept {
+  if (connection.is_gateway) return true;
+  const auto taken =
+      std::count_if(all_.begin(), all_.end(), [](const auto& c) { return c.welcomed && !c.is_gateway; });
+  return static_cast<std::size_t>(taken) < kMaxConnections;
 }
 
 Connection* Connections::find(std::uint64_t id) noexcept {

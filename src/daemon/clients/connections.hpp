@@ -37,6 +37,8 @@ class Connections {
 
   /// Takes those that wait. False: one was sent away, since there are no descriptors left.
   [[nodiscard]] bool accept();
+  /// Whether there is room for one that says hello; for rc10-lcm there is.
+  [[nodiscard]] bool seat(const Connection& connection) const noexcept;
   /// Null: it has been closed.
   [[nodiscard]] Connection* find(std::uint64_t id) noexcept;
   void close(std::uint64_t id);

@@ -196,6 +196,7 @@ bool LinkServer::welcome(Connection& connection, std::span<const std::byte> data
   // A process of rc10d's own user could end rc10d and start another: nobody is kept out by asking for more.
   connection.is_gateway =
       connection.speaker.user == ::geteuid() && hello.client.view() == link::kGatewayClient;
+  if (!connections_.seat(connection)) return false;
   connection.subscriptions = hello.subscriptions;
   if (const auto token = hello.token.view(); !token.empty() && !connection.is_gateway) {
     const auto granted = admission_.permissions().ofToken(token);

@@ -7,11 +7,13 @@
 #include <unistd.h>
 
 #include <cerrno>
+#include <cstdlib>
 #include <cstring>
 
 #include <fmt/format.h>
 
 #include "app/account_ids.hpp"
+#include "link/process_identity.hpp"
 #include "link/run_dir.hpp"
 #include "link/unix_address.hpp"
 
@@ -20,19 +22,25 @@ namespace {
 
 constexpr int kBacklog = 16;
 
+[[nodiscard]] std::string whoHolds(const std::string& path, pid_t pid, const std::string& robot) {
+  if (pid > 0 && link::ProcessIdentity{.pid = pid, .start_ticks = 0}.runs())
+    return fmt::format(
+        "robot '{}' already has a running rc10d (pid {}): stop it first, or give this robot another name",
+        robot, pid);
+  return fmt::format(
+      "the lock of robot '{}' is held by another program (`sudo fuser -v {}` names it): end it", robot, path);
+}
+
 [[nodiscard]] Result<UniqueFd> takeLock(const std::string& path, const std::string& robot) {
-  // flock() asks for no right but to open the file: others could hold it, and keep rc10d from starting.
+  // Nobody else may open it: who can read a file can lock it.
   UniqueFd lock{::open(path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW, 0600)};
-  if (lock) (void)::fchmod(lock.get(), 0600);  // left by an older version
   if (!lock) return fail(fmt::format("{}: {}", path, std::strerror(errno)));
   if (::flock(lock.get(), LOCK_EX | LOCK_NB) != 0) {
     char holder[16] = {};
     (void)!::read(lock.get(), holder, sizeof holder - 1);
-    return fail(
-        fmt::format("robot '{}' already has a running rc10d (pid {}): stop it first, or give this robot "
-                    "another name",
-                    robot, holder));
+    return fail(whoHolds(path, std::atoi(holder), robot));
   }
+  (void)::fchmod(lock.get(), 0600);  // one that an older rc10d has left
   const std::string pid = std::to_string(::getpid());
   (void)!::ftruncate(lock.get(), 0);
   (void)!::write(lock.get(), pid.data(), pid.size());

@@ -223,6 +223,23 @@ TEST_F(LinkServerStrangersTest, TheSeventeenthConnectionIsRefusedUntilOneLeaves)
   expectServed(*join());
 }
 
+TEST_F(LinkServerStrangersTest, AGatewayThatComesBackFindsItsSeatWhoeverIsThere) {
+  std::vector<std::unique_ptr<TestClient>> clients;
+  for (int i = 0; i < 16; ++i) clients.push_back(join());
+  TestClient silent(path);
+  for (int restart = 0; restart < 2; ++restart) {
+    TestClient gateway(path);
+    link::Hello hello;
+    hello.client = link::kGatewayClient;
+    ASSERT_TRUE(gateway.send(hello));
+    pump();
+    EXPECT_TRUE(gateway.take<link::Welcome>());
+    gateway.leave();
+    pump();
+  }
+  for (auto& client : clients) expectServed(*client);
+}
+
 TEST_F(LinkServerStrangersTest, AbruptDisconnectsHurtNobody) {
   auto other = join(link::kEvents);
   auto client = join(link::kEvents | link::kStates);

@@ -1,7 +1,9 @@
 #include "daemon/clients/link_socket.hpp"
 
+#include <fcntl.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <sys/file.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -39,6 +41,26 @@ TEST_F(LinkSocketTest, OnlyUserAndGroupMayConnect) {
   struct stat status {};
   ASSERT_EQ(::stat(socket->path().c_str(), &status), 0);
   EXPECT_EQ(status.st_mode & 0777U, 0660U);
+}
+
+TEST_F(LinkSocketTest, NobodyElseCanTakeTheLock) {
+  std::ofstream(dir / "hero.lock") << "1";
+  ASSERT_EQ(::chmod((dir / "hero.lock").c_str(), 0644), 0) << "as an older rc10d left it";
+  const auto socket = LinkSocket::listen(dir.path(), "hero");
+  ASSERT_TRUE(socket);
+  struct stat status {};
+  ASSERT_EQ(::stat((dir / "hero.lock").c_str(), &status), 0);
+  EXPECT_EQ(status.st_mode & 0777U, 0600U) << "flock() needs no more than a right to read";
+}
+
+TEST_F(LinkSocketTest, AProgramThatHoldsTheLockIsNotTakenForTheRc10dOfTheFile) {
+  constexpr int kNoProcess = 999'999'999;  // beyond the kernel's PID_MAX_LIMIT
+  std::ofstream(dir / "hero.lock") << kNoProcess;
+  const UniqueFd other{::open((dir / "hero.lock").c_str(), O_RDONLY | O_CLOEXEC)};
+  ASSERT_EQ(::flock(other.get(), LOCK_EX), 0);
+  const auto socket = LinkSocket::listen(dir.path(), "hero");
+  ASSERT_FALSE(socket);
+  EXPECT_THAT(socket.error().message, HasSubstr("held by another program (`sudo fuser -v "));
 }
 
 TEST_F(LinkSocketTest, ASecondOneNamesThePidOfTheFirstAndLeavesItAlone) {
