@@ -28,7 +28,9 @@ inline constexpr std::size_t kLateCauses = 8;
 inline constexpr std::array<LateCauseWords, kLateCauses> kLateCauseWords{{
     {"late ticks: page fault", "memory was not there: see locked memory in rc10ctl doctor"},
     {"late ticks: CPU taken",
-     "others ran on its CPU: keep one for it (docs/realtime.md), or raise scheduler.priority"},
+     "others ran on its CPU, not real-time or hidden (ProtectProc= of the unit: docs/lcm.md): keep one for "
+     "it "
+     "(docs/realtime.md), or raise scheduler.priority"},
     {"late ticks: timer",
      "nobody else ran: interrupts off, a CPU in deep sleep, or a computer or process that paused; see "
      "rc10ctl "

@@ -37,6 +37,9 @@ constexpr std::size_t kBehindBytes = std::size_t{256} << 10U;
 constexpr std::size_t kLostBytes = std::size_t{4} << 20U;
 // All pages together; with more, each that is behind is given up. The unit has 64 MiB (MemoryMax).
 constexpr std::size_t kMostWaiting = std::size_t{16} << 20U;
+// Each way of a connection at the kernel, which doubles it (socket(7)) and would let it grow to 4 MiB: 16 MiB
+// for 64 connections.
+constexpr int kKernelBytes = 64 << 10;
 // Memory of a waiting message beside its bytes.
 constexpr std::size_t kMessageRoom = 128;
 constexpr std::string_view kWebSocketPath = "/link";
@@ -271,6 +274,9 @@ class Server::Parts {
     const tcp::endpoint endpoint{asio::ip::make_address(address, error), port};
     if (!error) acceptor_.open(endpoint.protocol(), error);
     if (!error) acceptor_.set_option(tcp::acceptor::reuse_address{true}, error);
+    // Inherited by what is accepted; before it listens, for the window is chosen then.
+    if (!error) acceptor_.set_option(tcp::acceptor::send_buffer_size{kKernelBytes}, error);
+    if (!error) acceptor_.set_option(tcp::acceptor::receive_buffer_size{kKernelBytes}, error);
     if (!error) acceptor_.bind(endpoint, error);
     if (!error) acceptor_.listen(tcp::acceptor::max_listen_connections, error);
     return error;
