@@ -259,7 +259,7 @@ void Hub::disableAlone(Page& page) {
   AskRobot disable;
   disable.operation = toString(Operation::kDisable);
   disable.target = page.alone;
-  (void)page.link->ask(disable, feed_.socketPath());
+  (void)page.link->ask(disable, feed_.socketPath(), std::chrono::steady_clock::now());
 }
 
 std::string Hub::whyNotMoving(const Page& page) const {

@@ -43,16 +43,6 @@ TEST_F(LinkSocketTest, OnlyUserAndGroupMayConnect) {
   EXPECT_EQ(status.st_mode & 0777U, 0660U);
 }
 
-TEST_F(LinkSocketTest, NobodyElseCanTakeTheLock) {
-  std::ofstream(dir / "hero.lock") << "1";
-  ASSERT_EQ(::chmod((dir / "hero.lock").c_str(), 0644), 0) << "as an older rc10d left it";
-  const auto socket = LinkSocket::listen(dir.path(), "hero");
-  ASSERT_TRUE(socket);
-  struct stat status {};
-  ASSERT_EQ(::stat((dir / "hero.lock").c_str(), &status), 0);
-  EXPECT_EQ(status.st_mode & 0777U, 0600U) << "flock() needs no more than a right to read";
-}
-
 TEST_F(LinkSocketTest, AProgramThatHoldsTheLockIsNotTakenForTheRc10dOfTheFile) {
   constexpr int kNoProcess = 999'999'999;  // beyond the kernel's PID_MAX_LIMIT
   std::ofstream(dir / "hero.lock") << kNoProcess;
