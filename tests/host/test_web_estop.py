@@ -1,4 +1,4 @@
-"""A page whose robot does not answer: its e-stop gets in, and each of its requests has an answer."""
+"""A page whose robot does not answer: its e-stop gets in, each of its requests has an answer."""
 
 from __future__ import annotations
 
