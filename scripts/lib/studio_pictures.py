@@ -4,13 +4,14 @@
 scripts/demo.sh                                    # in another terminal; it prints the address
 .venv/bin/python scripts/lib/studio_pictures.py [http://localhost:8010/]
 
-The pictures of the parts Move and Tune need a robot whose motors nobody commands: in place of the demo
-`rc10d -c config/demo.yaml` and `rc10-web`, and the word `move` or `tune` behind the address. The word
-`configuration` there makes only the picture of that part.
+The pictures of the parts Move, Tune and Commission need a robot whose motors nobody commands: in place
+of the demo `rc10d -c config/demo.yaml` and `rc10-web`, and the word `move`, `tune` or `commission` behind
+the address. The word `configuration` there makes only the picture of that part.
 """
 
 from __future__ import annotations
 
+import re
 import sys
 from pathlib import Path
 
@@ -68,6 +69,32 @@ def picture_of_a_test(page: Page) -> None:
     page.screenshot(path=IMAGES / "studio-tune.png")
 
 
+def picture_of_a_first_spin(page: Page) -> None:
+    """The part Commission while a wheel spins for the first time."""
+    page.locator("#tab-commission").click()
+    page.get_by_label("Motor").select_option("front_left")
+    steps = page.get_by_role("list", name="Commission")
+    card = page.locator(".card.step")
+    card.get_by_role("button", name="say id").click()
+    steps.get_by_role("button", name="Zero").click()
+    card.get_by_role("button", name="Set").click()
+    card.get_by_role("status").wait_for()
+    steps.get_by_role("button", name="Limits").click()
+    card.get_by_role("button", name="It has no ends").click()
+    steps.get_by_role("button", name="Direction").click()
+    card.get_by_role("button", name="Begin").click()
+    card.get_by_role("button", name="+360").click()
+    page.wait_for_timeout(SETTLE_MS)
+    card.get_by_role("button", name="The mark is back").click()
+    steps.get_by_role("button", name="First spin").click()
+    card.get_by_role("button", name="Enable it alone").click()
+    card.get_by_role("button", name="Hold to spin").hover()
+    page.mouse.down()
+    page.get_by_role("timer").filter(has_text=re.compile(r"^0\.[4-9] /")).wait_for()
+    page.screenshot(path=IMAGES / "studio-commission.png")
+    page.mouse.up()
+
+
 def picture_of_the_configuration(page: Page) -> None:
     """Two wheels with one id: the message at its line, the key's help, the buses."""
     page.locator("#tab-configuration").click()
@@ -94,10 +121,9 @@ def main() -> None:
     take = {
         "move": picture_of_a_held_motor,
         "tune": picture_of_a_test,
+        "commission": picture_of_a_first_spin,
         "configuration": picture_of_the_configuration,
-    }.get(
-        sys.argv[2] if len(sys.argv) > 2 else "", pictures_of_the_demo
-    )
+    }.get(sys.argv[2] if len(sys.argv) > 2 else "", pictures_of_the_demo)
     with sync_playwright() as playwright:
         browser = playwright.chromium.launch(executable_path=CHROMIUM, args=[*OPTIONS])
         page = browser.new_page(viewport={"width": 1280, "height": 800}, locale="en-GB")

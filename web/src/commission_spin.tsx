@@ -112,6 +112,9 @@ export function AloneTest(props: {
           python={testPython(props.motor, props.plan)}
         />
       </div>
+      <p class="hint">
+        <code>{testCommand(props.motor, props.plan)}</code>
+      </p>
       <p class="hint">{word('comAloneHint')}</p>
     </>
   );
