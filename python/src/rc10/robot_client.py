@@ -285,7 +285,7 @@ class RobotClient:
     def _enabling(self, names: Names | None) -> Iterator[str]:
         """Gives the target of an enable request, and notes what has to be undone on leaving."""
         chosen = self._choose(names)
-        # Of this request alone: another may be answered meanwhile.
+        # Motors of this request alone: another may be answered meanwhile.
         noted = set(chosen or [_ALL]) - self._enabled
         # Noted before it is known to have worked: on leaving, one motor too many to disable
         # does no harm, and one too few does.
