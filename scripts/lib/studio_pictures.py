@@ -4,9 +4,9 @@
 scripts/demo.sh                                    # in another terminal; it prints the address
 .venv/bin/python scripts/lib/studio_pictures.py [http://localhost:8010/]
 
-The pictures of the parts Move, Tune and Commission need a robot whose motors nobody commands: in place
-of the demo `rc10d -c config/demo.yaml` and `rc10-web`, and the word `move`, `tune` or `commission` behind
-the address. The word `configuration` there makes only the picture of that part.
+The pictures of the parts Move, Tune and Commission need a robot whose motors nobody commands: in
+place of the demo `rc10d -c config/demo.yaml` and `rc10-web`, and the word `move`, `tune` or
+`commission` behind the address. The word `configuration` there makes only the picture of that part.
 """
 
 from __future__ import annotations

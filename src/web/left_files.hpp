@@ -20,8 +20,8 @@ struct LeftText {
 };
 [[nodiscard]] std::optional<LeftText> readLeft(const std::string& path);
 
-/// The newest file of this ending; empty: none. With a robot, those of a start are passed over whose text of the
-/// configuration names another one.
+/// The newest file of this ending; empty: none. With a robot, those of a start are passed over whose text of
+/// the configuration names another one.
 [[nodiscard]] std::string newestLeftFile(const std::string& run_dir, std::string_view ending,
                                          const std::optional<std::string>& robot = std::nullopt);
 

@@ -26,8 +26,8 @@ class PageLink {
   [[nodiscard]] std::string ask(const AskRobot& request, const std::string& socket_path, MonotonicTime now);
 
   [[nodiscard]] bool isOpen() const noexcept { return rc10d_.has_value(); }
-  /// Before drive(), which must not wait. Why there is no connection; empty: there is one. For half a second after
-  /// a failure it is that one again.
+  /// Before drive(), which must not wait. Why there is no connection; empty: there is one. For half a second
+  /// after a failure it is that one again.
   [[nodiscard]] std::string connect(const std::string& socket_path);
   /// A target for this validity. The reason why it could not be sent; empty: it was.
   [[nodiscard]] std::string drive(const DriveMotor& wanted, std::int32_t validity_ms);

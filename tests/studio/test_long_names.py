@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import pytest
 from playwright.sync_api import Browser, expect
+from test_studio import TABS, open_tab
 
 from conftest import PATIENCE_MS, Studio
-from test_studio import TABS, open_tab
 
 LONGEST = 31
 
@@ -28,8 +28,10 @@ OTHERS = "".join(
         ("knee", "AK80-9, id: 21"),
         (
             "belt",
-            "ODrive_S1, id: 3, torque_constant_nm_per_a: 0.0551, current_limit_a: 20,"
-            " velocity_limit_rpm: 600, feedback_hz: 100",
+            (
+                "ODrive_S1, id: 3, torque_constant_nm_per_a: 0.0551, current_limit_a: 20,"
+                " velocity_limit_rpm: 600, feedback_hz: 100"
+            ),
         ),
         ("turntable", "RMD-X8-20, id: 22"),
         ("pan", "LK-MG5010E-i10, id: 5"),

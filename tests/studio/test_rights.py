@@ -99,7 +99,7 @@ def test_a_held_button_without_the_right_says_why_nothing_moves(
     without.get_by_role("button", name="counter-clockwise", exact=True).hover()
     without.mouse.down()
     told = without.locator(".jogs [role=status]")
-    expect(told).to_contain_text("let go: rc10d does not take this page’s commands")
+    expect(told).to_contain_text("let go: rc10d does not take this page")
     expect(told).to_contain_text("may observe and stop, not command wheel")
     without.mouse.up()
     for page in (shows, without):

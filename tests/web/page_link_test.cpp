@@ -25,7 +25,7 @@ TEST(PageLink, AnRc10dThatDoesNotAnswerIsNotAskedInARow) {
   ASSERT_EQ(::fcntl(listener.get(), F_SETFL, O_NONBLOCK), 0);
   PageLink link("web-1");
   const auto why = link.connect(dir.path() + "/hero.sock");
-  EXPECT_THAT(why, ::testing::HasSubstr("hero.sock"));
+  EXPECT_THAT(why, ::testing::HasSubstr("does not answer"));
   EXPECT_EQ(link.connect(dir.path() + "/hero.sock"), why);
   EXPECT_EQ(waiting(listener), 1) << "the second time nobody was asked, and nobody waited";
   // Another token may be heard where this one was not.
