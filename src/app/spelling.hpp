@@ -110,7 +110,7 @@ inline bool isWordTooMany(std::string_view said) {
   return said.substr(0, said.find(" argument")) == "The following";
 }
 
-/// What the parser says of a number, or of a word too many, as people say it.
+/// The parser's words about a number, or a word too many, as people say them.
 inline std::string inWords(const std::string& kind, const std::string& said) {
   const auto colon = said.find(": ");
   if (colon == std::string::npos) return said;
@@ -123,8 +123,8 @@ inline std::string inWords(const std::string& kind, const std::string& said) {
 
 }  // namespace spelling_detail
 
-/// What is wrong with a command line that `error` ended, and how it is written: "motor is required; usage:
-/// `rc10ctl zero MOTOR [ANGLE]`".
+/// The mistake of a command line that `error` ended, and how it is written: "motor is required; usage:
+/// `rc10ctl zero MOTOR [DEG]`".
 template <typename App, typename Error>
 [[nodiscard]] std::string usageError(const App& app, const Error& error, int argc, const char* const* argv) {
   using namespace spelling_detail;
