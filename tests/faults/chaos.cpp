@@ -27,7 +27,7 @@ constexpr std::size_t kMostOpen = 64;
 
 // Weights of the actions: what brings a robot to work more often than what stops it.
 constexpr std::array<std::uint8_t, static_cast<std::size_t>(Chaos::Action::kCount)> kWeights{
-    16, 24, 50, 38, 2, 4, 26, 5, 2, 36, 4, 3, 4, 3, 4, 4, 2, 2, 4, 3, 3, 3, 5, 4, 1, 1, 5, 1, 1};
+    13, 24, 50, 38, 2, 4, 26, 5, 2, 36, 4, 3, 4, 3, 4, 4, 2, 2, 4, 3, 3, 3, 3, 4, 1, 1, 5, 1, 1};
 
 [[nodiscard]] Chaos::Action choose(Choices& choices) {
   constexpr std::uint32_t kSum = [] {
