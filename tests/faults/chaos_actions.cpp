@@ -154,7 +154,7 @@ void Chaos::act(Action action) {
       if (motors == everyone) {
         frozen_.reset();
         blocked_.reset();
-        contact_open_ = mode_open_ = false;
+        contact_open_ = false;
         for (std::size_t bus = 0; bus < wires_.size(); ++bus) leaveQueue(bus);
         for (std::size_t bus = 0; bus < wires_.size(); ++bus) {
           errorFrame(bus, 1);

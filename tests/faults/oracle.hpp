@@ -57,6 +57,7 @@ class Oracle {
   void modeInput(bool open) {
     if (open && !mode_open_) mode_open_since_ = now_;
     mode_open_ = open;
+    if (open) mode_last_open_ = now_;
   }
   void stopBegun() { stop_asked_ = true; }
   /// For tests of the oracle itself: once this motor is told something that is not rest, it believes that
@@ -218,6 +219,7 @@ class Oracle {
   bool contact_open_ = false;
   bool mode_open_ = false;
   MonotonicTime mode_open_since_{};
+  MonotonicTime mode_last_open_{};
   std::uint64_t periods_ = 1;  ///< Periods of this tick.
   std::bitset<kMaxBuses> down_;
   std::bitset<kMaxBuses> known_down_;  ///< As of the end of the last tick.

@@ -25,6 +25,8 @@ constexpr Duration kRampEnd = 260ms;
 
 // Time beyond `reduced_within_ms` for a drive that is told something in some ticks only.
 constexpr Duration kReducedSlack = 100ms;
+// Time in which speed and effort come back when the mode input is closed (docs/gpio.md), and some.
+constexpr Duration kFullAgain = 1200ms;
 
 // An angle may be so far beyond a soft limit: rounding, and what the shaft has moved since the sample.
 constexpr double kAngleSlackDeg = 1.0;
@@ -162,7 +164,9 @@ void Oracle::judgeSlew(std::size_t index, const MotorSnapshot& seen) {
       (seen.target.mode == ControlMode::kCurrent || seen.target.mode == ControlMode::kVoltage);
   const auto& shaping = motor.config->shaping;
   const auto per_s = static_cast<double>(shaping.effort_slew_per_s);
-  const bool free = std::isinf(shaping.angle_min_deg) && std::isinf(shaping.angle_max_deg);
+  // Soft limits and reduced mode brake at once.
+  const bool reduced = motor.config->reduced.any() && now_ - mode_last_open_ < kFullAgain;
+  const bool free = std::isinf(shaping.angle_min_deg) && std::isinf(shaping.angle_max_deg) && !reduced;
   constexpr std::uint64_t kMostPeriods = 5;  // what a tick counts for at most
   motor.periods_untold += std::min(periods_, kMostPeriods);
   motor.followed_effort = motor.followed_effort && follows;

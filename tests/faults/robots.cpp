@@ -17,7 +17,8 @@ buses:
   - name: chassis
     type: sim
     motors:
-      - {name: left, model: M3508, id: 1, reduced_velocity_rpm: 60, reduced_current_a: 5, current_limit_a: 10, on_timeout: brake, on_disable: damp, on_estop: brake,
+      - {name: left, model: M3508, id: 1, reduced_velocity_rpm: 60, reduced_within_ms: 200,
+         reduced_current_a: 5, current_limit_a: 10, on_timeout: brake, on_disable: damp, on_estop: brake,
          zero: power_on}
       - {name: right, model: M3508, id: 2, direction: -1, on_timeout: damp, on_disable: ramp, on_estop: damp,
          ramp_s: 0.4, current_slew_a_per_s: 100, velocity_slew_rpm_per_s: 2000}
@@ -46,7 +47,7 @@ buses:
          on_timeout: hold, on_disable: damp, on_estop: brake, hold_max_s: 0.5,
          angle_min_deg: -90, angle_max_deg: 90, zero: power_on}
       - {name: wheel, model: DMH6215, id: 3, master_id: 19, control: velocity, velocity_limit_rpm: 120, direction: -1,
-         reduced_velocity_rpm: 20,
+         reduced_velocity_rpm: 20, reduced_within_ms: 200,
          on_timeout: brake, on_estop: ramp}
   - name: elbows
     type: sim
@@ -58,16 +59,19 @@ buses:
   - name: knees
     type: sim
     motors:
-      - {name: knee, model: RS00, id: 20, reduced_velocity_rpm: 25, current_limit_a: 6, velocity_limit_rpm: 100, on_timeout: hold, on_disable: damp,
+      - {name: knee, model: RS00, id: 20, reduced_velocity_rpm: 25, reduced_within_ms: 200,
+         current_limit_a: 6, velocity_limit_rpm: 100, on_timeout: hold, on_disable: damp,
          on_estop: damp, hold_max_s: 1, current_slew_a_per_s: 50}
       - {name: lift, model: RS03, id: 21, control: position, current_limit_a: 10, velocity_limit_rpm: 60, direction: -1,
          on_timeout: hold, on_disable: brake, on_estop: brake}
   - name: ankles
     type: sim
     motors:
-      - {name: ankle, model: AK80-9, id: 31, protocol: mit, current_limit_a: 6, velocity_limit_rpm: 80, on_timeout: damp,
+      - {name: ankle, model: AK80-9, id: 31, protocol: mit, current_limit_a: 6, velocity_limit_rpm: 80,
+         on_timeout: damp,
          on_disable: brake, on_estop: hold, hold_max_s: 0.5, angle_min_deg: -120, angle_max_deg: 120, zero: power_on}
-      - {name: hip, model: AK80-9, id: 32, reduced_velocity_rpm: 20, current_limit_a: 8, velocity_limit_rpm: 80, on_timeout: brake,
+      - {name: hip, model: AK80-9, id: 32, reduced_velocity_rpm: 20, reduced_within_ms: 200,
+         current_limit_a: 8, velocity_limit_rpm: 80, on_timeout: brake,
          on_disable: damp, on_estop: ramp, ramp_s: 0.5, current_slew_a_per_s: 40}
 groups:
   - {name: leg, motors: [knee, ankle], on_member_offline: stop_group, on_return: rearm_at_rest}
@@ -78,7 +82,8 @@ buses:
   - name: belts
     type: sim
     motors:
-      - {name: belt, model: ODrive_S1, id: 3, reduced_velocity_rpm: 60, torque_constant_nm_per_a: 0.0551, current_limit_a: 20,
+      - {name: belt, model: ODrive_S1, id: 3, reduced_velocity_rpm: 60, reduced_within_ms: 200,
+         torque_constant_nm_per_a: 0.0551, current_limit_a: 20,
          velocity_limit_rpm: 600, on_timeout: brake, on_disable: ramp, on_estop: brake, feedback_hz: 200}
       - {name: winch, model: ODrive_v3, id: 4, torque_constant_nm_per_a: 0.04, current_limit_a: 15,
          velocity_limit_rpm: 400, direction: -1, gear_ratio: 4, on_timeout: hold, on_estop: hold, hold_max_s: 0.5,
@@ -86,7 +91,8 @@ buses:
   - name: shooters
     type: sim
     motors:
-      - {name: shooter, model: VESC, id: 10, pole_pairs: 7, motor_current_max_a: 40, current_limit_a: 30, reduced_velocity_rpm: 300,
+      - {name: shooter, model: VESC, id: 10, pole_pairs: 7, motor_current_max_a: 40, current_limit_a: 30,
+         reduced_velocity_rpm: 300, reduced_within_ms: 200,
          velocity_limit_rpm: 3000, kv_rpm_per_v: 190, on_timeout: damp, on_disable: brake, on_estop: ramp,
          feedback_hz: 200, current_slew_a_per_s: 200}
       - {name: steer, model: VESC, id: 11, pole_pairs: 7, motor_current_max_a: 20, current_limit_a: 10, gear_ratio: 10,
@@ -96,7 +102,8 @@ buses:
     type: sim
     data_bitrate: 5000000
     motors:
-      - {name: calf, model: moteus, id: 1, reduced_velocity_rpm: 30, motor_kv_rpm_per_v: 100, current_limit_a: 10, velocity_limit_rpm: 300,
+      - {name: calf, model: moteus, id: 1, reduced_velocity_rpm: 30, reduced_within_ms: 200,
+         motor_kv_rpm_per_v: 100, current_limit_a: 10, velocity_limit_rpm: 300,
          on_timeout: hold, on_disable: ramp, on_estop: damp, hold_max_s: 0.5, current_slew_a_per_s: 50}
       - {name: thigh, model: moteus, id: 2, motor_kv_rpm_per_v: 100, current_limit_a: 15, velocity_limit_rpm: 200,
          direction: -1, on_timeout: brake, on_disable: damp, on_estop: hold, command_divider: 2,
@@ -115,14 +122,16 @@ buses:
   - name: pans
     type: sim
     motors:
-      - {name: pan, model: LK-MG5010E-i10, id: 5, reduced_velocity_rpm: 20, velocity_limit_rpm: 100, current_limit_a: 5, on_timeout: ramp,
+      - {name: pan, model: LK-MG5010E-i10, id: 5, reduced_velocity_rpm: 20, reduced_within_ms: 200,
+         velocity_limit_rpm: 100, current_limit_a: 5, on_timeout: ramp,
          ramp_s: 0.3, on_disable: brake, on_estop: brake, zero_deg: 30, angle_min_deg: -150, angle_max_deg: 150}
       - {name: tilt, model: LK-MG5010E-i10, id: 6, velocity_limit_rpm: 100, on_timeout: hold, on_estop: hold,
          hold_max_s: 0.5, direction: -1, command_divider: 2}
   - name: tables
     type: sim
     motors:
-      - {name: turntable, model: RMD-X8-20, id: 22, reduced_velocity_rpm: 15, current_limit_a: 6, velocity_limit_rpm: 60, on_timeout: damp,
+      - {name: turntable, model: RMD-X8-20, id: 22, reduced_velocity_rpm: 15, reduced_within_ms: 200,
+         current_limit_a: 6, velocity_limit_rpm: 60, on_timeout: damp,
          on_disable: brake, on_estop: brake, current_slew_a_per_s: 40, command_divider: 2}
       - {name: shoulder, model: RMD-X8-25, id: 23, velocity_limit_rpm: 40, direction: -1, on_timeout: hold,
          on_disable: damp, on_estop: damp, hold_max_s: 0.5, command_divider: 2, angle_min_deg: -120,
@@ -136,10 +145,14 @@ buses:
   - name: wheels
     type: sim
     motors:
-      - {name: front_left, model: M3508, reduced_velocity_rpm: 60, id: 1, current_limit_a: 8, on_timeout: damp, on_disable: damp, on_estop: brake}
-      - {name: front_right, model: M3508, reduced_velocity_rpm: 60, id: 2, current_limit_a: 8, on_timeout: damp, on_disable: damp, on_estop: brake}
-      - {name: rear_left, model: M3508, reduced_velocity_rpm: 60, id: 3, current_limit_a: 8, on_timeout: damp, on_disable: damp, on_estop: brake}
-      - {name: rear_right, model: M3508, reduced_velocity_rpm: 60, id: 4, current_limit_a: 8, on_timeout: damp, on_disable: damp, on_estop: brake}
+      - {name: front_left, model: M3508, reduced_velocity_rpm: 60, reduced_within_ms: 200,
+         id: 1, current_limit_a: 8, on_timeout: damp, on_disable: damp, on_estop: brake}
+      - {name: front_right, model: M3508, reduced_velocity_rpm: 60, reduced_within_ms: 200,
+         id: 2, current_limit_a: 8, on_timeout: damp, on_disable: damp, on_estop: brake}
+      - {name: rear_left, model: M3508, reduced_velocity_rpm: 60, reduced_within_ms: 200,
+         id: 3, current_limit_a: 8, on_timeout: damp, on_disable: damp, on_estop: brake}
+      - {name: rear_right, model: M3508, reduced_velocity_rpm: 60, reduced_within_ms: 200,
+         id: 4, current_limit_a: 8, on_timeout: damp, on_disable: damp, on_estop: brake}
   - name: top
     type: sim
     motors:
