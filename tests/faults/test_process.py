@@ -188,6 +188,25 @@ def test_the_guard_dies() -> None:
         )
 
 
+def test_the_guard_stands_still() -> None:
+    with robot_under_test() as (process, robot, log):
+        drive(robot, log, 0.3, left=rc10.velocity_rpm(60))
+        run("pkill", "-STOP", "-x", "rc10-guard")
+        stopped_ns = time.time_ns()
+        drive(robot, log, 1.4, left=rc10.velocity_rpm(60))
+        assert robot.wait_for_state(5.0).stop_cause is rc10.StopCause.GUARD
+        run("pkill", "-CONT", "-x", "rc10-guard")
+        process.wait_line("rc10-guard goes on, and watches again", 5.0)
+        log.check(other_bus=None)
+        proven(
+            "SIGSTOP of rc10-guard",
+            "e-stop after 1 s",
+            stopped_ns,
+            log.last_torque_ns("left"),
+            1200,
+        )
+
+
 def test_the_daemon_stands_still_for_long() -> None:
     with robot_under_test() as (process, robot, log):
         drive(robot, log, 0.3, left=rc10.velocity_rpm(60), other=rc10.velocity_rpm(60))
