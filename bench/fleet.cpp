@@ -9,6 +9,7 @@
 
 #include "config/robot_config.hpp"
 #include "drives/dji/dji_family.hpp"
+#include "drives/dji/dji_model.hpp"
 
 // In place of the C library's, for this whole program: takes every frame and goes nowhere. What is
 // measured is rc10d's own work; a real call costs what the kernel and the driver take.
@@ -93,8 +94,7 @@ void Fleet::addWideMotors(Robot& robot, const Shape& shape) {
     std::vector<WideMotor*> motors;
     for (std::size_t i = 0; i < shape.motors_per_bus; ++i) {
       const CanId feedback_id{0x201U + static_cast<std::uint32_t>(i), false};
-      auto motor =
-          std::make_unique<WideMotor>(djiConfig(wheel(b * shape.motors_per_bus + i, 1)), feedback_id);
+      auto motor = std::make_unique<WideMotor>(wheel(b * shape.motors_per_bus + i, 1), feedback_id);
       must(bus.registerMotor(*motor));
       motors.push_back(motor.get());
       robot.motors().push_back(

@@ -14,8 +14,8 @@ namespace rc10::bench {
 /// family that no vendor makes. Decoding and loops are DJI_Motor's, so that figures compare.
 class WideMotor : public DJI_Motor {
  public:
-  WideMotor(const DjiMotorConfig& config, CanId feedback_id)
-      : DJI_Motor(config),
+  WideMotor(const MotorSettings& settings, CanId feedback_id)
+      : DJI_Motor(settings),
         filters_{FrameFilter{.id = feedback_id, .mask = kStandardIdMask, .discriminator = {}}} {}
 
   [[nodiscard]] std::span<const FrameFilter> filters() const noexcept override { return filters_; }

@@ -5,7 +5,7 @@
 #include <variant>
 
 #include "config/robot_config.hpp"
-#include "drives/dji/dji_family.hpp"
+#include "drives/dji/dji_model.hpp"
 
 namespace rc10::test {
 
@@ -23,12 +23,13 @@ inline void print(std::ostream& out, const PID_Incremental::Config& c) {
 }
 
 inline void print(std::ostream& out, const MotorConfig& motor) {
-  const DjiMotorConfig dji = djiConfig(motor.settings);
-  const auto& table = dji.model->command(dji.command);
+  const MotorSettings& dji = motor.settings;
+  const DjiModel& model = *findDjiModel(dji.model);
+  const DjiCommand command = djiSettings(dji.own).command;
+  const auto& table = model.command(command);
   // 0 and the model's own value say the same.
-  out << "motor " << dji.name << ' ' << dji.model->name << ' ' << dji.id << ' '
-      << static_cast<int>(dji.command) << ' '
-      << (dji.gear_ratio > 0.0 ? dji.gear_ratio : dji.model->gear_ratio) << ' ' << dji.direction << ' '
+  out << "motor " << dji.name << ' ' << model.name << ' ' << dji.id << ' ' << static_cast<int>(command) << ' '
+      << (dji.gear_ratio > 0.0 ? dji.gear_ratio : model.gear_ratio) << ' ' << dji.direction << ' '
       << (dji.effort_limit > 0.0F ? dji.effort_limit : table.full_scale) << ' ' << dji.zero_deg << ' '
       << dji.zero_at_power_on << ' ' << motor.settings.feedback_hz << ' ' << motor.feedback_timeout.count()
       << ' ' << motor.optional << ' ' << dji.loops.velocity_limit_rpm << ' ' << motor.guard.overspeed_rpm

@@ -13,6 +13,7 @@
 #include "daemon/devices/robot.hpp"
 #include "daemon/tick/scheduler.hpp"
 #include "drives/dji/dji_family.hpp"
+#include "drives/dji/dji_model.hpp"
 
 namespace rc10::test {
 

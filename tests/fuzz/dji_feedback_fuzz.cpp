@@ -15,12 +15,12 @@ using namespace rc10;
 using fuzz::Input;
 using fuzz::require;
 
-DjiMotorConfig config(const DjiModel& model, int id, DjiCommand command, bool incremental) {
-  DjiMotorConfig result;
+MotorSettings config(const DjiModel& model, int id, DjiCommand command, bool incremental) {
+  MotorSettings result;
   result.name = std::string{model.name} + std::to_string(id);
-  result.model = &model;
+  result.model = model.name;
   result.id = id;
-  result.command = command;
+  result.own.set("command", std::string{command == DjiCommand::kVoltage ? "voltage" : "current"});
   result.direction = id % 2 == 0 ? -1 : 1;
   result.effort_limit = 2.5F;
   result.loops = model.command(command).default_loops;

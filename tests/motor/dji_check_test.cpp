@@ -11,8 +11,8 @@ namespace {
 
 constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
 
-std::string refusal(const DjiModel& model, const std::function<void(DjiMotorConfig&)>& change) {
-  DjiMotorConfig config = djiConfig(model);
+std::string refusal(const DjiModel& model, const std::function<void(MotorSettings&)>& change) {
+  MotorSettings config = djiConfig(model);
   config.name = "arm";
   change(config);
   const auto result = DJI_Motor::check(config);
@@ -40,7 +40,7 @@ TEST(DjiCheck, NamesTheMotorTheKeyAndTheRange) {
 }
 
 TEST(DjiCheck, RefusesACommandTheModelLacks) {
-  const auto message = refusal(kM3508, [](auto& c) { c.command = DjiCommand::kVoltage; });
+  const auto message = refusal(kM3508, [](auto& c) { c.own = djiOwn(DjiCommand::kVoltage); });
   EXPECT_EQ(message, "motor 'arm': command: M3508 obeys current only");
 }
 
@@ -71,7 +71,7 @@ TEST(DjiCheck, RefusesNumbersThatAreNotFiniteOrNegativeGains) {
 
 TEST(DjiCheck, RefusesAMotorWithoutNameOrModel) {
   EXPECT_NE(refusal(kM3508, [](auto& c) { c.name.clear(); }).find("name is missing"), std::string::npos);
-  EXPECT_NE(refusal(kM3508, [](auto& c) { c.model = nullptr; }).find("model is missing"), std::string::npos);
+  EXPECT_NE(refusal(kM3508, [](auto& c) { c.model.clear(); }).find("model is missing"), std::string::npos);
 }
 
 TEST(DjiModels, AreFoundByTheirNames) {
@@ -83,7 +83,7 @@ TEST(DjiModels, AreFoundByTheirNames) {
 }
 
 TEST(DjiModels, TheUsersClassNamesDifferOnlyInTheirTable) {
-  DjiMotorConfig config = djiConfig(kM3508);
+  MotorSettings config = djiConfig(kM3508);
   EXPECT_EQ(M3508{config}.modelName(), "M3508");
   EXPECT_EQ(M2006{config}.modelName(), "M2006");
   EXPECT_EQ(GM6020{config}.modelName(), "GM6020");

@@ -54,8 +54,8 @@ double degreesOf(SimplePlant& plant) { return plant.degrees(); }
 
 class DjiClosedLoop : public testing::TestWithParam<Case> {
  protected:
-  [[nodiscard]] DjiMotorConfig config() const {
-    DjiMotorConfig config = djiConfig(*GetParam().model, 1, GetParam().command);
+  [[nodiscard]] MotorSettings config() const {
+    MotorSettings config = djiConfig(*GetParam().model, 1, GetParam().command);
     config.zero_at_power_on = true;
     return config;
   }
@@ -65,7 +65,7 @@ class DjiClosedLoop : public testing::TestWithParam<Case> {
     return plant;
   }
   Response velocityStep(double target_rpm, double inertia_factor, int direction = 1) {
-    DjiMotorConfig wheel = config();
+    MotorSettings wheel = config();
     wheel.direction = direction;
     DJI_Motor motor(wheel);
     DjiBench bench(motor, plant(inertia_factor));

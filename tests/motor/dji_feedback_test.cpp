@@ -11,7 +11,7 @@ namespace {
 
 using std::chrono::milliseconds;
 
-DjiMotorConfig reversed(DjiMotorConfig config) {
+MotorSettings reversed(MotorSettings config) {
   config.direction = -1;
   return config;
 }
@@ -50,7 +50,7 @@ TEST(DjiFeedback, DirectionTurnsEverySignAround) {
 }
 
 TEST(DjiFeedback, AConfiguredGearRatioReplacesTheModelsOwn) {
-  DjiMotorConfig config = djiConfig(kM3508);
+  MotorSettings config = djiConfig(kM3508);
   config.gear_ratio = 1.0;
   DJI_Motor motor(config);
   DjiFeeder feeder(motor);
@@ -84,7 +84,7 @@ TEST(DjiFeedback, EveryReportedValueDecodesToItself) {
 
 TEST(DjiFeedback, EveryPositionOfAnAbsoluteEncoderDecodesToItself) {
   for (const int direction : {1, -1}) {
-    DjiMotorConfig config = djiConfig(kGM6020);
+    MotorSettings config = djiConfig(kGM6020);
     config.direction = direction;
     DJI_Motor motor(config);
     DjiFeeder feeder(motor);
@@ -159,7 +159,7 @@ TEST(DjiReference, AnAngleJustBelowAFullTurnIsNotRoundedUpToIt) {
 
 TEST(DjiReference, ZeroAtPowerOnMakesTheFirstPositionZero) {
   for (const DjiModel* model : djiModels()) {
-    DjiMotorConfig config = djiConfig(*model);
+    MotorSettings config = djiConfig(*model);
     config.zero_at_power_on = true;
     DJI_Motor motor(config);
     DjiFeeder feeder(motor);
@@ -187,7 +187,7 @@ TEST(DjiReference, AGapTooLongToCountTheTurnsIsNotZeroedUntilSetAgain) {
 }
 
 TEST(DjiReference, AnAbsoluteEncoderIsZeroedFromTheFirstSampleWithinHalfATurn) {
-  DjiMotorConfig config = djiConfig(kGM6020);
+  MotorSettings config = djiConfig(kGM6020);
   config.zero_deg = 10.0;
   DJI_Motor motor(config);
   DjiFeeder feeder(motor);
@@ -198,7 +198,7 @@ TEST(DjiReference, AnAbsoluteEncoderIsZeroedFromTheFirstSampleWithinHalfATurn) {
 }
 
 TEST(DjiReference, TheZeroOfAReversedAbsoluteEncoderIsTheAngleItUsedToRead) {
-  DjiMotorConfig config = reversed(djiConfig(kGM6020));
+  MotorSettings config = reversed(djiConfig(kGM6020));
   DJI_Motor before(config);
   DjiFeeder(before).feed({.position = 2048});
   config.zero_deg = before.getAngle().value;
@@ -240,7 +240,7 @@ TEST(DjiReference, AnAbsoluteEncoderNeverJumpsWhileItsAngleIsControlled) {
 }
 
 TEST(DjiReference, AGearedGM6020IsNotAbsolute) {
-  DjiMotorConfig config = djiConfig(kGM6020);
+  MotorSettings config = djiConfig(kGM6020);
   config.gear_ratio = 2.0;
   DJI_Motor motor(config);
   DjiFeeder(motor).feed({.position = 4096});
@@ -251,7 +251,7 @@ TEST(DjiReference, AnglesKeepTheirPrecisionAfterABillionTurns) {
   // A drive whose limits allow one sample a minute, so that the turns can be reached.
   DjiModel model = kM2006;
   model.encoder = {.counts_per_turn = 8192, .max_velocity_rpm = 32'000.0F};
-  DJI_Motor motor(djiConfig(model));
+  DJI_Motor motor(djiConfig(model), model);
   DjiFeeder feeder(motor);
   (void)feeder.feed({.position = 7, .rpm = 30'000});
   for (int i = 0; i < 36'000; ++i) (void)feeder.feed({.position = 7, .rpm = 30'000}, std::chrono::minutes{1});

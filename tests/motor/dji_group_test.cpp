@@ -13,7 +13,7 @@ namespace {
 
 using namespace rc10::literals;
 
-DjiMotorConfig named(const char* name, DjiMotorConfig config) {
+MotorSettings named(const char* name, MotorSettings config) {
   config.name = name;
   return config;
 }

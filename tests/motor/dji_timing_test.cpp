@@ -28,7 +28,7 @@ struct Efforts {
 /// A rotor that gains 20 rpm per millisecond, as seen by a motor with a derivative in its loop:
 /// without disturbance its effort is constant. Samples come every `period` and `lateness(n)` later.
 Efforts efforts(CascadeConfig loops, Duration period, const std::function<Duration(int)>& lateness) {
-  DjiMotorConfig config = djiConfig(kM3508);
+  MotorSettings config = djiConfig(kM3508);
   config.gear_ratio = 1.0;
   config.loops = std::move(loops);
   DJI_Motor motor(config);
@@ -95,7 +95,7 @@ TEST(DjiTiming, LostFramesDoNotDisturbTheDerivative) {
 }
 
 TEST(DjiTiming, StampsThatNeverAdvanceCountAsTheNominalPeriod) {
-  DjiMotorConfig config = djiConfig(kM3508);
+  MotorSettings config = djiConfig(kM3508);
   config.loops = {.velocity = PID_Position::Config{.ki = 1.0F}, .angle = {}, .velocity_limit_rpm = 0.0F};
   DJI_Motor motor(config);
   motor.order(FrameKind::kCommand);

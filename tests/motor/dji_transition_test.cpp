@@ -29,8 +29,8 @@ class JumpMeter {
   float largest_ = 0.0F;
 };
 
-DjiMotorConfig transitionConfig(bool incremental) {
-  DjiMotorConfig config = djiConfig(kM3508);
+MotorSettings transitionConfig(bool incremental) {
+  MotorSettings config = djiConfig(kM3508);
   config.zero_at_power_on = true;
   config.loops.angle.output_limit = 0.0F;
   if (incremental) config.loops.velocity = PID_Incremental::Config{.kp = 0.2F, .ki = 1.6F};
@@ -104,7 +104,7 @@ TEST_P(DjiTransition, EnablingAtRestDoesNotKick) {
 }
 
 TEST_P(DjiTransition, AStalledWheelThatComesFreeDoesNotRunAwayByWindUp) {
-  DjiMotorConfig config = transitionConfig(GetParam());
+  MotorSettings config = transitionConfig(GetParam());
   config.effort_limit = 3.0F;
   DJI_Motor motor(config);
   DjiBench bench(motor, plantOf(kM3508));

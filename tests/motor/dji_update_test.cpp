@@ -15,8 +15,8 @@ constexpr std::initializer_list<FrameKind> kWithoutTorque{
     FrameKind::kRest, FrameKind::kPoll, FrameKind::kIdle, FrameKind::kEnable, FrameKind::kDisable};
 
 /// Proportional loops only, so that efforts can be computed by hand.
-DjiMotorConfig plain(const DjiModel& model, DjiCommand command = DjiCommand::kCurrent) {
-  DjiMotorConfig config = djiConfig(model, 1, command);
+MotorSettings plain(const DjiModel& model, DjiCommand command = DjiCommand::kCurrent) {
+  MotorSettings config = djiConfig(model, 1, command);
   config.loops = {
       .velocity = PID_Position::Config{.kp = 0.1F}, .angle = {.kp = 2.0F}, .velocity_limit_rpm = 100.0F};
   config.zero_at_power_on = true;
@@ -47,7 +47,7 @@ TEST(DjiUpdate, WithoutTorqueTheEffortIsZeroWhateverTheTarget) {
 }
 
 TEST(DjiUpdate, CurrentGoesStraightToTheDriveWithinTheLimit) {
-  DjiMotorConfig config = plain(kM3508);
+  MotorSettings config = plain(kM3508);
   config.effort_limit = 12.0F;
   DJI_Motor motor(config);
   motor.order(FrameKind::kCommand);
@@ -68,7 +68,7 @@ TEST(DjiUpdate, EveryRawCommandCanBeReachedAndNoneBeyondFullScale) {
       if (!model->command(kind).exists()) continue;
       const DjiCommandTable& table = model->command(kind);
       for (const int direction : {1, -1}) {
-        DjiMotorConfig config = djiConfig(*model, 1, kind);
+        MotorSettings config = djiConfig(*model, 1, kind);
         config.direction = direction;
         DJI_Motor motor(config);
         motor.order(FrameKind::kCommand);
@@ -195,7 +195,7 @@ TEST(DjiUpdate, FeedForwardTorqueBecomesCurrentAtTheOutputShaft) {
 }
 
 TEST(DjiUpdate, LimitFlagsSayWhichLimitActs) {
-  DjiMotorConfig config = plain(kM3508);
+  MotorSettings config = plain(kM3508);
   config.effort_limit = 5.0F;
   DJI_Motor motor(config);
   DjiFeeder feeder(motor);

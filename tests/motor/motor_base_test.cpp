@@ -35,7 +35,11 @@ static_assert(!MixesUnits<Motor_Base>);
 static_assert(TakesQuantities<Motor_Base>);
 
 M3508 wheel() {
-  return M3508{DjiMotorConfig{.name = "wheel", .id = 1, .loops = kM3508.current.default_loops}};
+  MotorSettings settings;
+  settings.name = "wheel";
+  settings.id = 1;
+  settings.loops = kM3508.current.default_loops;
+  return M3508{settings};
 }
 
 TEST(MotorBase, QuantitiesBecomeTargetsInTheProjectsUnits) {

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "drives/dji/dji_motor.hpp"
+#include "support/dji_frames.hpp"
 
 namespace rc10::test::dji_drive_test {
 namespace {
@@ -43,11 +44,11 @@ double currentAfter(DriveConfig config, const CanFrame& command) {
 }
 
 DJI_Motor decoder(const DriveConfig& config) {
-  DjiMotorConfig motor;
+  MotorSettings motor;
   motor.name = config.name;
-  motor.model = config.model;
+  motor.model = config.model->name;
   motor.id = config.id;
-  motor.command = config.command;
+  motor.own = djiOwn(config.command);
   motor.gear_ratio = config.gear_ratio;
   motor.loops = config.model->command(config.command).default_loops;
   return DJI_Motor{motor};

@@ -14,6 +14,7 @@
 #include "drives/dji/dji_motor.hpp"
 #include "drives/dji/dji_simulated.hpp"
 #include "sim/sim_port.hpp"
+#include "support/dji_frames.hpp"
 
 namespace rc10::test {
 
@@ -70,11 +71,11 @@ class SimRig {
   static constexpr Duration kHalfPeriod{std::chrono::microseconds{500}};
 
   void add(const sim::DriveConfig& drive) {
-    DjiMotorConfig config;
+    MotorSettings config;
     config.name = drive.name;
-    config.model = drive.model;
+    config.model = drive.model->name;
     config.id = drive.id;
-    config.command = drive.command;
+    config.own = djiOwn(drive.command);
     config.gear_ratio = drive.gear_ratio;
     config.loops = drive.model->command(drive.command).default_loops;
     motors_.push_back(std::make_unique<DJI_Motor>(config));

@@ -34,14 +34,20 @@ inline CanFrame makeDjiFeedback(const DjiModel& model, int id, const DjiReport& 
   return frame;
 }
 
-/// A configuration that passes DJI_Motor::check().
-inline DjiMotorConfig djiConfig(const DjiModel& model, int id = 1,
-                                DjiCommand command = DjiCommand::kCurrent) {
-  DjiMotorConfig config;
+/// Values of the family's own key.
+inline OwnValues djiOwn(DjiCommand command) {
+  OwnValues own;
+  own.set("command", std::string{command == DjiCommand::kVoltage ? "voltage" : "current"});
+  return own;
+}
+
+/// Settings that pass DJI_Motor::check().
+inline MotorSettings djiConfig(const DjiModel& model, int id = 1, DjiCommand command = DjiCommand::kCurrent) {
+  MotorSettings config;
   config.name = std::string{model.name} + "_" + std::to_string(id);
-  config.model = &model;
+  config.model = model.name;
   config.id = id;
-  config.command = command;
+  config.own = djiOwn(command);
   config.loops = model.command(command).default_loops;
   return config;
 }

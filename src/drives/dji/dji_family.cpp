@@ -26,8 +26,7 @@ constexpr int kDjiBitrate = 1'000'000;  // C620, C610 and GM6020 know no other
 constexpr FrameShape kShape{.extended = false, .fd = false, .bit_rate_switch = false, .length = 8};
 
 [[nodiscard]] DjiCommand commandOf(const DjiModel& model, const OwnValues& own) {
-  const bool voltage = own.text("command") == "voltage" && model.voltage.exists();
-  return voltage ? DjiCommand::kVoltage : DjiCommand::kCurrent;
+  return model.voltage.exists() ? djiSettings(own).command : DjiCommand::kCurrent;
 }
 
 class DjiFamily final : public MotorFamily {
@@ -71,7 +70,7 @@ class DjiFamily final : public MotorFamily {
 
   [[nodiscard]] Result<void> check(const MotorSettings& settings) const override {
     const DjiModel& model = *findDjiModel(settings.model);
-    if (settings.own.text("command") != "voltage" || model.voltage.exists()) return {};
+    if (model.command(djiSettings(settings.own).command).exists()) return {};
     return fail("command: the " + settings.model +
                 " obeys currents only; remove it, or write command: current");
   }
@@ -93,26 +92,24 @@ class DjiFamily final : public MotorFamily {
   }
 
   [[nodiscard]] BusUse busUse(const MotorSettings& settings) const override {
-    const DjiMotorConfig config = djiConfig(settings);
-    const DjiModel& model = *config.model;
-    const CanId sends = djiFeedbackId(model, config.id);
-    const CanId obeys = djiCommandId(model, config.command, config.id);
-    const bool gimbal = config.model == &kGM6020;
+    const DjiModel& model = *findDjiModel(settings.model);
+    const CanId sends = djiFeedbackId(model, settings.id);
+    const CanId obeys = djiCommandId(model, djiSettings(settings.own).command, settings.id);
+    const bool gimbal = &model == &kGM6020;
     BusUse use;
     use.sends = {FrameFilter{.id = sends}};
     use.obeys = {FrameFilter{.id = obeys}};
     use.feedback = {{sends, kShape, static_cast<double>(settings.feedback_hz)}};
     use.commands = {{obeys, kShape, static_cast<double>(settings.tick_hz)}};
     use.layout = gimbal ? "GM6020 commands" : "C620 and C610 currents";
-    use.slot = djiSlot(config.id) + 1;
+    use.slot = djiSlot(settings.id) + 1;
     return use;
   }
 
   [[nodiscard]] Result<std::unique_ptr<Motor_Base>> build(const MotorSettings& settings,
                                                           BusParts& parts) const override {
-    const DjiMotorConfig config = djiConfig(settings);
-    if (auto checked = DJI_Motor::check(config); !checked) return tl::unexpected(checked.error());
-    auto motor = std::make_unique<DJI_Motor>(config);
+    if (auto checked = DJI_Motor::check(settings); !checked) return tl::unexpected(checked.error());
+    auto motor = std::make_unique<DJI_Motor>(settings);
     if (auto listens = parts.bus().registerMotor(*motor); !listens) return tl::unexpected(listens.error());
     auto* group = parts.find<DJI_Group>(motor->commandId());
     if (group != nullptr) {
@@ -127,22 +124,6 @@ class DjiFamily final : public MotorFamily {
 };
 
 }  // namespace
-
-DjiMotorConfig djiConfig(const MotorSettings& settings) {
-  DjiMotorConfig config;
-  config.name = settings.name;
-  config.model = findDjiModel(settings.model);
-  config.id = settings.id;
-  config.command = settings.own.text("command") == "voltage" ? DjiCommand::kVoltage : DjiCommand::kCurrent;
-  config.gear_ratio = settings.gear_ratio;
-  config.direction = settings.direction;
-  config.effort_limit = settings.effort_limit;
-  config.zero_deg = settings.zero_deg;
-  config.zero_at_power_on = settings.zero_at_power_on;
-  config.travel = settings.travel;
-  config.loops = settings.loops;
-  return config;
-}
 
 const MotorFamily& djiFamily() noexcept {
   static const DjiFamily kFamily;

@@ -7,7 +7,7 @@
 
 #include "app/list_words.hpp"
 #include "bus/frame_text.hpp"
-#include "drives/dji/dji_family.hpp"
+#include "drives/dji/dji_model.hpp"
 
 namespace rc10 {
 namespace {
@@ -17,12 +17,18 @@ namespace {
 
 class DjiIds {
   using Places = std::vector<std::size_t>;
+  struct Drive {
+    const DjiModel* model;
+    int id;
+    DjiCommand command;
+  };
 
  public:
   explicit DjiIds(std::span<const MotorSettings> motors) {
     for (const auto& settings : motors) {
       const std::size_t place = drives_.size();
-      const auto& drive = drives_.emplace_back(djiConfig(settings));
+      const auto& drive = drives_.emplace_back(
+          Drive{findDjiModel(settings.model), settings.id, djiSettings(settings.own).command});
       by_feedback_[djiFeedbackId(*drive.model, drive.id).value].push_back(place);
       by_command_[djiCommandId(*drive.model, drive.command, drive.id).value].push_back(place);
     }
@@ -98,7 +104,7 @@ class DjiIds {
     return ids.empty() ? "no id is free for " + name : "free for " + name + ": " + listWords(ids);
   }
 
-  std::vector<DjiMotorConfig> drives_;
+  std::vector<Drive> drives_;
   std::map<std::uint32_t, Places> by_feedback_;
   std::map<std::uint32_t, Places> by_command_;
   std::set<std::size_t> reported_;

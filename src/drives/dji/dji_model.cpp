@@ -139,6 +139,10 @@ static_assert(kGM6020.current.exists() && kGM6020.voltage.exists());
 
 }  // namespace
 
+DjiSettings djiSettings(const OwnValues& own) {
+  return {.command = own.text("command") == "voltage" ? DjiCommand::kVoltage : DjiCommand::kCurrent};
+}
+
 const DjiModel* findDjiModel(std::string_view name) noexcept {
   for (const auto* model : djiModels()) {
     if (model->name == name) return model;

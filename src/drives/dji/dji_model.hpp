@@ -2,19 +2,24 @@
 
 #include <array>
 #include <cstdint>
-#include <string>
 #include <string_view>
 
 #include "bus/can_frame.hpp"
 #include "motor/cascade.hpp"
 #include "motor/drive_frames.hpp"
 #include "motor/encoder.hpp"
-#include "motor/first_angle.hpp"
+#include "motor/own_values.hpp"
 
 namespace rc10 {
 
 /// Command to the drive: the current (torque) or the voltage of the winding.
 enum class DjiCommand : std::uint8_t { kCurrent, kVoltage };
+
+/// Settings of one motor, from its own keys.
+struct DjiSettings {
+  DjiCommand command = DjiCommand::kCurrent;
+};
+[[nodiscard]] DjiSettings djiSettings(const OwnValues& own);
 
 /// One way to command a model: which ids carry it and how a value is written.
 struct DjiCommandTable {
@@ -73,19 +78,5 @@ extern const DjiModel kGM6020;
 [[nodiscard]] CanId djiFeedbackId(const DjiModel& model, int id) noexcept;
 [[nodiscard]] CanId djiCommandId(const DjiModel& model, DjiCommand command, int id) noexcept;
 [[nodiscard]] constexpr int djiSlot(int id) noexcept { return (id - 1) % 4; }
-
-struct DjiMotorConfig {
-  std::string name;
-  const DjiModel* model = nullptr;
-  int id = 0;  ///< As set on the drive: 1-8, GM6020 1-7.
-  DjiCommand command = DjiCommand::kCurrent;
-  double gear_ratio = 0.0;        ///< 0: the model's own.
-  int direction = 1;              ///< -1: mounted the other way round.
-  float effort_limit = 0.0F;      ///< A or V; 0: the model's full scale.
-  double zero_deg = 0.0;          ///< Output angle of an absolute encoder that is to read 0.
-  bool zero_at_power_on = false;  ///< The position of the first sample is 0.
-  Travel travel{};                ///< Tells the turn of an absolute encoder at power-up.
-  CascadeConfig loops;            ///< Start from model->command(command).default_loops.
-};
 
 }  // namespace rc10

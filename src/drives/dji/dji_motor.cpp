@@ -6,7 +6,6 @@
 #include "app/angle.hpp"
 #include "app/units.hpp"
 #include "drives/dji/dji_frames.hpp"
-#include "motor/motor_settings.hpp"
 
 namespace rc10 {
 namespace {
@@ -21,21 +20,21 @@ bool isAngle(ControlMode mode) noexcept {
 
 }  // namespace
 
-DJI_Motor::DJI_Motor(const DjiMotorConfig& config)
-    : Motor_Base(config.name),
-      model_(config.model),
-      id_(config.id),
-      command_(config.command),
-      gear_ratio_(gearRatioOf(config, *config.model)),
-      direction_(config.direction < 0 ? -1 : 1),
-      effort_limit_(effortLimitOf(config, table().full_scale)),
+DJI_Motor::DJI_Motor(const MotorSettings& settings, const DjiModel& model)
+    : Motor_Base(settings.name),
+      model_(&model),
+      id_(settings.id),
+      command_(djiSettings(settings.own).command),
+      gear_ratio_(gearRatioOf(settings, *model_)),
+      direction_(settings.direction < 0 ? -1 : 1),
+      effort_limit_(effortLimitOf(settings, table().full_scale)),
       absolute_(model_->absolute_output && gear_ratio_ == model_->gear_ratio),
-      zero_at_power_on_(config.zero_at_power_on),
-      zero_deg_(config.zero_deg),
-      travel_(config.travel),
+      zero_at_power_on_(settings.zero_at_power_on),
+      zero_deg_(settings.zero_deg),
+      travel_(settings.travel),
       filters_{FrameFilter{.id = djiFeedbackId(*model_, id_), .mask = kStandardIdMask, .discriminator = {}}},
       encoder_(model_->encoder),
-      loops_(config.loops),
+      loops_(settings.loops),
       spacing_(std::chrono::milliseconds{1}),
       degrees_per_count_(direction_ * kDegPerTurn / (dji::kCountsPerTurn * gear_ratio_)),
       rpm_per_raw_(static_cast<float>(direction_ / gear_ratio_)),

@@ -9,6 +9,7 @@
 #include "motor/cascade.hpp"
 #include "motor/encoder.hpp"
 #include "motor/motor_base.hpp"
+#include "motor/motor_settings.hpp"
 #include "motor/sample_spacing.hpp"
 
 namespace rc10 {
@@ -25,10 +26,12 @@ namespace rc10 {
 class DJI_Motor : public Motor_Base {
  public:
   /// The error names the motor, the key and the allowed range.
-  [[nodiscard]] static Result<void> check(const DjiMotorConfig& config);
+  [[nodiscard]] static Result<void> check(const MotorSettings& settings);
 
-  /// `config` has passed check().
-  explicit DJI_Motor(const DjiMotorConfig& config);
+  /// `settings` have passed check().
+  explicit DJI_Motor(const MotorSettings& settings) : DJI_Motor(settings, *findDjiModel(settings.model)) {}
+  /// Of a drive with this table, which outlives it, whatever the settings call its model.
+  DJI_Motor(const MotorSettings& settings, const DjiModel& model);
 
   [[nodiscard]] std::span<const FrameFilter> filters() const noexcept override { return filters_; }
   [[nodiscard]] bool matchesFrame(const CanFrame& frame) const noexcept override;
@@ -102,18 +105,18 @@ class DJI_Motor : public Motor_Base {
   float effort_ = 0.0F;
 };
 
-/// The three models under the users' names: `M3508 wheel{config}`. They differ only in their table.
+/// The three models under the users' names: `M3508 wheel{settings}`. They differ only in their table.
 class M3508 : public DJI_Motor {
  public:
-  explicit M3508(DjiMotorConfig config) : DJI_Motor((config.model = &kM3508, config)) {}
+  explicit M3508(const MotorSettings& settings) : DJI_Motor(settings, kM3508) {}
 };
 class M2006 : public DJI_Motor {
  public:
-  explicit M2006(DjiMotorConfig config) : DJI_Motor((config.model = &kM2006, config)) {}
+  explicit M2006(const MotorSettings& settings) : DJI_Motor(settings, kM2006) {}
 };
 class GM6020 : public DJI_Motor {
  public:
-  explicit GM6020(DjiMotorConfig config) : DJI_Motor((config.model = &kGM6020, config)) {}
+  explicit GM6020(const MotorSettings& settings) : DJI_Motor(settings, kGM6020) {}
 };
 
 }  // namespace rc10

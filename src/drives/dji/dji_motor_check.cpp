@@ -41,52 +41,53 @@ std::string loopProblem(const CascadeConfig& loops) {
   return {};
 }
 
-std::string referenceProblem(const DjiMotorConfig& config) {
-  const bool geared = config.gear_ratio > 0.0 && config.gear_ratio != config.model->gear_ratio;
-  if (!std::isfinite(config.zero_deg)) return "zero_deg must be a finite number";
-  if (config.zero_deg == 0.0) return {};
-  if (!config.model->absolute_output || geared) {
+std::string referenceProblem(const MotorSettings& settings, const DjiModel& model) {
+  const bool geared = settings.gear_ratio > 0.0 && settings.gear_ratio != model.gear_ratio;
+  if (!std::isfinite(settings.zero_deg)) return "zero_deg must be a finite number";
+  if (settings.zero_deg == 0.0) return {};
+  if (!model.absolute_output || geared) {
     return "zero_deg needs an encoder on the output shaft (GM6020 without a gear); use zero: power_on or the "
            "zero request";
   }
-  if (config.zero_at_power_on) return "zero_deg and zero: power_on exclude each other";
+  if (settings.zero_at_power_on) return "zero_deg and zero: power_on exclude each other";
   return {};
 }
 
-/// Error in the configuration of a known model; empty: none.
-std::string problem(const DjiMotorConfig& config) {
-  const DjiModel& model = *config.model;
+/// Error in the settings of a known model; empty: none.
+std::string problem(const MotorSettings& settings, const DjiModel& model) {
+  const DjiCommand command = djiSettings(settings.own).command;
   const std::string name{model.name};
-  if (config.id < 1 || config.id > model.max_id) {
-    return "id " + std::to_string(config.id) + " is outside 1-" + std::to_string(model.max_id) + " of " +
+  if (settings.id < 1 || settings.id > model.max_id) {
+    return "id " + std::to_string(settings.id) + " is outside 1-" + std::to_string(model.max_id) + " of " +
            name;
   }
-  const DjiCommandTable& table = model.command(config.command);
+  const DjiCommandTable& table = model.command(command);
   if (!table.exists()) return "command: " + name + " obeys current only";
-  if (!std::isfinite(config.gear_ratio) || config.gear_ratio < 0.0) {
-    return "gear_ratio " + text(config.gear_ratio) + " must be above 0, or 0 for the model's own " +
+  if (!std::isfinite(settings.gear_ratio) || settings.gear_ratio < 0.0) {
+    return "gear_ratio " + text(settings.gear_ratio) + " must be above 0, or 0 for the model's own " +
            text(model.gear_ratio);
   }
-  if (config.direction != 1 && config.direction != -1) {
-    return "direction " + std::to_string(config.direction) + " must be 1 or -1";
+  if (settings.direction != 1 && settings.direction != -1) {
+    return "direction " + std::to_string(settings.direction) + " must be 1 or -1";
   }
-  if (!isGain(config.effort_limit) || config.effort_limit > table.full_scale) {
-    const bool current = config.command == DjiCommand::kCurrent;
+  if (!isGain(settings.effort_limit) || settings.effort_limit > table.full_scale) {
+    const bool current = command == DjiCommand::kCurrent;
     return std::string{current ? "current_limit_a " : "voltage_limit_v "} +
-           text(static_cast<double>(config.effort_limit)) + " is outside 0-" +
+           text(static_cast<double>(settings.effort_limit)) + " is outside 0-" +
            text(static_cast<double>(table.full_scale)) + (current ? " A" : " V") + " of " + name;
   }
-  if (auto reason = referenceProblem(config); !reason.empty()) return reason;
-  return loopProblem(config.loops);
+  if (auto reason = referenceProblem(settings, model); !reason.empty()) return reason;
+  return loopProblem(settings.loops);
 }
 
 }  // namespace
 
-Result<void> DJI_Motor::check(const DjiMotorConfig& config) {
-  const std::string who = "motor '" + config.name + "': ";
-  if (config.name.empty()) return fail(who + "name is missing");
-  if (config.model == nullptr) return fail(who + "model is missing: one of M3508, M2006, GM6020");
-  if (auto reason = problem(config); !reason.empty()) return fail(who + reason);
+Result<void> DJI_Motor::check(const MotorSettings& settings) {
+  const std::string who = "motor '" + settings.name + "': ";
+  if (settings.name.empty()) return fail(who + "name is missing");
+  const DjiModel* const model = findDjiModel(settings.model);
+  if (model == nullptr) return fail(who + "model is missing: one of M3508, M2006, GM6020");
+  if (auto reason = problem(settings, *model); !reason.empty()) return fail(who + reason);
   return {};
 }
 

@@ -5,7 +5,6 @@
 #include <limits>
 #include <utility>
 
-#include "drives/dji/dji_family.hpp"
 #include "drives/dji/dji_frames.hpp"
 #include "drives/dji/dji_simulated_parameters.hpp"
 #include "motor/motor_settings.hpp"
@@ -102,12 +101,11 @@ void DjiDrive::setLoad(const MotorLoad& load) noexcept {
 }
 
 std::unique_ptr<Drive> makeDjiDrive(const MotorSettings& settings, const MotorLoad& load) {
-  const DjiMotorConfig motor = djiConfig(settings);
-  return std::make_unique<DjiDrive>(DriveConfig{.name = motor.name,
-                                                .model = motor.model,
-                                                .id = motor.id,
-                                                .command = motor.command,
-                                                .gear_ratio = motor.gear_ratio,
+  return std::make_unique<DjiDrive>(DriveConfig{.name = settings.name,
+                                                .model = findDjiModel(settings.model),
+                                                .id = settings.id,
+                                                .command = djiSettings(settings.own).command,
+                                                .gear_ratio = settings.gear_ratio,
                                                 .load = load});
 }
 

@@ -5,6 +5,7 @@
 #include <gmock/gmock.h>
 
 #include "config/config_text.hpp"
+#include "drives/dji/dji_model.hpp"
 
 namespace rc10::test::loop_rules_test {
 namespace {

@@ -3,7 +3,7 @@
 #include <gmock/gmock.h>
 
 #include "config/config_text.hpp"
-#include "drives/dji/dji_motor.hpp"
+#include "support/dji_frames.hpp"
 
 namespace rc10::test::drive_id_test {
 namespace {
@@ -87,11 +87,11 @@ TEST(DriveIds, AreThoseThatTheMotorsUse) {
     for (const auto command : {DjiCommand::kCurrent, DjiCommand::kVoltage}) {
       if (!model->command(command).exists()) continue;
       for (int id = 1; id <= model->max_id; ++id) {
-        const DjiMotorConfig config{.name = "a",
-                                    .model = model,
-                                    .id = id,
-                                    .command = command,
-                                    .loops = model->command(command).default_loops};
+        const MotorSettings config{.name = "a",
+                                   .model = std::string{model->name},
+                                   .id = id,
+                                   .loops = model->command(command).default_loops,
+                                   .own = djiOwn(command)};
         const DJI_Motor motor{config};
         EXPECT_EQ(djiCommandId(*model, command, id), motor.commandId());
         EXPECT_EQ(djiFeedbackId(*model, id), motor.filters()[0].id);

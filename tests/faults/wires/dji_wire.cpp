@@ -2,7 +2,7 @@
 #include <cmath>
 
 #include "bus/can_frame.hpp"
-#include "drives/dji/dji_family.hpp"
+#include "drives/dji/dji_model.hpp"
 #include "faults/wire.hpp"
 
 namespace rc10::test {
@@ -11,18 +11,20 @@ namespace {
 class DjiWire final : public Wire {
  public:
   explicit DjiWire(const MotorConfig& config) : Wire(config) {
-    const DjiMotorConfig dji = djiConfig(config.settings);
-    const auto& table = dji.model->command(dji.command);
-    const double gear = dji.gear_ratio > 0.0 ? dji.gear_ratio : dji.model->gear_ratio;
+    const MotorSettings& dji = config.settings;
+    const DjiModel& model = *findDjiModel(dji.model);
+    const DjiCommand command = djiSettings(dji.own).command;
+    const auto& table = model.command(command);
+    const double gear = dji.gear_ratio > 0.0 ? dji.gear_ratio : model.gear_ratio;
     command_id_ = {table.command_ids[dji.id > 4 ? 1 : 0], false};
     slot_ = static_cast<std::size_t>((dji.id - 1) % 4);
-    feedback_id_ = {static_cast<std::uint32_t>(dji.model->feedback_id_base + dji.id), false};
+    feedback_id_ = {static_cast<std::uint32_t>(model.feedback_id_base + dji.id), false};
     raw_per_effort_ =
         dji.direction * static_cast<double>(table.raw_full_scale) / static_cast<double>(table.full_scale);
     rpm_per_raw_ = dji.direction / gear;
-    if (dji.command == DjiCommand::kCurrent) {
-      damp_per_rpm_ = static_cast<double>(table.full_scale) * gear / dji.model->gear_ratio /
-                      static_cast<double>(dji.model->no_load_rpm);
+    if (command == DjiCommand::kCurrent) {
+      damp_per_rpm_ = static_cast<double>(table.full_scale) * gear / model.gear_ratio /
+                      static_cast<double>(model.no_load_rpm);
     }
     told_.effort_step = 1.0 / std::fabs(raw_per_effort_);
   }
