@@ -3,6 +3,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <string_view>
 #include <type_traits>
 
 #include "link/link_protocol.hpp"
@@ -231,6 +232,18 @@ struct Motor {
   std::uint32_t stop_cause = 0;
   std::uint32_t reserved = 0;
 };
+
+/// Calls visit(name, field of each holder...) for the readings of its drive that a Motor has.
+template <typename Visit, typename... Holders>
+constexpr void visitReadings(const Visit& visit, Holders&... holders) {
+  visit(std::string_view{"total_angle_deg"}, holders.total_angle_deg...);
+  visit(std::string_view{"angle_deg"}, holders.angle_deg...);
+  visit(std::string_view{"velocity_rpm"}, holders.velocity_rpm...);
+  visit(std::string_view{"current_a"}, holders.current_a...);
+  visit(std::string_view{"torque_nm"}, holders.torque_nm...);
+  visit(std::string_view{"voltage_v"}, holders.voltage_v...);
+  visit(std::string_view{"temperature_c"}, holders.temperature_c...);
+}
 
 /// `flags` is the state of the robot, `source` the cause of its stop, `id` its conditions.
 struct Robot {

@@ -5,10 +5,10 @@
 #include <limits>
 #include <vector>
 
+#include "app/motor_readings.hpp"
 #include "app/nearest.hpp"
 #include "app/printable.hpp"
 #include "client/find_motor.hpp"
-#include "link/motor_readings.hpp"
 
 namespace rc10::client {
 namespace {

@@ -53,6 +53,22 @@ template <typename T>
 #define RC10_PLACE(Struct, field) \
   { #field, fieldAt<decltype(Struct::field)>(offsetof(Struct, field)) }
 
+[[nodiscard]] Json motorFields() {
+  Json fields{RC10_PLACE(Motor, target), RC10_PLACE(Motor, target_shaped)};
+  const Motor motor;
+  visitReadings(
+      [&](std::string_view name, const auto& field) {
+        const auto* const at = reinterpret_cast<const std::byte*>(&field);
+        const auto offset = static_cast<std::size_t>(at - reinterpret_cast<const std::byte*>(&motor));
+        fields[std::string(name)] = fieldAt<std::remove_cvref_t<decltype(field)>>(offset);
+      },
+      motor);
+  fields.update({RC10_PLACE(Motor, command_value), RC10_PLACE(Motor, limits), RC10_PLACE(Motor, fault),
+                 RC10_PLACE(Motor, feedback_age_us), RC10_PLACE(Motor, feedback_age_at_use_us),
+                 RC10_PLACE(Motor, command_age_us), RC10_PLACE(Motor, stop_cause)});
+  return fields;
+}
+
 [[nodiscard]] Json structuresJson() {
   const auto structure = [](std::size_t bytes, Json fields) {
     return Json{{"bytes", bytes}, {"fields", std::move(fields)}};
@@ -90,14 +106,7 @@ template <typename T>
                             {RC10_PLACE(Order, motors), RC10_PLACE(Order, value), RC10_PLACE(Order, client)});
   json["event"] = structure(sizeof(Event),
                             {RC10_PLACE(Event, value), RC10_PLACE(Event, extra), RC10_PLACE(Event, client)});
-  json["motor"] = structure(
-      sizeof(Motor),
-      {RC10_PLACE(Motor, target), RC10_PLACE(Motor, target_shaped), RC10_PLACE(Motor, total_angle_deg),
-       RC10_PLACE(Motor, angle_deg), RC10_PLACE(Motor, velocity_rpm), RC10_PLACE(Motor, current_a),
-       RC10_PLACE(Motor, torque_nm), RC10_PLACE(Motor, voltage_v), RC10_PLACE(Motor, temperature_c),
-       RC10_PLACE(Motor, command_value), RC10_PLACE(Motor, limits), RC10_PLACE(Motor, fault),
-       RC10_PLACE(Motor, feedback_age_us), RC10_PLACE(Motor, feedback_age_at_use_us),
-       RC10_PLACE(Motor, command_age_us), RC10_PLACE(Motor, stop_cause)});
+  json["motor"] = structure(sizeof(Motor), motorFields());
   json["robot"] = structure(
       sizeof(Robot), {RC10_PLACE(Robot, tick), RC10_PLACE(Robot, missed_ticks), RC10_PLACE(Robot, estops)});
   json["bus"] = structure(

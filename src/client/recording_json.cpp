@@ -119,13 +119,8 @@ class Writer {
     json_["target"] = r.target;
     json_["target_shaped"] = r.target_shaped;
     json_["zeroed"] = (r.header.id >> 16U & 1U) != 0;
-    json_["angle_deg"] = shortest(r.angle_deg);
-    json_["total_angle_deg"] = r.total_angle_deg;
-    json_["velocity_rpm"] = shortest(r.velocity_rpm);
-    json_["current_a"] = shortest(r.current_a);
-    json_["torque_nm"] = shortest(r.torque_nm);
-    json_["voltage_v"] = shortest(r.voltage_v);
-    json_["temperature_c"] = shortest(r.temperature_c);
+    visitReadings([this](std::string_view name, auto value) { json_[std::string(name)] = shortest(value); },
+                  r);
     json_["command_value"] = shortest(r.command_value);
     json_["command_unit"] = toString(static_cast<CommandUnit>(r.header.id >> 8U & 0xFFU));
     json_["feedback_age_us"] = r.feedback_age_us;

@@ -4,8 +4,8 @@
 #include <array>
 #include <span>
 
+#include "app/motor_readings.hpp"
 #include "client/json_line.hpp"
-#include "link/motor_readings.hpp"
 #include "link/words.hpp"
 
 namespace rc10::client {
@@ -29,9 +29,8 @@ Json motorJson(const link::MotorInfo& info, const link::MotorState& motor) {
             {"acting", toString(motor.acting)},
             {"stop_cause", toString(motor.stop_cause)},
             {"stopped_by", motor.stopped_by.view()}};
-#define RC10_KEY(type, name, initial) json[#name] = shortest(motor.name);
-  RC10_MOTOR_READINGS(RC10_KEY)
-#undef RC10_KEY
+  visitMotorReadings(
+      [&json](std::string_view name, auto value) { json[std::string(name)] = shortest(value); }, motor);
   return json;
 }
 

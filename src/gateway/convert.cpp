@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "link/motor_readings.hpp"
+#include "app/motor_readings.hpp"
 #include "link/words.hpp"
 
 namespace rc10::gateway {
@@ -38,9 +38,7 @@ void convert(const link::MotorState& in, motor_state_t& out) {
   assign(out.stopped_by, in.stopped_by);
   out.zeroed = static_cast<std::int8_t>(in.zeroed != 0);
   out.command_unit = static_cast<std::int8_t>(in.command_unit);
-#define RC10_COPY(type, name, initial) out.name = in.name;
-  RC10_MOTOR_READINGS(RC10_COPY)
-#undef RC10_COPY
+  visitMotorReadings(kCopyReading, out, in);
 }
 
 void convert(const link::BusStatus& in, bus_state_t& out) {

@@ -7,9 +7,9 @@
 #include <string_view>
 #include <type_traits>
 
+#include "app/motor_readings.hpp"
 #include "app/target.hpp"
 #include "app/vocabulary.hpp"
-#include "link/motor_readings.hpp"
 #include "link/trace_signal.hpp"
 
 /// The messages on rc10d's link socket (SOCK_SEQPACKET): fixed structs, one per datagram, in the

@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <string_view>
 
-#include "link/motor_readings.hpp"
+#include "app/motor_readings.hpp"
 
 namespace rc10::link {
 

@@ -8,6 +8,7 @@
 #include <string_view>
 #include <utility>
 
+#include "app/motor_readings.hpp"
 #include "app/target.hpp"
 #include "app/time.hpp"
 #include "app/units.hpp"
@@ -21,16 +22,13 @@ inline constexpr float kNotReported = std::numeric_limits<float>::quiet_NaN();
 
 /// The last known state of a motor, at the output shaft, in the users' units. NaN: not reported.
 struct MotorFeedback {
-  MonotonicTime received;          ///< Time of the last accepted frame.
-  std::uint64_t samples = 0;       ///< Frames accepted since start; 0: nothing here is known yet.
-  std::uint64_t jumps = 0;         ///< Samples whose angle the motor cannot have reached.
-  float angle_deg = kNotReported;  ///< [0, 360)
-  double total_angle_deg = std::numeric_limits<double>::quiet_NaN();
-  float velocity_rpm = kNotReported;
-  float current_a = kNotReported;
-  float torque_nm = kNotReported;
-  float voltage_v = kNotReported;
-  float temperature_c = kNotReported;
+  MonotonicTime received;     ///< Time of the last accepted frame.
+  std::uint64_t samples = 0;  ///< Frames accepted since start; 0: nothing here is known yet.
+  std::uint64_t jumps = 0;    ///< Samples whose angle the motor cannot have reached.
+  // angle_deg, total_angle_deg, velocity_rpm, …: app/motor_readings.hpp.
+#define RC10_FIELD(type, name, initial) type name = std::numeric_limits<type>::quiet_NaN();
+  RC10_FEEDBACK_READINGS(RC10_FIELD)
+#undef RC10_FIELD
   bool zeroed = false;        ///< The angle has a known reference.
   bool turn_unclear = false;  ///< Absolute, but its travel does not say on which turn it stands.
 };

@@ -7,8 +7,8 @@
 
 #include <fmt/format.h>
 
+#include "app/motor_readings.hpp"
 #include "daemon/exchange/events.hpp"
-#include "link/motor_readings.hpp"
 #include "rc10_version.hpp"
 
 namespace rc10 {
@@ -112,14 +112,11 @@ void Publication::fill(link::State& state, const Snapshot& snapshot, std::int64_
     out.feedback_age_at_use_us = feedbackAgeUs(in.feedback, snapshot.sent);
     out.command_age_us = commandAgeUs(in, snapshot.time);
     out.target = in.target.value;
-    out.target_shaped = in.target_shaped;
     out.acting = in.acting;
     out.stop_cause = in.stop.cause;
     out.stopped_by = in.stop.by;
-#define RC10_COPY(type, name, initial) out.name = in.feedback.name;
-    RC10_FEEDBACK_READINGS(RC10_COPY)
-#undef RC10_COPY
-    out.command_value = in.command_value;
+    visitFeedbackReadings(kCopyReading, out, in.feedback);
+    visitTickReadings(kCopyReading, out, in);
     out.feedback_hz = feedback_rates_[i].update(snapshot.time, in.feedback.samples);
     out.owner = in.owner;
   }

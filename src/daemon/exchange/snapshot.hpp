@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <limits>
 
+#include "app/motor_readings.hpp"
 #include "app/time.hpp"
 #include "bus/fdcan_bus.hpp"
 #include "daemon/exchange/orders.hpp"
@@ -20,11 +21,12 @@ inline constexpr std::size_t kMaxBuses = link::kMaxBuses;
 struct MotorSnapshot {
   MotorFeedback feedback;
   Target target;
-  double target_shaped = std::numeric_limits<double>::quiet_NaN();  ///< As it acts; NaN: none does.
+#define RC10_FIELD(type, name, initial) type name = std::numeric_limits<type>::quiet_NaN();
+  RC10_TICK_READINGS(RC10_FIELD)
+#undef RC10_FIELD
   MonotonicTime command_received{};  ///< Time of the command in force, a module's: its tick; 0: none is.
   Acting acting = Acting::kNothing;
   Stop stop;  ///< Reason why it does not obey.
-  float command_value = 0.0F;
   std::uint32_t limits = 0;
   FaultCode fault = FaultCode::kNone;
   MotorStatus status = MotorStatus::kOffline;

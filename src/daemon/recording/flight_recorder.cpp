@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "app/motor_readings.hpp"
 #include "daemon/devices/robot.hpp"
 
 namespace rc10 {
@@ -170,13 +171,7 @@ void FlightRecorder::motor(const MotorSnapshot& motor, MonotonicTime sent, std::
       (motor.feedback.zeroed ? 1U << 16U : 0U) | static_cast<std::uint32_t>(motor.acting) << 24U;
   record.target = motor.target.value;
   record.target_shaped = motor.target_shaped;
-  record.total_angle_deg = motor.feedback.total_angle_deg;
-  record.angle_deg = motor.feedback.angle_deg;
-  record.velocity_rpm = motor.feedback.velocity_rpm;
-  record.current_a = motor.feedback.current_a;
-  record.torque_nm = motor.feedback.torque_nm;
-  record.voltage_v = motor.feedback.voltage_v;
-  record.temperature_c = motor.feedback.temperature_c;
+  blackbox::visitReadings(kCopyReading, record, motor.feedback);
   record.command_value = motor.command_value;
   record.limits = motor.limits;
   record.fault = static_cast<std::int32_t>(motor.fault);

@@ -7,6 +7,7 @@
 #include <string_view>
 #include <vector>
 
+#include "app/motor_readings.hpp"
 #include "app/time.hpp"
 #include "app/vocabulary.hpp"
 #include "rc10/setpoint.hpp"
@@ -30,27 +31,24 @@ struct MotorState {
 
   Mode mode = Mode::kCoast;                 ///< In force; coast when there is no valid target.
   double target = 0.0;                      ///< As it was asked for, in the unit of the mode.
-  double target_shaped = kUnknown;          ///< As limits and slew let it act; NaN unless it acts.
   std::string owner{};                      ///< The client whose target is in force, empty without one.
   Acting acting = Acting::kNothing;         ///< Source of what the shaft feels.
   StopCause stop_cause = StopCause::kNone;  ///< Reason why it stopped obeying; kNone while it obeys.
   std::string stopped_by{};                 ///< The client, module or motor that stopped it, if any.
   bool zeroed = false;                      ///< The angle has a known reference.
 
-  double angle_deg = kUnknown;        ///< [0, 360)
-  double total_angle_deg = kUnknown;  ///< Multi-turn.
-  double velocity_rpm = kUnknown;
-  double current_a = kUnknown;
-  double torque_nm = kUnknown;
-  double voltage_v = kUnknown;
-  double temperature_c = kUnknown;
+  // target_shaped, command_value, and of the drive angle_deg, total_angle_deg, velocity_rpm, current_a,
+  // torque_nm, voltage_v, temperature_c: app/motor_readings.hpp.
+#define RC10_FIELD(type, name, initial) double name = kUnknown;
+  RC10_TICK_READINGS(RC10_FIELD)
+  RC10_FEEDBACK_READINGS(RC10_FIELD)
+#undef RC10_FIELD
 
   std::chrono::microseconds feedback_age{-1};         ///< When the state was taken; -1: no feedback yet.
   std::chrono::microseconds feedback_age_at_use{-1};  ///< When the frames computed from it left.
   std::chrono::microseconds command_age{-1};  ///< Since rc10d's host received the command in force; -1: none.
   double feedback_hz = 0.0;
-  double command_value = kUnknown;  ///< Last value sent to the drive, in command_unit.
-  CommandUnit command_unit = CommandUnit::kNone;
+  CommandUnit command_unit = CommandUnit::kNone;  ///< Of command_value.
 };
 
 /// All motors at one tick of rc10d.
