@@ -14,7 +14,7 @@ NOT_RUN = {
     ("ARCHITECTURE.md", "robot programs ─ LCM"): "a drawing",
     (
         "ARCHITECTURE.md",
-        "app          -> nothing",
+        "app:           nothing",
     ): "tests/layers/check_layers.py has the same layers",
     ("ARCHITECTURE.md", "intake       sockets"): "a drawing",
     ("docs/gpio.md", "   closed_level: low"): "a drawing",
