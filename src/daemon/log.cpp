@@ -41,7 +41,7 @@ class PrintableText final : public spdlog::custom_flag_formatter {
 
 using ColorSink = spdlog::sinks::ansicolor_sink<spdlog::details::console_nullmutex>;
 
-// Of the process, as stderr is.
+// Open for as long as the process lives, as stderr is.
 std::FILE* unblockedStderr() {
   UniqueFd terminal = unblockedTerminal(STDERR_FILENO);
   std::FILE* const file = terminal ? ::fdopen(terminal.get(), "w") : nullptr;

@@ -34,7 +34,7 @@ void catchSignals() {
   // Those of a terminal, too: rc10d ends by them in order, and must find the gateway neither stopped nor
   // dumping.
   for (const int signal : {SIGTERM, SIGINT, SIGHUP, SIGQUIT, SIGTSTP}) ::sigaction(signal, &action, nullptr);
-  // Of a line on stderr: a closed pipe, a file at its limit (ulimit -f), a terminal with `stty tostop`.
+  // A line on stderr may meet a closed pipe, a file at its limit (ulimit -f), a terminal with `stty tostop`.
   for (const int signal : {SIGPIPE, SIGXFSZ, SIGTTOU, SIGTTIN}) ::signal(signal, SIG_IGN);
 }
 
