@@ -99,8 +99,8 @@ def test_lines_are_copied_without_encryption_too_and_the_page_says_so(
     page = elsewhere(chromium, studio, f"#{token}")
     assert page.evaluate("isSecureContext") is False
     wheel = page.get_by_role("article", name="wheel", exact=True)
-    wheel.locator(".copy").first.click()
-    expect(wheel.locator(".copied").first).to_have_text("copied")
+    wheel.locator(".actions .copy").first.click()
+    expect(wheel.locator(".actions .copied").first).to_have_text("copied")
     page.locator("#tab-plots").click()
     field = page.get_by_label("Choose up to 12 signals")
     field.press("Control+v")
