@@ -67,8 +67,7 @@ buses:
   - name: ankles
     type: sim
     motors:
-      - {name: ankle, model: AK80-9, id: 31, protocol: mit, current_limit_a: 6, velocity_limit_rpm: 80,
-         on_timeout: damp,
+      - {name: ankle, model: AK80-9, id: 31, protocol: mit, current_limit_a: 6, velocity_limit_rpm: 80, on_timeout: damp,
          on_disable: brake, on_estop: hold, hold_max_s: 0.5, angle_min_deg: -120, angle_max_deg: 120, zero: power_on}
       - {name: hip, model: AK80-9, id: 32, reduced_velocity_rpm: 20, reduced_within_ms: 200,
          current_limit_a: 8, velocity_limit_rpm: 80, on_timeout: brake,
