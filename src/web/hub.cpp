@@ -232,9 +232,12 @@ void Hub::ask(Page& page, const AskRobot& wanted, MonotonicTime now) {
     refused = feed_.connected() ? page.link->ask(wanted, feed_.socketPath(), now) : feed_.reason();
   if (refused.empty()) {
     const auto operation = operationNamed(wanted.operation);
-    if (operation == Operation::kEnableAlone || operation == Operation::kDisable) {
-      page.alone = operation == Operation::kEnableAlone ? wanted.target : std::string{};
+    if (operation == Operation::kEnableAlone) {
+      page.alone = wanted.target;
+      page.alone_seq = wanted.seq;
       page.alone_on = false;
+    } else if (operation == Operation::kDisable && (wanted.target.empty() || wanted.target == page.alone)) {
+      page.alone.clear();
     }
     return;
   }
@@ -423,6 +426,8 @@ void Hub::publishAnswers(Page& page) {
   while (true) {
     const auto answer = page.link->answer(std::chrono::steady_clock::now());
     if (!answer) return;
+    if (answer->seq == page.alone_seq && answer->response.status != link::ResponseStatus::kOk)
+      page.alone.clear();
     page.socket->sendText(
         shared(responseMessage(answer->seq, statusWord(answer->response.status),
                                answer->response.message.view(), valuesOf(answer->response))));

@@ -66,8 +66,9 @@ class Hub {
     RenewalAge renewals;
     std::optional<OpenRecording> recording;
     std::uint32_t recording_number = 0;
-    std::string alone;      ///< Motor that it has enabled alone; empty: none.
-    bool alone_on = false;  ///< A state has shown that motor ENABLING or ACTIVE.
+    std::string alone;            ///< Motor that it has enabled alone; empty: none.
+    std::int64_t alone_seq = -1;  ///< The page's request for that.
+    bool alone_on = false;        ///< A state has shown that motor ENABLING or ACTIVE.
     std::unique_ptr<PageTest> test;
     std::unique_ptr<TestEvaluation> evaluation;
   };

@@ -230,6 +230,20 @@ def test_a_spin_ends_disabled_by_all_that_is_not_holding(
     studio.daemon.must("enable", "elbow")
 
 
+def test_a_key_holds_it_too_and_its_release_ends_it(
+    page: Page, studio: Studio, card: Locator
+) -> None:
+    ready_to_spin(page, studio, card)
+    press(card, "Enable it alone")
+    expect(card.get_by_role("button", name="Hold to spin")).to_be_enabled()
+    card.get_by_role("button", name="Hold to spin").focus()
+    page.keyboard.down(" ")
+    studio.daemon.wait_motor("wheel", lambda m: m["acting"] == "target", "it is in the spin")
+    page.keyboard.up(" ")
+    rests(studio, "wheel")
+    expect(card.get_by_text("Nothing was judged")).to_contain_text("(interrupted)")
+
+
 def test_a_browser_that_is_killed_in_the_spin_leaves_rest_and_no_lock(
     playwright: Playwright, studio: Studio, tmp_path: Path
 ) -> None:
