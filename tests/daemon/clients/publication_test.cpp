@@ -97,8 +97,8 @@ TEST_F(PublicationTest, TheStateCarriesTheSnapshotOfTheTick) {
   motor.owner = "planner";
   motor.feedback = {.received = snapshot->time - 750us,
                     .samples = 5,
-                    .angle_deg = 1.0F,
                     .total_angle_deg = 361.0,
+                    .angle_deg = 1.0F,
                     .velocity_rpm = 2.0F,
                     .current_a = 3.0F,
                     .torque_nm = 4.0F,
