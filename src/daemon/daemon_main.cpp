@@ -46,7 +46,7 @@ Loaded load(const std::string& file) {
 int run(RobotConfig config, const std::string& source) {
   const std::string file = config.file;
   const std::string robot = config.robot;
-  SignalInbox signals;  // before the log, which starts a thread
+  SignalInbox signals;         // before the log, which starts a thread
   const auto log = makeLog();  // while /proc is open to it
   // A debugger and a core file need what this forbids.
   if (config.guard != GuardPolicy::kOff) forbidDumps();

@@ -44,8 +44,8 @@ class PageLink {
 
  private:
   struct Open {
-    std::int64_t number = 0;  ///< Of this link.
-    std::int64_t seq = 0;     ///< Of the page.
+    std::int64_t number = 0;  ///< Number of this link.
+    std::int64_t seq = 0;     ///< Number of the page.
     bool estop = false;
     MonotonicTime sent;
   };

@@ -225,7 +225,7 @@ export function Commission() {
       const before = newest.current;
       const finding = { at: new Date().toISOString(), hash: robot.robot.config_hash, pid: robot.robot.pid, ...judged };
       const found = { ...before.found, [step]: finding };
-      // What this step found before is over, and limits count from the zero.
+      // Earlier findings of this step are over, and limits count from the zero.
       if (step === 'zero') delete found.limits;
       const kept_lines = linesOf(before.lines, (each) => each !== step && holds(each, { ...before, found }));
       set({ found, lines: { ...kept_lines, ...lines }, ...(step === 'zero' ? { low_deg: null, high_deg: null } : {}) });

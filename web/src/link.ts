@@ -108,7 +108,7 @@ export class Link {
   private onCurve: (piece: CurvePiece) => void = () => {};
   private seq = 0;
   private token: string | null = null;
-  // Of this connection: a greeting comes first, and one in answer to each token.
+  // A greeting comes first on each connection, and one in answer to each token.
   private greetings = 0;
   private tokens = 0;
   private beats = 0;

@@ -18,7 +18,7 @@ export function Stop() {
   const lastPress = useRef(-Infinity);
   const before = useRef<State | null>(null);
   const stopped = known.connection === 'live' && known.state !== null && known.state.data.state !== 'RUN';
-  // Of a robot that stood in ESTOP already, a state from after the press.
+  // A robot that stood in ESTOP already: by a state from after the press.
   const confirmed = stopped && (asked === 'no' || known.state !== before.current);
 
   const press = (event: Event) => {
@@ -54,7 +54,7 @@ export function Stop() {
         title={word('stopHint')}
         onPointerDown={press}
         onKeyDown={(event) => (event.key === 'Enter' || event.key === ' ') && !event.repeat && press(event)}
-        // Of a screen reader or by voice: a click that no pointer and no key came before.
+        // A screen reader or a voice clicks without a pointer or a key before.
         onClick={(event) => event.timeStamp - lastPress.current > kTwiceMs && press(event)}
       >
         {word('stop')}

@@ -12,9 +12,9 @@
 /// command frame; each has a feedback frame of its own. Ids and scales are those of the model.
 namespace rc10::dji {
 
-inline constexpr std::size_t kLength = 8;  ///< Of commands and feedback alike.
+inline constexpr std::size_t kLength = 8;  ///< Same for commands and feedback.
 inline constexpr std::size_t kGroupSize = 4;
-inline constexpr int kCountsPerTurn = 8192;  ///< Of the encoder: 0 to 8191.
+inline constexpr int kCountsPerTurn = 8192;  ///< Encoder: 0 to 8191.
 
 /// Currents or voltages of the drives that listen to this id, by their slots.
 [[nodiscard]] CanFrame groupCommand(CanId id, const std::array<std::int16_t, kGroupSize>& raw) noexcept;

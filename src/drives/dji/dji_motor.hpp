@@ -30,7 +30,7 @@ class DJI_Motor : public Motor_Base {
 
   /// `settings` have passed check().
   explicit DJI_Motor(const MotorSettings& settings) : DJI_Motor(settings, *findDjiModel(settings.model)) {}
-  /// Of a drive with this table, which outlives it, whatever the settings call its model.
+  /// A drive with this table, which outlives it, whatever the settings call its model.
   DJI_Motor(const MotorSettings& settings, const DjiModel& model);
 
   [[nodiscard]] std::span<const FrameFilter> filters() const noexcept override { return filters_; }

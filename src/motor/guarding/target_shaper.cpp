@@ -223,8 +223,8 @@ TargetShaper::Shaped TargetShaper::shapeEffort(Target asked, const MotorFeedback
   return out;
 }
 
-// Of a drive of unknown speed per effort, which has a loop of the speed: that brakes a shaft that is faster
-// than allowed, until it is clearly slower.
+// A drive of unknown speed per effort may have a velocity loop: that brakes a shaft that is faster than
+// allowed, until it is clearly slower.
 TargetShaper::Shaped TargetShaper::boundBySpeed(Shaped out, const MotorFeedback& feedback) noexcept {
   const Envelope allowed = allowedSpeeds(feedback);
   const auto rpm = static_cast<double>(feedback.velocity_rpm);
@@ -249,7 +249,8 @@ TargetShaper::Shaped TargetShaper::boundBySpeed(Shaped out, const MotorFeedback&
   return out;
 }
 
-// Of one without: soft limits leave no push outwards, a ceiling only ends what drives the shaft beyond it.
+// Without a velocity loop, soft limits leave no push outwards, a ceiling only ends what drives the shaft
+// beyond it.
 double TargetShaper::effortTowards(double allowed_rpm, double sign,
                                    const MotorFeedback& feedback) const noexcept {
   const bool known = config_.approach_effort_per_rpm > 0.0F || config_.effort_per_rpm > 0.0F;

@@ -26,7 +26,7 @@ struct ShapingConfig {
   float effort_per_nm = 0.0F;            ///< A per N·m: of a torque feed-forward. 0: unknown.
   float effort_full_scale = 0.0F;        ///< Effort of a duty of 1. 0: unknown.
   bool has_velocity_loop = false;        ///< The motor can be told a speed.
-  bool lead_is_speed = false;            ///< What an angle is ahead is a speed, and another loop's matter.
+  bool lead_is_speed = false;            ///< The lead of an angle is a speed: another loop bounds it.
   double max_first_step_deg = std::numeric_limits<double>::infinity();
   float soft_start_s = 0.0F;  ///< The first target after enabling comes into force over this time.
 };

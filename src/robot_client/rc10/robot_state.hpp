@@ -48,7 +48,7 @@ struct MotorState {
   std::chrono::microseconds feedback_age_at_use{-1};  ///< When the frames computed from it left.
   std::chrono::microseconds command_age{-1};  ///< Since rc10d's host received the command in force; -1: none.
   double feedback_hz = 0.0;
-  CommandUnit command_unit = CommandUnit::kNone;  ///< Of command_value.
+  CommandUnit command_unit = CommandUnit::kNone;  ///< Unit of command_value.
 };
 
 /// All motors at one tick of rc10d.

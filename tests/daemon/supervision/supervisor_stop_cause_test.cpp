@@ -133,7 +133,8 @@ TEST_F(StopCauseTest, WhatTheGuardHasToldToRestIsNotTakenUpAgain) {
   EXPECT_EQ(robot.snapshot().stop.cause, StopCause::kGuard);
   EXPECT_EQ(robot.motor(kLeft).acting, Acting::kNothing) << "not its fallback either";
   EXPECT_FALSE(page.acted.load()) << "once";
-  EXPECT_THAT(told(), Contains("RUN -> ESTOP (rc10-guard told the drives to rest, has ended, or stands still)"));
+  EXPECT_THAT(told(),
+              Contains("RUN -> ESTOP (rc10-guard told the drives to rest, has ended, or stands still)"));
 }
 
 TEST_F(StopCauseTest, WithoutItsGuardTheRobotStopsWithItsFallbacks) {
