@@ -50,6 +50,8 @@ using Name = Text<32>;
 
 /// The name in the hello of rc10-lcm.
 inline constexpr std::string_view kGatewayClient = "rc10-lcm";
+/// The name in the first hello of rc10-web, whose other connections have the names of its pages.
+inline constexpr std::string_view kWebClient = "rc10-web";
 
 enum class MessageType : std::uint32_t {
   // client to rc10d

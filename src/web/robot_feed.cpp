@@ -29,7 +29,7 @@ void RobotFeed::connect() {
     return;
   }
   auto connection = LinkClient::connect(
-      found->path, {.name = "rc10-web",
+      found->path, {.name = link::kWebClient,
                     .subscriptions = link::kStates | link::kDiagnosticsFeed | link::kEvents | link::kModules,
                     .timeout = kGreetingPatience});
   if (!connection) {

@@ -96,11 +96,11 @@ class LinkRig : public ::testing::Test {
     for (int i = 0; i < 40; ++i) server->poll(0);
   }
   /// A client that has said hello and taken its welcome.
-  std::unique_ptr<TestClient> join(std::uint32_t subscriptions = 0) {
+  std::unique_ptr<TestClient> join(std::uint32_t subscriptions = 0, std::string_view name = "pilot") {
     auto client = std::make_unique<TestClient>(path);
     EXPECT_TRUE(client->connected());
     link::Hello hello;
-    hello.client = "pilot";
+    hello.client = name;
     hello.subscriptions = subscriptions;
     EXPECT_TRUE(client->send(hello));
     pump();

@@ -7,12 +7,16 @@
 #include <algorithm>
 #include <cerrno>
 
+#include <fmt/format.h>
+
 namespace rc10 {
 namespace {
 
 constexpr std::size_t kMaxConnections = 16;
 // One more, which only rc10-lcm keeps: on it hangs all of LCM.
 constexpr std::size_t kGatewaySeats = 1;
+// A program that connects again and again leaves seats to others.
+constexpr std::size_t kMostOfProcess = 12;
 // More than a client may have under way: it asks on and on, and reads nothing.
 constexpr std::size_t kMaxUnsent = 128;
 
@@ -27,6 +31,13 @@ constexpr std::size_t kMaxUnsent = 128;
   groups.resize(known ? size / sizeof(gid_t) : 0);
   groups.push_back(primary);
   return groups;
+}
+
+[[nodiscard]] ucred peerOf(int fd) noexcept {
+  ucred peer{.pid = 0, .uid = static_cast<uid_t>(-1), .gid = static_cast<gid_t>(-1)};
+  socklen_t size = sizeof peer;
+  (void)::getsockopt(fd, SOL_SOCKET, SO_PEERCRED, &peer, &size);
+  return peer;
 }
 
 }  // namespace
@@ -51,9 +62,11 @@ bool Connections::accept() {
     if (!fd) return true;
     if (all_.size() >= kMaxConnections + kGatewaySeats && !dropSilent())
       continue;  // closed: the client sees it
+    const auto peer = peerOf(fd.get());
     Connection connection;
     connection.id = next_id_++;
-    connection.speaker = speakerOf(fd.get(), connection.id);
+    connection.process = peer.pid;
+    connection.speaker = speakerOf(fd.get(), peer, connection.id);
     connection.fd = std::move(fd);
     if (watchDescriptor(epoll_, connection.fd.get(), connection.id)) all_.push_back(std::move(connection));
   }
@@ -74,11 +87,22 @@ bool Connections::dropSilent() {
   return true;
 }
 
-bool Connections::seat(const Connection& connection) const noexcept {
-  if (connection.is_gateway) return true;
-  const auto taken =
-      std::count_if(all_.begin(), all_.end(), [](const auto& c) { return c.welcomed && !c.is_gateway; });
-  return static_cast<std::size_t>(taken) < kMaxConnections;
+std::string Connections::whyNoSeat(const Connection& connection) const {
+  if (connection.is_gateway) return {};
+  std::size_t taken = 0;
+  std::size_t of_process = 0;
+  bool pages = connection.client.view() == link::kWebClient;
+  for (const auto& other : all_) {
+    if (!other.welcomed || other.is_gateway) continue;
+    ++taken;
+    if (other.process != connection.process) continue;
+    ++of_process;
+    pages = pages || other.client.view() == link::kWebClient;
+  }
+  if (taken >= kMaxConnections) return fmt::format("all {} seats are taken", kMaxConnections);
+  if (of_process < kMostOfProcess || pages || connection.process == 0) return {};
+  return fmt::format("its process (pid {}) has {} connections already: close those that it does not use",
+                     connection.process, of_process);
 }
 
 Connection* Connections::find(std::uint64_t id) noexcept {
@@ -91,10 +115,7 @@ void Connections::close(std::uint64_t id) {
   std::erase_if(all_, [id](const auto& connection) { return connection.id == id; });
 }
 
-Speaker Connections::speakerOf(int fd, std::uint64_t connection) const {
-  ucred peer{.pid = 0, .uid = static_cast<uid_t>(-1), .gid = static_cast<gid_t>(-1)};
-  socklen_t size = sizeof peer;
-  (void)::getsockopt(fd, SOL_SOCKET, SO_PEERCRED, &peer, &size);
+Speaker Connections::speakerOf(int fd, const ucred& peer, std::uint64_t connection) const {
   return {.connection = connection,
           .way = Speaker::Way::kSocket,
           .user = peer.uid,

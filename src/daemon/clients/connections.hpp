@@ -1,9 +1,13 @@
 #pragma once
 
+#include <sys/socket.h>
+#include <sys/types.h>
+
 #include <cstddef>
 #include <cstdint>
 #include <deque>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "app/unique_fd.hpp"
@@ -17,6 +21,7 @@ namespace rc10 {
 struct Connection {
   std::uint64_t id = 0;  ///< Starts at 1 and counts up.
   UniqueFd fd;
+  pid_t process = 0;  ///< 0: of a pid namespace that this one does not see.
   link::Name client;
   std::uint32_t subscriptions = 0;
   bool welcomed = false;
@@ -37,8 +42,8 @@ class Connections {
 
   /// Takes those that wait. False: one was sent away, since there are no descriptors left.
   [[nodiscard]] bool accept();
-  /// Whether there is room for one that says hello; for rc10-lcm there is.
-  [[nodiscard]] bool seat(const Connection& connection) const noexcept;
+  /// Why there is no room for one that says hello; empty: there is. For rc10-lcm there always is.
+  [[nodiscard]] std::string whyNoSeat(const Connection& connection) const;
   /// Null: it has been closed.
   [[nodiscard]] Connection* find(std::uint64_t id) noexcept;
   void close(std::uint64_t id);
@@ -62,7 +67,7 @@ class Connections {
  private:
   [[nodiscard]] bool dropSilent();
   void refuseForWantOfDescriptors();
-  [[nodiscard]] Speaker speakerOf(int fd, std::uint64_t connection) const;
+  [[nodiscard]] Speaker speakerOf(int fd, const ucred& peer, std::uint64_t connection) const;
 
   LinkSocket socket_;
   int epoll_;

@@ -119,15 +119,19 @@ void LinkServer::slowTick() {
 
 void LinkServer::accept() {
   if (connections_.accept()) return;
+  reportSentAway(
+      "no file descriptors left: a client was sent away; raise the limit "
+      "(LimitNOFILE= of the unit, `ulimit -n`)");
+}
+
+void LinkServer::reportSentAway(std::string_view text) {
   const auto now = monotonicNow();
-  if (!sources_.log || now < next_descriptor_report_) return;
-  next_descriptor_report_ = now + kRefusalReportInterval;
+  if (!sources_.log || now < next_sent_away_report_) return;
+  next_sent_away_report_ = now + kRefusalReportInterval;
   link::Event event;
   event.severity = Severity::kError;
   event.source = std::string_view{"link"};
-  event.text = std::string_view{
-      "no file descriptors left: a client was sent away; raise the limit "
-      "(LimitNOFILE= of the unit, `ulimit -n`)"};
+  event.text = text;
   sources_.log(event);
 }
 
@@ -196,7 +200,10 @@ bool LinkServer::welcome(Connection& connection, std::span<const std::byte> data
   // A process of rc10d's own user could end rc10d and start another: nobody is kept out by asking for more.
   connection.is_gateway =
       connection.speaker.user == ::geteuid() && hello.client.view() == link::kGatewayClient;
-  if (!connections_.seat(connection)) return false;
+  if (const auto why = connections_.whyNoSeat(connection); !why.empty()) {
+    reportSentAway(fmt::format("client '{}' was sent away: {}", hello.client.view(), why));
+    return false;
+  }
   connection.subscriptions = hello.subscriptions;
   if (const auto token = hello.token.view(); !token.empty() && !connection.is_gateway) {
     const auto granted = admission_.permissions().ofToken(token);

@@ -7,6 +7,7 @@
 #include <span>
 #include <stop_token>
 #include <string>
+#include <string_view>
 
 #include "app/result.hpp"
 #include "app/unique_fd.hpp"
@@ -44,6 +45,7 @@ class LinkServer {
              Timers timers);
 
   void accept();
+  void reportSentAway(std::string_view text);
   void receive(Connection& connection);
   [[nodiscard]] bool handle(Connection& connection, std::span<const std::byte> datagram);
   /// A defective message may still be an e-stop. False.
@@ -60,7 +62,7 @@ class LinkServer {
   Sources sources_;
   UniqueFd epoll_;
   Timers timers_;
-  MonotonicTime next_descriptor_report_{};
+  MonotonicTime next_sent_away_report_{};
   Admission admission_;
   SignalAdmission signal_admission_;
   RequestDesk desk_;

@@ -212,20 +212,43 @@ TEST_F(LinkServerStrangersTest, AClientThatSendsWithoutPauseLeavesTheOthersTheir
 
 TEST_F(LinkServerStrangersTest, TheSeventeenthConnectionIsRefusedUntilOneLeaves) {
   std::vector<std::unique_ptr<TestClient>> clients;
-  for (int i = 0; i < 16; ++i) clients.push_back(join());
+  for (int i = 0; i < 16; ++i) clients.push_back(join(0, link::kWebClient));  // not bounded by its process
   TestClient seventeenth(path);
   (void)seventeenth.send(link::Hello{});
   pump();
   EXPECT_TRUE(seventeenth.sentAway());
+  ASSERT_EQ(logged.size(), 1U);
+  EXPECT_THAT(std::string(logged[0].text.view()), testing::HasSubstr("all 16 seats are taken"));
   for (auto& client : clients) expectServed(*client);
   clients[7]->leave();
   pump();
   expectServed(*join());
 }
 
+TEST_F(LinkServerStrangersTest, AProcessThatConnectsAgainAndAgainLeavesFourSeatsToOthers) {
+  std::vector<std::unique_ptr<TestClient>> clients;
+  for (int i = 0; i < 12; ++i) clients.push_back(join());
+  TestClient thirteenth(path);
+  link::Hello hello;
+  hello.client = "leak";
+  ASSERT_TRUE(thirteenth.send(hello));
+  pump();
+  EXPECT_TRUE(thirteenth.sentAway());
+  ASSERT_EQ(logged.size(), 1U);
+  EXPECT_THAT(
+      std::string(logged[0].text.view()),
+      testing::AllOf(testing::HasSubstr("client 'leak' was sent away"),
+                     testing::HasSubstr("(pid " + std::to_string(::getpid()) + ") has 12 connections")));
+  clients[3]->leave();
+  pump();
+  expectServed(*join());
+  // A server of pages is not bounded so.
+  expectServed(*join(0, link::kWebClient));
+}
+
 TEST_F(LinkServerStrangersTest, AGatewayThatComesBackFindsItsSeatWhoeverIsThere) {
   std::vector<std::unique_ptr<TestClient>> clients;
-  for (int i = 0; i < 16; ++i) clients.push_back(join());
+  for (int i = 0; i < 16; ++i) clients.push_back(join(0, link::kWebClient));  // not bounded by its process
   TestClient silent(path);
   for (int restart = 0; restart < 2; ++restart) {
     TestClient gateway(path);
