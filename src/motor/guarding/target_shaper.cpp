@@ -149,14 +149,14 @@ std::uint32_t TargetShaper::shapeVelocityFf(Target& asked, float dt_s) noexcept 
 // towards the ceiling. An impedance has no loop that holds the speed: there it brakes what its spring drives
 // too fast, too.
 std::uint32_t TargetShaper::shapeTorqueFf(Target& asked, const MotorFeedback& feedback, float dt_s) noexcept {
-  if (asked.torque_ff_nm == 0.0F && torque_ff_nm_ == 0.0) return 0;
+  const bool springs = asked.mode == ControlMode::kImpedance;
+  if (!springs && asked.torque_ff_nm == 0.0F && torque_ff_nm_ == 0.0) return 0;
   const auto per_nm = static_cast<double>(config_.effort_per_nm);
   const double nm_per_s = per_nm > 0.0 ? static_cast<double>(config_.effort_slew_per_s) / per_nm : 0.0;
   std::uint32_t limits = 0;
   if (slewTowards(static_cast<double>(asked.torque_ff_nm), nm_per_s, dt_s, torque_ff_nm_))
     limits = kLimitSlew;
   if (bounded(feedback) || reduced()) {
-    const bool springs = asked.mode == ControlMode::kImpedance;
     const Envelope allowed = springs ? allowedSpeeds(feedback) : softEnvelope(feedback);
     double low_nm = -mostTorqueFf(springs, feedback, allowed.low_rpm, -1.0);
     double high_nm = mostTorqueFf(springs, feedback, allowed.high_rpm, 1.0);
