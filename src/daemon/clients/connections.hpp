@@ -42,7 +42,7 @@ class Connections {
 
   /// Takes those that wait. False: one was sent away, since there are no descriptors left.
   [[nodiscard]] bool accept();
-  /// Why there is no room for one that says hello; empty: there is. For rc10-lcm there always is.
+  /// The reason why there is no room for one that says hello; empty: there is. For rc10-lcm there always is.
   [[nodiscard]] std::string whyNoSeat(const Connection& connection) const;
   /// Null: it has been closed.
   [[nodiscard]] Connection* find(std::uint64_t id) noexcept;
