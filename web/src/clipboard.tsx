@@ -38,7 +38,7 @@ export function CopyButton(props: { text: string; class?: string; label?: string
       <button type="button" class={props.class} title={props.label} aria-label={props.label} onClick={() => void copy()}>
         {props.children}
       </button>
-      <span class="copied" role="status">
+      <span class="copied" aria-live="polite">
         {told === '' ? '' : word(told)}
       </span>
     </span>
