@@ -35,13 +35,12 @@ std::size_t editDistance(const std::string& a, const std::string& b) {
   return distance.back();
 }
 
-/// The one candidate that has more words behind these, often the unit: `track` of track_m.
-std::string_view onlyLonger(const std::string& wanted, const std::vector<std::string_view>& candidates) {
-  std::string_view found;
+/// The candidates that have more words behind these, often the unit: `track` of track_m.
+std::vector<std::string_view> longer(const std::string& wanted,
+                                     const std::vector<std::string_view>& candidates) {
+  std::vector<std::string_view> found;
   for (const auto candidate : candidates) {
-    if (!plain(candidate).starts_with(wanted + "_")) continue;
-    if (!found.empty()) return {};
-    found = candidate;
+    if (plain(candidate).starts_with(wanted + "_")) found.push_back(candidate);
   }
   return found;
 }
@@ -62,13 +61,18 @@ std::string_view nearest(std::string_view typed, const std::vector<std::string_v
   }
   // angle_min is angle_min_deg, not angle_pid.
   if (best_distance > 1) {
-    if (const auto longer = onlyLonger(wanted, candidates); !longer.empty()) return longer;
+    if (const auto found = longer(wanted, candidates); found.size() == 1) return found.front();
   }
   return best;
 }
 
 std::string didYouMean(std::string_view typed, const std::vector<std::string_view>& candidates) {
   const auto meant = nearest(typed, candidates);
+  if (meant.empty() && !typed.empty() && typed.size() <= kLongestKey) {
+    const auto found = longer(plain(typed), candidates);
+    if (found.size() == 2)
+      return "; did you mean " + std::string{found[0]} + " or " + std::string{found[1]} + "?";
+  }
   return meant.empty() ? std::string{} : "; did you mean " + std::string{meant} + "?";
 }
 

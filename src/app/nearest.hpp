@@ -10,7 +10,8 @@ namespace rc10 {
 [[nodiscard]] std::string_view nearest(std::string_view typed,
                                        const std::vector<std::string_view>& candidates);
 
-/// "; did you mean NAME?", or nothing if no candidate is near.
+/// "; did you mean NAME?", or nothing if no candidate is near; "NAME or NAME" if two have more words behind
+/// these: `payload` of payload_kg and payload_at_m.
 [[nodiscard]] std::string didYouMean(std::string_view typed, const std::vector<std::string_view>& candidates);
 
 }  // namespace rc10

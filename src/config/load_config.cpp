@@ -53,7 +53,7 @@ std::optional<RobotConfig> parse(std::string_view text, const std::string& file,
   robot.file = file;
   robot.hash = sha256(text);
   if (!problems.hasErrors()) checkMotors(robot, problems);
-  if (!problems.hasErrors()) checkModules(robot, problems);
+  checkModules(robot, problems);
   return robot;
 }
 

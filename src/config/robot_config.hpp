@@ -94,6 +94,7 @@ struct GroupConfig {
 /// A chassis, a gimbal, a remote: see module_base.hpp.
 struct ModuleConfig {
   SourcePlace place;
+  std::string path;  ///< "modules[2]"
   const ModuleType* type = nullptr;
   ModuleSettings settings;
 };

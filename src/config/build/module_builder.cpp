@@ -28,6 +28,7 @@ class ModuleBuilder {
     const Settings given{{{&node, path}}};
     ModuleConfig module;
     module.place = node.place;
+    module.path = path;
     module.type = findModuleType(given.text("type"));
     given.read("name", module.settings.name);
     given.read("priority", module.settings.priority);
@@ -91,6 +92,9 @@ class ModuleBuilder {
   UniqueNames names_{"module name", "the robot"};
 };
 
+/// Sections that modules are built from, beside their own; "" for errors of the whole text.
+constexpr std::array<std::string_view, 4> kBeforeModules{"", "scheduler", "buses", "profiles"};
+
 }  // namespace
 
 std::vector<ModuleConfig> buildModules(const Settings& robot, const std::vector<BusConfig>& buses,
@@ -107,19 +111,22 @@ std::vector<ModuleConfig> buildModules(const Settings& robot, const std::vector<
 }
 
 void checkModules(const RobotConfig& robot, Problems& problems) {
+  const auto wrong = [&](std::string_view path) { return problems.hasErrorsIn(path); };
+  if (problems.full() || std::any_of(kBeforeModules.begin(), kBeforeModules.end(), wrong)) return;
   const RobotOutline outline = outlineOf(robot);
   std::vector<std::unique_ptr<Module_Base>> built;
   std::vector<ModuleDirectory::Entry> entries;
   // A module's errors begin with the key.
   const auto complain = [&](std::size_t i, const Error& error) {
     const auto colon = error.message.find(": ");
-    const std::string path = joinPath("modules", i);
+    const std::string& path = robot.modules[i].path;
     if (colon == std::string::npos) return problems.error(robot.modules[i].place, path, error.message);
     problems.error(robot.modules[i].place, joinPath(path, error.message.substr(0, colon)),
                    error.message.substr(colon + 2));
   };
   for (std::size_t i = 0; i < robot.modules.size(); ++i) {
     const auto& config = robot.modules[i];
+    if (wrong(config.path)) continue;
     auto module = config.type->build(config.settings, outline);
     if (!module) {
       complain(i, module.error());
@@ -128,7 +135,8 @@ void checkModules(const RobotConfig& robot, Problems& problems) {
     entries.push_back({config.settings.name, module->get()});
     built.push_back(std::move(*module));
   }
-  if (built.size() != robot.modules.size()) return;
+  // Of a robot with errors, no module knows whether what it reads of another is there.
+  if (problems.hasErrors()) return;
   const ModuleDirectory directory{entries};
   DeviceClaims claims{robot};
   for (std::size_t i = 0; i < built.size(); ++i) {

@@ -12,8 +12,8 @@ namespace rc10 {
 [[nodiscard]] std::vector<ModuleConfig> buildModules(const Settings& robot,
                                                      const std::vector<BusConfig>& buses, Problems& problems);
 
-/// Builds and connects every module of a configuration that is right so far, and throws them away: what a
-/// module itself demands is said before the start.
+/// Builds every module that is right so far, as are the buses, and throws it away: what a module itself
+/// demands is said before the start, together with the errors of others. Connects them if all is right.
 void checkModules(const RobotConfig& robot, Problems& problems);
 
 }  // namespace rc10

@@ -44,6 +44,14 @@ void Problems::warning(SourcePlace place, std::string path, std::string text) {
   if (warnings_.size() < kMost) warnings_.push_back({file_, place, std::move(path), std::move(text)});
 }
 
+bool Problems::hasErrorsIn(std::string_view path) const noexcept {
+  return std::any_of(errors_.begin(), errors_.end(), [path](const ConfigProblem& problem) {
+    const std::string_view at = problem.path;
+    if (path.empty() || at.size() == path.size()) return at == path;
+    return at.starts_with(path) && (at[path.size()] == '.' || at[path.size()] == '[');
+  });
+}
+
 std::vector<ConfigProblem> Problems::errors() const {
   auto sorted = inFileOrder(errors_);
   if (full()) sorted.push_back({file_, {}, "", "more problems than can be listed; mend these first"});

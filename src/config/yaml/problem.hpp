@@ -35,6 +35,9 @@ class Problems {
   [[nodiscard]] bool hasErrors() const noexcept { return !errors_.empty(); }
   [[nodiscard]] bool full() const noexcept { return errors_.size() >= kMost; }
 
+  /// Whether one lies at this path or below it. "": of the document as a whole.
+  [[nodiscard]] bool hasErrorsIn(std::string_view path) const noexcept;
+
   /// In the order of the file.
   [[nodiscard]] std::vector<ConfigProblem> errors() const;
   [[nodiscard]] std::vector<ConfigProblem> warnings() const;

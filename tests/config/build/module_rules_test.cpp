@@ -71,6 +71,35 @@ TEST(ModuleRules, WhatAModuleItselfRefusesHasItsPlace) {
               ElementsAre("hero.yaml:3:5: modules[0].right: is the same motor as left; name another"));
 }
 
+TEST(ModuleRules, WhatAModuleItselfRefusesIsToldWithTheMistakesOfOthers) {
+  const auto pair = [](const std::string& name, const std::string& keys) {
+    return "  - {name: " + name + ", type: synchronised_pair, velocity_limit_rpm: 60, " + keys + "}\n";
+  };
+  EXPECT_THAT(errorsOf(robotWithModules(pair("lift", "left: left, right: rigt") +
+                                        pair("door", "left: left, right: left"))),
+              ElementsAre(HasSubstr("modules[0].right: there is no motor 'rigt'"),
+                          HasSubstr("modules[1].right: is the same motor as left")));
+  EXPECT_THAT(errorsOf("clients: 3\n" + robotWithModules(pair("door", "left: left, right: left"))),
+              ElementsAre(HasSubstr("clients: is a single value"),
+                          HasSubstr("modules[0].right: is the same motor as left")));
+}
+
+TEST(ModuleRules, NoModuleIsJudgedBeforeTheBusesAreRight) {
+  EXPECT_THAT(errorsOf("profiles: 3\n" +
+                       robotWithModules("  - {name: door, type: synchronised_pair, velocity_limit_rpm: 60, "
+                                        "left: left, right: left}\n")),
+              ElementsAre(HasSubstr("profiles: ")));
+}
+
+TEST(ModuleRules, AMistakeInWhatModulesShareIsOneMistake) {
+  EXPECT_THAT(
+      errorsOf(robotWithModules("  - {name: lift, type: synchronised_pair, left: left, right: &r rigt, "
+                                "velocity_limit_rpm: 60}\n"
+                                "  - {name: door, type: synchronised_pair, left: left, right: *r, "
+                                "velocity_limit_rpm: 60}\n")),
+      ElementsAre(HasSubstr("there is no motor 'rigt'")));
+}
+
 TEST(ModuleRules, TheSchemaHasATableForEachType) {
   const auto schema = configSchema();
   for (const auto* type : moduleTypes())
