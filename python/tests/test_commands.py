@@ -176,6 +176,29 @@ def test_a_mode_that_rc10d_has_refused_raises_when_it_is_asked_for_again(
         robot.command(wheel=stiff)
 
 
+def test_gains_beyond_the_drive_raise_once_rc10d_has_named_its_range(
+    robot: rc10.Robot, daemon: FakeDaemon
+) -> None:
+    def spring(stiffness: float, damping: float) -> rc10.Setpoint:
+        return rc10.impedance_deg(
+            0, stiffness_nm_per_rad=stiffness, damping_nms_per_rad=damping
+        )
+
+    robot.command(wheel=spring(1e6, 500))
+    daemon.publish_event(
+        "command of 'tester' refused: wheel: impedance: stiffness or damping out of what the "
+        "motor's drive takes: 0 to 500 Nm/rad, 0 to 5 Nms/rad",
+        code=202,
+        client="tester",
+    )
+    robot.spin()
+    for beyond in (spring(1e6, 1), spring(500, 5.5)):
+        with pytest.raises(rc10.CommandRefused, match="wheel: impedance: .* 0 to 500 Nm/rad"):
+            robot.command(wheel=beyond)
+    robot.command(wheel=spring(500, 5))
+    robot.command(lift=spring(1e6, 1))
+
+
 def test_a_refused_message_is_logged_once_in_the_words_of_rc10d(
     robot: rc10.Robot, daemon: FakeDaemon, caplog: pytest.LogCaptureFixture
 ) -> None:

@@ -17,6 +17,7 @@
 #include "daemon/rt_process.hpp"
 #include "daemon/service_notify.hpp"
 #include "link/run_dir.hpp"
+#include "motor/solo_motor.hpp"
 
 namespace rc10 {
 namespace {
@@ -260,6 +261,10 @@ void Daemon::describeRobot() {
       description_.motors.push_back({motor.name(), std::string(built.modelName()), bus, motor.settings.id,
                                      built.modes(), motor.optional, traits.setup,
                                      MotorLoops{motor.settings.model, traits, motor.settings.loops}});
+      const double turns = driveTurns(motor.settings, traits);
+      description_.motors.back().spring_range = {
+          .stiffness_nm_per_rad = turns * turns * traits.spring_range.stiffness_nm_per_rad,
+          .damping_nms_per_rad = turns * turns * traits.spring_range.damping_nms_per_rad};
       if (simulated)
         description_.motors.back().simulated = {.port = port,
                                                 .drive = drive,

@@ -113,10 +113,10 @@ namespace {
 
 // In the order of CommandRefusal in daemon/clients/admission.hpp.
 [[nodiscard]] std::string refused(std::int32_t reason, std::string_view client) {
-  constexpr std::array kReasons{"accepted",          "malformed",      "unknown motor",  "unknown mode",
-                                "unsupported mode",  "not finite",     "expired",        "old sequence",
-                                "too many commands", "unknown module", "unknown signal", "unused field",
-                                "not permitted"};
+  constexpr std::array kReasons{"accepted",          "malformed",         "unknown motor",  "unknown mode",
+                                "unsupported mode",  "not finite",        "expired",        "old sequence",
+                                "too many commands", "unknown module",    "unknown signal", "unused field",
+                                "not permitted",     "gains beyond drive"};
   const auto index = static_cast<std::size_t>(reason);
   const bool known = reason > 0 && index < kReasons.size();
   return "command of '" + std::string(client) + "' refused: " + (known ? kReasons[index] : "unknown reason");

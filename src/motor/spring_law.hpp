@@ -15,6 +15,12 @@ struct SpringLaw {
   double torque_nm = 0.0;
 };
 
+/// Most that a drive's fields for gains can say, from 0 up; 0: it has none.
+struct SpringRange {
+  double stiffness_nm_per_rad = 0.0;
+  double damping_nms_per_rad = 0.0;
+};
+
 /// The drive's output as it was measured last, in the drive's own count.
 struct SpringState {
   double position_rad = 0.0;

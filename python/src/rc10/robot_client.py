@@ -62,6 +62,11 @@ _UNSUPPORTED = re.compile(
     r"refused: (?P<motor>[^ :]+): (?P<mode>\w+): the motor's drive does not support the mode"
 )
 
+_GAINS_BEYOND = re.compile(
+    r"refused: (?P<motor>[^ :]+): impedance: .*: "
+    r"0 to (?P<stiffness>\S+) Nm/rad, 0 to (?P<damping>\S+) Nms/rad"
+)
+
 # LCM allows 63 characters for a channel, and ".v1.diagnostics" takes 15 of them.
 _MAX_NAME = 48
 
@@ -109,10 +114,12 @@ class RobotClient:
         # To be undone on leaving.
         self._commanded: set[str] = set()
         self._enabled: set[str] = set()
-        # Motors that were ACTIVE, rc10d's words about modes that their drives do not have, and all
-        # of its words that were logged.
+        # Motors that were ACTIVE, rc10d's words about modes that their drives do not have and about
+        # gains beyond their drives' (the largest stiffness and damping, and the words), and all of
+        # its words that were logged.
         self._was_active: set[str] = set()
         self._unsupported: dict[tuple[str, str], str] = {}
+        self._most_gains: dict[str, tuple[float, float, str]] = {}
         self._told: set[str] = set()
         # Robots that were heard while the first state was waited for.
         self._heard: set[str] = set()
@@ -214,7 +221,7 @@ class RobotClient:
         Raises:
             UnknownMotor: a state is known, and it has no such motor; nothing was sent.
             CommandRefused: a motor that has not been ACTIVE yet cannot act on it, or rc10d has
-                refused the same mode for it; nothing was sent. A motor that stops later, in a loop
+                refused the same mode, or gains beyond its drive's, for it; nothing was sent. A motor that stops later, in a loop
                 that holds others, raises nothing: its state and an event tell.
             TypeError: a value is not a setpoint; nothing was sent.
             ValueError: no setpoints, a motor twice, or a validity out of range; nothing was sent.
@@ -382,6 +389,9 @@ class RobotClient:
         if event.client == self.client and event.code in _REFUSED:
             if found := _UNSUPPORTED.search(event.text):
                 self._unsupported[found["motor"], found["mode"]] = event.text
+            elif found := _GAINS_BEYOND.search(event.text):
+                most = float(found["stiffness"]), float(found["damping"])
+                self._most_gains[found["motor"]] = (*most, event.text)
             if event.text not in self._told:
                 self._told.add(event.text)
                 _log.warning("rc10d says: %s", printable(f"{event.source}: {event.text}"))
@@ -463,6 +473,13 @@ class RobotClient:
         for name, setpoint in orders.items():
             if said := self._unsupported.get((name, setpoint.mode.name.lower())):
                 raise CommandRefused(said)
+            if setpoint.mode is Mode.IMPEDANCE and name in self._most_gains:
+                most_stiffness, most_damping, said = self._most_gains[name]
+                if (
+                    setpoint.stiffness_nm_per_rad > most_stiffness
+                    or setpoint.damping_nms_per_rad > most_damping
+                ):
+                    raise CommandRefused(said)
         new = [
             name
             for name, setpoint in orders.items()

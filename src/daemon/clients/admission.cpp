@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include <fmt/format.h>
+
 namespace rc10 {
 namespace {
 
@@ -30,6 +32,17 @@ namespace {
          (!used.spring && (given(target.stiffness_nm_per_rad) || given(target.damping_nms_per_rad)));
 }
 
+// A range at the shaft is that of the frame times the square of a gear ratio: rounded as the gains are.
+[[nodiscard]] bool within(float gain, double most) noexcept {
+  return gain >= 0.0F && gain <= static_cast<float>(most);
+}
+
+[[nodiscard]] bool says(const SpringRange& range, const Target& target) noexcept {
+  return !(range.stiffness_nm_per_rad > 0.0) ||
+         (within(target.stiffness_nm_per_rad, range.stiffness_nm_per_rad) &&
+          within(target.damping_nms_per_rad, range.damping_nms_per_rad));
+}
+
 }  // namespace
 
 const char* toString(CommandRefusal refusal) noexcept {
@@ -47,6 +60,7 @@ const char* toString(CommandRefusal refusal) noexcept {
     case CommandRefusal::kUnknownSignal: return "unknown signal";
     case CommandRefusal::kUnusedField: return "unused field";
     case CommandRefusal::kNotPermitted: return "not permitted";
+    case CommandRefusal::kGainsBeyondDrive: return "gains beyond drive";
   }
   return "unknown";
 }
@@ -72,6 +86,7 @@ const char* describe(CommandRefusal refusal) noexcept {
       return "a feed-forward, stiffness or damping that its mode does not use was ignored; "
              "docs/lcm.md#modes has what each mode uses";
     case CommandRefusal::kNotPermitted: return "`clients` in the robot's file does not grant it";
+    case CommandRefusal::kGainsBeyondDrive: return "stiffness or damping out of what the motor's drive takes";
   }
   return toString(refusal);
 }
@@ -90,6 +105,7 @@ int Admission::indexOf(std::string_view name) const {
 CommandRefusal Admission::admit(const link::Command& message, const Speaker& speaker, MonotonicTime now,
                                 Command& out) {
   culprit_.clear();
+  range_.clear();
   const auto deadline = deadlineOf(message.received_ns, message.validity_ms, now);
   if (message.setpoint_count == 0 || message.setpoint_count > kMaxMotors || !deadline)
     return CommandRefusal::kMalformed;
@@ -103,6 +119,11 @@ CommandRefusal Admission::admit(const link::Command& message, const Speaker& spe
       culprit_ = std::string{setpoint.motor.view()};
       if (refusal != CommandRefusal::kUnknownMotor)
         culprit_ += std::string{": "} + toString(setpoint.target.mode);
+      if (refusal == CommandRefusal::kGainsBeyondDrive) {
+        const auto& most = robot_.motors[out.setpoints[i].motor].spring_range;
+        range_ = fmt::format(": 0 to {:.6g} Nm/rad, 0 to {:.6g} Nms/rad", most.stiffness_nm_per_rad,
+                             most.damping_nms_per_rad);
+      }
       return refusal;
     }
     cleared_field_ = cleared_field_ || hasUnused(message.setpoints[i].target);
@@ -131,13 +152,16 @@ CommandRefusal Admission::admit(const link::Command& message, const Speaker& spe
 CommandRefusal Admission::translate(const link::Setpoint& in, Command::Setpoint& out) const {
   const int motor = indexOf(in.motor.view());
   if (motor < 0) return CommandRefusal::kUnknownMotor;
+  out.motor = static_cast<std::uint16_t>(motor);
+  const auto& known = robot_.motors[out.motor];
   const auto mode = in.target.mode;
   if (static_cast<int>(mode) >= kControlModeCount) return CommandRefusal::kUnknownMode;
-  if (mode != ControlMode::kCoast && !robot_.motors[static_cast<std::size_t>(motor)].modes.contains(mode)) {
+  if (mode != ControlMode::kCoast && !known.modes.contains(mode)) {
     return CommandRefusal::kUnsupportedMode;
   }
   if (!finite(in.target)) return CommandRefusal::kNotFinite;
-  out.motor = static_cast<std::uint16_t>(motor);
+  if (mode == ControlMode::kImpedance && !says(known.spring_range, in.target))
+    return CommandRefusal::kGainsBeyondDrive;
   out.target = withoutUnused({.mode = mode,
                               .value = usesValue(mode) ? in.target.value : 0.0,
                               .velocity_ff_rpm = orZero(in.target.velocity_ff_rpm),

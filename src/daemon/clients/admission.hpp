@@ -30,11 +30,12 @@ enum class CommandRefusal : std::uint8_t {
   kOldSequence,  ///< Not above the last sequence number of its session.
   kRingFull,     ///< More than the scheduler takes, or than this client's share of it.
   kUnknownModule,
-  kUnknownSignal,  ///< The module has no such input.
-  kUnusedField,    ///< Not refused: a field that its mode does not use was cleared.
-  kNotPermitted,   ///< `clients` does not grant it, or its name or session is another's. Requests too.
+  kUnknownSignal,     ///< The module has no such input.
+  kUnusedField,       ///< Not refused: a field that its mode does not use was cleared.
+  kNotPermitted,      ///< `clients` does not grant it, or its name or session is another's. Requests too.
+  kGainsBeyondDrive,  ///< Stiffness or damping that the drive's frames cannot say.
 };
-inline constexpr std::size_t kCommandRefusalCount = 13;
+inline constexpr std::size_t kCommandRefusalCount = 14;
 
 /// The name of the counter.
 [[nodiscard]] const char* toString(CommandRefusal refusal) noexcept;
@@ -61,6 +62,9 @@ class Admission {
   /// "wheel: impedance": motor and mode for which the last message was refused; empty: not for one of them.
   [[nodiscard]] const std::string& culprit() const noexcept { return culprit_; }
 
+  /// After kGainsBeyondDrive, the range: ": 0 to 500 Nm/rad, 0 to 5 Nms/rad"; else empty.
+  [[nodiscard]] const std::string& range() const noexcept { return range_; }
+
   /// Index of a motor, or -1.
   [[nodiscard]] int indexOf(std::string_view name) const;
 
@@ -82,6 +86,7 @@ class Admission {
   std::array<std::uint64_t, kCommandRefusalCount> refusals_{};
   bool cleared_field_ = false;
   std::string culprit_;
+  std::string range_;
 };
 
 }  // namespace rc10

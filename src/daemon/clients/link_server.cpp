@@ -224,7 +224,8 @@ void LinkServer::command(const link::Command& message, const Speaker& speaker) {
     return reportRefusal(outcome, message.client, admission_.whyNotPermitted());
   if (outcome != CommandRefusal::kNone) {
     const auto& culprit = admission_.culprit();
-    return reportRefusal(outcome, message.client, culprit.empty() ? "" : culprit + ": " + describe(outcome));
+    return reportRefusal(outcome, message.client,
+                         culprit.empty() ? "" : culprit + ": " + describe(outcome) + admission_.range());
   }
   if (!admission_.clearedField()) return;
   admission_.count(CommandRefusal::kUnusedField);

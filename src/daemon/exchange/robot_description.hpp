@@ -9,6 +9,7 @@
 #include "config/keys/loop_gains.hpp"
 #include "daemon/exchange/shaft_order.hpp"
 #include "daemon/exchange/snapshot.hpp"
+#include "motor/spring_law.hpp"
 
 namespace rc10 {
 
@@ -33,6 +34,7 @@ struct RobotDescription {
     const DriveSetup* setup = nullptr;  ///< Settings that can be written to its drive; null: none.
     MotorLoops loops{};                 ///< As they are at the start.
     std::optional<SimulatedDrive> simulated{};
+    SpringRange spring_range{};  ///< Of impedance targets, at the output shaft.
   };
   struct Bus {
     std::string name;

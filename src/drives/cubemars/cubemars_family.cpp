@@ -227,6 +227,7 @@ MotorTraits cubemarsTraits(const CubemarsSettings& own) {
   // It has one (timeout_msec, 1000 in the settings of cubemars_hardware), but no frame reads or sets it.
   traits.watchdog = false;
   traits.modes = servo ? kServoModes : kMitModes;
+  if (!servo) traits.spring_range = {CubemarsRanges::kStiffnessNmPerRad, CubemarsRanges::kDampingNmsPerRad};
   static constexpr DriveSetup kSetup{.tool = "CubeMars' upper computer (over its serial port)"};
   traits.setup = &kSetup;
   traits.frames = servo ? kServoFrames : (mit ? kMitFrames : kMitV3Frames);

@@ -145,6 +145,7 @@ MotorTraits DamiaoFamily::traits(std::string_view name, const OwnValues& own) co
   traits.classic_only = !can_fd;
   traits.watchdog = true;
   traits.modes = modes(control);
+  if (control == DamiaoControl::kMit) traits.spring_range = {kKpMax, kKdMax};
   traits.frames = driveFrames(control);
   traits.setup = &damiaoSetup();
   return traits;

@@ -79,6 +79,7 @@ class MyactuatorFamily final : public MotorFamily {
     traits.modes = ModeSet{ControlMode::kCoast, ControlMode::kCurrent,    ControlMode::kVelocity,
                            ControlMode::kAngle, ControlMode::kTotalAngle, ControlMode::kImpedance,
                            ControlMode::kBrake};
+    traits.spring_range = {myactuator::kMotionStiffness, myactuator::kMotionDamping};
     if (!(traits.torque_nm_per_a > 0.0F)) {
       // The motion mode speaks of torque: without the constant it cannot be bounded.
       traits.modes = ModeSet{ControlMode::kCoast, ControlMode::kCurrent,    ControlMode::kVelocity,

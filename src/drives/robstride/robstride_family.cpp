@@ -133,6 +133,8 @@ class RobstrideFamily final : public MotorFamily {
     traits.asked = true;
     traits.watchdog = own.integer("watchdog_ms") > 0;
     traits.modes = modesOf(control);
+    if (control == RobstrideControl::kOperation)
+      traits.spring_range = {model.stiffness_range_nm_per_rad, model.damping_range_nms_per_rad};
     traits.frames = framesOf(control);
     traits.setup = &robstrideSetup(model.cyber_gear);
     return traits;

@@ -5,6 +5,7 @@
 #include <limits>
 #include <set>
 #include <string>
+#include <utility>
 
 #include "daemon/described_robot.hpp"
 #include "daemon/link_messages.hpp"
@@ -133,6 +134,32 @@ TEST_F(AdmissionTest, RefusesAValueThatIsNotFinite) {
   EXPECT_EQ(admit(one(setpoint("left", kVelocity, kNan))), CommandRefusal::kNotFinite);
   EXPECT_EQ(admit(one(setpoint("left", kVelocity, std::numeric_limits<double>::infinity()))),
             CommandRefusal::kNotFinite);
+}
+
+TEST_F(AdmissionTest, RefusesGainsThatTheDriveCannotTakeAndNamesItsRange) {
+  robot.motors[2].spring_range = {.stiffness_nm_per_rad = 500.0, .damping_nms_per_rad = 5.0};
+  auto message = spring();
+  message.setpoints[0].target.stiffness_nm_per_rad = 500.0F;
+  message.setpoints[0].target.damping_nms_per_rad = 5.0F;
+  EXPECT_EQ(admit(message), CommandRefusal::kNone);
+  EXPECT_EQ(admission.range(), "");
+  for (const auto& [stiffness, damping] :
+       {std::pair{1e6F, 0.5F}, {501.0F, 0.5F}, {20.0F, 5.1F}, {-1.0F, 0.5F}, {20.0F, -0.1F}}) {
+    message = spring();
+    message.setpoints[0].target.stiffness_nm_per_rad = stiffness;
+    message.setpoints[0].target.damping_nms_per_rad = damping;
+    EXPECT_EQ(admit(message), CommandRefusal::kGainsBeyondDrive) << stiffness << ", " << damping;
+    EXPECT_EQ(admission.culprit(), "arm: impedance");
+    EXPECT_EQ(admission.range(), ": 0 to 500 Nm/rad, 0 to 5 Nms/rad");
+  }
+  EXPECT_EQ(admit(one(setpoint("left", kDuty))), CommandRefusal::kUnsupportedMode);
+  EXPECT_EQ(admission.range(), "") << "of the refusal before";
+}
+
+TEST_F(AdmissionTest, GainsOfADriveOfUnknownRangeAreNotJudged) {
+  auto message = spring();
+  message.setpoints[0].target.stiffness_nm_per_rad = 1e6F;
+  EXPECT_EQ(admit(message), CommandRefusal::kNone);
 }
 
 TEST_F(AdmissionTest, AFeedForwardThatIsNotGivenIsNone) {
