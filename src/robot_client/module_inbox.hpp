@@ -19,6 +19,8 @@ class ModuleInbox {
   ModuleInbox(const LcmLink& link, const std::string& channel) : outputs_(link, channel + ".state") {}
 
   [[nodiscard]] ModuleState state() const;
+  /// Whether a state ever came, with other definitions too.
+  [[nodiscard]] bool heard() const { return outputs_.latest() != nullptr || foreign(); }
   /// False: nothing new within `timeout`.
   [[nodiscard]] bool waitForNext(Duration timeout) const { return outputs_.waitForNext(timeout) != nullptr; }
   /// Messages with other definitions came.

@@ -219,12 +219,19 @@ Result<void> RobotSession::send(const std::string& module, const Signals& inputs
                                 const SendOptions& options) {
   if (!status_) return status_;
   auto done = checkInputs(module, inputs, options);
+  bool missing = false;
   if (done) {
+    const bool heard = inboxOf(module).heard();
     // Sent under the mutex: another thread's message with a higher number must not overtake it.
     const Lock lock(mutex_);
-    held_.alive(timeNow());
+    const auto now = timeNow();
+    held_.alive(now);
     done = closed_ ? fail("the robot is closed") : outgoing_.inputs(module, inputs, options);
+    missing = done && silent_.sent(module, heard, newest_.live(now), now);
   }
+  if (missing)
+    problems_.tell("robot '" + name_ + "' is heard, and nothing of module '" + module +
+                   "' to which inputs are sent: `rc10ctl modules` shows which there are");
   if (!done) problems_.tell(done.error().message);
   return done;
 }

@@ -19,6 +19,7 @@
 #include "robot_client/open_requests.hpp"
 #include "robot_client/outgoing.hpp"
 #include "robot_client/problems.hpp"
+#include "robot_client/silent_modules.hpp"
 
 namespace rc10 {
 inline namespace robot_client {
@@ -108,6 +109,7 @@ class RobotSession {
   bool closed_ = false;
   Outgoing outgoing_;
   NewestState newest_;
+  SilentModules silent_;
   std::uint64_t states_at_answer_ = 0;  ///< States received when the last answer came.
   HeldTargets held_;
   Moves moves_{held_};

@@ -147,6 +147,21 @@ TEST_F(ModuleTest, WhatNoModuleTakesIsNotSent) {
   EXPECT_GE(problems().size(), 5U) << "each is told, also to a program that does not look";
 }
 
+TEST_F(ModuleTest, InputsForAModuleThatIsNotThereAreToldOnce) {
+  FakeRc10d rc10d{link_, "hero"};
+  const auto missing = robot_.module("bsae");
+  const auto until = std::chrono::steady_clock::now() + kPatience;
+  while (problems().empty() && std::chrono::steady_clock::now() < until) {
+    rc10d.publishState();
+    see({{"x_m", 1.5}});
+    ASSERT_TRUE(base_.send({{"vx_m_s", 1.0}}));
+    ASSERT_TRUE(missing.send({{"vx_m_s", 1.0}}));
+  }
+  ASSERT_TRUE(missing.send({{"vx_m_s", 1.0}}));
+  EXPECT_THAT(problems(), testing::ElementsAre("robot 'hero' is heard, and nothing of module 'bsae' to which "
+                                               "inputs are sent: `rc10ctl modules` shows which there are"));
+}
+
 TEST_F(ModuleTest, AMisspeltNameIsToldWithThoseThatAreHeard) {
   std::promise<void> stop;
   auto stopped = stop.get_future().share();
