@@ -180,9 +180,7 @@ def test_gains_beyond_the_drive_raise_once_rc10d_has_named_its_range(
     robot: rc10.Robot, daemon: FakeDaemon
 ) -> None:
     def spring(stiffness: float, damping: float) -> rc10.Setpoint:
-        return rc10.impedance_deg(
-            0, stiffness_nm_per_rad=stiffness, damping_nms_per_rad=damping
-        )
+        return rc10.impedance_deg(0, stiffness_nm_per_rad=stiffness, damping_nms_per_rad=damping)
 
     robot.command(wheel=spring(1e6, 500))
     daemon.publish_event(
