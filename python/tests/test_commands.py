@@ -191,7 +191,7 @@ def test_gains_beyond_the_drive_raise_once_rc10d_has_named_its_range(
     )
     robot.spin()
     for beyond in (spring(1e6, 1), spring(500, 5.5)):
-        with pytest.raises(rc10.CommandRefused, match="wheel: impedance: .* 0 to 500 Nm/rad"):
+        with pytest.raises(rc10.CommandRefused, match=r"wheel: impedance: .* 0 to 500 Nm/rad"):
             robot.command(wheel=beyond)
     robot.command(wheel=spring(500, 5))
     robot.command(lift=spring(1e6, 1))

@@ -221,8 +221,9 @@ class RobotClient:
         Raises:
             UnknownMotor: a state is known, and it has no such motor; nothing was sent.
             CommandRefused: a motor that has not been ACTIVE yet cannot act on it, or rc10d has
-                refused the same mode, or gains beyond its drive's, for it; nothing was sent. A motor that stops later, in a loop
-                that holds others, raises nothing: its state and an event tell.
+                refused the same mode, or gains beyond its drive's, for it; nothing was sent. A
+                motor that stops later, in a loop that holds others, raises nothing: its state and
+                an event tell.
             TypeError: a value is not a setpoint; nothing was sent.
             ValueError: no setpoints, a motor twice, or a validity out of range; nothing was sent.
         """
