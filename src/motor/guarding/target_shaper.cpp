@@ -12,9 +12,9 @@
 namespace rc10 {
 namespace {
 
-// Share of the way ahead that is left where a ceiling comes: springs make three times the speed of it that is
-// assumed of a drive's loop.
-constexpr double kFirstLeadShare = 0.25;
+// Share of the way ahead that is left where a ceiling comes: springs and profiles of drives make more speed of
+// it than is assumed of a drive's loop, a moteus of a quarter 34 rpm instead of 20.
+constexpr double kFirstLeadShare = 0.1;
 // Time within which a torque feed-forward comes back that was taken away for the speed.
 constexpr double kFeedForwardBackSeconds = 0.5;
 // Effort outwards fades over this speed, where the effort that keeps a lower one is not known.
@@ -331,7 +331,9 @@ std::uint32_t TargetShaper::shorten(Target& shaped, double before_deg, const Mot
   const bool begins = std::exchange(enters_, false);
   if (rpm_per_deg > 0.0 && (begins || config_.lead_is_speed || towards_rpm > ceiling_rpm_ / 2)) {
     const double far_deg = ceiling_rpm_ / rpm_per_deg;
-    const double lead_deg = begins && std::fabs(ahead_deg) > far_deg ? kFirstLeadShare * far_deg : far_deg;
+    // A target that runs on, or is far away, holds no load where it is.
+    const bool runs = std::fabs(asked_deg - before_deg) > most_deg || std::fabs(ahead_deg) > far_deg;
+    const double lead_deg = begins && runs ? kFirstLeadShare * far_deg : far_deg;
     ahead_deg = std::clamp(ahead_deg, -lead_deg, lead_deg);
     value_ = feedback.total_angle_deg + ahead_deg;
   }
