@@ -126,6 +126,17 @@ TEST_P(OdriveLoop, TheDriveKeepsToItsLimits) {
   EXPECT_NEAR(feedback().total_angle_deg, 1800.0, 2.0);
 }
 
+TEST_P(OdriveLoop, TorqueControlKeepsToTheVelocityLimitToo) {
+  auto settings = odriveSettings(GetParam());
+  settings.velocity_limit_rpm = 240.0F;
+  make(settings);
+  ASSERT_TRUE(rig_->enable());
+  command({.mode = ControlMode::kCurrent, .value = 5.0}, 2s);
+  EXPECT_GT(feedback().velocity_rpm, 150.0F);
+  EXPECT_LT(feedback().velocity_rpm, 250.0F);
+  EXPECT_EQ(fault(), FaultCode::kNone);
+}
+
 TEST_P(OdriveLoop, AFaultIsReportedClearedAndTheMotorEnabledAgain) {
   const std::uint32_t over_voltage_or_encoder = 0x100;
   ASSERT_TRUE(rig_->enable());
