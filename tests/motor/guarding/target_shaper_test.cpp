@@ -214,7 +214,18 @@ TEST_F(TargetShaperTest, AWayThatHasJustBegunWhenACeilingComesGainsNoSpeed) {
   configure({.approach_rpm_per_deg = 2.0F});
   EXPECT_EQ(step(ControlMode::kTotalAngle, 720.0).target.value, 720.0);
   shaper.setCeiling(20.0);
-  EXPECT_NEAR(step(ControlMode::kTotalAngle, 720.0).target.value, 1.25, 1e-9);
+  EXPECT_NEAR(step(ControlMode::kTotalAngle, 720.0).target.value, 0.5, 1e-9);
+}
+
+TEST_F(TargetShaperTest, ATargetThatRunsOnWhenACeilingComesLeadsLessFarAndOneThatStandsKeepsItsLoad) {
+  configure({.approach_rpm_per_deg = 2.0F});
+  EXPECT_EQ(step(ControlMode::kTotalAngle, 3.0).target.value, 3.0);
+  shaper.setCeiling(20.0);
+  EXPECT_NEAR(step(ControlMode::kTotalAngle, 4.0).target.value, 0.5, 1e-9);
+  configure({.approach_rpm_per_deg = 2.0F});
+  EXPECT_EQ(step(ControlMode::kTotalAngle, 3.0).target.value, 3.0);
+  shaper.setCeiling(20.0);
+  EXPECT_EQ(step(ControlMode::kTotalAngle, 3.0).target.value, 3.0);
 }
 
 TEST_F(TargetShaperTest, AnAngleTargetStartsWhereTheMotorIsAndArrivesExactly) {
