@@ -87,7 +87,7 @@ void Hub::handle(PageSocket& socket, std::string_view message, MonotonicTime now
   if (page == nullptr) return;
   const auto request = parsePageRequest(message);
   if (!request) {
-    page->socket->sendText(shared(responseMessage(0, "refused", request.error().message)));
+    page->socket->sendText(shared(responseMessage(numberOf(message), "refused", request.error().message)));
     return;
   }
   if (const auto* shown = std::get_if<ShowToken>(&*request)) {
@@ -110,7 +110,7 @@ void Hub::handle(PageSocket& socket, std::string_view message, MonotonicTime now
   } else if (const auto* end = std::get_if<EndTest>(&*request)) {
     if (page->test && page->test->seq() == end->seq) page->test->end(end->why);
   } else if (page->right == Right::kNothing) {
-    page->socket->sendText(shared(responseMessage(0, "refused", "show the token first")));
+    page->socket->sendText(shared(responseMessage(numberOf(message), "refused", "show the token first")));
   } else if (const auto* view = std::get_if<ChooseView>(&*request)) {
     choose(*page, *view);
   } else if (const auto* range = std::get_if<AskRange>(&*request)) {
@@ -143,21 +143,25 @@ void Hub::showConfigTo(const Page& page, const AskConfig& wanted) {
         wanted.seq, "failed", "rc10d left no copy of its file in the run folder: open the file instead")));
   auto token = page.loopback ? page.link->token() : std::string{};
   if (token.find('\n') != std::string::npos) token.clear();
-  configs_.ask({.page = page.number,
-                .seq = wanted.seq,
-                .head = configHead(wanted.seq, found.of),
-                .work = shownConfigJson,
-                .input = token + "\n" + found.text});
+  askDesk(page, {.page = page.number,
+                 .seq = wanted.seq,
+                 .head = configHead(wanted.seq, found.of),
+                 .work = shownConfigJson,
+                 .input = token + "\n" + found.text});
 }
 
 void Hub::check(const Page& page, CheckConfig wanted) {
-  const auto overtaken = configs_.ask({.page = page.number,
-                                       .seq = wanted.seq,
-                                       .head = checkedConfigHead(wanted.seq),
-                                       .work = checkedConfigJson,
-                                       .input = std::move(wanted.text)});
-  if (overtaken)
-    page.socket->sendText(shared(responseMessage(*overtaken, "refused", "a newer text is checked instead")));
+  askDesk(page, {.page = page.number,
+                 .seq = wanted.seq,
+                 .head = checkedConfigHead(wanted.seq),
+                 .work = checkedConfigJson,
+                 .input = std::move(wanted.text)});
+}
+
+// Each question has an answer, one that a newer one overtakes too.
+void Hub::askDesk(const Page& page, ConfigDesk::Question question) {
+  if (const auto overtaken = configs_.ask(std::move(question)))
+    page.socket->sendText(shared(responseMessage(*overtaken, "refused", "a newer text is read instead")));
 }
 
 void Hub::answerConfigs() {
@@ -202,8 +206,9 @@ void Hub::choose(Page& page, const ChooseView& wanted) {
   for (const auto& name : wanted.signals) {
     const auto signal =
         feed_.connected() ? traceSignalOf(name, feed_.welcome(), infos) : std::optional<link::TraceSignal>{};
-    (signal ? drawn : unknown).push_back(name);
-    if (signal) page.view->signals.push_back(*signal);
+    const bool has_room = signal && hasRoomFor(*signal);
+    (has_room ? drawn : unknown).push_back(name);
+    if (has_room) page.view->signals.push_back(*signal);
   }
   page.socket->sendText(shared(viewMessage(wanted.view, drawn, unknown, feed_.droppedTicks())));
   const auto& traces = feed_.traces();
@@ -351,8 +356,15 @@ void Hub::publishTests(MonotonicTime now) {
   }
 }
 
-// Signals of all pages together.
-void Hub::chooseTraces() {
+// rc10d gives so many signals to this server, for all pages together.
+bool Hub::hasRoomFor(const link::TraceSignal& signal) const {
+  const auto all = viewedSignals();
+  return all.size() < link::kMaxTraceSignals || std::find(all.begin(), all.end(), signal) != all.end();
+}
+
+void Hub::chooseTraces() { feed_.choose(viewedSignals()); }
+
+std::vector<link::TraceSignal> Hub::viewedSignals() const {
   std::vector<link::TraceSignal> all;
   for (const auto& page : pages_) {
     const auto& view = page->view;
@@ -361,7 +373,7 @@ void Hub::chooseTraces() {
       if (std::find(all.begin(), all.end(), signal) == all.end()) all.push_back(signal);
     }
   }
-  feed_.choose(all);
+  return all;
 }
 
 void Hub::turn() {

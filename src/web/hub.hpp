@@ -83,12 +83,16 @@ class Hub {
   void drive(Page& page, const DriveMotor& wanted, Duration age);
   void showConfigTo(const Page& page, const AskConfig& wanted);
   void check(const Page& page, CheckConfig wanted);
+  void askDesk(const Page& page, ConfigDesk::Question question);
   void answerConfigs();
   void begin(Page& page, const StartTest& wanted, MonotonicTime now, Duration age);
   void sendCurve(Page& page, const AskCurve& wanted);
   void publishTests(MonotonicTime now);
   [[nodiscard]] std::string downNow() const;
   [[nodiscard]] std::string whyNotMoving(const Page& page) const;
+  /// Each signal that a page draws, once.
+  [[nodiscard]] std::vector<link::TraceSignal> viewedSignals() const;
+  [[nodiscard]] bool hasRoomFor(const link::TraceSignal& signal) const;
   void chooseTraces();
   void watchRobot();
   void tellDown();

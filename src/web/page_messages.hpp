@@ -33,7 +33,8 @@ inline constexpr int kPageProtocol = 2;
 [[nodiscard]] std::string stateMessage(const RobotFeed& feed, const link::State& state);
 [[nodiscard]] std::string diagnosticsMessage(const RobotFeed& feed, const link::Diagnostics& diagnostics);
 [[nodiscard]] std::string eventMessage(const link::Event& event);
-/// Names of the signals of a view that are drawn, in the order of its frames, and those that are not.
+/// Names of the signals of a view that are drawn, in the order of its frames, and those that are not: rc10d
+/// does not know them, or the pages draw as many as it gives.
 [[nodiscard]] std::string viewMessage(std::uint32_t view, const std::vector<std::string>& drawn,
                                       const std::vector<std::string>& unknown, std::int64_t dropped_ticks);
 [[nodiscard]] std::string recordingsMessage(std::int64_t seq, const std::vector<RecordingFile>& files);

@@ -380,6 +380,12 @@ PageRequest estopOf(std::int64_t seq) {
 
 }  // namespace
 
+std::int64_t numberOf(std::string_view text) {
+  const auto json = Received::parse(text.begin(), text.end(), nullptr, false);
+  if (!json.is_object()) return 0;
+  return wholeOf(json, json.contains("number") ? "number" : "seq", 0, kMaxExact).value_or(0);
+}
+
 Result<PageRequest> parsePageRequest(std::string_view text) {
   // Without exceptions: a mistake gives a discarded value.
   const auto json = Received::parse(text.begin(), text.end(), nullptr, false);

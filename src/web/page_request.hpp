@@ -132,5 +132,7 @@ using PageRequest = std::variant<ShowToken, ChooseView, AskRange, AskRobot, Driv
 
 /// A stranger's message. The error is a sentence for him.
 [[nodiscard]] Result<PageRequest> parsePageRequest(std::string_view text);
+/// Number by which the page knows the answer to a message, one that is refused too; 0: it has none.
+[[nodiscard]] std::int64_t numberOf(std::string_view text);
 
 }  // namespace rc10::web

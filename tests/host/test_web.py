@@ -33,6 +33,7 @@ HEADER = struct.Struct("<BBHIIIdd")
 # Nearly as many as rc10-web lets in.
 STRANGERS = 60
 PIECE = 4
+MOST_SIGNALS = 32
 
 
 @dataclass
@@ -261,6 +262,25 @@ def test_the_columns_of_a_view_follow_each_other_without_a_gap(web: Web) -> None
         past = next(f for f in iter(lambda: page.wait_columns(5), None) if f.kind == 3)
         assert len(past.least[1]) == 50
         assert sum(1 for angle in past.least[1] if not math.isnan(angle)) > 25
+
+
+def test_a_page_is_told_which_signals_find_no_room_beside_those_of_the_others(web: Web) -> None:
+    with web.page() as page, web.page() as other:
+        robot = page.wait("robot")
+        signals = [f"{m['name']}.{r}" for m in robot["robot"]["motors"] for r in robot["readings"]]
+        first, rest = signals[:MOST_SIGNALS], signals[MOST_SIGNALS:]
+        assert rest != []
+        page.send(type="view", view=1, signals=first, column_us=1000, span_us=0)
+        assert page.wait("view")["signals"] == first
+        other.send(type="view", view=1, signals=[first[0], rest[0]], column_us=1000, span_us=0)
+        answer = other.wait("view")
+        assert (answer["signals"], answer["unknown"]) == ([first[0]], [rest[0]])
+        # As soon as the other lets one go, there is room for one.
+        page.send(type="view", view=2, signals=first[:-1], column_us=1000, span_us=0)
+        page.wait("view")
+        other.send(type="view", view=2, signals=rest[:2], column_us=1000, span_us=0)
+        answer = other.wait("view")
+        assert (answer["signals"], answer["unknown"]) == ([rest[0]], [rest[1]])
 
 
 def test_a_page_from_elsewhere_needs_the_token_looks_and_stops(

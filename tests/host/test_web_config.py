@@ -66,9 +66,12 @@ def test_hostile_texts_are_refused_in_words_and_nobody_else_notices(web: Web) ->
             assert checked["seq"] == seq
             assert any(words in one["text"] for one in checked["checked"]["errors"]), words
         page.send(type="config_check", seq=90, text="x" * (128 * 1024 + 1))
-        assert "128 KiB" in page.wait("response")["message"]
+        refused = page.wait("response")
+        assert refused["seq"] == 90
+        assert "128 KiB" in refused["message"]
         page.send(type="config_check", seq=91)
-        assert page.wait("response")["status"] == "refused"
+        refused = page.wait("response")
+        assert (refused["seq"], refused["status"]) == (91, "refused")
         assert other.ask("enable", "wheel")["status"] == "ok"
     assert resident_kib(web.program.pid) < 64 * 1024
 
@@ -84,6 +87,14 @@ def test_a_page_that_asks_faster_than_it_is_answered_gets_the_newest_answer(web:
                 answered[message["seq"]] = message["type"]
         assert answered[49] == "config_checked"
         assert len(answered) == 50
+        for seq in range(50, 100):
+            page.send(type="config", seq=seq)
+        while 99 not in answered:
+            message = page.next()
+            if isinstance(message, dict) and message["type"] in ("config", "response"):
+                answered[message["seq"]] = message["type"]
+        assert answered[99] == "config"
+        assert len(answered) == 100
 
 
 def test_the_file_of_the_robot_is_shown_while_it_runs_after_it_and_when_it_was_refused(

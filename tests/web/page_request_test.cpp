@@ -47,6 +47,18 @@ TEST(PageRequest, AnEstopCountsWhateverElseItsMessageSays) {
     EXPECT_EQ(parsed<AskRobot>(text).operation, "estop") << text;
 }
 
+TEST(PageRequest, ARefusedMessageHasTheNumberByWhichThePageKnowsItsAnswer) {
+  constexpr std::string_view kTest = R"({"type":"test","schema":99,"seq":7})";
+  EXPECT_FALSE(parsePageRequest(kTest));
+  EXPECT_EQ(numberOf(kTest), 7);
+  constexpr std::string_view kRecording = R"({"type":"recording","number":8})";
+  EXPECT_FALSE(parsePageRequest(kRecording));
+  EXPECT_EQ(numberOf(kRecording), 8);
+  for (const auto* without :
+       {"", "[1]", R"({"seq":-1})", R"({"seq":"9"})", R"({"seq":1e300})", R"({"number":{}})"})
+    EXPECT_EQ(numberOf(without), 0) << without;
+}
+
 TEST(PageRequest, AHeldMotorHasItsTargetAndTheTimeOfThePage) {
   const auto drive = parsed<DriveMotor>(
       R"({"type":"drive","seq":4,"motor":"yaw","mode":"velocity","value":-20.5,"sent_us":1500,"held":true})");
