@@ -64,6 +64,18 @@ def test_a_step_is_captured_tick_by_tick_with_its_numbers_and_gains(
     assert max(value for value in measured if value is not None) >= 18
 
 
+def test_their_picture_stays_while_states_arrive(page: Page, panel: Locator) -> None:
+    with page.expect_websocket() as connection:
+        page.reload()
+    expect(page.locator(".badge.status")).to_have_text("ACTIVE")
+    step(page, panel)
+    picture = panel.locator(".overlay canvas").element_handle()
+    for _ in range(5):
+        connection.value.wait_for_event("framereceived", lambda payload: '"state"' in str(payload))
+        page.evaluate("() => new Promise((done) => requestAnimationFrame(() => setTimeout(done)))")
+    assert picture.evaluate("canvas => canvas.isConnected")
+
+
 def test_captures_lie_over_one_another_and_can_be_named_and_removed(
     page: Page, panel: Locator
 ) -> None:

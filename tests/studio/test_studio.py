@@ -100,15 +100,24 @@ def test_a_stop_that_nobody_hears_is_not_confirmed(page: Page, studio: Studio) -
     expect(page.get_by_role("article", name="wheel", exact=True)).to_be_visible()
 
 
+def is_next_columns(payload: str | bytes) -> bool:
+    """Values of at least one signal: src/web/columns_frame.hpp."""
+    return isinstance(payload, bytes) and payload[1] == 1 and payload[2] > 0
+
+
 def test_when_rc10d_ends_the_page_says_why_and_it_comes_back_by_itself(
     page: Page, studio: Studio
 ) -> None:
+    with page.expect_websocket() as connection:
+        page.reload()
     open_tab(page, "plots")
     expect(page.locator(".legend tr")).to_have_count(2)
     studio.daemon.kill()
     expect(page.get_by_role("alert")).to_contain_text("rc10d is not running")
-    studio.daemon.start()
-    studio.daemon.wait_ready()
+    # Its curves go on.
+    with connection.value.expect_event("framereceived", is_next_columns):
+        studio.daemon.start()
+        studio.daemon.wait_ready()
     expect(page.get_by_role("alert")).to_have_count(0)
     expect(page.locator(".legend tr")).to_have_count(2)
     # Events of its second life arrive too; those of the start may come before rc10-web is back.
@@ -313,6 +322,31 @@ def test_before_a_match_the_page_is_green_only_when_every_row_is(
     expect(row_of(page, "File as committed")).to_have_class("good")
     studio.daemon.kill()
     expect(verdict).to_have_text("✗ Nothing is known of the robot")
+
+
+def test_a_browser_without_room_for_settings_ends_no_action(page: Page) -> None:
+    page.evaluate(
+        """() => {
+            for (let text = 'x'.repeat(1 << 22); text !== ''; text = text.slice(text.length / 2 + 1))
+                for (let i = 0; i < 9; ++i)
+                    try { localStorage.setItem(`${text.length} ${i}`, text); } catch { break; }
+            for (let i = 0; ; ++i) try { localStorage.setItem(`${i}`, ''); } catch { break; }
+        }"""
+    )
+    open_tab(page, "plots")
+    page.get_by_role("button", name="中文").click()
+    expect(page.locator("#tab-events")).to_have_text("事件")
+
+
+def test_signals_of_another_robot_take_no_room_among_those_of_this_one(page: Page) -> None:
+    page.evaluate(
+        "localStorage.setItem('rc10.signals', JSON.stringify("
+        "['yaw.velocity_rpm', ...Array.from({length: 12}, (_, i) => `gone${i}.current_a`)]))"
+    )
+    page.reload()
+    open_tab(page, "plots")
+    expect(page.locator(".chooser summary")).to_have_text("Signals (1)")
+    expect(page.locator(".legend tr")).to_have_count(1)
 
 
 def test_language_favourites_and_part_are_remembered(page: Page) -> None:

@@ -1,7 +1,8 @@
 // Armed, it takes every tick around a trigger; what was taken lies over one another.
-import { useEffect, useRef, useState } from 'preact/hooks';
+import { useEffect, useMemo, useRef, useState } from 'preact/hooks';
 import uPlot from 'uplot';
 
+import { remember, remembered } from './browser_memory';
 import { type Capture, capturesIn, fileOf, responseOf, stepNumbers, timesOf } from './captures';
 import { colourOf } from './chart';
 import { useKnown, useStored, useStudio } from './context';
@@ -25,18 +26,11 @@ const kUs = 1e6;
 /** Captures in this browser; the oldest go when there is no room. */
 function useCaptures(): [Capture[], (captures: Capture[]) => void] {
   const key = 'rc10.captures';
-  const [captures, set] = useState<Capture[]>(() => capturesIn(localStorage.getItem(key) ?? '') ?? []);
+  const [captures, set] = useState<Capture[]>(() => capturesIn(remembered(key) ?? '') ?? []);
   return [
     captures,
     (next) => {
-      for (let kept = next; ; kept = kept.slice(1)) {
-        try {
-          localStorage.setItem(key, fileOf(kept));
-          break;
-        } catch {
-          if (kept.length === 0) break;
-        }
-      }
+      for (let kept = next; !remember(key, fileOf(kept)) && kept.length > 0; kept = kept.slice(1));
       set(next);
     },
   ];
@@ -146,6 +140,8 @@ export function CapturePanel(props: { motor: string; unit: (signal: string) => s
   const names = link.shown;
   const period_us = Math.round(kUs / (known.robot?.robot.rate_hz ?? 1000));
   const colours = new Map(captures.map((capture, i) => [capture.id, colourOf(i)]));
+  // The same list as long as it is the same choice: another one is another chart.
+  const overlaid = useMemo(() => captures.filter((capture) => !hidden.includes(capture.id)), [captures, hidden]);
   const latest = useRef({ captures, trigger, names });
   latest.current = { captures, trigger, names };
 
@@ -408,7 +404,7 @@ export function CapturePanel(props: { motor: string; unit: (signal: string) => s
           </table>
         </div>
       )}
-      <Overlay captures={captures.filter((capture) => !hidden.includes(capture.id))} colours={colours} />
+      <Overlay captures={overlaid} colours={colours} />
       <p class="hint">{word('captureHint')}</p>
     </section>
   );

@@ -1,6 +1,7 @@
 import { createContext } from 'preact';
 import { useContext, useEffect, useState } from 'preact/hooks';
 
+import { remember, remembered } from './browser_memory';
 import type { Known, Link } from './link';
 import type { Language, Word } from './words';
 
@@ -28,7 +29,7 @@ export function useKnown(): Known {
 
 function stored<T>(key: string, initial: T): T {
   try {
-    const text = localStorage.getItem(`rc10.${key}`);
+    const text = remembered(`rc10.${key}`);
     return text === null ? initial : (JSON.parse(text) as T);
   } catch {
     return initial;
@@ -45,7 +46,7 @@ export function useStored<T>(key: string, initial: T): [T, (value: T) => void] {
     now.value,
     (value) => {
       hold({ key, value });
-      localStorage.setItem(`rc10.${key}`, JSON.stringify(value));
+      remember(`rc10.${key}`, JSON.stringify(value));
     },
   ];
 }

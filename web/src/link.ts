@@ -104,7 +104,12 @@ export class Link {
   private readonly asked = new Map<number, (answer: RecordingFile[] | RecordedWords | null) => void>();
   private readonly configs = new Map<number, (answer: ConfigFile | CheckedConfig) => void>();
   private onPiece: (piece: Piece | string) => void = () => {};
-  private test: { seq: number; onTime: (time_s: number, lasts_s: number) => void; onDone: (done: TestDone) => void } | null = null;
+  private test: {
+    seq: number;
+    onTime: (time_s: number, lasts_s: number) => void;
+    onDone: (done: TestDone) => void;
+    finish: (result: TestOutcome) => void;
+  } | null = null;
   private onCurve: (piece: CurvePiece) => void = () => {};
   private seq = 0;
   private token: string | null = null;
@@ -191,13 +196,15 @@ export class Link {
   }
 
   /**
-   * A test of motion. It goes on as long as this page says so, and ends when the page is hidden; end() stops it. The
-   * curve is asked for piece by piece.
+   * A test of motion. It goes on as long as this page says so, and ends when the page is hidden or begins another one;
+   * end() stops it. The curve is asked for piece by piece.
    */
   runTest(
     message: object,
     onTime: (time_s: number, lasts_s: number) => void,
   ): { end: (why: 'stopped' | 'left') => void; outcome: Promise<TestOutcome> } {
+    // rc10-web keeps the numbers of one test for each page.
+    this.test?.finish({ refused: 'another test of this page began' });
     const seq = ++this.seq;
     const end = (why: 'stopped' | 'left') => void this.send({ type: 'test_end', seq, why });
     const hidden = () => document.hidden && end('left');
@@ -214,14 +221,17 @@ export class Link {
       const finish = (result: TestOutcome) => {
         over();
         this.open.delete(seq);
-        this.test = null;
-        this.onCurve = () => {};
+        if (this.test?.seq === seq) {
+          this.test = null;
+          this.onCurve = () => {};
+        }
         resolve(result);
       };
       this.open.set(seq, (answer) => finish({ refused: answer.message }));
       this.test = {
         seq,
         onTime,
+        finish,
         onDone: (done) => {
           over();
           const curve: number[][] = [];
@@ -330,7 +340,7 @@ export class Link {
     const { socket, known } = this;
     if (socket === null) return;
     if (++this.unheardBeats > kLostBeats) {
-      this.socket = socket.onopen = socket.onmessage = socket.onclose = null;
+      socket.onopen = socket.onmessage = socket.onclose = null;
       socket.close();
       return this.lost();
     }
@@ -350,6 +360,8 @@ export class Link {
   }
 
   private lost(): void {
+    // Beats count the silence of a connection, not of the pause before the next one.
+    this.socket = null;
     this.known.connection = 'lost';
     this.known.state = null;
     for (const done of [...this.open.values()])
@@ -383,10 +395,12 @@ export class Link {
         known.connection = 'live';
         known.events = [];
         known.robot = null;
+        known.diagnostics = null;
         break;
       case 'down':
         known.down = message;
         known.state = null;
+        known.diagnostics = null;
         known.connection = 'live';
         break;
       case 'robot':
@@ -430,6 +444,7 @@ export class Link {
         return;
       case 'response':
         this.open.get(message.seq)?.(message);
+        this.asked.get(message.seq)?.(null);
         break;
     }
     this.changed();

@@ -43,10 +43,14 @@ function firstChoice(known: ReturnType<typeof useKnown>): string[] {
 export function Plots() {
   const known = useKnown();
   const [stored, setChosen] = useStored<string[]>('signals', []);
-  const chosen = stored.length === 0 ? firstChoice(known) : stored;
+  const owners = allSignals(known);
+  // Those of another robot, or of a file before, are not this one's.
+  const all = new Set(owners.flatMap((owner) => owner.names));
+  const here = stored.filter((name) => all.has(name));
+  const chosen = here.length === 0 ? firstChoice(known) : here;
   return (
     <div class="plots">
-      <SignalChooser owners={allSignals(known)} chosen={chosen} onChoose={setChosen} />
+      <SignalChooser owners={owners} chosen={chosen} onChoose={setChosen} />
       <Curves signals={chosen} below={(shown) => <SidePlots shown={shown} />} />
     </div>
   );
@@ -65,6 +69,7 @@ export function Curves(props: {
   const [points, setPoints] = useState<number[]>([]);
   const [kept, setKept] = useState<Kept[]>([]);
   const [drawn, setDrawn] = useState<string[]>([]);
+  const [notDrawn, setNotDrawn] = useState<string[]>([]);
   const [droppedTicks, setDroppedTicks] = useState(0);
   const box = useRef<HTMLDivElement>(null);
   const chart = useRef<uPlot | null>(null);
@@ -78,11 +83,13 @@ export function Curves(props: {
   pointsNow.current = points;
   keptNow.current = kept;
   frozenNow.current = frozen;
-  const robotName = known.robot?.robot.robot ?? '';
+  // Another start of rc10d, or a module that is known now: rc10-web has no view of it.
+  const { robot } = known;
+  const source = robot === null ? '' : [robot.robot.robot, robot.robot.pid, ...robot.modules.map((each) => each.outputs.length)].join(' ');
   const chosen = props.signals;
   const unit = props.unit ?? unitOf;
   const key = chosen.map((name) => name + unit(name)).join(' ');
-  const traces = useMemo(() => new Traces(() => origin.current), [key, span_s, robotName]);
+  const traces = useMemo(() => new Traces(() => origin.current), [key, span_s, source]);
 
   const columns = () => Math.min(2000, Math.max(200, Math.round(box.current?.clientWidth ?? 800)));
 
@@ -111,7 +118,7 @@ export function Curves(props: {
   // The chart is made anew for other signals; its data come with the answer.
   useEffect(() => {
     const target = box.current;
-    if (target === null || chosen.length === 0 || known.robot === null) return;
+    if (target === null || chosen.length === 0 || robot === null) return;
     const columnUs = Math.max(100, Math.round((span_s * kUs) / columns()));
     const marks = (): Mark[] => [
       ...link.known.events.slice(0, 60).map((event) => ({
@@ -128,6 +135,7 @@ export function Curves(props: {
       if (answer.view !== number_) return;
       setDroppedTicks(answer.dropped_ticks);
       setDrawn(answer.signals);
+      setNotDrawn(answer.unknown);
       chart.current?.destroy();
       chart.current = makeChart(target, answer.signals, {
         marks,
@@ -162,7 +170,7 @@ export function Curves(props: {
       chart.current?.destroy();
       chart.current = null;
     };
-  }, [key, span_s, robotName, known.hello]);
+  }, [key, span_s, source, known.hello]);
 
   // A narrower column shows what a wide one hides, as long as the server has it.
   const zoom = (from: number, to: number) => {
@@ -247,6 +255,7 @@ export function Curves(props: {
           {word('png')}
         </button>
         {droppedTicks > 0 && <span class="hint">{`${droppedTicks} ${word('droppedTicks')}`}</span>}
+        {notDrawn.length > 0 && <span class="refused">{`${word('notDrawn')} ${notDrawn.join(', ')}`}</span>}
       </div>
       <div class="chart" ref={box} />
       <table class="legend">

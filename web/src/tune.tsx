@@ -41,6 +41,22 @@ function Proposal(props: { motor: string; busy: boolean; run: Run; onProposal: (
   const [wanted, setWanted] = useStoredOfRobot(`proposal/${props.motor}`, { current_a: 1, max_speed_rpm: null as number | null, time_constant_s: 0.03 });
   const [told, setTold] = useState('');
   const [measuring, setMeasuring] = useState(false);
+  // Between the pulses no test is there to be ended.
+  const ended = useRef(false);
+  useEffect(() => {
+    const end = () => {
+      ended.current = true;
+    };
+    const key = (event: KeyboardEvent) => event.key === 'Escape' && end();
+    const hidden = () => document.hidden && end();
+    window.addEventListener('keydown', key);
+    document.addEventListener('visibilitychange', hidden);
+    return () => {
+      end();
+      window.removeEventListener('keydown', key);
+      document.removeEventListener('visibilitychange', hidden);
+    };
+  }, []);
 
   // Until it stands, or 2 s are over: the next pulse begins from rest.
   const stop = async () => {
@@ -56,6 +72,7 @@ function Proposal(props: { motor: string; busy: boolean; run: Run; onProposal: (
   const measure = async () => {
     setTold('');
     setMeasuring(true);
+    ended.current = false;
     const slopes: number[] = [];
     for (const pulse of [1, 2]) {
       const amplitude = pulse * wanted.current_a;
@@ -71,6 +88,7 @@ function Proposal(props: { motor: string; busy: boolean; run: Run; onProposal: (
       if ('refused' in outcome || outcome.done.report.abort !== null) break;
       slopes.push(outcome.done.report.acceleration_rpm_per_s ?? NaN);
       await stop();
+      if (ended.current) break;
     }
     setMeasuring(false);
     const [low, high] = slopes;

@@ -1,5 +1,6 @@
 // The page in English and Chinese. Words of the protocol (READY, hold, ...) stay as rc10ctl and the log have them.
 
+import { remember, remembered } from './browser_memory';
 import { kCommissionChinese, kCommissionEnglish } from './words_commission';
 import { kTuneChinese, kTuneEnglish } from './words_tune';
 
@@ -216,6 +217,7 @@ const kEnglish = {
   all: 'all',
   problems: 'warnings and errors',
   droppedTicks: 'ticks were lost on the way here',
+  notDrawn: 'not drawn (not known, or 32 signals of all pages are drawn already):',
   configuration: 'Configuration',
   configText: 'Text of the configuration',
   configRobot: 'The robot’s file',
@@ -476,6 +478,7 @@ const kChinese: Record<Word, string> = {
   all: '全部',
   problems: '警告与错误',
   droppedTicks: '个周期的数据在途中丢失',
+  notDrawn: '未绘制（信号未知，或所有页面合计已绘制 32 个信号）：',
   configuration: '配置',
   configText: '配置文件的文字',
   configRobot: '机器人的文件',
@@ -526,13 +529,13 @@ export type Language = 'en' | 'zh';
 const kKey = 'rc10.language';
 
 export function storedLanguage(): Language {
-  const stored = localStorage.getItem(kKey);
+  const stored = remembered(kKey);
   if (stored === 'en' || stored === 'zh') return stored;
   return navigator.language.startsWith('zh') ? 'zh' : 'en';
 }
 
 export function storeLanguage(language: Language): void {
-  localStorage.setItem(kKey, language);
+  remember(kKey, language);
   document.documentElement.lang = language;
 }
 
