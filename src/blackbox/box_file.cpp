@@ -15,6 +15,7 @@
 #include <new>
 #include <utility>
 
+#include "app/errno_text.hpp"
 #include "blackbox/file_bytes.hpp"
 
 namespace rc10::blackbox {
@@ -23,7 +24,7 @@ namespace {
 // Four seconds of eight motors at 1 kHz, the longest pause of the io thread.
 constexpr std::uint64_t kRingBytes = std::uint64_t{1} << 20U;
 
-[[nodiscard]] Error trouble(const std::string& path, const char* why) { return {path + ": " + why}; }
+[[nodiscard]] Error trouble(const std::string& path, const std::string& why) { return {path + ": " + why}; }
 
 [[nodiscard]] bool inMemory(int fd) noexcept {
   struct statfs info {};
@@ -43,21 +44,21 @@ Result<std::unique_ptr<BoxFile>> BoxFile::create(const std::string& path, Header
 
   const std::string temporary = path + ".new";
   UniqueFd fd{::open(temporary.c_str(), O_RDWR | O_CREAT | O_TRUNC | O_CLOEXEC | O_NOFOLLOW, 0640)};
-  if (!fd) return tl::unexpected(trouble(temporary, std::strerror(errno)));
-  const auto give_up = [&](const char* why) {
+  if (!fd) return tl::unexpected(trouble(temporary, errnoText(errno)));
+  const auto give_up = [&](const std::string& why) {
     (void)::unlink(temporary.c_str());
     return tl::unexpected(trouble(temporary, why));
   };
   // Now, so that nothing can lack room later. Not ftruncate(): a hole in a mapped file ends in SIGBUS.
   if (const int error = ::posix_fallocate(fd.get(), 0, static_cast<off_t>(bytes)); error != 0) {
-    return give_up(std::strerror(error));
+    return give_up(errnoText(error));
   }
   const std::size_t mapped = header.history_offset;
   const bool shared = inMemory(fd.get());
   void* const memory =
       shared ? ::mmap(nullptr, mapped, PROT_READ | PROT_WRITE, MAP_SHARED, fd.get(), 0)
              : ::mmap(nullptr, mapped, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
-  if (memory == MAP_FAILED) return give_up(std::strerror(errno));
+  if (memory == MAP_FAILED) return give_up(errnoText(errno));
   auto guard = std::make_unique<CutFileGuard>();
   if (shared && !guard->watch(memory, mapped)) {
     (void)::munmap(memory, mapped);
@@ -71,7 +72,7 @@ Result<std::unique_ptr<BoxFile>> BoxFile::create(const std::string& path, Header
       !written) {
     return give_up(written.error().message.c_str());
   }
-  if (::rename(temporary.c_str(), path.c_str()) != 0) return give_up(std::strerror(errno));
+  if (::rename(temporary.c_str(), path.c_str()) != 0) return give_up(errnoText(errno));
   return box;
 }
 

@@ -6,13 +6,13 @@
 #include <algorithm>
 #include <array>
 #include <cerrno>
-#include <cstring>
 #include <ctime>
 #include <filesystem>
 #include <string_view>
 #include <system_error>
 #include <vector>
 
+#include "app/errno_text.hpp"
 #include "app/unique_fd.hpp"
 #include "blackbox/file_bytes.hpp"
 #include "blackbox/image.hpp"
@@ -45,7 +45,7 @@ constexpr std::string_view kExtension = ".blackbox";
   if (auto taken = takeImage(from, write, [&cause](Header& header) { header.cause = cause; }); !taken) {
     return taken;
   }
-  if (::fsync(to) != 0) return fail(std::strerror(errno));
+  if (::fsync(to) != 0) return fail(errnoText(errno));
   return {};
 }
 
@@ -66,11 +66,11 @@ Result<std::string> keepCopy(int fd, const std::string& dir, const std::string& 
   const std::string temporary = dir + "/" + robot + std::string(kExtension) + ".part";
   const std::string path = dir + "/" + copyName(robot, wall_s, cause);
   const UniqueFd folder{::open(dir.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC)};
-  if (!folder) return fail(dir + ": " + std::strerror(errno));
+  if (!folder) return fail(dir + ": " + errnoText(errno));
   const UniqueFd out{::open(temporary.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC | O_NOFOLLOW, 0640)};
-  if (!out) return fail(dir + ": " + std::strerror(errno));
+  if (!out) return fail(dir + ": " + errnoText(errno));
   auto copied = copyInto(fd, out.get(), cause);
-  if (copied && ::rename(temporary.c_str(), path.c_str()) != 0) copied = fail(std::strerror(errno));
+  if (copied && ::rename(temporary.c_str(), path.c_str()) != 0) copied = fail(errnoText(errno));
   if (!copied) {
     (void)::unlink(temporary.c_str());
     return fail(dir + ": " + copied.error().message);

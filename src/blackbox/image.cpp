@@ -10,6 +10,7 @@
 #include <memory>
 #include <utility>
 
+#include "app/errno_text.hpp"
 #include "app/unique_fd.hpp"
 #include "blackbox/file_bytes.hpp"
 
@@ -70,7 +71,7 @@ Result<ImageReader> ImageReader::open(int fd) {
   const auto& header = head.header;
   if (auto checked = checkHeader(header); !checked) return tl::unexpected(checked.error());
   struct stat info {};
-  if (::fstat(fd, &info) != 0) return fail(std::strerror(errno));
+  if (::fstat(fd, &info) != 0) return fail(errnoText(errno));
   if (static_cast<std::uint64_t>(info.st_size) < header.file_bytes) {
     return fail("it is cut off: it has " + std::to_string(info.st_size) + " of " +
                 std::to_string(header.file_bytes) + " bytes");
@@ -131,7 +132,7 @@ Result<void> takeImage(int fd, const Sink& sink, const std::function<void(Header
 
 Result<std::vector<std::byte>> readImage(const std::string& path) {
   const UniqueFd fd{::open(path.c_str(), O_RDONLY | O_CLOEXEC)};
-  if (!fd) return fail(path + ": " + std::strerror(errno));
+  if (!fd) return fail(path + ": " + errnoText(errno));
   std::vector<std::byte> image;
   const auto keep = [&image](std::uint64_t offset, std::span<const std::byte> bytes) -> Result<void> {
     if (image.size() < offset + bytes.size()) image.resize(offset + bytes.size());

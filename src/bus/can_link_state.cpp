@@ -10,9 +10,9 @@
 
 #include <array>
 #include <cerrno>
-#include <cstring>
 #include <span>
 
+#include "app/errno_text.hpp"
 #include "app/unique_fd.hpp"
 #include "bus/interface_names.hpp"
 #include "bus/netlink_attributes.hpp"
@@ -123,7 +123,7 @@ tl::unexpected<Error> canLinkFailure(const std::string& interface, const std::st
     remedy =
         similarInterface(interface) + "; `ip link` lists what there is. A HAT needs its device tree overlay";
   }
-  return fail("CAN interface '" + interface + "': cannot " + what + ": " + std::strerror(error) + remedy);
+  return fail("CAN interface '" + interface + "': cannot " + what + ": " + errnoText(error) + remedy);
 }
 
 Result<CanLink> readCanLink(const std::string& interface) {

@@ -13,9 +13,10 @@
 #include <array>
 #include <cerrno>
 #include <cstdlib>
-#include <cstring>
 #include <filesystem>
 #include <system_error>
+
+#include "app/errno_text.hpp"
 
 namespace rc10 {
 namespace {
@@ -60,14 +61,14 @@ std::string adviceForOpen(int error) {
 
 Result<UniqueFd> openForUsAlone(const std::string& path) {
   UniqueFd fd{::open(path.c_str(), O_RDWR | O_NOCTTY | O_NONBLOCK | O_CLOEXEC)};
-  if (!fd) return fail(place(path) + std::strerror(errno) + adviceForOpen(errno));
+  if (!fd) return fail(place(path) + errnoText(errno) + adviceForOpen(errno));
   // TIOCEXCL does not keep root out, and flock only those who ask.
   if (::ioctl(fd.get(), TIOCEXCL) != 0) {
     return fail(place(path) +
-                (errno == ENOTTY || errno == EINVAL ? "it is no serial port" : std::strerror(errno)));
+                (errno == ENOTTY || errno == EINVAL ? "it is no serial port" : errnoText(errno)));
   }
   if (::flock(fd.get(), LOCK_EX | LOCK_NB) != 0)
-    return fail(place(path) + std::strerror(EBUSY) + adviceForOpen(EBUSY));
+    return fail(place(path) + errnoText(EBUSY) + adviceForOpen(EBUSY));
   return fd;
 }
 
@@ -105,11 +106,11 @@ bool near(speed_t got, int wanted) {
 Result<void> setFormat(int fd, const std::string& path, const SerialFormat& format) {
   termios2 settings{};
   if (::ioctl(fd, TCGETS2, &settings) != 0)
-    return fail(place(path) + "it is no serial port: " + std::strerror(errno));
+    return fail(place(path) + "it is no serial port: " + errnoText(errno));
   setRaw(settings, format);
   termios2 got{};
   if (::ioctl(fd, TCSETS2, &settings) != 0 || ::ioctl(fd, TCGETS2, &got) != 0) {
-    return fail(place(path) + "cannot set " + format.text() + ": " + std::strerror(errno));
+    return fail(place(path) + "cannot set " + format.text() + ": " + errnoText(errno));
   }
   if (!near(got.c_ospeed, format.baud)) {
     return fail(place(path) + "asked for " + std::to_string(format.baud) + " baud, the adapter gives " +

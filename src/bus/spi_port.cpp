@@ -5,8 +5,9 @@
 #include <sys/ioctl.h>
 
 #include <cerrno>
-#include <cstring>
 #include <utility>
+
+#include "app/errno_text.hpp"
 
 namespace rc10 {
 namespace {
@@ -32,7 +33,7 @@ std::string adviceFor(int error) {
 }
 
 tl::unexpected<Error> refusal(const std::string& path, const std::string& what, int error) {
-  return fail("SPI device '" + path + "': " + what + std::strerror(error) + adviceFor(error));
+  return fail("SPI device '" + path + "': " + what + errnoText(error) + adviceFor(error));
 }
 
 class Spidev final : public SpiPort {

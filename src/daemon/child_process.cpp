@@ -6,9 +6,10 @@
 #include <unistd.h>
 
 #include <array>
-#include <cstring>
 
 #include <fmt/format.h>
+
+#include "app/errno_text.hpp"
 
 // NOLINTNEXTLINE(readability-redundant-declaration): POSIX declares it nowhere
 extern char** environ;
@@ -46,7 +47,7 @@ Result<pid_t> startChild(const std::string& program, const std::vector<std::stri
   const int error = posix_spawn(&pid, program.c_str(), &files, &attributes, argv.data(), environ);
   posix_spawn_file_actions_destroy(&files);
   posix_spawnattr_destroy(&attributes);
-  if (error != 0) return fail(fmt::format("{} could not be started: {}", program, std::strerror(error)));
+  if (error != 0) return fail(fmt::format("{} could not be started: {}", program, errnoText(error)));
   return pid;
 }
 

@@ -6,14 +6,14 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <cerrno>
-#include <cstring>
-#include <thread>
 #include <utility>
 
 #include <fmt/format.h>
 
+#include "app/errno_text.hpp"
 #include "daemon/child_process.hpp"
 #include "daemon/exchange/clock.hpp"
 #include "link/descriptor_message.hpp"
@@ -25,8 +25,10 @@ namespace {
 
 // A guard that has just been started opens its CAN sockets first.
 constexpr Duration kPatience = std::chrono::seconds{1};
-constexpr auto kRetryPause = std::chrono::milliseconds{5};
-constexpr Duration kRetry = std::chrono::seconds{1};
+constexpr Duration kRetryPause = std::chrono::milliseconds{5};
+// Between the end of a try and the next one.
+constexpr Duration kFirstPause = std::chrono::seconds{1};
+constexpr Duration kLongestPause = std::chrono::seconds{5};
 
 /// Error 0: connected. Else errno.
 struct Attempt {
@@ -55,47 +57,55 @@ Result<std::unique_ptr<GuardLink>> GuardLink::create(Settings settings) {
   auto page = link::SharedGuardPage::create();
   if (!page) return tl::unexpected(page.error());
   UniqueFd self{static_cast<int>(::syscall(SYS_pidfd_open, ::getpid(), 0))};
-  if (!self) return fail(fmt::format("no pidfd for rc10-guard: {}", std::strerror(errno)));
+  if (!self) return fail(fmt::format("no pidfd for rc10-guard: {}", errnoText(errno)));
   std::unique_ptr<GuardLink> link{new GuardLink(std::move(settings), std::move(*page), std::move(self))};
-  if (auto connected = link->connect(); !connected) return tl::unexpected(connected.error());
-  return link;
+  link->try_ = Try{.deadline = monotonicNow() + kPatience};
+  for (;;) {
+    const auto watched = link->tryOn(monotonicNow());
+    if (!watched) return tl::unexpected(watched.error());
+    if (*watched) return link;
+    (void)readable(link->descriptor(), kRetryPause);
+  }
 }
 
-Result<void> GuardLink::connect() {
-  const std::string path = link::guardSocketPath(settings_.run_dir);
-  const auto deadline = monotonicNow() + kPatience;
-  for (bool started = false;;) {
+Result<bool> GuardLink::tryOn(MonotonicTime now) {
+  if (!try_->greeted) {
+    const std::string path = link::guardSocketPath(settings_.run_dir);
     auto attempt = connectTo(path);
-    if (attempt.error == 0) {
-      auto watched = sayHello(attempt.connection.get());
-      if (watched) connection_ = std::move(attempt.connection);
-      return watched;
-    }
-    // No guard, or one that is gone: another one is started, once.
-    const bool none = attempt.error == ENOENT || attempt.error == ECONNREFUSED;
-    if (!none) return fail(fmt::format("rc10-guard: {}: {}", path, std::strerror(attempt.error)));
-    if (!started) {
-      const auto child = startChild(settings_.program, {"--until-unused"}, {.own_session = true});
-      if (!child) return tl::unexpected(child.error());
-      child_ = *child;
-      started = true;
-    }
-    if (monotonicNow() >= deadline)
+    if (attempt.error != 0) {
+      // No guard, or one that is gone: another one is started, once.
+      const bool none = attempt.error == ENOENT || attempt.error == ECONNREFUSED;
+      if (!none) return fail(fmt::format("rc10-guard: {}: {}", path, errnoText(attempt.error)));
+      if (!try_->started && child_ == 0) {
+        const auto child = startChild(settings_.program, {"--until-unused"}, {.own_session = true});
+        if (!child) return tl::unexpected(child.error());
+        child_ = *child;
+        try_->started = true;
+      }
+      if (now < try_->deadline) return false;
       return fail(fmt::format("{} was started and does not answer at {}", settings_.program, path));
-    std::this_thread::sleep_for(kRetryPause);
+    }
+    if (auto told = sayHello(attempt.connection.get()); !told) return tl::unexpected(told.error());
+    try_ =
+        Try{.deadline = now + kPatience, .started = try_->started, .greeted = std::move(attempt.connection)};
   }
+  if (!readable(try_->greeted.get(), Duration{0})) {
+    if (now < try_->deadline) return false;
+    return fail("rc10-guard does not answer");
+  }
+  link::DescriptorMessage answer;
+  if (!link::receiveWithDescriptors(try_->greeted.get(), answer)) return fail("rc10-guard has hung up");
+  if (answer.text != link::kGuardArmed) return fail("rc10-guard does not watch: " + answer.text);
+  connection_ = std::move(try_->greeted);
+  try_.reset();
+  return true;
 }
 
 Result<void> GuardLink::sayHello(int connection) {
   page_->beats.store(0, std::memory_order_relaxed);  // of another guard
   const std::array descriptors{page_.descriptor(), self_.get()};
-  if (!link::sendWithDescriptors(connection, link::guardHelloText(settings_.hello), descriptors))
-    return fail(fmt::format("rc10-guard cannot be told what to watch: {}", std::strerror(errno)));
-  link::DescriptorMessage answer;
-  if (!readable(connection, kPatience)) return fail("rc10-guard does not answer");
-  if (!link::receiveWithDescriptors(connection, answer)) return fail("rc10-guard has hung up");
-  if (answer.text == link::kGuardArmed) return {};
-  return fail("rc10-guard does not watch: " + answer.text);
+  if (link::sendWithDescriptors(connection, link::guardHelloText(settings_.hello), descriptors)) return {};
+  return fail(fmt::format("rc10-guard cannot be told what to watch: {}", errnoText(errno)));
 }
 
 void GuardLink::reap() noexcept {
@@ -108,13 +118,25 @@ GuardLink::News GuardLink::supervise(MonotonicTime now) {
     if (!readable(connection_.get(), Duration{0})) return watchBeats(now);
     connection_.reset();  // the guard says nothing more: this is its end
     next_try_ = now;
+    pause_ = kFirstPause;
+    last_failure_.clear();
     return {.lost = true, .text = "rc10-guard has ended: nobody watches rc10d; e-stop"};
   }
-  if (now < next_try_) return {};
-  next_try_ = now + kRetry;
-  const auto connected = connect();
+  if (!try_) {
+    if (now < next_try_) return {};
+    try_ = Try{.deadline = now + kPatience};
+  }
+  const auto watched = tryOn(now);
+  if (watched && !*watched) return {};
   beats_ = {};
-  return {.text = connected ? "rc10-guard watches again" : connected.error().message};
+  if (watched) return {.text = "rc10-guard watches again"};
+  try_.reset();
+  next_try_ = now + pause_;
+  pause_ = std::min(2 * pause_, kLongestPause);
+  // The same again and again: once is enough.
+  if (watched.error().message == last_failure_) return {};
+  last_failure_ = watched.error().message;
+  return {.text = last_failure_};
 }
 
 // The connection stays: a guard that goes on watches as before.
@@ -139,6 +161,7 @@ GuardLink::News GuardLink::watchBeats(MonotonicTime now) {
 void GuardLink::end() noexcept {
   page_->ended.store(true, std::memory_order_release);
   connection_.reset();
+  try_.reset();
 }
 
 }  // namespace rc10

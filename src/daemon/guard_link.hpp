@@ -3,6 +3,7 @@
 #include <sys/types.h>
 
 #include <memory>
+#include <optional>
 #include <string>
 
 #include "app/result.hpp"
@@ -32,14 +33,15 @@ class GuardLink {
 
   [[nodiscard]] link::GuardPage& page() noexcept { return *page_; }
 
-  /// Readable when the guard has ended; -1: there is none.
-  [[nodiscard]] int descriptor() const noexcept { return connection_.get(); }
+  /// Readable when the guard has ended, or answers; -1: there is none.
+  [[nodiscard]] int descriptor() const noexcept { return try_ ? try_->greeted.get() : connection_.get(); }
 
   struct News {
     bool lost = false;  ///< The guard has just ended, or stands still: the robot is to be stopped.
     std::string text;   ///< To be logged; empty: nothing.
   };
-  /// Notices the end of the guard, and gets another one; notices that it stands still.
+  /// Notices the end of the guard, and gets another one, a step with each call; notices that it stands still.
+  /// Never waits.
   [[nodiscard]] News supervise(MonotonicTime now);
 
   /// The drives are at rest: the guard has nothing to do any more.
@@ -48,7 +50,15 @@ class GuardLink {
  private:
   GuardLink(Settings settings, link::SharedGuardPage page, UniqueFd self)
       : settings_(std::move(settings)), page_(std::move(page)), self_(std::move(self)) {}
-  [[nodiscard]] Result<void> connect();
+  /// To get a guard: one is connected to, started if there is none, greeted, and answers.
+  struct Try {
+    MonotonicTime deadline;  ///< Of the step that is awaited.
+    bool started = false;
+    UniqueFd greeted{};  ///< Its answer is awaited.
+  };
+
+  /// A step of the try, without waiting. True: the guard watches.
+  [[nodiscard]] Result<bool> tryOn(MonotonicTime now);
   [[nodiscard]] Result<void> sayHello(int connection);
   [[nodiscard]] News watchBeats(MonotonicTime now);
   void reap() noexcept;
@@ -58,7 +68,10 @@ class GuardLink {
   UniqueFd self_;        ///< pidfd of this process.
   UniqueFd connection_;  ///< Without: nobody watches.
   pid_t child_ = 0;      ///< A guard that we have started.
+  std::optional<Try> try_;
   MonotonicTime next_try_{};
+  Duration pause_{};          ///< After the next try that fails.
+  std::string last_failure_;  ///< Of the tries since the guard ended.
   GuardBeats beats_;
 };
 

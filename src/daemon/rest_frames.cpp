@@ -7,12 +7,12 @@
 #include <array>
 #include <cerrno>
 #include <cstdio>
-#include <cstring>
 #include <span>
 #include <vector>
 
 #include <fmt/format.h>
 
+#include "app/errno_text.hpp"
 #include "bus/frame_text.hpp"
 #include "link/process_identity.hpp"
 #include "link/run_dir.hpp"
@@ -34,7 +34,7 @@ namespace {
 }
 
 [[nodiscard]] Result<void> failure(const std::string& path) {
-  return fail(fmt::format("{}: {}", path, std::strerror(errno)));
+  return fail(fmt::format("{}: {}", path, errnoText(errno)));
 }
 
 }  // namespace

@@ -12,6 +12,7 @@
 #include <cstring>
 #include <optional>
 
+#include "app/errno_text.hpp"
 #include "app/unique_fd.hpp"
 
 namespace rc10::gateway {
@@ -117,7 +118,7 @@ Result<MulticastRoute> findRoute(const UdpmUrl& url) {
       return fail("there is no route to LCM's multicast group " + url.groupText() + ": " + remedy(url) +
                   " makes one on this computer");
     }
-    return fail("cannot ask the kernel for the route to " + url.groupText() + ": " + std::strerror(error));
+    return fail("cannot ask the kernel for the route to " + url.groupText() + ": " + errnoText(error));
   }
   route.interface = nameOf(route.interface_index);
   route.loopback = route.interface == "lo";

@@ -11,6 +11,7 @@
 #include <cstring>
 #include <ctime>
 
+#include "app/errno_text.hpp"
 #include "gateway/channel_filter.hpp"
 
 namespace rc10::gateway {
@@ -19,7 +20,7 @@ namespace {
 tl::unexpected<Error> socketFailed(const char* what, const UdpmUrl& url) {
   const int error = errno;
   return fail(std::string("LCM on ") + url.groupText() + ":" + std::to_string(url.port) + ": " + what + ": " +
-              std::strerror(error));
+              errnoText(error));
 }
 
 template <typename Value>

@@ -7,8 +7,8 @@
 #include <unistd.h>
 
 #include <cerrno>
-#include <cstring>
 
+#include "app/errno_text.hpp"
 #include "link/run_dir.hpp"
 #include "link/unix_address.hpp"
 
@@ -17,7 +17,7 @@ namespace {
 
 constexpr int kBacklog = 8;
 
-tl::unexpected<Error> failure(const std::string& path) { return fail(path + ": " + std::strerror(errno)); }
+tl::unexpected<Error> failure(const std::string& path) { return fail(path + ": " + errnoText(errno)); }
 
 UniqueFd spareDescriptor() noexcept { return UniqueFd{::open("/dev/null", O_RDONLY | O_CLOEXEC)}; }
 
@@ -42,7 +42,7 @@ Result<GuardSocket> GuardSocket::listen(const std::string& run_dir) {
   const auto address = link::unixAddress(path);
   if (!address) return fail(path + ": too long for a socket: choose a shorter RC10_RUN_DIR");
   guard.socket_ = UniqueFd{::socket(AF_UNIX, SOCK_SEQPACKET | SOCK_NONBLOCK | SOCK_CLOEXEC, 0)};
-  (void)::unlink(path.c_str());  // left by one that was killed: we hold the lock
+  if (guard.socket_) (void)::unlink(path.c_str());  // left by one that was killed: we hold the lock
   if (!guard.socket_ ||
       ::bind(guard.socket_.get(), reinterpret_cast<const sockaddr*>(&*address), sizeof *address) != 0)
     return failure(path);

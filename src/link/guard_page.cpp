@@ -6,10 +6,11 @@
 #include <unistd.h>
 
 #include <cerrno>
-#include <cstring>
 #include <new>
 #include <string>
 #include <utility>
+
+#include "app/errno_text.hpp"
 
 namespace rc10::link {
 namespace {
@@ -17,7 +18,7 @@ namespace {
 constexpr int kSeals = F_SEAL_SHRINK | F_SEAL_GROW | F_SEAL_SEAL;
 
 tl::unexpected<Error> failure(const char* what) {
-  return fail(std::string("page of rc10-guard: ") + what + ": " + std::strerror(errno));
+  return fail(std::string("page of rc10-guard: ") + what + ": " + errnoText(errno));
 }
 
 void* mapShared(int descriptor) noexcept {

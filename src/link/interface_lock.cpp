@@ -12,6 +12,7 @@
 #include <fstream>
 #include <string_view>
 
+#include "app/errno_text.hpp"
 #include "app/printable.hpp"
 
 namespace rc10::link {
@@ -75,7 +76,7 @@ Result<InterfaceLock> InterfaceLock::take(int index, const std::string& interfac
   if (!lock) {
     const int error = errno;
     if (error != EADDRINUSE)
-      return fail("cannot lock CAN interface '" + interface + "': " + std::strerror(error));
+      return fail("cannot lock CAN interface '" + interface + "': " + errnoText(error));
     return fail(interface + " is driven by " + wordsOf(index) + "; stop it first");
   }
   // Names of this process alone: those of others that begin alike do not matter.

@@ -5,9 +5,9 @@
 
 #include <cerrno>
 #include <cstdlib>
-#include <cstring>
 #include <filesystem>
 
+#include "app/errno_text.hpp"
 #include "app/unique_fd.hpp"
 
 namespace rc10::link {
@@ -32,9 +32,10 @@ std::string runDir() {
 
 Result<void> makeRunDir(const std::string& dir, uid_t user) {
   if (::mkdir(dir.c_str(), 0755) != 0 && errno != EEXIST)
-    return fail(dir + ": " + std::strerror(errno) + ": " + kRemedy);
+    return fail(dir + ": " + errnoText(errno) + ": " + kRemedy);
   struct stat status {};
   const UniqueFd folder{::open(dir.c_str(), O_PATH | O_DIRECTORY | O_NOFOLLOW | O_CLOEXEC)};
+  if (!folder && errno != ELOOP && errno != ENOTDIR) return fail(dir + ": " + errnoText(errno));
   if (!folder || ::fstat(folder.get(), &status) != 0)
     return fail(dir + " is no folder of its own (a link, or a file): " + kRemedy);
   if ((status.st_mode & S_IWOTH) != 0) return fail(dir + ": every user may write to it: " + kRemedy);

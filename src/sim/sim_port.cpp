@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <array>
 #include <cerrno>
-#include <system_error>
 
+#include "app/errno_text.hpp"
 #include "bus/wire_frame.hpp"
 
 namespace rc10::sim {
@@ -28,15 +28,14 @@ constexpr int kSendBufferBytes = 1 << 20;
 Result<std::pair<UniqueFd, UniqueFd>> SimPort::makeSocketPair() {
   std::array<int, 2> ends{-1, -1};
   if (::socketpair(AF_UNIX, SOCK_SEQPACKET | SOCK_NONBLOCK | SOCK_CLOEXEC, 0, ends.data()) != 0) {
-    return fail("simulated bus: cannot make a socket pair: " + std::generic_category().message(errno) +
-                "; raise the limit of open files (LimitNOFILE=) if that is the cause");
+    return fail("simulated bus: cannot make a socket pair: " + errnoText(errno));
   }
   std::pair<UniqueFd, UniqueFd> pair{UniqueFd{ends[0]}, UniqueFd{ends[1]}};
   for (const int fd : ends) {
     const int on = 1;
     // Emulated by qemu-user there is no such option: frames then count as received when they are read.
     if (::setsockopt(fd, SOL_SOCKET, SO_TIMESTAMPNS, &on, sizeof(on)) != 0 && errno != ENOPROTOOPT) {
-      return fail("simulated bus: cannot ask for receive stamps: " + std::generic_category().message(errno));
+      return fail("simulated bus: cannot ask for receive stamps: " + errnoText(errno));
     }
     (void)::setsockopt(fd, SOL_SOCKET, SO_SNDBUF, &kSendBufferBytes, sizeof(kSendBufferBytes));
   }

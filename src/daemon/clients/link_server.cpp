@@ -6,10 +6,10 @@
 #include <unistd.h>
 
 #include <cerrno>
-#include <cstring>
 
 #include <fmt/format.h>
 
+#include "app/errno_text.hpp"
 #include "daemon/exchange/clock.hpp"
 
 namespace rc10 {
@@ -73,11 +73,11 @@ Result<std::unique_ptr<LinkServer>> LinkServer::create(LinkSocket socket, Source
   if (!permissions) return tl::unexpected(permissions.error());
   UniqueFd epoll{epoll_create1(EPOLL_CLOEXEC)};
   Timers timers{.state = makeTimer(sources.robot.state_hz), .slow = makeTimer(kSlowHz)};
-  if (!epoll || !timers.state || !timers.slow) return fail(fmt::format("link: {}", std::strerror(errno)));
+  if (!epoll || !timers.state || !timers.slow) return fail(fmt::format("link: {}", errnoText(errno)));
   if (!watchDescriptor(epoll.get(), socket.descriptor(), kListener) ||
       !watchDescriptor(epoll.get(), timers.state.get(), kStateTimer) ||
       !watchDescriptor(epoll.get(), timers.slow.get(), kSlowTimer)) {
-    return fail(fmt::format("link: epoll_ctl: {}", std::strerror(errno)));
+    return fail(fmt::format("link: epoll_ctl: {}", errnoText(errno)));
   }
   return std::unique_ptr<LinkServer>(new LinkServer(std::move(socket), std::move(sources), *permissions,
                                                     std::move(epoll), std::move(timers)));

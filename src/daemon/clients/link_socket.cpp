@@ -8,11 +8,11 @@
 
 #include <cerrno>
 #include <cstdlib>
-#include <cstring>
 
 #include <fmt/format.h>
 
 #include "app/account_ids.hpp"
+#include "app/errno_text.hpp"
 #include "link/process_identity.hpp"
 #include "link/run_dir.hpp"
 #include "link/unix_address.hpp"
@@ -34,7 +34,7 @@ constexpr int kBacklog = 16;
 [[nodiscard]] Result<UniqueFd> takeLock(const std::string& path, const std::string& robot) {
   // Nobody else may open it: who can read a file can lock it.
   UniqueFd lock{::open(path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW, 0600)};
-  if (!lock) return fail(fmt::format("{}: {}", path, std::strerror(errno)));
+  if (!lock) return fail(fmt::format("{}: {}", path, errnoText(errno)));
   if (::flock(lock.get(), LOCK_EX | LOCK_NB) != 0) {
     char holder[16] = {};
     (void)!::read(lock.get(), holder, sizeof holder - 1);
@@ -56,9 +56,9 @@ constexpr int kBacklog = 16;
                     path, link::kMaxSocketPath));
   }
   UniqueFd socket{::socket(AF_UNIX, type | SOCK_NONBLOCK | SOCK_CLOEXEC, 0)};
-  (void)::unlink(path.c_str());
+  if (socket) (void)::unlink(path.c_str());
   if (!socket || ::bind(socket.get(), reinterpret_cast<const sockaddr*>(&*address), sizeof *address) != 0)
-    return fail(fmt::format("{}: {}", path, std::strerror(errno)));
+    return fail(fmt::format("{}: {}", path, errnoText(errno)));
   (void)::chmod(path.c_str(), 0660);
   if (const auto gid = groupId("rc10")) (void)!::chown(path.c_str(), static_cast<uid_t>(-1), *gid);
   return socket;
@@ -80,8 +80,7 @@ Result<LinkSocket> LinkSocket::listen(const std::string& dir, const std::string&
   link.socket_ = std::move(*socket);
   link.estop_ = std::move(*estop);
   link.path_ = path;
-  if (::listen(link.socket_.get(), kBacklog) != 0)
-    return fail(fmt::format("{}: {}", path, std::strerror(errno)));
+  if (::listen(link.socket_.get(), kBacklog) != 0) return fail(fmt::format("{}: {}", path, errnoText(errno)));
   return link;
 }
 

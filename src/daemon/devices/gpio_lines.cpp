@@ -6,13 +6,14 @@
 #include <algorithm>
 #include <array>
 #include <cerrno>
-#include <cstring>
 #include <span>
 #include <string>
 #include <string_view>
 #include <utility>
 
 #include <fmt/format.h>
+
+#include "app/errno_text.hpp"
 
 namespace rc10 {
 namespace {
@@ -52,7 +53,7 @@ struct Line {
 }
 
 [[nodiscard]] tl::unexpected<Error> refusal(std::string_view key, const GpioPin& pin, int error) {
-  return fail(fmt::format("{}: {}: {}: {}", key, pin.name(), std::strerror(error), remedy(error, pin.chip)));
+  return fail(fmt::format("{}: {}: {}: {}", key, pin.name(), errnoText(error), remedy(error, pin.chip)));
 }
 
 [[nodiscard]] Result<Line> findLine(std::string_view key, const GpioPin& pin) {

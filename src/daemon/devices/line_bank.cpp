@@ -3,9 +3,10 @@
 #include <sys/eventfd.h>
 
 #include <cerrno>
-#include <cstring>
 
 #include <fmt/format.h>
+
+#include "app/errno_text.hpp"
 
 namespace rc10 {
 
@@ -35,7 +36,7 @@ void LineBank::showUnread(std::uint32_t unwritten) noexcept {
 
 Result<std::unique_ptr<LineBanks>> LineBanks::create(std::vector<LineBank::Settings> banks) {
   UniqueFd wake{::eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK)};
-  if (!wake) return fail(fmt::format("eventfd: {}", std::strerror(errno)));
+  if (!wake) return fail(fmt::format("eventfd: {}", errnoText(errno)));
   auto all = std::unique_ptr<LineBanks>(new LineBanks(std::move(wake)));
   for (auto& settings : banks)
     all->banks_.push_back(std::make_unique<LineBank>(std::move(settings), all->wake()));

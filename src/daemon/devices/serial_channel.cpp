@@ -6,9 +6,10 @@
 #include <unistd.h>
 
 #include <cerrno>
-#include <cstring>
 
 #include <fmt/format.h>
+
+#include "app/errno_text.hpp"
 
 namespace rc10 {
 
@@ -27,11 +28,11 @@ SerialChannel::~SerialChannel() {
 Result<std::unique_ptr<SerialChannels>> SerialChannels::create(
     std::span<const SerialChannel::Settings> ports) {
   UniqueFd wake{::eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK)};
-  if (!wake) return fail(fmt::format("eventfd: {}", std::strerror(errno)));
+  if (!wake) return fail(fmt::format("eventfd: {}", errnoText(errno)));
   auto channels = std::unique_ptr<SerialChannels>(new SerialChannels(std::move(wake)));
   for (const auto& port : ports) {
     UniqueFd null_device{::open("/dev/null", O_RDWR | O_CLOEXEC)};
-    if (!null_device) return fail(fmt::format("serial '{}': /dev/null: {}", port.name, std::strerror(errno)));
+    if (!null_device) return fail(fmt::format("serial '{}': /dev/null: {}", port.name, errnoText(errno)));
     channels->channels_.push_back(
         std::make_unique<SerialChannel>(port, std::move(null_device), channels->wake()));
   }

@@ -4,10 +4,10 @@
 #include <unistd.h>
 
 #include <cerrno>
-#include <cstring>
 
 #include <fmt/format.h>
 
+#include "app/errno_text.hpp"
 #include "bus/serial_port.hpp"
 
 namespace rc10 {
@@ -57,13 +57,13 @@ Result<void> SerialReviver::open(SerialChannel& channel, std::size_t index) {
   const auto port = openSerialPort(channel.settings.path, channel.settings.format);
   if (!port) return tl::unexpected(port.error());
   if (::dup3(port->get(), channel.fd.get(), O_CLOEXEC) < 0) {
-    return fail(fmt::format("serial port '{}': dup3: {}", channel.settings.path, std::strerror(errno)));
+    return fail(fmt::format("serial port '{}': dup3: {}", channel.settings.path, errnoText(errno)));
   }
   channel.opening.fetch_add(1, std::memory_order_relaxed);
   channel.state.store(SerialState::kOpen, std::memory_order_release);
   if (watch_(index)) return {};
   channel.state.store(SerialState::kAbsent, std::memory_order_relaxed);
-  return fail(fmt::format("serial port '{}': epoll_ctl: {}", channel.settings.path, std::strerror(errno)));
+  return fail(fmt::format("serial port '{}': epoll_ctl: {}", channel.settings.path, errnoText(errno)));
 }
 
 }  // namespace rc10

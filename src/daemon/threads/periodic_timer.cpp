@@ -4,9 +4,9 @@
 #include <unistd.h>
 
 #include <cerrno>
-#include <cstring>
 #include <string>
 
+#include "app/errno_text.hpp"
 #include "app/timespec.hpp"
 #include "daemon/exchange/clock.hpp"
 
@@ -15,7 +15,7 @@ namespace rc10 {
 Result<PeriodicTimer> PeriodicTimer::create(TimerKind kind) {
   if (kind == TimerKind::kNanosleep) return PeriodicTimer{UniqueFd{}};
   UniqueFd fd{timerfd_create(CLOCK_MONOTONIC, TFD_CLOEXEC)};
-  if (!fd) return fail(std::string("timerfd_create: ") + std::strerror(errno));
+  if (!fd) return fail(std::string("timerfd_create: ") + errnoText(errno));
   return PeriodicTimer{std::move(fd)};
 }
 

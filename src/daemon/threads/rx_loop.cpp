@@ -6,11 +6,11 @@
 #include <algorithm>
 #include <array>
 #include <cerrno>
-#include <cstring>
 #include <span>
 
 #include <fmt/format.h>
 
+#include "app/errno_text.hpp"
 #include "app/timespec.hpp"
 #include "daemon/exchange/clock.hpp"
 
@@ -26,7 +26,7 @@ constexpr int kMaxEvents = 16;
 
 Result<std::unique_ptr<RxLoop>> RxLoop::create(SerialChannels* serial, std::optional<Drain> drain) {
   UniqueFd epoll{epoll_create1(EPOLL_CLOEXEC)};
-  if (!epoll) return fail(fmt::format("epoll_create1: {}", std::strerror(errno)));
+  if (!epoll) return fail(fmt::format("epoll_create1: {}", errnoText(errno)));
   return std::unique_ptr<RxLoop>(new RxLoop(serial, drain, std::move(epoll)));
 }
 
