@@ -27,6 +27,13 @@ constexpr int kStopTimeoutMs = 500;
   return fmt::format("exit status {}", WEXITSTATUS(status));
 }
 
+[[nodiscard]] std::string stoppedText(pid_t pid) {
+  return fmt::format(
+      "rc10-lcm (pid {0}) stands still (SIGSTOP): nothing from LCM gets here, an e-stop neither, "
+      "and no state leaves. Let it go on (`kill -CONT {0}`), or kill it: another one is started",
+      pid);
+}
+
 }  // namespace
 
 GatewayProcess::GatewayProcess(std::string program, std::vector<std::string> arguments)
@@ -42,7 +49,13 @@ Result<void> GatewayProcess::spawn() {
 std::string GatewayProcess::supervise(MonotonicTime now) {
   std::string message;
   int status = 0;
-  if (pid_ != 0 && waitpid(pid_, &status, WNOHANG) == pid_) {
+  if (pid_ == 0 || waitpid(pid_, &status, WNOHANG | WUNTRACED | WCONTINUED) != pid_) {
+    // It is as before.
+  } else if (WIFSTOPPED(status)) {
+    message = stoppedText(pid_);
+  } else if (WIFCONTINUED(status)) {
+    message = "rc10-lcm goes on";
+  } else {
     if (now - started_ >= kHealthyAfter) backoff_ = kFirstBackoff;
     next_start_ = now + backoff_;
     message = fmt::format("rc10-lcm ended ({}); starting it again in {} ms", howItEnded(status),

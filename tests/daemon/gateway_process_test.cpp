@@ -107,6 +107,21 @@ TEST_F(GatewayProcessTest, SaysWhichSignalKilledIt) {
   EXPECT_THAT(startAndNotice(gateway), HasSubstr("killed by signal 9"));
 }
 
+TEST_F(GatewayProcessTest, SaysThatItWasStoppedAndThatItGoesOn) {
+  GatewayProcess gateway("/bin/sh", script("exec sleep 1000"));
+  ASSERT_EQ(gateway.supervise(now), "");
+  const auto change = [&gateway](int signal, int how) {
+    siginfo_t info{};
+    EXPECT_EQ(::kill(gateway.pid(), signal), 0);
+    EXPECT_EQ(::waitid(P_PID, static_cast<id_t>(gateway.pid()), &info, how | WNOWAIT), 0);
+  };
+  change(SIGSTOP, WSTOPPED);
+  EXPECT_THAT(gateway.supervise(now), HasSubstr("kill -CONT " + std::to_string(gateway.pid())));
+  EXPECT_EQ(gateway.supervise(now), "") << "once";
+  change(SIGCONT, WCONTINUED);
+  EXPECT_EQ(gateway.supervise(now), "rc10-lcm goes on");
+}
+
 TEST_F(GatewayProcessTest, AMissingProgramIsNamedAndTriedAgainLater) {
   GatewayProcess gateway("/no/such/rc10-lcm", {});
   const auto message = gateway.supervise(now);

@@ -147,10 +147,11 @@ void Supervisor::rearm(std::size_t index, const Tick& tick) noexcept {
     if (waited_for || turns) group.moved = tick.now;
   }
   if (tick.now - group.moved < kAtRest) return;
-  const auto rearmed = std::exchange(group.rearm, {});
-  for (const auto motor : group.motors) {
-    if (rearmed.test(motor)) (void)enable(motor, rearmed, tick);
-  }
+  const auto asked = std::exchange(group.rearm, {});
+  MotorSet rearmed;
+  for (const auto motor : group.motors)
+    if (asked.test(motor)) rearmed.set(motor, enable(motor, asked, tick) == Refusal::kNone);
+  if (rearmed.none()) return;
   report({EventCode::kGroupRearmed, Severity::kInfo, firstOf(rearmed), static_cast<std::int32_t>(index), 0,
           tick.now});
 }

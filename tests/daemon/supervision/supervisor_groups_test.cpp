@@ -5,6 +5,7 @@
 
 #include <gtest/gtest.h>
 
+#include "config/load_config.hpp"
 #include "daemon/virtual_robot.hpp"
 
 namespace rc10::test::supervisor_groups_test {
@@ -307,6 +308,43 @@ TEST_F(TogetherTest, AMemberIsEnabledAloneWithoutTheOthers) {
   EXPECT_EQ(status(kRight), MotorStatus::kActive);
   drive(100);
   EXPECT_EQ(robot->motor(kRight).target.mode, ControlMode::kVelocity);
+}
+
+TEST(GroupThatActsTogether, IsNotSaidToBeEnabledAgainWhileADriveIsConfigured) {
+  const auto outcome = parseRobotConfig(
+      "robot: lifter\nrealtime: preferred\nbuses:\n  - name: a\n    type: sim\n    motors:\n"
+      "      - {name: arm, model: DM4310, id: 1, master_id: 17, feedback_timeout_ms: 1000}\n"
+      "  - name: b\n    type: sim\n    motors: [{name: wheel, model: M3508, id: 2}]\n"
+      "groups: [{name: both, motors: [arm, wheel], together: true, on_return: rearm_at_rest}]\n",
+      "lifter.yaml");
+  ASSERT_TRUE(outcome.config) << outcome.errorText();
+  VirtualRobot robot{*outcome.config};
+  robot.run(100);
+  robot.order(Operation::kEnable);
+  ASSERT_EQ(robot.motor(0).status, MotorStatus::kActive);
+  robot.freezeBus(1, true);
+  robot.run(50);
+  robot.freezeBus(1, false);
+  robot.run(290);                    // of 300 ms at rest
+  robot.simBus(0).silence(0, true);  // so that it takes long
+  Order order;
+  order.id = 77;
+  order.operation = Operation::kConfigure;
+  order.motors.set(0);
+  order.drive.count = 1;
+  order.drive.values[0] = {0, 100.0};
+  ASSERT_TRUE(robot.exchange().orders.push(order));
+  robot.run(30);
+  OrderResult result;
+  ASSERT_FALSE(robot.exchange().results.pop(result)) << "it is being configured";
+  bool stopped = false;
+  for (const auto& event : robot.events()) {
+    stopped |= event.code == EventCode::kGroupStopped;
+    EXPECT_NE(event.code, EventCode::kGroupRearmed);
+  }
+  EXPECT_TRUE(stopped);
+  EXPECT_EQ(robot.motor(0).status, MotorStatus::kReady);
+  EXPECT_EQ(robot.motor(1).status, MotorStatus::kReady);
 }
 
 }  // namespace
