@@ -130,6 +130,26 @@ def test_a_cpp_program_moves_the_motor_or_says_why_not(daemon: Daemon) -> None:
     assert moved[-1]
 
 
+def test_rc10d_with_few_descriptors_runs_or_names_the_remedy() -> None:
+    remedy = "(LimitNOFILE= of the unit, `ulimit -n`)"
+    ended = []
+    for limit in range(6, 24):
+        with Daemon(prefix=("prlimit", f"--nofile={limit}", "--")) as limited_daemon:
+            program = limited_daemon.program
+            socket_path = limited_daemon.run_dir / "host.sock"
+            up = eventually(
+                partial(lambda one, path: not one.running or path.exists(), program, socket_path),
+                f"{limit} descriptors: it listens or ends",
+            )
+            assert up
+            if program.running:
+                program.signal(signal.SIGTERM)
+            if program.wait() != 0:
+                ended.append(limit)
+                assert remedy in program.output, f"{limit} descriptors: {program.output}"
+    assert ended
+
+
 def test_a_gateway_without_descriptors_says_so_and_ends_or_tries_again(daemon: Daemon) -> None:
     for limit in range(3, 12):
         with Program(
