@@ -41,7 +41,7 @@ enum class EventCode : std::int32_t {
 
 /// Reason why a setpoint of an accepted message did not act.
 enum class SkipReason : std::int32_t {
-  kNotActive,  ///< Or it was not when rc10d received the message.
+  kNotActive,
   kNoReference,
   kFirstStep,  ///< Farther from the measured angle than max_first_step_deg.
   kRefused,    ///< By the motor itself.

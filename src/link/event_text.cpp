@@ -31,8 +31,6 @@ namespace {
   const auto text = "setpoint " + std::string(toString(static_cast<ControlMode>(extra % 256))) + " skipped: ";
   switch (SkipReason{reason}) {
     case SkipReason::kNotActive:
-      if (static_cast<MotorStatus>(extra / 256) == MotorStatus::kActive)
-        return text + "it was received before the motor was enabled";
       return text + "the motor is " + toString(static_cast<MotorStatus>(extra / 256)) + ", not ACTIVE";
     case SkipReason::kNoReference:
       return text + "the angle has no reference; set it with `zero` or `zero: power_on`";

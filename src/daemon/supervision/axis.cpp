@@ -291,8 +291,6 @@ void Axis::clearFault(const Tick& tick) noexcept {
 
 std::optional<SkipReason> Axis::take(const Target& target, const Lease::Holder& sender,
                                      const Lease::Term& term) noexcept {
-  // A flood keeps commands in the ring for several ticks, longer than some drives take to be enabled.
-  if (status_ == MotorStatus::kActive && term.received < enabling_since_) return SkipReason::kNotActive;
   if (target.mode == ControlMode::kCoast) {
     // Letting go of a motor that is not held is no mistake: clients do it when they leave. While it is valid
     // it keeps others of a lower priority from moving the motor, as every setpoint does.

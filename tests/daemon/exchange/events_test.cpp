@@ -69,12 +69,6 @@ TEST(Events, ASkippedSetpointNamesTheModeAndTheStatus) {
   EXPECT_THAT(text, HasSubstr("READY, not ACTIVE"));
 }
 
-TEST(Events, ASetpointThatIsOlderThanEnablingIsNotSaidToBeOfAMotorThatIsNotActive) {
-  const auto text = words(EventCode::kSetpointSkipped, SkipReason::kNotActive,
-                          256 * static_cast<int>(MotorStatus::kActive));
-  EXPECT_THAT(text, HasSubstr("received before the motor was enabled"));
-}
-
 TEST(Events, ASetpointSkippedByAnActiveMotorNamesTheMissingReferenceAndTheRemedy) {
   const auto text = words(EventCode::kSetpointSkipped, SkipReason::kNoReference, ControlMode::kTotalAngle);
   EXPECT_THAT(text, HasSubstr("total_angle"));

@@ -78,16 +78,6 @@ TEST_F(AxisTest, SaysWhyATargetDoesNotAct) {
   EXPECT_EQ(axis_.take({.mode = ControlMode::kVoltage}, kPlanner, {now_, now_ + 50ms}), SkipReason::kRefused);
 }
 
-TEST_F(AxisTest, ObeysNoTargetThatWasReceivedBeforeItWasEnabled) {
-  const auto before = now_;
-  activate();
-  const auto enabled = before + 1ms;  // activate() begins with a tick
-  EXPECT_EQ(axis_.take(kTurn, kPlanner, {before, now_ + 50ms}), SkipReason::kNotActive);
-  EXPECT_EQ(axis_.take(kTurn, kPlanner, {enabled, now_ + 50ms}), std::nullopt);
-  EXPECT_EQ(axis_.take({}, kPlanner, {before, now_ + 50ms}), SkipReason::kNotActive);
-  EXPECT_EQ(axis_.motor().target().mode, ControlMode::kVelocity) << "an old COAST ends no newer target";
-}
-
 TEST_F(AxisTest, RefusesAnAngleThatNoDoubleTellsExactly) {
   activate();
   for (const double far_deg : {1.1e12, -1e17, 1e300}) {

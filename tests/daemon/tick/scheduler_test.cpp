@@ -244,32 +244,6 @@ TEST_F(SchedulerTest, ATickAppliesABoundedNumberOfSetpoints) {
   EXPECT_EQ(ring.read_available(), 0U) << "nothing is lost";
 }
 
-TEST_F(SchedulerTest, ATargetThatWaitedInTheRingWhileItsMotorWasEnabledDoesNotAct) {
-  robot.run(5);
-  Command flood;
-  flood.client = "flood";
-  flood.received = robot.now();
-  flood.deadline = robot.now() + 1h;
-  flood.count = kMaxMotors;
-  for (auto& setpoint : flood.setpoints) setpoint.motor = kRight;
-  for (std::size_t i = 0; i < 3 * kSetpointsPerTick / kMaxMotors; ++i)
-    ASSERT_TRUE(robot.exchange().commands.push(flood));
-  robot.command(kLeft, {.mode = ControlMode::kCurrent, .value = 2.0}, 1h);
-  Order enable;
-  enable.operation = Operation::kEnable;
-  enable.id = 1;
-  enable.motors.set(kLeft);
-  robot.exchange().orders.push(enable);
-  robot.run(3);
-  ASSERT_EQ(robot.motor(kLeft).status, MotorStatus::kActive);
-  ASSERT_EQ(robot.exchange().commands.read_available(), 1U) << "the target still waits";
-  robot.tick();
-  EXPECT_EQ(robot.motor(kLeft).command_value, 0.0F);
-  robot.command(kLeft, {.mode = ControlMode::kCurrent, .value = 2.0});
-  robot.tick();
-  EXPECT_EQ(robot.motor(kLeft).command_value, 2.0F);
-}
-
 TEST_F(SchedulerTest, ASilentMotorGoesOfflineAndMustBeEnabledAgain) {
   enableAll();
   robot.hold(kLeft, kVelocity120, 100);
