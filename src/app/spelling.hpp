@@ -89,7 +89,7 @@ template <typename App>
 std::string usageOf(const App& app) {
   std::string usage;
   for (const auto* each = &app; each != nullptr; each = each->get_parent())
-    usage = each->get_name() + (usage.empty() ? "" : " ") + usage;
+    usage.insert(0, each->get_name() + (usage.empty() ? "" : " "));
   for (const auto* option : app.get_options()) {
     const std::string type = option->get_type_name();
     const bool own_type = type.find_first_of("=|:{") == std::string::npos || type == "NAME=NUMBER";

@@ -52,7 +52,7 @@ class GuardLink {
       : settings_(std::move(settings)), page_(std::move(page)), self_(std::move(self)) {}
   /// To get a guard: one is connected to, started if there is none, greeted, and answers.
   struct Try {
-    MonotonicTime deadline;  ///< Of the step that is awaited.
+    MonotonicTime deadline;  ///< End of the wait for this step.
     bool started = false;
     UniqueFd greeted{};  ///< Its answer is awaited.
   };
@@ -71,7 +71,7 @@ class GuardLink {
   std::optional<Try> try_;
   MonotonicTime next_try_{};
   Duration pause_{};          ///< After the next try that fails.
-  std::string last_failure_;  ///< Of the tries since the guard ended.
+  std::string last_failure_;  ///< Last words of the tries since the guard ended.
   GuardBeats beats_;
 };
 

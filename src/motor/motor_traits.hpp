@@ -35,7 +35,7 @@ struct MotorTraits {
   bool classic_only = true;  ///< An FD frame on its bus is an error to it.
   bool watchdog = false;  ///< Stops by itself when commands stay away: its own, set or verified by enabling.
   ModeSet modes;
-  SpringRange spring_range;  ///< Of impedance targets, at the output of the model's own gear.
+  SpringRange spring_range;  ///< Bounds impedance targets, at the output of the model's own gear.
   DriveFrames frames;
   const CascadeConfig* host_loops = nullptr;  ///< Defaults of its loops on the host; null: it has none.
   bool own_velocity_loop = false;             ///< The angle loop alone of host_loops acts.

@@ -135,7 +135,7 @@ void checkModules(const RobotConfig& robot, Problems& problems) {
     entries.push_back({config.settings.name, module->get()});
     built.push_back(std::move(*module));
   }
-  // Of a robot with errors, no module knows whether what it reads of another is there.
+  // In a robot with errors, no module knows whether what it reads of another is there.
   if (problems.hasErrors()) return;
   const ModuleDirectory directory{entries};
   DeviceClaims claims{robot};

@@ -34,7 +34,7 @@ struct RobotDescription {
     const DriveSetup* setup = nullptr;  ///< Settings that can be written to its drive; null: none.
     MotorLoops loops{};                 ///< As they are at the start.
     std::optional<SimulatedDrive> simulated{};
-    SpringRange spring_range{};  ///< Of impedance targets, at the output shaft.
+    SpringRange spring_range{};  ///< Bounds impedance targets, at the output shaft.
   };
   struct Bus {
     std::string name;
