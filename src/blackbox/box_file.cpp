@@ -70,7 +70,7 @@ Result<std::unique_ptr<BoxFile>> BoxFile::create(const std::string& path, Header
   if (auto written =
           writeAll(box->descriptor(), 0, {reinterpret_cast<const std::byte*>(box->head_), sizeof(FileHead)});
       !written) {
-    return give_up(written.error().message.c_str());
+    return give_up(written.error().message);
   }
   if (::rename(temporary.c_str(), path.c_str()) != 0) return give_up(errnoText(errno));
   return box;

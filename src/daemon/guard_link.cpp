@@ -59,44 +59,44 @@ Result<std::unique_ptr<GuardLink>> GuardLink::create(Settings settings) {
   UniqueFd self{static_cast<int>(::syscall(SYS_pidfd_open, ::getpid(), 0))};
   if (!self) return fail(fmt::format("no pidfd for rc10-guard: {}", errnoText(errno)));
   std::unique_ptr<GuardLink> link{new GuardLink(std::move(settings), std::move(*page), std::move(self))};
-  link->try_ = Try{.deadline = monotonicNow() + kPatience};
+  auto& tried = link->try_.emplace(Try{.deadline = monotonicNow() + kPatience});
   for (;;) {
-    const auto watched = link->tryOn(monotonicNow());
+    const auto watched = link->tryOn(tried, monotonicNow());
     if (!watched) return tl::unexpected(watched.error());
     if (*watched) return link;
     (void)readable(link->descriptor(), kRetryPause);
   }
 }
 
-Result<bool> GuardLink::tryOn(MonotonicTime now) {
-  if (!try_->greeted) {
+Result<bool> GuardLink::tryOn(Try& tried, MonotonicTime now) {
+  if (!tried.greeted) {
     const std::string path = link::guardSocketPath(settings_.run_dir);
     auto attempt = connectTo(path);
     if (attempt.error != 0) {
       // No guard, or one that is gone: another one is started, once.
       const bool none = attempt.error == ENOENT || attempt.error == ECONNREFUSED;
       if (!none) return fail(fmt::format("rc10-guard: {}: {}", path, errnoText(attempt.error)));
-      if (!try_->started && child_ == 0) {
+      if (!tried.started && child_ == 0) {
         const auto child = startChild(settings_.program, {"--until-unused"}, {.own_session = true});
         if (!child) return tl::unexpected(child.error());
         child_ = *child;
-        try_->started = true;
+        tried.started = true;
       }
-      if (now < try_->deadline) return false;
+      if (now < tried.deadline) return false;
       return fail(fmt::format("{} was started and does not answer at {}", settings_.program, path));
     }
     if (auto told = sayHello(attempt.connection.get()); !told) return tl::unexpected(told.error());
-    try_ =
-        Try{.deadline = now + kPatience, .started = try_->started, .greeted = std::move(attempt.connection)};
+    tried =
+        Try{.deadline = now + kPatience, .started = tried.started, .greeted = std::move(attempt.connection)};
   }
-  if (!readable(try_->greeted.get(), Duration{0})) {
-    if (now < try_->deadline) return false;
+  if (!readable(tried.greeted.get(), Duration{0})) {
+    if (now < tried.deadline) return false;
     return fail("rc10-guard does not answer");
   }
   link::DescriptorMessage answer;
-  if (!link::receiveWithDescriptors(try_->greeted.get(), answer)) return fail("rc10-guard has hung up");
+  if (!link::receiveWithDescriptors(tried.greeted.get(), answer)) return fail("rc10-guard has hung up");
   if (answer.text != link::kGuardArmed) return fail("rc10-guard does not watch: " + answer.text);
-  connection_ = std::move(try_->greeted);
+  connection_ = std::move(tried.greeted);
   try_.reset();
   return true;
 }
@@ -126,7 +126,7 @@ GuardLink::News GuardLink::supervise(MonotonicTime now) {
     if (now < next_try_) return {};
     try_ = Try{.deadline = now + kPatience};
   }
-  const auto watched = tryOn(now);
+  const auto watched = tryOn(*try_, now);
   if (watched && !*watched) return {};
   beats_ = {};
   if (watched) return {.text = "rc10-guard watches again"};

@@ -57,8 +57,8 @@ class GuardLink {
     UniqueFd greeted{};  ///< Its answer is awaited.
   };
 
-  /// A step of the try, without waiting. True: the guard watches.
-  [[nodiscard]] Result<bool> tryOn(MonotonicTime now);
+  /// A step of the try in try_, without waiting. True: the guard watches.
+  [[nodiscard]] Result<bool> tryOn(Try& tried, MonotonicTime now);
   [[nodiscard]] Result<void> sayHello(int connection);
   [[nodiscard]] News watchBeats(MonotonicTime now);
   void reap() noexcept;
