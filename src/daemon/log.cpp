@@ -50,8 +50,8 @@ std::FILE* unblockedStderr() {
   return file;
 }
 
-// Stderr that nobody reads, as a pipe that is full or a terminal that hangs, holds up neither the log nor
-// whoever waits for its end: it gets its time once, and until it takes lines again they are left out.
+// A stderr without a reader (full pipe, hung terminal) holds up neither the log nor the end of rc10d: it is
+// waited for once, then its lines are dropped until it takes some again.
 class UnblockedStderr final : public ColorSink {
  public:
   UnblockedStderr() : ColorSink(unblockedStderr(), spdlog::color_mode::automatic) {}

@@ -25,7 +25,7 @@ def status(daemon: Daemon, motor: str, wanted: str) -> None:
     daemon.wait_motor(motor, lambda m: m["status"] == wanted, wanted)
 
 
-def test_it_is_disabled_when_its_page_is_gone(web: Web, daemon: Daemon) -> None:
+def test_its_motor_is_let_go_when_its_page_is_gone(web: Web, daemon: Daemon) -> None:
     with web.page() as page:
         assert page.ask("enable_alone", "wheel")["status"] == "ok"
         # That of another motor ends nothing of it.

@@ -219,7 +219,7 @@ ENDS: dict[str, Callable[[Page], object]] = {
 
 
 @pytest.mark.parametrize("end", list(ENDS))
-def test_a_spin_ends_disabled_by_all_that_is_not_holding(
+def test_all_that_is_not_holding_ends_a_spin_and_lets_the_motor_go(
     page: Page, studio: Studio, card: Locator, end: str
 ) -> None:
     expect(card).to_be_visible()

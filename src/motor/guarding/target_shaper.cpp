@@ -12,8 +12,8 @@
 namespace rc10 {
 namespace {
 
-// Share of the way ahead that is left where a ceiling comes: springs and profiles of drives make more speed
-// of it than is assumed of a drive's loop, a moteus of a quarter 34 rpm instead of 20.
+// Share of the remaining way that a target keeps when a speed ceiling begins. Drives' springs and profiles
+// turn faster than the loop assumed here: with a quarter, a moteus reaches 34 rpm instead of 20.
 constexpr double kFirstLeadShare = 0.1;
 // Time within which a torque feed-forward comes back that was taken away for the speed.
 constexpr double kFeedForwardBackSeconds = 0.5;

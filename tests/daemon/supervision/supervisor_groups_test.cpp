@@ -326,7 +326,7 @@ TEST(GroupThatActsTogether, IsNotSaidToBeEnabledAgainWhileADriveIsConfigured) {
   robot.run(50);
   robot.freezeBus(1, false);
   robot.run(290);                    // of 300 ms at rest
-  robot.simBus(0).silence(0, true);  // so that it takes long
+  robot.simBus(0).silence(0, true);  // the drive does not answer
   Order order;
   order.id = 77;
   order.operation = Operation::kConfigure;
