@@ -10,6 +10,7 @@ import { NumberField } from './number_field';
 import { number } from './numbers';
 import { download } from './plots';
 import type { Columns } from './protocol';
+import { Refusal } from './refusal';
 
 type Edge = 'rising' | 'falling' | 'event';
 
@@ -334,11 +335,7 @@ export function CapturePanel(props: { motor: string; unit: (signal: string) => s
             event.currentTarget.value = '';
           }}
         />
-        {told !== '' && (
-          <span class="refused" role="alert">
-            {told}
-          </span>
-        )}
+        <Refusal why={told} />
       </div>
       {captures.length > 0 && (
         <div class="scroll">

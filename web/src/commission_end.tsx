@@ -7,6 +7,7 @@ import { draftConfiguration } from './config_draft';
 import { useStudio } from './context';
 import { download } from './plots';
 import type { MotorInfo, Robot } from './protocol';
+import { Refusal } from './refusal';
 import { filled, kStepWords } from './words_commission';
 import { withMotorKeys } from './yaml_motor';
 
@@ -74,11 +75,7 @@ export function CommissionEnd(props: StepProps & { robot: Robot; info: MotorInfo
         <button type="button" onClick={() => download(`${robot.robot.robot}-${info.name}.txt`, new Blob([report], { type: 'text/plain' }))}>
           {word('comSave')}
         </button>
-        {told !== '' && (
-          <span class="refused" role="alert">
-            {told}
-          </span>
-        )}
+        <Refusal why={told} />
       </div>
       <p class="hint no-print">{word('comAfter')}</p>
     </>

@@ -7,6 +7,7 @@ import { HeldTest } from './held_test';
 import type { TestOutcome } from './link';
 import { type TestPlan, testCommand, testPython } from './motion_test';
 import { isOn } from './commission_record';
+import { Refusal } from './refusal';
 
 /** Fallbacks that keep no torque when the page is gone. */
 const kLettingGo = ['coast', 'damp'];
@@ -88,11 +89,7 @@ export function AloneTest(props: {
           python={requestPython({ operation: 'enable_alone', target: props.motor })}
         />
         {on && <span class="badge limit">{word(alone ? 'comAloneNow' : 'comNotAlone')}</span>}
-        {told !== '' && (
-          <span class="refused" role="alert">
-            {told}
-          </span>
-        )}
+        <Refusal why={told} />
       </div>
       <div class="toolbar">
         <HeldTest

@@ -9,6 +9,7 @@ import type { RobotRequest } from './link';
 import { NumberField } from './number_field';
 import { duration, number } from './numbers';
 import type { CheckedConfig } from './protocol';
+import { Refusal } from './refusal';
 import { filled } from './words_commission';
 
 type Robot = NonNullable<CheckedConfig['checked']['robot']>;
@@ -46,11 +47,7 @@ function SimulatedHand(props: { motor: string; by: number[] }) {
             {`${deg > 0 ? '+' : '−'}${Math.abs(deg)}°`}
           </button>
         ))}
-        {told !== '' && (
-          <span class="refused" role="alert">
-            {told}
-          </span>
-        )}
+        <Refusal why={told} />
       </div>
       <Line
         command={`rc10ctl hand ${props.motor} --by ${props.by[0] ?? 90}`}
@@ -236,11 +233,7 @@ export function ZeroStep(props: StepProps) {
         >
           {word('comZeroKeep')}
         </button>
-        {told !== '' && (
-          <span class="refused" role="alert">
-            {told}
-          </span>
-        )}
+        <Refusal why={told} />
       </div>
       <SimulatedHand motor={props.motor} by={[10, -10]} />
       <Line
