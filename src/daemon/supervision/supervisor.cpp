@@ -6,34 +6,20 @@
 #include "app/saturated.hpp"
 
 namespace rc10 {
-namespace {
-
-// Pause of a simulation after which it has ended, and its drives are silent.
-constexpr Duration kDeadSimulation = std::chrono::seconds{1};
-
-}  // namespace
-
 Supervisor::Supervisor(Robot& robot, LinkExchange& link, FlightRecorder* recorder)
     : robot_(robot), link_(link), recorder_(recorder), foreign_(robot) {
   axes_.reserve(robot.motors().size());
   for (const auto& entry : robot.motors()) axes_.emplace_back(entry, robot.buses()[entry.bus]);
   group_of_.assign(axes_.size(), kNoGroup);
   for (const auto& config : robot.groups()) {
-    Group group;
-    group.motors = config.motors;
-    group.together = config.together;
-    group.on_return = config.on_return;
-    for (const auto motor : config.motors) {
-      group_of_[motor] = groups_.size();
-      group.required.set(motor, !robot.motors()[motor].optional);
-    }
-    groups_.push_back(group);
+    for (const auto motor : config.motors) group_of_[motor] = groups_.size();
+    groups_.emplace_back(config, robot);
   }
 }
 
 void Supervisor::decide(const Tick& tick) noexcept {
   estop_asked_ = false;
-  watchSimulation(tick);
+  simulation_.look(robot_.simulationSteps().load(std::memory_order_relaxed), tick.now);
   for (std::size_t motor = 0; motor < axes_.size(); ++motor) watch(motor, tick);
   for (std::size_t group = 0; group < groups_.size(); ++group) watchGroup(group, tick);
   watchConfiguring(tick);
@@ -48,7 +34,7 @@ void Supervisor::watch(std::size_t motor, const Tick& tick) noexcept {
             native_code, tick.now});
     transition(motor, MotorEvent::kFault, tick);
   };
-  axis.listen(tick, simulation_late_);
+  axis.listen(tick, simulation_.late());
   if (axis.missesDrive(tick))
     report({EventCode::kNeverHeard, Severity::kWarning, who, axis.id(), 0, tick.now});
   if (axis.fresh(tick)) {
@@ -89,15 +75,6 @@ void Supervisor::watchRest(std::size_t motor, const Tick& tick) noexcept {
   heartbeat_rests_ = robot_.unrestPolicy() == UnrestPolicy::kHeartbeat;
 }
 
-// Drives of a simulation whose thread had no processor are not silent: they make up for it.
-void Supervisor::watchSimulation(const Tick& tick) noexcept {
-  const auto steps = robot_.simulationSteps().load(std::memory_order_relaxed);
-  if (steps != simulation_steps_) simulation_stepped_at_ = tick.now;
-  simulation_late_ =
-      steps != 0 && steps == simulation_steps_ && tick.now - simulation_stepped_at_ < kDeadSimulation;
-  simulation_steps_ = steps;
-}
-
 void Supervisor::transition(std::size_t motor, MotorEvent event, const Stop& why, const Tick& tick) noexcept {
   auto& axis = axes_[motor];
   const auto changed = axis.take(event, state_, why, tick);
@@ -105,7 +82,8 @@ void Supervisor::transition(std::size_t motor, MotorEvent event, const Stop& why
   const auto before = *changed;
   const auto after = axis.status();
   // The group of one that was enabled alone rests already, and does not come back by itself.
-  if (alone_ != motor) noteLeaving(motor, before, event);
+  if (auto* group = groupOf(motor); group != nullptr && alone_ != motor && isOn(before) && !isOn(after))
+    group->noteLeaving(motor, before, event);
   if (alone_ == motor && !isOn(after)) alone_.reset();
   if (before == MotorStatus::kEnabling) {
     settle(motor, after == MotorStatus::kActive     ? Refusal::kNone
@@ -127,17 +105,8 @@ void Supervisor::transition(std::size_t motor, MotorEvent event, const Stop& why
           stop.by});
 }
 
-// Answers every pending enable order for which this was the last motor.
 void Supervisor::settle(std::size_t motor, Refusal outcome) noexcept {
-  for (auto& pending : pending_) {
-    if (!pending.in_use || !pending.waiting.test(motor)) continue;
-    pending.result.motors[motor] = outcome;
-    pending.waiting.reset(motor);
-    if (pending.waiting.none()) {
-      answer(pending.result);
-      pending.in_use = false;
-    }
-  }
+  pending_.settle(motor, outcome, [this](const OrderResult& result) { answer(result); });
 }
 
 void Supervisor::setRobotState(RobotStatus state, const Stop& why, const Tick& tick) noexcept {

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <optional>
 #include <vector>
@@ -15,6 +14,9 @@
 #include "daemon/supervision/axis.hpp"
 #include "daemon/supervision/foreign_watch.hpp"
 #include "daemon/supervision/lease.hpp"
+#include "daemon/supervision/motor_group.hpp"
+#include "daemon/supervision/pending_enables.hpp"
+#include "daemon/supervision/simulation_watch.hpp"
 #include "daemon/supervision/states.hpp"
 
 namespace rc10 {
@@ -66,26 +68,6 @@ class Supervisor {
 
  private:
   static constexpr std::size_t kNoGroup = ~std::size_t{0};
-  /// Motors that stop together. After decide() none is on while a required one is missing.
-  struct Group {
-    std::vector<std::size_t> motors;
-    MotorSet required;      ///< Without the optional ones: nothing stops or waits for those.
-    bool together = false;  ///< Enabled all or none, and obeying only when all do.
-    GroupConfig::Return on_return = GroupConfig::Return::kRequest;
-    MotorSet dropped;            ///< Members that were ACTIVE and have just been lost.
-    MotorSet disabled;           ///< Required members that were on and have just been disabled,
-    MotorSet refused;            ///< or whose drives have just refused.
-    bool disable_asked = false;  ///< In this tick, of any member.
-    MotorSet rests_with_it;      ///< Disabled since another member was.
-    MotorSet rearm;              ///< To be enabled again by itself; empty: none.
-    MonotonicTime moved{};       ///< When some member was last seen not to be there and still.
-  };
-  struct PendingOrder {
-    OrderResult result;
-    MotorSet waiting;
-    bool in_use = false;
-  };
-
   /// The one drive that is being configured.
   struct Configuring {
     std::uint64_t order_id = 0;
@@ -113,8 +95,6 @@ class Supervisor {
   void disable(std::size_t motor, const Order& order, const Tick& tick) noexcept;
   void clear(std::size_t motor, const Tick& tick) noexcept;
   void answer(const OrderResult& result) noexcept;
-  /// Null: there is none left.
-  [[nodiscard]] PendingOrder* freePlace() noexcept;
   [[nodiscard]] Refusal setGains(std::size_t motor, const Order& order, const Tick& tick) noexcept;
   /// `why`: kNone and who cleared it for RUN.
   void setRobotState(RobotStatus state, const Stop& why, const Tick& tick) noexcept;
@@ -133,19 +113,14 @@ class Supervisor {
   void stopGroup(std::size_t index, GroupStop reason, const Tick& tick) noexcept;
   void rearm(std::size_t index, const Tick& tick) noexcept;
   /// Null: it is in none.
-  [[nodiscard]] Group* groupOf(std::size_t motor) noexcept {
+  [[nodiscard]] MotorGroup* groupOf(std::size_t motor) noexcept {
     return group_of_[motor] != kNoGroup ? &groups_[group_of_[motor]] : nullptr;
   }
-  [[nodiscard]] const Group* groupOf(std::size_t motor) const noexcept {
+  [[nodiscard]] const MotorGroup* groupOf(std::size_t motor) const noexcept {
     return group_of_[motor] != kNoGroup ? &groups_[group_of_[motor]] : nullptr;
   }
-  void noteLeaving(std::size_t motor, MotorStatus before, MotorEvent event) noexcept;
-  [[nodiscard]] MotorSet membersOn(const Group& group) const noexcept;
-  /// Required members that are OFFLINE or in FAULT.
-  [[nodiscard]] MotorSet missing(const Group& group) const noexcept;
   /// Its group acts together, and not all of it is ACTIVE.
   [[nodiscard]] bool waitsForGroup(std::size_t motor) const noexcept;
-  void watchSimulation(const Tick& tick) noexcept;
   [[nodiscard]] bool clearEstop(const Order& order, OrderResult& result, const Tick& tick) noexcept;
   void settle(std::size_t motor, Refusal outcome) noexcept;
   void configure(const Order& order, const Tick& tick) noexcept;
@@ -161,14 +136,12 @@ class Supervisor {
   MonotonicTime stopped_{};  ///< and since when.
   std::uint32_t estops_ = 0;
   std::vector<Axis> axes_;
-  std::array<PendingOrder, kMaxOpenRequests> pending_{};
-  std::vector<Group> groups_;
+  PendingEnables pending_;
+  std::vector<MotorGroup> groups_;
   std::vector<std::size_t> group_of_;  ///< By motor; kNoGroup: none.
   std::optional<Configuring> configuring_;
-  std::optional<std::size_t> alone_;    ///< ENABLING or ACTIVE, and no other motor may be.
-  std::uint64_t simulation_steps_ = 0;  ///< As counted in the tick before.
-  MonotonicTime simulation_stepped_at_{};
-  bool simulation_late_ = false;
+  std::optional<std::size_t> alone_;  ///< ENABLING or ACTIVE, and no other motor may be.
+  SimulationWatch simulation_;
   bool heartbeat_rests_ = false;
   bool estop_asked_ = false;  ///< In this tick, until decide().
   bool reduced_ = false;      ///< The mode input is open, or was since the last tick.

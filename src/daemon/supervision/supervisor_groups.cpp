@@ -19,29 +19,13 @@ constexpr Duration kAtRest = std::chrono::milliseconds{300};
 
 }  // namespace
 
-MotorSet Supervisor::membersOn(const Group& group) const noexcept {
-  MotorSet on;
-  for (const auto motor : group.motors) on.set(motor, isOn(axes_[motor].status()));
-  return on;
-}
-
-MotorSet Supervisor::missing(const Group& group) const noexcept {
-  MotorSet missing;
-  for (const auto motor : group.motors) {
-    const auto status = axes_[motor].status();
-    const bool there = status != MotorStatus::kOffline && status != MotorStatus::kFault;
-    missing.set(motor, !there && group.required.test(motor));
-  }
-  return missing;
-}
-
 // A motor that is enabled alone needs no group.
 Refusal Supervisor::groupRefusal(std::size_t motor, const MotorSet& asked) const noexcept {
   const auto* group = groupOf(motor);
   if (group == nullptr || alone_ == motor) return Refusal::kNone;
-  if (missing(*group).any()) return Refusal::kGroup;
+  if (group->missing(axes_).any()) return Refusal::kGroup;
   if (!group->together) return Refusal::kNone;
-  const auto others = group->required & ~membersOn(*group);
+  const auto others = group->required & ~group->on(axes_);
   if ((others & ~asked).any()) return Refusal::kTogether;
   const bool all = std::all_of(group->motors.begin(), group->motors.end(), [&](std::size_t other) {
     return !others.test(other) || ownRefusal(other) == Refusal::kNone;
@@ -54,39 +38,23 @@ MotorSet Supervisor::inTheWay(std::size_t motor, Refusal refusal, const MotorSet
   switch (refusal) {
     case Refusal::kAlone:
     case Refusal::kOthersOn: return otherMotorsOn(motor);
-    case Refusal::kGroup: return group != nullptr ? missing(*group) : MotorSet{};
+    case Refusal::kGroup: return group != nullptr ? group->missing(axes_) : MotorSet{};
     case Refusal::kTogether:
-      return group != nullptr ? group->required & ~asked & ~membersOn(*group) : MotorSet{};
+      return group != nullptr ? group->required & ~asked & ~group->on(axes_) : MotorSet{};
     default: return {};
   }
 }
 
 bool Supervisor::waitsForGroup(std::size_t motor) const noexcept {
   const auto* group = groupOf(motor);
-  if (group == nullptr || !group->together || alone_ == motor) return false;
-  return std::any_of(group->motors.begin(), group->motors.end(), [&](std::size_t other) {
-    return group->required.test(other) && axes_[other].status() != MotorStatus::kActive;
-  });
-}
-
-// An e-stop stops all of them anyway, and the stop of a group is no reason for another.
-void Supervisor::noteLeaving(std::size_t motor, MotorStatus before, MotorEvent event) noexcept {
-  auto* group = groupOf(motor);
-  if (group == nullptr || !isOn(before) || isOn(axes_[motor].status())) return;
-  switch (event) {
-    case MotorEvent::kDisable: group->disabled.set(motor, group->required.test(motor)); break;
-    case MotorEvent::kEnableFailed: group->refused.set(motor, group->required.test(motor)); break;
-    case MotorEvent::kFeedbackLost:
-    case MotorEvent::kFault: group->dropped.set(motor, before == MotorStatus::kActive); break;
-    default: break;
-  }
+  return group != nullptr && alone_ != motor && group->waits(axes_);
 }
 
 void Supervisor::watchGroup(std::size_t index, const Tick& tick) noexcept {
   auto& group = groups_[index];
-  const auto gone = missing(group);
+  const auto gone = group.missing(axes_);
   const bool alone = alone_ && groupOf(*alone_) == &group;
-  if (!alone && (membersOn(group) | group.dropped).any()) {
+  if (!alone && (group.on(axes_) | group.dropped).any()) {
     if (gone.any()) {
       stopGroup(index, GroupStop::kLost, tick);
     } else if (group.refused.any()) {
@@ -95,16 +63,13 @@ void Supervisor::watchGroup(std::size_t index, const Tick& tick) noexcept {
       stopGroup(index, GroupStop::kDisabled, tick);
     }
   }
-  group.dropped.reset();
-  group.disabled.reset();
-  group.refused.reset();
-  group.disable_asked = false;
+  group.forgetLeaving();
   if (group.rearm.any()) rearm(index, tick);
 }
 
 void Supervisor::stopGroup(std::size_t index, GroupStop reason, const Tick& tick) noexcept {
   auto& group = groups_[index];
-  const auto gone = missing(group);
+  const auto gone = group.missing(axes_);
   const auto& culprits = reason == GroupStop::kLost      ? gone
                          : reason == GroupStop::kRefused ? group.refused
                                                          : group.disabled;

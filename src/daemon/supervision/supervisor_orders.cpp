@@ -108,8 +108,8 @@ void Supervisor::carryOut(const Order& order, const Tick& tick) noexcept {
   MotorSet waiting;
   const bool enables = order.operation == Operation::kEnable || order.operation == Operation::kEnableAlone;
   // Modules wait for no answer.
-  auto* const place = enables && !order.fromModule() ? freePlace() : nullptr;
-  if (enables && !order.fromModule() && place == nullptr) {
+  const bool may_wait = enables && !order.fromModule();
+  if (may_wait && pending_.full()) {
     result.refused = true;
     answer(result);
     return;
@@ -147,13 +147,7 @@ void Supervisor::carryOut(const Order& order, const Tick& tick) noexcept {
     }
   }
   if (waiting.none()) return answer(result);
-  if (place != nullptr) *place = PendingOrder{result, waiting, true};
-}
-
-Supervisor::PendingOrder* Supervisor::freePlace() noexcept {
-  const auto place =
-      std::find_if(pending_.begin(), pending_.end(), [](const auto& pending) { return !pending.in_use; });
-  return place != pending_.end() ? &*place : nullptr;
+  if (may_wait) pending_.add(result, waiting);
 }
 
 void Supervisor::estop(const Stop& why, const Tick& tick) noexcept {

@@ -1,0 +1,52 @@
+#include "daemon/supervision/motor_group.hpp"
+
+#include <algorithm>
+
+namespace rc10 {
+
+MotorGroup::MotorGroup(const GroupConfig& config, const Robot& robot)
+    : motors(config.motors), together(config.together), on_return(config.on_return) {
+  for (const auto motor : motors) required.set(motor, !robot.motors()[motor].optional);
+}
+
+MotorSet MotorGroup::on(const std::vector<Axis>& axes) const noexcept {
+  MotorSet on;
+  for (const auto motor : motors) on.set(motor, isOn(axes[motor].status()));
+  return on;
+}
+
+MotorSet MotorGroup::missing(const std::vector<Axis>& axes) const noexcept {
+  MotorSet missing;
+  for (const auto motor : motors) {
+    const auto status = axes[motor].status();
+    const bool there = status != MotorStatus::kOffline && status != MotorStatus::kFault;
+    missing.set(motor, !there && required.test(motor));
+  }
+  return missing;
+}
+
+bool MotorGroup::waits(const std::vector<Axis>& axes) const noexcept {
+  return together && std::any_of(motors.begin(), motors.end(), [&](std::size_t motor) {
+           return required.test(motor) && axes[motor].status() != MotorStatus::kActive;
+         });
+}
+
+// An e-stop stops all of them anyway, and the stop of a group is no reason for another.
+void MotorGroup::noteLeaving(std::size_t motor, MotorStatus before, MotorEvent event) noexcept {
+  switch (event) {
+    case MotorEvent::kDisable: disabled.set(motor, required.test(motor)); break;
+    case MotorEvent::kEnableFailed: refused.set(motor, required.test(motor)); break;
+    case MotorEvent::kFeedbackLost:
+    case MotorEvent::kFault: dropped.set(motor, before == MotorStatus::kActive); break;
+    default: break;
+  }
+}
+
+void MotorGroup::forgetLeaving() noexcept {
+  dropped.reset();
+  disabled.reset();
+  refused.reset();
+  disable_asked = false;
+}
+
+}  // namespace rc10

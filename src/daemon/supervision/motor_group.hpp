@@ -1,0 +1,45 @@
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "app/time.hpp"
+#include "config/robot_config.hpp"
+#include "daemon/devices/robot.hpp"
+#include "daemon/exchange/orders.hpp"
+#include "daemon/supervision/axis.hpp"
+#include "daemon/supervision/states.hpp"
+
+namespace rc10 {
+
+/// Motors that stop together. After Supervisor::decide() none is on while a required one is missing.
+struct MotorGroup {
+  MotorGroup(const GroupConfig& config, const Robot& robot);
+
+  /// Members that are ENABLING or ACTIVE.
+  [[nodiscard]] MotorSet on(const std::vector<Axis>& axes) const noexcept;
+  /// Required members that are OFFLINE or in FAULT.
+  [[nodiscard]] MotorSet missing(const std::vector<Axis>& axes) const noexcept;
+  /// It acts together, and not all of it is ACTIVE.
+  [[nodiscard]] bool waits(const std::vector<Axis>& axes) const noexcept;
+  /// A member was ENABLING or ACTIVE before `event`, and is not now.
+  void noteLeaving(std::size_t motor, MotorStatus before, MotorEvent event) noexcept;
+  /// The end of its tick.
+  void forgetLeaving() noexcept;
+
+  std::vector<std::size_t> motors;
+  MotorSet required;      ///< Without the optional ones: nothing stops or waits for those.
+  bool together = false;  ///< Enabled all or none, and obeying only when all do.
+  GroupConfig::Return on_return = GroupConfig::Return::kRequest;
+  // In this tick.
+  MotorSet dropped;            ///< Members that were ACTIVE and have been lost.
+  MotorSet disabled;           ///< Required members that were on and have been disabled,
+  MotorSet refused;            ///< or whose drives have refused.
+  bool disable_asked = false;  ///< Of any member.
+  // Until a request changes it.
+  MotorSet rests_with_it;  ///< Disabled since another member was.
+  MotorSet rearm;          ///< To be enabled again by itself; empty: none.
+  MonotonicTime moved{};   ///< When some member was last seen not to be there and still.
+};
+
+}  // namespace rc10
