@@ -145,6 +145,7 @@ std::map<std::string, std::int64_t> threads(const std::string& pid) {
   DIR* const tasks = pid.empty() ? nullptr : ::opendir(folder.c_str());
   if (tasks == nullptr) return times;
   while (const dirent* task = ::readdir(tasks)) {
+    if (task->d_name[0] == '.') continue;  // ".." has the figures of the main thread once more
     std::string name;
     std::int64_t time = 0;
     std::getline(std::ifstream(folder + '/' + task->d_name + "/comm"), name);

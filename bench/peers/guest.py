@@ -18,6 +18,7 @@ from pathlib import Path
 MODULES = (
     "net/can/can.ko",
     "net/can/can-raw.ko",
+    "net/can/can-bcm.ko",
     "drivers/net/can/dev/can-dev.ko",
     "drivers/net/can/vcan.ko",
 )
@@ -86,7 +87,10 @@ def fetched_kernel(cache: Path) -> Kernel:
 
 
 def run(kernel: Kernel, script: str, files: dict[str, Path], *, limit_s: float = 600) -> str:
-    """Returns the output of the script. `files`: place in the guest -> file, with its libraries."""
+    """Returns the output of the script.
+
+    `files`: place in the guest -> file or folder, with the libraries that it needs.
+    """
     with tempfile.TemporaryDirectory(prefix="rc10-counted-") as folder:
         work = Path(folder)
         _build_root(work / "root", kernel, script, files)
@@ -109,10 +113,23 @@ def _build_root(root: Path, kernel: Kernel, script: str, files: dict[str, Path])
     (root / "init").chmod(0o755)
 
 
+# What no program of a guest imports.
+_LEFT_OUT = shutil.ignore_patterns("test", "tests", "config-*", "dist-packages", "pip", "setuptools", "*.a")
+
+
 def _add(root: Path, place: str, file: Path) -> None:
     target = root / place.lstrip("/")
     target.parent.mkdir(parents=True, exist_ok=True)
-    shutil.copy(file, target)
+    if file.is_dir():
+        shutil.copytree(file, target, ignore=_LEFT_OUT)
+        for library in [*target.rglob("*.so"), *target.rglob("*.so.*")]:
+            _add_libraries(root, library)
+    else:
+        shutil.copy(file, target)
+        _add_libraries(root, file)
+
+
+def _add_libraries(root: Path, file: Path) -> None:
     listed = subprocess.run(["ldd", file], capture_output=True, text=True, check=False).stdout
     for library in re.findall(r"(/\S+) \(", listed):
         copy = root / library.lstrip("/")

@@ -60,7 +60,7 @@ sleep 1
 [ ! -e refused ] || {{ cat enabled log; exit 1; }}
 kill $pid || {{ cat log; exit 1; }}
 wait $pid || true
-cat alone with; [ ! -e stats ] || cat stats
+cat alone with; if [ -e stats ]; then cat stats; else cat log; fi
 """
 
 
@@ -89,8 +89,17 @@ def measure(
     )
     lines = guest.run(kernel, script, {"/bin/fake_wire": wire, **files}).splitlines()
     alone, with_it, *rest = [json.loads(line) for line in lines if line.startswith("{")]
-    lateness: dict[str, Any] = rest[0]["wake_latency_us"] if rest else {}
-    return Cost(with_it["busy_k"] - alone["busy_k"], with_it["threads_k"], lateness)
+    return Cost(with_it["busy_k"] - alone["busy_k"], with_it["threads_k"], lateness_of(rest))
+
+
+def lateness_of(told: list[dict[str, Any]]) -> dict[str, float]:
+    """From what rc10d's statistics or a client of `clients/` say; others say nothing."""
+    for figures in told:
+        if "wake_latency_us" in figures:
+            return dict(figures["wake_latency_us"])
+        if "p50_us" in figures:
+            return {"p50": figures["p50_us"], "p99": figures["p99_us"]}
+    return {}
 
 
 def measure_rc10d(

@@ -4,13 +4,14 @@ from damiao_motor import DaMiaoController  # type: ignore[import-not-found]
 from pair import arguments, run
 
 options = arguments()
-controller = DaMiaoController(channel="can0", bustype="socketcan")
+controller = DaMiaoController(channel=options.channel, bustype="socketcan")
 motors = [
     controller.add_motor(motor_id=number, feedback_id=16 + number, motor_type="4310")
     for number in range(1, 5)
 ]
 for motor in motors:
-    motor.ensure_control_mode("MIT")
+    if options.fd is not None:  # the drives of the counted guest answer no question
+        motor.ensure_control_mode("MIT")
     motor.enable()
 
 

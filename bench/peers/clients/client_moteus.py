@@ -13,7 +13,7 @@ asyncio.set_event_loop(loop)
 
 async def begin() -> moteus.Controller:
     """The drive, stopped."""
-    transport = moteus.PythonCan(interface="socketcan", channel="can0", fd=True)
+    transport = moteus.PythonCan(interface="socketcan", channel=options.channel, fd=True)
     drive = moteus.Controller(id=1, transport=transport)
     await drive.set_stop()
     return drive

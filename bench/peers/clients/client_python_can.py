@@ -6,7 +6,7 @@ from pair import arguments, run
 NO_TORQUE = bytes([0x7F, 0xFF, 0x7F, 0xF0, 0x00, 0x00, 0x07, 0xFF])
 
 options = arguments()
-bus = can.Bus(interface="socketcan", channel="can0")
+bus = can.Bus(interface="socketcan", channel=options.channel)
 
 
 def cycle() -> None:

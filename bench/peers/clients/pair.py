@@ -1,4 +1,4 @@
-"""One end of a socket pair in the place of a CAN interface, and the loop that every client runs.
+"""The loop that every client runs, on a CAN interface or on a socket pair in the place of one.
 
 python-can and what is built upon it open `socketcan` as they always do: only the socket is another.
 """
@@ -8,8 +8,10 @@ from __future__ import annotations
 import argparse
 import json
 import logging
+import math
 import os
 import resource
+import signal
 import socket
 import sys
 import time
@@ -33,17 +35,23 @@ def use_pair(fd: int) -> None:
 
 
 def arguments() -> argparse.Namespace:
-    """Reads --fd and --seconds, and takes the pair."""
+    """Reads --fd or --channel, and --seconds; takes the pair."""
     parser = argparse.ArgumentParser()
-    parser.add_argument("--fd", type=int, required=True)
-    parser.add_argument("--seconds", type=float, required=True)
+    wire = parser.add_mutually_exclusive_group(required=True)
+    wire.add_argument("--fd", type=int)
+    wire.add_argument("--channel", help="a CAN interface")
+    parser.add_argument("--seconds", type=float, default=math.inf, help="default: until SIGTERM")
     options = parser.parse_args()
-    use_pair(options.fd)
+    if options.fd is not None:
+        use_pair(options.fd)
+        options.channel = "can0"
     return options
 
 
 def run(seconds: float, cycle: Callable[[], object]) -> None:
-    """Calls `cycle` on an absolute grid of 1 ms, and prints as JSON what that took."""
+    """Calls `cycle` on an absolute grid of 1 ms until then or SIGTERM, and prints what that took."""
+    ended: list[int] = []
+    signal.signal(signal.SIGTERM, lambda number, _: ended.append(number))
     try:
         os.sched_setscheduler(0, os.SCHED_FIFO, os.sched_param(PRIORITY))
     except PermissionError:
@@ -53,7 +61,7 @@ def run(seconds: float, cycle: Callable[[], object]) -> None:
     begin_ns = time.monotonic_ns() + round(SETTLING_S * 1e9)
     cpu_s = None
     due_ns = time.monotonic_ns() + PERIOD_NS
-    while due_ns < begin_ns + seconds * 1e9:
+    while not ended and due_ns < begin_ns + seconds * 1e9:
         wait_ns = due_ns - time.monotonic_ns()
         if wait_ns > 0:
             time.sleep(wait_ns * 1e-9)
@@ -65,7 +73,8 @@ def run(seconds: float, cycle: Callable[[], object]) -> None:
             late_ns.append(now_ns - due_ns)
             missed += passed - 1
         due_ns += passed * PERIOD_NS
-    report(late_ns, missed, (cpu_seconds() - (cpu_s or 0.0)) / seconds)
+    measured_s = (due_ns - begin_ns) * 1e-9
+    report(late_ns, missed, (cpu_seconds() - (cpu_s or 0.0)) / measured_s)
 
 
 def report(late_ns: list[int], missed: int, cpu_share: float) -> None:

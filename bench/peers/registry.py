@@ -1,0 +1,74 @@
+"""Clients from package registries, in their pinned versions, and what a guest needs to run them."""
+
+from __future__ import annotations
+
+import filecmp
+import shutil
+import subprocess
+from dataclasses import dataclass
+from pathlib import Path
+
+REPO = Path(__file__).resolve().parents[2]
+CLIENTS = REPO / "bench/peers/clients"
+INSTALLED = REPO / "build/registry"
+WANTED = REPO / "tests/registry/requirements.txt"
+PYTHON = Path("/usr/bin/python3")
+PACKAGES = "/opt/clients/lib/site-packages"  # motorbridge looks at folders so far above
+
+
+@dataclass(frozen=True)
+class Client:
+    """A script of `clients/` that drives four DM4310 at 1 kHz."""
+
+    name: str
+    script: str
+    lacks: str
+
+
+NO_SUPERVISION = "ages, errors, echo, watchdog, limits"
+NAIVE = Client("python-can, naive loop", "client_python_can.py", NO_SUPERVISION)
+DAMIAO_MOTOR = Client("damiao-motor", "client_damiao.py", NO_SUPERVISION)
+# They speak to the kernel's CAN and to nothing else.
+BCM = Client(
+    "python-can, BCM",
+    "client_python_can_bcm.py",
+    NO_SUPERVISION + "; the kernel sends, and goes on after a hang",
+)
+MOTORBRIDGE = Client("motorbridge", "client_motorbridge.py", NO_SUPERVISION)
+
+
+def install() -> None:
+    """As scripts/test/registry.sh."""
+    done = INSTALLED / "installed.txt"
+    if done.exists() and filecmp.cmp(done, WANTED, shallow=False):
+        return
+    subprocess.run([PYTHON, "-m", "venv", "--clear", INSTALLED], check=True)
+    python = str(INSTALLED / "bin/python")
+    pip = [python, "-m", "pip", "--quiet", "--disable-pip-version-check"]
+    subprocess.run(
+        [*pip, "install", "--require-hashes", "--no-deps", f"--requirement={WANTED}"], check=True
+    )
+    shutil.copy(WANTED, done)
+
+
+def guest_files() -> dict[str, Path]:
+    """Python with its library, the clients and their packages: place in a guest -> place here."""
+    install()
+    library = Path(_python_says("sysconfig.get_path('stdlib')"))
+    packages = INSTALLED / "lib" / library.name / "site-packages"
+    return {
+        "/bin/python3": PYTHON.resolve(),
+        str(library): library,
+        "/clients": CLIENTS,
+        PACKAGES: packages,
+    }
+
+
+def guest_command(client: Client) -> str:
+    return f"PYTHONPATH={PACKAGES} /bin/python3 /clients/{client.script} --channel vcan0"
+
+
+def _python_says(expression: str) -> str:
+    code = f"import sysconfig; print({expression})"
+    done = subprocess.run([PYTHON, "-c", code], capture_output=True, text=True, check=True)
+    return done.stdout.strip()
