@@ -339,6 +339,7 @@ Result<void> Daemon::startThreads() {
   if (!started) return started;
   page_faults_at_start_ = pageFaults(rx_thread_.tid()) + pageFaults(sched_thread_.tid());
   cpu_rivals_.setThread(sched_thread_.tid());
+  sched_stat_ = openSchedstat(sched_thread_.tid());
   return startThread(link_thread_, {"link", 0, {}},
                      [this](const std::stop_token& stop) { link_->run(stop); });
 }
@@ -348,7 +349,7 @@ std::uint64_t Daemon::newPageFaults() const {
 }
 
 ThreadFacts Daemon::tickThread() {
-  return {.waited = [this] { return waitedForCpu(sched_thread_.tid()); },
+  return {.waited = [this] { return waitedForCpu(sched_stat_); },
           .page_faults = [this] { return pageFaults(sched_thread_.tid()); },
           .rivals = &cpu_rivals_};
 }

@@ -87,12 +87,15 @@ std::uint64_t pageFaults(int tid) noexcept {
   return minor + major;
 }
 
-std::optional<Duration> waitedForCpu(int tid) noexcept {
+UniqueFd openSchedstat(int tid) noexcept {
   std::array<char, 64> path{};
   std::snprintf(path.data(), path.size(), "/proc/self/task/%d/schedstat", tid);
-  const UniqueFd fd{::open(path.data(), O_RDONLY | O_CLOEXEC)};
+  return UniqueFd{::open(path.data(), O_RDONLY | O_CLOEXEC)};
+}
+
+std::optional<Duration> waitedForCpu(const UniqueFd& schedstat) noexcept {
   std::array<char, 128> text{};
-  if (!fd || ::read(fd.get(), text.data(), text.size() - 1) <= 0) return std::nullopt;
+  if (!schedstat || ::pread(schedstat.get(), text.data(), text.size() - 1, 0) <= 0) return std::nullopt;
   // Documentation/scheduler/sched-stats.rst: ns on the CPU, ns ready and waiting, times on the CPU.
   long long waited_ns = 0;
   if (std::sscanf(text.data(), "%*u %lld", &waited_ns) != 1) return std::nullopt;

@@ -32,8 +32,9 @@ void forbidDumps() noexcept;
 
 /// Minor and major page faults of one thread of this process so far, from /proc.
 [[nodiscard]] std::uint64_t pageFaults(int tid) noexcept;
-/// Time for which a thread of this process was ready to run while others had its CPU. None: a kernel without
-/// CONFIG_SCHED_INFO.
-[[nodiscard]] std::optional<Duration> waitedForCpu(int tid) noexcept;
+/// For waitedForCpu() of one thread of this process. Empty: a kernel without CONFIG_SCHED_INFO.
+[[nodiscard]] UniqueFd openSchedstat(int tid) noexcept;
+/// Time for which the thread was ready to run while others had its CPU. None: not known.
+[[nodiscard]] std::optional<Duration> waitedForCpu(const UniqueFd& schedstat) noexcept;
 
 }  // namespace rc10

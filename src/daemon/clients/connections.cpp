@@ -19,6 +19,9 @@ constexpr std::size_t kGatewaySeats = 1;
 constexpr std::size_t kMostOfProcess = 12;
 // More than a client may have under way: it asks on and on, and reads nothing.
 constexpr std::size_t kMaxUnsent = 128;
+// Publications lost in a row: with states at 100 Hz, a second after its socket is full. A slow client reads
+// some of them.
+constexpr unsigned kDeafAfter = 100;
 
 [[nodiscard]] UniqueFd spareDescriptor() { return UniqueFd{::open("/dev/null", O_RDONLY | O_CLOEXEC)}; }
 
@@ -38,6 +41,19 @@ constexpr std::size_t kMaxUnsent = 128;
   socklen_t size = sizeof peer;
   (void)::getsockopt(fd, SOL_SOCKET, SO_PEERCRED, &peer, &size);
   return peer;
+}
+
+[[nodiscard]] std::string deafText(const Connection& connection) {
+  const auto pid = connection.process;
+  if (connection.is_gateway) {
+    return fmt::format(
+        "rc10-lcm (pid {0}) reads nothing: no state leaves over LCM, and an e-stop from there may not get "
+        "in. If it does not go on, kill it (`kill -KILL {0}`): another one is started",
+        pid);
+  }
+  return fmt::format(
+      "client '{}' (pid {}) reads nothing, and loses its states and events: it is stopped or hangs",
+      connection.client.view(), pid);
 }
 
 }  // namespace
@@ -144,10 +160,27 @@ void Connections::respond(Connection& connection, link::Response response) {
   connection.unsent.push_back(std::move(response));
 }
 
-void Connections::publish(std::uint32_t subscription, std::span<const std::byte> message) const {
-  for (const auto& connection : all_) {
-    if (connection.welcomed && (connection.subscriptions & subscription) != 0) send(connection, message);
+bool Connections::wanted(std::uint32_t subscriptions) const noexcept {
+  return std::any_of(all_.begin(), all_.end(), [subscriptions](const Connection& connection) {
+    return connection.wants(subscriptions);
+  });
+}
+
+void Connections::publish(std::uint32_t subscription, std::span<const std::byte> message) {
+  for (auto& connection : all_) {
+    if (!connection.wants(subscription)) continue;
+    connection.lost_in_a_row = send(connection, message) ? 0 : connection.lost_in_a_row + 1;
   }
+}
+
+std::vector<std::string> Connections::newlyDeaf() {
+  std::vector<std::string> texts;
+  for (auto& connection : all_) {
+    const bool deaf = connection.lost_in_a_row >= kDeafAfter;
+    if (deaf && !connection.told_deaf) texts.push_back(deafText(connection));
+    connection.told_deaf = deaf;
+  }
+  return texts;
 }
 
 std::vector<std::uint64_t> Connections::sendUnsent() {

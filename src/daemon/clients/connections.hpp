@@ -27,7 +27,13 @@ struct Connection {
   bool welcomed = false;
   std::deque<link::Response> unsent{};  ///< Answers that found no room; the oldest first.
   Speaker speaker{};
-  bool is_gateway = false;  ///< It says for whom it speaks.
+  bool is_gateway = false;     ///< It says for whom it speaks.
+  unsigned lost_in_a_row = 0;  ///< Publications that found no room, since the last that did.
+  bool told_deaf = false;      ///< newlyDeaf() has named it.
+
+  [[nodiscard]] bool wants(std::uint32_t subscription) const noexcept {
+    return welcomed && (subscriptions & subscription) != 0;
+  }
 };
 
 /// Makes epoll report `key` when there is something to read.
@@ -56,11 +62,16 @@ class Connections {
   static bool send(const Connection& connection, std::span<const std::byte> message) noexcept;
   /// Hands an answer over, or keeps it.
   static void respond(Connection& connection, link::Response response);
+  /// Somebody subscribed to one of these.
+  [[nodiscard]] bool wanted(std::uint32_t subscriptions) const noexcept;
   /// To all that subscribed.
-  void publish(std::uint32_t subscription, std::span<const std::byte> message) const;
+  void publish(std::uint32_t subscription, std::span<const std::byte> message);
   /// Answers that have found no room until now. Returns the clients that have left too many of them: each
   /// sees the end of its connection, and knows that answers are missing.
   [[nodiscard]] std::vector<std::uint64_t> sendUnsent();
+  /// Text for each client that has begun to lose all that it subscribed to: it stands still. Once, until it
+  /// reads again.
+  [[nodiscard]] std::vector<std::string> newlyDeaf();
 
   [[nodiscard]] const std::vector<Connection>& all() const noexcept { return all_; }
 

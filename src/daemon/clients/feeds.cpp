@@ -3,6 +3,12 @@
 #include "daemon/exchange/clock.hpp"
 
 namespace rc10 {
+namespace {
+
+// While nobody listens a state is filled for the rates in the next one, which are of the last second.
+constexpr Duration kUnwantedEvery = std::chrono::seconds{1};
+
+}  // namespace
 
 Feeds::Feeds(const LinkSources& sources, Connections& connections)
     : sources_(sources),
@@ -24,6 +30,9 @@ void Feeds::greet(const Connection& connection) const {
 void Feeds::publishState() {
   if (!sources_.exchange.snapshot.everPublished()) return;  // a robot without motors would be a lie
   const auto& snapshot = sources_.exchange.snapshot.read();
+  const bool wanted = connections_.wanted(link::kStates | link::kModules);
+  if (!wanted && snapshot.time - filled_ < kUnwantedEvery) return;
+  filled_ = snapshot.time;
   publication_.fill(state_, snapshot, wallClockUs());
   connections_.publish(link::kStates, link::seal(state_));
   recordAges(snapshot);

@@ -47,6 +47,7 @@ class Feeds {
   LateTickCauses late_causes_;
   DurationHistogram state_ages_;  ///< Age of the feedback in each state, when it is sent.
   TraceDesk trace_desk_;
+  MonotonicTime filled_{};  ///< Time of the snapshot in state_.
   // One of each large message, filled in anew for every publication.
   link::State state_;
   link::Diagnostics diagnostics_;

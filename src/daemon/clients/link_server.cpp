@@ -15,6 +15,8 @@
 namespace rc10 {
 namespace {
 
+using namespace std::chrono_literals;
+
 constexpr int kMaxLinkEvents = 16;
 // Taken from one client before the others have their turn.
 constexpr int kDatagramsPerTurn = 32;
@@ -30,11 +32,17 @@ constexpr std::uint64_t kListener = ~std::uint64_t{0};
 constexpr std::uint64_t kStateTimer = kListener - 1;
 constexpr std::uint64_t kSlowTimer = kListener - 2;
 
-[[nodiscard]] UniqueFd makeTimer(int hz) noexcept {
+[[nodiscard]] constexpr timespec toTimespec(Duration time) noexcept {
+  return {.tv_sec = time / 1s, .tv_nsec = (time % 1s) / 1ns};
+}
+
+// Expires at multiples of its period, so that two of one rate wake the thread once.
+[[nodiscard]] UniqueFd makeTimer(int hz, MonotonicTime now) noexcept {
   UniqueFd timer{timerfd_create(CLOCK_MONOTONIC, TFD_CLOEXEC | TFD_NONBLOCK)};
-  const timespec period{.tv_sec = hz == 1 ? 1 : 0, .tv_nsec = hz == 1 ? 0 : 1'000'000'000 / hz};
-  const itimerspec spec{.it_interval = period, .it_value = period};
-  if (timer) timerfd_settime(timer.get(), 0, &spec, nullptr);
+  const Duration period = Duration{1s} / hz;
+  const auto next = (now.time_since_epoch() / period + 1) * period;
+  const itimerspec spec{.it_interval = toTimespec(period), .it_value = toTimespec(next)};
+  if (timer) timerfd_settime(timer.get(), TFD_TIMER_ABSTIME, &spec, nullptr);
   return timer;
 }
 
@@ -72,7 +80,8 @@ Result<std::unique_ptr<LinkServer>> LinkServer::create(LinkSocket socket, Source
   auto permissions = Permissions::resolve(rules(sources.robot));
   if (!permissions) return tl::unexpected(permissions.error());
   UniqueFd epoll{epoll_create1(EPOLL_CLOEXEC)};
-  Timers timers{.state = makeTimer(sources.robot.state_hz), .slow = makeTimer(kSlowHz)};
+  const auto now = monotonicNow();
+  Timers timers{.state = makeTimer(sources.robot.state_hz, now), .slow = makeTimer(kSlowHz, now)};
   if (!epoll || !timers.state || !timers.slow) return fail(fmt::format("link: {}", errnoText(errno)));
   if (!watchDescriptor(epoll.get(), socket.descriptor(), kListener) ||
       !watchDescriptor(epoll.get(), timers.state.get(), kStateTimer) ||
@@ -111,6 +120,7 @@ void LinkServer::poll(int timeout_ms) {
 void LinkServer::slowTick() {
   drainScheduler();
   for (const auto id : connections_.sendUnsent()) feeds_.forget(id);
+  for (const auto& text : connections_.newlyDeaf()) note(Severity::kWarning, text);
   feeds_.publishTrace();
   if (slow_ticks_ % kLateCausesEvery == 0) feeds_.countLateTicks();
   if (++slow_ticks_ % kHousekeepingEvery == 0 && sources_.housekeeping) sources_.housekeeping();
@@ -126,10 +136,15 @@ void LinkServer::accept() {
 
 void LinkServer::reportSentAway(std::string_view text) {
   const auto now = monotonicNow();
-  if (!sources_.log || now < next_sent_away_report_) return;
+  if (now < next_sent_away_report_) return;
   next_sent_away_report_ = now + kRefusalReportInterval;
+  note(Severity::kError, text);
+}
+
+void LinkServer::note(Severity severity, std::string_view text) {
+  if (!sources_.log) return;
   link::Event event;
-  event.severity = Severity::kError;
+  event.severity = severity;
   event.source = std::string_view{"link"};
   event.text = text;
   sources_.log(event);

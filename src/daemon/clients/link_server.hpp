@@ -46,6 +46,8 @@ class LinkServer {
 
   void accept();
   void reportSentAway(std::string_view text);
+  /// For the log alone.
+  void note(Severity severity, std::string_view text);
   void receive(Connection& connection);
   [[nodiscard]] bool handle(Connection& connection, std::span<const std::byte> datagram);
   /// A defective message may still be an e-stop. False.

@@ -147,6 +147,30 @@ TEST_F(LinkServerStrangersTest, AClientThatNeverReadsBlocksNobody) {
   expectServed(*deaf);
 }
 
+TEST_F(LinkServerStrangersTest, AClientThatReadsNothingIsToldOnceUntilItReadsAgain) {
+  auto deaf = join(link::kEvents);
+  auto client = join(link::kEvents);
+  const auto told = [this] {
+    return std::count_if(logged.begin(), logged.end(), [](const link::Event& event) {
+      return event.text.view().find("reads nothing") != std::string_view::npos;
+    });
+  };
+  const auto lose = [&](int events) {
+    for (int i = 0; i < events; ++i) {
+      exchange.events.push({EventCode::kTicksMissed, Severity::kInfo, -1, i, 0, {}});
+      EXPECT_TRUE(await<link::Event>(*client));
+    }
+    pump();
+  };
+  lose(2000);
+  EXPECT_EQ(told(), 1);
+  lose(200);
+  EXPECT_EQ(told(), 1);
+  while (deaf->take<link::Event>()) continue;
+  lose(2000);
+  EXPECT_EQ(told(), 2);
+}
+
 // More answers than its socket holds.
 TEST_F(LinkServerStrangersTest, EveryAnswerOfABurstArrives) {
   auto client = join();
