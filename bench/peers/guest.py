@@ -113,8 +113,10 @@ def _build_root(root: Path, kernel: Kernel, script: str, files: dict[str, Path])
     (root / "init").chmod(0o755)
 
 
-# What no program of a guest imports.
-_LEFT_OUT = shutil.ignore_patterns("test", "tests", "config-*", "dist-packages", "pip", "setuptools", "*.a")
+# No program of a guest imports these.
+_LEFT_OUT = shutil.ignore_patterns(
+    "test", "tests", "config-*", "dist-packages", "pip", "setuptools", "*.a"
+)
 
 
 def _add(root: Path, place: str, file: Path) -> None:

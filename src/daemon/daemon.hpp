@@ -87,7 +87,7 @@ class Daemon {
   std::unique_ptr<GatewayProcess> gateway_;
   Watchdog watchdog_;
   std::uint64_t page_faults_at_start_ = 0;
-  UniqueFd sched_stat_;  ///< Of the scheduler's thread, see waitedForCpu().
+  UniqueFd sched_stat_;  ///< The scheduler thread's, see waitedForCpu().
 
   // Ended in reverse order of start: see stop().
   RtThread copy_thread_;

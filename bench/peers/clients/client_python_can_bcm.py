@@ -12,8 +12,7 @@ NO_TORQUE = bytes([0x7F, 0xFF, 0x7F, 0xF0, 0x00, 0x00, 0x07, 0xFF])
 options = arguments()
 bus = can.Bus(interface="socketcan", channel=options.channel)
 commands = [
-    can.Message(arbitration_id=motor, is_extended_id=False, data=NO_TORQUE)
-    for motor in range(1, 5)
+    can.Message(arbitration_id=motor, is_extended_id=False, data=NO_TORQUE) for motor in range(1, 5)
 ]
 tasks = [bus.send_periodic(command, PERIOD_S) for command in commands]
 
@@ -23,7 +22,8 @@ def cycle() -> None:
     while bus.recv(0) is not None:
         pass
     for task, command in zip(tasks, commands, strict=True):
-        task.modify_data(command)
+        if isinstance(task, can.ModifiableCyclicTaskABC):  # SocketCAN's are
+            task.modify_data(command)
 
 
 run(options.seconds, cycle)

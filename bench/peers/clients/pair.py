@@ -49,7 +49,7 @@ def arguments() -> argparse.Namespace:
 
 
 def run(seconds: float, cycle: Callable[[], object]) -> None:
-    """Calls `cycle` on an absolute grid of 1 ms until then or SIGTERM, and prints what that took."""
+    """Calls `cycle` on an absolute grid of 1 ms until then or SIGTERM; prints what that took."""
     ended: list[int] = []
     signal.signal(signal.SIGTERM, lambda number, _: ended.append(number))
     try:

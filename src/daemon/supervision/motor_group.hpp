@@ -35,7 +35,7 @@ struct MotorGroup {
   MotorSet dropped;            ///< Members that were ACTIVE and have been lost.
   MotorSet disabled;           ///< Required members that were on and have been disabled,
   MotorSet refused;            ///< or whose drives have refused.
-  bool disable_asked = false;  ///< Of any member.
+  bool disable_asked = false;  ///< A request named some member.
   // Until a request changes it.
   MotorSet rests_with_it;  ///< Disabled since another member was.
   MotorSet rearm;          ///< To be enabled again by itself; empty: none.
