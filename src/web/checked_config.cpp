@@ -1,7 +1,6 @@
 #include "web/checked_config.hpp"
 
 #include <algorithm>
-#include <vector>
 
 #include "client/json_line.hpp"
 #include "config/load_config.hpp"
@@ -13,17 +12,6 @@ namespace rc10::web {
 namespace {
 
 using client::Json;
-
-Json problemsJson(const std::vector<ConfigProblem>& problems) {
-  Json list = Json::array();
-  for (const auto& problem : problems) {
-    list.push_back({{"line", problem.place.line},
-                    {"column", problem.place.column},
-                    {"path", problem.path},
-                    {"text", problem.text}});
-  }
-  return list;
-}
 
 Json checkedMotorJson(const MotorConfig& motor, const BusLoad& load) {
   const auto word = [](FallbackAction action) { return kFallbackWords[static_cast<std::size_t>(action)]; };

@@ -8,6 +8,18 @@ namespace rc10 {
 
 using Json = nlohmann::ordered_json;
 
+Json problemsJson(const std::vector<ConfigProblem>& problems) {
+  Json list = Json::array();
+  for (const auto& problem : problems) {
+    list.push_back({{"file", problem.file},
+                    {"line", problem.place.line},
+                    {"column", problem.place.column},
+                    {"path", problem.path},
+                    {"text", problem.text}});
+  }
+  return list;
+}
+
 Json motorsJson(const BusConfig& bus, int rate_hz, Json (*motor_json)(const MotorConfig&, const BusLoad&)) {
   const auto loads = predictLoadByMotor(bus, rate_hz);
   Json motors = Json::array();

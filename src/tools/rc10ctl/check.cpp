@@ -1,30 +1,18 @@
 #include <cstdio>
 #include <memory>
 #include <string>
-#include <vector>
 
 #include <CLI/CLI.hpp>
 
 #include "client/json_line.hpp"
 #include "config/load_config.hpp"
 #include "config/report/report.hpp"
+#include "config/report/robot_json.hpp"
 #include "robot_json.hpp"
 #include "verbs.hpp"
 
 namespace rc10::ctl {
 namespace {
-
-client::Json problemsJson(const std::vector<ConfigProblem>& problems) {
-  client::Json list = client::Json::array();
-  for (const auto& problem : problems) {
-    list.push_back({{"file", problem.file},
-                    {"line", problem.place.line},
-                    {"column", problem.place.column},
-                    {"path", problem.path},
-                    {"text", problem.text}});
-  }
-  return list;
-}
 
 ExitCode checkInJson(const std::string& file, const ConfigOutcome& outcome) {
   std::puts(client::lineOf({{"file", file},
