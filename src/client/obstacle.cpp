@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstddef>
 
+#include "app/event_code.hpp"
 #include "app/printable.hpp"
 #include "link/words.hpp"
 
@@ -23,6 +24,16 @@ std::string obstacle(const link::State& state, const std::string& name, const li
              "`, then `rc10ctl enable " + name + "`";
     default: return is + ": `rc10ctl enable " + name + "`";
   }
+}
+
+std::string refusalText(const link::Event& event, std::string_view motor, std::string_view client) {
+  const auto code = EventCode{event.code};
+  const bool of_motor = code == EventCode::kSetpointSkipped || code == EventCode::kNotOwner;
+  // Refused by admission before a motor had it: the text names the motor, and a range or right that it lacks.
+  const bool of_message = code == EventCode::kCommandRefused;
+  if ((of_motor && event.source.view() == motor) || (of_message && event.client.view() == client))
+    return printable(event.text.view());
+  return {};
 }
 
 std::string holder(const link::Welcome& welcome, std::string_view owner) {

@@ -11,6 +11,10 @@ namespace rc10::client {
 [[nodiscard]] std::string obstacle(const link::State& state, const std::string& name,
                                    const link::MotorState& motor);
 
+/// Text of an event that tells why targets of the client for the motor do not act; empty: another event.
+[[nodiscard]] std::string refusalText(const link::Event& event, std::string_view motor,
+                                      std::string_view client);
+
 /// The owner of a motor, with the way to end it: a module's name is not that of a program.
 [[nodiscard]] std::string holder(const link::Welcome& welcome, std::string_view owner);
 

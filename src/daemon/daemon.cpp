@@ -261,15 +261,16 @@ void Daemon::describeRobot() {
       description_.motors.push_back({motor.name(), std::string(built.modelName()), bus, motor.settings.id,
                                      built.modes(), motor.optional, traits.setup,
                                      MotorLoops{motor.settings.model, traits, motor.settings.loops}});
-      const double turns = driveTurns(motor.settings, traits);
-      description_.motors.back().spring_range = {
-          .stiffness_nm_per_rad = turns * turns * traits.spring_range.stiffness_nm_per_rad,
-          .damping_nms_per_rad = turns * turns * traits.spring_range.damping_nms_per_rad};
+      auto& described = description_.motors.back();
+      described.spring_range = springRangeOf(motor.settings, traits);
+      described.max_first_step_deg = motor.shaping.max_first_step_deg;
+      described.travel = motor.settings.travel;
+      described.run_down = motor.run_down;
       if (simulated)
-        description_.motors.back().simulated = {.port = port,
-                                                .drive = drive,
-                                                .direction = motor.settings.direction,
-                                                .payload_at_m = motor.simulated.payload_at_m};
+        described.simulated = {.port = port,
+                               .drive = drive,
+                               .direction = motor.settings.direction,
+                               .payload_at_m = motor.simulated.payload_at_m};
     }
     port += simulated ? 1 : 0;
   }

@@ -21,6 +21,12 @@ double driveTurns(const MotorSettings& settings, const MotorTraits& traits) noex
   return gearRatioOf(settings, traits) / traits.gear_ratio;
 }
 
+SpringRange springRangeOf(const MotorSettings& settings, const MotorTraits& traits) noexcept {
+  const double turns = driveTurns(settings, traits);
+  return {.stiffness_nm_per_rad = turns * turns * traits.spring_range.stiffness_nm_per_rad,
+          .damping_nms_per_rad = turns * turns * traits.spring_range.damping_nms_per_rad};
+}
+
 MotorSettings withFeedbackOfCommands(MotorSettings settings, int commands) {
   const int divider = std::max(settings.command_divider, 1) * std::max(commands, 1);
   settings.feedback_hz = std::max(settings.tick_hz / divider, 1);

@@ -148,6 +148,9 @@ class SoloMotor : public Motor_Base, public CommandPacker {
 /// Turns of a drive's own output, on which it reports, per turn of the output shaft.
 [[nodiscard]] double driveTurns(const MotorSettings& settings, const MotorTraits& traits) noexcept;
 
+/// Gains of impedance targets that the drive's frames can say, at the output shaft.
+[[nodiscard]] SpringRange springRangeOf(const MotorSettings& settings, const MotorTraits& traits) noexcept;
+
 /// Use of the bus by a drive that speaks when it is told something, and tells its angle once in `commands`.
 [[nodiscard]] MotorSettings withFeedbackOfCommands(MotorSettings settings, int commands);
 

@@ -17,6 +17,15 @@ bool clampTo(double& value, double low, double high) noexcept {
 
 }  // namespace
 
+bool SpringRange::has(float gain_nm_per_rad, float gain_nms_per_rad) const noexcept {
+  // At the shaft it is that of the frame times the square of a gear ratio: rounded as the gains are.
+  const auto within = [](float gain, double most) {
+    return gain >= 0.0F && gain <= static_cast<float>(most);
+  };
+  return !(stiffness_nm_per_rad > 0.0) ||
+         (within(gain_nm_per_rad, stiffness_nm_per_rad) && within(gain_nms_per_rad, damping_nms_per_rad));
+}
+
 double torqueNm(const SpringLaw& law, const SpringState& at) noexcept {
   double spring_nm = 0.0;
   double damper_nm = 0.0;

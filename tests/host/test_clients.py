@@ -82,6 +82,22 @@ def test_each_user_may_do_what_the_file_says() -> None:
         assert "(user 0) may observe and stop" in daemon.ctl("enable").stderr
 
 
+LIFT = """
+modules:
+  - {name: lift, type: synchronised_pair, left: wheel, right: other, velocity_limit_rpm: 60}
+"""
+
+
+def test_targets_and_inputs_that_are_not_permitted_name_the_line_that_would_grant_them() -> None:
+    grant = f"add `- {{user: {BEN}, may: [command]}}` to clients at "
+    with robot(CLIENTS + LIFT) as daemon:
+        assert "enable: 3 of 3" in ctl(daemon, ANNA, "enable")
+        refused = ctl(daemon, BEN, "set", "wheel", "velocity", "10", "--for", "1s")
+        assert "not command wheel: " + grant in refused
+        refused = ctl(daemon, BEN, "signal", "lift", "velocity_rpm=10", "--for", "1s")
+        assert "not command lift: " + grant in refused
+
+
 def test_anybody_stops_and_who_may_clears() -> None:
     with robot() as daemon:
         ctl(daemon, ANNA, "enable")

@@ -136,6 +136,28 @@ def test_a_target_that_needs_a_reference_fails_without_one() -> None:
         assert "the angle has no reference; set it with `zero`" in done.stderr
 
 
+KNEE = ARM + "      - {name: knee, model: DM4340, id: 6, master_id: 22, command_divider: 2}\n"
+
+
+def test_gains_beyond_the_drive_are_refused_with_its_range() -> None:
+    stiff = ("set", "knee", "impedance", 0, "--stiffness", 501, "--for", "1s")
+    with Daemon(KNEE) as robot:
+        robot.wait_ready()
+        robot.must("enable", "knee")
+        done = robot.ctl(*stiff)
+        assert done.returncode == 1
+        assert (
+            "the drive of knee takes --stiffness 0 to 500 (Nm/rad) and --damping 0 to 5 (Nms/rad)"
+            in done.stderr
+        )
+        # Another user may not read the file of the robot: rc10d's own refusal has it too.
+        (robot.run_dir / "host.config").unlink()
+        done = robot.ctl(*stiff)
+        assert done.returncode == 1
+        assert "motor 'knee' did not take the impedance target (command of" in done.stderr
+        assert "0 to 500 Nm/rad, 0 to 5 Nms/rad)" in done.stderr
+
+
 LIFT = ARM + "      - {name: lift, model: GM6020, id: 5, on_timeout: hold}\n"
 
 

@@ -25,6 +25,17 @@ struct Draw {
   std::mt19937 generator{7};
 };
 
+TEST(SpringRange, HasGainsFromNothingToItsEndsAndEachWhereItIsUnknown) {
+  constexpr SpringRange kDrive{.stiffness_nm_per_rad = 500.0, .damping_nms_per_rad = 5.0};
+  EXPECT_TRUE(kDrive.has(0.0F, 0.0F));
+  EXPECT_TRUE(kDrive.has(500.0F, 5.0F));
+  EXPECT_FALSE(kDrive.has(500.1F, 5.0F));
+  EXPECT_FALSE(kDrive.has(500.0F, 5.01F));
+  EXPECT_FALSE(kDrive.has(-0.1F, 0.0F));
+  EXPECT_FALSE(kDrive.has(static_cast<float>(kNaN), 0.0F));
+  EXPECT_TRUE(SpringRange{}.has(1e9F, 1e9F));
+}
+
 TEST(SpringLaw, AddsUpSpringDamperAndTorque) {
   const SpringLaw law{.position_rad = 1.0,
                       .velocity_rad_s = 2.0,

@@ -162,12 +162,8 @@ void MotionRun::take(const link::State& state) {
 }
 
 void MotionRun::take(const link::Event& event) {
-  const bool refusal = event.code == static_cast<std::int32_t>(EventCode::kSetpointSkipped) ||
-                       event.code == static_cast<std::int32_t>(EventCode::kNotOwner);
-  if (refusal && event.source.view() == settings_.motor) refusal_ = printable(event.text.view());
-  // Not permitted, for one: the text has the line that would grant it.
-  const bool admission = event.code == static_cast<std::int32_t>(EventCode::kCommandRefused);
-  if (admission && event.client.view() == settings_.client) refusal_ = printable(event.text.view());
+  if (auto why = refusalText(event, settings_.motor, settings_.client); !why.empty())
+    refusal_ = std::move(why);
 }
 
 void MotionRun::end(Criterion criterion, const std::string& text) {

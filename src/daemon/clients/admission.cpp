@@ -5,6 +5,8 @@
 
 #include <fmt/format.h>
 
+#include "link/words.hpp"
+
 namespace rc10 {
 namespace {
 
@@ -32,15 +34,13 @@ namespace {
          (!used.spring && (given(target.stiffness_nm_per_rad) || given(target.damping_nms_per_rad)));
 }
 
-// A range at the shaft is that of the frame times the square of a gear ratio: rounded as the gains are.
-[[nodiscard]] bool within(float gain, double most) noexcept {
-  return gain >= 0.0F && gain <= static_cast<float>(most);
-}
-
-[[nodiscard]] bool says(const SpringRange& range, const Target& target) noexcept {
-  return !(range.stiffness_nm_per_rad > 0.0) ||
-         (within(target.stiffness_nm_per_rad, range.stiffness_nm_per_rad) &&
-          within(target.damping_nms_per_rad, range.damping_nms_per_rad));
+// What the motor takes instead; empty where that is not the matter.
+[[nodiscard]] std::string choiceOf(const RobotDescription::Motor& motor, CommandRefusal refusal) {
+  if (refusal == CommandRefusal::kUnsupportedMode) return "; it has " + link::modeWords(motor.modes.bits());
+  if (refusal == CommandRefusal::kGainsBeyondDrive)
+    return fmt::format(": 0 to {:.6g} Nm/rad, 0 to {:.6g} Nms/rad", motor.spring_range.stiffness_nm_per_rad,
+                       motor.spring_range.damping_nms_per_rad);
+  return {};
 }
 
 }  // namespace
@@ -105,7 +105,7 @@ int Admission::indexOf(std::string_view name) const {
 CommandRefusal Admission::admit(const link::Command& message, const Speaker& speaker, MonotonicTime now,
                                 Command& out) {
   culprit_.clear();
-  range_.clear();
+  choice_.clear();
   const auto deadline = deadlineOf(message.received_ns, message.validity_ms, now);
   if (message.setpoint_count == 0 || message.setpoint_count > kMaxMotors || !deadline)
     return CommandRefusal::kMalformed;
@@ -117,12 +117,9 @@ CommandRefusal Admission::admit(const link::Command& message, const Speaker& spe
     if (refusal != CommandRefusal::kNone) {
       const auto& setpoint = message.setpoints[i];
       culprit_ = std::string{setpoint.motor.view()};
-      if (refusal != CommandRefusal::kUnknownMotor)
+      if (refusal != CommandRefusal::kUnknownMotor) {
         culprit_ += std::string{": "} + toString(setpoint.target.mode);
-      if (refusal == CommandRefusal::kGainsBeyondDrive) {
-        const auto& most = robot_.motors[out.setpoints[i].motor].spring_range;
-        range_ = fmt::format(": 0 to {:.6g} Nm/rad, 0 to {:.6g} Nms/rad", most.stiffness_nm_per_rad,
-                             most.damping_nms_per_rad);
+        choice_ = choiceOf(robot_.motors[out.setpoints[i].motor], refusal);
       }
       return refusal;
     }
@@ -160,7 +157,8 @@ CommandRefusal Admission::translate(const link::Setpoint& in, Command::Setpoint&
     return CommandRefusal::kUnsupportedMode;
   }
   if (!finite(in.target)) return CommandRefusal::kNotFinite;
-  if (mode == ControlMode::kImpedance && !says(known.spring_range, in.target))
+  if (mode == ControlMode::kImpedance &&
+      !known.spring_range.has(in.target.stiffness_nm_per_rad, in.target.damping_nms_per_rad))
     return CommandRefusal::kGainsBeyondDrive;
   out.target = withoutUnused({.mode = mode,
                               .value = usesValue(mode) ? in.target.value : 0.0,

@@ -62,8 +62,9 @@ class Admission {
   /// "wheel: impedance": motor and mode for which the last message was refused; empty: not for one of them.
   [[nodiscard]] const std::string& culprit() const noexcept { return culprit_; }
 
-  /// After kGainsBeyondDrive, the range: ": 0 to 500 Nm/rad, 0 to 5 Nms/rad"; else empty.
-  [[nodiscard]] const std::string& range() const noexcept { return range_; }
+  /// What the culprit takes instead: "; it has current,velocity" after kUnsupportedMode, ": 0 to 500 Nm/rad,
+  /// 0 to 5 Nms/rad" after kGainsBeyondDrive; else empty.
+  [[nodiscard]] const std::string& choice() const noexcept { return choice_; }
 
   /// Index of a motor, or -1.
   [[nodiscard]] int indexOf(std::string_view name) const;
@@ -86,7 +87,7 @@ class Admission {
   std::array<std::uint64_t, kCommandRefusalCount> refusals_{};
   bool cleared_field_ = false;
   std::string culprit_;
-  std::string range_;
+  std::string choice_;
 };
 
 }  // namespace rc10

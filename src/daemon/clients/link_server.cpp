@@ -240,7 +240,7 @@ void LinkServer::command(const link::Command& message, const Speaker& speaker) {
   if (outcome != CommandRefusal::kNone) {
     const auto& culprit = admission_.culprit();
     return reportRefusal(outcome, message.client,
-                         culprit.empty() ? "" : culprit + ": " + describe(outcome) + admission_.range());
+                         culprit.empty() ? "" : culprit + ": " + describe(outcome) + admission_.choice());
   }
   if (!admission_.clearedField()) return;
   admission_.count(CommandRefusal::kUnusedField);

@@ -266,6 +266,9 @@ link::Event Publication::event(const Event& event, std::int64_t utime) const {
   }
   out.client = event.client;
   out.text = describe(event);
+  if (event.code == EventCode::kSetpointSkipped && SkipReason{event.value} == SkipReason::kFirstStep &&
+      index < robot_.motors.size())
+    out.text = fmt::format("{}: within {:.6g} deg", describe(event), robot_.motors[index].max_first_step_deg);
   if (event.code == EventCode::kModule && index < robot_.modules.size()) {
     const auto& events = robot_.modules[index].signals.events;
     const auto place = static_cast<std::size_t>(event.value);

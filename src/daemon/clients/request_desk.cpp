@@ -1,8 +1,10 @@
 #include "daemon/clients/request_desk.hpp"
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <optional>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -27,7 +29,13 @@ constexpr std::string_view kAngle = "angle_deg";
   return fmt::format("{} and {}", fmt::join(kOperationWords.begin(), last, ", "), *last);
 }
 
-[[nodiscard]] const char* inWords(Refusal refusal) {
+[[nodiscard]] std::string travelText(const Travel& travel) {
+  if (!std::isfinite(travel.min_deg)) return fmt::format("up to {:.6g} deg", travel.max_deg);
+  if (!std::isfinite(travel.max_deg)) return fmt::format("from {:.6g} deg", travel.min_deg);
+  return fmt::format("{:.6g} to {:.6g} deg", travel.min_deg, travel.max_deg);
+}
+
+[[nodiscard]] std::string inWords(Refusal refusal, const RobotDescription::Motor& motor) {
   switch (refusal) {
     case Refusal::kNone: return "done";
     case Refusal::kOffline: return "offline: no feedback from the drive; check power, wiring and id";
@@ -46,7 +54,9 @@ constexpr std::string_view kAngle = "angle_deg";
              "switch "
              "hold it in the middle";
     case Refusal::kMayTurn:
-      return "no feedback, and it may still turn: wait until run_down_s after its last feedback";
+      return fmt::format(
+          "no feedback, and it may still turn: wait until {:.6g} s (run_down_s) after its last feedback",
+          std::chrono::duration<double>(motor.run_down).count());
     case Refusal::kEstopAsked: return "an e-stop was asked for at the same time: it stays; clear it again";
     case Refusal::kConfiguring: return "a drive is being configured: wait for it";
     case Refusal::kNotConfirmed:
@@ -58,13 +68,17 @@ constexpr std::string_view kAngle = "angle_deg";
     case Refusal::kAlone: return "locked while another motor is enabled alone";
     case Refusal::kOthersOn: return "not the only one: disable all others first";
     case Refusal::kTurnUnclear:
-      return "its turn is unclear: turn it by hand into its travel (angle_min_deg to angle_max_deg); with a "
-             "travel of a turn or more set its angle, rc10ctl zero";
+      return fmt::format(
+          "its turn is unclear: turn it by hand into its travel ({}); with a travel of a turn or more set "
+          "its "
+          "angle, rc10ctl zero",
+          travelText(motor.travel));
     case Refusal::kOutOfReach:
-      return "with this zero part of its travel (angle_min_deg to angle_max_deg) would lie beyond the "
-             "positions "
-             "that its drive can be told: turn it back towards the drive's own 0, near which most drives are "
-             "when they are switched on; or the drive has not told its count of turns yet: try again";
+      return fmt::format(
+          "with this zero part of its travel ({}) would lie beyond the positions that its drive can be told: "
+          "turn it back towards the drive's own 0, near which most drives are when they are switched on; or "
+          "the drive has not told its count of turns yet: try again",
+          travelText(motor.travel));
   }
   return "unknown reason";
 }
@@ -267,8 +281,8 @@ std::string RequestDesk::driveOutcome(const Open& open, const OrderResult& resul
     case Refusal::kNone: return fmt::format("{}: {}", nameOf(motor), wordsOf(open.order.drive, setup));
     case Refusal::kNotConfirmed:
       return fmt::format("{}: {}: {}", nameOf(motor), settingAt(open.order.drive, setup, result.drive_value),
-                         inWords(Refusal::kNotConfirmed));
-    default: return fmt::format("{}: {}", nameOf(motor), inWords(result.motors[motor]));
+                         inWords(Refusal::kNotConfirmed, robot_.motors[motor]));
+    default: return fmt::format("{}: {}", nameOf(motor), inWords(result.motors[motor], robot_.motors[motor]));
   }
 }
 
@@ -335,7 +349,8 @@ void RequestDesk::shaftTaken(const link::Request& request, const Speaker& speake
 void RequestDesk::finishGains(const Open& open, const OrderResult& result, link::Response& response) {
   const auto motor = theMotor(open.request).value_or(0);
   if (result.motors[motor] != Refusal::kNone) {
-    response.message = fmt::format("{}: {}", nameOf(motor), inWords(result.motors[motor]));
+    response.message =
+        fmt::format("{}: {}", nameOf(motor), inWords(result.motors[motor], robot_.motors[motor]));
     return;
   }
   response.message =
@@ -343,8 +358,8 @@ void RequestDesk::finishGains(const Open& open, const OrderResult& result, link:
   tellGains(loops_[motor], response);
 }
 
-// With the motors that are in the way by their names.
-std::string RequestDesk::reasonOf(Refusal reason, const MotorSet& in_the_way) const {
+// With the motors that are in the way by their names, and the numbers of this one.
+std::string RequestDesk::reasonOf(Refusal reason, std::size_t motor, const MotorSet& in_the_way) const {
   std::vector<std::string_view> names;
   for (std::size_t i = 0; i < robot_.motors.size(); ++i) {
     if (in_the_way.test(i)) names.emplace_back(nameOf(i));
@@ -356,28 +371,28 @@ std::string RequestDesk::reasonOf(Refusal reason, const MotorSet& in_the_way) co
     case Refusal::kOthersOn: return fmt::format("not the only one: `rc10ctl disable {}` first", them);
     case Refusal::kTogether: return fmt::format("its group is enabled all or none: name {} as well", them);
     case Refusal::kGroup:
-      return names.empty() ? inWords(reason)
+      return names.empty() ? inWords(reason, robot_.motors[motor])
                            : fmt::format("of its group, {} cannot be enabled: offline or in fault", them);
-    default: return inWords(reason);
+    default: return inWords(reason, robot_.motors[motor]);
   }
 }
 
 // "left, right: offline; arm: in FAULT": each reason once.
 std::string RequestDesk::reasons(const MotorSet& motors, const OrderResult& result) const {
-  std::string text;
-  MotorSet named;
-  for (std::size_t first = 0; first < robot_.motors.size(); ++first) {
-    const auto reason = result.motors[first];
-    if (!motors.test(first) || reason == Refusal::kNone || named.test(first)) continue;
-    std::vector<std::string> who;
-    for (std::size_t i = first; i < robot_.motors.size(); ++i) {
-      if (!motors.test(i) || result.motors[i] != reason) continue;
-      who.push_back(nameOf(i));
-      named.set(i);
-    }
-    text += fmt::format("{}{}: {}", text.empty() ? "" : "; ", fmt::join(who, ", "),
-                        reasonOf(reason, result.in_the_way));
+  std::vector<std::pair<std::string, std::string>> found;  // a reason, and who has it
+  for (std::size_t i = 0; i < robot_.motors.size(); ++i) {
+    if (!motors.test(i) || result.motors[i] == Refusal::kNone) continue;
+    auto reason = reasonOf(result.motors[i], i, result.in_the_way);
+    const auto same = std::find_if(found.begin(), found.end(),
+                                   [&reason](const auto& each) { return each.first == reason; });
+    if (same != found.end())
+      same->second += ", " + nameOf(i);
+    else
+      found.emplace_back(std::move(reason), nameOf(i));
   }
+  std::string text;
+  for (const auto& [reason, who] : found)
+    text += fmt::format("{}{}: {}", text.empty() ? "" : "; ", who, reason);
   return text;
 }
 

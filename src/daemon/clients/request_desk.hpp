@@ -80,7 +80,7 @@ class RequestDesk {
 
   [[nodiscard]] std::string driveOutcome(const Open& open, const OrderResult& result) const;
   void finishGains(const Open& open, const OrderResult& result, link::Response& response);
-  [[nodiscard]] std::string reasonOf(Refusal reason, const MotorSet& in_the_way) const;
+  [[nodiscard]] std::string reasonOf(Refusal reason, std::size_t motor, const MotorSet& in_the_way) const;
   [[nodiscard]] std::string reasons(const MotorSet& motors, const OrderResult& result) const;
   [[nodiscard]] static link::Response respond(const link::Request& request, link::ResponseStatus status,
                                               const std::string& message);

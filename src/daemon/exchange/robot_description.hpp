@@ -1,6 +1,7 @@
 #pragma once
 
 #include <algorithm>
+#include <limits>
 #include <optional>
 #include <string>
 #include <vector>
@@ -9,6 +10,7 @@
 #include "config/keys/loop_gains.hpp"
 #include "daemon/exchange/shaft_order.hpp"
 #include "daemon/exchange/snapshot.hpp"
+#include "motor/first_angle.hpp"
 #include "motor/spring_law.hpp"
 
 namespace rc10 {
@@ -35,6 +37,9 @@ struct RobotDescription {
     MotorLoops loops{};                 ///< As they are at the start.
     std::optional<SimulatedDrive> simulated{};
     SpringRange spring_range{};  ///< Bounds impedance targets, at the output shaft.
+    double max_first_step_deg = std::numeric_limits<double>::infinity();
+    Travel travel{};
+    Duration run_down{};
   };
   struct Bus {
     std::string name;

@@ -6,8 +6,8 @@
 #include <chrono>
 #include <cstdio>
 #include <string>
+#include <utility>
 
-#include "app/event_code.hpp"
 #include "app/printable.hpp"
 #include "client/obstacle.hpp"
 #include "client/quantity_text.hpp"
@@ -206,14 +206,14 @@ class Driver {
   void showEvents(Progress& progress) {
     for (const auto& event : feed_.takeEvents()) {
       if (order_.hear && event.source.view() == name_) order_.hear(event);
+      // refused() reports it in the end, if the target is not in force by then.
+      if (auto why = client::refusalText(event, name_, kClientName); !why.empty()) {
+        refusal_ = std::move(why);
+        continue;
+      }
       const bool concerns_us = event.source.view() == name_ ? event.severity > Severity::kInfo
                                                             : event.severity > Severity::kWarning;
       if (!concerns_us) continue;
-      // A refusal, which refused() reports in the end with its cause.
-      if (event.source.view() == name_ && isRefusal(event.code)) {
-        refusal_ = printable(event.text.view());
-        continue;
-      }
       progress.note(std::string(toString(event.severity)) + ": " + printable(event.source.view()) + ": " +
                     printable(event.text.view()));
     }
@@ -230,11 +230,6 @@ class Driver {
     text += "  current " + client::quantity(static_cast<double>(motor()->current_a), 2, "A");
     const std::string limits = link::limitWords(motor()->limits);
     return limits.empty() ? text : text + "  limit: " + limits;
-  }
-
-  static bool isRefusal(std::int32_t code) {
-    return code == static_cast<std::int32_t>(EventCode::kSetpointSkipped) ||
-           code == static_cast<std::int32_t>(EventCode::kNotOwner);
   }
 
   LinkClient& rc10d_;

@@ -73,10 +73,11 @@ std::vector<std::string_view> viewsOf(std::span<const link::Name> names) {
 }
 
 /// Reason why the module does not do what it is told; empty if it does. `certain`: its state shows our inputs
-/// by now, if it takes them.
-std::string whyNotObeyed(const client::ModuleView& module, Feed& feed, bool certain) {
+/// by now, if it takes them. `refusal`: rc10d's last word about inputs that it refused, kept between calls.
+std::string whyNotObeyed(const client::ModuleView& module, Feed& feed, bool certain, std::string& refusal) {
   const std::string name = printable(module.name.view());
   for (const auto& event : feed.takeEvents()) {
+    if (auto why = client::refusalText(event, {}, kClientName); !why.empty()) refusal = std::move(why);
     if (event.code == static_cast<std::int32_t>(EventCode::kModuleRefused) &&
         event.source.view() == module.name.view())
       return "module '" + name + "': " + printable(event.text.view()) +
@@ -85,7 +86,8 @@ std::string whyNotObeyed(const client::ModuleView& module, Feed& feed, bool cert
   const auto owner = module.state.owner.view();
   if (!certain || owner == kClientName) return {};
   if (owner.empty())
-    return "module '" + name + "' takes none of these inputs: `rc10ctl stats` shows what was refused";
+    return "module '" + name + "' takes none of these inputs" +
+           (refusal.empty() ? ": `rc10ctl stats` shows what was refused" : " (" + refusal + ")");
   return "module '" + name + "' is commanded by '" + printable(owner) +
          "': stop that program, or take over with a higher --priority";
 }
@@ -164,6 +166,7 @@ ExitCode repeat(const Global& global, LinkClient& rc10d, link::Signals& message,
   const auto start = steady_clock::now();
   auto next = start;
   bool obeyed = false;
+  std::string refusal;
   Unheeded unheeded;
   while (!interrupted() && steady_clock::now() - start < time) {
     if (const auto now = steady_clock::now(); now >= next) {
@@ -180,10 +183,10 @@ ExitCode repeat(const Global& global, LinkClient& rc10d, link::Signals& message,
       obeyed = true;
       unheeded.heeded();
     }
-    if (const auto why = whyNotObeyed(*module, feed, unheeded.tooOften()); !why.empty())
+    if (const auto why = whyNotObeyed(*module, feed, unheeded.tooOften(), refusal); !why.empty())
       return complain({why}, ExitCode::kFailed);
   }
-  if (const auto why = whyNotObeyed(*module, feed, true); !why.empty() && !obeyed && !interrupted())
+  if (const auto why = whyNotObeyed(*module, feed, true, refusal); !why.empty() && !obeyed && !interrupted())
     return complain({why}, ExitCode::kFailed);
   const auto motors = motorsOf(global, rc10d.welcome(), message.module.view());
   if (const auto there = feed.awaitState(); !there) return complain(there.error(), ExitCode::kFailed);

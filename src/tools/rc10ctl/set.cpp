@@ -17,6 +17,7 @@
 #include "client/find_motor.hpp"
 #include "drive.hpp"
 #include "link/words.hpp"
+#include "motor/solo_motor.hpp"
 #include "running_config.hpp"
 #include "verbs.hpp"
 
@@ -121,19 +122,36 @@ std::string whyDriveUnfit(Drive& order, const link::Welcome& welcome) {
 }
 
 // A current in milliamperes would act as the whole limit at once; empty, or the limit that it passes.
-std::string whyTooMuch(const Global& global, const Drive& order, const link::Welcome& welcome) {
-  if (order.setpoint.target.mode != ControlMode::kCurrent) return {};
+std::string whyTooMuch(const MotorConfig& motor, const MotorTraits& traits, double current_a) {
+  if (traits.effort != CommandUnit::kAmpere) return {};
+  const float limit_a = effortLimitOf(motor.settings, traits.effort_full_scale);
+  if (!(limit_a > 0.0F) || std::abs(current_a) <= static_cast<double>(limit_a)) return {};
+  std::ostringstream text;
+  text << current_a << " A is beyond the current_limit_a of " << motor.name() << ", " << limit_a
+       << " A: give amperes, " << limit_a << " at most";
+  return text.str();
+}
+
+// rc10d would refuse each command; empty, or the gains that the drive takes.
+std::string whyTooStiff(const MotorConfig& motor, const MotorTraits& traits, const Target& target) {
+  const auto range = springRangeOf(motor.settings, traits);
+  if (range.has(target.stiffness_nm_per_rad, target.damping_nms_per_rad)) return {};
+  std::ostringstream text;
+  text << "the drive of " << motor.name() << " takes --stiffness 0 to " << range.stiffness_nm_per_rad
+       << " (Nm/rad) and --damping 0 to " << range.damping_nms_per_rad << " (Nms/rad)";
+  return text.str();
+}
+
+// By the file with which the robot started; empty, or the range that the target leaves.
+std::string whyOutOfRange(const Global& global, const Drive& order, const link::Welcome& welcome) {
+  const Target& target = order.setpoint.target;
+  if (target.mode != ControlMode::kCurrent && target.mode != ControlMode::kImpedance) return {};
   const auto config = runningConfig(global, welcome);
   const auto* motor = config ? motorAt(*config, order.motor) : nullptr;
   if (motor == nullptr) return {};
   const MotorTraits traits = motor->traits();
-  if (traits.effort != CommandUnit::kAmpere) return {};
-  const float limit_a = effortLimitOf(motor->settings, traits.effort_full_scale);
-  if (!(limit_a > 0.0F) || std::abs(order.setpoint.target.value) <= static_cast<double>(limit_a)) return {};
-  std::ostringstream text;
-  text << order.setpoint.target.value << " A is beyond the current_limit_a of " << motor->name() << ", "
-       << limit_a << " A: give amperes, " << limit_a << " at most";
-  return text.str();
+  return target.mode == ControlMode::kCurrent ? whyTooMuch(*motor, traits, target.value)
+                                              : whyTooStiff(*motor, traits, target);
 }
 
 ExitCode set(const Global& global, const SetOptions& options) {
@@ -143,7 +161,7 @@ ExitCode set(const Global& global, const SetOptions& options) {
   if (!rc10d) return complain(rc10d.error(), ExitCode::kNoDaemon);
   if (const auto why = whyDriveUnfit(*order, rc10d->welcome()); !why.empty())
     return complain({why}, ExitCode::kFailed);
-  if (const auto why = whyTooMuch(global, *order, rc10d->welcome()); !why.empty())
+  if (const auto why = whyOutOfRange(global, *order, rc10d->welcome()); !why.empty())
     return complain({why}, ExitCode::kFailed);
   const auto done = drive(*rc10d, *order);
   if (order->then != Then::kDisable) return done;

@@ -103,6 +103,7 @@ TEST_F(AdmissionTest, RefusesANumberThatIsNoMode) {
 
 TEST_F(AdmissionTest, RefusesAModeThatTheMotorCannotDo) {
   EXPECT_EQ(admit(one(setpoint("left", kDuty))), CommandRefusal::kUnsupportedMode);
+  EXPECT_EQ(admission.choice(), "; it has current,velocity,angle");
   EXPECT_EQ(admit(one(setpoint("left", kBrake))), CommandRefusal::kUnsupportedMode);
   EXPECT_EQ(admit(one(setpoint("right", kBrake))), CommandRefusal::kNone);
 }
@@ -142,7 +143,7 @@ TEST_F(AdmissionTest, RefusesGainsThatTheDriveCannotTakeAndNamesItsRange) {
   message.setpoints[0].target.stiffness_nm_per_rad = 500.0F;
   message.setpoints[0].target.damping_nms_per_rad = 5.0F;
   EXPECT_EQ(admit(message), CommandRefusal::kNone);
-  EXPECT_EQ(admission.range(), "");
+  EXPECT_EQ(admission.choice(), "");
   for (const auto& [stiffness, damping] :
        {std::pair{1e6F, 0.5F}, {501.0F, 0.5F}, {20.0F, 5.1F}, {-1.0F, 0.5F}, {20.0F, -0.1F}}) {
     message = spring();
@@ -150,10 +151,10 @@ TEST_F(AdmissionTest, RefusesGainsThatTheDriveCannotTakeAndNamesItsRange) {
     message.setpoints[0].target.damping_nms_per_rad = damping;
     EXPECT_EQ(admit(message), CommandRefusal::kGainsBeyondDrive) << stiffness << ", " << damping;
     EXPECT_EQ(admission.culprit(), "arm: impedance");
-    EXPECT_EQ(admission.range(), ": 0 to 500 Nm/rad, 0 to 5 Nms/rad");
+    EXPECT_EQ(admission.choice(), ": 0 to 500 Nm/rad, 0 to 5 Nms/rad");
   }
-  EXPECT_EQ(admit(one(setpoint("left", kDuty))), CommandRefusal::kUnsupportedMode);
-  EXPECT_EQ(admission.range(), "") << "of the refusal before";
+  EXPECT_EQ(admit(one(setpoint("left", kVelocity, kNan))), CommandRefusal::kNotFinite);
+  EXPECT_EQ(admission.choice(), "") << "of the refusal before";
 }
 
 TEST_F(AdmissionTest, GainsOfADriveOfUnknownRangeAreNotJudged) {

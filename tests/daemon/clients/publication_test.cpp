@@ -318,6 +318,19 @@ TEST_F(PublicationTest, AnEventNamesItsSource) {
   EXPECT_EQ(source(EventCode::kForeignSender, 0), "chassis");
 }
 
+TEST_F(PublicationTest, AFirstStepThatIsTooFarIsToldWithItsBound) {
+  robot.motors[1].max_first_step_deg = 12.5;
+  const Event skipped{EventCode::kSetpointSkipped,
+                      Severity::kWarning,
+                      1,
+                      static_cast<std::int32_t>(SkipReason::kFirstStep),
+                      static_cast<std::int32_t>(ControlMode::kAngle),
+                      MonotonicTime{2s}};
+  EXPECT_EQ(publication.event(skipped, 1).text.view(),
+            "setpoint angle skipped: farther from where the motor is than max_first_step_deg; begin near the "
+            "measured angle: within 12.5 deg");
+}
+
 TEST_F(PublicationTest, AnEventOfAnInputNamesItsLine) {
   robot.estop_input = "gpiochip0:17";
   robot.mode_input = "gpiochip0:23";

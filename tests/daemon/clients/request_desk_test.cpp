@@ -15,6 +15,7 @@
 namespace rc10::test::request_desk_test {
 namespace {
 
+using namespace std::chrono_literals;
 using link::ResponseStatus;
 using ::testing::HasSubstr;
 
@@ -235,6 +236,38 @@ TEST_F(RequestDeskTest, EveryReasonHasWordsOfItsOwn) {
   }
   std::sort(seen.begin(), seen.end());
   EXPECT_EQ(std::unique(seen.begin(), seen.end()), seen.end());
+}
+
+TEST_F(RequestDeskTest, AReasonHasTheNumbersOfItsMotorAndStandsOnceForThoseThatShareThem) {
+  robot.motors[0].travel = robot.motors[2].travel = {-90.0, 200.0};
+  robot.motors[1].travel = {0.0, 45.5};
+  const auto outcome = begin(linkRequest(1, "enable"));
+  auto result = done(*outcome.order);
+  result.motors[0] = result.motors[1] = result.motors[2] = Refusal::kTurnUnclear;
+  const std::string text(desk.finish(result)->response.message.view());
+  EXPECT_THAT(text, HasSubstr("left, yaw: its turn is unclear: turn it by hand into its travel "
+                              "(-90 to 200 deg)"));
+  EXPECT_THAT(text, HasSubstr("right: its turn is unclear: turn it by hand into its travel (0 to 45.5 deg)"));
+}
+
+TEST_F(RequestDeskTest, ATravelWithOneEndIsToldByThatEnd) {
+  robot.motors[0].travel.max_deg = 100.0;
+  robot.motors[1].travel.min_deg = -20.0;
+  const auto outcome = begin(linkRequest(1, "enable"));
+  auto result = done(*outcome.order);
+  result.motors[0] = result.motors[1] = Refusal::kOutOfReach;
+  const std::string text(desk.finish(result)->response.message.view());
+  EXPECT_THAT(text, HasSubstr("left: with this zero part of its travel (up to 100 deg) would lie beyond"));
+  EXPECT_THAT(text, HasSubstr("right: with this zero part of its travel (from -20 deg) would lie beyond"));
+}
+
+TEST_F(RequestDeskTest, AMotorThatMayStillTurnIsWaitedForByItsOwnTime) {
+  robot.motors[0].run_down = 7s;
+  const auto outcome = begin(linkRequest(1, "clear"));
+  auto result = done(*outcome.order);
+  result.motors[0] = Refusal::kMayTurn;
+  EXPECT_THAT(std::string(desk.finish(result)->response.message.view()),
+              HasSubstr("left: no feedback, and it may still turn: wait until 7 s (run_down_s) after"));
 }
 
 TEST_F(RequestDeskTest, ReasonsOfMotorsThatWereNotAskedForDoNotCount) {
