@@ -38,13 +38,14 @@ inline constexpr OwnKey kTrackKey =
     lengthKey("track_m", "From the middle of the left wheels to that of the right ones.");
 inline constexpr OwnKey kWheelbaseKey =
     lengthKey("wheelbase_m", "From the axles in front to those at the rear.");
-inline constexpr OwnKey kWheelLimitKey{
-    .name = "wheel_limit_rpm",
-    .kind = OwnKey::Kind::kNumber,
-    .unit = "rpm",
-    .max = 100'000,
-    .above_min = true,
-    .about = "No wheel is told more; all slow down together. Default: the lowest limit of its motors."};
+inline constexpr OwnKey kWheelLimitKey{.name = "wheel_limit_rpm",
+                                       .kind = OwnKey::Kind::kNumber,
+                                       .unit = "rpm",
+                                       .max = 100'000,
+                                       .above_min = true,
+                                       .about =
+                                           "Bound of the velocity of each wheel; all slow down together. "
+                                           "Default: the lowest limit of its motors."};
 
 inline constexpr std::array kCornerKeys{
     motorKey("front_left", "Its motor."), motorKey("front_right", "Its motor."),

@@ -55,28 +55,28 @@ constexpr std::array kGimbalKeys{
                 "The sensor hangs upside down: its yaw and yaw rate count clockwise, seen from above."),
     reversedKey("imu_pitch_reversed",
                 "The sensor's pitch is positive where it looks down: its y axis points to the left."),
-    limitKey("pitch_min_deg", 90, "-20", "No lower does it look."),
-    limitKey("pitch_max_deg", 90, "30", "Nor higher."),
+    limitKey("pitch_min_deg", 90, "-20", "Lowest pitch that it looks at."),
+    limitKey("pitch_max_deg", 90, "30", "Highest pitch that it looks at."),
     OwnKey{.name = "gain_per_s",
            .kind = kNumber,
            .unit = "1/s",
            .max = 100,
            .above_min = true,
            .default_text = "10",
-           .about = "Of both axes: deg/s for each degree that is missing."},
+           .about = "Gain of both axes: deg/s for each degree of error."},
     OwnKey{.name = "velocity_limit_rpm",
            .kind = kNumber,
            .unit = "rpm",
            .max = 1000,
            .above_min = true,
            .default_text = "60",
-           .about = "No axis is told more."},
+           .about = "Bound of the velocity of each axis."},
     OwnKey{.name = "silence_max_s",
            .kind = kNumber,
            .unit = "s",
            .max = 3600,
            .default_text = "10",
-           .about = "So long it holds its direction when nobody commands it; then its motors do their "
+           .about = "Time for which it holds its direction when nobody commands it; then its motors do their "
                     "on_timeout."}};
 
 ModuleSignals gimbalSignals() {

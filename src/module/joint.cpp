@@ -33,14 +33,14 @@ constexpr std::array kJointKeys{
            .max = 1e6,
            .above_min = true,
            .required = true,
-           .about = "No move is faster."},
+           .about = "Highest velocity of a move."},
     OwnKey{.name = "max_acceleration_deg_s2",
            .kind = kNumber,
            .unit = "deg/s^2",
            .max = 1e7,
            .above_min = true,
            .required = true,
-           .about = "Nor gets faster or slower than this."},
+           .about = "Highest acceleration and deceleration of a move."},
     OwnKey{.name = "max_jerk_deg_s3",
            .kind = kNumber,
            .unit = "deg/s^3",
@@ -60,7 +60,7 @@ constexpr std::array kJointKeys{
            .min = 1,
            .max = 60'000,
            .default_text = "1000",
-           .about = "A move that is not done so long after its profile has ended has failed."},
+           .about = "A move that is not done within this time after the end of its profile has failed."},
     OwnKey{.name = "homing",
            .kind = kChoice,
            .choices = kHomings,
@@ -87,15 +87,15 @@ constexpr std::array kJointKeys{
            .max = 1000,
            .above_min = true,
            .default_text = "1",
-           .about = "The most that pushes while it homes; near the homing velocity it goes to 0."},
+           .about = "Highest current while it homes; it goes to 0 near the homing velocity."},
     OwnKey{.name = "homing_away_deg",
            .kind = kNumber,
            .unit = "deg",
            .max = 3600,
            .above_min = true,
            .default_text = "5",
-           .about = "So far it goes away from the end first, which shows that it moves at all, and between "
-                    "the two meetings with a stop."},
+           .about = "Distance that it moves away from the end: first, which shows that it moves at all, and "
+                    "again between the two meetings with a stop."},
     OwnKey{.name = "homing_tolerance_deg",
            .kind = kNumber,
            .unit = "deg",
@@ -110,7 +110,7 @@ constexpr std::array kJointKeys{
            .min = 20,
            .max = 10'000,
            .default_text = "200",
-           .about = "Standing still for so long is the stop."},
+           .about = "Standing still for this time is the stop."},
     OwnKey{.name = "homing_timeout_s",
            .kind = kNumber,
            .unit = "s",
@@ -136,8 +136,8 @@ constexpr std::array kJointKeys{
            .unit = "s",
            .max = 86'400,
            .default_text = "60",
-           .about = "For on_silence: hold: when no client of the robot at all has been heard for so long, "
-                    "it holds no longer; its motor does its on_timeout."}};
+           .about = "For on_silence: hold: when no client of the robot at all has been heard for this time, "
+                    "it ends holding, and its motor does its on_timeout."}};
 
 ModuleSignals jointSignals() {
   return {

@@ -41,7 +41,7 @@ constexpr std::array<OwnKey, 4> effectKeys(std::string_view pattern, std::string
       OwnKey{.name = "second_colour",
              .kind = kText,
              .default_text = second_colour,
-             .about = "The other one of blink, breathe and run.",
+             .about = "Second colour of blink, breathe and run.",
              .pattern = kColourPattern,
              .words = kColourWords},
       OwnKey{.name = "period_ms",
@@ -50,7 +50,7 @@ constexpr std::array<OwnKey, 4> effectKeys(std::string_view pattern, std::string
              .min = 100,
              .max = 60'000,
              .default_text = period_ms,
-             .about = "Of blink, breathe and run."}};
+             .about = "Period of blink, breathe and run."}};
 }
 
 // More than three flashes a second may harm people with epilepsy (WCAG 2.1, 2.3.1): 400 ms is 2.5 of them.
@@ -84,21 +84,20 @@ constexpr std::array kLedStripKeys{
            .unit = "Hz",
            .choices = kSpeeds,
            .default_text = "3200000",
-           .about =
-               "Of the SPI bus. 3200000 suits every WS2812B; 2400000 needs a quarter less bytes, for longer "
-               "strips of the older chips."},
+           .about = "Clock of the SPI bus. 3200000 suits every WS2812B; 2400000 needs a quarter fewer bytes, "
+                    "for longer strips of the older chips."},
     OwnKey{.name = "brightness_limit",
            .kind = kNumber,
            .max = 1,
            .above_min = true,
            .default_text = "0.25",
-           .about = "Nothing is brighter. A pixel takes up to 60 mA at 5 V when it is white and at 1."},
-    OwnKey{
-        .name = "status_pixels",
-        .kind = kInteger,
-        .max = 1000,
-        .default_text = "0",
-        .about = "So many pixels from the beginning show the state of the robot, whatever the inputs say."},
+           .about = "Highest brightness. A pixel takes up to 60 mA at 5 V when it is white and at 1."},
+    OwnKey{.name = "status_pixels",
+           .kind = kInteger,
+           .max = 1000,
+           .default_text = "0",
+           .about =
+               "Number of pixels, from the first, that show the state of the robot whatever the inputs say."},
     OwnKey{.name = "estop", .kind = kSection, .about = "Shown in an e-stop.", .keys = kEstopKeys},
     OwnKey{
         .name = "fault", .kind = kSection, .about = "Shown while a motor has a fault.", .keys = kFaultKeys},

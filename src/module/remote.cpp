@@ -68,22 +68,23 @@ constexpr std::array kRemoteKeys{
            .kind = kChoice,
            .choices = kRemoteProtocols,
            .required = true,
-           .about = "Of the receiver: dbus (DJI DR16, 100000 8E1) or sbus (100000 8E2). Both need an "
-                    "inverter before an ordinary UART."},
+           .about =
+               "Protocol of the receiver: dbus (DJI DR16, 100000 8E1) or sbus (100000 8E2). Both need an "
+               "inverter before an ordinary UART."},
     OwnKey{.name = "lost_ms",
            .kind = kInteger,
            .unit = "ms",
            .min = 20,
            .max = 5000,
            .default_text = "100",
-           .about = "Without a frame for so long, or when the receiver says so, the remote is lost: it "
-                    "commands nothing."},
+           .about = "Without a frame for this time, or as soon as the receiver says so, the remote is lost: "
+                    "it commands nothing."},
     OwnKey{.name = "disable_s",
            .kind = kNumber,
            .unit = "s",
            .max = 3600,
            .default_text = "1",
-           .about = "Lost for so long, every motor is disabled."},
+           .about = "Time after a loss at which every motor is disabled."},
     OwnKey{.name = "arm_channel",
            .kind = kText,
            .about = "The switch that enables the robot when it goes up, and disables it when it goes "

@@ -22,7 +22,7 @@ constexpr std::array kPairKeys{
         .max = 3600,
         .above_min = true,
         .default_text = "10",
-        .about = "Farther apart than this the pair rests, until both were disabled and are enabled again."},
+        .about = "Beyond this difference the pair rests, until both have been disabled and enabled again."},
     OwnKey{.name = "correction_rpm_per_deg",
            .kind = kNumber,
            .unit = "rpm/deg",
@@ -36,7 +36,7 @@ constexpr std::array kPairKeys{
            .max = 100'000,
            .above_min = true,
            .required = true,
-           .about = "No velocity target is higher."}};
+           .about = "Bound of velocity targets."}};
 
 ModuleSignals pairSignals() {
   return {

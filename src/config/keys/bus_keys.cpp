@@ -16,7 +16,8 @@ constexpr std::array kBusSimKeys{Key{
     .kind = kInteger,
     .range = {.min = 0, .max = 4'294'967'295.0},
     .default_text = "1",
-    .about = "Of the random numbers of the simulation (noise, lost frames). The same seed, the same run."}};
+    .about =
+        "Seed of the random numbers of the simulation (noise, lost frames). The same seed, the same run."}};
 
 constexpr Section kBusSim{"bus_sim", kBusSimKeys,
                           "How the bus is simulated, by rc10d (type: sim) or rc10-sim."};
@@ -73,9 +74,9 @@ constexpr std::array kBusKeys{
         .kind = kInteger,
         .range = {.min = 0, .max = 16},
         .default_text = "3",
-        .about =
-            "So many frames within foreign_ms from somebody else that command one of our drives are a fault "
-            "of each motor that obeys them; questions and rest frames do not count. 0: they are only told."},
+        .about = "This number of frames within foreign_ms from somebody else that command one of our drives "
+                 "is a fault of each motor that obeys them; questions and rest frames do not count. 0: they "
+                 "are only told."},
     Key{.name = "foreign_ms",
         .kind = kInteger,
         .unit = "ms",

@@ -54,8 +54,8 @@ constexpr std::array kHeartbeatKeys{
         .unit = "ms",
         .range = {.min = 0, .max = 600'000},
         .about =
-            "So long after the beginning of an e-stop it stops, and the relay takes the motors' power; "
-            "longer than what on_estop needs to brake them. It toggles again when the e-stop is cleared. "
+            "Time after the beginning of an e-stop at which it stops, and the relay cuts the motors' power; "
+            "longer than on_estop needs to brake them. It toggles again when the e-stop is cleared. "
             "Without it it never stops for that."}};
 
 }  // namespace

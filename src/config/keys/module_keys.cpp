@@ -29,7 +29,8 @@ constexpr std::array kCommonKeys{
         .kind = kInteger,
         .range = {.min = -1000, .max = 1000},
         .default_text = "0",
-        .about = "Of its targets for motors, and of what it sends to other modules, against other clients."}};
+        .about = "Priority, against other clients, of its targets for motors and of what it sends to other "
+                 "modules."}};
 
 /// The tables of one type of module, made of its keys.
 class TypeTables {

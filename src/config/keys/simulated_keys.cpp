@@ -123,8 +123,9 @@ constexpr std::array kOthers{
         .kind = kNumber,
         .unit = "s",
         .range = {.min = 0, .max = 100'000, .above_min = true},
-        .about = "So often the load is as at the start again and the changes begin anew; above the last "
-                 "after_s. Default: once."}};
+        .about =
+            "Period after which the load is as at the start again and the changes begin anew; above the last "
+            "after_s. Default: once."}};
 
 constexpr auto simulatedKeys() {
   std::array<Key, kFigures.size() + kOthers.size()> keys{};

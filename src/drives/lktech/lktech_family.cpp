@@ -29,7 +29,7 @@ constexpr std::array<OwnKey, 3> kLktechKeys{{
      .min = 14,
      .max = 16,
      .default_text = "16",
-     .about = "Of the encoder value in answers; 16 also for encoders of 18 bits."},
+     .about = "Bits of the encoder value in answers; 16 also for encoders of 18 bits."},
 }};
 
 constexpr DriveFrames kLktechFrames{.rest = Provision::kFrame,

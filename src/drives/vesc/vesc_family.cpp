@@ -106,7 +106,7 @@ constexpr std::array<OwnKey, 14> kVescKeys{
            .max = 200,
            .above_min = true,
            .default_text = "24",
-           .about = "Of the battery: with kv_rpm_per_v it gives the no-load speed."},
+           .about = "Voltage of the battery: with kv_rpm_per_v it gives the no-load speed."},
     OwnKey{.name = "temperature",
            .kind = Kind::kChoice,
            .choices = kTemperatures,
