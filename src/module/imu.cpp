@@ -9,6 +9,7 @@
 #include "app/units.hpp"
 #include "module/hipnuc_protocol.hpp"
 #include "module/serial_keys.hpp"
+#include "module/silence.hpp"
 #include "module/witmotion_protocol.hpp"
 
 namespace rc10 {
@@ -98,17 +99,9 @@ class Imu : public Module_Base {
     const Duration age = protocol_ != nullptr ? readStream(values, tick) : readInputs(values);
     values[kYaw] = wrapHalfTurn(values[kYaw] + yaw_offset_deg_);
     const bool fresh = age <= max_age_;
-    if (fresh) {
-      if (silent_) robot.report(kBack);
-      silent_ = false;
-      heard_ = true;
-    } else if (heard_ && !silent_) {
-      silent_ = true;
-      robot.report(kSilent);
-    }
+    silence_.watch(fresh, robot);
     for (std::size_t i = 0; i < kAxes; ++i) setOutput(i, fresh ? values[i] : kNoSignal);
-    setOutput(kAgeMs,
-              age == Duration::max() ? kNoSignal : std::chrono::duration<double, std::milli>(age).count());
+    setAge(kAgeMs, age);
   }
 
  private:
@@ -152,8 +145,7 @@ class Imu : public Module_Base {
   double yaw_offset_deg_;
   std::unique_ptr<ImuProtocol> owned_;
   const ImuProtocol* protocol_;  ///< Null: the inputs.
-  bool heard_ = false;
-  bool silent_ = false;
+  Silence silence_{kSilent, kBack};
 };
 
 class ImuType : public ModuleType {

@@ -1,10 +1,12 @@
 #pragma once
 
+#include <chrono>
 #include <cstddef>
 #include <cstdint>
 #include <limits>
 #include <memory>
 #include <optional>
+#include <ratio>
 #include <span>
 #include <string>
 #include <string_view>
@@ -94,6 +96,11 @@ class Module_Base {
   /// Whether somebody commands this module now.
   [[nodiscard]] bool commanded() const noexcept { return commanded_; }
   void setOutput(std::size_t index, double value) noexcept { outputs_[index] = value; }
+  /// In ms. Duration::max(): never heard, no signal.
+  void setAge(std::size_t index, Duration age) noexcept {
+    setOutput(index,
+              age == Duration::max() ? kNoSignal : std::chrono::duration<double, std::milli>(age).count());
+  }
 
  private:
   ModuleSignals signals_;

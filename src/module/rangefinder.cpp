@@ -49,8 +49,7 @@ class Rangefinder : public Module_Base {
     setOutput(kDistance,
               fresh && range.value.valid ? static_cast<double>(range.value.distance_m) : kNoSignal);
     setOutput(kStrength, fresh ? static_cast<double>(range.value.strength) : kNoSignal);
-    setOutput(kAgeMs,
-              age == Duration::max() ? kNoSignal : std::chrono::duration<double, std::milli>(age).count());
+    setAge(kAgeMs, age);
   }
 
  private:

@@ -257,8 +257,7 @@ class Remote : public Module_Base {
   void show(bool heard, Duration age) noexcept {
     setOutput(kConnected, heard ? 1.0 : 0.0);
     setOutput(kArmed, armed_ ? 1.0 : 0.0);
-    setOutput(kAgeMs,
-              age == Duration::max() ? kNoSignal : std::chrono::duration<double, std::milli>(age).count());
+    setAge(kAgeMs, age);
     for (std::size_t i = 0; i < values_.size(); ++i)
       setOutput(kFirstChannel + i, heard ? values_[i] : kNoSignal);
   }

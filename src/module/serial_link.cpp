@@ -10,6 +10,7 @@
 #include "module/link_codec.hpp"
 #include "module/modbus_rtu.hpp"
 #include "module/serial_link_keys.hpp"
+#include "module/silence.hpp"
 
 namespace rc10 {
 namespace {
@@ -156,17 +157,8 @@ class SerialLink : public Module_Base {
       oldest = std::max(oldest, age);
       fresh = fresh && age <= max_age_;
     }
-    const bool known = !readings.empty() && oldest != Duration::max();
-    setOutput(readings.size() + sent_.size() + 1,
-              known ? std::chrono::duration<double, std::milli>(oldest).count() : kNoSignal);
-    if (fresh) {
-      if (silent_) robot.report(kBack);
-      silent_ = false;
-      heard_ = true;
-    } else if (heard_ && !silent_) {
-      silent_ = true;
-      robot.report(kSilent);
-    }
+    setAge(readings.size() + sent_.size() + 1, readings.empty() ? Duration::max() : oldest);
+    silence_.watch(fresh, robot);
   }
 
   std::string path_;
@@ -180,8 +172,7 @@ class SerialLink : public Module_Base {
   std::uint64_t skipped_ = 0;   ///< Rounds that the line had no room for.
   SerialDevice* device_ = nullptr;
   MonotonicTime next_{};
-  bool heard_ = false;
-  bool silent_ = false;
+  Silence silence_{kSilent, kBack};
   bool told_ = false;
   bool was_open_ = false;
   std::optional<MonotonicTime> last_tick_;

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING
 import can
 
 from rc10.fakes.fake import EXTENDED
+from rc10.fakes.pieces import pieces
 from rc10.fakes.servo import ReplyAddress
 from rc10.spelling import not_one_of
 
@@ -336,14 +337,12 @@ class FakeCubeMars:
 
     def step(self, dt_s: float) -> None:
         """Lets `dt_s` seconds pass."""
-        if not dt_s > 0:
-            raise ValueError(f"dt_s = {dt_s} must be positive")
+        parts_s = pieces(dt_s, _MAX_STEP_S)
         self._age_s += dt_s
         if self._timeout_s is not None and self._age_s > self._timeout_s:
             self._mode = None
-        pieces = math.ceil(dt_s / _MAX_STEP_S - 1e-9)
-        for _ in range(pieces):
-            self._step(dt_s / pieces)
+        for part_s in parts_s:
+            self._step(part_s)
         self._due_in_s -= dt_s
 
     def _step(self, dt_s: float) -> None:

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 import can
 
 from rc10.fakes.damiao_model import MODELS
+from rc10.fakes.pieces import pieces
 from rc10.spelling import not_one_of
 
 if TYPE_CHECKING:
@@ -446,15 +447,13 @@ class FakeDamiao:
 
     def step(self, dt_s: float) -> None:
         """Lets `dt_s` seconds pass."""
-        if not dt_s > 0:
-            raise ValueError(f"dt_s = {dt_s} must be positive")
+        parts_s = pieces(dt_s, _MAX_STEP_S)
         self._silence_s += dt_s
         timeout_s = self.registers[Register.TIMEOUT] * _TIMEOUT_STEP_S
         if self.status == ENABLED and 0 < timeout_s < self._silence_s:
             self.fail(COMMUNICATION_LOST)
-        pieces = math.ceil(dt_s / _MAX_STEP_S - 1e-9)
-        for _ in range(pieces):
-            self._step(dt_s / pieces)
+        for part_s in parts_s:
+            self._step(part_s)
 
     def _mit_nm(self) -> float:
         target = self.target

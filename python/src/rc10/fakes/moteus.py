@@ -21,6 +21,7 @@ from rc10.fakes.moteus_frames import (
     parse,
     reply,
 )
+from rc10.fakes.pieces import pieces
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -354,11 +355,8 @@ class FakeMoteus:
 
     def step(self, dt_s: float) -> None:
         """Lets `dt_s` seconds pass."""
-        if not dt_s > 0:
-            raise ValueError(f"dt_s = {dt_s} must be positive")
-        pieces = math.ceil(dt_s / _MAX_STEP_S - 1e-9)
-        for _ in range(pieces):
-            self._step(dt_s / pieces)
+        for part_s in pieces(dt_s, _MAX_STEP_S):
+            self._step(part_s)
 
     def _step(self, dt_s: float) -> None:
         self._clock_s += dt_s

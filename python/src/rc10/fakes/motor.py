@@ -10,6 +10,7 @@ import can
 
 from rc10.fakes.address import CommandKind, MotorSpec
 from rc10.fakes.models import GM6020_VOLTAGE_SCALE_RAW, SUPPLY_V
+from rc10.fakes.pieces import pieces
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -131,15 +132,13 @@ class FakeMotor:
 
     def step(self, dt_s: float) -> None:
         """Lets `dt_s` seconds pass."""
-        if not dt_s > 0:
-            raise ValueError(f"dt_s = {dt_s} must be positive")
+        parts_s = pieces(dt_s, _MAX_STEP_S)
         self._command_age_s += dt_s
         timeout_s = self._command_timeout_s
         if timeout_s is not None and self._command_age_s > timeout_s:
             self._command_raw = 0
-        pieces = math.ceil(dt_s / _MAX_STEP_S - 1e-9)
-        for _ in range(pieces):
-            self._step(dt_s / pieces)
+        for part_s in parts_s:
+            self._step(part_s)
 
     def _step(self, dt_s: float) -> None:
         model = self.spec.model

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 
 import can
 
+from rc10.fakes.pieces import pieces
 from rc10.spelling import not_one_of
 
 if TYPE_CHECKING:
@@ -327,15 +328,13 @@ class FakeOdrive:
 
     def step(self, dt_s: float) -> None:
         """Lets `dt_s` seconds pass."""
-        if not dt_s > 0:
-            raise ValueError(f"dt_s = {dt_s} must be positive")
+        parts_s = pieces(dt_s, _MAX_STEP_S)
         self._since_heartbeat_s += dt_s
         self._unfed_s += dt_s
         if self._watchdog_s is not None and self._unfed_s > self._watchdog_s:
             self.disarm(self.generation.watchdog)
-        pieces = math.ceil(dt_s / _MAX_STEP_S - 1e-9)
-        for _ in range(pieces):
-            self._step(dt_s / pieces)
+        for part_s in parts_s:
+            self._step(part_s)
 
     def _wanted_nm(self, dt_s: float) -> float:
         if self.axis_state != CLOSED_LOOP:

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 import can
 
 from rc10.fakes.fake import EXTENDED
+from rc10.fakes.pieces import pieces
 from rc10.fakes.servo import ModelAtId, ReplyAddress
 
 if TYPE_CHECKING:
@@ -392,15 +393,13 @@ class FakeRobStride:
 
     def step(self, dt_s: float) -> None:
         """Lets `dt_s` seconds pass."""
-        if not dt_s > 0:
-            raise ValueError(f"dt_s = {dt_s} must be positive")
+        parts_s = pieces(dt_s, _MAX_STEP_S)
         self._silence_s += dt_s
         timeout = self._parameters[self.model.timeout_index] / _TIMEOUT_COUNTS_PER_S
         if timeout and self._silence_s > timeout:
             self.enabled = False
-        pieces = math.ceil(dt_s / _MAX_STEP_S - 1e-9)
-        for _ in range(pieces):
-            self._step(dt_s / pieces)
+        for part_s in parts_s:
+            self._step(part_s)
 
     def _step(self, dt_s: float) -> None:
         wanted_nm = self._wanted_nm(dt_s) if self.enabled else 0.0

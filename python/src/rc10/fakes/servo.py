@@ -6,6 +6,7 @@ import math
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, ClassVar, Generic, Protocol, TypeVar
 
+from rc10.fakes.pieces import pieces
 from rc10.spelling import not_one_of
 
 if TYPE_CHECKING:
@@ -73,11 +74,8 @@ class Servo:
 
     def step(self, dt_s: float) -> None:
         """Lets `dt_s` seconds pass."""
-        if not dt_s > 0:
-            raise ValueError(f"dt_s = {dt_s} must be positive")
-        pieces = math.ceil(dt_s / _MAX_STEP_S - 1e-9)
-        for _ in range(pieces):
-            self._step(dt_s / pieces)
+        for part_s in pieces(dt_s, _MAX_STEP_S):
+            self._step(part_s)
 
     def _step(self, dt_s: float) -> None:
         wanted = self._wanted_nm(dt_s)

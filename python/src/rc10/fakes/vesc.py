@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 import can
 
 from rc10.fakes.fake import EXTENDED
+from rc10.fakes.pieces import pieces
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -242,8 +243,7 @@ class FakeVesc:
 
     def step(self, dt_s: float) -> None:
         """Lets `dt_s` seconds pass."""
-        if not dt_s > 0:
-            raise ValueError(f"dt_s = {dt_s} must be positive")
+        parts_s = pieces(dt_s, _MAX_STEP_S)
         self._age_s += dt_s
         self._fault_left_s = max(0.0, self._fault_left_s - dt_s)
         if self._fault_left_s == 0:
@@ -252,9 +252,8 @@ class FakeVesc:
             self._packet, self._value = SET_CURRENT, 0.0
         if self.timed_out:
             self._packet, self._value = SET_CURRENT, 0.0
-        pieces = math.ceil(dt_s / _MAX_STEP_S - 1e-9)
-        for _ in range(pieces):
-            self._step(dt_s / pieces)
+        for part_s in parts_s:
+            self._step(part_s)
         self._tell(dt_s)
 
     def _wanted_a(self, dt_s: float) -> float:
