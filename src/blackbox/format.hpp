@@ -120,7 +120,7 @@ inline constexpr std::uint8_t kNoSource = 0xFF;
 // Frame::header.flags; the lowest four bits are the length code (DLC).
 inline constexpr std::uint8_t kFrameFd = 1U << 4U;
 inline constexpr std::uint8_t kFrameBitRateSwitch = 1U << 5U;
-inline constexpr std::uint8_t kFrameSent = 1U << 6U;     ///< Else received.
+inline constexpr std::uint8_t kFrameSent = 1U << 6U;     ///< Clear: received.
 inline constexpr std::uint8_t kFrameRefused = 1U << 7U;  ///< The kernel did not take it.
 // Frame::header.id, as in SocketCAN's can_id.
 inline constexpr std::uint32_t kIdExtended = 1U << 31U;

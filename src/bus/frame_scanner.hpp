@@ -12,7 +12,7 @@ namespace rc10 {
 
 /// Verdict of a protocol on the next bytes.
 enum class ScanVerdict : std::uint8_t {
-  kMore,         ///< So far the beginning of a frame.
+  kMore,         ///< The beginning of a frame: more bytes are needed.
   kFrame,        ///< A frame, which the protocol has taken: as long as what it was shown.
   kSkip,         ///< A whole frame that does not count; all of it is noise.
   kNoise,        ///< No frame begins at the first byte.

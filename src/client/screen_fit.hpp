@@ -15,7 +15,7 @@ struct ScreenSize {
 /// Whole lines, some of which may be left out.
 struct Picture {
   std::string text;
-  std::size_t motors = 0;  ///< So many lines at the end of `text` are motors, one each.
+  std::size_t motors = 0;  ///< Lines at the end of `text` that are motors, one each.
   std::string modules;     ///< Lines that make room first.
   std::string below;
 };

@@ -49,7 +49,7 @@ struct MotorConfig {
 /// Frames of others that command our drives, for the motors of one bus.
 struct ForeignLimit {
   static constexpr int kMost = 16;
-  int frames = 3;  ///< So many within the time are a fault; 0: they are only told.
+  int frames = 3;  ///< This number within the time is a fault; 0: they are only told.
   Duration within{std::chrono::milliseconds{100}};
 };
 

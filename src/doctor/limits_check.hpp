@@ -12,7 +12,7 @@ namespace rc10::doctor {
 struct LimitFacts {
   static constexpr long long kUnlimited = -1;
 
-  std::string process = "self";  ///< Or a pid.
+  std::string process = "self";  ///< "self", or a process number.
   std::optional<long long> realtime_priority;
   std::optional<long long> locked_bytes;  ///< kUnlimited or a number.
   bool may_anyway = false;                ///< It has the capabilities that make these limits meaningless.

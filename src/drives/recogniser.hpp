@@ -13,8 +13,8 @@ namespace rc10 {
 struct DriveGuess {
   std::string_view kind;   ///< "VESC", "DJI GM6020"
   int id = 0;              ///< The drive's, as in the configuration.
-  bool from_drive = true;  ///< Else another controller commands such drives; `id` is 0 if it means several.
-  float most_hz = 0.0F;    ///< Frames that come oftener are none of this kind; 0: they come at any rate.
+  bool from_drive = true;  ///< false: another controller commands such drives; `id` is 0 if it means several.
+  float most_hz = 0.0F;    ///< Frames at a higher rate are of another kind; 0: they come at any rate.
   /// Advice about a drive of which nothing but such frames is heard: they answer a question. Empty: it sends
   /// them unasked.
   std::string_view silent{};

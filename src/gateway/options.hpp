@@ -11,7 +11,7 @@ namespace rc10::gateway {
 struct Options {
   std::optional<std::string> robot;
   std::optional<std::string> socket;
-  std::optional<std::string> url;  ///< Else the one that rc10d tells.
+  std::optional<std::string> url;  ///< Empty: the one that rc10d tells.
   bool help = false;
   bool version = false;
 };

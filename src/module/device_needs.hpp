@@ -16,7 +16,7 @@ inline constexpr std::size_t kMaxSpiBytes = 4096;
 /// SPI transfer of a module. Plain memory of the scheduler thread: the module writes, and the
 /// daemon hands it to the thread that sends. Of frames that come too fast only the newest is sent.
 struct SpiOutput {
-  std::uint32_t frames = 0;  ///< So many so far: one more is a new frame.
+  std::uint32_t frames = 0;  ///< Count of frames: one more is a new frame.
   std::size_t size = 0;
   std::array<std::uint8_t, kMaxSpiBytes> bytes{};
   bool open = false;  ///< The device is there. Written by the daemon.

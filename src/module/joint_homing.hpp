@@ -20,8 +20,8 @@ class JointHoming {
   struct Config {
     Way way = Way::kStop;
     double velocity_rpm = 0.0;   ///< Towards the end; its sign says where that is.
-    double current_a = 0.0;      ///< The most that pushes.
-    double away_deg = 0.0;       ///< So far it goes away first, and between the two meetings.
+    double current_a = 0.0;      ///< Bound of the current.
+    double away_deg = 0.0;       ///< Distance that it moves away: first, and between the two meetings.
     double tolerance_deg = 1.0;  ///< Between the two meetings with the stop.
     /// From the end to the far soft limit; infinite: not known.
     double travel_deg = std::numeric_limits<double>::infinity();
@@ -33,7 +33,7 @@ class JointHoming {
     double velocity_rpm = 0.0;
     double current_a = 0.0;  ///< NaN: the drive does not tell.
     bool at_switch = false;
-    bool switch_heard = true;  ///< Else the end would be run over.
+    bool switch_heard = true;  ///< Homing ends without it: the axis would run over the end.
     MonotonicTime now;
   };
   enum class Progress : std::uint8_t {

@@ -12,7 +12,7 @@ constexpr double kDownPerS = 20.0;
 constexpr double kUpPerS = 2.0;
 // Rate of the factor towards the power's forecast: motors follow what they are told in a few milliseconds.
 constexpr double kPredictSeconds = 0.005;
-// So far ahead the power is predicted from how it grows.
+// Horizon of the forecast of the power, from its growth.
 constexpr double kAheadSeconds = 0.01;
 
 }  // namespace

@@ -15,8 +15,8 @@ namespace {
 
 using enum OwnKey::Kind;
 
-// So long after the arm switch motors are cleared and enabled as they become ready; what fails later stays
-// down until the driver uses the switch again.
+// Time after the arm switch in which motors are cleared and enabled as they become ready; what fails later
+// stays down until the driver uses the switch again.
 constexpr Duration kArming = std::chrono::seconds{3};
 // A motor that could not be enabled is tried again.
 constexpr Duration kArmingRetry = std::chrono::milliseconds{200};

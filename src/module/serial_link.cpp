@@ -168,7 +168,7 @@ class SerialLink : public Module_Base {
   std::unique_ptr<LinkCodec> codec_;
   std::vector<LinkOutput> sent_;
   std::vector<double> values_;  ///< Values in this tick.
-  std::vector<double> before_;  ///< And as they were sent last.
+  std::vector<double> before_;  ///< Values as they were sent last.
   std::uint64_t skipped_ = 0;   ///< Rounds that the line had no room for.
   SerialDevice* device_ = nullptr;
   MonotonicTime next_{};

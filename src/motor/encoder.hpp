@@ -92,8 +92,8 @@ class Encoder {
 
   Config config_;
   double turns_per_count_;
-  double error_per_ns2_;  ///< Turns: of the acceleration,
-  double error_per_ns_;   ///< and of the reported speed.
+  double error_per_ns2_;  ///< Error of the acceleration, in turns.
+  double error_per_ns_;   ///< Error of the reported speed, in turns.
   Duration longest_gap_{};
   std::uint64_t losses_ = 0;
   std::uint64_t jumps_ = 0;

@@ -13,7 +13,7 @@ inline namespace robot_client {
 /// Goal of one moveTo().
 struct MoveGoal {
   std::string motor;
-  Mode mode = Mode::kTotalAngle;  ///< Or kAngle.
+  Mode mode = Mode::kTotalAngle;  ///< kTotalAngle or kAngle.
   double target_deg = 0.0;
   double tolerance_deg = 1.0;
   Duration timeout{};

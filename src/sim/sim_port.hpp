@@ -41,9 +41,10 @@ class SimPort {
     std::uint64_t commands = 0;   ///< Frames read.
     std::uint64_t malformed = 0;  ///< Messages read that are no frames.
     std::uint64_t sent = 0;       ///< Feedback frames the kernel took.
-    std::uint64_t refused = 0;    ///< And those it did not take: the reader is late, or the interface down.
-    Duration skipped{};           ///< Time that was not simulated.
-    int error = 0;                ///< errno of the last read that failed; 0 since one succeeded.
+    std::uint64_t refused =
+        0;               ///< Feedback frames it did not take: the reader is late, or the interface down.
+    Duration skipped{};  ///< Time that was not simulated.
+    int error = 0;       ///< errno of the last read that failed; 0 since one succeeded.
   };
 
   /// Two connected descriptors, one message a frame, both non-blocking and with the kernel's receive stamps,

@@ -79,7 +79,7 @@ class WholeLoopAllocationTest : public ::testing::Test {
 
 TEST_F(WholeLoopAllocationTest, TwoThousandTicksAllocateNothing) {
   EXPECT_EQ(run(false), 0U);
-  // And it was the whole loop: frames came in, motors acted, frames went out.
+  // It was the whole loop: frames came in, motors acted, frames went out.
   const auto& snapshot = exchange.snapshot.read();
   EXPECT_GE(snapshot.buses[0].counters.rx_frames, 6000U);
   EXPECT_GE(snapshot.buses[0].counters.tx_frames, 4000U);
@@ -89,7 +89,7 @@ TEST_F(WholeLoopAllocationTest, TwoThousandTicksAllocateNothing) {
   EXPECT_EQ(snapshot.motors[2].target.mode, ControlMode::kAngle);
   EXPECT_GT(snapshot.missed_ticks, 0U);
   EXPECT_EQ(gainOf(*robot->motors()[2].motor->hostLoops(), LoopGain::kAngleKp), 3.5F);
-  // And all of it was recorded.
+  // All of it was recorded.
   const auto recording = box.recording();
   EXPECT_GE(all<blackbox::Frame>(recording).size(), 6000U);
   EXPECT_GE(all<blackbox::Setpoint>(recording).size(), 4000U);

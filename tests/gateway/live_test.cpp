@@ -72,7 +72,7 @@ TEST(LiveGateway, CommandsThatWaitedWhileItWasStoppedKeepTheirAge) {
       EXPECT_GE(command.received_ns, before - kPlay_ns);
       EXPECT_LE(command.received_ns, after + kPlay_ns);
     }
-    // And the next is fresh again.
+    // The next is fresh again.
     const auto later = nowNs();
     client.command(4);
     link::Command command;

@@ -16,7 +16,7 @@ namespace {
 using namespace std::chrono_literals;
 using Verdict = SpeedScaleCheck::Verdict;
 
-/// So long at a steady speed, a sample each millisecond.
+/// A steady speed for this time, with a sample each millisecond.
 void turn(SpeedScaleCheck& check, MonotonicTime& now, double& angle_deg, double rpm, double reported_rpm,
           Duration duration) {
   for (const auto end = now + duration; now < end; now += 1ms) {

@@ -18,7 +18,7 @@ namespace rc10 {
 inline namespace robot_client {
 namespace test {
 
-/// So long a test waits for what has to happen. Nothing waits this long when all is well.
+/// Bound of a test's wait for what has to happen. Nothing waits this long when all is well.
 inline constexpr auto kPatience = std::chrono::seconds{20};
 
 /// rc10d as a client sees it, on the client's own memq link: it answers requests, takes commands, and

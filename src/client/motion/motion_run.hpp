@@ -24,8 +24,8 @@ struct MotionSettings {
   ControlMode mode = ControlMode::kVelocity;
   ExcitationSettings excitation;
   AbortCriteria criteria;
-  /// So long after the last target of a client that has died, or that a busy computer keeps from its
-  /// processor, the motor is let go.
+  /// The motor is let go this long after the last target: of a client that has died, or that a busy computer
+  /// keeps from its processor.
   std::int32_t validity_ms = 200;
 };
 

@@ -34,8 +34,8 @@ class CpuRivals {
     std::filesystem::path task;  ///< Its folder.
     std::string name;
     std::optional<Duration> used{};  ///< Since it began.
-    Duration lately{};               ///< In the last window,
-    Duration before{};               ///< and in the one before.
+    Duration lately{};               ///< In the last window.
+    Duration before{};               ///< In the window before.
   };
 
   void findSome();

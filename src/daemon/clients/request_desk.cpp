@@ -214,7 +214,7 @@ Result<Order> RequestDesk::orderOf(const link::Request& request, Operation opera
   return order;
 }
 
-// No more than what is left for the others: there is room for a newcomer, whoever floods.
+// At most as many as are left for the others: a client that floods leaves room for a newcomer.
 bool RequestDesk::mayOpen(std::string_view client) const {
   const auto own = std::count_if(open_.begin(), open_.end(),
                                  [client](const Open& open) { return open.request.client.view() == client; });

@@ -64,8 +64,8 @@ struct RobotDescription {
   std::vector<std::string> notices;  ///< Deviations from the ideal set-up, each with its remedy.
   bool realtime = true;
   std::string estop_input;     ///< Chip and line; empty: there is none.
-  std::string enabling_input;  ///< The same of the enabling switch,
-  std::string mode_input;      ///< and of the mode input.
+  std::string enabling_input;  ///< The same of the enabling switch.
+  std::string mode_input;      ///< The same of the mode input.
 };
 
 }  // namespace rc10

@@ -79,8 +79,8 @@ struct Snapshot {
   std::uint64_t refused_signals = 0;    ///< A module was held by another client, or the message was old.
   std::uint64_t events_dropped = 0;
   RobotStatus state = RobotStatus::kRun;
-  Stop stop;                ///< Reason why it is not in RUN,
-  MonotonicTime stopped{};  ///< and since when; 0: it is.
+  Stop stop;                ///< Reason why it is not in RUN.
+  MonotonicTime stopped{};  ///< When it left RUN; 0: it is in RUN.
   std::uint32_t estops = 0;
   std::uint32_t conditions = 0;  ///< Bits of Condition, as far as they may change.
   std::size_t motor_count = 0;

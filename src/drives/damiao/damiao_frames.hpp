@@ -110,7 +110,7 @@ using Payload = std::array<std::uint8_t, 8>;
 
 [[nodiscard]] State readState(std::span<const std::uint8_t, 8> payload) noexcept;
 [[nodiscard]] Payload writeState(int id, const State& state) noexcept;
-/// If it reads as an answer about a register, whoever has asked; saving counts as register 0. Feedback of a
+/// An answer about a register, to any sender's question; saving counts as register 0. Feedback of a
 /// disabled drive can look like one at three of the 65536 positions, while it turns backwards at more than a
 /// third of its range: such a sample is lost.
 [[nodiscard]] std::optional<RegisterReply> readReply(std::span<const std::uint8_t, 8> payload,

@@ -14,7 +14,7 @@ using damiao::Special;
 namespace {
 
 constexpr std::size_t kFrameLength = 8;
-// So often a drive is told to clear its faults before it is given up.
+// Tries to clear the faults of a drive before it is given up.
 constexpr int kClears = 5;
 constexpr Duration kPositionAskedEvery = std::chrono::milliseconds{20};
 // The drive turns at most so much faster than its no-load speed: a full battery, a load that drives.

@@ -56,7 +56,7 @@ std::string damiaoCommand(const CanFrame& frame, const DamiaoScale& scale) {
       .take();
 }
 
-// Its master id may be any: whoever is heard has said who he is in the first byte.
+// Its master id may be any: the first byte has the drive's own id.
 std::string damiaoFeedback(const CanFrame& frame, const DamiaoScale& scale) {
   if (frame.length != 8) return {};
   const auto payload = frame.payload().first<8>();

@@ -44,7 +44,7 @@ struct DjiModel {
   bool absolute_output = false;  ///< The encoder sits on the output shaft: angle known at power-up.
   float no_load_rpm = 0.0F;      ///< Output shaft, at 24 V.
   Encoder::Config encoder;
-  int countable_lost_frames = 0;  ///< So many 1 kHz frames in a row may be lost without a lost turn.
+  int countable_lost_frames = 0;  ///< 1 kHz frames in a row that may be lost without a lost turn.
   DjiCommandTable current;
   DjiCommandTable voltage;
 

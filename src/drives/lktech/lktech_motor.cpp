@@ -23,7 +23,7 @@ constexpr Duration kLktechRestartSilence = std::chrono::milliseconds{100};
 /// A frame with the shape of a command is a reply only if the motor is known to be about so cold.
 constexpr float kLktechNearZeroC = 2.0F;
 constexpr int kZeroAnglesBelieved = 3;
-/// So slow that encoder and multi-turn angle are of the same moment.
+/// Below this speed encoder and multi-turn angle are of the same moment.
 constexpr float kStandingRpm = 1.0F;
 /// By how much the two may differ for other reasons.
 constexpr double kSameAngleDeg = 1.0;

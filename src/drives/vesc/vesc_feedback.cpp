@@ -23,7 +23,7 @@ constexpr double kErpmPerS = 500'000.0;  // a bare rotor at full current; estima
 constexpr double kAmbiguousDeg = 120.0;
 // Stamps are late by less.
 constexpr Duration kLatestStamp = milliseconds{2};
-// So far from where a changing speed has taken it may the encoder be.
+// Largest distance of the encoder from where a changing speed can have taken it.
 constexpr double kExplainedDeg = 60.0;
 
 }  // namespace

@@ -30,7 +30,7 @@ struct VescSettings {
   float handbrake_current_a = 0.0F;  ///< 0: no handbrake.
   double kv_rpm_per_v = 0.0;         ///< 0: unknown.
   double supply_v = 0.0;
-  bool motor_temperature = false;  ///< Else the drive's.
+  bool motor_temperature = false;  ///< false: the drive's.
   bool ask_status = false;
   int host_id = 0;
 };

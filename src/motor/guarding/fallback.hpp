@@ -20,8 +20,8 @@ struct FallbackConfig {
   FallbackAction on_timeout = FallbackAction::kCoast;  ///< The last command has lapsed.
   FallbackAction on_disable = FallbackAction::kCoast;  ///< Until it stands still; also when rc10d ends.
   FallbackAction on_estop = FallbackAction::kCoast;    ///< Also when its group stops.
-  Duration hold_max = std::chrono::seconds{10};        ///< A hold ends after this,
-  Duration brake_max = std::chrono::seconds{10};       ///< and a brake in an e-stop.
+  Duration hold_max = std::chrono::seconds{10};        ///< A hold ends after this.
+  Duration brake_max = std::chrono::seconds{10};       ///< A brake in an e-stop ends after this.
   Duration ramp = std::chrono::seconds{1};  ///< A ramp is at rest after this, and then without torque.
 };
 

@@ -22,7 +22,7 @@ struct GuardConfig {
   float stall_rpm = 0.0F;   ///< Slower than this, and at its effort limit: it does not turn.
   bool stall_trips = true;  ///< false: only the limit flag.
   double following_error_deg = 0.0;
-  Duration following_error_time{};  ///< So long in a row.
+  Duration following_error_time{};  ///< Without a break.
   bool encoder_jumps = false;       ///< One is a fault.
   float frozen_a = 0.0F;            ///< The reported current is off by more, and nothing changes at all.
   float runaway_rpm = 0.0F;         ///< Gains so much speed against all its torque.

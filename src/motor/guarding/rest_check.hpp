@@ -10,7 +10,7 @@ namespace rc10 {
 /// Evidence that a drive which is told to rest does not. At the output shaft.
 struct RestConfig {
   float current_a = 0.0F;   ///< More than this is torque; 0: not watched, its feedback cannot tell.
-  Duration time{};          ///< So long in a row.
+  Duration time{};          ///< Without a break.
   float gained_rpm = 0.0F;  ///< Speed gained at rest that is worth a report; 0: none is.
 };
 

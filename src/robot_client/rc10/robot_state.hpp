@@ -58,9 +58,9 @@ struct RobotState {
   std::int64_t tick = 0;     ///< Ticks since start.
   RobotStatus status = RobotStatus::kRun;
   bool realtime = false;  ///< The real-time set-up is complete; `rc10ctl stats` says what is not.
-  StopCause stop_cause = StopCause::kNone;  ///< Reason why it is not in RUN,
-  std::string stopped_by;                   ///< the client or module that asked for that, if any,
-  std::int64_t stopped_mono_us = 0;         ///< and since when, as mono_us; 0 in RUN.
+  StopCause stop_cause = StopCause::kNone;  ///< Reason why it is not in RUN.
+  std::string stopped_by;                   ///< The client or module that asked for that, if any.
+  std::int64_t stopped_mono_us = 0;         ///< When it left RUN, as mono_us; 0 in RUN.
   std::int32_t estop_count = 0;             ///< Since start.
   std::uint32_t conditions = 0;             ///< Bits of Condition.
   std::string version;                      ///< Version of rc10d.

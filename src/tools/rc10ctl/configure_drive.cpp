@@ -67,7 +67,7 @@ Result<link::Request> configureRequest(const ConfigureOptions& options) {
   return request;
 }
 
-// Flash is for good, and wears: whoever asks for it has to mean this motor.
+// Flash lasts beyond power-off, and wears: the name is asked for, as the motor may be the wrong one.
 bool confirmed(const Global& global, const ConfigureOptions& options) {
   if (options.no_save || options.yes) return true;
   std::string what;

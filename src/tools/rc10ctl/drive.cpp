@@ -140,8 +140,8 @@ class Driver {
     }
   }
 
-  // The same target, and not COAST: after that rc10d would have nothing to do in its stead. Once: again, it
-  // would come back to life.
+  // The same target, not COAST: rc10d does the motor's on_timeout after a target that lapses, nothing after a
+  // COAST. Sent once: a second one would set the target anew.
   void lapse() {
     command_.validity_ms = 1;
     if (!send(setpoint_)) return;

@@ -82,7 +82,7 @@ TEST(MotionSession, NoTargetOutlivesTheTimeThatItIsGiven) {
   EXPECT_EQ(test.sentBy(MonotonicTime{10'140ms}, until), 10);
   EXPECT_EQ(test.sentBy(MonotonicTime{10'149'500us}, until), std::nullopt);
   EXPECT_EQ(test.sentBy(MonotonicTime{10'200ms}, until), std::nullopt);
-  // Nor the one that lets the motor go.
+  // The target that lets the motor go is not sent either.
   test.run().end(Criterion::kSilence, "no word");
   EXPECT_EQ(test.sentBy(MonotonicTime{10'210ms}, until), std::nullopt);
 }

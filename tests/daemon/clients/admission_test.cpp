@@ -222,7 +222,7 @@ TEST_F(AdmissionTest, RefusesTheWholeMessageForOneBadSetpoint) {
   EXPECT_EQ(
       admit(linkCommand(1, now, {setpoint("left", kVelocity, 1.0), setpoint("right", kVelocity, kNan)})),
       CommandRefusal::kNotFinite);
-  // And it has used up no sequence number.
+  // It has used up no sequence number.
   EXPECT_EQ(admit(linkCommand(1, now, {setpoint("left", kVelocity, 1.0)})), CommandRefusal::kNone);
 }
 

@@ -81,7 +81,7 @@ TEST_F(BusReviverTest, ABusStaysGoneUntilItsSocketIsReplaced) {
   inboxes[0].link = CanLinkState::kGone;
   reviver.check(monotonicNow());  // no CAN socket can be bound to lo
   EXPECT_EQ(link(), CanLinkState::kGone);
-  // And the descriptor is still the old one: what the drives send arrives.
+  // The descriptor is still the old one: what the drives send arrives.
   const CanFrame frame = makeClassicFrame({0x201, false}, std::array<std::uint8_t, 1>{1});
   canfd_frame wire;
   const auto size = encodeFrame(frame, wire);

@@ -123,7 +123,7 @@ class RestTest : public ::testing::TestWithParam<Subject> {
     }
     return all;
   }
-  /// A drive that goes on with what it was told before: whoever tells it.
+  /// A drive that goes on with what it was told before, by any sender.
   void goOn(const std::vector<CanFrame>& commands, int ticks) {
     for (int i = 0; i < ticks && fault() != FaultCode::kNotAtRest; ++i) {
       robot.tick();

@@ -65,7 +65,7 @@ TEST_P(ModuleAllocationTest, AThousandTicksAllocateNothing) {
   const AllocGuard guard;
   for (int i = 0; i < 1000; ++i) tick(i);
   EXPECT_EQ(guard.allocations(), 0U);
-  // And it was at work: it drove its motors, or heard its device.
+  // It was at work: it drove its motors, or heard its device.
   for (int motor = 0; motor < GetParam().motors; ++motor) {
     EXPECT_EQ(robot_.motor(static_cast<std::size_t>(motor)).owner.view(), "part") << "m" << motor;
   }

@@ -194,7 +194,7 @@ class MotionGuardTest : public MotorGuardTest {
     feedback.current_a = 0.0F;
     feedback.total_angle_deg = 0.0;
   }
-  /// So many samples, and the first fault of them.
+  /// Runs this number of samples; returns the first fault.
   FaultCode run(int samples, std::uint32_t limits = 0) {
     for (int i = 0; i < samples; ++i) {
       if (const auto fault = step(limits).fault; fault != FaultCode::kNone) return fault;
