@@ -8,8 +8,8 @@
 
 namespace rc10 {
 
-/// Whether frames may leave in this state. Where they do not, what is handed to the kernel is lost or, worse,
-/// sent when it is no longer meant.
+/// Whether frames may leave in this state. In the others a frame that is handed to the kernel is lost or,
+/// worse, sent late, when it no longer holds.
 [[nodiscard]] constexpr bool carriesFrames(BusState state) noexcept {
   return state != BusState::kBusOff && state != BusState::kDown && state != BusState::kGone &&
          state != BusState::kStalled;
@@ -24,8 +24,8 @@ class BusHealth {
   struct Config {
     Duration silent_after{std::chrono::milliseconds{100}};
     Duration stalled_after{std::chrono::milliseconds{5}};
-    /// No echo for 5 ticks. Ticks that ran: after a pause of the whole computer the echo is there,
-    /// only nobody has read it yet.
+    /// Ticks without an echo. Only ticks that ran count: after a pause of the whole computer the echo waits
+    /// to be read.
     int stalled_ticks = 5;
   };
 
@@ -34,7 +34,7 @@ class BusHealth {
     std::uint64_t rx_frames = 0;     ///< Since start.
     std::uint64_t tx_watched = 0;    ///< Frames of the watched ids handed to the kernel, since start.
     std::uint64_t tx_confirmed = 0;  ///< Their echoes, since start.
-    bool echo_available = false;     ///< There is an echo socket; else stalled is never reported.
+    bool echo_available = false;     ///< There is an echo socket; false: stalled is never reported.
     bool feedback_expected = true;   ///< Motors on this bus talk without being asked.
   };
 

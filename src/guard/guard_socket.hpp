@@ -24,7 +24,7 @@ class GuardSocket {
   [[nodiscard]] int descriptor() const noexcept { return socket_.get(); }
   struct Accepted {
     UniqueFd connection;     ///< Connection of a process that may have a guard; empty: there is none.
-    bool sent_away = false;  ///< One was, since there are no file descriptors left.
+    bool sent_away = false;  ///< A connection was closed for lack of file descriptors.
   };
   /// A connection that waits. Never waits itself.
   [[nodiscard]] Accepted accept() noexcept;

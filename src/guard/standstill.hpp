@@ -4,8 +4,8 @@
 
 namespace rc10::guard {
 
-/// Tells from a counter of ticks that nobody ticks any more. Time is counted in the guard's own wake-ups: a
-/// pause of the whole computer is none of rc10d.
+/// Finds from a counter of ticks that rc10d stands still. Time is counted in the guard's own wake-ups, so
+/// that a pause of the whole computer does not count.
 class Standstill {
  public:
   /// The guard wakes up this often.

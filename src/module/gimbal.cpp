@@ -133,7 +133,7 @@ class Gimbal : public Module_Base {
     const double motor_pitch_deg = wrapHalfTurn(static_cast<double>(pitch.angle_deg));
     const double pitch_deg = by_imu_pitch ? imu_pitch_deg : motor_pitch_deg;
     const bool ready = robot.obeys(yaw_motor_) && robot.obeys(pitch_motor_) && yaw.zeroed && pitch.zeroed;
-    // Another frame, another angle: it goes on looking where it looks.
+    // The direction is kept, as an angle in the new frame.
     const bool restarts = !ready || !was_ready_;
     if (restarts || stabilised != was_stabilised_) {
       if (!restarts && !opposed(kImuYaw)) robot.report(stabilised ? kBack : kLost);
@@ -222,8 +222,8 @@ class Gimbal : public Module_Base {
     return unknown ? kNoSignal : all;
   }
 
-  // Once commanded it holds its direction for a while: a gimbal that falls is no rest. Not for ever: with its
-  // client it may have lost its reason.
+  // After the last command it holds its direction for silence_max_s, since a gimbal that is let go falls. Not
+  // for ever: its client may be gone for good.
   void holdOn(bool ready, const Tick& tick, ModuleRobot& robot) noexcept {
     if (commanded()) commanded_at_ = tick.now;
     const bool silent = tick.now - commanded_at_ >= silence_max_;

@@ -417,7 +417,7 @@ std::vector<MotorReason> RobotSession::reasonsIn(const std::string& message) {
 
 RequestResult RobotSession::enable(const std::vector<std::string>& motors, Duration timeout) {
   {
-    // Before it is known to have worked: one motor too many to disable on leaving does no harm.
+    // Noted before the answer: to disable one motor too many on leaving does no harm.
     const Lock lock(mutex_);
     if (motors.empty()) leaving_.enabled_all = true;
     leaving_.enabled.insert(motors.begin(), motors.end());
@@ -480,7 +480,7 @@ Result<void> RobotSession::close() {
     const auto held = held_.takeAll();
     moves_.failAll("the program has let go of the robot", news.moves);
     if (options_.at_end == AtEnd::kTimeout) {
-      // The same targets, and not COAST: after that rc10d would have nothing to do in their stead.
+      // The same targets, not COAST: rc10d does on_timeout after a target that lapses, nothing after a COAST.
       for (const auto& message : held) (void)outgoing_.command(message, milliseconds{1});
       leaving_ = {};
     }

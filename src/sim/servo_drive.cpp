@@ -31,7 +31,7 @@ MotorParameters servoParameters(const MotorTraits& traits, double gear_ratio,
   MotorParameters p;
   p.gear_ratio = gear_ratio;
   p.supply_v = supply_v;
-  // Without friction, back-EMF eats the supply at no-load speed.
+  // Without friction, back-EMF equals the supply at no-load speed.
   p.back_emf_vs_per_rad = supply_v * (1.0 - kFrictionShare) / no_load_rad_s;
   p.torque_nm_per_a = traits.torque_nm_per_a > 0.0F ? static_cast<double>(traits.torque_nm_per_a) / own_gear
                                                     : p.back_emf_vs_per_rad;

@@ -18,7 +18,7 @@ namespace {
 using namespace std::chrono_literals;
 
 constexpr int kMaxLinkEvents = 16;
-// Taken from one client before the others have their turn.
+// Messages taken from one client before the others have their turn.
 constexpr int kDatagramsPerTurn = 32;
 // Answers and events leave at this rate, whatever state_hz is.
 constexpr int kSlowHz = 100;
@@ -262,7 +262,7 @@ void LinkServer::reportRefusal(CommandRefusal reason, const link::Name& client, 
   auto& next_report = next_refusal_report_[static_cast<std::size_t>(reason)];
   if (now < next_report) return;
   next_report = now + kRefusalReportInterval;
-  // To clients not through the scheduler, which never saw the command; but it alone writes the black box.
+  // Clients are told from here, since the scheduler never saw the command; it alone writes the black box.
   (void)sources_.exchange.refusals.push({EventCode::kCommandRefused, Severity::kWarning, -1,
                                          static_cast<std::int32_t>(reason), 0, now, client});
   feeds_.tell(Publication::refusal(reason, client, now, wallClockUs(), why));

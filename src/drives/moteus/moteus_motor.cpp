@@ -89,8 +89,8 @@ Moteus_Motor::Send Moteus_Motor::restSend(const Tick& tick) const noexcept {
   return faulted && !clearing_ ? Send::kQuery : Send::kStop;
 }
 
-/// Position mode without any torque; its controller stays where the shaft is, so that whatever comes next
-/// begins there.
+/// Position mode without any torque. Its controller stays where the shaft is, so that the next target begins
+/// there.
 void Moteus_Motor::release() noexcept {
   send_ = Send::kMotion;
   motion_ = {};

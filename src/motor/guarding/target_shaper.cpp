@@ -64,7 +64,7 @@ TargetShaper::Shaped TargetShaper::slowDown(const Target& target, const MotorFee
   return out;
 }
 
-// In part, by the time since the motor was enabled: from where it is on its way, so that a target that
+// Share of the target by the time since the motor was enabled, from where it is on its way: a target that
 // changes meanwhile never leads back. A spring is stiff at once, and begins where the shaft is.
 Target TargetShaper::softened(Target asked, float dt_s) noexcept {
   const double left = 1.0 - share_;
@@ -174,7 +174,7 @@ std::uint32_t TargetShaper::shapeTorqueFf(Target& asked, const MotorFeedback& fe
   return limits;
 }
 
-// The most in the direction of `sign`. Below 0 it brakes: where a spring may be too soft to do it.
+// Bound of the feed-forward in the direction of `sign`. Below 0 it brakes, where a spring may be too soft.
 double TargetShaper::mostTorqueFf(bool springs, const MotorFeedback& feedback, double allowed_rpm,
                                   double sign) const noexcept {
   double most_nm = 0.0;
@@ -188,8 +188,8 @@ double TargetShaper::mostTorqueFf(bool springs, const MotorFeedback& feedback, d
   return springs ? most_nm : std::max(most_nm, 0.0);
 }
 
-// All of it at standstill, so that a load is held; none at the ceiling: the loop keeps that speed. What was
-// taken away comes back slowly, or a light shaft would be driven back and forth.
+// Share of the feed-forward: all at standstill, to hold a load; none at the ceiling, where the loop keeps the
+// speed. It comes back slowly: otherwise a light shaft would be driven back and forth.
 double TargetShaper::torqueUnderCeiling(const MotorFeedback& feedback, float dt_s) noexcept {
   if (!(config_.effort_per_nm > 0.0F)) return std::numeric_limits<double>::infinity();
   const auto full_nm = static_cast<double>(config_.effort_full_scale / config_.effort_per_nm);
@@ -249,8 +249,8 @@ TargetShaper::Shaped TargetShaper::boundBySpeed(Shaped out, const MotorFeedback&
   return out;
 }
 
-// Without a velocity loop, soft limits leave no push outwards, a ceiling only ends what drives the shaft
-// beyond it.
+// Without a velocity loop soft limits leave no push outwards; a ceiling only ends a push that drives the
+// shaft beyond it.
 double TargetShaper::effortTowards(double allowed_rpm, double sign,
                                    const MotorFeedback& feedback) const noexcept {
   const bool known = config_.approach_effort_per_rpm > 0.0F || config_.effort_per_rpm > 0.0F;
@@ -316,10 +316,11 @@ TargetShaper::Shaped TargetShaper::shapeAngle(Target asked, const MotorFeedback&
   return out;
 }
 
-// Under a ceiling the angle moves no faster than that, and a shaft that does is not led farther than its loop
-// makes of the ceiling: less far while the ceiling comes down. One that is pushed the other way, or lags,
-// keeps its whole spring; where the ceiling comes, what was far ahead is not. A loop of a speed below that of
-// the angle holds a load by itself, and is never led farther.
+// Under a ceiling the angle moves no faster than the ceiling, and leads a shaft that moves towards it by no
+// more than the distance at which the loop asks for that speed. A shaft that lags, or is pushed the other
+// way, keeps the whole lead, and so its spring. When the ceiling begins, a target that runs on or is far away
+// leads by a share of it. A motor with a velocity loop below the angle loop holds a load by itself, and is
+// never led farther.
 std::uint32_t TargetShaper::shorten(Target& shaped, double before_deg, const MotorFeedback& feedback,
                                     float dt_s) noexcept {
   const double asked_deg = value_;
