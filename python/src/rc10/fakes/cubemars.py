@@ -14,6 +14,7 @@ import can
 from rc10.fakes.fake import EXTENDED
 from rc10.fakes.pieces import pieces
 from rc10.fakes.servo import ReplyAddress
+from rc10.fakes.shaft import RPM_PER_RAD_S, Shaft
 from rc10.spelling import not_one_of
 
 if TYPE_CHECKING:
@@ -32,7 +33,6 @@ AMBIENT_C = 25.0
 
 _LENGTHS = {DUTY: 4, CURRENT: 4, BRAKE: 4, VELOCITY: 4, POSITION: 4, ORIGIN: 1}
 _LENGTHS |= {POSITION_SPEED: 8, MIT_V3: 8}
-_RAD_S_PER_RPM = math.tau / 60.0
 _MAX_STEP_S = 0.0005
 # No data sheet has the loops or the inertia: a stiff drive on a light load.
 _VELOCITY_BANDWIDTH_RAD_S = 100.0
@@ -159,7 +159,7 @@ class CubeMarsSpec:
         return FakeCubeMars(self, initial_angle_deg=initial_angle_deg, load_nm=load_nm)
 
 
-class FakeCubeMars:
+class FakeCubeMars(Shaft):
     """An AK drive in one of its three protocols.
 
     When commands stop, it holds the last one: no timeout is documented. `timeout_s` makes a
@@ -222,16 +222,6 @@ class FakeCubeMars:
     def name(self) -> str:
         """Model and id, "AK80-9:5"."""
         return self.spec.name
-
-    @property
-    def velocity_rpm(self) -> float:
-        """Velocity of the output shaft."""
-        return self.speed_rad_s / _RAD_S_PER_RPM
-
-    @property
-    def angle_deg(self) -> float:
-        """Multi-turn angle of the output shaft."""
-        return math.degrees(self.angle_rad)
 
     @property
     def erpm(self) -> float:
@@ -348,7 +338,7 @@ class FakeCubeMars:
     def _step(self, dt_s: float) -> None:
         model = self.model
         full_nm = model.torque_nm
-        no_load_rad_s = model.no_load_rpm * _RAD_S_PER_RPM
+        no_load_rad_s = model.no_load_rpm / RPM_PER_RAD_S
         inertia = full_nm * _SPEED_UP_S / no_load_rad_s
         nm = 0.0 if self.error else _within(self._wanted_nm(inertia, dt_s), full_nm)
         # The supply reaches less and less torque towards the no-load speed.
@@ -365,7 +355,7 @@ class FakeCubeMars:
         if self._mode is None:
             return 0.0
         if self._mode == DUTY:
-            no_load_rad_s = model.no_load_rpm * _RAD_S_PER_RPM
+            no_load_rad_s = model.no_load_rpm / RPM_PER_RAD_S
             return 4 * model.torque_nm * (self.command - self.speed_rad_s / no_load_rad_s)
         if self._mode == CURRENT:
             return self.command * model.output_nm_per_a
@@ -393,7 +383,7 @@ class FakeCubeMars:
         return error_nm + self._integral_nm
 
     def _rad_s(self, erpm: float) -> float:
-        return erpm / (self.model.pole_pairs * self.model.gear_ratio) * _RAD_S_PER_RPM
+        return erpm / (self.model.pole_pairs * self.model.gear_ratio) / RPM_PER_RAD_S
 
     def frames(self) -> Iterator[can.Message]:
         """Yields what it sends now: answers, and feedback that is due."""

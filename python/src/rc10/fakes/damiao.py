@@ -12,6 +12,7 @@ import can
 
 from rc10.fakes.damiao_model import MODELS
 from rc10.fakes.pieces import pieces
+from rc10.fakes.shaft import RPM_PER_RAD_S, Shaft
 from rc10.spelling import not_one_of
 
 if TYPE_CHECKING:
@@ -38,7 +39,6 @@ _UINT = struct.Struct("<I")
 _HYBRID = struct.Struct("<fHH")
 _TIMEOUT_STEP_S = 50e-6
 _MAX_STEP_S = 0.001
-_RPM_PER_RAD_S = 60.0 / math.tau
 # Answers that wait for the end of a tick; more than a host can make sense of.
 _MAX_WAITING = 32
 
@@ -178,7 +178,7 @@ class Target:
     current_pu: float = 0.0
 
 
-class FakeDamiao:
+class FakeDamiao(Shaft):
     """A Damiao drive with its motor, on a supply that gives its no-load speed.
 
     Public attributes may be read and set at any time:
@@ -261,16 +261,6 @@ class FakeDamiao:
         return [*(family << 8 | self.spec.can_id for family in range(8)), REGISTER_ID]
 
     @property
-    def velocity_rpm(self) -> float:
-        """Velocity of the shaft."""
-        return self.speed_rad_s * _RPM_PER_RAD_S
-
-    @property
-    def angle_deg(self) -> float:
-        """Multi-turn angle of the shaft."""
-        return math.degrees(self.angle_rad)
-
-    @property
     def command(self) -> float:
         """The target in force: torque, speed or position by its mode; 0 while disabled."""
         if self.status != ENABLED:
@@ -288,7 +278,7 @@ class FakeDamiao:
 
     @property
     def _no_load_rad_s(self) -> float:
-        return self.model.no_load_rpm / _RPM_PER_RAD_S
+        return self.model.no_load_rpm / RPM_PER_RAD_S
 
     def decode_command(self, message: can.Message) -> bool:
         """Takes a frame, and has its answer wait.

@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass
 
-SUPPLY_V = 24.0
+from rc10.fakes.shaft import RPM_PER_RAD_S
 
-_RAD_S_PER_RPM = math.tau / 60.0
+SUPPLY_V = 24.0
 
 
 @dataclass(frozen=True)
@@ -55,7 +54,7 @@ class MotorModel:
     @property
     def no_load_rad_s(self) -> float:
         """no_load_rpm in rad/s."""
-        return self.no_load_rpm * _RAD_S_PER_RPM
+        return self.no_load_rpm / RPM_PER_RAD_S
 
 
 def _stall_a(rated_a: float, rated_rpm: float, no_load_rpm: float) -> float:

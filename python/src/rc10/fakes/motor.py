@@ -11,6 +11,7 @@ import can
 from rc10.fakes.address import CommandKind, MotorSpec
 from rc10.fakes.models import GM6020_VOLTAGE_SCALE_RAW, SUPPLY_V
 from rc10.fakes.pieces import pieces
+from rc10.fakes.shaft import RPM_PER_RAD_S
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -22,7 +23,6 @@ AMBIENT_C = 25.0
 
 _FEEDBACK = struct.Struct(">HhhBB")
 _SLOTS = tuple(struct.Struct(f">{2 * slot}xh") for slot in range(4))
-_RPM_PER_RAD_S = 60.0 / math.tau
 
 # Longer steps are divided: the back-EMF of an M3508 settles in about 5 ms.
 _MAX_STEP_S = 0.001
@@ -98,7 +98,7 @@ class FakeMotor:
     @property
     def velocity_rpm(self) -> float:
         """Velocity of the output shaft."""
-        return self.speed_rad_s * _RPM_PER_RAD_S
+        return self.speed_rad_s * RPM_PER_RAD_S
 
     @property
     def angle_deg(self) -> float:

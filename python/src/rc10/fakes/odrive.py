@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 import can
 
 from rc10.fakes.pieces import pieces
+from rc10.fakes.shaft import RPM_PER_RAD_S
 from rc10.spelling import not_one_of
 
 if TYPE_CHECKING:
@@ -27,7 +28,6 @@ _TWO_INTS = struct.Struct("<ii")
 _FLOAT = struct.Struct("<f")
 _UINT = struct.Struct("<I")
 _HEARTBEAT = struct.Struct("<IBBBB")
-_RPM_PER_RAD_S = 60.0 / math.tau
 
 
 class Cmd(IntEnum):
@@ -231,7 +231,7 @@ class FakeOdrive:
     @property
     def velocity_rpm(self) -> float:
         """Velocity of the shaft."""
-        return self.speed_rad_s * _RPM_PER_RAD_S
+        return self.speed_rad_s * RPM_PER_RAD_S
 
     @property
     def angle_deg(self) -> float:

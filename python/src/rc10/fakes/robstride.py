@@ -12,6 +12,7 @@ import can
 from rc10.fakes.fake import EXTENDED
 from rc10.fakes.pieces import pieces
 from rc10.fakes.servo import ModelAtId, ReplyAddress
+from rc10.fakes.shaft import RPM_PER_RAD_S
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -34,7 +35,6 @@ _FULL = 65535
 _TIMEOUT_COUNTS_PER_S = 20000
 _MAX_STEP_S = 0.0005
 _HOST_ID = 0xFD
-_RPM_PER_RAD_S = 60.0 / math.tau
 AMBIENT_C = 25.0
 
 
@@ -180,7 +180,7 @@ class FakeRobStride:
     @property
     def velocity_rpm(self) -> float:
         """Velocity of the output shaft."""
-        return self.speed_rad_s * _RPM_PER_RAD_S
+        return self.speed_rad_s * RPM_PER_RAD_S
 
     @property
     def angle_deg(self) -> float:

@@ -12,6 +12,7 @@ import can
 
 from rc10.fakes.fake import EXTENDED
 from rc10.fakes.pieces import pieces
+from rc10.fakes.shaft import RPM_PER_RAD_S, Shaft
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -32,7 +33,6 @@ MIN_ERPM = 900.0
 _GET_VALUES_SELECTIVE = 50
 _FAULT_BIT, _STATUS_BIT = 1 << 15, 1 << 21
 _STEPS_PER_ELECTRICAL_TURN = 6
-_RPM_PER_RAD_S = 60.0 / math.tau
 _KT_NM_PER_A = 0.08
 _KE_VS_PER_RAD = 0.095
 _RESISTANCE_OHM = 0.1
@@ -99,7 +99,7 @@ class VescSpec:
         return vesc
 
 
-class FakeVesc:
+class FakeVesc(Shaft):
     """A VESC with firmware 6.00 or later, and a motor without a gear.
 
     It obeys any SET_* at once, lets its motor go `timeout_s` after the last one, and clears its
@@ -167,16 +167,6 @@ class FakeVesc:
     def packet(self) -> int:
         """The command that is in force."""
         return self._packet
-
-    @property
-    def velocity_rpm(self) -> float:
-        """Velocity of the shaft."""
-        return self.speed_rad_s * _RPM_PER_RAD_S
-
-    @property
-    def angle_deg(self) -> float:
-        """Multi-turn angle of the shaft."""
-        return math.degrees(self.angle_rad)
 
     @property
     def timed_out(self) -> bool:
@@ -270,7 +260,7 @@ class FakeVesc:
         if self._packet == SET_RPM:
             if abs(value) < MIN_ERPM:
                 return 0.0
-            error = value / self.pole_pairs / _RPM_PER_RAD_S - speed
+            error = value / self.pole_pairs / RPM_PER_RAD_S - speed
             self._speed_integral_a += 2.0 * error * dt_s
             self._speed_integral_a = max(-MOTOR_MAX_A, min(MOTOR_MAX_A, self._speed_integral_a))
             return 0.3 * error + self._speed_integral_a

@@ -1,0 +1,24 @@
+"""An output shaft, in the units of rc10."""
+
+from __future__ import annotations
+
+import math
+
+RPM_PER_RAD_S = 60.0 / math.tau
+
+
+class Shaft:
+    """What turns, in rad and rad/s; those who look read rpm and degrees."""
+
+    speed_rad_s: float
+    angle_rad: float
+
+    @property
+    def velocity_rpm(self) -> float:
+        """Velocity of the output shaft."""
+        return self.speed_rad_s * RPM_PER_RAD_S
+
+    @property
+    def angle_deg(self) -> float:
+        """Multi-turn angle of the output shaft."""
+        return math.degrees(self.angle_rad)
