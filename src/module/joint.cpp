@@ -284,14 +284,13 @@ class Joint : public Module_Base {
   }
 
   void stepHoming(const MotorFeedback& feedback, const Tick& tick, ModuleRobot& robot) noexcept {
-    // The client that asked has to stay: a homing nobody watches does not go on.
+    // Homing ends with the client that asked for it.
     if (!commanded()) {
       state_ = State::kIdle;
       return;
     }
     if (zero_asked_) {
-      // The zero of the tick before is in force, unless the motor refused it: from here the angle means
-      // something.
+      // The zero of the tick before is in force, unless the motor refused it.
       if (!feedback.zeroed || std::fabs(feedback.total_angle_deg - home_angle_deg_) > kZeroedWithinDeg)
         return failHoming(kNoReach, robot);
       robot.report(kIsHomed);

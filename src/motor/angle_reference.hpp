@@ -17,8 +17,8 @@ class AngleReference {
 
   explicit AngleReference(const Config& config) noexcept : config_(config) {}
 
-  /// `may_restart`: nothing follows the angle, so it may jump once its turn is clear. `may_return`: nor after
-  /// it was lost.
+  /// The angle jumps where it is set anew. `may_restart`: it may be, once an unclear turn is clear, as
+  /// nothing follows it. `may_return`: it may be after it was lost.
   void update(double position_deg, bool may_restart = true, bool may_return = true) noexcept;
   /// The present position reads `angle_deg` from now on. False before the first update().
   bool setZero(double angle_deg) noexcept;

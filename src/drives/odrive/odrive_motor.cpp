@@ -28,7 +28,7 @@ constexpr Duration kTelemetryLife = milliseconds{2500};
 constexpr int kModeRepeats = 3;
 constexpr int kClearRepeats = 2;
 
-// New limits follow the derating, but neither every tick nor never: a frame may have been lost.
+// Rates at which limits that changed, and those that did not, are sent: a frame may be lost.
 constexpr Duration kLimitsSpacing = milliseconds{20};
 constexpr Duration kLimitsRefresh = milliseconds{500};
 

@@ -91,7 +91,7 @@ bool VESC_Motor::gapTooLong(Duration gap) const noexcept {
   return gap > std::max(kRestartGap, kVescGapPeriods * feedbackPeriod());
 }
 
-/// The drive's position has moved by so much, which may be in doubt.
+/// A change of the drive's position; `known`: its number of turns is not in doubt.
 void VESC_Motor::takePosition(MonotonicTime received, double moved_deg, bool known) noexcept {
   const Duration gap = received - feedback_.received;
   spacing_.add(feedback_.samples == 0 ? Duration::zero() : gap);
