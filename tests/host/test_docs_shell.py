@@ -13,7 +13,7 @@ from typing import NamedTuple
 import pytest
 from hostlib import eventually
 from hostlib.daemon import REPO
-from hostlib.page import blocks
+from hostlib.page import blocks, robots
 from hostlib.reader import Command, Reader, commands, headings
 from hostlib.shown import rows_missing
 
@@ -54,13 +54,17 @@ def lift() -> str:
     return LIFT + module
 
 
+def ported() -> str:
+    return next(text for text in robots(REPO / "docs/porting-from-stm32.md") if "lift" in text)
+
+
 SCENES = {
     "README.md": Scene(robot=DEMO.read_text(), files={"bad.yaml": WRONG}),
     "docs/adding-a-motor.md": Scene(),
     "docs/blackbox.md": Scene(robot=DEMO.read_text()),
     "docs/configuration.md": Scene(files={"bad.yaml": WRONG}),
     "docs/modules.md": Scene(robot=lift()),
-    "docs/porting-from-stm32.md": Scene(),
+    "docs/porting-from-stm32.md": Scene(files={"robot.yaml": ported()}),
     "docs/quick-start.md": Scene(),
     "docs/rc10ctl.md": Scene(robot=DEMO.read_text()),
     "python/README.md": Scene(robot=DEMO.read_text()),
