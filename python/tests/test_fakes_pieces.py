@@ -12,7 +12,9 @@ from rc10.fakes.pieces import pieces
 @pytest.mark.parametrize(
     ("dt_s", "count"), [(0.0001, 1), (0.0005, 1), (0.0006, 2), (0.001, 2), (0.0101, 21), (1e-15, 1)]
 )
-def test_they_are_equal_fill_the_time_and_are_no_more_than_it_takes(dt_s: float, count: int) -> None:
+def test_they_are_equal_fill_the_time_and_are_no_more_than_it_takes(
+    dt_s: float, count: int
+) -> None:
     parts = pieces(dt_s, 0.0005)
     assert len(parts) == count
     assert len(set(parts)) == 1
