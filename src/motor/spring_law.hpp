@@ -20,7 +20,7 @@ struct SpringRange {
   double stiffness_nm_per_rad = 0.0;
   double damping_nms_per_rad = 0.0;
 
-  /// Of gains as a target has them; a range of 0 has all.
+  /// Whether it has these gains of a target; a range of 0 has all.
   [[nodiscard]] bool has(float gain_nm_per_rad, float gain_nms_per_rad) const noexcept;
 };
 

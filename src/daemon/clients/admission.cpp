@@ -34,7 +34,7 @@ namespace {
          (!used.spring && (given(target.stiffness_nm_per_rad) || given(target.damping_nms_per_rad)));
 }
 
-// What the motor takes instead; empty where that is not the matter.
+// Modes or gains that the motor takes instead; empty after another refusal.
 [[nodiscard]] std::string choiceOf(const RobotDescription::Motor& motor, CommandRefusal refusal) {
   if (refusal == CommandRefusal::kUnsupportedMode) return "; it has " + link::modeWords(motor.modes.bits());
   if (refusal == CommandRefusal::kGainsBeyondDrive)

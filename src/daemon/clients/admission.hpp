@@ -62,8 +62,8 @@ class Admission {
   /// "wheel: impedance": motor and mode for which the last message was refused; empty: not for one of them.
   [[nodiscard]] const std::string& culprit() const noexcept { return culprit_; }
 
-  /// What the culprit takes instead: "; it has current,velocity" after kUnsupportedMode, ": 0 to 500 Nm/rad,
-  /// 0 to 5 Nms/rad" after kGainsBeyondDrive; else empty.
+  /// Modes or gains that the culprit takes instead: "; it has current,velocity" after kUnsupportedMode, ": 0
+  /// to 500 Nm/rad, 0 to 5 Nms/rad" after kGainsBeyondDrive; else empty.
   [[nodiscard]] const std::string& choice() const noexcept { return choice_; }
 
   /// Index of a motor, or -1.

@@ -8,7 +8,7 @@ RPM_PER_RAD_S = 60.0 / math.tau
 
 
 class Shaft:
-    """What turns, in rad and rad/s; those who look read rpm and degrees."""
+    """Speed and angle in rad, read in rpm and degrees."""
 
     speed_rad_s: float
     angle_rad: float
