@@ -119,12 +119,20 @@ void LinkServer::poll(int timeout_ms) {
 
 void LinkServer::slowTick() {
   drainScheduler();
+  disableForTheGone();
   for (const auto id : connections_.sendUnsent()) feeds_.forget(id);
   for (const auto& text : connections_.newlyDeaf()) note(Severity::kWarning, text);
   feeds_.publishTrace();
   if (slow_ticks_ % kLateCausesEvery == 0) feeds_.countLateTicks();
   if (++slow_ticks_ % kHousekeepingEvery == 0 && sources_.housekeeping) sources_.housekeeping();
   if (slow_ticks_ % kDiagnosticsEvery == 0) feeds_.publishDiagnostics(admission_);
+}
+
+void LinkServer::disableForTheGone() {
+  const auto order = at_end_.due(sources_.exchange.snapshot.read(),
+                                 [this](std::uint64_t id) { return connections_.find(id) != nullptr; });
+  // A full ring has room the next time.
+  if (order && sources_.exchange.orders.push(*order)) at_end_.taken(*order);
 }
 
 void LinkServer::accept() {
@@ -276,7 +284,10 @@ void LinkServer::request(const link::Request& message, Connection& connection) {
     sources_.exchange.estop_client.publish();
     sources_.exchange.estop.store(true, std::memory_order_release);
   }
-  if (outcome.order && !sources_.exchange.orders.push(*outcome.order)) {
+  const bool taken = outcome.order && sources_.exchange.orders.push(*outcome.order);
+  if (taken && outcome.disable_at_end)
+    at_end_.add(*outcome.order, connection.id, sources_.exchange.snapshot.read());
+  if (outcome.order && !taken) {
     if (const auto failed = desk_.fail(outcome.order->id, "the scheduler does not take orders"))
       answer(*failed);
   }
@@ -304,6 +315,7 @@ void LinkServer::answer(const RequestDesk::Answer& answer) {
 void LinkServer::drainScheduler() {
   OrderResult result;
   while (sources_.exchange.results.pop(result)) {
+    at_end_.finish(result, sources_.exchange.snapshot.read());
     if (const auto done = desk_.finish(result)) answer(*done);
   }
   feeds_.publishEvents();

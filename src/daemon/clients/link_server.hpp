@@ -13,6 +13,7 @@
 #include "app/unique_fd.hpp"
 #include "daemon/clients/admission.hpp"
 #include "daemon/clients/connections.hpp"
+#include "daemon/clients/disable_at_end.hpp"
 #include "daemon/clients/feeds.hpp"
 #include "daemon/clients/link_socket.hpp"
 #include "daemon/clients/link_sources.hpp"
@@ -59,6 +60,7 @@ class LinkServer {
   void request(const link::Request& message, Connection& connection);
   void answer(const RequestDesk::Answer& answer);
   void drainScheduler();
+  void disableForTheGone();
   void slowTick();
 
   Sources sources_;
@@ -68,6 +70,7 @@ class LinkServer {
   Admission admission_;
   SignalAdmission signal_admission_;
   RequestDesk desk_;
+  DisableAtEnd at_end_;
   Connections connections_;
   Feeds feeds_;
   unsigned slow_ticks_ = 0;

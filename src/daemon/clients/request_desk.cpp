@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 
 #include "app/nearest.hpp"
+#include "daemon/clients/disable_at_end.hpp"
 #include "daemon/clients/drive_request.hpp"
 #include "daemon/clients/gain_request.hpp"
 #include "daemon/clients/shaft_request.hpp"
@@ -144,6 +145,8 @@ RequestDesk::Outcome RequestDesk::begin(const link::Request& request, const Spea
     return actOnShaft(*operation, request, speaker);
   auto order =
       operation ? orderOf(request, *operation) : Result<Order>{tl::unexpected(unknownOperation(request))};
+  const auto at_end = operation ? DisableAtEnd::askedBy(request, *operation, speaker) : Result<bool>{false};
+  if (order && !at_end) order = tl::unexpected(at_end.error());
   if (!operation || !order) {
     outcome.response = respond(request, link::ResponseStatus::kRefused, order.error().message);
     answered_.remember(asker, request, *outcome.response);
@@ -162,6 +165,7 @@ RequestDesk::Outcome RequestDesk::begin(const link::Request& request, const Spea
   order->repeated = known != nullptr || open != nullptr;
   open_.push_back({speaker.connection, asker, request, *order});
   outcome.order = *order;
+  outcome.disable_at_end = *at_end;
   return outcome;
 }
 

@@ -44,6 +44,8 @@ struct Command {
 /// A request that passed the link thread, for the supervisor.
 struct Order {
   static constexpr std::uint64_t kFromModule = 0;  ///< The id of all that modules ask: they get no result.
+  /// The id of what the link thread asks by itself: nobody waits for the result.
+  static constexpr std::uint64_t kOfLinkThread = ~std::uint64_t{0};
 
   std::uint64_t id = kFromModule;  ///< Chosen by the link thread; comes back in the result.
   Operation operation{};

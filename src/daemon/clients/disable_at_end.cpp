@@ -1,0 +1,98 @@
+#include "daemon/clients/disable_at_end.hpp"
+
+#include <algorithm>
+#include <string>
+
+namespace rc10 {
+namespace {
+
+[[nodiscard]] bool isSwitchedOn(const MotorSnapshot& motor) noexcept {
+  return motor.status == MotorStatus::kEnabling || motor.status == MotorStatus::kActive;
+}
+
+enum class Now : std::uint8_t { kWait, kDisable, kLeave };
+
+[[nodiscard]] Now whatToDoWith(const MotorSnapshot& motor, const link::Name& client) noexcept {
+  if (!motor.owner.view().empty()) return motor.owner.view() == client.view() ? Now::kWait : Now::kLeave;
+  switch (motor.acting) {
+    case Acting::kNothing:
+    case Acting::kDamp: return Now::kDisable;
+    case Acting::kTarget:
+    case Acting::kRamp: return Now::kWait;
+    case Acting::kHold:
+    case Acting::kBrake: break;
+  }
+  return Now::kLeave;
+}
+
+}  // namespace
+
+Result<bool> DisableAtEnd::askedBy(const link::Request& request, Operation operation,
+                                   const Speaker& speaker) {
+  if (operation != Operation::kEnable && operation != Operation::kEnableAlone) return false;
+  const auto count = std::min<std::size_t>(request.value_count, link::kMaxValues);
+  const auto* const end = request.values.data() + count;
+  const auto* const found =
+      std::find_if(request.values.data(), end, [](const auto& value) { return value.name.view() == kValue; });
+  if (found == end || found->value == 0.0) return false;
+  if (found->value != 1.0)
+    return tl::unexpected(Error{std::string{kValue} + ": use 1, or 0 for an enable that lasts"});
+  if (speaker.way != Speaker::Way::kSocket) {
+    return tl::unexpected(Error{std::string{kValue} +
+                                ": nobody sees the end of an LCM client; leave it out, and disable the motor "
+                                "before you end"});
+  }
+  return true;
+}
+
+void DisableAtEnd::add(const Order& order, std::uint64_t connection, const Snapshot& now) {
+  Entry entry{.order = order.id, .connection = connection, .client = order.client, .motors = order.motors};
+  for (std::size_t i = 0; i < now.motor_count; ++i) {
+    if (isSwitchedOn(now.motors[i])) entry.motors.reset(i);
+  }
+  if (entry.motors.any()) entries_.push_back(entry);
+}
+
+void DisableAtEnd::finish(const OrderResult& result, const Snapshot& now) {
+  const auto entry = std::find_if(entries_.begin(), entries_.end(), [&](const Entry& one) {
+    return !one.enabled_at && one.order == result.id;
+  });
+  if (entry == entries_.end()) return;
+  for (std::size_t i = 0; i < result.motors.size(); ++i) {
+    if (result.refused || result.motors[i] != Refusal::kNone) entry->motors.reset(i);
+  }
+  entry->enabled_at = now.tick;
+}
+
+std::optional<Order> DisableAtEnd::due(const Snapshot& now,
+                                       const std::function<bool(std::uint64_t)>& is_open) {
+  Order order{.id = Order::kOfLinkThread, .operation = Operation::kDisable, .motors = {}, .repeated = true};
+  for (auto& entry : entries_) {
+    // The snapshot may be of the tick before the result.
+    if (!entry.enabled_at || now.tick < *entry.enabled_at + 2) continue;
+    const bool ended = !is_open(entry.connection);
+    MotorSet due;
+    for (std::size_t i = 0; i < now.motor_count; ++i) {
+      if (!entry.motors.test(i)) continue;
+      const auto& motor = now.motors[i];
+      const auto what = ended ? whatToDoWith(motor, entry.client) : Now::kWait;
+      // Off, it is nobody's: what enables it next is another request.
+      if (!isSwitchedOn(motor) || what == Now::kLeave) {
+        entry.motors.reset(i);
+      } else if (what == Now::kDisable) {
+        due.set(i);
+      }
+    }
+    if (due.none() || order.motors.any()) continue;
+    order.motors = due;
+    order.client = entry.client;
+  }
+  std::erase_if(entries_, [](const Entry& entry) { return entry.enabled_at && entry.motors.none(); });
+  return order.motors.any() ? std::optional{order} : std::nullopt;
+}
+
+void DisableAtEnd::taken(const Order& order) {
+  for (auto& entry : entries_) entry.motors &= ~order.motors;
+}
+
+}  // namespace rc10
