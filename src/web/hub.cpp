@@ -20,6 +20,8 @@ constexpr std::uint64_t kPublishEvery = kTurnsPerSecond / 25;
 
 // From the moment at which the page sent its renewal.
 constexpr Duration kHeldLease = std::chrono::milliseconds{150};
+// After a wrong token, for all pages together: opening another one gives no more tries.
+constexpr Duration kWrongTokenPause = std::chrono::milliseconds{200};
 
 PageSocket::Text shared(std::string text) { return std::make_shared<const std::string>(std::move(text)); }
 
@@ -62,9 +64,9 @@ void Hub::join(PageSocket& socket, bool loopback, std::string_view address) {
 }
 
 void Hub::leave(PageSocket& socket) {
-  if (auto* page = pageOf(socket); page != nullptr) {
+  if (const auto* page = pageOf(socket); page != nullptr) {
     configs_.forget(page->number);
-    disableAlone(*page);
+    std::erase_if(shown_tokens_, [&](const auto& shown) { return shown.page == page->number; });
   }
   std::erase_if(pages_, [&](const auto& page) { return page->socket == &socket; });
   chooseTraces();
@@ -91,10 +93,7 @@ void Hub::handle(PageSocket& socket, std::string_view message, MonotonicTime now
     return;
   }
   if (const auto* shown = std::get_if<ShowToken>(&*request)) {
-    page->right = rightOf(page->loopback, shown->token, token_);
-    // From another computer it is for looking, and has come in the clear.
-    if (page->loopback) page->link->showToken(shown->token);
-    greet(*page);
+    take(*page, *shown, now);
   } else if (const auto* robot = std::get_if<AskRobot>(&*request)) {
     ask(*page, *robot, now);
   } else if (const auto* held = std::get_if<DriveMotor>(&*request)) {
@@ -129,6 +128,38 @@ void Hub::handle(PageSocket& socket, std::string_view message, MonotonicTime now
     check(*page, *check_config);
   } else if (const auto* curve = std::get_if<AskCurve>(&*request)) {
     sendCurve(*page, *curve);
+  }
+}
+
+// On this computer it is one of `clients`, for rc10d. From another it is for looking.
+void Hub::take(Page& page, ShowToken shown, MonotonicTime now) {
+  if (page.loopback) {
+    page.link->showToken(std::move(shown.token));
+    return greet(page);
+  }
+  // A longer one is wrong, whatever follows.
+  shown.token.resize(std::min(shown.token.size(), token_.size() + 1));
+  const auto waiting = std::find_if(shown_tokens_.begin(), shown_tokens_.end(),
+                                    [&](const auto& one) { return one.page == page.number; });
+  if (waiting != shown_tokens_.end()) {
+    // Each has an answer, one that is overtaken too.
+    waiting->token = std::move(shown.token);
+    return greet(page);
+  }
+  shown_tokens_.push_back({page.number, std::move(shown.token)});
+  judgeTokens(now);
+}
+
+void Hub::judgeTokens(MonotonicTime now) {
+  while (!shown_tokens_.empty() && now >= next_judgement_) {
+    const auto shown = std::move(shown_tokens_.front());
+    shown_tokens_.pop_front();
+    const auto page = std::find_if(pages_.begin(), pages_.end(),
+                                   [&](const auto& one) { return one->number == shown.page; });
+    if (page == pages_.end()) continue;
+    (*page)->right = rightOf(false, shown.token, token_);
+    if ((*page)->right == Right::kNothing) next_judgement_ = now + kWrongTokenPause;
+    greet(**page);
   }
 }
 
@@ -235,39 +266,9 @@ void Hub::ask(Page& page, const AskRobot& wanted, MonotonicTime now) {
   std::string refused = estop ? std::string{} : whyNotMoving(page);
   if (refused.empty())
     refused = feed_.connected() ? page.link->ask(wanted, feed_.socketPath(), now) : feed_.reason();
-  if (refused.empty()) {
-    const auto operation = operationNamed(wanted.operation);
-    if (operation == Operation::kEnableAlone) {
-      page.alone = wanted.target;
-      page.alone_seq = wanted.seq;
-      page.alone_on = false;
-    } else if (operation == Operation::kDisable && (wanted.target.empty() || wanted.target == page.alone)) {
-      page.alone.clear();
-    }
-    return;
-  }
+  if (refused.empty()) return;
   if (under_way) refused.insert(0, "the e-stop was sent and is not confirmed: ");
   page.socket->sendText(shared(responseMessage(wanted.seq, under_way ? "failed" : "refused", refused)));
-}
-
-// Another's disable ends it as this page's does: what is enabled later is not this page's.
-void Hub::watchAlone(Page& page, const link::State& state) const {
-  if (page.alone.empty()) return;
-  const auto motor = client::findMotor(feed_.welcome(), page.alone);
-  if (!motor) return page.alone.clear();
-  const auto status = state.motors[*motor].status;
-  const bool on = status == MotorStatus::kEnabling || status == MotorStatus::kActive;
-  if (page.alone_on && !on) page.alone.clear();
-  page.alone_on = on;
-}
-
-// A motor that its page enabled alone stays enabled for nobody when that page has gone.
-void Hub::disableAlone(Page& page) {
-  if (page.alone.empty() || !feed_.connected()) return;
-  AskRobot disable;
-  disable.operation = toString(Operation::kDisable);
-  disable.target = page.alone;
-  (void)page.link->ask(disable, feed_.socketPath(), std::chrono::steady_clock::now());
 }
 
 std::string Hub::whyNotMoving(const Page& page) const {
@@ -377,6 +378,7 @@ std::vector<link::TraceSignal> Hub::viewedSignals() const {
 }
 
 void Hub::turn() {
+  judgeTokens(std::chrono::steady_clock::now());
   watchRobot();
   if (turns_++ % kPublishEvery == 0) publish();
   for (const auto& page : pages_) publishAnswers(*page);
@@ -414,7 +416,6 @@ void Hub::publish() {
   if (const auto* state = feed_.takeState(); state != nullptr && !pages_.empty()) {
     const auto text = shared(stateMessage(feed_, *state));
     for (const auto& page : pages_) {
-      watchAlone(*page, *state);
       if (page->right != Right::kNothing && !page->socket->behind()) page->socket->sendText(text);
     }
   }
@@ -438,8 +439,6 @@ void Hub::publishAnswers(Page& page) {
   while (true) {
     const auto answer = page.link->answer(std::chrono::steady_clock::now());
     if (!answer) return;
-    if (answer->seq == page.alone_seq && answer->response.status != link::ResponseStatus::kOk)
-      page.alone.clear();
     page.socket->sendText(
         shared(responseMessage(answer->seq, statusWord(answer->response.status),
                                answer->response.message.view(), valuesOf(answer->response))));

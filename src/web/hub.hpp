@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <deque>
 #include <memory>
 #include <optional>
 #include <string>
@@ -66,15 +67,19 @@ class Hub {
     RenewalAge renewals;
     std::optional<OpenRecording> recording;
     std::uint32_t recording_number = 0;
-    std::string alone;            ///< Motor that it has enabled alone; empty: none.
-    std::int64_t alone_seq = -1;  ///< The page's request for that.
-    bool alone_on = false;        ///< A state has shown that motor ENABLING or ACTIVE.
     std::unique_ptr<PageTest> test;
     std::unique_ptr<TestEvaluation> evaluation;
   };
 
+  struct ShownToken {
+    std::uint64_t page = 0;
+    std::string token;
+  };
+
   [[nodiscard]] Page* pageOf(const PageSocket& socket) noexcept;
   void greet(Page& page);
+  void take(Page& page, ShowToken shown, MonotonicTime now);
+  void judgeTokens(MonotonicTime now);
   void choose(Page& page, const ChooseView& wanted);
   void answer(Page& page, const AskRange& wanted);
   void ask(Page& page, const AskRobot& wanted, MonotonicTime now);
@@ -99,13 +104,13 @@ class Hub {
   void publish();
   void publishColumns(Page& page);
   void publishAnswers(Page& page);
-  void watchAlone(Page& page, const link::State& state) const;
-  void disableAlone(Page& page);
   void tell(const std::string& message);
 
   std::optional<std::string> robot_;
   RobotFeed feed_;
   std::string token_;
+  std::deque<ShownToken> shown_tokens_;  ///< Not judged yet; of each page one at most.
+  MonotonicTime next_judgement_{};
   Recordings recordings_;
   ConfigDesk configs_;
   std::vector<std::unique_ptr<Page>> pages_;

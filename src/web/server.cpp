@@ -232,7 +232,10 @@ class FileConnection final : public std::enable_shared_from_this<FileConnection>
     response_.set("Content-Security-Policy", beast::string_view{kPolicy.data(), kPolicy.size()});
     response_.set("X-Content-Type-Options", "nosniff");
     response_.set("Referrer-Policy", "no-referrer");
-    response_.set("Cross-Origin-Opener-Policy", "same-origin");
+    // A browser honours it where nobody can change what comes (TLS, loopback), says so by this field, and
+    // complains of it elsewhere.
+    if (request.find("Sec-Fetch-Dest") != request.end())
+      response_.set("Cross-Origin-Opener-Policy", "same-origin");
     response_.set("Cross-Origin-Resource-Policy", "same-origin");
     response_.keep_alive(request.keep_alive() && status == http::status::ok);
     response_.body() = body;

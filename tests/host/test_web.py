@@ -163,6 +163,10 @@ def test_it_serves_the_files_of_its_page_and_nothing_else(web: Web) -> None:
     assert "frame-ancestors 'none'" in policy
     assert "unsafe" not in policy
     assert answer.headers["X-Content-Type-Options"] == "nosniff"
+    # Browsers say so where they honour it: not off loopback without TLS.
+    assert answer.headers["Cross-Origin-Opener-Policy"] is None
+    honoured = web.get("/", **{"Sec-Fetch-Dest": "document"})
+    assert honoured.headers["Cross-Origin-Opener-Policy"] == "same-origin"
     assert web.get("/studio.js").headers["Content-Type"].startswith("text/javascript")
     assert web.get("/studio.js?x=1").status == 200
     for path in (
@@ -321,6 +325,32 @@ def test_a_page_from_elsewhere_needs_the_token_looks_and_stops(
             daemon.wait_state(lambda state: state["state"] == "ESTOP", "it is stopped")
         with server.page() as page:
             assert page.wait("hello")["right"] == "command"
+
+
+def test_wrong_tokens_of_all_pages_together_are_judged_one_after_another(
+    daemon: Daemon, tmp_path: Path
+) -> None:
+    subprocess.run(["ip", "address", "replace", f"{ELSEWHERE}/32", "dev", "lo"], check=True)
+    server = Web(daemon, tmp_path, "--listen", "0.0.0.0", "--token-file", str(tmp_path / "token"))
+    with server.program, contextlib.ExitStack() as opened:
+        pages = [opened.enter_context(server.page(ELSEWHERE)) for _ in range(6)]
+        for page in pages:
+            assert page.wait("hello")["right"] == "nothing"
+        begin_s = time.monotonic()
+        for page in pages[:5]:
+            page.send(type="token", token="a" * 32)
+        for page in pages[:5]:
+            assert page.wait("hello")["right"] == "nothing"
+        pages[5].send(type="token", token=server.token)
+        assert pages[5].wait("hello")["right"] == "look"
+        # A pause after each of the five; a pause of this computer makes it longer, never shorter.
+        assert time.monotonic() - begin_s >= 5 * 0.2
+        # One that is overtaken has its answer, too; a longer one is wrong.
+        pages[0].send(type="token", token="b" * 100_000)
+        pages[0].send(type="token", token="c")
+        pages[0].send(type="token", token=server.token)
+        told = [pages[0].wait("hello")["right"] for _ in range(3)]
+        assert told == ["nothing", "nothing", "look"]
 
 
 def test_a_page_gets_the_recording_of_the_robot_that_runs_and_of_the_one_that_has_ended(

@@ -64,6 +64,25 @@ def test_a_phone_that_reads_the_code_looks_at_the_robot(chromium: Browser, studi
     context.close()
 
 
+def test_a_browser_on_another_computer_complains_of_nothing(
+    chromium: Browser, studio: Studio
+) -> None:
+    token = studio.daemon.run_dir.joinpath("web-token").read_text().strip()
+    with chromium.new_context(locale="en-GB") as context:
+        page = context.new_page()
+        told: list[str] = []
+        page.on("console", lambda message: told.append(message.text))
+        page.goto(f"http://{ELSEWHERE}:{studio.port}/#{token}")
+        expect(page.locator(".badge.connection")).to_have_text("live")
+        assert told == []
+        # Where the browser honours it, no other page has a handle to this one.
+        answer = page.goto(studio.url)
+        assert answer is not None
+        assert answer.header_value("Cross-Origin-Opener-Policy") == "same-origin"
+        expect(page.locator(".badge.connection")).to_have_text("live")
+        assert told == []
+
+
 def elsewhere(chromium: Browser, studio: Studio, fragment: str = "") -> Page:
     context = chromium.new_context(viewport={"width": 390, "height": 844}, locale="en-GB")
     context.set_default_timeout(PATIENCE_MS)

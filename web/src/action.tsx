@@ -42,8 +42,11 @@ export function CopyLines(props: { request: RobotRequest; command?: string; pyth
   );
 }
 
-/** A button that asks rc10d for something and says what it answered. */
-export function Action(props: { request: RobotRequest; label: string; strong?: boolean }) {
+/** Of an enable: rc10d disables the motor when this page is gone, however it ends. */
+export const kDisableAtEnd = { disable_at_end: 1 };
+
+/** A button that asks rc10d for something and says what it answered; `copied`: its lines elsewhere, if they differ. */
+export function Action(props: { request: RobotRequest; copied?: RobotRequest; label: string; strong?: boolean }) {
   const { link, word } = useStudio();
   const known = useKnown();
   const [told, setTold] = useState<{ status: string; message: string } | null>(null);
@@ -68,7 +71,7 @@ export function Action(props: { request: RobotRequest; label: string; strong?: b
       >
         {props.label}
       </button>
-      <CopyLines request={props.request} />
+      <CopyLines request={props.copied ?? props.request} />
       {told !== null && (
         <span class="refused" role="alert" onClick={() => setTold(null)}>
           {told.message}

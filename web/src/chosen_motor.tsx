@@ -1,7 +1,7 @@
 // Choice of a motor for the parts that move one.
 import type { ComponentChildren } from 'preact';
 
-import { Action } from './action';
+import { Action, kDisableAtEnd } from './action';
 import { useKnown, useStored, useStudio } from './context';
 import type { MotorInfo } from './protocol';
 
@@ -33,7 +33,7 @@ export function useChosenMotor(): { info: MotorInfo | undefined; bar: ComponentC
           ) : motor.status === 'FAULT' ? (
             <Action request={{ operation: 'clear', target: info.name }} label={word('clear')} />
           ) : (
-            <Action request={{ operation: 'enable', target: info.name }} label={word('enable')} />
+            <Action request={{ operation: 'enable', target: info.name, values: kDisableAtEnd }} copied={{ operation: 'enable', target: info.name }} label={word('enable')} />
           )}
           {motor.fault_text !== '' && <span class="refused">{motor.fault_text}</span>}
         </>

@@ -1,7 +1,7 @@
 // The two steps of commissioning that move the motor: it is enabled alone, and moves while a button is held.
 import { useEffect, useRef, useState } from 'preact/hooks';
 
-import { CopyLines, requestPython } from './action';
+import { CopyLines, kDisableAtEnd, requestPython } from './action';
 import { useKnown, useStudio } from './context';
 import { HeldTest } from './held_test';
 import type { TestOutcome } from './link';
@@ -32,7 +32,7 @@ export function AloneTest(props: {
   const ask = async (operation: 'enable_alone' | 'disable') => {
     setBusy(true);
     if (operation === 'enable_alone') mine.current = true;
-    const answer = await link.ask({ operation, target: props.motor });
+    const answer = await link.ask({ operation, target: props.motor, ...(operation === 'enable_alone' ? { values: kDisableAtEnd } : {}) });
     setBusy(false);
     mine.current = answer.status === 'ok' && operation === 'enable_alone';
     setAlone(mine.current);
