@@ -52,6 +52,9 @@ if [ "$(cat "$page/.inputs" 2>/dev/null || true)" != "$made" ] || { [ "$what" = 
     # Only the part that edits loads it.
     "$esbuild" "$repo/web/src/config_editor.ts" --bundle --minify --format=esm --target=es2022 --log-level=warning \
         --legal-comments=eof --outfile="$new/editor.js" >&2
+    # Only saving as MCAP loads it.
+    "$esbuild" "$repo/web/src/mcap_file.ts" --bundle --minify --format=esm --target=es2022 --log-level=warning \
+        --legal-comments=eof --outfile="$new/mcap.js" >&2
     "$esbuild" "$repo/web/studio.css" --bundle --minify --log-level=warning --outfile="$new/studio.css" >&2
     (cd "$repo/web" && npm run --silent docs -- "$new/docs" >&2)
     cp "$repo/web/index.html" "$repo/web/icon.svg" "$new"

@@ -8,12 +8,17 @@ need build test web
 need_python
 export RC10_BUILD=$repo/build/dev
 
-# 200 KiB are a second over a slow network.
-is_small() {
-    local bytes
+is_smaller_than() {
+    local bytes most=$(($1 * 1024))
+    shift
     bytes=$(find "$repo/build/web" -type f "$@" -print0 | xargs -0 cat | gzip -9 | wc -c)
     echo "$bytes bytes"
-    [ "$bytes" -gt 0 ] && [ "$bytes" -le $((200 * 1024)) ]
+    # 20 are those of an empty file.
+    [ "$bytes" -gt 20 ] && [ "$bytes" -le "$most" ]
+}
+# A second over a slow network.
+is_small() {
+    is_smaller_than 200 "$@"
 }
 
 # Whatever it needs comes from the robot.
@@ -23,8 +28,9 @@ asks_nobody_else() {
 }
 
 step "the page is made, its types are right" "$repo/scripts/web.sh" check
-step "at most 200 KiB, compressed, without the editor" is_small ! -name editor.js
+step "at most 200 KiB, compressed, without what is loaded later" is_small ! -name editor.js ! -name mcap.js
 step "the editor, which only one part loads: at most 200 KiB, compressed" is_small -name editor.js
+step "what saves as MCAP, loaded for that: at most 50 KiB, compressed" is_smaller_than 50 -name mcap.js
 step "it asks no other computer" asks_nobody_else
 if must_build dev rc10-web rc10d rc10ctl rc10-lcm; then
     suite tests/studio env PYTHONPATH="$repo/tests/host" "$repo/tests/host/run" tests/studio

@@ -207,3 +207,29 @@ def test_what_is_armed_can_be_disarmed(page: Page, panel: Locator) -> None:
     # A capture takes a second: one that was under way would be there beside the next.
     step(page, panel)
     expect(panel.locator("tbody tr")).to_have_count(1)
+
+
+FILL = """() => {
+  for (let size = 1 << 22; size >= 1; size >>= 1) {
+    try {
+      while (true) localStorage.setItem('filler' + localStorage.length, 'x'.repeat(size));
+    } catch {}
+  }
+}"""
+
+
+def test_captures_beyond_the_browsers_room_are_counted_until_there_is_some(
+    page: Page, panel: Locator
+) -> None:
+    page.evaluate(FILL)
+    step(page, panel)
+    expect(panel.get_by_role("alert")).to_contain_text("no room for the oldest of them (1)")
+    step(page, panel)
+    expect(panel.get_by_role("alert")).to_contain_text("no room for the oldest of them (2)")
+    assert len(saved(page, panel)["captures"]) == 2
+    page.evaluate("() => localStorage.clear()")
+    panel.get_by_role("button", name="Remove yaw 1").click()
+    expect(panel.get_by_role("alert")).to_have_count(0)
+    page.reload()
+    page.locator("#tab-move").click()
+    expect(page.locator(".captures tbody tr")).to_have_count(1)

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 from hostlib.daemon import BIN
-from playwright.sync_api import Browser, Locator, Page, expect
+from playwright.sync_api import Browser, Locator, Page, WebSocketRoute, expect
 
 from conftest import PATIENCE_MS, Studio
 
@@ -240,3 +240,97 @@ def test_on_a_phone_in_chinese_it_is_read_and_typed(chromium: Browser, studio: S
     expect(message.get_by_role("button")).to_have_text("1:1")
     assert page.evaluate("document.documentElement.scrollWidth <= innerWidth")
     context.close()
+
+
+def test_a_check_whose_connection_was_lost_is_asked_again(
+    page: Page, studio: Studio, editor: Locator
+) -> None:
+    expect(verdict(page)).to_contain_text("rc10d accepts it")
+    studio.web.stop()
+    expect(page.locator(".badge.connection")).to_have_text("no connection to rc10-web")
+    paste_over_all(page, editor, "robot: host\nbuses: []\nwheels: 4\n")
+    expect(page.get_by_text("no connection", exact=True)).to_be_visible()
+    expect(verdict(page)).to_have_text("not checked")
+    studio.start(studio.port)
+    expect(verdict(page)).to_contain_text("errors:")
+    expect(page.get_by_text("no connection", exact=True)).to_have_count(0)
+
+
+def test_an_answer_for_a_text_that_was_emptied_meanwhile_is_not_shown(page: Page) -> None:
+    late: list[str | bytes] = []
+
+    def relay(socket: WebSocketRoute) -> None:
+        server = socket.connect_to_server()
+        server.on_message(
+            lambda message: (
+                late.append(message) if "config_checked" in str(message) else socket.send(message)
+            )
+        )
+
+        def release(message: str | bytes) -> None:
+            server.send(message)
+            # The page beats twice a second.
+            if late and "emptied" in state:
+                socket.send(late.pop())
+                state.append("released")
+
+        socket.on_message(release)
+
+    state: list[str] = []
+    page.route_web_socket("**/link", relay)
+    page.reload()
+    page.locator("#tab-configuration").click()
+    editor = page.get_by_label("Text of the configuration")
+    expect(editor).to_contain_text("robot: host")
+    expect(verdict(page)).to_have_text("checking…")
+    while not late:
+        page.wait_for_timeout(50)
+    editor.focus()
+    page.keyboard.press(f"{MODIFIER}+A")
+    page.keyboard.press("Delete")
+    expect(verdict(page)).to_have_text("not checked")
+    state.append("emptied")
+    while "released" not in state:
+        page.wait_for_timeout(50)
+    page.evaluate("() => new Promise((done) => requestAnimationFrame(() => setTimeout(done)))")
+    expect(verdict(page)).to_have_text("not checked")
+    expect(page.get_by_role("region", name="chassis")).to_have_count(0)
+
+
+@pytest.mark.parametrize(
+    ("answer", "why"),
+    [
+        ("Promise.reject(new TypeError('no network'))", "no network"),
+        ("Promise.resolve(new Response('no such file', {status: 404}))", "404"),
+    ],
+)
+def test_a_template_that_cannot_be_had_is_told_and_the_text_stays(
+    page: Page, editor: Locator, answer: str, why: str
+) -> None:
+    page.evaluate(f"() => {{ window.fetch = () => {answer}; }}")
+    page.get_by_role("button", name="Template", exact=True).click()
+    alert = page.get_by_role("alert")
+    expect(alert).to_contain_text("The template could not be loaded:")
+    expect(alert).to_contain_text(why)
+    expect(editor).to_contain_text("robot: host")
+
+
+def test_a_schema_that_could_not_be_had_is_asked_for_again(page: Page) -> None:
+    page.evaluate("""() => {
+      const { fetch } = window;
+      window.asked = 0;
+      window.fetch = (path) => {
+        if (path !== '/rc10d.schema.json' || ++window.asked > 1) return fetch(path);
+        return Promise.reject(new TypeError('no network'));
+      };
+    }""")
+    for _ in range(2):
+        page.locator("#tab-configuration").click()
+        expect(page.get_by_label("Text of the configuration")).to_contain_text("robot: host")
+        page.locator("#tab-overview").click()
+    page.locator("#tab-configuration").click()
+    page.locator(".cm-line", has_text="name: yaw").click()
+    page.keyboard.press("End")
+    page.keyboard.press("ArrowLeft")
+    expect(page.get_by_role("region", name="Key at the cursor")).to_contain_text("values: 1 … 7")
+    assert page.evaluate("window.asked") == 2

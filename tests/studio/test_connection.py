@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import json
 from typing import TYPE_CHECKING
 
 import pytest
+from playwright.sync_api import expect
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -77,3 +79,22 @@ def test_a_server_that_falls_silent_is_left_for_one_new_connection(lonely: Page)
     lonely.clock.run_for(10_000)
     assert open_sockets(lonely) == 1
     assert lonely.evaluate("sockets.filter((socket) => socket.readyState === 3).length") >= 1
+
+
+def test_each_view_of_a_page_has_a_number_of_its_own(page: Page) -> None:
+    views: list[int] = []
+
+    def note(payload: str | bytes) -> None:
+        told = json.loads(payload)
+        if told["type"] == "view":
+            views.append(told["view"])
+
+    with page.expect_websocket() as connection:
+        page.reload()
+    connection.value.on("framesent", note)
+    for part in ("plots", "move", "tune", "plots"):
+        page.locator(f"#tab-{part}").click()
+        expect(page.locator(".plot > .legend td.number").last).not_to_contain_text("\N{EN DASH}")
+    # Of each part its view, and its end.
+    assert len(views) >= 7
+    assert views == sorted(set(views))

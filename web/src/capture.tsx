@@ -6,11 +6,14 @@ import { remember, remembered } from './browser_memory';
 import { type Capture, capturesIn, fileOf, responseOf, stepNumbers, timesOf } from './captures';
 import { colourOf } from './chart';
 import { useKnown, useStored, useStudio } from './context';
+import { download } from './download';
 import { NumberField } from './number_field';
 import { number } from './numbers';
-import { download } from './plots';
 import type { Columns } from './protocol';
 import { Refusal } from './refusal';
+import { logOfCapture, saveMcap } from './signal_log';
+import { kMostColumns } from './ticks';
+import { filled } from './words_commission';
 
 type Edge = 'rising' | 'falling' | 'event';
 
@@ -24,16 +27,20 @@ const kFirst: Trigger = { edge: 'rising', level: 5, pre_s: 0.2, length_s: 1 };
 const kMost_s = 10;
 const kUs = 1e6;
 
-/** Captures in this browser; the oldest go when there is no room. */
-function useCaptures(): [Capture[], (captures: Capture[]) => void] {
+/** Captures in this browser, and the number of those for which it has no room: the oldest, which this page still has. */
+function useCaptures(): [Capture[], (captures: Capture[]) => void, number] {
   const key = 'rc10.captures';
   const [captures, set] = useState<Capture[]>(() => capturesIn(remembered(key) ?? '') ?? []);
+  const [forgotten, setForgotten] = useState(0);
   return [
     captures,
     (next) => {
-      for (let kept = next; !remember(key, fileOf(kept)) && kept.length > 0; kept = kept.slice(1));
+      let kept = next;
+      while (!remember(key, fileOf(kept)) && kept.length > 0) kept = kept.slice(1);
+      setForgotten(next.length - kept.length);
       set(next);
     },
+    forgotten,
   ];
 }
 
@@ -71,8 +78,6 @@ interface Taking {
   asked_ms: number;
 }
 const kAskAgainMs = 1000;
-// rc10-web gives no more columns at a time.
-const kPiece = 4096;
 
 /** Captures over one another, at the moment of their triggers. */
 export function Overlay(props: { captures: Capture[]; colours: Map<string, string> }) {
@@ -129,7 +134,7 @@ export function CapturePanel(props: { motor: string; unit: (signal: string) => s
   const known = useKnown();
   const [trigger, setTrigger] = useStored<Trigger>('trigger', kFirst);
   const [signal, setSignal] = useState(0);
-  const [captures, setCaptures] = useCaptures();
+  const [captures, setCaptures, forgotten] = useCaptures();
   const [hidden, setHidden] = useState<string[]>([]);
   const [state, setState] = useState<'idle' | 'armed' | 'waiting'>('idle');
   const [told, setTold] = useState('');
@@ -173,7 +178,7 @@ export function CapturePanel(props: { motor: string; unit: (signal: string) => s
   const askNext = (now: Taking) => {
     const got = now.values[0]?.length ?? 0;
     now.asked_ms = performance.now();
-    link.range(now.first + got, now.period_us, Math.min(kPiece, now.count - got));
+    link.range(now.first + got, now.period_us, Math.min(kMostColumns, now.count - got));
   };
 
   const collect = (columns: Columns, now: Taking) => {
@@ -257,6 +262,11 @@ export function CapturePanel(props: { motor: string; unit: (signal: string) => s
     setTold('');
     setState('armed');
   };
+  const saveAsMcap = (capture: Capture) =>
+    saveMcap(`rc10-${capture.name.replace(/[^\p{L}\p{N}_-]+/gu, '-')}.mcap`, logOfCapture(capture, known.robot?.modules.map((module) => module.name) ?? [])).then(
+      () => setTold(''),
+      (error: unknown) => setTold(`${word('mcapFailed')} ${String(error)}`),
+    );
   const save = (which: Capture[]) => download('rc10-captures.json', new Blob([fileOf(which)], { type: 'application/json' }));
   const open = async (file: File | undefined) => {
     if (file === undefined) return;
@@ -337,6 +347,11 @@ export function CapturePanel(props: { motor: string; unit: (signal: string) => s
         />
         <Refusal why={told} />
       </div>
+      {forgotten > 0 && (
+        <p class="refused" role="alert">
+          {filled(word('captureNoRoom'), { n: `${forgotten}` })}
+        </p>
+      )}
       {captures.length > 0 && (
         <div class="scroll">
           <table class="timing">
@@ -385,6 +400,9 @@ export function CapturePanel(props: { motor: string; unit: (signal: string) => s
                     <td>
                       <button type="button" onClick={() => save([capture])} aria-label={`${word('captureSave')} ${capture.name}`}>
                         ⤓
+                      </button>
+                      <button type="button" onClick={() => void saveAsMcap(capture)} aria-label={`${word('mcap')} ${capture.name}`}>
+                        {word('mcap')}
                       </button>
                       <button
                         type="button"

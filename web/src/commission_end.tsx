@@ -5,7 +5,7 @@ import type { StepProps } from './commission';
 import { holdsNow, kSteps } from './commission_record';
 import { draftConfiguration } from './config_draft';
 import { useStudio } from './context';
-import { download } from './plots';
+import { download } from './download';
 import type { MotorInfo, Robot } from './protocol';
 import { Refusal } from './refusal';
 import { filled, kStepWords } from './words_commission';

@@ -6,6 +6,8 @@ import type { ConfigEditor } from './config_editor';
 import { CheckedTables } from './config_tables';
 import { ConfigSchema, type KeyHelp, type Schema } from './config_schema';
 import { useStudio } from './context';
+import { download } from './download';
+import { fetchedOnce } from './fetched_once';
 import type { CheckedConfig, ConfigFile, ConfigProblem } from './protocol';
 import type { Word } from './words';
 
@@ -17,19 +19,13 @@ const kMostBytes = 128 * 1024;
 const kSources: Record<ConfigFile['of'], Word> = { running: 'configRunning', last: 'configLast', refused: 'configRefused' };
 const kEditor = '/editor.js';
 
-let schema: Promise<ConfigSchema | null> | null = null;
-function loadSchema(): Promise<ConfigSchema | null> {
-  schema ??= fetch('/rc10d.schema.json')
-    .then(async (answer) => (answer.ok ? new ConfigSchema((await answer.json()) as Schema) : null))
-    .catch(() => null);
-  return schema;
-}
+const loadSchema = fetchedOnce('/rc10d.schema.json', (schema) => new ConfigSchema(schema as Schema));
 
 function bytesOf(text: string): number {
   return new TextEncoder().encode(text).length;
 }
 
-/** Verdict of rc10d on the text, soon after it has changed; the newest text is checked, no other. */
+/** Verdict of rc10d on the text, soon after it has changed, and on a new connection; of the newest text, no other. */
 function useChecked(text: string): { checked: Checked | null; robot: Robot | null; why: string; busy: boolean } {
   const { link, word } = useStudio();
   const [checked, setChecked] = useState<Checked | null>(null);
@@ -38,20 +34,26 @@ function useChecked(text: string): { checked: Checked | null; robot: Robot | nul
   const [busy, setBusy] = useState(false);
   const wanted = useRef<string | null>(null);
   const asking = useRef(false);
+  // Of the connection: each state would draw all of this part anew.
+  const [hello, setHello] = useState(link.known.hello);
+  useEffect(() => link.subscribe(() => setHello(link.known.hello)), [link]);
 
   useEffect(() => {
     wanted.current = text === '' ? null : text;
     setBusy(text !== '');
-    if (text === '') return setChecked(null);
+    if (text === '') {
+      setWhy('');
+      return setChecked(null);
+    }
     const timer = setTimeout(async () => {
       if (asking.current) return;
       asking.current = true;
       while (wanted.current !== null) {
         const next: string = wanted.current;
         const answer = bytesOf(next) > kMostBytes ? word('configTooLarge') : await link.checkConfig(next);
-        if (wanted.current === next) wanted.current = null;
-        // The lines of a text that has changed since are others.
-        if (wanted.current !== null) continue;
+        // The lines of a text that has changed since are others, and an empty one has none.
+        if (wanted.current !== next) continue;
+        wanted.current = null;
         setWhy(typeof answer === 'string' ? answer : '');
         setChecked(typeof answer === 'string' ? null : answer.checked);
         if (typeof answer !== 'string' && answer.checked.robot !== null) setRobot(answer.checked.robot);
@@ -60,7 +62,7 @@ function useChecked(text: string): { checked: Checked | null; robot: Robot | nul
       asking.current = false;
     }, kPauseMs);
     return () => clearTimeout(timer);
-  }, [text, link]);
+  }, [text, link, hello]);
   return { checked, robot, why, busy };
 }
 
@@ -144,14 +146,6 @@ function HelpCard(props: { help: KeyHelp | null; about: string }) {
   );
 }
 
-function save(name: string, text: string): void {
-  const link = document.createElement('a');
-  link.href = URL.createObjectURL(new Blob([text], { type: 'application/yaml' }));
-  link.download = name;
-  link.click();
-  URL.revokeObjectURL(link.href);
-}
-
 function Install() {
   const { word } = useStudio();
   return (
@@ -193,8 +187,13 @@ export function Configuration() {
     load(answer.config.text, word(kSources[answer.of]), answer.config.hidden);
   };
   const loadTemplate = async () => {
-    const answer = await fetch('/template.yaml');
-    load(await answer.text(), word('configTemplate'), 0);
+    try {
+      const answer = await fetch('/template.yaml');
+      if (!answer.ok) throw new Error(`${answer.status} ${answer.statusText}`);
+      load(await answer.text(), word('configTemplate'), 0);
+    } catch (error) {
+      setTold(`${word('configNoTemplate')} ${String(error)}`);
+    }
   };
   const loadFile = async (file: File | null | undefined) => {
     if (file === null || file === undefined) return;
@@ -272,7 +271,7 @@ export function Configuration() {
             event.currentTarget.value = '';
           }}
         />
-        <button type="button" disabled={draft.text === ''} onClick={() => save(`${robot?.name ?? 'robot'}.yaml`, draft.text)}>
+        <button type="button" disabled={draft.text === ''} onClick={() => download(`${robot?.name ?? 'robot'}.yaml`, new Blob([draft.text], { type: 'application/yaml' }))}>
           {word('configDownload')}
         </button>
         <span class="hint">{draft.from}</span>

@@ -14,6 +14,8 @@ export function HeldTest(props: { motor: string; plan: TestPlan; label: string; 
   const [time, setTime] = useState<string | null>(null);
   const end = useRef<End | null>(null);
   const heldKey = useRef('');
+  const onLetGo = useRef(props.onLetGo);
+  onLetGo.current = props.onLetGo;
   // The pointer or key that ended a hold begins none.
   const ended = useRef(0);
   const allowed = props.ready && known.hello?.right === 'command' && known.connection === 'live';
@@ -22,7 +24,7 @@ export function HeldTest(props: { motor: string; plan: TestPlan; label: string; 
     heldKey.current = '';
     if (end.current === null) return;
     end.current(why);
-    props.onLetGo();
+    onLetGo.current();
   };
 
   const begin = async () => {

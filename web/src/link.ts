@@ -112,6 +112,7 @@ export class Link {
   } | null = null;
   private onCurve: (piece: CurvePiece) => void = () => {};
   private seq = 0;
+  private views = 0;
   private token: string | null = null;
   // A greeting comes first on each connection, and one in answer to each token.
   private greetings = 0;
@@ -155,8 +156,11 @@ export class Link {
     if (this.send({ type: 'token', token })) ++this.tokens;
   }
 
-  view(view: number, signals: string[], columnUs: number, spanUs: number): void {
+  /** Number of the view: no other of this page has it, and so what still comes of one before is not taken for it. */
+  view(signals: string[], columnUs: number, spanUs: number): number {
+    const view = ++this.views;
     this.send({ type: 'view', view, signals, column_us: columnUs, span_us: spanUs });
+    return view;
   }
 
   range(firstColumn: number, columnUs: number, count: number): void {

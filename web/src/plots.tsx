@@ -4,9 +4,13 @@ import type uPlot from 'uplot';
 
 import { type Kept, type Mark, colourOf, makeChart } from './chart';
 import { useKnown, useStored, useStudio } from './context';
+import { download } from './download';
 import { number, unitOf } from './numbers';
+import { Refusal } from './refusal';
 import { type Shown, SidePlots } from './side_plots';
 import { type SignalsOf, SignalChooser } from './signal_chooser';
+import { logOfTicks, saveMcap } from './signal_log';
+import { kMostColumns, ticksOf } from './ticks';
 import { Traces } from './traces';
 
 const kSpans_s = [2, 5, 10, 30, 60];
@@ -25,14 +29,6 @@ function allSignals(known: ReturnType<typeof useKnown>): SignalsOf[] {
       names: module.outputs.map((output) => `${module.name}.${output}`),
     })),
   ];
-}
-
-export function download(name: string, content: Blob): void {
-  const link = document.createElement('a');
-  link.href = URL.createObjectURL(content);
-  link.download = name;
-  link.click();
-  setTimeout(() => URL.revokeObjectURL(link.href), 1000);
 }
 
 function firstChoice(known: ReturnType<typeof useKnown>): string[] {
@@ -71,18 +67,22 @@ export function Curves(props: {
   const [drawn, setDrawn] = useState<string[]>([]);
   const [notDrawn, setNotDrawn] = useState<string[]>([]);
   const [droppedTicks, setDroppedTicks] = useState(0);
+  const [saving, setSaving] = useState(false);
+  const [notSaved, setNotSaved] = useState('');
   const box = useRef<HTMLDivElement>(null);
   const chart = useRef<uPlot | null>(null);
   const view = useRef(0);
   const waiting = useRef(0);
   const origin = useRef(0);
-  const zoomed = useRef(-1);
+  const zoomed = useRef({ first: -1, columnUs: 0 });
+  const wall_us = useRef<number | null>(null);
   const pointsNow = useRef<number[]>([]);
   const keptNow = useRef<Kept[]>([]);
   const frozenNow = useRef(false);
   pointsNow.current = points;
   keptNow.current = kept;
   frozenNow.current = frozen;
+  if (known.state !== null) wall_us.current = known.state.data.utime - known.state.data.mono_us;
   // Another start of rc10d, or a module that is known now: rc10-web has no view of it.
   const { robot } = known;
   const source = robot === null ? '' : [robot.robot.robot, robot.robot.pid, ...robot.modules.map((each) => each.outputs.length)].join(' ');
@@ -130,7 +130,8 @@ export function Curves(props: {
     ];
     setPoints([]);
     setFrozen(false);
-    const number_ = ++view.current;
+    const number_ = link.view(chosen, columnUs, span_s * kUs);
+    view.current = number_;
     link.onView = (answer) => {
       if (answer.view !== number_) return;
       setDroppedTicks(answer.dropped_ticks);
@@ -151,7 +152,7 @@ export function Curves(props: {
       if (received.kind === 'next' && origin.current === 0) origin.current = received.first * received.columnUs;
       if (received.kind === 'range') {
         // The answer to the last zoom, not to another's.
-        if (received.first !== zoomed.current) return;
+        if (received.first !== zoomed.current.first || received.columnUs !== zoomed.current.columnUs) return;
         const fine = new Traces(() => origin.current);
         if (!fine.add({ ...received, kind: 'reset' }, number_, received.count)) return;
         chart.current?.setData(
@@ -162,11 +163,10 @@ export function Curves(props: {
       }
       if (traces.add(received, number_, Math.ceil((60 * kUs) / received.columnUs)) && !frozenNow.current) drawSoon();
     });
-    link.view(number_, chosen, columnUs, span_s * kUs);
     return () => {
       link.onView = () => {};
       forget();
-      link.view(++view.current, [], 1000, 0);
+      link.view([], 1000, 0);
       chart.current?.destroy();
       chart.current = null;
     };
@@ -178,8 +178,8 @@ export function Curves(props: {
     frozenNow.current = true;
     const columnUs = Math.max(100, Math.round(((to - from) * kUs) / columns()));
     const first = Math.floor((from * kUs + origin.current) / columnUs);
-    zoomed.current = first;
-    link.range(first, columnUs, Math.min(4096, Math.ceil(((to - from) * kUs) / columnUs)));
+    zoomed.current = { first, columnUs };
+    link.range(first, columnUs, Math.min(kMostColumns, Math.ceil(((to - from) * kUs) / columnUs)));
   };
 
   useEffect(() => {
@@ -210,6 +210,24 @@ export function Curves(props: {
     download('rc10.csv', new Blob([`${lines.join('\n')}\n`], { type: 'text/csv' }));
   };
   const png = () => chart.current?.ctx.canvas.toBlob((blob) => blob !== null && download('rc10.png', blob));
+
+  const mcap = async () => {
+    setSaving(true);
+    setNotSaved(await whyNoMcap().catch((error: unknown) => `${word('mcapFailed')} ${String(error)}`));
+    setSaving(false);
+  };
+  const whyNoMcap = async () => {
+    const window = shownWindow();
+    if (window === null || robot === null || wall_us.current === null) return word('mcapNone');
+    const period_us = Math.round(kUs / robot.robot.rate_hz);
+    const first = Math.max(0, Math.floor(window.from_us / period_us));
+    const count = Math.floor(window.to_us / period_us) + 1 - first;
+    const values = await ticksOf(link, { view: view.current, signals: drawn.length, first, count, period_us });
+    if (values === null || values.every((row) => row.every(Number.isNaN))) return word('mcapNone');
+    const signals = drawn.map((name, i) => ({ name, unit: unit(name), values: values[i] ?? [] }));
+    await saveMcap('rc10.mcap', logOfTicks(robot, signals, first, period_us, wall_us.current));
+    return '';
+  };
 
   const keep = () =>
     setKept(drawn.map((name, i) => ({ name, times: [...traces.times], values: [...(traces.max[i] ?? [])] })));
@@ -251,9 +269,13 @@ export function Curves(props: {
         <button type="button" onClick={csv}>
           {word('csv')}
         </button>
+        <button type="button" disabled={saving} onClick={() => void mcap()}>
+          {word('mcap')}
+        </button>
         <button type="button" onClick={png}>
           {word('png')}
         </button>
+        <Refusal why={notSaved} />
         {droppedTicks > 0 && <span class="hint">{`${droppedTicks} ${word('droppedTicks')}`}</span>}
         {notDrawn.length > 0 && <span class="refused">{`${word('notDrawn')} ${notDrawn.join(', ')}`}</span>}
       </div>

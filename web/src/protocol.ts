@@ -92,6 +92,8 @@ export interface ModuleState {
 export interface State {
   type: 'state';
   data: {
+    /** Wall clock of rc10d at mono_us, µs since 1970. */
+    utime: number;
     mono_us: number;
     state: 'RUN' | 'ESTOP' | 'STOPPING';
     realtime: boolean;

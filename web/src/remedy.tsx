@@ -2,6 +2,7 @@
 import { useEffect, useState } from 'preact/hooks';
 
 import { useStudio } from './context';
+import { fetchedOnce } from './fetched_once';
 import type { RobotEvent } from './protocol';
 
 /** Messages of each row of the page; "…" stands for names and numbers. */
@@ -10,13 +11,7 @@ type Messages = string[][];
 // Shorter ones are in many texts.
 const kLeastLetters = 12;
 
-let asked: Promise<Messages> | null = null;
-function messages(): Promise<Messages> {
-  asked ??= fetch('/docs/messages.json')
-    .then((answer) => (answer.ok ? (answer.json() as Promise<Messages>) : []))
-    .catch(() => []);
-  return asked;
-}
+const messages = fetchedOnce('/docs/messages.json', (rows) => rows as Messages);
 
 /** Letters of the message that are in the text, in their order; 0: not all of them are. */
 function likeness(message: string, text: string): number {
@@ -82,7 +77,7 @@ function sectionOf(event: RobotEvent): string | null {
 export function Remedy(props: { event: RobotEvent }) {
   const { word, language } = useStudio();
   const [rows, setRows] = useState<Messages>([]);
-  useEffect(() => void messages().then(setRows), []);
+  useEffect(() => void messages().then((found) => setRows(found ?? [])), []);
   const place = rowOf(props.event.text, rows) ?? sectionOf(props.event);
   if (place === null) return null;
   const page = language === 'zh' ? 'troubleshooting.zh.html' : 'troubleshooting.html';

@@ -7,6 +7,7 @@ import { useKnown, useStored, useStudio } from './context';
 import { number } from './numbers';
 import type { Columns } from './protocol';
 import { type Spectrum, spectrumOf } from './spectrum';
+import { kMostColumns } from './ticks';
 
 /** Signals of the curves above, and the time that they show. */
 export interface Shown {
@@ -16,7 +17,6 @@ export interface Shown {
 }
 
 const kUs = 1e6;
-const kMostColumns = 4096;
 const kAskEveryMs = 500;
 const kSizes = [256, 1024, 4096];
 

@@ -5,9 +5,9 @@ import { Bode } from './bode';
 import { Overlay } from './capture';
 import { colourOf } from './chart';
 import { useStudio } from './context';
+import { download } from './download';
 import { type TestResult, bodeCsv, captureOf, curveCsv } from './motion_test';
 import { number } from './numbers';
-import { download } from './plots';
 import type { Word } from './words';
 
 const withUnit = (value: number | null | undefined, digits: number, unit: string) =>
