@@ -17,7 +17,7 @@ default=(unit kernel host pages)
 ci=("${default[@]}" lint web demo tidy faults soak)
 all=("${default[@]}" lint web demo clang faults vm package sanitize soak fuzz)
 # Hours, or a Debian of its own: not among all.
-nightly=(arm64 fresh long_fuzz long_soak mutants registry)
+nightly=(arm64 fresh long_fuzz long_soak long_stream mutants registry)
 parts=(build "${all[@]}" tidy "${nightly[@]}")
 
 about() {
