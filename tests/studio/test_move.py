@@ -296,3 +296,16 @@ def test_locked_gains_are_refused_with_the_line(chromium: Browser) -> None:
         expect(gains.get_by_role("alert")).to_contain_text("tuning: locked")
         context.close()
         studio.web.stop()
+
+
+def test_a_motor_that_a_page_enabled_is_disabled_when_the_page_is_gone(
+    chromium: Browser, studio: Studio
+) -> None:
+    with chromium.new_context(locale="en-GB") as context:
+        page = context.new_page()
+        page.goto(studio.url)
+        page.locator("#tab-move").click()
+        page.get_by_label("Motor").select_option("yaw")
+        page.get_by_role("button", name="Enable", exact=True).click()
+        expect(page.locator(".badge.status")).to_have_text("ACTIVE")
+    studio.daemon.wait_motor("yaw", lambda m: m["status"] == "READY", "disabled")

@@ -37,7 +37,8 @@ export function Gains(props: { motor: string; proposed?: Values | null }) {
   const [changes, setHistory] = useStoredOfRobot<Change[]>(`gains/${props.motor}`, []);
   const [yaml, setYaml] = useState('');
   const [told, setTold] = useState('');
-  const shown = useRef<Values | null>(null);
+  // Keys with text of a person, or of a proposal, that is not in force.
+  const entered = useRef(new Set<string>());
   const allowed = known.hello?.right === 'command';
   // Told by another page or program, or another rc10d: what is shown here may be old.
   const told_us = known.events.find((event) => event.code === kGainChanged && event.source === props.motor)?.mono_us;
@@ -53,17 +54,16 @@ export function Gains(props: { motor: string; proposed?: Values | null }) {
       return;
     }
     setTold('');
-    // Text that a person has typed meanwhile stays.
-    const before = shown.current;
+    // Text that was entered meanwhile stays, also if it was in force for a while.
     setWanted((typed) =>
       Object.fromEntries(
         Object.entries(answer.values).map(([key, value]) => {
-          const kept = before?.[key] !== typed[key] ? typed[key] : undefined;
-          return [key, kept ?? value];
+          const text = entered.current.has(key) ? (typed[key] ?? value) : value;
+          if (text === value) entered.current.delete(key);
+          return [key, text];
         }),
       ),
     );
-    shown.current = answer.values;
     setInForce(answer.values);
     setYaml(answer.message);
   };
@@ -72,7 +72,9 @@ export function Gains(props: { motor: string; proposed?: Values | null }) {
   }, [props.motor, allowed, robot, told_us]);
 
   useEffect(() => {
-    if (props.proposed) setWanted((typed) => ({ ...typed, ...props.proposed }));
+    if (!props.proposed) return;
+    for (const key of Object.keys(props.proposed)) entered.current.add(key);
+    setWanted((typed) => ({ ...typed, ...props.proposed }));
   }, [props.proposed]);
 
   const changed = (values: Values) =>
@@ -107,7 +109,10 @@ export function Gains(props: { motor: string; proposed?: Values | null }) {
                       id={`gain-${key}`}
                       changed={wanted[key] !== value}
                       value={wanted[key] ?? value}
-                      onValue={(number) => setWanted({ ...wanted, [key]: number })}
+                      onValue={(number) => {
+                        entered.current.add(key);
+                        setWanted({ ...wanted, [key]: number });
+                      }}
                     />
                   </td>
                 </tr>
