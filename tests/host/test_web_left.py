@@ -1,4 +1,4 @@
-"""A motor that a page has enabled, when the browser or rc10-web is killed: by the state of rc10d."""
+"""A motor that a page has enabled, and the page is gone, or rc10-web: by the state of rc10d."""
 
 from __future__ import annotations
 

@@ -10,10 +10,10 @@ from typing import Any
 
 from mcap.reader import make_reader
 from playwright.sync_api import Locator, Page, expect
-
-from conftest import Studio
 from test_capture import panel, step
 from test_side_plots import answer_the_past
+
+from conftest import Studio
 
 __all__ = ["panel"]
 

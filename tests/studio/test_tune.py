@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import os
+import re
 import signal
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -455,3 +456,53 @@ def test_a_test_is_run_on_a_phone_in_chinese(phone: Page, studio: Studio) -> Non
     form.get_by_role("button", name="开始", exact=True).tap()
     expect(form.locator(".told")).to_contain_text("完成")
     assert phone.evaluate("document.documentElement.scrollWidth <= innerWidth")
+
+
+def gains_in_force(studio: Studio) -> dict[str, float]:
+    found: dict[str, float] = json.loads(studio.daemon.must("gains", "wheel", "--json"))["gains"]
+    return found
+
+
+def test_a_search_judges_gains_by_the_step_and_leaves_those_in_force(
+    page: Page, form: Locator, studio: Studio
+) -> None:
+    before = gains_in_force(studio)
+    proposal = page.get_by_role("region", name="Proposal")
+    search = proposal.get_by_role("button", name="Search", exact=True)
+    form.get_by_label("kind", exact=True).select_option("ramp")
+    expect(search).to_be_disabled()
+    form.get_by_label("kind", exact=True).select_option("step")
+    proposal.get_by_label("tries", exact=True).fill("3")
+    told = proposal.locator("p", has_text=re.compile(r"\d s( →|;)"))
+    for _ in range(5):  # again, if the machine stood still meanwhile
+        search.click()
+        expect(search).to_be_disabled()
+        expect(search).to_be_enabled(timeout=9 * PATIENCE_MS)
+        if told.count() > 0:
+            break
+    # Either way it says by how much.
+    expect(told).to_contain_text(re.compile(r"[\d.]+ s → [\d.]+ s: velocity_pid|None was better"))
+    assert gains_in_force(studio) == before
+    # The step as it was lies beside those that follow.
+    results = page.get_by_role("region", name="Tests", exact=True)
+    expect(results.get_by_role("columnheader", name="wheel step")).not_to_have_count(0)
+    if "velocity_pid" in told.inner_text():
+        expect(page.locator(".gains").get_by_role("button", name="Apply")).to_be_enabled()
+
+
+def test_escape_ends_a_search_and_puts_the_gains_back(
+    page: Page, form: Locator, studio: Studio
+) -> None:
+    before = gains_in_force(studio)
+    form.get_by_label("lasts").fill("5")
+    proposal = page.get_by_role("region", name="Proposal")
+    search = proposal.get_by_role("button", name="Search", exact=True)
+    search.click()
+    # The first step is as it was; the second one has other gains.
+    eventually(lambda: gains_in_force(studio) != before, "other gains", 3 * PATIENCE_MS / 1000)
+    page.keyboard.press("Escape")
+    expect(proposal.get_by_role("alert")).to_have_text(
+        "The search has ended early; the gains of before are in force."
+    )
+    assert gains_in_force(studio) == before
+    rests(studio)

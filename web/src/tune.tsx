@@ -1,15 +1,13 @@
 // Tuning of one motor: tests of motion within bounds, gains beside them, and gains that a measurement proposes.
 import { useEffect, useRef, useState } from 'preact/hooks';
 
-import { CopyLines } from './action';
 import { useChosenMotor } from './chosen_motor';
-import { useKnown, useStored, useStoredOfRobot, useStudio } from './context';
+import { useStored, useStoredOfRobot, useStudio } from './context';
 import { Gains } from './gains';
-import type { TestOutcome } from './link';
-import { type TestPlan, type TestResult, kFirstPlan, kTestModes, kTestUnits, planOf, proposalOf } from './motion_test';
-import { NumberField, OptionalField } from './number_field';
+import { type TestPlan, type TestResult, kFirstPlan, kTestModes, kTestUnits, planOf } from './motion_test';
 import { number, unitOf } from './numbers';
 import { Curves } from './plots';
+import { type Run, Proposal } from './proposal';
 import { TestForm, type Running } from './test_form';
 import { TestResults } from './test_results';
 import type { Word } from './words';
@@ -32,114 +30,6 @@ const kCriteria: Record<string, Word> = {
   silence: 'endSilence',
 };
 
-type Run = (plan: TestPlan) => Promise<TestOutcome>;
-
-/** Two pulses of current, after which the gains of the velocity loop are proposed. */
-function Proposal(props: { motor: string; busy: boolean; run: Run; onProposal: (gains: Record<string, number>) => void }) {
-  const { link, word } = useStudio();
-  const robot = useKnown().robot?.robot.robot ?? '';
-  const [wanted, setWanted] = useStoredOfRobot(`proposal/${props.motor}`, { current_a: 1, max_speed_rpm: null as number | null, time_constant_s: 0.03 });
-  const [told, setTold] = useState('');
-  const [measuring, setMeasuring] = useState(false);
-  // Between the pulses no test is there to be ended.
-  const ended = useRef(false);
-  useEffect(() => {
-    const end = () => {
-      ended.current = true;
-    };
-    const key = (event: KeyboardEvent) => event.key === 'Escape' && end();
-    const hidden = () => document.hidden && end();
-    window.addEventListener('keydown', key);
-    document.addEventListener('visibilitychange', hidden);
-    return () => {
-      end();
-      window.removeEventListener('keydown', key);
-      document.removeEventListener('visibilitychange', hidden);
-    };
-  }, []);
-
-  // Until it stands, or 2 s are over: the next pulse begins from rest.
-  const stop = async () => {
-    const held = link.hold({ motor: props.motor, mode: 'velocity', value: 0 }, () => {});
-    for (let i = 0; i < 40; ++i) {
-      await new Promise((resolve) => setTimeout(resolve, 50));
-      const velocity_rpm = link.known.state?.data.motors.find((each) => each.name === props.motor)?.velocity_rpm;
-      if (document.hidden || !held.renew() || Math.abs(velocity_rpm ?? 0) < 1) break;
-    }
-    held.release();
-  };
-
-  const measure = async () => {
-    setTold('');
-    setMeasuring(true);
-    ended.current = false;
-    const slopes: number[] = [];
-    for (const pulse of [1, 2]) {
-      const amplitude = pulse * wanted.current_a;
-      const outcome = await props.run({
-        ...kFirstPlan,
-        mode: 'current',
-        amplitude,
-        seconds: 0.12,
-        // The measured current swings beyond its target.
-        max_current_a: 2 * Math.abs(amplitude) + 1,
-        max_speed_rpm: wanted.max_speed_rpm,
-      });
-      if ('refused' in outcome || outcome.done.report.abort !== null) break;
-      slopes.push(outcome.done.report.acceleration_rpm_per_s ?? NaN);
-      await stop();
-      if (ended.current) break;
-    }
-    setMeasuring(false);
-    const [low, high] = slopes;
-    if (low === undefined || high === undefined) return;
-    // Both are above the friction, which is the same in both.
-    const acceleration = (high - low) / wanted.current_a;
-    const gains = proposalOf(acceleration, wanted.time_constant_s);
-    if (gains === null) return setTold(word('proposalNone'));
-    setTold(`${number(acceleration, 0)} rpm/s/A: ${Object.entries(gains).map(([key, value]) => `${key} ${value}`).join(', ')}`);
-    props.onProposal(gains);
-  };
-
-  return (
-    <section class="card test" aria-label={word('proposal')}>
-      <h3>{word('proposal')}</h3>
-      <p class="hint">{word('proposalHint')}</p>
-      <form onSubmit={(event) => event.preventDefault()}>
-        <fieldset>
-          <legend>{word('testShape')}</legend>
-          <label>
-            <span>{word('proposalPulse')}</span>
-            <NumberField label={word('proposalPulse')} value={wanted.current_a} disabled={props.busy} onValue={(value) => setWanted({ ...wanted, current_a: value })} />
-            <span class="hint">A</span>
-          </label>
-          <label>
-            <span>{word('testMaxSpeed')}</span>
-            <OptionalField label={word('testMaxSpeed')} value={wanted.max_speed_rpm} otherwise="" required disabled={props.busy} onValue={(value) => setWanted({ ...wanted, max_speed_rpm: value })} />
-            <span class="hint">rpm</span>
-          </label>
-          <label>
-            <span>{word('proposalTime')}</span>
-            <NumberField label={word('proposalTime')} value={wanted.time_constant_s} disabled={props.busy} onValue={(value) => setWanted({ ...wanted, time_constant_s: value })} />
-            <span class="hint">s</span>
-          </label>
-        </fieldset>
-        <div class="toolbar">
-          <button type="button" class="strong" disabled={props.busy || measuring || wanted.max_speed_rpm === null} onClick={() => void measure()}>
-            {word('proposalMeasure')}
-          </button>
-          <CopyLines
-            request={{ operation: 'test', target: props.motor }}
-            command={`rc10ctl test-motion ${props.motor} step ${wanted.current_a} --mode current --for 0.12s --max-current ${2 * Math.abs(wanted.current_a) + 1} --max-speed ${wanted.max_speed_rpm ?? 'RPM'}`}
-            python={`python python/examples/pid_tuning.py ${robot} ${props.motor} --current ${wanted.current_a} --time-constant ${wanted.time_constant_s}`}
-          />
-        </div>
-      </form>
-      {told !== '' && <p role="status">{told}</p>}
-    </section>
-  );
-}
-
 export function Tune() {
   const { link, word } = useStudio();
   const { info, bar } = useChosenMotor();
@@ -159,7 +49,7 @@ export function Tune() {
     setResults(kept);
   };
 
-  const run: Run = async (wanted) => {
+  const run: Run = async (wanted, isKept = true) => {
     setTold(null);
     setRunning({ time_s: 0, lasts_s: 0 });
     const gains = link.ask({ operation: 'get_config', target: name });
@@ -187,7 +77,7 @@ export function Tune() {
             text: `${abort.text}; ${name} ${doing}`,
           },
     );
-    if (report.ticks === 0) return outcome;
+    if (report.ticks === 0 || !isKept) return outcome;
     const config = await gains;
     const id = `${++numbered}`;
     const title = `#${id} ${name} ${report.kind} ${wanted.amplitude} ${kTestUnits[report.mode]}`;
@@ -235,7 +125,7 @@ export function Tune() {
             <p class="hint">{word('testNone')}</p>
           )}
           {info.modes.includes('current') && info.modes.includes('velocity') && (
-            <Proposal key={`proposal ${name}`} motor={name} busy={running !== null} run={run} onProposal={setProposed} />
+            <Proposal key={`proposal ${name}`} motor={name} plan={plan} busy={running !== null} run={run} onProposal={setProposed} />
           )}
           <Gains key={`gains ${name}`} motor={name} proposed={proposed} />
         </div>
