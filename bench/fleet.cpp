@@ -6,7 +6,9 @@
 #include <cstdio>
 #include <cstdlib>
 #include <string>
+#include <utility>
 
+#include "config/load_config.hpp"
 #include "config/robot_config.hpp"
 #include "drives/dji/dji_family.hpp"
 #include "drives/dji/dji_model.hpp"
@@ -43,7 +45,22 @@ MotorSettings wheel(std::size_t index, int id) {
   return config;
 }
 
+RobotConfig configured(const Shape& shape) {
+  std::string text = "robot: bench\nbuses:\n";
+  for (std::size_t bus = 0; bus < shape.buses; ++bus) {
+    text += "  - name: bus" + std::to_string(bus) + "\n    type: sim\n    motors:\n";
+    for (std::size_t i = 0; i < shape.motors_per_bus; ++i) {
+      text += "      - {name: motor" + std::to_string(bus * shape.motors_per_bus + i) +
+              ", model: M3508, id: " + std::to_string(i + 1) + ", zero: power_on}\n";
+    }
+  }
+  auto outcome = parseRobotConfig(text, "bench.yaml");
+  if (!outcome) die(outcome.errorText());
+  return std::move(*outcome.config);
+}
+
 RobotConfig robotConfig(const Shape& shape) {
+  if (shape.family == Family::kConfigured) return configured(shape);
   RobotConfig config;
   config.robot = "bench";
   if (shape.family != Family::kDji) return config;

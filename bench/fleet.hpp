@@ -15,8 +15,9 @@
 namespace rc10::bench {
 
 enum class Family : std::uint8_t {
-  kDji,   ///< M3508 and DJI_Group, as a configuration makes them: at most 8 a bus.
-  kWide,  ///< WideMotor: the same work, at most 32 a bus.
+  kDji,         ///< M3508 and DJI_Group without guards: at most 8 a bus.
+  kConfigured,  ///< The same with the guards and limits that a configuration's defaults are.
+  kWide,        ///< WideMotor: the work of kDji, at most 32 a bus.
 };
 
 struct Shape {
@@ -28,8 +29,9 @@ struct Shape {
   [[nodiscard]] constexpr std::size_t motors() const noexcept { return buses * motors_per_bus; }
 };
 
-inline constexpr std::array<Shape, 6> kShapes{{{"dji_1", Family::kDji, 1, 1},
+inline constexpr std::array<Shape, 7> kShapes{{{"dji_1", Family::kDji, 1, 1},
                                                {"dji_8", Family::kDji, 1, 8},
+                                               {"configured_2x4", Family::kConfigured, 2, 4},
                                                {"dji_4x8", Family::kDji, 4, 8},
                                                {"wide_8", Family::kWide, 1, 8},
                                                {"wide_32", Family::kWide, 1, 32},
