@@ -180,9 +180,7 @@ void Fleet::command() noexcept { exchange_.commands.push(command_); }
 void Fleet::receive() noexcept {
   for (std::size_t i = 0; i < robot_->buses().size(); ++i) {
     auto& bus = *robot_->buses()[i].bus;
-    for (auto n = inboxes_[i].frames.read_available(); n > 0; --n) {
-      inboxes_[i].frames.consume_one([&bus](const CanFrame& frame) { bus.dispatch(frame); });
-    }
+    inboxes_[i].frames.consume_all([&bus](const CanFrame& frame) { bus.dispatch(frame); });
   }
 }
 

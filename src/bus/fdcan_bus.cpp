@@ -82,6 +82,7 @@ void fdCANbus::dispatch(const CanFrame& frame) noexcept {
   counters_.rx_data_bits += bits.data;
   FrameListener* const device = table_.find(frame);
   const auto verdict = device != nullptr ? device->updateFeedback(frame) : FrameVerdict::kForeign;
+  if (verdict == FrameVerdict::kAccepted) return;  // as nearly every frame
   if (device == nullptr) ++counters_.rx_unmatched;
   if (verdict == FrameVerdict::kMalformed) ++counters_.rx_malformed;
   // The socket does not receive what it sends itself.
@@ -133,17 +134,15 @@ void fdCANbus::packRest() noexcept {
 
 template <typename Pack>
 void fdCANbus::packAll(Pack pack) noexcept {
-  std::array<CanFrame, kMaxFramesPerPacker>
-      frames{};  // once: a packer writes the whole of each of its frames
   for (std::size_t i = 0; i < packers_.size(); ++i) {
     const std::size_t packer = (first_packer_ + i) % packers_.size();
-    const std::size_t count = std::min(pack(*packers_[packer], std::span<CanFrame>(frames)), frames.size());
+    const std::size_t count = std::min(pack(*packers_[packer], std::span<CanFrame>(packed_)), packed_.size());
     if (count > batch_->room()) {  // half a sequence is worse than none
       counters_.tx_dropped += count;
       if (!first_crowded_out_) first_crowded_out_ = packer;
       continue;
     }
-    for (const CanFrame& frame : std::span(frames).first(count)) append(frame, packer);
+    for (const CanFrame& frame : std::span(packed_).first(count)) append(frame, packer);
   }
 }
 

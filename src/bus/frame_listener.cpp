@@ -1,5 +1,7 @@
 #include "bus/frame_listener.hpp"
 
+#include <algorithm>
+
 namespace rc10 {
 namespace {
 
@@ -26,6 +28,11 @@ bool accepts(const FrameFilter& filter, const CanFrame& frame) noexcept {
   const auto& [byte_index, mask, value] = *filter.discriminator;
   return byte_index < frame.length && byte_index < kMaxPayload &&
          ((frame.data[byte_index] ^ value) & mask) == 0;
+}
+
+bool acceptsAny(std::span<const FrameFilter> filters, const CanFrame& frame) noexcept {
+  return std::any_of(filters.begin(), filters.end(),
+                     [&frame](const FrameFilter& filter) { return accepts(filter, frame); });
 }
 
 }  // namespace rc10

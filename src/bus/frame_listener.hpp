@@ -31,6 +31,8 @@ struct FrameFilter {
 
 /// True if the frame satisfies the filter.
 [[nodiscard]] bool accepts(const FrameFilter& filter, const CanFrame& frame) noexcept;
+/// True if it satisfies one of them.
+[[nodiscard]] bool acceptsAny(std::span<const FrameFilter> filters, const CanFrame& frame) noexcept;
 
 enum class FrameVerdict : std::uint8_t {
   kAccepted,

@@ -139,9 +139,7 @@ FrameListener* FrameTable::find(const CanFrame& frame) const noexcept {
   const bool exact = !frame.id.extended && frame.id.value <= kStandardIdMask;
   for (DeviceSet left = candidates(frame.id); left != 0; left &= left - 1) {
     const Device& device = devices_[static_cast<std::size_t>(std::countr_zero(left))];
-    const bool accepted = (exact && device.by_id) ||
-                          std::any_of(device.filters.begin(), device.filters.end(),
-                                      [&frame](const FrameFilter& filter) { return accepts(filter, frame); });
+    const bool accepted = (exact && device.by_id) || acceptsAny(device.filters, frame);
     if (accepted && device.listener->matchesFrame(frame)) return device.listener;
   }
   return nullptr;

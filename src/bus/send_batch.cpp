@@ -29,8 +29,11 @@ bool SendBatch::add(const CanFrame& frame, std::optional<std::size_t> packer) no
   const std::size_t bytes = encodeFrame(frame, frames_[size_]);
   if (bytes == 0) return false;
   contents_[size_].iov_len = bytes;
-  entries_[size_] = {frame, unstuffedBits(shapeOf(frame)), packer, false};
-  ++size_;
+  Entry& entry = entries_[size_++];
+  entry.frame = frame;
+  entry.bits = unstuffedBits(shapeOf(frame));
+  entry.packer = packer;
+  entry.sent = false;
   return true;
 }
 

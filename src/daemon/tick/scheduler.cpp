@@ -114,9 +114,7 @@ void Scheduler::receive() noexcept {
   for (std::size_t i = 0; i < robot_.buses().size(); ++i) {
     auto& bus = *robot_.buses()[i].bus;
     // Only what is there now: a flooded bus must not lengthen the tick without bound.
-    for (auto n = inboxes_[i].frames.read_available(); n > 0; --n) {
-      inboxes_[i].frames.consume_one([&bus](const CanFrame& frame) { bus.dispatch(frame); });
-    }
+    inboxes_[i].frames.consume_all([&bus](const CanFrame& frame) { bus.dispatch(frame); });
   }
   for (auto& entry : robot_.serialDevices())
     deliver((*robot_.serialChannels())[entry.channel], *entry.device);
