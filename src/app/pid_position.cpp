@@ -18,18 +18,18 @@ constexpr float kFaded = 1e-6F;
 
 }  // namespace
 
-float PID_Position::errorOf(float target, float measured) const noexcept {
+inline float PID_Position::errorOf(float target, float measured) const noexcept {
   if (config_.circular_period > 0.0F) {
     return saturate(shortestWay(measured, target, config_.circular_period));
   }
   return saturate(target - measured);
 }
 
-float PID_Position::afterDeadband(float error) const noexcept {
+inline float PID_Position::afterDeadband(float error) const noexcept {
   return std::abs(error) < config_.deadband ? 0.0F : error;
 }
 
-float PID_Position::proportionalAndDerivative() const noexcept {
+inline float PID_Position::proportionalAndDerivative() const noexcept {
   return saturate(config_.kp * state_.error) - saturate(config_.kd * derivative_.value());
 }
 
@@ -41,7 +41,7 @@ float PID_Position::step(float target, float measured, float dt_s, OutputRange r
   if (!(dt_s > 0.0F)) return state_.output;
   const float change = errorOf(measured, state_.measured);  // circular as well: no jump at the wrap
   state_.measured = measured;
-  return stepError(errorOf(target, measured), change, dt_s, range);
+  return advance(errorOf(target, measured), change, dt_s, range);
 }
 
 float PID_Position::stepError(float error, float measured_change, float dt_s, OutputRange range) noexcept {
@@ -50,6 +50,10 @@ float PID_Position::stepError(float error, float measured_change, float dt_s, Ou
     return 0.0F;
   }
   if (!(dt_s > 0.0F)) return state_.output;
+  return advance(error, measured_change, dt_s, range);
+}
+
+float PID_Position::advance(float error, float measured_change, float dt_s, OutputRange range) noexcept {
   const float dt = std::min(dt_s, kMaxStepSeconds);
 
   if (state_.glide != 0.0F || state_.output_offset != 0.0F) {  // over a while after a start

@@ -70,6 +70,8 @@ class PID_Position {
   [[nodiscard]] const State& state() const noexcept { return state_; }
 
  private:
+  /// stepError() on finite numbers and a dt above 0.
+  float advance(float error, float measured_change, float dt_s, OutputRange range) noexcept;
   [[nodiscard]] float errorOf(float target, float measured) const noexcept;
   [[nodiscard]] float afterDeadband(float error) const noexcept;
   [[nodiscard]] float proportionalAndDerivative() const noexcept;

@@ -61,16 +61,19 @@ bool Encoder::jumped(double off_turns, float velocity_rpm, Duration gap) const n
 inline Encoder::Step Encoder::stepOver(double moved_turns, double turns_per_ns,
                                        double spacing_ns) const noexcept {
   const double ahead = turns_per_ns * spacing_ns - moved_turns;
+  const double way = std::fabs(ahead);
+  const double explained = errorTurns(spacing_ns) + kJumpMarginTurns;
+  if (way < 0.5) return {.turns = 0, .off = way, .explained = way <= explained};  // nearly always
   // A speed beyond all reason must not overflow the conversion.
-  if (!(std::fabs(ahead) < kMostTurns)) return {.turns = 0, .off = std::fabs(ahead), .explained = false};
+  if (!(way < kMostTurns)) return {.turns = 0, .off = way, .explained = false};
   const auto turns = static_cast<std::int64_t>(ahead + std::copysign(0.5, ahead));
   const double off = std::fabs(ahead - static_cast<double>(turns));
-  return {.turns = turns, .off = off, .explained = off <= errorTurns(spacing_ns) + kJumpMarginTurns};
+  return {.turns = turns, .off = off, .explained = off <= explained};
 }
 
 // By the stamps, and by whole periods from what they say down to two less: of these, the number of turns that
 // speed and position agree on.
-Encoder::Step Encoder::chooseStep(double moved_turns, double turns_per_ns, Duration gap) noexcept {
+inline Encoder::Step Encoder::chooseStep(double moved_turns, double turns_per_ns, Duration gap) noexcept {
   Step chosen = stepOver(moved_turns, turns_per_ns, nanoseconds(gap));
   const Duration period = config_.sample_period;
   if (period <= Duration{0}) return chosen;
