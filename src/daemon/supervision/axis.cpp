@@ -213,18 +213,16 @@ void Axis::order(RobotStatus robot, const Tick& tick) noexcept {
     return;
   }
   const bool stops = ramps();
-  const Target target =
+  in_force_ =
       stops ? Target{.mode = ControlMode::kVelocity, .value = fallback_.rampRpm(tick.now)} : motor_.target();
   // First, so that soft limits act in this tick already.
-  motor_.restoreReference(target.mode);
-  const auto told = shaper_.follows(target.mode)
+  motor_.restoreReference(in_force_.mode);
+  const auto told = shaper_.follows(in_force_.mode)
                         ? TargetShaper::InForce{}
                         : TargetShaper::InForce{motor_.commandValue(), motor_.commandUnit()};
-  const auto shaped = stops ? shaper_.slowDown(target, motor_.feedback(), told, tick.dt_s)
-                            : shaper_.step(target, motor_.feedback(), told, tick.dt_s);
-  limits_ |= shaped.limits;
-  in_force_ = shaped.target;
-  motor_.order(kind, shaped.target);
+  limits_ |= stops ? shaper_.slowDown(in_force_, motor_.feedback(), told, tick.dt_s)
+                   : shaper_.step(in_force_, motor_.feedback(), told, tick.dt_s);
+  motor_.order(kind, in_force_);
 }
 
 FrameKind Axis::frameKind(RobotStatus robot) const noexcept {

@@ -47,50 +47,44 @@ bool TargetShaper::firstStepAllowed(const Target& asked, const MotorFeedback& fe
          !(std::fabs(distanceDeg(asked, feedback)) > config_.max_first_step_deg);
 }
 
-TargetShaper::Shaped TargetShaper::step(const Target& target, const MotorFeedback& feedback, InForce in_force,
-                                        float dt_s) noexcept {
+std::uint32_t TargetShaper::step(Target& target, const MotorFeedback& feedback, InForce in_force,
+                                 float dt_s) noexcept {
   if (!follows(target.mode)) begin(target.mode, feedback, in_force);
   if (!(share_ < 1.0)) return shape(target, feedback, dt_s);
-  auto out = shape(softened(target, dt_s), feedback, dt_s);
-  out.limits |= kLimitSlew;
-  return out;
+  soften(target, dt_s);
+  return shape(target, feedback, dt_s) | kLimitSlew;
 }
 
-TargetShaper::Shaped TargetShaper::slowDown(const Target& target, const MotorFeedback& feedback,
-                                            InForce in_force, float dt_s) noexcept {
+std::uint32_t TargetShaper::slowDown(Target& target, const MotorFeedback& feedback, InForce in_force,
+                                     float dt_s) noexcept {
   if (!follows(target.mode)) begin(target.mode, feedback, in_force);
-  const auto out = shape(target, feedback, dt_s);
+  const auto limits = shape(target, feedback, dt_s);
   soft_ = value_;
-  return out;
+  return limits;
 }
 
 // Share of the target by the time since the motor was enabled, from where it is on its way: a target that
 // changes meanwhile never leads back. A spring is stiff at once, and begins where the shaft is.
-Target TargetShaper::softened(Target asked, float dt_s) noexcept {
+void TargetShaper::soften(Target& asked, float dt_s) noexcept {
   const double left = 1.0 - share_;
   share_ = std::min(1.0, share_ + static_cast<double>(dt_s / config_.soft_start_s));
   const bool moves = isEffort(mode_) || mode_ == ControlMode::kVelocity || needsReference(mode_);
-  if (!moves) return asked;
+  if (!moves) return;
   asked.velocity_ff_rpm *= static_cast<float>(share_);
   asked.torque_ff_nm *= static_cast<float>(share_);
-  if (!(share_ < 1.0)) return asked;
+  if (!(share_ < 1.0)) return;
   const bool any_turn = mode_ == ControlMode::kAngle;
   const double way = any_turn ? shortestAngle(soft_, asked.value) : asked.value - soft_;
   soft_ += way * (1.0 - (1.0 - share_) / left);
   asked.value = any_turn ? wrapDegrees(soft_) : soft_;
-  return asked;
 }
 
-TargetShaper::Shaped TargetShaper::shape(const Target& target, const MotorFeedback& feedback,
-                                         float dt_s) noexcept {
-  if (isEffort(mode_)) return shapeEffort(target, feedback, dt_s);
-  if (mode_ != ControlMode::kVelocity && !needsReference(mode_)) return {target, 0};
-  Target asked = target;
+std::uint32_t TargetShaper::shape(Target& asked, const MotorFeedback& feedback, float dt_s) noexcept {
+  if (isEffort(mode_)) return shapeEffort(asked, feedback, dt_s);
+  if (mode_ != ControlMode::kVelocity && !needsReference(mode_)) return 0;
   const auto limits = shapeVelocityFf(asked, dt_s) | shapeTorqueFf(asked, feedback, dt_s);
-  auto out = mode_ == ControlMode::kVelocity ? shapeVelocity(asked, feedback, dt_s)
-                                             : shapeAngle(asked, feedback, dt_s);
-  out.limits |= limits;
-  return out;
+  return limits | (mode_ == ControlMode::kVelocity ? shapeVelocity(asked, feedback, dt_s)
+                                                   : shapeAngle(asked, feedback, dt_s));
 }
 
 // From what acts, in the unit of the mode: the last command may have been a speed.
@@ -200,32 +194,31 @@ double TargetShaper::torqueUnderCeiling(const MotorFeedback& feedback, float dt_
   return ceiling_nm_;
 }
 
-TargetShaper::Shaped TargetShaper::shapeEffort(Target asked, const MotorFeedback& feedback,
-                                               float dt_s) noexcept {
+std::uint32_t TargetShaper::shapeEffort(Target& asked, const MotorFeedback& feedback, float dt_s) noexcept {
   // One effort, so that no part of it passes the limits by.
   asked.value += static_cast<double>(asked.torque_ff_nm) * static_cast<double>(config_.effort_per_nm);
   asked.torque_ff_nm = 0.0F;
   const bool duty = mode_ == ControlMode::kDuty && config_.effort_full_scale > 0.0F;
   const double scale = duty ? 1.0 / static_cast<double>(config_.effort_full_scale) : 1.0;
   const double per_s = scale * static_cast<double>(config_.effort_slew_per_s);
-  Shaped out{asked, slewTowards(asked.value, per_s, dt_s, value_) ? kLimitSlew : 0U};
-  out.target.value = value_;
-  if (!bounded(feedback) && !reduced()) return out;
+  std::uint32_t limits = slewTowards(asked.value, per_s, dt_s, value_) ? kLimitSlew : 0U;
+  asked.value = value_;
+  if (!bounded(feedback) && !reduced()) return limits;
   const bool known = config_.approach_effort_per_rpm > 0.0F || config_.effort_per_rpm > 0.0F;
-  if (!known && config_.has_velocity_loop) return boundBySpeed(out, feedback);
+  if (!known && config_.has_velocity_loop) return limits | boundBySpeed(asked, feedback);
   // A push outwards fades as the speed nears what is allowed, and brakes beyond it. A push inwards always
   // acts.
   const Envelope allowed = allowedSpeeds(feedback);
   const double inside = std::clamp(value_, scale * effortTowards(allowed.low_rpm, -1.0, feedback),
                                    scale * effortTowards(allowed.high_rpm, 1.0, feedback));
-  if (inside != value_) out.limits |= limitOf(inside < value_ ? allowed.high_rpm : allowed.low_rpm);
-  out.target.value = inside;
-  return out;
+  if (inside != value_) limits |= limitOf(inside < value_ ? allowed.high_rpm : allowed.low_rpm);
+  asked.value = inside;
+  return limits;
 }
 
 // A drive of unknown speed per effort may have a velocity loop: that brakes a shaft that is faster than
 // allowed, until it is clearly slower.
-TargetShaper::Shaped TargetShaper::boundBySpeed(Shaped out, const MotorFeedback& feedback) noexcept {
+std::uint32_t TargetShaper::boundBySpeed(Target& asked, const MotorFeedback& feedback) noexcept {
   const Envelope allowed = allowedSpeeds(feedback);
   const auto rpm = static_cast<double>(feedback.velocity_rpm);
   const double share = speed_bounds_effort_ ? kEffortAgainShare : 1.0;
@@ -234,19 +227,16 @@ TargetShaper::Shaped TargetShaper::boundBySpeed(Shaped out, const MotorFeedback&
   speed_bounds_effort_ = high || low;
   if (speed_bounds_effort_) {
     const double most_rpm = high ? allowed.high_rpm : allowed.low_rpm;
-    out.limits |= limitOf(most_rpm);
-    out.target = Target{.mode = ControlMode::kVelocity, .value = most_rpm};
+    asked = Target{.mode = ControlMode::kVelocity, .value = most_rpm};
     // It goes on from what is measured then.
     if (mode_ == ControlMode::kCurrent && config_.effort_slew_per_s > 0.0F)
       value_ = finiteOr0(static_cast<double>(feedback.current_a));
-    return out;
+    return limitOf(most_rpm);
   }
   const double outward_rpm = std::fabs(value_ > 0.0 ? allowed.high_rpm : allowed.low_rpm);
-  if (!reduced() && outward_rpm < kEffortFadesRpm) {
-    out.target.value = value_ * outward_rpm / kEffortFadesRpm;
-    if (value_ != 0.0) out.limits |= kLimitAngle;
-  }
-  return out;
+  if (reduced() || !(outward_rpm < kEffortFadesRpm)) return 0;
+  asked.value = value_ * outward_rpm / kEffortFadesRpm;
+  return value_ != 0.0 ? kLimitAngle : 0U;
 }
 
 // Without a velocity loop soft limits leave no push outwards; a ceiling only ends a push that drives the
@@ -265,17 +255,16 @@ double TargetShaper::effortFor(double allowed_rpm, const MotorFeedback& feedback
              static_cast<double>(config_.approach_effort_per_rpm);
 }
 
-TargetShaper::Shaped TargetShaper::shapeVelocity(Target asked, const MotorFeedback& feedback,
-                                                 float dt_s) noexcept {
-  Shaped out{asked, slew(asked.value, config_.velocity_slew_rpm_per_s, dt_s) ? kLimitSlew : 0U};
+std::uint32_t TargetShaper::shapeVelocity(Target& asked, const MotorFeedback& feedback, float dt_s) noexcept {
+  std::uint32_t limits = slew(asked.value, config_.velocity_slew_rpm_per_s, dt_s) ? kLimitSlew : 0U;
   if (bounded(feedback) || reduced()) {
     const Envelope allowed = allowedSpeeds(feedback);
     const double inside = std::clamp(value_, allowed.low_rpm, allowed.high_rpm);
-    if (inside != value_) out.limits |= limitOf(inside);
+    if (inside != value_) limits |= limitOf(inside);
     value_ = inside;
   }
-  out.target.value = value_;
-  return out;
+  asked.value = value_;
+  return limits;
 }
 
 // The nearest angle to the goal that is allowed; any turn of it if the turn does not matter.
@@ -287,33 +276,32 @@ double TargetShaper::reachable(double goal_deg, bool any_turn) const noexcept {
   return allowed ? other_way : inside;
 }
 
-TargetShaper::Shaped TargetShaper::shapeAngle(Target asked, const MotorFeedback& feedback,
-                                              float dt_s) noexcept {
+std::uint32_t TargetShaper::shapeAngle(Target& asked, const MotorFeedback& feedback, float dt_s) noexcept {
   const bool limited = bounded(feedback);
   const bool any_turn = asked.mode == ControlMode::kAngle;
   if (!limited && !reduced() && !(config_.angle_slew_deg_per_s > 0.0F)) {
     const double here_deg = feedback.total_angle_deg;
     value_ = any_turn ? here_deg + shortestAngle(here_deg, asked.value) : asked.value;
-    return {asked, 0};
+    return 0;
   }
   // From here on in multi-turn angles: the shortest way may lead through what is not allowed.
   const double goal = any_turn ? value_ + shortestAngle(value_, asked.value) : asked.value;
   const double allowed = limited ? reachable(goal, any_turn) : goal;
   const double before_deg = value_;
-  Shaped out{asked, 0};
+  std::uint32_t limits = 0;
   if (any_turn ? wrapDegrees(allowed) != wrapDegrees(goal) : allowed != goal) {
-    out.limits |= kLimitAngle;
-    out.target.velocity_ff_rpm = 0.0F;  // it would lead on
+    limits = kLimitAngle;
+    asked.velocity_ff_rpm = 0.0F;  // it would lead on
   } else if (limited) {
     const Envelope towards = envelope(feedback.total_angle_deg);
-    out.target.velocity_ff_rpm = static_cast<float>(
+    asked.velocity_ff_rpm = static_cast<float>(
         std::clamp(static_cast<double>(asked.velocity_ff_rpm), towards.low_rpm, towards.high_rpm));
   }
-  if (slew(allowed, config_.angle_slew_deg_per_s, dt_s)) out.limits |= kLimitSlew;
-  if (any_turn) out.target.mode = ControlMode::kTotalAngle;
-  out.target.value = value_;
-  if (reduced()) out.limits |= shorten(out.target, before_deg, feedback, dt_s);
-  return out;
+  if (slew(allowed, config_.angle_slew_deg_per_s, dt_s)) limits |= kLimitSlew;
+  if (any_turn) asked.mode = ControlMode::kTotalAngle;
+  asked.value = value_;
+  if (reduced()) limits |= shorten(asked, before_deg, feedback, dt_s);
+  return limits;
 }
 
 // Under a ceiling the angle moves no faster than the ceiling, and leads a shaft that moves towards it by no

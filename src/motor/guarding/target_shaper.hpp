@@ -37,11 +37,6 @@ struct ShapingConfig {
 /// thread only.
 class TargetShaper {
  public:
-  struct Shaped {
-    Target target;
-    std::uint32_t limits = 0;  ///< Set of LimitFlag.
-  };
-
   explicit TargetShaper(const ShapingConfig& config) noexcept
       : config_(config),
         soft_limits_(std::isfinite(config.angle_min_deg) || std::isfinite(config.angle_max_deg)) {}
@@ -54,12 +49,12 @@ class TargetShaper {
   /// Whether a target of this mode goes on from the last step. One that does not begins from `in_force`,
   /// which is of no use otherwise.
   [[nodiscard]] bool follows(ControlMode mode) const noexcept { return mode == mode_; }
-  /// `dt_s`: since the last step.
-  [[nodiscard]] Shaped step(const Target& target, const MotorFeedback& feedback, InForce in_force,
-                            float dt_s) noexcept;
+  /// Shapes `target`; the set of LimitFlag that act. `dt_s`: since the last step.
+  [[nodiscard]] std::uint32_t step(Target& target, const MotorFeedback& feedback, InForce in_force,
+                                   float dt_s) noexcept;
   /// The same for a stop, which is never soft.
-  [[nodiscard]] Shaped slowDown(const Target& target, const MotorFeedback& feedback, InForce in_force,
-                                float dt_s) noexcept;
+  [[nodiscard]] std::uint32_t slowDown(Target& target, const MotorFeedback& feedback, InForce in_force,
+                                       float dt_s) noexcept;
   /// After a change of the angle loop's gain: see kApproachOfAngleGain.
   void setApproach(float rpm_per_deg) noexcept { config_.approach_rpm_per_deg = rpm_per_deg; }
   /// Speed that no target of any mode leads beyond; infinite: none. A shaft that is faster is braked by
@@ -107,19 +102,21 @@ class TargetShaper {
   [[nodiscard]] double effortFor(double allowed_rpm, const MotorFeedback& feedback) const noexcept;
   [[nodiscard]] double reachable(double goal_deg, bool any_turn) const noexcept;
   void begin(ControlMode mode, const MotorFeedback& feedback, InForce in_force) noexcept;
-  [[nodiscard]] Shaped shape(const Target& target, const MotorFeedback& feedback, float dt_s) noexcept;
-  [[nodiscard]] Target softened(Target asked, float dt_s) noexcept;
+  void soften(Target& asked, float dt_s) noexcept;
   [[nodiscard]] bool slew(double goal, float per_second, float dt_s) noexcept;
+  // Each shapes its part of the target and returns the limits that act.
+  [[nodiscard]] std::uint32_t shape(Target& asked, const MotorFeedback& feedback, float dt_s) noexcept;
   [[nodiscard]] std::uint32_t shapeVelocityFf(Target& asked, float dt_s) noexcept;
   [[nodiscard]] std::uint32_t shapeTorqueFf(Target& asked, const MotorFeedback& feedback,
                                             float dt_s) noexcept;
   [[nodiscard]] double mostTorqueFf(bool springs, const MotorFeedback& feedback, double allowed_rpm,
                                     double sign) const noexcept;
   [[nodiscard]] double torqueUnderCeiling(const MotorFeedback& feedback, float dt_s) noexcept;
-  [[nodiscard]] Shaped boundBySpeed(Shaped out, const MotorFeedback& feedback) noexcept;
-  [[nodiscard]] Shaped shapeEffort(Target asked, const MotorFeedback& feedback, float dt_s) noexcept;
-  [[nodiscard]] Shaped shapeVelocity(Target asked, const MotorFeedback& feedback, float dt_s) noexcept;
-  [[nodiscard]] Shaped shapeAngle(Target asked, const MotorFeedback& feedback, float dt_s) noexcept;
+  [[nodiscard]] std::uint32_t shapeEffort(Target& asked, const MotorFeedback& feedback, float dt_s) noexcept;
+  [[nodiscard]] std::uint32_t boundBySpeed(Target& asked, const MotorFeedback& feedback) noexcept;
+  [[nodiscard]] std::uint32_t shapeVelocity(Target& asked, const MotorFeedback& feedback,
+                                            float dt_s) noexcept;
+  [[nodiscard]] std::uint32_t shapeAngle(Target& asked, const MotorFeedback& feedback, float dt_s) noexcept;
 
   ShapingConfig config_;
   bool soft_limits_;                        ///< On one side at least.

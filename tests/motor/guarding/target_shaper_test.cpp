@@ -22,11 +22,16 @@ class TargetShaperTest : public ::testing::Test {
     feedback.angle_deg = static_cast<float>(total_angle_deg - 360.0 * std::floor(total_angle_deg / 360.0));
   }
   void configure(const ShapingConfig& config) { shaper = TargetShaper{config}; }
-  TargetShaper::Shaped step(ControlMode mode, double value, float amperes = 0.0F) {
-    return shaper.step({.mode = mode, .value = value}, feedback, {amperes, CommandUnit::kAmpere}, kTickS);
+  struct Shaped {
+    Target target;
+    std::uint32_t limits = 0;
+  };
+  Shaped step(Target target, TargetShaper::InForce in_force = {0.0F, CommandUnit::kAmpere}) {
+    const auto limits = shaper.step(target, feedback, in_force, kTickS);
+    return {target, limits};
   }
-  TargetShaper::Shaped step(const Target& target) {
-    return shaper.step(target, feedback, {0.0F, CommandUnit::kAmpere}, kTickS);
+  Shaped step(ControlMode mode, double value, float amperes = 0.0F) {
+    return step(Target{.mode = mode, .value = value}, {amperes, CommandUnit::kAmpere});
   }
   double valueAfter(int ticks, ControlMode mode, double value) {
     double last = 0.0;
@@ -81,8 +86,7 @@ TEST_F(TargetShaperTest, ACurrentTargetStartsFromTheCurrentInForce) {
 TEST_F(TargetShaperTest, ACurrentStartsFromTheMeasuredOneWhereTheLastCommandWasASpeed) {
   configure({.effort_slew_per_s = 100.0F});
   feedback.current_a = 1.5F;
-  const auto shaped = shaper.step({.mode = ControlMode::kCurrent, .value = 5.0}, feedback,
-                                  {3000.0F, CommandUnit::kNative}, kTickS);
+  const auto shaped = step({.mode = ControlMode::kCurrent, .value = 5.0}, {3000.0F, CommandUnit::kNative});
   EXPECT_NEAR(shaped.target.value, 1.6, 1e-6);
 }
 
