@@ -89,9 +89,9 @@ bool Axis::lost(const Tick& tick) const noexcept {
 
 // A bus that carries nothing is itself the news, not its motors.
 bool Axis::missesDrive(const Tick& tick) noexcept {
+  if (missed_ || motor_.feedback().samples > 0) return false;
   if (first_tick_ == MonotonicTime{}) first_tick_ = tick.now;
-  if (missed_ || motor_.feedback().samples > 0 || bus_.held || tick.now - first_tick_ < kFirstAnswer)
-    return false;
+  if (bus_.held || tick.now - first_tick_ < kFirstAnswer) return false;
   missed_ = true;
   return true;
 }
@@ -127,13 +127,13 @@ bool Axis::losesReference(const Tick& tick) noexcept {
 }
 
 // After a clear request an old one is ignored until the request can have taken effect.
-std::optional<DriveComplaint> Axis::complains(const Tick& tick) noexcept {
+std::optional<std::uint32_t> Axis::complains(const Tick& tick) noexcept {
   if (status_ == MotorStatus::kOffline || status_ == MotorStatus::kFault) return std::nullopt;
   if (tick.now < clearing_until_) return std::nullopt;
   const auto complaint = motor_.complaint();
   if (complaint.fault == FaultCode::kNone) return std::nullopt;
   fault_ = complaint.fault;
-  return complaint;
+  return complaint.native_code;
 }
 
 std::optional<MotorEvent> Axis::endsEnabling(const Tick& tick) const noexcept {
@@ -204,7 +204,7 @@ bool Axis::lapses(const Tick& tick) noexcept {
 }
 
 void Axis::order(RobotStatus robot, const Tick& tick) noexcept {
-  fallback_.step(standsStill(), tick.now);
+  if (fallback_.acts()) fallback_.step(standsStill(), tick.now);
   const auto kind = frameKind(robot);
   if (kind != FrameKind::kCommand) {
     shaper_.reset();

@@ -52,8 +52,8 @@ class Axis {
 
   /// Its angle has just lost its reference; a target of an angle has ended with it.
   [[nodiscard]] bool losesReference(const Tick& tick) noexcept;
-  /// A fault that its drive reports: fault() from now on.
-  [[nodiscard]] std::optional<DriveComplaint> complains(const Tick& tick) noexcept;
+  /// The native code of a fault that its drive reports: fault() from now on.
+  [[nodiscard]] std::optional<std::uint32_t> complains(const Tick& tick) noexcept;
   /// The end of an enable sequence.
   [[nodiscard]] std::optional<MotorEvent> endsEnabling(const Tick& tick) const noexcept;
   /// Limits and derating of this tick. A fault that the guard sees: fault() from now on.

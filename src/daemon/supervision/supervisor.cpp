@@ -43,11 +43,12 @@ void Supervisor::watch(std::size_t motor, const Tick& tick) noexcept {
     transition(motor, MotorEvent::kFeedbackLost, tick);
   }
   if (axis.losesReference(tick)) report({EventCode::kReferenceLost, Severity::kWarning, who, 0, 0, tick.now});
-  if (const auto complaint = axis.complains(tick)) fault(static_cast<std::int32_t>(complaint->native_code));
+  if (const auto native_code = axis.complains(tick)) fault(static_cast<std::int32_t>(*native_code));
   if (const auto end = axis.endsEnabling(tick)) transition(motor, *end, tick);
   if (axis.trips(reduced_, tick)) fault(0);
   if (const auto by = foreign_.takeover(motor); by && axis.yields()) fault(*by);
-  watchRest(motor, tick);
+  if (const auto rest = axis.checkRest(tick); rest != RestCheck::Verdict::kRests)
+    tellUnrest(motor, rest, tick);
   if (axis.lapses(tick)) {
     report({EventCode::kCommandTimeout, Severity::kWarning, who,
             static_cast<std::int32_t>(axis.timeoutAction()), 0, tick.now});
@@ -55,17 +56,13 @@ void Supervisor::watch(std::size_t motor, const Tick& tick) noexcept {
 }
 
 // A motor that is in FAULT stays there for its first reason; what its drive does is told all the same.
-void Supervisor::watchRest(std::size_t motor, const Tick& tick) noexcept {
+void Supervisor::tellUnrest(std::size_t motor, RestCheck::Verdict verdict, const Tick& tick) noexcept {
   auto& axis = axes_[motor];
   const auto who = static_cast<std::int16_t>(motor);
-  switch (axis.checkRest(tick)) {
-    case RestCheck::Verdict::kRests: return;
-    case RestCheck::Verdict::kGainsSpeed: {
-      const double rpm = std::round(static_cast<double>(axis.motor().feedback().velocity_rpm));
-      return report(
-          {EventCode::kMovesAtRest, Severity::kInfo, who, saturatedRound<std::int32_t>(rpm), 0, tick.now});
-    }
-    case RestCheck::Verdict::kDriven: break;
+  if (verdict == RestCheck::Verdict::kGainsSpeed) {
+    const double rpm = std::round(static_cast<double>(axis.motor().feedback().velocity_rpm));
+    return report(
+        {EventCode::kMovesAtRest, Severity::kInfo, who, saturatedRound<std::int32_t>(rpm), 0, tick.now});
   }
   report({EventCode::kMotorFault, Severity::kError, who, static_cast<std::int32_t>(FaultCode::kNotAtRest), 0,
           tick.now});

@@ -108,7 +108,7 @@ class Supervisor {
   }
   void transition(std::size_t motor, MotorEvent event, const Stop& why, const Tick& tick) noexcept;
   void watch(std::size_t motor, const Tick& tick) noexcept;
-  void watchRest(std::size_t motor, const Tick& tick) noexcept;
+  void tellUnrest(std::size_t motor, RestCheck::Verdict verdict, const Tick& tick) noexcept;
   void watchGroup(std::size_t index, const Tick& tick) noexcept;
   void stopGroup(std::size_t index, GroupStop reason, const Tick& tick) noexcept;
   void rearm(std::size_t index, const Tick& tick) noexcept;

@@ -93,7 +93,7 @@ class Fallback {
                                : ramp_.from_rpm * static_cast<double>(seconds(left) / seconds(ramp_.over));
   }
 
-  /// Once per tick.
+  /// Once per tick while it acts.
   void step(bool stands_still, MonotonicTime now) noexcept {
     if (kind_ == FrameKind::kCommand && now - begun_ >= ramp_.over + kRampRest) end();
     if (acts() && bounded_ && now >= bound_) kind_ = then_;

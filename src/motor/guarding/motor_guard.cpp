@@ -16,14 +16,14 @@ constexpr Duration kFrozenTime = std::chrono::milliseconds{200};
 constexpr float kCoolerC = 3.0F;
 constexpr float kRecoveryPerSecond = 0.2F;
 
-[[nodiscard]] bool sameReadings(const MotorFeedback& a, const MotorFeedback& b) noexcept {
+}  // namespace
+
+bool MotorGuard::same(const Readings& a, const Readings& b) noexcept {
   const bool same_temperature =
       a.temperature_c == b.temperature_c || (std::isnan(a.temperature_c) && std::isnan(b.temperature_c));
   return a.total_angle_deg == b.total_angle_deg && a.velocity_rpm == b.velocity_rpm &&
          a.current_a == b.current_a && same_temperature;
 }
-
-}  // namespace
 
 void MotorGuard::reset() noexcept {
   begun_ = false;
@@ -38,7 +38,7 @@ void MotorGuard::reset() noexcept {
 MotorGuard::Verdict MotorGuard::step(const Observation& seen) noexcept {
   const MotorFeedback& feedback = seen.feedback;
   if (!begun_) jumps_ = feedback.jumps;
-  const bool new_sample = !begun_ || feedback.samples != last_.samples;
+  const bool new_sample = !begun_ || feedback.samples != samples_;
   begun_ = true;
   Verdict verdict;
   // Comparisons with NaN, which is what a drive does not report, are false.
@@ -52,7 +52,7 @@ MotorGuard::Verdict MotorGuard::step(const Observation& seen) noexcept {
     if (config_.stall_trips) verdict.fault = FaultCode::kStalled;
   }
   if (const auto fault = motionFault(seen, new_sample); fault != FaultCode::kNone) verdict.fault = fault;
-  if (new_sample) last_ = feedback;
+  samples_ = feedback.samples;
   return verdict;
 }
 
@@ -100,7 +100,12 @@ bool MotorGuard::fallsBehind(const Observation& seen) noexcept {
 // A drive whose readings stand still, to the last bit, while its current should be another.
 bool MotorGuard::frozen(const Observation& seen, bool new_sample) noexcept {
   if (!(config_.frozen_a > 0.0F)) return false;
-  if (new_sample) unchanged_ = last_.samples > 0 && sameReadings(last_, seen.feedback);
+  if (new_sample) {
+    const Readings now{seen.feedback.total_angle_deg, seen.feedback.velocity_rpm, seen.feedback.current_a,
+                       seen.feedback.temperature_c};
+    unchanged_ = samples_ > 0 && same(last_, now);
+    last_ = now;
+  }
   const bool off = seen.unit == CommandUnit::kAmpere &&
                    std::fabs(seen.effort - seen.feedback.current_a) > config_.frozen_a;
   return frozen_.step(unchanged_ && off, seen.now, kFrozenTime);

@@ -77,6 +77,15 @@ class MotorGuard {
     MonotonicTime stepped_at_{};
   };
 
+  /// Readings that no moving shaft repeats to the last bit.
+  struct Readings {
+    double total_angle_deg = 0.0;
+    float velocity_rpm = 0.0F;
+    float current_a = 0.0F;
+    float temperature_c = 0.0F;
+  };
+  [[nodiscard]] static bool same(const Readings& a, const Readings& b) noexcept;
+
   [[nodiscard]] FaultCode motionFault(const Observation& seen, bool new_sample) noexcept;
   [[nodiscard]] bool tooFast(const MotorFeedback& feedback, bool new_sample) noexcept;
   [[nodiscard]] bool stalled(const Observation& seen) noexcept;
@@ -88,7 +97,8 @@ class MotorGuard {
 
   GuardConfig config_;
   bool begun_ = false;
-  MotorFeedback last_{};  ///< The sample before.
+  std::uint64_t samples_ = 0;  ///< Count of the feedback in the last step.
+  Readings last_;              ///< Of the sample before.
   std::uint64_t jumps_ = 0;
   float derating_ = 1.0F;
   MonotonicTime derated_at_{};  ///< Last step of it.

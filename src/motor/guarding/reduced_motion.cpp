@@ -6,8 +6,9 @@
 #include "motor/guarding/motor_guard.hpp"
 
 namespace rc10 {
-bool ReducedMotion::step(bool reduced, bool moves, const MotorFeedback& feedback, const Tick& tick) noexcept {
-  if (!config_.any()) return false;
+
+bool ReducedMotion::follow(bool reduced, bool moves, const MotorFeedback& feedback,
+                           const Tick& tick) noexcept {
   if (!reduced) {
     acts_ = false;
     lift(tick.dt_s);

@@ -32,7 +32,10 @@ class ReducedMotion {
 
   /// Once a tick. `moves`: the motor follows a target or a fallback; the monitored time begins with that, or
   /// with `reduced`. True: it is faster than it may be, after the monitored time.
-  [[nodiscard]] bool step(bool reduced, bool moves, const MotorFeedback& feedback, const Tick& tick) noexcept;
+  [[nodiscard]] bool step(bool reduced, bool moves, const MotorFeedback& feedback,
+                          const Tick& tick) noexcept {
+    return config_.any() && follow(reduced, moves, feedback, tick);
+  }
 
   /// Bound of every target's speed; infinite: none.
   [[nodiscard]] double ceilingRpm() const noexcept { return ceiling_rpm_; }
@@ -40,6 +43,8 @@ class ReducedMotion {
   [[nodiscard]] float effortShare() const noexcept { return share_; }
 
  private:
+  [[nodiscard]] bool follow(bool reduced, bool moves, const MotorFeedback& feedback,
+                            const Tick& tick) noexcept;
   void begin(float speed_rpm, MonotonicTime now) noexcept;
   void reduce(float speed_rpm, const Tick& tick) noexcept;
   void lift(float dt_s) noexcept;

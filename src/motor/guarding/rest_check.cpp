@@ -19,11 +19,7 @@ void RestCheck::reset() noexcept {
   gain_reported_ = false;
 }
 
-RestCheck::Verdict RestCheck::step(const MotorFeedback& feedback, bool told, float standstill_rpm) noexcept {
-  if (!told) {
-    if (told_) reset();
-    return Verdict::kRests;
-  }
+RestCheck::Verdict RestCheck::look(const MotorFeedback& feedback, float standstill_rpm) noexcept {
   const bool begins = !told_;
   told_ = true;
   if (begins) {

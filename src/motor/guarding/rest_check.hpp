@@ -28,11 +28,16 @@ class RestCheck {
   explicit RestCheck(const RestConfig& config) noexcept : config_(config) {}
 
   /// Once a tick. `told`: to rest, since the last tick at least.
-  [[nodiscard]] Verdict step(const MotorFeedback& feedback, bool told, float standstill_rpm) noexcept;
+  [[nodiscard]] Verdict step(const MotorFeedback& feedback, bool told, float standstill_rpm) noexcept {
+    if (told) return look(feedback, standstill_rpm);
+    if (told_) reset();
+    return Verdict::kRests;
+  }
   /// Verdicts that were reported may be reported again.
   void reset() noexcept;
 
  private:
+  [[nodiscard]] Verdict look(const MotorFeedback& feedback, float standstill_rpm) noexcept;
   [[nodiscard]] float torqueSign(const MotorFeedback& feedback, float standstill_rpm) const noexcept;
   [[nodiscard]] bool driven(const MotorFeedback& feedback, float standstill_rpm) noexcept;
   [[nodiscard]] bool gains(const MotorFeedback& feedback, float standstill_rpm) noexcept;
