@@ -19,10 +19,10 @@ constexpr float kRecoveryPerSecond = 0.2F;
 }  // namespace
 
 bool MotorGuard::same(const Readings& a, const Readings& b) noexcept {
-  const bool same_temperature =
-      a.temperature_c == b.temperature_c || (std::isnan(a.temperature_c) && std::isnan(b.temperature_c));
-  return a.total_angle_deg == b.total_angle_deg && a.velocity_rpm == b.velocity_rpm &&
-         a.current_a == b.current_a && same_temperature;
+  if (a.total_angle_deg != b.total_angle_deg || a.velocity_rpm != b.velocity_rpm ||
+      a.current_a != b.current_a)
+    return false;
+  return a.temperature_c == b.temperature_c || (std::isnan(a.temperature_c) && std::isnan(b.temperature_c));
 }
 
 void MotorGuard::reset() noexcept {
@@ -128,9 +128,11 @@ bool MotorGuard::runsAway(const Observation& seen) noexcept {
 }
 
 float MotorGuard::derate(float temperature_c, MonotonicTime now) noexcept {
-  const float most = derating_ + kRecoveryPerSecond * seconds(now - derated_at_);
+  const Duration since_step = now - derated_at_;
   derated_at_ = now;
   const float cooler = factorAt(temperature_c + kCoolerC);
+  if (cooler == 1.0F && derating_ == 1.0F) return derating_;  // as nearly always
+  const float most = derating_ + kRecoveryPerSecond * seconds(since_step);
   derating_ = std::min(factorAt(temperature_c), std::max(derating_, std::min(cooler, most)));
   return derating_;
 }

@@ -59,13 +59,13 @@ class MotorGuard {
    public:
     void reset() noexcept { held_.reset(); }
     [[nodiscard]] bool step(bool so, MonotonicTime now, Duration enough) noexcept {
-      const Duration since_step = std::min(now - stepped_at_, kLongestStep);
+      const Duration since_step = now - stepped_at_;
       stepped_at_ = now;
       if (!so) {
         held_.reset();
         return false;
       }
-      held_ = held_ ? *held_ + since_step : Duration{0};
+      held_ = held_ ? *held_ + std::min(since_step, kLongestStep) : Duration{0};
       return *held_ >= enough;
     }
 
