@@ -19,9 +19,9 @@ Duration threadCpuTime() noexcept {
   return std::chrono::seconds{time.tv_sec} + std::chrono::nanoseconds{time.tv_nsec};
 }
 
-Duration realtimeOffset() noexcept {
+Duration realtimeOffset(MonotonicTime now) noexcept {
   const auto realtime = std::chrono::system_clock::now().time_since_epoch();
-  return std::chrono::duration_cast<Duration>(realtime) - monotonicNow().time_since_epoch();
+  return std::chrono::duration_cast<Duration>(realtime) - now.time_since_epoch();
 }
 
 }  // namespace rc10

@@ -14,19 +14,23 @@ namespace rc10 {
 enum class TickStep : std::uint8_t { kWake, kReceive, kModules, kControl, kSend, kPublish };
 inline constexpr std::size_t kTickSteps = 6;
 
-/// Times at which the steps of a tick were over.
+/// cycleCount() when the steps of a tick were over.
 struct TickMarks {
-  MonotonicTime woken{};
-  MonotonicTime received{};
-  MonotonicTime moved{};
-  MonotonicTime packed{};
-  MonotonicTime sent{};
-  MonotonicTime done{};
+  std::uint64_t woken = 0;
+  std::uint64_t received = 0;
+  std::uint64_t moved = 0;
+  std::uint64_t packed = 0;
+  std::uint64_t sent = 0;
+  std::uint64_t done = 0;
 
   /// The step of the tick that took longest; never kWake.
   [[nodiscard]] constexpr TickStep longest() const noexcept {
-    const std::array<Duration, kTickSteps - 1> steps{received - woken, moved - received, packed - moved,
-                                                     sent - packed, done - sent};
+    const auto span = [](std::uint64_t begin, std::uint64_t end) {
+      return static_cast<std::int64_t>(end - begin);
+    };
+    const std::array<std::int64_t, kTickSteps - 1> steps{span(woken, received), span(received, moved),
+                                                         span(moved, packed), span(packed, sent),
+                                                         span(sent, done)};
     std::size_t longest = 0;
     for (std::size_t i = 1; i < steps.size(); ++i)
       if (steps[i] > steps[longest]) longest = i;

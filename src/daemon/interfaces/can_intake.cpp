@@ -8,7 +8,7 @@ namespace rc10 {
 
 CanIntake::CanIntake(Robot& robot, std::span<BusInbox> inboxes, MonotonicTime now) : inboxes_(inboxes) {
   last_wake_.now = now;
-  last_wake_.realtime_offset = realtimeOffset();
+  last_wake_.realtime_offset = realtimeOffset(monotonicNow());
   for (std::size_t i = 0; i < robot.buses().size(); ++i) {
     const auto& entry = robot.buses()[i];
     sources_.push_back({i, CanReceiver{entry.bus->descriptor()}});
@@ -21,7 +21,7 @@ CanIntake::CanIntake(Robot& robot, std::span<BusInbox> inboxes, MonotonicTime no
 void CanIntake::drain(MonotonicTime now) noexcept {
   const WakeUp wake{.now = now,
                     .previous = last_wake_.now,
-                    .realtime_offset = realtimeOffset(),
+                    .realtime_offset = realtimeOffset(now),
                     .previous_offset = last_wake_.realtime_offset};
   last_wake_ = wake;
   for (Source& source : sources_) drain(source, wake);

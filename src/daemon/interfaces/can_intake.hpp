@@ -25,8 +25,8 @@ class CanIntake {
   /// `now`: no earlier than that were the sockets opened.
   CanIntake(Robot& robot, std::span<BusInbox> inboxes, MonotonicTime now);
 
-  /// Takes what has come by `now`. No allocation; one system call for each socket whose frames fit into one
-  /// read.
+  /// Takes what has come by `now`, which was read just before. No allocation; one system call for each socket
+  /// whose frames fit into one read.
   void drain(MonotonicTime now) noexcept;
 
  private:

@@ -103,7 +103,7 @@ void BlackBox::drain() {
     return;
   }
   std::atomic_ref(file_->head().control.wall_offset_ns)
-      .store(realtimeOffset().count(), std::memory_order_relaxed);
+      .store(realtimeOffset(monotonicNow()).count(), std::memory_order_relaxed);
   auto stored = history_.drain();
   if (stored) stored = file_->publish();
   if (stored || std::exchange(history_lost_, true)) return;

@@ -31,6 +31,7 @@ std::uint64_t PeriodicTimer::wait() noexcept {
   if (!fd_) return sleep();
   std::uint64_t expirations = 0;
   if (::read(fd_.get(), &expirations, sizeof expirations) == sizeof expirations) {
+    woken_ = monotonicNow();
     next_ += period_ * static_cast<std::int64_t>(expirations);
     return expirations;
   }
@@ -42,7 +43,8 @@ std::uint64_t PeriodicTimer::wait() noexcept {
 std::uint64_t PeriodicTimer::sleep() noexcept {
   const timespec until = toTimespec(next_.time_since_epoch());
   if (clock_nanosleep(CLOCK_MONOTONIC, TIMER_ABSTIME, &until, nullptr) != 0) return 0;
-  const auto expirations = (monotonicNow() - next_) / period_ + 1;
+  woken_ = monotonicNow();
+  const auto expirations = (woken_ - next_) / period_ + 1;
   next_ += period_ * expirations;
   return static_cast<std::uint64_t>(expirations);
 }

@@ -26,6 +26,8 @@ class PeriodicTimer {
   /// Waits for the next expiration. Returns how many came since the last wait: above 1, some were
   /// missed. 0: interrupted.
   [[nodiscard]] std::uint64_t wait() noexcept;
+  /// When the last wait() that was not interrupted returned.
+  [[nodiscard]] MonotonicTime woken() const noexcept { return woken_; }
 
  private:
   explicit PeriodicTimer(UniqueFd fd) : fd_(std::move(fd)) {}
@@ -33,6 +35,7 @@ class PeriodicTimer {
 
   UniqueFd fd_;  // none: nanosleep
   MonotonicTime next_{};
+  MonotonicTime woken_{};
   Duration period_{};
 };
 

@@ -1,6 +1,7 @@
 #include "daemon/threads/sched_loop.hpp"
 
 #include "daemon/exchange/clock.hpp"
+#include "daemon/exchange/cycle_count.hpp"
 
 namespace rc10 {
 namespace {
@@ -25,7 +26,9 @@ void SchedLoop::run(const std::stop_token& stop) noexcept {
   while (!scheduler_.stopped()) {
     const std::uint64_t periods = timer_.wait();  // above 1, ticks were missed
     if (periods == 0) continue;
-    const MonotonicTime now = monotonicNow();
+    const std::uint64_t woken = cycleCount();
+    const MonotonicTime now = timer_.woken();
+    if (intake_ != nullptr) intake_->drain(now);  // first: `now` goes with the wall clock that it reads
     // Against the first grid point that waits: a wake-up that missed ten ticks is ten periods late.
     const Duration late = now - (planned + grid_.period);
     timing_.wake_latency.record(late);
@@ -33,19 +36,17 @@ void SchedLoop::run(const std::stop_token& stop) noexcept {
     planned += grid_.period * static_cast<std::int64_t>(periods);
     if (stop.stop_requested()) scheduler_.beginStop();
     if (const auto client = estops_.take()) scheduler_.stopFor({StopCause::kRequest, *client});
-    if (intake_ != nullptr) intake_->drain(now);
     scheduler_.tick(now, periods);
-    watchDuration(now, monotonicNow());
+    watchDuration(woken, monotonicNow() - now);
   }
 }
 
-void SchedLoop::watchDuration(MonotonicTime woken, MonotonicTime done) noexcept {
-  const Duration duration = done - woken;
+void SchedLoop::watchDuration(std::uint64_t woken, Duration duration) noexcept {
   timing_.duration.record(duration);
   if (duration > grid_.period / kLongTick) {
     TickMarks marks = scheduler_.marks();
     marks.woken = woken;
-    marks.done = done;
+    marks.done = cycleCount();
     timing_.late.record(marks.longest(), duration);
   }
   if (duration <= grid_.period) return overload_.inTime();

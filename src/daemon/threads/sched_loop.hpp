@@ -42,7 +42,8 @@ class SchedLoop {
         intake_(intake),
         estops_(settings.estops),
         overload_(settings.grid.period, settings.overload) {}
-  void watchDuration(MonotonicTime woken, MonotonicTime done) noexcept;
+  /// `woken`: cycleCount() then. `duration`: from then to the end of the tick.
+  void watchDuration(std::uint64_t woken, Duration duration) noexcept;
 
   Scheduler& scheduler_;
   TimeGrid grid_;

@@ -4,6 +4,7 @@
 #include <span>
 #include <utility>
 
+#include "daemon/exchange/cycle_count.hpp"
 #include "daemon/tick/tick_tracer.hpp"
 
 namespace rc10 {
@@ -49,24 +50,25 @@ void Scheduler::tick(MonotonicTime now, std::uint64_t periods) noexcept {
   }
   reportMissedTicks(tick);
   receive();
-  marks_.received = clockOr(now);
+  marks_.received = cycleCount();
   bus_watch_.decide(tick);
   stopForTheComputer(tick);
   supervisor_.receiveOrders(tick);
   if (stop_requested_) beginStop(tick);
   modules_.update(tick);
   driveDevices();
-  marks_.moved = clockOr(now);
+  marks_.moved = cycleCount();
   supervisor_.decide(tick);
   update(tick);
   pack(tick);
-  marks_.packed = clockOr(now);
+  marks_.packed = cycleCount();
   const bool only_rest = stop_requested_ && !supervisor_.fallbackActs();
   bus_watch_.send(tick, only_rest);
-  marks_.sent = clockOr(now);
+  const MonotonicTime sent = clockOr(now);
+  marks_.sent = cycleCount();
   bus_watch_.update(tick);
   if (only_rest) watchStop();
-  snapshot(tick);
+  snapshot(tick, sent);
   beat(tick);
   ticks_.store(tick.index + 1, std::memory_order_relaxed);
   if (guard_ == nullptr) return;
@@ -184,10 +186,10 @@ void Scheduler::recordCommandAge(const link::Name& client, Duration age) noexcep
   link_.ages.clients.record(client, age);
 }
 
-void Scheduler::snapshot(const Tick& tick) noexcept {
+void Scheduler::snapshot(const Tick& tick, MonotonicTime sent) noexcept {
   auto& out = link_.snapshot.slot();
   out.time = tick.now;
-  out.sent = marks_.sent;
+  out.sent = sent;
   out.tick = tick.index;
   out.missed_ticks = missed_ticks_;
   supervisor_.fillSnapshot(out);

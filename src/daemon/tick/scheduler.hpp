@@ -53,7 +53,7 @@ class Scheduler {
   [[nodiscard]] const Supervisor& supervisor() const noexcept { return supervisor_; }
   [[nodiscard]] std::uint64_t ticks() const noexcept { return ticks_.load(std::memory_order_relaxed); }
   [[nodiscard]] std::uint64_t missedTicks() const noexcept { return missed_ticks_; }
-  /// Times of the last tick; `woken` and `done` are its caller's. Its own thread only.
+  /// Of the last tick; `woken` and `done` are its caller's. Its own thread only.
   [[nodiscard]] const TickMarks& marks() const noexcept { return marks_; }
 
  private:
@@ -64,7 +64,7 @@ class Scheduler {
   void reportMissedTicks(const Tick& tick) noexcept;
   void beginStop(const Tick& tick) noexcept;
   void watchStop() noexcept;
-  void snapshot(const Tick& tick) noexcept;
+  void snapshot(const Tick& tick, MonotonicTime sent) noexcept;
   void recordAges(const Snapshot& snapshot, const Tick& tick) noexcept;
   void recordCommandAge(const link::Name& client, Duration age) noexcept;
   [[nodiscard]] MonotonicTime clockOr(MonotonicTime now) const noexcept {

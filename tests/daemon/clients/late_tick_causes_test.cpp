@@ -112,15 +112,14 @@ TEST_F(LateTickCausesTest, EveryCauseHasACounterAndAdviceOfItsOwn) {
 // ---- Steps
 
 TEST(TickMarksTest, TheLongestStepIsWhereTheTimeWent) {
-  const MonotonicTime begin{10ms};
-  const auto marks = [begin](std::array<int, 5> us) {
+  const auto marks = [](std::array<unsigned, 5> cycles) {
     TickMarks out;
-    out.woken = begin;
-    out.received = out.woken + std::chrono::microseconds{us[0]};
-    out.moved = out.received + std::chrono::microseconds{us[1]};
-    out.packed = out.moved + std::chrono::microseconds{us[2]};
-    out.sent = out.packed + std::chrono::microseconds{us[3]};
-    out.done = out.sent + std::chrono::microseconds{us[4]};
+    out.woken = UINT64_MAX - 5;  // the count begins anew somewhere
+    out.received = out.woken + cycles[0];
+    out.moved = out.received + cycles[1];
+    out.packed = out.moved + cycles[2];
+    out.sent = out.packed + cycles[3];
+    out.done = out.sent + cycles[4];
     return out.longest();
   };
   EXPECT_EQ(marks({9, 1, 2, 3, 4}), TickStep::kReceive);
