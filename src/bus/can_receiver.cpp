@@ -33,11 +33,13 @@ struct CanReceiver::Buffers {
       header.msg_iov = &slots[i].content;
       header.msg_iovlen = 1;
       header.msg_control = slots[i].control.data();
+      header.msg_controllen = kControlBytes;
     }
   }
 
   std::array<Slot, kBatch> slots{};
   std::array<mmsghdr, kBatch> headers{};
+  std::size_t filled = 0;  ///< Headers that the last call has filled.
   std::uint32_t kernel_dropped = 0;
 };
 
@@ -50,12 +52,13 @@ Reception CanReceiver::receive(const WakeUp& wake, std::span<CanFrame> out) noex
   Reception reception;
   reception.kernel_dropped = buffers_->kernel_dropped;
   const std::size_t room = std::min(kBatch, out.size());
-  // The kernel shortens this one at every call; the rest of the headers stays as it was set up.
-  for (mmsghdr& header : std::span(buffers_->headers).first(room)) {
+  // The kernel shortens this one of each header that it fills; the rest stays as it was set up.
+  for (mmsghdr& header : std::span(buffers_->headers).first(buffers_->filled)) {
     header.msg_hdr.msg_controllen = kControlBytes;
   }
   const int count =
       ::recvmmsg(fd_, buffers_->headers.data(), static_cast<unsigned>(room), MSG_DONTWAIT, nullptr);
+  buffers_->filled = static_cast<std::size_t>(std::max(count, 0));
   if (count < 0) {
     left_behind_.reset();
     if (errno != EAGAIN && errno != EWOULDBLOCK && errno != EINTR) reception.error = errno;
@@ -68,8 +71,8 @@ Reception CanReceiver::receive(const WakeUp& wake, std::span<CanFrame> out) noex
     since.previous_offset = left_behind_->previous_offset;
   }
   left_behind_.reset();
-  if (count > 0 && static_cast<std::size_t>(count) == room) left_behind_ = since;
-  for (std::size_t i = 0; i < static_cast<std::size_t>(count); ++i) {
+  if (count > 0 && buffers_->filled == room) left_behind_ = since;
+  for (std::size_t i = 0; i < buffers_->filled; ++i) {
     const auto& [header, size] = buffers_->headers[i];
     if (size == 0) {  // SOCK_SEQPACKET: the other end was closed. CAN_RAW has no empty message.
       reception.error = ENODEV;
