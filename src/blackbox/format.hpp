@@ -273,16 +273,19 @@ static_assert(kIsRecord<Frame> && kIsRecord<Command> && kIsRecord<Setpoint> && k
 static_assert(kIsRecord<Event> && kIsRecord<Motor> && kIsRecord<Robot> && kIsRecord<Bus>);
 static_assert(kIsRecord<Signals>);
 
+inline constexpr std::array<std::size_t, 16> kPayloadLengths{0, 1,  2,  3,  4,  5,  6,  7,
+                                                             8, 12, 16, 20, 24, 32, 48, 64};
+
 /// Payload bytes of a length code, ISO 11898-1. A classic frame has at most 8.
 [[nodiscard]] constexpr std::size_t payloadBytes(std::uint8_t flags) noexcept {
-  constexpr std::array<std::size_t, 16> kLengths{0, 1, 2, 3, 4, 5, 6, 7, 8, 12, 16, 20, 24, 32, 48, 64};
-  const std::size_t bytes = kLengths[flags & 0x0FU];
+  const std::size_t bytes = kPayloadLengths[flags & 0x0FU];
   return (flags & kFrameFd) != 0 || bytes < 8 ? bytes : 8;
 }
 
 /// The length code of a payload of a valid length.
 [[nodiscard]] constexpr std::uint8_t lengthCode(std::size_t bytes) noexcept {
-  std::uint8_t code = 0;
+  if (bytes <= 8) return static_cast<std::uint8_t>(bytes);
+  std::uint8_t code = 9;
   while (code < 15 && payloadBytes(static_cast<std::uint8_t>(code | kFrameFd)) < bytes) ++code;
   return code;
 }
