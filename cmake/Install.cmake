@@ -5,6 +5,10 @@ include(CMakePackageConfigHelpers)
 # Files without a component go into the package rc10d: Packages.cmake.
 set(CMAKE_INSTALL_DEFAULT_COMPONENT_NAME daemon)
 install(TARGETS rc10d rc10-lcm rc10ctl rc10-stop rc10-guard rc10-irq rc10-sim rc10-web RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
+# Started by its socket alone: no command of a person's.
+install(TARGETS rc10-config RUNTIME DESTINATION ${CMAKE_INSTALL_LIBEXECDIR}/rc10d)
+install(FILES systemd/polkit/org.rc10d.config.policy DESTINATION ${CMAKE_INSTALL_DATADIR}/polkit-1/actions)
+install(FILES systemd/polkit/60-rc10-config.rules DESTINATION ${CMAKE_INSTALL_DATADIR}/rc10d/polkit)
 install(DIRECTORY docs/man/ DESTINATION ${CMAKE_INSTALL_MANDIR}/man1 FILES_MATCHING PATTERN "*.1")
 install(FILES completions/rc10ctl.bash DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions RENAME rc10ctl)
 install(DIRECTORY config/ DESTINATION ${CMAKE_INSTALL_DATADIR}/rc10d/config FILES_MATCHING PATTERN "*.yaml" PATTERN "*.json")
@@ -17,7 +21,8 @@ install(DIRECTORY build/web/ DESTINATION ${CMAKE_INSTALL_DATADIR}/rc10d/web OPTI
 # The units are for the prefix /usr.
 set(RC10_INSTANCE_UNIT "${PROJECT_BINARY_DIR}/systemd/rc10d@.service")
 include(InstanceUnit)
-install(FILES systemd/rc10d.service "${RC10_INSTANCE_UNIT}" systemd/rc10-guard.service systemd/rc10-irq.service systemd/rc10-web.service DESTINATION lib/systemd/system)
+install(FILES systemd/rc10d.service "${RC10_INSTANCE_UNIT}" systemd/rc10-guard.service systemd/rc10-irq.service systemd/rc10-web.service
+        systemd/rc10-config.socket "systemd/rc10-config@.service" DESTINATION lib/systemd/system)
 foreach(unit rc10d rc10d@)
   install(FILES systemd/drop-ins/manage-link.conf DESTINATION lib/systemd/system/${unit}.service.d)
 endforeach()

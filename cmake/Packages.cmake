@@ -43,6 +43,8 @@ the LCM gateway, the command line tool rc10ctl and simulated drives.")
 # libqrencode4: rc10ctl loads it when it draws a code.
 set(CPACK_DEBIAN_DAEMON_PACKAGE_DEPENDS "iproute2, libqrencode4, systemd")
 set(CPACK_DEBIAN_DAEMON_PACKAGE_RECOMMENDS can-utils)
+# For rc10-config.
+set(CPACK_DEBIAN_DAEMON_PACKAGE_SUGGESTS polkitd)
 set(CPACK_DEBIAN_DAEMON_PACKAGE_CONTROL_EXTRA
     "${scripts}/preinst;${scripts}/postinst;${scripts}/prerm;${scripts}/postrm;${scripts}/conffiles")
 

@@ -77,6 +77,14 @@ _rc10ctl() {
                     compopt -o nospace 2>/dev/null || true
                 fi
                 ;;
+            config)
+                if [ "$before" = config ]; then
+                    words='check install restart'
+                else
+                    mapfile -t COMPREPLY < <(compgen -f -- "$word")
+                    return
+                fi
+                ;;
             load)
                 if [ "$before" = load ]; then
                     words=$(_rc10ctl_motors "$program" "${robot[@]}")

@@ -44,9 +44,11 @@ bool takeNumber(std::string_view& text, T& value) {
 
 }  // namespace
 
-ProcessIdentity ProcessIdentity::own() {
-  const auto stat = readStat(::getpid());
-  return {.pid = ::getpid(), .start_ticks = stat ? stat->start_ticks : 0};
+ProcessIdentity ProcessIdentity::own() { return of(::getpid()); }
+
+ProcessIdentity ProcessIdentity::of(pid_t pid) {
+  const auto stat = readStat(pid);
+  return {.pid = pid, .start_ticks = stat ? stat->start_ticks : 0};
 }
 
 std::string ProcessIdentity::line() const {

@@ -15,6 +15,7 @@ struct ProcessIdentity {
   std::uint64_t start_ticks = 0;  ///< Since the computer's start, as /proc has it; 0: unknown.
 
   [[nodiscard]] static ProcessIdentity own();
+  [[nodiscard]] static ProcessIdentity of(pid_t pid);
 
   /// A line for a file, without its end: "# pid 123, start 4567".
   [[nodiscard]] std::string line() const;

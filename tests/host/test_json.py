@@ -49,6 +49,8 @@ FAILS: dict[str, list[str | Path]] = {
     # Not enabled.
     "test-motion": ["other", "step", "5", "--max-current", "5"],
     "web": ["--port", "1"],
+    # There is no root helper.
+    "config": ["check", REPO / "config" / "demo.yaml"],
 }
 
 

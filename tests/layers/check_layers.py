@@ -31,6 +31,7 @@ USES = {
     "client": {"blackbox", "link", "app"},
     "doctor": {"client", "link", "bus", "app"},
     "guard": {"link", "bus", "app"},
+    "robot_file": {"client", "config", "link", "app"},
     "sandbox": {"app"},
     "gateway": {"sandbox", "client", "link", "app"},
     "web": {"sandbox", "survey", "client", "config", "blackbox", "link", "bus", "app"},
@@ -38,6 +39,7 @@ USES = {
     "robot_client": {"app"},
     "tools": {
         "guard",
+        "robot_file",
         "web",
         "doctor",
         "survey",

@@ -46,7 +46,8 @@ int run(int argc, char** argv) {
   for (const auto add :
        {addList,   addWatch, addStats,          addRequests,   addZero,         addSet,      addModules,
         addSignal, addGains, addConfigureDrive, addCheck,      addConvertGains, addBlackbox, addDoctor,
-        addScan,   addJog,   addCommission,     addTestMotion, addHand,         addLoad,     addWeb})
+        addScan,   addJog,   addCommission,     addTestMotion, addHand,         addLoad,     addConfig,
+        addWeb})
     add(app, action);
   try {
     app.parse(argc, argv);

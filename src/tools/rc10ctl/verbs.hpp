@@ -25,6 +25,7 @@ void addSignal(CLI::App& app, Action& action);
 void addGains(CLI::App& app, Action& action);
 void addConfigureDrive(CLI::App& app, Action& action);
 void addCheck(CLI::App& app, Action& action);
+void addConfig(CLI::App& app, Action& action);
 void addConvertGains(CLI::App& app, Action& action);
 void addBlackbox(CLI::App& app, Action& action);
 void addDoctor(CLI::App& app, Action& action);
