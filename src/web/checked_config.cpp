@@ -1,6 +1,8 @@
 #include "web/checked_config.hpp"
 
 #include <algorithm>
+#include <utility>
+#include <vector>
 
 #include "client/json_line.hpp"
 #include "config/load_config.hpp"
@@ -49,6 +51,11 @@ Json checkedRobotJson(const RobotConfig& config) {
           {"report", describe(config)}};
 }
 
+std::pair<std::string_view, std::string_view> tokenAndText(std::string_view both) {
+  const auto end = std::min(both.find('\n'), both.size());
+  return {both.substr(0, end), both.substr(std::min(end + 1, both.size()))};
+}
+
 }  // namespace
 
 std::string checkedConfigJson(std::string_view text) {
@@ -58,10 +65,14 @@ std::string checkedConfigJson(std::string_view text) {
                          {"robot", outcome.config ? checkedRobotJson(*outcome.config) : Json(nullptr)}});
 }
 
+std::string mayReplaceJson(std::string_view token_and_text) {
+  const auto [token, text] = tokenAndText(token_and_text);
+  return mayReplace(text, token) ? "true" : "false";
+}
+
 std::string shownConfigJson(std::string_view token_and_text) {
-  const auto end = std::min(token_and_text.find('\n'), token_and_text.size());
-  const auto text = token_and_text.substr(std::min(end + 1, token_and_text.size()));
-  const auto shown = showConfig(text, token_and_text.substr(0, end));
+  const auto [token, text] = tokenAndText(token_and_text);
+  const auto shown = showConfig(text, token);
   return client::lineOf({{"text", shown.text}, {"hidden", shown.hidden}, {"why", shown.why}});
 }
 

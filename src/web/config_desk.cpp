@@ -44,9 +44,10 @@ std::optional<ConfigDesk::Answer> ConfigDesk::turn(MonotonicTime now) {
 }
 
 ConfigDesk::Answer ConfigDesk::answered(Result<std::string> json) {
-  const auto asked = std::exchange(asked_, std::nullopt).value_or(Question{});
-  Answer answer{.page = asked.page, .seq = asked.seq, .message = std::move(json)};
-  if (answer.message) *answer.message = asked.head + *answer.message + "}";
+  auto asked = std::exchange(asked_, std::nullopt).value_or(Question{});
+  Answer answer{
+      .page = asked.page, .seq = asked.seq, .message = std::move(json), .then = std::move(asked.then)};
+  if (answer.message && !answer.then) *answer.message = asked.head + *answer.message + "}";
   return answer;
 }
 

@@ -8,6 +8,7 @@
 
 #include "app/result.hpp"
 #include "app/time.hpp"
+#include "client/file_request.hpp"
 #include "web/bounded_child.hpp"
 
 namespace rc10::web {
@@ -22,11 +23,14 @@ class ConfigDesk {
     std::string head;  ///< Message to the page, up to the JSON of the answer.
     Work work = nullptr;
     std::string input;
+    std::optional<client::FileRequest> then =
+        std::nullopt;  ///< To be asked for after the answer, which has no head.
   };
   struct Answer {
     std::uint64_t page = 0;
     std::int64_t seq = 0;
     Result<std::string> message;
+    std::optional<client::FileRequest> then;
   };
 
   /// A page has one question of a kind in the queue: the number of the one whose place this takes, if any.

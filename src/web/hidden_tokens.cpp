@@ -112,6 +112,11 @@ ShownConfig showConfig(std::string_view text, std::string_view token) {
           "tokens of `clients` stand in this file, and cannot be told from the rest: open the file itself"};
 }
 
+bool mayReplace(std::string_view text, std::string_view token) {
+  const auto config = parseRobotConfig(text, "").config;
+  return config && (!config->clients || mayConfigure(*config, token));
+}
+
 std::string withHashes(std::string text) {
   const auto begin = kHiddenWords.substr(0, kNumberAt);
   for (auto at = text.find(begin); at != std::string::npos; at = text.find(begin, at + 1)) {

@@ -20,6 +20,10 @@ inline constexpr std::string_view kHiddenWords =
 /// `configure`.
 [[nodiscard]] ShownConfig showConfig(std::string_view text, std::string_view token);
 
+/// Whether a page with this token may have the file replaced: it has no `clients`, or that token's entry may
+/// `configure`. `text`: the file that rc10d accepted last.
+[[nodiscard]] bool mayReplace(std::string_view text, std::string_view token);
+
 /// The same text for the checker: hashes, of no token, in the place of hidden ones.
 [[nodiscard]] std::string withHashes(std::string text);
 

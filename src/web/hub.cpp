@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "client/find_motor.hpp"
+#include "config/sha256.hpp"
 #include "link/run_dir.hpp"
 #include "web/checked_config.hpp"
 #include "web/page_messages.hpp"
@@ -40,8 +41,12 @@ constexpr std::string_view statusWord(link::ResponseStatus status) {
 
 }  // namespace
 
-Hub::Hub(std::optional<std::string> robot, std::string token, Recordings recordings)
-    : robot_(std::move(robot)), feed_(robot_), token_(std::move(token)), recordings_(std::move(recordings)) {}
+Hub::Hub(std::optional<std::string> robot, std::string token, Recordings recordings, std::string file_socket)
+    : robot_(std::move(robot)),
+      feed_(robot_),
+      token_(std::move(token)),
+      recordings_(std::move(recordings)),
+      file_socket_(std::move(file_socket)) {}
 
 Hub::Page* Hub::pageOf(const PageSocket& socket) noexcept {
   const auto found =
@@ -108,6 +113,8 @@ void Hub::handle(PageSocket& socket, std::string_view message, MonotonicTime now
     if (page->test && page->test->seq() == renewal->seq) page->test->renew(now, age);
   } else if (const auto* end = std::get_if<EndTest>(&*request)) {
     if (page->test && page->test->seq() == end->seq) page->test->end(end->why);
+  } else if (const auto* file = std::get_if<ChangeFile>(&*request)) {
+    change(*page, *file);
   } else if (page->right == Right::kNothing) {
     page->socket->sendText(shared(responseMessage(numberOf(message), "refused", "show the token first")));
   } else if (const auto* view = std::get_if<ChooseView>(&*request)) {
@@ -163,12 +170,15 @@ void Hub::judgeTokens(MonotonicTime now) {
   }
 }
 
+FoundConfig Hub::shownConfig() const {
+  if (!feed_.connected()) return readLastConfig(link::runDir(), robot_);
+  return readRunningConfig(link::runDir(), std::string{feed_.welcome().robot.view()},
+                           std::string{feed_.welcome().config_hash.view()});
+}
+
 // A token that has come in the clear shows nothing.
 void Hub::showConfigTo(const Page& page, const AskConfig& wanted) {
-  auto found = feed_.connected()
-                   ? readRunningConfig(link::runDir(), std::string{feed_.welcome().robot.view()},
-                                       std::string{feed_.welcome().config_hash.view()})
-                   : readLastConfig(link::runDir(), robot_);
+  const auto found = shownConfig();
   if (found.text.empty())
     return page.socket->sendText(shared(responseMessage(
         wanted.seq, "failed", "rc10d left no copy of its file in the run folder: open the file instead")));
@@ -176,7 +186,7 @@ void Hub::showConfigTo(const Page& page, const AskConfig& wanted) {
   if (token.find('\n') != std::string::npos) token.clear();
   askDesk(page, {.page = page.number,
                  .seq = wanted.seq,
-                 .head = configHead(wanted.seq, found.of),
+                 .head = configHead(wanted.seq, found.of, sha256(found.text)),
                  .work = shownConfigJson,
                  .input = token + "\n" + found.text});
 }
@@ -187,6 +197,57 @@ void Hub::check(const Page& page, CheckConfig wanted) {
                  .head = checkedConfigHead(wanted.seq),
                  .work = checkedConfigJson,
                  .input = std::move(wanted.text)});
+}
+
+// The rights are those of the file that rc10d has accepted; polkit decides about rc10-web as a whole.
+void Hub::change(Page& page, const ChangeFile& wanted) {
+  auto refused = whyNotMoving(page);
+  if (refused.empty() && page.file_call) refused = "the root helper is at work for this page";
+  const auto robot = feed_.connected() ? std::string{feed_.welcome().robot.view()} : robot_.value_or("robot");
+  const auto accepted = readAcceptedConfig(link::runDir(), feed_.connected() ? std::optional{robot} : robot_);
+  if (refused.empty() && accepted.empty())
+    refused = "rc10d left no copy of its file in the run folder, so nobody knows who may: install by hand";
+  if (!refused.empty()) return page.socket->sendText(shared(responseMessage(wanted.seq, "refused", refused)));
+  auto token = page.link->token();
+  if (token.find('\n') != std::string::npos) token.clear();
+  askDesk(page, {.page = page.number,
+                 .seq = wanted.seq,
+                 .head = {},
+                 .work = mayReplaceJson,
+                 .input = token + "\n" + accepted,
+                 .then = client::FileRequest{
+                     .verb = wanted.verb,
+                     .robot = robot,
+                     .replaces = wanted.verb == client::FileVerb::kInstall && wanted.replaces.empty()
+                                     ? sha256(shownConfig().text)
+                                     : wanted.replaces,
+                     .text = wanted.text}});
+}
+
+void Hub::askHelper(Page& page, std::int64_t seq, const Result<std::string>& may,
+                    const client::FileRequest& request) {
+  auto refused = may ? std::string{} : may.error().message;
+  if (may && *may != "true") refused = "a page needs the token of an entry of `clients` that may `configure`";
+  if (refused.empty()) {
+    auto call = client::FileCall::send(request, std::chrono::steady_clock::now(), file_socket_);
+    if (call) {
+      page.file_seq = seq;
+      page.file_call.emplace(std::move(*call));
+      return;
+    }
+    refused = call.error().message;
+  }
+  page.socket->sendText(shared(responseMessage(seq, "refused", refused)));
+}
+
+void Hub::publishFileAnswer(Page& page) {
+  if (!page.file_call) return;
+  const auto answer = page.file_call->poll(std::chrono::steady_clock::now());
+  if (!answer) return;
+  page.file_call.reset();
+  page.socket->sendText(
+      shared(*answer ? responseMessage(page.file_seq, (*answer)->done ? "ok" : "refused", (*answer)->message)
+                     : responseMessage(page.file_seq, "failed", answer->error().message)));
 }
 
 // Each question has an answer, one that a newer one overtakes too.
@@ -200,6 +261,10 @@ void Hub::answerConfigs() {
   if (!answer) return;
   for (const auto& page : pages_) {
     if (page->number != answer->page) continue;
+    if (answer->then) {
+      askHelper(*page, answer->seq, answer->message, *answer->then);
+      continue;
+    }
     page->socket->sendText(
         shared(answer->message ? *answer->message
                                : responseMessage(answer->seq, "failed", answer->message.error().message)));
@@ -381,7 +446,10 @@ void Hub::turn() {
   judgeTokens(std::chrono::steady_clock::now());
   watchRobot();
   if (turns_++ % kPublishEvery == 0) publish();
-  for (const auto& page : pages_) publishAnswers(*page);
+  for (const auto& page : pages_) {
+    publishAnswers(*page);
+    publishFileAnswer(*page);
+  }
   answerConfigs();
 }
 

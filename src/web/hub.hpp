@@ -17,6 +17,7 @@
 #include "web/recordings.hpp"
 #include "web/renewal_age.hpp"
 #include "web/robot_feed.hpp"
+#include "web/running_config.hpp"
 
 namespace rc10::web {
 
@@ -40,7 +41,9 @@ class PageSocket {
 /// ask.
 class Hub {
  public:
-  Hub(std::optional<std::string> robot, std::string token, Recordings recordings);
+  /// `file_socket`: of the root helper.
+  Hub(std::optional<std::string> robot, std::string token, Recordings recordings,
+      std::string file_socket = client::kFileSocket);
 
   /// A page has been opened; `socket` is told of until leave().
   void join(PageSocket& socket, bool loopback, std::string_view address);
@@ -68,6 +71,8 @@ class Hub {
     std::optional<OpenRecording> recording;
     std::uint32_t recording_number = 0;
     std::unique_ptr<PageTest> test;
+    std::optional<client::FileCall> file_call;
+    std::int64_t file_seq = 0;
     std::unique_ptr<TestEvaluation> evaluation;
   };
 
@@ -88,6 +93,11 @@ class Hub {
   void drive(Page& page, const DriveMotor& wanted, Duration age);
   void showConfigTo(const Page& page, const AskConfig& wanted);
   void check(const Page& page, CheckConfig wanted);
+  void change(Page& page, const ChangeFile& wanted);
+  void askHelper(Page& page, std::int64_t seq, const Result<std::string>& may,
+                 const client::FileRequest& request);
+  void publishFileAnswer(Page& page);
+  [[nodiscard]] FoundConfig shownConfig() const;
   void askDesk(const Page& page, ConfigDesk::Question question);
   void answerConfigs();
   void begin(Page& page, const StartTest& wanted, MonotonicTime now, Duration age);
@@ -112,6 +122,7 @@ class Hub {
   std::deque<ShownToken> shown_tokens_;  ///< Not judged yet; of each page one at most.
   MonotonicTime next_judgement_{};
   Recordings recordings_;
+  std::string file_socket_;
   ConfigDesk configs_;
   std::vector<std::unique_ptr<Page>> pages_;
   std::uint64_t opened_ = 0;

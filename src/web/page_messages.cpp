@@ -117,9 +117,9 @@ std::string wordsMessage(const AskWords& asked) {
       {{"type", "words"}, {"seq", asked.seq}, {"events", std::move(events)}, {"frames", std::move(frames)}});
 }
 
-std::string configHead(std::int64_t seq, std::string_view of) {
+std::string configHead(std::int64_t seq, std::string_view of, std::string_view sha256) {
   return R"({"type":"config","seq":)" + std::to_string(seq) + R"(,"of":")" + std::string{of} +
-         R"(","config":)";
+         R"(","sha256":")" + std::string{sha256} + R"(","config":)";
 }
 
 std::string checkedConfigHead(std::int64_t seq) {

@@ -42,7 +42,7 @@ inline constexpr int kPageProtocol = 2;
 [[nodiscard]] std::string wordsMessage(const AskWords& asked);
 /// The robot's file, and whether a text would be accepted: all but the answer of the ConfigDesk and a
 /// bracket.
-[[nodiscard]] std::string configHead(std::int64_t seq, std::string_view of);
+[[nodiscard]] std::string configHead(std::int64_t seq, std::string_view of, std::string_view sha256);
 [[nodiscard]] std::string checkedConfigHead(std::int64_t seq);
 /// To the clock of a page: it knows by that that somebody listens.
 [[nodiscard]] std::string clockMessage();

@@ -232,6 +232,18 @@ Result<PageRequest> configCheckOf(const Received& object) {
   return check;
 }
 
+Result<PageRequest> changeOf(const Received& object, client::FileVerb verb) {
+  const auto seq = wholeOf(object, "seq", 0, kMaxExact);
+  if (!seq) return tl::unexpected(seq.error());
+  ChangeFile change{.seq = *seq, .verb = verb, .text = {}, .replaces = {}};
+  if (verb == client::FileVerb::kRestart) return change;
+  const auto* text = memberOf(object, "text");
+  if (text == nullptr || !text->is_string()) return fail("'text' is missing");
+  change.text = text->get<std::string>();
+  change.replaces = textOf(object, "replaces");
+  return change;
+}
+
 // Keys of a test's message: one that is not known might have been a bound.
 constexpr std::array<std::string_view, 22> kTestKeys{"type",
                                                      "schema",
@@ -409,6 +421,8 @@ Result<PageRequest> parsePageRequest(std::string_view text) {
   if (type == "words") return wordsOf(json);
   if (type == "config") return configOf(json);
   if (type == "config_check") return configCheckOf(json);
+  if (type == "config_install") return changeOf(json, client::FileVerb::kInstall);
+  if (type == "config_restart") return changeOf(json, client::FileVerb::kRestart);
   if (type == "test") return testOf(json);
   if (type == "test_renewal") return renewalOf(json);
   if (type == "test_end") return endOf(json);

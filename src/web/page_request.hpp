@@ -10,6 +10,7 @@
 #include "app/result.hpp"
 #include "app/time.hpp"
 #include "app/vocabulary.hpp"
+#include "client/file_request.hpp"
 #include "client/motion/motion_plan.hpp"
 
 namespace rc10::web {
@@ -103,6 +104,14 @@ struct CheckConfig {
   std::string text;
 };
 
+/// The root helper is asked to install this text, or to restart rc10d.
+struct ChangeFile {
+  std::int64_t seq = 0;
+  client::FileVerb verb = client::FileVerb::kInstall;
+  std::string text;
+  std::string replaces;  ///< SHA-256 of the text that it was made of; empty: of what config shows now.
+};
+
 /// A test of motion. It goes on as long as the page says so.
 struct StartTest {
   static constexpr std::int64_t kSchema = 1;
@@ -128,7 +137,7 @@ struct AskCurve {
 
 using PageRequest = std::variant<ShowToken, ChooseView, AskRange, AskRobot, DriveMotor, TellClock,
                                  AskRecordings, AskRecording, AskPiece, AskWords, AskConfig, CheckConfig,
-                                 StartTest, RenewTest, EndTest, AskCurve>;
+                                 ChangeFile, StartTest, RenewTest, EndTest, AskCurve>;
 
 /// A stranger's message. The error is a sentence for him.
 [[nodiscard]] Result<PageRequest> parsePageRequest(std::string_view text);

@@ -12,9 +12,22 @@ FoundConfig readRunningConfig(const std::string& run_dir, const std::string& rob
   return {"running", std::move(left->text)};
 }
 
-FoundConfig readLastConfig(const std::string& run_dir, const std::optional<std::string>& robot) {
+namespace {
+
+std::optional<LeftText> lastAccepted(const std::string& run_dir, const std::optional<std::string>& robot) {
   const bool named = robot && !robot->empty() && robot->find('/') == std::string::npos;
-  auto last = readLeft(named ? link::configPath(run_dir, *robot) : newestLeftFile(run_dir, ".config"));
+  return readLeft(named ? link::configPath(run_dir, *robot) : newestLeftFile(run_dir, ".config"));
+}
+
+}  // namespace
+
+std::string readAcceptedConfig(const std::string& run_dir, const std::optional<std::string>& robot) {
+  auto last = lastAccepted(run_dir, robot);
+  return last ? std::move(last->text) : std::string{};
+}
+
+FoundConfig readLastConfig(const std::string& run_dir, const std::optional<std::string>& robot) {
+  auto last = lastAccepted(run_dir, robot);
   auto refused = readLeft(newestLeftFile(run_dir, ".refused", robot));
   if (refused && (!last || isNewer(refused->written, last->written)))
     return {"refused", std::move(refused->text)};

@@ -267,7 +267,7 @@ class Server::Parts {
   Parts(const ServerOptions& options, PageFiles files)
       : shared_{.files = std::move(files),
                 .names = options.names,
-                .hub = Hub{options.robot, options.token, options.recordings}},
+                .hub = Hub{options.robot, options.token, options.recordings, options.file_socket}},
         acceptor_(context_),
         signals_(context_, SIGINT, SIGTERM),
         timer_(context_) {}

@@ -7,6 +7,7 @@
 
 #include "app/result.hpp"
 #include "blackbox/places.hpp"
+#include "client/file_request.hpp"
 #include "link/run_dir.hpp"
 #include "web/access.hpp"
 #include "web/page_files.hpp"
@@ -21,6 +22,7 @@ struct ServerOptions {
   std::optional<std::string> robot;  ///< None: the only one of this computer.
   std::string token;                 ///< Token of pages on other computers; empty: there are none.
   Recordings recordings{link::runDir(), blackbox::stateDir()};
+  std::string file_socket = client::kFileSocket;  ///< The root helper listens there.
 };
 
 /// HTTP and WebSocket for the page, in one thread: a bounded number of connections, each with bounded room.

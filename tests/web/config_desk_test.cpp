@@ -52,6 +52,17 @@ TEST_F(ConfigDeskTest, ANewerTextOfAPageTakesThePlaceOfOneThatWaits) {
   EXPECT_EQ(next().seq, 11);
 }
 
+TEST_F(ConfigDeskTest, WhatIsToFollowComesWithTheBareAnswer) {
+  auto asked = question(1, 10, "a");
+  asked.then =
+      client::FileRequest{.verb = client::FileVerb::kRestart, .robot = "hero", .replaces = {}, .text = {}};
+  desk.ask(std::move(asked));
+  const auto answer = next();
+  EXPECT_EQ(answer.message.value(), "\"a\"");
+  ASSERT_TRUE(answer.then);
+  EXPECT_EQ(answer.then->robot, "hero");
+}
+
 TEST_F(ConfigDeskTest, APageThatIsGoneKeepsNobodyWaiting) {
   desk.ask(question(1, 10, "a", never));
   EXPECT_FALSE(desk.turn(MonotonicTime{}));

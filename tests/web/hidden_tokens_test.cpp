@@ -48,6 +48,16 @@ TEST(HiddenTokens, OnlyATokenThatMayConfigureShowsThem) {
   EXPECT_EQ(showConfig(robotWith("clients:\n" + entry(kHash)), kToken).hidden, 1);
 }
 
+TEST(HiddenTokens, OnlyATokenThatMayConfigureMayHaveAFileWithClientsReplaced) {
+  const auto text = robotWith("clients:\n" + entry(kHash, "[configure]") + entry(kOther));
+  EXPECT_TRUE(mayReplace(text, kToken));
+  for (const std::string token : {std::string{}, std::string{"another"}, kHash})
+    EXPECT_FALSE(mayReplace(text, token));
+  EXPECT_FALSE(mayReplace(robotWith("clients:\n  - {user: root, may: [configure]}\n"), ""));
+  EXPECT_TRUE(mayReplace(robotWith(""), ""));
+  EXPECT_FALSE(mayReplace("robot: hero\nclients: nonsense\n", kToken));
+}
+
 TEST(HiddenTokens, AHashBehindAnAnchorIsHidden) {
   const auto shown = showConfig(
       robotWith("clients:\n  - {token: &t " + kHash + ", may: [command]}\n  - {token: *t, may: [tune]}\n"),

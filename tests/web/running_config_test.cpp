@@ -44,6 +44,9 @@ TEST_F(RunningConfigTest, WithoutARobotTheRefusedFileComesBeforeAnOlderOne) {
   EXPECT_EQ(readLastConfig(run.path(), std::nullopt).text, "newer");
   EXPECT_EQ(readLastConfig(run.path(), "hero").text, "old");
   leave("robot.refused", "wrong");
+  EXPECT_EQ(readAcceptedConfig(run.path(), std::nullopt), "newer");
+  EXPECT_EQ(readAcceptedConfig(run.path(), "hero"), "old");
+  EXPECT_EQ(readAcceptedConfig(run.path(), "nobody"), "");
   EXPECT_EQ(readLastConfig(run.path(), std::nullopt).of, "refused");
   leave("sentry.config", "mended", -10);
   EXPECT_EQ(readLastConfig(run.path(), std::nullopt).text, "mended");

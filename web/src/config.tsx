@@ -8,7 +8,7 @@ import { ConfigSchema, type KeyHelp, type Schema } from './config_schema';
 import { useStudio } from './context';
 import { download } from './download';
 import { fetchedOnce } from './fetched_once';
-import type { CheckedConfig, ConfigFile, ConfigProblem } from './protocol';
+import type { CheckedConfig, ConfigFile, ConfigProblem, Response } from './protocol';
 import type { Word } from './words';
 
 type Checked = CheckedConfig['checked'];
@@ -146,11 +146,57 @@ function HelpCard(props: { help: KeyHelp | null; about: string }) {
   );
 }
 
-function Install() {
+async function sha256Of(text: string): Promise<string> {
+  // A page on loopback has it, which alone may install.
+  if (!window.isSecureContext) return '';
+  const bytes = await crypto.subtle.digest('SHA-256', new TextEncoder().encode(text));
+  return Array.from(new Uint8Array(bytes), (byte) => byte.toString(16).padStart(2, '0')).join('');
+}
+
+/** By the root helper, where the robot allows it. */
+function OnRobot(props: { draft: Draft; sound: boolean; onInstalled: (text: string, sha256: string) => void }) {
+  const { link, word } = useStudio();
+  const { draft, sound, onInstalled } = props;
+  const [told, setTold] = useState<Response | null>(null);
+  const [busy, setBusy] = useState(false);
+  const ask = async (message: Parameters<typeof link.changeFile>[0]) => {
+    setBusy(true);
+    setTold(null);
+    const answer = await link.changeFile(message);
+    setTold(answer);
+    setBusy(false);
+    if (answer.status === 'ok' && message.type === 'config_install') onInstalled(message.text, await sha256Of(message.text));
+  };
+  return (
+    <>
+      <div class="toolbar">
+        <button
+          type="button"
+          disabled={busy || !sound || draft.hidden > 0}
+          onClick={() => void ask({ type: 'config_install', text: draft.text, replaces: draft.replaces })}
+        >
+          {word('configInstallNow')}
+        </button>
+        <button type="button" disabled={busy} onClick={() => void ask({ type: 'config_restart' })}>
+          {word('configRestart')}
+        </button>
+      </div>
+      {told !== null && (
+        <p class={told.status === 'ok' ? 'notice' : 'refused'} role={told.status === 'ok' ? 'status' : 'alert'} lang="en">
+          {told.message}
+        </p>
+      )}
+    </>
+  );
+}
+
+function Install(props: { draft: Draft; sound: boolean; onInstalled: (text: string, sha256: string) => void }) {
   const { word } = useStudio();
   return (
     <details class="notes">
       <summary>{word('configInstall')}</summary>
+      <p>{word('configInstallHelper')}</p>
+      <OnRobot {...props} />
       <p>{word('configInstallHint')}</p>
       <pre tabIndex={0} aria-label={word('configInstall')}>
         {'rc10d --check robot.yaml\nsudo install -m 644 --backup=numbered robot.yaml /etc/rc10d/robot.yaml\nsudo systemctl restart rc10d'}
@@ -174,17 +220,17 @@ export function Configuration() {
 
   const change = (next: Partial<Draft>) => setDraft({ ...Object.assign(kDraft, next) });
 
-  const load = (text: string, from: string, hidden: number) => {
+  const load = (text: string, from: string, hidden: number, replaces = '') => {
     setTold('');
     // The editor tells of its text itself.
-    change({ loaded: text, text, from, hidden });
+    change({ loaded: text, text, from, hidden, replaces });
     if (editor.current !== null && editor.current.text() !== text) editor.current.replace(text);
   };
   const loadRobots = async () => {
     const answer = await link.config();
     if (typeof answer === 'string') return setTold(answer);
     if (answer.config.why !== '') return setTold(answer.config.why);
-    load(answer.config.text, word(kSources[answer.of]), answer.config.hidden);
+    load(answer.config.text, word(kSources[answer.of]), answer.config.hidden, answer.sha256);
   };
   const loadTemplate = async () => {
     try {
@@ -292,7 +338,11 @@ export function Configuration() {
         </div>
       </div>
       {robot !== null && <CheckedTables robot={robot} old={checked === null || checked.robot === null} />}
-      <Install />
+      <Install
+        draft={draft}
+        sound={checked !== null && !busy && checked.errors.length === 0}
+        onInstalled={(text, sha256) => change({ loaded: text, replaces: sha256 })}
+      />
     </div>
   );
 }

@@ -43,6 +43,8 @@ const kMaxEvents = 500;
 const kFirstPauseMs = 500;
 const kLongestPauseMs = 5000;
 const kAnswerPatienceMs = 6000;
+// rc10d's end and start are part of it: that of FileCall, and a little more.
+const kHelperPatienceMs = 35_000;
 // Beats, not milliseconds: a browser that stood still has heard nothing, and nobody was silent. States come 25 times
 // a second, and rc10-web answers each beat.
 const kBeatMs = 500;
@@ -304,6 +306,21 @@ export class Link {
   /** Whether rc10d would accept this text; a text says why nobody knows. */
   checkConfig(text: string): Promise<CheckedConfig | string> {
     return this.askOrHear<CheckedConfig>({ type: 'config_check', text });
+  }
+
+  /** The root helper's answer: installing a text, or restarting rc10d. */
+  changeFile(message: { type: 'config_install'; text: string; replaces: string } | { type: 'config_restart' }): Promise<Response> {
+    const seq = ++this.seq;
+    return new Promise((resolve) => {
+      const done = (answer: Response) => {
+        clearTimeout(timer);
+        this.open.delete(seq);
+        resolve(answer);
+      };
+      const timer = setTimeout(() => done(failure(seq, 'no answer')), kHelperPatienceMs);
+      this.open.set(seq, done);
+      if (!this.send({ ...message, seq })) done(failure(seq, 'no connection'));
+    });
   }
 
   private askOrHear<Answer extends ConfigFile | CheckedConfig>(message: object): Promise<Answer | string> {

@@ -200,6 +200,8 @@ export interface ConfigFile {
   type: 'config';
   seq: number;
   of: 'running' | 'last' | 'refused';
+  /** The whole text with its tokens. */
+  sha256: string;
   /** `hidden`: tokens that are not shown; `why`: nothing is, and why. */
   config: { text: string; hidden: number; why: string };
 }

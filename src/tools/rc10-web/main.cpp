@@ -49,6 +49,7 @@ int run(int argc, char** argv) {
   app.add_option("--name", options.names, "A name that the page is opened by, besides this computer's");
   app.add_option("--page", page, "Folder of the page")->capture_default_str();
   app.add_option("--token-file", token_file, "File of the token; default: web-token in rc10d's run folder");
+  app.add_option("--config-socket", options.file_socket, "Socket of the root helper")->capture_default_str();
   if (const auto status = parseCommandLine(app, argc, argv)) return *status;
 
   const auto host = hostName();
