@@ -115,8 +115,9 @@ enum class Operation : std::uint8_t {
   kDriveSettings = 9,  ///< Settings that kConfigure can write.
   kHand = 10,          ///< Turns a simulated shaft as a hand would.
   kLoad = 11,          ///< Another load on a simulated shaft.
+  kScan = 12,          ///< Drives of one bus: listens, then asks.
 };
-inline constexpr int kOperationCount = 12;
+inline constexpr int kOperationCount = 13;
 
 /// event_t.lcm.
 enum class Severity : std::uint8_t { kInfo = 0, kWarning = 1, kError = 2 };
@@ -136,9 +137,9 @@ inline constexpr std::array kBusStateWords{"active", "warning", "passive", "bus-
                                            "down",   "gone",    "silent",  "stalled"};
 inline constexpr std::array kCommandUnitWords{"", "A", "V", "native"};
 inline constexpr std::array kLimitWords{"current", "velocity", "angle", "temperature", "slew", "stall"};
-inline constexpr std::array kOperationWords{"enable",     "disable",         "estop",     "clear",
-                                            "zero",       "configure-drive", "set_gains", "enable_alone",
-                                            "get_config", "drive-settings",  "hand",      "load"};
+inline constexpr std::array kOperationWords{
+    "enable",     "disable",        "estop", "clear", "zero", "configure-drive", "set_gains", "enable_alone",
+    "get_config", "drive-settings", "hand",  "load",  "scan"};
 inline constexpr std::array kSeverityWords{"info", "warning", "error"};
 static_assert(kControlModeWords.size() == kControlModeCount && kControlModeUnits.size() == kControlModeCount);
 static_assert(kMotorStatusWords.size() == kMotorStatusCount);

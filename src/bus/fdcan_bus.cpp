@@ -117,6 +117,8 @@ bool fdCANbus::isCommandId(CanId id) const noexcept {
 
 bool fdCANbus::sendFrame(const CanFrame& frame) noexcept { return append(frame, std::nullopt); }
 
+bool fdCANbus::hasRoom() const noexcept { return batch_->room() > 0; }
+
 bool fdCANbus::append(const CanFrame& frame, std::optional<std::size_t> packer) noexcept {
   const bool possible = frame.type != FrameType::kError && (!frame.fd || fdFrames());
   if (possible && batch_->add(frame, packer)) return true;

@@ -92,6 +92,8 @@ class fdCANbus {
   /// Collects a frame for flush(). False, and counted as dropped, when the tick is full, the frame is not
   /// valid (id, length, an error message), or an FD frame meets a classic interface.
   bool sendFrame(const CanFrame& frame) noexcept;
+  /// For one frame more in this tick.
+  [[nodiscard]] bool hasRoom() const noexcept;
   /// Asks every packer for its frames, starting at the one that was refused last. A packer whose frames
   /// do not all fit into the tick sends none.
   void packCommands(const Tick& tick) noexcept;

@@ -22,7 +22,8 @@ RequestCall::RequestCall(LinkClient& connection, std::string_view client_name)
       session_(randomSession()),
       buffer_(link::kMaxMessageSize) {}
 
-Result<link::Response> RequestCall::call(link::Request request, Duration timeout) {
+Result<link::Response> RequestCall::call(link::Request request, Duration timeout, const Other& other,
+                                         bool (*given_up)() noexcept) {
   using std::chrono::steady_clock;
   const auto deadline = steady_clock::now() + timeout;
   request.client = client_;
@@ -40,6 +41,7 @@ Result<link::Response> RequestCall::call(link::Request request, Duration timeout
     link::Response response;
     if (received.status == LinkClient::ReceiveStatus::kMessage) {
       if (answers(received.datagram, response)) return response;
+      if (other) other(received.datagram);
       if (steady_clock::now() < deadline) continue;
     }
     const auto left = std::chrono::ceil<std::chrono::milliseconds>(deadline - steady_clock::now()).count();
@@ -47,6 +49,7 @@ Result<link::Response> RequestCall::call(link::Request request, Duration timeout
       const auto waited = std::chrono::duration_cast<std::chrono::milliseconds>(timeout).count();
       return fail("rc10d did not answer within " + std::to_string(waited) + " ms: " + client::kSeeItsLog);
     }
+    if (given_up != nullptr && given_up()) return fail("interrupted: rc10d has not answered yet");
     pollfd entry{.fd = connection_.descriptor(), .events = POLLIN, .revents = 0};
     (void)::poll(&entry, 1, static_cast<int>(std::min<std::int64_t>(left, 60'000)));  // a signal: looks again
   }

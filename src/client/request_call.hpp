@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <string_view>
 #include <vector>
 
@@ -18,11 +19,14 @@ class RequestCall {
   /// `connection` must outlive this.
   explicit RequestCall(LinkClient& connection, std::string_view client_name);
 
-  /// Sends the request under this run's session and the next number, and waits for its answer. Other
-  /// messages that come meanwhile are dropped: use a connection without subscriptions. The error is for
-  /// a connection that gave none; a refusal is a response.
-  [[nodiscard]] Result<link::Response> call(link::Request request,
-                                            Duration timeout = std::chrono::seconds{5});
+  /// A message that is not the answer.
+  using Other = std::function<void(std::span<const std::byte> datagram)>;
+
+  /// Sends the request under this run's session and the next number, and waits for its answer, or until
+  /// `given_up`. Other messages that come meanwhile go to `other`, or are dropped: use a connection without
+  /// subscriptions. The error is for a connection that gave none; a refusal is a response.
+  [[nodiscard]] Result<link::Response> call(link::Request request, Duration timeout = std::chrono::seconds{5},
+                                            const Other& other = {}, bool (*given_up)() noexcept = nullptr);
 
  private:
   [[nodiscard]] bool answers(std::span<const std::byte> datagram, link::Response& response) const noexcept;

@@ -15,7 +15,7 @@ enum class Right : std::uint8_t {
   kCommand,    ///< Setpoints, inputs of modules, enable, disable, zero.
   kClear,      ///< Faults and e-stops.
   kTune,       ///< Gains.
-  kConfigure,  ///< Settings in the memory of a drive.
+  kConfigure,  ///< Settings in the memory of a drive, scans of a bus.
 };
 inline constexpr std::array<std::string_view, 4> kRightWords{"command", "clear", "tune", "configure"};
 

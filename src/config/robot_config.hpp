@@ -39,8 +39,9 @@ struct MotorConfig {
   float standstill_rpm = 10.0F;                ///< Slower than this it stands still.
   Duration run_down{std::chrono::seconds{5}};  ///< Without torque it turns no longer than this.
   bool optional = false;
-  sim::MotorLoad simulated;  ///< Used on a simulated bus and by rc10-sim.
-  sim::LoadPlan load_plan;   ///< The same.
+  sim::MotorLoad simulated;         ///< Used on a simulated bus and by rc10-sim.
+  sim::LoadPlan load_plan;          ///< The same.
+  std::optional<int> simulated_id;  ///< Id of the simulated drive; none: settings.id.
 
   [[nodiscard]] MotorTraits traits() const { return family->traits(settings.model, settings.own); }
   [[nodiscard]] const std::string& name() const noexcept { return settings.name; }

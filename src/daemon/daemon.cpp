@@ -266,6 +266,10 @@ void Daemon::describeRobot() {
       described.max_first_step_deg = motor.shaping.max_first_step_deg;
       described.travel = motor.settings.travel;
       described.run_down = motor.run_down;
+      auto use = motor.family->busUse(motor.settings);
+      described.family = motor.family;
+      described.sends = std::move(use.sends);
+      described.steers = std::move(use.steers.empty() ? use.obeys : use.steers);
       if (simulated)
         described.simulated = {.port = port,
                                .drive = drive,

@@ -135,7 +135,7 @@ namespace {
   return "nothing heard from its drive since the start: check its power, CANH and CANL, both terminations, "
          "the "
          "bit rate, and that its id is " +
-         std::to_string(id) + " (`rc10ctl scan` names the drives of a bus while rc10d is stopped)";
+         std::to_string(id) + " (`rc10ctl scan` names the drives of a bus)";
 }
 
 // `extra`: the number before, plus 256 times the StopCause.

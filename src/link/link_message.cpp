@@ -42,6 +42,9 @@ std::size_t wireSize(const TraceChoice&) noexcept { return sizeof(TraceChoice); 
 std::size_t wireSize(const Trace& message) noexcept {
   return upTo<TraceRow>(offsetof(Trace, rows), message.row_count, kMaxTraceRows);
 }
+std::size_t wireSize(const Sighting& message) noexcept {
+  return upTo<ScanGuess>(offsetof(Sighting, guesses), message.guess_count, kMaxScanGuesses);
+}
 
 bool countsFit(const Hello&) noexcept { return true; }
 bool countsFit(const Welcome& message) noexcept {
@@ -69,6 +72,7 @@ bool countsFit(const TraceChoice& message) noexcept { return message.signal_coun
 bool countsFit(const Trace& message) noexcept {
   return message.signal_count <= kMaxTraceSignals && message.row_count <= kMaxTraceRows;
 }
+bool countsFit(const Sighting& message) noexcept { return message.guess_count <= kMaxScanGuesses; }
 
 bool openEstop(std::span<const std::byte> datagram, Request& request) noexcept {
   constexpr std::size_t kNeeded = offsetof(Request, operation) + sizeof(Request::operation);

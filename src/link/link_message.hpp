@@ -23,12 +23,13 @@ namespace rc10::link {
 [[nodiscard]] std::size_t wireSize(const Signals& message) noexcept;
 [[nodiscard]] std::size_t wireSize(const TraceChoice&) noexcept;
 [[nodiscard]] std::size_t wireSize(const Trace& message) noexcept;
+[[nodiscard]] std::size_t wireSize(const Sighting& message) noexcept;
 
 /// The largest message there is: room for a receive buffer.
 inline constexpr std::size_t kMaxMessageSize =
     std::max({sizeof(Hello), sizeof(Welcome), sizeof(Command), sizeof(State), sizeof(Diagnostics),
               sizeof(Event), sizeof(Request), sizeof(Response), sizeof(Signals), sizeof(ModuleInfo),
-              sizeof(ModuleState), sizeof(TraceChoice), sizeof(Trace)});
+              sizeof(ModuleState), sizeof(TraceChoice), sizeof(Trace), sizeof(Sighting)});
 
 /// Fills in the header; call it last. Returns the bytes to send.
 template <typename Message>
@@ -55,6 +56,7 @@ template <typename Message>
 [[nodiscard]] bool countsFit(const Signals& message) noexcept;
 [[nodiscard]] bool countsFit(const TraceChoice& message) noexcept;
 [[nodiscard]] bool countsFit(const Trace& message) noexcept;
+[[nodiscard]] bool countsFit(const Sighting& message) noexcept;
 
 /// Copies a received datagram of a stranger into `message`. False if the type, the length or a count
 /// does not fit; then `message` is unspecified. Text needs no check: Text::view() is always bounded.

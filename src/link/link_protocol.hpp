@@ -69,6 +69,7 @@ enum class MessageType : std::uint32_t {
   kModuleInfo,
   kModuleState,
   kTrace,
+  kSighting,
 };
 
 struct Header {
@@ -357,12 +358,40 @@ struct Trace {
   std::array<TraceRow, kMaxTraceRows> rows;
 };
 
+inline constexpr std::size_t kMaxScanGuesses = 16;
+
+/// Possible sender of the frames of a Sighting.
+struct ScanGuess {
+  Text<32> kind;  ///< "DJI GM6020".
+  std::int32_t id = 0;
+  std::uint8_t from_drive = 0;  ///< 0: another controller commands such drives.
+  std::uint8_t collides = 0;    ///< `motor` is of another family: two devices have one id.
+  Name motor;                   ///< The motor of the file that takes these frames; empty: none.
+};
+
+/// Frames heard under one id by a scan. Those of a request come before its Response, to clients of the
+/// socket.
+struct Sighting {
+  static constexpr auto kType = MessageType::kSighting;
+  Header header;
+  Name client;  ///< As in the request, with session and seq.
+  std::uint64_t session = 0;
+  std::int64_t seq = 0;
+  std::int64_t frames = 0;
+  std::uint32_t frame_id = 0;
+  std::uint8_t extended = 0;
+  std::uint8_t ambiguous = 0;  ///< The guesses are of several kinds.
+  Text<256> advice;            ///< Empty: there is nothing to be done.
+  std::uint32_t guess_count = 0;
+  std::array<ScanGuess, kMaxScanGuesses> guesses;  ///< None: no family that rc10d knows.
+};
+
 /// Bytes go in and out of these by memcpy.
 template <typename Message>
 inline constexpr bool kIsMessage =
     std::is_trivially_copyable_v<Message> && std::is_standard_layout_v<Message>;
 static_assert(kIsMessage<Hello> && kIsMessage<Welcome> && kIsMessage<Command> && kIsMessage<Request>);
-static_assert(kIsMessage<TraceChoice> && kIsMessage<Trace>);
+static_assert(kIsMessage<TraceChoice> && kIsMessage<Trace> && kIsMessage<Sighting>);
 static_assert(kIsMessage<Signals> && kIsMessage<ModuleInfo> && kIsMessage<ModuleState>);
 static_assert(kIsMessage<Response> && kIsMessage<State> && kIsMessage<Diagnostics> && kIsMessage<Event>);
 

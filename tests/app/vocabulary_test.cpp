@@ -32,6 +32,7 @@ TEST(Vocabulary, WordsAreInTheOrderOfTheNumbers) {
   EXPECT_STREQ(toString(Operation::kConfigure), "configure-drive");
   EXPECT_STREQ(toString(Operation::kEnableAlone), "enable_alone");
   EXPECT_STREQ(toString(Operation::kLoad), "load");
+  EXPECT_STREQ(toString(Operation::kScan), "scan");
 }
 
 TEST(Vocabulary, EachOperationIsFoundByItsWordAlone) {

@@ -59,7 +59,7 @@ inline void print(std::ostream& out, const MotorConfig& motor) {
     for (const auto& value : step.change.values) out << ' ' << value.value_or(-1.0F);
     out << '\n';
   }
-  out << motor.load_plan.repeat.count() << '\n';
+  out << motor.load_plan.repeat.count() << ' ' << motor.simulated_id.value_or(-1) << '\n';
 }
 
 }  // namespace detail

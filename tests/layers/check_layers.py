@@ -25,7 +25,7 @@ USES = {
     "sim": {"motor", "bus", "app"},
     "drives": {"sim", "motor", "bus", "app"},
     "config": {"drives", "sim", "module", "motor", "bus", "app"},
-    "survey": {"drives", "motor", "bus", "app"},
+    "survey": {"drives", "motor", "bus", "link", "app"},
     "link": {"app"},
     "blackbox": {"link", "app"},
     "client": {"blackbox", "link", "app"},
@@ -35,7 +35,7 @@ USES = {
     "sandbox": {"app"},
     "gateway": {"sandbox", "client", "link", "app"},
     "web": {"sandbox", "survey", "client", "config", "blackbox", "link", "bus", "app"},
-    "daemon": {"blackbox", "config", "sim", "module", "motor", "bus", "link", "app"},
+    "daemon": {"blackbox", "survey", "config", "sim", "module", "motor", "bus", "link", "app"},
     "robot_client": {"app"},
     "tools": {
         "guard",

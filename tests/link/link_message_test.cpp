@@ -30,6 +30,7 @@ void setCount(Diagnostics& m, std::uint32_t n) {
 }
 void setCount(TraceChoice& m, std::uint32_t n) { m.signal_count = n; }
 void setCount(Trace& m, std::uint32_t n) { m.signal_count = m.row_count = n; }
+void setCount(Sighting& m, std::uint32_t n) { m.guess_count = n; }
 
 template <typename Message>
 constexpr std::uint32_t room() {
@@ -37,6 +38,7 @@ constexpr std::uint32_t room() {
   if constexpr (std::is_same_v<Message, Diagnostics>) return kMaxBuses;
   if constexpr (std::is_same_v<Message, Hello> || std::is_same_v<Message, Event>) return 0;
   if constexpr (std::is_same_v<Message, TraceChoice> || std::is_same_v<Message, Trace>) return kMaxTraceRows;
+  if constexpr (std::is_same_v<Message, Sighting>) return kMaxScanGuesses;
   return kMaxMotors;
 }
 
@@ -62,12 +64,13 @@ void expectAllSafe(const Bytes& bytes) {
   expectSafe<Event>(bytes);
   expectSafe<TraceChoice>(bytes);
   expectSafe<Trace>(bytes);
+  expectSafe<Sighting>(bytes);
 }
 
 template <typename Message>
 class LinkMessage : public testing::Test {};
-using Messages =
-    testing::Types<Hello, Welcome, Command, Request, Response, State, Diagnostics, Event, TraceChoice, Trace>;
+using Messages = testing::Types<Hello, Welcome, Command, Request, Response, State, Diagnostics, Event,
+                                TraceChoice, Trace, Sighting>;
 TYPED_TEST_SUITE(LinkMessage, Messages);
 
 TYPED_TEST(LinkMessage, ComesBackAsItWasForEveryCount) {

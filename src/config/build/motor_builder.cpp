@@ -139,6 +139,7 @@ void build(MotorParse& in, int tick_hz) {
   const bool own_known = readOwnKeys(in);
   in.traits = in.draft.config.traits();
   in.settings.read("gear_ratio", in.motor().gear_ratio);
+  readDriveId(in);
   in.draft.complete = readId(in) && own_known && checkOwnKeys(in);
   if (!in.draft.complete) return;
   checkKeys(in);

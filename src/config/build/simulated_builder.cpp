@@ -117,4 +117,17 @@ void readSimulated(MotorParse& in) {
   PlanReader{in, simulated}.read();
 }
 
+void readDriveId(MotorParse& in) {
+  const Settings simulated = in.settings.section("simulated");
+  const auto given = simulated.find("drive_id");
+  if (!given) return;
+  int id = in.motor().id;
+  simulated.read("drive_id", id);
+  in.draft.config.simulated_id = id;
+  if (id >= in.traits.min_id && id <= in.traits.max_id) return;
+  in.problems.error(given->place(), given->path,
+                    given->text() + " is no id of a " + in.modelName() + "; use " +
+                        std::to_string(in.traits.min_id) + " to " + std::to_string(in.traits.max_id));
+}
+
 }  // namespace rc10

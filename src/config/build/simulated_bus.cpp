@@ -1,6 +1,7 @@
 #include "config/build/simulated_bus.hpp"
 
 #include <string>
+#include <utility>
 
 #include "config/motor_families.hpp"
 
@@ -9,7 +10,9 @@ namespace {
 
 /// A copy: a recipe outlives the configuration that it was made from.
 [[nodiscard]] sim::DriveRecipe recipeOf(const MotorConfig& motor) {
-  return [settings = motor.settings, load = motor.simulated]() -> Result<std::unique_ptr<sim::Drive>> {
+  auto of_drive = motor.settings;
+  of_drive.id = motor.simulated_id.value_or(of_drive.id);
+  return [settings = std::move(of_drive), load = motor.simulated]() -> Result<std::unique_ptr<sim::Drive>> {
     if (auto good = sim::checkLoad(settings.name, load); !good) return tl::unexpected(good.error());
     const auto* entry = findFamily(settings.model);
     if (entry == nullptr || entry->simulate == nullptr) {

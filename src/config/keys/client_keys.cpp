@@ -40,8 +40,8 @@ constexpr std::array kClientKeys{
         .required = true,
         .about =
             "What it may. command: setpoints, inputs of modules, enable, disable, zero. clear: faults and "
-            "e-stops. tune: gains. configure: settings in the memory of a drive. observe, and the "
-            "e-stop, everybody may."},
+            "e-stops. tune: gains. configure: settings in the memory of a drive, scans of a bus. "
+            "observe, and the e-stop, everybody may."},
     Key{.name = "motors",
         .kind = kTextList,
         .range = {.min = 0, .max = 128},

@@ -114,6 +114,11 @@ constexpr std::array kOthers{
         .range = {.min = 0, .max = 1},
         .default_text = "0",
         .about = "Fraction of the feedback frames that are lost."},
+    Key{.name = "drive_id",
+        .kind = kInteger,
+        .range = {.min = 0, .max = 255},
+        .about = "Id set on the drive, where it is not the motor's: the motor is OFFLINE, and a scan finds a "
+                 "drive that is not in the file. Default: the motor's id."},
     Key{.name = "changes",
         .kind = kSectionList,
         .range = {.min = 1, .max = 64},

@@ -73,6 +73,7 @@ LinkServer::LinkServer(LinkSocket socket, Sources sources, const Permissions& pe
       admission_(sources_.robot, permissions),
       signal_admission_(sources_.robot, permissions),
       desk_(admission_, sources_.robot),
+      scans_(sources_.robot, sources_.exchange.scan),
       connections_(std::move(socket), epoll_.get(), admission_.permissions()),
       feeds_(sources_, connections_) {}
 
@@ -120,6 +121,7 @@ void LinkServer::poll(int timeout_ms) {
 void LinkServer::slowTick() {
   drainScheduler();
   disableForTheGone();
+  scans_.sendOn(connections_);
   for (const auto id : connections_.sendUnsent()) feeds_.forget(id);
   for (const auto& text : connections_.newlyDeaf()) note(Severity::kWarning, text);
   feeds_.publishTrace();
@@ -284,13 +286,8 @@ void LinkServer::request(const link::Request& message, Connection& connection) {
     sources_.exchange.estop_client.publish();
     sources_.exchange.estop.store(true, std::memory_order_release);
   }
-  const bool taken = outcome.order && sources_.exchange.orders.push(*outcome.order);
-  if (taken && outcome.disable_at_end)
+  if (outcome.order && handOver(*outcome.order, message) && outcome.disable_at_end)
     at_end_.add(*outcome.order, connection.id, sources_.exchange.snapshot.read());
-  if (outcome.order && !taken) {
-    if (const auto failed = desk_.fail(outcome.order->id, "the scheduler does not take orders"))
-      answer(*failed);
-  }
   if (outcome.shaft) {
     auto& [order, response] = *outcome.shaft;
     if (sources_.exchange.shafts.push(order)) {
@@ -307,6 +304,15 @@ void LinkServer::request(const link::Request& message, Connection& connection) {
   reportRefusal(CommandRefusal::kNotPermitted, message.client, outcome.not_permitted);
 }
 
+bool LinkServer::handOver(const Order& order, const link::Request& message) {
+  const bool first = order.operation != Operation::kScan || scans_.begin(order, message);
+  if (first && sources_.exchange.orders.push(order)) return true;
+  if (first) scans_.abandon(order.id);
+  const auto* why = first ? "the scheduler does not take orders" : "scan: another scan goes on: wait for it";
+  if (const auto failed = desk_.fail(order.id, why)) answer(*failed);
+  return false;
+}
+
 void LinkServer::answer(const RequestDesk::Answer& answer) {
   if (auto* connection = connections_.find(answer.connection))
     Connections::respond(*connection, answer.response);
@@ -314,9 +320,16 @@ void LinkServer::answer(const RequestDesk::Answer& answer) {
 
 void LinkServer::drainScheduler() {
   OrderResult result;
+  scans_.turn();
   while (sources_.exchange.results.pop(result)) {
     at_end_.finish(result, sources_.exchange.snapshot.read());
-    if (const auto done = desk_.finish(result)) answer(*done);
+    auto report = scans_.end(result);
+    const auto done = desk_.finish(result, report ? report->message : std::string{});
+    if (!done) continue;
+    if (report)
+      scans_.deliver(done->connection, done->response, std::move(report->sightings));
+    else
+      answer(*done);
   }
   feeds_.publishEvents();
 }

@@ -18,6 +18,7 @@
 #include "daemon/clients/link_socket.hpp"
 #include "daemon/clients/link_sources.hpp"
 #include "daemon/clients/request_desk.hpp"
+#include "daemon/clients/scan_desk.hpp"
 #include "daemon/clients/signal_admission.hpp"
 #include "link/link_message.hpp"
 
@@ -58,6 +59,8 @@ class LinkServer {
   void signals(const link::Signals& message, const Speaker& speaker);
   void reportRefusal(CommandRefusal reason, const link::Name& client, const std::string& why = {});
   void request(const link::Request& message, Connection& connection);
+  /// False: the request has its answer.
+  bool handOver(const Order& order, const link::Request& message);
   void answer(const RequestDesk::Answer& answer);
   void drainScheduler();
   void disableForTheGone();
@@ -71,6 +74,7 @@ class LinkServer {
   SignalAdmission signal_admission_;
   RequestDesk desk_;
   DisableAtEnd at_end_;
+  ScanDesk scans_;
   Connections connections_;
   Feeds feeds_;
   unsigned slow_ticks_ = 0;

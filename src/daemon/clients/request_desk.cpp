@@ -12,6 +12,7 @@
 #include "daemon/clients/disable_at_end.hpp"
 #include "daemon/clients/drive_request.hpp"
 #include "daemon/clients/gain_request.hpp"
+#include "daemon/clients/scan_request.hpp"
 #include "daemon/clients/shaft_request.hpp"
 
 namespace rc10 {
@@ -80,6 +81,9 @@ constexpr std::string_view kAngle = "angle_deg";
           "turn it back towards the drive's own 0, near which most drives are when they are switched on; or "
           "the drive has not told its count of turns yet: try again",
           travelText(motor.travel));
+    case Refusal::kScanning:
+    case Refusal::kBusHeld:
+    case Refusal::kTooBusy: break;  // in whyNoScan()
   }
   return "unknown reason";
 }
@@ -88,7 +92,8 @@ constexpr std::string_view kAngle = "angle_deg";
   switch (operation) {
     case Operation::kClear: return Right::kClear;
     case Operation::kSetGains: return Right::kTune;
-    case Operation::kConfigure: return Right::kConfigure;
+    case Operation::kConfigure:
+    case Operation::kScan: return Right::kConfigure;
     case Operation::kEnable:
     case Operation::kEnableAlone:
     case Operation::kDisable:
@@ -153,8 +158,11 @@ RequestDesk::Outcome RequestDesk::begin(const link::Request& request, const Spea
     return outcome;
   }
   if (!outcome.estop) {
+    // A bus without motors is the whole robot's.
+    const auto everybody = MotorSet{}.set() >> (kMaxMotors - robot_.motors.size());
     outcome.not_permitted = admission_.permissions().whyNoRequest(
-        speaker, request.client.view(), rightFor(*operation), order->motors, order->whole_robot);
+        speaker, request.client.view(), rightFor(*operation), order->motors.any() ? order->motors : everybody,
+        order->whole_robot);
   }
   if (!outcome.not_permitted.empty()) {
     // Not remembered: another rule may be in force when it is repeated.
@@ -199,6 +207,14 @@ Result<Order> RequestDesk::orderOf(const link::Request& request, Operation opera
   if (zeroes && std::fabs(order.value) > kFarthestZeroDeg)
     return refuse(fmt::format("angle_deg: {} is out of range; use -1000000 to 1000000", order.value));
   if (!mayOpen(request.client.view())) return refuse("too many requests at once: wait for the answers");
+  if (operation == Operation::kScan) {
+    const auto scan = parseScan(request, robot_);
+    if (!scan) return tl::unexpected(scan.error());
+    order.scan = *scan;
+    order.motors = rc10::motorsOf(robot_, scan->bus);
+    order.whole_robot = false;
+    return order;
+  }
   const auto motors = motorsOf(request);
   if (!motors) return tl::unexpected(motors.error());
   order.motors = *motors;
@@ -400,7 +416,7 @@ std::string RequestDesk::reasons(const MotorSet& motors, const OrderResult& resu
   return text;
 }
 
-std::optional<RequestDesk::Answer> RequestDesk::finish(const OrderResult& result) {
+std::optional<RequestDesk::Answer> RequestDesk::finish(const OrderResult& result, const std::string& report) {
   const auto found =
       std::find_if(open_.begin(), open_.end(), [&](const Open& open) { return open.order.id == result.id; });
   if (found == open_.end()) return std::nullopt;
@@ -423,7 +439,12 @@ std::optional<RequestDesk::Answer> RequestDesk::finish(const OrderResult& result
   if (needed_failed != 0) status = link::ResponseStatus::kFailed;
   if (failed != 0) message += " (" + reasons(found->order.motors, result) + ")";
   if (operation == Operation::kConfigure) message = driveOutcome(*found, result);
-  if (result.refused) {
+  if (operation == Operation::kScan) {
+    message = whyNoScan(found->order, result, robot_);
+    status = message.empty() ? link::ResponseStatus::kOk : link::ResponseStatus::kFailed;
+    if (message.empty()) message = report;
+    if (result.refused) status = link::ResponseStatus::kRefused;
+  } else if (result.refused) {
     status = link::ResponseStatus::kRefused;
     message = "too many enable requests at once: wait for the answers";
   }

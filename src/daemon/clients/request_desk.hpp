@@ -48,8 +48,9 @@ class RequestDesk {
     std::uint64_t connection = 0;
     link::Response response;
   };
-  /// The response to the request whose order has this result; empty if it is not known any more.
-  [[nodiscard]] std::optional<Answer> finish(const OrderResult& result);
+  /// The response to the request whose order has this result; empty if it is not known any more. `report`: of
+  /// a scan that was made.
+  [[nodiscard]] std::optional<Answer> finish(const OrderResult& result, const std::string& report = {});
   /// The order could not be handed over.
   [[nodiscard]] std::optional<Answer> fail(std::uint64_t order_id, const std::string& reason);
 

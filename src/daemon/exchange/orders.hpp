@@ -41,6 +41,14 @@ struct Command {
   std::array<Setpoint, kMaxMotors> setpoints;
 };
 
+/// kScan: the bus, and the pace.
+struct BusScanOrder {
+  std::size_t bus = 0;
+  Duration listen{};   ///< Before the first question.
+  Duration between{};  ///< From one question to the next, at least.
+  bool listen_only = false;
+};
+
 /// A request that passed the link thread, for the supervisor.
 struct Order {
   static constexpr std::uint64_t kFromModule = 0;  ///< The id of all that modules ask: they get no result.
@@ -53,6 +61,7 @@ struct Order {
   double value = 0.0;        ///< kZero: what the present angle becomes, deg.
   DriveWrite drive{};        ///< kConfigure: what is written to the drive of the one motor.
   GainChanges gains{};       ///< kSetGains: of the one motor.
+  BusScanOrder scan{};       ///< kScan; `motors` are those of its bus.
   link::Name client{};       ///< The one that asked.
   bool whole_robot = false;  ///< Named no motor. Only such a kClear ends an e-stop.
   bool repeated = false;     ///< Repetition of a request that was taken before: it is not one more kDisable.
@@ -97,6 +106,9 @@ enum class Refusal : std::uint8_t {
   kOthersOn,      ///< Other motors are enabled, and it was to be the only one: OrderResult::in_the_way.
   kTurnUnclear,   ///< Its encoder is absolute, but its travel does not say on which turn it stands.
   kOutOfReach,  ///< Not this zero: its drive could not be told all of its travel, or has not told its turns.
+  kScanning,    ///< Another scan goes on.
+  kBusHeld,     ///< Its bus carries no frames.
+  kTooBusy,     ///< The link thread did not judge what was heard.
 };
 
 struct OrderResult {
@@ -104,7 +116,10 @@ struct OrderResult {
   bool refused = false;         ///< Not tried at all.
   std::size_t drive_value = 0;  ///< kConfigure: at which of the values it ended.
   std::array<Refusal, kMaxMotors> motors{};
-  MotorSet in_the_way{};  ///< kAlone, kOthersOn, kGroup, kTogether: which motors.
+  MotorSet in_the_way{};           ///< kAlone, kOthersOn, kGroup, kTogether: which motors.
+  Refusal scan = Refusal::kNone;   ///< kScan: reason that is no motor's,
+  std::uint32_t asked = 0;         ///< questions that were handed over,
+  std::uint64_t error_frames = 0;  ///< and error frames of the bus meanwhile.
 };
 
 }  // namespace rc10

@@ -8,6 +8,7 @@
 
 #include "bus/bus_health.hpp"
 #include "bus/can_frame.hpp"
+#include "daemon/exchange/bus_scan_exchange.hpp"
 #include "daemon/exchange/events.hpp"
 #include "daemon/exchange/latest_value.hpp"
 #include "daemon/exchange/orders.hpp"
@@ -59,6 +60,7 @@ struct LinkExchange {
   LatestValue<Snapshot> snapshot;   // scheduler -> link
   TickAges ages;                    // scheduler -> link
   TickTrace trace;                  // choice: link -> scheduler; rows back
+  BusScanExchange scan;             // questions: link -> scheduler; frames back
   /// Beside the ring, so that an e-stop gets through when the ring is full.
   std::atomic<bool> estop{false};
   LatestValue<link::Name> estop_client;  ///< The one that asked for it; published before.

@@ -6,11 +6,13 @@
 #include <string>
 #include <vector>
 
+#include "bus/frame_listener.hpp"
 #include "config/client_config.hpp"
 #include "config/keys/loop_gains.hpp"
 #include "daemon/exchange/shaft_order.hpp"
 #include "daemon/exchange/snapshot.hpp"
 #include "motor/first_angle.hpp"
+#include "motor/motor_family.hpp"
 #include "motor/spring_law.hpp"
 
 namespace rc10 {
@@ -40,6 +42,9 @@ struct RobotDescription {
     double max_first_step_deg = std::numeric_limits<double>::infinity();
     Travel travel{};
     Duration run_down{};
+    const MotorFamily* family = nullptr;
+    std::vector<FrameFilter> sends{};   ///< Frames of its drive,
+    std::vector<FrameFilter> steers{};  ///< and those that command it.
   };
   struct Bus {
     std::string name;

@@ -7,7 +7,7 @@
 
 namespace rc10 {
 Supervisor::Supervisor(Robot& robot, LinkExchange& link, FlightRecorder* recorder)
-    : robot_(robot), link_(link), recorder_(recorder), foreign_(robot) {
+    : robot_(robot), link_(link), recorder_(recorder), foreign_(robot), scan_(link.scan) {
   axes_.reserve(robot.motors().size());
   for (const auto& entry : robot.motors()) axes_.emplace_back(entry, robot.buses()[entry.bus]);
   group_of_.assign(axes_.size(), kNoGroup);
@@ -23,6 +23,7 @@ void Supervisor::decide(const Tick& tick) noexcept {
   for (std::size_t motor = 0; motor < axes_.size(); ++motor) watch(motor, tick);
   for (std::size_t group = 0; group < groups_.size(); ++group) watchGroup(group, tick);
   watchConfiguring(tick);
+  watchScan(tick);
   for (auto& axis : axes_) axis.order(state_, tick);
 }
 

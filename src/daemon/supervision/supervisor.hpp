@@ -12,6 +12,7 @@
 #include "daemon/exchange/stop.hpp"
 #include "daemon/recording/flight_recorder.hpp"
 #include "daemon/supervision/axis.hpp"
+#include "daemon/supervision/bus_scan.hpp"
 #include "daemon/supervision/foreign_watch.hpp"
 #include "daemon/supervision/lease.hpp"
 #include "daemon/supervision/motor_group.hpp"
@@ -42,6 +43,11 @@ class Supervisor {
 
   /// Tells every motor what kind of frame its drive gets. Called before Motor_Base::update().
   void decide(const Tick& tick) noexcept;
+
+  /// A frame of a bus, before it is decoded: a scan hears it.
+  void hearOnBus(std::size_t bus, const CanFrame& frame) noexcept { scan_.hear(bus, frame); }
+  /// The question of a scan, behind the commands of this tick: one at most.
+  void askOfScan(const Tick& tick) noexcept;
 
   /// E-stop of the robot for a cause within this computer. A `clear` of the same tick is refused.
   void stopFor(const Stop& why, const Tick& tick) noexcept { estop(why, tick); }
@@ -126,6 +132,11 @@ class Supervisor {
   void configure(const Order& order, const Tick& tick) noexcept;
   [[nodiscard]] Refusal mayConfigure(std::size_t motor) const noexcept;
   void watchConfiguring(const Tick& tick) noexcept;
+  void scan(const Order& order, const Tick& tick) noexcept;
+  void watchScan(const Tick& tick) noexcept;
+  /// Reason why no question may go to the bus of this motor.
+  [[nodiscard]] Refusal againstScan(std::size_t motor) const noexcept;
+  [[nodiscard]] bool mayGoOn(const BusScanOrder& scan, OrderResult& result) const noexcept;
 
   Robot& robot_;
   LinkExchange& link_;
@@ -140,6 +151,7 @@ class Supervisor {
   std::vector<MotorGroup> groups_;
   std::vector<std::size_t> group_of_;  ///< By motor; kNoGroup: none.
   std::optional<Configuring> configuring_;
+  BusScan scan_;
   std::optional<std::size_t> alone_;  ///< ENABLING or ACTIVE, and no other motor may be.
   SimulationWatch simulation_;
   bool heartbeat_rests_ = false;

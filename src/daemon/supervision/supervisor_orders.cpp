@@ -103,6 +103,7 @@ void Supervisor::carryOut(const Order& order, const Tick& tick) noexcept {
   if (recorder_ != nullptr) recorder_->order(order);
   if (!order.fromModule()) hearClient(tick.now);
   if (order.operation == Operation::kConfigure) return configure(order, tick);
+  if (order.operation == Operation::kScan) return scan(order, tick);
   OrderResult result;
   result.id = order.id;
   MotorSet waiting;
@@ -143,7 +144,8 @@ void Supervisor::carryOut(const Order& order, const Tick& tick) noexcept {
       case Operation::kGetConfig:
       case Operation::kDriveSettings:
       case Operation::kHand:
-      case Operation::kLoad: break;
+      case Operation::kLoad:
+      case Operation::kScan: break;
     }
   }
   if (waiting.none()) return answer(result);

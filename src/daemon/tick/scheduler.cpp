@@ -116,7 +116,10 @@ void Scheduler::receive() noexcept {
   for (std::size_t i = 0; i < robot_.buses().size(); ++i) {
     auto& bus = *robot_.buses()[i].bus;
     // Only what is there now: a flooded bus must not lengthen the tick without bound.
-    inboxes_[i].frames.consume_all([&bus](const CanFrame& frame) { bus.dispatch(frame); });
+    inboxes_[i].frames.consume_all([&](const CanFrame& frame) {
+      supervisor_.hearOnBus(i, frame);
+      bus.dispatch(frame);
+    });
   }
   for (auto& entry : robot_.serialDevices())
     deliver((*robot_.serialChannels())[entry.channel], *entry.device);
@@ -140,6 +143,7 @@ void Scheduler::update(const Tick& tick) noexcept {
 
 void Scheduler::pack(const Tick& tick) noexcept {
   for (auto& entry : robot_.buses()) entry.bus->packCommands(tick);
+  supervisor_.askOfScan(tick);
 }
 
 void Scheduler::watchStop() noexcept {

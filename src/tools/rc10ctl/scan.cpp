@@ -1,29 +1,30 @@
 #include <linux/can.h>
+#include <net/if.h>
 #include <poll.h>
 #include <sys/socket.h>
 
 #include <algorithm>
 #include <cerrno>
 #include <chrono>
-#include <cstdio>
 #include <cstring>
-#include <map>
 #include <memory>
+#include <optional>
 #include <set>
+#include <span>
 #include <string>
 
 #include <CLI/CLI.hpp>
 
-#include "app/text_table.hpp"
+#include "app/printable.hpp"
 #include "bus/can_link_state.hpp"
 #include "bus/can_socket.hpp"
-#include "bus/frame_text.hpp"
 #include "bus/wire_frame.hpp"
-#include "client/json_line.hpp"
-#include "client/quantity_text.hpp"
+#include "client/request_call.hpp"
 #include "link/interface_lock.hpp"
+#include "scan_report.hpp"
 #include "survey/bus_survey.hpp"
 #include "survey/harmless_queries.hpp"
+#include "survey/link_sighting.hpp"
 #include "survey/scan_advice.hpp"
 #include "verbs.hpp"
 
@@ -31,51 +32,22 @@ namespace rc10::ctl {
 namespace {
 
 using std::chrono::steady_clock;
-using survey::Sighting;
 
 // A question of 8 bytes and its answer take 0.3 ms at 1 Mbit/s; at 250 kbit/s they fit too.
 constexpr Duration kBetweenQueries = std::chrono::milliseconds{2};
 // The last one is answered by then.
 constexpr Duration kAnswering = std::chrono::milliseconds{200};
 
+// The questions, at the pace of a slow and busy bus.
+constexpr Duration kAskingOfRc10d = std::chrono::seconds{30};
+// Its name as the holder of an interface.
+constexpr const char* kScanHolder = "none (rc10ctl scan)";
+
 struct ScanOptions {
   std::string interface;
   double listen_s = 2.0;
   bool listen_only = false;
 };
-
-// Rows for people: what one drive sends under several ids is one row.
-struct Row {
-  std::string ids;
-  std::uint64_t frames = 0;
-};
-using Rows = std::map<std::pair<std::string, int>, Row>;
-
-std::string nameOf(const DriveGuess& guess) {
-  std::string name(guess.kind);
-  if (guess.id != 0) name += " id " + std::to_string(guess.id);
-  return guess.from_drive ? name : "commands for " + name;
-}
-
-std::string allNames(const Sighting& sighting) {
-  std::string names;
-  for (const auto& guess : sighting.guesses) names += (names.empty() ? "" : ", or ") + nameOf(guess);
-  return names;
-}
-
-Rows rowsOf(const std::vector<Sighting>& sightings) {
-  Rows rows;
-  for (const auto& sighting : sightings) {
-    if (sighting.guesses.empty() || sighting.ambiguous()) continue;
-    for (const auto& guess : sighting.guesses) {
-      auto& row = rows[{guess.from_drive ? std::string(guess.kind) : "commands: " + std::string(guess.kind),
-                        guess.id}];
-      row.ids += (row.ids.empty() ? "" : ", ") + idText(sighting.id);
-      row.frames += sighting.frames;
-    }
-  }
-  return rows;
-}
 
 class Scanner {
  public:
@@ -135,61 +107,67 @@ class Scanner {
   std::set<std::string> spared_;
 };
 
-void printSightingsText(const std::vector<Sighting>& sightings, const survey::Asking& asking) {
-  const auto rows = rowsOf(sightings);
-  TextTable table(
-      {{"KIND"}, {"ID", TextTable::Align::kRight}, {"FRAMES", TextTable::Align::kRight}, {"FRAME IDS"}});
-  for (const auto& [drive, row] : rows)
-    table.add({drive.first,
-               drive.second != 0 || drive.first == drive_kind::kVesc ? std::to_string(drive.second) : "",
-               std::to_string(row.frames), row.ids});
-  if (!rows.empty()) std::fputs(table.text().c_str(), stdout);
-  for (const auto& sighting : sightings) {
-    const auto advice = survey::adviceFor(sighting, sightings);
-    const auto heard = idText(sighting.id) + ", " + std::to_string(sighting.frames) + " frames: ";
-    if (sighting.guesses.empty())
-      std::printf("unknown: %s%s\n", heard.c_str(), advice.c_str());
-    else if (sighting.ambiguous())
-      std::printf("ambiguous: %s%s. %s\n", heard.c_str(), allNames(sighting).c_str(), advice.c_str());
-    else if (!advice.empty())
-      std::printf("%s\n", advice.c_str());
-  }
-  for (const auto& advice : survey::adviceForBus(sightings, asking)) std::printf("%s\n", advice.c_str());
+// rc10d asks on its own bus: somebody else's frames in between would be wrong, and ours in theirs.
+ExitCode scanThroughRc10d(const Global& global, const ScanOptions& options, LinkClient& rc10d) {
+  link::Request request;
+  request.operation = toString(Operation::kScan);
+  request.target = options.interface;
+  request.values[request.value_count++] = {.name = std::string_view{"listen_s"}, .value = options.listen_s};
+  request.values[request.value_count++] = {.name = std::string_view{"listen_only"},
+                                           .value = options.listen_only ? 1.0 : 0.0};
+  ScanReport report{.interface = options.interface, .listen_only = options.listen_only};
+  const auto patience =
+      std::chrono::duration_cast<Duration>(std::chrono::duration<double>(options.listen_s)) + kAskingOfRc10d;
+  link::Sighting sighting;
+  const auto response = RequestCall(rc10d, kClientName)
+                            .call(
+                                request, patience,
+                                [&](auto datagram) {
+                                  if (link::open(datagram, sighting)) report.sightings.push_back(sighting);
+                                },
+                                interrupted);
+  if (!response) return complain(response.error(), ExitCode::kFailed);
+  auto lines = linesOf(response->message.view());
+  if (response->status != link::ResponseStatus::kOk)
+    return complain({printable(response->message.view())}, ExitCode::kFailed);
+  report.robot = std::string{rc10d.welcome().robot.view()};
+  report.advice.assign(lines.begin() + 1, lines.end());
+  print(global, report);
+  return ExitCode::kOk;
 }
 
-void printSightingsJson(const std::string& interface, const std::vector<Sighting>& sightings,
-                        const survey::Asking& asking) {
-  for (const auto& sighting : sightings) {
-    client::Json guesses = client::Json::array();
-    for (const auto& guess : sighting.guesses)
-      guesses.push_back({{"kind", guess.kind}, {"id", guess.id}, {"from_drive", guess.from_drive}});
-    const auto advice = survey::adviceFor(sighting, sightings);
-    std::puts(client::lineOf({{"frame_id", sighting.id.value},
-                              {"extended", sighting.id.extended},
-                              {"frames", sighting.frames},
-                              {"ambiguous", sighting.ambiguous()},
-                              {"guesses", std::move(guesses)},
-                              {"advice", advice.empty() ? client::Json(nullptr) : client::Json(advice)}})
-                  .c_str());
-  }
-  std::puts(client::lineOf({{"interface", interface},
-                            {"frame_ids", sightings.size()},
-                            {"listen_only", asking.listen_only},
-                            {"advice", survey::adviceForBus(sightings, asking)}})
-                .c_str());
+// "robot 'hero' (rc10d, pid 123)", of a bus that an rc10d drives; another scan is none.
+std::string driverOf(const std::string& interface) {
+  auto holder = link::holderOfInterface(interface);
+  return holder.find(kScanHolder) == std::string::npos ? holder : std::string{};
 }
 
-// Somebody else's frames in between would be wrong, and ours in theirs.
-std::string heldBy(const std::string& interface) {
-  const auto holder = link::holderOfInterface(interface);
-  if (holder.empty()) return {};
-  return interface + " is driven by " + holder +
-         ": `rc10ctl stats` and `rc10ctl watch` show its drives; or stop it first: `sudo systemctl stop "
-         "rc10d`";
+bool hasBus(const LinkClient& rc10d, std::string_view bus) {
+  const auto& welcome = rc10d.welcome();
+  const auto motors =
+      std::span(welcome.motors).first(std::min<std::size_t>(welcome.motor_count, link::kMaxMotors));
+  return std::any_of(motors.begin(), motors.end(),
+                     [bus](const auto& motor) { return motor.bus.view() == bus; });
+}
+
+// Its own bus, or the name of a bus that is no interface, such as a simulated one.
+std::optional<ExitCode> tryRc10d(const Global& global, const ScanOptions& options) {
+  const auto driver = driverOf(options.interface);
+  if (driver.empty() && ::if_nametoindex(options.interface.c_str()) != 0) return std::nullopt;
+  auto rc10d = connect(global);
+  if (driver.empty())
+    return rc10d && hasBus(*rc10d, options.interface)
+               ? std::optional{scanThroughRc10d(global, options, *rc10d)}
+               : std::nullopt;
+  if (!rc10d)
+    return complain({options.interface + " is driven by " + driver + ", and only it may ask there: " +
+                     rc10d.error().message + "; or stop it first: `sudo systemctl stop rc10d`"},
+                    ExitCode::kNoDaemon);
+  return scanThroughRc10d(global, options, *rc10d);
 }
 
 ExitCode scan(const Global& global, const ScanOptions& options) {
-  if (const auto held = heldBy(options.interface); !held.empty()) return complain({held}, ExitCode::kFailed);
+  if (const auto done = tryRc10d(global, options)) return *done;
   auto socket = openCanSocket(options.interface, {.frames_per_tick = 8});
   if (!socket) return complain(socket.error(), ExitCode::kFailed);
   const auto link = readCanLink(options.interface);
@@ -200,19 +178,21 @@ ExitCode scan(const Global& global, const ScanOptions& options) {
   }
   // An rc10d that starts meanwhile would be answered by what we asked.
   const auto lock =
-      link::InterfaceLock::take(boundInterface(socket->fd.get()), options.interface, "none (rc10ctl scan)");
+      link::InterfaceLock::take(boundInterface(socket->fd.get()), options.interface, kScanHolder);
   if (!lock) return complain(lock.error(), ExitCode::kFailed);
   const auto start = steady_clock::now();
   Scanner scanner(std::move(*socket), options);
   if (const auto why = scanner.run(); !why.empty())
     return complain({options.interface + ": " + why + ": see `rc10ctl doctor`"}, ExitCode::kFailed);
   if (interrupted()) return complain({"interrupted: nothing is known yet"}, ExitCode::kFailed);
-  const auto sightings = scanner.survey().sightings(steady_clock::now() - start);
+  const auto all = scanner.survey().sightings(steady_clock::now() - start);
   const survey::Asking asking{.listen_only = options.listen_only, .spared = scanner.spared()};
-  if (global.json)
-    printSightingsJson(options.interface, sightings, asking);
-  else
-    printSightingsText(sightings, asking);
+  ScanReport report{.interface = options.interface,
+                    .listen_only = options.listen_only,
+                    .advice = survey::adviceForBus(all, asking)};
+  for (const auto& sighting : all)
+    report.sightings.push_back(survey::linkSighting(sighting, survey::adviceFor(sighting, all)));
+  print(global, report);
   return ExitCode::kOk;
 }
 
@@ -221,8 +201,8 @@ ExitCode scan(const Global& global, const ScanOptions& options) {
 void addScan(CLI::App& app, Action& action) {
   const auto options = std::make_shared<ScanOptions>();
   auto* verb = app.add_subcommand(
-      "scan", "which drives are on a CAN interface; moves none. Not while rc10d drives it");
-  verb->add_option("interface", options->interface, "a CAN interface that is up")
+      "scan", "which drives are on a CAN bus; moves none. Asks through rc10d where it drives the bus");
+  verb->add_option("interface", options->interface, "a CAN interface that is up, or a bus of the robot")
       ->required()
       ->type_name("IFACE");
   verb->add_option("--seconds", options->listen_s, "how long to listen before asking")

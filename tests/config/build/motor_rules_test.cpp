@@ -237,6 +237,13 @@ TEST(MotorRules, ASimulatedLoadIsTakenOver) {
       ElementsAre("hero.yaml:6:69: buses[0].motors[0].simulated.lost_frames: 1.5 is above 1; use 0 to 1"));
 }
 
+TEST(MotorRules, ASimulatedDriveMayHaveAnotherIdThanItsMotor) {
+  EXPECT_EQ(motorOf("{name: a, model: M3508, id: 1, simulated: {drive_id: 3}}").simulated_id, 3);
+  EXPECT_FALSE(motorOf("{name: a, model: M3508, id: 1}").simulated_id);
+  EXPECT_THAT(errorsOfWheel("simulated: {drive_id: 9}"),
+              ElementsAre(testing::HasSubstr("simulated.drive_id: 9 is no id of a M3508; use 1 to 8")));
+}
+
 TEST(MotorRules, TheStopsOfASimulatedShaftAreInOrderAndAroundIt) {
   EXPECT_THAT(errorsOfWheel("simulated: {stop_min_deg: 10, stop_max_deg: 10}"),
               ElementsAre(testing::HasSubstr(

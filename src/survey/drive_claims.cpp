@@ -1,0 +1,73 @@
+#include "survey/drive_claims.hpp"
+
+#include <algorithm>
+
+#include "drives/families.hpp"
+
+namespace rc10::survey {
+namespace {
+
+bool accepted(const std::vector<FrameFilter>& filters, const CanFrame& frame) {
+  return std::any_of(filters.begin(), filters.end(),
+                     [&](const FrameFilter& filter) { return accepts(filter, frame); });
+}
+
+}  // namespace
+
+// An answer to a question goes to an id of the questioner's: there its drive counts by family and id.
+void DriveClaims::take(const CanFrame& frame) {
+  if (frame.type != FrameType::kData) return;
+  const auto sender = std::find_if(motors_.begin(), motors_.end(),
+                                   [&](const KnownMotor& motor) { return accepted(motor.sends, frame); });
+  std::vector<std::pair<DriveGuess, const MotorFamily*>> guesses;
+  for (const auto& entry : builtInFamilies()) {
+    std::vector<DriveGuess> of_family;
+    if (entry.recognise != nullptr) entry.recognise(frame, of_family);
+    for (const auto& guess : of_family) guesses.emplace_back(guess, entry.family);
+  }
+  const auto of_sender = [&](const auto& each) {
+    return sender != motors_.end() && each.second == sender->family;
+  };
+  const bool own = std::any_of(guesses.begin(), guesses.end(), of_sender);
+  // Models of one family may share ids: 0x205 is an M3508's 5 and a GM6020's 1.
+  const bool exact = std::any_of(guesses.begin(), guesses.end(), [&](const auto& each) {
+    return of_sender(each) && each.first.id == sender->id;
+  });
+  for (const auto& [guess, family] : guesses) {
+    if (!guess.from_drive || of(guess)) continue;
+    auto found = sender;
+    if (found == motors_.end() && !guess.silent.empty())
+      found = std::find_if(motors_.begin(), motors_.end(), [&, of_family = family](const KnownMotor& motor) {
+        return motor.family == of_family && motor.id == guess.id;
+      });
+    if (found == motors_.end() || (own && family != sender->family)) continue;
+    if (exact && guess.id != sender->id) continue;
+    claims_.emplace_back(guess, Claim{.motor = static_cast<std::size_t>(found - motors_.begin()),
+                                      .collides = family != found->family});
+  }
+}
+
+std::optional<DriveClaims::Claim> DriveClaims::of(const DriveGuess& guess) const {
+  const auto found =
+      std::find_if(claims_.begin(), claims_.end(), [&](const auto& claim) { return claim.first == guess; });
+  return found == claims_.end() ? std::nullopt : std::optional{found->second};
+}
+
+std::vector<std::string> DriveClaims::unheard() const {
+  std::vector<std::string> names;
+  for (std::size_t i = 0; i < motors_.size(); ++i) {
+    const bool heard = std::any_of(claims_.begin(), claims_.end(), [i](const auto& claim) {
+      return claim.second.motor == i && !claim.second.collides;
+    });
+    if (!heard) names.push_back(motors_[i].name);
+  }
+  return names;
+}
+
+std::string DriveClaims::commandedBy(const CanFrame& question) const {
+  const auto found = std::find_if(motors_.begin(), motors_.end(),
+                                  [&](const KnownMotor& motor) { return accepted(motor.steers, question); });
+  return found == motors_.end() ? std::string{} : "motor '" + found->name + "'";
+}
+
+}  // namespace rc10::survey

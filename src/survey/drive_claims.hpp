@@ -1,0 +1,51 @@
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "bus/can_frame.hpp"
+#include "bus/frame_listener.hpp"
+#include "drives/recogniser.hpp"
+#include "motor/motor_family.hpp"
+
+namespace rc10::survey {
+
+/// A motor of the robot's file, on the bus that is looked at.
+struct KnownMotor {
+  std::string name;
+  const MotorFamily* family = nullptr;
+  int id = 0;
+  std::vector<FrameFilter> sends{};   ///< BusUse::sends
+  std::vector<FrameFilter> steers{};  ///< BusUse::steers
+};
+
+/// Motors to which the drives that are heard belong. Not for real-time threads: it allocates.
+class DriveClaims {
+ public:
+  struct Claim {
+    std::size_t motor = 0;
+    bool collides = false;  ///< A drive of another family sends under the id of the motor's.
+  };
+
+  explicit DriveClaims(std::vector<KnownMotor> motors) : motors_(std::move(motors)) {}
+
+  void take(const CanFrame& frame);
+
+  /// The motor whose drive this guess is; none: it is not in the file.
+  [[nodiscard]] std::optional<Claim> of(const DriveGuess& guess) const;
+  /// Motors of which nothing was heard.
+  [[nodiscard]] std::vector<std::string> unheard() const;
+  /// The motor that would take this question for a command, whether its drive is heard or not: "motor 'arm'".
+  /// Empty: none.
+  [[nodiscard]] std::string commandedBy(const CanFrame& question) const;
+  [[nodiscard]] const std::vector<KnownMotor>& motors() const noexcept { return motors_; }
+
+ private:
+  std::vector<KnownMotor> motors_;
+  std::vector<std::pair<DriveGuess, Claim>> claims_;
+};
+
+}  // namespace rc10::survey
