@@ -507,9 +507,9 @@ void Hub::publishAnswers(Page& page) {
   while (true) {
     const auto answer = page.link->answer(std::chrono::steady_clock::now());
     if (!answer) return;
-    page.socket->sendText(
-        shared(responseMessage(answer->seq, statusWord(answer->response.status),
-                               answer->response.message.view(), valuesOf(answer->response))));
+    page.socket->sendText(shared(responseMessage(answer->seq, statusWord(answer->response.status),
+                                                 answer->response.message.view(), valuesOf(answer->response),
+                                                 answer->sightings)));
   }
 }
 

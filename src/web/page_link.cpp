@@ -18,6 +18,14 @@ constexpr Duration kPause = std::chrono::milliseconds{500};
 // rc10d answers within ticks. Whoever presses STOP is told soon that nobody has heard it.
 constexpr Duration kAnswerPatience = std::chrono::seconds{5};
 constexpr Duration kEstopPatience = std::chrono::milliseconds{500};
+// A scan listens first: as long as it may, and asks at the pace of a slow and busy bus.
+constexpr Duration kScanPatience = std::chrono::seconds{90};
+
+[[nodiscard]] Duration patienceWith(std::string_view operation) {
+  const auto known = operationNamed(operation);
+  if (known == Operation::kEstop) return kEstopPatience;
+  return known == Operation::kScan ? kScanPatience : kAnswerPatience;
+}
 
 }  // namespace
 
@@ -80,7 +88,12 @@ std::string PageLink::ask(const AskRobot& request, const std::string& socket_pat
   for (const auto& [name, value] : request.values)
     message.values[message.value_count++] = link::NamedValue{.name = std::string_view{name}, .value = value};
   auto why = outcome(rc10d_->send(message));  // NOLINT(bugprone-unchecked-optional-access)
-  if (why.empty()) open_.push_back({.number = seq_, .seq = request.seq, .estop = estop, .sent = now});
+  if (why.empty())
+    open_.push_back({.number = seq_,
+                     .seq = request.seq,
+                     .estop = estop,
+                     .sent = now,
+                     .patience = patienceWith(request.operation)});
   return why;
 }
 
@@ -97,22 +110,34 @@ std::optional<PageLink::Answer> PageLink::answerOfRc10d() {
       close();
       return std::nullopt;
     }
+    link::Sighting sighting;
+    if (link::open(received.datagram, sighting)) {
+      take(sighting);
+      continue;
+    }
     Answer answer;
     if (!link::open(received.datagram, answer.response) || answer.response.session != session_) continue;
     const auto found = std::find_if(open_.begin(), open_.end(),
                                     [&](const auto& o) { return o.number == answer.response.seq; });
     if (found == open_.end()) continue;
     answer.seq = found->seq;
+    answer.sightings = std::move(found->sightings);
     open_.erase(found);
     return answer;
   }
   return std::nullopt;
 }
 
-std::optional<PageLink::Answer> PageLink::answerInItsPlace(MonotonicTime now) {
-  const auto found = std::find_if(open_.begin(), open_.end(), [&](const auto& o) {
-    return !rc10d_ || now - o.sent >= (o.estop ? kEstopPatience : kAnswerPatience);
+void PageLink::take(const link::Sighting& sighting) {
+  const auto found = std::find_if(open_.begin(), open_.end(), [&](const auto& open) {
+    return sighting.session == session_ && sighting.seq == open.number;
   });
+  if (found != open_.end()) found->sightings.push_back(sighting);
+}
+
+std::optional<PageLink::Answer> PageLink::answerInItsPlace(MonotonicTime now) {
+  const auto found = std::find_if(open_.begin(), open_.end(),
+                                  [&](const auto& o) { return !rc10d_ || now - o.sent >= o.patience; });
   if (found == open_.end()) return std::nullopt;
   Answer answer{.seq = found->seq, .response = {}};
   answer.response.status = link::ResponseStatus::kFailed;

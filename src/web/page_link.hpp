@@ -35,6 +35,7 @@ class PageLink {
   struct Answer {
     std::int64_t seq = 0;  ///< The page's number.
     link::Response response;
+    std::vector<link::Sighting> sightings{};  ///< Sightings of a scan, before its answer.
   };
   /// The next answer that is there; nothing: none. A request that rc10d leaves without one fails in its
   /// place.
@@ -48,9 +49,12 @@ class PageLink {
     std::int64_t seq = 0;     ///< Number of the page.
     bool estop = false;
     MonotonicTime sent;
+    Duration patience{};
+    std::vector<link::Sighting> sightings{};
   };
 
   [[nodiscard]] std::string outcome(LinkClient::SendStatus status);
+  void take(const link::Sighting& sighting);
   [[nodiscard]] std::optional<Answer> answerOfRc10d();
   [[nodiscard]] std::optional<Answer> answerInItsPlace(MonotonicTime now);
 

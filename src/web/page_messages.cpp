@@ -7,6 +7,7 @@
 #include "bus/frame_text.hpp"
 #include "client/json_line.hpp"
 #include "client/module_text.hpp"
+#include "client/sighting_json.hpp"
 #include "client/state_json.hpp"
 #include "link/event_text.hpp"
 #include "rc10_version.hpp"
@@ -129,14 +130,17 @@ std::string checkedConfigHead(std::int64_t seq) {
 std::string clockMessage() { return lineOf({{"type", "clock"}}); }
 
 std::string responseMessage(std::int64_t seq, std::string_view status, std::string_view message,
-                            std::span<const link::NamedValue> values) {
+                            std::span<const link::NamedValue> values, std::span<const link::Sighting> heard) {
   Json told = Json::object();
   for (const auto& value : values) told[std::string{value.name.view()}] = value.value;
+  Json sightings = Json::array();
+  for (const auto& sighting : heard) sightings.push_back(client::sightingJson(sighting));
   return lineOf({{"type", "response"},
                  {"seq", seq},
                  {"status", status},
                  {"message", message},
-                 {"values", std::move(told)}});
+                 {"values", std::move(told)},
+                 {"heard", std::move(sightings)}});
 }
 
 std::string testMessage(std::int64_t seq, double time_s, double lasts_s) {

@@ -46,9 +46,10 @@ inline constexpr int kPageProtocol = 2;
 [[nodiscard]] std::string checkedConfigHead(std::int64_t seq);
 /// To the clock of a page: it knows by that that somebody listens.
 [[nodiscard]] std::string clockMessage();
-/// To a request of the page, by its own number.
+/// To a request of the page, by its own number. `heard`: by a scan.
 [[nodiscard]] std::string responseMessage(std::int64_t seq, std::string_view status, std::string_view message,
-                                          std::span<const link::NamedValue> values = {});
+                                          std::span<const link::NamedValue> values = {},
+                                          std::span<const link::Sighting> heard = {});
 
 /// A test of motion goes on.
 [[nodiscard]] std::string testMessage(std::int64_t seq, double time_s, double lasts_s);

@@ -1,7 +1,9 @@
 #include "client/request_call.hpp"
 
 #include <chrono>
+#include <cstdint>
 #include <set>
+#include <vector>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -68,6 +70,33 @@ TEST(RequestCall, ReturnsTheMatchingResponseAndIgnoresOthers) {
   EXPECT_EQ(sent.seq, 2);
   EXPECT_EQ(sent.session, first.session);
   EXPECT_EQ(sent.operation.view(), "enable");
+}
+
+TEST(RequestCall, HandsOverWhatComesBeforeTheAnswer) {
+  FakeRc10d rc10d;
+  auto client = rc10d.welcomed();
+  RequestCall call(client, "tester");
+  const auto first = learn(call, rc10d);
+  link::Sighting sighting;
+  sighting.frame_id = 0x203;
+  rc10d.send(sighting);
+  auto right = answerTo(first, 2);
+  rc10d.send(right);
+  std::vector<std::uint32_t> heard;
+  EXPECT_TRUE(call.call({}, std::chrono::seconds{5}, [&heard](auto datagram) {
+    link::Sighting told;
+    if (link::open(datagram, told)) heard.push_back(told.frame_id);
+  }));
+  EXPECT_EQ(heard, std::vector<std::uint32_t>{0x203});
+}
+
+TEST(RequestCall, IsGivenUpWhenThePersonSaysSo) {
+  FakeRc10d rc10d;
+  auto client = rc10d.welcomed();
+  RequestCall call(client, "tester");
+  const auto result = call.call({}, std::chrono::hours{1}, {}, []() noexcept { return true; });
+  ASSERT_FALSE(result);
+  EXPECT_THAT(result.error().message, HasSubstr("interrupted"));
 }
 
 TEST(RequestCall, FailsAfterTheTimeout) {

@@ -32,14 +32,15 @@ constexpr std::string_view kRobot =
 constexpr std::size_t kMotorCount = 3;
 constexpr MonotonicTime kNow{std::chrono::hours{1}};
 
-constexpr std::array<std::string_view, 25> kWords{
-    "wheel",       "arm",        "turret",    "enable",
-    "disable",     "estop",      "clear",     "zero",
-    "set_gains",   "get_config", "angle_deg", "configure-drive",
-    "velocity.kp", "angle.ki",   "kd",        "velocity_pid.kp_a_per_rpm",
-    "velocity.",   ".kp",        "wheel,arm", "wheel,wheel",
-    "timeout_ms",  "base",       "speed",     "angle_pid.velocity_limit_rpm",
-    "enable_alone"};
+constexpr std::array<std::string_view, 29> kWords{
+    "wheel",        "arm",        "turret",    "enable",
+    "disable",      "estop",      "clear",     "zero",
+    "set_gains",    "get_config", "angle_deg", "configure-drive",
+    "velocity.kp",  "angle.ki",   "kd",        "velocity_pid.kp_a_per_rpm",
+    "velocity.",    ".kp",        "wheel,arm", "wheel,wheel",
+    "timeout_ms",   "base",       "speed",     "angle_pid.velocity_limit_rpm",
+    "enable_alone", "scan",       "front",     "listen_s",
+    "listen_only"};
 
 /// A word that means something, or bytes.
 template <typename Text>
@@ -59,6 +60,7 @@ RobotDescription described() {
     known.modes = ModeSet{ControlMode::kVelocity, ControlMode::kAngle};
     known.loops = {motor.settings.model, motor.traits(), motor.settings.loops};
   }
+  robot.buses.push_back({"front", "can0"});
   auto& base = robot.modules.emplace_back();
   base.name = "base";
   base.signals.inputs = {"speed"};

@@ -5,10 +5,12 @@ from __future__ import annotations
 import os
 import re
 import signal
+from collections.abc import Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 import pytest
+from hostlib import Daemon
 from hostlib.daemon import ARM, REPO
 from playwright.sync_api import Locator, Page, Playwright, expect
 
@@ -398,3 +400,63 @@ class TestTheZeroOfAnAbsoluteEncoder:
         studio.daemon.start()
         studio.daemon.wait_ready()
         assert abs(angle(studio, "wheel") + 70) < 0.5
+
+
+# The drive of the wheel is set to id 4, and the file says 1.
+OTHER_ID = """
+      - {name: wheel, model: M3508, id: 1, zero: power_on, feedback_timeout_ms: 1000,
+         simulated: {drive_id: 4}}
+"""
+
+
+class TestScan:
+    @pytest.fixture
+    def robot(self) -> str:
+        return ARM + OTHER_ID + JOINT
+
+    @pytest.fixture
+    def studio(self, robot: str) -> Iterator[Studio]:
+        with Daemon(robot) as daemon:
+            daemon.wait_up()  # the wheel is not heard
+            running = Studio(daemon)
+            yield running
+            running.web.stop()
+
+    def test_a_drive_that_the_file_does_not_have_is_found_and_taken_over(
+        self, page: Page, studio: Studio, card: Locator
+    ) -> None:
+        studio.daemon.wait_motor("elbow", lambda m: m["status"] == "READY", "it is heard")
+        choose(page, "wheel")
+        press(card, "Scan this bus")
+        drives = card.get_by_role("group", name="Drives that were heard")
+        stranger = drives.get_by_role("row", name=re.compile("^DJI M3508 or M2006"))
+        expect(stranger).to_contain_text("not in the file")
+        expect(stranger).to_contain_text("0x204")
+        expect(drives.get_by_role("row", name=re.compile("elbow"))).to_have_count(1)
+        expect(card.get_by_text("not heard, but in the file: wheel")).to_be_visible()
+        # A motor that nobody hears may be this drive.
+        press(card, re.compile("^Use: DJI"))
+        expect(card.get_by_role("textbox", name="name")).to_have_value("wheel")
+        expect(card.get_by_role("spinbutton", name="id", exact=True)).to_have_value("4")
+        expect(card.get_by_label("Lines for the file")).to_have_text("id: 4")
+        # Or a motor more.
+        card.get_by_role("textbox", name="name").fill("feeder")
+        expect(card.get_by_label("Lines for the file")).to_have_text(
+            "{name: feeder, model: M3508, id: 4}"
+        )
+        press(card, "Put them into the Configuration")
+        editor = page.get_by_label("Text of the configuration")
+        expect(editor).to_contain_text("- {name: feeder, model: M3508, id: 4}")
+        expect(page.locator(".verdict-badge")).to_contain_text("rc10d accepts it")
+
+    def test_it_is_refused_while_a_motor_of_the_bus_is_enabled(
+        self, page: Page, studio: Studio, card: Locator
+    ) -> None:
+        studio.daemon.wait_motor("elbow", lambda m: m["status"] == "READY", "it is heard")
+        studio.daemon.must("enable", "elbow")
+        choose(page, "wheel")
+        press(card, "Scan this bus")
+        expect(card.get_by_role("alert").filter(has_text="arm is scanned only")).to_contain_text(
+            "elbow: ENABLING or ACTIVE: disable it first"
+        )
+        studio.daemon.must("disable", "elbow")

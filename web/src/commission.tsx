@@ -276,7 +276,7 @@ export function Commission() {
           <h3>{`${at + 1}. ${word(kStepWords[shown])}`}</h3>
           <Picture step={shown} />
           {['bus', 'hand', 'zero', 'limits'].includes(shown) && <MotorsOn />}
-          {shown === 'bus' && <BusStep {...props} bus={info.bus} id={info.id} robot={running?.robot ?? null} />}
+          {shown === 'bus' && <BusStep {...props} bus={info.bus} id={info.id} robot={running?.robot ?? null} text={running?.text ?? null} />}
           {shown === 'hand' && <HandStep {...props} />}
           {shown === 'zero' && <ZeroStep {...props} />}
           {shown === 'limits' && <LimitsStep {...props} />}

@@ -4,6 +4,7 @@ import { useState } from 'preact/hooks';
 import { CopyLines, requestPython } from './action';
 import type { StepProps } from './commission';
 import { absoluteZero, angles, isOn, judgeHandTurn, judgeLimits, turnRange, zeroLine } from './commission_record';
+import { BusScan } from './commission_scan';
 import { useKnown, useStudio } from './context';
 import type { RobotRequest } from './link';
 import { NumberField } from './number_field';
@@ -57,7 +58,7 @@ function SimulatedHand(props: { motor: string; by: number[] }) {
   );
 }
 
-export function BusStep(props: StepProps & { bus: string; id: number; robot: Robot | null }) {
+export function BusStep(props: StepProps & { bus: string; id: number; robot: Robot | null; text: string | null }) {
   const { word } = useStudio();
   const known = useKnown();
   const motors = useMotors();
@@ -122,10 +123,7 @@ export function BusStep(props: StepProps & { bus: string; id: number; robot: Rob
           ))}
         </ul>
       )}
-      <p>{word('comBusScan')}</p>
-      <p class="no-print">
-        <code>{`rc10ctl scan ${plan?.interface === undefined || plan.interface === '' ? 'can0' : plan.interface}`}</code>
-      </p>
+      <BusScan bus={props.bus} motor={props.motor} text={props.text} />
       <div class="toolbar">
         <button
           type="button"

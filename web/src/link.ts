@@ -45,6 +45,8 @@ const kLongestPauseMs = 5000;
 const kAnswerPatienceMs = 6000;
 // rc10d's end and start are part of it: that of FileCall, and a little more.
 const kHelperPatienceMs = 35_000;
+// Longer than rc10-web's.
+const kScanPatienceMs = 95_000;
 // Beats, not milliseconds: a browser that stood still has heard nothing, and nobody was silent. States come 25 times
 // a second, and rc10-web answers each beat.
 const kBeatMs = 500;
@@ -79,7 +81,7 @@ function now_us(): number {
 }
 
 function failure(seq: number, message: string): Response {
-  return { type: 'response', seq, status: 'failed', message, values: {} };
+  return { type: 'response', seq, status: 'failed', message, values: {}, heard: [] };
 }
 
 export class Link {
@@ -170,7 +172,7 @@ export class Link {
   }
 
   /** Without an answer in time it has failed: nobody knows whether it was done. */
-  ask(request: RobotRequest): Promise<Response> {
+  ask(request: RobotRequest, patienceMs = kAnswerPatienceMs): Promise<Response> {
     const seq = ++this.seq;
     return new Promise((resolve) => {
       const done = (answer: Response) => {
@@ -178,11 +180,16 @@ export class Link {
         this.open.delete(seq);
         resolve(answer);
       };
-      const timer = setTimeout(() => done(failure(seq, 'no answer')), kAnswerPatienceMs);
+      const timer = setTimeout(() => done(failure(seq, 'no answer')), patienceMs);
       this.open.set(seq, done);
       if (!this.send({ type: 'request', seq, target: '', values: {}, ...request }))
           done(failure(seq, 'no connection'));
     });
+  }
+
+  /** Drives of a bus: rc10d listens for some seconds before it asks. */
+  scan(request: RobotRequest): Promise<Response> {
+    return this.ask(request, kScanPatienceMs);
   }
 
   /** A motor moves as long as this is renewed; each renewal counts for 150 ms from when it was sent. */

@@ -172,6 +172,18 @@ export interface Response {
   status: 'ok' | 'refused' | 'failed';
   message: string;
   values: Record<string, number>;
+  /** Sightings of a scan. */
+  heard: Sighting[];
+}
+
+/** Frames under one id, and who may have sent them. */
+export interface Sighting {
+  frame_id: number;
+  extended: boolean;
+  frames: number;
+  ambiguous: boolean;
+  guesses: { kind: string; id: number; from_drive: boolean; motor: string | null; collides: boolean }[];
+  advice: string | null;
 }
 
 /** A recording on the robot's computer. */

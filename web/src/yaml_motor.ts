@@ -52,3 +52,14 @@ export function withMotorKeys(text: string, name: string, keys: Record<string, n
   }
   return changed;
 }
+
+/** The text with a motor more, the first of its bus; null: there is no list of motors in blocks. */
+export function withNewMotor(text: string, bus: string, motor: string): string | null {
+  const { root } = placeIn(text, -1);
+  const found = items(under(root, 'buses')).find((each) => textAt(each, 'name') === bus);
+  const first = found === undefined ? undefined : items(under(found, 'motors'))[0]?.entries[0];
+  if (first === undefined) return null;
+  const lineBegin = text.lastIndexOf('\n', first.from - 1) + 1;
+  const dash = /^([ \t]*)- *\{? *["']?$/.exec(text.slice(lineBegin, first.from));
+  return dash === null ? null : `${text.slice(0, lineBegin)}${dash[1] ?? ''}- ${motor}\n${text.slice(lineBegin)}`;
+}

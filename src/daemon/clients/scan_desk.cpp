@@ -16,7 +16,7 @@ namespace {
 
 // A bus with more ids is no bus of motors.
 constexpr std::size_t kMostSightings = 256;
-// Clients that read nothing keep no more than these.
+// Clients that read nothing keep no more than these: the oldest is answered without the rest.
 constexpr std::size_t kMostDeliveries = 4;
 
 [[nodiscard]] std::vector<survey::KnownMotor> motorsOn(const RobotDescription& robot, std::size_t bus) {
@@ -143,7 +143,7 @@ std::string ScanDesk::message(const OrderResult& result, const std::vector<surve
 
 void ScanDesk::deliver(std::uint64_t connection, const link::Response& response,
                        std::vector<link::Sighting> sightings) {
-  if (deliveries_.size() == kMostDeliveries) deliveries_.pop_front();
+  if (deliveries_.size() >= kMostDeliveries) deliveries_.front().left.clear();
   deliveries_.push_back({connection, response, {sightings.begin(), sightings.end()}});
 }
 

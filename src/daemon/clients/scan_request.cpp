@@ -20,7 +20,8 @@ constexpr double kLeastListenS = 0.5;
 constexpr double kMostListenS = 60.0;
 // As `rc10ctl scan` on a bus of its own: a question of 8 bytes and its answer take 0.3 ms at 1 Mbit/s.
 constexpr Duration kLeastBetween = std::chrono::milliseconds{2};
-// A full bus is asked slowly, but is asked.
+// A full bus is asked slowly, but is asked: all questions within 20 s.
+constexpr Duration kMostBetween = std::chrono::milliseconds{50};
 constexpr double kLeastFree = 0.05;
 
 // The questions take no more than half of what the robot's own frames leave.
@@ -29,7 +30,7 @@ constexpr double kLeastFree = 0.05;
   const double free = std::max(kLeastFree, 1.0 - static_cast<double>(bus.predicted_load_worst));
   const double bitrate = bus.bitrate > 0.0 ? bus.bitrate : 1e6;
   const std::chrono::duration<double> pace{2.0 * kBits / bitrate / free};
-  return std::max(kLeastBetween, std::chrono::duration_cast<Duration>(pace));
+  return std::clamp(std::chrono::duration_cast<Duration>(pace), kLeastBetween, kMostBetween);
 }
 
 [[nodiscard]] Result<std::size_t> busOf(std::string_view target, const RobotDescription& robot) {

@@ -13,10 +13,10 @@ namespace rc10 {
 /// and its range, or the buses.
 [[nodiscard]] Result<BusScanOrder> parseScan(const link::Request& request, const RobotDescription& robot);
 
-/// Motors of a bus.
+/// The motors of a bus.
 [[nodiscard]] MotorSet motorsOf(const RobotDescription& robot, std::size_t bus);
 
-/// Why a scan was not made, or not to its end, with the way out; empty: it was.
+/// Reason why a scan was not made, or not to its end, with the way out; empty: it was.
 [[nodiscard]] std::string whyNoScan(const Order& order, const OrderResult& result,
                                     const RobotDescription& robot);
 

@@ -45,7 +45,9 @@ class Supervisor {
   void decide(const Tick& tick) noexcept;
 
   /// A frame of a bus, before it is decoded: a scan hears it.
-  void hearOnBus(std::size_t bus, const CanFrame& frame) noexcept { scan_.hear(bus, frame); }
+  void hearOnBus(std::size_t bus, const CanFrame& frame) noexcept {
+    if (scan_.runs()) scan_.hear(bus, frame);
+  }
   /// The question of a scan, behind the commands of this tick: one at most.
   void askOfScan(const Tick& tick) noexcept;
 

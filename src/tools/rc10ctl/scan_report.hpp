@@ -12,7 +12,7 @@ namespace rc10::ctl {
 /// Outcome of a scan, by rc10ctl itself or by the rc10d that drives the bus.
 struct ScanReport {
   std::string interface;
-  std::string robot{};  ///< Of that rc10d; empty: no file is known.
+  std::string robot{};  ///< Robot of that rc10d; empty: no file is known.
   bool listen_only = false;
   std::vector<std::string> advice{};  ///< About the bus as a whole.
   std::vector<link::Sighting> sightings{};

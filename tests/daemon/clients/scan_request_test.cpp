@@ -64,6 +64,9 @@ TEST(ScanRequest, QuestionsTakeNoMoreThanHalfOfTheRoomOnTheWire) {
   const auto slow = parseScan(scanOf("arm"), robot)->between;
   EXPECT_GT(slow, 12ms);
   EXPECT_LT(slow, 14ms);
+  auto full = robot;
+  full.buses[1].predicted_load_worst = 1.2F;
+  EXPECT_EQ(parseScan(scanOf("arm"), full)->between, 50ms) << "it is asked all the same";
 }
 
 class ScanRights : public ::testing::Test {

@@ -1,0 +1,55 @@
+// Drives among the sightings of a scan.
+import type { Sighting } from './protocol';
+
+export interface HeardDrive {
+  kind: string;
+  id: number;
+  /** Motor of the file that takes its frames; null: none. */
+  motor: string | null;
+  collides: boolean;
+  /** One of several that may have sent these frames. */
+  ambiguous: boolean;
+  frames: number;
+  ids: string[];
+}
+
+function idText(sighting: Sighting): string {
+  const digits = sighting.frame_id.toString(16).toUpperCase();
+  return sighting.extended ? `0x${digits.padStart(8, '0')}` : `0x${digits.padStart(3, '0')}`;
+}
+
+/** Each drive once, those of the file first. Where the file says which of several it is, the others are none. */
+export function drivesOf(sightings: Sighting[]): HeardDrive[] {
+  const found = new Map<string, HeardDrive>();
+  for (const sighting of sightings) {
+    const own = sighting.guesses.filter((guess) => guess.motor !== null && !guess.collides);
+    for (const guess of sighting.ambiguous && own.length > 0 ? own.slice(0, 1) : sighting.guesses) {
+      if (!guess.from_drive) continue;
+      const key = `${guess.kind} ${guess.id}`;
+      const drive = found.get(key) ?? { kind: guess.kind, id: guess.id, motor: guess.motor, collides: guess.collides, ambiguous: true, frames: 0, ids: [] };
+      drive.ambiguous &&= sighting.ambiguous && own.length === 0;
+      drive.frames += sighting.frames;
+      drive.ids.push(idText(sighting));
+      found.set(key, drive);
+    }
+  }
+  return [...found.values()].sort((a, b) => Number(a.motor === null) - Number(b.motor === null));
+}
+
+// Frames tell the family; of a family with many models the label tells which.
+const kModels: Record<string, string[]> = {
+  'DJI M3508 or M2006': ['M3508', 'M2006'],
+  'DJI GM6020': ['GM6020'],
+  VESC: ['VESC'],
+  moteus: ['moteus'],
+  ODrive: ['ODrive_S1', 'ODrive_Pro', 'ODrive_v3'],
+};
+
+export function modelsOf(kind: string): string[] {
+  return kModels[kind] ?? [];
+}
+
+/** A motor for the file. */
+export function motorLine(name: string, model: string, id: number): string {
+  return `{name: ${name}, model: ${model === '' ? '?' : model}, id: ${id}}`;
+}
