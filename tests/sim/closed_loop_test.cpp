@@ -14,7 +14,7 @@ namespace rc10::test::closed_loop_test {
 namespace {
 
 using namespace std::chrono_literals;
-using sim::DriveConfig;
+using sim::DjiDriveConfig;
 using sim::MotorLoad;
 
 struct Case {

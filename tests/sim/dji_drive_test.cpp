@@ -18,13 +18,13 @@ namespace {
 
 using namespace std::chrono_literals;
 using sim::DjiDrive;
-using sim::DriveConfig;
+using sim::DjiDriveConfig;
 
 using Bytes = std::array<std::uint8_t, 8>;
 
 CanFrame frame(std::uint32_t id, const Bytes& data) { return makeClassicFrame({id, false}, data); }
 
-DriveConfig config(const DjiModel& model, int id, DjiCommand command = DjiCommand::kCurrent) {
+DjiDriveConfig config(const DjiModel& model, int id, DjiCommand command = DjiCommand::kCurrent) {
   return {.name = "motor", .model = &model, .id = id, .command = command, .gear_ratio = 0.0, .load = {}};
 }
 
@@ -35,7 +35,7 @@ Bytes payload(const CanFrame& frame) {
 }
 
 /// The current of a stalled motor a while after the command.
-double currentAfter(DriveConfig config, const CanFrame& command) {
+double currentAfter(DjiDriveConfig config, const CanFrame& command) {
   config.load.stalled = true;
   DjiDrive drive{config};
   drive.receive(command);
@@ -43,7 +43,7 @@ double currentAfter(DriveConfig config, const CanFrame& command) {
   return drive.physics().currentA();
 }
 
-DJI_Motor decoder(const DriveConfig& config) {
+DJI_Motor decoder(const DjiDriveConfig& config) {
   MotorSettings motor;
   motor.name = config.name;
   motor.model = config.model->name;
@@ -118,7 +118,7 @@ TEST(DjiDrive, KeepsTheLastCommandWhenCommandsStop) {
 }
 
 TEST(DjiDrive, ReportsPositionAndTemperatureInTheDrivesFormat) {
-  DriveConfig c620 = config(kM3508, 3);
+  DjiDriveConfig c620 = config(kM3508, 3);
   c620.gear_ratio = 1.0;
   c620.load.initial_angle_deg = 180.01F;
   DjiDrive drive{c620};
@@ -131,7 +131,7 @@ TEST(DjiDrive, ReportsPositionAndTemperatureInTheDrivesFormat) {
 }
 
 TEST(DjiDrive, ReportsCurrentInTheDrivesScale) {
-  DriveConfig stalled = config(kGM6020, 7);
+  DjiDriveConfig stalled = config(kGM6020, 7);
   stalled.load.stalled = true;
   DjiDrive drive{stalled};
   drive.receive(frame(0x2FE, {0, 0, 0, 0, 0x10, 0x00, 0, 0}));  // 4096 = 0.75 A
@@ -158,7 +158,7 @@ TEST(DjiDrive, TemperatureByteStaysInRange) {
 }
 
 TEST(DjiDrive, ReportedSpeedIsAMillisecondBehindTheRotor) {
-  DriveConfig heavy = config(kM3508, 1);
+  DjiDriveConfig heavy = config(kM3508, 1);
   heavy.load = {.inertia_kg_m2 = 0.1F, .viscous_nms_per_rad = 0.0F, .coulomb_nm = 0.0F};
   DjiDrive drive{heavy};
   drive.receive(frame(0x200, {0x20, 0x00, 0, 0, 0, 0, 0, 0}));
@@ -185,7 +185,7 @@ INSTANTIATE_TEST_SUITE_P(Dji, EveryDrive,
                          [](const auto& param) { return std::string{param.param.name}; });
 
 TEST_P(EveryDrive, FeedbackDecodesToWhatThePhysicsSaysForwardAndBack) {
-  DriveConfig ride = config(*GetParam().model, 2, GetParam().command);
+  DjiDriveConfig ride = config(*GetParam().model, 2, GetParam().command);
   DjiDrive drive{ride};
   DJI_Motor motor = decoder(ride);
   const double count_deg = 360.0 / 8192.0 / ride.model->gear_ratio;
@@ -217,7 +217,7 @@ TEST_P(EveryDrive, FeedbackDecodesToWhatThePhysicsSaysForwardAndBack) {
 }
 
 TEST(DjiDrive, CheckRefusesWhatDoesNotExist) {
-  const auto refusal = [](const DriveConfig& config) {
+  const auto refusal = [](const DjiDriveConfig& config) {
     const auto checked = DjiDrive::check(config);
     return checked ? std::string{} : checked.error().message;
   };
@@ -225,11 +225,11 @@ TEST(DjiDrive, CheckRefusesWhatDoesNotExist) {
   EXPECT_NE(refusal(config(kM3508, 9)).find("id 9 does not exist on a M3508: use 1 to 8"), std::string::npos);
   EXPECT_NE(refusal(config(kGM6020, 8)).find("use 1 to 7"), std::string::npos);
   EXPECT_NE(refusal(config(kM2006, 1, DjiCommand::kVoltage)).find("no voltage command"), std::string::npos);
-  EXPECT_NE(refusal(DriveConfig{}).find("no model"), std::string::npos);
-  DriveConfig lossy = config(kM3508, 1);
+  EXPECT_NE(refusal(DjiDriveConfig{}).find("no model"), std::string::npos);
+  DjiDriveConfig lossy = config(kM3508, 1);
   lossy.load.lost_frames = 1.5F;
   EXPECT_NE(refusal(lossy).find("lost_frames"), std::string::npos);
-  DriveConfig weightless = config(kM3508, 1);
+  DjiDriveConfig weightless = config(kM3508, 1);
   weightless.load.inertia_kg_m2 = -1.0F;
   EXPECT_NE(refusal(weightless).find("inertia_kg_m2"), std::string::npos);
 }

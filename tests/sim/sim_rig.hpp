@@ -19,7 +19,7 @@
 namespace rc10::test {
 
 struct SimRigConfig {
-  std::vector<sim::DriveConfig> drives;
+  std::vector<sim::DjiDriveConfig> drives;
   std::uint64_t seed = 1;
 
   [[nodiscard]] sim::SimBusConfig bus() const {
@@ -70,7 +70,7 @@ class SimRig {
  private:
   static constexpr Duration kHalfPeriod{std::chrono::microseconds{500}};
 
-  void add(const sim::DriveConfig& drive) {
+  void add(const sim::DjiDriveConfig& drive) {
     MotorSettings config;
     config.name = drive.name;
     config.model = drive.model->name;

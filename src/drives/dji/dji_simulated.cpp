@@ -20,7 +20,7 @@ Int nearest(double value) noexcept {
 
 }  // namespace
 
-Result<void> DjiDrive::check(const DriveConfig& config) {
+Result<void> DjiDrive::check(const DjiDriveConfig& config) {
   const auto refuse = [&](const std::string& why) {
     return fail("simulated motor '" + config.name + "': " + why);
   };
@@ -38,7 +38,7 @@ Result<void> DjiDrive::check(const DriveConfig& config) {
   return checkLoad(config.name, config.load);
 }
 
-DjiDrive::DjiDrive(const DriveConfig& config)
+DjiDrive::DjiDrive(const DjiDriveConfig& config)
     : name_(config.name),
       model_(config.model),
       id_(config.id),
@@ -101,15 +101,15 @@ void DjiDrive::setLoad(const MotorLoad& load) noexcept {
 }
 
 std::unique_ptr<Drive> makeDjiDrive(const MotorSettings& settings, const MotorLoad& load) {
-  return std::make_unique<DjiDrive>(DriveConfig{.name = settings.name,
-                                                .model = findDjiModel(settings.model),
-                                                .id = settings.id,
-                                                .command = djiSettings(settings.own).command,
-                                                .gear_ratio = settings.gear_ratio,
-                                                .load = load});
+  return std::make_unique<DjiDrive>(DjiDriveConfig{.name = settings.name,
+                                                   .model = findDjiModel(settings.model),
+                                                   .id = settings.id,
+                                                   .command = djiSettings(settings.own).command,
+                                                   .gear_ratio = settings.gear_ratio,
+                                                   .load = load});
 }
 
-std::function<Result<std::unique_ptr<Drive>>()> djiDrive(DriveConfig config) {
+std::function<Result<std::unique_ptr<Drive>>()> djiDrive(DjiDriveConfig config) {
   return [config = std::move(config)]() -> Result<std::unique_ptr<Drive>> {
     if (auto ok = DjiDrive::check(config); !ok) return tl::unexpected(ok.error());
     return std::make_unique<DjiDrive>(config);

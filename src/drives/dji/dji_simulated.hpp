@@ -18,7 +18,7 @@
 namespace rc10::sim {
 
 /// One drive to simulate: as it is set on the drive itself, and what it turns.
-struct DriveConfig {
+struct DjiDriveConfig {
   std::string name;
   const DjiModel* model = nullptr;
   int id = 0;
@@ -34,10 +34,10 @@ struct DriveConfig {
 class DjiDrive : public Drive {
  public:
   /// The error names the drive, the field and the allowed range.
-  [[nodiscard]] static Result<void> check(const DriveConfig& config);
+  [[nodiscard]] static Result<void> check(const DjiDriveConfig& config);
 
   /// `config` has passed check().
-  explicit DjiDrive(const DriveConfig& config);
+  explicit DjiDrive(const DjiDriveConfig& config);
 
   /// Takes its slot of a command frame; anything else is not for this drive.
   void receive(const CanFrame& frame) noexcept override;
@@ -78,6 +78,6 @@ class DjiDrive : public Drive {
 [[nodiscard]] std::unique_ptr<Drive> makeDjiDrive(const MotorSettings& settings, const MotorLoad& load);
 
 /// For SimBusConfig: a DJI drive, checked when it is made.
-[[nodiscard]] std::function<Result<std::unique_ptr<Drive>>()> djiDrive(DriveConfig config);
+[[nodiscard]] std::function<Result<std::unique_ptr<Drive>>()> djiDrive(DjiDriveConfig config);
 
 }  // namespace rc10::sim
