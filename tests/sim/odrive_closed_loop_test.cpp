@@ -137,6 +137,30 @@ TEST_P(OdriveLoop, TorqueControlKeepsToTheVelocityLimitToo) {
   EXPECT_EQ(fault(), FaultCode::kNone);
 }
 
+// Driven far beyond its velocity limit by its load: the limit of the torque is the last word. Near the
+// no-load speed the winding brakes by itself.
+TEST_P(OdriveLoop, TorqueControlBrakesNoHarderThanItsCurrentLimit) {
+  auto settings = odriveSettings(GetParam());
+  settings.effort_limit = 5.0F;
+  settings.velocity_limit_rpm = 240.0F;
+  auto load = kNoLoad;
+  load.load_torque_nm = -1.0F;
+  make(settings);
+  ASSERT_TRUE(rig_->enable());
+  rig_->drive().setLoad(load);
+  double most_a = 0.0;
+  rig_->command({.mode = ControlMode::kCurrent, .value = 1.0});
+  double fastest_rpm = 0.0;
+  rig_->run(500ms, [&] {
+    const double rpm = rig_->drive().physics().outputRpm();
+    if (rpm > 2000.0) return;
+    fastest_rpm = std::max(fastest_rpm, rpm);
+    most_a = std::max(most_a, std::abs(currentA()));
+  });
+  EXPECT_GT(fastest_rpm, 1000.0);
+  EXPECT_NEAR(most_a, 5.0, 0.05);
+}
+
 TEST_P(OdriveLoop, AFaultIsReportedClearedAndTheMotorEnabledAgain) {
   const std::uint32_t over_voltage_or_encoder = 0x100;
   ASSERT_TRUE(rig_->enable());

@@ -22,7 +22,7 @@ constexpr Duration kOdriveBootTime = milliseconds{1500};
 constexpr std::uint32_t kInitializing = 0x1;
 constexpr std::uint32_t kInvalidState = 0x1;
 constexpr double kFeedForwardUnit = 0.001;
-// controller.config.vel_gain, N·m per turn/s, as the firmware has it from the start.
+// controller.config.vel_gain as delivered, N·m per turn/s. Source: ODrive 0.5.6, controller.hpp, Config_t.
 constexpr double kTorquePerTurnPerS = 1.0 / 6.0;
 // KV * torque constant, in rpm/V * N·m/A: the vendor's own number.
 constexpr float kKvTimesTorqueConstant = 8.27F;
@@ -88,11 +88,13 @@ void OdriveDrive::drive() noexcept {
   const double torque_nm = std::clamp(input_torque_nm_, -limit_nm, limit_nm);
   switch (control_mode_) {
     case odrive::ControlMode::kTorque: {
-      // enable_torque_mode_vel_limit. Source: ODrive 0.5 controller.cpp, limitVel().
-      const double gain = kTorquePerTurnPerS;
+      // enable_torque_mode_vel_limit, on as delivered; the limit of the torque comes last. Source: ODrive
+      // 0.5.6, controller.cpp, limitVel() and Controller::update(). 0.6 is not published; taken as the same.
       const double turns_per_s = driveRpm() / kRpmPerTurnPerS;
-      return torque(std::clamp(torque_nm, gain * (-velocity_limit_turns_per_s_ - turns_per_s),
-                               gain * (velocity_limit_turns_per_s_ - turns_per_s)));
+      const double slowed_nm =
+          std::clamp(torque_nm, kTorquePerTurnPerS * (-velocity_limit_turns_per_s_ - turns_per_s),
+                     kTorquePerTurnPerS * (velocity_limit_turns_per_s_ - turns_per_s));
+      return torque(std::clamp(slowed_nm, -limit_nm, limit_nm));
     }
     case odrive::ControlMode::kVelocity:
       return velocity(std::clamp(input_turns_per_s_ * kRpmPerTurnPerS, -limit_rpm, limit_rpm), torque_nm,
