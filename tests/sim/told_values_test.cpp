@@ -157,6 +157,37 @@ TEST_P(ToldValues, ATargetThatTheFrameCanSayIsToldInTheUnitOfItsMode) {
   }
 }
 
+// Against a wall, so that the winding has what it is told for as long as one likes.
+TEST_P(ToldValues, InEachModeTheValueIsInTheUnitThatIsToldWithIt) {
+  ASSERT_TRUE(activate());
+  rig_.stall(true);
+  for (int i = 0; i < kControlModeCount; ++i) {
+    const auto mode = static_cast<ControlMode>(i);
+    if (!rig_.motor().modes().contains(mode)) continue;
+    SCOPED_TRACE(toString(mode));
+    Target target{.mode = mode, .value = 5.0};
+    if (mode == ControlMode::kCurrent) target.value = 0.3 * built_.limit();
+    if (mode == ControlMode::kDuty) target.value = 0.1;
+    if (mode == ControlMode::kImpedance) target.stiffness_nm_per_rad = 5.0F;
+    follow(target);
+    rig_.run(50ms);
+    // A drive of speeds or angles coasts by one of them.
+    const bool drives_loop = mode == ControlMode::kCoast || mode == ControlMode::kVelocity ||
+                             mode == ControlMode::kAngle || mode == ControlMode::kTotalAngle ||
+                             mode == ControlMode::kDuty || mode == ControlMode::kBrake;
+    switch (rig_.motor().commandUnit()) {
+      case CommandUnit::kAmpere:
+        EXPECT_NEAR(told(), rig_.drive().physics().currentA(), 0.02 * built_.limit());
+        EXPECT_TRUE(mode != ControlMode::kImpedance || told() > 0.01 * built_.limit());
+        break;
+      case CommandUnit::kNative: EXPECT_TRUE(drives_loop) << "its unit is that of the mode"; break;
+      case CommandUnit::kNone: EXPECT_EQ(told(), 0.0); break;
+      case CommandUnit::kVolt: ADD_FAILURE() << "none of these drives is told a voltage"; break;
+    }
+    follow({});
+  }
+}
+
 TEST_P(ToldValues, AFeedForwardOfAnySizeIsBoundedByTheCurrentLimit) {
   ASSERT_TRUE(activate());
   if (!rig_.motor().modes().contains(ControlMode::kCurrent)) return;

@@ -337,7 +337,7 @@ void MyActuator_Motor::sendMotion(SpringLaw motion) noexcept {
   const double bound_nm = std::min(driveTorqueLimitNm(), myactuator::kMotionTorqueNm);
   if (boundTorque(motion, measured, bound_nm, SpringYield::kGains)) limits_ |= kLimitCurrent;
   setCommand(torqueToOutput(torqueNm(motion, measured)) / static_cast<double>(torqueNmPerA()),
-             CommandUnit::kNative);
+             CommandUnit::kAmpere);
   last_command_.reset();
   outbox_.add(myactuator::motionCommand(id_, motion));
 }
