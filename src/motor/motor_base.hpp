@@ -31,6 +31,7 @@ struct MotorFeedback {
 #undef RC10_FIELD
   bool zeroed = false;        ///< The angle has a known reference.
   bool turn_unclear = false;  ///< Absolute, but its travel does not say on which turn it stands.
+  bool angle_at_end = false;  ///< The drive's field ends here: the shaft may turn on, and nobody sees it.
 };
 
 struct CascadeConfig;

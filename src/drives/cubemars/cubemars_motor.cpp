@@ -56,6 +56,7 @@ FrameVerdict CubeMars_Motor::takeServoReport(const CanFrame& frame) noexcept {
   takePosition(frame.received, report->degrees / own_.message_deg_per_deg);
   // At the end of the field nobody knows where the shaft is, nor how far it went on its way back.
   position_cut_off_ = report->position_cut_off;
+  feedback_.angle_at_end = position_cut_off_;
   if (position_cut_off_) loseReference();
   const double drive_rpm = report->erpm / (own_.model->gear_ratio * std::max(own_.pole_pairs, 1));
   feedback_.velocity_rpm = static_cast<float>(toOutput(drive_rpm));

@@ -103,7 +103,9 @@ bool MotorGuard::frozen(const Observation& seen, bool new_sample) noexcept {
   if (new_sample) {
     const Readings now{seen.feedback.total_angle_deg, seen.feedback.velocity_rpm, seen.feedback.current_a,
                        seen.feedback.temperature_c};
-    unchanged_ = samples_ > 0 && same(last_, now);
+    // At its no-load speed a shaft changes nothing but its angle.
+    const bool unseen = seen.feedback.angle_at_end && seen.feedback.velocity_rpm != 0.0F;
+    unchanged_ = samples_ > 0 && !unseen && same(last_, now);
     last_ = now;
   }
   const bool off = seen.unit == CommandUnit::kAmpere &&

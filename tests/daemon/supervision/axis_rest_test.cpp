@@ -147,6 +147,16 @@ class RestTest : public ::testing::TestWithParam<Subject> {
   int went_on_ticks = 0;
 };
 
+// Without a load, with all its current: at its no-load speed nothing changes but the angle, and the field of
+// some drives' angles ends.
+TEST_P(RestTest, AShaftAtItsFullSpeedIsNotTakenForFrozenFeedback) {
+  ASSERT_TRUE(enable());
+  const bool by_current = robot.robot().motors()[kMotor].motor->modes().contains(ControlMode::kCurrent);
+  robot.hold(kMotor, by_current ? Target{.mode = ControlMode::kCurrent, .value = 200.0} : turning(), 6000);
+  EXPECT_EQ(fault(), FaultCode::kNone);
+  EXPECT_EQ(status(), MotorStatus::kActive);
+}
+
 TEST_P(RestTest, ADriveThatGoesOnPushingIsAFault) {
   const auto rest = configOf(textOf(GetParam())).buses[0].motors[0].rest;
   ASSERT_TRUE(enable());

@@ -250,6 +250,17 @@ TEST_F(MotionGuardTest, ReadingsThatStandStillThoughCurrentIsCommandedAreAFault)
   EXPECT_EQ(run(2), FaultCode::kFrozen);
 }
 
+// At its no-load speed, 10 turns away: speed and current change no more, and the field of the angle has
+// ended.
+TEST_F(MotionGuardTest, AShaftThatTurnsOnBeyondTheFieldOfItsAngleIsNotFrozen) {
+  effort_a = 5.0F;
+  feedback.angle_at_end = true;
+  feedback.velocity_rpm = 500.0F;
+  EXPECT_EQ(run(1000), FaultCode::kNone);
+  feedback.velocity_rpm = 0.0F;
+  EXPECT_EQ(run(203), FaultCode::kFrozen) << "one that stands still there may be";
+}
+
 TEST_F(MotionGuardTest, ABlockedMotorWhoseCurrentIsAsCommandedIsNotFrozen) {
   effort_a = 5.0F;
   feedback.current_a = 4.8F;
