@@ -155,8 +155,9 @@ void Oracle::judgeTold(std::size_t index, const MotorSnapshot& seen) {
   }
 }
 
-// A current or a voltage changes no faster than allowed, whatever is asked. Fallbacks and loops may, and so
-// may what keeps a shaft within its soft limits.
+// A current or a voltage rises no faster than allowed, whatever is asked and whatever has limited it before,
+// and falls no faster either, but where soft limits, reduced mode or heat take it away or brake the shaft:
+// that acts at once, and the end of a brake too. Fallbacks and loops change it as they like.
 void Oracle::judgeSlew(std::size_t index, const MotorSnapshot& seen) {
   auto& motor = motors_[index];
   const bool follows =
@@ -164,9 +165,9 @@ void Oracle::judgeSlew(std::size_t index, const MotorSnapshot& seen) {
       (seen.target.mode == ControlMode::kCurrent || seen.target.mode == ControlMode::kVoltage);
   const auto& shaping = motor.config->shaping;
   const auto per_s = static_cast<double>(shaping.effort_slew_per_s);
-  // Soft limits and reduced mode brake at once.
+  const bool soft = std::isfinite(shaping.angle_min_deg) || std::isfinite(shaping.angle_max_deg);
   const bool reduced = motor.config->reduced.any() && now_ - mode_last_open_ < kFullAgain;
-  const bool free = std::isinf(shaping.angle_min_deg) && std::isinf(shaping.angle_max_deg) && !reduced;
+  const bool bounded = soft || reduced || motor.was_hot || motor.cooled;
   constexpr std::uint64_t kMostPeriods = 5;  // what a tick counts for at most
   motor.periods_untold += std::min(periods_, kMostPeriods);
   motor.followed_effort = motor.followed_effort && follows;
@@ -174,9 +175,14 @@ void Oracle::judgeSlew(std::size_t index, const MotorSnapshot& seen) {
   const double dt_s =
       static_cast<double>(seconds(config_.period())) * static_cast<double>(motor.periods_untold);
   const double most = per_s * dt_s + 2.0 * motor.told.effort_step;
-  if (per_s > 0.0 && free && motor.followed_effort && !motor.was_hot && !motor.cooled) {
-    if (std::fabs(motor.told.effort - motor.effort_before) > most)
-      fail(index, fmt::format("its effort changes too fast, from {:.3f}", motor.effort_before));
+  if (per_s > 0.0 && motor.followed_effort) {
+    const double effort = motor.told.effort;
+    const double change = effort - motor.effort_before;
+    const bool brakes = effort * motor.wire->measured().velocity_rpm < 0.0;
+    const double sign = std::copysign(1.0, effort);
+    const double risen = std::fabs(effort) - std::max(sign * motor.effort_before, 0.0);
+    const bool allowed = bounded ? risen <= most || brakes : std::fabs(change) <= most;
+    if (!allowed) fail(index, fmt::format("its effort changes too fast, from {:.3f}", motor.effort_before));
     ++visits_.slewed;
   }
   motor.followed_effort = follows;

@@ -217,9 +217,12 @@ void Axis::order(RobotStatus robot, const Tick& tick) noexcept {
       stops ? Target{.mode = ControlMode::kVelocity, .value = fallback_.rampRpm(tick.now)} : motor_.target();
   // First, so that soft limits act in this tick already.
   motor_.restoreReference(in_force_.mode);
-  const auto told = shaper_.follows(in_force_.mode)
-                        ? TargetShaper::InForce{}
-                        : TargetShaper::InForce{motor_.commandValue(), motor_.commandUnit()};
+  const bool limited = (motor_.limits() & kLimitCurrent) != 0;
+  const auto told =
+      shaper_.follows(in_force_.mode) && !limited
+          ? TargetShaper::InForce{}
+          : TargetShaper::InForce{
+                .value = motor_.commandValue(), .unit = motor_.commandUnit(), .limited = limited};
   limits_ |= stops ? shaper_.slowDown(in_force_, motor_.feedback(), told, tick.dt_s)
                    : shaper_.step(in_force_, motor_.feedback(), told, tick.dt_s);
   motor_.order(kind, in_force_);

@@ -40,6 +40,17 @@ constexpr double kEffortAgainShare = 0.8;
   return limited;
 }
 
+// Rest of an effort whose limits have let through no more than `told`, or a brake in its place.
+[[nodiscard]] double leftOf(double effort, double told) noexcept {
+  const double most = std::fabs(effort);
+  return effort < 0.0 ? std::clamp(told, -most, 0.0) : std::clamp(told, 0.0, most);
+}
+
+[[nodiscard]] bool isUnitOf(CommandUnit unit, ControlMode mode) noexcept {
+  return (mode == ControlMode::kCurrent && unit == CommandUnit::kAmpere) ||
+         (mode == ControlMode::kVoltage && unit == CommandUnit::kVolt);
+}
+
 }  // namespace
 
 bool TargetShaper::firstStepAllowed(const Target& asked, const MotorFeedback& feedback) const noexcept {
@@ -50,15 +61,15 @@ bool TargetShaper::firstStepAllowed(const Target& asked, const MotorFeedback& fe
 std::uint32_t TargetShaper::step(Target& target, const MotorFeedback& feedback, InForce in_force,
                                  float dt_s) noexcept {
   if (!follows(target.mode)) begin(target.mode, feedback, in_force);
-  if (!(share_ < 1.0)) return shape(target, feedback, dt_s);
+  if (!(share_ < 1.0)) return shape(target, feedback, in_force, dt_s);
   soften(target, dt_s);
-  return shape(target, feedback, dt_s) | kLimitSlew;
+  return shape(target, feedback, in_force, dt_s) | kLimitSlew;
 }
 
 std::uint32_t TargetShaper::slowDown(Target& target, const MotorFeedback& feedback, InForce in_force,
                                      float dt_s) noexcept {
   if (!follows(target.mode)) begin(target.mode, feedback, in_force);
-  const auto limits = shape(target, feedback, dt_s);
+  const auto limits = shape(target, feedback, in_force, dt_s);
   soft_ = value_;
   return limits;
 }
@@ -79,8 +90,9 @@ void TargetShaper::soften(Target& asked, float dt_s) noexcept {
   asked.value = any_turn ? wrapDegrees(soft_) : soft_;
 }
 
-std::uint32_t TargetShaper::shape(Target& asked, const MotorFeedback& feedback, float dt_s) noexcept {
-  if (isEffort(mode_)) return shapeEffort(asked, feedback, dt_s);
+std::uint32_t TargetShaper::shape(Target& asked, const MotorFeedback& feedback, InForce in_force,
+                                  float dt_s) noexcept {
+  if (isEffort(mode_)) return shapeEffort(asked, feedback, in_force, dt_s);
   if (mode_ != ControlMode::kVelocity && !needsReference(mode_)) return 0;
   const auto limits = shapeVelocityFf(asked, dt_s) | shapeTorqueFf(asked, feedback, dt_s);
   return limits | (mode_ == ControlMode::kVelocity ? shapeVelocity(asked, feedback, dt_s)
@@ -102,6 +114,8 @@ void TargetShaper::begin(ControlMode mode, const MotorFeedback& feedback, InForc
   if (needsReference(mode)) value_ = feedback.total_angle_deg;
   if (!std::isfinite(value_)) value_ = 0.0;
   soft_ = value_;
+  low_deg_ = std::min(config_.angle_min_deg, value_);
+  high_deg_ = std::max(config_.angle_max_deg, value_);
 }
 
 TargetShaper::Envelope TargetShaper::envelope(double total_angle_deg) const noexcept {
@@ -194,7 +208,10 @@ double TargetShaper::torqueUnderCeiling(const MotorFeedback& feedback, float dt_
   return ceiling_nm_;
 }
 
-std::uint32_t TargetShaper::shapeEffort(Target& asked, const MotorFeedback& feedback, float dt_s) noexcept {
+std::uint32_t TargetShaper::shapeEffort(Target& asked, const MotorFeedback& feedback, InForce in_force,
+                                        float dt_s) noexcept {
+  if (in_force.limited && isUnitOf(in_force.unit, mode_))
+    value_ = leftOf(value_, static_cast<double>(in_force.value));
   // One effort, so that no part of it passes the limits by.
   asked.value += static_cast<double>(asked.torque_ff_nm) * static_cast<double>(config_.effort_per_nm);
   asked.torque_ff_nm = 0.0F;
@@ -213,6 +230,7 @@ std::uint32_t TargetShaper::shapeEffort(Target& asked, const MotorFeedback& feed
                                    scale * effortTowards(allowed.high_rpm, 1.0, feedback));
   if (inside != value_) limits |= limitOf(inside < value_ ? allowed.high_rpm : allowed.low_rpm);
   asked.value = inside;
+  value_ = leftOf(value_, inside);
   return limits;
 }
 
@@ -267,10 +285,18 @@ std::uint32_t TargetShaper::shapeVelocity(Target& asked, const MotorFeedback& fe
   return limits;
 }
 
+// A shaft that was beyond a soft limit, where its stop is or where gravity had let it sag, comes back as its
+// targets lead it, and not in one leap to the limit; never farther out than it is.
+void TargetShaper::boundAngle(const MotorFeedback& feedback) noexcept {
+  low_deg_ = std::min(config_.angle_min_deg, std::max(low_deg_, feedback.total_angle_deg));
+  high_deg_ = std::max(config_.angle_max_deg, std::min(high_deg_, feedback.total_angle_deg));
+}
+
 // The nearest angle to the goal that is allowed; any turn of it if the turn does not matter.
 double TargetShaper::reachable(double goal_deg, bool any_turn) const noexcept {
+  if (!any_turn) return std::clamp(goal_deg, low_deg_, high_deg_);
   const double inside = std::clamp(goal_deg, config_.angle_min_deg, config_.angle_max_deg);
-  if (inside == goal_deg || !any_turn) return inside;
+  if (inside == goal_deg) return inside;
   const double other_way = goal_deg + std::copysign(kDegPerTurn, inside - goal_deg);
   const bool allowed = other_way >= config_.angle_min_deg && other_way <= config_.angle_max_deg;
   return allowed ? other_way : inside;
@@ -279,6 +305,7 @@ double TargetShaper::reachable(double goal_deg, bool any_turn) const noexcept {
 std::uint32_t TargetShaper::shapeAngle(Target& asked, const MotorFeedback& feedback, float dt_s) noexcept {
   const bool limited = bounded(feedback);
   const bool any_turn = asked.mode == ControlMode::kAngle;
+  boundAngle(feedback);
   if (!limited && !reduced() && !(config_.angle_slew_deg_per_s > 0.0F)) {
     const double here_deg = feedback.total_angle_deg;
     value_ = any_turn ? here_deg + shortestAngle(here_deg, asked.value) : asked.value;

@@ -33,8 +33,10 @@ struct ShapingConfig {
 
 /// Turns what a client asks for into what the motor may do in this tick: slew limits, and soft angle
 /// limits that still allow moving back. Soft limits act while the angle is referenced. After enabling the
-/// target in force goes from what is measured to what is asked: a client may have sent for long. Scheduler
-/// thread only.
+/// target in force goes from what is measured to what is asked: a client may have sent for long.
+///
+/// Soft limits, a ceiling and the limit of the effort take away an effort, and brake, at once; an effort that
+/// they took away comes back at its slew. Scheduler thread only.
 class TargetShaper {
  public:
   explicit TargetShaper(const ShapingConfig& config) noexcept
@@ -45,9 +47,10 @@ class TargetShaper {
   struct InForce {
     float value = 0.0F;
     CommandUnit unit = CommandUnit::kNone;
+    bool limited = false;  ///< By the limit of the effort: what was asked for was more.
   };
   /// Whether a target of this mode goes on from the last step. One that does not begins from `in_force`,
-  /// which is of no use otherwise.
+  /// which is otherwise of use only where it is limited.
   [[nodiscard]] bool follows(ControlMode mode) const noexcept { return mode == mode_; }
   /// Shapes `target`; the set of LimitFlag that act. `dt_s`: since the last step.
   [[nodiscard]] std::uint32_t step(Target& target, const MotorFeedback& feedback, InForce in_force,
@@ -101,18 +104,21 @@ class TargetShaper {
                                       float dt_s) noexcept;
   [[nodiscard]] double effortFor(double allowed_rpm, const MotorFeedback& feedback) const noexcept;
   [[nodiscard]] double reachable(double goal_deg, bool any_turn) const noexcept;
+  void boundAngle(const MotorFeedback& feedback) noexcept;
   void begin(ControlMode mode, const MotorFeedback& feedback, InForce in_force) noexcept;
   void soften(Target& asked, float dt_s) noexcept;
   [[nodiscard]] bool slew(double goal, float per_second, float dt_s) noexcept;
   // Each shapes its part of the target and returns the limits that act.
-  [[nodiscard]] std::uint32_t shape(Target& asked, const MotorFeedback& feedback, float dt_s) noexcept;
+  [[nodiscard]] std::uint32_t shape(Target& asked, const MotorFeedback& feedback, InForce in_force,
+                                    float dt_s) noexcept;
   [[nodiscard]] std::uint32_t shapeVelocityFf(Target& asked, float dt_s) noexcept;
   [[nodiscard]] std::uint32_t shapeTorqueFf(Target& asked, const MotorFeedback& feedback,
                                             float dt_s) noexcept;
   [[nodiscard]] double mostTorqueFf(bool springs, const MotorFeedback& feedback, double allowed_rpm,
                                     double sign) const noexcept;
   [[nodiscard]] double torqueUnderCeiling(const MotorFeedback& feedback, float dt_s) noexcept;
-  [[nodiscard]] std::uint32_t shapeEffort(Target& asked, const MotorFeedback& feedback, float dt_s) noexcept;
+  [[nodiscard]] std::uint32_t shapeEffort(Target& asked, const MotorFeedback& feedback, InForce in_force,
+                                          float dt_s) noexcept;
   [[nodiscard]] std::uint32_t boundBySpeed(Target& asked, const MotorFeedback& feedback) noexcept;
   [[nodiscard]] std::uint32_t shapeVelocity(Target& asked, const MotorFeedback& feedback,
                                             float dt_s) noexcept;
@@ -122,6 +128,8 @@ class TargetShaper {
   bool soft_limits_;                        ///< On one side at least.
   ControlMode mode_ = ControlMode::kCoast;  ///< Mode of the last step.
   double value_ = 0.0;                      ///< The slewed target of that mode.
+  double low_deg_ = 0.0;                    ///< Bounds of an angle target: the soft limits, or the
+  double high_deg_ = 0.0;                   ///< place beyond one from which the shaft comes back.
   double velocity_ff_rpm_ = 0.0;            ///< Slewed, too.
   double torque_ff_nm_ = 0.0;
   double ceiling_rpm_ = std::numeric_limits<double>::infinity();

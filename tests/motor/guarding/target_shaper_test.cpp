@@ -263,6 +263,23 @@ TEST_F(TargetShaperTest, NoAngleTargetLeadsBeyondASoftLimit) {
   EXPECT_EQ(step(ControlMode::kTotalAngle, -45.0).limits, 0U);
 }
 
+// Its stop lies there, or gravity has let it sag: no leap to the limit.
+TEST_F(TargetShaperTest, AShaftBeyondASoftLimitIsLedBackByItsTargetsAndNeverFartherOut) {
+  configure(soft);
+  at(-100.0);
+  EXPECT_EQ(step(ControlMode::kTotalAngle, -100.0).target.value, -100.0);
+  EXPECT_EQ(step(ControlMode::kTotalAngle, -99.5).target.value, -99.5);
+  const auto out = step(ControlMode::kTotalAngle, -120.0);
+  EXPECT_EQ(out.target.value, -100.0);
+  EXPECT_EQ(out.limits, kLimitAngle);
+  at(-95.0);
+  EXPECT_EQ(step(ControlMode::kTotalAngle, -100.0).target.value, -95.0) << "not where it was before";
+  at(-80.0);
+  EXPECT_EQ(step(ControlMode::kTotalAngle, -100.0).target.value, -90.0) << "from now on the limit holds";
+  at(-93.0);
+  EXPECT_EQ(step(ControlMode::kTotalAngle, -100.0).target.value, -90.0) << "if it is pushed out again, too";
+}
+
 TEST_F(TargetShaperTest, AnAngleThatIsAllowedAnotherWayRoundIsReachedThatWay) {
   configure({.angle_min_deg = -300.0, .angle_max_deg = 100.0, .approach_rpm_per_deg = 2.0F});
   at(80.0);
@@ -305,6 +322,44 @@ TEST_F(TargetShaperTest, ACurrentFadesAsTheSpeedNearsWhatIsAllowed) {
   EXPECT_NEAR(step(ControlMode::kCurrent, 3.0).target.value, 2.0, 1e-6);
   feedback.velocity_rpm = 25.0F;
   EXPECT_NEAR(step(ControlMode::kCurrent, 3.0).target.value, -1.0, 1e-6);
+}
+
+TEST_F(TargetShaperTest, ACurrentThatASoftLimitTookAwayComesBackAtItsRate) {
+  auto config = soft;
+  config.effort_slew_per_s = 100.0F;
+  configure(config);
+  at(80.0);  // 20 rpm are allowed
+  EXPECT_EQ(valueAfter(40, ControlMode::kCurrent, 3.0), 3.0);
+  feedback.velocity_rpm = 15.0F;
+  EXPECT_NEAR(step(ControlMode::kCurrent, 3.0).target.value, 1.0, 1e-6) << "less acts at once";
+  feedback.velocity_rpm = 25.0F;
+  EXPECT_NEAR(step(ControlMode::kCurrent, 3.0).target.value, -1.0, 1e-6) << "and so does a brake";
+  feedback.velocity_rpm = 0.0F;
+  EXPECT_NEAR(step(ControlMode::kCurrent, 3.0).target.value, 0.1, 1e-6) << "more comes as it may rise";
+  EXPECT_NEAR(step(ControlMode::kCurrent, 3.0).target.value, 0.2, 1e-6);
+}
+
+TEST_F(TargetShaperTest, ACurrentThatACeilingTookAwayComesBackAtItsRate) {
+  configure({.effort_slew_per_s = 100.0F, .approach_effort_per_rpm = 0.2F});
+  EXPECT_EQ(valueAfter(40, ControlMode::kCurrent, 3.0), 3.0);
+  feedback.velocity_rpm = 18.0F;
+  shaper.setCeiling(20.0);
+  EXPECT_NEAR(step(ControlMode::kCurrent, 3.0).target.value, 0.4, 1e-6);
+  shaper.setCeiling(std::numeric_limits<double>::infinity());
+  EXPECT_NEAR(step(ControlMode::kCurrent, 3.0).target.value, 0.5, 1e-6);
+}
+
+TEST_F(TargetShaperTest, AnEffortThatItsLimitCutOffChangesFromThatLimit) {
+  configure({.effort_slew_per_s = 1000.0F});
+  const auto limited = [&](double asked_a) {
+    return shaper
+        .step({.mode = ControlMode::kCurrent, .value = asked_a}, feedback, {2.0F, CommandUnit::kAmpere, true},
+              kTickS)
+        .target.value;
+  };
+  EXPECT_EQ(valueAfter(20, ControlMode::kCurrent, 10.0), 10.0);
+  EXPECT_NEAR(limited(10.0), 3.0, 1e-6) << "its motor says again that it is too much";
+  EXPECT_NEAR(limited(-10.0), 1.0, 1e-6);
 }
 
 TEST_F(TargetShaperTest, AVoltageMayKeepUpTheAllowedSpeed) {
