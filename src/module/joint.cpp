@@ -7,8 +7,10 @@
 #include <string>
 
 #include "app/s_curve_profile.hpp"
+#include "app/target.hpp"
 #include "app/trapezoid_profile.hpp"
 #include "app/units.hpp"
+#include "module/held_back.hpp"
 #include "module/joint_homing.hpp"
 
 namespace rc10 {
@@ -18,6 +20,16 @@ using enum OwnKey::Kind;
 
 // Way of a shaft in the tick after it was zeroed, and far below any error of another reference.
 constexpr double kZeroedWithinDeg = 10.0;
+// Share of max_velocity_deg_s: a shaft that turns slower rests.
+constexpr double kRestShare = 0.02;
+// Lead of the reference where max_lead_deg is 0: the way of this time at max_velocity_deg_s; and so many
+// tolerances, where an encoder is coarse.
+constexpr double kLeadSeconds = 0.1;
+constexpr double kLeadTolerances = 10.0;
+// A motor that is waited for moves by a tolerance within this time, or is blocked.
+constexpr Duration kBlocked = std::chrono::milliseconds{200};
+// A target beyond the limits is told again once none was for so long.
+constexpr Duration kBeyondAgain = std::chrono::seconds{1};
 constexpr std::array<std::string_view, 3> kHomings{"none", "stop", "switch"};
 constexpr std::array<std::string_view, 2> kOnSilence{"hold", "let_go"};
 
@@ -47,6 +59,14 @@ constexpr std::array kJointKeys{
            .max = 1e9,
            .default_text = "0",
            .about = "How fast the acceleration may change: the move becomes an S-curve. 0: not limited."},
+    OwnKey{.name = "max_lead_deg",
+           .kind = kNumber,
+           .unit = "deg",
+           .max = 3600,
+           .default_text = "0",
+           .about =
+               "Most that the reference runs ahead of the motor: it waits for one that is held, blocked or "
+               "slowed. 0: the way of 0.1 s at max_velocity_deg_s, and at least 10 times tolerance_deg."},
     OwnKey{.name = "tolerance_deg",
            .kind = kNumber,
            .unit = "deg",
@@ -60,7 +80,9 @@ constexpr std::array kJointKeys{
            .min = 1,
            .max = 60'000,
            .default_text = "1000",
-           .about = "A move that is not done within this time after the end of its profile has failed."},
+           .about =
+               "A move that is not done within this time after the end of its profile has failed, and so has "
+               "one whose reference has waited that long for the motor."},
     OwnKey{.name = "homing",
            .kind = kChoice,
            .choices = kHomings,
@@ -94,16 +116,18 @@ constexpr std::array kJointKeys{
            .max = 3600,
            .above_min = true,
            .default_text = "5",
-           .about = "Distance that it moves away from the end: first, which shows that it moves at all, and "
-                    "again between the two meetings with a stop."},
+           .about =
+               "Distance that it moves away from the end: first, which shows that it moves at all, and again "
+               "between the two meetings with the end; more than homing_tolerance_deg."},
     OwnKey{.name = "homing_tolerance_deg",
            .kind = kNumber,
            .unit = "deg",
            .max = 90,
            .above_min = true,
            .default_text = "1",
-           .about = "The stop is met twice, the second time at half the velocity. Places farther apart, or "
-                    "nearer than where it began, are not the stop."},
+           .about =
+               "The end is met twice, the second time at half the velocity. Places farther apart are not "
+               "the end, nor is a stop nearer than where it began. A standstill moves no farther."},
     OwnKey{.name = "homing_stopped_ms",
            .kind = kInteger,
            .unit = "ms",
@@ -148,16 +172,20 @@ ModuleSignals jointSignals() {
           {.text = "homing failed: it did not move away from the end, or did not find it in time; see "
                    "homing_current_a, the sign of homing_velocity_rpm and homing_timeout_s"},
           {.text = "a move failed: it does not reach its target; see what is in its way, the motor's "
-                   "limits, tolerance_deg and settle_ms"},
+                   "limits, max_lead_deg, tolerance_deg and settle_ms"},
           {.text = "a target lies beyond the motor's soft limits: it goes to the limit"},
           {.text = "homing failed: the switch is not heard; see the module that reads it"},
-          {.text = "homing failed: it stood still, but not at the stop: nearer than where it began, at two "
-                   "places, without the full current, or farther than the travel; see what is in its "
-                   "way, homing_current_a against gravity and friction, and homing_tolerance_deg"},
+          {.text = "homing failed: it stood still, but not at the end: nearer than where it began, at two "
+                   "places, before the switch or without the full current, or there was none within the "
+                   "travel; see what is in its way, homing_current_a against gravity and friction, and "
+                   "homing_tolerance_deg"},
           {.text = "no client has been heard for silence_max_s: it holds no longer"},
           {.text =
                "homing failed: with this zero part of the motor's travel (angle_min_deg to angle_max_deg) "
-               "would lie beyond the positions that its drive can be told; see docs/safety.md"}}};
+               "would lie beyond the positions that its drive can be told; see docs/safety.md"},
+          {.text =
+               "homing has not begun, or has ended: its motor is not ACTIVE, or another client commands it; "
+               "enable it, and let home fall to 0 and rise again"}}};
 }
 
 /// The reference that runs ahead of the motor: with or without limited jerk.
@@ -171,7 +199,10 @@ class Reference {
                                            own.number("max_jerk_deg_s3")});
   }
 
-  void reset(double deg) noexcept { s_curve_ ? s_curve_->reset(deg) : trapezoid_.reset(deg); }
+  void start(double deg, double deg_per_s) noexcept {
+    const ProfileState from{.position = deg, .velocity = deg_per_s};
+    s_curve_ ? s_curve_->start(from) : trapezoid_.start(from);
+  }
   void step(double target_deg, float dt_s) noexcept {
     s_curve_ ? s_curve_->step(target_deg, dt_s) : trapezoid_.step(target_deg, dt_s);
   }
@@ -200,13 +231,22 @@ JointHoming::Config homingConfig(const OwnValues& own, const RobotOutline::Motor
           .timeout = std::chrono::milliseconds{static_cast<int>(own.number("homing_timeout_s") * 1000.0)}};
 }
 
+double leadOf(const OwnValues& own) noexcept {
+  const double given_deg = own.number("max_lead_deg");
+  if (given_deg > 0.0) return given_deg;
+  return std::max(kLeadSeconds * own.number("max_velocity_deg_s"),
+                  kLeadTolerances * own.number("tolerance_deg"));
+}
+
 class Joint : public Module_Base {
  public:
   Joint(const OwnValues& own, const RobotOutline::Motor& motor)
       : Module_Base(jointSignals()),
         motor_(own.motor("motor")),
-        min_deg_(motor.angle_min_deg),
-        max_deg_(motor.angle_max_deg),
+        min_deg_(std::max(motor.angle_min_deg, -kFarthestAngleDeg)),
+        max_deg_(std::min(motor.angle_max_deg, kFarthestAngleDeg)),
+        rest_deg_s_(kRestShare * own.number("max_velocity_deg_s")),
+        lead_deg_(leadOf(own)),
         tolerance_deg_(own.number("tolerance_deg")),
         settle_(std::chrono::milliseconds{own.integer("settle_ms")}),
         homes_(own.text("homing") != "none"),
@@ -227,14 +267,12 @@ class Joint : public Module_Base {
 
   void update(const Tick& tick, ModuleRobot& robot) noexcept override {
     const auto& feedback = robot.feedback(motor_);
-    const double home = commanded() ? input(kHome) : 0.0;
-    const bool home_asked = home >= 0.5 && !home_was_asked_;
-    home_was_asked_ = home >= 0.5;
+    const bool home_asked = homes_ && homeRises(tick);
     if (!robot.obeys(motor_)) {
-      state_ = State::kIdle;
-      move_ = Move::kNone;
+      if (home_asked || state_ == State::kHoming) robot.report(kCannotHome);
+      idle();
     } else {
-      if (home_asked && homes_) beginHoming(feedback, tick, robot);
+      if (home_asked) beginHoming(feedback, tick, robot);
       if (state_ == State::kHoming) {
         stepHoming(feedback, tick, robot);
       } else {
@@ -259,7 +297,8 @@ class Joint : public Module_Base {
     kNoSwitch,
     kNoStop,
     kSilent,
-    kNoReach
+    kNoReach,
+    kCannotHome
   };
 
   enum class State { kIdle, kHoming, kFollowing, kHomingFailed };
@@ -273,10 +312,31 @@ class Joint : public Module_Base {
             .current_a = static_cast<double>(feedback.current_a),
             .at_switch = closed >= 0.5,
             .switch_heard = std::isfinite(closed),
+            .received = feedback.received,
             .now = tick.now};
   }
 
-  void beginHoming(const MotorFeedback& feedback, const Tick& tick, const ModuleRobot& robot) noexcept {
+  void idle() noexcept {
+    state_ = State::kIdle;
+    move_ = Move::kNone;
+  }
+
+  /// A message asks for it and the last one did not. A gap in the stream of a client is no fall: it would
+  /// home anew after each.
+  [[nodiscard]] bool homeRises(const Tick& tick) noexcept {
+    if (!commanded()) {
+      if (tick.now - heard_ >= HeldBack::kLetGo) home_is_high_ = false;
+      return false;
+    }
+    heard_ = tick.now;
+    const bool was_high = home_is_high_;
+    home_is_high_ = input(kHome) >= 0.5;
+    return home_is_high_ && !was_high;
+  }
+
+  // The reference of its angle is in doubt, and a stop may lie beyond the limits that follow from it.
+  void beginHoming(const MotorFeedback& feedback, const Tick& tick, ModuleRobot& robot) noexcept {
+    robot.forgetReference(motor_);
     homing_.start(measured(feedback, tick, robot));
     state_ = State::kHoming;
     move_ = Move::kNone;
@@ -284,10 +344,10 @@ class Joint : public Module_Base {
   }
 
   void stepHoming(const MotorFeedback& feedback, const Tick& tick, ModuleRobot& robot) noexcept {
-    // Homing ends with the client that asked for it.
+    // The client that asked has to stay. When it is heard again, homing begins anew.
     if (!commanded()) {
-      state_ = State::kIdle;
-      return;
+      home_is_high_ = false;
+      return idle();
     }
     if (zero_asked_) {
       // The zero of the tick before is in force, unless the motor refused it.
@@ -316,9 +376,13 @@ class Joint : public Module_Base {
     state_ = State::kHomingFailed;
   }
 
+  // From what the shaft does: one that turns is slowed along the profile, not stopped in a jump.
   void beginFollowing(const MotorFeedback& feedback) noexcept {
-    reference_.reset(feedback.total_angle_deg);
-    target_deg_ = feedback.total_angle_deg;
+    const double here_deg = feedback.total_angle_deg;
+    const double deg_s = static_cast<double>(feedback.velocity_rpm) * kDegPerSPerRpm;
+    const bool turns = std::fabs(deg_s) > rest_deg_s_ && here_deg >= min_deg_ && here_deg <= max_deg_;
+    reference_.start(here_deg, turns ? deg_s : 0.0);
+    target_deg_ = here_deg;
     state_ = State::kFollowing;
     move_ = Move::kNone;
   }
@@ -326,7 +390,7 @@ class Joint : public Module_Base {
   void follow(const MotorFeedback& feedback, const Tick& tick, ModuleRobot& robot) noexcept {
     const bool wanted = commanded() && std::isfinite(input(kAngleDeg));
     if (!feedback.zeroed || state_ == State::kHomingFailed) {
-      if (state_ == State::kFollowing) state_ = State::kIdle;
+      if (state_ == State::kFollowing) idle();
       return;
     }
     if (state_ != State::kFollowing) {
@@ -335,13 +399,12 @@ class Joint : public Module_Base {
     }
     if (wanted) {
       aim(robot, tick);
-      reference_.step(target_deg_, tick.dt_s);
+      lead(feedback, tick);
     } else if (holds_ && robot.clientsSilent() < silence_max_) {
       reference_.brake(tick.dt_s);
     } else {
       if (holds_) robot.report(kSilent);
-      state_ = State::kIdle;
-      return;
+      return idle();
     }
     judge(feedback, tick, robot, wanted);
     const auto& reference = reference_.state();
@@ -353,25 +416,50 @@ class Joint : public Module_Base {
   void aim(ModuleRobot& robot, const Tick& tick) noexcept {
     const double asked_deg = input(kAngleDeg);
     const double target_deg = std::clamp(asked_deg, min_deg_, max_deg_);
-    if (target_deg != asked_deg && asked_deg != beyond_deg_) {
-      beyond_deg_ = asked_deg;
-      robot.report(kBeyond);
+    if (target_deg != asked_deg) {
+      if (!beyond_ || tick.now - *beyond_ >= kBeyondAgain) robot.report(kBeyond);
+      beyond_ = tick.now;
     }
     if (target_deg == target_deg_ && move_ != Move::kNone) return;
     target_deg_ = target_deg;
     move_ = Move::kUnderWay;
-    arrived_ = tick.now;
+    arrived_ = advanced_ = tick.now;
+  }
+
+  // A reference that ran on would be an order to make up for all of the way at once, as soon as whatever
+  // holds the motor lets go.
+  void lead(const MotorFeedback& feedback, const Tick& tick) noexcept {
+    const auto& reference = reference_.state();
+    const double here_deg = feedback.total_angle_deg;
+    const double sign = std::copysign(1.0, target_deg_ - reference.position);
+    const double ahead_deg = sign * (reference.position - here_deg);
+    const bool waits = ahead_deg > lead_deg_ && !reference_.restsAt(target_deg_);
+    waited_ = waits || (waited_ && ahead_deg > lead_deg_ / 2);
+    if (!waited_ || std::fabs(here_deg - advanced_deg_) > tolerance_deg_) {
+      advanced_ = tick.now;
+      advanced_deg_ = here_deg;
+    }
+    if (waits) {
+      const double deg_s = sign * static_cast<double>(feedback.velocity_rpm) * kDegPerSPerRpm;
+      reference_.start(here_deg + sign * lead_deg_,
+                       sign * std::clamp(deg_s, 0.0, std::max(sign * reference.velocity, 0.0)));
+    } else {
+      reference_.step(target_deg_, tick.dt_s);
+    }
   }
 
   void judge(const MotorFeedback& feedback, const Tick& tick, ModuleRobot& robot, bool wanted) noexcept {
     if (move_ != Move::kUnderWay || !wanted) return;
-    if (!reference_.restsAt(target_deg_)) {
+    const bool rests = reference_.restsAt(target_deg_);
+    const double away_deg = std::fabs(feedback.total_angle_deg - target_deg_);
+    // One that comes nearer is slow, and has not failed.
+    if (!rests || away_deg < nearest_deg_ - tolerance_deg_) {
       arrived_ = tick.now;
-      return;
+      nearest_deg_ = away_deg;
     }
-    if (std::fabs(feedback.total_angle_deg - target_deg_) <= tolerance_deg_) {
+    if (rests && away_deg <= tolerance_deg_) {
       move_ = Move::kDone;
-    } else if (tick.now - arrived_ >= settle_) {
+    } else if (tick.now - arrived_ >= settle_ || tick.now - advanced_ >= std::max(settle_, kBlocked)) {
       move_ = Move::kFailed;
       robot.report(kNotReached);
     }
@@ -380,6 +468,8 @@ class Joint : public Module_Base {
   std::size_t motor_;
   double min_deg_;
   double max_deg_;
+  double rest_deg_s_;
+  double lead_deg_;
   double tolerance_deg_;
   Duration settle_;
   bool homes_;
@@ -393,12 +483,42 @@ class Joint : public Module_Base {
 
   State state_ = State::kIdle;
   Move move_ = Move::kNone;
-  bool home_was_asked_ = false;
+  bool home_is_high_ = false;
+  MonotonicTime heard_{};  ///< Last tick in which somebody commanded it.
   bool zero_asked_ = false;
   double target_deg_ = 0.0;
-  double beyond_deg_ = kNoSignal;  ///< The last target that was out of reach: told once.
-  MonotonicTime arrived_{};
+  std::optional<MonotonicTime> beyond_;  ///< Last target that was out of reach.
+  MonotonicTime arrived_{};              ///< When the reference came to rest at the target, or the
+  double nearest_deg_ = 0.0;             ///< motor nearer to it than so.
+  bool waited_ = false;                  ///< The reference waits, or has not gone on far since.
+  MonotonicTime advanced_{};             ///< When it did not, or the motor moved.
+  double advanced_deg_ = 0.0;            ///< Place of the motor then.
 };
+
+// Values that can never find an end, though each is in its range.
+Result<void> checkHoming(const OwnValues& own, const RobotOutline::Motor& motor) {
+  const double rpm = own.number("homing_velocity_rpm");
+  if (rpm == 0.0) return fail("homing_velocity_rpm: 0 finds nothing; its sign says where the end is");
+  const auto limit_rpm = static_cast<double>(motor.velocity_limit_rpm);
+  if (limit_rpm > 0.0 && std::fabs(rpm) > limit_rpm)
+    return fail("homing_velocity_rpm: is more than motor '" + motor.name +
+                "' turns; use less, see its velocity_limit_rpm and gear_ratio");
+  const auto limit_a = static_cast<double>(motor.current_limit_a);
+  if (limit_a > 0.0 && own.number("homing_current_a") > limit_a)
+    return fail("homing_current_a: is more than current_limit_a of motor '" + motor.name +
+                "'; the stop is pressed with all of it, so use less");
+  if (own.number("homing_away_deg") <= own.number("homing_tolerance_deg"))
+    return fail(
+        "homing_away_deg: must be more than homing_tolerance_deg, or a second meeting with the end shows "
+        "nothing");
+  const double home_deg = own.number("home_angle_deg");
+  const bool behind = rpm < 0.0 ? home_deg >= motor.angle_max_deg : home_deg <= motor.angle_min_deg;
+  if (behind)
+    return fail(std::string{"home_angle_deg: no travel lies between it and "} +
+                (rpm < 0.0 ? "angle_max_deg" : "angle_min_deg") + " of motor '" + motor.name +
+                "'; see the sign of homing_velocity_rpm, which says where the end is");
+  return {};
+}
 
 class JointType : public ModuleType {
  public:
@@ -421,8 +541,8 @@ class JointType : public ModuleType {
     if (homing != "none") {
       if (auto able = robot.require(ControlMode::kCurrent, motor, "homing"); !able)
         return tl::unexpected(able.error());
-      if (own.number("homing_velocity_rpm") == 0.0)
-        return fail("homing_velocity_rpm: 0 finds nothing; its sign says where the end is");
+      if (auto makes_sense = checkHoming(own, robot.motors[motor]); !makes_sense)
+        return tl::unexpected(makes_sense.error());
     }
     if ((homing == "switch") != own.given("switch"))
       return fail(homing == "switch"

@@ -8,12 +8,12 @@
 namespace rc10 {
 
 /// Finds the end of an axis: first away from it, to see that the axis moves at all, then towards it until it
-/// stands against the stop or the switch closes. All by a current that is bounded, so that the stop is met
-/// gently: near the homing velocity the current goes to 0.
+/// stands against the stop or the switch closes, back, and once more at half the velocity. All by a current
+/// that is bounded, so that the stop is met gently: near the homing velocity the current goes to 0.
 ///
 /// A standstill alone is no stop: gravity or friction may balance the current anywhere. The stop is no nearer
-/// than where the axis began, is pressed with the full current, is met twice at the same place, the second
-/// time at half the velocity, and is no farther than the travel allows.
+/// than where the axis began, is pressed with the full current, and is no farther than the travel allows. It
+/// is met twice at the same place, and so is the switch: one wrong sample of it is no end.
 class JointHoming {
  public:
   enum class Way : std::uint8_t { kStop, kSwitch };
@@ -22,7 +22,7 @@ class JointHoming {
     double velocity_rpm = 0.0;   ///< Towards the end; its sign says where that is.
     double current_a = 0.0;      ///< Bound of the current.
     double away_deg = 0.0;       ///< Distance that it moves away: first, and between the two meetings.
-    double tolerance_deg = 1.0;  ///< Between the two meetings with the stop.
+    double tolerance_deg = 1.0;  ///< Between the two meetings, and in a standstill.
     /// From the end to the far soft limit; infinite: not known.
     double travel_deg = std::numeric_limits<double>::infinity();
     Duration stopped{};  ///< Standstill that is the stop.
@@ -34,13 +34,14 @@ class JointHoming {
     double current_a = 0.0;  ///< NaN: the drive does not tell.
     bool at_switch = false;
     bool switch_heard = true;  ///< Homing ends without it: the axis would run over the end.
-    MonotonicTime now;
+    MonotonicTime received{};  ///< Time of the sample: a standstill lasts from sample to sample.
+    MonotonicTime now{};
   };
   enum class Progress : std::uint8_t {
     kUnderWay,
     kFound,
     kFailed,  ///< In time nothing was found, or it cannot be seen.
-    kNoStop,  ///< It stood still, but not at the stop.
+    kNoStop,  ///< It stood still, but not at the end, or there is none within the travel.
   };
 
   explicit JointHoming(const Config& config) noexcept : config_(config) {}
@@ -52,23 +53,35 @@ class JointHoming {
 
  private:
   enum class Phase : std::uint8_t { kAway, kTowards, kBackOff, kAgain };
+  /// State of a shaft that the current pushes.
+  enum class Standstill : std::uint8_t {
+    kNone,
+    kPressed,  ///< It stands still under the full current.
+    kGivenUp,  ///< It stands still, and the full current does not come.
+  };
 
   void begin(Phase phase, const Measured& measured) noexcept;
   [[nodiscard]] Progress end(Progress outcome) noexcept;
-  [[nodiscard]] Progress stoodStill(const Measured& measured) noexcept;
+  [[nodiscard]] Progress goAway(const Measured& measured) noexcept;
+  [[nodiscard]] Progress goTowards(const Measured& measured) noexcept;
+  [[nodiscard]] Progress meet(const Measured& measured) noexcept;
   void push(double velocity_rpm, double measured_rpm) noexcept;
-  [[nodiscard]] bool standsStill(const Measured& measured) noexcept;
-  [[nodiscard]] bool pressed(const Measured& measured) const noexcept;
+  /// `direction`: of the current, 1: towards the end.
+  [[nodiscard]] Standstill standstill(const Measured& measured, double direction) noexcept;
   /// Way from `from_deg` to `to_deg`, positive towards the end.
   [[nodiscard]] double towards(double from_deg, double to_deg) const noexcept;
 
   Config config_;
   Phase phase_ = Phase::kAway;
   double start_deg_ = 0.0;
-  double left_deg_ = 0.0;  ///< Where it last began to go away.
-  double met_deg_ = 0.0;   ///< Where it met the stop first.
+  double left_deg_ = 0.0;   ///< Where it last began to go away.
+  double met_deg_ = 0.0;    ///< Where it met the end first.
+  bool went_away_ = false;  ///< Else it began at its far end, or it does not move at all.
   MonotonicTime started_{};
-  MonotonicTime moved_{};
+  MonotonicTime moved_{};   ///< Sample before which it moved.
+  double still_deg_ = 0.0;  ///< Place of that sample.
+  double most_a_ = 0.0;     ///< The current towards its goal since then, and
+  MonotonicTime rose_{};    ///< the time at which it rose last.
   double current_a_ = 0.0;
 };
 

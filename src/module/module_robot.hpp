@@ -46,6 +46,9 @@ class ModuleRobot {
   virtual void ask(RobotRequest request, std::span<const std::size_t> motors) noexcept = 0;
   /// The same for all motors. kEstop and the clearing of an e-stop are always for all.
   virtual void askAll(RobotRequest request) noexcept = 0;
+  /// Before a motor is homed: from this tick on its angle has no reference, so that its soft limits do not
+  /// act, until it is zeroed. To be called only with a target in the same update() that follows no angle.
+  virtual void forgetReference(std::size_t motor) noexcept = 0;
 
   /// Since a client was last heard: by a command, a request or inputs of a module, or by hearClient().
   [[nodiscard]] virtual Duration clientsSilent() const noexcept = 0;

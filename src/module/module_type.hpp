@@ -25,6 +25,7 @@ struct RobotOutline {
     std::string name;
     ModeSet modes;
     float velocity_limit_rpm = 0.0F;  ///< Its limit, or its no-load speed; 0: not known.
+    float current_limit_a = 0.0F;     ///< 0: not known, or its effort is no current.
     double angle_min_deg = 0.0;       ///< Its soft limits; infinite: none.
     double angle_max_deg = 0.0;
   };

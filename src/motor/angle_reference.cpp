@@ -32,6 +32,12 @@ bool AngleReference::setZero(double angle_deg) noexcept {
   return true;
 }
 
+void AngleReference::forget() noexcept {
+  known_ = false;
+  turn_unclear_ = false;
+  lost_ = false;
+}
+
 void AngleReference::lose() noexcept {
   known_ = false;
   turn_unclear_ = false;

@@ -22,6 +22,9 @@ class AngleReference {
   void update(double position_deg, bool may_restart = true, bool may_return = true) noexcept;
   /// The present position reads `angle_deg` from now on. False before the first update().
   bool setZero(double angle_deg) noexcept;
+  /// The angle goes on without a known reference until setZero(), or until the drive has lost its turns and
+  /// begins anew.
+  void forget() noexcept;
   /// The drive may have lost turns: the angle goes on, but without a known reference. An absolute drive
   /// starts again as at power-up, once it may.
   void lose() noexcept;

@@ -124,6 +124,8 @@ class Motor_Base : public FrameListener {
 
   /// Makes the present position `angle_deg`. False while the position is unknown.
   virtual bool setZero(double angle_deg) noexcept = 0;
+  /// Its angle goes on, without a known reference: it is about to be found anew.
+  virtual void forgetReference() noexcept { feedback_.zeroed = false; }
 
  protected:
   [[nodiscard]] float derating() const noexcept { return derating_; }

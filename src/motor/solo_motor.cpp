@@ -83,6 +83,13 @@ void SoloMotor::loseReference() noexcept {
   holding_ = false;
 }
 
+void SoloMotor::forgetReference() noexcept {
+  reference_.forget();
+  feedback_.zeroed = false;
+  feedback_.turn_unclear = false;
+  holding_ = false;
+}
+
 void SoloMotor::doubtTurn() noexcept {
   reference_.doubtTurn();
   feedback_.zeroed = reference_.known();

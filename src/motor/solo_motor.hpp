@@ -32,6 +32,7 @@ class SoloMotor : public Motor_Base, public CommandPacker {
   [[nodiscard]] float commandValue() const noexcept override { return command_value_; }
   [[nodiscard]] CommandUnit commandUnit() const noexcept override { return command_unit_; }
   bool setZero(double angle_deg) noexcept override;
+  void forgetReference() noexcept override;
   [[nodiscard]] bool due(const Tick& tick) const noexcept final;
 
  protected:

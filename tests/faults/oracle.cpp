@@ -220,6 +220,22 @@ void Oracle::followModules(const Snapshot& snapshot) {
   }
 }
 
+// The current that pushes while a joint homes is bounded by its file, whatever else is asked of it.
+void Oracle::judgeJoints(const Snapshot& snapshot) {
+  constexpr double kHoming = 1.0;
+  for (std::size_t module = 0; module < config_.modules.size(); ++module) {
+    const auto& entry = config_.modules[module];
+    if (entry.type->name() != "joint" || snapshot.modules[module].outputs[0] != kHoming) continue;
+    const auto motor = entry.settings.own.motor("motor");
+    const auto& target = snapshot.motors[motor].target;
+    ++visits_.homing;
+    require(motor, target.mode == ControlMode::kCoast || target.mode == ControlMode::kCurrent,
+            "it homes by something else than a current");
+    require(motor, std::fabs(target.value) <= entry.settings.own.number("homing_current_a"),
+            "it homes by more than its homing current");
+  }
+}
+
 // A sample is a frame that could be one, and was one to rc10d: some motors wait for more before they
 // believe an angle.
 void Oracle::followFeedback(const Snapshot& snapshot) {
@@ -261,6 +277,7 @@ void Oracle::judge(const Snapshot& snapshot, std::uint64_t periods, std::bitset<
   periods_ = periods;
   for (auto& motor : motors_) motor.told = motor.wire->told();  // a drive may have switched itself off
   followModules(snapshot);
+  judgeJoints(snapshot);
   followFeedback(snapshot);
   judgeSnapshot(snapshot, periods);
   judgeFrames(read);

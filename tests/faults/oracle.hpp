@@ -185,6 +185,7 @@ class Oracle {
   [[nodiscard]] static Actions only(FallbackAction action);
   void followFeedback(const Snapshot& snapshot);
   void followModules(const Snapshot& snapshot);
+  void judgeJoints(const Snapshot& snapshot);
   [[nodiscard]] bool fresh(const Motor& motor) const;
   [[nodiscard]] bool overdue(const Motor& motor) const;
   [[nodiscard]] bool damps(const Motor& motor) const;

@@ -156,6 +156,9 @@ buses:
     type: sim
     motors:
       - {name: feeder, model: M2006, id: 1, current_limit_a: 5, on_timeout: brake}
+      - {name: arm, model: M3508, id: 2, current_limit_a: 8, on_timeout: damp, on_disable: damp, on_estop: damp,
+         reduced_velocity_rpm: 30, reduced_within_ms: 200, angle_min_deg: 0, angle_max_deg: 150,
+         current_slew_a_per_s: 20, simulated: {stop_min_deg: -60, stop_max_deg: 110, gravity_nm: 0.3}}
       - {name: lift_left, model: RMD-X8-20, id: 22, current_limit_a: 6, velocity_limit_rpm: 60, on_timeout: hold,
          on_disable: brake, on_estop: brake, hold_max_s: 1, command_divider: 2, zero: power_on}
       - {name: lift_right, model: RMD-X8-20, id: 23, current_limit_a: 6, velocity_limit_rpm: 60, on_timeout: hold,
@@ -239,6 +242,12 @@ modules:
       .append(kRest);
 }
 
+// Its stop lies beyond its soft limits.
+constexpr std::string_view kJoint =
+    R"(  - {name: reach, type: joint, motor: arm, homing: stop, max_velocity_deg_s: 120, max_acceleration_deg_s2: 500,
+     homing_velocity_rpm: -10, homing_current_a: 2, home_angle_deg: -5, silence_max_s: 2}
+)";
+
 RobotConfig parsed(const std::string& text, const std::string& name) {
   auto outcome = parseRobotConfig(text, name);
   if (!outcome) throw std::runtime_error(outcome.errorText());
@@ -250,7 +259,7 @@ RobotConfig parsed(const std::string& text, const std::string& name) {
 RobotConfig robotOf(std::size_t index) {
   std::string text{kRobots[index]};
   text += "mode_gpio: {chip: gpiochip0, line: 1}\n";
-  if (index == kParts) text += mecanumModules("    power_limit_w: 80\n", "feeder");
+  if (index == kParts) text += mecanumModules("    power_limit_w: 80\n", "feeder") + std::string{kJoint};
   return parsed(text, "chaos.yaml");
 }
 

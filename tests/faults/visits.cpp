@@ -27,6 +27,7 @@ void Visits::add(const Visits& other) {
   slewed += other.slewed;
   bounded += other.bounded;
   reduced += other.reduced;
+  homing += other.homing;
   driven += other.driven;
   alone += other.alone;
   rearmed += other.rearmed;
@@ -64,8 +65,8 @@ std::string Visits::text() const {
       out += fmt::format(" {} {}", wordOf(static_cast<Told::Law>(law)), visited.laws[law] / 1000);
   }
   out += fmt::format("\nof modules, thousand ticks: {}", by_modules / 1000);
-  out += fmt::format("\njudged, ticks: slew limits {}, soft limits {}, reduced mode {}", slewed, bounded,
-                     reduced);
+  out += fmt::format("\njudged, ticks: slew limits {}, soft limits {}, reduced mode {}, homing {}", slewed,
+                     bounded, reduced, homing);
   out += fmt::format("\nenabled alone, ticks: {}", alone);
   out += fmt::format("\nbuses without echoes: {}, probed {} times", stalls, probes);
   out += fmt::format("\nticks of motors that only a pause made stale: {}", unread_after_pauses);

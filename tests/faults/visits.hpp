@@ -32,6 +32,7 @@ struct Visits {
   std::uint64_t slewed = 0;   ///< Ticks in which a slew limit was judged,
   std::uint64_t bounded = 0;  ///< and beyond a soft limit.
   std::uint64_t reduced = 0;  ///< Frames of motors in reduced mode that were judged.
+  std::uint64_t homing = 0;   ///< Ticks in which a joint homed.
   std::uint64_t stalls = 0;   ///< Buses whose echoes stayed away,
   std::uint64_t probes = 0;   ///< and the rest frames that looked for them, as far as they were read.
   std::uint64_t unread_after_pauses = 0;  ///< Ticks of motors whose feedback was stale by the clock alone.

@@ -92,6 +92,7 @@ class FakeRobot : public ModuleRobot {
     largest_request_ = std::max(largest_request_, motors.size());
     for (const auto motor : motors) ask(request, motor, 0.0);
   }
+  void forgetReference(std::size_t motor) noexcept override { motors_[motor].feedback.zeroed = false; }
   [[nodiscard]] Duration clientsSilent() const noexcept override { return clients_silent_; }
   void hearClient() noexcept override { client_heard_ = true; }
   void askAll(RobotRequest request) noexcept override { asked_.push_back({request, std::nullopt, 0.0}); }

@@ -65,6 +65,22 @@ TEST(AngleReference, AnAbsoluteEncoderFindsItsReferenceAgain) {
   EXPECT_DOUBLE_EQ(reference.totalAngleDeg(), 11.0);
 }
 
+TEST(AngleReference, OneThatIsForgottenStaysUnknownUntilItIsSetThoughItsEncoderIsAbsolute) {
+  AngleReference reference({.absolute = true});
+  reference.update(30.0);
+  reference.forget();
+  reference.update(40.0);
+  EXPECT_FALSE(reference.known());
+  EXPECT_EQ(reference.totalAngleDeg(), 40.0) << "without a jump";
+  EXPECT_TRUE(reference.setZero(0.0));
+  EXPECT_TRUE(reference.known());
+  reference.forget();
+  reference.lose();  // its drive was restarted
+  reference.update(50.0);
+  EXPECT_TRUE(reference.known());
+  EXPECT_EQ(reference.totalAngleDeg(), 50.0);
+}
+
 TEST(AngleReference, AShaftThatMayHaveBeenTurnedIsWhereItsTravelSays) {
   AngleReference arm({.absolute = true, .travel = {-90.0, 200.0}});
   arm.update(-145.0);

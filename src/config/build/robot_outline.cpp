@@ -12,11 +12,15 @@ RobotOutline outlineOf(const RobotConfig& robot) {
       const auto no_load_rpm =
           static_cast<float>(static_cast<double>(traits.no_load_rpm) * traits.gear_ratio / gear_ratio);
       const float limit_rpm = motor.settings.velocity_limit_rpm;
-      outline.motors.push_back({.name = motor.name(),
-                                .modes = traits.modes,
-                                .velocity_limit_rpm = limit_rpm > 0.0F ? limit_rpm : no_load_rpm,
-                                .angle_min_deg = motor.shaping.angle_min_deg,
-                                .angle_max_deg = motor.shaping.angle_max_deg});
+      outline.motors.push_back(
+          {.name = motor.name(),
+           .modes = traits.modes,
+           .velocity_limit_rpm = limit_rpm > 0.0F ? limit_rpm : no_load_rpm,
+           .current_limit_a = traits.effort == CommandUnit::kAmpere
+                                  ? effortLimitOf(motor.settings, traits.effort_full_scale)
+                                  : 0.0F,
+           .angle_min_deg = motor.shaping.angle_min_deg,
+           .angle_max_deg = motor.shaping.angle_max_deg});
     }
   }
   return outline;

@@ -340,6 +340,12 @@ Refusal Axis::zero(const Order& order) noexcept {
   return motor_.feedback().samples == 0 ? Refusal::kNoPosition : Refusal::kOutOfReach;
 }
 
+// Asked for, so that it is no loss that anybody has to be told of.
+void Axis::forgetReference() noexcept {
+  motor_.forgetReference();
+  reference_known_ = false;
+}
+
 void Axis::retune(const CascadeConfig& loops) noexcept {
   motor_.retune(loops);
   shaper_.setApproach(kApproachOfAngleGain * loops.angle.kp);

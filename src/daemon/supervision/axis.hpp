@@ -93,6 +93,8 @@ class Axis {
   /// At most one report of a skipped setpoint in each kReportInterval.
   [[nodiscard]] bool mayReportSkip(MonotonicTime now) noexcept;
   [[nodiscard]] Refusal zero(const Order& order) noexcept;
+  /// It is to be homed: until it is, no soft limit acts, and no angle is followed.
+  void forgetReference() noexcept;
   void retune(const CascadeConfig& loops) noexcept;
 
  private:

@@ -35,6 +35,8 @@ class Supervisor {
   bool takeModuleCommand(const Command& command, const Tick& tick) noexcept;
   /// A request of a module; it sees the outcome in the motors.
   void takeModuleOrder(const Order& order, const Tick& tick) noexcept;
+  /// A module homes this motor, from this tick on.
+  void forgetReference(std::size_t motor) noexcept { axes_[motor].forgetReference(); }
   /// Whether a target of `sender` for this motor would act now.
   [[nodiscard]] bool wouldObey(std::size_t motor, const Lease::Holder& sender,
                                const Tick& tick) const noexcept {

@@ -48,6 +48,7 @@ class ModuleRunner : private ModuleRobot {
   [[nodiscard]] bool obeys(std::size_t motor) const noexcept override;
   void setTarget(std::size_t motor, const Target& target) noexcept override;
   void ask(RobotRequest request, std::size_t motor, double angle_deg) noexcept override;
+  void forgetReference(std::size_t motor) noexcept override { supervisor_.forgetReference(motor); }
   void ask(RobotRequest request, std::span<const std::size_t> motors) noexcept override;
   void askAll(RobotRequest request) noexcept override;
   [[nodiscard]] Duration clientsSilent() const noexcept override {

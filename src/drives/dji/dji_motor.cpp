@@ -118,6 +118,13 @@ bool DJI_Motor::setZero(double angle_deg) noexcept {
   return true;
 }
 
+void DJI_Motor::forgetReference() noexcept {
+  encoder_.acknowledgeLoss();  // or an absolute one would be found again
+  feedback_.zeroed = false;
+  feedback_.turn_unclear = false;
+  holding_ = false;
+}
+
 void DJI_Motor::restoreReference(ControlMode followed) noexcept {
   if (!absolute_ || !encoder_.referenceLost() || isAngle(followed)) return;
   findTurn(feedback_.total_angle_deg);

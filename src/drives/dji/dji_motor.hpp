@@ -47,6 +47,7 @@ class DJI_Motor : public Motor_Base {
   [[nodiscard]] float commandValue() const noexcept override { return effort_; }
   [[nodiscard]] CommandUnit commandUnit() const noexcept override;
   bool setZero(double angle_deg) noexcept override;
+  void forgetReference() noexcept override;
   void restoreReference(ControlMode followed) noexcept override;
   [[nodiscard]] const CascadeConfig* hostLoops() const noexcept override { return &loops_.config(); }
   void retune(const CascadeConfig& loops) noexcept override { loops_.retune(loops); }

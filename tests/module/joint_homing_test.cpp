@@ -1,0 +1,408 @@
+#include "module/joint_homing.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <string>
+#include <string_view>
+
+#include <gmock/gmock.h>
+
+#include "joint_bench.hpp"
+
+namespace rc10::test::joint_homing_test {
+namespace {
+
+using namespace joint_bench;
+using namespace std::chrono_literals;
+using ::testing::ElementsAre;
+
+/// A joint that homes at a stop, or at a switch, and has no reference yet.
+class HomingJoint : public JointBench {
+ protected:
+  void buildHoming(const char* way = "stop", double timeout_s = 5.0) {
+    auto own = jointSettings();
+    own.own.set("homing_timeout_s", timeout_s);
+    own.own.set("homing", std::string{way});
+    if (std::string_view{way} == "switch") own.own.set("switch", std::string{"limit.closed"});
+    build(own);
+    robot_.motor(0).feedback.zeroed = false;
+    stop_deg_ = -15.0;
+    showSwitch();
+  }
+  void homeOnce() {
+    ask(kNoSignal, 1.0);
+    for (int i = 0; i < 20'000 && state() != kFollowing; ++i) run(1);
+    ASSERT_EQ(state(), kFollowing);
+    events_.clear();
+  }
+  void fallSilent(int ticks) {
+    module_->clearInputs();
+    run(ticks);
+  }
+};
+
+TEST_F(HomingJoint, FindsItsReferenceAtAStop) {
+  auto own = jointSettings();
+  own.own.set("homing", std::string{"stop"});
+  build(own);
+  robot_.motor(0).feedback.zeroed = false;
+  robot_.motor(0).feedback.total_angle_deg = 1000.0;
+  stop_deg_ = 980.0;
+  ask(kNoSignal, 1.0);
+  run(1);
+  EXPECT_EQ(state(), kHoming);
+  EXPECT_EQ(robot_.motor(0).target->mode, ControlMode::kCurrent);
+  EXPECT_GT(target(), 0.0) << "away from the end first";
+  double most_a = 0.0;
+  for (int i = 0; i < 4000 && state() == kHoming; ++i) {
+    run(1);
+    if (robot_.motor(0).target->mode == ControlMode::kCurrent) most_a = std::max(most_a, std::fabs(target()));
+  }
+  EXPECT_LE(most_a, 0.5);
+  EXPECT_THAT(events_, ElementsAre(0U));
+  EXPECT_NEAR(angle(), -30.0, 0.01);
+  ask(-10.0);
+  run(3000);
+  EXPECT_EQ(angle(), -10.0);
+}
+
+TEST_F(HomingJoint, AGapInTheStreamOfItsClientIsNoNewHoming) {
+  buildHoming();
+  homeOnce();
+  fallSilent(900);
+  ask(kNoSignal, 1.0);
+  run(10);
+  EXPECT_EQ(state(), kFollowing);
+  EXPECT_TRUE(robot_.motor(0).feedback.zeroed);
+}
+
+TEST_F(HomingJoint, IsHomedAgainOnceHomeHasFallenOrNobodyCommandsItForASecond) {
+  buildHoming();
+  homeOnce();
+  ask(kNoSignal);  // a message that does not name it
+  run(1);
+  ask(kNoSignal, 1.0);
+  run(1);
+  EXPECT_EQ(state(), kHoming);
+  homeOnce();
+  fallSilent(1001);
+  ask(kNoSignal, 1.0);
+  run(1);
+  EXPECT_EQ(state(), kHoming);
+}
+
+TEST_F(HomingJoint, AHomingThatAGapInterruptsBeginsAnewAndOneThatFailedDoesNot) {
+  buildHoming();
+  ask(kNoSignal, 1.0);
+  run(200);
+  fallSilent(60);
+  EXPECT_EQ(state(), kIdle);
+  ask(kNoSignal, 1.0);
+  run(1);
+  EXPECT_EQ(state(), kHoming);
+  blocked_ = true;
+  run(5100);
+  ASSERT_EQ(state(), kHomingFailed);
+  fallSilent(60);
+  ask(kNoSignal, 1.0);
+  run(10);
+  EXPECT_EQ(state(), kHomingFailed);
+}
+
+TEST_F(HomingJoint, AMotorThatIsStoppedAndEnabledAgainInTheMiddleOfAHomingRests) {
+  for (const int ticks : {1, 60, 300, 700, 850, 950, 1100}) {
+    buildHoming();
+    robot_.motor(0).feedback.total_angle_deg = 0.0;
+    robot_.motor(0).feedback.zeroed = true;
+    rpm_ = flows_a_ = 0.0;
+    events_.clear();
+    ask(kNoSignal, 1.0);
+    run(ticks);
+    ASSERT_EQ(state(), kHoming) << ticks;
+    robot_.motor(0).status = MotorStatus::kReady;
+    run(1);
+    EXPECT_EQ(state(), kIdle);
+    EXPECT_FALSE(robot_.motor(0).target.has_value());
+    EXPECT_THAT(events_, ElementsAre(8U));
+    robot_.motor(0).status = MotorStatus::kActive;
+    ask(20.0, 1.0);
+    run(50);
+    EXPECT_EQ(state(), kIdle);
+    EXPECT_FALSE(robot_.motor(0).target.has_value());
+    EXPECT_EQ(module_->outputs()[4], 0.0) << "what it is counted from is in doubt";
+    ask(20.0, 0.0);
+    run(1);
+    ask(20.0, 1.0);
+    run(1);
+    EXPECT_EQ(state(), kHoming);
+  }
+}
+
+TEST_F(HomingJoint, SaysThatItCannotHomeAMotorThatDoesNotObey) {
+  buildHoming();
+  robot_.motor(0).status = MotorStatus::kReady;
+  ask(kNoSignal, 1.0);
+  run(10);
+  EXPECT_THAT(events_, ElementsAre(8U));
+  robot_.motor(0).status = MotorStatus::kActive;
+  run(10);
+  EXPECT_EQ(state(), kIdle) << "it asks no more: it went on asking";
+}
+
+TEST_F(HomingJoint, ThatFailsLeavesAnAxisWithoutAReference) {
+  buildHoming();
+  robot_.motor(0).feedback.zeroed = true;
+  blocked_ = true;
+  ask(kNoSignal, 1.0);
+  run(5100);
+  ASSERT_EQ(state(), kHomingFailed);
+  robot_.motor(0).status = MotorStatus::kReady;
+  run(1);
+  robot_.motor(0).status = MotorStatus::kActive;
+  ask(20.0);
+  run(10);
+  EXPECT_FALSE(robot_.motor(0).target.has_value());
+}
+
+TEST_F(HomingJoint, FindsTheStopFromItsFarEnd) {
+  buildHoming();
+  far_deg_ = robot_.motor(0).feedback.total_angle_deg = 40.0;
+  homeOnce();
+  EXPECT_NEAR(angle(), -30.0, 0.01);
+}
+
+TEST_F(HomingJoint, ABeltThatIsTornIsNoWayWithoutEnd) {
+  buildHoming();
+  stop_deg_ = -1e6;
+  auto own = jointSettings();
+  ask(kNoSignal, 1.0);
+  run(5100);  // the timeout is 5 s: 150 deg
+  EXPECT_THAT(events_, ElementsAre(1U));
+  own.own.set("homing", std::string{"stop"});
+  own.own.set("homing_timeout_s", 60.0);
+  build(own);
+  events_.clear();
+  const double start_deg = angle();
+  ask(kNoSignal, 1.0);
+  run(30'000);
+  EXPECT_THAT(events_, ElementsAre(5U));
+  EXPECT_GT(angle(), start_deg - 220.0) << "its travel is 210 deg";
+}
+
+TEST_F(HomingJoint, ASwitchThatStaysClosedIsFoundByTheFarStopAndNotPressedUntilTheTimeout) {
+  buildHoming("switch");
+  stuck_ = true;
+  far_deg_ = 20.0;
+  ask(kNoSignal, 1.0);
+  run(2000);
+  EXPECT_EQ(state(), kHomingFailed);
+  EXPECT_THAT(events_, ElementsAre(1U));
+}
+
+TEST_F(HomingJoint, AStopBeforeTheSwitchIsNoEnd) {
+  buildHoming("switch");
+  stop_deg_ = -1e6;
+  far_deg_ = 1e6;
+  ask(kNoSignal, 1.0);
+  run(1);
+  for (int i = 0; i < 4000 && state() == kHoming; ++i) {
+    run(1);
+    blocked_ = angle() < -10.0;
+  }
+  EXPECT_EQ(state(), kHomingFailed);
+  EXPECT_THAT(events_, ElementsAre(5U));
+}
+
+TEST_F(HomingJoint, OneWrongSampleOfTheSwitchIsNoHome) {
+  buildHoming("switch");
+  ask(kNoSignal, 1.0);
+  run(400);
+  robot_.setOutput({.module = 0, .signal = 0}, 1.0);
+  run(3000);
+  EXPECT_EQ(state(), kHomingFailed);
+  EXPECT_FALSE(robot_.motor(0).feedback.zeroed);
+}
+
+TEST_F(HomingJoint, ACurrentThatRisesSlowlyIsWaitedFor) {
+  buildHoming("stop", 20.0);
+  slew_a_ = 0.0005;  // 0.5 A/s: a second to the stop's whole current
+  friction_a_ = 0.1;
+  homeOnce();
+  EXPECT_NEAR(angle(), -30.0, 0.01);
+}
+
+TEST(JointHoming, AGapOfTheFeedbackWhereItTurnsRoundIsNoStandstill) {
+  JointHoming homing(
+      {.velocity_rpm = -5.0, .current_a = 1.0, .away_deg = 3.0, .stopped = 100ms, .timeout = 10s});
+  JointHoming::Measured measured{.current_a = std::numeric_limits<double>::quiet_NaN()};
+  const auto sample = [&](double deg, double rpm) {
+    measured.now += 1ms;
+    measured.received = measured.now;
+    measured.total_angle_deg = deg;
+    measured.velocity_rpm = rpm;
+    return homing.step(measured);
+  };
+  homing.start(measured);
+  EXPECT_EQ(sample(1.0, 5.0), JointHoming::Progress::kUnderWay);
+  EXPECT_EQ(sample(3.1, 0.0), JointHoming::Progress::kUnderWay);
+  for (int i = 0; i < 500; ++i) {
+    measured.now += 1ms;  // no sample comes
+    ASSERT_EQ(homing.step(measured), JointHoming::Progress::kUnderWay);
+  }
+  EXPECT_EQ(sample(-20.0, -5.0), JointHoming::Progress::kUnderWay);
+}
+
+TEST_F(HomingJoint, AZeroThatItsMotorRefusesIsNoHome) {
+  auto own = jointSettings();
+  own.own.set("homing", std::string{"stop"});
+  for (const bool known : {true, false}) {
+    build(own);
+    events_.clear();
+    robot_.motor(0).feedback.zeroed = known;
+    robot_.motor(0).feedback.total_angle_deg = 1000.0;
+    stop_deg_ = 980.0;
+    zeroes_ = false;
+    ask(kNoSignal, 1.0);
+    run(5100);
+    EXPECT_EQ(state(), kHomingFailed);
+    EXPECT_THAT(events_, ElementsAre(7U));
+    EXPECT_FALSE(robot_.motor(0).target.has_value());
+  }
+}
+
+TEST_F(HomingJoint, AStandstillThatGravityMakesIsNotTheStop) {
+  auto own = jointSettings();
+  own.own.set("homing", std::string{"stop"});
+  build(own);
+  robot_.motor(0).feedback.zeroed = false;
+  robot_.motor(0).feedback.total_angle_deg = 40.0;
+  stop_deg_ = 0.0;
+  gravity_a_ = 0.499;  // of 0.5: it creeps towards the stop more slowly than a standstill
+  ask(kNoSignal, 1.0);
+  run(5100);
+  EXPECT_EQ(state(), kHomingFailed);
+  EXPECT_THAT(events_, ElementsAre(5U));
+  EXPECT_FALSE(robot_.motor(0).feedback.zeroed);
+  EXPECT_FALSE(robot_.motor(0).target.has_value());
+}
+
+TEST_F(HomingJoint, AStopThatIsMetAtTwoPlacesIsNone) {
+  auto own = jointSettings();
+  own.own.set("homing", std::string{"stop"});
+  build(own);
+  robot_.motor(0).feedback.zeroed = false;
+  robot_.motor(0).feedback.total_angle_deg = 10.0;
+  stop_deg_ = 0.0;
+  int pressed = 0;
+  ask(kNoSignal, 1.0);
+  run(1);
+  for (int i = 0; i < 5100 && state() == kHoming; ++i) {
+    run(1);
+    if (state() == kHoming && angle() == 0.0 && ++pressed > 110)
+      stop_deg_ = -2.0;  // something soft lay before it
+  }
+  EXPECT_EQ(state(), kHomingFailed);
+  EXPECT_THAT(events_, ElementsAre(5U));
+}
+
+TEST_F(HomingJoint, AStopBeyondTheTravelIsNone) {
+  auto own = jointSettings();
+  own.own.set("homing", std::string{"stop"});
+  own.own.set("homing_timeout_s", 60.0);
+  build(own);
+  robot_.motor(0).feedback.zeroed = false;
+  robot_.motor(0).feedback.total_angle_deg = 230.0;  // the travel is 210 deg from the stop
+  stop_deg_ = 0.0;
+  ask(kNoSignal, 1.0);
+  run(30'000);
+  EXPECT_EQ(state(), kHomingFailed);
+  EXPECT_THAT(events_, ElementsAre(5U));
+}
+
+TEST_F(HomingJoint, AMotorThatGetsLessThanTheHomingCurrentDoesNotFindTheStop) {
+  auto own = jointSettings();
+  own.own.set("homing", std::string{"stop"});
+  build(own);
+  robot_.motor(0).feedback.zeroed = false;
+  robot_.motor(0).feedback.total_angle_deg = 10.0;
+  stop_deg_ = 0.0;
+  gets_ = 0.5;
+  ask(kNoSignal, 1.0);
+  run(5100);
+  EXPECT_EQ(state(), kHomingFailed);
+  EXPECT_THAT(events_, ElementsAre(5U));
+}
+
+TEST_F(HomingJoint, AnAxisThatBeginsAtItsStopIsHomed) {
+  auto own = jointSettings();
+  own.own.set("homing", std::string{"stop"});
+  build(own);
+  robot_.motor(0).feedback.zeroed = false;
+  stop_deg_ = robot_.motor(0).feedback.total_angle_deg = 7.0;
+  ask(kNoSignal, 1.0);
+  run(4000);
+  EXPECT_THAT(events_, ElementsAre(0U));
+  EXPECT_NEAR(angle(), -30.0, 0.01);
+}
+
+TEST_F(HomingJoint, FindsItsReferenceAtASwitch) {
+  auto own = jointSettings();
+  own.own.set("homing", std::string{"switch"});
+  own.own.set("switch", std::string{"limit.closed"});
+  build(own);
+  robot_.motor(0).feedback.zeroed = false;
+  stop_deg_ = -15.0;
+  showSwitch();
+  ask(kNoSignal, 1.0);
+  run(3000);
+  EXPECT_THAT(events_, ElementsAre(0U));
+  EXPECT_NEAR(angle(), -30.0, 0.6);
+}
+
+TEST_F(HomingJoint, DoesNotLookForASwitchThatNobodyHears) {
+  auto own = jointSettings();
+  own.own.set("homing", std::string{"switch"});
+  own.own.set("switch", std::string{"limit.closed"});
+  build(own);
+  robot_.motor(0).feedback.zeroed = false;
+  showSwitch();
+  ask(kNoSignal, 1.0);
+  run(100);
+  ASSERT_EQ(state(), kHoming);
+  switch_heard_ = false;
+  showSwitch();
+  run(1);
+  EXPECT_EQ(state(), kHomingFailed);
+  EXPECT_FALSE(robot_.motor(0).target.has_value());
+  EXPECT_THAT(events_, ElementsAre(4U));
+}
+
+TEST_F(HomingJoint, AnAxisThatDoesNotMoveIsNotHomed) {
+  auto own = jointSettings();
+  own.own.set("homing", std::string{"stop"});
+  build(own);
+  robot_.motor(0).feedback.zeroed = false;
+  blocked_ = true;
+  ask(kNoSignal, 1.0);
+  run(5100);
+  EXPECT_EQ(state(), kHomingFailed);
+  EXPECT_THAT(events_, ElementsAre(1U));
+  EXPECT_FALSE(robot_.motor(0).feedback.zeroed);
+  EXPECT_FALSE(robot_.motor(0).target.has_value());
+}
+
+TEST_F(HomingJoint, AHomingThatNobodyWatchesEnds) {
+  auto own = jointSettings();
+  own.own.set("homing", std::string{"stop"});
+  build(own);
+  ask(kNoSignal, 1.0);
+  run(10);
+  module_->clearInputs();
+  run(1);
+  EXPECT_EQ(state(), kIdle);
+  EXPECT_FALSE(robot_.motor(0).target.has_value());
+}
+
+}  // namespace
+}  // namespace rc10::test::joint_homing_test
