@@ -22,7 +22,7 @@ export const kCommissionEnglish = {
   comHold: 'Hold the button, or Space on it. It ends by itself.',
   comSimulatedHand: 'The hand of a simulated motor:',
   comBusText: 'Motors of this bus as the file has them, and what rc10d hears of each. Ids whose frames collide are refused by rc10d before it starts.',
-  comBusScan: 'Drives of this bus that the file does not have: rc10d listens for 2 s, then asks what moves and sets nothing. Every motor of the bus is READY or OFFLINE meanwhile.',
+  comBusScan: 'Drives of this bus that the file does not have: rc10d listens for 2 s, then asks questions that move and set nothing. Every motor of the bus is READY or OFFLINE meanwhile.',
   comScan: 'Scan this bus',
   comScanning: 'listening, then asking …',
   comScanHeard: 'Drives that were heard',
