@@ -67,7 +67,7 @@ from rc10.state import (
 )
 from rc10.topics import Publisher, Received, Subscriber
 
-__version__ = "0.1.0"
+__version__ = "0.2.0"
 
 __all__ = [
     "Acting",
