@@ -53,7 +53,7 @@ class Scheduler {
   [[nodiscard]] const Supervisor& supervisor() const noexcept { return supervisor_; }
   [[nodiscard]] std::uint64_t ticks() const noexcept { return ticks_.load(std::memory_order_relaxed); }
   [[nodiscard]] std::uint64_t missedTicks() const noexcept { return missed_ticks_; }
-  /// Of the last tick; `woken` and `done` are its caller's. Its own thread only.
+  /// Marks of the last tick; `woken` and `done` are its caller's. Its own thread only.
   [[nodiscard]] const TickMarks& marks() const noexcept { return marks_; }
 
  private:

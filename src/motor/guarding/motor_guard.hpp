@@ -98,7 +98,7 @@ class MotorGuard {
   GuardConfig config_;
   bool begun_ = false;
   std::uint64_t samples_ = 0;  ///< Count of the feedback in the last step.
-  Readings last_;              ///< Of the sample before.
+  Readings last_;              ///< The sample before.
   std::uint64_t jumps_ = 0;
   float derating_ = 1.0F;
   MonotonicTime derated_at_{};  ///< Last step of it.
