@@ -352,9 +352,7 @@ TEST_F(TargetShaperTest, ACurrentThatACeilingTookAwayComesBackAtItsRate) {
 TEST_F(TargetShaperTest, AnEffortThatItsLimitCutOffChangesFromThatLimit) {
   configure({.effort_slew_per_s = 1000.0F});
   const auto limited = [&](double asked_a) {
-    return shaper
-        .step({.mode = ControlMode::kCurrent, .value = asked_a}, feedback, {2.0F, CommandUnit::kAmpere, true},
-              kTickS)
+    return step({.mode = ControlMode::kCurrent, .value = asked_a}, {2.0F, CommandUnit::kAmpere, true})
         .target.value;
   };
   EXPECT_EQ(valueAfter(20, ControlMode::kCurrent, 10.0), 10.0);
