@@ -27,7 +27,7 @@ def status(daemon: Daemon, motor: str, wanted: str) -> None:
 
 def test_its_motor_is_let_go_when_its_page_is_gone(web: Web, daemon: Daemon) -> None:
     with web.page() as page:
-        assert page.ask("enable_alone", "wheel")["status"] == "ok"
+        assert page.ask("enable_alone", "wheel", disable_at_end=1)["status"] == "ok"
         # That of another motor ends nothing of it.
         assert page.ask("disable", "other")["status"] == "ok"
         status(daemon, "wheel", "ACTIVE")
@@ -43,7 +43,7 @@ def test_one_that_it_does_not_have_any_more_is_left_alone(
         daemon.must("enable", "other")
     with web.page() as page:
         page.wait("state")
-        answer = page.ask("enable_alone", "wheel")
+        answer = page.ask("enable_alone", "wheel", disable_at_end=1)
         assert (answer["status"] != "ok") == (end == "refused")
         if end == "disabled":
             page.ask("disable")
@@ -52,8 +52,8 @@ def test_one_that_it_does_not_have_any_more_is_left_alone(
             daemon.must("disable", "wheel")
             page.wait("state", lambda s: s["data"]["motors"][0]["status"] == "READY")
         daemon.must("enable", "wheel")
-    # Its end is known once another page has come.
+    # Its end has been carried out when that of the next one is.
     with web.page() as next_page:
-        next_page.wait("state")
-        assert next_page.ask("enable", "other")["status"] == "ok"
+        assert next_page.ask("enable", "yaw", disable_at_end=1)["status"] == "ok"
+    status(daemon, "yaw", "READY")
     status(daemon, "wheel", "ACTIVE")

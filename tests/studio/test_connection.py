@@ -95,6 +95,6 @@ def test_each_view_of_a_page_has_a_number_of_its_own(page: Page) -> None:
     for part in ("plots", "move", "tune", "plots"):
         page.locator(f"#tab-{part}").click()
         expect(page.locator(".plot > .legend td.number").last).not_to_contain_text("\N{EN DASH}")
-    # Of each part its view, and its end.
+    # Each part has a view, and ends it.
     assert len(views) >= 7
     assert views == sorted(set(views))

@@ -42,7 +42,7 @@ export function CopyLines(props: { request: RobotRequest; command?: string; pyth
   );
 }
 
-/** Of an enable: rc10d disables the motor when this page is gone, however it ends. */
+/** With an enable: rc10d disables the motor when this page is gone, however it ends. */
 export const kDisableAtEnd = { disable_at_end: 1 };
 
 /** A button that asks rc10d for something and says what it answered; `copied`: its lines elsewhere, if they differ. */

@@ -34,7 +34,7 @@ function useChecked(text: string): { checked: Checked | null; robot: Robot | nul
   const [busy, setBusy] = useState(false);
   const wanted = useRef<string | null>(null);
   const asking = useRef(false);
-  // Of the connection: each state would draw all of this part anew.
+  // This alone of what is known: each state would draw all of this part anew.
   const [hello, setHello] = useState(link.known.hello);
   useEffect(() => link.subscribe(() => setHello(link.known.hello)), [link]);
 

@@ -1,4 +1,4 @@
-/** What is made of a file of the server, asked for once. One that could not be had is null, and asked for again. */
+/** Something made of a file of the server, which is asked for once. One that could not be had is null, and asked for again. */
 export function fetchedOnce<T>(path: string, make: (content: unknown) => T): () => Promise<T | null> {
   let asked: Promise<T | null> | null = null;
   const ask = async (): Promise<T | null> => {

@@ -11,7 +11,7 @@ export const kKi = 'velocity_pid.ki_a_per_rpm_s';
 // Percent of overshoot that are as bad as a second of settling.
 const kPercentPerS = 50;
 const kFirstFactor = 1.5;
-// Of finer steps the same step twice differs by more.
+// Below it the same step run twice differs by more.
 const kLastFactor = 1.02;
 
 /** Null: rc10d closes no velocity loop of the motor that commands amperes. */

@@ -34,7 +34,7 @@ class RequestDesk {
     std::optional<Order> order;              ///< To be sent to the supervisor; answered by finish().
     std::optional<Shaft> shaft;              ///< To be sent to the simulation; it answers nothing.
     std::optional<link::Response> response;  ///< To be sent back at once.
-    bool disable_at_end = false;             ///< What the order enables: see DisableAtEnd.
+    bool disable_at_end = false;             ///< For the motors of the order: see DisableAtEnd.
     bool estop = false;                      ///< Raise the e-stop flag too: the ring may be full.
     std::string not_permitted;               ///< Cause, if that is the reason of the response.
   };

@@ -59,7 +59,7 @@ TEST_F(DisableAtEndTest, AMotorIsDisabledWhenTheConnectionHasEndedAndNotBefore) 
   EXPECT_EQ(order->operation, Operation::kDisable);
   EXPECT_EQ(order->motors, MotorSet{0b01});
   EXPECT_EQ(order->client.view(), "web-1");
-  // What on_disable holds is not let go by it.
+  // It lets go of nothing that on_disable holds.
   EXPECT_TRUE(order->repeated);
   EXPECT_FALSE(order->fromModule());
 }
