@@ -51,7 +51,7 @@ TEST(HiddenTokens, OnlyATokenThatMayConfigureShowsThem) {
 TEST(HiddenTokens, OnlyATokenThatMayConfigureMayHaveAFileWithClientsReplaced) {
   const auto text = robotWith("clients:\n" + entry(kHash, "[configure]") + entry(kOther));
   EXPECT_TRUE(mayReplace(text, kToken));
-  for (const std::string token : {std::string{}, std::string{"another"}, kHash})
+  for (const auto& token : {std::string{}, std::string{"another"}, kHash})
     EXPECT_FALSE(mayReplace(text, token));
   EXPECT_FALSE(mayReplace(robotWith("clients:\n  - {user: root, may: [configure]}\n"), ""));
   EXPECT_TRUE(mayReplace(robotWith(""), ""));
