@@ -32,7 +32,7 @@ install(FILES systemd/udev/60-rc10d.rules DESTINATION lib/udev/rules.d)
 
 # One archive of the layers, so that nobody has to know their order.
 set(rc10_embedded)
-foreach(layer app bus motor module sim drives_motors drives_by_frames drives config link blackbox daemon)
+foreach(layer app bus motor module sim drives_motors drives_by_frames drives config link survey blackbox daemon)
   get_target_property(kind rc10_${layer} TYPE)
   if(kind STREQUAL "STATIC_LIBRARY")
     list(APPEND rc10_embedded $<TARGET_OBJECTS:rc10_${layer}>)

@@ -24,6 +24,7 @@ inputs() {
     {
         "$base" --version
         echo "$venv"
+        grep "^__version__" "$repo/python/src/rc10/__init__.py"
         cat "$@" "$repo"/scripts/python-hashes.txt "$repo"/python/{pyproject.toml,hatch_build.py} "$repo"/lcm_types/*.lcm
     } | sha256sum
 }
