@@ -173,6 +173,7 @@ def main() -> None:
     with rc10.connect(options.robot, client="sine-sweep", at_end="disable") as robot:
         robot.wait_for_state()
         robot.enable(options.motor)
+        robot.wait_for_state()  # that shows it: the one known is older than the answer
         response = sweep(robot, options.motor, frequencies, options.amplitude, options.offset)
     over = np.array(frequencies)
     width_hz = bandwidth_hz(over, response)

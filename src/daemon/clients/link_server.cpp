@@ -101,13 +101,13 @@ void LinkServer::run(const std::stop_token& stop) {
 void LinkServer::poll(int timeout_ms) {
   std::array<epoll_event, kMaxLinkEvents> events;
   const int count = epoll_wait(epoll_.get(), events.data(), kMaxLinkEvents, timeout_ms);
+  bool states_due = false;
   for (int i = 0; i < count; ++i) {
     const std::uint64_t key = events[static_cast<std::size_t>(i)].data.u64;
     if (key == kListener) {
       accept();
     } else if (key == kStateTimer) {
-      drainTimer(timers_.state.get());
-      feeds_.publishState();
+      states_due = true;
     } else if (key == kSlowTimer) {
       drainTimer(timers_.slow.get());
       slowTick();
@@ -116,6 +116,10 @@ void LinkServer::poll(int timeout_ms) {
       receive(*connection);
     }
   }
+  // After the answers of this turn, so that the next state shows what they say.
+  if (!states_due) return;
+  drainTimer(timers_.state.get());
+  feeds_.publishState();
 }
 
 void LinkServer::slowTick() {

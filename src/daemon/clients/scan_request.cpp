@@ -1,8 +1,11 @@
 #include "daemon/clients/scan_request.hpp"
 
+#include <net/if.h>
+
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -40,8 +43,12 @@ constexpr double kLeastFree = 0.05;
     if (target == robot.buses[i].name) return i;
     names.emplace_back(robot.buses[i].name);
   }
+  // By its index an interface has one name, and others beside it.
+  const auto wanted = ::if_nametoindex(std::string{target}.c_str());
   for (std::size_t i = 0; i < robot.buses.size(); ++i) {
-    if (!target.empty() && target == robot.buses[i].interface) return i;
+    const auto& interface = robot.buses[i].interface;
+    if (!target.empty() && target == interface) return i;
+    if (wanted != 0 && wanted == ::if_nametoindex(interface.c_str())) return i;
   }
   return fail(fmt::format("scan: name one bus, not '{}'; the buses are: {}{}", target, fmt::join(names, ", "),
                           didYouMean(target, names)));
