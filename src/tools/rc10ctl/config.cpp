@@ -47,12 +47,12 @@ std::optional<FileVerb> verbOf(std::string_view word) {
   return std::nullopt;
 }
 
-struct Options {
+struct ConfigOptions {
   std::string what;
   std::string file;
 };
 
-ExitCode config(const Global& global, const Options& options) {
+ExitCode config(const Global& global, const ConfigOptions& options) {
   const auto verb = verbOf(options.what);
   if (!verb) {
     return complain({"'" + options.what + "' is not check, install or restart" +
@@ -86,7 +86,7 @@ ExitCode config(const Global& global, const Options& options) {
 }  // namespace
 
 void addConfig(CLI::App& app, Action& action) {
-  const auto options = std::make_shared<Options>();
+  const auto options = std::make_shared<ConfigOptions>();
   auto* verb = app.add_subcommand("config",
                                   "checks and installs the robot's file, restarts rc10d: by the root helper");
   verb->add_option("what", options->what, "check, install or restart")->required()->type_name("WHAT");
