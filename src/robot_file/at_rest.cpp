@@ -35,12 +35,15 @@ Result<void> atRest(const link::Welcome& robot, const link::State& state) {
   for (std::size_t i = 0; i < count; ++i) {
     const auto status = state.motors[i].status;
     if (status == MotorStatus::kReady || status == MotorStatus::kOffline) continue;
-    const auto motor = printable(robot.motors[i].name.view());
+    const auto name = printable(robot.motors[i].name.view());
+    auto why = "motor '" + name + "' ";
     if (status == MotorStatus::kFault)
-      return fail("motor '" + motor + "' has a FAULT, which a restart would end: `rc10ctl clear " + motor +
-                  "` first");
-    return fail("motor '" + motor + "' is " + toString(status) +
-                ": a restart would let it go; `rc10ctl disable` first");
+      why.append("has a FAULT, which a restart would end: `rc10ctl clear ").append(name).append("` first");
+    else
+      why.append("is ")
+          .append(toString(status))
+          .append(": a restart would let it go; `rc10ctl disable` first");
+    return fail(why);
   }
   return {};
 }

@@ -18,13 +18,13 @@ FileAnswer install(const FileRequest& request, const ConfigFolder& folder, const
   const auto path = folder.pathOf(place.file);
   const auto present = folder.read(place.file);
   if (!present) return refused(present.error().message);
-  if (!request.replaces.empty() && *present && sha256(**present) != request.replaces)
+  const std::optional<std::string>& text = *present;
+  if (!request.replaces.empty() && text && sha256(*text) != request.replaces)
     return refused(
         path +
         " is not the file that this text was made of: it has changed since, or rc10d runs with another " +
         "one. Load it anew");
-  if (*present && **present == request.text)
-    return {.done = true, .message = path + " has this text already"};
+  if (text && *text == request.text) return {.done = true, .message = path + " has this text already"};
   if (const auto checked = computer.check(request.text); !checked) return refused(checked.error().message);
   const auto backup = folder.replace(place.file, request.text, now);
   if (!backup) return refused(backup.error().message);

@@ -37,6 +37,7 @@ bool become(const LesserUser& as) {
 [[noreturn]] void exec(const std::vector<std::string>& words, int input, int output,
                        const std::optional<LesserUser>& as) {
   std::vector<char*> arguments;
+  arguments.reserve(words.size() + 1);
   for (const auto& word : words) arguments.push_back(const_cast<char*>(word.c_str()));
   arguments.push_back(nullptr);
   std::array<char*, 1> environment{nullptr};

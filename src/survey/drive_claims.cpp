@@ -33,12 +33,14 @@ void DriveClaims::take(const CanFrame& frame) {
   const bool exact = std::any_of(guesses.begin(), guesses.end(), [&](const auto& each) {
     return of_sender(each) && each.first.id == sender->id;
   });
-  for (const auto& [guess, family] : guesses) {
-    if (!guess.from_drive || of(guess)) continue;
+  for (const auto& each : guesses) {
+    const auto& guess = each.first;
+    const auto* family = each.second;
+    if (!guess.from_drive || of(guess).has_value()) continue;
     auto found = sender;
     if (found == motors_.end() && !guess.silent.empty())
-      found = std::find_if(motors_.begin(), motors_.end(), [&, of_family = family](const KnownMotor& motor) {
-        return motor.family == of_family && motor.id == guess.id;
+      found = std::find_if(motors_.begin(), motors_.end(), [&](const KnownMotor& motor) {
+        return motor.family == family && motor.id == guess.id;
       });
     if (found == motors_.end() || (own && family != sender->family)) continue;
     if (exact && guess.id != sender->id) continue;

@@ -63,36 +63,37 @@ void ScanDesk::abandon(std::uint64_t order_id) {
   if (running_ && running_->order_id == order_id) running_.reset();
 }
 
-void ScanDesk::takeHeard() {
+void ScanDesk::takeHeard(Running& scan) {
   CanFrame frame;
   // Only what is there now: a flooded bus must not hold this thread.
   for (auto n = exchange_.heard.read_available(); n > 0 && exchange_.heard.pop(frame); --n) {
-    running_->survey.take(frame);
-    running_->claims.take(frame);
+    scan.survey.take(frame);
+    scan.claims.take(frame);
   }
 }
 
 void ScanDesk::turn() {
   if (!running_) return;
-  const bool listened = exchange_.listened.load(std::memory_order_acquire) == running_->order_id;
-  takeHeard();
-  if (listened && !running_->asked) ask();
+  auto& scan = *running_;
+  const bool listened = exchange_.listened.load(std::memory_order_acquire) == scan.order_id;
+  takeHeard(scan);
+  if (listened && !scan.asked) ask(scan);
 }
 
 // Those that would be a command to a drive that was heard, or to one of the file, are left out.
-void ScanDesk::ask() {
+void ScanDesk::ask(Running& scan) {
   exchange_.question_count = 0;
   for (const auto& question : survey::harmlessQueries()) {
-    auto drive = running_->survey.commandedBy(question);
-    if (drive.empty()) drive = running_->claims.commandedBy(question);
+    auto drive = scan.survey.commandedBy(question);
+    if (drive.empty()) drive = scan.claims.commandedBy(question);
     if (!drive.empty()) {
-      running_->spared.insert(std::move(drive));
+      scan.spared.insert(std::move(drive));
     } else if (exchange_.question_count < exchange_.questions.size()) {
       exchange_.questions.at(exchange_.question_count++) = question;
     }
   }
-  running_->asked = true;
-  exchange_.ready.store(running_->order_id, std::memory_order_release);
+  scan.asked = true;
+  exchange_.ready.store(scan.order_id, std::memory_order_release);
 }
 
 std::optional<ScanDesk::Report> ScanDesk::end(const OrderResult& result) {
@@ -104,39 +105,41 @@ std::optional<ScanDesk::Report> ScanDesk::end(const OrderResult& result) {
     running_.reset();
     return std::nullopt;
   }
-  takeHeard();
-  const auto all = running_->survey.sightings(monotonicNow() - running_->begun);
+  auto& scan = *running_;
+  takeHeard(scan);
+  const auto all = scan.survey.sightings(monotonicNow() - scan.begun);
   Report report;
   for (const auto& sighting : all) {
     if (report.sightings.size() == kMostSightings) break;
-    auto told = survey::linkSighting(sighting, survey::adviceFor(sighting, all), &running_->claims);
-    told.client = running_->request.client;
-    told.session = running_->request.session;
-    told.seq = running_->request.seq;
+    auto told = survey::linkSighting(sighting, survey::adviceFor(sighting, all), &scan.claims);
+    told.client = scan.request.client;
+    told.session = scan.request.session;
+    told.seq = scan.request.seq;
     report.sightings.push_back(told);
   }
-  report.message = message(result, all, report.sightings);
+  report.message = message(scan, result, all, report.sightings);
   running_.reset();
   return report;
 }
 
-std::string ScanDesk::message(const OrderResult& result, const std::vector<survey::Sighting>& all,
+std::string ScanDesk::message(const Running& scan, const OrderResult& result,
+                              const std::vector<survey::Sighting>& all,
                               const std::vector<link::Sighting>& told) const {
   const auto drives = drivesIn(told);
-  auto text = fmt::format("scan: {}: {}", robot_.buses[running_->bus].name,
+  auto text = fmt::format("scan: {}: {}", robot_.buses[scan.bus].name,
                           drives.empty() ? "no drive was heard" : fmt::format("{}", fmt::join(drives, ", ")));
-  if (const auto missing = running_->claims.unheard(); !missing.empty())
+  if (const auto missing = scan.claims.unheard(); !missing.empty())
     text += fmt::format("\nnot heard, but in the file: {}", fmt::join(missing, ", "));
   if (result.error_frames > 0)
     text += fmt::format(
         "\n{} error frames meanwhile: a drive with another bit rate, the wiring or the termination: `rc10ctl "
         "doctor`",
         result.error_frames);
-  if (const auto dropped = exchange_.dropped.load(std::memory_order_relaxed) - running_->dropped_before;
+  if (const auto dropped = exchange_.dropped.load(std::memory_order_relaxed) - scan.dropped_before;
       dropped > 0)
     text += fmt::format("\n{} frames found no room and are not counted", dropped);
   if (told.size() < all.size()) text += fmt::format("\n{} more ids are left out", all.size() - told.size());
-  const survey::Asking asking{.listen_only = running_->listen_only, .spared = running_->spared};
+  const survey::Asking asking{.listen_only = scan.listen_only, .spared = scan.spared};
   for (const auto& advice : survey::adviceForBus(all, asking)) text += "\n" + advice;
   return text;
 }
@@ -152,7 +155,8 @@ void ScanDesk::sendOn(Connections& connections) {
     auto* connection = connections.find(delivery.connection);
     auto& left = delivery.left;
     if (connection == nullptr || connection->is_gateway) left.clear();  // rc10-lcm passes answers on, no more
-    while (!left.empty() && Connections::send(*connection, link::seal(left.front()))) left.pop_front();
+    while (connection != nullptr && !left.empty() && Connections::send(*connection, link::seal(left.front())))
+      left.pop_front();
     if (left.empty() && connection != nullptr) Connections::respond(*connection, delivery.response);
   }
   std::erase_if(deliveries_, [](const Delivery& delivery) { return delivery.left.empty(); });

@@ -62,9 +62,10 @@ class ScanDesk {
     std::deque<link::Sighting> left;
   };
 
-  void takeHeard();
-  void ask();
-  [[nodiscard]] std::string message(const OrderResult& result, const std::vector<survey::Sighting>& all,
+  void takeHeard(Running& scan);
+  void ask(Running& scan);
+  [[nodiscard]] std::string message(const Running& scan, const OrderResult& result,
+                                    const std::vector<survey::Sighting>& all,
                                     const std::vector<link::Sighting>& told) const;
 
   const RobotDescription& robot_;
