@@ -35,6 +35,7 @@ void ReducedMotion::begin(float speed_rpm, MonotonicTime now) noexcept {
   const auto least = static_cast<double>(config_.velocity_rpm);
   ceiling_rpm_ = speed_rpm > config_.velocity_rpm ? static_cast<double>(speed_rpm) : least;
   comes_down_ = speed_rpm > config_.velocity_rpm + config_.tolerance_rpm;
+  if (comes_down_) share_ = 1.0F;  // also where it was reduced while the shaft stood
   fall_rpm_per_s_ = config_.slew_rpm_per_s > 0.0F
                         ? static_cast<double>(config_.slew_rpm_per_s)
                         : (ceiling_rpm_ - least) / static_cast<double>(seconds(config_.within / 2));
