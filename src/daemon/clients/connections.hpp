@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "app/time.hpp"
 #include "app/unique_fd.hpp"
 #include "daemon/clients/link_socket.hpp"
 #include "daemon/clients/permissions.hpp"
@@ -30,6 +31,7 @@ struct Connection {
   bool is_gateway = false;     ///< It says for whom it speaks.
   unsigned lost_in_a_row = 0;  ///< Publications that found no room, since the last that did.
   bool told_deaf = false;      ///< newlyDeaf() has named it.
+  MonotonicTime next_refusal_report{};
 
   [[nodiscard]] bool wants(std::uint32_t subscription) const noexcept {
     return welcomed && (subscriptions & subscription) != 0;

@@ -187,7 +187,7 @@ bool LinkServer::handle(Connection& connection, std::span<const std::byte> datag
       command(command_, connections_.speakerOf(connection, command_.client, command_.origin));
     } else {
       admission_.count(CommandRefusal::kMalformed);
-      reportRefusal(CommandRefusal::kMalformed, connection.client);
+      reportRefusal(CommandRefusal::kMalformed, connection.id, connection.client);
     }
     return true;
   }
@@ -196,7 +196,7 @@ bool LinkServer::handle(Connection& connection, std::span<const std::byte> datag
       signals(signals_, connections_.speakerOf(connection, signals_.client, signals_.origin));
     } else {
       admission_.count(CommandRefusal::kMalformed);
-      reportRefusal(CommandRefusal::kMalformed, connection.client);
+      reportRefusal(CommandRefusal::kMalformed, connection.id, connection.client);
     }
     return true;
   }
@@ -250,15 +250,15 @@ void LinkServer::command(const link::Command& message, const Speaker& speaker) {
   const auto outcome = refusal == CommandRefusal::kNone && !handed_over ? CommandRefusal::kRingFull : refusal;
   admission_.count(outcome);
   if (outcome == CommandRefusal::kNotPermitted)
-    return reportRefusal(outcome, message.client, admission_.whyNotPermitted());
+    return reportRefusal(outcome, speaker.connection, message.client, admission_.whyNotPermitted());
   if (outcome != CommandRefusal::kNone) {
     const auto& culprit = admission_.culprit();
-    return reportRefusal(outcome, message.client,
+    return reportRefusal(outcome, speaker.connection, message.client,
                          culprit.empty() ? "" : culprit + ": " + describe(outcome) + admission_.choice());
   }
   if (!admission_.clearedField()) return;
   admission_.count(CommandRefusal::kUnusedField);
-  reportRefusal(CommandRefusal::kUnusedField, message.client);
+  reportRefusal(CommandRefusal::kUnusedField, speaker.connection, message.client);
 }
 
 void LinkServer::signals(const link::Signals& message, const Speaker& speaker) {
@@ -267,19 +267,30 @@ void LinkServer::signals(const link::Signals& message, const Speaker& speaker) {
     outcome = CommandRefusal::kRingFull;
   admission_.count(outcome);
   if (outcome == CommandRefusal::kNotPermitted)
-    return reportRefusal(outcome, message.client, signal_admission_.whyNotPermitted());
-  if (outcome != CommandRefusal::kNone) reportRefusal(outcome, message.client);
+    return reportRefusal(outcome, speaker.connection, message.client, signal_admission_.whyNotPermitted());
+  if (outcome != CommandRefusal::kNone) reportRefusal(outcome, speaker.connection, message.client);
 }
 
-void LinkServer::reportRefusal(CommandRefusal reason, const link::Name& client, const std::string& why) {
+void LinkServer::reportRefusal(CommandRefusal reason, std::uint64_t id, const link::Name& client,
+                               const std::string& why) {
   const auto now = monotonicNow();
   auto& next_report = next_refusal_report_[static_cast<std::size_t>(reason)];
-  if (now < next_report) return;
+  auto* connection = connections_.find(id);
+  const bool for_all = now >= next_report;
+  // The one that is refused hears its reason, though others were refused for the same a moment ago.
+  const bool for_it = connection != nullptr && now >= connection->next_refusal_report;
+  if (!for_all && !for_it) return;
+  if (connection != nullptr) connection->next_refusal_report = now + kRefusalReportInterval;
+  auto event = Publication::refusal(reason, client, now, wallClockUs(), why);
+  if (!for_all) {
+    if (connection->wants(link::kEvents)) Connections::send(*connection, link::seal(event));
+    return;
+  }
   next_report = now + kRefusalReportInterval;
   // Clients are told from here, since the scheduler never saw the command; it alone writes the black box.
   (void)sources_.exchange.refusals.push({EventCode::kCommandRefused, Severity::kWarning, -1,
                                          static_cast<std::int32_t>(reason), 0, now, client});
-  feeds_.tell(Publication::refusal(reason, client, now, wallClockUs(), why));
+  feeds_.tell(event);
 }
 
 void LinkServer::request(const link::Request& message, Connection& connection) {
@@ -305,7 +316,7 @@ void LinkServer::request(const link::Request& message, Connection& connection) {
   if (outcome.response) Connections::respond(connection, *outcome.response);
   if (outcome.not_permitted.empty()) return;
   admission_.count(CommandRefusal::kNotPermitted);
-  reportRefusal(CommandRefusal::kNotPermitted, message.client, outcome.not_permitted);
+  reportRefusal(CommandRefusal::kNotPermitted, connection.id, message.client, outcome.not_permitted);
 }
 
 bool LinkServer::handOver(const Order& order, const link::Request& message) {

@@ -57,7 +57,9 @@ class LinkServer {
   [[nodiscard]] bool welcome(Connection& connection, std::span<const std::byte> datagram);
   void command(const link::Command& message, const Speaker& speaker);
   void signals(const link::Signals& message, const Speaker& speaker);
-  void reportRefusal(CommandRefusal reason, const link::Name& client, const std::string& why = {});
+  /// At most one of each reason a second; to the connection that is refused, one a second of any.
+  void reportRefusal(CommandRefusal reason, std::uint64_t id, const link::Name& client,
+                     const std::string& why = {});
   void request(const link::Request& message, Connection& connection);
   /// False: the request has its answer.
   bool handOver(const Order& order, const link::Request& message);

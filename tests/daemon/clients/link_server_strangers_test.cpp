@@ -172,6 +172,24 @@ TEST_F(LinkServerStrangersTest, AClientThatReadsNothingIsToldOnceUntilItReadsAga
   EXPECT_EQ(told(), 2);
 }
 
+TEST_F(LinkServerStrangersTest, AClientHearsWhyItIsRefusedThoughAnotherWasAMomentAgo) {
+  auto first = join(link::kEvents);
+  auto second = join(link::kEvents);
+  const auto wrong = linkCommand(1, MonotonicTime::max(), {setpoint("nobody", ControlMode::kVelocity, 1.0)});
+  ASSERT_TRUE(first->send(wrong));
+  pump();
+  ASSERT_TRUE(second->send(wrong));
+  pump();
+  const auto heard = [](TestClient& client) {
+    int events = 0;
+    while (client.take<link::Event>()) ++events;
+    return events;
+  };
+  EXPECT_EQ(heard(*first), 1);
+  EXPECT_EQ(heard(*second), 2) << "the other's and its own";
+  EXPECT_EQ(logged.size(), 1U);
+}
+
 // More answers than its socket holds.
 TEST_F(LinkServerStrangersTest, EveryAnswerOfABurstArrives) {
   auto client = join();
