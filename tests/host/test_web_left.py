@@ -142,7 +142,7 @@ def test_a_motor_that_was_on_before_is_not_the_pages(web: Web, robot: Daemon) ->
     assert when_all_ends_are_carried_out(web, robot)["wheel"]["status"] == "ACTIVE"
 
 
-def test_a_motor_that_was_disabled_and_enabled_since_is_not_the_pages(
+def test_a_motor_that_was_let_go_and_enabled_since_is_not_the_pages(
     web: Web, robot: Daemon
 ) -> None:
     with web.page() as page:

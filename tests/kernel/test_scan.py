@@ -110,12 +110,13 @@ def test_a_motor_that_is_enabled_meanwhile_ends_the_scan_of_its_bus(tmp_path: Pa
         wait_status(robot, rc10.MotorStatus.READY, "left", "right")
         with Candump("vcan0") as bus:
             with Proc(BIN / "rc10ctl", "scan", "vcan0", "--seconds", "0.5") as scan:
-                time.sleep(0.9)  # it asks for 0.76 s, after half a second
+                bus.wait_frame(lambda frame: frame.ext)  # the first question
                 robot.enable("left")
                 enabled_ns = time.time_ns()
                 assert scan.wait(10.0) == 1
             assert "was not scanned to the end: left: enabled meanwhile" in scan.output()
-            time.sleep(0.5)
+            half_a_second_later_ns = time.time_ns() + 500 * MS
+            bus.wait_frame(lambda frame: frame.t_ns > half_a_second_later_ns)
             bus.stop()
         asked = [frame.t_ns for frame in bus.frames() if frame.ext]
         assert 0 < len(asked) < 254 + 127

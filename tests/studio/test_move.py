@@ -298,7 +298,7 @@ def test_locked_gains_are_refused_with_the_line(chromium: Browser) -> None:
         studio.web.stop()
 
 
-def test_a_motor_that_a_page_enabled_is_disabled_when_the_page_is_gone(
+def test_a_motor_that_a_page_enabled_rests_when_the_page_is_gone(
     chromium: Browser, studio: Studio
 ) -> None:
     with chromium.new_context(locale="en-GB") as context:
