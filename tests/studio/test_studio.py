@@ -5,15 +5,15 @@ from __future__ import annotations
 import contextlib
 import functools
 import hashlib
-import json
 import re
 import signal
 from pathlib import Path
 
 import pytest
+from good_computer import as_on_a_good_computer
 from hostlib.daemon import REPO
 from hostlib.program import eventually
-from playwright.sync_api import Browser, Locator, Page, WebSocketRoute, expect
+from playwright.sync_api import Browser, Locator, Page, expect
 
 import rc10
 from conftest import PATIENCE_MS, Studio
@@ -201,7 +201,13 @@ def test_a_picture_that_was_waiting_draws_nothing_into_the_chart_of_other_signal
     page: Page,
 ) -> None:
     # Pictures come so late that the answer for the next signals is there before.
-    page.evaluate("() => { window.requestAnimationFrame = (f) => setTimeout(f, 400); }")
+    # Its cancelling goes with it: a timer's number would cancel a picture of Playwright's.
+    page.evaluate(
+        """() => {
+            window.requestAnimationFrame = (f) => setTimeout(f, 400);
+            window.cancelAnimationFrame = clearTimeout;
+        }"""
+    )
     open_tab(page, "plots")
     wheel = page.get_by_role("group", name="wheel", exact=True)
     for count, name in enumerate(("torque_nm", "voltage_v", "temperature_c"), start=3):
@@ -228,31 +234,6 @@ def test_timing_shows_the_latencies_that_rc10d_measures(page: Page) -> None:
 
 def row_of(page: Page, name: str) -> Locator:
     return page.locator(".checks tr", has=page.get_by_role("rowheader", name=name, exact=True))
-
-
-def as_on_a_good_computer(page: Page) -> None:
-    """The page is told of real drives and a computer that keeps time; all else is true."""
-
-    def amend(message: str | bytes) -> str | bytes:
-        if isinstance(message, bytes) or not message.startswith("{"):
-            return message
-        told = json.loads(message)
-        data = told.get("data", {})
-        if told["type"] == "state":
-            data["conditions"] = [word for word in data["conditions"] if word != "simulated"]
-            data["realtime"] = True
-        if told["type"] == "diagnostics":
-            data["missed_ticks"] = 0
-            data["notices"] = []
-        return json.dumps(told)
-
-    def relay(socket: WebSocketRoute) -> None:
-        server = socket.connect_to_server()
-        server.on_message(lambda message: socket.send(amend(message)))
-
-    page.route_web_socket("**/link", relay)
-    page.reload()
-    page.locator(".badge.live").wait_for()
 
 
 def test_before_a_match_each_row_says_what_is_wrong_and_its_remedy(
