@@ -32,6 +32,7 @@ class Process(NamedTuple):
 
 def hog(parent: int) -> None:
     """Works the core and the memory, as a compiler does."""
+    signal.signal(signal.SIGTERM, signal.SIG_DFL)  # not that of its parent
     text = os.urandom(1 << 20)
     while os.getppid() == parent:
         zlib.compress(text)

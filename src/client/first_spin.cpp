@@ -37,6 +37,12 @@ FirstSpin::Outcome FirstSpin::outcome() const noexcept {
   return turned_deg_ > 0.0 ? Outcome::kRight : Outcome::kWrongWay;
 }
 
+std::string angleLost(const std::string& motor) {
+  return motor +
+         "'s feedback had a gap that may hide a turn: nothing can be judged: commission again, and see "
+         "docs/troubleshooting.md if it happens again";
+}
+
 std::string text(const FirstSpin& spin, const std::string& motor) {
   const std::string turned = motor + " turned by " + number(spin.turnedDeg(), 1) + " deg";
   const std::string speed = quantity(spin.velocityRpm(), 0, "rpm");
@@ -61,10 +67,7 @@ std::string text(const FirstSpin& spin, const std::string& motor) {
     case FirstSpin::Outcome::kDisagree:
       return turned + " while its drive told " + speed +
              ": one of them has the wrong sign: see its page in docs/motors";
-    case FirstSpin::Outcome::kAngleLost:
-      return motor +
-             "'s feedback had a gap that may hide a turn: nothing can be judged: commission again, and see "
-             "docs/troubleshooting.md if it happens again";
+    case FirstSpin::Outcome::kAngleLost: return angleLost(motor);
     case FirstSpin::Outcome::kUnknown: break;
   }
   return motor + "'s drive reports no speed or no angle: nothing can be judged";

@@ -45,6 +45,8 @@ class FirstSpin {
   bool angle_lost_ = false;
 };
 
+/// A gap in the motor's feedback while it was turned, by hand or by current, and the remedy.
+[[nodiscard]] std::string angleLost(const std::string& motor);
 /// Result and remedy in words.
 [[nodiscard]] std::string text(const FirstSpin& spin, const std::string& motor);
 

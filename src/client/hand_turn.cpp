@@ -5,6 +5,7 @@
 
 #include "app/printable.hpp"
 #include "app/units.hpp"
+#include "client/first_spin.hpp"
 #include "client/quantity_text.hpp"
 
 namespace rc10::client {
@@ -23,7 +24,8 @@ double turned(const link::State& before, const link::State& after, std::size_t m
 
 }  // namespace
 
-HandTurn judgeHandTurn(const link::State& before, const link::State& after, std::size_t motor) {
+HandTurn judgeHandTurn(const link::State& before, const link::State& after, std::size_t motor,
+                       bool angle_lost) {
   const auto count = std::min<std::size_t>({before.motor_count, after.motor_count, link::kMaxMotors});
   HandTurn turn;
   turn.moved = motor;
@@ -32,7 +34,9 @@ HandTurn judgeHandTurn(const link::State& before, const link::State& after, std:
   }
   turn.turned_deg = turned(before, after, turn.moved);
   const double own_deg = turned(before, after, motor);
-  if (std::abs(turn.turned_deg) < kNothingDeg) {
+  if (angle_lost) {
+    turn.outcome = HandTurn::Outcome::kAngleLost;
+  } else if (std::abs(turn.turned_deg) < kNothingDeg) {
     turn.outcome = HandTurn::Outcome::kNotTurned;
   } else if (turn.moved != motor && std::abs(own_deg) < kNothingDeg) {
     turn.outcome = HandTurn::Outcome::kOtherMotor;
@@ -60,6 +64,7 @@ std::string text(const HandTurn& turn, const link::Welcome& welcome, std::size_t
       return found + ", and " + name + " did not: swap their ids (or buses) in the configuration";
     case HandTurn::Outcome::kWrongSign:
       return found + ", clockwise: set `direction: -1` for " + name + " (or take it away)";
+    case HandTurn::Outcome::kAngleLost: return angleLost(name);
     case HandTurn::Outcome::kWrongRatio:
       return found + " instead of 360: if it was one whole turn, multiply `gear_ratio` of " + name + " by " +
              number(turn.ratio_factor, 3);

@@ -15,6 +15,7 @@ struct HandTurn {
     kOtherMotor,  ///< Another one moved: the names or ids are swapped.
     kWrongSign,
     kWrongRatio,
+    kAngleLost,  ///< Its feedback had a gap that may hide a turn.
   };
   Outcome outcome = Outcome::kGood;
   std::size_t moved = 0;      ///< The motor that moved most, its place in Welcome.
@@ -22,8 +23,10 @@ struct HandTurn {
   double ratio_factor = 1.0;  ///< kWrongRatio: what the configured gear ratio has to be multiplied by.
 };
 
-/// `before` and `after`: the states at both ends of the turn; `motor`: the one that was meant.
-[[nodiscard]] HandTurn judgeHandTurn(const link::State& before, const link::State& after, std::size_t motor);
+/// `before` and `after`: the states at both ends of the turn; `motor`: the one that was meant; `angle_lost`:
+/// event 102 came of it between them.
+[[nodiscard]] HandTurn judgeHandTurn(const link::State& before, const link::State& after, std::size_t motor,
+                                     bool angle_lost);
 
 /// Result and remedy in words.
 [[nodiscard]] std::string text(const HandTurn& turn, const link::Welcome& welcome, std::size_t motor);

@@ -11,14 +11,14 @@ using rc10::test::heroWelcome;
 using testing::HasSubstr;
 using Outcome = HandTurn::Outcome;
 
-HandTurn turn(double first_deg, double second_deg) {
+HandTurn turn(double first_deg, double second_deg, bool angle_lost = false) {
   link::State before;
   before.motor_count = 2;
   before.motors[0].total_angle_deg = 1000.0;
   auto after = before;
   after.motors[0].total_angle_deg += first_deg;
   after.motors[1].total_angle_deg += second_deg;
-  return judgeHandTurn(before, after, 0);
+  return judgeHandTurn(before, after, 0, angle_lost);
 }
 
 TEST(HandTurn, OneTurnCounterClockwiseOfTheRightMotorIsGood) {
@@ -43,6 +43,14 @@ TEST(HandTurn, ClockwiseIsTheWrongSign) {
 TEST(HandTurn, AnEighthOfATurnTooMuchIsNoWholeTurn) {
   EXPECT_EQ(turn(402.7, 0.0).outcome, Outcome::kWrongRatio);
   EXPECT_EQ(turn(317.0, 0.0).outcome, Outcome::kWrongRatio);
+}
+
+TEST(HandTurn, AGapThatMayHideATurnLeavesNothingToJudge) {
+  for (const double first_deg : {0.0, 360.0, -360.0, 720.0}) {
+    const auto lost = turn(first_deg, 0.0, true);
+    EXPECT_EQ(lost.outcome, Outcome::kAngleLost);
+    EXPECT_THAT(text(lost, heroWelcome(), 0), HasSubstr("front_left's feedback had a gap"));
+  }
 }
 
 TEST(HandTurn, AnotherAngleSaysTheRatio) {

@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import json
 import os
 import re
 import signal
+import time
 from collections.abc import Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -12,7 +14,7 @@ from typing import TYPE_CHECKING
 import pytest
 from hostlib import Daemon
 from hostlib.daemon import ARM, REPO
-from playwright.sync_api import Locator, Page, Playwright, expect
+from playwright.sync_api import Locator, Page, Playwright, WebSocketRoute, expect
 
 from conftest import CHROMIUM, PATIENCE_MS, QUIET, Studio
 
@@ -132,6 +134,37 @@ def test_a_wheel_is_commissioned_by_clicks(page: Page, studio: Studio, card: Loc
     report = card.get_by_role("group", name="Report")
     expect(report.locator("tr.good")).to_have_count(6)
     expect(report).to_contain_text("The file needs no change.")
+
+
+def test_after_a_gap_that_may_hide_a_turn_the_turn_by_hand_is_not_judged(
+    page: Page, studio: Studio
+) -> None:
+    sockets: list[WebSocketRoute] = []
+
+    def relay(socket: WebSocketRoute) -> None:
+        socket.connect_to_server()
+        sockets.append(socket)
+
+    page.route_web_socket("**/link", relay)
+    page.reload()
+    page.locator("#tab-commission").click()
+    card = page.locator(".card.step")
+    choose(page, "wheel")
+    press(card, re.compile("say id 1"))
+    press(card, "Next")
+    press(card, "Begin")
+    lost = {
+        "type": "event",
+        "utime": 0,
+        "mono_us": time.monotonic_ns() // 1000,
+        "severity": "warning",
+    }
+    lost |= {"code": 102, "source": "wheel", "client": "", "text": "multi-turn angle lost"}
+    sockets[-1].send(json.dumps(lost))
+    by_hand(studio, card, "wheel", 360)
+    expect(card.locator(".live-angle")).to_contain_text(re.compile(r"3[56]\d\."))
+    press(card, "The mark is back")
+    expect(told(card)).to_contain_text("The feedback of wheel had a gap that may hide a turn")
 
 
 def test_a_joint_ends_in_limits_and_a_zero_for_the_file(

@@ -8,6 +8,7 @@ import {
   type Judged,
   type Measured,
   type Step,
+  hasLostItsAngle,
   holdsNow,
   isOn,
   judgeSpin,
@@ -67,9 +68,6 @@ export interface StepProps {
   onFound: (step: Measured, judged: Judged) => void;
 }
 
-// The code of the event that tells of a lost angle: docs/lcm.md.
-const kReferenceLost = 102;
-
 function corridor(props: StepProps, now_deg: number): Partial<TestPlan> {
   const { angle_min_deg: low, angle_max_deg: high } = props.record.lines;
   if (low === undefined || high === undefined) return {};
@@ -111,7 +109,7 @@ function SpinStep(props: StepProps & { modes: string[]; onTimeout: string | null
     ...corridor(props, now_deg),
   };
   const judge = (outcome: TestOutcome) => {
-    const lost = link.known.events.some((event) => event.code === kReferenceLost && event.source === motor && event.mono_us > begun_us.current);
+    const lost = hasLostItsAngle(link.known.events, motor, begun_us.current);
     const judged = 'refused' in outcome ? null : judgeSpin(motor, outcome.done, outcome.curve, lost);
     setTold(judged === null ? outcome : null);
     if (judged !== null) props.onFound('spin', judged);

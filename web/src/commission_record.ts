@@ -1,7 +1,7 @@
 // Commissioning of one motor: what each step found, judged as `rc10ctl commission` judges it (src/client/hand_turn.cpp,
 // src/client/first_spin.cpp), and what follows from it for the robot's file.
 import { number } from './numbers';
-import type { CheckedMotor, MotorState, Robot, TestDone } from './protocol';
+import type { CheckedMotor, MotorState, Robot, RobotEvent, TestDone } from './protocol';
 import type { Word } from './words';
 
 export const kSteps = ['bus', 'hand', 'zero', 'limits', 'spin', 'step', 'end'] as const;
@@ -78,12 +78,21 @@ export type Judged = Pick<Finding, 'good' | 'word' | 'values'> & { lines?: Lines
 const kNothingDeg = 20;
 const kHandError = 0.15;
 
+// The code of the event that tells of a lost angle: docs/lcm.md.
+const kReferenceLost = 102;
+
+/** Whether a gap in a motor's feedback may have hidden a turn since then. */
+export function hasLostItsAngle(events: RobotEvent[], motor: string, since_us: number): boolean {
+  return events.some((event) => event.code === kReferenceLost && event.source === motor && event.mono_us > since_us);
+}
+
 /** One whole turn counter-clockwise by hand: angles before and after it, by motor. */
 export function judgeHandTurn(
   motor: string,
   before: Record<string, number>,
   after: Record<string, number>,
   checked: CheckedMotor | null,
+  angleLost: boolean,
 ): Judged {
   const turned = (name: string) => {
     const difference = (after[name] ?? NaN) - (before[name] ?? NaN);
@@ -92,6 +101,7 @@ export function judgeHandTurn(
   const most = Object.keys(before).reduce((found, name) => (Math.abs(turned(name)) > Math.abs(turned(found)) ? name : found), motor);
   const own = turned(motor);
   const values = { motor, other: most, deg: number(turned(most)), own: number(own) };
+  if (angleLost) return { good: false, word: 'comHandLost', values };
   if (Math.abs(turned(most)) < kNothingDeg) return { good: false, word: 'comHandNothing', values };
   if (most !== motor && Math.abs(own) < kNothingDeg) return { good: false, word: 'comHandOther', values };
   const factor = Math.abs(own) / 360;

@@ -1,9 +1,9 @@
 // The steps of commissioning that need a hand or a look, and no torque.
-import { useState } from 'preact/hooks';
+import { useEffect, useRef, useState } from 'preact/hooks';
 
 import { CopyLines, requestPython } from './action';
 import type { StepProps } from './commission';
-import { absoluteZero, angles, isOn, judgeHandTurn, judgeLimits, turnRange, zeroLine } from './commission_record';
+import { absoluteZero, angles, hasLostItsAngle, isOn, judgeHandTurn, judgeLimits, turnRange, zeroLine } from './commission_record';
 import { BusScan } from './commission_scan';
 import { useKnown, useStudio } from './context';
 import type { RobotRequest } from './link';
@@ -145,9 +145,10 @@ export function BusStep(props: StepProps & { bus: string; id: number; robot: Rob
 }
 
 export function HandStep(props: StepProps) {
-  const { word } = useStudio();
+  const { link, word } = useStudio();
   const motors = useMotors();
   const [before, setBefore] = useState<Record<string, number> | null>(null);
+  const begun_us = useRef(0);
   const motor = motors.find((each) => each.name === props.motor);
   const turned = before === null ? null : (motor?.total_angle_deg ?? NaN) - (before[props.motor] ?? NaN);
   const ready = motor !== undefined && motor.status !== 'OFFLINE' && !motors.some(isOn);
@@ -156,7 +157,11 @@ export function HandStep(props: StepProps) {
       <p>{word('comHandText')}</p>
       <div class="toolbar">
         {before === null ? (
-          <button type="button" class="strong" disabled={!ready} onClick={() => setBefore(angles(motors))}>
+          <button type="button" class="strong" disabled={!ready} onClick={() => {
+              begun_us.current = link.known.state?.data.mono_us ?? 0;
+              setBefore(angles(motors));
+            }}
+          >
             {word('comHandBegin')}
           </button>
         ) : (
@@ -166,7 +171,7 @@ export function HandStep(props: StepProps) {
               class="strong"
               disabled={!ready}
               onClick={() => {
-                props.onFound('hand', judgeHandTurn(props.motor, before, angles(motors), props.checked));
+                props.onFound('hand', judgeHandTurn(props.motor, before, angles(motors), props.checked, hasLostItsAngle(link.known.events, props.motor, begun_us.current)));
                 setBefore(null);
               }}
             >
@@ -250,6 +255,11 @@ export function LimitsStep(props: StepProps) {
   const ready = now_deg !== null && motor?.zeroed === true && !isOn(motor);
   const end = (key: 'low_deg' | 'high_deg') => now_deg !== null && props.onSet({ [key]: Number(now_deg.toFixed(2)) });
   const { low_deg: low, high_deg: high } = record;
+  // Without its reference the ends that were taken mean nothing any more.
+  const unknown = motor !== undefined && motor.zeroed !== true;
+  useEffect(() => {
+    if (unknown && (low !== null || high !== null)) props.onSet({ low_deg: null, high_deg: null });
+  }, [unknown, low, high]);
   const range = turnRange(record.lines.angle_min_deg, record.lines.angle_max_deg);
   return (
     <>

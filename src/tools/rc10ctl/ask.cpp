@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstdio>
 #include <span>
+#include <string_view>
 
 #include "app/printable.hpp"
 #include "client/json_line.hpp"
@@ -39,12 +40,12 @@ void printAnswerText(const std::string& message, Values values) {
     std::printf("%s = %g\n", printable(value.name.view()).c_str(), value.value);
 }
 
-void printAnswerJson(Operation operation, const std::string& message, Values values) {
+void printAnswerJson(std::string_view operation, const std::string& message, Values values) {
   client::Json json = client::Json::object();
   for (const auto& value : values) json[std::string{value.name.view()}] = value.value;
-  std::puts(
-      client::lineOf({{"operation", toString(operation)}, {"message", message}, {"values", std::move(json)}})
-          .c_str());
+  std::puts(client::lineOf(
+                {{"operation", std::string{operation}}, {"message", message}, {"values", std::move(json)}})
+                .c_str());
 }
 
 // Past connections that are all taken and an rc10d that answers nobody. False: it was no e-stop, or is not
@@ -53,6 +54,19 @@ bool sendEstop(const Global& global, Operation operation) {
   if (operation != Operation::kEstop) return false;
   const auto path = socketOf(global);
   return path && link::EstopDatagram::to(*path).send(kClientName);
+}
+
+// `before` is said before an error.
+ExitCode call(const Global& global, LinkClient& rc10d, const link::Request& request,
+              const std::string& before) {
+  const auto response = RequestCall(rc10d, kClientName).call(request);
+  if (!response) return complain({before + response.error().message}, ExitCode::kFailed);
+  const std::string message = printable(response->message.view());
+  if (response->status != link::ResponseStatus::kOk) return complain({message}, ExitCode::kFailed);
+  const auto told =
+      std::span(response->values).first(std::min<std::size_t>(response->value_count, link::kMaxValues));
+  global.json ? printAnswerJson(request.operation.view(), message, told) : printAnswerText(message, told);
+  return ExitCode::kOk;
 }
 
 }  // namespace
@@ -64,14 +78,14 @@ ExitCode ask(const Global& global, Operation operation, const std::vector<std::s
   const std::string estop = sendEstop(global, operation) ? "the e-stop was sent and is not confirmed: " : "";
   auto rc10d = connect(global);
   if (!rc10d) return complain({estop + rc10d.error().message}, ExitCode::kNoDaemon);
-  const auto response = RequestCall(*rc10d, kClientName).call(*request);
-  if (!response) return complain({estop + response.error().message}, ExitCode::kFailed);
-  const std::string message = printable(response->message.view());
-  if (response->status != link::ResponseStatus::kOk) return complain({message}, ExitCode::kFailed);
-  const auto told =
-      std::span(response->values).first(std::min<std::size_t>(response->value_count, link::kMaxValues));
-  global.json ? printAnswerJson(operation, message, told) : printAnswerText(message, told);
-  return ExitCode::kOk;
+  return call(global, *rc10d, *request, estop);
+}
+
+ExitCode askOver(LinkClient& rc10d, const Global& global, Operation operation,
+                 const std::vector<std::string>& motors, const std::vector<link::NamedValue>& values) {
+  const auto request = robotRequest(operation, motors, values);
+  if (!request) return complain(request.error(), ExitCode::kUsage);
+  return call(global, rc10d, *request, "");
 }
 
 }  // namespace rc10::ctl

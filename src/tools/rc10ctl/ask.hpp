@@ -12,4 +12,9 @@ namespace rc10::ctl {
 [[nodiscard]] ExitCode ask(const Global& global, Operation operation, const std::vector<std::string>& motors,
                            const std::vector<link::NamedValue>& values = {});
 
+/// The same over a connection without subscriptions that the caller keeps.
+[[nodiscard]] ExitCode askOver(LinkClient& rc10d, const Global& global, Operation operation,
+                               const std::vector<std::string>& motors,
+                               const std::vector<link::NamedValue>& values = {});
+
 }  // namespace rc10::ctl

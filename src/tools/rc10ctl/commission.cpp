@@ -105,16 +105,15 @@ class Commissioning {
         "hand: one whole turn, "
         "counter-clockwise, seen from the output.\n",
         options_.motor.c_str());
-    if (!waitLine(feed_)) return gone();
+    if (!waitLine(feed_) || !awaitPresent()) return gone();
     const link::State before = *feed_.state();
+    (void)feed_.takeEvents();
     std::puts("   Turn it now; press Enter when the mark is back.");
-    if (!waitLine(feed_)) return gone();
-    const auto turn = client::judgeHandTurn(before, *feed_.state(), motor_);
+    if (!waitLine(feed_) || !awaitPresent()) return gone();
+    const auto turn = client::judgeHandTurn(before, *feed_.state(), motor_, losesAngle());
     const auto words = client::text(turn, rc10d_.welcome(), motor_);
     if (turn.outcome != client::HandTurn::Outcome::kGood) {
-      const bool file_is_wrong = turn.outcome != client::HandTurn::Outcome::kNotTurned;
-      (void)complain({words + (file_is_wrong ? "; then restart rc10d and" : " Then") + " commission again"},
-                     ExitCode::kFailed);
+      (void)complain({words + next(turn.outcome)}, ExitCode::kFailed);
       return false;
     }
     std::printf("   %s\n", words.c_str());
@@ -126,14 +125,18 @@ class Commissioning {
                 options_.motor.c_str(), client::quantity(current_a_, 2, "A").c_str(),
                 static_cast<double>(seconds(kSpinTime)), options_.over_speed_rpm);
     if (waitLine(feed_) != options_.motor) return complain({"nothing was enabled"}, ExitCode::kFailed);
-    // From here on rc10d enables nothing else, until this one is disabled.
-    if (const auto enabled = ask(global_, Operation::kEnableAlone, {options_.motor});
+    // From here on rc10d enables nothing else, until this one is disabled. However this program ends, rc10d
+    // sees the end of `enabling` and disables it.
+    auto enabling = connect(global_);
+    if (!enabling) return complain(enabling.error(), ExitCode::kFailed);
+    if (const auto enabled = askOver(*enabling, global_, Operation::kEnableAlone, {options_.motor},
+                                     {{.name = link::Text<48>{"disable_at_end"}, .value = 1.0}});
         enabled != ExitCode::kOk)
       return enabled;
     awaitActive();
     client::FirstSpin seen(options_.over_speed_rpm);
     const auto outcome = drive(rc10d_, order(seen));
-    const auto disabled = ask(global_, Operation::kDisable, {options_.motor});
+    const auto disabled = askOver(*enabling, global_, Operation::kDisable, {options_.motor});
     if (interrupted()) {
       const bool rests = disabled == ExitCode::kOk;
       return complain(
@@ -148,16 +151,46 @@ class Commissioning {
     return disabled;
   }
 
-  // The answer may have overtaken the state that shows it. If none does, drive() says what is there.
-  void awaitActive() {
+  bool losesAngle() {
+    const auto events = feed_.takeEvents();
+    return std::any_of(events.begin(), events.end(), [this](const link::Event& event) {
+      return event.code == kReferenceLost && event.source.view() == options_.motor;
+    });
+  }
+
+  static const char* next(client::HandTurn::Outcome outcome) {
+    switch (outcome) {
+      case client::HandTurn::Outcome::kAngleLost: return "";
+      case client::HandTurn::Outcome::kNotTurned: return " Then commission again";
+      default: return "; then restart rc10d and commission again";  // the file is wrong
+    }
+  }
+
+  // False: none such comes within kShown, or rc10d has ended, or Ctrl-C.
+  template <typename Such>
+  bool awaitState(const Such& such) {
     const auto end = std::chrono::steady_clock::now() + kShown;
     while (feed_.pump() && !interrupted()) {
       const auto* state = feed_.state();
-      if (state != nullptr && state->motors[motor_].status == MotorStatus::kActive) return;
+      if (state != nullptr && such(*state)) return true;
       const auto left = end - std::chrono::steady_clock::now();
-      if (left <= Duration{0}) return;
+      if (left <= Duration{0}) return false;
       waitReadable(rc10d_, left);
     }
+    return false;
+  }
+
+  // The newest state may be of before the key that was pressed: it was sent up to a second ago.
+  bool awaitPresent() {
+    const auto pressed = std::chrono::steady_clock::now().time_since_epoch();
+    return awaitState(
+        [pressed](const link::State& state) { return std::chrono::microseconds{state.mono_us} > pressed; });
+  }
+
+  // The answer may have overtaken the state that shows it. If none does, drive() says what is there.
+  void awaitActive() {
+    (void)awaitState(
+        [this](const link::State& state) { return state.motors[motor_].status == MotorStatus::kActive; });
   }
 
   Drive order(client::FirstSpin& seen) const {
