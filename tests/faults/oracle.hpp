@@ -189,6 +189,7 @@ class Oracle {
   [[nodiscard]] bool fresh(const Motor& motor) const;
   [[nodiscard]] bool overdue(const Motor& motor) const;
   [[nodiscard]] bool damps(const Motor& motor) const;
+  [[nodiscard]] bool isReduced(const Motor& motor) const;
   [[nodiscard]] static bool mayLag(const Motor& motor, std::uint64_t ticks);
   [[nodiscard]] bool fits(const Motor& motor, FallbackAction action) const;
   [[nodiscard]] bool ramps(const Motor& motor) const;

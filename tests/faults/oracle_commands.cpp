@@ -71,9 +71,16 @@ bool Oracle::damps(const Motor& motor) const {
   const double bounded = std::clamp(-measured_rpm * per_rpm, -motor.limit, motor.limit);
   const double slack = 1.5 * motor.told.effort_step;
   if (std::fabs(motor.told.effort - bounded) <= slack) return true;
-  // A hot motor gets less.
-  return motor.was_hot && motor.told.effort * bounded >= 0.0 &&
-         std::fabs(motor.told.effort) <= std::fabs(bounded) + slack;
+  // A hot motor gets less, and one whose effort comes back after reduced mode.
+  const double reduced = isReduced(motor) ? static_cast<double>(motor.config->reduced.effort_share) : 1.0;
+  const double share = motor.was_hot ? 0.0 : reduced;
+  return motor.told.effort * bounded >= 0.0 && std::fabs(motor.told.effort) <= std::fabs(bounded) + slack &&
+         std::fabs(motor.told.effort) >= std::min(std::fabs(bounded), share * motor.limit) - slack;
+}
+
+// Or its speed and effort come back.
+bool Oracle::isReduced(const Motor& motor) const {
+  return motor.config->reduced.any() && now_ - mode_last_open_ < kFullAgain;
 }
 
 void Oracle::judgeCommand(std::size_t index, const MotorSnapshot& seen) {
@@ -166,8 +173,7 @@ void Oracle::judgeSlew(std::size_t index, const MotorSnapshot& seen) {
   const auto& shaping = motor.config->shaping;
   const auto per_s = static_cast<double>(shaping.effort_slew_per_s);
   const bool soft = std::isfinite(shaping.angle_min_deg) || std::isfinite(shaping.angle_max_deg);
-  const bool reduced = motor.config->reduced.any() && now_ - mode_last_open_ < kFullAgain;
-  const bool bounded = soft || reduced || motor.was_hot || motor.cooled;
+  const bool bounded = soft || isReduced(motor) || motor.was_hot || motor.cooled;
   constexpr std::uint64_t kMostPeriods = 5;  // what a tick counts for at most
   motor.periods_untold += std::min(periods_, kMostPeriods);
   motor.followed_effort = motor.followed_effort && follows;
