@@ -15,7 +15,7 @@ fuzz() {
     corpus=("$scratch/$name.corpus")
     mkdir -p "${corpus[0]}" "$findings"
     [ ! -d "$repo/tests/fuzz/corpus/$name" ] || corpus+=("$repo/tests/fuzz/corpus/$name")
-    "$target" -max_total_time="$seconds" -timeout=10 -rss_limit_mb=2048 -print_final_stats=1 \
+    "$target" -max_total_time="$seconds" -timeout=120 -rss_limit_mb=2048 -print_final_stats=1 \
         -artifact_prefix="$findings/$name-" "${corpus[@]}" >"$log" 2>&1
 }
 

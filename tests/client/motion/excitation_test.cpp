@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 
 #include <gmock/gmock.h>
@@ -119,8 +120,9 @@ TEST(Excitation, SchroederPhasesKeepThePeakOfAMultisineLow) {
 
 TEST(Excitation, WhatCannotBeRunIsRefusedWithItsRange) {
   EXPECT_THAT(refusal({.amplitude = 0.0}), HasSubstr("moves nothing"));
-  EXPECT_THAT(refusal({.amplitude = NAN}), HasSubstr("moves nothing"));
-  EXPECT_THAT(refusal({.base = INFINITY, .amplitude = 1.0}), HasSubstr("base"));
+  EXPECT_THAT(refusal({.amplitude = std::numeric_limits<double>::quiet_NaN()}), HasSubstr("moves nothing"));
+  EXPECT_THAT(refusal({.base = std::numeric_limits<double>::infinity(), .amplitude = 1.0}),
+              HasSubstr("base"));
   EXPECT_THAT(refusal({.amplitude = 1.0, .time_s = 0.0}), HasSubstr("0.05 to 120 s"));
   EXPECT_THAT(refusal({.kind = Kind::kRamp, .amplitude = 1.0}), HasSubstr("needs a rate"));
   EXPECT_THAT(refusal({.kind = Kind::kRamp, .amplitude = 60.0, .time_s = 1.0, .rate_per_s = 10.0}),

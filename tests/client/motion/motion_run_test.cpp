@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <limits>
 #include <string>
 
 #include <gmock/gmock.h>
@@ -405,7 +406,7 @@ TEST(MotionReport, AStepOfTheCurrentHasTheAccelerationOnceItHasRisen) {
   // It rises for 15 ms, and then gains 172 rpm/s for each ampere.
   int ticks = 0;
   robot.run(5s, [&](Robot& r) {
-    r.time_constant_s = INFINITY;
+    r.time_constant_s = std::numeric_limits<double>::infinity();
     if (r.target == 2.0 && ++ticks > 15) r.velocity_rpm += 2.0 * 0.172;
   });
   ASSERT_FALSE(robot.test().aborted()) << robot.test().aborted()->text;

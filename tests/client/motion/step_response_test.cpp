@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <functional>
+#include <limits>
 #include <numbers>
 #include <vector>
 
@@ -72,7 +73,7 @@ TEST(StepResponse, WithoutAStepThereAreNoNumbers) {
 
 TEST(FollowingError, HasTheRootMeanSquareAndTheLargestMagnitude) {
   const std::vector<double> target{0.0, 3.0, 0.0, 5.0};
-  const std::vector<double> response{0.0, 0.0, 4.0, NAN};
+  const std::vector<double> response{0.0, 0.0, 4.0, std::numeric_limits<double>::quiet_NaN()};
   const auto error = followingError(target, response);
   EXPECT_DOUBLE_EQ(error.rms, std::sqrt(25.0 / 3.0));
   EXPECT_EQ(error.max, 4.0);
