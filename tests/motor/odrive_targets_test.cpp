@@ -104,6 +104,16 @@ TEST_F(OdriveMotor, LimitsClampWhatIsSentAndSaySo) {
   EXPECT_EQ(motor_->limits(), 0U);
 }
 
+TEST_F(OdriveMotor, AnAngleBeyondItsFarthestIsToldAsTheFarthestAlsoBeforeFeedback) {
+  constexpr float kFarthestDeg = 100'000.0F * 360.0F;
+  motor_->order(FrameKind::kCommand, {.mode = ControlMode::kTotalAngle, .value = 1e131});
+  tick();
+  EXPECT_FLOAT_EQ(motor_->commandValue(), kFarthestDeg);
+  sample(12.5F);  // its zero from now on
+  tick();
+  EXPECT_FLOAT_EQ(motor_->commandValue(), kFarthestDeg - 12.5F * 360.0F);
+}
+
 TEST_F(OdriveMotor, FeedForwardsOfAPositionSaturate) {
   const auto frame = odrive::setInputPos(3, 0.0F, 1e9F, -kInfinity);
   EXPECT_EQ(readLittleEndian<std::int16_t>(frame.payload(), 4), 32767);

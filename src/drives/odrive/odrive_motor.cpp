@@ -247,8 +247,8 @@ void ODrive_Motor::followAngle(const Target& target) noexcept {
            odrive::setInputPos(node_, static_cast<float>(turns),
                                saturate(static_cast<float>(toDrive(ff_rpm) / kRpmPerTurnPerS)),
                                saturate(static_cast<float>(torqueToDrive(ff_nm)))));
-  const double away_deg = turns * kDegPerTurn - drivePositionFor(feedback_.total_angle_deg);
-  setCommand(reaches ? target.value : feedback_.total_angle_deg + toOutput(away_deg), CommandUnit::kNative);
+  const double told_deg = reaches ? target.value : toOutput(turns * kDegPerTurn - drivePositionFor(0.0));
+  setCommand(told_deg, CommandUnit::kNative);
 }
 
 void ODrive_Motor::setInput(odrive::ControlMode mode, const CanFrame& input) noexcept {
