@@ -34,6 +34,14 @@ std::string timesText(const link::Diagnostics& diagnostics) {
   return table.text();
 }
 
+// Null: a counter of something else.
+const LateCauseWords* wordsOfLateTicks(std::string_view counter) {
+  if (counter.starts_with(kTakenByWords.counter)) return &kTakenByWords;
+  const auto* const found = std::find_if(kLateCauseWords.begin(), kLateCauseWords.end(),
+                                         [counter](const auto& cause) { return cause.counter == counter; });
+  return found == kLateCauseWords.end() ? nullptr : found;
+}
+
 // A line for each cause that there was, with what helps against it.
 std::string lateTicksText(const link::Diagnostics& diagnostics) {
   std::string text;
@@ -41,10 +49,8 @@ std::string lateTicksText(const link::Diagnostics& diagnostics) {
       std::min<std::size_t>(diagnostics.counter_count, link::kMaxCounters));
   for (const auto& counter : counters) {
     const auto name = counter.name.view();
-    const auto* words = std::find_if(kLateCauseWords.begin(), kLateCauseWords.end(),
-                                     [name](const auto& cause) { return cause.counter == name; });
-    if (name.starts_with(kTakenByWords.counter)) words = &kTakenByWords;
-    if (words == kLateCauseWords.end() || counter.count == 0) continue;
+    const auto* words = wordsOfLateTicks(name);
+    if (words == nullptr || counter.count == 0) continue;
     text += printable(name) + " " + std::to_string(counter.count) + " (" + std::string(words->advice) + ")\n";
   }
   return text;
