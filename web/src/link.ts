@@ -171,20 +171,8 @@ export class Link {
     this.send({ type: 'range', first_column: firstColumn, column_us: columnUs, count });
   }
 
-  /** Without an answer in time it has failed: nobody knows whether it was done. */
   ask(request: RobotRequest, patienceMs = kAnswerPatienceMs): Promise<Response> {
-    const seq = ++this.seq;
-    return new Promise((resolve) => {
-      const done = (answer: Response) => {
-        clearTimeout(timer);
-        this.open.delete(seq);
-        resolve(answer);
-      };
-      const timer = setTimeout(() => done(failure(seq, 'no answer')), patienceMs);
-      this.open.set(seq, done);
-      if (!this.send({ type: 'request', seq, target: '', values: {}, ...request }))
-          done(failure(seq, 'no connection'));
-    });
+    return this.askWithin(patienceMs, { type: 'request', target: '', values: {}, ...request });
   }
 
   /** Drives of a bus: rc10d listens for some seconds before it asks. */
@@ -317,6 +305,11 @@ export class Link {
 
   /** The root helper's answer: installing a text, or restarting rc10d. */
   changeFile(message: { type: 'config_install'; text: string; replaces: string } | { type: 'config_restart' }): Promise<Response> {
+    return this.askWithin(kHelperPatienceMs, message);
+  }
+
+  /** Without an answer in time it has failed: nobody knows whether it was done. */
+  private askWithin(patienceMs: number, message: object): Promise<Response> {
     const seq = ++this.seq;
     return new Promise((resolve) => {
       const done = (answer: Response) => {
@@ -324,7 +317,7 @@ export class Link {
         this.open.delete(seq);
         resolve(answer);
       };
-      const timer = setTimeout(() => done(failure(seq, 'no answer')), kHelperPatienceMs);
+      const timer = setTimeout(() => done(failure(seq, 'no answer')), patienceMs);
       this.open.set(seq, done);
       if (!this.send({ ...message, seq })) done(failure(seq, 'no connection'));
     });
