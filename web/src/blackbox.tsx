@@ -4,6 +4,7 @@ import { useEffect, useMemo, useRef, useState } from 'preact/hooks';
 import { MomentTables } from './blackbox_moment';
 import { RecordedPlot } from './blackbox_plot';
 import { useKnown, useStored, useStudio } from './context';
+import { FileButton } from './file_button';
 import { number } from './numbers';
 import type { RecordingFile } from './protocol';
 import type { Moment, Summary } from './recording_look';
@@ -172,7 +173,6 @@ export function BlackBox() {
   const [filter, setFilter] = useState('');
   const [problems, setProblems] = useState(false);
   const [columns, setColumns] = useState(800);
-  const chooser = useRef<HTMLInputElement>(null);
   const reading = useRef(0);
 
   const summary = opened?.summary ?? null;
@@ -229,21 +229,7 @@ export function BlackBox() {
     <>
       <div class="toolbar">
         <OnRobot busy={share !== null} onLoad={(file) => void load(file)} />
-        <button type="button" onClick={() => chooser.current?.click()}>
-          {word('boxOpen')}
-        </button>
-        <input
-          ref={chooser}
-          type="file"
-          accept=".blackbox,.crashed"
-          hidden
-          aria-label={word('boxOpen')}
-          onChange={(event) => {
-            const file = event.currentTarget.files?.[0];
-            if (file !== undefined) void open(file.name, file);
-            event.currentTarget.value = '';
-          }}
-        />
+        <FileButton text={word('boxOpen')} accept=".blackbox,.crashed" onFile={(file) => void open(file.name, file)} />
         <span class="hint reading" role="status">
           {share === null ? '' : `${word('boxReading')} ${share < 1 ? `${number(100 * share, 0)} %` : ''}`}
         </span>

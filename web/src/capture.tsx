@@ -7,6 +7,7 @@ import { type Capture, capturesIn, fileOf, responseOf, stepNumbers, timesOf } fr
 import { colourOf } from './chart';
 import { useKnown, useStored, useStudio } from './context';
 import { download } from './download';
+import { FileButton } from './file_button';
 import { NumberField } from './number_field';
 import { number } from './numbers';
 import type { Columns } from './protocol';
@@ -142,7 +143,6 @@ export function CapturePanel(props: { motor: string; unit: (signal: string) => s
   const armedAt = useRef(0);
   // At once, where the state is drawn later.
   const armed = useRef(false);
-  const chooser = useRef<HTMLInputElement>(null);
   const names = link.shown;
   const period_us = Math.round(kUs / (known.robot?.robot.rate_hz ?? 1000));
   const colours = new Map(captures.map((capture, i) => [capture.id, colourOf(i)]));
@@ -268,8 +268,7 @@ export function CapturePanel(props: { motor: string; unit: (signal: string) => s
       (error: unknown) => setTold(`${word('mcapFailed')} ${String(error)}`),
     );
   const save = (which: Capture[]) => download('rc10-captures.json', new Blob([fileOf(which)], { type: 'application/json' }));
-  const open = async (file: File | undefined) => {
-    if (file === undefined) return;
+  const open = async (file: File) => {
     const found = capturesIn(await file.text());
     if (found === null) return setTold(word('captureNoFile'));
     const ids = new Set(found.map((capture) => capture.id));
@@ -331,20 +330,7 @@ export function CapturePanel(props: { motor: string; unit: (signal: string) => s
         <button type="button" disabled={captures.length === 0} onClick={() => save(captures)}>
           {word('captureSave')}
         </button>
-        <button type="button" onClick={() => chooser.current?.click()}>
-          {word('captureOpen')}
-        </button>
-        <input
-          ref={chooser}
-          type="file"
-          accept="application/json,.json"
-          hidden
-          aria-label={word('captureOpen')}
-          onChange={(event) => {
-            void open(event.currentTarget.files?.[0]);
-            event.currentTarget.value = '';
-          }}
-        />
+        <FileButton text={word('captureOpen')} accept="application/json,.json" onFile={(file) => void open(file)} />
         <Refusal why={told} />
       </div>
       {forgotten > 0 && (

@@ -8,6 +8,7 @@ import { ConfigSchema, type KeyHelp, type Schema } from './config_schema';
 import { useStudio } from './context';
 import { download } from './download';
 import { fetchedOnce } from './fetched_once';
+import { FileButton } from './file_button';
 import type { CheckedConfig, ConfigFile, ConfigProblem, Response } from './protocol';
 import type { Word } from './words';
 
@@ -212,7 +213,6 @@ export function Configuration() {
   const [told, setTold] = useState('');
   const [help, setHelp] = useState<{ key: KeyHelp | null; about: string }>({ key: null, about: '' });
   const place = useRef<HTMLDivElement>(null);
-  const chooser = useRef<HTMLInputElement>(null);
   const editor = useRef<ConfigEditor | null>(null);
   const [ready, setReady] = useState(false);
   const known = useRef<ConfigSchema | null>(null);
@@ -303,20 +303,7 @@ export function Configuration() {
         <button type="button" onClick={() => void loadTemplate()}>
           {word('configTemplate')}
         </button>
-        <button type="button" onClick={() => chooser.current?.click()}>
-          {word('configOpen')}
-        </button>
-        <input
-          ref={chooser}
-          type="file"
-          accept=".yaml,.yml"
-          aria-label={word('configOpen')}
-          hidden
-          onChange={(event) => {
-            void loadFile(event.currentTarget.files?.[0]);
-            event.currentTarget.value = '';
-          }}
-        />
+        <FileButton text={word('configOpen')} accept=".yaml,.yml" onFile={(file) => void loadFile(file)} />
         <button type="button" disabled={draft.text === ''} onClick={() => download(`${robot?.name ?? 'robot'}.yaml`, new Blob([draft.text], { type: 'application/yaml' }))}>
           {word('configDownload')}
         </button>
