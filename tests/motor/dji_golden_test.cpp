@@ -14,22 +14,12 @@
 
 #include "drives/dji/dji_group.hpp"
 #include "support/dji_frames.hpp"
+#include "support/frame_bytes.hpp"
 
 namespace rc10::test::dji_golden_test {
 namespace {
 
 using Values = std::vector<std::pair<std::string, double>>;
-
-CanFrame parseFrame(const std::string& text) {
-  CanFrame frame;
-  const auto hash = text.find('#');
-  frame.id.value = static_cast<std::uint32_t>(std::stoul(text.substr(0, hash), nullptr, 16));
-  frame.length = static_cast<std::uint8_t>((text.size() - hash - 1) / 2);
-  for (std::size_t i = 0; i < frame.length; ++i) {
-    frame.data[i] = static_cast<std::uint8_t>(std::stoul(text.substr(hash + 1 + 2 * i, 2), nullptr, 16));
-  }
-  return frame;
-}
 
 Values parseValues(std::istream& line) {
   Values values;
@@ -48,7 +38,7 @@ void checkCommand(std::istream& line) {
   const DjiModel* model = findDjiModel(model_name);
   ASSERT_NE(model, nullptr);
   const auto kind = unit == "A" ? DjiCommand::kCurrent : DjiCommand::kVoltage;
-  const CanFrame expected = parseFrame(text);
+  const CanFrame expected = frameOf(text);
   DJI_Group group(expected.id);
   std::vector<std::unique_ptr<DJI_Motor>> motors;
   const Values efforts = parseValues(line);
@@ -96,7 +86,7 @@ void checkFeedback(std::istream& line) {
   const DjiModel* model = findDjiModel(model_name);
   ASSERT_NE(model, nullptr);
   DJI_Motor motor(djiConfig(*model, id));
-  const CanFrame frame = parseFrame(text);
+  const CanFrame frame = frameOf(text);
   ASSERT_TRUE(motor.matchesFrame(frame));
   ASSERT_EQ(motor.updateFeedback(frame), FrameVerdict::kAccepted);
   const Values values = parseValues(line);

@@ -18,6 +18,7 @@
 #include "drives/robstride/robstride_simulated.hpp"
 #include "motor/drive_configuring.hpp"
 #include "sim/solo_rig.hpp"
+#include "support/own_defaults.hpp"
 
 namespace rc10::test::drive_setup_test {
 namespace {
@@ -31,15 +32,7 @@ MotorSettings settingsOf(const MotorFamily& family, std::string_view model, int 
   settings.name = "motor";
   settings.model = model;
   settings.id = id;
-  for (const auto& key : family.keys()) {
-    if (key.kind == OwnKey::Kind::kChoice) {
-      settings.own.set(key.name, std::string(key.default_text));
-    } else if (!key.default_text.empty()) {
-      settings.own.set(key.name, key.default_text == "true"    ? 1.0
-                                 : key.default_text == "false" ? 0.0
-                                                               : std::atof(key.default_text.data()));
-    }
-  }
+  settings.own = ownDefaults(family);
   return settings;
 }
 

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <cstdlib>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -10,6 +9,7 @@
 #include "drives/cubemars/cubemars_mit.hpp"
 #include "drives/cubemars/cubemars_model.hpp"
 #include "drives/cubemars/cubemars_servo.hpp"
+#include "support/own_defaults.hpp"
 
 namespace rc10::test {
 
@@ -21,16 +21,7 @@ inline MotorSettings cubemarsSettings(std::string_view model, int id, const OwnK
   settings.name = "joint";
   settings.model = model;
   settings.id = id;
-  for (const auto& key : cubemarsFamily().keys()) {
-    const std::string text{key.default_text};
-    if (key.kind == OwnKey::Kind::kChoice) {
-      settings.own.set(key.name, text);
-    } else if (key.kind == OwnKey::Kind::kFlag) {
-      settings.own.set(key.name, text == "true" ? 1.0 : 0.0);
-    } else {
-      settings.own.set(key.name, std::strtod(text.c_str(), nullptr));
-    }
-  }
+  settings.own = ownDefaults(cubemarsFamily());
   for (const auto& [name, value] : keys) settings.own.set(name, value);
   return settings;
 }

@@ -5,6 +5,7 @@
 
 #include "drives/robstride/robstride_family.hpp"
 #include "drives/robstride/robstride_motor.hpp"
+#include "support/own_defaults.hpp"
 
 namespace rc10::test {
 
@@ -14,13 +15,7 @@ inline MotorSettings robStrideSettings(std::string_view model, int id = 127) {
   settings.name = "joint";
   settings.model = std::string{model};
   settings.id = id;
-  for (const auto& key : robstrideFamily().keys()) {
-    if (key.kind == OwnKey::Kind::kChoice) {
-      settings.own.set(key.name, std::string{key.default_text});
-    } else {
-      settings.own.set(key.name, std::stod(std::string{key.default_text}));
-    }
-  }
+  settings.own = ownDefaults(robstrideFamily());
   return settings;
 }
 

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <cstdlib>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -8,6 +7,7 @@
 
 #include "drives/vesc/vesc_family.hpp"
 #include "drives/vesc/vesc_motor.hpp"
+#include "support/own_defaults.hpp"
 
 namespace rc10::test {
 
@@ -18,16 +18,7 @@ inline MotorSettings vescSettings(const std::vector<std::pair<std::string, OwnVa
   settings.model = "VESC";
   settings.id = 7;
   settings.feedback_hz = 100;
-  for (const OwnKey& key : vescFamily().keys()) {
-    const std::string text{key.default_text};
-    if (key.kind == OwnKey::Kind::kChoice) {
-      settings.own.set(key.name, text);
-    } else if (key.kind == OwnKey::Kind::kFlag) {
-      settings.own.set(key.name, text == "true" ? 1.0 : 0.0);
-    } else {
-      settings.own.set(key.name, std::strtod(text.c_str(), nullptr));
-    }
-  }
+  settings.own = ownDefaults(vescFamily());
   settings.own.set("pole_pairs", 7.0);
   for (const auto& [key, value] : own) settings.own.set(key, value);
   const auto traits = vescFamily().traits("VESC", settings.own);
@@ -35,7 +26,7 @@ inline MotorSettings vescSettings(const std::vector<std::pair<std::string, OwnVa
   return settings;
 }
 
-/// The payload in hexadecimal, at the drive's id 7 unless told otherwise.
+/// An extended frame from its payload in hexadecimal.
 inline CanFrame vescFrame(std::uint32_t id, std::string_view hex) {
   CanFrame frame;
   frame.id = {id, true};

@@ -40,16 +40,6 @@ class LinkServerClientsTest : public LinkRig {
                                                 .housekeeping = {}})
             .value();
   }
-  std::unique_ptr<TestClient> joinAs(std::string_view name, std::uint32_t subscriptions = 0) {
-    auto client = std::make_unique<TestClient>(path);
-    link::Hello hello;
-    hello.client = name;
-    hello.subscriptions = subscriptions;
-    EXPECT_TRUE(client->send(hello));
-    pump();
-    EXPECT_TRUE(client->take<link::Welcome>());
-    return client;
-  }
   std::unique_ptr<TestClient> joinWith(std::string_view token, std::string_view name = "web-1") {
     auto client = std::make_unique<TestClient>(path);
     link::Hello hello;
@@ -112,29 +102,29 @@ TEST_F(LinkServerClientsTest, ATokenOfNoEntryIsNamedInTheRefusal) {
 
 TEST_F(LinkServerClientsTest, TheKernelSaysWhoAClientOfTheSocketIs) {
   start(commander(ClientConfig::By::kUser, me()));
-  EXPECT_TRUE(obeyed(*joinAs("pilot"), Origin::kElsewhere));
+  EXPECT_TRUE(obeyed(*join(), Origin::kElsewhere));
   start(commander(ClientConfig::By::kUser, somebodyElse()));
-  EXPECT_FALSE(obeyed(*joinAs("pilot"), Origin::kThisComputer));
+  EXPECT_FALSE(obeyed(*join(), Origin::kThisComputer));
 }
 
 TEST_F(LinkServerClientsTest, AMemberOfAGroupIsKnownByIt) {
   start(commander(ClientConfig::By::kGroup, std::to_string(::getegid())));
-  EXPECT_TRUE(obeyed(*joinAs("pilot"), Origin::kElsewhere));
+  EXPECT_TRUE(obeyed(*join(), Origin::kElsewhere));
 }
 
 TEST_F(LinkServerClientsTest, TheGatewayVouchesForNamesOfThisComputerOnly) {
   start(commander(ClientConfig::By::kLcmName, "planner"));
-  auto gateway = joinAs("rc10-lcm");
+  auto gateway = join(0, "rc10-lcm");
   EXPECT_TRUE(obeyed(*gateway, Origin::kThisComputer));
   EXPECT_FALSE(obeyed(*gateway, Origin::kThisComputer, "other"));
   EXPECT_FALSE(obeyed(*gateway, Origin::kElsewhere));
-  auto pilot = joinAs("pilot");
+  auto pilot = join();
   EXPECT_FALSE(obeyed(*pilot, Origin::kThisComputer)) << "a client of the socket vouches for nobody";
 }
 
 TEST_F(LinkServerClientsTest, ARefusalIsToldCountedAndInTheEvents) {
   start(commander(ClientConfig::By::kUser, somebodyElse()));
-  auto pilot = joinAs("pilot", link::kDiagnosticsFeed);
+  auto pilot = join(link::kDiagnosticsFeed);
   const auto response = answer(*pilot, "enable");
   ASSERT_TRUE(response);
   EXPECT_EQ(response->status, link::ResponseStatus::kRefused);
@@ -155,7 +145,7 @@ TEST_F(LinkServerClientsTest, ARefusalIsToldCountedAndInTheEvents) {
 
 TEST_F(LinkServerClientsTest, AnEstopOfAnObserverStops) {
   start(commander(ClientConfig::By::kUser, somebodyElse()));
-  auto pilot = joinAs("pilot");
+  auto pilot = join();
   EXPECT_FALSE(answer(*pilot, "estop")) << "answered by the scheduler";
   EXPECT_TRUE(exchange.estop.load());
   EXPECT_EQ(takeOrder().operation, Operation::kEstop);
