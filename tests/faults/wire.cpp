@@ -117,15 +117,15 @@ std::unique_ptr<Wire> makeWire(const MotorConfig& config) {
     std::string_view family;
     std::unique_ptr<Wire> (*make)(const MotorConfig&);
   };
-  constexpr std::array<Maker, 9> kMakers{{{"DJI", makeDjiWire},
-                                          {"Damiao", makeDamiaoWire},
-                                          {"RobStride", makeRobstrideWire},
-                                          {"CubeMars", makeCubemarsWire},
-                                          {"ODrive", makeOdriveWire},
-                                          {"VESC", makeVescWire},
-                                          {"moteus", makeMoteusWire},
-                                          {"LK-Tech", makeLktechWire},
-                                          {"MyActuator", makeMyactuatorWire}}};
+  constexpr auto kMakers = std::to_array<Maker>({{"DJI", makeDjiWire},
+                                                 {"Damiao", makeDamiaoWire},
+                                                 {"RobStride", makeRobstrideWire},
+                                                 {"CubeMars", makeCubemarsWire},
+                                                 {"ODrive", makeOdriveWire},
+                                                 {"VESC", makeVescWire},
+                                                 {"moteus", makeMoteusWire},
+                                                 {"LK-Tech", makeLktechWire},
+                                                 {"MyActuator", makeMyactuatorWire}});
   for (const auto& maker : kMakers) {
     if (maker.family == config.family->name()) return maker.make(config);
   }
