@@ -67,6 +67,11 @@ def test_both_readmes_lead_to_the_index() -> None:
     assert "docs/index.md" in read(REPO / "README.zh-CN.md").links
 
 
+def test_first_pages_are_read_in_minutes() -> None:
+    assert len((REPO / "ARCHITECTURE.md").read_text(encoding="utf-8").split()) <= 1500
+    assert len((REPO / "README.md").read_text(encoding="utf-8").splitlines()) <= 150
+
+
 TRANSLATED = [page for page in PAGES if page.name.endswith(".zh-CN.md")]
 
 
