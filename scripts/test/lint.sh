@@ -41,8 +41,9 @@ types_in() {
 # "Name of the motor", not "What the motor is called".
 comments_begin_with_a_noun() {
     local status=0
-    git grep -nE '(//+[!<]?|/\*+|^ *\*|#|""") *(-+ )?(What|Who|Whoever|So that|How|Why|Of)\>' -- \
-        src tests bench examples cmake scripts python packaging systemd config web/src CMakeLists.txt \
+    git grep -nE -e '(//+[!<]?|/\*+|^ *\*|#|""") *(-+ )?(What|Who|Whoever|So that|How|Why|Of)\>' \
+        -e '[^ ] +(//+[!<]?|#) (what|who|whoever|so that|how|why)\>' -- \
+        src tests bench examples cmake scripts python packaging systemd config lcm_types web/src CMakeLists.txt \
         ':!scripts/test/*.sh' ':!tests/kernel/uml.config' ':!python/requirements.txt' ':!scripts/test/lint.sh' \
         ':!tests/scripts/test_sources.py' ':!tests/package/0.1.0' \
         || status=$?

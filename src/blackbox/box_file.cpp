@@ -117,7 +117,7 @@ Result<void> BoxFile::end() {
 Result<void> BoxFile::publish() {
   if (shared_) return {};
   Control control = head_->control;
-  control.head = control.tail;  // what is in the ring is not in the file
+  control.head = control.tail;  // the file lacks the bytes of the ring
   control.dropped = std::atomic_ref(head_->control.dropped).load(std::memory_order_relaxed);
   return writeAll(fd_.get(), offsetof(FileHead, control),
                   {reinterpret_cast<const std::byte*>(&control), sizeof control});

@@ -11,7 +11,7 @@ namespace {
 
 template <typename T>
 [[nodiscard]] T take(std::span<const std::byte> bytes) noexcept {
-  T record;  // what a shorter record does not say is zero
+  T record;  // fields beyond a shorter record are zero
   std::memcpy(&record, bytes.data(), std::min(sizeof record, bytes.size()));
   return record;
 }

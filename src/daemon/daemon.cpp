@@ -192,7 +192,7 @@ std::unique_ptr<SerialIo> Daemon::serialIo() {
   };
   auto serial = std::make_unique<SerialIo>(
       SerialIo{SerialReviver{*lines, std::move(watch), exchange_}, SerialWriter{*lines}});
-  serial->reviver.check(monotonicNow());  // what is there is open before the first tick
+  serial->reviver.check(monotonicNow());  // present ports are open before the first tick
   return serial;
 }
 

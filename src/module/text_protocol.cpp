@@ -9,7 +9,7 @@ namespace {
 constexpr std::uint8_t kStart = '$';
 constexpr std::uint8_t kChecksumMark = '*';
 constexpr std::uint8_t kEnd = '\n';
-constexpr std::size_t kMostDigits = 15;  // what a double holds exactly
+constexpr std::size_t kMostDigits = 15;  // a double holds these exactly
 constexpr std::string_view kHexDigits = "0123456789ABCDEF";
 
 [[nodiscard]] bool isDigit(char c) noexcept { return c >= '0' && c <= '9'; }

@@ -328,7 +328,7 @@ void Oracle::followEchoes(const Snapshot& snapshot) {
       echoes = {};
       stalled_.reset(bus);
     } else if (!echoes.awaited) {
-      echoes.awaited = watched_.test(bus) && !held_.test(bus);  // what was held back has none
+      echoes.awaited = watched_.test(bus) && !held_.test(bus);  // frames that were held back have none
     } else if (++echoes.ticks == kStalledTicks) {
       stalled_.set(bus);
       echoes.next_probe = now_ + kProbeInterval;

@@ -174,7 +174,7 @@ void Oracle::judgeSlew(std::size_t index, const MotorSnapshot& seen) {
   const auto per_s = static_cast<double>(shaping.effort_slew_per_s);
   const bool soft = std::isfinite(shaping.angle_min_deg) || std::isfinite(shaping.angle_max_deg);
   const bool bounded = soft || isReduced(motor) || motor.was_hot || motor.cooled;
-  constexpr std::uint64_t kMostPeriods = 5;  // what a tick counts for at most
+  constexpr std::uint64_t kMostPeriods = 5;  // of one tick
   motor.periods_untold += std::min(periods_, kMostPeriods);
   motor.followed_effort = motor.followed_effort && follows;
   if (motor.frames == 0) return;

@@ -71,7 +71,7 @@ class Terminal:
         return plain.removesuffix("\x1b[J").splitlines()
 
     def _read(self) -> None:
-        with contextlib.suppress(OSError):  # what a terminal says when nobody is there any more
+        with contextlib.suppress(OSError):  # a terminal without a reader
             while part := os.read(self._keyboard, 4096):
                 self._drawn += part
 

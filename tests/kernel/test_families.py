@@ -41,8 +41,8 @@ FD_BUS = "bitrate: 1000000\ndata_bitrate: 5000000"
 class Target(NamedTuple):
     mode: str
     value: float
-    frame: str  # what tells the drive so
-    near: float  # how far the reading may be from the value
+    frame: str  # that tells the drive so
+    near: float  # tolerance of the reading
     seconds: float = 1.0
     reading: float | None = None  # if it is not the value
 

@@ -151,7 +151,7 @@ TEST(DamiaoMotor, ADriveThatIsSeldomAskedTellsItsCountAsWell) {
 
 TEST(DamiaoMotor, AStandstillReadsAsZero) {
   DamiaoDesk desk(damiaoSettingsOf());
-  (void)desk.feed({.position = 0x7FFF, .velocity = 0x7FF, .torque = 0x7FF});  // how the drive rounds 0
+  (void)desk.feed({.position = 0x7FFF, .velocity = 0x7FF, .torque = 0x7FF});  // 0, as the drive rounds it
   EXPECT_NEAR(static_cast<double>(desk.motor().feedback().velocity_rpm), 0.0, 1e-5);
   EXPECT_NEAR(static_cast<double>(desk.motor().feedback().torque_nm), 0.0, 1e-5);
 }

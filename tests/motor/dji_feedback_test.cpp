@@ -233,7 +233,7 @@ TEST(DjiReference, AnAbsoluteEncoderNeverJumpsWhileItsAngleIsControlled) {
   feeder.tick();
   EXPECT_NEAR(motor.getTotalAngle().value, 724.0, 0.01);
   EXPECT_FALSE(motor.feedback().zeroed);
-  motor.clearTarget();  // what the supervisor does when the reference is lost
+  motor.clearTarget();  // as the supervisor does when the reference is lost
   feeder.feedAndTick({.position = 91});
   EXPECT_TRUE(motor.feedback().zeroed);
   EXPECT_NEAR(motor.getTotalAngle().value, 4.0, 0.01);

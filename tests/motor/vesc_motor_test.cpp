@@ -161,7 +161,7 @@ TEST_F(VescMotorTest, TheHandbrakeHoldsOnlyAtStandstill) {
   EXPECT_EQ(sent(), 10'000);
   EXPECT_EQ(packet_, vesc::Packet::kSetCurrentBrake);
   status(0);
-  tick(milliseconds{500});  // who knows
+  tick(milliseconds{500});  // anything may have happened
   EXPECT_EQ(sent(), 10'000);
   EXPECT_EQ(packet_, vesc::Packet::kSetCurrentBrake);
 }

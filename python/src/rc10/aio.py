@@ -231,7 +231,7 @@ class Robot(RobotClient):
             await self.wait_for_state()  # whose names are those of the motors
         with self.recorder(motors) as recorder:
             await asyncio.sleep(seconds)
-            self._receive()  # what came while other tasks kept the loop
+            self._receive()  # messages that came while other tasks kept the loop
         if not recorder.count:
             raise Timeout(self._no_state(seconds))
         return recorder.recording()

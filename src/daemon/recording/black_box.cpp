@@ -87,7 +87,7 @@ BlackBox::BlackBox(const Settings& settings, std::string robot, std::unique_ptr<
       history_(file_->head(), file_->ring(), file_->descriptor()),
       recorder_(blackbox::HandOff{file_->head().control, file_->ring()}),
       log_(std::move(log)) {
-  drain();  // so that the clock is in the file
+  drain();  // the clock, into the file
 }
 
 void BlackBox::drain() {

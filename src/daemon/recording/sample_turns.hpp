@@ -7,12 +7,12 @@
 namespace rc10 {
 
 /// Spreads the samples of many things over an interval: each has its turn once an interval, and no tick has
-/// them all. What a late tick has missed, the next one takes.
+/// them all. A late tick makes up for the turns that it has missed.
 class SampleTurns {
  public:
   explicit constexpr SampleTurns(Duration interval) noexcept : interval_(interval) {}
 
-  /// `things`: how many there are, the same in every tick. The first tick takes all.
+  /// `things`: their number, the same in every tick. All are due in the first tick.
   constexpr void advance(MonotonicTime now, std::size_t things) noexcept {
     const auto in_interval = now.time_since_epoch() % interval_;
     const auto place =
@@ -31,9 +31,9 @@ class SampleTurns {
  private:
   Duration interval_;
   MonotonicTime last_{};
-  std::size_t place_ = 0;  // of the thing that had its turn last
-  std::size_t first_ = 0;  // whose turn it is
-  std::size_t due_ = 0;    // how many have it
+  std::size_t place_ = 0;  // thing of the last turn
+  std::size_t first_ = 0;  // first thing of this turn
+  std::size_t due_ = 0;    // number of things in this turn
   std::size_t things_ = 1;
 };
 

@@ -329,7 +329,7 @@ void LKTech_Motor::clearComplaint() noexcept {
   clear_ = clear_ || errors_ != 0;
   restarted_ = false;
   next_query_ = {};
-  ask_turns_ = true;  // so that the status comes next
+  ask_turns_ = true;  // the status is the next question
 }
 
 }  // namespace rc10

@@ -424,7 +424,7 @@ void MyActuator_Motor::clearComplaint() noexcept {
   restarted_ = false;
   silence_stopped_ = false;
   next_query_ = {};
-  ask_uptime_ = true;  // so that the status comes next
+  ask_uptime_ = true;  // the status is the next question
 }
 
 }  // namespace rc10

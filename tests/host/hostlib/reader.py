@@ -36,7 +36,7 @@ PATIENCE_S = 60.0
 
 class Command(NamedTuple):
     text: str
-    output: str  # what the page shows of it; sh shows nothing
+    output: str  # as far as the page shows it; sh shows none
 
     @property
     def complaints(self) -> set[str]:
