@@ -10,7 +10,7 @@
 #include "app/unique_fd.hpp"
 #include "link/link_protocol.hpp"
 
-/// Begin of a connection to rc10d, and words for a user for whom it fails.
+/// Begin of a connection to rc10d; failures in words for the user.
 namespace rc10::client {
 
 using Deadline = std::chrono::steady_clock::time_point;

@@ -16,7 +16,7 @@ struct ScreenSize {
 struct Picture {
   std::string text;
   std::size_t motors = 0;  ///< Lines at the end of `text` that are motors, one each.
-  std::string modules;     ///< Lines that make room first.
+  std::string modules;     ///< Lines that are left out first.
   std::string below;
 };
 

@@ -10,7 +10,7 @@
 namespace rc10 {
 
 struct ChildOptions {
-  /// A session of its own, without terminal and standard input: what ends or stops our process group spares
+  /// A session of its own, without terminal and standard input: signals to our process group do not reach
   /// it.
   bool own_session = false;
 };

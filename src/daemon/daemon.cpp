@@ -100,7 +100,7 @@ Result<void> Daemon::build() {
   auto gpio_loop = GpioLoop::create(config_, exchange_);
   if (!gpio_loop) return tl::unexpected(gpio_loop.error());
   gpio_loop_ = std::move(*gpio_loop);
-  // After the e-stop input and the heartbeat: a line that is also theirs stays theirs.
+  // After the e-stop input and the heartbeat: they get a line that a module wants as well.
   if (auto* banks = robot_->lineBanks())
     line_loop_ = std::make_unique<LineLoop>(*banks, kernelGpio(), exchange_);
   io_loop_ = std::make_unique<IoLoop>(BusReviver{*robot_, inboxes_, exchange_, interface_locks_},

@@ -18,7 +18,7 @@ class GuardBeats {
 
   enum class News : std::uint8_t { kNone, kStandsStill, kGoesOn };
 
-  /// 0 beats: no judgement, for a guard that has just begun, or one of a version without.
+  /// 0 beats: no judgement; the guard has just begun, or is of a version without beats.
   [[nodiscard]] News look(std::uint32_t beats, MonotonicTime now) noexcept {
     silence_ += std::min<Duration>(now - looked_, kLongestLook);
     looked_ = now;

@@ -116,7 +116,7 @@ GuardLink::News GuardLink::supervise(MonotonicTime now) {
   reap();
   if (connection_) {
     if (!readable(connection_.get(), Duration{0})) return watchBeats(now);
-    connection_.reset();  // the guard says nothing more: this is its end
+    connection_.reset();  // a guard that watches sends nothing: this is its end
     next_try_ = now;
     pause_ = kFirstPause;
     last_failure_.clear();

@@ -10,8 +10,8 @@
 
 namespace rc10 {
 
-/// The end of the log in a file of bounded size, line by line, so that it is there after rc10d was killed. A
-/// full one is kept beside it as <path>.1, in place of the one before.
+/// The end of the log in a file of bounded size, written line by line: it outlives a killed rc10d. A full
+/// file becomes <path>.1 and replaces the one before.
 class LogFile final : public spdlog::sinks::base_sink<std::mutex> {
  public:
   static constexpr std::size_t kMostBytes = std::size_t{32} << 10U;

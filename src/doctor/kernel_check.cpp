@@ -9,8 +9,8 @@ namespace {
 
 constexpr const char* kThrottling = "real-time throttling";
 
-// Without a share of its own a real-time thread may not be made at all; with less than this rc10d and a
-// neighbour of it could meet the limit.
+// With a share of 0 no real-time thread can be created; with less than this rc10d and another one together
+// could reach the limit.
 constexpr double kLeastShare = 0.5;
 
 std::string debianMachine(const HostFiles& files) {

@@ -24,7 +24,7 @@ struct FamilyEntry {
   const ScanQuestions* questions = nullptr;
   /// Drive that would obey the question of another family; null: none of this family would.
   ObeyedBy obeyed_by = nullptr;
-  bool only_answers = false;  ///< Its drives speak only when they are told something.
+  bool only_answers = false;  ///< Its drives send nothing but answers.
 };
 
 /// The families of rc10d: the one place where a new one is entered.

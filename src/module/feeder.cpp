@@ -115,7 +115,7 @@ class Feeder : public Module_Base {
     return std::isfinite(velocity_rpm) ? std::clamp(velocity_rpm, -limit_rpm_, limit_rpm_) : 0.0;
   }
 
-  // `shots` counts up: each step of it is one more. Where the count begins, nothing is fired.
+  // `shots` is a count: each step up fires one. Its first value fires nothing.
   void countShots(const MotorFeedback& feedback) noexcept {
     const double turned_deg = feedback.total_angle_deg - last_deg_;
     if (std::isfinite(turned_deg) && shots_left_deg_ > 0.0)

@@ -376,7 +376,7 @@ class Joint : public Module_Base {
     state_ = State::kHomingFailed;
   }
 
-  // From what the shaft does: one that turns is slowed along the profile, not stopped in a jump.
+  // The profile begins with the motion of the shaft: one that turns is slowed down, not stopped in a jump.
   void beginFollowing(const MotorFeedback& feedback) noexcept {
     const double here_deg = feedback.total_angle_deg;
     const double deg_s = static_cast<double>(feedback.velocity_rpm) * kDegPerSPerRpm;
@@ -426,8 +426,8 @@ class Joint : public Module_Base {
     arrived_ = advanced_ = tick.now;
   }
 
-  // A reference that ran on would be an order to make up for all of the way at once, as soon as whatever
-  // holds the motor lets go.
+  // A reference that went on while the motor is blocked would make it leap all of that way, once it is
+  // free.
   void lead(const MotorFeedback& feedback, const Tick& tick) noexcept {
     const auto& reference = reference_.state();
     const double here_deg = feedback.total_angle_deg;

@@ -119,7 +119,7 @@ ModuleSignals remoteSignals(const RemoteChannels& channels) {
   return signals;
 }
 
-/// One channel on its way to one input.
+/// Route of one channel to one input.
 struct Stick {
   std::size_t channel = 0;
   std::string to;
@@ -202,7 +202,7 @@ class Remote : public Module_Base {
       told_to_disable_ = false;
       return;
     }
-    // One that was never heard is not lost.
+    // A remote that was never heard is not lost.
     if (was_heard_ < 0) return;
     if (was_heard_ == 1) robot.report(kLost);
     was_heard_ = 0;

@@ -12,13 +12,13 @@ class AngleReference {
     bool absolute = false;          ///< The drive's position means the same after every power-up.
     double zero_deg = 0.0;          ///< Absolute only: the position that is to read 0.
     bool zero_at_power_on = false;  ///< The first position is 0, and known.
-    Travel travel{};                ///< Absolute only: says on which turn it is.
+    Travel travel{};                ///< Absolute only: tells the turn at power-up.
   };
 
   explicit AngleReference(const Config& config) noexcept : config_(config) {}
 
-  /// The angle jumps where it is set anew. `may_restart`: it may be, once an unclear turn is clear, as
-  /// nothing follows it. `may_return`: it may be after it was lost.
+  /// A new reference is a jump of the angle. `may_restart`: allowed once an unclear turn has become clear, as
+  /// no target follows the angle. `may_return`: allowed after the reference was lost.
   void update(double position_deg, bool may_restart = true, bool may_return = true) noexcept;
   /// The present position reads `angle_deg` from now on. False before the first update().
   bool setZero(double angle_deg) noexcept;
@@ -33,7 +33,7 @@ class AngleReference {
   void doubtTurn() noexcept;
 
   [[nodiscard]] bool known() const noexcept { return known_; }
-  /// Absolute, but its travel does not say on which turn.
+  /// Absolute, but its travel does not tell the turn.
   [[nodiscard]] bool turnUnclear() const noexcept { return turn_unclear_; }
   [[nodiscard]] double totalAngleDeg() const noexcept { return position_deg_ + offset_deg_; }
   /// The drive's position at this total angle: for targets.

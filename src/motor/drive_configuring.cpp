@@ -10,8 +10,8 @@ constexpr int kSettingTries = 5;
 constexpr int kStoringTries = 3;
 constexpr Duration kSettling = std::chrono::milliseconds{10};
 constexpr Duration kSettingPatience = std::chrono::milliseconds{50};
-// A drive at rest is told something in every tick or two. One that has not answered in this time does not
-// answer to this id any more.
+// A drive at rest gets a frame in every tick or two. Without an answer for this time it no longer has
+// this id.
 constexpr Duration kSilence = std::chrono::milliseconds{250};
 // Damiao: 40 to 100 ms.
 constexpr Duration kStoring = std::chrono::milliseconds{300};
@@ -44,7 +44,7 @@ void DriveConfiguring::onFrame(const CanFrame& frame) noexcept {
   if (phase_ == Phase::kSaving) {
     saved_ = saved_ || codec_.saysSaved(frame);
   } else if (phase_ == Phase::kWritten || phase_ == Phase::kRead) {
-    // A drive that tells by its answer to the reading gives no answer to the writing that counts.
+    // Where reading() takes answers to a question, it takes none to a write.
     if (const auto reading = codec_.reading(value().setting, frame)) reading_ = reading;
   }
 }

@@ -56,7 +56,7 @@ class DriveConfiguring {
   int tries_ = 0;
   MonotonicTime sent_at_{};
   std::optional<double> reading_;
-  bool heard_ = false;  ///< Something, since the last frame that was sent.
+  bool heard_ = false;  ///< Any frame of the drive since the last one to it.
   bool saved_ = false;
   std::optional<int> new_id_;
   bool renamed_ = false;

@@ -30,9 +30,9 @@ enum class LoopGain : std::uint8_t {
 };
 inline constexpr std::size_t kLoopGainCount = 16;
 
-/// Where these loops hold it; null: they have none, as a velocity loop of the other type.
+/// Its place in these loops; null: their velocity loop is of the type without it.
 [[nodiscard]] float* gainIn(CascadeConfig& loops, LoopGain gain) noexcept;
-[[nodiscard]] float gainOf(const CascadeConfig& loops, LoopGain gain) noexcept;  ///< 0: they have none.
+[[nodiscard]] float gainOf(const CascadeConfig& loops, LoopGain gain) noexcept;  ///< 0: without it.
 
 struct GainChange {
   LoopGain gain{};

@@ -72,9 +72,9 @@ class Motor_Base : public FrameListener {
   /// Scales the effort limit from this tick on, by 0 (nothing) to 1 (all): a hot motor gets less.
   void derate(float factor) noexcept { derating_ = factor > 0.0F ? std::min(factor, 1.0F) : 0.0F; }
 
-  /// Computes what the drive is to be told, from the order, the target and the feedback.
+  /// Computes the command of this tick from the order, the target and the feedback.
   virtual void update(const Tick& tick) noexcept = 0;
-  /// Whether its drive is told in this tick what update() computed. Sequences may disregard it.
+  /// Whether the command of this tick is to be sent. Sequences may send in other ticks, too.
   [[nodiscard]] virtual bool due(const Tick&) const noexcept { return true; }
 
   // Readings at the output shaft; NaN when the drive does not report it.
@@ -124,7 +124,7 @@ class Motor_Base : public FrameListener {
 
   /// Makes the present position `angle_deg`. False while the position is unknown.
   virtual bool setZero(double angle_deg) noexcept = 0;
-  /// Its angle goes on, without a known reference: it is about to be found anew.
+  /// The angle goes on without a known reference: homing is about to find it.
   virtual void forgetReference() noexcept { feedback_.zeroed = false; }
 
  protected:

@@ -40,7 +40,7 @@ class MotorFamily {
   /// Judge of the ids of its motors on one bus, with remedies of its own; null: they are compared by
   /// busUse().
   [[nodiscard]] virtual IdJudge idJudge() const noexcept { return nullptr; }
-  /// Bounds of single keys that a model has; what check() and traits() say does not follow from them.
+  /// Bounds of single keys for a model, in the schema only; check() and traits() state theirs themselves.
   [[nodiscard]] virtual std::vector<KeyBound> keyBounds(std::string_view /*model*/) const { return {}; }
   /// `settings` has passed check().
   [[nodiscard]] virtual BusUse busUse(const MotorSettings& settings) const = 0;

@@ -21,10 +21,10 @@ struct MotorSettings {
   bool zero_at_power_on = false;    ///< The position of the first sample is 0.
   Travel travel{};                  ///< Tells the turn of an absolute encoder at power-up.
   CascadeConfig loops;              ///< Loops of the host; meaningless where MotorTraits has none.
-  int feedback_hz = 0;              ///< As set on the drive, or as often as it is asked.
+  int feedback_hz = 0;              ///< As set on the drive, or the rate of questions.
   int tick_hz = 1000;               ///< Tick rate of the scheduler.
-  int command_divider = 1;          ///< It is told something in every n-th tick.
-  int command_phase = 0;            ///< In which of those ticks: 0 to n - 1.
+  int command_divider = 1;          ///< A command is sent in every n-th tick,
+  int command_phase = 0;            ///< offset by so many ticks: 0 to n - 1.
   OwnValues own;
 };
 

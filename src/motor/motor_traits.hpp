@@ -20,20 +20,20 @@ struct MotorTraits {
   float nominal_v = 24.0F;
   float rotor_inertia_kg_m2 = 0.0F;   ///< Inertia of the rotor itself; 0: unknown.
   float phase_resistance_ohm = 0.0F;  ///< 0: unknown.
-  bool absolute = false;              ///< Knows its output angle at power-up, behind its own gear.
+  bool absolute = false;              ///< Knows the angle of its output at power-up.
   bool reports_temperature = true;
   bool scaled_speed = false;  ///< Its speed is a share of a range that depends on the model.
   float frozen_a = 0.0F;      ///< Full scale of the current that it reports; 0: it reports none.
   float signed_a = 0.0F;      ///< Full scale of a current with the sign of the torque; 0: it reports none.
   int signed_current_hz = 0;  ///< Rate at which it reports that; 0: with each feedback.
-  int feedback_hz = 1000;     ///< If nobody says otherwise.
+  int feedback_hz = 1000;     ///< Default.
   int min_feedback_hz = 1;
   int max_feedback_hz = 1000;
-  bool asked = false;        ///< Speaks only when told something: its feedback comes at the command rate.
+  bool asked = false;        ///< Sends only answers: its feedback comes at the command rate.
   bool fd = false;           ///< Speaks CAN FD.
   int data_bitrate = 0;      ///< Data phase of its CAN FD, as delivered; 0: unknown.
-  bool classic_only = true;  ///< An FD frame on its bus is an error to it.
-  bool watchdog = false;  ///< Stops by itself when commands stay away: its own, set or verified by enabling.
+  bool classic_only = true;  ///< Answers FD frames with error frames.
+  bool watchdog = false;     ///< The drive's own: stops it without commands; set or verified by enabling.
   ModeSet modes;
   SpringRange spring_range;  ///< Bounds impedance targets, at the output of the model's own gear.
   DriveFrames frames;

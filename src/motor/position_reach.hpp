@@ -18,8 +18,8 @@ namespace rc10 {
   return range_rad - std::clamp(torque_nm / stiffness_nm_per_rad, 0.0, kMostSag * range_rad);
 }
 
-/// The same over time: what stands farther out when it begins to follow angles is not drawn in, and goes no
-/// farther out.
+/// The same over time: a shaft that is farther out when it begins to follow angles is not drawn in, and is
+/// led no farther out.
 class SpringReach {
  public:
   /// The bound of this tick, in which it follows an angle. `reach_rad`: springReachRad().

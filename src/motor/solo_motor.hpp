@@ -63,10 +63,10 @@ class SoloMotor : public Motor_Base, public CommandPacker {
   [[nodiscard]] double drivePositionFor(double total_angle_deg) const noexcept {
     return toDrive(reference_.positionFor(total_angle_deg));
   }
-  /// The reported speed does not fit the change of the angle, for a complaint() that has nothing graver: of
-  /// families with MotorTraits::scaled_speed. Compared while the motor obeys, until it is known.
+  /// The reported speed does not fit the change of the angle: for complaint() where nothing is graver.
+  /// Families with MotorTraits::scaled_speed; compared while the motor obeys, until the scale is known.
   [[nodiscard]] DriveComplaint scaleComplaint() const noexcept;
-  /// The speed comes from another field from now on.
+  /// From now on the speed comes from another field.
   void compareSpeedAnew() noexcept { speed_scale_.reset(); }
   /// The drive was restarted or turns may have gone uncounted.
   void loseReference() noexcept;
@@ -78,10 +78,10 @@ class SoloMotor : public Motor_Base, public CommandPacker {
   [[nodiscard]] bool enabling() const noexcept { return dutyOf(ordered()) == DriveDuty::kEnable; }
   /// First tick of the present order; from wanted() on.
   [[nodiscard]] bool begins() const noexcept { return begins_; }
-  /// The enable sequence is ordered, and a tick has begun it: what the drive says answers it.
+  /// A tick has begun the enable sequence: from now on frames of the drive are answers to it.
   [[nodiscard]] bool sequenceRuns() const noexcept { return enabling() && told_ == FrameKind::kEnable; }
-  /// sequenceProgress() of a motor whose enable sequence has come so far: pending from the order on, until
-  /// the tick in which it begins.
+  /// sequenceProgress() for this progress of the family's enable sequence; pending between the order and the
+  /// tick in which the sequence begins.
   [[nodiscard]] SequenceProgress progressOf(SequenceProgress sequence) const noexcept {
     if (!enabling()) return SequenceProgress::kDone;
     return sequenceRuns() ? sequence : SequenceProgress::kPending;
@@ -149,10 +149,10 @@ class SoloMotor : public Motor_Base, public CommandPacker {
 /// Turns of a drive's own output, on which it reports, per turn of the output shaft.
 [[nodiscard]] double driveTurns(const MotorSettings& settings, const MotorTraits& traits) noexcept;
 
-/// Gains of impedance targets that the drive's frames can say, at the output shaft.
+/// Ranges of the gains of impedance targets in the drive's frames, at the output shaft.
 [[nodiscard]] SpringRange springRangeOf(const MotorSettings& settings, const MotorTraits& traits) noexcept;
 
-/// Use of the bus by a drive that speaks when it is told something, and tells its angle once in `commands`.
+/// Settings with the feedback rate of a drive that only answers, with its angle once in `commands` answers.
 [[nodiscard]] MotorSettings withFeedbackOfCommands(MotorSettings settings, int commands);
 
 /// Registers both halves of a motor with its bus: what most families build() with.

@@ -18,10 +18,10 @@
 namespace rc10::client {
 namespace {
 
-// Until then its first target is in force, and rc10d has sent its first rows.
+// Timeouts: for its first target to be in force, and for the first rows of the trace.
 constexpr Duration kUntilTaken = std::chrono::milliseconds{500};
 constexpr Duration kUntilTraced = std::chrono::seconds{3};
-// The next state shows that a lease has lapsed; without states nothing is told.
+// Timeout for the state that shows that its lease has lapsed.
 constexpr Duration kUntilLetGo = std::chrono::seconds{2};
 constexpr Duration kSentKept = std::chrono::seconds{1};
 
@@ -182,7 +182,7 @@ void MotionRun::abort(const Abort& found) {
 void MotionRun::finish() {
   phase_ = Phase::kOver;
   if (!abort_ || !abort_->text.empty()) return;
-  // Told by the newest state, which may have come after the tick that ended it.
+  // In words by the newest state, which may be later than the tick that ended the test.
   if (const auto* motor = knownMotor(); motor != nullptr && state_ && abort_->criterion == Criterion::kStatus)
     abort_->text = obstacle(*state_, settings_.motor, *motor);
   if (abort_->criterion == Criterion::kOwnership) abort_->text = whoHasIt();

@@ -9,7 +9,7 @@
 namespace rc10 {
 namespace {
 
-/// Motors that are not told something in every tick take turns.
+/// Motors with a command_divider take turns.
 void spreadPhases(std::vector<MotorDraft>& motors) {
   int divided = 0;
   for (auto& motor : motors) {

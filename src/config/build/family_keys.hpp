@@ -4,7 +4,7 @@
 
 namespace rc10 {
 
-/// The keys of the motor's family, with their defaults; those of others mean nothing here. False: one is
+/// Reads the keys of the motor's family, defaults filled in; keys of others are errors. False: one is
 /// wrong or missing.
 [[nodiscard]] bool readOwnKeys(MotorParse& in);
 /// Check by the family. False: it has refused.

@@ -116,7 +116,7 @@ std::string whyUnknown(const Asked& asked, const MotorLoops& loops) {
     written.push_back(asked.loop.empty() ? gain.path() : std::string{gain.key->name});
   }
   const std::vector<std::string_view> listed{written.begin(), written.end()};
-  // "velocity.kpp": brief names have a loop.
+  // "velocity.kpp": a brief name is one with a loop.
   const bool is_brief = !asked.loop.empty() && nearest(asked.key, names).empty();
   return unknownKeyWords(asked.key, is_brief ? briefs : names, listed);
 }
@@ -184,7 +184,7 @@ Result<GainChange> gainChange(std::string_view name, double value, const MotorLo
   const auto gain = gainMeant(*wanted, loops);
   if (!gain) return tl::unexpected(gain.error());
   if (!std::isfinite(value)) return fail(gain->path() + ": is not a finite number");
-  // As it is told where the file sets none: the motor's own limit alone.
+  // 0, as shown where the file has no limit of the loop: the motor's own limit alone.
   if (gain->gain == kAngleVelocityLimit && value == 0.0) return GainChange{gain->gain, 0.0F};
   if (auto reason = whyOutOfRange(value, *gain->key); !reason.empty())
     return fail(gain->path() + ": " + reason);

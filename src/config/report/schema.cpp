@@ -20,7 +20,7 @@ std::string anchored(const TextForm& form) { return "^(?:" + std::string{form.pa
 
 bool isText(const Key& key) { return key.kind == ValueKind::kText || key.kind == ValueKind::kTextList; }
 
-/// An unquoted 3200000 is a number to an editor, also where rc10d takes it for one of some words.
+/// An unquoted 3200000 is a number to an editor; to rc10d it may be one of the choices of a text.
 bool isDigits(std::string_view word) {
   return !word.empty() && std::all_of(word.begin(), word.end(), [](char c) { return c >= '0' && c <= '9'; });
 }

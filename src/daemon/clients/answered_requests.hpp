@@ -7,7 +7,7 @@
 
 namespace rc10 {
 
-/// The same request once more: its client, session, number and operation.
+/// Whether it is the earlier request again: the same client, session, number and operation.
 [[nodiscard]] bool repeats(const link::Request& request, const link::Request& earlier) noexcept;
 
 /// Memory of the last answers, for requests that are repeated. `asker` is Speaker::owner(): an answer belongs

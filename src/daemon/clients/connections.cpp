@@ -17,7 +17,7 @@ constexpr std::size_t kMaxConnections = 16;
 constexpr std::size_t kGatewaySeats = 1;
 // A program that connects again and again leaves seats to others.
 constexpr std::size_t kMostOfProcess = 12;
-// More than a client may have under way: it asks on and on, and reads nothing.
+// More than a client may have under way: one with so many asks and never reads.
 constexpr std::size_t kMaxUnsent = 128;
 // Publications lost in a row: with states at 100 Hz, a second after its socket is full. A slow client reads
 // some of them.

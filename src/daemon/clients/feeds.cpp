@@ -5,7 +5,7 @@
 namespace rc10 {
 namespace {
 
-// While nobody listens a state is filled for the rates in the next one, which are of the last second.
+// Without a listener a state is still computed this often: its rates are differences over a second.
 constexpr Duration kUnwantedEvery = std::chrono::seconds{1};
 
 }  // namespace
@@ -17,7 +17,7 @@ Feeds::Feeds(const LinkSources& sources, Connections& connections)
       trace_desk_(sources.robot, sources.exchange.trace) {}
 
 void Feeds::greet(const Connection& connection) const {
-  // It carries our version; a client of another version reads it there and says so.
+  // It carries our version, by which a client of another version can name both.
   auto message = publication_.welcome();
   Connections::send(connection, link::seal(message));
   if (!connection.welcomed || (connection.subscriptions & link::kModules) == 0) return;

@@ -27,7 +27,7 @@ class Feeds {
   void publishDiagnostics(const Admission& admission);
   /// Events of the scheduler, and notes of other threads.
   void publishEvents();
-  /// Rows that were recorded since.
+  /// Rows of the trace since the last call.
   void publishTrace();
   /// To clients and the log.
   void tell(link::Event message);

@@ -12,7 +12,7 @@ namespace rc10 {
 /// The named values of a request, all of them or the first error.
 [[nodiscard]] Result<GainChanges> parseGains(const link::Request& request, const MotorLoops& loops);
 
-/// "velocity_pid.kp_a_per_rpm 0.25 -> 0.8, …": what the changes do to these loops, and makes it so.
+/// Applies the changes to these loops; in words: "velocity_pid.kp_a_per_rpm 0.25 -> 0.8, …".
 [[nodiscard]] std::string applyGains(const GainChanges& changes, MotorLoops& loops);
 
 /// Every gain in force under its key.

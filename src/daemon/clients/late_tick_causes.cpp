@@ -53,7 +53,7 @@ void LateTickCauses::update(const LateTicks& late, const ThreadFacts& thread) {
   }
 }
 
-// Empty: not known. Half of the wait is enough: others may have had the rest.
+// Empty: not known. A rival that used half of the wait is named.
 std::string LateTickCauses::takerOf(bool taken, Duration waited, CpuRivals* rivals) {
   if (rivals == nullptr) return {};
   if (taken) watched_windows_ = kWatchedWindows;

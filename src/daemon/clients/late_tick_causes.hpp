@@ -48,9 +48,9 @@ class LateTickCauses {
   std::array<LateTicks::Sum, kTickSteps> seen_{};
   std::optional<Duration> waited_;
   std::optional<std::uint64_t> page_faults_;
-  Duration waited_before_{};  ///< In the window before: a tick may be counted after its wait was.
+  Duration waited_before_{};  ///< In the window before: a wait may be counted before its tick.
   std::array<std::uint64_t, kLateCauses> counts_{};
-  int watched_windows_ = 0;  ///< For so many more the rivals are watched.
+  int watched_windows_ = 0;  ///< Windows for which the rivals are still watched.
   std::vector<Taker> takers_;
 };
 

@@ -47,7 +47,7 @@ constexpr std::size_t kMostDeliveries = 4;
 
 bool ScanDesk::begin(const Order& order, const link::Request& request) {
   if (running_) return false;
-  // Left by the last scan, which ended before this thread looked.
+  // Frames that the last scan heard after this thread had looked for the last time.
   (void)exchange_.heard.consume_all([](const CanFrame&) {});
   running_.emplace(Running{.order_id = order.id,
                            .request = request,

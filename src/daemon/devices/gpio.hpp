@@ -15,8 +15,8 @@ class ContactInput {
   ContactInput& operator=(const ContactInput&) = delete;
   virtual ~ContactInput() = default;
 
-  /// Waits for a change for at most `timeout` (or not at all, where changes cannot be waited for), and says
-  /// what the contact is. kOpen also when it opened since the last call and is closed again.
+  /// State of the contact after a change, or after `timeout`; at once where the chip has no interrupts. kOpen
+  /// also if it opened since the last call and is closed again.
   [[nodiscard]] virtual ContactState wait(Duration timeout) noexcept = 0;
 };
 

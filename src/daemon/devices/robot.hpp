@@ -53,8 +53,8 @@ class Robot {
     bool feedback_expected = false;     ///< Some motor talks without being asked.
     UniqueFd echo{};                    ///< Sees the transmit echo; empty where there is none.
     std::vector<CanId> watched{};       ///< The command ids whose echoes are watched.
-    CanLinkSettings settings{};         ///< As configured; nothing of a simulated one.
-    bool manage_link = false;           ///< rc10d makes them so and restarts the interface.
+    CanLinkSettings settings{};         ///< As configured; of a simulated bus empty.
+    bool manage_link = false;           ///< rc10d applies them and restarts the interface.
     std::unique_ptr<BusParts> parts{};  ///< The packers that several motors share.
     ForeignLimit foreign{};
     bool held = false;       ///< The bus carries no frames now. Scheduler thread only.

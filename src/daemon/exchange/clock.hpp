@@ -10,7 +10,7 @@ namespace rc10 {
 [[nodiscard]] std::int64_t wallClockUs() noexcept;
 /// CPU time of the calling thread. A system call.
 [[nodiscard]] Duration threadCpuTime() noexcept;
-/// CLOCK_REALTIME - CLOCK_MONOTONIC, of which `now` was read just before.
+/// CLOCK_REALTIME - CLOCK_MONOTONIC; `now`: the latter, read just before.
 [[nodiscard]] Duration realtimeOffset(MonotonicTime now) noexcept;
 
 }  // namespace rc10

@@ -44,7 +44,7 @@ class LateTicks {
  public:
   struct Sum {
     std::uint64_t ticks = 0;
-    Duration time{};  ///< By which they began late, or that they took.
+    Duration time{};  ///< Sum of their lateness or durations.
   };
 
   void record(TickStep step, Duration time) noexcept {

@@ -117,8 +117,8 @@ struct OrderResult {
   std::size_t drive_value = 0;  ///< kConfigure: at which of the values it ended.
   std::array<Refusal, kMaxMotors> motors{};
   MotorSet in_the_way{};           ///< kAlone, kOthersOn, kGroup, kTogether: which motors.
-  Refusal scan = Refusal::kNone;   ///< kScan: reason that is no motor's,
-  std::uint32_t asked = 0;         ///< questions that were handed over,
+  Refusal scan = Refusal::kNone;   ///< kScan: reason that concerns no motor,
+  std::uint32_t asked = 0;         ///< questions that were sent,
   std::uint64_t error_frames = 0;  ///< and error frames of the bus meanwhile.
 };
 

@@ -12,8 +12,8 @@ namespace rc10 {
 struct SimulatedDrive {
   std::size_t port = 0;       ///< Place among the simulated buses, in the file's order.
   std::size_t drive = 0;      ///< On that bus.
-  int direction = 1;          ///< Direction of its motor: the drive itself knows none.
-  float payload_at_m = 0.0F;  ///< In the robot's file.
+  int direction = 1;          ///< `direction` of its motor; the drive has none.
+  float payload_at_m = 0.0F;  ///< As in the robot's file.
 };
 
 /// A hand on the shaft of one of them, or another load.

@@ -52,7 +52,7 @@ void CanIntake::take(Source& source, const Reception& reception) noexcept {
   if (reception.malformed_count != 0)
     inbox.malformed.fetch_add(reception.malformed_count, std::memory_order_relaxed);
   std::uint64_t dropped = reception.frame_count - inbox.frames.push(batch_.data(), reception.frame_count);
-  // Smaller than before: a new socket, which counts from zero.
+  // A smaller count is that of a new socket, which begins at zero.
   const bool same_socket = reception.kernel_dropped >= source.kernel_dropped;
   dropped += reception.kernel_dropped - (same_socket ? source.kernel_dropped : 0);
   source.kernel_dropped = reception.kernel_dropped;

@@ -187,7 +187,7 @@ RestCheck::Verdict Axis::checkRest(const Tick& tick) noexcept {
   return verdict;
 }
 
-// One that is not there obeys nobody, as far as is known, and must be enabled anyway.
+// A motor that is OFFLINE has to be enabled anyway before it moves.
 bool Axis::yields() noexcept {
   if (status_ == MotorStatus::kOffline || status_ == MotorStatus::kFault) return false;
   fault_ = FaultCode::kForeignCommands;

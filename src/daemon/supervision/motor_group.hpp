@@ -39,7 +39,7 @@ struct MotorGroup {
   // Until a request changes it.
   MotorSet rests_with_it;  ///< Disabled since another member was.
   MotorSet rearm;          ///< To be enabled again by itself; empty: none.
-  MonotonicTime moved{};   ///< When some member was last seen not to be there and still.
+  MonotonicTime moved{};   ///< Last time at which a member moved or was missing.
 };
 
 }  // namespace rc10

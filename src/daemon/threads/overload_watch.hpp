@@ -10,7 +10,7 @@ namespace rc10 {
 /// others had the CPU has used little of it, and is not overloaded.
 class OverloadWatch {
  public:
-  /// `limit`: CPU time in ticks that each use more than `period`, one after the other.
+  /// `limit`: CPU time of consecutive ticks that each use more than `period` of it.
   constexpr OverloadWatch(Duration period, Duration limit) noexcept : period_(period), limit_(limit) {}
 
   /// After a tick that took longer than its period. `cpu_time`: the thread's, so far. True: overloaded.

@@ -9,7 +9,7 @@ namespace {
 
 // Modules run in every tick: what one has asked for holds over ticks that come late, and no longer.
 constexpr Duration kModuleValidity = std::chrono::milliseconds{20};
-// No client has it: theirs are random, and modules have no other sessions.
+// Session of all modules; those of clients are random, and not 0.
 constexpr std::uint64_t kModuleSession = 0;
 
 [[nodiscard]] constexpr Operation operationOf(RobotRequest request) noexcept {

@@ -73,7 +73,7 @@ void Scheduler::tick(MonotonicTime now, std::uint64_t periods) noexcept {
   ticks_.store(tick.index + 1, std::memory_order_relaxed);
   if (guard_ == nullptr) return;
   guard_->ticks.store(tick.index + 1, std::memory_order_release);
-  // In the last tick: by the time that the main thread has its turn, the guard may have missed ticks.
+  // In the last tick, not later by the main thread: the guard would miss ticks until then.
   if (stopped_) guard_->ended.store(true, std::memory_order_release);
 }
 
@@ -156,7 +156,7 @@ void Scheduler::watchStop() noexcept {
   bool echoed = true;
   for (std::size_t i = 0; i < robot_.buses().size(); ++i) {
     if (!inboxes_[i].echo_available.load(std::memory_order_relaxed)) continue;
-    // More echoes than could still belong to frames from before the stop.
+    // So many echoes that frames from before the stop cannot account for all of them.
     echoed = echoed &&
              inboxes_[i].confirmed.load(std::memory_order_relaxed) >= confirmed_at_stop_[i] + kMinRestTicks;
   }

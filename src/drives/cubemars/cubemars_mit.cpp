@@ -69,7 +69,7 @@ std::span<const CanId> CubemarsMit::commandIds() const noexcept {
 
 bool CubemarsMit::matchesFrame(const CanFrame& frame) const noexcept {
   if (v3_) return isFrom(frame, filters_[0].id);
-  // On the drive's own id also what another program here tells it.
+  // The drive's own id also carries commands of other programs on this computer.
   const bool addressed = isFrom(frame, filters_[0].id) || (isFrom(frame, filters_[1].id) && !frame.sent_here);
   return addressed && frame.length > 0 && frame.data[0] == static_cast<std::uint8_t>(driveId());
 }
@@ -205,7 +205,7 @@ SpringLaw CubemarsMit::angleLaw(const Target& target, double stiffness, double d
                                 bool bound_speed) noexcept {
   const double ff_nm = static_cast<double>(target.torque_ff_nm);
   if (!inRange()) {
-    // The command cannot say positions out there, and what the drive would make of one is not known.
+    // Such a position does not fit into a command, and the drive's answer to one is not known.
     limits_ |= kLimitAngle;
     return velocityLaw(0.0, 0.0,
                        std::max(std::min(damping, CubemarsRanges::kDampingNmsPerRad), velocity_gain_));

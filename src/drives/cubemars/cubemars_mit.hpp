@@ -63,7 +63,7 @@ class CubemarsMit : public CubeMars_Motor {
   double angle_damping_;
   double velocity_gain_;
 
-  // As the drive sees itself, from its last feedback.
+  // The last feedback, in the drive's own terms.
   double position_rad_ = 0.0;
   double velocity_rad_s_ = 0.0;
   int turns_ = 0;               ///< Wraps of the position field; 0: within its range.
@@ -78,7 +78,7 @@ class CubemarsMit : public CubeMars_Motor {
   EnableSequence<Step> enabling_;
   bool enter_now_ = false;
   bool clear_now_ = false;
-  std::uint64_t samples_before_ = 0;  ///< Heard when it was first told to enter.
+  std::uint64_t samples_before_ = 0;  ///< Count when it was first told to enter the mode.
 };
 
 }  // namespace rc10

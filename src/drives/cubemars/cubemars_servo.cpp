@@ -83,7 +83,7 @@ void CubemarsServo::release() noexcept {
   setCommand(0.0, CommandUnit::kAmpere);
 }
 
-// Duty 0 shorts the winding: a torque against the motion in proportion to the speed, with no feedback needed.
+// Duty 0 shorts the winding: a torque against the motion, in proportion to the speed, without feedback.
 void CubemarsServo::damp() noexcept {
   next_ = cubemars::dutyFrame(driveId(), 0.0);
   setCommand(0.0, CommandUnit::kNative);

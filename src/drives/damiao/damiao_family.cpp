@@ -83,7 +83,7 @@ constexpr DriveFrames driveFrames(DamiaoControl control) {
                      .brake = Provision::kFrame,
                      .enable = Provision::kFrame};
   if (control == DamiaoControl::kMit) frames.damp = Provision::kFrame;
-  frames.idle_rests = control == DamiaoControl::kMit;  // the others are told to stand still
+  frames.idle_rests = control == DamiaoControl::kMit;  // the other modes hold a standstill
   // At a speed of 0 a drive in velocity mode may be pulled away for good.
   if (control != DamiaoControl::kVelocity) frames.hold = Provision::kFrame;
   return frames;
@@ -213,7 +213,7 @@ BusUse DamiaoFamily::busUse(const MotorSettings& settings) const {
                {.id = {damiao::kRegisterId, false},
                 .mask = kStandardIdMask,
                 .discriminator = PayloadDiscriminator{0, 0xFF, byte}}};
-  // In each of its control modes; it takes other ids that end in its own as well, but devices may have those.
+  // One id for each control mode. The drive also takes others that end in its id; devices may have those.
   for (std::uint32_t mode = 0; mode < 4; ++mode)
     use.steers.push_back({.id = {mode * 0x100U + id, false}, .mask = kStandardIdMask});
   use.feedback = {{master_id, shape(8), per_second}};

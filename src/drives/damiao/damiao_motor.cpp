@@ -298,7 +298,7 @@ std::size_t Damiao_Motor::packCommand(const Tick& tick, std::span<CanFrame> out)
   if (sequenceRuns() && enabling_.progress() == SequenceProgress::kPending) {
     const bool quiet = enabling_.quiet();
     const auto request = enabling_.take(tick.now);
-    // Told on and on: disabled, for its feedback; enabled, for its watchdog, should only the answer be lost.
+    // Repeated: disable for its feedback; enable for its watchdog, in case the answer alone was lost.
     if (due(tick) && (quiet || !request)) {
       frames.add(specialFrame(quiet ? Special::kDisable : Special::kEnable));
     }
@@ -337,7 +337,7 @@ void Damiao_Motor::runEnabling(const Tick& tick) noexcept {
       return;
     }
     enabling_.begin();
-    // Known before it has spoken: a fault is cleared by request only.
+    // A fault that is known already: it is cleared by request only.
     if (status_ >= damiao::kFirstFault) enabling_.onStatus(status_);
   }
   enabling_.update(tick.now);

@@ -87,7 +87,7 @@ class Damiao_Motor : public SoloMotor {
   bool stopped_ = false;  ///< Not enabled, though it was to obey.
   std::optional<damiao::Register> culprit_;
   int clears_left_ = 0;
-  std::optional<double> stay_rad_;  ///< Where a position mode stands without a target.
+  std::optional<double> stay_rad_;  ///< Place that a position mode keeps without a target.
   MonotonicTime asked_position_{};
 };
 

@@ -132,7 +132,7 @@ void LKTech_Motor::takeStatus(const CanFrame& frame) noexcept {
 
 void LKTech_Motor::takeTurns(const CanFrame& frame) noexcept {
   const std::int32_t raw = lktech::decodeAngle(frame.payload());
-  // A request says 0; the drive says it too when it is there, but then again and again.
+  // A copy of a request has the angle 0. A drive at 0 sends it in every reply, a copy comes once.
   zero_angles_ = lktech::looksLikeCommand(frame.payload()) ? zero_angles_ + 1 : 0;
   if (zero_angles_ > 0 && zero_angles_ < kZeroAnglesBelieved) return;
   if (!encoder_) return;
@@ -174,7 +174,7 @@ void LKTech_Motor::update(const Tick& tick) noexcept {
   const Target target = wanted();
   if (enabling() && begins()) beginEnabling();
   if (std::exchange(clear_, false)) outbox_.add(lktech::request(id_, lktech::Code::kClear));
-  // A drive that is just starting must not find an angle of its former life waiting for it.
+  // A drive that has just started must get no target in turns that it counted before.
   if (!heard_ || tick.now - *heard_ > kLktechRestartSilence) counted_ = false;
   due_ = due(tick);
   if (!due_) return;
@@ -192,7 +192,7 @@ void LKTech_Motor::update(const Tick& tick) noexcept {
 void LKTech_Motor::sendQueries(const Tick& tick) noexcept {
   if (tick.now < next_query_) return;
   next_query_ = tick.now + (counted_ ? kLktechQuerySpacing : kLktechUrgentQuerySpacing);
-  // It is not taken without a temperature.
+  // An angle is not accepted before the temperature is known.
   ask_turns_ = std::isnan(feedback_.voltage_v) ? false : !ask_turns_;
   outbox_.add(lktech::request(id_, ask_turns_ ? lktech::Code::kAngle : lktech::Code::kStatus));
 }
@@ -211,7 +211,7 @@ int LKTech_Motor::rawOf(double amperes) const noexcept {
 void LKTech_Motor::follow(const Target& target) noexcept {
   // A drive that has stopped stays so until the client enables it.
   if (!counted_ || complaint().fault != FaultCode::kNone) return release();
-  // In a group there is nothing but currents. And no loop of the drive may run when no current is allowed.
+  // A group carries currents alone. No loop of the drive may run while no current is allowed.
   const bool loops = !grouped_ && effortLimit() > 0.0F;
   switch (loops ? target.mode : ControlMode::kCurrent) {
     case ControlMode::kCurrent: return followCurrent(target);
@@ -271,7 +271,7 @@ std::size_t LKTech_Motor::packCommand(const Tick& /*tick*/, std::span<CanFrame> 
   return outbox_.copyTo(out);
 }
 
-// A group's frame has it in.
+// The group's frame contains it.
 std::size_t LKTech_Motor::packRest(std::span<CanFrame> out) const noexcept {
   if (out.empty() || grouped_) return 0;
   out.front() = lktech::currentCommand(id_, 0);

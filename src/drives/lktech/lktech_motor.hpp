@@ -37,7 +37,7 @@ class LKTech_Motor final : public SoloMotor {
   // For its group.
   [[nodiscard]] int driveId() const noexcept { return id_; }
   [[nodiscard]] bool grouped() const noexcept { return grouped_; }
-  /// Result of update() in the drive's unit; isDue(): it leaves in this tick.
+  /// Result of update() in the drive's unit; isDue(): it is sent in this tick.
   [[nodiscard]] int rawCurrent() const noexcept { return raw_current_; }
   [[nodiscard]] bool isDue() const noexcept { return due_; }
 
@@ -75,7 +75,7 @@ class LKTech_Motor final : public SoloMotor {
   int raw_current_ = 0;
   bool due_ = false;
   MonotonicTime next_query_{};
-  bool ask_turns_ = false;  ///< Next; else the status.
+  bool ask_turns_ = false;  ///< The next question; else the status.
   bool clear_ = false;
 
   // Readings of the drive.
@@ -85,10 +85,10 @@ class LKTech_Motor final : public SoloMotor {
   double shift_deg_ = 0.0;     ///< The drive's multi-turn angle less that.
   bool counted_ = false;       ///< The turns are known, and since then it has not been silent.
   bool was_counted_ = false;   ///< They were before the last silence.
-  int zero_angles_ = 0;        ///< Replies in a row that say an angle of 0.
+  int zero_angles_ = 0;        ///< Replies in a row with an angle of 0.
   bool off_ = false;
   std::uint8_t errors_ = 0;
-  bool restarted_ = false;  ///< While it was to obey: it has lost its turns.
+  bool restarted_ = false;  ///< While it was to obey: its turns are lost.
 
   EnableSequence<Step> enabling_;
 };

@@ -19,8 +19,8 @@ constexpr double kFarthestRev = 32000.0;  // from where it is
 // The firmware's own servo.max_velocity.
 constexpr double kFastestRevPerS = 500.0;
 
-// In velocity mode the drive's controller holds the shaft to a moving point. It is kept this near, so that a
-// shaft that was held up does not race after it. Half a turn is 2 N·m with the vendor's gain of 4 N·m/rev.
+// In velocity mode the drive's controller holds the shaft to a moving point. The point stays this near: a
+// shaft that was held up would race after it. Half a turn is 2 N·m with the vendor's gain of 4 N·m/rev.
 constexpr double kSlipRev = 0.5;
 
 constexpr Duration kMoteusStepPatience = std::chrono::milliseconds{250};  // repeated in each tick
@@ -80,7 +80,7 @@ void Moteus_Motor::update(const Tick& tick) noexcept {
   }
 }
 
-// A stop clears a fault, so while the drive has one (and no torque) it is only asked, until clearComplaint().
+// A stop clears faults: a drive with a fault, hence without torque, gets questions until clearComplaint().
 Moteus_Motor::Send Moteus_Motor::restSend(const Tick& tick) const noexcept {
   const Duration fresh =
       std::max(kFresh, std::chrono::duration_cast<Duration>(std::chrono::duration<double>(1.5 * slip_s_)));

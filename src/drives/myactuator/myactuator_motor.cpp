@@ -124,7 +124,7 @@ void MyActuator_Motor::takeSpeed(double output_rpm, bool of_motion) noexcept {
 }
 
 FrameVerdict MyActuator_Motor::takeAngleReply(const CanFrame& frame) noexcept {
-  // A copy of the request says 0. There is only one of them at a time.
+  // A copy of the request has the angle 0; there are no two in a row.
   const bool zero = allZero(frame);
   if (zero && !std::exchange(zero_before_, true)) return FrameVerdict::kAccepted;
   zero_before_ = zero;
@@ -191,7 +191,7 @@ void MyActuator_Motor::update(const Tick& tick) noexcept {
   const Target target = wanted();
   if (enabling() && begins()) beginEnabling();
   if (std::exchange(reset_, false)) outbox_.add(myactuator::request(id_, myactuator::Code::kReset));
-  // A drive that is just starting must not find an angle of its former life waiting for it.
+  // A drive that has just started must get no target in turns that it counted before.
   if (!heard_ || tick.now - *heard_ > kMyactuatorRestartSilence) running_ = false;
   if (!due(tick)) return;
 
@@ -223,8 +223,8 @@ void MyActuator_Motor::update(const Tick& tick) noexcept {
   sendQueries(tick);
 }
 
-// Output off in every turn until the drive has answered it, as either frame may be lost; then in turns with
-// that what it measures.
+// "Output off" until the drive has answered it, as either frame may be lost; then in turns with the
+// question for its readings.
 void MyActuator_Motor::poll(bool polled_before) noexcept {
   off_answered_ = off_answered_ && polled_before && running_;
   setCommand(0.0, CommandUnit::kNone);

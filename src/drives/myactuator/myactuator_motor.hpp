@@ -78,11 +78,11 @@ class MyActuator_Motor final : public SoloMotor {
 
   FrameOutbox outbox_;
   std::optional<CanFrame> last_command_;
-  std::uint64_t turns_due_ = 0;  ///< Ticks in which it was told something.
+  std::uint64_t turns_due_ = 0;  ///< Ticks in which it got a frame.
   bool polled_ = false;          ///< In the last of them FrameKind::kPoll was ordered.
   bool off_answered_ = false;    ///< The drive has answered, in this poll, that its output is off.
   MonotonicTime next_query_{};
-  bool ask_uptime_ = false;  ///< Next; else the status.
+  bool ask_uptime_ = false;  ///< The next question; else the status.
   bool reset_ = false;       ///< The drive is to be restarted with the next frames.
 
   // Readings of the drive.

@@ -8,8 +8,8 @@ namespace rc10 {
 namespace {
 
 constexpr std::uint8_t kOdriveLastState = 14;
-// They come every 100 ms unless somebody wants them oftener. Feedback of a DJI motor at rest looks the same,
-// and comes 1000 times a second.
+// Heartbeats come every 100 ms, or at a rate that somebody has set. Feedback of a DJI motor at rest looks
+// the same and comes 1000 times a second.
 constexpr float kMostHeartbeatsHz = 150.0F;
 
 /// Numbers that a shaft can have: bytes of another protocol read as floats are seldom.
@@ -17,8 +17,8 @@ bool sane(float value) {
   return std::isfinite(value) && (value == 0.0F || (std::abs(value) > 1e-9F && std::abs(value) < 1e7F));
 }
 
-/// Messages beside its estimates. 0x15 and 0x1C of firmware 0.5 are something else, but also such
-/// numbers.
+/// Messages beside its estimates. 0x15 and 0x1C have another meaning in firmware 0.5, with numbers of the
+/// same kind.
 bool isTelemetry(odrive::Message message, const CanFrame& frame) {
   const auto pair = odrive::decodePair(frame);
   if (!pair) return false;
@@ -52,8 +52,8 @@ void addStandard(const CanFrame& frame, std::vector<DriveGuess>& guesses) {
   if (isTelemetry(message, frame)) guesses.push_back({drive_kind::kOdrive, node});
 }
 
-// The id is that of another family too. What says most is the heartbeat: an axis is in a state from "idle"
-// on, and bytes 5 and 6 are a code and a flag. A VESC or CubeMars at rest has zeros there.
+// Other families have such ids. The heartbeat tells them apart: an axis is in a state from "idle" on, and
+// bytes 5 and 6 are a code and a flag. A VESC or CubeMars at rest has zeros there.
 void addExtended(const CanFrame& frame, std::vector<DriveGuess>& guesses) {
   constexpr std::uint8_t kHighestCode = 15;
   if (!frame.id.extended || odrive::messageOf(frame.id) != odrive::Message::kHeartbeat) return;

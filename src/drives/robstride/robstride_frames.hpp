@@ -82,7 +82,7 @@ struct Codec {
   /// Feedback in a frame of 8 bytes.
   [[nodiscard]] Feedback feedback(const CanFrame& frame) const noexcept;
 
-  // The drive's side. Of `told`, raw_position is not used.
+  // For the simulated drive. `told`: all but raw_position is used.
   [[nodiscard]] SpringLaw operation(const CanFrame& frame) const noexcept;
   [[nodiscard]] CanFrame answer(const Feedback& told) const noexcept;
   [[nodiscard]] CanFrame parameter(std::uint16_t index, std::uint32_t bits, bool known) const noexcept;

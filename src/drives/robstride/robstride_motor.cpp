@@ -229,7 +229,7 @@ void RobStride_Motor::takeParameter(const CanFrame& frame) noexcept {
   }
   if (accepted && index == parameter::kPosition && std::abs(value) < kFarthestCountedRad &&
       feedback_.samples > 0) {
-    // Whole scales apart, because the two were read a moment apart.
+    // Rounded to whole scales: the two were read at different moments.
     scale_offset_rad_ = wraps() ? kScaleRad * std::round((value - position_rad_) / kScaleRad) : 0.0;
   }
   enabling_.onParameter(index, accepted, bits);

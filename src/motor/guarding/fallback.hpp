@@ -98,7 +98,7 @@ class Fallback {
     if (kind_ == FrameKind::kCommand && now - begun_ >= ramp_.over + kRampRest) end();
     if (acts() && bounded_ && now >= bound_) kind_ = then_;
     if (!stands_still) moved_ = now;
-    // A hold is for what would move by itself: it lasts its time.
+    // A hold is for a load that would move by itself: it lasts for its whole time.
     const bool settled = now - moved_ >= kSettled && kind_ != FrameKind::kHold;
     if (until_ == Until::kStandstill && settled) end();
   }

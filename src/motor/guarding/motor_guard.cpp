@@ -8,11 +8,11 @@
 namespace rc10 {
 namespace {
 
-// A motor at rest sends the same frame for ever; one that is told a current does not for so long.
+// A motor at rest repeats its frame for ever, one with a current repeats it for less than this.
 constexpr Duration kFrozenTime = std::chrono::milliseconds{200};
 
-// Torque taken away for heat comes back this much cooler, so that noise of a degree changes nothing, and by
-// this share a second, so that a motor that cools under a load jerks nothing.
+// Hysteresis of derating against noise of a degree, and the share by which torque comes back in a second,
+// without a jerk of the load.
 constexpr float kCoolerC = 3.0F;
 constexpr float kRecoveryPerSecond = 0.2F;
 
@@ -56,7 +56,7 @@ MotorGuard::Verdict MotorGuard::step(const Observation& seen) noexcept {
   return verdict;
 }
 
-// The last one found is the one that says most.
+// The last fault found tells most about the cause.
 FaultCode MotorGuard::motionFault(const Observation& seen, bool new_sample) noexcept {
   auto fault = FaultCode::kNone;
   if (fallsBehind(seen)) fault = FaultCode::kFollowingError;

@@ -27,7 +27,7 @@ class RestCheck {
 
   explicit RestCheck(const RestConfig& config) noexcept : config_(config) {}
 
-  /// Once a tick. `told`: to rest, since the last tick at least.
+  /// Once a tick. `told`: its drive got rest frames, since the last tick at least.
   [[nodiscard]] Verdict step(const MotorFeedback& feedback, bool told, float standstill_rpm) noexcept {
     if (told) return look(feedback, standstill_rpm);
     if (told_) reset();

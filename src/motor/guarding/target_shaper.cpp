@@ -40,7 +40,7 @@ constexpr double kEffortAgainShare = 0.8;
   return limited;
 }
 
-// Rest of an effort whose limits have let through no more than `told`, or a brake in its place.
+// Part of an effort that its limits have let through: `told`; 0 if they brake in its place.
 [[nodiscard]] double leftOf(double effort, double told) noexcept {
   const double most = std::fabs(effort);
   return effort < 0.0 ? std::clamp(told, -most, 0.0) : std::clamp(told, 0.0, most);
@@ -347,7 +347,7 @@ std::uint32_t TargetShaper::shorten(Target& shaped, double before_deg, const Mot
   const bool begins = std::exchange(enters_, false);
   if (rpm_per_deg > 0.0 && (begins || config_.lead_is_speed || towards_rpm > ceiling_rpm_ / 2)) {
     const double far_deg = ceiling_rpm_ / rpm_per_deg;
-    // A target that runs on, or is far away, holds no load where it is.
+    // A target that moves on or is far away holds no load at its place.
     const bool runs = std::fabs(asked_deg - before_deg) > most_deg || std::fabs(ahead_deg) > far_deg;
     const double lead_deg = begins && runs ? kFirstLeadShare * far_deg : far_deg;
     ahead_deg = std::clamp(ahead_deg, -lead_deg, lead_deg);
