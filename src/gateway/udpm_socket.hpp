@@ -19,7 +19,7 @@
 
 namespace rc10::gateway {
 
-/// LCM's UDP multicast, without liblcm: see ARCHITECTURE.md. liblcm's receive stamp is the time at which
+/// LCM's UDP multicast, without liblcm: docs/decisions/0006. liblcm's receive stamp is the time at which
 /// its reader thread got round to a datagram, so that a command that waited looks fresh; here it is the
 /// kernel's. Nothing waits and nothing grows.
 class UdpmSocket {
