@@ -167,6 +167,29 @@ def test_troubleshooting_quotes_messages_that_exist() -> None:
     assert unknown == []
 
 
+def constants(prefix: str) -> dict[str, int]:
+    """Those of the LCM types whose names begin so, by the rest of the name."""
+    texts = [path.read_text(encoding="utf-8") for path in (REPO / "lcm_types").glob("*.lcm")]
+    found = [re.findall(rf"\bconst \w+ {prefix}_(\w+) *= *(\d+);", text) for text in texts]
+    return {name: int(number) for pairs in found for name, number in pairs}
+
+
+@pytest.mark.parametrize("prefix", ["ACTING", "CONDITION", "LIMIT", "MODE", "STATE", "STATUS"])
+def test_the_contract_has_the_word_of_each_constant(prefix: str) -> None:
+    words = set(re.findall(r"[A-Za-z][A-Za-z_-]+", read(REPO / "docs/lcm.md").text))
+    names = constants(prefix)
+    assert names
+    # States of a bus are the words of `rc10ctl`.
+    of_bus = {name for name in names if name.replace("_", "-").lower() in words}
+    assert set(names) - words - (of_bus if prefix == "STATE" else set()) == set()
+
+
+def test_the_contract_has_the_number_of_each_cause_of_a_stop() -> None:
+    table = read(REPO / "docs/lcm.md").text.partition("| `stop_cause` |")[2].partition("\n\n")[0]
+    numbers = {int(number) for number in re.findall(r"^\| (\d+) \|", table, re.M)}
+    assert numbers == set(constants("STOP").values())
+
+
 def missing_tests(page: Page) -> list[str]:
     """Those that the page names, and nobody wrote. It may leave out the suite, or end in `*`."""
     shaped = r"(\w+/)?[A-Z]\w*\*?\.[A-Z*][\w*/]*|test_\w+\*?|tests/\S+\.py"
