@@ -165,7 +165,7 @@ def gains_of(robot: rc10.Robot, motor: str) -> Gains:
 
     Raises:
         rc10.RequestRefused: its drive closes its loops.
-        ValueError: the drive closes the velocity loop, or is told volts.
+        ValueError: the drive closes the velocity loop, or is commanded in volts.
     """
     gains = robot.gains(motor)
     try:

@@ -89,12 +89,10 @@ TEST(ManyMistakes, AreAllReportedInOneGoInTheOrderOfTheFile) {
           "hero.yaml:20:49: buses[0].motors[5].command: the M3508 obeys currents only; remove it, or write "
           "command: "
           "current",
-          "hero.yaml:21:76: buses[0].motors[6].current_limit_a: with command: voltage the GM6020 is told "
-          "volts; use "
-          "voltage_limit_v",
+          "hero.yaml:21:76: buses[0].motors[6].current_limit_a: with command: voltage the GM6020 is "
+          "commanded in volts; use voltage_limit_v",
           "hero.yaml:21:108: buses[0].motors[6].velocity_pid.kp_a_per_rpm: with command: voltage the GM6020 "
-          "is told "
-          "volts; use kp_v_per_rpm",
+          "is commanded in volts; use kp_v_per_rpm",
           "hero.yaml:22:52: buses[0].motors[7].gear_ratio: 0 is not accepted; use more than 0, at most 10000",
           "hero.yaml:22:66: buses[0].motors[7].direction: '2' is not one of 1 and -1; use one of these",
           "hero.yaml:22:90: buses[0].motors[7].feedback_timeout_ms: 1 is below 2 ms; use 2 to 1000 ms",

@@ -107,7 +107,7 @@ void Oracle::heard(std::size_t bus, const CanFrame& frame) {
   }
 }
 
-// Every frame to a drive that is told something once a tick is a command; others get questions, too.
+// To a drive with one frame a tick each is a command; others get questions, too.
 void Oracle::foreign(std::size_t bus, const CanFrame& frame) {
   std::vector<Motor*> readers;
   bool command = false;

@@ -60,8 +60,8 @@ class Oracle {
     if (open) mode_last_open_ = now_;
   }
   void stopBegun() { stop_asked_ = true; }
-  /// For tests of the oracle itself: once this motor is told something that is not rest, it believes that
-  /// nothing else is told to it any more.
+  /// For tests of the oracle itself: after a frame for this motor that is not rest, it takes no other frame
+  /// for it into account.
   void deafen(std::size_t motor) { deaf_ = motor; }
   /// Outputs.
   void answered(const OrderResult& result);
@@ -113,7 +113,7 @@ class Oracle {
     int frames = 0;                                            ///< For it, in this tick.
     std::array<std::pair<std::uint64_t, CanFrame>, 6> last{};  ///< And in which tick, for the report.
     std::size_t last_count = 0;
-    double effort_before = 0.0;        ///< When it was told something last.
+    double effort_before = 0.0;        ///< In its last frame.
     bool followed_effort = false;      ///< Since then it follows a current or a voltage, and all was read.
     std::uint64_t periods_untold = 0;  ///< Since then.
     std::uint64_t lost_ticks = 0;      ///< Since it is OFFLINE or FAULT.

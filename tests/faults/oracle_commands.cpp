@@ -23,7 +23,7 @@ constexpr double kRampSlack = 0.1;
 // Standstill that a ramp waits for after its time; and a frame may be on its way.
 constexpr Duration kRampEnd = 260ms;
 
-// Time beyond `reduced_within_ms` for a drive that is told something in some ticks only.
+// Time beyond `reduced_within_ms` for a drive that gets commands in some ticks only.
 constexpr Duration kReducedSlack = 100ms;
 // Time in which speed and effort come back when the mode input is closed (docs/gpio.md), and some.
 constexpr Duration kFullAgain = 1200ms;
@@ -58,7 +58,7 @@ constexpr double kAngleSlackDeg = 1.0;
 
 }  // namespace
 
-// It is told something in its turn only, of ticks in which its bus carries frames.
+// It gets frames in its turn only, of ticks in which its bus carries frames.
 bool Oracle::mayLag(const Motor& motor, std::uint64_t ticks) {
   const auto lag_ticks = static_cast<std::uint64_t>(motor.config->settings.command_divider);
   return std::min(ticks, motor.carried_ticks) < lag_ticks;

@@ -70,7 +70,7 @@ def stats() -> dict[str, Any]:
 
 
 def command_times_ns(frames: list[Frame], drive_id: int, *, moteus: bool) -> list[int]:
-    """Times of the frames that a drive is told something with."""
+    """Times of the frames to a drive."""
     command_id = 0x8000 | drive_id if moteus else drive_id
     return [frame.t_ns for frame in frames if frame.id == command_id]
 

@@ -37,8 +37,8 @@ struct TextForm {
 
 /// Condition of a key that exists for some motors only.
 enum Need : std::uint16_t {
-  kNeedsCurrent = 1U << 0U,        ///< The drive is told a current.
-  kNeedsVoltage = 1U << 1U,        ///< The drive is told a voltage.
+  kNeedsCurrent = 1U << 0U,        ///< The drive is commanded in amperes.
+  kNeedsVoltage = 1U << 1U,        ///< The drive is commanded in volts.
   kNeedsIncremental = 1U << 2U,    ///< The velocity loop is of type incremental.
   kNeedsPosition = 1U << 3U,       ///< The velocity loop is of type position.
   kNeedsAbsolute = 1U << 4U,       ///< The encoder sits on the output shaft.

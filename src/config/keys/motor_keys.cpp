@@ -306,7 +306,7 @@ constexpr std::array kMotorKeys{
         .kind = kInteger,
         .range = {.min = 1, .max = 100},
         .needs = kNeedsOwnFrames,
-        .about = "The drive is told something in every n-th tick; the motors of a bus take turns. A drive "
+        .about = "The drive gets a command in every n-th tick; the motors of a bus take turns. A drive "
                  "that only answers sends its feedback at that rate. Not for motors that share frames (DJI). "
                  "Default: 1."},
     Key{.name = "feedback_timeout_ms",

@@ -5,14 +5,14 @@ namespace rc10 {
 std::string whyMeaningless(const Key& key, std::uint16_t unmet, const MotorNature& nature) {
   const std::string model{nature.model};
   const std::string use_twin = "; use " + std::string{key.twin};
-  if ((unmet & kNeedsCurrent) != 0) return "with command: voltage the " + model + " is told volts" + use_twin;
+  if ((unmet & kNeedsCurrent) != 0)
+    return "with command: voltage the " + model + " is commanded in volts" + use_twin;
   if ((unmet & kNeedsVoltage) != 0) {
     const bool chosen = nature.traits.host_loops != nullptr;
-    return (chosen ? "with command: current the " : "the ") + model + " is told amperes" + use_twin;
+    return (chosen ? "with command: current the " : "the ") + model + " is commanded in amperes" + use_twin;
   }
   if ((unmet & kNeedsHostLoops) != 0) return "the " + model + " has loops of its own; remove it";
-  if ((unmet & kNeedsUnasked) != 0)
-    return "the " + model + " answers when it is told something; use command_divider";
+  if ((unmet & kNeedsUnasked) != 0) return "the " + model + " sends nothing but answers; use command_divider";
   if ((unmet & kNeedsOwnFrames) != 0)
     return "the " + model + " shares its command frames with other motors; remove it";
   if ((unmet & kNeedsIncremental) != 0) return "belongs to type: incremental; remove it, or change the type";

@@ -17,8 +17,8 @@
 
 namespace rc10 {
 
-/// A Damiao motor in one of its control modes. It speaks only when told something, so at rest it is told
-/// again and again to be disabled, and answers with its state. Nothing but that, and the clearing of faults,
+/// A Damiao motor in one of its control modes. It sends nothing but answers, so at rest the disable
+/// frame is repeated, and the drive answers with its state. Nothing but that, and the clearing of faults,
 /// is sent to a drive that the enable sequence has not enabled: it would keep a target and act on it later.
 /// Scheduler thread only.
 class Damiao_Motor : public SoloMotor {

@@ -7,7 +7,7 @@
 #include "bus/can_frame.hpp"
 
 /// The frames of LK-Tech's drives, protocol V2.35: standard ids, classic, 8 bytes, little endian. A drive
-/// answers on the id on which it is told something. Angles and speeds of commands and the speeds of replies
+/// answers under the id of the command. Angles and speeds of commands and the speeds of replies
 /// are those of the rotor, the encoder is that of the output.
 namespace rc10::lktech {
 

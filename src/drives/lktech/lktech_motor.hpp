@@ -11,10 +11,10 @@
 
 namespace rc10 {
 
-/// An LK-Tech motor. Its drive speaks only when told something, and on the id on which it is told: whether a
-/// frame on that id is its reply or somebody else's command, only the payload shows. Each command brings
-/// current, speed and the encoder of the output; now and then the drive is asked for its errors and for the
-/// turns that it has counted itself, by which a restart is noticed.
+/// An LK-Tech motor. Its drive sends nothing but replies, under the id of the command: only the payload tells
+/// a reply from somebody else's command. The reply to a command has current, speed and the encoder of the
+/// output; now and then the drive is asked for its errors and for the turns that it has counted itself, by
+/// which a restart is noticed.
 ///
 /// As a member of an LKTech_Group it leaves its currents to the group, and sends only what else there is.
 class LKTech_Motor final : public SoloMotor {

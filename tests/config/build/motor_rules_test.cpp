@@ -117,16 +117,13 @@ TEST(MotorRules, OnlyAGM6020ObeysVoltage) {
 TEST(MotorRules, LimitsAndGainsAreInTheUnitOfTheCommand) {
   EXPECT_THAT(
       errorsOfWheel("voltage_limit_v: 12, velocity_pid: {kp_v_per_rpm: 1}"),
-      ElementsAre(
-          "hero.yaml:6:61: buses[0].motors[0].voltage_limit_v: with command: current the M3508 is told "
-          "amperes; use current_limit_a",
-          "hero.yaml:6:94: buses[0].motors[0].velocity_pid.kp_v_per_rpm: with command: current the "
-          "M3508 is told amperes; use kp_a_per_rpm"));
-  EXPECT_THAT(
-      errorsOfMotor("{name: a, model: GM6020, id: 1, command: voltage, current_limit_a: 1}"),
-      ElementsAre(
-          "hero.yaml:6:76: buses[0].motors[0].current_limit_a: with command: voltage the GM6020 is told "
-          "volts; use voltage_limit_v"));
+      ElementsAre("hero.yaml:6:61: buses[0].motors[0].voltage_limit_v: with command: current the M3508 is "
+                  "commanded in amperes; use current_limit_a",
+                  "hero.yaml:6:94: buses[0].motors[0].velocity_pid.kp_v_per_rpm: with command: current the "
+                  "M3508 is commanded in amperes; use kp_a_per_rpm"));
+  EXPECT_THAT(errorsOfMotor("{name: a, model: GM6020, id: 1, command: voltage, current_limit_a: 1}"),
+              ElementsAre("hero.yaml:6:76: buses[0].motors[0].current_limit_a: with command: voltage the "
+                          "GM6020 is commanded in volts; use voltage_limit_v"));
 }
 
 TEST(MotorRules, TheDirectionIsOneOrMinusOne) {

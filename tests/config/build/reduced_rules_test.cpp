@@ -43,7 +43,7 @@ TEST(ReducedRules, TheLimitsOfAMotorAreRead) {
 TEST(ReducedRules, AVoltageIsReducedWhereTheDriveIsToldOne) {
   EXPECT_FLOAT_EQ(reducedOf("reduced_voltage_v: 6", "GM6020, id: 1, command: voltage").effort_share, 0.25F);
   EXPECT_THAT(errorsOf(robotText(kInput, "reduced_velocity_rpm: 60, reduced_voltage_v: 6")),
-              ElementsAre(HasSubstr("the M3508 is told amperes; use reduced_current_a")));
+              ElementsAre(HasSubstr("the M3508 is commanded in amperes; use reduced_current_a")));
 }
 
 TEST(ReducedRules, WithoutThemNothingIsReduced) {

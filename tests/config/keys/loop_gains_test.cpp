@@ -119,7 +119,8 @@ TEST(LoopGains, WhatIsNoGainOfThisMotorSaysWhatIs) {
   EXPECT_THAT(whyNot("velocty.kp", 1, loops), EndsWith("angle_pid; did you mean velocity?"));
   EXPECT_THAT(whyNot("derivative_filter_hz", 1, loops),
               HasSubstr("write velocity_pid.derivative_filter_hz or angle_pid.derivative_filter_hz"));
-  EXPECT_THAT(whyNot("velocity_pid.kp_v_per_rpm", 1, loops), HasSubstr("is told amperes; use kp_a_per_rpm"));
+  EXPECT_THAT(whyNot("velocity_pid.kp_v_per_rpm", 1, loops),
+              HasSubstr("is commanded in amperes; use kp_a_per_rpm"));
   EXPECT_THAT(whyNot("velocity.target_bandwidth", 1, loops), HasSubstr("belongs to type: incremental"));
   EXPECT_THAT(whyNot("velocity.kp", 1, loopsOf(kVesc)), HasSubstr("only gains of angle_pid"));
 }
