@@ -10,7 +10,7 @@ namespace rc10 {
 /// Where a frame stands in another, in the plane: turned by an angle, then moved. A value: copies share
 /// nothing. x forward, y left, counter-clockwise positive.
 ///
-/// base_to_camera * camera_to_ball is base_to_ball. What is made of numbers that are not finite gives
+/// base_to_camera * camera_to_ball is base_to_ball. Numbers that are not finite give
 /// NaN, which every command refuses.
 class HomogeneousTransform2D {
  public:

@@ -62,7 +62,7 @@ class PID_Position {
   void start(float output_in_force, float measured, float target) noexcept;
   /// Other gains from the next step on, without a bump: the integral keeps its share of the output, and
   /// what the new gains make of the last error appears over kStartGlideSeconds. Limits act at once. With
-  /// ki 0 the integral goes as well. What a limit had cut off is not carried over.
+  /// ki 0 the integral goes as well. The part that a limit had cut off is not carried over.
   void retune(const Config& config) noexcept;
   void reset() noexcept;
 

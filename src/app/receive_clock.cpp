@@ -7,7 +7,7 @@ namespace rc10 {
 namespace {
 
 // Slewing moves CLOCK_REALTIME and CLOCK_MONOTONIC alike: the offset changes by steps only (settimeofday,
-// a leap second, suspend). What is below this is the noise of reading two clocks one after the other.
+// a leap second, suspend). A smaller change is the noise of reading two clocks one after the other.
 constexpr Duration kOffsetNoise = std::chrono::milliseconds{1};
 
 }  // namespace

@@ -122,7 +122,7 @@ inline constexpr int kOperationCount = 13;
 /// event_t.lcm.
 enum class Severity : std::uint8_t { kInfo = 0, kWarning = 1, kError = 2 };
 
-/// By number. What comes from another program may be none of them.
+/// By number. A number from another program may have no word.
 inline constexpr std::array kControlModeWords{"coast",     "current", "velocity", "angle", "total_angle",
                                               "impedance", "voltage", "duty",     "brake"};
 inline constexpr std::array kControlModeUnits{"", "A", "rpm", "deg", "deg", "deg", "V", "", ""};

@@ -16,7 +16,7 @@ struct CanLinkNews {
   bool operator==(const CanLinkNews&) const = default;
 };
 
-/// One datagram of the netlink group RTMGRP_LINK. What is something else, or cut off, is left out.
+/// One datagram of the netlink group RTMGRP_LINK. Other messages, and those that are cut off, are left out.
 [[nodiscard]] std::vector<CanLinkNews> parseLinkNews(std::span<const std::byte> datagram);
 
 }  // namespace rc10

@@ -11,7 +11,7 @@ namespace rc10 {
 /// The descriptor belongs to somebody else. One thread; no allocation.
 class EchoCounter {
  public:
-  /// Echoes of one call. What is more waits in the socket.
+  /// Echoes of one call; further ones wait in the socket.
   static constexpr std::size_t kBatch = 64;
 
   explicit EchoCounter(int fd) noexcept : fd_(fd) {}

@@ -101,7 +101,7 @@ class fdCANbus {
   void packRest() noexcept;
   /// Is this one of the packers' rest frames, whoever sent it?
   [[nodiscard]] bool isRest(const CanFrame& frame) const noexcept;
-  /// Hands everything collected to the kernel in one sendmmsg(MSG_DONTWAIT). What is refused is
+  /// Hands everything collected to the kernel in one sendmmsg(MSG_DONTWAIT). Refused frames are
   /// dropped and counted; the next tick starts packing there.
   void flush() noexcept;
   /// Throws everything collected away and counts it as held back.

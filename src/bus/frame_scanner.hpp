@@ -16,7 +16,7 @@ enum class ScanVerdict : std::uint8_t {
   kFrame,        ///< A frame, which the protocol has taken: as long as what it was shown.
   kSkip,         ///< A whole frame that does not count; all of it is noise.
   kNoise,        ///< No frame begins at the first byte.
-  kBadChecksum,  ///< A frame but for its checksum. What follows its first byte may still be one.
+  kBadChecksum,  ///< A frame but for its checksum. The bytes behind its first may still be one.
 };
 
 /// Finds the frames in a stream of bytes, however it is cut. `Longest`: bytes of the longest frame.

@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <string>
 
-/// Measured values as short text. What is not reported (NaN) is "-".
+/// Measured values as short text; "-" for a value that is not reported (NaN).
 namespace rc10::client {
 
 /// "12.3"

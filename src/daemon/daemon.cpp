@@ -211,7 +211,7 @@ void Daemon::tellWhoMayCommand() {
       (config_.clients ? "stop this robot, and forge its state" : "command this robot"));
 }
 
-// Before the sockets are opened. What is missing or no CAN interface at all, opening will tell.
+// Before the sockets are opened. Opening reports interfaces that are missing or no CAN.
 Result<void> Daemon::prepareLinks() {
   for (const auto& bus : config_.buses) {
     if (bus.type != BusType::kSocketCan) continue;

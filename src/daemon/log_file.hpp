@@ -16,7 +16,7 @@ class LogFile final : public spdlog::sinks::base_sink<std::mutex> {
  public:
   static constexpr std::size_t kMostBytes = std::size_t{32} << 10U;
 
-  /// The caller is the only one who writes there. What was logged before comes first.
+  /// The caller is the only one who writes there. Earlier lines come first.
   void keepIn(std::string path);
 
  private:

@@ -6,7 +6,7 @@
 
 namespace rc10::doctor {
 
-/// The kernel's files: /proc, /sys and the like, below a root. What is not there or may not be read is empty.
+/// The kernel's files: /proc, /sys and the like, below a root. A missing or unreadable file is empty.
 class HostFiles {
  public:
   explicit HostFiles(std::string root = {}) : root_(std::move(root)) {}
@@ -25,7 +25,7 @@ class HostFiles {
   std::string root_;
 };
 
-/// "0-2,5" as {0, 1, 2, 5}: how the kernel writes sets of CPUs. What is no such text is skipped.
+/// "0-2,5" as {0, 1, 2, 5}: how the kernel writes sets of CPUs. Other text is skipped.
 [[nodiscard]] std::vector<int> cpuList(const std::string& text);
 
 }  // namespace rc10::doctor

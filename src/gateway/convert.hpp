@@ -11,8 +11,8 @@
 #include "rc10/robot_state_t.hpp"
 #include "rc10/signals_t.hpp"
 
-/// Between LCM messages and link messages. What comes in is from strangers and is decoded here, since the
-/// decoders that lcm-gen makes believe the counts in a message; what goes out is encoded by them.
+/// Between LCM messages and link messages. Incoming messages are from strangers and decoded here, since
+/// lcm-gen's decoders believe the counts in a message; outgoing ones are encoded by lcm-gen's code.
 namespace rc10::gateway {
 
 /// Larger than the largest valid command_t and request_t.

@@ -20,7 +20,7 @@ namespace rc10::gateway {
 class Inlet {
  public:
   /// A request that waited longer is answered with a refusal instead: nobody expects an `enable` any more
-  /// that was sent long ago. What stops motors is always passed on.
+  /// that was sent long ago. Requests that stop motors are always passed on.
   static constexpr Duration kMaxRequestAge = std::chrono::seconds{1};
 
   Inlet(LinkClient& rc10d, Outlet& outlet);

@@ -33,7 +33,7 @@ class UdpmSocket {
     in_addr sender{};
     std::optional<Duration> stamp;  ///< CLOCK_REALTIME at which the kernel received it.
   };
-  /// The next datagram, in `buffer`; empty when there is none. What does not fit is cut off.
+  /// The next datagram, in `buffer`; empty when there is none. A longer one is cut off.
   [[nodiscard]] std::optional<Incoming> receive(std::span<std::byte> buffer) noexcept;
 
   /// Never waits. False: dropped.

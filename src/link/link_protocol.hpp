@@ -23,7 +23,7 @@ inline constexpr std::size_t kMaxModules = 16;
 inline constexpr std::size_t kMaxSignals = 32;  ///< Inputs of a module, and outputs.
 inline constexpr std::size_t kMaxRefusalReasons = 16;
 
-/// Text of fixed room, always terminated. What is too long is cut off, between two UTF-8 characters.
+/// Text of fixed room, always terminated. Longer text is cut off, between two UTF-8 characters.
 template <std::size_t N>
 struct Text {
   std::array<char, N> chars{};

@@ -7,8 +7,8 @@
 
 namespace rc10 {
 
-/// One axis that is to look at an angle of the world: which velocity its motor gets. How fast the axis is
-/// carried round is taken off.
+/// One axis that is to look at an angle of the world: computes the velocity of its motor, less the turning of
+/// its base.
 class GimbalAxis {
  public:
   struct Config {

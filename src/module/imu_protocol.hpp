@@ -31,8 +31,8 @@ struct ImuAngles {
 /// m/s^2 for an acceleration of 1 g.
 inline constexpr float kStandardGravity = 9.80665F;
 
-/// A stream of an inertial sensor that computes its orientation itself. What a sensor does not send stays
-/// without samples.
+/// A stream of an inertial sensor that computes its orientation itself. Values that a sensor does not send
+/// have no samples.
 class ImuProtocol : public I_Protocol {
  public:
   [[nodiscard]] const Stamped<ImuAngles>& angles() const noexcept { return angles_; }

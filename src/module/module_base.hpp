@@ -64,7 +64,7 @@ class Module_Base {
   Module_Base& operator=(const Module_Base&) = delete;
   virtual ~Module_Base() = default;
 
-  /// One tick. What it asks of `robot` acts in this tick.
+  /// One tick. Its requests to `robot` act in this tick.
   virtual void update(const Tick& tick, ModuleRobot& robot) noexcept = 0;
 
   /// In each tick while rc10d stops: update() is not called any more.

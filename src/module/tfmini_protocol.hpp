@@ -28,8 +28,8 @@ class TfminiProtocol final : public I_Protocol {
   /// Unit that the sensor is set to; centimetres by default.
   enum class Unit : std::uint8_t { kCentimetre, kMillimetre };
 
-  // Commands for pack_frame(): the first byte of the payload. What is set is lost when the sensor is switched
-  // off, unless it is saved.
+  // Commands for pack_frame(): the first byte of the payload. Settings are lost when the sensor is switched
+  // off, unless they are saved.
   static constexpr std::uint8_t kSetRateHz =
       0x03;                                       ///< then a u16, low byte first: 1000 / n, or 0 for kMeasure
   static constexpr std::uint8_t kMeasure = 0x04;  ///< once, at rate 0

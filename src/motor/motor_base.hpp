@@ -37,8 +37,8 @@ struct MotorFeedback {
 struct CascadeConfig;
 class DriveConfiguring;
 
-/// One motor: setTarget...() takes orders, updateFeedback() decodes, update() computes. What update()
-/// computed becomes a frame in a CommandPacker: the motor itself or its group.
+/// One motor: setTarget...() takes targets, updateFeedback() decodes, update() computes. A CommandPacker,
+/// the motor itself or its group, makes a frame of update()'s result.
 /// Scheduler thread only.
 class Motor_Base : public FrameListener {
  public:

@@ -14,8 +14,8 @@
 
 namespace rc10 {
 
-/// A motor whose drive has frames of its own: it listens and it packs. What most families have in common:
-/// conversion to the output shaft, the reference of the angle, the rhythm of commands, what an order means.
+/// A motor whose drive has frames of its own: it listens and it packs. Common to most families: conversion
+/// to the output shaft, the reference of the angle, the rhythm of commands, the meaning of an order.
 /// A family adds updateFeedback(), update() and the packing. Scheduler thread only.
 class SoloMotor : public Motor_Base, public CommandPacker {
  public:

@@ -11,8 +11,8 @@
 namespace rc10 {
 inline namespace robot_client {
 
-/// The targets that are sent again and again, and when a target stops being held. What was set in one message
-/// stays in one message. Pure: the time is an argument.
+/// The targets that are sent again and again, and when a target stops being held. Targets of one message
+/// stay in one message. Pure: the time is an argument.
 class HeldTargets {
  public:
   /// A motor that is not held any more, and why.

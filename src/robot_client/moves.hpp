@@ -11,7 +11,7 @@
 namespace rc10 {
 inline namespace robot_client {
 
-/// The moveTo() calls that are under way. A move that fails lets go of its target. What ended is added to
+/// The moveTo() calls that are under way. A move that fails lets go of its target. Ended moves are added to
 /// `ended`, so that promises are kept when no mutex is held. Pure.
 class Moves {
  public:

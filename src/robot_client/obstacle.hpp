@@ -10,7 +10,7 @@
 namespace rc10 {
 inline namespace robot_client {
 
-/// Reason why a motor would not act on a setpoint of this mode, in words that tell what to do. Who holds it
+/// Reason why a motor would not act on a setpoint of this mode, in words that tell what to do. Its holder
 /// does not count: a higher priority takes it over.
 [[nodiscard]] std::optional<std::string> obstacle(const RobotState& state, const std::string& motor,
                                                   Mode mode);

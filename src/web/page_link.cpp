@@ -15,7 +15,7 @@ constexpr Duration kPatience = std::chrono::milliseconds{200};
 // All pages wait while an rc10d is asked that does not answer: the renewals of a jog must not ask it in a row
 // before the STOP behind them.
 constexpr Duration kPause = std::chrono::milliseconds{500};
-// rc10d answers within ticks. Whoever presses STOP is told soon that nobody has heard it.
+// rc10d answers within ticks. A person who presses STOP must soon learn that nobody has heard it.
 constexpr Duration kAnswerPatience = std::chrono::seconds{5};
 constexpr Duration kEstopPatience = std::chrono::milliseconds{500};
 // A scan listens first: as long as it may, and asks at the pace of a slow and busy bus.

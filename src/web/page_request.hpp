@@ -61,7 +61,7 @@ struct TellClock {
 struct AskRecordings {
   std::int64_t seq = 0;
 };
-/// A recording, of which the first piece follows. What was asked for before is given up.
+/// A recording, of which the first piece follows. An earlier one is given up.
 struct AskRecording {
   std::uint32_t number = 0;
   std::string name;

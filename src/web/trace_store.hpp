@@ -17,7 +17,7 @@ class TraceStore {
   /// Room, in rows; the oldest make way.
   explicit TraceStore(std::size_t rows);
 
-  /// The signals of the rows that follow. What was there before of a signal stays.
+  /// The signals of the rows that follow. Earlier rows of a signal stay.
   void choose(std::span<const link::TraceSignal> signals);
   void add(const link::TraceRow& row);
   /// rc10d has been started anew: its ticks and its signals are others.

@@ -1,4 +1,4 @@
-// Part "Commission": the first time of one motor, step by step. What was found stays in this browser; nothing of it acts.
+// Part "Commission": the first time of one motor, step by step. Findings stay in this browser; none of them acts.
 import { useEffect, useRef, useState } from 'preact/hooks';
 
 import { CommissionEnd } from './commission_end';

@@ -9,7 +9,7 @@
 namespace rc10 {
 
 /// Holds a map against its table, all the way down: unknown and missing keys, wrong kinds, numbers out
-/// of range. What has been reported is marked refused, so that later checks do not stumble over it.
+/// of range. Reported values are marked refused, so that later checks pass them over.
 void checkKeys(YamlNode& node, const Section& section, const std::string& path, Problems& problems);
 
 /// Error for a key that is none of `known`. `listed`: how they are named where none is near; in the

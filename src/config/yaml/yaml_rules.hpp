@@ -6,7 +6,7 @@
 namespace rc10 {
 
 /// Reports what YAML allows and a configuration must not have, anywhere in the document: a key twice in
-/// one map, merge keys, tags, keys that are no plain text. What has been reported is marked refused.
+/// one map, merge keys, tags, keys that are no plain text. Reported values are marked refused.
 void checkYamlRules(YamlNode& root, Problems& problems);
 
 }  // namespace rc10

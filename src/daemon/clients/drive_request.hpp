@@ -13,8 +13,8 @@ namespace rc10 {
 /// Settings that can be written, one a line with its range; then the tool for all others.
 [[nodiscard]] std::string settingsText(const DriveSetup& setup);
 
-/// The named values of a request: settings, and `save` (1 or 0), which has to be said. What changes who the
-/// drive is comes last. The error says what is wrong with them.
+/// The named values of a request: settings, and `save` (1 or 0), which is required. Settings that change the
+/// drive's id come last. The error says what is wrong with them.
 [[nodiscard]] Result<DriveWrite> parseDriveWrite(const link::Request& request, const DriveSetup& setup);
 
 /// Report of a write: the settings with their values, and their consequences for the client.

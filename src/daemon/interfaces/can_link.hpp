@@ -8,7 +8,7 @@
 namespace rc10 {
 
 /// Down, settings, no automatic restart, up. Down throws away what the controller and the kernel's queue
-/// still held. What was set is read back before the interface goes up: with another bit rate it would destroy
+/// still held. Settings are read back before the interface goes up: with another bit rate it would destroy
 /// the frames of others. Main or io thread. The error names the interface, what was refused, and the fix.
 [[nodiscard]] Result<void> restartCanLink(const std::string& interface, const CanLinkSettings& wanted);
 

@@ -33,8 +33,8 @@ class FlightRecorder {
   /// `skipped`: setpoints, by their place in the command, that did not act.
   void command(const Command& command, blackbox::Verdict verdict,
                const std::bitset<kMaxMotors>& skipped = {}) noexcept;
-  /// Inputs of a module. What modules send to each other comes in every tick: of that only what changes is
-  /// written down, and a sample 20 times a second.
+  /// Inputs of a module. Modules send to each other in every tick: of that only changes are written
+  /// down, and a sample 20 times a second.
   void signals(const SignalMessage& message, blackbox::Verdict verdict) noexcept;
   void order(const Order& order) noexcept;
   void event(const Event& event) noexcept;

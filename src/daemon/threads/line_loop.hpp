@@ -63,7 +63,7 @@ class LineLoop {
   void watchScheduler(MonotonicTime now, std::uint64_t ticks);
   void tryToOpen(std::size_t index, MonotonicTime now);
   [[nodiscard]] Result<void> open(LineBank& bank, Bank& lines);
-  /// `all`: also what has not changed. What was refused is in `unwritten`, and tried again the next time.
+  /// `all`: also unchanged levels. Refused ones are in `unwritten`, and tried again the next time.
   static void drive(Bank& lines, std::uint32_t levels, bool all) noexcept;
   [[nodiscard]] static std::optional<std::uint32_t> read(Bank& lines) noexcept;
   void work(std::size_t index, MonotonicTime now);

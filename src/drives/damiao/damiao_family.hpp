@@ -20,7 +20,7 @@ struct DamiaoSettings {
   bool can_fd = false;
 };
 
-/// `settings.model` is one of the family's. What is 0 among the keys is the model's own.
+/// `settings.model` is one of the family's. A key of 0 stands for the model's own value.
 [[nodiscard]] DamiaoSettings damiaoSettings(const MotorSettings& settings);
 
 }  // namespace rc10

@@ -45,7 +45,7 @@ std::optional<std::size_t> otherIndex(Register address) noexcept {
   return static_cast<std::size_t>(found - kKept.begin());
 }
 
-/// Data of the motor and its make: read only. What the model's data do not have is 0.
+/// Data of the motor and its make: read only. A datum that the model lacks is 0.
 std::optional<std::uint32_t> nameplate(Register address, const MotorTraits& traits) noexcept {
   constexpr std::uint32_t kVersion = 1;
   switch (address) {

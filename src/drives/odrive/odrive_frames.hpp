@@ -8,7 +8,7 @@
 
 namespace rc10::odrive {
 
-/// CANSimple: the low five bits of the id. What the two generations of firmware share.
+/// CANSimple: the low five bits of the id. Messages of both generations of firmware.
 enum class Message : std::uint8_t {
   kHeartbeat = 0x01,
   kEstop = 0x02,

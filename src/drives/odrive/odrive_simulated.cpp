@@ -148,7 +148,7 @@ void OdriveDrive::receive(const CanFrame& frame) noexcept {
   drive();
 }
 
-// A remote frame asks. What is not known of this firmware stays without an answer.
+// A remote frame asks. Values that are not known of this firmware get no answer.
 void OdriveDrive::answerQuestion(odrive::Message asked) noexcept {
   switch (asked) {
     case odrive::Message::kHeartbeat: return answer(heartbeat());

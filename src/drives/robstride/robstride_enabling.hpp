@@ -23,7 +23,7 @@ struct RobstrideSetting {
 };
 
 /// The way to a running drive, one step at a time: stop it, write each setting and read it back, read its
-/// position if that is wanted, enable. What is not answered within 50 ms is sent again, at most 5 times.
+/// position if that is wanted, enable. A frame without an answer within 50 ms is sent again, at most 5 times.
 /// Scheduler thread only.
 class RobstrideEnabling {
  public:

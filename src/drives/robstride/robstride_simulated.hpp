@@ -11,7 +11,7 @@
 
 namespace rc10::sim {
 
-/// A RobStride or CyberGear drive on its private protocol. What no document tells is simulated at its worst:
+/// A RobStride or CyberGear drive on its private protocol. Undocumented behaviour is simulated at its worst:
 /// the torque limit does not act in operation mode, and what it was told in operation mode before it was
 /// stopped acts again when it is enabled.
 class RobstrideDrive final : public ServoDrive {

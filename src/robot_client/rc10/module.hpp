@@ -55,7 +55,7 @@ class Module {
 
   /// Gives the module these inputs, once: nothing sends them again, so that a program that hangs lets go.
   /// Call it from a loop, more often than they lapse. They replace all inputs; what is not named is not
-  /// given. What is returned says why they were not sent; whether the module takes them shows in
+  /// given. The result says why they were not sent; whether the module takes them shows in
   /// state().owner.
   Result<void> send(const Signals& inputs, SendOptions options = {}) const;
 

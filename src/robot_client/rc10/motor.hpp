@@ -21,7 +21,7 @@ class RobotSession;
 /// One motor of a Robot, by its name in the configuration: a handle, cheap to copy, valid as long as its
 /// Robot. Every member may be called from any thread; angles, velocities and torques are at the output shaft.
 ///
-/// A target is sent at once and then held (Robot). What is returned says why it was not sent; whether the
+/// A target is sent at once and then held (Robot). The result says why it was not sent; whether the
 /// motor obeys shows in state(): mode, target, owner.
 class Motor {
  public:

@@ -39,8 +39,8 @@ class ServiceDesk {
 ///
 /// The handler runs on a thread of the server's own, one call after the other; it may wait. 16 calls may wait
 /// for it, more are refused as busy, and so is a call whose client has stopped waiting. A call that comes
-/// again is answered again and not carried out again; the last 64 answers are remembered. What the handler
-/// throws is a failure in the words of the exception. The destructor waits for the handler.
+/// again is answered again and not carried out again; the last 64 answers are remembered. An exception of
+/// the handler is a failure in its words. The destructor waits for the handler.
 template <typename Request, typename Response>
 class ServiceServer {
  public:

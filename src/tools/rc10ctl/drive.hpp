@@ -26,7 +26,7 @@ struct Drive {
   std::int32_t priority = 0;
   Duration time{};
   Then then = Then::kTimeout;
-  /// Called before each sending with the newest state: may change the setpoint. What it returns ends the
+  /// Called before each sending with the newest state: may change the setpoint. Its result ends the
   /// drive: a reason is a failure, "" the end; empty goes on.
   std::function<std::optional<std::string>(link::Setpoint& setpoint, const link::State& state)> steer;
   /// Called with each event of the motor.
