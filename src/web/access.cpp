@@ -52,9 +52,9 @@ std::string refusal(const Caller& caller, const HostNames& names) {
   return {};
 }
 
-Right rightOf(bool loopback, std::string_view shown_token, std::string_view token) noexcept {
-  if (loopback) return Right::kCommand;
-  if (token.empty() || shown_token.size() != token.size()) return Right::kNothing;
+PageRight rightOf(bool loopback, std::string_view shown_token, std::string_view token) noexcept {
+  if (loopback) return PageRight::kCommand;
+  if (token.empty() || shown_token.size() != token.size()) return PageRight::kNothing;
   // The time does not tell how much of it was right.
   unsigned char different = 0;
   for (std::size_t i = 0; i < token.size(); ++i) {
@@ -62,7 +62,7 @@ Right rightOf(bool loopback, std::string_view shown_token, std::string_view toke
         different | static_cast<unsigned char>(static_cast<unsigned char>(shown_token[i]) ^
                                                static_cast<unsigned char>(token[i])));
   }
-  return different == 0 ? Right::kLook : Right::kNothing;
+  return different == 0 ? PageRight::kLook : PageRight::kNothing;
 }
 
 }  // namespace rc10::web

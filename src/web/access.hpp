@@ -14,9 +14,9 @@ struct Caller {
   bool loopback = false;                   ///< It comes from this computer.
 };
 
-/// Rights of a connection. An e-stop needs none.
-enum class Right : unsigned char {
-  kNothing,  ///< Not until it shows the token.
+/// Right of a page's connection; an e-stop needs none. Right is that of an entry of `clients`.
+enum class PageRight : unsigned char {
+  kNothing,  ///< Until it shows the token.
   kLook,     ///< Sees everything; moves, clears and changes nothing.
   kCommand,
 };
@@ -30,6 +30,6 @@ using HostNames = std::vector<std::string>;
 
 /// From this computer everything is allowed. From others the token allows to look: this is plain HTTP, and
 /// whoever listens on the way has the token too.
-[[nodiscard]] Right rightOf(bool loopback, std::string_view shown_token, std::string_view token) noexcept;
+[[nodiscard]] PageRight rightOf(bool loopback, std::string_view shown_token, std::string_view token) noexcept;
 
 }  // namespace rc10::web

@@ -81,7 +81,7 @@ bool mayConfigure(const RobotConfig& config, std::string_view token) {
   const auto hash = sha256(token);
   const auto& entries = config.clients->entries;
   return std::any_of(entries.begin(), entries.end(), [&](const ClientConfig& entry) {
-    return entry.by == ClientConfig::By::kToken && entry.who == hash && entry.has(rc10::Right::kConfigure);
+    return entry.by == ClientConfig::By::kToken && entry.who == hash && entry.has(Right::kConfigure);
   });
 }
 

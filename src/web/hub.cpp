@@ -80,7 +80,7 @@ void Hub::leave(PageSocket& socket) {
 // All that a page needs to draw its first picture.
 void Hub::greet(Page& page) {
   page.socket->sendText(shared(helloMessage(page.right, page.name)));
-  if (page.right == Right::kNothing) return;
+  if (page.right == PageRight::kNothing) return;
   if (!feed_.connected()) {
     page.socket->sendText(shared(downNow()));
     return;
@@ -115,7 +115,7 @@ void Hub::handle(PageSocket& socket, std::string_view message, MonotonicTime now
     if (page->test && page->test->seq() == end->seq) page->test->end(end->why);
   } else if (const auto* file = std::get_if<ChangeFile>(&*request)) {
     change(*page, *file);
-  } else if (page->right == Right::kNothing) {
+  } else if (page->right == PageRight::kNothing) {
     page->socket->sendText(shared(responseMessage(numberOf(message), "refused", "show the token first")));
   } else if (const auto* view = std::get_if<ChooseView>(&*request)) {
     choose(*page, *view);
@@ -165,7 +165,7 @@ void Hub::judgeTokens(MonotonicTime now) {
                                    [&](const auto& one) { return one->number == shown.page; });
     if (page == pages_.end()) continue;
     (*page)->right = rightOf(false, shown.token, token_);
-    if ((*page)->right == Right::kNothing) next_judgement_ = now + kWrongTokenPause;
+    if ((*page)->right == PageRight::kNothing) next_judgement_ = now + kWrongTokenPause;
     greet(**page);
   }
 }
@@ -338,9 +338,9 @@ void Hub::ask(Page& page, const AskRobot& wanted, MonotonicTime now) {
 
 std::string Hub::whyNotMoving(const Page& page) const {
   switch (page.right) {
-    case Right::kCommand: return {};
-    case Right::kNothing: return "show the token first";
-    case Right::kLook: break;
+    case PageRight::kCommand: return {};
+    case PageRight::kNothing: return "show the token first";
+    case PageRight::kLook: break;
   }
   return "over a network without encryption a page looks and stops; open it on the robot itself or through a "
          "tunnel: ssh -L 8010:localhost:8010";
@@ -484,7 +484,7 @@ void Hub::publish() {
   if (const auto* state = feed_.takeState(); state != nullptr && !pages_.empty()) {
     const auto text = shared(stateMessage(feed_, *state));
     for (const auto& page : pages_) {
-      if (page->right != Right::kNothing && !page->socket->behind()) page->socket->sendText(text);
+      if (page->right != PageRight::kNothing && !page->socket->behind()) page->socket->sendText(text);
     }
   }
   for (const auto& page : pages_) publishColumns(*page);
@@ -516,7 +516,7 @@ void Hub::publishAnswers(Page& page) {
 void Hub::tell(const std::string& message) {
   const auto text = shared(message);
   for (const auto& page : pages_) {
-    if (page->right != Right::kNothing) page->socket->sendText(text);
+    if (page->right != PageRight::kNothing) page->socket->sendText(text);
   }
 }
 

@@ -61,7 +61,7 @@ class Hub {
     PageSocket* socket = nullptr;
     std::uint64_t number = 0;
     bool loopback = false;
-    Right right = Right::kNothing;
+    PageRight right = PageRight::kNothing;
     std::string name;
     std::optional<View> view;
     std::uint32_t view_number = 0;

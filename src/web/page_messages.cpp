@@ -34,7 +34,7 @@ std::string wrapped(std::string_view type, const std::string& data) {
 
 }  // namespace
 
-std::string helloMessage(Right right, std::string_view session_name) {
+std::string helloMessage(PageRight right, std::string_view session_name) {
   constexpr std::array kWords{"nothing", "look", "command"};
   return lineOf({{"type", "hello"},
                  {"protocol", kPageProtocol},

@@ -25,7 +25,7 @@ inline constexpr int kPageProtocol = 2;
 
 // Messages to a page, one JSON object each with its "type".
 
-[[nodiscard]] std::string helloMessage(Right right, std::string_view session_name);
+[[nodiscard]] std::string helloMessage(PageRight right, std::string_view session_name);
 /// rc10d is not there, and why.
 [[nodiscard]] std::string downMessage(std::string_view reason, const DaemonEnd& end);
 /// The robot: motors, modules with their inputs and outputs, readings of each tick.

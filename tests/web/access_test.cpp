@@ -41,11 +41,11 @@ TEST(WebAccess, TextOfAStrangerIsMadePrintable) {
 }
 
 TEST(WebAccess, FromThisComputerEverythingIsAllowedFromOthersTheTokenAllowsToLook) {
-  EXPECT_EQ(rightOf(true, "", ""), Right::kCommand);
-  EXPECT_EQ(rightOf(false, "secret", "secret"), Right::kLook);
+  EXPECT_EQ(rightOf(true, "", ""), PageRight::kCommand);
+  EXPECT_EQ(rightOf(false, "secret", "secret"), PageRight::kLook);
   for (const auto* shown : {"", "secre", "secret ", "Secret", "secrets"})
-    EXPECT_EQ(rightOf(false, shown, "secret"), Right::kNothing) << shown;
-  EXPECT_EQ(rightOf(false, "", ""), Right::kNothing);  // without a token nobody else gets in
+    EXPECT_EQ(rightOf(false, shown, "secret"), PageRight::kNothing) << shown;
+  EXPECT_EQ(rightOf(false, "", ""), PageRight::kNothing);  // without a token nobody else gets in
 }
 
 }  // namespace
