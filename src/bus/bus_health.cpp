@@ -76,7 +76,7 @@ void BusHealth::update(MonotonicTime now, const Traffic& traffic) noexcept {
 
   const bool sent = traffic.tx_watched != seen_.tx_watched;
   const bool echoed = traffic.tx_confirmed != seen_.tx_confirmed;
-  // Any echo will do, whosever it was: a frame that got lost once must not be missed for ever.
+  // Any echo counts, also of another frame: one lost frame must not stall the bus for ever.
   if (!carrying || !traffic.echo_available || echoed) {
     echo_pending_ = false;
     stalled_ = false;

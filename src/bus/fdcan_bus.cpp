@@ -14,8 +14,8 @@ static_assert(SendBatch::kCapacity == fdCANbus::kMaxFramesPerTick);
 
 namespace {
 
-/// A frame of the last tick once more: a wire or a bridge that doubles frames is no other controller, and the
-/// drive is told nothing new.
+/// A repetition of a frame of the last tick: a wire or a bridge that doubles frames is no other controller,
+/// and commands nothing new.
 bool isDoubled(const CanFrame& frame, const SendBatch& batch) noexcept {
   const auto sent = batch.cleared();
   return std::any_of(sent.begin(), sent.end(), [&frame](const SendBatch::Entry& entry) {

@@ -9,7 +9,7 @@
 namespace rc10::client {
 namespace {
 
-// It came over the link: not to be believed.
+// A count from the link is bounded before use.
 std::size_t motorCount(const link::Welcome& welcome) {
   return std::min<std::size_t>(welcome.motor_count, link::kMaxMotors);
 }

@@ -15,9 +15,9 @@
 namespace rc10::guard {
 namespace {
 
-// More are no rc10d.
+// Connections without a hello, at the same time.
 constexpr std::size_t kMaxVisitors = 8;
-// Period at which one that was started for an rc10d that never came looks whether it is used.
+// Longest wait of a guard without a robot, until it checks whether it is still needed.
 constexpr Duration kLongestWait = std::chrono::seconds{10};
 constexpr std::string_view kNoDescriptors =
     "no file descriptors left: an rc10d was sent away, which nobody watches now; raise the limit "

@@ -142,7 +142,7 @@ void Chassis_Base::update(const Tick& tick, ModuleRobot& robot) noexcept {
   setOutput(kOutPower, power_w);
   setOutput(kOutFactor, factor);
   if (!commanded() || !allObey(robot) || !ready(robot)) {
-    // From where it is when it is commanded again: what rolls is not told to stand at once.
+    // The next command begins with the present motion: a robot that rolls is not stopped in a jump.
     slew_.reset(finiteOrRest(now));
     return;
   }
@@ -161,7 +161,7 @@ Twist2D Chassis_Base::wanted(const ModuleRobot& robot) const noexcept {
   if (frame == 1) {
     twist = worldToBody(twist, odometry_.pose().heading_deg);
   } else if (frame == 2) {
-    // A gimbal that nobody knows: no direction is better than a wrong one.
+    // The gimbal's angle is not known: no motion is better than one in a wrong direction.
     if (!std::isfinite(gimbal_deg)) return {};
     twist = seenFrom(-gimbal_deg, twist);
   }
@@ -170,7 +170,7 @@ Twist2D Chassis_Base::wanted(const ModuleRobot& robot) const noexcept {
   return twist;
 }
 
-// By the speed of a wheel at the edge: speeds and turning each against their limit.
+// Projection of `part` on `wanted`; speed and turning count as shares of their limits.
 double Chassis_Base::shareOf(const Twist2D& wanted, const Twist2D& part) const noexcept {
   const double per_speed = max_speed_m_s_ > 0.0 ? 1.0 / (max_speed_m_s_ * max_speed_m_s_) : 0.0;
   const double per_turn = max_turn_deg_s_ > 0.0 ? 1.0 / (max_turn_deg_s_ * max_turn_deg_s_) : 0.0;
@@ -192,7 +192,7 @@ Twist2D Chassis_Base::bounded(Twist2D twist) const noexcept {
 }
 
 void Chassis_Base::updateOdometry(const Tick& tick, ModuleRobot& robot) noexcept {
-  // While one wheel is not heard, the way of the others waits for it.
+  // While a wheel is not heard, no way is counted; that of the others counts once it is back.
   if (allFresh(tick, robot)) {
     const Twist2D way = travelled(robot, tick.dt_s);
     odometry_.step(way, trustedHeading(way, tick, robot), tick.dt_s);

@@ -72,7 +72,7 @@ class Chassis_Base : public Module_Base {
   PowerLimiter power_;
 };
 
-/// A type of chassis: its motors stop together, by themselves each may be tried.
+/// A type of chassis: its motors stop together, but each may be enabled alone.
 class ChassisType : public ModuleType {
  public:
   [[nodiscard]] Coupling coupling() const noexcept override { return Coupling::kStop; }

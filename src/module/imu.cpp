@@ -136,7 +136,7 @@ class Imu : public Module_Base {
   Duration readInputs(std::array<double, kAxes>& values) const noexcept {
     if (!commanded()) return Duration::max();
     for (std::size_t i = 0; i < kAxes; ++i) values[i] = input(i);
-    return Duration{0};  // a message's validity says how long it means something
+    return Duration{0};  // valid as long as the message
   }
 
   std::string path_;

@@ -18,7 +18,7 @@ namespace {
 
 using enum OwnKey::Kind;
 
-// Way of a shaft in the tick after it was zeroed, and far below any error of another reference.
+// Above the way of a shaft in the tick after it was zeroed, and far below the error of a wrong reference.
 constexpr double kZeroedWithinDeg = 10.0;
 // Share of max_velocity_deg_s: a shaft that turns slower rests.
 constexpr double kRestShare = 0.02;
@@ -28,7 +28,7 @@ constexpr double kLeadSeconds = 0.1;
 constexpr double kLeadTolerances = 10.0;
 // A motor that is waited for moves by a tolerance within this time, or is blocked.
 constexpr Duration kBlocked = std::chrono::milliseconds{200};
-// A target beyond the limits is told again once none was for so long.
+// A target beyond the limits is reported again after this time without one.
 constexpr Duration kBeyondAgain = std::chrono::seconds{1};
 constexpr std::array<std::string_view, 3> kHomings{"none", "stop", "switch"};
 constexpr std::array<std::string_view, 2> kOnSilence{"hold", "let_go"};
@@ -452,7 +452,7 @@ class Joint : public Module_Base {
     if (move_ != Move::kUnderWay || !wanted) return;
     const bool rests = reference_.restsAt(target_deg_);
     const double away_deg = std::fabs(feedback.total_angle_deg - target_deg_);
-    // One that comes nearer is slow, and has not failed.
+    // A motor that still comes nearer is slow, and has not failed.
     if (!rests || away_deg < nearest_deg_ - tolerance_deg_) {
       arrived_ = tick.now;
       nearest_deg_ = away_deg;
@@ -495,7 +495,7 @@ class Joint : public Module_Base {
   double advanced_deg_ = 0.0;            ///< Place of the motor then.
 };
 
-// Values that can never find an end, though each is in its range.
+// Combinations of values with which no end can be found, though each is in its range.
 Result<void> checkHoming(const OwnValues& own, const RobotOutline::Motor& motor) {
   const double rpm = own.number("homing_velocity_rpm");
   if (rpm == 0.0) return fail("homing_velocity_rpm: 0 finds nothing; its sign says where the end is");

@@ -24,8 +24,8 @@ double PowerLimiter::step(double power_w, const Shares& shares, float dt_s) noex
   growth_w_per_s_ += ((power_w - power_w_) / dt - growth_w_per_s_) * dt / (kPredictSeconds + dt);
   power_w_ = power_w;
   const double ahead = shares.told - shares.measured;
-  // A motor that gets faster pushes in proportion to how far it is behind, so that much less is to be ahead.
-  // A factor far above the motion would come down too late.
+  // An accelerating motor takes power in proportion to its lag behind the command: the lead is scaled down. A
+  // factor far above the motion would come down too late.
   const double soon_w = power_w + std::max(0.0, growth_w_per_s_) * kAheadSeconds;
   if (soon_w > limit_w_ && ahead > 0.0 && std::isfinite(ahead)) {
     const double fits = shares.measured + ahead * limit_w_ / soon_w;

@@ -48,7 +48,7 @@ class DbusChannels final : public ChannelsOf<DbusProtocol> {
   [[nodiscard]] SerialFormat format() const noexcept override {
     return {.baud = 100'000, .data_bits = 8, .parity = Parity::kEven, .stop_bits = 1};
   }
-  // It falls silent, or repeats itself: it has no word for it.
+  // The protocol has no flag for it: the receiver falls silent, or repeats its last frame.
   [[nodiscard]] bool saysLost() const noexcept override { return false; }
 
   void read(std::span<double> values) const noexcept override {

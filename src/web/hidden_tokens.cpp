@@ -20,7 +20,7 @@ constexpr std::string_view kEndOfValue = " \t\r\n,}]'\"#";
 
 bool isToken(char c) { return std::isalnum(static_cast<unsigned char>(c)) != 0; }
 
-// As long as what it stands for, where that is a hash: the columns of messages stay right.
+// As long as the hash that it replaces: columns of messages stay right.
 std::string wordsFor(int number) {
   std::string words{kHiddenWords};
   words[kNumberAt] = static_cast<char>('0' + number / 10 % 10);

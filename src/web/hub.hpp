@@ -32,7 +32,7 @@ class PageSocket {
   using Text = std::shared_ptr<const std::string>;
   virtual void sendText(Text text) = 0;
   virtual void sendBinary(std::vector<std::byte> frame) = 0;
-  /// It has not read what it was sent: what is newer soon waits for it. Then it gets less often more.
+  /// The page has much unread: newer messages would wait behind it, so it gets fewer.
   [[nodiscard]] virtual bool behind() const = 0;
   virtual void close() = 0;
 };

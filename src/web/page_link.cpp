@@ -9,11 +9,11 @@
 namespace rc10::web {
 namespace {
 
-// A page that asks for more has not waited for an answer.
+// Requests without an answer yet: a page waits for its answers, and never needs as many.
 constexpr std::size_t kMostOpen = 16;
 constexpr Duration kPatience = std::chrono::milliseconds{200};
-// All pages wait while an rc10d is asked that does not answer: the renewals of a jog must not ask it in a row
-// before the STOP behind them.
+// Connecting to an rc10d that does not answer holds up all pages: renewals of a jog must not try it one
+// after the other before the STOP behind them.
 constexpr Duration kPause = std::chrono::milliseconds{500};
 // rc10d answers within ticks. A person who presses STOP must soon learn that nobody has heard it.
 constexpr Duration kAnswerPatience = std::chrono::seconds{5};

@@ -18,7 +18,7 @@ class RenewalAge {
     if (!quickest_) {
       quickest_ = offset;
     } else {
-      // Two clocks differ by some 100 ppm: the quickest of long ago says less and less.
+      // Two clocks drift apart by some 100 ppm: the quickest message tells less as it grows old.
       const Duration passed = std::max(arrived - last_, Duration::zero());
       quickest_ = std::min(offset, *quickest_ + passed / kDriftDivisor);
     }

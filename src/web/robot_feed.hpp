@@ -45,8 +45,8 @@ class RobotFeed {
   [[nodiscard]] const TraceStore& traces() const noexcept { return traces_; }
   [[nodiscard]] std::int64_t droppedTicks() const noexcept { return dropped_ticks_; }
 
-  /// Whether what is told of the robot itself is new since the last call: it is another, or of a module more
-  /// is known.
+  /// Whether the description of the robot is new since the last call: another robot, or more of a module is
+  /// known.
   [[nodiscard]] bool takeRobotIsNew() noexcept;
   /// The newest state, once; null: none since the last call.
   [[nodiscard]] const link::State* takeState() noexcept;

@@ -31,8 +31,8 @@ class TraceStore {
     float min = std::numeric_limits<float>::quiet_NaN();
     float max = std::numeric_limits<float>::quiet_NaN();
   };
-  /// Columns [first, first + out.size()) of this width, counted from time 0: a column means the same to
-  /// whoever asks. One without a value is NaN.
+  /// Columns [first, first + out.size()) of this width, counted from time 0: a column is the same for
+  /// every page. One without a value is NaN.
   void columns(const link::TraceSignal& signal, std::int64_t width_us, std::int64_t first,
                std::span<Column> out) const;
 

@@ -23,7 +23,7 @@ constexpr double kLeastListenS = 0.5;
 constexpr double kMostListenS = 60.0;
 // As `rc10ctl scan` on a bus of its own: a question of 8 bytes and its answer take 0.3 ms at 1 Mbit/s.
 constexpr Duration kLeastBetween = std::chrono::milliseconds{2};
-// A full bus is asked slowly, but is asked: all questions within 20 s.
+// A full bus is asked slowly, but within 20 s.
 constexpr Duration kMostBetween = std::chrono::milliseconds{50};
 constexpr double kLeastFree = 0.05;
 

@@ -28,8 +28,8 @@ namespace {
 }
 
 // The ids of the packer that has, among its rest frames, the id that wins arbitration against all others: on
-// a crowded bus only a stall delays its echoes. All its ids, for a drive may be told each thing with an id of
-// its own; by its rest frames, as they probe a stalled bus.
+// a crowded bus only a stall delays its echoes. All its ids, since a drive may have an id for each
+// command; by its rest frames, as they probe a stalled bus.
 [[nodiscard]] std::vector<CanId> mostUrgent(const fdCANbus& bus) {
   const auto rank = [](CanId id) { return id.extended ? id.value * 2 + 1 : id.value << 19U; };
   std::vector<CanId> watched;

@@ -17,7 +17,7 @@
 namespace rc10 {
 namespace {
 
-// None: the kernel does not say, which is no loss of the interface.
+// None: the kernel gave no answer, which does not mean that the interface is gone.
 [[nodiscard]] std::optional<CanLinkState> linkStateOf(int socket, const std::string& interface) noexcept {
   ifreq request{};
   interface.copy(request.ifr_name, IFNAMSIZ - 1);
@@ -48,7 +48,7 @@ std::bitset<kMaxBuses> BusReviver::check(MonotonicTime now) noexcept {
     CanLinkState before = link.load(std::memory_order_relaxed);
     // A socket that lost its interface stays dead when one of that name comes back.
     if (before == CanLinkState::kGone && seen != CanLinkState::kGone && !reopen(i, now)) continue;
-    // Not over what a receive has just found out: it knows of a loss that was over before we looked.
+    // A state that a receive has stored meanwhile stays: it may be a loss that this look has missed.
     if (link.compare_exchange_strong(before, seen, std::memory_order_relaxed)) {
       came_up[i] = before != CanLinkState::kUp && seen == CanLinkState::kUp;
     }

@@ -20,7 +20,7 @@ constexpr Duration kMitStepPatience = std::chrono::milliseconds{50};
 constexpr int kMitAttempts = 6;  // the first, and five more
 // The answers to "no torque" and "enter", and one that was under way before them.
 constexpr std::uint64_t kAnswersToEnter = 3;
-constexpr double kMitDampShare = 0.25;  // damp is that much of the brake
+constexpr double kMitDampShare = 0.25;  // of the damping of brake
 // Share of the torque of a spring one turn of the field away (at most the whole range) that counts as a pull
 // the other way: delay and resolution of the report hide the rest.
 constexpr double kSpringMismatch = 0.6;
@@ -308,8 +308,8 @@ std::size_t CubemarsMit::packRest(std::span<CanFrame> out) const noexcept {
 
 // ---- Enabling
 
-// Nothing in an answer says whether the drive has entered the mode; that it answers, and without an error,
-// is all there is to see.
+// No field of an answer tells whether the drive has entered the mode: an answer without an error is the only
+// evidence.
 void CubemarsMit::runEnabling(const Tick& tick) noexcept {
   if (begins()) {
     enabling_.begin(Step::kEnter);

@@ -28,7 +28,7 @@ constexpr Duration kTelemetryLife = milliseconds{2500};
 constexpr int kModeRepeats = 3;
 constexpr int kClearRepeats = 2;
 
-// Rates at which limits that changed, and those that did not, are sent: a frame may be lost.
+// Spacing of changed and of unchanged limits: they are repeated, as a frame may be lost.
 constexpr Duration kLimitsSpacing = milliseconds{20};
 constexpr Duration kLimitsRefresh = milliseconds{500};
 
