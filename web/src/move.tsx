@@ -5,6 +5,7 @@ import { CapturePanel } from './capture';
 import { useChosenMotor } from './chosen_motor';
 import { useKnown, useStored, useStudio } from './context';
 import { Gains } from './gains';
+import { useHold } from './hold';
 import { unitOf } from './numbers';
 import { NumberField } from './number_field';
 import { Curves } from './plots';
@@ -21,21 +22,14 @@ type HeldMode = (typeof kModes)[number];
 const kUnits: Record<HeldMode, string> = { velocity: 'rpm', current: 'A' };
 const kFirst: Record<HeldMode, number> = { velocity: 20, current: 0.5 };
 
-/** Holder of the button: a pointer by its number, or a key. */
-type Holder = number | 'key' | null;
-
 function Jog(props: { motor: string; modes: HeldMode[]; mode: HeldMode; onMode: (mode: HeldMode) => void }) {
   const { link, word } = useStudio();
   const known = useKnown();
   const [sizes, setSizes] = useStored<Record<HeldMode, number>>('jogSizes', kFirst);
   const [direction, setDirection] = useState(0);
   const [told, setTold] = useState('');
-  const holder = useRef<Holder>(null);
   const renewed = useRef(0);
   const timer = useRef(0);
-  const heldKey = useRef('');
-  // The pointer or key that ended a hold begins none.
-  const ended = useRef(0);
   const release = useRef<() => void>(() => {});
   const chosen = props.mode;
   const motor = known.state?.data.motors.find((each) => each.name === props.motor);
@@ -52,22 +46,26 @@ function Jog(props: { motor: string; modes: HeldMode[]; mode: HeldMode; onMode: 
     return refusal === undefined ? word('jogNotTaken') : `${word('jogNotTaken')} ${refusal.text}`;
   };
 
-  const letGo = (why: string) => {
-    if (holder.current === null) return;
-    holder.current = null;
-    heldKey.current = '';
+  const stop = (why: string) => {
     clearInterval(timer.current);
     release.current();
     setDirection(0);
     setTold(why);
   };
+  // A second finger or key ends it: whoever holds on to one thing means one thing.
+  const ends = { released: '', other: word('jogSecond'), left: word('jogAway') };
+  const hold = useHold(props.motor, (why) => stop(ends[why]));
+  const letGo = (why: string) => {
+    if (!hold.held()) return;
+    hold.clear();
+    stop(why);
+  };
 
-  const hold = (by: Holder, sign: number) => {
-    // A second finger or key ends it: whoever holds on to one thing means one thing.
-    if (holder.current !== null) return letGo(word('jogSecond'));
-    if (!ready) return setTold(word('jogNotActive'));
-    if (other !== '') return setTold(`${word('jogOther')} ${other}`);
-    holder.current = by;
+  const begin = (sign: number) => {
+    if (!ready || other !== '') {
+      setTold(ready ? `${word('jogOther')} ${other}` : word('jogNotActive'));
+      return false;
+    }
     setDirection(sign);
     setTold('');
     const target = { motor: props.motor, mode: chosen, value: sign * Math.abs(sizes[chosen]) };
@@ -83,19 +81,21 @@ function Jog(props: { motor: string; modes: HeldMode[]; mode: HeldMode; onMode: 
       else if (!held.renew()) letGo(word('jogLost'));
       else if (++renewals > kTakenRenewals && ownerNow.current !== name) letGo(whyNotTaken());
     }, kRenewMs);
+    return true;
   };
 
   useEffect(() => {
-    const away = () => letGo(word('jogAway'));
-    const hidden = () => document.hidden && away();
-    window.addEventListener('blur', away);
-    window.addEventListener('pagehide', away);
+    const left = () => hold.end('left');
+    const hidden = () => document.hidden && left();
+    const focusGone = () => hold.byKey() && left();
+    const options = { capture: true };
+    window.addEventListener('pagehide', left);
     document.addEventListener('visibilitychange', hidden);
+    window.addEventListener('focusin', focusGone, options);
     return () => {
-      away();
-      window.removeEventListener('blur', away);
-      window.removeEventListener('pagehide', away);
+      window.removeEventListener('pagehide', left);
       document.removeEventListener('visibilitychange', hidden);
+      window.removeEventListener('focusin', focusGone, options);
     };
   }, [props.motor]);
   useEffect(() => {
@@ -104,33 +104,6 @@ function Jog(props: { motor: string; modes: HeldMode[]; mode: HeldMode; onMode: 
   useEffect(() => {
     if (other !== '') letGo(`${word('jogOther')} ${other}`);
   }, [other]);
-  // Another finger, anywhere on the page.
-  useEffect(() => {
-    const finger = (event: PointerEvent) => {
-      if (holder.current === null || event.pointerId === holder.current) return;
-      ended.current = event.timeStamp;
-      letGo(word('jogSecond'));
-    };
-    // And another key; any that comes up ends what a key holds, wherever the focus has gone.
-    const key = (event: KeyboardEvent) => {
-      if (holder.current === null || event.repeat || event.key === heldKey.current) return;
-      ended.current = event.timeStamp;
-      letGo(word('jogSecond'));
-    };
-    const keyUp = () => holder.current === 'key' && letGo('');
-    const focusGone = () => holder.current === 'key' && letGo(word('jogAway'));
-    const options = { capture: true };
-    window.addEventListener('pointerdown', finger, options);
-    window.addEventListener('keydown', key, options);
-    window.addEventListener('keyup', keyUp, options);
-    window.addEventListener('focusin', focusGone, options);
-    return () => {
-      window.removeEventListener('pointerdown', finger, options);
-      window.removeEventListener('keydown', key, options);
-      window.removeEventListener('keyup', keyUp, options);
-      window.removeEventListener('focusin', focusGone, options);
-    };
-  }, [props.motor]);
 
   const button = (sign: number, label: string, key: string) => (
     <button
@@ -139,17 +112,7 @@ function Jog(props: { motor: string; modes: HeldMode[]; mode: HeldMode; onMode: 
       disabled={!ready}
       aria-label={label}
       title={`${label} (${key})`}
-      onPointerDown={(event) => {
-        if (!event.isPrimary || event.button !== 0 || event.timeStamp === ended.current) return;
-        event.currentTarget.setPointerCapture(event.pointerId);
-        hold(event.pointerId, sign);
-      }}
-      // With another button of the mouse down, no pointerup tells that this one came up.
-      onPointerMove={(event) => holder.current === event.pointerId && event.buttons !== 1 && letGo('')}
-      onPointerUp={() => letGo('')}
-      onPointerCancel={() => letGo(word('jogAway'))}
-      onLostPointerCapture={() => letGo('')}
-      onContextMenu={(event) => event.preventDefault()}
+      {...hold.pointerHandlers(() => begin(sign))}
     >
       {sign > 0 ? '↺' : '↻'}
     </button>
@@ -192,10 +155,7 @@ function Jog(props: { motor: string; modes: HeldMode[]; mode: HeldMode; onMode: 
         onKeyDown={(event) => {
           const sign = keys[event.key];
           if (sign === undefined) return;
-          event.preventDefault();
-          if (event.repeat || holder.current !== null || event.timeStamp === ended.current) return;
-          heldKey.current = event.key;
-          hold('key', sign);
+          hold.beginByKey(event, () => begin(sign));
         }}
       >
         {button(-1, word('jogNegative'), '←')}
