@@ -106,6 +106,7 @@ CommandRefusal Admission::admit(const link::Command& message, const Speaker& spe
                                 Command& out) {
   culprit_.clear();
   choice_.clear();
+  late_but_new_ = false;
   const auto deadline = deadlineOf(message.received_ns, message.validity_ms, now);
   if (message.setpoint_count == 0 || message.setpoint_count > kMaxMotors || !deadline)
     return CommandRefusal::kMalformed;
@@ -133,13 +134,16 @@ CommandRefusal Admission::admit(const link::Command& message, const Speaker& spe
   const auto client = message.client.view();
   not_permitted_ = permissions_.whyNoCommand(speaker, client, named, message.priority);
   if (!not_permitted_.empty()) return CommandRefusal::kNotPermitted;
-  if (now >= out.deadline) return CommandRefusal::kExpired;
-  if (!budget_.spend(message.client.view(), out.count, now)) return CommandRefusal::kRingFull;
+  const bool late = now >= out.deadline;
+  if (!budget_.spend(message.client.view(), out.count, now))
+    return late ? CommandRefusal::kExpired : CommandRefusal::kRingFull;
   out.session = message.session;
   out.priority = message.priority;
   switch (sessions_.accept(speaker.owner(), client, message.session, message.seq)) {
-    case SessionNumbers::Verdict::kNew: return CommandRefusal::kNone;
-    case SessionNumbers::Verdict::kOld: return CommandRefusal::kOldSequence;
+    case SessionNumbers::Verdict::kNew:
+      late_but_new_ = late;
+      return late ? CommandRefusal::kExpired : CommandRefusal::kNone;
+    case SessionNumbers::Verdict::kOld: return late ? CommandRefusal::kExpired : CommandRefusal::kOldSequence;
     case SessionNumbers::Verdict::kOfAnother: break;
   }
   not_permitted_ = permissions_.whyOtherSession(client);

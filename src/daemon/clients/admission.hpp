@@ -56,6 +56,10 @@ class Admission {
   /// After kNotPermitted, why.
   [[nodiscard]] const std::string& whyNotPermitted() const noexcept { return not_permitted_; }
 
+  /// Whether the last message came too late to act, and yet is the newest of its session: targets that this
+  /// sent before are past. `out` is translated.
+  [[nodiscard]] bool lateButNew() const noexcept { return late_but_new_; }
+
   /// Whether the last message that was accepted had a field that its mode does not use.
   [[nodiscard]] bool clearedField() const noexcept { return cleared_field_; }
 
@@ -86,6 +90,7 @@ class Admission {
   CommandBudget budget_;
   std::array<std::uint64_t, kCommandRefusalCount> refusals_{};
   bool cleared_field_ = false;
+  bool late_but_new_ = false;
   std::string culprit_;
   std::string choice_;
 };

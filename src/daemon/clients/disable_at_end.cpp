@@ -45,12 +45,9 @@ Result<bool> DisableAtEnd::askedBy(const link::Request& request, Operation opera
   return true;
 }
 
-void DisableAtEnd::add(const Order& order, std::uint64_t connection, const Snapshot& now) {
-  Entry entry{.order = order.id, .connection = connection, .client = order.client, .motors = order.motors};
-  for (std::size_t i = 0; i < now.motor_count; ++i) {
-    if (isSwitchedOn(now.motors[i])) entry.motors.reset(i);
-  }
-  if (entry.motors.any()) entries_.push_back(entry);
+void DisableAtEnd::add(const Order& order, std::uint64_t connection) {
+  entries_.push_back(
+      {.order = order.id, .connection = connection, .client = order.client, .motors = order.motors});
 }
 
 void DisableAtEnd::finish(const OrderResult& result, const Snapshot& now) {
@@ -58,6 +55,8 @@ void DisableAtEnd::finish(const OrderResult& result, const Snapshot& now) {
     return !one.enabled_at && one.order == result.id;
   });
   if (entry == entries_.end()) return;
+  // The scheduler knows it: a snapshot may be older than the order, or show what the order has done.
+  entry->motors &= ~result.on_before;
   for (std::size_t i = 0; i < result.motors.size(); ++i) {
     if (result.refused || result.motors[i] != Refusal::kNone) entry->motors.reset(i);
   }

@@ -25,8 +25,9 @@ class DisableAtEnd {
   [[nodiscard]] static Result<bool> askedBy(const link::Request& request, Operation operation,
                                             const Speaker& speaker);
 
-  /// This order asks for it. Motors that are on already are another's.
-  void add(const Order& order, std::uint64_t connection, const Snapshot& now);
+  /// This order asks for it.
+  void add(const Order& order, std::uint64_t connection);
+  /// Motors that were on before are another's.
   void finish(const OrderResult& result, const Snapshot& now);
 
   /// Order for the motors of connections that have ended, as soon as the last target is over. A motor that

@@ -246,9 +246,12 @@ bool LinkServer::welcome(Connection& connection, std::span<const std::byte> data
 
 void LinkServer::command(const link::Command& message, const Speaker& speaker) {
   const auto refusal = admission_.admit(message, speaker, monotonicNow(), accepted_);
-  const bool handed_over = refusal == CommandRefusal::kNone && sources_.exchange.commands.push(accepted_);
+  // One that is late ends what its sender told these motors before, and is counted by the scheduler.
+  const bool late = admission_.lateButNew();
+  const bool handed_over =
+      (refusal == CommandRefusal::kNone || late) && sources_.exchange.commands.push(accepted_);
   const auto outcome = refusal == CommandRefusal::kNone && !handed_over ? CommandRefusal::kRingFull : refusal;
-  admission_.count(outcome);
+  if (!late || !handed_over) admission_.count(outcome);
   if (outcome == CommandRefusal::kNotPermitted)
     return reportRefusal(outcome, speaker.connection, message.client, admission_.whyNotPermitted());
   if (outcome != CommandRefusal::kNone) {
@@ -302,7 +305,7 @@ void LinkServer::request(const link::Request& message, Connection& connection) {
     sources_.exchange.estop.store(true, std::memory_order_release);
   }
   if (outcome.order && handOver(*outcome.order, message) && outcome.disable_at_end)
-    at_end_.add(*outcome.order, connection.id, sources_.exchange.snapshot.read());
+    at_end_.add(*outcome.order, connection.id);
   if (outcome.shaft) {
     auto& [order, response] = *outcome.shaft;
     if (sources_.exchange.shafts.push(order)) {

@@ -117,6 +117,7 @@ struct OrderResult {
   std::size_t drive_value = 0;  ///< kConfigure: at which of the values it ended.
   std::array<Refusal, kMaxMotors> motors{};
   MotorSet in_the_way{};           ///< kAlone, kOthersOn, kGroup, kTogether: which motors.
+  MotorSet on_before{};            ///< kEnable, kEnableAlone: motors that were ENABLING or ACTIVE already.
   Refusal scan = Refusal::kNone;   ///< kScan: reason that concerns no motor,
   std::uint32_t asked = 0;         ///< questions that were sent,
   std::uint64_t error_frames = 0;  ///< and error frames of the bus meanwhile.

@@ -90,6 +90,10 @@ class Axis {
   /// Takes a target that the lease allows. The reason, if it does not act.
   [[nodiscard]] std::optional<SkipReason> take(const Target& target, const Lease::Holder& sender,
                                                const Lease::Term& term) noexcept;
+  /// A command of `sender` came too late to act: what it told this motor before ends with it.
+  void outdate(const Lease::Holder& sender, MonotonicTime deadline) noexcept {
+    lease_.shorten(sender, deadline);
+  }
   /// At most one report of a skipped setpoint in each kReportInterval.
   [[nodiscard]] bool mayReportSkip(MonotonicTime now) noexcept;
   [[nodiscard]] Refusal zero(const Order& order) noexcept;

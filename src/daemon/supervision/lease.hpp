@@ -22,8 +22,7 @@ class Lease {
   [[nodiscard]] bool held(MonotonicTime now) const noexcept { return now < term_.until; }
 
   [[nodiscard]] bool allows(const Holder& other, MonotonicTime now) const noexcept {
-    const bool same = other.session == holder_.session && other.client.view() == holder_.client.view();
-    return !held(now) || same || other.priority > holder_.priority;
+    return !held(now) || isHolder(other) || other.priority > holder_.priority;
   }
 
   /// From when this host received the command until it lapses.
@@ -36,6 +35,10 @@ class Lease {
     holder_ = holder;
     term_ = term;
   }
+  /// The holder has said something newer, which is past already.
+  void shorten(const Holder& sender, MonotonicTime until) noexcept {
+    if (isHolder(sender) && until < term_.until) term_.until = until;
+  }
   void release() noexcept { *this = Lease{}; }
 
   /// Empty when nobody has it.
@@ -44,6 +47,10 @@ class Lease {
   [[nodiscard]] MonotonicTime received() const noexcept { return term_.received; }
 
  private:
+  [[nodiscard]] bool isHolder(const Holder& other) const noexcept {
+    return other.session == holder_.session && other.client.view() == holder_.client.view();
+  }
+
   Holder holder_;
   Term term_;
 };

@@ -64,12 +64,14 @@ bool Supervisor::mayCommand(const Command& command, const Lease::Holder& sender,
 
 void Supervisor::apply(const Command& command, const Tick& tick) noexcept {
   hearClient(tick.now);
+  const Lease::Holder sender{command.client, command.session, command.priority};
   if (tick.now >= command.deadline) {
     ++expired_commands_;
     if (recorder_ != nullptr) recorder_->command(command, blackbox::Verdict::kExpired);
+    for (std::size_t i = 0; i < command.count; ++i)
+      axes_[command.setpoints[i].motor].outdate(sender, command.deadline);
     return;
   }
-  const Lease::Holder sender{command.client, command.session, command.priority};
   if (!mayCommand(command, sender, tick)) {
     if (recorder_ != nullptr) recorder_->command(command, blackbox::Verdict::kNotOwner);
     return;
@@ -128,6 +130,7 @@ void Supervisor::carryOut(const Order& order, const Tick& tick) noexcept {
       case Operation::kEnable:
       case Operation::kEnableAlone: {
         const bool alone = order.operation == Operation::kEnableAlone;
+        result.on_before.set(motor, isOn(axes_[motor].status()));
         const auto refusal = alone ? enableAlone(motor, tick) : enable(motor, order.motors, tick);
         result.motors[motor] = refusal;
         result.in_the_way |= inTheWay(motor, refusal, order.motors);

@@ -263,10 +263,26 @@ TEST_F(AdmissionTest, RefusesAMessageThatIsOlderThanItsValidity) {
   auto message = good();
   message.received_ns = (now - 50ms).time_since_epoch().count();
   EXPECT_EQ(admit(message), CommandRefusal::kExpired);
+  ++message.seq;
   message.received_ns = (now - 50ms + 1ns).time_since_epoch().count();
   EXPECT_EQ(admit(message), CommandRefusal::kNone);
+  ++message.seq;
   message.received_ns = std::numeric_limits<std::int64_t>::min();
   EXPECT_EQ(admit(message), CommandRefusal::kExpired);
+}
+
+TEST_F(AdmissionTest, OneThatIsLateIsTheNewestOfItsSessionOnce) {
+  auto message = good();
+  ASSERT_EQ(admit(message), CommandRefusal::kNone);
+  EXPECT_FALSE(admission.lateButNew());
+  ++message.seq;
+  message.received_ns = (now - 50ms).time_since_epoch().count();
+  ASSERT_EQ(admit(message), CommandRefusal::kExpired);
+  EXPECT_TRUE(admission.lateButNew());
+  EXPECT_EQ(out.deadline, now);
+  EXPECT_EQ(out.session, message.session);
+  ASSERT_EQ(admit(message), CommandRefusal::kExpired) << "a replay";
+  EXPECT_FALSE(admission.lateButNew());
 }
 
 TEST_F(AdmissionTest, SequenceNumbersOfASessionOnlyRise) {

@@ -30,12 +30,14 @@ class DisableAtEndTest : public ::testing::Test {
   MotorSnapshot& motor(std::size_t i) { return now->motors[i]; }
 
   /// The page has enabled these, of which the drives have confirmed all but `offline`.
-  void enable(const MotorSet& motors, std::optional<std::size_t> offline = {}) {
+  void enable(const MotorSet& motors, std::optional<std::size_t> offline = {},
+              const MotorSet& on_before = {}) {
     const Order order{
         .id = 7, .operation = Operation::kEnable, .motors = motors, .client = std::string_view{"web-1"}};
-    at_end.add(order, kPage, *now);
+    at_end.add(order, kPage);
     OrderResult result;
     result.id = order.id;
+    result.on_before = on_before;
     if (offline) result.motors[*offline] = Refusal::kOffline;
     at_end.finish(result, *now);
     for (std::size_t i = 0; i < 2; ++i) {
@@ -75,8 +77,15 @@ TEST_F(DisableAtEndTest, AnOrderThatFoundNoRoomIsDueAgainAndOneThatWasTakenIsNot
 
 TEST_F(DisableAtEndTest, AMotorThatWasOnBeforeOrWasNotEnabledIsNotItsOwn) {
   motor(kLeft).status = MotorStatus::kActive;
-  enable(MotorSet{0b11}, kRight);
+  enable(MotorSet{0b11}, kRight, MotorSet{0b01});
   EXPECT_FALSE(due());
+}
+
+TEST_F(DisableAtEndTest, AMotorIsItsOwnThoughTheSnapshotShowsItOnBeforeTheLinkThreadLooks) {
+  // The scheduler has taken the order already.
+  motor(kLeft).status = MotorStatus::kEnabling;
+  enable(MotorSet{0b01});
+  EXPECT_TRUE(due());
 }
 
 TEST_F(DisableAtEndTest, AMotorThatWasOffSinceIsNotItsOwn) {

@@ -73,6 +73,22 @@ TEST_F(LinkServerTest, ACommandReachesTheScheduler) {
   EXPECT_LE(command.deadline, monotonicNow() + kDefaultValidity);
 }
 
+TEST_F(LinkServerTest, ACommandThatIsLateReachesTheSchedulerOnceToEndWhatWasBeforeIt) {
+  auto client = join();
+  ASSERT_TRUE(client->send(velocityCommand(1)));
+  auto late = velocityCommand(2);
+  late.received_ns = 1;
+  ASSERT_TRUE(client->send(late));
+  ASSERT_TRUE(client->send(late));
+  pump();
+  Command command;
+  ASSERT_TRUE(exchange.commands.pop(command));
+  ASSERT_TRUE(exchange.commands.pop(command));
+  EXPECT_LT(command.deadline, monotonicNow());
+  EXPECT_EQ(command.setpoints[0].motor, 0U);
+  EXPECT_FALSE(exchange.commands.pop(command));
+}
+
 TEST_F(LinkServerTest, RefusedCommandsAreCountedByReason) {
   auto client = join(link::kDiagnosticsFeed);
   auto unknown = velocityCommand(1);

@@ -1,6 +1,7 @@
 // Requests that are under way at the same time.
 
 #include <algorithm>
+#include <map>
 #include <vector>
 
 #include <gmock/gmock.h>
@@ -61,6 +62,22 @@ TEST_F(OpenRequestsTest, OneMoreIsRefusedAndEnablesNothing) {
       std::find_if(all.begin(), all.end(), [](const auto& answer) { return answer.id == 1000; });
   ASSERT_NE(last, all.end());
   EXPECT_TRUE(last->refused);
+}
+
+TEST_F(OpenRequestsTest, TheAnswerSaysWhichMotorsWereOnBefore) {
+  askToEnable(kLeft, 2, 1);
+  robot.run(5);
+  Order both;
+  both.id = 3;
+  both.operation = Operation::kEnable;
+  both.motors = MotorSet{0b11};
+  ASSERT_TRUE(robot.exchange().orders.push(both));
+  robot.run(5);
+  std::map<std::uint64_t, MotorSet> on_before;
+  for (const auto& answer : answers()) on_before[answer.id] = answer.on_before;
+  EXPECT_EQ(on_before[1], MotorSet{});
+  EXPECT_EQ(on_before[2], MotorSet{0b01}) << "it was ENABLING";
+  EXPECT_EQ(on_before[3], MotorSet{0b01});
 }
 
 TEST_F(OpenRequestsTest, ThoseOfModulesTakeNoPlaceOfAClients) {

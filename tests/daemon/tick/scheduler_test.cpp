@@ -106,6 +106,40 @@ TEST_F(SchedulerTest, RefusesACommandThatExpiredInTheRing) {
   EXPECT_EQ(robot.snapshot().expired_commands, 1U);
 }
 
+TEST_F(SchedulerTest, ACommandThatComesTooLateEndsWhatItsSenderToldTheMotorBefore) {
+  enableAll();
+  const Target current{.mode = ControlMode::kCurrent, .value = 2.0};
+  robot.command(kLeft, current, 900ms);
+  robot.command(kRight, current, 900ms);
+  robot.run(20);
+  ASSERT_EQ(robot.motor(kLeft).command_value, 2.0F);
+  (void)robot.events();
+  // The last word of a client that lets go, on a busy computer.
+  robot.command(kLeft, current, 1ms);
+  robot.tick();
+  EXPECT_EQ(robot.snapshot().expired_commands, 1U);
+  EXPECT_EQ(robot.motor(kLeft).command_value, 0.0F);
+  EXPECT_TRUE(reported(EventCode::kCommandTimeout, kLeft));
+  EXPECT_EQ(robot.motor(kRight).command_value, 2.0F) << "it does not name this one";
+}
+
+TEST_F(SchedulerTest, ACommandThatComesTooLateEndsNothingOfAnotherSender) {
+  enableAll();
+  robot.command(kLeft, {.mode = ControlMode::kCurrent, .value = 2.0}, 900ms);
+  robot.run(20);
+  ASSERT_EQ(robot.motor(kLeft).command_value, 2.0F);
+  auto& commands = robot.exchange().commands;
+  Command late;
+  late.client = "test";
+  late.session = ~std::uint64_t{0};
+  late.priority = 1000;
+  late.count = 1;
+  late.setpoints[0] = {.motor = kLeft, .target = {.mode = ControlMode::kCurrent, .value = -2.0}};
+  ASSERT_TRUE(commands.push(late));
+  robot.tick();
+  EXPECT_EQ(robot.motor(kLeft).command_value, 2.0F);
+}
+
 TEST_F(SchedulerTest, ATargetFromBeforeEnablingDoesNotActAfterIt) {
   enableAll();
   robot.command(kLeft, {.mode = ControlMode::kCurrent, .value = 2.0}, 900ms);
