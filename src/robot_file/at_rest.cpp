@@ -34,11 +34,19 @@ Result<void> atRest(const link::Welcome& robot, const link::State& state) {
       std::min({robot.motor_count, state.motor_count, static_cast<std::uint32_t>(link::kMaxMotors)});
   for (std::size_t i = 0; i < count; ++i) {
     const auto status = state.motors[i].status;
-    if (status == MotorStatus::kReady || status == MotorStatus::kOffline) continue;
+    // An on_disable or on_estop that holds a load goes on while the motor is READY.
+    const bool acts = state.motors[i].acting != Acting::kNothing;
+    if ((status == MotorStatus::kReady && !acts) || status == MotorStatus::kOffline) continue;
     const auto name = printable(robot.motors[i].name.view());
     auto why = "motor '" + name + "' ";
     if (status == MotorStatus::kFault)
       why.append("has a FAULT, which a restart would end: `rc10ctl clear ").append(name).append("` first");
+    else if (status == MotorStatus::kReady)
+      why.append("is READY, and does what its fallback says (")
+          .append(toString(state.motors[i].acting))
+          .append("): a restart would let it go; `rc10ctl disable ")
+          .append(name)
+          .append("` once more does so");
     else
       why.append("is ")
           .append(toString(status))

@@ -8,7 +8,7 @@
 namespace rc10::robot_file {
 
 /// A restart takes torque from no motor, and ends no e-stop and no fault that somebody has to clear. Every
-/// motor is READY, or OFFLINE; the error names the first that is not.
+/// motor is READY without torque, or OFFLINE; the error names the first that is not.
 [[nodiscard]] Result<void> atRest(const link::Welcome& robot, const link::State& state);
 
 /// The same of the robot that answers at its socket, which is to be that of the process.

@@ -10,6 +10,7 @@
 #include <cerrno>
 #include <cstdio>
 #include <filesystem>
+#include <optional>
 #include <string_view>
 #include <system_error>
 
@@ -23,11 +24,21 @@ constexpr mode_t kModeOfNew = 0644;
 constexpr mode_t kPermissions = 0777;
 
 // "2026-11-26T15-04-05Z": names in the order of time.
+constexpr const char* kTimeFormat = "%Y-%m-%dT%H-%M-%SZ";
+
 std::string timeText(std::time_t now) {
   std::tm utc{};
   std::array<char, 32> text{};
   (void)::gmtime_r(&now, &utc);
-  return {text.data(), std::strftime(text.data(), text.size(), "%Y-%m-%dT%H-%M-%SZ", &utc)};
+  return {text.data(), std::strftime(text.data(), text.size(), kTimeFormat, &utc)};
+}
+
+// None: it was not written by timeText().
+std::optional<std::time_t> timeIn(const std::string& text) {
+  std::tm utc{};
+  if (::strptime(text.c_str(), kTimeFormat, &utc) == nullptr) return std::nullopt;
+  const auto time = ::timegm(&utc);
+  return timeText(time) == text ? std::optional{time} : std::nullopt;
 }
 
 bool writeAll(int file, std::string_view text) {
@@ -71,15 +82,14 @@ Result<std::optional<std::string>> ConfigFolder::read(const std::string& name) c
   return text;
 }
 
-// A second name of the old file, so that nothing is copied, and at no time it is missing.
+// A second name of the old file, so that nothing is copied, and at no time it is missing. A computer without
+// a clock of its own may think that it is earlier than it was: the newest one has the last name all the same.
 Result<std::string> ConfigFolder::keep(const std::string& name, std::time_t now) const {
-  const auto backup = name + "." + timeText(now);
-  for (int attempt = 1; attempt < 10; ++attempt) {
-    const auto tried = attempt == 1 ? backup : backup + "." + std::to_string(attempt);
-    if (::linkat(folder_.get(), name.c_str(), folder_.get(), tried.c_str(), 0) == 0) return tried;
-    if (errno == ENOENT) return std::string{};
-    if (errno != EEXIST) break;
-  }
+  const auto before = backupTimes(name);
+  if (!before.empty()) now = std::max(now, before.back() + 1);
+  auto backup = name + "." + timeText(now);
+  if (::linkat(folder_.get(), name.c_str(), folder_.get(), backup.c_str(), 0) == 0) return backup;
+  if (errno == ENOENT) return std::string{};
   return failed("keep a backup of", name);
 }
 
@@ -115,19 +125,24 @@ Result<std::string> ConfigFolder::replace(const std::string& name, const std::st
   return backup;
 }
 
-void ConfigFolder::dropOldBackups(const std::string& name) const {
-  const auto prefix = name + ".2";  // of a year
-  std::vector<std::string> backups;
+std::vector<std::time_t> ConfigFolder::backupTimes(const std::string& name) const {
+  const auto prefix = name + ".";
+  std::vector<std::time_t> times;
   std::error_code error;
   for (std::filesystem::directory_iterator entry(path_, error), end; !error && entry != end;
        entry.increment(error)) {
     const auto file = entry->path().filename().string();
-    if (file.starts_with(prefix) && file.find('Z') != std::string::npos) backups.push_back(file);
+    if (!file.starts_with(prefix)) continue;
+    if (const auto time = timeIn(file.substr(prefix.size()))) times.push_back(*time);
   }
-  if (backups.size() <= kBackups) return;
-  std::sort(backups.begin(), backups.end());
-  backups.resize(backups.size() - kBackups);
-  for (const auto& backup : backups) (void)::unlinkat(folder_.get(), backup.c_str(), 0);
+  std::sort(times.begin(), times.end());
+  return times;
+}
+
+void ConfigFolder::dropOldBackups(const std::string& name) const {
+  const auto times = backupTimes(name);
+  for (std::size_t i = 0; i + kBackups < times.size(); ++i)
+    (void)::unlinkat(folder_.get(), (name + "." + timeText(times[i])).c_str(), 0);
 }
 
 }  // namespace rc10::robot_file

@@ -30,6 +30,8 @@ class ConfigFolder {
  private:
   ConfigFolder(std::string path, UniqueFd folder) : path_(std::move(path)), folder_(std::move(folder)) {}
   [[nodiscard]] Result<std::string> keep(const std::string& name, std::time_t now) const;
+  /// Times of the backups of a file, by their names; in order.
+  [[nodiscard]] std::vector<std::time_t> backupTimes(const std::string& name) const;
   void dropOldBackups(const std::string& name) const;
   [[nodiscard]] tl::unexpected<Error> failed(const std::string& what, const std::string& name) const;
 

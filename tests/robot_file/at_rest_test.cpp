@@ -35,6 +35,16 @@ TEST(AtRest, AMotorThatObeysOrIsAboutToIsNamed) {
   EXPECT_THAT(Robot{MotorStatus::kEnabling}.why(), HasSubstr("'arm' is ENABLING"));
 }
 
+TEST(AtRest, AReadyMotorThatIsHeldBrakedOrDampedIsNamedWithTheWayToLetItGo) {
+  for (const auto acting : {Acting::kHold, Acting::kBrake, Acting::kDamp, Acting::kRamp}) {
+    Robot robot{MotorStatus::kReady};
+    robot.state->motors[1].acting = acting;
+    EXPECT_THAT(robot.why(), HasSubstr(std::string{"'arm' is READY, and does what its fallback says ("} +
+                                       toString(acting)));
+    EXPECT_THAT(robot.why(), HasSubstr("`rc10ctl disable arm` once more"));
+  }
+}
+
 TEST(AtRest, ARestartIsNoWayAroundAClear) {
   EXPECT_THAT(Robot{MotorStatus::kFault}.why(), HasSubstr("`rc10ctl clear arm` first"));
   Robot stopped{MotorStatus::kReady};

@@ -65,6 +65,31 @@ TEST(ConfigFolder, TheNewestBackupsOfThisFileStay) {
   EXPECT_EQ(folder.read("robot.yaml.~1~"), "by hand");
 }
 
+TEST(ConfigFolder, TheLastBackupIsTheNewestThoughTheClockWasSetBack) {
+  const Folder folder;
+  folder.write("robot.yaml", "0");
+  for (std::size_t i = 1; i <= ConfigFolder::kBackups; ++i)
+    ASSERT_TRUE(opened(folder).replace("robot.yaml", std::to_string(i), kNow + static_cast<std::time_t>(i)));
+  // A computer that has lost its time thinks that it is 1970.
+  const auto one = opened(folder).replace("robot.yaml", "one", 12).value();
+  const auto two = opened(folder).replace("robot.yaml", "two", 13).value();
+  EXPECT_EQ(folder.read(one), std::to_string(ConfigFolder::kBackups));
+  EXPECT_EQ(folder.read(two), "one");
+  EXPECT_LT(one, two);
+  EXPECT_EQ(folder.files().size(), ConfigFolder::kBackups + 1);
+}
+
+TEST(ConfigFolder, WhatIsNoBackupOfItsOwnStays) {
+  const Folder folder;
+  folder.write("robot.yaml", "0");
+  const std::vector<std::string> own{"robot.yaml.2025-regionalZ", "robot.yaml.2025-01-32T00-00-00Z",
+                                     "robot.yaml.2025-01-01T00-00-00Z.bak"};
+  for (const auto& name : own) folder.write(name, "by hand");
+  for (std::size_t i = 1; i <= ConfigFolder::kBackups + 3; ++i)
+    ASSERT_TRUE(opened(folder).replace("robot.yaml", std::to_string(i), kNow + static_cast<std::time_t>(i)));
+  for (const auto& name : own) EXPECT_EQ(folder.read(name), "by hand") << name;
+}
+
 TEST(ConfigFolder, ALinkIsNeitherReadNorReplaced) {
   const Folder folder;
   folder.write("secret", "secret");

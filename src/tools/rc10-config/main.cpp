@@ -1,6 +1,7 @@
 // rc10-config: one request about a robot's file, as root, started by rc10-config.socket for each connection.
 
 #include <sys/socket.h>
+#include <sys/time.h>
 
 #include <cstdio>
 #include <ctime>
@@ -32,6 +33,17 @@ Result<robot_file::Caller> caller() {
   return robot_file::Caller{.process = link::ProcessIdentity::of(peer.pid), .user = peer.uid};
 }
 
+// The few seats of the socket are for those who ask.
+Result<std::string> received() {
+  const timeval patience{.tv_sec = 2, .tv_usec = 0};
+  (void)::setsockopt(kSocket, SOL_SOCKET, SO_RCVTIMEO, &patience, sizeof(patience));
+  std::string bytes(client::FileRequest::kMostBytes + 1, '\0');
+  const auto size = ::recv(kSocket, bytes.data(), bytes.size(), 0);
+  if (size <= 0) return fail("nothing was asked within 2 s");
+  bytes.resize(static_cast<std::size_t>(size));
+  return bytes;
+}
+
 std::string logLine(const Result<client::FileRequest>& request, const robot_file::Caller& peer,
                     const client::FileAnswer& answer) {
   auto line = request ? std::string{toString(request->verb)} + " of robot '" + request->robot + "'"
@@ -53,11 +65,9 @@ int run(int argc, char** argv) {
     std::fprintf(stderr, "rc10-config: %s\n", peer.error().message.c_str());
     return kExitFailed;
   }
-  std::string bytes(client::FileRequest::kMostBytes + 1, '\0');
-  const auto size = ::recv(kSocket, bytes.data(), bytes.size(), 0);
-  if (size <= 0) return kExitFailed;
-  bytes.resize(static_cast<std::size_t>(size));
-  const auto request = client::parseFileRequest(bytes);
+  const auto bytes = received();
+  const auto request =
+      bytes ? client::parseFileRequest(*bytes) : Result<client::FileRequest>{tl::unexpected(bytes.error())};
   const auto answer =
       request ? robot_file::answer(*request, *peer, kFolder, robot_file::thisComputer(), std::time(nullptr))
               : client::FileAnswer{.done = false, .message = request.error().message};
