@@ -202,22 +202,25 @@ void Hub::check(const Page& page, CheckConfig wanted) {
 // The rights are those of the file that rc10d has accepted; polkit decides about rc10-web as a whole.
 void Hub::change(Page& page, const ChangeFile& wanted) {
   auto refused = whyNotMoving(page);
-  if (refused.empty() && page.file_call) refused = "the root helper is at work for this page";
-  const auto robot = feed_.connected() ? std::string{feed_.welcome().robot.view()} : robot_.value_or("robot");
-  const auto accepted = readAcceptedConfig(link::runDir(), feed_.connected() ? std::optional{robot} : robot_);
-  if (refused.empty() && accepted.empty())
-    refused = "rc10d left no copy of its file in the run folder, so nobody knows who may: install by hand";
+  if (refused.empty() && page.changes_file) refused = "the root helper is at work for this page";
+  const auto accepted = readAcceptedConfig(
+      link::runDir(), feed_.connected() ? std::optional{std::string{feed_.welcome().robot.view()}} : robot_);
+  if (refused.empty() && !accepted)
+    refused =
+        "rc10d left no copy of its file in the run folder, or several robots did, so nobody knows who may: "
+        "start rc10-web with --robot, or install by hand";
   if (!refused.empty()) return page.socket->sendText(shared(responseMessage(wanted.seq, "refused", refused)));
+  page.changes_file = true;
   auto token = page.link->token();
   if (token.find('\n') != std::string::npos) token.clear();
   askDesk(page, {.page = page.number,
                  .seq = wanted.seq,
                  .head = {},
                  .work = mayReplaceJson,
-                 .input = token + "\n" + accepted,
+                 .input = token + "\n" + accepted->text,
                  .then = client::FileRequest{
                      .verb = wanted.verb,
-                     .robot = robot,
+                     .robot = accepted->robot,
                      .replaces = wanted.verb == client::FileVerb::kInstall && wanted.replaces.empty()
                                      ? sha256(shownConfig().text)
                                      : wanted.replaces,
@@ -237,6 +240,7 @@ void Hub::askHelper(Page& page, std::int64_t seq, const Result<std::string>& may
     }
     refused = call.error().message;
   }
+  page.changes_file = false;
   page.socket->sendText(shared(responseMessage(seq, "refused", refused)));
 }
 
@@ -245,6 +249,7 @@ void Hub::publishFileAnswer(Page& page) {
   const auto answer = page.file_call->poll(std::chrono::steady_clock::now());
   if (!answer) return;
   page.file_call.reset();
+  page.changes_file = false;
   page.socket->sendText(
       shared(*answer ? responseMessage(page.file_seq, (*answer)->done ? "ok" : "refused", (*answer)->message)
                      : responseMessage(page.file_seq, "failed", answer->error().message)));

@@ -73,6 +73,7 @@ class Hub {
     std::unique_ptr<PageTest> test;
     std::optional<client::FileCall> file_call;
     std::int64_t file_seq = 0;
+    bool changes_file = false;  ///< One change of its file is under way, from its message to its answer.
     std::unique_ptr<TestEvaluation> evaluation;
   };
 

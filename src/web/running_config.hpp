@@ -14,9 +14,15 @@ struct FoundConfig {
 /// `robot` runs, with a file of this hash.
 [[nodiscard]] FoundConfig readRunningConfig(const std::string& run_dir, const std::string& robot,
                                             const std::string& hash);
-/// The file with which rc10d started last, whether it runs or not; empty: there is no copy.
-[[nodiscard]] std::string readAcceptedConfig(const std::string& run_dir,
-                                             const std::optional<std::string>& robot);
+/// The file with which an rc10d started last, whether it runs or not.
+struct AcceptedConfig {
+  std::string robot;  ///< Named by its copy.
+  std::string text;
+};
+/// That of `robot`; without a name that of the only robot that has left a copy. Nothing: there is none, or
+/// several have.
+[[nodiscard]] std::optional<AcceptedConfig> readAcceptedConfig(const std::string& run_dir,
+                                                               const std::optional<std::string>& robot);
 /// None runs: the newest file, of `robot` if it is named.
 [[nodiscard]] FoundConfig readLastConfig(const std::string& run_dir, const std::optional<std::string>& robot);
 

@@ -58,6 +58,33 @@ def test_a_page_of_this_computer_asks_the_helper_for_the_robot_that_runs(
     ]
 
 
+def test_a_change_goes_on_alone(daemon: Daemon, tmp_path: Path, helper: FileHelper) -> None:
+    web = Web(daemon, tmp_path, "--config-socket", str(helper.path))
+    with web.program, web.page() as page:
+        page.wait("state")
+        page.send(type="config_install", seq=501, text="robot: host\n")
+        page.send(type="config_restart", seq=502)
+        answers = [page.wait("response") for _ in range(2)]
+    assert {answer["seq"]: answer["status"] for answer in answers} == {501: "ok", 502: "refused"}
+    assert [request.verb for request in helper.requests] == ["install"]
+
+
+def test_without_rc10d_the_file_of_the_one_robot_that_ran_says_who_may(
+    tmp_path: Path, helper: FileHelper
+) -> None:
+    with Daemon(CONFIG.format(realtime="preferred")) as daemon:
+        daemon.wait_ready()
+        daemon.kill()
+        web = Web(daemon, tmp_path, "--config-socket", str(helper.path))
+        with web.program, web.page() as page:
+            page.wait("down")
+            assert change(page, "config_restart")["status"] == "ok"
+            # Another robot's file may say something else.
+            (daemon.run_dir / "arm.config").write_text("robot: arm\n")
+            assert "--robot" in change(page, "config_restart")["message"]
+    assert [request.robot for request in helper.requests] == ["host"]
+
+
 def test_with_clients_it_takes_a_token_that_may_configure(
     tmp_path: Path, helper: FileHelper
 ) -> None:

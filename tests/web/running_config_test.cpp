@@ -44,12 +44,24 @@ TEST_F(RunningConfigTest, WithoutARobotTheRefusedFileComesBeforeAnOlderOne) {
   EXPECT_EQ(readLastConfig(run.path(), std::nullopt).text, "newer");
   EXPECT_EQ(readLastConfig(run.path(), "hero").text, "old");
   leave("robot.refused", "wrong");
-  EXPECT_EQ(readAcceptedConfig(run.path(), std::nullopt), "newer");
-  EXPECT_EQ(readAcceptedConfig(run.path(), "hero"), "old");
-  EXPECT_EQ(readAcceptedConfig(run.path(), "nobody"), "");
   EXPECT_EQ(readLastConfig(run.path(), std::nullopt).of, "refused");
   leave("sentry.config", "mended", -10);
   EXPECT_EQ(readLastConfig(run.path(), std::nullopt).text, "mended");
+}
+
+TEST_F(RunningConfigTest, TheRightsOfARobotAreInItsOwnFileAndOfSeveralRobotsInNone) {
+  const auto accepted = [&](const std::optional<std::string>& robot) {
+    const auto found = readAcceptedConfig(run.path(), robot);
+    return found ? found->robot + ": " + found->text : "nobody knows";
+  };
+  leave("hero.config", "strict", 20);
+  leave("robot.refused", "wrong");
+  EXPECT_EQ(accepted(std::nullopt), "hero: strict");
+  leave("arm.config", "for everybody");
+  EXPECT_EQ(accepted(std::nullopt), "nobody knows");
+  EXPECT_EQ(accepted("hero"), "hero: strict");
+  EXPECT_EQ(accepted("sentry"), "nobody knows");
+  EXPECT_EQ(accepted("../hero"), "nobody knows");
 }
 
 TEST_F(RunningConfigTest, ARefusedFileOfAnotherRobotIsNotThatOfTheNamedOne) {
