@@ -31,6 +31,9 @@ struct ScanQuestions {
   std::span<const std::string_view> asked;   ///< Drives that answer: "RobStride", "CyberGear".
   std::span<const std::string_view> silent;  ///< Those of them that may say nothing unless they are asked.
   std::vector<CanFrame> (*frames)() = nullptr;
+  /// The id under which such a drive answers a question, of another family too; none: none does. Null: its
+  /// answer is nobody's command.
+  std::optional<CanId> (*answer)(CanId question) = nullptr;
 };
 
 /// Drive that would take a frame for a command of its own.

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "drives/families.hpp"
+#include "survey/harmless_queries.hpp"
 
 namespace rc10::survey {
 
@@ -69,6 +70,15 @@ std::string BusSurvey::commandedBy(const CanFrame& query) const {
     const bool shown = std::any_of(guesses.begin(), guesses.end(),
                                    [&](const auto& guess) { return guess.first == obeying->drive; });
     if (shown) return std::string{obeying->name} + " " + std::to_string(obeying->drive.id);
+  }
+  for (const auto& [key, heard] : heard_) {
+    const auto& [extended, id] = key;
+    const auto drive = id & 0xFFU;
+    if (!extended || id > 0xFFFFU || !isAnsweredTo(query.id, drive)) continue;
+    for (const auto& [guess, count] : heard.guesses) {
+      if (guess.from_drive && static_cast<std::uint32_t>(guess.id) == drive)
+        return std::string{guess.kind} + " " + std::to_string(drive) + ", by an answer";
+    }
   }
   return {};
 }

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "drives/families.hpp"
+#include "survey/harmless_queries.hpp"
 
 namespace rc10::survey {
 namespace {
@@ -69,7 +70,14 @@ std::vector<std::string> DriveClaims::unheard() const {
 std::string DriveClaims::commandedBy(const CanFrame& question) const {
   const auto found = std::find_if(motors_.begin(), motors_.end(),
                                   [&](const KnownMotor& motor) { return accepted(motor.steers, question); });
-  return found == motors_.end() ? std::string{} : "motor '" + found->name + "'";
+  if (found != motors_.end()) return "motor '" + found->name + "'";
+  const auto answered = std::find_if(motors_.begin(), motors_.end(), [&](const KnownMotor& motor) {
+    return std::any_of(motor.steers.begin(), motor.steers.end(), [&](const FrameFilter& filter) {
+      return filter.id.extended && filter.id.value <= 0xFFFFU &&
+             isAnsweredTo(question.id, filter.id.value & 0xFFU);
+    });
+  });
+  return answered == motors_.end() ? std::string{} : "motor '" + answered->name + "', by an answer";
 }
 
 }  // namespace rc10::survey

@@ -38,8 +38,8 @@ class DriveClaims {
   [[nodiscard]] std::optional<Claim> of(const DriveGuess& guess) const;
   /// Motors of which nothing was heard.
   [[nodiscard]] std::vector<std::string> unheard() const;
-  /// The motor that would take this question for a command, whether its drive is heard or not: "motor 'arm'".
-  /// Empty: none.
+  /// The motor that would take this question, or an answer to it, for a command, whether its drive is heard
+  /// or not: "motor 'arm'". Empty: none.
   [[nodiscard]] std::string commandedBy(const CanFrame& question) const;
   [[nodiscard]] const std::vector<KnownMotor>& motors() const noexcept { return motors_; }
 

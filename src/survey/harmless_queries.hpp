@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <vector>
 
 #include "bus/can_frame.hpp"
@@ -17,6 +18,13 @@ namespace rc10::survey {
 /// no registers. No other family is asked: a standard id of one is a command of another (0x142, a question to
 /// an LK-Tech or MyActuator drive, is the e-stop of ODrive's node 10; 0x7FF, Damiao's, is its firmware
 /// update).
+///
+/// The answers are frames too. RobStride `ii` answers both under 0x0000iiFE, which commands a VESC or a
+/// CubeMars drive whose id is 254: BusSurvey and DriveClaims name it, and no RobStride is asked beside it.
 [[nodiscard]] std::vector<CanFrame> harmlessQueries();
+
+/// Whether some drive's answer to this question has an id of 16 bits that ends in `drive`: a command of a
+/// VESC or CubeMars drive of that id, whatever the packet before it is.
+[[nodiscard]] bool isAnsweredTo(CanId question, std::uint32_t drive);
 
 }  // namespace rc10::survey

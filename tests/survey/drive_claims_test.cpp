@@ -82,6 +82,19 @@ TEST(DriveClaims, AQuestionThatCommandsAMotorOfTheFileIsFoundWhetherItIsHeardOrN
   for (const auto& question : harmlessQueries()) EXPECT_EQ(claims.commandedBy(question), "");
 }
 
+TEST(DriveClaims, NoRobstrideIsAskedBesideAMotorThatItsAnswerWouldCommand) {
+  auto motor = vesc();
+  motor.id = 254;
+  motor.steers = {FrameFilter{.id = {0x1FE, true}}};  // a current, and the answer of RobStride 1
+  const DriveClaims claims{{motor}};
+  EXPECT_EQ(claims.commandedBy(frameOf("0000FD01#0000000000000000")), "motor 'pump', by an answer");
+  EXPECT_EQ(claims.commandedBy(frameOf("00001101#FE")), "motor 'pump', by an answer") << "type 0 as well";
+  EXPECT_EQ(claims.commandedBy(frameOf("00001180#FE")), "") << "no RobStride has this id";
+  std::size_t asked = 0;
+  for (const auto& question : harmlessQueries()) asked += claims.commandedBy(question).empty() ? 1U : 0U;
+  EXPECT_EQ(asked, 254U - 127U);
+}
+
 TEST(LinkSighting, TellsTheMotorOfEachGuess) {
   DriveClaims claims{{wheel()}};
   claims.take(frameOf(kDji1));

@@ -194,6 +194,17 @@ TEST(BusSurvey, AQueryThatAnOdriveWouldObeyIsKnown) {
   EXPECT_EQ(spared().size(), 32U + 31U);
 }
 
+TEST(BusSurvey, NoRobstrideIsAskedBesideADriveThatItsAnswerWouldCommand) {
+  const auto question = frame("0000FD01#0000000000000000");
+  BusSurvey survey;
+  survey.take(frame("0000092A#0000271000640064"));
+  survey.take(frame("000001FE#0102030405060708"));  // the answer itself, as of a drive that is switched on
+  EXPECT_EQ(survey.commandedBy(question), "");
+  survey.take(frame("000009FE#0000271000640064"));
+  EXPECT_EQ(survey.commandedBy(question), "VESC 254, by an answer");
+  EXPECT_EQ(survey.commandedBy(frame("000011FD#FE")), "");
+}
+
 TEST(HarmlessQueries, AreExtendedFramesThatCommandNobody) {
   for (const auto& query : harmlessQueries()) {
     EXPECT_TRUE(query.id.extended);
