@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import signal
 from collections.abc import Iterator
 from typing import Any
 
@@ -10,6 +11,7 @@ import pytest
 from hostlib import Daemon
 from hostlib.daemon import ARM, REPO
 from hostlib.page import blocks_run_by
+from hostlib.program import eventually
 from hostlib.reader import commands
 
 import rc10
@@ -94,6 +96,16 @@ def test_a_motor_that_is_enabled_meanwhile_is_enabled_and_the_scan_ends(arm: Dae
         arm.must("disable", "wheel")
         # A busy computer may have begun to scan after the motor was enabled.
         assert "enabled meanwhile" in told or "ENABLING or ACTIVE" in told
+
+
+def test_a_scan_ends_with_its_client_and_leaves_the_bus_to_the_next(arm: Daemon) -> None:
+    def again() -> str:
+        return arm.ctl("scan", "arm", "--seconds", "0.5").stderr
+
+    with arm.drive("scan", "arm", "--seconds", "60") as first:
+        eventually(lambda: "another scan goes on" in again(), "it listens")
+        first.signal(signal.SIGKILL)
+        eventually(lambda: again() == "", "the bus is free")
 
 
 @pytest.mark.usefixtures("arm")

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 import pytest
 from hostlib import Daemon, Program
-from hostlib.program import PATIENCE_S
+from hostlib.program import PATIENCE_S, eventually
 from test_motion import ROBOT
 from test_web import Web
 from test_web_motion import PATIENT, STEP, SWEEP, now_us
@@ -163,6 +163,42 @@ def test_a_motor_that_holds_by_its_on_timeout_holds_on(web: Web, robot: Daemon) 
     robot.wait_motor("lift", lambda m: m["acting"] == "hold", "holds")
     lift = when_all_ends_are_carried_out(web, robot)["lift"]
     assert (lift["status"], lift["acting"]) == ("ACTIVE", "hold")
+
+
+KP = "velocity_pid.kp_a_per_rpm"
+
+# It tries a gain, as the search of the page does, and waits to be killed.
+SEARCH = f"""
+import json, sys
+from websockets.sync.client import connect
+with connect(sys.argv[1], max_size=None) as page:
+    page.send(json.dumps({{"type": "request", "seq": 1, "operation": "set_gains", "target": "wheel",
+                          "values": json.loads(sys.argv[2])}}))
+    while True:
+        data = page.recv(timeout={PATIENCE_S})
+        told = {{}} if isinstance(data, bytes) else json.loads(data)
+        if told.get("type") == "response":
+            print(told["status"], flush=True)
+"""
+
+
+def kp(robot: Daemon) -> float:
+    found: float = json.loads(robot.must("gains", "wheel", "--json"))["gains"][KP]
+    return found
+
+
+@pytest.mark.parametrize("victim", ["browser", "server"])
+def test_what_is_killed_while_it_tries_gains_leaves_those_of_before(
+    web: Web, robot: Daemon, victim: str
+) -> None:
+    before = kp(robot)
+    url = f"ws://127.0.0.1:{web.port}/link"
+    tried = json.dumps({KP: 2 * before, "restore_at_end": 1})
+    with Program(sys.executable, "-c", SEARCH, url, tried, env=robot.env) as browser:
+        browser.wait_line("ok")
+        assert kp(robot) == 2 * before
+        (browser if victim == "browser" else web.program).signal(signal.SIGKILL)
+        eventually(lambda: kp(robot) == before, "the gains of before")
 
 
 def test_a_wrong_value_is_refused_in_words(web: Web, robot: Daemon) -> None:

@@ -490,6 +490,50 @@ def test_a_search_judges_gains_by_the_step_and_leaves_those_in_force(
         expect(page.locator(".gains").get_by_role("button", name="Apply")).to_be_enabled()
 
 
+@pytest.mark.usefixtures("form")
+def test_escape_between_two_tests_of_a_search_begins_no_other_one(
+    page: Page, studio: Studio
+) -> None:
+    before = gains_in_force(studio)
+    page.evaluate(
+        """() => {
+          const send = WebSocket.prototype.send;
+          window.tests = 0;
+          WebSocket.prototype.send = function (data) {
+            send.call(this, data);
+            const message = typeof data === "string" ? JSON.parse(data) : {};
+            if (message.type === "test") window.tests += 1;
+            // Twice in a row it would be an e-stop.
+            if (message.operation === "set_gains" && "restore_at_end" in message.values)
+              window.dispatchEvent(new KeyboardEvent("keydown", { key: "Escape" }));
+          };
+        }"""
+    )
+    proposal = page.get_by_role("region", name="Proposal")
+    proposal.get_by_role("button", name="Search", exact=True).click()
+    # The first step is as it was; Escape comes while other gains are set for the second one.
+    expect(proposal.get_by_role("alert")).to_have_text(
+        "The search has ended early; the gains of before are in force.", timeout=9 * PATIENCE_MS
+    )
+    assert page.evaluate("window.tests") == 1
+    assert gains_in_force(studio) == before
+    rests(studio)
+
+
+def test_a_page_that_is_closed_in_a_search_leaves_the_gains_of_before(
+    page: Page, form: Locator, studio: Studio
+) -> None:
+    before = gains_in_force(studio)
+    form.get_by_label("lasts").fill("5")
+    page.get_by_role("region", name="Proposal").get_by_role(
+        "button", name="Search", exact=True
+    ).click()
+    eventually(lambda: gains_in_force(studio) != before, "other gains", 3 * PATIENCE_MS / 1000)
+    page.close()
+    eventually(lambda: gains_in_force(studio) == before, "the gains of before")
+    rests(studio)
+
+
 def test_escape_ends_a_search_and_puts_the_gains_back(
     page: Page, form: Locator, studio: Studio
 ) -> None:

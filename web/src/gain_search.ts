@@ -20,6 +20,11 @@ export function loopGainsOf(values: Record<string, number>): LoopGains | null {
   return kp === undefined || ki === undefined ? null : { kp, ki };
 }
 
+/** These gains are only tried: rc10d puts those of before back when the page is gone. */
+export function triedValuesOf(gains: LoopGains): Record<string, number> {
+  return { ...valuesOf(gains), restore_at_end: 1 };
+}
+
 export function valuesOf(gains: LoopGains): Record<string, number> {
   return { [kKp]: Number(gains.kp.toPrecision(4)), [kKi]: Number(gains.ki.toPrecision(4)) };
 }

@@ -3,7 +3,7 @@ import { useEffect, useRef, useState } from 'preact/hooks';
 
 import { CopyLines } from './action';
 import { useKnown, useStoredOfRobot, useStudio } from './context';
-import { type LoopGains, kKi, kKp, loopGainsOf, scoreOf, searchGains, valuesOf } from './gain_search';
+import { type LoopGains, kKi, kKp, loopGainsOf, scoreOf, searchGains, triedValuesOf, valuesOf } from './gain_search';
 import type { Link, TestOutcome } from './link';
 import { type TestPlan, kFirstPlan, proposalOf, testCommand } from './motion_test';
 import { NumberField, OptionalField } from './number_field';
@@ -74,11 +74,13 @@ function Search(props: { motor: string; plan: TestPlan; start: LoopGains | null;
     const badness = async (gains: LoopGains | null) => {
       if (ended.current) return null;
       if (gains !== null) {
-        const answer = await link.ask({ operation: 'set_gains', target: motor, values: valuesOf(gains) });
+        const answer = await link.ask({ operation: 'set_gains', target: motor, values: triedValuesOf(gains) });
         if (answer.status !== 'ok') {
           why = answer.message;
           return null;
         }
+        // By Escape, or by leaving, before there was an answer: nothing moves any more.
+        if (ended.current) return null;
       }
       const outcome = await props.run(plan, gains === null);
       if ('refused' in outcome || outcome.done.report.abort !== null) return null;

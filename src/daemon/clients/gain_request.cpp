@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "config/yaml/number_text.hpp"
+#include "daemon/clients/gains_at_end.hpp"
 
 namespace rc10 {
 
@@ -21,6 +22,7 @@ Result<GainChanges> parseGains(const link::Request& request, const MotorLoops& l
   GainChanges changes;
   const auto count = std::min<std::size_t>(request.value_count, link::kMaxValues);
   for (const auto& value : std::span(request.values).first(count)) {
+    if (value.name.view() == GainsAtEnd::kValue) continue;
     const auto change = gainChange(value.name.view(), value.value, loops);
     if (!change) return tl::unexpected(change.error());
     const auto given = std::span(changes.values).first(changes.count);

@@ -124,7 +124,7 @@ void LinkServer::poll(int timeout_ms) {
 
 void LinkServer::slowTick() {
   drainScheduler();
-  disableForTheGone();
+  endForTheGone();
   scans_.sendOn(connections_);
   for (const auto id : connections_.sendUnsent()) feeds_.forget(id);
   for (const auto& text : connections_.newlyDeaf()) note(Severity::kWarning, text);
@@ -134,11 +134,16 @@ void LinkServer::slowTick() {
   if (slow_ticks_ % kDiagnosticsEvery == 0) feeds_.publishDiagnostics(admission_);
 }
 
-void LinkServer::disableForTheGone() {
-  const auto order = at_end_.due(sources_.exchange.snapshot.read(),
-                                 [this](std::uint64_t id) { return connections_.find(id) != nullptr; });
-  // A full ring has room the next time.
-  if (order && sources_.exchange.orders.push(*order)) at_end_.taken(*order);
+// A full ring has room the next time.
+void LinkServer::endForTheGone() {
+  const auto is_open = [this](std::uint64_t id) { return connections_.find(id) != nullptr; };
+  if (const auto order = at_end_.due(sources_.exchange.snapshot.read(), is_open);
+      order && sources_.exchange.orders.push(*order))
+    at_end_.taken(*order);
+  if (const auto scan = desk_.scanForNobody(is_open))
+    sources_.exchange.scan.given_up.store(*scan, std::memory_order_relaxed);
+  if (const auto gains = desk_.gainsForNobody(is_open); gains && !sources_.exchange.orders.push(*gains))
+    (void)desk_.fail(gains->id, "the scheduler does not take orders");
 }
 
 void LinkServer::accept() {

@@ -65,7 +65,9 @@ class LinkServer {
   bool handOver(const Order& order, const link::Request& message);
   void answer(const RequestDesk::Answer& answer);
   void drainScheduler();
-  void disableForTheGone();
+  /// Clients whose connections have ended leave no motor enabled, no bus scanned, no gain that they only
+  /// tried.
+  void endForTheGone();
   void slowTick();
 
   Sources sources_;

@@ -4,6 +4,7 @@
 #include <chrono>
 #include <cmath>
 #include <optional>
+#include <span>
 #include <utility>
 
 #include <fmt/format.h>
@@ -83,7 +84,8 @@ constexpr std::string_view kAngle = "angle_deg";
           travelText(motor.travel));
     case Refusal::kScanning:
     case Refusal::kBusHeld:
-    case Refusal::kTooBusy: break;  // in whyNoScan()
+    case Refusal::kTooBusy:
+    case Refusal::kClientGone: break;  // in whyNoScan()
   }
   return "unknown reason";
 }
@@ -152,6 +154,9 @@ RequestDesk::Outcome RequestDesk::begin(const link::Request& request, const Spea
       operation ? orderOf(request, *operation) : Result<Order>{tl::unexpected(unknownOperation(request))};
   const auto at_end = operation ? DisableAtEnd::askedBy(request, *operation, speaker) : Result<bool>{false};
   if (order && !at_end) order = tl::unexpected(at_end.error());
+  const auto tries =
+      operation == Operation::kSetGains ? GainsAtEnd::askedBy(request, speaker) : Result<bool>{false};
+  if (order && !tries) order = tl::unexpected(tries.error());
   if (!operation || !order) {
     outcome.response = respond(request, link::ResponseStatus::kRefused, order.error().message);
     answered_.remember(asker, request, *outcome.response);
@@ -171,7 +176,7 @@ RequestDesk::Outcome RequestDesk::begin(const link::Request& request, const Spea
   }
   order->id = next_order_id_++;
   order->repeated = known != nullptr || open != nullptr;
-  open_.push_back({speaker.connection, asker, request, *order});
+  open_.push_back({speaker.connection, asker, request, *order, *tries});
   outcome.order = *order;
   outcome.disable_at_end = *at_end;
   return outcome;
@@ -373,8 +378,16 @@ void RequestDesk::finishGains(const Open& open, const OrderResult& result, link:
         fmt::format("{}: {}", nameOf(motor), inWords(result.motors[motor], robot_.motors[motor]));
     return;
   }
+  for (const auto& change : std::span(open.order.gains.values).first(open.order.gains.count)) {
+    const GainChange before{change.gain, gainOf(loops_[motor].config, change.gain)};
+    if (open.tries_gains)
+      gains_at_end_.tried(open.connection, open.request.client, motor, before);
+    else
+      gains_at_end_.settled(motor, change.gain);
+  }
   response.message =
-      fmt::format("{}: {}; until rc10d restarts", nameOf(motor), applyGains(open.order.gains, loops_[motor]));
+      fmt::format("{}: {}; until {}", nameOf(motor), applyGains(open.order.gains, loops_[motor]),
+                  open.tries_gains ? "its client ends" : "rc10d restarts");
   tellGains(loops_[motor], response);
 }
 
@@ -450,7 +463,7 @@ std::optional<RequestDesk::Answer> RequestDesk::finish(const OrderResult& result
   }
   Answer answer{found->connection, respond(found->request, status, message)};
   if (operation == Operation::kSetGains) finishGains(*found, result, answer.response);
-  answered_.remember(found->asker, found->request, answer.response);
+  if (found->connection != kNobody) answered_.remember(found->asker, found->request, answer.response);
   open_.erase(found);
   return answer;
 }
@@ -465,9 +478,35 @@ std::optional<RequestDesk::Answer> RequestDesk::fail(std::uint64_t order_id, con
   return answer;
 }
 
+std::optional<std::uint64_t> RequestDesk::scanForNobody(const IsOpen& is_open) const {
+  const auto found = std::find_if(open_.begin(), open_.end(), [&](const Open& open) {
+    return open.order.operation == Operation::kScan && !is_open(open.connection);
+  });
+  return found == open_.end() ? std::nullopt : std::optional{found->order.id};
+}
+
+// One at a time: until its result it is due still.
+std::optional<Order> RequestDesk::gainsForNobody(const IsOpen& is_open) {
+  if (std::any_of(open_.begin(), open_.end(), [](const Open& open) { return open.connection == kNobody; }))
+    return std::nullopt;
+  const auto due = gains_at_end_.due(is_open);
+  if (!due) return std::nullopt;
+  Open open;
+  open.request.client = due->client;
+  open.request.operation = toString(Operation::kSetGains);
+  open.request.target = nameOf(due->motor);
+  open.order = {.id = next_order_id_++,
+                .operation = Operation::kSetGains,
+                .motors = MotorSet{}.set(due->motor),
+                .gains = due->gains,
+                .client = due->client};
+  open_.push_back(open);
+  return open.order;
+}
+
 RequestDesk::Open* RequestDesk::openRepetition(std::uint64_t asker, const link::Request& request) {
   const auto found = std::find_if(open_.begin(), open_.end(), [&](const Open& each) {
-    return each.asker == asker && repeats(request, each.request);
+    return each.connection != kNobody && each.asker == asker && repeats(request, each.request);
   });
   return found == open_.end() ? nullptr : &*found;
 }

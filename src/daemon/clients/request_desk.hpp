@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <deque>
+#include <functional>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -11,6 +12,7 @@
 #include "config/keys/loop_gains.hpp"
 #include "daemon/clients/admission.hpp"
 #include "daemon/clients/answered_requests.hpp"
+#include "daemon/clients/gains_at_end.hpp"
 #include "daemon/exchange/orders.hpp"
 #include "daemon/exchange/robot_description.hpp"
 #include "daemon/exchange/shaft_order.hpp"
@@ -25,6 +27,9 @@ class RequestDesk {
  public:
   /// Both outlive it.
   RequestDesk(const Admission& admission, const RobotDescription& robot);
+
+  /// Whether a connection is still there.
+  using IsOpen = std::function<bool(std::uint64_t connection)>;
 
   struct Shaft {
     ShaftOrder order;
@@ -51,16 +56,23 @@ class RequestDesk {
   /// The response to the request whose order has this result; empty if it is not known any more. `report`: of
   /// a scan that was made.
   [[nodiscard]] std::optional<Answer> finish(const OrderResult& result, const std::string& report = {});
+  /// The scan that is under way for a client whose connection has ended.
+  [[nodiscard]] std::optional<std::uint64_t> scanForNobody(const IsOpen& is_open) const;
+  /// To be sent to the supervisor: gains of before for one motor, whose client tried others and has ended.
+  [[nodiscard]] std::optional<Order> gainsForNobody(const IsOpen& is_open);
   /// The order could not be handed over.
   [[nodiscard]] std::optional<Answer> fail(std::uint64_t order_id, const std::string& reason);
 
  private:
+  /// Connection of what this desk asks by itself.
+  static constexpr std::uint64_t kNobody = 0;
   /// A request whose order is under way.
   struct Open {
-    std::uint64_t connection = 0;
+    std::uint64_t connection = kNobody;
     std::uint64_t asker = 0;
     link::Request request;
     Order order;
+    bool tries_gains = false;  ///< See GainsAtEnd.
   };
 
   [[nodiscard]] static Error unknownOperation(const link::Request& request);
@@ -99,6 +111,7 @@ class RequestDesk {
   std::uint64_t next_order_id_ = 1;
   std::deque<Open> open_;
   AnsweredRequests answered_;
+  GainsAtEnd gains_at_end_;
 };
 
 }  // namespace rc10

@@ -68,6 +68,7 @@ constexpr double kLeastFree = 0.05;
     case Refusal::kScanning: return "another scan goes on: wait for it";
     case Refusal::kBusHeld: return "the bus carries no frames: see `rc10ctl stats`";
     case Refusal::kTooBusy: return "rc10d had no time to judge what was heard: scan again";
+    case Refusal::kClientGone: return "its client was gone: scan again";
     default: return "not possible now";
   }
 }

@@ -25,7 +25,8 @@ struct BusScanExchange {
   /// order.
   std::array<CanFrame, kMostQuestions> questions{};
   std::size_t question_count = 0;
-  std::atomic<std::uint64_t> ready{0};  ///< By the link thread, releases: of this order they are complete.
+  std::atomic<std::uint64_t> ready{0};     ///< By the link thread, releases: of this order they are complete.
+  std::atomic<std::uint64_t> given_up{0};  ///< By the link thread: nobody waits for this order any more.
 };
 
 }  // namespace rc10

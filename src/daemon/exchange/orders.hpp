@@ -109,6 +109,7 @@ enum class Refusal : std::uint8_t {
   kScanning,    ///< Another scan goes on.
   kBusHeld,     ///< Its bus carries no frames.
   kTooBusy,     ///< The link thread did not judge what was heard.
+  kClientGone,  ///< The one that asked has ended.
 };
 
 struct OrderResult {
@@ -116,8 +117,8 @@ struct OrderResult {
   bool refused = false;         ///< Not tried at all.
   std::size_t drive_value = 0;  ///< kConfigure: at which of the values it ended.
   std::array<Refusal, kMaxMotors> motors{};
-  MotorSet in_the_way{};           ///< kAlone, kOthersOn, kGroup, kTogether: which motors.
   MotorSet on_before{};            ///< kEnable, kEnableAlone: motors that were ENABLING or ACTIVE already.
+  MotorSet in_the_way{};           ///< kAlone, kOthersOn, kGroup, kTogether: which motors.
   Refusal scan = Refusal::kNone;   ///< kScan: reason that concerns no motor,
   std::uint32_t asked = 0;         ///< questions that were sent,
   std::uint64_t error_frames = 0;  ///< and error frames of the bus meanwhile.

@@ -24,6 +24,7 @@ void BusScan::hear(std::size_t bus, const CanFrame& frame) noexcept {
 }
 
 BusScan::Progress BusScan::advance(const Tick& tick) noexcept {
+  if (exchange_.given_up.load(std::memory_order_relaxed) == id_) return Progress::kGivenUp;
   if (phase_ == Phase::kListening && tick.now >= until_) {
     if (order_.listen_only) return Progress::kDone;
     exchange_.listened.store(id_, std::memory_order_release);

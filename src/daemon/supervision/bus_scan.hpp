@@ -32,7 +32,7 @@ class BusScan {
   void begin(const Order& order, std::uint64_t error_frames, const Tick& tick) noexcept;
   /// A frame of a bus, before it is decoded.
   void hear(std::size_t bus, const CanFrame& frame) noexcept;
-  enum class Progress : std::uint8_t { kPending, kDone, kNotJudged };
+  enum class Progress : std::uint8_t { kPending, kDone, kNotJudged, kGivenUp };
   /// Once a tick.
   [[nodiscard]] Progress advance(const Tick& tick) noexcept;
   /// The question of this tick; null: none is due.

@@ -51,6 +51,7 @@ void Supervisor::watchScan(const Tick& tick) noexcept {
       case BusScan::Progress::kPending: return;
       case BusScan::Progress::kDone: break;
       case BusScan::Progress::kNotJudged: result.scan = Refusal::kTooBusy; break;
+      case BusScan::Progress::kGivenUp: result.scan = Refusal::kClientGone; break;
     }
   }
   const auto error_frames = robot_.buses()[scan_.order().bus].bus->health().errorFrames();

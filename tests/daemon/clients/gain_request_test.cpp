@@ -3,6 +3,8 @@
 #include <cmath>
 #include <initializer_list>
 #include <map>
+#include <optional>
+#include <set>
 #include <string>
 #include <utility>
 
@@ -186,6 +188,81 @@ TEST_F(SetGainsTest, OrdersOfOneTickFollowOneAnother) {
   while (robot.exchange().results.pop(result)) text = desk.finish(result)->response.message.view();
   EXPECT_THAT(text, HasSubstr("kp_a_per_rpm 0.5 -> 0.6"));
   EXPECT_EQ(gainOf(loops(), LoopGain::kVelocityKi), 2.0F);
+}
+
+/// A client that tries gains, and the end of its connection.
+class TriedGainsTest : public SetGainsTest {
+ protected:
+  static constexpr std::string_view kTry = "restore_at_end";
+  /// The order that is due while the clients of these connections are there.
+  std::optional<Order> dueWith(std::initializer_list<std::uint64_t> open) {
+    const std::set<std::uint64_t> connections{open};
+    return desk.gainsForNobody([&](std::uint64_t id) { return connections.contains(id); });
+  }
+  void carryOut(const Order& order) {
+    ASSERT_TRUE(robot.exchange().orders.push(order));
+    robot.tick();
+    OrderResult result;
+    ASSERT_TRUE(robot.exchange().results.pop(result));
+    (void)desk.finish(result);
+  }
+  float kp() { return gainOf(loops(), LoopGain::kVelocityKp); }
+  float ki() { return gainOf(loops(), LoopGain::kVelocityKi); }
+};
+
+TEST_F(TriedGainsTest, ThoseOfBeforeTheFirstTryAreInForceAgainWhenTheConnectionHasEnded) {
+  EXPECT_THAT(std::string(set({{"velocity.kp", 0.5}, {kTry, 1.0}}).message.view()),
+              HasSubstr("0.25 -> 0.5; until its client ends"));
+  (void)set({{"velocity.kp", 0.8}, {"velocity.ki", 2.0}, {kTry, 1.0}});
+  ASSERT_EQ(kp(), 0.8F);
+  EXPECT_FALSE(dueWith({1}));
+  const auto order = dueWith({});
+  ASSERT_TRUE(order);
+  EXPECT_EQ(order->client.view(), "pilot");
+  EXPECT_FALSE(dueWith({})) << "it is under way";
+  carryOut(*order);
+  EXPECT_EQ(kp(), 0.25F);
+  EXPECT_EQ(ki(), 1.0F);
+  EXPECT_EQ(valuesIn(answer(ask(toString(Operation::kGetConfig), "wheel"))).at("velocity_pid.kp_a_per_rpm"),
+            0.25);
+  EXPECT_FALSE(dueWith({})) << "it is done";
+}
+
+TEST_F(TriedGainsTest, AnOrderThatFoundNoRoomIsDueAgain) {
+  (void)set({{"velocity.kp", 0.5}, {kTry, 1.0}});
+  const auto order = dueWith({});
+  ASSERT_TRUE(order);
+  (void)desk.fail(order->id, "no room");
+  EXPECT_TRUE(dueWith({}));
+}
+
+TEST_F(TriedGainsTest, AGainThatIsSetToStayStays) {
+  (void)set({{"velocity.kp", 0.5}, {"velocity.ki", 2.0}, {kTry, 1.0}});
+  (void)set({{"velocity.kp", 0.6}});
+  const auto order = dueWith({});
+  ASSERT_TRUE(order);
+  carryOut(*order);
+  EXPECT_EQ(kp(), 0.6F);
+  EXPECT_EQ(ki(), 1.0F);
+}
+
+TEST_F(TriedGainsTest, OneThatSetsThemBackItselfLeavesNothingToDo) {
+  (void)set({{"velocity.kp", 0.5}, {kTry, 1.0}});
+  (void)set({{"velocity.kp", 0.25}});
+  EXPECT_FALSE(dueWith({}));
+}
+
+TEST_F(TriedGainsTest, ItIsAskedForByOneAndNotThroughLcm) {
+  EXPECT_THAT(refusal(ask(toString(Operation::kSetGains), "wheel", {{"velocity.kp", 0.5}, {kTry, 2.0}})),
+              HasSubstr("restore_at_end: use 1"));
+  const auto outcome =
+      desk.begin(ask(toString(Operation::kSetGains), "wheel", {{"velocity.kp", 0.5}, {kTry, 1.0}}),
+                 {.connection = 1, .way = Speaker::Way::kLcm});
+  ASSERT_TRUE(outcome.response);
+  EXPECT_THAT(std::string(outcome.response->message.view()),
+              HasSubstr("nobody sees the end of an LCM client"));
+  EXPECT_THAT(refusal(ask(toString(Operation::kSetGains), "wheel", {{kTry, 1.0}})), HasSubstr("name a gain"));
+  EXPECT_EQ(kp(), 0.25F);
 }
 
 TEST_F(SetGainsTest, AFloodOfThemIsRefused) {

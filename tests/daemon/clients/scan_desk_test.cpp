@@ -184,6 +184,26 @@ TEST_F(ScanServerTest, OneScanGoesOnAtATimeAndTheNextBeginsWithNothing) {
               StartsWith("scan: chassis: no drive was heard"));
 }
 
+TEST_F(ScanServerTest, AScanWhoseClientIsGoneIsGivenUpAndOneThatIsAskedForAgainIsNot) {
+  auto client = join();
+  const auto order = ask(*client);
+  pump();
+  EXPECT_NE(exchange.scan.given_up.load(), order.id);
+  client->leave();
+  for (int i = 0; i < 3000 && exchange.scan.given_up.load() != order.id; ++i) server->poll(100);
+  EXPECT_EQ(exchange.scan.given_up.load(), order.id);
+  OrderResult ended;
+  ended.id = order.id;
+  ended.scan = Refusal::kClientGone;
+  ASSERT_TRUE(exchange.results.push(ended));
+  for (int i = 0; i < 3000 && exchange.results.read_available() > 0; ++i) server->poll(100);
+  auto other = join(0, "other");
+  const auto next = ask(*other, 9);
+  EXPECT_NE(next.id, order.id);
+  handOver(next);
+  EXPECT_EQ(exchange.scan.given_up.load(), order.id);
+}
+
 TEST_F(ScanServerTest, AClientThatLeavesKeepsNobodyFromScanning) {
   auto client = join();
   const auto order = ask(*client);

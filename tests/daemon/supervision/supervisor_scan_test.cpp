@@ -289,6 +289,34 @@ TEST_F(ScanTest, EndsWhenNobodyJudgesWhatWasHeard) {
   EXPECT_EQ(questions.sent, 0);
 }
 
+TEST_F(ScanTest, OneForWhichNobodyWaitsEndsBeforeAnotherQuestionAndLeavesTheBusToTheNext) {
+  asking();
+  robot.run(4);
+  const int before = questions.sent;
+  ASSERT_GT(before, 0);
+  robot.exchange().scan.given_up.store(kScan);
+  robot.tick();
+  const auto end = result();
+  ASSERT_TRUE(end) << "in the very tick";
+  EXPECT_EQ(end->scan, Refusal::kClientGone);
+  robot.run(20);
+  EXPECT_EQ(questions.sent, before);
+  auto next = scanOrder(true);
+  next.id = kScan + 1;
+  begin(next);
+  EXPECT_EQ(ended(next.id).scan, Refusal::kNone);
+}
+
+TEST_F(ScanTest, OneThatIsGivenUpBeforeItsFirstTickAsksNothing) {
+  handOverQuestions();
+  robot.exchange().scan.given_up.store(kScan);
+  begin(scanOrder());
+  const auto end = result();
+  ASSERT_TRUE(end);
+  EXPECT_EQ(end->scan, Refusal::kClientGone);
+  EXPECT_EQ(questions.sent, 0);
+}
+
 TEST_F(ScanTest, QuestionsOfAnEarlierScanAreNotItsOwn) {
   handOverQuestions();
   auto order = scanOrder();

@@ -1,0 +1,53 @@
+#include "daemon/clients/gains_at_end.hpp"
+
+#include <algorithm>
+#include <span>
+#include <string>
+
+namespace rc10 {
+
+Result<bool> GainsAtEnd::askedBy(const link::Request& request, const Speaker& speaker) {
+  const auto values =
+      std::span(request.values).first(std::min<std::size_t>(request.value_count, link::kMaxValues));
+  const auto found = std::find_if(values.begin(), values.end(),
+                                  [](const auto& value) { return value.name.view() == kValue; });
+  if (found == values.end() || found->value == 0.0) return false;
+  if (found->value != 1.0) return fail(std::string{kValue} + ": use 1, or 0 for gains that stay");
+  if (speaker.way != Speaker::Way::kSocket) {
+    return fail(std::string{kValue} +
+                ": nobody sees the end of an LCM client; leave it out, and set the gains of before when you "
+                "end");
+  }
+  return true;
+}
+
+void GainsAtEnd::tried(std::uint64_t connection, const link::Name& client, std::size_t motor,
+                       const GainChange& before) {
+  const auto known = std::find_if(entries_.begin(), entries_.end(), [&](const Entry& entry) {
+    return entry.motor == motor && entry.before.gain == before.gain;
+  });
+  if (known == entries_.end()) {
+    entries_.push_back({.connection = connection, .client = client, .motor = motor, .before = before});
+    return;
+  }
+  // A try after another: before both.
+  known->connection = connection;
+  known->client = client;
+}
+
+void GainsAtEnd::settled(std::size_t motor, LoopGain gain) {
+  std::erase_if(entries_,
+                [&](const Entry& entry) { return entry.motor == motor && entry.before.gain == gain; });
+}
+
+std::optional<GainsAtEnd::Due> GainsAtEnd::due(const std::function<bool(std::uint64_t)>& is_open) const {
+  std::optional<Due> due;
+  for (const auto& entry : entries_) {
+    if (is_open(entry.connection) || (due && due->motor != entry.motor)) continue;
+    if (!due) due = Due{.motor = entry.motor, .client = entry.client, .gains = {}};
+    due->gains.values.at(due->gains.count++) = entry.before;
+  }
+  return due;
+}
+
+}  // namespace rc10
