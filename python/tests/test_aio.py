@@ -217,10 +217,8 @@ async def test_events_come_once_each(robot: aio.Robot, daemon: ObedientDaemon) -
 async def test_a_move_is_awaited_and_its_target_held(
     robot: aio.Robot, daemon: ObedientDaemon
 ) -> None:
+    await robot.wait_for_state()
     await robot.enable("wheel", timeout_s=PATIENCE_S)
-    async for state in robot.states():
-        if state.motor("wheel").status is rc10.MotorStatus.ACTIVE:
-            break
     result = await robot.move_to("wheel", 720, timeout_s=PATIENCE_S)
     assert result, result.reason
     # It is sent on after that.

@@ -5,7 +5,7 @@ import pytest
 import rc10
 from fake_daemon import FakeDaemon, setpoints
 from rc10 import MoveOutcome
-from rc10.lcm_types import motor_state_t, robot_state_t, setpoint_t
+from rc10.lcm_types import motor_state_t, request_t, response_t, robot_state_t, setpoint_t
 from virtual_link import VirtualLink
 
 
@@ -28,6 +28,15 @@ class MovingDaemon(FakeDaemon):
             wheel.mode, wheel.target = setpoints(self.commands[-1]).get("wheel", (0, 0.0))
             wheel.owner = self.owner if self.owner is not None else self.commands[-1].client
         return message
+
+    def _execute(self, request: request_t) -> response_t:
+        if request.operation == "enable":
+            # Taken before the answer, and on its way behind it.
+            older = self.state().encode()
+            assert isinstance(self.link, VirtualLink)
+            self.link.after(0.0, lambda: self.link.publish(self.channel("state"), older))
+            self.status = motor_state_t.STATUS_ACTIVE
+        return super()._execute(request)
 
 
 @pytest.fixture
@@ -119,6 +128,42 @@ def test_a_move_that_cannot_begin_has_failed(robot: rc10.Robot, daemon: MovingDa
     assert move.done()
     assert move.result().reason == "wheel is READY: enable it first"
     assert not daemon.commands
+
+
+def test_a_motor_that_was_just_enabled_moves_at_once(
+    robot: rc10.Robot, daemon: MovingDaemon
+) -> None:
+    daemon.status = motor_state_t.STATUS_READY
+    robot.wait_for_state()
+    robot.enable("wheel")
+    assert robot.motor("wheel").status is rc10.MotorStatus.ACTIVE
+    assert robot.move_to("wheel", 0).result()
+
+
+def test_a_state_from_before_it_was_enabled_ends_no_move(link: VirtualLink) -> None:
+    daemon = MovingDaemon("demo", link)
+    daemon.status = motor_state_t.STATUS_READY
+    with rc10.Robot("demo", link, client="tester") as robot:
+        daemon.publish_state()
+        robot.spin()
+        older = daemon.state().encode()
+        robot.enable("wheel")  # no state comes but older ones
+        move = robot.move_to("wheel", 0)
+        link.publish(daemon.channel("state"), older)
+        robot.spin()
+        assert not move.done()
+        daemon.publish_states()
+        assert move.result()
+
+
+def test_enabling_that_failed_is_told_by_the_state(robot: rc10.Robot, daemon: MovingDaemon) -> None:
+    robot.wait_for_state()
+    daemon.verdicts["enable"] = (response_t.STATUS_FAILED, "wheel: its drive did not confirm")
+    with pytest.raises(rc10.RequestFailed):
+        robot.enable("wheel")
+    daemon.status = motor_state_t.STATUS_FAULT
+    robot.wait_for_state()
+    assert "in FAULT" in robot.move_to("wheel", 720).result().reason
 
 
 def test_another_target_ends_it(robot: rc10.Robot, daemon: MovingDaemon) -> None:

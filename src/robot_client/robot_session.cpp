@@ -20,8 +20,8 @@ using std::chrono::milliseconds;
 
 // A request or its answer can be lost: LCM is UDP. rc10d knows a repeated one again.
 constexpr Duration kRepeatRequest = milliseconds{100};
-// For the state to show what an answer says.
-constexpr Duration kShown = milliseconds{250};
+// For two states after an answer: the slowest state_hz is one a second.
+constexpr Duration kShown = milliseconds{2500};
 constexpr Duration kRelease = milliseconds{500};
 constexpr Duration kListen = milliseconds{300};
 
@@ -74,8 +74,9 @@ void RobotSession::receiveState(std::span<const std::byte> bytes) {
     if (closed_) return;
     if (!newest_.take(state, now)) return;
     if (state->status == RobotStatus::kEstop) estop_.shown();
-    moves_.onState(*state, now, news.moves);
-    drop(held_.judge(*state, options_.client), news);
+    const auto judged = just_enabled_.corrected(state, newest_.received());
+    moves_.onState(*judged, now, news.moves);
+    drop(held_.judge(*judged, options_.client), news);
     callback = on_state_;
   }
   changed_.notify_all();
@@ -136,7 +137,7 @@ Result<void> RobotSession::mayCommand(const MotorSetpoints& setpoints, Monotonic
   if (!newest_.live(now)) {
     return fail("no state of robot '" + name_ + "' for a second: rc10d or rc10-lcm has ended, or hangs");
   }
-  return checkSetpoints(*newest_.get(), setpoints);
+  return checkSetpoints(*just_enabled_.corrected(newest_.get(), newest_.received()), setpoints);
 }
 
 Result<void> RobotSession::publishCommand(const MotorSetpoints& setpoints) {
@@ -423,19 +424,45 @@ RequestResult RobotSession::enable(const std::vector<std::string>& motors, Durat
     leaving_.enabled.insert(motors.begin(), motors.end());
   }
   auto answer = request(Operation::kEnable, motors, {}, timeout);
-  // The next state may have been taken before.
+  // A failure may concern some of them only.
   if (answer || answer.error().kind == RequestError::Kind::kFailed) {
     Lock lock(mutex_);
-    (void)changed_.wait_for(lock, kShown, [this] { return newest_.received() >= states_at_answer_ + 2; });
+    noteEnabled(motors);
+    (void)changed_.wait_for(lock, kShown, [&] { return showsEnabled(motors); });
   }
   return answer;
+}
+
+void RobotSession::noteEnabled(const std::vector<std::string>& motors) {
+  std::vector<std::string> names = motors;
+  if (names.empty() && newest_.get()) {
+    for (const auto& motor : newest_.get()->motors) names.push_back(motor.name);
+  }
+  just_enabled_.answered(names, states_at_answer_);
+}
+
+// Each of them is ACTIVE, or what else the newest state says of it is news.
+bool RobotSession::showsEnabled(const std::vector<std::string>& motors) const {
+  const auto& state = newest_.get();
+  if (newest_.received() > states_at_answer_ + JustEnabled::kMayBeOlder) return true;
+  return state && std::all_of(state->motors.begin(), state->motors.end(), [&](const MotorState& motor) {
+           const bool meant =
+               motors.empty() || std::find(motors.begin(), motors.end(), motor.name) != motors.end();
+           return !meant || motor.status == MotorStatus::kActive;
+         });
 }
 
 RequestResult RobotSession::disable(const std::vector<std::string>& motors, Duration timeout) {
   {
     const Lock lock(mutex_);
-    for (const auto& motor : motors) held_.release(motor);
-    if (motors.empty()) held_.releaseAll();
+    for (const auto& motor : motors) {
+      held_.release(motor);
+      just_enabled_.release(motor);
+    }
+    if (motors.empty()) {
+      held_.releaseAll();
+      just_enabled_.releaseAll();
+    }
   }
   auto answer = request(Operation::kDisable, motors, {}, timeout);
   if (answer) {

@@ -13,6 +13,7 @@
 #include "rc10/robot.hpp"
 #include "robot_client/estop_repetition.hpp"
 #include "robot_client/held_targets.hpp"
+#include "robot_client/just_enabled.hpp"
 #include "robot_client/module_inbox.hpp"
 #include "robot_client/moves.hpp"
 #include "robot_client/newest_state.hpp"
@@ -84,6 +85,8 @@ class RobotSession {
   // With the mutex held.
   [[nodiscard]] Result<void> mayCommand(const MotorSetpoints& setpoints, MonotonicTime now) const;
   Result<void> publishCommand(const MotorSetpoints& setpoints);
+  void noteEnabled(const std::vector<std::string>& motors);
+  [[nodiscard]] bool showsEnabled(const std::vector<std::string>& motors) const;
   void drop(const std::vector<HeldTargets::Dropped>& dropped, News& news);
   void resend(MonotonicTime now, News& news);
   [[nodiscard]] MonotonicTime nextWake(MonotonicTime now) const;
@@ -111,6 +114,7 @@ class RobotSession {
   NewestState newest_;
   SilentModules silent_;
   std::uint64_t states_at_answer_ = 0;  ///< States received when the last answer came.
+  JustEnabled just_enabled_;
   HeldTargets held_;
   Moves moves_{held_};
   OpenRequests requests_;

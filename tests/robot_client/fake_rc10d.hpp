@@ -40,6 +40,7 @@ class FakeRc10d {
   std::map<std::string, std::pair<std::int8_t, std::string>> verdicts;  ///< By operation; OK without one.
   int deaf_to_requests = 0;
   bool shows_estop = true;
+  bool shows_enabled = true;  ///< Else no state follows an answer, and the next ones are from before it.
   bool obeys = true;
 
   /// Publishes a state, `after` the one before by its clock.
@@ -153,7 +154,7 @@ class FakeRc10d {
         response.message = verdict->second.second;
       }
       if (known_.insert({request.session, request.seq}).second) execute(request, response.status);
-      twice_a_state = request.operation == "enable" || request.operation == "estop";
+      twice_a_state = (request.operation == "enable" && shows_enabled) || request.operation == "estop";
     }
     EXPECT_TRUE(link_.publish(channel("response"), response));
     if (twice_a_state) {
@@ -169,7 +170,7 @@ class FakeRc10d {
     for (auto& [name, motor] : motors) {
       const bool meant = request.target.empty() || request.target.find(name) != std::string::npos;
       if (!meant) continue;
-      if (request.operation == "enable") motor.status = motor_state_t::STATUS_ACTIVE;
+      if (request.operation == "enable" && shows_enabled) motor.status = motor_state_t::STATUS_ACTIVE;
       if (request.operation == "disable") motor.status = motor_state_t::STATUS_READY;
     }
   }

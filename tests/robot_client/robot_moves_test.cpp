@@ -42,6 +42,38 @@ TEST_F(RobotTest, AMoveThatCannotBeginHasFailedAtOnce) {
   EXPECT_EQ(result.reason, "lift is READY: enable it first");
 }
 
+TEST_F(RobotTest, AMotorThatWasJustEnabledMovesThoughTheStatesAreOlder) {
+  connect();
+  see();
+  {
+    const std::lock_guard lock(rc10d_.mutex);
+    rc10d_.shows_enabled = false;
+  }
+  auto enabled = std::async(std::launch::async, [&] { return robot_->enable({"lift"}).has_value(); });
+  // As soon as the answer is there.
+  const auto end = std::chrono::steady_clock::now() + kPatience;
+  while (!robot_->motor("lift").setTarget(Setpoint::totalAngle(10_deg)) &&
+         std::chrono::steady_clock::now() < end) {
+  }
+  auto move = robot_->motor("lift").moveTo(720_deg, 2_deg, kPatience);
+  see();  // READY, and older than the answer
+  EXPECT_NE(move.wait_for(0s), std::future_status::ready);
+  {
+    const std::lock_guard lock(rc10d_.mutex);
+    fakeMotor("lift").status = motor_state_t::STATUS_ACTIVE;
+  }
+  see();
+  EXPECT_TRUE(enabled.get());
+  const auto sent = rc10d_.commands().size();
+  ASSERT_TRUE(rc10d_.awaitCommands(sent + 2)) << "it is held";
+  {
+    const std::lock_guard lock(rc10d_.mutex);
+    fakeMotor("lift").status = motor_state_t::STATUS_READY;
+  }
+  see(500ms);
+  EXPECT_EQ(move.get().reason, "lift is READY: enable it first") << "and this is news";
+}
+
 TEST_F(RobotTest, AMoveTimesOut) {
   connectEnabled();
   const auto result = robot_->motor("lift").moveTo(720_deg, 2_deg, 10ms).get();

@@ -1,8 +1,11 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <memory>
+
 #include "rc10/setpoint.hpp"
 #include "robot_client/host_clock.hpp"
+#include "robot_client/just_enabled.hpp"
 #include "robot_client/motor_reasons.hpp"
 #include "robot_client/obstacle.hpp"
 
@@ -62,6 +65,23 @@ TEST(Obstacle, SaysWhatToDo) {
   EXPECT_THAT(*obstacle(state, "lift", Mode::kTotalAngle), HasSubstr("zero: power_on"));
   state.status = RobotStatus::kEstop;
   EXPECT_THAT(*obstacle(state, "lift", Mode::kVelocity), HasSubstr("ESTOP: clear it"));
+}
+
+TEST(JustEnabled, AStateThatMayBeOlderThanTheAnswerRefusesNothing) {
+  auto state = std::make_shared<RobotState>();
+  state->motors.resize(2);
+  state->motors[0].name = "lift";
+  state->motors[1].name = "wheel";
+  JustEnabled enabled;
+  enabled.answered({"lift"}, 7);
+  for (const std::uint64_t older : {7U, 8U}) {
+    const auto corrected = enabled.corrected(state, older);
+    EXPECT_FALSE(obstacle(*corrected, "lift", Mode::kTotalAngle)) << "zeroed before, too";
+    EXPECT_TRUE(obstacle(*corrected, "wheel", Mode::kVelocity));
+  }
+  EXPECT_EQ(enabled.corrected(state, 9), state) << "news";
+  enabled.release("lift");
+  EXPECT_EQ(enabled.corrected(state, 8), state);
 }
 
 TEST(HostClock, TheQuickestMessageGivesTheDistanceOfTheClocks) {

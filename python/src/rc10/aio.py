@@ -28,6 +28,7 @@ from rc10.robot_client import (
     REPEAT_ESTOP_S,
     REPEAT_REQUEST_S,
     RESEND_S,
+    SHOWN_S,
     AtEnd,
     Names,
     RobotClient,
@@ -265,12 +266,16 @@ class Robot(RobotClient):
     # ---- requests ----------------------------------------------------------------------------
 
     async def enable(self, names: Names | None = None, timeout_s: float = 2.0) -> Response:
-        """Enables motors and waits until each is ACTIVE or has failed.
+        """Enables motors and waits until each is ACTIVE or has failed, and a state shows it.
 
         Args and errors are those of rc10.Robot.enable().
         """
-        with self._enabling(names) as target:
-            return await self.request("enable", target, timeout_s=timeout_s)
+        try:
+            with self._enabling(names) as target:
+                return await self.request("enable", target, timeout_s=timeout_s)
+        finally:
+            if self._unshown():
+                await self._until(lambda: None if self._unshown() else True, SHOWN_S)
 
     async def disable(self, names: Names | None = None, timeout_s: float = 2.0) -> Response:
         """Disables motors: each does its `on_disable`, which may hold, damp or brake it."""

@@ -16,6 +16,7 @@ from rc10.robot_client import (
     REPEAT_ESTOP_S,
     REPEAT_REQUEST_S,
     RESEND_S,
+    SHOWN_S,
     AtEnd,
     Names,
     RobotClient,
@@ -243,7 +244,9 @@ class Robot(RobotClient):
     # ---- requests ----------------------------------------------------------------------------
 
     def enable(self, names: Names | None = None, timeout_s: float = 2.0) -> Response:
-        """Enables motors and waits until each is ACTIVE or has failed.
+        """Enables motors and waits until each is ACTIVE or has failed, and a state shows it.
+
+        For that state it waits 2 s at most beyond the answer: the slowest `state_hz` is 1.
 
         Args:
             names: one name or several; None for all.
@@ -255,8 +258,11 @@ class Robot(RobotClient):
             Timeout: no answer; the message says what to check.
             UnknownMotor: a state is known, and it has no such motor; nothing was sent.
         """
-        with self._enabling(names) as target:
-            return self.request("enable", target, timeout_s=timeout_s)
+        try:
+            with self._enabling(names) as target:
+                return self.request("enable", target, timeout_s=timeout_s)
+        finally:
+            self._wait_until_shown()
 
     def disable(self, names: Names | None = None, timeout_s: float = 2.0) -> Response:
         """Disables motors: each does its `on_disable`, which may hold, damp or brake it.
@@ -371,3 +377,8 @@ class Robot(RobotClient):
                     if response is not None:
                         return response
         raise Timeout(self._no_answer(operation, timeout_s))
+
+    def _wait_until_shown(self) -> None:
+        deadline_s = self._link.now() + SHOWN_S
+        while self._unshown() and (left_s := deadline_s - self._link.now()) > 0:
+            self.spin(left_s)

@@ -90,6 +90,11 @@ class Move:
 
     # ---- for the Robot -----------------------------------------------------------------------
 
+    @property
+    def started_s(self) -> float:
+        """When it began, on the clock of the link."""
+        return self._started_s
+
     def on_event(self, event: Event) -> None:
         """Keeps what rc10d says about a setpoint that it skipped or refused."""
         self._order.on_event(event)

@@ -3,13 +3,21 @@
 from __future__ import annotations
 
 import logging
+import math
 import re
 import time
 from contextlib import contextmanager
 from typing import TYPE_CHECKING, Literal, Union, get_args
 
 from rc10.decoder import Decoder
-from rc10.errors import CommandRefused, LinkError, NotReceived, RequestRefused, UnknownMotor
+from rc10.errors import (
+    CommandRefused,
+    LinkError,
+    NotReceived,
+    RequestFailed,
+    RequestRefused,
+    UnknownMotor,
+)
 from rc10.identity import Identity
 from rc10.inbox import Inbox
 from rc10.lcm_types.command_t import command_t
@@ -22,6 +30,7 @@ from rc10.recorder import Recorder
 from rc10.requests import Requests
 from rc10.setpoints import Mode, Setpoint, angle_deg, coast, total_angle_deg
 from rc10.spelling import did_you_mean, meant
+from rc10.state import MotorStatus, RobotStatus
 from rc10.validity import DEFAULT_VALIDITY_MS, check_validity
 
 if TYPE_CHECKING:
@@ -46,9 +55,13 @@ REPEAT_REQUEST_S = 0.1
 REPEAT_ESTOP_S = 0.02
 # Time that leaving may take: the lease of a client that is gone lapses by itself.
 RELEASE_TIMEOUT_S = 0.5
+# Time for a state to show what an answer says: the slowest state_hz is one a second.
+SHOWN_S = 2.0
 # Period and validity of a move's target while the program receives.
 RESEND_S = 0.02
 _MOVE_VALIDITY_MS = 100
+# Resolution of a state's stamp.
+_STAMP_S = 1e-6
 # A state younger than this proves that the daemon runs and is heard.
 _LIVE_S = 1.0
 
@@ -114,6 +127,8 @@ class RobotClient:
         # To be undone on leaving.
         self._commanded: set[str] = set()
         self._enabled: set[str] = set()
+        # When the enabling of a motor was answered last: states from before say nothing about it.
+        self._answered: dict[str, float] = {}
         # Motors that were ACTIVE, rc10d's words about modes that their drives do not have and about
         # gains beyond their drives' (the largest stiffness and damping, and the words), and all of
         # its words that were logged.
@@ -281,7 +296,9 @@ class RobotClient:
         state = self.state
         move = Move(name, setpoint, tolerance_deg, timeout_s, self.client, self._link.now, spin)
         motor = state.motor(name)
-        if hindrance := _hindered(state, motor):
+        runs = state.status is RobotStatus.RUN
+        just_enabled = runs and self._is_older(state, name)
+        if not just_enabled and (hindrance := _hindered(state, motor)):
             move.fail(hindrance)
             return move
         self.command({name: setpoint}, validity_ms=_MOVE_VALIDITY_MS)
@@ -303,14 +320,36 @@ class RobotClient:
         except RequestRefused:
             self._enabled -= noted
             raise
-        # The state that shows it may come after the answer.
+        except RequestFailed:  # some of them may be enabled
+            self._note_answer(chosen)
+            raise
+        self._was_active.update(self._note_answer(chosen))
+
+    def _note_answer(self, chosen: list[str]) -> list[str]:
+        """Notes that enabling was answered now, and returns the motors."""
         state = self._inbox.state
-        self._was_active.update(chosen or ([] if state is None else state.motors))
+        motors = chosen or ([] if state is None else list(state.motors))
+        self._answered.update(dict.fromkeys(motors, self._link.now()))
+        return motors
+
+    def _is_older(self, state: RobotState, name: str) -> bool:
+        """Whether a state may be from before the last enabling of the motor was answered."""
+        return state.taken_at_s <= self._answered.get(name, -math.inf) + _STAMP_S
+
+    def _unshown(self) -> bool:
+        """Whether a state is still to come that shows what enabling has done."""
+        state = self._inbox.state
+        return state is not None and any(
+            motor.status is not MotorStatus.ACTIVE and self._is_older(state, name)
+            for name, motor in state.motors.items()
+        )
 
     @contextmanager
     def _disabling(self, names: Names | None) -> Iterator[str]:
         """Gives the target of a disable request, and notes that it was carried out."""
         chosen = self._choose(names)
+        for name in chosen or list(self._answered):
+            self._answered.pop(name, None)
         yield ",".join(chosen)
         if chosen:
             self._enabled.difference_update(chosen)
@@ -409,7 +448,10 @@ class RobotClient:
                 # Also after it is done: a held target never comes back to life by itself.
                 motor = state.motors.get(name)
                 taken = motor is not None and motor.owner not in ("", self.client)
-                if motor is None or _hindered(state, motor) or (move.done() and taken):
+                # One from before the move says nothing about it.
+                news = state.taken_at_s >= move.started_s
+                hindered = motor is None or (news and _hindered(state, motor))
+                if hindered or (move.done() and taken):
                     self._moves.pop(name)
                     move.fail(f"{name} cannot be moved any more")
                     continue
