@@ -10,6 +10,18 @@ namespace {
 constexpr double kStill = 0.1;
 // The full current pushes until this part of the velocity is missing.
 constexpr double kFullPush = 0.5;
+// The full push would throw a light axis beyond the velocity from one sample of slow feedback to the next. A
+// phase begins with a share of it, which grows from sample to sample while the axis is slow and gets no
+// faster, and is halved when it overshoots. At 1 kHz all of it is there after 11 ms. The factors are those
+// that homed most of 22 axes at 20 to 1000 Hz, late by up to 20 ms, with the least overshoot.
+constexpr double kFirstShare = 0.1;
+constexpr double kLeastShare = 0.02;
+constexpr double kGrows = 1.25;
+constexpr double kResistsMore = 1.15;
+// Shares of the velocity that is wanted: beyond or short of it by so much,
+constexpr double kFarOff = 0.5;
+// and gained or lost within a sample.
+constexpr double kGains = 0.1;
 // Share of the homing current: as much must be measured at the stop. Drives are some percent off.
 constexpr double kPressed = 0.7;
 // Share of the homing velocity, on the second way.
@@ -27,6 +39,8 @@ void JointHoming::start(const Measured& measured) noexcept {
   current_a_ = 0.0;
   went_away_ = false;
   begin(Phase::kAway, measured);
+  // A load that was held is not dropped.
+  share_ = std::min(std::max(kFirstShare, std::fabs(measured.current_a) / config_.current_a), 1.0);
 }
 
 void JointHoming::begin(Phase phase, const Measured& measured) noexcept {
@@ -34,6 +48,9 @@ void JointHoming::begin(Phase phase, const Measured& measured) noexcept {
   left_deg_ = still_deg_ = measured.total_angle_deg;
   moved_ = rose_ = measured.received;
   most_a_ = 0.0;
+  share_ = std::min(share_, kFirstShare);
+  pushed_ = measured.received;
+  pushed_rpm_ = measured.velocity_rpm;
 }
 
 JointHoming::Progress JointHoming::step(const Measured& measured) noexcept {
@@ -64,7 +81,7 @@ JointHoming::Progress JointHoming::goAway(const Measured& measured) noexcept {
     begin(Phase::kTowards, measured);
     return goTowards(measured);
   }
-  push(-config_.velocity_rpm, measured.velocity_rpm);
+  push(-config_.velocity_rpm, measured);
   return Progress::kUnderWay;
 }
 
@@ -82,7 +99,7 @@ JointHoming::Progress JointHoming::goTowards(const Measured& measured) noexcept 
     const bool nearer = towards(start_deg_, measured.total_angle_deg) < -config_.tolerance_deg;
     return nearer ? end(Progress::kNoStop) : meet(measured);
   }
-  push((phase_ == Phase::kAgain ? kSlower : 1.0) * config_.velocity_rpm, measured.velocity_rpm);
+  push((phase_ == Phase::kAgain ? kSlower : 1.0) * config_.velocity_rpm, measured);
   return Progress::kUnderWay;
 }
 
@@ -94,13 +111,36 @@ JointHoming::Progress JointHoming::meet(const Measured& measured) noexcept {
   }
   met_deg_ = here_deg;
   begin(Phase::kBackOff, measured);
-  push(-config_.velocity_rpm, measured.velocity_rpm);
+  push(-config_.velocity_rpm, measured);
   return Progress::kUnderWay;
 }
 
-void JointHoming::push(double velocity_rpm, double measured_rpm) noexcept {
-  const double missing = (velocity_rpm - measured_rpm) / (kFullPush * std::fabs(velocity_rpm));
-  current_a_ = std::isfinite(missing) ? std::clamp(missing, -1.0, 1.0) * config_.current_a : 0.0;
+void JointHoming::push(double velocity_rpm, const Measured& measured) noexcept {
+  const double sign = std::copysign(1.0, velocity_rpm);
+  const double missing = sign * (velocity_rpm - measured.velocity_rpm) / std::fabs(velocity_rpm);
+  if (measured.received != pushed_) {
+    const double gained = sign * (measured.velocity_rpm - pushed_rpm_) / std::fabs(velocity_rpm);
+    adapt(missing, gained, sign * current_a_);
+    pushed_ = measured.received;
+    pushed_rpm_ = measured.velocity_rpm;
+  }
+  const double push = std::clamp(missing / kFullPush, -1.0, 1.0);
+  current_a_ = std::isfinite(missing) ? sign * push * share_ * config_.current_a : 0.0;
+}
+
+// By what the current of the last sample has done: all as shares of the velocity that is wanted.
+void JointHoming::adapt(double missing, double gained, double pushed_a) noexcept {
+  const bool slow = missing > kFarOff;
+  const bool fast = missing < -kFarOff;
+  const bool turned_round = missing > 1.0 + kFarOff;
+  if ((fast && pushed_a > 0.0) || (turned_round && pushed_a < 0.0)) {
+    share_ /= 2.0;
+  } else if ((missing > 1.0 + kGains && gained < -kGains) || (fast && gained >= 0.0)) {
+    share_ *= kResistsMore;  // a load drives it
+  } else if (slow && pushed_a >= 0.0 && gained < kGains) {
+    share_ *= kGrows;
+  }
+  share_ = std::clamp(share_, kLeastShare, 1.0);
 }
 
 // By samples, so that neither a gap of the feedback nor a pause of the process is a standstill.

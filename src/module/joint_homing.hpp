@@ -9,7 +9,8 @@ namespace rc10 {
 
 /// Finds the end of an axis: first away from it, to see that the axis moves at all, then towards it until it
 /// stands against the stop or the switch closes, back, and once more at half the velocity. All by a current
-/// that is bounded, so that the stop is met gently: near the homing velocity the current goes to 0.
+/// that is bounded, so that the stop is met gently: near the homing velocity the current goes to 0, and
+/// beyond it brakes. A light axis with slow feedback gets as little current as it needs.
 ///
 /// A standstill alone is no stop: gravity or friction may balance the current anywhere. The stop is no nearer
 /// than where the axis began, is pressed with the full current, and is no farther than the travel allows. It
@@ -65,7 +66,8 @@ class JointHoming {
   [[nodiscard]] Progress goAway(const Measured& measured) noexcept;
   [[nodiscard]] Progress goTowards(const Measured& measured) noexcept;
   [[nodiscard]] Progress meet(const Measured& measured) noexcept;
-  void push(double velocity_rpm, double measured_rpm) noexcept;
+  void push(double velocity_rpm, const Measured& measured) noexcept;
+  void adapt(double missing, double gained, double pushed_a) noexcept;
   /// `direction`: of the current, 1: towards the end.
   [[nodiscard]] Standstill standstill(const Measured& measured, double direction) noexcept;
   /// Way from `from_deg` to `to_deg`, positive towards the end.
@@ -83,6 +85,9 @@ class JointHoming {
   double most_a_ = 0.0;     ///< The current towards its goal since then, and
   MonotonicTime rose_{};    ///< the time at which it rose last.
   double current_a_ = 0.0;
+  double share_ = 0.0;       ///< Part of the full push that is in use.
+  MonotonicTime pushed_{};   ///< Sample after which it was last adapted,
+  double pushed_rpm_ = 0.0;  ///< and the velocity of that.
 };
 
 }  // namespace rc10

@@ -253,6 +253,44 @@ TEST(JointHoming, AGapOfTheFeedbackWhereItTurnsRoundIsNoStandstill) {
   EXPECT_EQ(sample(-20.0, -5.0), JointHoming::Progress::kUnderWay);
 }
 
+/// A rotor without friction, far from a stop on one side: 40 deg.
+struct LightAxis {
+  double deg = 0.0;
+  double rpm = 0.0;
+  double fastest_rpm = 0.0;
+  static constexpr double kRpmPerSPerA = 800.0;  // 0.05 Nm/A on 6e-4 kg m^2
+  void step(double current_a) {
+    rpm += current_a * kRpmPerSPerA * 0.001;
+    deg = std::max(deg + rpm * 0.006, -40.0);
+    if (deg == -40.0) rpm = std::max(rpm, 0.0);
+    fastest_rpm = std::max(fastest_rpm, std::fabs(rpm));
+  }
+};
+
+TEST(JointHoming, ALightAxisIsNotThrownByFeedbackThatComesSlowly) {
+  for (const int every_ms : {1, 2, 5, 10, 20, 50}) {
+    JointHoming homing(
+        {.velocity_rpm = -10.0, .current_a = 4.0, .away_deg = 5.0, .stopped = 200ms, .timeout = 10s});
+    LightAxis axis;
+    JointHoming::Measured measured;
+    homing.start(measured);
+    auto progress = JointHoming::Progress::kUnderWay;
+    for (int ms = 1; progress == JointHoming::Progress::kUnderWay; ++ms) {
+      axis.step(homing.current());
+      measured.now += 1ms;
+      if (ms % every_ms == 0) {
+        measured.received = measured.now;
+        measured.total_angle_deg = axis.deg;
+        measured.velocity_rpm = axis.rpm;
+        measured.current_a = homing.current();
+      }
+      progress = homing.step(measured);
+    }
+    EXPECT_EQ(progress, JointHoming::Progress::kFound) << every_ms << " ms";
+    EXPECT_LT(axis.fastest_rpm, 20.0) << every_ms << " ms";
+  }
+}
+
 TEST_F(HomingJoint, AZeroThatItsMotorRefusesIsNoHome) {
   auto own = jointSettings();
   own.own.set("homing", std::string{"stop"});

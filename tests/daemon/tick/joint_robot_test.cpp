@@ -235,7 +235,7 @@ struct Subject {
   const char* motor;
   double current_a = 2.0;
   const char* bus = "";
-  const char* load = "";  ///< Without a gear a rotor alone is too light for slow feedback.
+  const char* load = "";
 };
 
 void PrintTo(const Subject& subject, std::ostream* out) { *out << subject.name; }
@@ -258,6 +258,10 @@ const Subject kSubjects[] = {
      "model: ODrive_S1, id: 8, torque_constant_nm_per_a: 0.05, current_limit_a: 20, velocity_limit_rpm: 600, "
      "telemetry_hz: 100",
      4.0, "", ", inertia_kg_m2: 0.02"},
+    {"OdriveS1BareRotor",
+     "model: ODrive_S1, id: 8, torque_constant_nm_per_a: 0.05, current_limit_a: 20, velocity_limit_rpm: 600, "
+     "telemetry_hz: 100",
+     4.0},
     {"MyActuator", "model: RMD-X8-20, id: 11", 2.0},
     {"LkTech", "model: LK-MG5010E-i10, id: 12", 1.0},
 };
