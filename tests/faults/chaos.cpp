@@ -20,14 +20,14 @@ constexpr std::array<std::string_view, static_cast<std::size_t>(Chaos::Action::k
     "clear",       "zero",       "estop",      "repair",       "silence",      "lose",
     "stall",       "heat",       "encoder",    "load",         "freeze bus",   "block bus",
     "hold echoes", "link",       "controller", "e-stop input", "mode input",   "foreign frames",
-    "flood bus",   "fill rings", "miss ticks", "stop",         "crash"};
-
-// The request desk has no more under way.
-constexpr std::size_t kMostOpen = 64;
+    "flood bus",   "fill rings", "miss ticks", "scan",         "stop",         "crash"};
 
 // Weights of the actions: what brings a robot to work more often than what stops it.
 constexpr std::array<std::uint8_t, static_cast<std::size_t>(Chaos::Action::kCount)> kWeights{
-    13, 24, 50, 38, 2, 4, 26, 5, 2, 36, 4, 3, 4, 3, 4, 4, 2, 2, 4, 3, 3, 3, 3, 4, 1, 1, 5, 1, 1};
+    10, 24, 50, 38, 2, 4, 26, 5, 2, 36, 4, 3, 4, 3, 4, 4, 2, 2, 4, 3, 3, 3, 3, 4, 1, 1, 5, 3, 1, 1};
+
+// A home near the far soft limit of the joint, which is at 150 degrees.
+constexpr double kNearHomeDeg = 135.0;
 
 [[nodiscard]] Chaos::Action choose(Choices& choices) {
   constexpr std::uint32_t kSum = [] {
@@ -60,6 +60,13 @@ Chaos::Chaos(Choices& choices, std::optional<Lie> lie)
 // A quarter of the limits of the motor that the lie is about.
 RobotConfig Chaos::believed(const Lie& lie) const {
   RobotConfig config = config_;
+  for (auto& module : config.modules) {
+    auto& own = module.settings.own;
+    const bool homes = module.type->name() == "joint";
+    if (homes && lie.kind == Lie::Kind::kHoming)
+      own.set("homing_velocity_rpm", 0.25 * own.number("homing_velocity_rpm"));
+    if (homes && lie.kind == Lie::Kind::kTravel) own.set("home_angle_deg", kNearHomeDeg);
+  }
   if (lie.kind != Lie::Kind::kLimits) return config;
   auto& motor = config.buses[places_[lie.motor].first].motors[places_[lie.motor].second];
   auto& settings = motor.settings;
@@ -94,6 +101,9 @@ void Chaos::start() {
   for (auto& inbox : robot_->inboxes()) inbox.echo_available.store(true);
   for (auto& client : clients_) client.motors.reset();
   inputs_.assign(config_.modules.size(), {});
+  describe();
+  desk_.emplace(description_, robot_->exchange().scan);
+  scan_at_desk_ = 0;
   tick_ = 0;
 }
 
@@ -110,6 +120,7 @@ void Chaos::tick(std::uint64_t periods) {
     if (client.motors.any() && tick_ % client.every_ticks == 0) command(client);
   }
   sendInputs();
+  judgeScan();
   showContact();
   const Duration dt = config_.period() * static_cast<std::int64_t>(periods);
   simulate(dt);
@@ -120,7 +131,10 @@ void Chaos::tick(std::uint64_t periods) {
   robot_time_ += dt;
   ++tick_;
   OrderResult result;
-  while (robot_->exchange().results.pop(result)) oracle_->answered(result);
+  while (robot_->exchange().results.pop(result)) {
+    oracle_->answered(result);
+    endScan(result);
+  }
   Event event;
   while (robot_->exchange().events.pop(event)) {
   }
@@ -326,7 +340,7 @@ void Chaos::sendInputs() {
     message.module = static_cast<std::uint16_t>(module);
     message.deadline = robot_->now() + 50ms;
     message.values = inputs_[module].values;
-    (void)robot_->exchange().signals.push(message);
+    if (robot_->exchange().signals.push(message)) oracle_->signalled(message);
   }
 }
 

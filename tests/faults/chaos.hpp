@@ -11,6 +11,7 @@
 #include <utility>
 #include <vector>
 
+#include "daemon/clients/scan_desk.hpp"
 #include "daemon/virtual_robot.hpp"
 #include "faults/choices.hpp"
 #include "faults/oracle.hpp"
@@ -26,6 +27,9 @@ class Chaos {
     enum class Kind : std::uint8_t {
       kLimits,  ///< It believes in a quarter of its limits,
       kStuck,   ///< or that it goes on following the first thing that it was told.
+      kPace,    ///< Or, of any robot, that scans listen a minute longer; of a joint,
+      kHoming,  ///< that it homes at a quarter of its velocity,
+      kTravel,  ///< or within a tenth of its travel.
     };
     std::size_t robot = 0;
     std::size_t motor = 0;
@@ -72,12 +76,15 @@ class Chaos {
     kFloodBus,
     kFillRings,
     kMissTicks,
+    kScan,
     kStop,
     kCrash,
     kCount,
   };
 
  private:
+  /// The request desk has no more orders under way.
+  static constexpr std::size_t kMostOpen = 64;
   static constexpr auto kActions = static_cast<std::size_t>(Action::kCount);
   /// A client that commands in a loop.
   struct Client {
@@ -118,6 +125,11 @@ class Chaos {
   void chooseInputs();
   void sendInputs();
   void order(Operation operation, MotorSet motors, double value = 0.0);
+  void describe();
+  void scan();
+  void askForScan(std::size_t bus, MotorSet motors);
+  void judgeScan();
+  void endScan(const OrderResult& result);
   void stopAndStartAgain();
   void repair(std::size_t motor);
   void foreignFrame(std::size_t bus);
@@ -160,6 +172,11 @@ class Chaos {
       watched_before_{};       ///< Frames whose echoes are watched, before this tick.
   bool contact_open_ = false;  ///< State of the e-stop input.
   bool mode_open_ = false;     ///< And of the mode input.
+  // Scans, and the part of the link thread in them.
+  RobotDescription description_;
+  std::optional<ScanDesk> desk_;
+  std::uint64_t scan_at_desk_ = 0;  ///< Order; 0: there is none.
+  bool desk_works_ = true;          ///< Else the link thread has no time.
   std::uint64_t orders_ = 0;
   std::uint64_t tick_ = 0;
   Duration robot_time_{};

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <chrono>
+#include <limits>
 #include <utility>
 
 #include "faults/chaos.hpp"
@@ -195,9 +196,11 @@ void Chaos::act(Action action) {
     case Action::kLoad: {
       motors = someMotors();
       value = choices_.of<double>({-3.0, -1.0, 1.0, 5.0});
+      const bool torn = choices_.oneIn(3);  // a belt: there is no stop any more
       each([&](std::size_t i) {
         auto load = busOf(i).drive(driveOf(i)).load();
-        load.load_torque_nm = static_cast<float>(value);
+        load.load_torque_nm = torn ? 0.0F : static_cast<float>(value);
+        if (torn) load.stop_min_deg = load.stop_max_deg = std::numeric_limits<float>::quiet_NaN();
         busOf(i).setLoad(driveOf(i), load);
       });
       break;
@@ -266,6 +269,10 @@ void Chaos::act(Action action) {
       value = 2 + choices_.next(39);
       note(action, motors, value);
       tick(static_cast<std::uint64_t>(value));
+      return;
+    case Action::kScan:
+      note(action, motors, value);
+      scan();
       return;
     case Action::kStop:
       note(action, motors, value);

@@ -62,6 +62,21 @@ Oracle::Oracle(const RobotConfig& config) : config_(config) {
     }
     groups_.push_back(group);
   }
+  for (std::size_t module = 0; module < config_.modules.size(); ++module) {
+    const auto& own = config_.modules[module].settings.own;
+    if (config_.modules[module].type->name() != "joint" || own.text("homing") == "none") continue;
+    Joint joint;
+    joint.module = module;
+    joint.motor = own.motor("motor");
+    joint.velocity_rpm = std::fabs(own.number("homing_velocity_rpm"));
+    joint.current_a = own.number("homing_current_a");
+    const auto& shaping = motors_[joint.motor].config->shaping;
+    const double far_deg =
+        own.number("homing_velocity_rpm") < 0.0 ? shaping.angle_max_deg : shaping.angle_min_deg;
+    joint.way_deg = std::fabs(far_deg - own.number("home_angle_deg")) + own.number("homing_away_deg") +
+                    own.number("homing_tolerance_deg");
+    joints_.push_back(joint);
+  }
 }
 
 namespace {
@@ -154,6 +169,7 @@ void Oracle::commanded(const Command& command) {
 
 void Oracle::ordered(const Order& order) {
   unanswered_[order.id] = tick_;
+  if (order.operation == Operation::kScan) scans_asked_.push_back(order);
   if (order.operation == Operation::kEstop) estop_asked_ = true;
   if (order.operation == Operation::kClear && order.whole_robot) clear_all_asked_ = true;
   for (std::size_t i = 0; i < motors_.size(); ++i) {
@@ -164,6 +180,7 @@ void Oracle::ordered(const Order& order) {
     if (order.operation == Operation::kEnable || order.operation == Operation::kEnableAlone)
       motor.enable_asked = true;
     if (order.operation == Operation::kClear) motor.clear_asked = true;
+    if (order.operation == Operation::kZero) motor.zero_asked = true;
     if (order.operation != Operation::kDisable) continue;
     ++motor.disables_asked;
   }
@@ -171,9 +188,17 @@ void Oracle::ordered(const Order& order) {
 
 void Oracle::answered(const OrderResult& result) {
   if (unanswered_.erase(result.id) == 0) fail(fmt::format("order {} was answered twice", result.id));
+  const bool of_scan = (scan_ && scan_->id == result.id) ||
+                       std::any_of(scans_asked_.begin(), scans_asked_.end(),
+                                   [&](const auto& each) { return each.id == result.id; });
+  if (of_scan) scan_results_.push_back(result);
 }
 
 void Oracle::sent(std::size_t bus, const CanFrame& frame) {
+  if (isQuestionOfScan(frame)) {
+    questions_.emplace_back(bus, frame);
+    return;
+  }
   std::uint64_t read = 0;
   for (auto& motor : motors_) {
     if (motor.bus != bus) continue;
@@ -217,22 +242,6 @@ void Oracle::followModules(const Snapshot& snapshot) {
     }
     motor.coast_asked |= owned || motor.of_module;
     motor.of_module = owned;
-  }
-}
-
-// The current that pushes while a joint homes is bounded by its file, whatever else is asked of it.
-void Oracle::judgeJoints(const Snapshot& snapshot) {
-  constexpr double kHoming = 1.0;
-  for (std::size_t module = 0; module < config_.modules.size(); ++module) {
-    const auto& entry = config_.modules[module];
-    if (entry.type->name() != "joint" || snapshot.modules[module].outputs[0] != kHoming) continue;
-    const auto motor = entry.settings.own.motor("motor");
-    const auto& target = snapshot.motors[motor].target;
-    ++visits_.homing;
-    require(motor, target.mode == ControlMode::kCoast || target.mode == ControlMode::kCurrent,
-            "it homes by something else than a current");
-    require(motor, std::fabs(target.value) <= entry.settings.own.number("homing_current_a"),
-            "it homes by more than its homing current");
   }
 }
 
@@ -303,11 +312,12 @@ void Oracle::judge(const Snapshot& snapshot, std::uint64_t periods, std::bitset<
     if (!seen) motors_[i].followed_effort = false;
   }
   state_ = snapshot.state;
+  judgeScans(snapshot, read);
   judgeStop(read & ~held_, stopped);
   judgeAnswers();
   count(snapshot);
   for (auto& motor : motors_) {
-    motor.coast_asked = motor.enable_asked = motor.alone_asked = motor.clear_asked = false;
+    motor.coast_asked = motor.enable_asked = motor.alone_asked = motor.clear_asked = motor.zero_asked = false;
     motor.new_sample = false;
     motor.disables_asked = 0;
     motor.frames = 0;
@@ -450,6 +460,7 @@ void Oracle::judgeStop(std::bitset<kMaxBuses> read, bool stopped) {
 
 void Oracle::judgeAnswers() {
   for (const auto& [id, tick] : unanswered_) {
+    if (scan_ && id == scan_->id) continue;  // judgeScans()
     if (tick_ - tick > kLongestAnswerTicks) fail(fmt::format("order {} was never answered", id));
   }
 }

@@ -60,6 +60,10 @@ class Oracle {
     if (open) mode_last_open_ = now_;
   }
   void stopBegun() { stop_asked_ = true; }
+  /// A message to a module, before the tick that sees it.
+  void signalled(const SignalMessage& message);
+  /// The client that waits for this scan has left.
+  void scanLeft(std::uint64_t order) { left_scan_ = order; }
   /// For tests of the oracle itself: after a frame for this motor that is not rest, it takes no other frame
   /// for it into account.
   void deafen(std::size_t motor) { deaf_ = motor; }
@@ -108,6 +112,7 @@ class Oracle {
     bool perhaps_alone = false;    ///< Since it was asked for, as long as it is on.
     int disables_asked = 0;
     bool clear_asked = false;
+    bool zero_asked = false;
     // Its action.
     Told told;
     int frames = 0;                                            ///< For it, in this tick.
@@ -155,6 +160,38 @@ class Oracle {
     MotorSet must_rearm;  ///< Those of them that were ACTIVE.
   };
 
+  /// A joint that homes at a stop.
+  struct Joint {
+    std::size_t module = 0;
+    std::size_t motor = 0;
+    double velocity_rpm = 0.0;  ///< Without its sign.
+    double current_a = 0.0;
+    double way_deg = 0.0;  ///< Most that lies between a place where it began and one to which it is pushed.
+    // Messages to it.
+    bool told = false;  ///< One came for this tick.
+    bool high = false;  ///< The last one asks for a homing.
+    bool rises = false;
+    MonotonicTime valid_until{};
+    MonotonicTime heard_at{};
+    int high_ticks = 0;  ///< Since it may begin.
+    // Its action.
+    bool homes = false;
+    bool zeroed = false;
+    double from_deg = 0.0;  ///< Between these it began: anew within a homing, too.
+    double to_deg = 0.0;
+    int ticks = 0;         ///< Since it began.
+    int others_ticks = 0;  ///< While another client has its motor.
+  };
+  /// A scan that goes on.
+  struct Scan {
+    std::uint64_t id = 0;
+    BusScanOrder order;
+    MonotonicTime since{};
+    MonotonicTime last_question{};
+    std::uint32_t questions = 0;
+    bool all_read = true;  ///< Every frame of its bus was.
+  };
+
   void judgeSnapshot(const Snapshot& snapshot, std::uint64_t periods);
   [[nodiscard]] bool mayTurn(std::size_t index, const MotorFeedback& feedback) const;
   void judgeRobotState(const Snapshot& snapshot);
@@ -186,6 +223,14 @@ class Oracle {
   void followFeedback(const Snapshot& snapshot);
   void followModules(const Snapshot& snapshot);
   void judgeJoints(const Snapshot& snapshot);
+  void judgeJoint(Joint& joint, const Snapshot& snapshot);
+  void followMessages(Joint& joint, bool homes);
+  void judgeHoming(Joint& joint, const Snapshot& snapshot);
+  void judgeScans(const Snapshot& snapshot, std::bitset<kMaxBuses> read);
+  void beginScan(const Order& order, const Snapshot& snapshot);
+  void judgeQuestions(const Snapshot& snapshot, std::bitset<kMaxBuses> read);
+  void judgeEnd(const OrderResult& result);
+  [[nodiscard]] bool scanRests(std::size_t index, const Snapshot& snapshot) const;
   [[nodiscard]] bool fresh(const Motor& motor) const;
   [[nodiscard]] bool overdue(const Motor& motor) const;
   [[nodiscard]] bool damps(const Motor& motor) const;
@@ -202,7 +247,13 @@ class Oracle {
   RobotConfig config_;
   std::vector<Motor> motors_;
   std::vector<Group> groups_;
+  std::vector<Joint> joints_;
   std::map<std::uint64_t, std::uint64_t> unanswered_;  ///< Orders, and the tick in which they were sent.
+  std::optional<Scan> scan_;
+  std::vector<Order> scans_asked_;  ///< In this tick, as are the next two.
+  std::vector<OrderResult> scan_results_;
+  std::vector<std::pair<std::size_t, CanFrame>> questions_;  ///< And their buses.
+  std::optional<std::uint64_t> left_scan_;
 
   std::optional<std::size_t> alone_;  ///< The motor that was enabled alone.
   bool was_alone_ = false;            ///< In this tick some motor was.

@@ -37,18 +37,22 @@ std::vector<Case> everyMotor() {
   return cases;
 }
 
+std::string findingOf(Chaos::Lie lie) {
+  SeededChoices choices{7};
+  Chaos chaos{choices, lie};
+  try {
+    while (chaos.ticks() < kMostTicks) chaos.step();
+  } catch (const Violation& finding) {
+    return finding.what();
+  }
+  return "nothing";
+}
+
 /// The oracle's own proof: of each motor of the soak, in each family, it sees what is wrong.
 class OracleSees : public ::testing::TestWithParam<Case> {
  protected:
   static std::string findingOf(Kind kind) {
-    SeededChoices choices{7};
-    Chaos chaos{choices, Chaos::Lie{GetParam().robot, GetParam().motor, kind}};
-    try {
-      while (chaos.ticks() < kMostTicks) chaos.step();
-    } catch (const Violation& finding) {
-      return finding.what();
-    }
-    return "nothing";
+    return oracle_test::findingOf({GetParam().robot, GetParam().motor, kind});
   }
 };
 
@@ -59,6 +63,22 @@ TEST_P(OracleSees, AMotorBeyondItsLimits) {
 TEST_P(OracleSees, AMotorThatGoesOnThoughNobodyCommandsIt) {
   const auto finding = findingOf(Kind::kStuck);
   EXPECT_NE(finding, "nothing");
+}
+
+constexpr std::size_t kRobotWithAJoint = 4;
+
+TEST(OracleSeesOfAScan, ThatItAsksBeforeItHasListened) {
+  EXPECT_THAT(findingOf({.robot = 0, .kind = Kind::kPace}), ::testing::HasSubstr("before it has listened"));
+}
+
+TEST(OracleSeesOfAJoint, ThatItIsPushedOnBeyondItsHomingVelocity) {
+  EXPECT_THAT(findingOf({.robot = kRobotWithAJoint, .kind = Kind::kHoming}),
+              ::testing::HasSubstr("beyond its homing velocity"));
+}
+
+TEST(OracleSeesOfAJoint, ThatItHomesFartherThanItsTravel) {
+  EXPECT_THAT(findingOf({.robot = kRobotWithAJoint, .kind = Kind::kTravel}),
+              ::testing::HasSubstr("farther than its travel"));
 }
 
 INSTANTIATE_TEST_SUITE_P(EachMotor, OracleSees, ::testing::ValuesIn(everyMotor()),

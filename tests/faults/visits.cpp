@@ -28,6 +28,11 @@ void Visits::add(const Visits& other) {
   bounded += other.bounded;
   reduced += other.reduced;
   homing += other.homing;
+  homed += other.homed;
+  scans += other.scans;
+  scanned += other.scanned;
+  scans_refused += other.scans_refused;
+  questions += other.questions;
   driven += other.driven;
   alone += other.alone;
   rearmed += other.rearmed;
@@ -67,6 +72,9 @@ std::string Visits::text() const {
   out += fmt::format("\nof modules, thousand ticks: {}", by_modules / 1000);
   out += fmt::format("\njudged, ticks: slew limits {}, soft limits {}, reduced mode {}, homing {}", slewed,
                      bounded, reduced, homing);
+  out += fmt::format("\nhomings that found their end: {}", homed);
+  out += fmt::format("\nscans: {} begun, {} made to their end, {} refused; {} questions judged", scans,
+                     scanned, scans_refused, questions);
   out += fmt::format("\nenabled alone, ticks: {}", alone);
   out += fmt::format("\nbuses without echoes: {}, probed {} times", stalls, probes);
   out += fmt::format("\nticks of motors that only a pause made stale: {}", unread_after_pauses);
@@ -81,6 +89,7 @@ std::string Visits::idle() const {
     for (const auto count : visited.laws) told += count;
     if (visited.active == 0 || told == 0) out += (out.empty() ? "" : ", ") + name;
   }
+  if (scanned == 0) out += out.empty() ? "a scan" : ", a scan";
   return out;
 }
 

@@ -32,14 +32,20 @@ struct Visits {
   std::uint64_t slewed = 0;   ///< Ticks in which a slew limit was judged,
   std::uint64_t bounded = 0;  ///< and beyond a soft limit.
   std::uint64_t reduced = 0;  ///< Frames of motors in reduced mode that were judged.
-  std::uint64_t homing = 0;   ///< Ticks in which a joint homed.
-  std::uint64_t stalls = 0;   ///< Buses whose echoes stayed away,
-  std::uint64_t probes = 0;   ///< and the rest frames that looked for them, as far as they were read.
+  std::uint64_t homing = 0;   ///< Ticks in which a joint homed,
+  std::uint64_t homed = 0;    ///< and homings that found their end.
+  std::uint64_t scans = 0;    ///< That began,
+  std::uint64_t scanned = 0;  ///< that were made to their end, and
+  std::uint64_t scans_refused = 0;
+  std::uint64_t questions = 0;  ///< Questions of scans that were judged.
+  std::uint64_t stalls = 0;     ///< Buses whose echoes stayed away,
+  std::uint64_t probes = 0;     ///< and the rest frames that looked for them, as far as they were read.
   std::uint64_t unread_after_pauses = 0;  ///< Ticks of motors whose feedback was stale by the clock alone.
   std::map<std::string, MotorVisits> motors;  ///< By family and name.
   void add(const Visits& other);
   [[nodiscard]] std::string text() const;
-  /// Motors that were never ACTIVE, or never told anything but rest: nothing of them was judged.
+  /// Motors that were never ACTIVE, or never told anything but rest, homings, scans: nothing of them was
+  /// judged.
   [[nodiscard]] std::string idle() const;
 };
 

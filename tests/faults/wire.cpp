@@ -112,6 +112,14 @@ bool plainFrame(const CanFrame& frame, std::size_t length) {
   return frame.type == FrameType::kData && !frame.fd && frame.length == length;
 }
 
+bool isQuestionOfScan(const CanFrame& frame) {
+  const std::uint32_t id = frame.id.value & 0xFFU;
+  if (!frame.id.extended) return false;
+  if (frame.id.value >> 8U == 0x11U) return plainFrame(frame, 1) && id <= 253U && frame.data[0] == 0xFEU;
+  if (frame.id.value >> 8U != 0xFDU || !plainFrame(frame, 8) || id < 1U || id > 127U) return false;
+  return bigEndian(frame, 0, 4) == 0 && bigEndian(frame, 4, 4) == 0;
+}
+
 std::unique_ptr<Wire> makeWire(const MotorConfig& config) {
   struct Maker {
     std::string_view family;

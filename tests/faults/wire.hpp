@@ -78,6 +78,8 @@ class Wire {
   virtual std::uint64_t said(const CanFrame& frame) = 0;
   /// It is a command to this drive of a kind that rc10d never sends.
   [[nodiscard]] virtual bool obeys(const CanFrame&) const { return false; }
+  /// It changes something in this drive.
+  [[nodiscard]] virtual bool changedBy(const CanFrame& frame) const { return obeys(frame); }
   /// Takes in a frame from the bus. Whether it is feedback of this drive that could be a sample.
   virtual bool heard(const CanFrame& frame) = 0;
   [[nodiscard]] virtual Told told() const = 0;
@@ -131,6 +133,8 @@ class Wire {
 /// Linear, from 0 to 2^bits - 1.
 [[nodiscard]] double onScale(std::uint32_t code, double low, double high, unsigned bits);
 [[nodiscard]] bool plainFrame(const CanFrame& frame, std::size_t length);
+/// The questions of a scan, as docs/rc10ctl.md has them: PING of VESC tools, type 0 of RobStride.
+[[nodiscard]] bool isQuestionOfScan(const CanFrame& frame);
 
 [[nodiscard]] std::unique_ptr<Wire> makeDjiWire(const MotorConfig& config);
 [[nodiscard]] std::unique_ptr<Wire> makeDamiaoWire(const MotorConfig& config);

@@ -76,6 +76,11 @@ class MoteusWire final : public Wire {
     const auto destination = frame.id.value & 0xFFU;
     return destination == static_cast<std::uint32_t>(id()) || destination == 0x7F;
   }
+  // A write of a register; subframes that it does not know end a frame.
+  [[nodiscard]] bool changedBy(const CanFrame& frame) const override {
+    const auto written = numbersOf(frame, 0x00);
+    return obeys(frame) && written && !written->empty();
+  }
   bool heard(const CanFrame& frame) override {
     if (frame.id != reply_id_ || frame.type != FrameType::kData) return false;
     const auto told = numbersOf(frame, 0x20);
