@@ -27,7 +27,10 @@ SETTLE_MS = 2_500.0
 def pictures_of_the_demo(page: Page) -> None:
     """The overview, and ten seconds of two signals."""
     page.get_by_role("article", name="yaw").wait_for()
+    page.set_viewport_size({"width": 1280, "height": 1090})
+    page.wait_for_timeout(SETTLE_MS)
     page.screenshot(path=IMAGES / "studio.png")
+    page.set_viewport_size({"width": 1280, "height": 800})
     page.locator("#tab-plots").click()
     page.wait_for_timeout(SPAN_MS)
     page.screenshot(path=IMAGES / "studio-plot.png")
@@ -70,11 +73,16 @@ def picture_of_a_test(page: Page) -> None:
 
 
 def picture_of_a_first_spin(page: Page) -> None:
-    """The part Commission while a wheel spins for the first time."""
+    """The part Commission after a scan, and while a wheel spins for the first time."""
     page.locator("#tab-commission").click()
     page.get_by_label("Motor").select_option("front_left")
     steps = page.get_by_role("list", name="Commission")
     card = page.locator(".card.step")
+    card.get_by_role("button", name="Scan this bus").click()
+    card.get_by_role("group", name="Drives that were heard").wait_for()
+    page.set_viewport_size({"width": 1280, "height": 1020})
+    page.screenshot(path=IMAGES / "studio-scan.png")
+    page.set_viewport_size({"width": 1280, "height": 800})
     card.get_by_role("button", name="say id").click()
     steps.get_by_role("button", name="Zero").click()
     card.get_by_role("button", name="Set").click()
@@ -88,6 +96,7 @@ def picture_of_a_first_spin(page: Page) -> None:
     card.get_by_role("button", name="The mark is back").click()
     steps.get_by_role("button", name="First spin").click()
     card.get_by_role("button", name="Enable it alone").click()
+    page.locator(".badge.active").wait_for()
     card.get_by_role("button", name="Hold to spin").hover()
     page.mouse.down()
     page.get_by_role("timer").filter(has_text=re.compile(r"^0\.[4-9] /")).wait_for()
@@ -96,8 +105,9 @@ def picture_of_a_first_spin(page: Page) -> None:
 
 
 def picture_of_the_configuration(page: Page) -> None:
-    """Two wheels with one id: the message at its line, the key's help, the buses."""
+    """Two wheels with one id: the message at its line, the key's help, the buses; the end."""
     page.locator("#tab-configuration").click()
+    page.locator(".verdict-badge", has_text="rc10d accepts it").wait_for()
     page.locator(".cm-line", has_text="name: front_right").click()
     page.keyboard.press("Home")
     for _ in range(len("- {name: front_right, profile: wheel, id: ")):
@@ -113,6 +123,12 @@ def picture_of_the_configuration(page: Page) -> None:
         }"""
     )
     page.screenshot(path=IMAGES / "studio-configuration.png")
+    page.keyboard.press("Control+Z")
+    page.locator(".verdict-badge", has_text="rc10d accepts it").wait_for()
+    page.get_by_text("To install it").click()
+    page.locator(".notes", has_text="To install it").scroll_into_view_if_needed()
+    page.wait_for_timeout(SETTLE_MS)
+    page.screenshot(path=IMAGES / "studio-install.png")
 
 
 def main() -> None:
