@@ -30,7 +30,7 @@ void Chaos::describe() {
 
 void Chaos::scan() {
   if (scan_at_desk_ != 0 && choices_.oneIn(2)) {
-    desk_->giveUp();
+    robot_->exchange().scan.given_up.store(scan_at_desk_, std::memory_order_relaxed);
     oracle_->scanLeft(scan_at_desk_);
     return;
   }
@@ -58,7 +58,7 @@ void Chaos::askForScan(std::size_t bus, MotorSet motors) {
                 .listen = std::chrono::milliseconds{choices_.of<int>({1, 20, 100, 300})},
                 .between = std::chrono::milliseconds{choices_.of<int>({2, 2, 2, 5})},
                 .listen_only = choices_.oneIn(8)};
-  const bool at_desk = desk_->begin(order, {}, 0);
+  const bool at_desk = desk_->begin(order, {});
   if (!robot_->exchange().orders.push(order)) {
     if (at_desk) desk_->abandon(order.id);
     return;

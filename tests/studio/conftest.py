@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import re
 from collections.abc import Iterator
 from pathlib import Path
@@ -102,9 +103,9 @@ def box() -> Box:
     return record()
 
 
-@pytest.fixture
-def page(chromium: Browser, studio: Studio) -> Iterator[Page]:
-    """The page, open; nothing in it may have gone wrong at the end."""
+@contextlib.contextmanager
+def opened_page(chromium: Browser, studio: Studio) -> Iterator[Page]:
+    """The page; nothing in it may have gone wrong at the end."""
     context = chromium.new_context(viewport={"width": 1280, "height": 860}, locale="en-GB")
     context.set_default_timeout(PATIENCE_MS)
     opened = context.new_page()
@@ -115,10 +116,17 @@ def page(chromium: Browser, studio: Studio) -> Iterator[Page]:
         lambda message: problems.append(message.text) if message.type == "error" else None,
     )
     opened.goto(studio.url)
-    opened.get_by_role("article", name="wheel").wait_for()
     yield opened
     context.close()
     assert [text for text in problems if not EXPECTED.search(text)] == []
+
+
+@pytest.fixture
+def page(chromium: Browser, studio: Studio) -> Iterator[Page]:
+    """The page, open, of a robot that runs."""
+    with opened_page(chromium, studio) as opened:
+        opened.get_by_role("article", name="wheel").wait_for()
+        yield opened
 
 
 @pytest.fixture

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import json
 import os
 import re
@@ -65,11 +66,16 @@ def angle(studio: Studio, motor: str) -> float:
     return float(next(each for each in motors if each["name"] == motor)["total_angle_deg"])
 
 
-def by_hand(studio: Studio, card: Locator, motor: str, deg: int) -> None:
-    """The simulated hand, of a shaft that stands, until it has let go."""
+def stands(studio: Studio, motor: str) -> None:
     studio.daemon.wait_motor(motor, lambda m: abs(float(m["velocity_rpm"])) < 0.5, "it stands")
+
+
+@contextlib.contextmanager
+def turning(studio: Studio, motor: str, deg: int) -> Iterator[str]:
+    """The button of the simulated hand, of a shaft that stands, until the hand has let go."""
+    stands(studio, motor)
     to_deg = angle(studio, motor) + deg
-    press(card, f"{'+' if deg > 0 else MINUS}{abs(deg)}°")
+    yield f"{'+' if deg > 0 else MINUS}{abs(deg)}°"
     studio.daemon.wait_motor(
         motor,
         lambda m: (
@@ -77,6 +83,11 @@ def by_hand(studio: Studio, card: Locator, motor: str, deg: int) -> None:
         ),
         "the hand has turned it",
     )
+
+
+def by_hand(studio: Studio, card: Locator, motor: str, deg: int) -> None:
+    with turning(studio, motor, deg) as button:
+        press(card, button)
 
 
 def rests(studio: Studio, motor: str) -> None:
@@ -87,7 +98,15 @@ def rests(studio: Studio, motor: str) -> None:
     )
 
 
-def held(page: Page, studio: Studio, card: Locator, motor: str, label: str, words: str) -> None:
+def held(
+    page: Page,
+    studio: Studio,
+    card: Locator,
+    motor: str,
+    label: str,
+    words: str,
+    before_again: Callable[[], None] = lambda: None,
+) -> None:
     """A held button, until the test ends; one during which the machine stood still is run again."""
     for _ in range(5):
         press(card, "Enable it alone")
@@ -101,6 +120,7 @@ def held(page: Page, studio: Studio, card: Locator, motor: str, label: str, word
         rests(studio, motor)
         if "(silence)" not in card.inner_text():
             break
+        before_again()
     expect(told(card)).to_contain_text(words)
 
 
@@ -208,6 +228,24 @@ def test_a_joint_ends_in_limits_and_a_zero_for_the_file(
     editor = page.get_by_label("Text of the configuration")
     expect(editor).to_contain_text(re.compile(r"name: elbow, .*angle_max_deg: "))
     expect(page.locator(".verdict-badge")).to_contain_text("rc10d accepts it")
+
+
+def test_an_angle_is_taken_of_a_shaft_that_stands(
+    page: Page, studio: Studio, card: Locator
+) -> None:
+    choose(page, "elbow")
+    for step, name in (
+        ("Direction", "Begin"),
+        ("Zero", "Set"),
+        ("Limits", "Lower end is here"),
+    ):
+        go_to(page, step)
+        button = card.get_by_role("button", name=name).first
+        expect(button).to_be_enabled()
+        with studio.daemon.drive("hand", "elbow", "--by", 360, "--rpm", 20) as hand:
+            expect(button).to_be_disabled()
+            hand.wait()
+        expect(button).to_be_enabled()
 
 
 def ready_to_spin(page: Page, studio: Studio, card: Locator) -> None:

@@ -79,6 +79,19 @@ def runs_to(form: Locator, text: str) -> None:
     expect(told).to_contain_text(text)
 
 
+def measures(proposal: Locator) -> Locator:
+    """Measures; one during which the machine stood still is run again."""
+    measure = proposal.get_by_role("button", name="Measure")
+    told = proposal.locator("p[role=status]")
+    for _ in range(5):
+        measure.click()
+        expect(measure).to_be_disabled()
+        expect(measure).to_be_enabled(timeout=3 * PATIENCE_MS)
+        if told.count() > 0:
+            break
+    return told
+
+
 def rests(studio: Studio) -> None:
     studio.daemon.wait_motor(
         "wheel", lambda m: m["acting"] == "nothing" and m["owner"] == "", "it is let go"
@@ -377,17 +390,9 @@ def test_a_measurement_proposes_gains_that_are_judged_by_the_same_step(
 ) -> None:
     runs_to(form, "Done")
     proposal = page.get_by_role("region", name="Proposal")
-    measure = proposal.get_by_role("button", name="Measure")
-    expect(measure).to_be_disabled()
+    expect(proposal.get_by_role("button", name="Measure")).to_be_disabled()
     proposal.get_by_label("speed at most").fill("500")
-    told = proposal.locator("p[role=status]")
-    for _ in range(5):  # again, if the machine stood still meanwhile
-        measure.click()
-        expect(measure).to_be_disabled()
-        expect(measure).to_be_enabled(timeout=3 * PATIENCE_MS)
-        if told.count() > 0:
-            break
-    expect(told).to_contain_text("velocity_pid.kp_a_per_rpm")
+    expect(measures(proposal)).to_contain_text("velocity_pid.kp_a_per_rpm")
     gains = page.locator(".gains")
     field = gains.get_by_label("velocity_pid.kp_a_per_rpm", exact=True)
     kp = float(field.input_value())

@@ -3,7 +3,7 @@ import { useState } from 'preact/hooks';
 
 import type { StepProps } from './commission';
 import { holdsNow, kSteps } from './commission_record';
-import { draftConfiguration } from './config_draft';
+import { putIntoDraft } from './config_draft';
 import { useStudio } from './context';
 import { download } from './download';
 import type { MotorInfo, Robot } from './protocol';
@@ -37,10 +37,8 @@ export function CommissionEnd(props: StepProps & { robot: Robot; info: MotorInfo
   ].join('\n');
 
   const put = () => {
-    const changed = props.text === null ? null : withMotorKeys(props.text, info.name, keys);
-    if (changed === null || props.text === null) return setTold(word('comNotPut'));
-    draftConfiguration(changed, props.text, `${word('commission')}: ${info.name}`);
-    document.getElementById('tab-configuration')?.click();
+    const change = (text: string) => withMotorKeys(text, info.name, keys);
+    if (props.text === null || !putIntoDraft(props.text, change, `${word('commission')}: ${info.name}`)) setTold(word('comNotPut'));
   };
   return (
     <>

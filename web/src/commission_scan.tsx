@@ -4,7 +4,7 @@ import { useState } from 'preact/hooks';
 import { CopyLines, requestPython } from './action';
 import { CopyButton } from './clipboard';
 import { type HeardDrive, drivesOf, modelsOf, motorLine } from './commission_drives';
-import { draftConfiguration } from './config_draft';
+import { putIntoDraft } from './config_draft';
 import { useKnown, useStudio } from './context';
 import { NumberField } from './number_field';
 import type { Response } from './protocol';
@@ -26,10 +26,8 @@ function NewMotor(props: { bus: string; names: string[]; chosen: Chosen; text: s
   const known = props.names.includes(chosen.name);
   const line = known ? `id: ${chosen.id}` : motorLine(chosen.name, chosen.model, chosen.id);
   const put = () => {
-    const changed = text === null ? null : known ? withMotorKeys(text, chosen.name, { id: chosen.id }) : withNewMotor(text, props.bus, line);
-    if (changed === null || text === null) return setTold(word('comNotPut'));
-    draftConfiguration(changed, text, `${word('commission')}: ${chosen.name}`);
-    document.getElementById('tab-configuration')?.click();
+    const change = (old: string) => (known ? withMotorKeys(old, chosen.name, { id: chosen.id }) : withNewMotor(old, props.bus, line));
+    if (text === null || !putIntoDraft(text, change, `${word('commission')}: ${chosen.name}`)) setTold(word('comNotPut'));
   };
   return (
     <>

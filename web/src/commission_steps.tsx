@@ -9,7 +9,7 @@ import { useKnown, useStudio } from './context';
 import type { RobotRequest } from './link';
 import { NumberField } from './number_field';
 import { duration, number } from './numbers';
-import type { CheckedConfig } from './protocol';
+import type { CheckedConfig, MotorState } from './protocol';
 import { Refusal } from './refusal';
 import { filled } from './words_commission';
 
@@ -18,6 +18,10 @@ type Robot = NonNullable<CheckedConfig['checked']['robot']>;
 function useMotors() {
   return useKnown().state?.data.motors ?? [];
 }
+
+// A page is some states behind: an angle that it reads while the shaft turns is an old one.
+const kStillRpm = 3;
+const isStill = (motor: MotorState | undefined) => Math.abs(motor?.velocity_rpm ?? 0) < kStillRpm;
 
 /** A terminal's line for the same. */
 function Line(props: { command: string; request: RobotRequest }) {
@@ -151,7 +155,7 @@ export function HandStep(props: StepProps) {
   const begun_us = useRef(0);
   const motor = motors.find((each) => each.name === props.motor);
   const turned = before === null ? null : (motor?.total_angle_deg ?? NaN) - (before[props.motor] ?? NaN);
-  const ready = motor !== undefined && motor.status !== 'OFFLINE' && !motors.some(isOn);
+  const ready = motor !== undefined && motor.status !== 'OFFLINE' && !motors.some(isOn) && motors.every(isStill);
   return (
     <>
       <p>{word('comHandText')}</p>
@@ -226,7 +230,7 @@ export function ZeroStep(props: StepProps) {
           <NumberField label={word('comZeroIs')} value={record.zero_deg} onValue={(value) => props.onSet({ zero_deg: value })} />
           {' °'}
         </label>
-        <button type="button" class="strong" disabled={known.hello?.right !== 'command' || motor === undefined || isOn(motor)} onClick={() => void zero()}>
+        <button type="button" class="strong" disabled={known.hello?.right !== 'command' || motor === undefined || isOn(motor) || !isStill(motor)} onClick={() => void zero()}>
           {word('comZero')}
         </button>
         <button
@@ -252,7 +256,7 @@ export function LimitsStep(props: StepProps) {
   const motor = useMotors().find((each) => each.name === props.motor);
   const { record } = props;
   const now_deg = motor?.total_angle_deg ?? null;
-  const ready = now_deg !== null && motor?.zeroed === true && !isOn(motor);
+  const ready = now_deg !== null && motor?.zeroed === true && !isOn(motor) && isStill(motor);
   const end = (key: 'low_deg' | 'high_deg') => now_deg !== null && props.onSet({ [key]: Number(now_deg.toFixed(2)) });
   const { low_deg: low, high_deg: high } = record;
   // Without its reference the ends that were taken mean nothing any more.

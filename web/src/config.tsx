@@ -4,10 +4,9 @@ import { useEffect, useRef, useState } from 'preact/hooks';
 import { type Draft, kDraft } from './config_draft';
 import type { ConfigEditor } from './config_editor';
 import { CheckedTables } from './config_tables';
-import { ConfigSchema, type KeyHelp, type Schema } from './config_schema';
+import { type ConfigSchema, type KeyHelp, loadSchema } from './config_schema';
 import { useStudio } from './context';
 import { download } from './download';
-import { fetchedOnce } from './fetched_once';
 import { FileButton } from './file_button';
 import type { CheckedConfig, ConfigFile, ConfigProblem, Response } from './protocol';
 import type { Word } from './words';
@@ -19,8 +18,6 @@ const kPauseMs = 250;
 const kMostBytes = 128 * 1024;
 const kSources: Record<ConfigFile['of'], Word> = { running: 'configRunning', last: 'configLast', refused: 'configRefused' };
 const kEditor = '/editor.js';
-
-const loadSchema = fetchedOnce('/rc10d.schema.json', (schema) => new ConfigSchema(schema as Schema));
 
 function bytesOf(text: string): number {
   return new TextEncoder().encode(text).length;

@@ -11,7 +11,12 @@ export interface Draft {
 }
 export const kDraft: Draft = { text: '', loaded: '', from: '', hidden: 0, replaces: '' };
 
-/** A text that another part has changed; tokens that were hidden in it stay so. */
-export function draftConfiguration(text: string, loaded: string, from: string): void {
-  Object.assign(kDraft, { text, loaded, from, replaces: '', hidden: /\bhidden-\d\d-/.test(text) ? 1 : 0 });
+/** A change of another part, and its result in the editor: of the draft where that began as the file that runs, else of that file.
+ * False: the change found no place. Tokens that were hidden stay so. */
+export function putIntoDraft(running: string, change: (text: string) => string | null, from: string): boolean {
+  const text = change(kDraft.loaded === running ? kDraft.text : running);
+  if (text === null) return false;
+  Object.assign(kDraft, { text, loaded: running, from, replaces: '', hidden: /\bhidden-\d\d-/.test(text) ? 1 : 0 });
+  document.getElementById('tab-configuration')?.click();
+  return true;
 }

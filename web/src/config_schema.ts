@@ -1,4 +1,5 @@
 // The JSON schema of the configuration: what a key means at its place, and which keys and values there may be.
+import { fetchedOnce } from './fetched_once';
 import { type Place, type YamlValue, placeIn, textAt } from './yaml_places';
 
 type Word = string | number | boolean;
@@ -64,6 +65,12 @@ export class ConfigSchema {
     const section = this.section(place.map, root);
     const key = place.entry === null ? null : (section?.keys.get(place.entry.key) ?? null);
     return { key, about: section?.about ?? '', from: place.from, suggestions: suggestionsOf(section, key, place) };
+  }
+
+  /** Keys of a motor of this model. */
+  keysOf(model: string): string[] {
+    const text = `buses: [{type: sim, motors: [{model: ${model}, }]}]`;
+    return this.help(text, text.indexOf(', }') + 2).suggestions.map((each) => each.label);
   }
 
   private found(schema: Schema | false | undefined): Schema | null {
@@ -147,6 +154,9 @@ export class ConfigSchema {
     };
   }
 }
+
+/** The schema of the rc10d that runs here. */
+export const loadSchema = fetchedOnce('/rc10d.schema.json', (schema) => new ConfigSchema(schema as Schema));
 
 function holds(condition: Schema, values: (name: string) => string | undefined): boolean {
   return Object.entries(condition.properties ?? {}).every(([name, wanted]) => {

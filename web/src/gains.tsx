@@ -3,8 +3,10 @@ import { useEffect, useRef, useState } from 'preact/hooks';
 
 import { CopyLines } from './action';
 import { CopyButton } from './clipboard';
+import { putIntoDraft } from './config_draft';
 import { useKnown, useStoredOfRobot, useStudio } from './context';
 import { NumberField } from './number_field';
+import { withMotorLoops } from './yaml_motor';
 
 type Values = Record<string, number>;
 
@@ -28,8 +30,9 @@ const listed = (values: Values) =>
     .map(([key, value]) => `${key}=${value}`)
     .join(' ');
 
-/** `proposed`: values that are entered, and not in force until they are applied. */
-export function Gains(props: { motor: string; proposed?: Values | null }) {
+/** `proposed`: values that are entered, and not in force until they are applied; `onKnown`: the gains in force, null of a motor
+ * whose drive closes its loops. */
+export function Gains(props: { motor: string; proposed?: Values | null; onKnown?: (values: Values | null) => void }) {
   const { link, word } = useStudio();
   const known = useKnown();
   const [inForce, setInForce] = useState<Values | null>(null);
@@ -51,6 +54,7 @@ export function Gains(props: { motor: string; proposed?: Values | null }) {
     if (answer.status !== 'ok') {
       setInForce(null);
       setTold(answer.message);
+      if (answer.status === 'refused') props.onKnown?.(null);
       return;
     }
     setTold('');
@@ -66,6 +70,7 @@ export function Gains(props: { motor: string; proposed?: Values | null }) {
     );
     setInForce(answer.values);
     setYaml(answer.message);
+    props.onKnown?.(answer.values);
   };
   useEffect(() => {
     if (allowed) void load();
@@ -84,6 +89,13 @@ export function Gains(props: { motor: string; proposed?: Values | null }) {
     if (answer.status !== 'ok') return setTold(answer.message);
     then();
     await load();
+  };
+
+  const put = async () => {
+    const file = await link.config();
+    if (typeof file === 'string' || file.config.why !== '') return setTold(typeof file === 'string' ? file : file.config.why);
+    const change = (text: string) => withMotorLoops(text, props.motor, yaml);
+    if (!putIntoDraft(file.config.text, change, `${word('gains')}: ${props.motor}`)) setTold(word('comNotPut'));
   };
 
   return (
@@ -139,6 +151,9 @@ export function Gains(props: { motor: string; proposed?: Values | null }) {
               command={`rc10ctl gains ${props.motor} ${listed(changed(wanted))}`.trim()}
             />
             <CopyButton text={yaml}>{word('gainsCopy')}</CopyButton>
+            <button type="button" onClick={() => void put()}>
+              {word('comPut')}
+            </button>
           </div>
           <details>
             <summary>{word('gainsLines')}</summary>

@@ -101,6 +101,16 @@ export function testPython(motor: string, plan: TestPlan): string {
   return `run_motion_test("${motor}", "${plan.kind}", ${[plan.amplitude, ...words].join(', ')})`;
 }
 
+/** Stiffness and damping of angle targets with which a motor that only has inertia is critically damped with this time
+ * constant: with inertia J, torque by each ampere over acceleration by each ampere, k = J / T², d = 2 J / T. */
+export function springOf(acceleration_rpm_s_per_a: number, torque_nm_per_a: number, time_constant_s: number): Record<string, number> | null {
+  const inertia = torque_nm_per_a / ((acceleration_rpm_s_per_a * Math.PI) / 30);
+  const t = time_constant_s;
+  if (!(inertia > 0) || !Number.isFinite(inertia) || !(t > 0)) return null;
+  const rounded = (value: number) => Number(value.toPrecision(3));
+  return { angle_stiffness_nm_per_rad: rounded(inertia / t ** 2), angle_damping_nms_per_rad: rounded((2 * inertia) / t) };
+}
+
 /** Report of a test, as `rc10ctl test-motion --json` has it; null: not within the test. */
 export interface TestReport {
   motor: string;

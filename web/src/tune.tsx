@@ -3,11 +3,14 @@ import { useEffect, useRef, useState } from 'preact/hooks';
 
 import { useChosenMotor } from './chosen_motor';
 import { useStored, useStoredOfRobot, useStudio } from './context';
+import { loopGainsOf } from './gain_search';
 import { Gains } from './gains';
+import type { Run } from './measurement';
 import { type TestPlan, type TestResult, kFirstPlan, kTestModes, kTestUnits, planOf } from './motion_test';
 import { number, unitOf } from './numbers';
 import { Curves } from './plots';
-import { type Run, Proposal } from './proposal';
+import { Proposal } from './proposal';
+import { SpringProposal } from './spring_proposal';
 import { TestForm, type Running } from './test_form';
 import { TestResults } from './test_results';
 import type { Word } from './words';
@@ -40,6 +43,7 @@ export function Tune() {
   const [told, setTold] = useState<{ end: string; text: string } | null>(null);
   const [results, setResults] = useState(kept);
   const [proposed, setProposed] = useState<Record<string, number> | null>(null);
+  const [loops, setLoops] = useState<{ motor: string; isHere: boolean } | null>(null);
   const end = useRef<((why: 'stopped' | 'left') => void) | null>(null);
   const modes = kTestModes.filter((mode) => info?.modes.includes(mode));
   const plan = { ...stored, mode: modes.includes(stored.mode) ? stored.mode : (modes[0] ?? 'velocity') };
@@ -96,6 +100,8 @@ export function Tune() {
   }, [name]);
 
   if (info === undefined) return null;
+  // Whether rc10d closes its velocity loop; null: not known yet.
+  const isHere = loops?.motor === name ? loops.isHere : null;
   const unit = (signal: string) => (signal.endsWith('.target_shaped') ? kTestUnits[plan.mode] : unitOf(signal));
   const readings = ['target_shaped', 'velocity_rpm', 'current_a', ...(angle || plan.mode === 'total_angle' ? ['total_angle_deg'] : [])];
   return (
@@ -124,10 +130,18 @@ export function Tune() {
           ) : (
             <p class="hint">{word('testNone')}</p>
           )}
-          {info.modes.includes('current') && info.modes.includes('velocity') && (
+          {isHere !== false && info.modes.includes('current') && info.modes.includes('velocity') && (
             <Proposal key={`proposal ${name}`} motor={name} plan={plan} busy={running !== null} run={run} onProposal={setProposed} />
           )}
-          <Gains key={`gains ${name}`} motor={name} proposed={proposed} />
+          {isHere === false && info.modes.includes('current') && info.modes.includes('impedance') && (
+            <SpringProposal key={`spring ${name}`} info={info} plan={plan} busy={running !== null} run={run} />
+          )}
+          <Gains
+            key={`gains ${name}`}
+            motor={name}
+            proposed={proposed}
+            onKnown={(values) => setLoops({ motor: name, isHere: values !== null && loopGainsOf(values) !== null })}
+          />
         </div>
         <div class="curves">
           <Curves signals={readings.map((reading) => `${name}.${reading}`)} unit={unit} />

@@ -1,4 +1,4 @@
-// Keys of a motor in the text of a robot's file.
+// Keys of a motor, and of its loops, in the text of a robot's file.
 import { type YamlEntry, type YamlValue, placeIn, textAt } from './yaml_places';
 
 const items = (value: YamlValue | null | undefined) => (value?.kind === 'list' ? value.items : []);
@@ -25,18 +25,18 @@ function isFlow(text: string, map: YamlValue): boolean {
   return first !== undefined && text.slice(0, first.from).trimEnd().endsWith('{');
 }
 
-function withKey(text: string, name: string, key: string, value: string): string | null {
-  const motor = motorIn(text, name);
-  const entry = motor?.entries.find((each) => each.key === key);
-  const named = motor?.entries.find((each) => each.key === 'name');
-  if (motor === undefined || named === undefined) return null;
+/** A key of this map; a new one stands behind its name, or behind its first key. */
+function withKey(text: string, map: YamlValue | null | undefined, key: string, value: string): string | null {
+  const entry = map?.entries.find((each) => each.key === key);
+  const named = map?.entries.find((each) => each.key === 'name') ?? map?.entries[0];
+  if (map === null || map === undefined || named === undefined) return null;
   if (entry !== undefined) {
     const place = valueAt(text, entry);
     return place === null ? null : text.slice(0, place[0]) + value + text.slice(place[1]);
   }
   const after = valueAt(text, named);
   if (after === null) return null;
-  if (isFlow(text, motor)) return `${text.slice(0, after[1])}, ${key}: ${value}${text.slice(after[1])}`;
+  if (isFlow(text, map)) return `${text.slice(0, after[1])}, ${key}: ${value}${text.slice(after[1])}`;
   const lineEnd = text.indexOf('\n', after[1]);
   const at = lineEnd < 0 ? text.length : lineEnd;
   const column = named.from - (text.lastIndexOf('\n', named.from - 1) + 1);
@@ -48,7 +48,40 @@ export function withMotorKeys(text: string, name: string, keys: Record<string, n
   let changed: string | null = text;
   for (const [key, value] of Object.entries(keys)) {
     if (changed === null) return null;
-    changed = withKey(changed, name, key, String(value));
+    changed = withKey(changed, motorIn(changed, name), key, String(value));
+  }
+  return changed;
+}
+
+/** Begin and end of a map in braces behind its key; null: it stands in lines of its own. */
+function bracesAt(text: string, entry: YamlEntry): [number, number] | null {
+  const found = /^["']?\s*:\s*(?=\{)/.exec(text.slice(entry.to))?.[0].length;
+  if (found === undefined) return null;
+  const end = text.indexOf('}', entry.to + found);
+  return end < 0 ? null : [entry.to + found, end + 1];
+}
+
+function withLoop(text: string, name: string, loop: string, braces: string): string | null {
+  const found = (of: string) => motorIn(of, name)?.entries.find((each) => each.key === loop);
+  const entry = found(text);
+  if (entry === undefined) return withKey(text, motorIn(text, name), loop, braces);
+  const place = bracesAt(text, entry);
+  if (place !== null) return text.slice(0, place[0]) + braces + text.slice(place[1]);
+  if (entry.value?.kind !== 'map') return null;
+  let changed: string | null = text;
+  for (const [, key = '', value = ''] of braces.matchAll(/(\w+): ([^,}]+)/g)) {
+    if (changed === null) return null;
+    changed = withKey(changed, found(changed)?.value, key, value);
+  }
+  return changed;
+}
+
+/** The text with these lines of a motor's loops, as `rc10ctl gains --save` prints them; null: they found no place in it. */
+export function withMotorLoops(text: string, name: string, lines: string): string | null {
+  let changed: string | null = text;
+  for (const [, loop = '', braces = ''] of lines.matchAll(/^(\w+): (\{.*\})$/gm)) {
+    if (changed === null) return null;
+    changed = withLoop(changed, name, loop, braces);
   }
   return changed;
 }

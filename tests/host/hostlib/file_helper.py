@@ -37,6 +37,10 @@ class FileHelper:
         self._thread.join()
         self._listener.close()
 
+    def answer_to(self, request: FileRequest) -> str:  # noqa: ARG002
+        """The same to each; one that does what it is asked has others."""
+        return self.answer
+
     def _serve(self) -> None:
         while True:
             try:
@@ -47,4 +51,4 @@ class FileHelper:
                 head, text = connection.recv(200_000).decode().split("\n", 1)
                 verb, robot, replaces = head.split(" ")
                 self.requests.append(FileRequest(verb, robot, replaces, text))
-                connection.send(self.answer.encode())
+                connection.send(self.answer_to(self.requests[-1]).encode())
