@@ -219,3 +219,10 @@ def test_every_command_is_run_by_a_test_or_needs_hardware(page: Page) -> None:
 @by_name
 def test_commands_behind_a_prompt_are_in_a_block_for_a_console(page: Page) -> None:
     assert [text for text in page.fences("") if re.search(r"^\$ ", text, re.M)] == []
+
+
+def test_nothing_stands_twice_in_the_changelog() -> None:
+    lines = [
+        line for line in read(REPO / "CHANGELOG.md").text.splitlines() if line.startswith("- ")
+    ]
+    assert [line for line in set(lines) if lines.count(line) > 1] == []
