@@ -23,6 +23,8 @@ if TYPE_CHECKING:
     from collections.abc import Callable
 
 MINUS = "\u2212"
+# In the feedback of a machine that stood still: then the same is asked for once more.
+NOT_JUDGED = "may hide a turn"
 # Feedback may be as old as a busy machine makes it.
 WHEEL = """
       - {name: wheel, model: M3508, id: 1, zero: power_on, feedback_timeout_ms: 1000,
@@ -118,16 +120,20 @@ def held(
         ended.first.wait_for(timeout=3 * PATIENCE_MS)
         page.mouse.up()
         rests(studio, motor)
-        if "(silence)" not in card.inner_text():
+        shown = card.inner_text()
+        if "(silence)" not in shown and NOT_JUDGED not in shown:
             break
         before_again()
     expect(told(card)).to_contain_text(words)
 
 
 def turned_by_hand(studio: Studio, card: Locator, motor: str) -> None:
-    press(card, "Begin")
-    by_hand(studio, card, motor, 360)
-    press(card, "The mark is back")
+    for _ in range(5):
+        press(card, "Begin")
+        by_hand(studio, card, motor, 360)
+        press(card, "The mark is back")
+        if NOT_JUDGED not in told(card).inner_text():
+            break
 
 
 def test_a_wheel_is_commissioned_by_clicks(page: Page, studio: Studio, card: Locator) -> None:
@@ -402,10 +408,13 @@ class TestAWrongFile:
         choose(page, "wheel")
         go_to(page, "Direction")
         # Its hand turns the other way, and as far as the file's ratio makes of it.
-        press(card, "Begin")
-        for _ in range(2):
-            by_hand(studio, card, "wheel", -90)
-        press(card, "The mark is back")
+        for _ in range(5):
+            press(card, "Begin")
+            for _ in range(2):
+                by_hand(studio, card, "wheel", -90)
+            press(card, "The mark is back")
+            if NOT_JUDGED not in told(card).inner_text():
+                break
         expect(told(card)).to_contain_text("instead of 360°")
         expect(told(card)).to_contain_text(re.compile(r"multiply gear_ratio by 0\.(49|50)\d"))
         go_to(page, "Lines")

@@ -16,7 +16,7 @@ from hostlib import Daemon
 from hostlib.daemon import motor_of
 from hostlib.file_helper import FileHelper, FileRequest
 from playwright.sync_api import Browser, Locator, Page, expect
-from test_commission import held, rests, stands, told, turning
+from test_commission import NOT_JUDGED, held, rests, stands, told, turned_by_hand, turning
 from test_tune import ended, measures, runs_to
 
 from conftest import PATIENCE_MS, Studio, opened_page
@@ -203,6 +203,8 @@ def turn_once(newcomer: Newcomer, motor: str) -> None:
     newcomer.press(newcomer.card, "Begin")
     newcomer.by_hand(motor, 360)
     newcomer.press(newcomer.card, "The mark is back")
+    if NOT_JUDGED in told(newcomer.card).inner_text():
+        turned_by_hand(newcomer.studio, newcomer.card, motor)
     expect(told(newcomer.card)).to_contain_text("name, direction and ratio are right")
     newcomer.press(newcomer.card, "Next")
 
