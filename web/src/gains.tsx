@@ -92,9 +92,11 @@ export function Gains(props: { motor: string; proposed?: Values | null; onKnown?
   };
 
   const put = async () => {
-    const file = await link.config();
+    // Those in force now: an answer may be under way that changes what is shown.
+    const [file, gains] = await Promise.all([link.config(), link.ask({ operation: 'get_config', target: props.motor })]);
     if (typeof file === 'string' || file.config.why !== '') return setTold(typeof file === 'string' ? file : file.config.why);
-    const change = (text: string) => withMotorLoops(text, props.motor, yaml);
+    if (gains.status !== 'ok') return setTold(gains.message);
+    const change = (text: string) => withMotorLoops(text, props.motor, gains.message);
     if (!putIntoDraft(file.config.text, change, `${word('gains')}: ${props.motor}`)) setTold(word('comNotPut'));
   };
 
