@@ -71,6 +71,10 @@ std::string BusSurvey::commandedBy(const CanFrame& query) const {
                                    [&](const auto& guess) { return guess.first == obeying->drive; });
     if (shown) return std::string{obeying->name} + " " + std::to_string(obeying->drive.id);
   }
+  return commandedByAnswerTo(query);
+}
+
+std::string BusSurvey::commandedByAnswerTo(const CanFrame& query) const {
   for (const auto& [key, heard] : heard_) {
     const auto& [extended, id] = key;
     const auto drive = id & 0xFFU;

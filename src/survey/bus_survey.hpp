@@ -44,6 +44,9 @@ class BusSurvey {
     std::uint64_t frames = 0;
     std::vector<std::pair<DriveGuess, std::uint64_t>> guesses;
   };
+  /// The same, of the drive's answer.
+  [[nodiscard]] std::string commandedByAnswerTo(const CanFrame& query) const;
+
   std::map<std::pair<bool, std::uint32_t>, Heard> heard_;
 };
 

@@ -209,7 +209,8 @@ void Hub::change(Page& page, const ChangeFile& wanted) {
     refused =
         "rc10d left no copy of its file in the run folder, or several robots did, so nobody knows who may: "
         "start rc10-web with --robot, or install by hand";
-  if (!refused.empty()) return page.socket->sendText(shared(responseMessage(wanted.seq, "refused", refused)));
+  if (!refused.empty() || !accepted)
+    return page.socket->sendText(shared(responseMessage(wanted.seq, "refused", refused)));
   page.changes_file = true;
   auto token = page.link->token();
   if (token.find('\n') != std::string::npos) token.clear();
