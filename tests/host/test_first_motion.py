@@ -248,7 +248,7 @@ def test_nobody_enables_another_motor_in_the_spin_and_it_goes_on(daemon: Daemon)
     daemon.must("enable", "other")
 
 
-def test_a_commission_that_is_killed_in_the_spin_leaves_its_motor_disabled_and_nothing_locked(
+def test_a_commission_that_is_killed_in_the_spin_leaves_its_motor_ready_and_nothing_locked(
     daemon: Daemon,
 ) -> None:
     person = in_the_spin(daemon, *WHOLE_SECOND)

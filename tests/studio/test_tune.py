@@ -525,33 +525,33 @@ def test_escape_between_two_tests_of_a_search_begins_no_other_one(
     rests(studio)
 
 
-def test_a_page_that_is_closed_in_a_search_leaves_the_gains_of_before(
-    page: Page, form: Locator, studio: Studio
-) -> None:
+@pytest.fixture
+def before_the_search(page: Page, form: Locator, studio: Studio) -> dict[str, float]:
+    """Gains of before a search whose second step, a long one with other gains, goes on."""
     before = gains_in_force(studio)
     form.get_by_label("lasts").fill("5")
-    page.get_by_role("region", name="Proposal").get_by_role(
-        "button", name="Search", exact=True
-    ).click()
+    proposal = page.get_by_role("region", name="Proposal")
+    proposal.get_by_role("button", name="Search", exact=True).click()
+    # The first step is as it was.
     eventually(lambda: gains_in_force(studio) != before, "other gains", 3 * PATIENCE_MS / 1000)
+    return before
+
+
+def test_a_page_that_is_closed_in_a_search_leaves_the_gains_of_before(
+    page: Page, studio: Studio, before_the_search: dict[str, float]
+) -> None:
+    before = before_the_search
     page.close()
     eventually(lambda: gains_in_force(studio) == before, "the gains of before")
     rests(studio)
 
 
 def test_escape_ends_a_search_and_puts_the_gains_back(
-    page: Page, form: Locator, studio: Studio
+    page: Page, studio: Studio, before_the_search: dict[str, float]
 ) -> None:
-    before = gains_in_force(studio)
-    form.get_by_label("lasts").fill("5")
-    proposal = page.get_by_role("region", name="Proposal")
-    search = proposal.get_by_role("button", name="Search", exact=True)
-    search.click()
-    # The first step is as it was; the second one has other gains.
-    eventually(lambda: gains_in_force(studio) != before, "other gains", 3 * PATIENCE_MS / 1000)
     page.keyboard.press("Escape")
-    expect(proposal.get_by_role("alert")).to_have_text(
+    expect(page.get_by_role("region", name="Proposal").get_by_role("alert")).to_have_text(
         "The search has ended early; the gains of before are in force."
     )
-    assert gains_in_force(studio) == before
+    assert gains_in_force(studio) == before_the_search
     rests(studio)

@@ -205,7 +205,7 @@ SpringLaw CubemarsMit::angleLaw(const Target& target, double stiffness, double d
                                 bool bound_speed) noexcept {
   const double ff_nm = static_cast<double>(target.torque_ff_nm);
   if (!inRange()) {
-    // Such a position does not fit into a command, and the drive's answer to one is not known.
+    // The command's position field ends there; the drive's response beyond it is unknown.
     limits_ |= kLimitAngle;
     return velocityLaw(0.0, 0.0,
                        std::max(std::min(damping, CubemarsRanges::kDampingNmsPerRad), velocity_gain_));
