@@ -1,7 +1,8 @@
 #include "daemon/clients/disable_at_end.hpp"
 
 #include <algorithm>
-#include <string>
+
+#include "daemon/clients/until_its_end.hpp"
 
 namespace rc10 {
 namespace {
@@ -30,19 +31,9 @@ enum class Now : std::uint8_t { kWait, kDisable, kLeave };
 Result<bool> DisableAtEnd::askedBy(const link::Request& request, Operation operation,
                                    const Speaker& speaker) {
   if (operation != Operation::kEnable && operation != Operation::kEnableAlone) return false;
-  const auto count = std::min<std::size_t>(request.value_count, link::kMaxValues);
-  const auto* const end = request.values.data() + count;
-  const auto* const found =
-      std::find_if(request.values.data(), end, [](const auto& value) { return value.name.view() == kValue; });
-  if (found == end || found->value == 0.0) return false;
-  if (found->value != 1.0)
-    return tl::unexpected(Error{std::string{kValue} + ": use 1, or 0 for an enable that lasts"});
-  if (speaker.way != Speaker::Way::kSocket) {
-    return tl::unexpected(Error{std::string{kValue} +
-                                ": nobody sees the end of an LCM client; leave it out, and disable the motor "
-                                "before you end"});
-  }
-  return true;
+  return isAskedFor(
+      {.value = kValue, .lasting = "an enable that lasts", .instead = "disable the motor before you end"},
+      request, speaker);
 }
 
 void DisableAtEnd::add(const Order& order, std::uint64_t connection) {

@@ -1,24 +1,15 @@
 #include "daemon/clients/gains_at_end.hpp"
 
 #include <algorithm>
-#include <span>
-#include <string>
+
+#include "daemon/clients/until_its_end.hpp"
 
 namespace rc10 {
 
 Result<bool> GainsAtEnd::askedBy(const link::Request& request, const Speaker& speaker) {
-  const auto values =
-      std::span(request.values).first(std::min<std::size_t>(request.value_count, link::kMaxValues));
-  const auto found = std::find_if(values.begin(), values.end(),
-                                  [](const auto& value) { return value.name.view() == kValue; });
-  if (found == values.end() || found->value == 0.0) return false;
-  if (found->value != 1.0) return fail(std::string{kValue} + ": use 1, or 0 for gains that stay");
-  if (speaker.way != Speaker::Way::kSocket) {
-    return fail(std::string{kValue} +
-                ": nobody sees the end of an LCM client; leave it out, and set the gains of before when you "
-                "end");
-  }
-  return true;
+  return isAskedFor(
+      {.value = kValue, .lasting = "gains that stay", .instead = "set the gains of before when you end"},
+      request, speaker);
 }
 
 void GainsAtEnd::tried(std::uint64_t connection, const link::Name& client, std::size_t motor,
