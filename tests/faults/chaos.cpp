@@ -16,15 +16,15 @@ namespace {
 using namespace std::chrono_literals;
 
 constexpr std::array<std::string_view, static_cast<std::size_t>(Chaos::Action::kCount)> kNames{
-    "nothing",     "command",    "program",    "enable",       "enable alone", "disable",
-    "clear",       "zero",       "estop",      "repair",       "silence",      "lose",
-    "stall",       "heat",       "encoder",    "load",         "freeze bus",   "block bus",
-    "hold echoes", "link",       "controller", "e-stop input", "mode input",   "foreign frames",
-    "flood bus",   "fill rings", "miss ticks", "scan",         "stop",         "crash"};
+    "nothing",      "command",    "program",        "enable",    "enable alone", "disable",    "clear",
+    "zero",         "estop",      "repair",         "silence",   "lose",         "stall",      "heat",
+    "encoder",      "load",       "freeze bus",     "block bus", "hold echoes",  "link",       "controller",
+    "e-stop input", "mode input", "foreign frames", "flood bus", "fill rings",   "miss ticks", "scan",
+    "home",         "stop",       "crash"};
 
 // Weights of the actions: what brings a robot to work more often than what stops it.
 constexpr std::array<std::uint8_t, static_cast<std::size_t>(Chaos::Action::kCount)> kWeights{
-    10, 24, 50, 38, 2, 4, 26, 5, 2, 36, 4, 3, 4, 3, 4, 4, 2, 2, 4, 3, 3, 3, 3, 4, 1, 1, 5, 3, 1, 1};
+    9, 24, 50, 38, 2, 4, 26, 5, 2, 36, 4, 3, 4, 3, 4, 4, 2, 2, 4, 3, 3, 3, 3, 4, 1, 1, 5, 3, 2, 1, 1};
 
 // A home near the far soft limit of the joint, which is at 150 degrees.
 constexpr double kNearHomeDeg = 135.0;

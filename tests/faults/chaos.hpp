@@ -77,6 +77,7 @@ class Chaos {
     kFillRings,
     kMissTicks,
     kScan,
+    kHome,
     kStop,
     kCrash,
     kCount,
@@ -127,11 +128,16 @@ class Chaos {
   void order(Operation operation, MotorSet motors, double value = 0.0);
   void describe();
   void scan();
+  void home();
+  void homeJoint(std::size_t module);
+  [[nodiscard]] double stateOf(std::size_t module) const;
+  void judgeReference(std::size_t module);
   void askForScan(std::size_t bus, MotorSet motors);
   void judgeScan();
   void endScan(const OrderResult& result);
   void stopAndStartAgain();
   void repair(std::size_t motor);
+  void repairBuses();
   void foreignFrame(std::size_t bus);
   void secondController();
   void errorFrame(std::size_t bus, std::uint32_t which);

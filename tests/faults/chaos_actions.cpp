@@ -19,6 +19,18 @@ void Chaos::repair(std::size_t motor) {
   busOf(motor).setTemperature(driveOf(motor), 25.0);
 }
 
+void Chaos::repairBuses() {
+  frozen_.reset();
+  blocked_.reset();
+  contact_open_ = false;
+  for (std::size_t bus = 0; bus < wires_.size(); ++bus) leaveQueue(bus);
+  for (std::size_t bus = 0; bus < wires_.size(); ++bus) {
+    errorFrame(bus, 1);
+    robot_->inboxes()[bus].link.store(CanLinkState::kUp);
+    oracle_->linked(bus, true);
+  }
+}
+
 // A second controller says what ours has said.
 void Chaos::secondController() {
   if (seen_count_ < seen_.size()) return;
@@ -152,17 +164,7 @@ void Chaos::act(Action action) {
     case Action::kRepair:
       motors = choices_.oneIn(2) ? everyone : someMotors();
       each([&](std::size_t i) { repair(i); });
-      if (motors == everyone) {
-        frozen_.reset();
-        blocked_.reset();
-        contact_open_ = false;
-        for (std::size_t bus = 0; bus < wires_.size(); ++bus) leaveQueue(bus);
-        for (std::size_t bus = 0; bus < wires_.size(); ++bus) {
-          errorFrame(bus, 1);
-          robot_->inboxes()[bus].link.store(CanLinkState::kUp);
-          oracle_->linked(bus, true);
-        }
-      }
+      if (motors == everyone) repairBuses();
       break;
     case Action::kSilence:
       motors = someMotors();
@@ -273,6 +275,10 @@ void Chaos::act(Action action) {
     case Action::kScan:
       note(action, motors, value);
       scan();
+      return;
+    case Action::kHome:
+      note(action, motors, value);
+      home();
       return;
     case Action::kStop:
       note(action, motors, value);

@@ -90,6 +90,7 @@ std::string Visits::idle() const {
     if (visited.active == 0 || told == 0) out += (out.empty() ? "" : ", ") + name;
   }
   if (scanned == 0) out += out.empty() ? "a scan" : ", a scan";
+  if (homed == 0) out += out.empty() ? "a homing" : ", a homing";
   return out;
 }
 
