@@ -29,6 +29,7 @@ WORK = REPO / "build" / "mutants"
 LEAST_KILLED = 0.95
 # A mutant that never ends is noticed, too.
 TEST_PATIENCE_S = 180
+PROGRESS = 25
 TESTS = ("motor_test", "daemon_test")
 FILES = (
     "src/daemon/clients/admission.cpp",
@@ -243,6 +244,8 @@ def main() -> int:
             counts[verdict] += 1
             if verdict == "lives":
                 print(f"lives: {mutant}", flush=True)
+            if verdict != "invalid" and (counts["killed"] + counts["lives"]) % PROGRESS == 0:
+                print(f"so far: {counts}", flush=True)
     tried = counts["killed"] + counts["lives"]
     share = counts["killed"] / tried if tried else 0.0
     killed, invalid = counts["killed"], counts["invalid"]
