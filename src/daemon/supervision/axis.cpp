@@ -159,7 +159,10 @@ bool Axis::trips(bool reduced, const Tick& tick) noexcept {
   shaper_.setCeiling(reduced_.ceilingRpm());
   if (!moves) {
     guard_.reset();
-    return false;
+    // Before its drive answers its group may let go of it, and its fallback goes on.
+    if (status_ != MotorStatus::kEnabling || !guard_.tooHot(motor_.feedback())) return false;
+    fault_ = FaultCode::kOverheated;
+    return true;
   }
   const auto verdict = guard_.step({.feedback = motor_.feedback(),
                                     .target = in_force_,

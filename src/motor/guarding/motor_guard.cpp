@@ -45,7 +45,7 @@ MotorGuard::Verdict MotorGuard::step(const Observation& seen) noexcept {
   if (config_.temperature_trip_c > 0.0F) {
     verdict.derating = derate(feedback.temperature_c, seen.now);
     if (verdict.derating < 1.0F) verdict.limits |= kLimitTemperature;
-    if (feedback.temperature_c >= config_.temperature_trip_c) verdict.fault = FaultCode::kOverheated;
+    if (tooHot(feedback)) verdict.fault = FaultCode::kOverheated;
   }
   if (stalled(seen)) {
     verdict.limits |= kLimitStall;

@@ -49,6 +49,10 @@ class MotorGuard {
   explicit MotorGuard(const GuardConfig& config) noexcept : config_(config) {}
 
   [[nodiscard]] Verdict step(const Observation& seen) noexcept;
+  /// Too hot for any torque; not, where the drive reports no temperature.
+  [[nodiscard]] bool tooHot(const MotorFeedback& feedback) const noexcept {
+    return config_.temperature_trip_c > 0.0F && feedback.temperature_c >= config_.temperature_trip_c;
+  }
   /// The motor is not ACTIVE, or was not: nothing from before counts but its heat.
   void reset() noexcept;
   [[nodiscard]] const GuardConfig& config() const noexcept { return config_; }

@@ -5,6 +5,8 @@
 
 #include <gtest/gtest.h>
 
+#include "config/load_config.hpp"
+#include "config/report/report.hpp"
 #include "daemon/virtual_robot.hpp"
 
 namespace rc10::test::axis_fault_test {
@@ -76,6 +78,41 @@ TEST_F(FaultTest, AHotMotorIsStoppedAsSoonAsItIsEnabled) {
   start(robotWith({.temperature_derate_c = 10.0F, .temperature_trip_c = 20.0F}));
   turnBoth(5);
   EXPECT_EQ(robot->motor(kLeft).fault, FaultCode::kOverheated);
+}
+
+// Its fallback acted before, and goes on where its group lets go of it: it would brake for a tick.
+TEST(AMotorThatGetsTooHot, WhileItsDriveIsEnabledDoesNotGoBackToItsFallback) {
+  const auto outcome = parseRobotConfig(
+      "robot: lifter\nrealtime: preferred\nbuses:\n  - name: lifts\n    type: sim\n    motors:\n"
+      "      - {name: left, model: RMD-X8-20, id: 1}\n"
+      "      - {name: right, model: RMD-X8-20, id: 2, command_divider: 4, on_estop: brake, brake_max_s: 10,"
+      " simulated: {load_torque_nm: 1}}\n"
+      "groups: [{name: both, motors: [left, right], together: true}]\n",
+      "lifter.yaml");
+  ASSERT_TRUE(outcome.config) << outcome.errorText();
+  for (int phase = 0; phase < 4; ++phase) {  // of the motor's turns
+    VirtualRobot robot{*outcome.config};
+    robot.run(100);
+    robot.order(Operation::kEnable);
+    ASSERT_EQ(robot.motor(kRight).status, MotorStatus::kActive);
+    robot.order(Operation::kEstop);
+    robot.run(500 + phase);
+    robot.order(Operation::kClear);
+    ASSERT_EQ(robot.motor(kRight).acting, Acting::kBrake);
+    Order enable;
+    enable.id = 99;
+    enable.operation = Operation::kEnable;
+    enable.motors.set(kLeft);
+    enable.motors.set(kRight);
+    ASSERT_TRUE(robot.exchange().orders.push(enable));
+    for (const auto motor : {kLeft, kRight}) robot.simBus().setTemperature(motor, 120.0);
+    for (int i = 0; i < 40; ++i) {
+      robot.tick();
+      const bool hot = robot.motor(kRight).feedback.temperature_c > 100.0F;
+      ASSERT_TRUE(!hot || robot.motor(kRight).acting == Acting::kNothing) << phase << ": " << i;
+    }
+    EXPECT_EQ(robot.motor(kRight).fault, FaultCode::kOverheated);
+  }
 }
 
 TEST_F(FaultTest, AWarmMotorGetsLess) {
