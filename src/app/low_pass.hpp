@@ -2,7 +2,8 @@
 
 #include <algorithm>
 #include <limits>
-#include <numbers>
+
+#include "app/units.hpp"
 
 namespace rc10 {
 
@@ -20,7 +21,7 @@ class LowPass {
       value_ = input;
       return value_;
     }
-    const float x = std::min(2.0F * std::numbers::pi_v<float> * bandwidth_hz_ * dt_s, 1e30F);
+    const float x = std::min(static_cast<float>(kRadPerTurn) * bandwidth_hz_ * dt_s, 1e30F);
     value_ += (input - value_) * (x / (1.0F + x));
     return value_;
   }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cmath>
 #include <cstdint>
 #include <type_traits>
 
@@ -13,6 +14,11 @@ inline constexpr double kFarthestAngleDeg = 1e12;
 /// Whether a target of this mode means nothing while the angle has no reference.
 [[nodiscard]] constexpr bool needsReference(ControlMode mode) noexcept {
   return mode == ControlMode::kAngle || mode == ControlMode::kTotalAngle || mode == ControlMode::kImpedance;
+}
+
+/// Whether the value of a target means something in this mode.
+[[nodiscard]] constexpr bool usesValue(ControlMode mode) noexcept {
+  return mode != ControlMode::kCoast && mode != ControlMode::kBrake;
 }
 
 /// A set of control modes.
@@ -62,13 +68,16 @@ struct TargetFields {
   return {};
 }
 
-/// The same target without the fields that its mode does not use: nothing can move a shaft past the limits
-/// that act on its mode.
-[[nodiscard]] constexpr Target withoutUnused(Target target) noexcept {
+/// The same target with 0 in the fields that its mode does not use, for nothing may move a shaft past the
+/// limits that act on its mode, and in optional fields that are not given (NaN).
+[[nodiscard]] inline Target normalised(Target target) noexcept {
   const TargetFields used = fieldsOf(target.mode);
-  if (!used.velocity_ff) target.velocity_ff_rpm = 0.0F;
-  if (!used.torque_ff) target.torque_ff_nm = 0.0F;
-  if (!used.spring) target.stiffness_nm_per_rad = target.damping_nms_per_rad = 0.0F;
+  const auto given = [](bool is_used, float field) { return is_used && !std::isnan(field) ? field : 0.0F; };
+  if (!usesValue(target.mode)) target.value = 0.0;
+  target.velocity_ff_rpm = given(used.velocity_ff, target.velocity_ff_rpm);
+  target.torque_ff_nm = given(used.torque_ff, target.torque_ff_nm);
+  target.stiffness_nm_per_rad = given(used.spring, target.stiffness_nm_per_rad);
+  target.damping_nms_per_rad = given(used.spring, target.damping_nms_per_rad);
   return target;
 }
 

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "app/units.hpp"
+
 namespace rc10 {
 namespace {
 
@@ -67,7 +69,7 @@ double Notch::step(double input, float dt_s) noexcept {
     // The bilinear transform bends frequencies: with this damping the width between the edges is right
     // all the same (S. Orfanidis, Introduction to Signal Processing).
     const double width = std::min(config_.width_hz * dt, TwoPoleFilter::kMostOfRate);
-    damping_ = 2.0 * std::tan(std::numbers::pi * width) / std::sin(2.0 * std::numbers::pi * per_sample);
+    damping_ = 2.0 * std::tan(std::numbers::pi * width) / std::sin(kRadPerTurn * per_sample);
   }
   filter_.step(input, per_sample, damping_);
   value_ = filter_.highPass() + filter_.lowPass();

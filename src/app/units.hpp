@@ -26,12 +26,17 @@ using Degrees = Quantity<struct DegreesTag>;
 
 /// Between units: `rad = deg * kRadPerDeg`.
 inline constexpr double kDegPerTurn = 360.0;
+inline constexpr double kRadPerTurn = 2.0 * std::numbers::pi;
 inline constexpr double kRadPerDeg = std::numbers::pi / 180.0;
 inline constexpr double kDegPerRad = 180.0 / std::numbers::pi;
 inline constexpr double kDegPerSPerRpm = 6.0;
 inline constexpr double kRadPerSPerRpm = std::numbers::pi / 30.0;
 inline constexpr double kRpmPerRadPerS = 30.0 / std::numbers::pi;
 inline constexpr double kRpmPerTurnPerS = 60.0;
+
+/// Torque constant (N·m/A, of the peak of the phase current) times KV (rpm/V, of the peak between two phases)
+/// of a star winding: 1.5 * pole pairs * flux linkage, and 60 / (sqrt(3) * 2 pi * pole pairs * flux linkage).
+inline constexpr double kTorqueTimesKv = 1.5 / std::numbers::sqrt3 * kRpmPerRadPerS;
 
 namespace literals {
 // NOLINTBEGIN(readability-identifier-naming): the unit's own symbol reads best.

@@ -5,8 +5,9 @@
 #include <charconv>
 #include <cmath>
 #include <cstddef>
-#include <numbers>
 #include <utility>
+
+#include "app/units.hpp"
 
 namespace rc10 {
 namespace {
@@ -35,7 +36,7 @@ constexpr Rgb mixed(const Rgb& from, const Rgb& to, float part) noexcept {
 
 // Squared: the eye sees half the brightness at a fifth of the light.
 float breath(float phase) noexcept {
-  const float swing = 0.5F - 0.5F * std::cos(2.0F * std::numbers::pi_v<float> * phase);
+  const float swing = 0.5F - 0.5F * std::cos(static_cast<float>(kRadPerTurn) * phase);
   return swing * swing;
 }
 

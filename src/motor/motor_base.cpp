@@ -6,15 +6,10 @@
 
 namespace rc10 {
 namespace {
-
-bool hasValue(ControlMode mode) noexcept {
-  return mode != ControlMode::kCoast && mode != ControlMode::kBrake;
-}
-
-/// NaN means "not given" in an optional field.
-bool normalise(float& field) noexcept {
-  if (std::isnan(field)) field = 0.0F;
-  return std::isfinite(field);
+bool finite(const Target& target) noexcept {
+  return std::isfinite(target.value) && std::isfinite(target.velocity_ff_rpm) &&
+         std::isfinite(target.torque_ff_nm) && std::isfinite(target.stiffness_nm_per_rad) &&
+         std::isfinite(target.damping_nms_per_rad);
 }
 
 }  // namespace
@@ -26,11 +21,8 @@ std::string describe(const Motor_Base& motor, int drive_id) {
 
 bool Motor_Base::setTarget(const Target& target) noexcept {
   if (static_cast<int>(target.mode) >= kControlModeCount || !modes().contains(target.mode)) return false;
-  Target accepted = withoutUnused(target);
-  if (!hasValue(accepted.mode)) accepted.value = 0.0;
-  if (!std::isfinite(accepted.value)) return false;
-  if (!normalise(accepted.velocity_ff_rpm) || !normalise(accepted.torque_ff_nm)) return false;
-  if (!normalise(accepted.stiffness_nm_per_rad) || !normalise(accepted.damping_nms_per_rad)) return false;
+  const Target accepted = normalised(target);
+  if (!finite(accepted)) return false;
   target_ = accepted;
   return true;
 }

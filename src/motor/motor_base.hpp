@@ -60,8 +60,8 @@ class Motor_Base : public FrameListener {
     ordered_ = kind;
     in_force_.reset();
   }
-  /// The same, with the target as bounded by the guards, for update() to follow. NaN in an optional field
-  /// becomes 0, as in setTarget().
+  /// The same, with the target as bounded by the guards, for update() to follow. An optional field that is
+  /// not finite becomes 0 here too, on purpose: nothing refuses an order, and the sum of a shaper may be one.
   void order(FrameKind kind, const Target& in_force) noexcept;
   [[nodiscard]] FrameKind ordered() const noexcept { return ordered_; }
 

@@ -137,7 +137,7 @@ double SoloMotor::currentWithinLimit(const Target& target) noexcept {
   double wanted_a = target.mode == ControlMode::kCurrent ? finiteOr0(target.value) : 0.0;
   // In double, where neither the quotient nor the sum of two floats overflows.
   if (torqueNmPerA() > 0.0F) {
-    wanted_a += finiteOr0(static_cast<double>(target.torque_ff_nm)) / static_cast<double>(torqueNmPerA());
+    wanted_a += static_cast<double>(target.torque_ff_nm) / static_cast<double>(torqueNmPerA());
   }
   const double current_a = std::clamp(wanted_a, -limit_a, limit_a);
   if (current_a != wanted_a) limits_ |= kLimitCurrent;

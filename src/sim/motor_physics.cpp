@@ -2,14 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 #include "app/units.hpp"
 
 namespace rc10::sim {
 namespace {
-
-constexpr double kTwoPi = 2.0 * std::numbers::pi;
 
 // Estimate of a hand on a shaft: it pulls with all its torque where the shaft lags so much, and follows no
 // faster than the steps of the simulation can.
@@ -94,7 +91,7 @@ void MotorPhysics::stepMotion(double dt_s) noexcept {
   velocity_rad_s_ = std::copysign(std::max(std::abs(free_rad_s) - coulomb_rad_s, 0.0), free_rad_s);
 
   const double mean_rad_s = 0.5 * (previous_rad_s + velocity_rad_s_);
-  rotor_fraction_ += mean_rad_s * p.gear_ratio / kTwoPi * dt_s;
+  rotor_fraction_ += mean_rad_s * p.gear_ratio / kRadPerTurn * dt_s;
   const double whole = std::floor(rotor_fraction_);
   rotor_fraction_ -= whole;
   rotor_turns_ += static_cast<std::int64_t>(whole);

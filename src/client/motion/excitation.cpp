@@ -10,6 +10,7 @@
 
 #include <unsupported/Eigen/FFT>
 
+#include "app/units.hpp"
 #include "client/quantity_text.hpp"
 
 namespace rc10::client {
@@ -17,7 +18,6 @@ namespace {
 
 constexpr std::array kExcitationWords{std::string_view{"step"}, std::string_view{"ramp"},
                                       std::string_view{"sweep"}, std::string_view{"multisine"}};
-constexpr double kTurnRad = 2.0 * std::numbers::pi;
 // Lowest frequency: a period within a test.
 constexpr double kLowestHz = 0.05;
 // Fewer periods leave no mean over segments, and without a mean every coherence is 1.
@@ -142,17 +142,17 @@ double Excitation::sweepTurns(double time_s) const noexcept {
 // It goes on at its highest frequency to the next half turn: the target does not jump to the base.
 double Excitation::sweepAt(double time_s) const noexcept {
   const double over_s = time_s - settings_.time_s;
-  if (over_s <= 0.0) return settings_.amplitude * std::sin(kTurnRad * sweepTurns(time_s));
+  if (over_s <= 0.0) return settings_.amplitude * std::sin(kRadPerTurn * sweepTurns(time_s));
   const double last_turns = sweepTurns(settings_.time_s);
   const double turns = last_turns + over_s * settings_.to_hz;
   const double end_turns = 0.5 * std::ceil(2.0 * last_turns - 1e-9);
-  return turns < end_turns ? settings_.amplitude * std::sin(kTurnRad * turns) : 0.0;
+  return turns < end_turns ? settings_.amplitude * std::sin(kRadPerTurn * turns) : 0.0;
 }
 
 double Excitation::multisineAt(double time_s) const noexcept {
   double sum = 0.0;
   for (std::size_t k = 0; k < phases_rad_.size(); ++k)
-    sum += std::cos(kTurnRad * settings_.from_hz * static_cast<double>(k + 1) * time_s + phases_rad_[k]);
+    sum += std::cos(kRadPerTurn * settings_.from_hz * static_cast<double>(k + 1) * time_s + phases_rad_[k]);
   return line_amplitude_ * sum;
 }
 

@@ -2,10 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <numeric>
 
 #include <unsupported/Eigen/FFT>
+
+#include "app/angle.hpp"
 
 namespace rc10::client {
 namespace {
@@ -42,8 +43,7 @@ std::vector<Complex> windowed(std::span<const double> segment, const std::vector
 Spectra welch(std::span<const double> input, std::span<const double> output, std::size_t size) {
   std::vector<double> window(size);
   for (std::size_t i = 0; i < size; ++i)
-    window[i] =
-        0.5 - 0.5 * std::cos(2.0 * std::numbers::pi * static_cast<double>(i) / static_cast<double>(size));
+    window[i] = 0.5 - 0.5 * std::cos(kRadPerTurn * static_cast<double>(i) / static_cast<double>(size));
   const std::size_t bins = size / 2 + 1;
   Spectra sums{std::vector<double>(bins), std::vector<double>(bins), std::vector<Complex>(bins)};
   Eigen::FFT<double> fft;
@@ -71,9 +71,7 @@ double betweenHz(const ResponsePoint& before, const ResponsePoint& after, double
   return before.frequency_hz * std::pow(after.frequency_hz / before.frequency_hz, share);
 }
 
-double unwrapped(double phase_deg, double near_deg) {
-  return near_deg + std::remainder(phase_deg - near_deg, 360.0);
-}
+double unwrapped(double phase_deg, double near_deg) { return near_deg + wrapHalfTurn(phase_deg - near_deg); }
 
 }  // namespace
 
@@ -104,8 +102,7 @@ FrequencyResponse estimateResponse(std::span<const double> input, std::span<cons
 std::vector<double> phasesDeg(const FrequencyResponse& response) {
   std::vector<double> phases;
   for (const auto& point : response) {
-    const double phase = std::arg(point.response) * 180.0 / std::numbers::pi;
-    phases.push_back(unwrapped(phase, phases.empty() ? 0.0 : phases.back()));
+    phases.push_back(unwrapped(toDegrees(std::arg(point.response)), phases.empty() ? 0.0 : phases.back()));
   }
   return phases;
 }

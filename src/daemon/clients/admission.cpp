@@ -10,10 +10,6 @@
 namespace rc10 {
 namespace {
 
-[[nodiscard]] constexpr bool usesValue(ControlMode mode) noexcept {
-  return mode != ControlMode::kCoast && mode != ControlMode::kBrake;
-}
-
 [[nodiscard]] bool finite(const Target& target) noexcept {
   const bool impedance = target.mode == ControlMode::kImpedance;
   return (!usesValue(target.mode) || std::isfinite(target.value)) && !std::isinf(target.velocity_ff_rpm) &&
@@ -22,9 +18,6 @@ namespace {
          (!impedance ||
           (std::isfinite(target.stiffness_nm_per_rad) && std::isfinite(target.damping_nms_per_rad)));
 }
-
-// NaN in an optional field: not given.
-[[nodiscard]] float orZero(float value) noexcept { return std::isnan(value) ? 0.0F : value; }
 
 [[nodiscard]] bool hasUnused(const Target& target) noexcept {
   const TargetFields used = fieldsOf(target.mode);
@@ -164,12 +157,7 @@ CommandRefusal Admission::translate(const link::Setpoint& in, Command::Setpoint&
   if (mode == ControlMode::kImpedance &&
       !known.spring_range.has(in.target.stiffness_nm_per_rad, in.target.damping_nms_per_rad))
     return CommandRefusal::kGainsBeyondDrive;
-  out.target = withoutUnused({.mode = mode,
-                              .value = usesValue(mode) ? in.target.value : 0.0,
-                              .velocity_ff_rpm = orZero(in.target.velocity_ff_rpm),
-                              .torque_ff_nm = orZero(in.target.torque_ff_nm),
-                              .stiffness_nm_per_rad = in.target.stiffness_nm_per_rad,
-                              .damping_nms_per_rad = in.target.damping_nms_per_rad});
+  out.target = normalised(in.target);
   return CommandRefusal::kNone;
 }
 

@@ -4,7 +4,6 @@
 #include <cmath>
 #include <cstdlib>
 
-#include "app/limits.hpp"
 #include "app/units.hpp"
 #include "motor/frame_outbox.hpp"
 
@@ -240,8 +239,8 @@ SpringLaw CubemarsMit::lawOf(const Target& target) noexcept {
     case ControlMode::kImpedance: {
       // Gains of the shaft, seen through what gear lies behind the drive's output.
       const double ratio = toDrive(1.0);
-      return angleLaw(target, finiteOr0(static_cast<double>(target.stiffness_nm_per_rad)) / (ratio * ratio),
-                      finiteOr0(static_cast<double>(target.damping_nms_per_rad)) / (ratio * ratio), false);
+      return angleLaw(target, static_cast<double>(target.stiffness_nm_per_rad) / (ratio * ratio),
+                      static_cast<double>(target.damping_nms_per_rad) / (ratio * ratio), false);
     }
     case ControlMode::kBrake: return velocityLaw(0.0, 0.0, velocity_gain_);
     case ControlMode::kCoast:

@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <cstdint>
 
+#include "app/units.hpp"
 #include "drives/dji/dji_frames.hpp"
 #include "drives/dji/dji_model.hpp"
 
@@ -15,7 +16,7 @@ std::string wordDji(const CanFrame& frame, std::string_view model, bool /*sent*/
   if (id >= 1 && id <= dji->max_id) {
     const auto told = dji::decodeFeedback(frame.payload());
     FrameWords words{id, "feedback"};
-    words.add("encoder", told.encoder * 360.0 / dji::kCountsPerTurn, "deg")
+    words.add("encoder", told.encoder * kDegPerTurn / dji::kCountsPerTurn, "deg")
         .add("rotor", told.rotor_rpm, "rpm")
         .add(
             "current",

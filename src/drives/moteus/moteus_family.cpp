@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <memory>
-#include <numbers>
 #include <string>
 #include <string_view>
 
@@ -67,9 +66,6 @@ constexpr std::array kMoteusKeys{
 // bound in any case. Source: fw/bldc_servo_structs.h.
 constexpr float kFullScaleA = 100.0F;
 
-// Torque constant times Kv, for a star winding. Source: fw/bldc_servo.cc, UpdateConfig().
-constexpr double kTorqueFactor = 1.5 / std::numbers::sqrt3 * kRpmPerRadPerS;
-
 constexpr DriveFrames kMoteusFrames{.rest = Provision::kFrame,
                                     .poll = Provision::kFrame,
                                     .idle = Provision::kFrame,
@@ -98,7 +94,7 @@ class MoteusFamily final : public MotorFamily {
     traits.effort = CommandUnit::kAmpere;
     traits.effort_full_scale = kFullScaleA;
     traits.torque_nm_per_a =
-        kv_rpm_per_v > 0.0 ? static_cast<float>(kTorqueFactor / kv_rpm_per_v * gear_ratio) : 0.0F;
+        kv_rpm_per_v > 0.0 ? static_cast<float>(kTorqueTimesKv / kv_rpm_per_v * gear_ratio) : 0.0F;
     traits.frozen_a = kFullScaleA;
     traits.signed_a = traits.frozen_a;
     traits.nominal_v = 24.0F;

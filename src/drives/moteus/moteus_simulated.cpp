@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numbers>
 
 namespace rc10::sim {
 namespace {
@@ -224,7 +223,7 @@ double MoteusDrive::kd() const noexcept {
   const auto& p = physics().parameters();
   const double ratio = p.gear_ratio / traits().gear_ratio;  // of the gear behind the drive's own output
   const double inertia = p.totalInertia() / (ratio * ratio);
-  return 2.0 * inertia * kBandwidthRadS * 2.0 * std::numbers::pi;  // N·m per rev/s
+  return 2.0 * inertia * kBandwidthRadS * kRadPerTurn;  // N·m per rev/s
 }
 
 double MoteusDrive::kp() const noexcept { return kd() * kBandwidthRadS / 2.0; }  // N·m per rev

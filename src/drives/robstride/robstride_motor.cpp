@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
-#include <numbers>
 
 #include "app/units.hpp"
 #include "bus/byte_order.hpp"
@@ -26,7 +25,7 @@ constexpr double kJumpFactor = 1.2;
 constexpr double kJumpSlackRad = 0.5;
 constexpr double kWholeTurnsTolerance = 0.02;  // rad
 // Wrap of the position: whole turns, whatever the rounding of full scale.
-constexpr double kScaleRad = 8.0 * std::numbers::pi;
+constexpr double kScaleRad = 4.0 * kRadPerTurn;
 // No counted position is so far away.
 constexpr double kFarthestCountedRad = 1e5;
 // The supply voltage; also the frame whose echo tells that the bus is not stalled.
@@ -138,8 +137,8 @@ double RobStride_Motor::limitRadS() const noexcept {
 // Newer firmware goes on from the other end of its scale, two whole turns to each side; what has a scale
 // of 12.5 rad is not known to.
 bool RobStride_Motor::wraps() const noexcept {
-  const double turns = codec_.position_range_rad / std::numbers::pi;
-  return std::abs(turns - std::round(turns)) * std::numbers::pi < kWholeTurnsTolerance;
+  const double turns = 2.0 * codec_.position_range_rad / kRadPerTurn;
+  return std::abs(turns - std::round(turns)) * kRadPerTurn < 2.0 * kWholeTurnsTolerance;
 }
 
 double RobStride_Motor::scaleEndRad() const noexcept {

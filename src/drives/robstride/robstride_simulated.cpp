@@ -4,7 +4,6 @@
 #include <array>
 #include <bit>
 #include <cmath>
-#include <numbers>
 
 #include "app/angle.hpp"
 #include "app/units.hpp"
@@ -214,7 +213,7 @@ void RobstrideDrive::follow() noexcept {
 
 void RobstrideDrive::answerState() noexcept {
   robstride::Feedback state;
-  constexpr double kTwoTurnsRad = 4.0 * std::numbers::pi;
+  constexpr double kTwoTurnsRad = 2.0 * kRadPerTurn;
   const double position_rad = driveAngleDeg() / kDegPerRad;
   // The older scale of 12.5 rad ends; the newer one goes on.
   const bool wraps = std::abs(codec_.position_range_rad - kTwoTurnsRad) < 0.02;

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <memory>
-#include <numbers>
 #include <string>
 #include <string_view>
 
@@ -137,9 +136,7 @@ constexpr ModeSet kVescModesWithAngle{ControlMode::kCoast, ControlMode::kCurrent
 constexpr CascadeConfig kAngleLoop{
     .velocity = PID_Position::Config{.kp = 0.1F}, .angle = {.kp = 1.5F}, .velocity_limit_rpm = 0.0F};
 
-// The q current of a VESC is the peak of the phase current: Kt = 1.5 * pole pairs * flux linkage, and KV (of
-// the peak between two phases) = 60 / (sqrt(3) * 2 pi * pole pairs * flux linkage).
-constexpr double kTorqueTimesKv = 1.5 / std::numbers::sqrt3 * kRpmPerRadPerS;
+// The q current of a VESC is the peak of the phase current.
 static_assert(kTorqueTimesKv > 8.269 && kTorqueTimesKv < 8.271);
 
 Provision holdOf(const VescSettings& own) {
