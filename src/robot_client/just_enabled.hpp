@@ -17,8 +17,11 @@ class JustEnabled {
  public:
   /// `states` had been received when the answer came.
   void answered(const std::vector<std::string>& motors, std::uint64_t states);
-  void release(const std::string& motor) { newer_from_.erase(motor); }
-  void releaseAll() { newer_from_.clear(); }
+  /// Without names: all.
+  void release(const std::vector<std::string>& motors) {
+    for (const auto& motor : motors) newer_from_.erase(motor);
+    if (motors.empty()) newer_from_.clear();
+  }
 
   /// The newest state, the last of `states`, or a copy in which the motors are ACTIVE about which it says
   /// nothing.

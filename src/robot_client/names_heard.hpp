@@ -14,6 +14,9 @@ inline namespace robot_client {
 /// Listens for any robot, or any module of one, to tell a wrong name from a silent daemon.
 class NamesHeard {
  public:
+  /// Patience that most callers have.
+  static constexpr Duration kListen = std::chrono::milliseconds{300};
+
   /// A name is what stands between these in a channel.
   NamesHeard(const LcmLink& link, const std::string& before, const std::string& after);
 

@@ -13,15 +13,17 @@ Robot::Robot(std::string name, const LcmLink& link, RobotOptions options)
 
 Robot::~Robot() = default;
 
-const std::string& Robot::name() const noexcept { return session_->name(); }
-const LcmLink& Robot::link() const noexcept { return session_->link(); }
-Result<void> Robot::status() const { return session_->status(); }
+const std::string& Robot::name() const noexcept { return session_->core().name; }
+const LcmLink& Robot::link() const noexcept { return session_->core().link; }
+Result<void> Robot::status() const { return session_->core().status; }
 
-Result<void> Robot::command(const MotorSetpoints& setpoints) const { return session_->command(setpoints); }
-void Robot::alive() const { session_->alive(); }
+Result<void> Robot::command(const MotorSetpoints& setpoints) const {
+  return session_->targets().command(setpoints);
+}
+void Robot::alive() const { session_->targets().alive(); }
 
-Result<void> Robot::waitForState(Duration timeout) const { return session_->waitForState(timeout); }
-std::shared_ptr<const RobotState> Robot::state() const { return session_->state(); }
+Result<void> Robot::waitForState(Duration timeout) const { return session_->core().waitForState(timeout); }
+std::shared_ptr<const RobotState> Robot::state() const { return session_->core().state(); }
 
 void Robot::onState(std::function<void(const RobotState&)> callback) const {
   session_->onState(std::move(callback));
@@ -31,52 +33,52 @@ void Robot::onEvent(std::function<void(const Event&)> callback) const {
 }
 
 RequestResult Robot::enable(const std::vector<std::string>& motors, Duration timeout) const {
-  return session_->enable(motors, timeout);
+  return session_->requests().enable(motors, timeout);
 }
 RequestResult Robot::disable(const std::vector<std::string>& motors, Duration timeout) const {
-  return session_->disable(motors, timeout);
+  return session_->requests().disable(motors, timeout);
 }
 RequestResult Robot::clear(const std::vector<std::string>& motors, Duration timeout) const {
-  return session_->request(Operation::kClear, motors, {}, timeout);
+  return session_->requests().request(Operation::kClear, motors, {}, timeout);
 }
 RequestResult Robot::request(const std::string& operation, const std::string& target,
                              const std::map<std::string, double>& values, Duration timeout) const {
-  return session_->request(operation, target, values, timeout);
+  return session_->requests().request(operation, target, values, timeout);
 }
 Result<void> Robot::estop(Duration timeout) const { return session_->estop(timeout); }
 Result<void> Robot::close() { return session_->close(); }
 
-// ---- one module
-// --------------------------------------------------------------------------------------------
+// ---- one module ------------------------------------------------------------------------------------------
 
 Module Robot::module(std::string name) const {
-  session_->listenTo(name);
+  session_->modules().listenTo(name);
   return {*session_, std::move(name)};
 }
 
 Result<void> Module::send(const Signals& inputs, SendOptions options) const {
-  return session_->send(name_, inputs, options);
+  return session_->modules().send(name_, inputs, options);
 }
-ModuleState Module::state() const { return session_->moduleState(name_); }
-double Module::output(std::string_view name) const { return session_->moduleOutput(name_, name); }
-Result<void> Module::waitForState(Duration timeout) const { return session_->waitForModule(name_, timeout); }
+ModuleState Module::state() const { return session_->modules().state(name_); }
+double Module::output(std::string_view name) const { return session_->modules().output(name_, name); }
+Result<void> Module::waitForState(Duration timeout) const {
+  return session_->modules().waitForState(name_, timeout);
+}
 
-// ---- one motor
-// ---------------------------------------------------------------------------------------------
+// ---- one motor -------------------------------------------------------------------------------------------
 
 Result<void> Motor::setTarget(const Setpoint& setpoint) const {
-  return session_->command({{name_, setpoint}});
+  return session_->targets().command({{name_, setpoint}});
 }
 
 std::future<MoveResult> Motor::moveTo(Degrees total_angle, Degrees tolerance, Duration timeout) const {
-  return session_->moveTo({name_, Mode::kTotalAngle, total_angle.value, tolerance.value, timeout});
+  return session_->targets().moveTo({name_, Mode::kTotalAngle, total_angle.value, tolerance.value, timeout});
 }
 std::future<MoveResult> Motor::moveToAngle(Degrees angle, Degrees tolerance, Duration timeout) const {
-  return session_->moveTo({name_, Mode::kAngle, angle.value, tolerance.value, timeout});
+  return session_->targets().moveTo({name_, Mode::kAngle, angle.value, tolerance.value, timeout});
 }
 
 MotorState Motor::state() const {
-  if (const auto state = session_->state()) {
+  if (const auto state = session_->core().state()) {
     if (const auto* motor = state->find(name_)) return *motor;
   }
   MotorState unknown;
@@ -84,19 +86,22 @@ MotorState Motor::state() const {
   return unknown;
 }
 
-RequestResult Motor::enable(Duration timeout) const { return session_->enable({name_}, timeout); }
-RequestResult Motor::disable(Duration timeout) const { return session_->disable({name_}, timeout); }
+RequestResult Motor::enable(Duration timeout) const { return session_->requests().enable({name_}, timeout); }
+RequestResult Motor::disable(Duration timeout) const {
+  return session_->requests().disable({name_}, timeout);
+}
 RequestResult Motor::clear(Duration timeout) const {
-  return session_->request(Operation::kClear, std::vector{name_}, {}, timeout);
+  return session_->requests().request(Operation::kClear, std::vector{name_}, {}, timeout);
 }
 RequestResult Motor::zero(Degrees angle, Duration timeout) const {
-  return session_->request(Operation::kZero, std::vector{name_}, {{"angle_deg", angle.value}}, timeout);
+  return session_->requests().request(Operation::kZero, std::vector{name_}, {{"angle_deg", angle.value}},
+                                      timeout);
 }
 RequestResult Motor::gains(Duration timeout) const {
-  return session_->request(Operation::kGetConfig, std::vector{name_}, {}, timeout);
+  return session_->requests().request(Operation::kGetConfig, std::vector{name_}, {}, timeout);
 }
 RequestResult Motor::setGains(const std::map<std::string, double>& gains, Duration timeout) const {
-  return session_->request(Operation::kSetGains, std::vector{name_}, gains, timeout);
+  return session_->requests().request(Operation::kSetGains, std::vector{name_}, gains, timeout);
 }
 
 }  // namespace robot_client
