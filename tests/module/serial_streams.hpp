@@ -4,24 +4,17 @@
 #include <initializer_list>
 #include <memory>
 #include <random>
-#include <sstream>
 #include <string>
 #include <vector>
 
 #include "bus/i_protocol.hpp"
+#include "support/hex_bytes.hpp"
 
 namespace rc10::test {
 
 using Bytes = std::vector<std::uint8_t>;
 
-/// From "0F AD A0".
-inline Bytes hex(const std::string& text) {
-  Bytes bytes;
-  std::istringstream in(text);
-  for (std::string byte; in >> byte;)
-    bytes.push_back(static_cast<std::uint8_t>(std::stoi(byte, nullptr, 16)));
-  return bytes;
-}
+inline Bytes hex(const std::string& text) { return hexBytes(text); }
 
 inline Bytes joined(std::initializer_list<Bytes> parts) {
   Bytes all;

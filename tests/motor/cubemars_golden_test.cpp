@@ -7,19 +7,10 @@
 #include <gtest/gtest.h>
 
 #include "support/cubemars_settings.hpp"
+#include "support/frame_bytes.hpp"
 
 namespace rc10::test::cubemars_golden_test {
 namespace {
-
-CanFrame frameOf(CanId id, const std::string& hex) {
-  CanFrame frame;
-  frame.id = id;
-  frame.length = static_cast<std::uint8_t>(hex.size() / 2);
-  for (std::size_t i = 0; i < frame.length; ++i) {
-    frame.data[i] = static_cast<std::uint8_t>(std::stoul(hex.substr(2 * i, 2), nullptr, 16));
-  }
-  return frame;
-}
 
 void expectFrame(const CanFrame& frame, CanId id, const std::string& hex) {
   const CanFrame expected = frameOf(id, hex);

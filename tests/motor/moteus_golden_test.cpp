@@ -6,6 +6,7 @@
 
 #include <gtest/gtest.h>
 
+#include "support/hex_bytes.hpp"
 #include "support/moteus_answers.hpp"
 
 namespace rc10::test::moteus_golden_test {
@@ -14,21 +15,13 @@ namespace {
 using enum moteus::Register;
 using Kind = moteus::Item::Kind;
 
-std::vector<std::uint8_t> bytes(const std::string& hex) {
-  std::vector<std::uint8_t> result;
-  for (std::size_t i = 0; i + 1 < hex.size(); i += 2) {
-    result.push_back(static_cast<std::uint8_t>(std::stoul(hex.substr(i, 2), nullptr, 16)));
-  }
-  return result;
-}
-
 std::vector<std::uint8_t> bytes(const CanFrame& frame) {
   return {frame.payload().begin(), frame.payload().end()};
 }
 
 using Row = std::tuple<Kind, moteus::Register, double>;
 std::vector<Row> decoded(const std::string& hex) {
-  const auto payload = bytes(hex);
+  const auto payload = hexBytes(hex);
   moteus::Reader reader(payload);
   std::vector<Row> rows;
   moteus::Item item;
@@ -69,7 +62,7 @@ TEST(MoteusGolden, APositionCommandIsThatOfTheLibrary) {
                              .read(moteus::Type::kFloat, kPosition, 3)
                              .read(moteus::Type::kInt8, kVoltage, 3)
                              .frame();
-  EXPECT_EQ(bytes(frame), bytes(kPositionCommand));
+  EXPECT_EQ(bytes(frame), hexBytes(kPositionCommand));
   EXPECT_EQ(frame.length, 20) << "19 bytes, padded with NOP";
   EXPECT_TRUE(frame.fd);
   EXPECT_TRUE(frame.bit_rate_switch);
@@ -93,7 +86,7 @@ TEST(MoteusGolden, ACommandInInt16IsThatOfTheDocument) {
                              .read(moteus::Type::kInt16, kMode, 4)
                              .read(moteus::Type::kInt8, kVoltage, 3)
                              .frame();
-  EXPECT_EQ(bytes(frame), bytes(kInt16Command));
+  EXPECT_EQ(bytes(frame), hexBytes(kInt16Command));
 }
 
 TEST(MoteusGolden, AReplyInInt16IsThatOfTheDocument) {
@@ -101,7 +94,7 @@ TEST(MoteusGolden, AReplyInInt16IsThatOfTheDocument) {
                              .reply(moteus::Type::kInt16, kMode, {10.0, 0.008, 0.064, -1.44})
                              .reply(moteus::Type::kInt8, kVoltage, {12.0, 20.0, 0.0})
                              .frame();
-  EXPECT_EQ(bytes(frame), bytes(kInt16Reply));
+  EXPECT_EQ(bytes(frame), hexBytes(kInt16Reply));
   expectRows(kInt16Reply, {{Kind::kReply, kMode, 10},
                            {Kind::kReply, kPosition, 0.008},
                            {Kind::kReply, kVelocity, 0.064},
@@ -112,13 +105,13 @@ TEST(MoteusGolden, AReplyInInt16IsThatOfTheDocument) {
 }
 
 TEST(MoteusGolden, StopAndBrakeAreThoseOfTheDocument) {
-  EXPECT_EQ(bytes(writer().write(moteus::Type::kInt8, kMode, {0.0}).frame()), bytes("010000"));
-  EXPECT_EQ(bytes(writer().write(moteus::Type::kInt8, kMode, {15.0}).frame()), bytes("01000F"));
+  EXPECT_EQ(bytes(writer().write(moteus::Type::kInt8, kMode, {0.0}).frame()), hexBytes("010000"));
+  EXPECT_EQ(bytes(writer().write(moteus::Type::kInt8, kMode, {15.0}).frame()), hexBytes("01000F"));
 }
 
 TEST(MoteusGolden, TheShortestQueryAndItsReplyAreThoseOfTheDocument) {
   EXPECT_EQ(bytes(writer().read(moteus::Type::kInt8, kMode).read(moteus::Type::kInt8, kFault).frame()),
-            bytes("1100110F"));
+            hexBytes("1100110F"));
   expectRows("210000210F00", {{Kind::kReply, kMode, 0}, {Kind::kReply, kFault, 0}});
 }
 
@@ -126,14 +119,14 @@ TEST(MoteusGolden, TheMotorsRestIsTheVendorsStop) {
   MoteusBench bench;
   ASSERT_EQ(bench.motor.packRest(bench.frames), 1U);
   EXPECT_EQ(bench.frames[0].id, (CanId{0x8001, true}));
-  EXPECT_EQ(bytes(bench.frames[0]), bytes("010000"));
+  EXPECT_EQ(bytes(bench.frames[0]), hexBytes("010000"));
 }
 
 TEST(MoteusGolden, TheMotorsPollStopsAndAsks) {
   MoteusBench bench;
   bench.motor.order(FrameKind::kPoll);
   bench.tick();
-  EXPECT_EQ(bytes(bench.frames[0]), bytes("01000011001F011504130D1570505050"));
+  EXPECT_EQ(bytes(bench.frames[0]), hexBytes("01000011001F011504130D1570505050"));
 }
 
 // Mode 10; 0.25 rev, 1.5 rev/s, 0.5 N·m; 3.2 A; 24 V, 31 °C, no fault; 1234 ms.
@@ -142,7 +135,7 @@ TEST(MoteusGolden, AnAnswerBecomesReadingsOfTheOutput) {
   CanFrame frame;
   frame.id = {0x100, false};
   frame.fd = true;
-  const auto payload = bytes("21000A2F010000803E0000C03F0000003F25042000230D301F002570D2045050");
+  const auto payload = hexBytes("21000A2F010000803E0000C03F0000003F25042000230D301F002570D2045050");
   frame.length = static_cast<std::uint8_t>(payload.size());
   std::copy(payload.begin(), payload.end(), frame.data.begin());
   frame.received = bench.now;

@@ -299,13 +299,13 @@ TEST_F(VescMotorTest, EnablingADriveThatDoesNotAnswerFails) {
 TEST_F(VescMotorTest, TicksAndFramesAllocateNothing) {
   auto& motor = make(vescSettings());
   motor.order(FrameKind::kCommand, {.mode = ControlMode::kTotalAngle, .value = 100.0});
+  auto frame = vescFrame(0x1B07, "00");
+  frame.length = 8;
   const AllocGuard guard;
   std::array<CanFrame, kMaxFramesPerPacker> out{};
   for (int i = 0; i < 1000; ++i) {
     tick_.now += milliseconds{1};
     ++tick_.index;
-    auto frame = vescFrame(0x1B07, "00");
-    frame.length = 8;
     frame.received = tick_.now;
     (void)motor.updateFeedback(frame);
     motor.update(tick_);

@@ -1,25 +1,34 @@
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <string>
+#include <string_view>
 
 #include "bus/can_frame.hpp"
+#include "support/hex_bytes.hpp"
 
 namespace rc10::test {
 
-/// A classic standard frame from candump text without blanks: "241#9A320001E5010400".
-inline CanFrame frameOf(const std::string& text) {
+/// A classic frame with these bytes: "9A320001E5010400".
+inline CanFrame frameOf(CanId id, std::string_view hex) {
   CanFrame frame;
-  const auto hash = text.find('#');
-  frame.id.value = static_cast<std::uint32_t>(std::stoul(text.substr(0, hash), nullptr, 16));
-  frame.length = static_cast<std::uint8_t>((text.size() - hash - 1) / 2);
-  for (std::size_t i = 0; i < frame.length; ++i) {
-    frame.data[i] = static_cast<std::uint8_t>(std::stoul(text.substr(hash + 1 + 2 * i, 2), nullptr, 16));
-  }
+  frame.id = id;
+  const auto bytes = hexBytes(hex);
+  frame.length = static_cast<std::uint8_t>(bytes.size());
+  std::copy(bytes.begin(), bytes.end(), frame.data.begin());
   return frame;
 }
 
-/// The other way round.
+/// A classic frame from candump text without blanks: "241#9A320001E5010400"; more than three digits of the id
+/// are an extended one.
+inline CanFrame frameOf(const std::string& text) {
+  const auto hash = text.find('#');
+  const auto id = static_cast<std::uint32_t>(std::stoul(text.substr(0, hash), nullptr, 16));
+  return frameOf(CanId{id, hash > 3}, std::string_view(text).substr(hash + 1));
+}
+
+/// The other way round, of a standard frame.
 inline std::string textOf(const CanFrame& frame) {
   constexpr const char* kDigits = "0123456789ABCDEF";
   std::string text;

@@ -7,6 +7,7 @@
 
 #include "drives/vesc/vesc_family.hpp"
 #include "drives/vesc/vesc_motor.hpp"
+#include "support/frame_bytes.hpp"
 #include "support/own_defaults.hpp"
 
 namespace rc10::test {
@@ -27,14 +28,6 @@ inline MotorSettings vescSettings(const std::vector<std::pair<std::string, OwnVa
 }
 
 /// An extended frame from its payload in hexadecimal.
-inline CanFrame vescFrame(std::uint32_t id, std::string_view hex) {
-  CanFrame frame;
-  frame.id = {id, true};
-  frame.length = static_cast<std::uint8_t>(hex.size() / 2);
-  for (std::size_t i = 0; i < frame.length; ++i) {
-    frame.data[i] = static_cast<std::uint8_t>(std::stoul(std::string{hex.substr(2 * i, 2)}, nullptr, 16));
-  }
-  return frame;
-}
+inline CanFrame vescFrame(std::uint32_t id, std::string_view hex) { return frameOf(CanId{id, true}, hex); }
 
 }  // namespace rc10::test

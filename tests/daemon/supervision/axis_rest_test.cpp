@@ -17,6 +17,7 @@
 #include "daemon/exchange/events.hpp"
 #include "daemon/virtual_robot.hpp"
 #include "link/words.hpp"
+#include "support/frame_bytes.hpp"
 
 namespace rc10::test::axis_rest_test {
 namespace {
@@ -58,15 +59,6 @@ const Subject kSubjects[] = {
     {"MyActuator", "model: RMD-X8-20, id: 11", "14B#9C00000000000000"},
     {"LkTech", "model: LK-MG5010E-i10, id: 12", "14C#9A00000000000000"},
 };
-
-CanFrame parse(const std::string& text) {
-  const auto hash = text.find('#');
-  CanFrame frame;
-  frame.id = {static_cast<std::uint32_t>(std::stoul(text.substr(0, hash), nullptr, 16)), hash > 3};
-  for (std::size_t i = hash + 1; i + 1 < text.size(); i += 2)
-    frame.data[frame.length++] = static_cast<std::uint8_t>(std::stoul(text.substr(i, 2), nullptr, 16));
-  return frame;
-}
 
 std::string textOf(const Subject& subject, const char* keys = "") {
   return std::string{"robot: rest\nrealtime: preferred\nbuses:\n  - name: bench\n    type: sim\n    "} +
@@ -280,7 +272,7 @@ TEST_P(RestTest, RestFramesOfOthersAndQuestionsAreNone) {
       const auto count = packer->packRest(frames);
       for (std::size_t n = 0; n < count; ++n) foreign(frames[n], true);
     }
-    if (*GetParam().question != '\0') foreign(parse(GetParam().question));
+    if (*GetParam().question != '\0') foreign(frameOf(GetParam().question));
     robot.command(kMotor, turning());
     robot.tick();
   }
