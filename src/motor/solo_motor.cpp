@@ -144,6 +144,12 @@ double SoloMotor::currentWithinLimit(const Target& target) noexcept {
   return current_a;
 }
 
+double SoloMotor::torqueWithinLimit(double nm) noexcept {
+  const double limit_nm = torqueLimitNm();
+  if (std::abs(nm) > limit_nm) limits_ |= kLimitCurrent;
+  return std::isnan(nm) ? 0.0 : std::clamp(nm, -limit_nm, limit_nm);
+}
+
 double SoloMotor::rpmWithinLimit(double output_rpm) noexcept {
   return rpmWithinLimit(output_rpm, std::numeric_limits<double>::infinity());
 }

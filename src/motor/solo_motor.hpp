@@ -95,6 +95,8 @@ class SoloMotor : public Motor_Base, public CommandPacker {
   // A target within the limits of the motor; what they cut off is told in limits_. Not a number: 0.
   /// Current of the mode kCurrent, with the feed-forward that comes with any mode. A at the motor.
   [[nodiscard]] double currentWithinLimit(const Target& target) noexcept;
+  /// N·m at the output shaft.
+  [[nodiscard]] double torqueWithinLimit(double nm) noexcept;
   [[nodiscard]] double rpmWithinLimit(double output_rpm) noexcept;
   /// The same, where the drive itself ends at `drive_limit_rpm` of the output shaft.
   [[nodiscard]] double rpmWithinLimit(double output_rpm, double drive_limit_rpm) noexcept;

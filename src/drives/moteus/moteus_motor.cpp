@@ -113,12 +113,6 @@ void Moteus_Motor::follow(const Target& target, const Tick& tick) noexcept {
   }
 }
 
-double Moteus_Motor::boundedTorqueNm(double torque_nm) noexcept {
-  const double limit_nm = torqueLimitNm();
-  if (std::abs(torque_nm) > limit_nm) limits_ |= kLimitCurrent;
-  return std::clamp(torque_nm, -limit_nm, limit_nm);
-}
-
 double Moteus_Motor::boundedRpm(double rpm) noexcept {
   return rpmWithinLimit(rpm, std::abs(toOutput(kFastestRevPerS * kRpmPerTurnPerS)));
 }
@@ -136,7 +130,7 @@ void Moteus_Motor::followCurrent(const Target& target) noexcept {
   const double wanted_a = std::clamp(target.value, -limit_a, limit_a);
   if (std::abs(target.value) > limit_a) limits_ |= kLimitCurrent;
   const auto nm_per_a = static_cast<double>(torqueNmPerA());
-  const double torque_nm = boundedTorqueNm(wanted_a * nm_per_a + static_cast<double>(target.torque_ff_nm));
+  const double torque_nm = torqueWithinLimit(wanted_a * nm_per_a + static_cast<double>(target.torque_ff_nm));
   motion_.torque_nm = torqueToDrive(torque_nm);
   setCommand(nm_per_a > 0.0 ? torque_nm / nm_per_a : 0.0, CommandUnit::kAmpere);
 }
@@ -150,7 +144,7 @@ void Moteus_Motor::followVelocity(const Target& target, const Tick& tick) noexce
   course_rev_ = position_rev_ + std::clamp(ahead_rev, -slip_rev, slip_rev);
   motion_.position_rev = onWire(*course_rev_);
   motion_.velocity_rev_s = rev_s;
-  motion_.torque_nm = torqueToDrive(boundedTorqueNm(static_cast<double>(target.torque_ff_nm)));
+  motion_.torque_nm = torqueToDrive(torqueWithinLimit(static_cast<double>(target.torque_ff_nm)));
   motion_.stiff = motion_.damped = true;
   setCommand(rpm, CommandUnit::kNative);
 }
@@ -159,7 +153,7 @@ void Moteus_Motor::followAngle(const Target& target) noexcept {
   const double position_rev = drivePositionFor(target.value) / kDegPerTurn;
   motion_.position_rev = onWire(position_rev);
   motion_.velocity_rev_s = toDrive(boundedRpm(static_cast<double>(target.velocity_ff_rpm))) / kRpmPerTurnPerS;
-  motion_.torque_nm = torqueToDrive(boundedTorqueNm(static_cast<double>(target.torque_ff_nm)));
+  motion_.torque_nm = torqueToDrive(torqueWithinLimit(static_cast<double>(target.torque_ff_nm)));
   motion_.stiff = motion_.damped = motion_.profile = true;
   motion_.limit_rev_s = std::abs(toDrive(static_cast<double>(velocityLimitRpm()))) / kRpmPerTurnPerS;
   const double away_rev = position_rev - position_rev_;

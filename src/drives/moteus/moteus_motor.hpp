@@ -86,7 +86,6 @@ class Moteus_Motor final : public SoloMotor {
   void followCurrent(const Target& target) noexcept;
   void followVelocity(const Target& target, const Tick& tick) noexcept;
   void followAngle(const Target& target) noexcept;
-  [[nodiscard]] double boundedTorqueNm(double torque_nm) noexcept;
   [[nodiscard]] double boundedRpm(double rpm) noexcept;
   [[nodiscard]] double onWire(double position_rev) noexcept;
 

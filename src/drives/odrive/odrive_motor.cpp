@@ -208,18 +208,11 @@ void ODrive_Motor::follow(const Target& target) noexcept {
   }
 }
 
-double ODrive_Motor::limitedTorque(double nm) noexcept {
-  const double limit_nm = torqueLimitNm();
-  if (!(std::abs(nm) > limit_nm)) return std::isnan(nm) ? 0.0 : nm;
-  limits_ |= kLimitCurrent;
-  return std::copysign(limit_nm, nm);
-}
-
 void ODrive_Motor::followCurrent(const Target& target) noexcept {
   double nm = 0.0;
   if (target.mode == ControlMode::kCurrent) {
-    nm = limitedTorque(target.value * static_cast<double>(torqueNmPerA()) +
-                       static_cast<double>(target.torque_ff_nm));
+    nm = torqueWithinLimit(target.value * static_cast<double>(torqueNmPerA()) +
+                           static_cast<double>(target.torque_ff_nm));
   }
   setInput(odrive::ControlMode::kTorque,
            odrive::setInputTorque(node_, saturate(static_cast<float>(torqueToDrive(nm)))));
@@ -228,7 +221,7 @@ void ODrive_Motor::followCurrent(const Target& target) noexcept {
 
 void ODrive_Motor::followVelocity(double rpm, float torque_ff_nm) noexcept {
   const double allowed_rpm = rpmWithinLimit(rpm);
-  const double ff_nm = limitedTorque(static_cast<double>(torque_ff_nm));
+  const double ff_nm = torqueWithinLimit(static_cast<double>(torque_ff_nm));
   setInput(odrive::ControlMode::kVelocity,
            odrive::setInputVel(node_, saturate(static_cast<float>(toDrive(allowed_rpm) / kRpmPerTurnPerS)),
                                saturate(static_cast<float>(torqueToDrive(ff_nm)))));
@@ -242,7 +235,7 @@ void ODrive_Motor::followAngle(const Target& target) noexcept {
   const bool reaches = turns == wanted_turns;
   if (!reaches) limits_ |= kLimitAngle;
   const double ff_rpm = rpmWithinLimit(static_cast<double>(target.velocity_ff_rpm));
-  const double ff_nm = limitedTorque(static_cast<double>(target.torque_ff_nm));
+  const double ff_nm = torqueWithinLimit(static_cast<double>(target.torque_ff_nm));
   setInput(odrive::ControlMode::kPosition,
            odrive::setInputPos(node_, static_cast<float>(turns),
                                saturate(static_cast<float>(toDrive(ff_rpm) / kRpmPerTurnPerS)),

@@ -56,7 +56,6 @@ class ODrive_Motor : public SoloMotor {
   void followCurrent(const Target& target) noexcept;
   void followVelocity(double rpm, float torque_ff_nm) noexcept;
   void followAngle(const Target& target) noexcept;
-  [[nodiscard]] double limitedTorque(double nm) noexcept;  ///< At the output shaft.
   void setInput(odrive::ControlMode mode, const CanFrame& input) noexcept;
   void refreshLimits(const Tick& tick) noexcept;
   [[nodiscard]] CanFrame limitsFrame() const noexcept;
