@@ -1,9 +1,11 @@
 #pragma once
 
+#include <array>
+#include <cmath>
 #include <cstdint>
 
 #include "fuzz_input.hpp"
-#include "motor/motor_base.hpp"
+#include "motor/solo_motor.hpp"
 
 namespace rc10::fuzz {
 
@@ -29,6 +31,33 @@ inline bool giveOrder(Motor_Base& motor, Input& input, unsigned which, unsigned 
     case 4: motor.derate(input.take<float>()); return true;
     case 5: motor.clearComplaint(); return true;
     default: return false;
+  }
+}
+
+/// Orders and frames by `takeFrame(input)`, a tick after each; `checkTick()` and `checkSent(frame)` judge the
+/// motor and its frames. Its readings are numbers, its angle within a turn.
+template <typename TakeFrame, typename CheckTick, typename CheckSent>
+void runAlone(SoloMotor& motor, Input& input, TakeFrame takeFrame, CheckTick checkTick, CheckSent checkSent) {
+  MonotonicTime now{std::chrono::hours{1}};
+  Tick tick;
+  while (!input.empty()) {
+    if (!giveOrder(motor, input, input.take<std::uint8_t>())) {
+      CanFrame frame = takeFrame(input);
+      frame.received = now += Duration{input.take<std::uint32_t>()};
+      if (motor.matchesFrame(frame)) (void)motor.updateFeedback(frame);
+    }
+    ++tick.index;
+    tick.now = now;
+    motor.update(tick);
+    std::array<CanFrame, kMaxFramesPerPacker> out{};
+    const auto count = motor.packCommand(tick, out);
+    for (std::size_t i = 0; i < count; ++i) checkSent(out[i]);
+    checkTick();
+    require(std::isfinite(motor.commandValue()) || std::isinf(motor.commandValue()));
+    const MotorFeedback& feedback = motor.feedback();
+    if (feedback.samples == 0) continue;
+    require(feedback.angle_deg >= 0.0F && feedback.angle_deg < 360.0F);
+    require(std::isfinite(feedback.total_angle_deg));
   }
 }
 

@@ -76,26 +76,7 @@ void checkSent(const CanFrame& frame) {
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   Input input(data, size);
   const auto made = makeMotor(input.take<std::uint8_t>());
-  MyActuator_Motor& motor = *made;
-  MonotonicTime now{std::chrono::hours{1}};
-  Tick tick;
-  while (!input.empty()) {
-    if (!fuzz::giveOrder(motor, input, input.take<std::uint8_t>())) {
-      CanFrame frame = takeFrame(input);
-      frame.received = now += Duration{input.take<std::uint32_t>()};
-      if (motor.matchesFrame(frame)) (void)motor.updateFeedback(frame);
-    }
-    ++tick.index;
-    tick.now = now;
-    motor.update(tick);
-    std::array<CanFrame, kMaxFramesPerPacker> out{};
-    const auto count = motor.packCommand(tick, out);
-    for (std::size_t i = 0; i < count; ++i) checkSent(out[i]);
-    require(std::isfinite(motor.commandValue()) || std::isinf(motor.commandValue()));
-    const MotorFeedback& feedback = motor.feedback();
-    if (feedback.samples == 0) continue;
-    require(feedback.angle_deg >= 0.0F && feedback.angle_deg < 360.0F);
-    require(std::isfinite(feedback.total_angle_deg));
-  }
+  fuzz::runAlone(
+      *made, input, takeFrame, [] {}, checkSent);
   return 0;
 }

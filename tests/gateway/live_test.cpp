@@ -135,32 +135,26 @@ TEST(LiveGateway, AnswersRequests) {
   });
 }
 
-TEST(LiveGateway, TellsClientsWithOtherDefinitions) {
-  inPrivateNetwork([] {
+void expectAnswer(const Bytes& command, const char* words) {
+  inPrivateNetwork([&] {
     ASSERT_TRUE(addLcmRoute());
     GatewayProcess gateway;
     LcmClient client;
     client.subscribe("hero.v1.event");
     gateway.awaitReady(client);
-    client.publish(kCommand, encoded(requestWith(0)));
+    client.publish(kCommand, command);
     event_t event{};
     ASSERT_TRUE(client.await("hero.v1.event", event));
-    EXPECT_THAT(event.text, HasSubstr("uses other definitions of command_t"));
+    EXPECT_THAT(event.text, HasSubstr(words));
   });
 }
 
+TEST(LiveGateway, TellsClientsWithOtherDefinitions) {
+  expectAnswer(encoded(requestWith(0)), "uses other definitions of command_t");
+}
+
 TEST(LiveGateway, SaysThatAMessageInSeveralDatagramsIsTooLarge) {
-  inPrivateNetwork([] {
-    ASSERT_TRUE(addLcmRoute());
-    GatewayProcess gateway;
-    LcmClient client;
-    client.subscribe("hero.v1.event");
-    gateway.awaitReady(client);
-    client.publish(kCommand, Bytes(100'000));
-    event_t event{};
-    ASSERT_TRUE(client.await("hero.v1.event", event));
-    EXPECT_THAT(event.text, HasSubstr("larger than any valid one"));
-  });
+  expectAnswer(Bytes(100'000), "larger than any valid one");
 }
 
 TEST(LiveGateway, IsNotDisturbedByAFloodOfOtherChannels) {

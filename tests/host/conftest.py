@@ -49,6 +49,14 @@ def daemon() -> Iterator[Daemon]:
         yield daemon
 
 
+@pytest.fixture(scope="module")
+def robot(request: pytest.FixtureRequest) -> Iterator[Daemon]:
+    """rc10d with the robot of the test's file, all READY."""
+    with Daemon(request.module.ROBOT) as daemon:
+        daemon.wait_ready()
+        yield daemon
+
+
 @pytest.fixture
 def no_route() -> Iterator[None]:
     """The reader adds the route of the multicast."""

@@ -16,7 +16,7 @@ from hostlib.page import Block, blocks_run_by, robots, run
 from rc10.motion_test import MotionAborted, run_motion_test
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator
+    from collections.abc import Callable
     from pathlib import Path
 
     from hostlib import Motor, Program
@@ -43,13 +43,6 @@ PATIENT = ("--max-feedback-age", "2s", "--dead-man-ms", 1000)
 ROOM = ("--max-speed", 1000, *PATIENT)
 STEP = ("step", 60, "--max-current", 12, *ROOM)
 LONG = (*STEP, "--for", "60s")
-
-
-@pytest.fixture(scope="module")
-def robot() -> Iterator[Daemon]:
-    with Daemon(ROBOT) as daemon:
-        daemon.wait_ready()
-        yield daemon
 
 
 @pytest.fixture(autouse=True)

@@ -8,9 +8,9 @@ import sys
 from typing import TYPE_CHECKING, Any
 
 import pytest
+import test_motion
 from hostlib import Daemon, Program
 from hostlib.program import PATIENCE_S, eventually
-from test_motion import ROBOT
 from test_web import Web
 from test_web_motion import PATIENT, STEP, SWEEP, now_us
 
@@ -18,6 +18,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterator
     from pathlib import Path
 
+ROBOT = test_motion.ROBOT
 AT_END = {"disable_at_end": 1}
 JOG = {"type": "drive", "motor": "wheel", "mode": "velocity", "value": 20, "held": True}
 SPIN = {**STEP, **PATIENT, "mode": "current", "amplitude": 1, "seconds": 60}
@@ -51,13 +52,6 @@ with connect(sys.argv[1], max_size=None) as page:
             shown = True
             print("it moves", flush=True)
 """
-
-
-@pytest.fixture(scope="module")
-def robot() -> Iterator[Daemon]:
-    with Daemon(ROBOT) as daemon:
-        daemon.wait_ready()
-        yield daemon
 
 
 @pytest.fixture(autouse=True)

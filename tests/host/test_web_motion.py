@@ -94,13 +94,6 @@ class Tester:
         return columns
 
 
-@pytest.fixture(scope="module")
-def robot() -> Iterator[Daemon]:
-    with Daemon(ROBOT) as daemon:
-        daemon.wait_ready()
-        yield daemon
-
-
 @pytest.fixture(autouse=True)
 def _enabled(robot: Daemon) -> None:
     robot.wait_motors(lambda motor: abs(float(motor["velocity_rpm"])) < 1.0, "all stand still")

@@ -30,6 +30,11 @@ class HomingJoint : public JointBench {
     stop_deg_ = -15.0;
     showSwitch();
   }
+  void buildWithStop() {
+    auto own = jointSettings();
+    own.own.set("homing", std::string{"stop"});
+    build(own);
+  }
   void homeOnce() {
     ask(kNoSignal, 1.0);
     for (int i = 0; i < 20'000 && state() != kFollowing; ++i) run(1);
@@ -43,9 +48,7 @@ class HomingJoint : public JointBench {
 };
 
 TEST_F(HomingJoint, FindsItsReferenceAtAStop) {
-  auto own = jointSettings();
-  own.own.set("homing", std::string{"stop"});
-  build(own);
+  buildWithStop();
   robot_.motor(0).feedback.zeroed = false;
   robot_.motor(0).feedback.total_angle_deg = 1000.0;
   stop_deg_ = 980.0;
@@ -310,9 +313,7 @@ TEST_F(HomingJoint, AZeroThatItsMotorRefusesIsNoHome) {
 }
 
 TEST_F(HomingJoint, AStandstillThatGravityMakesIsNotTheStop) {
-  auto own = jointSettings();
-  own.own.set("homing", std::string{"stop"});
-  build(own);
+  buildWithStop();
   robot_.motor(0).feedback.zeroed = false;
   robot_.motor(0).feedback.total_angle_deg = 40.0;
   stop_deg_ = 0.0;
@@ -326,9 +327,7 @@ TEST_F(HomingJoint, AStandstillThatGravityMakesIsNotTheStop) {
 }
 
 TEST_F(HomingJoint, AStopThatIsMetAtTwoPlacesIsNone) {
-  auto own = jointSettings();
-  own.own.set("homing", std::string{"stop"});
-  build(own);
+  buildWithStop();
   robot_.motor(0).feedback.zeroed = false;
   robot_.motor(0).feedback.total_angle_deg = 10.0;
   stop_deg_ = 0.0;
@@ -359,9 +358,7 @@ TEST_F(HomingJoint, AStopBeyondTheTravelIsNone) {
 }
 
 TEST_F(HomingJoint, AMotorThatGetsLessThanTheHomingCurrentDoesNotFindTheStop) {
-  auto own = jointSettings();
-  own.own.set("homing", std::string{"stop"});
-  build(own);
+  buildWithStop();
   robot_.motor(0).feedback.zeroed = false;
   robot_.motor(0).feedback.total_angle_deg = 10.0;
   stop_deg_ = 0.0;
@@ -373,9 +370,7 @@ TEST_F(HomingJoint, AMotorThatGetsLessThanTheHomingCurrentDoesNotFindTheStop) {
 }
 
 TEST_F(HomingJoint, AnAxisThatBeginsAtItsStopIsHomed) {
-  auto own = jointSettings();
-  own.own.set("homing", std::string{"stop"});
-  build(own);
+  buildWithStop();
   robot_.motor(0).feedback.zeroed = false;
   stop_deg_ = robot_.motor(0).feedback.total_angle_deg = 7.0;
   ask(kNoSignal, 1.0);
@@ -417,9 +412,7 @@ TEST_F(HomingJoint, DoesNotLookForASwitchThatNobodyHears) {
 }
 
 TEST_F(HomingJoint, AnAxisThatDoesNotMoveIsNotHomed) {
-  auto own = jointSettings();
-  own.own.set("homing", std::string{"stop"});
-  build(own);
+  buildWithStop();
   robot_.motor(0).feedback.zeroed = false;
   blocked_ = true;
   ask(kNoSignal, 1.0);
@@ -431,9 +424,7 @@ TEST_F(HomingJoint, AnAxisThatDoesNotMoveIsNotHomed) {
 }
 
 TEST_F(HomingJoint, AHomingThatNobodyWatchesEnds) {
-  auto own = jointSettings();
-  own.own.set("homing", std::string{"stop"});
-  build(own);
+  buildWithStop();
   ask(kNoSignal, 1.0);
   run(10);
   module_->clearInputs();

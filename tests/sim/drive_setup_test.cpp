@@ -27,15 +27,6 @@ using Progress = DriveConfiguring::Progress;
 using ::testing::Contains;
 using ::testing::Not;
 
-MotorSettings settingsOf(const MotorFamily& family, std::string_view model, int id) {
-  MotorSettings settings;
-  settings.name = "motor";
-  settings.model = model;
-  settings.id = id;
-  settings.own = ownDefaults(family);
-  return settings;
-}
-
 std::uint8_t indexOf(const DriveSetup& setup, std::string_view name) {
   const auto found = std::find_if(setup.settings.begin(), setup.settings.end(),
                                   [name](const DriveSetting& each) { return each.name == name; });
@@ -47,18 +38,18 @@ std::uint8_t indexOf(const DriveSetup& setup, std::string_view name) {
 class DriveSetupTest : public ::testing::Test {
  protected:
   void useDamiao() {
-    auto settings = settingsOf(damiaoFamily(), "DM4310", 2);
+    auto settings = defaultSettings(damiaoFamily(), "DM4310", 2);
     settings.own.set("master_id", 18.0);
     use(std::make_unique<Damiao_Motor>(settings), sim::makeDamiaoDrive(settings, {}), damiaoSetup());
   }
   void useRobStride(std::string_view model = "RS00") {
-    auto settings = settingsOf(robstrideFamily(), model, 3);
+    auto settings = defaultSettings(robstrideFamily(), model, 3);
     settings.own.set("host_id", 253.0);
     use(std::make_unique<RobStride_Motor>(settings), sim::makeRobstrideDrive(settings, {}),
         robstrideSetup(model == "CyberGear"));
   }
   void useMyActuator() {
-    const auto settings = settingsOf(myactuatorFamily(), "RMD-X8-20", 4);
+    const auto settings = defaultSettings(myactuatorFamily(), "RMD-X8-20", 4);
     use(std::make_unique<MyActuator_Motor>(settings, myactuatorFamily().traits(settings.model, settings.own)),
         sim::makeMyactuatorDrive(settings, {}), myactuatorSetup());
   }

@@ -45,15 +45,6 @@ CanFrame remote(std::uint32_t id) {
   return frame;
 }
 
-MotorSettings settingsOf(const MotorFamily& family, const std::string& model, int id) {
-  MotorSettings settings;
-  settings.name = "motor";
-  settings.model = model;
-  settings.id = id;
-  settings.own = ownDefaults(family);
-  return settings;
-}
-
 TEST(VendorTools, AnOdriveAnswersRemoteFrames) {
   const auto v06 = sim::makeOdriveDrive(odriveSettings("ODrive_S1"), {});
   EXPECT_THAT(answers(*v06, remote(0x074)), ElementsAre("074#0000000000000000"));
@@ -105,13 +96,13 @@ TEST(VendorTools, ADamiaoTellsItsStateAndItsNameplate) {
 
 TEST(VendorTools, LkTechAndMyActuatorStop) {
   const auto stop = makeClassicFrame({0x143, false}, std::array<std::uint8_t, 8>{0x81});
-  const auto lktech = sim::makeLktechDrive(settingsOf(lktechFamily(), "LK-MG5010E-i10", 3), {});
+  const auto lktech = sim::makeLktechDrive(defaultSettings(lktechFamily(), "LK-MG5010E-i10", 3), {});
   EXPECT_THAT(answers(*lktech, stop), ElementsAre("143#8100000000000000"));
   EXPECT_EQ(
       answers(*lktech, makeClassicFrame({0x143, false}, std::array<std::uint8_t, 8>{0x9A}))[0].substr(16, 2),
       "00")
       << "it is still on";
-  const auto myactuator = sim::makeMyactuatorDrive(settingsOf(myactuatorFamily(), "RMD-X8-20", 3), {});
+  const auto myactuator = sim::makeMyactuatorDrive(defaultSettings(myactuatorFamily(), "RMD-X8-20", 3), {});
   EXPECT_THAT(answers(*myactuator, stop), ElementsAre("243#8100000000000000"));
   const auto read = makeClassicFrame({0x143, false}, std::array<std::uint8_t, 8>{0x42, 1});
   EXPECT_EQ(answers(*myactuator, read).at(0).substr(0, 8), "243#4201");

@@ -2,6 +2,7 @@
 
 #include <cstdlib>
 #include <string>
+#include <string_view>
 
 #include "motor/motor_family.hpp"
 
@@ -21,6 +22,16 @@ inline OwnValues ownDefaults(const MotorFamily& family) {
     }
   }
   return own;
+}
+
+/// A motor of this model with all keys at their defaults.
+inline MotorSettings defaultSettings(const MotorFamily& family, std::string_view model, int id) {
+  MotorSettings settings;
+  settings.name = "motor";
+  settings.model = model;
+  settings.id = id;
+  settings.own = ownDefaults(family);
+  return settings;
 }
 
 }  // namespace rc10::test
