@@ -1,6 +1,6 @@
 #include "rc10/robot.hpp"
 
-#include "robot_client/robot_session.hpp"
+#include "robot_client/session/robot_session.hpp"
 
 namespace rc10 {
 inline namespace robot_client {

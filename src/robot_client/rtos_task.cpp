@@ -12,7 +12,7 @@
 #include <future>
 #include <memory>
 
-#include "robot_client/host_clock.hpp"
+#include "robot_client/session/host_clock.hpp"
 
 namespace rc10 {
 inline namespace robot_client {

@@ -8,8 +8,8 @@
 #include "rc10/service_client.hpp"
 #include "rc10/service_request_t.hpp"
 #include "rc10/service_response_t.hpp"
-#include "robot_client/host_clock.hpp"
-#include "robot_client/session_number.hpp"
+#include "robot_client/session/host_clock.hpp"
+#include "robot_client/session/session_number.hpp"
 
 namespace rc10 {
 inline namespace robot_client {

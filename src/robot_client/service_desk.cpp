@@ -14,7 +14,7 @@
 #include "rc10/service_request_t.hpp"
 #include "rc10/service_response_t.hpp"
 #include "rc10/service_server.hpp"
-#include "robot_client/host_clock.hpp"
+#include "robot_client/session/host_clock.hpp"
 
 namespace rc10 {
 inline namespace robot_client {

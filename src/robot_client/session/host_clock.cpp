@@ -1,0 +1,32 @@
+#include "robot_client/session/host_clock.hpp"
+
+#include <algorithm>
+#include <chrono>
+
+namespace rc10 {
+inline namespace robot_client {
+namespace {
+
+// Two crystals differ by less than 100 us/s; without the allowance a slower host clock would make every later
+// state look older than it is.
+constexpr int kDriftDivider = 10'000;
+
+// A host's clock that went back this far belongs to another boot or another host.
+constexpr Duration kRestart = std::chrono::seconds{1};
+
+}  // namespace
+
+MonotonicTime HostClock::observe(Duration host, MonotonicTime local) noexcept {
+  const Duration distance = local.time_since_epoch() - host;
+  if (!distance_ || host < last_host_ - kRestart) {
+    distance_ = distance;
+  } else {
+    distance_ = std::min(distance, *distance_ + (local - last_local_) / kDriftDivider);
+  }
+  last_host_ = host;
+  last_local_ = local;
+  return MonotonicTime{host + *distance_};
+}
+
+}  // namespace robot_client
+}  // namespace rc10

@@ -1,0 +1,30 @@
+#include "robot_client/session/newest_state.hpp"
+
+namespace rc10 {
+inline namespace robot_client {
+namespace {
+
+using std::chrono::milliseconds;
+
+// Without a younger state nothing is held.
+constexpr Duration kLive = milliseconds{1000};
+// A state that is older than the known one by less than this has been overtaken; by more, rc10d's computer
+// has started anew.
+constexpr std::int64_t kOvertakenUs = 1'000'000;
+
+}  // namespace
+
+bool NewestState::take(const std::shared_ptr<RobotState>& state, MonotonicTime now) {
+  const auto overtaken_us = state_ ? state_->mono_us - state->mono_us : 0;
+  if (0 < overtaken_us && overtaken_us < kOvertakenUs) return false;
+  state->taken = clock_.observe(std::chrono::microseconds{state->mono_us}, now);
+  state_ = state;
+  came_ = now;
+  ++received_;
+  return true;
+}
+
+bool NewestState::live(MonotonicTime now) const noexcept { return state_ && now <= came_ + kLive; }
+
+}  // namespace robot_client
+}  // namespace rc10
