@@ -74,6 +74,11 @@ ROOMS = {
         "clients": {"exchange"},
         "threads": {"interfaces", "tick", "recording", "devices", "exchange"},
     },
+    "robot_client": {"rc10": set[str](), "session": {""}},
+    "tools": {
+        program: {""}
+        for program in ("rc10-config", "rc10-guard", "rc10-irq", "rc10-stop", "rc10-web", "rc10ctl")
+    },
 }
 # Headers of a layer's own folder that stand above its rooms: they include rooms, and no room them.
 ABOVE_ROOMS = {"config/load_config.hpp"}
@@ -163,7 +168,7 @@ def bad_room(layer: str, room: str, file: Path, name: str) -> str | None:
         return f'"{name}": it stands above the rooms of {layer}/'
     if layer == FAMILIES and used:
         return f'"{name}": a family of drives knows no other'
-    allowed = ROOMS.get(layer, {}).get(room, {""})
+    allowed = {""} if layer == FAMILIES else ROOMS.get(layer, {}).get(room, set())
     if used in allowed:
         return None
     names = ", ".join(f"{layer}/{name}".rstrip("/") for name in sorted(allowed)) or "nothing"
@@ -221,7 +226,7 @@ def violations(src: Path) -> Iterator[Violation]:
             yield Violation(file, 1, f"{layer}/ is no layer")
             continue
         room = rooms[0] if rooms else ""
-        if room and layer in ROOMS and room not in ROOMS[layer]:
+        if room and layer != FAMILIES and room not in ROOMS.get(layer, {}):
             yield Violation(file, 1, f"{layer}/{room}/ is no room of {layer}/")
         yield from violations_in(file, layer, room, families)
 
