@@ -156,7 +156,7 @@ Result<void> Daemon::findGuard() {
   const bool required = config_.realtime == RealtimePolicy::kRequired;
   const auto standstill = std::max<Duration>(required ? kStandstillInRealTime : kStandstill,
                                              kStandstillPeriods * config_.period());
-  auto guard = GuardLink::create(
+  auto guard = GuardProcess::create(
       {.run_dir = link::runDir(),
        .program = siblingProgram("rc10-guard"),
        .hello = {.robot = config_.robot,

@@ -11,7 +11,7 @@
 #include "daemon/clients/link_server.hpp"
 #include "daemon/devices/robot.hpp"
 #include "daemon/gateway_process.hpp"
-#include "daemon/guard_link.hpp"
+#include "daemon/guard_process.hpp"
 #include "daemon/interfaces/can_intake.hpp"
 #include "daemon/interfaces/interface_locks.hpp"
 #include "daemon/recording/black_box.hpp"
@@ -73,7 +73,7 @@ class Daemon {
   std::vector<BusInbox> inboxes_;  // of each bus
   LinkExchange exchange_;
   std::unique_ptr<BlackBox> black_box_;  // null: off, or not to be had
-  std::unique_ptr<GuardLink> guard_;     // null: off, not to be had, or no drive on a CAN interface
+  std::unique_ptr<GuardProcess> guard_;  // null: off, not to be had, or no drive on a CAN interface
   std::unique_ptr<Scheduler> scheduler_;
   std::unique_ptr<CanIntake> intake_;
   std::unique_ptr<SchedLoop> sched_loop_;

@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "module/held_back.hpp"
-#include "module/link_codec.hpp"
 #include "module/modbus_rtu.hpp"
+#include "module/serial_link_codec.hpp"
 #include "module/serial_link_keys.hpp"
 #include "module/silence.hpp"
 
@@ -44,7 +44,7 @@ struct LinkOutput {
   return signals;
 }
 
-[[nodiscard]] std::unique_ptr<LinkCodec> codecOf(const OwnValues& own, const SerialFormat& format) {
+[[nodiscard]] std::unique_ptr<SerialLinkCodec> codecOf(const OwnValues& own, const SerialFormat& format) {
   auto received = linkFields(own, "receive");
   auto sent = linkFields(own, "send");
   const auto protocol = own.text("protocol");
@@ -106,15 +106,15 @@ class SerialLink : public Module_Base {
     bool urgent = false;
     for (std::size_t i = 0; i < sent_.size(); ++i)
       urgent |= values_[i] == sent_[i].safe && before_[i] != values_[i];
-    auto round = tick.now >= next_ ? LinkCodec::Round::kBegins : LinkCodec::Round::kGoesOn;
-    if (urgent) round = LinkCodec::Round::kUrgent;
+    auto round = tick.now >= next_ ? SerialLinkCodec::Round::kBegins : SerialLinkCodec::Round::kGoesOn;
+    if (urgent) round = SerialLinkCodec::Round::kUrgent;
     // At most one round waits: old values are not sent before new ones.
-    if (open && round != LinkCodec::Round::kGoesOn && device_->pendingBytes() > 0) {
+    if (open && round != SerialLinkCodec::Round::kGoesOn && device_->pendingBytes() > 0) {
       if (!urgent) ++skipped_;
       if (!urgent) next_ = tick.now + period_;
-      round = LinkCodec::Round::kGoesOn;
+      round = SerialLinkCodec::Round::kGoesOn;
     }
-    if (round != LinkCodec::Round::kGoesOn) {
+    if (round != SerialLinkCodec::Round::kGoesOn) {
       next_ = next_ + period_ > tick.now ? next_ + period_ : tick.now + period_;
       if (open) before_ = values_;
     }
@@ -165,7 +165,7 @@ class SerialLink : public Module_Base {
   SerialFormat format_;
   Duration period_;
   Duration max_age_;
-  std::unique_ptr<LinkCodec> codec_;
+  std::unique_ptr<SerialLinkCodec> codec_;
   std::vector<LinkOutput> sent_;
   std::vector<double> values_;  ///< Values in this tick.
   std::vector<double> before_;  ///< Values as they were sent last.

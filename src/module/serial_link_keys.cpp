@@ -150,8 +150,8 @@ constexpr std::array kLinkKeys{
            .about = "What the board is sent.",
            .keys = kSendKeys}};
 
-[[nodiscard]] LinkField fieldOf(const OwnValues& row) {
-  LinkField field;
+[[nodiscard]] SerialLinkField fieldOf(const OwnValues& row) {
+  SerialLinkField field;
   field.name = row.text("name");
   field.message = row.text("message");
   field.place = static_cast<std::size_t>(row.integer("place") - 1);
@@ -217,7 +217,7 @@ constexpr std::array kLinkKeys{
       if (same_line && fields[k].place == fields[i].place) {
         return fail(placeOf(list, i, "place") + "'" + fields[k].name + "' has it already");
       }
-      const auto words = [](const LinkField& field) { return bytesOf(field.type) > 2 ? 2 : 1; };
+      const auto words = [](const SerialLinkField& field) { return bytesOf(field.type) > 2 ? 2 : 1; };
       const bool overlap = protocol == "modbus" && fields[k].input_register == fields[i].input_register &&
                            fields[k].reg < fields[i].reg + words(fields[i]) &&
                            fields[i].reg < fields[k].reg + words(fields[k]);
@@ -225,7 +225,7 @@ constexpr std::array kLinkKeys{
     }
     if (protocol != "text" || list != "send") continue;
     for (std::size_t place = 0; place < fields[i].place; ++place) {
-      const bool given = std::any_of(fields.begin(), fields.end(), [&](const LinkField& other) {
+      const bool given = std::any_of(fields.begin(), fields.end(), [&](const SerialLinkField& other) {
         return other.message == fields[i].message && other.place == place;
       });
       if (!given) {
@@ -305,8 +305,8 @@ constexpr std::array kLinkKeys{
 
 std::span<const OwnKey> serialLinkKeys() noexcept { return kLinkKeys; }
 
-std::vector<LinkField> linkFields(const OwnValues& own, std::string_view key) {
-  std::vector<LinkField> fields;
+std::vector<SerialLinkField> linkFields(const OwnValues& own, std::string_view key) {
+  std::vector<SerialLinkField> fields;
   for (const auto& row : own.rows(key)) fields.push_back(fieldOf(row));
   return fields;
 }

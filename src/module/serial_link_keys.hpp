@@ -7,8 +7,8 @@
 
 #include "app/result.hpp"
 #include "bus/serial_format.hpp"
-#include "module/link_field.hpp"
 #include "module/module_type.hpp"
+#include "module/serial_link_field.hpp"
 
 namespace rc10 {
 
@@ -18,7 +18,7 @@ inline constexpr std::array<std::string_view, 3> kLinkSignals{"connected", "age_
 [[nodiscard]] std::span<const OwnKey> serialLinkKeys() noexcept;
 
 /// Fields of the list `key`: `receive` or `send`.
-[[nodiscard]] std::vector<LinkField> linkFields(const OwnValues& own, std::string_view key);
+[[nodiscard]] std::vector<SerialLinkField> linkFields(const OwnValues& own, std::string_view key);
 
 /// Range of a signal, by the range of its field.
 [[nodiscard]] WireRange linkRange(const OwnValues& row, std::string_view protocol);

@@ -9,9 +9,9 @@
 
 #include "bus/serial_device.hpp"
 #include "fake_robot.hpp"
-#include "module/link_field.hpp"
 #include "module/modbus_rtu.hpp"
 #include "module/serial_link.hpp"
+#include "module/serial_link_field.hpp"
 #include "serial_streams.hpp"
 #include "support/heard_cobs.hpp"
 

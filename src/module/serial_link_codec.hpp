@@ -7,17 +7,17 @@
 #include "app/time.hpp"
 #include "bus/i_protocol.hpp"
 #include "bus/serial_device.hpp"
-#include "module/link_field.hpp"
+#include "module/serial_link_field.hpp"
 
 namespace rc10 {
 
 /// The protocol of a serial link on its port: one of text, cobs, modbus. Scheduler thread only.
-class LinkCodec {
+class SerialLinkCodec {
  public:
-  LinkCodec() = default;
-  LinkCodec(const LinkCodec&) = delete;
-  LinkCodec& operator=(const LinkCodec&) = delete;
-  virtual ~LinkCodec() = default;
+  SerialLinkCodec() = default;
+  SerialLinkCodec(const SerialLinkCodec&) = delete;
+  SerialLinkCodec& operator=(const SerialLinkCodec&) = delete;
+  virtual ~SerialLinkCodec() = default;
 
   /// The protocol for the port; called once. The codec outlives it.
   [[nodiscard]] virtual std::unique_ptr<I_Protocol> takeProtocol() = 0;
@@ -36,20 +36,20 @@ class LinkCodec {
 
 /// `received` and `sent`: checked by the module's type. Fields of one text or cobs message are sent together,
 /// a cobs message in the order of its fields.
-[[nodiscard]] std::unique_ptr<LinkCodec> makeTextCodec(std::vector<LinkField> received,
-                                                       std::vector<LinkField> sent);
-[[nodiscard]] std::unique_ptr<LinkCodec> makeCobsCodec(std::vector<LinkField> received,
-                                                       std::vector<LinkField> sent);
+[[nodiscard]] std::unique_ptr<SerialLinkCodec> makeTextCodec(std::vector<SerialLinkField> received,
+                                                             std::vector<SerialLinkField> sent);
+[[nodiscard]] std::unique_ptr<SerialLinkCodec> makeCobsCodec(std::vector<SerialLinkField> received,
+                                                             std::vector<SerialLinkField> sent);
 
-struct ModbusLink {
+struct ModbusSettings {
   std::uint8_t address = 1;
   Duration byte_time{};
   Duration frame_gap{};
   Duration timeout{};           ///< From the end of a question to the start of its answer.
   bool low_word_first = false;  ///< Word order of values in two registers.
 };
-[[nodiscard]] std::unique_ptr<LinkCodec> makeModbusCodec(const ModbusLink& link,
-                                                         std::vector<LinkField> received,
-                                                         std::vector<LinkField> sent);
+[[nodiscard]] std::unique_ptr<SerialLinkCodec> makeModbusCodec(const ModbusSettings& settings,
+                                                               std::vector<SerialLinkField> received,
+                                                               std::vector<SerialLinkField> sent);
 
 }  // namespace rc10

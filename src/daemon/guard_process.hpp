@@ -17,7 +17,7 @@ namespace rc10 {
 
 /// rc10-guard, which watches this process from outside: uses the one of the run folder, or starts one. Main
 /// thread only; the page is the scheduler's.
-class GuardLink {
+class GuardProcess {
  public:
   struct Settings {
     std::string run_dir;
@@ -26,10 +26,10 @@ class GuardLink {
   };
 
   /// Returns when the guard has said that it watches. The error says why it does not.
-  [[nodiscard]] static Result<std::unique_ptr<GuardLink>> create(Settings settings);
-  GuardLink(const GuardLink&) = delete;
-  GuardLink& operator=(const GuardLink&) = delete;
-  ~GuardLink() { end(); }
+  [[nodiscard]] static Result<std::unique_ptr<GuardProcess>> create(Settings settings);
+  GuardProcess(const GuardProcess&) = delete;
+  GuardProcess& operator=(const GuardProcess&) = delete;
+  ~GuardProcess() { end(); }
 
   [[nodiscard]] link::GuardPage& page() noexcept { return *page_; }
 
@@ -48,7 +48,7 @@ class GuardLink {
   void end() noexcept;
 
  private:
-  GuardLink(Settings settings, link::SharedGuardPage page, UniqueFd self)
+  GuardProcess(Settings settings, link::SharedGuardPage page, UniqueFd self)
       : settings_(std::move(settings)), page_(std::move(page)), self_(std::move(self)) {}
   /// To get a guard: one is connected to, started if there is none, greeted, and answers.
   struct Try {

@@ -1,4 +1,4 @@
-#include "daemon/guard_link.hpp"
+#include "daemon/guard_process.hpp"
 
 #include <poll.h>
 #include <sys/socket.h>
@@ -53,12 +53,13 @@ bool readable(int descriptor, Duration patience) noexcept {
 
 }  // namespace
 
-Result<std::unique_ptr<GuardLink>> GuardLink::create(Settings settings) {
+Result<std::unique_ptr<GuardProcess>> GuardProcess::create(Settings settings) {
   auto page = link::SharedGuardPage::create();
   if (!page) return tl::unexpected(page.error());
   UniqueFd self{static_cast<int>(::syscall(SYS_pidfd_open, ::getpid(), 0))};
   if (!self) return fail(fmt::format("no pidfd for rc10-guard: {}", errnoText(errno)));
-  std::unique_ptr<GuardLink> link{new GuardLink(std::move(settings), std::move(*page), std::move(self))};
+  std::unique_ptr<GuardProcess> link{
+      new GuardProcess(std::move(settings), std::move(*page), std::move(self))};
   auto& tried = link->try_.emplace(Try{.deadline = monotonicNow() + kPatience});
   for (;;) {
     const auto watched = link->tryOn(tried, monotonicNow());
@@ -68,7 +69,7 @@ Result<std::unique_ptr<GuardLink>> GuardLink::create(Settings settings) {
   }
 }
 
-Result<bool> GuardLink::tryOn(Try& tried, MonotonicTime now) {
+Result<bool> GuardProcess::tryOn(Try& tried, MonotonicTime now) {
   if (!tried.greeted) {
     const std::string path = link::guardSocketPath(settings_.run_dir);
     auto attempt = connectTo(path);
@@ -101,18 +102,18 @@ Result<bool> GuardLink::tryOn(Try& tried, MonotonicTime now) {
   return true;
 }
 
-Result<void> GuardLink::sayHello(int connection) {
+Result<void> GuardProcess::sayHello(int connection) {
   page_->beats.store(0, std::memory_order_relaxed);  // of another guard
   const std::array descriptors{page_.descriptor(), self_.get()};
   if (link::sendWithDescriptors(connection, link::guardHelloText(settings_.hello), descriptors)) return {};
   return fail(fmt::format("rc10-guard cannot be told what to watch: {}", errnoText(errno)));
 }
 
-void GuardLink::reap() noexcept {
+void GuardProcess::reap() noexcept {
   if (child_ != 0 && ::waitpid(child_, nullptr, WNOHANG) != 0) child_ = 0;
 }
 
-GuardLink::News GuardLink::supervise(MonotonicTime now) {
+GuardProcess::News GuardProcess::supervise(MonotonicTime now) {
   reap();
   if (connection_) {
     if (!readable(connection_.get(), Duration{0})) return watchBeats(now);
@@ -140,7 +141,7 @@ GuardLink::News GuardLink::supervise(MonotonicTime now) {
 }
 
 // The connection stays: a guard that goes on watches as before.
-GuardLink::News GuardLink::watchBeats(MonotonicTime now) {
+GuardProcess::News GuardProcess::watchBeats(MonotonicTime now) {
   switch (beats_.look(page_->beats.load(std::memory_order_relaxed), now)) {
     case GuardBeats::News::kNone: break;
     case GuardBeats::News::kGoesOn: return {.text = "rc10-guard goes on, and watches again"};
@@ -158,7 +159,7 @@ GuardLink::News GuardLink::watchBeats(MonotonicTime now) {
   return {};
 }
 
-void GuardLink::end() noexcept {
+void GuardProcess::end() noexcept {
   page_->ended.store(true, std::memory_order_release);
   connection_.reset();
   try_.reset();

@@ -1,4 +1,4 @@
-#include "module/link_field.hpp"
+#include "module/serial_link_field.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,5 +1,5 @@
 // Without a guard; with one: tests/kernel/test_guard.py.
-#include "daemon/guard_link.hpp"
+#include "daemon/guard_process.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -14,7 +14,7 @@
 #include "link/run_dir.hpp"
 #include "link/unix_address.hpp"
 
-namespace rc10::test::guard_link_test {
+namespace rc10::test::guard_process_test {
 namespace {
 
 using namespace std::chrono_literals;
@@ -63,18 +63,18 @@ class ObedientGuard : public SilentGuard {
   std::thread thread_;
 };
 
-class GuardLinkTest : public testing::Test {
+class GuardProcessTest : public testing::Test {
  protected:
-  GuardLinkTest() {
+  GuardProcessTest() {
     if (::mkdtemp(dir.data()) == nullptr) ADD_FAILURE() << "no temporary folder";
   }
-  ~GuardLinkTest() override {
+  ~GuardProcessTest() override {
     std::error_code ignored;
     std::filesystem::remove_all(dir, ignored);
   }
   /// Its guard has just ended, and the next one would be this program.
-  [[nodiscard]] std::unique_ptr<GuardLink> lost(const std::string& program) const {
-    std::unique_ptr<GuardLink> link;
+  [[nodiscard]] std::unique_ptr<GuardProcess> lost(const std::string& program) const {
+    std::unique_ptr<GuardProcess> link;
     {
       const ObedientGuard guard{dir};
       link = with(program).value();
@@ -82,30 +82,30 @@ class GuardLinkTest : public testing::Test {
     EXPECT_TRUE(link->supervise(kEnd).lost);
     return link;
   }
-  [[nodiscard]] Result<std::unique_ptr<GuardLink>> with(const std::string& program) const {
-    return GuardLink::create({.run_dir = dir,
-                              .program = program,
-                              .hello = {.robot = "hero", .standstill_ms = 20, .rest_frames = ""}});
+  [[nodiscard]] Result<std::unique_ptr<GuardProcess>> with(const std::string& program) const {
+    return GuardProcess::create({.run_dir = dir,
+                                 .program = program,
+                                 .hello = {.robot = "hero", .standstill_ms = 20, .rest_frames = ""}});
   }
 
   static constexpr MonotonicTime kEnd{100s};
   std::string dir = "/tmp/rc10-test-XXXXXX";
 };
 
-TEST_F(GuardLinkTest, AGuardThatEndsAtOnceIsNotWaitedForForEver) {
+TEST_F(GuardProcessTest, AGuardThatEndsAtOnceIsNotWaitedForForEver) {
   const auto link = with("/bin/false");
   ASSERT_FALSE(link);
   EXPECT_THAT(link.error().message,
               StrEq("/bin/false was started and does not answer at " + dir + "/guard.socket"));
 }
 
-TEST_F(GuardLinkTest, AGuardThatIsNotInstalledIsNamed) {
+TEST_F(GuardProcessTest, AGuardThatIsNotInstalledIsNamed) {
   const auto link = with(dir + "/rc10-guard");
   ASSERT_FALSE(link);
   EXPECT_THAT(link.error().message, HasSubstr(dir + "/rc10-guard could not be started: No such file"));
 }
 
-TEST_F(GuardLinkTest, OneThatDoesNotComeIsTriedForAtGrowingDistancesAndToldOnce) {
+TEST_F(GuardProcessTest, OneThatDoesNotComeIsTriedForAtGrowingDistancesAndToldOnce) {
   const auto link = lost(dir + "/rc10-guard");
   EXPECT_THAT(link->supervise(kEnd).text, HasSubstr("could not be started"));
   // Pauses of 1, 2, 4, 5 and 5 s.
@@ -121,7 +121,7 @@ TEST_F(GuardLinkTest, OneThatDoesNotComeIsTriedForAtGrowingDistancesAndToldOnce)
   EXPECT_EQ(told, "rc10-guard watches again");
 }
 
-TEST_F(GuardLinkTest, TheNextEndIsToldAnew) {
+TEST_F(GuardProcessTest, TheNextEndIsToldAnew) {
   const auto link = lost(dir + "/rc10-guard");
   const auto first = link->supervise(kEnd).text;
   {
@@ -136,14 +136,14 @@ TEST_F(GuardLinkTest, TheNextEndIsToldAnew) {
 }
 
 // The time of these tests stands still while one waits.
-TEST_F(GuardLinkTest, OneThatWasStartedIsNotWaitedForInSupervise) {
+TEST_F(GuardProcessTest, OneThatWasStartedIsNotWaitedForInSupervise) {
   const auto link = lost("/bin/false");
   EXPECT_THAT(link->supervise(kEnd).text, IsEmpty());
   EXPECT_THAT(link->supervise(kEnd + 1s - 1ns).text, IsEmpty());
   EXPECT_THAT(link->supervise(kEnd + 1s).text, HasSubstr("was started and does not answer"));
 }
 
-TEST_F(GuardLinkTest, TheAnswerIsNotWaitedForInSupervise) {
+TEST_F(GuardProcessTest, TheAnswerIsNotWaitedForInSupervise) {
   const auto link = lost(dir + "/rc10-guard");
   const SilentGuard guard{dir};
   EXPECT_THAT(link->supervise(kEnd).text, IsEmpty());
@@ -154,4 +154,4 @@ TEST_F(GuardLinkTest, TheAnswerIsNotWaitedForInSupervise) {
 }
 
 }  // namespace
-}  // namespace rc10::test::guard_link_test
+}  // namespace rc10::test::guard_process_test

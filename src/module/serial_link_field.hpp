@@ -39,7 +39,7 @@ void writeWire(WireType type, double value, std::span<std::uint8_t> bytes) noexc
 
 /// One field of a serial link, received or sent, as configured. Only the places of its
 /// protocol are used.
-struct LinkField {
+struct SerialLinkField {
   std::string name;
   std::string message;    ///< text, cobs: the message that it is part of.
   std::size_t place = 0;  ///< text: from 0.
@@ -55,14 +55,14 @@ struct ReceivedFields {
     double value = 0.0;
     std::optional<MonotonicTime> received;
   };
-  explicit ReceivedFields(std::vector<LinkField> configured)
+  explicit ReceivedFields(std::vector<SerialLinkField> configured)
       : fields(std::move(configured)), readings(fields.size()) {}
 
   void set(std::size_t field, double on_wire, MonotonicTime received) noexcept {
     readings[field] = {on_wire * fields[field].scale, received};
   }
 
-  const std::vector<LinkField> fields;
+  const std::vector<SerialLinkField> fields;
   std::vector<Reading> readings;
 };
 

@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "module/link_codec.hpp"
+#include "module/serial_link_codec.hpp"
 #include "module/text_protocol.hpp"
 
 namespace rc10 {
@@ -49,15 +49,15 @@ class LineWriter {
   std::size_t size_ = 0;
 };
 
-class TextCodec final : public LinkCodec, public TextListener {
+class TextCodec final : public SerialLinkCodec, public TextListener {
  public:
-  TextCodec(std::vector<LinkField> received, std::vector<LinkField> sent)
+  TextCodec(std::vector<SerialLinkField> received, std::vector<SerialLinkField> sent)
       : received_(std::move(received)),
         sent_(std::move(sent)),
         owned_(std::make_unique<TextProtocol>(this)),
         protocol_(owned_.get()) {
     for (std::size_t i = 0; i < sent_.size(); ++i) {
-      const auto first = std::find_if(sent_.begin(), sent_.end(), [&](const LinkField& field) {
+      const auto first = std::find_if(sent_.begin(), sent_.end(), [&](const SerialLinkField& field) {
         return field.message == sent_[i].message;
       });
       if (static_cast<std::size_t>(first - sent_.begin()) == i) messages_.push_back(sent_[i].message);
@@ -101,7 +101,7 @@ class TextCodec final : public LinkCodec, public TextListener {
   }
 
   ReceivedFields received_;
-  std::vector<LinkField> sent_;
+  std::vector<SerialLinkField> sent_;
   std::vector<std::string> messages_;
   std::unique_ptr<TextProtocol> owned_;
   const TextProtocol* protocol_;
@@ -109,7 +109,8 @@ class TextCodec final : public LinkCodec, public TextListener {
 
 }  // namespace
 
-std::unique_ptr<LinkCodec> makeTextCodec(std::vector<LinkField> received, std::vector<LinkField> sent) {
+std::unique_ptr<SerialLinkCodec> makeTextCodec(std::vector<SerialLinkField> received,
+                                               std::vector<SerialLinkField> sent) {
   return std::make_unique<TextCodec>(std::move(received), std::move(sent));
 }
 

@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "bus/byte_order.hpp"
-#include "module/link_codec.hpp"
 #include "module/modbus_rtu.hpp"
+#include "module/serial_link_codec.hpp"
 
 namespace rc10 {
 namespace {
@@ -19,12 +19,12 @@ struct ModbusExchange {
   std::vector<std::size_t> fields;
 };
 
-[[nodiscard]] std::uint16_t registersOf(const LinkField& field) noexcept {
+[[nodiscard]] std::uint16_t registersOf(const SerialLinkField& field) noexcept {
   return bytesOf(field.type) > 2 ? 2 : 1;
 }
 
 // Neighbouring registers of one kind together, in the order of their numbers.
-void addExchanges(const std::vector<LinkField>& fields, bool input_registers, bool write,
+void addExchanges(const std::vector<SerialLinkField>& fields, bool input_registers, bool write,
                   std::vector<ModbusExchange>& out) {
   std::vector<std::size_t> order;
   for (std::size_t i = 0; i < fields.size(); ++i) {
@@ -52,13 +52,14 @@ void addExchanges(const std::vector<LinkField>& fields, bool input_registers, bo
   }
 }
 
-class ModbusCodec final : public LinkCodec {
+class ModbusCodec final : public SerialLinkCodec {
  public:
-  ModbusCodec(const ModbusLink& link, std::vector<LinkField> received, std::vector<LinkField> sent)
-      : link_(link),
+  ModbusCodec(const ModbusSettings& settings, std::vector<SerialLinkField> received,
+              std::vector<SerialLinkField> sent)
+      : settings_(settings),
         received_(std::move(received)),
         sent_(std::move(sent)),
-        owned_(std::make_unique<ModbusRtu>(link.frame_gap)),
+        owned_(std::make_unique<ModbusRtu>(settings.frame_gap)),
         modbus_(owned_.get()) {
     addExchanges(sent_, false, true, exchanges_);
     writes_ = exchanges_.size();
@@ -89,7 +90,7 @@ class ModbusCodec final : public LinkCodec {
   void ask(SerialDevice& device, std::span<const double> values, MonotonicTime now) noexcept {
     const auto& exchange = exchanges_[next_];
     std::array<std::uint16_t, ModbusRtu::kMostWritten> registers{};
-    ModbusRequest request{.address = link_.address,
+    ModbusRequest request{.address = settings_.address,
                           .function = exchange.function,
                           .first = exchange.first,
                           .count = exchange.count};
@@ -114,7 +115,8 @@ class ModbusCodec final : public LinkCodec {
   [[nodiscard]] Duration patience(const ModbusExchange& exchange) const noexcept {
     constexpr int kFrameBytes =
         9;  // of a write or a question, and what stands around the registers of an answer
-    return link_.timeout + link_.byte_time * (2 * kFrameBytes + 2 * exchange.count) + link_.frame_gap;
+    return settings_.timeout + settings_.byte_time * (2 * kFrameBytes + 2 * exchange.count) +
+           settings_.frame_gap;
   }
 
   void takeAnswer(MonotonicTime now) noexcept {
@@ -134,27 +136,29 @@ class ModbusCodec final : public LinkCodec {
   }
 
   // A register is a word; of two the first is the high one, unless the slave has it otherwise.
-  [[nodiscard]] std::array<std::uint16_t, 2> wordsOf(const LinkField& field, double value) const noexcept {
+  [[nodiscard]] std::array<std::uint16_t, 2> wordsOf(const SerialLinkField& field,
+                                                     double value) const noexcept {
     std::array<std::uint8_t, 4> bytes{};
     writeWire(field.type, value, bytes);
     const auto low = readLittleEndian<std::uint16_t>(bytes, 0);
     const auto high = readLittleEndian<std::uint16_t>(bytes, 2);
-    const bool low_first = registersOf(field) == 1 || link_.low_word_first;
+    const bool low_first = registersOf(field) == 1 || settings_.low_word_first;
     return low_first ? std::array{low, high} : std::array{high, low};
   }
 
-  [[nodiscard]] double valueOf(const LinkField& field, std::span<const std::uint16_t> words) const noexcept {
+  [[nodiscard]] double valueOf(const SerialLinkField& field,
+                               std::span<const std::uint16_t> words) const noexcept {
     std::array<std::uint8_t, 4> bytes{};
     const bool two = words.size() > 1;
-    const std::size_t low = two && !link_.low_word_first ? 1 : 0;
+    const std::size_t low = two && !settings_.low_word_first ? 1 : 0;
     writeLittleEndian(bytes, 0, words[low]);
     if (two) writeLittleEndian(bytes, 2, words[1 - low]);
     return readWire(field.type, bytes);
   }
 
-  ModbusLink link_;
+  ModbusSettings settings_;
   ReceivedFields received_;
-  std::vector<LinkField> sent_;
+  std::vector<SerialLinkField> sent_;
   std::vector<ModbusExchange> exchanges_;  ///< Writes first.
   std::size_t writes_ = 0;
   std::size_t next_ = 0;  ///< Next question of the round under way; at its end: over.
@@ -167,9 +171,10 @@ class ModbusCodec final : public LinkCodec {
 
 }  // namespace
 
-std::unique_ptr<LinkCodec> makeModbusCodec(const ModbusLink& link, std::vector<LinkField> received,
-                                           std::vector<LinkField> sent) {
-  return std::make_unique<ModbusCodec>(link, std::move(received), std::move(sent));
+std::unique_ptr<SerialLinkCodec> makeModbusCodec(const ModbusSettings& settings,
+                                                 std::vector<SerialLinkField> received,
+                                                 std::vector<SerialLinkField> sent) {
+  return std::make_unique<ModbusCodec>(settings, std::move(received), std::move(sent));
 }
 
 }  // namespace rc10

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "module/cobs_protocol.hpp"
-#include "module/link_codec.hpp"
+#include "module/serial_link_codec.hpp"
 
 namespace rc10 {
 namespace {
@@ -22,7 +22,7 @@ struct CobsMessage {
   std::vector<Part> parts;
 };
 
-[[nodiscard]] std::vector<CobsMessage> messagesOf(const std::vector<LinkField>& fields) {
+[[nodiscard]] std::vector<CobsMessage> messagesOf(const std::vector<SerialLinkField>& fields) {
   std::vector<CobsMessage> messages;
   for (std::size_t i = 0; i < fields.size(); ++i) {
     const auto number = static_cast<std::uint8_t>(std::strtoul(fields[i].message.c_str(), nullptr, 10));
@@ -40,9 +40,9 @@ struct CobsMessage {
   return messages;
 }
 
-class CobsCodec final : public LinkCodec, public CobsListener {
+class CobsCodec final : public SerialLinkCodec, public CobsListener {
  public:
-  CobsCodec(std::vector<LinkField> received, std::vector<LinkField> sent)
+  CobsCodec(std::vector<SerialLinkField> received, std::vector<SerialLinkField> sent)
       : heard_(messagesOf(received)),
         said_(messagesOf(sent)),
         received_(std::move(received)),
@@ -89,7 +89,7 @@ class CobsCodec final : public LinkCodec, public CobsListener {
   std::vector<CobsMessage> heard_;
   std::vector<CobsMessage> said_;
   ReceivedFields received_;
-  std::vector<LinkField> sent_;
+  std::vector<SerialLinkField> sent_;
   std::uint64_t wrong_size_ = 0;
   std::unique_ptr<CobsProtocol> owned_;
   const CobsProtocol* protocol_;
@@ -97,7 +97,8 @@ class CobsCodec final : public LinkCodec, public CobsListener {
 
 }  // namespace
 
-std::unique_ptr<LinkCodec> makeCobsCodec(std::vector<LinkField> received, std::vector<LinkField> sent) {
+std::unique_ptr<SerialLinkCodec> makeCobsCodec(std::vector<SerialLinkField> received,
+                                               std::vector<SerialLinkField> sent) {
   return std::make_unique<CobsCodec>(std::move(received), std::move(sent));
 }
 

@@ -3,15 +3,15 @@
 
 #include <gtest/gtest.h>
 
-#include "module/link_field.hpp"
 #include "module/serial_link_board.hpp"
+#include "module/serial_link_field.hpp"
 
-namespace rc10::test::link_field_test {
+namespace rc10::test::serial_link_field_test {
 namespace {
 
 using namespace serial_link_board;
 
-TEST(LinkField, EveryTypeKeepsWhatItCanSayAndCutsOffTheRest) {
+TEST(SerialLinkField, EveryTypeKeepsWhatItCanSayAndCutsOffTheRest) {
   constexpr std::array<std::pair<WireType, std::pair<double, double>>, 6> kRanges{
       {{WireType::kU8, {0, 255}},
        {WireType::kI8, {-128, 127}},
@@ -39,4 +39,4 @@ TEST(LinkField, EveryTypeKeepsWhatItCanSayAndCutsOffTheRest) {
 }
 
 }  // namespace
-}  // namespace rc10::test::link_field_test
+}  // namespace rc10::test::serial_link_field_test
