@@ -25,7 +25,7 @@ using rc10::test::requestWith;
 using testing::HasSubstr;
 
 // CLOCK_REALTIME and CLOCK_MONOTONIC are read one after the other: between them, a busy machine may pause.
-constexpr std::int64_t kPlay_ns = 20'000'000;
+constexpr std::int64_t kPlayNs = 20'000'000;
 
 TEST(LiveGateway, PassesCommandsOnWithTheKernelsReceiveTime) {
   inPrivateNetwork([] {
@@ -40,8 +40,8 @@ TEST(LiveGateway, PassesCommandsOnWithTheKernelsReceiveTime) {
       link::Command command;
       ASSERT_TRUE(gateway.rc10d().await(command));
       EXPECT_EQ(command.seq, seq);
-      EXPECT_GE(command.received_ns, before - kPlay_ns);
-      EXPECT_LE(command.received_ns, after + kPlay_ns);
+      EXPECT_GE(command.received_ns, before - kPlayNs);
+      EXPECT_LE(command.received_ns, after + kPlayNs);
     }
   });
 }
@@ -62,22 +62,22 @@ TEST(LiveGateway, CommandsThatWaitedWhileItWasStoppedKeepTheirAge) {
       client.command(seq);
     }
     const auto after = nowNs();
-    while (nowNs() <= after + 2 * kPlay_ns)
+    while (nowNs() <= after + 2 * kPlayNs)
       std::this_thread::sleep_for(1ms);  // so the time of reading is another
     gateway.resume();
     for (std::int64_t seq = 1; seq <= 3; ++seq) {
       link::Command command;
       ASSERT_TRUE(gateway.rc10d().await(command));
       EXPECT_EQ(command.seq, seq);
-      EXPECT_GE(command.received_ns, before - kPlay_ns);
-      EXPECT_LE(command.received_ns, after + kPlay_ns);
+      EXPECT_GE(command.received_ns, before - kPlayNs);
+      EXPECT_LE(command.received_ns, after + kPlayNs);
     }
     // The next is fresh again.
     const auto later = nowNs();
     client.command(4);
     link::Command command;
     ASSERT_TRUE(gateway.rc10d().await(command));
-    EXPECT_GE(command.received_ns, later - kPlay_ns);
+    EXPECT_GE(command.received_ns, later - kPlayNs);
   });
 }
 

@@ -102,6 +102,8 @@ class JointBench : public ::testing::Test {
     const double closed = stuck_ || angle() <= stop_deg_ + 0.5 ? 1.0 : 0.0;
     robot_.setOutput({.module = 0, .signal = 0}, switch_heard_ ? closed : kNoSignal);
   }
+  /// No target: kCoast.
+  ControlMode mode() { return robot_.motor(0).target.value_or(Target{}).mode; }
   double target() { return robot_.motor(0).target ? robot_.motor(0).target->value : kNoSignal; }
   double state() { return module_->outputs()[0]; }
   double moved() { return module_->outputs()[1]; }

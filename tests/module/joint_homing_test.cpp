@@ -55,12 +55,12 @@ TEST_F(HomingJoint, FindsItsReferenceAtAStop) {
   ask(kNoSignal, 1.0);
   run(1);
   EXPECT_EQ(state(), kHoming);
-  EXPECT_EQ(robot_.motor(0).target->mode, ControlMode::kCurrent);
+  EXPECT_EQ(mode(), ControlMode::kCurrent);
   EXPECT_GT(target(), 0.0) << "away from the end first";
   double most_a = 0.0;
   for (int i = 0; i < 4000 && state() == kHoming; ++i) {
     run(1);
-    if (robot_.motor(0).target->mode == ControlMode::kCurrent) most_a = std::max(most_a, std::fabs(target()));
+    if (mode() == ControlMode::kCurrent) most_a = std::max(most_a, std::fabs(target()));
   }
   EXPECT_LE(most_a, 0.5);
   EXPECT_THAT(events_, ElementsAre(0U));
