@@ -67,6 +67,7 @@ class Motor_Base : public FrameListener {
 
   /// Before a target of this mode is shaped and followed: a motor whose encoder is absolute, and which may
   /// have lost turns, knows its angle again as at power-up. Not while an angle is followed: it would jump.
+  /// Of use only while the angle has no known reference.
   virtual void restoreReference(ControlMode) noexcept {}
 
   /// Scales the effort limit from this tick on, by 0 (nothing) to 1 (all): a hot motor gets less.
@@ -100,8 +101,8 @@ class Motor_Base : public FrameListener {
   [[nodiscard]] virtual bool speaksUnasked() const noexcept = 0;
 
   /// Result of update(), for packers and for the state.
-  [[nodiscard]] virtual float commandValue() const noexcept = 0;
-  [[nodiscard]] virtual CommandUnit commandUnit() const noexcept = 0;
+  [[nodiscard]] float commandValue() const noexcept { return command_value_; }
+  [[nodiscard]] CommandUnit commandUnit() const noexcept { return command_unit_; }
 
   /// Progress of the sequence begun by order(kEnable) or order(kDisable). Drives without one are done
   /// at once.
@@ -134,6 +135,8 @@ class Motor_Base : public FrameListener {
 
   MotorFeedback feedback_;
   std::uint32_t limits_ = 0;
+  float command_value_ = 0.0F;  ///< Result of update().
+  CommandUnit command_unit_ = CommandUnit::kNone;
 
  private:
   std::string name_;

@@ -29,8 +29,6 @@ class SoloMotor : public Motor_Base, public CommandPacker {
   [[nodiscard]] const DriveFrames& driveFrames() const noexcept override { return traits_.frames; }
   [[nodiscard]] Duration feedbackPeriod() const noexcept override { return feedback_period_; }
   [[nodiscard]] bool speaksUnasked() const noexcept override { return !traits_.asked; }
-  [[nodiscard]] float commandValue() const noexcept override { return command_value_; }
-  [[nodiscard]] CommandUnit commandUnit() const noexcept override { return command_unit_; }
   bool setZero(double angle_deg) noexcept override;
   void forgetReference() noexcept override;
   [[nodiscard]] bool due(const Tick& tick) const noexcept final;
@@ -144,8 +142,6 @@ class SoloMotor : public Motor_Base, public CommandPacker {
   bool holding_ = false;
   bool follows_angle_ = false;  ///< By the target of the last tick.
   double hold_deg_ = 0.0;
-  float command_value_ = 0.0F;
-  CommandUnit command_unit_ = CommandUnit::kNone;
 };
 
 /// Turns of a drive's own output, on which it reports, per turn of the output shaft.

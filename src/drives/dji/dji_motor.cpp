@@ -42,10 +42,13 @@ DJI_Motor::DJI_Motor(const MotorSettings& settings, const DjiModel& model)
                        static_cast<float>(model_->feedback_raw_full_scale)),
       torque_nm_per_a_(model_->rotor_torque_nm_per_a * static_cast<float>(gear_ratio_)),
       raw_per_effort_(static_cast<float>(direction_ * table().raw_full_scale) / table().full_scale),
+      raw_full_scale_(static_cast<float>(table().raw_full_scale)),
       damping_a_per_rpm_(command_ == DjiCommand::kCurrent
                              ? table().full_scale * static_cast<float>(gear_ratio_ / model_->gear_ratio) /
                                    model_->no_load_rpm
-                             : 0.0F) {}
+                             : 0.0F) {
+  command_unit_ = command_ == DjiCommand::kCurrent ? CommandUnit::kAmpere : CommandUnit::kVolt;
+}
 
 bool DJI_Motor::matchesFrame(const CanFrame& frame) const noexcept {
   return frame.id == filters_[0].id && !frame.fd && frame.type != FrameType::kError;
@@ -152,26 +155,28 @@ Target DJI_Motor::held() noexcept {
   return Target{.mode = ControlMode::kTotalAngle, .value = hold_deg_};
 }
 
-Target DJI_Motor::wantedTarget() noexcept {
+const Target& DJI_Motor::wantedTarget() noexcept {
   const FrameKind kind = ordered();
   if (kind != FrameKind::kHold) holding_ = false;
   switch (kind) {
     case FrameKind::kCommand:
-      if (targetInForce().mode == ControlMode::kBrake) return Target{.mode = ControlMode::kVelocity};
-      return targetInForce();
-    case FrameKind::kDamp: return damped();
-    case FrameKind::kBrake: return Target{.mode = ControlMode::kVelocity};
-    case FrameKind::kHold: return held();
-    default: return Target{};
+      if (targetInForce().mode != ControlMode::kBrake) return targetInForce();
+      own_ = Target{.mode = ControlMode::kVelocity};
+      break;
+    case FrameKind::kDamp: own_ = damped(); break;
+    case FrameKind::kBrake: own_ = Target{.mode = ControlMode::kVelocity}; break;
+    case FrameKind::kHold: own_ = held(); break;
+    default: own_ = Target{}; break;
   }
+  return own_;
 }
 
 void DJI_Motor::update(const Tick& tick) noexcept {
   const float sample_dt_s = spacing_.take();
   silence_s_ = sample_dt_s > 0.0F ? 0.0F : std::min(silence_s_ + tick.dt_s, 1.0F);
   limits_ = 0;
-  const Target wanted = wantedTarget();
-  restoreReference(wanted.mode);
+  const Target& wanted = wantedTarget();
+  if (encoder_.referenceLost()) restoreReference(wanted.mode);
   const float limit = effort_limit_ * derating();
 
   switch (wanted.mode) {
@@ -180,8 +185,8 @@ void DJI_Motor::update(const Tick& tick) noexcept {
       loops_.reset();
       const float ff = command_ == DjiCommand::kCurrent ? wanted.torque_ff_nm / torque_nm_per_a_ : 0.0F;
       const float effort = saturate(static_cast<float>(wanted.value)) + saturate(ff);
-      effort_ = std::clamp(effort, -limit, limit);
-      if (effort_ != effort) limits_ |= kLimitCurrent;
+      command_value_ = std::clamp(effort, -limit, limit);
+      if (command_value_ != effort) limits_ |= kLimitCurrent;
       break;
     }
     case ControlMode::kVelocity:
@@ -201,16 +206,17 @@ void DJI_Motor::runLoops(const Target& target, float sample_dt_s, float limit) n
                                      .total_angle_deg = feedback_.total_angle_deg,
                                      .velocity_rpm = feedback_.velocity_rpm};
     const float ff = command_ == DjiCommand::kCurrent ? target.torque_ff_nm / torque_nm_per_a_ : 0.0F;
-    effort_ = loops_.step(target, measured, sample_dt_s, limit, effort_, saturate(ff));
+    command_value_ = loops_.step(target, measured, sample_dt_s, limit, command_value_, saturate(ff));
+  } else {  // the limit may have come down since the last sample
+    command_value_ = std::clamp(command_value_, -limit, limit);
   }
-  effort_ = std::clamp(effort_, -limit, limit);  // the limit may have come down since the last sample
   if (loops_.effortLimited()) limits_ |= kLimitCurrent;
   if (loops_.velocityLimited()) limits_ |= kLimitVelocity;
 }
 
 void DJI_Motor::releaseEffort() noexcept {
   loops_.reset();
-  effort_ = 0.0F;
+  command_value_ = 0.0F;
 }
 
 ModeSet DJI_Motor::modes() const noexcept {
@@ -222,15 +228,10 @@ ModeSet DJI_Motor::modes() const noexcept {
 
 const DriveFrames& DJI_Motor::driveFrames() const noexcept { return kDjiFrames; }
 
-CommandUnit DJI_Motor::commandUnit() const noexcept {
-  return command_ == DjiCommand::kCurrent ? CommandUnit::kAmpere : CommandUnit::kVolt;
-}
-
 CanId DJI_Motor::commandId() const noexcept { return djiCommandId(*model_, command_, id_); }
 
 std::int16_t DJI_Motor::rawCommand() const noexcept {
-  const auto full_scale = static_cast<float>(table().raw_full_scale);
-  const float raw = std::clamp(effort_ * raw_per_effort_, -full_scale, full_scale);
+  const float raw = std::clamp(command_value_ * raw_per_effort_, -raw_full_scale_, raw_full_scale_);
   return static_cast<std::int16_t>(raw + (raw < 0.0F ? -0.5F : 0.5F));
 }
 

@@ -44,8 +44,6 @@ class DJI_Motor : public Motor_Base {
   [[nodiscard]] const DriveFrames& driveFrames() const noexcept override;
   [[nodiscard]] Duration feedbackPeriod() const noexcept override { return std::chrono::milliseconds{1}; }
   [[nodiscard]] bool speaksUnasked() const noexcept override { return true; }
-  [[nodiscard]] float commandValue() const noexcept override { return effort_; }
-  [[nodiscard]] CommandUnit commandUnit() const noexcept override;
   bool setZero(double angle_deg) noexcept override;
   void forgetReference() noexcept override;
   void restoreReference(ControlMode followed) noexcept override;
@@ -66,7 +64,8 @@ class DJI_Motor : public Motor_Base {
   void setReference(double total_angle_deg) noexcept;
   void updateAngles() noexcept;
   void findTurn(double within_turn_deg) noexcept;
-  [[nodiscard]] Target wantedTarget() noexcept;
+  /// Valid until the next call.
+  [[nodiscard]] const Target& wantedTarget() noexcept;
   [[nodiscard]] Target damped() const noexcept;
   [[nodiscard]] Target held() noexcept;
   [[nodiscard]] bool silent() const noexcept;
@@ -94,6 +93,7 @@ class DJI_Motor : public Motor_Base {
   float amperes_per_raw_;
   float torque_nm_per_a_;
   float raw_per_effort_;
+  float raw_full_scale_;
   float damping_a_per_rpm_;  ///< Damping of the shorted winding; 0 V have the same effect.
 
   // total angle = reference_deg_ + (counts - reference_counts_) * degrees_per_count_
@@ -102,8 +102,8 @@ class DJI_Motor : public Motor_Base {
   double hold_deg_ = 0.0;
   bool holding_ = false;
   std::uint64_t hold_losses_ = 0;  ///< Losses of the encoder, when the hold began.
+  Target own_;                     ///< Target of an order that has none.
   float silence_s_ = 0.0F;         ///< Ticks since the last sample, in seconds.
-  float effort_ = 0.0F;
 };
 
 /// The three models under the users' names: `M3508 wheel{settings}`. They differ only in their table.
