@@ -34,7 +34,8 @@ inline constexpr float kHugeTerm = 1e30F;
 /// A number that can be added to others: overflow becomes +-kHugeTerm, NaN (0 * infinity) becomes 0.
 [[nodiscard]] inline float saturate(float value) noexcept {
   if (std::fabs(value) <= kHugeTerm) return value;  // one comparison, for nearly every number
-  return std::isnan(value) ? 0.0F : std::copysign(kHugeTerm, value);
+  if (std::isnan(value)) return 0.0F;
+  return value > 0.0F ? kHugeTerm : -kHugeTerm;
 }
 
 /// A float near a double of any size.

@@ -16,6 +16,11 @@ constexpr float kFaded = 1e-6F;
   return std::fabs(left) < kFaded ? 0.0F : left;
 }
 
+[[nodiscard]] bool bothFinite(float a, float b) noexcept {
+  if (std::isfinite(a - b)) return true;  // one comparison, for nearly all
+  return std::isfinite(a) && std::isfinite(b);
+}
+
 }  // namespace
 
 inline float PID_Position::errorOf(float target, float measured) const noexcept {
@@ -30,11 +35,11 @@ inline float PID_Position::afterDeadband(float error) const noexcept {
 }
 
 inline float PID_Position::proportionalAndDerivative() const noexcept {
-  return saturate(config_.kp * state_.error) - saturate(config_.kd * derivative_.value());
+  return saturate(config_.kp * state_.error - config_.kd * derivative_.value());
 }
 
 float PID_Position::step(float target, float measured, float dt_s, OutputRange range) noexcept {
-  if (!std::isfinite(target) || !std::isfinite(measured)) {
+  if (!bothFinite(target, measured)) {
     reset();
     return 0.0F;
   }
@@ -45,7 +50,7 @@ float PID_Position::step(float target, float measured, float dt_s, OutputRange r
 }
 
 float PID_Position::stepError(float error, float measured_change, float dt_s, OutputRange range) noexcept {
-  if (!std::isfinite(error) || !std::isfinite(measured_change)) {
+  if (!bothFinite(error, measured_change)) {
     reset();
     return 0.0F;
   }
@@ -53,15 +58,21 @@ float PID_Position::stepError(float error, float measured_change, float dt_s, Ou
   return advance(error, measured_change, dt_s, range);
 }
 
-float PID_Position::advance(float error, float measured_change, float dt_s, OutputRange range) noexcept {
+// Over a while after a start.
+void PID_Position::fade(float dt_s) noexcept {
+  const float left = kStartGlideSeconds / (kStartGlideSeconds + dt_s);
+  state_.glide = faded(state_.glide, left);
+  state_.output_offset = faded(state_.output_offset, left);
+  state_.fades = state_.glide != 0.0F || state_.output_offset != 0.0F;
+}
+
+// Inlined, or every number of its callers would be put away for the call.
+[[gnu::always_inline]] inline float PID_Position::advance(float error, float measured_change, float dt_s,
+                                                          OutputRange range) noexcept {
   const float dt = std::min(dt_s, kMaxStepSeconds);
 
-  if (state_.glide != 0.0F || state_.output_offset != 0.0F) {  // over a while after a start
-    const float fade = kStartGlideSeconds / (kStartGlideSeconds + dt);
-    state_.glide = faded(state_.glide, fade);
-    state_.output_offset = faded(state_.output_offset, fade);
-  }
-  state_.whole_error = saturate(error + state_.glide);
+  if (state_.fades) fade(dt);
+  state_.whole_error = error + state_.glide;
   const float e = afterDeadband(state_.whole_error);
   if (!state_.running) {
     state_.error = e;
@@ -69,7 +80,7 @@ float PID_Position::advance(float error, float measured_change, float dt_s, Outp
   }
   range = range.within(config_.output_limit);
 
-  derivative_.step(saturate(measured_change / dt), dt);
+  derivative_.step(measured_change / dt, dt);
   const float mean = 0.5F * (e + state_.error);
   state_.error = e;
   const float others = proportionalAndDerivative() + state_.output_offset;
@@ -85,7 +96,7 @@ float PID_Position::advance(float error, float measured_change, float dt_s, Outp
   const OutputRange hold{std::min(range.low, 0.0F), std::max(range.high, 0.0F)};
   state_.integral = hold.within(config_.integral_limit).clamp(saturate(state_.integral));
 
-  state_.output = range.clamp(saturate(others + state_.integral));
+  state_.output = range.clamp(others + state_.integral);
   state_.running = true;
   return state_.output;
 }
@@ -99,7 +110,7 @@ void PID_Position::start(float output_in_force, float measured, float target) no
   state_.glide = -errorOf(target, measured);
   state_.measured = measured;
   state_.output = output_in_force;
-  state_.running = true;
+  state_.fades = state_.running = true;
 }
 
 void PID_Position::retune(const Config& config) noexcept {
@@ -120,6 +131,7 @@ void PID_Position::retune(const Config& config) noexcept {
   } else {
     state_.output_offset = gap;
   }
+  state_.fades = true;
 }
 
 void PID_Position::reset() noexcept {

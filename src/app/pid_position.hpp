@@ -40,6 +40,7 @@ class PID_Position {
     float glide = 0.0F;          ///< E; what is left of the way from the measured value at start().
     float output_offset = 0.0F;  ///< O; of the output in force at start() or retune(), what the terms lack.
     float output = 0.0F;         ///< O; of the last step.
+    bool fades = false;          ///< Something may be left of `glide` or `output_offset`.
     bool running = false;        ///< A step or start() came since reset().
   };
 
@@ -70,6 +71,7 @@ class PID_Position {
   [[nodiscard]] const State& state() const noexcept { return state_; }
 
  private:
+  void fade(float dt_s) noexcept;
   /// stepError() on finite numbers and a dt above 0.
   float advance(float error, float measured_change, float dt_s, OutputRange range) noexcept;
   [[nodiscard]] float errorOf(float target, float measured) const noexcept;

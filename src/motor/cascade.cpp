@@ -20,20 +20,28 @@ bool closesLoop(ControlMode mode) noexcept {
   return mode == ControlMode::kVelocity || mode == ControlMode::kAngle || mode == ControlMode::kTotalAngle;
 }
 
-bool allFinite(const Target& target, const Cascade::Measured& measured) noexcept {
+bool allFinite(const Target& target, const Cascade::Measured& measured, float effort_ff) noexcept {
+  const double sum =
+      target.value + measured.total_angle_deg +
+      static_cast<double>(target.velocity_ff_rpm + measured.angle_deg + measured.velocity_rpm + effort_ff);
+  if (std::isfinite(sum)) return true;  // only if each of them is, as nearly always
   return std::isfinite(target.value) && std::isfinite(target.velocity_ff_rpm) &&
          std::isfinite(measured.angle_deg) && std::isfinite(measured.total_angle_deg) &&
-         std::isfinite(measured.velocity_rpm);
+         std::isfinite(measured.velocity_rpm) && std::isfinite(effort_ff);
 }
 
 }  // namespace
 
 Cascade::Cascade(const CascadeConfig& config)
-    : config_(config), velocity_(makeVelocityLoop(config)), angle_(config.angle) {}
+    : config_(config),
+      velocity_range_(OutputRange{}.within(config.velocity_limit_rpm)),
+      velocity_(makeVelocityLoop(config)),
+      angle_(config.angle) {}
 
 void Cascade::retune(const CascadeConfig& config) noexcept {
   if (config.velocity.index() != config_.velocity.index()) return;
   config_ = config;
+  velocity_range_ = OutputRange{}.within(config.velocity_limit_rpm);
   angle_.retune(config.angle);
   auto* incremental = std::get_if<PID_Incremental>(&velocity_);
   if (incremental != nullptr) {
@@ -50,7 +58,7 @@ void Cascade::reset() noexcept {
 }
 
 float Cascade::velocityTarget(const Target& target, const Measured& measured, float dt_s) noexcept {
-  const OutputRange range = OutputRange{}.within(config_.velocity_limit_rpm);
+  const OutputRange& range = velocity_range_;
   float wanted = 0.0F;
   if (target.mode == ControlMode::kVelocity) {
     wanted = nearFloat(target.value);
@@ -64,14 +72,15 @@ float Cascade::velocityTarget(const Target& target, const Measured& measured, fl
   }
   const float limited = range.clamp(wanted);
   // The angle loop knows the limit and stops there; a velocity target may lie beyond it.
-  velocity_limited_ = limited != wanted || (target.mode != ControlMode::kVelocity &&
-                                            (limited <= range.low || limited >= range.high));
+  velocity_limited_ = target.mode == ControlMode::kVelocity ? limited != wanted
+                                                            : limited <= range.low || limited >= range.high;
+  last_total_angle_deg_ = measured.total_angle_deg;
   return limited;
 }
 
 float Cascade::step(const Target& target, const Measured& measured, float dt_s, float effort_limit,
                     float effort_in_force, float effort_ff) noexcept {
-  if (!closesLoop(target.mode) || !allFinite(target, measured) || !std::isfinite(effort_ff)) {
+  if (!closesLoop(target.mode) || !allFinite(target, measured, effort_ff)) {
     reset();
     return 0.0F;
   }
@@ -82,7 +91,6 @@ float Cascade::step(const Target& target, const Measured& measured, float dt_s, 
     active_mode_ = target.mode;
   }
   const float velocity_target = velocityTarget(target, measured, dt_s);
-  last_total_angle_deg_ = measured.total_angle_deg;
 
   const OutputRange range = OutputRange::symmetric(effort_limit);
   const auto advance = [&](auto& loop) noexcept {

@@ -14,22 +14,26 @@ constexpr float kSmoothing = 0.03F;
 }  // namespace
 
 SampleSpacing::SampleSpacing(Duration nominal) noexcept
-    : nominal_s_(seconds(nominal)), period_s_(nominal_s_) {}
+    : shortest_s_(kShortest * seconds(nominal)),
+      longest_s_(kLongest * seconds(nominal)),
+      period_s_(seconds(nominal)) {}
 
 void SampleSpacing::add(Duration spacing) noexcept {
-  pending_s_ += std::clamp(seconds(spacing), 0.0F, kLongest * nominal_s_);
+  pending_s_ += std::clamp(seconds(spacing), 0.0F, longest_s_);
   ++pending_samples_;
 }
+
+float SampleSpacing::pendingPeriods() const noexcept { return std::round(pending_s_ / period_s_); }
 
 float SampleSpacing::take() noexcept {
   if (pending_samples_ == 0) return 0.0F;
   // Lost frames make the spacing a multiple of the period, late ones do not change how many there are.
-  const float periods = pending_s_ < 1.5F * period_s_ ? 1.0F : std::round(pending_s_ / period_s_);
-  const float measured_s = std::clamp(pending_s_ / periods, kShortest * nominal_s_, kLongest * nominal_s_);
+  const float periods = pending_s_ < 1.5F * period_s_ ? 1.0F : pendingPeriods();
+  const float measured_s = std::clamp(pending_s_ / periods, shortest_s_, longest_s_);
   period_s_ += (measured_s - period_s_) * kSmoothing;
   pending_s_ = 0.0F;
   pending_samples_ = 0;
-  return std::clamp(periods * period_s_, kShortest * nominal_s_, kLongest * nominal_s_);
+  return std::clamp(periods * period_s_, shortest_s_, longest_s_);
 }
 
 }  // namespace rc10

@@ -33,7 +33,11 @@ class SampleSpacing {
   [[nodiscard]] float periodSeconds() const noexcept { return period_s_; }
 
  private:
-  float nominal_s_;
+  /// Of a late sample, or of several.
+  [[nodiscard, gnu::noinline]] float pendingPeriods() const noexcept;
+
+  float shortest_s_;
+  float longest_s_;
   float period_s_;
   float pending_s_ = 0.0F;
   int pending_samples_ = 0;
