@@ -34,7 +34,8 @@ Encoder::Encoder(const Config& config) noexcept
     : config_(config),
       turns_per_count_(1.0 / static_cast<double>(config.counts_per_turn)),
       error_per_ns2_(static_cast<double>(config.max_acceleration_rpm_per_s) * kTurnsPerNsPerRpm * 1e-9 / 4.0),
-      error_per_ns_(static_cast<double>(config.velocity_error_rpm) * kTurnsPerNsPerRpm) {
+      error_per_ns_(static_cast<double>(config.velocity_error_rpm) * kTurnsPerNsPerRpm),
+      rounding_(config.sample_period - config.sample_period / 20) {
   const double spacing_s = longestSpacingSeconds(config, kHalfTurn);
   // The stamps may make the spacing look shorter than it is.
   longest_gap_ =
@@ -63,41 +64,42 @@ inline Encoder::Step Encoder::stepOver(double moved_turns, double turns_per_ns,
   const double ahead = turns_per_ns * spacing_ns - moved_turns;
   const double way = std::fabs(ahead);
   const double explained = errorTurns(spacing_ns) + kJumpMarginTurns;
-  if (way < 0.5) return {.turns = 0, .off = way, .explained = way <= explained};  // nearly always
+  if (way < 0.5) return {.turns = 0, .explained = way <= explained, .off = way};  // nearly always
   // A speed beyond all reason must not overflow the conversion.
-  if (!(way < kMostTurns)) return {.turns = 0, .off = way, .explained = false};
-  const auto turns = static_cast<std::int64_t>(ahead + std::copysign(0.5, ahead));
+  if (!(way < kMostTurns)) return {.turns = 0, .explained = false, .off = way};
+  const auto turns = static_cast<std::int32_t>(ahead + std::copysign(0.5, ahead));
   const double off = std::fabs(ahead - static_cast<double>(turns));
-  return {.turns = turns, .off = off, .explained = off <= explained};
+  return {.turns = turns, .explained = off <= explained, .off = off};
 }
 
 // By the stamps, and by whole periods from what they say down to two less: of these, the number of turns that
 // speed and position agree on.
-inline Encoder::Step Encoder::chooseStep(double moved_turns, double turns_per_ns, Duration gap) noexcept {
+Encoder::Step Encoder::chooseStep(double moved_turns, double turns_per_ns, Duration gap) noexcept {
   Step chosen = stepOver(moved_turns, turns_per_ns, nanoseconds(gap));
   const Duration period = config_.sample_period;
   if (period <= Duration{0}) return chosen;
   const Duration arrived = gap + late_;
-  const auto most = std::max<Duration::rep>(1, (arrived + period - period / 20).count() / period.count());
-  bool unsure = false;
-  bool agreed = true;
-  Duration late = late_;
+  const auto most = std::max<Duration::rep>(1, (arrived + rounding_) / period);
   const auto least = std::max<Duration::rep>(0, most - kMostLatePeriods);
-  for (Duration spacing = least * period; spacing <= most * period; spacing += period) {
+  const Duration longest = most * period;
+  Duration late = late_;
+  bool differ = false;
+  bool disagree = false;
+  for (Duration spacing = least * period; spacing <= longest; spacing += period) {
     const Step other = stepOver(moved_turns, turns_per_ns, nanoseconds(spacing));
-    const bool differs = other.turns != chosen.turns;
-    unsure = unsure || differs;
-    if (!other.explained) continue;
-    if (chosen.explained) {
-      agreed = agreed && !differs;
-      if (other.off > chosen.off) continue;
+    const bool both_explained = other.explained && chosen.explained;
+    if (other.turns != chosen.turns) {
+      differ = true;
+      disagree |= both_explained;
     }
+    if (!other.explained || (both_explained && other.off > chosen.off)) continue;
     chosen = other;
     late = arrived - spacing;
   }
-  chosen.in_doubt = unsure && !(chosen.explained && agreed);
+  chosen.in_doubt = chosen.explained ? disagree : differ;
   // Clocks drift: what is not seen again is forgotten.
-  late_ = std::clamp(late - gap / 100, Duration{0}, kMostLatePeriods * period);
+  const Duration remembered = std::min(late - gap / 100, kMostLatePeriods * period);
+  late_ = std::max(remembered, Duration{0});
   return chosen;
 }
 
@@ -116,7 +118,7 @@ bool Encoder::update(std::int32_t raw_counts, float velocity_rpm, MonotonicTime 
     // Too far apart, the nearest wrap keeps the position within the turn right.
     const Step step =
         countable ? chooseStep(moved_turns, turns_per_ns, gap) : stepOver(moved_turns, 0.0, 0.0);
-    total_counts_ += moved + step.turns * config_.counts_per_turn;
+    total_counts_ += moved + std::int64_t{step.turns} * config_.counts_per_turn;
     if (!countable) late_ = Duration{0};
     const bool leapt = countable && !step.explained && jumped(step.off, velocity_rpm, gap);
     if (leapt) ++jumps_;

@@ -75,15 +75,17 @@ class Encoder {
 
   /// Turns of one step, and how sure they are.
   struct Step {
-    std::int64_t turns = 0;  ///< Whole ones, beside the difference of the two positions.
-    double off = 0.0;        ///< Turns that the prediction was off, to either side.
+    std::int32_t turns = 0;  ///< Whole ones, beside the difference of the two positions.
     bool explained = false;  ///< By the speeds, at a spacing that the stamps allow.
     bool in_doubt = false;   ///< Another spacing would be another number of turns.
+    double off = 0.0;        ///< Turns that the prediction was off, to either side.
   };
 
   void loseReference() noexcept;
   [[nodiscard]] Step stepOver(double moved_turns, double turns_per_ns, double spacing_ns) const noexcept;
-  [[nodiscard]] Step chooseStep(double moved_turns, double turns_per_ns, Duration gap) noexcept;
+  /// Not inlined: its numbers fill the registers.
+  [[nodiscard, gnu::noinline]] Step chooseStep(double moved_turns, double turns_per_ns,
+                                               Duration gap) noexcept;
   /// predictionErrorTurns() without an error of the stamps.
   [[nodiscard]] double errorTurns(double spacing_ns) const noexcept {
     return (error_per_ns2_ * spacing_ns + error_per_ns_) * spacing_ns;
@@ -94,6 +96,7 @@ class Encoder {
   double turns_per_count_;
   double error_per_ns2_;  ///< Error of the acceleration, in turns.
   double error_per_ns_;   ///< Error of the reported speed, in turns.
+  Duration rounding_;     ///< Makes whole sample periods of a time: up but for a twentieth of one.
   Duration longest_gap_{};
   std::uint64_t losses_ = 0;
   std::uint64_t jumps_ = 0;
