@@ -62,16 +62,17 @@ Acting Axis::acting() const noexcept {
 
 // ---- Feedback
 
-void Axis::listen(const Tick& tick, bool simulation_late) noexcept {
+bool Axis::listen(const Tick& tick, bool simulation_late) noexcept {
   const auto& feedback = motor_.feedback();
   // Samples that are old when they come are not heard: they could be old for ever.
   const bool heard =
-      feedback.samples != samples_ && tick.now - feedback.received <= entry_.feedback_timeout / 2;
+      feedback.samples != samples_ && 2 * (tick.now - feedback.received) <= entry_.feedback_timeout;
   const bool could_speak = !simulation_late || !bus_.simulated;
   if (could_speak) ++unheard_ticks_;
   if (heard) unheard_ticks_ = 0;
   if (heard) on_when_heard_ = isOn(status_);
   samples_ = feedback.samples;
+  return heard ? !bus_.held : fresh(tick);
 }
 
 bool Axis::fresh(const Tick& tick) const noexcept {
@@ -219,7 +220,7 @@ void Axis::order(RobotStatus robot, const Tick& tick) noexcept {
   in_force_ =
       stops ? Target{.mode = ControlMode::kVelocity, .value = fallback_.rampRpm(tick.now)} : motor_.target();
   // First, so that soft limits act in this tick already.
-  motor_.restoreReference(in_force_.mode);
+  if (!motor_.feedback().zeroed) motor_.restoreReference(in_force_.mode);
   const bool limited = (motor_.limits() & kLimitCurrent) != 0;
   const auto told =
       shaper_.follows(in_force_.mode) && !limited

@@ -36,8 +36,9 @@ class Axis {
 
   // ---- Feedback
 
-  /// Once a tick, first. `simulation_late`: simulated drives had no processor to speak.
-  void listen(const Tick& tick, bool simulation_late) noexcept;
+  /// Once a tick, first: whether its feedback is fresh(). `simulation_late`: simulated drives had no
+  /// processor to speak.
+  bool listen(const Tick& tick, bool simulation_late) noexcept;
   [[nodiscard]] bool fresh(const Tick& tick) const noexcept;
   /// Not fresh, and not only because this thread did not run.
   [[nodiscard]] bool lost(const Tick& tick) const noexcept;

@@ -19,8 +19,11 @@ class ForeignWatch final : public ForeignListener {
   explicit ForeignWatch(Robot& robot);
 
   void onForeign(const fdCANbus& bus, const CanFrame& frame) noexcept override;
-  /// Somebody else has commanded the motor's drive too often since the last call: the last of those frames,
-  /// as foreignFrame() tells it.
+  /// Somebody else has commanded the motor's drive too often since the last takeover().
+  [[nodiscard]] bool tookOver(std::size_t motor) const noexcept {
+    return watched_[motor].takeover.has_value();
+  }
+  /// The last of those frames, as foreignFrame() tells it; counting begins anew.
   [[nodiscard]] std::optional<std::int32_t> takeover(std::size_t motor) noexcept;
 
  private:

@@ -20,7 +20,7 @@ Supervisor::Supervisor(Robot& robot, LinkExchange& link, FlightRecorder* recorde
 void Supervisor::decide(const Tick& tick) noexcept {
   estop_asked_ = false;
   simulation_.look(robot_.simulationSteps().load(std::memory_order_relaxed), tick.now);
-  for (std::size_t motor = 0; motor < axes_.size(); ++motor) watch(motor, tick);
+  for (std::size_t motor = 0, count = axes_.size(); motor < count; ++motor) watch(motor, tick);
   for (std::size_t group = 0; group < groups_.size(); ++group) watchGroup(group, tick);
   watchConfiguring(tick);
   watchScan(tick);
@@ -30,30 +30,36 @@ void Supervisor::decide(const Tick& tick) noexcept {
 void Supervisor::watch(std::size_t motor, const Tick& tick) noexcept {
   auto& axis = axes_[motor];
   const auto who = static_cast<std::int16_t>(motor);
-  const auto fault = [&](std::int32_t native_code) {
-    report({EventCode::kMotorFault, Severity::kError, who, static_cast<std::int32_t>(axis.fault()),
-            native_code, tick.now});
-    transition(motor, MotorEvent::kFault, tick);
-  };
-  axis.listen(tick, simulation_.late());
+  const bool fresh = axis.listen(tick, simulation_.late());
   if (axis.missesDrive(tick))
     report({EventCode::kNeverHeard, Severity::kWarning, who, axis.id(), 0, tick.now});
-  if (axis.fresh(tick)) {
+  if (fresh) {
     transition(motor, MotorEvent::kFeedbackFresh, tick);
   } else if (axis.lost(tick)) {
     transition(motor, MotorEvent::kFeedbackLost, tick);
   }
   if (axis.losesReference(tick)) report({EventCode::kReferenceLost, Severity::kWarning, who, 0, 0, tick.now});
-  if (const auto native_code = axis.complains(tick)) fault(static_cast<std::int32_t>(*native_code));
-  if (const auto end = axis.endsEnabling(tick)) transition(motor, *end, tick);
-  if (axis.trips(reduced_, tick)) fault(0);
-  if (const auto by = foreign_.takeover(motor); by && axis.yields()) fault(*by);
+  if (const auto native_code = axis.complains(tick))
+    fault(motor, static_cast<std::int32_t>(*native_code), tick);
+  if (axis.status() == MotorStatus::kEnabling) {
+    if (const auto end = axis.endsEnabling(tick)) transition(motor, *end, tick);
+  }
+  if (axis.trips(reduced_, tick)) fault(motor, 0, tick);
+  if (foreign_.tookOver(motor)) {
+    if (const auto by = foreign_.takeover(motor); by && axis.yields()) fault(motor, *by, tick);
+  }
   if (const auto rest = axis.checkRest(tick); rest != RestCheck::Verdict::kRests)
     tellUnrest(motor, rest, tick);
   if (axis.lapses(tick)) {
     report({EventCode::kCommandTimeout, Severity::kWarning, who,
             static_cast<std::int32_t>(axis.timeoutAction()), 0, tick.now});
   }
+}
+
+void Supervisor::fault(std::size_t motor, std::int32_t native_code, const Tick& tick) noexcept {
+  report({EventCode::kMotorFault, Severity::kError, static_cast<std::int16_t>(motor),
+          static_cast<std::int32_t>(axes_[motor].fault()), native_code, tick.now});
+  transition(motor, MotorEvent::kFault, tick);
 }
 
 // A motor that is in FAULT stays there for its first reason; what its drive does is told all the same.
@@ -71,6 +77,10 @@ void Supervisor::tellUnrest(std::size_t motor, RestCheck::Verdict verdict, const
   if (robot_.unrestPolicy() == UnrestPolicy::kGroup) return;
   estop({StopCause::kFault, link::Name{axis.motor().name()}}, tick);
   heartbeat_rests_ = robot_.unrestPolicy() == UnrestPolicy::kHeartbeat;
+}
+
+void Supervisor::change(std::size_t motor, MotorEvent event, const Tick& tick) noexcept {
+  transition(motor, event, {causeOf(event, state_)}, tick);
 }
 
 void Supervisor::transition(std::size_t motor, MotorEvent event, const Stop& why, const Tick& tick) noexcept {
@@ -157,7 +167,8 @@ void Supervisor::fillSnapshot(Snapshot& snapshot) const noexcept {
   snapshot.skipped_setpoints = skipped_setpoints_;
   snapshot.events_dropped = events_dropped_;
   snapshot.motor_count = axes_.size();
-  for (std::size_t i = 0; i < snapshot.motor_count; ++i) axes_[i].fill(snapshot.motors[i]);
+  auto* motor = snapshot.motors.data();
+  for (const auto& axis : axes_) axis.fill(*motor++);
 }
 
 }  // namespace rc10

@@ -63,7 +63,8 @@ class Supervisor {
   void endFallbacks() noexcept;
 
   void fillSnapshot(Snapshot& snapshot) const noexcept;
-  void report(Event event) noexcept;
+  /// Not inlined, as what else is rare: watch() is short then, and has its registers for itself.
+  [[gnu::noinline]] void report(Event event) noexcept;
 
   /// A client has said something.
   void hearClient(MonotonicTime now) noexcept { client_heard_ = now; }
@@ -113,12 +114,14 @@ class Supervisor {
   /// `why`: of an event that stops a motor; by default what the event says.
   void transition(std::size_t motor, MotorEvent event, const Tick& tick) noexcept {
     const auto status = axes_[motor].status();
-    if (next(status, event) == status) return;  // as in nearly every tick
-    transition(motor, event, {causeOf(event, state_)}, tick);
+    if (next(status, event) != status) change(motor, event, tick);  // in few ticks
   }
+  [[gnu::noinline]] void change(std::size_t motor, MotorEvent event, const Tick& tick) noexcept;
   void transition(std::size_t motor, MotorEvent event, const Stop& why, const Tick& tick) noexcept;
   void watch(std::size_t motor, const Tick& tick) noexcept;
-  void tellUnrest(std::size_t motor, RestCheck::Verdict verdict, const Tick& tick) noexcept;
+  /// Of a motor whose Axis has just found a fault.
+  [[gnu::noinline]] void fault(std::size_t motor, std::int32_t native_code, const Tick& tick) noexcept;
+  [[gnu::noinline]] void tellUnrest(std::size_t motor, RestCheck::Verdict verdict, const Tick& tick) noexcept;
   void watchGroup(std::size_t index, const Tick& tick) noexcept;
   void stopGroup(std::size_t index, GroupStop reason, const Tick& tick) noexcept;
   void rearm(std::size_t index, const Tick& tick) noexcept;

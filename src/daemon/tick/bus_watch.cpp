@@ -72,9 +72,12 @@ void BusWatch::updateHealth(std::size_t bus, const Tick& tick) noexcept {
 }
 
 void BusWatch::reportState(std::size_t bus, const Tick& tick) noexcept {
-  auto& watched = watched_[bus];
   const auto state = robot_.buses()[bus].bus->health().state();
-  if (state == watched.state) return;
+  if (state != watched_[bus].state) changeState(bus, state, tick);
+}
+
+void BusWatch::changeState(std::size_t bus, BusState state, const Tick& tick) noexcept {
+  auto& watched = watched_[bus];
   supervisor_.report({EventCode::kBusState, state == BusState::kActive ? Severity::kInfo : Severity::kError,
                       static_cast<std::int16_t>(bus), static_cast<std::int32_t>(state),
                       static_cast<std::int32_t>(watched.state), tick.now});

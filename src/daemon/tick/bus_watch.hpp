@@ -40,6 +40,7 @@ class BusWatch {
   void probe(std::size_t bus, const Tick& tick) noexcept;
   void updateHealth(std::size_t bus, const Tick& tick) noexcept;
   void reportState(std::size_t bus, const Tick& tick) noexcept;
+  [[gnu::noinline]] void changeState(std::size_t bus, BusState state, const Tick& tick) noexcept;
   void reportForeign(std::size_t bus, const Tick& tick) noexcept;
 
   Robot& robot_;

@@ -169,10 +169,11 @@ void Scheduler::recordAges(const Snapshot& snapshot, const Tick& tick) noexcept 
   const auto is_news = [&tick](MonotonicTime received, MonotonicTime last) {
     return received != last && received != tick.now;
   };
-  for (std::size_t i = 0; i < snapshot.motor_count; ++i) {
+  auto* feedback_ages = link_.ages.feedback.data();
+  for (std::size_t i = 0, count = snapshot.motor_count; i < count; ++i) {
     const auto& motor = snapshot.motors[i];
     if (motor.acting != Acting::kTarget) continue;
-    link_.ages.feedback[i].record(snapshot.sent - motor.feedback.received);
+    feedback_ages[i].record(snapshot.sent - motor.feedback.received);
     if (!is_news(motor.command_received, commands_[i]) || !robot_.motors()[i].motor->due(tick)) continue;
     commands_[i] = motor.command_received;
     recordCommandAge(motor.owner, snapshot.sent - motor.command_received);

@@ -35,7 +35,7 @@ void MotorGuard::reset() noexcept {
   frozen_.reset();
 }
 
-MotorGuard::Verdict MotorGuard::step(const Observation& seen) noexcept {
+MotorGuard::Verdict MotorGuard::look(const Observation& seen) noexcept {
   const MotorFeedback& feedback = seen.feedback;
   if (!begun_) jumps_ = feedback.jumps;
   const bool new_sample = !begun_ || feedback.samples != samples_;

@@ -26,6 +26,11 @@ struct GuardConfig {
   bool encoder_jumps = false;       ///< One is a fault.
   float frozen_a = 0.0F;            ///< The reported current is off by more, and nothing changes at all.
   float runaway_rpm = 0.0F;         ///< Gains so much speed against all its torque.
+
+  [[nodiscard]] bool any() const noexcept {
+    return overspeed_rpm > 0.0F || temperature_trip_c > 0.0F || stall_time > Duration{0} ||
+           following_error_deg > 0.0 || encoder_jumps || frozen_a > 0.0F || runaway_rpm > 0.0F;
+  }
 };
 
 /// Watches one ACTIVE motor for what should not be. Scheduler thread only.
@@ -46,9 +51,9 @@ class MotorGuard {
     std::uint32_t limits = 0;  ///< Set of LimitFlag: what acts or is noticed right now.
   };
 
-  explicit MotorGuard(const GuardConfig& config) noexcept : config_(config) {}
+  explicit MotorGuard(const GuardConfig& config) noexcept : config_(config), watches_(config.any()) {}
 
-  [[nodiscard]] Verdict step(const Observation& seen) noexcept;
+  [[nodiscard]] Verdict step(const Observation& seen) noexcept { return watches_ ? look(seen) : Verdict{}; }
   /// Too hot for any torque; not, where the drive reports no temperature.
   [[nodiscard]] bool tooHot(const MotorFeedback& feedback) const noexcept {
     return config_.temperature_trip_c > 0.0F && feedback.temperature_c >= config_.temperature_trip_c;
@@ -90,6 +95,7 @@ class MotorGuard {
   };
   [[nodiscard]] static bool same(const Readings& a, const Readings& b) noexcept;
 
+  [[nodiscard]] Verdict look(const Observation& seen) noexcept;
   [[nodiscard]] FaultCode motionFault(const Observation& seen, bool new_sample) noexcept;
   [[nodiscard]] bool tooFast(const MotorFeedback& feedback, bool new_sample) noexcept;
   [[nodiscard]] bool stalled(const Observation& seen) noexcept;
@@ -100,6 +106,7 @@ class MotorGuard {
   [[nodiscard]] float derate(float temperature_c, MonotonicTime now) noexcept;
 
   GuardConfig config_;
+  bool watches_;
   bool begun_ = false;
   std::uint64_t samples_ = 0;  ///< Count of the feedback in the last step.
   Readings last_;              ///< The sample before.

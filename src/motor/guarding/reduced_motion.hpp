@@ -28,13 +28,13 @@ class ReducedMotion {
   /// Longer than a step through a light curtain's edge: nothing gains speed in a jump.
   static constexpr float kLiftSeconds = 1.0F;
 
-  explicit ReducedMotion(const ReducedConfig& config) noexcept : config_(config) {}
+  explicit ReducedMotion(const ReducedConfig& config) noexcept : config_(config), any_(config.any()) {}
 
   /// Once a tick. `moves`: the motor follows a target or a fallback; the monitored time begins with that, or
   /// with `reduced`. True: it is faster than it may be, after the monitored time.
   [[nodiscard]] bool step(bool reduced, bool moves, const MotorFeedback& feedback,
                           const Tick& tick) noexcept {
-    return config_.any() && follow(reduced, moves, feedback, tick);
+    return any_ && follow(reduced, moves, feedback, tick);
   }
 
   /// Bound of every target's speed; infinite: none.
@@ -51,6 +51,7 @@ class ReducedMotion {
   [[nodiscard]] bool tooFast(const MotorFeedback& feedback) noexcept;
 
   ReducedConfig config_;
+  bool any_;  ///< config_.any()
   double ceiling_rpm_ = std::numeric_limits<double>::infinity();
   double fall_rpm_per_s_ = 0.0;
   float share_ = 1.0F;

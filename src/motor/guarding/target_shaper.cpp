@@ -94,7 +94,9 @@ std::uint32_t TargetShaper::shape(Target& asked, const MotorFeedback& feedback, 
                                   float dt_s) noexcept {
   if (isEffort(mode_)) return shapeEffort(asked, feedback, in_force, dt_s);
   if (mode_ != ControlMode::kVelocity && !needsReference(mode_)) return 0;
-  const auto limits = shapeVelocityFf(asked, dt_s) | shapeTorqueFf(asked, feedback, dt_s);
+  const bool feeds_forward = feeds_forward_ || asked.velocity_ff_rpm != 0.0F || asked.torque_ff_nm != 0.0F ||
+                             asked.mode == ControlMode::kImpedance;
+  const auto limits = feeds_forward ? shapeFeedForward(asked, feedback, dt_s) : 0U;
   return limits | (mode_ == ControlMode::kVelocity ? shapeVelocity(asked, feedback, dt_s)
                                                    : shapeAngle(asked, feedback, dt_s));
 }
@@ -104,6 +106,7 @@ void TargetShaper::begin(ControlMode mode, const MotorFeedback& feedback, InForc
   mode_ = mode;
   speed_bounds_effort_ = false;
   value_ = velocity_ff_rpm_ = torque_ff_nm_ = 0.0;
+  feeds_forward_ = false;
   if (mode == ControlMode::kCurrent) {
     const bool told = in_force.unit == CommandUnit::kAmpere;
     value_ = static_cast<double>(told ? in_force.value : feedback.current_a);
@@ -136,6 +139,13 @@ TargetShaper::Envelope TargetShaper::allowedSpeeds(const MotorFeedback& feedback
 
 bool TargetShaper::slew(double goal, float per_second, float dt_s) noexcept {
   return slewTowards(goal, static_cast<double>(per_second), dt_s, value_);
+}
+
+std::uint32_t TargetShaper::shapeFeedForward(Target& asked, const MotorFeedback& feedback,
+                                             float dt_s) noexcept {
+  const auto limits = shapeVelocityFf(asked, dt_s) | shapeTorqueFf(asked, feedback, dt_s);
+  feeds_forward_ = velocity_ff_rpm_ != 0.0 || torque_ff_nm_ != 0.0;
+  return limits;
 }
 
 // The velocity of a trajectory: no faster than the angle may move, and no jump.
@@ -287,7 +297,7 @@ std::uint32_t TargetShaper::shapeVelocity(Target& asked, const MotorFeedback& fe
 
 // A shaft that was beyond a soft limit, where its stop is or where gravity had let it sag, comes back as its
 // targets lead it, and not in one leap to the limit; never farther out than it is.
-void TargetShaper::boundAngle(const MotorFeedback& feedback) noexcept {
+void TargetShaper::followFromOutside(const MotorFeedback& feedback) noexcept {
   low_deg_ = std::min(config_.angle_min_deg, std::max(low_deg_, feedback.total_angle_deg));
   high_deg_ = std::max(config_.angle_max_deg, std::min(high_deg_, feedback.total_angle_deg));
 }
@@ -303,14 +313,17 @@ double TargetShaper::reachable(double goal_deg, bool any_turn) const noexcept {
 }
 
 std::uint32_t TargetShaper::shapeAngle(Target& asked, const MotorFeedback& feedback, float dt_s) noexcept {
+  if (soft_limits_) followFromOutside(feedback);
+  if (bounded(feedback) || reduced() || config_.angle_slew_deg_per_s > 0.0F)
+    return boundAngle(asked, feedback, dt_s);
+  const double here_deg = feedback.total_angle_deg;
+  value_ = asked.mode == ControlMode::kAngle ? here_deg + shortestAngle(here_deg, asked.value) : asked.value;
+  return 0;
+}
+
+std::uint32_t TargetShaper::boundAngle(Target& asked, const MotorFeedback& feedback, float dt_s) noexcept {
   const bool limited = bounded(feedback);
   const bool any_turn = asked.mode == ControlMode::kAngle;
-  boundAngle(feedback);
-  if (!limited && !reduced() && !(config_.angle_slew_deg_per_s > 0.0F)) {
-    const double here_deg = feedback.total_angle_deg;
-    value_ = any_turn ? here_deg + shortestAngle(here_deg, asked.value) : asked.value;
-    return 0;
-  }
   // From here on in multi-turn angles: the shortest way may lead through what is not allowed.
   const double goal = any_turn ? value_ + shortestAngle(value_, asked.value) : asked.value;
   const double allowed = limited ? reachable(goal, any_turn) : goal;

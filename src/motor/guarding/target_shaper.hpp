@@ -63,6 +63,7 @@ class TargetShaper {
   /// Speed that no target of any mode leads beyond; infinite: none. A shaft that is faster is braked by
   /// targets of a speed or an angle, and by efforts.
   void setCeiling(double rpm) noexcept {
+    if (rpm == ceiling_rpm_) return;  // as nearly always
     const bool comes = std::isfinite(rpm) && !reduced();
     if (comes) ceiling_nm_ = std::fabs(torque_ff_nm_);
     enters_ = std::isfinite(rpm) && (enters_ || comes);
@@ -104,25 +105,31 @@ class TargetShaper {
                                       float dt_s) noexcept;
   [[nodiscard]] double effortFor(double allowed_rpm, const MotorFeedback& feedback) const noexcept;
   [[nodiscard]] double reachable(double goal_deg, bool any_turn) const noexcept;
-  void boundAngle(const MotorFeedback& feedback) noexcept;
+  void followFromOutside(const MotorFeedback& feedback) noexcept;
   void begin(ControlMode mode, const MotorFeedback& feedback, InForce in_force) noexcept;
   void soften(Target& asked, float dt_s) noexcept;
   [[nodiscard]] bool slew(double goal, float per_second, float dt_s) noexcept;
   // Each shapes its part of the target and returns the limits that act.
   [[nodiscard]] std::uint32_t shape(Target& asked, const MotorFeedback& feedback, InForce in_force,
                                     float dt_s) noexcept;
+  // Not inlined: shape() is short for a target without slew limits, soft limits and feed-forward.
+  [[nodiscard, gnu::noinline]] std::uint32_t shapeFeedForward(Target& asked, const MotorFeedback& feedback,
+                                                              float dt_s) noexcept;
   [[nodiscard]] std::uint32_t shapeVelocityFf(Target& asked, float dt_s) noexcept;
   [[nodiscard]] std::uint32_t shapeTorqueFf(Target& asked, const MotorFeedback& feedback,
                                             float dt_s) noexcept;
   [[nodiscard]] double mostTorqueFf(bool springs, const MotorFeedback& feedback, double allowed_rpm,
                                     double sign) const noexcept;
   [[nodiscard]] double torqueUnderCeiling(const MotorFeedback& feedback, float dt_s) noexcept;
-  [[nodiscard]] std::uint32_t shapeEffort(Target& asked, const MotorFeedback& feedback, InForce in_force,
-                                          float dt_s) noexcept;
+  [[nodiscard, gnu::noinline]] std::uint32_t shapeEffort(Target& asked, const MotorFeedback& feedback,
+                                                         InForce in_force, float dt_s) noexcept;
   [[nodiscard]] std::uint32_t boundBySpeed(Target& asked, const MotorFeedback& feedback) noexcept;
-  [[nodiscard]] std::uint32_t shapeVelocity(Target& asked, const MotorFeedback& feedback,
-                                            float dt_s) noexcept;
+  [[nodiscard, gnu::noinline]] std::uint32_t shapeVelocity(Target& asked, const MotorFeedback& feedback,
+                                                           float dt_s) noexcept;
   [[nodiscard]] std::uint32_t shapeAngle(Target& asked, const MotorFeedback& feedback, float dt_s) noexcept;
+  /// shapeAngle() with a slew limit, soft limits or a ceiling.
+  [[nodiscard, gnu::noinline]] std::uint32_t boundAngle(Target& asked, const MotorFeedback& feedback,
+                                                        float dt_s) noexcept;
 
   ShapingConfig config_;
   bool soft_limits_;                        ///< On one side at least.
@@ -132,6 +139,7 @@ class TargetShaper {
   double high_deg_ = 0.0;                   ///< place beyond one from which the shaft comes back.
   double velocity_ff_rpm_ = 0.0;            ///< Slewed, too.
   double torque_ff_nm_ = 0.0;
+  bool feeds_forward_ = false;  ///< One of them is not 0.
   double ceiling_rpm_ = std::numeric_limits<double>::infinity();
   double ceiling_nm_ = 0.0;           ///< Torque feed-forward that the ceiling leaves.
   bool speed_bounds_effort_ = false;  ///< In place of an effort a speed is told.

@@ -183,6 +183,15 @@ TEST_F(MotorGuardTest, WatchesNothingThatIsNotConfigured) {
   for (int i = 0; i < 1000; ++i) ASSERT_EQ(step(kLimitCurrent).fault, FaultCode::kNone);
 }
 
+TEST_F(MotorGuardTest, WatchesEachLimitThatIsConfiguredByItself) {
+  EXPECT_FALSE(GuardConfig{}.any());
+  for (const GuardConfig& config :
+       {GuardConfig{.overspeed_rpm = 1.0F}, GuardConfig{.temperature_trip_c = 1.0F},
+        GuardConfig{.stall_time = 1ms}, GuardConfig{.following_error_deg = 1.0},
+        GuardConfig{.encoder_jumps = true}, GuardConfig{.frozen_a = 1.0F}, GuardConfig{.runaway_rpm = 1.0F}})
+    EXPECT_TRUE(config.any());
+}
+
 class MotionGuardTest : public MotorGuardTest {
  protected:
   MotionGuardTest() {

@@ -120,6 +120,22 @@ TEST_F(TargetShaperTest, AVelocityFeedForwardIsNoFasterThanTheAngleMayMoveAndDoe
   EXPECT_NEAR(static_cast<double>(step(target).target.velocity_ff_rpm), 10.0, 1e-6);
 }
 
+TEST_F(TargetShaperTest, AFeedForwardThatIsNoLongerAskedForFadesAtItsRate) {
+  configure({.effort_slew_per_s = 100.0F, .velocity_slew_rpm_per_s = 1000.0F, .effort_per_nm = 2.0F});
+  const Target pushed{.mode = ControlMode::kTotalAngle, .velocity_ff_rpm = 5.0F, .torque_ff_nm = 0.1F};
+  for (int i = 0; i < 5; ++i) (void)step(pushed);
+  const Target left{.mode = ControlMode::kTotalAngle};
+  const auto fading = step(left);
+  EXPECT_NEAR(static_cast<double>(fading.target.velocity_ff_rpm), 4.0, 1e-6);
+  EXPECT_NEAR(static_cast<double>(fading.target.torque_ff_nm), 0.05, 1e-6);
+  EXPECT_EQ(fading.limits, kLimitSlew);
+  for (int i = 0; i < 4; ++i) (void)step(left);
+  const auto faded = step(left);
+  EXPECT_EQ(faded.target.velocity_ff_rpm, 0.0F);
+  EXPECT_EQ(faded.target.torque_ff_nm, 0.0F);
+  EXPECT_EQ(faded.limits, 0U);
+}
+
 TEST_F(TargetShaperTest, NoFeedForwardPushesOutwardsAtASoftLimit) {
   auto config = soft;
   for (const float effort_per_nm : {0.0F, 2.0F}) {
