@@ -82,8 +82,12 @@ void fdCANbus::dispatch(const CanFrame& frame) noexcept {
   counters_.rx_data_bits += bits.data;
   FrameListener* const device = table_.find(frame);
   const auto verdict = device != nullptr ? device->updateFeedback(frame) : FrameVerdict::kForeign;
-  if (verdict == FrameVerdict::kAccepted) return;  // as nearly every frame
-  if (device == nullptr) ++counters_.rx_unmatched;
+  if (verdict != FrameVerdict::kAccepted) putAside(frame, verdict, device == nullptr);
+}
+
+// Of few frames: by itself, so that dispatch() stays short for the others.
+void fdCANbus::putAside(const CanFrame& frame, FrameVerdict verdict, bool unmatched) noexcept {
+  if (unmatched) ++counters_.rx_unmatched;
   if (verdict == FrameVerdict::kMalformed) ++counters_.rx_malformed;
   // The socket does not receive what it sends itself.
   if (verdict != FrameVerdict::kForeign || frame.type != FrameType::kData) return;

@@ -120,6 +120,8 @@ class fdCANbus {
  private:
   fdCANbus(std::string name, CanSocket socket);
 
+  /// Of a frame that was not accepted.
+  [[gnu::noinline]] void putAside(const CanFrame& frame, FrameVerdict verdict, bool unmatched) noexcept;
   [[nodiscard]] bool isCommandId(CanId id) const noexcept;
   bool append(const CanFrame& frame, std::optional<std::size_t> packer) noexcept;
   template <typename Pack>

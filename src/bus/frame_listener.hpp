@@ -31,8 +31,9 @@ struct FrameFilter {
 
 /// True if the frame satisfies the filter.
 [[nodiscard]] bool accepts(const FrameFilter& filter, const CanFrame& frame) noexcept;
-/// True if it satisfies one of them.
-[[nodiscard]] bool acceptsAny(std::span<const FrameFilter> filters, const CanFrame& frame) noexcept;
+/// True if it satisfies one of them. Not inlined: few frames need it.
+[[nodiscard, gnu::noinline]] bool acceptsAny(std::span<const FrameFilter> filters,
+                                             const CanFrame& frame) noexcept;
 
 enum class FrameVerdict : std::uint8_t {
   kAccepted,

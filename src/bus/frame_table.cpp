@@ -124,8 +124,7 @@ std::size_t FrameTable::slotFor(std::uint32_t key, std::uint32_t mask) const noe
   }
 }
 
-FrameTable::DeviceSet FrameTable::candidates(CanId id) const noexcept {
-  if (!id.extended) return standard_[id.value & kStandardIdMask];
+FrameTable::DeviceSet FrameTable::extendedCandidates(CanId id) const noexcept {
   DeviceSet found = 0;
   for (const std::uint32_t mask : std::span(masks_).first(mask_count_)) {
     found |= extended_[slotFor(id.value & mask, mask)].devices;
@@ -137,7 +136,9 @@ FrameListener* FrameTable::find(const CanFrame& frame) const noexcept {
   if (frame.type != FrameType::kData) return nullptr;
   // The table of standard ids is exact: it says all that a filter without a discriminator would.
   const bool exact = !frame.id.extended && frame.id.value <= kStandardIdMask;
-  for (DeviceSet left = candidates(frame.id); left != 0; left &= left - 1) {
+  DeviceSet left =
+      frame.id.extended ? extendedCandidates(frame.id) : standard_[frame.id.value & kStandardIdMask];
+  for (; left != 0; left &= left - 1) {
     const Device& device = devices_[static_cast<std::size_t>(std::countr_zero(left))];
     const bool accepted = (exact && device.by_id) || acceptsAny(device.filters, frame);
     if (accepted && device.listener->matchesFrame(frame)) return device.listener;
