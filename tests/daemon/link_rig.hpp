@@ -77,6 +77,12 @@ class LinkRig : public ::testing::Test {
     robot.buses = {{"chassis", "can0", 1e6, 0.5F, 0.6F}};
     robot.motors = {{"left", "M3508", 0, 1, ModeSet{ControlMode::kVelocity, ControlMode::kCurrent}},
                     {"right", "M3508", 0, 2, ModeSet{ControlMode::kVelocity}}};
+    serve();
+  }
+
+  /// A server for `robot` as it is now.
+  void serve() {
+    server.reset();
     auto socket = LinkSocket::listen(dir.path(), "hero");
     EXPECT_TRUE(socket);
     path = socket->path();

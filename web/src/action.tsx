@@ -42,9 +42,6 @@ export function CopyLines(props: { request: RobotRequest; command?: string; pyth
   );
 }
 
-/** With an enable: rc10d disables the motor when this page is gone, however it ends. */
-export const kDisableAtEnd = { disable_at_end: 1 };
-
 /** A button that asks rc10d for something and says what it answered; `copied`: its lines elsewhere, if they differ. */
 export function Action(props: { request: RobotRequest; copied?: RobotRequest; label: string; strong?: boolean }) {
   const { link, word } = useStudio();

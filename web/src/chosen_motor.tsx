@@ -1,9 +1,9 @@
 // Choice of a motor for the parts that move one.
 import type { ComponentChildren } from 'preact';
 
-import { Action, kDisableAtEnd } from './action';
+import { Action } from './action';
 import { useKnown, useStored, useStudio } from './context';
-import type { MotorInfo } from './protocol';
+import { type MotorInfo, kDisableAtEnd } from './protocol';
 
 /** Choice of a motor, which the parts that move one share, with its state. */
 export function useChosenMotor(): { info: MotorInfo | undefined; bar: ComponentChildren } {

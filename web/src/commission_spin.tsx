@@ -1,12 +1,13 @@
 // The two steps of commissioning that move the motor: it is enabled alone, and moves while a button is held.
 import { useEffect, useRef, useState } from 'preact/hooks';
 
-import { CopyLines, kDisableAtEnd, requestPython } from './action';
+import { CopyLines, requestPython } from './action';
 import { useKnown, useStudio } from './context';
 import { HeldTest } from './held_test';
 import type { TestOutcome } from './link';
 import { type TestPlan, testCommand, testPython } from './motion_test';
 import { isOn } from './commission_record';
+import { kDisableAtEnd } from './protocol';
 import { Refusal } from './refusal';
 
 /** Fallbacks that keep no torque when the page is gone. */

@@ -1,5 +1,6 @@
 // Search of the gains of a velocity loop, as python/examples/pid_tuning.py does it.
 import type { TestReport } from './motion_test';
+import { kRestoreAtEnd } from './protocol';
 
 export interface LoopGains {
   kp: number;
@@ -22,7 +23,7 @@ export function loopGainsOf(values: Record<string, number>): LoopGains | null {
 
 /** These gains are only tried: rc10d puts those of before back when the page is gone. */
 export function triedValuesOf(gains: LoopGains): Record<string, number> {
-  return { ...valuesOf(gains), restore_at_end: 1 };
+  return { ...valuesOf(gains), ...kRestoreAtEnd };
 }
 
 export function valuesOf(gains: LoopGains): Record<string, number> {

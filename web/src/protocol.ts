@@ -166,6 +166,10 @@ export interface ViewAnswer {
   dropped_ticks: number;
 }
 
+// Values with which what a request does ends with this page, however that ends: src/link/until_its_end.hpp.
+export const kDisableAtEnd = { disable_at_end: 1 };
+export const kRestoreAtEnd = { restore_at_end: 1 };
+
 export interface Response {
   type: 'response';
   seq: number;

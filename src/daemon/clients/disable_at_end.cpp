@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "daemon/clients/until_its_end.hpp"
+#include "link/until_its_end.hpp"
 
 namespace rc10 {
 namespace {
@@ -31,9 +32,10 @@ enum class Now : std::uint8_t { kWait, kDisable, kLeave };
 Result<bool> DisableAtEnd::askedBy(const link::Request& request, Operation operation,
                                    const Speaker& speaker) {
   if (operation != Operation::kEnable && operation != Operation::kEnableAlone) return false;
-  return isAskedFor(
-      {.value = kValue, .lasting = "an enable that lasts", .instead = "disable the motor before you end"},
-      request, speaker);
+  return isAskedFor({.value = link::kDisableAtEnd,
+                     .lasting = "an enable that lasts",
+                     .instead = "disable the motor before you end"},
+                    request, speaker);
 }
 
 void DisableAtEnd::add(const Order& order, std::uint64_t connection) {

@@ -4,7 +4,6 @@
 #include <cstdint>
 #include <functional>
 #include <optional>
-#include <string_view>
 #include <vector>
 
 #include "app/result.hpp"
@@ -15,12 +14,10 @@
 
 namespace rc10 {
 
-/// Motors that clients have enabled for as long as their connections last: value `disable_at_end` of a
-/// request. However a client ends, the kernel closes its connection. Link thread only.
+/// Motors that clients have enabled for as long as their connections last: link::kDisableAtEnd of a request.
+/// However a client ends, the kernel closes its connection. Link thread only.
 class DisableAtEnd {
  public:
-  static constexpr std::string_view kValue = "disable_at_end";
-
   /// Whether a request asks for it; the error is a sentence for its sender.
   [[nodiscard]] static Result<bool> askedBy(const link::Request& request, Operation operation,
                                             const Speaker& speaker);

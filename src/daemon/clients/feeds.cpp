@@ -55,7 +55,7 @@ void Feeds::publishModules(const Snapshot& snapshot) {
   }
 }
 
-void Feeds::publishDiagnostics(const Admission& admission) {
+void Feeds::publishDiagnostics(const Admission& admission, std::span<const std::string> notices) {
   publication_.fill(diagnostics_, sources_.exchange.snapshot.read(),
                     {.timing = sources_.timing,
                      .ages = sources_.exchange.ages,
@@ -63,6 +63,7 @@ void Feeds::publishDiagnostics(const Admission& admission) {
                      .late = late_causes_,
                      .inboxes = sources_.inboxes,
                      .admission = admission,
+                     .notices = notices,
                      .page_faults = sources_.page_faults ? sources_.page_faults() : 0},
                     wallClockUs());
   connections_.publish(link::kDiagnosticsFeed, link::seal(diagnostics_));

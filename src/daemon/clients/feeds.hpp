@@ -1,6 +1,8 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
+#include <string>
 
 #include "daemon/clients/admission.hpp"
 #include "daemon/clients/connections.hpp"
@@ -24,7 +26,8 @@ class Feeds {
   void greet(const Connection& connection) const;
 
   void publishState();
-  void publishDiagnostics(const Admission& admission);
+  /// `notices`: beside those of the start.
+  void publishDiagnostics(const Admission& admission, std::span<const std::string> notices);
   /// Events of the scheduler, and notes of other threads.
   void publishEvents();
   /// Rows of the trace since the last call.

@@ -6,7 +6,7 @@
 #include <fmt/format.h>
 
 #include "config/yaml/number_text.hpp"
-#include "daemon/clients/gains_at_end.hpp"
+#include "link/until_its_end.hpp"
 
 namespace rc10 {
 
@@ -22,7 +22,7 @@ Result<GainChanges> parseGains(const link::Request& request, const MotorLoops& l
   GainChanges changes;
   const auto count = std::min<std::size_t>(request.value_count, link::kMaxValues);
   for (const auto& value : std::span(request.values).first(count)) {
-    if (value.name.view() == GainsAtEnd::kValue) continue;
+    if (value.name.view() == link::kRestoreAtEnd) continue;
     const auto change = gainChange(value.name.view(), value.value, loops);
     if (!change) return tl::unexpected(change.error());
     const auto given = std::span(changes.values).first(changes.count);
@@ -47,6 +47,24 @@ std::string applyGains(const GainChanges& changes, MotorLoops& loops) {
     *value = change.value;
   }
   return text;
+}
+
+std::string leftGains(std::string_view motor, std::string_view client, const MotorLoops& loops,
+                      const GainChanges& before) {
+  std::string gains;
+  std::string command = fmt::format("rc10ctl gains {}", motor);
+  const auto keys = gainKeysOf(loops);
+  for (const auto& change : std::span(before.values).first(before.count)) {
+    const auto key =
+        std::find_if(keys.begin(), keys.end(), [&](const GainKey& each) { return each.gain == change.gain; });
+    if (key == keys.end()) continue;
+    const auto value = numberText(change.value);
+    gains += fmt::format("{}{} is {}, not {}", gains.empty() ? "" : ", ", key->path(),
+                         numberText(gainOf(loops.config, change.gain)), value);
+    command += fmt::format(" {}={}", key->path(), value);
+  }
+  return fmt::format("{}: gains that '{}' tried could not be set back: {}: `{}`", motor, client, gains,
+                     command);
 }
 
 void tellGains(const MotorLoops& loops, link::Response& response) {

@@ -15,6 +15,10 @@ namespace rc10 {
 /// Applies the changes to these loops; in words: "velocity_pid.kp_a_per_rpm 0.25 -> 0.8, …".
 [[nodiscard]] std::string applyGains(const GainChanges& changes, MotorLoops& loops);
 
+/// Tried gains that rc10d could not set back: those in force, those of before, and the command for them.
+[[nodiscard]] std::string leftGains(std::string_view motor, std::string_view client, const MotorLoops& loops,
+                                    const GainChanges& before);
+
 /// Every gain in force under its key.
 void tellGains(const MotorLoops& loops, link::Response& response);
 

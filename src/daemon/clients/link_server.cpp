@@ -131,7 +131,7 @@ void LinkServer::slowTick() {
   feeds_.publishTrace();
   if (slow_ticks_ % kLateCausesEvery == 0) feeds_.countLateTicks();
   if (++slow_ticks_ % kHousekeepingEvery == 0 && sources_.housekeeping) sources_.housekeeping();
-  if (slow_ticks_ % kDiagnosticsEvery == 0) feeds_.publishDiagnostics(admission_);
+  if (slow_ticks_ % kDiagnosticsEvery == 0) feeds_.publishDiagnostics(admission_, desk_.gainsLeft());
 }
 
 // A full ring has room the next time.
@@ -349,6 +349,7 @@ void LinkServer::drainScheduler() {
     auto report = scans_.end(result);
     const auto done = desk_.finish(result, report ? report->message : std::string{});
     if (!done) continue;
+    if (!done->note.empty()) note(Severity::kError, done->note);
     if (report)
       scans_.deliver(done->connection, done->response, std::move(report->sightings));
     else

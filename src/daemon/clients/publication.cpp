@@ -222,8 +222,11 @@ void Publication::fill(link::Diagnostics& out, const Snapshot& snapshot, const M
   add("setpoint skipped", snapshot.skipped_setpoints);
   fillCounters(out, snapshot, measured.late);
   fillDurations(out, measured);
-  out.notice_count = static_cast<std::uint32_t>(std::min(robot_.notices.size(), link::kMaxNotices));
-  for (std::size_t i = 0; i < out.notice_count; ++i) out.notices[i] = robot_.notices[i];
+  out.notice_count = 0;
+  for (const auto& notices : {measured.notices, std::span<const std::string>(robot_.notices)}) {
+    for (const auto& notice : notices.first(std::min(notices.size(), link::kMaxNotices - out.notice_count)))
+      out.notices[out.notice_count++] = notice;
+  }
   out.bus_count = static_cast<std::uint32_t>(snapshot.bus_count);
   for (std::size_t i = 0; i < snapshot.bus_count; ++i) fill(out.buses[i], i, snapshot, measured.inboxes[i]);
 }

@@ -371,14 +371,20 @@ void RequestDesk::shaftTaken(const link::Request& request, const Speaker& speake
 
 // Orders are carried out in the order in which they were given, and so what is done to loops_ here is what
 // was done to the motor's.
-void RequestDesk::finishGains(const Open& open, const OrderResult& result, link::Response& response) {
+void RequestDesk::finishGains(const Open& open, const OrderResult& result, Answer& answer) {
+  auto& response = answer.response;
   const auto motor = theMotor(open.request).value_or(0);
+  const auto changes = std::span(open.order.gains.values).first(open.order.gains.count);
   if (result.motors[motor] != Refusal::kNone) {
     response.message =
         fmt::format("{}: {}", nameOf(motor), inWords(result.motors[motor], robot_.motors[motor]));
+    if (open.connection != kNobody) return;
+    bool last = false;
+    for (const auto& change : changes) last = gains_at_end_.refused(motor, change.gain) || last;
+    if (last) answer.note = leftGainsOf({motor, open.request.client, open.order.gains});
     return;
   }
-  for (const auto& change : std::span(open.order.gains.values).first(open.order.gains.count)) {
+  for (const auto& change : changes) {
     const GainChange before{change.gain, gainOf(loops_[motor].config, change.gain)};
     if (open.tries_gains)
       gains_at_end_.tried(open.connection, open.request.client, motor, before);
@@ -461,8 +467,8 @@ std::optional<RequestDesk::Answer> RequestDesk::finish(const OrderResult& result
     status = link::ResponseStatus::kRefused;
     message = "too many enable requests at once: wait for the answers";
   }
-  Answer answer{found->connection, respond(found->request, status, message)};
-  if (operation == Operation::kSetGains) finishGains(*found, result, answer.response);
+  Answer answer{found->connection, respond(found->request, status, message), {}};
+  if (operation == Operation::kSetGains) finishGains(*found, result, answer);
   if (found->connection != kNobody) answered_.remember(found->asker, found->request, answer.response);
   open_.erase(found);
   return answer;
@@ -473,7 +479,7 @@ std::optional<RequestDesk::Answer> RequestDesk::fail(std::uint64_t order_id, con
       std::find_if(open_.begin(), open_.end(), [&](const Open& open) { return open.order.id == order_id; });
   if (found == open_.end()) return std::nullopt;
   // Not remembered: the same request may succeed when it is repeated.
-  Answer answer{found->connection, respond(found->request, link::ResponseStatus::kFailed, reason)};
+  Answer answer{found->connection, respond(found->request, link::ResponseStatus::kFailed, reason), {}};
   open_.erase(found);
   return answer;
 }
@@ -502,6 +508,16 @@ std::optional<Order> RequestDesk::gainsForNobody(const IsOpen& is_open) {
                 .client = due->client};
   open_.push_back(open);
   return open.order;
+}
+
+std::vector<std::string> RequestDesk::gainsLeft() const {
+  std::vector<std::string> texts;
+  for (const auto& left : gains_at_end_.left()) texts.push_back(leftGainsOf(left));
+  return texts;
+}
+
+std::string RequestDesk::leftGainsOf(const GainsAtEnd::Due& left) const {
+  return leftGains(nameOf(left.motor), left.client.view(), loops_[left.motor], left.gains);
 }
 
 RequestDesk::Open* RequestDesk::openRepetition(std::uint64_t asker, const link::Request& request) {

@@ -52,6 +52,7 @@ class RequestDesk {
   struct Answer {
     std::uint64_t connection = 0;
     link::Response response;
+    std::string note;  ///< For the log; mostly empty.
   };
   /// The response to the request whose order has this result; empty if it is not known any more. `report`: of
   /// a scan that was made.
@@ -60,6 +61,9 @@ class RequestDesk {
   [[nodiscard]] std::optional<std::uint64_t> scanForNobody(const IsOpen& is_open) const;
   /// To be sent to the supervisor: gains of before for one motor, whose client tried others and has ended.
   [[nodiscard]] std::optional<Order> gainsForNobody(const IsOpen& is_open);
+  /// Gains that gainsForNobody() has tried to set back in vain, in words: one text for each motor, until
+  /// somebody sets them.
+  [[nodiscard]] std::vector<std::string> gainsLeft() const;
   /// The order could not be handed over.
   [[nodiscard]] std::optional<Answer> fail(std::uint64_t order_id, const std::string& reason);
 
@@ -93,7 +97,8 @@ class RequestDesk {
                                    const Speaker& speaker) const;
 
   [[nodiscard]] std::string driveOutcome(const Open& open, const OrderResult& result) const;
-  void finishGains(const Open& open, const OrderResult& result, link::Response& response);
+  void finishGains(const Open& open, const OrderResult& result, Answer& answer);
+  [[nodiscard]] std::string leftGainsOf(const GainsAtEnd::Due& left) const;
   [[nodiscard]] std::string reasonOf(Refusal reason, std::size_t motor, const MotorSet& in_the_way) const;
   [[nodiscard]] std::string reasons(const MotorSet& motors, const OrderResult& result) const;
   [[nodiscard]] static link::Response respond(const link::Request& request, link::ResponseStatus status,

@@ -19,6 +19,7 @@
 #include "client/quantity_text.hpp"
 #include "drive.hpp"
 #include "feed.hpp"
+#include "link/until_its_end.hpp"
 #include "link/words.hpp"
 #include "require_mode.hpp"
 #include "verbs.hpp"
@@ -130,7 +131,7 @@ class Commissioning {
     auto enabling = connect(global_);
     if (!enabling) return complain(enabling.error(), ExitCode::kFailed);
     if (const auto enabled = askOver(*enabling, global_, Operation::kEnableAlone, {options_.motor},
-                                     {{.name = link::Text<48>{"disable_at_end"}, .value = 1.0}});
+                                     {{.name = link::kDisableAtEnd, .value = 1.0}});
         enabled != ExitCode::kOk)
       return enabled;
     awaitActive();

@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 
 #include "daemon/link_rig.hpp"
+#include "link/until_its_end.hpp"
 
 namespace rc10::test::disable_at_end_test {
 namespace {
@@ -16,7 +17,7 @@ constexpr std::size_t kRight = 1;
 link::Request asking(std::string_view operation, double value) {
   auto request = linkRequest(1, operation, "left");
   request.value_count = 1;
-  request.values[0] = {.name = DisableAtEnd::kValue, .value = value};
+  request.values[0] = {.name = link::kDisableAtEnd, .value = value};
   return request;
 }
 

@@ -7,6 +7,7 @@
 #include <set>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -17,13 +18,16 @@
 #include "daemon/clients/request_desk.hpp"
 #include "daemon/link_messages.hpp"
 #include "daemon/virtual_robot.hpp"
+#include "link/until_its_end.hpp"
 #include "link/words.hpp"
 
 namespace rc10::test::gain_request_test {
 namespace {
 
 using link::ResponseStatus;
+using ::testing::ElementsAre;
 using ::testing::HasSubstr;
+using ::testing::IsEmpty;
 using Values = std::initializer_list<std::pair<std::string_view, double>>;
 
 RobotConfig wheelAndArm() {
@@ -193,7 +197,7 @@ TEST_F(SetGainsTest, OrdersOfOneTickFollowOneAnother) {
 /// A client that tries gains, and the end of its connection.
 class TriedGainsTest : public SetGainsTest {
  protected:
-  static constexpr std::string_view kTry = "restore_at_end";
+  static constexpr std::string_view kTry = link::kRestoreAtEnd;
   /// The order that is due while the clients of these connections are there.
   std::optional<Order> dueWith(std::initializer_list<std::uint64_t> open) {
     const std::set<std::uint64_t> connections{open};
@@ -234,6 +238,28 @@ TEST_F(TriedGainsTest, AnOrderThatFoundNoRoomIsDueAgain) {
   ASSERT_TRUE(order);
   (void)desk.fail(order->id, "no room");
   EXPECT_TRUE(dueWith({}));
+}
+
+TEST_F(TriedGainsTest, AfterThreeRefusalsTheyAreToldOnceAndStayUntilTheyAreSet) {
+  (void)set({{"velocity.kp", 0.5}, {"velocity.ki", 2.0}, {kTry, 1.0}});
+  std::vector<std::string> notes;
+  for (int i = 0; i < 3; ++i) {
+    const auto order = dueWith({});
+    ASSERT_TRUE(order) << i;
+    EXPECT_THAT(desk.gainsLeft(), IsEmpty());
+    OrderResult result{.id = order->id};
+    result.motors[0] = Refusal::kNoGains;
+    notes.push_back(desk.finish(result)->note);
+  }
+  EXPECT_FALSE(dueWith({}));
+  const std::string text =
+      "wheel: gains that 'pilot' tried could not be set back: velocity_pid.kp_a_per_rpm is 0.5, not 0.25, "
+      "velocity_pid.ki_a_per_rpm_s is 2, not 1: `rc10ctl gains wheel velocity_pid.kp_a_per_rpm=0.25 "
+      "velocity_pid.ki_a_per_rpm_s=1`";
+  EXPECT_THAT(notes, ElementsAre("", "", text));
+  EXPECT_THAT(desk.gainsLeft(), ElementsAre(text));
+  (void)set({{"velocity.kp", 0.25}, {"velocity.ki", 1.0}});
+  EXPECT_THAT(desk.gainsLeft(), IsEmpty());
 }
 
 TEST_F(TriedGainsTest, AGainThatIsSetToStayStays) {

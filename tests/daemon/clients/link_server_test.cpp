@@ -6,6 +6,8 @@
 
 #include "daemon/exchange/clock.hpp"
 #include "daemon/link_rig.hpp"
+#include "daemon/virtual_robot.hpp"
+#include "link/until_its_end.hpp"
 
 namespace rc10::test::link_server_test {
 namespace {
@@ -251,6 +253,43 @@ TEST_F(LinkServerTest, ARefusedCommandGoesIntoTheBlackBoxAsItIsTold) {
   EXPECT_EQ(event.value, static_cast<std::int32_t>(CommandRefusal::kUnknownMotor));
   EXPECT_EQ(event.client.view(), "planner");
   EXPECT_FALSE(exchange.refusals.pop(event)) << "once a second";
+}
+
+TEST_F(LinkServerTest, TriedGainsThatCannotBeSetBackAreInTheLogOnceAndInTheDiagnostics) {
+  const auto tuned = twoWheelsAndYaw().buses[0].motors[0];
+  robot.motors[0].loops = {tuned.settings.model, tuned.traits(), tuned.settings.loops};
+  serve();
+  auto client = join();
+  auto request = linkRequest(1, toString(Operation::kSetGains), "left");
+  request.value_count = 2;
+  request.values[0] = {.name = std::string_view{"velocity.kp"}, .value = 0.5};
+  request.values[1] = {.name = link::kRestoreAtEnd, .value = 1.0};
+  ASSERT_TRUE(client->send(request));
+  pump();
+  finish(takeOrder());
+  ASSERT_TRUE(await<link::Response>(*client));
+  client->leave();
+  auto other = join(link::kDiagnosticsFeed);
+  Order order;
+  int tries = 0;
+  for (int i = 0; i < 3000 && logged.empty(); ++i) {
+    server->poll(100);
+    if (!exchange.orders.pop(order)) continue;
+    ++tries;
+    OrderResult refused{.id = order.id};
+    refused.motors[0] = Refusal::kNoGains;
+    EXPECT_TRUE(exchange.results.push(refused));
+  }
+  EXPECT_EQ(tries, 3);
+  ASSERT_EQ(logged.size(), 1U);
+  EXPECT_THAT(std::string(logged[0].text.view()), HasSubstr("velocity_pid.kp_a_per_rpm is 0.5, not "));
+  while (other->take<link::Diagnostics>()) {
+  }
+  const auto diagnostics = await<link::Diagnostics>(*other);
+  ASSERT_TRUE(diagnostics);
+  ASSERT_EQ(diagnostics->notice_count, 1U);
+  EXPECT_EQ(diagnostics->notices[0].view(), logged[0].text.view());
+  EXPECT_FALSE(exchange.orders.pop(order)) << "no further try";
 }
 
 TEST_F(LinkServerTest, EventsAreLoggedWhenNobodyListens) {

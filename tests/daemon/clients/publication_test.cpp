@@ -44,6 +44,7 @@ class PublicationTest : public ::testing::Test {
                       .late = late,
                       .inboxes = inboxes,
                       .admission = admission,
+                      .notices = notices,
                       .page_faults = 17},
                      456);
     return *diagnostics_;
@@ -57,6 +58,7 @@ class PublicationTest : public ::testing::Test {
   }
 
   RobotDescription robot;
+  std::vector<std::string> notices;
   TickTiming timing;
   TickAges ages;
   std::array<BusInbox, kMaxBuses> inboxes;
@@ -255,6 +257,15 @@ TEST_F(PublicationTest, NoticesBeyondTheRoomAreLeftOut) {
   const auto& out = diagnostics();
   ASSERT_EQ(out.notice_count, link::kMaxNotices);
   EXPECT_EQ(out.notices[3].view(), "four");
+}
+
+TEST_F(PublicationTest, ANoticeOfThisMomentComesBeforeThoseOfTheStart) {
+  robot.notices = {"one", "two", "three", "four"};
+  notices = {"now"};
+  const auto& out = diagnostics();
+  ASSERT_EQ(out.notice_count, link::kMaxNotices);
+  EXPECT_EQ(out.notices[0].view(), "now");
+  EXPECT_EQ(out.notices[3].view(), "three");
 }
 
 TEST_F(PublicationTest, ABusShowsItsCountersFromBothSidesOfTheRing) {
