@@ -9,6 +9,7 @@
 namespace rc10::web {
 namespace {
 
+constexpr std::int32_t kLeaseMs = client::MotionRun::kLease / std::chrono::milliseconds{1};
 constexpr Duration kOpeningPatience = std::chrono::milliseconds{200};
 constexpr ChildLimits kEvaluation{.cpu_s = 20, .patience = std::chrono::seconds{60}};
 
@@ -16,8 +17,10 @@ constexpr ChildLimits kEvaluation{.cpu_s = 20, .patience = std::chrono::seconds{
 
 Result<std::unique_ptr<PageTest>> PageTest::begin(const StartTest& wanted, const Opening& opening,
                                                   MonotonicTime now, Duration age) {
-  const auto settings = client::settingsOf(wanted.plan, opening.client);
+  auto settings = client::settingsOf(wanted.plan, opening.client);
   if (!settings) return tl::unexpected(settings.error());
+  // The plan's time is that of the page's silence: this process renews each target long before.
+  settings->validity_ms = std::min(settings->validity_ms, kLeaseMs);
   auto connection = LinkClient::connect(opening.socket_path, {.name = opening.client,
                                                               .subscriptions = link::kStates | link::kEvents,
                                                               .token = opening.token,

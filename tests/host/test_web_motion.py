@@ -261,14 +261,15 @@ def test_what_is_killed_or_stands_still_in_a_sweep_leaves_rest_on_the_bus(
     web: Web, robot: Daemon, victim: str, number: signal.Signals
 ) -> None:
     begun_us = now_us()
-    wanted = json.dumps({**SWEEP, "dead_man_ms": 500})
+    wanted = json.dumps(SWEEP)
     url = f"ws://127.0.0.1:{web.port}/link"
     with Program(sys.executable, "-c", BROWSER, url, wanted, env=robot.env) as browser:
         browser.wait_line(r'"test", .*"time_s": ?(1\.[5-9]|[2-9])')
         killed = browser if victim == "browser" else web.program
         killed.signal(number)
-        # From its last renewal, which came before.
-        let_go_us = now_us() + 500_000 + ON_THE_WAY_US
+        # From its last renewal, which came before: of the page, or of a target by the server.
+        silence_ms = SWEEP["dead_man_ms"] if victim == "browser" else SILENCE_MS
+        let_go_us = now_us() + silence_ms * 1000 + ON_THE_WAY_US
         try:
             assert_at_rest_since(robot, begun_us, let_go_us)
         finally:

@@ -240,7 +240,11 @@ MotionRun::Order MotionRun::orderAt(double time_s, MonotonicTime now) {
   const double value = origin_ + excitation_.valueAt(time_s, start_value_);
   sent_.push_back({now, value});
   while (now - sent_.front().time > kSentKept) sent_.pop_front();
-  return {.target = {.mode = settings_.mode, .value = value}, .validity_ms = settings_.validity_ms};
+  // A short pulse of a client that dies is not as long as the patience of a long test.
+  const auto most = std::chrono::duration<double>(excitation_.timeS() - time_s) + kLease;
+  const auto most_ms = std::chrono::duration_cast<std::chrono::milliseconds>(most).count();
+  return {.target = {.mode = settings_.mode, .value = value},
+          .validity_ms = static_cast<std::int32_t>(std::min<std::int64_t>(settings_.validity_ms, most_ms))};
 }
 
 std::optional<MotionRun::Order> MotionRun::order(MonotonicTime now) {

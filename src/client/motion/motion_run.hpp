@@ -35,6 +35,8 @@ struct MotionSettings {
 class MotionRun {
  public:
   static constexpr Duration kSendPeriod = std::chrono::milliseconds{2};
+  /// Longest time for which a target outlives the excitation, whatever MotionSettings::validity_ms is.
+  static constexpr Duration kLease = std::chrono::milliseconds{200};
 
   /// The error says why the test must not begin: no such motor or mode, or a target beyond the criteria.
   [[nodiscard]] static Result<MotionRun> of(const link::Welcome& welcome, const MotionSettings& settings);

@@ -348,6 +348,23 @@ TEST(MotionRun, APauseOfTheClientChangesNothing) {
   EXPECT_FALSE(robot.test().aborted());
 }
 
+TEST(MotionRun, NoTargetOutlivesAPulseByMoreThan200Ms) {
+  auto pulse = stepTo(60.0);
+  pulse.excitation.time_s = 0.12;
+  pulse.validity_ms = 1000;
+  auto robot = robotFor(pulse);
+  std::int64_t begin = 0;
+  std::int64_t end = 0;
+  robot.run(5s, [&](Robot& r) {
+    if (begin == 0 && r.owner == "tester") begin = r.ticks();
+    if (begin != 0) end = std::max(end, r.ticks() + r.last_validity_ms);
+  });
+  EXPECT_FALSE(robot.test().aborted());
+  // An order lasts for two ticks.
+  EXPECT_LE(end - begin, 1120 + 200 + 2);
+  EXPECT_GE(end - begin, 1120 + 200 - 2);
+}
+
 TEST(MotionRun, WhatCannotBeTestedIsRefusedBefore) {
   const auto refusal = [](const std::function<void(MotionSettings&)>& change) {
     auto settings = stepTo(60.0);
