@@ -540,3 +540,83 @@ class TestScan:
             "elbow: ENABLING or ACTIVE: disable it first"
         )
         studio.daemon.must("disable", "elbow")
+
+
+def guess(kind: str, number: int) -> dict[str, object]:
+    return {"kind": kind, "id": number, "from_drive": True, "motor": None, "collides": False}
+
+
+# A Damiao drive that answers another controller: bytes that a CubeMars drive may send, too.
+DAMIAO = {
+    "frame_id": 0x25,
+    "extended": False,
+    "frames": 200,
+    "ambiguous": True,
+    "guesses": [guess("Damiao", 5), guess("CubeMars (MIT)", 0x25)],
+    "advice": None,
+}
+
+
+@pytest.fixture
+def damiao(page: Page, card: Locator) -> Locator:
+    """The first step of the elbow after a scan that has heard such a drive beside the others."""
+
+    def opened(route: WebSocketRoute) -> None:
+        server = route.connect_to_server()
+
+        def answered(message: str | bytes) -> None:
+            told = {} if isinstance(message, bytes) else json.loads(message)
+            if told.get("heard"):
+                told["heard"].append(DAMIAO)
+                message = json.dumps(told)
+            route.send(message)
+
+        server.on_message(answered)
+
+    page.route_web_socket(re.compile("/link"), opened)
+    page.reload()
+    choose(page, "elbow")
+    press(card, "Scan this bus")
+    return card
+
+
+class TestScanThatHearsADamiao:
+    def test_its_lines_have_the_id_on_which_it_answers(self, page: Page, damiao: Locator) -> None:
+        press(damiao, "Use: Damiao 5")
+        lines = damiao.get_by_label("Lines for the file")
+        put = damiao.get_by_role("button", name="Put them into the Configuration")
+        # Its label tells the model.
+        expect(put).to_be_disabled()
+        damiao.get_by_role("combobox", name="model").fill("DM4310")
+        expect(lines).to_have_text("{name: motor_5, model: DM4310, id: 5, master_id: 37}")
+        put.click()
+        editor = page.get_by_label("Text of the configuration")
+        expect(editor).to_contain_text("{name: motor_5, model: DM4310, id: 5, master_id: 37}")
+        expect(page.locator(".verdict-badge")).to_contain_text("rc10d accepts it")
+
+    def test_a_motor_of_the_file_gets_both_ids(self, page: Page, damiao: Locator) -> None:
+        press(damiao, "Use: Damiao 5")
+        damiao.get_by_role("textbox", name="name").fill("elbow")
+        expect(damiao.get_by_label("Lines for the file")).to_have_text("id: 5\nmaster_id: 37")
+        press(damiao, "Put them into the Configuration")
+        editor = page.get_by_label("Text of the configuration")
+        expect(editor).to_contain_text("name: elbow, model: DM4310, id: 5, master_id: 37,")
+        expect(page.locator(".verdict-badge")).to_contain_text("rc10d accepts it")
+
+
+class TestScanWithAnotherFamilySilent:
+    @pytest.fixture
+    def studio(self) -> Iterator[Studio]:
+        with Daemon(ARM + OTHER_ID + JOINT) as daemon:
+            daemon.wait_up()  # the wheel is not heard
+            running = Studio(daemon)
+            yield running
+            running.web.stop()
+
+    def test_it_is_not_taken_for_that_drive(self, page: Page, damiao: Locator) -> None:
+        use = damiao.get_by_role("button", name="Use: Damiao 5")
+        expect(use).to_be_visible()
+        choose(page, "wheel")
+        press(damiao, "Scan this bus")
+        use.click()
+        expect(damiao.get_by_role("textbox", name="name")).to_have_value("motor_5")

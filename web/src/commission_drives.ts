@@ -11,6 +11,8 @@ export interface HeardDrive {
   ambiguous: boolean;
   frames: number;
   ids: string[];
+  /** Keys of its own that its frames tell. */
+  own: Record<string, number>;
 }
 
 function idText(sighting: Sighting): string {
@@ -18,16 +20,22 @@ function idText(sighting: Sighting): string {
   return sighting.extended ? `0x${digits.padStart(8, '0')}` : `0x${digits.padStart(3, '0')}`;
 }
 
+// The id of its answers is set in the drive, and a key of the file.
+function ownOf(kind: string, sighting: Sighting): Record<string, number> {
+  return kind === 'Damiao' ? { master_id: sighting.frame_id } : {};
+}
+
 /** Each drive once, those of the file first. Where the file says which of several it is, the others are none. */
 export function drivesOf(sightings: Sighting[]): HeardDrive[] {
   const found = new Map<string, HeardDrive>();
   for (const sighting of sightings) {
-    const own = sighting.guesses.filter((guess) => guess.motor !== null && !guess.collides);
-    for (const guess of sighting.ambiguous && own.length > 0 ? own.slice(0, 1) : sighting.guesses) {
+    const known = sighting.guesses.filter((guess) => guess.motor !== null && !guess.collides);
+    for (const guess of sighting.ambiguous && known.length > 0 ? known.slice(0, 1) : sighting.guesses) {
       if (!guess.from_drive) continue;
-      const key = `${guess.kind} ${guess.id}`;
-      const drive = found.get(key) ?? { kind: guess.kind, id: guess.id, motor: guess.motor, collides: guess.collides, ambiguous: true, frames: 0, ids: [] };
-      drive.ambiguous &&= sighting.ambiguous && own.length === 0;
+      const own = ownOf(guess.kind, sighting);
+      const key = `${guess.kind} ${guess.id} ${Object.values(own)}`;
+      const drive = found.get(key) ?? { kind: guess.kind, id: guess.id, motor: guess.motor, collides: guess.collides, ambiguous: true, frames: 0, ids: [], own };
+      drive.ambiguous &&= sighting.ambiguous && known.length === 0;
       drive.frames += sighting.frames;
       drive.ids.push(idText(sighting));
       found.set(key, drive);
@@ -49,7 +57,26 @@ export function modelsOf(kind: string): string[] {
   return kModels[kind] ?? [];
 }
 
+const kFamilies: Record<string, RegExp> = {
+  'DJI M3508 or M2006': /^M(3508|2006)$/,
+  'DJI GM6020': /^GM6020$/,
+  VESC: /^VESC$/,
+  moteus: /^moteus$/,
+  ODrive: /^ODrive_/,
+  Damiao: /^DM/,
+  'RobStride or CyberGear': /^(RS0|EL05|CyberGear)/,
+  'CubeMars (servo)': /^AK/,
+  'CubeMars (MIT)': /^AK/,
+  MyActuator: /^RMD/,
+  'LK-Tech': /^LK/,
+};
+
+export function isOfKind(model: string, kind: string): boolean {
+  return kFamilies[kind]?.test(model) ?? false;
+}
+
 /** A motor for the file. */
-export function motorLine(name: string, model: string, id: number): string {
-  return `{name: ${name}, model: ${model === '' ? '?' : model}, id: ${id}}`;
+export function motorLine(name: string, model: string, keys: Record<string, number>): string {
+  const values = Object.entries(keys).map(([key, value]) => `${key}: ${value}`);
+  return `{${[`name: ${name}`, `model: ${model === '' ? '?' : model}`, ...values].join(', ')}}`;
 }

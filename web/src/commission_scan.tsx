@@ -3,7 +3,7 @@ import { useState } from 'preact/hooks';
 
 import { CopyLines, requestPython } from './action';
 import { CopyButton } from './clipboard';
-import { type HeardDrive, drivesOf, modelsOf, motorLine } from './commission_drives';
+import { type HeardDrive, drivesOf, isOfKind, modelsOf, motorLine } from './commission_drives';
 import { putIntoDraft } from './config_draft';
 import { useKnown, useStudio } from './context';
 import { NumberField } from './number_field';
@@ -16,6 +16,8 @@ interface Chosen {
   name: string;
   model: string;
   id: number;
+  /** Other keys that the drive's frames tell. */
+  own: Record<string, number>;
 }
 
 /** Name, model and id of a drive on their way into the file. */
@@ -24,9 +26,14 @@ function NewMotor(props: { bus: string; names: string[]; chosen: Chosen; text: s
   const [told, setTold] = useState('');
   const { chosen, text } = props;
   const known = props.names.includes(chosen.name);
-  const line = known ? `id: ${chosen.id}` : motorLine(chosen.name, chosen.model, chosen.id);
+  const keys = { id: chosen.id, ...chosen.own };
+  const line = known
+    ? Object.entries(keys)
+        .map(([key, value]) => `${key}: ${value}`)
+        .join('\n')
+    : motorLine(chosen.name, chosen.model, keys);
   const put = () => {
-    const change = (old: string) => (known ? withMotorKeys(old, chosen.name, { id: chosen.id }) : withNewMotor(old, props.bus, line));
+    const change = (old: string) => (known ? withMotorKeys(old, chosen.name, keys) : withNewMotor(old, props.bus, line));
     if (text === null || !putIntoDraft(text, change, `${word('commission')}: ${chosen.name}`)) setTold(word('comNotPut'));
   };
   return (
@@ -62,7 +69,7 @@ function NewMotor(props: { bus: string; names: string[]; chosen: Chosen; text: s
       <p class="hint">{filled(word(known ? 'comScanKnown' : 'comScanNew'), { motor: chosen.name, bus: props.bus })}</p>
       <div class="toolbar">
         <CopyButton text={line}>{word('gainsCopy')}</CopyButton>
-        <button type="button" disabled={text === null || chosen.name === ''} onClick={put}>
+        <button type="button" disabled={text === null || chosen.name === '' || (!known && chosen.model === '')} onClick={put}>
           {word('comPut')}
         </button>
         <Refusal why={told} />
@@ -92,7 +99,7 @@ function Drives(props: { drives: HeardDrive[]; onUse: (drive: HeardDrive) => voi
         </thead>
         <tbody>
           {props.drives.map((drive) => (
-            <tr key={`${drive.kind} ${drive.id}`}>
+            <tr key={`${drive.kind} ${drive.id} ${drive.ids[0]}`}>
               <th scope="row">{`${drive.kind}${drive.ambiguous ? ' ?' : ''}`}</th>
               <td class="number">{drive.id}</td>
               <td class={drive.collides ? 'bad' : ''}>
@@ -138,7 +145,9 @@ export function BusScan(props: { bus: string; motor: string; text: string | null
   const use = (drive: HeardDrive) => {
     // A motor that nobody hears may be this drive, with another id than the file says.
     const silent = states.find((each) => each.name === props.motor)?.status === 'OFFLINE';
-    setChosen({ name: silent ? props.motor : `motor_${drive.id}`, model: modelsOf(drive.kind)[0] ?? '', id: drive.id });
+    const model = motors.find((each) => each.name === props.motor)?.model ?? '';
+    const name = silent && isOfKind(model, drive.kind) ? props.motor : `motor_${drive.id}`;
+    setChosen({ name, model: modelsOf(drive.kind)[0] ?? '', id: drive.id, own: drive.own });
   };
   return (
     <>

@@ -196,7 +196,7 @@ export function Move() {
         <div class="curves">
           <label class="hint">
             <input type="checkbox" checked={angle} onChange={() => setAngle(!angle)} />
-            {` ${word('moveAngle')}`}
+            {word('moveAngle')}
           </label>
           <Curves signals={signals} unit={unit} />
           <CapturePanel motor={info.name} unit={unit} />
