@@ -268,7 +268,7 @@ def test_what_is_killed_or_stands_still_in_a_sweep_leaves_rest_on_the_bus(
         killed = browser if victim == "browser" else web.program
         killed.signal(number)
         # From its last renewal, which came before: of the page, or of a target by the server.
-        silence_ms = SWEEP["dead_man_ms"] if victim == "browser" else SILENCE_MS
+        silence_ms = 1000 if victim == "browser" else SILENCE_MS
         let_go_us = now_us() + silence_ms * 1000 + ON_THE_WAY_US
         try:
             assert_at_rest_since(robot, begun_us, let_go_us)

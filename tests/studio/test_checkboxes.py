@@ -8,7 +8,7 @@ from test_studio import open_tab
 
 from conftest import PATIENCE_MS, Studio
 
-# Of each label with a checkbox that is shown: how far its middle is from that of its text, in px.
+# Distances in px between the middles of checkbox and text, in each label that is shown.
 OFFSETS = """
 labels => labels.filter((label) => label.offsetParent !== null).map((label) => {
   const box = label.querySelector('input').getBoundingClientRect();

@@ -41,7 +41,7 @@ class Publication {
     const LateTickCauses& late;
     std::span<const BusInbox> inboxes;
     const Admission& admission;
-    std::span<const std::string> notices{};  ///< Of this moment, the first to be told.
+    std::span<const std::string> notices{};  ///< Notices of this moment, the first to be told.
     std::uint64_t page_faults = 0;
   };
 
