@@ -117,6 +117,68 @@ def test_a_file_is_opened_by_a_page_without_a_robot(
     studio.daemon.wait_ready()
 
 
+def a_step(**differing: object) -> dict[str, Any]:
+    """A capture as a file has it."""
+    return {
+        "id": "1",
+        "name": "step",
+        "taken": "",
+        "robot": "other",
+        "config_hash": "",
+        "gains": {},
+        "signals": ["yaw.target_shaped", "yaw.velocity_rpm"],
+        "units": ["rpm", "rpm"],
+        "period_s": 0.001,
+        "pre_s": 0.2,
+        "values": [[0] * 200 + [20] * 300, [0] * 250 + [20] * 250],
+        **differing,
+    }
+
+
+def opened(panel: Locator, file: Path, *captures: dict[str, Any]) -> None:
+    file.write_text(json.dumps({"format": "rc10 captures 1", "captures": captures}))
+    panel.locator("input[type=file]").set_input_files(file)
+
+
+def test_captures_of_a_file_with_the_same_id_are_several(panel: Locator, tmp_path: Path) -> None:
+    opened(panel, tmp_path / "same.json", a_step(name="a"), a_step(name="b"), a_step(name="c"))
+    rows = panel.locator("tbody tr")
+    expect(rows).to_have_count(3)
+    rows.nth(1).get_by_label("name").fill("second")
+    panel.get_by_role("button", name="Remove c").click()
+    expect(panel.get_by_role("checkbox", name="Show a")).to_be_visible()
+    expect(panel.get_by_role("checkbox", name="Show second")).to_be_visible()
+    expect(rows).to_have_count(2)
+
+
+def test_those_for_which_the_browser_has_no_room_are_each_written_once(
+    page: Page, panel: Locator, tmp_path: Path
+) -> None:
+    long = [[0.123456789] * 20_000] * 2
+    page.evaluate(
+        """() => {
+          const write = JSON.stringify;
+          window.written = 0;
+          JSON.stringify = (value) => {
+            const text = write(value);
+            window.written += text.length;
+            return text;
+          };
+        }"""
+    )
+    captures = [a_step(id=str(i), values=long) for i in range(20)]
+    opened(panel, tmp_path / "long.json", *captures)
+    expect(panel.get_by_role("alert")).to_contain_text("has no room for the oldest of them (10)")
+    assert page.evaluate("window.written") < 1.2 * len(json.dumps(captures, separators=(",", ":")))
+
+
+def test_a_file_of_another_version_is_named_as_one(panel: Locator, tmp_path: Path) -> None:
+    file = tmp_path / "later.json"
+    file.write_text('{"format": "rc10 captures 2", "captures": []}')
+    panel.locator("input[type=file]").set_input_files(file)
+    expect(panel.get_by_role("alert")).to_contain_text("Another version of rc10 Studio")
+
+
 @pytest.mark.parametrize(
     "content",
     [
@@ -134,7 +196,7 @@ def test_a_file_of_a_stranger_is_refused_in_words(
     file = tmp_path / "stranger.json"
     file.write_text(content)
     panel.locator("input[type=file]").set_input_files(file)
-    expect(panel.get_by_role("alert")).to_have_text("This is no file of captures.")
+    expect(panel.get_by_role("alert")).to_have_text("This is no file of captures, or one of more than 200.")
     expect(panel.locator("tbody tr")).to_have_count(0)
 
 

@@ -3,7 +3,7 @@ import { useEffect, useMemo, useRef, useState } from 'preact/hooks';
 import uPlot from 'uplot';
 
 import { remember, remembered } from './browser_memory';
-import { type Capture, capturesIn, fileOf, responseOf, stepNumbers, timesOf } from './captures';
+import { type Capture, capturesIn, fileOf, isOfOtherVersion, kMostFileBytes, newestWithin, responseOf, stepNumbers, timesOf } from './captures';
 import { colourOf } from './chart';
 import { useKnown, useStored, useStudio } from './context';
 import { download } from './download';
@@ -27,6 +27,8 @@ interface Trigger {
 const kFirst: Trigger = { edge: 'rising', level: 5, pre_s: 0.2, length_s: 1 };
 const kMost_s = 10;
 const kUs = 1e6;
+// Browsers remember some 5 million characters of a page.
+const kMostKept = 5e6;
 
 /** Captures in this browser, and the number of those for which it has no room: the oldest, which this page still has. */
 function useCaptures(): [Capture[], (captures: Capture[]) => void, number] {
@@ -36,7 +38,7 @@ function useCaptures(): [Capture[], (captures: Capture[]) => void, number] {
   return [
     captures,
     (next) => {
-      let kept = next;
+      let kept = newestWithin(next, kMostKept);
       while (!remember(key, fileOf(kept)) && kept.length > 0) kept = kept.slice(1);
       setForgotten(next.length - kept.length);
       set(next);
@@ -269,8 +271,10 @@ export function CapturePanel(props: { motor: string; unit: (signal: string) => s
     );
   const save = (which: Capture[]) => download('rc10-captures.json', new Blob([fileOf(which)], { type: 'application/json' }));
   const open = async (file: File) => {
-    const found = capturesIn(await file.text());
-    if (found === null) return setTold(word('captureNoFile'));
+    if (file.size > kMostFileBytes) return setTold(word('captureTooLarge'));
+    const text = await file.text();
+    const found = capturesIn(text);
+    if (found === null) return setTold(word(isOfOtherVersion(text) ? 'captureOtherVersion' : 'captureNoFile'));
     const ids = new Set(found.map((capture) => capture.id));
     setTold('');
     setCaptures([...captures.filter((capture) => !ids.has(capture.id)), ...found]);

@@ -29,14 +29,33 @@ export interface StepNumbers {
 }
 
 const kFormat = 'rc10 captures 1';
+const kOtherFormat = /^\s*\{\s*"format"\s*:\s*"rc10 captures (?!1")/;
 const kMostSamples = 20_000;
 const kMostSignals = 32;
 const kMostCaptures = 200;
+/** Largest file that a page reads: meanwhile its STOP is not heard. */
+export const kMostFileBytes = 64 * 1024 * 1024;
 /** Tolerance of the settling time, as a share of the step. */
 const kSettled = 0.05 + 1e-9;
 
+// A capture does not change: another name is another object.
+const texts = new WeakMap<Capture, string>();
+function textOf(capture: Capture): string {
+  const text = texts.get(capture) ?? JSON.stringify(capture);
+  texts.set(capture, text);
+  return text;
+}
+
 export function fileOf(captures: Capture[]): string {
-  return JSON.stringify({ format: kFormat, captures });
+  return `{"format":${JSON.stringify(kFormat)},"captures":[${captures.map(textOf).join(',')}]}`;
+}
+
+/** The newest of them whose file has at most so many characters. */
+export function newestWithin(captures: Capture[], characters: number): Capture[] {
+  let left = characters - fileOf([]).length;
+  let first = captures.length;
+  while (first > 0 && (left -= textOf(captures[first - 1] as Capture).length + 1) >= 0) --first;
+  return captures.slice(first);
 }
 
 function isNumber(value: unknown): value is number {
@@ -89,7 +108,12 @@ function captureOf(value: unknown): Capture | null {
   };
 }
 
-/** Captures of a file; null: it is none of these files. */
+/** A file of captures that another version of the page has written. */
+export function isOfOtherVersion(text: string): boolean {
+  return kOtherFormat.test(text);
+}
+
+/** Captures of a file, each with an id of its own; null: it is none of these files. */
 export function capturesIn(text: string): Capture[] | null {
   let file: unknown;
   try {
@@ -99,9 +123,16 @@ export function capturesIn(text: string): Capture[] | null {
   }
   if (typeof file !== 'object' || file === null) return null;
   const { format, captures } = file as Record<string, unknown>;
-  if (format !== kFormat || !Array.isArray(captures)) return null;
-  const found = captures.slice(0, kMostCaptures).map(captureOf);
-  return found.every((each) => each !== null) ? found : null;
+  if (format !== kFormat || !Array.isArray(captures) || captures.length > kMostCaptures) return null;
+  const found = captures.map(captureOf).filter((each) => each !== null);
+  if (found.length < captures.length) return null;
+  const ids = new Set<string>();
+  return found.map((capture) => {
+    let id = capture.id;
+    for (let n = 2; ids.has(id); ++n) id = `${capture.id} ${n}`;
+    ids.add(id);
+    return id === capture.id ? capture : { ...capture, id };
+  });
 }
 
 export function timesOf(capture: Capture): number[] {
