@@ -235,6 +235,35 @@ def test_a_joint_ends_in_limits_and_a_zero_for_the_file(
     expect(page.locator(".verdict-badge")).to_contain_text("rc10d accepts it")
 
 
+def test_the_first_step_of_a_short_travel_is_short(
+    page: Page, studio: Studio, card: Locator
+) -> None:
+    choose(page, "elbow")
+    go_to(page, "Zero")
+    press(card, "Set")
+    go_to(page, "Limits")
+    press(card, "Lower end is here")
+    by_hand(studio, card, "elbow", 15)
+    press(card, "Upper end is here")
+    card.get_by_label("margin").fill("6")
+    press(card, "Take both")
+    expect(told(card)).to_contain_text("travel")
+    # The other steps are as good as this one.
+    page.evaluate(
+        """() => {
+          const key = "rc10.host/commission/elbow";
+          const record = JSON.parse(localStorage.getItem(key));
+          record.found.hand = record.found.spin = record.found.limits;
+          localStorage.setItem(key, JSON.stringify(record));
+        }"""
+    )
+    page.reload()
+    page.locator("#tab-commission").click()
+    go_to(page, "First step")
+    expect(card).to_contain_text(f"A step of the angle by {MINUS}0.7°")
+    expect(card).to_contain_text("rc10ctl test-motion elbow step -0.7 ")
+
+
 def test_an_angle_is_taken_of_a_shaft_that_stands(
     page: Page, studio: Studio, card: Locator
 ) -> None:

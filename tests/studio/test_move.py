@@ -250,9 +250,9 @@ def test_the_size_and_the_mode_are_those_that_were_entered(moving: Page, studio:
     rests(studio)
 
 
-def gain(studio: Studio) -> float:
+def gain(studio: Studio, key: str = "velocity_pid.kp_a_per_rpm") -> float:
     lines = json.loads(studio.daemon.must("gains", "yaw", "--json"))
-    return float(lines["gains"]["velocity_pid.kp_a_per_rpm"])
+    return float(lines["gains"][key])
 
 
 def test_gains_are_applied_undone_and_kept_as_lines(moving: Page, studio: Studio) -> None:
@@ -279,6 +279,33 @@ def test_gains_are_applied_undone_and_kept_as_lines(moving: Page, studio: Studio
     apply.click()
     expect(gains.get_by_role("alert")).to_contain_text("velocity_pid.kp_a_per_rpm")
     assert gain(studio) == before
+
+
+def test_undo_leaves_what_somebody_else_has_changed(moving: Page, studio: Studio) -> None:
+    gains = moving.locator(".gains")
+    field = gains.get_by_role("spinbutton", name="velocity_pid.kp_a_per_rpm")
+    before = gain(studio)
+    for kp in ("0.25", "0.26"):
+        field.fill(kp)
+        gains.get_by_role("button", name="Apply").click()
+        expect(gains.get_by_role("button", name="Apply")).to_be_disabled()
+    expect(gains.get_by_role("button", name="Undo (2)")).to_be_enabled()
+    studio.daemon.must("gains", "yaw", "velocity.ki=3.5")
+    expect(gains.get_by_role("spinbutton", name="velocity_pid.ki_a_per_rpm_s")).to_have_value("3.5")
+    gains.get_by_text("History").click()
+    gains.get_by_role("listitem").nth(1).get_by_role("button").click()
+    expect(field).to_have_value(f"{before:g}")
+    assert gain(studio) == before
+    assert gain(studio, "velocity_pid.ki_a_per_rpm_s") == 3.5
+    # What is as it was before is undone, too.
+    field.fill("0.25")
+    gains.get_by_role("button", name="Apply").click()
+    expect(gains.get_by_role("button", name="Undo (1)")).to_be_enabled()
+    studio.daemon.must("gains", "yaw", f"velocity.kp={before}")
+    expect(field).to_have_value(f"{before:g}")
+    gains.get_by_role("button", name="Undo (1)").click()
+    expect(gains.get_by_role("button", name="Undo", exact=True)).to_be_disabled()
+    expect(gains.get_by_role("alert")).to_have_count(0)
 
 
 def test_locked_gains_are_refused_with_the_line(chromium: Browser) -> None:

@@ -142,7 +142,7 @@ function firstStep(props: StepProps & { modes: string[] }, now_deg: number): Tes
   const { angle_min_deg: low, angle_max_deg: high } = record.lines;
   const bounds = { max_current_a: record.step_max_current_a, ...corridor(props, now_deg) };
   if (low !== undefined && high !== undefined && props.modes.includes('total_angle')) {
-    const size = Math.min(10, Math.floor((high - low) / 4));
+    const size = Math.min(10, Math.floor((high - low) * 2.5) / 10);
     const amplitude = now_deg > (low + high) / 2 ? -size : size;
     return { ...kFirstPlan, ...bounds, mode: 'total_angle', amplitude, max_speed_rpm: record.over_speed_rpm };
   }
@@ -166,7 +166,7 @@ function FirstStep(props: StepProps & { modes: string[]; onTimeout: string | nul
   };
   return (
     <>
-      <p>{filled(word(plan.mode === 'total_angle' ? 'comStepAngle' : 'comStepVelocity'), { size: number(plan.amplitude, 0) })}</p>
+      <p>{filled(word(plan.mode === 'total_angle' ? 'comStepAngle' : 'comStepVelocity'), { size: number(plan.amplitude, Number.isInteger(plan.amplitude) ? 0 : 1) })}</p>
       <div class="toolbar">
         <label>
           {`${word('testMaxCurrent')} `}

@@ -15,7 +15,7 @@ const kGainChanged = 110;
 
 const same = (a: Values, b: Values) => Object.keys(a).every((key) => a[key] === b[key]);
 
-/** A change, with what was in force before it. */
+/** A change, with what was in force before it of the same gains: others may be changed by somebody else. */
 interface Change {
   at: string;
   /** Process of rc10d: another one has the gains of its file. */
@@ -85,11 +85,18 @@ export function Gains(props: { motor: string; proposed?: Values | null; onKnown?
   const changed = (values: Values) =>
     Object.fromEntries(Object.entries(values).filter(([key, value]) => inForce?.[key] !== value));
   const set = async (values: Values, then: () => void) => {
-    const answer = await link.ask({ operation: 'set_gains', target: props.motor, values: changed(values) });
-    if (answer.status !== 'ok') return setTold(answer.message);
+    // Nothing: somebody else has set them so.
+    if (!same(values, inForce ?? {})) {
+      const answer = await link.ask({ operation: 'set_gains', target: props.motor, values: changed(values) });
+      if (answer.status !== 'ok') return setTold(answer.message);
+    }
     then();
     await load();
   };
+
+  /** What was in force before the change at this place, of the gains that it and later ones have changed. */
+  const beforeOf = (i: number): Values => Object.assign({}, ...history.slice(0, i + 1).map((change) => change.before));
+  const back = (i: number) => void set(beforeOf(i), () => setHistory(history.slice(i + 1)));
 
   const put = async () => {
     // Those in force now: an answer may be under way that changes what is shown.
@@ -107,7 +114,9 @@ export function Gains(props: { motor: string; proposed?: Values | null; onKnown?
         <form
           onSubmit={(event) => {
             event.preventDefault();
-            const change = { at: new Date().toISOString(), pid, before: inForce, set: changed(wanted) };
+            const of = changed(wanted);
+            const before = Object.fromEntries(Object.keys(of).map((key) => [key, inForce[key] ?? NaN]));
+            const change = { at: new Date().toISOString(), pid, before, set: of };
             void set(wanted, () => setHistory([change, ...history].slice(0, kMostChanges)));
           }}
         >
@@ -140,11 +149,7 @@ export function Gains(props: { motor: string; proposed?: Values | null; onKnown?
             <button
               type="button"
               disabled={!allowed || history.length === 0}
-              onClick={() => {
-                const [last, ...rest] = history;
-                if (last === undefined) return;
-                void set(last.before, () => setHistory(rest));
-              }}
+              onClick={() => back(0)}
             >
               {`${word('gainsUndo')}${history.length > 0 ? ` (${history.length})` : ''}`}
             </button>
@@ -172,8 +177,8 @@ export function Gains(props: { motor: string; proposed?: Values | null; onKnown?
                     <button
                       type="button"
                       disabled={!allowed}
-                      title={listed(change.before)}
-                      onClick={() => void set(change.before, () => setHistory(history.slice(i + 1)))}
+                      title={listed(beforeOf(i))}
+                      onClick={() => back(i)}
                     >
                       {word('gainsBefore')}
                     </button>
