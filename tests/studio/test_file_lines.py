@@ -101,3 +101,28 @@ def test_a_proposal_is_of_gains_that_the_motor_has(page: Page) -> None:
     choose(page, "own")
     expect(page.locator(".gains")).to_contain_text("rc10d closes no loop of the DM4310")
     expect(proposal).to_have_count(0)
+
+
+class TestAFileOfAnotherEditor:
+    """With a byte order mark, its lines ended by CR and LF."""
+
+    @pytest.fixture
+    def robot(self, robot: str) -> str:
+        return "\ufeff" + robot.lstrip("\n").replace("\n", "\r\n")
+
+    def test_gains_find_their_place_in_it(self, page: Page, studio: Studio) -> None:
+        for motor in ("wheel", "lines"):
+            apply_and_put(page, motor, "0.31")
+        with page.expect_download() as saved:
+            page.get_by_role("button", name="Download").click()
+        text = saved.value.path().read_bytes().decode()
+        assert text.startswith("robot: ")
+        assert "\r" not in text
+        assert text.count("kp_a_per_rpm: 0.31") == 2
+
+    def test_it_is_as_it_was_while_nobody_changes_it(self, page: Page) -> None:
+        page.locator("#tab-configuration").click()
+        expect(editor_of(page)).to_contain_text("name: wheel")
+        expect(page.locator(".verdict-badge")).to_contain_text("rc10d accepts it")
+        expect(page.get_by_text("changed", exact=True)).to_have_count(0)
+

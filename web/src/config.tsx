@@ -1,7 +1,7 @@
 // Part "Configuration": the robot's file in an editor, with what rc10d would say to it.
 import { useEffect, useRef, useState } from 'preact/hooks';
 
-import { type Draft, kDraft } from './config_draft';
+import { type Draft, kDraft, plain } from './config_draft';
 import type { ConfigEditor } from './config_editor';
 import { CheckedTables } from './config_tables';
 import { type ConfigSchema, type KeyHelp, loadSchema } from './config_schema';
@@ -217,7 +217,8 @@ export function Configuration() {
 
   const change = (next: Partial<Draft>) => setDraft({ ...Object.assign(kDraft, next) });
 
-  const load = (text: string, from: string, hidden: number, replaces = '') => {
+  const load = (file: string, from: string, hidden: number, replaces = '') => {
+    const text = plain(file);
     setTold('');
     // The editor tells of its text itself.
     change({ loaded: text, text, from, hidden, replaces });
