@@ -102,7 +102,7 @@ void Hub::handle(PageSocket& socket, std::string_view message, MonotonicTime now
   } else if (const auto* robot = std::get_if<AskRobot>(&*request)) {
     ask(*page, *robot, now);
   } else if (const auto* held = std::get_if<DriveMotor>(&*request)) {
-    drive(*page, *held, page->renewals.ageOf(held->sent, now));
+    drive(*page, *held, now, page->renewals.ageOf(held->sent, now));
   } else if (const auto* clock = std::get_if<TellClock>(&*request)) {
     (void)page->renewals.ageOf(clock->sent, now);
     if (!page->socket->behind()) page->socket->sendText(shared(clockMessage()));
@@ -354,8 +354,10 @@ std::string Hub::whyNotMoving(const Page& page) const {
 
 // Each renewal is a command for the rest of its lease: nothing here repeats one. The end of a hold sends the
 // safe target, however late it comes.
-void Hub::drive(Page& page, const DriveMotor& wanted, Duration age) {
+void Hub::drive(Page& page, const DriveMotor& wanted, MonotonicTime now, Duration age) {
   auto refused = whyNotMoving(page);
+  if (wanted.held && !page.hold.goesOn(wanted.seq, now) && refused.empty())
+    refused = "no word of this page for 500 ms: let go, and press again";
   if (refused.empty() && !feed_.connected()) refused = feed_.reason();
   if (refused.empty()) {
     if (const auto motor = client::findMotor(feed_.welcome(), wanted.motor); !motor)

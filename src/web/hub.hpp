@@ -11,6 +11,7 @@
 #include "web/access.hpp"
 #include "web/columns_frame.hpp"
 #include "web/config_desk.hpp"
+#include "web/hold_gap.hpp"
 #include "web/page_link.hpp"
 #include "web/page_request.hpp"
 #include "web/page_test.hpp"
@@ -68,6 +69,7 @@ class Hub {
     std::int64_t next_column = 0;
     std::unique_ptr<PageLink> link;
     RenewalAge renewals;
+    HoldGap hold;
     std::optional<OpenRecording> recording;
     std::uint32_t recording_number = 0;
     std::unique_ptr<PageTest> test;
@@ -91,7 +93,7 @@ class Hub {
   void ask(Page& page, const AskRobot& wanted, MonotonicTime now);
   void open(Page& page, const AskRecording& wanted);
   void sendPiece(Page& page, const AskPiece& wanted);
-  void drive(Page& page, const DriveMotor& wanted, Duration age);
+  void drive(Page& page, const DriveMotor& wanted, MonotonicTime now, Duration age);
   void showConfigTo(const Page& page, const AskConfig& wanted);
   void check(const Page& page, CheckConfig wanted);
   void change(Page& page, const ChangeFile& wanted);

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import json
 import signal
 import sys
@@ -201,3 +202,22 @@ def test_a_wrong_value_is_refused_in_words(web: Web, robot: Daemon) -> None:
         assert refused["status"] == "refused"
         assert "disable_at_end: use 1" in refused["message"]
     assert robot.state()["motors"][0]["status"] == "READY"
+
+
+def test_a_hold_that_was_silent_is_over_and_another_one_begins(web: Web, robot: Daemon) -> None:
+    robot.must("enable", "wheel")
+    with web.page() as page:
+        holds = itertools.count(1000)
+
+        def moves(hold: int) -> bool:
+            page.send(**JOG, seq=hold, sent_us=now_us())
+            return any(motor["owner"] != "" for motor in robot.state()["motors"])
+
+        eventually(lambda: moves(next(holds)), "it moves")
+        silent = next(holds) - 1
+        last_us = now_us()
+        eventually(lambda: now_us() - last_us > 600_000, "a silence")
+        assert not moves(silent)
+        assert "for 500 ms: let go, and press again" in page.wait("response")["message"]
+        assert not moves(silent)
+        eventually(lambda: moves(next(holds)), "it moves again")

@@ -1,0 +1,31 @@
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+
+#include "app/time.hpp"
+
+namespace rc10::web {
+
+/// Silence in a hold of a page (DriveMotor), after which the hold is over: its motor has stood meanwhile, and
+/// would start again by itself.
+class HoldGap {
+ public:
+  static constexpr Duration kMost = std::chrono::milliseconds{500};
+
+  /// Whether a renewal that arrives now goes on with the hold of this number, or begins it.
+  [[nodiscard]] bool goesOn(std::int64_t hold, MonotonicTime now) noexcept {
+    if (hold != hold_) over_ = false;
+    if (hold == hold_ && now - last_ > kMost) over_ = true;
+    hold_ = hold;
+    last_ = now;
+    return !over_;
+  }
+
+ private:
+  std::int64_t hold_ = -1;
+  MonotonicTime last_{};
+  bool over_ = false;
+};
+
+}  // namespace rc10::web
