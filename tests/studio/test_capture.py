@@ -196,7 +196,9 @@ def test_a_file_of_a_stranger_is_refused_in_words(
     file = tmp_path / "stranger.json"
     file.write_text(content)
     panel.locator("input[type=file]").set_input_files(file)
-    expect(panel.get_by_role("alert")).to_have_text("This is no file of captures, or one of more than 200.")
+    expect(panel.get_by_role("alert")).to_have_text(
+        "This is no file of captures, or one of more than 200."
+    )
     expect(panel.locator("tbody tr")).to_have_count(0)
 
 

@@ -110,7 +110,7 @@ class TestAFileOfAnotherEditor:
     def robot(self, robot: str) -> str:
         return "\ufeff" + robot.lstrip("\n").replace("\n", "\r\n")
 
-    def test_gains_find_their_place_in_it(self, page: Page, studio: Studio) -> None:
+    def test_gains_find_their_place_in_it(self, page: Page) -> None:
         for motor in ("wheel", "lines"):
             apply_and_put(page, motor, "0.31")
         with page.expect_download() as saved:
@@ -125,4 +125,3 @@ class TestAFileOfAnotherEditor:
         expect(editor_of(page)).to_contain_text("name: wheel")
         expect(page.locator(".verdict-badge")).to_contain_text("rc10d accepts it")
         expect(page.get_by_text("changed", exact=True)).to_have_count(0)
-

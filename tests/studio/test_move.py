@@ -297,7 +297,7 @@ def test_undo_leaves_what_somebody_else_has_changed(moving: Page, studio: Studio
     expect(field).to_have_value(f"{before:g}")
     assert gain(studio) == before
     assert gain(studio, "velocity_pid.ki_a_per_rpm_s") == 3.5
-    # What is as it was before is undone, too.
+    # Gains that are as they were before are undone, too.
     field.fill("0.25")
     gains.get_by_role("button", name="Apply").click()
     expect(gains.get_by_role("button", name="Undo (1)")).to_be_enabled()

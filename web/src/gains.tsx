@@ -94,7 +94,7 @@ export function Gains(props: { motor: string; proposed?: Values | null; onKnown?
     await load();
   };
 
-  /** What was in force before the change at this place, of the gains that it and later ones have changed. */
+  /** Gains in force before the change at this place: those that it and later ones have changed. */
   const beforeOf = (i: number): Values => Object.assign({}, ...history.slice(0, i + 1).map((change) => change.before));
   const back = (i: number) => void set(beforeOf(i), () => setHistory(history.slice(i + 1)));
 
