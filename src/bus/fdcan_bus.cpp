@@ -85,7 +85,7 @@ void fdCANbus::dispatch(const CanFrame& frame) noexcept {
   if (verdict != FrameVerdict::kAccepted) putAside(frame, verdict, device == nullptr);
 }
 
-// Of few frames: by itself, so that dispatch() stays short for the others.
+// Few frames come here: by itself, so that dispatch() stays short for the others.
 void fdCANbus::putAside(const CanFrame& frame, FrameVerdict verdict, bool unmatched) noexcept {
   if (unmatched) ++counters_.rx_unmatched;
   if (verdict == FrameVerdict::kMalformed) ++counters_.rx_malformed;

@@ -120,7 +120,7 @@ class fdCANbus {
  private:
   fdCANbus(std::string name, CanSocket socket);
 
-  /// Of a frame that was not accepted.
+  /// A frame that was not accepted is counted, and told to the foreign listener.
   [[gnu::noinline]] void putAside(const CanFrame& frame, FrameVerdict verdict, bool unmatched) noexcept;
   [[nodiscard]] bool isCommandId(CanId id) const noexcept;
   bool append(const CanFrame& frame, std::optional<std::size_t> packer) noexcept;

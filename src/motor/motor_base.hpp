@@ -67,7 +67,7 @@ class Motor_Base : public FrameListener {
 
   /// Before a target of this mode is shaped and followed: a motor whose encoder is absolute, and which may
   /// have lost turns, knows its angle again as at power-up. Not while an angle is followed: it would jump.
-  /// Of use only while the angle has no known reference.
+  /// Asked for only while the angle has no known reference.
   virtual void restoreReference(ControlMode) noexcept {}
 
   /// Scales the effort limit from this tick on, by 0 (nothing) to 1 (all): a hot motor gets less.

@@ -33,7 +33,7 @@ class SampleSpacing {
   [[nodiscard]] float periodSeconds() const noexcept { return period_s_; }
 
  private:
-  /// Of a late sample, or of several.
+  /// Spacing of a late sample, or of several, in periods.
   [[nodiscard, gnu::noinline]] float pendingPeriods() const noexcept;
 
   float shortest_s_;

@@ -119,7 +119,7 @@ class Supervisor {
   [[gnu::noinline]] void change(std::size_t motor, MotorEvent event, const Tick& tick) noexcept;
   void transition(std::size_t motor, MotorEvent event, const Stop& why, const Tick& tick) noexcept;
   void watch(std::size_t motor, const Tick& tick) noexcept;
-  /// Of a motor whose Axis has just found a fault.
+  /// Reports the fault that its Axis has just found.
   [[gnu::noinline]] void fault(std::size_t motor, std::int32_t native_code, const Tick& tick) noexcept;
   [[gnu::noinline]] void tellUnrest(std::size_t motor, RestCheck::Verdict verdict, const Tick& tick) noexcept;
   void watchGroup(std::size_t index, const Tick& tick) noexcept;
