@@ -249,7 +249,9 @@ TEST_F(TriedGainsTest, AfterThreeRefusalsTheyAreToldOnceAndStayUntilTheyAreSet) 
     EXPECT_THAT(desk.gainsLeft(), IsEmpty());
     OrderResult result{.id = order->id};
     result.motors[0] = Refusal::kNoGains;
-    notes.push_back(desk.finish(result)->note);
+    const auto done = desk.finish(result);
+    ASSERT_TRUE(done);
+    notes.push_back(done->note);
   }
   EXPECT_FALSE(dueWith({}));
   const std::string text =
