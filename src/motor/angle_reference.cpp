@@ -1,6 +1,7 @@
 #include "motor/angle_reference.hpp"
 
 #include <cmath>
+#include <limits>
 #include <optional>
 
 #include "app/angle.hpp"
@@ -30,6 +31,12 @@ bool AngleReference::setZero(double angle_deg) noexcept {
   turn_unclear_ = false;
   lost_ = false;
   return true;
+}
+
+double AngleReference::zeroForFile() const noexcept {
+  if (!begun_ || !config_.absolute || config_.zero_at_power_on)
+    return std::numeric_limits<double>::quiet_NaN();
+  return shortestAngle(totalAngleDeg(), position_deg_);
 }
 
 void AngleReference::forget() noexcept {

@@ -36,6 +36,8 @@ class AngleReference {
   /// Absolute, but its travel does not tell the turn.
   [[nodiscard]] bool turnUnclear() const noexcept { return turn_unclear_; }
   [[nodiscard]] double totalAngleDeg() const noexcept { return position_deg_ + offset_deg_; }
+  /// Motor_Base::zeroForFile().
+  [[nodiscard]] double zeroForFile() const noexcept;
   /// The drive's position at this total angle: for targets.
   [[nodiscard]] double positionFor(double total_angle_deg) const noexcept {
     return total_angle_deg - offset_deg_;

@@ -125,6 +125,11 @@ class Motor_Base : public FrameListener {
 
   /// Makes the present position `angle_deg`. False while the position is unknown.
   virtual bool setZero(double angle_deg) noexcept = 0;
+  /// The key `zero_deg` with which the shaft would read after a restart as it reads now, [-180, 180] deg.
+  /// NaN: its encoder is not absolute, or nothing was heard yet.
+  [[nodiscard]] virtual double zeroForFile() const noexcept {
+    return std::numeric_limits<double>::quiet_NaN();
+  }
   /// The angle goes on without a known reference: homing is about to find it.
   virtual void forgetReference() noexcept { feedback_.zeroed = false; }
 

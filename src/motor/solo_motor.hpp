@@ -30,6 +30,7 @@ class SoloMotor : public Motor_Base, public CommandPacker {
   [[nodiscard]] Duration feedbackPeriod() const noexcept override { return feedback_period_; }
   [[nodiscard]] bool speaksUnasked() const noexcept override { return !traits_.asked; }
   bool setZero(double angle_deg) noexcept override;
+  [[nodiscard]] double zeroForFile() const noexcept final { return reference_.zeroForFile(); }
   void forgetReference() noexcept override;
   [[nodiscard]] bool due(const Tick& tick) const noexcept final;
 

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <limits>
 
 namespace rc10::angle_reference_test {
@@ -33,6 +34,22 @@ TEST(AngleReference, AnAbsoluteEncoderReadsItsZeroAnglesWithinHalfATurn) {
   EXPECT_TRUE(reference.known());
   EXPECT_DOUBLE_EQ(reference.totalAngleDeg(), -40.0);
   EXPECT_DOUBLE_EQ(reference.positionFor(0.0), 390.0);
+}
+
+TEST(AngleReference, TheZeroForTheFileKeepsAnAngleOverARestartHoweverOftenItWasSet) {
+  AngleReference before({.absolute = true, .zero_deg = 20.0});
+  EXPECT_TRUE(std::isnan(before.zeroForFile())) << "there is no position yet";
+  before.update(350.0);
+  EXPECT_DOUBLE_EQ(before.zeroForFile(), 20.0);
+  ASSERT_TRUE(before.setZero(50.0));
+  before.update(370.0);
+  ASSERT_TRUE(before.setZero(-70.0));
+  AngleReference after({.absolute = true, .zero_deg = before.zeroForFile()});
+  after.update(10.0);  // within the turn, as its drive starts
+  EXPECT_DOUBLE_EQ(after.totalAngleDeg(), -70.0);
+  AngleReference counted({});
+  counted.update(350.0);
+  EXPECT_TRUE(std::isnan(counted.zeroForFile())) << "no file keeps it";
 }
 
 TEST(AngleReference, TheFirstPositionIsZeroIfTheConfigurationSaysSo) {

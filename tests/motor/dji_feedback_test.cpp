@@ -208,6 +208,32 @@ TEST(DjiReference, TheZeroOfAReversedAbsoluteEncoderIsTheAngleItUsedToRead) {
   EXPECT_NEAR(after.getTotalAngle().value, 0.0, 1e-4);
 }
 
+TEST(DjiReference, TheZeroForTheFileKeepsAnAngleOverARestartHoweverOftenItWasSet) {
+  for (const bool turned_round : {false, true}) {
+    MotorSettings config = djiConfig(kGM6020);
+    if (turned_round) config.direction = -1;
+    config.zero_deg = 20.0;
+    DJI_Motor before(config);
+    EXPECT_TRUE(std::isnan(before.zeroForFile())) << "nothing was heard yet";
+    DjiFeeder feeder(before);
+    (void)feeder.feed({.position = 1000});
+    EXPECT_NEAR(before.zeroForFile(), 20.0, 1e-9);
+    before.setZero(50.0);
+    (void)feeder.feed({.position = 1500});
+    before.setZero(-70.0);
+    config.zero_deg = before.zeroForFile();
+    DJI_Motor after(config);
+    DjiFeeder(after).feed({.position = 1500});
+    EXPECT_NEAR(after.getTotalAngle().value, -70.0, 1e-9);
+  }
+}
+
+TEST(DjiReference, AGearedMotorHasNoZeroForTheFile) {
+  DJI_Motor motor(djiConfig(kM3508));
+  DjiFeeder(motor).feed({.position = 1000});
+  EXPECT_TRUE(std::isnan(motor.zeroForFile()));
+}
+
 TEST(DjiReference, AfterALongGapAnAbsoluteEncoderStartsAgainAsAtPowerUp) {
   DJI_Motor motor(djiConfig(kGM6020));
   DjiFeeder feeder(motor);

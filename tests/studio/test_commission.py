@@ -491,8 +491,9 @@ class TestTheZeroOfAnAbsoluteEncoder:
         )
 
     def test_the_line_keeps_it(self, page: Page, studio: Studio, card: Locator) -> None:
+        # Somebody else has set it before.
+        studio.daemon.ctl("zero", "wheel", "50")
         go_to(page, "Zero")
-        # The second one counts from the first.
         for deg in ("15", "-70"):
             card.get_by_label("It stands at").fill(deg)
             press(card, "Set")

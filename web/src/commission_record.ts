@@ -180,12 +180,6 @@ export function absoluteZero(checked: CheckedMotor | null): number | null {
   return found === null ? null : Number(found[1]);
 }
 
-/** `zero_deg` with which the angle that reads `now` reads `wanted`. */
-export function zeroLine(before_deg: number, now_deg: number, wanted_deg: number): number {
-  const deg = before_deg + now_deg - wanted_deg;
-  return Number(((((deg + 180) % 360) + 360) % 360 - 180).toFixed(2));
-}
-
 export const isOn = (motor: MotorState | undefined) => motor?.status === 'ACTIVE' || motor?.status === 'ENABLING';
 
 export function angles(motors: MotorState[]): Record<string, number> {

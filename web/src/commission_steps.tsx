@@ -3,7 +3,7 @@ import { useEffect, useRef, useState } from 'preact/hooks';
 
 import { CopyLines, requestPython } from './action';
 import type { StepProps } from './commission';
-import { absoluteZero, angles, hasLostItsAngle, isOn, judgeHandTurn, judgeLimits, turnRange, zeroLine } from './commission_record';
+import { absoluteZero, angles, hasLostItsAngle, isOn, judgeHandTurn, judgeLimits, turnRange } from './commission_record';
 import { BusScan } from './commission_scan';
 import { useKnown, useStudio } from './context';
 import type { RobotRequest } from './link';
@@ -205,14 +205,13 @@ export function ZeroStep(props: StepProps) {
     const answer = await link.ask({ operation: 'zero', target: props.motor, values: { angle_deg: record.zero_deg } });
     setTold(answer.status === 'ok' ? '' : answer.message);
     if (answer.status !== 'ok') return;
-    const kept = absolute !== null && now_deg !== null;
-    // The file's zero, or the one that this page has set in this run of rc10d.
-    const from = record.lines.zero_deg ?? absolute ?? 0;
+    // rc10d says it for an absolute encoder: somebody may have set the angle before.
+    const zero_deg = answer.values?.zero_deg;
     props.onFound('zero', {
       good: true,
-      word: kept ? 'comZeroAbsolute' : 'comZeroGood',
+      word: zero_deg === undefined ? 'comZeroGood' : 'comZeroAbsolute',
       values: { motor: props.motor, before: number(now_deg), deg: number(record.zero_deg) },
-      ...(kept ? { lines: { zero_deg: zeroLine(from, now_deg, record.zero_deg) } } : {}),
+      ...(zero_deg === undefined ? {} : { lines: { zero_deg } }),
     });
   };
   const kind = absolute !== null ? word('comZeroIsAbsolute') : checked?.zero === 'at power-on' ? word('comZeroIsPowerOn') : word('comZeroIsRequest');

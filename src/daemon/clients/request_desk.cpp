@@ -397,6 +397,15 @@ void RequestDesk::finishGains(const Open& open, const OrderResult& result, Answe
   tellGains(loops_[motor], response);
 }
 
+// rc10d alone knows it: the angle may have been set before, by anybody.
+void RequestDesk::tellZero(double zero_deg, link::Response& response) {
+  if (!std::isfinite(zero_deg)) return;  // nothing that a file could keep
+  const double rounded_deg = std::round(zero_deg * 100.0) / 100.0;
+  response.message =
+      fmt::format("{}; zero_deg: {} in the file keeps it", response.message.view(), rounded_deg);
+  response.values[response.value_count++] = {.name = std::string_view{"zero_deg"}, .value = rounded_deg};
+}
+
 // With the motors that are in the way by their names, and the numbers of this one.
 std::string RequestDesk::reasonOf(Refusal reason, std::size_t motor, const MotorSet& in_the_way) const {
   std::vector<std::string_view> names;
@@ -469,6 +478,7 @@ std::optional<RequestDesk::Answer> RequestDesk::finish(const OrderResult& result
   }
   Answer answer{found->connection, respond(found->request, status, message), {}};
   if (operation == Operation::kSetGains) finishGains(*found, result, answer);
+  if (operation == Operation::kZero && failed == 0) tellZero(result.zero_deg, answer.response);
   if (found->connection != kNobody) answered_.remember(found->asker, found->request, answer.response);
   open_.erase(found);
   return answer;

@@ -97,6 +97,7 @@ class RequestDesk {
                                    const Speaker& speaker) const;
 
   [[nodiscard]] std::string driveOutcome(const Open& open, const OrderResult& result) const;
+  static void tellZero(double zero_deg, link::Response& response);
   void finishGains(const Open& open, const OrderResult& result, Answer& answer);
   [[nodiscard]] std::string leftGainsOf(const GainsAtEnd::Due& left) const;
   [[nodiscard]] std::string reasonOf(Refusal reason, std::size_t motor, const MotorSet& in_the_way) const;

@@ -4,6 +4,7 @@
 #include <bitset>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 
 #include "app/target.hpp"
 #include "app/time.hpp"
@@ -117,8 +118,10 @@ struct OrderResult {
   bool refused = false;         ///< Not tried at all.
   std::size_t drive_value = 0;  ///< kConfigure: at which of the values it ended.
   std::array<Refusal, kMaxMotors> motors{};
-  MotorSet on_before{};            ///< kEnable, kEnableAlone: motors that were ENABLING or ACTIVE already.
-  MotorSet in_the_way{};           ///< kAlone, kOthersOn, kGroup, kTogether: which motors.
+  MotorSet on_before{};   ///< kEnable, kEnableAlone: motors that were ENABLING or ACTIVE already.
+  MotorSet in_the_way{};  ///< kAlone, kOthersOn, kGroup, kTogether: which motors.
+  /// kZero of one motor: Motor_Base::zeroForFile().
+  double zero_deg = std::numeric_limits<double>::quiet_NaN();
   Refusal scan = Refusal::kNone;   ///< kScan: reason that concerns no motor,
   std::uint32_t asked = 0;         ///< questions that were sent,
   std::uint64_t error_frames = 0;  ///< and error frames of the bus meanwhile.

@@ -140,7 +140,10 @@ void Supervisor::carryOut(const Order& order, const Tick& tick) noexcept {
       }
       case Operation::kDisable: disable(motor, order, tick); break;
       case Operation::kClear: clear(motor, tick); break;
-      case Operation::kZero: result.motors[motor] = axes_[motor].zero(order); break;
+      case Operation::kZero:
+        result.motors[motor] = axes_[motor].zero(order);
+        if (order.motors.count() == 1) result.zero_deg = axes_[motor].motor().zeroForFile();
+        break;
       case Operation::kSetGains: result.motors[motor] = setGains(motor, order, tick); break;
       case Operation::kEstop:
       case Operation::kConfigure:

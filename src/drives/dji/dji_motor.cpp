@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "app/angle.hpp"
 #include "app/units.hpp"
@@ -72,9 +73,8 @@ FrameVerdict DJI_Motor::updateFeedback(const CanFrame& frame) noexcept {
   if (model_->reports_temperature) feedback_.temperature_c = static_cast<float>(told.temperature_c);
 
   if (first) {
-    const double reported_deg = static_cast<double>(encoder_.totalCounts()) * degrees_per_count_;
     if (absolute_ && !zero_at_power_on_) {
-      findTurn(shortestAngle(zero_deg_, reported_deg));
+      findTurn(shortestAngle(zero_deg_, reportedAngleDeg()));
     } else {
       setReference(0.0);
       feedback_.zeroed = zero_at_power_on_;
@@ -119,6 +119,12 @@ bool DJI_Motor::setZero(double angle_deg) noexcept {
   loops_.reset();
   holding_ = false;
   return true;
+}
+
+double DJI_Motor::zeroForFile() const noexcept {
+  if (!absolute_ || zero_at_power_on_ || feedback_.samples == 0)
+    return std::numeric_limits<double>::quiet_NaN();
+  return shortestAngle(feedback_.total_angle_deg, reportedAngleDeg());
 }
 
 void DJI_Motor::forgetReference() noexcept {

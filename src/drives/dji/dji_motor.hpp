@@ -45,6 +45,7 @@ class DJI_Motor : public Motor_Base {
   [[nodiscard]] Duration feedbackPeriod() const noexcept override { return std::chrono::milliseconds{1}; }
   [[nodiscard]] bool speaksUnasked() const noexcept override { return true; }
   bool setZero(double angle_deg) noexcept override;
+  [[nodiscard]] double zeroForFile() const noexcept override;
   void forgetReference() noexcept override;
   void restoreReference(ControlMode followed) noexcept override;
   [[nodiscard]] const CascadeConfig* hostLoops() const noexcept override { return &loops_.config(); }
@@ -63,6 +64,10 @@ class DJI_Motor : public Motor_Base {
   [[nodiscard]] const DjiCommandTable& table() const noexcept { return model_->command(command_); }
   void setReference(double total_angle_deg) noexcept;
   void updateAngles() noexcept;
+  /// As the encoder counts: goes on over turns, starts anywhere.
+  [[nodiscard]] double reportedAngleDeg() const noexcept {
+    return static_cast<double>(encoder_.totalCounts()) * degrees_per_count_;
+  }
   void findTurn(double within_turn_deg) noexcept;
   /// Valid until the next call.
   [[nodiscard]] const Target& wantedTarget() noexcept;

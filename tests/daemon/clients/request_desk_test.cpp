@@ -107,6 +107,24 @@ TEST_F(RequestDeskTest, ZeroNeedsAMotor) {
   EXPECT_THAT(refusal(linkRequest(1, "zero")), HasSubstr("name it"));
 }
 
+TEST_F(RequestDeskTest, AnAbsoluteEncodersZeroIsAnsweredWithTheLineThatKeepsIt) {
+  const auto outcome = begin(zero(1, "left", 90.0));
+  auto result = done(*outcome.order);
+  result.zero_deg = -70.004;
+  const auto response = desk.finish(result)->response;
+  EXPECT_EQ(response.message.view(), "zero: 1 of 1 motors; zero_deg: -70 in the file keeps it");
+  ASSERT_EQ(response.value_count, 1U);
+  EXPECT_EQ(response.values[0].name.view(), "zero_deg");
+  EXPECT_EQ(response.values[0].value, -70.0);
+}
+
+TEST_F(RequestDeskTest, ACountingEncodersZeroIsAnsweredWithoutALine) {
+  const auto outcome = begin(zero(1, "left", 90.0));
+  const auto response = desk.finish(done(*outcome.order))->response;
+  EXPECT_EQ(response.message.view(), "zero: 1 of 1 motors");
+  EXPECT_EQ(response.value_count, 0U);
+}
+
 TEST_F(RequestDeskTest, OnlyOneMotorIsEnabledAlone) {
   EXPECT_THAT(refusal(linkRequest(1, "enable_alone")), HasSubstr("name one motor"));
   EXPECT_THAT(refusal(linkRequest(2, "enable_alone", "left,right")), HasSubstr("name one motor"));
