@@ -16,8 +16,8 @@ need_python() {
     export RC10_PYTHON
 }
 
-# build PRESET [TARGET...]: configures, and builds, with $build_options and on $RC10_JOBS cores, default all. Without a
-# terminal only what went wrong is shown, unless $build_shows_files.
+# build PRESET [TARGET...]: configures if the preset is new, and builds, with $build_options and on $RC10_JOBS cores,
+# default all. Without a terminal only what went wrong is shown, unless $build_shows_files.
 build_options=() build_shows_files=
 build() {
     local preset=$1
@@ -32,7 +32,10 @@ build() {
         # Two builds in one tree would disturb each other.
         exec 8>"build/.$preset.lock"
         flock 8
-        cmake --preset "$preset" --log-level=WARNING >/dev/null || return
+        # Once: it writes the lists of tests anew, which ctest of another part may be reading.
+        if [ ! "build/$preset/build.ninja" -nt CMakePresets.json ]; then
+            cmake --preset "$preset" --log-level=WARNING >/dev/null || return
+        fi
         if [ -t 1 ] || [ -n "$build_shows_files" ]; then
             "${compile[@]}" 8>&-
         else

@@ -1,0 +1,58 @@
+"""`build` of scripts/lib/project.sh: a tree is configured once."""
+
+from __future__ import annotations
+
+import os
+import shutil
+import subprocess
+from pathlib import Path
+
+import pytest
+
+REPO = Path(__file__).resolve().parents[2]
+
+# Writes down what it is asked for; configuring makes the build files.
+CMAKE = """#!/bin/bash
+echo "$1 $2" >>"$CALLS"
+[ "$1" != --preset ] || { mkdir -p "build/$2" && touch "build/$2/build.ninja"; }
+"""
+
+
+@pytest.fixture
+def repo(tmp_path: Path) -> Path:
+    shutil.copytree(REPO / "scripts" / "lib", tmp_path / "scripts" / "lib")
+    shutil.copy(REPO / "CMakePresets.json", tmp_path)
+    os.utime(tmp_path / "CMakePresets.json", (1, 1))
+    cmake = tmp_path / "bin" / "cmake"
+    cmake.parent.mkdir()
+    cmake.write_text(CMAKE)
+    cmake.chmod(0o755)
+    return tmp_path
+
+
+def calls_of_a_build(repo: Path) -> list[str]:
+    calls = repo / "calls"
+    calls.write_text("")
+    subprocess.run(
+        ["bash", "-c", f". '{repo}/scripts/lib/project.sh'; build dev"],
+        check=True,
+        env={**os.environ, "PATH": f"{repo}/bin:{os.environ['PATH']}", "CALLS": str(calls)},
+    )
+    return calls.read_text().splitlines()
+
+
+def test_a_new_tree_is_configured(repo: Path) -> None:
+    assert calls_of_a_build(repo) == ["--preset dev", "--build --preset"]
+
+
+def test_a_configured_tree_is_only_built(repo: Path) -> None:
+    """Configuring writes the lists of tests anew, under the eyes of a ctest that reads them."""
+    calls_of_a_build(repo)
+    assert calls_of_a_build(repo) == ["--build --preset"]
+
+
+def test_a_preset_that_has_changed_is_configured_anew(repo: Path) -> None:
+    calls_of_a_build(repo)
+    os.utime(repo / "build" / "dev" / "build.ninja", (2, 2))
+    os.utime(repo / "CMakePresets.json", (3, 3))
+    assert calls_of_a_build(repo) == ["--preset dev", "--build --preset"]
