@@ -4,16 +4,10 @@
 #include <vector>
 
 #include "app/nearest.hpp"
+#include "app/target.hpp"
 
 namespace rc10 {
 inline namespace robot_client {
-namespace {
-
-[[nodiscard]] bool needsReference(Mode mode) noexcept {
-  return mode == Mode::kAngle || mode == Mode::kTotalAngle || mode == Mode::kImpedance;
-}
-
-}  // namespace
 
 std::string noMotor(const RobotState& state, const std::string& motor) {
   std::vector<std::string_view> names;
