@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 from hostlib import Daemon, Program, check_environment
 from hostlib.daemon import BIN, CONFIG, REPO
-from playwright.sync_api import Browser, Page, Playwright, expect, sync_playwright
+from playwright.sync_api import Browser, Locator, Page, Playwright, expect, sync_playwright
 from recorded import Box, record
 
 # Debian's Chromium, which asks nobody on the internet for anything.
@@ -127,6 +127,13 @@ def page(chromium: Browser, studio: Studio) -> Iterator[Page]:
     with opened_page(chromium, studio) as opened:
         opened.get_by_role("article", name="wheel").wait_for()
         yield opened
+
+
+@pytest.fixture
+def card(page: Page) -> Locator:
+    """The step of the part "Commission" that is open."""
+    page.locator("#tab-commission").click()
+    return page.locator(".card.step")
 
 
 @pytest.fixture

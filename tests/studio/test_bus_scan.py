@@ -20,12 +20,6 @@ def robot() -> str:
     return ARM + WHEEL + JOINT
 
 
-@pytest.fixture
-def card(page: Page) -> Locator:
-    page.locator("#tab-commission").click()
-    return page.locator(".card.step")
-
-
 # The drive of the wheel is set to id 4, and the file says 1.
 OTHER_ID = """
       - {name: wheel, model: M3508, id: 1, zero: power_on, feedback_timeout_ms: 1000,

@@ -40,12 +40,6 @@ def robot() -> str:
     return ARM + WHEEL + JOINT
 
 
-@pytest.fixture
-def card(page: Page) -> Locator:
-    page.locator("#tab-commission").click()
-    return page.locator(".card.step")
-
-
 def choose(page: Page, motor: str) -> None:
     page.get_by_role("combobox", name="Motor").select_option(motor)
 
