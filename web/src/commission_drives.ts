@@ -44,25 +44,13 @@ export function drivesOf(sightings: Sighting[]): HeardDrive[] {
   return [...found.values()].sort((a, b) => Number(a.motor === null) - Number(b.motor === null));
 }
 
-// Frames tell the family; of a family with many models the label tells which.
-const kModels: Record<string, string[]> = {
+// Frames tell the kind: its models, or, where there are many, their names. Then the label tells which.
+const kModels: Record<string, string[] | RegExp> = {
   'DJI M3508 or M2006': ['M3508', 'M2006'],
   'DJI GM6020': ['GM6020'],
   VESC: ['VESC'],
   moteus: ['moteus'],
   ODrive: ['ODrive_S1', 'ODrive_Pro', 'ODrive_v3'],
-};
-
-export function modelsOf(kind: string): string[] {
-  return kModels[kind] ?? [];
-}
-
-const kFamilies: Record<string, RegExp> = {
-  'DJI M3508 or M2006': /^M(3508|2006)$/,
-  'DJI GM6020': /^GM6020$/,
-  VESC: /^VESC$/,
-  moteus: /^moteus$/,
-  ODrive: /^ODrive_/,
   Damiao: /^DM/,
   'RobStride or CyberGear': /^(RS0|EL05|CyberGear)/,
   'CubeMars (servo)': /^AK/,
@@ -71,8 +59,14 @@ const kFamilies: Record<string, RegExp> = {
   'LK-Tech': /^LK/,
 };
 
+export function modelsOf(kind: string): string[] {
+  const models = kModels[kind];
+  return Array.isArray(models) ? models : [];
+}
+
 export function isOfKind(model: string, kind: string): boolean {
-  return kFamilies[kind]?.test(model) ?? false;
+  const models = kModels[kind];
+  return Array.isArray(models) ? models.includes(model) : (models?.test(model) ?? false);
 }
 
 /** A motor for the file. */

@@ -7,6 +7,7 @@
 #include <unsupported/Eigen/FFT>
 
 #include "app/angle.hpp"
+#include "app/units.hpp"
 
 namespace rc10::client {
 namespace {
