@@ -58,9 +58,22 @@ RobotConfig configOf(const Subject& subject) {
   return outcome.config.value_or(twoWheelsAndYaw());
 }
 
+// An e-stop ends in what holds the motor best of what its drive can.
+RobotConfig heldInEstops(const Subject& subject) {
+  auto config = configOf(subject);
+  auto& motor = config.buses[0].motors[0];
+  const auto& frames = motor.traits().frames;
+  motor.fallback.on_estop = frames.hold != Provision::kUnsupported    ? FallbackAction::kHold
+                            : frames.brake != Provision::kUnsupported ? FallbackAction::kBrake
+                                                                      : FallbackAction::kDamp;
+  return config;
+}
+
 class Family : public ::testing::TestWithParam<Subject> {
  protected:
   static constexpr std::size_t kMotor = 0;
+
+  explicit Family(const RobotConfig& config = configOf(GetParam())) : robot(config) {}
 
   MotorStatus status() { return robot.motor(kMotor).status; }
   double rpm() { return static_cast<double>(robot.motor(kMotor).feedback.velocity_rpm); }
@@ -84,7 +97,7 @@ class Family : public ::testing::TestWithParam<Subject> {
     robot.hold(kMotor, {.mode = ControlMode::kVelocity, .value = GetParam().rpm}, ticks);
   }
 
-  VirtualRobot robot{configOf(GetParam())};
+  VirtualRobot robot;
 };
 
 TEST_P(Family, IsOnlineBeforeAnyoneEnablesItAndWithoutTorque) {
@@ -207,6 +220,47 @@ TEST_P(Family, ADriveWithAnotherIdIsNotThere) {
   EXPECT_EQ(std::count_if(others.begin(), others.end(), matches), 0);
   EXPECT_GT(std::count_if(mine.begin(), mine.end(), matches), 20);
 }
+
+class HeldFamily : public Family {
+ protected:
+  HeldFamily() : Family(heldInEstops(GetParam())) {}
+
+  /// Asks for it, as a client that does not wait.
+  void beginEnabling() {
+    Order enable;
+    enable.id = 99;
+    enable.operation = Operation::kEnable;
+    enable.motors.set(kMotor);
+    robot.exchange().orders.push(enable);
+  }
+};
+
+TEST_P(HeldFamily, IsNotLetGoWhileItIsEnabledAnew) {
+  ASSERT_TRUE(waitFor(MotorStatus::kReady));
+  ASSERT_TRUE(enable());
+  turn(500);
+  robot.order(Operation::kEstop);
+  robot.run(300);
+  const auto held = robot.motor(kMotor).acting;
+  ASSERT_THAT(held, AnyOf(Acting::kHold, Acting::kBrake, Acting::kDamp));
+  for (int stopped_after = 1; stopped_after <= 25; ++stopped_after) {
+    SCOPED_TRACE(stopped_after);
+    robot.order(Operation::kClear);
+    beginEnabling();
+    for (int i = 0; i < stopped_after; ++i) {
+      robot.tick();
+      ASSERT_EQ(robot.motor(kMotor).acting, held);
+    }
+    robot.order(Operation::kEstop);
+    robot.run(150);
+    ASSERT_EQ(robot.motor(kMotor).acting, held);
+    ASSERT_EQ(robot.motor(kMotor).fault, FaultCode::kNone);
+    ASSERT_EQ(status(), MotorStatus::kReady);
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(All, HeldFamily, ::testing::ValuesIn(kSubjects),
+                         [](const auto& subject) { return std::string{subject.param.name}; });
 
 INSTANTIATE_TEST_SUITE_P(All, Family, ::testing::ValuesIn(kSubjects),
                          [](const auto& subject) { return std::string{subject.param.name}; });

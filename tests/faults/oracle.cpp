@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 #include <span>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -222,12 +223,12 @@ bool Oracle::fresh(const Motor& motor) const {
          now_ - motor.reported_at <= motor.config->feedback_timeout;
 }
 
-// By the clock, and by ticks that ran: after a pause what came meanwhile has not been read.
+// By the clock, and without pauses: what came meanwhile has not been read.
 bool Oracle::overdue(const Motor& motor) const {
   if (fresh(motor)) return false;
-  const auto patience_ticks =
-      static_cast<std::uint64_t>(motor.config->feedback_timeout / 2 / config_.period());
-  return held_.test(motor.bus) || !motor.reported || motor.unheard_ticks > patience_ticks;
+  const Duration timeout = motor.config->feedback_timeout;
+  const Duration patience = std::max(timeout / 2, timeout - 2 * config_.period());
+  return held_.test(motor.bus) || !motor.reported || motor.unheard > patience;
 }
 
 // A module that has a motor has commanded it in this tick, or a few before; it may let go of it at any time.
@@ -262,9 +263,10 @@ void Oracle::followFeedback(const Snapshot& snapshot) {
       motor.new_sample = feedback.samples != motor.samples;
     }
     motor.samples = feedback.samples;
-    // A sample that is old on arrival is no evidence of the present.
-    const bool heard = motor.new_sample && now_ - motor.reported_at <= motor.config->feedback_timeout / 2;
-    motor.unheard_ticks = heard ? 0 : motor.unheard_ticks + 1;
+    // A sample that is old on arrival is no evidence of the present, unless nobody ran to hear it.
+    const bool young = now_ - motor.reported_at <= motor.config->feedback_timeout / 2;
+    const bool heard = motor.new_sample && (young || motor.reported_at > before_);
+    motor.unheard = heard ? Duration{} : motor.unheard + std::min(now_ - before_, 2 * config_.period());
     if (!fresh(motor) && !overdue(motor)) ++visits_.unread_after_pauses;
   }
 }
@@ -282,7 +284,7 @@ void Oracle::setActions(Motor& motor, Actions actions) {
 
 void Oracle::judge(const Snapshot& snapshot, std::uint64_t periods, std::bitset<kMaxBuses> read,
                    bool stopped) {
-  now_ = snapshot.time;
+  before_ = std::exchange(now_, snapshot.time);
   periods_ = periods;
   for (auto& motor : motors_) motor.told = motor.wire->told();  // a drive may have switched itself off
   followModules(snapshot);

@@ -102,7 +102,7 @@ class Oracle {
     bool reported = false;  ///< A sample.
     MonotonicTime reported_at;
     std::uint64_t samples = 0;
-    std::uint64_t unheard_ticks = 0;  ///< Ticks that ran since its last sample of then.
+    Duration unheard{};  ///< Since its last sample, each tick with two periods at most.
     // Its commands.
     MonotonicTime driven_until{};  ///< The latest deadline of a command that moves.
     MonotonicTime owned_until{};   ///< Deadline of any command.
@@ -258,6 +258,7 @@ class Oracle {
   std::optional<std::size_t> alone_;  ///< The motor that was enabled alone.
   bool was_alone_ = false;            ///< In this tick some motor was.
   MonotonicTime now_{};
+  MonotonicTime before_{};  ///< The tick before.
   std::uint64_t tick_ = 0;
   bool begun_ = false;
   std::uint64_t missed_ = 0;

@@ -39,17 +39,6 @@ TEST(DamiaoMotor, OtherOrdersInBetweenStartTheSequenceAnew) {
   EXPECT_EQ(desk.motor().complaint().fault, FaultCode::kNone);
 }
 
-TEST(DamiaoMotor, AMotorThatIsHeldIsNotLetGoToBeEnabledAgain) {
-  EnabledDesk desk;
-  desk.motor().order(FrameKind::kHold);
-  desk.run(5);
-  desk.motor().order(FrameKind::kEnable);
-  const auto sent = desk.tickAnswered();
-  ASSERT_FALSE(sent.empty());
-  for (const auto& frame : sent) EXPECT_FALSE(isDisable(frame));
-  EXPECT_EQ(desk.motor().sequenceProgress(), SequenceProgress::kDone);
-}
-
 TEST(DamiaoMotor, WhileTheAnswerToEnableIsMissingTheWatchdogIsFed) {
   DamiaoDesk desk(damiaoSettingsOf());
   desk.motor().order(FrameKind::kEnable);

@@ -119,13 +119,12 @@ Result<void> Robot::addMotor(const MotorConfig& config, std::size_t bus_index) {
   auto motor = config.family->build(config.settings, *entry.parts);
   if (!motor) return tl::unexpected(motor.error());
   entry.feedback_expected |= (*motor)->speaksUnasked();
-  // Half: the timeout spans two periods of its feedback at least.
   auto use = config.family->busUse(config.settings);
   motors_.push_back(
       {.motor = std::move(*motor),
        .bus = bus_index,
        .feedback_timeout = config.feedback_timeout,
-       .feedback_timeout_ticks = static_cast<std::uint64_t>(config.feedback_timeout / 2 / period_),
+       .most_unheard = std::max(config.feedback_timeout / 2, config.feedback_timeout - 2 * period_),
        .guard = config.guard,
        .rest = config.rest,
        .shaping = config.shaping,

@@ -32,8 +32,8 @@ class Robot {
     std::unique_ptr<Motor_Base> motor;
     std::size_t bus = 0;
     Duration feedback_timeout{};
-    /// Ticks that ran without feedback, too, before it counts as lost.
-    std::uint64_t feedback_timeout_ticks = 0;
+    /// Without feedback for more than this, pauses of rc10d not counted, it is lost; by the clock, too.
+    Duration most_unheard{};
     GuardConfig guard{};
     RestConfig rest{};
     ShapingConfig shaping{};
@@ -96,6 +96,8 @@ class Robot {
   /// Null: no module wants GPIO lines.
   [[nodiscard]] LineBanks* lineBanks() noexcept { return line_banks_.get(); }
   [[nodiscard]] const std::vector<GroupConfig>& groups() const noexcept { return coupled_; }
+  /// Between two ticks.
+  [[nodiscard]] Duration period() const noexcept { return period_; }
   [[nodiscard]] UnrestPolicy unrestPolicy() const noexcept { return unrest_; }
   /// The simulated motors, for the thread or the test that steps them.
   [[nodiscard]] std::vector<std::unique_ptr<sim::SimPort>>& simPorts() noexcept { return sim_ports_; }

@@ -62,14 +62,15 @@ Acting Axis::acting() const noexcept {
 
 // ---- Feedback
 
-bool Axis::listen(const Tick& tick, bool simulation_late) noexcept {
+bool Axis::listen(const Tick& tick, const Since& since) noexcept {
   const auto& feedback = motor_.feedback();
+  const bool came = feedback.samples != samples_;
   // Samples that are old when they come are not heard: they could be old for ever.
-  const bool heard =
-      feedback.samples != samples_ && 2 * (tick.now - feedback.received) <= entry_.feedback_timeout;
-  const bool could_speak = !simulation_late || !bus_.simulated;
-  if (could_speak) ++unheard_ticks_;
-  if (heard) unheard_ticks_ = 0;
+  const bool heard = came && 2 * (tick.now - feedback.received) <= entry_.feedback_timeout;
+  const bool could_speak = !since.simulation_late || !bus_.simulated;
+  if (could_speak) unheard_ += since.ran;
+  // What came in a pause could not be heard earlier.
+  if (heard || (came && feedback.received > since.before)) unheard_ = {};
   if (heard) on_when_heard_ = isOn(status_);
   samples_ = feedback.samples;
   return heard ? !bus_.held : fresh(tick);
@@ -85,7 +86,7 @@ bool Axis::fresh(const Tick& tick) const noexcept {
 // were not asked. By the clock alone each such pause would be a fault of every motor.
 bool Axis::lost(const Tick& tick) const noexcept {
   if (fresh(tick)) return false;
-  return bus_.held || motor_.feedback().samples == 0 || unheard_ticks_ > entry_.feedback_timeout_ticks;
+  return bus_.held || motor_.feedback().samples == 0 || unheard_ > entry_.most_unheard;
 }
 
 // A bus that carries nothing is itself the news, not its motors.
@@ -248,10 +249,10 @@ FrameKind Axis::frameKind(RobotStatus robot) const noexcept {
   return polls ? FrameKind::kPoll : FrameKind::kRest;
 }
 
-// A drive that needs no enabling is not let go for the tick in which its motor becomes ACTIVE.
+// A drive that a fallback commands obeys already, since it was ACTIVE: an enable sequence would let go of its
+// load, and leave it so in an e-stop that comes meanwhile.
 bool Axis::heldWhileEnabling() const noexcept {
-  return status_ == MotorStatus::kEnabling && fallback_.acts() &&
-         motor_.driveFrames().enable == Provision::kNothing;
+  return status_ == MotorStatus::kEnabling && fallback_.acts();
 }
 
 // ---- Changes

@@ -36,9 +36,14 @@ class Axis {
 
   // ---- Feedback
 
-  /// Once a tick, first: whether its feedback is fresh(). `simulation_late`: simulated drives had no
-  /// processor to speak.
-  bool listen(const Tick& tick, bool simulation_late) noexcept;
+  /// Since the tick before.
+  struct Since {
+    MonotonicTime before{};        ///< When it started.
+    Duration ran{};                ///< Of the time since then, less a pause of this thread.
+    bool simulation_late = false;  ///< Simulated drives had no processor to speak.
+  };
+  /// Once a tick, first: whether its feedback is fresh().
+  bool listen(const Tick& tick, const Since& since) noexcept;
   [[nodiscard]] bool fresh(const Tick& tick) const noexcept;
   /// Not fresh, and not only because this thread did not run.
   [[nodiscard]] bool lost(const Tick& tick) const noexcept;
@@ -128,11 +133,11 @@ class Axis {
   MotorStatus status_ = MotorStatus::kOffline;
   FaultCode fault_ = FaultCode::kNone;
   Stop stop_;
-  std::uint32_t limits_ = 0;         ///< Active limits, as the guard reports them.
-  bool reference_known_ = false;     ///< In the last tick.
-  std::uint64_t samples_ = 0;        ///< Count of its feedback, when it was last heard.
-  std::uint64_t unheard_ticks_ = 0;  ///< Since then.
-  bool on_when_heard_ = false;       ///< ENABLING or ACTIVE at that time.
+  std::uint32_t limits_ = 0;      ///< Active limits, as the guard reports them.
+  bool reference_known_ = false;  ///< In the last tick.
+  std::uint64_t samples_ = 0;     ///< Count of its feedback, when it was last heard.
+  Duration unheard_{};            ///< Since then, without the pauses of this thread.
+  bool on_when_heard_ = false;    ///< ENABLING or ACTIVE at that time.
   MonotonicTime enabling_since_;
   MonotonicTime enable_deadline_;
   MonotonicTime clearing_until_{};  ///< Until then the drive's complaints are old ones.

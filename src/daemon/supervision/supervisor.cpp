@@ -6,6 +6,13 @@
 #include "app/saturated.hpp"
 
 namespace rc10 {
+namespace {
+
+// Periods between two ticks that are a late tick; beyond, this thread had no processor: a pause.
+constexpr int kLatePeriods = 2;
+
+}  // namespace
+
 Supervisor::Supervisor(Robot& robot, LinkExchange& link, FlightRecorder* recorder)
     : robot_(robot), link_(link), recorder_(recorder), foreign_(robot), scan_(link.scan) {
   axes_.reserve(robot.motors().size());
@@ -20,17 +27,21 @@ Supervisor::Supervisor(Robot& robot, LinkExchange& link, FlightRecorder* recorde
 void Supervisor::decide(const Tick& tick) noexcept {
   estop_asked_ = false;
   simulation_.look(robot_.simulationSteps().load(std::memory_order_relaxed), tick.now);
-  for (std::size_t motor = 0, count = axes_.size(); motor < count; ++motor) watch(motor, tick);
+  const Axis::Since since{.before = decided_at_,
+                          .ran = std::min(tick.now - decided_at_, kLatePeriods * robot_.period()),
+                          .simulation_late = simulation_.late()};
+  decided_at_ = tick.now;
+  for (std::size_t motor = 0, count = axes_.size(); motor < count; ++motor) watch(motor, since, tick);
   for (std::size_t group = 0; group < groups_.size(); ++group) watchGroup(group, tick);
   watchConfiguring(tick);
   watchScan(tick);
   for (auto& axis : axes_) axis.order(state_, tick);
 }
 
-void Supervisor::watch(std::size_t motor, const Tick& tick) noexcept {
+void Supervisor::watch(std::size_t motor, const Axis::Since& since, const Tick& tick) noexcept {
   auto& axis = axes_[motor];
   const auto who = static_cast<std::int16_t>(motor);
-  const bool fresh = axis.listen(tick, simulation_.late());
+  const bool fresh = axis.listen(tick, since);
   if (axis.missesDrive(tick))
     report({EventCode::kNeverHeard, Severity::kWarning, who, axis.id(), 0, tick.now});
   if (fresh) {

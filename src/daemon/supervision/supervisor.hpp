@@ -118,7 +118,7 @@ class Supervisor {
   }
   [[gnu::noinline]] void change(std::size_t motor, MotorEvent event, const Tick& tick) noexcept;
   void transition(std::size_t motor, MotorEvent event, const Stop& why, const Tick& tick) noexcept;
-  void watch(std::size_t motor, const Tick& tick) noexcept;
+  void watch(std::size_t motor, const Axis::Since& since, const Tick& tick) noexcept;
   /// Reports the fault that its Axis has just found.
   [[gnu::noinline]] void fault(std::size_t motor, std::int32_t native_code, const Tick& tick) noexcept;
   [[gnu::noinline]] void tellUnrest(std::size_t motor, RestCheck::Verdict verdict, const Tick& tick) noexcept;
@@ -161,6 +161,7 @@ class Supervisor {
   BusScan scan_;
   std::optional<std::size_t> alone_;  ///< ENABLING or ACTIVE, and no other motor may be.
   SimulationWatch simulation_;
+  MonotonicTime decided_at_{};  ///< The tick before.
   bool heartbeat_rests_ = false;
   bool estop_asked_ = false;  ///< In this tick, until decide().
   bool reduced_ = false;      ///< The mode input is open, or was since the last tick.

@@ -23,11 +23,6 @@ void DamiaoEnabling::begin() noexcept {
   culprit_.reset();
 }
 
-void DamiaoEnabling::skip() noexcept {
-  begin();
-  sequence_.finish();
-}
-
 void DamiaoEnabling::next() noexcept {
   if (sequence_.step() == kEnable) return sequence_.finish();
   sequence_.next(static_cast<Step>(sequence_.step() + 1));

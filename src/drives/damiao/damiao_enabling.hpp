@@ -29,8 +29,6 @@ class DamiaoEnabling {
   explicit DamiaoEnabling(const Plan& plan) noexcept;
 
   void begin() noexcept;
-  /// The drive is enabled by an earlier run: done at once.
-  void skip() noexcept;
   /// Unanswered for too long: no more.
   void update(MonotonicTime now) noexcept;
   void onStatus(std::uint8_t status) noexcept;

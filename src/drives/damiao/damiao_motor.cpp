@@ -330,12 +330,8 @@ void Damiao_Motor::runEnabling(const Tick& tick) noexcept {
     return;
   }
   if (begins()) {
-    stopped_ = false;
+    armed_ = stopped_ = false;
     culprit_.reset();
-    if (armed_) {  // held or braked until now: it must not be let go for a moment
-      enabling_.skip();
-      return;
-    }
     enabling_.begin();
     // A fault that is known already: it is cleared by request only.
     if (status_ >= damiao::kFirstFault) enabling_.onStatus(status_);

@@ -34,7 +34,7 @@ class AxisTest : public ::testing::Test {
     now_ += 1ms;
     if (speaks) (void)axis_.motor().updateFeedback(makeDjiFeedback(kM3508, 1, {}, now_));
     const Tick tick = this->now();
-    axis_.listen(tick, false);
+    axis_.listen(tick, {.before = now_ - 1ms, .ran = 1ms});
     if (axis_.fresh(tick)) (void)axis_.take(MotorEvent::kFeedbackFresh, RobotStatus::kRun, {}, tick);
     if (axis_.lost(tick)) (void)axis_.take(MotorEvent::kFeedbackLost, RobotStatus::kRun, {}, tick);
     if (const auto end = axis_.endsEnabling(tick)) (void)axis_.take(*end, RobotStatus::kRun, {}, tick);

@@ -9,6 +9,8 @@
 namespace rc10::test::missed_ticks_test {
 namespace {
 
+using namespace std::chrono_literals;
+
 class MissedTicksTest : public ::testing::Test {
  protected:
   /// The values of all reports since the last call.
@@ -39,15 +41,39 @@ TEST_F(MissedTicksTest, AfterAPauseNoMotorIsLostBeforeItsFeedbackCouldBeRead) {
   }
 }
 
-TEST_F(MissedTicksTest, AMotorThatIsSilentAfterAPauseIsLostOnceTenTicksHaveRun) {
+TEST_F(MissedTicksTest, AMotorThatIsSilentAfterAPauseIsLostOnceItsTimeHasRun) {
   robot.run(100);
   ASSERT_EQ(robot.order(Operation::kEnable).motors[0], Refusal::kNone);
   robot.freezeSimulation(true);
   robot.tick(50);
-  robot.run(9);
+  robot.run(15);
   EXPECT_EQ(robot.motor(0).status, MotorStatus::kActive);
-  robot.tick();
+  robot.run(3);
   EXPECT_EQ(robot.motor(0).status, MotorStatus::kOffline);
+}
+
+// A loose plug: shorter gaps than the timeout before and after the pause.
+TEST_F(MissedTicksTest, GapsAroundAPauseInWhichADriveSpokeAreNoLoss) {
+  robot.run(100);
+  ASSERT_EQ(robot.order(Operation::kEnable).motors[0], Refusal::kNone);
+  robot.freezeSimulation(true);
+  robot.run(12);
+  for (const auto& port : robot.robot().simPorts()) port->step(robot.now() + 1ms);
+  robot.tick(40);
+  robot.run(12);
+  EXPECT_EQ(robot.motor(0).status, MotorStatus::kActive);
+}
+
+TEST_F(MissedTicksTest, OneGapWithAPauseInItIsNoLoss) {
+  robot.run(100);
+  ASSERT_EQ(robot.order(Operation::kEnable).motors[0], Refusal::kNone);
+  robot.freezeSimulation(true);
+  robot.run(8);
+  robot.tick(40);
+  robot.run(7);
+  robot.freezeSimulation(false);
+  robot.run(20);
+  EXPECT_EQ(robot.motor(0).status, MotorStatus::kActive);
 }
 
 TEST_F(MissedTicksTest, ALongPauseMovesATargetNoFartherThanFivePeriods) {
