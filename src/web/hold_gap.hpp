@@ -11,7 +11,7 @@ namespace rc10::web {
 /// would start again by itself.
 class HoldGap {
  public:
-  static constexpr Duration kMost = std::chrono::milliseconds{500};
+  static constexpr std::chrono::milliseconds kMost{500};
 
   /// Whether a renewal that arrives now goes on with the hold of this number, or begins it.
   [[nodiscard]] bool goesOn(std::int64_t hold, MonotonicTime now) noexcept {

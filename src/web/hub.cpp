@@ -357,7 +357,8 @@ std::string Hub::whyNotMoving(const Page& page) const {
 void Hub::drive(Page& page, const DriveMotor& wanted, MonotonicTime now, Duration age) {
   auto refused = whyNotMoving(page);
   if (wanted.held && !page.hold.goesOn(wanted.seq, now) && refused.empty())
-    refused = "no word of this page for 500 ms: let go, and press again";
+    refused =
+        "no word of this page for " + std::to_string(HoldGap::kMost.count()) + " ms: let go, and press again";
   if (refused.empty() && !feed_.connected()) refused = feed_.reason();
   if (refused.empty()) {
     if (const auto motor = client::findMotor(feed_.welcome(), wanted.motor); !motor)
