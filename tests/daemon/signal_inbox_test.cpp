@@ -21,7 +21,7 @@ class SignalInboxTest : public testing::Test {
  protected:
   void SetUp() override { ASSERT_EQ(::pthread_sigmask(SIG_SETMASK, nullptr, &mask_), 0); }
   void TearDown() override {
-    ::signal(SIGHUP, SIG_DFL);
+    ::signal(SIGHUP, hangup_);
     ::signal(SIGPIPE, pipe_);
     ::pthread_sigmask(SIG_SETMASK, &mask_, nullptr);
   }
@@ -29,6 +29,7 @@ class SignalInboxTest : public testing::Test {
  private:
   sigset_t mask_{};
   sighandler_t pipe_ = ::signal(SIGPIPE, SIG_IGN);
+  sighandler_t hangup_ = ::signal(SIGHUP, SIG_DFL);  ///< Ignored under nohup.
 };
 
 TEST_F(SignalInboxTest, ReadsEverySignalThatWouldEndOrStopTheProcess) {
