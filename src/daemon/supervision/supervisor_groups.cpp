@@ -88,8 +88,6 @@ void Supervisor::stopGroup(std::size_t index, GroupStop reason, const Tick& tick
   // A motor that stopped for a fault waits for a person.
   for (const auto motor : group.motors)
     if (gone.test(motor) && axes_[motor].status() == MotorStatus::kFault) returns = false;
-  // A group that acts together comes back as a whole.
-  if (group.together && (group.required & ~group.rearm).any()) returns = false;
   if (!returns) group.rearm.reset();
   group.moved = tick.now;
   report({EventCode::kGroupStopped, asked ? Severity::kInfo : Severity::kError, source,
@@ -112,7 +110,8 @@ void Supervisor::rearm(std::size_t index, const Tick& tick) noexcept {
     if (waited_for || turns) group.moved = tick.now;
   }
   if (tick.now - group.moved < kAtRest) return;
-  const auto asked = std::exchange(group.rearm, {});
+  // Somebody may have enabled them meanwhile. A group that acts together and was not whole is refused.
+  const auto asked = std::exchange(group.rearm, {}) & ~group.on(axes_);
   MotorSet rearmed;
   for (const auto motor : group.motors)
     if (asked.test(motor)) rearmed.set(motor, enable(motor, asked, tick) == Refusal::kNone);

@@ -243,6 +243,18 @@ TEST_F(GroupTest, AnOptionalMemberStopsWithTheOthersAndNothingStopsForIt) {
   EXPECT_EQ(status(kLeft), MotorStatus::kReady);
 }
 
+TEST_F(GroupTest, MembersThatAPersonHasEnabledFirstAreNotSaidToComeBackByThemselves) {
+  start(GroupConfig::Return::kRearmAtRest);
+  robot->order(Operation::kEnable);
+  losePower(50);
+  robot->run(50);
+  robot->events();
+  ASSERT_EQ(robot->order(Operation::kEnable).motors[kLeft], Refusal::kNone);
+  robot->run(1000);
+  EXPECT_EQ(status(kLeft), MotorStatus::kActive);
+  for (const auto& event : robot->events()) EXPECT_NE(event.code, EventCode::kGroupRearmed);
+}
+
 TEST_F(GroupTest, AMemberThatIsMissingIsNamed) {
   start(GroupConfig::Return::kRequest);
   robot->freezeBus(0, true);
@@ -310,15 +322,41 @@ TEST_F(TogetherTest, AMemberIsEnabledAloneWithoutTheOthers) {
   EXPECT_EQ(robot->motor(kRight).target.mode, ControlMode::kVelocity);
 }
 
-TEST(GroupThatActsTogether, IsNotSaidToBeEnabledAgainWhileADriveIsConfigured) {
+/// An arm whose drive takes some ticks to be enabled, and a wheel whose drive takes none, each on its bus.
+RobotConfig lifter(const std::string& more_of_arm) {
   const auto outcome = parseRobotConfig(
       "robot: lifter\nrealtime: preferred\nbuses:\n  - name: a\n    type: sim\n    motors:\n"
-      "      - {name: arm, model: DM4310, id: 1, master_id: 17, feedback_timeout_ms: 1000}\n"
-      "  - name: b\n    type: sim\n    motors: [{name: wheel, model: M3508, id: 2}]\n"
-      "groups: [{name: both, motors: [arm, wheel], together: true, on_return: rearm_at_rest}]\n",
+      "      - {name: arm, model: DM4310, id: 1, master_id: 17" +
+          more_of_arm +
+          "}\n  - name: b\n    type: sim\n    motors: [{name: wheel, model: M3508, id: 2}]\n"
+          "groups: [{name: both, motors: [arm, wheel], together: true, on_return: rearm_at_rest}]\n",
       "lifter.yaml");
-  ASSERT_TRUE(outcome.config) << outcome.errorText();
-  VirtualRobot robot{*outcome.config};
+  EXPECT_TRUE(outcome.config) << outcome.errorText();
+  return outcome.config.value_or(twoWheelsAndYaw());
+}
+
+TEST(GroupThatActsTogether, DoesNotComeBackInPartIfItWasNotWhole) {
+  VirtualRobot robot{lifter("")};
+  robot.run(100);
+  Order enable;
+  enable.id = 77;
+  enable.operation = Operation::kEnable;
+  enable.motors = only(0) | only(1);
+  ASSERT_TRUE(robot.exchange().orders.push(enable));
+  for (int i = 0; i < 10 && robot.motor(1).status != MotorStatus::kActive; ++i) robot.tick();
+  ASSERT_EQ(robot.motor(1).status, MotorStatus::kActive);
+  ASSERT_EQ(robot.motor(0).status, MotorStatus::kEnabling);
+  robot.freezeBus(0, true);
+  robot.run(50);
+  ASSERT_EQ(robot.motor(0).status, MotorStatus::kOffline);
+  robot.freezeBus(0, false);
+  robot.run(2000);
+  EXPECT_EQ(robot.motor(0).status, MotorStatus::kReady);
+  EXPECT_EQ(robot.motor(1).status, MotorStatus::kReady);
+}
+
+TEST(GroupThatActsTogether, IsNotSaidToBeEnabledAgainWhileADriveIsConfigured) {
+  VirtualRobot robot{lifter(", feedback_timeout_ms: 1000")};
   robot.run(100);
   robot.order(Operation::kEnable);
   ASSERT_EQ(robot.motor(0).status, MotorStatus::kActive);
