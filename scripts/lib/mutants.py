@@ -23,6 +23,7 @@ import sys
 import tempfile
 from pathlib import Path
 from typing import NamedTuple
+from xml.etree import ElementTree as ET
 
 REPO = Path(__file__).resolve().parents[2]
 WORK = REPO / "build" / "mutants"
@@ -119,6 +120,7 @@ class Tree:
     def __init__(self, number: int) -> None:
         self.root = WORK / f"tree-{number}"
         self.build = WORK / f"build-{number}"
+        self.tests: dict[str, dict[Path, list[str]]] = {program: {} for program in TESTS}
         listed = subprocess.run(
             ["git", "ls-files", "-co", "--exclude-standard", "-z"],
             cwd=REPO,
@@ -171,16 +173,48 @@ class Tree:
         """Builds the tests."""
         return self.run(["ninja", "-C", self.build, *TESTS], check)
 
-    def passes(self, check: bool = False) -> bool:
-        """Whether all tests pass."""
-        return all(
+    def list_tests(self) -> None:
+        """Notes the names of all tests by the file that has them."""
+        for program in TESTS:
+            listed = self.build / f"{program}.xml"
             self.run(
-                [self.build / "tests" / test, "--gtest_fail_fast", "--gtest_brief=1"],
-                check,
-                TEST_PATIENCE_S,
+                [
+                    self.build / "tests" / program,
+                    "--gtest_list_tests",
+                    f"--gtest_output=xml:{listed}",
+                ],
+                check=True,
             )
-            for test in TESTS
-        )
+            for suite in ET.parse(listed).getroot():
+                for case in suite:
+                    source = Path(case.attrib["file"]).relative_to(self.root)
+                    name = f"{suite.attrib['name']}.{case.attrib['name']}"
+                    self.tests[program].setdefault(source, []).append(name)
+
+    def mirrored(self, program: str, file: str) -> list[str]:
+        """Tests of a source: src/motor/encoder.cpp has those of tests/motor/encoder*_test.cpp."""
+        source = Path(file)
+        folder = Path("tests", *source.parent.parts[1:])
+        return [
+            name
+            for path, names in self.tests[program].items()
+            if path.parent == folder and path.name.startswith(source.stem)
+            for name in names
+        ]
+
+    def passes(self, check: bool = False, only: str | None = None) -> bool:
+        """Whether all tests pass, or those of one source."""
+        for program in TESTS:
+            command: list[str | Path] = [self.build / "tests" / program]
+            command += ["--gtest_fail_fast", "--gtest_brief=1"]
+            if only is not None:
+                names = self.mirrored(program, only)
+                if not names:
+                    continue
+                command.append("--gtest_filter=" + ":".join(names))
+            if not self.run(command, check, TEST_PATIENCE_S):
+                return False
+        return True
 
     def judge(self, mutant: Mutant) -> str:
         """`killed`, `lives`, or `invalid`: it does not compile."""
@@ -190,7 +224,8 @@ class Tree:
         try:
             if not self.compile():
                 return "invalid"
-            return "lives" if self.passes() else "killed"
+            # Most are noticed by the tests of their own file.
+            return "lives" if self.passes(only=mutant.file) and self.passes() else "killed"
         finally:
             file.write_text(original, encoding="utf-8")
 
@@ -223,6 +258,7 @@ def main() -> int:
     for number in range(given.jobs):
         tree = Tree(number)
         tree.compile(check=True)
+        tree.list_tests()
         tree.passes(check=True)
         trees.put(tree)
 
