@@ -1,6 +1,8 @@
 #include "motor/guarding/motor_guard.hpp"
 
+#include <array>
 #include <cmath>
+#include <functional>
 
 #include <gtest/gtest.h>
 
@@ -288,9 +290,16 @@ TEST_F(MotionGuardTest, ACurrentAfterAnAngleThatWasHeldIsNotFrozen) {
 
 TEST_F(MotionGuardTest, ReadingsThatChangeByOneBitAreNotFrozen) {
   effort_a = 5.0F;
-  for (int i = 0; i < 500; ++i) {
-    feedback.total_angle_deg += i % 100 == 0 ? 0.01 : 0.0;
-    EXPECT_EQ(run(1), FaultCode::kNone);
+  feedback.temperature_c = 40.0F;
+  const std::array<std::function<void(float)>, 4> readings{
+      [this](float by) { feedback.total_angle_deg += static_cast<double>(by); },
+      [this](float by) { feedback.velocity_rpm += by; }, [this](float by) { feedback.current_a += by; },
+      [this](float by) { feedback.temperature_c += by; }};
+  for (const auto& change : readings) {
+    for (const float by : {0.01F, 0.01F, -0.01F, -0.01F}) {
+      EXPECT_EQ(run(150), FaultCode::kNone);
+      change(by);
+    }
   }
 }
 
