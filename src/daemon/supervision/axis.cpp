@@ -69,7 +69,7 @@ bool Axis::listen(const Tick& tick, const Since& since) noexcept {
   const bool heard = came && 2 * (tick.now - feedback.received) <= entry_.feedback_timeout;
   const bool could_speak = !since.simulation_late || !bus_.simulated;
   if (could_speak) unheard_ += since.ran;
-  // What came in a pause could not be heard earlier.
+  // A sample of a pause could not be heard earlier.
   if (heard || (came && feedback.received > since.before)) unheard_ = {};
   if (heard) on_when_heard_ = isOn(status_);
   samples_ = feedback.samples;

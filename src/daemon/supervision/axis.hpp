@@ -39,7 +39,7 @@ class Axis {
   /// Since the tick before.
   struct Since {
     MonotonicTime before{};        ///< When it started.
-    Duration ran{};                ///< Of the time since then, less a pause of this thread.
+    Duration ran{};                ///< Time since then, less a pause of this thread.
     bool simulation_late = false;  ///< Simulated drives had no processor to speak.
   };
   /// Once a tick, first: whether its feedback is fresh().
