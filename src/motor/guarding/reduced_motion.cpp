@@ -30,7 +30,6 @@ bool ReducedMotion::follow(bool reduced, bool moves, const MotorFeedback& feedba
 // From what is measured: a target that the shaft has not reached yet is no reason to gain speed.
 void ReducedMotion::begin(float speed_rpm, MonotonicTime now) noexcept {
   since_ = now;
-  fast_samples_ = 0;
   if (!(config_.velocity_rpm > 0.0F)) return;
   const auto least = static_cast<double>(config_.velocity_rpm);
   ceiling_rpm_ = speed_rpm > config_.velocity_rpm ? static_cast<double>(speed_rpm) : least;
