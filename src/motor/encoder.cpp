@@ -28,6 +28,11 @@ constexpr double kTurnsPerNsPerRpm = 1.0 / (kRpmPerTurnPerS * 1e9);
 
 double nanoseconds(Duration spacing) noexcept { return static_cast<double>(spacing.count()); }
 
+// Mean speed between two samples.
+double turnsPerNs(float before_rpm, float now_rpm) noexcept {
+  return (static_cast<double>(before_rpm) + static_cast<double>(now_rpm)) * (0.5 * kTurnsPerNsPerRpm);
+}
+
 }  // namespace
 
 Encoder::Encoder(const Config& config) noexcept
@@ -35,12 +40,15 @@ Encoder::Encoder(const Config& config) noexcept
       turns_per_count_(1.0 / static_cast<double>(config.counts_per_turn)),
       error_per_ns2_(static_cast<double>(config.max_acceleration_rpm_per_s) * kTurnsPerNsPerRpm * 1e-9 / 4.0),
       error_per_ns_(static_cast<double>(config.velocity_error_rpm) * kTurnsPerNsPerRpm),
+      period_ns_(nanoseconds(config.sample_period)),
       rounding_(config.sample_period - config.sample_period / 20) {
   const double spacing_s = longestSpacingSeconds(config, kHalfTurn);
   // The stamps may make the spacing look shorter than it is.
   longest_gap_ =
       std::max(Duration{0}, std::chrono::duration_cast<Duration>(std::chrono::duration<double>(spacing_s)) -
                                 config.stamp_error);
+  const Duration one_period = 2 * config.sample_period - rounding_ - Duration{1};
+  longest_usual_ = config.sample_period > Duration{0} ? std::min(one_period, longest_gap_) : Duration{-1};
 }
 
 void Encoder::loseReference() noexcept {
@@ -97,13 +105,53 @@ Encoder::Step Encoder::chooseStep(double moved_turns, double turns_per_ns, Durat
     late = arrived - spacing;
   }
   chosen.in_doubt = chosen.explained ? disagree : differ;
-  // Clocks drift: what is not seen again is forgotten.
-  const Duration remembered = std::min(late - gap / 100, kMostLatePeriods * period);
-  late_ = std::max(remembered, Duration{0});
+  remember(late, gap);
   return chosen;
 }
 
+// Clocks drift: what is not seen again is forgotten.
+inline void Encoder::remember(Duration late, Duration gap) noexcept {
+  late_ = Duration{0};
+  if (late <= Duration{0}) return;
+  const Duration remembered = std::min(late - gap / 100, kMostLatePeriods * config_.sample_period);
+  late_ = std::max(remembered, Duration{0});
+}
+
+// What chooseStep() finds where one period has passed, so that its spacings are none, one, and what the
+// stamps say, which is no more than a twentieth beyond one: no turn, where the movement is less than half of
+// one and the prediction over a period within the margin of it. The best of the spacings is then explained,
+// too, and tells the delay of the stamp.
+inline bool Encoder::countUsual(std::int32_t raw_counts, float velocity_rpm,
+                                MonotonicTime received) noexcept {
+  const Duration gap = std::max(Duration{0}, received - received_);
+  const Duration arrived = gap + late_;
+  if (!has_sample_ || arrived > longest_usual_ || raw_counts < 0 || raw_counts >= config_.counts_per_turn)
+    return false;
+  const std::int32_t moved = raw_counts - raw_counts_;
+  const double moved_turns = static_cast<double>(moved) * turns_per_count_;
+  const double turns_per_ns = turnsPerNs(velocity_rpm_, velocity_rpm);
+  const double off_at_once = std::fabs(moved_turns);
+  const double off_by_stamps = std::fabs(turns_per_ns * nanoseconds(gap) - moved_turns);
+  const double off_by_period = std::fabs(turns_per_ns * period_ns_ - moved_turns);
+  // False for a speed that is not finite, too.
+  if (!(off_by_period <= kJumpMarginTurns && off_at_once < 0.5)) return false;
+  Duration late = off_at_once <= off_by_stamps ? arrived : late_;
+  if (off_by_period <= off_by_stamps && off_by_period <= off_at_once) late = arrived - config_.sample_period;
+  remember(late, gap);
+  total_counts_ += moved;
+  raw_counts_ = raw_counts;
+  velocity_rpm_ = velocity_rpm;
+  received_ = received;
+  return true;
+}
+
 bool Encoder::update(std::int32_t raw_counts, float velocity_rpm, MonotonicTime received) noexcept {
+  return countUsual(raw_counts, velocity_rpm, received) ||
+         updateByAllSpacings(raw_counts, velocity_rpm, received);
+}
+
+bool Encoder::updateByAllSpacings(std::int32_t raw_counts, float velocity_rpm,
+                                  MonotonicTime received) noexcept {
   if (raw_counts < 0 || raw_counts >= config_.counts_per_turn || !std::isfinite(velocity_rpm)) return false;
   if (!has_sample_) {
     has_sample_ = true;
@@ -111,8 +159,7 @@ bool Encoder::update(std::int32_t raw_counts, float velocity_rpm, MonotonicTime 
   } else {
     const Duration gap = std::max(Duration{0}, received - received_);  // stamps may swap, time does not
     const bool countable = gap <= longest_gap_;
-    const double both_rpm = static_cast<double>(velocity_rpm_) + static_cast<double>(velocity_rpm);
-    const double turns_per_ns = both_rpm * (0.5 * kTurnsPerNsPerRpm);
+    const double turns_per_ns = turnsPerNs(velocity_rpm_, velocity_rpm);
     const std::int32_t moved = raw_counts - raw_counts_;
     const double moved_turns = static_cast<double>(moved) * turns_per_count_;
     // Too far apart, the nearest wrap keeps the position within the turn right.

@@ -53,6 +53,8 @@ class Encoder {
   /// One sample: position in [0, counts_per_turn), the drive's own speed, and when it was received.
   /// Returns false, and changes nothing, if the position is out of range or the speed is not finite.
   bool update(std::int32_t raw_counts, float velocity_rpm, MonotonicTime received) noexcept;
+  /// The same without update()'s short cut for usual samples: by every spacing that the stamps allow.
+  bool updateByAllSpacings(std::int32_t raw_counts, float velocity_rpm, MonotonicTime received) noexcept;
 
   /// Counts since the first sample's turn began: raw position plus whole turns.
   [[nodiscard]] std::int64_t totalCounts() const noexcept { return total_counts_; }
@@ -66,6 +68,8 @@ class Encoder {
   /// report. Each loses the reference. Not noticed at speeds where late stamps could explain it.
   [[nodiscard]] std::uint64_t jumps() const noexcept { return jumps_; }
 
+  /// Delay of the last stamp, as far as is known.
+  [[nodiscard]] Duration stampDelay() const noexcept { return late_; }
   /// The longest spacing of two receive times over which counting stays exact.
   [[nodiscard]] Duration longestGap() const noexcept { return longest_gap_; }
 
@@ -81,11 +85,13 @@ class Encoder {
     double off = 0.0;        ///< Turns that the prediction was off, to either side.
   };
 
+  /// Counts a sample that lies about a period after the one before, and whose turn is the same at any of the
+  /// spacings it can have. False: it is another one, and nothing has changed.
+  [[nodiscard]] bool countUsual(std::int32_t raw_counts, float velocity_rpm, MonotonicTime received) noexcept;
+  void remember(Duration late, Duration gap) noexcept;
   void loseReference() noexcept;
   [[nodiscard]] Step stepOver(double moved_turns, double turns_per_ns, double spacing_ns) const noexcept;
-  /// Not inlined: its numbers fill the registers.
-  [[nodiscard, gnu::noinline]] Step chooseStep(double moved_turns, double turns_per_ns,
-                                               Duration gap) noexcept;
+  [[nodiscard]] Step chooseStep(double moved_turns, double turns_per_ns, Duration gap) noexcept;
   /// predictionErrorTurns() without an error of the stamps.
   [[nodiscard]] double errorTurns(double spacing_ns) const noexcept {
     return (error_per_ns2_ * spacing_ns + error_per_ns_) * spacing_ns;
@@ -96,8 +102,10 @@ class Encoder {
   double turns_per_count_;
   double error_per_ns2_;  ///< Error of the acceleration, in turns.
   double error_per_ns_;   ///< Error of the reported speed, in turns.
-  Duration rounding_;     ///< Makes whole sample periods of a time: up but for a twentieth of one.
+  double period_ns_;
+  Duration rounding_;  ///< Makes whole sample periods of a time: up but for a twentieth of one.
   Duration longest_gap_{};
+  Duration longest_usual_{};  ///< Time that counts as one period, and is no gap. Below 0: there is no period.
   std::uint64_t losses_ = 0;
   std::uint64_t jumps_ = 0;
   std::int64_t total_counts_ = 0;
