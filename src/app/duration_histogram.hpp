@@ -71,12 +71,10 @@ class BasicDurationHistogram {
   static constexpr unsigned kBinsPerOctave = 16;
   static constexpr std::size_t kBins = std::size_t{kBinsPerOctave} * 32;  // to 2^35 ns, 34 s
 
-  // Below 16 ns one bin per nanosecond; above, the four bits after the leading one choose the bin.
+  // Below 16 ns one bin per nanosecond; above, the leading bit and the four after it choose the bin.
   [[nodiscard]] static std::size_t binOf(std::uint64_t ns) noexcept {
-    if (ns < kBinsPerOctave) return static_cast<std::size_t>(ns);
-    const auto octave = static_cast<unsigned>(std::bit_width(ns)) - 5U;  // 0 for 16..31
-    const auto within = static_cast<std::size_t>((ns >> octave) & (kBinsPerOctave - 1U));
-    return std::min(std::size_t{kBinsPerOctave} * (octave + 1U) + within, kBins - 1);
+    const auto octave = static_cast<unsigned>(std::bit_width(ns | kBinsPerOctave)) - 5U;  // 0 to 31 ns: 0
+    return std::min(std::size_t{kBinsPerOctave} * octave + static_cast<std::size_t>(ns >> octave), kBins - 1);
   }
   [[nodiscard]] static std::uint64_t upperEdge(std::size_t bin) noexcept {
     if (bin < kBinsPerOctave) return bin;

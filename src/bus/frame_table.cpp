@@ -132,18 +132,26 @@ FrameTable::DeviceSet FrameTable::extendedCandidates(CanId id) const noexcept {
   return found;
 }
 
-FrameListener* FrameTable::find(const CanFrame& frame) const noexcept {
-  if (frame.type != FrameType::kData) return nullptr;
-  // The table of standard ids is exact: it says all that a filter without a discriminator would.
-  const bool exact = !frame.id.extended && frame.id.value <= kStandardIdMask;
-  DeviceSet left =
-      frame.id.extended ? extendedCandidates(frame.id) : standard_[frame.id.value & kStandardIdMask];
-  for (; left != 0; left &= left - 1) {
+FrameListener* FrameTable::firstOf(DeviceSet candidates, const CanFrame& frame) const noexcept {
+  for (DeviceSet left = candidates; left != 0; left &= left - 1) {
     const Device& device = devices_[static_cast<std::size_t>(std::countr_zero(left))];
-    const bool accepted = (exact && device.by_id) || acceptsAny(device.filters, frame);
-    if (accepted && device.listener->matchesFrame(frame)) return device.listener;
+    if (acceptsAny(device.filters, frame) && device.listener->matchesFrame(frame)) return device.listener;
   }
   return nullptr;
+}
+
+FrameListener* FrameTable::find(const CanFrame& frame) const noexcept {
+  if (frame.type != FrameType::kData) return nullptr;
+  if (frame.id.extended) return firstOf(extendedCandidates(frame.id), frame);
+  const DeviceSet candidates = standard_[frame.id.value & kStandardIdMask];
+  if (candidates == 0) return nullptr;
+  const Device& device = devices_[static_cast<std::size_t>(std::countr_zero(candidates))];
+  // The table of standard ids is exact: of one candidate it says all that a filter without a discriminator
+  // would.
+  const bool decided =
+      (candidates & (candidates - 1)) == 0 && device.by_id && frame.id.value <= kStandardIdMask;
+  if (!decided) return firstOf(candidates, frame);
+  return device.listener->matchesFrame(frame) ? device.listener : nullptr;
 }
 
 }  // namespace rc10

@@ -53,8 +53,10 @@ class FrameTable {
   void insertStandard(const FrameFilter& filter, DeviceSet device) noexcept;
   void insertExtended(const FrameFilter& filter, DeviceSet device) noexcept;
   [[nodiscard]] std::size_t slotFor(std::uint32_t key, std::uint32_t mask) const noexcept;
-  /// Not inlined, as acceptsAny(): find() is short where a standard id says all.
-  [[nodiscard, gnu::noinline]] DeviceSet extendedCandidates(CanId id) const noexcept;
+  [[nodiscard]] DeviceSet extendedCandidates(CanId id) const noexcept;
+  /// Not inlined: find() is short where a standard id says all.
+  [[nodiscard, gnu::noinline]] FrameListener* firstOf(DeviceSet candidates,
+                                                      const CanFrame& frame) const noexcept;
 
   std::array<Device, kMaxDevices> devices_{};
   std::size_t size_ = 0;

@@ -33,9 +33,11 @@ class Cascade {
   /// which the anti-windup respects; `effort_in_force` what the drive was told last, from which a
   /// change of mode starts without a bump; `effort_ff` is added after the loops, inside the limit.
   /// Modes: velocity, angle, total angle; any other one, or an input that is not finite, gives 0.
-  [[nodiscard, gnu::noinline]] float step(const Target& target, const Measured& measured, float dt_s,
-                                          float effort_limit, float effort_in_force,
-                                          float effort_ff = 0.0F) noexcept;
+  // Not inlined, and flat: no floating-point register outlives a call, few are in use where it begins, and
+  // both loops keep theirs.
+  [[nodiscard, gnu::noinline, gnu::flatten]] float step(const Target& target, const Measured& measured,
+                                                        float dt_s, float effort_limit, float effort_in_force,
+                                                        float effort_ff = 0.0F) noexcept;
 
   /// Other gains from the next step on, without a bump. The type of the velocity loop stays: a config of
   /// another one is ignored.
@@ -51,9 +53,7 @@ class Cascade {
   [[nodiscard]] const CascadeConfig& config() const noexcept { return config_; }
 
  private:
-  // Not inlined, as step(): no floating-point register outlives a call, and few are in use where these begin.
-  [[nodiscard, gnu::noinline]] float velocityTarget(const Target& target, const Measured& measured,
-                                                    float dt_s) noexcept;
+  [[nodiscard]] float velocityTarget(const Target& target, const Measured& measured, float dt_s) noexcept;
 
   CascadeConfig config_;
   OutputRange velocity_range_;

@@ -29,8 +29,8 @@ constexpr double kTurnsPerNsPerRpm = 1.0 / (kRpmPerTurnPerS * 1e9);
 double nanoseconds(Duration spacing) noexcept { return static_cast<double>(spacing.count()); }
 
 // Mean speed between two samples.
-double turnsPerNs(float before_rpm, float now_rpm) noexcept {
-  return (static_cast<double>(before_rpm) + static_cast<double>(now_rpm)) * (0.5 * kTurnsPerNsPerRpm);
+double turnsPerNs(double before_rpm, double now_rpm) noexcept {
+  return (before_rpm + now_rpm) * (0.5 * kTurnsPerNsPerRpm);
 }
 
 }  // namespace
@@ -59,7 +59,7 @@ void Encoder::loseReference() noexcept {
 // Stamps may be late by as much as a gap that is still counted over: a paused receiver reads many samples
 // at once. Up to there speed explains the difference.
 bool Encoder::jumped(double off_turns, float velocity_rpm, Duration gap) const noexcept {
-  const double fastest_rpm = static_cast<double>(std::max(std::fabs(velocity_rpm), std::fabs(velocity_rpm_)));
+  const double fastest_rpm = std::max(std::fabs(static_cast<double>(velocity_rpm)), std::fabs(velocity_rpm_));
   Config moving = config_;
   moving.max_velocity_rpm = static_cast<float>(fastest_rpm);
   moving.stamp_error = longest_gap_;
@@ -129,7 +129,7 @@ inline bool Encoder::countUsual(std::int32_t raw_counts, float velocity_rpm,
     return false;
   const std::int32_t moved = raw_counts - raw_counts_;
   const double moved_turns = static_cast<double>(moved) * turns_per_count_;
-  const double turns_per_ns = turnsPerNs(velocity_rpm_, velocity_rpm);
+  const double turns_per_ns = turnsPerNs(velocity_rpm_, static_cast<double>(velocity_rpm));
   const double off_at_once = std::fabs(moved_turns);
   const double off_by_stamps = std::fabs(turns_per_ns * nanoseconds(gap) - moved_turns);
   const double off_by_period = std::fabs(turns_per_ns * period_ns_ - moved_turns);
@@ -140,7 +140,7 @@ inline bool Encoder::countUsual(std::int32_t raw_counts, float velocity_rpm,
   remember(late, gap);
   total_counts_ += moved;
   raw_counts_ = raw_counts;
-  velocity_rpm_ = velocity_rpm;
+  velocity_rpm_ = static_cast<double>(velocity_rpm);
   received_ = received;
   return true;
 }
@@ -159,7 +159,7 @@ bool Encoder::updateByAllSpacings(std::int32_t raw_counts, float velocity_rpm,
   } else {
     const Duration gap = std::max(Duration{0}, received - received_);  // stamps may swap, time does not
     const bool countable = gap <= longest_gap_;
-    const double turns_per_ns = turnsPerNs(velocity_rpm_, velocity_rpm);
+    const double turns_per_ns = turnsPerNs(velocity_rpm_, static_cast<double>(velocity_rpm));
     const std::int32_t moved = raw_counts - raw_counts_;
     const double moved_turns = static_cast<double>(moved) * turns_per_count_;
     // Too far apart, the nearest wrap keeps the position within the turn right.
@@ -172,7 +172,7 @@ bool Encoder::updateByAllSpacings(std::int32_t raw_counts, float velocity_rpm,
     if (!countable || step.in_doubt || leapt) loseReference();
   }
   raw_counts_ = raw_counts;
-  velocity_rpm_ = velocity_rpm;
+  velocity_rpm_ = static_cast<double>(velocity_rpm);
   received_ = received;
   return true;
 }

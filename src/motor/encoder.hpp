@@ -54,7 +54,8 @@ class Encoder {
   /// Returns false, and changes nothing, if the position is out of range or the speed is not finite.
   bool update(std::int32_t raw_counts, float velocity_rpm, MonotonicTime received) noexcept;
   /// The same without update()'s short cut for usual samples: by every spacing that the stamps allow.
-  bool updateByAllSpacings(std::int32_t raw_counts, float velocity_rpm, MonotonicTime received) noexcept;
+  [[gnu::noinline]] bool updateByAllSpacings(std::int32_t raw_counts, float velocity_rpm,
+                                             MonotonicTime received) noexcept;
 
   /// Counts since the first sample's turn began: raw position plus whole turns.
   [[nodiscard]] std::int64_t totalCounts() const noexcept { return total_counts_; }
@@ -110,7 +111,7 @@ class Encoder {
   std::uint64_t jumps_ = 0;
   std::int64_t total_counts_ = 0;
   std::int32_t raw_counts_ = 0;
-  float velocity_rpm_ = 0.0F;
+  double velocity_rpm_ = 0.0;
   MonotonicTime received_;
   Duration late_{};  ///< Delay of the last stamp, as far as is known.
   bool has_sample_ = false;

@@ -23,17 +23,20 @@ void SampleSpacing::add(Duration spacing) noexcept {
   ++pending_samples_;
 }
 
-float SampleSpacing::pendingPeriods() const noexcept { return std::round(pending_s_ / period_s_); }
-
-float SampleSpacing::take() noexcept {
-  if (pending_samples_ == 0) return 0.0F;
-  // Lost frames make the spacing a multiple of the period, late ones do not change how many there are.
-  const float periods = pending_s_ < 1.5F * period_s_ ? 1.0F : pendingPeriods();
+inline float SampleSpacing::takePeriods(float periods) noexcept {
   const float measured_s = std::clamp(pending_s_ / periods, shortest_s_, longest_s_);
   period_s_ += (measured_s - period_s_) * kSmoothing;
   pending_s_ = 0.0F;
   pending_samples_ = 0;
   return std::clamp(periods * period_s_, shortest_s_, longest_s_);
+}
+
+float SampleSpacing::takeSeveral() noexcept { return takePeriods(std::round(pending_s_ / period_s_)); }
+
+// Lost frames make the spacing a multiple of the period, late ones do not change how many there are.
+float SampleSpacing::take() noexcept {
+  if (pending_samples_ == 0) return 0.0F;
+  return pending_s_ < 1.5F * period_s_ ? takePeriods(1.0F) : takeSeveral();
 }
 
 }  // namespace rc10

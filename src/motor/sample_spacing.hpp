@@ -33,8 +33,10 @@ class SampleSpacing {
   [[nodiscard]] float periodSeconds() const noexcept { return period_s_; }
 
  private:
-  /// Spacing of a late sample, or of several, in periods.
-  [[nodiscard, gnu::noinline]] float pendingPeriods() const noexcept;
+  /// Takes what is pending as so many periods.
+  [[nodiscard]] float takePeriods(float periods) noexcept;
+  /// A late sample, or several. Not inlined: take() is short without it.
+  [[nodiscard, gnu::noinline]] float takeSeveral() noexcept;
 
   float shortest_s_;
   float longest_s_;

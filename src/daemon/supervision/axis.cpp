@@ -46,11 +46,13 @@ void Axis::fill(MotorSnapshot& snapshot) const noexcept {
 }
 
 Acting Axis::acting() const noexcept {
-  switch (motor_.ordered()) {
-    case FrameKind::kCommand: return ramps() ? Acting::kRamp : Acting::kTarget;
+  const auto ordered = motor_.ordered();
+  if (ordered == FrameKind::kCommand) return ramps() ? Acting::kRamp : Acting::kTarget;  // most often
+  switch (ordered) {
     case FrameKind::kHold: return Acting::kHold;
     case FrameKind::kDamp: return Acting::kDamp;
     case FrameKind::kBrake: return Acting::kBrake;
+    case FrameKind::kCommand:
     case FrameKind::kRest:
     case FrameKind::kPoll:
     case FrameKind::kIdle:

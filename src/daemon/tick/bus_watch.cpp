@@ -15,7 +15,7 @@ constexpr Duration kForeignReportInterval = std::chrono::seconds{1};
 }  // namespace
 
 void BusWatch::decide(const Tick& tick) noexcept {
-  for (std::size_t i = 0; i < robot_.buses().size(); ++i) {
+  for (std::size_t i = 0, count = robot_.buses().size(); i < count; ++i) {
     auto& entry = robot_.buses()[i];
     reportState(i, tick);  // before what its motors make of it
     entry.held = !carriesFrames(entry.bus->health().state());
@@ -23,7 +23,7 @@ void BusWatch::decide(const Tick& tick) noexcept {
 }
 
 void BusWatch::send(const Tick& tick, bool stopping) noexcept {
-  for (std::size_t i = 0; i < robot_.buses().size(); ++i) {
+  for (std::size_t i = 0, count = robot_.buses().size(); i < count; ++i) {
     auto& bus = *robot_.buses()[i].bus;
     if (robot_.buses()[i].held && !stopping) {
       bus.holdBack();
@@ -47,7 +47,7 @@ void BusWatch::probe(std::size_t bus, const Tick& tick) noexcept {
 }
 
 void BusWatch::update(const Tick& tick) noexcept {
-  for (std::size_t i = 0; i < robot_.buses().size(); ++i) {
+  for (std::size_t i = 0, count = robot_.buses().size(); i < count; ++i) {
     updateHealth(i, tick);
     reportState(i, tick);
     reportForeign(i, tick);

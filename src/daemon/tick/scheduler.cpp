@@ -86,8 +86,7 @@ void Scheduler::stopForTheComputer(const Tick& tick) noexcept {
     supervisor_.stopFor({StopCause::kGuard}, tick);
     supervisor_.endFallbacks();  // the drives rest already: nothing takes them up again
   }
-  if (const Stop why = std::exchange(stop_asked_, {}); why.cause != StopCause::kNone)
-    supervisor_.stopFor(why, tick);
+  if (stop_asked_.cause != StopCause::kNone) supervisor_.stopFor(std::exchange(stop_asked_, {}), tick);
 }
 
 void Scheduler::beat(const Tick& tick) noexcept {
@@ -113,7 +112,7 @@ void Scheduler::reportMissedTicks(const Tick& tick) noexcept {
 }
 
 void Scheduler::receive() noexcept {
-  for (std::size_t i = 0; i < robot_.buses().size(); ++i) {
+  for (std::size_t i = 0, count = robot_.buses().size(); i < count; ++i) {
     auto& bus = *robot_.buses()[i].bus;
     // Only what is there now: a flooded bus must not lengthen the tick without bound.
     inboxes_[i].frames.consume_all([&](const CanFrame& frame) {

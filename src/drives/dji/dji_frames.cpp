@@ -2,10 +2,13 @@
 
 namespace rc10::dji {
 
-CanFrame groupCommand(CanId id, const std::array<std::int16_t, kGroupSize>& raw) noexcept {
-  std::array<std::uint8_t, kLength> data{};
-  for (std::size_t slot = 0; slot < kGroupSize; ++slot) writeBigEndian(data, 2 * slot, raw[slot]);
-  return makeClassicFrame(id, data);
+void writeGroupCommand(CanId id, const std::array<std::int16_t, kGroupSize>& raw, CanFrame& out) noexcept {
+  out.id = id;
+  out.type = FrameType::kData;
+  out.fd = false;
+  out.bit_rate_switch = false;
+  out.length = kLength;
+  for (std::size_t slot = 0; slot < kGroupSize; ++slot) writeBigEndian(out.data, 2 * slot, raw[slot]);
 }
 
 CanFrame feedbackFrame(CanId id, const Feedback& feedback) noexcept {

@@ -49,7 +49,7 @@ std::size_t DJI_Group::packCommand(const Tick& /*tick*/, std::span<CanFrame> out
     any = true;
     raw[slot] = slots_[slot]->rawCommand();
   }
-  out.front() = dji::groupCommand(ids_[0], raw);
+  dji::writeGroupCommand(ids_[0], raw, out.front());
   return any ? 1 : 0;
 }
 
@@ -57,7 +57,7 @@ std::size_t DJI_Group::packRest(std::span<CanFrame> out) const noexcept {
   const bool any =
       std::any_of(slots_.begin(), slots_.end(), [](const auto* motor) { return motor != nullptr; });
   if (out.empty() || !any) return 0;
-  out.front() = dji::groupCommand(ids_[0], {});
+  dji::writeGroupCommand(ids_[0], {}, out.front());
   return 1;
 }
 

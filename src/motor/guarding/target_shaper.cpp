@@ -96,9 +96,13 @@ std::uint32_t TargetShaper::shape(Target& asked, const MotorFeedback& feedback, 
   if (mode_ != ControlMode::kVelocity && !needsReference(mode_)) return 0;
   const bool feeds_forward = feeds_forward_ || asked.velocity_ff_rpm != 0.0F || asked.torque_ff_nm != 0.0F ||
                              asked.mode == ControlMode::kImpedance;
-  const auto limits = feeds_forward ? shapeFeedForward(asked, feedback, dt_s) : 0U;
-  return limits | (mode_ == ControlMode::kVelocity ? shapeVelocity(asked, feedback, dt_s)
-                                                   : shapeAngle(asked, feedback, dt_s));
+  return feeds_forward ? shapeWithFeedForward(asked, feedback, dt_s) : shapeMotion(asked, feedback, dt_s);
+}
+
+inline std::uint32_t TargetShaper::shapeMotion(Target& asked, const MotorFeedback& feedback,
+                                               float dt_s) noexcept {
+  return mode_ == ControlMode::kVelocity ? shapeVelocity(asked, feedback, dt_s)
+                                         : shapeAngle(asked, feedback, dt_s);
 }
 
 // From what acts, in the unit of the mode: the last command may have been a speed.
@@ -141,11 +145,11 @@ bool TargetShaper::slew(double goal, float per_second, float dt_s) noexcept {
   return slewTowards(goal, static_cast<double>(per_second), dt_s, value_);
 }
 
-std::uint32_t TargetShaper::shapeFeedForward(Target& asked, const MotorFeedback& feedback,
-                                             float dt_s) noexcept {
+std::uint32_t TargetShaper::shapeWithFeedForward(Target& asked, const MotorFeedback& feedback,
+                                                 float dt_s) noexcept {
   const auto limits = shapeVelocityFf(asked, dt_s) | shapeTorqueFf(asked, feedback, dt_s);
   feeds_forward_ = velocity_ff_rpm_ != 0.0 || torque_ff_nm_ != 0.0;
-  return limits;
+  return limits | shapeMotion(asked, feedback, dt_s);
 }
 
 // The velocity of a trajectory: no faster than the angle may move, and no jump.

@@ -112,9 +112,12 @@ class TargetShaper {
   // Each shapes its part of the target and returns the limits that act.
   [[nodiscard]] std::uint32_t shape(Target& asked, const MotorFeedback& feedback, InForce in_force,
                                     float dt_s) noexcept;
+  /// A speed or an angle.
+  [[nodiscard]] std::uint32_t shapeMotion(Target& asked, const MotorFeedback& feedback, float dt_s) noexcept;
   // Not inlined: shape() is short for a target without slew limits, soft limits and feed-forward.
-  [[nodiscard, gnu::noinline]] std::uint32_t shapeFeedForward(Target& asked, const MotorFeedback& feedback,
-                                                              float dt_s) noexcept;
+  [[nodiscard, gnu::noinline]] std::uint32_t shapeWithFeedForward(Target& asked,
+                                                                  const MotorFeedback& feedback,
+                                                                  float dt_s) noexcept;
   [[nodiscard]] std::uint32_t shapeVelocityFf(Target& asked, float dt_s) noexcept;
   [[nodiscard]] std::uint32_t shapeTorqueFf(Target& asked, const MotorFeedback& feedback,
                                             float dt_s) noexcept;
