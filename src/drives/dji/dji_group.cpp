@@ -57,6 +57,7 @@ std::size_t DJI_Group::packRest(std::span<CanFrame> out) const noexcept {
   const bool any =
       std::any_of(slots_.begin(), slots_.end(), [](const auto* motor) { return motor != nullptr; });
   if (out.empty() || !any) return 0;
+  out.front() = CanFrame{};
   dji::writeGroupCommand(ids_[0], {}, out.front());
   return 1;
 }
