@@ -97,7 +97,9 @@ float Cascade::step(const Target& target, const Measured& measured, float dt_s, 
     if (fresh) loop.start(effort_in_force - effort_ff, measured.velocity_rpm, velocity_target);
     return loop.step(velocity_target, measured.velocity_rpm, dt_s, range.shifted(-effort_ff));
   };
-  const float effort = std::visit(advance, velocity_);
+  auto* incremental = std::get_if<PID_Incremental>(&velocity_);
+  const float effort =
+      incremental != nullptr ? advance(*incremental) : advance(*std::get_if<PID_Position>(&velocity_));
   const float limited = range.clamp(effort + effort_ff);
   effort_limited_ = limited <= range.low || limited >= range.high;
   return limited;

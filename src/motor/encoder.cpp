@@ -117,7 +117,7 @@ inline void Encoder::remember(Duration late, Duration gap) noexcept {
   late_ = std::max(remembered, Duration{0});
 }
 
-// What chooseStep() finds where one period has passed, so that its spacings are none, one, and what the
+// The choice of chooseStep() where one period has passed, so that its spacings are none, one, and what the
 // stamps say, which is no more than a twentieth beyond one: no turn, where the movement is less than half of
 // one and the prediction over a period within the margin of it. The best of the spacings is then explained,
 // too, and tells the delay of the stamp.

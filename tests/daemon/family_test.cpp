@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <string>
+#include <tuple>
 #include <vector>
 
 #include "config/load_config.hpp"
@@ -225,6 +226,21 @@ class HeldFamily : public Family {
  protected:
   HeldFamily() : Family(heldInEstops(GetParam())) {}
 
+  /// It turned, was stopped, and is held; the stop is cleared.
+  [[nodiscard]] bool isHeld() {
+    if (!waitFor(MotorStatus::kReady) || !enable()) return false;
+    turn(500);
+    robot.order(Operation::kEstop);
+    robot.run(300);
+    return isCleared() && robot.motor(kMotor).acting != Acting::kNothing;
+  }
+  /// Once it stands: some holds have a limit cycle.
+  [[nodiscard]] bool isCleared() {
+    for (int i = 0; i < 20'000 && robot.snapshot().state != RobotStatus::kRun; ++i)
+      robot.order(Operation::kClear);
+    return robot.snapshot().state == RobotStatus::kRun;
+  }
+
   /// Asks for it, as a client that does not wait.
   void beginEnabling() {
     Order enable;
@@ -236,16 +252,10 @@ class HeldFamily : public Family {
 };
 
 TEST_P(HeldFamily, IsNotLetGoWhileItIsEnabledAnew) {
-  ASSERT_TRUE(waitFor(MotorStatus::kReady));
-  ASSERT_TRUE(enable());
-  turn(500);
-  robot.order(Operation::kEstop);
-  robot.run(300);
+  ASSERT_TRUE(isHeld());
   const auto held = robot.motor(kMotor).acting;
-  ASSERT_THAT(held, AnyOf(Acting::kHold, Acting::kBrake, Acting::kDamp));
   for (int stopped_after = 1; stopped_after <= 25; ++stopped_after) {
     SCOPED_TRACE(stopped_after);
-    robot.order(Operation::kClear);
     beginEnabling();
     for (int i = 0; i < stopped_after; ++i) {
       robot.tick();
@@ -256,8 +266,109 @@ TEST_P(HeldFamily, IsNotLetGoWhileItIsEnabledAnew) {
     ASSERT_EQ(robot.motor(kMotor).acting, held);
     ASSERT_EQ(robot.motor(kMotor).fault, FaultCode::kNone);
     ASSERT_EQ(status(), MotorStatus::kReady);
+    ASSERT_TRUE(isCleared());
   }
 }
+
+TEST_P(HeldFamily, ADisableThatOvertakesItsEnablingLetsGo) {
+  for (int later = 0; later <= 3; ++later) {
+    SCOPED_TRACE(later);
+    ASSERT_TRUE(isHeld());
+    beginEnabling();
+    robot.run(later);
+    robot.order(Operation::kDisable);
+    robot.run(50);
+    EXPECT_EQ(status(), MotorStatus::kReady);
+    EXPECT_EQ(robot.motor(kMotor).acting, Acting::kNothing);
+    robot.order(Operation::kDisable);
+    robot.run(3000);
+  }
+}
+
+TEST_P(HeldFamily, ADriveThatRestartsInTheTickOfItsEnablingDoesNotStayActive) {
+  if (!GetParam().told_of_restart) return;
+  ASSERT_TRUE(isHeld());
+  drive().restart();
+  beginEnabling();
+  robot.run(500);
+  EXPECT_NE(status(), MotorStatus::kActive);
+}
+
+TEST_P(HeldFamily, IsNotActiveBeforeItIsHeardAgainAfterAPauseInItsEnabling) {
+  ASSERT_TRUE(isHeld());
+  beginEnabling();
+  robot.tick();
+  ASSERT_EQ(status(), MotorStatus::kEnabling);
+  robot.simBus().silence(kMotor, true);
+  robot.tick(500);
+  EXPECT_NE(status(), MotorStatus::kActive);
+}
+
+TEST_P(HeldFamily, ObeysAfterItWasEnabledWhileItWasHeld) {
+  ASSERT_TRUE(isHeld());
+  const auto held = robot.motor(kMotor).acting;
+  ASSERT_TRUE(enable());
+  robot.run(500);
+  EXPECT_EQ(robot.motor(kMotor).acting, held) << "until the first target";
+  turn(3000);
+  EXPECT_EQ(status(), MotorStatus::kActive);
+  EXPECT_NEAR(truth(), GetParam().rpm, 0.1 * GetParam().rpm);
+}
+
+RobotConfig heldWithBoundOrRamp(const Subject& subject, bool ramp, int divider) {
+  auto config = heldInEstops(subject);
+  auto& motor = config.buses[0].motors[0];
+  motor.settings.command_divider = divider;
+  motor.fallback.hold_max = std::chrono::milliseconds{400};
+  motor.fallback.brake_max = std::chrono::milliseconds{400};
+  motor.fallback.ramp = std::chrono::milliseconds{200};  // without torque 0.2 s later
+  if (ramp) motor.fallback.on_estop = FallbackAction::kRamp;
+  return config;
+}
+
+// The fallback ends, or becomes another, in each tick around that of enabling.
+class EndingFamily : public ::testing::TestWithParam<std::tuple<Subject, bool, int>> {};
+
+TEST_P(EndingFamily, IsEnabledInWhicheverTickItsFallbackEnds) {
+  const auto& [subject, ramp, divider] = GetParam();
+  int enabled = 0;
+  for (const int ticks : {396, 399, 400, 401, 404}) {
+    SCOPED_TRACE(ticks);
+    VirtualRobot robot{heldWithBoundOrRamp(subject, ramp, divider)};
+    for (int i = 0; i < 4000 && robot.motor(0).status != MotorStatus::kReady; ++i) robot.run(1);
+    for (int i = 0; i < 4 && robot.motor(0).status != MotorStatus::kActive; ++i) {
+      robot.order(Operation::kEnable);
+      robot.run(1000);
+    }
+    ASSERT_EQ(robot.motor(0).status, MotorStatus::kActive);
+    robot.hold(0, {.mode = ControlMode::kVelocity, .value = 0.0}, 1000);  // so that the stop can be cleared
+    robot.order(Operation::kEstop);
+    robot.run(ticks - 2);
+    robot.order(Operation::kClear);
+    if (robot.snapshot().state != RobotStatus::kRun) continue;  // it still turns
+    ++enabled;
+    const auto result = robot.order(Operation::kEnable);
+    EXPECT_EQ(result.motors[0], Refusal::kNone);
+    EXPECT_EQ(robot.motor(0).status, MotorStatus::kActive);
+    robot.run(200);
+    EXPECT_EQ(robot.motor(0).status, MotorStatus::kActive);
+    if (ramp) {
+      EXPECT_EQ(robot.motor(0).acting, Acting::kNothing);
+    }
+    robot.hold(0, {.mode = ControlMode::kVelocity, .value = subject.rpm}, 3000);
+    EXPECT_NEAR(robot.simBus().drive(0).physics().outputRpm(), subject.rpm, 0.2 * subject.rpm);
+  }
+  EXPECT_GT(enabled, 0) << "it turns on in each of these ticks";
+}
+
+INSTANTIATE_TEST_SUITE_P(All, EndingFamily,
+                         ::testing::Combine(::testing::ValuesIn(kSubjects), ::testing::Bool(),
+                                            ::testing::Values(1, 10)),
+                         [](const auto& made) {
+                           return std::string{std::get<0>(made.param).name} +
+                                  (std::get<1>(made.param) ? "Ramp" : "Hold") +
+                                  std::to_string(std::get<2>(made.param));
+                         });
 
 INSTANTIATE_TEST_SUITE_P(All, HeldFamily, ::testing::ValuesIn(kSubjects),
                          [](const auto& subject) { return std::string{subject.param.name}; });

@@ -265,7 +265,9 @@ void Oracle::followFeedback(const Snapshot& snapshot) {
     motor.samples = feedback.samples;
     // A sample that is old on arrival is no evidence of the present, unless nobody ran to hear it.
     const bool young = now_ - motor.reported_at <= motor.config->feedback_timeout / 2;
-    const bool heard = motor.new_sample && (young || motor.reported_at > before_);
+    const bool of_pause = motor.new_sample && !young && motor.reported_at > before_last_;
+    const bool heard = motor.new_sample && (young || (of_pause && !motor.pause_forgiven));
+    motor.pause_forgiven = !(motor.new_sample && young) && (motor.pause_forgiven || of_pause);
     motor.unheard = heard ? Duration{} : motor.unheard + std::min(now_ - before_, 2 * config_.period());
     if (!fresh(motor) && !overdue(motor)) ++visits_.unread_after_pauses;
   }
@@ -284,7 +286,7 @@ void Oracle::setActions(Motor& motor, Actions actions) {
 
 void Oracle::judge(const Snapshot& snapshot, std::uint64_t periods, std::bitset<kMaxBuses> read,
                    bool stopped) {
-  before_ = std::exchange(now_, snapshot.time);
+  before_last_ = std::exchange(before_, std::exchange(now_, snapshot.time));
   periods_ = periods;
   for (auto& motor : motors_) motor.told = motor.wire->told();  // a drive may have switched itself off
   followModules(snapshot);

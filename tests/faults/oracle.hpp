@@ -102,7 +102,8 @@ class Oracle {
     bool reported = false;  ///< A sample.
     MonotonicTime reported_at;
     std::uint64_t samples = 0;
-    Duration unheard{};  ///< Since its last sample, each tick with two periods at most.
+    Duration unheard{};           ///< Since its last sample, each tick with two periods at most.
+    bool pause_forgiven = false;  ///< Of several pauses only the first may hide it.
     // Its commands.
     MonotonicTime driven_until{};  ///< The latest deadline of a command that moves.
     MonotonicTime owned_until{};   ///< Deadline of any command.
@@ -258,7 +259,8 @@ class Oracle {
   std::optional<std::size_t> alone_;  ///< The motor that was enabled alone.
   bool was_alone_ = false;            ///< In this tick some motor was.
   MonotonicTime now_{};
-  MonotonicTime before_{};  ///< The tick before.
+  MonotonicTime before_{};       ///< The last tick,
+  MonotonicTime before_last_{};  ///< and the one before it.
   std::uint64_t tick_ = 0;
   bool begun_ = false;
   std::uint64_t missed_ = 0;

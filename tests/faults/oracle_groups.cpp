@@ -133,7 +133,10 @@ void Oracle::followActions(std::size_t index, const MotorSnapshot& seen) {
   // Enabled and stopped within a tick.
   const bool stopped_with_group =
       motor.group != kNoGroup && (groups_[motor.group].stops_now || groups_[motor.group].disabled_now);
-  if (before == MotorStatus::kEnabling && stopped_with_group) {
+  const bool stopped_while_enabling =
+      (before == MotorStatus::kEnabling && stopped_with_group) ||
+      ((before == MotorStatus::kEnabling || motor.enable_asked) && motor.disables_asked > 0);
+  if (stopped_while_enabling) {
     setActions(motor, motor.actions | only(fallback.on_estop) | only(fallback.on_disable));
     motor.ends_at_standstill = true;
     motor.rests_with_group = groups_[motor.group].disabled_now && motor.disables_asked == 0;

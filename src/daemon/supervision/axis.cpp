@@ -71,8 +71,11 @@ bool Axis::listen(const Tick& tick, const Since& since) noexcept {
   const bool heard = came && 2 * (tick.now - feedback.received) <= entry_.feedback_timeout;
   const bool could_speak = !since.simulation_late || !bus_.simulated;
   if (could_speak) unheard_ += since.ran;
-  // A sample of a pause could not be heard earlier.
-  if (heard || (came && feedback.received > since.before)) unheard_ = {};
+  // A sample of a pause could not be heard earlier. One pause is forgiven: later ones would hide a computer
+  // that never runs in time.
+  const bool of_pause = came && !heard && feedback.received > since.before;
+  if (heard || (of_pause && !pause_forgiven_)) unheard_ = {};
+  pause_forgiven_ = !heard && (pause_forgiven_ || of_pause);
   if (heard) on_when_heard_ = isOn(status_);
   samples_ = feedback.samples;
   return heard ? !bus_.held : fresh(tick);
@@ -143,7 +146,8 @@ std::optional<std::uint32_t> Axis::complains(const Tick& tick) noexcept {
 std::optional<MotorEvent> Axis::endsEnabling(const Tick& tick) const noexcept {
   if (status_ != MotorStatus::kEnabling) return std::nullopt;
   // The sequence runs in the motor from the tick in which it is first ordered; only then ask.
-  const bool held = heldWhileEnabling() && tick.now > enabling_since_;
+  // One that is held runs none: any answer since says that it obeys.
+  const bool held = heldWhileEnabling() && motor_.feedback().received > enabling_since_ && fresh(tick);
   if (motor_.ordered() != FrameKind::kEnable && !held) return std::nullopt;
   switch (motor_.sequenceProgress()) {
     case SequenceProgress::kDone: return turnUnclear() ? MotorEvent::kEnableFailed : MotorEvent::kEnableDone;
@@ -262,6 +266,8 @@ bool Axis::heldWhileEnabling() const noexcept {
 std::optional<MotorStatus> Axis::take(MotorEvent event, RobotStatus robot, const Stop& stop,
                                       const Tick& tick) noexcept {
   const auto before = status_;
+  // A motor that is held is on already: a request to rest does not depend on the tick in which it is ACTIVE.
+  const bool disabled_held = heldWhileEnabling() && event == MotorEvent::kDisable;
   status_ = next(before, event);
   if (status_ == before) return std::nullopt;
   if (before == MotorStatus::kFault) {
@@ -272,7 +278,7 @@ std::optional<MotorStatus> Axis::take(MotorEvent event, RobotStatus robot, const
   const bool stopped = isOn(before) && !isOn(status_);
   if (stopped || status_ == MotorStatus::kFault) stop_ = stop;
   if (status_ != MotorStatus::kActive) dropTarget();
-  if (before == MotorStatus::kActive && status_ == MotorStatus::kReady) {
+  if ((before == MotorStatus::kActive || disabled_held) && status_ == MotorStatus::kReady) {
     const auto& config = entry_.fallback;
     const bool asked = event == MotorEvent::kDisable || robot == RobotStatus::kStopping;
     const auto action = asked ? config.on_disable : config.on_estop;

@@ -36,10 +36,10 @@ class Axis {
 
   // ---- Feedback
 
-  /// Since the tick before.
+  /// The last ticks.
   struct Since {
-    MonotonicTime before{};        ///< When it started.
-    Duration ran{};                ///< Time since then, less a pause of this thread.
+    MonotonicTime before{};        ///< When the one before it started: the RX thread may be a tick behind.
+    Duration ran{};                ///< Time since the last one, less a pause of this thread.
     bool simulation_late = false;  ///< Simulated drives had no processor to speak.
   };
   /// Once a tick, first: whether its feedback is fresh().
@@ -137,6 +137,7 @@ class Axis {
   bool reference_known_ = false;  ///< In the last tick.
   std::uint64_t samples_ = 0;     ///< Count of its feedback, when it was last heard.
   Duration unheard_{};            ///< Since then, without the pauses of this thread.
+  bool pause_forgiven_ = false;   ///< Since a sample that was fresh when it came.
   bool on_when_heard_ = false;    ///< ENABLING or ACTIVE at that time.
   MonotonicTime enabling_since_;
   MonotonicTime enable_deadline_;

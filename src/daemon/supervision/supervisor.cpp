@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "app/saturated.hpp"
 
@@ -27,10 +28,10 @@ Supervisor::Supervisor(Robot& robot, LinkExchange& link, FlightRecorder* recorde
 void Supervisor::decide(const Tick& tick) noexcept {
   estop_asked_ = false;
   simulation_.look(robot_.simulationSteps().load(std::memory_order_relaxed), tick.now);
-  const Axis::Since since{.before = decided_at_,
+  const Axis::Since since{.before = decided_before_,
                           .ran = std::min(tick.now - decided_at_, kLatePeriods * robot_.period()),
                           .simulation_late = simulation_.late()};
-  decided_at_ = tick.now;
+  decided_before_ = std::exchange(decided_at_, tick.now);
   for (std::size_t motor = 0, count = axes_.size(); motor < count; ++motor) watch(motor, since, tick);
   for (std::size_t group = 0; group < groups_.size(); ++group) watchGroup(group, tick);
   watchConfiguring(tick);

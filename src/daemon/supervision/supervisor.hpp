@@ -161,7 +161,8 @@ class Supervisor {
   BusScan scan_;
   std::optional<std::size_t> alone_;  ///< ENABLING or ACTIVE, and no other motor may be.
   SimulationWatch simulation_;
-  MonotonicTime decided_at_{};  ///< The tick before.
+  MonotonicTime decided_at_{};      ///< The last tick,
+  MonotonicTime decided_before_{};  ///< and the one before it.
   bool heartbeat_rests_ = false;
   bool estop_asked_ = false;  ///< In this tick, until decide().
   bool reduced_ = false;      ///< The mode input is open, or was since the last tick.

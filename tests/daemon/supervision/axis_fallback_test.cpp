@@ -43,6 +43,28 @@ class FallbackTest : public ::testing::Test {
   std::unique_ptr<VirtualRobot> robot;
 };
 
+// docs/safety.md: "One more `disable` lets go", also when the request to enable was a tick ahead of it.
+TEST_F(FallbackTest, ADisableRightAfterAnEnableLetsGoOfAMotorThatIsHeld) {
+  for (int later = 0; later <= 3; ++later) {
+    SCOPED_TRACE(later);
+    start({.on_estop = FallbackAction::kHold}, 1.0F);
+    robot->order(Operation::kEstop);
+    robot->run(500);
+    ASSERT_EQ(robot->motor(kLeft).acting, Acting::kHold);
+    robot->order(Operation::kClear);
+    Order enable;
+    enable.id = 99;
+    enable.operation = Operation::kEnable;
+    enable.motors.set(kLeft);
+    robot->exchange().orders.push(enable);
+    robot->run(later);
+    robot->orderFor(enable.motors, Operation::kDisable);
+    robot->run(10);
+    EXPECT_EQ(robot->motor(kLeft).status, MotorStatus::kReady);
+    EXPECT_EQ(robot->motor(kLeft).acting, Acting::kNothing);
+  }
+}
+
 TEST_F(FallbackTest, CoastMeansNoCurrentAtAll) {
   start({});
   robot->run(49);

@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "daemon/virtual_robot.hpp"
+#include "support/dji_frames.hpp"
 
 namespace rc10::test::missed_ticks_test {
 namespace {
@@ -74,6 +75,95 @@ TEST_F(MissedTicksTest, OneGapWithAPauseInItIsNoLoss) {
   robot.freezeSimulation(false);
   robot.run(20);
   EXPECT_EQ(robot.motor(0).status, MotorStatus::kActive);
+}
+
+// With `receive: thread` what came in the pause may be read a tick after the one that ends it.
+TEST_F(MissedTicksTest, FeedbackOfAPauseThatIsReadATickLaterIsHeard) {
+  robot.run(100);
+  ASSERT_EQ(robot.order(Operation::kEnable).motors[0], Refusal::kNone);
+  robot.freezeSimulation(true);
+  robot.run(12);
+  const auto spoke = robot.now() + 20ms;  // in the middle of the pause
+  robot.tick(40);
+  const auto frame = makeDjiFeedback(kM3508, 1, {}, spoke);
+  robot.inboxes()[0].frames.push(&frame, 1);
+  robot.run(12);
+  EXPECT_EQ(robot.motor(0).status, MotorStatus::kActive);
+}
+
+// The same, read in time: the control of the test above.
+TEST_F(MissedTicksTest, FeedbackOfAPauseThatIsReadAtItsEndIsHeardThoughItIsOld) {
+  robot.run(100);
+  ASSERT_EQ(robot.order(Operation::kEnable).motors[0], Refusal::kNone);
+  robot.freezeSimulation(true);
+  robot.run(12);
+  const auto frame = makeDjiFeedback(kM3508, 1, {}, robot.now() + 20ms);
+  robot.inboxes()[0].frames.push(&frame, 1);
+  robot.tick(40);
+  robot.run(12);
+  EXPECT_EQ(robot.motor(0).status, MotorStatus::kActive);
+}
+
+TEST_F(MissedTicksTest, ASilentMotorIsLostWithinTenTicksHoweverLateEachIs) {
+  for (const std::uint64_t periods : {1U, 2U, 3U, 10U, 50U, 200U}) {
+    SCOPED_TRACE(periods);
+    robot.freezeSimulation(false);
+    robot.run(300);
+    ASSERT_EQ(robot.order(Operation::kEnable).motors[0], Refusal::kNone);
+    robot.freezeSimulation(true);
+    const int most = periods == 1 ? 21 : 10;
+    for (int i = 0; i < most; ++i) robot.tick(periods);
+    EXPECT_EQ(robot.motor(0).status, MotorStatus::kOffline);
+  }
+}
+
+// Pauses of different length between punctual ticks: no pause gives the silence back.
+TEST_F(MissedTicksTest, PausesInARowDoNotMakeASilentMotorHeard) {
+  robot.run(100);
+  ASSERT_EQ(robot.order(Operation::kEnable).motors[0], Refusal::kNone);
+  robot.freezeSimulation(true);
+  for (int i = 0; i < 6; ++i) {
+    robot.run(1);
+    robot.tick(7 + 30 * static_cast<std::uint64_t>(i));
+  }
+  robot.run(1);
+  EXPECT_EQ(robot.motor(0).status, MotorStatus::kOffline);
+}
+
+// A drive that speaks once in each pause, always old when it is read.
+TEST_F(MissedTicksTest, AMotorWhoseEverySampleIsOlderThanItsTimeoutIsNotActiveForEver) {
+  robot.run(100);
+  ASSERT_EQ(robot.order(Operation::kEnable).motors[0], Refusal::kNone);
+  robot.freezeSimulation(true);
+  for (int i = 0; i < 100; ++i) {
+    const auto frame = makeDjiFeedback(kM3508, 1, {}, robot.now() + 1ms);
+    robot.inboxes()[0].frames.push(&frame, 1);
+    robot.tick(50);
+  }
+  EXPECT_EQ(robot.motor(0).status, MotorStatus::kOffline);
+}
+
+// docs/safety.md: fallbacks "need fresh feedback. Without it: zero".
+TEST_F(MissedTicksTest, AFallbackGivesNoTorqueByFeedbackThatIsOlderThanItsTimeout) {
+  auto config = twoWheelsAndYaw();
+  config.buses[0].motors[0].fallback.on_timeout = FallbackAction::kHold;
+  config.buses[0].motors[0].fallback.hold_max = 1000s;
+  VirtualRobot late{config};
+  late.run(100);
+  ASSERT_EQ(late.order(Operation::kEnable).motors[0], Refusal::kNone);
+  late.hold(0, {.mode = ControlMode::kVelocity, .value = 0.0}, 10);
+  late.run(100);
+  ASSERT_EQ(late.motor(0).acting, Acting::kHold);
+  late.freezeSimulation(true);
+  int pushes = 0;
+  for (int i = 0; i < 100; ++i) {
+    const auto encoder = static_cast<std::uint16_t>(5 * i);  // a load moves it on
+    const auto frame = makeDjiFeedback(kM3508, 1, {.position = encoder}, late.now() + 1ms);
+    late.inboxes()[0].frames.push(&frame, 1);
+    late.tick(50);
+    if (i > 20 && late.motor(0).command_value != 0.0F) ++pushes;
+  }
+  EXPECT_EQ(pushes, 0) << "of 79 ticks, the last with " << late.motor(0).command_value;
 }
 
 TEST_F(MissedTicksTest, ALongPauseMovesATargetNoFartherThanFivePeriods) {
