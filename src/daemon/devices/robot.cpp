@@ -124,6 +124,7 @@ Result<void> Robot::addMotor(const MotorConfig& config, std::size_t bus_index) {
       {.motor = std::move(*motor),
        .bus = bus_index,
        .feedback_timeout = config.feedback_timeout,
+       .oldest_heard = config.feedback_timeout / 2,
        .most_unheard = std::max(config.feedback_timeout / 2, config.feedback_timeout - 2 * period_),
        .guard = config.guard,
        .rest = config.rest,

@@ -32,6 +32,7 @@ class Robot {
     std::unique_ptr<Motor_Base> motor;
     std::size_t bus = 0;
     Duration feedback_timeout{};
+    Duration oldest_heard{};  ///< Age of a sample, when it comes, up to which it is feedback.
     /// Without feedback for more than this, pauses of rc10d not counted, it is lost; by the clock, too.
     Duration most_unheard{};
     GuardConfig guard{};

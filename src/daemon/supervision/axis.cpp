@@ -67,18 +67,27 @@ Acting Axis::acting() const noexcept {
 bool Axis::listen(const Tick& tick, const Since& since) noexcept {
   const auto& feedback = motor_.feedback();
   const bool came = feedback.samples != samples_;
+  samples_ = feedback.samples;
   // Samples that are old when they come are not heard: they could be old for ever.
-  const bool heard = came && 2 * (tick.now - feedback.received) <= entry_.feedback_timeout;
+  const bool heard = came && tick.now - feedback.received <= entry_.oldest_heard;
+  if (!heard) {
+    goUnheard(came, since);
+    return fresh(tick);
+  }
+  unheard_ = {};
+  pause_forgiven_ = false;
+  on_when_heard_ = isOn(status_);
+  return !bus_.held;
+}
+
+// A sample of a pause could not be heard earlier. One pause is forgiven: later ones would hide a computer
+// that never runs in time.
+void Axis::goUnheard(bool came, const Since& since) noexcept {
   const bool could_speak = !since.simulation_late || !bus_.simulated;
   if (could_speak) unheard_ += since.ran;
-  // A sample of a pause could not be heard earlier. One pause is forgiven: later ones would hide a computer
-  // that never runs in time.
-  const bool of_pause = came && !heard && feedback.received > since.before;
-  if (heard || (of_pause && !pause_forgiven_)) unheard_ = {};
-  pause_forgiven_ = !heard && (pause_forgiven_ || of_pause);
-  if (heard) on_when_heard_ = isOn(status_);
-  samples_ = feedback.samples;
-  return heard ? !bus_.held : fresh(tick);
+  if (!came || !(motor_.feedback().received > since.before)) return;
+  if (!pause_forgiven_) unheard_ = {};
+  pause_forgiven_ = true;
 }
 
 bool Axis::fresh(const Tick& tick) const noexcept {

@@ -108,6 +108,8 @@ class Axis {
   void retune(const CascadeConfig& loops) noexcept;
 
  private:
+  /// Nothing that is fresh has come in this tick. Not inlined: listen() is short without it.
+  [[gnu::noinline]] void goUnheard(bool came, const Since& since) noexcept;
   [[nodiscard]] FrameKind frameKind(RobotStatus robot) const noexcept;
   [[nodiscard]] Acting acting() const noexcept;
   /// Its command is the velocity of a fallback.
