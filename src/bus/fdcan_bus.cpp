@@ -79,7 +79,7 @@ void fdCANbus::dispatch(const CanFrame& frame) noexcept {
   ++counters_.rx_frames;
   const FrameBits bits = unstuffedBits(shapeOf(frame));
   counters_.rx_bits += bits.nominal;
-  if (bits.data != 0) counters_.rx_data_bits += bits.data;  // of FD frames alone
+  if (bits.data != 0) counters_.rx_data_bits += bits.data;  // rare: spares a store
   FrameListener* const device = table_.find(frame);
   const auto verdict = device != nullptr ? device->updateFeedback(frame) : FrameVerdict::kForeign;
   if (verdict != FrameVerdict::kAccepted) putAside(frame, verdict, device == nullptr);

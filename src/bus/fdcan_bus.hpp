@@ -134,7 +134,7 @@ class fdCANbus {
   std::vector<CommandPacker*> packers_;
   std::size_t first_packer_ = 0;
   std::optional<std::size_t> first_crowded_out_;  // the first packer whose frames the tick had no room for
-  std::array<CanFrame, kMaxFramesPerPacker> packed_{};  // of one packer, which writes the whole of each
+  std::array<CanFrame, kMaxFramesPerPacker> packed_{};  // of one packer; bytes behind a payload may be old
   std::vector<CanId> watched_;
   FrameTap* tap_ = nullptr;
   ForeignListener* foreign_ = nullptr;

@@ -146,8 +146,8 @@ FrameListener* FrameTable::find(const CanFrame& frame) const noexcept {
   const DeviceSet candidates = standard_[frame.id.value & kStandardIdMask];
   if (candidates == 0) return nullptr;
   const Device& device = devices_[static_cast<std::size_t>(std::countr_zero(candidates))];
-  // The table of standard ids is exact: of one candidate it says all that a filter without a discriminator
-  // would.
+  // The table of standard ids is exact: a filter without a discriminator has nothing to add, and one
+  // candidate needs no search.
   const bool decided =
       (candidates & (candidates - 1)) == 0 && device.by_id && frame.id.value <= kStandardIdMask;
   if (!decided) return firstOf(candidates, frame);

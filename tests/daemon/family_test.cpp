@@ -341,7 +341,7 @@ TEST_P(EndingFamily, IsEnabledInWhicheverTickItsFallbackEnds) {
       robot.run(1000);
     }
     ASSERT_EQ(robot.motor(0).status, MotorStatus::kActive);
-    robot.hold(0, {.mode = ControlMode::kVelocity, .value = 0.0}, 1000);  // so that the stop can be cleared
+    robot.hold(0, {.mode = ControlMode::kVelocity, .value = 0.0}, 1000);  // a stop is cleared at rest
     robot.order(Operation::kEstop);
     robot.run(ticks - 2);
     robot.order(Operation::kClear);

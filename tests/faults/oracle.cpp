@@ -268,7 +268,8 @@ void Oracle::followFeedback(const Snapshot& snapshot) {
     const bool of_pause = motor.new_sample && !young && motor.reported_at > before_last_;
     const bool heard = motor.new_sample && (young || (of_pause && !motor.pause_forgiven));
     motor.pause_forgiven = !(motor.new_sample && young) && (motor.pause_forgiven || of_pause);
-    motor.unheard = heard ? Duration{} : motor.unheard + std::min(now_ - before_, 2 * config_.period());
+    const Duration ran = std::min(now_ - before_, 2 * config_.period());
+    motor.unheard = !heard ? motor.unheard + ran : young ? now_ - motor.reported_at : Duration{};
     if (!fresh(motor) && !overdue(motor)) ++visits_.unread_after_pauses;
   }
 }

@@ -103,7 +103,7 @@ class Oracle {
     MonotonicTime reported_at;
     std::uint64_t samples = 0;
     Duration unheard{};           ///< Since its last sample, each tick with two periods at most.
-    bool pause_forgiven = false;  ///< Of several pauses only the first may hide it.
+    bool pause_forgiven = false;  ///< Only the first of several pauses may hide it.
     // Its commands.
     MonotonicTime driven_until{};  ///< The latest deadline of a command that moves.
     MonotonicTime owned_until{};   ///< Deadline of any command.

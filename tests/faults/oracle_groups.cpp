@@ -139,7 +139,8 @@ void Oracle::followActions(std::size_t index, const MotorSnapshot& seen) {
   if (stopped_while_enabling) {
     setActions(motor, motor.actions | only(fallback.on_estop) | only(fallback.on_disable));
     motor.ends_at_standstill = true;
-    motor.rests_with_group = groups_[motor.group].disabled_now && motor.disables_asked == 0;
+    motor.rests_with_group =
+        motor.disables_asked == 0 && motor.group != kNoGroup && groups_[motor.group].disabled_now;
   }
   if (motor.mode != ControlMode::kCoast) {  // its target has just gone
     auto actions = only(fallback.on_timeout);

@@ -32,8 +32,9 @@ class Robot {
     std::unique_ptr<Motor_Base> motor;
     std::size_t bus = 0;
     Duration feedback_timeout{};
-    Duration oldest_heard{};  ///< Age of a sample, when it comes, up to which it is feedback.
-    /// Without feedback for more than this, pauses of rc10d not counted, it is lost; by the clock, too.
+    Duration oldest_heard{};  ///< Age of a sample, when it comes, up to which its motor is heard.
+    /// It is lost when feedback_timeout is over and it was unheard for more than this, in which a pause of
+    /// rc10d counts as two periods.
     Duration most_unheard{};
     GuardConfig guard{};
     RestConfig rest{};

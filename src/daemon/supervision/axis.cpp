@@ -68,13 +68,14 @@ bool Axis::listen(const Tick& tick, const Since& since) noexcept {
   const auto& feedback = motor_.feedback();
   const bool came = feedback.samples != samples_;
   samples_ = feedback.samples;
+  const Duration age = tick.now - feedback.received;
   // Samples that are old when they come are not heard: they could be old for ever.
-  const bool heard = came && tick.now - feedback.received <= entry_.oldest_heard;
+  const bool heard = came && age <= entry_.oldest_heard;
   if (!heard) {
     goUnheard(came, since);
     return fresh(tick);
   }
-  unheard_ = {};
+  unheard_ = age;
   pause_forgiven_ = false;
   on_when_heard_ = isOn(status_);
   return !bus_.held;

@@ -36,10 +36,10 @@ class Axis {
 
   // ---- Feedback
 
-  /// The last ticks.
+  /// Time since the last tick.
   struct Since {
-    MonotonicTime before{};        ///< When the one before it started: the RX thread may be a tick behind.
-    Duration ran{};                ///< Time since the last one, less a pause of this thread.
+    MonotonicTime before{};        ///< Start of the tick before the last: the RX thread may be a tick behind.
+    Duration ran{};                ///< Since the last tick; a pause of this thread is two periods of it.
     bool simulation_late = false;  ///< Simulated drives had no processor to speak.
   };
   /// Once a tick, first: whether its feedback is fresh().
@@ -108,7 +108,7 @@ class Axis {
   void retune(const CascadeConfig& loops) noexcept;
 
  private:
-  /// Nothing that is fresh has come in this tick. Not inlined: listen() is short without it.
+  /// Unheard in this tick. Not inlined: listen() is short without it.
   [[gnu::noinline]] void goUnheard(bool came, const Since& since) noexcept;
   [[nodiscard]] FrameKind frameKind(RobotStatus robot) const noexcept;
   [[nodiscard]] Acting acting() const noexcept;
@@ -137,10 +137,10 @@ class Axis {
   Stop stop_;
   std::uint32_t limits_ = 0;      ///< Active limits, as the guard reports them.
   bool reference_known_ = false;  ///< In the last tick.
-  std::uint64_t samples_ = 0;     ///< Count of its feedback, when it was last heard.
-  Duration unheard_{};            ///< Since then, without the pauses of this thread.
-  bool pause_forgiven_ = false;   ///< Since a sample that was fresh when it came.
-  bool on_when_heard_ = false;    ///< ENABLING or ACTIVE at that time.
+  std::uint64_t samples_ = 0;     ///< Count of its feedback in the last tick.
+  Duration unheard_{};            ///< Time since it was heard; a pause of this thread is two periods of it.
+  bool pause_forgiven_ = false;   ///< Since it was heard.
+  bool on_when_heard_ = false;    ///< ENABLING or ACTIVE when it was heard.
   MonotonicTime enabling_since_;
   MonotonicTime enable_deadline_;
   MonotonicTime clearing_until_{};  ///< Until then the drive's complaints are old ones.

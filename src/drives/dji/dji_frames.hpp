@@ -16,8 +16,8 @@ inline constexpr std::size_t kLength = 8;  ///< Same for commands and feedback.
 inline constexpr std::size_t kGroupSize = 4;
 inline constexpr int kCountsPerTurn = 8192;  ///< Encoder: 0 to 8191.
 
-/// Currents or voltages of the drives that listen to this id, by their slots. Written in place: what is
-/// behind the payload of `out` stays.
+/// Currents or voltages of the drives that listen to this id, by their slots. Written in place: bytes
+/// behind the payload, and stamps, stay.
 void writeGroupCommand(CanId id, const std::array<std::int16_t, kGroupSize>& raw, CanFrame& out) noexcept;
 
 struct Feedback {

@@ -71,7 +71,7 @@ TEST_F(MissedTicksTest, OneGapWithAPauseInItIsNoLoss) {
   robot.freezeSimulation(true);
   robot.run(8);
   robot.tick(40);
-  robot.run(7);
+  robot.run(6);
   robot.freezeSimulation(false);
   robot.run(20);
   EXPECT_EQ(robot.motor(0).status, MotorStatus::kActive);
@@ -102,6 +102,20 @@ TEST_F(MissedTicksTest, FeedbackOfAPauseThatIsReadAtItsEndIsHeardThoughItIsOld) 
   robot.tick(40);
   robot.run(12);
   EXPECT_EQ(robot.motor(0).status, MotorStatus::kActive);
+}
+
+// A fresh sample, but half a timeout old.
+TEST_F(MissedTicksTest, TheAgeOfTheLastSampleIsPartOfItsTimeout) {
+  robot.run(100);
+  ASSERT_EQ(robot.order(Operation::kEnable).motors[0], Refusal::kNone);
+  robot.freezeSimulation(true);
+  robot.run(9);
+  const auto frame = makeDjiFeedback(kM3508, 1, {}, robot.now() - 8ms);
+  robot.inboxes()[0].frames.push(&frame, 1);
+  robot.run(12);
+  EXPECT_EQ(robot.motor(0).status, MotorStatus::kActive);
+  robot.run(2);
+  EXPECT_EQ(robot.motor(0).status, MotorStatus::kOffline);
 }
 
 TEST_F(MissedTicksTest, ASilentMotorIsLostWithinTenTicksHoweverLateEachIs) {
