@@ -120,8 +120,8 @@ Result<void> Robot::addMotor(const MotorConfig& config, std::size_t bus_index) {
   if (!motor) return tl::unexpected(motor.error());
   entry.feedback_expected |= (*motor)->speaksUnasked();
   auto use = config.family->busUse(config.settings);
-  // Of the timeout, which spans two periods of the feedback at least, the age takes a half; two periods of
-  // the ticks are for their jitter, so that without a pause the clock decides.
+  // The age may be half of the timeout, which spans two periods of the feedback at least; two periods of the
+  // ticks are for their jitter, so that without a pause the clock decides.
   motors_.push_back(
       {.motor = std::move(*motor),
        .bus = bus_index,
