@@ -224,6 +224,8 @@ TEST_P(Family, ADriveWithAnotherIdIsNotThere) {
 
 class HeldFamily : public Family {
  protected:
+  static constexpr MotorSet kOne{1U << kMotor};
+
   HeldFamily() : Family(heldInEstops(GetParam())) {}
 
   /// It turned, was stopped, and is held; the stop is cleared.
@@ -240,15 +242,6 @@ class HeldFamily : public Family {
       robot.order(Operation::kClear);
     return robot.snapshot().state == RobotStatus::kRun;
   }
-
-  /// Asks for it, as a client that does not wait.
-  void beginEnabling() {
-    Order enable;
-    enable.id = 99;
-    enable.operation = Operation::kEnable;
-    enable.motors.set(kMotor);
-    robot.exchange().orders.push(enable);
-  }
 };
 
 TEST_P(HeldFamily, IsNotLetGoWhileItIsEnabledAnew) {
@@ -256,7 +249,7 @@ TEST_P(HeldFamily, IsNotLetGoWhileItIsEnabledAnew) {
   const auto held = robot.motor(kMotor).acting;
   for (int stopped_after = 1; stopped_after <= 25; ++stopped_after) {
     SCOPED_TRACE(stopped_after);
-    beginEnabling();
+    robot.beginEnabling(kOne);
     for (int i = 0; i < stopped_after; ++i) {
       robot.tick();
       ASSERT_EQ(robot.motor(kMotor).acting, held);
@@ -274,7 +267,7 @@ TEST_P(HeldFamily, ADisableThatOvertakesItsEnablingLetsGo) {
   for (int later = 0; later <= 3; ++later) {
     SCOPED_TRACE(later);
     ASSERT_TRUE(isHeld());
-    beginEnabling();
+    robot.beginEnabling(kOne);
     robot.run(later);
     robot.order(Operation::kDisable);
     robot.run(50);
@@ -289,14 +282,14 @@ TEST_P(HeldFamily, ADriveThatRestartsInTheTickOfItsEnablingDoesNotStayActive) {
   if (!GetParam().told_of_restart) return;
   ASSERT_TRUE(isHeld());
   drive().restart();
-  beginEnabling();
+  robot.beginEnabling(kOne);
   robot.run(500);
   EXPECT_NE(status(), MotorStatus::kActive);
 }
 
 TEST_P(HeldFamily, IsNotActiveBeforeItIsHeardAgainAfterAPauseInItsEnabling) {
   ASSERT_TRUE(isHeld());
-  beginEnabling();
+  robot.beginEnabling(kOne);
   robot.tick();
   ASSERT_EQ(status(), MotorStatus::kEnabling);
   robot.simBus().silence(kMotor, true);

@@ -93,6 +93,14 @@ class VirtualRobot {
     order.value = value;
     return carryOut(order);
   }
+  /// As a client that does not wait for the answer.
+  void beginEnabling(MotorSet motors) {
+    Order order;
+    order.id = 99;
+    order.operation = Operation::kEnable;
+    order.motors = motors;
+    ASSERT_TRUE(exchange_.orders.push(order));
+  }
   OrderResult carryOut(Order order) {
     order.id = ++orders_;
     exchange_.orders.push(order);

@@ -155,10 +155,10 @@ class Oracle {
     MotorSet required;
     bool together = false;
     bool rearms = false;
-    bool stops_now = false;     ///< Perhaps: since one is lost or was refused.
-    bool disabled_now = false;  ///< Perhaps: since one was.
-    MotorSet may_rearm;   ///< Were ACTIVE, or about to be, when it stopped, and nothing forbids it since.
-    MotorSet must_rearm;  ///< Those of them that were ACTIVE.
+    bool stops_now = false;  ///< Perhaps: since one is lost or was refused.
+    bool rests_now = false;  ///< Perhaps: since one was.
+    MotorSet may_rearm;      ///< Were ACTIVE, or about to be, when it stopped, and nothing forbids it since.
+    MotorSet must_rearm;     ///< Those of them that were ACTIVE.
   };
 
   /// A joint that homes at a stop.

@@ -41,7 +41,7 @@ void Oracle::judgeGroups(const Snapshot& snapshot) {
     bool leaves = false;
     bool disable_asked = false;
     bool faulted = false;
-    group.stops_now = group.disabled_now = false;
+    group.stops_now = group.rests_now = false;
     MotorSet active;
     MotorSet enabling;  // it may have become ACTIVE within the tick
     MotorSet rearmed;
@@ -61,7 +61,7 @@ void Oracle::judgeGroups(const Snapshot& snapshot) {
       newly_lost |= lost(after) && !lost(before);
       refused |= before == MotorStatus::kEnabling && !isOn(after) && motor.disables_asked == 0;
       leaves |= isOn(before) && (!isOn(after) || motor.disables_asked > 0);
-      group.disabled_now |= motor.disables_asked > 0 && (isOn(before) || motor.enable_asked);
+      group.rests_now |= motor.disables_asked > 0 && (isOn(before) || motor.enable_asked);
     }
     bool alone = alone_ && group.members.test(*alone_);
     for (std::size_t i = 0; i < motors_.size(); ++i)
@@ -118,7 +118,7 @@ void Oracle::followActions(std::size_t index, const MotorSnapshot& seen) {
   if (seen.target.mode != ControlMode::kCoast) return setActions(motor, only(fallback.on_timeout));
   if (before == MotorStatus::kActive && after != MotorStatus::kActive) {
     Actions actions;
-    const bool with_group = motor.group != kNoGroup && groups_[motor.group].disabled_now;
+    const bool with_group = motor.group != kNoGroup && groups_[motor.group].rests_now;
     const bool asked = motor.disables_asked > 0 || stop_asked_ || with_group;
     motor.rests_with_group = with_group && (motor.disables_asked == 0 || motor.enable_asked);
     if (asked) actions |= only(fallback.on_disable);
@@ -132,7 +132,7 @@ void Oracle::followActions(std::size_t index, const MotorSnapshot& seen) {
   }
   // Enabled and stopped within a tick.
   const bool stopped_with_group =
-      motor.group != kNoGroup && (groups_[motor.group].stops_now || groups_[motor.group].disabled_now);
+      motor.group != kNoGroup && (groups_[motor.group].stops_now || groups_[motor.group].rests_now);
   const bool stopped_while_enabling =
       (before == MotorStatus::kEnabling && stopped_with_group) ||
       ((before == MotorStatus::kEnabling || motor.enable_asked) && motor.disables_asked > 0);
@@ -140,7 +140,7 @@ void Oracle::followActions(std::size_t index, const MotorSnapshot& seen) {
     setActions(motor, motor.actions | only(fallback.on_estop) | only(fallback.on_disable));
     motor.ends_at_standstill = true;
     motor.rests_with_group =
-        motor.disables_asked == 0 && motor.group != kNoGroup && groups_[motor.group].disabled_now;
+        motor.disables_asked == 0 && motor.group != kNoGroup && groups_[motor.group].rests_now;
   }
   if (motor.mode != ControlMode::kCoast) {  // its target has just gone
     auto actions = only(fallback.on_timeout);

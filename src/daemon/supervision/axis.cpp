@@ -277,7 +277,7 @@ std::optional<MotorStatus> Axis::take(MotorEvent event, RobotStatus robot, const
                                       const Tick& tick) noexcept {
   const auto before = status_;
   // A motor that is held is on already: a request to rest does not depend on the tick in which it is ACTIVE.
-  const bool disabled_held = heldWhileEnabling() && event == MotorEvent::kDisable;
+  const bool rests_while_held = heldWhileEnabling() && event == MotorEvent::kDisable;
   status_ = next(before, event);
   if (status_ == before) return std::nullopt;
   if (before == MotorStatus::kFault) {
@@ -288,7 +288,7 @@ std::optional<MotorStatus> Axis::take(MotorEvent event, RobotStatus robot, const
   const bool stopped = isOn(before) && !isOn(status_);
   if (stopped || status_ == MotorStatus::kFault) stop_ = stop;
   if (status_ != MotorStatus::kActive) dropTarget();
-  if ((before == MotorStatus::kActive || disabled_held) && status_ == MotorStatus::kReady) {
+  if ((before == MotorStatus::kActive || rests_while_held) && status_ == MotorStatus::kReady) {
     const auto& config = entry_.fallback;
     const bool asked = event == MotorEvent::kDisable || robot == RobotStatus::kStopping;
     const auto action = asked ? config.on_disable : config.on_estop;

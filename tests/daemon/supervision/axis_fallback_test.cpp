@@ -52,13 +52,9 @@ TEST_F(FallbackTest, ADisableRightAfterAnEnableLetsGoOfAMotorThatIsHeld) {
     robot->run(500);
     ASSERT_EQ(robot->motor(kLeft).acting, Acting::kHold);
     robot->order(Operation::kClear);
-    Order enable;
-    enable.id = 99;
-    enable.operation = Operation::kEnable;
-    enable.motors.set(kLeft);
-    robot->exchange().orders.push(enable);
+    robot->beginEnabling(MotorSet{}.set(kLeft));
     robot->run(later);
-    robot->orderFor(enable.motors, Operation::kDisable);
+    robot->orderFor(MotorSet{}.set(kLeft), Operation::kDisable);
     robot->run(10);
     EXPECT_EQ(robot->motor(kLeft).status, MotorStatus::kReady);
     EXPECT_EQ(robot->motor(kLeft).acting, Acting::kNothing);
@@ -290,11 +286,7 @@ TEST_F(FallbackTest, AMotorThatIsHeldIsNotLetGoWhileItIsEnabled) {
   robot->order(Operation::kEstop);
   robot->run(1000);
   robot->order(Operation::kClear);
-  Order enable;
-  enable.id = 99;
-  enable.operation = Operation::kEnable;
-  enable.motors.set(kLeft);
-  robot->exchange().orders.push(enable);
+  robot->beginEnabling(MotorSet{}.set(kLeft));
   bool was_enabling = false;
   for (int i = 0; i < 100; ++i) {
     robot->tick();

@@ -294,11 +294,7 @@ TEST_F(TogetherTest, NoneIsEnabledWhileOneCannotBe) {
 }
 
 TEST_F(TogetherTest, NoTargetActsBeforeAllAreActive) {
-  Order order;
-  order.id = 77;
-  order.operation = Operation::kEnable;
-  order.motors = only(kLeft) | only(kRight);
-  ASSERT_TRUE(robot->exchange().orders.push(order));
+  robot->beginEnabling(only(kLeft) | only(kRight));
   bool waited = false;
   for (int i = 0; i < 100; ++i) {
     for (const auto motor : {kLeft, kRight}) robot->command(motor, kVelocity120);
@@ -338,11 +334,7 @@ RobotConfig lifter(const std::string& more_of_arm) {
 TEST(GroupThatActsTogether, DoesNotComeBackInPartIfItWasNotWhole) {
   VirtualRobot robot{lifter("")};
   robot.run(100);
-  Order enable;
-  enable.id = 77;
-  enable.operation = Operation::kEnable;
-  enable.motors = only(0) | only(1);
-  ASSERT_TRUE(robot.exchange().orders.push(enable));
+  robot.beginEnabling(only(0) | only(1));
   for (int i = 0; i < 10 && robot.motor(1).status != MotorStatus::kActive; ++i) robot.tick();
   ASSERT_EQ(robot.motor(1).status, MotorStatus::kActive);
   ASSERT_EQ(robot.motor(0).status, MotorStatus::kEnabling);

@@ -23,6 +23,13 @@ class MissedTicksTest : public ::testing::Test {
     return out;
   }
 
+  /// All motors are ACTIVE, and from now on their drives say nothing.
+  void enableAndSilence() {
+    robot.run(100);
+    ASSERT_EQ(robot.order(Operation::kEnable).motors[0], Refusal::kNone);
+    robot.freezeSimulation(true);
+  }
+
   VirtualRobot robot{twoWheelsAndYaw()};
 };
 
@@ -43,9 +50,7 @@ TEST_F(MissedTicksTest, AfterAPauseNoMotorIsLostBeforeItsFeedbackCouldBeRead) {
 }
 
 TEST_F(MissedTicksTest, AMotorThatIsSilentAfterAPauseIsLostOnceItsTimeHasRun) {
-  robot.run(100);
-  ASSERT_EQ(robot.order(Operation::kEnable).motors[0], Refusal::kNone);
-  robot.freezeSimulation(true);
+  enableAndSilence();
   robot.tick(50);
   robot.run(15);
   EXPECT_EQ(robot.motor(0).status, MotorStatus::kActive);
@@ -55,9 +60,7 @@ TEST_F(MissedTicksTest, AMotorThatIsSilentAfterAPauseIsLostOnceItsTimeHasRun) {
 
 // A loose plug: shorter gaps than the timeout before and after the pause.
 TEST_F(MissedTicksTest, GapsAroundAPauseInWhichADriveSpokeAreNoLoss) {
-  robot.run(100);
-  ASSERT_EQ(robot.order(Operation::kEnable).motors[0], Refusal::kNone);
-  robot.freezeSimulation(true);
+  enableAndSilence();
   robot.run(12);
   for (const auto& port : robot.robot().simPorts()) port->step(robot.now() + 1ms);
   robot.tick(40);
@@ -66,9 +69,7 @@ TEST_F(MissedTicksTest, GapsAroundAPauseInWhichADriveSpokeAreNoLoss) {
 }
 
 TEST_F(MissedTicksTest, OneGapWithAPauseInItIsNoLoss) {
-  robot.run(100);
-  ASSERT_EQ(robot.order(Operation::kEnable).motors[0], Refusal::kNone);
-  robot.freezeSimulation(true);
+  enableAndSilence();
   robot.run(8);
   robot.tick(40);
   robot.run(6);
@@ -79,9 +80,7 @@ TEST_F(MissedTicksTest, OneGapWithAPauseInItIsNoLoss) {
 
 // With `receive: thread` what came in the pause may be read a tick after the one that ends it.
 TEST_F(MissedTicksTest, FeedbackOfAPauseThatIsReadATickLaterIsHeard) {
-  robot.run(100);
-  ASSERT_EQ(robot.order(Operation::kEnable).motors[0], Refusal::kNone);
-  robot.freezeSimulation(true);
+  enableAndSilence();
   robot.run(12);
   const auto spoke = robot.now() + 20ms;  // in the middle of the pause
   robot.tick(40);
@@ -93,9 +92,7 @@ TEST_F(MissedTicksTest, FeedbackOfAPauseThatIsReadATickLaterIsHeard) {
 
 // The same, read in time: the control of the test above.
 TEST_F(MissedTicksTest, FeedbackOfAPauseThatIsReadAtItsEndIsHeardThoughItIsOld) {
-  robot.run(100);
-  ASSERT_EQ(robot.order(Operation::kEnable).motors[0], Refusal::kNone);
-  robot.freezeSimulation(true);
+  enableAndSilence();
   robot.run(12);
   const auto frame = makeDjiFeedback(kM3508, 1, {}, robot.now() + 20ms);
   robot.inboxes()[0].frames.push(&frame, 1);
@@ -106,9 +103,7 @@ TEST_F(MissedTicksTest, FeedbackOfAPauseThatIsReadAtItsEndIsHeardThoughItIsOld) 
 
 // A fresh sample, but half a timeout old.
 TEST_F(MissedTicksTest, TheAgeOfTheLastSampleIsPartOfItsTimeout) {
-  robot.run(100);
-  ASSERT_EQ(robot.order(Operation::kEnable).motors[0], Refusal::kNone);
-  robot.freezeSimulation(true);
+  enableAndSilence();
   robot.run(9);
   const auto frame = makeDjiFeedback(kM3508, 1, {}, robot.now() - 8ms);
   robot.inboxes()[0].frames.push(&frame, 1);
@@ -133,9 +128,7 @@ TEST_F(MissedTicksTest, ASilentMotorIsLostWithinTenTicksHoweverLateEachIs) {
 
 // Pauses of different length between punctual ticks: no pause gives the silence back.
 TEST_F(MissedTicksTest, PausesInARowDoNotMakeASilentMotorHeard) {
-  robot.run(100);
-  ASSERT_EQ(robot.order(Operation::kEnable).motors[0], Refusal::kNone);
-  robot.freezeSimulation(true);
+  enableAndSilence();
   for (int i = 0; i < 6; ++i) {
     robot.run(1);
     robot.tick(7 + 30 * static_cast<std::uint64_t>(i));
@@ -146,9 +139,7 @@ TEST_F(MissedTicksTest, PausesInARowDoNotMakeASilentMotorHeard) {
 
 // A drive that speaks once in each pause, always old when it is read.
 TEST_F(MissedTicksTest, AMotorWhoseEverySampleIsOlderThanItsTimeoutIsNotActiveForEver) {
-  robot.run(100);
-  ASSERT_EQ(robot.order(Operation::kEnable).motors[0], Refusal::kNone);
-  robot.freezeSimulation(true);
+  enableAndSilence();
   for (int i = 0; i < 100; ++i) {
     const auto frame = makeDjiFeedback(kM3508, 1, {}, robot.now() + 1ms);
     robot.inboxes()[0].frames.push(&frame, 1);
@@ -195,9 +186,7 @@ TEST_F(MissedTicksTest, ALongPauseMovesATargetNoFartherThanFivePeriods) {
 }
 
 TEST_F(MissedTicksTest, AMotorThatIsSilentIsLostAlsoIfEveryTickIsLate) {
-  robot.run(100);
-  ASSERT_EQ(robot.order(Operation::kEnable).motors[0], Refusal::kNone);
-  robot.freezeSimulation(true);
+  enableAndSilence();
   for (int i = 0; i < 11; ++i) robot.tick(2);
   EXPECT_EQ(robot.motor(0).status, MotorStatus::kOffline);
 }
@@ -221,17 +210,13 @@ TEST_F(MissedTicksTest, DrivesOfASimulationThatHadNoProcessorAreNotSilent) {
 
 TEST_F(MissedTicksTest, ASimulationThatHasEndedIsSilent) {
   ++robot.robot().simulationSteps();
-  robot.run(100);
-  ASSERT_EQ(robot.order(Operation::kEnable).motors[0], Refusal::kNone);
-  robot.freezeSimulation(true);
+  enableAndSilence();
   robot.run(1100);
   EXPECT_EQ(robot.motor(0).status, MotorStatus::kOffline);
 }
 
 TEST_F(MissedTicksTest, SilentDrivesOfASimulationThatRunsAreLost) {
-  robot.run(100);
-  ASSERT_EQ(robot.order(Operation::kEnable).motors[0], Refusal::kNone);
-  robot.freezeSimulation(true);
+  enableAndSilence();
   for (int i = 0; i < 25; ++i) {
     ++robot.robot().simulationSteps();
     robot.tick();
