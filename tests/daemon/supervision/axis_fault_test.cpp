@@ -99,12 +99,7 @@ TEST(AMotorThatGetsTooHot, WhileItsDriveIsEnabledDoesNotGoBackToItsFallback) {
     robot.run(500 + phase);
     robot.order(Operation::kClear);
     ASSERT_EQ(robot.motor(kRight).acting, Acting::kBrake);
-    Order enable;
-    enable.id = 99;
-    enable.operation = Operation::kEnable;
-    enable.motors.set(kLeft);
-    enable.motors.set(kRight);
-    ASSERT_TRUE(robot.exchange().orders.push(enable));
+    robot.beginEnabling(MotorSet{}.set(kLeft).set(kRight));
     for (const auto motor : {kLeft, kRight}) robot.simBus().setTemperature(motor, 120.0);
     for (int i = 0; i < 40; ++i) {
       robot.tick();
