@@ -56,6 +56,13 @@ def scrub(page: Page, seconds: float) -> float:
     return at_s * 1e6
 
 
+def press(page: Page, button: str, times: int) -> None:
+    """A button, all at once."""
+    page.get_by_role("button", name=button).evaluate(
+        "(button, times) => { for (let i = 0; i < times; ++i) button.click(); }", times
+    )
+
+
 def test_a_recording_is_shown_and_scrubbing_moves_the_values(
     part: Page, box: Box, tmp_path: Path
 ) -> None:
@@ -123,6 +130,11 @@ def test_events_frames_and_the_tick_are_told_in_words(part: Page, box: Box, tmp_
     part.get_by_role("button", name="one tick on").press("Enter")
     expect(stop).to_have_class(re.compile("here"))
     expect(part.locator(".tick")).to_have_text(f"tick {tick}")
+    # Presses that overtake the reader are all counted.
+    press(part, "one tick back", 5)
+    expect(part.locator(".tick")).to_have_text(f"tick {tick - 5}")
+    press(part, "one tick on", 5)
+    expect(stop).to_have_class(re.compile("here"))
     slider = part.get_by_label("Moment")
     before = slider.input_value()
     slider.press("ArrowLeft")

@@ -93,21 +93,55 @@ function useMoment(opened: Opened | null, signals: string[], filter: string, pro
   return opened === null ? null : moment;
 }
 
+type Step = 'before_us' | 'after_us' | 'tick_before_us' | 'tick_after_us';
+// A key that is held presses faster than a phone reads.
+const kMostSteps = 8;
+
+/** Steps from one moment to the next: each begins where the one before it ended, also where presses overtake the reader. */
+function useSteps(at_us: number, moment: Moment | null, target: (moment: Moment, step: Step) => number, onAt: (at_us: number) => void): (step: Step) => void {
+  const asked_us = useRef(at_us);
+  const pending = useRef<Step[]>([]);
+  if (asked_us.current !== at_us) pending.current = [];
+  asked_us.current = at_us;
+  const go = () => {
+    while (moment !== null && moment.at_us === asked_us.current) {
+      const step = pending.current.shift();
+      if (step === undefined) return;
+      const next_us = target(moment, step);
+      if (next_us === asked_us.current) continue;
+      asked_us.current = next_us;
+      onAt(next_us);
+    }
+  };
+  useEffect(go, [at_us, moment]);
+  return (step) => {
+    if (pending.current.length < kMostSteps) pending.current.push(step);
+    go();
+  };
+}
+
 function Scrubber(props: { opened: Opened; moment: Moment | null; onAt: (at_us: number) => void }) {
   const { word } = useStudio();
   const { opened, moment, onAt } = props;
   const { summary } = opened;
   const tick_us = 1e6 / (summary.rate_hz > 0 ? summary.rate_hz : 1000);
-  const to = (at_us: number | null | undefined) => {
-    if (at_us !== null && at_us !== undefined) onAt(Math.min(summary.last_us, Math.max(0, at_us)));
-  };
+  const within = (at_us: number) => Math.min(summary.last_us, Math.max(0, at_us));
+  const step = useSteps(
+    opened.at_us,
+    moment,
+    (from, way) => {
+      const tickless_us = way === 'tick_before_us' ? from.at_us - tick_us : way === 'tick_after_us' ? from.at_us + tick_us : from.at_us;
+      return within(from[way] ?? tickless_us);
+    },
+    onAt,
+  );
   const told = `${number(opened.at_us / 1e6, 3)} s`;
   return (
     <div class="toolbar scrubber">
-      <button type="button" aria-label={word('boxEventBefore')} title={word('boxEventBefore')} disabled={moment === null || moment.before_us === null} onClick={() => to(moment?.before_us)}>
+      <button type="button" aria-label={word('boxEventBefore')} title={word('boxEventBefore')} disabled={moment === null || moment.before_us === null} onClick={() => step('before_us')}>
         |◀
       </button>
-      <button type="button" aria-label={word('boxTickBack')} title={word('boxTickBack')} onClick={() => to(moment?.tick_before_us ?? opened.at_us - tick_us)}>
+      <button type="button" aria-label={word('boxTickBack')} title={word('boxTickBack')} onClick={() => step('tick_before_us')}>
         ◀
       </button>
       <input
@@ -118,12 +152,12 @@ function Scrubber(props: { opened: Opened; moment: Moment | null; onAt: (at_us: 
         max={Math.max(summary.phase_us, summary.last_us) / 1e6}
         step={tick_us / 1e6}
         value={opened.at_us / 1e6}
-        onInput={(event) => to(Number(event.currentTarget.value) * 1e6)}
+        onInput={(event) => onAt(within(Number(event.currentTarget.value) * 1e6))}
       />
-      <button type="button" aria-label={word('boxTickOn')} title={word('boxTickOn')} onClick={() => to(moment?.tick_after_us ?? opened.at_us + tick_us)}>
+      <button type="button" aria-label={word('boxTickOn')} title={word('boxTickOn')} onClick={() => step('tick_after_us')}>
         ▶
       </button>
-      <button type="button" aria-label={word('boxEventAfter')} title={word('boxEventAfter')} disabled={moment === null || moment.after_us === null} onClick={() => to(moment?.after_us)}>
+      <button type="button" aria-label={word('boxEventAfter')} title={word('boxEventAfter')} disabled={moment === null || moment.after_us === null} onClick={() => step('after_us')}>
         ▶|
       </button>
       <span class="number">{told}</span>
@@ -263,7 +297,6 @@ export function BlackBox() {
             <MomentTables
               moment={moment}
               book={book}
-              at_us={opened.at_us}
               filter={filter}
               onFilter={setFilter}
               problems={problems}

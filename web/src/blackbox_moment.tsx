@@ -78,7 +78,6 @@ function When(props: { time_us: number; onAt: (at_us: number) => void }) {
 interface Shown {
   moment: Moment;
   book: RecordedWordBook;
-  at_us: number;
   filter: string;
   onFilter: (filter: string) => void;
   problems: boolean;
@@ -88,7 +87,8 @@ interface Shown {
 
 export function MomentTables(props: Shown) {
   const { word } = useStudio();
-  const { moment, book, at_us, onAt } = props;
+  const { moment, book, onAt } = props;
+  const { at_us } = moment;
   useWords(book, moment.events, moment.frames);
   const { robot } = moment;
   const place = (row: EventRow | FrameRow) => (Math.abs(row.time_us - at_us) <= kSame_us ? 'here' : row.time_us < at_us ? 'past' : 'coming');

@@ -83,6 +83,8 @@ export interface OrderRow {
 }
 
 export interface Moment {
+  /** The moment that was asked for. */
+  at_us: number;
   curves: Curves;
   marks: { time_us: number; severity: string; source: string }[];
   wall_us: number;
@@ -378,6 +380,7 @@ export function momentOf(recording: Recording, format: RecordingFormat, look: Lo
   const filter = look.filter.trim().toUpperCase();
   const rate = header.rate_hz > 0 ? header.rate_hz : 1000;
   return {
+    at_us,
     curves: curvesOf(recording, format, look),
     marks: [...plain, ...serious].map((index) => {
       const row = eventRow(recording, format, index);
