@@ -13,9 +13,9 @@ import argparse
 import concurrent.futures
 import contextlib
 import difflib
+import hashlib
 import os
 import queue
-import random
 import shutil
 import signal
 import subprocess
@@ -73,9 +73,9 @@ class Mutant(NamedTuple):
 
 
 def mutants_of(file: str, mutate: Path) -> list[Mutant]:
-    """Every mutant of one file that changes more than a comment."""
+    """Every mutant of one file that changes more than blanks and comments, once."""
     original = (REPO / file).read_text(encoding="utf-8")
-    found = []
+    found: dict[tuple[int, str, str], Mutant] = {}
     with tempfile.TemporaryDirectory() as folder:
         subprocess.run(
             [mutate, REPO / file, "cpp", "--noCheck", "--mutantDir", folder],
@@ -86,8 +86,8 @@ def mutants_of(file: str, mutate: Path) -> list[Mutant]:
             text = path.read_text(encoding="utf-8")
             changed = difference(original, text)
             if changed is not None:
-                found.append(Mutant(file, *changed, text))
-    return found
+                found.setdefault(changed, Mutant(file, *changed, text))
+    return list(found.values())
 
 
 def difference(original: str, text: str) -> tuple[int, str, str] | None:
@@ -102,6 +102,15 @@ def difference(original: str, text: str) -> tuple[int, str, str] | None:
         after = " ".join(line.split("//")[0].strip() for line in new[other_first:other_last])
         return None if before == after or not before else (first + 1, before, after)
     return None
+
+
+def sample_of(candidates: list[Mutant], seed: int, count: int) -> list[Mutant]:
+    """So many by seed; what is added or taken away elsewhere changes nothing in the rest."""
+
+    def rank(mutant: Mutant) -> bytes:
+        return hashlib.sha256("\t".join((str(seed), *mutant.key)).encode()).digest()
+
+    return sorted(candidates, key=rank)[:count]
 
 
 def equivalent() -> set[tuple[str, str, str]]:
@@ -248,7 +257,7 @@ def main() -> int:
     known = equivalent()
     candidates = [mutant for mutant in everything if mutant.key not in known]
     # Some do not compile.
-    sample = random.Random(given.seed).sample(candidates, min(2 * given.count, len(candidates)))
+    sample = sample_of(candidates, given.seed, 2 * given.count)
     print(
         f"{len(everything)} mutants of {len(FILES)} files, {len(known)} known as equivalent",
         flush=True,

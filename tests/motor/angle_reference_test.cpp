@@ -129,5 +129,73 @@ TEST(AngleReference, AnAbsoluteAngleThatIsFollowedGoesOnWithoutItsReference) {
   EXPECT_DOUBLE_EQ(reference.totalAngleDeg(), 11.0);
 }
 
+TEST(AngleReference, AZeroThatIsSetAfterALossStays) {
+  AngleReference reference({.absolute = true});
+  reference.update(10.0);
+  reference.update(370.0);
+  reference.lose();
+  ASSERT_TRUE(reference.setZero(5.0));
+  reference.update(371.0);
+  EXPECT_TRUE(reference.known());
+  EXPECT_DOUBLE_EQ(reference.totalAngleDeg(), 6.0);
+}
+
+TEST(AngleReference, AnUnclearTurnEndsWithItsReference) {
+  constexpr Travel kFourTurns{-720.0, 720.0};
+  AngleReference forgotten({.absolute = true, .travel = kFourTurns});
+  forgotten.update(10.0);
+  ASSERT_TRUE(forgotten.turnUnclear());
+  forgotten.forget();
+  EXPECT_FALSE(forgotten.turnUnclear());
+  forgotten.update(400.0);
+  EXPECT_FALSE(forgotten.turnUnclear()) << "it does not begin anew";
+  EXPECT_DOUBLE_EQ(forgotten.totalAngleDeg(), 400.0);
+  AngleReference lost({.absolute = true, .travel = kFourTurns});
+  lost.update(10.0);
+  lost.lose();
+  EXPECT_FALSE(lost.turnUnclear());
+  lost.update(400.0);
+  EXPECT_TRUE(lost.turnUnclear()) << "as at power-up";
+  EXPECT_DOUBLE_EQ(lost.totalAngleDeg(), 40.0);
+}
+
+TEST(AngleReference, OneThatIsForgottenAfterALossDoesNotReturn) {
+  AngleReference reference({.absolute = true});
+  reference.update(10.0);
+  reference.update(370.0);
+  reference.lose();
+  reference.forget();
+  reference.update(371.0);
+  EXPECT_FALSE(reference.known());
+  EXPECT_DOUBLE_EQ(reference.totalAngleDeg(), 371.0);
+}
+
+TEST(AngleReference, ATurnIsDoubtedWhereBothLimitsTellIt) {
+  AngleReference new_one({.absolute = true, .travel = {-90.0, 90.0}});
+  new_one.doubtTurn();
+  new_one.update(10.0, true, false);
+  EXPECT_TRUE(new_one.known()) << "nothing was known that could be doubted";
+  for (const Travel travel : {Travel{.min_deg = -90.0}, Travel{.max_deg = 90.0}}) {
+    AngleReference one_limit({.absolute = true, .travel = travel});
+    one_limit.update(10.0);
+    one_limit.doubtTurn();
+    EXPECT_TRUE(one_limit.known());
+  }
+  AngleReference counted({.zero_at_power_on = true, .travel = {-90.0, 90.0}});
+  counted.update(10.0);
+  counted.doubtTurn();
+  EXPECT_TRUE(counted.known()) << "its drive counts from power-on";
+}
+
+TEST(AngleReference, NoFileKeepsAZeroThatPowerOnSets) {
+  AngleReference reference({.absolute = true, .zero_at_power_on = true});
+  reference.update(350.0);
+  EXPECT_TRUE(std::isnan(reference.zeroForFile()));
+  reference.lose();
+  reference.update(355.0);
+  EXPECT_FALSE(reference.known()) << "power-on is over";
+  EXPECT_DOUBLE_EQ(reference.totalAngleDeg(), 5.0);
+}
+
 }  // namespace
 }  // namespace rc10::angle_reference_test

@@ -289,6 +289,45 @@ TEST(Encoder, AShaftTooFastForTheStampErrorCanNeverBeCounted) {
   EXPECT_EQ(encoder.longestGap(), Duration{0});
 }
 
+TEST(Encoder, TheLongestGapIsWhereThePredictionIsHalfATurnOff) {
+  for (const Encoder::Config& config :
+       {Encoder::Config{.max_velocity_rpm = 9000.0F, .max_acceleration_rpm_per_s = 1e5F},
+        Encoder::Config{.max_velocity_rpm = 9000.0F, .velocity_error_rpm = 200.0F},
+        Encoder::Config{.max_velocity_rpm = 3000.0F,
+                        .max_acceleration_rpm_per_s = 2e5F,
+                        .velocity_error_rpm = 100.0F,
+                        .stamp_error = microseconds{300}},
+        Encoder::Config{.velocity_error_rpm = 0.01F}}) {
+    const Encoder encoder(config);
+    EXPECT_NEAR(Encoder::predictionErrorTurns(config, encoder.longestGap() + config.stamp_error), 0.4997,
+                1e-6);
+  }
+}
+
+TEST(Encoder, WithoutAnythingThatBoundsItAGapIsAnHour) {
+  EXPECT_EQ(Encoder(Encoder::Config{}).longestGap(), std::chrono::hours{1});
+  EXPECT_EQ(Encoder(Encoder::Config{.velocity_error_rpm = 0.005F}).longestGap(), std::chrono::hours{1});
+}
+
+TEST(Encoder, TheDelayOfAStampIsKnownUntilOneComesInTime) {
+  Encoder encoder(kM3508.encoder);
+  MonotonicTime now{milliseconds{1000}};
+  std::int32_t raw = 0;
+  // A tenth of a turn in a period.
+  const auto sample = [&](Duration after) {
+    raw = (raw + 819) % 8192;
+    EXPECT_TRUE(encoder.update(raw, 6000.0F, now += after));
+    return encoder.stampDelay();
+  };
+  for (int i = 0; i < 3; ++i) EXPECT_EQ(sample(milliseconds{1}), Duration{0});
+  EXPECT_EQ(sample(microseconds{1500}), microseconds{500 - 15}) << "a hundredth of the gap is forgotten";
+  EXPECT_EQ(sample(microseconds{1000}), microseconds{500 - 15 - 10});
+  EXPECT_EQ(sample(microseconds{500}), Duration{0});
+  EXPECT_EQ(sample(microseconds{1500}), microseconds{485});
+  EXPECT_TRUE(encoder.update(raw, 0.0F, now += std::chrono::hours{2}));
+  EXPECT_EQ(encoder.stampDelay(), Duration{0}) << "after a gap nothing is known of it";
+}
+
 TEST(Encoder, AJumpAtRestIsNoticedAndLosesTheReference) {
   Encoder encoder(kM3508.encoder);
   MonotonicTime now{};

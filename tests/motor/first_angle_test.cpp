@@ -41,6 +41,13 @@ TEST(FirstAngle, IsNotGuessedInTheMiddleOfTheGapNorWhereTheTravelIsATurn) {
   }
 }
 
+TEST(FirstAngle, IsDoubtedWithinADegreeOfTheMiddleOfTheGap) {
+  for (const double sign : {-1.0, 1.0}) {
+    EXPECT_TRUE(firstAngle(55.0 + sign * 179.0, kArm)) << sign;
+    EXPECT_FALSE(firstAngle(55.0 + sign * 179.01, kArm)) << sign;
+  }
+}
+
 TEST(FirstAngle, OfAShaftThatIsTurnedByHandBecomesClear) {
   AngleReference reference({.absolute = true, .zero_deg = 10.0, .travel = kArm});
   reference.update(245.0);

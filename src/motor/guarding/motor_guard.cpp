@@ -28,7 +28,6 @@ bool MotorGuard::same(const Readings& a, const Readings& b) noexcept {
 void MotorGuard::reset() noexcept {
   begun_ = false;
   fast_samples_ = 0;
-  unchanged_ = false;
   opposed_ = false;
   stall_.reset();
   behind_.reset();

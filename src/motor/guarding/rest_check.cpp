@@ -14,7 +14,6 @@ constexpr int kFewestSamples = 3;
 void RestCheck::reset() noexcept {
   told_ = false;
   sign_ = 0.0F;
-  samples_ = 0;
   driven_reported_ = false;
   gain_reported_ = false;
 }

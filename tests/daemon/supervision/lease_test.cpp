@@ -112,6 +112,56 @@ TEST_F(LeaseTest, AnotherSessionUnderTheNameIsAnotherClient) {
   EXPECT_TRUE(lease.allows(planner(8, 0), now + 50ms));
 }
 
+TEST(Lease, IsHeldUntilItsDeadlineAndTakenUntilItIsReleased) {
+  Lease lease;
+  const MonotonicTime now{10s};
+  EXPECT_FALSE(lease.taken());
+  EXPECT_FALSE(lease.held(now));
+  EXPECT_EQ(lease.received(), MonotonicTime{});
+  lease.take(planner(7, 0), {now, now + 50ms});
+  EXPECT_TRUE(lease.taken());
+  EXPECT_TRUE(lease.held(now + 50ms - Duration{1}));
+  EXPECT_FALSE(lease.held(now + 50ms));
+  EXPECT_TRUE(lease.taken()) << "though it has lapsed";
+  EXPECT_EQ(lease.client().view(), "planner");
+  EXPECT_EQ(lease.received(), now);
+  lease.release();
+  EXPECT_FALSE(lease.taken());
+  EXPECT_TRUE(lease.client().view().empty());
+}
+
+TEST(Lease, GivesWayToAHigherPriorityAlone) {
+  Lease lease;
+  const MonotonicTime now{10s};
+  lease.take(planner(7, 2), {now, now + 50ms});
+  for (const int priority : {-5, 0, 1, 2}) EXPECT_FALSE(lease.allows(planner(8, priority), now)) << priority;
+  EXPECT_TRUE(lease.allows(planner(8, 3), now));
+  EXPECT_TRUE(lease.allows(planner(7, -5), now)) << "its holder";
+  for (const char* name : {"another", "rival"}) {
+    Lease::Holder other{.client = {}, .session = 7, .priority = 2};
+    other.client = name;
+    EXPECT_FALSE(lease.allows(other, now)) << "of the same session number";
+  }
+}
+
+TEST(Lease, IsShortenedByItsHolderAloneAndNeverLengthened) {
+  Lease lease;
+  const MonotonicTime now{10s};
+  lease.take(planner(7, 0), {now, now + 50ms});
+  lease.shorten(planner(8, 9), now + 10ms);
+  EXPECT_TRUE(lease.held(now + 49ms)) << "another session";
+  lease.shorten(planner(7, 0), now + 90ms);
+  EXPECT_FALSE(lease.held(now + 50ms));
+  lease.shorten(planner(7, 0), now + 10ms);
+  EXPECT_TRUE(lease.held(now + 10ms - Duration{1}));
+  EXPECT_FALSE(lease.held(now + 10ms));
+}
+
+TEST(Lease, APriorityThatNobodyGaveIsZero) {
+  EXPECT_EQ(Lease::Holder{}.priority, 0);
+  EXPECT_EQ(Lease::Holder{}.session, 0U);
+}
+
 TEST_F(LeaseTest, RefusalsAreAllCountedAndToldOnceASecond) {
   for (int i = 0; i < 1500; ++i) {
     robot.commandAs("remote", 5, kLeft, current(0.1));

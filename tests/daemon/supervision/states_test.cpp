@@ -48,9 +48,33 @@ TEST(MotorStates, OnlyAnAnsweredEnableSequenceLeadsToActive) {
   }
 }
 
+TEST(MotorStates, IsOnFromItsEnablingToItsRest) {
+  for (const auto status : kAllStatus)
+    EXPECT_EQ(isOn(status), status == MotorStatus::kEnabling || status == MotorStatus::kActive);
+}
+
+TEST(MotorStates, EachStopHasItsCause) {
+  using enum MotorEvent;
+  for (const auto robot : {RobotStatus::kRun, RobotStatus::kEstop, RobotStatus::kStopping}) {
+    EXPECT_EQ(causeOf(kFeedbackLost, robot), StopCause::kSilence);
+    EXPECT_EQ(causeOf(kEnableFailed, robot), StopCause::kRefused);
+    EXPECT_EQ(causeOf(kDisable, robot), StopCause::kRequest);
+    EXPECT_EQ(causeOf(kFault, robot), StopCause::kFault);
+    EXPECT_EQ(causeOf(kGroupStop, robot), StopCause::kGroup);
+    EXPECT_EQ(causeOf(kEstop, robot),
+              robot == RobotStatus::kStopping ? StopCause::kShutdown : StopCause::kEstop);
+    for (const auto event : {kFeedbackFresh, kEnable, kEnableDone, kClear})
+      EXPECT_EQ(causeOf(event, robot), StopCause::kNone);
+  }
+}
+
 TEST(MotorStates, TreatsAnUnknownStatusAsAFault) {
-  EXPECT_EQ(next(static_cast<MotorStatus>(200), MotorEvent::kEnable), MotorStatus::kFault);
-  EXPECT_EQ(next(MotorStatus::kActive, static_cast<MotorEvent>(200)), MotorStatus::kFault);
+  for (const int beyond : {0, 1, 200}) {
+    EXPECT_EQ(next(static_cast<MotorStatus>(kMotorStatusCount + beyond), MotorEvent::kEnable),
+              MotorStatus::kFault);
+    EXPECT_EQ(next(MotorStatus::kActive, static_cast<MotorEvent>(kMotorEventCount + beyond)),
+              MotorStatus::kFault);
+  }
 }
 
 }  // namespace

@@ -194,6 +194,66 @@ TEST_F(MotorGuardTest, WatchesEachLimitThatIsConfiguredByItself) {
     EXPECT_TRUE(config.any());
 }
 
+// Each condition is met all the time, and one threshold is set, which nothing reaches.
+TEST_F(MotorGuardTest, BesideOneLimitTheOthersAreNotWatched) {
+  constexpr float kFar = 1e9F;
+  for (const GuardConfig& config :
+       {GuardConfig{.overspeed_rpm = kFar}, GuardConfig{.temperature_trip_c = kFar},
+        GuardConfig{.stall_time = 100s, .stall_rpm = 10.0F}, GuardConfig{.following_error_deg = 1e9},
+        GuardConfig{.encoder_jumps = true}, GuardConfig{.frozen_a = kFar},
+        GuardConfig{.runaway_rpm = kFar}}) {
+    guard = MotorGuard{config};
+    feedback.temperature_c = 500.0F;
+    feedback.current_a = 0.0F;
+    feedback.total_angle_deg = 0.0;
+    target = {.mode = ControlMode::kTotalAngle, .value = 1e6};
+    effort_a = 50.0F;
+    for (const float rpm : {0.0F, -1.0F, -5000.0F}) {
+      feedback.velocity_rpm = rpm;
+      for (int i = 0; i < 300; ++i) ASSERT_EQ(step(kLimitCurrent).fault, FaultCode::kNone) << i;
+    }
+  }
+}
+
+TEST_F(MotorGuardTest, AtItsThresholdNothingIsWrong) {
+  feedback.velocity_rpm = -700.0F;
+  for (int i = 0; i < 10; ++i) EXPECT_EQ(step().fault, FaultCode::kNone);
+  feedback.velocity_rpm = 10.0F;
+  for (int i = 0; i < 300; ++i) EXPECT_EQ(step(kLimitCurrent).fault, FaultCode::kNone) << "it turns";
+  feedback.temperature_c = 99.9F;
+  EXPECT_EQ(step().fault, FaultCode::kNone);
+}
+
+TEST_F(MotorGuardTest, BeyondItsTripAMotorHasNoCurrentAtAll) {
+  feedback.temperature_c = 150.0F;
+  EXPECT_EQ(step().derating, 0.0F);
+  EXPECT_TRUE(guard.tooHot(feedback));
+  feedback.temperature_c = 100.0F;
+  EXPECT_TRUE(guard.tooHot(feedback));
+  feedback.temperature_c = 99.0F;
+  EXPECT_FALSE(guard.tooHot(feedback));
+  EXPECT_FALSE(MotorGuard{GuardConfig{}}.tooHot(seen(0.0F, 500.0F)));
+}
+
+TEST_F(MotorGuardTest, WithoutASlopeAMotorHasAllItsCurrentUntilItTrips) {
+  for (const float from_c : {100.0F, 110.0F}) {
+    guard = MotorGuard{{.temperature_derate_c = from_c, .temperature_trip_c = 100.0F}};
+    feedback.temperature_c = 99.0F;
+    EXPECT_EQ(step().derating, 1.0F);
+    feedback.temperature_c = 111.0F;
+    EXPECT_EQ(step().derating, 1.0F);
+    EXPECT_EQ(step().fault, FaultCode::kOverheated);
+  }
+}
+
+TEST_F(MotorGuardTest, FastSamplesOfBeforeDoNotCount) {
+  feedback.velocity_rpm = 701.0F;
+  (void)step();
+  (void)step();
+  guard.reset();
+  EXPECT_EQ(step().fault, FaultCode::kNone);
+}
+
 class MotionGuardTest : public MotorGuardTest {
  protected:
   MotionGuardTest() {
@@ -332,6 +392,92 @@ TEST_F(MotionGuardTest, InADrivesOwnLoopItsCurrentTellsOfARunaway) {
   feedback.current_a = 20.0F;
   feedback.velocity_rpm = -10.0F;
   EXPECT_EQ(run(10, kLimitCurrent), FaultCode::kNone);
+  feedback.velocity_rpm = -59.0F;
+  EXPECT_EQ(run(1, kLimitCurrent), FaultCode::kRunaway);
+}
+
+TEST_F(MotionGuardTest, AtItsThresholdNothingIsWrong) {
+  target = {.mode = ControlMode::kTotalAngle, .value = -15.0};
+  effort_a = -1.0F;
+  EXPECT_EQ(run(500), FaultCode::kNone);
+  target.value = -15.1;
+  EXPECT_EQ(run(101), FaultCode::kFollowingError);
+}
+
+TEST_F(MotionGuardTest, AnAngleOfAnyTurnIsFollowedTheShortestWay) {
+  feedback.total_angle_deg = 355.0;
+  feedback.angle_deg = 355.0F;
+  target = {.mode = ControlMode::kAngle, .value = 5.0};
+  EXPECT_EQ(run(500), FaultCode::kNone);
+  target.value = 11.0;
+  EXPECT_EQ(run(101), FaultCode::kFollowingError);
+}
+
+TEST_F(MotionGuardTest, ATargetThatIsNoAngleHasNoFollowingError) {
+  for (const auto mode : {ControlMode::kVelocity, ControlMode::kCurrent, ControlMode::kImpedance}) {
+    target = {.mode = mode, .value = 500.0};
+    EXPECT_EQ(run(300), FaultCode::kNone);
+  }
+}
+
+TEST_F(MotionGuardTest, TimesOfBeforeDoNotCount) {
+  target = {.mode = ControlMode::kTotalAngle, .value = 16.0};
+  effort_a = 5.0F;
+  for (int i = 0; i < 5; ++i) {
+    EXPECT_EQ(run(90), FaultCode::kNone);
+    guard.reset();
+  }
+  target = {};
+  for (int i = 0; i < 5; ++i) {
+    EXPECT_EQ(run(190), FaultCode::kNone);
+    guard.reset();
+  }
+}
+
+TEST_F(MotionGuardTest, ATemperatureThatIsNotReportedChangesNothing) {
+  effort_a = 5.0F;
+  feedback.temperature_c = kNotReported;
+  EXPECT_EQ(run(202), FaultCode::kFrozen);
+  guard.reset();
+  for (int i = 0; i < 500; ++i) {
+    feedback.temperature_c = i % 2 == 0 ? kNotReported : 40.0F;
+    EXPECT_EQ(run(1), FaultCode::kNone);
+  }
+}
+
+TEST_F(MotionGuardTest, OnlyAllTheTorqueThereIsShowsARunaway) {
+  effort_a = 20.0F;
+  for (const std::uint32_t limits : {0U, static_cast<std::uint32_t>(kLimitAngle)}) {
+    feedback.velocity_rpm = -10.0F;
+    EXPECT_EQ(run(10, limits), FaultCode::kNone);
+    feedback.velocity_rpm = -500.0F;
+    feedback.current_a = 20.0F;
+    EXPECT_EQ(run(10, limits), FaultCode::kNone);
+  }
+}
+
+TEST_F(MotionGuardTest, ARunawayCountsFromTheSlowestSpeedAgainstItsTorque) {
+  effort_a = 20.0F;
+  feedback.current_a = 20.0F;
+  feedback.velocity_rpm = 0.0F;
+  EXPECT_EQ(run(3, kLimitCurrent), FaultCode::kNone);
+  feedback.velocity_rpm = -50.0F;
+  EXPECT_EQ(run(3, kLimitCurrent), FaultCode::kNone) << "at standstill nothing was against it";
+  feedback.velocity_rpm = -5.0F;
+  EXPECT_EQ(run(3, kLimitCurrent), FaultCode::kNone);
+  feedback.velocity_rpm = -53.5F;
+  EXPECT_EQ(run(1, kLimitCurrent), FaultCode::kRunaway);
+  guard.reset();
+  feedback.velocity_rpm = -80.0F;
+  EXPECT_EQ(run(3, kLimitCurrent), FaultCode::kNone) << "what was before does not count";
+}
+
+TEST_F(MotionGuardTest, AVoltageIsAnEffort) {
+  unit = CommandUnit::kVolt;
+  effort_a = 20.0F;
+  feedback.current_a = -10.0F;  // along the motion
+  feedback.velocity_rpm = -10.0F;
+  EXPECT_EQ(run(3, kLimitCurrent), FaultCode::kNone);
   feedback.velocity_rpm = -59.0F;
   EXPECT_EQ(run(1, kLimitCurrent), FaultCode::kRunaway);
 }

@@ -121,5 +121,41 @@ TEST_F(RestCheckTest, WhatADriveDoesNotReportIsNoEvidence) {
   EXPECT_EQ(run(5000, 20.0F, 300.0F), Verdict::kRests) << "not watched";
 }
 
+TEST_F(RestCheckTest, AtItsThresholdsAReadingIsNoEvidence) {
+  EXPECT_EQ(run(300, kConfig.current_a, 0.0F), Verdict::kRests);
+  EXPECT_EQ(run(300, -2.0F, kStandstillRpm), Verdict::kRests) << "it turns, and the current brakes";
+  EXPECT_EQ(run(300, -2.0F, kStandstillRpm - 0.1F), Verdict::kDriven);
+  check = RestCheck{{.current_a = 1.0F, .time = 100ms}};
+  EXPECT_EQ(run(300, 2.0F, 0.0F), Verdict::kDriven);
+  EXPECT_EQ(run(300, 0.0F, 500.0F), Verdict::kRests) << "gained speed is nobody's business here";
+}
+
+TEST_F(RestCheckTest, GainedSpeedCountsFromTheSlowest) {
+  EXPECT_EQ(run(2, 0.0F, 80.0F), Verdict::kRests);
+  EXPECT_EQ(run(1, 0.0F, -30.0F), Verdict::kRests);
+  EXPECT_EQ(run(1, 0.0F, 80.0F), Verdict::kRests) << "50 rpm, no more";
+  EXPECT_EQ(run(1, 0.0F, -80.5F), Verdict::kGainsSpeed);
+  EXPECT_EQ(run(1, 0.0F, kStandstillRpm), Verdict::kRests);
+  EXPECT_EQ(run(1, 0.0F, 90.0F), Verdict::kRests) << "it has not stood still";
+  EXPECT_EQ(run(1, 0.0F, 9.0F), Verdict::kRests);
+  EXPECT_EQ(run(1, 0.0F, 90.0F), Verdict::kGainsSpeed);
+  check.reset();
+  EXPECT_EQ(run(5, 0.0F, 90.0F), Verdict::kRests) << "the speed that it has is none that it gained";
+  EXPECT_EQ(run(1, 0.0F, 150.0F), Verdict::kGainsSpeed);
+}
+
+TEST_F(RestCheckTest, ASpeedThatWasNotReportedAtFirstIsTakenWhenItIs) {
+  run(3, 0.0F, std::numeric_limits<float>::quiet_NaN());
+  EXPECT_EQ(run(3, 0.0F, 100.0F), Verdict::kRests);
+  EXPECT_EQ(run(1, 0.0F, 151.0F), Verdict::kGainsSpeed);
+}
+
+TEST_F(RestCheckTest, ACurrentThatChangesItsSignBeginsItsTimeAnew) {
+  EXPECT_EQ(run(90, 2.0F, 0.0F), Verdict::kRests);
+  EXPECT_EQ(run(100, -2.0F, 0.0F), Verdict::kRests);
+  EXPECT_EQ(run(1, -2.0F, 0.0F), Verdict::kDriven);
+  EXPECT_EQ(run(50, 2.0F, 0.0F), Verdict::kRests) << "no rest between: it is told";
+}
+
 }  // namespace
 }  // namespace rc10::test::rest_check_test

@@ -1,0 +1,120 @@
+#include "motor/guarding/fallback.hpp"
+
+#include <gtest/gtest.h>
+
+namespace rc10::test::fallback_test {
+namespace {
+
+using namespace std::chrono_literals;
+
+constexpr Duration kInstant{1};
+
+class FallbackTest : public ::testing::Test {
+ protected:
+  void begin(FallbackAction action, Fallback::Until until = Fallback::Until::kEnded,
+             const FallbackBound& bound = {}) {
+    fallback.begin(action, until, bound, {.from_rpm = 100.0, .over = 1s}, start);
+  }
+  FrameKind after(Duration time, bool stands_still = false) {
+    fallback.step(stands_still, start + time);
+    return fallback.kind();
+  }
+
+  const MonotonicTime start{100s};
+  Fallback fallback;
+};
+
+TEST_F(FallbackTest, ItActsFromItsBeginToItsEnd) {
+  EXPECT_FALSE(fallback.acts());
+  EXPECT_FALSE(fallback.actsFor(0s, start));
+  begin(FallbackAction::kBrake);
+  EXPECT_TRUE(fallback.acts());
+  EXPECT_FALSE(fallback.actsFor(1s, start + 1s - kInstant));
+  EXPECT_TRUE(fallback.actsFor(1s, start + 1s));
+  fallback.end();
+  EXPECT_FALSE(fallback.acts());
+  EXPECT_FALSE(fallback.actsFor(1s, start + 1s));
+}
+
+TEST_F(FallbackTest, EachActionHasItsFrames) {
+  EXPECT_EQ(frameKindOf(FallbackAction::kCoast), FrameKind::kRest);
+  EXPECT_EQ(frameKindOf(FallbackAction::kDamp), FrameKind::kDamp);
+  EXPECT_EQ(frameKindOf(FallbackAction::kBrake), FrameKind::kBrake);
+  EXPECT_EQ(frameKindOf(FallbackAction::kHold), FrameKind::kHold);
+  EXPECT_EQ(frameKindOf(FallbackAction::kRamp), FrameKind::kCommand);
+}
+
+TEST_F(FallbackTest, ARampFallsEvenlyAndHasTimeToComeToRest) {
+  begin(FallbackAction::kRamp);
+  EXPECT_EQ(fallback.rampRpm(start), 100.0);
+  EXPECT_NEAR(fallback.rampRpm(start + 250ms), 75.0, 1e-4);
+  EXPECT_GT(fallback.rampRpm(start + 1s - kInstant), 0.0);
+  EXPECT_EQ(fallback.rampRpm(start + 1s), 0.0);
+  EXPECT_EQ(fallback.rampRpm(start + 2s), 0.0);
+  EXPECT_EQ(after(1200ms - kInstant), FrameKind::kCommand);
+  EXPECT_EQ(after(1200ms), FrameKind::kRest);
+}
+
+TEST_F(FallbackTest, OneThatIsNoRampDoesNotEndWithTheTimeOfARamp) {
+  begin(FallbackAction::kBrake);
+  EXPECT_EQ(after(2s), FrameKind::kBrake);
+}
+
+TEST_F(FallbackTest, AtItsBoundItBecomesWhatComesThen) {
+  begin(FallbackAction::kHold, Fallback::Until::kEnded, {.most = 10s, .then = FrameKind::kDamp});
+  EXPECT_EQ(after(10s - kInstant), FrameKind::kHold);
+  EXPECT_EQ(after(10s), FrameKind::kDamp);
+  EXPECT_EQ(after(20s), FrameKind::kDamp);
+}
+
+TEST_F(FallbackTest, OneThatHasEndedBecomesNothingAtItsBound) {
+  begin(FallbackAction::kHold, Fallback::Until::kEnded, {.most = 10s});
+  fallback.end();
+  EXPECT_EQ(after(11s), FrameKind::kRest);
+}
+
+TEST_F(FallbackTest, WithoutABoundItActsForEver) {
+  begin(FallbackAction::kHold, Fallback::Until::kEnded, {.most = 10s});
+  begin(FallbackAction::kDamp);
+  EXPECT_EQ(after(std::chrono::hours{24}, true), FrameKind::kDamp);
+}
+
+TEST_F(FallbackTest, StandstillEndsItOnlyAfterATimeWithoutMovement) {
+  begin(FallbackAction::kDamp, Fallback::Until::kStandstill);
+  EXPECT_EQ(after(299ms, true), FrameKind::kDamp);
+  EXPECT_EQ(after(300ms, false), FrameKind::kDamp) << "back from an overshoot";
+  EXPECT_EQ(after(600ms - kInstant, true), FrameKind::kDamp);
+  EXPECT_EQ(after(600ms, true), FrameKind::kRest);
+}
+
+TEST_F(FallbackTest, StandstillNeverEndsAHold) {
+  begin(FallbackAction::kHold, Fallback::Until::kStandstill, {.most = 10s});
+  EXPECT_EQ(after(9s, true), FrameKind::kHold);
+  EXPECT_EQ(after(10s, true), FrameKind::kRest) << "what it becomes then is none, and nothing moves";
+}
+
+TEST_F(FallbackTest, AHoldIsBoundAndABrakeIsInAnEstopOfTheRobot) {
+  const FallbackConfig config{.hold_max = 3s, .brake_max = 4s};
+  const DriveFrames frames;
+  for (const bool estop : {false, true}) {
+    EXPECT_EQ(boundOf(FallbackAction::kHold, estop, config, frames).most, Duration{3s});
+    for (const auto action : {FallbackAction::kCoast, FallbackAction::kDamp, FallbackAction::kRamp})
+      EXPECT_EQ(boundOf(action, estop, config, frames).most, std::nullopt);
+  }
+  EXPECT_EQ(boundOf(FallbackAction::kBrake, true, config, frames).most, Duration{4s});
+  EXPECT_EQ(boundOf(FallbackAction::kBrake, false, config, frames).most, std::nullopt);
+}
+
+TEST_F(FallbackTest, NoBoundLetsALoadFall) {
+  const auto then = [](Provision damp, Provision brake) {
+    return boundOf(FallbackAction::kHold, true, {}, {.damp = damp, .brake = brake}).then;
+  };
+  EXPECT_EQ(then(Provision::kFrame, Provision::kFrame), FrameKind::kDamp);
+  EXPECT_EQ(then(Provision::kNothing, Provision::kFrame), FrameKind::kDamp);
+  EXPECT_EQ(then(Provision::kUnsupported, Provision::kFrame), FrameKind::kBrake);
+  EXPECT_EQ(then(Provision::kUnsupported, Provision::kNothing), FrameKind::kBrake);
+  EXPECT_EQ(then(Provision::kUnsupported, Provision::kUnsupported), FrameKind::kHold);
+}
+
+}  // namespace
+}  // namespace rc10::test::fallback_test
