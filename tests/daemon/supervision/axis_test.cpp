@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <memory>
 
 #include "daemon/virtual_robot.hpp"
@@ -32,7 +33,7 @@ class AxisTest : public ::testing::Test {
   /// One tick with a sample, or without; what the supervisor would do of it.
   void tick(bool speaks = true) {
     now_ += 1ms;
-    if (speaks) (void)axis_.motor().updateFeedback(makeDjiFeedback(kM3508, 1, {}, now_));
+    if (speaks) hear();
     const Tick tick = this->now();
     axis_.listen(tick, {.before = now_ - 1ms, .ran = 1ms});
     if (axis_.fresh(tick)) (void)axis_.take(MotorEvent::kFeedbackFresh, RobotStatus::kRun, {}, tick);
@@ -42,6 +43,9 @@ class AxisTest : public ::testing::Test {
     lapsed_ = axis_.lapses(tick);
     axis_.order(RobotStatus::kRun, tick);
     axis_.motor().update(tick);
+  }
+  void hear(std::int16_t rotor_rpm = 0) {
+    (void)axis_.motor().updateFeedback(makeDjiFeedback(kM3508, 1, {.rpm = rotor_rpm}, now_));
   }
   void activate() {
     tick();
@@ -114,6 +118,147 @@ TEST_F(AxisTest, WhatEndsActiveDecidesAboutTheFallback) {
   (void)axis_.take(MotorEvent::kFault, RobotStatus::kRun, {}, now());
   EXPECT_FALSE(axis_.fallbackActs()) << "a fault coasts";
   EXPECT_EQ(axis_.status(), MotorStatus::kFault);
+}
+
+TEST_F(AxisTest, FillsItsSnapshot) {
+  activate();
+  MotorSnapshot seen;
+  axis_.fill(seen);
+  EXPECT_EQ(seen.status, MotorStatus::kActive);
+  EXPECT_EQ(seen.acting, Acting::kNothing);
+  EXPECT_TRUE(std::isnan(seen.target_shaped));
+  EXPECT_EQ(seen.command_received, MonotonicTime{});
+  EXPECT_TRUE(seen.owner.view().empty());
+  (void)axis_.take(kTurn, kPlanner, {now_, now_ + 50ms});
+  const auto received = now_;
+  tick();
+  axis_.fill(seen);
+  EXPECT_EQ(seen.feedback.samples, axis_.motor().feedback().samples);
+  EXPECT_EQ(seen.target.mode, ControlMode::kVelocity);
+  EXPECT_EQ(seen.target.value, 30.0);
+  EXPECT_EQ(seen.command_value, axis_.motor().commandValue());
+  EXPECT_EQ(seen.command_unit, CommandUnit::kAmpere);
+  EXPECT_EQ(seen.limits, axis_.motor().limits());
+  EXPECT_EQ(seen.acting, Acting::kTarget);
+  EXPECT_EQ(seen.target_shaped, 30.0);
+  EXPECT_EQ(seen.command_received, received);
+  EXPECT_EQ(seen.owner.view(), "planner");
+  EXPECT_EQ(seen.fault, FaultCode::kNone);
+  EXPECT_EQ(seen.stop.cause, StopCause::kNone);
+  now_ += 60ms;
+  tick();
+  axis_.fill(seen);
+  EXPECT_EQ(seen.acting, Acting::kBrake);
+  EXPECT_TRUE(std::isnan(seen.target_shaped));
+  EXPECT_EQ(seen.stop.cause, StopCause::kTimeout);
+  EXPECT_TRUE(seen.owner.view().empty());
+}
+
+TEST_F(AxisTest, ADriveThatIsNotThereIsMissedOnceThreeSecondsAfterTheFirstTick) {
+  const auto missed = [this](Duration after) {
+    return axis_.missesDrive({.index = 1, .now = MonotonicTime{10s} + after, .dt_s = 0.001F});
+  };
+  EXPECT_FALSE(missed(0s));
+  EXPECT_FALSE(missed(3s - Duration{1}));
+  robot_->buses()[0].held = true;
+  EXPECT_FALSE(missed(4s)) << "its bus is the news";
+  robot_->buses()[0].held = false;
+  EXPECT_TRUE(missed(4s));
+  EXPECT_FALSE(missed(5s)) << "told once";
+}
+
+TEST_F(AxisTest, ADriveIsMissedToTheTickAndNotOnceItHasAnswered) {
+  EXPECT_FALSE(axis_.missesDrive(now()));
+  now_ += 3s;
+  EXPECT_TRUE(axis_.missesDrive(now()));
+  Axis other{robot_->motors()[0], robot_->buses()[0]};
+  EXPECT_FALSE(other.missesDrive(now()));
+  tick();
+  now_ += 4s;
+  EXPECT_FALSE(other.missesDrive(now()));
+}
+
+TEST_F(AxisTest, IsOfflineAtOnceWhereItsBusCarriesNothing) {
+  tick();
+  ASSERT_EQ(axis_.status(), MotorStatus::kReady);
+  robot_->buses()[0].held = true;
+  EXPECT_FALSE(axis_.fresh(now()));
+  tick();
+  EXPECT_EQ(axis_.status(), MotorStatus::kOffline);
+}
+
+TEST_F(AxisTest, StandsStillBelowItsSpeedOfStandstill) {
+  robot_->motors()[0].standstill_rpm = 10.0F;
+  const auto stands = [this](int rotor_rpm) {
+    hear(static_cast<std::int16_t>(rotor_rpm));
+    const float rpm = axis_.motor().feedback().velocity_rpm;
+    robot_->motors()[0].standstill_rpm = std::fabs(rpm);
+    const bool at_it = axis_.standsStill();
+    robot_->motors()[0].standstill_rpm = std::fabs(rpm) + 0.01F;
+    return !at_it && axis_.standsStill();
+  };
+  EXPECT_TRUE(stands(200));
+  EXPECT_TRUE(stands(-200));
+}
+
+TEST_F(AxisTest, ASampleIsHeardUpToTheAgeOfItsMotor) {
+  const auto& entry = robot_->motors()[0];
+  for (const Duration more : {Duration{0}, Duration{1}}) {
+    Axis axis{entry, robot_->buses()[0]};
+    hear();
+    (void)axis.listen(now(), {.before = now_, .ran = 1ms});
+    now_ += 100ms;
+    hear();
+    now_ += entry.oldest_heard + more;
+    (void)axis.listen(now(), {.before = now_, .ran = entry.most_unheard});
+    now_ += entry.feedback_timeout;
+    (void)axis.listen(now(), {.before = now_, .ran = entry.most_unheard - entry.oldest_heard});
+    EXPECT_EQ(axis.lost(now()), more > Duration{0});
+  }
+}
+
+TEST_F(AxisTest, AnotherSenderStopsOneThatIsThereAndInNoFault) {
+  EXPECT_FALSE(axis_.yields());
+  EXPECT_EQ(axis_.fault(), FaultCode::kNone);
+  activate();
+  EXPECT_TRUE(axis_.yields());
+  EXPECT_EQ(axis_.fault(), FaultCode::kForeignCommands);
+  (void)axis_.take(MotorEvent::kFault, RobotStatus::kRun, {}, now());
+  EXPECT_FALSE(axis_.yields());
+}
+
+TEST_F(AxisTest, AStopSaysWhyUntilItIsEnabledAgain) {
+  activate();
+  EXPECT_EQ(axis_.stop().cause, StopCause::kNone);
+  (void)axis_.take(MotorEvent::kDisable, RobotStatus::kRun, {StopCause::kRequest}, now());
+  EXPECT_EQ(axis_.stop().cause, StopCause::kRequest);
+  (void)axis_.take(MotorEvent::kFeedbackLost, RobotStatus::kRun, {StopCause::kSilence}, now());
+  EXPECT_EQ(axis_.stop().cause, StopCause::kRequest) << "it was not on";
+  tick();
+  (void)axis_.take(MotorEvent::kFault, RobotStatus::kRun, {StopCause::kFault}, now());
+  EXPECT_EQ(axis_.stop().cause, StopCause::kFault) << "a fault is news all the same";
+  (void)axis_.take(MotorEvent::kClear, RobotStatus::kRun, {}, now());
+  tick();
+  EXPECT_EQ(axis_.stop().cause, StopCause::kFault);
+  activate();
+  EXPECT_EQ(axis_.stop().cause, StopCause::kNone);
+}
+
+TEST_F(AxisTest, OnlyARequestOrTheEndOfTheProcessDisables) {
+  robot_->motors()[0].fallback.on_disable = FallbackAction::kDamp;
+  robot_->motors()[0].fallback.on_estop = FallbackAction::kBrake;
+  const auto after = [this](MotorEvent event, RobotStatus robot) {
+    activate();
+    (void)axis_.take(event, robot, {}, now());
+    axis_.order(robot, now());
+    const auto kind = axis_.motor().ordered();
+    axis_.endFallback();
+    return kind;
+  };
+  EXPECT_EQ(after(MotorEvent::kDisable, RobotStatus::kRun), FrameKind::kDamp);
+  EXPECT_EQ(after(MotorEvent::kEstop, RobotStatus::kStopping), FrameKind::kDamp);
+  EXPECT_EQ(after(MotorEvent::kEstop, RobotStatus::kEstop), FrameKind::kBrake);
+  EXPECT_EQ(after(MotorEvent::kGroupStop, RobotStatus::kRun), FrameKind::kBrake);
 }
 
 TEST_F(AxisTest, ReportsASkippedTargetOnceASecond) {
