@@ -8,6 +8,7 @@ import { FileButton } from './file_button';
 import { number } from './numbers';
 import type { RecordingFile } from './protocol';
 import type { Moment, Summary } from './recording_look';
+import { type Place, period_us, usePlace, within } from './recording_place';
 import { RecordingReader } from './recording_reader';
 import { damageText, notReadText } from './recording_told';
 import { RecordedWordBook } from './recorded_words';
@@ -93,48 +94,12 @@ function useMoment(opened: Opened | null, signals: string[], filter: string, pro
   return opened === null ? null : moment;
 }
 
-type Step = 'before_us' | 'after_us' | 'tick_before_us' | 'tick_after_us';
-// A key that is held presses faster than a phone reads.
-const kMostSteps = 8;
-
-/** Steps from one moment to the next: each begins where the one before it ended, also where presses overtake the reader. */
-function useSteps(at_us: number, moment: Moment | null, target: (moment: Moment, step: Step) => number, onAt: (at_us: number) => void): (step: Step) => void {
-  const asked_us = useRef(at_us);
-  const pending = useRef<Step[]>([]);
-  if (asked_us.current !== at_us) pending.current = [];
-  asked_us.current = at_us;
-  const go = () => {
-    while (moment !== null && moment.at_us === asked_us.current) {
-      const step = pending.current.shift();
-      if (step === undefined) return;
-      const next_us = target(moment, step);
-      if (next_us === asked_us.current) continue;
-      asked_us.current = next_us;
-      onAt(next_us);
-    }
-  };
-  useEffect(go, [at_us, moment]);
-  return (step) => {
-    if (pending.current.length < kMostSteps) pending.current.push(step);
-    go();
-  };
-}
-
-function Scrubber(props: { opened: Opened; moment: Moment | null; onAt: (at_us: number) => void }) {
+function Scrubber(props: { opened: Opened; moment: Moment | null; place: Place }) {
   const { word } = useStudio();
-  const { opened, moment, onAt } = props;
+  const { opened, moment } = props;
+  const { step, to } = props.place;
   const { summary } = opened;
-  const tick_us = 1e6 / (summary.rate_hz > 0 ? summary.rate_hz : 1000);
-  const within = (at_us: number) => Math.min(summary.last_us, Math.max(0, at_us));
-  const step = useSteps(
-    opened.at_us,
-    moment,
-    (from, way) => {
-      const tickless_us = way === 'tick_before_us' ? from.at_us - tick_us : way === 'tick_after_us' ? from.at_us + tick_us : from.at_us;
-      return within(from[way] ?? tickless_us);
-    },
-    onAt,
-  );
+  const tick_us = period_us(summary);
   const told = `${number(opened.at_us / 1e6, 3)} s`;
   return (
     <div class="toolbar scrubber">
@@ -152,7 +117,7 @@ function Scrubber(props: { opened: Opened; moment: Moment | null; onAt: (at_us: 
         max={Math.max(summary.phase_us, summary.last_us) / 1e6}
         step={tick_us / 1e6}
         value={opened.at_us / 1e6}
-        onInput={(event) => onAt(within(Number(event.currentTarget.value) * 1e6))}
+        onInput={(event) => to(within(summary, Number(event.currentTarget.value) * 1e6))}
       />
       <button type="button" aria-label={word('boxTickOn')} title={word('boxTickOn')} onClick={() => step('tick_after_us')}>
         ▶
@@ -256,7 +221,7 @@ export function BlackBox() {
     };
   }, []);
 
-  const move = (at_us: number) => opened !== null && setOpened({ ...opened, at_us });
+  const place = usePlace(opened, moment, (at_us) => opened !== null && setOpened({ ...opened, at_us }));
   const show = (from_us: number, to_us: number) => opened !== null && setOpened({ ...opened, from_us, to_us });
 
   return (
@@ -277,7 +242,7 @@ export function BlackBox() {
       {opened !== null && (
         <>
           <SummaryCard name={opened.name} summary={opened.summary} />
-          <Scrubber opened={opened} moment={moment} onAt={move} />
+          <Scrubber opened={opened} moment={moment} place={place} />
           <div class="plots">
             <SignalChooser owners={opened.summary.signals} chosen={chosen} onChoose={setChosen} />
             <RecordedPlot
@@ -287,7 +252,7 @@ export function BlackBox() {
               to_us={opened.to_us}
               at_us={opened.at_us}
               whole={opened.from_us === 0 && opened.to_us >= opened.summary.last_us}
-              onAt={move}
+              onAt={place.to}
               onShow={show}
               onWhole={() => show(0, Math.max(1000, opened.summary.last_us))}
               onColumns={setColumns}
@@ -301,7 +266,7 @@ export function BlackBox() {
               onFilter={setFilter}
               problems={problems}
               onProblems={setProblems}
-              onAt={move}
+              onAt={place.to}
             />
           )}
         </>
