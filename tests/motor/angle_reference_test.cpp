@@ -80,6 +80,8 @@ TEST(AngleReference, AnAbsoluteEncoderFindsItsReferenceAgain) {
   reference.update(371.0);
   EXPECT_TRUE(reference.known());
   EXPECT_DOUBLE_EQ(reference.totalAngleDeg(), 11.0);
+  reference.update(731.0);
+  EXPECT_DOUBLE_EQ(reference.totalAngleDeg(), 371.0) << "it begins anew once";
 }
 
 TEST(AngleReference, OneThatIsForgottenStaysUnknownUntilItIsSetThoughItsEncoderIsAbsolute) {

@@ -285,8 +285,12 @@ TEST(Encoder, ASpeedBeyondAllReasonDoesNotOverflow) {
 }
 
 TEST(Encoder, AShaftTooFastForTheStampErrorCanNeverBeCounted) {
-  const Encoder encoder({.max_velocity_rpm = 60'000.0F, .stamp_error = microseconds{1000}});
-  EXPECT_EQ(encoder.longestGap(), Duration{0});
+  for (const float rpm_per_s : {0.0F, 1e5F}) {
+    const Encoder encoder({.max_velocity_rpm = 60'000.0F,
+                           .max_acceleration_rpm_per_s = rpm_per_s,
+                           .stamp_error = microseconds{1000}});
+    EXPECT_EQ(encoder.longestGap(), Duration{0});
+  }
 }
 
 TEST(Encoder, TheLongestGapIsWhereThePredictionIsHalfATurnOff) {
