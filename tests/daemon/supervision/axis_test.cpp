@@ -217,6 +217,24 @@ TEST_F(AxisTest, ASampleIsHeardUpToTheAgeOfItsMotor) {
   }
 }
 
+TEST_F(AxisTest, OneThatIsTooHotTripsFromItsEnablingOn) {
+  robot_->motors()[0].guard = {.temperature_derate_c = 60.0F, .temperature_trip_c = 80.0F};
+  Axis axis{robot_->motors()[0], robot_->buses()[0]};
+  const auto hear_hot = [&] {
+    now_ += 1ms;
+    (void)axis.motor().updateFeedback(makeDjiFeedback(kM3508, 1, {.temperature_c = 90}, now_));
+    (void)axis.listen(now(), {.before = now_ - 1ms, .ran = 1ms});
+  };
+  hear_hot();
+  (void)axis.take(MotorEvent::kFeedbackFresh, RobotStatus::kRun, {}, now());
+  EXPECT_FALSE(axis.trips(false, now())) << "at rest it cools down";
+  axis.prepareEnabling(now());
+  (void)axis.take(MotorEvent::kEnable, RobotStatus::kRun, {}, now());
+  hear_hot();
+  EXPECT_TRUE(axis.trips(false, now()));
+  EXPECT_EQ(axis.fault(), FaultCode::kOverheated);
+}
+
 TEST_F(AxisTest, AnotherSenderStopsOneThatIsThereAndInNoFault) {
   EXPECT_FALSE(axis_.yields());
   EXPECT_EQ(axis_.fault(), FaultCode::kNone);

@@ -414,8 +414,9 @@ TEST_F(MotionGuardTest, AnAngleOfAnyTurnIsFollowedTheShortestWay) {
 }
 
 TEST_F(MotionGuardTest, ATargetThatIsNoAngleHasNoFollowingError) {
-  for (const auto mode : {ControlMode::kVelocity, ControlMode::kCurrent, ControlMode::kImpedance}) {
-    target = {.mode = mode, .value = 500.0};
+  feedback.angle_deg = 0.0F;
+  for (const auto mode : {ControlMode::kVelocity, ControlMode::kCurrent, ControlMode::kImpedance, ControlMode::kVoltage}) {
+    target = {.mode = mode, .value = 90.0};
     EXPECT_EQ(run(300), FaultCode::kNone);
   }
 }
