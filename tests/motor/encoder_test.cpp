@@ -298,9 +298,9 @@ TEST(Encoder, TheLongestGapIsWhereThePredictionIsHalfATurnOff) {
        {Encoder::Config{.max_velocity_rpm = 9000.0F, .max_acceleration_rpm_per_s = 1e5F},
         Encoder::Config{.max_velocity_rpm = 9000.0F, .velocity_error_rpm = 200.0F},
         Encoder::Config{.max_velocity_rpm = 3000.0F,
-                        .max_acceleration_rpm_per_s = 2e5F,
-                        .velocity_error_rpm = 100.0F,
-                        .stamp_error = microseconds{300}},
+        .max_acceleration_rpm_per_s = 2e5F,
+        .velocity_error_rpm = 100.0F,
+        .stamp_error = microseconds{300}},
         Encoder::Config{.velocity_error_rpm = 0.01F}}) {
     const Encoder encoder(config);
     EXPECT_NEAR(Encoder::predictionErrorTurns(config, encoder.longestGap() + config.stamp_error), 0.4997,

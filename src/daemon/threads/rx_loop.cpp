@@ -38,17 +38,20 @@ bool RxLoop::watchSerial(std::size_t channel) noexcept {
 }
 
 void RxLoop::run(const std::stop_token& stop) noexcept {
-  while (!stop.stop_requested()) poll(turn(monotonicNow()));
+  while (!stop.stop_requested()) {
+    const MonotonicTime next = turn(monotonicNow());
+    poll(next - monotonicNow());  // a long drain must not put off the next one
+  }
 }
 
-Duration RxLoop::turn(MonotonicTime now) noexcept {
-  if (!drain_) return kIdle;
+MonotonicTime RxLoop::turn(MonotonicTime now) noexcept {
+  if (!drain_) return now + kIdle;
   if (next_drain_ == MonotonicTime{}) next_drain_ = drain_->grid.next(now);
   if (now >= next_drain_) {
     drain_->intake.drain(now);
     next_drain_ += drain_->grid.period * ((now - next_drain_) / drain_->grid.period + 1);
   }
-  return next_drain_ - now;
+  return next_drain_;
 }
 
 void RxLoop::poll(Duration patience) noexcept {

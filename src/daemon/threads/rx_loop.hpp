@@ -30,8 +30,8 @@ class RxLoop {
 
   /// The thread's body.
   void run(const std::stop_token& stop) noexcept;
-  /// Drains the buses if that is due. Returns the patience for the poll() that follows.
-  [[nodiscard]] Duration turn(MonotonicTime now) noexcept;
+  /// Drains the buses if that is due. Returns the time of the next turn.
+  [[nodiscard]] MonotonicTime turn(MonotonicTime now) noexcept;
   /// One wait of at most `patience` for the serial ports, and one read of each that has bytes.
   void poll(Duration patience) noexcept;
 

@@ -397,13 +397,20 @@ TEST_F(AdmissionTest, TheWordsOfAReasonSayWhatToDo) {
 
 TEST_F(AdmissionTest, TheNameOfAReasonIsItsCounters) {
   using enum CommandRefusal;
-  for (const auto& [refusal, name] :
-       {std::pair{kNone, "accepted"}, {kMalformed, "malformed"}, {kUnknownMotor, "unknown motor"},
-        {kUnknownMode, "unknown mode"}, {kUnsupportedMode, "unsupported mode"}, {kNotFinite, "not finite"},
-        {kExpired, "expired"}, {kOldSequence, "old sequence"}, {kRingFull, "too many commands"},
-        {kUnknownModule, "unknown module"}, {kUnknownSignal, "unknown signal"},
-        {kUnusedField, "unused field"}, {kNotPermitted, "not permitted"},
-        {kGainsBeyondDrive, "gains beyond drive"}})
+  for (const auto& [refusal, name] : {std::pair{kNone, "accepted"},
+                                      {kMalformed, "malformed"},
+                                      {kUnknownMotor, "unknown motor"},
+                                      {kUnknownMode, "unknown mode"},
+                                      {kUnsupportedMode, "unsupported mode"},
+                                      {kNotFinite, "not finite"},
+                                      {kExpired, "expired"},
+                                      {kOldSequence, "old sequence"},
+                                      {kRingFull, "too many commands"},
+                                      {kUnknownModule, "unknown module"},
+                                      {kUnknownSignal, "unknown signal"},
+                                      {kUnusedField, "unused field"},
+                                      {kNotPermitted, "not permitted"},
+                                      {kGainsBeyondDrive, "gains beyond drive"}})
     EXPECT_STREQ(toString(refusal), name);
 }
 

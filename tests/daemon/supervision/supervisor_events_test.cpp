@@ -41,7 +41,8 @@ struct Told {
   }
 };
 Told status(std::size_t motor, MotorStatus after, MotorStatus before) {
-  return {EventCode::kMotorStatus, Severity::kInfo, static_cast<std::int16_t>(motor), number(after), from(before)};
+  return {EventCode::kMotorStatus, Severity::kInfo, static_cast<std::int16_t>(motor), number(after),
+          from(before)};
 }
 
 /// `left` and `right` stop together.
@@ -153,9 +154,9 @@ TEST_F(EventsTest, AFaultIsToldWithItsMotorsNewStatus) {
   auto fault = status(kYaw, MotorStatus::kFault, MotorStatus::kActive);
   fault.severity = Severity::kError;
   fault.extra = from(MotorStatus::kActive, StopCause::kFault);
-  EXPECT_THAT(all, ElementsAre(Told{EventCode::kMotorFault, Severity::kError, kYaw,
-                                    number(FaultCode::kOverspeed)},
-                               fault));
+  EXPECT_THAT(all,
+              ElementsAre(Told{EventCode::kMotorFault, Severity::kError, kYaw, number(FaultCode::kOverspeed)},
+                          fault));
 }
 
 TEST_F(EventsTest, ARefusedCommandNamesItsClientAndTheMotor) {

@@ -415,7 +415,8 @@ TEST_F(MotionGuardTest, AnAngleOfAnyTurnIsFollowedTheShortestWay) {
 
 TEST_F(MotionGuardTest, ATargetThatIsNoAngleHasNoFollowingError) {
   feedback.angle_deg = 0.0F;
-  for (const auto mode : {ControlMode::kVelocity, ControlMode::kCurrent, ControlMode::kImpedance, ControlMode::kVoltage}) {
+  for (const auto mode :
+       {ControlMode::kVelocity, ControlMode::kCurrent, ControlMode::kImpedance, ControlMode::kVoltage}) {
     target = {.mode = mode, .value = 90.0};
     EXPECT_EQ(run(300), FaultCode::kNone);
   }

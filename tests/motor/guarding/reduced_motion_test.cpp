@@ -25,11 +25,8 @@ class ReducedMotionTest : public ::testing::Test {
     return found;
   }
   static constexpr ReducedConfig config() {
-    return {.velocity_rpm = 20.0F,
-            .effort_share = 0.5F,
-            .within = 1s,
-            .tolerance_rpm = 5.0F,
-            .full_rpm = 480.0F};
+    return {
+        .velocity_rpm = 20.0F, .effort_share = 0.5F, .within = 1s, .tolerance_rpm = 5.0F, .full_rpm = 480.0F};
   }
 
   ReducedMotion motion{config()};
@@ -128,7 +125,8 @@ TEST_F(ReducedMotionTest, ASampleCountsOnce) {
   step(true, false, 30.0F);
   step(true, true, 30.0F, 998);
   tick.now += 1s;
-  for (int i = 0; i < 10; ++i) EXPECT_FALSE(motion.step(true, true, feedback, tick)) << "none came in the time";
+  for (int i = 0; i < 10; ++i)
+    EXPECT_FALSE(motion.step(true, true, feedback, tick)) << "none came in the time";
 }
 
 TEST_F(ReducedMotionTest, AMotorThatBeginsToMoveHasItsTimeAnew) {

@@ -115,7 +115,8 @@ TEST_F(TargetShaperTest, ATorqueFeedForwardRisesAtTheRateOfTheCurrent) {
 
 TEST_F(TargetShaperTest, TheSmallestFeedForwardRisesAtItsRateToo) {
   configure({.effort_slew_per_s = 100.0F, .velocity_slew_rpm_per_s = 50.0F, .effort_per_nm = 2.0F});
-  EXPECT_NEAR(step({.mode = ControlMode::kTotalAngle, .torque_ff_nm = 0.1F}).target.torque_ff_nm, 0.05F, 1e-6F);
+  EXPECT_NEAR(step({.mode = ControlMode::kTotalAngle, .torque_ff_nm = 0.1F}).target.torque_ff_nm, 0.05F,
+              1e-6F);
   shaper.reset();
   EXPECT_NEAR(step({.mode = ControlMode::kTotalAngle, .velocity_ff_rpm = 0.1F}).target.velocity_ff_rpm, 0.05F,
               1e-6F);
