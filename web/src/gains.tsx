@@ -40,6 +40,8 @@ export function Gains(props: { motor: string; proposed?: Values | null; onKnown?
   const [changes, setHistory] = useStoredOfRobot<Change[]>(`gains/${props.motor}`, []);
   const [yaml, setYaml] = useState('');
   const [told, setTold] = useState('');
+  // A reading that is under way must not take away the answer to a request.
+  const [notRead, setNotRead] = useState('');
   // Keys with text of a person, or of a proposal, that is not in force.
   const entered = useRef(new Set<string>());
   const allowed = known.hello?.right === 'command';
@@ -53,11 +55,11 @@ export function Gains(props: { motor: string; proposed?: Values | null; onKnown?
     const answer = await link.ask({ operation: 'get_config', target: props.motor });
     if (answer.status !== 'ok') {
       setInForce(null);
-      setTold(answer.message);
+      setNotRead(answer.message);
       if (answer.status === 'refused') props.onKnown?.(null);
       return;
     }
-    setTold('');
+    setNotRead('');
     // Text that was entered meanwhile stays, also if it was in force for a while.
     setWanted((typed) =>
       Object.fromEntries(
@@ -72,6 +74,7 @@ export function Gains(props: { motor: string; proposed?: Values | null; onKnown?
     setYaml(answer.message);
     props.onKnown?.(answer.values);
   };
+  useEffect(() => setTold(''), [props.motor]);
   useEffect(() => {
     if (allowed) void load();
   }, [props.motor, allowed, robot, told_us]);
@@ -85,6 +88,7 @@ export function Gains(props: { motor: string; proposed?: Values | null; onKnown?
   const changed = (values: Values) =>
     Object.fromEntries(Object.entries(values).filter(([key, value]) => inForce?.[key] !== value));
   const set = async (values: Values, then: () => void) => {
+    setTold('');
     // Nothing: somebody else has set them so.
     if (!same(values, inForce ?? {})) {
       const answer = await link.ask({ operation: 'set_gains', target: props.motor, values: changed(values) });
@@ -99,6 +103,7 @@ export function Gains(props: { motor: string; proposed?: Values | null; onKnown?
   const back = (i: number) => void set(beforeOf(i), () => setHistory(history.slice(i + 1)));
 
   const put = async () => {
+    setTold('');
     // Those in force now: an answer may be under way that changes what is shown.
     const [file, gains] = await Promise.all([link.config(), link.ask({ operation: 'get_config', target: props.motor })]);
     if (typeof file === 'string' || file.config.why !== '') return setTold(typeof file === 'string' ? file : file.config.why);
@@ -189,8 +194,13 @@ export function Gains(props: { motor: string; proposed?: Values | null; onKnown?
           )}
         </form>
       )}
-      {told !== '' && (
-        <p class={inForce === null ? 'hint' : 'refused'} role="alert">
+      {notRead !== '' && (
+        <p class="hint" role="alert">
+          {notRead}
+        </p>
+      )}
+      {notRead === '' && told !== '' && (
+        <p class="refused" role="alert">
           {told}
         </p>
       )}
