@@ -44,6 +44,15 @@ inline RobotConfig twoWheelsAndYaw() {
   return config;
 }
 
+/// `left` and `right` of twoWheelsAndYaw(), which stop together.
+inline GroupConfig leftAndRight(GroupConfig::Return on_return = GroupConfig::Return::kRequest) {
+  GroupConfig group;
+  group.name = "drive";
+  group.motors = {0, 1};
+  group.on_return = on_return;
+  return group;
+}
+
 /// A whole robot without a thread and without waiting: simulated motors, rings and scheduler, stepped by
 /// hand through virtual time.
 class VirtualRobot {

@@ -8,6 +8,17 @@
 namespace rc10::angle_reference_test {
 namespace {
 
+/// An absolute one that was at 370 deg, on its second turn, when its drive lost them.
+AngleReference lostOnItsSecondTurn() {
+  AngleReference reference({.absolute = true});
+  reference.update(10.0);
+  reference.update(370.0);
+  EXPECT_EQ(reference.totalAngleDeg(), 370.0);
+  reference.lose();
+  EXPECT_FALSE(reference.known());
+  return reference;
+}
+
 TEST(AngleReference, IsUnknownUntilSomebodySetsIt) {
   AngleReference reference({});
   EXPECT_FALSE(reference.setZero(0.0)) << "there is no position yet";
@@ -71,12 +82,7 @@ TEST(AngleReference, ALostReferenceGoesOnWithoutAJump) {
 }
 
 TEST(AngleReference, AnAbsoluteEncoderFindsItsReferenceAgain) {
-  AngleReference reference({.absolute = true});
-  reference.update(10.0);
-  reference.update(370.0);
-  EXPECT_EQ(reference.totalAngleDeg(), 370.0);
-  reference.lose();
-  EXPECT_FALSE(reference.known());
+  auto reference = lostOnItsSecondTurn();
   reference.update(371.0);
   EXPECT_TRUE(reference.known());
   EXPECT_DOUBLE_EQ(reference.totalAngleDeg(), 11.0);
@@ -132,10 +138,7 @@ TEST(AngleReference, AnAbsoluteAngleThatIsFollowedGoesOnWithoutItsReference) {
 }
 
 TEST(AngleReference, AZeroThatIsSetAfterALossStays) {
-  AngleReference reference({.absolute = true});
-  reference.update(10.0);
-  reference.update(370.0);
-  reference.lose();
+  auto reference = lostOnItsSecondTurn();
   ASSERT_TRUE(reference.setZero(5.0));
   reference.update(371.0);
   EXPECT_TRUE(reference.known());
@@ -162,10 +165,7 @@ TEST(AngleReference, AnUnclearTurnEndsWithItsReference) {
 }
 
 TEST(AngleReference, OneThatIsForgottenAfterALossDoesNotReturn) {
-  AngleReference reference({.absolute = true});
-  reference.update(10.0);
-  reference.update(370.0);
-  reference.lose();
+  auto reference = lostOnItsSecondTurn();
   reference.forget();
   reference.update(371.0);
   EXPECT_FALSE(reference.known());

@@ -34,9 +34,9 @@ export function usePlace(opened: { at_us: number; summary: Summary } | null, mom
   // Null: where the file was opened.
   const asked_us = useRef<number | null>(null);
   const pending = useRef<Step[]>([]);
-  const first = useRef(opened?.summary);
-  if (first.current !== opened?.summary) {
-    first.current = opened?.summary;
+  const file = useRef(opened?.summary);
+  if (file.current !== opened?.summary) {
+    file.current = opened?.summary;
     asked_us.current = null;
     pending.current = [];
   }

@@ -206,11 +206,7 @@ class EnableAloneInAGroupTest : public EnableAloneTest {
     config.buses[0].motors = {makeMotor("left", kM3508, 1)};
     other.motors = {makeMotor("right", kM3508, 2), makeMotor("yaw", kGM6020, 5)};
     config.buses.push_back(std::move(other));
-    GroupConfig group;
-    group.name = "drive";
-    group.motors = {kLeft, kRight};
-    group.on_return = GroupConfig::Return::kRearmAtRest;
-    config.groups.push_back(std::move(group));
+    config.groups.push_back(leftAndRight(GroupConfig::Return::kRearmAtRest));
     start(std::move(config));
   }
   void losePower(std::size_t bus) {

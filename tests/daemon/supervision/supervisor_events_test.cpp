@@ -51,11 +51,7 @@ RobotConfig robotOf(GroupConfig::Return on_return = GroupConfig::Return::kReques
   config.buses[0].motors[kLeft].fallback.on_timeout = FallbackAction::kBrake;
   config.buses[0].motors[kYaw].guard.overspeed_rpm = 100.0F;
   config.buses[0].motors[kYaw].rest.gained_rpm = 50.0F;
-  GroupConfig group;
-  group.name = "drive";
-  group.motors = {kLeft, kRight};
-  group.on_return = on_return;
-  config.groups.push_back(std::move(group));
+  config.groups.push_back(leftAndRight(on_return));
   return config;
 }
 

@@ -28,11 +28,7 @@ RobotConfig coupled(GroupConfig::Return on_return, const GuardConfig& guard = {}
   config.buses[0].motors[0].guard = guard;
   other.motors.push_back(makeMotor("yaw", kGM6020, 5));
   config.buses.push_back(std::move(other));
-  GroupConfig group;
-  group.name = "drive";
-  group.motors = {kLeft, kRight};
-  group.on_return = on_return;
-  config.groups.push_back(std::move(group));
+  config.groups.push_back(leftAndRight(on_return));
   return config;
 }
 

@@ -23,10 +23,7 @@ RobotConfig withFallbacks() {
   left.on_timeout = FallbackAction::kHold;
   left.on_disable = FallbackAction::kBrake;
   left.on_estop = FallbackAction::kDamp;
-  GroupConfig group;
-  group.name = "drive";
-  group.motors = {kLeft, kRight};
-  config.groups.push_back(group);
+  config.groups.push_back(leftAndRight());
   return config;
 }
 
