@@ -39,8 +39,8 @@ struct CanReceiver::Buffers {
 
   std::array<Slot, kBatch> slots{};
   std::array<mmsghdr, kBatch> headers{};
-  std::size_t filled = 0;  ///< Headers that the last call has filled.
-  std::uint32_t kernel_dropped = 0;
+  std::size_t filled = 0;            ///< Headers that the last call has filled.
+  std::uint32_t kernel_dropped = 0;  ///< SO_RXQ_OVFL of the last frame.
 };
 
 CanReceiver::CanReceiver(int fd) : fd_(fd), buffers_(std::make_unique<Buffers>()) {}
@@ -50,7 +50,6 @@ CanReceiver::~CanReceiver() = default;
 
 Reception CanReceiver::receive(const WakeUp& wake, std::span<CanFrame> out) noexcept {
   Reception reception;
-  reception.kernel_dropped = buffers_->kernel_dropped;
   const std::size_t room = std::min(kBatch, out.size());
   // The kernel shortens this one of each header that it fills; the rest stays as it was set up.
   for (mmsghdr& header : std::span(buffers_->headers).first(buffers_->filled)) {
@@ -60,8 +59,13 @@ Reception CanReceiver::receive(const WakeUp& wake, std::span<CanFrame> out) noex
       ::recvmmsg(fd_, buffers_->headers.data(), static_cast<unsigned>(room), MSG_DONTWAIT, nullptr);
   buffers_->filled = static_cast<std::size_t>(std::max(count, 0));
   if (count < 0) {
-    left_behind_.reset();
-    if (errno != EAGAIN && errno != EWOULDBLOCK && errno != EINTR) reception.error = errno;
+    if (errno == EAGAIN || errno == EWOULDBLOCK) {
+      left_behind_.reset();
+      return reception;
+    }
+    if (errno != EINTR) reception.error = errno;
+    // An error comes before the frames that wait with it, and had ended the batch before.
+    if (!left_behind_) left_behind_ = before_;
     return reception;
   }
   // Frames that a batch left behind may be as old as its first one.
@@ -70,6 +74,7 @@ Reception CanReceiver::receive(const WakeUp& wake, std::span<CanFrame> out) noex
     since.previous = left_behind_->previous;
     since.previous_offset = left_behind_->previous_offset;
   }
+  before_ = since;
   left_behind_.reset();
   if (count > 0 && buffers_->filled == room) left_behind_ = since;
   for (std::size_t i = 0; i < buffers_->filled; ++i) {
@@ -79,7 +84,10 @@ Reception CanReceiver::receive(const WakeUp& wake, std::span<CanFrame> out) noex
       break;
     }
     const ControlMessages control = readControlMessages(header);
-    if (control.kernel_dropped) buffers_->kernel_dropped = *control.kernel_dropped;
+    // Absent until something was dropped: a socket that was opened anew. The count goes on after 2^32.
+    const std::uint32_t dropped = control.kernel_dropped.value_or(0);
+    if (dropped != 0) reception.kernel_dropped += dropped - buffers_->kernel_dropped;
+    buffers_->kernel_dropped = dropped;
     CanFrame& frame = out[reception.frame_count];
     if ((header.msg_flags & MSG_TRUNC) != 0 || !decodeFrame(buffers_->slots[i].message, size, frame)) {
       ++reception.malformed_count;
@@ -93,7 +101,6 @@ Reception CanReceiver::receive(const WakeUp& wake, std::span<CanFrame> out) noex
     frame.sent_here = (header.msg_flags & kSentHere) != 0;
     ++reception.frame_count;
   }
-  reception.kernel_dropped = buffers_->kernel_dropped;
   return reception;
 }
 

@@ -15,7 +15,7 @@ namespace rc10 {
 struct Reception {
   std::size_t frame_count = 0;       ///< Frames written to the output.
   std::size_t malformed_count = 0;   ///< Messages of a size that is no frame; skipped.
-  std::uint32_t kernel_dropped = 0;  ///< SO_RXQ_OVFL: frames the kernel dropped since the socket exists.
+  std::uint32_t kernel_dropped = 0;  ///< Frames that the kernel dropped since the call before.
   /// errno or 0, never EAGAIN. ENETDOWN and ENODEV are link states; ENODEV also stands for the end of a
   /// simulated bus, whose other end was closed.
   int error = 0;
@@ -36,8 +36,9 @@ class CanReceiver {
   [[nodiscard]] Reception receive(const WakeUp& wake, std::span<CanFrame> out) noexcept;
 
  private:
-  /// The wake-up of the first of several batches, until one was not full.
+  /// Since when frames may wait: that of the first of several batches, until the socket was empty.
   std::optional<WakeUp> left_behind_;
+  std::optional<WakeUp> before_;  ///< Since when those of the call before may have waited.
   struct Buffers;  // mmsghdr, iovec and control buffers: set up once, they point into each other
   int fd_;
   std::unique_ptr<Buffers> buffers_;

@@ -257,14 +257,50 @@ TEST_F(CanReceiverTest, ASocketThatCountsDropsReportsNoneAtFirst) {
   EXPECT_EQ(receive().kernel_dropped, 0U);
 }
 
-TEST_F(CanReceiverTest, KeepsTheCountOfFramesThatTheKernelDropped) {
+TEST_F(CanReceiverTest, TellsOnceOfFramesThatTheKernelDropped) {
+  const auto told = [&](std::uint32_t count) {
+    frameCalls().received = [count](msghdr& message) { reportDropped(message, count); };
+    pair_.write(numbered(1));
+    return receive().kernel_dropped;
+  };
+  EXPECT_EQ(told(17), 17U);
+  EXPECT_EQ(receive().kernel_dropped, 0U) << "nothing received";
+  EXPECT_EQ(told(17), 0U);
+  EXPECT_EQ(told(UINT32_MAX - 2), UINT32_MAX - 19U);
+  EXPECT_EQ(told(5), 8U) << "the kernel's count goes on after 2^32";
+}
+
+TEST_F(CanReceiverTest, ASocketThatWasOpenedAnewBeginsItsDropsAnew) {
+  frameCalls().received = [](msghdr& message) { reportDropped(message, 5); };
   pair_.write(numbered(1));
-  frameCalls().received = [](msghdr& message) { reportDropped(message, 17); };
-  EXPECT_EQ(receive().kernel_dropped, 17U);
-  EXPECT_EQ(receive().kernel_dropped, 17U);  // nothing received
+  EXPECT_EQ(receive().kernel_dropped, 5U);
   frameCalls().received = nullptr;
   pair_.write(numbered(2));
-  EXPECT_EQ(receive().kernel_dropped, 17U);
+  EXPECT_EQ(receive().kernel_dropped, 0U) << "it has dropped none yet";
+  frameCalls().received = [](msghdr& message) { reportDropped(message, 100); };
+  pair_.write(numbered(3));
+  EXPECT_EQ(receive().kernel_dropped, 100U);
+}
+
+// The kernel ends a batch at an error, tells it in the next call, and has kept the frames behind it.
+TEST_F(CanReceiverTest, FramesBehindAnErrorKeepTheirStamps) {
+  enableStamps();
+  const MonotonicTime before = monotonicNow();
+  for (int i = 0; i < 8; ++i) pair_.write(numbered(1));
+  const MonotonicTime written = monotonicNow();
+  wake_ = {.now = written + 10s,
+           .previous = before - 10s,
+           .realtime_offset = realtimeOffset(),
+           .previous_offset = realtimeOffset()};
+  frameCalls().interrupted = {3, ENETDOWN};
+  ASSERT_EQ(receive().frame_count, 3U);
+  wake_.previous = wake_.now;
+  wake_.now += 1ms;
+  EXPECT_EQ(receive().error, ENETDOWN);
+  wake_.previous = wake_.now;
+  wake_.now += 1ms;
+  ASSERT_EQ(receive().frame_count, 5U);
+  EXPECT_LE(out_[4].received, written + 5ms);
 }
 
 TEST_F(CanReceiverTest, CanBeMoved) {

@@ -3,8 +3,10 @@
 #include <sys/syscall.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <cstring>
+#include <utility>
 
 namespace rc10::test {
 
@@ -54,6 +56,11 @@ int sendmmsg(int fd, mmsghdr* messages, unsigned count, int flags) {
 int recvmmsg(int fd, mmsghdr* messages, unsigned count, int flags, timespec* timeout) {
   auto& calls = rc10::test::frameCalls();
   ++calls.recvmmsg;
+  if (calls.interrupted && calls.interrupted->messages == 0) {
+    errno = std::exchange(calls.interrupted, std::nullopt)->error;
+    return -1;
+  }
+  if (calls.interrupted) count = std::min(count, std::exchange(calls.interrupted->messages, 0U));
   const auto received = static_cast<int>(::syscall(SYS_recvmmsg, fd, messages, count, flags, timeout));
   for (int i = 0; i < received && calls.received; ++i) calls.received(messages[i].msg_hdr);
   return received;

@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <optional>
 
 namespace rc10::test {
 
@@ -14,6 +15,12 @@ struct FrameCalls {
   std::uint64_t recvmmsg = 0;
   /// The errno with which this message is refused, 0 to let it pass.
   std::function<int(const msghdr&)> refuse{};
+  /// The next call receives at most so many messages, the one after it fails with this errno.
+  struct Interruption {
+    unsigned messages = 0;
+    int error = 0;
+  };
+  std::optional<Interruption> interrupted{};
   /// May change what was received.
   std::function<void(msghdr&)> received{};
 };

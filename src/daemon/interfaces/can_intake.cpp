@@ -45,17 +45,14 @@ void CanIntake::drain(Echoes& echoes) noexcept {
   }
 }
 
-void CanIntake::take(Source& source, const Reception& reception) noexcept {
+void CanIntake::take(const Source& source, const Reception& reception) noexcept {
   auto& inbox = inboxes_[source.bus];
   if (reception.error == ENETDOWN) inbox.link.store(CanLinkState::kDown, std::memory_order_relaxed);
   if (reception.error == ENODEV) inbox.link.store(CanLinkState::kGone, std::memory_order_relaxed);
   if (reception.malformed_count != 0)
     inbox.malformed.fetch_add(reception.malformed_count, std::memory_order_relaxed);
-  std::uint64_t dropped = reception.frame_count - inbox.frames.push(batch_.data(), reception.frame_count);
-  // A smaller count is that of a new socket, which begins at zero.
-  const bool same_socket = reception.kernel_dropped >= source.kernel_dropped;
-  dropped += reception.kernel_dropped - (same_socket ? source.kernel_dropped : 0);
-  source.kernel_dropped = reception.kernel_dropped;
+  const std::uint64_t dropped = reception.kernel_dropped + reception.frame_count -
+                                inbox.frames.push(batch_.data(), reception.frame_count);
   if (dropped != 0) inbox.dropped.fetch_add(dropped, std::memory_order_relaxed);
 }
 

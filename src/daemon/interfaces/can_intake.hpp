@@ -33,7 +33,6 @@ class CanIntake {
   struct Source {
     std::size_t bus;
     CanReceiver receiver;
-    std::uint32_t kernel_dropped = 0;
   };
   struct Echoes {
     std::size_t bus;
@@ -42,7 +41,7 @@ class CanIntake {
 
   void drain(Source& source, const WakeUp& wake) noexcept;
   void drain(Echoes& echoes) noexcept;
-  void take(Source& source, const Reception& reception) noexcept;
+  void take(const Source& source, const Reception& reception) noexcept;
 
   std::span<BusInbox> inboxes_;
   std::vector<Source> sources_;
