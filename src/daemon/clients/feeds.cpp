@@ -3,12 +3,6 @@
 #include "daemon/exchange/clock.hpp"
 
 namespace rc10 {
-namespace {
-
-// Without a listener a state is still computed this often: its rates are differences over a second.
-constexpr Duration kUnwantedEvery = std::chrono::seconds{1};
-
-}  // namespace
 
 Feeds::Feeds(const LinkSources& sources, Connections& connections)
     : sources_(sources),
@@ -30,14 +24,13 @@ void Feeds::greet(const Connection& connection) const {
 void Feeds::publishState() {
   if (!sources_.exchange.snapshot.everPublished()) return;  // a robot without motors would be a lie
   const auto& snapshot = sources_.exchange.snapshot.read();
-  const bool wanted = connections_.wanted(link::kStates | link::kModules);
-  if (!wanted && snapshot.time - filled_ < kUnwantedEvery) return;
-  filled_ = snapshot.time;
   publication_.fill(state_, snapshot, wallClockUs());
   connections_.publish(link::kStates, link::seal(state_));
   recordAges(snapshot);
   publishModules(snapshot);
 }
+
+bool Feeds::statesWanted() const noexcept { return connections_.wanted(link::kStates | link::kModules); }
 
 void Feeds::recordAges(const Snapshot& snapshot) {
   const auto now = monotonicNow();

@@ -26,6 +26,8 @@ class Feeds {
   void greet(const Connection& connection) const;
 
   void publishState();
+  /// Somebody listens to states or modules.
+  [[nodiscard]] bool statesWanted() const noexcept;
   /// `notices`: beside those of the start.
   void publishDiagnostics(const Admission& admission, std::span<const std::string> notices);
   /// Events of the scheduler, and notes of other threads.
@@ -50,7 +52,6 @@ class Feeds {
   LateTickCauses late_causes_;
   DurationHistogram state_ages_;  ///< Age of the feedback in each state, when it is sent.
   TraceDesk trace_desk_;
-  MonotonicTime filled_{};  ///< Time of the snapshot in state_.
   // One of each large message, filled in anew for every publication.
   link::State state_;
   link::Diagnostics diagnostics_;

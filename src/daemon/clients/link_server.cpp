@@ -22,6 +22,8 @@ constexpr int kMaxLinkEvents = 16;
 constexpr int kDatagramsPerTurn = 32;
 // Answers and events leave at this rate, whatever state_hz is.
 constexpr int kSlowHz = 100;
+// Without a listener a state is still computed this often: its rates are differences over a second.
+constexpr int kUnwantedStateHz = 1;
 constexpr unsigned kDiagnosticsEvery = kSlowHz / 2;    // 2 Hz
 constexpr unsigned kHousekeepingEvery = kSlowHz / 10;  // 10 Hz
 constexpr unsigned kLateCausesEvery = kSlowHz / 50;    // 50 Hz, some ten ticks
@@ -37,12 +39,16 @@ constexpr std::uint64_t kSlowTimer = kListener - 2;
 }
 
 // Expires at multiples of its period, so that two of one rate wake the thread once.
-[[nodiscard]] UniqueFd makeTimer(int hz, MonotonicTime now) noexcept {
-  UniqueFd timer{timerfd_create(CLOCK_MONOTONIC, TFD_CLOEXEC | TFD_NONBLOCK)};
+void setRate(int timer, int hz, MonotonicTime now) noexcept {
   const Duration period = Duration{1s} / hz;
   const auto next = (now.time_since_epoch() / period + 1) * period;
   const itimerspec spec{.it_interval = toTimespec(period), .it_value = toTimespec(next)};
-  if (timer) timerfd_settime(timer.get(), TFD_TIMER_ABSTIME, &spec, nullptr);
+  timerfd_settime(timer, TFD_TIMER_ABSTIME, &spec, nullptr);
+}
+
+[[nodiscard]] UniqueFd makeTimer(int hz, MonotonicTime now) noexcept {
+  UniqueFd timer{timerfd_create(CLOCK_MONOTONIC, TFD_CLOEXEC | TFD_NONBLOCK)};
+  if (timer) setRate(timer.get(), hz, now);
   return timer;
 }
 
@@ -82,7 +88,7 @@ Result<std::unique_ptr<LinkServer>> LinkServer::create(LinkSocket socket, Source
   if (!permissions) return tl::unexpected(permissions.error());
   UniqueFd epoll{epoll_create1(EPOLL_CLOEXEC)};
   const auto now = monotonicNow();
-  Timers timers{.state = makeTimer(sources.robot.state_hz, now), .slow = makeTimer(kSlowHz, now)};
+  Timers timers{.state = makeTimer(kUnwantedStateHz, now), .slow = makeTimer(kSlowHz, now)};
   if (!epoll || !timers.state || !timers.slow) return fail(fmt::format("link: {}", errnoText(errno)));
   if (!watchDescriptor(epoll.get(), socket.descriptor(), kListener) ||
       !watchDescriptor(epoll.get(), timers.state.get(), kStateTimer) ||
@@ -117,9 +123,19 @@ void LinkServer::poll(int timeout_ms) {
     }
   }
   // After the answers of this turn, so that the next state shows what they say.
-  if (!states_due) return;
-  drainTimer(timers_.state.get());
-  feeds_.publishState();
+  if (states_due) {
+    drainTimer(timers_.state.get());
+    feeds_.publishState();
+  }
+  paceStates();
+}
+
+// A timer that nobody waits for would wake this thread state_hz times a second.
+void LinkServer::paceStates() noexcept {
+  const bool wanted = feeds_.statesWanted();
+  if (wanted == states_wanted_) return;
+  states_wanted_ = wanted;
+  setRate(timers_.state.get(), wanted ? sources_.robot.state_hz : kUnwantedStateHz, monotonicNow());
 }
 
 void LinkServer::slowTick() {

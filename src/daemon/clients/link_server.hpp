@@ -69,6 +69,7 @@ class LinkServer {
   /// tried.
   void endForTheGone();
   void slowTick();
+  void paceStates() noexcept;
 
   Sources sources_;
   UniqueFd epoll_;
@@ -82,6 +83,7 @@ class LinkServer {
   Connections connections_;
   Feeds feeds_;
   unsigned slow_ticks_ = 0;
+  bool states_wanted_ = false;
   std::array<MonotonicTime, kCommandRefusalCount> next_refusal_report_{};
   std::array<std::byte, link::kMaxMessageSize> buffer_{};
   link::Command command_;
