@@ -1,6 +1,8 @@
 #include "daemon/clients/late_tick_causes.hpp"
 
 #include <algorithm>
+#include <bitset>
+#include <numeric>
 
 namespace rc10 {
 namespace {
@@ -8,6 +10,8 @@ namespace {
 // Rivals cost some reads of files in each window: they are watched from the first late tick that had its CPU
 // taken until there was none for so long, 10 s.
 constexpr int kWatchedWindows = 500;
+// So many windows after it grew, a longer wait counts as the usual one.
+constexpr int kUsualWindows = 32;
 
 [[nodiscard]] LateCause causeOf(TickStep step) noexcept {
   switch (step) {
@@ -21,36 +25,66 @@ constexpr int kWatchedWindows = 500;
   return LateCause::kPublish;
 }
 
+using StepSet = std::bitset<kTickSteps>;
+
+// Steps whose time is mostly a wait for the CPU. A wait explains one after the other: the beginning of ticks
+// first, then what took longest.
+[[nodiscard]] StepSet explained(const std::array<LateTicks::Sum, kTickSteps>& late,
+                                Duration waited) noexcept {
+  std::array<std::size_t, kTickSteps> order{};
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::sort(order.begin() + 1, order.end(),
+            [&late](std::size_t a, std::size_t b) { return late[a].time > late[b].time; });
+  StepSet taken;
+  for (const auto step : order) {
+    if (late[step].ticks == 0 || 4 * waited < 3 * late[step].time) continue;
+    taken.set(step);
+    waited -= std::min(waited, late[step].time);
+  }
+  return taken;
+}
+
 }  // namespace
 
 void LateTickCauses::update(const LateTicks& late, const ThreadFacts& thread) {
-  std::array<std::uint64_t, kTickSteps> ticks{};
+  std::array<LateTicks::Sum, kTickSteps> fresh{};
   std::uint64_t any = 0;
-  Duration time{};
   for (std::size_t i = 0; i < kTickSteps; ++i) {
     const auto sum = late.of(static_cast<TickStep>(i));
-    ticks[i] = sum.ticks - seen_[i].ticks;
-    time += sum.time - seen_[i].time;
-    any += ticks[i];
+    fresh[i] = {sum.ticks - seen_[i].ticks, sum.time - seen_[i].time};
+    any += fresh[i].ticks;
     seen_[i] = sum;
   }
-  const auto waited_in_all = thread.waited();
-  const Duration waited = waited_in_all && waited_ ? *waited_in_all - *waited_ : Duration{};
-  waited_ = waited_in_all;
-  const Duration waited_lately = waited + waited_before_;
-  waited_before_ = any == 0 ? waited : Duration{};
-  const bool taken = any > 0 && 4 * waited_lately >= 3 * time;
-  const auto taker = takerOf(taken, waited_lately, thread.rivals);
+  const Duration waited = waitedUnusually(thread, any > 0);
+  const StepSet taken = explained(fresh, waited);
+  const auto taker = takerOf(taken.any(), waited, thread.rivals);
   // Costlier to ask for; the first time, for those of the start.
   if (any == 0 && page_faults_) return;
   const auto page_faults = thread.page_faults();
   const bool faulted = page_faults_ && page_faults > *page_faults_;
   page_faults_ = page_faults;
-  if (taken && !faulted) return countTaken(taker, any);
   for (std::size_t i = 0; i < kTickSteps; ++i) {
-    const auto cause = faulted ? LateCause::kPageFault : causeOf(static_cast<TickStep>(i));
-    counts_[static_cast<std::size_t>(cause)] += ticks[i];
+    if (taken[i] && !faulted) {
+      countTaken(taker, fresh[i].ticks);
+    } else {
+      const auto cause = faulted ? LateCause::kPageFault : causeOf(static_cast<TickStep>(i));
+      counts_[static_cast<std::size_t>(cause)] += fresh[i].ticks;
+    }
   }
+}
+
+// In this window and the one before, beyond what the thread waits in any.
+Duration LateTickCauses::waitedUnusually(const ThreadFacts& thread, bool any) {
+  const auto in_all = thread.waited();
+  const bool known = in_all && waited_;
+  const Duration waited = known ? *in_all - *waited_ : Duration{};
+  waited_ = in_all;
+  const Duration unusual = std::max(waited - usual_.value_or(Duration{}), Duration{});
+  const Duration lately = unusual + waited_before_;
+  waited_before_ = any ? Duration{} : unusual;
+  if (known && !any)
+    usual_ = usual_ ? std::min(waited, *usual_ + (waited - *usual_) / kUsualWindows) : waited;
+  return lately;
 }
 
 // Empty: not known. A rival that used half of the wait is named.

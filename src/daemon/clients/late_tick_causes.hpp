@@ -23,8 +23,8 @@ struct ThreadFacts {
 };
 
 /// Counts late ticks by cause, from what the scheduler thread and the kernel have counted since the last
-/// call. Its windows must be short, some ten ticks: a thread waits a few microseconds before each tick. Link
-/// thread only.
+/// call. Its windows must be short and of one length, some ten ticks: a thread waits a few microseconds
+/// before each tick, which is what it waits in windows without late ticks. Link thread only.
 class LateTickCauses {
  public:
   void update(const LateTicks& late, const ThreadFacts& thread);
@@ -42,13 +42,15 @@ class LateTickCauses {
   [[nodiscard]] const std::vector<Taker>& takers() const noexcept { return takers_; }
 
  private:
+  [[nodiscard]] Duration waitedUnusually(const ThreadFacts& thread, bool any);
   [[nodiscard]] std::string takerOf(bool taken, Duration waited, CpuRivals* rivals);
   void countTaken(const std::string& taker, std::uint64_t ticks);
 
   std::array<LateTicks::Sum, kTickSteps> seen_{};
   std::optional<Duration> waited_;
   std::optional<std::uint64_t> page_faults_;
-  Duration waited_before_{};  ///< In the window before: a wait may be counted before its tick.
+  Duration waited_before_{};       ///< In the window before: a wait may be counted before its tick.
+  std::optional<Duration> usual_;  ///< Wait of a window without late ticks; follows the least of late.
   std::array<std::uint64_t, kLateCauses> counts_{};
   int watched_windows_ = 0;  ///< Windows for which the rivals are still watched.
   std::vector<Taker> takers_;

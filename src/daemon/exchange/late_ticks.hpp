@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <atomic>
 #include <cstddef>
@@ -13,6 +14,13 @@ namespace rc10 {
 /// out, snapshot and recordings.
 enum class TickStep : std::uint8_t { kWake, kReceive, kModules, kControl, kSend, kPublish };
 inline constexpr std::size_t kTickSteps = 6;
+
+/// Lateness of a tick that was due then and began `now`, for which a timer or others' threads answer: while
+/// the tick before went on, until `ended`, it could not begin, and that one is counted as a long one.
+[[nodiscard]] constexpr Duration latenessOfWake(MonotonicTime due, MonotonicTime ended,
+                                                MonotonicTime now) noexcept {
+  return now - std::max(due, ended);
+}
 
 /// cycleCount() when the steps of a tick were over.
 struct TickMarks {

@@ -6,18 +6,19 @@
 
 namespace rc10 {
 
-/// Tells from its CPU time that a thread does more than fits into its period. A thread that was late because
-/// others had the CPU has used little of it, and is not overloaded.
+/// Tells from its CPU time that a thread does more than its periods have room for. A thread that was late
+/// because others had the CPU has used little of it, and is not overloaded.
 class OverloadWatch {
  public:
-  /// `limit`: CPU time of consecutive ticks that each use more than `period` of it.
-  constexpr OverloadWatch(Duration period, Duration limit) noexcept : period_(period), limit_(limit) {}
+  /// `limit`: CPU time of consecutive ticks that each use more than `most` of it.
+  constexpr OverloadWatch(Duration most, Duration limit) noexcept : most_(most), limit_(limit) {}
 
-  /// After a tick that took longer than its period. `cpu_time`: the thread's, so far. True: overloaded.
+  [[nodiscard]] constexpr Duration most() const noexcept { return most_; }
+  /// After a tick that took longer than `most`. `cpu_time`: the thread's, so far. True: overloaded.
   [[nodiscard]] constexpr bool overran(Duration cpu_time) noexcept {
     // The start of the first of several overruns is not known.
     const Duration used = last_cpu_time_ ? cpu_time - *last_cpu_time_ : Duration::zero();
-    over_ = used > period_ ? over_ + used : Duration::zero();
+    over_ = used > most_ ? over_ + used : Duration::zero();
     last_cpu_time_ = cpu_time;
     return over_ >= limit_;
   }
@@ -28,7 +29,7 @@ class OverloadWatch {
   }
 
  private:
-  Duration period_;
+  Duration most_;
   Duration limit_;
   std::optional<Duration> last_cpu_time_;  // at the end of the tick before, if that overran
   Duration over_{};

@@ -9,8 +9,18 @@ namespace {
 // A tick that begins a fifth of a period late, or takes half of one, is worth a reason.
 constexpr int kLateBegin = 5;
 constexpr int kLongTick = 2;
+// Share of a period, in percent. The kernel throttles real-time threads from 95 on (sched_rt_runtime_us).
+constexpr int kOverloadPercent = 90;
 
 }  // namespace
+
+SchedLoop::SchedLoop(Scheduler& scheduler, const Settings& settings, PeriodicTimer timer, CanIntake* intake)
+    : scheduler_(scheduler),
+      grid_(settings.grid),
+      timer_(std::move(timer)),
+      intake_(intake),
+      estops_(settings.estops),
+      overload_(settings.grid.period * kOverloadPercent / 100, settings.overload) {}
 
 Result<std::unique_ptr<SchedLoop>> SchedLoop::create(Scheduler& scheduler, const Settings& settings,
                                                      CanIntake* intake) {
@@ -23,6 +33,7 @@ void SchedLoop::run(const std::stop_token& stop) noexcept {
   const MonotonicTime first = grid_.next(monotonicNow());
   timer_.start(first, grid_.period);
   MonotonicTime planned = first - grid_.period;
+  MonotonicTime ended{};  // the tick before
   while (!scheduler_.stopped()) {
     const std::uint64_t periods = timer_.wait();  // above 1, ticks were missed
     if (periods == 0) continue;
@@ -30,14 +41,16 @@ void SchedLoop::run(const std::stop_token& stop) noexcept {
     const MonotonicTime now = timer_.woken();
     if (intake_ != nullptr) intake_->drain(now);  // first: `now` goes with the wall clock that it reads
     // Against the first grid point that waits: a wake-up that missed ten ticks is ten periods late.
-    const Duration late = now - (planned + grid_.period);
-    timing_.wake_latency.record(late);
-    if (late > grid_.period / kLateBegin) timing_.late.record(TickStep::kWake, late);
+    const MonotonicTime due = planned + grid_.period;
+    timing_.wake_latency.record(now - due);
+    const Duration slept_in = latenessOfWake(due, ended, now);
+    if (slept_in > grid_.period / kLateBegin) timing_.late.record(TickStep::kWake, slept_in);
     planned += grid_.period * static_cast<std::int64_t>(periods);
     if (stop.stop_requested()) scheduler_.beginStop();
     if (const auto client = estops_.take()) scheduler_.stopFor({StopCause::kRequest, *client});
     scheduler_.tick(now, periods);
-    watchDuration(woken, monotonicNow() - now);
+    ended = monotonicNow();
+    watchDuration(woken, ended - now);
   }
 }
 
@@ -49,7 +62,7 @@ void SchedLoop::watchDuration(std::uint64_t woken, Duration duration) noexcept {
     marks.done = cycleCount();
     timing_.late.record(marks.longest(), duration);
   }
-  if (duration <= grid_.period) return overload_.inTime();
+  if (duration <= overload_.most()) return overload_.inTime();
   // A tick that the kernel cuts into lumps (RT throttling) is worse than none.
   if (overload_.overran(threadCpuTime())) {
     scheduler_.stopFor({StopCause::kOverload});

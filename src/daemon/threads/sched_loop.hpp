@@ -35,13 +35,7 @@ class SchedLoop {
   [[nodiscard]] const TickTiming& timing() const noexcept { return timing_; }
 
  private:
-  SchedLoop(Scheduler& scheduler, const Settings& settings, PeriodicTimer timer, CanIntake* intake)
-      : scheduler_(scheduler),
-        grid_(settings.grid),
-        timer_(std::move(timer)),
-        intake_(intake),
-        estops_(settings.estops),
-        overload_(settings.grid.period, settings.overload) {}
+  SchedLoop(Scheduler& scheduler, const Settings& settings, PeriodicTimer timer, CanIntake* intake);
   /// `woken`: cycleCount() then. `duration`: from then to the end of the tick.
   void watchDuration(std::uint64_t woken, Duration duration) noexcept;
 

@@ -92,6 +92,37 @@ TEST_F(LateTickCausesTest, TheWaitOfOneLateTickIsNotCountedForTheNext) {
   EXPECT_EQ(causes.count(LateCause::kTimer), 1U);
 }
 
+TEST_F(LateTickCausesTest, TheUsualWaitOfAWindowTakesNothing) {
+  for (int i = 0; i < 3; ++i) update(80us);
+  late.record(TickStep::kSend, 100us);
+  update(85us);
+  EXPECT_EQ(causes.count(LateCause::kSend), 1U) << "of 80 ticks at 4 kHz each waits a microsecond";
+  late.record(TickStep::kWake, 100us);
+  update(170us);
+  EXPECT_EQ(causes.count(LateCause::kCpuTaken), 1U);
+}
+
+TEST_F(LateTickCausesTest, AWaitThatBecameTheUsualOneIsFollowed) {
+  for (int i = 0; i < 200; ++i) update(400us);
+  late.record(TickStep::kSend, 300us);
+  update(400us);
+  EXPECT_EQ(causes.count(LateCause::kSend), 1U);
+}
+
+TEST_F(LateTickCausesTest, AWaitExplainsOneLateTickAndNotItsNeighbour) {
+  update();
+  late.record(TickStep::kWake, 900us);
+  late.record(TickStep::kSend, 300us);
+  update(920us);
+  EXPECT_EQ(causes.count(LateCause::kCpuTaken), 1U);
+  EXPECT_EQ(causes.count(LateCause::kSend), 1U);
+  late.record(TickStep::kReceive, 210us);
+  late.record(TickStep::kSend, 700us);
+  update(690us);
+  EXPECT_EQ(causes.count(LateCause::kCpuTaken), 2U) << "the longer one";
+  EXPECT_EQ(causes.count(LateCause::kReceive), 1U);
+}
+
 TEST_F(LateTickCausesTest, AKernelThatDoesNotTellLeavesTheStep) {
   waited.reset();
   update();
@@ -107,6 +138,15 @@ TEST_F(LateTickCausesTest, EveryCauseHasACounterAndAdviceOfItsOwn) {
     EXPECT_FALSE(kLateCauseWords[i].advice.empty());
     for (std::size_t j = 0; j < i; ++j) EXPECT_NE(kLateCauseWords[i].counter, kLateCauseWords[j].counter);
   }
+}
+
+// ---- Wake-ups
+
+TEST(LatenessOfWakeTest, ATickThatOverranIsNoLateTimerOfTheNextOne) {
+  const MonotonicTime due{5ms};
+  EXPECT_EQ(latenessOfWake(due, due - 400us, due + 300us), 300us);
+  EXPECT_EQ(latenessOfWake(due, due + 700us, due + 710us), 10us) << "it had taken so long";
+  EXPECT_EQ(latenessOfWake(due, {}, due + 250us), 250us) << "the first";
 }
 
 // ---- Steps

@@ -51,6 +51,7 @@ class SchedLoopTest : public ::testing::Test {
             .value();
     loop->run(stop.get_token());
     long_sends = loop->timing().late.of(TickStep::kSend).ticks;
+    late_wakes = loop->timing().late.of(TickStep::kWake).ticks;
     exchange.events.consume_all([&](const Event& event) { events.push_back(event); });
   }
   /// Stop of the whole robot.
@@ -71,12 +72,20 @@ class SchedLoopTest : public ::testing::Test {
   SocketPair socket;
   std::vector<Event> events;
   std::uint64_t long_sends = 0;
+  std::uint64_t late_wakes = 0;
 };
 
 TEST_F(SchedLoopTest, TicksThatUseMoreThanTheirPeriodStopTheRobot) {
   run(2ms, 12);
   EXPECT_EQ(stops(), std::vector{StopCause::kOverload});
   EXPECT_GE(long_sends, 12U) << "each is counted, by its longest step";
+  EXPECT_LT(late_wakes, 12U) << "the timer is not what delays the next one";
+}
+
+// The kernel throttles from 95 % on.
+TEST_F(SchedLoopTest, TicksThatNearlyFillTheirPeriodStopTheRobotToo) {
+  run(960us, 150);
+  EXPECT_EQ(stops(), std::vector{StopCause::kOverload});
 }
 
 TEST_F(SchedLoopTest, TicksThatFitDoNot) {
