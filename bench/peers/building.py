@@ -21,3 +21,17 @@ def programs(built: Path | None, *targets: str) -> Path:
     ):
         subprocess.run(words, check=True, stdout=sys.stderr)
     return tree
+
+
+def openarm_client(checkout: Path, tree: Path) -> Path:
+    """The client of `clients/` with openarm_can from the user's own checkout, which stays there."""
+    program = tree / "bin" / "client_openarm_can"
+    sources = sorted((checkout / "src").rglob("*.cpp"))
+    if not sources:
+        raise SystemExit(f"{checkout}: no checkout of openarm_can: it has no src/")
+    client = REPO / "bench/peers/clients/client_openarm_can.cpp"
+    include = f"-I{checkout / 'include'}"
+    subprocess.run(
+        ["g++", "-O2", "-std=c++20", include, *sources, client, "-o", program], check=True
+    )
+    return program

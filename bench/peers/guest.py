@@ -158,7 +158,7 @@ def _boot(kernel: Kernel, work: Path, limit_s: float) -> str:
     log.touch()
     command = [
         *(_program("qemu-system-x86_64"), "-nodefaults", "-no-user-config", "-display", "none"),
-        *("-no-reboot", "-m", "512", "-accel", "tcg,thread=single", "-smp", "1"),
+        *("-no-reboot", "-m", "1024", "-accel", "tcg,thread=single", "-smp", "1"),
         *("-icount", "shift=0,sleep=off", "-rtc", "base=2025-01-01,clock=vm", "-seed", "1"),
         *("-kernel", str(kernel.image), "-initrd", str(work / "initrd")),
         *("-append", "console=ttyS1 quiet panic=-1", "-serial", "stdio", "-serial", f"file:{log}"),
