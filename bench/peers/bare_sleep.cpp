@@ -14,7 +14,7 @@ namespace {
 
 constexpr std::int64_t kPeriodNs = 1'000'000;
 constexpr std::int64_t kSecondNs = 1'000 * kPeriodNs;
-// Of a period: where rc10d's ticks lie.
+// Phase: where rc10d's ticks lie.
 constexpr std::int64_t kPhaseNs = kPeriodNs * 3 / 10;
 constexpr int kPriority = 60;
 constexpr std::size_t kMostCycles = 1'000'000;

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import re
+import tempfile
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -130,6 +131,7 @@ class Program:
     files: dict[str, Path]
     wire: Path
     ready: str = ""
+    config: str = ""  # in the guest /robot.yaml
 
     @property
     def is_rc10d(self) -> bool:
@@ -144,8 +146,11 @@ class Program:
             seconds=SECONDS,
             **values,
         )
-        files = {"/bin/fake_wire": self.wire, **self.files}
-        return guest.run(kernel, script, files).splitlines()
+        with tempfile.NamedTemporaryFile("w", suffix=".yaml") as config:
+            config.write(self.config)
+            config.flush()
+            own = {"/bin/fake_wire": self.wire, "/robot.yaml": Path(config.name)}
+            return guest.run(kernel, script, {**own, **self.files}).splitlines()
 
     def cost(self, kernel: guest.Kernel, *, hog_us: int = 0) -> Cost:
         lines = self.run(
@@ -189,13 +194,12 @@ def lateness_of(told: list[Json]) -> dict[str, float]:
 
 def rc10d(robot: Robot, build: Path, *, settings: str = "", rate_hz: int = RATE_HZ) -> Program:
     """As built there, its motors commanded so often by a program."""
-    config = build / "bench-peers.yaml"
-    config.write_text(robot.config(settings))
     files = {f"/bin/{name}": build / "bin" / name for name in PROGRAMS}
     return Program(
         robot,
         "/bin/rc10d -c /robot.yaml",
-        {**files, "/robot.yaml": config},
+        files,
         build / "bin" / "fake_wire",
         robot.ready(rate_hz),
+        robot.config(settings),
     )

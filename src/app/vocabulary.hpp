@@ -65,7 +65,7 @@ enum class StopCause : std::uint8_t {
   kShutdown = 9,
   kInput = 10,     ///< The e-stop input.
   kGuard = 11,     ///< rc10-guard told the drives to rest, has ended, or stands still.
-  kOverload = 12,  ///< The ticks used nine tenths of their period, or more.
+  kOverload = 12,  ///< The ticks used nearly all of their periods.
 };
 
 /// Bits of robot_state_t.lcm.

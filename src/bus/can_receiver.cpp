@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cerrno>
+#include <utility>
 
 #include "bus/control_messages.hpp"
 #include "bus/wire_frame.hpp"
@@ -16,6 +17,14 @@ namespace {
 // very socket, MSG_DONTROUTE if by any (net/can/raw.c). recvmmsg reports them as received flags. A bus's
 // socket does not see its own: another program commands too.
 constexpr int kSentHere = MSG_CONFIRM | MSG_DONTROUTE;
+
+// SO_RXQ_OVFL counts in 32 bits and goes on after 2^32. A count that is far behind the last one is that of a
+// socket that was opened anew; 0, which the kernel does not tell, may be.
+std::uint32_t newlyDropped(std::uint32_t count, std::uint32_t& last) noexcept {
+  constexpr std::uint32_t kHalf = 1U << 31U;
+  const std::uint32_t more = count - std::exchange(last, count);
+  return more < kHalf ? more : count;
+}
 
 }  // namespace
 
@@ -61,11 +70,12 @@ Reception CanReceiver::receive(const WakeUp& wake, std::span<CanFrame> out) noex
   if (count < 0) {
     if (errno == EAGAIN || errno == EWOULDBLOCK) {
       left_behind_.reset();
+      before_.reset();
       return reception;
     }
     if (errno != EINTR) reception.error = errno;
     // An error comes before the frames that wait with it, and had ended the batch before.
-    if (!left_behind_) left_behind_ = before_;
+    if (!left_behind_) left_behind_ = before_.value_or(wake);
     return reception;
   }
   // Frames that a batch left behind may be as old as its first one.
@@ -84,10 +94,7 @@ Reception CanReceiver::receive(const WakeUp& wake, std::span<CanFrame> out) noex
       break;
     }
     const ControlMessages control = readControlMessages(header);
-    // Absent until something was dropped: a socket that was opened anew. The count goes on after 2^32.
-    const std::uint32_t dropped = control.kernel_dropped.value_or(0);
-    if (dropped != 0) reception.kernel_dropped += dropped - buffers_->kernel_dropped;
-    buffers_->kernel_dropped = dropped;
+    reception.kernel_dropped += newlyDropped(control.kernel_dropped.value_or(0), buffers_->kernel_dropped);
     CanFrame& frame = out[reception.frame_count];
     if ((header.msg_flags & MSG_TRUNC) != 0 || !decodeFrame(buffers_->slots[i].message, size, frame)) {
       ++reception.malformed_count;

@@ -38,7 +38,7 @@ class CanReceiver {
  private:
   /// Since when frames may wait: that of the first of several batches, until the socket was empty.
   std::optional<WakeUp> left_behind_;
-  std::optional<WakeUp> before_;  ///< Since when those of the call before may have waited.
+  std::optional<WakeUp> before_;  ///< The same of the frames of the call before, if it had any.
   struct Buffers;  // mmsghdr, iovec and control buffers: set up once, they point into each other
   int fd_;
   std::unique_ptr<Buffers> buffers_;

@@ -133,7 +133,8 @@ Result<void> Daemon::createLoops(int estop_socket) {
                                       {.grid = grid,
                                        .timer = timerKind(config_.timer),
                                        .estops = EstopDatagrams{estop_socket},
-                                       .overload = config_.overload},
+                                       .overload = config_.overload,
+                                       .realtime_percent = realtimePercent()},
                                       in_tick ? intake_.get() : nullptr);
   if (!sched_loop) return tl::unexpected(sched_loop.error());
   sched_loop_ = std::move(*sched_loop);

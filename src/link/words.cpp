@@ -84,7 +84,7 @@ std::string stopText(StopCause cause, std::string_view stopped_by) {
     case StopCause::kShutdown: return "rc10d ends";
     case StopCause::kInput: return "the e-stop input";
     case StopCause::kGuard: return "rc10-guard told the drives to rest, has ended, or stands still";
-    case StopCause::kOverload: return "the ticks took longer than their period";
+    case StopCause::kOverload: return "the ticks used nearly all of their periods";
   }
   return "unknown cause";
 }

@@ -266,8 +266,11 @@ TEST_F(CanReceiverTest, TellsOnceOfFramesThatTheKernelDropped) {
   EXPECT_EQ(told(17), 17U);
   EXPECT_EQ(receive().kernel_dropped, 0U) << "nothing received";
   EXPECT_EQ(told(17), 0U);
-  EXPECT_EQ(told(UINT32_MAX - 2), UINT32_MAX - 19U);
+  EXPECT_EQ(told(2'000'000'017), 2'000'000'000U);
+  EXPECT_EQ(told(4'000'000'017), 2'000'000'000U);
+  EXPECT_EQ(told(UINT32_MAX - 2), UINT32_MAX - 2 - 4'000'000'017);
   EXPECT_EQ(told(5), 8U) << "the kernel's count goes on after 2^32";
+  EXPECT_EQ(told(UINT32_MAX), UINT32_MAX) << "far behind: a new socket";
 }
 
 TEST_F(CanReceiverTest, ASocketThatWasOpenedAnewBeginsItsDropsAnew) {
@@ -301,6 +304,43 @@ TEST_F(CanReceiverTest, FramesBehindAnErrorKeepTheirStamps) {
   wake_.now += 1ms;
   ASSERT_EQ(receive().frame_count, 5U);
   EXPECT_LE(out_[4].received, written + 5ms);
+}
+
+TEST_F(CanReceiverTest, AnErrorBeforeTheFirstFramesTakesNoAgeFromThem) {
+  enableStamps();
+  const MonotonicTime before = monotonicNow();
+  for (int i = 0; i < 2; ++i) pair_.write(numbered(1));
+  const MonotonicTime written = monotonicNow();
+  wake_ = {.now = written + 10s,
+           .previous = before - 10s,
+           .realtime_offset = realtimeOffset(),
+           .previous_offset = realtimeOffset()};
+  frameCalls().interrupted = {0, ENETDOWN};
+  EXPECT_EQ(receive().error, ENETDOWN);
+  wake_.previous = wake_.now;
+  wake_.now += 1ms;
+  ASSERT_EQ(receive().frame_count, 2U);
+  EXPECT_LE(out_[1].received, written + 5ms);
+}
+
+TEST_F(CanReceiverTest, AnErrorLongAfterTheLastFramesMakesNoFrameOlder) {
+  enableStamps();
+  pair_.write(numbered(1));
+  wake_ = {.now = monotonicNow(),
+           .previous = monotonicNow() - 1h,
+           .realtime_offset = realtimeOffset(),
+           .previous_offset = realtimeOffset()};
+  ASSERT_EQ(receive().frame_count, 1U);
+  EXPECT_EQ(receive().frame_count, 0U) << "empty";
+  wake_ = {.now = monotonicNow() + 1ms,
+           .previous = monotonicNow(),
+           .realtime_offset = realtimeOffset() + 3600s,  // a step of the clock
+           .previous_offset = realtimeOffset() + 3600s};
+  frameCalls().interrupted = {0, ENETDOWN};
+  EXPECT_EQ(receive().error, ENETDOWN);
+  pair_.write(numbered(2));
+  ASSERT_EQ(receive().frame_count, 1U);
+  EXPECT_GE(out_[0].received, wake_.previous);
 }
 
 TEST_F(CanReceiverTest, CanBeMoved) {

@@ -107,7 +107,7 @@ class StopCause(Word):
     GUARD = motor_state_t.STOP_GUARD
     """rc10-guard told the drives to rest, has ended, or stands still."""
     OVERLOAD = motor_state_t.STOP_OVERLOAD
-    """The ticks took longer than their period."""
+    """The ticks used nearly all of their periods."""
     UNKNOWN = -1
     """A cause that this version of the client does not know."""
 

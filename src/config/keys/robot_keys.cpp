@@ -62,8 +62,8 @@ constexpr std::array kSchedulerKeys{
         .unit = "ms",
         .range = {.min = 20, .max = 60000},
         .default_text = "100",
-        .about = "The robot stops when ticks have each used more than nine tenths of their "
-                 "period as CPU time for so long, before the kernel cuts them into lumps."},
+        .about = "The robot stops when ticks without a pause have used nearly all of the CPU time "
+                 "for so long, before the kernel cuts them into lumps."},
     Key{.name = "cpu",
         .kind = kInteger,
         .range = kCpus,

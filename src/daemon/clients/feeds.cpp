@@ -92,7 +92,8 @@ void Feeds::publishTrace() {
 }
 
 void Feeds::countLateTicks() {
-  if (sources_.tick_thread.waited) late_causes_.update(sources_.timing.late, sources_.tick_thread);
+  if (sources_.tick_thread.waited)
+    late_causes_.update(sources_.timing.late, sources_.timing.duration.count(), sources_.tick_thread);
 }
 
 }  // namespace rc10

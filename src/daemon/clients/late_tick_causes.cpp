@@ -10,8 +10,9 @@ namespace {
 // Rivals cost some reads of files in each window: they are watched from the first late tick that had its CPU
 // taken until there was none for so long, 10 s.
 constexpr int kWatchedWindows = 500;
-// So many windows after it grew, a longer wait counts as the usual one.
-constexpr int kUsualWindows = 32;
+// Time constant, in windows, with which the usual wait follows; of a shorter one it grows by this.
+constexpr int kUsualWindows = 8;
+constexpr Duration kLeastUsual = std::chrono::microseconds{1};
 
 [[nodiscard]] LateCause causeOf(TickStep step) noexcept {
   switch (step) {
@@ -27,17 +28,16 @@ constexpr int kUsualWindows = 32;
 
 using StepSet = std::bitset<kTickSteps>;
 
-// Steps whose time is mostly a wait for the CPU. A wait explains one after the other: the beginning of ticks
-// first, then what took longest.
+// Steps whose time is mostly a wait for the CPU. A wait explains one after the other, the longest first.
 [[nodiscard]] StepSet explained(const std::array<LateTicks::Sum, kTickSteps>& late,
                                 Duration waited) noexcept {
   std::array<std::size_t, kTickSteps> order{};
   std::iota(order.begin(), order.end(), std::size_t{0});
-  std::sort(order.begin() + 1, order.end(),
+  std::sort(order.begin(), order.end(),
             [&late](std::size_t a, std::size_t b) { return late[a].time > late[b].time; });
   StepSet taken;
   for (const auto step : order) {
-    if (late[step].ticks == 0 || 4 * waited < 3 * late[step].time) continue;
+    if (late[step].ticks == 0 || waited <= Duration{} || 4 * waited < 3 * late[step].time) continue;
     taken.set(step);
     waited -= std::min(waited, late[step].time);
   }
@@ -46,16 +46,17 @@ using StepSet = std::bitset<kTickSteps>;
 
 }  // namespace
 
-void LateTickCauses::update(const LateTicks& late, const ThreadFacts& thread) {
+void LateTickCauses::update(const LateTicks& late, std::uint64_t ticks, const ThreadFacts& thread) {
   std::array<LateTicks::Sum, kTickSteps> fresh{};
   std::uint64_t any = 0;
   for (std::size_t i = 0; i < kTickSteps; ++i) {
     const auto sum = late.of(static_cast<TickStep>(i));
+    if (sum.ticks == seen_[i].ticks) continue;  // its time may be there before its tick
     fresh[i] = {sum.ticks - seen_[i].ticks, sum.time - seen_[i].time};
     any += fresh[i].ticks;
     seen_[i] = sum;
   }
-  const Duration waited = waitedUnusually(thread, any > 0);
+  const Duration waited = waitedUnusually(thread, ticks, any > 0);
   const StepSet taken = explained(fresh, waited);
   const auto taker = takerOf(taken.any(), waited, thread.rivals);
   // Costlier to ask for; the first time, for those of the start.
@@ -73,17 +74,23 @@ void LateTickCauses::update(const LateTicks& late, const ThreadFacts& thread) {
   }
 }
 
-// In this window and the one before, beyond what the thread waits in any.
-Duration LateTickCauses::waitedUnusually(const ThreadFacts& thread, bool any) {
+// In this window and the one before, beyond what the thread waits before any tick.
+Duration LateTickCauses::waitedUnusually(const ThreadFacts& thread, std::uint64_t ticks, bool any) {
+  const auto in_window = static_cast<std::int64_t>(std::max<std::uint64_t>(ticks - ticks_, 1));
+  ticks_ = ticks;
   const auto in_all = thread.waited();
   const bool known = in_all && waited_;
   const Duration waited = known ? *in_all - *waited_ : Duration{};
   waited_ = in_all;
-  const Duration unusual = std::max(waited - usual_.value_or(Duration{}), Duration{});
+  const Duration usual = usual_.value_or(Duration{});
+  const Duration unusual = std::max(waited - in_window * usual, Duration{});
   const Duration lately = unusual + waited_before_;
   waited_before_ = any ? Duration{} : unusual;
-  if (known && !any)
-    usual_ = usual_ ? std::min(waited, *usual_ + (waited - *usual_) / kUsualWindows) : waited;
+  if (!known || any) return lately;
+  // No faster than by a part of itself: one long wait, whose late tick is counted in the next window, is not
+  // the usual one.
+  const Duration step = waited / in_window - usual;
+  usual_ = usual_ ? usual + std::min(step, std::max(usual, kLeastUsual)) / kUsualWindows : waited / in_window;
   return lately;
 }
 

@@ -23,11 +23,13 @@ struct ThreadFacts {
 };
 
 /// Counts late ticks by cause, from what the scheduler thread and the kernel have counted since the last
-/// call. Its windows must be short and of one length, some ten ticks: a thread waits a few microseconds
-/// before each tick, which is what it waits in windows without late ticks. Link thread only.
+/// call, its window: some ten ticks, unless the caller was late. A thread waits a few microseconds before
+/// each tick; what it waits in windows without late ticks takes nothing. A window has one sum for each step:
+/// of two late ticks with the same step both have one cause. Link thread only.
 class LateTickCauses {
  public:
-  void update(const LateTicks& late, const ThreadFacts& thread);
+  /// `ticks`: of the scheduler, so far.
+  void update(const LateTicks& late, std::uint64_t ticks, const ThreadFacts& thread);
 
   [[nodiscard]] std::uint64_t count(LateCause cause) const noexcept {
     return counts_[static_cast<std::size_t>(cause)];
@@ -42,7 +44,7 @@ class LateTickCauses {
   [[nodiscard]] const std::vector<Taker>& takers() const noexcept { return takers_; }
 
  private:
-  [[nodiscard]] Duration waitedUnusually(const ThreadFacts& thread, bool any);
+  [[nodiscard]] Duration waitedUnusually(const ThreadFacts& thread, std::uint64_t ticks, bool any);
   [[nodiscard]] std::string takerOf(bool taken, Duration waited, CpuRivals* rivals);
   void countTaken(const std::string& taker, std::uint64_t ticks);
 
@@ -50,7 +52,8 @@ class LateTickCauses {
   std::optional<Duration> waited_;
   std::optional<std::uint64_t> page_faults_;
   Duration waited_before_{};       ///< In the window before: a wait may be counted before its tick.
-  std::optional<Duration> usual_;  ///< Wait of a window without late ticks; follows the least of late.
+  std::optional<Duration> usual_;  ///< Wait before a tick, in windows without late ones.
+  std::uint64_t ticks_ = 0;
   std::array<std::uint64_t, kLateCauses> counts_{};
   int watched_windows_ = 0;  ///< Windows for which the rivals are still watched.
   std::vector<Taker> takers_;

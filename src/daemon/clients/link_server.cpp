@@ -22,8 +22,8 @@ constexpr int kMaxLinkEvents = 16;
 constexpr int kDatagramsPerTurn = 32;
 // Answers and events leave at this rate, whatever state_hz is.
 constexpr int kSlowHz = 100;
-// Without a listener a state is still computed this often: its rates are differences over a second.
-constexpr int kUnwantedStateHz = 1;
+// Without a listener a state is still computed: its rates are differences over a second.
+constexpr int kUnwantedStateHz = 2;
 constexpr unsigned kDiagnosticsEvery = kSlowHz / 2;    // 2 Hz
 constexpr unsigned kHousekeepingEvery = kSlowHz / 10;  // 10 Hz
 constexpr unsigned kLateCausesEvery = kSlowHz / 50;    // 50 Hz, some ten ticks

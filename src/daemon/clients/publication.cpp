@@ -31,7 +31,9 @@ namespace {
 
 float RateMeter::update(MonotonicTime now, std::uint64_t count) noexcept {
   const auto elapsed = now - since_;
-  if (elapsed < std::chrono::seconds{1}) return rate_hz_;
+  // States that are a second apart may be some microseconds nearer.
+  constexpr Duration kSpan = std::chrono::microseconds{999'500};
+  if (elapsed < kSpan) return rate_hz_;
   rate_hz_ = since_ == MonotonicTime{} ? 0.0F : static_cast<float>(count - count_) / seconds(elapsed);
   since_ = now;
   count_ = count;

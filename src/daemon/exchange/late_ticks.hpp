@@ -16,7 +16,7 @@ enum class TickStep : std::uint8_t { kWake, kReceive, kModules, kControl, kSend,
 inline constexpr std::size_t kTickSteps = 6;
 
 /// Lateness of a tick that was due then and began `now`, for which a timer or others' threads answer: while
-/// the tick before went on, until `ended`, it could not begin, and that one is counted as a long one.
+/// the tick before went on, until `ended`, it could not begin.
 [[nodiscard]] constexpr Duration latenessOfWake(MonotonicTime due, MonotonicTime ended,
                                                 MonotonicTime now) noexcept {
   return now - std::max(due, ended);

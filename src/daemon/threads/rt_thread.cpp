@@ -8,6 +8,7 @@
 #include <array>
 #include <cerrno>
 #include <cstring>
+#include <fstream>
 #include <future>
 #include <memory>
 
@@ -81,6 +82,15 @@ constexpr std::size_t kPrefaultBytes = std::size_t{96} * 1024;
 }
 
 }  // namespace
+
+int realtimePercent() {
+  long long runtime_us = -1;
+  long long period_us = 0;
+  std::ifstream("/proc/sys/kernel/sched_rt_runtime_us") >> runtime_us;
+  std::ifstream("/proc/sys/kernel/sched_rt_period_us") >> period_us;
+  if (runtime_us <= 0 || period_us <= 0) return 100;
+  return static_cast<int>(std::clamp(100 * runtime_us / period_us, 1LL, 100LL));
+}
 
 Result<void> applyRtSettings(const RtSettings& settings) {
   pthread_setname_np(pthread_self(), settings.name.substr(0, 15).c_str());

@@ -23,6 +23,9 @@ struct RtSettings {
 /// reads each setting back. The error says which right is missing and how to give it.
 [[nodiscard]] Result<void> applyRtSettings(const RtSettings& settings);
 
+/// CPU time that the kernel leaves to real-time threads, in percent (sched_rt_runtime_us); 100: all of it.
+[[nodiscard]] int realtimePercent();
+
 /// A thread with a small fixed stack (locked memory counts whole stacks). start() returns when the
 /// body's set-up has succeeded or failed.
 class RtThread {

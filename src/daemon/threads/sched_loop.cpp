@@ -9,8 +9,6 @@ namespace {
 // A tick that begins a fifth of a period late, or takes half of one, is worth a reason.
 constexpr int kLateBegin = 5;
 constexpr int kLongTick = 2;
-// Share of a period, in percent. The kernel throttles real-time threads from 95 on (sched_rt_runtime_us).
-constexpr int kOverloadPercent = 90;
 
 }  // namespace
 
@@ -20,7 +18,7 @@ SchedLoop::SchedLoop(Scheduler& scheduler, const Settings& settings, PeriodicTim
       timer_(std::move(timer)),
       intake_(intake),
       estops_(settings.estops),
-      overload_(settings.grid.period * kOverloadPercent / 100, settings.overload) {}
+      overload_(settings.grid.period, overloadPercent(settings.realtime_percent), settings.overload) {}
 
 Result<std::unique_ptr<SchedLoop>> SchedLoop::create(Scheduler& scheduler, const Settings& settings,
                                                      CanIntake* intake) {
@@ -50,21 +48,24 @@ void SchedLoop::run(const std::stop_token& stop) noexcept {
     if (const auto client = estops_.take()) scheduler_.stopFor({StopCause::kRequest, *client});
     scheduler_.tick(now, periods);
     ended = monotonicNow();
-    watchDuration(woken, ended - now);
+    countLongTick(woken, ended - now);
+    watchLoad(ended, planned + grid_.period);
   }
 }
 
-void SchedLoop::watchDuration(std::uint64_t woken, Duration duration) noexcept {
+void SchedLoop::countLongTick(std::uint64_t woken, Duration duration) noexcept {
   timing_.duration.record(duration);
-  if (duration > grid_.period / kLongTick) {
-    TickMarks marks = scheduler_.marks();
-    marks.woken = woken;
-    marks.done = cycleCount();
-    timing_.late.record(marks.longest(), duration);
-  }
-  if (duration <= overload_.most()) return overload_.inTime();
+  if (duration <= grid_.period / kLongTick) return;
+  TickMarks marks = scheduler_.marks();
+  marks.woken = woken;
+  marks.done = cycleCount();
+  timing_.late.record(marks.longest(), duration);
+}
+
+void SchedLoop::watchLoad(MonotonicTime ended, MonotonicTime next) noexcept {
+  if (overload_.pauses(next - ended)) return overload_.inTime();
   // A tick that the kernel cuts into lumps (RT throttling) is worse than none.
-  if (overload_.overran(threadCpuTime())) {
+  if (overload_.overran(threadCpuTime(), ended)) {
     scheduler_.stopFor({StopCause::kOverload});
     overload_.inTime();  // after the next limit it is told anew
   }

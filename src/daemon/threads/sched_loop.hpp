@@ -23,6 +23,7 @@ class SchedLoop {
     EstopDatagrams estops{-1};
     Duration
         overload;  ///< Range: above 0. The robot stops after ticks of so much CPU time, see OverloadWatch.
+    int realtime_percent = 95;  ///< Range: 1 to 100. CPU time that the kernel leaves to real-time threads.
   };
 
   /// `intake`: drained at the start of each tick (`receive: tick`); null: the RX thread drains it.
@@ -37,7 +38,9 @@ class SchedLoop {
  private:
   SchedLoop(Scheduler& scheduler, const Settings& settings, PeriodicTimer timer, CanIntake* intake);
   /// `woken`: cycleCount() then. `duration`: from then to the end of the tick.
-  void watchDuration(std::uint64_t woken, Duration duration) noexcept;
+  void countLongTick(std::uint64_t woken, Duration duration) noexcept;
+  /// `next`: when the tick after this one is due.
+  void watchLoad(MonotonicTime ended, MonotonicTime next) noexcept;
 
   Scheduler& scheduler_;
   TimeGrid grid_;

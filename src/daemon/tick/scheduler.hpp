@@ -18,7 +18,7 @@
 
 namespace rc10 {
 
-/// One millisecond: receive, command, update, pack, send, snapshot. Owns nothing that runs: the
+/// One tick: receive, command, update, pack, send, snapshot. Owns nothing that runs: the
 /// scheduler thread, or a test, calls tick().
 class Scheduler {
  public:

@@ -127,12 +127,14 @@ TEST_F(CpuRivalsTest, FindsManyProcessesInSeveralLooks) {
 
 TEST_F(CpuRivalsTest, LateTicksAreCountedUnderTheNameFromTheSecondOn) {
   LateTicks late;
+  std::uint64_t ticks = 0;
   Duration waited{};
   LateTickCauses causes;
   const auto window = [&] {
-    causes.update(late, {.waited = [&] { return std::optional{waited}; },
-                         .page_faults = [] { return std::uint64_t{0}; },
-                         .rivals = &rivals});
+    causes.update(late, ticks += 20,
+                  {.waited = [&] { return std::optional{waited}; },
+                   .page_faults = [] { return std::uint64_t{0}; },
+                   .rivals = &rivals});
   };
   Duration used{};
   const auto lateTick = [&] {

@@ -13,7 +13,9 @@ class LateTickCausesTest : public ::testing::Test {
   /// A window in which the thread waited for its CPU as it always does.
   void update(Duration waited_more = 30us) {
     if (waited) *waited += waited_more;
-    causes.update(late, {.waited = [this] { return waited; }, .page_faults = [this] { return page_faults; }});
+    ticks += window;
+    causes.update(late, ticks,
+                  {.waited = [this] { return waited; }, .page_faults = [this] { return page_faults; }});
   }
   std::uint64_t others(LateCause cause) {
     std::uint64_t sum = 0;
@@ -23,6 +25,8 @@ class LateTickCausesTest : public ::testing::Test {
 
   LateTicks late;
   std::optional<Duration> waited{5ms};
+  std::uint64_t ticks = 1000;
+  std::uint64_t window = 20;
   std::uint64_t page_faults = 400;  // of the start
   LateTickCauses causes;
 };
@@ -103,9 +107,38 @@ TEST_F(LateTickCausesTest, TheUsualWaitOfAWindowTakesNothing) {
 }
 
 TEST_F(LateTickCausesTest, AWaitThatBecameTheUsualOneIsFollowed) {
-  for (int i = 0; i < 200; ++i) update(400us);
+  for (int i = 0; i < 60; ++i) update(400us);
   late.record(TickStep::kSend, 300us);
   update(400us);
+  EXPECT_EQ(causes.count(LateCause::kSend), 1U);
+}
+
+TEST_F(LateTickCausesTest, WindowsAreAsLongAsTheyAre) {
+  for (int i = 0; i < 3; ++i) update(200us);
+  window = 300;  // the link thread was late
+  late.record(TickStep::kWake, 2ms);
+  update(3ms);
+  EXPECT_EQ(causes.count(LateCause::kTimer), 1U);
+  window = 10;
+  update(100us);
+  window = 20;
+  late.record(TickStep::kWake, 400us);
+  update(200us);
+  EXPECT_EQ(causes.count(LateCause::kTimer), 2U);
+}
+
+TEST_F(LateTickCausesTest, AWaitThatComesAndGoesIsUsualToo) {
+  for (int i = 0; i < 60; ++i) update(i % 2 == 0 ? 100us : 500us);
+  update(500us);
+  late.record(TickStep::kWake, 700us);
+  update(500us);
+  EXPECT_EQ(causes.count(LateCause::kTimer), 1U);
+}
+
+TEST_F(LateTickCausesTest, NoWaitTakesTheCpu) {
+  waited.reset();
+  late.record(TickStep::kSend, 0us);
+  update();
   EXPECT_EQ(causes.count(LateCause::kSend), 1U);
 }
 

@@ -194,14 +194,15 @@ TEST_F(PublicationTest, ARateIsMeasuredOverTheTimeThatPassed) {
   EXPECT_EQ(meter.update(MonotonicTime{10999ms}, 5000), 0.0F) << "not a second yet";
   EXPECT_FLOAT_EQ(meter.update(MonotonicTime{12s}, 4100), 2000.0F);
   EXPECT_FLOAT_EQ(meter.update(MonotonicTime{12500ms}, 9999), 2000.0F) << "kept until the next";
+  EXPECT_NEAR(meter.update(MonotonicTime{12'999'990us}, 5100), 1000.0F, 0.1F) << "a second, by a timer";
 }
 
 TEST_F(PublicationTest, DiagnosticsCountLateTicksByCause) {
   LateTicks ticks;
   const ThreadFacts thread{.waited = [] { return std::nullopt; }, .page_faults = [] { return 0U; }};
-  late.update(ticks, thread);
+  late.update(ticks, 20, thread);
   ticks.record(TickStep::kSend, 700us);
-  late.update(ticks, thread);
+  late.update(ticks, 40, thread);
   const auto& out = diagnostics();
   std::map<std::string, std::int64_t> counted;
   for (const auto& counter : std::span{out.counters}.first(out.counter_count))
