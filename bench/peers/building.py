@@ -32,6 +32,6 @@ def openarm_client(checkout: Path, tree: Path) -> Path:
     client = REPO / "bench/peers/clients/client_openarm_can.cpp"
     include = f"-I{checkout / 'include'}"
     subprocess.run(
-        ["g++", "-O2", "-std=c++20", include, *sources, client, "-o", program], check=True
+        ["g++", "-O2", "-flto", "-std=c++20", include, *sources, client, "-o", program], check=True
     )
     return program

@@ -44,6 +44,11 @@ class Robot:
             lines.append("    ]}")
         return "\n".join(lines) + "\n"
 
+    def follows(self, stats: Json, rate_hz: int) -> bool:
+        """Every motor got frames with its targets, from a second before the measurement on."""
+        got = stats["durations_us"]["command to frames"].get("count", 0)
+        return bool(got >= self.buses * self.each * rate_hz * (SECONDS + 1))
+
     def ready(self, rate_hz: int) -> str:
         """Enables its motors and commands them, or leaves the file `refused`."""
         motors = " ".join(
@@ -132,6 +137,7 @@ class Program:
     wire: Path
     ready: str = ""
     config: str = ""  # in the guest /robot.yaml
+    rate_hz: int = 0  # of targets for each motor
 
     @property
     def is_rc10d(self) -> bool:
@@ -162,6 +168,8 @@ class Program:
         alone, with_it, *rest = [json.loads(line) for line in lines if line.startswith("{")]
         busy_k = with_it["busy_k"] - alone["busy_k"]
         stats = rest[0] if self.is_rc10d else {}
+        if self.is_rc10d and not self.robot.follows(stats, self.rate_hz):
+            raise guest.GuestError(f"{self.robot.name}: some motor does not follow its targets")
         return Cost(busy_k, with_it["threads_k"], with_it["switches"], lateness_of(rest), stats)
 
     def calls(self, kernel: guest.Kernel) -> Calls:
@@ -202,4 +210,5 @@ def rc10d(robot: Robot, build: Path, *, settings: str = "", rate_hz: int = RATE_
         build / "bin" / "fake_wire",
         robot.ready(rate_hz),
         robot.config(settings),
+        rate_hz,
     )

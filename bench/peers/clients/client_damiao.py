@@ -10,7 +10,7 @@ motors = [
     for number in range(1, 5)
 ]
 for motor in motors:
-    if options.fd is not None:  # the drives of the counted guest answer no question
+    if options.fd is not None:  # the drives of the counted guest begin a second later
         motor.ensure_control_mode("MIT")
     motor.enable()
 
