@@ -292,7 +292,7 @@ int main(int argc, char** argv) {
   std::int64_t left = 0;
   const std::int64_t start = now();
   std::thread spinner{[&left] { left = spin(); }};
-  sleepUntil(start + options.seconds * 1000 * kMs);
+  sleepUntil(start + std::int64_t{1000} * options.seconds * kMs);
   ended = true;
   spinner.join();
   const std::int64_t end = now();

@@ -18,8 +18,8 @@ BUILD = Path(os.environ.get("RC10_BUILD", Path(__file__).resolve().parents[2] / 
 HOG_US = 3000
 # Thousands of instructions a millisecond of openarm_can's loop for the same four drives, by
 # `bench/peers/run --openarm-can`; and how much more the preset `dev` needs than packages.
-OPENARM_CAN_K = 56.2
-DEV_TO_PACKAGE = 1.04
+OPENARM_CAN_K = 55.9
+DEV_TO_PACKAGE = 1.05
 
 
 def program(robot: Robot, settings: str = "") -> Program:
