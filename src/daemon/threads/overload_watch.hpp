@@ -1,6 +1,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cstdint>
 #include <optional>
 
 #include "app/time.hpp"
@@ -19,36 +20,40 @@ namespace rc10 {
 /// because others had the CPU has used little of it, and is not overloaded.
 class OverloadWatch {
  public:
-  /// `limit`: CPU time of ticks, one after the other without a pause, that use more than `percent` of theirs.
+  /// `limit`: CPU time of ticks, one after the other without a pause, that use more than `percent` of a
+  /// period on average.
   constexpr OverloadWatch(Duration period, int percent, Duration limit) noexcept
-      : pause_(period * (100 - percent) / 100), percent_(percent), limit_(limit) {}
+      : room_(period * percent / 100), pause_(period - room_), limit_(limit) {}
 
   /// True: a tick that ended with so much time before the next one leaves room enough, and nobody asks for
   /// its CPU time.
   [[nodiscard]] constexpr bool pauses(Duration before_next) const noexcept { return before_next >= pause_; }
 
-  /// After a tick without such a pause, which ended `now`. `cpu_time`: the thread's, so far. True:
-  /// overloaded.
-  [[nodiscard]] constexpr bool overran(Duration cpu_time, MonotonicTime now) noexcept {
-    // The start of the first of several such ticks is not known.
-    if (!begin_) begin_ = {cpu_time, now};
-    const Duration used = cpu_time - begin_->cpu_time;
-    if (100 * used < percent_ * (now - begin_->time)) begin_ = {cpu_time, now};  // others had the CPU
-    return used >= limit_ && begin_->time != now;
+  /// After a tick without such a pause. `cpu_time`: the thread's, so far. True: overloaded.
+  [[nodiscard]] constexpr bool overran(Duration cpu_time) noexcept {
+    if (!begin_) {  // when this tick began is not known
+      begin_ = cpu_time;
+      ticks_ = 0;
+      return false;
+    }
+    ++ticks_;
+    const Duration used = cpu_time - *begin_;
+    if (used < ticks_ * room_) {  // others had the CPU
+      begin_ = cpu_time;
+      ticks_ = 0;
+      return false;
+    }
+    return used >= limit_;
   }
   /// After a tick with one.
   constexpr void inTime() noexcept { begin_.reset(); }
 
  private:
-  struct Instant {
-    Duration cpu_time;
-    MonotonicTime time;
-  };
-
+  Duration room_;
   Duration pause_;
-  int percent_;
   Duration limit_;
-  std::optional<Instant> begin_;  // of ticks without a pause
+  std::optional<Duration> begin_;  // CPU time at the end of the first of the ticks without a pause
+  std::int64_t ticks_ = 0;         // after it
 };
 
 }  // namespace rc10

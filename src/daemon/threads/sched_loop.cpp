@@ -65,7 +65,7 @@ void SchedLoop::countLongTick(std::uint64_t woken, Duration duration) noexcept {
 void SchedLoop::watchLoad(MonotonicTime ended, MonotonicTime next) noexcept {
   if (overload_.pauses(next - ended)) return overload_.inTime();
   // A tick that the kernel cuts into lumps (RT throttling) is worse than none.
-  if (overload_.overran(threadCpuTime(), ended)) {
+  if (overload_.overran(threadCpuTime())) {
     scheduler_.stopFor({StopCause::kOverload});
     overload_.inTime();  // after the next limit it is told anew
   }
