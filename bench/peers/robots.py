@@ -106,13 +106,14 @@ cat alone with; if [ -e stats ]; then cat stats; else cat log; fi
 TRACE = """\
 mount -t tracefs t /sys/kernel/tracing
 events=/sys/kernel/tracing/events
+counted="raw_syscalls/sys_enter sock/sock_rcvqueue_full"
 {ready}/bin/fake_wire {drives} {each} {seconds} >with & wire=$!
 sleep 3
-for event in raw_syscalls/sys_enter sock/sock_rcvqueue_full; do
+for event in $counted; do
     echo hist:keys=common_pid >$events/$event/trigger
 done
 sleep {traced_s}
-for event in raw_syscalls/sys_enter sock/sock_rcvqueue_full; do
+for event in $counted; do
     echo "event $event"
     cat $events/$event/hist
 done

@@ -38,6 +38,28 @@ class CanReceiverTest : public testing::Test {
 
   Reception receive() { return receiver_.receive(wake_, out_); }
 
+  /// The next wake-up reads the clock 10 s from now, and the one before did 10 s ago: only the stamp of a
+  /// frame can lie between.
+  void pauseAround(MonotonicTime before, MonotonicTime after) {
+    wake_ = {.now = after + 10s,
+             .previous = before - 10s,
+             .realtime_offset = realtimeOffset(),
+             .previous_offset = realtimeOffset()};
+  }
+  /// Stamped frames that come within such a pause. Returns when the last one was there.
+  MonotonicTime writeInAPause(int frames) {
+    enableStamps();
+    const MonotonicTime before = monotonicNow();
+    for (int i = 0; i < frames; ++i) pair_.write(numbered(1));
+    const MonotonicTime written = monotonicNow();
+    pauseAround(before, written);
+    return written;
+  }
+  void wakeAgain() {
+    wake_.previous = wake_.now;
+    wake_.now += 1ms;
+  }
+
   SocketPair pair_;
   CanReceiver receiver_{pair_.near.get()};
   std::array<CanFrame, CanReceiver::kBatch> out_{};
@@ -165,11 +187,7 @@ TEST_F(CanReceiverTest, AStampIsTheTimeOfReceptionOnTheMonotonicClock) {
   pair_.write(numbered(1));
   pair_.write(numbered(2));
   const MonotonicTime after = monotonicNow();
-  // A clock read later, and a previous wake-up long ago: only the stamp can lie between before and after.
-  wake_ = {.now = after + 10s,
-           .previous = before - 10s,
-           .realtime_offset = realtimeOffset(),
-           .previous_offset = realtimeOffset()};
+  pauseAround(before, after);
   ASSERT_EQ(receive().frame_count, 2U);
   constexpr Duration kOffsetNoise = 5ms;  // two clocks are not read at the same instant
   EXPECT_GE(out_[0].received, before - kOffsetNoise);
@@ -179,26 +197,16 @@ TEST_F(CanReceiverTest, AStampIsTheTimeOfReceptionOnTheMonotonicClock) {
 
 // After a pause there may be more than one batch; the second was there already when the first was read.
 TEST_F(CanReceiverTest, WhatABatchLeftBehindKeepsItsStamp) {
-  enableStamps();
-  const MonotonicTime before = monotonicNow();
-  for (int i = 0; i < 2 * static_cast<int>(CanReceiver::kBatch); ++i) pair_.write(numbered(1));
-  const MonotonicTime written = monotonicNow();
-  wake_ = {.now = written + 10s,
-           .previous = before - 10s,
-           .realtime_offset = realtimeOffset(),
-           .previous_offset = realtimeOffset()};
+  const MonotonicTime written = writeInAPause(2 * static_cast<int>(CanReceiver::kBatch));
   ASSERT_EQ(receive().frame_count, CanReceiver::kBatch);
-  wake_.previous = wake_.now;
-  wake_.now += 1ms;
+  wakeAgain();
   ASSERT_EQ(receive().frame_count, CanReceiver::kBatch);
   EXPECT_LE(out_[0].received, written + 5ms);
   // All of it was read: what comes now came later.
-  wake_.previous = wake_.now;
-  wake_.now += 1ms;
+  wakeAgain();
   EXPECT_EQ(receive().frame_count, 0U);
   pair_.write(numbered(2));
-  wake_.previous = wake_.now;
-  wake_.now += 1ms;
+  wakeAgain();
   ASSERT_EQ(receive().frame_count, 1U);
   EXPECT_EQ(out_[0].received, wake_.previous);
 }
@@ -241,10 +249,7 @@ TEST_F(CanReceiverTest, StampsKeepComingAfterShortControlData) {
   EXPECT_EQ(receive().frame_count, 1U);
   enableStamps();
   pair_.write(numbered(2));
-  wake_ = {.now = monotonicNow() + 10s,
-           .previous = monotonicNow() - 10s,
-           .realtime_offset = realtimeOffset(),
-           .previous_offset = realtimeOffset()};
+  pauseAround(monotonicNow(), monotonicNow());
   ASSERT_EQ(receive().frame_count, 1U);
   EXPECT_LT(out_[0].received, wake_.now - 1s);
   EXPECT_GT(out_[0].received, wake_.previous + 1s);
@@ -287,38 +292,21 @@ TEST_F(CanReceiverTest, ASocketThatWasOpenedAnewBeginsItsDropsAnew) {
 
 // The kernel ends a batch at an error, tells it in the next call, and has kept the frames behind it.
 TEST_F(CanReceiverTest, FramesBehindAnErrorKeepTheirStamps) {
-  enableStamps();
-  const MonotonicTime before = monotonicNow();
-  for (int i = 0; i < 8; ++i) pair_.write(numbered(1));
-  const MonotonicTime written = monotonicNow();
-  wake_ = {.now = written + 10s,
-           .previous = before - 10s,
-           .realtime_offset = realtimeOffset(),
-           .previous_offset = realtimeOffset()};
+  const MonotonicTime written = writeInAPause(8);
   frameCalls().interrupted = {3, ENETDOWN};
   ASSERT_EQ(receive().frame_count, 3U);
-  wake_.previous = wake_.now;
-  wake_.now += 1ms;
+  wakeAgain();
   EXPECT_EQ(receive().error, ENETDOWN);
-  wake_.previous = wake_.now;
-  wake_.now += 1ms;
+  wakeAgain();
   ASSERT_EQ(receive().frame_count, 5U);
   EXPECT_LE(out_[4].received, written + 5ms);
 }
 
 TEST_F(CanReceiverTest, AnErrorBeforeTheFirstFramesTakesNoAgeFromThem) {
-  enableStamps();
-  const MonotonicTime before = monotonicNow();
-  for (int i = 0; i < 2; ++i) pair_.write(numbered(1));
-  const MonotonicTime written = monotonicNow();
-  wake_ = {.now = written + 10s,
-           .previous = before - 10s,
-           .realtime_offset = realtimeOffset(),
-           .previous_offset = realtimeOffset()};
+  const MonotonicTime written = writeInAPause(2);
   frameCalls().interrupted = {0, ENETDOWN};
   EXPECT_EQ(receive().error, ENETDOWN);
-  wake_.previous = wake_.now;
-  wake_.now += 1ms;
+  wakeAgain();
   ASSERT_EQ(receive().frame_count, 2U);
   EXPECT_LE(out_[1].received, written + 5ms);
 }

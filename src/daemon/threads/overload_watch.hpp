@@ -31,19 +31,14 @@ class OverloadWatch {
 
   /// After a tick without such a pause. `cpu_time`: the thread's, so far. True: overloaded.
   [[nodiscard]] constexpr bool overran(Duration cpu_time) noexcept {
-    if (!begin_) {  // when this tick began is not known
-      begin_ = cpu_time;
-      ticks_ = 0;
-      return false;
+    if (begin_) {
+      const Duration used = cpu_time - *begin_;
+      if (used >= ++ticks_ * room_) return used >= limit_;
     }
-    ++ticks_;
-    const Duration used = cpu_time - *begin_;
-    if (used < ticks_ * room_) {  // others had the CPU
-      begin_ = cpu_time;
-      ticks_ = 0;
-      return false;
-    }
-    return used >= limit_;
+    // The first, whose begin is not known, or others had the CPU.
+    begin_ = cpu_time;
+    ticks_ = 0;
+    return false;
   }
   /// After a tick with one.
   constexpr void inTime() noexcept { begin_.reset(); }
