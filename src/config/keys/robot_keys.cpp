@@ -62,8 +62,9 @@ constexpr std::array kSchedulerKeys{
         .unit = "ms",
         .range = {.min = 20, .max = 60000},
         .default_text = "100",
-        .about = "The robot stops when ticks without a pause have used nearly all of the CPU time "
-                 "for so long, before the kernel cuts them into lumps."},
+        .about = "The robot stops when ticks that take nearly all of the CPU have used so much of its "
+                 "time, before the kernel cuts them into lumps. Above 200 LimitRTTIME of the systemd "
+                 "unit may end rc10d first; above 900 the kernel cuts them."},
     Key{.name = "cpu",
         .kind = kInteger,
         .range = kCpus,

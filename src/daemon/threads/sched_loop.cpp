@@ -1,6 +1,5 @@
 #include "daemon/threads/sched_loop.hpp"
 
-#include "daemon/exchange/clock.hpp"
 #include "daemon/exchange/cycle_count.hpp"
 
 namespace rc10 {
@@ -18,7 +17,8 @@ SchedLoop::SchedLoop(Scheduler& scheduler, const Settings& settings, PeriodicTim
       timer_(std::move(timer)),
       intake_(intake),
       estops_(settings.estops),
-      overload_(settings.grid.period, overloadPercent(settings.realtime_percent), settings.overload) {}
+      overload_(settings.grid.period, overloadPercent(settings.realtime_percent), settings.overload),
+      cpu_time_(settings.cpu_time) {}
 
 Result<std::unique_ptr<SchedLoop>> SchedLoop::create(Scheduler& scheduler, const Settings& settings,
                                                      CanIntake* intake) {
@@ -49,7 +49,7 @@ void SchedLoop::run(const std::stop_token& stop) noexcept {
     scheduler_.tick(now, periods);
     ended = monotonicNow();
     countLongTick(woken, ended - now);
-    watchLoad(ended, planned + grid_.period);
+    watchLoad(periods, planned + grid_.period - ended);
   }
 }
 
@@ -62,13 +62,10 @@ void SchedLoop::countLongTick(std::uint64_t woken, Duration duration) noexcept {
   timing_.late.record(marks.longest(), duration);
 }
 
-void SchedLoop::watchLoad(MonotonicTime ended, MonotonicTime next) noexcept {
-  if (overload_.pauses(next - ended)) return overload_.inTime();
+void SchedLoop::watchLoad(std::uint64_t periods, Duration before_next) noexcept {
   // A tick that the kernel cuts into lumps (RT throttling) is worse than none.
-  if (overload_.overran(threadCpuTime())) {
+  if (overload_.ended(periods, before_next) && overload_.overran(cpu_time_()))
     scheduler_.stopFor({StopCause::kOverload});
-    overload_.inTime();  // after the next limit it is told anew
-  }
 }
 
 }  // namespace rc10

@@ -5,6 +5,7 @@
 
 #include "app/result.hpp"
 #include "app/time_grid.hpp"
+#include "daemon/exchange/clock.hpp"
 #include "daemon/exchange/estop_datagrams.hpp"
 #include "daemon/exchange/tick_timing.hpp"
 #include "daemon/interfaces/can_intake.hpp"
@@ -24,6 +25,7 @@ class SchedLoop {
     Duration
         overload;  ///< Range: above 0. The robot stops after ticks of so much CPU time, see OverloadWatch.
     int realtime_percent = 95;  ///< Range: 1 to 100. CPU time that the kernel leaves to real-time threads.
+    Duration (*cpu_time)() noexcept = threadCpuTime;  ///< Of the calling thread.
   };
 
   /// `intake`: drained at the start of each tick (`receive: tick`); null: the RX thread drains it.
@@ -39,8 +41,8 @@ class SchedLoop {
   SchedLoop(Scheduler& scheduler, const Settings& settings, PeriodicTimer timer, CanIntake* intake);
   /// `woken`: cycleCount() then. `duration`: from then to the end of the tick.
   void countLongTick(std::uint64_t woken, Duration duration) noexcept;
-  /// `next`: when the tick after this one is due.
-  void watchLoad(MonotonicTime ended, MonotonicTime next) noexcept;
+  /// After a tick that stands for so many periods.
+  void watchLoad(std::uint64_t periods, Duration before_next) noexcept;
 
   Scheduler& scheduler_;
   TimeGrid grid_;
@@ -48,6 +50,7 @@ class SchedLoop {
   CanIntake* intake_;
   EstopDatagrams estops_;
   OverloadWatch overload_;
+  Duration (*cpu_time_)() noexcept;
   TickTiming timing_;
 };
 

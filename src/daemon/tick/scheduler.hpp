@@ -44,8 +44,10 @@ class Scheduler {
   void restHeartbeatAfter(std::optional<Duration> estop) noexcept { heartbeat_rests_after_ = estop; }
   /// Before the first tick. The page, which rc10-guard reads and writes, outlives this.
   void watchedBy(link::GuardPage& page) noexcept { guard_ = &page; }
-  /// From the next tick on an e-stop. Scheduler thread.
-  void stopFor(const Stop& why) noexcept { stop_asked_ = why; }
+  /// From the next tick on an e-stop, for the first of the causes until then. Scheduler thread.
+  void stopFor(const Stop& why) noexcept {
+    if (stop_asked_.cause == StopCause::kNone) stop_asked_ = why;
+  }
 
   /// Ticks in which the heartbeat goes on. Any thread.
   [[nodiscard]] std::uint64_t beats() const noexcept { return beats_.load(std::memory_order_relaxed); }

@@ -17,8 +17,10 @@ namespace {
 
 using namespace std::chrono_literals;
 
-// The scheduler reads its clock once in a tick, when its frames have left: that takes so long.
+// The scheduler reads its clock once in a tick, when its frames have left: that takes so long, of the CPU or
+// asleep.
 std::atomic<Duration> load{};
+std::atomic<Duration> sleep_of_tick{};
 std::atomic<int> ticks_left{};
 std::stop_source* ended = nullptr;
 
@@ -26,13 +28,20 @@ MonotonicTime loadedClock() noexcept {
   const Duration until = threadCpuTime() + load.load();
   while (threadCpuTime() < until) {
   }
+  std::this_thread::sleep_for(sleep_of_tick.load());
   if (--ticks_left == 0) ended->request_stop();
   return monotonicNow();
 }
 
+// A thread that has its CPU for itself, however busy the computer is.
+Duration allOfTheTime() noexcept { return monotonicNow().time_since_epoch(); }
+
 class SchedLoopTest : public ::testing::Test {
  protected:
-  SchedLoopTest() { ended = &stop; }
+  SchedLoopTest() {
+    ended = &stop;
+    sleep_of_tick = 0ns;
+  }
   ~SchedLoopTest() override { ended = nullptr; }
 
   /// Sends e-stops as clients do.
@@ -44,11 +53,8 @@ class SchedLoopTest : public ::testing::Test {
   void run(Duration work, int ticks) {
     load = work;
     ticks_left = ticks;
-    const auto loop =
-        SchedLoop::create(scheduler,
-                          {.grid = {1ms}, .estops = EstopDatagrams{socket.near.get()}, .overload = 20ms},
-                          nullptr)
-            .value();
+    settings.estops = EstopDatagrams{socket.near.get()};
+    const auto loop = SchedLoop::create(scheduler, settings, nullptr).value();
     loop->run(stop.get_token());
     long_sends = loop->timing().late.of(TickStep::kSend).ticks;
     late_wakes = loop->timing().late.of(TickStep::kWake).ticks;
@@ -70,6 +76,7 @@ class SchedLoopTest : public ::testing::Test {
   Scheduler scheduler{*robot, inboxes, exchange, 1ms, nullptr, &loadedClock};
   std::stop_source stop;
   SocketPair socket;
+  SchedLoop::Settings settings{.grid = {1ms}, .overload = 20ms, .cpu_time = allOfTheTime};
   std::vector<Event> events;
   std::uint64_t long_sends = 0;
   std::uint64_t late_wakes = 0;
@@ -84,12 +91,32 @@ TEST_F(SchedLoopTest, TicksThatUseMoreThanTheirPeriodStopTheRobot) {
 
 // The kernel throttles from 95 % on.
 TEST_F(SchedLoopTest, TicksThatNearlyFillTheirPeriodStopTheRobotToo) {
-  run(960us, 150);
+  run(970us, 150);
+  EXPECT_EQ(stops(), std::vector{StopCause::kOverload});
+}
+
+TEST_F(SchedLoopTest, AnOverloadIsJudgedByWhatTheKernelLeaves) {
+  settings.realtime_percent = 50;
+  run(600us, 150);
   EXPECT_EQ(stops(), std::vector{StopCause::kOverload});
 }
 
 TEST_F(SchedLoopTest, TicksThatFitDoNot) {
+  settings.cpu_time = threadCpuTime;
   run(50us, 100);
+  EXPECT_TRUE(stops().empty());
+}
+
+TEST_F(SchedLoopTest, TicksThatAreLateWithoutUsingTheCpuDoNotStopIt) {
+  settings.cpu_time = threadCpuTime;
+  sleep_of_tick = 2ms;
+  run(0us, 50);
+  EXPECT_TRUE(stops().empty());
+}
+
+TEST_F(SchedLoopTest, AnOverloadHasItsLimit) {
+  settings.overload = 60s;
+  run(2ms, 30);
   EXPECT_TRUE(stops().empty());
 }
 
