@@ -130,6 +130,10 @@ class Motor_Base : public FrameListener {
   [[nodiscard]] virtual double zeroForFile() const noexcept {
     return std::numeric_limits<double>::quiet_NaN();
   }
+  /// Total angle that the last frame of the order kHold held; NaN: none.
+  [[nodiscard]] virtual double heldAngleDeg() const noexcept {
+    return std::numeric_limits<double>::quiet_NaN();
+  }
   /// The angle goes on without a known reference: homing is about to find it.
   virtual void forgetReference() noexcept { feedback_.zeroed = false; }
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cmath>
+#include <limits>
 #include <string>
 
 #include "app/limits.hpp"
@@ -31,6 +32,9 @@ class SoloMotor : public Motor_Base, public CommandPacker {
   [[nodiscard]] bool speaksUnasked() const noexcept override { return !traits_.asked; }
   bool setZero(double angle_deg) noexcept override;
   [[nodiscard]] double zeroForFile() const noexcept final { return reference_.zeroForFile(); }
+  [[nodiscard]] double heldAngleDeg() const noexcept final {
+    return holding_ ? hold_deg_ : std::numeric_limits<double>::quiet_NaN();
+  }
   void forgetReference() noexcept override;
   [[nodiscard]] bool due(const Tick& tick) const noexcept final;
 

@@ -35,6 +35,7 @@ void readShaping(MotorParse& in) {
   shaping.soft_start_s =
       static_cast<float>(in.settings.number("soft_start_ms").value_or(kSoftStartMs) / 1000.0);
   shaping.effort_full_scale = in.traits.effort_full_scale;
+  shaping.springs = in.traits.modes.contains(ControlMode::kImpedance);
   shaping.has_velocity_loop = in.traits.modes.contains(ControlMode::kVelocity);
   if (in.traits.host_loops != nullptr) {
     shaping.approach_rpm_per_deg = kApproachOfAngleGain * in.motor().loops.angle.kp;

@@ -239,11 +239,12 @@ void Axis::order(RobotStatus robot, const Tick& tick) noexcept {
   // First, so that soft limits act in this tick already.
   if (!motor_.feedback().zeroed) motor_.restoreReference(in_force_.mode);
   const bool limited = (motor_.limits() & kLimitCurrent) != 0;
-  const auto told =
-      shaper_.follows(in_force_.mode) && !limited
-          ? TargetShaper::InForce{}
-          : TargetShaper::InForce{
-                .value = motor_.commandValue(), .unit = motor_.commandUnit(), .limited = limited};
+  const auto told = shaper_.follows(in_force_.mode) && !limited
+                        ? TargetShaper::InForce{}
+                        : TargetShaper::InForce{.value = motor_.commandValue(),
+                                                .unit = motor_.commandUnit(),
+                                                .limited = limited,
+                                                .held_deg = motor_.heldAngleDeg()};
   limits_ |= stops ? shaper_.slowDown(in_force_, motor_.feedback(), told, tick.dt_s)
                    : shaper_.step(in_force_, motor_.feedback(), told, tick.dt_s);
   motor_.order(kind, in_force_);

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstdint>
+#include <limits>
 #include <string>
 
 #include "app/result.hpp"
@@ -46,6 +47,9 @@ class DJI_Motor : public Motor_Base {
   [[nodiscard]] bool speaksUnasked() const noexcept override { return true; }
   bool setZero(double angle_deg) noexcept override;
   [[nodiscard]] double zeroForFile() const noexcept override;
+  [[nodiscard]] double heldAngleDeg() const noexcept override {
+    return holding_ ? hold_deg_ : std::numeric_limits<double>::quiet_NaN();
+  }
   void forgetReference() noexcept override;
   void restoreReference(ControlMode followed) noexcept override;
   [[nodiscard]] const CascadeConfig* hostLoops() const noexcept override { return &loops_.config(); }

@@ -60,7 +60,7 @@ bool TargetShaper::firstStepAllowed(const Target& asked, const MotorFeedback& fe
 
 std::uint32_t TargetShaper::step(Target& target, const MotorFeedback& feedback, InForce in_force,
                                  float dt_s) noexcept {
-  if (!follows(target.mode)) begin(target.mode, feedback, in_force);
+  if (!follows(target.mode)) begin(target.mode, feedback, in_force, target.stiffness_nm_per_rad);
   if (!(share_ < 1.0)) return shape(target, feedback, in_force, dt_s);
   soften(target, dt_s);
   return shape(target, feedback, in_force, dt_s) | kLimitSlew;
@@ -68,25 +68,27 @@ std::uint32_t TargetShaper::step(Target& target, const MotorFeedback& feedback, 
 
 std::uint32_t TargetShaper::slowDown(Target& target, const MotorFeedback& feedback, InForce in_force,
                                      float dt_s) noexcept {
-  if (!follows(target.mode)) begin(target.mode, feedback, in_force);
+  if (!follows(target.mode)) begin(target.mode, feedback, in_force, target.stiffness_nm_per_rad);
   const auto limits = shape(target, feedback, in_force, dt_s);
   soft_ = value_;
   return limits;
 }
 
 // Share of the target by the time since the motor was enabled, from where it is on its way: a target that
-// changes meanwhile never leads back. A spring is stiff at once, and begins where the shaft is.
+// changes meanwhile never leads back. A spring is stiff at once, and begins where the shaft is or is held.
 void TargetShaper::soften(Target& asked, float dt_s) noexcept {
   const double left = 1.0 - share_;
   share_ = std::min(1.0, share_ + static_cast<double>(dt_s / config_.soft_start_s));
   const bool moves = isEffort(mode_) || mode_ == ControlMode::kVelocity || needsReference(mode_);
   if (!moves) return;
   asked.velocity_ff_rpm *= static_cast<float>(share_);
-  asked.torque_ff_nm *= static_cast<float>(share_);
   if (!(share_ < 1.0)) return;
+  const double part = 1.0 - (1.0 - share_) / left;
+  soft_ff_nm_ += (static_cast<double>(asked.torque_ff_nm) - soft_ff_nm_) * part;
+  asked.torque_ff_nm = static_cast<float>(soft_ff_nm_);
   const bool any_turn = mode_ == ControlMode::kAngle;
   const double way = any_turn ? shortestAngle(soft_, asked.value) : asked.value - soft_;
-  soft_ += way * (1.0 - (1.0 - share_) / left);
+  soft_ += way * part;
   asked.value = any_turn ? wrapDegrees(soft_) : soft_;
 }
 
@@ -106,7 +108,8 @@ inline std::uint32_t TargetShaper::shapeMotion(Target& asked, const MotorFeedbac
 }
 
 // From what acts, in the unit of the mode: the last command may have been a speed.
-void TargetShaper::begin(ControlMode mode, const MotorFeedback& feedback, InForce in_force) noexcept {
+void TargetShaper::begin(ControlMode mode, const MotorFeedback& feedback, InForce in_force,
+                         float stiffness_nm_per_rad) noexcept {
   mode_ = mode;
   speed_bounds_effort_ = false;
   value_ = velocity_ff_rpm_ = torque_ff_nm_ = 0.0;
@@ -120,9 +123,33 @@ void TargetShaper::begin(ControlMode mode, const MotorFeedback& feedback, InForc
   if (mode == ControlMode::kVelocity) value_ = static_cast<double>(feedback.velocity_rpm);
   if (needsReference(mode)) value_ = feedback.total_angle_deg;
   if (!std::isfinite(value_)) value_ = 0.0;
-  soft_ = value_;
   low_deg_ = std::min(config_.angle_min_deg, value_);
   high_deg_ = std::max(config_.angle_max_deg, value_);
+  if (std::isfinite(in_force.held_deg)) takeOver(mode, feedback, in_force, stiffness_nm_per_rad);
+  soft_ = value_;
+  soft_ff_nm_ = torque_ff_nm_;
+}
+
+// What a fallback holds stays held: an angle goes on from the held one, which a loaded spring is beside. What
+// the spring of an impedance does not give of the torque in force, and a speed that a damper follows not at
+// all, begins as a feed-forward.
+void TargetShaper::takeOver(ControlMode mode, const MotorFeedback& feedback, InForce in_force,
+                            float stiffness_nm_per_rad) noexcept {
+  if (mode == ControlMode::kAngle || mode == ControlMode::kTotalAngle) value_ = in_force.held_deg;
+  const bool told = in_force.unit == CommandUnit::kAmpere;
+  const bool damped = mode == ControlMode::kVelocity && config_.springs && told;
+  if (!(damped || mode == ControlMode::kImpedance) || !(config_.effort_per_nm > 0.0F)) return;
+  double missing_nm =
+      finiteOr0(static_cast<double>((told ? in_force.value : feedback.current_a) / config_.effort_per_nm));
+  if (mode == ControlMode::kImpedance && stiffness_nm_per_rad > 0.0F) {
+    const auto stiffness = static_cast<double>(stiffness_nm_per_rad);
+    const double most_rad = std::fabs(in_force.held_deg - feedback.total_angle_deg) * kRadPerDeg;
+    const double spring_rad = std::clamp(missing_nm / stiffness, -most_rad, most_rad);
+    value_ += spring_rad / kRadPerDeg;
+    missing_nm -= spring_rad * stiffness;
+  }
+  torque_ff_nm_ = missing_nm;
+  feeds_forward_ = missing_nm != 0.0;
 }
 
 TargetShaper::Envelope TargetShaper::envelope(double total_angle_deg) const noexcept {

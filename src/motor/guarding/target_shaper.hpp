@@ -27,13 +27,15 @@ struct ShapingConfig {
   float effort_full_scale = 0.0F;        ///< Effort of a duty of 1. 0: unknown.
   bool has_velocity_loop = false;        ///< The motor can be told a speed.
   bool lead_is_speed = false;            ///< The lead of an angle is a speed: another loop bounds it.
+  bool springs = false;                  ///< The drive makes torque by a SpringLaw, without an integral.
   double max_first_step_deg = std::numeric_limits<double>::infinity();
   float soft_start_s = 0.0F;  ///< The first target after enabling comes into force over this time.
 };
 
 /// Turns what a client asks for into what the motor may do in this tick: slew limits, and soft angle
 /// limits that still allow moving back. Soft limits act while the angle is referenced. After enabling the
-/// target in force goes from what is measured to what is asked: a client may have sent for long.
+/// target in force goes from what is measured to what is asked: a client may have sent for long. What holds a
+/// load then is not let go: the target begins at the angle and with the effort that a fallback holds.
 ///
 /// Soft limits, a ceiling and the limit of the effort take away an effort, and brake, at once; an effort that
 /// they took away comes back at its slew. Scheduler thread only.
@@ -48,6 +50,8 @@ class TargetShaper {
     float value = 0.0F;
     CommandUnit unit = CommandUnit::kNone;
     bool limited = false;  ///< By the limit of the effort: what was asked for was more.
+    /// Angle that a fallback holds, to which the value is the effort; NaN: none.
+    double held_deg = std::numeric_limits<double>::quiet_NaN();
   };
   /// Whether a target of this mode goes on from the last step. One that does not begins from `in_force`,
   /// which is otherwise of use only where it is limited.
@@ -106,7 +110,10 @@ class TargetShaper {
   [[nodiscard]] double effortFor(double allowed_rpm, const MotorFeedback& feedback) const noexcept;
   [[nodiscard]] double reachable(double goal_deg, bool any_turn) const noexcept;
   void followFromOutside(const MotorFeedback& feedback) noexcept;
-  void begin(ControlMode mode, const MotorFeedback& feedback, InForce in_force) noexcept;
+  void begin(ControlMode mode, const MotorFeedback& feedback, InForce in_force,
+             float stiffness_nm_per_rad) noexcept;
+  void takeOver(ControlMode mode, const MotorFeedback& feedback, InForce in_force,
+                float stiffness_nm_per_rad) noexcept;
   void soften(Target& asked, float dt_s) noexcept;
   [[nodiscard]] bool slew(double goal, float per_second, float dt_s) noexcept;
   // Each shapes its part of the target and returns the limits that act.
@@ -148,7 +155,8 @@ class TargetShaper {
   bool speed_bounds_effort_ = false;  ///< In place of an effort a speed is told.
   bool enters_ = false;               ///< A ceiling has come, and no angle was led under it.
   double share_ = 1.0;                ///< Share of the soft start that is over; 1: all.
-  double soft_ = 0.0;  ///< Place of a soft start on its way to what is asked, in the unit of the mode.
+  double soft_ = 0.0;        ///< Place of a soft start on its way to what is asked, in the unit of the mode.
+  double soft_ff_nm_ = 0.0;  ///< The same of the torque feed-forward.
 };
 
 }  // namespace rc10

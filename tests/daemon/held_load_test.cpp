@@ -1,0 +1,143 @@
+// Every family holds a load in an e-stop, is enabled anew, and takes the load over.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+#include "config/load_config.hpp"
+#include "daemon/virtual_robot.hpp"
+
+namespace rc10::test::held_load_test {
+namespace {
+
+struct Subject {
+  const char* name;
+  const char* motor;  ///< Its keys after the name.
+  double load_nm;     ///< A good part of what it can hold.
+  const char* bus = "";
+};
+
+void PrintTo(const Subject& subject, std::ostream* out) { *out << subject.name; }
+
+constexpr const char* kOdrive =
+    "model: ODrive_S1, id: 8, torque_constant_nm_per_a: 0.05, current_limit_a: 20, velocity_limit_rpm: 600";
+
+const Subject kSubjects[] = {
+    {"M3508", "model: M3508, id: 1, zero: power_on", 1.0},
+    {"Gm6020", "model: GM6020, id: 2", 0.4},
+    {"DamiaoMit", "model: DM4310, id: 1, master_id: 17, zero: power_on", 1.5},
+    {"RobStride", "model: RS00, id: 3, zero: power_on", 3.0},
+    {"CyberGear", "model: CyberGear, id: 4, zero: power_on", 2.0},
+    {"CubeMarsMit", "model: AK80-9, id: 6, protocol: mit, zero: power_on", 3.0},
+    {"CubeMarsServo", "model: AK80-9, id: 5, zero: power_on", 3.0},
+    {"Moteus", "model: moteus, id: 7, motor_kv_rpm_per_v: 100, zero: power_on", 0.3,
+     "data_bitrate: 5000000\n    "},
+    {"Odrive", kOdrive, 0.3},
+    {"MyActuator", "model: RMD-X8-20, id: 11, zero: power_on", 3.0},
+    {"LkTech", "model: LK-MG5010E-i10, id: 12, zero: power_on", 1.0},
+};
+
+// Keys that slow a target down must not let the load go.
+const char* const kSlews[] = {"", "soft_start_ms: 0, angle_slew_deg_per_s: 60", "soft_start_ms: 1000"};
+
+RobotConfig configOf(const Subject& subject, const char* slew) {
+  const std::string separator = *slew == '\0' ? "" : ", ";
+  const std::string text = std::string{"robot: load\nrealtime: preferred\nbuses:\n  - name: bench\n"} +
+                           "    type: sim\n    " + subject.bus + "motors:\n      - {name: motor, " +
+                           subject.motor + separator + slew + "}\n";
+  auto outcome = parseRobotConfig(text, "load.yaml");
+  EXPECT_TRUE(outcome.config) << outcome.errorText();
+  auto config = outcome.config.value_or(twoWheelsAndYaw());
+  config.buses[0].motors[0].fallback.on_estop = FallbackAction::kHold;
+  return config;
+}
+
+class HeldLoad : public ::testing::TestWithParam<std::tuple<Subject, const char*>> {
+ protected:
+  static constexpr std::size_t kMotor = 0;
+
+  double angleDeg() { return drive().physics().outputAngleDeg(); }
+  sim::Drive& drive() { return robot.simBus().drive(kMotor); }
+  [[nodiscard]] bool enable() {
+    for (int attempt = 0; attempt < 4; ++attempt) {
+      robot.order(Operation::kEnable);
+      if (robot.motor(kMotor).status == MotorStatus::kActive) return true;
+      robot.run(1000);
+    }
+    return false;
+  }
+  /// Under its load, held at the angle that this returns, and enabled again.
+  double heldDeg() {
+    for (int i = 0; i < 4000 && robot.motor(kMotor).status != MotorStatus::kReady; ++i) robot.run(1);
+    EXPECT_TRUE(enable());
+    const Target place{.mode = ControlMode::kTotalAngle, .value = measuredDeg()};
+    robot.hold(kMotor, place, 500);
+    sim::MotorLoad load = drive().load();
+    load.load_torque_nm = static_cast<float>(std::get<0>(GetParam()).load_nm);
+    drive().setLoad(load);
+    robot.hold(kMotor, place, 3000);
+    const double held_deg = measuredDeg();
+    robot.order(Operation::kEstop);
+    robot.run(2000);
+    for (int i = 0; i < 20'000 && robot.snapshot().state != RobotStatus::kRun; ++i)
+      robot.order(Operation::kClear);
+    EXPECT_TRUE(enable());
+    robot.run(300);
+    EXPECT_EQ(robot.motor(kMotor).acting, Acting::kHold);
+    return held_deg;
+  }
+  double measuredDeg() { return robot.motor(kMotor).feedback.total_angle_deg; }
+  /// How far it sinks while this target comes into force.
+  double sinksDeg(const Target& target) {
+    const double before_deg = angleDeg();
+    double lowest_deg = before_deg;
+    for (int i = 0; i < 2000; ++i) {
+      robot.hold(kMotor, target, 1);
+      lowest_deg = std::min(lowest_deg, angleDeg());
+    }
+    return before_deg - lowest_deg;
+  }
+
+  VirtualRobot robot{configOf(std::get<0>(GetParam()), std::get<1>(GetParam()))};
+};
+
+TEST_P(HeldLoad, IsNotLetDownByTheAngleForWhichItWasHeld) {
+  const double held_deg = heldDeg();
+  EXPECT_LT(sinksDeg({.mode = ControlMode::kTotalAngle, .value = held_deg}), 0.3);
+}
+
+// A spring drive has no integral that would hold it.
+TEST_P(HeldLoad, IsTakenOverByAFeedForward) {
+  if (!robot.robot().motors()[kMotor].motor->modes().contains(ControlMode::kImpedance)) {
+    EXPECT_STRNE(std::get<0>(GetParam()).name, "DamiaoMit");
+    return;
+  }
+  const auto load_nm = static_cast<float>(std::get<0>(GetParam()).load_nm);
+  (void)heldDeg();
+  EXPECT_LT(sinksDeg({.mode = ControlMode::kImpedance,
+                      .value = measuredDeg(),
+                      .torque_ff_nm = load_nm,
+                      .stiffness_nm_per_rad = 5.0F,
+                      .damping_nms_per_rad = 1.0F}),
+            1.0);
+  robot.order(Operation::kEstop);
+  robot.run(2000);
+  for (int i = 0; i < 20'000 && robot.snapshot().state != RobotStatus::kRun; ++i)
+    robot.order(Operation::kClear);
+  ASSERT_TRUE(enable());
+  EXPECT_LT(sinksDeg({.mode = ControlMode::kVelocity, .torque_ff_nm = load_nm}), 1.0);
+}
+
+INSTANTIATE_TEST_SUITE_P(All, HeldLoad,
+                         ::testing::Combine(::testing::ValuesIn(kSubjects), ::testing::ValuesIn(kSlews)),
+                         [](const auto& made) {
+                           const std::string slew = std::get<1>(made.param);
+                           return std::string{std::get<0>(made.param).name} +
+                                  (slew.empty()                           ? "SoftStart"
+                                   : slew.find("angle_slew") != slew.npos ? "AngleSlew"
+                                                                          : "LongSoftStart");
+                         });
+
+}  // namespace
+}  // namespace rc10::test::held_load_test
