@@ -376,7 +376,7 @@ void Daemon::waitForSignal(SignalInbox& signals) {
     }
     std::array wait_for{pollfd{.fd = signals.descriptor(), .events = POLLIN, .revents = 0},
                         pollfd{.fd = guard_ ? guard_->descriptor() : -1, .events = POLLIN, .revents = 0}};
-    (void)::poll(wait_for.data(), wait_for.size(), kSuperviseMs);
+    if (::poll(wait_for.data(), wait_for.size(), kSuperviseMs) == 0) continue;
     while (const int signal = signals.take()) {
       switch (meaningOf(signal)) {
         case SignalMeaning::kChild: break;

@@ -24,6 +24,8 @@ constexpr std::string_view kNoDescriptors =
     "(LimitNOFILE= of the unit, `ulimit -n`)";
 constexpr Duration kStep = std::chrono::milliseconds{Standstill::kStepMs};
 
+bool happened(const pollfd& descriptor) noexcept { return descriptor.revents != 0; }
+
 void answer(int connection, std::string_view text) noexcept {
   (void)!::send(connection, text.data(), text.size(), MSG_DONTWAIT | MSG_NOSIGNAL);
 }
@@ -53,19 +55,18 @@ std::vector<std::string> GuardServer::serve(const sigset_t& signals_while_waitin
   const auto now = std::chrono::steady_clock::now();
   const bool due = now >= next_step_;
   if (due) next_step_ = now + kStep;
-  const auto died = [](const pollfd& descriptor) { return descriptor.revents != 0; };
-  const auto deaths = wait_for.begin() + 1;
+  const auto deaths = std::span<const pollfd>{wait_for}.subspan(1, robots_.size());
   // A death is acted upon at once; steps have their time.
-  if (due || std::any_of(deaths, deaths + static_cast<std::ptrdiff_t>(robots_.size()), died)) step(news);
+  if (due || std::any_of(deaths.begin(), deaths.end(), happened)) step(deaths, news);
   if (ready == 0) return news;
   if (wait_for[0].revents != 0) welcome(news);
   hear(news);
   return news;
 }
 
-void GuardServer::step(std::vector<std::string>& news) {
-  for (auto& robot : robots_) {
-    if (auto line = robot.step(); !line.empty()) news.push_back(std::move(line));
+void GuardServer::step(std::span<const pollfd> deaths, std::vector<std::string>& news) {
+  for (std::size_t i = 0; i < robots_.size(); ++i) {
+    if (auto line = robots_[i].step(happened(deaths[i])); !line.empty()) news.push_back(std::move(line));
   }
   for (auto& old : robots_) {
     const bool replaced = std::any_of(robots_.begin(), robots_.end(), [&old](const auto& other) {

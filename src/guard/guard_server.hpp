@@ -1,7 +1,9 @@
 #pragma once
 
+#include <poll.h>
 #include <signal.h>
 
+#include <span>
 #include <string>
 #include <vector>
 
@@ -29,7 +31,8 @@ class GuardServer {
  private:
   void welcome(std::vector<std::string>& news);
   void hear(std::vector<std::string>& news);
-  void step(std::vector<std::string>& news);
+  /// `deaths`: of the robots' processes, in their order, as the wait has found them.
+  void step(std::span<const pollfd> deaths, std::vector<std::string>& news);
 
   GuardSocket socket_;
   MonotonicTime next_step_{};

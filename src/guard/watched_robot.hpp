@@ -20,8 +20,9 @@ class WatchedRobot {
   /// The connection stays open as long as rc10d is watched: by its end rc10d knows that nobody does.
   void keep(UniqueFd connection) noexcept { connection_ = std::move(connection); }
 
-  /// Once per wake-up, and when rc10d has died. Returns what to tell, empty for nothing.
-  [[nodiscard]] std::string step();
+  /// Once per wake-up, and when rc10d has died: `ended`, its deathDescriptor() is readable. Returns what to
+  /// tell, empty for nothing.
+  [[nodiscard]] std::string step(bool ended);
   /// There is nothing left to do for it.
   [[nodiscard]] bool over() const noexcept { return over_; }
   /// It sends rest frames, or has.
@@ -37,7 +38,6 @@ class WatchedRobot {
  private:
   WatchedRobot(std::string robot, std::uint32_t standstill_ms, link::SharedGuardPage page, UniqueFd process,
                std::vector<BusRest> buses);
-  [[nodiscard]] bool hasDied() const noexcept;
   [[nodiscard]] std::string begin(const std::string& why);
   [[nodiscard]] std::string send();
 

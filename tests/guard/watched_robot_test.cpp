@@ -34,6 +34,7 @@ class WatchedRobotTest : public testing::Test {
     EXPECT_EQ(::kill(child, SIGKILL), 0);
     EXPECT_EQ(::waitpid(child, nullptr, 0), child);
     child = 0;
+    dead = true;
   }
   [[nodiscard]] Result<WatchedRobot> watch(const std::string& text) const {
     link::DescriptorMessage message;
@@ -48,23 +49,24 @@ class WatchedRobotTest : public testing::Test {
   }
 
   pid_t child;
+  bool dead = false;
   link::SharedGuardPage page;
 };
 
 TEST_F(WatchedRobotTest, EachStepIsABeatForRc10d) {
   auto robot = watched();
-  EXPECT_THAT(robot.step(), IsEmpty());
+  EXPECT_THAT(robot.step(dead), IsEmpty());
   EXPECT_EQ(page->beats.load(), 1U);
-  EXPECT_THAT(robot.step(), IsEmpty());
+  EXPECT_THAT(robot.step(dead), IsEmpty());
   EXPECT_EQ(page->beats.load(), 2U);
 }
 
 TEST_F(WatchedRobotTest, ADeathAmongTicksIsAnsweredInTheSameStep) {
   auto robot = watched();
   page->ticks.store(1);
-  EXPECT_THAT(robot.step(), IsEmpty());
+  EXPECT_THAT(robot.step(dead), IsEmpty());
   kill();
-  EXPECT_THAT(robot.step(), HasSubstr("robot 'hero': rc10d has died"));
+  EXPECT_THAT(robot.step(dead), HasSubstr("robot 'hero': rc10d has died"));
   EXPECT_TRUE(page->acted.load());
 }
 
@@ -73,7 +75,7 @@ TEST_F(WatchedRobotTest, ADeathAfterAnOrderlyEndIsNone) {
   page->ticks.store(1);
   page->ended.store(true);
   kill();
-  EXPECT_THAT(robot.step(), IsEmpty());
+  EXPECT_THAT(robot.step(dead), IsEmpty());
   EXPECT_TRUE(robot.over());
   EXPECT_FALSE(page->acted.load());
 }
@@ -81,7 +83,7 @@ TEST_F(WatchedRobotTest, ADeathAfterAnOrderlyEndIsNone) {
 TEST_F(WatchedRobotTest, ADeathBeforeTheFirstTickFindsNothingToRest) {
   auto robot = watched();
   kill();
-  EXPECT_THAT(robot.step(), IsEmpty());
+  EXPECT_THAT(robot.step(dead), IsEmpty());
   EXPECT_TRUE(robot.over());
   EXPECT_FALSE(page->acted.load());
 }
@@ -90,23 +92,23 @@ TEST_F(WatchedRobotTest, AfterAnOrderlyEndTicksMayStandStill) {
   auto robot = watched();
   page->ticks.store(1);
   page->ended.store(true);
-  for (int step = 0; step < 100; ++step) EXPECT_THAT(robot.step(), IsEmpty());
+  for (int step = 0; step < 100; ++step) EXPECT_THAT(robot.step(dead), IsEmpty());
   EXPECT_FALSE(page->acted.load());
 }
 
 TEST_F(WatchedRobotTest, AStandstillIsActedUponOnceAndWatchedOn) {
   auto robot = watched();
   page->ticks.store(5);
-  for (int step = 0; step < 4; ++step) EXPECT_THAT(robot.step(), IsEmpty());
-  EXPECT_THAT(robot.step(), HasSubstr("the ticks of rc10d stand still"));
+  for (int step = 0; step < 4; ++step) EXPECT_THAT(robot.step(dead), IsEmpty());
+  EXPECT_THAT(robot.step(dead), HasSubstr("the ticks of rc10d stand still"));
   EXPECT_TRUE(page->acted.load());
-  EXPECT_THAT(robot.step(), HasSubstr("the rest frames are on the wire"));
-  EXPECT_THAT(robot.step(), IsEmpty());
+  EXPECT_THAT(robot.step(dead), HasSubstr("the rest frames are on the wire"));
+  EXPECT_THAT(robot.step(dead), IsEmpty());
   page->ticks.store(6);
-  EXPECT_THAT(robot.step(), HasSubstr("ticks again"));
+  EXPECT_THAT(robot.step(dead), HasSubstr("ticks again"));
   page->acted.store(false);
-  for (int step = 0; step < 3; ++step) EXPECT_THAT(robot.step(), IsEmpty());
-  EXPECT_THAT(robot.step(), HasSubstr("stand still")) << "a second time";
+  for (int step = 0; step < 3; ++step) EXPECT_THAT(robot.step(dead), IsEmpty());
+  EXPECT_THAT(robot.step(dead), HasSubstr("stand still")) << "a second time";
   EXPECT_TRUE(page->acted.load());
 }
 
@@ -114,9 +116,9 @@ TEST_F(WatchedRobotTest, DeathEndsTheWatchWhenEveryBusHasCarriedTheFrames) {
   auto robot = watched();
   page->ticks.store(5);
   kill();
-  EXPECT_THAT(robot.step(), HasSubstr("has died"));
+  EXPECT_THAT(robot.step(dead), HasSubstr("has died"));
   EXPECT_FALSE(robot.over());
-  EXPECT_THAT(robot.step(), HasSubstr("on the wire"));
+  EXPECT_THAT(robot.step(dead), HasSubstr("on the wire"));
   EXPECT_TRUE(robot.over());
 }
 

@@ -18,8 +18,6 @@ namespace {
 using namespace std::chrono_literals;
 
 constexpr int kMaxLinkEvents = 16;
-// Messages taken from one client before the others have their turn.
-constexpr int kDatagramsPerTurn = 32;
 // Answers and events leave at this rate, whatever state_hz is.
 constexpr int kSlowHz = 100;
 // Without a listener a state is still computed: its rates are differences over a second.
@@ -185,17 +183,15 @@ void LinkServer::note(Severity severity, std::string_view text) {
   sources_.log(event);
 }
 
+// One datagram: epoll tells of the next, and where there is none, as nearly always, a second look is a system
+// call in vain.
 void LinkServer::receive(Connection& connection) {
-  for (int i = 0; i < kDatagramsPerTurn; ++i) {
-    const auto size = ::recv(connection.fd.get(), buffer_.data(), buffer_.size(), MSG_DONTWAIT | MSG_TRUNC);
-    if (size < 0 && (errno == EAGAIN || errno == EINTR)) return;
-    const bool fits = size > 0 && static_cast<std::size_t>(size) <= buffer_.size();
-    if (!fits || !handle(connection, {buffer_.data(), static_cast<std::size_t>(size)})) {
-      feeds_.forget(connection.id);
-      connections_.close(connection.id);
-      return;
-    }
-  }
+  const auto size = ::recv(connection.fd.get(), buffer_.data(), buffer_.size(), MSG_DONTWAIT | MSG_TRUNC);
+  if (size < 0 && (errno == EAGAIN || errno == EINTR)) return;
+  const bool fits = size > 0 && static_cast<std::size_t>(size) <= buffer_.size();
+  if (fits && handle(connection, {buffer_.data(), static_cast<std::size_t>(size)})) return;
+  feeds_.forget(connection.id);
+  connections_.close(connection.id);
 }
 
 // False: this client does not speak our protocol, and is sent away.

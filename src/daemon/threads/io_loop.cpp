@@ -8,24 +8,27 @@ namespace rc10 {
 namespace {
 
 // The ring has room for seconds: this is for what a crash may find in the history.
-constexpr Duration kDrainInterval = std::chrono::milliseconds{10};
-constexpr int kDrainsPerLook = 5;
+constexpr Duration kDrainInterval = std::chrono::milliseconds{20};
+// Of SPI devices.
+constexpr Duration kShortInterval = std::chrono::milliseconds{10};
+constexpr Duration kReviveInterval = std::chrono::milliseconds{50};
 
 }  // namespace
 
 void IoLoop::run(const std::stop_token& stop) {
-  for (int drains = 0; !stop.stop_requested(); drains = (drains + 1) % kDrainsPerLook) {
-    if (drains == 0) {
-      const auto now = monotonicNow();
+  const Duration interval = spi_ ? kShortInterval : kDrainInterval;
+  for (MonotonicTime looked{}; !stop.stop_requested();) {
+    if (const auto now = monotonicNow(); now - looked >= kReviveInterval) {
+      looked = now;
       keeper_.check(now, reviver_.check(now));
       if (serial_) serial_->reviver.check(monotonicNow());
     }
     if (black_box_ != nullptr) black_box_->drain();
     if (spi_) spi_->turn(monotonicNow());
     if (serial_) {
-      serial_->writer.serve(kDrainInterval);
+      serial_->writer.serve(interval);
     } else {
-      std::this_thread::sleep_for(kDrainInterval);
+      std::this_thread::sleep_for(interval);
     }
   }
   if (spi_) spi_->end();
