@@ -37,7 +37,8 @@ TOLD = re.compile(r"^(SKIPPED|NOTE) .*", re.MULTILINE)
 # These run what the dev build has made.
 TESTS_OF_DEV = {"unit", "kernel", "host", "faults", "vm", "soak", "web"}
 # Cores that a part keeps busy; 0: it waits most of its time. All others use every core.
-CORES = {"host": 0, "pages": 1, "lint": 1, "web": 1, "vm": 1, "package": 1}
+# `web` waits for a browser: 237 CPU-seconds in ten minutes.
+CORES = {"host": 0, "web": 0, "pages": 1, "lint": 1, "vm": 1, "package": 1}
 ALL_CORES = os.cpu_count() or 1
 
 
@@ -158,6 +159,9 @@ class Run:
         unfinished = [*self.running, *self.waiting]
         if part.name in TESTS_OF_DEV and any(other.name == "build" for other in unfinished):
             return False
+        # Two that wait would need a core together, ahead of all others.
+        if part.cores == 0 and any(other.cores == 0 for other in self.running):
+            return False
         return sum(other.cores for other in self.running) + part.cores <= ALL_CORES
 
     def start_what_may(self) -> None:
@@ -235,13 +239,27 @@ def with_build(names: list[str]) -> list[str]:
     return (["build"] if needed else []) + names
 
 
-def greeting(names: list[str], chosen: str, budget: costs.Budget) -> str:
-    text = f"rc10d's tests: {', '.join(names)}."
+def expected(names: list[str], chosen: str, budget: costs.Budget) -> str:
+    """Duration of a run: as measured, or as the costs of its parts let expect."""
     if took := budget.sets.get(chosen):
-        text += (
+        return (
             f" On {budget.machine}: {as_minutes(took.cold_s)} where nothing is compiled yet,"
             f" {as_minutes(took.warm_s)} afterwards."
         )
+    parts = [budget.parts[name] for name in dict.fromkeys(names) if name in budget.parts]
+    if not parts or len(parts) < len(set(names)):
+        return ""
+    cpu_s = sum(part.cpu_s for part in parts)
+    # No run is shorter than its longest part.
+    took_s = max(cpu_s / ALL_CORES, *(part.took_s for part in parts))
+    return (
+        f" Where nothing is compiled yet, {cpu_s:.0f} CPU-seconds on {budget.machine}:"
+        f" about {as_minutes(took_s)} on the {ALL_CORES} cores here."
+    )
+
+
+def greeting(names: list[str], chosen: str, budget: costs.Budget) -> str:
+    text = f"rc10d's tests: {', '.join(names)}." + expected(names, chosen, budget)
     return text + f" The full output of each: {LOGS.relative_to(REPO)}/PART.log"
 
 

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import os
+import re
 import select
 from collections.abc import Callable
 from typing import TYPE_CHECKING
 
 import pytest
 import run_parts
-from costs import Budget, PartCost, compare
+from costs import Budget, PartCost, SetCost, compare
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -98,6 +99,18 @@ def test_what_waits_runs_beside_what_computes(write_parts: WriteParts, tmp_path:
     assert [part.passed for part in run("kernel", "host").values()] == [1, 1]
 
 
+def test_a_browser_is_waited_for_beside_what_compiles() -> None:
+    parts = run_parts.Run(["clang", "host", "web"], Budget("a test", 1.0, {}, {}))
+    clang, host, web = parts.waiting
+    parts.running = [clang]
+    assert parts.may_start(host)
+    assert parts.may_start(web)
+    parts.running = [clang, host]
+    assert not parts.may_start(web), "together they would take a core from it"
+    parts.running = [web]
+    assert parts.may_start(clang)
+
+
 def test_tests_of_the_dev_build_wait_for_it(write_parts: WriteParts, tmp_path: Path) -> None:
     ok = "echo '1 passed, 0 failed, 0 skipped'"
     write_parts(build=f"touch {tmp_path}/built; {ok}", host=f"[ -e {tmp_path}/built ] && {ok}")
@@ -126,6 +139,32 @@ def test_a_part_that_grew_by_a_third_is_named(monkeypatch: pytest.MonkeyPatch) -
     assert "GREW host: 270 CPU s instead of 200" in text
     assert "unit" not in text
     assert "web: 1 CPU s, and no budget" in text
+
+
+def budget_of(sets: dict[str, SetCost], **cpu_s: float) -> Budget:
+    parts = {name: PartCost(took_s=100, cpu_s=each) for name, each in cpu_s.items()}
+    return Budget("a machine", 1.0, sets, parts)
+
+
+def test_a_run_says_at_the_start_how_long_it_will_take(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(run_parts, "ALL_CORES", 2)
+    budget = budget_of({"default": SetCost(cold_s=900, warm_s=360)}, build=300, clang=340)
+    assert "On a machine: 15:00 where nothing" in run_parts.greeting(["build"], "default", budget)
+    by_parts = run_parts.greeting(["build", "clang"], "all", budget)
+    assert "640 CPU-seconds on a machine: about 5:20 on the 2 cores here" in by_parts
+    monkeypatch.setattr(run_parts, "ALL_CORES", 64)
+    assert "about 1:40 on" in run_parts.greeting(["build", "clang"], "all", budget), "the longest"
+    assert "about" not in run_parts.greeting(["build", "fresh"], "nightly", budget)
+
+
+def test_each_set_knows_how_long_it_will_take() -> None:
+    budget = Budget.read(run_parts.BUDGET)
+    script = (run_parts.REPO / "scripts" / "test.sh").read_text()
+    sets = dict(re.findall(r"^(default|ci|all)=\((.*)\)$", script, re.MULTILINE))
+    assert set(sets) == {"default", "ci", "all"}
+    for name, words in sets.items():
+        parts = words.replace('"${default[@]}"', sets["default"]).split()
+        assert run_parts.expected(run_parts.with_build(parts), name, budget)
 
 
 def test_every_part_has_a_script_that_says_what_it_is() -> None:
