@@ -86,6 +86,36 @@ def test_without_a_build_its_tests_are_failures_and_not_run(
     assert not (tmp_path / "ran").exists()
 
 
+@pytest.mark.parametrize(("ci", "status"), [("true", 1), ("", 0)])
+def test_in_ci_a_skip_is_a_failure(
+    write_parts: WriteParts,
+    monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
+    ci: str,
+    status: int,
+) -> None:
+    write_parts(lint="echo '2 passed, 0 failed, 1 skipped'")
+    monkeypatch.setattr(run_parts, "REPO", run_parts.LOGS)
+    monkeypatch.setattr("sys.argv", ["run_parts.py", "lint"])
+    monkeypatch.setenv("CI", ci)
+    assert run_parts.main() == status
+    shown = capsys.readouterr().out
+    assert ("in CI nothing may be skipped" in shown) == bool(status)
+    assert shown.splitlines()[-1] == "2 passed, 0 failed, 1 skipped"
+
+
+def test_the_table_has_a_line_for_each_part_and_their_sum() -> None:
+    parts = run_parts.Run(["lint"], Budget("a test", 1.0, {}, {}))
+    parts.done = [
+        run_parts.Part("lint", passed=2, skipped=1, took_s=75.0, cpu_s=61.2),
+        run_parts.Part("pages", failed=3, took_s=9.0, cpu_s=10.4),
+    ]
+    head, *rows, last = [line.split() for line in parts.table().strip().splitlines()]
+    assert head == ["part", "passed", "failed", "skipped", "min:s", "CPU", "s"]
+    assert rows == [["lint", "2", "0", "1", "1:15", "61"], ["pages", "0", "3", "0", "0:09", "10"]]
+    assert last == ["together", "0:00", "72"]
+
+
 def test_what_waits_runs_beside_what_computes(write_parts: WriteParts, tmp_path: Path) -> None:
     # Each waits for the other: alone, neither would end.
     here, there = tmp_path / "here", tmp_path / "there"

@@ -1,0 +1,56 @@
+"""`suite` of scripts/lib/results.sh: what a test runner says, and how it ends."""
+
+from __future__ import annotations
+
+import subprocess
+from pathlib import Path
+
+import pytest
+
+REPO = Path(__file__).resolve().parents[2]
+OK = "echo '3 passed, 0 failed, 0 skipped'"
+
+
+def part(*runners: str) -> tuple[str, int, str]:
+    """Last line, status and whole output of a part that runs these."""
+    suites = "".join(f"suite number_{i} sh -c {runner!r}\n" for i, runner in enumerate(runners))
+    done = subprocess.run(
+        ["bash", "-ec", f"set -uo pipefail; . '{REPO}/scripts/lib/results.sh'\n{suites}finish"],
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    assert done.stderr == ""
+    return done.stdout.splitlines()[-1], done.returncode, done.stdout
+
+
+def test_counts_of_all_runners_are_added() -> None:
+    last, status, shown = part(f"echo details; {OK}", "echo '1 passed, 0 failed, 0 skipped'")
+    assert (last, status) == ("4 passed, 0 failed, 0 skipped", 0)
+    assert "details" in shown
+
+
+def test_a_failure_is_counted_once() -> None:
+    last, status, _ = part("echo '2 passed, 1 failed, 0 skipped'; exit 1", OK)
+    assert (last, status) == ("5 passed, 1 failed, 0 skipped", 1)
+
+
+def test_a_skip_with_status_1_is_no_failure() -> None:
+    last, status, _ = part("echo '2 passed, 0 failed, 1 skipped'; exit 1")
+    assert (last, status) == ("2 passed, 0 failed, 1 skipped", 0)
+
+
+@pytest.mark.parametrize(
+    ("runner", "why"),
+    [
+        ("echo crashed; exit 139", "it ended without a result"),
+        (f"{OK}; exit 1", "status 1"),
+        ("echo '2 passed, 0 failed, 1 skipped'; exit 139", "status 139"),
+        ("echo '0 passed, 0 failed, 0 skipped'", "it ran no test"),
+    ],
+)
+def test_a_runner_that_does_not_end_well_is_a_failure(runner: str, why: str) -> None:
+    last, status, shown = part(runner, OK)
+    assert " 1 failed, " in last
+    assert status == 1
+    assert f"FAILED number_0: {why}" in shown

@@ -1,0 +1,94 @@
+"""scripts/venv.sh asks for what is wanted, and for nothing else."""
+
+from __future__ import annotations
+
+import json
+import os
+import subprocess
+from pathlib import Path
+
+import pytest
+
+REPO = Path(__file__).resolve().parents[2]
+# In the places of venv and pip: what is asked for is written down, and nothing is downloaded.
+VENV = """
+import os, sys
+os.makedirs(sys.argv[-1] + "/bin", exist_ok=True)
+os.symlink(sys.executable, sys.argv[-1] + "/bin/python")
+"""
+PIP = """
+import json, os, re, sys
+lines = [word.partition("=")[2] for word in sys.argv if word.startswith("--requirement=")]
+text = "".join(open(file).read() for file in lines)
+asked = {
+    "hashes": "--require-hashes" in sys.argv,
+    "editable": "--editable" in sys.argv,
+    "names": sorted(name.lower() for name in re.findall(r"^([\\w.-]+)==", text, re.MULTILINE)),
+}
+with open(os.environ["CALLS"], "a") as calls:
+    calls.write(json.dumps(asked) + "\\n")
+"""
+
+
+class Environment:
+    def __init__(self, folder: Path) -> None:
+        self._folder = folder
+        for name, text in (("venv", VENV), ("pip", PIP)):
+            (folder / "fakes" / name).mkdir(parents=True)
+            (folder / "fakes" / name / "__init__.py").touch()
+            (folder / "fakes" / name / "__main__.py").write_text(text)
+
+    def make(self, *words: str) -> list[dict[str, object]]:
+        """What pip was asked for."""
+        calls = self._folder / "calls"
+        calls.write_text("")
+        done = subprocess.run(
+            [REPO / "scripts" / "venv.sh", *words],
+            capture_output=True,
+            text=True,
+            check=True,
+            env={
+                **os.environ,
+                "CALLS": str(calls),
+                "PYTHONPATH": str(self._folder / "fakes"),
+                "RC10_VENV": str(self._folder / "venv"),
+            },
+        )
+        assert done.stdout.splitlines()[-1] == str(self._folder / "venv" / "bin" / "python")
+        return [json.loads(line) for line in calls.read_text().splitlines()]
+
+
+def requirements(*files: str) -> list[str]:
+    lines = [line for file in files for line in (REPO / file).read_text().splitlines()]
+    return sorted(line.partition("==")[0].strip().lower() for line in lines if "==" in line)
+
+
+CLIENT = requirements("python/requirements.txt")
+OTHERS = requirements("python/requirements-dev.txt", "scripts/requirements.txt")
+ITSELF = {"hashes": False, "editable": True, "names": []}
+
+
+def asked(names: list[str]) -> dict[str, object]:
+    return {"hashes": True, "editable": False, "names": names}
+
+
+@pytest.fixture
+def environment(tmp_path: Path) -> Environment:
+    return Environment(tmp_path)
+
+
+def test_a_robot_program_needs_no_more_than_the_client(environment: Environment) -> None:
+    assert environment.make("client") == [asked(CLIENT), ITSELF]
+    assert not set(CLIENT) & set(OTHERS)
+
+
+def test_what_is_there_is_not_asked_for_again(environment: Environment) -> None:
+    environment.make("client")
+    assert environment.make("client") == []
+    assert environment.make() == [asked(OTHERS)]
+    assert environment.make() == []
+    assert environment.make("client") == [], "all has it"
+
+
+def test_tests_and_tools_need_all(environment: Environment) -> None:
+    assert environment.make() == [asked(CLIENT), ITSELF, asked(OTHERS)]
