@@ -108,7 +108,7 @@ def compiled_files(builds: Path, since: float) -> list[tuple[float, str]]:
             if len(fields) < 5 or not all(map(is_number, fields[:3])):
                 continue  # the end of a build that was interrupted
             begin, end, made_ns, output, *_ = fields
-            if int(made_ns) / 1e9 >= since and output.endswith((".o", ".gch", ".pch")):
+            if int(made_ns) / 1e9 >= since and output.endswith(".o"):
                 files[f"{log.parent.name}/{output}"] = (int(end) - int(begin)) / 1000
     return [(seconds, name) for name, seconds in files.items()]
 
