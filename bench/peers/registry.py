@@ -25,6 +25,8 @@ class Client:
     lacks: str
 
 
+# Feedback has no age, error frames are not read, nor what was sent; nothing stops when the program
+# hangs; a motor has no limits but those of its frame.
 NO_SUPERVISION = "ages, errors, echo, watchdog, limits"
 NAIVE = Client("python-can, naive loop", "client_python_can.py", NO_SUPERVISION)
 DAMIAO_MOTOR = Client("damiao-motor", "client_damiao.py", NO_SUPERVISION)
