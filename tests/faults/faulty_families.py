@@ -1,6 +1,6 @@
 """One fake drive of any family that does wrong things when told so, by a frame that no robot uses.
 
-FAULT_ID carries one byte, a Wrong; PARKED has an angle of the shaft after it, signed 16 bit, deg.
+FAULT_ID carries one byte, a Wrong, and for some an argument after it, signed 16 bit.
 Arguments: the interface and the drive.
 """
 
@@ -19,7 +19,7 @@ from rc10.fakes.drives import Drives
 from rc10.fakes.runner import Runner
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Iterator
     from types import FrameType
 
     from rc10.fakes.fake import Fake
@@ -34,7 +34,8 @@ class Wrong(IntEnum):
     SILENT = 1
     RESTARTED = 2
     FAULTED = 3
-    PARKED = 4  # switched off, turned there by hand, switched on a second later
+    PARKED = 4  # argument: deg; switched off, turned there by hand, switched on a second later
+    RESCALED = 5  # argument: percent; of its speed that it reports
 
 
 # The family's own code of a fault that it reports and that `clear` ends.
@@ -54,6 +55,8 @@ _CODES = {
 _BOOT_S = {"lktech": 0.3}
 # No drive is off and on again sooner.
 _OFF_S = 1.0
+# First byte and bits of the speed in the feedback of those that report a share of a range.
+_SPEEDS = {"damiao": (3, 12), "myactuator": (3, 12), "robstride": (2, 16), "cubemars": (3, 12)}
 
 
 class FaultyDrive(Drives):
@@ -65,6 +68,11 @@ class FaultyDrive(Drives):
         self._motor: Any = self.motors[0]
         self._silent = False
         self._off_s = 0.0
+        self._speed_ratio = 1.0
+
+    @property
+    def _family(self) -> str:
+        return type(self._motor).__module__.rpartition(".")[2]
 
     def _park(self, angle_deg: int) -> None:
         # One turn of its encoder is all that it knows.
@@ -84,9 +92,11 @@ class FaultyDrive(Drives):
 
     def _order(self, wrong: Wrong, argument: bytes) -> None:
         self._silent = wrong is Wrong.SILENT
-        family = type(self._motor).__module__.rpartition(".")[2]
+        family = self._family
         if wrong is Wrong.PARKED:
             self._park(int.from_bytes(argument, signed=True))
+        elif wrong is Wrong.RESCALED:
+            self._speed_ratio = int.from_bytes(argument, signed=True) / 100
         elif wrong is Wrong.RESTARTED:
             restart = getattr(self._motor, "restart", None) or self._motor.reboot
             restart()
@@ -97,6 +107,28 @@ class FaultyDrive(Drives):
             self._motor.fail(0)  # the cause is away; what is latched stays until it is cleared
         elif wrong is Wrong.NOTHING and family == "cubemars":
             self._motor.error = 0  # servo mode latches nothing
+
+    def feedback(self) -> Iterator[can.Message]:
+        for message in super().feedback():
+            if self._speed_ratio != 1.0 and self._is_state(message):
+                self._rescale(message)
+            yield message
+
+    def _is_state(self, message: can.Message) -> bool:
+        """Of those frames that the drives send while they obey."""
+        return {
+            "damiao": message.data[0] >> 4 == 1,
+            "myactuator": message.arbitration_id >> 8 == 0x5,
+            "robstride": message.arbitration_id >> 24 == 0x02,
+        }.get(self._family, True)
+
+    def _rescale(self, message: can.Message) -> None:
+        byte, bits = _SPEEDS[self._family]
+        word = int.from_bytes(message.data[byte : byte + 2])
+        unused, middle = 16 - bits, ((1 << bits) - 1) / 2
+        code = round(middle + self._speed_ratio * ((word >> unused) - middle))
+        word = code << unused | word & ((1 << unused) - 1)
+        message.data[byte : byte + 2] = word.to_bytes(2)
 
     def step(self, dt_s: float) -> None:
         self._off_s = max(0.0, self._off_s - dt_s)

@@ -69,10 +69,9 @@ def rc10d(config: Path) -> Iterator[None]:
         yield
 
 
-def happens(wrong: Wrong, angle_deg: int = 0) -> int:
+def happens(wrong: Wrong, argument: int = 0) -> int:
     """Orders it; returns when, in ns of the wall clock."""
-    argument = angle_deg.to_bytes(2, signed=True).hex() if wrong is Wrong.PARKED else ""
-    run("cansend", "vcan0", f"{FAULT_ID:03X}#{wrong:02X}{argument}")
+    run("cansend", "vcan0", f"{FAULT_ID:03X}#{wrong:02X}{argument.to_bytes(2, signed=True).hex()}")
     return time.time_ns()
 
 

@@ -102,6 +102,60 @@ def test_a_drive_with_the_scale_of_another_model(name: str, fake: str, tmp_path:
         )
 
 
+def turning(name: str, rpm: int, seconds: float) -> Proc:
+    """Motion in a mode whose answers have the speed as a share of a range."""
+    if name == "MyActuator":
+        more = (f"--velocity-ff={rpm}", "--stiffness=0", "--damping=4")
+        return setting("motor", "impedance", 0, seconds, *more)
+    return setting("motor", "velocity", rpm, seconds)
+
+
+# From enabling on; Damiao drives say their scale before.
+@pytest.mark.parametrize("name", ["Damiao", "MyActuator"])
+def test_a_drive_whose_scale_is_another_after_enabling(name: str, tmp_path: Path) -> None:
+    family = next(f for f in FAMILIES if f.name == name)
+    config = write_config(tmp_path, f"name: motor, {family.keys}", bus=family.bus)
+    with Candump("vcan0") as bus, running(config, family.fake):
+        wait_status("READY")
+        rc10ctl("enable")
+        wait_status("ACTIVE")
+        begun_ns = happens(Wrong.RESCALED, 150)
+        with turning(name, 60, 30.0):
+            wait_for(lambda: motors()[0]["status"] == "FAULT", 5.0, "FAULT", poll_s=0.05)
+        assert motors()[0]["fault"] == NOT_ITS_SCALE
+        time.sleep(0.3)
+        told = moving(family, [f for f in bus.frames() if f.t_ns >= begun_ns])
+        proven(
+            f"{name}: speeds on another scale since it was enabled",
+            "FAULT 43 in the first motion",
+            begun_ns,
+            max(f.t_ns for f in told),
+            1000,
+        )
+
+
+@pytest.mark.parametrize("name", ["Damiao", "MyActuator", "RobStride", "CubeMars in MIT mode"])
+def test_a_drive_that_reports_its_speed_somewhat_wrong_goes_on(name: str, tmp_path: Path) -> None:
+    family = next(f for f in FAMILIES if f.name == name)
+    config = write_config(tmp_path, f"name: motor, {family.keys}", bus=family.bus)
+    with running(config, family.fake):
+        wait_status("READY")
+        rc10ctl("enable")
+        # There and back: an AK drive knows two turns in each direction.
+        for rpm, percent in ((60, 115), (-60, 88)):
+            happens(Wrong.RESCALED, percent)
+            from_deg = motors()[0]["total_angle_deg"]
+            with turning(name, rpm, 1.5) as hand:
+                assert hand.wait(20.0) == 0, hand.output()
+            moved_deg = abs(motors()[0]["total_angle_deg"] - from_deg)
+            assert moved_deg > 180, "several windows of the check"
+            assert motors()[0]["status"] == "ACTIVE"
+            # Compared anew.
+            rc10ctl("disable")
+            rc10ctl("enable")
+    proven(f"{name}: reported speed 12 % low or 15 % high", "no stop", None, None, 0)
+
+
 def test_a_drive_that_says_it_has_another_scale_is_not_enabled(tmp_path: Path) -> None:
     family = next(f for f in FAMILIES if f.name == "Damiao")
     config = write_config(tmp_path, f"name: motor, {family.keys}", bus=family.bus)

@@ -50,9 +50,9 @@ def rc10ctl(*words: str) -> str:
     return run(BIN / "rc10ctl", "--robot", ROBOT, *words)
 
 
-def setting(motor: str, mode: str, value: float, seconds: float) -> Proc:
+def setting(motor: str, mode: str, value: float, seconds: float, *more: str) -> Proc:
     """A rc10ctl that gives a motor a target for so long."""
-    words = (motor, mode, str(value), "--for", f"{round(seconds * 1000)}ms")
+    words = (motor, mode, str(value), *more, "--for", f"{round(seconds * 1000)}ms")
     return Proc(BIN / "rc10ctl", "--robot", ROBOT, "set", *words)
 
 

@@ -34,6 +34,8 @@ class SoloRig {
     load.stalled = stalled;
     drive_->setLoad(load);
   }
+  /// Change of each frame on its way from the drive to the motor.
+  void garble(std::function<void(CanFrame&)> change) { garble_ = std::move(change); }
   /// Nothing passes in either direction, from now on.
   void cut(bool cut) { cut_ = cut; }
 
@@ -92,6 +94,7 @@ class SoloRig {
   void deliver(std::span<CanFrame> frames, std::size_t count) {
     for (auto& frame : frames.first(count)) {
       frame.received = now_ + kHalfPeriod;
+      if (garble_) garble_(frame);
       received_.push_back(frame);
       if (!cut_ && motor_->matchesFrame(frame)) (void)motor_->updateFeedback(frame);
     }
@@ -101,6 +104,7 @@ class SoloRig {
   std::unique_ptr<sim::Drive> drive_;
   std::vector<CanFrame> sent_;
   std::vector<CanFrame> received_;
+  std::function<void(CanFrame&)> garble_;
   MonotonicTime now_{std::chrono::hours{1}};
   std::uint64_t ticks_ = 0;
   Duration elapsed_{};
