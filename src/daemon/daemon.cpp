@@ -132,7 +132,6 @@ Result<void> Daemon::createLoops(int estop_socket) {
   auto sched_loop = SchedLoop::create(*scheduler_,
                                       {.grid = grid,
                                        .timer = timerKind(config_.timer),
-                                       .estops = EstopDatagrams{estop_socket},
                                        .overload = config_.overload,
                                        .realtime_percent = realtimePercent()},
                                       in_tick ? intake_.get() : nullptr);
@@ -140,7 +139,8 @@ Result<void> Daemon::createLoops(int estop_socket) {
   sched_loop_ = std::move(*sched_loop);
   std::optional<RxLoop::Drain> drain;
   if (!in_tick) drain.emplace(RxLoop::Drain{*intake_, grid.shifted(-config_.rx_lead)});
-  auto rx_loop = RxLoop::create(robot_->serialChannels(), drain);
+  auto rx_loop = RxLoop::create(robot_->serialChannels(), drain,
+                                RxLoop::Estops{EstopDatagrams{estop_socket}, exchange_});
   if (!rx_loop) return tl::unexpected(rx_loop.error());
   rx_loop_ = std::move(*rx_loop);
   auto sim_loop = SimLoop::create(*robot_, grid, exchange_.shafts);

@@ -7,7 +7,7 @@
 
 namespace rc10::link {
 
-/// The way of an e-stop past connections, seats and rings: a datagram that the next tick of rc10d takes.
+/// The way of an e-stop past connections, seats and rings: a datagram that acts in the next tick of rc10d.
 /// Nothing is answered; a request beside it is.
 class EstopDatagram {
  public:

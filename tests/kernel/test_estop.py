@@ -1,4 +1,4 @@
-"""Delay of an e-stop to the wire, by the socket that needs no thread but the scheduler's."""
+"""Delay of an e-stop to the wire, by the socket that needs no ordinary thread."""
 
 from __future__ import annotations
 

@@ -107,7 +107,8 @@ constexpr std::array kLcmKeys{
 
 constexpr Section kScheduler{"scheduler", kSchedulerKeys, "The thread that owns the motors."};
 constexpr Section kRx{"rx", kRxKeys,
-                      "The thread that reads serial ports and, with receive: thread, the CAN buses."};
+                      "The thread that reads serial ports, e-stops by datagram and, with receive: "
+                      "thread, the CAN buses."};
 constexpr Section kLcm{"lcm", kLcmKeys, "The link to programs in any language, through LCM."};
 
 constexpr std::array kRobotKeys{
@@ -150,7 +151,8 @@ constexpr std::array kRobotKeys{
     Key{.name = "rx",
         .kind = kSection,
         .section = &kRx,
-        .about = "The thread that reads serial ports and, with receive: thread, the CAN buses."},
+        .about = "The thread that reads serial ports, e-stops by datagram and, with receive: "
+                 "thread, the CAN buses."},
     Key{.name = "lcm", .kind = kSection, .section = &kLcm, .about = "The link to programs, through LCM."},
     Key{.name = "clients",
         .kind = kSectionList,

@@ -64,9 +64,12 @@ struct LinkExchange {
   /// Beside the ring, so that an e-stop gets through when the ring is full.
   std::atomic<bool> estop{false};
   LatestValue<link::Name> estop_client;  ///< The one that asked for it; published before.
-  SafetyContact estop_contact;           // gpio -> scheduler
-  SafetyContact mode_contact;            // gpio -> scheduler
-  std::atomic<bool> guard_lost{false};   // main -> scheduler: rc10-guard has ended
+  /// The same of datagrams, rx -> scheduler: each flag has one writer.
+  std::atomic<bool> estop_datagram{false};
+  LatestValue<link::Name> estop_datagram_client;
+  SafetyContact estop_contact;          // gpio -> scheduler
+  SafetyContact mode_contact;           // gpio -> scheduler
+  std::atomic<bool> guard_lost{false};  // main -> scheduler: rc10-guard has ended
 };
 
 }  // namespace rc10

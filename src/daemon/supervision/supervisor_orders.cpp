@@ -15,6 +15,8 @@ void Supervisor::receiveOrders(const Tick& tick) noexcept {
   reduced_ = mode.opened;
   if (link_.estop.exchange(false, std::memory_order_acquire))
     estop({StopCause::kRequest, link_.estop_client.read()}, tick);
+  if (link_.estop_datagram.exchange(false, std::memory_order_acquire))
+    estop({StopCause::kRequest, link_.estop_datagram_client.read()}, tick);
   // Only what is there now: a client that floods the ring must not lengthen the tick without bound.
   for (auto n = link_.orders.read_available(); n > 0; --n) {
     link_.orders.consume_one([&](const Order& order) { carryOut(order, tick); });

@@ -21,20 +21,30 @@ namespace {
 constexpr Duration kIdle = std::chrono::milliseconds{100};
 // Further events come with the next call.
 constexpr int kMaxEvents = 16;
+// Of the socket of e-stops in the epoll set; a serial port has its number.
+constexpr std::uint64_t kEstopTag = ~std::uint64_t{0};
 
 }  // namespace
 
-Result<std::unique_ptr<RxLoop>> RxLoop::create(SerialChannels* serial, std::optional<Drain> drain) {
+Result<std::unique_ptr<RxLoop>> RxLoop::create(SerialChannels* serial, std::optional<Drain> drain,
+                                               std::optional<Estops> estops) {
   UniqueFd epoll{epoll_create1(EPOLL_CLOEXEC)};
   if (!epoll) return fail(fmt::format("epoll_create1: {}", errnoText(errno)));
-  return std::unique_ptr<RxLoop>(new RxLoop(serial, drain, std::move(epoll)));
+  auto loop = std::unique_ptr<RxLoop>(new RxLoop(serial, drain, estops, std::move(epoll)));
+  if (estops && !loop->watch(estops->datagrams.descriptor(), kEstopTag))
+    return fail(fmt::format("the socket of e-stops cannot be watched: epoll_ctl: {}", errnoText(errno)));
+  return loop;
 }
 
 bool RxLoop::watchSerial(std::size_t channel) noexcept {
+  return watch((*serial_)[channel].fd.get(), channel);
+}
+
+bool RxLoop::watch(int descriptor, std::uint64_t tag) noexcept {
   epoll_event event{};
   event.events = EPOLLIN;
-  event.data.u64 = channel;
-  return epoll_ctl(epoll_.get(), EPOLL_CTL_ADD, (*serial_)[channel].fd.get(), &event) == 0;
+  event.data.u64 = tag;
+  return epoll_ctl(epoll_.get(), EPOLL_CTL_ADD, descriptor, &event) == 0;
 }
 
 void RxLoop::run(const std::stop_token& stop) noexcept {
@@ -57,18 +67,37 @@ MonotonicTime RxLoop::turn(MonotonicTime now) noexcept {
 void RxLoop::poll(Duration patience) noexcept {
   // ppoll and not a timerfd in the epoll set: on PREEMPT_RT its timer expires in interrupt context for a
   // real-time thread, while a timerfd waits for ktimers (FIFO 1).
-  patience = std::clamp(patience, Duration::zero(), kIdle);
+  const Duration rest = rests_until_ - monotonicNow();
+  const bool rests = rest > Duration::zero();
+  patience = std::clamp(rests ? std::min(patience, rest) : patience, Duration::zero(), kIdle);
   const timespec at_most = toTimespec(patience);
-  pollfd ports{.fd = epoll_.get(), .events = POLLIN, .revents = 0};
-  const int ready = ::ppoll(&ports, 1, &at_most, nullptr);
+  pollfd sources{.fd = epoll_.get(), .events = POLLIN, .revents = 0};
+  const int ready = ::ppoll(&sources, rests ? 0 : 1, &at_most, nullptr);
   wake_ups_.fetch_add(1, std::memory_order_relaxed);
-  if (ready <= 0) return;
+  if (ready > 0) look(monotonicNow());
+}
+
+void RxLoop::look(MonotonicTime now) noexcept {
+  if (now < rests_until_) return;
   std::array<epoll_event, kMaxEvents> events;
   const int count = epoll_wait(epoll_.get(), events.data(), kMaxEvents, 0);
   if (count <= 0) return;
-  const MonotonicTime now = monotonicNow();
-  for (const epoll_event& event : std::span(events).first(static_cast<std::size_t>(count)))
-    receiveSerial(event.data.u64, now, event.events);
+  rests_until_ = now + kRest;
+  for (const epoll_event& event : std::span(events).first(static_cast<std::size_t>(count))) {
+    if (event.data.u64 == kEstopTag)
+      receiveEstops();
+    else
+      receiveSerial(event.data.u64, now, event.events);
+  }
+}
+
+void RxLoop::receiveEstops() noexcept {
+  const auto client = estops_->datagrams.take();
+  if (!client) return;
+  auto& exchange = estops_->exchange;
+  exchange.estop_datagram_client.slot() = *client;
+  exchange.estop_datagram_client.publish();
+  exchange.estop_datagram.store(true, std::memory_order_release);
 }
 
 void RxLoop::receiveSerial(std::size_t channel, MonotonicTime now, std::uint32_t events) noexcept {

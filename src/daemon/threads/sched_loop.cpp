@@ -16,7 +16,6 @@ SchedLoop::SchedLoop(Scheduler& scheduler, const Settings& settings, PeriodicTim
       grid_(settings.grid),
       timer_(std::move(timer)),
       intake_(intake),
-      estops_(settings.estops),
       overload_(settings.grid.period, overloadPercent(settings.realtime_percent), settings.overload),
       cpu_time_(settings.cpu_time) {}
 
@@ -45,7 +44,6 @@ void SchedLoop::run(const std::stop_token& stop) noexcept {
     if (slept_in > grid_.period / kLateBegin) timing_.late.record(TickStep::kWake, slept_in);
     planned += grid_.period * static_cast<std::int64_t>(periods);
     if (stop.stop_requested()) scheduler_.beginStop();
-    if (const auto client = estops_.take()) scheduler_.stopFor({StopCause::kRequest, *client});
     scheduler_.tick(now, periods);
     ended = monotonicNow();
     countLongTick(woken, ended - now);

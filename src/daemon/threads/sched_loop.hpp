@@ -6,7 +6,6 @@
 #include "app/result.hpp"
 #include "app/time_grid.hpp"
 #include "daemon/exchange/clock.hpp"
-#include "daemon/exchange/estop_datagrams.hpp"
 #include "daemon/exchange/tick_timing.hpp"
 #include "daemon/interfaces/can_intake.hpp"
 #include "daemon/threads/overload_watch.hpp"
@@ -21,7 +20,6 @@ class SchedLoop {
   struct Settings {
     TimeGrid grid;
     TimerKind timer = TimerKind::kTimerfd;
-    EstopDatagrams estops{-1};
     Duration
         overload;  ///< Range: above 0. The robot stops after ticks of so much CPU time, see OverloadWatch.
     int realtime_percent = 95;  ///< Range: 1 to 100. CPU time that the kernel leaves to real-time threads.
@@ -48,7 +46,6 @@ class SchedLoop {
   TimeGrid grid_;
   PeriodicTimer timer_;
   CanIntake* intake_;
-  EstopDatagrams estops_;
   OverloadWatch overload_;
   Duration (*cpu_time_)() noexcept;
   TickTiming timing_;

@@ -112,6 +112,24 @@ TEST_F(StopCauseTest, AnEstopPastAFullRingIsNamedToo) {
   EXPECT_EQ(robot.snapshot().stopped, robot.now());
 }
 
+TEST_F(StopCauseTest, AnEstopByDatagramIsNamedAndVetoesAClearOfItsTick) {
+  const auto sent = [this](std::string_view client) {
+    robot.exchange().estop_datagram_client.slot() = client;
+    robot.exchange().estop_datagram_client.publish();
+    robot.exchange().estop_datagram.store(true);
+  };
+  sent("pult");
+  robot.tick();
+  EXPECT_EQ(robot.snapshot().stop.by.view(), "pult");
+  robot.run(2000);
+  sent("again");
+  EXPECT_EQ(asked(Operation::kClear, "captain", {}, true).motors[kLeft], Refusal::kEstopAsked);
+  EXPECT_EQ(robot.snapshot().state, RobotStatus::kEstop);
+  EXPECT_EQ(robot.snapshot().stop.by.view(), "pult");
+  asked(Operation::kClear, "captain", {}, true);
+  EXPECT_EQ(robot.snapshot().state, RobotStatus::kRun) << "once";
+}
+
 TEST_F(StopCauseTest, TheInputIsACauseOfItsOwn) {
   robot.exchange().estop_contact.show(ContactState::kOpen);
   robot.tick();

@@ -10,6 +10,7 @@
 
 #include "bus/socket_pair.hpp"
 #include "daemon/exchange/clock.hpp"
+#include "daemon/threads/rx_loop.hpp"
 #include "daemon/virtual_robot.hpp"
 
 namespace rc10::test::sched_loop_test {
@@ -44,16 +45,19 @@ class SchedLoopTest : public ::testing::Test {
   }
   ~SchedLoopTest() override { ended = nullptr; }
 
-  /// Sends e-stops as clients do.
+  /// An e-stop as clients send it, and one look of the RX thread.
   void sendEstop(std::string_view client) {
     ASSERT_GE(::send(socket.far.get(), client.data(), client.size(), MSG_DONTWAIT), 0);
+    const auto rx =
+        RxLoop::create(nullptr, std::nullopt, RxLoop::Estops{EstopDatagrams{socket.near.get()}, exchange})
+            .value();
+    rx->look(monotonicNow());
   }
 
   /// Ticks with so much work each, and the orderly stop.
   void run(Duration work, int ticks) {
     load = work;
     ticks_left = ticks;
-    settings.estops = EstopDatagrams{socket.near.get()};
     const auto loop = SchedLoop::create(scheduler, settings, nullptr).value();
     loop->run(stop.get_token());
     long_sends = loop->timing().late.of(TickStep::kSend).ticks;
