@@ -28,11 +28,12 @@ enum class EventCode : std::int32_t {
   kCommandRefused = 202,  ///< admission refused a command message
   kEstopInput = 203,      ///< value: the ContactState of the e-stop input
   kModeInput = 204,       ///< value: the ContactState of the mode input
-  kBusState = 300,        ///< value: new BusState, extra: old one
-  kBusAdvice = 301,       ///< repair of a bus, by rc10d or left to a person; from the io thread, in words
-  kForeignSender = 302,   ///< somebody else sends a command id of ours; value: frames since the last report,
-                          ///< extra: foreignFrame()
-  kSerialPort = 310,      ///< a serial port came, went or cannot be opened; from the io thread, in words
+  kPhaseLost = 205,  ///< the wall clock, on which the ticks lie, was stepped; from the io thread, in words
+  kBusState = 300,   ///< value: new BusState, extra: old one
+  kBusAdvice = 301,  ///< repair of a bus, by rc10d or left to a person; from the io thread, in words
+  kForeignSender = 302,  ///< somebody else sends a command id of ours; value: frames since the last report,
+                         ///< extra: foreignFrame()
+  kSerialPort = 310,     ///< a serial port came, went or cannot be opened; from the io thread, in words
   kDevice = 311,  ///< an SPI device or the lines of a GPIO chip came, went or cannot be opened; in words
   kOtherDefinitions = 400,  ///< rc10-lcm: a client was built from other .lcm files
   kMalformed = 401,         ///< rc10-lcm: a message that is not understood

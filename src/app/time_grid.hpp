@@ -17,6 +17,16 @@ struct TimeGrid {
   }
 
   [[nodiscard]] constexpr TimeGrid shifted(Duration by) const noexcept { return {period, offset + by}; }
+
+  /// Points `phase` after each multiple of `period` on a clock that is `ahead` of CLOCK_MONOTONIC. Both are
+  /// slewed alike, so the points stay there until the clock is stepped.
+  [[nodiscard]] static constexpr TimeGrid onClock(Duration period, Duration phase, Duration ahead) noexcept {
+    return {period, ((phase - ahead) % period + period) % period};
+  }
+  /// Place of the points in the periods of a clock that is `ahead`. Range: 0 to below the period.
+  [[nodiscard]] constexpr Duration phaseOn(Duration ahead) const noexcept {
+    return ((offset + ahead) % period + period) % period;
+  }
 };
 
 }  // namespace rc10

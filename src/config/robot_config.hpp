@@ -113,6 +113,8 @@ enum class UnrestPolicy : std::uint8_t {
 
 /// Settings of the scheduler's thread.
 enum class TimerPolicy : std::uint8_t { kAuto, kTimerfd, kNanosleep };
+/// Clock of whose periods RobotConfig::phase_of_period is a part.
+enum class PhaseClock : std::uint8_t { kMonotonic, kRealtime };
 /// The reader of the CAN sockets.
 enum class ReceivePolicy : std::uint8_t { kTick, kThread };
 
@@ -138,7 +140,8 @@ struct RobotConfig {
   ReceivePolicy receive = ReceivePolicy::kTick;
   int rate_hz = 1000;
   TimerPolicy timer = TimerPolicy::kAuto;
-  double phase_of_period = 0.3;  ///< 0 to below 1: place of the ticks in a period of CLOCK_MONOTONIC.
+  double phase_of_period = 0.3;  ///< 0 to below 1: place of the ticks in a period of `phase_clock`.
+  PhaseClock phase_clock = PhaseClock::kMonotonic;
   /// CPU time of ticks that overrun, until the robot stops.
   Duration overload = std::chrono::milliseconds{100};
   ThreadConfig scheduler{.priority = 60, .cpu = std::nullopt};
@@ -158,7 +161,7 @@ struct RobotConfig {
   std::vector<ModuleConfig> modules;
 
   [[nodiscard]] Duration period() const noexcept { return std::chrono::nanoseconds{1'000'000'000 / rate_hz}; }
-  /// Phase of the ticks' grid, after multiples of period().
+  /// Phase of the ticks' grid, after multiples of period() on `phase_clock`.
   [[nodiscard]] Duration phase() const noexcept {
     return Duration{static_cast<Duration::rep>(phase_of_period * static_cast<double>(period().count()))};
   }

@@ -16,6 +16,7 @@
 #include "daemon/rest_frames.hpp"
 #include "daemon/rt_process.hpp"
 #include "daemon/service_notify.hpp"
+#include "daemon/threads/loop_grids.hpp"
 #include "link/run_dir.hpp"
 #include "motor/solo_motor.hpp"
 
@@ -105,7 +106,7 @@ Result<void> Daemon::build() {
     line_loop_ = std::make_unique<LineLoop>(*banks, kernelGpio(), exchange_);
   io_loop_ = std::make_unique<IoLoop>(BusReviver{*robot_, inboxes_, exchange_, interface_locks_},
                                       CanLinkKeeper{*robot_, inboxes_, exchange_}, black_box_.get(),
-                                      serialIo(), spiIo());
+                                      serialIo(), spiIo(), phase_watch_);
   if (config_.lcm.enabled) {
     gateway_ = std::make_unique<GatewayProcess>(
         siblingProgram("rc10-lcm"), std::vector<std::string>{"--socket", socket->path(), "--robot",
@@ -127,10 +128,13 @@ Result<void> Daemon::build() {
 
 Result<void> Daemon::createLoops(int estop_socket) {
   intake_ = std::make_unique<CanIntake>(*robot_, inboxes_, monotonicNow());
-  const TimeGrid grid{config_.period(), config_.phase()};
+  const Duration realtime_ahead = measureRealtimeOffset().ahead;
+  const LoopGrids grids = loopGrids(config_, realtime_ahead);
+  if (config_.phase_clock == PhaseClock::kRealtime)
+    phase_watch_.emplace(grids.ticks, realtime_ahead, exchange_);
   const bool in_tick = config_.receive == ReceivePolicy::kTick;
   auto sched_loop = SchedLoop::create(*scheduler_,
-                                      {.grid = grid,
+                                      {.grid = grids.ticks,
                                        .timer = timerKind(config_.timer),
                                        .overload = config_.overload,
                                        .realtime_percent = realtimePercent()},
@@ -138,12 +142,12 @@ Result<void> Daemon::createLoops(int estop_socket) {
   if (!sched_loop) return tl::unexpected(sched_loop.error());
   sched_loop_ = std::move(*sched_loop);
   std::optional<RxLoop::Drain> drain;
-  if (!in_tick) drain.emplace(RxLoop::Drain{*intake_, grid.shifted(-config_.rx_lead)});
+  if (!in_tick) drain.emplace(RxLoop::Drain{*intake_, grids.drains});
   auto rx_loop = RxLoop::create(robot_->serialChannels(), drain,
                                 RxLoop::Estops{EstopDatagrams{estop_socket}, exchange_});
   if (!rx_loop) return tl::unexpected(rx_loop.error());
   rx_loop_ = std::move(*rx_loop);
-  auto sim_loop = SimLoop::create(*robot_, grid, exchange_.shafts);
+  auto sim_loop = SimLoop::create(*robot_, grids.ticks, exchange_.shafts);
   if (!sim_loop) return tl::unexpected(sim_loop.error());
   sim_loop_ = std::move(*sim_loop);
   return {};

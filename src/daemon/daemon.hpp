@@ -78,6 +78,7 @@ class Daemon {
   std::unique_ptr<CanIntake> intake_;
   std::unique_ptr<SchedLoop> sched_loop_;
   std::unique_ptr<RxLoop> rx_loop_;
+  std::optional<PhaseWatch> phase_watch_;  // for io_loop_
   std::unique_ptr<SimLoop> sim_loop_;
   std::unique_ptr<GpioLoop> gpio_loop_;
   std::unique_ptr<LineLoop> line_loop_;  // null: no module has GPIO lines

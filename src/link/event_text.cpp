@@ -175,6 +175,7 @@ std::string eventText(std::int32_t code, std::int32_t value, std::int32_t extra,
     case kCommandRefused: return refused(value, client);
     case kEstopInput: return estopInputText(value);
     case kModeInput: return modeInputText(value);
+    case kPhaseLost: return "the wall clock was stepped: the phase of the ticks is lost";
     case kBusState: return "bus " + busStateText(value) + " (was " + busStateText(extra) + ")";
     case kBusAdvice: return "bus restarted, or in need of help";
     case kForeignSender: return foreignSender(value, extra);

@@ -57,7 +57,7 @@ TEST(ManyMistakes, AreAllReportedInOneGoInTheOrderOfTheFile) {
           "hero.yaml:3:38: scheduler.priority: '010' has a leading zero, which some read as octal; write 10",
           "hero.yaml:3:48: scheduler.cpu: -1 is below 0; use 0 to 1023",
           "hero.yaml:3:52: scheduler.period: unknown key; known here: rate_hz, priority, timer, phase, "
-          "overload_ms and cpu",
+          "phase_clock, overload_ms and cpu",
           "hero.yaml:4:16: rx.priority: '65' is a text because of its quotes; remove them",
           "hero.yaml:4:27: rx.cpu: '1.5' is not a whole number; remove the fraction",
           "hero.yaml:5:16: lcm.enabled: 'yes' is not true or false; write one of these",

@@ -97,6 +97,7 @@ class RobotBuilder {
                    : timer == "nanosleep" ? TimerPolicy::kNanosleep
                                           : TimerPolicy::kAuto;
     scheduler.read("phase", robot_.phase_of_period);
+    if (scheduler.text("phase_clock") == "realtime") robot_.phase_clock = PhaseClock::kRealtime;
     if (const auto overload_ms = scheduler.number("overload_ms"))
       robot_.overload = std::chrono::milliseconds{static_cast<std::int64_t>(*overload_ms)};
     checkPriorities();

@@ -23,6 +23,8 @@ std::vector<std::string_view> unrestPolicies() { return {"group", "estop", "hear
 
 std::vector<std::string_view> timerPolicies() { return {"auto", "timerfd", "nanosleep"}; }
 
+std::vector<std::string_view> phaseClocks() { return {"monotonic", "realtime"}; }
+
 std::vector<std::string_view> receivePolicies() { return {"tick", "thread"}; }
 
 constexpr Range kPriorities{.min = 1, .max = 90};
@@ -53,10 +55,17 @@ constexpr std::array kSchedulerKeys{
         .kind = kNumber,
         .range = {.min = 0.0, .max = 0.99},
         .default_text = "0.3",
-        .about = "Place of the ticks in each period of the clock, as a part of "
-                 "the period. At 0 the kernel's own timer tick delays them. "
-                 "Computers with a common clock share out a bus with different "
-                 "phases."},
+        .about = "Place of the ticks in each period of phase_clock, as a part of "
+                 "the period. At 0 of monotonic the kernel's own timer tick delays "
+                 "them."},
+    Key{.name = "phase_clock",
+        .kind = kText,
+        .choices = phaseClocks,
+        .default_text = "monotonic",
+        .about = "Clock that phase belongs to. monotonic begins at the boot of each "
+                 "computer. realtime: computers whose wall clocks are kept alike (PTP, "
+                 "chrony) share out a bus with different phases; a step of that clock "
+                 "ends this until a restart, and is told."},
     Key{.name = "overload_ms",
         .kind = kInteger,
         .unit = "ms",

@@ -24,4 +24,16 @@ Duration realtimeOffset(MonotonicTime now) noexcept {
   return std::chrono::duration_cast<Duration>(realtime) - now.time_since_epoch();
 }
 
+ClockOffset measureRealtimeOffset() noexcept {
+  constexpr int kMeasurements = 8;
+  ClockOffset best{Duration{}, Duration::max()};
+  for (int i = 0; i < kMeasurements; ++i) {
+    const MonotonicTime before = monotonicNow();
+    const Duration ahead = realtimeOffset(before);
+    const Duration window = monotonicNow() - before;
+    if (window < best.uncertainty) best = {ahead - window / 2, window};
+  }
+  return best;
+}
+
 }  // namespace rc10

@@ -13,4 +13,12 @@ namespace rc10 {
 /// CLOCK_REALTIME - CLOCK_MONOTONIC; `now`: the latter, read just before.
 [[nodiscard]] Duration realtimeOffset(MonotonicTime now) noexcept;
 
+/// CLOCK_REALTIME - CLOCK_MONOTONIC.
+struct ClockOffset {
+  Duration ahead;
+  Duration uncertainty;  ///< The clocks are read one after the other, and the thread may be preempted.
+};
+/// The least uncertain of some measurements.
+[[nodiscard]] ClockOffset measureRealtimeOffset() noexcept;
+
 }  // namespace rc10

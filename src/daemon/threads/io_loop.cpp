@@ -22,6 +22,7 @@ void IoLoop::run(const std::stop_token& stop) {
       looked = now;
       keeper_.check(now, reviver_.check(now));
       if (serial_) serial_->reviver.check(monotonicNow());
+      if (phase_) phase_->check(measureRealtimeOffset(), monotonicNow());
     }
     if (black_box_ != nullptr) black_box_->drain();
     if (spi_) spi_->turn(monotonicNow());

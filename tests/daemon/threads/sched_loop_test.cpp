@@ -25,7 +25,12 @@ std::atomic<Duration> sleep_of_tick{};
 std::atomic<int> ticks_left{};
 std::stop_source* ended = nullptr;
 
+// Least time from the grid point of a tick to that.
+TimeGrid grid{1ms};
+Duration least_late = Duration::max();
+
 MonotonicTime loadedClock() noexcept {
+  least_late = std::min(least_late, (monotonicNow().time_since_epoch() - grid.offset) % grid.period);
   const Duration until = threadCpuTime() + load.load();
   while (threadCpuTime() < until) {
   }
@@ -123,6 +128,18 @@ TEST_F(SchedLoopTest, AnOverloadHasItsLimit) {
   run(2ms, 30);
   EXPECT_TRUE(stops().empty());
 }
+
+// The grid is coarse: ticks are never early, and of so many one is in time on a busy computer too.
+class SchedLoopPhaseTest : public SchedLoopTest, public ::testing::WithParamInterface<Duration> {};
+
+TEST_P(SchedLoopPhaseTest, TicksLieOnTheirGrid) {
+  settings.grid = {10ms, GetParam()};
+  least_late = Duration::max();
+  run(0us, 12);
+  EXPECT_LT(least_late, 2ms);
+}
+
+INSTANTIATE_TEST_SUITE_P(All, SchedLoopPhaseTest, ::testing::Values(3ms, 7500us));
 
 TEST_F(SchedLoopTest, AnEstopByDatagramActsInTheNextTickHoweverFullTheRingsAre) {
   while (exchange.orders.push(Order{})) {
