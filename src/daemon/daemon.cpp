@@ -17,6 +17,7 @@
 #include "daemon/rt_process.hpp"
 #include "daemon/service_notify.hpp"
 #include "daemon/threads/loop_grids.hpp"
+#include "daemon/threads/timer_kind.hpp"
 #include "link/run_dir.hpp"
 #include "motor/solo_motor.hpp"
 
@@ -30,15 +31,6 @@ constexpr int kSimPriority = 50;
 constexpr Duration kStandstillInRealTime = std::chrono::milliseconds{20};
 constexpr Duration kStandstill = std::chrono::milliseconds{100};
 constexpr int kStandstillPeriods = 4;
-
-TimerKind timerKind(TimerPolicy policy) {
-  switch (policy) {
-    case TimerPolicy::kTimerfd: return TimerKind::kTimerfd;
-    case TimerPolicy::kNanosleep: return TimerKind::kNanosleep;
-    case TimerPolicy::kAuto: break;
-  }
-  return kernelIsPreemptRt() ? TimerKind::kNanosleep : TimerKind::kTimerfd;
-}
 
 }  // namespace
 
@@ -135,7 +127,7 @@ Result<void> Daemon::createLoops(int estop_socket) {
   const bool in_tick = config_.receive == ReceivePolicy::kTick;
   auto sched_loop = SchedLoop::create(*scheduler_,
                                       {.grid = grids.ticks,
-                                       .timer = timerKind(config_.timer),
+                                       .timer = timerKind(config_.timer, kernelIsPreemptRt()),
                                        .overload = config_.overload,
                                        .realtime_percent = realtimePercent()},
                                       in_tick ? intake_.get() : nullptr);

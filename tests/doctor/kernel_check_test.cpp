@@ -2,6 +2,10 @@
 
 #include <gmock/gmock.h>
 
+#include <fstream>
+#include <map>
+#include <string>
+
 #include "host_root.hpp"
 
 namespace rc10::doctor::kernel_check_test {
@@ -66,6 +70,22 @@ TEST(KernelCheck, AComputerWithoutTheseFilesIsJudgedAllTheSame) {
   const HostRoot root;
   EXPECT_EQ(checkPreemption(readKernel(root.files())).verdict, Verdict::kWarn);
   EXPECT_EQ(checkThrottling(readKernel(root.files())).verdict, Verdict::kPass);
+}
+
+TEST(KernelCheck, TheInstalledSettingsLeaveLockedMemoryWhereItIs) {
+  std::ifstream installed(RC10_SOURCE_DIR "/systemd/sysctl.d/60-rc10d.conf");
+  std::map<std::string, std::string> settings;
+  for (std::string key, equals, value; installed >> key;) {
+    if (key.starts_with('#'))
+      std::getline(installed, value);
+    else if (installed >> equals >> value)
+      settings[key] = value;
+  }
+  HostRoot root;
+  root.write("/proc/sys/vm/compact_unevictable_allowed", settings["vm.compact_unevictable_allowed"]);
+  const auto kernel = readKernel(root.files());
+  EXPECT_EQ(kernel.compact_unevictable, 0);
+  EXPECT_EQ(checkCompaction(kernel).verdict, Verdict::kPass);
 }
 
 TEST(KernelCheck, LockedMemoryThatTheKernelMayMoveIsAWarning) {

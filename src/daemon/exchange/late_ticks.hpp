@@ -22,6 +22,10 @@ inline constexpr std::size_t kTickSteps = 6;
   return now - std::max(due, ended);
 }
 
+/// Worth a reason: a tick that begins a fifth of a period late, or takes half of one.
+[[nodiscard]] constexpr bool beginsLate(Duration late, Duration period) noexcept { return late > period / 5; }
+[[nodiscard]] constexpr bool takesLong(Duration tick, Duration period) noexcept { return tick > period / 2; }
+
 /// cycleCount() when the steps of a tick were over.
 struct TickMarks {
   std::uint64_t woken = 0;

@@ -3,13 +3,6 @@
 #include "daemon/exchange/cycle_count.hpp"
 
 namespace rc10 {
-namespace {
-
-// A tick that begins a fifth of a period late, or takes half of one, is worth a reason.
-constexpr int kLateBegin = 5;
-constexpr int kLongTick = 2;
-
-}  // namespace
 
 SchedLoop::SchedLoop(Scheduler& scheduler, const Settings& settings, PeriodicTimer timer, CanIntake* intake)
     : scheduler_(scheduler),
@@ -41,7 +34,7 @@ void SchedLoop::run(const std::stop_token& stop) noexcept {
     const MonotonicTime due = planned + grid_.period;
     timing_.wake_latency.record(now - due);
     const Duration slept_in = latenessOfWake(due, ended, now);
-    if (slept_in > grid_.period / kLateBegin) timing_.late.record(TickStep::kWake, slept_in);
+    if (beginsLate(slept_in, grid_.period)) timing_.late.record(TickStep::kWake, slept_in);
     planned += grid_.period * static_cast<std::int64_t>(periods);
     if (stop.stop_requested()) scheduler_.beginStop();
     scheduler_.tick(now, periods);
@@ -53,7 +46,7 @@ void SchedLoop::run(const std::stop_token& stop) noexcept {
 
 void SchedLoop::countLongTick(std::uint64_t woken, Duration duration) noexcept {
   timing_.duration.record(duration);
-  if (duration <= grid_.period / kLongTick) return;
+  if (!takesLong(duration, grid_.period)) return;
   TickMarks marks = scheduler_.marks();
   marks.woken = woken;
   marks.done = cycleCount();

@@ -182,6 +182,15 @@ TEST(LatenessOfWakeTest, ATickThatOverranIsNoLateTimerOfTheNextOne) {
   EXPECT_EQ(latenessOfWake(due, {}, due + 250us), 250us) << "the first";
 }
 
+TEST(LateTickTest, AFifthOfAPeriodIsLateAndHalfOfOneIsLong) {
+  EXPECT_FALSE(beginsLate(200us, 1ms));
+  EXPECT_TRUE(beginsLate(200us + 1ns, 1ms));
+  EXPECT_FALSE(beginsLate(200us + 1ns, 2ms));
+  EXPECT_FALSE(takesLong(500us, 1ms));
+  EXPECT_TRUE(takesLong(500us + 1ns, 1ms));
+  EXPECT_FALSE(takesLong(500us + 1ns, 2ms));
+}
+
 // ---- Steps
 
 TEST(TickMarksTest, TheLongestStepIsWhereTheTimeWent) {

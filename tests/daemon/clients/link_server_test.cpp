@@ -4,6 +4,9 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include <algorithm>
+#include <span>
+
 #include "daemon/exchange/clock.hpp"
 #include "daemon/link_rig.hpp"
 #include "daemon/virtual_robot.hpp"
@@ -194,6 +197,28 @@ TEST_F(LinkServerTest, ThereIsNoStateBeforeTheFirstTick) {
   auto client = join(link::kStates | link::kDiagnosticsFeed);
   ASSERT_TRUE(await<link::Diagnostics>(*client));  // several periods of the states
   EXPECT_FALSE(client->take<link::State>());
+}
+
+TEST_F(LinkServerTest, TheAgeOfTheFeedbackInEachStateIsTold) {
+  auto& slot = exchange.snapshot.slot();
+  for (std::size_t i = 0; i < 2; ++i) {
+    slot.motors[i].status = i == 0 ? MotorStatus::kReady : MotorStatus::kOffline;
+    slot.motors[i].feedback.samples = 1;
+    slot.motors[i].feedback.received = monotonicNow() - std::chrono::seconds{i == 0 ? 5 : 500};
+  }
+  publishSnapshot(1);
+  auto client = join(link::kStates | link::kDiagnosticsFeed);
+  ASSERT_TRUE(await<link::State>(*client));
+  const auto diagnostics = await<link::Diagnostics>(*client);
+  ASSERT_TRUE(diagnostics);
+  const auto named = std::span{diagnostics->durations}.first(diagnostics->duration_count);
+  const auto age = std::find_if(named.begin(), named.end(), [](const link::Durations& each) {
+    return each.name.view() == "feedback to clients";
+  });
+  ASSERT_NE(age, named.end());
+  EXPECT_GE(age->count, 1);
+  EXPECT_GE(age->percentiles.p50_us, 5e6);
+  EXPECT_LT(age->percentiles.max_us, 400e6) << "not that of a motor that is OFFLINE";
 }
 
 TEST_F(LinkServerTest, DiagnosticsGoToTheSubscribersOnly) {

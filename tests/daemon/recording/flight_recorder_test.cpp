@@ -4,6 +4,8 @@
 
 #include <gmock/gmock.h>
 
+#include <map>
+
 #include "blackbox/memory_box.hpp"
 #include "daemon/clients/admission.hpp"
 #include "daemon/virtual_robot.hpp"
@@ -155,6 +157,22 @@ TEST_F(FlightRecorderTest, StatesAreSampledTwentyTimesASecondAndWhenTheyChange) 
   const auto last = recorded<blackbox::Motor>().back();
   EXPECT_EQ(last.header.flags, static_cast<int>(MotorStatus::kActive));
   EXPECT_EQ(last.header.time_ns, robot.now().time_since_epoch().count());
+}
+
+TEST_F(FlightRecorderTest, NoTickCarriesTheSamplesOfAll) {
+  robot.run(200);  // every motor is READY, which it has told
+  const auto settled_ns = robot.now().time_since_epoch().count();
+  robot.run(1000);
+  std::map<std::int64_t, int> samples;
+  const auto count = [&](const auto& records) {
+    for (const auto& record : records)
+      if (record.header.time_ns > settled_ns) ++samples[record.header.time_ns];
+  };
+  count(recorded<blackbox::Motor>());
+  count(recorded<blackbox::Robot>());
+  count(recorded<blackbox::Bus>());
+  EXPECT_EQ(samples.size(), 5U * 20U) << "three motors, a bus and the robot, each in a tick of its own";
+  for (const auto& [time_ns, of_tick] : samples) EXPECT_EQ(of_tick, 1) << time_ns;
 }
 
 TEST_F(FlightRecorderTest, AnEstopIsACauseForACopyOnceEachTime) {

@@ -6,6 +6,7 @@
 
 #include "app/time_grid.hpp"
 #include "daemon/exchange/clock.hpp"
+#include "daemon/threads/timer_kind.hpp"
 
 namespace rc10::test::periodic_timer_test {
 namespace {
@@ -57,6 +58,15 @@ TEST(PeriodicTimer, GoesOnByNanosleepWhenItsDescriptorCannotBeRead) {
   EXPECT_EQ(timer.wait(), 0U);
   EXPECT_EQ(timer.wait(), 1U);
   EXPECT_GE(monotonicNow(), first);
+}
+
+TEST(TimerKind, AutoSleepsOnPreemptRtOnly) {
+  EXPECT_EQ(timerKind(TimerPolicy::kAuto, true), TimerKind::kNanosleep);
+  EXPECT_EQ(timerKind(TimerPolicy::kAuto, false), TimerKind::kTimerfd);
+  for (const bool preempt_rt : {false, true}) {
+    EXPECT_EQ(timerKind(TimerPolicy::kTimerfd, preempt_rt), TimerKind::kTimerfd);
+    EXPECT_EQ(timerKind(TimerPolicy::kNanosleep, preempt_rt), TimerKind::kNanosleep);
+  }
 }
 
 }  // namespace

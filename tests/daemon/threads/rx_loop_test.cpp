@@ -2,6 +2,7 @@
 
 #include <fcntl.h>
 #include <sys/socket.h>
+#include <sys/un.h>
 #include <unistd.h>
 
 #include <gtest/gtest.h>
@@ -172,6 +173,28 @@ TEST_F(RxLoopFloodTest, AnEstopWithoutANameOrWithOneThatIsTooLongIsOneToo) {
   loop->look(at(6s));
   EXPECT_TRUE(stops());
   EXPECT_EQ(client(), std::string(31, 'n'));
+}
+
+// A socket that listens is readable when somebody calls, and each read of it is an error: no hang-up.
+TEST_F(RxLoopFloodTest, APortWhoseReadsFailIsLeftAndNotLookedAtAgain) {
+  const UniqueFd listener{::socket(AF_UNIX, SOCK_STREAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0)};
+  sockaddr_un address{};
+  address.sun_family = AF_UNIX;
+  socklen_t size = sizeof(sa_family_t);  // the kernel gives it a name
+  ASSERT_EQ(::bind(listener.get(), reinterpret_cast<sockaddr*>(&address), size), 0);
+  ASSERT_EQ(::listen(listener.get(), 1), 0);
+  size = sizeof address;
+  ASSERT_EQ(::getsockname(listener.get(), reinterpret_cast<sockaddr*>(&address), &size), 0);
+  const UniqueFd caller{::socket(AF_UNIX, SOCK_STREAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0)};
+  ASSERT_EQ(::connect(caller.get(), reinterpret_cast<const sockaddr*>(&address), size), 0);
+  ASSERT_GE(::dup3(listener.get(), channel().fd.get(), O_CLOEXEC), 0);
+  ASSERT_TRUE(loop->watchSerial(0));
+  channel().state.store(SerialState::kOpen);
+
+  for (int i = 0; i < 100; ++i) loop->look(at(5s + i * 1ms));
+  EXPECT_EQ(channel().state.load(), SerialState::kAbsent);
+  EXPECT_EQ(channel().hang_ups.load(), 1U);
+  EXPECT_EQ(chunks(), 0U);
 }
 
 TEST_F(RxLoopFloodTest, WithoutItsSocketOfEstopsThereIsNoLoop) {

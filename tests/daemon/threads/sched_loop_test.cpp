@@ -2,12 +2,16 @@
 
 #include <gtest/gtest.h>
 #include <sys/socket.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <atomic>
+#include <csignal>
+#include <ctime>
 #include <thread>
 #include <vector>
 
+#include "app/timespec.hpp"
 #include "bus/socket_pair.hpp"
 #include "daemon/exchange/clock.hpp"
 #include "daemon/threads/rx_loop.hpp"
@@ -42,11 +46,32 @@ MonotonicTime loadedClock() noexcept {
 // A thread that has its CPU for itself, however busy the computer is.
 Duration allOfTheTime() noexcept { return monotonicNow().time_since_epoch(); }
 
+// A signal whose handler keeps the thread past its next grid point, which it waits for.
+void keep(int /*signal*/) {
+  const timespec for_so_long = toTimespec(15ms);
+  (void)::clock_nanosleep(CLOCK_MONOTONIC, 0, &for_so_long, nullptr);
+}
+
+MonotonicTime keptClock() noexcept {
+  if (--ticks_left == 0) ended->request_stop();
+  if (ticks_left != 2) return monotonicNow();
+  sigevent event{};
+  event.sigev_notify = SIGEV_THREAD_ID;
+  event.sigev_signo = SIGALRM;
+  event._sigev_un._tid = ::gettid();
+  timer_t timer{};
+  const itimerspec after_the_tick{.it_interval = {}, .it_value = toTimespec(5ms)};
+  EXPECT_EQ(::timer_create(CLOCK_MONOTONIC, &event, &timer), 0);
+  EXPECT_EQ(::timer_settime(timer, 0, &after_the_tick, nullptr), 0);
+  return monotonicNow();
+}
+
 class SchedLoopTest : public ::testing::Test {
  protected:
   SchedLoopTest() {
     ended = &stop;
     sleep_of_tick = 0ns;
+    grid = {1ms};
   }
   ~SchedLoopTest() override { ended = nullptr; }
 
@@ -129,11 +154,26 @@ TEST_F(SchedLoopTest, AnOverloadHasItsLimit) {
   EXPECT_TRUE(stops().empty());
 }
 
+TEST_F(SchedLoopTest, AThreadThatWakesLateIsCountedAsThat) {
+  struct sigaction before {};
+  struct sigaction keeper {};
+  keeper.sa_handler = &keep;
+  ASSERT_EQ(::sigaction(SIGALRM, &keeper, &before), 0);
+  Scheduler kept{*robot, inboxes, exchange, 10ms, nullptr, &keptClock};
+  ticks_left = 4;
+  const auto loop = SchedLoop::create(kept, {.grid = {10ms}, .overload = 100ms}, nullptr).value();
+  loop->run(stop.get_token());
+  ASSERT_EQ(::sigaction(SIGALRM, &before, nullptr), 0);
+  const auto late = loop->timing().late.of(TickStep::kWake);
+  EXPECT_GE(late.ticks, 1U);
+  EXPECT_GE(late.time, 5ms);
+}
+
 // The grid is coarse: ticks are never early, and of so many one is in time on a busy computer too.
 class SchedLoopPhaseTest : public SchedLoopTest, public ::testing::WithParamInterface<Duration> {};
 
 TEST_P(SchedLoopPhaseTest, TicksLieOnTheirGrid) {
-  settings.grid = {10ms, GetParam()};
+  settings.grid = grid = {10ms, GetParam()};
   least_late = Duration::max();
   run(0us, 12);
   EXPECT_LT(least_late, 2ms);
