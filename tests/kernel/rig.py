@@ -51,6 +51,13 @@ def daemon(config: Path = CONFIG) -> Iterator[Proc]:
         yield process
 
 
+def receiving(reader: str) -> Path:
+    """The configuration with this reader of the CAN sockets: `tick` or `thread`."""
+    config = Path(f"/tmp/receive_{reader}.yaml")
+    config.write_text(f"{CONFIG.read_text()}\nreceive: {reader}\n")
+    return config
+
+
 @contextlib.contextmanager
 def client(
     name: str = "test", priority: int = 0, *, robot_name: str = ROBOT
@@ -90,9 +97,9 @@ def next_diagnostics(robot: rc10.Robot) -> rc10.Diagnostics:
 
 
 @contextlib.contextmanager
-def enabled_robot() -> Iterator[tuple[Proc, rc10.Robot]]:
+def enabled_robot(config: Path = CONFIG) -> Iterator[tuple[Proc, rc10.Robot]]:
     """Fakes, daemon and a client, with every motor ACTIVE."""
-    with fakes(), daemon() as process, client() as robot:
+    with fakes(), daemon(config) as process, client() as robot:
         wait_status(robot, rc10.MotorStatus.READY)
         robot.enable()
         yield process, robot

@@ -6,6 +6,7 @@ import json
 import time
 from pathlib import Path
 
+import pytest
 from guestlib import Candump, Frame, Proc, link_down, link_up, netem, netem_clear, run
 from rig import (
     BIN,
@@ -21,6 +22,7 @@ from rig import (
     enabled_robot,
     fakes,
     next_diagnostics,
+    receiving,
     wait_status,
 )
 
@@ -67,8 +69,9 @@ def test_an_interface_that_is_down_at_the_start_is_told_too() -> None:
             process.wait_line("bus active", 5.0)
 
 
-def test_a_stalled_bus_comes_back_with_rest_and_waits_to_be_enabled() -> None:
-    with enabled_robot() as (process, robot):
+@pytest.mark.parametrize("reader", ["tick", "thread"])
+def test_a_stalled_bus_comes_back_with_rest_and_waits_to_be_enabled(reader: str) -> None:
+    with enabled_robot(receiving(reader)) as (process, robot):
         stall(process, robot, "loss 100%")
         # The program goes on commanding; its motors are out of reach.
         drive(robot, 1.0, left=rc10.velocity_rpm(100))

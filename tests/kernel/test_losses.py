@@ -22,6 +22,7 @@ from rig import (
     fakes,
     gateway_pid,
     next_diagnostics,
+    receiving,
     wait_status,
 )
 
@@ -99,8 +100,9 @@ def test_no_command_from_before_the_stop_acts_after_the_gateway_continues() -> N
         assert last_drive_ns(bus.frames()) <= stopped_ns + (VALIDITY_MS + 1) * MS
 
 
-def test_the_interface_down_and_up_is_survived() -> None:
-    with enabled_robot() as (process, robot):
+@pytest.mark.parametrize("reader", ["tick", "thread"])
+def test_the_interface_down_and_up_is_survived(reader: str) -> None:
+    with enabled_robot(receiving(reader)) as (process, robot):
         drive(robot, 0.2, left=rc10.velocity_rpm(100))
         link_down("vcan0")
         process.wait_line("bus interface down", 5.0)
