@@ -17,7 +17,7 @@ declare -A packages=(
     [lint]="clang-16 clang-tidy-16 clang-format-16 libclang-rt-16-dev shellcheck systemd udev"
     [kernel]="linux-source-6.1 gcc make flex bison bc libelf-dev xz-utils mount can-utils"
     [vm]="qemu-system-x86 linux-image-rt-amd64 linux-headers-rt-amd64 linux-source-6.1 make xz-utils busybox-static kmod file mount
-        can-utils systemd udev"
+        can-utils systemd udev valgrind"
     [web]="chromium fonts-noto-cjk"
     [package]="dpkg-dev file fakeroot mmdebstrap lintian binutils mount"
 )

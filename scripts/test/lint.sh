@@ -35,7 +35,7 @@ shell() {
 
 # Each folder by itself: several have a conftest.py.
 types_in() {
-    (cd "$1" && MYPYPATH="$repo/bench/peers:$repo/tests/kernel:$repo/tests/host:$repo/scripts/lib" python mypy --strict "${@:2}")
+    (cd "$1" && MYPYPATH="$repo/bench:$repo/bench/peers:$repo/tests/kernel:$repo/tests/host:$repo/scripts/lib" python mypy --strict "${@:2}")
 }
 
 # "Name of the motor", not "What the motor is called".

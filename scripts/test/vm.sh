@@ -1,5 +1,5 @@
 #!/bin/bash
-# a real CAN controller driver on a PREEMPT_RT kernel, in QEMU; instructions and lateness counted on one
+# a real CAN controller driver on a PREEMPT_RT kernel, in QEMU; instructions and lateness counted on one, and instructions of a tick
 set -euo pipefail
 # shellcheck source=scripts/lib/results.sh
 . "$(dirname "${BASH_SOURCE[0]}")/../lib/results.sh"

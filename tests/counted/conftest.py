@@ -1,6 +1,7 @@
-"""The guests are those of bench/peers."""
+"""The guests are those of bench/peers, the counter that of bench/table."""
 
 import sys
 from pathlib import Path
 
-sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "bench" / "peers"))
+BENCH = Path(__file__).resolve().parents[2] / "bench"
+sys.path[:0] = [str(BENCH), str(BENCH / "peers")]

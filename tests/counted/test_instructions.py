@@ -1,0 +1,27 @@
+"""Instructions of one tick, counted by valgrind: they are the same on a busy machine.
+
+The goals of docs/performance.md, 10 k for 8 M3508 and 160 k for 128 motors, are those of packages,
+which are optimised at link time. The limits are that page's figures of the preset `dev` and 3 %.
+"""
+
+from __future__ import annotations
+
+import os
+from pathlib import Path
+
+import pytest
+from instructions import instructions_per_tick
+
+REPO = Path(__file__).resolve().parents[2]
+BUILD = Path(os.environ.get("RC10_BUILD", REPO / "build" / "dev"))
+ROOM = 1.03
+
+
+@pytest.mark.parametrize(("fleet", "dev_figure"), [("dji_8", 11_980), ("wide_4x32", 174_704)])
+def test_a_tick_takes_no_more_instructions_than_when_its_goal_was_met(
+    fleet: str, dev_figure: int
+) -> None:
+    count = instructions_per_tick(BUILD / "bin" / "tick_bench", fleet)
+    assert count <= ROOM * dev_figure
+    page = (REPO / "docs" / "performance.md").read_text()
+    assert f"{dev_figure:,} for" in page, "the page has another figure"
