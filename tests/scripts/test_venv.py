@@ -39,7 +39,7 @@ class Environment:
             (folder / "fakes" / name / "__main__.py").write_text(text)
 
     def make(self, *words: str) -> list[dict[str, object]]:
-        """What pip was asked for."""
+        """Requests to pip."""
         calls = self._folder / "calls"
         calls.write_text("")
         done = subprocess.run(

@@ -23,7 +23,7 @@ constexpr double kAmperePerCount = 20.0 / 16384.0;
 constexpr double kNewtonMetrePerAmpere = 0.0156;  // of the rotor
 constexpr double kEffortNm = 0.01;
 
-/// What one bus of four M3508 shares with the CAN layer.
+/// Four M3508 on a bus, and the tables that the CAN layer reads and writes.
 class Wheels {
  public:
   explicit Wheels(const std::string& interface)
