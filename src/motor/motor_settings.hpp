@@ -8,23 +8,28 @@
 
 namespace rc10 {
 
+/// Share by which a reported speed may be off. The nearest two scales of one series are 30 % apart
+/// (RobStride: 33 and 44 rad/s).
+inline constexpr double kScaleError = 0.2;
+
 /// One motor as configured, for its family to build. At the output shaft.
 struct MotorSettings {
   std::string name;
   std::string model;
-  int id = 0;                       ///< As set on the drive.
-  double gear_ratio = 0.0;          ///< Rotor turns per turn of the output shaft; 0: the model's own.
-  int direction = 1;                ///< -1: mounted the other way round.
-  float effort_limit = 0.0F;        ///< A or V, see MotorTraits::effort; 0: the model's full scale.
-  float velocity_limit_rpm = 0.0F;  ///< Bounds every velocity target. 0: none.
-  double zero_deg = 0.0;            ///< Output angle of an absolute encoder that is to read 0.
-  bool zero_at_power_on = false;    ///< The position of the first sample is 0.
-  Travel travel{};                  ///< Tells the turn of an absolute encoder at power-up.
-  CascadeConfig loops;              ///< Loops of the host; meaningless where MotorTraits has none.
-  int feedback_hz = 0;              ///< As set on the drive, or the rate of questions.
-  int tick_hz = 1000;               ///< Tick rate of the scheduler.
-  int command_divider = 1;          ///< A command is sent in every n-th tick,
-  int command_phase = 0;            ///< offset by so many ticks: 0 to n - 1.
+  int id = 0;                        ///< As set on the drive.
+  double gear_ratio = 0.0;           ///< Rotor turns per turn of the output shaft; 0: the model's own.
+  int direction = 1;                 ///< -1: mounted the other way round.
+  float effort_limit = 0.0F;         ///< A or V, see MotorTraits::effort; 0: the model's full scale.
+  float velocity_limit_rpm = 0.0F;   ///< Bounds every velocity target. 0: none.
+  double zero_deg = 0.0;             ///< Output angle of an absolute encoder that is to read 0.
+  bool zero_at_power_on = false;     ///< The position of the first sample is 0.
+  Travel travel{};                   ///< Tells the turn of an absolute encoder at power-up.
+  CascadeConfig loops;               ///< Loops of the host; meaningless where MotorTraits has none.
+  int feedback_hz = 0;               ///< As set on the drive, or the rate of questions.
+  int tick_hz = 1000;                ///< Tick rate of the scheduler.
+  int command_divider = 1;           ///< A command is sent in every n-th tick,
+  int command_phase = 0;             ///< offset by so many ticks: 0 to n - 1.
+  double scale_error = kScaleError;  ///< See MotorTraits::scaled_speed; 0: not compared.
   OwnValues own;
 };
 

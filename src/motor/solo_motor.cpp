@@ -49,7 +49,8 @@ SoloMotor::SoloMotor(const MotorSettings& settings, const MotorTraits& traits, d
       reference_({.absolute = traits.absolute && gear_ratio_ == traits.gear_ratio,
                   .zero_deg = settings.zero_deg,
                   .zero_at_power_on = settings.zero_at_power_on,
-                  .travel = settings.travel}) {}
+                  .travel = settings.travel}),
+      speed_scale_(settings.scale_error) {}
 
 void SoloMotor::acceptSample(MonotonicTime received, double drive_position_deg) noexcept {
   takeAngle(drive_position_deg);

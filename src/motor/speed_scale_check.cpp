@@ -20,8 +20,6 @@ constexpr double kLongestGapSeconds = 0.1;
 // be.
 constexpr double kSlackDeg = 3.0;
 constexpr double kMostRatio = 5.0;
-// The nearest two scales of one series are 1.3 apart (RobStride: 33 and 44 rad/s).
-constexpr double kTolerance = 1.2;
 constexpr int kWindows = 3;
 constexpr double kSameRatio = 1.15;
 
@@ -40,7 +38,7 @@ void SpeedScaleCheck::begin(const Sample& sample) noexcept {
 }
 
 void SpeedScaleCheck::add(MonotonicTime received, double angle_deg, double velocity_rpm) noexcept {
-  if (verdict_ != Verdict::kOpen) return;
+  if (verdict_ != Verdict::kOpen || !(error_ > 0.0)) return;
   const Sample sample{received, angle_deg, velocity_rpm * kDegPerSPerRpm};
   const double speed = std::abs(sample.deg_per_s);
   if (!(speed >= kLeastDegPerS) || !std::isfinite(speed) || !std::isfinite(angle_deg)) {
@@ -72,7 +70,7 @@ void SpeedScaleCheck::add(MonotonicTime received, double angle_deg, double veloc
 }
 
 void SpeedScaleCheck::judge(double ratio) noexcept {
-  if (within(ratio, 1.0, kTolerance)) {
+  if (within(ratio, 1.0, 1.0 + error_)) {
     wrong_ = 0;
     if (++agreed_ >= kWindows) verdict_ = Verdict::kAgrees;
   } else {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "app/time.hpp"
+#include "motor/motor_settings.hpp"
 
 namespace rc10 {
 
@@ -15,7 +16,10 @@ class SpeedScaleCheck {
  public:
   enum class Verdict : unsigned char { kOpen, kAgrees, kWrong };
 
-  void reset() noexcept { *this = SpeedScaleCheck{}; }
+  /// `error`: share of the true speed by which the reported one may be higher; 0: nothing is compared.
+  explicit SpeedScaleCheck(double error = kScaleError) noexcept : error_(error) {}
+
+  void reset() noexcept { *this = SpeedScaleCheck{error_}; }
   /// A sample. `angle_deg` goes on over turns; a speed that is not reported is NaN.
   void add(MonotonicTime received, double angle_deg, double velocity_rpm) noexcept;
   [[nodiscard]] Verdict verdict() const noexcept { return verdict_; }
@@ -31,6 +35,7 @@ class SpeedScaleCheck {
   void begin(const Sample& sample) noexcept;
   void judge(double ratio) noexcept;
 
+  double error_;
   Verdict verdict_ = Verdict::kOpen;
   double ratio_ = 1.0;
   int agreed_ = 0;

@@ -258,11 +258,20 @@ def test_the_daemon_stalls(stall_ms: int) -> None:
         )
 
 
+def with_busy_ticks(config: Path, busy: Path, busy_us: int) -> Proc:
+    """A rc10d that computes for so long a bus in each tick, while the file `busy` exists."""
+    library = BUILD / "tests" / "librc10_busy_ticks.so"
+    preload = {
+        "LD_PRELOAD": str(library),
+        "RC10_BUSY_TICKS": str(busy),
+        "RC10_BUSY_US": str(busy_us),
+    }
+    return Proc(BIN / "rc10d", "-c", config, env=preload)
+
+
 def test_ticks_that_compute_for_longer_than_their_period(tmp_path: Path) -> None:
     busy = tmp_path / "busy"
-    library = BUILD / "tests" / "librc10_busy_ticks.so"
-    preload = {"LD_PRELOAD": str(library), "RC10_BUSY_TICKS": str(busy)}
-    daemon = Proc(BIN / "rc10d", "-c", CONFIG, env=preload)
+    daemon = with_busy_ticks(CONFIG, busy, 12_000)
     with drives(), witness() as log, daemon, client() as robot:
         wait_status(robot, rc10.MotorStatus.READY)
         robot.enable()
@@ -286,6 +295,33 @@ def test_ticks_that_compute_for_longer_than_their_period(tmp_path: Path) -> None
             begun_ns,
             last_ns,
             200,
+        )
+
+
+def test_ticks_that_compute_for_most_of_their_period(tmp_path: Path) -> None:
+    busy, config = tmp_path / "busy", tmp_path / "robot.yaml"
+    # Ticks of 10 ms: shorter than a count of the guest's kernel, their CPU time would not show.
+    config.write_text(CONFIG.read_text() + "scheduler: {rate_hz: 100, overload_ms: 20}\n")
+    daemon = with_busy_ticks(config, busy, 4_000)
+    with drives(), witness() as log, daemon, client() as robot:
+        wait_status(robot, rc10.MotorStatus.READY)
+        robot.enable()
+        busy.touch()
+        begun_ns = time.time_ns()
+        last_ns = drive(robot, log, 0.2, left=rc10.velocity_rpm(60), other=rc10.velocity_rpm(60))
+        busy.unlink()
+        front, rear = (log.frames(bus, begun_ns + 20 * TICK_NS) for bus in (FRONT, REAR))
+        apart_ns = [b.t_ns - a.t_ns for a, b in zip(front, rear, strict=False)]
+        assert min(apart_ns[:10]) > 3.9 * TICK_NS, "they were busy"
+        assert log.last_torque_ns("left") > last_ns - 20 * TICK_NS, "and drove on"
+        assert not robot.wait_for_state(5.0).estopped
+        log.check(other_bus=None)
+        proven(
+            "ticks that compute for 80 % of their period, for ten times `overload_ms`",
+            "no stop",
+            None,
+            None,
+            0,
         )
 
 

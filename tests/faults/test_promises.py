@@ -452,6 +452,20 @@ def test_what_only_turns_a_motor_is_no_reason_to_stop() -> None:
         nothing("a hand turns a motor that rests, enabled or not", "no stop")
 
 
+def test_a_first_angle_has_a_bound(tmp_path: Path) -> None:
+    bound = {"on_timeout: brake": "max_first_step_deg: 30, on_timeout: brake"}
+    with robot_with(tmp_path, bound) as (_, robot, log):
+        robot.enable()
+        drive(robot, log, 0.3, arm=rc10.total_angle_deg(32))
+        assert log.last_torque_ns("arm") == 0
+        nothing("a first angle target just farther than `max_first_step_deg`", "skipped, told")
+        drive(robot, log, 1.0, arm=rc10.total_angle_deg(28))
+        state = robot.wait_for_state(1.0).motors["arm"]
+        assert state.total_angle_deg == pytest.approx(28, abs=4)
+        log.check()
+        nothing("a first angle target just within `max_first_step_deg`", "followed")
+
+
 # ---- Modules
 
 

@@ -38,28 +38,32 @@ void rescale(CanFrame& frame, std::size_t byte, unsigned bits, double ratio) {
   frame.data[byte + 1] = static_cast<std::uint8_t>(told & 0xFFU);
 }
 
-SoloRig damiao(const std::string& control) {
-  const auto settings = damiaoSettingsOf("DM4310", control);
+SoloRig damiao(const std::string& control, double error) {
+  auto settings = damiaoSettingsOf("DM4310", control);
+  settings.scale_error = error;
   return {std::make_unique<Damiao_Motor>(settings), sim::makeDamiaoDrive(settings, {})};
 }
 
-SoloRig damiaoMit() { return damiao("mit"); }
-SoloRig damiaoVelocity() { return damiao("velocity"); }
+SoloRig damiaoMit(double error) { return damiao("mit", error); }
+SoloRig damiaoVelocity(double error) { return damiao("velocity", error); }
 
-SoloRig robstride() {
+SoloRig robstride(double error) {
   auto settings = robStrideSettings("RS00");
   settings.own.set("control", std::string{"velocity"});
+  settings.scale_error = error;
   return {std::make_unique<RobStride_Motor>(settings), sim::makeRobstrideDrive(settings, {})};
 }
 
-SoloRig cubemars() {
+SoloRig cubemars(double error) {
   auto settings = cubemarsSettings("AK80-9", 12, {{"protocol", std::string{"mit"}}});
   settings.zero_at_power_on = true;
+  settings.scale_error = error;
   return {std::make_unique<CubemarsMit>(settings, setupOf(settings)), sim::makeCubemarsDrive(settings, {})};
 }
 
-SoloRig myactuator() {
-  const auto settings = defaultSettings(myactuatorFamily(), "RMD-X8-25", 3);
+SoloRig myactuator(double error) {
+  auto settings = defaultSettings(myactuatorFamily(), "RMD-X8-25", 3);
+  settings.scale_error = error;
   return {
       std::make_unique<MyActuator_Motor>(settings, myactuatorFamily().traits(settings.model, settings.own)),
       sim::makeMyactuatorDrive(settings, {})};
@@ -72,7 +76,7 @@ constexpr Target kMotion{
 struct Subject {
   const char* name;
   const char* family;
-  SoloRig (*rig)();
+  SoloRig (*rig)(double error);
   Target target;
   void (*rescale)(CanFrame& frame, double ratio);
 };
@@ -104,8 +108,8 @@ const Subject kSubjects[] = {
 class SpeedScale : public testing::TestWithParam<Subject> {
  protected:
   /// Complaint after a second of motion with a drive that reports so many times its speed.
-  static DriveComplaint complaintAt(double ratio) {
-    SoloRig rig = GetParam().rig();
+  static DriveComplaint complaintAt(double ratio, double error = MotorSettings{}.scale_error) {
+    SoloRig rig = GetParam().rig(error);
     rig.comeOnline();
     EXPECT_TRUE(rig.enable());
     rig.garble([ratio](CanFrame& frame) { GetParam().rescale(frame, ratio); });
@@ -131,6 +135,12 @@ TEST_P(SpeedScale, ADriveOnItsOwnScaleOrSomewhatOffIsNot) {
     SCOPED_TRACE(ratio);
     EXPECT_EQ(complaintAt(ratio).fault, FaultCode::kNone);
   }
+}
+
+TEST_P(SpeedScale, TheThresholdIsTheUsersAndZeroIsNone) {
+  EXPECT_EQ(complaintAt(1.15, 0.1).fault, FaultCode::kDriveSetting);
+  EXPECT_EQ(complaintAt(1.3, 0.4).fault, FaultCode::kNone);
+  EXPECT_EQ(complaintAt(3.0, 0.0).fault, FaultCode::kNone);
 }
 
 INSTANTIATE_TEST_SUITE_P(Families, SpeedScale, testing::ValuesIn(kSubjects),

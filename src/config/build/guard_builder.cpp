@@ -97,6 +97,8 @@ void readGuard(MotorParse& in) {
   const auto behind_ms = in.settings.number("following_error_ms").value_or(kFollowingErrorMs);
   guard.following_error_time = std::chrono::milliseconds{static_cast<int>(behind_ms)};
   readRest(in);
+  if (const auto percent = in.settings.number("scale_error_percent"))
+    in.motor().scale_error = *percent / 100.0;
   checkOverspeed(in);
   checkTemperatures(in);
   checkFollowingError(in);

@@ -47,6 +47,7 @@ enum Need : std::uint16_t {
   kNeedsUnasked = 1U << 7U,        ///< It speaks without being asked.
   kNeedsOwnFrames = 1U << 8U,      ///< It shares its command frames with no other.
   kNeedsSignedCurrent = 1U << 9U,  ///< It reports a current with the sign of its torque.
+  kNeedsScaledSpeed = 1U << 10U,   ///< It reports its speed as a share of a range.
 };
 
 struct Section;

@@ -165,6 +165,16 @@ constexpr std::array kMotorKeys{
         .needs = kNeedsSignedCurrent,
         .about = "See rest_current_a; three samples at least. Default: 100, and of a drive that reports its "
                  "current less often than 50 times a second two of its reports more."},
+    Key{.name = "scale_error_percent",
+        .kind = kNumber,
+        .unit = "%",
+        .range = {.min = 0, .max = 100},
+        .needs = kNeedsScaledSpeed,
+        .default_text = "20",
+        .about = "A speed reported in the first motion that is further from the change of the angle is a "
+                 "fault: the scale is another model's. Not below the error of the drive's speed, some %. For "
+                 "drives that report shares of a range: Damiao, RobStride, MyActuator, CubeMars MIT. 0: not "
+                 "compared."},
     Key{.name = "on_timeout",
         .kind = kText,
         .choices = fallbacks,

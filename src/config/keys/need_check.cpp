@@ -20,6 +20,8 @@ std::string whyMeaningless(const Key& key, std::uint16_t unmet, const MotorNatur
   if ((unmet & kNeedsTemperature) != 0) return "the " + model + " reports no temperature; remove it";
   if ((unmet & kNeedsSignedCurrent) != 0)
     return "the " + model + ", as it is configured, reports no current with a sign; remove it";
+  if ((unmet & kNeedsScaledSpeed) != 0)
+    return "the " + model + " does not report its speed as a share of a range; remove it";
   const std::string geared = nature.traits.absolute ? " behind a gear" : "";
   return "the " + model + geared + " does not know its output angle at power-up" + use_twin;
 }
@@ -29,6 +31,7 @@ std::uint16_t MotorNature::metNeeds() const noexcept {
   met |= incremental ? kNeedsIncremental : kNeedsPosition;
   if (traits.reports_temperature) met |= kNeedsTemperature;
   if (traits.signed_a > 0.0F) met |= kNeedsSignedCurrent;
+  if (traits.scaled_speed) met |= kNeedsScaledSpeed;
   if (absolute) met |= kNeedsAbsolute;
   if (traits.host_loops != nullptr) met |= kNeedsHostLoops;
   if (!traits.asked) met |= kNeedsUnasked;

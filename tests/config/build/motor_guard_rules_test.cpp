@@ -38,6 +38,17 @@ TEST(MotorGuardRules, WhatIsWrittenHolds) {
   EXPECT_FALSE(guard.stall_trips);
 }
 
+TEST(MotorGuardRules, TheSpeedScaleHasAThresholdWhereItIsCompared) {
+  const std::string motor = "{name: a, model: RS00, id: 1";
+  EXPECT_EQ(motorOf(motor + "}").settings.scale_error, 0.2);
+  EXPECT_EQ(motorOf(motor + ", scale_error_percent: 20}").settings.scale_error, 0.2) << "the default";
+  EXPECT_EQ(motorOf(motor + ", scale_error_percent: 35}").settings.scale_error, 0.35);
+  EXPECT_EQ(motorOf(motor + ", scale_error_percent: 0}").settings.scale_error, 0.0);
+  EXPECT_THAT(errorsOf(robotWith("{name: a, model: M3508, id: 1, scale_error_percent: 20}")),
+              ElementsAre("hero.yaml:6:61: buses[0].motors[0].scale_error_percent: the M3508 does not report "
+                          "its speed as a share of a range; remove it"));
+}
+
 TEST(MotorGuardRules, OverSpeedMustBeAboveWhatMayBeAskedFor) {
   EXPECT_THAT(
       errorsOf(robotWith("{name: a, model: M3508, id: 1, velocity_limit_rpm: 300, overspeed_rpm: 300}")),
