@@ -270,19 +270,27 @@ std::string safetyText(const BusConfig& bus) {
 }
 
 std::string groupsText(const RobotConfig& config) {
-  std::vector<std::string> names;
+  std::vector<const MotorConfig*> motors;
   for (const auto& bus : config.buses) {
-    for (const auto& motor : bus.motors) names.push_back(motor.name());
+    for (const auto& motor : bus.motors) motors.push_back(&motor);
   }
   std::string text;
   for (const auto& group : config.groups) {
     std::vector<std::string> members;
-    members.reserve(group.motors.size());
-    for (const auto motor : group.motors) members.push_back(names[motor]);
+    std::vector<std::string> optional;
+    for (const auto motor : group.motors) {
+      members.push_back(motors[motor]->name());
+      if (motors[motor]->optional) optional.push_back(motors[motor]->name());
+    }
     const bool rearms = group.on_return == GroupConfig::Return::kRearmAtRest;
     text += "\ngroup " + group.name + (group.implied ? " (of its module)" : "") + ": " + listWords(members) +
             (group.together ? " are enabled and stop together" : " stop together") +
-            ", and are enabled again " + (rearms ? "by themselves at rest" : "by request") + "\n";
+            ", and are enabled again " + (rearms ? "by themselves at rest" : "by request");
+    if (!optional.empty()) {
+      text += "; nothing stops or waits for " + listWords(optional) +
+              (optional.size() == 1 ? ", which is optional" : ", which are optional");
+    }
+    text += "\n";
   }
   return text;
 }

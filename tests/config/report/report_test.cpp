@@ -145,7 +145,42 @@ TEST(Report, SaysWhatAMotorDoesWhenNobodyCommandsIt) {
       text,
       HasSubstr(
           "group lift: arm and wheel are enabled and stop together, and are enabled again by themselves "
-          "at rest"));
+          "at rest\n"));
+}
+
+TEST(Report, SaysWhichGroupsModulesImplyAndWhoIsSpared) {
+  const std::string wheels =
+      "robot: hero\nbuses:\n  - name: a\n    type: sim\n    motors:\n"
+      "      - {name: up, model: M3508, id: 1}\n"
+      "      - {name: down, model: M3508, id: 2}\n"
+      "      - {name: left, model: M3508, id: 3}\n"
+      "      - {name: right, model: M3508, id: 4, optional: true}\n"
+      "      - {name: rear, model: M3508, id: 5, optional: true}\n"
+      "      - {name: front, model: M3508, id: 6}\n";
+  const auto described = [&](const std::string& more) {
+    const auto outcome = parseRobotConfig(wheels + more, "hero.yaml");
+    EXPECT_TRUE(outcome) << outcome.errorText();
+    return outcome.config ? describe(*outcome.config) : std::string{};
+  };
+  const std::string pair =
+      "modules:\n  - {name: lift, type: synchronised_pair, left: up, right: down, velocity_limit_rpm: 100}\n";
+  const std::string chassis =
+      "  - {name: base, type: differential_chassis, wheel_radius_m: 0.1, track_m: 0.4, max_speed_m_s: 1, "
+      "max_turn_deg_s: 90, max_acceleration_m_s2: 1, max_turn_acceleration_deg_s2: 90, "
+      "wheels: {left: left, right: right}}\n";
+  const auto implied = described(pair + chassis);
+  EXPECT_THAT(implied,
+              HasSubstr("\ngroup lift (of its module): up and down are enabled and stop together, and "
+                        "are enabled again by themselves at rest\n"));
+  EXPECT_THAT(implied,
+              HasSubstr("\ngroup base (of its module): left and right stop together, and are enabled "
+                        "again by themselves at rest; nothing stops or waits for right, which is "
+                        "optional\n"));
+  const auto declared = described("groups: [{name: all, motors: [front, right, rear, left]}]\n" + pair);
+  EXPECT_THAT(declared,
+              HasSubstr("\ngroup all: front, right, rear and left stop together, and are enabled again "
+                        "by request; nothing stops or waits for right and rear, which are "
+                        "optional\n"));
 }
 
 }  // namespace
