@@ -4,6 +4,7 @@
 #include <chrono>
 
 #include "app/utime.hpp"
+#include "rc10_version.hpp"
 
 namespace rc10::gateway {
 
@@ -14,7 +15,6 @@ Inlet::Inlet(LinkClient& rc10d, Outlet& outlet) : rc10d_(rc10d), outlet_(outlet)
   const auto& welcome = rc10d_.welcome();
   for (std::size_t i = 0; i < welcome.module_count; ++i)
     module_channels_.push_back(prefix + std::string(welcome.modules[i].view()));
-  version_ = rc10d.welcome().version.view();
 }
 
 std::vector<std::string> Inlet::channels() const {
@@ -112,7 +112,7 @@ void Inlet::reportDefect(Defect defect, std::string_view channel, MonotonicTime 
   if (defect == Defect::kOtherDefinitions) {
     report(EventCode::kOtherDefinitions, Severity::kError,
            "a client on channel " + std::string(channel) + " uses other definitions of " + type +
-               ": regenerate its types from the lcm_types of rc10d " + version_,
+               ": regenerate its types from the lcm_types of rc10d " + kVersion,
            now);
     return;
   }

@@ -57,7 +57,6 @@ class Inlet {
   std::string command_channel_;
   std::string request_channel_;
   std::vector<std::string> module_channels_;
-  std::string version_;
   link::Command command_;
   link::Signals signals_;
   link::Request request_;

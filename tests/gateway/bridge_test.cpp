@@ -10,6 +10,7 @@
 #include "gateway/inlet.hpp"
 #include "gateway/outlet.hpp"
 #include "lcm_messages.hpp"
+#include "rc10_version.hpp"
 
 namespace rc10::gateway::test::bridge_test {
 namespace {
@@ -190,7 +191,9 @@ TEST_F(Bridge, TellsAClientWithOtherDefinitionsOnceASecond) {
   EXPECT_EQ(events[0].text,
             "a client on channel hero.v1.command uses other definitions of command_t: regenerate its types "
             "from the "
-            "lcm_types of rc10d 0.1.0");
+            "lcm_types of rc10d " +
+                std::string{kVersion})
+      << "of rc10-lcm, which decodes, and not of the rc10d that it serves";
   now_ += 1s;
   arrive("hero.v1.command", bytes);
   events = published<event_t>("hero.v1.event");
