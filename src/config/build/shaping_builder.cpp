@@ -36,6 +36,8 @@ void readShaping(MotorParse& in) {
       static_cast<float>(in.settings.number("soft_start_ms").value_or(kSoftStartMs) / 1000.0);
   shaping.effort_full_scale = in.traits.effort_full_scale;
   shaping.springs = in.traits.modes.contains(ControlMode::kImpedance);
+  shaping.effort_limit = effortLimitOf(in.motor(), in.traits.effort_full_scale);
+  shaping.velocity_limit_rpm = in.motor().velocity_limit_rpm;
   shaping.has_velocity_loop = in.traits.modes.contains(ControlMode::kVelocity);
   if (in.traits.host_loops != nullptr) {
     shaping.approach_rpm_per_deg = kApproachOfAngleGain * in.motor().loops.angle.kp;

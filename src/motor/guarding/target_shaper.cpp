@@ -40,6 +40,11 @@ constexpr double kEffortAgainShare = 0.8;
   return limited;
 }
 
+// Between the bounds of a magnitude; 0: there are none.
+[[nodiscard]] double within(double value, double most) noexcept {
+  return most > 0.0 ? std::clamp(value, -most, most) : value;
+}
+
 // Part of an effort that its limits have let through: `told`; 0 if they brake in its place.
 [[nodiscard]] double leftOf(double effort, double told) noexcept {
   const double most = std::fabs(effort);
@@ -69,6 +74,7 @@ std::uint32_t TargetShaper::step(Target& target, const MotorFeedback& feedback, 
 std::uint32_t TargetShaper::slowDown(Target& target, const MotorFeedback& feedback, InForce in_force,
                                      float dt_s) noexcept {
   if (!follows(target.mode)) begin(target.mode, feedback, in_force, target.stiffness_nm_per_rad);
+  if (mode_ == ControlMode::kVelocity) value_ = target.value;  // its own time, whatever the slew limit
   const auto limits = shape(target, feedback, in_force, dt_s);
   soft_ = value_;
   return limits;
@@ -81,6 +87,7 @@ void TargetShaper::soften(Target& asked, float dt_s) noexcept {
   share_ = std::min(1.0, share_ + static_cast<double>(dt_s / config_.soft_start_s));
   const bool moves = isEffort(mode_) || mode_ == ControlMode::kVelocity || needsReference(mode_);
   if (!moves) return;
+  boundAsked(asked);
   asked.velocity_ff_rpm *= static_cast<float>(share_);
   if (!(share_ < 1.0)) return;
   const double part = 1.0 - (1.0 - share_) / left;
@@ -90,6 +97,22 @@ void TargetShaper::soften(Target& asked, float dt_s) noexcept {
   const double way = any_turn ? shortestAngle(soft_, asked.value) : asked.value - soft_;
   soft_ += way * part;
   asked.value = any_turn ? wrapDegrees(soft_) : soft_;
+}
+
+// A share of a target far beyond the limit would be the limit itself.
+void TargetShaper::boundAsked(Target& asked) const noexcept {
+  const auto rpm = static_cast<double>(config_.velocity_limit_rpm);
+  const auto effort = static_cast<double>(config_.effort_limit);
+  const auto per_nm = static_cast<double>(config_.effort_per_nm);
+  const double most_nm = per_nm > 0.0 ? effort / per_nm : 0.0;
+  if (mode_ == ControlMode::kCurrent) {
+    asked.value += static_cast<double>(asked.torque_ff_nm) * per_nm;
+    asked.torque_ff_nm = 0.0F;
+  }
+  if (mode_ == ControlMode::kVelocity) asked.value = within(asked.value, rpm);
+  if (isEffort(mode_)) asked.value = within(asked.value, mode_ == ControlMode::kDuty ? 1.0 : effort);
+  asked.velocity_ff_rpm = static_cast<float>(within(static_cast<double>(asked.velocity_ff_rpm), rpm));
+  asked.torque_ff_nm = static_cast<float>(within(static_cast<double>(asked.torque_ff_nm), most_nm));
 }
 
 std::uint32_t TargetShaper::shape(Target& asked, const MotorFeedback& feedback, InForce in_force,
@@ -335,9 +358,8 @@ void TargetShaper::followFromOutside(const MotorFeedback& feedback) noexcept {
 
 // The nearest angle to the goal that is allowed; any turn of it if the turn does not matter.
 double TargetShaper::reachable(double goal_deg, bool any_turn) const noexcept {
-  if (!any_turn) return std::clamp(goal_deg, low_deg_, high_deg_);
-  const double inside = std::clamp(goal_deg, config_.angle_min_deg, config_.angle_max_deg);
-  if (inside == goal_deg) return inside;
+  const double inside = std::clamp(goal_deg, low_deg_, high_deg_);
+  if (!any_turn || inside == goal_deg) return inside;
   const double other_way = goal_deg + std::copysign(kDegPerTurn, inside - goal_deg);
   const bool allowed = other_way >= config_.angle_min_deg && other_way <= config_.angle_max_deg;
   return allowed ? other_way : inside;

@@ -25,9 +25,11 @@ struct ShapingConfig {
   float effort_per_rpm = 0.0F;           ///< Effort that only keeps up a speed: 0 for A, back-EMF for V.
   float effort_per_nm = 0.0F;            ///< A per N·m: of a torque feed-forward. 0: unknown.
   float effort_full_scale = 0.0F;        ///< Effort of a duty of 1. 0: unknown.
-  bool has_velocity_loop = false;        ///< The motor can be told a speed.
-  bool lead_is_speed = false;            ///< The lead of an angle is a speed: another loop bounds it.
-  bool springs = false;                  ///< The drive makes torque by a SpringLaw, without an integral.
+  float effort_limit = 0.0F;        ///< Most effort and speed of the motor: a soft start leads there, not
+  float velocity_limit_rpm = 0.0F;  ///< to a target beyond. 0: none.
+  bool has_velocity_loop = false;   ///< The motor can be told a speed.
+  bool lead_is_speed = false;       ///< The lead of an angle is a speed: another loop bounds it.
+  bool springs = false;             ///< The drive makes torque by a SpringLaw, without an integral.
   double max_first_step_deg = std::numeric_limits<double>::infinity();
   float soft_start_s = 0.0F;  ///< The first target after enabling comes into force over this time.
 };
@@ -115,6 +117,7 @@ class TargetShaper {
   void takeOver(ControlMode mode, const MotorFeedback& feedback, InForce in_force,
                 float stiffness_nm_per_rad) noexcept;
   void soften(Target& asked, float dt_s) noexcept;
+  void boundAsked(Target& asked) const noexcept;
   [[nodiscard]] bool slew(double goal, float per_second, float dt_s) noexcept;
   // Each shapes its part of the target and returns the limits that act.
   [[nodiscard]] std::uint32_t shape(Target& asked, const MotorFeedback& feedback, InForce in_force,

@@ -15,6 +15,14 @@ TEST_F(TargetShaperTest, AVoltageGoesOnFromTheVoltageInForce) {
   EXPECT_NEAR(shaped.target.value, 3.1, 1e-6);
 }
 
+TEST_F(TargetShaperTest, AShaftBeyondALimitDoesNotLeapThereByAnAngleOfATurnEither) {
+  configure(soft);
+  at(91.5);
+  EXPECT_NEAR(step(ControlMode::kAngle, 170.0).target.value, 91.5, 1e-9);
+  EXPECT_NEAR(step(ControlMode::kAngle, 91.0).target.value, 91.0, 1e-9) << "on its way back";
+  EXPECT_NEAR(step(ControlMode::kAngle, 20.0).target.value, 20.0, 1e-9);
+}
+
 TEST_F(TargetShaperTest, AReadingThatIsMissingStartsFromNothing) {
   configure({.effort_slew_per_s = 100.0F, .velocity_slew_rpm_per_s = 1000.0F});
   feedback.velocity_rpm = feedback.current_a = kNotReported;

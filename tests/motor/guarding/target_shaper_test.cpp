@@ -436,6 +436,36 @@ TEST_F(TargetShaperTest, EnablingAnewStartsFromWhatIsMeasuredThen) {
   EXPECT_NEAR(step(ControlMode::kVelocity, 0.0).target.value, 0.0, 1e-3);
 }
 
+TEST_F(TargetShaperTest, ASoftStartLeadsToTheLimitAndNotToATargetBeyondIt) {
+  configure(
+      {.effort_per_nm = 2.0F, .effort_limit = 10.0F, .velocity_limit_rpm = 200.0F, .soft_start_s = 0.1F});
+  const auto first = [this](const Target& target) {
+    shaper.restart();
+    return step(target).target;
+  };
+  EXPECT_NEAR(first({.mode = ControlMode::kVelocity, .value = -1e9}).value, -2.0, 1e-3);
+  EXPECT_NEAR(first({.mode = ControlMode::kCurrent, .value = 1e9, .torque_ff_nm = 1e30F}).value, 0.1, 1e-3);
+  EXPECT_NEAR(first({.mode = ControlMode::kCurrent, .value = 12.0, .torque_ff_nm = -4.0F}).value, 0.04, 1e-3);
+  EXPECT_NEAR(first({.mode = ControlMode::kDuty, .value = 50.0}).value, 0.01, 1e-3);
+  const auto spring =
+      first({.mode = ControlMode::kTotalAngle, .velocity_ff_rpm = 1e30F, .torque_ff_nm = -1e30F});
+  EXPECT_NEAR(spring.velocity_ff_rpm, 2.0F, 1e-3F);
+  EXPECT_NEAR(spring.torque_ff_nm, -0.05F, 1e-3F);
+}
+
+TEST_F(TargetShaperTest, ARampKeepsItsTimeWhateverTheSlewLimit) {
+  configure({.velocity_slew_rpm_per_s = 100.0F});
+  feedback.velocity_rpm = 90.0F;
+  for (int i = 1; i <= 30; ++i) {
+    Target ramp{.mode = ControlMode::kVelocity, .value = 90.0 - 3.0 * i};
+    const double asked_rpm = ramp.value;
+    (void)shaper.slowDown(ramp, feedback, {}, kTickS);
+    ASSERT_NEAR(ramp.value, asked_rpm, 1e-9);
+  }
+  EXPECT_NEAR(step(ControlMode::kVelocity, 50.0).target.value, 0.1, 1e-6)
+      << "and a target goes on from there";
+}
+
 TEST_F(TargetShaperTest, ABrakeDoesNotStartSoftly) {
   configure({.soft_start_s = 0.1F});
   shaper.restart();
