@@ -169,17 +169,17 @@ TEST_F(SchedLoopTest, AThreadThatWakesLateIsCountedAsThat) {
   EXPECT_GE(late.time, 5ms);
 }
 
-// The grid is coarse: ticks are never early, and of so many one is in time on a busy computer too.
+// The grid is coarse: of some ticks one is in time on a busy computer too, and none is late by a phase.
 class SchedLoopPhaseTest : public SchedLoopTest, public ::testing::WithParamInterface<Duration> {};
 
 TEST_P(SchedLoopPhaseTest, TicksLieOnTheirGrid) {
-  settings.grid = grid = {10ms, GetParam()};
+  settings.grid = grid = {50ms, GetParam()};
   least_late = Duration::max();
-  run(0us, 12);
-  EXPECT_LT(least_late, 2ms);
+  run(0us, 5);
+  EXPECT_LT(least_late, 5ms);
 }
 
-INSTANTIATE_TEST_SUITE_P(All, SchedLoopPhaseTest, ::testing::Values(3ms, 7500us));
+INSTANTIATE_TEST_SUITE_P(All, SchedLoopPhaseTest, ::testing::Values(15ms, 37500us));
 
 TEST_F(SchedLoopTest, AnEstopByDatagramActsInTheNextTickHoweverFullTheRingsAre) {
   while (exchange.orders.push(Order{})) {
