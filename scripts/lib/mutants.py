@@ -22,8 +22,11 @@ import subprocess
 import sys
 import tempfile
 from pathlib import Path
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 from xml.etree import ElementTree as ET
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable
 
 REPO = Path(__file__).resolve().parents[2]
 WORK = REPO / "build" / "mutants"
@@ -43,6 +46,7 @@ FILES = (
     "src/daemon/supervision/supervisor_alone.cpp",
     "src/daemon/supervision/supervisor_groups.cpp",
     "src/daemon/supervision/supervisor_orders.cpp",
+    "src/daemon/tick/scheduler.cpp",
     "src/motor/angle_reference.cpp",
     "src/motor/encoder.cpp",
     "src/motor/first_angle.cpp",
@@ -53,6 +57,10 @@ FILES = (
     "src/motor/guarding/target_shaper.cpp",
     "src/motor/spring_law.cpp",
 )
+
+
+# Of a mutant, as equivalent.txt has it: file, old and new text of the line.
+Key = tuple[str, str, str]
 
 
 class Mutant(NamedTuple):
@@ -68,7 +76,7 @@ class Mutant(NamedTuple):
         return f"{self.file}:{self.line}\n  - {self.before}\n  + {self.after}"
 
     @property
-    def key(self) -> tuple[str, str, str]:
+    def key(self) -> Key:
         """As equivalent.txt has it."""
         return self.file, self.before, self.after
 
@@ -77,18 +85,31 @@ def mutants_of(file: str, mutate: Path) -> list[Mutant]:
     """Every mutant of one file that changes more than blanks and comments, once."""
     original = (REPO / file).read_text(encoding="utf-8")
     found: dict[tuple[int, str, str], Mutant] = {}
-    with tempfile.TemporaryDirectory() as folder:
+    with tempfile.TemporaryDirectory() as folder, tempfile.TemporaryDirectory() as sources:
+        source = Path(sources, Path(file).name)
+        source.write_text(shown(original), encoding="utf-8")
         subprocess.run(
-            [mutate, REPO / file, "cpp", "--noCheck", "--mutantDir", folder],
+            [mutate, source, "cpp", "--noCheck", "--mutantDir", folder],
             check=True,
             stdout=subprocess.DEVNULL,
         )
         for path in sorted(Path(folder).iterdir()):
-            text = path.read_text(encoding="utf-8")
+            text = as_written(path.read_text(encoding="utf-8"))
             changed = difference(original, text)
             if changed is not None:
                 found.setdefault(changed, Mutant(file, *changed, text))
     return list(found.values())
+
+
+# universalmutator takes `{-`, of Duration{-1}, for the begin of a comment that ends nowhere.
+def shown(text: str) -> str:
+    """A source as universalmutator gets it."""
+    return text.replace("{-", "{ -")
+
+
+def as_written(text: str) -> str:
+    """The inverse of shown(): clang-format leaves no such blank."""
+    return text.replace("{ -", "{-")
 
 
 def difference(original: str, text: str) -> tuple[int, str, str] | None:
@@ -114,14 +135,19 @@ def sample_of(candidates: list[Mutant], seed: int, count: int) -> list[Mutant]:
     return sorted(candidates, key=rank)[:count]
 
 
-def equivalent() -> set[tuple[str, str, str]]:
-    """Those that are no other programs."""
+def equivalent(text: str) -> set[Key]:
+    """Those that are no other programs, of the text of equivalent.txt."""
     known = set()
-    for line in (REPO / "tests/mutants/equivalent.txt").read_text(encoding="utf-8").splitlines():
+    for line in text.splitlines():
         if line and not line.startswith("#"):
             file, before, after, _reason = line.split("\t")
             known.add((file, before, after))
     return known
+
+
+def stale(known: set[Key], everything: Iterable[Mutant]) -> list[Key]:
+    """Those that no mutant is any more: their line has changed."""
+    return sorted(known - {mutant.key for mutant in everything})
 
 
 class Tree:
@@ -256,7 +282,15 @@ def main() -> int:
     given = arguments()
     WORK.mkdir(parents=True, exist_ok=True)
     everything = [mutant for file in FILES for mutant in mutants_of(file, given.mutate)]
-    known = equivalent()
+    known = equivalent((REPO / "tests/mutants/equivalent.txt").read_text(encoding="utf-8"))
+    if gone := stale(known, everything):
+        print(
+            "tests/mutants/equivalent.txt: no mutant is that any more; mend or remove these lines:"
+        )
+        for file, before, after in gone:
+            print(f"{file}\n  - {before}\n  + {after}")
+        print("0 passed, 1 failed, 0 skipped")
+        return 1
     candidates = [mutant for mutant in everything if mutant.key not in known]
     # Some do not compile.
     sample = sample_of(candidates, given.seed, 2 * given.count)

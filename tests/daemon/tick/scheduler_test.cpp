@@ -467,5 +467,25 @@ TEST_F(SchedulerTest, TheAllocationGuardNoticesASingleNew) {
   EXPECT_EQ(guard.allocations(), 1U);
 }
 
+// A slew limit shows it: 0.1 A a period.
+TEST(SchedulerGapTest, LoopsAdvanceByTheGapBetweenTicksButByNoMoreThanFivePeriods) {
+  auto config = twoWheelsAndYaw();
+  config.buses[0].motors[kLeft].shaping.effort_slew_per_s = 100.0F;
+  VirtualRobot robot{config};
+  robot.run(5);
+  (void)robot.order(Operation::kEnable);
+  const auto step = [&](std::uint64_t periods) {
+    const float before_a = robot.motor(kLeft).command_value;
+    robot.command(kLeft, {.mode = ControlMode::kCurrent, .value = 15.0}, 1s);
+    robot.tick(periods);
+    return static_cast<double>(robot.motor(kLeft).command_value - before_a);
+  };
+  robot.hold(kLeft, {.mode = ControlMode::kCurrent, .value = 0.0}, 300);  // beyond the soft start
+  for (const std::uint64_t periods : {1U, 2U, 4U, 5U, 6U, 60U}) {
+    const double expected_a = 0.1 * static_cast<double>(std::min<std::uint64_t>(periods, 5));
+    EXPECT_NEAR(step(periods), expected_a, 0.005) << periods;
+  }
+}
+
 }  // namespace
 }  // namespace rc10::test::scheduler_test
