@@ -63,8 +63,6 @@ RobotConfig Chaos::believed(const Lie& lie) const {
   for (auto& module : config.modules) {
     auto& own = module.settings.own;
     const bool homes = module.type->name() == "joint";
-    if (lie.kind == Lie::Kind::kHolding && module.type->name() == "gimbal")
-      own.set("silence_max_s", 0.1 * own.number("silence_max_s"));
     if (homes && lie.kind == Lie::Kind::kHoming)
       own.set("homing_velocity_rpm", 0.25 * own.number("homing_velocity_rpm"));
     if (homes && lie.kind == Lie::Kind::kTravel) own.set("home_angle_deg", kNearHomeDeg);
@@ -81,6 +79,7 @@ RobotConfig Chaos::believed(const Lie& lie) const {
   if (settings.effort_limit <= 0.0F) settings.effort_limit = motor.traits().effort_full_scale;
   settings.effort_limit *= 0.25F;
   settings.velocity_limit_rpm *= 0.25F;
+  motor.shaping.soft_start_s = 0.0F;  // which it would take for faster than it is
   return config;
 }
 

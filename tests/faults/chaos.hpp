@@ -31,8 +31,7 @@ class Chaos {
       kHoming,     ///< that it homes at a quarter of its velocity,
       kTravel,     ///< or within a tenth of its travel.
       kSlew,       ///< Of one motor, that its targets change at a quarter of their slew limits, or
-      kSoftStart,  ///< that its soft start takes four times as long. Of a gimbal,
-      kHolding,    ///< that it holds for a tenth of its time when nobody commands it.
+      kSoftStart,  ///< that its soft start takes four times as long.
     };
     std::size_t robot = 0;
     std::size_t motor = 0;

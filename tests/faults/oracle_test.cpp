@@ -82,7 +82,6 @@ TEST(OracleSeesOfAJoint, ThatItHomesFartherThanItsTravel) {
 }
 
 constexpr std::size_t kRobotWithSlewLimits = 5;
-constexpr std::size_t kRobotWithAGimbal = 7;
 
 TEST(OracleSeesOfATarget, ThatItChangesFasterThanItsSlewLimit) {
   for (const std::size_t motor : {0U, 1U, 2U, 3U, 4U, 6U})
@@ -96,11 +95,6 @@ TEST(OracleSeesOfATarget, ThatItComesIntoForceFasterThanItsSoftStart) {
     EXPECT_THAT(findingOf({.robot = kRobotWithSlewLimits, .motor = motor, .kind = Kind::kSoftStart}),
                 ::testing::HasSubstr("of its soft start"))
         << motor;
-}
-
-TEST(OracleSeesOfAGimbal, ThatItHoldsForNobody) {
-  EXPECT_THAT(findingOf({.robot = kRobotWithAGimbal, .kind = Kind::kHolding}),
-              ::testing::HasSubstr("for nobody"));
 }
 
 INSTANTIATE_TEST_SUITE_P(EachMotor, OracleSees, ::testing::ValuesIn(everyMotor()),
