@@ -66,7 +66,7 @@ def test_a_tick_makes_seven_system_calls_for_two_buses() -> None:
     """The timer; frames, echoes and sending of each bus."""
     calls = program(DJI).calls(guest.installed_rt_kernel())
     assert 6.9 < calls.threads["sched"] < 7.2
-    assert sum(calls.threads.values()) < 10.0
+    assert sum(calls.threads.values()) <= 8.0, "rc10-guard and slower threads included"
     assert calls.overflows == 0
 
 
