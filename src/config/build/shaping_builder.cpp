@@ -13,6 +13,8 @@ constexpr float kFullEffort = 0.2F;
 // First step of an encoder that may be a turn astray, where nothing slows the way: farther is a matter of
 // turns.
 constexpr double kFirstStepDeg = 180.0;
+// No supply makes a motor turn so fast.
+constexpr float kBeyondNoLoad = 2.0F;
 // A gimbal and a wheel live with it, and a hand has time.
 constexpr double kSoftStartMs = 200.0;
 
@@ -38,6 +40,9 @@ void readShaping(MotorParse& in) {
   shaping.springs = in.traits.modes.contains(ControlMode::kImpedance);
   shaping.effort_limit = effortLimitOf(in.motor(), in.traits.effort_full_scale);
   shaping.velocity_limit_rpm = in.motor().velocity_limit_rpm;
+  // Without a limit of its own, with room for the error that a loop needs.
+  if (!(shaping.velocity_limit_rpm > 0.0F) && in.noLoadRpm() > 0.0)
+    shaping.velocity_limit_rpm = kBeyondNoLoad * static_cast<float>(in.noLoadRpm());
   shaping.has_velocity_loop = in.traits.modes.contains(ControlMode::kVelocity);
   if (in.traits.host_loops != nullptr) {
     shaping.approach_rpm_per_deg = kApproachOfAngleGain * in.motor().loops.angle.kp;

@@ -210,7 +210,8 @@ std::uint32_t TargetShaper::shapeVelocityFf(Target& asked, float dt_s) noexcept 
           ? std::min(ceiling_rpm_, static_cast<double>(config_.angle_slew_deg_per_s) / kDegPerSPerRpm)
           : ceiling_rpm_;
   const auto wanted_rpm = static_cast<double>(asked.velocity_ff_rpm);
-  const double goal_rpm = std::clamp(wanted_rpm, -most_rpm, most_rpm);
+  const double goal_rpm =
+      within(std::clamp(wanted_rpm, -most_rpm, most_rpm), static_cast<double>(config_.velocity_limit_rpm));
   const bool slewed =
       slewTowards(goal_rpm, static_cast<double>(config_.velocity_slew_rpm_per_s), dt_s, velocity_ff_rpm_);
   asked.velocity_ff_rpm = static_cast<float>(velocity_ff_rpm_);
@@ -225,9 +226,11 @@ std::uint32_t TargetShaper::shapeTorqueFf(Target& asked, const MotorFeedback& fe
   if (!springs && asked.torque_ff_nm == 0.0F && torque_ff_nm_ == 0.0) return 0;
   const auto per_nm = static_cast<double>(config_.effort_per_nm);
   const double nm_per_s = per_nm > 0.0 ? static_cast<double>(config_.effort_slew_per_s) / per_nm : 0.0;
-  std::uint32_t limits = 0;
-  if (slewTowards(static_cast<double>(asked.torque_ff_nm), nm_per_s, dt_s, torque_ff_nm_))
-    limits = kLimitSlew;
+  const auto wanted_nm = static_cast<double>(asked.torque_ff_nm);
+  const double goal_nm =
+      nm_per_s > 0.0 ? within(wanted_nm, static_cast<double>(config_.effort_limit) / per_nm) : wanted_nm;
+  std::uint32_t limits = goal_nm != wanted_nm ? kLimitCurrent : 0U;
+  if (slewTowards(goal_nm, nm_per_s, dt_s, torque_ff_nm_)) limits |= kLimitSlew;
   if (bounded(feedback) || reduced()) {
     const Envelope allowed = springs ? allowedSpeeds(feedback) : softEnvelope(feedback);
     double low_nm = -mostTorqueFf(springs, feedback, allowed.low_rpm, -1.0);
@@ -337,8 +340,13 @@ double TargetShaper::effortFor(double allowed_rpm, const MotorFeedback& feedback
              static_cast<double>(config_.approach_effort_per_rpm);
 }
 
+// A slew ends at the limit of the motor: what it ran on beyond would have to come back before a target acts.
 std::uint32_t TargetShaper::shapeVelocity(Target& asked, const MotorFeedback& feedback, float dt_s) noexcept {
-  std::uint32_t limits = slew(asked.value, config_.velocity_slew_rpm_per_s, dt_s) ? kLimitSlew : 0U;
+  const bool slews = config_.velocity_slew_rpm_per_s > 0.0F;
+  const double goal_rpm =
+      slews ? within(asked.value, static_cast<double>(config_.velocity_limit_rpm)) : asked.value;
+  std::uint32_t limits = goal_rpm != asked.value ? kLimitVelocity : 0U;
+  if (slew(goal_rpm, config_.velocity_slew_rpm_per_s, dt_s)) limits |= kLimitSlew;
   if (bounded(feedback) || reduced()) {
     const Envelope allowed = allowedSpeeds(feedback);
     const double inside = std::clamp(value_, allowed.low_rpm, allowed.high_rpm);

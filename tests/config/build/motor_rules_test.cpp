@@ -166,6 +166,13 @@ TEST(MotorRules, AnAbsoluteEncoderGetsItsTravelAndABoundOfItsFirstStep) {
   EXPECT_TRUE(std::isinf(lift.shaping.max_first_step_deg));
 }
 
+TEST(MotorRules, ASlewOfTheSpeedEndsAtTheLimitOrWellBeyondTheNoLoadSpeed) {
+  const auto bounded = motorOf("{name: a, model: M3508, id: 1, velocity_limit_rpm: 100}");
+  EXPECT_EQ(bounded.shaping.velocity_limit_rpm, 100.0F);
+  const auto wheel = motorOf("{name: a, model: M3508, id: 1}");
+  EXPECT_EQ(wheel.shaping.velocity_limit_rpm, 2.0F * wheel.traits().no_load_rpm);
+}
+
 TEST(MotorRules, AGearedMotorMayCallItsFirstPositionZero) {
   EXPECT_TRUE(motorOf("{name: a, model: M2006, id: 1, zero: power_on}").settings.zero_at_power_on);
   EXPECT_FALSE(motorOf("{name: a, model: M2006, id: 1, zero: none}").settings.zero_at_power_on);

@@ -304,5 +304,37 @@ TEST_F(TargetShaperTest, ACeilingThatGoesLeavesEveryTargetAsItIs) {
   EXPECT_EQ(step(ControlMode::kVelocity, 500.0).limits, 0U);
 }
 
+TEST_F(TargetShaperTest, ASpeedBeyondTheLimitOfTheMotorDoesNotWindUp) {
+  configure({.velocity_slew_rpm_per_s = 1000.0F, .velocity_limit_rpm = 20.0F});
+  EXPECT_NEAR(valueAfter(5000, ControlMode::kVelocity, 1e9), 20.0, 1e-6);
+  EXPECT_EQ(step(ControlMode::kVelocity, 1e9).limits, kLimitVelocity);
+  EXPECT_NEAR(step(ControlMode::kVelocity, 0.0).target.value, 19.0, 1e-6) << "at once";
+  EXPECT_NEAR(valueAfter(5000, ControlMode::kVelocity, -1e9), -20.0, 1e-6);
+}
+
+TEST_F(TargetShaperTest, WithoutASlewASpeedBeyondTheLimitIsTheMotorsToBound) {
+  configure({.velocity_limit_rpm = 20.0F});
+  const auto shaped = step(ControlMode::kVelocity, 100.0);
+  EXPECT_EQ(shaped.target.value, 100.0);
+  EXPECT_EQ(shaped.limits, 0U);
+}
+
+TEST_F(TargetShaperTest, FeedForwardsBeyondTheLimitOfTheMotorDoNotWindUp) {
+  configure({.effort_slew_per_s = 100.0F,
+             .velocity_slew_rpm_per_s = 1000.0F,
+             .effort_per_nm = 2.0F,
+             .effort_limit = 4.0F,
+             .velocity_limit_rpm = 20.0F});
+  const Target far{.mode = ControlMode::kTotalAngle, .velocity_ff_rpm = 1e9F, .torque_ff_nm = -1e9F};
+  for (int i = 0; i < 5000; ++i) (void)step(far);
+  const auto limited = step(far);
+  EXPECT_NEAR(limited.target.velocity_ff_rpm, 20.0F, 1e-4F);
+  EXPECT_NEAR(limited.target.torque_ff_nm, -2.0F, 1e-4F);
+  EXPECT_NE(limited.limits & kLimitCurrent, 0U);
+  const auto back = step({.mode = ControlMode::kTotalAngle}).target;
+  EXPECT_NEAR(back.velocity_ff_rpm, 19.0F, 1e-4F);
+  EXPECT_NEAR(back.torque_ff_nm, -1.95F, 1e-4F);
+}
+
 }  // namespace
 }  // namespace rc10::test
