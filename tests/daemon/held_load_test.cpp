@@ -88,7 +88,7 @@ class HeldLoad : public ::testing::TestWithParam<std::tuple<Subject, const char*
     return held_deg;
   }
   double measuredDeg() { return robot.motor(kMotor).feedback.total_angle_deg; }
-  /// How far it sinks while this target comes into force.
+  /// Way down while this target comes into force.
   double sinksDeg(const Target& target) {
     const double before_deg = angleDeg();
     double lowest_deg = before_deg;

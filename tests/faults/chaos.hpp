@@ -30,7 +30,7 @@ class Chaos {
       kPace,       ///< Or, of any robot, that scans listen a minute longer; of a joint,
       kHoming,     ///< that it homes at a quarter of its velocity,
       kTravel,     ///< or within a tenth of its travel.
-      kSlew,       ///< Of one motor, that its targets change at a quarter of their slew limits, or
+      kSlew,       ///< A motor whose targets change at a quarter of their slew limits, or
       kSoftStart,  ///< that its soft start takes four times as long.
     };
     std::size_t robot = 0;

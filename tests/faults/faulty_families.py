@@ -115,7 +115,7 @@ class FaultyDrive(Drives):
             yield message
 
     def _is_state(self, message: can.Message) -> bool:
-        """Of those frames that the drives send while they obey."""
+        """Those frames that the drives send while they obey."""
         return {
             "damiao": message.data[0] >> 4 == 1,
             "myactuator": message.arbitration_id >> 8 == 0x5,

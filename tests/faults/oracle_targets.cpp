@@ -70,7 +70,10 @@ void Oracle::followTargets(std::size_t index, const MotorSnapshot& seen) {
   }
   track.mode = mode;
   track.came.clear();
-  if (!acts) return;
+  if (!acts) {
+    followHold(track, seen);
+    return;
+  }
   require(index, !isOfAngle(mode) || std::fabs(seen.target.value) <= kFarthestDeg,
           "a target that is too far away to be told");
   track.soft += periods * config_.period();
@@ -88,6 +91,18 @@ void Oracle::followTargets(std::size_t index, const MotorSnapshot& seen) {
     if (may_begin) field.start.take(begun[i]);
   }
   followAsked(motor, seen);
+  track.held = {};
+}
+
+// A hold does not let its load go: a place begins where the hold began, or nearer.
+void Oracle::followHold(TargetTrack& track, const MotorSnapshot& seen) {
+  if (seen.acting != Acting::kHold) {
+    track.held = {};
+    return;
+  }
+  const double moved_deg =
+      std::fabs(static_cast<double>(seen.feedback.velocity_rpm)) * kDegPerSPerRpm * kMovedSeconds;
+  track.held.take(seen.feedback.total_angle_deg, 1e-3 + (track.held.empty() ? moved_deg : 0.0));
 }
 
 // From what is measured, or goes on from the effort that acts, or from a ramp.
@@ -100,7 +115,8 @@ std::array<Span, TargetTrack::kFields> Oracle::beginnings(const Motor& motor, co
     begun[field].take(track.effort_before);
     begun[field].take(track.value_before);
   }
-  begun[Field::kEffort].take(static_cast<double>(seen.feedback.current_a));
+  for (const auto field : {Field::kEffort, Field::kPush})
+    begun[field].take(static_cast<double>(seen.feedback.current_a));
   begun[Field::kSpeed].take(wire.velocity_rpm, wire.velocity_step_rpm);
   begun[Field::kSpeed].take(static_cast<double>(seen.feedback.velocity_rpm));
   if (motor.actions.test(static_cast<std::size_t>(FallbackAction::kRamp))) {
@@ -109,6 +125,7 @@ std::array<Span, TargetTrack::kFields> Oracle::beginnings(const Motor& motor, co
     begun[Field::kSpeed].take(motor.rpm_when_it_began, wire.velocity_step_rpm);
   }
   begun[Field::kPlace].take(seen.feedback.total_angle_deg);
+  if (!track.held.empty()) begun[Field::kPlace].take(track.held);
   begun[Field::kLead].take(0.0);
   return begun;
 }

@@ -106,6 +106,7 @@ struct TargetTrack {
   double value_before = 0.0;             ///< and as the snapshot told it.
   double speed_before = 0.0;
   bool turn_known = false;  ///< Its angle has a reference.
+  Span held;                ///< Places where it has been since it is held; none: it is not.
 
   void expect(MonotonicTime deadline) noexcept { deadlines_[slotOf(deadline)] = true; }
   /// A tick, from one time to the next.

@@ -9,7 +9,7 @@ namespace {
 
 // The ring has room for seconds: this is for what a crash may find in the history.
 constexpr Duration kDrainInterval = std::chrono::milliseconds{20};
-// Of SPI devices.
+// SPI devices have theirs.
 constexpr Duration kShortInterval = std::chrono::milliseconds{10};
 constexpr Duration kReviveInterval = std::chrono::milliseconds{50};
 

@@ -8,7 +8,7 @@ namespace rc10 {
 /// Times of the loops.
 struct LoopGrids {
   TimeGrid ticks;
-  TimeGrid drains;  ///< Of the RX thread, with ReceivePolicy::kThread.
+  TimeGrid drains;  ///< The RX thread's, with ReceivePolicy::kThread.
 };
 
 /// `realtime_ahead`: CLOCK_REALTIME - CLOCK_MONOTONIC.

@@ -21,7 +21,7 @@ namespace {
 constexpr Duration kIdle = std::chrono::milliseconds{100};
 // Further events come with the next call.
 constexpr int kMaxEvents = 16;
-// Of the socket of e-stops in the epoll set; a serial port has its number.
+// The socket of e-stops in the epoll set; a serial port has its number.
 constexpr std::uint64_t kEstopTag = ~std::uint64_t{0};
 
 }  // namespace

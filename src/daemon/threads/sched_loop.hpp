@@ -23,7 +23,7 @@ class SchedLoop {
     Duration
         overload;  ///< Range: above 0. The robot stops after ticks of so much CPU time, see OverloadWatch.
     int realtime_percent = 95;  ///< Range: 1 to 100. CPU time that the kernel leaves to real-time threads.
-    Duration (*cpu_time)() noexcept = threadCpuTime;  ///< Of the calling thread.
+    Duration (*cpu_time)() noexcept = threadCpuTime;  ///< The calling thread's.
   };
 
   /// `intake`: drained at the start of each tick (`receive: tick`); null: the RX thread drains it.

@@ -153,9 +153,9 @@ void TargetShaper::begin(ControlMode mode, const MotorFeedback& feedback, InForc
   soft_ff_nm_ = torque_ff_nm_;
 }
 
-// What a fallback holds stays held: an angle goes on from the held one, which a loaded spring is beside. What
-// the spring of an impedance does not give of the torque in force, and a speed that a damper follows not at
-// all, begins as a feed-forward.
+// A load that a fallback holds stays held: an angle goes on from the held one, beside which a loaded spring
+// is. Torque in force that the spring of an impedance does not give, or the damper of a speed, begins as a
+// feed-forward.
 void TargetShaper::takeOver(ControlMode mode, const MotorFeedback& feedback, InForce in_force,
                             float stiffness_nm_per_rad) noexcept {
   if (mode == ControlMode::kAngle || mode == ControlMode::kTotalAngle) value_ = in_force.held_deg;

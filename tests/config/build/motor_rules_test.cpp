@@ -169,8 +169,9 @@ TEST(MotorRules, AnAbsoluteEncoderGetsItsTravelAndABoundOfItsFirstStep) {
 TEST(MotorRules, ASlewOfTheSpeedEndsAtTheLimitOrWellBeyondTheNoLoadSpeed) {
   const auto bounded = motorOf("{name: a, model: M3508, id: 1, velocity_limit_rpm: 100}");
   EXPECT_EQ(bounded.shaping.velocity_limit_rpm, 100.0F);
-  const auto wheel = motorOf("{name: a, model: M3508, id: 1}");
-  EXPECT_EQ(wheel.shaping.velocity_limit_rpm, 2.0F * wheel.traits().no_load_rpm);
+  const auto arm = motorOf("{name: a, model: DM4310, id: 1, master_id: 17}");
+  ASSERT_EQ(arm.settings.velocity_limit_rpm, 0.0F);
+  EXPECT_EQ(arm.shaping.velocity_limit_rpm, 2.0F * arm.traits().no_load_rpm);
 }
 
 TEST(MotorRules, AGearedMotorMayCallItsFirstPositionZero) {
