@@ -55,6 +55,7 @@ const kSections: Record<number, string> = {
   202: 'lcm-and-programs',
   203: 'it-is-ready-and-does-not-move',
   204: 'it-moves-and-not-as-told',
+  205: 'late',
   300: 'a-motor-is-offline',
   301: 'a-motor-is-offline',
   302: 'a-motor-is-offline',
