@@ -100,7 +100,6 @@ void Oracle::judgeCommand(std::size_t index, const MotorSnapshot& seen) {
   judgeLimits(index);
   judgeTold(index, seen);
   judgeSlew(index, seen);
-  judgeTargets(index, seen);
   judgeReduced(index, seen);
   if (lost(seen.status)) {
     require(index, mayLag(motor, motor.lost_ticks) || motor.told.rests(), "a command that is not rest");
@@ -132,7 +131,7 @@ void Oracle::judgeLimits(std::size_t index) {
   require(index, !bounded || told.most_effort <= motor.limit + slack + 1e-4 * motor.limit,
           "told a bound beyond its limit");
   const auto most_rpm = static_cast<double>(motor.config->settings.velocity_limit_rpm);
-  if (most_rpm <= 0.0 || motor.frames == 0) return;  // its last frame was judged by what it knew
+  if (most_rpm <= 0.0) return;
   const double slack_rpm = told.velocity_step_rpm + 1e-4 * most_rpm;
   const double measured_rpm = motor.wire->measured().velocity_rpm;
   const bool pushed_on = told.sum * std::copysign(1.0, measured_rpm) > rounded;

@@ -305,5 +305,18 @@ TEST(CubemarsMitV3, BeyondTheReachOfItsCommandsAnAngleOnlyDamps) {
   EXPECT_GT(command.damping_nms_per_rad, 0.0);
 }
 
+TEST(CubemarsMitV3, AShaftFasterThanItsVelocityFieldIsBrakedWithinTheLimit) {
+  const auto torqueAt = [](double rpm) {
+    Mit bench(mitV3());
+    (void)bench.feedServo(0.0);
+    (void)bench.feedServo(0.0, 168.0 * rpm);
+    const auto command = bench.decode(bench.command({.mode = ControlMode::kVelocity}));
+    return command.damping_nms_per_rad * (command.velocity_rad_s - rpm * kRadPerSPerRpm);
+  };
+  const double most_nm = torqueAt(-300.0);
+  EXPECT_NEAR(torqueAt(-290.0), most_nm, 0.02 * most_nm) << "its limit";
+  for (const double rpm : {-400.0, -600.0, -1000.0}) EXPECT_NEAR(torqueAt(rpm), most_nm, 0.05 * most_nm);
+}
+
 }  // namespace
 }  // namespace rc10::test::cubemars_mit_test

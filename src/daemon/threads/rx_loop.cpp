@@ -84,17 +84,18 @@ void RxLoop::look(MonotonicTime now) noexcept {
   if (count <= 0) return;
   rests_until_ = now + kRest;
   for (const epoll_event& event : std::span(events).first(static_cast<std::size_t>(count))) {
-    if (event.data.u64 == kEstopTag)
-      receiveEstops();
-    else
+    if (event.data.u64 != kEstopTag) {
       receiveSerial(event.data.u64, now, event.events);
+    } else if (estops_) {
+      receiveEstops(*estops_);
+    }
   }
 }
 
-void RxLoop::receiveEstops() noexcept {
-  const auto client = estops_->datagrams.take();
+void RxLoop::receiveEstops(const Estops& estops) noexcept {
+  const auto client = estops.datagrams.take();
   if (!client) return;
-  auto& exchange = estops_->exchange;
+  auto& exchange = estops.exchange;
   exchange.estop_datagram_client.slot() = *client;
   exchange.estop_datagram_client.publish();
   exchange.estop_datagram.store(true, std::memory_order_release);

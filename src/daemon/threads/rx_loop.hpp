@@ -61,7 +61,7 @@ class RxLoop {
   RxLoop(SerialChannels* serial, std::optional<Drain> drain, std::optional<Estops> estops, UniqueFd epoll)
       : serial_(serial), drain_(drain), estops_(estops), epoll_(std::move(epoll)) {}
   [[nodiscard]] bool watch(int descriptor, std::uint64_t tag) noexcept;
-  void receiveEstops() noexcept;
+  static void receiveEstops(const Estops& estops) noexcept;
   void receiveSerial(std::size_t channel, MonotonicTime now, std::uint32_t events) noexcept;
 
   SerialChannels* serial_;  // null: none

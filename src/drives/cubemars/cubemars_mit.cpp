@@ -258,6 +258,10 @@ void CubemarsMit::send(const SpringLaw& wanted_law) noexcept {
   command_.torque_nm = std::clamp(command_.torque_nm, -most_nm, most_nm);
   if (command_.torque_nm != wanted_law.torque_nm) limits_ |= kLimitCurrent;
   if (boundTorque(command_, measured(), driveTorqueLimitNm(), SpringYield::kErrors)) limits_ |= kLimitCurrent;
+  // A shaft that is faster than its field can say has a greater error than that: the gains yield.
+  const double most_rad_s = own().ranges.velocity_rad_s;
+  command_.velocity_rad_s = std::clamp(command_.velocity_rad_s, -most_rad_s, most_rad_s);
+  if (boundTorque(command_, measured(), driveTorqueLimitNm(), SpringYield::kGains)) limits_ |= kLimitCurrent;
   setCommand(torqueToOutput(torqueNm(command_, measured())) / static_cast<double>(torqueNmPerA()),
              CommandUnit::kAmpere);
 }

@@ -45,6 +45,12 @@ constexpr double kEffortAgainShare = 0.8;
   return most > 0.0 ? std::clamp(value, -most, most) : value;
 }
 
+// Goal of a slew that is at `value`: at the limit it ends, and what ran on beyond would have to come back
+// before a target acts. From beyond the limit it is not led back faster than was asked.
+[[nodiscard]] double slewGoal(double asked, double value, double most) noexcept {
+  return most > 0.0 ? std::clamp(asked, std::min(-most, value), std::max(most, value)) : asked;
+}
+
 // Part of an effort that its limits have let through: `told`; 0 if they brake in its place.
 [[nodiscard]] double leftOf(double effort, double told) noexcept {
   const double most = std::fabs(effort);
@@ -67,7 +73,7 @@ std::uint32_t TargetShaper::step(Target& target, const MotorFeedback& feedback, 
                                  float dt_s) noexcept {
   if (!follows(target.mode)) begin(target.mode, feedback, in_force, target.stiffness_nm_per_rad);
   if (!(share_ < 1.0)) return shape(target, feedback, in_force, dt_s);
-  soften(target, dt_s);
+  soften(target, feedback, dt_s);
   return shape(target, feedback, in_force, dt_s) | kLimitSlew;
 }
 
@@ -82,7 +88,7 @@ std::uint32_t TargetShaper::slowDown(Target& target, const MotorFeedback& feedba
 
 // Share of the target by the time since the motor was enabled, from where it is on its way: a target that
 // changes meanwhile never leads back. A spring is stiff at once, and begins where the shaft is or is held.
-void TargetShaper::soften(Target& asked, float dt_s) noexcept {
+void TargetShaper::soften(Target& asked, const MotorFeedback& feedback, float dt_s) noexcept {
   const double left = 1.0 - share_;
   share_ = std::min(1.0, share_ + static_cast<double>(dt_s / config_.soft_start_s));
   const bool moves = isEffort(mode_) || mode_ == ControlMode::kVelocity || needsReference(mode_);
@@ -94,8 +100,9 @@ void TargetShaper::soften(Target& asked, float dt_s) noexcept {
   soft_ff_nm_ += (static_cast<double>(asked.torque_ff_nm) - soft_ff_nm_) * part;
   asked.torque_ff_nm = static_cast<float>(soft_ff_nm_);
   const bool any_turn = mode_ == ControlMode::kAngle;
-  const double way = any_turn ? shortestAngle(soft_, asked.value) : asked.value - soft_;
-  soft_ += way * part;
+  double goal = any_turn ? soft_ + shortestAngle(soft_, asked.value) : asked.value;
+  if (any_turn && bounded(feedback)) goal = reachable(goal, any_turn);
+  soft_ += (goal - soft_) * part;
   asked.value = any_turn ? wrapDegrees(soft_) : soft_;
 }
 
@@ -228,7 +235,8 @@ std::uint32_t TargetShaper::shapeTorqueFf(Target& asked, const MotorFeedback& fe
   const double nm_per_s = per_nm > 0.0 ? static_cast<double>(config_.effort_slew_per_s) / per_nm : 0.0;
   const auto wanted_nm = static_cast<double>(asked.torque_ff_nm);
   const double goal_nm =
-      nm_per_s > 0.0 ? within(wanted_nm, static_cast<double>(config_.effort_limit) / per_nm) : wanted_nm;
+      nm_per_s > 0.0 ? slewGoal(wanted_nm, torque_ff_nm_, static_cast<double>(config_.effort_limit) / per_nm)
+                     : wanted_nm;
   std::uint32_t limits = goal_nm != wanted_nm ? kLimitCurrent : 0U;
   if (slewTowards(goal_nm, nm_per_s, dt_s, torque_ff_nm_)) limits |= kLimitSlew;
   if (bounded(feedback) || reduced()) {
@@ -340,11 +348,10 @@ double TargetShaper::effortFor(double allowed_rpm, const MotorFeedback& feedback
              static_cast<double>(config_.approach_effort_per_rpm);
 }
 
-// A slew ends at the limit of the motor: what it ran on beyond would have to come back before a target acts.
 std::uint32_t TargetShaper::shapeVelocity(Target& asked, const MotorFeedback& feedback, float dt_s) noexcept {
   const bool slews = config_.velocity_slew_rpm_per_s > 0.0F;
   const double goal_rpm =
-      slews ? within(asked.value, static_cast<double>(config_.velocity_limit_rpm)) : asked.value;
+      slews ? slewGoal(asked.value, value_, static_cast<double>(config_.velocity_limit_rpm)) : asked.value;
   std::uint32_t limits = goal_rpm != asked.value ? kLimitVelocity : 0U;
   if (slew(goal_rpm, config_.velocity_slew_rpm_per_s, dt_s)) limits |= kLimitSlew;
   if (bounded(feedback) || reduced()) {
@@ -399,6 +406,8 @@ std::uint32_t TargetShaper::boundAngle(Target& asked, const MotorFeedback& feedb
         std::clamp(static_cast<double>(asked.velocity_ff_rpm), towards.low_rpm, towards.high_rpm));
   }
   if (slew(allowed, config_.angle_slew_deg_per_s, dt_s)) limits |= kLimitSlew;
+  // A shaft that comes back from beyond a limit faster than the slew is not led out again.
+  if (limited) value_ = std::clamp(value_, low_deg_, high_deg_);
   if (any_turn) asked.mode = ControlMode::kTotalAngle;
   asked.value = value_;
   if (reduced()) limits |= shorten(asked, before_deg, feedback, dt_s);

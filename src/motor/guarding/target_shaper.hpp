@@ -116,7 +116,7 @@ class TargetShaper {
              float stiffness_nm_per_rad) noexcept;
   void takeOver(ControlMode mode, const MotorFeedback& feedback, InForce in_force,
                 float stiffness_nm_per_rad) noexcept;
-  void soften(Target& asked, float dt_s) noexcept;
+  void soften(Target& asked, const MotorFeedback& feedback, float dt_s) noexcept;
   void boundAsked(Target& asked) const noexcept;
   [[nodiscard]] bool slew(double goal, float per_second, float dt_s) noexcept;
   // Each shapes its part of the target and returns the limits that act.

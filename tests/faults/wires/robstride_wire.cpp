@@ -83,10 +83,6 @@ class RobstrideWire final : public Wire {
       default:
         told.law = Told::Law::kAngle;
         told.most_effort = current_limit_a_;
-        // A newer firmware's position goes round by two whole turns on each side, its reference does not.
-        told.ahead_deg = degOfRad(std::remainder(position_ref_rad_ - seen_rad_, 2.0 * range_rad_));
-        told.ahead_turn_deg = std::fabs(degOfRad(2.0 * range_rad_));
-        told.ahead_step_deg = std::fabs(degOfRad(1e-3 + 1e-6 * std::fabs(position_ref_rad_)));
         return told;
     }
   }
@@ -117,11 +113,8 @@ class RobstrideWire final : public Wire {
       case kCurrentRef: current_ref_a_ = value; break;
       case kVelocityRef: velocity_ref_rad_s_ = value; break;
       case kCurrentLimit: current_limit_a_ = value; break;
-      case kPositionRef:
-        position_ref_rad_ = value;
-        seen_rad_ = position_rad_;
-        break;
       case kTorqueLimit:
+      case kPositionRef:
       case kVelocityLimit: break;
       default:
         if (index != model_->watchdog_index) refuse(frame, "a parameter that rc10d has no business with");
@@ -155,7 +148,6 @@ class RobstrideWire final : public Wire {
   std::optional<MitFields> operated_;
   double current_ref_a_ = 0.0;
   double velocity_ref_rad_s_ = 0.0;
-  double position_ref_rad_ = 0.0;
   double current_limit_a_ = 0.0;
   double position_rad_ = 0.0;
   double velocity_rad_s_ = 0.0;

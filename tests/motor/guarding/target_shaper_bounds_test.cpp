@@ -312,6 +312,30 @@ TEST_F(TargetShaperTest, ASpeedBeyondTheLimitOfTheMotorDoesNotWindUp) {
   EXPECT_NEAR(valueAfter(5000, ControlMode::kVelocity, -1e9), -20.0, 1e-6);
 }
 
+TEST_F(TargetShaperTest, FromBeyondTheLimitOfTheMotorASoftStartIsSoftToo) {
+  configure({.velocity_slew_rpm_per_s = 2000.0F, .velocity_limit_rpm = 480.0F, .soft_start_s = 0.2F});
+  shaper.restart();
+  feedback.velocity_rpm = -521.0F;
+  EXPECT_NEAR(step(ControlMode::kVelocity, -192.0).target.value, -521.0 + 0.005 * 329.0, 1e-3);
+}
+
+TEST_F(TargetShaperTest, ASoftStartLeadsTheWayThatALimitLeaves) {
+  configure({.angle_min_deg = -200.0, .angle_max_deg = 200.0, .soft_start_s = 0.2F});
+  shaper.restart();
+  at(-247.0);
+  // Farther out is no way; the other way round it is 359 deg.
+  EXPECT_NEAR(step(ControlMode::kAngle, 112.0).target.value, -247.0 + 0.005 * 359.0, 1e-3);
+  EXPECT_NEAR(valueAfter(199, ControlMode::kAngle, 112.0), 112.0, 1e-6);
+}
+
+TEST_F(TargetShaperTest, AShaftThatComesBackFasterThanItsSlewIsNotLedOutAgain) {
+  configure({.angle_slew_deg_per_s = 100.0F, .angle_min_deg = -90.0, .angle_max_deg = 90.0});
+  at(120.0);
+  EXPECT_NEAR(step(ControlMode::kTotalAngle, 0.0).target.value, 119.9, 1e-3);
+  at(110.0);
+  EXPECT_NEAR(step(ControlMode::kTotalAngle, 0.0).target.value, 110.0, 1e-3);
+}
+
 TEST_F(TargetShaperTest, WithoutASlewASpeedBeyondTheLimitIsTheMotorsToBound) {
   configure({.velocity_limit_rpm = 20.0F});
   const auto shaped = step(ControlMode::kVelocity, 100.0);
