@@ -59,7 +59,7 @@ FILES = (
 )
 
 
-# Of a mutant, as equivalent.txt has it: file, old and new text of the line.
+# Key of a mutant, as equivalent.txt has it: file, old and new text of the line.
 Key = tuple[str, str, str]
 
 
