@@ -77,6 +77,14 @@ def test_somebody_else_commands_a_drive(family: Family, tmp_path: Path) -> None:
 # ---- Taken for another
 
 
+def prove_stopped_for_its_scale(family: Family, bus: Candump, begun_ns: int, what: str) -> None:
+    """The motor is in FAULT; in the guest's virtual time nothing moves it later."""
+    assert motors()[0]["fault"] == NOT_ITS_SCALE
+    time.sleep(0.3)
+    told = moving(family, [f for f in bus.frames() if f.t_ns >= begun_ns])
+    proven(what, "FAULT 43 in the first motion", begun_ns, max(f.t_ns for f in told), 1000)
+
+
 @pytest.mark.parametrize(
     ("name", "fake"), [("RobStride", "RS05:127"), ("CubeMars in MIT mode", "AK80-6:5:mit")]
 )
@@ -90,15 +98,8 @@ def test_a_drive_with_the_scale_of_another_model(name: str, fake: str, tmp_path:
         begun_ns = time.time_ns()
         with setting("motor", "velocity", 60, 30.0):
             wait_for(lambda: motors()[0]["status"] == "FAULT", 5.0, "FAULT", poll_s=0.05)
-        assert motors()[0]["fault"] == NOT_ITS_SCALE
-        time.sleep(0.3)
-        told = moving(family, [f for f in bus.frames() if f.t_ns >= begun_ns])
-        proven(
-            f"{name}: speeds and torques on the scale of another model",
-            "FAULT 43 in the first motion",
-            begun_ns,
-            max(f.t_ns for f in told),
-            1000,
+        prove_stopped_for_its_scale(
+            family, bus, begun_ns, f"{name}: speeds and torques on the scale of another model"
         )
 
 
@@ -122,15 +123,8 @@ def test_a_drive_whose_scale_is_another_after_enabling(name: str, tmp_path: Path
         begun_ns = happens(Wrong.RESCALED, 150)
         with turning(name, 60, 30.0):
             wait_for(lambda: motors()[0]["status"] == "FAULT", 5.0, "FAULT", poll_s=0.05)
-        assert motors()[0]["fault"] == NOT_ITS_SCALE
-        time.sleep(0.3)
-        told = moving(family, [f for f in bus.frames() if f.t_ns >= begun_ns])
-        proven(
-            f"{name}: speeds on another scale since it was enabled",
-            "FAULT 43 in the first motion",
-            begun_ns,
-            max(f.t_ns for f in told),
-            1000,
+        prove_stopped_for_its_scale(
+            family, bus, begun_ns, f"{name}: speeds on another scale since it was enabled"
         )
 
 

@@ -22,10 +22,8 @@ namespace {
 
 using namespace std::chrono_literals;
 
-// The scheduler reads its clock once in a tick, when its frames have left: that takes so long, of the CPU or
-// asleep.
+// The scheduler reads its clock once in a tick, when its frames have left: that takes so long.
 std::atomic<Duration> load{};
-std::atomic<Duration> sleep_of_tick{};
 std::atomic<int> ticks_left{};
 std::stop_source* ended = nullptr;
 
@@ -38,13 +36,14 @@ MonotonicTime loadedClock() noexcept {
   const Duration until = threadCpuTime() + load.load();
   while (threadCpuTime() < until) {
   }
-  std::this_thread::sleep_for(sleep_of_tick.load());
   if (--ticks_left == 0) ended->request_stop();
   return monotonicNow();
 }
 
 // A thread that has its CPU for itself, however busy the computer is.
 Duration allOfTheTime() noexcept { return monotonicNow().time_since_epoch(); }
+// One that is late because others have it.
+Duration noneOfTheTime() noexcept { return {}; }
 
 // A signal whose handler keeps the thread past its next grid point, which it waits for.
 void keep(int /*signal*/) {
@@ -70,7 +69,6 @@ class SchedLoopTest : public ::testing::Test {
  protected:
   SchedLoopTest() {
     ended = &stop;
-    sleep_of_tick = 0ns;
     grid = {1ms};
   }
   ~SchedLoopTest() override { ended = nullptr; }
@@ -142,9 +140,8 @@ TEST_F(SchedLoopTest, TicksThatFitDoNot) {
 }
 
 TEST_F(SchedLoopTest, TicksThatAreLateWithoutUsingTheCpuDoNotStopIt) {
-  settings.cpu_time = threadCpuTime;
-  sleep_of_tick = 2ms;
-  run(0us, 50);
+  settings.cpu_time = noneOfTheTime;
+  run(2ms, 50);
   EXPECT_TRUE(stops().empty());
 }
 
