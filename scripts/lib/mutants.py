@@ -42,6 +42,8 @@ FILES = (
     "src/daemon/supervision/axis.cpp",
     "src/daemon/supervision/foreign_watch.cpp",
     "src/daemon/supervision/lease.hpp",
+    "src/daemon/supervision/motor_group.cpp",
+    "src/daemon/supervision/pending_enables.hpp",
     "src/daemon/supervision/supervisor.cpp",
     "src/daemon/supervision/supervisor_alone.cpp",
     "src/daemon/supervision/supervisor_groups.cpp",

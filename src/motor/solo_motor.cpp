@@ -97,12 +97,13 @@ void SoloMotor::doubtTurn() noexcept {
 }
 
 bool SoloMotor::setZero(double angle_deg) noexcept {
+  const double before_deg = feedback_.total_angle_deg;
   if (!reference_.setZero(angle_deg)) return false;
   feedback_.total_angle_deg = reference_.totalAngleDeg();
+  hold_deg_ += feedback_.total_angle_deg - before_deg;  // a load that is held stays where it is
   feedback_.angle_deg = wrapDegreesToFloat(feedback_.total_angle_deg);
   feedback_.zeroed = true;
   feedback_.turn_unclear = false;
-  holding_ = false;
   return true;
 }
 

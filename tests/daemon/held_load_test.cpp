@@ -129,6 +129,18 @@ TEST_P(HeldLoad, IsTakenOverByAFeedForward) {
   EXPECT_LT(sinksDeg({.mode = ControlMode::kVelocity, .torque_ff_nm = load_nm}), 1.0);
 }
 
+TEST_P(HeldLoad, IsNotLetDownByAZero) {
+  (void)heldDeg();
+  robot.order(Operation::kEstop);
+  robot.run(2000);
+  const double before_deg = angleDeg();
+  for (int i = 0; i < 3; ++i) {
+    EXPECT_EQ(robot.order(Operation::kZero).motors[kMotor], Refusal::kNone);
+    robot.run(500);
+  }
+  EXPECT_NEAR(angleDeg(), before_deg, 0.3);
+}
+
 INSTANTIATE_TEST_SUITE_P(All, HeldLoad,
                          ::testing::Combine(::testing::ValuesIn(kSubjects), ::testing::ValuesIn(kSlews)),
                          [](const auto& made) {

@@ -67,12 +67,19 @@ RobotConfig Chaos::believed(const Lie& lie) const {
       own.set("homing_velocity_rpm", 0.25 * own.number("homing_velocity_rpm"));
     if (homes && lie.kind == Lie::Kind::kTravel) own.set("home_angle_deg", kNearHomeDeg);
   }
-  if (lie.kind != Lie::Kind::kLimits) return config;
   auto& motor = config.buses[places_[lie.motor].first].motors[places_[lie.motor].second];
+  if (lie.kind == Lie::Kind::kSoftStart) motor.shaping.soft_start_s *= 4.0F;
+  if (lie.kind == Lie::Kind::kSlew) {
+    motor.shaping.velocity_slew_rpm_per_s *= 0.25F;
+    motor.shaping.angle_slew_deg_per_s *= 0.25F;
+    motor.shaping.effort_slew_per_s *= 0.25F;
+  }
+  if (lie.kind != Lie::Kind::kLimits) return config;
   auto& settings = motor.settings;
   if (settings.effort_limit <= 0.0F) settings.effort_limit = motor.traits().effort_full_scale;
   settings.effort_limit *= 0.25F;
   settings.velocity_limit_rpm *= 0.25F;
+  motor.shaping.soft_start_s = 0.0F;  // which it would take for faster than it is
   return config;
 }
 
@@ -85,6 +92,7 @@ void Chaos::start() {
     for (std::size_t drive = 0; drive < config_.buses[bus].motors.size(); ++drive)
       places_.emplace_back(bus, drive);
   }
+  standSomewhere();
   robot_ = std::make_unique<VirtualRobot>(config_);
   robot_->freezeSimulation(true);  // stepped here, so that every frame is seen
   oracle_ = std::make_unique<Oracle>(lie_ ? believed(*lie_) : config_);
@@ -105,6 +113,18 @@ void Chaos::start() {
   desk_.emplace(description_, robot_->exchange().scan);
   scan_at_desk_ = 0;
   tick_ = 0;
+}
+
+// At power-up a shaft with limits stands anywhere.
+void Chaos::standSomewhere() {
+  for (const auto& [bus, drive] : places_) {
+    auto& motor = config_.buses[bus].motors[drive];
+    auto& load = motor.simulated;
+    const bool limited =
+        std::isfinite(motor.shaping.angle_min_deg) && std::isfinite(motor.shaping.angle_max_deg);
+    if (!limited || !motor.traits().absolute || std::isfinite(load.stop_min_deg)) continue;
+    load.initial_angle_deg = choices_.of<float>({0.0F, 0.0F, 40.0F, -80.0F, 130.0F, 178.0F, -178.0F, 240.0F});
+  }
 }
 
 void Chaos::step() {

@@ -25,11 +25,13 @@ class Chaos {
   /// For tests of the oracle: it is wrong about one motor of one robot, and has to see that.
   struct Lie {
     enum class Kind : std::uint8_t {
-      kLimits,  ///< It believes in a quarter of its limits,
-      kStuck,   ///< or that it goes on following the first thing that it was told.
-      kPace,    ///< Or, of any robot, that scans listen a minute longer; of a joint,
-      kHoming,  ///< that it homes at a quarter of its velocity,
-      kTravel,  ///< or within a tenth of its travel.
+      kLimits,     ///< It believes in a quarter of its limits,
+      kStuck,      ///< or that it goes on following the first thing that it was told.
+      kPace,       ///< Or, of any robot, that scans listen a minute longer; of a joint,
+      kHoming,     ///< that it homes at a quarter of its velocity,
+      kTravel,     ///< or within a tenth of its travel.
+      kSlew,       ///< A motor whose targets change at a quarter of their slew limits, or
+      kSoftStart,  ///< that its soft start takes four times as long.
     };
     std::size_t robot = 0;
     std::size_t motor = 0;
@@ -93,7 +95,7 @@ class Chaos {
     int priority = 0;
     std::uint64_t session = 1;
     MotorSet motors;
-    std::array<Target, 8> targets{};
+    std::array<Target, 16> targets{};
     Duration validity{};
     std::uint32_t every_ticks = 10;
   };
@@ -110,6 +112,7 @@ class Chaos {
   };
 
   void start();
+  void standSomewhere();
   [[nodiscard]] RobotConfig believed(const Lie& lie) const;
   void act(Action action);
   void tick(std::uint64_t periods = 1);

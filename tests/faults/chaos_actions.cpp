@@ -118,6 +118,9 @@ void Chaos::act(Action action) {
     case Action::kProgram: {
       if (!inputs_.empty() && choices_.oneIn(2)) {
         chooseInputs();
+        // A module acts where no other client commands.
+        if (choices_.oneIn(4))
+          for (auto& other : clients_) other.motors.reset();
         break;
       }
       auto& client = someClient();

@@ -8,6 +8,8 @@
 
 #include <fmt/format.h>
 
+#include "app/target.hpp"
+#include "app/units.hpp"
 #include "app/vocabulary.hpp"
 #include "daemon/exchange/events.hpp"
 #include "faults/robots.hpp"
@@ -40,7 +42,7 @@ constexpr std::array<Role, 19> kRoles{{{"front_left", kByModule, 0, 0, 1.5},
                                        {"belt", ControlMode::kVelocity, 400, 400, 0.2},
                                        {"shoulder", ControlMode::kTotalAngle, 80, 120, 3},
                                        {"elbow", ControlMode::kTotalAngle, 90, 150, 1},
-                                       {"wrist", ControlMode::kTotalAngle, 90, 150, 2},
+                                       {"wrist", ControlMode::kImpedance, 90, 150, 2},
                                        {"finger", ControlMode::kTotalAngle, 60, 150, 2},
                                        {"lift_left", kByModule, 0, 0, 1.5},
                                        {"lift_right", kByModule, 0, 0, 1.5},
@@ -57,6 +59,10 @@ constexpr std::array<std::uint8_t, 10> kTroubleWeights{30, 18, 8, 8, 8, 8, 2, 8,
 constexpr auto kAftermath = 500ms;
 // From the operator's `enable` until every motor obeys.
 constexpr auto kBackWithin = 8s;
+// Share of the push that a motor withstands; and a spring that it cannot bend far.
+constexpr double kHelpShare = 0.1;
+constexpr float kStiffness = 20.0F;
+constexpr float kDamping = 1.0F;
 constexpr auto kRecentLines = std::size_t{12};
 
 }  // namespace
@@ -196,7 +202,7 @@ void Match::begin(Trouble trouble) {
       break;
     }
     case Trouble::kHeat:
-      busOf(player).setTemperature(player.drive, static_cast<double>(50 + choices_.next(26)));
+      busOf(player).setTemperature(player.drive, static_cast<double>(60 + choices_.next(33)));
       break;
     case Trouble::kLoose: player.loose_until = robot_.now() + between(500, 5000); break;
     case Trouble::kPlug: unplug(player.motor, between(1, 3000)); break;
@@ -261,7 +267,7 @@ void Match::reference() {
   const auto& state = robot_.snapshot();
   MotorSet lost;
   for (const auto& player : players_) {
-    if (player.target.mode == ControlMode::kTotalAngle && !state.motors[player.motor].feedback.zeroed)
+    if (needsReference(player.target.mode) && !state.motors[player.motor].feedback.zeroed)
       lost.set(player.motor);
   }
   if (lost.none()) return;
@@ -326,7 +332,15 @@ void Match::aim(Player& player) {
   }
   constexpr double kEverySeconds = 0.02;
   const double most = role.most_per_s * kEverySeconds;
-  player.target.value += std::clamp(player.goal - player.target.value, -most, most);
+  const double step = std::clamp(player.goal - player.target.value, -most, most);
+  player.target.value += step;
+  if (!needsReference(player.target.mode)) return;
+  // As a program that plans its way: the speed of the trajectory, and a torque that helps along.
+  player.target.velocity_ff_rpm = static_cast<float>(step / kEverySeconds / kDegPerSPerRpm);
+  player.target.torque_ff_nm = static_cast<float>(std::copysign(kHelpShare * role.push_nm, step));
+  if (player.target.mode != ControlMode::kImpedance) return;
+  player.target.stiffness_nm_per_rad = kStiffness;
+  player.target.damping_nms_per_rad = kDamping;
 }
 
 void Match::drive() {
@@ -345,7 +359,7 @@ void Match::drive() {
     const auto& feedback = state.motors[player.motor].feedback;
     // A program starts from the measured value.
     if (state.motors[player.motor].status != MotorStatus::kActive) {
-      const bool angle = player.target.mode == ControlMode::kTotalAngle;
+      const bool angle = needsReference(player.target.mode);
       player.target.value = angle && std::isfinite(feedback.total_angle_deg) ? feedback.total_angle_deg : 0.0;
       continue;
     }

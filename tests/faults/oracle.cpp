@@ -65,6 +65,13 @@ Oracle::Oracle(const RobotConfig& config) : config_(config) {
   }
   for (std::size_t module = 0; module < config_.modules.size(); ++module) {
     const auto& own = config_.modules[module].settings.own;
+    if (config_.modules[module].type->name() == "gimbal") {
+      const std::chrono::duration<double> silence_s{own.number("silence_max_s")};
+      holders_.push_back({module,
+                          {own.motor("yaw"), own.motor("pitch")},
+                          std::chrono::duration_cast<Duration>(silence_s),
+                          {}});
+    }
     if (config_.modules[module].type->name() != "joint" || own.text("homing") == "none") continue;
     Joint joint;
     joint.module = module;
@@ -160,6 +167,8 @@ void Oracle::commanded(const Command& command) {
   for (std::size_t i = 0; i < command.count; ++i) {
     auto& motor = motors_[command.setpoints[i].motor];
     motor.owned_until = std::max(motor.owned_until, command.deadline);
+    motor.track.expect(command.deadline);
+    motor.track.came.push_back(command.setpoints[i].target);
     if (command.setpoints[i].target.mode == ControlMode::kCoast) {
       motor.coast_asked = true;
     } else {
@@ -171,6 +180,7 @@ void Oracle::commanded(const Command& command) {
 void Oracle::ordered(const Order& order) {
   unanswered_[order.id] = tick_;
   if (order.operation == Operation::kScan) scans_asked_.push_back(order);
+  if (order.operation == Operation::kZero) zeros_asked_[order.id] = order;
   if (order.operation == Operation::kEstop) estop_asked_ = true;
   if (order.operation == Operation::kClear && order.whole_robot) clear_all_asked_ = true;
   for (std::size_t i = 0; i < motors_.size(); ++i) {
@@ -189,6 +199,13 @@ void Oracle::ordered(const Order& order) {
 
 void Oracle::answered(const OrderResult& result) {
   if (unanswered_.erase(result.id) == 0) fail(fmt::format("order {} was answered twice", result.id));
+  if (const auto zero = zeros_asked_.find(result.id); zero != zeros_asked_.end()) {
+    for (std::size_t i = 0; i < motors_.size(); ++i) {
+      const bool accepted = !result.refused && result.motors[i] == Refusal::kNone;
+      if (zero->second.motors.test(i)) motors_[i].zeros.push_back({zero->second.value, accepted});
+    }
+    zeros_asked_.erase(zero);
+  }
   const bool of_scan = (scan_ && scan_->id == result.id) ||
                        std::any_of(scans_asked_.begin(), scans_asked_.end(),
                                    [&](const auto& each) { return each.id == result.id; });
@@ -292,6 +309,7 @@ void Oracle::judge(const Snapshot& snapshot, std::uint64_t periods, std::bitset<
   for (auto& motor : motors_) motor.told = motor.wire->told();  // a drive may have switched itself off
   followModules(snapshot);
   judgeJoints(snapshot);
+  judgeHolders(snapshot);
   followFeedback(snapshot);
   judgeSnapshot(snapshot, periods);
   judgeFrames(read);
@@ -304,6 +322,9 @@ void Oracle::judge(const Snapshot& snapshot, std::uint64_t periods, std::bitset<
   judgeAlone(snapshot);
   judgeGroups(snapshot);
   for (std::size_t i = 0; i < motors_.size(); ++i) {
+    followTargets(i, snapshot.motors[i]);
+    judgeTurn(i, snapshot.motors[i]);
+    judgeZero(i, snapshot.motors[i]);
     followActions(i, snapshot.motors[i]);
     motors_[i].status = snapshot.motors[i].status;
     if (snapshot.motors[i].fault != motors_[i].fault)
@@ -314,7 +335,9 @@ void Oracle::judge(const Snapshot& snapshot, std::uint64_t periods, std::bitset<
     motors_[i].carried_ticks = seen ? motors_[i].carried_ticks + 1 : 0;
     motors_[i].lost_ticks = lost(snapshot.motors[i].status) ? motors_[i].lost_ticks + 1 : 0;
     if (seen) judgeCommand(i, snapshot.motors[i]);
-    if (!seen) motors_[i].followed_effort = false;
+    if (seen) continue;
+    motors_[i].followed_effort = false;
+    for (auto& field : motors_[i].track.fields) field.forget();
   }
   state_ = snapshot.state;
   judgeScans(snapshot, read);

@@ -4,6 +4,7 @@
 #include <bitset>
 #include <cstdint>
 #include <deque>
+#include <limits>
 #include <map>
 #include <memory>
 #include <optional>
@@ -14,6 +15,7 @@
 #include "config/robot_config.hpp"
 #include "daemon/exchange/orders.hpp"
 #include "daemon/exchange/snapshot.hpp"
+#include "faults/slewed_field.hpp"
 #include "faults/visits.hpp"
 #include "faults/wire.hpp"
 
@@ -149,6 +151,24 @@ class Oracle {
     MonotonicTime torque_since{};
     MonotonicTime torque_counts_since{};  ///< And since the last clear.
     int torque_samples = 0;
+    TargetTrack track;
+    /// Answers to orders of this tick that set its zero.
+    struct Zero {
+      double value_deg = 0.0;
+      bool accepted = false;
+    };
+    std::vector<Zero> zeros;
+  };
+  /// A field of a target as a frame tells it.
+  struct FieldSeen {
+    double value = kUnsaid;
+    double slack = 0.0;
+    double turn = 0.0;                                      ///< It goes round; 0: it does not.
+    double per_s = 0.0;                                     ///< Its slew limit; 0: none.
+    double most = std::numeric_limits<double>::infinity();  ///< Limit of its magnitude.
+    Span towards{};        ///< Limits may have taken it towards these at once.
+    bool brakes = false;   ///< Limits may brake by it at once.
+    bool limited = false;  ///< Limits have perhaps moved it.
   };
   struct Group {
     MotorSet members;
@@ -183,6 +203,13 @@ class Oracle {
     int ticks = 0;         ///< Since it began.
     int others_ticks = 0;  ///< While another client has its motor.
   };
+  /// A module that goes on for some time when nobody commands it.
+  struct Holder {
+    std::size_t module = 0;
+    std::vector<std::size_t> motors;
+    Duration silence_max{};
+    MonotonicTime valid_until{};
+  };
   /// A scan that goes on.
   struct Scan {
     std::uint64_t id = 0;
@@ -213,6 +240,21 @@ class Oracle {
   void judgeTold(std::size_t index, const MotorSnapshot& seen);
   void judgeSlew(std::size_t index, const MotorSnapshot& seen);
   void judgeFeedForward(std::size_t index, double outwards);
+  [[nodiscard]] double effortOf(const Motor& motor, double output_nm) const;
+  void followTargets(std::size_t index, const MotorSnapshot& seen);
+  [[nodiscard]] static std::array<Span, TargetTrack::kFields> beginnings(const Motor& motor,
+                                                                         const MotorSnapshot& seen);
+  void followAsked(Motor& motor, const MotorSnapshot& seen) const;
+  static void followHold(TargetTrack& track, const MotorSnapshot& seen);
+  void judgeFirstAngle(std::size_t index, const MotorSnapshot& seen);
+  void judgeField(std::size_t index, TargetTrack::Field which, const FieldSeen& seen);
+  void judgeTargets(std::size_t index, const MotorSnapshot& seen);
+  void judgeSpeed(std::size_t index, const MotorSnapshot& seen);
+  void judgePlace(std::size_t index, const MotorSnapshot& seen);
+  void judgeEfforts(std::size_t index, const MotorSnapshot& seen);
+  void judgeTurn(std::size_t index, const MotorSnapshot& seen);
+  void judgeZero(std::size_t index, const MotorSnapshot& seen);
+  [[nodiscard]] bool isBounded(const Motor& motor, const MotorSnapshot& seen) const;
   void judgeSoftLimits(std::size_t index, const MotorSnapshot& seen);
   void judgeReduced(std::size_t index, const MotorSnapshot& seen);
   void judgeStop(std::bitset<kMaxBuses> read, bool stopped);
@@ -224,6 +266,7 @@ class Oracle {
   void followFeedback(const Snapshot& snapshot);
   void followModules(const Snapshot& snapshot);
   void judgeJoints(const Snapshot& snapshot);
+  void judgeHolders(const Snapshot& snapshot);
   void judgeJoint(Joint& joint, const Snapshot& snapshot);
   void followMessages(Joint& joint, bool homes);
   void judgeHoming(Joint& joint, const Snapshot& snapshot);
@@ -249,7 +292,9 @@ class Oracle {
   std::vector<Motor> motors_;
   std::vector<Group> groups_;
   std::vector<Joint> joints_;
+  std::vector<Holder> holders_;
   std::map<std::uint64_t, std::uint64_t> unanswered_;  ///< Orders, and the tick in which they were sent.
+  std::map<std::uint64_t, Order> zeros_asked_;         ///< Without an answer so far.
   std::optional<Scan> scan_;
   std::vector<Order> scans_asked_;  ///< In this tick, as are the next two.
   std::vector<OrderResult> scan_results_;

@@ -100,6 +100,7 @@ void Oracle::judgeCommand(std::size_t index, const MotorSnapshot& seen) {
   judgeLimits(index);
   judgeTold(index, seen);
   judgeSlew(index, seen);
+  judgeTargets(index, seen);
   judgeReduced(index, seen);
   if (lost(seen.status)) {
     require(index, mayLag(motor, motor.lost_ticks) || motor.told.rests(), "a command that is not rest");
@@ -131,7 +132,7 @@ void Oracle::judgeLimits(std::size_t index) {
   require(index, !bounded || told.most_effort <= motor.limit + slack + 1e-4 * motor.limit,
           "told a bound beyond its limit");
   const auto most_rpm = static_cast<double>(motor.config->settings.velocity_limit_rpm);
-  if (most_rpm <= 0.0) return;
+  if (most_rpm <= 0.0 || motor.frames == 0) return;  // its last frame was judged by what it knew
   const double slack_rpm = told.velocity_step_rpm + 1e-4 * most_rpm;
   const double measured_rpm = motor.wire->measured().velocity_rpm;
   const bool pushed_on = told.sum * std::copysign(1.0, measured_rpm) > rounded;
@@ -208,9 +209,13 @@ void Oracle::judgeSoftLimits(std::size_t index, const MotorSnapshot& seen) {
   if (told.law == Told::Law::kAngle && std::isfinite(told.ahead_deg)) {
     const double place_deg = angle_deg + told.ahead_deg;
     ++visits_.bounded;
-    require(index,
-            place_deg <= std::max(shaping.angle_max_deg, angle_deg) + kAngleSlackDeg &&
-                place_deg >= std::min(shaping.angle_min_deg, angle_deg) - kAngleSlackDeg,
+    // A shaft that is beyond one is held where its target has led it from its beginning.
+    const auto& start = motor.track.fields[TargetTrack::kPlace].start;
+    const bool above = angle_deg > shaping.angle_max_deg - kAngleSlackDeg && !start.empty();
+    const bool below = angle_deg < shaping.angle_min_deg + kAngleSlackDeg && !start.empty();
+    const double high_deg = std::max({shaping.angle_max_deg, angle_deg, above ? start.high : angle_deg});
+    const double low_deg = std::min({shaping.angle_min_deg, angle_deg, below ? start.low : angle_deg});
+    require(index, place_deg <= high_deg + kAngleSlackDeg && place_deg >= low_deg - kAngleSlackDeg,
             "sent to a place beyond a soft limit");
   }
   const bool above = angle_deg >= shaping.angle_max_deg && seen.feedback.velocity_rpm >= 0.0F;

@@ -130,6 +130,16 @@ void Oracle::followActions(std::size_t index, const MotorSnapshot& seen) {
     motor.ends_at_standstill = asked;
     return;
   }
+  // A fallback that acts already gives way to that of an e-stop.
+  if (estop_asked_ && state_ == RobotStatus::kRun && motor.actions != coast) {
+    auto actions = only(fallback.on_estop);
+    const bool may_have_ended = motor.ends_at_standstill || (motor.actions & coast).any();
+    if (may_have_ended || motor.disables_asked > 0 || motor.enable_asked || motor.coast_asked)
+      actions |= coast;
+    if (motor.disables_asked > 0 || motor.enable_asked) actions |= motor.actions | only(fallback.on_disable);
+    motor.ends_at_standstill = (motor.disables_asked > 0 || motor.enable_asked) && motor.ends_at_standstill;
+    return setActions(motor, actions);
+  }
   // Enabled and stopped within a tick.
   const bool stopped_with_group =
       motor.group != kNoGroup && (groups_[motor.group].stops_now || groups_[motor.group].rests_now);

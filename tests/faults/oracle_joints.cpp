@@ -1,4 +1,4 @@
-// Rules for joints that home.
+// Rules for joints that home, and for modules that hold.
 #include <algorithm>
 #include <cmath>
 
@@ -13,6 +13,8 @@ constexpr double kJointHomes = 1.0;  ///< Output `state`.
 constexpr double kJointFollows = 2.0;
 // A client that is silent for so long has let go: after that `home` counts as fallen.
 constexpr Duration kJointLetGo = 1s;
+// A module's targets act for this long when it commands no more.
+constexpr Duration kLapse = 25ms;
 // Ticks within which `home` has begun a homing, or begins none.
 constexpr int kRiseTicks = 3;
 // Ticks within which another client's command has ended it.
@@ -21,6 +23,8 @@ constexpr int kOthersTicks = 3;
 }  // namespace
 
 void Oracle::signalled(const SignalMessage& message) {
+  for (auto& holder : holders_)
+    if (holder.module == message.module) holder.valid_until = message.deadline;
   for (auto& joint : joints_) {
     if (joint.module != message.module) continue;
     const bool high = message.values[1] >= 0.5;
@@ -28,6 +32,19 @@ void Oracle::signalled(const SignalMessage& message) {
     joint.told = true;
     joint.high = high;
     joint.valid_until = message.deadline;
+  }
+}
+
+// A gimbal holds its direction for some time when nobody commands it, and then for nobody.
+void Oracle::judgeHolders(const Snapshot& snapshot) {
+  for (const auto& holder : holders_) {
+    const auto name = config_.modules[holder.module].settings.name;
+    const bool over = now_ >= holder.valid_until + holder.silence_max + kLapse + 2 * (now_ - before_);
+    for (const auto motor : holder.motors) {
+      const bool holds = snapshot.motors[motor].owner.view() == name;
+      if (holds && now_ >= holder.valid_until) ++visits_.held_for_nobody;
+      require(motor, !over || !holds, "it holds its direction for nobody, and does not end");
+    }
   }
 }
 
@@ -91,7 +108,8 @@ void Oracle::judgeHoming(Joint& joint, const Snapshot& snapshot) {
           "it is pushed on beyond its homing velocity");
   const double here_deg = seen.feedback.total_angle_deg;
   const bool near = here_deg >= joint.from_deg - joint.way_deg && here_deg <= joint.to_deg + joint.way_deg;
-  require(motor, !pushes || near, "it homes farther than its travel");
+  // A load that pulls the shaft away is resisted.
+  require(motor, !pushes || !on || near, "it homes farther than its travel");
   require(motor, !pushes || joint.ticks <= 1 || !seen.feedback.zeroed, "it homes with a reference");
   const bool stopped =
       estop_asked_ || (state_ == RobotStatus::kEstop && snapshot.state == RobotStatus::kEstop);

@@ -81,6 +81,22 @@ TEST(OracleSeesOfAJoint, ThatItHomesFartherThanItsTravel) {
               ::testing::HasSubstr("farther than its travel"));
 }
 
+constexpr std::size_t kRobotWithSlewLimits = 5;
+
+TEST(OracleSeesOfATarget, ThatItChangesFasterThanItsSlewLimit) {
+  for (const std::size_t motor : {0U, 1U, 2U, 3U, 4U, 6U})
+    EXPECT_THAT(findingOf({.robot = kRobotWithSlewLimits, .motor = motor, .kind = Kind::kSlew}),
+                ::testing::AnyOf(::testing::HasSubstr("leaps to"), ::testing::HasSubstr("changes too fast")))
+        << motor;
+}
+
+TEST(OracleSeesOfATarget, ThatItComesIntoForceFasterThanItsSoftStart) {
+  for (const std::size_t motor : {0U, 1U, 2U, 4U, 6U})
+    EXPECT_THAT(findingOf({.robot = kRobotWithSlewLimits, .motor = motor, .kind = Kind::kSoftStart}),
+                ::testing::HasSubstr("of its soft start"))
+        << motor;
+}
+
 INSTANTIATE_TEST_SUITE_P(EachMotor, OracleSees, ::testing::ValuesIn(everyMotor()),
                          [](const auto& param) { return param.param.name; });
 

@@ -163,9 +163,124 @@ buses:
          on_disable: brake, on_estop: brake, hold_max_s: 1, command_divider: 2, zero: power_on}
       - {name: lift_right, model: RMD-X8-20, id: 23, current_limit_a: 6, velocity_limit_rpm: 60, on_timeout: hold,
          on_disable: brake, on_estop: brake, hold_max_s: 1, command_divider: 2, zero: power_on}
+)",
+                                                            R"(
+robot: slewed
+buses:
+  - name: knees
+    type: sim
+    motors:
+      - {name: knee, model: RS00, command_divider: 2, id: 20, control: current, current_limit_a: 6,
+         velocity_limit_rpm: 100, current_slew_a_per_s: 30, angle_min_deg: -120, angle_max_deg: 120}
+      - {name: roller, model: RS03, command_divider: 2, id: 21, control: velocity, current_limit_a: 10,
+         velocity_limit_rpm: 80, velocity_slew_rpm_per_s: 200, direction: -1, on_timeout: brake, on_disable: ramp, on_estop: brake}
+      - {name: thigh, model: RS00, command_divider: 2, id: 22, current_limit_a: 8, velocity_limit_rpm: 100, current_slew_a_per_s: 40,
+         velocity_slew_rpm_per_s: 300, angle_slew_deg_per_s: 200, angle_min_deg: -150, angle_max_deg: 150,
+         on_timeout: hold, on_disable: damp, on_estop: damp, max_first_step_deg: 60,
+         reduced_velocity_rpm: 25, reduced_within_ms: 400}
+      - {name: crank, model: RS03, command_divider: 2, id: 23, control: position, current_limit_a: 10, velocity_limit_rpm: 60,
+         angle_slew_deg_per_s: 150, on_timeout: hold}
+  - name: ankles
+    type: sim
+    motors:
+      - {name: ankle, model: AK10-9-V3, command_divider: 2, id: 31, protocol: mit_v3, current_limit_a: 8, velocity_limit_rpm: 100,
+         velocity_slew_rpm_per_s: 300, angle_slew_deg_per_s: 200, angle_min_deg: -100, angle_max_deg: 160,
+         current_slew_a_per_s: 50, on_timeout: damp, on_disable: brake, on_estop: hold, hold_max_s: 0.5}
+      - {name: toe, model: AK80-9, command_divider: 2, id: 32, current_limit_a: 8, velocity_limit_rpm: 80, angle_min_deg: -100,
+         angle_max_deg: 100, angle_slew_deg_per_s: 200, velocity_slew_rpm_per_s: 150, on_timeout: brake}
+  - name: shoulders
+    type: sim
+    motors:
+      - {name: shoulder, model: DM4310, command_divider: 2, id: 1, master_id: 17, current_limit_a: 4, velocity_limit_rpm: 100,
+         current_slew_a_per_s: 20, velocity_slew_rpm_per_s: 300, angle_slew_deg_per_s: 200, on_timeout: hold,
+         on_disable: damp, on_estop: brake, hold_max_s: 0.5, angle_min_deg: -90, angle_max_deg: 200}
+      - {name: wheel, model: DMH6215, command_divider: 2, id: 3, master_id: 19, control: velocity, velocity_limit_rpm: 120,
+         velocity_slew_rpm_per_s: 250, direction: -1, on_timeout: brake, on_estop: ramp}
+      - {name: elbow, model: DM4340, command_divider: 2, id: 2, master_id: 18, control: position_velocity, velocity_limit_rpm: 30,
+         angle_slew_deg_per_s: 100, on_timeout: hold, on_disable: brake, on_estop: hold}
+  - name: head
+    type: sim
+    motors:
+      - {name: yaw, model: GM6020, id: 5, angle_min_deg: -90, angle_max_deg: 200, velocity_slew_rpm_per_s: 500,
+         angle_slew_deg_per_s: 300, on_timeout: hold, on_estop: damp}
+)",
+                                                            R"(
+robot: slewed_loops
+buses:
+  - name: belts
+    type: sim
+    motors:
+      - {name: belt, model: ODrive_S1, command_divider: 2, id: 3, torque_constant_nm_per_a: 0.0551, current_limit_a: 20,
+         velocity_limit_rpm: 600, feedback_hz: 200, zero: power_on, angle_min_deg: -400, angle_max_deg: 400,
+         velocity_slew_rpm_per_s: 1000, angle_slew_deg_per_s: 900, current_slew_a_per_s: 60, on_timeout: brake,
+         reduced_velocity_rpm: 60, reduced_within_ms: 700}
+      - {name: shooter, model: VESC, id: 10, pole_pairs: 7, current_limit_a: 30, velocity_limit_rpm: 3000,
+         kv_rpm_per_v: 190, feedback_hz: 200, velocity_slew_rpm_per_s: 4000, angle_slew_deg_per_s: 900,
+         zero: power_on, on_timeout: damp, on_estop: ramp}
+  - name: legs
+    type: sim
+    data_bitrate: 5000000
+    motors:
+      - {name: calf, model: moteus, id: 1, motor_kv_rpm_per_v: 100, current_limit_a: 10, velocity_limit_rpm: 300,
+         absolute: true, velocity_slew_rpm_per_s: 600, angle_slew_deg_per_s: 500, current_slew_a_per_s: 40,
+         angle_min_deg: -120, angle_max_deg: 100, on_timeout: hold, on_estop: damp, hold_max_s: 0.5}
+  - name: tables
+    type: sim
+    motors:
+      - {name: turntable, model: RMD-X8-20, id: 22, current_limit_a: 6, velocity_limit_rpm: 60, command_divider: 2,
+         velocity_slew_rpm_per_s: 200, angle_slew_deg_per_s: 150, current_slew_a_per_s: 30, on_timeout: damp,
+         on_disable: brake, on_estop: brake}
+      - {name: pan, model: LK-MG5010E-i10, id: 5, velocity_limit_rpm: 100, current_limit_a: 5, command_divider: 2,
+         velocity_slew_rpm_per_s: 200, angle_slew_deg_per_s: 200, on_timeout: ramp, ramp_s: 0.3}
+)",
+                                                            R"(
+robot: driven
+buses:
+  - name: wheels
+    type: sim
+    motors:
+      - {name: drive_front_left, model: M3508, id: 1, current_limit_a: 8, on_timeout: damp}
+      - {name: drive_front_right, model: M3508, id: 2, current_limit_a: 8, on_timeout: damp}
+      - {name: drive_rear_left, model: M3508, id: 3, current_limit_a: 8, on_timeout: damp}
+      - {name: drive_rear_right, model: M3508, id: 4, current_limit_a: 8, on_timeout: damp}
+  - name: axes
+    type: sim
+    motors:
+      - {name: steer_front_left, model: GM6020, id: 1, on_timeout: hold, hold_max_s: 0.5}
+      - {name: steer_front_right, model: GM6020, id: 2, on_timeout: hold, hold_max_s: 0.5}
+      - {name: steer_rear_left, model: GM6020, id: 3, on_timeout: hold, hold_max_s: 0.5}
+      - {name: steer_rear_right, model: GM6020, id: 4, on_timeout: hold, hold_max_s: 0.5}
+  - name: turret
+    type: sim
+    motors:
+      - {name: yaw, model: GM6020, id: 1, on_timeout: damp, on_estop: damp, angle_min_deg: -170,
+         angle_max_deg: 170, reduced_velocity_rpm: 30, reduced_within_ms: 200}
+      - {name: pitch, model: GM6020, id: 2, on_timeout: hold, hold_max_s: 1, angle_min_deg: -30, angle_max_deg: 40}
+modules:
+  - {name: imu, type: imu, protocol: inputs}
+  - name: turret
+    type: gimbal
+    yaw: yaw
+    pitch: pitch
+    imu_yaw: imu.yaw_deg
+    imu_yaw_rate: imu.yaw_rate_deg_s
+    silence_max_s: 1
+  - name: base
+    type: swerve_chassis
+    drive: {front_left: drive_front_left, front_right: drive_front_right, rear_left: drive_rear_left,
+            rear_right: drive_rear_right}
+    steer: {front_left: steer_front_left, front_right: steer_front_right, rear_left: steer_rear_left,
+            rear_right: steer_rear_right}
+    wheel_radius_m: 0.06
+    track_m: 0.4
+    wheelbase_m: 0.4
+    max_speed_m_s: 2
+    max_turn_deg_s: 180
+    max_acceleration_m_s2: 3
+    max_turn_acceleration_deg_s2: 360
 )"};
 
-constexpr std::size_t kParts = 4;  ///< Place in kRobots of the robot with modules.
+constexpr std::size_t kParts = 4;  ///< Place in kRobots of the robot whose modules are below.
 
 // A robot for a contest: all families, defaults wherever there is one, the reasons to stop that a team
 // switches on.

@@ -26,7 +26,13 @@ void Visits::add(const Visits& other) {
   by_modules += other.by_modules;
   slewed += other.slewed;
   bounded += other.bounded;
+  first_angles += other.first_angles;
+  turns += other.turns;
+  zeros += other.zeros;
+  sum(slewed_fields, other.slewed_fields);
+  sum(softened, other.softened);
   reduced += other.reduced;
+  held_for_nobody += other.held_for_nobody;
   homing += other.homing;
   homed += other.homed;
   scans += other.scans;
@@ -72,6 +78,14 @@ std::string Visits::text() const {
   out += fmt::format("\nof modules, thousand ticks: {}", by_modules / 1000);
   out += fmt::format("\njudged, ticks: slew limits {}, soft limits {}, reduced mode {}, homing {}", slewed,
                      bounded, reduced, homing);
+  out +=
+      fmt::format("\nslew limits of speeds {}, places {}, velocity feed-forwards {}, torque feed-forwards {}",
+                  slewed_fields[1], slewed_fields[2], slewed_fields[3], slewed_fields[4]);
+  out += fmt::format(
+      "\nsoft starts of efforts {}, speeds {}, places {}, velocity feed-forwards {}, torque feed-forwards {}",
+      softened[0], softened[1], softened[2], softened[3], softened[4]);
+  out += fmt::format("\nfirst angles {}, turns at power-up {}, zeros {}", first_angles, turns, zeros);
+  out += fmt::format("\nheld for nobody, thousand ticks: {}", held_for_nobody / 1000);
   out += fmt::format("\nhomings that found their end: {}", homed);
   out += fmt::format("\nscans: {} begun, {} made to their end, {} refused; {} questions judged", scans,
                      scanned, scans_refused, questions);

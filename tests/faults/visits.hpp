@@ -29,13 +29,19 @@ struct Visits {
   std::uint64_t alone = 0;  ///< Ticks in which one motor was enabled alone.
   std::uint64_t rearmed = 0;
   std::uint64_t stops = 0;
-  std::uint64_t slewed = 0;   ///< Ticks in which a slew limit was judged,
-  std::uint64_t bounded = 0;  ///< and beyond a soft limit.
-  std::uint64_t reduced = 0;  ///< Frames of motors in reduced mode that were judged.
-  std::uint64_t homing = 0;   ///< Ticks in which a joint homed,
-  std::uint64_t homed = 0;    ///< and homings that found their end.
-  std::uint64_t scans = 0;    ///< That began,
-  std::uint64_t scanned = 0;  ///< that were made to their end, and
+  std::uint64_t slewed = 0;                      ///< Ticks in which a slew limit was judged,
+  std::uint64_t bounded = 0;                     ///< and beyond a soft limit.
+  std::array<std::uint64_t, 5> slewed_fields{};  ///< Frames in which the slew of a field was judged,
+  std::array<std::uint64_t, 5> softened{};       ///< and its soft start, by TargetTrack::Field.
+  std::uint64_t first_angles = 0;                ///< Angles that followed none, with a bound,
+  std::uint64_t turns = 0;                       ///< angles at power-up, and
+  std::uint64_t zeros = 0;                       ///< answers to requests for a zero that were judged.
+  std::uint64_t reduced = 0;                     ///< Frames of motors in reduced mode that were judged.
+  std::uint64_t held_for_nobody = 0;  ///< Ticks of motors that a gimbal held after its client fell silent.
+  std::uint64_t homing = 0;           ///< Ticks in which a joint homed,
+  std::uint64_t homed = 0;            ///< and homings that found their end.
+  std::uint64_t scans = 0;            ///< That began,
+  std::uint64_t scanned = 0;          ///< that were made to their end, and
   std::uint64_t scans_refused = 0;
   std::uint64_t questions = 0;  ///< Questions of scans that were judged.
   std::uint64_t stalls = 0;     ///< Buses whose echoes stayed away,

@@ -67,6 +67,7 @@ Told Wire::springOf(const MitFields& fields, const MitFields& steps, double posi
   told.law = told.stiff || told.damped ? Told::Law::kSpring : Told::Law::kEffort;
   if (told.damped) told.velocity_rpm = rpmOfRadPerS(fields.velocity_rad_s);
   if (told.stiff) told.ahead_deg = degOfRad(way_rad);
+  told.ahead_step_deg = std::fabs(degOfRad(steps.position_rad));
   told.sum = effortOfNm(fields.torque_nm + fields.stiffness * way_rad + fields.damping * change_rad_s);
   const double rounded_nm = steps.torque_nm + steps.stiffness * std::fabs(way_rad) +
                             fields.stiffness * steps.position_rad + steps.damping * std::fabs(change_rad_s) +

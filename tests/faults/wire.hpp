@@ -35,6 +35,8 @@ struct Told {
   double sum_step = 0.0;         ///< And how much of it is rounding.
   double velocity_rpm = 0.0;     ///< Beside an angle: the feed-forward.
   double ahead_deg = kUnsaid;    ///< The place to go to, seen from the last feedback.
+  double ahead_step_deg = 0.0;   ///< Resolution of that place,
+  double ahead_turn_deg = 0.0;   ///< which may be so many of these off; 0: it is the one.
   bool stiff = false;            ///< kSpring: with a stiffness,
   bool damped = false;           ///< with a damping.
   double most_effort = kUnsaid;  ///< The bound of the effort that was told with it.

@@ -21,6 +21,20 @@ TEST(Setpoint, WhatNoMotorCanBeGivenIsRefused) {
   EXPECT_FALSE(Setpoint::angle(10_deg, {.torque_nm = 1e39}).check());
 }
 
+TEST(Setpoint, AFieldThatItsModeDoesNotUseIsRefused) {
+  const FeedForward speed{.velocity = 10_rpm};
+  const FeedForward torque{.torque_nm = 0.5};
+  const auto withForward = [](Setpoint setpoint, const FeedForward& forward) {
+    setpoint.forward = forward;
+    return setpoint.check();
+  };
+  EXPECT_TRUE(withForward(Setpoint::angle(10_deg), speed));
+  EXPECT_FALSE(withForward(Setpoint::velocity(10_rpm), speed));
+  EXPECT_FALSE(withForward(Setpoint::duty(0.5), speed));
+  EXPECT_TRUE(withForward(Setpoint::velocity(10_rpm), torque));
+  EXPECT_FALSE(withForward(Setpoint::duty(0.5), torque));
+}
+
 }  // namespace
 }  // namespace setpoint_test
 }  // namespace robot_client

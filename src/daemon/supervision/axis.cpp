@@ -122,7 +122,7 @@ bool Axis::standsStill() const noexcept {
 // that, and the fallback goes on acting after the e-stop.
 Refusal Axis::unrest(const Tick& tick) const noexcept {
   if (!lost(tick)) {
-    const bool pulled = fallback_.actsFor(entry_.run_down, tick.now);
+    const bool pulled = fallback_.resistsFor(entry_.run_down, tick.now);
     return standsStill() || pulled ? Refusal::kNone : Refusal::kMoving;
   }
   const auto& feedback = motor_.feedback();

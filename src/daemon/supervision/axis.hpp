@@ -85,6 +85,11 @@ class Axis {
   /// Before MotorEvent::kClear: the drive clears its faults.
   void clearFault(const Tick& tick) noexcept;
   void endFallback() noexcept { fallback_.end(); }
+  /// Before MotorEvent::kEstop of the robot: a fallback that acts already gives way to that of the e-stop.
+  void estopFallback(const Tick& tick) noexcept {
+    if (status_ != MotorStatus::kActive && fallback_.acts())
+      beginFallback(entry_.fallback.on_estop, Fallback::Until::kEnded, true, tick);
+  }
 
   /// Whether a command of `sender` would be taken.
   [[nodiscard]] bool allows(const Lease::Holder& sender, MonotonicTime now) const noexcept {

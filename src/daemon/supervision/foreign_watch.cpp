@@ -28,11 +28,10 @@ void ForeignWatch::onForeign(const fdCANbus& bus, const CanFrame& frame) noexcep
 void ForeignWatch::count(std::size_t motor, const ForeignLimit& limit, const CanFrame& frame) noexcept {
   auto& watched = watched_[motor];
   const auto frames = static_cast<std::size_t>(limit.frames);
-  auto& oldest = watched.received[watched.count % frames];
+  watched.received[watched.count % frames] = frame.received;
   const bool enough = ++watched.count >= frames;
   // The ring's next slot holds the oldest of the last `frames` times.
-  const auto& first = frames == 1 ? frame.received : watched.received[watched.count % frames];
-  oldest = frame.received;
+  const auto& first = watched.received[watched.count % frames];
   if (enough && frame.received - first <= limit.within)
     watched.takeover = foreignFrame(frame.id, frame.sent_here);
 }

@@ -18,7 +18,7 @@ enum class MotorEvent : std::uint8_t {
   kEstop,  ///< Robot-wide stop, or the process is about to end.
   kFault,
   kClear,
-  kGroupStop,  ///< A motor that it is coupled with is lost.
+  kGroupStop,  ///< Its group stops: a member is lost, or its drive has refused.
 };
 inline constexpr int kMotorEventCount = 10;
 

@@ -139,8 +139,10 @@ void Supervisor::setRobotState(RobotStatus state, const Stop& why, const Tick& t
   if (state != RobotStatus::kRun) {
     for (auto& group : groups_) group.rearm.reset();  // even if it is cleared within this tick
     const Stop stop{causeOf(MotorEvent::kEstop, state), why.by};
-    for (std::size_t motor = 0; motor < axes_.size(); ++motor)
+    for (std::size_t motor = 0; motor < axes_.size(); ++motor) {
+      if (state == RobotStatus::kEstop) axes_[motor].estopFallback(tick);
       transition(motor, MotorEvent::kEstop, stop, tick);
+    }
   }
   report({EventCode::kRobotState, state == RobotStatus::kEstop ? Severity::kError : Severity::kInfo, -1,
           static_cast<std::int32_t>(state),

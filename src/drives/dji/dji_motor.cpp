@@ -111,13 +111,13 @@ void DJI_Motor::updateAngles() noexcept {
 
 bool DJI_Motor::setZero(double angle_deg) noexcept {
   if (feedback_.samples == 0 || !std::isfinite(angle_deg)) return false;
+  const double before_deg = feedback_.total_angle_deg;
   setReference(angle_deg);
   encoder_.acknowledgeLoss();
   feedback_.zeroed = true;
   feedback_.turn_unclear = false;
   updateAngles();
-  loops_.reset();
-  holding_ = false;
+  hold_deg_ += feedback_.total_angle_deg - before_deg;  // a load that is held stays where it is
   return true;
 }
 

@@ -9,7 +9,6 @@
 namespace rc10::myactuator {
 namespace {
 
-constexpr double kAmperesPerRaw = 0.01;
 constexpr double kVoltsPerRaw = 0.1;
 
 CanFrame empty(std::uint32_t id) noexcept {

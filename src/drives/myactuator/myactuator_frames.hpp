@@ -18,6 +18,7 @@ inline constexpr std::uint32_t kBroadcastId = 0x280;  ///< Any request, to all d
 inline constexpr std::uint32_t kIdSettingId = 0x300;
 inline constexpr int kMaxId = 32;
 inline constexpr std::uint8_t kLength = 8;
+inline constexpr double kAmperesPerRaw = 0.01;
 inline constexpr double kDegPerRaw = 0.01;
 
 /// The first byte of a request and of its reply.

@@ -79,9 +79,9 @@ class Fallback {
   }
   void end() noexcept { kind_ = FrameKind::kRest; }
   [[nodiscard]] bool acts() const noexcept { return kind_ != FrameKind::kRest; }
-  /// It acts, and has for so long.
-  [[nodiscard]] bool actsFor(Duration time, MonotonicTime now) const noexcept {
-    return acts() && now - begun_ >= time;
+  /// It resists, and has for so long. A ramp leads.
+  [[nodiscard]] bool resistsFor(Duration time, MonotonicTime now) const noexcept {
+    return acts() && kind_ != FrameKind::kCommand && now - begun_ >= time;
   }
   /// Kind of frame for the drive; kRest while no fallback is in force.
   [[nodiscard]] FrameKind kind() const noexcept { return kind_; }

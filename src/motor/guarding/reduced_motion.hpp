@@ -21,11 +21,12 @@ struct ReducedConfig {
   [[nodiscard]] bool any() const noexcept { return velocity_rpm > 0.0F || effort_share < 1.0F; }
 };
 
-/// Speed and effort that one motor may have: reduced at once or along a ramp, full again within kLift.
+/// Speed and effort that one motor may have: reduced at once or along a ramp, full again within
+/// kLiftSeconds.
 /// Scheduler thread only.
 class ReducedMotion {
  public:
-  /// Longer than a step through a light curtain's edge: nothing gains speed in a jump.
+  /// Time in which speed and effort come back in full: nothing gains speed in a jump.
   static constexpr float kLiftSeconds = 1.0F;
 
   explicit ReducedMotion(const ReducedConfig& config) noexcept : config_(config), any_(config.any()) {}

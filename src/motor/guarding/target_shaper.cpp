@@ -65,8 +65,14 @@ constexpr double kEffortAgainShare = 0.8;
 }  // namespace
 
 bool TargetShaper::firstStepAllowed(const Target& asked, const MotorFeedback& feedback) const noexcept {
-  return !needsReference(asked.mode) ||
-         !(std::fabs(distanceDeg(asked, feedback)) > config_.max_first_step_deg);
+  if (!needsReference(asked.mode)) return true;
+  const double asked_deg = distanceDeg(asked, feedback);
+  if (std::fabs(asked_deg) > config_.max_first_step_deg) return false;
+  if (asked.mode != ControlMode::kAngle || !bounded(feedback)) return true;
+  // Beyond a soft limit the shortest way may be closed, and the other one the way.
+  const double here_deg = feedback.total_angle_deg;
+  const Travel travel{std::min(config_.angle_min_deg, here_deg), std::max(config_.angle_max_deg, here_deg)};
+  return !(std::fabs(reachable(here_deg + asked_deg, true, travel) - here_deg) > config_.max_first_step_deg);
 }
 
 std::uint32_t TargetShaper::step(Target& target, const MotorFeedback& feedback, InForce in_force,
@@ -101,9 +107,12 @@ void TargetShaper::soften(Target& asked, const MotorFeedback& feedback, float dt
   asked.torque_ff_nm = static_cast<float>(soft_ff_nm_);
   const bool any_turn = mode_ == ControlMode::kAngle;
   double goal = any_turn ? soft_ + shortestAngle(soft_, asked.value) : asked.value;
-  if (any_turn && bounded(feedback)) goal = reachable(goal, any_turn);
+  const bool limited = any_turn && bounded(feedback);
+  if (limited) goal = reachable(goal, any_turn, travel_);
   soft_ += (goal - soft_) * part;
-  asked.value = any_turn ? wrapDegrees(soft_) : soft_;
+  // On the turn that was chosen: the shortest way from the next place may be another one.
+  if (limited) asked.mode = ControlMode::kTotalAngle;
+  asked.value = any_turn && !limited ? wrapDegrees(soft_) : soft_;
 }
 
 // A share of a target far beyond the limit would be the limit itself.
@@ -153,9 +162,10 @@ void TargetShaper::begin(ControlMode mode, const MotorFeedback& feedback, InForc
   if (mode == ControlMode::kVelocity) value_ = static_cast<double>(feedback.velocity_rpm);
   if (needsReference(mode)) value_ = feedback.total_angle_deg;
   if (!std::isfinite(value_)) value_ = 0.0;
-  low_deg_ = std::min(config_.angle_min_deg, value_);
-  high_deg_ = std::max(config_.angle_max_deg, value_);
+  const double here_deg = value_;
   if (std::isfinite(in_force.held_deg)) takeOver(mode, feedback, in_force, stiffness_nm_per_rad);
+  travel_ = {std::min({config_.angle_min_deg, here_deg, value_}),
+             std::max({config_.angle_max_deg, here_deg, value_})};
   soft_ = value_;
   soft_ff_nm_ = torque_ff_nm_;
 }
@@ -212,17 +222,17 @@ std::uint32_t TargetShaper::shapeWithFeedForward(Target& asked, const MotorFeedb
 // The velocity of a trajectory: no faster than the angle may move, and no jump.
 std::uint32_t TargetShaper::shapeVelocityFf(Target& asked, float dt_s) noexcept {
   if (asked.velocity_ff_rpm == 0.0F && velocity_ff_rpm_ == 0.0) return 0;
-  const double most_rpm =
-      config_.angle_slew_deg_per_s > 0.0F
-          ? std::min(ceiling_rpm_, static_cast<double>(config_.angle_slew_deg_per_s) / kDegPerSPerRpm)
-          : ceiling_rpm_;
   const auto wanted_rpm = static_cast<double>(asked.velocity_ff_rpm);
+  const double allowed_rpm = within(std::clamp(wanted_rpm, -ceiling_rpm_, ceiling_rpm_),
+                                    static_cast<double>(config_.velocity_limit_rpm));
   const double goal_rpm =
-      within(std::clamp(wanted_rpm, -most_rpm, most_rpm), static_cast<double>(config_.velocity_limit_rpm));
-  const bool slewed =
-      slewTowards(goal_rpm, static_cast<double>(config_.velocity_slew_rpm_per_s), dt_s, velocity_ff_rpm_);
+      within(allowed_rpm, static_cast<double>(config_.angle_slew_deg_per_s) / kDegPerSPerRpm);
+  std::uint32_t limits = allowed_rpm != wanted_rpm ? kLimitVelocity : 0U;
+  if (goal_rpm != allowed_rpm) limits |= kLimitSlew;
+  if (slewTowards(goal_rpm, static_cast<double>(config_.velocity_slew_rpm_per_s), dt_s, velocity_ff_rpm_))
+    limits |= kLimitSlew;
   asked.velocity_ff_rpm = static_cast<float>(velocity_ff_rpm_);
-  return slewed || goal_rpm != wanted_rpm ? kLimitSlew : 0U;
+  return limits;
 }
 
 // A feed-forward is an effort as any other: it rises at the rate of one, and fades towards a soft limit and
@@ -365,15 +375,21 @@ std::uint32_t TargetShaper::shapeVelocity(Target& asked, const MotorFeedback& fe
 }
 
 // A shaft that was beyond a soft limit, where its stop is or where gravity had let it sag, comes back as its
-// targets lead it, and not in one leap to the limit; never farther out than it is.
+// targets lead it, and not in one leap to the limit; never farther out than it is or is led. A load that
+// pulls it back is held meanwhile. Inside, nothing leads out.
 void TargetShaper::followFromOutside(const MotorFeedback& feedback) noexcept {
-  low_deg_ = std::min(config_.angle_min_deg, std::max(low_deg_, feedback.total_angle_deg));
-  high_deg_ = std::max(config_.angle_max_deg, std::min(high_deg_, feedback.total_angle_deg));
+  const double here_deg = feedback.total_angle_deg;
+  const double low_deg = std::max(travel_.low_deg, std::min(here_deg, value_));
+  const double high_deg = std::min(travel_.high_deg, std::max(here_deg, value_));
+  travel_.low_deg =
+      here_deg < config_.angle_min_deg ? std::min(config_.angle_min_deg, low_deg) : config_.angle_min_deg;
+  travel_.high_deg =
+      here_deg > config_.angle_max_deg ? std::max(config_.angle_max_deg, high_deg) : config_.angle_max_deg;
 }
 
 // The nearest angle to the goal that is allowed; any turn of it if the turn does not matter.
-double TargetShaper::reachable(double goal_deg, bool any_turn) const noexcept {
-  const double inside = std::clamp(goal_deg, low_deg_, high_deg_);
+double TargetShaper::reachable(double goal_deg, bool any_turn, const Travel& travel) const noexcept {
+  const double inside = std::clamp(goal_deg, travel.low_deg, travel.high_deg);
   if (!any_turn || inside == goal_deg) return inside;
   const double other_way = goal_deg + std::copysign(kDegPerTurn, inside - goal_deg);
   const bool allowed = other_way >= config_.angle_min_deg && other_way <= config_.angle_max_deg;
@@ -394,7 +410,7 @@ std::uint32_t TargetShaper::boundAngle(Target& asked, const MotorFeedback& feedb
   const bool any_turn = asked.mode == ControlMode::kAngle;
   // From here on in multi-turn angles: the shortest way may lead through what is not allowed.
   const double goal = any_turn ? value_ + shortestAngle(value_, asked.value) : asked.value;
-  const double allowed = limited ? reachable(goal, any_turn) : goal;
+  const double allowed = limited ? reachable(goal, any_turn, travel_) : goal;
   const double before_deg = value_;
   std::uint32_t limits = 0;
   if (any_turn ? wrapDegrees(allowed) != wrapDegrees(goal) : allowed != goal) {
@@ -406,11 +422,12 @@ std::uint32_t TargetShaper::boundAngle(Target& asked, const MotorFeedback& feedb
         std::clamp(static_cast<double>(asked.velocity_ff_rpm), towards.low_rpm, towards.high_rpm));
   }
   if (slew(allowed, config_.angle_slew_deg_per_s, dt_s)) limits |= kLimitSlew;
-  // A shaft that comes back from beyond a limit faster than the slew is not led out again.
-  if (limited) value_ = std::clamp(value_, low_deg_, high_deg_);
+  // A shaft that came back by itself, faster than the slew, is not led out again.
+  if (limited) value_ = std::clamp(value_, travel_.low_deg, travel_.high_deg);
   if (any_turn) asked.mode = ControlMode::kTotalAngle;
   asked.value = value_;
   if (reduced()) limits |= shorten(asked, before_deg, feedback, dt_s);
+  velocity_ff_rpm_ = static_cast<double>(asked.velocity_ff_rpm);  // its slew goes on from what limits leave
   return limits;
 }
 

@@ -25,11 +25,11 @@ struct ShapingConfig {
   float effort_per_rpm = 0.0F;           ///< Effort that only keeps up a speed: 0 for A, back-EMF for V.
   float effort_per_nm = 0.0F;            ///< A per N·m: of a torque feed-forward. 0: unknown.
   float effort_full_scale = 0.0F;        ///< Effort of a duty of 1. 0: unknown.
-  float effort_limit = 0.0F;        ///< Most effort and speed of the motor: a soft start leads there, not
-  float velocity_limit_rpm = 0.0F;  ///< to a target beyond. 0: none.
-  bool has_velocity_loop = false;   ///< The motor can be told a speed.
-  bool lead_is_speed = false;       ///< The lead of an angle is a speed: another loop bounds it.
-  bool springs = false;             ///< The drive makes torque by a SpringLaw, without an integral.
+  float effort_limit = 0.0F;             ///< Limits of the motor: slews and soft starts end there,
+  float velocity_limit_rpm = 0.0F;       ///< not at a target beyond. 0: none.
+  bool has_velocity_loop = false;        ///< The motor can be told a speed.
+  bool lead_is_speed = false;            ///< The lead of an angle is a speed: another loop bounds it.
+  bool springs = false;                  ///< The drive makes torque by a SpringLaw, without an integral.
   double max_first_step_deg = std::numeric_limits<double>::infinity();
   float soft_start_s = 0.0F;  ///< The first target after enabling comes into force over this time.
 };
@@ -83,14 +83,20 @@ class TargetShaper {
     share_ = config_.soft_start_s > 0.0F ? 0.0 : 1.0;
   }
 
-  /// Whether an angle target that follows none is close enough to the measured angle.
+  /// Whether an angle target that follows none is close enough to the measured angle, by the way that its
+  /// soft limits leave.
   [[nodiscard]] bool firstStepAllowed(const Target& asked, const MotorFeedback& feedback) const noexcept;
 
  private:
-  /// Speeds that still stop before the soft limits; both 0 or beyond the limits' own side.
+  /// Speeds that still stop before the soft limits: low_rpm <= 0 <= high_rpm.
   struct Envelope {
     double low_rpm;
     double high_rpm;
+  };
+  /// Bounds of an angle target: the soft limits, or the place beyond one from which the shaft comes back.
+  struct Travel {
+    double low_deg = 0.0;
+    double high_deg = 0.0;
   };
   [[nodiscard]] bool bounded(const MotorFeedback& feedback) const noexcept {
     return soft_limits_ && feedback.zeroed;
@@ -110,7 +116,7 @@ class TargetShaper {
   [[nodiscard]] std::uint32_t shorten(Target& shaped, double before_deg, const MotorFeedback& feedback,
                                       float dt_s) noexcept;
   [[nodiscard]] double effortFor(double allowed_rpm, const MotorFeedback& feedback) const noexcept;
-  [[nodiscard]] double reachable(double goal_deg, bool any_turn) const noexcept;
+  [[nodiscard]] double reachable(double goal_deg, bool any_turn, const Travel& travel) const noexcept;
   void followFromOutside(const MotorFeedback& feedback) noexcept;
   void begin(ControlMode mode, const MotorFeedback& feedback, InForce in_force,
              float stiffness_nm_per_rad) noexcept;
@@ -148,9 +154,8 @@ class TargetShaper {
   bool soft_limits_;                        ///< On one side at least.
   ControlMode mode_ = ControlMode::kCoast;  ///< Mode of the last step.
   double value_ = 0.0;                      ///< The slewed target of that mode.
-  double low_deg_ = 0.0;                    ///< Bounds of an angle target: the soft limits, or the
-  double high_deg_ = 0.0;                   ///< place beyond one from which the shaft comes back.
-  double velocity_ff_rpm_ = 0.0;            ///< Slewed, too.
+  Travel travel_;
+  double velocity_ff_rpm_ = 0.0;  ///< Slewed, too.
   double torque_ff_nm_ = 0.0;
   bool feeds_forward_ = false;  ///< One of them is not 0.
   double ceiling_rpm_ = std::numeric_limits<double>::infinity();

@@ -81,6 +81,14 @@ TEST_F(RequestDeskTest, OnlyARequestThatNamesNoMotorIsOfTheWholeRobot) {
   EXPECT_FALSE(begin(linkRequest(2, "clear", "left,right,yaw")).order->whole_robot);
 }
 
+TEST(RequestDeskOfOneMotor, AClearThatNamesItIsNotOfTheWholeRobot) {
+  RobotDescription robot = describedRobot({"wheel"});
+  Admission admission{robot};
+  RequestDesk desk{admission, robot};
+  EXPECT_FALSE(desk.begin(linkRequest(1, "clear", "wheel"), {.connection = kConnection}).order->whole_robot);
+  EXPECT_TRUE(desk.begin(linkRequest(2, "clear"), {.connection = kConnection}).order->whole_robot);
+}
+
 TEST_F(RequestDeskTest, SeveralMotorsAreSeparatedByCommas) {
   EXPECT_EQ(begin(linkRequest(1, "enable", "yaw,left")).order->motors, MotorSet{0b101});
 }

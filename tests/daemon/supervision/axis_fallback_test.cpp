@@ -61,6 +61,67 @@ TEST_F(FallbackTest, ADisableRightAfterAnEnableLetsGoOfAMotorThatIsHeld) {
   }
 }
 
+TEST_F(FallbackTest, AnEstopReplacesWhatActsAfterADisable) {
+  const auto actingInAnEstop = [&](FallbackAction disabled, FallbackAction stopped) {
+    start({.on_disable = disabled, .on_estop = stopped, .brake_max = 1s}, 1.0F);
+    robot->order(Operation::kDisable);
+    robot->run(100);
+    EXPECT_NE(robot->motor(kLeft).acting, Acting::kNothing);
+    robot->exchange().estop.store(true);
+    robot->run(2);
+    return robot->motor(kLeft).acting;
+  };
+  EXPECT_EQ(actingInAnEstop(FallbackAction::kHold, FallbackAction::kCoast), Acting::kNothing);
+  EXPECT_EQ(currentA(), 0.0F);
+  EXPECT_EQ(actingInAnEstop(FallbackAction::kBrake, FallbackAction::kRamp), Acting::kRamp);
+  EXPECT_EQ(actingInAnEstop(FallbackAction::kDamp, FallbackAction::kHold), Acting::kHold);
+  EXPECT_EQ(actingInAnEstop(FallbackAction::kBrake, FallbackAction::kBrake), Acting::kBrake);
+  robot->run(1100);
+  EXPECT_EQ(robot->motor(kLeft).acting, Acting::kDamp) << "brake_max_s of an e-stop";
+}
+
+TEST_F(FallbackTest, AnEstopReplacesWhatActsWhileAHeldMotorIsEnabled) {
+  for (int later = 0; later <= 3; ++later) {
+    SCOPED_TRACE(later);
+    start({.on_disable = FallbackAction::kHold}, 1.0F);
+    robot->order(Operation::kDisable);
+    robot->run(100);
+    robot->beginEnabling(MotorSet{}.set(kLeft));
+    robot->run(later);
+    robot->exchange().estop.store(true);
+    robot->run(5);
+    EXPECT_EQ(robot->motor(kLeft).status, MotorStatus::kReady);
+    EXPECT_EQ(robot->motor(kLeft).acting, Acting::kNothing);
+  }
+}
+
+TEST_F(FallbackTest, AnEstopThatIsRepeatedDoesNotBeginItsTimeAnew) {
+  start({.on_estop = FallbackAction::kBrake, .brake_max = 1s}, 1.0F);
+  for (int i = 0; i < 11; ++i) {
+    robot->exchange().estop.store(true);
+    robot->run(100);
+  }
+  EXPECT_EQ(robot->motor(kLeft).acting, Acting::kDamp);
+}
+
+TEST_F(FallbackTest, AnEstopIsNotClearedWhileARampLeads) {
+  start({.on_estop = FallbackAction::kRamp, .ramp = 20s});
+  robot->exchange().estop.store(true);
+  robot->run(5000);
+  ASSERT_GT(rpm(), 50.0F);
+  EXPECT_EQ(robot->order(Operation::kClear).motors[kLeft], Refusal::kMoving);
+}
+
+TEST_F(FallbackTest, TheTimeToRunDownBeginsWithTheEstop) {
+  start({.on_disable = FallbackAction::kDamp, .on_estop = FallbackAction::kDamp}, 1.0F);
+  robot->order(Operation::kDisable);
+  robot->run(5000);
+  ASSERT_GT(std::fabs(rpm()), 10.0F);
+  robot->exchange().estop.store(true);
+  robot->tick();
+  EXPECT_EQ(robot->order(Operation::kClear).motors[kLeft], Refusal::kMoving);
+}
+
 TEST_F(FallbackTest, CoastMeansNoCurrentAtAll) {
   start({});
   robot->run(49);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string>
 
 #include <gtest/gtest.h>
 
@@ -124,6 +125,30 @@ TEST_F(FaultTest, AStalledMotorStopsPushing) {
   turnBoth(2000);
   EXPECT_EQ(robot->motor(kLeft).fault, FaultCode::kStalled);
   EXPECT_EQ(robot->motor(kLeft).command_value, 0.0F);
+}
+
+// The limit of a loop of the drive acts in each turn of the motor, and between them.
+TEST(FaultOfADrivesLoop, AStallIsSeenWhateverTheRhythmOfItsCommands) {
+  for (const std::string model :
+       {"RMD-X8-20, id: 22, current_limit_a: 6", "RMD-X8-20, id: 22, current_limit_a: 10.399",
+        "LK-MG5010E-i10, id: 5, current_limit_a: 5"}) {
+    for (const int divider : {1, 2, 5}) {
+      SCOPED_TRACE(model + ", divider " + std::to_string(divider));
+      const auto outcome = parseRobotConfig(
+          "robot: stalls\nrealtime: preferred\nbuses:\n  - name: bench\n"
+          "    type: sim\n    motors:\n      - {name: motor, model: " +
+              model + ", stall_ms: 300, command_divider: " + std::to_string(divider) +
+              ", simulated: {stalled: true}}\n",
+          "stalls.yaml");
+      ASSERT_TRUE(outcome.config) << outcome.errorText();
+      VirtualRobot robot{*outcome.config};
+      for (int i = 0; i < 2000 && robot.motor(0).status != MotorStatus::kReady; ++i) robot.run(1);
+      robot.order(Operation::kEnable);
+      ASSERT_EQ(robot.motor(0).status, MotorStatus::kActive);
+      robot.hold(0, {.mode = ControlMode::kVelocity, .value = 30.0}, 2000);
+      EXPECT_EQ(robot.motor(0).fault, FaultCode::kStalled);
+    }
+  }
 }
 
 /// Guard of an M3508 as configured.

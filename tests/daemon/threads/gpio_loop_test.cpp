@@ -107,6 +107,17 @@ TEST_F(EstopInputTest, AnOpeningThatIsOverBeforeTheTickActsToo) {
   EXPECT_EQ(robot.order(Operation::kClear).motors[0], Refusal::kNone);
 }
 
+TEST_F(EstopInputTest, AnOpeningThatIsOverBeforeItsTickVetoesAClearOfThatTick) {
+  see(kOpen);
+  see(kClosed);
+  input.first = {kOpen, kClosed};
+  look();
+  look();
+  EXPECT_EQ(robot.order(Operation::kClear).motors[0], Refusal::kEstopAsked);
+  EXPECT_EQ(state(), RobotStatus::kEstop);
+  EXPECT_EQ(robot.order(Operation::kClear).motors[0], Refusal::kNone);
+}
+
 TEST_F(EstopInputTest, OneThatIsOpenAtTheStartIsAnEstopInTheFirstTick) {
   VirtualRobot other{twoWheelsAndYaw()};
   FakeContact::State pressed{.now = kOpen, .first = {}, .waits = {}};

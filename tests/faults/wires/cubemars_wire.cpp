@@ -74,6 +74,7 @@ class CubemarsWire final : public Wire {
       case 4:
         told_.law = Told::Law::kAngle;
         told_.ahead_deg = (raw * 1e-4 - message_deg_) / setup_.message_deg_per_deg / perOutput();
+        told_.ahead_step_deg = 1e-4;
         return;
       case 8: return saidLaw(frame, {24, 16}, {40, 12}, {0, 12}, {12, 12}, {52, 12});
       default: refuse(frame, "it makes where it stands its origin, or nothing known");

@@ -129,8 +129,14 @@ class DamiaoWire final : public Wire {
                  position_rad_, velocity_rad_s_);
   }
 
-  // Its position field wraps, the one of the command does not: how far it is ahead cannot be said.
-  void saidPosition(double /*rad*/, double limit_rad_s, double share) {
+  // Its position field wraps, the one of the command does not.
+  void saidPosition(double rad, double limit_rad_s, double share) {
+    const double scale_rad = 2.0 * own_.scale.p_max_rad;
+    told_.ahead_deg = degOfRad(std::remainder(rad - position_rad_, scale_rad));
+    // Each time round a step more: its ends are one place and two codes.
+    const double rounds = std::fabs(rad) / scale_rad;
+    told_.ahead_step_deg = std::fabs(degOfRad((1.0 + rounds) * scale_rad / 65535.0 + 1e-6 * std::fabs(rad)));
+    told_.ahead_turn_deg = std::fabs(degOfRad(scale_rad));
     told_.law = limit_rad_s > 0.0 ? Told::Law::kAngle : Told::Law::kVelocity;
     told_.most_rpm = std::fabs(rpmOfRadPerS(limit_rad_s));
     told_.most_effort = share * static_cast<double>(traits().effort_full_scale);

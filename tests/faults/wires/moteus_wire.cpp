@@ -137,6 +137,7 @@ class MoteusWire final : public Wire {
     } else {
       told_.law = Told::Law::kAngle;
       told_.ahead_deg = (number(kPlace, place_rev_) - place_rev_) * 360.0 / perOutput();
+      told_.ahead_step_deg = std::fabs(place_rev_) * 1e-4 / std::fabs(perOutput());
     }
   }
 

@@ -87,6 +87,7 @@ class MyactuatorWire final : public Wire {
         told_.law = Told::Law::kAngle;
         told_.most_rpm = static_cast<double>(littleEndian(frame, 2, 2)) / 6.0 / std::fabs(perOutput());
         told_.ahead_deg = (number - place_raw_) * 0.01 / perOutput();
+        told_.ahead_step_deg = 0.01 / std::fabs(perOutput());
         return;
       default: refuse(frame, "a setting that is stored, or nothing known");
     }

@@ -84,6 +84,7 @@ class OdriveWire final : public Wire {
         told.velocity_rpm = place_rpm_;
         told.effort = effortOfNm(place_nm_);
         told.ahead_deg = (place_turns_ - turns_) * 360.0 / (direction() * gear_);
+        told.ahead_step_deg = std::fabs(place_turns_) * 1e-4 / gear_;
         told.effort_step = std::fabs(effortOfNm(1e-3));
         told.velocity_step_rpm = std::fabs(rpm(1e-3));
         return told;

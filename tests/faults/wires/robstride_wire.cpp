@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numbers>
 #include <optional>
 
 #include "bus/can_frame.hpp"
@@ -12,6 +13,7 @@ namespace rc10::test {
 namespace {
 
 constexpr int kLateReports = 4;
+constexpr double kRoundRad = 8.0 * std::numbers::pi;
 constexpr std::uint16_t kRunMode = 0x7005;
 constexpr std::uint16_t kCurrentRef = 0x7006;
 constexpr std::uint16_t kVelocityRef = 0x700A;
@@ -83,6 +85,10 @@ class RobstrideWire final : public Wire {
       default:
         told.law = Told::Law::kAngle;
         told.most_effort = current_limit_a_;
+        // A newer firmware's position goes round by two whole turns on each side, its reference does not.
+        told.ahead_deg = degOfRad(std::remainder(position_ref_rad_ - seen_rad_, kRoundRad));
+        told.ahead_turn_deg = std::fabs(degOfRad(kRoundRad));
+        told.ahead_step_deg = std::fabs(degOfRad(1e-3 + 1e-6 * std::fabs(position_ref_rad_)));
         return told;
     }
   }
@@ -113,8 +119,11 @@ class RobstrideWire final : public Wire {
       case kCurrentRef: current_ref_a_ = value; break;
       case kVelocityRef: velocity_ref_rad_s_ = value; break;
       case kCurrentLimit: current_limit_a_ = value; break;
-      case kTorqueLimit:
       case kPositionRef:
+        position_ref_rad_ = value;
+        seen_rad_ = position_rad_;
+        break;
+      case kTorqueLimit:
       case kVelocityLimit: break;
       default:
         if (index != model_->watchdog_index) refuse(frame, "a parameter that rc10d has no business with");
@@ -148,6 +157,7 @@ class RobstrideWire final : public Wire {
   std::optional<MitFields> operated_;
   double current_ref_a_ = 0.0;
   double velocity_ref_rad_s_ = 0.0;
+  double position_ref_rad_ = 0.0;
   double current_limit_a_ = 0.0;
   double position_rad_ = 0.0;
   double velocity_rad_s_ = 0.0;

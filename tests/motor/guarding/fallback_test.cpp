@@ -26,14 +26,16 @@ class FallbackTest : public ::testing::Test {
 
 TEST_F(FallbackTest, ItActsFromItsBeginToItsEnd) {
   EXPECT_FALSE(fallback.acts());
-  EXPECT_FALSE(fallback.actsFor(0s, start));
+  EXPECT_FALSE(fallback.resistsFor(0s, start));
   begin(FallbackAction::kBrake);
   EXPECT_TRUE(fallback.acts());
-  EXPECT_FALSE(fallback.actsFor(1s, start + 1s - kInstant));
-  EXPECT_TRUE(fallback.actsFor(1s, start + 1s));
+  EXPECT_FALSE(fallback.resistsFor(1s, start + 1s - kInstant));
+  EXPECT_TRUE(fallback.resistsFor(1s, start + 1s));
   fallback.end();
   EXPECT_FALSE(fallback.acts());
-  EXPECT_FALSE(fallback.actsFor(1s, start + 1s));
+  EXPECT_FALSE(fallback.resistsFor(1s, start + 1s));
+  begin(FallbackAction::kRamp);
+  EXPECT_FALSE(fallback.resistsFor(0s, start + 1s)) << "it leads";
 }
 
 TEST_F(FallbackTest, EachActionHasItsFrames) {

@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include "app/angle.hpp"
 #include "motor/guarding/shaper_bench.hpp"
 
 namespace rc10::test {
@@ -196,7 +197,7 @@ TEST_F(TargetShaperTest, UnderACeilingAVelocityFeedForwardIsNoFaster) {
   for (const float way : {1.0F, -1.0F}) {
     const Target moving{.mode = ControlMode::kTotalAngle, .velocity_ff_rpm = way * 50.0F};
     EXPECT_EQ(step(moving).target.velocity_ff_rpm, way * 20.0F);
-    EXPECT_EQ(step(moving).limits & kLimitSlew, kLimitSlew);
+    EXPECT_EQ(step(moving).limits & kLimitVelocity, kLimitVelocity);
   }
 }
 
@@ -328,12 +329,28 @@ TEST_F(TargetShaperTest, ASoftStartLeadsTheWayThatALimitLeaves) {
   EXPECT_NEAR(valueAfter(199, ControlMode::kAngle, 112.0), 112.0, 1e-6);
 }
 
-TEST_F(TargetShaperTest, AShaftThatComesBackFasterThanItsSlewIsNotLedOutAgain) {
+TEST_F(TargetShaperTest, AShaftThatCameBackFasterThanItsSlewIsNotLedOutAgain) {
   configure({.angle_slew_deg_per_s = 100.0F, .angle_min_deg = -90.0, .angle_max_deg = 90.0});
-  at(120.0);
-  EXPECT_NEAR(step(ControlMode::kTotalAngle, 0.0).target.value, 119.9, 1e-3);
-  at(110.0);
-  EXPECT_NEAR(step(ControlMode::kTotalAngle, 0.0).target.value, 110.0, 1e-3);
+  for (const double side : {1.0, -1.0}) {
+    shaper.reset();
+    at(side * 120.0);
+    EXPECT_NEAR(step(ControlMode::kTotalAngle, 0.0).target.value, side * 119.9, 1e-3);
+    at(side * 80.0);
+    EXPECT_NEAR(step(ControlMode::kTotalAngle, 0.0).target.value, side * 90.0, 1e-3);
+  }
+}
+
+TEST_F(TargetShaperTest, ALoadThatPullsAShaftBackIntoItsTravelIsHeldAllTheWay) {
+  configure({.angle_slew_deg_per_s = 10.0F, .angle_min_deg = -90.0, .angle_max_deg = 90.0});
+  for (const double side : {1.0, -1.0}) {
+    shaper.reset();
+    for (int i = 1; i <= 100; ++i) {
+      at(side * (110.0 - 0.05 * (i - 1)));
+      EXPECT_NEAR(step(ControlMode::kTotalAngle, side * 80.0).target.value, side * (110.0 - 0.01 * i), 1e-3);
+    }
+    // Farther out is no way from there.
+    EXPECT_NEAR(step(ControlMode::kTotalAngle, side * 119.0).target.value, side * 109.0, 1e-3);
+  }
 }
 
 TEST_F(TargetShaperTest, WithoutASlewASpeedBeyondTheLimitIsTheMotorsToBound) {
@@ -358,6 +375,49 @@ TEST_F(TargetShaperTest, FeedForwardsBeyondTheLimitOfTheMotorDoNotWindUp) {
   const auto back = step({.mode = ControlMode::kTotalAngle}).target;
   EXPECT_NEAR(back.velocity_ff_rpm, 19.0F, 1e-4F);
   EXPECT_NEAR(back.torque_ff_nm, -1.95F, 1e-4F);
+}
+
+TEST_F(TargetShaperTest, AVelocityFeedForwardThatALimitTookComesBackAtItsSlew) {
+  configure({.velocity_slew_rpm_per_s = 1000.0F,
+             .angle_min_deg = -90.0,
+             .angle_max_deg = 90.0,
+             .approach_rpm_per_deg = 10.0F});
+  const auto feedForward = [&](double deg) {
+    return step({.mode = ControlMode::kTotalAngle, .value = deg, .velocity_ff_rpm = -300.0F})
+        .target.velocity_ff_rpm;
+  };
+  for (int i = 0; i < 300; ++i) (void)feedForward(0.0);
+  EXPECT_NEAR(feedForward(0.0), -300.0F, 1e-3F);
+  EXPECT_EQ(feedForward(100.0), 0.0F);
+  EXPECT_EQ(feedForward(100.0), 0.0F);
+  EXPECT_NEAR(feedForward(80.0), -1.0F, 1e-3F);
+  EXPECT_NEAR(feedForward(80.0), -2.0F, 1e-3F);
+}
+
+TEST_F(TargetShaperTest, ASoftStartBeyondALimitDoesNotGoTheOtherWayRound) {
+  configure({.angle_min_deg = -120.0, .angle_max_deg = 120.0, .soft_start_s = 0.2F});
+  shaper.restart();
+  at(471.7);
+  // 149 deg is in no turn of the travel: it stays where it is.
+  for (int i = 0; i < 300; ++i) {
+    at(471.7 - 0.05 * i);
+    EXPECT_NEAR(step(ControlMode::kAngle, 149.0).target.value, 471.7, 1e-9);
+  }
+}
+
+TEST_F(TargetShaperTest, AFirstStepIsAsFarAsTheWayThatALimitLeaves) {
+  configure({.angle_min_deg = -120.0, .angle_max_deg = 120.0, .max_first_step_deg = 30.0});
+  const auto allowed = [&](double from_deg, double to_deg) {
+    at(from_deg);
+    feedback.angle_deg = static_cast<float>(wrapDegrees(from_deg));
+    return shaper.firstStepAllowed({.mode = ControlMode::kAngle, .value = to_deg}, feedback);
+  };
+  EXPECT_TRUE(allowed(100.0, 115.0));
+  EXPECT_TRUE(allowed(130.0, 115.0));
+  // Farther out there is no way, and the other one is a turn.
+  EXPECT_FALSE(allowed(471.7, 115.0));
+  EXPECT_FALSE(allowed(-471.7, -115.0));
+  EXPECT_TRUE(allowed(471.7, 100.0));
 }
 
 }  // namespace

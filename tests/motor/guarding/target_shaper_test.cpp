@@ -261,6 +261,8 @@ TEST_F(TargetShaperTest, AShaftBeyondASoftLimitIsLedBackByItsTargetsAndNeverFart
   EXPECT_EQ(out.target.value, -100.0);
   EXPECT_EQ(out.limits, kLimitAngle);
   at(-95.0);
+  EXPECT_EQ(step(ControlMode::kTotalAngle, -120.0).target.value, -100.0) << "held where it was led";
+  EXPECT_EQ(step(ControlMode::kTotalAngle, -95.0).target.value, -95.0);
   EXPECT_EQ(step(ControlMode::kTotalAngle, -100.0).target.value, -95.0) << "not where it was before";
   at(-80.0);
   EXPECT_EQ(step(ControlMode::kTotalAngle, -100.0).target.value, -90.0) << "from now on the limit holds";
