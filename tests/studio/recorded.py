@@ -30,6 +30,16 @@ class Box:
         stop = next(e for e in self.of("event") if e["text"].startswith("RUN -> ESTOP"))
         return float(stop["mono_us"] - self.records[0]["mono_us"])
 
+    def tick_at(self, at_us: float) -> int:
+        """Since the first record. Where ticks were missed, the next record bounds it."""
+        mono_us = float(self.records[0]["mono_us"]) + at_us
+        robots = self.of("robot")
+        known = [r for r in robots if r["mono_us"] <= mono_us + 1]
+        passed = round((mono_us - float(known[-1]["mono_us"])) / 1000)
+        ticks = [int(known[-1]["tick"]) + passed]
+        ticks += [int(r["tick"]) - 1 for r in robots[len(known) : len(known) + 1]]
+        return min(ticks)
+
 
 def record() -> Box:
     # So small that its history has begun anew several times.

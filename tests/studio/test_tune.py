@@ -68,13 +68,18 @@ def ended(form: Locator, text: str) -> None:
     expect(form.locator(".told")).to_contain_text(text, timeout=3 * PATIENCE_MS)
 
 
+def stood_still(told: Locator) -> bool:
+    """The machine was too busy to hear the page, or to renew a target in time."""
+    return bool(re.search(r"\(silence\)|too busy", told.inner_text()))
+
+
 def runs_to(form: Locator, text: str) -> None:
     """Starts a test, which ends so; one during which the machine stood still is run again."""
     for _ in range(5):
         start(form)
         told = form.locator(".told")
         told.wait_for(timeout=3 * PATIENCE_MS)
-        if "(silence)" not in told.inner_text():
+        if not stood_still(told):
             break
     expect(told).to_contain_text(text)
 
@@ -104,8 +109,19 @@ def sweep(form: Locator, studio: Studio) -> None:
     form.get_by_label("amplitude").fill("20")
     form.get_by_label("around").fill("60")
     form.get_by_label("lasts").fill("60")
-    start(form)
-    studio.daemon.wait_motor("wheel", lambda m: float(m["velocity_rpm"]) > 50.0, "turns")
+    told = form.locator(".told")
+
+    def ended_already() -> bool:
+        return told.count() > 0 and stood_still(told)
+
+    for _ in range(5):
+        start(form)
+        expect(told).to_have_count(0)
+        studio.daemon.wait_motor(
+            "wheel", lambda m: float(m["velocity_rpm"]) > 50.0 or ended_already(), "turns"
+        )
+        if not ended_already():
+            break
     expect(form.get_by_role("timer")).to_contain_text("/ 62.0 s")
 
 

@@ -363,6 +363,18 @@ function ordersAround(recording: Recording, format: RecordingFormat, at_us: numb
   return rows.slice(Math.max(0, here - kMostRows / 2), here + kMostRows / 2);
 }
 
+// Ticks count on from the robot's last record; where ticks were missed they are fewer, and the next record says so.
+function tickAt(recording: Recording, at_us: number): number | null {
+  const list = recording.of('robot');
+  const count = recording.until(list, at_us);
+  if (count === 0) return null;
+  const { rate_hz } = recording.header;
+  const before = recording.at(list[count - 1] ?? 0);
+  const tick = (before.numbers['tick'] ?? 0) + Math.round(((at_us - before.time_us) * (rate_hz > 0 ? rate_hz : 1000)) / 1e6);
+  const next = count < list.length ? recording.at(list[count] ?? 0).numbers['tick'] : undefined;
+  return next === undefined ? tick : Math.min(tick, next - 1);
+}
+
 export function momentOf(recording: Recording, format: RecordingFormat, look: Look): Moment {
   const { header } = recording;
   const { words } = format;
@@ -378,7 +390,6 @@ export function momentOf(recording: Recording, format: RecordingFormat, look: Lo
   const plain = look.problems ? [] : Array.from(marked.filter((index) => recording.flags(index) === 0)).slice(-(kMostMarks - serious.length + 1));
   const frames = recording.of('frame');
   const filter = look.filter.trim().toUpperCase();
-  const rate = header.rate_hz > 0 ? header.rate_hz : 1000;
   return {
     at_us,
     curves: curvesOf(recording, format, look),
@@ -387,7 +398,7 @@ export function momentOf(recording: Recording, format: RecordingFormat, look: Lo
       return { time_us: row.time_us, severity: row.severity, source: row.source };
     }),
     wall_us: recording.wall_us(at_us),
-    tick: robot === null ? null : (robot.numbers['tick'] ?? 0) + Math.round(((at_us - robot.time_us) * rate) / 1e6),
+    tick: tickAt(recording, at_us),
     robot:
       robot === null
         ? null
