@@ -46,6 +46,12 @@ struct Target {
 };
 static_assert(std::is_trivially_copyable_v<Target>);
 
+/// Whether its value is a place that the shaft is led to. An impedance without stiffness is at none.
+[[nodiscard]] constexpr bool actsByPlace(const Target& target) noexcept {
+  return needsReference(target.mode) &&
+         (target.mode != ControlMode::kImpedance || target.stiffness_nm_per_rad > 0.0F);
+}
+
 /// Fields of a target, beside its value, that a mode uses.
 struct TargetFields {
   bool velocity_ff = false;

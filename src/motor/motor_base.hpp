@@ -134,6 +134,10 @@ class Motor_Base : public FrameListener {
   [[nodiscard]] virtual double heldAngleDeg() const noexcept {
     return std::numeric_limits<double>::quiet_NaN();
   }
+  /// Duty that the drive reports, of the output's direction; NaN: it reports none.
+  [[nodiscard]] virtual float reportedDuty() const noexcept {
+    return std::numeric_limits<float>::quiet_NaN();
+  }
   /// The angle goes on without a known reference: homing is about to find it.
   virtual void forgetReference() noexcept { feedback_.zeroed = false; }
 

@@ -25,6 +25,7 @@ constexpr double kDoubtSlackDeg = 0.1;
 // A shaft moves between the sample that an order was judged by and the one that is seen.
 constexpr double kMovedSeconds = 0.01;
 constexpr double kFarthestDeg = 1e12;
+constexpr double kDutyOfCurrent = 0.2;
 // Limits move what a spring is told; afterwards it goes on from where its slew has come meanwhile.
 constexpr int kLimitedTicks = 20;
 
@@ -66,7 +67,9 @@ void Oracle::followTargets(std::size_t index, const MotorSnapshot& seen) {
   const bool acts = seen.status == MotorStatus::kActive && seen.target.mode != ControlMode::kCoast;
   const auto mode = acts ? seen.target.mode : ControlMode::kCoast;
   const bool begins = acts && mode != track.mode;
-  if (begins) judgeFirstAngle(index, seen);
+  const bool by_place = acts && actsByPlace(seen.target);
+  if (by_place && !track.by_place) judgeFirstAngle(index, seen);
+  track.by_place = by_place;
   const auto turn_ticks = static_cast<std::uint64_t>(motor.config->settings.command_divider);
   const auto ticks = mode != track.mode ? track.change(mode, tick_, turn_ticks) : 1;
   track.places.take(seen.feedback.total_angle_deg);
@@ -97,6 +100,12 @@ void Oracle::followTargets(std::size_t index, const MotorSnapshot& seen) {
   }
   followAsked(motor, seen);
   track.held = {};
+  if (by_place || !isOfAngle(mode)) return;
+  // With a stiffness it begins where the shaft is then.
+  auto& place = track.fields[Field::kPlace];
+  place = {};
+  place.unread = true;
+  place.start.take(seen.feedback.total_angle_deg);
 }
 
 // A hold does not let its load go: a place begins where the hold began, or nearer.
@@ -122,6 +131,15 @@ std::array<Span, TargetTrack::kFields> Oracle::beginnings(const Motor& motor, co
   }
   for (const auto field : {Field::kEffort, Field::kPush})
     begun[field].take(static_cast<double>(seen.feedback.current_a));
+  if (seen.target.mode == ControlMode::kDuty) {
+    // At that of the shaft's speed, and what the drive's current makes of it.
+    const auto traits = motor.config->traits();
+    const double turns =
+        motor.config->settings.gear_ratio > 0.0 ? motor.config->settings.gear_ratio : traits.gear_ratio;
+    const double no_load_rpm = static_cast<double>(traits.no_load_rpm) * traits.gear_ratio / turns;
+    const bool known = no_load_rpm > 0.0;
+    begun[Field::kEffort].take(known ? wire.velocity_rpm / no_load_rpm : 0.0, known ? kDutyOfCurrent : 1.0);
+  }
   begun[Field::kSpeed].take(wire.velocity_rpm, wire.velocity_step_rpm);
   begun[Field::kSpeed].take(static_cast<double>(seen.feedback.velocity_rpm));
   if (motor.actions.test(static_cast<std::size_t>(FallbackAction::kRamp))) {
@@ -170,12 +188,12 @@ void Oracle::judgeFirstAngle(std::size_t index, const MotorSnapshot& seen) {
   const auto& motor = motors_[index];
   const double most_deg = motor.config->shaping.max_first_step_deg;
   const auto& track = motor.track;
-  if (!isOfAngle(seen.target.mode) || isOfAngle(track.mode) || !std::isfinite(most_deg)) return;
+  if (!std::isfinite(most_deg)) return;
   ++visits_.first_angles;
   const double slack =
       1e-6 + std::fabs(static_cast<double>(seen.feedback.velocity_rpm)) * kDegPerSPerRpm * kMovedSeconds;
   const auto near = [&](const Target& asked) {
-    if (!isOfAngle(asked.mode)) return false;
+    if (!actsByPlace(asked)) return false;
     const double here_deg = seen.feedback.total_angle_deg;
     const double way = asked.mode == ControlMode::kAngle ? std::remainder(asked.value - here_deg, 360.0)
                                                          : asked.value - here_deg;
@@ -296,6 +314,7 @@ void Oracle::judgePlace(std::size_t index, const MotorSnapshot& seen) {
     place.turn = seen.target.mode == ControlMode::kAngle ? 360.0 : 0.0;
   }
   if (spring) place.towards.take(here_deg);
+  if (!actsByPlace(seen.target)) place.value = kUnsaid;
   // A shaft that is farther out than its limits may be led back at once, and not out again.
   if (isBounded(motor, seen)) place.towards.take(motor.track.places);
   if (std::isfinite(place.value)) judgeField(index, Field::kPlace, place);
@@ -357,7 +376,9 @@ void Oracle::judgeTurn(std::size_t index, const MotorSnapshot& seen) {
                                  [index](const Joint& joint) { return joint.motor == index; });
   if (!begins || motor.zero_asked || homes) return;
   require(index, travel_deg < 360.0, "a turn that nobody can know");
-  const double free_deg = (360.0 - travel_deg) / 2.0 - kDoubtDeg + kDoubtSlackDeg;
+  const double moved_deg =
+      std::fabs(static_cast<double>(seen.feedback.velocity_rpm)) * kDegPerSPerRpm * kMovedSeconds;
+  const double free_deg = (360.0 - travel_deg) / 2.0 - kDoubtDeg + kDoubtSlackDeg + moved_deg;
   const double angle_deg = seen.feedback.total_angle_deg;
   ++visits_.turns;
   require(index,

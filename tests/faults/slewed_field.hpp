@@ -112,6 +112,7 @@ struct TargetTrack {
   double effort_before = 0.0;            ///< In its last frame, of a spring its sum,
   double value_before = 0.0;             ///< and as the snapshot told it.
   double speed_before = 0.0;
+  bool by_place = false;          ///< Its target is a place.
   bool turn_known = false;        ///< Its angle has a reference.
   Span places;                    ///< Where the shaft has been since its target began.
   std::uint64_t begin_ticks = 0;  ///< Left, in which a target may begin.

@@ -55,6 +55,7 @@ void readShaping(MotorParse& in) {
       shaping.approach_effort_per_rpm =
           in.traits.effort_full_scale / (kFullEffort * static_cast<float>(in.noLoadRpm()));
   }
+  if (in.traits.no_load_rpm > 0.0F) shaping.duty_per_rpm = 1.0F / static_cast<float>(in.noLoadRpm());
   if (!in.byVoltage() && in.torqueNmPerA() > 0.0)
     shaping.effort_per_nm = static_cast<float>(1.0 / in.torqueNmPerA());
   if (in.byVoltage() && in.noLoadRpm() > 0.0)

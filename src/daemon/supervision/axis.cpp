@@ -244,7 +244,8 @@ void Axis::order(RobotStatus robot, const Tick& tick) noexcept {
                         : TargetShaper::InForce{.value = motor_.commandValue(),
                                                 .unit = motor_.commandUnit(),
                                                 .limited = limited,
-                                                .held_deg = motor_.heldAngleDeg()};
+                                                .held_deg = motor_.heldAngleDeg(),
+                                                .duty = motor_.reportedDuty()};
   limits_ |= stops ? shaper_.slowDown(in_force_, motor_.feedback(), told, tick.dt_s)
                    : shaper_.step(in_force_, motor_.feedback(), told, tick.dt_s);
   motor_.order(kind, in_force_);
@@ -335,7 +336,7 @@ std::optional<SkipReason> Axis::tryTarget(const Target& target) noexcept {
   if (needsReference(target.mode)) {
     if (!(std::fabs(target.value) <= kFarthestAngleDeg)) return SkipReason::kTooFar;
     if (!motor_.feedback().zeroed) return SkipReason::kNoReference;
-    const bool first = !needsReference(motor_.target().mode);
+    const bool first = !actsByPlace(motor_.target());
     if (first && !shaper_.firstStepAllowed(target, motor_.feedback())) return SkipReason::kFirstStep;
   }
   if (!motor_.setTarget(target)) return SkipReason::kRefused;

@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "app/angle.hpp"
 #include "app/units.hpp"
@@ -67,6 +68,10 @@ FrameVerdict VESC_Motor::updateFeedback(const CanFrame& frame) noexcept {
     default: return FrameVerdict::kMalformed;
   }
   return FrameVerdict::kAccepted;
+}
+
+float VESC_Motor::reportedDuty() const noexcept {
+  return status1_seen_ ? status1_.duty * direction() : std::numeric_limits<float>::quiet_NaN();
 }
 
 void VESC_Motor::takeStatus1(const CanFrame& frame) noexcept {

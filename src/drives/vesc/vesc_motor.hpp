@@ -34,6 +34,7 @@ class VESC_Motor : public SoloMotor {
   [[nodiscard]] SequenceProgress sequenceProgress() const noexcept override;
   [[nodiscard]] DriveComplaint complaint() const noexcept override;
   bool setZero(double angle_deg) noexcept override;
+  [[nodiscard]] float reportedDuty() const noexcept override;
   [[nodiscard]] const CascadeConfig* hostLoops() const noexcept override {
     return own_.angle == VescAngle::kTachometer ? &loops_ : nullptr;
   }

@@ -65,7 +65,7 @@ constexpr double kEffortAgainShare = 0.8;
 }  // namespace
 
 bool TargetShaper::firstStepAllowed(const Target& asked, const MotorFeedback& feedback) const noexcept {
-  if (!needsReference(asked.mode)) return true;
+  if (!actsByPlace(asked)) return true;
   const double asked_deg = distanceDeg(asked, feedback);
   if (std::fabs(asked_deg) > config_.max_first_step_deg) return false;
   if (asked.mode != ControlMode::kAngle || !bounded(feedback)) return true;
@@ -77,7 +77,9 @@ bool TargetShaper::firstStepAllowed(const Target& asked, const MotorFeedback& fe
 
 std::uint32_t TargetShaper::step(Target& target, const MotorFeedback& feedback, InForce in_force,
                                  float dt_s) noexcept {
-  if (!follows(target.mode)) begin(target.mode, feedback, in_force, target.stiffness_nm_per_rad);
+  if (!follows(target.mode)) begin(target, feedback, in_force);
+  // Without stiffness it is at no place: with one it begins where the shaft is then.
+  if (mode_ == ControlMode::kImpedance && !actsByPlace(target)) value_ = soft_ = feedback.total_angle_deg;
   if (!(share_ < 1.0)) return shape(target, feedback, in_force, dt_s);
   soften(target, feedback, dt_s);
   return shape(target, feedback, in_force, dt_s) | kLimitSlew;
@@ -85,7 +87,7 @@ std::uint32_t TargetShaper::step(Target& target, const MotorFeedback& feedback, 
 
 std::uint32_t TargetShaper::slowDown(Target& target, const MotorFeedback& feedback, InForce in_force,
                                      float dt_s) noexcept {
-  if (!follows(target.mode)) begin(target.mode, feedback, in_force, target.stiffness_nm_per_rad);
+  if (!follows(target.mode)) begin(target, feedback, in_force);
   if (mode_ == ControlMode::kVelocity) value_ = target.value;  // its own time, whatever the slew limit
   const auto limits = shape(target, feedback, in_force, dt_s);
   soft_ = value_;
@@ -147,8 +149,8 @@ inline std::uint32_t TargetShaper::shapeMotion(Target& asked, const MotorFeedbac
 }
 
 // From what acts, in the unit of the mode: the last command may have been a speed.
-void TargetShaper::begin(ControlMode mode, const MotorFeedback& feedback, InForce in_force,
-                         float stiffness_nm_per_rad) noexcept {
+void TargetShaper::begin(const Target& target, const MotorFeedback& feedback, InForce in_force) noexcept {
+  const auto mode = target.mode;
   mode_ = mode;
   speed_bounds_effort_ = false;
   value_ = velocity_ff_rpm_ = torque_ff_nm_ = 0.0;
@@ -159,11 +161,15 @@ void TargetShaper::begin(ControlMode mode, const MotorFeedback& feedback, InForc
   }
   if (mode == ControlMode::kVoltage && in_force.unit == CommandUnit::kVolt)
     value_ = static_cast<double>(in_force.value);
+  if (mode == ControlMode::kDuty) {
+    const float by_speed = feedback.velocity_rpm * config_.duty_per_rpm;
+    value_ = within(static_cast<double>(std::isfinite(in_force.duty) ? in_force.duty : by_speed), 1.0);
+  }
   if (mode == ControlMode::kVelocity) value_ = static_cast<double>(feedback.velocity_rpm);
   if (needsReference(mode)) value_ = feedback.total_angle_deg;
   if (!std::isfinite(value_)) value_ = 0.0;
   const double here_deg = value_;
-  if (std::isfinite(in_force.held_deg)) takeOver(mode, feedback, in_force, stiffness_nm_per_rad);
+  if (std::isfinite(in_force.held_deg)) takeOver(target, feedback, in_force);
   travel_ = {std::min({config_.angle_min_deg, here_deg, value_}),
              std::max({config_.angle_max_deg, here_deg, value_})};
   soft_ = value_;
@@ -173,23 +179,26 @@ void TargetShaper::begin(ControlMode mode, const MotorFeedback& feedback, InForc
 // A load that a fallback holds stays held: an angle goes on from the held one, beside which a loaded spring
 // is. Torque in force that the spring of an impedance does not give, or the damper of a speed, begins as a
 // feed-forward.
-void TargetShaper::takeOver(ControlMode mode, const MotorFeedback& feedback, InForce in_force,
-                            float stiffness_nm_per_rad) noexcept {
+void TargetShaper::takeOver(const Target& target, const MotorFeedback& feedback, InForce in_force) noexcept {
+  const auto mode = target.mode;
   if (mode == ControlMode::kAngle || mode == ControlMode::kTotalAngle) value_ = in_force.held_deg;
   const bool told = in_force.unit == CommandUnit::kAmpere;
   const bool damped = mode == ControlMode::kVelocity && config_.springs && told;
   if (!(damped || mode == ControlMode::kImpedance) || !(config_.effort_per_nm > 0.0F)) return;
   double missing_nm =
       finiteOr0(static_cast<double>((told ? in_force.value : feedback.current_a) / config_.effort_per_nm));
-  if (mode == ControlMode::kImpedance && stiffness_nm_per_rad > 0.0F) {
-    const auto stiffness = static_cast<double>(stiffness_nm_per_rad);
+  // The asked feed-forward is in force already: what the spring gave in its place would fade sooner.
+  const double fed_nm = leftOf(missing_nm, finiteOr0(static_cast<double>(target.torque_ff_nm)));
+  missing_nm -= fed_nm;
+  if (mode == ControlMode::kImpedance && target.stiffness_nm_per_rad > 0.0F) {
+    const auto stiffness = static_cast<double>(target.stiffness_nm_per_rad);
     const double most_rad = std::fabs(in_force.held_deg - feedback.total_angle_deg) * kRadPerDeg;
     const double spring_rad = std::clamp(missing_nm / stiffness, -most_rad, most_rad);
     value_ += spring_rad / kRadPerDeg;
     missing_nm -= spring_rad * stiffness;
   }
-  torque_ff_nm_ = missing_nm;
-  feeds_forward_ = missing_nm != 0.0;
+  torque_ff_nm_ = fed_nm + missing_nm;
+  feeds_forward_ = torque_ff_nm_ != 0.0;
 }
 
 TargetShaper::Envelope TargetShaper::envelope(double total_angle_deg) const noexcept {

@@ -25,6 +25,7 @@ struct ShapingConfig {
   float effort_per_rpm = 0.0F;           ///< Effort that only keeps up a speed: 0 for A, back-EMF for V.
   float effort_per_nm = 0.0F;            ///< A per N·m: of a torque feed-forward. 0: unknown.
   float effort_full_scale = 0.0F;        ///< Effort of a duty of 1. 0: unknown.
+  float duty_per_rpm = 0.0F;             ///< Duty that only keeps up a speed. 0: unknown.
   float effort_limit = 0.0F;             ///< Limits of the motor: slews and soft starts end there,
   float velocity_limit_rpm = 0.0F;       ///< not at a target beyond. 0: none.
   bool has_velocity_loop = false;        ///< The motor can be told a speed.
@@ -54,6 +55,7 @@ class TargetShaper {
     bool limited = false;  ///< By the limit of the effort: what was asked for was more.
     /// Angle that a fallback holds, to which the value is the effort; NaN: none.
     double held_deg = std::numeric_limits<double>::quiet_NaN();
+    float duty = std::numeric_limits<float>::quiet_NaN();  ///< As the drive reports it; NaN: it does not.
   };
   /// Whether a target of this mode goes on from the last step. One that does not begins from `in_force`,
   /// which is otherwise of use only where it is limited.
@@ -118,10 +120,8 @@ class TargetShaper {
   [[nodiscard]] double effortFor(double allowed_rpm, const MotorFeedback& feedback) const noexcept;
   [[nodiscard]] double reachable(double goal_deg, bool any_turn, const Travel& travel) const noexcept;
   void followFromOutside(const MotorFeedback& feedback) noexcept;
-  void begin(ControlMode mode, const MotorFeedback& feedback, InForce in_force,
-             float stiffness_nm_per_rad) noexcept;
-  void takeOver(ControlMode mode, const MotorFeedback& feedback, InForce in_force,
-                float stiffness_nm_per_rad) noexcept;
+  void begin(const Target& target, const MotorFeedback& feedback, InForce in_force) noexcept;
+  void takeOver(const Target& target, const MotorFeedback& feedback, InForce in_force) noexcept;
   void soften(Target& asked, const MotorFeedback& feedback, float dt_s) noexcept;
   void boundAsked(Target& asked) const noexcept;
   [[nodiscard]] bool slew(double goal, float per_second, float dt_s) noexcept;

@@ -151,6 +151,33 @@ TEST(FaultOfADrivesLoop, AStallIsSeenWhateverTheRhythmOfItsCommands) {
   }
 }
 
+// Not from 0, which would brake the shaft with all its current.
+TEST(DutyOfATurningShaft, BeginsWhereTheShaftIs) {
+  for (const std::string keys : {"", ", current_slew_a_per_s: 40", ", soft_start_ms: 0"}) {
+    SCOPED_TRACE(keys);
+    const auto outcome = parseRobotConfig(
+        "robot: duty\nrealtime: preferred\nbuses:\n  - name: bench\n    type: sim\n    motors:\n"
+        "      - {name: motor, model: VESC, id: 10, pole_pairs: 7, current_limit_a: 30, "
+        "velocity_limit_rpm: 3000, kv_rpm_per_v: 190, feedback_hz: 200" +
+            keys + "}\n",
+        "duty.yaml");
+    ASSERT_TRUE(outcome.config) << outcome.errorText();
+    VirtualRobot robot{*outcome.config};
+    for (int i = 0; i < 4000 && robot.motor(0).status != MotorStatus::kReady; ++i) robot.run(1);
+    robot.order(Operation::kEnable);
+    ASSERT_EQ(robot.motor(0).status, MotorStatus::kActive);
+    robot.hold(0, {.mode = ControlMode::kVelocity, .value = 1500.0}, 3000);
+    ASSERT_NEAR(robot.motor(0).feedback.velocity_rpm, 1500.0F, 50.0F);
+    float least_a = 0.0F;
+    for (int i = 0; i < 500; ++i) {
+      robot.hold(0, {.mode = ControlMode::kDuty, .value = 0.7}, 1);
+      least_a = std::min(least_a, robot.motor(0).feedback.current_a);
+    }
+    EXPECT_GT(least_a, -5.0F);
+    EXPECT_GT(robot.motor(0).feedback.velocity_rpm, 1450.0F);
+  }
+}
+
 /// Guard of an M3508 as configured.
 const GuardConfig kMotion{
     .overspeed_rpm = 723.0F, .encoder_jumps = true, .frozen_a = 1.0F, .runaway_rpm = 48.0F};

@@ -124,5 +124,15 @@ TEST_F(TargetShaperHeldTest, WhatIsNotHeldBeginsFromWhatIsMeasured) {
   EXPECT_EQ(told.torque_ff_nm, 0.0F);
 }
 
+TEST_F(TargetShaperHeldTest, AWeightThatComesAsAFeedForwardIsHeldWhateverItsSlew) {
+  configure({.effort_slew_per_s = 5.0F, .soft_start_s = 0.2F});
+  const Target asked{.mode = ControlMode::kImpedance,
+                     .value = 25.0,
+                     .torque_ff_nm = static_cast<float>(kHeldNm),
+                     .stiffness_nm_per_rad = 20.0F};
+  EXPECT_NEAR(torqueNm(first(asked)), kHeldNm, 1e-3);
+  for (int i = 0; i < 500; ++i) EXPECT_NEAR(torqueNm(step(asked).target), kHeldNm, 1e-3);
+}
+
 }  // namespace
 }  // namespace rc10::test::target_shaper_held_test

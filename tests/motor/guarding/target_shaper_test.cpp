@@ -475,5 +475,27 @@ TEST_F(TargetShaperTest, ABrakeDoesNotStartSoftly) {
   EXPECT_EQ(first.target.mode, ControlMode::kBrake);
 }
 
+TEST_F(TargetShaperTest, AnImpedanceWithoutStiffnessIsAtNoPlace) {
+  configure({.angle_slew_deg_per_s = 100.0F, .max_first_step_deg = 30.0});
+  Target target{.mode = ControlMode::kImpedance, .value = 300.0};
+  EXPECT_TRUE(shaper.firstStepAllowed(target, feedback));
+  for (int i = 0; i < 5000; ++i) (void)step(target);
+  target.stiffness_nm_per_rad = 100.0F;
+  EXPECT_FALSE(shaper.firstStepAllowed(target, feedback));
+  EXPECT_NEAR(step(target).target.value, 0.2, 1e-6) << "from where the shaft is";
+}
+
+TEST_F(TargetShaperTest, ADutyBeginsAtThatOfTheTurningShaft) {
+  configure({.effort_slew_per_s = 60.0F, .effort_full_scale = 60.0F, .duty_per_rpm = 1.0F / 2000.0F});
+  const Target asked{.mode = ControlMode::kDuty, .value = 0.9};
+  feedback.velocity_rpm = 1000.0F;
+  EXPECT_NEAR(step(asked).target.value, 0.501, 1e-6);
+  shaper.reset();
+  EXPECT_NEAR(step(asked, {.duty = 0.7F}).target.value, 0.701, 1e-6) << "as the drive reports it";
+  shaper.reset();
+  feedback.velocity_rpm = 1e9F;
+  EXPECT_NEAR(step(asked).target.value, 0.999, 1e-6);
+}
+
 }  // namespace
 }  // namespace rc10::test
