@@ -78,9 +78,10 @@ def test_somebody_else_commands_a_drive(family: Family, tmp_path: Path) -> None:
 
 
 def prove_stopped_for_its_scale(family: Family, bus: Candump, begun_ns: int, what: str) -> None:
-    """The motor is in FAULT; in the guest's virtual time nothing moves it later."""
+    """The motor is in FAULT, and no frame of the next 300 ms moves it."""
     assert motors()[0]["fault"] == NOT_ITS_SCALE
-    time.sleep(0.3)
+    watched_ns = time.time_ns() + 300 * MS
+    wait_for(lambda: bus.frames()[-1].t_ns >= watched_ns, 5.0, "rest for 300 ms", poll_s=0.02)
     told = moving(family, [f for f in bus.frames() if f.t_ns >= begun_ns])
     proven(what, "FAULT 43 in the first motion", begun_ns, max(f.t_ns for f in told), 1000)
 

@@ -117,6 +117,7 @@ bool DJI_Motor::setZero(double angle_deg) noexcept {
   feedback_.zeroed = true;
   feedback_.turn_unclear = false;
   updateAngles();
+  loops_.reset();
   hold_deg_ += feedback_.total_angle_deg - before_deg;  // a load that is held stays where it is
   return true;
 }

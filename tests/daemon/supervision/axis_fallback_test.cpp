@@ -40,6 +40,17 @@ class FallbackTest : public ::testing::Test {
     return 20'000;
   }
 
+  void estop() { robot->exchange().estop.store(true); }
+  /// It is asked to be enabled, and so many ticks pass.
+  void enableFor(int ticks) {
+    robot->beginEnabling(MotorSet{}.set(kLeft));
+    robot->run(ticks);
+  }
+  void expectAtRest() {
+    EXPECT_EQ(robot->motor(kLeft).status, MotorStatus::kReady);
+    EXPECT_EQ(robot->motor(kLeft).acting, Acting::kNothing);
+  }
+
   std::unique_ptr<VirtualRobot> robot;
 };
 
@@ -52,12 +63,10 @@ TEST_F(FallbackTest, ADisableRightAfterAnEnableLetsGoOfAMotorThatIsHeld) {
     robot->run(500);
     ASSERT_EQ(robot->motor(kLeft).acting, Acting::kHold);
     robot->order(Operation::kClear);
-    robot->beginEnabling(MotorSet{}.set(kLeft));
-    robot->run(later);
+    enableFor(later);
     robot->orderFor(MotorSet{}.set(kLeft), Operation::kDisable);
     robot->run(10);
-    EXPECT_EQ(robot->motor(kLeft).status, MotorStatus::kReady);
-    EXPECT_EQ(robot->motor(kLeft).acting, Acting::kNothing);
+    expectAtRest();
   }
 }
 
@@ -67,7 +76,7 @@ TEST_F(FallbackTest, AnEstopReplacesWhatActsAfterADisable) {
     robot->order(Operation::kDisable);
     robot->run(100);
     EXPECT_NE(robot->motor(kLeft).acting, Acting::kNothing);
-    robot->exchange().estop.store(true);
+    estop();
     robot->run(2);
     return robot->motor(kLeft).acting;
   };
@@ -86,19 +95,17 @@ TEST_F(FallbackTest, AnEstopReplacesWhatActsWhileAHeldMotorIsEnabled) {
     start({.on_disable = FallbackAction::kHold}, 1.0F);
     robot->order(Operation::kDisable);
     robot->run(100);
-    robot->beginEnabling(MotorSet{}.set(kLeft));
-    robot->run(later);
-    robot->exchange().estop.store(true);
+    enableFor(later);
+    estop();
     robot->run(5);
-    EXPECT_EQ(robot->motor(kLeft).status, MotorStatus::kReady);
-    EXPECT_EQ(robot->motor(kLeft).acting, Acting::kNothing);
+    expectAtRest();
   }
 }
 
 TEST_F(FallbackTest, AnEstopThatIsRepeatedDoesNotBeginItsTimeAnew) {
   start({.on_estop = FallbackAction::kBrake, .brake_max = 1s}, 1.0F);
   for (int i = 0; i < 11; ++i) {
-    robot->exchange().estop.store(true);
+    estop();
     robot->run(100);
   }
   EXPECT_EQ(robot->motor(kLeft).acting, Acting::kDamp);
@@ -106,7 +113,7 @@ TEST_F(FallbackTest, AnEstopThatIsRepeatedDoesNotBeginItsTimeAnew) {
 
 TEST_F(FallbackTest, AnEstopIsNotClearedWhileARampLeads) {
   start({.on_estop = FallbackAction::kRamp, .ramp = 20s});
-  robot->exchange().estop.store(true);
+  estop();
   robot->run(5000);
   ASSERT_GT(rpm(), 50.0F);
   EXPECT_EQ(robot->order(Operation::kClear).motors[kLeft], Refusal::kMoving);
@@ -117,7 +124,7 @@ TEST_F(FallbackTest, TheTimeToRunDownBeginsWithTheEstop) {
   robot->order(Operation::kDisable);
   robot->run(5000);
   ASSERT_GT(std::fabs(rpm()), 10.0F);
-  robot->exchange().estop.store(true);
+  estop();
   robot->tick();
   EXPECT_EQ(robot->order(Operation::kClear).motors[kLeft], Refusal::kMoving);
 }
@@ -166,7 +173,7 @@ TEST_F(FallbackTest, HoldStaysWhereItWasAndGivesWayAfterItsTime) {
 
 TEST_F(FallbackTest, ABrakeInAnEstopDampsAfterItsTimeAndNeverCoasts) {
   start({.on_estop = FallbackAction::kBrake, .brake_max = 2s}, 1.0F);
-  robot->exchange().estop.store(true);
+  estop();
   robot->run(1900);
   const float braked_rpm = std::fabs(rpm());
   robot->run(2000);
@@ -177,7 +184,7 @@ TEST_F(FallbackTest, ABrakeInAnEstopDampsAfterItsTimeAndNeverCoasts) {
 
 TEST_F(FallbackTest, ACoastThatComesInAnEstopDoesNotLetGoOfWhatIsHeld) {
   start({.on_estop = FallbackAction::kHold, .hold_max = 5s}, 1.0F);
-  robot->exchange().estop.store(true);
+  estop();
   robot->run(1000);
   ASSERT_EQ(robot->motor(kLeft).acting, Acting::kHold);
   const double held_deg = angleDeg();
@@ -188,7 +195,7 @@ TEST_F(FallbackTest, ACoastThatComesInAnEstopDoesNotLetGoOfWhatIsHeld) {
 
 TEST_F(FallbackTest, ARampTakesTheSpeedToZeroInItsTimeAndThenTheTorque) {
   start({.on_estop = FallbackAction::kRamp, .ramp = 1s});
-  robot->exchange().estop.store(true);
+  estop();
   robot->run(500);
   EXPECT_EQ(robot->motor(kLeft).acting, Acting::kRamp);
   EXPECT_NEAR(rpm(), 60.0F, 6.0F);
@@ -204,7 +211,7 @@ TEST_F(FallbackTest, ARampTakesTheSpeedToZeroInItsTimeAndThenTheTorque) {
 
 TEST_F(FallbackTest, ARampEndsWithoutTorqueWhateverPulls) {
   start({.on_estop = FallbackAction::kRamp, .ramp = 500ms}, 1.0F);
-  robot->exchange().estop.store(true);
+  estop();
   robot->run(750);
   for (int i = 0; i < 200; ++i) {
     robot->tick();
@@ -242,7 +249,7 @@ TEST_F(FallbackTest, ARampWithinASoftStartLeadsToRest) {
 
 TEST_F(FallbackTest, AMotorThatIsLostOnItsRampIsWithoutTorque) {
   start({.on_estop = FallbackAction::kRamp, .ramp = 1s});
-  robot->exchange().estop.store(true);
+  estop();
   robot->run(100);
   robot->freezeSimulation(true);
   robot->run(60);
@@ -301,7 +308,7 @@ TEST_F(FallbackTest, AfterADisableItActsUntilTheMotorStandsStill) {
 
 TEST_F(FallbackTest, AnEstopBrakesAndHoldsALoadUntilItIsDisabledOnceMore) {
   start({.on_estop = FallbackAction::kBrake}, 1.0F);
-  robot->exchange().estop.store(true);
+  estop();
   robot->tick();
   EXPECT_EQ(robot->motor(kLeft).status, MotorStatus::kReady);
   EXPECT_LT(currentA(), 0.0F);
@@ -360,7 +367,7 @@ TEST_F(FallbackTest, AMotorThatIsHeldIsNotLetGoWhileItIsEnabled) {
 
 TEST_F(FallbackTest, WithoutFeedbackThereIsNone) {
   start({.on_timeout = FallbackAction::kBrake, .on_estop = FallbackAction::kBrake});
-  robot->exchange().estop.store(true);
+  estop();
   robot->run(10);
   EXPECT_NE(currentA(), 0.0F);
   robot->freezeSimulation(true);
@@ -375,7 +382,7 @@ TEST_F(FallbackTest, WithoutFeedbackThereIsNone) {
 TEST_F(FallbackTest, ABrakeInAnEstopIsWatchedAsAnyOtherLoop) {
   start({.on_estop = FallbackAction::kBrake}, 1.0F,
         {.temperature_derate_c = 70.0F, .temperature_trip_c = 90.0F});
-  robot->exchange().estop.store(true);
+  estop();
   robot->run(3000);
   EXPECT_GT(currentA(), 0.5F);
   robot->simBus().setTemperature(kLeft, 95.0);
@@ -387,7 +394,7 @@ TEST_F(FallbackTest, ABrakeInAnEstopIsWatchedAsAnyOtherLoop) {
 
 TEST_F(FallbackTest, AnEncoderThatIsReversedDoesNotMakeABrakeInAnEstopRunAway) {
   start({.on_estop = FallbackAction::kBrake}, 0.0F, {.runaway_rpm = 50.0F});
-  robot->exchange().estop.store(true);
+  estop();
   robot->simBus().setEncoderFault(kLeft, {.reversed = true});
   robot->run(3000);
   EXPECT_EQ(robot->motor(kLeft).status, MotorStatus::kFault);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
 #include <string>
 
 #include <gtest/gtest.h>
@@ -127,6 +128,30 @@ TEST_F(FaultTest, AStalledMotorStopsPushing) {
   EXPECT_EQ(robot->motor(kLeft).command_value, 0.0F);
 }
 
+/// One motor with these keys on a simulated bus, ACTIVE.
+class OneMotor {
+ public:
+  explicit OneMotor(const std::string& keys) {
+    const auto outcome = parseRobotConfig(
+        "robot: one\nrealtime: preferred\nbuses:\n  - name: bench\n    type: sim\n    motors:\n"
+        "      - {name: motor, " +
+            keys + "}\n",
+        "one.yaml");
+    EXPECT_TRUE(outcome.config) << outcome.errorText();
+    robot = std::make_unique<VirtualRobot>(outcome.config.value_or(twoWheelsAndYaw()));
+    for (int i = 0; i < 4000 && seen().status != MotorStatus::kReady; ++i) robot->run(1);
+    robot->order(Operation::kEnable);
+    EXPECT_EQ(seen().status, MotorStatus::kActive);
+  }
+  void follow(ControlMode mode, double value, int ticks) {
+    robot->hold(0, {.mode = mode, .value = value}, ticks);
+  }
+  const MotorSnapshot& seen() { return robot->motor(0); }
+
+ private:
+  std::unique_ptr<VirtualRobot> robot;
+};
+
 // The limit of a loop of the drive acts in each turn of the motor, and between them.
 TEST(FaultOfADrivesLoop, AStallIsSeenWhateverTheRhythmOfItsCommands) {
   for (const std::string model :
@@ -134,19 +159,10 @@ TEST(FaultOfADrivesLoop, AStallIsSeenWhateverTheRhythmOfItsCommands) {
         "LK-MG5010E-i10, id: 5, current_limit_a: 5"}) {
     for (const int divider : {1, 2, 5}) {
       SCOPED_TRACE(model + ", divider " + std::to_string(divider));
-      const auto outcome = parseRobotConfig(
-          "robot: stalls\nrealtime: preferred\nbuses:\n  - name: bench\n"
-          "    type: sim\n    motors:\n      - {name: motor, model: " +
-              model + ", stall_ms: 300, command_divider: " + std::to_string(divider) +
-              ", simulated: {stalled: true}}\n",
-          "stalls.yaml");
-      ASSERT_TRUE(outcome.config) << outcome.errorText();
-      VirtualRobot robot{*outcome.config};
-      for (int i = 0; i < 2000 && robot.motor(0).status != MotorStatus::kReady; ++i) robot.run(1);
-      robot.order(Operation::kEnable);
-      ASSERT_EQ(robot.motor(0).status, MotorStatus::kActive);
-      robot.hold(0, {.mode = ControlMode::kVelocity, .value = 30.0}, 2000);
-      EXPECT_EQ(robot.motor(0).fault, FaultCode::kStalled);
+      OneMotor motor{"model: " + model + ", stall_ms: 300, command_divider: " + std::to_string(divider) +
+                     ", simulated: {stalled: true}"};
+      motor.follow(ControlMode::kVelocity, 30.0, 2000);
+      EXPECT_EQ(motor.seen().fault, FaultCode::kStalled);
     }
   }
 }
@@ -155,26 +171,19 @@ TEST(FaultOfADrivesLoop, AStallIsSeenWhateverTheRhythmOfItsCommands) {
 TEST(DutyOfATurningShaft, BeginsWhereTheShaftIs) {
   for (const std::string keys : {"", ", current_slew_a_per_s: 40", ", soft_start_ms: 0"}) {
     SCOPED_TRACE(keys);
-    const auto outcome = parseRobotConfig(
-        "robot: duty\nrealtime: preferred\nbuses:\n  - name: bench\n    type: sim\n    motors:\n"
-        "      - {name: motor, model: VESC, id: 10, pole_pairs: 7, current_limit_a: 30, "
-        "velocity_limit_rpm: 3000, kv_rpm_per_v: 190, feedback_hz: 200" +
-            keys + "}\n",
-        "duty.yaml");
-    ASSERT_TRUE(outcome.config) << outcome.errorText();
-    VirtualRobot robot{*outcome.config};
-    for (int i = 0; i < 4000 && robot.motor(0).status != MotorStatus::kReady; ++i) robot.run(1);
-    robot.order(Operation::kEnable);
-    ASSERT_EQ(robot.motor(0).status, MotorStatus::kActive);
-    robot.hold(0, {.mode = ControlMode::kVelocity, .value = 1500.0}, 3000);
-    ASSERT_NEAR(robot.motor(0).feedback.velocity_rpm, 1500.0F, 50.0F);
+    OneMotor motor{
+        "model: VESC, id: 10, pole_pairs: 7, current_limit_a: 30, velocity_limit_rpm: 3000, "
+        "kv_rpm_per_v: 190, feedback_hz: 200" +
+        keys};
+    motor.follow(ControlMode::kVelocity, 1500.0, 3000);
+    ASSERT_NEAR(motor.seen().feedback.velocity_rpm, 1500.0F, 50.0F);
     float least_a = 0.0F;
     for (int i = 0; i < 500; ++i) {
-      robot.hold(0, {.mode = ControlMode::kDuty, .value = 0.7}, 1);
-      least_a = std::min(least_a, robot.motor(0).feedback.current_a);
+      motor.follow(ControlMode::kDuty, 0.7, 1);
+      least_a = std::min(least_a, motor.seen().feedback.current_a);
     }
     EXPECT_GT(least_a, -5.0F);
-    EXPECT_GT(robot.motor(0).feedback.velocity_rpm, 1450.0F);
+    EXPECT_GT(motor.seen().feedback.velocity_rpm, 1450.0F);
   }
 }
 
