@@ -134,6 +134,10 @@ Target SoloMotor::resolved() noexcept {
   return target;
 }
 
+bool SoloMotor::currentAtLimit(double count_a) const noexcept {
+  return std::abs(static_cast<double>(feedback_.current_a)) >= static_cast<double>(effortLimit()) - count_a;
+}
+
 double SoloMotor::currentWithinLimit(const Target& target) noexcept {
   const auto limit_a = static_cast<double>(effortLimit());
   double wanted_a = target.mode == ControlMode::kCurrent ? finiteOr0(target.value) : 0.0;

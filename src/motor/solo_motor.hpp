@@ -95,6 +95,10 @@ class SoloMotor : public Motor_Base, public CommandPacker {
   /// To be called once in each update().
   [[nodiscard]] Target wanted() noexcept;
 
+  /// Whether the measured current is at its limit; `count_a`: of which the drive is told, or reports, whole
+  /// counts.
+  [[nodiscard]] bool currentAtLimit(double count_a) const noexcept;
+
   // A target within the limits of the motor; what they cut off is told in limits_. Not a number: 0.
   /// Current of the mode kCurrent, with the feed-forward that comes with any mode. A at the motor.
   [[nodiscard]] double currentWithinLimit(const Target& target) noexcept;

@@ -137,7 +137,6 @@ void Oracle::followActions(std::size_t index, const MotorSnapshot& seen) {
     if (may_have_ended || motor.disables_asked > 0 || motor.enable_asked || motor.coast_asked)
       actions |= coast;
     if (motor.disables_asked > 0 || motor.enable_asked) actions |= motor.actions | only(fallback.on_disable);
-    motor.ends_at_standstill = (motor.disables_asked > 0 || motor.enable_asked) && motor.ends_at_standstill;
     return setActions(motor, actions);
   }
   // Enabled and stopped within a tick.

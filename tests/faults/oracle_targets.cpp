@@ -25,6 +25,7 @@ constexpr double kDoubtSlackDeg = 0.1;
 // A shaft moves between the sample that an order was judged by and the one that is seen.
 constexpr double kMovedSeconds = 0.01;
 constexpr double kFarthestDeg = 1e12;
+// Duty that a current takes beside that of the speed.
 constexpr double kDutyOfCurrent = 0.2;
 // Limits move what a spring is told; afterwards it goes on from where its slew has come meanwhile.
 constexpr int kLimitedTicks = 20;

@@ -208,12 +208,6 @@ int LKTech_Motor::rawOf(double amperes) const noexcept {
                     limit);
 }
 
-// The drive is told whole counts of it.
-bool LKTech_Motor::isAtLimit() const noexcept {
-  return std::abs(static_cast<double>(feedback_.current_a)) >=
-         static_cast<double>(effortLimit()) - amperes_per_raw_;
-}
-
 void LKTech_Motor::follow(const Target& target) noexcept {
   // A drive that has stopped stays so until the client enables it.
   if (!counted_ || complaint().fault != FaultCode::kNone) return release();
@@ -238,7 +232,7 @@ void LKTech_Motor::followVelocity(double output_rpm) noexcept {
   constexpr double kFastestDegS = 2147483647.0 * lktech::kDegPerRaw;
   const double deg_s_per_rpm = std::abs(toDrive(1.0)) * traits().gear_ratio * kDegPerSPerRpm;
   const double rpm = rpmWithinLimit(output_rpm, kFastestDegS / deg_s_per_rpm);
-  if (isAtLimit()) limits_ |= kLimitCurrent;
+  if (currentAtLimit(amperes_per_raw_)) limits_ |= kLimitCurrent;
   setCommand(rpm, CommandUnit::kNative);
   // 0 would be no bound.
   const int limit_raw = std::max(rawOf(static_cast<double>(effortLimit())), 1);
@@ -255,7 +249,7 @@ void LKTech_Motor::followAngle(double total_angle_deg) noexcept {
   const double rotor_deg = std::clamp(wanted_deg, -kReachDeg, kReachDeg);
   const bool reaches = rotor_deg == wanted_deg;
   if (!reaches) limits_ |= kLimitAngle;
-  if (isAtLimit()) limits_ |= kLimitCurrent;
+  if (currentAtLimit(amperes_per_raw_)) limits_ |= kLimitCurrent;
   const auto limit_rpm = static_cast<double>(velocityLimitRpm());
   const double limit_deg_s = limit_rpm > 0.0
                                  ? std::abs(toDrive(limit_rpm)) * traits().gear_ratio * kDegPerSPerRpm

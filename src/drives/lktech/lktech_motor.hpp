@@ -63,7 +63,6 @@ class LKTech_Motor final : public SoloMotor {
   void followAngle(double total_angle_deg) noexcept;
   void release() noexcept;
   [[nodiscard]] int rawOf(double amperes) const noexcept;
-  [[nodiscard]] bool isAtLimit() const noexcept;
 
   int id_;
   bool grouped_;

@@ -240,12 +240,6 @@ void MyActuator_Motor::sendQueries(const Tick& tick) noexcept {
   outbox_.add(myactuator::request(id_, ask_uptime_ ? myactuator::Code::kUptime : myactuator::Code::kStatus));
 }
 
-// The drive reports whole counts of it.
-bool MyActuator_Motor::isAtLimit() const noexcept {
-  return std::abs(static_cast<double>(feedback_.current_a)) >=
-         static_cast<double>(effortLimit()) - myactuator::kAmperesPerRaw;
-}
-
 void MyActuator_Motor::follow(const Target& target) noexcept {
   if (ordered() == FrameKind::kDamp && torqueNmPerA() > 0.0F) return damp();
   // Nothing but a current can be bounded: no loop of the drive may run when none is allowed.
@@ -270,7 +264,7 @@ void MyActuator_Motor::followCurrent(const Target& target) noexcept {
 void MyActuator_Motor::followVelocity(double output_rpm) noexcept {
   constexpr double kFastestDegS = 2147483647.0 * myactuator::kDegPerRaw;
   const double rpm = rpmWithinLimit(output_rpm, kFastestDegS / (std::abs(toDrive(1.0)) * kDegPerSPerRpm));
-  if (isAtLimit()) limits_ |= kLimitCurrent;
+  if (currentAtLimit(myactuator::kAmperesPerRaw)) limits_ |= kLimitCurrent;
   setCommand(rpm, CommandUnit::kNative);
   sendCommand(myactuator::velocityCommand(id_, toDrive(rpm) * kDegPerSPerRpm));
 }
@@ -290,7 +284,7 @@ void MyActuator_Motor::followAngle(double total_angle_deg) noexcept {
   const auto limit_rpm = static_cast<double>(velocityLimitRpm());
   const double limit_deg_s =
       limit_rpm > 0.0 ? std::abs(toDrive(limit_rpm)) * kDegPerSPerRpm : kMyactuatorNoLimitDegS;
-  if (isAtLimit()) limits_ |= kLimitCurrent;
+  if (currentAtLimit(myactuator::kAmperesPerRaw)) limits_ |= kLimitCurrent;
   const double away_deg = drive_deg - drive_deg_of(feedback_.total_angle_deg);
   setCommand(reaches ? total_angle_deg : feedback_.total_angle_deg + toOutput(away_deg),
              CommandUnit::kNative);

@@ -55,7 +55,6 @@ class MyActuator_Motor final : public SoloMotor {
   void runEnabling(const Tick& tick) noexcept;
   void beginEnabling() noexcept;
   [[nodiscard]] CanFrame stepFrame() const noexcept;
-  [[nodiscard]] bool isAtLimit() const noexcept;
   void follow(const Target& target) noexcept;
   void followCurrent(const Target& target) noexcept;
   void followVelocity(double output_rpm) noexcept;
