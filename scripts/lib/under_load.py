@@ -17,11 +17,13 @@ import random
 import signal
 import subprocess
 import sys
+import time
 import zlib
 from pathlib import Path
 from typing import NamedTuple
 
 PR_SET_CHILD_SUBREAPER = 36
+MOST_WAIT_S = 0.005
 STOPPED = "Tt"  # by somebody else: a debugger, or a test whose subject that is
 
 
@@ -75,12 +77,36 @@ def send(number: signal.Signals, pids: set[int]) -> None:
             os.kill(pid, number)
 
 
+def stands(pid: int) -> bool:
+    try:
+        stat = Path(f"/proc/{pid}/stat").read_text(errors="replace")
+    except OSError:
+        return True  # ended
+    return stat.rpartition(")")[2].split()[0] not in "RSD"
+
+
+def stop_parents_first(tree: set[int]) -> set[int]:
+    """Those that it stopped: not whom a parent had stopped at the last moment."""
+    stopped: set[int] = set()
+    parents = {pid: process.parent for pid, process in processes().items()}
+    while tree:
+        eldest = {pid for pid in tree if parents.get(pid) not in tree}
+        mine = {pid for pid in eldest if not stands(pid)}
+        send(signal.SIGSTOP, mine)
+        # One that works for the kernel stops when that is done.
+        until_s = time.monotonic() + MOST_WAIT_S
+        while not all(map(stands, mine)) and time.monotonic() < until_s:
+            pass
+        stopped |= mine
+        tree = tree - eldest
+    return stopped
+
+
 def pause(seconds: float, spared: set[int], command: subprocess.Popen[bytes]) -> None:
     stopped: set[int] = set()
     # Until there is nobody left: whoever runs may start another.
     while new := running(spared) - stopped:
-        send(signal.SIGSTOP, new)
-        stopped |= new
+        stopped |= stop_parents_first(new)
     try:
         with contextlib.suppress(subprocess.TimeoutExpired):
             command.wait(seconds)

@@ -79,7 +79,7 @@ float Cascade::velocityTarget(const Target& target, const Measured& measured, fl
 }
 
 float Cascade::step(const Target& target, const Measured& measured, float dt_s, float effort_limit,
-                    float effort_in_force, float effort_ff) noexcept {
+                    float effort_in_force, float effort_ff, float speed_bound_rpm) noexcept {
   if (!closesLoop(target.mode) || !allFinite(target, measured, effort_ff)) {
     reset();
     return 0.0F;
@@ -93,8 +93,14 @@ float Cascade::step(const Target& target, const Measured& measured, float dt_s, 
   const float velocity_target = velocityTarget(target, measured, dt_s);
 
   const OutputRange range = OutputRange::symmetric(effort_limit);
+  const bool driven =
+      std::fabs(measured.velocity_rpm) > speed_bound_rpm && measured.velocity_rpm * effort_in_force > 0.0F;
   const auto advance = [&](auto& loop) noexcept {
-    if (fresh) loop.start(effort_in_force - effort_ff, measured.velocity_rpm, velocity_target);
+    if (driven) {
+      loop.start(-effort_ff, velocity_target, velocity_target);  // the error alone brakes
+    } else if (fresh) {
+      loop.start(effort_in_force - effort_ff, measured.velocity_rpm, velocity_target);
+    }
     return loop.step(velocity_target, measured.velocity_rpm, dt_s, range.shifted(-effort_ff));
   };
   auto* incremental = std::get_if<PID_Incremental>(&velocity_);

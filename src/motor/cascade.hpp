@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <variant>
 
 #include "app/pid_incremental.hpp"
@@ -27,17 +28,21 @@ class Cascade {
     float velocity_rpm = 0.0F;
   };
 
+  static constexpr float kUnbounded = std::numeric_limits<float>::infinity();
+
   explicit Cascade(const CascadeConfig& config);
 
   /// One step on a new sample. `dt_s` is the samples' own spacing; `effort_limit` the limit in force,
   /// which the anti-windup respects; `effort_in_force` what the drive was told last, from which a
-  /// change of mode starts without a bump; `effort_ff` is added after the loops, inside the limit.
+  /// change of mode starts without a bump; `effort_ff` is added after the loops, inside the limit. An effort
+  /// that drives the shaft beyond `speed_bound_rpm` ends at once, however far the loop has wound up.
   /// Modes: velocity, angle, total angle; any other one, or an input that is not finite, gives 0.
   // Not inlined, and flat: no floating-point register outlives a call, few are in use where it begins, and
   // both loops keep theirs.
   [[nodiscard, gnu::noinline, gnu::flatten]] float step(const Target& target, const Measured& measured,
                                                         float dt_s, float effort_limit, float effort_in_force,
-                                                        float effort_ff = 0.0F) noexcept;
+                                                        float effort_ff = 0.0F,
+                                                        float speed_bound_rpm = kUnbounded) noexcept;
 
   /// Other gains from the next step on, without a bump. The type of the velocity loop stays: a config of
   /// another one is ignored.

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <limits>
 #include <optional>
@@ -59,10 +60,16 @@ class Motor_Base : public FrameListener {
   void order(FrameKind kind) noexcept {
     ordered_ = kind;
     in_force_.reset();
+    led_hold_deg_ = std::numeric_limits<double>::quiet_NaN();
   }
   /// The same, with the target as bounded by the guards, for update() to follow. An optional field that is
   /// not finite becomes 0 here too, on purpose: nothing refuses an order, and the sum of a shaper may be one.
   void order(FrameKind kind, const Target& in_force) noexcept;
+  /// order(kHold) on the way to heldAngleDeg(), which stays: the total angle as bounded by the guards.
+  void orderHold(double led_deg) noexcept {
+    order(FrameKind::kHold);
+    led_hold_deg_ = led_deg;
+  }
   [[nodiscard]] FrameKind ordered() const noexcept { return ordered_; }
 
   /// Before a target of this mode is shaped and followed: a motor whose encoder is absolute, and which may
@@ -72,6 +79,9 @@ class Motor_Base : public FrameListener {
 
   /// Scales the effort limit from this tick on, by 0 (nothing) to 1 (all): a hot motor gets less.
   void derate(float factor) noexcept { derating_ = factor > 0.0F ? std::min(factor, 1.0F) : 0.0F; }
+
+  /// Speed at the output shaft beyond which no loop of rc10d goes on pushing; infinite: none. Reduced mode.
+  void boundSpeed(double rpm) noexcept { speed_bound_rpm_ = static_cast<float>(rpm); }
 
   /// Computes the command of this tick from the order, the target and the feedback.
   virtual void update(const Tick& tick) noexcept = 0;
@@ -143,8 +153,13 @@ class Motor_Base : public FrameListener {
 
  protected:
   [[nodiscard]] float derating() const noexcept { return derating_; }
+  [[nodiscard]] float speedBoundRpm() const noexcept { return speed_bound_rpm_; }
   /// Target for update() while kCommand is ordered.
   [[nodiscard]] const Target& targetInForce() const noexcept { return in_force_ ? *in_force_ : target_; }
+  /// Target for update() while kHold is ordered.
+  [[nodiscard]] Target holdInForce(double held_deg) const noexcept {
+    return {.mode = ControlMode::kTotalAngle, .value = std::isnan(led_hold_deg_) ? held_deg : led_hold_deg_};
+  }
 
   MotorFeedback feedback_;
   std::uint32_t limits_ = 0;
@@ -157,6 +172,8 @@ class Motor_Base : public FrameListener {
   std::optional<Target> in_force_;
   FrameKind ordered_ = FrameKind::kRest;
   float derating_ = 1.0F;
+  double led_hold_deg_ = std::numeric_limits<double>::quiet_NaN();  ///< orderHold(); NaN: none.
+  float speed_bound_rpm_ = std::numeric_limits<float>::infinity();
 };
 
 /// "motor 'lift' (M3508 id 1)"

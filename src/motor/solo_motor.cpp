@@ -123,7 +123,7 @@ Target SoloMotor::resolved() noexcept {
     if (feedback_.samples == 0) return Target{};
     if (!holding_) hold_deg_ = feedback_.total_angle_deg;
     holding_ = true;
-    return Target{.mode = ControlMode::kTotalAngle, .value = hold_deg_};
+    return holdInForce(hold_deg_);
   }
   if (kind != FrameKind::kCommand) return Target{};
   Target target = targetInForce();

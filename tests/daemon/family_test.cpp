@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <string>
 #include <tuple>
 #include <vector>
@@ -156,12 +157,9 @@ TEST_P(Family, ThatFallsSilentIsOfflineAndComesBackAtRest) {
   EXPECT_TRUE(enable()) << "and it can be enabled again";
 }
 
-TEST_P(Family, ARestartOfTheDriveEndsActive) {
-  if (!GetParam().told_of_restart) {
-    EXPECT_FALSE(findFamily("AK80-9") ==
-                 nullptr);  // its MIT answers have no bit for it: docs/motors/cubemars.md
-    return;
-  }
+class RestartedFamily : public Family {};
+
+TEST_P(RestartedFamily, ARestartOfTheDriveEndsActive) {
   ASSERT_TRUE(waitFor(MotorStatus::kReady));
   ASSERT_TRUE(enable());
   turn(500);
@@ -278,8 +276,9 @@ TEST_P(HeldFamily, ADisableThatOvertakesItsEnablingLetsGo) {
   }
 }
 
-TEST_P(HeldFamily, ADriveThatRestartsInTheTickOfItsEnablingDoesNotStayActive) {
-  if (!GetParam().told_of_restart) return;
+class RestartedHeldFamily : public HeldFamily {};
+
+TEST_P(RestartedHeldFamily, ADriveThatRestartsInTheTickOfItsEnablingDoesNotStayActive) {
   ASSERT_TRUE(isHeld());
   drive().restart();
   robot.beginEnabling(kOne);
@@ -362,6 +361,19 @@ INSTANTIATE_TEST_SUITE_P(All, EndingFamily,
                                   (std::get<1>(made.param) ? "Ramp" : "Hold") +
                                   std::to_string(std::get<2>(made.param));
                          });
+
+std::vector<Subject> toldOfRestart() {
+  std::vector<Subject> told;
+  std::copy_if(std::begin(kSubjects), std::end(kSubjects), std::back_inserter(told),
+               [](const Subject& subject) { return subject.told_of_restart; });
+  return told;
+}
+
+INSTANTIATE_TEST_SUITE_P(All, RestartedFamily, ::testing::ValuesIn(toldOfRestart()),
+                         [](const auto& subject) { return std::string{subject.param.name}; });
+
+INSTANTIATE_TEST_SUITE_P(All, RestartedHeldFamily, ::testing::ValuesIn(toldOfRestart()),
+                         [](const auto& subject) { return std::string{subject.param.name}; });
 
 INSTANTIATE_TEST_SUITE_P(All, HeldFamily, ::testing::ValuesIn(kSubjects),
                          [](const auto& subject) { return std::string{subject.param.name}; });

@@ -3,7 +3,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <string>
+#include <tuple>
+#include <vector>
 
 #include "config/load_config.hpp"
 #include "daemon/virtual_robot.hpp"
@@ -16,6 +19,7 @@ struct Subject {
   const char* motor;  ///< Its keys after the name.
   double load_nm;     ///< A good part of what it can hold.
   const char* bus = "";
+  bool springs = false;  ///< It can be told an impedance.
 };
 
 void PrintTo(const Subject& subject, std::ostream* out) { *out << subject.name; }
@@ -26,15 +30,15 @@ constexpr const char* kOdrive =
 const Subject kSubjects[] = {
     {"M3508", "model: M3508, id: 1, zero: power_on", 1.0},
     {"Gm6020", "model: GM6020, id: 2", 0.4},
-    {"DamiaoMit", "model: DM4310, id: 1, master_id: 17, zero: power_on", 1.5},
-    {"RobStride", "model: RS00, id: 3, zero: power_on", 3.0},
-    {"CyberGear", "model: CyberGear, id: 4, zero: power_on", 2.0},
-    {"CubeMarsMit", "model: AK80-9, id: 6, protocol: mit, zero: power_on", 3.0},
+    {"DamiaoMit", "model: DM4310, id: 1, master_id: 17, zero: power_on", 1.5, "", true},
+    {"RobStride", "model: RS00, id: 3, zero: power_on", 3.0, "", true},
+    {"CyberGear", "model: CyberGear, id: 4, zero: power_on", 2.0, "", true},
+    {"CubeMarsMit", "model: AK80-9, id: 6, protocol: mit, zero: power_on", 3.0, "", true},
     {"CubeMarsServo", "model: AK80-9, id: 5, zero: power_on", 3.0},
     {"Moteus", "model: moteus, id: 7, motor_kv_rpm_per_v: 100, zero: power_on", 0.3,
      "data_bitrate: 5000000\n    "},
     {"Odrive", kOdrive, 0.3},
-    {"MyActuator", "model: RMD-X8-20, id: 11, zero: power_on", 3.0},
+    {"MyActuator", "model: RMD-X8-20, id: 11, zero: power_on", 3.0, "", true},
     {"LkTech", "model: LK-MG5010E-i10, id: 12, zero: power_on", 1.0},
 };
 
@@ -108,11 +112,9 @@ TEST_P(HeldLoad, IsNotLetDownByTheAngleForWhichItWasHeld) {
 }
 
 // A spring drive has no integral that would hold it.
-TEST_P(HeldLoad, IsTakenOverByAFeedForward) {
-  if (!robot.robot().motors()[kMotor].motor->modes().contains(ControlMode::kImpedance)) {
-    EXPECT_STRNE(std::get<0>(GetParam()).name, "DamiaoMit");
-    return;
-  }
+class HeldLoadOfASpring : public HeldLoad {};
+
+TEST_P(HeldLoadOfASpring, IsTakenOverByAFeedForward) {
   const auto load_nm = static_cast<float>(std::get<0>(GetParam()).load_nm);
   (void)heldDeg();
   EXPECT_LT(sinksDeg({.mode = ControlMode::kImpedance,
@@ -141,15 +143,33 @@ TEST_P(HeldLoad, IsNotLetDownByAZero) {
   EXPECT_NEAR(angleDeg(), before_deg, 0.3);
 }
 
+TEST_P(HeldLoad, IsOfASpringOrNot) {
+  EXPECT_EQ(robot.robot().motors()[kMotor].motor->modes().contains(ControlMode::kImpedance),
+            std::get<0>(GetParam()).springs);
+}
+
+std::string nameOf(const ::testing::TestParamInfo<std::tuple<Subject, const char*>>& made) {
+  const std::string slew = std::get<1>(made.param);
+  return std::string{std::get<0>(made.param).name} + (slew.empty() ? "SoftStart"
+                                                      : slew.find("angle_slew") != slew.npos
+                                                          ? "AngleSlew"
+                                                          : "LongSoftStart");
+}
+
+std::vector<Subject> springs() {
+  std::vector<Subject> all;
+  std::copy_if(std::begin(kSubjects), std::end(kSubjects), std::back_inserter(all),
+               [](const Subject& subject) { return subject.springs; });
+  return all;
+}
+
 INSTANTIATE_TEST_SUITE_P(All, HeldLoad,
                          ::testing::Combine(::testing::ValuesIn(kSubjects), ::testing::ValuesIn(kSlews)),
-                         [](const auto& made) {
-                           const std::string slew = std::get<1>(made.param);
-                           return std::string{std::get<0>(made.param).name} +
-                                  (slew.empty()                           ? "SoftStart"
-                                   : slew.find("angle_slew") != slew.npos ? "AngleSlew"
-                                                                          : "LongSoftStart");
-                         });
+                         nameOf);
+
+INSTANTIATE_TEST_SUITE_P(All, HeldLoadOfASpring,
+                         ::testing::Combine(::testing::ValuesIn(springs()), ::testing::ValuesIn(kSlews)),
+                         nameOf);
 
 }  // namespace
 }  // namespace rc10::test::held_load_test

@@ -69,6 +69,12 @@ RobotConfig Chaos::believed(const Lie& lie) const {
   }
   auto& motor = config.buses[places_[lie.motor].first].motors[places_[lie.motor].second];
   if (lie.kind == Lie::Kind::kSoftStart) motor.shaping.soft_start_s *= 4.0F;
+  if (lie.kind == Lie::Kind::kReduced) {
+    motor.reduced.velocity_rpm *= 0.25F;
+    motor.reduced.tolerance_rpm *= 0.25F;
+  }
+  if (lie.kind == Lie::Kind::kFirstStep) motor.shaping.max_first_step_deg *= 0.1;
+  if (lie.kind == Lie::Kind::kGroup) config.groups.front().motors.push_back(lie.motor);
   if (lie.kind == Lie::Kind::kSlew) {
     motor.shaping.velocity_slew_rpm_per_s *= 0.25F;
     motor.shaping.angle_slew_deg_per_s *= 0.25F;

@@ -32,6 +32,9 @@ class Chaos {
       kTravel,     ///< or within a tenth of its travel.
       kSlew,       ///< A motor whose targets change at a quarter of their slew limits, or
       kSoftStart,  ///< that its soft start takes four times as long.
+      kReduced,    ///< A motor that may turn at a quarter of its reduced speed, or
+      kFirstStep,  ///< whose first angle may be a tenth as far away.
+      kGroup,      ///< A motor that belongs to the first group of its robot, too.
     };
     std::size_t robot = 0;
     std::size_t motor = 0;

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 import hashlib
 import json
 import signal
@@ -18,7 +19,7 @@ from test_motion import ROBOT
 from test_web import ELSEWHERE, HEADER, Page, Web
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Callable, Iterator
     from pathlib import Path
 
 STEP = {"kind": "step", "mode": "velocity", "amplitude": 60, "max_current_a": 12}
@@ -35,8 +36,26 @@ def now_us() -> int:
     return time.monotonic_ns() // 1000
 
 
+class TooBusy(Exception):
+    """The machine did not renew a target in time, so that the server ended the motion."""
+
+
+def moves(test: Callable[..., None]) -> Callable[..., None]:
+    """A motion that the machine was too busy for begins anew."""
+
+    @functools.wraps(test)
+    def again(*args: object, **kwargs: object) -> None:
+        while True:
+            try:
+                return test(*args, **kwargs)
+            except TooBusy:
+                continue
+
+    return again
+
+
 class Tester:
-    """Tests of motion of an open page, kept going by it."""
+    """Tests of motion of an open page, kept going by it. Raises TooBusy."""
 
     def __init__(self, page: Page) -> None:
         self.page = page
@@ -59,10 +78,19 @@ class Tester:
             if renewing and now_us() - self.renewed_us > 50_000:
                 self.renew()
             message = self.page.next()
-            if not isinstance(message, dict) or message["type"] not in kinds:
+            if not isinstance(message, dict) or message.get("seq") != self.seq:
                 continue
-            if message["seq"] == self.seq and message.get("time_s", 1e9) >= after_s:
+            self._check_busy(message)
+            if message["type"] not in kinds:
+                continue
+            if message.get("time_s", 1e9) >= after_s:
                 return message
+
+    @staticmethod
+    def _check_busy(message: dict[str, Any]) -> None:
+        abort = message.get("report", {}).get("abort") or {}
+        if "too busy" in abort.get("text", ""):
+            raise TooBusy
 
     def outcome(self, **wanted: object) -> dict[str, Any]:
         """Report of a test to its end."""
@@ -142,6 +170,7 @@ def assert_at_rest_since(robot: Daemon, begun_us: int, let_go_us: int) -> None:
     assert turned[-1] <= let_go_us, f"{(turned[-1] - let_go_us) / 1000:.1f} ms too late"
 
 
+@moves
 def test_a_step_has_the_numbers_of_rc10ctl_and_each_tick_of_its_curve(tests: Tester) -> None:
     done = tests.outcome(**STEP, **PATIENT)
     report = done["report"]
@@ -158,6 +187,7 @@ def test_a_step_has_the_numbers_of_rc10ctl_and_each_tick_of_its_curve(tests: Tes
     assert tests.page.ask("enable", "wheel")["status"] == "ok"
 
 
+@moves
 def test_a_sweep_tells_its_time_and_has_a_bode_plot_with_coherence(tests: Tester) -> None:
     tests.start(**{**SWEEP, "seconds": 8})
     goes_on = tests.until("test", after_s=1.0)
@@ -181,6 +211,7 @@ def test_a_sweep_tells_its_time_and_has_a_bode_plot_with_coherence(tests: Tester
         ({"stop_at_limits": True}, "limit"),
     ],
 )
+@moves
 def test_each_bound_ends_it_by_its_name(
     tests: Tester, robot: Daemon, bound: dict[str, object], criterion: str
 ) -> None:
@@ -191,6 +222,7 @@ def test_each_bound_ends_it_by_its_name(
 
 
 @pytest.mark.parametrize("act", [("disable", "wheel"), ("estop",)])
+@moves
 def test_a_motor_that_is_disabled_or_stopped_ends_it(
     tests: Tester, robot: Daemon, act: tuple[str, ...]
 ) -> None:
@@ -200,6 +232,7 @@ def test_a_motor_that_is_disabled_or_stopped_ends_it(
     assert tests.until("test_done")["report"]["abort"]["criterion"] == "status"
 
 
+@moves
 def test_another_owner_ends_it(tests: Tester, robot: Daemon) -> None:
     tests.start(**SWEEP)
     tests.until("test", after_s=1.2)
@@ -207,6 +240,7 @@ def test_another_owner_ends_it(tests: Tester, robot: Daemon) -> None:
     assert tests.until("test_done")["report"]["abort"]["criterion"] == "ownership"
 
 
+@moves
 def test_a_page_that_ends_it_lets_the_motor_go(tests: Tester, robot: Daemon) -> None:
     for why, words in (("stopped", "stopped on the page"), ("left", "hidden or left")):
         begun_us = now_us()
@@ -220,6 +254,7 @@ def test_a_page_that_ends_it_lets_the_motor_go(tests: Tester, robot: Daemon) -> 
         assert_at_rest_since(robot, begun_us, ended_us + 1_000_000)
 
 
+@moves
 def test_a_silent_page_lets_the_motor_go_within_its_time(tests: Tester, robot: Daemon) -> None:
     begun_us = now_us()
     tests.start(**{**SWEEP, "dead_man_ms": SILENCE_MS})
@@ -284,6 +319,7 @@ def test_what_is_killed_or_stands_still_in_a_sweep_leaves_rest_on_the_bus(
             killed.signal(signal.SIGCONT)
 
 
+@moves
 def test_a_second_test_of_a_page_waits_for_the_first(tests: Tester) -> None:
     tests.start(**SWEEP)
     tests.until("test", after_s=0.5)
@@ -319,6 +355,7 @@ def test_a_test_without_sense_is_refused_before_anything_moves(
     assert robot.state()["motors"][0]["owner"] == ""
 
 
+@moves
 def test_a_motor_that_is_not_active_is_not_moved(tests: Tester, robot: Daemon) -> None:
     robot.must("disable", "wheel")
     abort = tests.outcome(**STEP, **PATIENT)["report"]["abort"]
@@ -335,6 +372,7 @@ def test_a_page_on_another_computer_tests_nothing(robot: Daemon, tmp_path: Path)
         assert "tunnel" in Tester(page).refusal(**STEP, **PATIENT)
 
 
+@moves
 def test_a_test_has_the_rights_of_the_pages_token_and_names_the_line_that_lacks(
     tmp_path: Path,
 ) -> None:

@@ -188,5 +188,27 @@ TEST(Cascade, OtherGainsDoNotPassTheLimits) {
   EXPECT_TRUE(cascade.velocityLimited());
 }
 
+// A shaft that a hand held back is let go: the loop has wound up to all its effort.
+TEST(Cascade, AnEffortThatDrivesBeyondTheSpeedBoundEndsAtOnce) {
+  constexpr float kMeasuredRpm = 12.0F;
+  for (const auto& config :
+       {CascadeConfig{.velocity = PID_Position::Config{.kp = 0.1F, .ki = 5.0F}, .angle = {}},
+        CascadeConfig{.velocity = PID_Incremental::Config{.kp = 0.1F, .ki = 5.0F}, .angle = {}}}) {
+    for (const float way : {1.0F, -1.0F}) {
+      const Target target{.mode = ControlMode::kVelocity, .value = static_cast<double>(way) * 10.0};
+      Cascade cascade(config);
+      const float wound = settled(cascade, target, {});
+      ASSERT_FLOAT_EQ(wound, way * kLimit);
+      const Cascade::Measured fast{.velocity_rpm = way * kMeasuredRpm};
+      EXPECT_GT(way * cascade.step(target, fast, kDt, kLimit, wound, 0.0F, 13.0F), 5.0F)
+          << "within the bound";
+      // -2 rpm * 0.1 A/rpm, and an integral that has only begun
+      EXPECT_NEAR(way * cascade.step(target, fast, kDt, kLimit, wound, 0.0F, 11.0F), -0.2F, 0.02F);
+      EXPECT_NEAR(way * cascade.step(target, fast, kDt, kLimit, -0.2F * way, 0.0F, 11.0F), -0.2F, 0.03F)
+          << "what brakes goes on";
+    }
+  }
+}
+
 }  // namespace
 }  // namespace rc10::test::cascade_test

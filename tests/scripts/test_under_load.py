@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import signal
 import subprocess
 import sys
 from collections.abc import Iterator
@@ -67,6 +68,23 @@ def test_what_somebody_else_has_stopped_stays_so(tree: list[int]) -> None:
     parent, grandchild, spared = tree
     os.kill(grandchild, 19)
     wait_for_state("T", grandchild)
+    under_load.pause(0.03, {spared}, Observer(parent, spared=spared))  # type: ignore[arg-type]
+    wait_for_state("RSD", parent)
+    assert under_load.processes()[grandchild].state == "T"
+
+
+def test_whom_a_parent_stops_at_the_last_moment_stays_so(
+    tree: list[int], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    parent, grandchild, spared = tree
+    send = under_load.send
+
+    def stop_the_child_first(number: signal.Signals, pids: set[int]) -> None:
+        if number == signal.SIGSTOP and parent in pids:
+            os.kill(grandchild, signal.SIGSTOP)
+        send(number, pids)
+
+    monkeypatch.setattr(under_load, "send", stop_the_child_first)
     under_load.pause(0.03, {spared}, Observer(parent, spared=spared))  # type: ignore[arg-type]
     wait_for_state("RSD", parent)
     assert under_load.processes()[grandchild].state == "T"

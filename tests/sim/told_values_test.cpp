@@ -188,9 +188,10 @@ TEST_P(ToldValues, InEachModeTheValueIsInTheUnitThatIsToldWithIt) {
   }
 }
 
-TEST_P(ToldValues, AFeedForwardOfAnySizeIsBoundedByTheCurrentLimit) {
+class ToldCurrents : public ToldValues {};
+
+TEST_P(ToldCurrents, AFeedForwardOfAnySizeIsBoundedByTheCurrentLimit) {
   ASSERT_TRUE(activate());
-  if (!rig_.motor().modes().contains(ControlMode::kCurrent)) return;
   constexpr float kMost = std::numeric_limits<float>::max();
   follow({.mode = ControlMode::kCurrent, .torque_ff_nm = kMost});
   EXPECT_NEAR(told(), built_.limit(), 1e-3 * built_.limit());
@@ -198,6 +199,16 @@ TEST_P(ToldValues, AFeedForwardOfAnySizeIsBoundedByTheCurrentLimit) {
   follow({.mode = ControlMode::kCurrent, .torque_ff_nm = -kMost});
   EXPECT_NEAR(told(), -built_.limit(), 1e-3 * built_.limit());
 }
+
+std::vector<Subject> withCurrents() {
+  std::vector<Subject> with;
+  for (const auto& subject : kSubjects)
+    if (Built{subject}.motor()->modes().contains(ControlMode::kCurrent)) with.push_back(subject);
+  return with;
+}
+
+INSTANTIATE_TEST_SUITE_P(All, ToldCurrents, ::testing::ValuesIn(withCurrents()),
+                         [](const auto& subject) { return std::string{subject.param.name}; });
 
 INSTANTIATE_TEST_SUITE_P(All, ToldValues, ::testing::ValuesIn(kSubjects),
                          [](const auto& subject) { return std::string{subject.param.name}; });

@@ -175,6 +175,7 @@ bool Axis::trips(bool reduced, const Tick& tick) noexcept {
                      (status_ == MotorStatus::kReady && fallback_.acts()) || heldWhileEnabling();
   const bool too_fast = reduced_.step(reduced, moves, motor_.feedback(), tick);
   shaper_.setCeiling(reduced_.ceilingRpm());
+  motor_.boundSpeed(reduced_.boundRpm());
   if (!moves) {
     guard_.reset();
     // Before its drive answers its group may let go of it, and its fallback goes on.
@@ -227,6 +228,7 @@ bool Axis::lapses(const Tick& tick) noexcept {
 void Axis::order(RobotStatus robot, const Tick& tick) noexcept {
   if (fallback_.acts()) fallback_.step(standsStill(), tick.now);
   const auto kind = frameKind(robot);
+  if (kind == FrameKind::kHold && leadsHold(tick)) return;
   if (kind != FrameKind::kCommand) {
     shaper_.reset();
     in_force_ = Target{};
@@ -239,16 +241,33 @@ void Axis::order(RobotStatus robot, const Tick& tick) noexcept {
   // First, so that soft limits act in this tick already.
   if (!motor_.feedback().zeroed) motor_.restoreReference(in_force_.mode);
   const bool limited = (motor_.limits() & kLimitCurrent) != 0;
-  const auto told = shaper_.follows(in_force_.mode) && !limited
-                        ? TargetShaper::InForce{}
-                        : TargetShaper::InForce{.value = motor_.commandValue(),
-                                                .unit = motor_.commandUnit(),
-                                                .limited = limited,
-                                                .held_deg = motor_.heldAngleDeg(),
-                                                .duty = motor_.reportedDuty()};
+  const auto told =
+      shaper_.follows(in_force_.mode) && !limited ? TargetShaper::InForce{} : commandInForce(limited);
   limits_ |= stops ? shaper_.slowDown(in_force_, motor_.feedback(), told, tick.dt_s)
                    : shaper_.step(in_force_, motor_.feedback(), told, tick.dt_s);
   motor_.order(kind, in_force_);
+}
+
+// A shaft that was pushed away from where it is held comes back no faster than reduced mode allows. Its first
+// tick holds it where it is.
+bool Axis::leadsHold(const Tick& tick) noexcept {
+  const double held_deg = motor_.heldAngleDeg();
+  if (!std::isfinite(reduced_.ceilingRpm()) || !std::isfinite(held_deg)) return false;
+  if (held_deg != led_hold_deg_) shaper_.reset();  // held anew, or zeroed
+  led_hold_deg_ = held_deg;
+  Target place{.mode = ControlMode::kTotalAngle, .value = held_deg};
+  limits_ |= shaper_.slowDown(place, motor_.feedback(), commandInForce(false), tick.dt_s);
+  in_force_ = Target{};  // nothing that a client asked for
+  motor_.orderHold(place.value);
+  return true;
+}
+
+TargetShaper::InForce Axis::commandInForce(bool limited) const noexcept {
+  return {.value = motor_.commandValue(),
+          .unit = motor_.commandUnit(),
+          .limited = limited,
+          .held_deg = motor_.heldAngleDeg(),
+          .duty = motor_.reportedDuty()};
 }
 
 FrameKind Axis::frameKind(RobotStatus robot) const noexcept {

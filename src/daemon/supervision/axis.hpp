@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <optional>
 
 #include "app/time.hpp"
@@ -116,6 +117,9 @@ class Axis {
   /// Unheard in this tick. Not inlined: listen() is short without it.
   [[gnu::noinline]] void goUnheard(bool came, const Since& since) noexcept;
   [[nodiscard]] FrameKind frameKind(RobotStatus robot) const noexcept;
+  /// Orders a hold whose place is led under the ceiling of the speed; false: there is none.
+  [[nodiscard]] bool leadsHold(const Tick& tick) noexcept;
+  [[nodiscard]] TargetShaper::InForce commandInForce(bool limited) const noexcept;
   [[nodiscard]] Acting acting() const noexcept;
   /// Its command is the velocity of a fallback.
   [[nodiscard]] bool ramps() const noexcept {
@@ -137,6 +141,8 @@ class Axis {
   Fallback fallback_;
   Lease lease_;      ///< Whose target is in force, and until when.
   Target in_force_;  ///< Target that the motor followed in the last tick.
+  double led_hold_deg_ =
+      std::numeric_limits<double>::quiet_NaN();  ///< Place of the last hold under a ceiling.
   MotorStatus status_ = MotorStatus::kOffline;
   FaultCode fault_ = FaultCode::kNone;
   Stop stop_;

@@ -159,7 +159,7 @@ Target DJI_Motor::held() noexcept {
   if (!holding_ || encoder_.losses() != hold_losses_) hold_deg_ = feedback_.total_angle_deg;
   hold_losses_ = encoder_.losses();
   holding_ = true;
-  return Target{.mode = ControlMode::kTotalAngle, .value = hold_deg_};
+  return holdInForce(hold_deg_);
 }
 
 const Target& DJI_Motor::wantedTarget() noexcept {
@@ -213,7 +213,8 @@ void DJI_Motor::runLoops(const Target& target, float sample_dt_s, float limit) n
                                      .total_angle_deg = feedback_.total_angle_deg,
                                      .velocity_rpm = feedback_.velocity_rpm};
     const float ff = command_ == DjiCommand::kCurrent ? target.torque_ff_nm / torque_nm_per_a_ : 0.0F;
-    command_value_ = loops_.step(target, measured, sample_dt_s, limit, command_value_, saturate(ff));
+    command_value_ =
+        loops_.step(target, measured, sample_dt_s, limit, command_value_, saturate(ff), speedBoundRpm());
   } else {  // the limit may have come down since the last sample
     command_value_ = std::clamp(command_value_, -limit, limit);
   }

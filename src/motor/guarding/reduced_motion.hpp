@@ -40,6 +40,10 @@ class ReducedMotion {
 
   /// Bound of every target's speed; infinite: none.
   [[nodiscard]] double ceilingRpm() const noexcept { return ceiling_rpm_; }
+  /// For Motor_Base::boundSpeed(): above what a loop overshoots by, below the speed that is a fault.
+  [[nodiscard]] double boundRpm() const noexcept {
+    return ceiling_rpm_ + 0.5 * static_cast<double>(config_.tolerance_rpm);
+  }
   /// For Motor_Base::derate().
   [[nodiscard]] float effortShare() const noexcept { return share_; }
 

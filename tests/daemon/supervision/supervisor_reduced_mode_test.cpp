@@ -345,6 +345,84 @@ INSTANTIATE_TEST_SUITE_P(Families, ReducedAngleTest,
                                            "moteus, id: 1, motor_kv_rpm_per_v: 100, current_limit_a: 20, "
                                            "velocity_limit_rpm: 300"));
 
+/// A hand pushes a shaft with some load away against all its torque, and lets it go.
+class ReducedPushTest : public ReducedModeTest, public ::testing::WithParamInterface<const char*> {
+ protected:
+  static constexpr Target kPlace{.mode = ControlMode::kTotalAngle};
+
+  /// The fastest that the shaft comes back; `stays` for some ticks, and tells the same of them.
+  template <typename Stays>
+  float fastestBack(const Stays& stays) {
+    auto& shaft = robot->simBus().drive(kWheel).physics();
+    shaft.take(
+        {.by_deg = 60.0, .speed_rpm = 8.0, .torque_nm = 500.0, .hold = std::chrono::milliseconds{300}});
+    while (shaft.held()) (void)stays(1);
+    EXPECT_GT(robot->motor(kWheel).feedback.total_angle_deg, 50.0);
+    return stays(4000);
+  }
+  void begin() {
+    start(
+        "reduced_velocity_rpm: 20, zero: power_on, on_timeout: hold, hold_max_s: 60, simulated: "
+        "{inertia_kg_m2: 0.05}",
+        GetParam());
+    follow(kPlace, 500);
+    see(kOpen);
+  }
+  void expectBack(float fastest_rpm) {
+    EXPECT_LT(fastest_rpm, 30.0F);
+    EXPECT_NEAR(robot->motor(kWheel).feedback.total_angle_deg, 0.0, 3.0);
+    EXPECT_EQ(status(), MotorStatus::kActive);
+  }
+};
+
+TEST_P(ReducedPushTest, AShaftComesBackSlowlyToItsTarget) {
+  begin();
+  follow(kPlace, 1500);
+  expectBack(fastestBack([this](int ticks) { return fastestWhile(kPlace, ticks); }));
+}
+
+TEST_P(ReducedPushTest, AShaftComesBackSlowlyToWhereItIsHeld) {
+  begin();
+  const auto wait = [this](int ticks) {
+    float fastest_rpm = 0.0F;
+    for (int i = 0; i < ticks; ++i) {
+      tick();
+      fastest_rpm = std::max(fastest_rpm, std::fabs(rpm()));
+    }
+    return fastest_rpm;
+  };
+  (void)wait(1500);
+  ASSERT_EQ(robot->motor(kWheel).acting, Acting::kHold);
+  expectBack(fastestBack(wait));
+  EXPECT_EQ(robot->motor(kWheel).acting, Acting::kHold);
+}
+
+// A moteus goes to the place it is told along a course of its own: docs/gpio.md.
+INSTANTIATE_TEST_SUITE_P(Families, ReducedPushTest,
+                         ::testing::Values("M3508, id: 1", "DM4310, id: 2, master_id: 18", "RS00, id: 3",
+                                           "AK80-9, id: 5", "AK80-9, protocol: mit, id: 5",
+                                           "RMD-X8-20, id: 11", "LK-MG5010E-i10, id: 12",
+                                           "ODrive_S1, id: 3, torque_constant_nm_per_a: 0.0551, "
+                                           "current_limit_a: 40, velocity_limit_rpm: 600, feedback_hz: 200"));
+
+// Its angle has leapt, and it has not moved.
+TEST_F(ReducedModeTest, AHeldShaftThatIsZeroedIsNotLedToWhereItWasHeld) {
+  start("reduced_velocity_rpm: 20, on_disable: hold, hold_max_s: 60", "DM4310, id: 2, master_id: 18");
+  see(kOpen);
+  follow({.mode = ControlMode::kTotalAngle}, 500);
+  robot->order(Operation::kDisable);
+  for (int i = 0; i < 100; ++i) tick();
+  ASSERT_EQ(robot->motor(kWheel).acting, Acting::kHold);
+  EXPECT_EQ(robot->order(Operation::kZero, 100.0).motors[kWheel], Refusal::kNone);
+  float fastest_rpm = 0.0F;
+  for (int i = 0; i < 1000; ++i) {
+    tick();
+    fastest_rpm = std::max(fastest_rpm, std::fabs(rpm()));
+  }
+  EXPECT_LT(fastest_rpm, 2.0F);
+  EXPECT_NEAR(robot->motor(kWheel).feedback.total_angle_deg, 100.0, 1.0);
+}
+
 /// Soft limits, for targets that have no loop of the speed.
 class SoftLimitOfADriveTest : public ReducedModeTest, public ::testing::WithParamInterface<const char*> {
  protected:
