@@ -103,10 +103,12 @@ def stop_parents_first(tree: set[int]) -> set[int]:
 
 
 def pause(seconds: float, spared: set[int], command: subprocess.Popen[bytes]) -> None:
+    seen: set[int] = set()
     stopped: set[int] = set()
     # Until there is nobody left: whoever runs may start another.
-    while new := running(spared) - stopped:
+    while new := running(spared) - seen:
         stopped |= stop_parents_first(new)
+        seen |= new
     try:
         with contextlib.suppress(subprocess.TimeoutExpired):
             command.wait(seconds)
