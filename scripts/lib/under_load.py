@@ -14,16 +14,15 @@ import ctypes
 import multiprocessing
 import os
 import random
+import re
 import signal
 import subprocess
 import sys
-import time
 import zlib
 from pathlib import Path
 from typing import NamedTuple
 
 PR_SET_CHILD_SUBREAPER = 36
-MOST_WAIT_S = 0.005
 STOPPED = "Tt"  # by somebody else: a debugger, or a test whose subject that is
 
 
@@ -78,11 +77,16 @@ def send(number: signal.Signals, pids: set[int]) -> None:
 
 
 def stands(pid: int) -> bool:
+    """It has been stopped, though it may have had no time yet to do so, or has ended."""
     try:
-        stat = Path(f"/proc/{pid}/stat").read_text(errors="replace")
+        status = Path(f"/proc/{pid}/status").read_text(errors="replace")
     except OSError:
-        return True  # ended
-    return stat.rpartition(")")[2].split()[0] not in "RSD"
+        return True
+    state = re.search(r"^State:\t(.)", status, re.MULTILINE)
+    pending = re.search(r"^ShdPnd:\t([0-9a-f]+)", status, re.MULTILINE)
+    if state is None or pending is None or state[1] not in "RSD":
+        return True
+    return bool(int(pending[1], 16) & 1 << (signal.SIGSTOP - 1))
 
 
 def stop_parents_first(tree: set[int]) -> set[int]:
@@ -93,10 +97,6 @@ def stop_parents_first(tree: set[int]) -> set[int]:
         eldest = {pid for pid in tree if parents.get(pid) not in tree}
         mine = {pid for pid in eldest if not stands(pid)}
         send(signal.SIGSTOP, mine)
-        # One that works for the kernel stops when that is done.
-        until_s = time.monotonic() + MOST_WAIT_S
-        while not all(map(stands, mine)) and time.monotonic() < until_s:
-            pass
         stopped |= mine
         tree = tree - eldest
     return stopped
