@@ -4,13 +4,33 @@
 
 namespace rc10 {
 
+/// Two small numbers in an event's `extra`: of a change, the one before and the StopCause; of a skipped
+/// setpoint, its mode and the MotorStatus.
+template <typename First, typename Second>
+struct ExtraPair {
+  First first{};
+  Second second{};
+
+  [[nodiscard]] static constexpr ExtraPair from(std::int32_t extra) noexcept {
+    return {static_cast<First>(extra % kShift), static_cast<Second>(extra / kShift)};
+  }
+  [[nodiscard]] constexpr std::int32_t extra() const noexcept {
+    return static_cast<std::int32_t>(first) + kShift * static_cast<std::int32_t>(second);
+  }
+
+ private:
+  static constexpr std::int32_t kShift = 256;  // part of the LCM contract: docs/lcm.md
+};
+template <typename First, typename Second>
+ExtraPair(First, Second) -> ExtraPair<First, Second>;
+
 /// Kind of event. The numbers are part of the LCM contract (event_t.code, docs/lcm.md) and never change.
 enum class EventCode : std::int32_t {
   kMotorStatus =
-      100,  ///< value: new MotorStatus, extra: old one plus 256 times the StopCause; `client`: by whom
+      100,  ///< value: new MotorStatus, extra: ExtraPair of the old one and the StopCause; `client`: by whom
   kCommandTimeout = 101,   ///< no valid command any more; value: the FallbackAction
   kReferenceLost = 102,    ///< the multi-turn angle is unknown
-  kSetpointSkipped = 103,  ///< value: the SkipReason, extra: the mode, plus 256 times the MotorStatus
+  kSetpointSkipped = 103,  ///< value: the SkipReason, extra: ExtraPair of the mode and the MotorStatus
   kNotOwner = 104,         ///< a command refused: a motor is held by another client (`client`: who asked)
   kMotorFault = 105,       ///< value: the FaultCode; extra: the drive's own code
   kGroupStopped = 106,     ///< with `source`; value: index of the group; extra: the GroupStop
@@ -23,7 +43,7 @@ enum class EventCode : std::int32_t {
   kMovesAtRest = 111,  ///< it gains speed though its drive is told to rest; value: its speed in rpm
   kNeverHeard = 112,   ///< no frame of its drive since the start; value: its id
   kRobotState =
-      200,  ///< value: new RobotStatus, extra: old one plus 256 times the StopCause; `client`: by whom
+      200,  ///< value: new RobotStatus, extra: ExtraPair of the old one and the StopCause; `client`: by whom
   kTicksMissed = 201,     ///< value: how many
   kCommandRefused = 202,  ///< admission refused a command message
   kEstopInput = 203,      ///< value: the ContactState of the e-stop input

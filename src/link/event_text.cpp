@@ -26,12 +26,12 @@ namespace {
   }
 }
 
-// `reason`: SkipReason; `extra`: the mode, plus 256 times the status of the motor.
+// `reason`: SkipReason.
 [[nodiscard]] std::string skipped(std::int32_t reason, std::int32_t extra) {
-  const auto text = "setpoint " + std::string(toString(static_cast<ControlMode>(extra % 256))) + " skipped: ";
+  const auto [mode, status] = ExtraPair<ControlMode, MotorStatus>::from(extra);
+  const auto text = "setpoint " + std::string(toString(mode)) + " skipped: ";
   switch (SkipReason{reason}) {
-    case SkipReason::kNotActive:
-      return text + "the motor is " + toString(static_cast<MotorStatus>(extra / 256)) + ", not ACTIVE";
+    case SkipReason::kNotActive: return text + "the motor is " + toString(status) + ", not ACTIVE";
     case SkipReason::kNoReference:
       return text + "the angle has no reference; set it with `zero` or `zero: power_on`";
     case SkipReason::kFirstStep:
@@ -138,12 +138,12 @@ namespace {
          std::to_string(id) + " (`rc10ctl scan` names the drives of a bus)";
 }
 
-// `extra`: the number before, plus 256 times the StopCause.
 template <typename Status>
 [[nodiscard]] std::string change(std::int32_t value, std::int32_t extra, std::string_view by) {
-  const auto why = stopText(static_cast<StopCause>(extra / 256), by);
-  return std::string(toString(static_cast<Status>(extra % 256))) + " -> " +
-         toString(static_cast<Status>(value)) + (why.empty() ? "" : " (" + why + ")");
+  const auto [before, cause] = ExtraPair<Status, StopCause>::from(extra);
+  const auto why = stopText(cause, by);
+  return std::string(toString(before)) + " -> " + toString(static_cast<Status>(value)) +
+         (why.empty() ? "" : " (" + why + ")");
 }
 
 }  // namespace

@@ -5,6 +5,7 @@ FAULT_ID carries {motor id, fault, signed 16-bit argument}: see `faulty_drives.f
 
 from __future__ import annotations
 
+import math
 import signal
 import struct
 import sys
@@ -41,6 +42,7 @@ class Fault(IntEnum):
     DEAF = 9  # goes on with its last command: its receiving line is off; argument: 1: blocked, too
     PUSHED = 10  # argument: hundredths of N m of a load from outside
     PARKED = 11  # argument: deg; switched off, turned there by hand, switched on 100 ms later
+    WALL = 12  # argument: deg; the shaft turns no farther in the negative direction
 
 
 def fault(motor_id: int, kind: Fault, argument: int = 0) -> bytes:
@@ -59,6 +61,7 @@ class FaultyMotor(FakeMotor):
         self._off_s = 0.0
         self._hot_c = 0.0
         self._blocked = False
+        self._wall_deg = -math.inf
 
     def order(self, kind: Fault, argument: int) -> None:
         self.fault = kind
@@ -72,11 +75,16 @@ class FaultyMotor(FakeMotor):
             self._command_raw = 0
         elif kind is Fault.PUSHED:
             self.load_nm = -argument / 100
+        elif kind is Fault.WALL:
+            self._wall_deg = float(argument)
         elif kind is Fault.PARKED:
             self._off_s = 0.1
             self._command_raw = 0
             self.speed_rad_s = self.current_a = 0.0
-            self.rotor_turns = argument / 360 * self.spec.model.gear_ratio
+            self._turn_to(argument)
+
+    def _turn_to(self, angle_deg: float) -> None:
+        self.rotor_turns = angle_deg / 360 * self.spec.model.gear_ratio
 
     def decode_command(self, message: can.Message) -> bool:
         return self.fault is not Fault.DEAF and super().decode_command(message)
@@ -88,6 +96,9 @@ class FaultyMotor(FakeMotor):
     def step(self, dt_s: float) -> None:
         self._off_s = max(0.0, self._off_s - dt_s)
         super().step(dt_s)
+        if self.angle_deg < self._wall_deg:
+            self._turn_to(self._wall_deg)
+            self.speed_rad_s = max(0.0, self.speed_rad_s)
         if self._blocked:
             self.speed_rad_s = 0.0
         elif self.fault is Fault.HOT:

@@ -15,9 +15,7 @@ namespace {
 
 using namespace std::chrono_literals;
 
-// Time of fallbacks in a stop (docs/safety.md), and the ticks of rest after it, at
-// the most.
-constexpr Duration kLongestFallback = 1s;
+// Ticks of rest after the fallbacks of a stop, at the most (docs/safety.md).
 constexpr std::uint64_t kMostRestTicks = 50;
 // Ticks until a request is answered at the latest: an enable request waits two seconds for the
 // drives.

@@ -21,6 +21,9 @@
 
 namespace rc10::test {
 
+/// Time of fallbacks in a stop (docs/safety.md); then rest.
+inline constexpr Duration kLongestFallback = std::chrono::seconds{1};
+
 [[nodiscard]] constexpr bool lost(MotorStatus status) noexcept {
   return status == MotorStatus::kOffline || status == MotorStatus::kFault;
 }

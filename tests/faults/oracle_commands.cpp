@@ -12,8 +12,6 @@ namespace {
 
 using namespace std::chrono_literals;
 
-// Time of fallbacks in a stop (docs/safety.md); then it rests.
-constexpr Duration kLongestFallback = 1s;
 // Ticks in which a loop turns its effort round: it starts without a jump.
 constexpr int kUnbrakedTicks = 300;
 constexpr double kFast = 0.3;  ///< Share of the no-load speed: a brake must oppose this.

@@ -304,6 +304,7 @@ def test_an_estop_ends_as_it_should(tmp_path: Path) -> None:
             "`clear` while a motor that was lost in motion may turn",
             "refused until `run_down_s` is over",
         )
+        nothing("the same when `run_down_s` is over, and it is still lost", "the e-stop ends")
         break_drive(LEFT, Fault.NONE)
         wait_for(has(robot, "left", READY), 2.0)
         # Nobody sleeps between the two: they come in one tick. The loser waits in no queue.
@@ -320,6 +321,48 @@ def test_an_estop_ends_as_it_should(tmp_path: Path) -> None:
         nothing("e-stop and `clear` in one tick, in either order", "the e-stop wins")
         robot.clear()
         assert not robot.wait_for_state(1.0).estopped
+        log.check()
+
+
+def acts(robot: rc10.Robot, name: str, what: rc10.Acting) -> Callable[[], bool]:
+    return lambda: robot.wait_for_state(1.0).motors[name].acting is what
+
+
+def test_an_estop_takes_the_place_of_what_acts_already(tmp_path: Path) -> None:
+    keys = {
+        ARM_KEYS: "on_timeout: brake, on_disable: hold, hold_max_s: 60, on_estop: damp}",
+        "{name: left, model: M3508, ": "{name: left, on_estop: brake, brake_max_s: 0.3, "
+        "model: M3508, ",
+    }
+    group = "groups:\n  - {name: drive, motors: [left, right], on_member_offline: stop_group}\n"
+    with robot_with(tmp_path, keys, group) as (_, robot, log):
+        robot.enable()
+        break_drive(ARM, Fault.PUSHED, 20)
+        start_ns = time.time_ns()
+        drive(robot, log, 0.3, arm=rc10.velocity_rpm(20))
+        robot.disable("arm")
+        wait_for(acts(robot, "arm", rc10.Acting.HOLD), 2.0)
+        stopped_ns = time.time_ns()
+        robot.estop()
+        wait_for(acts(robot, "arm", rc10.Acting.DAMP), 2.0)
+        log.driven(start_ns, time.time_ns(), "arm", validity_ms=60_000)
+        assert time.time_ns() - stopped_ns < 1000 * MS, "hold_max_s is a minute"
+        nothing(
+            "e-stop after a `disable` with `on_disable: hold`, `on_estop: damp`", "damps at once"
+        )
+        break_drive(ARM, Fault.PUSHED, 0)
+        _cleared(robot)
+        robot.enable()
+        start_ns = time.time_ns()
+        drive(robot, log, 0.3, left=rc10.velocity_rpm(60))
+        break_drive(RIGHT, Fault.SILENT)
+        wait_for(acts(robot, "left", rc10.Acting.BRAKE), 2.0)
+        time.sleep(1.0)
+        state = robot.wait_for_state(1.0)
+        assert state.motors["left"].acting is rc10.Acting.BRAKE
+        assert not state.estopped
+        log.driven(start_ns, time.time_ns(), "left")
+        nothing("a group stops, `on_estop: brake`, longer than `brake_max_s`", "brakes on")
         log.check()
 
 
@@ -498,6 +541,57 @@ def test_a_module_acts_for_nobody_no_longer_than_its_time(tmp_path: Path) -> Non
             log.last_torque_ns("left"),
             1060,
         )
+
+
+def test_a_joint_holds_on_while_any_client_is_heard(tmp_path: Path) -> None:
+    joint = (
+        "modules:\n"
+        "  - {name: lift, type: joint, motor: left, max_velocity_deg_s: 90,\n"
+        "     max_acceleration_deg_s2: 360, on_silence: hold, silence_max_s: 1}\n"
+    )
+    with robot_with(tmp_path, more=joint) as (_, robot, log):
+        robot.enable()
+        break_drive(LEFT, Fault.PUSHED, 100)
+        lift = robot.module("lift")
+        start_ns = time.time_ns()
+        for t_s in robot.rate(100):
+            if t_s >= 0.5:
+                break
+            lift.send(angle_deg=30.0, validity_ms=40)
+        for t_s in robot.rate(100):
+            if t_s >= 3.0:
+                break
+            robot.command({"right": rc10.velocity_rpm(20)}, validity_ms=40)
+        log.driven(start_ns, time.time_ns(), "left", "right", validity_ms=1060)
+        assert robot.wait_for_state(1.0).motors["left"].status is ACTIVE
+        assert currents(log.frames(FRONT)[-1])[0] != 0, "it holds its place against the load"
+        log.check()
+        nothing("the same, while another motor is commanded", "holds on")
+
+
+def test_homing_that_finds_its_stop_stops_nothing(tmp_path: Path) -> None:
+    joint = (
+        "modules:\n"
+        "  - {name: lift, type: joint, motor: left, homing: stop, homing_timeout_s: 20,\n"
+        "     max_velocity_deg_s: 90, max_acceleration_deg_s2: 360, on_silence: hold}\n"
+    )
+    unknown = {"id: 1, zero: power_on, current_limit_a: 10}": "id: 1, current_limit_a: 10}"}
+    with robot_with(tmp_path, unknown, joint) as (_, robot, log):
+        robot.enable()
+        lift = robot.module("lift")
+        start_ns = time.time_ns()
+        break_drive(LEFT, Fault.WALL, -40)
+        for t_s in robot.rate(100):
+            lift.send(home=1)
+            if t_s > 1.0 and lift.state["homed"] == 1.0:
+                break
+            assert t_s < 20.0, lift.state
+        log.driven(start_ns, time.time_ns(), "left", validity_ms=200)
+        left = robot.wait_for_state(1.0).motors["left"]
+        assert left.zeroed
+        assert left.status is ACTIVE
+        log.check()
+        nothing("homing that reaches its stop twice", "homed; nothing stops")
 
 
 def test_homing_takes_no_balance_for_the_stop(tmp_path: Path) -> None:

@@ -118,16 +118,15 @@ def test_a_python_program_sees_the_state_or_an_error_with_the_cause(daemon: Daem
 
 
 def test_a_cpp_program_moves_the_motor_or_says_why_not(daemon: Daemon) -> None:
-    moved = [
-        judge(
-            limit,
-            limited(limit, BIN / "hello_motor", "host", "yaw", "20", env=daemon.env),
-            "yaw stands",
-        )
-        for limit in (3, 4, 5, 6, 8, 24)
-    ]
-    assert not moved[0]
-    assert moved[-1]
+    def moves(limit: int) -> bool:
+        hello = (BIN / "hello_motor", "host", "yaw", "20")
+        return judge(limit, limited(limit, *hello, env=daemon.env), "yaw stands")
+
+    assert not moves(3), "three are stdin, stdout and stderr"
+    for limit in (4, 5, 6, 8):
+        moves(limit)
+    # A busy computer may be late with its targets, and says so.
+    eventually(lambda: moves(24), "it has enough of them")
 
 
 def test_rc10d_with_few_descriptors_runs_or_names_the_remedy() -> None:

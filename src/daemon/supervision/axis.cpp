@@ -120,7 +120,7 @@ bool Axis::standsStill() const noexcept {
 // The last speed of a motor that was on says nothing: it may have begun to move since. One that its fallback
 // resists, and that turns on after its time to run down, is pulled by a slope or a load: waiting does not end
 // that, and the fallback goes on acting after the e-stop.
-Refusal Axis::unrest(const Tick& tick) const noexcept {
+Refusal Axis::motionRefusal(const Tick& tick) const noexcept {
   if (!lost(tick)) {
     const bool pulled = fallback_.resistsFor(entry_.run_down, tick.now);
     return standsStill() || pulled ? Refusal::kNone : Refusal::kMoving;
@@ -294,8 +294,8 @@ bool Axis::heldWhileEnabling() const noexcept {
 
 // ---- Changes
 
-std::optional<MotorStatus> Axis::take(MotorEvent event, RobotStatus robot, const Stop& stop,
-                                      const Tick& tick) noexcept {
+std::optional<MotorStatus> Axis::handle(MotorEvent event, RobotStatus robot, const Stop& stop,
+                                        const Tick& tick) noexcept {
   const auto before = status_;
   // A motor that is held is on already: a request to rest does not depend on the tick in which it is ACTIVE.
   const bool rests_while_held = heldWhileEnabling() && event == MotorEvent::kDisable;
@@ -334,8 +334,8 @@ void Axis::clearFault(const Tick& tick) noexcept {
   clearing_until_ = tick.now + kClearPatience;
 }
 
-std::optional<SkipReason> Axis::take(const Target& target, const Lease::Holder& sender,
-                                     const Lease::Term& term) noexcept {
+std::optional<SkipReason> Axis::follow(const Target& target, const Lease::Holder& sender,
+                                       const Lease::Term& term) noexcept {
   if (target.mode == ControlMode::kCoast) {
     // Letting go of a motor that is not held is no mistake: clients do it when they leave. While it is valid
     // it keeps others of a lower priority from moving the motor, as every setpoint does.

@@ -53,7 +53,7 @@ class Axis {
   [[nodiscard]] int id() const noexcept { return entry_.id; }
   [[nodiscard]] bool standsStill() const noexcept;
   /// Reason why an e-stop must not end yet: it turns, or may do so.
-  [[nodiscard]] Refusal unrest(const Tick& tick) const noexcept;
+  [[nodiscard]] Refusal motionRefusal(const Tick& tick) const noexcept;
 
   // ---- Once a tick
 
@@ -79,8 +79,8 @@ class Axis {
   // ---- Changes
 
   /// The status before, if it changes.
-  [[nodiscard]] std::optional<MotorStatus> take(MotorEvent event, RobotStatus robot, const Stop& stop,
-                                                const Tick& tick) noexcept;
+  [[nodiscard]] std::optional<MotorStatus> handle(MotorEvent event, RobotStatus robot, const Stop& stop,
+                                                  const Tick& tick) noexcept;
   /// Before MotorEvent::kEnable.
   void prepareEnabling(const Tick& tick) noexcept;
   /// Before MotorEvent::kClear: the drive clears its faults.
@@ -100,8 +100,8 @@ class Axis {
     return status_ == MotorStatus::kActive && allows(sender, now);
   }
   /// Takes a target that the lease allows. The reason, if it does not act.
-  [[nodiscard]] std::optional<SkipReason> take(const Target& target, const Lease::Holder& sender,
-                                               const Lease::Term& term) noexcept;
+  [[nodiscard]] std::optional<SkipReason> follow(const Target& target, const Lease::Holder& sender,
+                                                 const Lease::Term& term) noexcept;
   /// A command of `sender` came too late to act: what it told this motor before ends with it.
   void outdate(const Lease::Holder& sender, MonotonicTime deadline) noexcept {
     lease_.shorten(sender, deadline);

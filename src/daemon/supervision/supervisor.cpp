@@ -97,7 +97,7 @@ void Supervisor::change(std::size_t motor, MotorEvent event, const Tick& tick) n
 
 void Supervisor::transition(std::size_t motor, MotorEvent event, const Stop& why, const Tick& tick) noexcept {
   auto& axis = axes_[motor];
-  const auto changed = axis.take(event, state_, why, tick);
+  const auto changed = axis.handle(event, state_, why, tick);
   if (!changed) return;
   const auto before = *changed;
   const auto after = axis.status();
@@ -121,8 +121,7 @@ void Supervisor::transition(std::size_t motor, MotorEvent event, const Stop& why
       after == MotorStatus::kFault || (after == MotorStatus::kOffline && before == MotorStatus::kActive);
   report({EventCode::kMotorStatus, worrying ? Severity::kError : Severity::kInfo,
           static_cast<std::int16_t>(motor), static_cast<std::int32_t>(after),
-          static_cast<std::int32_t>(before) + 256 * static_cast<std::int32_t>(stop.cause), tick.now,
-          stop.by});
+          ExtraPair{before, stop.cause}.extra(), tick.now, stop.by});
 }
 
 void Supervisor::settle(std::size_t motor, Refusal outcome) noexcept {
@@ -145,8 +144,7 @@ void Supervisor::setRobotState(RobotStatus state, const Stop& why, const Tick& t
     }
   }
   report({EventCode::kRobotState, state == RobotStatus::kEstop ? Severity::kError : Severity::kInfo, -1,
-          static_cast<std::int32_t>(state),
-          static_cast<std::int32_t>(before) + 256 * static_cast<std::int32_t>(why.cause), tick.now, why.by});
+          static_cast<std::int32_t>(state), ExtraPair{before, why.cause}.extra(), tick.now, why.by});
 }
 
 void Supervisor::beginStop(const Tick& tick) noexcept {

@@ -90,8 +90,9 @@ class Supervisor {
   [[nodiscard]] bool mayCommand(const Command& command, const Lease::Holder& sender,
                                 const Tick& tick) noexcept;
   void apply(const Command& command, const Tick& tick) noexcept;
-  void apply(const Command::Setpoint& setpoint, const Lease::Holder& sender, const Command& command,
-             const Tick& tick) noexcept;
+  /// Whether it acts; one that does not is counted and told.
+  [[nodiscard]] bool follow(const Command::Setpoint& setpoint, const Lease::Holder& sender,
+                            const Command& command, const Tick& tick) noexcept;
   void carryOut(const Order& order, const Tick& tick) noexcept;
   /// `asked`: all motors that the request names.
   [[nodiscard]] Refusal enable(std::size_t motor, const MotorSet& asked, const Tick& tick) noexcept;

@@ -38,7 +38,7 @@ void Supervisor::receiveOrders(const Tick& tick) noexcept {
 bool Supervisor::takeModuleCommand(const Command& command, const Tick& tick) noexcept {
   const Lease::Holder sender{command.client, command.session, command.priority};
   if (!mayCommand(command, sender, tick)) return false;
-  for (std::size_t i = 0; i < command.count; ++i) apply(command.setpoints[i], sender, command, tick);
+  for (std::size_t i = 0; i < command.count; ++i) (void)follow(command.setpoints[i], sender, command, tick);
   return true;
 }
 
@@ -80,27 +80,25 @@ void Supervisor::apply(const Command& command, const Tick& tick) noexcept {
   }
   std::bitset<kMaxMotors> skipped;
   for (std::size_t i = 0; i < command.count; ++i) {
-    const auto before = skipped_setpoints_;
-    apply(command.setpoints[i], sender, command, tick);
-    skipped.set(i, skipped_setpoints_ != before);
+    skipped.set(i, !follow(command.setpoints[i], sender, command, tick));
   }
   if (recorder_ != nullptr) recorder_->command(command, blackbox::Verdict::kApplied, skipped);
 }
 
-void Supervisor::apply(const Command::Setpoint& setpoint, const Lease::Holder& sender, const Command& command,
-                       const Tick& tick) noexcept {
+bool Supervisor::follow(const Command::Setpoint& setpoint, const Lease::Holder& sender,
+                        const Command& command, const Tick& tick) noexcept {
   auto& axis = axes_[setpoint.motor];
   const bool waits = setpoint.target.mode != ControlMode::kCoast && axis.status() == MotorStatus::kActive &&
                      waitsForGroup(setpoint.motor);
   const Lease::Term term{command.received, command.deadline};
-  const auto reason = waits ? SkipReason::kGroup : axis.take(setpoint.target, sender, term);
-  if (!reason) return;
+  const auto reason = waits ? SkipReason::kGroup : axis.follow(setpoint.target, sender, term);
+  if (!reason) return true;
   ++skipped_setpoints_;
-  if (!axis.mayReportSkip(tick.now)) return;
+  if (!axis.mayReportSkip(tick.now)) return false;
   report({EventCode::kSetpointSkipped, Severity::kWarning, static_cast<std::int16_t>(setpoint.motor),
-          static_cast<std::int32_t>(*reason),
-          static_cast<std::int32_t>(setpoint.target.mode) + 256 * static_cast<std::int32_t>(axis.status()),
+          static_cast<std::int32_t>(*reason), ExtraPair{setpoint.target.mode, axis.status()}.extra(),
           tick.now});
+  return false;
 }
 
 void Supervisor::carryOut(const Order& order, const Tick& tick) noexcept {
@@ -178,7 +176,7 @@ bool Supervisor::clearEstop(const Order& order, OrderResult& result, const Tick&
   }
   bool at_rest = true;
   for (std::size_t motor = 0; motor < axes_.size(); ++motor) {
-    result.motors[motor] = axes_[motor].unrest(tick);
+    result.motors[motor] = axes_[motor].motionRefusal(tick);
     if (result.motors[motor] != Refusal::kNone) at_rest = false;
   }
   if (at_rest) setRobotState(RobotStatus::kRun, {StopCause::kNone, order.client}, tick);

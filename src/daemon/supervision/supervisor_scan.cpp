@@ -35,7 +35,7 @@ void Supervisor::scan(const Order& order, const Tick& tick) noexcept {
   bool may = mayGoOn(order.scan, result);
   for (std::size_t motor = 0; motor < axes_.size(); ++motor) {
     if (robot_.motors()[motor].bus != order.scan.bus || result.motors[motor] != Refusal::kNone) continue;
-    result.motors[motor] = axes_[motor].unrest(tick);
+    result.motors[motor] = axes_[motor].motionRefusal(tick);
     may = may && result.motors[motor] == Refusal::kNone;
   }
   if (!may) return answer(result);

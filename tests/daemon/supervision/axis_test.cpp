@@ -36,9 +36,9 @@ class AxisTest : public ::testing::Test {
     if (speaks) hear();
     const Tick tick = this->now();
     axis_.listen(tick, {.before = now_ - 1ms, .ran = 1ms});
-    if (axis_.fresh(tick)) (void)axis_.take(MotorEvent::kFeedbackFresh, RobotStatus::kRun, {}, tick);
-    if (axis_.lost(tick)) (void)axis_.take(MotorEvent::kFeedbackLost, RobotStatus::kRun, {}, tick);
-    if (const auto end = axis_.endsEnabling(tick)) (void)axis_.take(*end, RobotStatus::kRun, {}, tick);
+    if (axis_.fresh(tick)) (void)axis_.handle(MotorEvent::kFeedbackFresh, RobotStatus::kRun, {}, tick);
+    if (axis_.lost(tick)) (void)axis_.handle(MotorEvent::kFeedbackLost, RobotStatus::kRun, {}, tick);
+    if (const auto end = axis_.endsEnabling(tick)) (void)axis_.handle(*end, RobotStatus::kRun, {}, tick);
     (void)axis_.trips(false, tick);
     lapsed_ = axis_.lapses(tick);
     axis_.order(RobotStatus::kRun, tick);
@@ -50,7 +50,7 @@ class AxisTest : public ::testing::Test {
   void activate() {
     tick();
     axis_.prepareEnabling(now());
-    (void)axis_.take(MotorEvent::kEnable, RobotStatus::kRun, {}, now());
+    (void)axis_.handle(MotorEvent::kEnable, RobotStatus::kRun, {}, now());
     tick();
     tick();
     ASSERT_EQ(axis_.status(), MotorStatus::kActive);
@@ -76,33 +76,34 @@ TEST_F(AxisTest, IsReadyWithFreshFeedbackAndOfflineWithoutForItsTimeout) {
 
 TEST_F(AxisTest, SaysWhyATargetDoesNotAct) {
   tick();
-  EXPECT_EQ(axis_.take(kTurn, kPlanner, {now_, now_ + 50ms}), SkipReason::kNotActive);
+  EXPECT_EQ(axis_.follow(kTurn, kPlanner, {now_, now_ + 50ms}), SkipReason::kNotActive);
   activate();
-  EXPECT_EQ(axis_.take(kTurn, kPlanner, {now_, now_ + 50ms}), std::nullopt);
-  EXPECT_EQ(axis_.take({.mode = ControlMode::kVoltage}, kPlanner, {now_, now_ + 50ms}), SkipReason::kRefused);
+  EXPECT_EQ(axis_.follow(kTurn, kPlanner, {now_, now_ + 50ms}), std::nullopt);
+  EXPECT_EQ(axis_.follow({.mode = ControlMode::kVoltage}, kPlanner, {now_, now_ + 50ms}),
+            SkipReason::kRefused);
 }
 
 TEST_F(AxisTest, RefusesAnAngleThatNoDoubleTellsExactly) {
   activate();
   for (const double far_deg : {1.1e12, -1e17, 1e300}) {
     for (const auto mode : {ControlMode::kTotalAngle, ControlMode::kAngle})
-      EXPECT_EQ(axis_.take({.mode = mode, .value = far_deg}, kPlanner, {now_, now_ + 50ms}),
+      EXPECT_EQ(axis_.follow({.mode = mode, .value = far_deg}, kPlanner, {now_, now_ + 50ms}),
                 SkipReason::kTooFar);
   }
 }
 
 TEST_F(AxisTest, ObeysOneClientUntilItsCommandLapsesOrAHigherPriorityTakesOver) {
   activate();
-  (void)axis_.take(kTurn, kPlanner, {now_, now_ + 50ms});
+  (void)axis_.follow(kTurn, kPlanner, {now_, now_ + 50ms});
   EXPECT_TRUE(axis_.obeys(kRemote, now_));
-  (void)axis_.take(kTurn, kRemote, {now_, now_ + 50ms});
+  (void)axis_.follow(kTurn, kRemote, {now_, now_ + 50ms});
   EXPECT_FALSE(axis_.obeys(kPlanner, now_));
   EXPECT_TRUE(axis_.obeys(kPlanner, now_ + 50ms));
 }
 
 TEST_F(AxisTest, BeginsItsFallbackInTheTickInWhichTheCommandLapses) {
   activate();
-  (void)axis_.take(kTurn, kPlanner, {now_, now_ + 2ms});
+  (void)axis_.follow(kTurn, kPlanner, {now_, now_ + 2ms});
   tick();
   EXPECT_FALSE(lapsed_);
   EXPECT_EQ(axis_.motor().ordered(), FrameKind::kCommand);
@@ -115,7 +116,7 @@ TEST_F(AxisTest, BeginsItsFallbackInTheTickInWhichTheCommandLapses) {
 
 TEST_F(AxisTest, WhatEndsActiveDecidesAboutTheFallback) {
   activate();
-  (void)axis_.take(MotorEvent::kFault, RobotStatus::kRun, {}, now());
+  (void)axis_.handle(MotorEvent::kFault, RobotStatus::kRun, {}, now());
   EXPECT_FALSE(axis_.fallbackActs()) << "a fault coasts";
   EXPECT_EQ(axis_.status(), MotorStatus::kFault);
 }
@@ -129,7 +130,7 @@ TEST_F(AxisTest, FillsItsSnapshot) {
   EXPECT_TRUE(std::isnan(seen.target_shaped));
   EXPECT_EQ(seen.command_received, MonotonicTime{});
   EXPECT_TRUE(seen.owner.view().empty());
-  (void)axis_.take(kTurn, kPlanner, {now_, now_ + 50ms});
+  (void)axis_.follow(kTurn, kPlanner, {now_, now_ + 50ms});
   const auto received = now_;
   tick();
   axis_.fill(seen);
@@ -226,10 +227,10 @@ TEST_F(AxisTest, OneThatIsTooHotTripsFromItsEnablingOn) {
     (void)axis.listen(now(), {.before = now_ - 1ms, .ran = 1ms});
   };
   hear_hot();
-  (void)axis.take(MotorEvent::kFeedbackFresh, RobotStatus::kRun, {}, now());
+  (void)axis.handle(MotorEvent::kFeedbackFresh, RobotStatus::kRun, {}, now());
   EXPECT_FALSE(axis.trips(false, now())) << "at rest it cools down";
   axis.prepareEnabling(now());
-  (void)axis.take(MotorEvent::kEnable, RobotStatus::kRun, {}, now());
+  (void)axis.handle(MotorEvent::kEnable, RobotStatus::kRun, {}, now());
   hear_hot();
   EXPECT_TRUE(axis.trips(false, now()));
   EXPECT_EQ(axis.fault(), FaultCode::kOverheated);
@@ -241,21 +242,21 @@ TEST_F(AxisTest, AnotherSenderStopsOneThatIsThereAndInNoFault) {
   activate();
   EXPECT_TRUE(axis_.yields());
   EXPECT_EQ(axis_.fault(), FaultCode::kForeignCommands);
-  (void)axis_.take(MotorEvent::kFault, RobotStatus::kRun, {}, now());
+  (void)axis_.handle(MotorEvent::kFault, RobotStatus::kRun, {}, now());
   EXPECT_FALSE(axis_.yields());
 }
 
 TEST_F(AxisTest, AStopSaysWhyUntilItIsEnabledAgain) {
   activate();
   EXPECT_EQ(axis_.stop().cause, StopCause::kNone);
-  (void)axis_.take(MotorEvent::kDisable, RobotStatus::kRun, {StopCause::kRequest}, now());
+  (void)axis_.handle(MotorEvent::kDisable, RobotStatus::kRun, {StopCause::kRequest}, now());
   EXPECT_EQ(axis_.stop().cause, StopCause::kRequest);
-  (void)axis_.take(MotorEvent::kFeedbackLost, RobotStatus::kRun, {StopCause::kSilence}, now());
+  (void)axis_.handle(MotorEvent::kFeedbackLost, RobotStatus::kRun, {StopCause::kSilence}, now());
   EXPECT_EQ(axis_.stop().cause, StopCause::kRequest) << "it was not on";
   tick();
-  (void)axis_.take(MotorEvent::kFault, RobotStatus::kRun, {StopCause::kFault}, now());
+  (void)axis_.handle(MotorEvent::kFault, RobotStatus::kRun, {StopCause::kFault}, now());
   EXPECT_EQ(axis_.stop().cause, StopCause::kFault) << "a fault is news all the same";
-  (void)axis_.take(MotorEvent::kClear, RobotStatus::kRun, {}, now());
+  (void)axis_.handle(MotorEvent::kClear, RobotStatus::kRun, {}, now());
   tick();
   EXPECT_EQ(axis_.stop().cause, StopCause::kFault);
   activate();
@@ -267,7 +268,7 @@ TEST_F(AxisTest, OnlyARequestOrTheEndOfTheProcessDisables) {
   robot_->motors()[0].fallback.on_estop = FallbackAction::kBrake;
   const auto after = [this](MotorEvent event, RobotStatus robot) {
     activate();
-    (void)axis_.take(event, robot, {}, now());
+    (void)axis_.handle(event, robot, {}, now());
     axis_.order(robot, now());
     const auto kind = axis_.motor().ordered();
     axis_.endFallback();
