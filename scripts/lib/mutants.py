@@ -269,12 +269,23 @@ class Tree:
             file.write_text(original, encoding="utf-8")
 
 
+def part_of(text: str) -> tuple[int, int]:
+    """K and N of K/N."""
+    part, _, parts = text.partition("/")
+    if not (part.isdecimal() and parts.isdecimal() and 1 <= int(part) <= int(parts)):
+        raise argparse.ArgumentTypeError(f"{text}: give K/N, such as 1/3")
+    return int(part), int(parts)
+
+
 def arguments() -> argparse.Namespace:
     """The command line."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--mutate", type=Path, required=True, help="universalmutator's program")
     parser.add_argument("--count", type=int, default=400, help="mutants that compile")
     parser.add_argument("--seed", type=int, default=1)
+    parser.add_argument(
+        "--part", type=part_of, default=(1, 1), help="K/N: one part of N of the sample"
+    )
     parser.add_argument("--jobs", type=int, default=2)
     return parser.parse_args()
 
@@ -295,7 +306,9 @@ def main() -> int:
         return 1
     candidates = [mutant for mutant in everything if mutant.key not in known]
     # Some do not compile.
-    sample = sample_of(candidates, given.seed, 2 * given.count)
+    part, parts = given.part
+    sample = sample_of(candidates, given.seed, 2 * given.count)[part - 1 :: parts]
+    count = given.count // parts
     print(
         f"{len(everything)} mutants of {len(FILES)} files, {len(known)} known as equivalent",
         flush=True,
@@ -312,7 +325,7 @@ def main() -> int:
     counts = {"killed": 0, "lives": 0, "invalid": 0}
 
     def judge(mutant: Mutant) -> tuple[Mutant, str]:
-        if counts["killed"] + counts["lives"] >= given.count:
+        if counts["killed"] + counts["lives"] >= count:
             return mutant, "enough"
         tree = trees.get()
         try:

@@ -1,5 +1,5 @@
 #!/bin/bash
-# small changes of the safety core, each of which the unit tests must notice: 400 of them by RC10_MUTANTS_SEED, about an hour (RC10_MUTANTS)
+# small changes of the safety core, each of which the unit tests must notice: 400 of them by RC10_MUTANTS_SEED, about an hour (RC10_MUTANTS; RC10_MUTANTS_PART=1/3 for a third of them)
 set -euo pipefail
 # shellcheck source=scripts/lib/results.sh
 . "$(dirname "${BASH_SOURCE[0]}")/../lib/results.sh"
@@ -12,5 +12,5 @@ if [ ! -x "$tools/bin/mutate" ]; then
         --requirement "$repo/tests/mutants/requirements.txt"
 fi
 suite "mutants" "$repo/scripts/lib/mutants.py" --mutate "$tools/bin/mutate" --count "${RC10_MUTANTS:-400}" \
-    --seed "${RC10_MUTANTS_SEED:-1}" --jobs "${RC10_JOBS:-$(nproc)}"
+    --seed "${RC10_MUTANTS_SEED:-1}" --part "${RC10_MUTANTS_PART:-1/1}" --jobs "${RC10_JOBS:-$(nproc)}"
 finish

@@ -170,6 +170,22 @@ def robot_under_test() -> Iterator[tuple[Proc, rc10.Robot, Witness]]:
         yield process, robot, log
 
 
+@contextlib.contextmanager
+def robot_with(
+    tmp_path: Path, changes: dict[str, str] | None = None, more: str = ""
+) -> Iterator[tuple[Proc, rc10.Robot, Witness]]:
+    """The robot of the campaign with other text in its file, not yet enabled."""
+    text = CONFIG.read_text()
+    for old, new in (changes or {}).items():
+        assert old in text
+        text = text.replace(old, new)
+    path = tmp_path / "robot.yaml"
+    path.write_text(text + more)
+    with drives(), witness() as log, daemon(path) as process, client() as robot:
+        wait_status(robot, rc10.MotorStatus.READY)
+        yield process, robot, log
+
+
 def drive(robot: rc10.Robot, log: Witness, seconds: float, **targets: rc10.Setpoint) -> int:
     """Commands at 100 Hz; returns when the last command was sent, in ns of the wall clock."""
     start_ns = time.time_ns()
@@ -198,6 +214,11 @@ def proven(
     with Path(os.environ["RC10_SCRATCH"], "records.jsonl").open("a") as out:
         out.write(json.dumps(line) + "\n")
     assert ticks is None or ticks <= within, line
+
+
+def nothing(words: str, reaction: str) -> None:
+    """A line of the table without a time."""
+    proven(words, reaction, None, None, 0)
 
 
 class Stranger:

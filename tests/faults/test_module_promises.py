@@ -8,7 +8,7 @@ import struct
 import time
 from typing import TYPE_CHECKING, NamedTuple
 
-from faultrig import proven
+from faultrig import nothing, proven
 from faulty_drives import Fault, FaultyDrives, FaultyMotor
 from guestlib import Candump, Pin, can_frame, can_socket, wait_for
 from module_rig import let_pass, robot_of, until
@@ -30,10 +30,6 @@ ACTIVE, READY = rc10.MotorStatus.ACTIVE, rc10.MotorStatus.READY
 OFFLINE, FAULT = rc10.MotorStatus.OFFLINE, rc10.MotorStatus.FAULT
 GM6020_CURRENT = 0x2FE
 VALIDITY_MS = 40
-
-
-def nothing(words: str, reaction: str) -> None:
-    proven(words, reaction, None, None, 0)
 
 
 def last_torque_ns(frames: list[Frame], after_ns: int = 0) -> int:

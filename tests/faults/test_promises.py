@@ -12,7 +12,6 @@ from typing import TYPE_CHECKING
 
 import pytest
 from faultrig import (
-    CONFIG,
     FRONT,
     TICK_NS,
     Stranger,
@@ -23,8 +22,10 @@ from faultrig import (
     daemon,
     drive,
     drives,
+    nothing,
     proven,
     robot_under_test,
+    robot_with,
     witness,
 )
 from faulty_drives import Fault
@@ -35,41 +36,19 @@ import rc10
 from rc10.lcm_types import request_t
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator
+    from collections.abc import Callable
 
-    from guestlib import Proc
 
 LEFT, RIGHT, ARM = 1, 2, 3
 TOTAL_ANGLE = 4  # of command_t
-HOMING_FAILED = 3  # a joint's state
 ACTIVE, READY = rc10.MotorStatus.ACTIVE, rc10.MotorStatus.READY
 OFFLINE, FAULT = rc10.MotorStatus.OFFLINE, rc10.MotorStatus.FAULT
 NOT_AT_REST, FOREIGN = 8, 9
 ARM_KEYS = "on_timeout: brake, on_estop: brake}"
 
 
-@contextlib.contextmanager
-def robot_with(
-    tmp_path: Path, changes: dict[str, str] | None = None, more: str = ""
-) -> Iterator[tuple[Proc, rc10.Robot, Witness]]:
-    """The robot of the campaign with other text in its file, not yet enabled."""
-    text = CONFIG.read_text()
-    for old, new in (changes or {}).items():
-        assert old in text
-        text = text.replace(old, new)
-    path = tmp_path / "robot.yaml"
-    path.write_text(text + more)
-    with drives(), witness() as log, daemon(path) as process, client() as robot:
-        wait_status(robot, READY)
-        yield process, robot, log
-
-
 def has(robot: rc10.Robot, name: str, status: rc10.MotorStatus) -> Callable[[], bool]:
     return lambda: robot.wait_for_state(1.0).motors[name].status is status
-
-
-def nothing(words: str, reaction: str) -> None:
-    proven(words, reaction, None, None, 0)
 
 
 # ---- Rest, and foreign frames
@@ -507,120 +486,6 @@ def test_a_first_angle_has_a_bound(tmp_path: Path) -> None:
         assert state.total_angle_deg == pytest.approx(28, abs=4)
         log.check()
         nothing("a first angle target just within `max_first_step_deg`", "followed")
-
-
-# ---- Modules
-
-
-def test_a_module_acts_for_nobody_no_longer_than_its_time(tmp_path: Path) -> None:
-    joint = (
-        "modules:\n"
-        "  - {name: lift, type: joint, motor: left, max_velocity_deg_s: 90,\n"
-        "     max_acceleration_deg_s2: 360, on_silence: hold, silence_max_s: 1}\n"
-    )
-    with robot_with(tmp_path, more=joint) as (_, robot, log):
-        robot.enable()
-        break_drive(LEFT, Fault.PUSHED, 100)
-        lift = robot.module("lift")
-        start_ns = time.time_ns()
-        for t_s in robot.rate(100):
-            if t_s >= 0.5:
-                break
-            lift.send(angle_deg=30.0, validity_ms=40)
-        silent_ns = time.time_ns()
-        log.driven(start_ns, silent_ns, "left", validity_ms=1060)
-        time.sleep(0.8)
-        held = [f for f in log.frames(FRONT, silent_ns + 500 * MS) if currents(f)[0]]
-        assert held, "it holds its place against the load"
-        time.sleep(1.0)
-        log.check()
-        proven(
-            "the client of a `joint` falls silent, `on_silence: hold`, `silence_max_s: 1`",
-            "holds for that time, then `on_timeout`",
-            silent_ns,
-            log.last_torque_ns("left"),
-            1060,
-        )
-
-
-def test_a_joint_holds_on_while_any_client_is_heard(tmp_path: Path) -> None:
-    joint = (
-        "modules:\n"
-        "  - {name: lift, type: joint, motor: left, max_velocity_deg_s: 90,\n"
-        "     max_acceleration_deg_s2: 360, on_silence: hold, silence_max_s: 1}\n"
-    )
-    with robot_with(tmp_path, more=joint) as (_, robot, log):
-        robot.enable()
-        break_drive(LEFT, Fault.PUSHED, 100)
-        lift = robot.module("lift")
-        start_ns = time.time_ns()
-        for t_s in robot.rate(100):
-            if t_s >= 0.5:
-                break
-            lift.send(angle_deg=30.0, validity_ms=40)
-        for t_s in robot.rate(100):
-            if t_s >= 3.0:
-                break
-            robot.command({"right": rc10.velocity_rpm(20)}, validity_ms=40)
-        log.driven(start_ns, time.time_ns(), "left", "right", validity_ms=1060)
-        assert robot.wait_for_state(1.0).motors["left"].status is ACTIVE
-        assert currents(log.frames(FRONT)[-1])[0] != 0, "it holds its place against the load"
-        log.check()
-        nothing("the same, while another motor is commanded", "holds on")
-
-
-def test_homing_that_finds_its_stop_stops_nothing(tmp_path: Path) -> None:
-    joint = (
-        "modules:\n"
-        "  - {name: lift, type: joint, motor: left, homing: stop, homing_timeout_s: 20,\n"
-        "     max_velocity_deg_s: 90, max_acceleration_deg_s2: 360, on_silence: hold}\n"
-    )
-    unknown = {"id: 1, zero: power_on, current_limit_a: 10}": "id: 1, current_limit_a: 10}"}
-    with robot_with(tmp_path, unknown, joint) as (_, robot, log):
-        robot.enable()
-        lift = robot.module("lift")
-        start_ns = time.time_ns()
-        break_drive(LEFT, Fault.WALL, -40)
-        for t_s in robot.rate(100):
-            lift.send(home=1)
-            if t_s > 1.0 and lift.state["homed"] == 1.0:
-                break
-            assert t_s < 20.0, lift.state
-        log.driven(start_ns, time.time_ns(), "left", validity_ms=200)
-        left = robot.wait_for_state(1.0).motors["left"]
-        assert left.zeroed
-        assert left.status is ACTIVE
-        log.check()
-        nothing("homing that reaches its stop twice", "homed; nothing stops")
-
-
-def test_homing_takes_no_balance_for_the_stop(tmp_path: Path) -> None:
-    joint = (
-        "modules:\n"
-        "  - {name: lift, type: joint, motor: left, homing: stop, homing_timeout_s: 4,\n"
-        "     max_velocity_deg_s: 90, max_acceleration_deg_s2: 360, on_silence: hold}\n"
-    )
-    unknown = {"id: 1, zero: power_on, current_limit_a: 10}": "id: 1, current_limit_a: 10}"}
-    with robot_with(tmp_path, unknown, joint) as (_, robot, log):
-        robot.enable()
-        lift = robot.module("lift")
-        start_ns = time.time_ns()
-        # At 5 rpm towards the stop it stands still where the load eats 0.9 of its 1 A: in mid-air.
-        break_drive(LEFT, Fault.PUSHED, 27)
-        stood = 0
-        for t_s in robot.rate(100):
-            lift.send(home=1)
-            left = robot.motor("left")
-            stood += abs(left.velocity_rpm) < 1 and abs(left.current_a) > 0.7
-            if t_s > 1.0 and lift.state["state"] == HOMING_FAILED:
-                break
-            assert t_s < 10.0, lift.state
-        log.driven(start_ns, time.time_ns(), "left", validity_ms=200)
-        assert stood >= 15, "of 100 a second: it pushed in vain"
-        assert lift.state["homed"] == 0.0
-        assert not robot.wait_for_state(1.0).motors["left"].zeroed
-        log.check()
-        nothing("homing against a load that balances its current", "it fails; no reference")
 
 
 # ---- The turn at power-up

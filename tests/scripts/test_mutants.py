@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import argparse
+
 import pytest
 from mutants import (
     FILES,
@@ -10,6 +12,7 @@ from mutants import (
     as_written,
     difference,
     equivalent,
+    part_of,
     sample_of,
     shown,
     stale,
@@ -91,3 +94,10 @@ def test_a_sample_is_the_same_by_seed_whatever_else_there_is() -> None:
     assert kept == sample[: len(kept)]
     assert len(kept) > 10
     assert sample_of(candidates, 1, 1000) == sample_of(candidates, 1, 100)
+
+
+def test_a_part_is_one_of_several() -> None:
+    assert part_of("2/3") == (2, 3)
+    for wrong in ("0/3", "4/3", "2", "a/b", "1/-1"):
+        with pytest.raises(argparse.ArgumentTypeError, match="give K/N"):
+            part_of(wrong)

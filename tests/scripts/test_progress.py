@@ -27,6 +27,7 @@ class Script:
 
     def __init__(self, stderr: int, clock: Path) -> None:
         os.mkfifo(clock)
+        self._logs = clock.parent
         # By both ends, so that neither open waits.
         self._clock = os.open(clock, os.O_RDWR)
         with clock.open("rb+", buffering=0) as fd:
@@ -36,9 +37,15 @@ class Script:
                 stdout=subprocess.DEVNULL,
                 stderr=stderr,
                 pass_fds=[fd.fileno()],
+                env={**os.environ, "TMPDIR": str(clock.parent)},
                 text=True,
                 process_group=0,
             )
+
+    def wait_for_output(self) -> None:
+        """The command has printed into its log. The time limit of the test ends this."""
+        while not any(log.read_text() for log in self._logs.glob("rc10-progress.*")):
+            pass
 
     def let_seconds_pass(self, count: int) -> None:
         os.write(self._clock, b"\n" * count)
@@ -91,6 +98,7 @@ def pipe() -> Iterator[tuple[int, int]]:
 def test_on_a_terminal_the_line_moves_and_goes(terminal: tuple[int, int], tmp_path: Path) -> None:
     ours, theirs = terminal
     with script(theirs, tmp_path) as running:
+        running.wait_for_output()
         for second in ("0:01", "0:02"):
             running.let_seconds_pass(1)
             line = f"\rcompiling: {second} of about 1:35, file 3 of 7\x1b[K"
