@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from mcap.reader import make_reader
-from playwright.sync_api import Locator, Page, expect
+from playwright.sync_api import Locator, Page, WebSocketRoute, expect
 from test_capture import panel, step
 from test_side_plots import answer_the_past
 
@@ -88,6 +88,29 @@ def test_each_tick_of_a_plot_is_in_it_with_its_time_and_the_units(page: Page) ->
         wanted = {"velocity_rpm": tick % 100_000 - 50_000}
         # A value that is not reported is left out.
         assert values == (wanted if tick % 2 else {**wanted, "current_a": tick % 100 + 0.25})
+
+
+def test_there_is_nothing_to_save_before_the_first_values(page: Page) -> None:
+    held = True
+
+    def relay(socket: WebSocketRoute) -> None:
+        server = socket.connect_to_server()
+        socket.on_message(server.send)
+
+        def pass_on(message: str | bytes) -> None:
+            if isinstance(message, str) or not held:
+                socket.send(message)
+
+        server.on_message(pass_on)
+
+    page.route_web_socket("**/link", relay)
+    page.reload()
+    page.locator("#tab-plots").click()
+    button = page.get_by_role("button", name="MCAP", exact=True)
+    expect(page.locator(".plot > .legend tr")).to_have_count(2)
+    expect(button).to_be_disabled()
+    held = False
+    expect(button).to_be_enabled()
 
 
 def test_the_times_are_those_of_rc10d_and_motors_have_their_topics(

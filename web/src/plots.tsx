@@ -69,6 +69,7 @@ export function Curves(props: {
   const [droppedTicks, setDroppedTicks] = useState(0);
   const [saving, setSaving] = useState(false);
   const [notSaved, setNotSaved] = useState('');
+  const [filled, setFilled] = useState(false);
   const box = useRef<HTMLDivElement>(null);
   const chart = useRef<uPlot | null>(null);
   const view = useRef(0);
@@ -113,6 +114,7 @@ export function Curves(props: {
       if (!frozenNow.current) u.setScale('x', { min: end - span_s, max: end });
       else u.redraw();
     });
+    setFilled(traces.times.length > 0);
   };
 
   // The chart is made anew for other signals; its data come with the answer.
@@ -130,6 +132,7 @@ export function Curves(props: {
     ];
     setPoints([]);
     setFrozen(false);
+    setFilled(false);
     const number_ = link.view(chosen, columnUs, span_s * kUs);
     view.current = number_;
     link.onView = (answer) => {
@@ -269,7 +272,7 @@ export function Curves(props: {
         <button type="button" onClick={csv}>
           {word('csv')}
         </button>
-        <button type="button" disabled={saving} onClick={() => void mcap()}>
+        <button type="button" disabled={saving || !filled} onClick={() => void mcap()}>
           {word('mcap')}
         </button>
         <button type="button" onClick={png}>
