@@ -48,19 +48,22 @@ using ShaftRing = Ring<ShaftOrder, 16>;
 
 /// Everything that crosses to and from the link thread.
 struct LinkExchange {
+  static constexpr std::size_t kOrders = 64;
+
   Ring<Command, 64> commands;       // link -> scheduler
-  Ring<Order, 64> orders;           // link -> scheduler
+  Ring<Order, kOrders> orders;      // link -> scheduler
   Ring<SignalMessage, 64> signals;  // link -> scheduler
   ShaftRing shafts;                 // link -> sim
   Ring<Event, 16> refusals;         // link -> scheduler, for the black box: commands that admission refused
-  Ring<OrderResult, 64> results;    // scheduler -> link
-  Ring<Event, 1024> events;         // scheduler -> link
-  NoteRing notes;                   // io -> link, in words already
-  NoteRing line_notes;              // lines -> link, the same
-  LatestValue<Snapshot> snapshot;   // scheduler -> link
-  TickAges ages;                    // scheduler -> link
-  TickTrace trace;                  // choice: link -> scheduler; rows back
-  BusScanExchange scan;             // questions: link -> scheduler; frames back
+  /// Answers of one tick, at the most: an e-stop settles all that wait, and orders come with it.
+  Ring<OrderResult, kMaxOpenRequests + kOrders> results;  // scheduler -> link
+  Ring<Event, 1024> events;                               // scheduler -> link
+  NoteRing notes;                                         // io -> link, in words already
+  NoteRing line_notes;                                    // lines -> link, the same
+  LatestValue<Snapshot> snapshot;                         // scheduler -> link
+  TickAges ages;                                          // scheduler -> link
+  TickTrace trace;                                        // choice: link -> scheduler; rows back
+  BusScanExchange scan;                                   // questions: link -> scheduler; frames back
   /// Beside the ring, so that an e-stop gets through when the ring is full.
   std::atomic<bool> estop{false};
   LatestValue<link::Name> estop_client;  ///< The one that asked for it; published before.

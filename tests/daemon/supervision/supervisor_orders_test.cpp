@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <map>
+#include <string>
 #include <vector>
 
 #include <gmock/gmock.h>
@@ -79,6 +80,33 @@ TEST_F(OpenRequestsTest, TheAnswerSaysWhichMotorsWereOnBefore) {
   EXPECT_EQ(on_before[2], MotorSet{0b01}) << "it was ENABLING";
   EXPECT_EQ(on_before[3], MotorSet{0b01});
 }
+
+/// Requests that wait for nothing.
+class OtherRequestsTest : public OpenRequestsTest, public ::testing::WithParamInterface<Operation> {};
+
+TEST_P(OtherRequestsTest, AreCarriedOutWhileAsManyAsPossibleWait) {
+  askToEnable(kLeft, kMaxOpenRequests, 1);
+  robot.tick();
+  ASSERT_EQ(status(kLeft), MotorStatus::kEnabling);
+  Order order;
+  order.id = 1000;
+  order.operation = GetParam();
+  order.motors.set(kRight);
+  ASSERT_TRUE(robot.exchange().orders.push(order));
+  robot.run(5);
+  const auto all = answers();
+  const auto answer =
+      std::find_if(all.begin(), all.end(), [](const OrderResult& result) { return result.id == 1000; });
+  ASSERT_NE(answer, all.end());
+  EXPECT_FALSE(answer->refused);
+}
+
+INSTANTIATE_TEST_SUITE_P(All, OtherRequestsTest,
+                         ::testing::Values(Operation::kDisable, Operation::kEstop, Operation::kClear,
+                                           Operation::kZero, Operation::kSetGains),
+                         [](const auto& each) {
+                           return "Operation" + std::to_string(static_cast<int>(each.param));
+                         });
 
 TEST_F(OpenRequestsTest, ThoseOfModulesTakeNoPlaceOfAClients) {
   askToEnable(kLeft, kMaxOpenRequests, Order::kFromModule);
