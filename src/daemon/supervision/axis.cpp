@@ -173,9 +173,7 @@ bool Axis::trips(bool reduced, const Tick& tick) noexcept {
   // A fallback that brakes or holds after an e-stop is a loop as well.
   const bool moves = status_ == MotorStatus::kActive ||
                      (status_ == MotorStatus::kReady && fallback_.acts()) || heldWhileEnabling();
-  const bool too_fast = reduced_.step(reduced, moves, motor_.feedback(), tick);
-  shaper_.setCeiling(reduced_.ceilingRpm());
-  motor_.boundSpeed(reduced_.boundRpm());
+  const bool too_fast = reduced_.any() && reduces(reduced, moves, tick);
   if (!moves) {
     guard_.reset();
     // Before its drive answers its group may let go of it, and its fallback goes on.
@@ -197,6 +195,13 @@ bool Axis::trips(bool reduced, const Tick& tick) noexcept {
   if (fault == FaultCode::kNone) return false;
   fault_ = fault;
   return true;
+}
+
+bool Axis::reduces(bool reduced, bool moves, const Tick& tick) noexcept {
+  const bool too_fast = reduced_.step(reduced, moves, motor_.feedback(), tick);
+  shaper_.setCeiling(reduced_.ceilingRpm());
+  motor_.boundSpeed(reduced_.boundRpm());
+  return too_fast;
 }
 
 RestCheck::Verdict Axis::checkRest(const Tick& tick) noexcept {

@@ -117,9 +117,11 @@ class Axis {
   /// Unheard in this tick. Not inlined: listen() is short without it.
   [[gnu::noinline]] void goUnheard(bool came, const Since& since) noexcept;
   [[nodiscard]] FrameKind frameKind(RobotStatus robot) const noexcept;
+  /// Speed and effort of reduced mode for this tick. True: it is faster than it may be. Few motors have it.
+  [[nodiscard, gnu::noinline]] bool reduces(bool reduced, bool moves, const Tick& tick) noexcept;
   /// Orders a hold whose place is led under the ceiling of the speed; false: there is none.
-  [[nodiscard]] bool leadsHold(const Tick& tick) noexcept;
-  [[nodiscard]] TargetShaper::InForce commandInForce(bool limited) const noexcept;
+  [[nodiscard, gnu::noinline]] bool leadsHold(const Tick& tick) noexcept;
+  [[nodiscard, gnu::noinline]] TargetShaper::InForce commandInForce(bool limited) const noexcept;
   [[nodiscard]] Acting acting() const noexcept;
   /// Its command is the velocity of a fallback.
   [[nodiscard]] bool ramps() const noexcept {

@@ -37,6 +37,8 @@ class ReducedMotion {
                           const Tick& tick) noexcept {
     return any_ && follow(reduced, moves, feedback, tick);
   }
+  /// Without, nothing is ever reduced, and step() need not be called.
+  [[nodiscard]] bool any() const noexcept { return any_; }
 
   /// Bound of every target's speed; infinite: none.
   [[nodiscard]] double ceilingRpm() const noexcept { return ceiling_rpm_; }
