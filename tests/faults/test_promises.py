@@ -30,6 +30,7 @@ from faultrig import (
 )
 from faulty_drives import Fault
 from guestlib import can_frame, can_socket, run, wait_for
+from module_rig import let_pass
 from rig import MS, currents, wait_status
 
 import rc10
@@ -336,7 +337,7 @@ def test_an_estop_takes_the_place_of_what_acts_already(tmp_path: Path) -> None:
         drive(robot, log, 0.3, left=rc10.velocity_rpm(60))
         break_drive(RIGHT, Fault.SILENT)
         wait_for(acts(robot, "left", rc10.Acting.BRAKE), 2.0)
-        time.sleep(1.0)
+        let_pass(robot, 1.0)
         state = robot.wait_for_state(1.0)
         assert state.motors["left"].acting is rc10.Acting.BRAKE
         assert not state.estopped
