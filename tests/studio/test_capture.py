@@ -109,7 +109,7 @@ def test_a_file_is_opened_by_a_page_without_a_robot(
     captures = other.locator(".captures")
     expect(captures.locator("tbody tr")).to_have_count(0)
     studio.daemon.kill()
-    expect(other.get_by_role("alert")).to_contain_text("rc10d is not running")
+    expect(other.get_by_role("region", name="rc10d is not running")).to_be_visible()
     captures.locator("input[type=file]").set_input_files(file)
     expect(captures.locator("tbody tr")).to_contain_text("0.0 → 20.0 rpm")
     context.close()

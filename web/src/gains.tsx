@@ -194,7 +194,8 @@ export function Gains(props: { motor: string; proposed?: Values | null; onKnown?
           )}
         </form>
       )}
-      {notRead !== '' && (
+      {/* The notice of the page tells the end of rc10d, once. */}
+      {notRead !== '' && known.down === null && (
         <p class="hint" role="alert">
           {notRead}
         </p>
