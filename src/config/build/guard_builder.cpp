@@ -29,8 +29,8 @@ constexpr int kFastCurrentHz = 50;
 // A limit that trips on what is asked for would be of no use.
 void checkOverspeed(MotorParse& in) {
   const auto given = in.settings.find("overspeed_rpm");
-  const double target_rpm = static_cast<double>(in.motor().velocity_limit_rpm);
-  if (!given || static_cast<double>(in.draft.config.guard.overspeed_rpm) > target_rpm) return;
+  const float target_rpm = in.motor().velocity_limit_rpm;
+  if (!given || in.draft.config.guard.overspeed_rpm > target_rpm) return;
   in.problems.error(given->place(), given->path,
                     given->text() + " rpm is not above the velocity limit of " + numberText(target_rpm) +
                         " rpm; raise it, or lower velocity_limit_rpm");
@@ -43,9 +43,9 @@ void checkTemperatures(MotorParse& in) {
   const auto& given = trip ? trip : derate;
   if (!given || guard.temperature_derate_c < guard.temperature_trip_c) return;
   in.problems.error(given->place(), given->path,
-                    "temperature_derate_c (" + numberText(static_cast<double>(guard.temperature_derate_c)) +
-                        ") must be below temperature_trip_c (" +
-                        numberText(static_cast<double>(guard.temperature_trip_c)) + "); change one of them");
+                    "temperature_derate_c (" + numberText(guard.temperature_derate_c) +
+                        ") must be below temperature_trip_c (" + numberText(guard.temperature_trip_c) +
+                        "); change one of them");
 }
 
 // Without it a step of the target is at once a following error.

@@ -64,12 +64,11 @@ void readEffortLimit(MotorParse& in) {
   const float full_scale = in.traits.effort_full_scale;
   in.settings.read(key, in.motor().effort_limit);
   const auto given = in.settings.find(key);
-  const double limit = in.settings.number(key).value_or(0.0);
-  if (!given || limit <= static_cast<double>(full_scale)) return;
-  const Range range{.min = 0.0, .max = static_cast<double>(full_scale), .above_min = true};
+  if (!given || in.motor().effort_limit <= full_scale) return;
+  const std::string most = numberText(full_scale);
   in.problems.error(given->place(), given->path,
-                    numberText(limit) + " is above the " + in.modelName() + " limit of " +
-                        numberText(range.max) + "; " + useWords(range, ""));
+                    given->text() + " is above the " + in.modelName() + " limit of " + most +
+                        "; use more than 0, at most " + most);
 }
 
 void readZero(MotorParse& in) {

@@ -35,7 +35,7 @@ void readVelocity(MotorParse& in) {
   if (!(reduced.velocity_rpm < reduced.full_rpm)) {
     return in.problems.error(given->place(), given->path,
                              given->text() + " rpm is not below the " +
-                                 numberText(std::round(static_cast<double>(reduced.full_rpm))) +
+                                 numberText(std::round(reduced.full_rpm)) +
                                  " rpm that the motor may have anyway; lower it");
   }
   if (!(reduced.slew_rpm_per_s > 0.0F)) return;
@@ -64,7 +64,7 @@ void readEffort(MotorParse& in) {
   }
   in.problems.error(given->place(), given->path,
                     given->text() + (in.byVoltage() ? " V" : " A") + " is not below the " +
-                        numberText(static_cast<double>(limit)) + " that the motor may have anyway; lower it");
+                        numberText(limit) + " that the motor may have anyway; lower it");
 }
 
 }  // namespace

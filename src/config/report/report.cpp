@@ -242,7 +242,7 @@ std::string reducedText(const MotorConfig& motor) {
   const ReducedConfig& reduced = motor.reduced;
   std::string text;
   if (reduced.velocity_rpm > 0.0F)
-    text = numberText(static_cast<double>(reduced.velocity_rpm)) + " rpm within " +
+    text = numberText(reduced.velocity_rpm) + " rpm within " +
            std::to_string(reduced.within / std::chrono::milliseconds{1}) + " ms";
   if (reduced.effort_share < 1.0F)
     text += (text.empty() ? "" : ", ") + limitText(motor, static_cast<double>(reduced.effort_share));

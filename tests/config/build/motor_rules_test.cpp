@@ -5,6 +5,7 @@
 #include <gmock/gmock.h>
 
 #include "config/config_text.hpp"
+#include "config/motor_families.hpp"
 
 namespace rc10::test::motor_rules_test {
 namespace {
@@ -12,7 +13,9 @@ namespace {
 using ::testing::AllOf;
 using ::testing::ElementsAre;
 using ::testing::EndsWith;
+using ::testing::HasSubstr;
 using ::testing::IsEmpty;
+using ::testing::Not;
 using ::testing::StartsWith;
 
 std::vector<std::string> errorsOfMotor(const std::string& motor) { return errorsOf(robotWith(motor)); }
@@ -84,6 +87,36 @@ TEST(MotorRules, ACurrentLimitStaysWithinTheDrive) {
       ElementsAre("hero.yaml:6:61: buses[0].motors[0].current_limit_a: -5 is below 0 A; use more than 0 A"));
   EXPECT_EQ(motorOf("{name: a, model: M3508, id: 1, current_limit_a: 20}").settings.effort_limit, 20.0F);
   EXPECT_EQ(motorOf("{name: a, model: M3508, id: 1, current_limit_a: 0.5}").settings.effort_limit, 0.5F);
+}
+
+/// The largest limit, as the message about a larger one has it; empty: the model has none.
+std::string mostOf(std::string_view model) {
+  const std::string motor = "{name: a, model: " + std::string{model} + ", id: 1, current_limit_a: ";
+  for (const std::string& error : errorsOfMotor(motor + "100000}")) {
+    const std::string words = " limit of ";
+    const auto begin = error.find(words);
+    if (begin == std::string::npos) continue;
+    const auto most = error.substr(begin + words.size(), error.find(';') - begin - words.size());
+    EXPECT_THAT(error, EndsWith("use more than 0, at most " + most));
+    return most;
+  }
+  return "";
+}
+
+TEST(MotorRules, TheLimitThatAMessageNamesIsAcceptedForEveryModel) {
+  int found = 0;
+  for (const auto& entry : motorFamilies()) {
+    for (const auto model : entry.family->models()) {
+      const auto most = mostOf(model);
+      if (most.empty()) continue;
+      ++found;
+      EXPECT_LT(most.size(), 12U) << model << ": " << most;
+      const std::string motor = "{name: a, model: " + std::string{model} + ", id: 1, current_limit_a: ";
+      for (const auto& error : errorsOfMotor(motor + most + "}"))
+        EXPECT_THAT(error, Not(HasSubstr("limit of"))) << model;
+    }
+  }
+  EXPECT_GT(found, 40);
 }
 
 TEST(MotorRules, ALimitOfZeroIsNotTakenForNoLimit) {
