@@ -278,6 +278,44 @@ modules:
     max_turn_deg_s: 180
     max_acceleration_m_s2: 3
     max_turn_acceleration_deg_s2: 360
+)",
+                                                            R"(
+robot: rolling
+buses:
+  - name: wheels
+    type: sim
+    motors:
+      - {name: wheel_left, model: M3508, id: 1, current_limit_a: 8, on_timeout: damp, on_estop: brake}
+      - {name: wheel_right, model: M3508, id: 2, current_limit_a: 8, on_timeout: damp, on_estop: brake}
+      - {name: wheel_middle, model: M2006, id: 3, current_limit_a: 5, on_timeout: damp, on_estop: brake}
+  - name: tracks
+    type: sim
+    motors:
+      - {name: track_left, model: VESC, id: 10, pole_pairs: 7, kv_rpm_per_v: 190, current_limit_a: 20,
+         velocity_limit_rpm: 600, on_timeout: damp, on_disable: brake, on_estop: ramp, ramp_s: 0.5,
+         reduced_velocity_rpm: 100, reduced_within_ms: 200}
+      - {name: track_right, model: VESC, id: 11, pole_pairs: 7, kv_rpm_per_v: 190, current_limit_a: 20,
+         velocity_limit_rpm: 600, on_timeout: damp, on_disable: brake, on_estop: ramp, ramp_s: 0.5, direction: -1,
+         reduced_velocity_rpm: 100, reduced_within_ms: 200}
+modules:
+  - name: base
+    type: omni3_chassis
+    wheels: {left: wheel_left, right: wheel_right, middle: wheel_middle}
+    wheel_radius_m: 0.05
+    centre_distance_m: 0.2
+    max_speed_m_s: 2
+    max_turn_deg_s: 180
+    max_acceleration_m_s2: 3
+    max_turn_acceleration_deg_s2: 360
+  - name: carrier
+    type: differential_chassis
+    wheels: {left: track_left, right: track_right}
+    wheel_radius_m: 0.06
+    track_m: 0.4
+    max_speed_m_s: 2
+    max_turn_deg_s: 180
+    max_acceleration_m_s2: 3
+    max_turn_acceleration_deg_s2: 360
 )"};
 
 constexpr std::size_t kParts = 4;  ///< Place in kRobots of the robot whose modules are below.

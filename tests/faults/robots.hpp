@@ -7,7 +7,7 @@
 namespace rc10::test {
 
 /// The robots of the chaos: each family, each way to control it, each fallback, each limit, modules.
-inline constexpr std::size_t kRobotCount = 8;
+inline constexpr std::size_t kRobotCount = 9;
 [[nodiscard]] RobotConfig robotOf(std::size_t index);
 /// A robot for a contest: all families, defaults wherever there is one.
 [[nodiscard]] RobotConfig matchRobot();
