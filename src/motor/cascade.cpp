@@ -41,7 +41,7 @@ Cascade::Cascade(const CascadeConfig& config)
 void Cascade::retune(const CascadeConfig& config) noexcept {
   if (config.velocity.index() != config_.velocity.index()) return;
   config_ = config;
-  velocity_range_ = OutputRange{}.within(config.velocity_limit_rpm);
+  boundSpeeds(speeds_rpm_);
   angle_.retune(config.angle);
   auto* incremental = std::get_if<PID_Incremental>(&velocity_);
   if (incremental != nullptr) {
@@ -49,6 +49,12 @@ void Cascade::retune(const CascadeConfig& config) noexcept {
   } else {
     std::get_if<PID_Position>(&velocity_)->retune(*std::get_if<PID_Position::Config>(&config.velocity));
   }
+}
+
+void Cascade::boundSpeeds(const OutputRange& speeds_rpm) noexcept {
+  speeds_rpm_ = speeds_rpm;
+  const OutputRange limit = OutputRange{}.within(config_.velocity_limit_rpm);
+  velocity_range_ = {std::max(limit.low, speeds_rpm.low), std::min(limit.high, speeds_rpm.high)};
 }
 
 void Cascade::reset() noexcept {
@@ -78,8 +84,21 @@ float Cascade::velocityTarget(const Target& target, const Measured& measured, fl
   return limited;
 }
 
+float Cascade::withoutWindup(float effort_in_force, float measured_rpm, float least_rpm) noexcept {
+  if (!closesLoop(active_mode_)) return effort_in_force;
+  const auto left = [&](auto& loop) noexcept {
+    const float asked_rpm = measured_rpm + loop.state().whole_error;
+    const bool asked = std::fabs(asked_rpm) > least_rpm && asked_rpm * effort_in_force > 0.0F;
+    if (!asked || measured_rpm / asked_rpm >= 0.5F) return effort_in_force;
+    loop.start(0.0F, measured_rpm, measured_rpm);
+    return 0.0F;
+  };
+  auto* incremental = std::get_if<PID_Incremental>(&velocity_);
+  return incremental != nullptr ? left(*incremental) : left(*std::get_if<PID_Position>(&velocity_));
+}
+
 float Cascade::step(const Target& target, const Measured& measured, float dt_s, float effort_limit,
-                    float effort_in_force, float effort_ff, float speed_bound_rpm) noexcept {
+                    float effort_in_force, float effort_ff) noexcept {
   if (!closesLoop(target.mode) || !allFinite(target, measured, effort_ff)) {
     reset();
     return 0.0F;
@@ -93,11 +112,11 @@ float Cascade::step(const Target& target, const Measured& measured, float dt_s, 
   const float velocity_target = velocityTarget(target, measured, dt_s);
 
   const OutputRange range = OutputRange::symmetric(effort_limit);
-  const bool driven =
-      std::fabs(measured.velocity_rpm) > speed_bound_rpm && measured.velocity_rpm * effort_in_force > 0.0F;
+  const bool driven = (measured.velocity_rpm > speeds_rpm_.high && effort_in_force > 0.0F) ||
+                      (measured.velocity_rpm < speeds_rpm_.low && effort_in_force < 0.0F);
   const auto advance = [&](auto& loop) noexcept {
     if (driven) {
-      loop.start(-effort_ff, velocity_target, velocity_target);  // the error alone brakes
+      loop.start(-effort_ff, measured.velocity_rpm, measured.velocity_rpm);  // the error alone brakes
     } else if (fresh) {
       loop.start(effort_in_force - effort_ff, measured.velocity_rpm, velocity_target);
     }

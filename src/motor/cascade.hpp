@@ -1,9 +1,9 @@
 #pragma once
 
 #include <cstdint>
-#include <limits>
 #include <variant>
 
+#include "app/limits.hpp"
 #include "app/pid_incremental.hpp"
 #include "app/pid_position.hpp"
 #include "app/target.hpp"
@@ -28,21 +28,25 @@ class Cascade {
     float velocity_rpm = 0.0F;
   };
 
-  static constexpr float kUnbounded = std::numeric_limits<float>::infinity();
-
   explicit Cascade(const CascadeConfig& config);
 
   /// One step on a new sample. `dt_s` is the samples' own spacing; `effort_limit` the limit in force,
   /// which the anti-windup respects; `effort_in_force` what the drive was told last, from which a
-  /// change of mode starts without a bump; `effort_ff` is added after the loops, inside the limit. An effort
-  /// that drives the shaft beyond `speed_bound_rpm` ends at once, however far the loop has wound up.
+  /// change of mode starts without a bump; `effort_ff` is added after the loops, inside the limit.
   /// Modes: velocity, angle, total angle; any other one, or an input that is not finite, gives 0.
   // Not inlined, and flat: no floating-point register outlives a call, few are in use where it begins, and
   // both loops keep theirs.
   [[nodiscard, gnu::noinline, gnu::flatten]] float step(const Target& target, const Measured& measured,
                                                         float dt_s, float effort_limit, float effort_in_force,
-                                                        float effort_ff = 0.0F,
-                                                        float speed_bound_rpm = kUnbounded) noexcept;
+                                                        float effort_ff = 0.0F) noexcept;
+
+  /// From the next step on no target of the velocity loop lies outside of these speeds, and an effort that
+  /// drives the shaft beyond them ends at once, however far that loop has wound up.
+  void boundSpeeds(const OutputRange& speeds_rpm) noexcept;
+  /// Before a stop: what the velocity loop has built up ends if it drives a shaft with less than half of the
+  /// speed that it was asked for. A smaller speed than `least_rpm` counts as none. The effort that is left of
+  /// `effort_in_force`.
+  [[nodiscard]] float withoutWindup(float effort_in_force, float measured_rpm, float least_rpm) noexcept;
 
   /// Other gains from the next step on, without a bump. The type of the velocity loop stays: a config of
   /// another one is ignored.
@@ -61,7 +65,8 @@ class Cascade {
   [[nodiscard]] float velocityTarget(const Target& target, const Measured& measured, float dt_s) noexcept;
 
   CascadeConfig config_;
-  OutputRange velocity_range_;
+  OutputRange velocity_range_;  ///< Range of the velocity limit and of speeds_rpm_.
+  OutputRange speeds_rpm_;
   std::variant<PID_Incremental, PID_Position> velocity_;
   PID_Position angle_;
   double last_total_angle_deg_ = 0.0;

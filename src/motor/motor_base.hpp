@@ -9,6 +9,7 @@
 #include <string_view>
 #include <utility>
 
+#include "app/limits.hpp"
 #include "app/motor_readings.hpp"
 #include "app/target.hpp"
 #include "app/time.hpp"
@@ -60,15 +61,16 @@ class Motor_Base : public FrameListener {
   void order(FrameKind kind) noexcept {
     ordered_ = kind;
     in_force_.reset();
-    led_hold_deg_ = std::numeric_limits<double>::quiet_NaN();
+    led_place_deg_ = std::numeric_limits<double>::quiet_NaN();
   }
   /// The same, with the target as bounded by the guards, for update() to follow. An optional field that is
   /// not finite becomes 0 here too, on purpose: nothing refuses an order, and the sum of a shaper may be one.
   void order(FrameKind kind, const Target& in_force) noexcept;
-  /// order(kHold) on the way to heldAngleDeg(), which stays: the total angle as bounded by the guards.
+  /// order(kHold) on the way back to heldAngleDeg(), which stays. `led_deg`: total angle to hold in this
+  /// tick, as bounded by the guards, finite.
   void orderHold(double led_deg) noexcept {
     order(FrameKind::kHold);
-    led_hold_deg_ = led_deg;
+    led_place_deg_ = led_deg;
   }
   [[nodiscard]] FrameKind ordered() const noexcept { return ordered_; }
 
@@ -80,8 +82,11 @@ class Motor_Base : public FrameListener {
   /// Scales the effort limit from this tick on, by 0 (nothing) to 1 (all): a hot motor gets less.
   void derate(float factor) noexcept { derating_ = factor > 0.0F ? std::min(factor, 1.0F) : 0.0F; }
 
-  /// Speed at the output shaft beyond which no loop of rc10d goes on pushing; infinite: none. Reduced mode.
-  void boundSpeed(double rpm) noexcept { speed_bound_rpm_ = static_cast<float>(rpm); }
+  /// Speeds at the output shaft, rpm, beyond which no loop of rc10d goes on pushing. Infinite: no bound.
+  virtual void boundSpeeds(const OutputRange& speeds_rpm) noexcept { speeds_rpm_ = speeds_rpm; }
+  /// Before a stop: what a loop of rc10d has built up against a shaft that is blocked, with less than half of
+  /// the speed that it was asked for, does not act in the stop. A speed below `least_rpm` counts as none.
+  virtual void dropWindup(float /*least_rpm*/) noexcept {}
 
   /// Computes the command of this tick from the order, the target and the feedback.
   virtual void update(const Tick& tick) noexcept = 0;
@@ -153,12 +158,13 @@ class Motor_Base : public FrameListener {
 
  protected:
   [[nodiscard]] float derating() const noexcept { return derating_; }
-  [[nodiscard]] float speedBoundRpm() const noexcept { return speed_bound_rpm_; }
+  [[nodiscard]] const OutputRange& speedBounds() const noexcept { return speeds_rpm_; }
   /// Target for update() while kCommand is ordered.
   [[nodiscard]] const Target& targetInForce() const noexcept { return in_force_ ? *in_force_ : target_; }
   /// Target for update() while kHold is ordered.
   [[nodiscard]] Target holdInForce(double held_deg) const noexcept {
-    return {.mode = ControlMode::kTotalAngle, .value = std::isnan(led_hold_deg_) ? held_deg : led_hold_deg_};
+    return {.mode = ControlMode::kTotalAngle,
+            .value = std::isnan(led_place_deg_) ? held_deg : led_place_deg_};
   }
 
   MotorFeedback feedback_;
@@ -172,8 +178,8 @@ class Motor_Base : public FrameListener {
   std::optional<Target> in_force_;
   FrameKind ordered_ = FrameKind::kRest;
   float derating_ = 1.0F;
-  double led_hold_deg_ = std::numeric_limits<double>::quiet_NaN();  ///< orderHold(); NaN: none.
-  float speed_bound_rpm_ = std::numeric_limits<float>::infinity();
+  double led_place_deg_ = std::numeric_limits<double>::quiet_NaN();  ///< orderHold(); NaN: none.
+  OutputRange speeds_rpm_;
 };
 
 /// "motor 'lift' (M3508 id 1)"

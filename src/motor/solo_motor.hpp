@@ -95,8 +95,7 @@ class SoloMotor : public Motor_Base, public CommandPacker {
   /// To be called once in each update().
   [[nodiscard]] Target wanted() noexcept;
 
-  /// Whether the measured current is at its limit; `count_a`: of which the drive is told, or reports, whole
-  /// counts.
+  /// Whether the measured current is at its limit; `count_a`: the resolution of the current on the wire, A.
   [[nodiscard]] bool currentAtLimit(double count_a) const noexcept;
 
   // A target within the limits of the motor; what they cut off is told in limits_. Not a number: 0.

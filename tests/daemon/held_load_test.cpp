@@ -136,11 +136,11 @@ TEST_P(HeldLoad, IsNotLetDownByAZero) {
   robot.order(Operation::kEstop);
   robot.run(2000);
   const double before_deg = angleDeg();
-  for (int i = 0; i < 3; ++i) {
-    EXPECT_EQ(robot.order(Operation::kZero).motors[kMotor], Refusal::kNone);
+  for (const double zero_deg : {30.0, -20.0, 0.0}) {
+    EXPECT_EQ(robot.order(Operation::kZero, zero_deg).motors[kMotor], Refusal::kNone);
     robot.run(500);
+    EXPECT_NEAR(angleDeg(), before_deg, 0.3) << zero_deg;
   }
-  EXPECT_NEAR(angleDeg(), before_deg, 0.3);
 }
 
 TEST_P(HeldLoad, IsOfASpringOrNot) {

@@ -338,6 +338,8 @@ void Oracle::judge(const Snapshot& snapshot, std::uint64_t periods, std::bitset<
     for (auto& field : motors_[i].track.fields) field.forget();
   }
   state_ = snapshot.state;
+  estop_in_force_ =
+      state_ != RobotStatus::kRun && (estop_in_force_ || estop_asked_ || state_ == RobotStatus::kEstop);
   judgeScans(snapshot, read);
   judgeStop(read & ~held_, stopped);
   judgeAnswers();

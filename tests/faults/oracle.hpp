@@ -314,6 +314,7 @@ class Oracle {
   std::uint64_t missed_ = 0;
   RobotStatus state_ = RobotStatus::kRun;
   bool estop_asked_ = false;
+  bool estop_in_force_ = false;  ///< Since RUN one has come.
   bool clear_all_asked_ = false;
   bool stop_asked_ = false;
   MonotonicTime stopping_since_{};

@@ -122,7 +122,7 @@ void Oracle::followActions(std::size_t index, const MotorSnapshot& seen) {
     const bool asked = motor.disables_asked > 0 || stop_asked_ || with_group;
     motor.rests_with_group = with_group && (motor.disables_asked == 0 || motor.enable_asked);
     if (asked) actions |= only(fallback.on_disable);
-    if (motor.disables_asked > 1 || (motor.disables_asked > 0 && estop_asked_)) actions |= coast;
+    if (motor.disables_asked > 1) actions |= coast;
     if (estop_asked_ || (motor.group != kNoGroup && groups_[motor.group].stops_now))
       actions |= only(fallback.on_estop);
     require(index, actions.any(), "no longer ACTIVE for no reason");
@@ -130,8 +130,10 @@ void Oracle::followActions(std::size_t index, const MotorSnapshot& seen) {
     motor.ends_at_standstill = asked;
     return;
   }
-  // A fallback that acts already gives way to that of an e-stop.
-  if (estop_asked_ && state_ == RobotStatus::kRun && motor.actions != coast) {
+  // A fallback that acts already gives way to that of an e-stop, once.
+  const bool gives_way =
+      state_ == RobotStatus::kRun || (state_ == RobotStatus::kStopping && !estop_in_force_);
+  if (estop_asked_ && gives_way && motor.actions != coast) {
     auto actions = only(fallback.on_estop);
     const bool may_have_ended = motor.ends_at_standstill || (motor.actions & coast).any();
     if (may_have_ended || motor.disables_asked > 0 || motor.enable_asked || motor.coast_asked)
@@ -142,9 +144,8 @@ void Oracle::followActions(std::size_t index, const MotorSnapshot& seen) {
   // Enabled and stopped within a tick.
   const bool stopped_with_group =
       motor.group != kNoGroup && (groups_[motor.group].stops_now || groups_[motor.group].rests_now);
-  const bool stopped_while_enabling =
-      (before == MotorStatus::kEnabling && stopped_with_group) ||
-      ((before == MotorStatus::kEnabling || motor.enable_asked) && motor.disables_asked > 0);
+  const bool stopped_while_enabling = (before == MotorStatus::kEnabling || motor.enable_asked) &&
+                                      (stopped_with_group || motor.disables_asked > 0);
   if (stopped_while_enabling) {
     setActions(motor, motor.actions | only(fallback.on_estop) | only(fallback.on_disable));
     motor.ends_at_standstill = true;
@@ -160,7 +161,7 @@ void Oracle::followActions(std::size_t index, const MotorSnapshot& seen) {
   // A target that came and went within the tick cannot be; one that was taken back by COAST can.
   if (after == MotorStatus::kReady && motor.disables_asked > 0 && motor.disables_asked < 2 &&
       before == MotorStatus::kReady && !motor.enable_asked) {
-    if (std::exchange(motor.rests_with_group, false)) {
+    if (std::exchange(motor.rests_with_group, false) || estop_asked_) {
       motor.actions |= coast;
     } else {
       setActions(motor, coast);

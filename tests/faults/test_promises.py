@@ -328,7 +328,8 @@ def test_an_estop_takes_the_place_of_what_acts_already(tmp_path: Path) -> None:
         log.driven(start_ns, time.time_ns(), "arm", validity_ms=60_000)
         assert time.time_ns() - stopped_ns < 1000 * MS, "hold_max_s is a minute"
         nothing(
-            "e-stop after a `disable` with `on_disable: hold`, `on_estop: damp`", "damps at once"
+            "e-stop after a `disable` with `on_disable: hold`, `on_estop: damp`",
+            "damps, and holds no more",
         )
         break_drive(ARM, Fault.PUSHED, 0)
         _cleared(robot)

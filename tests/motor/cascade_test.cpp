@@ -188,24 +188,69 @@ TEST(Cascade, OtherGainsDoNotPassTheLimits) {
   EXPECT_TRUE(cascade.velocityLimited());
 }
 
+const std::initializer_list<CascadeConfig> kWindingUp{
+    {.velocity = PID_Position::Config{.kp = 0.1F, .ki = 5.0F, .kd = 0.001F}, .angle = {}},
+    {.velocity = PID_Incremental::Config{.kp = 0.1F, .ki = 5.0F, .kd = 0.001F}, .angle = {}}};
+
 // A shaft that a hand held back is let go: the loop has wound up to all its effort.
 TEST(Cascade, AnEffortThatDrivesBeyondTheSpeedBoundEndsAtOnce) {
   constexpr float kMeasuredRpm = 12.0F;
-  for (const auto& config :
-       {CascadeConfig{.velocity = PID_Position::Config{.kp = 0.1F, .ki = 5.0F}, .angle = {}},
-        CascadeConfig{.velocity = PID_Incremental::Config{.kp = 0.1F, .ki = 5.0F}, .angle = {}}}) {
+  for (const auto& config : kWindingUp) {
     for (const float way : {1.0F, -1.0F}) {
       const Target target{.mode = ControlMode::kVelocity, .value = static_cast<double>(way) * 10.0};
       Cascade cascade(config);
       const float wound = settled(cascade, target, {});
       ASSERT_FLOAT_EQ(wound, way * kLimit);
       const Cascade::Measured fast{.velocity_rpm = way * kMeasuredRpm};
-      EXPECT_GT(way * cascade.step(target, fast, kDt, kLimit, wound, 0.0F, 13.0F), 5.0F)
-          << "within the bound";
+      const OutputRange wide{way > 0.0F ? -5.0F : -13.0F, way > 0.0F ? 13.0F : 5.0F};
+      const OutputRange narrow{way > 0.0F ? -5.0F : -11.0F, way > 0.0F ? 11.0F : 5.0F};
+      cascade.boundSpeeds(wide);
+      (void)cascade.step(target, fast, kDt, kLimit, wound);  // of the leap of the speed
+      EXPECT_GT(way * cascade.step(target, fast, kDt, kLimit, wound), 2.0F) << "within the bound";
+      cascade.boundSpeeds(narrow);
       // -2 rpm * 0.1 A/rpm, and an integral that has only begun
-      EXPECT_NEAR(way * cascade.step(target, fast, kDt, kLimit, wound, 0.0F, 11.0F), -0.2F, 0.02F);
-      EXPECT_NEAR(way * cascade.step(target, fast, kDt, kLimit, -0.2F * way, 0.0F, 11.0F), -0.2F, 0.03F)
+      EXPECT_NEAR(way * cascade.step(target, fast, kDt, kLimit, wound), -0.2F, 0.02F);
+      EXPECT_NEAR(way * cascade.step(target, fast, kDt, kLimit, -0.2F * way), -0.2F, 0.03F)
           << "what brakes goes on";
+    }
+  }
+}
+
+TEST(Cascade, AnAngleLoopThatHasWoundUpAsksForNoSpeedBeyondTheBound) {
+  CascadeConfig config = plainConfig();
+  config.angle.ki = 100.0F;
+  Cascade cascade(config);
+  const Target target{.mode = ControlMode::kTotalAngle, .value = 10.0};
+  EXPECT_NEAR(settled(cascade, target, {}), 10.0F, 1e-3F) << "all of 100 rpm";
+  float effort = 0.0F;
+  cascade.boundSpeeds(OutputRange::symmetric(15.0F));
+  for (int i = 0; i < 300; ++i) effort = cascade.step(target, {}, kDt, kLimit, effort);
+  EXPECT_NEAR(effort, 1.5F, 1e-3F);
+  EXPECT_TRUE(cascade.velocityLimited());
+}
+
+TEST(Cascade, WhatHasBuiltUpAgainstABlockedShaftDoesNotActInAStop) {
+  constexpr float kLeastRpm = 2.0F;
+  const Target standstill{.mode = ControlMode::kVelocity};
+  for (const auto& config : kWindingUp) {
+    for (const float way : {1.0F, -1.0F}) {
+      const auto effortInAStop = [&](float asked_rpm, float measured_rpm) {
+        Cascade cascade(config);
+        const Cascade::Measured measured{.velocity_rpm = way * measured_rpm};
+        const Target target{.mode = ControlMode::kVelocity, .value = static_cast<double>(way * asked_rpm)};
+        const float wound = settled(cascade, target, measured);
+        const float left = cascade.withoutWindup(wound, measured.velocity_rpm, kLeastRpm);
+        return way * cascade.step(standstill, measured, kDt, kLimit, left);
+      };
+      EXPECT_NEAR(effortInAStop(20.0F, 0.0F), 0.0F, 0.01F);
+      EXPECT_NEAR(effortInAStop(20.0F, 9.0F), -0.9F, 0.1F) << "the error alone";
+      EXPECT_NEAR(effortInAStop(20.0F, -5.0F), 0.5F, 0.1F) << "pulled back";
+      EXPECT_GT(effortInAStop(20.0F, 11.0F), 7.0F) << "it turns: its load is carried";
+      Cascade another_mode(config);
+      (void)settled(another_mode, {.mode = ControlMode::kVelocity, .value = 20.0}, {});
+      another_mode.reset();  // a current, say
+      EXPECT_EQ(another_mode.withoutWindup(way, 0.0F, kLeastRpm), way);
+      EXPECT_GT(effortInAStop(1.9F, 0.0F), 2.0F) << "the noise of what is held";
     }
   }
 }

@@ -1,3 +1,4 @@
+#include <cmath>
 #include <limits>
 #include <random>
 
@@ -23,6 +24,22 @@ TEST_F(VescMotorTest, TheTachometerCountsTurnsThroughTheEndOfItsRange) {
   EXPECT_NEAR(motor.feedback().total_angle_deg, 180.0, 1e-6);
   EXPECT_TRUE(motor.feedback().zeroed);
   EXPECT_EQ(motor.feedback().jumps, 0U);
+}
+
+TEST_F(VescMotorTest, ADutyIsOneOfNow) {
+  auto& motor = makeZeroedAt(10.0);
+  status(4200, 0.0, 0.7);
+  steps(0);
+  EXPECT_FLOAT_EQ(motor.reportedDuty(), 0.7F);
+  for (int i = 0; i < 20; ++i) {  // STATUS_1 is missing
+    tick(milliseconds{10});
+    steps(0);
+  }
+  EXPECT_TRUE(std::isnan(motor.reportedDuty()));
+  status(4200, 0.0, 0.7);
+  EXPECT_FLOAT_EQ(motor.reportedDuty(), 0.7F);
+  ASSERT_EQ(give(vescFrame(0x3907, "3630")), FrameVerdict::kAccepted);
+  EXPECT_TRUE(std::isnan(motor.reportedDuty())) << "it has started again";
 }
 
 TEST_F(VescMotorTest, AJumpOfTheTachometerIsCountedAndTheReferenceIsLost) {

@@ -89,10 +89,11 @@ void readGuard(MotorParse& in) {
   const auto stall_ms = in.settings.number("stall_ms").value_or(0.0);
   guard.stall_time = std::chrono::milliseconds{static_cast<int>(stall_ms)};
   guard.stall_trips = in.settings.text("stall_action") != "notify";
-  if (guard.stall_rpm > 0.0F)
+  if (guard.stall_rpm > 0.0F) {
     in.draft.config.standstill_rpm = guard.stall_rpm;
-  else
-    guard.stall_rpm = in.draft.config.standstill_rpm;  // its no-load speed is not known
+  } else {  // neither its no-load speed is known, nor a limit
+    guard.stall_rpm = in.draft.config.standstill_rpm;
+  }
   guard.encoder_jumps = true;
   guard.runaway_rpm = static_cast<float>(kRunaway * in.noLoadRpm());
   guard.frozen_a = kFrozen * in.traits.frozen_a;

@@ -62,9 +62,10 @@ void readEffort(MotorParse& in) {
     in.draft.config.reduced.effort_share = effort / limit;
     return;
   }
+  const char* unit = in.byVoltage() ? " V" : " A";
   in.problems.error(given->place(), given->path,
-                    given->text() + (in.byVoltage() ? " V" : " A") + " is not below the " +
-                        numberText(limit) + " that the motor may have anyway; lower it");
+                    given->text() + unit + " is not below the " + numberText(limit) + unit +
+                        " that the motor may have anyway; lower it");
 }
 
 }  // namespace
@@ -88,11 +89,11 @@ void checkModeInput(const Settings& top, const RobotConfig& robot, Problems& pro
                          "; add mode_gpio, or remove them");
     }
   }
-  if (any || !mode) return;
+  if (any || !mode || problems.hasErrors()) return;  // of a motor that is wrong the limits are not known
   problems.error(
       mode->place(), mode->path,
-      "no motor has a limit to reduce; add reduced_velocity_rpm or reduced_current_a to those that "
-      "a person may come near, or remove it");
+      "no motor has a limit to reduce; add reduced_velocity_rpm or reduced_current_a (reduced_voltage_v) to "
+      "those that a person may come near, or remove it");
 }
 
 }  // namespace rc10

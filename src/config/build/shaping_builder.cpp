@@ -3,6 +3,8 @@
 #include <cmath>
 #include <variant>
 
+#include "app/units.hpp"
+
 namespace rc10 {
 namespace {
 
@@ -17,6 +19,17 @@ constexpr double kFirstStepDeg = 180.0;
 constexpr float kBeyondNoLoad = 2.0F;
 // A gimbal and a wheel live with it, and a hand has time.
 constexpr double kSoftStartMs = 200.0;
+
+// Refused to be enabled until somebody has set its zero: worth knowing before it is mounted.
+void warnOfTurn(MotorParse& in) {
+  const auto most = in.settings.find("angle_max_deg");
+  const double travel_deg = in.motor().travel.max_deg - in.motor().travel.min_deg;
+  if (!most || !in.knowsItsAngle() || in.settings.text("zero") == "power_on") return;
+  if (!std::isfinite(travel_deg) || travel_deg < kDegPerTurn) return;
+  in.problems.warning(most->place(), most->path,
+                      "a travel of a turn or more: after each power-up its turn is not known, and it is "
+                      "enabled only once `rc10ctl zero` has set its angle; make it shorter, or home it");
+}
 
 }  // namespace
 
@@ -61,6 +74,7 @@ void readShaping(MotorParse& in) {
   if (in.byVoltage() && in.noLoadRpm() > 0.0)
     shaping.effort_per_rpm = in.traits.effort_full_scale / static_cast<float>(in.noLoadRpm());
   in.refuseUnordered(in.settings, "angle_min_deg", "angle_max_deg");
+  warnOfTurn(in);
 }
 
 }  // namespace rc10

@@ -33,7 +33,7 @@ constexpr std::array kGroupKeys{
         .kind = kBoolean,
         .default_text = "false",
         .about = "true: mechanically one. Enabled all or none, in one request that names them all, and no "
-                 "target acts before all are ACTIVE."},
+                 "target acts before all are ACTIVE. An optional member is not waited for."},
     Key{.name = "on_return",
         .kind = kText,
         .choices = returnChoices,

@@ -141,9 +141,9 @@ constexpr std::array kMotorKeys{
         .unit = "ms",
         .range = {.min = 0, .max = 60'000},
         .default_text = "0",
-        .about =
-            "This time at the current or voltage limit without turning (2 % of the no-load speed; 10 rpm "
-            "where that is not known) is a stall. 0: not watched."},
+        .about = "This time at the current or voltage limit without turning (2 % of the no-load speed, or of "
+                 "`velocity_limit_rpm` where that is not known; without either 10 rpm) is a stall. 0: not "
+                 "watched."},
     Key{.name = "stall_action",
         .kind = kText,
         .choices = stallActions,

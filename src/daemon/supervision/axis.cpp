@@ -24,7 +24,8 @@ Axis::Axis(const Robot::MotorEntry& entry, const Robot::BusEntry& bus) noexcept
       guard_(entry.guard),
       rest_(entry.rest),
       reduced_(entry.reduced),
-      shaper_(entry.shaping) {}
+      shaper_(entry.shaping),
+      speeds_bounded_(shaper_.hasSoftLimits() || reduced_.any()) {}
 
 void Axis::fill(MotorSnapshot& snapshot) const noexcept {
   snapshot.feedback = motor_.feedback();
@@ -173,7 +174,7 @@ bool Axis::trips(bool reduced, const Tick& tick) noexcept {
   // A fallback that brakes or holds after an e-stop is a loop as well.
   const bool moves = status_ == MotorStatus::kActive ||
                      (status_ == MotorStatus::kReady && fallback_.acts()) || heldWhileEnabling();
-  const bool too_fast = reduced_.any() && reduces(reduced, moves, tick);
+  const bool too_fast = reduced_.any() && tooFastWhenReduced(reduced, moves, tick);
   if (!moves) {
     guard_.reset();
     // Before its drive answers its group may let go of it, and its fallback goes on.
@@ -197,10 +198,9 @@ bool Axis::trips(bool reduced, const Tick& tick) noexcept {
   return true;
 }
 
-bool Axis::reduces(bool reduced, bool moves, const Tick& tick) noexcept {
+bool Axis::tooFastWhenReduced(bool reduced, bool moves, const Tick& tick) noexcept {
   const bool too_fast = reduced_.step(reduced, moves, motor_.feedback(), tick);
   shaper_.setCeiling(reduced_.ceilingRpm());
-  motor_.boundSpeed(reduced_.boundRpm());
   return too_fast;
 }
 
@@ -238,19 +238,36 @@ void Axis::order(RobotStatus robot, const Tick& tick) noexcept {
     shaper_.reset();
     in_force_ = Target{};
     motor_.order(kind);
+    if (speeds_bounded_ || kind == FrameKind::kBrake) boundSpeeds(kind == FrameKind::kBrake, tick.now);
     return;
   }
-  const bool stops = ramps();
-  in_force_ =
-      stops ? Target{.mode = ControlMode::kVelocity, .value = fallback_.rampRpm(tick.now)} : motor_.target();
+  const bool ramps_down = ramps();
+  in_force_ = ramps_down ? Target{.mode = ControlMode::kVelocity, .value = fallback_.rampRpm(tick.now)}
+                         : motor_.target();
   // First, so that soft limits act in this tick already.
   if (!motor_.feedback().zeroed) motor_.restoreReference(in_force_.mode);
   const bool limited = (motor_.limits() & kLimitCurrent) != 0;
   const auto told =
       shaper_.follows(in_force_.mode) && !limited ? TargetShaper::InForce{} : commandInForce(limited);
-  limits_ |= stops ? shaper_.slowDown(in_force_, motor_.feedback(), told, tick.dt_s)
-                   : shaper_.step(in_force_, motor_.feedback(), told, tick.dt_s);
+  limits_ |= ramps_down ? shaper_.slowDown(in_force_, motor_.feedback(), told, tick.dt_s)
+                        : shaper_.step(in_force_, motor_.feedback(), told, tick.dt_s);
   motor_.order(kind, in_force_);
+  const bool stops = ramps_down || in_force_.mode == ControlMode::kBrake;
+  if (stops || speeds_bounded_) boundSpeeds(stops, tick.now);
+}
+
+// A loop that has wound up against a hand, or to brake a heavy wheel, would push on: past a soft limit,
+// beyond reduced speed, or past the standstill of a stop and back.
+void Axis::boundSpeeds(bool stops, MonotonicTime now) noexcept {
+  if (stops && !stops_) {
+    stop_from_rpm_ = static_cast<double>(finiteOr0(motor_.feedback().velocity_rpm));
+    dropWindup();
+  }
+  stops_ = stops;
+  speeds_bounded_ = stops || shaper_.hasSoftLimits() || reduced_.any();
+  const double from_rpm = ramps() ? fallback_.rampRpm(now) : stop_from_rpm_;
+  motor_.boundSpeeds(shaper_.speedBounds(motor_.feedback(), stops ? std::optional{from_rpm} : std::nullopt,
+                                         static_cast<double>(entry_.standstill_rpm)));
 }
 
 // A shaft that was pushed away from where it is held comes back no faster than reduced mode allows. Its first
@@ -258,12 +275,13 @@ void Axis::order(RobotStatus robot, const Tick& tick) noexcept {
 bool Axis::leadsHold(const Tick& tick) noexcept {
   const double held_deg = motor_.heldAngleDeg();
   if (!std::isfinite(reduced_.ceilingRpm()) || !std::isfinite(held_deg)) return false;
-  if (held_deg != led_hold_deg_) shaper_.reset();  // held anew, or zeroed
-  led_hold_deg_ = held_deg;
+  if (held_deg != hold_goal_deg_) shaper_.reset();  // held anew, or zeroed
+  hold_goal_deg_ = held_deg;
   Target place{.mode = ControlMode::kTotalAngle, .value = held_deg};
   limits_ |= shaper_.slowDown(place, motor_.feedback(), commandInForce(false), tick.dt_s);
   in_force_ = Target{};  // nothing that a client asked for
   motor_.orderHold(place.value);
+  boundSpeeds(false, tick.now);
   return true;
 }
 
@@ -303,7 +321,8 @@ std::optional<MotorStatus> Axis::handle(MotorEvent event, RobotStatus robot, con
                                         const Tick& tick) noexcept {
   const auto before = status_;
   // A motor that is held is on already: a request to rest does not depend on the tick in which it is ACTIVE.
-  const bool rests_while_held = heldWhileEnabling() && event == MotorEvent::kDisable;
+  const bool rests_while_held =
+      heldWhileEnabling() && (event == MotorEvent::kDisable || event == MotorEvent::kGroupStop);
   status_ = next(before, event);
   if (status_ == before) return std::nullopt;
   if (before == MotorStatus::kFault) {
@@ -390,6 +409,12 @@ Refusal Axis::zero(const Order& order) noexcept {
 }
 
 // Asked for, so that it is no loss that anybody has to be told of.
+double Axis::zeroForFile() const noexcept {
+  const double travel_deg = entry_.shaping.angle_max_deg - entry_.shaping.angle_min_deg;
+  const bool any_turn = std::isfinite(travel_deg) && travel_deg >= kDegPerTurn;
+  return any_turn ? std::numeric_limits<double>::quiet_NaN() : motor_.zeroForFile();
+}
+
 void Axis::forgetReference() noexcept {
   motor_.forgetReference();
   reference_known_ = false;
@@ -418,6 +443,7 @@ void Axis::beginFallback(FallbackAction action, Fallback::Until until, bool esto
   const Fallback::Ramp ramp{std::isfinite(measured_rpm) ? measured_rpm : 0.0, config.ramp};
   fallback_.begin(action, until, boundOf(action, estop, config, motor_.driveFrames()), ramp, tick.now);
   shaper_.reset();
+  dropWindup();
 }
 
 }  // namespace rc10

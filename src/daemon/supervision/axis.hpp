@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "app/time.hpp"
+#include "app/units.hpp"
 #include "daemon/devices/robot.hpp"
 #include "daemon/exchange/events.hpp"
 #include "daemon/exchange/orders.hpp"
@@ -109,6 +110,8 @@ class Axis {
   /// At most one report of a skipped setpoint in each kReportInterval.
   [[nodiscard]] bool mayReportSkip(MonotonicTime now) noexcept;
   [[nodiscard]] Refusal zero(const Order& order) noexcept;
+  /// Motor_Base::zeroForFile(); NaN also where a travel of a turn or more lets no file know the turn.
+  [[nodiscard]] double zeroForFile() const noexcept;
   /// It is to be homed: until it is, no soft limit acts, and no angle is followed.
   void forgetReference() noexcept;
   void retune(const CascadeConfig& loops) noexcept;
@@ -118,7 +121,11 @@ class Axis {
   [[gnu::noinline]] void goUnheard(bool came, const Since& since) noexcept;
   [[nodiscard]] FrameKind frameKind(RobotStatus robot) const noexcept;
   /// Speed and effort of reduced mode for this tick. True: it is faster than it may be. Few motors have it.
-  [[nodiscard, gnu::noinline]] bool reduces(bool reduced, bool moves, const Tick& tick) noexcept;
+  [[nodiscard, gnu::noinline]] bool tooFastWhenReduced(bool reduced, bool moves, const Tick& tick) noexcept;
+  /// For the loops of rc10d; `stops`: the motor is braked, or led to rest along a ramp.
+  [[gnu::noinline]] void boundSpeeds(bool stops, MonotonicTime now) noexcept;
+  /// A quarter of the speed that counts as standstill: less is noise of an angle that is held.
+  void dropWindup() noexcept { motor_.dropWindup(0.25F * entry_.standstill_rpm); }
   /// Orders a hold whose place is led under the ceiling of the speed; false: there is none.
   [[nodiscard, gnu::noinline]] bool leadsHold(const Tick& tick) noexcept;
   [[nodiscard, gnu::noinline]] TargetShaper::InForce commandInForce(bool limited) const noexcept;
@@ -143,8 +150,11 @@ class Axis {
   Fallback fallback_;
   Lease lease_;      ///< Whose target is in force, and until when.
   Target in_force_;  ///< Target that the motor followed in the last tick.
-  double led_hold_deg_ =
+  double hold_goal_deg_ =
       std::numeric_limits<double>::quiet_NaN();  ///< Place of the last hold under a ceiling.
+  double stop_from_rpm_ = 0.0;                   ///< Speed at which the stop began.
+  bool stops_ = false;                           ///< Braked, or led to rest along a ramp, in the last tick.
+  bool speeds_bounded_;                          ///< It stops, or has soft limits or a reduced mode.
   MotorStatus status_ = MotorStatus::kOffline;
   FaultCode fault_ = FaultCode::kNone;
   Stop stop_;

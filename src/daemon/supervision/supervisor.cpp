@@ -134,6 +134,7 @@ void Supervisor::setRobotState(RobotStatus state, const Stop& why, const Tick& t
   stop_ = state == RobotStatus::kRun ? Stop{} : why;
   stopped_ = state == RobotStatus::kRun ? MonotonicTime{} : tick.now;
   if (state == RobotStatus::kEstop) ++estops_;
+  estop_in_force_ = state == RobotStatus::kEstop || (state == RobotStatus::kStopping && estop_in_force_);
   if (state == RobotStatus::kRun) heartbeat_rests_ = false;
   if (state != RobotStatus::kRun) {
     for (auto& group : groups_) group.rearm.reset();  // even if it is cleared within this tick

@@ -165,8 +165,9 @@ class Supervisor {
   MonotonicTime decided_at_{};      ///< The last tick,
   MonotonicTime decided_before_{};  ///< and the one before it.
   bool heartbeat_rests_ = false;
-  bool estop_asked_ = false;  ///< In this tick, until decide().
-  bool reduced_ = false;      ///< The mode input is open, or was since the last tick.
+  bool estop_asked_ = false;     ///< In this tick, until decide().
+  bool estop_in_force_ = false;  ///< Since kRun an e-stop has come, before the end of the program or in it.
+  bool reduced_ = false;         ///< The mode input is open, or was since the last tick.
   MonotonicTime client_heard_{};
   std::uint64_t expired_commands_ = 0;
   std::uint64_t refused_commands_ = 0;

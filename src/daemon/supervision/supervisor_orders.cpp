@@ -1,5 +1,6 @@
 // Targets and requests of clients.
 #include <algorithm>
+#include <utility>
 
 #include "daemon/exchange/events.hpp"
 #include "daemon/supervision/supervisor.hpp"
@@ -142,7 +143,7 @@ void Supervisor::carryOut(const Order& order, const Tick& tick) noexcept {
       case Operation::kClear: clear(motor, tick); break;
       case Operation::kZero:
         result.motors[motor] = axes_[motor].zero(order);
-        if (order.motors.count() == 1) result.zero_deg = axes_[motor].motor().zeroForFile();
+        if (order.motors.count() == 1) result.zero_deg = axes_[motor].zeroForFile();
         break;
       case Operation::kSetGains: result.motors[motor] = setGains(motor, order, tick); break;
       case Operation::kEstop:
@@ -161,6 +162,9 @@ void Supervisor::carryOut(const Order& order, const Tick& tick) noexcept {
 void Supervisor::estop(const Stop& why, const Tick& tick) noexcept {
   estop_asked_ = true;
   if (state_ == RobotStatus::kRun) setRobotState(RobotStatus::kEstop, why, tick);
+  // The end of the program goes on; what holds a motor meanwhile is what an e-stop begins, once.
+  if (state_ != RobotStatus::kStopping || std::exchange(estop_in_force_, true)) return;
+  for (auto& axis : axes_) axis.estopFallback(tick);
 }
 
 // The e-stop is the whole robot's: clearing the faults of motors leaves it, even of all that there are.
@@ -188,7 +192,9 @@ void Supervisor::disable(std::size_t motor, const Order& order, const Tick& tick
   auto* group = groupOf(motor);
   // Once more lets go of a motor that is still being held or braked; the first time may have been its
   // group's. A request that is repeated since its answer was lost is no second one.
-  const bool once_more = !order.repeated && (group == nullptr || !group->rests_with_it.test(motor));
+  // Nor is one in the tick of an e-stop.
+  const bool once_more =
+      !order.repeated && !estop_asked_ && (group == nullptr || !group->rests_with_it.test(motor));
   if (axis.status() == MotorStatus::kReady && once_more) axis.endFallback();
   if (group != nullptr) {
     group->rearm.reset();

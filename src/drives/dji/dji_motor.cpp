@@ -213,8 +213,7 @@ void DJI_Motor::runLoops(const Target& target, float sample_dt_s, float limit) n
                                      .total_angle_deg = feedback_.total_angle_deg,
                                      .velocity_rpm = feedback_.velocity_rpm};
     const float ff = command_ == DjiCommand::kCurrent ? target.torque_ff_nm / torque_nm_per_a_ : 0.0F;
-    command_value_ =
-        loops_.step(target, measured, sample_dt_s, limit, command_value_, saturate(ff), speedBoundRpm());
+    command_value_ = loops_.step(target, measured, sample_dt_s, limit, command_value_, saturate(ff));
   } else {  // the limit may have come down since the last sample
     command_value_ = std::clamp(command_value_, -limit, limit);
   }

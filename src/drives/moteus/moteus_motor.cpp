@@ -139,7 +139,11 @@ void Moteus_Motor::followVelocity(const Target& target, const Tick& tick) noexce
   const double rpm = boundedRpm(target.value);
   const double rev_s = toDrive(rpm) / kRpmPerTurnPerS;
   const double dt_s = std::clamp(static_cast<double>(tick.dt_s), 0.0, 0.01);
-  const double ahead_rev = course_rev_ ? *course_rev_ + rev_s * dt_s - position_rev_ : 0.0;
+  double ahead_rev = course_rev_ ? *course_rev_ + rev_s * dt_s - position_rev_ : 0.0;
+  const bool forward = toOutput(ahead_rev) > 0.0;
+  const bool driven =
+      forward ? feedback_.velocity_rpm > speedBounds().high : feedback_.velocity_rpm < speedBounds().low;
+  if (driven) ahead_rev = 0.0;
   const double slip_rev = kSlipRev + std::abs(rev_s) * slip_s_;
   course_rev_ = position_rev_ + std::clamp(ahead_rev, -slip_rev, slip_rev);
   motion_.position_rev = onWire(*course_rev_);
@@ -147,6 +151,13 @@ void Moteus_Motor::followVelocity(const Target& target, const Tick& tick) noexce
   motion_.torque_nm = torqueToDrive(torqueWithinLimit(static_cast<double>(target.torque_ff_nm)));
   motion_.stiff = motion_.damped = true;
   setCommand(rpm, CommandUnit::kNative);
+}
+
+void Moteus_Motor::dropWindup(float least_rpm) noexcept {
+  const double asked_rpm = commandValue();
+  const double along_rpm = std::copysign(1.0, asked_rpm) * static_cast<double>(feedback_.velocity_rpm);
+  const bool asked = std::fabs(asked_rpm) > static_cast<double>(least_rpm);
+  if (asked && !(along_rpm >= 0.5 * std::fabs(asked_rpm))) course_rev_.reset();
 }
 
 void Moteus_Motor::followAngle(const Target& target) noexcept {

@@ -24,6 +24,7 @@ class Moteus_Motor final : public SoloMotor {
   [[nodiscard]] bool matchesFrame(const CanFrame& frame) const noexcept override;
   FrameVerdict updateFeedback(const CanFrame& frame) noexcept override;
   void update(const Tick& tick) noexcept override;
+  void dropWindup(float least_rpm) noexcept override;
 
   [[nodiscard]] std::span<const CanId> commandIds() const noexcept override { return command_ids_; }
   [[nodiscard]] std::size_t packCommand(const Tick& tick, std::span<CanFrame> out) noexcept override;

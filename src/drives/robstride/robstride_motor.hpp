@@ -58,6 +58,8 @@ class RobStride_Motor : public SoloMotor {
   [[nodiscard]] double scaleEndRad() const noexcept;  ///< As far as operation mode can be told to go.
   [[nodiscard]] bool positionOnScale() const noexcept;
   [[nodiscard]] double positionRadFor(double total_angle_deg) const noexcept;
+  /// Total angle that a brake keeps in this tick, in deg.
+  [[nodiscard]] double brakeDeg() noexcept;
   [[nodiscard]] SpringState measured() const noexcept {
     return {position_rad_ + scale_offset_rad_, seen_.velocity_rad_s};
   }
@@ -102,7 +104,7 @@ class RobStride_Motor : public SoloMotor {
   Travel travel_;
   SpringReach reach_;
   bool brake_held_ = false;
-  double brake_deg_ = 0.0;
+  double brake_rad_ = 0.0;  ///< Place of the brake by the count of the drive.
   float limit_sent_a_ = -1.0F;
   MonotonicTime limit_sent_at_{};
   MonotonicTime read_at_{};

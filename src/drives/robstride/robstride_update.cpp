@@ -145,16 +145,23 @@ void RobStride_Motor::followVelocity(const Target& target) noexcept {
   setCommand(toOutput(static_cast<double>(reference_.value)) * kRpmPerRadPerS, CommandUnit::kNative);
 }
 
+// The place of a brake: that of the drive's own count, which a zero does not move. It gives way to a hand,
+// and does not come back.
+double RobStride_Motor::brakeDeg() noexcept {
+  constexpr double kSlipDeg = 3.0;  // at the output shaft
+  const double slip_rad = std::abs(toDrive(kSlipDeg)) * kRadPerDeg;
+  const double here_rad = positionRadFor(feedback_.total_angle_deg);
+  brake_rad_ = brake_held_ ? std::clamp(brake_rad_, here_rad - slip_rad, here_rad + slip_rad) : here_rad;
+  brake_held_ = true;
+  return feedback_.total_angle_deg + toOutput((brake_rad_ - here_rad) * kDegPerRad);
+}
+
 void RobStride_Motor::followAngle(const Target& target) noexcept {
   const bool follows = target.mode == ControlMode::kTotalAngle || target.mode == ControlMode::kBrake;
   double wanted_deg = feedback_.total_angle_deg;
   if (target.mode == ControlMode::kTotalAngle) wanted_deg = target.value;
-  if (target.mode == ControlMode::kBrake) {
-    if (!brake_held_) brake_deg_ = feedback_.total_angle_deg;
-    brake_held_ = true;
-    wanted_deg = brake_deg_;
-  }
   if (feedback_.samples == 0) return;
+  if (target.mode == ControlMode::kBrake) wanted_deg = brakeDeg();
   if (follows && angles_in_doubt_) limits_ |= kLimitAngle;
   const double position_rad = positionRadFor(wanted_deg);
   const double reachable = finiteOr0(std::clamp(position_rad, -kFarthestReferenceRad, kFarthestReferenceRad));

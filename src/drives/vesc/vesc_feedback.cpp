@@ -71,7 +71,12 @@ FrameVerdict VESC_Motor::updateFeedback(const CanFrame& frame) noexcept {
 }
 
 float VESC_Motor::reportedDuty() const noexcept {
-  return status1_seen_ ? status1_.duty * direction() : std::numeric_limits<float>::quiet_NaN();
+  return status1Fresh(feedback_.received) ? status1_.duty * direction()
+                                          : std::numeric_limits<float>::quiet_NaN();
+}
+
+bool VESC_Motor::status1Fresh(MonotonicTime now) const noexcept {
+  return status1_seen_ && now - status1_at_ <= patience_;
 }
 
 void VESC_Motor::takeStatus1(const CanFrame& frame) noexcept {
@@ -103,7 +108,7 @@ void VESC_Motor::takePosition(MonotonicTime received, double moved_deg, bool kno
   position_deg_ += moved_deg;
   if (!known && feedback_.samples > 0) loseReference();
   // Without STATUS_1 beside it there is no speed and no current.
-  if (!status1_seen_ || received - status1_at_ > patience_) {
+  if (!status1Fresh(received)) {
     feedback_.velocity_rpm = feedback_.current_a = feedback_.torque_nm = kNotReported;
   }
   acceptSample(received, position_deg_);
@@ -178,6 +183,7 @@ void VESC_Motor::restarted() noexcept {
   if (obeying()) restarted_ = true;
   inquiry_.restart();
   position_seen_ = false;  // it counts from 0 again
+  status1_seen_ = false;
   loseReference();
 }
 

@@ -206,9 +206,10 @@ void VESC_Motor::followAngle(const Target& target) noexcept {
     const float moved = nearFloat(feedback_.total_angle_deg - loop_position_deg_);
     loop_position_deg_ = feedback_.total_angle_deg;
     const float step_s = dt_s > 0.0F ? dt_s : spacing_.periodSeconds();
-    const OutputRange range = OutputRange{}.within(velocityLimitRpm()).shifted(-ff);
-    const float rpm = angle_loop_.stepError(error, moved, step_s, range);
-    limited_ = velocityLimitRpm() > 0.0F && std::abs(rpm + ff) >= velocityLimitRpm();
+    const OutputRange limit = OutputRange{}.within(velocityLimitRpm());
+    const OutputRange range{std::max(limit.low, speedBounds().low), std::min(limit.high, speedBounds().high)};
+    const float rpm = angle_loop_.stepError(error, moved, step_s, range.shifted(-ff));
+    limited_ = rpm + ff <= range.low || rpm + ff >= range.high;
     const auto stoppable_rpm = static_cast<double>(stoppableRpm(error));
     loop_rpm_ = std::clamp(static_cast<double>(rpm), -stoppable_rpm, stoppable_rpm);
   }

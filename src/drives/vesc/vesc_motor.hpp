@@ -61,6 +61,8 @@ class VESC_Motor : public SoloMotor {
   [[nodiscard]] Way wayTo(double now_deg, Duration gap) const noexcept;
   [[nodiscard]] Way wayOver(double now_deg, Duration spacing) const noexcept;
   void restarted() noexcept;
+  /// STATUS_1 is not older than the patience with a drive.
+  [[nodiscard]] bool status1Fresh(MonotonicTime now) const noexcept;
   [[nodiscard]] bool gapTooLong(Duration gap) const noexcept;
 
   void follow(const Target& target) noexcept;
@@ -97,7 +99,7 @@ class VESC_Motor : public SoloMotor {
   Command command_;
   MonotonicTime now_;
   MonotonicTime status1_at_;
-  bool status1_seen_ = false;
+  bool status1_seen_ = false;  ///< Since the drive started.
   bool position_seen_ = false;
   bool restarted_ = false;
   bool locked_ = false;  ///< The handbrake holds.

@@ -79,7 +79,7 @@ class Fallback {
   }
   void end() noexcept { kind_ = FrameKind::kRest; }
   [[nodiscard]] bool acts() const noexcept { return kind_ != FrameKind::kRest; }
-  /// It resists, and has for so long. A ramp leads.
+  /// It damps, brakes or holds, and has for at least `time`; a ramp does not count.
   [[nodiscard]] bool resistsFor(Duration time, MonotonicTime now) const noexcept {
     return acts() && kind_ != FrameKind::kCommand && now - begun_ >= time;
   }

@@ -7,8 +7,7 @@
 
 namespace rc10 {
 
-bool ReducedMotion::follow(bool reduced, bool moves, const MotorFeedback& feedback,
-                           const Tick& tick) noexcept {
+bool ReducedMotion::step(bool reduced, bool moves, const MotorFeedback& feedback, const Tick& tick) noexcept {
   if (!reduced) {
     acts_ = false;
     lift(tick.dt_s);

@@ -32,26 +32,17 @@ class ReducedMotion {
   explicit ReducedMotion(const ReducedConfig& config) noexcept : config_(config), any_(config.any()) {}
 
   /// Once a tick. `moves`: the motor follows a target or a fallback; the monitored time begins with that, or
-  /// with `reduced`. True: it is faster than it may be, after the monitored time.
-  [[nodiscard]] bool step(bool reduced, bool moves, const MotorFeedback& feedback,
-                          const Tick& tick) noexcept {
-    return any_ && follow(reduced, moves, feedback, tick);
-  }
-  /// Without, nothing is ever reduced, and step() need not be called.
+  /// with `reduced`. True: it is faster than it may be, after the monitored time. Only where there is any().
+  [[nodiscard]] bool step(bool reduced, bool moves, const MotorFeedback& feedback, const Tick& tick) noexcept;
+  /// Whether anything is ever reduced.
   [[nodiscard]] bool any() const noexcept { return any_; }
 
   /// Bound of every target's speed; infinite: none.
   [[nodiscard]] double ceilingRpm() const noexcept { return ceiling_rpm_; }
-  /// For Motor_Base::boundSpeed(): above what a loop overshoots by, below the speed that is a fault.
-  [[nodiscard]] double boundRpm() const noexcept {
-    return ceiling_rpm_ + 0.5 * static_cast<double>(config_.tolerance_rpm);
-  }
   /// For Motor_Base::derate().
   [[nodiscard]] float effortShare() const noexcept { return share_; }
 
  private:
-  [[nodiscard]] bool follow(bool reduced, bool moves, const MotorFeedback& feedback,
-                            const Tick& tick) noexcept;
   void begin(float speed_rpm, MonotonicTime now) noexcept;
   void reduce(float speed_rpm, const Tick& tick) noexcept;
   void lift(float dt_s) noexcept;

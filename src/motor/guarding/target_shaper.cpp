@@ -79,7 +79,10 @@ std::uint32_t TargetShaper::step(Target& target, const MotorFeedback& feedback, 
                                  float dt_s) noexcept {
   if (!follows(target.mode)) begin(target, feedback, in_force);
   // Without stiffness it is at no place: with one it begins where the shaft is then.
-  if (mode_ == ControlMode::kImpedance && !actsByPlace(target)) value_ = soft_ = feedback.total_angle_deg;
+  if (mode_ == ControlMode::kImpedance && !actsByPlace(target)) {
+    value_ = soft_ = feedback.total_angle_deg;
+    openTravel(value_);
+  }
   if (!(share_ < 1.0)) return shape(target, feedback, in_force, dt_s);
   soften(target, feedback, dt_s);
   return shape(target, feedback, in_force, dt_s) | kLimitSlew;
@@ -168,12 +171,16 @@ void TargetShaper::begin(const Target& target, const MotorFeedback& feedback, In
   if (mode == ControlMode::kVelocity) value_ = static_cast<double>(feedback.velocity_rpm);
   if (needsReference(mode)) value_ = feedback.total_angle_deg;
   if (!std::isfinite(value_)) value_ = 0.0;
-  const double here_deg = value_;
+  const double here = value_;
   if (std::isfinite(in_force.held_deg)) takeOver(target, feedback, in_force);
-  travel_ = {std::min({config_.angle_min_deg, here_deg, value_}),
-             std::max({config_.angle_max_deg, here_deg, value_})};
+  if (needsReference(mode)) openTravel(here);
   soft_ = value_;
   soft_ff_nm_ = torque_ff_nm_;
+}
+
+void TargetShaper::openTravel(double here_deg) noexcept {
+  travel_ = {std::min({config_.angle_min_deg, here_deg, value_}),
+             std::max({config_.angle_max_deg, here_deg, value_})};
 }
 
 // A load that a fallback holds stays held: an angle goes on from the held one, beside which a loaded spring
@@ -215,6 +222,28 @@ TargetShaper::Envelope TargetShaper::softEnvelope(const MotorFeedback& feedback)
 TargetShaper::Envelope TargetShaper::allowedSpeeds(const MotorFeedback& feedback) const noexcept {
   const Envelope soft = softEnvelope(feedback);
   return {std::max(soft.low_rpm, -ceiling_rpm_), std::min(soft.high_rpm, ceiling_rpm_)};
+}
+
+// A place is approached at its gain, which is above that of a soft limit. A speed is not exceeded on the way
+// to one: there is no room to brake.
+OutputRange TargetShaper::speedBounds(const MotorFeedback& feedback, std::optional<double> from_rpm,
+                                      double standstill_rpm) const noexcept {
+  constexpr double kTolerance = 0.125;
+  Envelope most{-ceiling_rpm_, ceiling_rpm_};
+  const auto include = [&most](double low_rpm, double high_rpm) noexcept {
+    most.low_rpm = std::max(most.low_rpm, std::min(low_rpm, 0.0));
+    most.high_rpm = std::min(most.high_rpm, std::max(high_rpm, 0.0));
+  };
+  if (bounded(feedback)) {
+    const bool by_speed = mode_ == ControlMode::kVelocity;
+    const double share = by_speed ? 1.0 : 1.0 / static_cast<double>(kApproachOfAngleGain);
+    const Envelope soft = envelope(feedback.total_angle_deg);
+    include(share * soft.low_rpm, share * soft.high_rpm);
+    if (by_speed) include(value_, value_);
+  }
+  if (from_rpm) include(*from_rpm, *from_rpm);
+  return {static_cast<float>((1.0 + kTolerance) * most.low_rpm - 0.5 * standstill_rpm),
+          static_cast<float>((1.0 + kTolerance) * most.high_rpm + 0.5 * standstill_rpm)};
 }
 
 bool TargetShaper::slew(double goal, float per_second, float dt_s) noexcept {

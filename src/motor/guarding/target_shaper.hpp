@@ -3,7 +3,9 @@
 #include <cmath>
 #include <cstdint>
 #include <limits>
+#include <optional>
 
+#include "app/limits.hpp"
 #include "app/target.hpp"
 #include "motor/motor_base.hpp"
 
@@ -26,8 +28,8 @@ struct ShapingConfig {
   float effort_per_nm = 0.0F;            ///< A per N·m: of a torque feed-forward. 0: unknown.
   float effort_full_scale = 0.0F;        ///< Effort of a duty of 1. 0: unknown.
   float duty_per_rpm = 0.0F;             ///< Duty that only keeps up a speed. 0: unknown.
-  float effort_limit = 0.0F;             ///< Limits of the motor: slews and soft starts end there,
-  float velocity_limit_rpm = 0.0F;       ///< not at a target beyond. 0: none.
+  float effort_limit = 0.0F;             ///< Limit of the motor, at which slews and soft starts end. 0: none.
+  float velocity_limit_rpm = 0.0F;       ///< The same for the speed.
   bool has_velocity_loop = false;        ///< The motor can be told a speed.
   bool lead_is_speed = false;            ///< The lead of an angle is a speed: another loop bounds it.
   bool springs = false;                  ///< The drive makes torque by a SpringLaw, without an integral.
@@ -67,6 +69,12 @@ class TargetShaper {
   [[nodiscard]] std::uint32_t slowDown(Target& target, const MotorFeedback& feedback, InForce in_force,
                                        float dt_s) noexcept;
   /// After a change of the angle loop's gain: see kApproachOfAngleGain.
+  [[nodiscard]] bool hasSoftLimits() const noexcept { return soft_limits_; }
+  /// Speeds beyond which no loop is to push the shaft on: those of the soft limits and of the ceiling, and in
+  /// a stop from `from_rpm` those between it and standstill; each with a tolerance for what a loop overshoots
+  /// by. Infinite: no bound.
+  [[nodiscard]] OutputRange speedBounds(const MotorFeedback& feedback, std::optional<double> from_rpm,
+                                        double standstill_rpm) const noexcept;
   void setApproach(float rpm_per_deg) noexcept { config_.approach_rpm_per_deg = rpm_per_deg; }
   /// Speed that no target of any mode leads beyond; infinite: none. A shaft that is faster is braked by
   /// targets of a speed or an angle, and by efforts.
@@ -120,6 +128,8 @@ class TargetShaper {
   [[nodiscard]] double effortFor(double allowed_rpm, const MotorFeedback& feedback) const noexcept;
   [[nodiscard]] double reachable(double goal_deg, bool any_turn, const Travel& travel) const noexcept;
   void followFromOutside(const MotorFeedback& feedback) noexcept;
+  /// The soft limits as bounds, farther out where the shaft or value_ is beyond one.
+  void openTravel(double here_deg) noexcept;
   void begin(const Target& target, const MotorFeedback& feedback, InForce in_force) noexcept;
   void takeOver(const Target& target, const MotorFeedback& feedback, InForce in_force) noexcept;
   void soften(Target& asked, const MotorFeedback& feedback, float dt_s) noexcept;

@@ -239,6 +239,18 @@ TEST(MotorRules, AVelocityLimitBeyondTheMotorIsWorthAWarning) {
               IsEmpty());
 }
 
+TEST(MotorRules, ATravelOfATurnIsWorthAWarningWhereTheTurnFollowsFromIt) {
+  const std::string limits = "angle_min_deg: -300, angle_max_deg: 200";
+  EXPECT_THAT(warningsOf(robotWith("{name: a, model: GM6020, id: 1, " + limits + "}")),
+              ElementsAre(AllOf(HasSubstr("motors[0].angle_max_deg: a travel of a turn or more"),
+                                HasSubstr("`rc10ctl zero`"))));
+  for (const std::string motor : {"model: M3508, id: 1", "model: GM6020, id: 1, zero: power_on"})
+    EXPECT_THAT(warningsOf(robotWith("{name: a, " + motor + ", " + limits + "}")), IsEmpty()) << motor;
+  EXPECT_THAT(
+      warningsOf(robotWith("{name: a, model: GM6020, id: 1, angle_min_deg: -90, angle_max_deg: 200}")),
+      IsEmpty());
+}
+
 TEST(MotorRules, ANumberHasNoUnitBehindIt) {
   EXPECT_THAT(
       errorsOfWheel("current_limit_a: 10A"),

@@ -53,8 +53,17 @@ TEST(ReducedRules, WithoutThemNothingIsReduced) {
 TEST(ReducedRules, AnInputThatReducesNothingIsAnError) {
   EXPECT_THAT(
       errorsOf(robotText(kInput, "")),
-      ElementsAre("hero.yaml:2:12: mode_gpio: no motor has a limit to reduce; add reduced_velocity_rpm or "
-                  "reduced_current_a to those that a person may come near, or remove it"));
+      ElementsAre(
+          "hero.yaml:2:12: mode_gpio: no motor has a limit to reduce; add reduced_velocity_rpm or "
+          "reduced_current_a (reduced_voltage_v) to those that a person may come near, or remove it"));
+}
+
+// Its limits are not known: the advice to remove the input would be wrong.
+TEST(ReducedRules, AnInputIsNotJudgedByAMotorThatIsItselfWrong) {
+  EXPECT_THAT(errorsOf(robotText(kInput, "reduced_velocity_rpm: 60, gear_ratio: 0")),
+              ElementsAre(HasSubstr("gear_ratio")));
+  EXPECT_THAT(errorsOf(robotText(kInput, "reduced_velocity_rpm: fast")),
+              ElementsAre(HasSubstr("reduced_velocity_rpm")));
 }
 
 TEST(ReducedRules, LimitsThatNothingAsksForAreAnError) {
@@ -72,7 +81,7 @@ TEST(ReducedRules, AReducedLimitIsBelowTheOther) {
                             "have anyway; lower it")));
   EXPECT_THAT(
       errorsOf(robotText(kInput, "current_limit_a: 4, reduced_current_a: 4, reduced_velocity_rpm: 9")),
-      ElementsAre(HasSubstr("reduced_current_a: 4 A is not below the 4 that the motor may have anyway")));
+      ElementsAre(HasSubstr("reduced_current_a: 4 A is not below the 4 A that the motor may have anyway")));
 }
 
 TEST(ReducedRules, TheRampFitsIntoTheTime) {

@@ -111,6 +111,36 @@ TEST_F(FallbackTest, AnEstopThatIsRepeatedDoesNotBeginItsTimeAnew) {
   EXPECT_EQ(robot->motor(kLeft).acting, Acting::kDamp);
 }
 
+TEST_F(FallbackTest, AnEstopWhileTheProgramEndsReplacesWhatActs) {
+  start({.on_disable = FallbackAction::kHold, .on_estop = FallbackAction::kDamp}, 1.0F);
+  robot->scheduler().beginStop();
+  robot->run(100);
+  ASSERT_EQ(robot->motor(kLeft).acting, Acting::kHold);
+  estop();
+  robot->run(2);
+  EXPECT_EQ(robot->motor(kLeft).acting, Acting::kDamp);
+  EXPECT_EQ(robot->snapshot().state, RobotStatus::kStopping);
+}
+
+TEST_F(FallbackTest, AnEstopThatIsRepeatedWhileTheProgramEndsBeginsNoRampAnew) {
+  start({.on_disable = FallbackAction::kHold, .on_estop = FallbackAction::kRamp, .ramp = 100ms}, 1.0F);
+  robot->scheduler().beginStop();
+  robot->run(10);
+  for (int i = 0; i < 500; ++i) {
+    estop();
+    robot->tick();
+  }
+  expectAtRest();
+}
+
+TEST_F(FallbackTest, TheFirstDisableInTheTickOfAnEstopLetsGoOfNothing) {
+  start({.on_disable = FallbackAction::kHold, .on_estop = FallbackAction::kHold}, 1.0F);
+  estop();
+  robot->order(Operation::kDisable);
+  robot->run(100);
+  EXPECT_EQ(robot->motor(kLeft).acting, Acting::kHold);
+}
+
 TEST_F(FallbackTest, AnEstopIsNotClearedWhileARampLeads) {
   start({.on_estop = FallbackAction::kRamp, .ramp = 20s});
   estop();

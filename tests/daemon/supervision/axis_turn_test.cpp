@@ -87,7 +87,9 @@ TEST_P(TurnTest, ThatIsUnclearKeepsItFromBeingEnabledUntilItsAngleIsSet) {
   EXPECT_EQ(enable(robot), Refusal::kTurnUnclear);
   EXPECT_EQ(robot.motor(kArm).status, MotorStatus::kReady);
   EXPECT_FALSE(robot.motor(kArm).feedback.zeroed);
-  EXPECT_EQ(robot.order(Operation::kZero, 370.0).motors[kArm], Refusal::kNone);
+  const auto set = robot.order(Operation::kZero, 370.0);
+  EXPECT_EQ(set.motors[kArm], Refusal::kNone);
+  EXPECT_TRUE(std::isnan(set.zero_deg)) << "no file would let it know its turn";
   EXPECT_EQ(enable(robot), Refusal::kNone);
   EXPECT_NEAR(robot.motor(kArm).feedback.total_angle_deg, 370.0, 1.0);
 }

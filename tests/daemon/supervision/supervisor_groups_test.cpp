@@ -251,6 +251,26 @@ TEST_F(GroupTest, MembersThatAPersonHasEnabledFirstAreNotSaidToComeBackByThemsel
   for (const auto& event : robot->events()) EXPECT_NE(event.code, EventCode::kGroupRearmed);
 }
 
+TEST_F(GroupTest, AMemberThatIsHeldWhileItIsEnabledStopsAsItsGroupDoes) {
+  auto config = coupled(GroupConfig::Return::kRequest);
+  config.buses[0].motors[0].fallback = {.on_disable = FallbackAction::kHold,
+                                        .on_estop = FallbackAction::kDamp};
+  robot = std::make_unique<VirtualRobot>(config);
+  robot->run(5);
+  robot->order(Operation::kEnable);
+  drive(500);
+  robot->order(Operation::kDisable);
+  robot->run(100);
+  ASSERT_EQ(robot->motor(kLeft).acting, Acting::kHold);
+  robot->freezeBus(1, true);
+  robot->run(5);
+  robot->beginEnabling(only(kLeft) | only(kRight));
+  for (int i = 0; i < 200 && status(kRight) != MotorStatus::kOffline; ++i) robot->tick();
+  ASSERT_EQ(status(kRight), MotorStatus::kOffline);
+  robot->run(2);
+  EXPECT_EQ(robot->motor(kLeft).acting, Acting::kDamp);
+}
+
 TEST_F(GroupTest, AMemberThatIsMissingIsNamed) {
   start(GroupConfig::Return::kRequest);
   robot->freezeBus(0, true);

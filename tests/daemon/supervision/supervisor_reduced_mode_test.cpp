@@ -397,7 +397,8 @@ TEST_P(ReducedPushTest, AShaftComesBackSlowlyToWhereItIsHeld) {
   EXPECT_EQ(robot->motor(kWheel).acting, Acting::kHold);
 }
 
-// A moteus goes to the place it is told along a course of its own: docs/gpio.md.
+// A moteus goes to the place it is told along a course of its own, the position loop of a VESC is its own:
+// the table of docs/gpio.md.
 INSTANTIATE_TEST_SUITE_P(Families, ReducedPushTest,
                          ::testing::Values("M3508, id: 1", "DM4310, id: 2, master_id: 18", "RS00, id: 3",
                                            "AK80-9, id: 5", "AK80-9, protocol: mit, id: 5",

@@ -97,7 +97,7 @@ class SchedLoopTest : public ::testing::Test {
     std::vector<StopCause> causes;
     for (const Event& event : events) {
       if (event.code == EventCode::kRobotState && event.value == static_cast<int>(RobotStatus::kEstop))
-        causes.push_back(static_cast<StopCause>(event.extra / 256));
+        causes.push_back(ExtraPair<RobotStatus, StopCause>::from(event.extra).second);
     }
     return causes;
   }

@@ -485,6 +485,73 @@ TEST_F(TargetShaperTest, AnImpedanceWithoutStiffnessIsAtNoPlace) {
   EXPECT_NEAR(step(target).target.value, 0.2, 1e-6) << "from where the shaft is";
 }
 
+// It has sagged beyond the soft limit meanwhile.
+TEST_F(TargetShaperTest, AStiffnessThatComesBeyondASoftLimitBeginsThere) {
+  ShapingConfig config = soft;
+  config.angle_slew_deg_per_s = 100.0F;
+  configure(config);
+  Target target{.mode = ControlMode::kImpedance};
+  (void)step(target);
+  at(-110.0);
+  (void)step(target);
+  target.stiffness_nm_per_rad = 100.0F;
+  EXPECT_NEAR(step(target).target.value, -109.8, 1e-6);
+  EXPECT_NEAR(step(target).target.value, -109.7, 1e-6);
+}
+
+/// Speeds that a shaft may be pushed to, with tolerance.
+class SpeedBoundsTest : public TargetShaperTest {
+ protected:
+  static constexpr double kStandstillRpm = 10.0;
+  void expectBounds(std::optional<double> from_rpm, float low_rpm, float high_rpm) {
+    const OutputRange bounds = shaper.speedBounds(feedback, from_rpm, kStandstillRpm);
+    EXPECT_NEAR(bounds.low, low_rpm, 1e-3F);
+    EXPECT_NEAR(bounds.high, high_rpm, 1e-3F);
+  }
+};
+
+TEST_F(SpeedBoundsTest, WithoutLimitsThereAreNone) {
+  (void)step(ControlMode::kVelocity, 20.0);
+  const OutputRange bounds = shaper.speedBounds(feedback, std::nullopt, kStandstillRpm);
+  EXPECT_EQ(bounds.low, -std::numeric_limits<float>::infinity());
+  EXPECT_EQ(bounds.high, std::numeric_limits<float>::infinity());
+}
+
+TEST_F(SpeedBoundsTest, AStopFromASpeedLiesBetweenItAndStandstill) {
+  expectBounds(80.0, -5.0F, 95.0F);
+  expectBounds(-80.0, -95.0F, 5.0F);
+  expectBounds(0.0, -5.0F, 5.0F);
+}
+
+TEST_F(SpeedBoundsTest, TheCeilingOfReducedModeBoundsBothWays) {
+  shaper.setCeiling(40.0);
+  expectBounds(std::nullopt, -50.0F, 50.0F);
+  expectBounds(8.0, -5.0F, 14.0F);
+}
+
+TEST_F(SpeedBoundsTest, OnTheWayToASoftLimitASpeedIsThatOfItsTarget) {
+  configure(soft);
+  at(50.0);
+  (void)step(ControlMode::kVelocity, 20.0);
+  expectBounds(std::nullopt, -5.0F, 27.5F);
+  at(85.0);
+  (void)step(ControlMode::kVelocity, 20.0);
+  expectBounds(std::nullopt, -5.0F, 16.25F);  // 2 rpm/deg * 5 deg
+  at(95.0);
+  (void)step(ControlMode::kVelocity, 20.0);
+  expectBounds(std::nullopt, -5.0F, 5.0F);
+}
+
+TEST_F(SpeedBoundsTest, APlaceIsApproachedAtTheGainOfItsLoop) {
+  configure(soft);
+  at(80.0);
+  (void)step(ControlMode::kTotalAngle, 85.0);
+  expectBounds(std::nullopt, -1.125F * 170.0F * 4.0F - 5.0F, 1.125F * 10.0F * 4.0F + 5.0F);
+  feedback.zeroed = false;
+  const OutputRange bounds = shaper.speedBounds(feedback, std::nullopt, kStandstillRpm);
+  EXPECT_EQ(bounds.high, std::numeric_limits<float>::infinity()) << "its angle is not known";
+}
+
 TEST_F(TargetShaperTest, ADutyBeginsAtThatOfTheTurningShaft) {
   configure({.effort_slew_per_s = 60.0F, .effort_full_scale = 60.0F, .duty_per_rpm = 1.0F / 2000.0F});
   const Target asked{.mode = ControlMode::kDuty, .value = 0.9};
