@@ -60,6 +60,8 @@ class PID_Incremental {
   /// Begins without a bump: the next steps continue from the output in force. A first step() without
   /// start() begins at output 0.
   void start(float output_in_force, float measured, float target) noexcept;
+  /// An effort that has acted beside it becomes a part of its output.
+  void takeOver(float effort) noexcept { state_.output = saturate(state_.output + finiteOr0(effort)); }
   /// Other gains from the next step on, without a bump: the output is the memory, and goes on from where it
   /// is. Limits act at once.
   void retune(const Config& config) noexcept;

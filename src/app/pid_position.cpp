@@ -101,6 +101,16 @@ void PID_Position::fade(float dt_s) noexcept {
   return state_.output;
 }
 
+void PID_Position::takeOver(float effort) noexcept {
+  const float carried = finiteOr0(effort);
+  const float before = state_.integral;
+  if (config_.ki > 0.0F)
+    state_.integral = OutputRange{}.within(config_.integral_limit).clamp(saturate(before + carried));
+  state_.output_offset = saturate(state_.output_offset + carried - (state_.integral - before));
+  state_.output = saturate(state_.output + carried);
+  state_.fades = true;
+}
+
 void PID_Position::start(float output_in_force, float measured, float target) noexcept {
   reset();
   if (!std::isfinite(output_in_force) || !std::isfinite(measured) || !std::isfinite(target)) return;

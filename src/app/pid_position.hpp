@@ -61,6 +61,9 @@ class PID_Position {
 
   /// Begins without a bump: the next steps continue from the output in force.
   void start(float output_in_force, float measured, float target) noexcept;
+  /// An effort that has acted beside it becomes a part of its output; without ki, or beyond the limit of the
+  /// integral, it fades over kStartGlideSeconds.
+  void takeOver(float effort) noexcept;
   /// Other gains from the next step on, without a bump: the integral keeps its share of the output, and
   /// what the new gains make of the last error appears over kStartGlideSeconds. Limits act at once. With
   /// ki 0 the integral goes as well. The part that a limit had cut off is not carried over.

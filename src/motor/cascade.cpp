@@ -84,17 +84,23 @@ float Cascade::velocityTarget(const Target& target, const Measured& measured, fl
   return limited;
 }
 
-float Cascade::withoutWindup(float effort_in_force, float measured_rpm, float least_rpm) noexcept {
-  if (!closesLoop(active_mode_)) return effort_in_force;
-  const auto left = [&](auto& loop) noexcept {
-    const float asked_rpm = measured_rpm + loop.state().whole_error;
-    const bool asked = std::fabs(asked_rpm) > least_rpm && asked_rpm * effort_in_force > 0.0F;
-    if (!asked || measured_rpm / asked_rpm >= 0.5F) return effort_in_force;
-    loop.start(0.0F, measured_rpm, measured_rpm);
-    return 0.0F;
+bool Cascade::dropWindup(float effort_in_force, float measured_rpm, float least_rpm) noexcept {
+  if (!closesLoop(active_mode_)) return false;
+  const auto drops = [&](auto& loop) noexcept {
+    const float asked_rpm = measured_rpm + loop.state().error;
+    const bool pushes = std::fabs(asked_rpm) > least_rpm && asked_rpm * effort_in_force > 0.0F;
+    if (pushes && measured_rpm / asked_rpm < 0.5F) {
+      loop.start(0.0F, measured_rpm, measured_rpm);
+      return true;
+    }
+    loop.takeOver(effort_in_force - loop.state().output);
+    return false;
   };
   auto* incremental = std::get_if<PID_Incremental>(&velocity_);
-  return incremental != nullptr ? left(*incremental) : left(*std::get_if<PID_Position>(&velocity_));
+  const bool dropped =
+      incremental != nullptr ? drops(*incremental) : drops(*std::get_if<PID_Position>(&velocity_));
+  if (dropped) angle_.reset();
+  return dropped;
 }
 
 float Cascade::step(const Target& target, const Measured& measured, float dt_s, float effort_limit,
@@ -112,11 +118,11 @@ float Cascade::step(const Target& target, const Measured& measured, float dt_s, 
   const float velocity_target = velocityTarget(target, measured, dt_s);
 
   const OutputRange range = OutputRange::symmetric(effort_limit);
-  const bool driven = (measured.velocity_rpm > speeds_rpm_.high && effort_in_force > 0.0F) ||
+  const bool beyond = (measured.velocity_rpm > speeds_rpm_.high && effort_in_force > 0.0F) ||
                       (measured.velocity_rpm < speeds_rpm_.low && effort_in_force < 0.0F);
   const auto advance = [&](auto& loop) noexcept {
-    if (driven) {
-      loop.start(-effort_ff, measured.velocity_rpm, measured.velocity_rpm);  // the error alone brakes
+    if (beyond && std::fabs(measured.velocity_rpm) > std::fabs(loop.state().measured)) {
+      loop.start(0.5F * effort_in_force - effort_ff, measured.velocity_rpm, measured.velocity_rpm);
     } else if (fresh) {
       loop.start(effort_in_force - effort_ff, measured.velocity_rpm, velocity_target);
     }

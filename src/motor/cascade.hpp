@@ -41,12 +41,14 @@ class Cascade {
                                                         float effort_ff = 0.0F) noexcept;
 
   /// From the next step on no target of the velocity loop lies outside of these speeds, and an effort that
-  /// drives the shaft beyond them ends at once, however far that loop has wound up.
+  /// drives the shaft ever faster beyond them is halved in each step, however far that loop has wound up:
+  /// what is left balances a load.
   void boundSpeeds(const OutputRange& speeds_rpm) noexcept;
-  /// Before a stop: what the velocity loop has built up ends if it drives a shaft with less than half of the
-  /// speed that it was asked for. A smaller speed than `least_rpm` counts as none. The effort that is left of
-  /// `effort_in_force`.
-  [[nodiscard]] float withoutWindup(float effort_in_force, float measured_rpm, float least_rpm) noexcept;
+
+  /// Before a stop. What the loops have built up ends if it drives a shaft with less than half of the speed
+  /// that it was asked for: true, and the effort in force is to be 0. A smaller speed than `least_rpm` counts
+  /// as none. Else the effort in force goes on, with what acted beside the loops.
+  [[nodiscard]] bool dropWindup(float effort_in_force, float measured_rpm, float least_rpm) noexcept;
 
   /// Other gains from the next step on, without a bump. The type of the velocity loop stays: a config of
   /// another one is ignored.

@@ -82,7 +82,8 @@ class Motor_Base : public FrameListener {
   /// Scales the effort limit from this tick on, by 0 (nothing) to 1 (all): a hot motor gets less.
   void derate(float factor) noexcept { derating_ = factor > 0.0F ? std::min(factor, 1.0F) : 0.0F; }
 
-  /// Speeds at the output shaft, rpm, beyond which no loop of rc10d goes on pushing. Infinite: no bound.
+  /// Speeds at the output shaft, rpm, beyond which no loop of rc10d drives the shaft ever faster. Infinite:
+  /// no bound.
   virtual void boundSpeeds(const OutputRange& speeds_rpm) noexcept { speeds_rpm_ = speeds_rpm; }
   /// Before a stop: what a loop of rc10d has built up against a shaft that is blocked, with less than half of
   /// the speed that it was asked for, does not act in the stop. A speed below `least_rpm` counts as none.

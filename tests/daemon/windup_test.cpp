@@ -141,6 +141,25 @@ TEST_P(WindupInAStop, DoesNotPressOn) {
 INSTANTIATE_TEST_SUITE_P(Families, WindupInAStop,
                          ::testing::Values(kM3508Case, kM2006Case, kYaw, kYawByVoltage, kMoteus), nameOf);
 
+/// Loops of rc10d alone: for a spring the place of a hold is that of its load, and stays.
+class WindupInAHold : public WindupInAStop {};
+
+TEST_P(WindupInAHold, DoesNotPressTowardsThePlaceOfAnEarlierHold) {
+  start("on_timeout: hold, on_estop: hold, hold_max_s: 30, simulated: {inertia_kg_m2: 0.01}",
+        GetParam().motor);
+  robot->hold(kMotor, {.mode = ControlMode::kTotalAngle}, 500);
+  robot->run(200);
+  ASSERT_EQ(seen().acting, Acting::kHold);
+  drive().physics().take({.by_deg = 20.0, .speed_rpm = 8.0, .torque_nm = 500.0, .hold = 3s});
+  robot->run(2000);
+  ASSERT_TRUE(held());
+  robot->order(Operation::kEstop);
+  EXPECT_LT(movesDeg(), 3.0);
+}
+
+INSTANTIATE_TEST_SUITE_P(Families, WindupInAHold,
+                         ::testing::Values(kM3508Case, kM2006Case, kYaw, kYawByVoltage), nameOf);
+
 /// A heavy wheel.
 class WindupOfAWheel : public WindupTest {};
 
@@ -162,32 +181,92 @@ TEST_P(WindupOfAWheel, DoesNotTurnItBackAfterAStop) {
   }
 }
 
+TEST_P(WindupOfAWheel, IsNotDrivenForwardAfterAHandHasTurnedItBack) {
+  start("on_estop: brake, brake_max_s: 60, simulated: {inertia_kg_m2: 0.05}", GetParam().motor);
+  robot->hold(kMotor, {.mode = ControlMode::kVelocity, .value = 300.0}, 3000);
+  robot->order(Operation::kEstop);
+  robot->run(4000);
+  drive().physics().take({.by_deg = -90.0, .speed_rpm = 30.0, .torque_nm = 500.0, .hold = 300ms});
+  while (held()) robot->run(1);
+  float fastest_rpm = 0.0F;
+  for (int i = 0; i < 2000; ++i) {
+    robot->run(1);
+    fastest_rpm = std::max(fastest_rpm, rpm());
+  }
+  EXPECT_LT(fastest_rpm, 15.0F);
+}
+
 INSTANTIATE_TEST_SUITE_P(Families, WindupOfAWheel, ::testing::Values(kM3508Case, kYaw, kYawByVoltage),
                          nameOf);
 
-/// A load that is lifted: what carries it is no windup.
-class CarriedLoad : public WindupTest {};
+/// A load that is moved: what carries it is no windup.
+class CarriedLoad : public WindupTest {
+ protected:
+  static constexpr double kLoadNm = 0.4;
+
+  void startLoaded(const std::string& keys) {
+    start(keys + ", hold_max_s: 30, brake_max_s: 30", GetParam().motor);
+    robot->hold(kMotor, {.mode = ControlMode::kTotalAngle}, 500);
+    sim::MotorLoad load = drive().load();
+    load.load_torque_nm = static_cast<float>(kLoadNm);
+    drive().setLoad(load);
+    robot->hold(kMotor, {.mode = ControlMode::kTotalAngle}, 1500);
+  }
+  /// Way down from here, in so many ticks.
+  template <typename Tick>
+  double sinksDeg(int ticks, const Tick& tick) {
+    const double before_deg = angleDeg();
+    double lowest_deg = before_deg;
+    for (int i = 0; i < ticks; ++i) {
+      tick();
+      lowest_deg = std::min(lowest_deg, angleDeg());
+    }
+    return before_deg - lowest_deg;
+  }
+};
 
 TEST_P(CarriedLoad, IsHeldByAStopOnTheWay) {
   for (const char* action : {"brake", "hold"}) {
     SCOPED_TRACE(action);
-    start(std::string{"on_estop: "} + action + ", hold_max_s: 30, brake_max_s: 30", GetParam().motor);
-    robot->hold(kMotor, {.mode = ControlMode::kTotalAngle}, 500);
-    sim::MotorLoad load = drive().load();
-    load.load_torque_nm = 0.4F;
-    drive().setLoad(load);
-    robot->hold(kMotor, {.mode = ControlMode::kTotalAngle}, 1500);
+    startLoaded(std::string{"on_estop: "} + action);
     robot->hold(kMotor, kSlowly, 1500);
     ASSERT_NEAR(rpm(), 20.0F, 4.0F);
     robot->order(Operation::kEstop);
-    const double before_deg = angleDeg();
-    double lowest_deg = before_deg;
-    for (int i = 0; i < 2000; ++i) {
-      robot->run(1);
-      lowest_deg = std::min(lowest_deg, angleDeg());
-    }
-    EXPECT_GT(lowest_deg, before_deg - 4.0);
+    EXPECT_LT(sinksDeg(2000, [this] { robot->run(1); }), 4.0);
   }
+}
+
+TEST_P(CarriedLoad, ThatIsFedForwardIsHeldByAStop) {
+  for (const char* action : {"brake", "hold"}) {
+    SCOPED_TRACE(action);
+    startLoaded(std::string{"on_estop: "} + action);
+    Target target = kSlowly;
+    target.torque_ff_nm = static_cast<float>(kLoadNm);
+    robot->hold(kMotor, target, 2500);
+    ASSERT_NEAR(rpm(), 20.0F, 4.0F);
+    robot->order(Operation::kEstop);
+    EXPECT_LT(sinksDeg(2000, [this] { robot->run(1); }), 4.0);
+  }
+}
+
+TEST_P(CarriedLoad, IsHeldByAStopOnTheWayDown) {
+  startLoaded("on_estop: brake");
+  robot->hold(kMotor, {.mode = ControlMode::kVelocity, .value = -40.0}, 1500);
+  ASSERT_NEAR(rpm(), -40.0F, 6.0F);
+  robot->order(Operation::kEstop);
+  robot->run(1000);
+  EXPECT_LT(sinksDeg(2000, [this] { robot->run(1); }), 1.0) << "once it has come to rest";
+}
+
+TEST_P(CarriedLoad, IsNotDroppedWhereSoftLimitsBoundItsSpeed) {
+  const auto sinksAfter = [&](const std::string& keys) {
+    startLoaded(keys);
+    robot->hold(kMotor, {.mode = ControlMode::kVelocity, .value = 100.0}, 1500);
+    EXPECT_NEAR(rpm(), 100.0F, 8.0F);
+    return sinksDeg(2000, [this] { robot->hold(kMotor, {.mode = ControlMode::kVelocity}, 1); });
+  };
+  const double free_deg = sinksAfter("on_estop: brake");
+  EXPECT_LT(sinksAfter("angle_min_deg: -5000, angle_max_deg: 5000"), free_deg + 3.0);
 }
 
 INSTANTIATE_TEST_SUITE_P(Families, CarriedLoad, ::testing::Values(kM3508Case, kYaw, kYawByVoltage), nameOf);

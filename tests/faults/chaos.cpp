@@ -57,7 +57,7 @@ Chaos::Chaos(Choices& choices, std::optional<Lie> lie)
   start();
 }
 
-// A quarter of the limits of the motor that the lie is about.
+// The file of the robot, as the lie has it.
 RobotConfig Chaos::believed(const Lie& lie) const {
   RobotConfig config = config_;
   for (auto& module : config.modules) {
@@ -74,6 +74,10 @@ RobotConfig Chaos::believed(const Lie& lie) const {
     motor.reduced.tolerance_rpm *= 0.25F;
   }
   if (lie.kind == Lie::Kind::kFirstStep) motor.shaping.max_first_step_deg *= 0.1;
+  if (lie.kind == Lie::Kind::kTurn) {
+    motor.shaping.angle_min_deg += 360.0;
+    motor.shaping.angle_max_deg += 360.0;
+  }
   if (lie.kind == Lie::Kind::kGroup) config.groups.front().motors.push_back(lie.motor);
   if (lie.kind == Lie::Kind::kSlew) {
     motor.shaping.velocity_slew_rpm_per_s *= 0.25F;
@@ -85,7 +89,7 @@ RobotConfig Chaos::believed(const Lie& lie) const {
   if (settings.effort_limit <= 0.0F) settings.effort_limit = motor.traits().effort_full_scale;
   settings.effort_limit *= 0.25F;
   settings.velocity_limit_rpm *= 0.25F;
-  motor.shaping.soft_start_s = 0.0F;  // which it would take for faster than it is
+  motor.shaping.soft_start_s = 0.0F;  // of smaller limits it would be slower than it is
   return config;
 }
 
@@ -103,6 +107,7 @@ void Chaos::start() {
   robot_->freezeSimulation(true);  // stepped here, so that every frame is seen
   oracle_ = std::make_unique<Oracle>(lie_ ? believed(*lie_) : config_);
   if (lie_ && lie_->kind == Lie::Kind::kStuck) oracle_->deafen(lie_->motor);
+  if (lie_ && lie_->kind == Lie::Kind::kZero) oracle_->misreadZeros(lie_->motor);
   wires_.clear();
   for (auto& port : robot_->robot().simPorts()) wires_.emplace_back(port->descriptor());
   frozen_.reset();

@@ -22,19 +22,21 @@ namespace rc10::test {
 /// emergency stops, broken drives and buses, missed ticks, restarts. After every tick the oracle judges.
 class Chaos {
  public:
-  /// For tests of the oracle: it is wrong about one motor of one robot, and has to see that.
+  /// For tests of the oracle: what it believes of one robot, wrongly, and has to contradict.
   struct Lie {
     enum class Kind : std::uint8_t {
-      kLimits,     ///< It believes in a quarter of its limits,
-      kStuck,      ///< or that it goes on following the first thing that it was told.
-      kPace,       ///< Or, of any robot, that scans listen a minute longer; of a joint,
-      kHoming,     ///< that it homes at a quarter of its velocity,
-      kTravel,     ///< or within a tenth of its travel.
-      kSlew,       ///< A motor whose targets change at a quarter of their slew limits, or
-      kSoftStart,  ///< that its soft start takes four times as long.
-      kReduced,    ///< A motor that may turn at a quarter of its reduced speed, or
-      kFirstStep,  ///< whose first angle may be a tenth as far away.
-      kGroup,      ///< A motor that belongs to the first group of its robot, too.
+      kLimits,     ///< A motor has a quarter of its limits.
+      kStuck,      ///< A motor goes on following the first thing that it was told.
+      kSlew,       ///< Targets of a motor change at a quarter of its slew limits.
+      kSoftStart,  ///< The soft start of a motor takes four times as long.
+      kReduced,    ///< A motor may turn at a quarter of its reduced speed.
+      kFirstStep,  ///< The first angle of a motor may be a tenth as far away.
+      kTurn,       ///< The travel of a motor lies a turn farther.
+      kZero,       ///< Each zero of a motor was asked for a degree higher.
+      kGroup,      ///< A motor belongs to the first group of its robot, too.
+      kPace,       ///< Scans of a robot listen a minute longer.
+      kHoming,     ///< The joints of a robot home at a quarter of their velocity.
+      kTravel,     ///< They home within a tenth of their travel.
     };
     std::size_t robot = 0;
     std::size_t motor = 0;

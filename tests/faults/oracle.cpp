@@ -200,7 +200,8 @@ void Oracle::answered(const OrderResult& result) {
   if (const auto zero = zeros_asked_.find(result.id); zero != zeros_asked_.end()) {
     for (std::size_t i = 0; i < motors_.size(); ++i) {
       const bool accepted = !result.refused && result.motors[i] == Refusal::kNone;
-      if (zero->second.motors.test(i)) motors_[i].zeros.push_back({zero->second.value, accepted});
+      const double value_deg = zero->second.value + (misread_ == i ? 1.0 : 0.0);
+      if (zero->second.motors.test(i)) motors_[i].zeros.push_back({value_deg, accepted});
     }
     zeros_asked_.erase(zero);
   }

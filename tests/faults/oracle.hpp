@@ -72,6 +72,8 @@ class Oracle {
   /// For tests of the oracle itself: after a frame for this motor that is not rest, it takes no other frame
   /// for it into account.
   void deafen(std::size_t motor) { deaf_ = motor; }
+  /// Its zeros count as asked for a degree higher.
+  void misreadZeros(std::size_t motor) { misread_ = motor; }
   /// Outputs.
   void answered(const OrderResult& result);
   /// A frame on a bus.
@@ -341,6 +343,7 @@ class Oracle {
   std::bitset<kMaxBuses> stalled_;  ///< As of the end of the last tick.
   std::bitset<kMaxBuses> held_;     ///< Nothing but a probe of a stalled bus may be sent there in this tick.
   std::optional<std::size_t> deaf_;
+  std::optional<std::size_t> misread_;
   Visits visits_;
 };
 

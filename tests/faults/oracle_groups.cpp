@@ -161,7 +161,7 @@ void Oracle::followActions(std::size_t index, const MotorSnapshot& seen) {
   // A target that came and went within the tick cannot be; one that was taken back by COAST can.
   if (after == MotorStatus::kReady && motor.disables_asked > 0 && motor.disables_asked < 2 &&
       before == MotorStatus::kReady && !motor.enable_asked) {
-    if (std::exchange(motor.rests_with_group, false) || estop_asked_) {
+    if (std::exchange(motor.rests_with_group, false)) {
       motor.actions |= coast;
     } else {
       setActions(motor, coast);

@@ -119,6 +119,19 @@ TEST_P(OracleSeesAFirstAngle, ThatIsTooFarAway) {
   EXPECT_THAT(findingOf(Kind::kFirstStep), ::testing::HasSubstr("first angle farther away"));
 }
 
+class OracleSeesATurn : public OracleSees {};
+
+TEST_P(OracleSeesATurn, ThatIsAnother) {
+  EXPECT_THAT(findingOf(Kind::kTurn), ::testing::HasSubstr("on another turn than its travel"));
+}
+
+/// The first motor of each robot.
+class OracleSeesAZero : public OracleSees {};
+
+TEST_P(OracleSeesAZero, ThatIsAnother) {
+  EXPECT_THAT(findingOf(Kind::kZero), ::testing::HasSubstr("not the one that its zero was set to"));
+}
+
 constexpr std::size_t kRobotWithAGroup = 0;
 
 TEST(OracleSeesOfAGroup, ThatAMemberGoesOnWithoutTheOthers) {
@@ -136,6 +149,27 @@ INSTANTIATE_TEST_SUITE_P(EachMotor, OracleSeesAFirstAngle,
                          ::testing::ValuesIn(motorsWith([](const MotorConfig& motor) {
                            return motor.shaping.max_first_step_deg < 180.0;
                          })),
+                         [](const auto& param) { return param.param.name; });
+
+/// Its travel, of less than a turn, tells the turn.
+bool knowsItsTurn(const MotorConfig& motor) {
+  const auto traits = motor.traits();
+  const auto& settings = motor.settings;
+  const bool own_gear = settings.gear_ratio <= 0.0 || settings.gear_ratio == traits.gear_ratio;
+  return traits.absolute && own_gear && !settings.zero_at_power_on &&
+         motor.shaping.angle_max_deg - motor.shaping.angle_min_deg < 360.0;
+}
+
+INSTANTIATE_TEST_SUITE_P(EachMotor, OracleSeesATurn, ::testing::ValuesIn(motorsWith(knowsItsTurn)),
+                         [](const auto& param) { return param.param.name; });
+
+std::vector<Case> firstMotors() {
+  auto cases = everyMotor();
+  std::erase_if(cases, [](const Case& each) { return each.motor != 0; });
+  return cases;
+}
+
+INSTANTIATE_TEST_SUITE_P(EachRobot, OracleSeesAZero, ::testing::ValuesIn(firstMotors()),
                          [](const auto& param) { return param.param.name; });
 
 INSTANTIATE_TEST_SUITE_P(EachMotor, OracleSees, ::testing::ValuesIn(everyMotor()),

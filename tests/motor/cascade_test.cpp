@@ -193,25 +193,29 @@ const std::initializer_list<CascadeConfig> kWindingUp{
     {.velocity = PID_Incremental::Config{.kp = 0.1F, .ki = 5.0F, .kd = 0.001F}, .angle = {}}};
 
 // A shaft that a hand held back is let go: the loop has wound up to all its effort.
-TEST(Cascade, AnEffortThatDrivesBeyondTheSpeedBoundEndsAtOnce) {
-  constexpr float kMeasuredRpm = 12.0F;
+TEST(Cascade, AnEffortThatDrivesEverFasterBeyondTheSpeedBoundIsHalvedInEachStep) {
   for (const auto& config : kWindingUp) {
     for (const float way : {1.0F, -1.0F}) {
       const Target target{.mode = ControlMode::kVelocity, .value = static_cast<double>(way) * 10.0};
       Cascade cascade(config);
-      const float wound = settled(cascade, target, {});
-      ASSERT_FLOAT_EQ(wound, way * kLimit);
-      const Cascade::Measured fast{.velocity_rpm = way * kMeasuredRpm};
-      const OutputRange wide{way > 0.0F ? -5.0F : -13.0F, way > 0.0F ? 13.0F : 5.0F};
-      const OutputRange narrow{way > 0.0F ? -5.0F : -11.0F, way > 0.0F ? 11.0F : 5.0F};
-      cascade.boundSpeeds(wide);
-      (void)cascade.step(target, fast, kDt, kLimit, wound);  // of the leap of the speed
-      EXPECT_GT(way * cascade.step(target, fast, kDt, kLimit, wound), 2.0F) << "within the bound";
-      cascade.boundSpeeds(narrow);
-      // -2 rpm * 0.1 A/rpm, and an integral that has only begun
-      EXPECT_NEAR(way * cascade.step(target, fast, kDt, kLimit, wound), -0.2F, 0.02F);
-      EXPECT_NEAR(way * cascade.step(target, fast, kDt, kLimit, -0.2F * way), -0.2F, 0.03F)
-          << "what brakes goes on";
+      float effort = settled(cascade, target, {});
+      ASSERT_FLOAT_EQ(effort, way * kLimit);
+      const auto stepAt = [&](float rpm) {
+        effort = cascade.step(target, {.velocity_rpm = way * rpm}, kDt, kLimit, effort);
+        return way * effort;
+      };
+      cascade.boundSpeeds({way > 0.0F ? -5.0F : -13.0F, way > 0.0F ? 13.0F : 5.0F});
+      (void)stepAt(12.0F);  // of its leap
+      EXPECT_GT(stepAt(12.0F), 2.0F) << "within the bound";
+      effort = way * 8.0F;
+      // With -4 rpm * 0.1 A/rpm, and an integral that has only begun.
+      EXPECT_NEAR(stepAt(14.0F), 4.0F - 0.4F, 0.05F);
+      EXPECT_NEAR(stepAt(14.1F), 1.8F - 0.41F, 0.05F);
+      EXPECT_NEAR(stepAt(14.2F), 0.695F - 0.42F, 0.05F);
+      const float balances = way * effort;
+      EXPECT_NEAR(stepAt(14.2F), balances, 0.3F) << "it does not drive it on";
+      for (int i = 0; i < 20; ++i) (void)stepAt(14.3F + 0.01F * static_cast<float>(i));
+      EXPECT_LT(stepAt(15.0F), 0.0F) << "the error brakes";
     }
   }
 }
@@ -234,25 +238,48 @@ TEST(Cascade, WhatHasBuiltUpAgainstABlockedShaftDoesNotActInAStop) {
   const Target standstill{.mode = ControlMode::kVelocity};
   for (const auto& config : kWindingUp) {
     for (const float way : {1.0F, -1.0F}) {
-      const auto effortInAStop = [&](float asked_rpm, float measured_rpm) {
+      const auto effortInAStop = [&](float asked_rpm, float measured_rpm, float effort_ff = 0.0F) {
         Cascade cascade(config);
         const Cascade::Measured measured{.velocity_rpm = way * measured_rpm};
         const Target target{.mode = ControlMode::kVelocity, .value = static_cast<double>(way * asked_rpm)};
-        const float wound = settled(cascade, target, measured);
-        const float left = cascade.withoutWindup(wound, measured.velocity_rpm, kLeastRpm);
-        return way * cascade.step(standstill, measured, kDt, kLimit, left);
+        float wound = settled(cascade, target, measured);
+        wound = cascade.step(target, measured, kDt, kLimit, wound, way * effort_ff);
+        const bool dropped = cascade.dropWindup(wound, measured.velocity_rpm, kLeastRpm);
+        return way * cascade.step(standstill, measured, kDt, kLimit, dropped ? 0.0F : wound);
       };
       EXPECT_NEAR(effortInAStop(20.0F, 0.0F), 0.0F, 0.01F);
       EXPECT_NEAR(effortInAStop(20.0F, 9.0F), -0.9F, 0.1F) << "the error alone";
       EXPECT_NEAR(effortInAStop(20.0F, -5.0F), 0.5F, 0.1F) << "pulled back";
       EXPECT_GT(effortInAStop(20.0F, 11.0F), 7.0F) << "it turns: its load is carried";
+      EXPECT_NEAR(effortInAStop(20.0F, 20.0F, 6.0F), 6.0F - 2.0F, 0.1F) << "what was fed forward as well";
       Cascade another_mode(config);
       (void)settled(another_mode, {.mode = ControlMode::kVelocity, .value = 20.0}, {});
       another_mode.reset();  // a current, say
-      EXPECT_EQ(another_mode.withoutWindup(way, 0.0F, kLeastRpm), way);
+      EXPECT_FALSE(another_mode.dropWindup(way, 0.0F, kLeastRpm));
       EXPECT_GT(effortInAStop(1.9F, 0.0F), 2.0F) << "the noise of what is held";
     }
   }
+}
+
+TEST(Cascade, AnAngleLoopThatHasBuiltUpAsksForNothingInAStop) {
+  CascadeConfig config = plainConfig();
+  config.angle.ki = 100.0F;
+  Cascade cascade(config);
+  const float wound = settled(cascade, {.mode = ControlMode::kTotalAngle, .value = 10.0}, {});
+  ASSERT_TRUE(cascade.dropWindup(wound, 0.0F, 2.0F));
+  EXPECT_NEAR(cascade.step({.mode = ControlMode::kTotalAngle}, {}, kDt, kLimit, 0.0F), 0.0F, 1e-3F);
+}
+
+// With a deadband nothing acts on the error of a load that is held.
+TEST(Cascade, ALoadWithinTheDeadbandIsNoBlockedShaft) {
+  CascadeConfig config{.velocity = PID_Position::Config{.kp = 0.1F, .ki = 5.0F}, .angle = {}};
+  Cascade cascade(config);
+  const Target target{.mode = ControlMode::kVelocity, .value = 5.0};
+  const float wound = settled(cascade, target, {});
+  std::get<PID_Position::Config>(config.velocity).deadband = 8.0F;
+  cascade.retune(config);
+  (void)cascade.step(target, {}, kDt, kLimit, wound);
+  EXPECT_FALSE(cascade.dropWindup(wound, 0.0F, 2.0F));
 }
 
 }  // namespace

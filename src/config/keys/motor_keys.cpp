@@ -331,7 +331,7 @@ constexpr std::array kMotorKeys{
         .kind = kBoolean,
         .default_text = "false",
         .about = "true: the robot may be enabled although this motor does not answer. An enable request that "
-                 "fails for optional motors only is answered as done, and names them."},
+                 "fails for some optional motors only is answered as done, and names them."},
     Key{.name = "velocity_pid",
         .kind = kSection,
         .section = &kVelocityPidSection,

@@ -464,8 +464,10 @@ std::optional<RequestDesk::Answer> RequestDesk::finish(const OrderResult& result
     return refusal == Refusal::kMoving || refusal == Refusal::kMayTurn;
   });
   if (stays) message = fmt::format("{}: nothing done", found->request.operation.view());
-  if (needed_failed != 0) status = link::ResponseStatus::kFailed;
+  const bool nothing_done = failed != 0 && failed == total;
+  if (needed_failed != 0 || nothing_done) status = link::ResponseStatus::kFailed;
   if (failed != 0) message += " (" + reasons(found->order.motors, result) + ")";
+  if (result.estop_stays) message += "; the e-stop stays: `clear` without a name ends it";
   if (operation == Operation::kConfigure) message = driveOutcome(*found, result);
   if (operation == Operation::kScan) {
     message = whyNoScan(found->order, result, robot_);

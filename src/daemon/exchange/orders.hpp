@@ -122,6 +122,7 @@ struct OrderResult {
   MotorSet in_the_way{};  ///< kAlone, kOthersOn, kGroup, kTogether: which motors.
   /// kZero of one motor: Motor_Base::zeroForFile().
   double zero_deg = std::numeric_limits<double>::quiet_NaN();
+  bool estop_stays = false;        ///< kClear of some motors in an e-stop.
   Refusal scan = Refusal::kNone;   ///< kScan: reason that concerns no motor,
   std::uint32_t asked = 0;         ///< questions that were sent,
   std::uint64_t error_frames = 0;  ///< and error frames of the bus meanwhile.

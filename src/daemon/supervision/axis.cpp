@@ -259,10 +259,14 @@ void Axis::order(RobotStatus robot, const Tick& tick) noexcept {
 // A loop that has wound up against a hand, or to brake a heavy wheel, would push on: past a soft limit,
 // beyond reduced speed, or past the standstill of a stop and back.
 void Axis::boundSpeeds(bool stops, MonotonicTime now) noexcept {
+  const auto measured_rpm = static_cast<double>(finiteOr0(motor_.feedback().velocity_rpm));
   if (stops && !stops_) {
-    stop_from_rpm_ = static_cast<double>(finiteOr0(motor_.feedback().velocity_rpm));
+    stop_from_rpm_ = measured_rpm;
     dropWindup();
   }
+  // A shaft that has slowed down is not driven up again.
+  const double slowest_rpm = std::min(std::fabs(stop_from_rpm_), std::fabs(measured_rpm));
+  stop_from_rpm_ = stop_from_rpm_ * measured_rpm > 0.0 ? std::copysign(slowest_rpm, measured_rpm) : 0.0;
   stops_ = stops;
   speeds_bounded_ = stops || shaper_.hasSoftLimits() || reduced_.any();
   const double from_rpm = ramps() ? fallback_.rampRpm(now) : stop_from_rpm_;
@@ -408,13 +412,13 @@ Refusal Axis::zero(const Order& order) noexcept {
   return motor_.feedback().samples == 0 ? Refusal::kNoPosition : Refusal::kOutOfReach;
 }
 
-// Asked for, so that it is no loss that anybody has to be told of.
 double Axis::zeroForFile() const noexcept {
   const double travel_deg = entry_.shaping.angle_max_deg - entry_.shaping.angle_min_deg;
   const bool any_turn = std::isfinite(travel_deg) && travel_deg >= kDegPerTurn;
   return any_turn ? std::numeric_limits<double>::quiet_NaN() : motor_.zeroForFile();
 }
 
+// Asked for, so that it is no loss that anybody has to be told of.
 void Axis::forgetReference() noexcept {
   motor_.forgetReference();
   reference_known_ = false;
@@ -443,6 +447,7 @@ void Axis::beginFallback(FallbackAction action, Fallback::Until until, bool esto
   const Fallback::Ramp ramp{std::isfinite(measured_rpm) ? measured_rpm : 0.0, config.ramp};
   fallback_.begin(action, until, boundOf(action, estop, config, motor_.driveFrames()), ramp, tick.now);
   shaper_.reset();
+  stops_ = false;  // another stop, from now on
   dropWindup();
 }
 

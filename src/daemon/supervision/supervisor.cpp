@@ -133,7 +133,10 @@ void Supervisor::setRobotState(RobotStatus state, const Stop& why, const Tick& t
   state_ = state;
   stop_ = state == RobotStatus::kRun ? Stop{} : why;
   stopped_ = state == RobotStatus::kRun ? MonotonicTime{} : tick.now;
-  if (state == RobotStatus::kEstop) ++estops_;
+  if (state == RobotStatus::kEstop) {
+    ++estops_;
+    estop_began_ = tick.now;
+  }
   estop_in_force_ = state == RobotStatus::kEstop || (state == RobotStatus::kStopping && estop_in_force_);
   if (state == RobotStatus::kRun) heartbeat_rests_ = false;
   if (state != RobotStatus::kRun) {

@@ -125,6 +125,7 @@ void Supervisor::carryOut(const Order& order, const Tick& tick) noexcept {
     answer(result);
     return;
   }
+  result.estop_stays = order.operation == Operation::kClear && state_ == RobotStatus::kEstop;
   for (std::size_t motor = 0; motor < axes_.size(); ++motor) {
     if (!order.motors.test(motor)) continue;
     switch (order.operation) {
@@ -164,6 +165,7 @@ void Supervisor::estop(const Stop& why, const Tick& tick) noexcept {
   if (state_ == RobotStatus::kRun) setRobotState(RobotStatus::kEstop, why, tick);
   // The end of the program goes on; what holds a motor meanwhile is what an e-stop begins, once.
   if (state_ != RobotStatus::kStopping || std::exchange(estop_in_force_, true)) return;
+  estop_began_ = tick.now;
   for (auto& axis : axes_) axis.estopFallback(tick);
 }
 
@@ -192,9 +194,9 @@ void Supervisor::disable(std::size_t motor, const Order& order, const Tick& tick
   auto* group = groupOf(motor);
   // Once more lets go of a motor that is still being held or braked; the first time may have been its
   // group's. A request that is repeated since its answer was lost is no second one.
-  // Nor is one in the tick of an e-stop.
+  // One in the tick in which an e-stop begins is no second one either.
   const bool once_more =
-      !order.repeated && !estop_asked_ && (group == nullptr || !group->rests_with_it.test(motor));
+      !order.repeated && tick.now != estop_began_ && (group == nullptr || !group->rests_with_it.test(motor));
   if (axis.status() == MotorStatus::kReady && once_more) axis.endFallback();
   if (group != nullptr) {
     group->rearm.reset();

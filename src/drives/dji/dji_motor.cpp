@@ -122,6 +122,13 @@ bool DJI_Motor::setZero(double angle_deg) noexcept {
   return true;
 }
 
+// A place that it was pushed away from is let go, too.
+void DJI_Motor::dropWindup(float least_rpm) noexcept {
+  if (!loops_.dropWindup(command_value_, feedback_.velocity_rpm, least_rpm)) return;
+  command_value_ = 0.0F;
+  holding_ = false;
+}
+
 double DJI_Motor::zeroForFile() const noexcept {
   if (!absolute_ || zero_at_power_on_ || feedback_.samples == 0)
     return std::numeric_limits<double>::quiet_NaN();

@@ -47,9 +47,7 @@ class DJI_Motor : public Motor_Base {
   [[nodiscard]] bool speaksUnasked() const noexcept override { return true; }
   bool setZero(double angle_deg) noexcept override;
   void boundSpeeds(const OutputRange& speeds_rpm) noexcept override { loops_.boundSpeeds(speeds_rpm); }
-  void dropWindup(float least_rpm) noexcept override {
-    command_value_ = loops_.withoutWindup(command_value_, feedback_.velocity_rpm, least_rpm);
-  }
+  void dropWindup(float least_rpm) noexcept override;
   [[nodiscard]] double zeroForFile() const noexcept override;
   [[nodiscard]] double heldAngleDeg() const noexcept override {
     return holding_ ? hold_deg_ : std::numeric_limits<double>::quiet_NaN();

@@ -4,6 +4,7 @@
 #include <chrono>
 #include <cmath>
 #include <cstdlib>
+#include <utility>
 
 #include "app/limits.hpp"
 #include "app/units.hpp"
@@ -140,10 +141,10 @@ void Moteus_Motor::followVelocity(const Target& target, const Tick& tick) noexce
   const double rev_s = toDrive(rpm) / kRpmPerTurnPerS;
   const double dt_s = std::clamp(static_cast<double>(tick.dt_s), 0.0, 0.01);
   double ahead_rev = course_rev_ ? *course_rev_ + rev_s * dt_s - position_rev_ : 0.0;
-  const bool forward = toOutput(ahead_rev) > 0.0;
-  const bool driven =
-      forward ? feedback_.velocity_rpm > speedBounds().high : feedback_.velocity_rpm < speedBounds().low;
-  if (driven) ahead_rev = 0.0;
+  const float rpm_before = std::exchange(last_rpm_, feedback_.velocity_rpm);
+  const bool beyond =
+      toOutput(ahead_rev) > 0.0 ? last_rpm_ > speedBounds().high : last_rpm_ < speedBounds().low;
+  if (beyond && std::fabs(last_rpm_) > std::fabs(rpm_before)) ahead_rev *= 0.5;
   const double slip_rev = kSlipRev + std::abs(rev_s) * slip_s_;
   course_rev_ = position_rev_ + std::clamp(ahead_rev, -slip_rev, slip_rev);
   motion_.position_rev = onWire(*course_rev_);

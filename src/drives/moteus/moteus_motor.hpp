@@ -119,6 +119,7 @@ class Moteus_Motor final : public SoloMotor {
   DriveComplaint lost_;               ///< It left its mode while it was to obey.
   DriveComplaint refused_;            ///< Reason why enabling failed.
   std::optional<double> course_rev_;  ///< Velocity: where the shaft should be by now.
+  float last_rpm_ = 0.0F;             ///< Speed in the last tick of a velocity target.
 };
 
 }  // namespace rc10

@@ -68,13 +68,13 @@ class TargetShaper {
   /// The same for a stop, which is never soft.
   [[nodiscard]] std::uint32_t slowDown(Target& target, const MotorFeedback& feedback, InForce in_force,
                                        float dt_s) noexcept;
-  /// After a change of the angle loop's gain: see kApproachOfAngleGain.
   [[nodiscard]] bool hasSoftLimits() const noexcept { return soft_limits_; }
   /// Speeds beyond which no loop is to push the shaft on: those of the soft limits and of the ceiling, and in
   /// a stop from `from_rpm` those between it and standstill; each with a tolerance for what a loop overshoots
   /// by. Infinite: no bound.
   [[nodiscard]] OutputRange speedBounds(const MotorFeedback& feedback, std::optional<double> from_rpm,
                                         double standstill_rpm) const noexcept;
+  /// After a change of the angle loop's gain: see kApproachOfAngleGain.
   void setApproach(float rpm_per_deg) noexcept { config_.approach_rpm_per_deg = rpm_per_deg; }
   /// Speed that no target of any mode leads beyond; infinite: none. A shaft that is faster is braked by
   /// targets of a speed or an angle, and by efforts.

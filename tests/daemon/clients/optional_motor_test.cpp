@@ -39,6 +39,14 @@ TEST_F(OptionalMotorTest, MayFailToEnableAndIsNamed) {
   EXPECT_THAT(std::string(response.message.view()), HasSubstr("spare: offline"));
 }
 
+TEST_F(OptionalMotorTest, IsNoSuccessWhereItAloneIsNamed) {
+  const auto outcome = desk.begin(linkRequest(++seq, "enable", "spare"), {.connection = 1});
+  OrderResult result;
+  result.id = outcome.order.value().id;
+  result.motors[1] = Refusal::kOffline;
+  EXPECT_EQ(desk.finish(result).value().response.status, ResponseStatus::kFailed);
+}
+
 TEST_F(OptionalMotorTest, DoesNotExcuseAnother) {
   EXPECT_EQ(afterFailureOf(0, "enable").status, ResponseStatus::kFailed);
 }

@@ -115,6 +115,14 @@ TEST_F(RequestDeskTest, ZeroNeedsAMotor) {
   EXPECT_THAT(refusal(linkRequest(1, "zero")), HasSubstr("name it"));
 }
 
+TEST_F(RequestDeskTest, AClearOfMotorsSaysThatTheEstopStays) {
+  const auto outcome = begin(linkRequest(1, "clear", "left"));
+  auto result = done(*outcome.order);
+  result.estop_stays = true;
+  EXPECT_EQ(desk.finish(result)->response.message.view(),
+            "clear: 1 of 1 motors; the e-stop stays: `clear` without a name ends it");
+}
+
 TEST_F(RequestDeskTest, AnAbsoluteEncodersZeroIsAnsweredWithTheLineThatKeepsIt) {
   const auto outcome = begin(zero(1, "left", 90.0));
   auto result = done(*outcome.order);

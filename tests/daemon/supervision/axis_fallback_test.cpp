@@ -111,6 +111,16 @@ TEST_F(FallbackTest, AnEstopThatIsRepeatedDoesNotBeginItsTimeAnew) {
   EXPECT_EQ(robot->motor(kLeft).acting, Acting::kDamp);
 }
 
+TEST_F(FallbackTest, ADisableLetsGoWhileTheContactOfTheEstopIsOpen) {
+  start({.on_estop = FallbackAction::kHold}, 1.0F);
+  robot->exchange().estop_contact.show(ContactState::kOpen);
+  robot->run(100);
+  ASSERT_EQ(robot->motor(kLeft).acting, Acting::kHold);
+  robot->order(Operation::kDisable);
+  robot->run(2);
+  expectAtRest();
+}
+
 TEST_F(FallbackTest, AnEstopWhileTheProgramEndsReplacesWhatActs) {
   start({.on_disable = FallbackAction::kHold, .on_estop = FallbackAction::kDamp}, 1.0F);
   robot->scheduler().beginStop();

@@ -229,8 +229,12 @@ TEST_F(SchedulerTest, ClearingTheFaultsOfAllMotorsByNameLeavesTheEstop) {
   robot.tick();
   MotorSet all;
   for (std::size_t i = 0; i < robot.robot().motors().size(); ++i) all.set(i);
-  EXPECT_EQ(robot.orderFor(all, Operation::kClear).motors[kLeft], Refusal::kNone);
+  const auto cleared = robot.orderFor(all, Operation::kClear);
+  EXPECT_EQ(cleared.motors[kLeft], Refusal::kNone);
+  EXPECT_TRUE(cleared.estop_stays);
   EXPECT_EQ(robot.snapshot().state, RobotStatus::kEstop);
+  EXPECT_FALSE(robot.order(Operation::kClear).estop_stays);
+  EXPECT_EQ(robot.snapshot().state, RobotStatus::kRun);
 }
 
 TEST_F(SchedulerTest, AnEstopIsNotClearedWhileAMotorThatWasLostInMotionMayStillTurn) {
