@@ -155,7 +155,7 @@ void Moteus_Motor::followVelocity(const Target& target, const Tick& tick) noexce
 }
 
 void Moteus_Motor::dropWindup(float least_rpm) noexcept {
-  const double asked_rpm = commandValue();
+  const auto asked_rpm = static_cast<double>(commandValue());
   const double along_rpm = std::copysign(1.0, asked_rpm) * static_cast<double>(feedback_.velocity_rpm);
   const bool asked = std::fabs(asked_rpm) > static_cast<double>(least_rpm);
   if (asked && !(along_rpm >= 0.5 * std::fabs(asked_rpm))) course_rev_.reset();
