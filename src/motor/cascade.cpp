@@ -89,7 +89,7 @@ bool Cascade::dropWindup(float effort_in_force, float measured_rpm, float least_
   const auto drops = [&](auto& loop) noexcept {
     const float asked_rpm = measured_rpm + loop.state().error;
     const bool pushes = std::fabs(asked_rpm) > least_rpm && asked_rpm * effort_in_force > 0.0F;
-    if (pushes && measured_rpm / asked_rpm < 0.5F) {
+    if (pushes && effort_limited_ && measured_rpm / asked_rpm < 0.5F) {
       loop.start(0.0F, measured_rpm, measured_rpm);
       return true;
     }

@@ -45,9 +45,9 @@ class Cascade {
   /// what is left balances a load.
   void boundSpeeds(const OutputRange& speeds_rpm) noexcept;
 
-  /// Before a stop. What the loops have built up ends if it drives a shaft with less than half of the speed
-  /// that it was asked for: true, and the effort in force is to be 0. A smaller speed than `least_rpm` counts
-  /// as none. Else the effort in force goes on, with what acted beside the loops.
+  /// Before a stop. What the loops have built up ends if it is at its limit, and drives a shaft with less
+  /// than half of the speed that it was asked for: true, and the effort in force is to be 0. A smaller speed
+  /// than `least_rpm` counts as none. Else the effort in force goes on, with what acted beside the loops.
   [[nodiscard]] bool dropWindup(float effort_in_force, float measured_rpm, float least_rpm) noexcept;
 
   /// Other gains from the next step on, without a bump. The type of the velocity loop stays: a config of

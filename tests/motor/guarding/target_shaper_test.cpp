@@ -518,9 +518,9 @@ TEST_F(SpeedBoundsTest, WithoutLimitsThereAreNone) {
 }
 
 TEST_F(SpeedBoundsTest, AStopFromASpeedLiesBetweenItAndStandstill) {
-  expectBounds(80.0, -5.0F, 95.0F);
-  expectBounds(-80.0, -95.0F, 5.0F);
-  expectBounds(0.0, -5.0F, 5.0F);
+  expectBounds(80.0, -20.0F, 110.0F);
+  expectBounds(-80.0, -110.0F, 20.0F);
+  expectBounds(0.0, -20.0F, 20.0F);
 }
 
 TEST_F(SpeedBoundsTest, TheCeilingOfReducedModeBoundsBothWays) {
@@ -533,20 +533,20 @@ TEST_F(SpeedBoundsTest, OnTheWayToASoftLimitASpeedIsThatOfItsTarget) {
   configure(soft);
   at(50.0);
   (void)step(ControlMode::kVelocity, 20.0);
-  expectBounds(std::nullopt, -5.0F, 27.5F);
+  expectBounds(std::nullopt, -20.0F, 42.5F);
   at(85.0);
   (void)step(ControlMode::kVelocity, 20.0);
-  expectBounds(std::nullopt, -5.0F, 16.25F);  // 2 rpm/deg * 5 deg
+  expectBounds(std::nullopt, -20.0F, 31.25F);  // 2 rpm/deg * 5 deg
   at(95.0);
   (void)step(ControlMode::kVelocity, 20.0);
-  expectBounds(std::nullopt, -5.0F, 5.0F);
+  expectBounds(std::nullopt, -20.0F, 20.0F);
 }
 
 TEST_F(SpeedBoundsTest, APlaceIsApproachedAtTheGainOfItsLoop) {
   configure(soft);
   at(80.0);
   (void)step(ControlMode::kTotalAngle, 85.0);
-  expectBounds(std::nullopt, -1.125F * 170.0F * 4.0F - 5.0F, 1.125F * 10.0F * 4.0F + 5.0F);
+  expectBounds(std::nullopt, -1.125F * 170.0F * 4.0F - 20.0F, 1.125F * 10.0F * 4.0F + 20.0F);
   feedback.zeroed = false;
   const OutputRange bounds = shaper.speedBounds(feedback, std::nullopt, kStandstillRpm);
   EXPECT_EQ(bounds.high, std::numeric_limits<float>::infinity()) << "its angle is not known";
