@@ -40,9 +40,8 @@ class Cascade {
                                                         float dt_s, float effort_limit, float effort_in_force,
                                                         float effort_ff = 0.0F) noexcept;
 
-  /// From the next step on no target of the velocity loop lies outside of these speeds, and an effort that
-  /// drives the shaft ever faster beyond them is halved in each step, however far that loop has wound up:
-  /// what is left balances a load.
+  /// Range of the velocity loop's targets from the next step on, in rpm. An effort that accelerates the shaft
+  /// beyond it is halved in each step, whatever the integral: a load keeps the part that balances it.
   void boundSpeeds(const OutputRange& speeds_rpm) noexcept;
 
   /// Before a stop. What the loops have built up ends if it is at its limit, and drives a shaft with less

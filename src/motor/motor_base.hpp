@@ -85,8 +85,8 @@ class Motor_Base : public FrameListener {
   /// Speeds at the output shaft, rpm, beyond which no loop of rc10d drives the shaft ever faster. Infinite:
   /// no bound.
   virtual void boundSpeeds(const OutputRange& speeds_rpm) noexcept { speeds_rpm_ = speeds_rpm; }
-  /// Before a stop: what a loop of rc10d has built up against a shaft that is blocked, with less than half of
-  /// the speed that it was asked for, does not act in the stop. A speed below `least_rpm` counts as none.
+  /// Before a stop: ends the effort of a loop of rc10d against a blocked shaft, one with less than half of
+  /// the speed asked for. A speed below `least_rpm` counts as none. Scheduler thread.
   virtual void dropWindup(float /*least_rpm*/) noexcept {}
 
   /// Computes the command of this tick from the order, the target and the feedback.

@@ -7,7 +7,7 @@
 #include <memory>
 #include <string>
 
-#include "config/load_config.hpp"
+#include "daemon/one_motor_robot.hpp"
 #include "daemon/virtual_robot.hpp"
 
 namespace rc10::test::windup_test {
@@ -28,13 +28,7 @@ std::string nameOf(const ::testing::TestParamInfo<Case>& made) { return made.par
 class WindupTest : public ::testing::TestWithParam<Case> {
  protected:
   void start(const std::string& keys, const std::string& model) {
-    auto outcome = parseRobotConfig(
-        "robot: windup\nrealtime: preferred\nbuses:\n  - name: bench\n    type: sim\n" +
-            std::string(model.find("moteus") == 0 ? "    data_bitrate: 5000000\n" : "") +
-            "    motors:\n      - {name: motor, model: " + model + ", zero: power_on, " + keys + "}\n",
-        "windup.yaml");
-    ASSERT_TRUE(outcome.config) << outcome.errorText();
-    robot = std::make_unique<VirtualRobot>(*outcome.config);
+    robot = std::make_unique<VirtualRobot>(oneMotorRobot("model: " + model + ", zero: power_on, " + keys));
     for (int i = 0; i < 4000 && seen().status != MotorStatus::kReady; ++i) robot->run(1);
     for (int i = 0; i < 4 && seen().status != MotorStatus::kActive; ++i) {
       robot->order(Operation::kEnable);

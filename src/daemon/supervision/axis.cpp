@@ -25,7 +25,7 @@ Axis::Axis(const Robot::MotorEntry& entry, const Robot::BusEntry& bus) noexcept
       rest_(entry.rest),
       reduced_(entry.reduced),
       shaper_(entry.shaping),
-      speeds_bounded_(shaper_.hasSoftLimits() || reduced_.any()) {}
+      speeds_bounded_(limitsSpeed()) {}
 
 void Axis::fill(MotorSnapshot& snapshot) const noexcept {
   snapshot.feedback = motor_.feedback();
@@ -268,7 +268,7 @@ void Axis::boundSpeeds(bool stops, MonotonicTime now) noexcept {
   const double slowest_rpm = std::min(std::fabs(stop_from_rpm_), std::fabs(measured_rpm));
   stop_from_rpm_ = stop_from_rpm_ * measured_rpm > 0.0 ? std::copysign(slowest_rpm, measured_rpm) : 0.0;
   stops_ = stops;
-  speeds_bounded_ = stops || shaper_.hasSoftLimits() || reduced_.any();
+  speeds_bounded_ = stops || limitsSpeed();
   const double from_rpm = ramps() ? fallback_.rampRpm(now) : stop_from_rpm_;
   motor_.boundSpeeds(shaper_.speedBounds(motor_.feedback(), stops ? std::optional{from_rpm} : std::nullopt,
                                          static_cast<double>(entry_.standstill_rpm)));

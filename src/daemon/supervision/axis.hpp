@@ -124,6 +124,8 @@ class Axis {
   [[nodiscard, gnu::noinline]] bool tooFastWhenReduced(bool reduced, bool moves, const Tick& tick) noexcept;
   /// For the loops of rc10d; `stops`: the motor is braked, or led to rest along a ramp.
   [[gnu::noinline]] void boundSpeeds(bool stops, MonotonicTime now) noexcept;
+  /// Whether soft limits or reduced mode bound the speed of its loops.
+  [[nodiscard]] bool limitsSpeed() const noexcept { return shaper_.hasSoftLimits() || reduced_.any(); }
   /// A quarter of the speed that counts as standstill: less is noise of an angle that is held.
   void dropWindup() noexcept { motor_.dropWindup(0.25F * entry_.standstill_rpm); }
   /// Orders a hold whose place is led under the ceiling of the speed; false: there is none.
@@ -154,7 +156,7 @@ class Axis {
       std::numeric_limits<double>::quiet_NaN();  ///< Place of the last hold under a ceiling.
   double stop_from_rpm_ = 0.0;                   ///< Speed at which the stop began.
   bool stops_ = false;                           ///< Braked, or led to rest along a ramp, in the last tick.
-  bool speeds_bounded_;                          ///< It stops, or has soft limits or a reduced mode.
+  bool speeds_bounded_;                          ///< It stops, or limitsSpeed().
   MotorStatus status_ = MotorStatus::kOffline;
   FaultCode fault_ = FaultCode::kNone;
   Stop stop_;

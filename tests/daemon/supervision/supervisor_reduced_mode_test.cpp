@@ -7,8 +7,8 @@
 #include <memory>
 #include <string>
 
-#include "config/load_config.hpp"
 #include "daemon/exchange/events.hpp"
+#include "daemon/one_motor_robot.hpp"
 #include "daemon/virtual_robot.hpp"
 
 namespace rc10::test::supervisor_reduced_mode_test {
@@ -24,14 +24,8 @@ constexpr Target kFast{.mode = ControlMode::kVelocity, .value = 400.0};
 class ReducedModeTest : public ::testing::Test {
  protected:
   void start(const std::string& keys, const std::string& model = "M3508, id: 1, zero: power_on") {
-    auto outcome = parseRobotConfig(
-        "robot: reduced\nrealtime: preferred\nmode_gpio: {chip: gpiochip0, line: 1}\nbuses:\n"
-        "  - name: bench\n    type: sim\n" +
-            std::string(model.find("moteus") == 0 ? "    data_bitrate: 5000000\n" : "") +
-            "    motors:\n      - {name: wheel, model: " + model + ", " + keys + "}\n",
-        "reduced.yaml");
-    ASSERT_TRUE(outcome.config) << outcome.errorText();
-    robot = std::make_unique<VirtualRobot>(*outcome.config);
+    robot = std::make_unique<VirtualRobot>(
+        oneMotorRobot("model: " + model + ", " + keys, "mode_gpio: {chip: gpiochip0, line: 1}\n"));
     see(kClosed);
     for (int i = 0; i < 5; ++i) tick();
     enable();
