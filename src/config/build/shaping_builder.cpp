@@ -20,7 +20,7 @@ constexpr float kBeyondNoLoad = 2.0F;
 // A gimbal and a wheel live with it, and a hand has time.
 constexpr double kSoftStartMs = 200.0;
 
-// Refused to be enabled until somebody has set its zero: worth knowing before it is mounted.
+// Warning of a motor that nothing enables before its zero is set.
 void warnOfTurn(MotorParse& in) {
   const auto most = in.settings.find("angle_max_deg");
   const double travel_deg = in.motor().travel.max_deg - in.motor().travel.min_deg;

@@ -242,7 +242,7 @@ OutputRange TargetShaper::speedBounds(const MotorFeedback& feedback, std::option
     if (by_speed) include(value_, value_);
   }
   if (from_rpm) include(*from_rpm, *from_rpm);
-  // A touch is no reason to let a load go; reduced mode has a fault above its tolerance.
+  // Tolerance for a hand that touches a carried load; in reduced mode below that of its fault.
   constexpr double kTouchRpm = 20.0;
   const double least_rpm = 0.5 * standstill_rpm;
   const double slack_rpm = reduced() ? least_rpm : std::clamp(kTouchRpm, least_rpm, 2.0 * standstill_rpm);
