@@ -44,10 +44,10 @@ class Robot:
             lines.append("    ]}")
         return "\n".join(lines) + "\n"
 
-    def follows(self, stats: Json, rate_hz: int) -> bool:
+    def follows(self, stats: Json, rate_hz: int, seconds: float) -> bool:
         """Every motor got frames with its targets, from a second before the measurement on."""
         got = stats["durations_us"]["command to frames"].get("count", 0)
-        return bool(got >= self.buses * self.each * rate_hz * (SECONDS + 1))
+        return bool(got >= self.buses * self.each * rate_hz * (seconds + 1))
 
     def ready(self, rate_hz: int) -> str:
         """Enables its motors and commands them, or leaves the file `refused`."""
@@ -122,10 +122,13 @@ for process in $pid $(cat /proc/$pid/task/*/children); do
         echo "thread ${{task##*/}} $(cat $task/comm)"
     done
 done
+{ended}
 [ ! -e refused ] || {{ cat enabled log; exit 1; }}
 kill $wire $pid
 """
 TRACED_S = 2
+# At the end of either: what rc10d counted.
+ASK_RC10D = "/bin/rc10ctl --json stats"
 
 
 @dataclass(frozen=True)
@@ -159,22 +162,28 @@ class Program:
             own = {"/bin/fake_wire": self.wire, "/robot.yaml": Path(config.name)}
             return guest.run(kernel, script, {**own, **self.files}).splitlines()
 
+    def check(self, stats: Json, seconds: float) -> None:
+        """Each motor of rc10d has followed its targets for so long."""
+        if self.is_rc10d and not self.robot.follows(stats, self.rate_hz, seconds):
+            raise guest.GuestError(f"{self.robot.name}: some motor does not follow its targets")
+
     def cost(self, kernel: guest.Kernel, *, hog_us: int = 0) -> Cost:
         lines = self.run(
             kernel,
             COUNT,
             hog=f"--hog-us {hog_us}" if hog_us else "",
-            ended="/bin/rc10ctl --json stats >stats" if self.is_rc10d else "",
+            ended=f"{ASK_RC10D} >stats" if self.is_rc10d else "",
         )
         alone, with_it, *rest = [json.loads(line) for line in lines if line.startswith("{")]
         busy_k = with_it["busy_k"] - alone["busy_k"]
         stats = rest[0] if self.is_rc10d else {}
-        if self.is_rc10d and not self.robot.follows(stats, self.rate_hz):
-            raise guest.GuestError(f"{self.robot.name}: some motor does not follow its targets")
+        self.check(stats, SECONDS)
         return Cost(busy_k, with_it["threads_k"], with_it["switches"], lateness_of(rest), stats)
 
     def calls(self, kernel: guest.Kernel) -> Calls:
-        lines = self.run(kernel, TRACE, traced_s=TRACED_S)
+        lines = self.run(
+            kernel, TRACE, traced_s=TRACED_S, ended=ASK_RC10D if self.is_rc10d else ""
+        )
         counted: dict[str, dict[str, int]] = {}
         threads: dict[str, float] = {}
         event = ""
@@ -188,6 +197,8 @@ class Program:
                 _, thread, name = line.split(maxsplit=2)
                 calls = counted["raw_syscalls/sys_enter"].get(thread, 0)
                 threads[name] = threads.get(name, 0) + calls / (1000 * TRACED_S)
+            elif line.startswith("{"):
+                self.check(json.loads(line), TRACED_S)
         return Calls(threads, sum(counted["sock/sock_rcvqueue_full"].values()))
 
 

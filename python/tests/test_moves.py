@@ -98,7 +98,7 @@ def test_a_move_times_out(robot: rc10.Robot, daemon: MovingDaemon) -> None:
         ("zeroed", False, "no reference"),
         ("estopped", True, "ESTOP"),
         ("owner", "remote", "held by the client 'remote'"),
-        ("owner", "", "did not take the target"),
+        ("owner", "", "lost the target"),
     ],
 )
 def test_a_move_fails_with_the_reason(
@@ -119,6 +119,27 @@ def test_a_move_fails_with_the_reason(
     sent = len(daemon.commands)
     robot.spin(1.0)
     assert len(daemon.commands) == sent
+
+
+def test_a_move_whose_target_is_never_taken_fails(
+    robot: rc10.Robot, daemon: MovingDaemon
+) -> None:
+    robot.wait_for_state()
+    daemon.owner = ""
+    assert "did not take the target" in robot.move_to("wheel", 720).result().reason
+
+
+def test_a_move_goes_on_after_a_target_that_lapsed_for_a_moment(
+    robot: rc10.Robot, daemon: MovingDaemon, link: VirtualLink
+) -> None:
+    robot.wait_for_state()
+    daemon.angle_deg = 300
+    move = robot.move_to("wheel", 720)
+    owner = daemon.owner
+    link.after(0.5, lambda: setattr(daemon, "owner", ""))
+    link.after(0.7, lambda: setattr(daemon, "owner", owner))
+    link.after(1.0, lambda: setattr(daemon, "angle_deg", 720))
+    assert move.result()
 
 
 def test_a_move_that_cannot_begin_has_failed(robot: rc10.Robot, daemon: MovingDaemon) -> None:

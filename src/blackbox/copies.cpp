@@ -26,16 +26,20 @@ constexpr std::string_view kExtension = ".blackbox";
 
 [[nodiscard]] bool isDigit(char c) noexcept { return c >= '0' && c <= '9'; }
 
-// Robots 'a' and 'a-b' share a prefix: only a time may follow the name.
-[[nodiscard]] bool isCopyOf(std::string_view name, const std::string& robot) {
-  constexpr std::string_view kForm = "00000000T000000Z-";
-  if (!name.starts_with(robot + "-") || !name.ends_with(kExtension)) return false;
-  name.remove_prefix(robot.size() + 1);
-  if (name.size() < kForm.size() + kExtension.size()) return false;
-  for (std::size_t i = 0; i < kForm.size(); ++i) {
-    if (kForm[i] == '0' ? !isDigit(name[i]) : name[i] != kForm[i]) return false;
+// After the name of the robot and a dash.
+constexpr std::string_view kTimeForm = "00000000T000000Z-";
+
+[[nodiscard]] bool beginsWithTime(std::string_view text) noexcept {
+  if (text.size() < kTimeForm.size()) return false;
+  for (std::size_t i = 0; i < kTimeForm.size(); ++i) {
+    if (kTimeForm[i] == '0' ? !isDigit(text[i]) : text[i] != kTimeForm[i]) return false;
   }
   return true;
+}
+
+// Robots 'a' and 'a-b' share a prefix: only a time may follow the name.
+[[nodiscard]] bool isCopyOf(std::string_view name, const std::string& robot) {
+  return isCopy(name) && name.starts_with(robot + "-") && beginsWithTime(name.substr(robot.size() + 1));
 }
 
 [[nodiscard]] Result<void> copyInto(int from, int to, const std::string& cause) {
@@ -58,6 +62,15 @@ std::string copyName(const std::string& robot, std::int64_t wall_s, const std::s
   std::array<char, 32> text{};
   const auto size = std::strftime(text.data(), text.size(), "%Y%m%dT%H%M%SZ", &utc);
   return robot + "-" + std::string(text.data(), size) + "-" + cause + std::string(kExtension);
+}
+
+bool isCopy(std::string_view name) noexcept {
+  if (!name.ends_with(kExtension)) return false;
+  name.remove_suffix(kExtension.size());
+  for (std::size_t dash = name.find('-'); dash != std::string_view::npos; dash = name.find('-', dash + 1)) {
+    if (beginsWithTime(name.substr(dash + 1))) return true;
+  }
+  return false;
 }
 
 Result<std::string> keepCopy(int fd, const std::string& dir, const std::string& robot, std::int64_t wall_s,

@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <string>
+#include <string_view>
 
 #include "app/result.hpp"
 
@@ -10,6 +11,9 @@ namespace rc10::blackbox {
 
 /// "hero-20261121T160529Z-estop.blackbox". `wall_s`: seconds since 1970, UTC.
 [[nodiscard]] std::string copyName(const std::string& robot, std::int64_t wall_s, const std::string& cause);
+/// Whether a file of this name is a copy of some robot's black box, not the box itself: both folders may be
+/// one.
+[[nodiscard]] bool isCopy(std::string_view name) noexcept;
 
 /// Copies the black box `fd`, which may be one that is being written, to `dir`/`copyName`, and onto the disk.
 /// It gets its name when it is complete; after an error, as when the disk is full, nothing is left. Takes as

@@ -1,5 +1,6 @@
 #include "client/recording_text.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdio>
@@ -42,6 +43,12 @@ constexpr std::size_t kEventsShown = 10;
   return "rc10d ended without stopping: it crashed or was killed";
 }
 
+// A program that goes on sending has each of its setpoints skipped.
+[[nodiscard]] bool isSame(const Event& one, const Event& other) noexcept {
+  return one.header.id == other.header.id && one.header.source == other.header.source &&
+         one.value == other.value && one.extra == other.extra && one.client.view() == other.client.view();
+}
+
 struct Counts {
   std::size_t received = 0;
   std::size_t sent = 0;
@@ -54,7 +61,11 @@ struct Counts {
   std::size_t events = 0;
   std::size_t states = 0;
   std::int64_t ticks_missed = 0;
-  std::deque<Event> last_events;
+  struct Told {
+    Event event;  ///< The last of them.
+    std::size_t times = 1;
+  };
+  std::deque<Told> last_events;
 
   void add(const Frame& frame) {
     const bool is_sent = (frame.header.flags & kFrameSent) != 0;
@@ -67,12 +78,19 @@ struct Counts {
   void add(const Order&) noexcept { ++requests; }
   void add(const Event& event) {
     ++events;
-    // A busy computer has hundreds, and they would crowd out what happened to the robot.
+    // Hundreds, of a busy computer, would crowd out what happened to the robot.
     if (EventCode{static_cast<std::int32_t>(event.header.id)} == EventCode::kTicksMissed) {
       ticks_missed += event.value;
       return;
     }
-    last_events.push_back(event);
+    Told told{event};
+    const auto same = std::find_if(last_events.begin(), last_events.end(),
+                                   [&](const Told& other) { return isSame(other.event, event); });
+    if (same != last_events.end()) {
+      told.times += same->times;
+      last_events.erase(same);
+    }
+    last_events.push_back(told);
     if (last_events.size() > kEventsShown) last_events.pop_front();
   }
   void add(const Motor&) noexcept { ++states; }
@@ -108,9 +126,10 @@ struct Counts {
 [[nodiscard]] std::string eventTable(const Recording& recording, const Counts& counts) {
   if (counts.last_events.empty()) return {};
   TextTable table({{"LAST EVENTS (UTC)"}, {""}, {""}, {""}});
-  for (const auto& event : counts.last_events) {
+  for (const auto& [event, times] : counts.last_events) {
+    const std::string often = times > 1 ? " (" + std::to_string(times) + " times)" : "";
     table.add({utc(recording.wallUs(event.header.time_ns)), toString(Severity{event.header.flags}),
-               printable(recording.sourceName(event)), printable(eventText(recording, event))});
+               printable(recording.sourceName(event)), printable(eventText(recording, event)) + often});
   }
   return table.text();
 }

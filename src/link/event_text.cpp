@@ -171,7 +171,7 @@ std::string eventText(std::int32_t code, std::int32_t value, std::int32_t extra,
              " rpm now, though its drive is told to rest: gravity, a slope, a hand, or the drive";
     case kNeverHeard: return neverHeard(value);
     case kRobotState: return change<RobotStatus>(value, extra, client);
-    case kTicksMissed: return std::to_string(value) + " ticks missed";
+    case kTicksMissed: return std::to_string(value) + (value == 1 ? " tick missed" : " ticks missed");
     case kCommandRefused: return refused(value, client);
     case kEstopInput: return estopInputText(value);
     case kModeInput: return modeInputText(value);

@@ -31,11 +31,13 @@ bool isRecording(std::string_view name) {
   return std::any_of(kEndings.begin(), kEndings.end(), [&](auto ending) { return name.ends_with(ending); });
 }
 
-void addOf(const std::string& folder, bool live, std::vector<RecordingFile>& files) {
+// Both folders may be one, which then has the recordings that run and the copies.
+void addOf(const std::string& folder, bool live, bool shared, std::vector<RecordingFile>& files) {
   std::error_code error;
   for (fs::directory_iterator entry(folder, error), end; !error && entry != end; entry.increment(error)) {
     auto name = entry->path().filename().string();
     struct stat status {};
+    if (shared && blackbox::isCopy(name) == live) continue;
     if (!isRecording(name) || ::lstat(entry->path().c_str(), &status) != 0 || !S_ISREG(status.st_mode))
       continue;
     const auto changed_us = static_cast<std::int64_t>(status.st_mtim.tv_sec) * 1'000'000 +
@@ -51,8 +53,10 @@ Recordings::Recordings(std::string run_dir, std::string state_dir)
 
 std::vector<RecordingFile> Recordings::list() const {
   std::vector<RecordingFile> files;
-  addOf(run_dir_, true, files);
-  addOf(state_dir_, false, files);
+  std::error_code none;
+  const bool shared = fs::equivalent(run_dir_, state_dir_, none);
+  addOf(run_dir_, true, shared, files);
+  addOf(state_dir_, false, shared, files);
   std::sort(files.begin(), files.end(), [](const auto& a, const auto& b) {
     return std::tie(b.live, b.changed_us, a.name) < std::tie(a.live, a.changed_us, b.name);
   });

@@ -55,6 +55,14 @@ TEST_F(CopiesTest, ACopyHasTheRobotTheTimeAndTheCauseInItsName) {
   EXPECT_THAT(filesIn(state.path()), ElementsAre("hero-20261121T160529Z-estop.blackbox"));
 }
 
+TEST_F(CopiesTest, ACopyIsToldFromABoxByTheTimeInItsName) {
+  EXPECT_TRUE(blackbox::isCopy("hero-20261121T160529Z-estop.blackbox"));
+  EXPECT_TRUE(blackbox::isCopy("hero-estop-20261121T160529Z-fault.blackbox"));
+  for (const char* box : {"hero.blackbox", "hero-estop.blackbox", "hero-20261121.blackbox",
+                          "hero-20261121T160529Z-estop.blackbox.part", "", "-", "hero-2"})
+    EXPECT_FALSE(blackbox::isCopy(box)) << box;
+}
+
 TEST_F(CopiesTest, ACopyHoldsWhatWasRecordedAndSaysWhyItWasMade) {
   const auto image = blackbox::readImage(copy(state.path()).value()).value();
   const auto recording = blackbox::Recording::parse(image).value();

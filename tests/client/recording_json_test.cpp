@@ -205,6 +205,23 @@ TEST_F(RecordingJsonTest, TheSummaryCountsAndShowsTheLastEvents) {
   EXPECT_THAT(text, ::testing::ContainsRegex("info +robot +RUN -> ESTOP"));
 }
 
+TEST_F(RecordingJsonTest, AnEventThatRepeatsIsShownOnceWithItsCount) {
+  auto out = box.handOff();
+  blackbox::Event event;
+  event.header.id = static_cast<std::uint32_t>(EventCode::kEstopInput);
+  event.value = 2;
+  out.write(event, sizeof event);
+  event.header.id = static_cast<std::uint32_t>(EventCode::kSetpointSkipped);
+  event.value = static_cast<std::int32_t>(SkipReason::kNoReference);
+  for (std::uint16_t i = 0; i < 40; ++i) {
+    event.header.source = i % 2;
+    out.write(event, sizeof event);
+  }
+  const auto text = client::recordingText(box.recording(), false);
+  EXPECT_THAT(text, HasSubstr("e-stop: the input is open"));
+  EXPECT_THAT(text, ::testing::ContainsRegex("skipped.*\\(20 times\\)\n.*skipped.*\\(20 times\\)\n"));
+}
+
 TEST_F(RecordingJsonTest, MissedTicksDoNotCrowdOutWhatHappened) {
   auto out = box.handOff();
   const auto write = [&out](EventCode code, std::int32_t value) {

@@ -16,8 +16,8 @@ from robots import DAMIAO, DJI, FULL, SECONDS, Cost, Program, Robot, rc10d
 
 BUILD = Path(os.environ.get("RC10_BUILD", Path(__file__).resolve().parents[2] / "build" / "dev"))
 HOG_US = 3000
-# Thousands of instructions a millisecond of openarm_can's loop for the same four drives, by
-# `bench/peers/run --openarm-can`; and how much more the preset `dev` needs than packages.
+# Thousands of instructions a millisecond of openarm_can's loop for the same four drives, of another
+# run: `bench/peers/run --openarm-can` of 2026-11-27; and how much more the preset `dev` needs than packages.
 OPENARM_CAN_K = 55.9
 DEV_TO_PACKAGE = 1.05
 
@@ -42,7 +42,7 @@ def sleeper() -> Cost:
     return Program(DJI, "/bin/bare_sleep", bare, wire).cost(guest.installed_rt_kernel())
 
 
-def test_four_drives_with_frames_of_their_own_cost_what_a_peer_does() -> None:
+def test_four_drives_with_frames_of_their_own_cost_no_more_than_their_goal() -> None:
     cost = measure(DAMIAO)
     assert cost.busy_k <= 1.2 * OPENARM_CAN_K * DEV_TO_PACKAGE
 

@@ -57,11 +57,13 @@ inline GroupConfig leftAndRight(GroupConfig::Return on_return = GroupConfig::Ret
 /// hand through virtual time.
 class VirtualRobot {
  public:
-  explicit VirtualRobot(const RobotConfig& config, FlightRecorder* recorder = nullptr)
+  /// `clock`: when the frames of a tick have left; none: at once.
+  explicit VirtualRobot(const RobotConfig& config, FlightRecorder* recorder = nullptr,
+                        Scheduler::Clock clock = nullptr)
       : period_(config.period()) {
     robot_ = std::move(Robot::build(config).value());
     for (auto& entry : robot_->buses()) receivers_.emplace_back(entry.bus->descriptor());
-    scheduler_ = std::make_unique<Scheduler>(*robot_, inboxes_, exchange_, period_, recorder);
+    scheduler_ = std::make_unique<Scheduler>(*robot_, inboxes_, exchange_, period_, recorder, clock);
   }
 
   /// Half a period of simulation, reception, one tick.

@@ -20,7 +20,7 @@ constexpr std::array<std::string_view, static_cast<std::size_t>(Chaos::Action::k
     "zero",         "estop",      "repair",         "silence",   "lose",         "stall",      "heat",
     "encoder",      "load",       "freeze bus",     "block bus", "hold echoes",  "link",       "controller",
     "e-stop input", "mode input", "foreign frames", "flood bus", "fill rings",   "miss ticks", "scan",
-    "home",         "stop",       "crash"};
+    "modules",      "stop",       "crash"};
 
 // Weights of the actions: what brings a robot to work more often than what stops it.
 constexpr std::array<std::uint8_t, static_cast<std::size_t>(Chaos::Action::kCount)> kWeights{
@@ -65,6 +65,8 @@ RobotConfig Chaos::believed(const Lie& lie) const {
     const bool homes = module.type->name() == "joint";
     if (homes && lie.kind == Lie::Kind::kHoming)
       own.set("homing_velocity_rpm", 0.25 * own.number("homing_velocity_rpm"));
+    if (module.type->name() == "gimbal" && lie.kind == Lie::Kind::kSilence)
+      own.set("silence_max_s", 0.25 * own.number("silence_max_s"));
     if (homes && lie.kind == Lie::Kind::kTravel) own.set("home_angle_deg", kNearHomeDeg);
   }
   auto& motor = config.buses[places_[lie.motor].first].motors[places_[lie.motor].second];

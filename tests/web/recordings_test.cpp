@@ -60,6 +60,17 @@ TEST_F(RecordingsTest, TheLiveOneComesFirstThenTheNewestCopy) {
                                    "hero-20260101T000000Z-estop.blackbox"));
 }
 
+TEST_F(RecordingsTest, OneFolderForBothHasEachOnce) {
+  const Recordings shared{run.path(), run.path()};
+  write(run / "hero.blackbox", image());
+  write(run / "hero-20260101T000000Z-estop.blackbox", image());
+  const auto found = shared.list();
+  ASSERT_EQ(found.size(), 2U);
+  EXPECT_EQ(found[0].name, "hero.blackbox");
+  EXPECT_TRUE(found[0].live);
+  EXPECT_FALSE(found[1].live);
+}
+
 TEST_F(RecordingsTest, OtherFilesAndLinksAreNone) {
   write(run / "hero.sock", image());
   write(run / "web-token", image());

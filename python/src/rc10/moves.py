@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from rc10.setpoints import Setpoint
     from rc10.state import RobotState
 
-# For the target on its way to the motor; after that a state has to show it.
+# For the target on its way to the motor, at the start and after it has lapsed.
 _ON_ITS_WAY_S = 0.3
 # Passing through the tolerance is not arriving.
 _SETTLED_US = 60_000
@@ -73,7 +73,7 @@ class Move:
         self._timeout_s = timeout_s
         self._now = now
         self._spin = spin
-        self._started_s = self._heard_s = now()
+        self._started_s = self._heard_s = self._obeyed_s = now()
         self._within_since_us: int | None = None
         self._angle_deg = math.nan
         self._result: MoveResult | None = None
@@ -112,9 +112,11 @@ class Move:
         self._angle_deg = motor.angle_deg if on_circle else motor.total_angle_deg
         hindrance = obstacle(state, motor) or without_reference(motor)
         not_obeyed = self._order.not_obeyed(motor)
+        if not not_obeyed:
+            self._obeyed_s = state.taken_at_s
         if hindrance:
             self.fail(hindrance)
-        elif not_obeyed and state.taken_at_s > self._started_s + _ON_ITS_WAY_S:
+        elif state.taken_at_s > self._obeyed_s + _ON_ITS_WAY_S:
             self.fail(not_obeyed)
         elif math.isnan(self._angle_deg):
             self.fail(f"{self.motor}: the drive reports no angle")

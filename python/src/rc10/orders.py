@@ -24,6 +24,8 @@ class Order:
     client: str
     refusal: str = ""
     """Text of the last event that it was skipped or refused."""
+    obeyed: bool = False
+    """A state has shown that the motor follows it."""
 
     def on_event(self, event: Event) -> None:
         """Keeps what rc10d says about a setpoint that it skipped or refused."""
@@ -40,6 +42,7 @@ class Order:
         """Reason why the motor does not follow it, in words; empty if it does."""
         ours = motor.owner == self.client
         if ours and motor.mode is self.setpoint.mode and motor.target == self.setpoint.value:
+            self.obeyed = True
             return ""
         said = f": {self.refusal}" if self.refusal else ""
         if ours:
@@ -52,9 +55,10 @@ class Order:
                 f"{self.motor} is held by the client '{motor.owner}': end that one, or take a "
                 f"higher priority{said}"
             )
-        return f"{self.motor} did not take the target" + (
-            said or ": see `rc10ctl stats` for what was refused"
-        )
+        if said:
+            return f"{self.motor} did not take the target{said}"
+        what = "lost" if self.obeyed else "did not take"
+        return f"{self.motor} {what} the target: see `rc10ctl stats` for what was refused"
 
 
 def obstacle(state: RobotState, motor: MotorState) -> str:

@@ -163,25 +163,26 @@ void Scheduler::watchStop() noexcept {
   stopped_ = (rest_ticks_ >= kMinRestTicks && echoed) || given_up;
 }
 
-// Targets of a module are as old as its tick: the client's message to the module is counted instead.
+// Targets of a module are as old as its tick: the client's message to the module is counted instead. In a
+// tick that tells a drive nothing no frame leaves.
 void Scheduler::recordAges(const Snapshot& snapshot, const Tick& tick) noexcept {
-  const auto is_news = [&tick](MonotonicTime received, MonotonicTime last) {
-    return received != last && received != tick.now;
-  };
   auto* feedback_ages = link_.ages.feedback.data();
   for (std::size_t i = 0, count = snapshot.motor_count; i < count; ++i) {
     const auto& motor = snapshot.motors[i];
     if (motor.acting != Acting::kTarget) continue;
+    const MonotonicTime received = motor.command_received;
+    if (received == tick.now) commands_[i] = received;
+    if (!robot_.motors()[i].motor->due(tick)) continue;
     feedback_ages[i].record(snapshot.sent - motor.feedback.received);
-    if (!is_news(motor.command_received, commands_[i]) || !robot_.motors()[i].motor->due(tick)) continue;
-    commands_[i] = motor.command_received;
-    recordCommandAge(motor.owner, snapshot.sent - motor.command_received);
+    if (received != std::exchange(commands_[i], received))
+      recordCommandAge(motor.owner, snapshot.sent - received);
   }
   for (std::size_t i = 0; i < snapshot.module_count; ++i) {
     const auto& module = snapshot.modules[i];
-    if (module.owner.view().empty() || !is_news(module.inputs_received, inputs_[i])) continue;
-    inputs_[i] = module.inputs_received;
-    recordCommandAge(module.owner, snapshot.sent - module.inputs_received);
+    const MonotonicTime received = module.inputs_received;
+    if (module.owner.view().empty()) continue;
+    if (received != std::exchange(inputs_[i], received) && received != tick.now)
+      recordCommandAge(module.owner, snapshot.sent - received);
   }
 }
 

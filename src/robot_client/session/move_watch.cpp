@@ -15,7 +15,7 @@ namespace {
 
 using std::chrono::milliseconds;
 
-// For the target on its way to the motor; after that a state has to show it.
+// For the target on its way to the motor, at the start and after it has lapsed.
 constexpr Duration kTargetOnItsWay = milliseconds{300};
 // Passing through the tolerance is not arriving.
 constexpr std::int64_t kSettledUs = 60'000;
@@ -61,7 +61,8 @@ std::optional<std::string> MoveWatch::notObeyed(const MotorState& motor) const {
            "': end that one, or take a higher priority" + said;
   }
   if (!refusal_.empty()) return motor.name + " did not take the target" + said;
-  return motor.name + " did not take the target: see `rc10ctl stats` for what was refused";
+  const char* const what = obeyed_ > started_ ? " lost the target" : " did not take the target";
+  return motor.name + what + ": see `rc10ctl stats` for what was refused";
 }
 
 std::optional<MoveResult> MoveWatch::onState(const RobotState& state, MonotonicTime now) {
@@ -73,7 +74,8 @@ std::optional<MoveResult> MoveWatch::onState(const RobotState& state, MonotonicT
   }
   if (auto reason = obstacle(state, goal_.motor, goal_.mode)) return failed(*reason);
   const auto not_obeyed = notObeyed(*motor);
-  if (not_obeyed && state.taken > started_ + kTargetOnItsWay) return failed(*not_obeyed);
+  if (!not_obeyed) obeyed_ = state.taken;
+  if (state.taken > obeyed_ + kTargetOnItsWay) return failed(*not_obeyed);
   if (std::isnan(angle_deg_)) return failed(goal_.motor + ": the drive reports no angle");
   if (not_obeyed || distance() > goal_.tolerance_deg) {
     within_since_us_.reset();

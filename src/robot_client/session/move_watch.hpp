@@ -23,7 +23,7 @@ struct MoveGoal {
 class MoveWatch {
  public:
   MoveWatch(MoveGoal goal, std::string client, MonotonicTime now)
-      : goal_(std::move(goal)), client_(std::move(client)), started_(now), last_heard_(now) {}
+      : goal_(std::move(goal)), client_(std::move(client)), started_(now), last_heard_(now), obeyed_(now) {}
 
   [[nodiscard]] const std::string& motor() const noexcept { return goal_.motor; }
 
@@ -43,6 +43,7 @@ class MoveWatch {
   std::string client_;
   MonotonicTime started_;
   MonotonicTime last_heard_;
+  MonotonicTime obeyed_;  ///< Time of the last state that showed the target, or the start.
   double angle_deg_ = kUnknown;
   std::optional<std::int64_t> within_since_us_;  ///< By the host's clock.
   std::string refusal_;

@@ -13,6 +13,7 @@
 
 #include <CLI/CLI.hpp>
 
+#include "blackbox/copies.hpp"
 #include "blackbox/image.hpp"
 #include "blackbox/places.hpp"
 #include "blackbox/recording.hpp"
@@ -45,14 +46,16 @@ Result<std::string> liveFile(const Global& global) {
   std::vector<std::string> found;
   std::error_code error;
   for (fs::directory_iterator entry(dir, error), end; !error && entry != end; entry.increment(error)) {
-    if (entry->path().extension() == ".blackbox") found.push_back(entry->path().string());
+    if (entry->path().extension() != ".blackbox") continue;
+    if (!blackbox::isCopy(entry->path().filename().string())) found.push_back(entry->path().string());
   }
   if (found.size() == 1) return found.front();
   if (found.empty()) {
     return fail("no black box in " + dir + ": name a file; copies are in " + blackbox::stateDir());
   }
   const auto robot = findRobot(std::nullopt);
-  if (!robot) return tl::unexpected(robot.error());
+  if (!robot)
+    return fail("several robots have a black box in " + dir + ": give --robot NAME, or name a file");
   return blackbox::livePath(dir, robot->robot);
 }
 

@@ -75,7 +75,10 @@ TEST(Events, ASetpointSkippedByAnActiveMotorNamesTheMissingReferenceAndTheRemedy
   EXPECT_THAT(text, HasSubstr("zero: power_on"));
 }
 
-TEST(Events, MissedTicksAreNumbered) { EXPECT_EQ(words(EventCode::kTicksMissed, 12), "12 ticks missed"); }
+TEST(Events, MissedTicksAreNumbered) {
+  EXPECT_EQ(words(EventCode::kTicksMissed, 12), "12 ticks missed");
+  EXPECT_EQ(words(EventCode::kTicksMissed, 1), "1 tick missed");
+}
 
 TEST(Events, EveryBusStateHasWordsOfItsOwn) {
   std::set<std::string> seen;

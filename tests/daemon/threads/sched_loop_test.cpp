@@ -16,6 +16,7 @@
 #include "daemon/exchange/clock.hpp"
 #include "daemon/threads/rx_loop.hpp"
 #include "daemon/virtual_robot.hpp"
+#include "support/frame_bytes.hpp"
 
 namespace rc10::test::sched_loop_test {
 namespace {
@@ -83,10 +84,10 @@ class SchedLoopTest : public ::testing::Test {
   }
 
   /// Ticks with so much work each, and the orderly stop.
-  void run(Duration work, int ticks) {
+  void run(Duration work, int ticks, CanIntake* intake = nullptr) {
     load = work;
     ticks_left = ticks;
-    const auto loop = SchedLoop::create(scheduler, settings, nullptr).value();
+    const auto loop = SchedLoop::create(scheduler, settings, intake).value();
     loop->run(stop.get_token());
     long_sends = loop->timing().late.of(TickStep::kSend).ticks;
     late_wakes = loop->timing().late.of(TickStep::kWake).ticks;
@@ -179,6 +180,19 @@ TEST_P(SchedLoopPhaseTest, TicksLieOnTheirGrid) {
 }
 
 INSTANTIATE_TEST_SUITE_P(All, SchedLoopPhaseTest, ::testing::Values(15ms, 37500us));
+
+// `receive: tick`. Nobody steps the simulated drives: the frame waits in the bus's socket.
+TEST_F(SchedLoopTest, ATickActsOnFramesThatCameBeforeIt) {
+  const int drives = robot->simPorts()[0]->descriptor();
+  const CanFrame feedback = frameOf("201#1000003C00001900");
+  canfd_frame wire{};
+  ASSERT_GT(::send(drives, &wire, encodeFrame(feedback, wire), MSG_DONTWAIT), 0);
+  CanIntake intake{*robot, inboxes, monotonicNow()};
+  run(0us, 1, &intake);
+  const MotorFeedback& seen = robot->motors()[0].motor->feedback();
+  EXPECT_EQ(seen.samples, 1U);
+  EXPECT_LE(seen.received, exchange.snapshot.read().sent);
+}
 
 TEST_F(SchedLoopTest, AnEstopByDatagramActsInTheNextTickHoweverFullTheRingsAre) {
   while (exchange.orders.push(Order{})) {

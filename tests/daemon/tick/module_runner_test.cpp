@@ -178,6 +178,22 @@ TEST_F(ModuleRunnerTest, TheAgeOfAClientsInputsIsCountedAndNotThatOfTheModulesTa
   EXPECT_EQ(ages.clients.name(0).view(), "planner");
 }
 
+// Its last target acts for some ticks more.
+TEST_F(ModuleRunnerTest, TheAgeOfATargetIsNotCountedWhenItsModuleFallsSilentEither) {
+  bool speaks = true;
+  const ScriptedType type{[&](const Tick&, ModuleRobot& robot) {
+    if (speaks) robot.setTarget(0, rpm(50.0));
+  }};
+  start({{&type, 0}});
+  enable();
+  robot_->run(5);
+  speaks = false;
+  robot_->run(5);
+  EXPECT_EQ(robot_->motor(0).owner.view(), "module0");
+  EXPECT_EQ(robot_->exchange().ages.command.count(), 0U);
+  EXPECT_EQ(robot_->exchange().ages.clients.count(), 0U);
+}
+
 TEST_F(ModuleRunnerTest, ARemoteBeatsAPlannerInTheNextTick) {
   const ScriptedType type;
   start({{&type, 0}});

@@ -57,6 +57,41 @@ TEST_F(TickAgesTest, ThatOfACommandIsCountedOnceForEachMotorAndUnderItsClient) {
   EXPECT_EQ(ages.clients.name(1).view(), "planner");
 }
 
+// A tick that takes so long until its frames have left.
+constexpr Duration kUntilSent = 80us;
+MonotonicTime tick_began{};
+MonotonicTime whenSent() noexcept { return tick_began + kUntilSent; }
+
+TEST(TickAges, EndWhenTheFramesHaveLeft) {
+  VirtualRobot robot{twoWheelsAndYaw(), nullptr, whenSent};
+  const auto tick = [&] {
+    tick_began = robot.now() + 1ms;
+    robot.tick();
+  };
+  for (int i = 0; i < 50; ++i) tick();
+  robot.order(Operation::kEnable);
+  ASSERT_EQ(robot.motor(kLeft).status, MotorStatus::kActive);
+  robot.command(kLeft, kVelocity60);
+  for (int i = 0; i < 10; ++i) tick();
+  const auto& ages = robot.exchange().ages;
+  EXPECT_EQ(ages.command.max(), 1ms + kUntilSent);
+  EXPECT_EQ(ages.feedback[kLeft].max(), 500us + kUntilSent) << "drives speak half a period before the tick";
+}
+
+TEST(FeedbackAge, IsThatOfTheFeedbackThatTheFramesOfADriveWereComputedFrom) {
+  VirtualRobot robot{toldEveryFifthTick()};
+  robot.run(200);
+  robot.order(Operation::kEnable);
+  ASSERT_EQ(robot.motor(0).status, MotorStatus::kActive);
+  const auto& ages = robot.exchange().ages.feedback[0];
+  for (int i = 0; i < 11; ++i) {
+    robot.command(0, kVelocity60);
+    robot.run(5);
+  }
+  EXPECT_GE(ages.count(), 10U) << "it is told every fifth tick";
+  EXPECT_LE(ages.count(), 11U);
+}
+
 TEST(CommandAge, EndsInTheTickThatTellsTheDrive) {
   VirtualRobot robot{toldEveryFifthTick()};
   robot.run(200);

@@ -80,11 +80,12 @@ class Daemon:
         realtime: str = "preferred",
         prefix: Sequence[str] = (),
         run_dir: Path | None = None,
+        state_dir: str = "state",
     ) -> None:
         self._owned = run_dir is None
         # Short: the path of a socket has 108 bytes at most. In memory, as /run is.
         self.run_dir = run_dir or Path(tempfile.mkdtemp(prefix="rc10-host-", dir="/dev/shm"))
-        self.state_dir = self.run_dir / "state"
+        self.state_dir = self.run_dir / state_dir
         self.state_dir.mkdir(exist_ok=True)
         self.env = {"RC10_RUN_DIR": str(self.run_dir), "RC10_STATE_DIR": str(self.state_dir)}
         self.config = self.run_dir / "robot.yaml"

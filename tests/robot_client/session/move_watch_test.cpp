@@ -101,6 +101,17 @@ TEST_F(MoveWatchTest, FailsWhenAnotherClientHoldsTheMotor) {
   EXPECT_THAT(result->reason, HasSubstr("held by the client 'remote'"));
 }
 
+TEST_F(MoveWatchTest, GoesOnAfterATargetThatLapsedForAMoment) {
+  EXPECT_FALSE(see(1000ms));
+  lift().owner.clear();
+  lift().mode = Mode::kCoast;
+  EXPECT_FALSE(see(1020ms)) << "a busy computer has renewed it late";
+  EXPECT_FALSE(see(1300ms));
+  const auto result = see(1301ms);
+  ASSERT_TRUE(result);
+  EXPECT_THAT(result->reason, HasSubstr("lost the target"));
+}
+
 TEST_F(MoveWatchTest, FailsWhenASecondProgramRunsUnderTheSameName) {
   lift().target = 10.0;
   const auto result = see(400ms);

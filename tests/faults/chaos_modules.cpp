@@ -1,4 +1,4 @@
-// Homings that have the time to find their end: a random robot is disturbed long before.
+// Homings and holds of modules that have the time to find their end: a random robot is disturbed long before.
 #include <cmath>
 
 #include <fmt/format.h>
@@ -14,22 +14,17 @@ constexpr double kFollows = 2.0;
 
 }  // namespace
 
-// The robot is made whole and its other clients let go of the motor. Then `home` rises. Often nothing else
-// happens until the homing has ended, and then moves on the new reference follow.
-void Chaos::home() {
+void Chaos::useModules() {
   for (std::size_t module = 0; module < config_.modules.size(); ++module) {
-    if (config_.modules[module].type->name() == "joint") homeJoint(module);
+    const auto type = config_.modules[module].type->name();
+    if (type == "joint") homeJoint(module);
+    if (type == "gimbal") leaveGimbal(module);
   }
 }
 
-void Chaos::homeJoint(std::size_t module) {
+// The robot is whole, its other clients have let go of it, and all motors are on.
+void Chaos::makeWhole() {
   const auto everyone = MotorSet{(1ULL << places_.size()) - 1};
-  const auto ask = [&](double angle_deg, double home) {
-    inputs_[module].given = true;
-    inputs_[module].values.fill(kNoSignal);
-    inputs_[module].values[0] = angle_deg;
-    inputs_[module].values[1] = home;
-  };
   for (std::size_t motor = 0; motor < places_.size(); ++motor) {
     repair(motor);
     busOf(motor).silence(driveOf(motor), false);
@@ -38,14 +33,39 @@ void Chaos::homeJoint(std::size_t module) {
   }
   repairBuses();
   for (auto& client : clients_) client.motors.reset();
-  ask(kNoSignal, 0.0);
   // A stop of before has run down, and a message of before has ended.
   ticks(2'500);
   order(Operation::kClear, everyone);
   ticks(60);
   order(Operation::kEnable, everyone);
   ticks(400);
-  ask(kNoSignal, 1.0);
+}
+
+void Chaos::ask(std::size_t module, double first, double second) {
+  inputs_[module].given = true;
+  inputs_[module].values.fill(kNoSignal);
+  inputs_[module].values[0] = first;
+  inputs_[module].values[1] = second;
+}
+
+// Its client falls silent, and comes back after its hold has ended, or just before.
+void Chaos::leaveGimbal(std::size_t module) {
+  for (std::size_t other = 0; other < config_.modules.size(); ++other)
+    if (config_.modules[other].type->name() == "imu") ask(other, 0.0, 0.0);
+  ask(module, kNoSignal, kNoSignal);
+  makeWhole();
+  ask(module, choices_.of<double>({0.0, 20.0, -60.0}), choices_.of<double>({0.0, 10.0}));
+  ticks(300);
+  inputs_[module].given = false;
+  ticks(choices_.of<std::uint64_t>({900, 1'500, 3'000}));
+}
+
+// `home` rises. Often nothing else happens until the homing has ended, and then moves on the new reference
+// follow.
+void Chaos::homeJoint(std::size_t module) {
+  ask(module, kNoSignal, 0.0);
+  makeWhole();
+  ask(module, kNoSignal, 1.0);
   const auto for_ticks = choices_.of<std::uint64_t>({300, 1'500, 10'000, 10'000, 10'000});
   constexpr std::uint64_t kLook = 50;
   bool began = false;
@@ -54,7 +74,7 @@ void Chaos::homeJoint(std::size_t module) {
     began = began || stateOf(module) == kHomes;
   }
   if (began && stateOf(module) == kFollows) judgeReference(module);
-  ask(choices_.of<double>({kNoSignal, 20.0, 90.0, 1e9}), 0.0);
+  ask(module, choices_.of<double>({kNoSignal, 20.0, 90.0, 1e9}), 0.0);
   ticks(choices_.of<std::uint64_t>({1, 60, 1'500}));
 }
 
