@@ -132,7 +132,9 @@ template <typename App, typename Error>
   const App& verb = verbs.empty() ? app : *verbs.front();
   const std::string help =
       "; `" + app.get_name() + (verbs.empty() ? "" : " " + verb.get_name()) + " --help` has all";
-  if (const auto word = misspelt(app, argc, argv); !word.empty()) return word + help;
+  // "; did you mean enable?"
+  if (const auto word = misspelt(app, argc, argv); !word.empty())
+    return word + (word.back() == '?' ? help.substr(1) : help);
   std::string said = printable(inWords(error.get_name(), error.what()));
   if (verbs.empty() && error.get_name() == "RequiredError" && app.get_require_subcommand_min() > 0)
     return "say what to do, such as `" + app.get_name() + " " +

@@ -13,6 +13,7 @@
 #include <tuple>
 #include <utility>
 
+#include "blackbox/copies.hpp"
 #include "web/columns_frame.hpp"
 
 namespace rc10::web {
