@@ -135,6 +135,7 @@ Result<void> Robot::addMotor(const MotorConfig& config, std::size_t bus_index) {
        .fallback = config.fallback,
        .standstill_rpm = config.standstill_rpm,
        .run_down = config.run_down,
+       .divided = config.settings.command_divider > 1,
        .optional = config.optional,
        .id = config.settings.id,
        .steers = std::move(use.steers.empty() ? use.obeys : use.steers)});

@@ -43,6 +43,7 @@ class Robot {
     FallbackConfig fallback{};
     float standstill_rpm = 0.0F;
     Duration run_down{};                ///< Without torque and feedback it turns no longer than this.
+    bool divided = false;               ///< Ticks may tell its drive nothing: Motor_Base::due() says which.
     bool optional = false;              ///< The robot may be enabled without it.
     bool homed = false;                 ///< A module finds its angle.
     int id = 0;                         ///< As set on the drive.

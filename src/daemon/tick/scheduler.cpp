@@ -167,12 +167,13 @@ void Scheduler::watchStop() noexcept {
 // tick that tells a drive nothing no frame leaves.
 void Scheduler::recordAges(const Snapshot& snapshot, const Tick& tick) noexcept {
   auto* feedback_ages = link_.ages.feedback.data();
-  for (std::size_t i = 0, count = snapshot.motor_count; i < count; ++i) {
+  const auto* entry = robot_.motors().data();
+  for (std::size_t i = 0, count = snapshot.motor_count; i < count; ++i, ++entry) {
     const auto& motor = snapshot.motors[i];
     if (motor.acting != Acting::kTarget) continue;
     const MonotonicTime received = motor.command_received;
     if (received == tick.now) commands_[i] = received;
-    if (!robot_.motors()[i].motor->due(tick)) continue;
+    if (entry->divided && !entry->motor->due(tick)) continue;
     feedback_ages[i].record(snapshot.sent - motor.feedback.received);
     if (received != std::exchange(commands_[i], received))
       recordCommandAge(motor.owner, snapshot.sent - received);
