@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import shutil
 import subprocess
 import sys
@@ -10,6 +11,17 @@ from pathlib import Path
 REPO = Path(__file__).resolve().parents[2]
 PEERS = REPO / "bench/peers"
 CLIENTS = PEERS / "clients"
+
+
+def described(tree: Path) -> str:
+    """Commit of the sources that a build tree is of; `-dirty`: they have changed since."""
+    cache = tree / "CMakeCache.txt"
+    text = cache.read_text() if cache.exists() else ""
+    found = re.search(r"^CMAKE_HOME_DIRECTORY:INTERNAL=(.*)$", text, re.MULTILINE)
+    if not found:
+        return "of unknown sources"
+    words = ["git", "-C", found[1], "describe", "--always", "--dirty"]
+    return subprocess.run(words, check=True, capture_output=True, text=True).stdout.strip()
 
 
 def programs(built: Path | None, *targets: str) -> Path:

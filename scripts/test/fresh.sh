@@ -67,7 +67,8 @@ pages() {
     echo 'APT::Get::Assume-Yes "true";' >"$root/etc/apt/apt.conf.d/90yes"
     printf '#!/bin/sh\nexec "$@"\n' >"$root/usr/local/bin/sudo" && chmod 755 "$root/usr/local/bin/sudo"
     step "docs/quick-start.md: without the demo" timed "quick start, section 2" shown docs/quick-start.md 2
-    step "docs/quick-start.md: rc10-sim" shown docs/quick-start.md 3
+    step "docs/quick-start.md: what draws" shown docs/quick-start.md 3
+    step "docs/quick-start.md: rc10-sim" shown docs/quick-start.md 4
     step "docs/python.md: installing" timed "Python package" shown docs/python.md 1
     step "docs/robot-programs.md: installing" shown docs/robot-programs.md 1
     step "python/README.md: installing" shown python/README.md 1

@@ -11,9 +11,9 @@
 namespace rc10 {
 namespace {
 
-// Some 10 us each.
+// A look at one process takes some 10 us.
 constexpr int kProcessesPerWindow = 20;
-// New ones are found after so many windows, 2 s.
+// Interval of the search for new real-time threads, 2 s.
 constexpr int kWindowsPerSearch = 100;
 
 [[nodiscard]] bool isNumber(const std::string& text) noexcept {

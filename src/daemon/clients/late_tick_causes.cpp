@@ -28,7 +28,8 @@ constexpr Duration kLeastUsual = std::chrono::microseconds{1};
 
 using StepSet = std::bitset<kTickSteps>;
 
-// Steps whose time is mostly a wait for the CPU. A wait explains one after the other, the longest first.
+// Steps that were late for want of the CPU. `waited`, time in the run queue, is attributed to the longest
+// step first, the remainder to the next; three quarters of a step's time explain it.
 [[nodiscard]] StepSet explained(const std::array<LateTicks::Sum, kTickSteps>& late,
                                 Duration waited) noexcept {
   std::array<std::size_t, kTickSteps> order{};

@@ -17,17 +17,17 @@ namespace rc10 {
   return std::max({realtime_percent - kMargin, realtime_percent / 2, 1});
 }
 
-/// Tells from its CPU time that a thread does more than its periods have room for. A thread that was late
-/// because others had the CPU has used little of it, and is not overloaded.
+/// Overload of a thread: CPU time above the permitted percentage of its periods. A thread that was preempted
+/// is late, too, but has used little CPU time, and is not overloaded.
 class OverloadWatch {
  public:
-  /// `limit`: CPU time of ticks, among them long ones, that use more than `percent` of their periods
-  /// together. A short tick now and then, or a long one, is room or load as any other.
+  /// `limit`: CPU time of a run of ticks from which on it is an overload, if that is more than `percent` of
+  /// their periods. Utilisation is that of the whole run: neither one short tick nor one long one decides.
   constexpr OverloadWatch(Duration period, int percent, Duration limit) noexcept
       : room_(period * percent / 100), pause_(period - room_), limit_(limit) {}
 
-  /// After each tick. `periods`: that it stands for, above 1 if some were missed. `before_next`: time from
-  /// its end until the next one is due. True: it leaves no pause, and overran() must be asked.
+  /// After each tick. `periods`: 1, and one more for each tick that was missed. `before_next`: time from its
+  /// end until the next one is due. True: the pause is too short, and overran() must be asked.
   [[nodiscard]] constexpr bool ended(std::uint64_t periods, Duration before_next) noexcept {
     periods_ += static_cast<std::int64_t>(periods);
     return before_next < pause_;
@@ -43,7 +43,7 @@ class OverloadWatch {
         return true;
       }
     }
-    // The first, whose begin is not known, or there was room enough since.
+    // A run begins here: the first ever, or after one below the percentage.
     begin_ = cpu_time;
     periods_ = 0;
     return false;

@@ -105,8 +105,8 @@ void RxLoop::receiveSerial(std::size_t channel, MonotonicTime now, std::uint32_t
   auto& port = (*serial_)[channel];
   const bool hung_up = (events & (EPOLLHUP | EPOLLERR)) != 0;
   if (receiveChunk(port, now, hung_up)) return;
-  // A hang-up is shown for as long as it is watched. And first this: from leavePort() on another port may
-  // take the descriptor.
+  // Epoll reports a hang-up on each call as long as the descriptor is registered. Removed before leavePort(),
+  // after which another port may get the same descriptor number.
   (void)epoll_ctl(epoll_.get(), EPOLL_CTL_DEL, port.fd.get(), nullptr);
   leavePort(port);
 }

@@ -29,7 +29,7 @@ void SchedLoop::run(const std::stop_token& stop) noexcept {
     if (periods == 0) continue;
     const std::uint64_t woken = cycleCount();
     const MonotonicTime now = timer_.woken();
-    if (intake_ != nullptr) intake_->drain(now);  // first: `now` goes with the wall clock that it reads
+    if (intake_ != nullptr) intake_->drain(now);  // first: it reads the wall clock that belongs to `now`
     // Against the first grid point that waits: a wake-up that missed ten ticks is ten periods late.
     const MonotonicTime due = planned + grid_.period;
     timing_.wake_latency.record(now - due);
@@ -54,7 +54,7 @@ void SchedLoop::countLongTick(std::uint64_t woken, Duration duration) noexcept {
 }
 
 void SchedLoop::watchLoad(std::uint64_t periods, Duration before_next) noexcept {
-  // A tick that the kernel cuts into lumps (RT throttling) is worse than none.
+  // RT throttling by the kernel would leave no ticks for the rest of each second: a stop is safer.
   if (overload_.ended(periods, before_next) && overload_.overran(cpu_time_()))
     scheduler_.stopFor({StopCause::kOverload});
 }

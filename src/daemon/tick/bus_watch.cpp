@@ -17,7 +17,7 @@ constexpr Duration kForeignReportInterval = std::chrono::seconds{1};
 void BusWatch::decide(const Tick& tick) noexcept {
   for (std::size_t i = 0, count = robot_.buses().size(); i < count; ++i) {
     auto& entry = robot_.buses()[i];
-    reportState(i, tick);  // before what its motors make of it
+    reportState(i, tick);  // before the events of its motors, which follow from it
     entry.held = !carriesFrames(entry.bus->health().state());
   }
 }

@@ -124,7 +124,7 @@ bool ModuleRunner::obeys(std::size_t motor) const noexcept {
 }
 
 void ModuleRunner::setTarget(std::size_t motor, const Target& target) noexcept {
-  // Twice the same motor: the later target counts.
+  // A second target for the same motor replaces the first.
   if (commanded_.test(motor)) {
     const auto used = command_.setpoints.begin() + static_cast<std::ptrdiff_t>(command_.count);
     std::find_if(command_.setpoints.begin(), used, [motor](const auto& s) {
