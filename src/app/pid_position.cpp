@@ -66,6 +66,21 @@ void PID_Position::fade(float dt_s) noexcept {
   state_.fades = state_.glide != 0.0F || state_.output_offset != 0.0F;
 }
 
+[[gnu::always_inline]] inline void PID_Position::integrate(float mean, float others, float dt,
+                                                           OutputRange range) noexcept {
+  const bool separated =
+      config_.integral_separation > 0.0F && std::abs(state_.error) > config_.integral_separation;
+  float gain = separated ? 0.0F : saturate(config_.ki * mean * dt);
+  // Anti-windup: what would push beyond the limit is not accumulated, and after the limit has come
+  // down the integral alone never holds the output beyond it.
+  const float sum = others + state_.integral;
+  if (gain > 0.0F) gain = std::clamp(range.high - sum, 0.0F, gain);
+  if (gain < 0.0F) gain = std::clamp(range.low - sum, gain, 0.0F);
+  state_.integral += gain;
+  const OutputRange hold{std::min(range.low, 0.0F), std::max(range.high, 0.0F)};
+  state_.integral = hold.within(config_.integral_limit).clamp(saturate(state_.integral));
+}
+
 // Inlined, or every number of its callers would be put away for the call.
 [[gnu::always_inline]] inline float PID_Position::advance(float error, float measured_change, float dt_s,
                                                           OutputRange range) noexcept {
@@ -85,17 +100,8 @@ void PID_Position::fade(float dt_s) noexcept {
   state_.error = e;
   const float others = proportionalAndDerivative() + state_.output_offset;
 
-  const bool separated = config_.integral_separation > 0.0F && std::abs(e) > config_.integral_separation;
-  float gain = separated ? 0.0F : saturate(config_.ki * mean * dt);
-  // Anti-windup: what would push beyond the limit is not accumulated, and after the limit has come
-  // down the integral alone never holds the output beyond it.
-  const float sum = others + state_.integral;
-  if (gain > 0.0F) gain = std::clamp(range.high - sum, 0.0F, gain);
-  if (gain < 0.0F) gain = std::clamp(range.low - sum, gain, 0.0F);
-  state_.integral += gain;
-  const OutputRange hold{std::min(range.low, 0.0F), std::max(range.high, 0.0F)};
-  state_.integral = hold.within(config_.integral_limit).clamp(saturate(state_.integral));
-
+  // Without an integral gain, as angle loops mostly are, there is nothing to accumulate.
+  if (config_.ki != 0.0F || state_.integral != 0.0F) integrate(mean, others, dt, range);
   state_.output = range.clamp(others + state_.integral);
   state_.running = true;
   return state_.output;

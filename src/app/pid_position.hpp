@@ -77,6 +77,7 @@ class PID_Position {
   void fade(float dt_s) noexcept;
   /// stepError() on finite numbers and a dt above 0.
   float advance(float error, float measured_change, float dt_s, OutputRange range) noexcept;
+  void integrate(float mean, float others, float dt, OutputRange range) noexcept;
   [[nodiscard]] float errorOf(float target, float measured) const noexcept;
   [[nodiscard]] float afterDeadband(float error) const noexcept;
   [[nodiscard]] float proportionalAndDerivative() const noexcept;

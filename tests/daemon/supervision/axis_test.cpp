@@ -5,6 +5,7 @@
 #include <cmath>
 #include <memory>
 
+#include "daemon/one_motor_robot.hpp"
 #include "daemon/virtual_robot.hpp"
 #include "support/dji_frames.hpp"
 
@@ -284,6 +285,20 @@ TEST_F(AxisTest, ReportsASkippedTargetOnceASecond) {
   EXPECT_TRUE(axis_.mayReportSkip(now_));
   EXPECT_FALSE(axis_.mayReportSkip(now_ + 999ms));
   EXPECT_TRUE(axis_.mayReportSkip(now_ + 1s));
+}
+
+// A slew that ran on behind the limit would hold the effort there long after less was asked for.
+TEST(AxisSlew, OfAnEffortGoesOnFromTheLimitThatItHasReached) {
+  VirtualRobot robot{
+      oneMotorRobot("model: M3508, id: 1, zero: power_on, current_limit_a: 2, current_slew_a_per_s: 100, "
+                    "soft_start_ms: 0")};
+  robot.run(50);
+  robot.order(Operation::kEnable);
+  ASSERT_EQ(robot.motor(0).status, MotorStatus::kActive);
+  robot.hold(0, {.mode = ControlMode::kCurrent, .value = 15.0}, 300);
+  ASSERT_EQ(robot.motor(0).command_value, 2.0F);
+  robot.hold(0, {.mode = ControlMode::kCurrent}, 10);
+  EXPECT_NEAR(robot.motor(0).command_value, 1.0F, 0.2F);
 }
 
 }  // namespace axis_test

@@ -72,6 +72,17 @@ TEST_F(TargetShaperHeldTest, AnImpedanceBeginsWithTheTorqueInForceWhateverItsSti
   }
 }
 
+TEST_F(TargetShaperHeldTest, TheSpringOfAnImpedanceGivesThatTorqueAsFarAsItCan) {
+  const auto begun = [&](float stiffness_nm_per_rad) {
+    configure({.soft_start_s = 1000.0F});
+    return first(
+        {.mode = ControlMode::kImpedance, .value = 25.0, .stiffness_nm_per_rad = stiffness_nm_per_rad});
+  };
+  EXPECT_NEAR(begun(500.0F).value, 25.0 + kHeldNm / 500.0 / kRadPerDeg, 1e-3);
+  EXPECT_NEAR(begun(500.0F).torque_ff_nm, 0.0F, 1e-3F);
+  EXPECT_NEAR(begun(60.0F).value, 30.0, 1e-3) << "no farther than the held angle";
+}
+
 TEST_F(TargetShaperHeldTest, AFeedForwardThatHoldsTheLoadTakesItOverWithoutAGap) {
   for (const auto mode : {ControlMode::kVelocity, ControlMode::kImpedance}) {
     configure({.soft_start_s = 0.1F});

@@ -523,6 +523,23 @@ TEST_F(SpeedBoundsTest, AStopFromASpeedLiesBetweenItAndStandstill) {
   expectBounds(0.0, -20.0F, 20.0F);
 }
 
+TEST_F(SpeedBoundsTest, AHandThatTouchesACarriedLoadHasItsTolerance) {
+  const auto most_rpm = [&](double standstill_rpm) {
+    return shaper.speedBounds(feedback, 0.0, standstill_rpm).high;
+  };
+  EXPECT_NEAR(most_rpm(15.0), 20.0F, 1e-3F);
+  EXPECT_NEAR(most_rpm(60.0), 30.0F, 1e-3F) << "half a standstill at least";
+  EXPECT_NEAR(most_rpm(4.0), 8.0F, 1e-3F) << "two at most";
+}
+
+TEST_F(TargetShaperTest, AnAngleUnderACeilingSaysThatItIsLimitedBothWays) {
+  shaper.setCeiling(40.0);
+  at(0.0);
+  (void)step(ControlMode::kTotalAngle, 0.0);
+  EXPECT_EQ(step(ControlMode::kTotalAngle, 500.0).limits, kLimitVelocity);
+  EXPECT_EQ(step(ControlMode::kTotalAngle, -500.0).limits, kLimitVelocity);
+}
+
 TEST_F(SpeedBoundsTest, TheCeilingOfReducedModeBoundsBothWays) {
   shaper.setCeiling(40.0);
   expectBounds(std::nullopt, -50.0F, 50.0F);
