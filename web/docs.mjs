@@ -3,6 +3,7 @@
 // the rows quote, so that the page finds the row of an event.
 import { mkdirSync, readFileSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';
+import { fileURLToPath } from 'node:url';
 
 import { marked } from 'marked';
 
@@ -11,7 +12,7 @@ const kLanguages = [
   { lang: 'en', file: `${kPage}.md`, made: `${kPage}.html`, back: 'rc10 Studio' },
   { lang: 'zh', file: `${kPage}.zh-CN.md`, made: `${kPage}.zh.html`, back: 'rc10 Studio' },
 ];
-const docs = new URL('../docs/', import.meta.url).pathname;
+const docs = fileURLToPath(new URL('../docs/', import.meta.url));
 const folder = process.argv[2];
 
 /** As GitHub makes them. */
