@@ -1,10 +1,14 @@
 # Sourced by the scripts: where things are, and how they come to be.
 # shellcheck shell=bash
 
-repo=$(cd "$(dirname "${BASH_SOURCE[0]}")/../.." && pwd)
+# Without symbolic links, as CMake and Python name files.
+repo=$(cd "$(dirname "${BASH_SOURCE[0]}")/../.." && pwd -P)
 
 # ccache: hits across clones in different folders.
 export CCACHE_BASEDIR=$repo CCACHE_NOHASHDIR=1
+# It fails each compilation where it cannot write.
+ccache_folder=${CCACHE_DIR:-${XDG_CACHE_HOME:-${HOME:-}/.cache}/ccache}
+if ! mkdir -p "$ccache_folder" 2>/dev/null || [ ! -w "$ccache_folder" ]; then export CCACHE_DISABLE=1; fi
 
 need() {
     "$repo/scripts/install-deps.sh" "$@"

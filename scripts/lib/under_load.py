@@ -89,27 +89,25 @@ def stands(pid: int) -> bool:
     return bool(int(pending[1], 16) & 1 << (signal.SIGSTOP - 1))
 
 
-def stop_parents_first(tree: set[int]) -> set[int]:
-    """Those that it stopped: not whom a parent had stopped at the last moment."""
-    stopped: set[int] = set()
+def stop_parents_first(tree: set[int], stopped: set[int]) -> None:
+    """Adds to `stopped` those that it stops: not whom a parent had stopped at the last moment."""
     parents = {pid: process.parent for pid, process in processes().items()}
     while tree:
         eldest = {pid for pid in tree if parents.get(pid) not in tree}
         mine = {pid for pid in eldest if not stands(pid)}
-        send(signal.SIGSTOP, mine)
         stopped |= mine
+        send(signal.SIGSTOP, mine)
         tree = tree - eldest
-    return stopped
 
 
 def pause(seconds: float, spared: set[int], command: subprocess.Popen[bytes]) -> None:
     seen: set[int] = set()
     stopped: set[int] = set()
-    # Until there is nobody left: whoever runs may start another.
-    while new := running(spared) - seen:
-        stopped |= stop_parents_first(new)
-        seen |= new
     try:
+        # Until there is nobody left: whoever runs may start another.
+        while new := running(spared) - seen:
+            stop_parents_first(new, stopped)
+            seen |= new
         with contextlib.suppress(subprocess.TimeoutExpired):
             command.wait(seconds)
     finally:
