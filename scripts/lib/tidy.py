@@ -83,10 +83,10 @@ def check(build: Path, tool: bytes, entry: dict[str, str]) -> str:
     return done.stdout or done.stderr or f"{entry['file']}: status {done.returncode}\n"
 
 
-def findings(output: str) -> dict[tuple[str, ...], str]:
-    """Each finding with the lines that belong to it, by place."""
+def findings(output: str, source: str) -> dict[tuple[str, ...], str]:
+    """Each finding with the lines that belong to it, by place; those before the first by source."""
     found: dict[tuple[str, ...], str] = {}
-    key: tuple[str, ...] = ("",)
+    key: tuple[str, ...] = (os.path.relpath(source, REPO),)
     for line in output.splitlines():
         if (match := FINDING.match(line)) and match[4] != "note":
             file = os.path.relpath(os.path.realpath(match[1]), REPO)
@@ -226,8 +226,8 @@ def main() -> int:
     with ThreadPoolExecutor(int(os.environ.get("RC10_JOBS", os.cpu_count() or 1))) as pool:
         outputs = pool.map(lambda entry: check(build, tool, entry), entries)
     found: dict[tuple[str, ...], str] = {}
-    for output in outputs:
-        found.update(findings(output))
+    for entry, output in zip(entries, outputs, strict=True):
+        found.update(findings(output, entry["file"]))
     for _, text in sorted(found.items()):
         print(text, end="")
     print(f"{len(entries)} sources, {len(found)} findings")

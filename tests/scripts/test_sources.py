@@ -84,6 +84,26 @@ def test_no_comment_begins_in_a_string(repo: Path) -> None:
     assert changed(repo) == ["c.cpp"]
 
 
+def test_each_source_whose_check_crashes_is_shown(
+    repo: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    app = repo / "src" / "app"
+    commands = [{"file": str(app / name), "directory": str(repo)} for name in ("a.cpp", "b.cpp")]
+    (repo / "compile_commands.json").write_text(json.dumps(commands))
+
+    def crash(_build: Path, _tool: bytes, entry: dict[str, str]) -> str:
+        return f"crashed in {entry['file']}\n{app / 'a.hpp'}:2:1: warning: one of both\n"
+
+    monkeypatch.setattr(tidy, "check", crash)
+    monkeypatch.setattr(tidy, "version", lambda: b"")
+    monkeypatch.setattr("sys.argv", ["tidy.py", str(repo)])
+    assert tidy.main() == 1
+    shown = capsys.readouterr().out
+    assert f"crashed in {app / 'a.cpp'}" in shown
+    assert f"crashed in {app / 'b.cpp'}" in shown
+    assert shown.count("one of both") == 1
+
+
 def test_what_compiles_only_behind_another_is_found(
     repo: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
