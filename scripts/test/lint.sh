@@ -75,7 +75,7 @@ sources_are_short() {
     local most=600 long
     long=$(git ls-files -z src tests python scripts web/src bench examples cmake \
         | grep -zE '\.(cpp|hpp|py|sh|ts|tsx|css|cmake)$' | xargs -0 wc -l \
-        | awk -v most="$most" '$1 > most && $2 != "total" {print $2}')
+        | awk -v most="$most" '$1 > most && $2 != "total" {print $2}') || return
     [ -n "$long" ] || return 0
     echo "longer than $most lines:" && echo "$long" && return 1
 }
