@@ -23,6 +23,7 @@ def repo(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     (src / "a.cpp").write_text('#include "app/a.hpp"\nstd::string a() { return {}; }\n')
     (src / "b.cpp").write_text('#include "app/a.hpp"\n')
     (src / "c.cpp").write_text("int c() { return 0; }\n")
+    (tmp_path / ".clang-tidy").write_text("# clang-tidy\nChecks: -*\n")
     git = ["git", "-C", str(tmp_path), "-c", "user.name=n", "-c", "user.email=e"]
     for words in (["init", "--quiet"], ["add", "."], ["commit", "--quiet", "--message=first"]):
         subprocess.run([*git, *words], check=True)
@@ -73,6 +74,13 @@ def test_a_comment_says_nothing_to_clang_tidy_but_nolint_does(repo: Path) -> Non
     assert changed(repo) == []
     (app / "c.cpp").write_text("int c() { return 0; }  // NOLINT\n")
     assert changed(repo) == ["c.cpp"]
+
+
+def test_settings_of_clang_tidy_that_change_concern_each_source(repo: Path) -> None:
+    (repo / ".clang-tidy").write_text("# clang-tidy 16\nChecks: -*\n")
+    assert changed(repo) == [], "a comment"
+    (repo / ".clang-tidy").write_text("# clang-tidy\nChecks: misc-*\n")
+    assert changed(repo) == ["a.cpp", "b.cpp", "c.cpp"]
 
 
 def test_no_comment_begins_in_a_string(repo: Path) -> None:
