@@ -2,7 +2,7 @@
 # root, <build>/layers/<layer>/, which holds one link named after the layer: `#include "motor/x.hpp"`
 # resolves only in targets that use the layer `motor`.
 
-# Sources with the same headers are compiled together: a quarter of the time. So many files that two cores have work.
+# Unity build of a layer: a quarter of the time. Batch size: small enough that two cores share a layer.
 set(RC10_UNITY_BATCH 16 CACHE STRING "How many files are compiled together, at most; 0: all of a target")
 function(rc10_together target)
   set_target_properties(${target} PROPERTIES UNITY_BUILD ${RC10_UNITY} UNITY_BUILD_BATCH_SIZE ${RC10_UNITY_BATCH})

@@ -1,5 +1,5 @@
-# The warnings every target is built with. They are errors in the dev and CI presets only, so that a
-# user's newer compiler does not break the build.
+# Warnings of every target: errors (RC10_WERROR) in the presets of development and its checks; not in release, package, bench
+# and coverage, so that a user's newer compiler does not break the build.
 add_library(rc10_warnings INTERFACE)
 target_compile_options(rc10_warnings INTERFACE
   -Wall -Wextra -Wpedantic -Wconversion -Wsign-conversion -Wshadow -Wold-style-cast

@@ -1,5 +1,6 @@
 # bash completion of rc10ctl. Verbs and options are asked of rc10ctl itself, motors of the rc10d that runs, so that
 # nothing here grows old.
+# shellcheck shell=bash
 
 # Lines of `rc10ctl --help` below "Subcommands:" are "  verb   what it does".
 _rc10ctl_verbs() {
@@ -15,7 +16,7 @@ _rc10ctl_motors() {
     "$@" list 2>/dev/null | sed -n '/^MOTOR /,$ { /^MOTOR /d; s/ .*//p; }'
 }
 
-# Of `rc10ctl gains MOTOR`: the motor comes last.
+# Keys of `rc10ctl gains MOTOR`: the motor comes last.
 _rc10ctl_gains() {
     "$@" 2>/dev/null | sed -n 's/^\([a-z]*_pid\.[a-z_]*\) .*/\1=/p'
 }

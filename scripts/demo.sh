@@ -41,33 +41,49 @@ done
 
 build_tree=${RC10_BUILD:-$repo/build/release}
 
-# Once, outside the namespace: everything it takes, and no more. The times are those of a bare Debian with 2 cores.
+# Session of a preparation, which ends with all that it has started. Sets $pid.
+in_background() {
+    setsid "$@" &
+    pid=$!
+    preparing+=("$pid")
+}
+
+# shellcheck disable=SC2317  # called by the trap
+give_up() {
+    local leader
+    for leader in "${preparing[@]}"; do
+        # Also by itself: it may not have its session yet.
+        kill -TERM -- "-$leader" "$leader" 2>/dev/null || true
+    done
+    rm -rf "$RC10_RUN_DIR"
+}
+
+# Preparations, once, outside the namespace. The times are those of a bare Debian with 2 cores.
 prepare() {
-    local python prepared
-    prepared=$(mktemp "${TMPDIR:-/tmp}/rc10-demo-python.XXXX")
+    local pid client_maker page_maker client_log=$RC10_RUN_DIR/client.log page_log=$RC10_RUN_DIR/page.log
     if [ -z "${RC10_BUILD:-}" ]; then
         "$here/install-deps.sh" --may-ask build
         progress "demo: installing packages of Debian" 30 need build || die "the packages could not be installed"
     fi
     # Beside the compiler: it waits for the network.
-    "$here/venv.sh" client >"$prepared" 2>&1 &
-    python=$!
-    page_log=$(mktemp "${TMPDIR:-/tmp}/rc10-demo-page.XXXX")
-    [ -n "${RC10_BUILD:-}" ] || "$here/web.sh" >"$page_log" 2>&1 &
-    page_made=$!
+    in_background "$here/venv.sh" client >"$client_log" 2>&1
+    client_maker=$pid
     if [ -z "${RC10_BUILD:-}" ]; then
+        in_background "$here/web.sh" >"$page_log" 2>&1
+        page_maker=$pid
         build_shows_files=yes
         progress "demo: compiling rc10d" 60 build release rc10d rc10-lcm rc10ctl rc10-web || die "the build failed"
     fi
     [ -x "$build_tree/bin/rc10d" ] || die "no rc10d in $build_tree/bin"
-    progress "demo: installing the Python client" 10 wait "$python" \
-        || { cat "$prepared" >&2 && die "the Python client could not be installed"; }
-    RC10_PYTHON=$(tail -n 1 "$prepared")
-    progress "demo: making the page" 10 wait "$page_made" || {
+    progress "demo: installing the Python client" 10 wait "$client_maker" \
+        || { cat "$client_log" >&2 && die "the Python client could not be installed"; }
+    RC10_PYTHON=$(tail -n 1 "$client_log")
+    [ -n "${RC10_BUILD:-}" ] || progress "demo: making the page" 10 wait "$page_maker" || {
         cat "$page_log" >&2
         echo "demo: without the page, then; rc10ctl shows the robot" >&2
     }
-    rm "$prepared" "$page_log"
+    preparing=()
+    rm -f "$client_log" "$page_log"
 }
 
 # The page is served outside of the namespace, where the browser is; it reaches rc10d by its socket.
@@ -101,9 +117,14 @@ enter_namespace() {
 }
 
 if [ -z "$lcm" ]; then
-    prepare
+    preparing=()
     RC10_RUN_DIR=$(mktemp -d /tmp/rc10-demo.XXXX)
     RC10_DEMO_WEB=''
+    trap give_up EXIT
+    trap 'exit 130' INT
+    trap 'exit 143' TERM
+    trap 'exit 129' HUP
+    prepare
     export RC10_RUN_DIR RC10_STATE_DIR=$RC10_RUN_DIR RC10_DEMO_WEB
     serve_page
     export RC10_PYTHON RC10_BUILD=$build_tree RC10_DEMO_PAGE=$page

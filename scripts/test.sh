@@ -12,7 +12,7 @@ here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
 # shellcheck source=scripts/lib/progress.sh
 . "$here/lib/progress.sh"
 
-# The long ones of a part first: what runs side by side ends together.
+# Order of starting: a part that leaves cores free starts beside those before it.
 default=(unit kernel host pages)
 ci=("${default[@]}" lint web demo tidy faults soak)
 all=("${default[@]}" lint web demo clang faults vm package sanitize soak fuzz)
@@ -54,8 +54,11 @@ for part in "${@:-default}"; do
     esac
 done
 
-# Packages and the venv of all parts, at once.
+# Packages of all parts, at once.
 mapfile -t groups < <(for part in "${wanted[@]}"; do sed -n 's/^need //p' "$here/test/$part.sh"; done | tr ' ' '\n' | sort -u)
 "$here/install-deps.sh" --may-ask "${groups[@]}"
 progress "test.sh: installing Debian packages" 90 need "${groups[@]}"
-exec /usr/bin/python3 "$here/lib/run_parts.py" --name "${1:-default}" "${wanted[@]}"
+# Costs of a set are those of the set alone.
+name=
+[ $# -gt 1 ] || name=${1:-default}
+exec /usr/bin/python3 "$here/lib/run_parts.py" --name "$name" "${wanted[@]}"

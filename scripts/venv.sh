@@ -38,27 +38,27 @@ mkdir -p "$venv"
 venv=$(cd "$venv" && pwd)
 exec 9<"$venv"
 flock 9
-has_client=$(inputs "${client[@]}") has_all=$(inputs "${client[@]}" "${all[@]}")
-made=$(cat "$venv/.inputs" 2>/dev/null || true)
+client_hash=$(inputs "${client[@]}") all_hash=$(inputs "${client[@]}" "${all[@]}")
+made_from=$(cat "$venv/.inputs" 2>/dev/null || true)
 pip=("$venv/bin/python" -m pip --quiet --disable-pip-version-check install)
 
-# install REQUIREMENTS...: what was looked at when their hashes were written down, and nothing else.
+# install REQUIREMENTS...: with the hashes of python-hashes.txt, and nothing else.
 install() {
     "$base" "$repo/scripts/lib/hashed_requirements.py" "$@" >"$venv/.requirements" || return
     "${pip[@]}" --require-hashes --requirement="$venv/.requirements" >&2
 }
-if [ "$made" != "$has_all" ] && [ "$made" != "$has_client" ]; then
+if [ "$made_from" != "$all_hash" ] && [ "$made_from" != "$client_hash" ]; then
     echo "venv: making $venv" >&2
     "$base" -m venv --clear "$venv" >&2
     install "${client[@]}"
     # Its build tools are among the requirements.
     "${pip[@]}" --no-build-isolation --no-deps --editable "$repo/python" >&2
-    made=$has_client
-    echo "$made" >"$venv/.inputs"
+    made_from=$client_hash
+    echo "$made_from" >"$venv/.inputs"
 fi
-if [ "$wanted" = all ] && [ "$made" != "$has_all" ]; then
+if [ "$wanted" = all ] && [ "$made_from" != "$all_hash" ]; then
     echo "venv: adding to $venv what tests and tools need" >&2
     install "${all[@]}"
-    echo "$has_all" >"$venv/.inputs"
+    echo "$all_hash" >"$venv/.inputs"
 fi
 echo "$venv/bin/python"

@@ -6,7 +6,6 @@ set -euo pipefail
 
 repo=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 page=$repo/build/web
-tools=$repo/build/web-tools
 
 case ${1:-} in
     '' | check) what=${1:-page} ;;
@@ -25,20 +24,17 @@ npm() {
         command npm "$@"
         return
     fi
-    [ -x "$tools/bin/npm" ] || {
-        /usr/bin/python3 -m venv "$tools" \
-            && "$repo/scripts/lib/hashed_requirements.py" "$repo/web/requirements.txt" >"$tools/requirements.txt" \
-            && "$tools/bin/python" -m pip --quiet --disable-pip-version-check install --require-hashes \
-                --requirement "$tools/requirements.txt"
-    } >&2
-    PATH=$tools/bin:$PATH "$tools/bin/npm" "$@"
+    local requirements=$repo/build/web-requirements.txt programs
+    "$repo/scripts/lib/hashed_requirements.py" "$repo/web/requirements.txt" >"$requirements" || return
+    programs=$("$repo/scripts/lib/pinned_venv" "$repo/build/web-tools" "$requirements") || return
+    PATH=$programs:$PATH "$programs/npm" "$@"
 }
 
 mkdir -p "$repo/build"
 exec 9>"$repo/build/.web.lock"
 flock 9
-made=$(inputs)
-if [ "$(cat "$page/.inputs" 2>/dev/null || true)" != "$made" ] || { [ "$what" = check ] && [ ! -d "$repo/web/node_modules" ]; }; then
+current=$(inputs)
+if [ "$(cat "$page/.inputs" 2>/dev/null || true)" != "$current" ] || { [ "$what" = check ] && [ ! -d "$repo/web/node_modules" ]; }; then
     (cd "$repo/web" && npm ci --ignore-scripts --no-audit --no-fund --loglevel=error >&2)
     # The compiler itself: its package starts it by way of Node, which is not needed for it.
     esbuild=$(find "$repo"/web/node_modules/@esbuild/*/bin -name esbuild | head -n 1)
@@ -58,7 +54,7 @@ if [ "$(cat "$page/.inputs" 2>/dev/null || true)" != "$made" ] || { [ "$what" = 
     "$esbuild" "$repo/web/studio.css" --bundle --minify --log-level=warning --outfile="$new/studio.css" >&2
     (cd "$repo/web" && npm run --silent docs -- "$new/docs" >&2)
     cp "$repo/web/index.html" "$repo/web/icon.svg" "$new"
-    echo "$made" >"$new/.inputs"
+    echo "$current" >"$new/.inputs"
     chmod 755 "$new"
     rm -rf "$page"
     mv "$new" "$page"

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import filecmp
-import shutil
 import subprocess
 from dataclasses import dataclass
 from pathlib import Path
@@ -41,16 +39,7 @@ MOTORBRIDGE = Client("motorbridge", "client_motorbridge.py", NO_SUPERVISION)
 
 def install() -> None:
     """As scripts/test/registry.sh."""
-    done = INSTALLED / "installed.txt"
-    if done.exists() and filecmp.cmp(done, WANTED, shallow=False):
-        return
-    subprocess.run([PYTHON, "-m", "venv", "--clear", INSTALLED], check=True)
-    python = str(INSTALLED / "bin/python")
-    pip = [python, "-m", "pip", "--quiet", "--disable-pip-version-check"]
-    subprocess.run(
-        [*pip, "install", "--require-hashes", "--no-deps", f"--requirement={WANTED}"], check=True
-    )
-    shutil.copy(WANTED, done)
+    subprocess.run([REPO / "scripts/lib/pinned_venv", INSTALLED, WANTED], check=True)
 
 
 def guest_files() -> dict[str, Path]:

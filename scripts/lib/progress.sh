@@ -4,16 +4,20 @@
 # progress TITLE SECONDS COMMAND...: SECONDS is how long it took elsewhere. What the command prints is shown only
 # if it fails. Without a terminal the line is printed once; what is done at once is not mentioned.
 progress() {
-    local title=$1 expected=$2 log ticker status=0
-    log=$(mktemp "${TMPDIR:-/tmp}/rc10-progress.XXXXXX")
+    local title=$1 expected=$2 file fd log ticker status=0
+    # Without a name it goes with the processes that have it open, however these end.
+    file=$(mktemp "${TMPDIR:-/tmp}/rc10-progress.XXXXXX")
+    exec {fd}<>"$file"
+    rm "$file"
+    log=/dev/fd/$fd
     tick_progress "$title" "$expected" "$log" "$$" &
     ticker=$!
-    "${@:3}" >"$log" 2>&1 || status=$?
+    "${@:3}" >>"$log" 2>&1 || status=$?
     kill "$ticker" 2>/dev/null || true
     wait "$ticker" 2>/dev/null || true
     [ ! -t 2 ] || printf '\r\e[K' >&2
     [ "$status" -eq 0 ] || cat "$log" >&2
-    rm -f "$log"
+    exec {fd}>&-
     return "$status"
 }
 

@@ -4,7 +4,7 @@
 # shellcheck source=scripts/lib/project.sh
 . "$(dirname "${BASH_SOURCE[0]}")/project.sh"
 
-# All that is wrong, not only the first of it.
+# Every file that does not compile, not only the first (ninja(1), -k).
 build_options=(-- -k 0)
 
 passed=0 failed=0 skipped=0
@@ -17,10 +17,16 @@ fail() {
     failed=$((failed + 1))
 }
 
-# step NAME COMMAND...: one test, which passes when the command does.
+# step NAME COMMAND...: one test, which passes when the command does. A function ends at its first line that fails.
 step() {
+    local status
     echo "-- $1"
-    if "${@:2}"; then
+    # As a condition, the command would go on after a line that fails.
+    set +e
+    (set -e && "${@:2}")
+    status=$?
+    set -e
+    if [ "$status" -eq 0 ]; then
         passed=$((passed + 1))
     else
         fail "$1"
@@ -62,7 +68,7 @@ junit() {
 
 # ctest_in PRESET: every C++ test of a build.
 ctest_in() {
-    junit "ctest, $1" ctest --test-dir "$repo/build/$1" --parallel "$(nproc)" --output-on-failure \
+    junit "ctest, $1" ctest --test-dir "$repo/build/$1" --parallel "${RC10_JOBS:-$(nproc)}" --output-on-failure \
         --no-tests=error --output-junit
 }
 
@@ -72,7 +78,8 @@ pytest_in() {
         "${@:2}" --junitxml
 }
 
+# End of the part.
 finish() {
     echo "$passed passed, $failed failed, $skipped skipped"
-    [ "$failed" -eq 0 ]
+    if [ "$failed" -gt 0 ]; then exit 1; fi
 }

@@ -53,6 +53,9 @@ class Part:
     begin_s: float = 0.0
     took_s: float = 0.0
     cpu_s: float = 0.0
+    # Verdict of this program; empty: the part has told its failures itself.
+    complaint: str = ""
+    left_running: list[str] = field(default_factory=list)
     process: subprocess.Popen[bytes] | None = field(default=None, repr=False)
 
     @property
@@ -74,7 +77,7 @@ class Part:
             "RC10_COSTS": str(LOGS / f"{self.name}.costs"),
             "RC10_JOBS": str(max(self.cores, 1)),
         }
-        # A part that waits goes first when it is woken; one that computes can bear it.
+        # Priority over parts that compute: a part that waits is woken in time.
         politely = ["nice", "-n", "5"] if self.cores else []
         with self.log.open("wb") as log:
             self.process = subprocess.Popen(
@@ -87,43 +90,60 @@ class Part:
                 process_group=0,
             )
 
-    def ended(self) -> bool:
-        """Whether it has ended; then its results are known."""
+    def reap(self) -> bool:
+        """Status and costs of a part that has ended, and end of its group; False while it runs."""
         assert self.process is not None
         pid, status, usage = os.wait4(self.process.pid, os.WNOHANG)
         if pid == 0:
             return False
         self.process.returncode = os.waitstatus_to_exitcode(status)
-        end_group(self.process)  # whatever it left running
         self.took_s = time.monotonic() - self.begin_s
         self.cpu_s = usage.ru_utime + usage.ru_stime
-        lines = self.log.read_text(errors="replace").splitlines()
-        if counts := COUNTS.match(lines[-1] if lines else ""):
-            self.passed, self.failed, self.skipped = map(int, counts.groups())
-            if self.process.returncode != 0 and not self.failed:
-                self.failed = 1
-            if self.passed + self.failed + self.skipped == 0:
-                self.failed = 1
-        else:
-            self.failed = 1
+        self.left_running = names_in_group(self.process.pid)
+        end_group(self.process)
         return True
+
+    def judge(self) -> None:
+        """Reads the counts in the last line, and complains of an end that contradicts them."""
+        assert self.process is not None
+        status = self.process.returncode
+        lines = self.log.read_text(errors="replace").splitlines()
+        counts = COUNTS.match(lines[-1] if lines else "")
+        if counts is None:
+            self.complaint = f"it ended with status {status} and without a result"
+        else:
+            self.passed, self.failed, self.skipped = map(int, counts.groups())
+            if self.failed == 0 and (status != 0 or self.passed + self.skipped == 0):
+                self.complaint = f"it ended with status {status}, {counts[0]}"
+        if self.complaint:
+            self.failed = 1
 
     def show(self) -> None:
         text = self.log.read_text(errors="replace")
         print(f"\n==== {self.name}: {self.about}")
         if self.failed:
             print(text, end="" if text.endswith("\n") else "\n")
-            status = self.process.returncode if self.process else None
-            counts = COUNTS.match(text.rstrip().rpartition("\n")[2])
-            if not counts:
-                print(f"FAILED {self.name}: it ended with status {status} and without a result")
-            elif counts[2] == "0":
-                print(f"FAILED {self.name}: it ended with status {status}, {counts[0]}")
+            if self.complaint:
+                print(f"FAILED {self.name}: {self.complaint}")
         else:
             for told in TOLD.finditer(text):
                 print(told[0])
             print(f"{self.passed} passed, {self.failed} failed, {self.skipped} skipped")
+        if self.left_running:
+            print(f"NOTE {self.name} left processes running: {', '.join(self.left_running)}")
         sys.stdout.flush()
+
+
+def names_in_group(group: int) -> list[str]:
+    """Processes of a group that still run; a zombie waits for its parent only."""
+    names = []
+    for stat in Path("/proc").glob("[0-9]*/stat"):
+        with contextlib.suppress(OSError):  # ended
+            head, _, rest = stat.read_text(errors="replace").rpartition(")")
+            state, _, of = rest.split()[:3]
+            if int(of) == group and state not in "ZX":
+                names.append(head.partition("(")[2])
+    return sorted(names)
 
 
 def end_group(process: subprocess.Popen[bytes]) -> None:
@@ -159,7 +179,7 @@ class Run:
         unfinished = [*self.running, *self.waiting]
         if part.name in TESTS_OF_DEV and any(other.name == "build" for other in unfinished):
             return False
-        # Two that wait would need a core together, ahead of all others.
+        # Two parts that wait, at their priority, would take a core from all others.
         if part.cores == 0 and any(other.cores == 0 for other in self.running):
             return False
         return sum(other.cores for other in self.running) + part.cores <= ALL_CORES
@@ -195,7 +215,8 @@ class Run:
         terminal = sys.stderr.isatty()
         while self.waiting or self.running:
             self.start_what_may()
-            for part in [part for part in self.running if part.ended()]:
+            for part in [part for part in self.running if part.reap()]:
+                part.judge()
                 self.running.remove(part)
                 self.done.append(part)
                 if terminal:

@@ -37,6 +37,11 @@ def version() -> bytes:
     return subprocess.run(["clang-tidy-16", "--version"], capture_output=True, check=True).stdout
 
 
+def without_comments(settings: str) -> str:
+    """Text of .clang-tidy without its lines of comment."""
+    return re.sub(r"^ *#.*\n", "", settings, flags=re.MULTILINE)
+
+
 def digest_of_inputs(tool: bytes, entry: dict[str, str]) -> str | None:
     """A hash of all that the compiler reads for one source, None when it cannot be compiled."""
     words = shlex.split(entry["command"])
@@ -48,7 +53,7 @@ def digest_of_inputs(tool: bytes, entry: dict[str, str]) -> str | None:
     done = subprocess.run(words, cwd=entry["directory"], capture_output=True, check=False)
     if done.returncode != 0:
         return None
-    settings = (REPO / ".clang-tidy").read_bytes()
+    settings = without_comments((REPO / ".clang-tidy").read_text()).encode()
     headers = set(re.findall(rb'^# \d+ "([^"<]+)"', done.stdout, re.MULTILINE))
     own = {Path(entry["directory"], os.fsdecode(name)).resolve() for name in headers}
     own.add(Path(entry["file"]))
@@ -83,10 +88,10 @@ def check(build: Path, tool: bytes, entry: dict[str, str]) -> str:
     return done.stdout or done.stderr or f"{entry['file']}: status {done.returncode}\n"
 
 
-def findings(output: str) -> dict[tuple[str, ...], str]:
-    """Each finding with the lines that belong to it, by place."""
+def findings(output: str, source: str) -> dict[tuple[str, ...], str]:
+    """Each finding with the lines that belong to it, by place; those before the first by source."""
     found: dict[tuple[str, ...], str] = {}
-    key: tuple[str, ...] = ("",)
+    key: tuple[str, ...] = (os.path.relpath(source, REPO),)
     for line in output.splitlines():
         if (match := FINDING.match(line)) and match[4] != "note":
             file = os.path.relpath(os.path.realpath(match[1]), REPO)
@@ -158,7 +163,10 @@ def changed_files(since: str) -> set[Path]:
         return done.stdout.decode()
 
     if git("diff", "--name-only", since, "--", ".clang-tidy"):
-        return set((REPO / "src").rglob("*.[ch]pp"))
+        _, _, blob, *_ = [*git("ls-tree", since, "--", ".clang-tidy").split(), "", "", ""]
+        before = git("cat-file", "-p", blob) if blob else ""
+        if without_comments(before) != without_comments((REPO / ".clang-tidy").read_text()):
+            return set((REPO / "src").rglob("*.[ch]pp"))
     listed = git(
         "diff", "--raw", "-z", "--abbrev=40", "--find-renames", "-l0", since, "--", "*.[ch]pp"
     )
@@ -226,8 +234,8 @@ def main() -> int:
     with ThreadPoolExecutor(int(os.environ.get("RC10_JOBS", os.cpu_count() or 1))) as pool:
         outputs = pool.map(lambda entry: check(build, tool, entry), entries)
     found: dict[tuple[str, ...], str] = {}
-    for output in outputs:
-        found.update(findings(output))
+    for entry, output in zip(entries, outputs, strict=True):
+        found.update(findings(output, entry["file"]))
     for _, text in sorted(found.items()):
         print(text, end="")
     print(f"{len(entries)} sources, {len(found)} findings")

@@ -4,6 +4,8 @@ set -euo pipefail
 # shellcheck source=scripts/lib/results.sh
 . "$(dirname "${BASH_SOURCE[0]}")/../lib/results.sh"
 
+need build
+
 demo() {
     "$repo/scripts/demo.sh" --seconds 3 | tee "$scratch/shown"
 }

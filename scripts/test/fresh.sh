@@ -1,10 +1,21 @@
 #!/bin/bash
 # the commands of README.md and what pages install, in a bare Debian 12, with the minutes they took; the build with GCC 11 (on request; above an hour)
-# RC10_FRESH: one thing only: demo, the first command of README.md; default, ci or all, these sets of scripts/test.sh; pages, what they install.
+# RC10_FRESH: one thing only: demo, the first command of README.md; default, ci or all, that set of scripts/test.sh; pages, what they install.
+# Without it: demo, all, the build with GCC 11, pages.
 # RC10_FRESH_CACHE=1: with this machine's compiler cache, and its list of what clang-tidy found clean.
 set -euo pipefail
 # shellcheck source=scripts/lib/results.sh
 . "$(dirname "${BASH_SOURCE[0]}")/../lib/results.sh"
+
+wanted=${RC10_FRESH:-everything}
+case $wanted in
+    demo | default | ci | all | pages | everything) ;;
+    *)
+        echo "FAILED fresh: no RC10_FRESH=$wanted: demo, default, ci, all or pages"
+        echo "0 passed, 1 failed, 0 skipped"
+        exit 1
+        ;;
+esac
 
 need package
 root=$scratch/root
@@ -18,7 +29,7 @@ if [ "$(id -u)" -ne 0 ]; then
     exit 1
 fi
 
-# There is nothing in it but apt. What this machine needs to reach the package archives goes along.
+# A Debian of nothing but apt, and what this machine needs to reach the package archives.
 make_root() {
     local file
     "$repo/scripts/lib/debian_sources" | mmdebstrap --quiet --variant=apt --dpkgopt=force-unsafe-io bookworm "$root" - \
@@ -73,7 +84,6 @@ pages() {
     step "docs/robot-programs.md: installing" shown docs/robot-programs.md 1
     step "python/README.md: installing" shown python/README.md 1
     step "python/README.md: developing" shown python/README.md 2
-    [ -n "${RC10_FRESH:-}" ] || step "CONTRIBUTING.md: building" shown CONTRIBUTING.md 1
     step "docs/measuring.md: measuring" timed "benchmarks" shown docs/measuring.md 1
 }
 
@@ -88,23 +98,28 @@ gcc_11() {
             -DRC10_BUILD_TESTS=OFF -DRC10_WERROR=ON && cmake --build build/gcc11 && RC10_BUILD=$PWD/build/gcc11 scripts/demo.sh --seconds 5'
 }
 
-step "a bare Debian 12" make_root
 # test_set SET
 test_set() {
     suite "scripts/test.sh $1" timed "scripts/test.sh $1" in_root env CI="${CI:-}" scripts/test.sh "$1"
 }
 
+first_command() {
+    step "scripts/demo.sh" timed "scripts/demo.sh, 10 s of it" demo
+    step "it serves the page" grep -q 'http://localhost:' "$scratch/shown"
+}
+
+step "a bare Debian 12" make_root
 if [ "$failed" -eq 0 ]; then
-    case ${RC10_FRESH:-} in
-        default | ci | all) test_set "$RC10_FRESH" ;;
-        *)
-            step "scripts/demo.sh" timed "scripts/demo.sh, 10 s of it" demo
-            step "it serves the page" grep -q 'http://localhost:' "$scratch/shown"
-            if [ -z "${RC10_FRESH:-}" ]; then
-                test_set all
-                step "the build with GCC 11, and its demo" timed "build with GCC 11" gcc_11
-            fi
-            if [ "${RC10_FRESH:-}" != demo ]; then pages; fi
+    case $wanted in
+        demo) first_command ;;
+        default | ci | all) test_set "$wanted" ;;
+        pages) pages ;;
+        everything)
+            first_command
+            test_set all
+            step "the build with GCC 11, and its demo" timed "build with GCC 11" gcc_11
+            pages
+            step "CONTRIBUTING.md: building" shown CONTRIBUTING.md 1
             ;;
     esac
     cat "$minutes"

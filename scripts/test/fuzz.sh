@@ -30,17 +30,17 @@ judge() {
 
 # One target on each core.
 if must_build asan tests/fuzz/all; then
-    declare -A statuses=() names=()
+    declare -A pids=()
     for target in "$repo"/build/asan/fuzz/*_fuzz; do
         while [ "$(jobs -rp | wc -l)" -ge "${RC10_JOBS:-$(nproc)}" ]; do wait -n || true; done
         name=$(basename "$target")
         fuzz "$target" "$name" &
-        names[$name]=$!
+        pids[$name]=$!
     done
-    for name in "${!names[@]}"; do
-        statuses[$name]=0
-        wait "${names[$name]}" || statuses[$name]=$?
-        step "$name" judge "${statuses[$name]}" "$scratch/$name.log"
+    for name in "${!pids[@]}"; do
+        status=0
+        wait "${pids[$name]}" || status=$?
+        step "$name" judge "$status" "$scratch/$name.log"
     done
 fi
 finish

@@ -21,15 +21,16 @@ format_cpp() {
     return 1
 }
 
-# Whatever begins like a shell script, with or without an extension.
+# Files that begin like a shell script, with or without an extension.
 shell_scripts() {
-    find scripts .ci tests -type f -not -path '*/.*_cache/*' -print0 \
-        | xargs -0 awk 'FNR == 1 && /^#!.*[\/ ](ba|da)?sh|^# Sourced by/ {print FILENAME}'
+    find scripts .ci tests packaging completions -type f -not -path '*/.*_cache/*' -print0 \
+        | xargs -0 awk 'FNR == 1 && /^#!.*[\/ ](ba|da)?sh|^# (Sourced by|bash completion)/ {print FILENAME}'
 }
 
 shell() {
-    local scripts
-    mapfile -t scripts < <(shell_scripts)
+    local found scripts
+    found=$(shell_scripts)
+    mapfile -t scripts <<<"$found"
     shellcheck -x "${scripts[@]}"
 }
 
@@ -43,8 +44,8 @@ comments_begin_with_a_noun() {
     local status=0
     git grep -nE -e '(//+[!<]?|/\*+|^ *\*|#|""") *(-+ )?(What|Who|Whoever|So that|How|Why|Of)\>' \
         -e '[^ ] +(//+[!<]?|#) (what|who|whoever|so that|how|why)\>' -- \
-        src tests bench examples cmake scripts python packaging systemd config lcm_types web/src CMakeLists.txt \
-        ':!scripts/test/*.sh' ':!tests/kernel/uml.config' ':!python/requirements.txt' ':!scripts/test/lint.sh' \
+        src tests bench examples cmake scripts python packaging completions systemd config lcm_types web/src CMakeLists.txt \
+        .ci .clang-tidy ':!tests/kernel/uml.config' ':!python/requirements.txt' \
         ':!tests/scripts/test_sources.py' ':!tests/package/0.1.0' \
         || status=$?
     [ "$status" -eq 1 ]  # 0: there are some; more: git did not look
@@ -75,7 +76,7 @@ sources_are_short() {
     local most=600 long
     long=$(git ls-files -z src tests python scripts web/src bench examples cmake \
         | grep -zE '\.(cpp|hpp|py|sh|ts|tsx|css|cmake)$' | xargs -0 wc -l \
-        | awk -v most="$most" '$1 > most && $2 != "total" {print $2}')
+        | awk -v most="$most" '$1 > most && $2 != "total" {print $2}') || return
     [ -n "$long" ] || return 0
     echo "longer than $most lines:" && echo "$long" && return 1
 }

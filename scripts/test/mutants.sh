@@ -5,12 +5,7 @@ set -euo pipefail
 . "$(dirname "${BASH_SOURCE[0]}")/../lib/results.sh"
 
 need build test
-tools=$repo/build/mutants/tools
-if [ ! -x "$tools/bin/mutate" ]; then
-    /usr/bin/python3 -m venv "$tools"
-    "$tools/bin/python" -m pip --quiet --disable-pip-version-check install --require-hashes --no-deps \
-        --requirement "$repo/tests/mutants/requirements.txt"
-fi
-suite "mutants" "$repo/scripts/lib/mutants.py" --mutate "$tools/bin/mutate" --count "${RC10_MUTANTS:-400}" \
+tools=$("$repo/scripts/lib/pinned_venv" "$repo/build/mutants/tools" "$repo/tests/mutants/requirements.txt")
+suite "mutants" "$repo/scripts/lib/mutants.py" --mutate "$tools/mutate" --count "${RC10_MUTANTS:-400}" \
     --seed "${RC10_MUTANTS_SEED:-1}" --part "${RC10_MUTANTS_PART:-1/1}" --jobs "${RC10_JOBS:-$(nproc)}"
 finish

@@ -9,12 +9,6 @@ need_python
 export RC10_BUILD=$repo/build/dev
 
 # Apart from the project's own, whose versions are others.
-clients=$repo/build/registry
-wanted=$repo/tests/registry/requirements.txt
-if ! cmp -s "$wanted" "$clients/installed.txt"; then
-    /usr/bin/python3 -m venv --clear "$clients"
-    "$clients/bin/python" -m pip --quiet --disable-pip-version-check install --require-hashes --no-deps --requirement="$wanted"
-    cp "$wanted" "$clients/installed.txt"
-fi
+"$repo/scripts/lib/pinned_venv" "$repo/build/registry" "$repo/tests/registry/requirements.txt"
 if must_build dev rc10-sim; then suite tests/registry "$repo/tests/kernel/run" "$repo"/tests/registry/test_*.py; fi
 finish

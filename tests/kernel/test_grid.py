@@ -1,4 +1,4 @@
-"""Ticks by the thousand: ten seconds of them, or a minute in the part all (RC10_GRID_S)."""
+"""Ticks by the thousand: ten seconds of them, or a minute in the set all (RC10_GRID_S)."""
 # run-guest: --timeout 900
 
 from __future__ import annotations

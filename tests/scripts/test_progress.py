@@ -18,7 +18,7 @@ REPO = Path(__file__).resolve().parents[2]
 SCRIPT = """
 . '{repo}/scripts/lib/progress.sh'
 sleep() {{ read -r _ <&3; }}
-progress "compiling" 95 bash -c 'echo "[3/7] a.cpp"; read -r status; exit "$status"'
+progress "compiling" 95 bash -c 'echo "[3/7] a.cpp"; echo >&4; read -r status; exit "$status"'
 """
 
 
@@ -27,25 +27,29 @@ class Script:
 
     def __init__(self, stderr: int, clock: Path) -> None:
         os.mkfifo(clock)
-        self._logs = clock.parent
+        self._folder = clock.parent
+        self._printed, printed = os.pipe()
         # By both ends, so that neither open waits.
         self._clock = os.open(clock, os.O_RDWR)
         with clock.open("rb+", buffering=0) as fd:
             self.process = subprocess.Popen(
-                ["bash", "-c", f"exec 3<&{fd.fileno()}\n{SCRIPT.format(repo=REPO)}"],
+                ["bash", "-c", f"exec 3<&{fd.fileno()} 4>&{printed}\n{SCRIPT.format(repo=REPO)}"],
                 stdin=subprocess.PIPE,
                 stdout=subprocess.DEVNULL,
                 stderr=stderr,
-                pass_fds=[fd.fileno()],
+                pass_fds=[fd.fileno(), printed],
                 env={**os.environ, "TMPDIR": str(clock.parent)},
                 text=True,
                 process_group=0,
             )
+        os.close(printed)
 
     def wait_for_output(self) -> None:
         """The command has printed into its log. The time limit of the test ends this."""
-        while not any(log.read_text() for log in self._logs.glob("rc10-progress.*")):
-            pass
+        assert os.read(self._printed, 1) == b"\n"
+
+    def files(self) -> set[str]:
+        return {path.name for path in self._folder.iterdir()}
 
     def let_seconds_pass(self, count: int) -> None:
         os.write(self._clock, b"\n" * count)
@@ -56,6 +60,7 @@ class Script:
 
     def close(self) -> None:
         os.close(self._clock)
+        os.close(self._printed)
         with contextlib.suppress(ProcessLookupError):
             os.killpg(self.process.pid, signal.SIGKILL)
         self.process.communicate()
@@ -105,6 +110,15 @@ def test_on_a_terminal_the_line_moves_and_goes(terminal: tuple[int, int], tmp_pa
             assert read_until(ours, "\x1b[K") == line
         assert running.end_command(0) == 0
         assert read_until(ours, "\x1b[K") == "\r\x1b[K", "nothing of it is left"
+
+
+def test_no_file_is_left_however_it_ends(pipe: tuple[int, int], tmp_path: Path) -> None:
+    _, theirs = pipe
+    with script(theirs, tmp_path) as running:
+        running.wait_for_output()
+        os.killpg(running.process.pid, signal.SIGKILL)
+        running.process.wait()
+        assert running.files() == {"clock"}
 
 
 def test_without_a_terminal_it_is_said_once(pipe: tuple[int, int], tmp_path: Path) -> None:

@@ -1,4 +1,4 @@
-"""`suite` of scripts/lib/results.sh: what a test runner says, and how it ends."""
+"""`suite` and `step` of scripts/lib/results.sh: results of runners and of single commands."""
 
 from __future__ import annotations
 
@@ -54,3 +54,21 @@ def test_a_runner_that_does_not_end_well_is_a_failure(runner: str, why: str) -> 
     assert " 1 failed, " in last
     assert status == 1
     assert f"FAILED number_0: {why}" in shown
+
+
+def test_a_function_fails_at_its_first_line_that_fails() -> None:
+    for library, verb in (("results", "step"), ("checks", "check")):
+        script = (
+            f"set -euo pipefail; . '{REPO}/scripts/lib/{library}.sh'\n"
+            f"breaks() {{ false; echo goes on; }}\n{verb} breaks breaks\n"
+            f"holds() {{ true; }}\n{verb} holds holds\nfinish"
+        )
+        done = subprocess.run(
+            ["bash", "-c", script],
+            capture_output=True,
+            text=True,
+            check=False,
+        )
+        assert (done.returncode, done.stderr) == (1, "")
+        assert "goes on" not in done.stdout
+        assert done.stdout.splitlines()[-1] == "1 passed, 1 failed, 0 skipped"

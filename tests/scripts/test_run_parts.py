@@ -161,6 +161,22 @@ def test_a_part_is_ended_with_what_it_has_started(write_parts: WriteParts, tmp_p
         assert end.read() == ""
 
 
+def test_a_part_that_leaves_processes_running_is_told(
+    write_parts: WriteParts, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    fifo = tmp_path / "fifo"
+    os.mkfifo(fifo)
+    ok = "echo '1 passed, 0 failed, 0 skipped'"
+    write_parts(lint=f"sleep 30 >{fifo} & read line <{fifo}; {ok}", pages=ok)
+    # By both ends, so that no open waits; a line is what lets the part end.
+    with fifo.open("r+b", buffering=0) as end:
+        end.write(b"\n")
+        assert run("lint", "pages")["lint"].failed == 0
+    shown = capsys.readouterr().out
+    assert "NOTE lint left processes running: " in shown
+    assert "pages left" not in shown
+
+
 def test_a_part_that_grew_by_a_third_is_named(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("costs.reference_cpu_s", lambda: 4.0)
     parts = {name: PartCost(took_s=1, cpu_s=100) for name in ("unit", "host")}
@@ -169,6 +185,18 @@ def test_a_part_that_grew_by_a_third_is_named(monkeypatch: pytest.MonkeyPatch) -
     assert "GREW host: 270 CPU s instead of 200" in text
     assert "unit" not in text
     assert "web: 1 CPU s, and no budget" in text
+
+
+def test_a_part_that_found_its_files_compiled_is_not_judged(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.setattr("costs.reference_cpu_s", lambda: 1.0)
+    budget = budget_of({}, build=600, clang=1000, host=200)
+    text = compare(budget, {"build": 30.0, "clang": 499.0, "host": 190.0})
+    assert "none of 1 parts grew by a third" in text
+    assert "not judged, less than half of the budget, as after a build: build, clang" in text
+    assert "not judged" not in compare(budget, {"build": 300.0, "host": 190.0})
+    assert "grew" not in compare(budget, {"build": 30.0})
 
 
 def budget_of(sets: dict[str, SetCost], **cpu_s: float) -> Budget:

@@ -23,6 +23,7 @@ def repo(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     (src / "a.cpp").write_text('#include "app/a.hpp"\nstd::string a() { return {}; }\n')
     (src / "b.cpp").write_text('#include "app/a.hpp"\n')
     (src / "c.cpp").write_text("int c() { return 0; }\n")
+    (tmp_path / ".clang-tidy").write_text("# clang-tidy\nChecks: -*\n")
     git = ["git", "-C", str(tmp_path), "-c", "user.name=n", "-c", "user.email=e"]
     for words in (["init", "--quiet"], ["add", "."], ["commit", "--quiet", "--message=first"]):
         subprocess.run([*git, *words], check=True)
@@ -75,6 +76,13 @@ def test_a_comment_says_nothing_to_clang_tidy_but_nolint_does(repo: Path) -> Non
     assert changed(repo) == ["c.cpp"]
 
 
+def test_settings_of_clang_tidy_that_change_concern_each_source(repo: Path) -> None:
+    (repo / ".clang-tidy").write_text("# clang-tidy 16\nChecks: -*\n")
+    assert changed(repo) == [], "a comment"
+    (repo / ".clang-tidy").write_text("# clang-tidy\nChecks: misc-*\n")
+    assert changed(repo) == ["a.cpp", "b.cpp", "c.cpp"]
+
+
 def test_no_comment_begins_in_a_string(repo: Path) -> None:
     assert tidy.read_by_tidy('f("http://x");  // where\n') == 'f("http://x");'
     assert tidy.read_by_tidy("g('\"', 1'000, '/');  // how\n") == "g('\"', 1'000, '/');"
@@ -82,6 +90,26 @@ def test_no_comment_begins_in_a_string(repo: Path) -> None:
     app = repo / "src" / "app"
     (app / "c.cpp").write_text('int c() { return "//x"[0]; }\n')
     assert changed(repo) == ["c.cpp"]
+
+
+def test_each_source_whose_check_crashes_is_shown(
+    repo: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    app = repo / "src" / "app"
+    commands = [{"file": str(app / name), "directory": str(repo)} for name in ("a.cpp", "b.cpp")]
+    (repo / "compile_commands.json").write_text(json.dumps(commands))
+
+    def crash(_build: Path, _tool: bytes, entry: dict[str, str]) -> str:
+        return f"crashed in {entry['file']}\n{app / 'a.hpp'}:2:1: warning: one of both\n"
+
+    monkeypatch.setattr(tidy, "check", crash)
+    monkeypatch.setattr(tidy, "version", lambda: b"")
+    monkeypatch.setattr("sys.argv", ["tidy.py", str(repo)])
+    assert tidy.main() == 1
+    shown = capsys.readouterr().out
+    assert f"crashed in {app / 'a.cpp'}" in shown
+    assert f"crashed in {app / 'b.cpp'}" in shown
+    assert shown.count("one of both") == 1
 
 
 def test_what_compiles_only_behind_another_is_found(

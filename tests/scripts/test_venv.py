@@ -1,4 +1,4 @@
-"""scripts/venv.sh asks for what is wanted, and for nothing else."""
+"""scripts/venv.sh and scripts/lib/pinned_venv ask for what is wanted, and for nothing else."""
 
 from __future__ import annotations
 
@@ -12,8 +12,9 @@ import pytest
 REPO = Path(__file__).resolve().parents[2]
 # In the places of venv and pip: what is asked for is written down, and nothing is downloaded.
 VENV = """
-import os, sys
-os.makedirs(sys.argv[-1] + "/bin", exist_ok=True)
+import os, shutil, sys
+shutil.rmtree(sys.argv[-1] + "/bin", ignore_errors=True)
+os.makedirs(sys.argv[-1] + "/bin")
 os.symlink(sys.executable, sys.argv[-1] + "/bin/python")
 """
 PIP = """
@@ -39,11 +40,17 @@ class Environment:
             (folder / "fakes" / name / "__main__.py").write_text(text)
 
     def make(self, *words: str) -> list[dict[str, object]]:
-        """Requests to pip."""
+        """Requests to pip of venv.sh."""
+        printed, calls = self.run(REPO / "scripts" / "venv.sh", *words)
+        assert printed == str(self._folder / "venv" / "bin" / "python")
+        return calls
+
+    def run(self, *command: str | Path) -> tuple[str, list[dict[str, object]]]:
+        """Last line printed, and requests to pip."""
         calls = self._folder / "calls"
         calls.write_text("")
         done = subprocess.run(
-            [REPO / "scripts" / "venv.sh", *words],
+            command,
             capture_output=True,
             text=True,
             check=True,
@@ -54,8 +61,8 @@ class Environment:
                 "RC10_VENV": str(self._folder / "venv"),
             },
         )
-        assert done.stdout.splitlines()[-1] == str(self._folder / "venv" / "bin" / "python")
-        return [json.loads(line) for line in calls.read_text().splitlines()]
+        asked_for = [json.loads(line) for line in calls.read_text().splitlines()]
+        return done.stdout.splitlines()[-1], asked_for
 
 
 def requirements(*files: str) -> list[str]:
@@ -92,3 +99,14 @@ def test_what_is_there_is_not_asked_for_again(environment: Environment) -> None:
 
 def test_tests_and_tools_need_all(environment: Environment) -> None:
     assert environment.make() == [asked(CLIENT), ITSELF, asked(OTHERS)]
+
+
+def test_a_pin_that_changes_makes_a_pinned_environment_anew(
+    environment: Environment, tmp_path: Path
+) -> None:
+    pins = tmp_path / "requirements.txt"
+    make = (REPO / "scripts" / "lib" / "pinned_venv", tmp_path / "tools", pins)
+    for name in ("old", "new"):
+        pins.write_text(f"{name}==1 --hash=sha256:0\n")
+        assert environment.run(*make) == (str(tmp_path / "tools" / "bin"), [asked([name])])
+        assert environment.run(*make) == (str(tmp_path / "tools" / "bin"), [])
