@@ -171,12 +171,14 @@ void Scheduler::recordAges(const Snapshot& snapshot, const Tick& tick) noexcept 
   for (std::size_t i = 0, count = snapshot.motor_count; i < count; ++i, ++entry) {
     const auto& motor = snapshot.motors[i];
     if (motor.acting != Acting::kTarget) continue;
+    const bool told = !entry->divided || entry->motor->due(tick);
+    if (told) feedback_ages[i].record(snapshot.sent - motor.feedback.received);
     const MonotonicTime received = motor.command_received;
-    if (received == tick.now) commands_[i] = received;
-    if (entry->divided && !entry->motor->due(tick)) continue;
-    feedback_ages[i].record(snapshot.sent - motor.feedback.received);
-    if (received != std::exchange(commands_[i], received))
-      recordCommandAge(motor.owner, snapshot.sent - received);
+    if (received == commands_[i]) continue;
+    const bool of_module = received == tick.now;
+    if (!told && !of_module) continue;
+    commands_[i] = received;
+    if (!of_module) recordCommandAge(motor.owner, snapshot.sent - received);
   }
   for (std::size_t i = 0; i < snapshot.module_count; ++i) {
     const auto& module = snapshot.modules[i];
