@@ -4,6 +4,7 @@
 #   scripts/demo.sh [--seconds N]       until Ctrl-C, or for N seconds
 # RC10_BUILD: a build tree to use as it is, instead of making build/release.
 set -euo pipefail
+unset CDPATH # a `cd` that finds a folder by it prints that
 
 here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
 # shellcheck source=scripts/lib/project.sh
@@ -34,7 +35,7 @@ while [ $# -gt 0 ]; do
             exit 2
             ;;
     esac
-    [[ $seconds =~ ^[0-9]+$ ]] || { usage >&2 && exit 2; }
+    [[ $seconds =~ ^[0-9]{1,6}$ ]] || { usage >&2 && exit 2; }
     seconds=$((10#$seconds))
     shift
 done
@@ -157,6 +158,7 @@ end() {
 
 # shellcheck disable=SC2317  # called by the trap
 clean_up() {
+    trap '' INT TERM HUP
     local pid
     for pid in "${clients[@]}" $rc10d; do
         end "$pid" || true
@@ -225,7 +227,8 @@ start_clients() {
 }
 
 hints() {
-    local ctl="RC10_RUN_DIR=$RC10_RUN_DIR $bin/rc10ctl"
+    local ctl
+    printf -v ctl 'RC10_RUN_DIR=%q %q' "$RC10_RUN_DIR" "$bin/rc10ctl"
     cat <<END
 A robot with seven simulated motors runs.${RC10_DEMO_PAGE:+ In a browser: $RC10_DEMO_PAGE}
 In a second terminal:
@@ -275,6 +278,8 @@ show() {
         sleep 0.1 || true
     done
     if [ -n "$ended" ]; then
+        # A second Ctrl-C would interrupt the waiting for those that end.
+        trap '' INT TERM HUP
         end "$watch" || true
         return
     fi
@@ -286,6 +291,7 @@ show() {
 
 # The clients let go of the motors, then rc10d stops; each says how it was.
 finish() {
+    trap '' INT TERM HUP
     end "${clients[@]}" || broken "a program that drives did not end well"
     clients=()
     end "$rc10d" || broken "rc10d did not end well"

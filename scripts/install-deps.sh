@@ -63,7 +63,7 @@ list='' may_ask=''
 wanted=()
 for group in "$@"; do
     case $group in -h | --help) usage && exit ;; esac
-    if [ -z "${packages[$group]:-}" ]; then
+    if [ -z "$group" ] || [ -z "${packages[$group]:-}" ]; then
         echo "install-deps: no group '$group'$(did_you_mean "$group" "${groups[@]}" --list --may-ask)" >&2
         usage >&2
         exit 2

@@ -3,6 +3,7 @@
 #   scripts/test.sh [PART...]     default: the tests that show that a fresh clone works here
 # The last line is "N passed, N failed, N skipped". In CI (CI=true) nothing may be skipped.
 set -euo pipefail
+unset CDPATH # a `cd` that finds a folder by it prints that
 
 here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
 # shellcheck source=scripts/lib/project.sh

@@ -4,6 +4,7 @@
 # client: no more than a robot program needs. Otherwise all that tests and tools need.
 # RC10_VENV: where (default: .venv in the repository).
 set -euo pipefail
+unset CDPATH # a `cd` that finds a folder by it prints that
 
 repo=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 venv=${RC10_VENV:-$repo/.venv}

@@ -3,6 +3,7 @@
 #   scripts/web.sh [check]     the last line printed is its folder
 # check: its types are checked, too.
 set -euo pipefail
+unset CDPATH # a `cd` that finds a folder by it prints that
 
 repo=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 page=$repo/build/web
@@ -34,7 +35,7 @@ mkdir -p "$repo/build"
 exec 9>"$repo/build/.web.lock"
 flock 9
 current=$(inputs)
-if [ "$(cat "$page/.inputs" 2>/dev/null || true)" != "$current" ] || { [ "$what" = check ] && [ ! -d "$repo/web/node_modules" ]; }; then
+if [ "$(cat "$page/.inputs" 2>/dev/null || true)" != "$current" ] || { [ "$what" = check ] && [ ! -e "$repo/web/node_modules/.package-lock.json" ]; }; then
     (cd "$repo/web" && npm ci --ignore-scripts --no-audit --no-fund --loglevel=error >&2)
     # The compiler itself: its package starts it by way of Node, which is not needed for it.
     esbuild=$(find "$repo"/web/node_modules/@esbuild/*/bin -name esbuild | head -n 1)

@@ -181,9 +181,7 @@ class Program:
         return Cost(busy_k, with_it["threads_k"], with_it["switches"], lateness_of(rest), stats)
 
     def calls(self, kernel: guest.Kernel) -> Calls:
-        lines = self.run(
-            kernel, TRACE, traced_s=TRACED_S, ended=ASK_RC10D if self.is_rc10d else ""
-        )
+        lines = self.run(kernel, TRACE, traced_s=TRACED_S, ended=ASK_RC10D if self.is_rc10d else "")
         counted: dict[str, dict[str, int]] = {}
         threads: dict[str, float] = {}
         event = ""

@@ -231,7 +231,9 @@ class Run:
             time.sleep(0.2)
 
     def stop(self) -> None:
-        """Ends the running parts with all that they have started."""
+        """Ends the running parts with all that they have started, whatever else is typed."""
+        for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
+            signal.signal(number, signal.SIG_IGN)
         for part in self.running:
             if part.process is not None and part.process.poll() is None:
                 end_group(part.process)
@@ -271,8 +273,10 @@ def expected(names: list[str], chosen: str, budget: costs.Budget) -> str:
     if not parts or len(parts) < len(set(names)):
         return ""
     cpu_s = sum(part.cpu_s for part in parts)
-    # No run is shorter than its longest part.
-    took_s = max(cpu_s / ALL_CORES, *(part.took_s for part in parts))
+    # The build goes alone; beside others no run is shorter than its longest part.
+    alone = budget.parts["build"] if "build" in names else costs.PartCost(0, 0)
+    longest_s = max([part.took_s for part in parts if part is not alone], default=0)
+    took_s = alone.took_s + max((cpu_s - alone.cpu_s) / ALL_CORES, longest_s)
     return (
         f" Where nothing is compiled yet, {cpu_s:.0f} CPU-seconds on {budget.machine}:"
         f" about {as_minutes(took_s)} on the {ALL_CORES} cores here."
@@ -318,14 +322,14 @@ def main() -> int:
         print(costs.slowest(LOGS, REPO / "build", begin), end="")
         if arguments.name == "all":
             print(costs.compare(budget, {part.name: part.cpu_s for part in run.done}), end="")
+        if measured := os.environ.get("RC10_MEASURED"):
+            took = {
+                part.name: {"took_s": round(part.took_s), "cpu_s": round(part.cpu_s)}
+                for part in run.done
+            }
+            Path(measured).write_text(json.dumps(took, indent=2) + "\n")
     except (OSError, ValueError, subprocess.CalledProcessError) as error:
         print(f"\nno statistics: {error}")
-    if measured := os.environ.get("RC10_MEASURED"):
-        took = {
-            part.name: {"took_s": round(part.took_s), "cpu_s": round(part.cpu_s)}
-            for part in run.done
-        }
-        Path(measured).write_text(json.dumps(took, indent=2) + "\n")
     passed, failed, skipped = (
         sum(getattr(part, name) for part in run.done) for name in ("passed", "failed", "skipped")
     )

@@ -4,7 +4,7 @@ set -euo pipefail
 # shellcheck source=scripts/lib/results.sh
 . "$(dirname "${BASH_SOURCE[0]}")/../lib/results.sh"
 
-need build lint
+need build lint test
 
 # The headers made in the build are there then.
 if must_build tidy rc10_lcm_headers && must_build tidy-together rc10_lcm_headers; then

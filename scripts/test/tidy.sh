@@ -4,7 +4,7 @@ set -euo pipefail
 # shellcheck source=scripts/lib/results.sh
 . "$(dirname "${BASH_SOURCE[0]}")/../lib/results.sh"
 
-need build lint
+need build lint test
 
 # The last commit that is a day older than the newest. Without one, as in a shallow clone: the empty tree.
 a_day_ago() {

@@ -17,7 +17,8 @@ from robots import DAMIAO, DJI, FULL, SECONDS, Cost, Program, Robot, rc10d
 BUILD = Path(os.environ.get("RC10_BUILD", Path(__file__).resolve().parents[2] / "build" / "dev"))
 HOG_US = 3000
 # Thousands of instructions a millisecond of openarm_can's loop for the same four drives, of another
-# run: `bench/peers/run --openarm-can` of 2026-11-27; and how much more the preset `dev` needs than packages.
+# run: `bench/peers/run --openarm-can` of 2026-11-27. How much more the preset `dev` needs than
+# packages.
 OPENARM_CAN_K = 55.9
 DEV_TO_PACKAGE = 1.05
 
