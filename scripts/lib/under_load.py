@@ -18,11 +18,13 @@ import re
 import signal
 import subprocess
 import sys
+import time
 import zlib
 from pathlib import Path
 from typing import NamedTuple
 
 PR_SET_CHILD_SUBREAPER = 36
+ABOUT_TO_STOP_S = 0.001
 STOPPED = "Tt"  # by somebody else: a debugger, or a test whose subject that is
 
 
@@ -95,6 +97,9 @@ def stop_parents_first(tree: set[int], stopped: set[int]) -> None:
     while tree:
         eldest = {pid for pid in tree if parents.get(pid) not in tree}
         mine = {pid for pid in eldest if not stands(pid)}
+        # One that is about to stop has no signal pending any more, and is not stopped yet.
+        time.sleep(ABOUT_TO_STOP_S)
+        mine = {pid for pid in mine if not stands(pid)}
         stopped |= mine
         send(signal.SIGSTOP, mine)
         tree = tree - eldest
