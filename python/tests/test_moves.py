@@ -121,9 +121,7 @@ def test_a_move_fails_with_the_reason(
     assert len(daemon.commands) == sent
 
 
-def test_a_move_whose_target_is_never_taken_fails(
-    robot: rc10.Robot, daemon: MovingDaemon
-) -> None:
+def test_a_move_whose_target_is_never_taken_fails(robot: rc10.Robot, daemon: MovingDaemon) -> None:
     robot.wait_for_state()
     daemon.owner = ""
     assert "did not take the target" in robot.move_to("wheel", 720).result().reason

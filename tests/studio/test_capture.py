@@ -242,14 +242,15 @@ def test_an_event_triggers_and_the_ticks_before_it_are_there(
 
 def test_a_long_capture_is_whole(page: Page, panel: Locator) -> None:
     panel.get_by_label("after it").fill("4.2")
-    # A busy computer leaves ticks out; a gap where two pieces are joined would be in each of them.
+    # A busy computer leaves ticks out, others each time; where two pieces are joined a gap would be in all.
     for _ in range(5):
         step(page, panel)
         captures = [capture["values"][1] for capture in saved(page, panel)["captures"]]
         assert all(len(measured) == 4400 for measured in captures)
-        if any(None not in measured[4000:4200] for measured in captures):
+        gaps = [{i for i in range(4000, 4200) if measured[i] is None} for measured in captures]
+        if not set.intersection(*gaps):
             return
-    pytest.fail("a gap in each capture")
+    pytest.fail("a gap at the same place of each capture")
 
 
 def test_an_angle_of_a_program_stands_on_the_axis_of_its_target(
