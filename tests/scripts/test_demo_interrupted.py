@@ -46,8 +46,6 @@ def demo(tmp_path: Path) -> Iterator[tuple[subprocess.Popen[str], int]]:
         path.write_text(text)
         path.chmod(0o755)
     told, tell = os.pipe()
-    # A run in the background of a script ignores it, and a shell cannot trap what it inherits so.
-    before = signal.signal(signal.SIGINT, signal.default_int_handler)
     environment = {name: value for name, value in os.environ.items() if name != "RC10_BUILD"}
     environment |= {"PATH": f"{tmp_path}/bin:{os.environ['PATH']}", "TOLD": str(tell)}
     process = subprocess.Popen(
@@ -60,7 +58,6 @@ def demo(tmp_path: Path) -> Iterator[tuple[subprocess.Popen[str], int]]:
         env=environment,
         text=True,
     )
-    signal.signal(signal.SIGINT, before)
     os.close(tell)
     yield process, told
     os.close(told)

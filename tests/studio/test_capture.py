@@ -242,7 +242,7 @@ def test_an_event_triggers_and_the_ticks_before_it_are_there(
 
 def test_a_long_capture_is_whole(page: Page, panel: Locator) -> None:
     panel.get_by_label("after it").fill("4.2")
-    # A busy computer leaves ticks out, others each time; where two pieces are joined a gap would be in all.
+    # A busy computer leaves ticks out, others each time; a gap where pieces are joined is in all.
     for _ in range(5):
         step(page, panel)
         captures = [capture["values"][1] for capture in saved(page, panel)["captures"]]
