@@ -75,7 +75,7 @@ std::optional<MoveResult> MoveWatch::onState(const RobotState& state, MonotonicT
   if (auto reason = obstacle(state, goal_.motor, goal_.mode)) return failed(*reason);
   const auto not_obeyed = notObeyed(*motor);
   if (!not_obeyed) obeyed_ = state.taken;
-  if (state.taken > obeyed_ + kTargetOnItsWay) return failed(*not_obeyed);
+  if (not_obeyed && state.taken > obeyed_ + kTargetOnItsWay) return failed(*not_obeyed);
   if (std::isnan(angle_deg_)) return failed(goal_.motor + ": the drive reports no angle");
   if (not_obeyed || distance() > goal_.tolerance_deg) {
     within_since_us_.reset();
