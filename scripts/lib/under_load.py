@@ -35,7 +35,6 @@ class Process(NamedTuple):
 
 def hog(parent: int) -> None:
     """Works the core and the memory, as a compiler does."""
-    signal.signal(signal.SIGTERM, signal.SIG_DFL)  # not that of its parent
     text = os.urandom(1 << 20)
     while os.getppid() == parent:
         zlib.compress(text)
@@ -142,13 +141,14 @@ def main() -> int:
     chance = random.Random(options.seed)
     # An orphan stays a descendant.
     ctypes.CDLL(None).prctl(PR_SET_CHILD_SUBREAPER, 1, 0, 0, 0)
-    signal.signal(signal.SIGTERM, signal.default_int_handler)
     hogs = [
         multiprocessing.Process(target=hog, args=(os.getpid(),), daemon=True)
         for _ in range(options.hogs)
     ]
     for one in hogs:
         one.start()
+    # After the hogs, which end by it at once, however early it comes.
+    signal.signal(signal.SIGTERM, signal.default_int_handler)
     spared = {one.pid for one in hogs if one.pid is not None}
     command = subprocess.Popen(options.command, start_new_session=True)
     pauses = 0
