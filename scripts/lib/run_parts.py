@@ -40,6 +40,7 @@ TESTS_OF_DEV = {"unit", "kernel", "host", "faults", "vm", "soak", "web"}
 # `web` waits for a browser: 237 CPU-seconds in ten minutes.
 CORES = {"host": 0, "web": 0, "pages": 1, "lint": 1, "vm": 1, "package": 1}
 ALL_CORES = os.cpu_count() or 1
+ENDS = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
 
 
 @dataclass
@@ -231,9 +232,7 @@ class Run:
             time.sleep(0.2)
 
     def stop(self) -> None:
-        """Ends the running parts with all that they have started, whatever else is typed."""
-        for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
-            signal.signal(number, signal.SIG_IGN)
+        """Ends the running parts with all that they have started."""
         for part in self.running:
             if part.process is not None and part.process.poll() is None:
                 end_group(part.process)
@@ -288,6 +287,12 @@ def greeting(names: list[str], chosen: str, budget: costs.Budget) -> str:
     return text + f" The full output of each: {LOGS.relative_to(REPO)}/PART.log"
 
 
+def ignore_further_signals() -> None:
+    """A second Ctrl-C would leave processes of the first behind."""
+    for number in ENDS:
+        signal.signal(number, signal.SIG_IGN)
+
+
 def main() -> int:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--name", default="")
@@ -310,10 +315,12 @@ def main() -> int:
     try:
         run.go()
     except KeyboardInterrupt:
+        ignore_further_signals()
         run.stop()
         print("\ninterrupted", file=sys.stderr)
         return 130
     except BaseException:
+        ignore_further_signals()
         run.stop()
         raise
     print(run.table())

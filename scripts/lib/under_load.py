@@ -141,6 +141,7 @@ def main() -> int:
     chance = random.Random(options.seed)
     # An orphan stays a descendant.
     ctypes.CDLL(None).prctl(PR_SET_CHILD_SUBREAPER, 1, 0, 0, 0)
+    signal.signal(signal.SIGTERM, signal.SIG_DFL)
     hogs = [
         multiprocessing.Process(target=hog, args=(os.getpid(),), daemon=True)
         for _ in range(options.hogs)
