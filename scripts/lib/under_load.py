@@ -18,13 +18,12 @@ import re
 import signal
 import subprocess
 import sys
-import time
 import zlib
 from pathlib import Path
 from typing import NamedTuple
 
 PR_SET_CHILD_SUBREAPER = 36
-ABOUT_TO_STOP_S = 0.001
+LOOKS = 20
 STOPPED = "Tt"  # by somebody else: a debugger, or a test whose subject that is
 
 
@@ -95,10 +94,11 @@ def stop_parents_first(tree: set[int], stopped: set[int]) -> None:
     parents = {pid: process.parent for pid, process in processes().items()}
     while tree:
         eldest = {pid for pid in tree if parents.get(pid) not in tree}
-        mine = {pid for pid in eldest if not stands(pid)}
-        # One that is about to stop has no signal pending any more, and is not stopped yet.
-        time.sleep(ABOUT_TO_STOP_S)
-        mine = {pid for pid in mine if not stands(pid)}
+        mine = eldest
+        # For a moment one that is about to stop has no signal pending any more, and runs yet.
+        for _ in range(LOOKS):
+            mine = {pid for pid in mine if not stands(pid)}
+            os.sched_yield()
         stopped |= mine
         send(signal.SIGSTOP, mine)
         tree = tree - eldest

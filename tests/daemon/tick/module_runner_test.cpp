@@ -50,6 +50,8 @@ class ScriptedType : public ModuleType {
   Body body_;
 };
 
+Target rpm(double value) { return {.mode = ControlMode::kVelocity, .value = value}; }
+
 class ModuleRunnerTest : public ::testing::Test {
  protected:
   void start(const std::vector<std::pair<const ModuleType*, int>>& types,
@@ -80,9 +82,12 @@ class ModuleRunnerTest : public ::testing::Test {
   double seen(std::size_t module = 0) { return robot_->snapshot().modules[module].outputs[0]; }
 
   std::unique_ptr<VirtualRobot> robot_;
+  /// Module that turns motor 0, while `turns_` says so.
+  bool turns_ = true;
+  ScriptedType turning_{[this](const Tick&, ModuleRobot& robot) {
+    if (turns_) robot.setTarget(0, rpm(50.0));
+  }};
 };
-
-Target rpm(double value) { return {.mode = ControlMode::kVelocity, .value = value}; }
 
 TEST_F(ModuleRunnerTest, AModuleTurnsMotorsAsAClientWithItsNameAndPriority) {
   const ScriptedType type{[](const Tick&, ModuleRobot& robot) { robot.setTarget(0, rpm(50.0)); }};
@@ -95,26 +100,19 @@ TEST_F(ModuleRunnerTest, AModuleTurnsMotorsAsAClientWithItsNameAndPriority) {
 }
 
 TEST_F(ModuleRunnerTest, ATargetActsInTheTickInWhichItIsSet) {
-  bool turn = false;
-  const ScriptedType type{[&](const Tick&, ModuleRobot& robot) {
-    if (turn) robot.setTarget(0, rpm(50.0));
-  }};
-  start({{&type, 0}});
+  turns_ = false;
+  start({{&turning_, 0}});
   enable();
-  turn = true;
+  turns_ = true;
   robot_->tick();
   EXPECT_EQ(robot_->motor(0).target.value, 50.0);
 }
 
 TEST_F(ModuleRunnerTest, AMotorFallsBackWhenItsModuleFallsSilent) {
-  bool turn = true;
-  const ScriptedType type{[&](const Tick&, ModuleRobot& robot) {
-    if (turn) robot.setTarget(0, rpm(50.0));
-  }};
-  start({{&type, 0}});
+  start({{&turning_, 0}});
   enable();
   robot_->run(100);
-  turn = false;
+  turns_ = false;
   robot_->run(25);
   EXPECT_EQ(robot_->motor(0).target.mode, ControlMode::kCoast);
 }
@@ -180,14 +178,10 @@ TEST_F(ModuleRunnerTest, TheAgeOfAClientsInputsIsCountedAndNotThatOfTheModulesTa
 
 // Its last target acts for some ticks more.
 TEST_F(ModuleRunnerTest, TheAgeOfATargetIsNotCountedWhenItsModuleFallsSilentEither) {
-  bool speaks = true;
-  const ScriptedType type{[&](const Tick&, ModuleRobot& robot) {
-    if (speaks) robot.setTarget(0, rpm(50.0));
-  }};
-  start({{&type, 0}});
+  start({{&turning_, 0}});
   enable();
   robot_->run(5);
-  speaks = false;
+  turns_ = false;
   robot_->run(5);
   EXPECT_EQ(robot_->motor(0).owner.view(), "module0");
   EXPECT_EQ(robot_->exchange().ages.command.count(), 0U);
