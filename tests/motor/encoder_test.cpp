@@ -157,6 +157,27 @@ TEST(Encoder, ADriveWhoseClockIsOnePercentOffIsCountedExactly) {
   }
 }
 
+TEST(Encoder, TheWayOfTwoPeriodsIsCountedOnceMoreThanATwentiethBeyondOneHasPassed) {
+  const auto config = kM2006.encoder;
+  const double turns_in_a_period = static_cast<double>(config.max_velocity_rpm) / 60.0 * kPeriod_s;
+  const auto lostAfter = [&](Duration gap) {
+    Encoder encoder(config);
+    MonotonicTime now{milliseconds{1000}};
+    double turns = 0.0;
+    const auto sample = [&](double periods, Duration after) {
+      turns += periods * turns_in_a_period;
+      const auto raw = static_cast<std::int32_t>((turns - std::floor(turns)) * 8192.0) % 8192;
+      EXPECT_TRUE(encoder.update(raw, config.max_velocity_rpm, now += after));
+    };
+    for (int i = 0; i < 10; ++i) sample(1.0, milliseconds{1});
+    EXPECT_FALSE(encoder.referenceLost());
+    sample(2.0, gap);
+    return encoder.referenceLost();
+  };
+  EXPECT_TRUE(lostAfter(microseconds{1040})) << "no shaft turns so far in one period";
+  EXPECT_FALSE(lostAfter(microseconds{1060})) << "one was lost, and the stamp is early";
+}
+
 TEST(Encoder, EveryModelSurvivesTheLostFramesOfItsTable) {
   for (const DjiModel* model : djiModels()) {
     const Encoder encoder(model->encoder);

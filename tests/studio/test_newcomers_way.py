@@ -16,7 +16,17 @@ from hostlib import Daemon
 from hostlib.daemon import motor_of
 from hostlib.file_helper import FileHelper, FileRequest
 from playwright.sync_api import Browser, Locator, Page, expect
-from test_commission import NOT_JUDGED, held, rests, stands, told, turned_by_hand, turning
+from test_commission import (
+    NOT_JUDGED,
+    both_ends,
+    held,
+    rests,
+    stands,
+    told,
+    turned_by_hand,
+    turning,
+    zero_again,
+)
 from test_tune import ended, measures, runs_to
 
 from conftest import PATIENCE_MS, Studio, opened_page
@@ -277,12 +287,15 @@ def commission_the_elbow(newcomer: Newcomer) -> None:
     newcomer.press(card, "Set")
     expect(told(card)).to_contain_text("zero_deg in the file keeps it")
     newcomer.press(card, "Next")
-    newcomer.by_hand("elbow", -90)
-    newcomer.press(card, "Lower end is here")
-    for _ in range(2):
-        newcomer.by_hand("elbow", 90)
-    newcomer.press(card, "Upper end is here")
-    newcomer.press(card, "Take both")
+
+    def ends() -> None:
+        newcomer.by_hand("elbow", -90)
+        newcomer.press(card, "Lower end is here")
+        for _ in range(2):
+            newcomer.by_hand("elbow", 90)
+        newcomer.press(card, "Upper end is here")
+
+    both_ends(card, ends, lambda: zero_again(newcomer.page, card))
     expect(told(card)).to_contain_text("travel")
     newcomer.by_hand("elbow", -90)
     newcomer.press(card, "Next")

@@ -191,6 +191,14 @@ TEST_F(TargetShaperTest, WhereTheEffortOfASpeedIsUnknownTheLoopOfTheDriveBrakes)
   at(95.0);
   EXPECT_EQ(step(ControlMode::kCurrent, 3.0).target.value, 0.0);
   EXPECT_EQ(step(ControlMode::kCurrent, -3.0).target.value, -3.0) << "back is always allowed";
+  for (const double way : {1.0, -1.0}) {
+    configure(config);
+    at(way * 95.0);
+    feedback.velocity_rpm = static_cast<float>(way * 0.05);
+    const auto creeping = step(ControlMode::kCurrent, way * 3.0);
+    EXPECT_EQ(creeping.target.mode, ControlMode::kVelocity) << "beyond the limit no speed is too small";
+    EXPECT_EQ(creeping.target.value, 0.0);
+  }
 }
 
 TEST_F(TargetShaperTest, UnderACeilingASpeedLoopIsLedNoFartherThoughTheShaftLags) {
