@@ -5,18 +5,16 @@
 #include <cstdint>
 #include <cstdio>
 #include <cstdlib>
-#include <ctime>
 #include <string>
 #include <vector>
 
 #include "client/link_client.hpp"
 #include "client/request_call.hpp"
+#include "grid.hpp"
 #include "link/run_dir.hpp"
 #include "link/words.hpp"
 
 namespace {
-
-constexpr std::int64_t kSecond = 1'000'000'000;
 
 [[noreturn]] void die(const std::string& why) {
   std::fprintf(stderr, "targets: %s\n", why.c_str());
@@ -55,15 +53,10 @@ int main(int argc, char** argv) {
     setpoint.motor = words[i];
     setpoint.target = targetOf(*mode);
   }
-  timespec next{};
-  clock_gettime(CLOCK_MONOTONIC, &next);
-  for (;;) {
+  for (std::int64_t due_ns = rc10::peers::now_ns();; rc10::peers::sleepUntil(due_ns)) {
     ++command.seq;
     command.received_ns = 0;
     if (client->send(command) == rc10::LinkClient::SendStatus::kClosed) return 0;
-    const std::int64_t ns = next.tv_nsec + kSecond / rate_hz;
-    next.tv_sec += ns / kSecond;
-    next.tv_nsec = ns % kSecond;
-    clock_nanosleep(CLOCK_MONOTONIC, TIMER_ABSTIME, &next, nullptr);
+    due_ns += rc10::peers::kSecond_ns / rate_hz;
   }
 }

@@ -2,22 +2,18 @@
 // rc10d. ROS and its controllers are left out: the torques are constant. bench/peers/run --rm-hw builds it
 // with the user's checkout of rm_control.
 #include <ros/ros.h>
-#include <sched.h>
 
 #include <array>
 #include <cmath>
-#include <cstdint>
-#include <ctime>
 #include <string>
 #include <unordered_map>
 
 #include <rm_hw/hardware_interface/can_bus.h>
 
+#include "../grid.hpp"
+
 namespace {
 
-constexpr std::int64_t kPeriodNs = 1'000'000;
-constexpr std::int64_t kSecondNs = 1'000'000'000;
-constexpr int kPriority = 60;
 constexpr int kFirstId = 0x201;
 constexpr double kAmperePerCount = 20.0 / 16384.0;
 constexpr double kNewtonMetrePerAmpere = 0.0156;  // of the rotor
@@ -27,7 +23,7 @@ constexpr double kEffortNm = 0.01;
 class Wheels {
  public:
   explicit Wheels(const std::string& interface)
-      : bus_(interface, {&coefficients_, &actuators_, &imus_, &tofs_}, kPriority) {
+      : bus_(interface, {&coefficients_, &actuators_, &imus_, &tofs_}, rc10::peers::kPriority) {
     rm_hw::ActCoeff& m3508 = coefficients_["rm_3508"];
     m3508.act2pos = 2.0 * M_PI / 8192.0;
     m3508.act2vel = 2.0 * M_PI / 60.0;
@@ -61,18 +57,13 @@ class Wheels {
 }  // namespace
 
 int main() {
-  const sched_param priority{.sched_priority = kPriority};
-  if (sched_setscheduler(0, SCHED_FIFO, &priority) != 0) return 1;
+  rc10::peers::schedule(SCHED_FIFO, rc10::peers::kPriority);
   Wheels left("vcan0");
   Wheels right("vcan1");
-  timespec next{};
-  clock_gettime(CLOCK_MONOTONIC, &next);
-  for (;;) {
+  rc10::peers::Grid grid;
+  do {
     left.cycle();
     right.cycle();
-    const std::int64_t ns = next.tv_nsec + kPeriodNs;
-    next.tv_sec += ns / kSecondNs;
-    next.tv_nsec = ns % kSecondNs;
-    clock_nanosleep(CLOCK_MONOTONIC, TIMER_ABSTIME, &next, nullptr);
-  }
+  } while (grid.sleep());
+  grid.printLateness();
 }

@@ -10,6 +10,8 @@ namespace {
 // Rivals cost some reads of files in each window: they are watched from the first late tick that had its CPU
 // taken until there was none for so long, 10 s.
 constexpr int kWatchedWindows = 500;
+// A page fault is the cause of ticks within half a second.
+constexpr int kFaultWindows = 25;
 // Time constant, in windows, with which the usual wait follows; of a shorter one it grows by this.
 constexpr int kUsualWindows = 8;
 constexpr Duration kLeastUsual = std::chrono::microseconds{1};
@@ -60,8 +62,9 @@ void LateTickCauses::update(const LateTicks& late, std::uint64_t ticks, const Th
   const Duration waited = waitedUnusually(thread, ticks, any > 0);
   const StepSet taken = explained(fresh, waited);
   const auto taker = takerOf(taken.any(), waited, thread.rivals);
-  // Costlier to ask for; the first time, for those of the start.
-  if (any == 0 && page_faults_) return;
+  // Costlier to ask for: in windows without late ticks only now and then, so that old faults are no cause.
+  if (any == 0 && --fault_windows_ > 0) return;
+  fault_windows_ = kFaultWindows;
   const auto page_faults = thread.page_faults();
   const bool faulted = page_faults_ && page_faults > *page_faults_;
   page_faults_ = page_faults;

@@ -51,6 +51,7 @@ class LateTickCauses {
   std::array<LateTicks::Sum, kTickSteps> seen_{};
   std::optional<Duration> waited_;
   std::optional<std::uint64_t> page_faults_;
+  int fault_windows_ = 0;          ///< Windows until they are asked for although no tick is late.
   Duration waited_before_{};       ///< In the window before: a wait may be counted before its tick.
   std::optional<Duration> usual_;  ///< Wait before a tick, in windows without late ones.
   std::uint64_t ticks_ = 0;

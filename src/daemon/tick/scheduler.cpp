@@ -163,14 +163,27 @@ void Scheduler::watchStop() noexcept {
   stopped_ = (rest_ticks_ >= kMinRestTicks && echoed) || given_up;
 }
 
+// Buses that refused or held back a frame since the last call.
+std::bitset<kMaxBuses> Scheduler::keptFrames(const Snapshot& snapshot) noexcept {
+  std::bitset<kMaxBuses> kept;
+  for (std::size_t i = 0; i < snapshot.bus_count; ++i) {
+    const auto& counters = snapshot.buses[i].counters;
+    const std::uint64_t now = counters.tx_dropped + counters.tx_held;
+    if (now != std::exchange(kept_[i], now)) kept.set(i);
+  }
+  return kept;
+}
+
 // Targets of a module are as old as its tick: the client's message to the module is counted instead. In a
-// tick that tells a drive nothing no frame leaves.
+// tick that tells a drive nothing no frame leaves, and of a bus that kept one it is not known whose.
 void Scheduler::recordAges(const Snapshot& snapshot, const Tick& tick) noexcept {
+  const auto kept = keptFrames(snapshot);
+  const bool all_left = kept.none();
   auto* feedback_ages = link_.ages.feedback.data();
   const auto* entry = robot_.motors().data();
   for (std::size_t i = 0, count = snapshot.motor_count; i < count; ++i, ++entry) {
     const auto& motor = snapshot.motors[i];
-    if (motor.acting != Acting::kTarget) continue;
+    if (motor.acting != Acting::kTarget || (!all_left && kept[entry->bus])) continue;
     const bool told = !entry->divided || entry->motor->due(tick);
     if (told) feedback_ages[i].record(snapshot.sent - motor.feedback.received);
     const MonotonicTime received = motor.command_received;
@@ -180,6 +193,8 @@ void Scheduler::recordAges(const Snapshot& snapshot, const Tick& tick) noexcept 
     commands_[i] = received;
     if (!of_module) recordCommandAge(motor.owner, snapshot.sent - received);
   }
+  // Motors of a module may be on any bus.
+  if (!all_left) return;
   for (std::size_t i = 0; i < snapshot.module_count; ++i) {
     const auto& module = snapshot.modules[i];
     const MonotonicTime received = module.inputs_received;

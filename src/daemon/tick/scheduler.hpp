@@ -2,6 +2,7 @@
 
 #include <array>
 #include <atomic>
+#include <bitset>
 #include <cstdint>
 #include <optional>
 #include <span>
@@ -68,6 +69,7 @@ class Scheduler {
   void watchStop() noexcept;
   void snapshot(const Tick& tick, MonotonicTime sent) noexcept;
   void recordAges(const Snapshot& snapshot, const Tick& tick) noexcept;
+  [[nodiscard]] std::bitset<kMaxBuses> keptFrames(const Snapshot& snapshot) noexcept;
   void recordCommandAge(const link::Name& client, Duration age) noexcept;
   [[nodiscard]] MonotonicTime clockOr(MonotonicTime now) const noexcept {
     return clock_ != nullptr ? clock_() : now;
@@ -86,6 +88,7 @@ class Scheduler {
   ModuleRunner modules_;
   BusWatch bus_watch_;
   std::array<MonotonicTime, kMaxMotors> commands_{};  ///< By motor: receipt of the last that was sent.
+  std::array<std::uint64_t, kMaxBuses> kept_{};       ///< By bus: frames that did not leave, so far.
   std::array<MonotonicTime, kMaxModules> inputs_{};   ///< By module: receipt of its last inputs.
   std::atomic<std::uint64_t> ticks_{0};               // read by the link thread, for the watchdog
   std::atomic<std::uint64_t> beats_{0};               // read by the gpio thread

@@ -73,6 +73,15 @@ TEST_F(LateTickCausesTest, APageFaultIsTheCauseWhateverElseThereWas) {
   EXPECT_EQ(others(LateCause::kPageFault), 0U);
 }
 
+TEST_F(LateTickCausesTest, APageFaultOfASecondAgoIsNoCause) {
+  ++page_faults;
+  for (int i = 0; i < 50; ++i) update();
+  late.record(TickStep::kWake, 900us);
+  update();
+  EXPECT_EQ(causes.count(LateCause::kTimer), 1U);
+  EXPECT_EQ(causes.count(LateCause::kPageFault), 0U);
+}
+
 TEST_F(LateTickCausesTest, PageFaultsOfTheStartAreNoCause) {
   late.record(TickStep::kWake, 900us);
   update();

@@ -1,4 +1,6 @@
 // Ages of what a tick acts on, when its frames leave.
+#include <sys/socket.h>
+
 #include <gtest/gtest.h>
 
 #include "config/load_config.hpp"
@@ -55,6 +57,31 @@ TEST_F(TickAgesTest, ThatOfACommandIsCountedOnceForEachMotorAndUnderItsClient) {
   EXPECT_EQ(ages.clients.name(0).view(), "teleop");
   EXPECT_EQ(ages.clients.of(0).count(), 1U);
   EXPECT_EQ(ages.clients.name(1).view(), "planner");
+}
+
+TEST_F(TickAgesTest, FramesThatTheKernelRefusedCarryNothing) {
+  enable();
+  robot.command(kLeft, kVelocity60);
+  robot.run(2);
+  const auto feedback = ages.feedback[kLeft].count();
+  ASSERT_EQ(ages.command.count(), 1U);
+  const int few_bytes = 1;  // the kernel takes its least
+  const auto& bus = *robot.robot().buses()[0].bus;
+  ASSERT_EQ(::setsockopt(bus.descriptor(), SOL_SOCKET, SO_SNDBUF, &few_bytes, sizeof few_bytes), 0);
+  robot.freezeBus(0, true);
+  const auto dropped = [&] { return bus.counters().tx_dropped; };
+  for (int i = 0; i < 20 && dropped() == 0; ++i) robot.tick();
+  ASSERT_GT(dropped(), 0U);
+  const auto until_full = ages.feedback[kLeft].count();
+  robot.command(kLeft, kVelocity60);
+  robot.run(5);
+  EXPECT_EQ(ages.command.count(), 1U);
+  EXPECT_EQ(ages.feedback[kLeft].count(), until_full);
+  EXPECT_GT(until_full, feedback) << "those before had left";
+  robot.freezeBus(0, false);
+  robot.run(2);
+  EXPECT_EQ(ages.command.count(), 2U);
+  EXPECT_GE(ages.command.max(), 6ms) << "its age grew until a frame carried it";
 }
 
 // A tick that takes so long until its frames have left.
