@@ -83,7 +83,7 @@ if [ "$(id -u)" -ne 0 ] && ! command -v sudo >/dev/null; then
     die "missing packages, and neither root nor sudo to install them: apt-get install ${absent[*]}"
 fi
 if [ -n "$may_ask" ]; then
-    [ ! -t 0 ] || as_root true
+    [ ! -t 0 ] || as_root true || die "sudo did not allow it; somebody who may: apt-get install ${absent[*]}"
     exit
 fi
 echo "install-deps: installing ${absent[*]}" >&2

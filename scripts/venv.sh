@@ -6,7 +6,7 @@
 set -euo pipefail
 unset CDPATH # a `cd` that finds a folder by it prints that
 
-repo=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
+repo=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd -P)
 venv=${RC10_VENV:-$repo/.venv}
 client=("$repo/python/requirements.txt")
 all=("$repo/python/requirements-dev.txt" "$repo/scripts/requirements.txt")
@@ -36,7 +36,7 @@ if [ -L "$venv" ]; then
     exit 1
 fi
 mkdir -p "$venv"
-venv=$(cd "$venv" && pwd)
+venv=$(cd "$venv" && pwd -P)
 exec 9<"$venv"
 flock 9
 client_hash=$(inputs "${client[@]}") all_hash=$(inputs "${client[@]}" "${all[@]}")

@@ -83,6 +83,8 @@ def test_leaving_may_disable_and_nothing_else(daemon: FakeDaemon, link: VirtualL
     assert setpoints(daemon.commands[-1]) == {"wheel": (rc10.Mode.VELOCITY, 120)}
     assert len(daemon.commands) == 1
     assert daemon.operations() == ["enable wheel", "disable wheel"]
+    last = daemon.executed[-1]
+    assert {value.name: value.value for value in last.values} == {"at_end": 1.0}
 
 
 def test_an_end_that_does_not_exist_is_refused_at_once(link: VirtualLink) -> None:

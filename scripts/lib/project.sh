@@ -1,6 +1,7 @@
 # Sourced by the scripts: where things are, and how they come to be.
 # shellcheck shell=bash
 
+unset CDPATH # a `cd` that finds a folder by it prints that
 # Without symbolic links, as CMake and Python name files.
 repo=$(cd "$(dirname "${BASH_SOURCE[0]}")/../.." && pwd -P)
 
@@ -36,6 +37,11 @@ build() {
         # Two builds in one tree would disturb each other.
         exec 8>"build/.$preset.lock"
         flock 8
+        # One that was copied with its clone would build that one.
+        if [ -e "build/$preset/CMakeCache.txt" ] \
+            && ! grep -qxF "CMAKE_HOME_DIRECTORY:INTERNAL=$repo" "build/$preset/CMakeCache.txt"; then
+            rm -rf "build/$preset"
+        fi
         # Once: it writes the lists of tests anew, which ctest of another part may be reading.
         if [ ! "build/$preset/build.ninja" -nt CMakePresets.json ]; then
             cmake --preset "$preset" --log-level=WARNING >/dev/null || return

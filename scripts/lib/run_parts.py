@@ -25,6 +25,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 import costs
+from descendants import end_descendants, keep_orphans, reap_orphans
 
 REPO = Path(__file__).resolve().parents[2]
 SCRIPTS = REPO / "scripts" / "test"
@@ -37,7 +38,7 @@ TOLD = re.compile(r"^(SKIPPED|NOTE) .*", re.MULTILINE)
 # These run what the dev build has made.
 TESTS_OF_DEV = {"unit", "kernel", "host", "faults", "vm", "soak", "web"}
 # Cores that a part keeps busy; 0: it waits most of its time. All others use every core.
-# `web` waits for a browser: 237 CPU-seconds in ten minutes.
+# `web` waits for a browser most of its time.
 CORES = {"host": 0, "web": 0, "pages": 1, "lint": 1, "vm": 1, "package": 1}
 ALL_CORES = os.cpu_count() or 1
 ENDS = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
@@ -74,7 +75,7 @@ class Part:
     def start(self) -> None:
         self.begin_s = time.monotonic()
         environment = {
-            **os.environ,
+            **{key: value for key, value in os.environ.items() if key != "RC10_BUILD"},
             "RC10_COSTS": str(LOGS / f"{self.name}.costs"),
             "RC10_JOBS": str(max(self.cores, 1)),
         }
@@ -152,16 +153,6 @@ def end_group(process: subprocess.Popen[bytes]) -> None:
         os.killpg(process.pid, signal.SIGTERM)
 
 
-def kill_what_is_left(process: subprocess.Popen[bytes], grace_s: float = 5.0) -> None:
-    """End of the processes of a group whose leader has ended."""
-    deadline = time.monotonic() + grace_s
-    with contextlib.suppress(ProcessLookupError):
-        while time.monotonic() < deadline:
-            os.killpg(process.pid, 0)
-            time.sleep(0.05)
-        os.killpg(process.pid, signal.SIGKILL)
-
-
 def as_minutes(seconds: float) -> str:
     return f"{int(seconds) // 60}:{int(seconds) % 60:02}"
 
@@ -216,6 +207,7 @@ class Run:
         terminal = sys.stderr.isatty()
         while self.waiting or self.running:
             self.start_what_may()
+            reap_orphans({part.process.pid for part in self.running if part.process is not None})
             for part in [part for part in self.running if part.reap()]:
                 part.judge()
                 self.running.remove(part)
@@ -230,16 +222,6 @@ class Run:
                 line = self.status_line()[: columns - 1]
                 print(f"\r{line}\033[K", end="", file=sys.stderr, flush=True)
             time.sleep(0.2)
-
-    def stop(self) -> None:
-        """Ends the running parts with all that they have started."""
-        for part in self.running:
-            if part.process is not None and part.process.poll() is None:
-                end_group(part.process)
-        for part in self.running:
-            if part.process is not None:
-                part.process.wait()
-                kill_what_is_left(part.process)
 
     def table(self) -> str:
         rows = [
@@ -287,6 +269,13 @@ def greeting(names: list[str], chosen: str, budget: costs.Budget) -> str:
     return text + f" The full output of each: {LOGS.relative_to(REPO)}/PART.log"
 
 
+def take_signals() -> None:
+    """As Ctrl-C, but for those that nohup keeps away."""
+    for number in (signal.SIGTERM, signal.SIGHUP):
+        if signal.getsignal(number) is not signal.SIG_IGN:
+            signal.signal(number, signal.default_int_handler)
+
+
 def ignore_further_signals() -> None:
     """A second Ctrl-C would leave processes of the first behind."""
     for number in ENDS:
@@ -300,8 +289,13 @@ def main() -> int:
     arguments = parser.parse_args()
     budget = costs.Budget.read(BUDGET)
     names = with_build(arguments.parts)
-    LOGS.mkdir(parents=True, exist_ok=True)
-    lock = (LOGS / "lock").open("w")
+    try:
+        LOGS.mkdir(parents=True, exist_ok=True)
+        lock = (LOGS / "lock").open("w")
+    except OSError as error:
+        print(f"test.sh: {error}: does build/ belong to another user? Remove it", file=sys.stderr)
+        return 2
+    keep_orphans()
     try:
         fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
     except BlockingIOError:
@@ -316,12 +310,12 @@ def main() -> int:
         run.go()
     except KeyboardInterrupt:
         ignore_further_signals()
-        run.stop()
+        end_descendants()
         print("\ninterrupted", file=sys.stderr)
         return 130
     except BaseException:
         ignore_further_signals()
-        run.stop()
+        end_descendants()
         raise
     print(run.table())
     # Statistics must not cost the result.
@@ -349,8 +343,7 @@ def main() -> int:
 
 
 if __name__ == "__main__":
-    for number in (signal.SIGTERM, signal.SIGHUP):
-        signal.signal(number, signal.default_int_handler)
+    take_signals()
     for stream in (sys.stdout, sys.stderr):
         assert isinstance(stream, io.TextIOWrapper)
         stream.reconfigure(errors="replace")

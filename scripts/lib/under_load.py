@@ -10,7 +10,6 @@ from __future__ import annotations
 
 import argparse
 import contextlib
-import ctypes
 import multiprocessing
 import os
 import random
@@ -20,16 +19,11 @@ import subprocess
 import sys
 import zlib
 from pathlib import Path
-from typing import NamedTuple
 
-PR_SET_CHILD_SUBREAPER = 36
+from descendants import descendants, keep_orphans, processes, send
+
 LOOKS = 20
 STOPPED = "Tt"  # by somebody else: a debugger, or a test whose subject that is
-
-
-class Process(NamedTuple):
-    parent: int
-    state: str
 
 
 def hog(parent: int) -> None:
@@ -39,26 +33,13 @@ def hog(parent: int) -> None:
         zlib.compress(text)
 
 
-def processes() -> dict[int, Process]:
-    found = {}
-    for stat in Path("/proc").glob("[0-9]*/stat"):
-        try:
-            fields = stat.read_text(errors="replace").rpartition(")")[2].split()
-        except OSError:
-            continue  # ended
-        found[int(stat.parent.name)] = Process(parent=int(fields[1]), state=fields[0])
-    return found
-
-
-def running(spared: set[int]) -> set[int]:
+def running(spared: frozenset[int]) -> set[int]:
     """Every descendant that nobody has stopped, also those in sessions of their own."""
-    everything = processes()
-    tree: set[int] = set()
-    new = {os.getpid()}
-    while new:
-        new = {pid for pid, p in everything.items() if p.parent in new} - spared
-        tree |= new
-    return {pid for pid in tree if everything[pid].state not in STOPPED and not traced(pid)}
+    return {
+        pid
+        for pid, process in descendants(spared).items()
+        if process.state not in STOPPED and not traced(pid)
+    }
 
 
 def traced(pid: int) -> bool:
@@ -68,12 +49,6 @@ def traced(pid: int) -> bool:
     except OSError:
         return True  # ended
     return "TracerPid:\t0\n" not in status
-
-
-def send(number: signal.Signals, pids: set[int]) -> None:
-    for pid in pids:
-        with contextlib.suppress(ProcessLookupError):
-            os.kill(pid, number)
 
 
 def stands(pid: int) -> bool:
@@ -104,7 +79,7 @@ def stop_parents_first(tree: set[int], stopped: set[int]) -> None:
         tree = tree - eldest
 
 
-def pause(seconds: float, spared: set[int], command: subprocess.Popen[bytes]) -> None:
+def pause(seconds: float, spared: frozenset[int], command: subprocess.Popen[bytes]) -> None:
     seen: set[int] = set()
     stopped: set[int] = set()
     try:
@@ -139,8 +114,7 @@ def main() -> int:
         parser.error("which command?")
     print(f"under_load: --seed {options.seed}", flush=True)
     chance = random.Random(options.seed)
-    # An orphan stays a descendant.
-    ctypes.CDLL(None).prctl(PR_SET_CHILD_SUBREAPER, 1, 0, 0, 0)
+    keep_orphans()
     signal.signal(signal.SIGTERM, signal.SIG_DFL)
     hogs = [
         multiprocessing.Process(target=hog, args=(os.getpid(),), daemon=True)
@@ -150,7 +124,9 @@ def main() -> int:
         one.start()
     # After the hogs, which end by it at once, however early it comes.
     signal.signal(signal.SIGTERM, signal.default_int_handler)
-    spared = {one.pid for one in hogs if one.pid is not None}
+    if signal.getsignal(signal.SIGHUP) is not signal.SIG_IGN:  # by nohup
+        signal.signal(signal.SIGHUP, signal.default_int_handler)
+    spared = frozenset(one.pid for one in hogs if one.pid is not None)
     command = subprocess.Popen(options.command, start_new_session=True)
     pauses = 0
     try:

@@ -210,7 +210,7 @@ class Remote : public Module_Base {
     told_to_disable_ = true;
     armed_ = false;
     switch_known_ = false;  // it must go down and up once more
-    robot.askAll(RobotRequest::kDisable);
+    robot.askAll(RobotRequest::kDisableUnasked);
     robot.report(kDisabled);
   }
 

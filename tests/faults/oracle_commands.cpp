@@ -20,6 +20,8 @@ constexpr double kFast = 0.3;  ///< Share of the no-load speed: a brake must opp
 constexpr double kRampSlack = 0.1;
 // Standstill that a ramp waits for after its time; and a frame may be on its way.
 constexpr Duration kRampEnd = 260ms;
+// Standstill that ends a fallback after a disable, less a tick or two.
+constexpr Duration kSettled = 290ms;
 
 // Time beyond `reduced_within_ms` for a drive that gets commands in some ticks only.
 constexpr Duration kReducedSlack = 100ms;
@@ -314,7 +316,10 @@ void Oracle::judgeFallback(std::size_t index) {
   auto& motor = motors_[index];
   const auto& fallback = motor.config->fallback;
   auto actions = motor.actions;
-  if (motor.ends_at_standstill) actions |= only(FallbackAction::kCoast);
+  // What a hold has held moves after it at the earliest.
+  const bool holds = motor.actions == only(FallbackAction::kHold);
+  if (motor.ends_at_standstill && (!holds || now_ - motor.acts_since >= fallback.hold_max + kSettled))
+    actions |= only(FallbackAction::kCoast);
   const bool damps = motor.config->traits().frames.damp != Provision::kUnsupported;
   const auto bounded = [&](FallbackAction action, Duration most) {
     const auto bit = static_cast<std::size_t>(action);

@@ -147,7 +147,7 @@ TEST_F(Remote, LostItCommandsNothingWithinTheTimeThatIsSet) {
   run(100, false);
   EXPECT_THAT(robot_.sent(), IsEmpty());
   EXPECT_THAT(events_, Contains(0U));
-  EXPECT_FALSE(asks(RobotRequest::kDisable));
+  EXPECT_FALSE(asks(RobotRequest::kDisableUnasked));
   run(30);
   EXPECT_FALSE(robot_.sent().empty()) << "a short gap: it goes on, the switch is still up";
 }
@@ -157,7 +157,8 @@ TEST_F(Remote, LostForLongItDisablesAllAndTheSwitchMustGoDownAndUpAgain) {
   arm();
   asked_.clear();
   run(1200, false);
-  EXPECT_TRUE(asks(RobotRequest::kDisable));
+  EXPECT_TRUE(asks(RobotRequest::kDisableUnasked)) << "what an e-stop holds stays held";
+  EXPECT_FALSE(asks(RobotRequest::kDisable));
   EXPECT_EQ(armed(), 0.0);
   asked_.clear();
   run(100);

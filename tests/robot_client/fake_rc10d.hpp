@@ -92,6 +92,10 @@ class FakeRc10d {
     const std::lock_guard lock(mutex);
     return received;
   }
+  [[nodiscard]] std::vector<request_t> requests() {
+    const std::lock_guard lock(mutex);
+    return asked;
+  }
   /// "enable lift,yaw"; a repeated request counts once.
   [[nodiscard]] std::vector<std::string> operations() {
     const std::lock_guard lock(mutex);

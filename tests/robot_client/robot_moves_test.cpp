@@ -145,6 +145,10 @@ TEST_F(RobotTest, LeavingMayDisableAndNothingElse) {
   ASSERT_TRUE(robot_->motor("wheel").setTargetRPM(60_rpm));
   ASSERT_TRUE(robot_->close());
   EXPECT_THAT(rc10d_.operations(), Contains("disable wheel"));
+  const auto last = rc10d_.requests().back();
+  ASSERT_EQ(last.value_count, 1);
+  EXPECT_EQ(last.values[0].name, "at_end") << "what an e-stop holds stays held";
+  EXPECT_EQ(last.values[0].value, 1.0);
   for (const auto& command : rc10d_.commands()) EXPECT_NE(command.setpoints[0].mode, +setpoint_t::MODE_COAST);
 }
 

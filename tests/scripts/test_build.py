@@ -56,3 +56,12 @@ def test_a_preset_that_has_changed_is_configured_anew(repo: Path) -> None:
     os.utime(repo / "build" / "dev" / "build.ninja", (2, 2))
     os.utime(repo / "CMakePresets.json", (3, 3))
     assert calls_of_a_build(repo) == ["--preset dev", "--build --preset"]
+
+
+def test_a_tree_that_was_copied_with_its_clone_is_configured_anew(repo: Path) -> None:
+    calls_of_a_build(repo)
+    cache = repo / "build" / "dev" / "CMakeCache.txt"
+    cache.write_text(f"CMAKE_HOME_DIRECTORY:INTERNAL={repo}\n")
+    assert calls_of_a_build(repo) == ["--build --preset"]
+    cache.write_text("CMAKE_HOME_DIRECTORY:INTERNAL=/another/clone\n")
+    assert calls_of_a_build(repo) == ["--preset dev", "--build --preset"]

@@ -5,15 +5,16 @@ from __future__ import annotations
 import os
 import re
 import select
+import signal
+import subprocess
+import sys
 from collections.abc import Callable
-from typing import TYPE_CHECKING
+from pathlib import Path
 
+import descendants
 import pytest
 import run_parts
 from costs import Budget, PartCost, SetCost, compare
-
-if TYPE_CHECKING:
-    from pathlib import Path
 
 WriteParts = Callable[..., None]
 
@@ -152,13 +153,54 @@ def test_tests_of_the_dev_build_wait_for_it(write_parts: WriteParts, tmp_path: P
 def test_a_part_is_ended_with_what_it_has_started(write_parts: WriteParts, tmp_path: Path) -> None:
     fifo = tmp_path / "fifo"
     os.mkfifo(fifo)
-    write_parts(lint=f"sleep 30 >{fifo}; echo '1 passed, 0 failed, 0 skipped'")
-    parts = run_parts.Run(["lint"], Budget("a test", 1.0, {}, {}))
-    parts.start_what_may()
-    with fifo.open() as end:  # opened by both: it sleeps
-        parts.stop()
-        assert select.select([end], [], [], 10)[0]
+    # In a session of its own, as programs under test are.
+    write_parts(lint=f"setsid sh -c 'trap : TERM; exec sleep 30' >{fifo}; sleep 30")
+    run_of_parts = os.fork()
+    if run_of_parts == 0:
+        descendants.keep_orphans()
+        run_parts.Run(["lint"], Budget("a test", 1.0, {}, {})).start_what_may()
+        with fifo.open():  # opened by both: it sleeps
+            descendants.end_descendants()
+        os._exit(0)
+    with fifo.open() as end:
+        assert select.select([end], [], [], 20)[0]
         assert end.read() == ""
+    assert os.waitpid(run_of_parts, 0)[1] == 0
+
+
+MAIN = """
+import os, pathlib, runpy, sys
+sys.path.insert(0, sys.argv[1])
+import run_parts
+folder = pathlib.Path(sys.argv[2])
+run_parts.REPO = run_parts.SCRIPTS = run_parts.LOGS = folder
+run_parts.take_signals()
+sys.argv = ["run_parts.py", "lint"]
+sys.exit(run_parts.main())
+"""
+
+
+@pytest.mark.parametrize("ignored", [False, True], ids=["in a terminal", "under nohup"])
+def test_the_end_of_a_terminal_ends_a_run_unless_nohup_keeps_it(
+    write_parts: WriteParts, tmp_path: Path, ignored: bool
+) -> None:
+    begun, go_on = tmp_path / "begun", tmp_path / "go_on"
+    for fifo in (begun, go_on):
+        os.mkfifo(fifo)
+    write_parts(lint=f"echo >{begun}; read line <{go_on}; echo '1 passed, 0 failed, 0 skipped'")
+    scripts = Path(run_parts.__file__).parent
+    action = signal.SIG_IGN if ignored else signal.SIG_DFL
+    with subprocess.Popen(
+        [sys.executable, "-c", MAIN, scripts, tmp_path],
+        stdout=subprocess.DEVNULL,
+        stderr=subprocess.DEVNULL,
+        preexec_fn=lambda: signal.signal(signal.SIGHUP, action),
+    ) as running:
+        begun.read_text()
+        running.send_signal(signal.SIGHUP)
+        if ignored:
+            go_on.write_text("\n")
+        assert running.wait(60) == (0 if ignored else 130)
 
 
 def test_a_part_that_leaves_processes_running_is_told(

@@ -24,6 +24,7 @@ from rc10.link import LcmLink, Link
 from rc10.modules import Module
 from rc10.rate import Grid
 from rc10.robot_client import (
+    AT_END,
     RELEASE_TIMEOUT_S,
     REPEAT_ESTOP_S,
     REPEAT_REQUEST_S,
@@ -155,7 +156,7 @@ class Robot(RobotClient):
         try:
             target = self._let_go()
             if target is not None:
-                await self.request("disable", target, timeout_s=RELEASE_TIMEOUT_S)
+                await self.request("disable", target, AT_END, RELEASE_TIMEOUT_S)
         except Rc10Error as error:
             _log.warning("leaving %s: motors may still be enabled: %s", self._name, error)
         finally:

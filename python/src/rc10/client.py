@@ -12,6 +12,7 @@ from rc10.link import LcmLink, Link
 from rc10.modules import WaitingModule
 from rc10.rate import Rate
 from rc10.robot_client import (
+    AT_END,
     RELEASE_TIMEOUT_S,
     REPEAT_ESTOP_S,
     REPEAT_REQUEST_S,
@@ -118,7 +119,7 @@ class Robot(RobotClient):
         try:
             target = self._let_go()
             if target is not None:
-                self.request("disable", target, timeout_s=RELEASE_TIMEOUT_S)
+                self.request("disable", target, AT_END, RELEASE_TIMEOUT_S)
         except Rc10Error as error:
             _log.warning("leaving %s: motors may still be enabled: %s", self._name, error)
         finally:

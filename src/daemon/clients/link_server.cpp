@@ -282,10 +282,13 @@ void LinkServer::command(const link::Command& message, const Speaker& speaker) {
 }
 
 void LinkServer::signals(const link::Signals& message, const Speaker& speaker) {
-  auto outcome = signal_admission_.admit(message, speaker, monotonicNow(), accepted_signals_);
-  if (outcome == CommandRefusal::kNone && !sources_.exchange.signals.push(accepted_signals_))
-    outcome = CommandRefusal::kRingFull;
-  admission_.count(outcome);
+  const auto refusal = signal_admission_.admit(message, speaker, monotonicNow(), accepted_signals_);
+  // As with commands.
+  const bool late = signal_admission_.lateButNew();
+  const bool handed_over =
+      (refusal == CommandRefusal::kNone || late) && sources_.exchange.signals.push(accepted_signals_);
+  const auto outcome = refusal == CommandRefusal::kNone && !handed_over ? CommandRefusal::kRingFull : refusal;
+  if (!late || !handed_over) admission_.count(outcome);
   if (outcome == CommandRefusal::kNotPermitted)
     return reportRefusal(outcome, speaker.connection, message.client, signal_admission_.whyNotPermitted());
   if (outcome != CommandRefusal::kNone) reportRefusal(outcome, speaker.connection, message.client);

@@ -15,6 +15,7 @@
 #include "daemon/clients/gain_request.hpp"
 #include "daemon/clients/scan_request.hpp"
 #include "daemon/clients/shaft_request.hpp"
+#include "link/until_its_end.hpp"
 
 namespace rc10 {
 namespace {
@@ -25,6 +26,13 @@ constexpr double kFarthestZeroDeg = 1e6;
 // Each gain is an event: those of one tick must leave room for others in their ring.
 constexpr std::ptrdiff_t kMaxOpenGains = 8;
 constexpr std::string_view kAngle = "angle_deg";
+
+[[nodiscard]] bool comesOfItself(const link::Request& request) {
+  const auto values = std::span(request.values).first(request.value_count);
+  return std::any_of(values.begin(), values.end(), [](const auto& value) {
+    return value.name.view() == link::kAtEnd && value.value != 0.0;
+  });
+}
 
 // "enable, disable, … and load".
 [[nodiscard]] std::string operationsInWords() {
@@ -175,7 +183,7 @@ RequestDesk::Outcome RequestDesk::begin(const link::Request& request, const Spea
     return outcome;
   }
   order->id = next_order_id_++;
-  order->repeated = known != nullptr || open != nullptr;
+  order->repeated = known != nullptr || open != nullptr || comesOfItself(request);
   open_.push_back({speaker.connection, asker, request, *order, *tries});
   outcome.order = *order;
   outcome.disable_at_end = *at_end;

@@ -16,6 +16,7 @@ SignalAdmission::SignalAdmission(const RobotDescription& robot, Permissions perm
 
 CommandRefusal SignalAdmission::admit(const link::Signals& message, const Speaker& speaker, MonotonicTime now,
                                       SignalMessage& out) {
+  late_but_new_ = false;
   const auto& modules = robot_.modules;
   const auto known = std::find_if(modules.begin(), modules.end(),
                                   [&](const auto& module) { return module.name == message.module.view(); });
@@ -38,8 +39,9 @@ CommandRefusal SignalAdmission::admit(const link::Signals& message, const Speake
   const auto client = message.client.view();
   not_permitted_ = permissions_.whyNoSignals(speaker, client, module, message.priority);
   if (!not_permitted_.empty()) return CommandRefusal::kNotPermitted;
-  if (now >= *deadline) return CommandRefusal::kExpired;
-  if (!budget_.spend(client, message.value_count, now)) return CommandRefusal::kRingFull;
+  const bool late = now >= *deadline;
+  if (!budget_.spend(client, message.value_count, now))
+    return late ? CommandRefusal::kExpired : CommandRefusal::kRingFull;
   out.module = static_cast<std::uint16_t>(module);
   out.client = message.client;
   out.session = message.session;
@@ -47,8 +49,10 @@ CommandRefusal SignalAdmission::admit(const link::Signals& message, const Speake
   out.received = receivedAt(message.received_ns, now);
   out.deadline = *deadline;
   switch (sessions_[module].accept(speaker.owner(), client, message.session, message.seq)) {
-    case SessionNumbers::Verdict::kNew: return CommandRefusal::kNone;
-    case SessionNumbers::Verdict::kOld: return CommandRefusal::kOldSequence;
+    case SessionNumbers::Verdict::kNew:
+      late_but_new_ = late;
+      return late ? CommandRefusal::kExpired : CommandRefusal::kNone;
+    case SessionNumbers::Verdict::kOld: return late ? CommandRefusal::kExpired : CommandRefusal::kOldSequence;
     case SessionNumbers::Verdict::kOfAnother: break;
   }
   not_permitted_ = permissions_.whyOtherSession(client);

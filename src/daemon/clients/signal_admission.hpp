@@ -26,11 +26,14 @@ class SignalAdmission {
 
   /// After kNotPermitted, why.
   [[nodiscard]] const std::string& whyNotPermitted() const noexcept { return not_permitted_; }
+  /// After kExpired: the message is the newest of its session, and ends what that has sent before.
+  [[nodiscard]] bool lateButNew() const noexcept { return late_but_new_; }
 
  private:
   const RobotDescription& robot_;
   Permissions permissions_;
   std::string not_permitted_;
+  bool late_but_new_ = false;
   std::vector<SessionNumbers> sessions_;  // of each module
   CommandBudget budget_;                  // of messages, whose ring is as large as that of commands
 };

@@ -15,7 +15,8 @@ constexpr std::uint64_t kModuleSession = 0;
 [[nodiscard]] constexpr Operation operationOf(RobotRequest request) noexcept {
   switch (request) {
     case RobotRequest::kEnable: return Operation::kEnable;
-    case RobotRequest::kDisable: return Operation::kDisable;
+    case RobotRequest::kDisable:
+    case RobotRequest::kDisableUnasked: return Operation::kDisable;
     case RobotRequest::kEstop: return Operation::kEstop;
     case RobotRequest::kClear: return Operation::kClear;
     case RobotRequest::kZero: return Operation::kZero;
@@ -72,6 +73,8 @@ void ModuleRunner::take(const SignalMessage& message, const Tick& tick) noexcept
   if (recorder_ != nullptr) recorder_->signals(message, verdict);
   if (verdict != blackbox::Verdict::kApplied) {
     ++refused_signals_;
+    // The newest message counts, and this one's time is over.
+    if (verdict == blackbox::Verdict::kExpired) control.lease.shorten(sender, message.deadline);
     return;
   }
   control.lease.take(sender, {message.received, message.deadline});
@@ -143,6 +146,7 @@ void ModuleRunner::ask(RobotRequest request, std::size_t motor, double angle_deg
   order.client = sender().client;
   order.motors.set(motor);
   order.value = angle_deg;
+  order.repeated = request == RobotRequest::kDisableUnasked;
   supervisor_.takeModuleOrder(order, tick_);
 }
 
@@ -151,6 +155,7 @@ void ModuleRunner::ask(RobotRequest request, std::span<const std::size_t> motors
   order.operation = operationOf(request);
   order.client = sender().client;
   for (const auto motor : motors) order.motors.set(motor);
+  order.repeated = request == RobotRequest::kDisableUnasked;
   supervisor_.takeModuleOrder(order, tick_);
 }
 
@@ -160,6 +165,7 @@ void ModuleRunner::askAll(RobotRequest request) noexcept {
   order.client = sender().client;
   for (std::size_t motor = 0; motor < motorCount(); ++motor) order.motors.set(motor);
   order.whole_robot = true;
+  order.repeated = request == RobotRequest::kDisableUnasked;
   supervisor_.takeModuleOrder(order, tick_);
 }
 

@@ -90,9 +90,12 @@ void Scheduler::stopForTheComputer(const Tick& tick) noexcept {
 }
 
 void Scheduler::beat(const Tick& tick) noexcept {
-  const bool stays = heartbeat_rests_after_ && supervisor_.robotState() == RobotStatus::kEstop &&
-                     tick.now - supervisor_.stoppedAt() >= *heartbeat_rests_after_;
-  if (!stays && !supervisor_.heartbeatRests())
+  const auto state = supervisor_.robotState();
+  if (state == RobotStatus::kRun) heartbeat_stays_ = false;
+  // The end of the process in an e-stop does not close the contactor again.
+  heartbeat_stays_ |= heartbeat_rests_after_ && state == RobotStatus::kEstop &&
+                      tick.now - supervisor_.stoppedAt() >= *heartbeat_rests_after_;
+  if (!heartbeat_stays_ && !supervisor_.heartbeatRests())
     beats_.store(beats_.load(std::memory_order_relaxed) + 1, std::memory_order_relaxed);
 }
 
@@ -183,7 +186,11 @@ void Scheduler::recordAges(const Snapshot& snapshot, const Tick& tick) noexcept 
   const auto* entry = robot_.motors().data();
   for (std::size_t i = 0, count = snapshot.motor_count; i < count; ++i, ++entry) {
     const auto& motor = snapshot.motors[i];
-    if (motor.acting != Acting::kTarget || (!all_left && kept[entry->bus])) continue;
+    if (motor.acting != Acting::kTarget) continue;
+    if (!all_left && kept[entry->bus]) {
+      if (motor.command_received == tick.now) commands_[i] = tick.now;  // a module's, for which nobody waits
+      continue;
+    }
     const bool told = !entry->divided || entry->motor->due(tick);
     if (told) feedback_ages[i].record(snapshot.sent - motor.feedback.received);
     const MonotonicTime received = motor.command_received;

@@ -96,8 +96,10 @@ class Fallback {
   /// Once per tick while it acts.
   void step(bool stands_still, MonotonicTime now) noexcept {
     if (kind_ == FrameKind::kCommand && now - begun_ >= ramp_.over + kRampRest) end();
-    if (acts() && bounded_ && now >= bound_) kind_ = then_;
-    if (!stands_still) moved_ = now;
+    const bool becomes = acts() && bounded_ && now >= bound_ && kind_ != then_;
+    if (becomes) kind_ = then_;
+    // What was held begins to move only now.
+    if (!stands_still || becomes) moved_ = now;
     // A hold is for a load that would move by itself: it lasts for its whole time.
     const bool settled = now - moved_ >= kSettled && kind_ != FrameKind::kHold;
     if (until_ == Until::kStandstill && settled) end();

@@ -14,6 +14,8 @@ namespace {
 using Lock = SessionCore::Lock;
 
 constexpr Duration kRelease = std::chrono::milliseconds{500};
+// Of a disable request that nobody asked for: what an e-stop holds stays held.
+constexpr const char* kAtEnd = "at_end";
 
 }  // namespace
 
@@ -140,7 +142,7 @@ Result<void> RobotSession::close() {
   news.tell(core_.problems);
   Result<void> done;
   if (disable) {
-    const auto answer = requests_.request(toString(Operation::kDisable), *disable, {}, kRelease);
+    const auto answer = requests_.request(toString(Operation::kDisable), *disable, {{kAtEnd, 1.0}}, kRelease);
     if (!answer) done = fail("motors may still be enabled: " + answer.error().message);
   }
   subscriptions_.clear();

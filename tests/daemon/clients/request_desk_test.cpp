@@ -11,6 +11,7 @@
 
 #include "daemon/described_robot.hpp"
 #include "daemon/link_messages.hpp"
+#include "link/until_its_end.hpp"
 
 namespace rc10::test::request_desk_test {
 namespace {
@@ -403,6 +404,17 @@ TEST_F(RequestDeskTest, WhatStopsIsNeverAnsweredFromMemory) {
     EXPECT_FALSE(again.response);
     EXPECT_FALSE(begin(linkRequest(2, operation, "left")).order->repeated);
   }
+}
+
+TEST_F(RequestDeskTest, ADisableThatComesOfItselfAtTheEndOfAProgramIsNoSecondOne) {
+  auto request = linkRequest(1, "disable", "left");
+  request.value_count = 1;
+  request.values[0].name = link::kAtEnd;
+  request.values[0].value = 1.0;
+  EXPECT_TRUE(begin(request).order->repeated);
+  request.seq = 2;
+  request.values[0].value = 0.0;
+  EXPECT_FALSE(begin(request).order->repeated);
 }
 
 TEST_F(RequestDeskTest, AnswersAreRememberedForAWhileOnly) {

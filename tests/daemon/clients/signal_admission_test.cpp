@@ -86,6 +86,20 @@ TEST_F(SignalAdmissionTest, RefusesWhatIsTooOld) {
   EXPECT_EQ(admit(message(), kNow + 50ms), CommandRefusal::kExpired);
 }
 
+TEST_F(SignalAdmissionTest, OneThatIsLateIsTheNewestOfItsSessionOnce) {
+  ASSERT_EQ(admit(message()), CommandRefusal::kNone);
+  EXPECT_FALSE(admission_.lateButNew());
+  const auto late = message();
+  ASSERT_EQ(admit(late, kNow + 50ms), CommandRefusal::kExpired);
+  EXPECT_TRUE(admission_.lateButNew());
+  EXPECT_EQ(out_.deadline, kNow + 50ms);
+  ASSERT_EQ(admit(late, kNow + 50ms), CommandRefusal::kExpired) << "a replay";
+  EXPECT_FALSE(admission_.lateButNew());
+  auto again = late;
+  again.received_ns = (kNow + 50ms).time_since_epoch().count();
+  EXPECT_EQ(admit(again, kNow + 50ms), CommandRefusal::kOldSequence) << "its number is used";
+}
+
 TEST_F(SignalAdmissionTest, AClientThatFloodsLeavesRoomForAnother) {
   auto now = kNow;
   int flood = 0;

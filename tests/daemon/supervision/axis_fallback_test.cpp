@@ -211,6 +211,23 @@ TEST_F(FallbackTest, HoldStaysWhereItWasAndGivesWayAfterItsTime) {
   EXPECT_LT(std::fabs(rpm()), 100.0F);
 }
 
+TEST_F(FallbackTest, ALoadThatADisableHoldsSinksAfterwardsAndDoesNotFall) {
+  start({.on_disable = FallbackAction::kHold, .hold_max = 2s}, 1.0F);
+  robot->order(Operation::kDisable);
+  robot->run(1900);
+  EXPECT_EQ(robot->motor(kLeft).acting, Acting::kHold);
+  EXPECT_NEAR(rpm(), 0.0F, 2.0F);
+  robot->run(200);
+  for (int i = 0; i < 1000; ++i) {
+    robot->tick();
+    ASSERT_EQ(robot->motor(kLeft).acting, Acting::kDamp) << i;
+  }
+  const float sinking_rpm = rpm();
+  EXPECT_LT(sinking_rpm, -1.0F);
+  robot->run(500);
+  EXPECT_NEAR(rpm(), sinking_rpm, 1.0F) << "it grows no faster";
+}
+
 TEST_F(FallbackTest, ABrakeInAnEstopDampsAfterItsTimeAndNeverCoasts) {
   start({.on_estop = FallbackAction::kBrake, .brake_max = 2s}, 1.0F);
   estop();

@@ -212,6 +212,20 @@ TEST_F(ModuleRunnerTest, AMessageThatIsTooOldIsRefused) {
   EXPECT_EQ(robot_->snapshot().refused_signals, 1U);
 }
 
+TEST_F(ModuleRunnerTest, AMessageThatIsTooOldEndsWhatItsClientSaidBefore) {
+  const ScriptedType type;
+  start({{&type, 0}});
+  signal("planner", 0, 12.0, 1000ms);
+  robot_->tick();
+  signal("keyboard", 0, 3.0, 0ms);
+  robot_->tick();
+  EXPECT_EQ(seen(), 12.0) << "another client's";
+  signal("planner", 0, 0.0, 0ms);
+  robot_->tick();
+  EXPECT_TRUE(std::isnan(seen()));
+  EXPECT_EQ(robot_->snapshot().modules[0].owner.view(), "");
+}
+
 TEST_F(ModuleRunnerTest, AModuleGivesALaterOneItsInputInTheSameTick) {
   double value = kNoSignal;
   const ScriptedType remote{[&](const Tick&, ModuleRobot& robot) {
@@ -258,6 +272,32 @@ TEST_F(ModuleRunnerTest, AModuleEnablesAndDisablesTheRobot) {
   EXPECT_EQ(robot_->motor(1).status, MotorStatus::kReady);
   OrderResult result;
   EXPECT_FALSE(robot_->exchange().results.pop(result)) << "nobody else is told";
+}
+
+TEST_F(ModuleRunnerTest, OnlyADisableThatSomebodyAskedForLetsGoOfWhatAnEstopBrakes) {
+  std::optional<RobotRequest> asks;
+  const ScriptedType type{[&](const Tick&, ModuleRobot& robot) {
+    if (asks) robot.askAll(*asks);
+    asks.reset();
+  }};
+  auto config = twoWheelsAndYaw();
+  config.buses[0].motors[0].fallback.on_estop = FallbackAction::kHold;
+  ModuleConfig module;
+  module.type = &type;
+  module.settings.name = "module0";
+  config.modules.push_back(module);
+  robot_ = std::make_unique<VirtualRobot>(config);
+  robot_->run(10);
+  enable();
+  asks = RobotRequest::kEstop;
+  robot_->run(10);
+  ASSERT_EQ(robot_->motor(0).acting, Acting::kHold);
+  asks = RobotRequest::kDisableUnasked;
+  robot_->run(10);
+  EXPECT_EQ(robot_->motor(0).acting, Acting::kHold);
+  asks = RobotRequest::kDisable;
+  robot_->run(10);
+  EXPECT_EQ(robot_->motor(0).acting, Acting::kNothing);
 }
 
 TEST_F(ModuleRunnerTest, MotorsThatAreEnabledTogetherAreAskedForInOneRequest) {

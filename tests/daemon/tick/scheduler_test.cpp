@@ -426,6 +426,18 @@ TEST_F(SchedulerTest, TheHeartbeatRestsSoLongAfterAnEstop) {
   EXPECT_GT(robot.scheduler().beats(), before + 19) << "cleared";
 }
 
+TEST_F(SchedulerTest, TheHeartbeatThatRestsInAnEstopRestsToTheEndOfTheProcess) {
+  robot.scheduler().restHeartbeatAfter(20ms);
+  enableAll();
+  (void)robot.order(Operation::kEstop);
+  robot.run(30);
+  const auto before = robot.scheduler().beats();
+  robot.scheduler().beginStop();
+  robot.run(20);
+  EXPECT_EQ(robot.snapshot().state, RobotStatus::kStopping);
+  EXPECT_EQ(robot.scheduler().beats(), before);
+}
+
 TEST_F(SchedulerTest, TheHeartbeatGoesOnInAnEstopUnlessItIsToldToRest) {
   enableAll();
   (void)robot.order(Operation::kEstop);

@@ -91,8 +91,20 @@ TEST_F(FallbackTest, StandstillEndsItOnlyAfterATimeWithoutMovement) {
 
 TEST_F(FallbackTest, StandstillNeverEndsAHold) {
   begin(FallbackAction::kHold, Fallback::Until::kStandstill, {.most = 10s});
+  EXPECT_EQ(after(10s - kInstant, true), FrameKind::kHold);
+  EXPECT_EQ(after(10s, true), FrameKind::kDamp) << "its load stood still because it was held";
+  EXPECT_EQ(after(10300ms - kInstant, true), FrameKind::kDamp);
+  EXPECT_EQ(after(10300ms, true), FrameKind::kRest) << "nothing moves";
+}
+
+TEST_F(FallbackTest, ALoadThatSinksAfterItsHoldIsDampedUntilItLies) {
+  begin(FallbackAction::kHold, Fallback::Until::kStandstill, {.most = 10s});
   EXPECT_EQ(after(9s, true), FrameKind::kHold);
-  EXPECT_EQ(after(10s, true), FrameKind::kRest) << "what it becomes then is none, and nothing moves";
+  EXPECT_EQ(after(10s, true), FrameKind::kDamp);
+  for (Duration sinking = 10100ms; sinking < 20s; sinking += 100ms)
+    ASSERT_EQ(after(sinking, false), FrameKind::kDamp);
+  EXPECT_EQ(after(20199ms, true), FrameKind::kDamp);
+  EXPECT_EQ(after(20200ms, true), FrameKind::kRest);
 }
 
 TEST_F(FallbackTest, AHoldIsBoundAndABrakeIsInAnEstopOfTheRobot) {
