@@ -31,7 +31,7 @@ buses:
          following_error_deg: 30}
       - {name: pitch, model: GM6020, id: 1, command: voltage, voltage_limit_v: 12, on_timeout: hold, on_disable: damp,
          on_estop: brake, hold_max_s: 1}
-      - {name: lift, model: M2006, id: 4, current_limit_a: 6, on_timeout: hold, on_disable: brake, on_estop: hold,
+      - {name: lift, model: M2006, id: 4, current_limit_a: 6, on_timeout: hold, on_disable: hold, on_estop: hold,
          hold_max_s: 0.5, angle_min_deg: 0, angle_max_deg: 2000, stall_ms: 300, stall_action: notify,
          simulated: {load_torque_nm: 0.3}}
 groups:
@@ -53,7 +53,7 @@ buses:
     type: sim
     motors:
       - {name: elbow, model: DM4340, id: 2, master_id: 18, control: position_velocity, velocity_limit_rpm: 30,
-         on_timeout: hold, on_disable: brake, on_estop: hold}
+         on_timeout: hold, on_disable: hold, on_estop: hold}
       - {name: gripper, model: DM4310, id: 4, master_id: 20, control: force_position, velocity_limit_rpm: 60,
          current_limit_a: 2, on_timeout: hold, on_estop: brake}
   - name: knees
