@@ -17,9 +17,9 @@ from robots import DAMIAO, DJI, FULL, SECONDS, Cost, Program, Robot, rc10d
 BUILD = Path(os.environ.get("RC10_BUILD", Path(__file__).resolve().parents[2] / "build" / "dev"))
 HOG_US = 3000
 # Thousands of instructions a millisecond of openarm_can's loop for the same four drives, of another
-# run: `bench/peers/run --openarm-can` of 2026-11-27. How much more the preset `dev` needs than
+# run: `bench/peers/run --openarm-can` of 2026-11-28. How much more the preset `dev` needs than
 # packages.
-OPENARM_CAN_K = 55.9
+OPENARM_CAN_K = 59.0
 DEV_TO_PACKAGE = 1.05
 
 
@@ -49,7 +49,7 @@ def test_four_drives_with_frames_of_their_own_cost_no_more_than_their_goal() -> 
 
 
 def test_eight_wheels_on_two_buses_cost_no_more_than_their_goal(wheels: Cost) -> None:
-    assert wheels.busy_k <= 80.0
+    assert wheels.busy_k <= 80.0 * DEV_TO_PACKAGE
 
 
 def test_frames_wake_the_rx_thread_only_if_it_receives(wheels: Cost) -> None:
