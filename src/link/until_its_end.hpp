@@ -10,7 +10,4 @@ inline constexpr std::string_view kDisableAtEnd = "disable_at_end";
 /// Value of `set_gains`: the gains of before are in force again then.
 inline constexpr std::string_view kRestoreAtEnd = "restore_at_end";
 
-/// Value of `disable`: it comes of itself as its client ends, and what is held or braked already stays so.
-inline constexpr std::string_view kAtEnd = "at_end";
-
 }  // namespace rc10::link

@@ -316,7 +316,7 @@ void Oracle::judgeFallback(std::size_t index) {
   auto& motor = motors_[index];
   const auto& fallback = motor.config->fallback;
   auto actions = motor.actions;
-  // What a hold has held moves after it at the earliest.
+  // A load that was held moves after that at the earliest.
   const bool holds = motor.actions == only(FallbackAction::kHold);
   if (motor.ends_at_standstill && (!holds || now_ - motor.acts_since >= fallback.hold_max + kSettled))
     actions |= only(FallbackAction::kCoast);

@@ -9,6 +9,7 @@ import sys
 from collections.abc import Iterator
 from pathlib import Path
 
+import descendants
 import pytest
 import under_load
 
@@ -29,13 +30,13 @@ class Observer:
     def wait(self, seconds: float) -> int:
         for pid in self.stopped:
             wait_for_state("T", pid)
-        self.state_of_spared = under_load.processes()[self.spared].state
+        self.state_of_spared = descendants.processes()[self.spared].state
         raise subprocess.TimeoutExpired("command", seconds)
 
 
 def wait_for_state(states: str, pid: int) -> None:
     """The time limit of the test ends this."""
-    while under_load.processes()[pid].state not in states:
+    while descendants.processes()[pid].state not in states:
         pass
 
 
@@ -58,7 +59,7 @@ def tree() -> Iterator[list[int]]:
 def test_all_descendants_are_stopped_and_go_on(tree: list[int]) -> None:
     parent, grandchild, spared = tree
     command = Observer(parent, grandchild, spared=spared)
-    under_load.pause(0.03, {spared}, command)  # type: ignore[arg-type]
+    under_load.pause(0.03, frozenset({spared}), command)  # type: ignore[arg-type]
     assert command.state_of_spared != "T"
     for pid in (parent, grandchild):
         wait_for_state("RSD", pid)
@@ -68,16 +69,16 @@ def test_what_somebody_else_has_stopped_stays_so(tree: list[int]) -> None:
     parent, grandchild, spared = tree
     os.kill(grandchild, 19)
     wait_for_state("T", grandchild)
-    under_load.pause(0.03, {spared}, Observer(parent, spared=spared))  # type: ignore[arg-type]
+    under_load.pause(0.03, frozenset({spared}), Observer(parent, spared=spared))  # type: ignore[arg-type]
     wait_for_state("RSD", parent)
-    assert under_load.processes()[grandchild].state == "T"
+    assert descendants.processes()[grandchild].state == "T"
 
 
 def test_whom_a_parent_stops_at_the_last_moment_stays_so(
     tree: list[int], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     parent, grandchild, spared = tree
-    send = under_load.send
+    send = descendants.send
 
     def stop_the_child_first(number: signal.Signals, pids: set[int]) -> None:
         if number == signal.SIGSTOP and parent in pids:
@@ -85,7 +86,7 @@ def test_whom_a_parent_stops_at_the_last_moment_stays_so(
         send(number, pids)
 
     monkeypatch.setattr(under_load, "send", stop_the_child_first)
-    under_load.pause(0.03, {spared}, Observer(parent, spared=spared))  # type: ignore[arg-type]
+    under_load.pause(0.03, frozenset({spared}), Observer(parent, spared=spared))  # type: ignore[arg-type]
     wait_for_state("RSD", parent)
     wait_for_state("T", grandchild)  # as soon as it has the processor
 

@@ -55,7 +55,7 @@ REPEAT_REQUEST_S = 0.1
 REPEAT_ESTOP_S = 0.02
 # Time that leaving may take: the lease of a client that is gone lapses by itself.
 RELEASE_TIMEOUT_S = 0.5
-# Of a disable request that nobody asked for: what an e-stop holds stays held.
+# Value of a disable request that nobody asked for: what an e-stop holds stays held.
 AT_END: Mapping[str, float] = {"at_end": 1.0}
 # Time for a state to show what an answer says: the slowest state_hz is one a second.
 SHOWN_S = 2.0

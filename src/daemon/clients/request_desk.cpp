@@ -15,7 +15,7 @@
 #include "daemon/clients/gain_request.hpp"
 #include "daemon/clients/scan_request.hpp"
 #include "daemon/clients/shaft_request.hpp"
-#include "link/until_its_end.hpp"
+#include "link/at_end.hpp"
 
 namespace rc10 {
 namespace {

@@ -65,7 +65,7 @@ struct Order {
   BusScanOrder scan{};       ///< kScan; `motors` are those of its bus.
   link::Name client{};       ///< The one that asked.
   bool whole_robot = false;  ///< Named no motor. Only such a kClear ends an e-stop.
-  /// Of a request that was taken before, or by itself, as a program ends: it is not one more kDisable.
+  /// A request that was taken before, or that comes of itself as a program ends: it is not one more kDisable.
   bool repeated = false;
 
   [[nodiscard]] bool fromModule() const noexcept { return id == kFromModule; }

@@ -98,7 +98,7 @@ class Fallback {
     if (kind_ == FrameKind::kCommand && now - begun_ >= ramp_.over + kRampRest) end();
     const bool becomes = acts() && bounded_ && now >= bound_ && kind_ != then_;
     if (becomes) kind_ = then_;
-    // What was held begins to move only now.
+    // A load that was held begins to move only now.
     if (!stands_still || becomes) moved_ = now;
     // A hold is for a load that would move by itself: it lasts for its whole time.
     const bool settled = now - moved_ >= kSettled && kind_ != FrameKind::kHold;

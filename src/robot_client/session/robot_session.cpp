@@ -14,7 +14,7 @@ namespace {
 using Lock = SessionCore::Lock;
 
 constexpr Duration kRelease = std::chrono::milliseconds{500};
-// Of a disable request that nobody asked for: what an e-stop holds stays held.
+// Value of a disable request that nobody asked for: what an e-stop holds stays held.
 constexpr const char* kAtEnd = "at_end";
 
 }  // namespace

@@ -11,7 +11,7 @@
 
 #include "daemon/described_robot.hpp"
 #include "daemon/link_messages.hpp"
-#include "link/until_its_end.hpp"
+#include "link/at_end.hpp"
 
 namespace rc10::test::request_desk_test {
 namespace {
