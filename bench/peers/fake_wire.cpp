@@ -214,7 +214,7 @@ void hog(std::int64_t busy_ns) {
   while (turns < 1000) turns = turns + 1;
 }
 
-// Of work(), where nothing interrupts it: the least of many.
+// Time of work() where nothing interrupts it: the least of many.
 double workNs() {
   constexpr int kTries = 1000;
   std::int64_t least = kMs;

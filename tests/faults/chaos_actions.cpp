@@ -146,6 +146,8 @@ void Chaos::act(Action action) {
     case Action::kDisable:
       motors = someMotors();
       order(Operation::kDisable, motors);
+      // Longer than what it holds is held: nothing else happens meanwhile.
+      if (choices_.oneIn(4)) ticks(1200);
       break;
     case Action::kClear:
       motors = choices_.oneIn(2) ? everyone : someMotors();
