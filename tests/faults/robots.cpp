@@ -33,7 +33,7 @@ buses:
          on_estop: brake, hold_max_s: 1}
       - {name: lift, model: M2006, id: 4, current_limit_a: 6, on_timeout: hold, on_disable: hold, on_estop: hold,
          hold_max_s: 0.5, angle_min_deg: 0, angle_max_deg: 2000, stall_ms: 300, stall_action: notify,
-         simulated: {load_torque_nm: 0.3}}
+         simulated: {load_torque_nm: 0.3, coulomb_nm: 0.05}}
 groups:
   - {name: drive, motors: [left, right, feeder], on_member_offline: stop_group, on_return: rearm_at_rest}
 )",
