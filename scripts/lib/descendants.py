@@ -8,13 +8,13 @@ from __future__ import annotations
 import contextlib
 import ctypes
 import os
+import select
 import signal
 import time
 from pathlib import Path
 from typing import NamedTuple
 
 PR_SET_CHILD_SUBREAPER = 36
-LOOK_S = 0.05
 
 
 class Process(NamedTuple):
@@ -69,7 +69,24 @@ def end_descendants(grace_s: float = 5.0) -> None:
     deadline = time.monotonic() + grace_s
     asked: set[int] = set()
     while living := {pid for pid, p in descendants().items() if p.state not in "ZX"}:
-        late = time.monotonic() > deadline
-        send(signal.SIGKILL if late else signal.SIGTERM, living if late else living - asked)
+        left_s = deadline - time.monotonic()
+        send(
+            signal.SIGKILL if left_s <= 0 else signal.SIGTERM,
+            living if left_s <= 0 else living - asked,
+        )
         asked |= living
-        time.sleep(LOOK_S)
+        wait_for_an_end(living, left_s if left_s > 0 else None)
+
+
+def wait_for_an_end(pids: set[int], timeout_s: float | None) -> None:
+    """Of one of them, at the most so long."""
+    with contextlib.ExitStack() as open_ones:
+        ends = select.poll()
+        for pid in pids:
+            try:
+                end = os.pidfd_open(pid)
+            except ProcessLookupError:
+                return  # it has ended
+            open_ones.callback(os.close, end)
+            ends.register(end, select.POLLIN)
+        ends.poll(None if timeout_s is None else timeout_s * 1000)

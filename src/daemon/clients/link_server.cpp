@@ -261,14 +261,19 @@ bool LinkServer::welcome(Connection& connection, std::span<const std::byte> data
   return connection.welcomed;
 }
 
-void LinkServer::command(const link::Command& message, const Speaker& speaker) {
-  const auto refusal = admission_.admit(message, speaker, monotonicNow(), accepted_);
-  // One that is late ends what its sender told these motors before, and is counted by the scheduler.
-  const bool late = admission_.lateButNew();
-  const bool handed_over =
-      (refusal == CommandRefusal::kNone || late) && sources_.exchange.commands.push(accepted_);
+// One that is late ends what its sender told before, and is counted by the scheduler.
+template <typename Push>
+CommandRefusal LinkServer::passOn(CommandRefusal refusal, bool late, Push push) {
+  const bool handed_over = (refusal == CommandRefusal::kNone || late) && push();
   const auto outcome = refusal == CommandRefusal::kNone && !handed_over ? CommandRefusal::kRingFull : refusal;
   if (!late || !handed_over) admission_.count(outcome);
+  return outcome;
+}
+
+void LinkServer::command(const link::Command& message, const Speaker& speaker) {
+  const auto refusal = admission_.admit(message, speaker, monotonicNow(), accepted_);
+  const auto outcome =
+      passOn(refusal, admission_.lateButNew(), [this] { return sources_.exchange.commands.push(accepted_); });
   if (outcome == CommandRefusal::kNotPermitted)
     return reportRefusal(outcome, speaker.connection, message.client, admission_.whyNotPermitted());
   if (outcome != CommandRefusal::kNone) {
@@ -283,12 +288,8 @@ void LinkServer::command(const link::Command& message, const Speaker& speaker) {
 
 void LinkServer::signals(const link::Signals& message, const Speaker& speaker) {
   const auto refusal = signal_admission_.admit(message, speaker, monotonicNow(), accepted_signals_);
-  // As with commands.
-  const bool late = signal_admission_.lateButNew();
-  const bool handed_over =
-      (refusal == CommandRefusal::kNone || late) && sources_.exchange.signals.push(accepted_signals_);
-  const auto outcome = refusal == CommandRefusal::kNone && !handed_over ? CommandRefusal::kRingFull : refusal;
-  if (!late || !handed_over) admission_.count(outcome);
+  const auto outcome = passOn(refusal, signal_admission_.lateButNew(),
+                              [this] { return sources_.exchange.signals.push(accepted_signals_); });
   if (outcome == CommandRefusal::kNotPermitted)
     return reportRefusal(outcome, speaker.connection, message.client, signal_admission_.whyNotPermitted());
   if (outcome != CommandRefusal::kNone) reportRefusal(outcome, speaker.connection, message.client);

@@ -55,6 +55,8 @@ class LinkServer {
   /// A defective message may still be an e-stop. False.
   [[nodiscard]] bool obeyEstop(std::span<const std::byte> datagram, Connection& connection);
   [[nodiscard]] bool welcome(Connection& connection, std::span<const std::byte> datagram);
+  template <typename Push>
+  [[nodiscard]] CommandRefusal passOn(CommandRefusal refusal, bool late, Push push);
   void command(const link::Command& message, const Speaker& speaker);
   void signals(const link::Signals& message, const Speaker& speaker);
   /// At most one of each reason a second; to the connection that is refused, one a second of any.

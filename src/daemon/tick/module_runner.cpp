@@ -139,33 +139,32 @@ void ModuleRunner::setTarget(std::size_t motor, const Target& target) noexcept {
   command_.setpoints[command_.count++] = {.motor = static_cast<std::uint16_t>(motor), .target = target};
 }
 
-void ModuleRunner::ask(RobotRequest request, std::size_t motor, double angle_deg) noexcept {
-  if (request == RobotRequest::kEstop) return askAll(request);
+Order ModuleRunner::orderOf(RobotRequest request) const noexcept {
   Order order;
   order.operation = operationOf(request);
   order.client = sender().client;
+  order.repeated = request == RobotRequest::kDisableUnasked;
+  return order;
+}
+
+void ModuleRunner::ask(RobotRequest request, std::size_t motor, double angle_deg) noexcept {
+  if (request == RobotRequest::kEstop) return askAll(request);
+  Order order = orderOf(request);
   order.motors.set(motor);
   order.value = angle_deg;
-  order.repeated = request == RobotRequest::kDisableUnasked;
   supervisor_.takeModuleOrder(order, tick_);
 }
 
 void ModuleRunner::ask(RobotRequest request, std::span<const std::size_t> motors) noexcept {
-  Order order;
-  order.operation = operationOf(request);
-  order.client = sender().client;
+  Order order = orderOf(request);
   for (const auto motor : motors) order.motors.set(motor);
-  order.repeated = request == RobotRequest::kDisableUnasked;
   supervisor_.takeModuleOrder(order, tick_);
 }
 
 void ModuleRunner::askAll(RobotRequest request) noexcept {
-  Order order;
-  order.operation = operationOf(request);
-  order.client = sender().client;
+  Order order = orderOf(request);
   for (std::size_t motor = 0; motor < motorCount(); ++motor) order.motors.set(motor);
   order.whole_robot = true;
-  order.repeated = request == RobotRequest::kDisableUnasked;
   supervisor_.takeModuleOrder(order, tick_);
 }
 

@@ -40,6 +40,7 @@ class ModuleRunner : private ModuleRobot {
   void take(const SignalMessage& message, const Tick& tick) noexcept;
   void handOver(const Tick& tick) noexcept;
   [[nodiscard]] Lease::Holder sender() const noexcept;
+  [[nodiscard]] Order orderOf(RobotRequest request) const noexcept;
 
   [[nodiscard]] RobotStatus state() const noexcept override { return supervisor_.robotState(); }
   [[nodiscard]] std::size_t motorCount() const noexcept override { return robot_.motors().size(); }

@@ -54,9 +54,8 @@ Target rpm(double value) { return {.mode = ControlMode::kVelocity, .value = valu
 
 class ModuleRunnerTest : public ::testing::Test {
  protected:
-  void start(const std::vector<std::pair<const ModuleType*, int>>& types,
-             FlightRecorder* recorder = nullptr) {
-    auto config = twoWheelsAndYaw();
+  void start(const std::vector<std::pair<const ModuleType*, int>>& types, FlightRecorder* recorder = nullptr,
+             RobotConfig config = twoWheelsAndYaw()) {
     for (const auto& [type, priority] : types) {
       ModuleConfig module;
       module.type = type;
@@ -282,12 +281,7 @@ TEST_F(ModuleRunnerTest, OnlyADisableThatSomebodyAskedForLetsGoOfWhatAnEstopBrak
   }};
   auto config = twoWheelsAndYaw();
   config.buses[0].motors[0].fallback.on_estop = FallbackAction::kHold;
-  ModuleConfig module;
-  module.type = &type;
-  module.settings.name = "module0";
-  config.modules.push_back(module);
-  robot_ = std::make_unique<VirtualRobot>(config);
-  robot_->run(10);
+  start({{&type, 0}}, nullptr, config);
   enable();
   asks = RobotRequest::kEstop;
   robot_->run(10);
@@ -308,12 +302,7 @@ TEST_F(ModuleRunnerTest, MotorsThatAreEnabledTogetherAreAskedForInOneRequest) {
   }};
   auto config = twoWheelsAndYaw();
   config.groups.push_back({.place = {}, .name = "lift", .motors = {0, 1}, .together = true});
-  ModuleConfig module;
-  module.type = &type;
-  module.settings.name = "module0";
-  config.modules.push_back(module);
-  robot_ = std::make_unique<VirtualRobot>(config);
-  robot_->run(10);
+  start({{&type, 0}}, nullptr, config);
   enable_now = true;
   robot_->run(5);
   EXPECT_EQ(robot_->motor(0).status, MotorStatus::kActive);
