@@ -79,7 +79,7 @@ def end_descendants(grace_s: float = 5.0) -> None:
 
 
 def wait_for_an_end(pids: set[int], timeout_s: float | None) -> None:
-    """Of one of them, at the most so long."""
+    """Returns when one of them has ended, or after so long."""
     with contextlib.ExitStack() as open_ones:
         ends = select.poll()
         for pid in pids:
