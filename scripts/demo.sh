@@ -134,6 +134,9 @@ fi
 
 # ---- from here on in the namespace, if there is one
 
+# Of the caller's network: the demo's is in config/demo.yaml.
+unset LCM_DEFAULT_URL
+
 bin=$build_tree/bin
 log=$RC10_RUN_DIR/rc10d.log
 rc10d='' clients=() ended=

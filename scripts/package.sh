@@ -46,11 +46,15 @@ if ! (cd "$repo" && umask 022 \
     cat "$packages/cpack.log" >&2
     exit 1
 fi
+# Those of earlier versions go; the other architecture's stay.
+architecture=$(dpkg-deb --field "$(find "$tree/packages" -name '*.deb' -print -quit)" Architecture)
+rm -f "$packages"/rc10*_"$architecture".deb
 cp "$tree"/packages/*.deb "$packages"
 rm -rf "$packages/cpack.log" "$tree/packages"
 
 if [ -n "$wheel" ]; then
     need_python
+    rm -f "$packages"/*.whl
     "$RC10_PYTHON" -m pip --quiet --disable-pip-version-check wheel --no-deps --no-build-isolation \
         --wheel-dir "$packages" "$repo/python"
 fi

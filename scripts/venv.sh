@@ -35,6 +35,11 @@ if [ -L "$venv" ]; then
     echo "venv: $venv is a link: remove it, or say with RC10_VENV where the environment shall be" >&2
     exit 1
 fi
+# Making an environment empties its folder.
+if [ -n "$(ls -A "$venv" 2>/dev/null)" ] && [ ! -e "$venv/pyvenv.cfg" ]; then
+    echo "venv: $venv has files that are no Python environment: remove them, or name another folder with RC10_VENV" >&2
+    exit 1
+fi
 mkdir -p "$venv"
 venv=$(cd "$venv" && pwd -P)
 exec 9<"$venv"

@@ -25,16 +25,18 @@ class Client:
 
 # Feedback has no age, error frames are not read, nor what was sent; nothing stops when the program
 # hangs; a motor has no limits but those of its frame.
-NO_SUPERVISION = "ages, errors, echo, watchdog, limits"
+NO_SUPERVISION = "ages, error frames, echo, watchdog, limits"
+# They can set the watchdog of a drive.
+NO_WATCHDOG_SET = "ages, error frames, echo; the drive's watchdog is not set here; limits"
 NAIVE = Client("python-can, naive loop", "client_python_can.py", NO_SUPERVISION)
-DAMIAO_MOTOR = Client("damiao-motor", "client_damiao.py", NO_SUPERVISION)
+DAMIAO_MOTOR = Client("damiao-motor", "client_damiao.py", NO_WATCHDOG_SET)
 # They speak to the kernel's CAN and to nothing else.
 BCM = Client(
     "python-can, BCM",
     "client_python_can_bcm.py",
     NO_SUPERVISION + "; the kernel sends, and goes on after a hang",
 )
-MOTORBRIDGE = Client("motorbridge", "client_motorbridge.py", NO_SUPERVISION)
+MOTORBRIDGE = Client("motorbridge", "client_motorbridge.py", NO_WATCHDOG_SET)
 
 
 def install() -> None:

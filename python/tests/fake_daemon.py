@@ -86,12 +86,13 @@ class FakeDaemon:
         self.publish_state()
         self.link.after(1.0 / hz, lambda: self.publish_states(hz))
 
-    def publish_event(self, text: str, code: int = 42, client: str = "") -> None:
+    def publish_event(self, text: str, code: int = 42, client: str = "", mono_us: int = 0) -> None:
         message = event_t()
         message.severity = event_t.SEVERITY_WARNING
         message.code = code
         message.source = "wheel"
         message.client = client
+        message.mono_us = mono_us
         message.text = text
         self.link.publish(self.channel("event"), message.encode())
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import asyncio
+import contextlib
 import functools
 from collections.abc import AsyncIterator, Awaitable
 from contextlib import asynccontextmanager
@@ -226,6 +227,23 @@ async def test_a_move_is_awaited_and_its_target_held(
     while len(daemon.commands) < sent + 3:
         await robot.wait_for_state()
     assert setpoints(daemon.commands[-1])["wheel"] == (setpoint_t.MODE_TOTAL_ANGLE, 720)
+
+
+@in_loop
+async def test_a_move_that_is_cancelled_is_not_sent_any_more(
+    robot: aio.Robot, daemon: ObedientDaemon
+) -> None:
+    await robot.wait_for_state()
+    await robot.enable("wheel")
+    task = asyncio.create_task(robot.move_to("wheel", 720, timeout_s=PATIENCE_S))
+    while not daemon.commands:
+        await robot.wait_for_state()
+    task.cancel()
+    with contextlib.suppress(asyncio.CancelledError):
+        await task
+    for _ in range(3):
+        await robot.wait_for_state()
+    assert daemon.commands[-1].validity_ms == 1, "its target ends now"
 
 
 @in_loop

@@ -233,3 +233,34 @@ def test_a_motor_that_another_client_takes_after_the_move_is_let_go(
     for _ in range(50):
         robot.wait_for_state()
     assert len(daemon.commands) == sent
+
+
+def test_a_move_that_ended_is_not_sent_on_when_the_motor_has_not_obeyed_meanwhile(
+    robot: rc10.Robot, daemon: MovingDaemon, link: VirtualLink
+) -> None:
+    robot.wait_for_state()
+    daemon.angle_deg = 720
+    assert robot.move_to("wheel", 720).result()
+    sent = len(daemon.commands)
+    # The program waits for somebody: its target lapses, and the motor is disabled and enabled.
+    daemon.owner = ""
+    link.pass_time(60.0)
+    for _ in range(50):
+        robot.wait_for_state()
+    assert len(daemon.commands) == sent
+
+
+def test_a_motor_that_was_disabled_and_enabled_between_two_states_is_not_driven(
+    robot: rc10.Robot, daemon: MovingDaemon
+) -> None:
+    robot.wait_for_state()
+    move = robot.move_to("wheel", 720)
+    robot.wait_for_state()
+    daemon.publish_event(
+        "ACTIVE -> READY (disabled by 'panel')", code=100, mono_us=robot.state.mono_us + 1
+    )
+    sent = len(daemon.commands)
+    for _ in range(50):
+        robot.wait_for_state()
+    assert move.result().reason == "wheel: ACTIVE -> READY (disabled by 'panel')"
+    assert len(daemon.commands) <= sent + 1

@@ -26,7 +26,7 @@ from typing import TYPE_CHECKING, NamedTuple
 from xml.etree import ElementTree as ET
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable
+    from collections.abc import Iterable, Sequence
 
 REPO = Path(__file__).resolve().parents[2]
 WORK = REPO / "build" / "mutants"
@@ -159,16 +159,20 @@ class Tree:
         self.root = WORK / f"tree-{number}"
         self.build = WORK / f"build-{number}"
         self.tests: dict[str, dict[Path, list[str]]] = {program: {} for program in TESTS}
+        self.changed: Path | None = None
         listed = subprocess.run(
             ["git", "ls-files", "-co", "--exclude-standard", "-z"],
             cwd=REPO,
             check=True,
             capture_output=True,
         )
-        for name in listed.stdout.decode().split("\0"):
+        names = [name for name in listed.stdout.decode().split("\0") if (REPO / name).is_file()]
+        # CMake would find what has been moved or removed since.
+        copies = {file for file in self.root.rglob("*") if file.is_file()}
+        for old in copies - {self.root / name for name in names}:
+            old.unlink()
+        for name in names:
             source, copy = REPO / name, self.root / name
-            if not name or not source.is_file():
-                continue
             # Unchanged text keeps its time: it is not compiled again.
             if not copy.exists() or copy.read_bytes() != source.read_bytes():
                 copy.parent.mkdir(parents=True, exist_ok=True)
@@ -202,14 +206,16 @@ class Tree:
                 with contextlib.suppress(ProcessLookupError):
                     os.killpg(running.pid, signal.SIGKILL)
                 running.communicate()
+                if check:
+                    sys.exit(f"mutants: {command[0]} took more than {timeout_s} s")
                 return False
         if check and running.returncode != 0:
             sys.exit(output.decode(errors="replace"))
         return running.returncode == 0
 
-    def compile(self, check: bool = False) -> bool:
-        """Builds the tests."""
-        return self.run(["ninja", "-C", self.build, *TESTS], check)
+    def compile(self, programs: Sequence[str] = TESTS, check: bool = False) -> bool:
+        """Builds the tests, or some of their programs."""
+        return self.run(["ninja", "-C", self.build, *programs], check)
 
     def list_tests(self) -> None:
         """Notes the names of all tests by the file that has them."""
@@ -240,33 +246,43 @@ class Tree:
             for name in names
         ]
 
-    def passes(self, check: bool = False, only: str | None = None) -> bool:
-        """Whether all tests pass, or those of one source."""
-        for program in TESTS:
+    def passes(
+        self, programs: Sequence[str] = TESTS, check: bool = False, only: str | None = None
+    ) -> bool:
+        """Whether all tests of these programs pass, or those of one source."""
+        for program in programs:
             command: list[str | Path] = ["prlimit", f"--cpu={TEST_CPU_S}"]
             command += [self.build / "tests" / program]
             command += ["--gtest_fail_fast", "--gtest_brief=1"]
             if only is not None:
-                names = self.mirrored(program, only)
-                if not names:
-                    continue
-                command.append("--gtest_filter=" + ":".join(names))
+                command.append("--gtest_filter=" + ":".join(self.mirrored(program, only)))
             if not self.run(command, check, TEST_PATIENCE_S):
                 return False
         return True
 
+    def restore(self) -> None:
+        """Undoes the last mutant."""
+        if self.changed is not None:
+            shutil.copyfile(REPO / self.changed, self.root / self.changed)
+            self.changed = None
+
     def judge(self, mutant: Mutant) -> str:
         """`killed`, `lives`, or `invalid`: it does not compile."""
-        file = self.root / mutant.file
-        original = file.read_text(encoding="utf-8")
-        file.write_text(mutant.text, encoding="utf-8")
-        try:
-            if not self.compile():
+        # The next mutant of a file takes its place: its objects are compiled once, not twice.
+        if self.changed != Path(mutant.file):
+            self.restore()
+        self.changed = Path(mutant.file)
+        (self.root / mutant.file).write_text(mutant.text, encoding="utf-8")
+        # Most are noticed by the tests of their own file, in one program.
+        own = [program for program in TESTS if self.mirrored(program, mutant.file)]
+        if own:
+            if not self.compile(own):
                 return "invalid"
-            # Most are noticed by the tests of their own file.
-            return "lives" if self.passes(only=mutant.file) and self.passes() else "killed"
-        finally:
-            file.write_text(original, encoding="utf-8")
+            if not self.passes(own, only=mutant.file):
+                return "killed"
+        if not self.compile():
+            return "invalid"
+        return "lives" if self.passes() else "killed"
 
 
 def part_of(text: str) -> tuple[int, int]:
@@ -325,24 +341,24 @@ def main() -> int:
     counts = {"killed": 0, "lives": 0, "invalid": 0}
 
     def judge(mutant: Mutant) -> tuple[Mutant, str]:
-        if counts["killed"] + counts["lives"] >= count:
-            return mutant, "enough"
         tree = trees.get()
         try:
             return mutant, tree.judge(mutant)
         finally:
             trees.put(tree)
 
+    tried = 0
     with concurrent.futures.ThreadPoolExecutor(given.jobs) as pool:
-        for mutant, verdict in pool.map(judge, sample):
-            if verdict == "enough":
-                continue
-            counts[verdict] += 1
-            if verdict == "lives":
-                print(f"lives: {mutant}", flush=True)
-            if verdict != "invalid" and (counts["killed"] + counts["lives"]) % PROGRESS == 0:
-                print(f"so far: {counts}", flush=True)
-    tried = counts["killed"] + counts["lives"]
+        # As many as are wanted; then as many again as did not compile.
+        while tried < count and sample:
+            batch, sample = sample[: count - tried], sample[count - tried :]
+            for mutant, verdict in pool.map(judge, sorted(batch, key=lambda each: each.file)):
+                counts[verdict] += 1
+                if verdict == "lives":
+                    print(f"lives: {mutant}", flush=True)
+                if sum(counts.values()) % PROGRESS == 0:
+                    print(f"so far: {counts}", flush=True)
+            tried = counts["killed"] + counts["lives"]
     share = counts["killed"] / tried if tried else 0.0
     killed, invalid = counts["killed"], counts["invalid"]
     print(f"{tried} tried, {killed} killed ({100 * share:.1f} %), {invalid} did not compile")

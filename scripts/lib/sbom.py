@@ -17,6 +17,7 @@ import re
 import subprocess
 import sys
 import zipfile
+from email.message import Message
 from email.parser import HeaderParser
 from pathlib import Path
 
@@ -60,6 +61,7 @@ class Bill:
             **({"versionInfo": version} if version else {}),
             **more,
         }
+        key = str(entry["SPDXID"])
         self.packages.setdefault(key, entry)
         return key
 
@@ -70,10 +72,12 @@ class Bill:
 
 
 def shipped(bill: Bill, file: Path, name: str, version: str, purl: str) -> str:
+    # By its file: there may be one for each architecture, and packages of other versions.
     key = bill.add(
         name,
         version,
         purl,
+        SPDXID=spdx_id("File", file.name),
         packageFileName=file.name,
         licenseDeclared="Apache-2.0",
         copyrightText="2026 the authors of rc10d",
@@ -83,21 +87,28 @@ def shipped(bill: Bill, file: Path, name: str, version: str, purl: str) -> str:
     return key
 
 
-def add_deb(bill: Bill, file: Path) -> str:
-    """A Debian package and those that it depends on, with their conditions as versions."""
-    fields = HeaderParser().parsestr(
-        subprocess.run(
-            ["dpkg-deb", "--field", file], capture_output=True, text=True, check=True
-        ).stdout
-    )
-    name, version, arch = fields["Package"], fields["Version"], fields["Architecture"]
-    key = shipped(bill, file, name, version, f"pkg:deb/debian/{name}@{version}?arch={arch}")
-    for word in fields.get("Depends", "").split(","):
-        found = DEPENDENCY.match(word.strip())
-        if found:
-            other = bill.add(found[1], found[2] or "", f"pkg:deb/debian/{found[1]}")
-            bill.relate(key, "DEPENDS_ON", other)
-    return key
+def fields_of(deb: Path) -> Message:
+    done = subprocess.run(["dpkg-deb", "--field", deb], capture_output=True, text=True, check=True)
+    return HeaderParser().parsestr(done.stdout)
+
+
+def add_debs(bill: Bill, files: list[Path]) -> list[str]:
+    """Debian packages and those that they depend on, with their conditions as versions."""
+    fields = [fields_of(file) for file in files]
+    keys: dict[tuple[str, str], str] = {}
+    for file, of in zip(files, fields, strict=True):
+        name, version, arch = of["Package"], of["Version"], of["Architecture"]
+        purl = f"pkg:deb/debian/{name}@{version}?arch={arch}"
+        keys[name, arch] = shipped(bill, file, name, version, purl)
+    for of in fields:
+        name, arch = of["Package"], of["Architecture"]
+        for word in of.get("Depends", "").split(","):
+            if found := DEPENDENCY.match(word.strip()):
+                other = keys.get((found[1], arch)) or bill.add(
+                    found[1], found[2] or "", f"pkg:deb/debian/{found[1]}"
+                )
+                bill.relate(keys[name, arch], "DEPENDS_ON", other)
+    return list(keys.values())
 
 
 def add_wheel(bill: Bill, file: Path) -> None:
@@ -119,7 +130,7 @@ def add_wheel(bill: Bill, file: Path) -> None:
 
 def document(folder: Path, build_packages: Path) -> dict[str, object]:
     bill = Bill()
-    programs = [add_deb(bill, file) for file in sorted(folder.glob("*.deb"))]
+    programs = add_debs(bill, sorted(folder.glob("*.deb")))
     if not programs:
         sys.exit(f"sbom: there is no package in {folder}")
     for file in sorted(folder.glob("*.whl")):

@@ -13,12 +13,12 @@ import argparse
 import codecs
 import fcntl
 import os
-import re
 import select
 import signal
 import struct
 import subprocess
 import sys
+import tempfile
 import termios
 import time
 from pathlib import Path
@@ -43,6 +43,7 @@ COLOURS = {
     "magenta": "#c792ea",
     "cyan": "#6cc7cf",
 }
+INSIDE = "RC10_SCREENSHOTS_INSIDE"
 # So many pictures of the sparkline, and as often.
 SPARK_PICTURES, HZ = 60, 8
 PLOTTED = ("front_left.velocity_rpm", "front_left.target", "yaw.angle_deg")
@@ -50,9 +51,9 @@ PLOTTED = ("front_left.velocity_rpm", "front_left.target", "yaw.angle_deg")
 
 def enter_namespace() -> None:
     """LCM's multicast goes to a loopback of our own, as in the demo."""
-    if os.environ.get("RC10_DEMO_LCM") == "yes":
+    if os.environ.get(INSIDE) == "yes":
         return
-    os.environ["RC10_DEMO_LCM"] = "yes"
+    os.environ[INSIDE] = "yes"
     # Root's own rights make it real-time.
     way = ["unshare", "--net"] if os.geteuid() == 0 else ["unshare", "--net", "--map-root-user"]
     os.execvp(way[0], [*way, sys.executable, *sys.argv])
@@ -107,7 +108,18 @@ def main() -> None:
     options = parser.parse_args()
     enter_namespace()
     build = options.build.resolve()
-    env = {**os.environ, "RC10_BUILD": str(build), "RC10_PYTHON": sys.executable}
+    # The second half of the demo, which makes no namespace: this program reads its LCM.
+    folder = tempfile.mkdtemp(prefix="rc10-screenshots.")
+    env = {
+        **os.environ,
+        "RC10_BUILD": str(build),
+        "RC10_PYTHON": sys.executable,
+        "RC10_DEMO_LCM": "yes",
+        "RC10_DEMO_WEB": "",
+        "RC10_DEMO_PAGE": "",
+        "RC10_RUN_DIR": folder,
+        "RC10_STATE_DIR": folder,
+    }
     demo = subprocess.Popen(
         [REPO / "scripts" / "demo.sh", "--seconds", "600"],
         env=env,
@@ -116,10 +128,8 @@ def main() -> None:
     )
     assert demo.stdout is not None
     try:
-        for line in demo.stdout:
-            if found := re.search(r"RC10_RUN_DIR=(\S+) \S+ watch$", line):
-                env["RC10_RUN_DIR"] = found[1]
-                break
+        if not any(line.rstrip().endswith(" watch") for line in demo.stdout):
+            sys.exit("screenshots: the demo did not start")
         watch = [
             str(build / "bin" / "rc10ctl"),
             "watch",

@@ -14,6 +14,7 @@ clang-tidy itself changes: RC10_CACHE (default ~/.cache/rc10) remembers, for eve
 from __future__ import annotations
 
 import argparse
+import contextlib
 import hashlib
 import json
 import os
@@ -82,8 +83,10 @@ def check(build: Path, tool: bytes, entry: dict[str, str]) -> str:
     )
     if done.returncode == 0:
         if digest is not None:
-            stamp.parent.mkdir(parents=True, exist_ok=True)
-            stamp.touch()
+            # Where nothing can be written it is checked again.
+            with contextlib.suppress(OSError):
+                stamp.parent.mkdir(parents=True, exist_ok=True)
+                stamp.touch()
         return ""
     return done.stdout or done.stderr or f"{entry['file']}: status {done.returncode}\n"
 

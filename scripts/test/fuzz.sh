@@ -8,6 +8,13 @@ need build test lint
 seconds=${RC10_FUZZ_SECONDS:-10}
 findings=$repo/build/asan/findings
 
+# libFuzzer takes 0 as for ever.
+if ! [[ $seconds =~ ^[1-9][0-9]*$ ]]; then
+    echo "FAILED fuzz: RC10_FUZZ_SECONDS=$seconds: give a whole number of seconds above 0"
+    echo "0 passed, 1 failed, 0 skipped"
+    exit 1
+fi
+
 # Findings stay in build/asan/findings: give the file to the target to see one again.
 fuzz() {
     local target=$1 name corpus log=$scratch/$2.log
@@ -31,7 +38,9 @@ judge() {
 # One target on each core.
 if must_build asan tests/fuzz/all; then
     declare -A pids=()
-    for target in "$repo"/build/asan/fuzz/*_fuzz; do
+    # By their sources: Ninja leaves the programs of those that are gone.
+    for source in "$repo"/tests/fuzz/*_fuzz.cpp; do
+        target=$repo/build/asan/fuzz/$(basename "$source" .cpp)
         while [ "$(jobs -rp | wc -l)" -ge "${RC10_JOBS:-$(nproc)}" ]; do wait -n || true; done
         name=$(basename "$target")
         fuzz "$target" "$name" &

@@ -77,7 +77,7 @@ void BusHealth::update(MonotonicTime now, const Traffic& traffic) noexcept {
   const bool sent = traffic.tx_watched != seen_.tx_watched;
   const bool echoed = traffic.tx_confirmed != seen_.tx_confirmed;
   // Any echo counts, also of another frame: one lost frame must not stall the bus for ever.
-  if (!carrying || !traffic.echo_available || echoed) {
+  if (!carrying || traffic.echo_reads == 0 || echoed) {
     echo_pending_ = false;
     stalled_ = false;
   } else if (sent && !echo_pending_) {
@@ -85,7 +85,7 @@ void BusHealth::update(MonotonicTime now, const Traffic& traffic) noexcept {
     echo_pending_since_ = now;
     echo_pending_ticks_ = 0;
   } else if (echo_pending_ && echo_pending_ticks_ < config_.stalled_ticks) {
-    ++echo_pending_ticks_;
+    if (traffic.echo_reads != seen_.echo_reads) ++echo_pending_ticks_;
   }
   // Once stalled we stop sending, so only an echo or the link's return ends it.
   if (echo_pending_ && now - echo_pending_since_ >= config_.stalled_after &&

@@ -24,8 +24,8 @@ class BusHealth {
   struct Config {
     Duration silent_after{std::chrono::milliseconds{100}};
     Duration stalled_after{std::chrono::milliseconds{5}};
-    /// Ticks without an echo. Only ticks that ran count: after a pause of the whole computer the echo waits
-    /// to be read.
+    /// Ticks without an echo. Only ticks before which the echoes were read count: after a pause of the
+    /// computer, or of the thread that reads, one may wait.
     int stalled_ticks = 5;
   };
 
@@ -34,7 +34,7 @@ class BusHealth {
     std::uint64_t rx_frames = 0;     ///< Since start.
     std::uint64_t tx_watched = 0;    ///< Frames of the watched ids handed to the kernel, since start.
     std::uint64_t tx_confirmed = 0;  ///< Their echoes, since start.
-    bool echo_available = false;     ///< There is an echo socket; false: stalled is never reported.
+    std::uint64_t echo_reads = 0;    ///< Times that all echoes were read; 0: no echo socket, no stall.
     bool feedback_expected = true;   ///< Motors on this bus talk without being asked.
   };
 

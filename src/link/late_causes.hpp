@@ -32,9 +32,8 @@ inline constexpr std::array<LateCauseWords, kLateCauses> kLateCauseWords{{
      "it "
      "(docs/realtime.md), or raise scheduler.priority"},
     {"late ticks: timer",
-     "nobody else ran: interrupts off, a CPU in deep sleep, or a computer or process that paused; see "
-     "rc10ctl "
-     "doctor"},
+     "it was woken late: interrupts off, a CPU in deep sleep, a computer or process that paused, or "
+     "timer: timerfd on PREEMPT_RT, which any real-time thread holds up; see rc10ctl doctor"},
     {"late ticks: receiving", "many frames or bytes at once: see the load of the buses, and foreign senders"},
     {"late ticks: modules", "orders and modules took long: a lower rate_hz, or fewer modules"},
     {"late ticks: control", "the loops of the motors took long: a lower rate_hz, or a faster CPU"},

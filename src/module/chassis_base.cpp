@@ -125,7 +125,12 @@ Chassis_Base::Chassis_Base(const OwnValues& own, std::vector<std::size_t> motors
 
 Result<void> Chassis_Base::connect(const ModuleDirectory& others) {
   if (auto found = find(heading_, heading_name_, "heading", others); !found) return found;
-  return find(follow_, follow_name_, "follow", others);
+  if (auto found = find(follow_, follow_name_, "follow", others); !found) return found;
+  // A gimbal says apart from that when it may be turned after.
+  turn_after_ = follow_;
+  const auto module = follow_name_.substr(0, follow_name_.find('.'));
+  if (const auto own = others.findOutput(module + ".turn_after_deg")) turn_after_ = *own;
+  return {};
 }
 
 void Chassis_Base::update(const Tick& tick, ModuleRobot& robot) noexcept {
@@ -165,8 +170,9 @@ Twist2D Chassis_Base::wanted(const ModuleRobot& robot) const noexcept {
     if (!std::isfinite(gimbal_deg)) return {};
     twist = seenFrom(-gimbal_deg, twist);
   }
-  if (finiteOr0(input(kTurnAfter)) >= 0.5 && std::isfinite(gimbal_deg))
-    twist.wz_deg_s += follow_gain_per_s_ * wrapHalfTurn(gimbal_deg);
+  const double turn_after_deg = turn_after_ ? robot.read(*turn_after_) : kNoSignal;
+  if (finiteOr0(input(kTurnAfter)) >= 0.5 && std::isfinite(turn_after_deg))
+    twist.wz_deg_s += follow_gain_per_s_ * wrapHalfTurn(turn_after_deg);
   return twist;
 }
 

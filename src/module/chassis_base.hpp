@@ -64,6 +64,7 @@ class Chassis_Base : public Module_Base {
   std::string follow_name_;
   std::optional<SignalPlace> heading_;
   std::optional<SignalPlace> follow_;
+  std::optional<SignalPlace> turn_after_;  ///< That angle, while turning brings it nearer.
   TwistSlewLimiter slew_;
   PlanarOdometry odometry_;
   MotionMatch heading_match_;

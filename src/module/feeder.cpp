@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <utility>
 
 namespace rc10 {
 namespace {
@@ -121,6 +122,11 @@ class Feeder : public Module_Base {
     if (std::isfinite(turned_deg) && shots_left_deg_ > 0.0)
       shots_left_deg_ = std::max(0.0, shots_left_deg_ - turned_deg);
     last_deg_ = feedback.total_angle_deg;
+    // Each sender has a count of its own.
+    if (std::exchange(counted_for_, senderCount()) != senderCount()) {
+      last_shots_ = kNoSignal;
+      shots_left_deg_ = 0.0;
+    }
     const double shots = commanded() ? input(kShots) : kNoSignal;
     if (std::isfinite(shots) && std::isfinite(last_shots_) && shots > last_shots_)
       shots_left_deg_ = std::min(shots_left_deg_ + std::min(shots - last_shots_, kMostShots) * deg_per_shot_,
@@ -193,6 +199,7 @@ class Feeder : public Module_Base {
   State state_ = State::kIdle;
   double shots_left_deg_ = 0.0;
   double last_shots_ = kNoSignal;
+  std::uint32_t counted_for_ = 0;  ///< The sender of last_shots_.
   double last_deg_ = kNoSignal;
   int in_a_row_ = 0;  ///< Jams without a success between them.
   long jams_ = 0;

@@ -83,7 +83,7 @@ ModuleSignals gimbalSignals() {
   return {
       .inputs = {"yaw_deg", "pitch_deg", "yaw_rate_deg_s", "pitch_rate_deg_s"},
       .outputs = {"yaw_deg", "pitch_deg", "relative_yaw_deg", "target_yaw_deg", "target_pitch_deg",
-                  "stabilised", "imu_lag_ms", "imu_agrees"},
+                  "stabilised", "imu_lag_ms", "imu_agrees", "turn_after_deg"},
       .events = {{.text = "the inertial sensor is not heard: the gimbal holds to the chassis"},
                  {.text = "the inertial sensor is heard: the gimbal holds to the world", .expected = true},
                  {.text = "nobody has commanded it for silence_max_s: it holds its direction no longer"},
@@ -137,9 +137,11 @@ class Gimbal : public Module_Base {
     const bool restarts = !ready || !was_ready_;
     if (restarts || stabilised != was_stabilised_) {
       if (!restarts && !opposed(kImuYaw)) robot.report(stabilised ? kBack : kLost);
-      yaw_.hold(yaw_deg);
     }
-    if (restarts || by_imu_pitch != was_by_imu_pitch_) pitch_.hold(pitch_deg);
+    // Until it is commanded it may be turned by hand, or sag: it begins where it looks then.
+    const bool idle = restarts || !was_commanded_;
+    if (idle || stabilised != was_stabilised_) yaw_.hold(yaw_deg);
+    if (idle || by_imu_pitch != was_by_imu_pitch_) pitch_.hold(pitch_deg);
     if (was_ready_ && !ready) forgetOpposed();
     was_ready_ = ready;
     was_stabilised_ = stabilised;
@@ -149,7 +151,11 @@ class Gimbal : public Module_Base {
     holdOn(ready, tick, robot);
     setOutput(kOutYaw, wrapHalfTurn(yaw_deg));
     setOutput(kOutPitch, pitch_deg);
-    setOutput(kRelativeYaw, yaw.zeroed ? wrapHalfTurn(static_cast<double>(yaw.angle_deg)) : kNoSignal);
+    const bool yaw_known = yaw.zeroed && robot.status(yaw_motor_) != MotorStatus::kOffline;
+    const double relative_deg = yaw_known ? wrapHalfTurn(static_cast<double>(yaw.angle_deg)) : kNoSignal;
+    setOutput(kRelativeYaw, relative_deg);
+    // Only a direction of the world comes nearer when the chassis turns after it.
+    setOutput(kTurnAfter, stabilised && was_commanded_ ? relative_deg : kNoSignal);
     setOutput(kTargetYaw, wrapHalfTurn(yaw_.target()));
     setOutput(kTargetPitch, pitch_.target());
     setOutput(kStabilised, stabilised ? 1.0 : 0.0);
@@ -167,7 +173,8 @@ class Gimbal : public Module_Base {
     kTargetPitch,
     kStabilised,
     kImuLagMs,
-    kImuAgrees
+    kImuAgrees,
+    kTurnAfter
   };
   enum EventPlace : std::size_t { kLost, kBack, kSilent, kFirstOpposed };
   enum ImuSignal : std::size_t { kImuYaw, kImuYawRate, kImuPitch, kImuSignals };

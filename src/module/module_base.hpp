@@ -87,12 +87,16 @@ class Module_Base {
 
   /// Present values of the inputs, for the scheduler and for tests. NaN: not given.
   void setInputs(std::span<const double> values) noexcept;
+  /// Before setInputs(): who gives them from now on is another than before.
+  void changeSender() noexcept { ++sender_; }
   void clearInputs() noexcept;
   [[nodiscard]] std::span<const double> outputs() const noexcept { return outputs_; }
 
  protected:
   /// NaN: not given. Inputs are given together: a message replaces all of them until its validity ends.
   [[nodiscard]] double input(std::size_t index) const noexcept { return inputs_[index]; }
+  /// Changes when somebody else gives the inputs: what one has counted is nothing to another.
+  [[nodiscard]] std::uint32_t senderCount() const noexcept { return sender_; }
   /// Whether somebody commands this module now.
   [[nodiscard]] bool commanded() const noexcept { return commanded_; }
   void setOutput(std::size_t index, double value) noexcept { outputs_[index] = value; }
@@ -107,6 +111,7 @@ class Module_Base {
   std::vector<double> inputs_;
   std::vector<double> outputs_;
   bool commanded_ = false;
+  std::uint32_t sender_ = 0;
 };
 
 /// All modules of a robot, by name.

@@ -184,8 +184,10 @@ class Remote : public Module_Base {
     if (heard) {
       robot.hearClient();
       watchArm(tick, robot);
-      arm(tick, robot);
     }
+    // What the switch has asked for ends with an e-stop: its end enables nothing.
+    if (robot.state() != RobotStatus::kRun) arming_until_ = tick.now;
+    if (heard) arm(tick, robot);
     if (heard && (armed_ || !arm_channel_)) command(robot);
     show(heard, age);
   }
@@ -237,7 +239,7 @@ class Remote : public Module_Base {
     if (!armed_ || tick.now >= arming_until_) return;
     for (std::size_t motor = 0; motor < was_active_.size(); ++motor)
       was_active_[motor] = was_active_[motor] || robot.status(motor) == MotorStatus::kActive;
-    if (tick.now < next_try_ || robot.state() != RobotStatus::kRun) return;
+    if (tick.now < next_try_) return;
     next_try_ = tick.now + kArmingRetry;
     std::size_t ready = 0;
     for (std::size_t motor = 0; motor < was_active_.size(); ++motor) {

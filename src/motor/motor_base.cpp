@@ -19,11 +19,14 @@ std::string describe(const Motor_Base& motor, int drive_id) {
          std::to_string(drive_id) + ")";
 }
 
+bool Motor_Base::acceptsTarget(const Target& target) const noexcept {
+  return static_cast<int>(target.mode) < kControlModeCount && modes().contains(target.mode) &&
+         finite(normalised(target));
+}
+
 bool Motor_Base::setTarget(const Target& target) noexcept {
-  if (static_cast<int>(target.mode) >= kControlModeCount || !modes().contains(target.mode)) return false;
-  const Target accepted = normalised(target);
-  if (!finite(accepted)) return false;
-  target_ = accepted;
+  if (!acceptsTarget(target)) return false;
+  target_ = normalised(target);
   return true;
 }
 

@@ -50,6 +50,8 @@ class Motor_Base : public FrameListener {
 
   // Orders. A mode the motor does not support is refused: false, and the old target stays.
   bool setTarget(const Target& target) noexcept;
+  /// Whether setTarget() takes it.
+  [[nodiscard]] bool acceptsTarget(const Target& target) const noexcept;
   bool setTargetCurrent(Amperes current) noexcept;
   bool setTargetRPM(Rpm velocity) noexcept;
   bool setTargetAngle(Degrees angle) noexcept;

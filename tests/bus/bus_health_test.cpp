@@ -29,6 +29,7 @@ class BusHealthTest : public testing::Test {
       if (hears_) ++traffic_.rx_frames;
       if (sends_) ++traffic_.tx_watched;
       if (sends_ && echoes_) ++traffic_.tx_confirmed;
+      if (reads_) ++traffic_.echo_reads;
       health_.update(now_, traffic_);
     }
   }
@@ -36,11 +37,12 @@ class BusHealthTest : public testing::Test {
   BusState state() const { return health_.state(); }
 
   BusHealth health_;
-  BusHealth::Traffic traffic_{.echo_available = true};
+  BusHealth::Traffic traffic_{.echo_reads = 1};
   MonotonicTime now_{1000s};
   bool hears_ = true;
   bool sends_ = true;
   bool echoes_ = true;
+  bool reads_ = true;
 };
 
 TEST_F(BusHealthTest, IsActiveWhileItTalksAndIsEchoed) {
@@ -238,6 +240,16 @@ TEST_F(BusHealthTest, FramesLostLongAgoDoNotStallABusThatEchoesAgain) {
   EXPECT_EQ(state(), BusState::kActive);
 }
 
+TEST_F(BusHealthTest, EchoesThatNobodyHasReadAreNoStall) {
+  run(10ms);
+  echoes_ = reads_ = false;  // the RX thread has no CPU
+  run(100ms);
+  EXPECT_EQ(state(), BusState::kActive);
+  reads_ = true;
+  run(10ms);
+  EXPECT_EQ(state(), BusState::kStalled);
+}
+
 TEST_F(BusHealthTest, StaysStalledWhileNothingIsSentAndRevivesWithAnEcho) {
   run(50ms);
   echoes_ = false;
@@ -264,8 +276,8 @@ TEST_F(BusHealthTest, CyclingTheLinkEndsAStall) {
 }
 
 TEST_F(BusHealthTest, IsNeverStalledWithoutAnEchoSocket) {
-  traffic_.echo_available = false;
-  echoes_ = false;
+  traffic_.echo_reads = 0;
+  echoes_ = reads_ = false;
   run(1s);
   EXPECT_EQ(state(), BusState::kActive);
 }

@@ -128,7 +128,8 @@ TEST_F(NoAllocationTest, ReceivingAllocatesNothing) {
 TEST_F(NoAllocationTest, HealthAllocatesNothing) {
   const AllocGuard guard;
   for (int i = 0; i < 100; ++i) {
-    bus_->health().update(MonotonicTime{std::chrono::milliseconds(i)}, {.echo_available = true});
+    bus_->health().update(MonotonicTime{std::chrono::milliseconds(i)},
+                          {.echo_reads = static_cast<std::uint64_t>(i)});
   }
   bus_->health().onLink(CanLinkState::kGone);
   EXPECT_EQ(bus_->health().state(), BusState::kGone);

@@ -176,6 +176,8 @@ class VirtualRobot {
   void receive() {
     // Stamps of the host's clock mean nothing in virtual time: they are clamped to now.
     const WakeUp wake{.now = now_, .previous = now_, .realtime_offset = {}, .previous_offset = {}};
+    for (auto& inbox : inboxes_)
+      if (inbox.echo_reads != 0) ++inbox.echo_reads;
     for (std::size_t i = 0; i < receivers_.size(); ++i) {
       const auto reception = receivers_[i].receive(wake, batch_);
       inboxes_[i].frames.push(batch_.data(), reception.frame_count);

@@ -119,7 +119,7 @@ void Chaos::start() {
   contact_open_ = mode_open_ = false;
   queues_ = {};
   echoed_.reset();
-  for (auto& inbox : robot_->inboxes()) inbox.echo_available.store(true);
+  for (auto& inbox : robot_->inboxes()) inbox.echo_reads.store(1);
   for (auto& client : clients_) client.motors.reset();
   inputs_.assign(config_.modules.size(), {});
   describe();

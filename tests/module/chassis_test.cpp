@@ -38,6 +38,14 @@ class Sensor : public Module_Base {
   void update(const Tick&, ModuleRobot&) noexcept override {}
 };
 
+/// A gimbal that says when it may be turned after.
+class GimbalModule : public Module_Base {
+ public:
+  GimbalModule()
+      : Module_Base({.inputs = {}, .outputs = {"relative_yaw_deg", "turn_after_deg"}, .events = {}}) {}
+  void update(const Tick&, ModuleRobot&) noexcept override {}
+};
+
 OwnValues common() {
   OwnValues own;
   own.set("max_speed_m_s", 2.0);
@@ -70,7 +78,8 @@ class Chassis : public ::testing::Test {
     settings.own = std::move(own);
     module_ = std::move(type.build(settings, outlineOf(8)).value());
     const Sensor imu;
-    ASSERT_TRUE(module_->connect(ModuleDirectory{{{"imu", &imu}}}).has_value());
+    const GimbalModule head;
+    ASSERT_TRUE(module_->connect(ModuleDirectory{{{"imu", &imu}, {"head", &head}}}).has_value());
   }
   void buildMecanum() { buildMecanum(common()); }
   void buildMecanum(OwnValues own) {
@@ -261,6 +270,21 @@ TEST_F(Chassis, FollowsTheGimbalAndDrivesWhereItLooks) {
   robot_->setOutput({.module = 0, .signal = 1}, kNoSignal);
   run(2000);
   EXPECT_NEAR(speed(), 0.0, 1e-9) << "nobody knows where the gimbal looks";
+}
+
+TEST_F(Chassis, TurnsAfterAGimbalOnlyWhileThatBringsItNearer) {
+  auto own = common();
+  own.set("follow", std::string{"head.relative_yaw_deg"});
+  buildMecanum(own);
+  robot_->setOutput({.module = 1, .signal = 0}, 30.0);
+  robot_->setOutput({.module = 1, .signal = 1}, kNoSignal);
+  give({.vx_m_s = 1.0, .frame = 2.0, .follow = 1.0});
+  run(1000);
+  EXPECT_NEAR(output(kWz), 0.0, 1e-9);
+  EXPECT_NEAR(speed(), 1.0, 1e-3) << "it still drives where the gimbal looks";
+  robot_->setOutput({.module = 1, .signal = 1}, 30.0);
+  run(1000);
+  EXPECT_NEAR(output(kWz), 150.0, 1e-3);
 }
 
 TEST_F(Chassis, OneWheelThatIsNotThereStopsThemAll) {

@@ -54,6 +54,21 @@ class Feeder : public ::testing::Test {
   std::vector<std::size_t> events_;
 };
 
+TEST_F(Feeder, TheCountOfAnotherSenderBeginsAnew) {
+  ask(kNoSignal, 3.0);
+  run(10);
+  ask(kNoSignal, 5.0);
+  run(10);
+  EXPECT_EQ(state(), kFeeding);
+  module_->changeSender();
+  ask(kNoSignal, 10.0);
+  run(500);
+  EXPECT_EQ(state(), kIdle) << "neither its own count nor what was left of the other's";
+  ask(kNoSignal, 11.0);
+  run(10);
+  EXPECT_EQ(state(), kFeeding);
+}
+
 TEST_F(Feeder, TurnsAsItIsTold) {
   ask(30.0);
   run(500);

@@ -22,7 +22,8 @@ enum Output : std::size_t {
   kTargetPitch,
   kStabilised,
   kLagMs,
-  kAgrees
+  kAgrees,
+  kTurnAfter
 };
 
 class ImuModule : public Module_Base {
@@ -100,6 +101,41 @@ class Gimbal : public ::testing::Test {
   double held_deg_ = 0.0;
   double worst_deg_ = 0.0;
 };
+
+TEST_F(Gimbal, BeginsWhereItLooksHoweverLongItWasIdle) {
+  build(true);
+  run(10);
+  robot_.motor(1).feedback.angle_deg = 345.0F;  // sagged
+  robot_.motor(1).feedback.total_angle_deg = -15.0;
+  chassis_deg_s_ = 90.0;  // carried
+  run(1000);
+  chassis_deg_s_ = 0.0;
+  run(200);
+  held_deg_ = world();
+  worst_deg_ = 0.0;
+  turn(0.0, 0.0);
+  run(1000);
+  EXPECT_LT(worst_deg_, 0.5);
+  EXPECT_NEAR(pitch(), -15.0, 0.5);
+}
+
+TEST_F(Gimbal, SaysWhenTheChassisMayTurnAfterIt) {
+  build(true);
+  aim(30.0, 0.0);
+  run(1000);
+  EXPECT_NEAR(output(kTurnAfter), 30.0, 0.5);
+  imu_heard_ = false;
+  run(10);
+  EXPECT_TRUE(std::isnan(output(kTurnAfter))) << "it turns with the chassis";
+  EXPECT_NEAR(output(kRelativeYaw), 30.0, 0.5);
+  imu_heard_ = true;
+  robot_.motor(0).status = MotorStatus::kReady;
+  run(10);
+  EXPECT_TRUE(std::isnan(output(kTurnAfter)));
+  robot_.motor(0).status = MotorStatus::kOffline;
+  run(10);
+  EXPECT_TRUE(std::isnan(output(kRelativeYaw))) << "nobody sees it";
+}
 
 TEST_F(Gimbal, AimsAtAnAngleOfTheWorldAndWithinItsPitch) {
   build(true);

@@ -117,6 +117,20 @@ TEST_F(Remote, TheSwitchGoingUpEnablesWhatIsReadyAndDownDisablesAll) {
   EXPECT_FALSE(asked_.front().motor.has_value()) << "all";
 }
 
+TEST_F(Remote, TheEndOfAnEstopEnablesNothing) {
+  build();
+  for (auto& motor : robot_.motors()) motor.status = MotorStatus::kReady;
+  robot_.setState(RobotStatus::kEstop);
+  arm();
+  EXPECT_FALSE(asks(RobotRequest::kEnable));
+  robot_.setState(RobotStatus::kRun);
+  run(100);
+  EXPECT_FALSE(asks(RobotRequest::kEnable)) << "the switch went up before";
+  armSwitch(Dr16Input::Switch::kMiddle);
+  arm();
+  EXPECT_TRUE(asks(RobotRequest::kEnable));
+}
+
 TEST_F(Remote, SticksBecomeInputsWhileItIsArmed) {
   build();
   dbus_.right_vertical = 660;
@@ -243,7 +257,10 @@ TEST_F(Remote, AnEstopIsNotItsToClear) {
   EXPECT_THAT(asked_, IsEmpty());
   robot_.setState(RobotStatus::kRun);
   run(500);
-  EXPECT_FALSE(asked_.empty()) << "the fault is";
+  EXPECT_THAT(asked_, IsEmpty()) << "the switch went up before its end";
+  armSwitch(Dr16Input::Switch::kDown);
+  armSwitch(Dr16Input::Switch::kUp);
+  EXPECT_TRUE(asks(RobotRequest::kClear)) << "of the fault";
 }
 
 TEST_F(Remote, AReceiverThatSaysFailsafeIsLost) {

@@ -79,7 +79,7 @@ TEST(DamiaoMotor, BrakeDampAndHoldAreAllWithinTheTorqueLimit) {
     desk.motor().order(kind);
     (void)desk.tick();
     for (const double rad_s : {25.0, -25.0}) {
-      (void)desk.feed(stateAt(0.0, rad_s));
+      for (const double share : {0.0, 1.0}) (void)desk.feed(stateAt(0.0, share * rad_s));
       const auto command = mitOf(desk.tick());
       const double at_rad = damiao::fromCode(damiao::toCode(0.0, 12.5, 16), 12.5, 16);
       const double nm = command.stiffness_nm_per_rad * (command.position_rad - at_rad) +
@@ -116,9 +116,10 @@ TEST(DamiaoMotor, NoMitTargetWhateverItIsAsksForMoreThanTheLimit) {
     EnabledDesk desk(settings);
     const double limit_nm = 0.945 * static_cast<double>(limit_a > 0.0F ? limit_a : 10.261194F);
     double rad = 0.0;
+    double rad_s = 0.0;
     for (int i = 0; i < 20'000; ++i) {
-      const double rad_s = 29.0 * share(generator);
-      rad = std::clamp(rad + 0.02 * share(generator), -12.4, 12.4);
+      rad_s = std::clamp(rad_s + 8.0 * share(generator) - 0.5 * rad, -29.0, 29.0);
+      rad += 0.001 * rad_s;
       (void)desk.feed(stateAt(rad, rad_s));
       const double at_rad = damiao::fromCode(desk.state.position, 12.5, 16);
       const double at_rad_s = damiao::fromCode(desk.state.velocity, 30.0, 12);

@@ -315,6 +315,23 @@ TEST_F(LKTechMotor, LimitsBoundWhatIsSentAndSaySo) {
   EXPECT_EQ(told({.mode = ControlMode::kVelocity, .value = 10.0}), "141#A100000000000000");
 }
 
+TEST_F(LKTechMotor, FromBeyondWhatCanBeToldNoPlaceIsFollowed) {
+  // 2^31 hundredths of a degree end 116 degrees after this.
+  comeOnline(0, 59'652);
+  const double start_deg = motor_->feedback().total_angle_deg;
+  std::uint16_t encoder = 0;
+  for (int i = 0; i < 20; ++i) {
+    (void)tick();
+    encoder = static_cast<std::uint16_t>(encoder + 1820);  // 10 degrees
+    hear(readingReply(0, 10'000, encoder));
+  }
+  ASSERT_NEAR(motor_->feedback().total_angle_deg - start_deg, 200.0, 1.0);
+  const auto sent = told({.mode = ControlMode::kTotalAngle, .value = motor_->feedback().total_angle_deg});
+  EXPECT_THAT(sent, testing::StartsWith("141#A2")) << "velocity 0";
+  EXPECT_THAT(sent, testing::EndsWith("00000000"));
+  EXPECT_NE(motor_->limits() & kLimitAngle, 0U);
+}
+
 TEST_F(LKTechMotor, NonFiniteAndHugeTargetsAreHarmless) {
   comeOnline();
   constexpr double kInfinity = std::numeric_limits<double>::infinity();

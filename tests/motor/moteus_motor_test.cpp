@@ -66,6 +66,28 @@ TEST(MoteusMotor, TheSequenceStopsEngagesWithoutTorqueAndVerifiesTheWatchdog) {
   EXPECT_EQ(bench.motor.sequenceProgress(), SequenceProgress::kDone);
 }
 
+TEST(MoteusMotor, APlaceThatItCannotHaveReachedLosesTheReference) {
+  for (const bool moves : {false, true}) {
+    MoteusBench bench;
+    bench.answer({.position_rev = 1.0, .velocity_rev_s = 100.0});
+    (void)bench.motor.setZero(0.0);
+    ASSERT_TRUE(bench.motor.feedback().zeroed);
+    bench.answer({.position_rev = moves ? 1.1 : 38.0, .velocity_rev_s = 100.0});
+    EXPECT_EQ(bench.motor.feedback().zeroed, moves);
+    EXPECT_EQ(bench.motor.feedback().jumps, moves ? 0U : 1U);
+  }
+}
+
+TEST(MoteusMotor, ADriveThatStoppedMayHaveRestarted) {
+  MoteusBench bench;
+  ASSERT_TRUE(bench.enable());
+  (void)bench.motor.setZero(0.0);
+  bench.motor.order(FrameKind::kIdle);
+  bench.answer({.mode = moteus::Mode::kStopped});
+  EXPECT_EQ(bench.motor.complaint().fault, FaultCode::kDriveStopped);
+  EXPECT_FALSE(bench.motor.feedback().zeroed);
+}
+
 TEST(MoteusMotor, AWatchdogThatWasNotTakenFailsTheSequence) {
   MoteusBench bench;
   bench.motor.order(FrameKind::kEnable);

@@ -112,6 +112,18 @@ TEST_F(MyActuatorMotor, NonFiniteAndHugeTargetsAreHarmless) {
   }
 }
 
+TEST_F(MyActuatorMotor, ASpeedThatItsFieldCannotSayIsCutBeforeTheTorqueIsBounded) {
+  comeOnline(0);
+  motor_.order(FrameKind::kCommand, {.mode = ControlMode::kImpedance,
+                                     .value = -54.0,
+                                     .velocity_ff_rpm = 900.0F,
+                                     .stiffness_nm_per_rad = 100.0F,
+                                     .damping_nms_per_rad = 1.0F});
+  (void)tick();
+  EXPECT_NE(motor_.limits() & kLimitVelocity, 0U);
+  EXPECT_NE(motor_.limits() & kLimitCurrent, 0U) << "spring and damper do not balance any more";
+}
+
 TEST_F(MyActuatorMotor, ImpedanceNeverAsksForMoreTorqueThanTheLimitAllows) {
   MotorSettings settings = settingsOf();
   settings.effort_limit = 1.0F;  // 3.125 N·m

@@ -64,6 +64,20 @@ TEST_F(OdriveMotor, VelocityAndPositionAreOfTheDrivesShaft) {
   EXPECT_EQ(readLittleEndian<std::int16_t>(frame.payload(), 6), -100);
 }
 
+TEST_F(OdriveMotor, FromBeyondWhatCanBeToldNoPlaceIsFollowed) {
+  enable();
+  sample(120'000.0F);
+  const double here_deg = motor_->feedback().total_angle_deg;
+  for (const double target_deg : {here_deg, here_deg + 90.0, 0.0}) {
+    const auto frame = settledInput({.mode = ControlMode::kTotalAngle, .value = target_deg});
+    EXPECT_EQ(odrive::messageOf(frame.id), odrive::Message::kSetInputVel) << target_deg;
+    EXPECT_EQ(numberAt(frame, 0), 0.0F);
+    EXPECT_NE(motor_->limits() & kLimitAngle, 0U);
+  }
+  motor_->order(FrameKind::kHold);
+  for (int i = 0; i < 5; ++i) EXPECT_EQ(odrive::messageOf(tick().back().id), odrive::Message::kSetInputVel);
+}
+
 TEST_F(OdriveMotor, AnAngleIsReachedTheShortestWayRound) {
   enable();
   now_ += 1ms;

@@ -86,6 +86,23 @@ TEST(RobStrideMotor, TheTorqueStaysWithinTheLimitWhereverTheTargetIs) {
   }
 }
 
+// The field would cut the position, and the damping torque would be alone.
+TEST(RobStrideMotor, ATargetThatItsFieldCannotSayDoesNotPassTheLimit) {
+  auto settings = controlled("operation");
+  settings.effort_limit = 2.0F;
+  Bench bench(settings);
+  bench.run();
+  for (const double rad_s : {5.0, -5.0}) {
+    bench.run(0.0, rad_s);
+    const auto told = bench.operation({.mode = ControlMode::kImpedance,
+                                       .value = 0.0,
+                                       .stiffness_nm_per_rad = 1.0F,
+                                       .damping_nms_per_rad = 5.0F});
+    const double limit_nm = 2.0 * bench.codec.model->torqueNmPerA();
+    EXPECT_LE(std::fabs(torqueNm(told, {.position_rad = 0.0, .velocity_rad_s = rad_s})), limit_nm * 1.02);
+  }
+}
+
 TEST(RobStrideMotor, DeratingScalesTheTorque) {
   Bench bench(robStrideSettings("RS00"));
   bench.motor.derate(0.25F);

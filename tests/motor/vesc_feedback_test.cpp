@@ -42,6 +42,23 @@ TEST_F(VescMotorTest, ADutyIsOneOfNow) {
   EXPECT_TRUE(std::isnan(motor.reportedDuty())) << "it has started again";
 }
 
+TEST_F(VescMotorTest, AnglesWithoutASpeedBesideThemAreNoFeedback) {
+  auto& motor = makeZeroedAt(10.0);
+  status(4200);
+  steps(0);
+  const auto samples = motor.feedback().samples;
+  for (int i = 0; i < 20; ++i) {  // STATUS_1 is missing
+    tick(milliseconds{10});
+    steps(i);
+  }
+  EXPECT_LE(motor.feedback().samples, samples + 11) << "those within its patience";
+  EXPECT_FALSE(motor.feedback().zeroed) << "turns cannot be counted meanwhile";
+  status(4200);
+  steps(20);
+  EXPECT_GT(motor.feedback().samples, samples);
+  EXPECT_TRUE(std::isfinite(motor.feedback().velocity_rpm));
+}
+
 TEST_F(VescMotorTest, AJumpOfTheTachometerIsCountedAndTheReferenceIsLost) {
   auto& motor = makeZeroedAt(10.0);
   tick(milliseconds{10});

@@ -83,9 +83,10 @@ TEST(VescGolden, APositionHasTheBytesOfTheDocuments) {
   settings.id = 1;
   VESC_Motor motor(settings);
   const Tick tick{.index = 1, .now = MonotonicTime{std::chrono::seconds{5}}};
-  auto status = vescFrame(0x1001, "0159020000000F96");  // 79.80 deg
-  status.received = tick.now;
-  ASSERT_EQ(motor.updateFeedback(status), FrameVerdict::kAccepted);
+  for (auto status : {vescFrame(0x901, "0000000000000000"), vescFrame(0x1001, "0159020000000F96")}) {
+    status.received = tick.now;  // 0 rpm, 79.80 deg
+    ASSERT_EQ(motor.updateFeedback(status), FrameVerdict::kAccepted);
+  }
   motor.order(FrameKind::kCommand);
   ASSERT_TRUE(motor.setTarget({.mode = ControlMode::kAngle, .value = 90.5}));
   motor.update(tick);
@@ -123,9 +124,10 @@ TEST(VescGolden, StatusFramesHaveTheValuesOfTheDocuments) {
 
 TEST(VescGolden, AHundredTurnsOfTwentyOnePolePairsAreAHundredTurns) {
   VESC_Motor motor(vescSettings({{"pole_pairs", 21.0}}));
-  auto frame = vescFrame(0x1B07, "0000313801E10000");
-  frame.received = MonotonicTime{std::chrono::seconds{1}};
-  ASSERT_EQ(motor.updateFeedback(frame), FrameVerdict::kAccepted);
+  for (auto frame : {vescFrame(0x907, "0000000000000000"), vescFrame(0x1B07, "0000313801E10000")}) {
+    frame.received = MonotonicTime{std::chrono::seconds{1}};
+    ASSERT_EQ(motor.updateFeedback(frame), FrameVerdict::kAccepted);
+  }
   EXPECT_NEAR(motor.feedback().total_angle_deg, 0.0, 1e-9);  // it begins at 0, without a reference
   ASSERT_TRUE(motor.setZero(36'000.0));
   EXPECT_NEAR(motor.feedback().total_angle_deg, 36'000.0, 1e-6);

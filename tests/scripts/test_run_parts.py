@@ -14,7 +14,7 @@ from pathlib import Path
 import descendants
 import pytest
 import run_parts
-from costs import Budget, PartCost, SetCost, compare
+from costs import Budget, PartCost, SetCost, compare, pace
 
 WriteParts = Callable[..., None]
 
@@ -219,26 +219,46 @@ def test_a_part_that_leaves_processes_running_is_told(
     assert "pages left" not in shown
 
 
-def test_a_part_that_grew_by_a_third_is_named(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("costs.reference_cpu_s", lambda: 4.0)
+def test_a_part_that_grew_by_a_third_is_named() -> None:
     parts = {name: PartCost(took_s=1, cpu_s=100) for name in ("unit", "host")}
     budget = Budget("a machine of twice the speed", 2.0, {}, parts)
-    text = compare(budget, {"unit": 260.0, "host": 270.0, "web": 1.0})
+    text = compare(budget, {"unit": 260.0, "host": 270.0, "web": 1.0}, 2.0)
     assert "GREW host: 270 CPU s instead of 200" in text
     assert "unit" not in text
     assert "web: 1 CPU s, and no budget" in text
 
 
-def test_a_part_that_found_its_files_compiled_is_not_judged(
-    monkeypatch: pytest.MonkeyPatch,
-) -> None:
-    monkeypatch.setattr("costs.reference_cpu_s", lambda: 1.0)
+def test_the_pace_is_that_of_a_compilation(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("costs.reference_cpu_s", lambda: 4.0)
+    assert pace(Budget("a machine of twice the speed", 2.0, {}, {})) == 2.0
+
+
+def test_a_part_that_found_its_files_compiled_is_not_judged() -> None:
     budget = budget_of({}, build=600, clang=1000, host=200)
-    text = compare(budget, {"build": 30.0, "clang": 499.0, "host": 190.0})
+    text = compare(budget, {"build": 30.0, "clang": 499.0, "host": 190.0}, 1.0)
     assert "none of 1 parts grew by a third" in text
     assert "not judged, less than half of the budget, as after a build: build, clang" in text
-    assert "not judged" not in compare(budget, {"build": 300.0, "host": 190.0})
-    assert "grew" not in compare(budget, {"build": 30.0})
+    assert "not judged" not in compare(budget, {"build": 300.0, "host": 190.0}, 1.0)
+    assert "grew" not in compare(budget, {"build": 30.0}, 1.0)
+
+
+def test_what_a_part_leaves_in_a_session_of_its_own_is_told_and_ended(
+    write_parts: WriteParts, tmp_path: Path
+) -> None:
+    fifo = tmp_path / "fifo"
+    os.mkfifo(fifo)
+    ok = "echo '1 passed, 0 failed, 0 skipped'"
+    write_parts(lint=f"setsid sleep 30 >{fifo} & read line <{fifo}; {ok}")
+    with fifo.open("r+b", buffering=0) as end:
+        end.write(b"\n")
+        done = subprocess.run(
+            [sys.executable, "-c", MAIN, Path(run_parts.__file__).parent, tmp_path],
+            capture_output=True,
+            text=True,
+            check=True,
+            timeout=60,
+        )
+    assert "NOTE processes of these parts still ran and were ended: sleep" in done.stdout
 
 
 def budget_of(sets: dict[str, SetCost], **cpu_s: float) -> Budget:

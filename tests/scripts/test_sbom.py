@@ -16,15 +16,15 @@ SBOM = Path(__file__).resolve().parents[2] / "scripts/lib/sbom.py"
 HEADERS = "libeigen3-dev 3.4.0-4\nlibexpected-dev 1.0.0~dfsg-2\n"
 
 
-def deb(folder: Path, name: str, depends: str) -> Path:
-    control = folder / name / "DEBIAN"
+def deb(folder: Path, name: str, depends: str, arch: str = "amd64") -> Path:
+    control = folder / f"{name}-{arch}" / "DEBIAN"
     control.mkdir(parents=True)
     (control / "control").write_text(
-        f"Package: {name}\nVersion: 0.2.0-1\nArchitecture: amd64\nMaintainer: n <e>\n"
+        f"Package: {name}\nVersion: 0.2.0-1\nArchitecture: {arch}\nMaintainer: n <e>\n"
         f"Depends: {depends}\nDescription: d\n"
     )
     subprocess.run(
-        ["dpkg-deb", "--root-owner-group", "--build", folder / name, folder / f"{name}.deb"],
+        ["dpkg-deb", "--root-owner-group", "--build", control.parent, folder / f"{name}.deb"],
         check=True,
         capture_output=True,
     )
@@ -85,6 +85,26 @@ def test_the_bill_names_what_is_shipped_and_all_it_depends_on(packages: Path) ->
     digest = hashlib.sha256((packages / "rc10d.deb").read_bytes()).hexdigest()
     assert shipped["checksums"] == [{"algorithm": "SHA256", "checksumValue": digest}]
     assert shipped["versionInfo"] == "0.2.0-1"
+
+
+def test_each_architecture_is_in_the_bill_with_what_it_depends_on(
+    packages: Path, tmp_path: Path
+) -> None:
+    deb(tmp_path, "rc10d", "libc6 (>= 2.36)", arch="arm64").rename(packages / "rc10d_arm64.deb")
+    deb(tmp_path, "rc10-dev", "rc10d (= 0.2.0-1)", arch="arm64").rename(packages / "rc10-dev.deb")
+    bill = bill_of(packages)
+    files = {p["packageFileName"]: p["SPDXID"] for p in bill["packages"] if "packageFileName" in p}
+    assert sorted(files) == [
+        "rc10-0.2.0-py3-none-any.whl",
+        "rc10-dev.deb",
+        "rc10d.deb",
+        "rc10d_arm64.deb",
+    ]
+    assert {
+        "spdxElementId": files["rc10-dev.deb"],
+        "relationshipType": "DEPENDS_ON",
+        "relatedSpdxElement": files["rc10d_arm64.deb"],
+    } in bill["relationships"]
 
 
 def test_the_checksums_find_a_file_that_was_changed_the_bill_too(packages: Path) -> None:

@@ -16,6 +16,7 @@ import os, shutil, sys
 shutil.rmtree(sys.argv[-1] + "/bin", ignore_errors=True)
 os.makedirs(sys.argv[-1] + "/bin")
 os.symlink(sys.executable, sys.argv[-1] + "/bin/python")
+open(sys.argv[-1] + "/pyvenv.cfg", "w").close()
 """
 PIP = """
 import json, os, re, sys
@@ -95,6 +96,16 @@ def test_what_is_there_is_not_asked_for_again(environment: Environment) -> None:
     assert environment.make() == [asked(OTHERS)]
     assert environment.make() == []
     assert environment.make("client") == [], "all has it"
+
+
+def test_a_folder_with_other_files_is_not_emptied(environment: Environment, tmp_path: Path) -> None:
+    thesis = tmp_path / "venv" / "thesis.tex"
+    thesis.parent.mkdir()
+    thesis.write_text("years of work")
+    with pytest.raises(subprocess.CalledProcessError) as refused:
+        environment.make("client")
+    assert "has files that are no Python environment" in refused.value.stderr
+    assert thesis.read_text() == "years of work"
 
 
 def test_tests_and_tools_need_all(environment: Environment) -> None:

@@ -7,7 +7,7 @@ import { HeldTest } from './held_test';
 import type { TestOutcome } from './link';
 import { type TestPlan, testCommand, testPython } from './motion_test';
 import { isOn } from './commission_record';
-import { kDisableAtEnd } from './protocol';
+import { kAtEnd, kDisableAtEnd } from './protocol';
 import { Refusal } from './refusal';
 
 /** Fallbacks that keep no torque when the page is gone. */
@@ -30,10 +30,10 @@ export function AloneTest(props: {
   const mayCommand = known.hello?.right === 'command' && known.state !== null;
   const keeps = props.onTimeout !== null && !kLettingGo.includes(props.onTimeout);
 
-  const ask = async (operation: 'enable_alone' | 'disable') => {
+  const ask = async (operation: 'enable_alone' | 'disable', values: Record<string, number> = {}) => {
     setBusy(true);
     if (operation === 'enable_alone') mine.current = true;
-    const answer = await link.ask({ operation, target: props.motor, ...(operation === 'enable_alone' ? { values: kDisableAtEnd } : {}) });
+    const answer = await link.ask({ operation, target: props.motor, values });
     setBusy(false);
     mine.current = answer.status === 'ok' && operation === 'enable_alone';
     setAlone(mine.current);
@@ -49,16 +49,16 @@ export function AloneTest(props: {
   // Another step, part or motor: it does not stay enabled behind them.
   useEffect(
     () => () => {
-      if (mine.current) void link.ask({ operation: 'disable', target: props.motor });
+      if (mine.current) void link.ask({ operation: 'disable', target: props.motor, values: kAtEnd });
       mine.current = false;
     },
     [props.motor],
   );
-  // Once: a second disable would let go of what its on_disable holds.
+  // Once: a second disable would let go of what its on_disable holds, or an e-stop.
   const rest = () => {
     if (!mine.current) return;
     mine.current = false;
-    void ask('disable');
+    void ask('disable', kAtEnd);
   };
 
   if (keeps) {
@@ -80,7 +80,7 @@ export function AloneTest(props: {
             {word('disable')}
           </button>
         ) : (
-          <button type="button" class="strong" disabled={!mayCommand || busy} onClick={() => void ask('enable_alone')}>
+          <button type="button" class="strong" disabled={!mayCommand || busy} onClick={() => void ask('enable_alone', kDisableAtEnd)}>
             {word('comAlone')}
           </button>
         )}

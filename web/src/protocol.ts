@@ -169,6 +169,8 @@ export interface ViewAnswer {
 // Values with which what a request does ends with this page, however that ends: src/link/until_its_end.hpp.
 export const kDisableAtEnd = { disable_at_end: 1 };
 export const kRestoreAtEnd = { restore_at_end: 1 };
+// Value of a disable that comes with an end: what an e-stop holds stays held (src/link/at_end.hpp).
+export const kAtEnd = { at_end: 1 };
 
 export interface Response {
   type: 'response';

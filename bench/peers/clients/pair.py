@@ -35,7 +35,7 @@ def use_pair(fd: int) -> None:
 
 
 def arguments() -> argparse.Namespace:
-    """Reads --fd or --channel, and --seconds; takes the pair."""
+    """Reads --fd or --channel, and --seconds; takes the pair, and rc10d's priority."""
     parser = argparse.ArgumentParser()
     wire = parser.add_mutually_exclusive_group(required=True)
     wire.add_argument("--fd", type=int)
@@ -45,6 +45,11 @@ def arguments() -> argparse.Namespace:
     if options.fd is not None:
         use_pair(options.fd)
         options.channel = "can0"
+    # Before a library starts threads: they inherit it.
+    try:
+        os.sched_setscheduler(0, os.SCHED_FIFO, os.sched_param(PRIORITY))
+    except PermissionError:
+        print("no real-time priority", file=sys.stderr)
     return options
 
 
@@ -52,10 +57,6 @@ def run(seconds: float, cycle: Callable[[], object]) -> None:
     """Calls `cycle` on an absolute grid of 1 ms until then or SIGTERM; prints what that took."""
     ended: list[int] = []
     signal.signal(signal.SIGTERM, lambda number, _: ended.append(number))
-    try:
-        os.sched_setscheduler(0, os.SCHED_FIFO, os.sched_param(PRIORITY))
-    except PermissionError:
-        print("no real-time priority", file=sys.stderr)
     late_ns: list[int] = []
     missed = 0
     begin_ns = time.monotonic_ns() + round(SETTLING_S * 1e9)

@@ -11,6 +11,7 @@
 #include <time.h>
 
 #include "rc10_command_t.h"
+#include "rc10_named_value_t.h"
 #include "rc10_request_t.h"
 #include "rc10_response_t.h"
 #include "rc10_robot_state_t.h"
@@ -80,13 +81,15 @@ static void receiveUntil(const program_t* program, int64_t end_us) {
 }
 
 // Sends a request under one number until it is answered: rc10d carries it out once.
-static bool request(program_t* program, char* operation) {
+static bool request(program_t* program, char* operation, rc10_named_value_t* value) {
   rc10_request_t message = {.utime = nowUs(CLOCK_REALTIME),
                             .client = client,
                             .session = program->session,
                             .seq = ++program->seq,
                             .operation = operation,
-                            .target = program->motor};
+                            .target = program->motor,
+                            .value_count = value ? 1 : 0,
+                            .values = value};
   program->awaited = message.seq;
   program->status = -1;
   for (int i = 0; i < 50 && program->status < 0; ++i) {
@@ -134,14 +137,16 @@ int main(int count, char** words) {
   rc10_robot_state_t_subscribe(program.lcm, channel(&program, "state"), onState, &program);
   rc10_response_t_subscribe(program.lcm, channel(&program, "response"), onResponse, &program);
 
-  const bool enabled = request(&program, "enable");
+  const bool enabled = request(&program, "enable", NULL);
   // The loop is what keeps the motor going: a command acts for 100 ms.
   for (int i = 0; enabled && !interrupted && i < 50; ++i) {
     command(&program, RC10_SETPOINT_T_MODE_VELOCITY, atof(words[3]));
     receiveUntil(&program, nowUs(CLOCK_MONOTONIC) + 20000);
   }
   command(&program, RC10_SETPOINT_T_MODE_COAST, 0.0);
-  const bool disabled = request(&program, "disable");
+  // With our end: what an e-stop holds meanwhile stays held.
+  rc10_named_value_t at_end = {.name = "at_end", .value = 1.0};
+  const bool disabled = request(&program, "disable", &at_end);
   lcm_destroy(program.lcm);
   if (interrupted) return 130;
   return enabled && disabled ? 0 : 1;

@@ -11,8 +11,10 @@
 #include <optional>
 #include <random>
 #include <string>
+#include <vector>
 
 #include "rc10/command_t.hpp"
+#include "rc10/named_value_t.hpp"
 #include "rc10/request_t.hpp"
 #include "rc10/response_t.hpp"
 #include "rc10/robot_state_t.hpp"
@@ -34,13 +36,15 @@ class Program {
   bool good() { return lcm_.good(); }
 
   // Sends a request under one number until it is answered: rc10d carries it out once.
-  bool request(const std::string& operation) {
+  bool request(const std::string& operation, const std::vector<rc10::named_value_t>& values = {}) {
     rc10::request_t message{};
     message.client = kClient;
     message.session = session_;
     message.seq = awaited_ = ++seq_;
     message.operation = operation;
     message.target = motor_;
+    message.value_count = static_cast<std::int32_t>(values.size());
+    message.values = values;
     answer_.reset();
     for (int i = 0; i < 50 && !answer_; ++i) {
       lcm_.publish(channel("request"), &message);
@@ -130,7 +134,11 @@ int main(int count, char** words) {
     program.receiveFor(20ms);
   }
   program.command(rc10::setpoint_t::MODE_COAST, 0.0);
-  const bool disabled = program.request("disable");
+  // With our end: what an e-stop holds meanwhile stays held.
+  rc10::named_value_t at_end{};
+  at_end.name = "at_end";
+  at_end.value = 1.0;
+  const bool disabled = program.request("disable", {at_end});
   if (interrupted != 0) return 130;
   return enabled && disabled ? 0 : 1;
 }

@@ -8,6 +8,7 @@ import lcm.lcm.LCMDataInputStream;
 import lcm.lcm.LCMSubscriber;
 import rc10.command_t;
 import rc10.motor_state_t;
+import rc10.named_value_t;
 import rc10.request_t;
 import rc10.response_t;
 import rc10.robot_state_t;
@@ -68,13 +69,15 @@ public class HelloMotor implements LCMSubscriber {
   }
 
   /** Sends a request under one number until it is answered: rc10d carries it out once. */
-  private boolean request(String operation) throws InterruptedException {
+  private boolean request(String operation, named_value_t... values) throws InterruptedException {
     request_t message = new request_t();
     message.client = CLIENT;
     message.session = session;
     message.seq = ++seq;
     message.operation = operation;
     message.target = motor;
+    message.value_count = values.length;
+    message.values = values;
     for (int i = 0; i < 50; ++i) {
       lcm.publish(robot + ".v1.request", message);
       response_t answer = answers.poll(100, TimeUnit.MILLISECONDS);
@@ -132,7 +135,11 @@ public class HelloMotor implements LCMSubscriber {
       Thread.sleep(20);
     }
     program.command(setpoint_t.MODE_COAST, 0.0);
-    boolean disabled = program.request("disable");
+    // With our end: what an e-stop holds meanwhile stays held.
+    named_value_t atEnd = new named_value_t();
+    atEnd.name = "at_end";
+    atEnd.value = 1;
+    boolean disabled = program.request("disable", atEnd);
     if (program.interrupted) return; // the hook waits for that; the exit status is 130
     Runtime.getRuntime().removeShutdownHook(hook);
     System.exit(enabled && disabled ? 0 : 1);

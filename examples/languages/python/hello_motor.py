@@ -17,7 +17,7 @@ import time
 
 import lcm
 
-from rc10 import command_t, request_t, response_t, robot_state_t, setpoint_t
+from rc10 import command_t, named_value_t, request_t, response_t, robot_state_t, setpoint_t
 
 CLIENT = "hello-python"
 
@@ -68,13 +68,18 @@ class Program:
         if (response.session, response.seq) == (self.session, self.seq):
             self.answer = response
 
-    def request(self, operation: str) -> bool:
+    def request(self, operation: str, values: dict[str, float] | None = None) -> bool:
         """Sends a request under one number until it is answered: it is carried out once."""
         message = request_t()
         message.client, message.session = CLIENT, self.session
         self.seq += 1
         message.seq = self.seq
         message.operation, message.target = operation, self.motor
+        for name, number in (values or {}).items():
+            value = named_value_t()
+            value.name, value.value = name, number
+            message.values.append(value)
+        message.value_count = len(message.values)
         self.answer = None
         for _ in range(50):
             self.lcm.publish(f"{self.robot}.v1.request", message.encode())
@@ -122,7 +127,8 @@ def main() -> int:
                 program.receive(0.005)
     finally:
         program.command(setpoint_t.MODE_COAST, 0.0)
-        disabled = program.request("disable")
+        # With our end: what an e-stop holds meanwhile stays held.
+        disabled = program.request("disable", {"at_end": 1.0})
     if program.interrupted:
         return 130
     return 0 if enabled and disabled else 1

@@ -260,8 +260,12 @@ class Robot(RobotClient):
             name, angle, tolerance_deg, timeout_s, shortest_way, _not_to_be_called
         )
         self._schedule()
-        while not move.done():
-            await self._news()
+        try:
+            while not move.done():
+                await self._news()
+        except asyncio.CancelledError:
+            self._abandon(move)
+            raise
         return move.result()
 
     # ---- requests ----------------------------------------------------------------------------

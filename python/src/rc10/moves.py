@@ -13,7 +13,7 @@ from rc10.setpoints import Mode
 if TYPE_CHECKING:
     from rc10.events import Event
     from rc10.setpoints import Setpoint
-    from rc10.state import RobotState
+    from rc10.state import MotorState, RobotState
 
 # For the target on its way to the motor, at the start and after it has lapsed.
 _ON_ITS_WAY_S = 0.3
@@ -77,6 +77,7 @@ class Move:
         self._within_since_us: int | None = None
         self._angle_deg = math.nan
         self._result: MoveResult | None = None
+        self._dropped = False
 
     def done(self) -> bool:
         """Whether it has ended, well or not. Does not receive."""
@@ -102,9 +103,12 @@ class Move:
     def on_state(self, state: RobotState) -> None:
         """Takes in a new state."""
         self._heard_s = self._now()
-        if self._result is not None or state.taken_at_s < self._started_s:
+        if state.taken_at_s < self._started_s:
             return
         motor = state.motors.get(self.motor)
+        if self._result is not None:
+            self._judge_ended(state, motor)
+            return
         if motor is None:
             self.fail(f"the robot has no motor '{self.motor}'")
             return
@@ -128,10 +132,19 @@ class Move:
             if state.mono_us - self._within_since_us >= _SETTLED_US:
                 self._end(MoveOutcome.DONE, "")
 
+    def _judge_ended(self, state: RobotState, motor: MotorState | None) -> None:
+        """Drops a target that the motor does not obey any more: nothing brings it back to life."""
+        if motor is not None and not self._order.not_obeyed(motor):
+            self._obeyed_s = state.taken_at_s
+        elif state.taken_at_s > self._obeyed_s + _ON_ITS_WAY_S:
+            self._dropped = True
+
     def on_time(self) -> None:
         """Ends it when its time is over, or no state has come for a second."""
         now_s = self._now()
-        if now_s >= self._started_s + self._timeout_s:
+        if self._result is not None:
+            self._dropped = self._dropped or now_s >= self._heard_s + _SILENCE_S
+        elif now_s >= self._started_s + self._timeout_s:
             self._end(
                 MoveOutcome.TIMEOUT,
                 f"{self.motor} is at {self._angle_deg:g} deg and not at {self.setpoint.value:g} "
@@ -141,13 +154,14 @@ class Move:
             self.fail("no state of the robot for a second: did rc10d or rc10-lcm end?")
 
     def fail(self, reason: str) -> None:
-        """Ends it without success, if it has not ended."""
+        """Ends it without success, if it has not ended; its target is not sent any more."""
+        self._dropped = True
         self._end(MoveOutcome.FAILED, reason)
 
     @property
-    def failed(self) -> bool:
+    def dropped(self) -> bool:
         """Whether its target must not be sent any more."""
-        return self._result is not None and self._result.outcome is MoveOutcome.FAILED
+        return self._dropped
 
     # ---- within ------------------------------------------------------------------------------
 

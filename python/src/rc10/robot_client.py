@@ -73,6 +73,9 @@ _ALL = ""
 # Events of targets and inputs that another client's stand in the way of, and of messages that rc10d
 # refused: docs/lcm.md.
 _REFUSED = (104, 202)
+_MOTOR_STATUS = 100
+# "ACTIVE -> READY (disabled by 'panel')": it does not obey any more.
+_LEFT_ACTIVE = re.compile(r"(ACTIVE|ENABLING) -> (?!ACTIVE)")
 _UNSUPPORTED = re.compile(
     r"refused: (?P<motor>[^ :]+): (?P<mode>\w+): the motor's drive does not support the mode"
 )
@@ -123,6 +126,7 @@ class RobotClient:
         self._command_channel = f"{name}.v1.command"
         self._closed = False
         self._moves: dict[str, Move] = {}
+        self._shown_us: dict[str, int] = {}  # by motor: the state that its move began with
         self._resend_s = 0.0
         self._judged: RobotState | None = None
         self._inbox.on_event = self._on_event
@@ -305,6 +309,7 @@ class RobotClient:
             return move
         self.command({name: setpoint}, validity_ms=_MOVE_VALIDITY_MS)
         self._moves[name] = move
+        self._shown_us[name] = state.mono_us
         self._resend_s = self._link.now() + RESEND_S
         return move
 
@@ -439,6 +444,19 @@ class RobotClient:
                 _log.warning("rc10d says: %s", printable(f"{event.source}: {event.text}"))
         for move in self._moves.values():
             move.on_event(event)
+        left = event.code == _MOTOR_STATUS and _LEFT_ACTIVE.match(event.text)
+        move_there = self._moves.get(event.source)
+        # Disabled and enabled between two states: no state shows it.
+        if left and move_there is not None and event.mono_us > self._shown_us[event.source]:
+            self._moves.pop(event.source)
+            move_there.fail(f"{event.source}: {event.text}")
+
+    def _abandon(self, move: Move) -> None:
+        """Has the target of a move end now: nobody waits for it any more."""
+        if self._moves.get(move.motor) is move:
+            self._moves.pop(move.motor)
+            self._publish_command({move.motor: move.setpoint}, validity_ms=1)
+        move.fail("cancelled")
 
     def _advance_moves(self) -> None:
         state = self._inbox.state
@@ -458,7 +476,7 @@ class RobotClient:
                     move.fail(f"{name} cannot be moved any more")
                     continue
             move.on_time()
-            if move.failed:
+            if move.dropped:
                 self._moves.pop(name)
         now_s = self._link.now()
         if self._moves and now_s >= self._resend_s:

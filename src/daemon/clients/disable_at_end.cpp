@@ -58,7 +58,8 @@ void DisableAtEnd::finish(const OrderResult& result, const Snapshot& now) {
 
 std::optional<Order> DisableAtEnd::due(const Snapshot& now,
                                        const std::function<bool(std::uint64_t)>& is_open) {
-  Order order{.id = Order::kOfLinkThread, .operation = Operation::kDisable, .motors = {}, .repeated = true};
+  Order order{
+      .id = Order::kOfLinkThread, .operation = Operation::kDisable, .motors = {}, .asked = Asked::kUnasked};
   for (auto& entry : entries_) {
     // The snapshot may be of the tick before the result.
     if (!entry.enabled_at || now.tick < *entry.enabled_at + 2) continue;

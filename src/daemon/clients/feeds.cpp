@@ -26,7 +26,7 @@ void Feeds::publishState() {
   const auto& snapshot = sources_.exchange.snapshot.read();
   publication_.fill(state_, snapshot, wallClockUs());
   connections_.publish(link::kStates, link::seal(state_));
-  recordAges(snapshot);
+  if (connections_.wanted(link::kStates)) recordAges(snapshot);
   publishModules(snapshot);
 }
 

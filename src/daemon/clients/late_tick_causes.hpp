@@ -23,9 +23,9 @@ struct ThreadFacts {
 };
 
 /// Counts late ticks by cause, from what the scheduler thread and the kernel have counted since the last
-/// call, its window: some ten ticks, unless the caller was late. A thread waits a few microseconds before
-/// each tick; what it waits in windows without late ticks takes nothing. A window has one sum for each step:
-/// of two late ticks with the same step both have one cause. Link thread only.
+/// call, its window: twenty ticks at 1 kHz, unless the caller was late. A thread waits a few microseconds
+/// before each tick; what it waits in windows without late ticks takes nothing. A window has one sum for each
+/// step: of two late ticks with the same step both have one cause. Link thread only.
 class LateTickCauses {
  public:
   /// `ticks`: of the scheduler, so far.

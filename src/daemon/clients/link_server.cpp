@@ -24,7 +24,7 @@ constexpr int kSlowHz = 100;
 constexpr int kUnwantedStateHz = 2;
 constexpr unsigned kDiagnosticsEvery = kSlowHz / 2;    // 2 Hz
 constexpr unsigned kHousekeepingEvery = kSlowHz / 10;  // 10 Hz
-constexpr unsigned kLateCausesEvery = kSlowHz / 50;    // 50 Hz, some ten ticks
+constexpr unsigned kLateCausesEvery = kSlowHz / 50;    // 50 Hz, twenty ticks at 1 kHz
 // Refusals of one reason are told at most this often; all of them are counted.
 constexpr Duration kRefusalReportInterval = std::chrono::seconds{1};
 // epoll data: connections have their id, which starts at 1 and counts up.

@@ -183,7 +183,8 @@ RequestDesk::Outcome RequestDesk::begin(const link::Request& request, const Spea
     return outcome;
   }
   order->id = next_order_id_++;
-  order->repeated = known != nullptr || open != nullptr || comesOfItself(request);
+  const bool again = known != nullptr || open != nullptr;
+  order->asked = comesOfItself(request) ? Asked::kUnasked : again ? Asked::kAgain : Asked::kAnew;
   open_.push_back({speaker.connection, asker, request, *order, *tries});
   outcome.order = *order;
   outcome.disable_at_end = *at_end;

@@ -50,6 +50,13 @@ struct BusScanOrder {
   bool listen_only = false;
 };
 
+/// Origin of a request. Only one that is asked anew is one more kDisable, and lets go.
+enum class Asked : std::uint8_t {
+  kAnew,
+  kAgain,    ///< It was taken before; its answer may be lost.
+  kUnasked,  ///< It comes of itself, as of a program that ends: what is held or braked already stays so.
+};
+
 /// A request that passed the link thread, for the supervisor.
 struct Order {
   static constexpr std::uint64_t kFromModule = 0;  ///< The id of all that modules ask: they get no result.
@@ -65,8 +72,7 @@ struct Order {
   BusScanOrder scan{};       ///< kScan; `motors` are those of its bus.
   link::Name client{};       ///< The one that asked.
   bool whole_robot = false;  ///< Named no motor. Only such a kClear ends an e-stop.
-  /// A request that was taken before, or that comes of itself as a program ends: it is not one more kDisable.
-  bool repeated = false;
+  Asked asked = Asked::kAnew;
 
   [[nodiscard]] bool fromModule() const noexcept { return id == kFromModule; }
 };

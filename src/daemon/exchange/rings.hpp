@@ -34,7 +34,7 @@ struct BusInbox {
   std::atomic<std::uint64_t> malformed{0};  ///< Datagrams that are no frame.
   std::atomic<std::uint64_t> confirmed{0};  ///< Echoes of the watched command id.
   std::atomic<CanLinkState> link{CanLinkState::kUp};
-  std::atomic<bool> echo_available{false};
+  std::atomic<std::uint64_t> echo_reads{0};  ///< Times that all echoes were read; 0: no echo socket.
   /// Verdict of the scheduler, for the io thread.
   std::atomic<BusState> state{BusState::kActive};
   /// The io thread counts here when the driver says that a bus-off controller runs again.

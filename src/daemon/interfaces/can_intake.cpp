@@ -14,7 +14,7 @@ CanIntake::CanIntake(Robot& robot, std::span<BusInbox> inboxes, MonotonicTime no
     sources_.push_back({i, CanReceiver{entry.bus->descriptor()}});
     if (!entry.echo) continue;
     echoes_.push_back({i, EchoCounter{entry.echo.get()}});
-    inboxes_[i].echo_available.store(true);
+    inboxes_[i].echo_reads.store(1);
   }
 }
 
@@ -41,8 +41,9 @@ void CanIntake::drain(Echoes& echoes) noexcept {
     const auto count = echoes.counter.take();
     if (count.confirmed != 0)
       inboxes_[echoes.bus].confirmed.fetch_add(count.confirmed, std::memory_order_relaxed);
-    if (count.messages < EchoCounter::kBatch) return;
+    if (count.messages < EchoCounter::kBatch) break;
   }
+  inboxes_[echoes.bus].echo_reads.fetch_add(1, std::memory_order_release);
 }
 
 void CanIntake::take(const Source& source, const Reception& reception) noexcept {

@@ -231,7 +231,7 @@ bool Axis::lapses(const Tick& tick) noexcept {
 }
 
 void Axis::order(RobotStatus robot, const Tick& tick) noexcept {
-  if (fallback_.acts()) fallback_.step(standsStill(), tick.now);
+  if (fallback_.acts()) fallback_.step(standsStill(), motor_.feedback().total_angle_deg, tick.now);
   const auto kind = frameKind(robot);
   if (kind == FrameKind::kHold && leadsHold(tick)) return;
   if (kind != FrameKind::kCommand) {
@@ -325,8 +325,7 @@ std::optional<MotorStatus> Axis::handle(MotorEvent event, RobotStatus robot, con
                                         const Tick& tick) noexcept {
   const auto before = status_;
   // A motor that is held is on already: a request to rest does not depend on the tick in which it is ACTIVE.
-  const bool rests_while_held =
-      heldWhileEnabling() && (event == MotorEvent::kDisable || event == MotorEvent::kGroupStop);
+  const bool rests_while_held = heldWhileEnabling() && (isDisable(event) || event == MotorEvent::kGroupStop);
   status_ = next(before, event);
   if (status_ == before) return std::nullopt;
   if (before == MotorStatus::kFault) {
@@ -337,9 +336,10 @@ std::optional<MotorStatus> Axis::handle(MotorEvent event, RobotStatus robot, con
   const bool stopped = isOn(before) && !isOn(status_);
   if (stopped || status_ == MotorStatus::kFault) stop_ = stop;
   if (status_ != MotorStatus::kActive) dropTarget();
-  if ((before == MotorStatus::kActive || rests_while_held) && status_ == MotorStatus::kReady) {
+  const bool stays = event == MotorEvent::kDisableUnasked && fallback_.carries();
+  if ((before == MotorStatus::kActive || rests_while_held) && status_ == MotorStatus::kReady && !stays) {
     const auto& config = entry_.fallback;
-    const bool asked = event == MotorEvent::kDisable || robot == RobotStatus::kStopping;
+    const bool asked = isDisable(event) || robot == RobotStatus::kStopping;
     const auto action = asked ? config.on_disable : config.on_estop;
     beginFallback(action, asked ? Fallback::Until::kStandstill : Fallback::Until::kEnded,
                   event == MotorEvent::kEstop, tick);
@@ -370,7 +370,8 @@ std::optional<SkipReason> Axis::follow(const Target& target, const Lease::Holder
     motor_.clearTarget();
     if (status_ == MotorStatus::kActive) fallback_.end();
   } else {
-    if (const auto reason = tryTarget(target)) return reason;
+    if (const auto reason = whySkipped(target)) return reason;
+    (void)motor_.setTarget(target);
     fallback_.end();
     stop_ = {};
   }
@@ -378,7 +379,8 @@ std::optional<SkipReason> Axis::follow(const Target& target, const Lease::Holder
   return std::nullopt;
 }
 
-std::optional<SkipReason> Axis::tryTarget(const Target& target) noexcept {
+std::optional<SkipReason> Axis::whySkipped(const Target& target) const noexcept {
+  if (target.mode == ControlMode::kCoast) return std::nullopt;
   if (status_ != MotorStatus::kActive) return SkipReason::kNotActive;
   if (needsReference(target.mode)) {
     if (!(std::fabs(target.value) <= kFarthestAngleDeg)) return SkipReason::kTooFar;
@@ -386,8 +388,7 @@ std::optional<SkipReason> Axis::tryTarget(const Target& target) noexcept {
     const bool first = !actsByPlace(motor_.target());
     if (first && !shaper_.firstStepAllowed(target, motor_.feedback())) return SkipReason::kFirstStep;
   }
-  if (!motor_.setTarget(target)) return SkipReason::kRefused;
-  return std::nullopt;
+  return motor_.acceptsTarget(target) ? std::nullopt : std::optional{SkipReason::kRefused};
 }
 
 bool Axis::mayReportSkip(MonotonicTime now) noexcept {

@@ -82,6 +82,8 @@ class Axis {
   /// The status before, if it changes.
   [[nodiscard]] std::optional<MotorStatus> handle(MotorEvent event, RobotStatus robot, const Stop& stop,
                                                   const Tick& tick) noexcept;
+  /// Reason for which follow() would not obey such a target now.
+  [[nodiscard]] std::optional<SkipReason> whySkipped(const Target& target) const noexcept;
   /// Before MotorEvent::kEnable.
   void prepareEnabling(const Tick& tick) noexcept;
   /// Before MotorEvent::kClear: the drive clears its faults.
@@ -137,7 +139,6 @@ class Axis {
     return fallback_.kind() == FrameKind::kCommand && motor_.target().mode == ControlMode::kCoast;
   }
   [[nodiscard]] bool heldWhileEnabling() const noexcept;
-  [[nodiscard]] std::optional<SkipReason> tryTarget(const Target& target) noexcept;
   void dropTarget() noexcept;
   void beginTimeoutFallback(StopCause cause, const Tick& tick) noexcept;
   void beginFallback(FallbackAction action, Fallback::Until until, bool estop, const Tick& tick) noexcept;

@@ -18,9 +18,12 @@ class Lease {
   };
 
   /// Somebody has taken it, though it may have lapsed since.
-  [[nodiscard]] bool taken() const noexcept { return term_.until != MonotonicTime{}; }
+  [[nodiscard]] bool taken() const noexcept { return taken_; }
   [[nodiscard]] bool held(MonotonicTime now) const noexcept { return now < term_.until; }
 
+  [[nodiscard]] bool isHolder(const Holder& other) const noexcept {
+    return other.session == holder_.session && other.client.view() == holder_.client.view();
+  }
   [[nodiscard]] bool allows(const Holder& other, MonotonicTime now) const noexcept {
     return !held(now) || isHolder(other) || other.priority > holder_.priority;
   }
@@ -34,6 +37,7 @@ class Lease {
   void take(const Holder& holder, const Term& term) noexcept {
     holder_ = holder;
     term_ = term;
+    taken_ = true;
   }
   /// The holder has said something newer, which is past already.
   void shorten(const Holder& sender, MonotonicTime until) noexcept {
@@ -47,12 +51,9 @@ class Lease {
   [[nodiscard]] MonotonicTime received() const noexcept { return term_.received; }
 
  private:
-  [[nodiscard]] bool isHolder(const Holder& other) const noexcept {
-    return other.session == holder_.session && other.client.view() == holder_.client.view();
-  }
-
   Holder holder_;
   Term term_;
+  bool taken_ = false;
 };
 
 }  // namespace rc10

@@ -34,7 +34,11 @@ bool MotorGroup::waits(const std::vector<Axis>& axes) const noexcept {
 // An e-stop stops all of them anyway, and the stop of a group is no reason for another.
 void MotorGroup::noteLeaving(std::size_t motor, MotorStatus before, MotorEvent event) noexcept {
   switch (event) {
-    case MotorEvent::kDisable: disabled.set(motor, required.test(motor)); break;
+    case MotorEvent::kDisable:
+      disabled.set(motor, required.test(motor));
+      disabled_on_request |= required.test(motor);
+      break;
+    case MotorEvent::kDisableUnasked: disabled.set(motor, required.test(motor)); break;
     case MotorEvent::kEnableFailed: refused.set(motor, required.test(motor)); break;
     case MotorEvent::kFeedbackLost:
     case MotorEvent::kFault: dropped.set(motor, before == MotorStatus::kActive); break;
@@ -45,6 +49,7 @@ void MotorGroup::noteLeaving(std::size_t motor, MotorStatus before, MotorEvent e
 void MotorGroup::forgetLeaving() noexcept {
   dropped.reset();
   disabled.reset();
+  disabled_on_request = false;
   refused.reset();
   disable_asked = false;
 }

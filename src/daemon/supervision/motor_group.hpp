@@ -32,10 +32,11 @@ struct MotorGroup {
   bool together = false;  ///< Enabled all or none, and obeying only when all do.
   GroupConfig::Return on_return = GroupConfig::Return::kRequest;
   // In this tick.
-  MotorSet dropped;            ///< Members that were ACTIVE and have been lost.
-  MotorSet disabled;           ///< Required members that were on and have been disabled,
-  MotorSet refused;            ///< or whose drives have refused.
-  bool disable_asked = false;  ///< A request named some member.
+  MotorSet dropped;                  ///< Members that were ACTIVE and have been lost.
+  MotorSet disabled;                 ///< Required members that were on and have been disabled,
+  MotorSet refused;                  ///< or whose drives have refused.
+  bool disable_asked = false;        ///< A request named some member.
+  bool disabled_on_request = false;  ///< Some of `disabled` by one that somebody asked for.
   // Until a request changes it.
   MotorSet rests_with_it;  ///< Disabled since another member was.
   MotorSet rearm;          ///< To be enabled again by itself; empty: none.

@@ -15,25 +15,30 @@ enum class MotorEvent : std::uint8_t {
   kEnableDone,  ///< The drive has answered the enable sequence.
   kEnableFailed,
   kDisable,
-  kEstop,  ///< Robot-wide stop, or the process is about to end.
+  kDisableUnasked,  ///< As a program ends: what is held or braked already stays so.
+  kEstop,           ///< Robot-wide stop, or the process is about to end.
   kFault,
   kClear,
   kGroupStop,  ///< Its group stops: a member is lost, or its drive has refused.
 };
-inline constexpr int kMotorEventCount = 10;
+inline constexpr int kMotorEventCount = 11;
 
 namespace detail {
 inline constexpr auto kMotorTransitions = [] {
   using enum MotorStatus;
-  // Rows: status. Columns: fresh, lost, enable, done, failed, disable, estop, fault, clear, group stop.
+  // Rows: status. Columns: fresh, lost, enable, done, failed, disable, disable unasked, estop, fault,
+  // clear, group stop.
   return std::array<std::array<MotorStatus, kMotorEventCount>, kMotorStatusCount>{{
-      /* offline  */ {kReady, kOffline, kOffline, kOffline, kOffline, kOffline, kOffline, kFault, kOffline,
-                      kOffline},
-      /* ready    */ {kReady, kOffline, kEnabling, kReady, kReady, kReady, kReady, kFault, kReady, kReady},
+      /* offline  */ {kReady, kOffline, kOffline, kOffline, kOffline, kOffline, kOffline, kOffline, kFault,
+                      kOffline, kOffline},
+      /* ready    */
+      {kReady, kOffline, kEnabling, kReady, kReady, kReady, kReady, kReady, kFault, kReady, kReady},
       /* enabling */
-      {kEnabling, kOffline, kEnabling, kActive, kReady, kReady, kReady, kFault, kEnabling, kReady},
-      /* active   */ {kActive, kOffline, kActive, kActive, kReady, kReady, kReady, kFault, kActive, kReady},
-      /* fault    */ {kFault, kFault, kFault, kFault, kFault, kFault, kFault, kFault, kOffline, kFault},
+      {kEnabling, kOffline, kEnabling, kActive, kReady, kReady, kReady, kReady, kFault, kEnabling, kReady},
+      /* active   */
+      {kActive, kOffline, kActive, kActive, kReady, kReady, kReady, kReady, kFault, kActive, kReady},
+      /* fault    */
+      {kFault, kFault, kFault, kFault, kFault, kFault, kFault, kFault, kFault, kOffline, kFault},
   }};
 }();
 }  // namespace detail
@@ -53,7 +58,8 @@ inline constexpr auto kMotorTransitions = [] {
   switch (event) {
     case MotorEvent::kFeedbackLost: return StopCause::kSilence;
     case MotorEvent::kEnableFailed: return StopCause::kRefused;
-    case MotorEvent::kDisable: return StopCause::kRequest;
+    case MotorEvent::kDisable:
+    case MotorEvent::kDisableUnasked: return StopCause::kRequest;
     case MotorEvent::kEstop:
       return robot == RobotStatus::kStopping ? StopCause::kShutdown : StopCause::kEstop;
     case MotorEvent::kFault: return StopCause::kFault;
@@ -64,6 +70,10 @@ inline constexpr auto kMotorTransitions = [] {
     case MotorEvent::kClear: break;
   }
   return StopCause::kNone;
+}
+
+[[nodiscard]] constexpr bool isDisable(MotorEvent event) noexcept {
+  return event == MotorEvent::kDisable || event == MotorEvent::kDisableUnasked;
 }
 
 /// Whether such a motor moves, or is about to.

@@ -111,7 +111,7 @@ void Supervisor::transition(std::size_t motor, MotorEvent event, const Stop& why
                   : after == MotorStatus::kFault    ? Refusal::kFaulted
                   : event == MotorEvent::kEstop     ? Refusal::kEstop
                   : event == MotorEvent::kGroupStop ? Refusal::kGroup
-                  : event == MotorEvent::kDisable   ? Refusal::kDisabled
+                  : isDisable(event)                ? Refusal::kDisabled
                   : axis.turnUnclear()              ? Refusal::kTurnUnclear
                                                     : Refusal::kDriveRefused);
   }

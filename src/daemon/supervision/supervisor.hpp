@@ -72,8 +72,10 @@ class Supervisor {
 
   /// A drive does not rest, and the heartbeat is to end with that, until the e-stop is cleared.
   [[nodiscard]] bool heartbeatRests() const noexcept { return heartbeat_rests_; }
-  /// When it left RUN.
-  [[nodiscard]] MonotonicTime stoppedAt() const noexcept { return stopped_; }
+  /// Begin of the e-stop in force, which the end of rc10d does not end.
+  [[nodiscard]] std::optional<MonotonicTime> estopBegan() const noexcept {
+    return estop_in_force_ ? std::optional{estop_began_} : std::nullopt;
+  }
   [[nodiscard]] RobotStatus robotState() const noexcept { return state_; }
   [[nodiscard]] MotorStatus status(std::size_t motor) const noexcept { return axes_[motor].status(); }
 
@@ -93,6 +95,9 @@ class Supervisor {
   /// Whether it acts; one that does not is counted and told.
   [[nodiscard]] bool follow(const Command::Setpoint& setpoint, const Lease::Holder& sender,
                             const Command& command, const Tick& tick) noexcept;
+  [[nodiscard]] bool waits(const Command::Setpoint& setpoint) const noexcept;
+  [[nodiscard]] std::optional<SkipReason> whySkipped(const Command::Setpoint& setpoint) const noexcept;
+  void skip(const Command::Setpoint& setpoint, SkipReason reason, const Tick& tick) noexcept;
   void carryOut(const Order& order, const Tick& tick) noexcept;
   /// `asked`: all motors that the request names.
   [[nodiscard]] Refusal enable(std::size_t motor, const MotorSet& asked, const Tick& tick) noexcept;

@@ -75,13 +75,16 @@ void Supervisor::stopGroup(std::size_t index, GroupStop reason, const Tick& tick
                                                          : group.disabled;
   const auto source = firstOf(culprits);
   const bool asked = reason == GroupStop::kDisabled;
+  const auto event = !asked                      ? MotorEvent::kGroupStop
+                     : group.disabled_on_request ? MotorEvent::kDisable
+                                                 : MotorEvent::kDisableUnasked;
   const Stop why{StopCause::kGroup,
                  link::Name{robot_.motors()[static_cast<std::size_t>(source)].motor->name()}};
   group.rearm = group.dropped;
   for (const auto motor : group.motors) {
     if (axes_[motor].status() == MotorStatus::kActive) group.rearm.set(motor);
     if (asked && isOn(axes_[motor].status())) group.rests_with_it.set(motor);
-    transition(motor, asked ? MotorEvent::kDisable : MotorEvent::kGroupStop, why, tick);
+    transition(motor, event, why, tick);
   }
   bool returns = reason == GroupStop::kLost && !group.disable_asked &&
                  group.on_return == GroupConfig::Return::kRearmAtRest;

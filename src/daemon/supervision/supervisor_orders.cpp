@@ -39,6 +39,13 @@ void Supervisor::receiveOrders(const Tick& tick) noexcept {
 bool Supervisor::takeModuleCommand(const Command& command, const Tick& tick) noexcept {
   const Lease::Holder sender{command.client, command.session, command.priority};
   if (!mayCommand(command, sender, tick)) return false;
+  // What a module moves is one mechanism: half of its targets would rack it.
+  for (std::size_t i = 0; i < command.count; ++i) {
+    if (const auto reason = whySkipped(command.setpoints[i])) {
+      skip(command.setpoints[i], *reason, tick);
+      return true;
+    }
+  }
   for (std::size_t i = 0; i < command.count; ++i) (void)follow(command.setpoints[i], sender, command, tick);
   return true;
 }
@@ -86,20 +93,31 @@ void Supervisor::apply(const Command& command, const Tick& tick) noexcept {
   if (recorder_ != nullptr) recorder_->command(command, blackbox::Verdict::kApplied, skipped);
 }
 
+bool Supervisor::waits(const Command::Setpoint& setpoint) const noexcept {
+  return setpoint.target.mode != ControlMode::kCoast &&
+         axes_[setpoint.motor].status() == MotorStatus::kActive && waitsForGroup(setpoint.motor);
+}
+
+std::optional<SkipReason> Supervisor::whySkipped(const Command::Setpoint& setpoint) const noexcept {
+  return waits(setpoint) ? SkipReason::kGroup : axes_[setpoint.motor].whySkipped(setpoint.target);
+}
+
 bool Supervisor::follow(const Command::Setpoint& setpoint, const Lease::Holder& sender,
                         const Command& command, const Tick& tick) noexcept {
-  auto& axis = axes_[setpoint.motor];
-  const bool waits = setpoint.target.mode != ControlMode::kCoast && axis.status() == MotorStatus::kActive &&
-                     waitsForGroup(setpoint.motor);
   const Lease::Term term{command.received, command.deadline};
-  const auto reason = waits ? SkipReason::kGroup : axis.follow(setpoint.target, sender, term);
-  if (!reason) return true;
+  const auto reason =
+      waits(setpoint) ? SkipReason::kGroup : axes_[setpoint.motor].follow(setpoint.target, sender, term);
+  if (reason) skip(setpoint, *reason, tick);
+  return !reason;
+}
+
+void Supervisor::skip(const Command::Setpoint& setpoint, SkipReason reason, const Tick& tick) noexcept {
+  auto& axis = axes_[setpoint.motor];
   ++skipped_setpoints_;
-  if (!axis.mayReportSkip(tick.now)) return false;
+  if (!axis.mayReportSkip(tick.now)) return;
   report({EventCode::kSetpointSkipped, Severity::kWarning, static_cast<std::int16_t>(setpoint.motor),
-          static_cast<std::int32_t>(*reason), ExtraPair{setpoint.target.mode, axis.status()}.extra(),
+          static_cast<std::int32_t>(reason), ExtraPair{setpoint.target.mode, axis.status()}.extra(),
           tick.now});
-  return false;
 }
 
 void Supervisor::carryOut(const Order& order, const Tick& tick) noexcept {
@@ -195,15 +213,17 @@ void Supervisor::disable(std::size_t motor, const Order& order, const Tick& tick
   // Once more lets go of a motor that is still being held or braked; the first time may have been its
   // group's. A request that is repeated since its answer was lost is no second one.
   // One in the tick in which an e-stop begins is no second one either.
+  const bool anew = order.asked == Asked::kAnew;
   const bool once_more =
-      !order.repeated && tick.now != estop_began_ && (group == nullptr || !group->rests_with_it.test(motor));
+      anew && tick.now != estop_began_ && (group == nullptr || !group->rests_with_it.test(motor));
   if (axis.status() == MotorStatus::kReady && once_more) axis.endFallback();
   if (group != nullptr) {
     group->rearm.reset();
-    if (!order.repeated) group->rests_with_it.reset(motor);
+    if (anew) group->rests_with_it.reset(motor);
     group->disable_asked = true;
   }
-  transition(motor, MotorEvent::kDisable, {StopCause::kRequest, order.client}, tick);
+  const auto event = order.asked == Asked::kUnasked ? MotorEvent::kDisableUnasked : MotorEvent::kDisable;
+  transition(motor, event, {StopCause::kRequest, order.client}, tick);
 }
 
 Refusal Supervisor::ownRefusal(std::size_t motor) const noexcept {

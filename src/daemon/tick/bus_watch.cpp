@@ -64,10 +64,12 @@ void BusWatch::updateHealth(std::size_t bus, const Tick& tick) noexcept {
   const auto running = inbox.controller_running.load(std::memory_order_relaxed);
   if (running != watched.running_seen) health.onControllerRunning();
   watched.running_seen = running;
+  // Before the echoes that it has seen.
+  const auto echo_reads = inbox.echo_reads.load(std::memory_order_acquire);
   health.update(tick.now, {.rx_frames = counters.rx_frames,
                            .tx_watched = counters.tx_watched,
                            .tx_confirmed = inbox.confirmed.load(std::memory_order_relaxed),
-                           .echo_available = inbox.echo_available.load(std::memory_order_relaxed),
+                           .echo_reads = echo_reads,
                            .feedback_expected = entry.feedback_expected});
 }
 

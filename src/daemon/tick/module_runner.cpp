@@ -77,8 +77,10 @@ void ModuleRunner::take(const SignalMessage& message, const Tick& tick) noexcept
     if (verdict == blackbox::Verdict::kExpired) control.lease.shorten(sender, message.deadline);
     return;
   }
+  auto& module = *robot_.modules()[message.module].module;
+  if (!control.lease.isHolder(sender)) module.changeSender();
   control.lease.take(sender, {message.received, message.deadline});
-  robot_.modules()[message.module].module->setInputs(message.values);
+  module.setInputs(message.values);
 }
 
 void ModuleRunner::handOver(const Tick& tick) noexcept {
@@ -143,7 +145,7 @@ Order ModuleRunner::orderOf(RobotRequest request) const noexcept {
   Order order;
   order.operation = operationOf(request);
   order.client = sender().client;
-  order.repeated = request == RobotRequest::kDisableUnasked;
+  if (request == RobotRequest::kDisableUnasked) order.asked = Asked::kUnasked;
   return order;
 }
 

@@ -90,12 +90,9 @@ void Scheduler::stopForTheComputer(const Tick& tick) noexcept {
 }
 
 void Scheduler::beat(const Tick& tick) noexcept {
-  const auto state = supervisor_.robotState();
-  if (state == RobotStatus::kRun) heartbeat_stays_ = false;
-  // The end of the process in an e-stop does not close the contactor again.
-  heartbeat_stays_ |= heartbeat_rests_after_ && state == RobotStatus::kEstop &&
-                      tick.now - supervisor_.stoppedAt() >= *heartbeat_rests_after_;
-  if (!heartbeat_stays_ && !supervisor_.heartbeatRests())
+  const auto estop = supervisor_.estopBegan();
+  const bool rests = heartbeat_rests_after_ && estop && tick.now - *estop >= *heartbeat_rests_after_;
+  if (!rests && !supervisor_.heartbeatRests())
     beats_.store(beats_.load(std::memory_order_relaxed) + 1, std::memory_order_relaxed);
 }
 
@@ -157,7 +154,7 @@ void Scheduler::watchStop() noexcept {
   ++rest_ticks_;
   bool echoed = true;
   for (std::size_t i = 0; i < robot_.buses().size(); ++i) {
-    if (!inboxes_[i].echo_available.load(std::memory_order_relaxed)) continue;
+    if (inboxes_[i].echo_reads.load(std::memory_order_relaxed) == 0) continue;
     // So many echoes that frames from before the stop cannot account for all of them.
     echoed = echoed &&
              inboxes_[i].confirmed.load(std::memory_order_relaxed) >= confirmed_at_stop_[i] + kMinRestTicks;

@@ -93,7 +93,6 @@ class Scheduler {
   std::atomic<std::uint64_t> ticks_{0};               // read by the link thread, for the watchdog
   std::atomic<std::uint64_t> beats_{0};               // read by the gpio thread
   std::optional<Duration> heartbeat_rests_after_;
-  bool heartbeat_stays_ = false;      ///< It has rested in an e-stop, until that is cleared.
   link::GuardPage* guard_ = nullptr;  ///< None: nobody watches.
   Stop stop_asked_{};
   std::uint64_t missed_ticks_ = 0;

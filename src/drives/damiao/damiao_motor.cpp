@@ -51,6 +51,7 @@ Damiao_Motor::Damiao_Motor(const MotorSettings& settings)
                              : own_.scale.v_max_rad_s)),
       heard_within_(kPositionAskedEvery + 2 * std::max(settings.command_divider, 1) * tickPeriod()),
       position_(own_.scale, fastest(settings, own_.scale), feedbackPeriod()),
+      speed_(own_.scale.v_max_rad_s),
       travel_(settings.travel),
       enabling_({.id = settings.id, .control = own_.control, .timeout = own_.timeout, .scale = own_.scale}),
       setup_codec_(settings.id, own_.can_fd) {
@@ -103,7 +104,8 @@ void Damiao_Motor::takeState(const damiao::State& state, MonotonicTime received)
     ++feedback_.jumps;
   }
 
-  measured_rad_s_ = damiao::measured(state.velocity, own_.scale.v_max_rad_s, 12);
+  measured_rad_s_ = speed_.take(damiao::measured(state.velocity, own_.scale.v_max_rad_s, 12), position_.rad(),
+                                step == DamiaoPosition::Step::kFollows, received);
   const double torque_nm = torqueToOutput(damiao::measured(state.torque, own_.scale.t_max_nm, 12));
   feedback_.velocity_rpm = static_cast<float>(toOutput(measured_rad_s_) / kRadPerSPerRpm);
   feedback_.torque_nm = static_cast<float>(torque_nm);

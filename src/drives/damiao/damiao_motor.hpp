@@ -11,6 +11,7 @@
 #include "drives/damiao/damiao_mit.hpp"
 #include "drives/damiao/damiao_position.hpp"
 #include "drives/damiao/damiao_setup.hpp"
+#include "drives/damiao/damiao_speed.hpp"
 #include "motor/drive_configuring.hpp"
 #include "motor/position_reach.hpp"
 #include "motor/solo_motor.hpp"
@@ -75,6 +76,7 @@ class Damiao_Motor : public SoloMotor {
   Duration heard_within_;  ///< A drive silent for longer is not asked for a register as well.
 
   DamiaoPosition position_;
+  DamiaoSpeed speed_;
   Travel travel_;
   SpringReach reach_;
   DamiaoEnabling enabling_;

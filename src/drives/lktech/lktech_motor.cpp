@@ -245,6 +245,11 @@ void LKTech_Motor::followAngle(double total_angle_deg) noexcept {
     return (drivePositionFor(output_deg) + shift_deg_) * traits().gear_ratio;
   };
   constexpr double kReachDeg = 2147483647.0 * lktech::kDegPerRaw;
+  // From beyond what can be told every place lies far back.
+  if (std::abs(rotor_deg_of(feedback_.total_angle_deg)) > kReachDeg) {
+    limits_ |= kLimitAngle;
+    return followVelocity(0.0);
+  }
   const double wanted_deg = rotor_deg_of(total_angle_deg);
   const double rotor_deg = std::clamp(wanted_deg, -kReachDeg, kReachDeg);
   const bool reaches = rotor_deg == wanted_deg;

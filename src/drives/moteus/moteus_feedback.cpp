@@ -19,6 +19,9 @@ constexpr double kClockRangeMs = 65'536.0;
 constexpr double kLongestGapMs = 30'000.0;
 constexpr double kClockToleranceMs = 200.0;
 
+// Half a turn and what its speed explains is no jump.
+constexpr double kJumpRev = 0.5;
+
 [[nodiscard]] double inMilliseconds(Duration duration) noexcept {
   return std::chrono::duration<double, std::milli>(duration).count();
 }
@@ -73,6 +76,10 @@ FrameVerdict Moteus_Motor::updateFeedback(const CanFrame& frame) noexcept {
     if (engaged_) drop(FaultCode::kDriveStopped, static_cast<std::uint32_t>(mode_));
   }
   if (!std::isfinite(reading.position_rev)) return FrameVerdict::kAccepted;  // it has no encoder
+  if (jumped(frame.received, reading) && !anew) {
+    loseReference();
+    ++feedback_.jumps;
+  }
   takePosition(reading.position_rev, anew);
   feedback_.velocity_rpm = static_cast<float>(toOutput(reading.velocity_rev_s * kRpmPerTurnPerS));
   feedback_.torque_nm = static_cast<float>(torqueToOutput(reading.torque_nm));
@@ -97,6 +104,18 @@ bool Moteus_Motor::restarted(MonotonicTime received, double clock_ms) noexcept {
   return std::abs(off_ms) > kClockToleranceMs && clock_ms_ <= passed_ms + kClockToleranceMs;
 }
 
+// Farther than its speed can have taken it: restarted, or its position was set by somebody else.
+bool Moteus_Motor::jumped(MonotonicTime received, const Reading& reading) const noexcept {
+  if (feedback_.samples == 0) return false;
+  const double before_rev_s =
+      toDrive(finiteOr0(static_cast<double>(feedback_.velocity_rpm))) / kRpmPerTurnPerS;
+  const double fastest_rev_s = std::max(std::abs(reading.velocity_rev_s), std::abs(before_rev_s));
+  const auto apart_s =
+      static_cast<double>(seconds(longestApart(received - feedback_.received, feedbackPeriod())));
+  const double moved_rev = std::remainder(reading.position_rev - (position_rev_ - wire_rev_), kRangeRev);
+  return std::abs(moved_rev) > kJumpRev + 1.5 * finiteOr0(fastest_rev_s) * apart_s;
+}
+
 void Moteus_Motor::takePosition(double position_rev, bool anew) noexcept {
   if (feedback_.samples == 0 || (anew && traits().absolute)) {
     position_rev_ = position_rev;
@@ -118,6 +137,8 @@ void Moteus_Motor::takeState(const Reading& reading) noexcept {
   } else if (mode_ == moteus::Mode::kTimeout) {
     drop(FaultCode::kDriveCommunication, static_cast<std::uint32_t>(mode_));
   } else {
+    // After a restart that its clock does not show it counts from elsewhere.
+    if (!traits().absolute) loseReference();
     drop(FaultCode::kDriveStopped, static_cast<std::uint32_t>(mode_));
   }
 }

@@ -74,6 +74,7 @@ class Moteus_Motor final : public SoloMotor {
 
   [[nodiscard]] static bool decode(const CanFrame& frame, Reading& reading) noexcept;
   [[nodiscard]] bool restarted(MonotonicTime received, double clock_ms) noexcept;
+  [[nodiscard]] bool jumped(MonotonicTime received, const Reading& reading) const noexcept;
   void takePosition(double position_rev, bool anew) noexcept;
   void takeState(const Reading& reading) noexcept;
   void drop(FaultCode why, std::uint32_t native) noexcept;

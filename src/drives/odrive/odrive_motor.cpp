@@ -231,6 +231,11 @@ void ODrive_Motor::followVelocity(double rpm, float torque_ff_nm) noexcept {
 void ODrive_Motor::followAngle(const Target& target) noexcept {
   const double wanted_turns = drivePositionFor(target.value) / kDegPerTurn;
   if (std::isnan(wanted_turns)) return followCurrent(Target{});
+  // From beyond what can be told every place lies far back.
+  if (std::abs(drivePositionFor(feedback_.total_angle_deg)) / kDegPerTurn > kFarthestTurns) {
+    limits_ |= kLimitAngle;
+    return followVelocity(0.0, 0.0F);
+  }
   const double turns = std::clamp(wanted_turns, -kFarthestTurns, kFarthestTurns);
   const bool reaches = turns == wanted_turns;
   if (!reaches) limits_ |= kLimitAngle;

@@ -127,6 +127,12 @@ void RobStride_Motor::limitTorque(SpringLaw& wanted) noexcept {
   if (feed_forward != wanted.torque_nm) limits_ |= kLimitCurrent;
   wanted.torque_nm = feed_forward;
   if (boundTorque(wanted, measured(), limit, SpringYield::kTarget)) limits_ |= kLimitCurrent;
+  // A target that its field cannot say would be cut there, and the torque with it: the gains yield.
+  wanted.position_rad =
+      std::clamp(wanted.position_rad, -codec_.position_range_rad, codec_.position_range_rad);
+  wanted.velocity_rad_s =
+      std::clamp(wanted.velocity_rad_s, -model_->velocity_range_rad_s, model_->velocity_range_rad_s);
+  if (boundTorque(wanted, measured(), limit, SpringYield::kGains)) limits_ |= kLimitCurrent;
 }
 
 void RobStride_Motor::followCurrent(const Target& target) noexcept {

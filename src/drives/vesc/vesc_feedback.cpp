@@ -71,7 +71,7 @@ FrameVerdict VESC_Motor::updateFeedback(const CanFrame& frame) noexcept {
 }
 
 float VESC_Motor::reportedDuty() const noexcept {
-  return status1Fresh(feedback_.received) ? status1_.duty * direction()
+  return status1Fresh(position_at_) ? status1_.duty * direction()
                                           : std::numeric_limits<float>::quiet_NaN();
 }
 
@@ -103,16 +103,16 @@ bool VESC_Motor::gapTooLong(Duration gap) const noexcept {
 
 /// A change of the drive's position; `known`: its number of turns is not in doubt.
 void VESC_Motor::takePosition(MonotonicTime received, double moved_deg, bool known) noexcept {
-  const Duration gap = received - feedback_.received;
+  const Duration gap = received - position_at_;
   spacing_.add(feedback_.samples == 0 ? Duration::zero() : gap);
+  position_at_ = received;
   position_deg_ += moved_deg;
-  if (!known && feedback_.samples > 0) loseReference();
-  // Without STATUS_1 beside it there is no speed and no current.
-  if (!status1Fresh(received)) {
-    feedback_.velocity_rpm = feedback_.current_a = feedback_.torque_nm = kNotReported;
-  }
-  acceptSample(received, position_deg_);
   position_seen_ = true;
+  // Without STATUS_1 beside it there is no speed and no current, so that no guard sees anything, and turns
+  // cannot be counted: it is no feedback.
+  const bool guarded = status1Fresh(received);
+  if ((!known || !guarded) && feedback_.samples > 0) loseReference();
+  if (guarded) acceptSample(received, position_deg_);
 }
 
 void VESC_Motor::takeSteps(const CanFrame& frame) noexcept {
@@ -125,7 +125,7 @@ void VESC_Motor::takeSteps(const CanFrame& frame) noexcept {
   // Modulo 2^32, as the drive counts.
   const auto moved = static_cast<std::int32_t>(static_cast<std::uint32_t>(steps) -
                                                static_cast<std::uint32_t>(status5_.steps));
-  const Duration gap = frame.received - feedback_.received;
+  const Duration gap = frame.received - position_at_;
   const auto span_s =
       static_cast<double>(seconds(longestApart(std::min(gap, kRestartGap), feedbackPeriod())));
   const double erpm = std::abs(static_cast<double>(status1_.erpm));
@@ -173,7 +173,7 @@ void VESC_Motor::takeEncoder(const CanFrame& frame) noexcept {
     takePosition(frame.received, moved, false);
     return;
   }
-  const Duration gap = frame.received - feedback_.received;
+  const Duration gap = frame.received - position_at_;
   if (gapTooLong(gap)) return takePosition(frame.received, shortestAngle(position_deg_, now_deg), false);
   const Way way = wayTo(now_deg, std::max(gap, Duration::zero()));
   takePosition(frame.received, way.moved, !way.doubtful && way.off <= kAmbiguousDeg);

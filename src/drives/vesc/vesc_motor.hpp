@@ -101,6 +101,7 @@ class VESC_Motor : public SoloMotor {
   MonotonicTime status1_at_;
   bool status1_seen_ = false;  ///< Since the drive started.
   bool position_seen_ = false;
+  MonotonicTime position_at_{};
   bool restarted_ = false;
   bool locked_ = false;  ///< The handbrake holds.
   bool looping_ = false;

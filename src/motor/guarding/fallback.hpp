@@ -1,7 +1,9 @@
 #pragma once
 
 #include <array>
+#include <cmath>
 #include <cstdint>
+#include <limits>
 #include <optional>
 #include <string_view>
 
@@ -76,12 +78,17 @@ class Fallback {
     bound_ = now + bound.most.value_or(Duration{});
     then_ = bound.then;
     moved_ = now;
+    still_deg_ = std::numeric_limits<double>::quiet_NaN();
   }
   void end() noexcept { kind_ = FrameKind::kRest; }
   [[nodiscard]] bool acts() const noexcept { return kind_ != FrameKind::kRest; }
   /// It damps, brakes or holds, and has for at least `time`; a ramp does not count.
   [[nodiscard]] bool resistsFor(Duration time, MonotonicTime now) const noexcept {
     return acts() && kind_ != FrameKind::kCommand && now - begun_ >= time;
+  }
+  /// It holds or brakes, or damps what it has held: without it a load may fall.
+  [[nodiscard]] bool carries() const noexcept {
+    return kind_ == FrameKind::kHold || kind_ == FrameKind::kBrake || (kind_ == FrameKind::kDamp && bounded_);
   }
   /// Kind of frame for the drive; kRest while no fallback is in force.
   [[nodiscard]] FrameKind kind() const noexcept { return kind_; }
@@ -93,21 +100,29 @@ class Fallback {
                                : ramp_.from_rpm * static_cast<double>(seconds(left) / seconds(ramp_.over));
   }
 
-  /// Once per tick while it acts.
-  void step(bool stands_still, MonotonicTime now) noexcept {
+  /// Once per tick while it acts. `angle_deg`: of all turns.
+  void step(bool stands_still, double angle_deg, MonotonicTime now) noexcept {
     if (kind_ == FrameKind::kCommand && now - begun_ >= ramp_.over + kRampRest) end();
     const bool becomes = acts() && bounded_ && now >= bound_ && kind_ != then_;
     if (becomes) kind_ = then_;
-    // A load that was held begins to move only now.
-    if (!stands_still || becomes) moved_ = now;
-    // A hold is for a load that would move by itself: it lasts for its whole time.
-    const bool settled = now - moved_ >= kSettled && kind_ != FrameKind::kHold;
-    if (until_ == Until::kStandstill && settled) end();
+    if (std::isnan(still_deg_)) still_deg_ = angle_deg;
+    // A load that was held begins to move only now, and may sink more slowly than what counts as standstill.
+    if (!stands_still || becomes || std::fabs(angle_deg - still_deg_) > kStrayDeg) {
+      moved_ = now;
+      still_deg_ = angle_deg;
+    }
+    // A hold is for a load that would move by itself: that it stands still proves nothing, nor does it under
+    // the brake of a drive that cannot damp.
+    const bool proves = kind_ == FrameKind::kDamp || !bounded_;
+    if (until_ == Until::kStandstill && proves && now - moved_ >= kSettled) end();
   }
 
  private:
   // Standstill after which it is not on its way back from an overshoot.
   static constexpr Duration kSettled = std::chrono::milliseconds{300};
+
+  // Way within kSettled that is none: noise of an encoder, and its steps.
+  static constexpr double kStrayDeg = 0.5;
 
   // A motor that lags behind its ramp has this time to come to rest.
   static constexpr Duration kRampRest = std::chrono::milliseconds{200};
@@ -120,6 +135,7 @@ class Fallback {
   MonotonicTime bound_{};
   FrameKind then_ = FrameKind::kDamp;
   MonotonicTime moved_{};
+  double still_deg_ = 0.0;  ///< Angle at moved_; NaN: not seen yet.
 };
 
 }  // namespace rc10

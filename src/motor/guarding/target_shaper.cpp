@@ -378,8 +378,10 @@ std::uint32_t TargetShaper::boundBySpeed(Target& asked, const MotorFeedback& fee
       value_ = finiteOr0(static_cast<double>(feedback.current_a));
     return limitOf(most_rpm);
   }
-  const double outward_rpm = std::fabs(value_ > 0.0 ? allowed.high_rpm : allowed.low_rpm);
-  if (reduced() || !(outward_rpm < kEffortFadesRpm)) return 0;
+  // Soft limits end a push, reduced speed does not.
+  const Envelope soft = softEnvelope(feedback);
+  const double outward_rpm = std::fabs(value_ > 0.0 ? soft.high_rpm : soft.low_rpm);
+  if (!(outward_rpm < kEffortFadesRpm)) return 0;
   asked.value = value_ * outward_rpm / kEffortFadesRpm;
   return value_ != 0.0 ? kLimitAngle : 0U;
 }

@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <chrono>
+#include <string_view>
 
+#include "robot_client/session/event_codes.hpp"
 #include "robot_client/session/obstacle.hpp"
 
 namespace rc10 {
@@ -22,11 +24,17 @@ constexpr Duration kClaimOnItsWay = std::chrono::milliseconds{100};
          "', which has the same or a higher priority, or came first";
 }
 
+// "ACTIVE -> READY (disabled by 'panel')", "ENABLING -> FAULT".
+[[nodiscard]] bool leavesActive(std::string_view change) {
+  return change.starts_with("ACTIVE -> ") ||
+         (change.starts_with("ENABLING -> ") && !change.starts_with("ENABLING -> ACTIVE"));
+}
+
 }  // namespace
 
-void HeldTargets::set(const MotorSetpoints& message, MonotonicTime now) {
+void HeldTargets::set(const MotorSetpoints& message, MonotonicTime now, std::int64_t shown_us) {
   alive(now);
-  Message held{{}, now, now + resend_};
+  Message held{{}, now, now + resend_, shown_us};
   for (const auto& order : message) {
     release(order.motor);
     if (order.setpoint.mode != Mode::kCoast) held.setpoints.push_back(order);
@@ -87,6 +95,19 @@ std::vector<HeldTargets::Dropped> HeldTargets::judge(const RobotState& state, co
     for (const auto& order : message.setpoints) {
       if (auto reason = whyDropped(state, order, client, message.set_at))
         dropped.push_back({order.motor, *reason});
+    }
+  }
+  for (const auto& drop : dropped) release(drop.motor);
+  return dropped;
+}
+
+std::vector<HeldTargets::Dropped> HeldTargets::judge(const Event& event) {
+  std::vector<Dropped> dropped;
+  if (event.code != kMotorStatus || !leavesActive(event.text)) return dropped;
+  for (const auto& message : messages_) {
+    if (event.mono_us <= message.shown_us) continue;
+    for (const auto& order : message.setpoints) {
+      if (order.motor == event.source) dropped.push_back({order.motor, order.motor + ": " + event.text});
     }
   }
   for (const auto& drop : dropped) release(drop.motor);

@@ -25,8 +25,8 @@ class HeldTargets {
   HeldTargets(Duration resend, Duration lapse) : resend_(resend), lapse_(lapse) {}
 
   /// Holds what has just been sent. Motors leave the message in which they were before; COAST needs no
-  /// holding.
-  void set(const MotorSetpoints& message, MonotonicTime now);
+  /// holding. `shown_us`: RobotState::mono_us of the newest state.
+  void set(const MotorSetpoints& message, MonotonicTime now, std::int64_t shown_us = 0);
   void release(const std::string& motor);
   void releaseAll() { messages_.clear(); }
   /// Gives up all that is held, message by message.
@@ -46,6 +46,8 @@ class HeldTargets {
   /// another client has taken. So a target never comes back to life when somebody enables the motor or lets
   /// go of it: the program has to set it anew.
   [[nodiscard]] std::vector<Dropped> judge(const RobotState& state, const std::string& client);
+  /// The same for an event: a motor may be disabled and enabled between two states.
+  [[nodiscard]] std::vector<Dropped> judge(const Event& event);
   /// Drops everything if the program has not shown life for too long.
   [[nodiscard]] std::vector<Dropped> lapse(MonotonicTime now);
 
@@ -54,6 +56,7 @@ class HeldTargets {
     MotorSetpoints setpoints;
     MonotonicTime set_at;
     MonotonicTime due;
+    std::int64_t shown_us = 0;
   };
 
   Duration resend_;

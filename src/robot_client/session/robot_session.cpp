@@ -65,16 +65,18 @@ void RobotSession::receiveEvent(std::span<const std::byte> bytes) {
   if (!LcmLink::decode(bytes, message)) return core_.foreign(core_.outgoing.channel("event"));
   const auto event = fromLcm(message);
   std::shared_ptr<std::function<void(const Event&)>> callback;
+  News news;
   bool concerns_us = event.code == kOtherDefinitions;
   {
     const Lock lock(core_.mutex);
     if (core_.closed) return;
-    targets_.onEvent(event);
+    targets_.onEvent(event, news);
     const bool names_us = event.text.find('\'' + core_.options.client + '\'') != std::string::npos;
     concerns_us = concerns_us || (event.code == kSetpointSkipped && targets_.holds(event.source)) ||
                   (names_us && (event.code == kNotOwner || event.code == kCommandRefused));
     callback = on_event_;
   }
+  news.tell(core_.problems);
   if (concerns_us) core_.problems.tell("rc10d says: " + event.source + ": " + event.text);
   if (callback && *callback) (*callback)(event);
 }
@@ -140,7 +142,7 @@ Result<void> RobotSession::close() {
   core_.wake_sender.notify_all();
   if (sender_.joinable()) sender_.join();
   news.tell(core_.problems);
-  Result<void> done;
+  Result<void> done = estop_.finish(kRelease);
   if (disable) {
     const auto answer = requests_.request(toString(Operation::kDisable), *disable, {{kAtEnd, 1.0}}, kRelease);
     if (!answer) done = fail("motors may still be enabled: " + answer.error().message);

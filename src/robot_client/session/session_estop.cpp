@@ -1,5 +1,7 @@
 #include "robot_client/session/session_estop.hpp"
 
+#include <algorithm>
+
 namespace rc10 {
 inline namespace robot_client {
 
@@ -16,7 +18,24 @@ Result<void> SessionEstop::estop(Duration timeout) {
   if (core_.changed.wait_until(lock, timeNow() + timeout, [&] { return repetition_.number() != number; }))
     return {};
   lock.unlock();
-  return fail("the state of robot '" + core_.name + "' does not show ESTOP after " + inMs(timeout) +
+  return notShown(timeout);
+}
+
+Result<void> SessionEstop::finish(Duration most) {
+  SessionCore::Lock lock(core_.mutex);
+  // In a handler no state comes meanwhile.
+  const auto end = core_.link.inHandler() ? timeNow() : timeNow() + most;
+  while (repetition_.number() && timeNow() < end) {
+    sendAgain(timeNow());
+    core_.changed.wait_until(lock, std::min(end, nextDue().value_or(end)));
+  }
+  if (!repetition_.number()) return {};
+  lock.unlock();
+  return notShown(most);
+}
+
+tl::unexpected<Error> SessionEstop::notShown(Duration after) const {
+  return fail("the state of robot '" + core_.name + "' does not show ESTOP after " + inMs(after) +
               ": use the hardware emergency stop. " + core_.whatToCheck());
 }
 

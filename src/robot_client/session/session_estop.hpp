@@ -15,6 +15,8 @@ class SessionEstop {
   SessionEstop(SessionCore& core, SessionTargets& targets) : core_(core), targets_(targets) {}
 
   Result<void> estop(Duration timeout);
+  /// When nobody sends it again any more: what is under way goes on until a state shows it, so long at most.
+  Result<void> finish(Duration most);
 
   // With the mutex held.
   void onState(const RobotState& state) noexcept {
@@ -26,6 +28,7 @@ class SessionEstop {
   [[nodiscard]] std::optional<MonotonicTime> nextDue() const noexcept { return repetition_.nextDue(); }
 
  private:
+  [[nodiscard]] tl::unexpected<Error> notShown(Duration after) const;
   Result<void> send(std::int64_t number, MonotonicTime now);
 
   SessionCore& core_;

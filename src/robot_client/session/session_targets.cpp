@@ -29,6 +29,11 @@ Result<void> SessionTargets::mayCommand(const MotorSetpoints& setpoints, Monoton
   return checkSetpoints(*core_.believed(), setpoints);
 }
 
+std::int64_t SessionTargets::shownUs() const {
+  const auto newest = core_.newest.get();
+  return newest ? newest->mono_us : 0;
+}
+
 Result<void> SessionTargets::publish(const MotorSetpoints& setpoints) {
   core_.leaving.commanded(setpoints);
   return core_.outgoing.command(setpoints, core_.options.validity);
@@ -45,7 +50,7 @@ Result<void> SessionTargets::command(const MotorSetpoints& setpoints) {
     if (done) {
       moves_.supersede(setpoints, news.moves);
       done = publish(setpoints);
-      if (core_.options.resend != milliseconds{0}) held_.set(setpoints, now);
+      if (core_.options.resend != milliseconds{0}) held_.set(setpoints, now, shownUs());
     }
   }
   core_.wake_sender.notify_all();
@@ -76,7 +81,7 @@ std::future<MoveResult> SessionTargets::moveTo(const MoveGoal& goal) {
       possible = publish(setpoints);
     }
     if (possible) {
-      held_.set(setpoints, now);
+      held_.set(setpoints, now, shownUs());
       moves_.start(std::move(watch), std::move(promise));
     } else {
       news.moves.push_back({std::move(promise), watch.failed(possible.error().message)});
@@ -95,6 +100,11 @@ void SessionTargets::alive() {
 void SessionTargets::onState(const RobotState& state, MonotonicTime now, News& news) {
   moves_.onState(state, now, news.moves);
   drop(held_.judge(state, core_.options.client), news);
+}
+
+void SessionTargets::onEvent(const Event& event, News& news) {
+  moves_.onEvent(event);
+  drop(held_.judge(event), news);
 }
 
 void SessionTargets::release(const std::vector<std::string>& motors) {

@@ -26,7 +26,7 @@ class SessionTargets {
   void aliveAt(MonotonicTime now) noexcept { held_.alive(now); }
   [[nodiscard]] bool holds(const std::string& motor) const { return held_.holds(motor); }
   void onState(const RobotState& state, MonotonicTime now, News& news);
-  void onEvent(const Event& event) { moves_.onEvent(event); }
+  void onEvent(const Event& event, News& news);
   /// Without names: all.
   void release(const std::vector<std::string>& motors);
   void sendAgain(MonotonicTime now, News& news);
@@ -36,6 +36,7 @@ class SessionTargets {
 
  private:
   [[nodiscard]] Result<void> mayCommand(const MotorSetpoints& setpoints, MonotonicTime now) const;
+  [[nodiscard]] std::int64_t shownUs() const;  ///< mono_us of the newest state.
   Result<void> publish(const MotorSetpoints& setpoints);
   void drop(const std::vector<HeldTargets::Dropped>& dropped, News& news);
 

@@ -19,6 +19,7 @@
 #include "client/quantity_text.hpp"
 #include "drive.hpp"
 #include "feed.hpp"
+#include "link/at_end.hpp"
 #include "link/until_its_end.hpp"
 #include "link/words.hpp"
 #include "require_mode.hpp"
@@ -137,7 +138,8 @@ class Commissioning {
     awaitActive();
     client::FirstSpin seen(options_.over_speed_rpm);
     const auto outcome = drive(rc10d_, order(seen));
-    const auto disabled = askOver(*enabling, global_, Operation::kDisable, {options_.motor});
+    const auto disabled = askOver(*enabling, global_, Operation::kDisable, {options_.motor},
+                                  {{.name = link::kAtEnd, .value = 1.0}});
     if (interrupted()) {
       const bool rests = disabled == ExitCode::kOk;
       return complain(

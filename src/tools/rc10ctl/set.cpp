@@ -16,6 +16,7 @@
 #include "client/duration_text.hpp"
 #include "client/find_motor.hpp"
 #include "drive.hpp"
+#include "link/at_end.hpp"
 #include "link/words.hpp"
 #include "motor/solo_motor.hpp"
 #include "running_config.hpp"
@@ -165,7 +166,9 @@ ExitCode set(const Global& global, const SetOptions& options) {
     return complain({why}, ExitCode::kFailed);
   const auto done = drive(*rc10d, *order);
   if (order->then != Then::kDisable) return done;
-  const auto disabled = ask(global, Operation::kDisable, {options.motor});
+  // It comes with our end: what an e-stop holds meanwhile stays held.
+  const auto disabled =
+      ask(global, Operation::kDisable, {options.motor}, {{.name = link::kAtEnd, .value = 1.0}});
   return done == ExitCode::kOk ? disabled : done;
 }
 

@@ -63,7 +63,7 @@ TEST_F(DisableAtEndTest, AMotorIsDisabledWhenTheConnectionHasEndedAndNotBefore) 
   EXPECT_EQ(order->motors, MotorSet{0b01});
   EXPECT_EQ(order->client.view(), "web-1");
   // It lets go of nothing that on_disable holds.
-  EXPECT_TRUE(order->repeated);
+  EXPECT_EQ(order->asked, Asked::kUnasked);
   EXPECT_FALSE(order->fromModule());
 }
 

@@ -392,17 +392,17 @@ TEST_F(RequestDeskTest, WhatStopsIsNeverAnsweredFromMemory) {
   for (const auto* operation : {"disable", "estop"}) {
     const auto first = begin(linkRequest(1, operation, "left"));
     ASSERT_TRUE(first.order) << operation;
-    EXPECT_FALSE(first.order->repeated);
+    EXPECT_EQ(first.order->asked, Asked::kAnew);
     const auto open = begin(linkRequest(1, operation, "left"));
     ASSERT_TRUE(open.order) << operation << " whose first is not answered yet";
-    EXPECT_TRUE(open.order->repeated);
+    EXPECT_EQ(open.order->asked, Asked::kAgain);
     (void)desk.finish(done(*first.order));
     (void)desk.finish(done(*open.order));
     const auto again = begin(linkRequest(1, operation, "left"));
     ASSERT_TRUE(again.order) << operation;
-    EXPECT_TRUE(again.order->repeated);
+    EXPECT_EQ(again.order->asked, Asked::kAgain);
     EXPECT_FALSE(again.response);
-    EXPECT_FALSE(begin(linkRequest(2, operation, "left")).order->repeated);
+    EXPECT_EQ(begin(linkRequest(2, operation, "left")).order->asked, Asked::kAnew);
   }
 }
 
@@ -411,10 +411,10 @@ TEST_F(RequestDeskTest, ADisableThatComesOfItselfAtTheEndOfAProgramIsNoSecondOne
   request.value_count = 1;
   request.values[0].name = link::kAtEnd;
   request.values[0].value = 1.0;
-  EXPECT_TRUE(begin(request).order->repeated);
+  EXPECT_EQ(begin(request).order->asked, Asked::kUnasked);
   request.seq = 2;
   request.values[0].value = 0.0;
-  EXPECT_FALSE(begin(request).order->repeated);
+  EXPECT_EQ(begin(request).order->asked, Asked::kAnew);
 }
 
 TEST_F(RequestDeskTest, AnswersAreRememberedForAWhileOnly) {

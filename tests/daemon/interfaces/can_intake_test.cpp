@@ -187,14 +187,15 @@ TEST_F(CanIntakeTest, TheEchoSocketConfirmsAndGivesNoFrames) {
   SocketPair echo;
   robot->buses()[0].echo = std::move(echo.near);
   intake.emplace(*robot, inboxes, monotonicNow());
-  EXPECT_TRUE(inboxes[0].echo_available.load());
-  EXPECT_FALSE(inboxes[1].echo_available.load());
+  EXPECT_EQ(inboxes[0].echo_reads.load(), 1U) << "there is one";
+  EXPECT_EQ(inboxes[1].echo_reads.load(), 0U);
   frameCalls().received = [n = 0](msghdr& message) mutable {
     if (n++ < 2) message.msg_flags |= MSG_DONTROUTE;  // sent by this computer
   };
   for (std::uint8_t i = 0; i < 3; ++i) echo.write(numbered(i));
   drain();
   EXPECT_EQ(inboxes[0].confirmed.load(), 2U);
+  EXPECT_EQ(inboxes[0].echo_reads.load(), 2U);
   EXPECT_TRUE(numbers().empty());
 }
 

@@ -387,11 +387,13 @@ TEST_F(FallbackTest, ADisableThatIsRepeatedForWantOfAnAnswerLetsNothingGo) {
   Order order;
   order.operation = Operation::kDisable;
   order.motors.set(kLeft);
-  order.repeated = true;
-  robot->carryOut(order);
-  robot->run(10);
-  EXPECT_GT(currentA(), 0.5F);
-  order.repeated = false;
+  for (const auto asked : {Asked::kAgain, Asked::kUnasked}) {
+    order.asked = asked;
+    robot->carryOut(order);
+    robot->run(10);
+    EXPECT_GT(currentA(), 0.5F);
+  }
+  order.asked = Asked::kAnew;
   robot->carryOut(order);
   EXPECT_EQ(currentA(), 0.0F);
 }
@@ -401,9 +403,40 @@ TEST_F(FallbackTest, ARepeatedDisableStopsWhatWasEnabledSince) {
   Order order;
   order.operation = Operation::kDisable;
   order.motors.set(kLeft);
-  order.repeated = true;
+  order.asked = Asked::kAgain;
   robot->carryOut(order);
   EXPECT_EQ(robot->motor(kLeft).status, MotorStatus::kReady);
+}
+
+TEST_F(FallbackTest, ADisableThatNobodyAskedForLeavesWhatIsHeldInEachStatus) {
+  Order unasked{.operation = Operation::kDisable, .motors = MotorSet{}.set(kLeft), .asked = Asked::kUnasked};
+  const FallbackConfig config{.on_timeout = FallbackAction::kHold, .on_estop = FallbackAction::kHold};
+  start(config, 2.0F);
+  robot->run(500);  // silence
+  ASSERT_EQ(robot->motor(kLeft).status, MotorStatus::kActive);
+  ASSERT_GT(std::fabs(currentA()), 1.0F);
+  robot->carryOut(unasked);
+  EXPECT_EQ(robot->motor(kLeft).status, MotorStatus::kReady);
+  for (int i = 0; i < 500; ++i) {
+    robot->tick();
+    ASSERT_GT(std::fabs(currentA()), 1.0F) << i;
+  }
+  robot->beginEnabling(MotorSet{}.set(kLeft));
+  robot->tick();
+  ASSERT_EQ(robot->motor(kLeft).status, MotorStatus::kEnabling);
+  robot->carryOut(unasked);
+  EXPECT_EQ(robot->motor(kLeft).status, MotorStatus::kReady);
+  EXPECT_GT(std::fabs(currentA()), 1.0F);
+  robot->order(Operation::kDisable);
+  EXPECT_EQ(currentA(), 0.0F);
+}
+
+TEST_F(FallbackTest, ADisableThatNobodyAskedForStopsWhatMoves) {
+  start({.on_timeout = FallbackAction::kHold}, 2.0F);
+  robot->carryOut(
+      {.operation = Operation::kDisable, .motors = MotorSet{}.set(kLeft), .asked = Asked::kUnasked});
+  EXPECT_EQ(robot->motor(kLeft).status, MotorStatus::kReady);
+  EXPECT_EQ(currentA(), 0.0F) << "its on_disable";
 }
 
 TEST_F(FallbackTest, AMotorThatIsHeldIsNotLetGoWhileItIsEnabled) {

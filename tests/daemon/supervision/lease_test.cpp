@@ -41,6 +41,17 @@ class LeaseTest : public ::testing::Test {
   VirtualRobot robot{twoWheelsAndYaw()};
 };
 
+TEST_F(LeaseTest, OneThatIsShortenedToAnyTimeIsTakenAndLapses) {
+  Lease lease;
+  EXPECT_FALSE(lease.taken());
+  lease.take(planner(1, 0), {.received = MonotonicTime{1s}, .until = MonotonicTime{2s}});
+  lease.shorten(planner(1, 0), MonotonicTime{});
+  EXPECT_TRUE(lease.taken());
+  EXPECT_FALSE(lease.held(MonotonicTime{1s}));
+  lease.release();
+  EXPECT_FALSE(lease.taken());
+}
+
 TEST_F(LeaseTest, TheFirstClientHoldsTheMotorWhileItsCommandsAreValid) {
   robot.commandAs("planner", 0, kLeft, current(1.0));
   robot.tick();

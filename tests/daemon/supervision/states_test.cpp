@@ -7,10 +7,10 @@ namespace {
 
 constexpr std::array kAllStatus{MotorStatus::kOffline, MotorStatus::kReady, MotorStatus::kEnabling,
                                 MotorStatus::kActive, MotorStatus::kFault};
-constexpr std::array kAllEvents{MotorEvent::kFeedbackFresh, MotorEvent::kFeedbackLost, MotorEvent::kEnable,
-                                MotorEvent::kEnableDone,    MotorEvent::kEnableFailed, MotorEvent::kDisable,
-                                MotorEvent::kEstop,         MotorEvent::kFault,        MotorEvent::kClear,
-                                MotorEvent::kGroupStop};
+constexpr std::array kAllEvents{MotorEvent::kFeedbackFresh, MotorEvent::kFeedbackLost,  MotorEvent::kEnable,
+                                MotorEvent::kEnableDone,    MotorEvent::kEnableFailed,  MotorEvent::kDisable,
+                                MotorEvent::kEstop,         MotorEvent::kFault,         MotorEvent::kClear,
+                                MotorEvent::kGroupStop,     MotorEvent::kDisableUnasked};
 static_assert(kAllStatus.size() == kMotorStatusCount);
 static_assert(kAllEvents.size() == kMotorEventCount);
 
@@ -21,8 +21,7 @@ MotorStatus expected(MotorStatus status, MotorEvent event) {
   if (event == MotorEvent::kFault) return kFault;
   if (event == MotorEvent::kFeedbackLost) return kOffline;
   if (status == kOffline) return event == MotorEvent::kFeedbackFresh ? kReady : kOffline;
-  if (event == MotorEvent::kDisable || event == MotorEvent::kEstop || event == MotorEvent::kGroupStop)
-    return kReady;
+  if (isDisable(event) || event == MotorEvent::kEstop || event == MotorEvent::kGroupStop) return kReady;
   if (status == kReady && event == MotorEvent::kEnable) return kEnabling;
   if (event == MotorEvent::kEnableFailed) return kReady;
   if (status == kEnabling && event == MotorEvent::kEnableDone) return kActive;

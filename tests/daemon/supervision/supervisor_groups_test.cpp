@@ -72,6 +72,22 @@ TEST_F(GroupTest, AMemberThatGoesOfflineStopsTheOthersInTheSameTick) {
   EXPECT_TRUE(told(EventCode::kGroupStopped));
 }
 
+TEST_F(GroupTest, AMemberThatHoldsStaysSoWhenAnotherIsDisabledAndNobodyAskedForIt) {
+  for (const auto asked : {Asked::kAnew, Asked::kUnasked}) {
+    auto config = coupled(GroupConfig::Return::kRequest);
+    config.buses[1].motors[0].fallback.on_timeout = FallbackAction::kHold;
+    robot = std::make_unique<VirtualRobot>(config);
+    robot->run(5);
+    robot->order(Operation::kEnable);
+    drive(100);
+    robot->run(200);  // silence
+    ASSERT_EQ(robot->motor(kRight).acting, Acting::kHold);
+    robot->carryOut({.operation = Operation::kDisable, .motors = only(kLeft), .asked = asked});
+    EXPECT_EQ(status(kRight), MotorStatus::kReady);
+    EXPECT_EQ(robot->motor(kRight).acting, asked == Asked::kAnew ? Acting::kNothing : Acting::kHold);
+  }
+}
+
 TEST_F(GroupTest, AMemberInFaultStopsTheOthers) {
   start(GroupConfig::Return::kRearmAtRest, {.overspeed_rpm = 90.0F});
   for (int i = 0; i < 1000; ++i) {

@@ -450,6 +450,14 @@ TEST_P(SoftLimitOfADriveTest, ACurrentStopsThereAndOneOfAFastShaftToo) {
   EXPECT_LT(farthestWhile(push, 1500), 95.0);
 }
 
+TEST_P(SoftLimitOfADriveTest, ACurrentStopsThereInReducedModeToo) {
+  startAtMinus85();
+  follow({.mode = ControlMode::kTotalAngle, .value = 85.0}, 1500);
+  robot->exchange().mode_contact.show(kOpen);
+  EXPECT_LT(farthestWhile({.mode = ControlMode::kCurrent, .value = 3.0}, 3000), 95.0);
+  EXPECT_EQ(status(), MotorStatus::kActive);
+}
+
 INSTANTIATE_TEST_SUITE_P(Families, SoftLimitOfADriveTest,
                          ::testing::Values("LK-MG5010E-i10, id: 12", "RMD-X8-20, id: 11",
                                            "AK80-9, protocol: mit, id: 5", "RS00, id: 3"));

@@ -41,7 +41,7 @@ bool isRest(const CanFrame& frame) {
 class BusWatchTest : public ::testing::Test {
  protected:
   BusWatchTest() {
-    robot.inboxes()[0].echo_available = true;
+    robot.inboxes()[0].echo_reads = 1;
     run(10);
     const auto result = robot.order(Operation::kEnable);
     EXPECT_EQ(result.motors[kLeft], Refusal::kNone);

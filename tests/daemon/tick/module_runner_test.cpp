@@ -273,6 +273,22 @@ TEST_F(ModuleRunnerTest, AModuleEnablesAndDisablesTheRobot) {
   EXPECT_FALSE(robot_->exchange().results.pop(result)) << "nobody else is told";
 }
 
+TEST_F(ModuleRunnerTest, AllItsTargetsActOrNoneWhateverOneIsSkippedFor) {
+  const ScriptedType type{[&](const Tick&, ModuleRobot& robot) {
+    robot.setTarget(0, {.mode = ControlMode::kTotalAngle, .value = 90.0});
+    robot.setTarget(1, {.mode = ControlMode::kTotalAngle, .value = 90.0});
+  }};
+  auto config = twoWheelsAndYaw();
+  for (auto& motor : config.buses[0].motors) motor.settings.zero_at_power_on = true;
+  config.buses[0].motors[0].shaping.max_first_step_deg = 10.0F;
+  start({{&type, 0}}, nullptr, config);
+  enable();
+  robot_->run(50);
+  EXPECT_EQ(robot_->motor(0).acting, Acting::kNothing);
+  EXPECT_EQ(robot_->motor(1).acting, Acting::kNothing) << "one half of a lift alone would rack it";
+  EXPECT_GT(robot_->snapshot().skipped_setpoints, 0U);
+}
+
 TEST_F(ModuleRunnerTest, OnlyADisableThatSomebodyAskedForLetsGoOfWhatAnEstopBrakes) {
   std::optional<RobotRequest> asks;
   const ScriptedType type{[&](const Tick&, ModuleRobot& robot) {

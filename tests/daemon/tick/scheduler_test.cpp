@@ -358,7 +358,7 @@ TEST_F(SchedulerTest, StoppingSendsRestUntilItIsDone) {
 
 TEST_F(SchedulerTest, AStopIsNoEstopAndEndsAsAStopWhateverIsAskedMeanwhile) {
   robot.run(5);
-  robot.inboxes()[0].echo_available.store(true);  // it waits for echoes
+  robot.inboxes()[0].echo_reads.store(1);  // it waits for echoes
   robot.scheduler().beginStop();
   robot.tick();
   (void)robot.events();
@@ -374,7 +374,7 @@ TEST_F(SchedulerTest, AStopIsNoEstopAndEndsAsAStopWhateverIsAskedMeanwhile) {
 
 TEST_F(SchedulerTest, StoppingWaitsForEchoesOfTheRestFrames) {
   robot.run(5);
-  robot.inboxes()[0].echo_available.store(true);
+  robot.inboxes()[0].echo_reads.store(1);
   robot.scheduler().beginStop();
   robot.run(10);
   EXPECT_FALSE(robot.scheduler().stopped());
@@ -387,7 +387,7 @@ TEST_F(SchedulerTest, TheLastTickTellsTheGuardThatTheEndIsInOrder) {
   link::GuardPage page;
   robot.scheduler().watchedBy(page);
   robot.run(5);
-  robot.inboxes()[0].echo_available.store(true);
+  robot.inboxes()[0].echo_reads.store(1);
   robot.scheduler().beginStop();
   robot.run(10);
   ASSERT_FALSE(robot.scheduler().stopped());
@@ -436,6 +436,22 @@ TEST_F(SchedulerTest, TheHeartbeatThatRestsInAnEstopRestsToTheEndOfTheProcess) {
   robot.run(20);
   EXPECT_EQ(robot.snapshot().state, RobotStatus::kStopping);
   EXPECT_EQ(robot.scheduler().beats(), before);
+}
+
+TEST_F(SchedulerTest, TheHeartbeatRestsInTimeWhateverComesFirstAnEstopOrTheEndOfTheProcess) {
+  for (const bool estop_first : {true, false}) {
+    SCOPED_TRACE(estop_first);
+    VirtualRobot stopping(twoWheelsAndYaw());
+    stopping.scheduler().restHeartbeatAfter(20ms);
+    stopping.run(5);
+    if (!estop_first) stopping.scheduler().beginStop();
+    (void)stopping.order(Operation::kEstop);
+    if (estop_first) stopping.scheduler().beginStop();
+    const auto before = stopping.scheduler().beats();
+    stopping.run(100);
+    EXPECT_EQ(stopping.snapshot().state, RobotStatus::kStopping);
+    EXPECT_EQ(stopping.scheduler().beats(), before + 19);
+  }
 }
 
 TEST_F(SchedulerTest, TheHeartbeatGoesOnInAnEstopUnlessItIsToldToRest) {

@@ -103,7 +103,7 @@ TEST_P(TickRate, ASilentDriveIsOfflineAfterItsTimeNotAfterTicks) {
 
 TEST_P(TickRate, AStopWaitsFiftyMillisecondsForEchoesThatDoNotCome) {
   robot.run(10);
-  robot.inboxes()[0].echo_available.store(true);
+  robot.inboxes()[0].echo_reads.store(1);
   robot.scheduler().beginStop();
   int lasted = 0;
   while (!robot.scheduler().stopped() && lasted < ticks(1s)) {

@@ -15,8 +15,8 @@ class FallbackTest : public ::testing::Test {
              const FallbackBound& bound = {}) {
     fallback.begin(action, until, bound, {.from_rpm = 100.0, .over = 1s}, start);
   }
-  FrameKind after(Duration time, bool stands_still = false) {
-    fallback.step(stands_still, start + time);
+  FrameKind after(Duration time, bool stands_still = false, double angle_deg = 0.0) {
+    fallback.step(stands_still, angle_deg, start + time);
     return fallback.kind();
   }
 
@@ -105,6 +105,47 @@ TEST_F(FallbackTest, ALoadThatSinksAfterItsHoldIsDampedUntilItLies) {
     ASSERT_EQ(after(sinking, false), FrameKind::kDamp);
   EXPECT_EQ(after(20199ms, true), FrameKind::kDamp);
   EXPECT_EQ(after(20200ms, true), FrameKind::kRest);
+}
+
+TEST_F(FallbackTest, ALoadThatSinksMoreSlowlyThanStandstillIsDampedUntilItLies) {
+  begin(FallbackAction::kDamp, Fallback::Until::kStandstill);
+  double angle_deg = 90.0;
+  for (Duration sinking = 100ms; sinking <= 5s; sinking += 100ms) {
+    ASSERT_EQ(after(sinking, true, angle_deg), FrameKind::kDamp) << angle_deg;
+    angle_deg -= 0.3;
+  }
+  EXPECT_EQ(after(5200ms, true, angle_deg), FrameKind::kDamp);
+  EXPECT_EQ(after(5500ms, true, angle_deg), FrameKind::kRest) << "it lies";
+}
+
+TEST_F(FallbackTest, NoiseOfAnEncoderIsNoMovement) {
+  begin(FallbackAction::kDamp, Fallback::Until::kStandstill);
+  for (Duration time = 10ms; time < 300ms; time += 10ms)
+    ASSERT_EQ(after(time, true, time % 20ms == 0ms ? 90.2 : 89.8), FrameKind::kDamp);
+  EXPECT_EQ(after(300ms, true, 90.2), FrameKind::kRest);
+}
+
+TEST_F(FallbackTest, TheBrakeOfADriveThatCannotDampDoesNotLetGoOfWhatWasHeld) {
+  begin(FallbackAction::kHold, Fallback::Until::kStandstill, {.most = 10s, .then = FrameKind::kBrake});
+  EXPECT_EQ(after(10s, true), FrameKind::kBrake);
+  EXPECT_EQ(after(1h, true), FrameKind::kBrake) << "its load stands still because it brakes";
+  begin(FallbackAction::kBrake, Fallback::Until::kStandstill);
+  EXPECT_EQ(after(300ms, true), FrameKind::kRest) << "one that was asked for";
+}
+
+TEST_F(FallbackTest, WhatHoldsOrBrakesOrHasHeldCarries) {
+  EXPECT_FALSE(fallback.carries());
+  const FallbackBound bound{.most = 10s};
+  begin(FallbackAction::kHold, Fallback::Until::kEnded, bound);
+  EXPECT_TRUE(fallback.carries());
+  (void)after(10s);
+  EXPECT_TRUE(fallback.carries()) << "the load sinks";
+  begin(FallbackAction::kBrake);
+  EXPECT_TRUE(fallback.carries());
+  for (const auto action : {FallbackAction::kDamp, FallbackAction::kRamp, FallbackAction::kCoast}) {
+    begin(action);
+    EXPECT_FALSE(fallback.carries());
+  }
 }
 
 TEST_F(FallbackTest, AHoldIsBoundAndABrakeIsInAnEstopOfTheRobot) {

@@ -134,6 +134,22 @@ TEST(HeldTargets, DoNotLapseUnlessAskedTo) {
   EXPECT_THAT(held.lapse(kStart + 1h), IsEmpty());
 }
 
+TEST(HeldTargets, AMotorThatStoppedBetweenTwoStatesIsDropped) {
+  const auto judged = [](const std::string& source, const std::string& text, std::int64_t mono_us) {
+    HeldTargets held(20ms, 0ms);
+    held.set(turn("wheel", 60_rpm), kStart, 5'000);
+    return held.judge(Event{.mono_us = mono_us, .code = 100, .source = source, .text = text});
+  };
+  const auto dropped = judged("wheel", "ACTIVE -> READY (disabled by 'panel')", 6'000);
+  ASSERT_EQ(dropped.size(), 1U);
+  EXPECT_THAT(dropped[0].reason, HasSubstr("disabled by 'panel'"));
+  EXPECT_EQ(judged("wheel", "ENABLING -> FAULT", 6'000).size(), 1U);
+  EXPECT_THAT(judged("wheel", "ENABLING -> ACTIVE", 6'000), IsEmpty());
+  EXPECT_THAT(judged("lift", "ACTIVE -> READY", 6'000), IsEmpty());
+  EXPECT_THAT(judged("wheel", "ACTIVE -> READY", 5'000), IsEmpty())
+      << "the state that it was set by has that";
+}
+
 }  // namespace
 }  // namespace held_targets_test
 }  // namespace robot_client

@@ -1,0 +1,59 @@
+#include "drives/damiao/damiao_speed.hpp"
+
+#include <cmath>
+
+#include <gtest/gtest.h>
+
+namespace rc10::test::damiao_speed_test {
+namespace {
+
+using namespace std::chrono_literals;
+
+constexpr double kVMax = 10.0;
+
+/// A drive at 1 kHz whose field wraps at +-10 rad/s.
+class DamiaoSpeedTest : public ::testing::Test {
+ protected:
+  double sample(double rad_s, Duration later = 1ms, bool follows = true, Duration jitter = 0ms) {
+    now_ += later;
+    rad_ += rad_s * std::chrono::duration<double>(later).count();
+    constexpr double kStep = 2.0 * kVMax / 4095.0;
+    const auto code = static_cast<unsigned>(std::lround((rad_s + kVMax) / kStep)) & 0xFFFU;
+    return speed_.take(static_cast<double>(code) * kStep - kVMax, rad_, follows, now_ + jitter);
+  }
+
+  DamiaoSpeed speed_{kVMax};
+  MonotonicTime now_{1000s};
+  double rad_ = 0.0;
+};
+
+TEST_F(DamiaoSpeedTest, GoesOnOverTheEndOfItsFieldInBothDirections) {
+  for (const double sign : {1.0, -1.0}) {
+    speed_ = DamiaoSpeed{kVMax};
+    for (double rad_s = 0.0; rad_s < 14.0; rad_s += 0.05)
+      ASSERT_NEAR(sample(sign * rad_s), sign * rad_s, 0.01);
+    for (double rad_s = 14.0; rad_s > -3.0; rad_s -= 0.05)
+      ASSERT_NEAR(sample(sign * rad_s), sign * rad_s, 0.01);
+  }
+}
+
+TEST_F(DamiaoSpeedTest, FindsTheWrapOfAShaftThatIsTooFastAlready) {
+  (void)sample(12.0, 1s);
+  for (int i = 0; i < 10; ++i) (void)sample(12.0);
+  EXPECT_NEAR(sample(12.0), 12.0, 0.01);
+}
+
+TEST_F(DamiaoSpeedTest, StampsThatComeInBurstsDoNotCount) {
+  (void)sample(0.0, 1s);
+  for (int i = 0; i < 200; ++i)
+    ASSERT_NEAR(sample(9.0, 1ms, true, i % 2 == 0 ? 0us : Duration{-900us}), 9.0, 0.01) << i;
+}
+
+TEST_F(DamiaoSpeedTest, ALeapOfThePositionIsNoSpeed) {
+  for (int i = 0; i < 20; ++i) (void)sample(1.0);
+  rad_ += 5.0;
+  for (int i = 0; i < 20; ++i) ASSERT_NEAR(sample(1.0, 1ms, i != 0), 1.0, 0.01);
+}
+
+}  // namespace
+}  // namespace rc10::test::damiao_speed_test
