@@ -49,6 +49,13 @@ TEST_F(DamiaoSpeedTest, StampsThatComeInBurstsDoNotCount) {
     ASSERT_NEAR(sample(9.0, 1ms, true, i % 2 == 0 ? 0us : Duration{-900us}), 9.0, 0.01) << i;
 }
 
+TEST_F(DamiaoSpeedTest, APositionThatCountsFromElsewhereIsNoSpeed) {
+  for (int i = 0; i < 20; ++i) (void)sample(1.0);
+  rad_ += 25.0;
+  speed_.restart();
+  for (int i = 0; i < 20; ++i) ASSERT_NEAR(sample(1.0), 1.0, 0.01);
+}
+
 TEST_F(DamiaoSpeedTest, ALeapOfThePositionIsNoSpeed) {
   for (int i = 0; i < 20; ++i) (void)sample(1.0);
   rad_ += 5.0;

@@ -93,6 +93,7 @@ void Damiao_Motor::takeState(const damiao::State& state, MonotonicTime received)
     if (status_ == damiao::kStatusDisabled) {
       stopped_ = obeying();
       position_.forget();
+      speed_.restart();
       loseReference();
     }
   }
@@ -127,7 +128,10 @@ void Damiao_Motor::takeReply(const damiao::RegisterReply& reply) noexcept {
     return;
   }
   if (reply.written) return;
-  if (position_.take(damiao::floatOf(reply.value)) == DamiaoPosition::Wrap::kOther) loseReference();
+  if (position_.take(damiao::floatOf(reply.value)) == DamiaoPosition::Wrap::kOther) {
+    speed_.restart();
+    loseReference();
+  }
   if (position_.known()) takeAngle(position_.rad() / kRadPerDeg);
   if (enabling()) enabling_.onPosition(position_.known());
 }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <utility>
 
 #include "app/time.hpp"
 
@@ -18,7 +19,7 @@ class DamiaoSpeed {
 
   /// As reported, and the position that goes on over turns; `follows`: it does since the sample before.
   double take(double told_rad_s, double position_rad, bool follows, MonotonicTime received) noexcept {
-    if (!follows || received - before_ > kLongestGap) {
+    if (std::exchange(anew_, false) || !follows || received - before_ > kLongestGap) {
       speed_rad_s_ = told_rad_s;
       look(position_rad, received);
     } else {
@@ -33,6 +34,9 @@ class DamiaoSpeed {
     before_ = received;
     return speed_rad_s_;
   }
+
+  /// The position counts from elsewhere from now on.
+  void restart() noexcept { anew_ = true; }
 
  private:
   static constexpr double kCodes = 4096.0;
@@ -50,6 +54,7 @@ class DamiaoSpeed {
   }
 
   double wrap_rad_s_;
+  bool anew_ = true;
   double speed_rad_s_ = 0.0;
   double position_rad_ = 0.0;
   MonotonicTime looked_{};
