@@ -39,7 +39,7 @@ TEST_F(DamiaoSpeedTest, GoesOnOverTheEndOfItsFieldInBothDirections) {
 
 TEST_F(DamiaoSpeedTest, FindsTheWrapOfAShaftThatIsTooFastAlready) {
   (void)sample(12.0, 1s);
-  for (int i = 0; i < 10; ++i) (void)sample(12.0);
+  for (int i = 0; i < 25; ++i) (void)sample(12.0);
   EXPECT_NEAR(sample(12.0), 12.0, 0.01);
 }
 
@@ -54,6 +54,17 @@ TEST_F(DamiaoSpeedTest, APositionThatCountsFromElsewhereIsNoSpeed) {
   rad_ += 25.0;
   speed_.restart();
   for (int i = 0; i < 20; ++i) ASSERT_NEAR(sample(1.0), 1.0, 0.01);
+}
+
+TEST_F(DamiaoSpeedTest, AShortSlipOrAHardStopIsNoWrap) {
+  for (int i = 0; i < 100; ++i) {
+    if (i == 50) rad_ += 0.1;
+    ASSERT_NEAR(sample(3.0), 3.0, 0.01) << i;
+  }
+  // From one end of the field to the other within a window.
+  for (double rad_s = 3.0; rad_s < 9.9; rad_s += 1.0) ASSERT_NEAR(sample(rad_s), rad_s, 0.01);
+  for (double rad_s = 9.9; rad_s > -9.9; rad_s -= 1.0) ASSERT_NEAR(sample(rad_s), rad_s, 0.01);
+  for (int i = 0; i < 100; ++i) ASSERT_NEAR(sample(-9.9), -9.9, 0.01);
 }
 
 TEST_F(DamiaoSpeedTest, ALeapOfThePositionIsNoSpeed) {

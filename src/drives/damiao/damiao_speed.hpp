@@ -10,8 +10,8 @@
 namespace rc10 {
 
 /// Speed of a Damiao drive. Its field wraps at +-v_max, which some models pass without a load: there a shaft
-/// that is too fast would seem to turn back, and would be driven on. Neighbouring samples are alike, and over
-/// some of them the position says which of the wraps it is. Scheduler thread only.
+/// that is too fast would seem to turn back, and would be driven on. Neighbouring samples are alike, and the
+/// way of some of them says which of the wraps it is. Scheduler thread only.
 class DamiaoSpeed {
  public:
   explicit DamiaoSpeed(double v_max_rad_s) noexcept
@@ -19,46 +19,50 @@ class DamiaoSpeed {
 
   /// As reported, and the position that goes on over turns; `follows`: it does since the sample before.
   double take(double told_rad_s, double position_rad, bool follows, MonotonicTime received) noexcept {
-    if (std::exchange(anew_, false) || !follows || received - before_ > kLongestGap) {
+    const Duration gap = received - std::exchange(before_, received);
+    if (std::exchange(anew_, false) || !follows || gap > kLongestGap) {
       speed_rad_s_ = told_rad_s;
-      look(position_rad, received);
-    } else {
-      speed_rad_s_ = nearest(told_rad_s, speed_rad_s_);
-      if (const Duration passed = received - looked_; passed >= kWindow) {
-        const double mean_rad_s =
-            (position_rad - position_rad_) / std::chrono::duration<double>(passed).count();
-        speed_rad_s_ = nearest(told_rad_s, mean_rad_s);
-        look(position_rad, received);
-      }
+      begin(position_rad, received);
+      return speed_rad_s_;
     }
-    before_ = received;
+    const double before_rad_s = speed_rad_s_;
+    speed_rad_s_ = nearest(told_rad_s, speed_rad_s_);
+    explained_rad_ += (before_rad_s + speed_rad_s_) / 2.0 * std::chrono::duration<double>(gap).count();
+    if (received - begun_ >= kWindow) {
+      const double passed_s = std::chrono::duration<double>(received - begun_).count();
+      const double off_rad_s = (position_rad - begun_rad_ - explained_rad_) / passed_s;
+      speed_rad_s_ = nearest(told_rad_s, speed_rad_s_ + off_rad_s);
+      begin(position_rad, received);
+    }
     return speed_rad_s_;
   }
-
   /// The position counts from elsewhere from now on.
   void restart() noexcept { anew_ = true; }
 
  private:
   static constexpr double kCodes = 4096.0;
-  // Jitter of the stamps is small beside it, and so is what a shaft gains meanwhile.
-  static constexpr Duration kWindow = std::chrono::milliseconds{10};
-  static constexpr Duration kLongestGap = std::chrono::milliseconds{100};
+  // A slip of the encoder that DamiaoPosition takes for noise, 0.1 rad, is no wrap over this time.
+  static constexpr Duration kWindow = std::chrono::milliseconds{25};
+  static constexpr Duration kLongestGap = std::chrono::milliseconds{25};
 
   [[nodiscard]] double nearest(double told_rad_s, double to_rad_s) const noexcept {
-    return told_rad_s +
-           wrap_rad_s_ * std::clamp(std::round((to_rad_s - told_rad_s) / wrap_rad_s_), -1.0, 1.0);
+    const double wraps = std::round((to_rad_s - told_rad_s) / wrap_rad_s_);
+    return told_rad_s + wrap_rad_s_ * std::clamp(wraps, -1.0, 1.0);
   }
-  void look(double position_rad, MonotonicTime now) noexcept {
-    position_rad_ = position_rad;
-    looked_ = now;
+  void begin(double position_rad, MonotonicTime now) noexcept {
+    begun_rad_ = position_rad;
+    begun_ = now;
+    explained_rad_ = 0.0;
   }
 
   double wrap_rad_s_;
   bool anew_ = true;
   double speed_rad_s_ = 0.0;
-  double position_rad_ = 0.0;
-  MonotonicTime looked_{};
   MonotonicTime before_{};
+  // Of the present window: its first position, and the way since then by the speeds.
+  double begun_rad_ = 0.0;
+  MonotonicTime begun_{};
+  double explained_rad_ = 0.0;
 };
 
 }  // namespace rc10
