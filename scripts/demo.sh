@@ -134,7 +134,7 @@ fi
 
 # ---- from here on in the namespace, if there is one
 
-# Of the caller's network: the demo's is in config/demo.yaml.
+# That of the caller's network; the demo's is in config/demo.yaml.
 unset LCM_DEFAULT_URL
 
 bin=$build_tree/bin

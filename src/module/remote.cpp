@@ -185,7 +185,7 @@ class Remote : public Module_Base {
       robot.hearClient();
       watchArm(tick, robot);
     }
-    // What the switch has asked for ends with an e-stop: its end enables nothing.
+    // An e-stop ends what the switch has asked for: its own end enables nothing.
     if (robot.state() != RobotStatus::kRun) arming_until_ = tick.now;
     if (heard) arm(tick, robot);
     if (heard && (armed_ || !arm_channel_)) command(robot);

@@ -39,7 +39,7 @@ void Supervisor::receiveOrders(const Tick& tick) noexcept {
 bool Supervisor::takeModuleCommand(const Command& command, const Tick& tick) noexcept {
   const Lease::Holder sender{command.client, command.session, command.priority};
   if (!mayCommand(command, sender, tick)) return false;
-  // What a module moves is one mechanism: half of its targets would rack it.
+  // Motors of a module are one mechanism: half of its targets would rack it.
   for (std::size_t i = 0; i < command.count; ++i) {
     if (const auto reason = whySkipped(command.setpoints[i])) {
       skip(command.setpoints[i], *reason, tick);

@@ -59,7 +59,7 @@ class DamiaoSpeed {
   bool anew_ = true;
   double speed_rad_s_ = 0.0;
   MonotonicTime before_{};
-  // Of the present window: its first position, and the way since then by the speeds.
+  // First position of the present window, and the way since then by the speeds.
   double begun_rad_ = 0.0;
   MonotonicTime begun_{};
   double explained_rad_ = 0.0;

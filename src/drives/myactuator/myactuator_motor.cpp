@@ -331,7 +331,7 @@ void MyActuator_Motor::damp() noexcept {
 void MyActuator_Motor::sendMotion(SpringLaw motion) noexcept {
   boundGains(motion, myactuator::kMotionStiffness, myactuator::kMotionDamping);
   motion.torque_nm = std::clamp(motion.torque_nm, -myactuator::kMotionTorqueNm, myactuator::kMotionTorqueNm);
-  // What its field would cut, before the sum is bounded.
+  // A speed is cut by its field: before the sum is bounded.
   const double told_rad_s =
       std::clamp(motion.velocity_rad_s, -myactuator::kMotionVelocityRadS, myactuator::kMotionVelocityRadS);
   if (told_rad_s != motion.velocity_rad_s) limits_ |= kLimitVelocity;

@@ -71,8 +71,7 @@ FrameVerdict VESC_Motor::updateFeedback(const CanFrame& frame) noexcept {
 }
 
 float VESC_Motor::reportedDuty() const noexcept {
-  return status1Fresh(position_at_) ? status1_.duty * direction()
-                                          : std::numeric_limits<float>::quiet_NaN();
+  return status1Fresh(position_at_) ? status1_.duty * direction() : std::numeric_limits<float>::quiet_NaN();
 }
 
 bool VESC_Motor::status1Fresh(MonotonicTime now) const noexcept {
