@@ -15,6 +15,7 @@ from __future__ import annotations
 
 import argparse
 import math
+import signal
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Callable
 
@@ -238,6 +239,9 @@ def _active(robot: rc10.Robot, motor: str) -> None:
 
 
 if __name__ == "__main__":
+    # They interrupt it as Ctrl-C does, so that the gains are put back.
+    for number in (signal.SIGTERM, signal.SIGHUP):
+        signal.signal(number, signal.default_int_handler)
     try:
         main()
     except (rc10.Rc10Error, ValueError) as error:

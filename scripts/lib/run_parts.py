@@ -41,8 +41,6 @@ TESTS_OF_DEV = {"unit", "kernel", "host", "faults", "vm", "soak", "web"}
 # `web` waits for a browser most of its time.
 CORES = {"host": 0, "web": 0, "pages": 1, "lint": 1, "vm": 1, "package": 1}
 ALL_CORES = os.cpu_count() or 1
-# Sets whose parts are compared with the budget.
-COMPARED = ("ci", "all")
 ENDS = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
 
 
@@ -337,8 +335,8 @@ def main() -> int:
     try:
         print(costs.slowest(LOGS, REPO / "build", begin), end="")
         measured = os.environ.get("RC10_MEASURED")
-        pace = costs.pace(budget) if measured or arguments.name in COMPARED else 1.0
-        if arguments.name in COMPARED:
+        pace = costs.pace(budget) if measured or arguments.name == "all" else 1.0
+        if arguments.name == "all":
             print(costs.compare(budget, {part.name: part.cpu_s for part in run.done}, pace), end="")
         if measured:
             took = {

@@ -159,8 +159,8 @@ GuardProcess::News GuardProcess::watchBeats(MonotonicTime now) {
   return {};
 }
 
-void GuardProcess::end() noexcept {
-  page_->ended.store(true, std::memory_order_release);
+void GuardProcess::end(bool at_rest) noexcept {
+  if (at_rest) page_->ended.store(true, std::memory_order_release);
   connection_.reset();
   try_.reset();
 }

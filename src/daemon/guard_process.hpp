@@ -29,7 +29,7 @@ class GuardProcess {
   [[nodiscard]] static Result<std::unique_ptr<GuardProcess>> create(Settings settings);
   GuardProcess(const GuardProcess&) = delete;
   GuardProcess& operator=(const GuardProcess&) = delete;
-  ~GuardProcess() { end(); }
+  ~GuardProcess() = default;
 
   [[nodiscard]] link::GuardPage& page() noexcept { return *page_; }
 
@@ -44,8 +44,9 @@ class GuardProcess {
   /// Never waits.
   [[nodiscard]] News supervise(MonotonicTime now);
 
-  /// The drives are at rest: the guard has nothing to do any more.
-  void end() noexcept;
+  /// `at_rest`: the drives are, as far as that can be known, and the guard has nothing to do any more. If not
+  /// it acts when this process has died.
+  void end(bool at_rest) noexcept;
 
  private:
   GuardProcess(Settings settings, link::SharedGuardPage page, UniqueFd self)

@@ -42,6 +42,7 @@ WatchedRobot::WatchedRobot(std::string robot, std::uint32_t standstill_ms, link:
 std::string WatchedRobot::step(bool ended) {
   if (over_) return {};
   page_->beats.fetch_add(1, std::memory_order_relaxed);
+  const bool dies = ended && !dead_;
   dead_ = dead_ || ended;
   // Read after the death: what rc10d wrote before it counts.
   const auto ticks = page_->ticks.load(std::memory_order_acquire);
@@ -51,7 +52,8 @@ std::string WatchedRobot::step(bool ended) {
   }
   if (page_->ended.load(std::memory_order_acquire)) return {};
   const bool still = standstill_.step(ticks);
-  if (!resting_ && dead_) return begin("rc10d has died");
+  // It may have gone on for a frame since it was told to rest.
+  if (dead_ && (!resting_ || dies)) return begin("rc10d has died");
   if (!resting_ && still) return begin("the ticks of rc10d stand still");
   if (resting_ && !dead_ && !still) {
     // It goes on, and enters its e-stop: it sees `acted`.

@@ -173,6 +173,7 @@ Twist2D Chassis_Base::wanted(const ModuleRobot& robot) const noexcept {
   const double turn_after_deg = turn_after_ ? robot.read(*turn_after_) : kNoSignal;
   if (finiteOr0(input(kTurnAfter)) >= 0.5 && std::isfinite(turn_after_deg))
     twist.wz_deg_s += follow_gain_per_s_ * wrapHalfTurn(turn_after_deg);
+  if (!drivesSideways()) twist.vy_m_s = 0.0;
   return twist;
 }
 

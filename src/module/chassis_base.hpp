@@ -36,6 +36,8 @@ class Chassis_Base : public Module_Base {
  protected:
   /// Whether it can be driven now, beside all its motors obeying.
   [[nodiscard]] virtual bool ready(const ModuleRobot&) const noexcept { return true; }
+  /// Whether it can; else vy_m_s does nothing.
+  [[nodiscard]] virtual bool drivesSideways() const noexcept { return true; }
   /// Sets the targets of all motors for a motion in the robot's frame. No wheel may get more than it can do:
   /// the direction of the motion is kept.
   virtual void drive(const Twist2D& body, ModuleRobot& robot) noexcept = 0;

@@ -38,7 +38,8 @@ constexpr std::array kImuKeys{
            .min = 5,
            .max = 5000,
            .default_text = "50",
-           .about = "Older values mean nothing: the outputs are NaN."},
+           .about = "Older values mean nothing: the outputs are NaN. With inputs the validity of the message "
+                    "counts instead."},
     OwnKey{.name = "yaw_offset_deg",
            .kind = kNumber,
            .unit = "deg",

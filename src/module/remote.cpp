@@ -216,12 +216,21 @@ class Remote : public Module_Base {
     robot.report(kDisabled);
   }
 
+  [[nodiscard]] bool anyOn(const ModuleRobot& robot) const noexcept {
+    for (std::size_t motor = 0; motor < was_active_.size(); ++motor) {
+      const auto status = robot.status(motor);
+      if (status == MotorStatus::kActive || status == MotorStatus::kEnabling) return true;
+    }
+    return false;
+  }
+
   // Only a switch that was seen down can go up: one that is up when the robot starts enables nothing.
   void watchArm(const Tick& tick, ModuleRobot& robot) noexcept {
     if (!arm_channel_) return;
     const bool up = values_[*arm_channel_] > arm_above_;
     if (!up) {
-      if (armed_) robot.askAll(RobotRequest::kDisable);
+      // In an e-stop, and after it, nothing is on: what is held stays so until it is enabled again.
+      if (armed_) robot.askAll(anyOn(robot) ? RobotRequest::kDisable : RobotRequest::kDisableUnasked);
       armed_ = false;
       switch_known_ = true;
     } else if (switch_known_ && !armed_) {

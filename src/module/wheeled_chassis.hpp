@@ -63,6 +63,7 @@ class WheeledChassis final : public Chassis_Base {
         kinematics_(kinematics),
         wheels_(wheels),
         limit_rpm_(limit_rpm),
+        drives_sideways_(kinematics.forward(kinematics.inverse({.vy_m_s = 1.0})).vy_m_s > 0.5),
         travel_(kCount, limit_rpm) {}
 
  protected:
@@ -72,6 +73,8 @@ class WheeledChassis final : public Chassis_Base {
       robot.setTarget(wheels_[i], {.mode = ControlMode::kVelocity, .value = speeds.*Wheels::kAll[i]});
     }
   }
+
+  [[nodiscard]] bool drivesSideways() const noexcept override { return drives_sideways_; }
 
   [[nodiscard]] Twist2D measured(const ModuleRobot& robot) const noexcept override {
     return forward(
@@ -93,6 +96,7 @@ class WheeledChassis final : public Chassis_Base {
   Kinematics kinematics_;
   std::array<std::size_t, kCount> wheels_;
   double limit_rpm_;
+  bool drives_sideways_;
   WheelTravel travel_;
 };
 

@@ -169,6 +169,9 @@ double SoloMotor::rpmWithinLimit(double output_rpm, double drive_limit_rpm) noex
   return rpm;
 }
 
-bool SoloMotor::due(const Tick& tick) const noexcept { return tick.index % divider_ == phase_ % divider_; }
+// The first frame of another order does not wait for its turn: an e-stop, the end of a target.
+bool SoloMotor::due(const Tick& tick) const noexcept {
+  return begins_ || tick.index % divider_ == phase_ % divider_;
+}
 
 }  // namespace rc10

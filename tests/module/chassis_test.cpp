@@ -436,6 +436,15 @@ TEST_F(Chassis, Omni4DrivesASquare) {
   EXPECT_NEAR(output(kY), 0.0, 1e-9);
 }
 
+TEST_F(Chassis, SidewaysIsNothingToADifferentialChassisAndItsBounds) {
+  auto own = common();
+  own.set("wheels", std::vector{section({"left", "right"})});
+  build(differentialChassisType(), std::move(own));
+  give({.vx_m_s = 2.0, .vy_m_s = 2.0});
+  run(2000);
+  EXPECT_NEAR(output(kVx), 2.0, 1e-3);
+}
+
 TEST_F(Chassis, DifferentialDrivesForwardAndTurnsButNotSideways) {
   auto own = common();
   own.set("wheels", std::vector{section({"left", "right"})});

@@ -111,10 +111,21 @@ TEST_F(Remote, TheSwitchGoingUpEnablesWhatIsReadyAndDownDisablesAll) {
   EXPECT_EQ(armed(), 1.0);
   EXPECT_TRUE(asks(RobotRequest::kEnable));
   asked_.clear();
+  robot_.motor(0).status = MotorStatus::kActive;
   armSwitch(Dr16Input::Switch::kMiddle);
   ASSERT_FALSE(asked_.empty());
   EXPECT_EQ(asked_.front().request, RobotRequest::kDisable);
   EXPECT_FALSE(asked_.front().motor.has_value()) << "all";
+}
+
+TEST_F(Remote, TheSwitchGoingDownWhereNothingIsOnLetsGoOfNothing) {
+  build();
+  arm();
+  for (auto& motor : robot_.motors()) motor.status = MotorStatus::kReady;  // an e-stop
+  asked_.clear();
+  armSwitch(Dr16Input::Switch::kMiddle);
+  ASSERT_FALSE(asked_.empty());
+  EXPECT_EQ(asked_.front().request, RobotRequest::kDisableUnasked);
 }
 
 TEST_F(Remote, TheEndOfAnEstopEnablesNothing) {

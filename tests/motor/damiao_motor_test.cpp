@@ -196,12 +196,27 @@ TEST(DamiaoMotor, AGapInWhichAWrapMayHideLosesTheReferenceUntilTheDriveTellsItsC
   ASSERT_TRUE(desk.motor().setZero(0.0));
   desk.run(1);
   ASSERT_TRUE(desk.motor().feedback().zeroed);
-  (void)desk.tick(milliseconds{200});
+  (void)desk.tick(milliseconds{90});
   (void)desk.feed(desk.state);
   EXPECT_TRUE(desk.motor().feedback().zeroed) << "at 45 rad/s it has not gone round";
   (void)desk.tick(milliseconds{300});
   (void)desk.feed(desk.state);
   EXPECT_FALSE(desk.motor().feedback().zeroed);
+}
+
+// A drive that starts as fast as nothing that is known: 2 pi lie within its reach of such a silence.
+TEST(DamiaoMotor, ASilenceInWhichItMayHaveRestartedAsksForItsCountAnew) {
+  for (const auto silence : {milliseconds{110}, milliseconds{220}, milliseconds{400}, milliseconds{800}}) {
+    for (const auto* model : {"DM4310", "DM4340", "DM8006", "DM10010"}) {
+      DamiaoDesk desk(damiaoSettingsOf(model));
+      desk.motor().order(FrameKind::kPoll);
+      desk.run(3);
+      ASSERT_TRUE(desk.motor().feedback().zeroed) << model;
+      (void)desk.tick(silence);
+      (void)desk.feed(desk.state);
+      EXPECT_FALSE(desk.motor().feedback().zeroed) << model << silence.count();
+    }
+  }
 }
 
 TEST(DamiaoMotor, FramesThatWaitedAndComeAtOnceAreNoJump) {

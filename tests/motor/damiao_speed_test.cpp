@@ -10,6 +10,7 @@ namespace {
 using namespace std::chrono_literals;
 
 constexpr double kVMax = 10.0;
+constexpr double kFastest = 15.0;
 
 /// A drive at 1 kHz whose field wraps at +-10 rad/s.
 class DamiaoSpeedTest : public ::testing::Test {
@@ -22,14 +23,14 @@ class DamiaoSpeedTest : public ::testing::Test {
     return speed_.take(static_cast<double>(code) * kStep - kVMax, rad_, follows, now_ + jitter);
   }
 
-  DamiaoSpeed speed_{kVMax};
+  DamiaoSpeed speed_{kVMax, kFastest};
   MonotonicTime now_{1000s};
   double rad_ = 0.0;
 };
 
 TEST_F(DamiaoSpeedTest, GoesOnOverTheEndOfItsFieldInBothDirections) {
   for (const double sign : {1.0, -1.0}) {
-    speed_ = DamiaoSpeed{kVMax};
+    speed_ = DamiaoSpeed{kVMax, kFastest};
     for (double rad_s = 0.0; rad_s < 14.0; rad_s += 0.05)
       ASSERT_NEAR(sample(sign * rad_s), sign * rad_s, 0.01);
     for (double rad_s = 14.0; rad_s > -3.0; rad_s -= 0.05)
@@ -54,6 +55,29 @@ TEST_F(DamiaoSpeedTest, APositionThatCountsFromElsewhereIsNoSpeed) {
   rad_ += 25.0;
   speed_.restart();
   for (int i = 0; i < 20; ++i) ASSERT_NEAR(sample(1.0), 1.0, 0.01);
+}
+
+TEST_F(DamiaoSpeedTest, SlowFeedbackIsUnderstoodToo) {
+  for (const auto gap : {5ms, 10ms, 20ms, 50ms}) {
+    speed_ = DamiaoSpeed{kVMax, kFastest};
+    (void)sample(0.0, gap);
+    for (double rad_s = 0.0; rad_s < 14.0; rad_s += 1.0) ASSERT_NEAR(sample(rad_s, gap), rad_s, 0.01);
+    for (int i = 0; i < 10; ++i) ASSERT_NEAR(sample(12.0, gap), 12.0, 0.01);
+  }
+}
+
+TEST_F(DamiaoSpeedTest, AReversalBetweenTwoSamplesIsNoWrap) {
+  for (const auto gap : {4ms, 10ms, 25ms}) {
+    speed_ = DamiaoSpeed{kVMax, kFastest};
+    for (int i = 0; i < 10; ++i) (void)sample(9.0, gap);
+    rad_ += 9.0 * std::chrono::duration<double>(gap).count();  // evenly, from 9 to -9
+    ASSERT_NEAR(sample(-9.0, gap), -9.0, 0.01);
+  }
+}
+
+TEST_F(DamiaoSpeedTest, AFieldThatSaysMoreThanTheDriveReachesNeverWraps) {
+  speed_ = DamiaoSpeed{kVMax, kVMax};
+  for (const double rad_s : {9.9, -9.9, 9.9}) ASSERT_NEAR(sample(rad_s), rad_s, 0.01);
 }
 
 TEST_F(DamiaoSpeedTest, AShortSlipOrAHardStopIsNoWrap) {

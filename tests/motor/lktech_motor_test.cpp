@@ -437,9 +437,11 @@ TEST_F(LKTechGroup, NothingIsSentWhenNoMembersTurnHasCome) {
   auto one = motorOf(settings);
   ASSERT_TRUE(group.registerMotor(*one));
   tell(*one, 1.0, 1);
-  EXPECT_EQ(packed(group), "");
+  EXPECT_EQ(packed(group), "280#7C00000000000000") << "another order does not wait for its turn";
   tell(*one, 1.0, 2);
   EXPECT_EQ(packed(group), "280#7C00000000000000");
+  tell(*one, 1.0, 3);
+  EXPECT_EQ(packed(group), "");
 }
 
 TEST_F(LKTechGroup, RefusesTakenSlotsAndMotorsWithoutOneNamingThem) {

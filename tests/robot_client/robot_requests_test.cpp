@@ -110,6 +110,21 @@ TEST_F(RobotTest, AnEstopThatDoesNotShowSaysToUseTheHardware) {
   EXPECT_THAT(stopped.error().message, HasSubstr("hardware emergency stop"));
 }
 
+TEST_F(RobotTest, LeavingGoesOnWithAnEstopThatNoStateShowsYet) {
+  connect();
+  see();
+  rc10d_.shows_estop = false;
+  ASSERT_FALSE(robot_->estop(5ms));
+  const std::size_t sent = rc10d_.requests().size();
+  std::thread later([&] {
+    EXPECT_TRUE(rc10d_.awaitRequests(sent + 2));
+    const std::lock_guard lock(rc10d_.mutex);
+    rc10d_.robot_state = robot_state_t::STATE_ESTOP;
+  });
+  EXPECT_TRUE(robot_->close());
+  later.join();
+}
+
 TEST_F(RobotTest, AnEstopInACallbackDoesNotWait) {
   connect();
   std::promise<bool> stopped;

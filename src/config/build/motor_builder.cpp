@@ -90,7 +90,9 @@ void readLoops(MotorParse& in) {
 void readRates(MotorParse& in) {
   in.settings.read("command_divider", in.motor().command_divider);
   in.motor().feedback_hz =
-      in.traits.asked ? std::max(1, in.motor().tick_hz / in.motor().command_divider) : in.traits.feedback_hz;
+      in.traits.asked
+          ? std::max(1, in.motor().tick_hz / (in.motor().command_divider * in.traits.samples_every))
+          : in.traits.feedback_hz;
   in.settings.read("feedback_hz", in.motor().feedback_hz);
   const auto period = std::chrono::duration_cast<Duration>(std::chrono::seconds{1}) / in.motor().feedback_hz;
   in.draft.config.feedback_timeout = std::max<Duration>(kFreshEnough, kPeriodsToStale * period);

@@ -59,14 +59,16 @@ void readShaping(MotorParse& in) {
   shaping.has_velocity_loop = in.traits.modes.contains(ControlMode::kVelocity);
   if (in.traits.host_loops != nullptr) {
     shaping.approach_rpm_per_deg = kApproachOfAngleGain * in.motor().loops.angle.kp;
-    shaping.approach_effort_per_rpm =
-        std::visit([](const auto& pid) { return pid.kp; }, in.traits.host_loops->velocity);
     shaping.lead_is_speed = true;
   } else {
     shaping.approach_rpm_per_deg = kNativeApproach;
-    if (in.noLoadRpm() > 0.0)
-      shaping.approach_effort_per_rpm =
-          in.traits.effort_full_scale / (kFullEffort * static_cast<float>(in.noLoadRpm()));
+  }
+  if (in.traits.host_loops != nullptr && !in.traits.own_velocity_loop) {
+    shaping.approach_effort_per_rpm =
+        std::visit([](const auto& pid) { return pid.kp; }, in.motor().loops.velocity);
+  } else if (in.noLoadRpm() > 0.0) {
+    shaping.approach_effort_per_rpm =
+        in.traits.effort_full_scale / (kFullEffort * static_cast<float>(in.noLoadRpm()));
   }
   if (in.traits.no_load_rpm > 0.0F) shaping.duty_per_rpm = 1.0F / static_cast<float>(in.noLoadRpm());
   if (!in.byVoltage() && in.torqueNmPerA() > 0.0)

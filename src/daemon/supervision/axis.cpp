@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace rc10 {
 namespace {
@@ -337,7 +338,13 @@ std::optional<MotorStatus> Axis::handle(MotorEvent event, RobotStatus robot, con
   if (stopped || status_ == MotorStatus::kFault) stop_ = stop;
   if (status_ != MotorStatus::kActive) dropTarget();
   const bool stays = event == MotorEvent::kDisableUnasked && fallback_.carries();
-  if ((before == MotorStatus::kActive || rests_while_held) && status_ == MotorStatus::kReady && !stays) {
+  const bool rests = (before == MotorStatus::kActive || rests_while_held) && status_ == MotorStatus::kReady;
+  if (rests)
+    rested_ = stays                                  ? Rested::kStayed
+              : event == MotorEvent::kDisableUnasked ? Rested::kUnasked
+                                                     : Rested::kAsked;
+  if (rests && stays) fallback_.disabled();
+  if (rests && !stays) {
     const auto& config = entry_.fallback;
     const bool asked = isDisable(event) || robot == RobotStatus::kStopping;
     const auto action = asked ? config.on_disable : config.on_estop;
@@ -347,6 +354,16 @@ std::optional<MotorStatus> Axis::handle(MotorEvent event, RobotStatus robot, con
   // Without feedback there is nothing to brake by.
   if (status_ == MotorStatus::kOffline || status_ == MotorStatus::kFault) fallback_.end();
   return before;
+}
+
+// Somebody asks for it the first time where only a program's end had: that is no second disable.
+void Axis::disableOnceMore(const Tick& tick) noexcept {
+  switch (std::exchange(rested_, Rested::kAsked)) {
+    case Rested::kAsked: return fallback_.end();
+    case Rested::kUnasked: return;
+    case Rested::kStayed:
+      return beginFallback(entry_.fallback.on_disable, Fallback::Until::kStandstill, false, tick);
+  }
 }
 
 void Axis::prepareEnabling(const Tick& tick) noexcept {
@@ -370,6 +387,8 @@ std::optional<SkipReason> Axis::follow(const Target& target, const Lease::Holder
     motor_.clearTarget();
     if (status_ == MotorStatus::kActive) fallback_.end();
   } else {
+    // Sent before it was enabled, and late on its way.
+    if (term.received < enabling_since_) return SkipReason::kNotActive;
     if (const auto reason = whySkipped(target)) return reason;
     (void)motor_.setTarget(target);
     fallback_.end();

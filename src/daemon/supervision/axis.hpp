@@ -89,8 +89,11 @@ class Axis {
   /// Before MotorEvent::kClear: the drive clears its faults.
   void clearFault(const Tick& tick) noexcept;
   void endFallback() noexcept { fallback_.end(); }
+  /// A disable of a motor that rests already: it lets go.
+  void disableOnceMore(const Tick& tick) noexcept;
   /// Before MotorEvent::kEstop of the robot: a fallback that acts already gives way to that of the e-stop.
   void estopFallback(const Tick& tick) noexcept {
+    rested_ = Rested::kAsked;
     if (status_ != MotorStatus::kActive && fallback_.acts())
       beginFallback(entry_.fallback.on_estop, Fallback::Until::kEnded, true, tick);
   }
@@ -151,6 +154,9 @@ class Axis {
   ReducedMotion reduced_;
   TargetShaper shaper_;
   Fallback fallback_;
+  /// Reason of its rest; kStayed: nobody asked, and what held it acts on.
+  enum class Rested : std::uint8_t { kAsked, kUnasked, kStayed };
+  Rested rested_ = Rested::kAsked;
   Lease lease_;      ///< Whose target is in force, and until when.
   Target in_force_;  ///< Target that the motor followed in the last tick.
   double hold_goal_deg_ =

@@ -83,7 +83,7 @@ void Supervisor::stopGroup(std::size_t index, GroupStop reason, const Tick& tick
   group.rearm = group.dropped;
   for (const auto motor : group.motors) {
     if (axes_[motor].status() == MotorStatus::kActive) group.rearm.set(motor);
-    if (asked && isOn(axes_[motor].status())) group.rests_with_it.set(motor);
+    if (event == MotorEvent::kDisable && isOn(axes_[motor].status())) group.rests_with_it.set(motor);
     transition(motor, event, why, tick);
   }
   bool returns = reason == GroupStop::kLost && !group.disable_asked &&

@@ -43,10 +43,19 @@ bool Supervisor::takeModuleCommand(const Command& command, const Tick& tick) noe
   for (std::size_t i = 0; i < command.count; ++i) {
     if (const auto reason = whySkipped(command.setpoints[i])) {
       skip(command.setpoints[i], *reason, tick);
-      return true;
+      return letGo(command, sender, tick);
     }
   }
   for (std::size_t i = 0; i < command.count; ++i) (void)follow(command.setpoints[i], sender, command, tick);
+  return true;
+}
+
+// Letting go is never withheld.
+bool Supervisor::letGo(const Command& command, const Lease::Holder& sender, const Tick& tick) noexcept {
+  for (std::size_t i = 0; i < command.count; ++i) {
+    if (command.setpoints[i].target.mode == ControlMode::kCoast)
+      (void)follow(command.setpoints[i], sender, command, tick);
+  }
   return true;
 }
 
@@ -216,7 +225,7 @@ void Supervisor::disable(std::size_t motor, const Order& order, const Tick& tick
   const bool anew = order.asked == Asked::kAnew;
   const bool once_more =
       anew && tick.now != estop_began_ && (group == nullptr || !group->rests_with_it.test(motor));
-  if (axis.status() == MotorStatus::kReady && once_more) axis.endFallback();
+  if (axis.status() == MotorStatus::kReady && once_more) axis.disableOnceMore(tick);
   if (group != nullptr) {
     group->rearm.reset();
     if (anew) group->rests_with_it.reset(motor);

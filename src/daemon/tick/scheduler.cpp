@@ -74,7 +74,7 @@ void Scheduler::tick(MonotonicTime now, std::uint64_t periods) noexcept {
   if (guard_ == nullptr) return;
   guard_->ticks.store(tick.index + 1, std::memory_order_release);
   // In the last tick, not later by the main thread: the guard would miss ticks until then.
-  if (stopped_) guard_->ended.store(true, std::memory_order_release);
+  if (stopped_ && rest_echoed_) guard_->ended.store(true, std::memory_order_release);
 }
 
 // Reasons to stop that neither a client nor the e-stop input has given.
@@ -161,6 +161,7 @@ void Scheduler::watchStop() noexcept {
   }
   const bool given_up = rest_ticks_ >= kMaxRestTicks && rest_ticks_ * period_ >= kLongestRest;
   stopped_ = (rest_ticks_ >= kMinRestTicks && echoed) || given_up;
+  rest_echoed_ = echoed;
 }
 
 // Buses that refused or held back a frame since the last call.

@@ -39,6 +39,8 @@ class Scheduler {
   void beginStop() noexcept { stop_requested_ = true; }
   /// The rest frames of the stop have reached the wire, as far as that can be known, or it took too long.
   [[nodiscard]] bool stopped() const noexcept { return stopped_; }
+  /// False: it took too long. Any thread, after the last tick.
+  [[nodiscard]] bool restEchoed() const noexcept { return rest_echoed_; }
 
   /// Time from the beginning of an e-stop to the end of the heartbeat, until that is cleared. Before the
   /// first tick.
@@ -100,6 +102,7 @@ class Scheduler {
   MonotonicTime next_missed_report_{};
   bool stop_requested_ = false;
   bool stopped_ = false;
+  bool rest_echoed_ = true;
   MonotonicTime stop_deadline_{};
   int rest_ticks_ = 0;
   std::array<std::uint64_t, kMaxBuses> confirmed_at_stop_{};

@@ -140,7 +140,11 @@ class CubemarsFamily final : public MotorFamily {
   }
   [[nodiscard]] std::span<const OwnKey> keys() const noexcept override { return kCubemarsKeys; }
   [[nodiscard]] MotorTraits traits(std::string_view model, const OwnValues& own) const override {
-    return cubemarsTraits(cubemarsSettings(model, own));
+    const auto settings = cubemarsSettings(model, own);
+    auto traits = cubemarsTraits(settings);
+    const bool brakes = settings.protocol != CubemarsProtocol::kServo || own.number("brake_current_a") > 0.0;
+    if (!brakes) traits.frames.brake = Provision::kUnsupported;
+    return traits;
   }
 
   [[nodiscard]] Result<void> check(const MotorSettings& settings) const override {

@@ -19,6 +19,9 @@ constexpr int kClears = 5;
 constexpr Duration kPositionAskedEvery = std::chrono::milliseconds{20};
 // The drive turns at most so much faster than its no-load speed: a full battery, a load that drives.
 constexpr double kOverspeed = 1.3;
+// No drive starts within that time; slow feedback has gaps of its own.
+constexpr Duration kRestartSilence = std::chrono::milliseconds{100};
+constexpr int kRestartPeriods = 3;
 // A float still tells tenths of a degree here; nobody needs more turns.
 constexpr double kFarthestTargetRad = 1e4;
 
@@ -51,7 +54,7 @@ Damiao_Motor::Damiao_Motor(const MotorSettings& settings)
                              : own_.scale.v_max_rad_s)),
       heard_within_(kPositionAskedEvery + 2 * std::max(settings.command_divider, 1) * tickPeriod()),
       position_(own_.scale, fastest(settings, own_.scale), feedbackPeriod()),
-      speed_(own_.scale.v_max_rad_s),
+      speed_(own_.scale.v_max_rad_s, fastest(settings, own_.scale)),
       travel_(settings.travel),
       enabling_({.id = settings.id, .control = own_.control, .timeout = own_.timeout, .scale = own_.scale}),
       setup_codec_(settings.id, own_.can_fd) {
@@ -80,6 +83,13 @@ FrameVerdict Damiao_Motor::updateFeedback(const CanFrame& frame) noexcept {
 }
 
 void Damiao_Motor::takeState(const damiao::State& state, MonotonicTime received) noexcept {
+  // It may have been restarted meanwhile, and count from another turn.
+  if (feedback_.samples > 0 &&
+      received - feedback_.received > std::max(kRestartSilence, kRestartPeriods * feedbackPeriod())) {
+    position_.forget();
+    speed_.restart();
+    loseReference();
+  }
   const bool was_enabled = status_ == damiao::kStatusEnabled;
   status_ = state.status;
   if (status_ < damiao::kFirstFault) clears_left_ = 0;
@@ -253,7 +263,10 @@ void Damiao_Motor::followVelocity(const Target& target) noexcept {
 }
 
 void Damiao_Motor::followAngle(const Target& target) noexcept {
-  const bool moves = target.mode == ControlMode::kTotalAngle && position_.known();
+  // From beyond what can be told every place lies far back.
+  const bool beyond = std::fabs(position_.rad()) > kFarthestTargetRad;
+  if (beyond) limits_ |= kLimitAngle;
+  const bool moves = target.mode == ControlMode::kTotalAngle && position_.known() && !beyond;
   double rad = 0.0;
   if (moves) {
     const double wanted_rad = drivePositionFor(target.value) * kRadPerDeg;
@@ -262,7 +275,7 @@ void Damiao_Motor::followAngle(const Target& target) noexcept {
     stay_rad_.reset();
   } else {
     // With a limit of 0 the position is not even looked at; it is there for a firmware that does.
-    if (!stay_rad_) stay_rad_ = std::clamp(position_.rad(), -kFarthestTargetRad, kFarthestTargetRad);
+    if (!stay_rad_) stay_rad_ = position_.rad();
     rad = *stay_rad_;
   }
   const double limit_rad_s = moves ? fastestRadS() : 0.0;

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <utility>
@@ -10,24 +9,28 @@
 namespace rc10 {
 
 /// Speed of a Damiao drive. Its field wraps at +-v_max, which some models pass without a load: there a shaft
-/// that is too fast would seem to turn back, and would be driven on. Neighbouring samples are alike, and the
-/// way of some of them says which of the wraps it is. Scheduler thread only.
+/// that is too fast would seem to turn back, and would be driven on. The way since the samples before says
+/// which of the wraps it is. Scheduler thread only.
 class DamiaoSpeed {
  public:
-  explicit DamiaoSpeed(double v_max_rad_s) noexcept
-      : wrap_rad_s_(2.0 * v_max_rad_s * kCodes / (kCodes - 1.0)) {}
+  /// `fastest_rad_s`: that the drive reaches; a field that says more never wraps.
+  DamiaoSpeed(double v_max_rad_s, double fastest_rad_s) noexcept
+      : wrap_rad_s_(2.0 * v_max_rad_s * kCodes / (kCodes - 1.0)), fastest_rad_s_(fastest_rad_s) {}
 
   /// As reported, and the position that goes on over turns; `follows`: it does since the sample before.
   double take(double told_rad_s, double position_rad, bool follows, MonotonicTime received) noexcept {
     const Duration gap = received - std::exchange(before_, received);
-    if (std::exchange(anew_, false) || !follows || gap > kLongestGap) {
+    const double moved_rad = position_rad - std::exchange(before_rad_, position_rad);
+    if (std::exchange(anew_, false) || !follows) {
       speed_rad_s_ = told_rad_s;
       begin(position_rad, received);
       return speed_rad_s_;
     }
+    const double gap_s = std::chrono::duration<double>(gap).count();
     const double before_rad_s = speed_rad_s_;
-    speed_rad_s_ = nearest(told_rad_s, speed_rad_s_);
-    explained_rad_ += (before_rad_s + speed_rad_s_) / 2.0 * std::chrono::duration<double>(gap).count();
+    // Over a short time stamps jitter, and a shaft gains little.
+    speed_rad_s_ = nearest(told_rad_s, gap > kShort ? moved_rad / gap_s : before_rad_s);
+    explained_rad_ += (before_rad_s + speed_rad_s_) / 2.0 * gap_s;
     if (received - begun_ >= kWindow) {
       const double passed_s = std::chrono::duration<double>(received - begun_).count();
       const double off_rad_s = (position_rad - begun_rad_ - explained_rad_) / passed_s;
@@ -43,11 +46,12 @@ class DamiaoSpeed {
   static constexpr double kCodes = 4096.0;
   // A slip of the encoder that DamiaoPosition takes for noise, 0.1 rad, is no wrap over this time.
   static constexpr Duration kWindow = std::chrono::milliseconds{25};
-  static constexpr Duration kLongestGap = std::chrono::milliseconds{25};
+  static constexpr Duration kShort = std::chrono::milliseconds{3};
 
   [[nodiscard]] double nearest(double told_rad_s, double to_rad_s) const noexcept {
-    const double wraps = std::round((to_rad_s - told_rad_s) / wrap_rad_s_);
-    return told_rad_s + wrap_rad_s_ * std::clamp(wraps, -1.0, 1.0);
+    const double other_rad_s = told_rad_s - std::copysign(wrap_rad_s_, told_rad_s);
+    const bool nearer = std::fabs(other_rad_s - to_rad_s) < std::fabs(told_rad_s - to_rad_s);
+    return nearer && std::fabs(other_rad_s) <= fastest_rad_s_ ? other_rad_s : told_rad_s;
   }
   void begin(double position_rad, MonotonicTime now) noexcept {
     begun_rad_ = position_rad;
@@ -56,9 +60,11 @@ class DamiaoSpeed {
   }
 
   double wrap_rad_s_;
+  double fastest_rad_s_;
   bool anew_ = true;
   double speed_rad_s_ = 0.0;
   MonotonicTime before_{};
+  double before_rad_ = 0.0;
   // First position of the present window, and the way since then by the speeds.
   double begun_rad_ = 0.0;
   MonotonicTime begun_{};

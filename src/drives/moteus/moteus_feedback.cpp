@@ -3,6 +3,7 @@
 
 #include "app/units.hpp"
 #include "drives/moteus/moteus_motor.hpp"
+#include "motor/sample_spacing.hpp"
 
 // Moteus_Motor: evaluation of its drive's answers.
 
@@ -21,6 +22,7 @@ constexpr double kClockToleranceMs = 200.0;
 
 // Half a turn and what its speed explains is no jump.
 constexpr double kJumpRev = 0.5;
+constexpr Duration kLongestStep = std::chrono::milliseconds{100};
 
 [[nodiscard]] double inMilliseconds(Duration duration) noexcept {
   return std::chrono::duration<double, std::milli>(duration).count();
@@ -106,7 +108,8 @@ bool Moteus_Motor::restarted(MonotonicTime received, double clock_ms) noexcept {
 
 // Farther than its speed can have taken it: restarted, or its position was set by somebody else.
 bool Moteus_Motor::jumped(MonotonicTime received, const Reading& reading) const noexcept {
-  if (feedback_.samples == 0) return false;
+  // After a silence its own count is right: its clock says whether it was restarted.
+  if (feedback_.samples == 0 || received - feedback_.received > kLongestStep) return false;
   const double before_rev_s =
       toDrive(finiteOr0(static_cast<double>(feedback_.velocity_rpm))) / kRpmPerTurnPerS;
   const double fastest_rev_s = std::max(std::abs(reading.velocity_rev_s), std::abs(before_rev_s));

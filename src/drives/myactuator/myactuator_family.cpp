@@ -86,6 +86,7 @@ class MyactuatorFamily final : public MotorFamily {
                              ControlMode::kAngle, ControlMode::kTotalAngle, ControlMode::kBrake};
       traits.frames.damp = Provision::kUnsupported;
     }
+    traits.samples_every = std::max(own.integer("angle_divider"), 1);
     // It has one (0xB3), but setting it writes its ROM and nothing reads it back.
     traits.watchdog = false;
     return traits;

@@ -259,7 +259,7 @@ MotorTraits vescTraits(const VescSettings& own) {
                    .idle = Provision::kFrame,
                    // The share of the current limit that the speed has of the no-load speed.
                    .damp = own.kv_rpm_per_v > 0.0 ? Provision::kHostLoop : Provision::kUnsupported,
-                   .brake = Provision::kFrame,
+                   .brake = own.brake_current_a > 0.0F ? Provision::kFrame : Provision::kUnsupported,
                    .hold = holdOf(own),
                    .enable = own.ask_status ? Provision::kFrame : Provision::kNothing,
                    .disable = Provision::kNothing};

@@ -42,6 +42,7 @@ struct FallbackConfig {
 struct FallbackBound {
   std::optional<Duration> most;       ///< None: it acts until its end.
   FrameKind then = FrameKind::kDamp;  ///< Never rest: a load must not fall after a while.
+  bool estop = false;                 ///< It replaces what held a load, perhaps.
 };
 
 /// `estop`: of the robot. In one, motors have no torque of their own in the end (IEC 60204-1); a group that
@@ -49,6 +50,7 @@ struct FallbackBound {
 [[nodiscard]] constexpr FallbackBound boundOf(FallbackAction action, bool estop, const FallbackConfig& config,
                                               const DriveFrames& frames) noexcept {
   FallbackBound bound;
+  bound.estop = estop;
   if (action == FallbackAction::kHold) bound.most = config.hold_max;
   if (action == FallbackAction::kBrake && estop) bound.most = config.brake_max;
   if (frames.damp != Provision::kUnsupported) return bound;
@@ -77,6 +79,7 @@ class Fallback {
     bounded_ = bound.most.has_value();
     bound_ = now + bound.most.value_or(Duration{});
     then_ = bound.then;
+    estop_ = bound.estop;
     moved_ = now;
     still_deg_ = std::numeric_limits<double>::quiet_NaN();
   }
@@ -86,9 +89,14 @@ class Fallback {
   [[nodiscard]] bool resistsFor(Duration time, MonotonicTime now) const noexcept {
     return acts() && kind_ != FrameKind::kCommand && now - begun_ >= time;
   }
-  /// It holds or brakes, or damps what it has held: without it a load may fall.
+  /// It holds or brakes, or damps what was held: without it a load may fall.
   [[nodiscard]] bool carries() const noexcept {
-    return kind_ == FrameKind::kHold || kind_ == FrameKind::kBrake || (kind_ == FrameKind::kDamp && bounded_);
+    return kind_ == FrameKind::kHold || kind_ == FrameKind::kBrake ||
+           (kind_ == FrameKind::kDamp && (bounded_ || estop_));
+  }
+  /// Its motor is disabled: what ends in damp ends at standstill.
+  void disabled() noexcept {
+    if (bounded_) until_ = Until::kStandstill;
   }
   /// Kind of frame for the drive; kRest while no fallback is in force.
   [[nodiscard]] FrameKind kind() const noexcept { return kind_; }
@@ -132,6 +140,7 @@ class Fallback {
   MonotonicTime begun_{};
   Until until_ = Until::kEnded;
   bool bounded_ = false;
+  bool estop_ = false;
   MonotonicTime bound_{};
   FrameKind then_ = FrameKind::kDamp;
   MonotonicTime moved_{};

@@ -345,7 +345,9 @@ std::uint32_t TargetShaper::shapeEffort(Target& asked, const MotorFeedback& feed
   const bool duty = mode_ == ControlMode::kDuty && config_.effort_full_scale > 0.0F;
   const double scale = duty ? 1.0 / static_cast<double>(config_.effort_full_scale) : 1.0;
   const double per_s = scale * static_cast<double>(config_.effort_slew_per_s);
-  std::uint32_t limits = slewTowards(asked.value, per_s, dt_s, value_) ? kLimitSlew : 0U;
+  // More than all does nothing, and would have to be slewed back.
+  const double goal = duty ? slewGoal(asked.value, value_, 1.0) : asked.value;
+  std::uint32_t limits = slewTowards(goal, per_s, dt_s, value_) ? kLimitSlew : 0U;
   asked.value = value_;
   if (!bounded(feedback) && !reduced()) return limits;
   const bool known = config_.approach_effort_per_rpm > 0.0F || config_.effort_per_rpm > 0.0F;
@@ -386,14 +388,14 @@ std::uint32_t TargetShaper::boundBySpeed(Target& asked, const MotorFeedback& fee
   return value_ != 0.0 ? kLimitAngle : 0U;
 }
 
-// Without a velocity loop soft limits leave no push outwards; a ceiling only ends a push that drives the
-// shaft beyond it.
+// Where neither a gain nor a loop of the speed is known: a push ends where the shaft is too fast, or may go
+// no farther. Back it always acts.
 double TargetShaper::effortTowards(double allowed_rpm, double sign,
                                    const MotorFeedback& feedback) const noexcept {
   const bool known = config_.approach_effort_per_rpm > 0.0F || config_.effort_per_rpm > 0.0F;
-  if (known || bounded(feedback)) return effortFor(allowed_rpm, feedback);
+  if (known) return effortFor(allowed_rpm, feedback);
   const bool slower = sign * (allowed_rpm - static_cast<double>(feedback.velocity_rpm)) > 0.0;
-  return slower ? sign * std::numeric_limits<double>::infinity() : 0.0;
+  return slower && sign * allowed_rpm > 0.0 ? sign * std::numeric_limits<double>::infinity() : 0.0;
 }
 
 double TargetShaper::effortFor(double allowed_rpm, const MotorFeedback& feedback) const noexcept {

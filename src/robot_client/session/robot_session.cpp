@@ -49,13 +49,14 @@ void RobotSession::receiveState(std::span<const std::byte> bytes) {
   News news;
   {
     const Lock lock(core_.mutex);
-    if (core_.closed) return;
     if (!core_.newest.take(state, now)) return;
+    // close() may wait for it.
     estop_.onState(*state);
+    core_.changed.notify_all();
+    if (core_.closed) return;
     targets_.onState(*core_.believed(), now, news);
     callback = on_state_;
   }
-  core_.changed.notify_all();
   news.tell(core_.problems);
   if (callback && *callback) (*callback)(*state);
 }

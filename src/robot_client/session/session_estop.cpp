@@ -23,8 +23,9 @@ Result<void> SessionEstop::estop(Duration timeout) {
 
 Result<void> SessionEstop::finish(Duration most) {
   SessionCore::Lock lock(core_.mutex);
-  // In a handler no state comes meanwhile.
+  // In a handler no state comes meanwhile: once more, at least.
   const auto end = core_.link.inHandler() ? timeNow() : timeNow() + most;
+  if (const auto number = repetition_.number()) (void)send(*number, timeNow());
   while (repetition_.number() && timeNow() < end) {
     sendAgain(timeNow());
     core_.changed.wait_until(lock, std::min(end, nextDue().value_or(end)));

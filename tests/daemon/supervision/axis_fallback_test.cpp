@@ -431,6 +431,43 @@ TEST_F(FallbackTest, ADisableThatNobodyAskedForLeavesWhatIsHeldInEachStatus) {
   EXPECT_EQ(currentA(), 0.0F);
 }
 
+TEST_F(FallbackTest, TheFirstDisableThatSomebodyAsksForDoesItsOnDisable) {
+  const Order unasked{
+      .operation = Operation::kDisable, .motors = MotorSet{}.set(kLeft), .asked = Asked::kUnasked};
+  for (const auto timeout : {FallbackAction::kHold, FallbackAction::kCoast}) {
+    start({.on_timeout = timeout, .on_disable = FallbackAction::kBrake}, 2.0F);
+    if (timeout == FallbackAction::kHold) robot->run(500);  // silence
+    robot->carryOut(unasked);
+    robot->run(100);
+    robot->order(Operation::kDisable);
+    EXPECT_EQ(robot->motor(kLeft).acting, Acting::kBrake);
+    robot->order(Operation::kDisable);
+    EXPECT_EQ(robot->motor(kLeft).acting, Acting::kNothing) << "once more";
+  }
+}
+
+TEST_F(FallbackTest, WhatHoldsOnAfterADisableThatNobodyAskedForEndsWithItsTime) {
+  start({.on_timeout = FallbackAction::kHold, .hold_max = 1s});
+  robot->run(500);
+  robot->carryOut(
+      {.operation = Operation::kDisable, .motors = MotorSet{}.set(kLeft), .asked = Asked::kUnasked});
+  robot->run(100);
+  EXPECT_EQ(robot->motor(kLeft).acting, Acting::kHold);
+  robot->run(1000);
+  expectAtRest();
+}
+
+TEST_F(FallbackTest, AnEstopThatDampsIsNotLetGoByTheEndOfAProgram) {
+  start({.on_estop = FallbackAction::kDamp});
+  robot->order(Operation::kEstop);
+  robot->run(3000);
+  robot->order(Operation::kClear);
+  enableFor(1);
+  robot->carryOut(
+      {.operation = Operation::kDisable, .motors = MotorSet{}.set(kLeft), .asked = Asked::kUnasked});
+  EXPECT_EQ(robot->motor(kLeft).acting, Acting::kDamp);
+}
+
 TEST_F(FallbackTest, ADisableThatNobodyAskedForStopsWhatMoves) {
   start({.on_timeout = FallbackAction::kHold}, 2.0F);
   robot->carryOut(

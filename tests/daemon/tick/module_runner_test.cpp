@@ -289,6 +289,23 @@ TEST_F(ModuleRunnerTest, AllItsTargetsActOrNoneWhateverOneIsSkippedFor) {
   EXPECT_GT(robot_->snapshot().skipped_setpoints, 0U);
 }
 
+TEST_F(ModuleRunnerTest, LettingGoIsNotWithheldWithTheOtherTargets) {
+  bool lets_go = false;
+  const ScriptedType type{[&](const Tick&, ModuleRobot& robot) {
+    robot.setTarget(0, lets_go ? Target{} : rpm(60.0));
+    if (lets_go) robot.setTarget(1, {.mode = ControlMode::kTotalAngle, .value = 90.0});
+  }};
+  auto config = twoWheelsAndYaw();
+  config.buses[0].motors[0].fallback.on_timeout = FallbackAction::kHold;
+  start({{&type, 0}}, nullptr, config);
+  enable();
+  robot_->run(100);
+  ASSERT_EQ(robot_->motor(0).acting, Acting::kTarget);
+  lets_go = true;  // the other has no reference
+  robot_->run(100);
+  EXPECT_EQ(robot_->motor(0).acting, Acting::kNothing);
+}
+
 TEST_F(ModuleRunnerTest, OnlyADisableThatSomebodyAskedForLetsGoOfWhatAnEstopBrakes) {
   std::optional<RobotRequest> asks;
   const ScriptedType type{[&](const Tick&, ModuleRobot& robot) {
