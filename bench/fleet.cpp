@@ -174,7 +174,10 @@ void Fleet::deliver() noexcept {
   }
 }
 
-void Fleet::command() noexcept { exchange_.commands.push(command_); }
+void Fleet::command() noexcept {
+  command_.received = now_;
+  exchange_.commands.push(command_);
+}
 
 // As Scheduler::receive().
 void Fleet::receive() noexcept {

@@ -25,8 +25,10 @@ bool Motor_Base::acceptsTarget(const Target& target) const noexcept {
 }
 
 bool Motor_Base::setTarget(const Target& target) noexcept {
-  if (!acceptsTarget(target)) return false;
-  target_ = normalised(target);
+  if (static_cast<int>(target.mode) >= kControlModeCount || !modes().contains(target.mode)) return false;
+  const Target accepted = normalised(target);
+  if (!finite(accepted)) return false;
+  target_ = accepted;
   return true;
 }
 

@@ -30,7 +30,7 @@ struct MotorTraits {
   int min_feedback_hz = 1;
   int max_feedback_hz = 1000;
   bool asked = false;        ///< Sends only answers: its feedback comes at the command rate.
-  int samples_every = 1;     ///< Of an asked drive: its turns for each sample of the angle.
+  int samples_every = 1;     ///< Turns of an asked drive for each sample of its angle.
   bool fd = false;           ///< Speaks CAN FD.
   int data_bitrate = 0;      ///< Data phase of its CAN FD, as delivered; 0: unknown.
   bool classic_only = true;  ///< Answers FD frames with error frames.

@@ -345,7 +345,8 @@ void Chaos::command(const Client& client) {
   command.client = client.name;
   command.session = client.session;
   command.priority = client.priority;
-  command.deadline = robot_->now() + client.validity;
+  command.received = robot_->now();
+  command.deadline = command.received + client.validity;
   for (std::size_t motor = 0; motor < places_.size(); ++motor) {
     if (!client.motors.test(motor)) continue;
     command.setpoints[command.count++] = {static_cast<std::uint16_t>(motor), client.targets[motor]};

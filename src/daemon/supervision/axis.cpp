@@ -389,8 +389,8 @@ std::optional<SkipReason> Axis::follow(const Target& target, const Lease::Holder
   } else {
     // Sent before it was enabled, and late on its way.
     if (term.received < enabling_since_) return SkipReason::kNotActive;
-    if (const auto reason = whySkipped(target)) return reason;
-    (void)motor_.setTarget(target);
+    if (const auto reason = whyNotNow(target)) return reason;
+    if (!motor_.setTarget(target)) return SkipReason::kRefused;
     fallback_.end();
     stop_ = {};
   }
@@ -400,6 +400,11 @@ std::optional<SkipReason> Axis::follow(const Target& target, const Lease::Holder
 
 std::optional<SkipReason> Axis::whySkipped(const Target& target) const noexcept {
   if (target.mode == ControlMode::kCoast) return std::nullopt;
+  if (const auto reason = whyNotNow(target)) return reason;
+  return motor_.acceptsTarget(target) ? std::nullopt : std::optional{SkipReason::kRefused};
+}
+
+std::optional<SkipReason> Axis::whyNotNow(const Target& target) const noexcept {
   if (status_ != MotorStatus::kActive) return SkipReason::kNotActive;
   if (needsReference(target.mode)) {
     if (!(std::fabs(target.value) <= kFarthestAngleDeg)) return SkipReason::kTooFar;
@@ -407,7 +412,7 @@ std::optional<SkipReason> Axis::whySkipped(const Target& target) const noexcept 
     const bool first = !actsByPlace(motor_.target());
     if (first && !shaper_.firstStepAllowed(target, motor_.feedback())) return SkipReason::kFirstStep;
   }
-  return motor_.acceptsTarget(target) ? std::nullopt : std::optional{SkipReason::kRefused};
+  return std::nullopt;
 }
 
 bool Axis::mayReportSkip(MonotonicTime now) noexcept {

@@ -142,6 +142,7 @@ class Axis {
     return fallback_.kind() == FrameKind::kCommand && motor_.target().mode == ControlMode::kCoast;
   }
   [[nodiscard]] bool heldWhileEnabling() const noexcept;
+  [[nodiscard]] std::optional<SkipReason> whyNotNow(const Target& target) const noexcept;
   void dropTarget() noexcept;
   void beginTimeoutFallback(StopCause cause, const Tick& tick) noexcept;
   void beginFallback(FallbackAction action, Fallback::Until until, bool estop, const Tick& tick) noexcept;
