@@ -3,6 +3,7 @@
 
 #include "app/units.hpp"
 #include "drives/moteus/moteus_motor.hpp"
+#include "motor/sample_spacing.hpp"
 
 // Moteus_Motor: evaluation of its drive's answers.
 
