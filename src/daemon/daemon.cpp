@@ -386,10 +386,12 @@ void Daemon::waitForSignal(SignalInbox& signals) {
 void Daemon::stop() {
   notifyService("STOPPING=1");
   sched_thread_.join();  // goes on until rest frames are on the wire
-  if (!scheduler_->restEchoed())
+  // Without a scheduler it did not start, and has commanded nothing.
+  const bool rests = !scheduler_ || scheduler_->restEchoed();
+  if (!rests)
     log_->error("not every bus has carried the rest frames: its drives may go on with their last command{}",
                 guard_ ? "; rc10-guard sends rest until one is on the wire" : "");
-  if (guard_) guard_->end(scheduler_->restEchoed());
+  if (guard_) guard_->end(rests);
   line_thread_.join();  // leaves its outputs safe
   if (gateway_) gateway_->stop();
   link_thread_.join();

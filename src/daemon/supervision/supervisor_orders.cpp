@@ -103,6 +103,7 @@ void Supervisor::apply(const Command& command, const Tick& tick) noexcept {
 }
 
 bool Supervisor::waits(const Command::Setpoint& setpoint) const noexcept {
+  if (groups_.empty()) return false;  // most often
   return setpoint.target.mode != ControlMode::kCoast &&
          axes_[setpoint.motor].status() == MotorStatus::kActive && waitsForGroup(setpoint.motor);
 }
