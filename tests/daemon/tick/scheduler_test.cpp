@@ -398,6 +398,18 @@ TEST_F(SchedulerTest, TheLastTickTellsTheGuardThatTheEndIsInOrder) {
   EXPECT_TRUE(page.ended);
 }
 
+TEST_F(SchedulerTest, AnEndWhoseRestFramesNoBusHasCarriedLeavesTheGuardItsWork) {
+  link::GuardPage page;
+  robot.scheduler().watchedBy(page);
+  robot.run(5);
+  robot.inboxes()[0].echo_reads.store(1);
+  robot.scheduler().beginStop();
+  robot.run(500);
+  ASSERT_TRUE(robot.scheduler().stopped()) << "it does not wait for ever";
+  EXPECT_FALSE(robot.scheduler().restEchoed());
+  EXPECT_FALSE(page.ended) << "torque frames may wait in a queue";
+}
+
 TEST_F(SchedulerTest, EveryCommandIdLeavesInEveryTick) {
   robot.run(100);
   // M3508 1 and 2 share 0x200; GM6020 5 has 0x2FE.
