@@ -46,6 +46,14 @@ def daemon(link: VirtualLink) -> MovingDaemon:
     return daemon
 
 
+def expect_silence(robot: rc10.Robot, daemon: MovingDaemon) -> None:
+    """No command comes for 50 states."""
+    sent = len(daemon.commands)
+    for _ in range(50):
+        robot.wait_for_state()
+    assert len(daemon.commands) == sent
+
+
 def test_a_move_is_done_when_the_motor_stands_there(
     robot: rc10.Robot, daemon: MovingDaemon, link: VirtualLink
 ) -> None:
@@ -212,10 +220,7 @@ def test_a_motor_that_was_lost_after_the_move_is_not_driven_when_it_is_back(
     robot.wait_for_state()
     robot.wait_for_state()
     daemon.status = motor_state_t.STATUS_ACTIVE
-    sent = len(daemon.commands)
-    for _ in range(50):
-        robot.wait_for_state()
-    assert len(daemon.commands) == sent
+    expect_silence(robot, daemon)
 
 
 def test_a_motor_that_another_client_takes_after_the_move_is_let_go(
@@ -230,8 +235,7 @@ def test_a_motor_that_another_client_takes_after_the_move_is_let_go(
     daemon.owner = None
     sent = len(daemon.commands)
     robot.spin(1.0)
-    for _ in range(50):
-        robot.wait_for_state()
+    expect_silence(robot, daemon)
     assert len(daemon.commands) == sent
 
 
@@ -245,8 +249,7 @@ def test_a_move_that_ended_is_not_sent_on_when_the_motor_has_not_obeyed_meanwhil
     # The program waits for somebody: its target lapses, and the motor is disabled and enabled.
     daemon.owner = ""
     link.pass_time(60.0)
-    for _ in range(50):
-        robot.wait_for_state()
+    expect_silence(robot, daemon)
     assert len(daemon.commands) == sent
 
 

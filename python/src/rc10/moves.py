@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 from dataclasses import dataclass
 from enum import Enum
 from typing import TYPE_CHECKING, Callable
@@ -20,6 +21,9 @@ _ON_ITS_WAY_S = 0.3
 # Passing through the tolerance is not arriving.
 _SETTLED_US = 60_000
 _SILENCE_S = 1.0
+_MOTOR_STATUS = 100
+# "ACTIVE -> READY (disabled by 'panel')": it does not obey any more.
+_LEFT_ACTIVE = re.compile(r"(ACTIVE|ENABLING) -> (?!ACTIVE)")
 
 
 class MoveOutcome(Enum):
@@ -54,6 +58,7 @@ class Move:
     Attributes:
         motor: its name.
         setpoint: what is sent.
+        shown_us: `mono_us` of the state that it began with.
     """
 
     def __init__(
@@ -68,6 +73,7 @@ class Move:
     ) -> None:
         self.motor = motor
         self.setpoint = setpoint
+        self.shown_us = 0
         self._order = Order(motor, setpoint, client)
         self._tolerance_deg = tolerance_deg
         self._timeout_s = timeout_s
@@ -97,8 +103,14 @@ class Move:
         return self._started_s
 
     def on_event(self, event: Event) -> None:
-        """Keeps what rc10d says about a setpoint that it skipped or refused."""
+        """Keeps what rc10d says about a setpoint that it skipped or refused; ends with its motor.
+
+        Disabled and enabled between two states, it would be driven on: no state shows that.
+        """
         self._order.on_event(event)
+        left = event.code == _MOTOR_STATUS and _LEFT_ACTIVE.match(event.text)
+        if left and event.source == self.motor and event.mono_us > self.shown_us:
+            self.fail(f"{event.source}: {event.text}")
 
     def on_state(self, state: RobotState) -> None:
         """Takes in a new state."""

@@ -73,9 +73,6 @@ _ALL = ""
 # Events of targets and inputs that another client's stand in the way of, and of messages that rc10d
 # refused: docs/lcm.md.
 _REFUSED = (104, 202)
-_MOTOR_STATUS = 100
-# "ACTIVE -> READY (disabled by 'panel')": it does not obey any more.
-_LEFT_ACTIVE = re.compile(r"(ACTIVE|ENABLING) -> (?!ACTIVE)")
 _UNSUPPORTED = re.compile(
     r"refused: (?P<motor>[^ :]+): (?P<mode>\w+): the motor's drive does not support the mode"
 )
@@ -126,7 +123,6 @@ class RobotClient:
         self._command_channel = f"{name}.v1.command"
         self._closed = False
         self._moves: dict[str, Move] = {}
-        self._shown_us: dict[str, int] = {}  # by motor: the state that its move began with
         self._resend_s = 0.0
         self._judged: RobotState | None = None
         self._inbox.on_event = self._on_event
@@ -301,6 +297,7 @@ class RobotClient:
         setpoint = angle_deg(angle) if shortest_way else total_angle_deg(angle)
         state = self.state
         move = Move(name, setpoint, tolerance_deg, timeout_s, self.client, self._link.now, spin)
+        move.shown_us = state.mono_us
         motor = state.motor(name)
         runs = state.status is RobotStatus.RUN
         just_enabled = runs and self._is_older(state, name)
@@ -309,7 +306,6 @@ class RobotClient:
             return move
         self.command({name: setpoint}, validity_ms=_MOVE_VALIDITY_MS)
         self._moves[name] = move
-        self._shown_us[name] = state.mono_us
         self._resend_s = self._link.now() + RESEND_S
         return move
 
@@ -444,12 +440,6 @@ class RobotClient:
                 _log.warning("rc10d says: %s", printable(f"{event.source}: {event.text}"))
         for move in self._moves.values():
             move.on_event(event)
-        left = event.code == _MOTOR_STATUS and _LEFT_ACTIVE.match(event.text)
-        move_there = self._moves.get(event.source)
-        # Disabled and enabled between two states: no state shows it.
-        if left and move_there is not None and event.mono_us > self._shown_us[event.source]:
-            self._moves.pop(event.source)
-            move_there.fail(f"{event.source}: {event.text}")
 
     def _abandon(self, move: Move) -> None:
         """Has the target of a move end now: nobody waits for it any more."""

@@ -95,7 +95,7 @@ class Supervisor {
   /// Whether it acts; one that does not is counted and told.
   [[nodiscard]] bool follow(const Command::Setpoint& setpoint, const Lease::Holder& sender,
                             const Command& command, const Tick& tick) noexcept;
-  bool letGo(const Command& command, const Lease::Holder& sender, const Tick& tick) noexcept;
+  void letGo(const Command& command, const Lease::Holder& sender, const Tick& tick) noexcept;
   [[nodiscard]] bool waits(const Command::Setpoint& setpoint) const noexcept;
   [[nodiscard]] std::optional<SkipReason> whySkipped(const Command::Setpoint& setpoint) const noexcept;
   void skip(const Command::Setpoint& setpoint, SkipReason reason, const Tick& tick) noexcept;

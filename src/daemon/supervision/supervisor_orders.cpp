@@ -43,7 +43,8 @@ bool Supervisor::takeModuleCommand(const Command& command, const Tick& tick) noe
   for (std::size_t i = 0; i < command.count; ++i) {
     if (const auto reason = whySkipped(command.setpoints[i])) {
       skip(command.setpoints[i], *reason, tick);
-      return letGo(command, sender, tick);
+      letGo(command, sender, tick);
+      return true;
     }
   }
   for (std::size_t i = 0; i < command.count; ++i) (void)follow(command.setpoints[i], sender, command, tick);
@@ -51,12 +52,11 @@ bool Supervisor::takeModuleCommand(const Command& command, const Tick& tick) noe
 }
 
 // Letting go is never withheld.
-bool Supervisor::letGo(const Command& command, const Lease::Holder& sender, const Tick& tick) noexcept {
+void Supervisor::letGo(const Command& command, const Lease::Holder& sender, const Tick& tick) noexcept {
   for (std::size_t i = 0; i < command.count; ++i) {
     if (command.setpoints[i].target.mode == ControlMode::kCoast)
       (void)follow(command.setpoints[i], sender, command, tick);
   }
-  return true;
 }
 
 void Supervisor::takeModuleOrder(const Order& order, const Tick& tick) noexcept { carryOut(order, tick); }

@@ -447,14 +447,17 @@ TEST_F(FallbackTest, TheFirstDisableThatSomebodyAsksForDoesItsOnDisable) {
 }
 
 TEST_F(FallbackTest, WhatHoldsOnAfterADisableThatNobodyAskedForEndsWithItsTime) {
-  start({.on_timeout = FallbackAction::kHold, .hold_max = 1s});
+  start({.on_timeout = FallbackAction::kHold, .on_disable = FallbackAction::kHold, .hold_max = 1s});
   robot->run(500);
   robot->carryOut(
       {.operation = Operation::kDisable, .motors = MotorSet{}.set(kLeft), .asked = Asked::kUnasked});
   robot->run(100);
   EXPECT_EQ(robot->motor(kLeft).acting, Acting::kHold);
-  robot->run(1000);
+  robot->run(1500);
   expectAtRest();
+  robot->order(Operation::kDisable);
+  robot->run(10);
+  expectAtRest();  // nothing is left to let go of, and nothing begins
 }
 
 TEST_F(FallbackTest, AnEstopThatDampsIsNotLetGoByTheEndOfAProgram) {

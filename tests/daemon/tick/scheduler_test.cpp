@@ -23,6 +23,13 @@ const Target kVelocity120{.mode = ControlMode::kVelocity, .value = 120.0};
 
 class SchedulerTest : public ::testing::Test {
  protected:
+  /// It ends, watched, and waits for echoes of its rest frames.
+  void stopWatchedBy(link::GuardPage& page) {
+    robot.scheduler().watchedBy(page);
+    robot.run(5);
+    robot.inboxes()[0].echo_reads.store(1);
+    robot.scheduler().beginStop();
+  }
   void enableAll() {
     robot.run(5);
     const auto result = robot.order(Operation::kEnable);
@@ -385,10 +392,7 @@ TEST_F(SchedulerTest, StoppingWaitsForEchoesOfTheRestFrames) {
 
 TEST_F(SchedulerTest, TheLastTickTellsTheGuardThatTheEndIsInOrder) {
   link::GuardPage page;
-  robot.scheduler().watchedBy(page);
-  robot.run(5);
-  robot.inboxes()[0].echo_reads.store(1);
-  robot.scheduler().beginStop();
+  stopWatchedBy(page);
   robot.run(10);
   ASSERT_FALSE(robot.scheduler().stopped());
   EXPECT_FALSE(page.ended) << "rest frames are still on their way";
@@ -400,10 +404,7 @@ TEST_F(SchedulerTest, TheLastTickTellsTheGuardThatTheEndIsInOrder) {
 
 TEST_F(SchedulerTest, AnEndWhoseRestFramesNoBusHasCarriedLeavesTheGuardItsWork) {
   link::GuardPage page;
-  robot.scheduler().watchedBy(page);
-  robot.run(5);
-  robot.inboxes()[0].echo_reads.store(1);
-  robot.scheduler().beginStop();
+  stopWatchedBy(page);
   robot.run(500);
   ASSERT_TRUE(robot.scheduler().stopped()) << "it does not wait for ever";
   EXPECT_FALSE(robot.scheduler().restEchoed());
