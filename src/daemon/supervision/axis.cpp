@@ -362,7 +362,7 @@ void Axis::disableOnceMore(const Tick& tick) noexcept {
     case Rested::kAsked: return fallback_.end();
     case Rested::kUnasked: return;
     case Rested::kStayed:
-      // What held it may have ended since: then nothing begins anew.
+      // Its hold may have ended since: then nothing begins anew.
       if (!fallback_.acts()) return;
       return beginFallback(entry_.fallback.on_disable, Fallback::Until::kStandstill, false, tick);
   }
