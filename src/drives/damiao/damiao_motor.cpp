@@ -20,8 +20,8 @@ constexpr Duration kPositionAskedEvery = std::chrono::milliseconds{20};
 // The drive turns at most so much faster than its no-load speed: a full battery, a load that drives.
 constexpr double kOverspeed = 1.3;
 // No drive starts within that time; slow feedback has gaps of its own.
-constexpr Duration kRestartSilence = std::chrono::milliseconds{100};
-constexpr int kRestartPeriods = 3;
+constexpr Duration kDamiaoRestartSilence = std::chrono::milliseconds{100};
+constexpr int kDamiaoRestartPeriods = 3;
 // A float still tells tenths of a degree here; nobody needs more turns.
 constexpr double kFarthestTargetRad = 1e4;
 
@@ -85,7 +85,8 @@ FrameVerdict Damiao_Motor::updateFeedback(const CanFrame& frame) noexcept {
 void Damiao_Motor::takeState(const damiao::State& state, MonotonicTime received) noexcept {
   // It may have been restarted meanwhile, and count from another turn.
   if (feedback_.samples > 0 &&
-      received - feedback_.received > std::max(kRestartSilence, kRestartPeriods * feedbackPeriod())) {
+      received - feedback_.received >
+          std::max(kDamiaoRestartSilence, kDamiaoRestartPeriods * feedbackPeriod())) {
     position_.forget();
     speed_.restart();
     loseReference();
