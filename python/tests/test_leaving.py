@@ -60,6 +60,20 @@ def test_a_target_that_has_lapsed_does_not_come_back_for_the_end(
     assert setpoints(daemon.commands[-1]) == {"yaw": (rc10.Mode.ANGLE, 3)}
 
 
+def test_a_target_of_a_motor_that_was_stopped_does_not_come_back_for_the_end(
+    lapsing: Client, daemon: FakeDaemon, link: VirtualLink
+) -> None:
+    with lapsing as robot:
+        robot.command(wheel=rc10.velocity_rpm(120), validity_ms=1000)
+        daemon.publish_event("ACTIVE -> READY (the robot stops)", code=100)
+        daemon.publish_event("READY -> ENABLING", code=100)
+        robot.spin(0.02)
+        drain(link)
+        sent = len(daemon.commands)
+    drain(link)
+    assert len(daemon.commands) == sent
+
+
 def test_a_motor_that_is_gone_does_not_spoil_the_end_of_the_others(
     lapsing: Client, daemon: FakeDaemon, link: VirtualLink
 ) -> None:

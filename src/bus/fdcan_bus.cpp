@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <chrono>
 #include <span>
 #include <utility>
 
@@ -91,11 +92,23 @@ void fdCANbus::putAside(const CanFrame& frame, FrameVerdict verdict, bool unmatc
   if (verdict == FrameVerdict::kMalformed) ++counters_.rx_malformed;
   // The socket does not receive what it sends itself.
   if (verdict != FrameVerdict::kForeign || frame.type != FrameType::kData) return;
-  if (isCommandId(frame.id)) {
+  if (isCommandId(frame.id) && !stops(frame)) {
     ++counters_.rx_foreign;
     last_foreign_ = {frame.id, frame.sent_here};
   }
   if (foreign_ != nullptr && !isDoubled(frame, *batch_)) foreign_->onForeign(*this, frame);
+}
+
+// They send each rest frame three times, and what a bus has kept of them comes once it carries frames again.
+// A program that commands 0 goes on and on.
+bool fdCANbus::stops(const CanFrame& frame) noexcept {
+  constexpr int kMostASecond = 64;
+  if (!frame.sent_here || !isRest(frame)) return false;
+  if (frame.received - stops_since_ >= std::chrono::seconds{1}) {
+    stops_since_ = frame.received;
+    stops_ = 0;
+  }
+  return ++stops_ <= kMostASecond;
 }
 
 bool fdCANbus::isRest(const CanFrame& frame) const noexcept {

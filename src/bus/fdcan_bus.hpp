@@ -123,6 +123,8 @@ class fdCANbus {
   /// A frame that was not accepted is counted, and told to the foreign listener.
   [[gnu::noinline]] void putAside(const CanFrame& frame, FrameVerdict verdict, bool unmatched) noexcept;
   [[nodiscard]] bool isCommandId(CanId id) const noexcept;
+  /// It is a rest frame of rc10-guard or rc10-stop.
+  [[nodiscard]] bool stops(const CanFrame& frame) noexcept;
   bool append(const CanFrame& frame, std::optional<std::size_t> packer) noexcept;
   template <typename Pack>
   void packAll(Pack pack) noexcept;
@@ -140,6 +142,8 @@ class fdCANbus {
   ForeignListener* foreign_ = nullptr;
   BusCounters counters_;
   ForeignFrame last_foreign_;
+  MonotonicTime stops_since_{};  // rest frames of rc10-guard and rc10-stop, counted for a second
+  int stops_ = 0;
   BusHealth health_;
   std::unique_ptr<SendBatch> batch_;
 };

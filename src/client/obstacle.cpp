@@ -26,6 +26,13 @@ std::string obstacle(const link::State& state, const std::string& name, const li
   }
 }
 
+bool leavesActive(const link::Event& event) {
+  const auto change = event.text.view();
+  return EventCode{event.code} == EventCode::kMotorStatus &&
+         (change.starts_with("ACTIVE -> ") ||
+          (change.starts_with("ENABLING -> ") && !change.starts_with("ENABLING -> ACTIVE")));
+}
+
 std::string refusalText(const link::Event& event, std::string_view motor, std::string_view client) {
   const auto code = EventCode{event.code};
   const bool of_motor = code == EventCode::kSetpointSkipped || code == EventCode::kNotOwner;

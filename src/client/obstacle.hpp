@@ -11,6 +11,9 @@ namespace rc10::client {
 [[nodiscard]] std::string obstacle(const link::State& state, const std::string& name,
                                    const link::MotorState& motor);
 
+/// A motor ceases to obey: it was ACTIVE, or about to be.
+[[nodiscard]] bool leavesActive(const link::Event& event);
+
 /// Text of an event that tells why targets of the client for the motor do not act; empty: another event.
 [[nodiscard]] std::string refusalText(const link::Event& event, std::string_view motor,
                                       std::string_view client);

@@ -68,11 +68,11 @@ void GuardServer::step(std::span<const pollfd> deaths, std::vector<std::string>&
   for (std::size_t i = 0; i < robots_.size(); ++i) {
     if (auto line = robots_[i].step(happened(deaths[i])); !line.empty()) news.push_back(std::move(line));
   }
-  for (auto& old : robots_) {
-    const bool replaced = std::any_of(robots_.begin(), robots_.end(), [&old](const auto& other) {
-      return &other != &old && other.robot() == old.robot() && other.ticks() && other.deathDescriptor() >= 0;
-    });
-    if (replaced && old.deathDescriptor() < 0) old.handOver();
+  for (auto& dead : robots_) {
+    if (dead.deathDescriptor() >= 0) continue;
+    for (const auto& living : robots_) {
+      if (living.deathDescriptor() >= 0 && living.ticks()) dead.handOver(living);
+    }
   }
   std::erase_if(robots_, [](const auto& robot) { return robot.over(); });
 }

@@ -39,6 +39,14 @@ WatchedRobot::WatchedRobot(std::string robot, std::uint32_t standstill_ms, link:
       process_(std::move(process)),
       buses_(std::move(buses)) {}
 
+void WatchedRobot::handOver(const WatchedRobot& to) noexcept {
+  std::erase_if(buses_, [&to](const BusRest& ours) {
+    return std::any_of(to.buses_.begin(), to.buses_.end(),
+                       [&ours](const BusRest& theirs) { return theirs.interface() == ours.interface(); });
+  });
+  over_ = buses_.empty();
+}
+
 std::string WatchedRobot::step(bool ended) {
   if (over_) return {};
   page_->beats.fetch_add(1, std::memory_order_relaxed);
@@ -46,11 +54,15 @@ std::string WatchedRobot::step(bool ended) {
   dead_ = dead_ || ended;
   // Read after the death: what rc10d wrote before it counts.
   const auto ticks = page_->ticks.load(std::memory_order_acquire);
-  if (dead_ && !resting_ && (ticks == 0 || page_->ended.load(std::memory_order_acquire))) {
+  const bool at_rest = page_->ended.load(std::memory_order_acquire);
+  if (dead_ && (at_rest || (!resting_ && ticks == 0))) {
     over_ = true;
     return {};
   }
-  if (page_->ended.load(std::memory_order_acquire)) return {};
+  if (at_rest) {
+    resting_ = false;
+    return {};
+  }
   const bool still = standstill_.step(ticks);
   // It may have gone on for a frame since it was told to rest.
   if (dead_ && (!resting_ || dies)) return begin("rc10d has died");

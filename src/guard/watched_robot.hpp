@@ -29,9 +29,10 @@ class WatchedRobot {
   [[nodiscard]] bool rests() const noexcept { return resting_; }
 
   [[nodiscard]] const std::string& robot() const noexcept { return robot_; }
-  /// Another rc10d of this robot has commanded drives: they are its own now.
+  /// It has commanded drives.
   [[nodiscard]] bool ticks() const noexcept { return page_->ticks.load(std::memory_order_relaxed) > 0; }
-  void handOver() noexcept { over_ = true; }
+  /// Leaves the drives on the interfaces of another rc10d, which commands them now, to that.
+  void handOver(const WatchedRobot& to) noexcept;
   /// Readable when rc10d has died; -1 once that is known.
   [[nodiscard]] int deathDescriptor() const noexcept { return dead_ ? -1 : process_.get(); }
 

@@ -31,7 +31,9 @@ namespace {
   const auto [mode, status] = ExtraPair<ControlMode, MotorStatus>::from(extra);
   const auto text = "setpoint " + std::string(toString(mode)) + " skipped: ";
   switch (SkipReason{reason}) {
-    case SkipReason::kNotActive: return text + "the motor is " + toString(status) + ", not ACTIVE";
+    case SkipReason::kNotActive:
+      if (status == MotorStatus::kActive) return text + "it was sent before the motor was enabled";
+      return text + "the motor is " + toString(status) + ", not ACTIVE";
     case SkipReason::kNoReference:
       return text + "the angle has no reference; set it with `zero` or `zero: power_on`";
     case SkipReason::kFirstStep:

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <optional>
 #include <string>
+#include <utility>
 
 #include "app/s_curve_profile.hpp"
 #include "app/target.hpp"
@@ -267,7 +268,7 @@ class Joint : public Module_Base {
 
   void update(const Tick& tick, ModuleRobot& robot) noexcept override {
     const auto& feedback = robot.feedback(motor_);
-    const bool home_asked = homes_ && homeRises(tick);
+    const bool home_asked = homes_ && homeRises(tick, robot);
     if (!robot.obeys(motor_)) {
       if (home_asked || state_ == State::kHoming) robot.report(kCannotHome);
       idle();
@@ -321,17 +322,22 @@ class Joint : public Module_Base {
     move_ = Move::kNone;
   }
 
-  /// A message asks for it and the last one did not. A gap in the stream of a client is no fall: it would
-  /// home anew after each.
-  [[nodiscard]] bool homeRises(const Tick& tick) noexcept {
+  /// A message asks for it and the last one of the same client did not. Neither a gap in the stream of a
+  /// client is a fall nor what another said meanwhile: it would home anew after each.
+  [[nodiscard]] bool homeRises(const Tick& tick, ModuleRobot& robot) noexcept {
     if (!commanded()) {
       if (tick.now - heard_ >= HeldBack::kLetGo) home_is_high_ = false;
       return false;
     }
+    const bool taken_over =
+        std::exchange(counted_for_, senderCount()) != senderCount() && tick.now - heard_ < HeldBack::kLetGo;
     heard_ = tick.now;
-    const bool was_high = home_is_high_;
-    home_is_high_ = input(kHome) >= 0.5;
-    return home_is_high_ && !was_high;
+    const bool was_high = std::exchange(home_is_high_, input(kHome) >= 0.5);
+    if (taken_over && (home_is_high_ || state_ == State::kHoming)) {
+      robot.report(kCannotHome);
+      if (state_ == State::kHoming) idle();
+    }
+    return home_is_high_ && !was_high && !taken_over;
   }
 
   // The reference of its angle is in doubt, and a stop may lie beyond the limits that follow from it.
@@ -344,7 +350,7 @@ class Joint : public Module_Base {
   }
 
   void stepHoming(const MotorFeedback& feedback, const Tick& tick, ModuleRobot& robot) noexcept {
-    // The client that asked has to stay. When it is heard again, homing begins anew.
+    // The client that asked has to stay. When it is heard again, homing begins anew. (Another: homeRises().)
     if (!commanded()) {
       home_is_high_ = false;
       return idle();
@@ -484,7 +490,8 @@ class Joint : public Module_Base {
   State state_ = State::kIdle;
   Move move_ = Move::kNone;
   bool home_is_high_ = false;
-  MonotonicTime heard_{};  ///< Last tick in which somebody commanded it.
+  std::uint32_t counted_for_ = 0;  ///< senderCount() of home_is_high_.
+  MonotonicTime heard_{};          ///< Last tick in which somebody commanded it.
   bool zero_asked_ = false;
   double target_deg_ = 0.0;
   std::optional<MonotonicTime> beyond_;  ///< Last target that was out of reach.

@@ -153,7 +153,7 @@ class Remote : public Module_Base {
         channels_(std::move(channels)),
         values_(channels_->names().size(), 0.0),
         was_active_(motor_count, false),
-        to_enable_(motor_count) {
+        some_(motor_count) {
     for (const auto& row : own.rows("constants"))
       constants_.push_back({row.text("to"), row.number("value"), {}});
   }
@@ -216,12 +216,15 @@ class Remote : public Module_Base {
     robot.report(kDisabled);
   }
 
-  [[nodiscard]] bool anyOn(const ModuleRobot& robot) const noexcept {
+  // What is not on may be held by an e-stop or for its group: it stays so until it is enabled again.
+  void disableWhatIsOn(ModuleRobot& robot) noexcept {
+    std::size_t on = 0;
     for (std::size_t motor = 0; motor < was_active_.size(); ++motor) {
       const auto status = robot.status(motor);
-      if (status == MotorStatus::kActive || status == MotorStatus::kEnabling) return true;
+      if (status == MotorStatus::kActive || status == MotorStatus::kEnabling) some_[on++] = motor;
     }
-    return false;
+    if (on > 0) robot.ask(RobotRequest::kDisable, std::span{some_}.first(on));
+    robot.askAll(RobotRequest::kDisableUnasked);
   }
 
   // Only a switch that was seen down can go up: one that is up when the robot starts enables nothing.
@@ -229,8 +232,7 @@ class Remote : public Module_Base {
     if (!arm_channel_) return;
     const bool up = values_[*arm_channel_] > arm_above_;
     if (!up) {
-      // In an e-stop, and after it, nothing is on: what is held stays so until it is enabled again.
-      if (armed_) robot.askAll(anyOn(robot) ? RobotRequest::kDisable : RobotRequest::kDisableUnasked);
+      if (armed_) disableWhatIsOn(robot);
       armed_ = false;
       switch_known_ = true;
     } else if (switch_known_ && !armed_) {
@@ -254,10 +256,10 @@ class Remote : public Module_Base {
     for (std::size_t motor = 0; motor < was_active_.size(); ++motor) {
       if (was_active_[motor]) continue;
       if (robot.status(motor) == MotorStatus::kFault) robot.ask(RobotRequest::kClear, motor);
-      if (robot.status(motor) == MotorStatus::kReady) to_enable_[ready++] = motor;
+      if (robot.status(motor) == MotorStatus::kReady) some_[ready++] = motor;
     }
     // At once: some are enabled together or not at all.
-    if (ready > 0) robot.ask(RobotRequest::kEnable, std::span{to_enable_}.first(ready));
+    if (ready > 0) robot.ask(RobotRequest::kEnable, std::span{some_}.first(ready));
   }
 
   void command(ModuleRobot& robot) const noexcept {
@@ -282,8 +284,8 @@ class Remote : public Module_Base {
   std::vector<Constant> constants_;
   std::unique_ptr<RemoteChannels> channels_;
   std::vector<double> values_;
-  std::vector<bool> was_active_;        ///< Motors that were ACTIVE since the switch went up.
-  std::vector<std::size_t> to_enable_;  ///< Room for the motors of one request.
+  std::vector<bool> was_active_;   ///< Motors that were ACTIVE since the switch went up.
+  std::vector<std::size_t> some_;  ///< Room for the motors of one request.
 
   int was_heard_ = -1;  ///< -1: never.
   bool armed_ = false;

@@ -80,6 +80,20 @@ TEST_F(WatchedRobotTest, ADeathAfterAnOrderlyEndIsNone) {
   EXPECT_FALSE(page->acted.load());
 }
 
+TEST_F(WatchedRobotTest, OneThatGoesOnAndEndsInOrderWithinAStepIsOver) {
+  auto robot = watched();
+  page->ticks.store(1);
+  for (int step = 0; step < 6; ++step) (void)robot.step(dead);
+  ASSERT_TRUE(robot.rests());
+  page->ticks.store(5);
+  page->ended.store(true);
+  EXPECT_THAT(robot.step(dead), IsEmpty());
+  EXPECT_FALSE(robot.rests());
+  kill();
+  EXPECT_THAT(robot.step(dead), IsEmpty());
+  EXPECT_TRUE(robot.over());
+}
+
 TEST_F(WatchedRobotTest, ADeathBeforeTheFirstTickFindsNothingToRest) {
   auto robot = watched();
   kill();

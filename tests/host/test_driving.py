@@ -115,13 +115,44 @@ def test_a_set_that_its_computer_holds_up_goes_on(daemon: Daemon) -> None:
         daemon.wait_motor("wheel", turning(60), "turns at 60 rpm")
         setting.signal(signal.SIGSTOP)
         held_up = daemon.state()["tick"]
-        daemon.wait_state(lambda state: state["tick"] > held_up + 700, "its target has lapsed")
+        daemon.wait_state(lambda state: state["tick"] > held_up + 300, "its target has lapsed")
         assert motor_of(daemon.state(), "wheel")["owner"] == ""
         setting.signal(signal.SIGCONT)
         daemon.wait_motor("wheel", turning(60), "turns again")
         assert setting.running
         setting.signal(signal.SIGINT)
         assert setting.wait() == 0
+
+
+def test_a_set_that_was_paused_for_long_begins_nothing_anew(daemon: Daemon) -> None:
+    daemon.must("enable", "wheel")
+    with daemon.drive("set", "wheel", "velocity", "60", "--for", "60s") as setting:
+        daemon.wait_motor("wheel", turning(60), "turns at 60 rpm")
+        setting.signal(signal.SIGSTOP)
+        paused = daemon.state()["tick"]
+        daemon.wait_state(lambda state: state["tick"] > paused + 2500, "2.5 s")
+        setting.signal(signal.SIGCONT)
+        assert setting.wait() == 1
+        assert "held up for more than 2 s" in setting.output
+    assert without_torque(motor_of(daemon.state(), "wheel"))
+
+
+def test_a_set_does_not_go_on_with_a_motor_that_was_stopped_and_enabled_meanwhile(
+    daemon: Daemon,
+) -> None:
+    daemon.must("enable", "wheel")
+    with daemon.drive("set", "wheel", "velocity", "60", "--for", "60s") as setting:
+        daemon.wait_motor("wheel", turning(60), "turns at 60 rpm")
+        setting.signal(signal.SIGSTOP)
+        daemon.must("estop")
+        daemon.wait_motor("wheel", turning(0, 1.0), "stands")
+        daemon.must("clear")
+        daemon.must("enable", "wheel")
+        setting.signal(signal.SIGCONT)
+        assert setting.wait() == 1
+    after = daemon.state()
+    assert motor_of(after, "wheel")["status"] == "ACTIVE"
+    assert without_torque(motor_of(after, "wheel"))
 
 
 def test_one_set_after_another_disturbs_neither(daemon: Daemon) -> None:

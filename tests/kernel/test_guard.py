@@ -202,6 +202,28 @@ def test_the_next_rc10d_starts_while_the_guard_still_tries() -> None:
             assert second.stop() == 0
 
 
+def test_an_rc10d_of_another_name_gets_no_rest_of_the_one_before(tmp_path: Path) -> None:
+    other = tmp_path / "other.yaml"
+    other.write_text(
+        "robot: other\nrealtime: preferred\nbuses:\n  - name: turret\n    interface: vcan0\n"
+        "    motors:\n      - {name: yaw, model: GM6020, id: 5}\n"
+    )
+    with fakes(), daemon() as process:
+        process.wait_line("left: OFFLINE -> READY", 5.0)
+        run("ip", "link", "set", "vcan0", "down")
+        process.signal(signal.SIGKILL)
+        process.wait(5.0)
+        with daemon(other) as second:
+            second.wait_line("vcan0 is down", 5.0)
+            with Candump("vcan0") as bus:
+                run("ip", "link", "set", "vcan0", "up")
+                second.wait_line("yaw: OFFLINE -> READY", 5.0)
+                time.sleep(0.2)
+                bus.stop()
+            assert commands(bus.frames(), C6XX_COMMAND) == []
+            assert second.stop() == 0
+
+
 def test_an_interface_that_returns_still_gets_its_rest(tmp_path: Path) -> None:
     path = tmp_path / "robot.yaml"
     path.write_text(CONFIG.read_text().replace("vcan0", "plug0"))

@@ -95,6 +95,33 @@ TEST_F(HomingJoint, IsHomedAgainOnceHomeHasFallenOrNobodyCommandsItForASecond) {
   EXPECT_EQ(state(), kHoming);
 }
 
+TEST_F(HomingJoint, AHomingEndsWhenAnotherClientTakesTheJointOver) {
+  buildHoming();
+  ask(kNoSignal, 1.0);
+  run(200);
+  module_->changeSender();
+  ask(20.0);
+  run(1);
+  EXPECT_EQ(state(), kIdle);
+  EXPECT_THAT(events_, ElementsAre(8U)) << "homing has ended";
+  ask(20.0, 1.0);
+  run(1);
+  EXPECT_EQ(state(), kHoming) << "asked for by that one";
+}
+
+TEST_F(HomingJoint, WhatAnotherSaidMeanwhileMakesNoNewHomingOfAStreamThatGoesOn) {
+  buildHoming();
+  homeOnce();
+  module_->changeSender();
+  ask(-10.0);
+  run(5);
+  module_->changeSender();
+  ask(-10.0, 1.0);
+  run(10);
+  EXPECT_EQ(state(), kFollowing);
+  EXPECT_TRUE(robot_.motor(0).feedback.zeroed);
+}
+
 TEST_F(HomingJoint, AHomingThatAGapInterruptsBeginsAnewAndOneThatFailedDoesNot) {
   buildHoming();
   ask(kNoSignal, 1.0);

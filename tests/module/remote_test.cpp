@@ -1,6 +1,7 @@
 #include "module/remote.hpp"
 
 #include <array>
+#include <span>
 
 #include <gmock/gmock.h>
 
@@ -104,7 +105,7 @@ TEST_F(Remote, ASwitchThatIsUpAtTheStartEnablesNothing) {
   EXPECT_THAT(robot_.sent(), IsEmpty());
 }
 
-TEST_F(Remote, TheSwitchGoingUpEnablesWhatIsReadyAndDownDisablesAll) {
+TEST_F(Remote, TheSwitchGoingUpEnablesWhatIsReadyAndDownDisablesWhatIsOn) {
   build();
   for (auto& motor : robot_.motors()) motor.status = MotorStatus::kReady;
   arm();
@@ -115,7 +116,9 @@ TEST_F(Remote, TheSwitchGoingUpEnablesWhatIsReadyAndDownDisablesAll) {
   armSwitch(Dr16Input::Switch::kMiddle);
   ASSERT_FALSE(asked_.empty());
   EXPECT_EQ(asked_.front().request, RobotRequest::kDisable);
-  EXPECT_FALSE(asked_.front().motor.has_value()) << "all";
+  EXPECT_EQ(asked_.front().motor, 0U);
+  for (const auto& other : std::span{asked_}.subspan(1))
+    EXPECT_EQ(other.request, RobotRequest::kDisableUnasked) << "what is not on may be held";
 }
 
 TEST_F(Remote, TheSwitchGoingDownWhereNothingIsOnLetsGoOfNothing) {

@@ -102,6 +102,15 @@ TEST(CubemarsServo, AtTheEndOfThePositionFieldTheReferenceIsLostAndAnAngleBrakes
   EXPECT_EQ(bench.tick(FrameKind::kHold).front().id, (CanId{0x205, true}));
 }
 
+TEST(CubemarsServo, BeyondThePositionFieldOneWithoutABrakeDampsWhatItHolds) {
+  Servo bench(servo({{"brake_current_a", 0.0}}));
+  (void)bench.feedServo(3199.0);
+  (void)bench.feedServo(3200.0);
+  const auto frame = bench.tick(FrameKind::kHold).front();
+  EXPECT_EQ(frame.id, (CanId{0x005, true}));
+  EXPECT_EQ(int32Of(frame), 0);
+}
+
 TEST(CubemarsServo, AGearBehindTheDriveIsInEveryNumber) {
   auto settings = servo();
   settings.gear_ratio = 18.0;

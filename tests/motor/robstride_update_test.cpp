@@ -1,4 +1,6 @@
+#include <bit>
 #include <cmath>
+#include <cstdint>
 #include <limits>
 #include <numbers>
 #include <random>
@@ -237,6 +239,25 @@ TEST(RobStrideMotor, TheVelocityModeHasNoCurrentUntilThereIsATarget) {
   EXPECT_NEAR(readLittleEndian<float>(frames[0].payload(), 4), 60.0 / kRpmPerRadPerS, 1e-4);
   EXPECT_FLOAT_EQ(readLittleEndian<float>(frames[1].payload(), 4), 15.5F);
   EXPECT_EQ(typeOf(bench.tick()[0]), 18U);
+}
+
+TEST(RobStrideMotor, NoAngleIsFollowedByADriveThatCountsFartherThanItCanBeTold) {
+  for (const float beyond_rad : {1.2e5F, std::numeric_limits<float>::quiet_NaN()}) {
+    Bench bench(controlled("position"));
+    bench.run(1.0);
+    bench.tick(FrameKind::kEnable);
+    bench.parameter(robstride::parameter::kPosition, std::bit_cast<std::uint32_t>(beyond_rad));
+    bench.run(1.0);
+    bench.tick(FrameKind::kHold);
+    EXPECT_EQ(bench.motor.limits() & kLimitAngle, kLimitAngle);
+  }
+  Bench bench(controlled("position"));
+  bench.run(1.0);
+  bench.tick(FrameKind::kEnable);
+  bench.parameter(robstride::parameter::kPosition, std::bit_cast<std::uint32_t>(1.0F));
+  bench.run(1.0);
+  bench.tick(FrameKind::kHold);
+  EXPECT_EQ(bench.motor.limits() & kLimitAngle, 0U);
 }
 
 TEST(RobStrideMotor, ThePositionModeGoesBeyondTheScaleOfFeedback) {

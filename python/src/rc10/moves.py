@@ -26,6 +26,11 @@ _MOTOR_STATUS = 100
 _LEFT_ACTIVE = re.compile(r"(ACTIVE|ENABLING) -> (?!ACTIVE)")
 
 
+def leaves_active(event: Event) -> bool:
+    """Whether its motor ceases to obey."""
+    return event.code == _MOTOR_STATUS and _LEFT_ACTIVE.match(event.text) is not None
+
+
 class MoveOutcome(Enum):
     """Outcome of a move."""
 
@@ -108,8 +113,7 @@ class Move:
         Disabled and enabled between two states, it would be driven on: no state shows that.
         """
         self._order.on_event(event)
-        left = event.code == _MOTOR_STATUS and _LEFT_ACTIVE.match(event.text)
-        if left and event.source == self.motor and event.mono_us > self.shown_us:
+        if leaves_active(event) and event.source == self.motor and event.mono_us > self.shown_us:
             self.fail(f"{event.source}: {event.text}")
 
     def on_state(self, state: RobotState) -> None:

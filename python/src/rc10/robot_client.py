@@ -23,7 +23,7 @@ from rc10.inbox import Inbox
 from rc10.lcm_types.command_t import command_t
 from rc10.lcm_types.setpoint_t import setpoint_t
 from rc10.link import MULTICAST_GROUP, ROUTE_COMMAND, Link
-from rc10.moves import Move
+from rc10.moves import Move, leaves_active
 from rc10.orders import obstacle, without_reference
 from rc10.printable import printable
 from rc10.recorder import Recorder
@@ -438,6 +438,8 @@ class RobotClient:
             if event.text not in self._told:
                 self._told.add(event.text)
                 _log.warning("rc10d says: %s", printable(f"{event.source}: {event.text}"))
+        if leaves_active(event):  # its last target would end what holds it now
+            self._in_force.pop(event.source, None)
         for move in self._moves.values():
             move.on_event(event)
 

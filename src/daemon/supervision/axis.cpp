@@ -337,7 +337,7 @@ std::optional<MotorStatus> Axis::handle(MotorEvent event, RobotStatus robot, con
   const bool stopped = isOn(before) && !isOn(status_);
   if (stopped || status_ == MotorStatus::kFault) stop_ = stop;
   if (status_ != MotorStatus::kActive) dropTarget();
-  const bool stays = event == MotorEvent::kDisableUnasked && fallback_.carries();
+  const bool stays = event == MotorEvent::kDisableUnasked && fallback_.acts();
   const bool rests = (before == MotorStatus::kActive || rests_while_held) && status_ == MotorStatus::kReady;
   if (rests)
     rested_ = stays                                  ? Rested::kStayed
@@ -383,14 +383,15 @@ void Axis::clearFault(const Tick& tick) noexcept {
 
 std::optional<SkipReason> Axis::follow(const Target& target, const Lease::Holder& sender,
                                        const Lease::Term& term) noexcept {
+  const bool late = term.received < enabling_since_;  // sent before it was enabled
   if (target.mode == ControlMode::kCoast) {
+    if (late) return std::nullopt;
     // Letting go of a motor that is not held is no mistake: clients do it when they leave. While it is valid
     // it keeps others of a lower priority from moving the motor, as every setpoint does.
     motor_.clearTarget();
     if (status_ == MotorStatus::kActive) fallback_.end();
   } else {
-    // Sent before it was enabled, and late on its way.
-    if (term.received < enabling_since_) return SkipReason::kNotActive;
+    if (late) return SkipReason::kNotActive;
     if (const auto reason = whyNotNow(target)) return reason;
     if (!motor_.setTarget(target)) return SkipReason::kRefused;
     fallback_.end();

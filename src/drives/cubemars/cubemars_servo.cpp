@@ -114,7 +114,7 @@ void CubemarsServo::followVelocity(double wanted_rpm) noexcept {
 // one it plans its way to the target.
 void CubemarsServo::followAngle(double total_angle_deg) noexcept {
   if (positionCutOff()) {  // any target would be a jump back
-    brake();
+    brake_a_ > 0.0 ? brake() : damp();
     limits_ |= kLimitAngle;
     return;
   }

@@ -218,6 +218,14 @@ void RobStride_Motor::doubtAngles() noexcept {
   loseReference();
 }
 
+// The drive's own count of its whole turns.
+void RobStride_Motor::takePosition(double rad) noexcept {
+  if (!(std::abs(rad) < kFarthestCountedRad)) return doubtAngles();
+  if (feedback_.samples == 0) return;
+  // Rounded to whole scales: the two were read at different moments.
+  scale_offset_rad_ = wraps() ? kScaleRad * std::round((rad - position_rad_) / kScaleRad) : 0.0;
+}
+
 void RobStride_Motor::takeParameter(const CanFrame& frame) noexcept {
   const auto index = readLittleEndian<std::uint16_t>(frame.payload(), 0);
   const auto bits = readLittleEndian<std::uint32_t>(frame.payload(), 4);
@@ -226,11 +234,7 @@ void RobStride_Motor::takeParameter(const CanFrame& frame) noexcept {
   if (accepted && index == parameter::kSupplyVoltage && value >= 0.0 && value < 1000.0) {
     feedback_.voltage_v = static_cast<float>(value);
   }
-  if (accepted && index == parameter::kPosition && std::abs(value) < kFarthestCountedRad &&
-      feedback_.samples > 0) {
-    // Rounded to whole scales: the two were read at different moments.
-    scale_offset_rad_ = wraps() ? kScaleRad * std::round((value - position_rad_) / kScaleRad) : 0.0;
-  }
+  if (accepted && index == parameter::kPosition) takePosition(value);
   enabling_.onParameter(index, accepted, bits);
 }
 

@@ -68,6 +68,7 @@ class RobStride_Motor : public SoloMotor {
   void takeParameter(const CanFrame& frame) noexcept;
   void trackPosition(const robstride::Feedback& seen, MonotonicTime received) noexcept;
   void doubtAngles() noexcept;
+  void takePosition(double rad) noexcept;
 
   void followOperation(const Target& target) noexcept;
   void followCurrent(const Target& target) noexcept;

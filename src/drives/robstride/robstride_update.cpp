@@ -168,13 +168,15 @@ void RobStride_Motor::followAngle(const Target& target) noexcept {
   if (target.mode == ControlMode::kTotalAngle) wanted_deg = target.value;
   if (feedback_.samples == 0) return;
   if (target.mode == ControlMode::kBrake) wanted_deg = brakeDeg();
-  if (follows && angles_in_doubt_) limits_ |= kLimitAngle;
+  const double here_rad = positionRadFor(feedback_.total_angle_deg);
+  // From beyond what it can be told every place lies far back.
+  const bool unreachable = angles_in_doubt_ || !(std::abs(here_rad) <= kFarthestReferenceRad);
+  if (follows && unreachable) limits_ |= kLimitAngle;
   const double position_rad = positionRadFor(wanted_deg);
   const double reachable = finiteOr0(std::clamp(position_rad, -kFarthestReferenceRad, kFarthestReferenceRad));
   if (reachable != position_rad) limits_ |= kLimitAngle;
   reference_.value = static_cast<float>(reachable);
-  reference_.current_limit_a = follows && !angles_in_doubt_ ? effortLimit() : 0.0F;
-  const double here_rad = positionRadFor(feedback_.total_angle_deg);
+  reference_.current_limit_a = follows && !unreachable ? effortLimit() : 0.0F;
   setCommand(reachable == position_rad
                  ? wanted_deg
                  : feedback_.total_angle_deg + toOutput((reachable - here_rad) * kDegPerRad),

@@ -89,14 +89,10 @@ class Fallback {
   [[nodiscard]] bool resistsFor(Duration time, MonotonicTime now) const noexcept {
     return acts() && kind_ != FrameKind::kCommand && now - begun_ >= time;
   }
-  /// It holds or brakes, or damps what was held: without it a load may fall.
-  [[nodiscard]] bool carries() const noexcept {
-    return kind_ == FrameKind::kHold || kind_ == FrameKind::kBrake ||
-           (kind_ == FrameKind::kDamp && (bounded_ || estop_));
-  }
-  /// Its motor is disabled: what ends in damp ends at standstill.
+  /// Its motor is disabled though nobody asked for it: a load must not fall, so it acts on. What damps, or
+  /// ends in damp, ends at standstill.
   void disabled() noexcept {
-    if (bounded_) until_ = Until::kStandstill;
+    if (bounded_ || (kind_ == FrameKind::kDamp && !estop_)) until_ = Until::kStandstill;
   }
   /// Kind of frame for the drive; kRest while no fallback is in force.
   [[nodiscard]] FrameKind kind() const noexcept { return kind_; }

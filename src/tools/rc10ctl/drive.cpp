@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cstdio>
+#include <optional>
 #include <string>
 #include <utility>
 
@@ -21,6 +22,8 @@ namespace {
 
 using std::chrono::steady_clock;
 
+// After a longer pause (Ctrl-Z, a terminal that is held) nobody expects that the motor goes on.
+constexpr Duration kLongestPause = std::chrono::seconds{2};
 // A lease that is let go ends within a tick or two; one that is not, within its validity.
 constexpr Duration kReleasing = std::chrono::milliseconds{2 * kValidityMs};
 // States come often enough to show it within this time, though not soon enough to rely on it.
@@ -80,9 +83,9 @@ class Driver {
     if (const auto there = feed_.awaitState(); !there) return complain(there.error(), ExitCode::kFailed);
     if (const auto why = trouble(); !why.empty()) return complain({why}, ExitCode::kFailed);
     const std::string why = repeat();
-    // Whatever happened. Best effort, as the setpoint lapses by itself too.
-    if (order_.then == Then::kCoast) letGo();
-    if (order_.then == Then::kTimeout) lapse();
+    // Best effort, as the setpoint lapses by itself too.
+    if (!over_ && order_.then == Then::kCoast) letGo();
+    if (!over_ && order_.then == Then::kTimeout) lapse();
     if (!why.empty()) return complain({why}, ExitCode::kFailed);
     if (order_.then != Then::kDisable)
       std::printf("%s %s\n", name_.c_str(),
@@ -97,6 +100,11 @@ class Driver {
     const auto start = steady_clock::now();
     auto next = start;
     while (!interrupted()) {
+      if (!feed_.pump()) return rc10dEnded().message;
+      showEvents(progress);
+      if (auto why = ended(); !why.empty()) return why;
+      if (auto why = refused(); !why.empty()) return why;
+      progress.show(line(), false);
       const auto now = steady_clock::now();
       if (now - start >= order_.time) break;
       if (now >= next) {
@@ -109,19 +117,26 @@ class Driver {
         }
         if (!send(setpoint_)) return rc10dEnded().message;
         unheeded_.sent();
+        sent_ = now;
         next = std::max(next + kSendPeriod, now);
       }
       waitReadable(rc10d_, std::min(next, start + order_.time) - steady_clock::now());
-      if (!feed_.pump()) return rc10dEnded().message;
-      showEvents(progress);
-      if (auto why = trouble(); !why.empty()) return why;
-      if (auto why = refused(); !why.empty()) return why;
-      progress.show(line(), false);
     }
     progress.show(line(), true);
     // Too short a time to be sure about it otherwise.
     const bool told = !refusal_.empty() || steady_clock::now() - start >= kLongEnough;
     return motor() != nullptr && !interrupted() && !taken_ && told ? whyNotTaken() : std::string{};
+  }
+
+  // Reason why its targets are over: nothing may bring the last one back, not even a last message. A motor
+  // that was stopped and enabled between two states is known by its events.
+  std::string ended() {
+    std::string why = trouble();
+    if (why.empty()) why = stopped_;
+    if (why.empty() && sent_ && steady_clock::now() - *sent_ > kLongestPause)
+      why = "rc10ctl was held up for more than 2 s: the target has ended, and is not sent again";
+    over_ = !why.empty();
+    return why;
   }
 
   // Coasts, and then gives the motor back: while a target is valid, a coasting one too, nobody else of our
@@ -206,6 +221,8 @@ class Driver {
   void showEvents(Progress& progress) {
     for (const auto& event : feed_.takeEvents()) {
       if (order_.hear && event.source.view() == name_) order_.hear(event);
+      if (sent_ && event.source.view() == name_ && client::leavesActive(event))
+        stopped_ = "motor '" + name_ + "': " + printable(event.text.view());
       // refused() reports it in the end, if the target is not in force by then.
       if (auto why = client::refusalText(event, name_, kClientName); !why.empty()) {
         refusal_ = std::move(why);
@@ -239,7 +256,10 @@ class Driver {
   link::Setpoint setpoint_;  // as steered
   Target sent_before_;       // the one before the last, which the state may still show
   std::string refusal_;      // last refusal by rc10d of a target, in words
+  std::string stopped_;      // event by which it ceased to obey
   bool taken_ = false;       // has been in force
+  bool over_ = false;        // its targets are
+  std::optional<steady_clock::time_point> sent_;
   Unheeded unheeded_;
   link::Command command_;
 };

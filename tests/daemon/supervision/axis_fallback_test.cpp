@@ -54,6 +54,9 @@ class FallbackTest : public ::testing::Test {
   std::unique_ptr<VirtualRobot> robot;
 };
 
+const Order kUnaskedDisable{
+    .operation = Operation::kDisable, .motors = MotorSet{}.set(kLeft), .asked = Asked::kUnasked};
+
 // docs/safety.md: "One more `disable` lets go", also when the request to enable was a tick ahead of it.
 TEST_F(FallbackTest, ADisableRightAfterAnEnableLetsGoOfAMotorThatIsHeld) {
   for (int later = 0; later <= 3; ++later) {
@@ -458,6 +461,51 @@ TEST_F(FallbackTest, WhatHoldsOnAfterADisableThatNobodyAskedForEndsWithItsTime) 
   robot->order(Operation::kDisable);
   robot->run(10);
   expectAtRest();  // nothing is left to let go of, and nothing begins
+}
+
+TEST_F(FallbackTest, ADisableThatNobodyAskedForCutsNoRampShort) {
+  start({.on_timeout = FallbackAction::kRamp, .ramp = 2s});
+  robot->run(500);
+  robot->carryOut(kUnaskedDisable);
+  EXPECT_EQ(robot->motor(kLeft).acting, Acting::kRamp);
+  robot->run(1000);
+  EXPECT_LT(rpm(), 60.0F);
+  EXPECT_GT(rpm(), 10.0F);
+  robot->run(1000);
+  expectAtRest();
+}
+
+TEST_F(FallbackTest, ALoadThatSinksDampedIsDampedUntilItLiesAlsoIfNobodyAskedForTheDisable) {
+  start({.on_timeout = FallbackAction::kDamp}, 2.0F);
+  robot->run(500);
+  robot->carryOut(kUnaskedDisable);
+  robot->run(1000);
+  EXPECT_EQ(robot->motor(kLeft).status, MotorStatus::kReady);
+  EXPECT_EQ(robot->motor(kLeft).acting, Acting::kDamp);
+  start({.on_timeout = FallbackAction::kDamp});
+  robot->run(500);
+  robot->carryOut(kUnaskedDisable);
+  robot->run(5000);
+  expectAtRest();  // it stands still
+}
+
+TEST_F(FallbackTest, ACoastFromBeforeItWasEnabledLetsGoOfNothing) {
+  start({.on_timeout = FallbackAction::kHold, .on_estop = FallbackAction::kHold}, 2.0F);
+  const auto before = robot->now();
+  robot->order(Operation::kEstop);
+  robot->run(3000);
+  robot->order(Operation::kClear);
+  enableFor(20);
+  ASSERT_EQ(robot->motor(kLeft).status, MotorStatus::kActive);
+  ASSERT_EQ(robot->motor(kLeft).acting, Acting::kHold);
+  Command late;
+  late.received = before;
+  late.deadline = robot->now() + 1s;
+  late.count = 1;
+  late.setpoints[0] = {static_cast<std::uint16_t>(kLeft), {.mode = ControlMode::kCoast}};
+  ASSERT_TRUE(robot->exchange().commands.push(late));
+  robot->run(10);
+  EXPECT_EQ(robot->motor(kLeft).acting, Acting::kHold);
 }
 
 TEST_F(FallbackTest, AnEstopThatDampsIsNotLetGoByTheEndOfAProgram) {

@@ -224,6 +224,28 @@ TEST_F(BusWatchTest, AForeignSenderIsReportedWithItsIdAndWhereItIs) {
   EXPECT_THAT(describe(events[0]), HasSubstr("(0x2FE) from another program on this computer"));
 }
 
+TEST_F(BusWatchTest, RestOfTheGuardIsNoSecondControllersUnlessItGoesOnAndOn) {
+  CanFrame rest = makeClassicFrame({0x200, false}, std::array<std::uint8_t, 8>{});
+  rest.sent_here = true;
+  const auto receive = [&](int frames) {
+    for (int i = 0; i < frames; ++i) {
+      rest.received = robot.now();
+      ASSERT_TRUE(robot.inboxes()[0].frames.push(rest));
+      tick();
+    }
+  };
+  receive(60);
+  EXPECT_TRUE(foreign().empty());
+  EXPECT_EQ(counters().rx_foreign, 0U);
+  receive(60);
+  EXPECT_FALSE(foreign().empty()) << "a program that commands 0";
+  run(2200);
+  (void)foreign();
+  rest.sent_here = false;
+  receive(1);
+  EXPECT_EQ(foreign().size(), 1U) << "another controller that commands 0";
+}
+
 TEST_F(BusWatchTest, ForeignFramesAreReportedOnceASecondAndAllAreCounted) {
   for (int i = 0; i < 2500; ++i) {
     receiveFrom({0x200, false}, false);

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "config/load_config.hpp"
 #include "daemon/virtual_robot.hpp"
 #include "support/alloc_guard.hpp"
 
@@ -388,6 +389,26 @@ TEST_F(SchedulerTest, StoppingWaitsForEchoesOfTheRestFrames) {
   robot.inboxes()[0].confirmed.fetch_add(10);
   robot.tick();
   EXPECT_TRUE(robot.scheduler().stopped());
+}
+
+TEST(SchedulerStop, DoesNotWaitForTheTurnOfADriveThatIsToldSeldom) {
+  const auto outcome = parseRobotConfig(
+      "robot: kart\nrealtime: preferred\nbuses:\n  - name: bench\n    type: sim\n    motors:\n"
+      "      - {name: wheel, model: VESC, id: 10, pole_pairs: 7, command_divider: 100}\n",
+      "kart.yaml");
+  ASSERT_TRUE(outcome.config) << outcome.errorText();
+  VirtualRobot robot{*outcome.config};
+  robot.run(20);
+  robot.inboxes()[0].echo_reads = 1;
+  const auto echo = [&] { robot.inboxes()[0].confirmed = robot.snapshot().buses[0].counters.tx_watched; };
+  echo();
+  robot.scheduler().beginStop();
+  for (int i = 0; i < 10 && !robot.scheduler().stopped(); ++i) {
+    robot.tick();
+    echo();
+  }
+  EXPECT_TRUE(robot.scheduler().stopped());
+  EXPECT_TRUE(robot.scheduler().restEchoed());
 }
 
 TEST_F(SchedulerTest, TheLastTickTellsTheGuardThatTheEndIsInOrder) {

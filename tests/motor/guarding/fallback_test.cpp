@@ -133,19 +133,22 @@ TEST_F(FallbackTest, TheBrakeOfADriveThatCannotDampDoesNotLetGoOfWhatWasHeld) {
   EXPECT_EQ(after(300ms, true), FrameKind::kRest) << "one that was asked for";
 }
 
-TEST_F(FallbackTest, WhatHoldsOrBrakesOrHasHeldCarries) {
-  EXPECT_FALSE(fallback.carries());
-  const FallbackBound bound{.most = 10s};
-  begin(FallbackAction::kHold, Fallback::Until::kEnded, bound);
-  EXPECT_TRUE(fallback.carries());
-  (void)after(10s);
-  EXPECT_TRUE(fallback.carries()) << "the load sinks";
+TEST_F(FallbackTest, WhatDampsEndsAtStandstillOnceItsMotorIsDisabled) {
+  begin(FallbackAction::kDamp);
+  EXPECT_EQ(after(1h, true), FrameKind::kDamp);
+  fallback.disabled();
+  EXPECT_EQ(after(2h, true), FrameKind::kRest);
+  begin(FallbackAction::kHold, Fallback::Until::kEnded, {.most = 10s});
+  fallback.disabled();
+  EXPECT_EQ(after(9s, true), FrameKind::kHold);
+  EXPECT_EQ(after(10s, true), FrameKind::kDamp) << "its load sinks";
+  EXPECT_EQ(after(11s, true), FrameKind::kRest);
   begin(FallbackAction::kBrake);
-  EXPECT_TRUE(fallback.carries());
-  for (const auto action : {FallbackAction::kDamp, FallbackAction::kRamp, FallbackAction::kCoast}) {
-    begin(action);
-    EXPECT_FALSE(fallback.carries());
-  }
+  fallback.disabled();
+  EXPECT_EQ(after(1h, true), FrameKind::kBrake);
+  begin(FallbackAction::kDamp, Fallback::Until::kEnded, {.most = {}, .estop = true});
+  fallback.disabled();
+  EXPECT_EQ(after(1h, true), FrameKind::kDamp) << "it replaces what held a load";
 }
 
 TEST_F(FallbackTest, AHoldIsBoundAndABrakeIsInAnEstopOfTheRobot) {
