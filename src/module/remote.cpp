@@ -216,7 +216,7 @@ class Remote : public Module_Base {
     robot.report(kDisabled);
   }
 
-  // What is not on may be held by an e-stop or for its group: it stays so until it is enabled again.
+  // A motor that is not on may be held by an e-stop or for its group: it stays so until it is enabled again.
   void disableWhatIsOn(ModuleRobot& robot) noexcept {
     std::size_t on = 0;
     for (std::size_t motor = 0; motor < was_active_.size(); ++motor) {

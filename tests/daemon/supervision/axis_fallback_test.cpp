@@ -4,58 +4,15 @@
 
 #include <gtest/gtest.h>
 
-#include "daemon/virtual_robot.hpp"
+#include "daemon/supervision/fallback_bench.hpp"
 
 namespace rc10::test::axis_fallback_test {
 namespace {
 
 using namespace std::chrono_literals;
+using namespace fallback_bench;
 
-constexpr std::size_t kLeft = 0;
-constexpr Target kVelocity120{.mode = ControlMode::kVelocity, .value = 120.0};
-
-class FallbackTest : public ::testing::Test {
- protected:
-  void start(const FallbackConfig& fallback, float load_torque_nm = 0.0F, const GuardConfig& guard = {}) {
-    auto config = twoWheelsAndYaw();
-    config.buses[0].motors[kLeft].guard = guard;
-    config.buses[0].motors[kLeft].fallback = fallback;
-    config.buses[0].motors[kLeft].shaping.soft_start_s = 0.2F;
-    config.buses[0].motors[kLeft].simulated.load_torque_nm = load_torque_nm;
-    robot = std::make_unique<VirtualRobot>(config);
-    robot->run(5);
-    robot->order(Operation::kEnable);
-    robot->hold(kLeft, kVelocity120, 1000);
-    ASSERT_NEAR(rpm(), 120.0F, 3.0F);
-  }
-  float rpm() { return robot->motor(kLeft).feedback.velocity_rpm; }
-  float currentA() { return robot->motor(kLeft).command_value; }
-  double angleDeg() { return robot->motor(kLeft).feedback.total_angle_deg; }
-  /// Ticks until it stands still.
-  int ticksToStop() {
-    for (int i = 0; i < 20'000; ++i) {
-      robot->tick();
-      if (std::fabs(rpm()) < 2.0F) return i;
-    }
-    return 20'000;
-  }
-
-  void estop() { robot->exchange().estop.store(true); }
-  /// It is asked to be enabled, and so many ticks pass.
-  void enableFor(int ticks) {
-    robot->beginEnabling(MotorSet{}.set(kLeft));
-    robot->run(ticks);
-  }
-  void expectAtRest() {
-    EXPECT_EQ(robot->motor(kLeft).status, MotorStatus::kReady);
-    EXPECT_EQ(robot->motor(kLeft).acting, Acting::kNothing);
-  }
-
-  std::unique_ptr<VirtualRobot> robot;
-};
-
-const Order kUnaskedDisable{
-    .operation = Operation::kDisable, .motors = MotorSet{}.set(kLeft), .asked = Asked::kUnasked};
+class FallbackTest : public FallbackBench {};
 
 // docs/safety.md: "One more `disable` lets go", also when the request to enable was a tick ahead of it.
 TEST_F(FallbackTest, ADisableRightAfterAnEnableLetsGoOfAMotorThatIsHeld) {
@@ -411,84 +368,6 @@ TEST_F(FallbackTest, ARepeatedDisableStopsWhatWasEnabledSince) {
   EXPECT_EQ(robot->motor(kLeft).status, MotorStatus::kReady);
 }
 
-TEST_F(FallbackTest, ADisableThatNobodyAskedForLeavesWhatIsHeldInEachStatus) {
-  Order unasked{.operation = Operation::kDisable, .motors = MotorSet{}.set(kLeft), .asked = Asked::kUnasked};
-  const FallbackConfig config{.on_timeout = FallbackAction::kHold, .on_estop = FallbackAction::kHold};
-  start(config, 2.0F);
-  robot->run(500);  // silence
-  ASSERT_EQ(robot->motor(kLeft).status, MotorStatus::kActive);
-  ASSERT_GT(std::fabs(currentA()), 1.0F);
-  robot->carryOut(unasked);
-  EXPECT_EQ(robot->motor(kLeft).status, MotorStatus::kReady);
-  for (int i = 0; i < 500; ++i) {
-    robot->tick();
-    ASSERT_GT(std::fabs(currentA()), 1.0F) << i;
-  }
-  robot->beginEnabling(MotorSet{}.set(kLeft));
-  robot->tick();
-  ASSERT_EQ(robot->motor(kLeft).status, MotorStatus::kEnabling);
-  robot->carryOut(unasked);
-  EXPECT_EQ(robot->motor(kLeft).status, MotorStatus::kReady);
-  EXPECT_GT(std::fabs(currentA()), 1.0F);
-  robot->order(Operation::kDisable);
-  EXPECT_EQ(currentA(), 0.0F);
-}
-
-TEST_F(FallbackTest, TheFirstDisableThatSomebodyAsksForDoesItsOnDisable) {
-  const Order unasked{
-      .operation = Operation::kDisable, .motors = MotorSet{}.set(kLeft), .asked = Asked::kUnasked};
-  for (const auto timeout : {FallbackAction::kHold, FallbackAction::kCoast}) {
-    start({.on_timeout = timeout, .on_disable = FallbackAction::kBrake}, 2.0F);
-    if (timeout == FallbackAction::kHold) robot->run(500);  // silence
-    robot->carryOut(unasked);
-    robot->run(100);
-    robot->order(Operation::kDisable);
-    EXPECT_EQ(robot->motor(kLeft).acting, Acting::kBrake);
-    robot->order(Operation::kDisable);
-    EXPECT_EQ(robot->motor(kLeft).acting, Acting::kNothing) << "once more";
-  }
-}
-
-TEST_F(FallbackTest, WhatHoldsOnAfterADisableThatNobodyAskedForEndsWithItsTime) {
-  start({.on_timeout = FallbackAction::kHold, .on_disable = FallbackAction::kHold, .hold_max = 1s});
-  robot->run(500);
-  robot->carryOut(
-      {.operation = Operation::kDisable, .motors = MotorSet{}.set(kLeft), .asked = Asked::kUnasked});
-  robot->run(100);
-  EXPECT_EQ(robot->motor(kLeft).acting, Acting::kHold);
-  robot->run(1500);
-  expectAtRest();
-  robot->order(Operation::kDisable);
-  robot->run(10);
-  expectAtRest();  // nothing is left to let go of, and nothing begins
-}
-
-TEST_F(FallbackTest, ADisableThatNobodyAskedForCutsNoRampShort) {
-  start({.on_timeout = FallbackAction::kRamp, .ramp = 2s});
-  robot->run(500);
-  robot->carryOut(kUnaskedDisable);
-  EXPECT_EQ(robot->motor(kLeft).acting, Acting::kRamp);
-  robot->run(1000);
-  EXPECT_LT(rpm(), 60.0F);
-  EXPECT_GT(rpm(), 10.0F);
-  robot->run(1000);
-  expectAtRest();
-}
-
-TEST_F(FallbackTest, ALoadThatSinksDampedIsDampedUntilItLiesAlsoIfNobodyAskedForTheDisable) {
-  start({.on_timeout = FallbackAction::kDamp}, 2.0F);
-  robot->run(500);
-  robot->carryOut(kUnaskedDisable);
-  robot->run(1000);
-  EXPECT_EQ(robot->motor(kLeft).status, MotorStatus::kReady);
-  EXPECT_EQ(robot->motor(kLeft).acting, Acting::kDamp);
-  start({.on_timeout = FallbackAction::kDamp});
-  robot->run(500);
-  robot->carryOut(kUnaskedDisable);
-  robot->run(5000);
-  expectAtRest();  // it stands still
-}
-
 TEST_F(FallbackTest, ACoastFromBeforeItWasEnabledLetsGoOfNothing) {
   start({.on_timeout = FallbackAction::kHold, .on_estop = FallbackAction::kHold}, 2.0F);
   const auto before = robot->now();
@@ -506,25 +385,6 @@ TEST_F(FallbackTest, ACoastFromBeforeItWasEnabledLetsGoOfNothing) {
   ASSERT_TRUE(robot->exchange().commands.push(late));
   robot->run(10);
   EXPECT_EQ(robot->motor(kLeft).acting, Acting::kHold);
-}
-
-TEST_F(FallbackTest, AnEstopThatDampsIsNotLetGoByTheEndOfAProgram) {
-  start({.on_estop = FallbackAction::kDamp});
-  robot->order(Operation::kEstop);
-  robot->run(3000);
-  robot->order(Operation::kClear);
-  enableFor(1);
-  robot->carryOut(
-      {.operation = Operation::kDisable, .motors = MotorSet{}.set(kLeft), .asked = Asked::kUnasked});
-  EXPECT_EQ(robot->motor(kLeft).acting, Acting::kDamp);
-}
-
-TEST_F(FallbackTest, ADisableThatNobodyAskedForStopsWhatMoves) {
-  start({.on_timeout = FallbackAction::kHold}, 2.0F);
-  robot->carryOut(
-      {.operation = Operation::kDisable, .motors = MotorSet{}.set(kLeft), .asked = Asked::kUnasked});
-  EXPECT_EQ(robot->motor(kLeft).status, MotorStatus::kReady);
-  EXPECT_EQ(currentA(), 0.0F) << "its on_disable";
 }
 
 TEST_F(FallbackTest, AMotorThatIsHeldIsNotLetGoWhileItIsEnabled) {
