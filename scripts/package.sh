@@ -48,7 +48,7 @@ if ! (cd "$repo" && umask 022 \
 fi
 # Those of earlier versions go; the other architecture's stay.
 architecture=$(dpkg-deb --field "$(find "$tree/packages" -name '*.deb' -print -quit)" Architecture)
-rm -f "$packages"/rc10*_"$architecture".deb
+rm -f "$packages"/{,lib}rc10*_"$architecture".deb
 cp "$tree"/packages/*.deb "$packages"
 rm -rf "$packages/cpack.log" "$tree/packages"
 

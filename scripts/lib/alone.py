@@ -88,7 +88,9 @@ def compile_alone(one: Compilation) -> str:
 def main() -> int:
     with tempfile.TemporaryDirectory() as scratch:
         all_of_them = compilations(Path(sys.argv[1]).resolve(), Path(scratch))
-        with ThreadPoolExecutor(int(os.environ.get("RC10_JOBS", os.cpu_count() or 1))) as pool:
+        with ThreadPoolExecutor(
+            int(os.environ.get("RC10_JOBS", len(os.sched_getaffinity(0))))
+        ) as pool:
             complaints = [text for text in pool.map(compile_alone, all_of_them) if text]
     print("".join(complaints), end="")
     print(f"{len(all_of_them)} compiled, {len(complaints)} do not compile alone")

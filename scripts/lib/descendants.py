@@ -60,7 +60,7 @@ def descendants(spared: frozenset[int] = frozenset()) -> dict[int, Process]:
 
 def send(number: signal.Signals, pids: set[int]) -> None:
     for pid in pids:
-        with contextlib.suppress(ProcessLookupError):
+        with contextlib.suppress(ProcessLookupError, PermissionError):  # ended, or root's
             os.kill(pid, number)
 
 

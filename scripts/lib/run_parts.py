@@ -40,7 +40,7 @@ TESTS_OF_DEV = {"unit", "kernel", "host", "faults", "vm", "soak", "web"}
 # Cores that a part keeps busy; 0: it waits most of its time. All others use every core.
 # `web` waits for a browser most of its time.
 CORES = {"host": 0, "web": 0, "pages": 1, "lint": 1, "vm": 1, "package": 1}
-ALL_CORES = os.cpu_count() or 1
+ALL_CORES = len(os.sched_getaffinity(0))
 ENDS = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
 
 

@@ -234,7 +234,7 @@ def main() -> int:
         chosen = changed_sources(arguments.since, sources)
         entries = [entry for entry in entries if Path(entry["file"]).resolve() in chosen]
     tool = version()
-    with ThreadPoolExecutor(int(os.environ.get("RC10_JOBS", os.cpu_count() or 1))) as pool:
+    with ThreadPoolExecutor(int(os.environ.get("RC10_JOBS", len(os.sched_getaffinity(0))))) as pool:
         outputs = pool.map(lambda entry: check(build, tool, entry), entries)
     found: dict[tuple[str, ...], str] = {}
     for entry, output in zip(entries, outputs, strict=True):

@@ -106,7 +106,10 @@ def main() -> int:
     )
     parser.add_argument("--seed", type=int, default=random.SystemRandom().randrange(1_000_000))
     parser.add_argument(
-        "--hogs", type=int, default=os.cpu_count(), help="busy processes (default: one a core)"
+        "--hogs",
+        type=int,
+        default=len(os.sched_getaffinity(0)),
+        help="busy processes (default: one a core)",
     )
     parser.add_argument("command", nargs=argparse.REMAINDER)
     options = parser.parse_args()

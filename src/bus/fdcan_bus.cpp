@@ -147,6 +147,14 @@ void fdCANbus::packCommands(const Tick& tick) noexcept {
   packAll([&tick](CommandPacker& packer, std::span<CanFrame> out) { return packer.packCommand(tick, out); });
 }
 
+// The end waits for the echoes of rest, which a drive that is told in every n-th tick would give too late.
+void fdCANbus::packLastCommands(const Tick& tick) noexcept {
+  packAll([&tick](CommandPacker& packer, std::span<CanFrame> out) {
+    const std::size_t count = packer.packCommand(tick, out);
+    return count > 0 ? count : packer.packRest(out);
+  });
+}
+
 void fdCANbus::packRest() noexcept {
   packAll([](const CommandPacker& packer, std::span<CanFrame> out) { return packer.packRest(out); });
 }

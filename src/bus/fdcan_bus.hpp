@@ -97,6 +97,9 @@ class fdCANbus {
   /// Asks every packer for its frames, starting at the one that was refused last. A packer whose frames
   /// do not all fit into the tick sends none.
   void packCommands(const Tick& tick) noexcept;
+  /// The same in the last ticks of rc10d, in which every drive rests: a packer that has nothing to say in
+  /// this tick says that.
+  void packLastCommands(const Tick& tick) noexcept;
   /// Asks every packer for its rest frames.
   void packRest() noexcept;
   /// Is this one of the packers' rest frames, whoever sent it?

@@ -2,6 +2,7 @@
 
 #include <sys/socket.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <utility>
 
@@ -25,6 +26,15 @@ void BusRest::begin() {
   next_ = 0;
   echoes_ = 0;
   listen();
+}
+
+bool BusRest::leaveTo(const BusRest& other) {
+  const auto left = std::erase_if(frames_, [&other](const CanFrame& ours) {
+    return std::any_of(other.frames_.begin(), other.frames_.end(),
+                       [&ours](const CanFrame& theirs) { return theirs.id == ours.id; });
+  });
+  if (left > 0) begin();
+  return !frames_.empty();
 }
 
 void BusRest::listen() {

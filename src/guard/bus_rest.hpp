@@ -22,6 +22,9 @@ class BusRest {
   [[nodiscard]] Result<void> open();
   /// The next steps send.
   void begin();
+  /// Leaves the frames of the other's ids to that: its rc10d commands those drives. False: none of ours is
+  /// left.
+  [[nodiscard]] bool leaveTo(const BusRest& other);
   /// Sends a round of frames, if the interface takes them, and opens it anew where it has gone.
   void step();
   /// As many echoes as kRounds of all frames have been heard.

@@ -39,12 +39,13 @@ WatchedRobot::WatchedRobot(std::string robot, std::uint32_t standstill_ms, link:
       process_(std::move(process)),
       buses_(std::move(buses)) {}
 
-void WatchedRobot::handOver(const WatchedRobot& to) noexcept {
-  std::erase_if(buses_, [&to](const BusRest& ours) {
-    return std::any_of(to.buses_.begin(), to.buses_.end(),
-                       [&ours](const BusRest& theirs) { return theirs.interface() == ours.interface(); });
+void WatchedRobot::handOver(const WatchedRobot& to) {
+  std::erase_if(buses_, [&to](BusRest& ours) {
+    return std::any_of(to.buses_.begin(), to.buses_.end(), [&ours](const BusRest& theirs) {
+      return theirs.interface() == ours.interface() && !ours.leaveTo(theirs);
+    });
   });
-  over_ = buses_.empty();
+  over_ = over_ || buses_.empty();
 }
 
 std::string WatchedRobot::step(bool ended) {

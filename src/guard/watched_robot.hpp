@@ -31,8 +31,8 @@ class WatchedRobot {
   [[nodiscard]] const std::string& robot() const noexcept { return robot_; }
   /// It has commanded drives.
   [[nodiscard]] bool ticks() const noexcept { return page_->ticks.load(std::memory_order_relaxed) > 0; }
-  /// Leaves the drives on the interfaces of another rc10d, which commands them now, to that.
-  void handOver(const WatchedRobot& to) noexcept;
+  /// Leaves the drives that another rc10d commands now to that.
+  void handOver(const WatchedRobot& to);
   /// Readable when rc10d has died; -1 once that is known.
   [[nodiscard]] int deathDescriptor() const noexcept { return dead_ ? -1 : process_.get(); }
 

@@ -22,9 +22,17 @@ class HoldGap {
     return !over_;
   }
 
+  /// A renewal was sent, and acts until then.
+  void sent(MonotonicTime until) noexcept { acts_until_ = until; }
+  /// Whether the end of the hold has anything to end: later, what holds the motor is not the page's.
+  [[nodiscard]] bool acts(std::int64_t hold, MonotonicTime now) const noexcept {
+    return hold == hold_ && now < acts_until_;
+  }
+
  private:
   std::int64_t hold_ = -1;
   MonotonicTime last_{};
+  MonotonicTime acts_until_{};
   bool over_ = false;
 };
 

@@ -353,7 +353,7 @@ std::string Hub::whyNotMoving(const Page& page) const {
 }
 
 // Each renewal is a command for the rest of its lease: nothing here repeats one. The end of a hold sends the
-// safe target, however late it comes.
+// safe target, unless the lease has ended before: it would let go of what the motor's on_timeout holds.
 void Hub::drive(Page& page, const DriveMotor& wanted, MonotonicTime now, Duration age) {
   auto refused = whyNotMoving(page);
   if (wanted.held && !page.hold.goesOn(wanted.seq, now) && refused.empty())
@@ -367,13 +367,14 @@ void Hub::drive(Page& page, const DriveMotor& wanted, MonotonicTime now, Duratio
   // Connecting may outlast the lease of this renewal; the next one finds the connection open.
   const bool opens = !page.link->isOpen();
   if (refused.empty()) refused = page.link->connect(feed_.socketPath());
-  const bool counts = !wanted.held || (age < kHeldLease && !opens);
+  const bool counts = wanted.held ? age < kHeldLease && !opens : page.hold.acts(wanted.seq, now);
   if (refused.empty() && counts) {
     auto told = wanted;
     if (!wanted.held) told.value = 0.0;
     const auto left =
         std::chrono::ceil<std::chrono::milliseconds>(wanted.held ? kHeldLease - age : kHeldLease);
     refused = page.link->drive(told, static_cast<std::int32_t>(left.count()));
+    if (wanted.held) page.hold.sent(now + left);
   }
   if (!refused.empty()) page.socket->sendText(shared(responseMessage(wanted.seq, "refused", refused)));
 }

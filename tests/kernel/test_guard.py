@@ -202,7 +202,7 @@ def test_the_next_rc10d_starts_while_the_guard_still_tries() -> None:
             assert second.stop() == 0
 
 
-def test_an_rc10d_of_another_name_gets_no_rest_of_the_one_before(tmp_path: Path) -> None:
+def test_drives_that_the_next_rc10d_has_not_still_get_their_rest(tmp_path: Path) -> None:
     other = tmp_path / "other.yaml"
     other.write_text(
         "robot: other\nrealtime: preferred\nbuses:\n  - name: turret\n    interface: vcan0\n"
@@ -220,7 +220,10 @@ def test_an_rc10d_of_another_name_gets_no_rest_of_the_one_before(tmp_path: Path)
                 second.wait_line("yaw: OFFLINE -> READY", 5.0)
                 time.sleep(0.2)
                 bus.stop()
-            assert commands(bus.frames(), C6XX_COMMAND) == []
+            rested = commands(bus.frames(), C6XX_COMMAND)
+            assert len(rested) >= 3
+            assert {currents(frame) for frame in rested} == {REST}
+            assert "two controllers" not in second.output()
             assert second.stop() == 0
 
 

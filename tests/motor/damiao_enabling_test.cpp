@@ -98,7 +98,9 @@ TEST(DamiaoMotor, WithoutItsCountAMitDriveIsEnabledAndAPositionDriveIsNot) {
   mit.xout_rad = std::numeric_limits<float>::quiet_NaN();
   EXPECT_TRUE(mit.enable());
   mit.command({.mode = ControlMode::kImpedance, .value = 0.0, .stiffness_nm_per_rad = 50.0F});
-  EXPECT_EQ(mitOf(mit.tick()).stiffness_nm_per_rad, 0.0);
+  const auto command = mitOf(mit.tick());
+  EXPECT_EQ(command.stiffness_nm_per_rad, 0.0);
+  EXPECT_GT(command.damping_nms_per_rad, 0.0) << "a load sinks, and does not fall";
   DamiaoDesk position(damiaoSettingsOf("DM4310", "position_velocity"));
   position.xout_rad = std::numeric_limits<float>::quiet_NaN();
   EXPECT_FALSE(position.enable());

@@ -24,6 +24,18 @@ TEST(VescFamily, ImpossibleSettingsAreRefusedWithTheirKey) {
   EXPECT_EQ(vescFamily().check(settings).error().message.find("host_id: "), 0U);
   settings = vescSettings({{"handbrake_current_a", 5.0}});
   EXPECT_EQ(vescFamily().check(settings).error().message.find("handbrake_current_a: "), 0U);
+  settings = vescSettings({{"velocity_zero", std::string{"brake"}}, {"brake_current_a", 0.0}});
+  EXPECT_EQ(vescFamily().check(settings).error().message.find("velocity_zero: "), 0U);
+}
+
+TEST(VescFamily, AHandbrakeHoldsOnlyWhatABrakeHasStopped) {
+  const auto holds = [](double brake_a) {
+    const auto own =
+        vescSettings({{"angle", kNone}, {"handbrake_current_a", 6.0}, {"brake_current_a", brake_a}}).own;
+    return vescFamily().traits("VESC", own).frames.hold;
+  };
+  EXPECT_EQ(holds(5.0), Provision::kFrame);
+  EXPECT_EQ(holds(0.0), Provision::kUnsupported);
 }
 
 TEST(VescFamily, TheModesFollowFromTheSourceOfTheAngle) {

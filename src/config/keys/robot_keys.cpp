@@ -43,7 +43,8 @@ constexpr std::array kSchedulerKeys{
         .range = kPriorities,
         .default_text = "60",
         .about = "SCHED_FIFO priority of the thread that owns the motors. "
-                 "Above 50 it precedes threaded interrupts."},
+                 "Above 50 it precedes threaded interrupts; with timer: timerfd on PREEMPT_RT its own "
+                 "wake-up is that of ktimers (FIFO 1)."},
     Key{.name = "timer",
         .kind = kText,
         .choices = timerPolicies,
@@ -84,7 +85,9 @@ constexpr std::array kRxKeys{
         .kind = kInteger,
         .range = kPriorities,
         .default_text = "65",
-        .about = "SCHED_FIFO priority of the thread that receives. Must be above the scheduler's."},
+        .about = "SCHED_FIFO priority of the RX thread: serial ports, and with receive: thread CAN. Must be "
+                 "above the "
+                 "scheduler's."},
     Key{.name = "lead_us",
         .kind = kNumber,
         .unit = "us",

@@ -30,13 +30,7 @@ void BusWatch::send(const Tick& tick, bool stopping) noexcept {
       if (bus.health().state() == BusState::kStalled) probe(i, tick);
       continue;
     }
-    const auto watched = bus.counters().tx_watched;
     bus.flush();
-    // A drive that is told in every n-th tick only: the end waits for the echoes of its rest.
-    if (stopping && bus.counters().tx_watched == watched) {
-      bus.packRest();
-      bus.flush();
-    }
     // The kernel reports a lost interface once, to whoever asks first: a receive may not see it.
     if (bus.sendError() == ENETDOWN) {
       auto expected = CanLinkState::kUp;  // never hides that the interface is gone

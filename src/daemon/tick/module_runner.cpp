@@ -78,7 +78,9 @@ void ModuleRunner::take(const SignalMessage& message, const Tick& tick) noexcept
     return;
   }
   auto& module = *robot_.modules()[message.module].module;
-  if (!control.lease.isHolder(sender)) module.changeSender();
+  if (sender.session != control.sender.session || sender.client.view() != control.sender.client.view())
+    module.changeSender();
+  control.sender = sender;
   control.lease.take(sender, {message.received, message.deadline});
   module.setInputs(message.values);
 }

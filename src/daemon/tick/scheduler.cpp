@@ -60,9 +60,9 @@ void Scheduler::tick(MonotonicTime now, std::uint64_t periods) noexcept {
   marks_.moved = cycleCount();
   supervisor_.decide(tick);
   update(tick);
-  pack(tick);
-  marks_.packed = cycleCount();
   const bool only_rest = stop_requested_ && !supervisor_.fallbackActs();
+  pack(tick, only_rest);
+  marks_.packed = cycleCount();
   bus_watch_.send(tick, only_rest);
   const MonotonicTime sent = clockOr(now);
   marks_.sent = cycleCount();
@@ -140,8 +140,9 @@ void Scheduler::update(const Tick& tick) noexcept {
   for (auto& entry : robot_.motors()) entry.motor->update(tick);
 }
 
-void Scheduler::pack(const Tick& tick) noexcept {
-  for (auto& entry : robot_.buses()) entry.bus->packCommands(tick);
+void Scheduler::pack(const Tick& tick, bool only_rest) noexcept {
+  for (auto& entry : robot_.buses())
+    only_rest ? entry.bus->packLastCommands(tick) : entry.bus->packCommands(tick);
   supervisor_.askOfScan(tick);
 }
 

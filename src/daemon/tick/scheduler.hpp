@@ -65,7 +65,7 @@ class Scheduler {
   void receive() noexcept;
   void driveDevices() noexcept;
   void update(const Tick& tick) noexcept;
-  void pack(const Tick& tick) noexcept;
+  void pack(const Tick& tick, bool only_rest) noexcept;
   void reportMissedTicks(const Tick& tick) noexcept;
   void beginStop(const Tick& tick) noexcept;
   void watchStop() noexcept;

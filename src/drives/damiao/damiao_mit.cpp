@@ -29,7 +29,10 @@ SpringLaw boundedMit(SpringLaw law, const DamiaoMitBounds& bounds, std::uint32_t
   // Only +-p_max can be told. A drive that stands beyond would run back, so it gets no stiffness at all.
   const bool reachable =
       bounds.position_known && std::fabs(bounds.measured.position_rad) <= bounds.scale.p_max_rad;
-  if (law.stiffness_nm_per_rad > 0.0 && !reachable) limits |= kLimitAngle;
+  if (law.stiffness_nm_per_rad > 0.0 && !reachable) {
+    limits |= kLimitAngle;
+    law.damping_nms_per_rad = std::max(law.damping_nms_per_rad, bounds.damping_nms_per_rad);
+  }
   if (!reachable || !std::isfinite(law.position_rad)) law.stiffness_nm_per_rad = 0.0;
   if (law.stiffness_nm_per_rad > 0.0) {
     const double reach_rad = std::min(bounds.reach_rad, bounds.scale.p_max_rad);

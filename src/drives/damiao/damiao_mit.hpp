@@ -16,6 +16,8 @@ struct DamiaoMitBounds {
   bool position_known = false;
   double reach_rad =
       std::numeric_limits<double>::infinity();  ///< Bound of targets, beside that of the scale.
+  double damping_nms_per_rad =
+      0.0;  ///< Least, where there can be no stiffness: a load sinks, and does not fall.
 };
 
 /// A MIT command that makes the drive give no more than its bounds by the last measurement. `limits` collects

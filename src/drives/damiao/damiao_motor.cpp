@@ -243,7 +243,8 @@ void Damiao_Motor::followMit(const Target& target) noexcept {
                          .torque_nm = torqueLimitNm(),
                          .velocity_rad_s = velocityLimitRpm() > 0.0F ? fastestRadS() : 0.0,
                          .measured = {position_.rad(), measured_rad_s_},
-                         .position_known = position_.known()};
+                         .position_known = position_.known(),
+                         .damping_nms_per_rad = damp_nms_per_rad_};
   if (law.stiffness_nm_per_rad > 0.0)
     bounds.reach_rad = reach_.step(springReach(law.stiffness_nm_per_rad), position_.rad());
   else

@@ -313,6 +313,9 @@ void MyActuator_Motor::followImpedance(const Target& target) noexcept {
                        std::abs(measuredDeg() * kRadPerDeg) > myactuator::kMotionAngleRad;
   if (outside) {
     limits_ |= kLimitAngle;
+    // A load sinks then, and does not fall.
+    if (motion.stiffness_nm_per_rad > 0.0 && feedback_.samples > 0)
+      motion.damping_nms_per_rad = std::max(motion.damping_nms_per_rad, dampingOf());
     motion.position_rad = 0.0;
     motion.stiffness_nm_per_rad = 0.0;
   }
@@ -320,13 +323,14 @@ void MyActuator_Motor::followImpedance(const Target& target) noexcept {
 }
 
 // As a shorted winding would: the full torque at the speed without load.
-void MyActuator_Motor::damp() noexcept {
+double MyActuator_Motor::dampingOf() const noexcept {
   const double no_load_rad_s = static_cast<double>(traits().no_load_rpm) * kRadPerSPerRpm;
   const double full_nm = static_cast<double>(traits().effort_full_scale * traits().torque_nm_per_a);
-  const double damping =
-      no_load_rad_s > 0.0 ? std::min(full_nm / no_load_rad_s, myactuator::kMotionDamping) : kUnknownDamping;
-  sendMotion({.damping_nms_per_rad = damping});
+  return no_load_rad_s > 0.0 ? std::min(full_nm / no_load_rad_s, myactuator::kMotionDamping)
+                             : kUnknownDamping;
 }
+
+void MyActuator_Motor::damp() noexcept { sendMotion({.damping_nms_per_rad = dampingOf()}); }
 
 void MyActuator_Motor::sendMotion(SpringLaw motion) noexcept {
   boundGains(motion, myactuator::kMotionStiffness, myactuator::kMotionDamping);

@@ -61,6 +61,7 @@ class MyActuator_Motor final : public SoloMotor {
   void followAngle(double total_angle_deg) noexcept;
   void followImpedance(const Target& target) noexcept;
   void damp() noexcept;
+  [[nodiscard]] double dampingOf() const noexcept;
   /// Bounded by what it measured last.
   void sendMotion(SpringLaw motion) noexcept;
   /// The drive's own multi-turn angle.

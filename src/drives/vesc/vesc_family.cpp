@@ -142,7 +142,9 @@ static_assert(kTorqueTimesKv > 8.269 && kTorqueTimesKv < 8.271);
 Provision holdOf(const VescSettings& own) {
   if (own.angle == VescAngle::kTachometer) return Provision::kHostLoop;
   if (own.angle == VescAngle::kEncoder) return Provision::kFrame;
-  return own.handbrake_current_a > 0.0F ? Provision::kFrame : Provision::kUnsupported;
+  // The handbrake takes over at standstill: before, the brake has to stop the shaft.
+  const bool stops = own.brake_current_a > 0.0F && own.handbrake_current_a > 0.0F;
+  return stops ? Provision::kFrame : Provision::kUnsupported;
 }
 
 class VescFamily final : public MotorFamily {
@@ -160,6 +162,8 @@ class VescFamily final : public MotorFamily {
     if (own.host_id == settings.id) {
       return fail("host_id: " + std::to_string(own.host_id) + " is this drive's own id; give a free one");
     }
+    if (own.velocity_zero == VescStop::kBrake && !(own.brake_current_a > 0.0F))
+      return fail("velocity_zero: brake needs a brake_current_a above 0; or write velocity_zero: coast");
     if (own.angle != VescAngle::kTachometer) return {};
     if (own.handbrake_current_a > 0.0F) {
       return fail(

@@ -81,10 +81,13 @@ std::vector<MotorSetpoints> HeldTargets::takeDue(MonotonicTime now) {
   return due;
 }
 
-std::vector<MotorSetpoints> HeldTargets::takeAll() {
+std::vector<MotorSetpoints> HeldTargets::takeAll(MonotonicTime now, Duration validity) {
   std::vector<MotorSetpoints> all;
   all.reserve(messages_.size());
-  for (auto& message : messages_) all.push_back(std::move(message.setpoints));
+  for (auto& message : messages_) {
+    const MonotonicTime sent = message.due - resend_;
+    if (now < sent + validity) all.push_back(std::move(message.setpoints));
+  }
   messages_.clear();
   return all;
 }

@@ -29,8 +29,9 @@ class HeldTargets {
   void set(const MotorSetpoints& message, MonotonicTime now, std::int64_t shown_us = 0);
   void release(const std::string& motor);
   void releaseAll() { messages_.clear(); }
-  /// Gives up all that is held, message by message.
-  [[nodiscard]] std::vector<MotorSetpoints> takeAll();
+  /// Gives up all that is held. Returns, message by message, what is still in force: a target that lapsed
+  /// while the program stood would let go of what holds its motor since.
+  [[nodiscard]] std::vector<MotorSetpoints> takeAll(MonotonicTime now, Duration validity);
   /// The program lives.
   void alive(MonotonicTime now) noexcept { last_life_ = now; }
 

@@ -19,12 +19,14 @@ bool NewestState::take(const std::shared_ptr<RobotState>& state, MonotonicTime n
   if (0 < overtaken_us && overtaken_us < kOvertakenUs) return false;
   state->taken = clock_.observe(std::chrono::microseconds{state->mono_us}, now);
   state_ = state;
-  came_ = now;
   ++received_;
   return true;
 }
 
-bool NewestState::live(MonotonicTime now) const noexcept { return state_ && now <= came_ + kLive; }
+bool NewestState::live(MonotonicTime now) const noexcept {
+  // By its own time: after a pause of this program an old one comes out of the socket's queue.
+  return state_ && now <= state_->taken + kLive;
+}
 
 }  // namespace robot_client
 }  // namespace rc10

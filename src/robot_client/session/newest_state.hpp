@@ -9,7 +9,7 @@
 namespace rc10 {
 inline namespace robot_client {
 
-/// The newest state of a robot, and how long ago it came. Pure.
+/// The newest state of a robot, and whether it is new. Pure.
 class NewestState {
  public:
   /// False: another one overtook it on its way. Sets RobotState::taken.
@@ -24,7 +24,6 @@ class NewestState {
  private:
   HostClock clock_;
   std::shared_ptr<const RobotState> state_;
-  MonotonicTime came_{};
   std::uint64_t received_ = 0;
 };
 

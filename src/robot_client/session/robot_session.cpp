@@ -137,7 +137,7 @@ Result<void> RobotSession::close() {
     if (core_.closed) return {};
     core_.closed = true;
     // Torque first: that needs no answer.
-    targets_.letGo(news);
+    targets_.letGo(timeNow(), news);
     disable = core_.leaving.toDisable(core_.newest.get().get());
   }
   core_.wake_sender.notify_all();

@@ -135,8 +135,8 @@ std::optional<MonotonicTime> SessionTargets::nextDue(MonotonicTime now) const {
   return earlier(held_.nextDue(), moves_.nextLook(now));
 }
 
-void SessionTargets::letGo(News& news) {
-  const auto held = held_.takeAll();
+void SessionTargets::letGo(MonotonicTime now, News& news) {
+  const auto held = held_.takeAll(now, core_.options.validity);
   moves_.failAll("the program has let go of the robot", news.moves);
   if (core_.options.at_end == AtEnd::kTimeout) {
     // The same targets, not COAST: rc10d does on_timeout after a target that lapses, nothing after a COAST.

@@ -32,7 +32,7 @@ class SessionTargets {
   void sendAgain(MonotonicTime now, News& news);
   [[nodiscard]] std::optional<MonotonicTime> nextDue(MonotonicTime now) const;
   /// The program leaves: RobotOptions::at_end.
-  void letGo(News& news);
+  void letGo(MonotonicTime now, News& news);
 
  private:
   [[nodiscard]] Result<void> mayCommand(const MotorSetpoints& setpoints, MonotonicTime now) const;

@@ -8,6 +8,7 @@
 #include <optional>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "app/printable.hpp"
 #include "client/obstacle.hpp"
@@ -83,6 +84,11 @@ class Driver {
     if (const auto there = feed_.awaitState(); !there) return complain(there.error(), ExitCode::kFailed);
     if (const auto why = trouble(); !why.empty()) return complain({why}, ExitCode::kFailed);
     const std::string why = repeat();
+    // It may have been held up in printing, or stopped and ended by a signal.
+    if (!over_ && feed_.pump()) {
+      hearEvents();
+      (void)ended();
+    }
     // Best effort, as the setpoint lapses by itself too.
     if (!over_ && order_.then == Then::kCoast) letGo();
     if (!over_ && order_.then == Then::kTimeout) lapse();
@@ -101,10 +107,9 @@ class Driver {
     auto next = start;
     while (!interrupted()) {
       if (!feed_.pump()) return rc10dEnded().message;
-      showEvents(progress);
+      hearEvents();
       if (auto why = ended(); !why.empty()) return why;
       if (auto why = refused(); !why.empty()) return why;
-      progress.show(line(), false);
       const auto now = steady_clock::now();
       if (now - start >= order_.time) break;
       if (now >= next) {
@@ -120,8 +125,12 @@ class Driver {
         sent_ = now;
         next = std::max(next + kSendPeriod, now);
       }
+      // After sending, for a terminal that is held keeps it waiting: what it sends has just been judged.
+      for (const auto& note : std::exchange(notes_, {})) progress.note(note);
+      progress.show(line(), false);
       waitReadable(rc10d_, std::min(next, start + order_.time) - steady_clock::now());
     }
+    for (const auto& note : std::exchange(notes_, {})) progress.note(note);
     progress.show(line(), true);
     // Too short a time to be sure about it otherwise.
     const bool told = !refusal_.empty() || steady_clock::now() - start >= kLongEnough;
@@ -218,7 +227,7 @@ class Driver {
            (why.empty() ? ": `rc10ctl stats` shows what was refused" : why);
   }
 
-  void showEvents(Progress& progress) {
+  void hearEvents() {
     for (const auto& event : feed_.takeEvents()) {
       if (order_.hear && event.source.view() == name_) order_.hear(event);
       if (sent_ && event.source.view() == name_ && client::leavesActive(event))
@@ -231,8 +240,8 @@ class Driver {
       const bool concerns_us = event.source.view() == name_ ? event.severity > Severity::kInfo
                                                             : event.severity > Severity::kWarning;
       if (!concerns_us) continue;
-      progress.note(std::string(toString(event.severity)) + ": " + printable(event.source.view()) + ": " +
-                    printable(event.text.view()));
+      notes_.push_back(std::string(toString(event.severity)) + ": " + printable(event.source.view()) + ": " +
+                       printable(event.text.view()));
     }
   }
 
@@ -253,12 +262,13 @@ class Driver {
   const Drive& order_;
   Feed feed_;
   std::string name_;
-  link::Setpoint setpoint_;  // as steered
-  Target sent_before_;       // the one before the last, which the state may still show
-  std::string refusal_;      // last refusal by rc10d of a target, in words
-  std::string stopped_;      // event by which it ceased to obey
-  bool taken_ = false;       // has been in force
-  bool over_ = false;        // its targets are
+  link::Setpoint setpoint_;         // as steered
+  Target sent_before_;              // the one before the last, which the state may still show
+  std::string refusal_;             // last refusal by rc10d of a target, in words
+  std::vector<std::string> notes_;  // to be shown
+  std::string stopped_;             // event by which it ceased to obey
+  bool taken_ = false;              // has been in force
+  bool over_ = false;               // its targets are
   std::optional<steady_clock::time_point> sent_;
   Unheeded unheeded_;
   link::Command command_;

@@ -22,12 +22,13 @@ class Scripted : public Module_Base {
  public:
   explicit Scripted(Body body)
       : Module_Base({.inputs = {"speed_rpm", "other"},
-                     .outputs = {"seen_rpm"},
+                     .outputs = {"seen_rpm", "senders"},
                      .events = {{.text = "something"}, {.text = "as expected", .expected = true}}}),
         body_(std::move(body)) {}
 
   void update(const Tick& tick, ModuleRobot& robot) noexcept override {
     setOutput(0, commanded() ? input(0) : kNoSignal);
+    setOutput(1, senderCount());
     if (body_) body_(tick, robot);
   }
 
@@ -78,6 +79,7 @@ class ModuleRunnerTest : public ::testing::Test {
     message.values[0] = value;
     ASSERT_TRUE(robot_->exchange().signals.push(message));
   }
+  double senders() { return robot_->snapshot().modules[0].outputs[1]; }
   double seen(std::size_t module = 0) { return robot_->snapshot().modules[module].outputs[0]; }
 
   std::unique_ptr<VirtualRobot> robot_;
@@ -96,6 +98,24 @@ TEST_F(ModuleRunnerTest, AModuleTurnsMotorsAsAClientWithItsNameAndPriority) {
   EXPECT_NEAR(robot_->motor(0).feedback.velocity_rpm, 50.0F, 2.0F);
   EXPECT_EQ(robot_->motor(0).owner.view(), "module0");
   EXPECT_EQ(robot_->motor(1).owner.view(), "");
+}
+
+TEST_F(ModuleRunnerTest, AClientThatGoesOnAfterAGapIsNoOther) {
+  const ScriptedType type;
+  start({{&type, 0}});
+  const auto before = senders();
+  signal("planner", 0, 1.0);
+  robot_->run(100);
+  EXPECT_EQ(senders(), before + 1);
+  signal("planner", 0, 1.0);
+  robot_->run(10);
+  EXPECT_EQ(senders(), before + 1);
+  signal("panel", 5, 1.0);
+  robot_->run(100);
+  EXPECT_EQ(senders(), before + 2);
+  signal("planner", 0, 1.0);
+  robot_->run(10);
+  EXPECT_EQ(senders(), before + 3);
 }
 
 TEST_F(ModuleRunnerTest, ATargetActsInTheTickInWhichItIsSet) {

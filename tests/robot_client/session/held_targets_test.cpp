@@ -119,6 +119,15 @@ TEST(HeldTargets, AMotorThatWasJustTakenOverMayStillShowItsOldOwner) {
   EXPECT_THAT(held.judge(state, "me"), IsEmpty());
 }
 
+TEST(HeldTargets, OnesThatLapsedWhileTheProgramStoodAreNotTakenForTheEnd) {
+  HeldTargets held(20ms, 0ms);
+  held.set(turn("wheel", 60_rpm), kStart);
+  EXPECT_EQ(held.takeAll(kStart + 99ms, 100ms).size(), 1U);
+  held.set(turn("wheel", 60_rpm), kStart);
+  EXPECT_THAT(held.takeAll(kStart + 1s, 100ms), IsEmpty());
+  EXPECT_FALSE(held.holds("wheel"));
+}
+
 TEST(HeldTargets, LapseWithoutASignOfLife) {
   HeldTargets held(20ms, 500ms);
   held.set(turn("wheel", 60_rpm), kStart);
