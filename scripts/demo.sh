@@ -93,7 +93,7 @@ serve_page() {
     page=
     [ -x "$build_tree/bin/rc10-web" ] && [ -e "$repo/build/web/index.html" ] || return 0
     for port in 8010 0; do
-        : >"$RC10_RUN_DIR/web.log" # what the try before wrote is no answer of this one
+        : >"$RC10_RUN_DIR/web.log" # the words of the try before are no answer of this one
         setsid setpriv --pdeathsig TERM "$build_tree/bin/rc10-web" --page "$repo/build/web" --port "$port" \
             >"$RC10_RUN_DIR/web.log" 2>&1 &
         RC10_DEMO_WEB=$!

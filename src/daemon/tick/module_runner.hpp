@@ -32,7 +32,7 @@ class ModuleRunner : private ModuleRobot {
  private:
   struct Control {
     Lease lease;           ///< Whose inputs are in force, and until when.
-    Lease::Holder sender;  ///< Of the last ones, also when they have lapsed.
+    Lease::Holder sender;  ///< Giver of the last ones, also when they have lapsed.
     MonotonicTime last_refusal_report{};
     bool refused = false;  ///< Its last targets.
   };
