@@ -23,7 +23,8 @@ class BusHealth {
  public:
   struct Config {
     Duration silent_after{std::chrono::milliseconds{100}};
-    Duration stalled_after{std::chrono::milliseconds{5}};
+    /// At 1 kHz five ticks, whatever their jitter.
+    Duration stalled_after{std::chrono::microseconds{4500}};
     /// Ticks without an echo. Only ticks before which the echoes were read count: after a pause of the
     /// computer, or of the thread that reads, one may wait.
     int stalled_ticks = 5;

@@ -329,8 +329,8 @@ class Joint : public Module_Base {
       if (tick.now - heard_ >= HeldBack::kLetGo) home_is_high_ = false;
       return false;
     }
-    const bool taken_over =
-        std::exchange(counted_for_, senderCount()) != senderCount() && tick.now - heard_ < HeldBack::kLetGo;
+    const bool lately = heard_ != MonotonicTime{} && tick.now - heard_ < HeldBack::kLetGo;
+    const bool taken_over = std::exchange(counted_for_, senderCount()) != senderCount() && lately;
     heard_ = tick.now;
     const bool was_high = std::exchange(home_is_high_, input(kHome) >= 0.5);
     if (taken_over && (home_is_high_ || state_ == State::kHoming)) {

@@ -219,6 +219,18 @@ TEST_F(BusHealthTest, IsStalledWhenNoEchoComesForFiveTicks) {
   EXPECT_EQ(state(), BusState::kStalled);
 }
 
+TEST_F(BusHealthTest, TheJitterOfTicksDoesNotMakeThemSix) {
+  run(50ms);
+  echoes_ = false;
+  now_ += 100us;  // the tick that begins to wait is late
+  run(1ms);
+  now_ -= 100us;
+  run(4ms);
+  EXPECT_EQ(state(), BusState::kActive);
+  run(1ms);
+  EXPECT_EQ(state(), BusState::kStalled);
+}
+
 TEST_F(BusHealthTest, ASlowCommanderIsStalledToo) {
   run(50ms);
   sends_ = false;

@@ -85,7 +85,7 @@ const char* describe(CommandRefusal refusal) noexcept {
 }
 
 Admission::Admission(const RobotDescription& robot, Permissions permissions)
-    : robot_(robot), permissions_(std::move(permissions)) {
+    : robot_(robot), permissions_(std::move(permissions)), budget_(robot.period()) {
   for (std::size_t i = 0; i < robot.motors.size(); ++i)
     index_.emplace(robot.motors[i].name, static_cast<int>(i));
 }
@@ -128,7 +128,7 @@ CommandRefusal Admission::admit(const link::Command& message, const Speaker& spe
   not_permitted_ = permissions_.whyNoCommand(speaker, client, named, message.priority);
   if (!not_permitted_.empty()) return CommandRefusal::kNotPermitted;
   const bool late = now >= out.deadline;
-  if (!budget_.spend(message.client.view(), out.count, now))
+  if (!budget_.spend(speaker.account(client), out.count, now))
     return late ? CommandRefusal::kExpired : CommandRefusal::kRingFull;
   out.session = message.session;
   out.priority = message.priority;

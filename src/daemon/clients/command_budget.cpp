@@ -6,8 +6,8 @@
 namespace rc10 {
 namespace {
 
-// A burst after a pause of the computer or of a network: two milliseconds' worth, as much as the ring holds.
-constexpr double kMostTokens = 2.0 * CommandBudget::kSetpointsPerMs;
+// A burst after a pause of the computer or of a network: two ticks' worth, as much as the ring holds.
+constexpr double kMostTokens = 2.0 * CommandBudget::kSetpoints;
 // Silence after which a client leaves its share to the others.
 constexpr Duration kSilent = std::chrono::milliseconds{100};
 constexpr std::size_t kMaxAccounts = 64;
@@ -27,7 +27,7 @@ bool CommandBudget::spend(std::string_view client, std::size_t setpoints, Monoto
   Account& account = entry->second;
   const double elapsed_ms = std::chrono::duration<double, std::milli>(now - account.last).count();
   account.last = now;
-  const double share = kSetpointsPerMs / static_cast<double>(sending(now));
+  const double share = per_ms_ / static_cast<double>(sending(now));
   account.tokens = std::min(kMostTokens, account.tokens + elapsed_ms * share);
   const auto cost = static_cast<double>(std::max(setpoints, kLeastCost));
   if (account.tokens < cost) return false;

@@ -39,6 +39,10 @@ struct Speaker {
   [[nodiscard]] std::uint64_t owner() const noexcept {
     return way == Way::kSocket ? user : ~std::uint64_t{0} - static_cast<std::uint64_t>(way);
   }
+  /// Key of what it may send: the name in a message is its own choice, and a sender with many names is one.
+  [[nodiscard]] std::string account(std::string_view client) const {
+    return way == Way::kSocket ? std::to_string(connection) + '/' : '/' + std::string{client};
+  }
 };
 
 /// Rights of senders: `clients`, `clear: local` and `tuning: locked`. Link thread only. A refusal is a text

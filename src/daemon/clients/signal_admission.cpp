@@ -12,7 +12,10 @@ static_assert(kMaxMessageSignals == kMaxSignals && kMaxMessageSignals == link::k
 static_assert(kMaxNameBytes + 1 == sizeof(link::Name));
 
 SignalAdmission::SignalAdmission(const RobotDescription& robot, Permissions permissions)
-    : robot_(robot), permissions_(std::move(permissions)), sessions_(robot.modules.size()) {}
+    : robot_(robot),
+      permissions_(std::move(permissions)),
+      sessions_(robot.modules.size()),
+      budget_(robot.period()) {}
 
 CommandRefusal SignalAdmission::admit(const link::Signals& message, const Speaker& speaker, MonotonicTime now,
                                       SignalMessage& out) {
@@ -40,7 +43,7 @@ CommandRefusal SignalAdmission::admit(const link::Signals& message, const Speake
   not_permitted_ = permissions_.whyNoSignals(speaker, client, module, message.priority);
   if (!not_permitted_.empty()) return CommandRefusal::kNotPermitted;
   const bool late = now >= *deadline;
-  if (!budget_.spend(client, message.value_count, now))
+  if (!budget_.spend(speaker.account(client), message.value_count, now))
     return late ? CommandRefusal::kExpired : CommandRefusal::kRingFull;
   out.module = static_cast<std::uint16_t>(module);
   out.client = message.client;

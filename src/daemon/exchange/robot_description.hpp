@@ -27,6 +27,7 @@ struct RobotDescription {
   ForbiddenAt tuning_locked_at = 0;
   ForbiddenAt clear_local_at = 0;
   int rate_hz = 1000;
+  [[nodiscard]] Duration period() const noexcept { return std::chrono::nanoseconds{1'000'000'000 / rate_hz}; }
   int state_hz = 200;
   struct Motor {
     std::string name;

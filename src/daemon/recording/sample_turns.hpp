@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 
 #include "app/time.hpp"
@@ -14,15 +15,14 @@ class SampleTurns {
 
   /// `things`: their number, the same in every tick. All are due in the first tick.
   constexpr void advance(MonotonicTime now, std::size_t things) noexcept {
-    const auto in_interval = now.time_since_epoch() % interval_;
-    const auto place =
-        static_cast<std::size_t>(in_interval.count()) * things / static_cast<std::size_t>(interval_.count());
-    const bool all = last_ == MonotonicTime{} || now - last_ >= interval_;
-    due_ = all ? things : (place + things - place_) % things;
-    first_ = (place_ + 1) % things;
+    const auto intervals = static_cast<std::size_t>(now.time_since_epoch() / interval_);
+    const auto within = static_cast<std::size_t>((now.time_since_epoch() % interval_).count());
+    const std::size_t turn =
+        intervals * things + within * things / static_cast<std::size_t>(interval_.count());
+    due_ = turn_ == 0 ? things : std::min(turn - turn_, things);
+    first_ = (turn - due_ + 1) % things;
     things_ = things;
-    place_ = place;
-    last_ = now;
+    turn_ = turn;
   }
   [[nodiscard]] constexpr bool due(std::size_t thing) const noexcept {
     return (thing + things_ - first_) % things_ < due_;
@@ -30,8 +30,7 @@ class SampleTurns {
 
  private:
   Duration interval_;
-  MonotonicTime last_{};
-  std::size_t place_ = 0;  // thing of the last turn
+  std::size_t turn_ = 0;   // the last one, counted from the clock's begin
   std::size_t first_ = 0;  // first thing of this turn
   std::size_t due_ = 0;    // number of things in this turn
   std::size_t things_ = 1;

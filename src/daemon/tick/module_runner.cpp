@@ -8,7 +8,8 @@ namespace rc10 {
 namespace {
 
 // Modules run in every tick: what one has asked for holds over ticks that come late, and no longer.
-constexpr Duration kModuleValidity = std::chrono::milliseconds{20};
+constexpr Duration kLeastValidity = std::chrono::milliseconds{20};
+constexpr int kLeastTicks = 5;
 // Session of all modules; those of clients are random, and not 0.
 constexpr std::uint64_t kModuleSession = 0;
 
@@ -31,7 +32,8 @@ ModuleRunner::ModuleRunner(Robot& robot, Supervisor& supervisor, LinkExchange& l
       supervisor_(supervisor),
       link_(link),
       recorder_(recorder),
-      controls_(robot.modules().size()) {}
+      controls_(robot.modules().size()),
+      validity_(std::max(kLeastValidity, kLeastTicks * robot.period())) {}
 
 void ModuleRunner::update(const Tick& tick) noexcept {
   tick_ = tick;
@@ -93,7 +95,7 @@ void ModuleRunner::handOver(const Tick& tick) noexcept {
     command_.session = from.session;
     command_.priority = from.priority;
     command_.received = tick.now;
-    command_.deadline = tick.now + kModuleValidity;
+    command_.deadline = tick.now + validity_;
     const bool refused = !supervisor_.takeModuleCommand(command_, tick);
     if (refused && !control.refused && tick.now - control.last_refusal_report >= kReportInterval) {
       control.last_refusal_report = tick.now;
@@ -110,7 +112,7 @@ void ModuleRunner::handOver(const Tick& tick) noexcept {
     message.priority = from.priority;
     message.module = static_cast<std::uint16_t>(module);
     message.received = tick.now;
-    message.deadline = tick.now + kModuleValidity;
+    message.deadline = tick.now + validity_;
     take(message, tick);
   }
 }

@@ -199,13 +199,15 @@ void Scheduler::recordAges(const Snapshot& snapshot, const Tick& tick) noexcept 
     commands_[i] = received;
     if (!of_module) recordCommandAge(motor.owner, snapshot.sent - received);
   }
-  // Motors of a module may be on any bus.
-  if (!all_left) return;
+  // Motors of a module may be on any bus; one that is held carries nobody's frames.
+  bool refused = false;
+  for (std::size_t i = 0; !all_left && i < snapshot.bus_count; ++i)
+    refused = refused || (kept[i] && !robot_.buses()[i].held);
   for (std::size_t i = 0; i < snapshot.module_count; ++i) {
     const auto& module = snapshot.modules[i];
     const MonotonicTime received = module.inputs_received;
     if (module.owner.view().empty()) continue;
-    if (received != std::exchange(inputs_[i], received) && received != tick.now)
+    if (received != std::exchange(inputs_[i], received) && received != tick.now && !refused)
       recordCommandAge(module.owner, snapshot.sent - received);
   }
 }

@@ -23,7 +23,7 @@ constexpr float kInfF = std::numeric_limits<float>::infinity();
 class AdmissionTest : public ::testing::Test {
  protected:
   [[nodiscard]] CommandRefusal admit(const link::Command& message) {
-    return admission.admit(message, {}, now, out);
+    return admission.admit(message, speaker, now, out);
   }
   /// A message with one setpoint and the next sequence number.
   [[nodiscard]] link::Command one(const link::Setpoint& setpoint) {
@@ -39,6 +39,7 @@ class AdmissionTest : public ::testing::Test {
 
   MonotonicTime now{1000s};
   std::int64_t seq = 0;
+  Speaker speaker;
   Command out;
   static RobotDescription described() {
     auto robot = describedRobot({"left", "right", "arm"});
@@ -374,6 +375,16 @@ TEST_F(AdmissionTest, EveryReasonHasWordsOfItsOwn) {
   EXPECT_EQ(names.count("unknown"), 0U);
 }
 
+TEST_F(AdmissionTest, AConnectionIsOneSenderWhateverNamesItGives) {
+  int passed = 0;
+  for (int i = 0; i < 1000; ++i) {
+    auto message = good();
+    message.client = std::to_string(i).c_str();
+    passed += admit(message) == CommandRefusal::kNone ? 1 : 0;
+  }
+  EXPECT_EQ(passed, 64) << "a burst that fills the ring";
+}
+
 TEST_F(AdmissionTest, TheWordsOfAReasonSayWhatToDo) {
   const auto says = [](CommandRefusal refusal, const char* part) {
     return std::string{describe(refusal)}.find(part) != std::string::npos;
@@ -423,6 +434,7 @@ TEST_F(AdmissionTest, EveryClientHasASequenceOfItsOwn) {
 }
 
 TEST_F(AdmissionTest, ATableFullOfClientsStillKnowsTheirSequences) {
+  speaker.way = Speaker::Way::kLcm;
   auto message = linkCommand(1, now, {setpoint("left", kVelocity)});
   for (int i = 0; i < 64; ++i) {
     message.client = "client " + std::to_string(i);
@@ -432,6 +444,7 @@ TEST_F(AdmissionTest, ATableFullOfClientsStillKnowsTheirSequences) {
 }
 
 TEST_F(AdmissionTest, AFloodOfClientNamesIsSurvived) {
+  speaker.way = Speaker::Way::kLcm;
   auto message = linkCommand(1, now, {setpoint("left", kVelocity)});
   for (int i = 0; i < 1000; ++i) {
     message.client = "client " + std::to_string(i);

@@ -16,7 +16,7 @@ class CommandBudgetTest : public ::testing::Test {
     return sent;
   }
 
-  CommandBudget budget;
+  CommandBudget budget{1ms};
   MonotonicTime now{1h};
 };
 
@@ -33,6 +33,17 @@ TEST_F(CommandBudgetTest, AFloodLeavesHalfTheRingToOthers) {
   for (int ms = 0; ms < 100; ++ms) {
     now += 1ms;
     EXPECT_LE(send("flood", 1000, 1), 32);
+  }
+}
+
+TEST_F(CommandBudgetTest, AFloodLeavesHalfTheRingOfATickToOthersAtEachRate) {
+  budget = CommandBudget{10ms};
+  (void)send("flood", 1000, 1);
+  for (int tick = 0; tick < 100; ++tick) {
+    int sent = 0;
+    for (int ms = 0; ms < 10; ++ms, now += 1ms) sent += send("flood", 100, 1);
+    EXPECT_LE(sent, 33);
+    EXPECT_EQ(send("quiet", 1, 8), 1);
   }
 }
 

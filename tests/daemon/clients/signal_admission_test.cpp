@@ -112,7 +112,7 @@ TEST_F(SignalAdmissionTest, AClientThatFloodsLeavesRoomForAnother) {
     auto other = message();
     other.client = std::string_view{"keyboard"};
     other.received_ns = now.time_since_epoch().count();
-    EXPECT_EQ(admit(other, now), CommandRefusal::kNone) << ms;
+    EXPECT_EQ(admission_.admit(other, {.connection = 1}, now, out_), CommandRefusal::kNone) << ms;
   }
   EXPECT_LE(flood, 64 + 100 * 32);  // a burst, and what is left of the ring's share in each millisecond
   EXPECT_EQ(admit(message(), kNow), CommandRefusal::kRingFull);

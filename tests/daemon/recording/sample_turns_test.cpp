@@ -31,6 +31,11 @@ class SampleTurnsTest : public ::testing::Test {
 
 TEST_F(SampleTurnsTest, TheFirstTickTakesAll) { EXPECT_EQ(advance(13ms), kThings); }
 
+TEST_F(SampleTurnsTest, APauseAlmostAsLongAsTheIntervalLosesNoTurn) {
+  (void)advance(1ms);
+  EXPECT_EQ(advance(50ms), kThings);
+}
+
 TEST_F(SampleTurnsTest, EachHasOneTurnAnIntervalAndNoTickHasThemAll) {
   (void)advance(0ms);
   counts.fill(0);

@@ -84,6 +84,40 @@ TEST_F(TickAgesTest, FramesThatTheKernelRefusedCarryNothing) {
   EXPECT_GE(ages.command.max(), 6ms) << "its age grew until a frame carried it";
 }
 
+TEST(TickAges, OfMessagesToAModuleAreCountedWhileAnotherBusIsHeldAndNotFalselyAfterwards) {
+  const auto outcome = parseRobotConfig(
+      "robot: two\nrealtime: preferred\nbuses:\n"
+      "  - {name: a, type: sim, motors: [{name: arm, model: M3508, id: 1, zero: power_on}]}\n"
+      "  - {name: b, type: sim, motors: [{name: tool, model: M3508, id: 1}]}\n"
+      "modules:\n  - {name: lift, type: joint, motor: arm, max_velocity_deg_s: 60, "
+      "max_acceleration_deg_s2: 60}\n",
+      "two.yaml");
+  ASSERT_TRUE(outcome.config) << outcome.errorText();
+  VirtualRobot robot{*outcome.config};
+  const auto& ages = robot.exchange().ages;
+  const auto ask = [&robot] {
+    SignalMessage message;
+    message.client = "panel";
+    message.session = 7;
+    message.received = robot.now();
+    message.deadline = robot.now() + 1s;
+    message.values.fill(kNoSignal);
+    message.values[0] = 5.0;
+    ASSERT_TRUE(robot.exchange().signals.push(message));
+  };
+  robot.run(10);
+  robot.inboxes()[1].link = CanLinkState::kDown;
+  robot.run(10);
+  ask();
+  robot.run(10);
+  EXPECT_EQ(ages.command.count(), 1U);
+  robot.run(300);
+  robot.inboxes()[1].link = CanLinkState::kUp;
+  robot.run(20);
+  EXPECT_EQ(ages.command.count(), 1U);
+  EXPECT_LT(ages.command.max(), 3ms);
+}
+
 // A tick that takes so long until its frames have left.
 constexpr Duration kUntilSent = 80us;
 MonotonicTime tick_began{};
