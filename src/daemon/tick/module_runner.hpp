@@ -66,7 +66,7 @@ class ModuleRunner : private ModuleRobot {
   LinkExchange& link_;
   FlightRecorder* recorder_;
   std::vector<Control> controls_;
-  Duration validity_;  ///< Of what a module asks for.
+  Duration validity_;  ///< Time for which a module's targets and inputs hold.
   std::uint64_t refused_signals_ = 0;
 
   // While a module's update() runs: which it is, and what it has asked for so far.
