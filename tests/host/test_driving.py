@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import os
 import signal
 import sys
@@ -109,13 +110,24 @@ def test_a_set_that_is_not_obeyed_fails_and_says_who_is_in_the_way(daemon: Daemo
         assert first.wait() == 0
 
 
-def test_a_set_that_its_computer_holds_up_goes_on(daemon: Daemon) -> None:
+@contextlib.contextmanager
+def held_up(daemon: Daemon) -> Iterator[Program]:
+    """An rc10ctl set that turned the wheel, and stands."""
     daemon.must("enable", "wheel")
     with daemon.drive("set", "wheel", "velocity", "60", "--for", "60s") as setting:
         daemon.wait_motor("wheel", turning(60), "turns at 60 rpm")
         setting.signal(signal.SIGSTOP)
-        held_up = daemon.state()["tick"]
-        daemon.wait_state(lambda state: state["tick"] > held_up + 300, "its target has lapsed")
+        yield setting
+
+
+def wait_ticks(daemon: Daemon, ticks: int) -> None:
+    since = daemon.state()["tick"]
+    daemon.wait_state(lambda state: state["tick"] > since + ticks, f"{ticks} ticks")
+
+
+def test_a_set_that_its_computer_holds_up_goes_on(daemon: Daemon) -> None:
+    with held_up(daemon) as setting:
+        wait_ticks(daemon, 300)
         assert motor_of(daemon.state(), "wheel")["owner"] == ""
         setting.signal(signal.SIGCONT)
         daemon.wait_motor("wheel", turning(60), "turns again")
@@ -125,12 +137,8 @@ def test_a_set_that_its_computer_holds_up_goes_on(daemon: Daemon) -> None:
 
 
 def test_a_set_that_was_paused_for_long_begins_nothing_anew(daemon: Daemon) -> None:
-    daemon.must("enable", "wheel")
-    with daemon.drive("set", "wheel", "velocity", "60", "--for", "60s") as setting:
-        daemon.wait_motor("wheel", turning(60), "turns at 60 rpm")
-        setting.signal(signal.SIGSTOP)
-        paused = daemon.state()["tick"]
-        daemon.wait_state(lambda state: state["tick"] > paused + 2500, "2.5 s")
+    with held_up(daemon) as setting:
+        wait_ticks(daemon, 2500)
         setting.signal(signal.SIGCONT)
         assert setting.wait() == 1
         assert "held up for more than 2 s" in setting.output
@@ -140,10 +148,7 @@ def test_a_set_that_was_paused_for_long_begins_nothing_anew(daemon: Daemon) -> N
 def test_a_set_does_not_go_on_with_a_motor_that_was_stopped_and_enabled_meanwhile(
     daemon: Daemon,
 ) -> None:
-    daemon.must("enable", "wheel")
-    with daemon.drive("set", "wheel", "velocity", "60", "--for", "60s") as setting:
-        daemon.wait_motor("wheel", turning(60), "turns at 60 rpm")
-        setting.signal(signal.SIGSTOP)
+    with held_up(daemon) as setting:
         daemon.must("estop")
         daemon.wait_motor("wheel", turning(0, 1.0), "stands")
         daemon.must("clear")

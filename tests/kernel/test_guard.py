@@ -218,10 +218,14 @@ def test_drives_that_the_next_rc10d_has_not_still_get_their_rest(tmp_path: Path)
             with Candump("vcan0") as bus:
                 run("ip", "link", "set", "vcan0", "up")
                 second.wait_line("yaw: OFFLINE -> READY", 5.0)
-                time.sleep(0.2)
+                wait_for(
+                    lambda: len(commands(bus.frames(), C6XX_COMMAND)) >= 3,
+                    5.0,
+                    "three rest frames of the drives that it has not",
+                    poll_s=0.02,
+                )
                 bus.stop()
             rested = commands(bus.frames(), C6XX_COMMAND)
-            assert len(rested) >= 3
             assert {currents(frame) for frame in rested} == {REST}
             assert "two controllers" not in second.output()
             assert second.stop() == 0

@@ -86,8 +86,7 @@ constexpr std::array kRxKeys{
         .range = kPriorities,
         .default_text = "65",
         .about = "SCHED_FIFO priority of the RX thread: serial ports, and with receive: thread CAN. Must be "
-                 "above the "
-                 "scheduler's."},
+                 "above the scheduler's."},
     Key{.name = "lead_us",
         .kind = kNumber,
         .unit = "us",

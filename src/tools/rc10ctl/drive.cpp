@@ -103,6 +103,12 @@ class Driver {
   // Until the time is over or Ctrl-C. Returns what went wrong, or nothing.
   std::string repeat() {
     Progress progress;
+    std::string why = sendOn(progress);
+    showNotes(progress);
+    return why;
+  }
+
+  std::string sendOn(Progress& progress) {
     const auto start = steady_clock::now();
     auto next = start;
     while (!interrupted()) {
@@ -126,11 +132,10 @@ class Driver {
         next = std::max(next + kSendPeriod, now);
       }
       // After sending, for a terminal that is held keeps it waiting: what it sends has just been judged.
-      for (const auto& note : std::exchange(notes_, {})) progress.note(note);
+      showNotes(progress);
       progress.show(line(), false);
       waitReadable(rc10d_, std::min(next, start + order_.time) - steady_clock::now());
     }
-    for (const auto& note : std::exchange(notes_, {})) progress.note(note);
     progress.show(line(), true);
     // Too short a time to be sure about it otherwise.
     const bool told = !refusal_.empty() || steady_clock::now() - start >= kLongEnough;
@@ -225,6 +230,10 @@ class Driver {
              ", or take over with a higher --priority";
     return "motor '" + name_ + "' did not take the " + asked + " target" +
            (why.empty() ? ": `rc10ctl stats` shows what was refused" : why);
+  }
+
+  void showNotes(Progress& progress) {
+    for (const auto& note : std::exchange(notes_, {})) progress.note(note);
   }
 
   void hearEvents() {

@@ -104,18 +104,16 @@ TEST_F(ModuleRunnerTest, AClientThatGoesOnAfterAGapIsNoOther) {
   const ScriptedType type;
   start({{&type, 0}});
   const auto before = senders();
-  signal("planner", 0, 1.0);
-  robot_->run(100);
-  EXPECT_EQ(senders(), before + 1);
-  signal("planner", 0, 1.0);
-  robot_->run(10);
-  EXPECT_EQ(senders(), before + 1);
-  signal("panel", 5, 1.0);
-  robot_->run(100);
-  EXPECT_EQ(senders(), before + 2);
-  signal("planner", 0, 1.0);
-  robot_->run(10);
-  EXPECT_EQ(senders(), before + 3);
+  // Each message has lapsed when the next one comes.
+  const auto after = [&](const char* client) {
+    signal(client, 0, 1.0);
+    robot_->run(100);
+    return senders() - before;
+  };
+  EXPECT_EQ(after("planner"), 1.0);
+  EXPECT_EQ(after("planner"), 1.0);
+  EXPECT_EQ(after("panel"), 2.0);
+  EXPECT_EQ(after("planner"), 3.0);
 }
 
 TEST_F(ModuleRunnerTest, ATargetActsInTheTickInWhichItIsSet) {
