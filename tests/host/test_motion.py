@@ -21,14 +21,15 @@ if TYPE_CHECKING:
 
     from hostlib import Motor, Program
 
-# As docs/tuning.md has it; its feedback may be as old as a busy machine makes it.
+# As docs/tuning.md has it; its feedback may be as old as a busy machine makes it. No current passes
+# the limit of a step, whatever a late tick demands.
 ROBOT = (
     ARM
     + """
       - {name: wheel, model: M3508, id: 1, zero: power_on, feedback_timeout_ms: 1000,
          current_limit_a: 10, simulated: {inertia_kg_m2: 0.01}}
       - {name: lift, model: M3508, id: 2, zero: power_on, feedback_timeout_ms: 1000,
-         on_timeout: hold, simulated: {inertia_kg_m2: 0.01}}
+         on_timeout: hold, current_limit_a: 10, simulated: {inertia_kg_m2: 0.01}}
   - name: joint
     type: sim
     motors:
