@@ -27,6 +27,24 @@ def test_a_faster_host_clock_does_not_add_up() -> None:
     assert taken_s == pytest.approx(3599.0, abs=1e-6)
 
 
+def test_a_host_that_has_slept_is_placed_anew() -> None:
+    clock = HostClock()
+    clock.observe(5000.0, 10.0)
+    assert clock.observe(5001.0, 70.0) < 20.0
+    for tick in range(600):
+        clock.observe(5001.0 + tick * 0.01, 70.0 + tick * 0.01)
+    assert clock.observe(5007.0, 76.0) == pytest.approx(76.0)
+
+
+def test_messages_of_a_queue_that_is_read_in_bursts_are_as_old_as_they_are() -> None:
+    clock = HostClock()
+    clock.observe(5000.0, 10.0)
+    for turn in range(10):
+        for i in range(100):
+            taken_s = clock.observe(5000.0 + 2 * turn + i * 0.005, 12.0 + 2 * turn)
+            assert taken_s < 10.0 + 2 * turn + 0.51
+
+
 def test_a_restarted_host_begins_anew() -> None:
     clock = HostClock()
     clock.observe(5000.0, 10.0)

@@ -64,10 +64,10 @@ def test_a_target_of_a_motor_that_was_stopped_does_not_come_back_for_the_end(
     lapsing: Client, daemon: FakeDaemon, link: VirtualLink
 ) -> None:
     with lapsing as robot:
+        # The program has not listened since.
         robot.command(wheel=rc10.velocity_rpm(120), validity_ms=1000)
         daemon.publish_event("ACTIVE -> READY (the robot stops)", code=100)
         daemon.publish_event("READY -> ENABLING", code=100)
-        robot.spin(0.02)
         drain(link)
         sent = len(daemon.commands)
     drain(link)

@@ -27,6 +27,11 @@ class ModeSet {
   constexpr ModeSet() = default;
   template <typename... Modes>
   explicit constexpr ModeSet(Modes... modes) noexcept : bits_((0U | ... | bit(modes))) {}
+  [[nodiscard]] constexpr ModeSet without(ControlMode mode) const noexcept {
+    ModeSet rest = *this;
+    rest.bits_ &= ~bit(mode);
+    return rest;
+  }
   [[nodiscard]] constexpr std::uint32_t bits() const noexcept { return bits_; }
   [[nodiscard]] constexpr bool contains(ControlMode mode) const noexcept { return (bits_ & bit(mode)) != 0; }
 

@@ -142,7 +142,11 @@ class Gimbal : public Module_Base {
     const bool idle = restarts || !was_commanded_;
     if (idle || stabilised != was_stabilised_) yaw_.hold(yaw_deg);
     if (idle || by_imu_pitch != was_by_imu_pitch_) pitch_.hold(pitch_deg);
-    if (was_ready_ && !ready) forgetOpposed();
+    // Disabling is a person's, who may have turned the sensor; a takeover or a lost reference turns none.
+    const bool active = robot.status(yaw_motor_) == MotorStatus::kActive &&
+                        robot.status(pitch_motor_) == MotorStatus::kActive;
+    if (was_active_ && !active) forgetOpposed();
+    was_active_ = active;
     was_ready_ = ready;
     was_stabilised_ = stabilised;
     was_by_imu_pitch_ = by_imu_pitch;
@@ -155,7 +159,7 @@ class Gimbal : public Module_Base {
     const double relative_deg = yaw_known ? wrapHalfTurn(static_cast<double>(yaw.angle_deg)) : kNoSignal;
     setOutput(kRelativeYaw, relative_deg);
     // Only a direction of the world comes nearer when the chassis turns after it.
-    setOutput(kTurnAfter, stabilised && was_commanded_ ? relative_deg : kNoSignal);
+    setOutput(kOutTurnAfter, stabilised && was_commanded_ ? relative_deg : kNoSignal);
     setOutput(kTargetYaw, wrapHalfTurn(yaw_.target()));
     setOutput(kTargetPitch, pitch_.target());
     setOutput(kStabilised, stabilised ? 1.0 : 0.0);
@@ -174,7 +178,7 @@ class Gimbal : public Module_Base {
     kStabilised,
     kImuLagMs,
     kImuAgrees,
-    kTurnAfter
+    kOutTurnAfter
   };
   enum EventPlace : std::size_t { kLost, kBack, kSilent, kFirstOpposed };
   enum ImuSignal : std::size_t { kImuYaw, kImuYawRate, kImuPitch, kImuSignals };
@@ -279,6 +283,7 @@ class Gimbal : public Module_Base {
   MotionMatch pitch_match_{kAngleMatch};
   CarriedRate carried_;
   std::array<bool, kImuSignals> told_opposed_{};
+  bool was_active_ = false;
   bool was_ready_ = false;
   bool was_by_imu_pitch_ = false;
   bool was_stabilised_ = false;

@@ -40,6 +40,13 @@ enum class SpringYield : std::uint8_t {
 /// Torque that the drive makes of a law. A part without a gain is 0.
 [[nodiscard]] double torqueNm(const SpringLaw& law, const SpringState& at) noexcept;
 
+/// The law for where no angle may be followed: it opposes the shaft with the greater damping, and pushes
+/// nothing.
+[[nodiscard]] constexpr SpringLaw dampOnly(const SpringLaw& law, double damping_nms_per_rad) noexcept {
+  return {.damping_nms_per_rad =
+              law.damping_nms_per_rad > damping_nms_per_rad ? law.damping_nms_per_rad : damping_nms_per_rad};
+}
+
 /// Gains between 0 and those that a frame can say; not a number: 0.
 void boundGains(SpringLaw& law, double stiffness_nm_per_rad, double damping_nms_per_rad) noexcept;
 

@@ -160,6 +160,22 @@ def test_a_set_does_not_go_on_with_a_motor_that_was_stopped_and_enabled_meanwhil
     assert without_torque(motor_of(after, "wheel"))
 
 
+def test_a_stop_whose_event_waits_behind_unread_states_ends_a_set() -> None:
+    wheel = "      - {name: wheel, model: M3508, id: 1, zero: power_on, simulated: {}}\n"
+    with Daemon(ARM.replace('ttl=0"', 'ttl=0", state_hz: 1000') + wheel) as robot:
+        robot.wait_ready()
+        with held_up(robot) as setting:
+            # Its socket is full of states then.
+            wait_ticks(robot, 500)
+            robot.must("disable", "wheel")
+            robot.must("enable", "wheel")
+            wait_ticks(robot, 100)
+            setting.signal(signal.SIGCONT)
+            assert setting.wait() == 1
+            assert "READY" in setting.output or "held up for more than 2 s" in setting.output
+        assert without_torque(motor_of(robot.state(), "wheel"))
+
+
 def test_one_set_after_another_disturbs_neither(daemon: Daemon) -> None:
     daemon.must("enable", "wheel")
     for rpm in (30, 60, 30):

@@ -329,10 +329,12 @@ class TestAMecanumRobot:
         wait_driving(hero)
         hero.stage.powered = False
         wait_status(hero.robot, rc10.MotorStatus.OFFLINE)
+        # After a shorter loss the wheels of a chassis come back by themselves.
+        let_pass(hero.robot, 3.5)
         hero.stage.powered = True
         with Candump("vcan0", ids=(C6XX_COMMAND,)) as bus:
             wait_status(hero.robot, rc10.MotorStatus.READY)
-            let_pass(hero.robot, 0.3)
+            let_pass(hero.robot, 2.0)
             bus.stop()
             assert not any(pushes(frame) for frame in bus.frames())
         use_the_arm_switch(hero)

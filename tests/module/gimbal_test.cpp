@@ -502,6 +502,20 @@ TEST_F(LateGimbal, EnablingAgainComparesAgain) {
   EXPECT_NEAR(pitch(), -5.0, 0.2);
 }
 
+TEST_F(LateGimbal, ATakeoverForgetsNoWrongSign) {
+  pitch_sign_ = -1.0;
+  build(7);
+  run(300);
+  aim(0.0, 5.0);
+  run(1000);
+  ASSERT_EQ(output(kAgrees), 0.0);
+  robot_.motor(1).obeys = false;
+  run(50);
+  robot_.motor(1).obeys = true;
+  run(1);
+  EXPECT_EQ(output(kAgrees), 0.0);
+}
+
 TEST(GimbalType, RefusesOneMotorForBothAndLimitsTheWrongWayRound) {
   auto own = settings(false);
   own.own.set("pitch", 0.0);

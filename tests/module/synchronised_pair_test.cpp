@@ -55,12 +55,16 @@ TEST_F(SynchronisedPair, TheOneAheadTurnsSlowerAndTheOneBehindFaster) {
   EXPECT_EQ(target(1), 46.0);
 }
 
-TEST_F(SynchronisedPair, NoTargetIsAboveTheLimit) {
+TEST_F(SynchronisedPair, AtTheLimitTheOneAheadIsStillSlowed) {
   robot_.motor(0).feedback.total_angle_deg = -6.0;
   velocity(1000.0);
   robot_.update(*module_);
   EXPECT_EQ(target(0), 100.0);
-  EXPECT_EQ(target(1), 100.0);
+  EXPECT_EQ(target(1), 94.0);
+  velocity(-1000.0);
+  robot_.update(*module_);
+  EXPECT_EQ(target(0), -94.0);
+  EXPECT_EQ(target(1), -100.0);
 }
 
 TEST_F(SynchronisedPair, BothFollowOneAngle) {

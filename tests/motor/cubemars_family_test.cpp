@@ -65,6 +65,16 @@ TEST(CubemarsFamily, KeysChangeWhatTheTableSays) {
   EXPECT_NEAR(cubemarsTraits(setup).effort_full_scale, 12.0 / 1.035, 1e-4);
 }
 
+TEST(CubemarsFamily, WithoutABrakeCurrentThereIsNoBrakeMode) {
+  const auto brakes = [](double brake_a) {
+    const auto settings =
+        cubemarsSettings("AK80-9", 1, {{"protocol", std::string{"servo"}}, {"brake_current_a", brake_a}});
+    return cubemarsFamily().traits(settings.model, settings.own).modes.contains(ControlMode::kBrake);
+  };
+  EXPECT_TRUE(brakes(5.0));
+  EXPECT_FALSE(brakes(0.0));
+}
+
 TEST(CubemarsFamily, TellsEveryIdOnTheBus) {
   const auto& family = cubemarsFamily();
   auto settings = servo();

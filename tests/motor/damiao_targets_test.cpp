@@ -51,6 +51,22 @@ TEST(DamiaoMotor, ImpedanceIsSentAsTold) {
   EXPECT_NEAR(command.torque_nm, 0.3, 0.006);
 }
 
+TEST(DamiaoMotor, BeyondItsRangeImpedanceOnlyDamps) {
+  EnabledDesk desk;
+  for (double rad = 0.0; rad < 14.0; rad += 0.1) (void)desk.feed(stateAt(std::remainder(rad, 25.0), 0.0));
+  desk.command({.mode = ControlMode::kImpedance,
+                .value = 2000.0,
+                .velocity_ff_rpm = 60.0F,
+                .torque_ff_nm = 2.0F,
+                .stiffness_nm_per_rad = 10.0F});
+  const auto command = mitOf(desk.tick());
+  EXPECT_EQ(command.stiffness_nm_per_rad, 0.0);
+  EXPECT_GT(command.damping_nms_per_rad, 0.1);
+  EXPECT_NEAR(command.velocity_rad_s, 0.0, 0.01);
+  EXPECT_NEAR(command.torque_nm, 0.0, 0.003);
+  EXPECT_NE(desk.motor().limits() & kLimitAngle, 0U);
+}
+
 TEST(DamiaoMotor, AGearBehindTheDriveCountsOnceForAnglesAndSquaredForGains) {
   auto settings = damiaoSettingsOf();
   settings.gear_ratio = 20.0;  // 2 behind the drive's own 10
@@ -168,6 +184,18 @@ TEST(DamiaoMotor, NoSpeedOrPositionFrameExceedsTheLimits) {
       }
     }
   }
+}
+
+TEST(DamiaoMotor, ForcePositionStandsWhereNoAngleCanBeFollowed) {
+  DamiaoDesk desk(damiaoSettingsOf("DM4310", "force_position"));
+  desk.xout_rad = 10'050.0F;
+  ASSERT_TRUE(desk.enable());
+  desk.motor().order(FrameKind::kHold);
+  const auto sent = desk.tick();
+  ASSERT_GE(sent.size(), 1U);
+  EXPECT_EQ(readLittleEndian<std::uint16_t>(sent[0].data, 4), 0) << "speed";
+  EXPECT_GT(readLittleEndian<std::uint16_t>(sent[0].data, 6), 1000) << "current";
+  EXPECT_NE(desk.motor().limits() & kLimitAngle, 0U);
 }
 
 TEST(DamiaoMotor, EveryCodeComesBackThroughItsValue) {

@@ -100,6 +100,26 @@ class GearedLKTechMotor : public LKTechMotor {
   GearedLKTechMotor() : LKTechMotor(settingsOf("LK-MG5010E-i10")) { motor_gear_ = 10.0; }
 };
 
+TEST_F(LKTechMotor, AnOffsetOfItsCountIsKnownBeforeItStands) {
+  hear(frameOf("141#9A1E600964000000"));
+  hear(readingReply(0, 180, 0));  // 30 rpm, its encoder at 0
+  hear(angleReply(9000));         // but its count at 90 degrees
+  hear(readingReply(0, 180, 0));
+  motor_->order(FrameKind::kHold);
+  const auto frame = frameOf(tick().at(0));
+  EXPECT_EQ(frame.data[0], 0xA4);
+  EXPECT_NEAR(readLittleEndian<std::int32_t>(frame.data, 4), 9000, 10);
+}
+
+TEST_F(LKTechMotor, TheWayBetweenTwoAnswersOfATurningShaftIsNoOffset) {
+  hear(frameOf("141#9A1E600964000000"));
+  hear(readingReply(0, 1800, 0));  // 300 rpm
+  hear(angleReply(2700));          // 15 ms later
+  hear(readingReply(0, 1800, 27 * 65536 / 360));
+  motor_->order(FrameKind::kHold);
+  EXPECT_NEAR(readLittleEndian<std::int32_t>(frameOf(tick().at(0)).data, 4), 2700, 10);
+}
+
 TEST_F(LKTechMotor, RestsAndPollsWithACurrentOfZero) {
   EXPECT_THAT(tick(), ElementsAre("141#A100000000000000"));
   std::array<CanFrame, 4> out{};

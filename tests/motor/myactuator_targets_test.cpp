@@ -113,7 +113,9 @@ TEST_F(MyActuatorMotor, NonFiniteAndHugeTargetsAreHarmless) {
 }
 
 TEST_F(MyActuatorMotor, ASpeedThatItsFieldCannotSayIsCutBeforeTheTorqueIsBounded) {
-  comeOnline(0);
+  comeOnline(100);
+  hear(frameOf("241#A132000000000000"));
+  ASSERT_TRUE(motor_.setZero(0.0));
   motor_.order(FrameKind::kCommand, {.mode = ControlMode::kImpedance,
                                      .value = -54.0,
                                      .velocity_ff_rpm = 900.0F,
@@ -122,6 +124,43 @@ TEST_F(MyActuatorMotor, ASpeedThatItsFieldCannotSayIsCutBeforeTheTorqueIsBounded
   (void)tick();
   EXPECT_NE(motor_.limits() & kLimitVelocity, 0U);
   EXPECT_NE(motor_.limits() & kLimitCurrent, 0U) << "spring and damper do not balance any more";
+}
+
+TEST_F(MyActuatorMotor, ATargetBeyondItsRangeOfAnglesOnlyDamps) {
+  comeOnline(100);
+  hear(frameOf("241#A132000000000000"));
+  ASSERT_TRUE(motor_.setZero(0.0));
+  const Target far{.mode = ControlMode::kImpedance, .value = 1000.0, .stiffness_nm_per_rad = 10.0F};
+  auto pushed = far;
+  pushed.velocity_ff_rpm = 60.0F;
+  pushed.torque_ff_nm = 2.0F;
+  EXPECT_EQ(told(pushed), told(far));
+  EXPECT_NE(motor_.limits() & kLimitAngle, 0U);
+  EXPECT_EQ(motor_.commandValue(), 0.0F);
+}
+
+TEST_F(MyActuatorMotor, TheTorqueIsBoundedByTheAngleOfItsMotionAnswers) {
+  auto settings = settingsOf();
+  settings.effort_limit = 1.0F;  // 3.125 N·m
+  MyActuator_Motor motor = motorOf(settings);
+  for (CanFrame frame : {uptimeReply(1000), angleReply(1)}) {
+    frame.received = now_;
+    (void)motor.updateFeedback(frame);
+  }
+  (void)motor.setZero(0.0);
+  // A push has moved it by 0.2 rad since.
+  auto answer = frameOf("501#01820C8008000000");
+  answer.received = now_;
+  (void)motor.updateFeedback(answer);
+  motor.order(FrameKind::kCommand, {.mode = ControlMode::kImpedance, .stiffness_nm_per_rad = 100.0F});
+  const Tick tick{.index = 1, .now = now_ + std::chrono::milliseconds{1}, .dt_s = 0.001F};
+  motor.update(tick);
+  std::array<CanFrame, 4> out{};
+  (void)motor.packCommand(tick, out);
+  const auto& d = out[0].data;
+  ASSERT_EQ(out[0].id.value, 0x401U);
+  EXPECT_LE(((d[3] & 0xF) << 8 | d[4]) * 500.0 / 4095.0 * 0.2, 3.3);
+  EXPECT_NE(motor.limits() & kLimitCurrent, 0U);
 }
 
 TEST_F(MyActuatorMotor, ImpedanceNeverAsksForMoreTorqueThanTheLimitAllows) {

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cmath>
 #include <random>
 
@@ -21,6 +22,23 @@ TEST_F(OdriveMotor, ANewModeIsToldThreeTimesBetweenItsInputs) {
                                      odrive::Message::kSetInputVel));
   }
   EXPECT_THAT(messages(tick()), testing::ElementsAre(odrive::Message::kSetInputVel));
+}
+
+TEST_F(OdriveMotor, AModeIsToldAgainThoughItsFirstFramesWereLost) {
+  enable();
+  motor_->order(FrameKind::kCommand);
+  motor_->setTarget({.mode = ControlMode::kCurrent, .value = 0.0});
+  for (int i = 0; i < 3; ++i) (void)tick();  // lost
+  int told = 0;
+  for (int i = 0; i < 1000; ++i) {
+    const auto sent = messages(tick());
+    if (std::count(sent.begin(), sent.end(), odrive::Message::kSetControllerMode) == 0) continue;
+    ++told;
+    EXPECT_THAT(sent,
+                testing::ElementsAre(odrive::Message::kSetInputTorque, odrive::Message::kSetControllerMode,
+                                     odrive::Message::kSetInputTorque));
+  }
+  EXPECT_EQ(told, 2);
 }
 
 TEST_F(OdriveMotor, IdleIsZeroTorqueInTorqueControl) {

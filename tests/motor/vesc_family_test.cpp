@@ -38,6 +38,16 @@ TEST(VescFamily, AHandbrakeHoldsOnlyWhatABrakeHasStopped) {
   EXPECT_EQ(holds(0.0), Provision::kUnsupported);
 }
 
+TEST(VescFamily, WithoutABrakeCurrentThereIsNoBrakeMode) {
+  const auto brakes = [](double brake_a) {
+    return vescFamily()
+        .traits("VESC", vescSettings({{"brake_current_a", brake_a}}).own)
+        .modes.contains(ControlMode::kBrake);
+  };
+  EXPECT_TRUE(brakes(5.0));
+  EXPECT_FALSE(brakes(0.0));
+}
+
 TEST(VescFamily, TheModesFollowFromTheSourceOfTheAngle) {
   const auto& family = vescFamily();
   EXPECT_TRUE(family.traits("VESC", vescSettings().own).modes.contains(ControlMode::kTotalAngle));

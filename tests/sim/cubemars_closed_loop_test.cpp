@@ -412,6 +412,22 @@ TEST(CubemarsLoops, AVelocityLimitBoundsTheWayToAnAngle) {
   }
 }
 
+TEST(CubemarsLoops, ALoadIsHeldWhateverTheVelocityLimitIs) {
+  auto settings = settingsOf({"AK80-9", "mit"});
+  settings.velocity_limit_rpm = 30.0F;
+  auto rig = rigOf(settings);
+  rig.motor().order(FrameKind::kPoll);
+  rig.run(milliseconds{10});
+  ASSERT_TRUE(rig.enable());
+  rig.drive().setLoad({.coulomb_nm = 0.0F, .load_torque_nm = 5.0F});
+  rig.motor().order(FrameKind::kHold);
+  rig.run(seconds{1});
+  const double sagged_deg = rig.motor().feedback().total_angle_deg;
+  EXPECT_NEAR(sagged_deg, -5.0 / 30.0 * 180.0 / 3.14159265, 3.0);
+  rig.run(seconds{2});
+  EXPECT_NEAR(rig.motor().feedback().total_angle_deg, sagged_deg, 0.5);
+}
+
 TEST(CubemarsLoops, TheServoDriveObeysDuty) {
   auto rig = rigOf(settingsOf({"AK80-9", "servo"}));
   rig.command({.mode = ControlMode::kDuty, .value = 0.25});

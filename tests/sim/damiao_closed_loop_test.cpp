@@ -287,6 +287,25 @@ TEST(DamiaoClosedLoop, TheVelocityLimitBoundsAnAngleAndASpeed) {
   }
 }
 
+TEST(DamiaoClosedLoop, ALoadIsHeldWhateverTheVelocityLimitIs) {
+  auto settings = damiaoSettingsOf("DM4310", "mit");
+  settings.velocity_limit_rpm = 10.0F;
+  auto rig = onlineRig(settings, {.coulomb_nm = 0.0F, .load_torque_nm = 3.0F});
+  ASSERT_TRUE(rig.enable());
+  for (const auto order : {FrameKind::kHold, FrameKind::kCommand}) {
+    if (order == FrameKind::kCommand)
+      rig.command({.mode = ControlMode::kTotalAngle, .value = rig.motor().feedback().total_angle_deg});
+    else
+      rig.motor().order(order);
+    const double before_deg = shaftDeg(rig);
+    rig.run(seconds{1});
+    const double sagged_deg = shaftDeg(rig);
+    EXPECT_GT(sagged_deg, before_deg - 30.0);
+    rig.run(seconds{1});
+    EXPECT_NEAR(shaftDeg(rig), sagged_deg, 0.5);
+  }
+}
+
 TEST(DamiaoClosedLoop, TheSpeedOfATrajectoryCountsInTheVelocityLimit) {
   auto settings = damiaoSettingsOf("DM4310", "mit");
   settings.velocity_limit_rpm = 30.0F;

@@ -206,6 +206,20 @@ TEST(RobStrideClosedLoop, TorqueAndSpeedStayWithinTheirLimitsOnTheWayToAFarAngle
   }
 }
 
+TEST(RobStrideClosedLoop, ALoadIsHeldWhateverTheVelocityLimitIs) {
+  auto settings = controlled("operation");
+  settings.velocity_limit_rpm = 10.0F;
+  Rig rig(settings, {.coulomb_nm = 0.0F, .load_torque_nm = 4.0F});
+  ASSERT_TRUE(rig.enable());
+  const double before_deg = rig.total();
+  rig.motor().order(FrameKind::kHold);
+  rig.run(seconds{1});
+  const double sagged_deg = rig.total();
+  EXPECT_GT(sagged_deg, before_deg - 30.0);
+  rig.run(seconds{1});
+  EXPECT_NEAR(rig.total(), sagged_deg, 0.5);
+}
+
 TEST(RobStrideClosedLoop, OlderFirmwareHasItsOwnScale) {
   auto settings = controlled("operation");
   settings.own.set("position_range_rad", 12.5);

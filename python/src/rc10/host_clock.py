@@ -9,6 +9,12 @@ _DRIFT = 100e-6
 # A host's clock that went back this far belongs to another boot or another host.
 _RESTART_S = 1.0
 
+# A program reads all that has come in each turn: what is late by this, without a gap, for so long,
+# has waited in no queue.
+_LATE_S = 0.5
+_GAP_S = 0.5
+_BELIEVED_S = 5.0
+
 
 class HostClock:
     """Places the daemon's CLOCK_MONOTONIC on this program's clock.
@@ -16,13 +22,18 @@ class HostClock:
     The time at which a message is handled says little about its age, since it may have waited
     in LCM's queue while the program was busy. The quickest message seen so far gives the
     distance between the two clocks, and then every message tells its own age. It makes no
-    difference whether the daemon runs on this computer or on another.
+    difference whether the daemon runs on this computer or on another. If the daemon's clock falls
+    behind (its computer slept, or its time is corrected), the distance is taken anew after some
+    seconds.
     """
 
     def __init__(self) -> None:
         self._distance_s: float | None = None
         self._last_host_s = 0.0
         self._last_local_s = 0.0
+        # Since then every message has been late, without a gap; the least distance since.
+        self._late_since_s: float | None = None
+        self._least_s = 0.0
 
     def observe(self, host_s: float, local_s: float) -> float:
         """Takes in a message stamped `host_s` and handled at `local_s`.
@@ -34,9 +45,18 @@ class HostClock:
         restarted = host_s < self._last_host_s - _RESTART_S
         if self._distance_s is None or restarted:
             self._distance_s = distance_s
+            self._late_since_s = None
         else:
-            drift_s = _DRIFT * (local_s - self._last_local_s)
-            self._distance_s = min(distance_s, self._distance_s + drift_s)
+            gap_s = local_s - self._last_local_s
+            self._distance_s = min(distance_s, self._distance_s + _DRIFT * gap_s)
+            if distance_s - self._distance_s < _LATE_S or gap_s > _GAP_S:
+                self._late_since_s = None
+            elif self._late_since_s is None:
+                self._late_since_s, self._least_s = local_s, distance_s
+            else:
+                self._least_s = min(self._least_s, distance_s)
+                if local_s - self._late_since_s >= _BELIEVED_S:
+                    self._distance_s, self._late_since_s = self._least_s, None
         self._last_host_s = host_s
         self._last_local_s = local_s
         return host_s + self._distance_s

@@ -79,6 +79,11 @@ class Inbox:
         self._take_waiting()
         return count
 
+    def hear(self) -> None:
+        """Takes the events that wait; states are left for the next pump, and nobody is called."""
+        self._states_seen = 0
+        self._link.pump(0.0)
+
     def _on_state(self, data: bytes) -> None:
         if not self.on_state:
             # Only the last one of a pump is worth decoding.

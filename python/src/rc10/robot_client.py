@@ -364,6 +364,8 @@ class RobotClient:
 
     def _let_go(self) -> str | None:
         """Ends what acts, as `at_end` says, and returns the target of a disable request, if any."""
+        # A motor that was stopped meanwhile is known by an event that may wait.
+        self._inbox.hear()
         for move in self._moves.values():
             move.fail("the program has let go of the robot")
         self._moves.clear()

@@ -243,11 +243,14 @@ MotionRun::Order MotionRun::orderAt(double time_s, MonotonicTime now) {
   // A short pulse of a client that dies is not as long as the patience of a long test.
   const auto most = std::chrono::duration<double>(excitation_.timeS() - time_s) + kLease;
   const auto most_ms = std::chrono::duration_cast<std::chrono::milliseconds>(most).count();
+  const auto validity_ms = std::min<std::int64_t>(settings_.validity_ms, most_ms);
+  acts_until_ = now + std::chrono::milliseconds{validity_ms};
   return {.target = {.mode = settings_.mode, .value = value},
-          .validity_ms = static_cast<std::int32_t>(std::min<std::int64_t>(settings_.validity_ms, most_ms))};
+          .validity_ms = static_cast<std::int32_t>(validity_ms)};
 }
 
 std::optional<MotionRun::Order> MotionRun::order(MonotonicTime now) {
+  const bool caught_up = catch_up_.done(now, newest_ ? newest_->mono_us : 0);
   if (!asked_) asked_ = now;
   if (phase_ == Phase::kPreparing) {
     if (const auto why = whyNotBegin(now)) abort(*why);
@@ -271,11 +274,16 @@ std::optional<MotionRun::Order> MotionRun::order(MonotonicTime now) {
     phase_ = Phase::kLettingGo;
     let_go_ = now;
     due_ = now + kUntilLetGo;
-    if (lost_) return std::nullopt;
+    // One that has lapsed does not come back: on_timeout acts in its stead.
+    if (lost_ || now >= acts_until_) return std::nullopt;
     // The last target once more, for an instant: then on_timeout acts, as when the client has died.
     return Order{.target = {.mode = settings_.mode, .value = sent_.back().value}, .validity_ms = 1};
   }
   if (now < due_) return std::nullopt;
+  if (!caught_up) {
+    due_ = now + kSendPeriod;
+    return std::nullopt;
+  }
   due_ = std::max(due_ + kSendPeriod, now);
   return orderAt(time_s, now);
 }

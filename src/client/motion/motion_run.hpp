@@ -10,6 +10,7 @@
 #include "app/result.hpp"
 #include "app/target.hpp"
 #include "app/time.hpp"
+#include "client/catch_up.hpp"
 #include "client/motion/abort_criteria.hpp"
 #include "client/motion/curve.hpp"
 #include "client/motion/excitation.hpp"
@@ -122,7 +123,9 @@ class MotionRun {
   std::optional<link::State> state_;
   bool untraced_ = false;  ///< rc10d traces not all of the signals: other clients have its room.
   std::optional<Row> newest_;
-  std::deque<Sent> sent_;        ///< Targets of the last second.
+  std::deque<Sent> sent_;       ///< Targets of the last second.
+  MonotonicTime acts_until_{};  ///< The last of them does.
+  CatchUp catch_up_;
   std::int64_t taken_tick_ = 0;  ///< 0: its target has not been in force.
   std::int64_t taken_us_ = 0;
   bool lost_ = false;  ///< Another's, or at rest: nothing is sent any more.

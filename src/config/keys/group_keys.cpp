@@ -40,7 +40,7 @@ constexpr std::array kGroupKeys{
         .default_text = "request",
         .about =
             "request: every member must be enabled again. rearm_at_rest: enabled again by itself once "
-            "all are there and stand still; not after a fault, an e-stop, a disable or an enable_alone."}};
+            "all are there, within 3 s, and stand still; not after a fault, an e-stop, a disable or an enable_alone."}};
 
 }  // namespace
 

@@ -19,6 +19,8 @@ constexpr std::size_t kGatewaySeats = 1;
 constexpr std::size_t kMostOfProcess = 12;
 // More than a client may have under way: one with so many asks and never reads.
 constexpr std::size_t kMaxUnsent = 128;
+// Twice those of an e-stop of the largest robot. Of one that reads nothing for longer the oldest are dropped.
+constexpr std::size_t kMaxWaitingEvents = 256;
 // Publications lost in a row: with states at 100 Hz, a second after its socket is full. A slow client reads
 // some of them.
 constexpr unsigned kDeafAfter = 100;
@@ -54,6 +56,11 @@ constexpr unsigned kDeafAfter = 100;
   return fmt::format(
       "client '{}' (pid {}) reads nothing, and loses its states and events: it is stopped or hangs",
       connection.client.view(), pid);
+}
+
+void reads(Connection& connection) noexcept {
+  connection.lost_in_a_row = 0;
+  connection.told_deaf = false;
 }
 
 }  // namespace
@@ -155,6 +162,27 @@ bool Connections::send(const Connection& connection, std::span<const std::byte> 
          (errno != EAGAIN && errno != ENOBUFS);
 }
 
+bool Connections::sendWaiting(Connection& connection) noexcept {
+  auto& waiting = connection.waiting_events;
+  while (!waiting.empty() && send(connection, waiting.front())) {
+    waiting.pop_front();
+    reads(connection);
+  }
+  return waiting.empty();
+}
+
+bool Connections::sendInOrder(Connection& connection, std::span<const std::byte> message) {
+  return sendWaiting(connection) && send(connection, message);
+}
+
+bool Connections::tell(Connection& connection, std::span<const std::byte> event) {
+  if (sendInOrder(connection, event)) return true;
+  auto& waiting = connection.waiting_events;
+  if (waiting.size() >= kMaxWaitingEvents) waiting.pop_front();
+  waiting.emplace_back(event.begin(), event.end());
+  return false;
+}
+
 void Connections::respond(Connection& connection, link::Response response) {
   if (connection.unsent.empty() && send(connection, link::seal(response))) return;
   connection.unsent.push_back(std::move(response));
@@ -169,16 +197,21 @@ bool Connections::wanted(std::uint32_t subscriptions) const noexcept {
 void Connections::publish(std::uint32_t subscription, std::span<const std::byte> message) {
   for (auto& connection : all_) {
     if (!connection.wants(subscription)) continue;
-    connection.lost_in_a_row = send(connection, message) ? 0 : connection.lost_in_a_row + 1;
+    const bool sent =
+        subscription == link::kEvents ? tell(connection, message) : sendInOrder(connection, message);
+    if (sent)
+      reads(connection);
+    else
+      ++connection.lost_in_a_row;
   }
 }
 
 std::vector<std::string> Connections::newlyDeaf() {
   std::vector<std::string> texts;
   for (auto& connection : all_) {
-    const bool deaf = connection.lost_in_a_row >= kDeafAfter;
-    if (deaf && !connection.told_deaf) texts.push_back(deafText(connection));
-    connection.told_deaf = deaf;
+    if (connection.lost_in_a_row < kDeafAfter || connection.told_deaf) continue;
+    texts.push_back(deafText(connection));
+    connection.told_deaf = true;
   }
   return texts;
 }
@@ -189,6 +222,7 @@ std::vector<std::uint64_t> Connections::sendUnsent() {
     auto& unsent = connection.unsent;
     while (!unsent.empty() && send(connection, link::seal(unsent.front()))) unsent.pop_front();
     if (unsent.size() > kMaxUnsent) overfull.push_back(connection.id);
+    (void)sendWaiting(connection);
   }
   for (const auto id : overfull) close(id);
   return overfull;

@@ -26,7 +26,8 @@ struct Connection {
   link::Name client;
   std::uint32_t subscriptions = 0;
   bool welcomed = false;
-  std::deque<link::Response> unsent{};  ///< Answers that found no room; the oldest first.
+  std::deque<link::Response> unsent{};                  ///< Answers that found no room; the oldest first.
+  std::deque<std::vector<std::byte>> waiting_events{};  ///< Events that found none.
   Speaker speaker{};
   bool is_gateway = false;     ///< It says for whom it speaks.
   unsigned lost_in_a_row = 0;  ///< Publications that found no room, since the last that did.
@@ -41,8 +42,9 @@ struct Connection {
 /// Makes epoll report `key` when there is something to read.
 [[nodiscard]] bool watchDescriptor(int epoll, int fd, std::uint64_t key) noexcept;
 
-/// Clients' connections, and what is sent to them: what a client does not read is dropped, but answers wait
-/// until they fill their room. Link thread only.
+/// Clients' connections, and what is sent to them: what a client does not read is dropped, but answers and
+/// events wait until they fill their room, and nothing that is published overtakes an event: a state that is
+/// younger than a stop is read after it. Link thread only.
 class Connections {
  public:
   /// epoll reports what a client sends by the id of its connection.
@@ -62,23 +64,30 @@ class Connections {
 
   /// False: there was no room.
   static bool send(const Connection& connection, std::span<const std::byte> message) noexcept;
+  /// The same after the events that wait.
+  static bool sendInOrder(Connection& connection, std::span<const std::byte> message);
+  /// Sends an event, or keeps it.
+  static bool tell(Connection& connection, std::span<const std::byte> event);
   /// Hands an answer over, or keeps it.
   static void respond(Connection& connection, link::Response response);
   /// Somebody subscribed to one of these.
   [[nodiscard]] bool wanted(std::uint32_t subscriptions) const noexcept;
   /// To all that subscribed.
   void publish(std::uint32_t subscription, std::span<const std::byte> message);
-  /// Answers that have found no room until now. Returns the clients that have left too many of them: each
-  /// sees the end of its connection, and knows that answers are missing.
+  /// Answers and events that have found no room until now. Returns the clients that have left too many of
+  /// them: each sees the end of its connection, and knows that answers are missing.
   [[nodiscard]] std::vector<std::uint64_t> sendUnsent();
   /// Text for each client that has begun to lose all that it subscribed to: it stands still. Once, until it
   /// reads again.
   [[nodiscard]] std::vector<std::string> newlyDeaf();
 
+  [[nodiscard]] std::vector<Connection>& all() noexcept { return all_; }
   [[nodiscard]] const std::vector<Connection>& all() const noexcept { return all_; }
 
  private:
   [[nodiscard]] bool dropSilent();
+  /// Whether no event waits any more.
+  static bool sendWaiting(Connection& connection) noexcept;
   void refuseForWantOfDescriptors();
   [[nodiscard]] Speaker speakerOf(int fd, const ucred& peer, std::uint64_t connection) const;
 

@@ -85,8 +85,8 @@ void Feeds::chooseTrace(const link::TraceChoice& message, const Connection& conn
 void Feeds::publishTrace() {
   while (!trace_desk_.idle() && trace_desk_.fill(trace_)) {
     const auto message = link::seal(trace_);
-    for (const auto& connection : connections_.all()) {
-      if (trace_desk_.isWatching(connection.id)) Connections::send(connection, message);
+    for (auto& connection : connections_.all()) {
+      if (trace_desk_.isWatching(connection.id)) Connections::sendInOrder(connection, message);
     }
   }
 }

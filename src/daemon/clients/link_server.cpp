@@ -307,7 +307,7 @@ void LinkServer::reportRefusal(CommandRefusal reason, std::uint64_t id, const li
   if (connection != nullptr) connection->next_refusal_report = now + kRefusalReportInterval;
   auto event = Publication::refusal(reason, client, now, wallClockUs(), why);
   if (!for_all) {
-    if (connection->wants(link::kEvents)) Connections::send(*connection, link::seal(event));
+    if (connection->wants(link::kEvents)) Connections::tell(*connection, link::seal(event));
     return;
   }
   next_report = now + kRefusalReportInterval;

@@ -46,12 +46,24 @@ void MotorGroup::noteLeaving(std::size_t motor, MotorStatus before, MotorEvent e
   }
 }
 
+bool MotorGroup::isFirstDisable(std::size_t motor, const Order& order) const noexcept {
+  if (!together) return rests_with_it.test(motor);
+  return (order.motors & rests_with_it).any() || first_disable == order.id;
+}
+
+void MotorGroup::takeDisable(std::size_t motor, const Order& order) noexcept {
+  // Of what is moved by several motors one request lets go of all or of none.
+  if (together && (order.motors & rests_with_it).any()) first_disable = order.id;
+  rests_with_it.reset(motor);
+}
+
 void MotorGroup::forgetLeaving() noexcept {
   dropped.reset();
   disabled.reset();
   disabled_on_request = false;
   refused.reset();
   disable_asked = false;
+  first_disable.reset();
 }
 
 }  // namespace rc10

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <vector>
 
 #include "app/time.hpp"
@@ -24,6 +25,10 @@ struct MotorGroup {
   [[nodiscard]] bool waits(const std::vector<Axis>& axes) const noexcept;
   /// A member was ENABLING or ACTIVE before `event`, and is not now.
   void noteLeaving(std::size_t motor, MotorStatus before, MotorEvent event) noexcept;
+  /// Whether this request, for a READY member, is the first that names one that rests for the others' sake.
+  [[nodiscard]] bool isFirstDisable(std::size_t motor, const Order& order) const noexcept;
+  /// After each member that it names.
+  void takeDisable(std::size_t motor, const Order& order) noexcept;
   /// The end of its tick.
   void forgetLeaving() noexcept;
 
@@ -37,10 +42,13 @@ struct MotorGroup {
   MotorSet refused;                  ///< or whose drives have refused.
   bool disable_asked = false;        ///< A request named some member.
   bool disabled_on_request = false;  ///< Some of `disabled` by one that somebody asked for.
+  std::optional<std::uint64_t>
+      first_disable;  ///< Request, of a group that acts together, that named some of rests_with_it.
   // Until a request changes it.
-  MotorSet rests_with_it;  ///< Disabled since another member was.
-  MotorSet rearm;          ///< To be enabled again by itself; empty: none.
-  MonotonicTime moved{};   ///< Last time at which a member moved or was missing.
+  MotorSet rests_with_it;   ///< Disabled since another member was.
+  MotorSet rearm;           ///< To be enabled again by itself; empty: none.
+  MonotonicTime stopped{};  ///< Last time at which it was.
+  MonotonicTime moved{};    ///< Last time at which a member moved or was missing.
 };
 
 }  // namespace rc10

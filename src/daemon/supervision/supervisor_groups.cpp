@@ -9,6 +9,9 @@ namespace {
 
 // Standstill after which motors are at rest.
 constexpr Duration kAtRest = std::chrono::milliseconds{300};
+// Drives start anew within this after a dip of their supply. After a longer loss somebody may have his hands
+// there.
+constexpr Duration kShortLoss = std::chrono::seconds{3};
 
 [[nodiscard]] std::int16_t firstOf(const MotorSet& motors) noexcept {
   std::int16_t first = 0;
@@ -93,6 +96,7 @@ void Supervisor::stopGroup(std::size_t index, GroupStop reason, const Tick& tick
     if (gone.test(motor) && axes_[motor].status() == MotorStatus::kFault) returns = false;
   if (!returns) group.rearm.reset();
   group.moved = tick.now;
+  group.stopped = tick.now;
   report({EventCode::kGroupStopped, asked ? Severity::kInfo : Severity::kError, source,
           static_cast<std::int32_t>(index), static_cast<std::int32_t>(reason), tick.now});
 }
@@ -109,6 +113,10 @@ void Supervisor::rearm(std::size_t index, const Tick& tick) noexcept {
       return;
     }
     const bool waited_for = status == MotorStatus::kOffline && !optional;
+    if (waited_for && tick.now - group.stopped > kShortLoss) {
+      group.rearm.reset();
+      return;
+    }
     const bool turns = status != MotorStatus::kOffline && !axes_[motor].standsStill();
     if (waited_for || turns) group.moved = tick.now;
   }

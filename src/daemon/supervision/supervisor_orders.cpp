@@ -225,11 +225,19 @@ void Supervisor::disable(std::size_t motor, const Order& order, const Tick& tick
   // One in the tick in which an e-stop begins is no second one either.
   const bool anew = order.asked == Asked::kAnew;
   const bool once_more =
-      anew && tick.now != estop_began_ && (group == nullptr || !group->rests_with_it.test(motor));
-  if (axis.status() == MotorStatus::kReady && once_more) axis.disableOnceMore(tick);
+      anew && tick.now != estop_began_ && (group == nullptr || !group->isFirstDisable(motor, order));
+  if (axis.status() == MotorStatus::kReady && once_more) {
+    // What is moved by several motors is let go by all.
+    if (group != nullptr && group->together) {
+      for (const auto member : group->motors)
+        if (axes_[member].status() == MotorStatus::kReady) axes_[member].disableOnceMore(tick);
+    } else {
+      axis.disableOnceMore(tick);
+    }
+  }
   if (group != nullptr) {
     group->rearm.reset();
-    if (anew) group->rests_with_it.reset(motor);
+    if (anew) group->takeDisable(motor, order);
     group->disable_asked = true;
   }
   const auto event = order.asked == Asked::kUnasked ? MotorEvent::kDisableUnasked : MotorEvent::kDisable;

@@ -143,7 +143,10 @@ class CubemarsFamily final : public MotorFamily {
     const auto settings = cubemarsSettings(model, own);
     auto traits = cubemarsTraits(settings);
     const bool brakes = settings.protocol != CubemarsProtocol::kServo || own.number("brake_current_a") > 0.0;
-    if (!brakes) traits.frames.brake = Provision::kUnsupported;
+    if (!brakes) {
+      traits.frames.brake = Provision::kUnsupported;
+      traits.modes = traits.modes.without(ControlMode::kBrake);
+    }
     return traits;
   }
 

@@ -178,10 +178,11 @@ void CubemarsMit::update(const Tick& tick) noexcept {
   const bool damps = ordered() == FrameKind::kDamp;
   const bool coasts = target.mode == ControlMode::kCoast && !damps;
   if (target.mode != ControlMode::kTotalAngle && target.mode != ControlMode::kImpedance) reach_.release();
+  if (target.mode != ControlMode::kTotalAngle) lead_.release();
   if (coasts || silent(tick) || !std::isfinite(target.value)) {
     release();
   } else {
-    send(damps ? velocityLaw(0.0, 0.0, kMitDampShare * velocity_gain_) : lawOf(target));
+    send(damps ? velocityLaw(0.0, 0.0, kMitDampShare * velocity_gain_) : lawOf(target, tick.now));
   }
 }
 
@@ -200,8 +201,7 @@ SpringLaw CubemarsMit::velocityLaw(double output_rpm, double torque_ff_nm, doubl
 }
 
 // `stiffness` and `damping` at the drive's output.
-SpringLaw CubemarsMit::angleLaw(const Target& target, double stiffness, double damping,
-                                bool bound_speed) noexcept {
+SpringLaw CubemarsMit::angleLaw(const Target& target, double stiffness, double damping) noexcept {
   const double ff_nm = static_cast<double>(target.torque_ff_nm);
   if (!inRange()) {
     // The command's position field ends there; the drive's response beyond it is unknown.
@@ -219,15 +219,18 @@ SpringLaw CubemarsMit::angleLaw(const Target& target, double stiffness, double d
   if (law.position_rad != wanted_rad) limits_ |= kLimitAngle;
   // As the frame can say them: the errors are bounded by these.
   boundGains(law, CubemarsRanges::kStiffnessNmPerRad, CubemarsRanges::kDampingNmsPerRad);
-  const double limit_rad_s = std::fabs(driveRadS(static_cast<double>(velocityLimitRpm())));
-  if (bound_speed && limit_rad_s > 0.0 &&
-      boundLead(law, measured(), -limit_rad_s - law.velocity_rad_s, limit_rad_s - law.velocity_rad_s)) {
-    limits_ |= kLimitVelocity;
-  }
   return law;
 }
 
-SpringLaw CubemarsMit::lawOf(const Target& target) noexcept {
+SpringLaw CubemarsMit::approachLaw(const Target& target, MonotonicTime now) noexcept {
+  auto law = angleLaw(target, angle_stiffness_, angle_damping_);
+  const double limit_rad_s = std::fabs(driveRadS(static_cast<double>(velocityLimitRpm())));
+  if (limit_rad_s > 0.0 && lead_.apply(law, measured(), limit_rad_s, driveTorqueLimitNm(), now))
+    limits_ |= kLimitVelocity;
+  return law;
+}
+
+SpringLaw CubemarsMit::lawOf(const Target& target, MonotonicTime now) noexcept {
   const double ff_nm = static_cast<double>(target.torque_ff_nm);
   switch (target.mode) {
     case ControlMode::kCurrent: {
@@ -235,12 +238,12 @@ SpringLaw CubemarsMit::lawOf(const Target& target) noexcept {
       return {.torque_nm = torqueToDrive(amperes * static_cast<double>(torqueNmPerA()) + ff_nm)};
     }
     case ControlMode::kVelocity: return velocityLaw(target.value, ff_nm, velocity_gain_);
-    case ControlMode::kTotalAngle: return angleLaw(target, angle_stiffness_, angle_damping_, true);
+    case ControlMode::kTotalAngle: return approachLaw(target, now);
     case ControlMode::kImpedance: {
       // Gains of the shaft, seen through what gear lies behind the drive's output.
       const double ratio = toDrive(1.0);
       return angleLaw(target, static_cast<double>(target.stiffness_nm_per_rad) / (ratio * ratio),
-                      static_cast<double>(target.damping_nms_per_rad) / (ratio * ratio), false);
+                      static_cast<double>(target.damping_nms_per_rad) / (ratio * ratio));
     }
     case ControlMode::kBrake: return velocityLaw(0.0, 0.0, velocity_gain_);
     case ControlMode::kCoast:

@@ -4,6 +4,7 @@
 
 #include "drives/cubemars/cubemars_motor.hpp"
 #include "motor/enable_sequence.hpp"
+#include "motor/lead_bound.hpp"
 #include "motor/position_reach.hpp"
 
 namespace rc10 {
@@ -45,10 +46,11 @@ class CubemarsMit : public CubeMars_Motor {
   [[nodiscard]] double springReach(double stiffness_nm_per_rad) const noexcept;
   void watchSpring(const cubemars::MitReport& report) noexcept;
   [[nodiscard]] bool pullsOtherwise() const noexcept;
-  [[nodiscard]] SpringLaw lawOf(const Target& target) noexcept;
+  [[nodiscard]] SpringLaw lawOf(const Target& target, MonotonicTime now) noexcept;
   [[nodiscard]] SpringLaw velocityLaw(double output_rpm, double torque_ff_nm, double gain) noexcept;
-  [[nodiscard]] SpringLaw angleLaw(const Target& target, double stiffness, double damping,
-                                   bool bound_speed) noexcept;
+  [[nodiscard]] SpringLaw angleLaw(const Target& target, double stiffness, double damping) noexcept;
+  /// The same for an angle to go to, no faster than the limit.
+  [[nodiscard]] SpringLaw approachLaw(const Target& target, MonotonicTime now) noexcept;
   void send(const SpringLaw& wanted_law) noexcept;
   void release() noexcept;
   [[nodiscard]] double boundRpm(double wanted_rpm) noexcept;
@@ -71,6 +73,7 @@ class CubemarsMit : public CubeMars_Motor {
   int samples_at_end_ = 0;
   Travel travel_;
   SpringReach reach_;
+  LeadBound lead_;
 
   SpringLaw command_{};              ///< Result of update().
   std::array<SpringLaw, 2> sent_{};  ///< The last, and the one before.

@@ -31,7 +31,7 @@ SpringLaw boundedMit(SpringLaw law, const DamiaoMitBounds& bounds, std::uint32_t
       bounds.position_known && std::fabs(bounds.measured.position_rad) <= bounds.scale.p_max_rad;
   if (law.stiffness_nm_per_rad > 0.0 && !reachable) {
     limits |= kLimitAngle;
-    law.damping_nms_per_rad = std::max(law.damping_nms_per_rad, bounds.damping_nms_per_rad);
+    law = dampOnly(law, bounds.damping_nms_per_rad);
   }
   if (!reachable || !std::isfinite(law.position_rad)) law.stiffness_nm_per_rad = 0.0;
   if (law.stiffness_nm_per_rad > 0.0) {
@@ -42,8 +42,8 @@ SpringLaw boundedMit(SpringLaw law, const DamiaoMitBounds& bounds, std::uint32_t
     law.velocity_rad_s = within(law.velocity_rad_s, fastest_rad_s, kLimitVelocity, limits);
   }
   // The speed that the spring leads to and that of the trajectory are one.
-  if (bounds.velocity_rad_s > 0.0 && boundLead(law, bounds.measured, -fastest_rad_s - law.velocity_rad_s,
-                                               fastest_rad_s - law.velocity_rad_s)) {
+  if (bounds.lead != nullptr && bounds.velocity_rad_s > 0.0 &&
+      bounds.lead->apply(law, bounds.measured, fastest_rad_s, most_nm, bounds.now)) {
     limits |= kLimitVelocity;
   }
   if (boundParts(law, bounds.measured, most_nm)) limits |= kLimitCurrent;

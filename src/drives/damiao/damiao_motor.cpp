@@ -179,7 +179,7 @@ void Damiao_Motor::update(const Tick& tick) noexcept {
     return;
   }
   switch (own_.control) {
-    case DamiaoControl::kMit: followMit(target); break;
+    case DamiaoControl::kMit: followMit(target, tick.now); break;
     case DamiaoControl::kVelocity: followVelocity(target); break;
     case DamiaoControl::kPositionVelocity:
     case DamiaoControl::kForcePosition: followAngle(target); break;
@@ -194,6 +194,7 @@ double Damiao_Motor::fastestRadS() const noexcept {
 void Damiao_Motor::release() noexcept {
   command_ = specialFrame(Special::kDisable);
   reach_.release();
+  lead_.release();
   stay_rad_.reset();
   setCommand(0.0, CommandUnit::kNone);
 }
@@ -237,18 +238,21 @@ SpringLaw Damiao_Motor::mitLaw(const Target& target) const noexcept {
   return law;
 }
 
-void Damiao_Motor::followMit(const Target& target) noexcept {
+void Damiao_Motor::followMit(const Target& target, MonotonicTime now) noexcept {
   const auto law = mitLaw(target);
   DamiaoMitBounds bounds{.scale = own_.scale,
                          .torque_nm = torqueLimitNm(),
                          .velocity_rad_s = velocityLimitRpm() > 0.0F ? fastestRadS() : 0.0,
                          .measured = {position_.rad(), measured_rad_s_},
                          .position_known = position_.known(),
+                         .lead = target.mode == ControlMode::kTotalAngle ? &lead_ : nullptr,
+                         .now = now,
                          .damping_nms_per_rad = damp_nms_per_rad_};
   if (law.stiffness_nm_per_rad > 0.0)
     bounds.reach_rad = reach_.step(springReach(law.stiffness_nm_per_rad), position_.rad());
   else
     reach_.release();
+  if (bounds.lead == nullptr) lead_.release();
   const auto command = boundedMit(law, bounds, limits_);
   command_ = frameOf(command_ids_[0], damiao::mit(command, own_.scale));
   const double torque_nm = torqueToOutput(torqueNm(command, bounds.measured));
@@ -289,7 +293,8 @@ void Damiao_Motor::followAngle(const Target& target) noexcept {
                        damiao::positionVelocity(static_cast<float>(rad), static_cast<float>(limit_rad_s)));
     return;
   }
-  const bool holds = moves || target.mode == ControlMode::kBrake;
+  // Where it can follow no angle, an angle stands as a brake does.
+  const bool holds = target.mode == ControlMode::kTotalAngle || target.mode == ControlMode::kBrake;
   const double share = static_cast<double>(effortLimit() / traits().effort_full_scale);
   command_ = frameOf(command_ids_[0], damiao::forcePosition(static_cast<float>(rad), limit_rad_s,
                                                             holds ? std::min(share, 1.0) : 0.0));

@@ -54,7 +54,7 @@ class Damiao_Motor : public SoloMotor {
 
   // Each writes command_.
   void release() noexcept;
-  void followMit(const Target& target) noexcept;
+  void followMit(const Target& target, MonotonicTime now) noexcept;
   void followVelocity(const Target& target) noexcept;
   void followAngle(const Target& target) noexcept;
 
@@ -79,6 +79,7 @@ class Damiao_Motor : public SoloMotor {
   DamiaoSpeed speed_;
   Travel travel_;
   SpringReach reach_;
+  LeadBound lead_;
   DamiaoEnabling enabling_;
   DamiaoSetupCodec setup_codec_;
   DriveConfiguring configuring_{setup_codec_};

@@ -27,6 +27,9 @@ constexpr int kZeroAnglesBelieved = 3;
 constexpr float kStandingRpm = 1.0F;
 /// By how much the two may differ for other reasons.
 constexpr double kSameAngleDeg = 1.0;
+constexpr double kShiftSeenDeg = 10.0;
+// Encoder and count are two answers.
+constexpr double kInstantsApartS = 0.03;
 
 [[nodiscard]] double amperesPerRaw(const std::string& model) {
   const LktechModel* const found = findLktechModel(model);
@@ -149,7 +152,11 @@ void LKTech_Motor::takeTurns(const CanFrame& frame) noexcept {
     }
     if (lost || !was_counted_) {
       position_deg_ = angle_deg + shortestAngle(angle_deg, encoderDeg(*encoder_));
-      shift_deg_ = 0.0;
+      // While it turns, the two are of different instants: what is less may be the way between them.
+      const double between_deg =
+          std::abs(toDrive(static_cast<double>(feedback_.velocity_rpm))) * kDegPerSPerRpm * kInstantsApartS;
+      const double shift_deg = shortestWay(position_deg_, angle_deg, reach_deg);
+      shift_deg_ = std::abs(shift_deg) > std::max(kShiftSeenDeg, between_deg) ? shift_deg : 0.0;
     } else {
       // Within half a turn of its last count it may have been restarted all the same.
       position_deg_ += shortestAngle(position_deg_, encoderDeg(*encoder_));
@@ -161,7 +168,9 @@ void LKTech_Motor::takeTurns(const CanFrame& frame) noexcept {
   // Some firmware may count from another zero than its encoder's. Seen while it stands.
   if (std::abs(feedback_.velocity_rpm) < kStandingRpm) {
     const double shift_deg = shortestWay(position_deg_, angle_deg, reach_deg);
-    shift_deg_ = std::abs(shift_deg) > kSameAngleDeg ? shift_deg : 0.0;
+    // A step of the target is none that a reading at the edge makes again and again.
+    const double least_deg = shift_deg_ != 0.0 ? kSameAngleDeg / 2.0 : kSameAngleDeg;
+    shift_deg_ = std::abs(shift_deg) > least_deg ? shift_deg : 0.0;
   }
   answered(Step::kTurns);
 }

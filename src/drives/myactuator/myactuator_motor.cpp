@@ -140,6 +140,7 @@ FrameVerdict MyActuator_Motor::takeAngleReply(const CanFrame& frame) noexcept {
         static_cast<std::int32_t>(static_cast<std::uint32_t>(raw) - static_cast<std::uint32_t>(*raw_angle_));
   }
   raw_angle_ = raw;
+  motion_rad_.reset();
   acceptSample(frame.received, static_cast<double>(angle_raw_) * myactuator::kDegPerRaw);
   return FrameVerdict::kAccepted;
 }
@@ -163,6 +164,7 @@ void MyActuator_Motor::takeUptime(const CanFrame& frame) noexcept {
     if (late_ms > kUptimeSlackMs + elapsed_ms / kUptimeDriftDivider) {
       loseReference();
       raw_angle_.reset();
+      motion_rad_.reset();
       restarted_ = restarted_ || obeying();
       if (enabling()) beginEnabling();
     }
@@ -177,6 +179,7 @@ FrameVerdict MyActuator_Motor::takeMotion(const CanFrame& frame) noexcept {
   if (frame.length != myactuator::kLength || frame.data[0] != id_) return FrameVerdict::kMalformed;
   watchSilence(frame.received);
   const auto reading = myactuator::decodeMotion(frame.payload());
+  motion_rad_ = reading.angle_rad;
   takeSpeed(toOutput(reading.velocity_rad_s) / kRadPerSPerRpm, true);
   feedback_.torque_nm = static_cast<float>(torqueToOutput(reading.torque_nm));
   if (torqueNmPerA() > 0.0F) feedback_.current_a = feedback_.torque_nm / torqueNmPerA();
@@ -314,8 +317,8 @@ void MyActuator_Motor::followImpedance(const Target& target) noexcept {
   if (outside) {
     limits_ |= kLimitAngle;
     // A load sinks then, and does not fall.
-    if (motion.stiffness_nm_per_rad > 0.0 && feedback_.samples > 0)
-      motion.damping_nms_per_rad = std::max(motion.damping_nms_per_rad, dampingOf());
+    if (motion.stiffness_nm_per_rad > 0.0)
+      motion = dampOnly(motion, feedback_.samples > 0 ? dampingOf() : 0.0);
     motion.position_rad = 0.0;
     motion.stiffness_nm_per_rad = 0.0;
   }
@@ -340,8 +343,10 @@ void MyActuator_Motor::sendMotion(SpringLaw motion) noexcept {
       std::clamp(motion.velocity_rad_s, -myactuator::kMotionVelocityRadS, myactuator::kMotionVelocityRadS);
   if (told_rad_s != motion.velocity_rad_s) limits_ |= kLimitVelocity;
   motion.velocity_rad_s = told_rad_s;
+  // The answer to a motion command is younger than the last angle, which is asked for now and then. Within
+  // its range both count from one zero.
   const SpringState measured{
-      .position_rad = measuredDeg() * kRadPerDeg,
+      .position_rad = motion_rad_.value_or(measuredDeg() * kRadPerDeg),
       .velocity_rad_s = toDrive(finiteOr0(static_cast<double>(feedback_.velocity_rpm))) * kRadPerSPerRpm};
   const double bound_nm = std::min(driveTorqueLimitNm(), myactuator::kMotionTorqueNm);
   if (boundTorque(motion, measured, bound_nm, SpringYield::kGains)) limits_ |= kLimitCurrent;

@@ -90,6 +90,7 @@ class MyActuator_Motor final : public SoloMotor {
   std::optional<MonotonicTime> heard_;
   std::optional<std::int32_t> raw_angle_;  ///< The last, in 0.01 deg.
   std::int64_t angle_raw_ = 0;             ///< The same, going on where 32 bits end.
+  std::optional<double> motion_rad_;       ///< Angle of a motion answer since then.
   bool zero_before_ = false;               ///< The reply before said 0.
   bool speed_of_motion_ = false;           ///< Its scale is that of the motion mode.
   bool running_ = false;                   ///< It has been the same run of the drive since angles were taken.

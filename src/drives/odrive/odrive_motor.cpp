@@ -296,6 +296,7 @@ std::size_t ODrive_Motor::packCommand(const Tick& tick, std::span<CanFrame> out)
       limits_due_ = false;
       limits_sent_a_ = effortLimit();
       limits_sent_at_ = tick.now;
+      mode_repeats_ = 1;  // for a drive that has heard none of the frames of the switch
     }
     frames.add(input_);
   } else if (enabling() && (enabling_.at(Step::kToClosedLoop) || enabling_.done())) {

@@ -9,6 +9,7 @@
 #include "drives/robstride/robstride_model.hpp"
 #include "drives/robstride/robstride_setup.hpp"
 #include "motor/drive_configuring.hpp"
+#include "motor/lead_bound.hpp"
 #include "motor/position_reach.hpp"
 #include "motor/solo_motor.hpp"
 
@@ -70,12 +71,12 @@ class RobStride_Motor : public SoloMotor {
   void doubtAngles() noexcept;
   void takePosition(double rad) noexcept;
 
-  void followOperation(const Target& target) noexcept;
+  void followOperation(const Target& target, MonotonicTime now) noexcept;
   void followCurrent(const Target& target) noexcept;
   void followVelocity(const Target& target) noexcept;
   void followAngle(const Target& target) noexcept;
   [[nodiscard]] double clampVelocity(double rad_s) noexcept;
-  void limitApproach(SpringLaw& wanted) noexcept;
+  void limitApproach(SpringLaw& wanted, MonotonicTime now) noexcept;
   void limitTorque(SpringLaw& wanted) noexcept;
 
   [[nodiscard]] std::size_t packReference(const Tick& tick, std::span<CanFrame> out) noexcept;
@@ -104,6 +105,7 @@ class RobStride_Motor : public SoloMotor {
   Reference reference_;
   Travel travel_;
   SpringReach reach_;
+  LeadBound lead_;
   bool brake_held_ = false;
   double brake_rad_ = 0.0;  ///< Place of the brake by the count of the drive.
   float limit_sent_a_ = -1.0F;

@@ -25,7 +25,7 @@ double RobStride_Motor::positionRadFor(double total_angle_deg) const noexcept {
   return drivePositionFor(total_angle_deg) / kDegPerRad + scale_offset_rad_;
 }
 
-void RobStride_Motor::update(const Tick& /*tick*/) noexcept {
+void RobStride_Motor::update(const Tick& tick) noexcept {
   limits_ = 0;
   Target target = wanted();
   if (enabling() && begins()) {
@@ -37,7 +37,7 @@ void RobStride_Motor::update(const Tick& /*tick*/) noexcept {
   operation_ = {};
   reference_ = {};
   switch (control_) {
-    case RobstrideControl::kOperation: followOperation(target); break;
+    case RobstrideControl::kOperation: followOperation(target, tick.now); break;
     case RobstrideControl::kCurrent: followCurrent(target); break;
     case RobstrideControl::kVelocity: followVelocity(target); break;
     case RobstrideControl::kPosition: followAngle(target); break;
@@ -51,7 +51,7 @@ double RobStride_Motor::clampVelocity(double rad_s) noexcept {
   return clamped;
 }
 
-void RobStride_Motor::followOperation(const Target& target) noexcept {
+void RobStride_Motor::followOperation(const Target& target, MonotonicTime now) noexcept {
   SpringLaw wanted;
   const double square = ratio() * ratio();
   const bool knows_itself = feedback_.samples > 0;
@@ -92,7 +92,7 @@ void RobStride_Motor::followOperation(const Target& target) noexcept {
   const bool follows_angle = wanted.stiffness_nm_per_rad > 0.0;
   if (follows_angle && (angles_in_doubt_ || !positionOnScale())) {
     limits_ |= kLimitAngle;
-    wanted = {.damping_nms_per_rad = std::max(wanted.damping_nms_per_rad, angle_damping_)};
+    wanted = dampOnly(wanted, angle_damping_);
   }
   if (wanted.stiffness_nm_per_rad > 0.0) {
     const double reach = springReachRad(scaleEndRad(), limitNm(), wanted.stiffness_nm_per_rad);
@@ -102,19 +102,19 @@ void RobStride_Motor::followOperation(const Target& target) noexcept {
   } else {
     reach_.release();
   }
-  if (target.mode == ControlMode::kTotalAngle) limitApproach(wanted);
+  if (target.mode == ControlMode::kTotalAngle)
+    limitApproach(wanted, now);
+  else
+    lead_.release();
   limitTorque(wanted);
   operation_ = wanted;
   setCommand(torqueToOutput(torqueNm(wanted, measured())) / static_cast<double>(torqueNmPerA()),
              CommandUnit::kAmpere);
 }
 
-void RobStride_Motor::limitApproach(SpringLaw& wanted) noexcept {
+void RobStride_Motor::limitApproach(SpringLaw& wanted, MonotonicTime now) noexcept {
   if (velocityLimitRpm() <= 0.0F) return;
-  const double limit = limitRadS();
-  if (boundLead(wanted, measured(), -limit - wanted.velocity_rad_s, limit - wanted.velocity_rad_s)) {
-    limits_ |= kLimitVelocity;
-  }
+  if (lead_.apply(wanted, measured(), limitRadS(), limitNm(), now)) limits_ |= kLimitVelocity;
 }
 
 void RobStride_Motor::limitTorque(SpringLaw& wanted) noexcept {

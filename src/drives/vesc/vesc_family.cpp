@@ -256,6 +256,7 @@ MotorTraits vescTraits(const VescSettings& own) {
   traits.asked = false;
   traits.watchdog = own.ask_status;
   traits.modes = own.angle == VescAngle::kNone ? kVescModes : kVescModesWithAngle;
+  if (!(own.brake_current_a > 0.0F)) traits.modes = traits.modes.without(ControlMode::kBrake);
   static constexpr DriveSetup kSetup{.tool = "VESC Tool (the simple CAN commands write no settings)"};
   traits.setup = &kSetup;
   traits.frames = {.rest = Provision::kFrame,

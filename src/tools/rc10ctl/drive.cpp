@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "app/printable.hpp"
+#include "client/catch_up.hpp"
 #include "client/obstacle.hpp"
 #include "client/quantity_text.hpp"
 #include "client/request_call.hpp"
@@ -91,7 +92,7 @@ class Driver {
     }
     // Best effort, as the setpoint lapses by itself too.
     if (!over_ && order_.then == Then::kCoast) letGo();
-    if (!over_ && order_.then == Then::kTimeout) lapse();
+    if (!over_ && order_.then == Then::kTimeout && acts()) lapse();
     if (!why.empty()) return complain({why}, ExitCode::kFailed);
     if (order_.then != Then::kDisable)
       std::printf("%s %s\n", name_.c_str(),
@@ -118,6 +119,8 @@ class Driver {
       if (auto why = refused(); !why.empty()) return why;
       const auto now = steady_clock::now();
       if (now - start >= order_.time) break;
+      const bool caught_up = catch_up_.done(now, feed_.state()->mono_us);
+      if (now >= next && !caught_up) next = now + kSendPeriod;
       if (now >= next) {
         sent_before_ = setpoint_.target;
         if (order_.steer) {
@@ -151,6 +154,11 @@ class Driver {
       why = "rc10ctl was held up for more than 2 s: the target has ended, and is not sent again";
     over_ = !why.empty();
     return why;
+  }
+
+  // Later, what holds the motor is its on_timeout.
+  bool acts() const {
+    return sent_ && steady_clock::now() - *sent_ < std::chrono::milliseconds{command_.validity_ms};
   }
 
   // Coasts, and then gives the motor back: while a target is valid, a coasting one too, nobody else of our
@@ -279,6 +287,7 @@ class Driver {
   bool taken_ = false;              // has been in force
   bool over_ = false;               // its targets are
   std::optional<steady_clock::time_point> sent_;
+  client::CatchUp catch_up_;
   Unheeded unheeded_;
   link::Command command_;
 };

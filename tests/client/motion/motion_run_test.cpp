@@ -38,12 +38,14 @@ class Robot {
   void run(Duration time, const std::function<void(Robot&)>& tick = {}) {
     for (const auto end = now_ + time; now_ < end && !test_.over(); now_ += 1ms) {
       ++tick_;
-      if (const auto order = test_.order(now_)) obey(*order);
+      if (now_ >= asleep_until) {
+        if (const auto order = test_.order(now_)) obey(*order);
+      }
       if (now_ >= until_ && owner == "tester") owner = "";
       if (tick) tick(*this);
       advance();
       rows_.rows[rows_.row_count++] = row();
-      if (tick_ % 10 == 0 && !silent) publish();
+      if (tick_ % 10 == 0 && !silent && now_ >= asleep_until) publish();
       if (tick_ % 10 == 0) rows_.row_count = 0;
     }
   }
@@ -67,9 +69,13 @@ class Robot {
   bool obeys = true;
   std::int32_t last_validity_ms = 0;
   int orders_after_abort = 0;
+  int orders = 0;
+  MonotonicTime asleep_until{};
+  MonotonicTime now() const { return now_; }
 
  private:
   void obey(const MotionRun::Order& order) {
+    ++orders;
     if (test_.aborted()) ++orders_after_abort;
     last_validity_ms = order.validity_ms;
     if (!obeys) return;
@@ -346,6 +352,24 @@ TEST(MotionRun, APauseOfTheClientChangesNothing) {
     if (paused && !r.obeys && r.velocity_rpm > 55.0) r.obeys = true;
   });
   EXPECT_FALSE(robot.test().aborted());
+}
+
+TEST(MotionRun, ATargetThatLapsedWhileTheClientStoodIsNotSentOnceMore) {
+  // Within the time of the test, and beyond it.
+  for (const auto pause : {500ms, 5000ms}) {
+    auto settings = stepTo(60.0);
+    settings.criteria.feedback_age_max_us = 1e7;
+    auto robot = robotFor(settings);
+    int before = 0;
+    robot.run(10s, [&](Robot& r) {
+      if (r.velocity_rpm < 50.0 || before != 0) return;
+      before = r.orders;
+      r.asleep_until = r.now() + pause;
+    });
+    ASSERT_TRUE(robot.test().over());
+    EXPECT_GT(before, 0);
+    EXPECT_EQ(robot.orders, before) << pause.count();
+  }
 }
 
 TEST(MotionRun, NoTargetOutlivesAPulseByMoreThan200Ms) {

@@ -147,6 +147,27 @@ TEST_F(LinkServerStrangersTest, AClientThatNeverReadsBlocksNobody) {
   expectServed(*deaf);
 }
 
+TEST_F(LinkServerStrangersTest, AnEventThatFoundNoRoomIsReadBeforeAnyYoungerState) {
+  auto slow = join(link::kEvents | link::kStates);
+  for (std::uint64_t tick = 1; tick < 2000; ++tick) {
+    publishSnapshot(tick);
+    server->poll(2);
+  }
+  exchange.events.push({EventCode::kRobotState, Severity::kError, -1, 0, 0, {}});
+  pump();
+  publishSnapshot(5000);
+  // All that filled its socket.
+  std::uint64_t newest = 0;
+  while (auto state = slow->take<link::State>()) newest = static_cast<std::uint64_t>(state->tick);
+  EXPECT_LT(newest, 2000U);
+  const auto event = await<link::Event>(*slow);
+  ASSERT_TRUE(event);
+  EXPECT_EQ(EventCode{event->code}, EventCode::kRobotState);
+  const auto state = await<link::State>(*slow);
+  ASSERT_TRUE(state);
+  EXPECT_EQ(state->tick, 5000);
+}
+
 TEST_F(LinkServerStrangersTest, AClientThatReadsNothingIsToldOnceUntilItReadsAgain) {
   auto deaf = join(link::kEvents);
   auto client = join(link::kEvents);

@@ -139,6 +139,15 @@ TEST_F(GroupTest, RearmAtRestWaitsUntilEveryMemberStandsStill) {
   EXPECT_NEAR(robot->motor(kRight).feedback.velocity_rpm, 60.0F, 3.0F);
 }
 
+TEST_F(GroupTest, AfterALongLossItWaitsForARequest) {
+  start(GroupConfig::Return::kRearmAtRest);
+  losePower(4000);
+  robot->run(20'000);
+  EXPECT_EQ(status(kLeft), MotorStatus::kReady);
+  EXPECT_EQ(status(kRight), MotorStatus::kReady);
+  EXPECT_FALSE(told(EventCode::kGroupRearmed));
+}
+
 TEST_F(GroupTest, MembersThatAreLostTogetherAreEnabledTogether) {
   start(GroupConfig::Return::kRearmAtRest);
   robot->freezeSimulation(true);
@@ -314,6 +323,30 @@ TEST_F(TogetherTest, AllAreEnabledOrNone) {
   EXPECT_EQ(both.motors[kLeft], Refusal::kNone);
   EXPECT_EQ(both.motors[kRight], Refusal::kNone);
   EXPECT_EQ(robot->orderFor(only(kLeft), Operation::kEnable).motors[kLeft], Refusal::kNone) << "once more";
+}
+
+TEST_F(TogetherTest, ADisableLetsGoOfAllOrNone) {
+  auto config = coupled(GroupConfig::Return::kRequest);
+  config.groups[0].together = true;
+  for (const auto place : {0U, 1U}) {
+    for (auto& motor : config.buses[place].motors) motor.fallback.on_disable = FallbackAction::kHold;
+  }
+  robot = std::make_unique<VirtualRobot>(config);
+  robot->run(5);
+  robot->orderFor(only(kLeft) | only(kRight), Operation::kEnable);
+  robot->run(50);
+  robot->orderFor(only(kLeft), Operation::kDisable);
+  robot->run(3);
+  ASSERT_EQ(robot->motor(kLeft).acting, Acting::kHold);
+  ASSERT_EQ(robot->motor(kRight).acting, Acting::kHold);
+  robot->orderFor(only(kLeft) | only(kRight), Operation::kDisable);
+  robot->run(3);
+  EXPECT_EQ(robot->motor(kLeft).acting, Acting::kHold) << "for the right one it was the first";
+  EXPECT_EQ(robot->motor(kRight).acting, Acting::kHold);
+  robot->orderFor(only(kLeft), Operation::kDisable);
+  robot->run(3);
+  EXPECT_EQ(robot->motor(kLeft).acting, Acting::kNothing);
+  EXPECT_EQ(robot->motor(kRight).acting, Acting::kNothing) << "together";
 }
 
 TEST_F(TogetherTest, NoneIsEnabledWhileOneCannotBe) {

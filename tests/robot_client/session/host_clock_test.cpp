@@ -26,6 +26,31 @@ TEST(HostClock, BeginsAnewWhenTheHostHasStartedAgain) {
   EXPECT_EQ(clock.observe(1s, local + 60s), local + 60s);
 }
 
+TEST(HostClock, IsTakenAnewAfterTheHostHasSlept) {
+  HostClock clock;
+  MonotonicTime local{1000s};
+  Duration host = 5000s;
+  (void)clock.observe(host, local);
+  local += 60s;  // one second of the host
+  host += 1s;
+  EXPECT_LT(clock.observe(host, local), local - 50s);
+  for (int i = 0; i < 600; ++i) (void)clock.observe(host += 10ms, local += 10ms);
+  EXPECT_EQ(clock.observe(host + 10ms, local + 10ms), local + 10ms);
+}
+
+TEST(HostClock, MessagesOfAQueueThatIsReadInBurstsAreAsOldAsTheyAre) {
+  HostClock clock;
+  MonotonicTime local{1000s};
+  Duration host = 5000s;
+  (void)clock.observe(host, local);
+  // The program stands for two seconds, again and again, and its queue drops the newest.
+  for (int turn = 0; turn < 10; ++turn) {
+    for (int i = 0; i < 100; ++i) EXPECT_LT(clock.observe(host + i * 5ms, local + 2s), local + 501ms);
+    local += 2s;
+    host += 2s;
+  }
+}
+
 }  // namespace
 }  // namespace host_clock_test
 }  // namespace robot_client
