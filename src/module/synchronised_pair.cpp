@@ -75,7 +75,7 @@ class SynchronisedPair : public Module_Base {
       for (const auto motor : motors_)
         robot.setTarget(motor, {.mode = ControlMode::kTotalAngle, .value = input(kTotalAngleDeg)});
     } else if (std::isfinite(input(kVelocityRpm))) {
-      // Of what both can do: at the limit the one that is ahead is still slowed.
+      // Speeds that both can reach: at the limit the one that is ahead is still slowed.
       const double both_rpm = std::clamp(input(kVelocityRpm), -velocity_limit_rpm_, velocity_limit_rpm_);
       const double pull_rpm = correction_rpm_per_deg_ * difference_deg / 2.0;
       turn(robot, motors_[0], both_rpm - pull_rpm);

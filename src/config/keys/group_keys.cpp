@@ -38,9 +38,9 @@ constexpr std::array kGroupKeys{
         .kind = kText,
         .choices = returnChoices,
         .default_text = "request",
-        .about =
-            "request: every member must be enabled again. rearm_at_rest: enabled again by itself once "
-            "all are there, within 3 s, and stand still; not after a fault, an e-stop, a disable or an enable_alone."}};
+        .about = "request: every member must be enabled again. rearm_at_rest: enabled again by itself once "
+                 "all are there, within 3 s, and stand still; not after a fault, an e-stop, a disable or an "
+                 "enable_alone."}};
 
 }  // namespace
 

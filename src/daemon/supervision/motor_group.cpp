@@ -52,7 +52,7 @@ bool MotorGroup::isFirstDisable(std::size_t motor, const Order& order) const noe
 }
 
 void MotorGroup::takeDisable(std::size_t motor, const Order& order) noexcept {
-  // Of what is moved by several motors one request lets go of all or of none.
+  // One request lets go of all motors that move one thing, or of none.
   if (together && (order.motors & rests_with_it).any()) first_disable = order.id;
   rests_with_it.reset(motor);
 }

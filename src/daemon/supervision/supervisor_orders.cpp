@@ -227,7 +227,7 @@ void Supervisor::disable(std::size_t motor, const Order& order, const Tick& tick
   const bool once_more =
       anew && tick.now != estop_began_ && (group == nullptr || !group->isFirstDisable(motor, order));
   if (axis.status() == MotorStatus::kReady && once_more) {
-    // What is moved by several motors is let go by all.
+    // Motors that move one thing let go together.
     if (group != nullptr && group->together) {
       for (const auto member : group->motors)
         if (axes_[member].status() == MotorStatus::kReady) axes_[member].disableOnceMore(tick);

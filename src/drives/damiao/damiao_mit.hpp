@@ -17,7 +17,7 @@ struct DamiaoMitBounds {
   bool position_known = false;
   double reach_rad =
       std::numeric_limits<double>::infinity();  ///< Bound of targets, beside that of the scale.
-  LeadBound* lead = nullptr;                    ///< Of a target that is an angle.
+  LeadBound* lead = nullptr;                    ///< For a target that is an angle.
   MonotonicTime now{};
   double damping_nms_per_rad =
       0.0;  ///< Least, where there can be no stiffness: a load sinks, and does not fall.

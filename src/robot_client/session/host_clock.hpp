@@ -24,7 +24,7 @@ class HostClock {
   Duration last_host_{};
   MonotonicTime last_local_{};
   std::optional<MonotonicTime> late_since_;  ///< Since then every message has been late, without a gap.
-  Duration least_{};                         ///< Of the distances since then.
+  Duration least_{};                         ///< The smallest distance since then.
 };
 
 }  // namespace robot_client
