@@ -69,7 +69,7 @@ SoloRig myactuator(double error) {
       sim::makeMyactuatorDrive(settings, {})};
 }
 
-constexpr Target kVelocity{.mode = ControlMode::kVelocity, .value = kRpm};
+constexpr Target kVelocity{.mode = ControlMode::kVelocity, .value = static_cast<double>(kRpm)};
 constexpr Target kMotion{
     .mode = ControlMode::kImpedance, .velocity_ff_rpm = kRpm, .damping_nms_per_rad = 4.0F};
 

@@ -298,7 +298,7 @@ TEST_F(ModuleRunnerTest, AllItsTargetsActOrNoneWhateverOneIsSkippedFor) {
   }};
   auto config = twoWheelsAndYaw();
   for (auto& motor : config.buses[0].motors) motor.settings.zero_at_power_on = true;
-  config.buses[0].motors[0].shaping.max_first_step_deg = 10.0F;
+  config.buses[0].motors[0].shaping.max_first_step_deg = 10.0;
   start({{&type, 0}}, nullptr, config);
   enable();
   robot_->run(50);
