@@ -261,6 +261,13 @@ TEST_F(Gimbal, WithoutAReferenceItDoesNotMove) {
 /// A gimbal whose motors take some time, with a gyro that is late, noisy and slower than the tick.
 class LateGimbal : public ::testing::Test {
  protected:
+  void findAnOpposedPitch() {
+    pitch_sign_ = -1.0;
+    build(7);
+    run(300);
+    aim(0.0, 5.0);
+    run(1000);
+  }
   struct Truth {
     double yaw_deg;
     double yaw_rate_deg_s;
@@ -485,11 +492,7 @@ TEST_F(LateGimbal, ShovesAndSlopesAreNoWrongSign) {
 }
 
 TEST_F(LateGimbal, EnablingAgainComparesAgain) {
-  pitch_sign_ = -1.0;
-  build(7);
-  run(300);
-  aim(0.0, 5.0);
-  run(1000);
+  findAnOpposedPitch();
   ASSERT_EQ(output(kAgrees), 0.0);
   robot_.motor(1).status = MotorStatus::kReady;
   run(10);
@@ -503,11 +506,7 @@ TEST_F(LateGimbal, EnablingAgainComparesAgain) {
 }
 
 TEST_F(LateGimbal, ATakeoverForgetsNoWrongSign) {
-  pitch_sign_ = -1.0;
-  build(7);
-  run(300);
-  aim(0.0, 5.0);
-  run(1000);
+  findAnOpposedPitch();
   ASSERT_EQ(output(kAgrees), 0.0);
   robot_.motor(1).obeys = false;
   run(50);

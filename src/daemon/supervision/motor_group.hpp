@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <optional>
 #include <vector>
 
@@ -42,8 +43,8 @@ struct MotorGroup {
   MotorSet refused;                  ///< or whose drives have refused.
   bool disable_asked = false;        ///< A request named some member.
   bool disabled_on_request = false;  ///< Some of `disabled` by one that somebody asked for.
-  std::optional<std::uint64_t>
-      first_disable;  ///< Request, of a group that acts together, that named some of rests_with_it.
+  /// Request that named some of rests_with_it, where the group acts together.
+  std::optional<std::uint64_t> first_disable;
   // Until a request changes it.
   MotorSet rests_with_it;   ///< Disabled since another member was.
   MotorSet rearm;           ///< To be enabled again by itself; empty: none.
